@@ -1,0 +1,22 @@
+# Every third-party package in one place. `./dev deps` installs them (packages.txt).
+find_package(PkgConfig REQUIRED)
+find_package(Threads REQUIRED)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(TBB CONFIG REQUIRED)
+find_package(fmt REQUIRED)
+find_package(tomlplusplus REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(assimp CONFIG REQUIRED)
+find_package(OpenMesh CONFIG REQUIRED)
+find_package(meshoptimizer CONFIG REQUIRED)
+find_package(TinyGLTF CONFIG REQUIRED)
+find_package(PNG REQUIRED)
+find_package(embree 3 CONFIG REQUIRED)
+pkg_check_modules(LIBAV REQUIRED IMPORTED_TARGET libavcodec libavformat libswscale libavutil)
+pkg_check_modules(OSMESA REQUIRED IMPORTED_TARGET osmesa)
+
+# Debian ships FindOpenVDB.cmake outside CMake's own path; its Imath warning about Python is harmless.
+list(APPEND CMAKE_MODULE_PATH "/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/OpenVDB")
+set(CMAKE_FIND_PACKAGE_WARN_NO_MODULE OFF)
+find_package(OpenVDB 10 REQUIRED QUIET)

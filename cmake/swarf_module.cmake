@@ -1,0 +1,24 @@
+# swarf_module(<name> [DEPENDS <modules>...] [LIBRARIES <third-party targets>...])
+# One static library from every .cpp of the calling folder, known to others as swarf::<name>.
+# LIBRARIES stay private: heavy libraries are seen by the .cpp files of one folder only.
+function(swarf_module name)
+  cmake_parse_arguments(ARG "" "" "DEPENDS;LIBRARIES" ${ARGN})
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/*.cpp")
+  list(TRANSFORM ARG_DEPENDS PREPEND "swarf::")
+  if(sources)
+    add_library(swarf_${name} STATIC ${sources})
+    target_link_libraries(swarf_${name} PUBLIC ${ARG_DEPENDS} swarf_settings PRIVATE ${ARG_LIBRARIES})
+  else()
+    add_library(swarf_${name} INTERFACE)
+    target_link_libraries(swarf_${name} INTERFACE ${ARG_DEPENDS} swarf_settings)
+  endif()
+  add_library(swarf::${name} ALIAS swarf_${name})
+endfunction()
+
+# Flags that every file shares.
+add_library(swarf_settings INTERFACE)
+target_include_directories(swarf_settings INTERFACE "${PROJECT_SOURCE_DIR}/engine" "${PROJECT_SOURCE_DIR}")
+target_link_libraries(swarf_settings INTERFACE Eigen3::Eigen fmt::fmt Threads::Threads)
+# -ffp-contract=off: with fused multiply-add, results would depend on the instruction set.
+# No -march here: Debian's libraries use Eigen with 16-byte alignment; only kernel files carry their own flags.
+target_compile_options(swarf_settings INTERFACE -Wall -Wextra -Wshadow -Wno-psabi -ffp-contract=off)

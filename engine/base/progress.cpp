@@ -1,0 +1,9 @@
+#include "base/progress.h"
+
+namespace swarf {
+
+void Progress::begin(std::string_view, double, std::string_view) {}
+void Progress::advance(double) {}
+void Progress::end() {}
+
+}  // namespace swarf

@@ -1,0 +1,22 @@
+// Progress and cancellation of long work. The command line draws it; the engine only reports.
+#pragma once
+
+#include <string_view>
+
+namespace swarf {
+
+/// Receives progress; every call comes from the thread that runs the stage. The base class is silent.
+class Progress {
+ public:
+  virtual ~Progress() = default;
+  /// A stage begins; `total` is its amount of work in `unit` ("blocks", "frames").
+  virtual void begin(std::string_view stage, double total, std::string_view unit);
+  /// `done` of the stage's total is finished.
+  virtual void advance(double done);
+  /// The stage is over.
+  virtual void end();
+  /// True once the user has asked to stop; long loops look at it between units of work.
+  virtual bool stop_requested() const { return false; }
+};
+
+}  // namespace swarf

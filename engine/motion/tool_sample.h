@@ -1,0 +1,31 @@
+// One control cycle: where the tool is, where it touches, how fast it goes, and the axis positions.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/frames.h"
+#include "kinematics/machine_model.h"
+
+namespace swarf::motion {
+
+enum class SampleKind : uint8_t { kCutting, kApproach, kRetract, kRapid };
+
+struct ToolSample {
+  double t_s = 0.0;
+  ToolPose pose;                  ///< work frame
+  Vec3 contact_W = Vec3::Zero();  ///< equals the tip while nothing is touched
+  double u = 0.0, v = 0.0;        ///< surface parameters of the contact; 0 on free moves
+  double feed_mm_s = 0.0;         ///< commanded speed of the contact point over the cycle that ends here
+  int element = 0;                ///< index into ToolPath::elements
+  SampleKind kind = SampleKind::kRapid;
+};
+
+/// Samples and axis positions of a whole program, same length.
+struct Trajectory {
+  double period_s = 1e-3;
+  std::vector<ToolSample> samples;
+  std::vector<kinematics::AxisValues> axes;
+};
+
+}  // namespace swarf::motion

@@ -1,0 +1,32 @@
+// A parametric surface S(u,v) over the unit square, in the work frame, mm.
+#pragma once
+
+#include <memory>
+
+#include "base/frames.h"
+
+namespace swarf::surface {
+
+/// Position and partial derivatives up to the second order at one (u,v). mm per unit parameter.
+struct Derivatives {
+  Vec3 S, Su, Sv, Suu, Suv, Svv;
+};
+
+/// Evaluation must allocate nothing: the interpolator calls it inside its cycle.
+/// Parameters a little outside [0,1] are legal where the surface has a natural continuation
+/// (polynomials do); passes overrun the edge of the part that way.
+class Surface {
+ public:
+  virtual ~Surface() = default;
+  virtual Vec3 point(double u, double v) const = 0;
+  virtual Derivatives derivatives(double u, double v) const = 0;
+  /// +1 when Su x Sv points out of the material, -1 when it points in (erratum E4).
+  virtual int outward_sign() const = 0;
+};
+
+using SurfacePtr = std::shared_ptr<const Surface>;
+
+/// Unit normal that points out of the material. |Su x Sv| must not vanish.
+Vec3 outward_normal(const Surface& surface, const Derivatives& d);
+
+}  // namespace swarf::surface

@@ -1,0 +1,94 @@
+// The tool path: passes on a surface and free moves between them, in the work frame.
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "base/cubic_spline.h"
+#include "base/diagnostics.h"
+#include "base/frames.h"
+#include "cutter/cutter.h"
+#include "program/program.h"
+#include "surface/surface.h"
+
+namespace swarf::toolpath {
+
+/// A curve on a surface as a graph over one parameter: (u,v) = (t, w(t)) when along_u, else (w(t), t).
+struct SurfaceCurve {
+  bool along_u = true;
+  CubicSpline w;
+};
+
+/// The curve's point and its derivatives by t, and the surface's derivatives there.
+struct CurvePoint {
+  double u = 0.0, v = 0.0;
+  surface::Derivatives surface;
+  Vec3 C, dC, ddC;  ///< mm per unit t
+};
+CurvePoint curve_at(const surface::Surface& surface, const SurfaceCurve& curve, double t);
+/// Position alone (cheaper).
+Vec3 curve_point(const surface::Surface& surface, const SurfaceCurve& curve, double t);
+
+/// One pass in contact with the part, travelled from t_start to t_end (either may be the larger).
+struct SurfacePass {
+  surface::SurfacePtr surface;
+  SurfaceCurve curve;
+  double t_start = 0.0, t_end = 1.0;
+  double feed_mm_s = 0.0;
+  double chord_tolerance_mm = 1e-3;
+  double lead_rad = 0.0, tilt_rad = 0.0;
+  double interval_mm = 0.0;        ///< chord to the previous pass: its minimum; 0 for the first pass
+  double scallop_theory_mm = 0.0;  ///< greatest cusp that theory 1.1 gives between this and the previous pass
+  int pass = 0;                    ///< 0-based count of passes
+};
+
+enum class MoveKind { kRapid, kApproach, kRetract };
+
+/// A straight move of the tip with the axis turning along the great circle (slerp).
+struct FreeMove {
+  MoveKind kind = MoveKind::kRapid;
+  ToolPose from, to;
+  double feed_mm_s = 0.0;  ///< 0: rapid, limited by the machine alone
+};
+
+struct Element {
+  std::variant<SurfacePass, FreeMove> what;
+  int operation = 0;     ///< index into Program::operations
+  SourceLocation where;  ///< the block that caused it
+};
+
+struct ToolPath {
+  std::string planner;  ///< "constant_scallop" | "lin_koren" | "isoparametric"
+  std::vector<Element> elements;
+  int passes = 0;
+  double pass_length_mm = 0.0;  ///< contact length, without links
+  double link_length_mm = 0.0;
+};
+
+/// Tool pose in contact at a curve point: flat end, axis = normal turned by lead (about the cross direction,
+/// towards the feed) and tilt (towards the left of the feed). With zero lean the tip centre is the contact point;
+/// leaned, the contact lies on the rim and the tip centre is one radius behind it in the bottom plane.
+/// `unit_feed` is the direction of travel.
+ToolPose pose_in_contact(const Vec3& contact, const Vec3& normal, const Vec3& unit_feed, double lead_rad,
+                         double tilt_rad, double radius_mm);
+
+enum class Planner { kConstantScallop, kLinKoren, kIsoparametric };
+/// "constant_scallop" and so on; nullptr-safe names for reports and TOML.
+const char* planner_name(Planner planner);
+
+struct PlanOptions {
+  Planner planner = Planner::kConstantScallop;
+  double safe_distance_mm = 5.0;  ///< retract along the tool axis between passes
+  double overrun_mm = 1.5;        ///< each pass runs on past the edge of the part by this much
+  double rapid_clearance_mm = 20.0;  ///< first approach and last retract, above the highest point of the stock
+  double stock_top_mm = 0.0;         ///< W, highest point of the stock
+  double approach_feed_fraction = 0.5;
+};
+
+/// Plans every operation of the program. Alarms of theory 1.6 that need the cutter (saddle or concave without lean,
+/// P beyond D R/(R+h)) and operations that cannot be planned go to `diagnostics`.
+ToolPath plan(const program::Program& program, const cutter::Cutter& cutter, const PlanOptions& options,
+              Diagnostics& diagnostics);
+
+}  // namespace swarf::toolpath

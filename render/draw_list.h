@@ -1,0 +1,55 @@
+// What is to be drawn, without saying how: the plain border between the engine and the renderers.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "base/frames.h"
+#include "mesh/tri_mesh.h"
+
+namespace swarf::render {
+
+using Rgb = std::array<float, 3>;  ///< linear, 0..1
+
+struct Material {
+  Rgb colour{0.7F, 0.7F, 0.7F};  ///< ignored where the mesh has vertex colours
+  float metalness = 0.0F;
+  float roughness = 0.6F;
+};
+
+/// A mesh at a pose; the mesh is borrowed and must outlive the list.
+struct DrawItem {
+  const TriMesh* mesh = nullptr;
+  Pose X_world = Pose::Identity();  ///< from the mesh's frame to the drawing's frame
+  Material material;
+  bool dynamic = false;  ///< true: the mesh changes between frames; false: renderers may keep it by its address
+};
+
+struct DrawLine {
+  std::vector<Vec3> points;  ///< polyline in the drawing's frame
+  Rgb colour{1.0F, 0.2F, 0.1F};
+  float width_px = 1.5F;
+};
+
+/// Perspective camera; `up` need not be orthogonal to the view.
+struct Camera {
+  Vec3 eye{300, -300, 250};
+  Vec3 target = Vec3::Zero();
+  Vec3 up = Vec3::UnitZ();
+  double vertical_fov_rad = 0.6;
+};
+
+struct DrawList {
+  Camera camera;
+  std::vector<DrawItem> items;
+  std::vector<DrawLine> lines;
+};
+
+/// 8-bit sRGB, rows from the top, 4 bytes a pixel.
+struct Image {
+  int width = 0, height = 0;
+  std::vector<uint8_t> rgba;
+};
+
+}  // namespace swarf::render
