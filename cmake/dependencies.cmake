@@ -14,7 +14,8 @@ find_package(TinyGLTF CONFIG REQUIRED)
 find_package(PNG REQUIRED)
 find_package(embree 3 CONFIG REQUIRED)
 pkg_check_modules(LIBAV REQUIRED IMPORTED_TARGET libavcodec libavformat libswscale libavutil)
-pkg_check_modules(OSMESA REQUIRED IMPORTED_TARGET osmesa)
+pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo)
+pkg_check_modules(OSMESA REQUIRED osmesa)
 
 # Debian ships FindOpenVDB.cmake outside CMake's own path; its Imath warning about Python is harmless.
 list(APPEND CMAKE_MODULE_PATH "/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/OpenVDB")
