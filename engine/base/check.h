@@ -15,7 +15,7 @@ struct InternalError : std::logic_error {
 
 }  // namespace swarf
 
-#define SWARF_CHECK(condition, message) \
-  do {                                  \
+#define SWARF_CHECK(condition, message)                                                 \
+  do {                                                                                  \
     if (!(condition)) ::swarf::check_failed(#condition, __FILE__, __LINE__, (message)); \
   } while (false)

@@ -35,7 +35,9 @@ CubicSpline::CubicSpline(double first, double step, std::vector<double> values)
   second_[n - 1] = 2.0 * second_[n - 2] - second_[n - 3];
 }
 
-CubicSpline CubicSpline::constant(double value) { return {0.0, 1.0, {value, value, value, value}}; }
+CubicSpline CubicSpline::constant(double value) {
+  return {0.0, 1.0, {value, value, value, value}};
+}
 
 CubicSpline::Value CubicSpline::at(double t) const {
   const double x = (t - first_) / step_;
@@ -48,7 +50,8 @@ CubicSpline::Value CubicSpline::at(double t) const {
   const double m1 = second_[i + 1];
   Value value;
   value.w = a * values_[i] + b * values_[i + 1] + ((a * a * a - a) * m0 + (b * b * b - b) * m1) * h2 / 6.0;
-  value.dw = (values_[i + 1] - values_[i]) / step_ + ((3.0 * b * b - 1.0) * m1 - (3.0 * a * a - 1.0) * m0) * step_ / 6.0;
+  value.dw = (values_[i + 1] - values_[i]) / step_ +
+             ((3.0 * b * b - 1.0) * m1 - (3.0 * a * a - 1.0) * m0) * step_ / 6.0;
   value.ddw = a * m0 + b * m1;
   return value;
 }

@@ -11,9 +11,12 @@ namespace {
 
 std::string_view word_for(Severity severity) {
   switch (severity) {
-    case Severity::kNote: return "note";
-    case Severity::kWarning: return "warning";
-    case Severity::kError: return "error";
+    case Severity::kNote:
+      return "note";
+    case Severity::kWarning:
+      return "warning";
+    case Severity::kError:
+      return "error";
   }
   return "error";
 }
@@ -54,7 +57,8 @@ size_t edit_distance(std::string_view a, std::string_view b) {
 std::string format(const Diagnostic& diagnostic) {
   std::string place = diagnostic.where.file;
   if (diagnostic.where.line > 0) place += fmt::format(":{}", diagnostic.where.line);
-  if (diagnostic.where.line > 0 && diagnostic.where.column > 0) place += fmt::format(":{}", diagnostic.where.column);
+  if (diagnostic.where.line > 0 && diagnostic.where.column > 0)
+    place += fmt::format(":{}", diagnostic.where.column);
   if (!place.empty()) place += ": ";
   std::string text =
       fmt::format("{}{}: {} [{}]", place, word_for(diagnostic.severity), diagnostic.text, diagnostic.code);
@@ -79,7 +83,8 @@ void Diagnostics::throw_if_errors() const {
   if (has_errors()) throw InputError(*this);
 }
 
-InputError::InputError(Diagnostics found) : std::runtime_error(summary(found)), diagnostics(std::move(found)) {}
+InputError::InputError(Diagnostics found)
+    : std::runtime_error(summary(found)), diagnostics(std::move(found)) {}
 
 InputError::InputError(std::string code, SourceLocation where, std::string text, std::string fix)
     : InputError(one_error(std::move(code), std::move(where), std::move(text), std::move(fix))) {}

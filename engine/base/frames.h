@@ -19,8 +19,8 @@ using Pose = Eigen::Isometry3d;
 
 /// Where a tool stands: the centre of its tip and its axis, which points from the tip to the spindle.
 struct ToolPose {
-  Vec3 tip_W = Vec3::Zero();     ///< mm; centre of the bottom of the cutter
-  Vec3 axis_W = Vec3::UnitZ();   ///< unit vector, tip to spindle
+  Vec3 tip_W = Vec3::Zero();    ///< mm; centre of the bottom of the cutter
+  Vec3 axis_W = Vec3::UnitZ();  ///< unit vector, tip to spindle
 };
 
 /// Axis-aligned box, mm.

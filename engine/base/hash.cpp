@@ -4,6 +4,8 @@
 
 namespace swarf {
 
-std::string Hash::text() const { return fmt::format("{:016x}", state_); }
+std::string Hash::text() const {
+  return fmt::format("{:016x}", state_);
+}
 
 }  // namespace swarf

@@ -17,10 +17,12 @@ std::vector<std::string> validate(const Cutter& c) {
   positive(c.holder_length_mm, "holder_length_mm");
   if (c.corner_radius_mm != 0.0) {
     problems.push_back(fmt::format(
-        "corner_radius_mm is {:g}: this version cuts with flat end mills (corner_radius_mm = 0) only", c.corner_radius_mm));
+        "corner_radius_mm is {:g}: this version cuts with flat end mills (corner_radius_mm = 0) only",
+        c.corner_radius_mm));
   }
   if (c.flute_length_mm > c.length_mm) {
-    problems.push_back(fmt::format("flute_length_mm {:g} is longer than the tool, length_mm {:g}", c.flute_length_mm, c.length_mm));
+    problems.push_back(fmt::format("flute_length_mm {:g} is longer than the tool, length_mm {:g}",
+                                   c.flute_length_mm, c.length_mm));
   }
   return problems;
 }

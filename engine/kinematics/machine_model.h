@@ -39,11 +39,11 @@ using AxisValues = Eigen::Matrix<double, kMaxAxes, 1>;
 
 struct MachineModel {
   std::string name;
-  std::vector<Axis> axes;       ///< order of trajectory.csv
-  std::vector<int> table_chain;  ///< indices into axes, from the base towards the work
-  std::vector<int> head_chain;   ///< indices into axes, from the base towards the tool
-  Pose X_MW = Pose::Identity();  ///< work frame with all axes at zero
-  Vec3 tip_M = Vec3::Zero();     ///< tool tip with all axes at zero
+  std::vector<Axis> axes;            ///< order of trajectory.csv
+  std::vector<int> table_chain;      ///< indices into axes, from the base towards the work
+  std::vector<int> head_chain;       ///< indices into axes, from the base towards the tool
+  Pose X_MW = Pose::Identity();      ///< work frame with all axes at zero
+  Vec3 tip_M = Vec3::Zero();         ///< tool tip with all axes at zero
   Vec3 tool_axis_M = Vec3::UnitZ();  ///< tip to spindle, all axes at zero
 };
 
@@ -55,7 +55,8 @@ ToolPose forward(const MachineModel& machine, const AxisValues& q);
 
 enum class InverseOutcome { kOk, kSingular, kOutOfTravel, kUnreachable };
 
-/// One solution; `kSingular`: the tool axis stands at the pole and the free rotary took its value from the hint.
+/// One solution; `kSingular`: the tool axis stands at the pole and the free rotary took its value from the
+/// hint.
 struct Branch {
   AxisValues q = AxisValues::Zero();
   InverseOutcome outcome = InverseOutcome::kUnreachable;
@@ -76,8 +77,8 @@ class InverseKinematics {
   explicit InverseKinematics(const MachineModel& machine);
   /// Both branches; rotary values lie within a turn of `hint` (unwound to be continuous with it).
   InverseSolutions solve(const ToolPose& pose_W, const AxisValues& hint) const;
-  /// The branch nearest to `hint` by rotary travel among those inside the travel limits; the continuous choice
-  /// through the pole (-a, b + 180 deg) falls out of this rule.
+  /// The branch nearest to `hint` by rotary travel among those inside the travel limits; the continuous
+  /// choice through the pole (-a, b + 180 deg) falls out of this rule.
   Branch solve_nearest(const ToolPose& pose_W, const AxisValues& hint) const;
 
  private:

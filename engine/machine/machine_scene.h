@@ -14,9 +14,9 @@ namespace swarf::machine {
 /// A rigid part. Its mesh is drawn in the machine frame with all axes at zero.
 struct Link {
   std::string name;
-  int parent = -1;            ///< index into MachineScene::links; -1: the floor
-  int axis = -1;              ///< index into MachineModel::axes of the axis between parent and this link; -1: fixed
-  TriMesh mesh;               ///< may be empty
+  int parent = -1;  ///< index into MachineScene::links; -1: the floor
+  int axis = -1;    ///< index into MachineModel::axes of the axis between parent and this link; -1: fixed
+  TriMesh mesh;     ///< may be empty
   std::array<float, 3> colour{0.7F, 0.7F, 0.7F};  ///< linear RGB 0..1
   float metalness = 0.0F, roughness = 0.6F;
 };
@@ -29,8 +29,8 @@ struct MachineScene {
   std::string file;         ///< machine.toml it came from
 };
 
-/// Reads machine.toml and its meshes (assimp). Throws InputError with every problem found: a cycle, a missing limit,
-/// an unknown axis letter, a mesh that is not there, an unknown key (with the nearest known one).
+/// Reads machine.toml and its meshes (assimp). Throws InputError with every problem found: a cycle, a missing
+/// limit, an unknown axis letter, a mesh that is not there, an unknown key (with the nearest known one).
 MachineScene load_machine(const std::string& path);
 
 /// Pose of each link relative to its home drawing, X_M(link moved) <- M(home), at axis values q.

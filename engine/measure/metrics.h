@@ -18,16 +18,16 @@ struct Ridge {
 
 struct SurfaceMetrics {
   size_t samples = 0;
-  double scallop_max_um = 0.0;     ///< highest refined ridge
-  double scallop_mean_um = 0.0;    ///< mean of the refined ridges
-  double scallop_p05_um = 0.0;     ///< 5th percentile of the ridges
+  double scallop_max_um = 0.0;   ///< highest refined ridge
+  double scallop_mean_um = 0.0;  ///< mean of the refined ridges
+  double scallop_p05_um = 0.0;   ///< 5th percentile of the ridges
   double scallop_p95_um = 0.0;
   double scallop_theory_um = 0.0;  ///< from the planner's intervals
   size_t ridges = 0;
-  double gouge_max_um = 0.0;       ///< deepest cut below the design, >= 0
-  double gouge_area_mm2 = 0.0;     ///< area deeper than the gouge limit
+  double gouge_max_um = 0.0;    ///< deepest cut below the design, >= 0
+  double gouge_area_mm2 = 0.0;  ///< area deeper than the gouge limit
   uint32_t gouge_block = 0xffffffffu;
-  double excess_max_um = 0.0;      ///< highest material anywhere, uncut included
+  double excess_max_um = 0.0;  ///< highest material anywhere, uncut included
   uint32_t excess_block = 0xffffffffu;
   double within_tolerance_pct = 0.0;  ///< share of samples between -gouge limit and +scallop limit
   size_t uncut_samples = 0;

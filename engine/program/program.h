@@ -1,4 +1,5 @@
-// What a program of surface blocks says (theory 1.6), after all four parsing steps: no text is left to interpret.
+// What a program of surface blocks says (theory 1.6), after all four parsing steps: no text is left to
+// interpret.
 #pragma once
 
 #include <string>
@@ -28,15 +29,15 @@ struct Operation {
   OperationKind kind = OperationKind::kArea;
   int surface = 0;  ///< index into Program::surfaces
   StartBoundary start = StartBoundary::kV0;
-  bool zigzag = false;              ///< L1
-  double scallop_mm = 0.01;         ///< E
-  double chord_tolerance_mm = 1e-3; ///< K
-  double feed_mm_s = 0.0;           ///< F, mm/min in the text
-  double lead_rad = 0.0;            ///< I, degrees in the text; axis leans forward along the feed
-  double tilt_rad = 0.0;            ///< J, degrees in the text; axis leans to the left of the feed
-  double iso_v = 0.0;               ///< V of G06.4
-  int tool = 0;                     ///< T loaded by M6
-  double spindle_rpm = 0.0;         ///< S, 0 while the spindle stands
+  bool zigzag = false;               ///< L1
+  double scallop_mm = 0.01;          ///< E
+  double chord_tolerance_mm = 1e-3;  ///< K
+  double feed_mm_s = 0.0;            ///< F, mm/min in the text
+  double lead_rad = 0.0;             ///< I, degrees in the text; axis leans forward along the feed
+  double tilt_rad = 0.0;             ///< J, degrees in the text; axis leans to the left of the feed
+  double iso_v = 0.0;                ///< V of G06.4
+  int tool = 0;                      ///< T loaded by M6
+  double spindle_rpm = 0.0;          ///< S, 0 while the spindle stands
   SourceLocation where;
 };
 

@@ -33,7 +33,7 @@ class Stock {
 
   double voxel_mm() const;
   const Box& box() const;
-  double volume_mm3() const;     ///< material left
+  double volume_mm3() const;                      ///< material left
   double distance_mm(const Vec3& point_W) const;  ///< trilinear signed distance, clamped to the band
   /// Closed surface of the material with outward normals; every triangle faces outward.
   TriMesh mesh() const;

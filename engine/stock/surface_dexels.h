@@ -18,8 +18,8 @@ inline constexpr uint32_t kUncut = 0xffffffffu;
 /// Heights over the design surface along its outward normal; index i = iv * nu + iu.
 class SurfaceDexels {
  public:
-  /// Grid of about `pitch_mm` over the unit square. Rays start at the stock's surface: initial height is where the
-  /// ray leaves `stock_box`, 0 or less if the design point lies outside it.
+  /// Grid of about `pitch_mm` over the unit square. Rays start at the stock's surface: initial height is
+  /// where the ray leaves `stock_box`, 0 or less if the design point lies outside it.
   SurfaceDexels(surface::SurfacePtr surface, double pitch_mm, const Box& stock_box);
 
   /// Lowers the heights by the sweeps; parallel, order-independent, ties keep the smaller block id.
@@ -32,8 +32,10 @@ class SurfaceDexels {
   const surface::Surface& surface() const { return *surface_; }
   const std::vector<Vec3>& points() const { return points_; }
   const std::vector<Vec3>& normals() const { return normals_; }
-  const std::vector<double>& heights_mm() const { return heights_; }  ///< material above (+) or cut below (-) the design
-  const std::vector<uint32_t>& blocks() const { return blocks_; }     ///< Sweep::block that set it, kUncut: none
+  const std::vector<double>& heights_mm() const {
+    return heights_;
+  }  ///< material above (+) or cut below (-) the design
+  const std::vector<uint32_t>& blocks() const { return blocks_; }  ///< Sweep::block that set it, kUncut: none
   uint64_t ray_updates() const { return ray_updates_; }
 
  private:

@@ -16,7 +16,8 @@ struct Sweep {
   uint32_t block = 0;  ///< caller's id: which samples or block this is
 };
 
-/// The cutting part as a solid of revolution: a flat-end cylinder, radius and height in mm, standing on the tip.
+/// The cutting part as a solid of revolution: a flat-end cylinder, radius and height in mm, standing on the
+/// tip.
 struct CutterSolid {
   double radius = 5.0;
   double height = 25.0;
@@ -24,11 +25,12 @@ struct CutterSolid {
 
 /// Poses of consecutive ticks joined greedily into as few sweeps as the tolerance allows.
 struct MergedSweeps {
-  std::vector<Sweep> sweeps;   ///< Sweep::block = index of the last pose it covers
-  double error_bound_mm = 0.0; ///< greatest distance between a point of the swept cutter and the tick-wise motion
+  std::vector<Sweep> sweeps;  ///< Sweep::block = index of the last pose it covers
+  double error_bound_mm =
+      0.0;  ///< greatest distance between a point of the swept cutter and the tick-wise motion
 };
-/// `breaks[i]` true: pose i starts a new chain (nothing is swept from i-1 to i). Lever: distance from the tip to
-/// the farthest point of the cutter that can touch material.
+/// `breaks[i]` true: pose i starts a new chain (nothing is swept from i-1 to i). Lever: distance from the tip
+/// to the farthest point of the cutter that can touch material.
 MergedSweeps merge_sweeps(std::span<const ToolPose> poses, std::span<const uint8_t> breaks, double lever_mm,
                           double tolerance_mm);
 

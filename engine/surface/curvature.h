@@ -6,7 +6,8 @@
 
 namespace swarf::surface {
 
-/// Frame and shape at one point. e1, e2, normal is right-handed and orthonormal; K is symmetric in (e1,e2), 1/mm.
+/// Frame and shape at one point. e1, e2, normal is right-handed and orthonormal; K is symmetric in (e1,e2),
+/// 1/mm.
 struct Shape {
   Vec3 point, normal, e1, e2;
   Mat2 K;

@@ -30,16 +30,20 @@ Vec3 outward_normal(const Surface& surface, const Derivatives& d) {
   return surface.outward_sign() * d.Su.cross(d.Sv).normalized();
 }
 
-PolynomialSurface::PolynomialSurface(int degree_u, int degree_v, std::vector<Vec3> coefficients, int outward_sign)
-    : degree_u_(degree_u), degree_v_(degree_v), coefficients_(std::move(coefficients)), outward_sign_(outward_sign) {
+PolynomialSurface::PolynomialSurface(int degree_u, int degree_v, std::vector<Vec3> coefficients,
+                                     int outward_sign)
+    : degree_u_(degree_u),
+      degree_v_(degree_v),
+      coefficients_(std::move(coefficients)),
+      outward_sign_(outward_sign) {
   SWARF_CHECK(degree_u >= 0 && degree_v >= 0, "degrees of a polynomial surface");
   SWARF_CHECK(coefficients_.size() == static_cast<size_t>((degree_u + 1) * (degree_v + 1)),
               "a polynomial surface needs (degree_u + 1)(degree_v + 1) coefficients");
   SWARF_CHECK(outward_sign == 1 || outward_sign == -1, "outward sign is +1 or -1");
 }
 
-PolynomialSurface PolynomialSurface::from_bezier(int degree_u, int degree_v, const std::vector<Vec3>& control_points,
-                                                 int outward_sign) {
+PolynomialSurface PolynomialSurface::from_bezier(int degree_u, int degree_v,
+                                                 const std::vector<Vec3>& control_points, int outward_sign) {
   // Power-basis coefficient of t^i in B_k^n(t) is (-1)^(i-k) C(n,i) C(i,k), for k <= i.
   const auto index = [&](int i, int j) { return static_cast<size_t>(i * (degree_v + 1) + j); };
   std::vector<Vec3> power(control_points.size(), Vec3::Zero());

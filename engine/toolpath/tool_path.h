@@ -67,8 +67,8 @@ struct ToolPath {
 };
 
 /// Tool pose in contact at a curve point: flat end, axis = normal turned by lead (about the cross direction,
-/// towards the feed) and tilt (towards the left of the feed). With zero lean the tip centre is the contact point;
-/// leaned, the contact lies on the rim and the tip centre is one radius behind it in the bottom plane.
+/// towards the feed) and tilt (towards the left of the feed). With zero lean the tip centre is the contact
+/// point; leaned, the contact lies on the rim and the tip centre is one radius behind it in the bottom plane.
 /// `unit_feed` is the direction of travel.
 ToolPose pose_in_contact(const Vec3& contact, const Vec3& normal, const Vec3& unit_feed, double lead_rad,
                          double tilt_rad, double radius_mm);
@@ -81,13 +81,14 @@ struct PlanOptions {
   Planner planner = Planner::kConstantScallop;
   double safe_distance_mm = 5.0;  ///< retract along the tool axis between passes
   double overrun_mm = 1.5;        ///< each pass runs on past the edge of the part by this much
-  double rapid_clearance_mm = 20.0;  ///< first approach and last retract, above the highest point of the stock
-  double stock_top_mm = 0.0;         ///< W, highest point of the stock
+  double rapid_clearance_mm =
+      20.0;                   ///< first approach and last retract, above the highest point of the stock
+  double stock_top_mm = 0.0;  ///< W, highest point of the stock
   double approach_feed_fraction = 0.5;
 };
 
-/// Plans every operation of the program. Alarms of theory 1.6 that need the cutter (saddle or concave without lean,
-/// P beyond D R/(R+h)) and operations that cannot be planned go to `diagnostics`.
+/// Plans every operation of the program. Alarms of theory 1.6 that need the cutter (saddle or concave without
+/// lean, P beyond D R/(R+h)) and operations that cannot be planned go to `diagnostics`.
 ToolPath plan(const program::Program& program, const cutter::Cutter& cutter, const PlanOptions& options,
               Diagnostics& diagnostics);
 

@@ -1,0 +1,343 @@
+#include "base/config.h"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <utility>
+
+namespace swarf {
+
+struct ConfigTable::Node {
+  std::shared_ptr<toml::table> root;   ///< keeps `table` alive
+  const toml::table* table = nullptr;  ///< null: absent, reads as empty
+  std::string name;                    ///< dotted, for messages: "stock."
+  std::string file;
+  SourceLocation place;
+  Diagnostics* diagnostics = nullptr;
+  std::set<std::string> known;
+  std::vector<std::shared_ptr<Node>> children;
+
+  const toml::node* find(const std::string& key) {
+    known.insert(key);
+    return table == nullptr ? nullptr : table->get(key);
+  }
+};
+
+namespace {
+
+SourceLocation location(const std::string& file, const toml::source_region& source) {
+  return {file, static_cast<int>(source.begin.line), static_cast<int>(source.begin.column)};
+}
+
+std::string bounds_text(const Range& range) {
+  const bool has_low = std::isfinite(range.low);
+  const bool has_high = std::isfinite(range.high);
+  if (has_low && has_high) return fmt::format("from {:g} to {:g}", range.low, range.high);
+  if (has_low && range.low_open) return fmt::format("above {:g}", range.low);
+  if (has_low) return fmt::format("{:g} or more", range.low);
+  if (has_high) return fmt::format("at most {:g}", range.high);
+  return "a finite number";
+}
+
+bool inside(double value, const Range& range) {
+  return std::isfinite(value) && value >= range.low && value <= range.high &&
+         !(range.low_open && value == range.low);
+}
+
+/// The last override of a key wins, whatever stood in the file.
+void apply_override(toml::table& root, const std::string& text, Diagnostics& diagnostics) {
+  const auto equals = text.find('=');
+  if (equals == std::string::npos || equals == 0) {
+    diagnostics.error("bad-override", {"--set"}, fmt::format("'{}' is not of the form key=value", text),
+                      "write for example --set stock.voxel_mm=0.1");
+    return;
+  }
+  const std::string value = text.substr(equals + 1);
+  toml::table parsed;
+  try {
+    parsed = toml::parse(fmt::format("value = {}", value));
+  } catch (const toml::parse_error&) {
+    parsed.insert_or_assign("value", value);  // a bare word is meant as a string
+  }
+  toml::table* table = &root;
+  std::string path = text.substr(0, equals);
+  for (auto dot = path.find('.'); dot != std::string::npos; dot = path.find('.')) {
+    const std::string head = path.substr(0, dot);
+    path = path.substr(dot + 1);
+    if (!table->contains(head)) table->insert(head, toml::table{});
+    table = table->get(head)->as_table();
+    if (table == nullptr) {
+      diagnostics.error("bad-override", {"--set"}, fmt::format("'{}' in '{}' is not a table", head, text),
+                        "name a key inside a table of the scene");
+      return;
+    }
+  }
+  table->insert_or_assign(path, *parsed.get("value"));
+}
+
+std::optional<std::string> read_file(const std::string& path, Diagnostics& diagnostics) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) {
+    diagnostics.error("file-not-found", {path}, "the file cannot be opened",
+                      "check the path and its spelling");
+    return {};
+  }
+  std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
+    diagnostics.error("empty-file", {path}, "the file is empty",
+                      "write the scene or machine into it, or name another file");
+    return {};
+  }
+  const auto nul = text.find('\0');
+  if (nul != std::string::npos) {
+    diagnostics.error("not-text", {path}, fmt::format("byte {} is NUL: this is not a text file", nul + 1),
+                      "name a TOML file (UTF-8 text)");
+    return {};
+  }
+  return text;
+}
+
+}  // namespace
+
+ConfigTable::ConfigTable(std::shared_ptr<Node> node) : node_(std::move(node)) {}
+
+ConfigTable ConfigTable::load(const std::string& path, const std::vector<std::string>& overrides,
+                              Diagnostics& diagnostics) {
+  auto node = std::make_shared<Node>();
+  node->file = path;
+  node->place = {path};
+  node->diagnostics = &diagnostics;
+  const std::optional<std::string> text = read_file(path, diagnostics);
+  if (!text) return ConfigTable(std::move(node));
+  try {
+    node->root = std::make_shared<toml::table>(toml::parse(*text, path));
+  } catch (const toml::parse_error& failure) {
+    diagnostics.error("toml-syntax", location(path, failure.source()), std::string(failure.description()),
+                      "mend the TOML syntax at this place");
+    return ConfigTable(std::move(node));
+  }
+  for (const std::string& one : overrides) apply_override(*node->root, one, diagnostics);
+  node->table = node->root.get();
+  return ConfigTable(std::move(node));
+}
+
+bool ConfigTable::has(const std::string& key) const {
+  return node_->find(key) != nullptr;
+}
+
+SourceLocation ConfigTable::where() const {
+  return node_->place;
+}
+
+SourceLocation ConfigTable::where(const std::string& key) const {
+  const toml::node* value = node_->table == nullptr ? nullptr : node_->table->get(key);
+  if (value == nullptr) return node_->place;
+  if (!value->source().begin) return {"--set " + node_->name + key};
+  return location(node_->file, value->source());
+}
+
+std::vector<std::string> ConfigTable::keys() const {
+  std::vector<std::string> names;
+  if (node_->table == nullptr) return names;
+  for (const auto& [key, value] : *node_->table) names.emplace_back(key.str());
+  return names;
+}
+
+void ConfigTable::error(const std::string& code, const std::string& key, const std::string& text,
+                        const std::string& fix) {
+  node_->diagnostics->error(code, where(key), text, fix);
+}
+
+double ConfigTable::number(const std::string& key, Range range, std::optional<double> fallback) {
+  const toml::node* value = node_->find(key);
+  if (value == nullptr) {
+    if (!fallback)
+      error("missing-key", key, fmt::format("'{}{}' is missing", node_->name, key),
+            fmt::format("add {} = a number {}", key, bounds_text(range)));
+    return fallback.value_or(0.0);
+  }
+  const std::optional<double> found = value->value<double>();
+  if (!value->is_number() || !found) {
+    error("wrong-type", key, fmt::format("'{}{}' must be a number", node_->name, key),
+          fmt::format("write {} = a number {}", key, bounds_text(range)));
+    return fallback.value_or(0.0);
+  }
+  if (!inside(*found, range)) {
+    error("out-of-range", key, fmt::format("'{}{}' is {:g}", node_->name, key, *found),
+          fmt::format("it must be {}", bounds_text(range)));
+    return fallback.value_or(0.0);
+  }
+  return *found;
+}
+
+int ConfigTable::integer(const std::string& key, int low, int high, std::optional<int> fallback) {
+  const double value = number(key, {static_cast<double>(low), static_cast<double>(high)},
+                              fallback ? std::optional<double>(*fallback) : std::nullopt);
+  if (value != std::floor(value)) {
+    error("wrong-type", key, fmt::format("'{}{}' is {:g}", node_->name, key, value),
+          "it must be a whole number");
+  }
+  return static_cast<int>(value);
+}
+
+bool ConfigTable::boolean(const std::string& key, std::optional<bool> fallback) {
+  const toml::node* value = node_->find(key);
+  if (value != nullptr && value->is_boolean()) return *value->value<bool>();
+  if (value != nullptr || !fallback) {
+    error(value == nullptr ? "missing-key" : "wrong-type", key,
+          fmt::format("'{}{}' must be true or false", node_->name, key),
+          fmt::format("write {} = true or false", key));
+  }
+  return fallback.value_or(false);
+}
+
+std::string ConfigTable::text(const std::string& key, std::optional<std::string> fallback) {
+  const toml::node* value = node_->find(key);
+  if (value != nullptr && value->is_string()) return *value->value<std::string>();
+  if (value != nullptr || !fallback) {
+    error(value == nullptr ? "missing-key" : "wrong-type", key,
+          fmt::format("'{}{}' {}", node_->name, key,
+                      value == nullptr ? "is missing" : "must be a text in quotes"),
+          fmt::format("write {} = \"...\"", key));
+  }
+  return fallback.value_or("");
+}
+
+std::string ConfigTable::choice(const std::string& key, const std::vector<std::string>& words,
+                                std::optional<std::string> fallback) {
+  const std::string word = text(key, fallback);
+  for (const std::string& candidate : words) {
+    if (word == candidate) return word;
+  }
+  if (has(key)) {
+    const std::string near = nearest_name(word, words);
+    error("unknown-choice", key, fmt::format("'{}{}' is \"{}\"", node_->name, key, word),
+          (near.empty() ? "" : fmt::format("did you mean \"{}\"? ", near)) +
+              fmt::format("it must be one of: {}", fmt::join(words, ", ")));
+  }
+  return fallback.value_or(words.front());
+}
+
+std::vector<double> ConfigTable::numbers(const std::string& key, size_t count,
+                                         std::optional<std::vector<double>> fallback) {
+  const toml::node* value = node_->find(key);
+  const std::vector<double> otherwise = fallback.value_or(std::vector<double>(count, 0.0));
+  if (value == nullptr && fallback) return otherwise;
+  std::vector<double> found;
+  if (value != nullptr && value->is_array()) {
+    for (const toml::node& item : *value->as_array()) {
+      const std::optional<double> number = item.is_number() ? item.value<double>() : std::nullopt;
+      if (number && std::isfinite(*number)) found.push_back(*number);
+    }
+  }
+  if (value == nullptr || !value->is_array() || found.size() != count || value->as_array()->size() != count) {
+    error(value == nullptr ? "missing-key" : "wrong-type", key,
+          fmt::format("'{}{}' must be an array of {} finite numbers", node_->name, key, count),
+          fmt::format("write {} = [{}]", key, count == 2 ? "a, b" : "a, b, c"));
+    return otherwise;
+  }
+  return found;
+}
+
+Box ConfigTable::box(const std::string& key) {
+  const toml::node* value = node_->find(key);
+  std::vector<double> found;
+  if (value != nullptr && value->is_array()) {
+    for (const toml::node& corner : *value->as_array()) {
+      if (!corner.is_array()) continue;
+      for (const toml::node& item : *corner.as_array()) {
+        const std::optional<double> number = item.is_number() ? item.value<double>() : std::nullopt;
+        if (number && std::isfinite(*number)) found.push_back(*number);
+      }
+    }
+  }
+  if (found.size() != 6) {
+    error(value == nullptr ? "missing-key" : "wrong-type", key,
+          fmt::format("'{}{}' must be two corners in mm", node_->name, key),
+          fmt::format("write {} = [[x0, y0, z0], [x1, y1, z1]]", key));
+    return {Vec3::Zero(), Vec3::Ones()};
+  }
+  const Box box{{found[0], found[1], found[2]}, {found[3], found[4], found[5]}};
+  if (!(box.size().minCoeff() > 0.0)) {
+    error("out-of-range", key,
+          fmt::format("'{}{}' has size {:g} x {:g} x {:g} mm", node_->name, key, box.size().x(),
+                      box.size().y(), box.size().z()),
+          "the first corner must lie below the second in x, y and z");
+    return {Vec3::Zero(), Vec3::Ones()};
+  }
+  return box;
+}
+
+ConfigTable ConfigTable::table(const std::string& key) {
+  auto child = std::make_shared<Node>();
+  child->root = node_->root;
+  child->name = node_->name + key + ".";
+  child->file = node_->file;
+  child->diagnostics = node_->diagnostics;
+  child->place = where(key);
+  const toml::node* value = node_->find(key);
+  if (value != nullptr) {
+    child->table = value->as_table();
+    if (child->table == nullptr) {
+      error("wrong-type", key, fmt::format("'{}{}' must be a table", node_->name, key),
+            fmt::format("write [{}{}]", node_->name, key));
+    }
+  }
+  node_->children.push_back(child);
+  return ConfigTable(std::move(child));
+}
+
+std::vector<ConfigTable> ConfigTable::tables(const std::string& key) {
+  std::vector<ConfigTable> list;
+  const toml::node* value = node_->find(key);
+  if (value == nullptr) return list;
+  const toml::array* array = value->as_array();
+  if (array == nullptr) {
+    error("wrong-type", key, fmt::format("'{}{}' must be an array of tables", node_->name, key),
+          fmt::format("write [[{}{}]]", node_->name, key));
+    return list;
+  }
+  for (const toml::node& item : *array) {
+    auto child = std::make_shared<Node>();
+    child->root = node_->root;
+    child->name = fmt::format("{}{}[{}].", node_->name, key, list.size());
+    child->file = node_->file;
+    child->diagnostics = node_->diagnostics;
+    child->place = location(node_->file, item.source());
+    child->table = item.as_table();
+    if (child->table == nullptr) {
+      node_->diagnostics->error("wrong-type", child->place,
+                                fmt::format("an entry of '{}{}' is not a table", node_->name, key),
+                                fmt::format("write [[{}{}]]", node_->name, key));
+    }
+    node_->children.push_back(child);
+    list.push_back(ConfigTable(std::move(child)));
+  }
+  return list;
+}
+
+void ConfigTable::finish() {
+  if (node_->table != nullptr) {
+    const std::vector<std::string> known(node_->known.begin(), node_->known.end());
+    for (const auto& [key, value] : *node_->table) {
+      const std::string name(key.str());
+      if (node_->known.count(name) > 0) continue;
+      const std::string near = nearest_name(name, known);
+      // The key itself is what is misspelt, so its place is shown, not its value's.
+      const toml::source_region& source = key.source();
+      const SourceLocation place =
+          source.begin ? location(node_->file, source) : SourceLocation{"--set " + node_->name + name};
+      node_->diagnostics->error("unknown-key", place,
+                                fmt::format("nothing is called '{}{}'", node_->name, name),
+                                near.empty() ? fmt::format("known here: {}", fmt::join(known, ", "))
+                                             : fmt::format("did you mean '{}'?", near));
+    }
+  }
+  for (const auto& child : node_->children) ConfigTable(child).finish();
+}
+
+}  // namespace swarf

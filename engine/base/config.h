@@ -1,0 +1,69 @@
+// Typed reading of TOML files with a diagnostic for everything that is wrong: syntax, type, range, a missing
+// key, and every key that nobody asked for (with the nearest known one).
+#pragma once
+
+#include <array>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/diagnostics.h"
+#include "base/frames.h"
+
+namespace swarf {
+
+/// Bounds of a number; the message states them with the unit that the key's name ends in.
+struct Range {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  bool low_open = false;  ///< the value must be above `low`, not equal to it
+};
+inline constexpr Range kAboveZero{0.0, std::numeric_limits<double>::infinity(), true};
+inline constexpr Range kZeroOrMore{0.0, std::numeric_limits<double>::infinity(), false};
+
+/// One table of a TOML file. The keys that are read are the keys that are known; finish() reports the others.
+class ConfigTable {
+ public:
+  /// Parses a whole file; each override is "dotted.key=value" with a TOML value (bare words are strings).
+  /// Syntax errors, unreadable and empty files go to `diagnostics`, and the table is then empty.
+  static ConfigTable load(const std::string& path, const std::vector<std::string>& overrides,
+                          Diagnostics& diagnostics);
+
+  bool has(const std::string& key) const;
+  SourceLocation where(const std::string& key) const;  ///< of the value, or of this table when it is absent
+  SourceLocation where() const;
+  std::vector<std::string> keys() const;
+
+  /// With a default the key is optional; without one its absence is an error (and 0, "" or {} is returned).
+  double number(const std::string& key, Range range, std::optional<double> fallback = {});
+  int integer(const std::string& key, int low, int high, std::optional<int> fallback = {});
+  bool boolean(const std::string& key, std::optional<bool> fallback = {});
+  std::string text(const std::string& key, std::optional<std::string> fallback = {});
+  /// One of the given words.
+  std::string choice(const std::string& key, const std::vector<std::string>& words,
+                     std::optional<std::string> fallback = {});
+  std::vector<double> numbers(const std::string& key, size_t count,
+                              std::optional<std::vector<double>> fallback = {});
+  /// [[x,y,z],[x,y,z]] with lower < upper in each direction.
+  Box box(const std::string& key);
+
+  /// A sub-table; absent ones read as empty, so that their defaults apply.
+  ConfigTable table(const std::string& key);
+  /// An array of tables ([[key]]).
+  std::vector<ConfigTable> tables(const std::string& key);
+  /// Reports every key of this table and of the sub-tables handed out that was never asked for.
+  void finish();
+
+  void error(const std::string& code, const std::string& key, const std::string& text,
+             const std::string& fix);
+
+ private:
+  struct Node;
+  explicit ConfigTable(std::shared_ptr<Node> node);
+  std::shared_ptr<Node> node_;
+};
+
+}  // namespace swarf
