@@ -1,0 +1,134 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <utility>
+
+#include "base/config.h"
+#include "base/units.h"
+#include "sim/scene.h"
+
+namespace swarf::sim {
+namespace {
+
+namespace fs = std::filesystem;
+
+cutter::Cutter read_cutter(ConfigTable table) {
+  cutter::Cutter c;
+  c.number = table.integer("number", 0, 99999, 1);
+  c.diameter_mm = table.number("diameter_mm", kAboveZero);
+  c.corner_radius_mm = table.number("corner_radius_mm", kZeroOrMore, 0.0);
+  c.flute_length_mm = table.number("flute_length_mm", kAboveZero);
+  c.shank_diameter_mm = table.number("shank_diameter_mm", kAboveZero, c.diameter_mm);
+  c.length_mm = table.number("length_mm", kAboveZero);
+  c.holder_diameter_mm = table.number("holder_diameter_mm", kAboveZero, c.holder_diameter_mm);
+  c.holder_length_mm = table.number("holder_length_mm", kAboveZero, c.holder_length_mm);
+  for (const std::string& problem : cutter::validate(c)) {
+    table.error("bad-cutter", "diameter_mm", "[cutter]: " + problem, "mend the cutter's numbers (mm)");
+  }
+  return c;
+}
+
+StockSettings read_stock(ConfigTable table) {
+  StockSettings stock;
+  stock.box_W = table.box("box_mm");
+  stock.voxel_mm = table.number("voxel_mm", kAboveZero);
+  stock.sweep_tolerance_mm = table.number("sweep_tolerance_um", kAboveZero, 1.0) * kMicrometre;
+  stock.max_memory_mb = table.number("max_memory_mb", kZeroOrMore, 0.0);
+  return stock;
+}
+
+toolpath::Planner planner_from(const std::string& word) {
+  if (word == "lin_koren") return toolpath::Planner::kLinKoren;
+  if (word == "isoparametric") return toolpath::Planner::kIsoparametric;
+  return toolpath::Planner::kConstantScallop;
+}
+
+void read_toolpath(ConfigTable table, Scene& scene) {
+  toolpath::PlanOptions& options = scene.toolpath;
+  options.planner = planner_from(
+      table.choice("planner", {"constant_scallop", "lin_koren", "isoparametric"}, "constant_scallop"));
+  scene.compare_planners = table.boolean("compare", true);
+  options.safe_distance_mm = table.number("safe_distance_mm", kAboveZero, options.safe_distance_mm);
+  options.overrun_mm = table.number("overrun_mm", kZeroOrMore, options.overrun_mm);
+  options.rapid_clearance_mm = table.number("rapid_clearance_mm", kAboveZero, options.rapid_clearance_mm);
+}
+
+void read_interpolator(ConfigTable table, Scene& scene) {
+  motion::MotionOptions& options = scene.motion;
+  const std::string mode = table.choice("mode", {"surface", "taylor1", "offline"}, "surface");
+  options.mode = mode == "taylor1"   ? motion::Mode::kTaylor1
+                 : mode == "offline" ? motion::Mode::kOffline
+                                     : motion::Mode::kSurface;
+  const std::string orientation =
+      table.choice("offline_orientation", {"constant", "linear_in_u", "linear_along_chord"}, "linear_along_chord");
+  options.orientation = orientation == "constant"      ? motion::OfflineOrientation::kConstant
+                        : orientation == "linear_in_u" ? motion::OfflineOrientation::kLinearInU
+                                                       : motion::OfflineOrientation::kLinearAlongChord;
+  options.look_ahead = table.boolean("offline_look_ahead", options.look_ahead);
+  options.period_s = table.number("period_ms", {0.01, 100.0}, options.period_s * 1e3) * 1e-3;
+  if (table.has("chord_tolerance_um")) {
+    scene.chord_tolerance_mm = table.number("chord_tolerance_um", kAboveZero, 1.0) * kMicrometre;
+  }
+  options.path_acceleration_max = table.number("path_acceleration_max_mm_s2", kAboveZero, options.path_acceleration_max);
+  options.path_jerk_max = table.number("path_jerk_max_mm_s3", kAboveZero, options.path_jerk_max);
+}
+
+std::array<int, 2> read_size(ConfigTable& table) {
+  const std::vector<double> size = table.numbers("size", 2, std::vector<double>{1280, 720});
+  for (const double side : size) {
+    if (side < 64 || side > 7680 || static_cast<int>(side) % 2 != 0) {
+      table.error("out-of-range", "size", fmt::format("'size' has a side of {:g} pixels", side),
+                  "both sides must be even numbers from 64 to 7680");
+      return {1280, 720};
+    }
+  }
+  return {static_cast<int>(size[0]), static_cast<int>(size[1])};
+}
+
+void read_pictures(ConfigTable& root, Scene& scene) {
+  ConfigTable movie = root.table("movie");
+  scene.movie.seconds = movie.number("seconds", {0.0, 3600.0}, scene.movie.seconds);
+  scene.movie.size = read_size(movie);
+  scene.movie.fps = movie.integer("fps", 1, 120, scene.movie.fps);
+  scene.movie.voxel_mm = movie.number("voxel_mm", kAboveZero, scene.movie.voxel_mm);
+  ConfigTable stills = root.table("stills");
+  scene.stills.size = read_size(stills);
+  scene.stills.samples = stills.integer("samples", 1, 4096, scene.stills.samples);
+}
+
+void read_accept(ConfigTable table, AcceptLimits& accept) {
+  accept.scallop_max_um = table.number("scallop_max_um", kAboveZero, accept.scallop_max_um);
+  accept.gouge_max_um = table.number("gouge_max_um", kAboveZero, accept.gouge_max_um);
+  accept.collisions = table.integer("collisions", 0, 1000000, accept.collisions);
+}
+
+/// A path in the scene, made relative to the scene's folder.
+std::string beside(const std::string& scene_file, const std::string& path) {
+  if (path.empty() || fs::path(path).is_absolute()) return path;
+  return (fs::path(scene_file).parent_path() / path).lexically_normal().string();
+}
+
+}  // namespace
+
+Scene load_scene(const std::string& path, const std::vector<std::string>& overrides, Diagnostics& diagnostics) {
+  Scene scene;
+  scene.file = path;
+  scene.name = fs::absolute(path).parent_path().filename().string();
+  ConfigTable root = ConfigTable::load(path, overrides, diagnostics);
+  if (diagnostics.has_errors()) return scene;
+  scene.title = root.text("title", scene.name);
+  scene.machine_file = beside(path, root.text("machine"));
+  scene.program_file = beside(path, root.text("program"));
+  scene.cutter = read_cutter(root.table("cutter"));
+  scene.stock = read_stock(root.table("stock"));
+  scene.dexel_pitch_mm = root.table("design").number("pitch_mm", kAboveZero, scene.dexel_pitch_mm);
+  read_toolpath(root.table("toolpath"), scene);
+  read_interpolator(root.table("interpolator"), scene);
+  read_accept(root.table("accept"), scene.accept);
+  read_pictures(root, scene);
+  root.finish();
+  scene.toolpath.stock_top_mm = scene.stock.box_W.upper.z();
+  return scene;
+}
+
+}  // namespace swarf::sim

@@ -1,0 +1,76 @@
+#!/usr/bin/env python3
+"""Include directions are architecture: a module sees only what stands above it in the data flow, and each heavy
+library is seen by the .cpp files of one place only."""
+import pathlib
+import re
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+# module: the modules that it may include (besides itself)
+ALLOWED = {
+    "base": set(),
+    "mesh": {"base"},
+    "surface": {"base"},
+    "cutter": {"base"},
+    "program": {"base", "surface"},
+    "toolpath": {"base", "surface", "cutter", "program"},
+    "kinematics": {"base"},
+    "motion": {"base", "surface", "cutter", "program", "toolpath", "kinematics"},
+    "machine": {"base", "mesh", "kinematics"},
+    "stock": {"base", "mesh", "surface", "cutter"},
+    "measure": {"base", "mesh", "surface", "cutter", "stock", "motion"},
+}
+ENGINE = set(ALLOWED) | {"sim"}
+ALLOWED["sim"] = ENGINE - {"sim"}
+ALLOWED["render"] = {"base", "mesh"}
+ALLOWED["reports"] = ENGINE | {"render"}
+ALLOWED["cli"] = ENGINE | {"render", "reports"}
+
+# heavy library: (pattern of its includes, the places whose .cpp files may include it)
+HEAVY = {
+    "OpenVDB": (r"openvdb/", ("engine/stock/",)),
+    "OpenMesh": (r"OpenMesh/", ("engine/mesh/",)),
+    "assimp": (r"assimp/", ("engine/mesh/",)),
+    "meshoptimizer": (r"meshoptimizer", ("engine/mesh/",)),
+    "toml++": (r"toml\+\+", ("engine/base/config.cpp",)),
+    "Embree": (r"embree", ("render/ray/",)),
+    "OSMesa": (r"GL/", ("render/raster/",)),
+    "libav": (r"libav|libsw", ("render/movie/",)),
+    "tinygltf": (r"tiny_gltf", ("render/gltf/",)),
+    "Cairo": (r"cairo", ("render/lettering.cpp",)),
+    "libpng": (r"png\.h", ("render/image_io.cpp",)),
+}
+
+
+def module_of(path):
+    parts = path.relative_to(ROOT).parts
+    return parts[1] if parts[0] == "engine" else parts[0]
+
+
+def problems():
+    for top in ("engine", "render", "reports", "cli"):
+        for path in sorted((ROOT / top).rglob("*")):
+            if path.suffix not in (".h", ".cpp"):
+                continue
+            place = path.relative_to(ROOT).as_posix()
+            module = module_of(path)
+            for number, line in enumerate(path.read_text().splitlines(), 1):
+                found = re.match(r'\s*#include\s+[<"]([^>"]+)[>"]', line)
+                if not found:
+                    continue
+                target = found.group(1)
+                first = target.split("/")[0]
+                if '"' in line and first in ALLOWED and first != module and first not in ALLOWED[module]:
+                    yield f"{place}:{number}: {module} must not include {target}"
+                for library, (pattern, homes) in HEAVY.items():
+                    if re.match(pattern, target) and not (
+                        any(place.startswith(home) for home in homes)
+                        and (path.suffix == ".cpp" or "_internal" in path.name)
+                    ):
+                        yield f"{place}:{number}: {library} belongs to the .cpp files of {', '.join(homes)}"
+
+
+found = list(problems())
+print("\n".join(found)) if found else None
+sys.exit(1 if found else 0)
