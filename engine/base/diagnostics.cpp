@@ -79,6 +79,11 @@ void Diagnostics::note(std::string code, SourceLocation where, std::string text)
   list_.push_back({std::move(code), Severity::kNote, std::move(where), std::move(text), ""});
 }
 
+void Diagnostics::append(const Diagnostics& others) {
+  list_.insert(list_.end(), others.list_.begin(), others.list_.end());
+  errors_ += others.errors_;
+}
+
 void Diagnostics::throw_if_errors() const {
   if (has_errors()) throw InputError(*this);
 }

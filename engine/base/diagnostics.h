@@ -34,6 +34,7 @@ class Diagnostics {
   void error(std::string code, SourceLocation where, std::string text, std::string fix);
   void warning(std::string code, SourceLocation where, std::string text, std::string fix = "");
   void note(std::string code, SourceLocation where, std::string text);
+  void append(const Diagnostics& others);
 
   bool has_errors() const { return errors_ > 0; }
   const std::vector<Diagnostic>& list() const { return list_; }

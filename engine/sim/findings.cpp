@@ -1,0 +1,104 @@
+#include "sim/findings.h"
+
+#include <fmt/format.h>
+
+#include "base/units.h"
+
+namespace swarf::sim {
+namespace {
+
+class Collector {
+ public:
+  Collector(const Job& job, const Result& result) : job_(job), result_(result) {}
+
+  void add(std::string code, std::string text, std::string fix, SourceLocation where, double t_s) {
+    findings.push_back({std::move(code), Severity::kError, std::move(text), std::move(fix), std::move(where), t_s});
+  }
+  void at_sample(std::string code, std::string text, std::string fix, uint32_t sample) {
+    const motion::Trajectory& trajectory = result_.main.motion.trajectory;
+    if (sample >= trajectory.samples.size()) {
+      add(std::move(code), std::move(text), std::move(fix), {job_.program.file}, 0.0);
+      return;
+    }
+    const motion::ToolSample& tick = trajectory.samples[sample];
+    add(std::move(code), std::move(text), std::move(fix),
+        result_.main.path.elements[static_cast<size_t>(tick.element)].where, tick.t_s);
+  }
+  std::vector<Finding> findings;
+
+ private:
+  const Job& job_;
+  const Result& result_;
+};
+
+void surface_faults(const Job& job, const Result& result, Collector& collect) {
+  const measure::SurfaceMetrics& surface = result.main.surface;
+  const AcceptLimits& accept = job.scene.accept;
+  if (surface.scallop_max_um > accept.scallop_max_um) {
+    uint32_t block = stock::kUncut;
+    double highest = -1.0;
+    for (const measure::Ridge& ridge : result.main.ridges) {
+      if (ridge.height_um > highest) {
+        highest = ridge.height_um;
+        block = ridge.block_a;
+      }
+    }
+    collect.at_sample("scallop",
+                      fmt::format("the highest scallop is {:.3f} um, [accept] allows {:g} um", surface.scallop_max_um,
+                                  accept.scallop_max_um),
+                      "lower the scallop word E of the G06.3 block", block);
+  }
+  if (surface.gouge_max_um > accept.gouge_max_um) {
+    collect.at_sample("gouge",
+                      fmt::format("the deepest gouge is {:.3f} um over {:.2f} mm2, [accept] allows {:g} um",
+                                  surface.gouge_max_um, surface.gouge_area_mm2, accept.gouge_max_um),
+                      "lower the feed F or the control period: the chord of one cycle cuts into a convex surface",
+                      surface.gouge_block);
+  }
+  if (surface.uncut_samples > 0) {
+    collect.add("uncut",
+                fmt::format("{} of {} measuring points were never reached by the cutter", surface.uncut_samples,
+                            surface.samples),
+                "machine the whole surface (G06.3), or measure only what the program machines",
+                {job.program.file}, 0.0);
+  }
+}
+
+void motion_faults(const Result& result, Collector& collect) {
+  for (const motion::MotionFinding& fault : result.main.motion.findings) {
+    collect.add(fault.code, fault.text, "", fault.where, fault.t_s);
+  }
+}
+
+void clearance_faults(const Job& job, const Result& result, Collector& collect) {
+  const ToolClearance& clearance = result.clearance;
+  if (clearance.contacts <= static_cast<size_t>(job.scene.accept.collisions)) return;
+  collect.at_sample(clearance.part + "-in-stock",
+                    fmt::format("the {} stands in the stock at {} of {} poses, {:.2f} mm deep (depths are known to "
+                                "{:.2f} mm)",
+                                clearance.part, clearance.contacts, clearance.checked_poses, clearance.deepest_mm,
+                                clearance.band_mm),
+                    "use a longer cutter, or rough the stock first", clearance.first_block);
+}
+
+void built_in_checks(const Job& job, const Result& result, Collector& collect) {
+  if (!result.cross_check.holds) {
+    collect.add("stock-and-rays-disagree",
+                fmt::format("level set and measuring rays differ by {:.1f} um, the bound is {:.1f} um",
+                            result.cross_check.max_um, result.cross_check.bound_um),
+                "this is a fault of the program: please report it with the scene", {job.scene.file}, 0.0);
+  }
+}
+
+}  // namespace
+
+std::vector<Finding> find_faults(const Job& job, const Result& result) {
+  Collector collect(job, result);
+  surface_faults(job, result, collect);
+  motion_faults(result, collect);
+  clearance_faults(job, result, collect);
+  built_in_checks(job, result, collect);
+  return std::move(collect.findings);
+}
+
+}  // namespace swarf::sim

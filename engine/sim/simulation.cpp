@@ -1,0 +1,262 @@
+#include "sim/simulation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+#include <utility>
+
+#include "base/units.h"
+#include "sim/findings.h"
+
+namespace swarf::sim {
+namespace {
+
+constexpr size_t kSweepsPerBatch = 256;  // between two looks at the holder, the progress bar and Ctrl-C
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+stock::CutterSolid solid_of(const cutter::Cutter& cutter) { return {cutter.radius(), cutter.flute_length_mm}; }
+
+toolpath::ToolPath plan_path(const Job& job, toolpath::Planner planner, const cutter::Cutter& cutter) {
+  toolpath::PlanOptions options = job.scene.toolpath;
+  options.planner = planner;
+  Diagnostics diagnostics;
+  toolpath::ToolPath path = toolpath::plan(job.program, cutter, options, diagnostics);
+  diagnostics.throw_if_errors();
+  if (job.scene.chord_tolerance_mm) {
+    for (toolpath::Element& element : path.elements) {
+      if (auto* pass = std::get_if<toolpath::SurfacePass>(&element.what)) {
+        pass->chord_tolerance_mm = *job.scene.chord_tolerance_mm;
+      }
+    }
+  }
+  return path;
+}
+
+/// The pass that each sample belongs to; -1 on free moves.
+std::vector<int> pass_of_samples(const MeasuredPath& measured) {
+  std::vector<int> passes(measured.motion.trajectory.samples.size(), -1);
+  for (size_t i = 0; i < passes.size(); ++i) {
+    const auto element = static_cast<size_t>(measured.motion.trajectory.samples[i].element);
+    if (const auto* pass = std::get_if<toolpath::SurfacePass>(&measured.path.elements[element].what)) {
+      passes[i] = pass->pass;
+    }
+  }
+  return passes;
+}
+
+double theory_scallop_um(const toolpath::ToolPath& path) {
+  double highest = 0.0;
+  for (const toolpath::Element& element : path.elements) {
+    if (const auto* pass = std::get_if<toolpath::SurfacePass>(&element.what)) {
+      highest = std::max(highest, pass->scallop_theory_mm);
+    }
+  }
+  return um_from_mm(highest);
+}
+
+void measure_dexels(const Job& job, MeasuredPath& measured) {
+  const std::vector<int> passes = pass_of_samples(measured);
+  const measure::MeasureLimits limits{job.scene.accept.scallop_max_um * kMicrometre,
+                                      job.scene.accept.gouge_max_um * kMicrometre};
+  std::vector<measure::SurfaceMetrics> parts;
+  for (const stock::SurfaceDexels& dexels : measured.dexels) {
+    parts.push_back(measure::measure_surface(dexels, measured.sweeps, passes, solid_of(job.scene.cutter), limits,
+                                             &measured.ridges));
+  }
+  measured.surface = measure::combine(parts, measured.ridges);
+  measured.surface.scallop_theory_um = theory_scallop_um(measured.path);
+}
+
+void cut_dexels(const Job& job, MeasuredPath& measured) {
+  const auto start = std::chrono::steady_clock::now();
+  measured.sweeps = tick_sweeps(measured.motion.trajectory);
+  for (const program::SurfaceDefinition& definition : job.program.surfaces) {
+    measured.dexels.emplace_back(definition.surface, job.scene.dexel_pitch_mm, job.scene.stock.box_W);
+    measured.dexels.back().cut(measured.sweeps, solid_of(job.scene.cutter));
+  }
+  measured.dexel_seconds = seconds_since(start);
+}
+
+MeasuredPath plan_and_move(const Job& job, toolpath::Planner planner, const motion::MotionOptions& options,
+                           Progress& progress) {
+  MeasuredPath measured;
+  auto start = std::chrono::steady_clock::now();
+  measured.path = plan_path(job, planner, job.scene.cutter);
+  measured.plan_seconds = seconds_since(start);
+  start = std::chrono::steady_clock::now();
+  measured.motion = motion::interpolate(measured.path, job.machine.model, job.scene.cutter, options, progress);
+  measured.motion_seconds = seconds_since(start);
+  return measured;
+}
+
+/// A path that stays a cutter's reach away from the stock is a wrong scene, not a clean run.
+void require_contact(const Job& job, const motion::Trajectory& trajectory) {
+  const Box& box = job.scene.stock.box_W;
+  const double reach = job.scene.cutter.radius();
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const motion::ToolSample& sample : trajectory.samples) {
+    if (sample.kind != motion::SampleKind::kCutting) continue;
+    const Vec3 inside = sample.contact_W.cwiseMax(box.lower).cwiseMin(box.upper);
+    nearest = std::min(nearest, (sample.contact_W - inside).norm());
+  }
+  if (nearest <= reach) return;
+  throw InputError("path-misses-stock", {job.scene.file},
+                   fmt::format("the path never meets the stock: it stays {:.1f} mm away from stock.box_mm", nearest),
+                   "move stock.box_mm to where the surface is (both are in the work frame, mm)");
+}
+
+ComparisonRow row_of(const std::string& name, const MeasuredPath& measured, bool used) {
+  ComparisonRow row;
+  row.name = name;
+  row.passes = measured.path.passes;
+  row.pass_length_mm = measured.path.pass_length_mm;
+  row.link_length_mm = measured.path.link_length_mm;
+  row.time_s = measured.motion.statistics.time_s;
+  row.orientation_error_max_rad = measured.motion.statistics.orientation_error_max_rad;
+  row.feed_error_max_rel = measured.motion.statistics.feed_error_max_rel;
+  row.chord_error_max_mm = measured.motion.statistics.chord_error_max_mm;
+  row.surface = measured.surface;
+  row.used = used;
+  return row;
+}
+
+void compare_planners(const Job& job, Progress& progress, Result& result) {
+  using toolpath::Planner;
+  const std::vector<Planner> planners{Planner::kIsoparametric, Planner::kLinKoren, Planner::kConstantScallop};
+  progress.begin("compare planners", static_cast<double>(planners.size()), "planners");
+  Progress silent;
+  for (const Planner planner : planners) {
+    if (planner == job.scene.toolpath.planner) {
+      result.planners.push_back(row_of(toolpath::planner_name(planner), result.main, true));
+    } else if (job.scene.compare_planners && !progress.stop_requested()) {
+      MeasuredPath other = plan_and_move(job, planner, job.scene.motion, silent);
+      cut_dexels(job, other);
+      measure_dexels(job, other);
+      result.planners.push_back(row_of(toolpath::planner_name(planner), other, false));
+    }
+    progress.advance(static_cast<double>(result.planners.size()));
+  }
+  progress.end();
+}
+
+/// The paper's comparison: real-time interpolation against off-line segments, with and without look-ahead (E19).
+void compare_modes(const Job& job, Progress& progress, Result& result) {
+  struct Case {
+    const char* name;
+    motion::Mode mode;
+    bool look_ahead;
+  };
+  const std::vector<Case> cases{{"surface", motion::Mode::kSurface, false},
+                                {"taylor1 (Eq. 5)", motion::Mode::kTaylor1, false},
+                                {"offline, stop at each block", motion::Mode::kOffline, false},
+                                {"offline, look-ahead", motion::Mode::kOffline, true}};
+  progress.begin("compare interpolators", static_cast<double>(cases.size()), "modes");
+  Progress silent;
+  for (const Case& one : cases) {
+    if (!job.scene.compare_planners || progress.stop_requested()) break;
+    const bool used = one.mode == job.scene.motion.mode &&
+                      (one.mode != motion::Mode::kOffline || one.look_ahead == job.scene.motion.look_ahead);
+    if (used) {
+      result.modes.push_back(row_of(one.name, result.main, true));
+    } else {
+      motion::MotionOptions options = job.scene.motion;
+      options.mode = one.mode;
+      options.look_ahead = one.look_ahead;
+      MeasuredPath other;
+      other.path = result.main.path;
+      other.motion = motion::interpolate(other.path, job.machine.model, job.scene.cutter, options, silent);
+      cut_dexels(job, other);
+      measure_dexels(job, other);
+      result.modes.push_back(row_of(one.name, other, false));
+    }
+    progress.advance(static_cast<double>(result.modes.size()));
+  }
+  progress.end();
+}
+
+void cut_stock(const Job& job, Progress& progress, Result& result) {
+  const stock::MergedSweeps merged = merged_sweeps(result.main.motion.trajectory, job.scene);
+  result.sweep_bound_mm = merged.error_bound_mm;
+  result.merged_sweeps = merged.sweeps.size();
+  result.stock = std::make_unique<stock::Stock>(job.scene.stock.box_W, job.scene.stock.voxel_mm);
+  ToolClearanceCheck clearance(job.scene.cutter, job.scene.stock.voxel_mm);
+  const double full = result.stock->volume_mm3();
+  progress.begin("cut", static_cast<double>(merged.sweeps.size()), "blocks");
+  for (size_t i = 0; i < merged.sweeps.size() && !progress.stop_requested(); i += kSweepsPerBatch) {
+    const auto batch = std::span(merged.sweeps).subspan(i, std::min(kSweepsPerBatch, merged.sweeps.size() - i));
+    result.stock->cut(batch, solid_of(job.scene.cutter));
+    clearance.check(*result.stock, batch);
+    progress.advance(static_cast<double>(i + batch.size()));
+  }
+  progress.end();
+  result.clearance = clearance.result();
+  result.volume_left_mm3 = result.stock->volume_mm3();
+  result.volume_removed_mm3 = full - result.volume_left_mm3;
+}
+
+void measure_part(const Job& job, Progress& progress, Result& result) {
+  progress.begin("measure", 2, "steps");
+  measure_dexels(job, result.main);
+  progress.advance(1);
+  std::vector<measure::CrossCheck> checks;
+  for (const stock::SurfaceDexels& dexels : result.main.dexels) {
+    checks.push_back(measure::cross_check(*result.stock, dexels, result.sweep_bound_mm));
+  }
+  for (const measure::CrossCheck& check : checks) {
+    if (check.max_um >= result.cross_check.max_um) result.cross_check = check;
+  }
+  progress.end();
+}
+
+}  // namespace
+
+std::vector<stock::Sweep> tick_sweeps(const motion::Trajectory& trajectory) {
+  std::vector<stock::Sweep> sweeps(trajectory.samples.size());
+  for (size_t i = 0; i < sweeps.size(); ++i) {
+    const ToolPose& start = trajectory.samples[i == 0 ? 0 : i - 1].pose;
+    sweeps[i] = {start, trajectory.samples[i].pose, static_cast<uint32_t>(i)};
+  }
+  return sweeps;
+}
+
+stock::MergedSweeps merged_sweeps(const motion::Trajectory& trajectory, const Scene& scene) {
+  std::vector<ToolPose> poses;
+  poses.reserve(trajectory.samples.size());
+  for (const motion::ToolSample& sample : trajectory.samples) poses.push_back(sample.pose);
+  const std::vector<uint8_t> breaks(poses.size(), 0);
+  return stock::merge_sweeps(poses, breaks, scene.cutter.flute_length_mm, scene.stock.sweep_tolerance_mm);
+}
+
+Result simulate(const Job& job, Progress& progress) {
+  Result result;
+  progress.begin("plan", 1, "paths");
+  result.main.path = plan_path(job, job.scene.toolpath.planner, job.scene.cutter);
+  progress.end();
+  result.main.motion =
+      motion::interpolate(result.main.path, job.machine.model, job.scene.cutter, job.scene.motion, progress);
+  require_contact(job, result.main.motion.trajectory);
+  cut_stock(job, progress, result);
+  result.stopped = progress.stop_requested();
+  if (result.stopped) return result;
+  progress.begin("cut measuring rays", 1, "surfaces");
+  cut_dexels(job, result.main);
+  progress.end();
+  measure_part(job, progress, result);
+  compare_planners(job, progress, result);
+  compare_modes(job, progress, result);
+  result.findings = find_faults(job, result);
+  result.stopped = progress.stop_requested();
+  return result;
+}
+
+bool passes(const Result& result) {
+  return std::none_of(result.findings.begin(), result.findings.end(),
+                      [](const Finding& finding) { return finding.severity == Severity::kError; });
+}
+
+}  // namespace swarf::sim

@@ -1,0 +1,76 @@
+// The run: program -> tool path -> samples -> axes -> cuts -> measures. The only place that joins all modules.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/progress.h"
+#include "measure/measure.h"
+#include "measure/metrics.h"
+#include "motion/interpolator.h"
+#include "sim/scene.h"
+#include "sim/tool_clearance.h"
+#include "stock/stock.h"
+#include "stock/surface_dexels.h"
+#include "toolpath/tool_path.h"
+
+namespace swarf::sim {
+
+/// What is wrong with the job (not with the input): where on the part, in which block, when.
+struct Finding {
+  std::string code;  ///< stable: "gouge", "scallop", "travel", ...
+  Severity severity = Severity::kError;
+  std::string text, fix;
+  SourceLocation where;
+  double t_s = 0.0;
+};
+
+/// One path, interpolated and measured on the surface dexels.
+struct MeasuredPath {
+  toolpath::ToolPath path;
+  motion::MotionResult motion;
+  std::vector<stock::Sweep> sweeps;  ///< tick by tick; Sweep::block = index of its end sample
+  std::vector<stock::SurfaceDexels> dexels;  ///< one per surface of the program, in its order
+  std::vector<measure::Ridge> ridges;
+  measure::SurfaceMetrics surface;
+  double plan_seconds = 0.0, motion_seconds = 0.0, dexel_seconds = 0.0;
+};
+
+/// One line of the comparison tables.
+struct ComparisonRow {
+  std::string name;
+  int passes = 0;
+  double pass_length_mm = 0.0, link_length_mm = 0.0, time_s = 0.0;
+  double orientation_error_max_rad = 0.0, feed_error_max_rel = 0.0, chord_error_max_mm = 0.0;
+  measure::SurfaceMetrics surface;
+  bool used = false;  ///< the one this run cut the stock with
+};
+
+struct Result {
+  MeasuredPath main;
+  std::vector<ComparisonRow> planners;  ///< the scene's interpolator, every planner
+  std::vector<ComparisonRow> modes;     ///< the scene's planner, the interpolators of the paper's comparison
+  std::unique_ptr<stock::Stock> stock;
+  double sweep_bound_mm = 0.0;          ///< of the sweeps that cut the level set
+  uint64_t merged_sweeps = 0;
+  double volume_removed_mm3 = 0.0, volume_left_mm3 = 0.0;
+  measure::CrossCheck cross_check;
+  ToolClearance clearance;
+  std::vector<Finding> findings;
+  bool stopped = false;  ///< the user stopped it; what follows the cut is missing
+};
+
+/// Sweeps between consecutive samples, ids = sample indices; the first sample is a sweep of zero length.
+std::vector<stock::Sweep> tick_sweeps(const motion::Trajectory& trajectory);
+
+/// Ticks merged within the scene's tolerance, for the level set.
+stock::MergedSweeps merged_sweeps(const motion::Trajectory& trajectory, const Scene& scene);
+
+/// Runs everything. Throws InputError when the path cannot be planned or never meets the stock.
+Result simulate(const Job& job, Progress& progress);
+
+/// Free of charge: true when every limit of [accept] holds and there is no finding of severity error.
+bool passes(const Result& result);
+
+}  // namespace swarf::sim

@@ -1,0 +1,46 @@
+// Shank and holder against the stock as it stands at that moment of the program.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "cutter/cutter.h"
+#include "stock/stock.h"
+#include "stock/sweep.h"
+
+namespace swarf::sim {
+
+struct ToolClearance {
+  size_t checked_poses = 0;
+  size_t contacts = 0;           ///< poses at which shank or holder stands in material
+  double deepest_mm = 0.0;       ///< penetration of the worst of them (saturates at the level set's band)
+  std::string part;              ///< "shank" or "holder", of the first contact
+  uint32_t first_block = 0;      ///< Sweep::block of the first contact
+  double nearest_mm = 0.0;       ///< closest approach seen; saturates at band_mm
+  double band_mm = 0.0;          ///< distances are known up to here
+};
+
+/// Samples points on shank and holder (rings, about 2 mm apart) against the level set. Material less than one voxel
+/// deep is not counted: the flank of the cutter leaves it there.
+class ToolClearanceCheck {
+ public:
+  ToolClearanceCheck(const cutter::Cutter& cutter, double voxel_mm);
+  void check(const stock::Stock& stock, std::span<const stock::Sweep> sweeps);
+  const ToolClearance& result() const { return result_; }
+
+ private:
+  struct Point {
+    double radius, height, cosine, sine;
+    bool holder;
+  };
+  double depth_at(const stock::Stock& stock, const ToolPose& pose, const char** part) const;
+
+  std::vector<Point> points_;
+  double tolerance_mm_;
+  ToolClearance result_;
+};
+
+}  // namespace swarf::sim

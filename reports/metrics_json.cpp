@@ -1,0 +1,163 @@
+#include "reports/metrics_json.h"
+
+#include <sys/resource.h>
+
+#include <nlohmann/json.hpp>
+
+#include "base/hash.h"
+#include "base/units.h"
+
+namespace swarf::reports {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json motion_json(const motion::MotionStatistics& motion) {
+  return {{"ticks", motion.ticks},
+          {"time_s", motion.time_s},
+          {"path_length_mm", motion.path_length_mm},
+          {"feed_error_max_rel", motion.feed_error_max_rel},
+          {"feed_min_mm_s", motion.feed_min_mm_s},
+          {"chord_error_max_um", um_from_mm(motion.chord_error_max_mm)},
+          {"orientation_error_max_deg", deg_from_rad(motion.orientation_error_max_rad)},
+          {"tick_ns_median", motion.tick_ns_median},
+          {"tick_ns_p999", motion.tick_ns_p999}};
+}
+
+Json kinematics_json(const sim::Job& job, const motion::MotionStatistics& motion) {
+  Json axes = Json::array();
+  for (size_t i = 0; i < motion.axes.size(); ++i) {
+    const motion::AxisStatistics& axis = motion.axes[i];
+    const bool rotary = job.machine.model.axes[i].kind == kinematics::AxisKind::kRotary;
+    const auto shown = [&](double value) { return rotary ? deg_from_rad(value) : value; };
+    axes.push_back({{"name", axis.name},
+                    {"unit", rotary ? "deg" : "mm"},
+                    {"min", shown(axis.min)},
+                    {"max", shown(axis.max)},
+                    {"travel", shown(axis.travel)},
+                    {"speed_max", shown(axis.speed_max)},
+                    {"accel_max", shown(axis.acceleration_max)}});
+  }
+  return {{"fk_ik_error_max_um", um_from_mm(motion.fk_ik_error_max_mm)},
+          {"singular_ticks", motion.singular_ticks},
+          {"pole_distance_min_deg", deg_from_rad(motion.pole_distance_min_rad)},
+          {"tip_error_max_mm", motion.tip_error_max_mm},
+          {"axes", axes}};
+}
+
+Json stock_json(const sim::Job& job, const sim::Result& result) {
+  const stock::CutStatistics& cut = result.stock->statistics();
+  return {{"voxel_mm", job.scene.stock.voxel_mm},
+          {"blocks", cut.sweeps},
+          {"seconds", cut.seconds},
+          {"blocks_per_s", cut.seconds > 0.0 ? static_cast<double>(cut.sweeps) / cut.seconds : 0.0},
+          {"voxel_updates", cut.voxel_updates},
+          {"sweep_error_bound_um", um_from_mm(result.sweep_bound_mm)},
+          {"volume_removed_mm3", result.volume_removed_mm3},
+          {"volume_left_mm3", result.volume_left_mm3},
+          {"hash", [&] {
+             Hash hash;
+             hash.add(result.stock->hash());
+             return hash.text();
+           }()}};
+}
+
+Json surface_json(const measure::SurfaceMetrics& surface) {
+  return {{"scallop_max_um", surface.scallop_max_um},
+          {"scallop_mean_um", surface.scallop_mean_um},
+          {"scallop_p05_um", surface.scallop_p05_um},
+          {"scallop_p95_um", surface.scallop_p95_um},
+          {"scallop_theory_um", surface.scallop_theory_um},
+          {"ridges", surface.ridges},
+          {"gouge_max_um", surface.gouge_max_um},
+          {"gouge_area_mm2", surface.gouge_area_mm2},
+          {"excess_max_um", surface.excess_max_um},
+          {"within_tolerance_pct", surface.within_tolerance_pct},
+          {"samples", surface.samples},
+          {"uncut_samples", surface.uncut_samples}};
+}
+
+Json comparison_json(const std::vector<sim::ComparisonRow>& rows) {
+  Json list = Json::array();
+  for (const sim::ComparisonRow& row : rows) {
+    list.push_back({{"name", row.name},
+                    {"used", row.used},
+                    {"passes", row.passes},
+                    {"pass_length_mm", row.pass_length_mm},
+                    {"link_length_mm", row.link_length_mm},
+                    {"time_s", row.time_s},
+                    {"feed_error_max_rel", row.feed_error_max_rel},
+                    {"chord_error_max_um", um_from_mm(row.chord_error_max_mm)},
+                    {"orientation_error_max_deg", deg_from_rad(row.orientation_error_max_rad)},
+                    {"surface", surface_json(row.surface)}});
+  }
+  return list;
+}
+
+Json cross_check_json(const measure::CrossCheck& check) {
+  return {{"mean_abs_um", check.mean_abs_um},
+          {"p99_um", check.p99_um},
+          {"max_um", check.max_um},
+          {"bound_um", check.bound_um},
+          {"holds", check.holds}};
+}
+
+Json collisions_json(const sim::ToolClearance& clearance) {
+  Json json{{"count", clearance.contacts}, {"checked_poses", clearance.checked_poses}};
+  // Beyond the level set's band the distance is only known to be larger.
+  const bool known = clearance.nearest_mm < clearance.band_mm;
+  json["near_miss_min_mm"] = known ? Json(clearance.nearest_mm) : Json(nullptr);
+  json["near_miss_above_mm"] = clearance.band_mm;
+  return json;
+}
+
+std::string severity_name(Severity severity) {
+  if (severity == Severity::kError) return "error";
+  return severity == Severity::kWarning ? "warning" : "note";
+}
+
+}  // namespace
+
+double peak_memory_mb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+std::string metrics_json(const sim::Job& job, const sim::Result& result, const RenderStatistics& render) {
+  const motion::MotionStatistics& motion = result.main.motion.statistics;
+  Json json{{"schema", 1},
+            {"swarf", SWARF_VERSION},
+            {"scene", job.scene.name},
+            {"verdict", sim::passes(result) ? "pass" : "findings"},
+            {"motion", motion_json(motion)},
+            {"kinematics", kinematics_json(job, motion)},
+            {"stock", stock_json(job, result)},
+            {"surface", surface_json(result.main.surface)},
+            {"cross_check", cross_check_json(result.cross_check)},
+            {"planners", comparison_json(result.planners)},
+            {"interpolators", comparison_json(result.modes)},
+            {"collisions", collisions_json(result.clearance)},
+            {"render", {{"frames", render.frames}, {"frame_ms_median", render.frame_ms_median}}},
+            {"memory_peak_mb", peak_memory_mb()}};
+  return json.dump(2) + "\n";
+}
+
+std::string findings_json(const sim::Result& result) {
+  Json list = Json::array();
+  for (const Severity severity : {Severity::kError, Severity::kWarning, Severity::kNote}) {
+    for (const sim::Finding& finding : result.findings) {
+      if (finding.severity != severity) continue;
+      list.push_back({{"code", finding.code},
+                      {"severity", severity_name(severity)},
+                      {"text", finding.text},
+                      {"fix", finding.fix},
+                      {"file", finding.where.file},
+                      {"line", finding.where.line},
+                      {"t_s", finding.t_s}});
+    }
+  }
+  return list.dump(2) + "\n";
+}
+
+}  // namespace swarf::reports

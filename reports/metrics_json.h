@@ -1,0 +1,25 @@
+// metrics.json and findings.json: the numbers of a run for scripts. Names are stable; units are in the names.
+#pragma once
+
+#include <string>
+
+#include "sim/simulation.h"
+
+namespace swarf::reports {
+
+/// What the pictures cost; part of metrics.json.
+struct RenderStatistics {
+  int frames = 0;
+  double frame_ms_median = 0.0;
+};
+
+/// The JSON text of metrics.json (schema 1).
+std::string metrics_json(const sim::Job& job, const sim::Result& result, const RenderStatistics& render);
+
+/// The JSON text of findings.json: an array, most severe first.
+std::string findings_json(const sim::Result& result);
+
+/// Peak resident memory of this process so far, MB.
+double peak_memory_mb();
+
+}  // namespace swarf::reports
