@@ -4,17 +4,28 @@
 
 #include <charconv>
 #include <string>
+#include <utility>
 
 #include "program/source_text.h"
 
 namespace swarf::program {
 namespace {
 
-bool is_letter(char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); }
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-bool is_sign(char c) { return c == '+' || c == '-'; }
-bool is_space(char c) { return c == ' ' || c == '\t'; }
-char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
+bool is_letter(char c) {
+  return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
+}
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+bool is_sign(char c) {
+  return c == '+' || c == '-';
+}
+bool is_space(char c) {
+  return c == ' ' || c == '\t';
+}
+char upper(char c) {
+  return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+}
 
 /// A place in the line; `column` counts characters, not bytes.
 class Cursor {
@@ -109,17 +120,20 @@ class LineLexer {
     std::string_view text = cursor_.since(start);
     if (text.empty()) return missing_number(word);
     if (skip_exponent(text)) {
-      return refuse(word, fmt::format("'{}' has an exponent, which NC numbers have not", cursor_.since(start)),
+      return refuse(word,
+                    fmt::format("'{}' has an exponent, which NC numbers have not", cursor_.since(start)),
                     "write all digits (0.001 for 1e-3); if E is a word of its own, put a space before it");
     }
-    if (text.front() == '+') text.remove_prefix(1);
+    const bool plus = text.front() == '+';
+    if (plus) text.remove_prefix(1);
     const auto [end, problem] =
         std::from_chars(text.data(), text.data() + text.size(), word.value, std::chars_format::fixed);
     if (problem == std::errc::result_out_of_range) {
-      return refuse(word, fmt::format("the number of {} does not fit the range of floating point", word.letter),
+      return refuse(word,
+                    fmt::format("the number of {} does not fit the range of floating point", word.letter),
                     "write a number of at most 15 digits");
     }
-    if (problem != std::errc{} || end != text.data() + text.size() || is_sign(text.back()) || text.front() == '+') {
+    if (problem != std::errc{} || end != text.data() + text.size() || (plus && text.front() == '-')) {
       return refuse(word, fmt::format("'{}' is not a number", cursor_.since(start)),
                     "a number has one optional sign, digits and at most one point: -12.5");
     }
@@ -128,7 +142,8 @@ class LineLexer {
 
   /// Skips E and a whole number that stand directly after digits.
   bool skip_exponent(std::string_view number_text) {
-    if (upper(cursor_.peek()) != 'E' || !(is_digit(number_text.back()) || number_text.back() == '.')) return false;
+    if (upper(cursor_.peek()) != 'E' || !(is_digit(number_text.back()) || number_text.back() == '.'))
+      return false;
     size_t length = is_sign(cursor_.peek(1)) ? 2 : 1;
     if (!is_digit(cursor_.peek(length))) return false;
     while (is_digit(cursor_.peek(length))) ++length;
@@ -170,23 +185,30 @@ class LineLexer {
     cursor_.skip();
     const std::string_view c = cursor_.since(start);
     const bool control = c.size() == 1 && static_cast<unsigned char>(c[0]) < 0x20;
-    const std::string shown = control ? fmt::format("control character 0x{:02X}", c[0]) : fmt::format("'{}'", c);
+    const std::string shown =
+        control ? fmt::format("control character 0x{:02X}", c[0]) : fmt::format("'{}'", c);
     report("unexpected-character", column,
-           fmt::format("{} does not belong here{}", shown, block_.percent ? ": '%' stands alone on its line" : ""),
+           fmt::format("{} does not belong here{}", shown,
+                       block_.percent ? ": '%' stands alone on its line" : ""),
            fix_for(c[0]));
   }
 
   static std::string fix_for(char c) {
     switch (c) {
-      case ',': return "write a decimal point, and only white space between words";
-      case '/': return "block delete is not supported: remove the block, or make it a comment";
+      case ',':
+        return "write a decimal point, and only white space between words";
+      case '/':
+        return "block delete is not supported: remove the block, or make it a comment";
       case '#':
       case '[':
       case ']':
       case '=':
-      case '*': return "variables and formulas are not supported: write the number";
-      case ')': return "open the comment with '(' before it";
-      default: return "a block has words (a letter and a number), and comments in ( ) or after ;";
+      case '*':
+        return "variables and formulas are not supported: write the number";
+      case ')':
+        return "open the comment with '(' before it";
+      default:
+        return "a block has words (a letter and a number), and comments in ( ) or after ;";
     }
   }
 

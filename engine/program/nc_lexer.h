@@ -25,12 +25,13 @@ struct Word {
 
 struct Block {
   int line = 0;
-  bool percent = false;   ///< a '%' line
-  bool complete = true;   ///< false: an unclosed comment may have swallowed words
+  bool percent = false;  ///< a '%' line
+  bool complete = true;  ///< false: an unclosed comment may have swallowed words
   std::vector<Word> words;
 };
 
-/// Reads one line. Reports "bad-number", "unexpected-character", "unclosed-comment". The words point into `line`.
+/// Reads one line. Reports "bad-number", "unexpected-character", "unclosed-comment". The words point into
+/// `line`.
 Block lex_line(std::string_view line, int line_number, Reporter& reporter);
 
 /// The first word with this letter, or null.

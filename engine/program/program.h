@@ -53,6 +53,7 @@ struct Program {
 Program parse_surface_blocks(const std::string& text, const std::string& file, Diagnostics& diagnostics);
 
 /// Reads the file (refusing what is empty or not text) and parses it. Throws InputError.
-Program load_program(const std::string& path);
+/// `warnings`, when given, receives what was found without being an error.
+Program load_program(const std::string& path, Diagnostics* warnings = nullptr);
 
 }  // namespace swarf::program

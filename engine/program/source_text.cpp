@@ -17,23 +17,31 @@ uint8_t byte_at(std::string_view text, size_t at) {
   return at < text.size() ? static_cast<uint8_t>(text[at]) : uint8_t{0};
 }
 
-bool in_range(uint8_t byte, uint8_t low, uint8_t high) { return byte >= low && byte <= high; }
+bool in_range(uint8_t byte, uint8_t low, uint8_t high) {
+  return byte >= low && byte <= high;
+}
 
 /// Range of the second byte, which alone excludes overlong forms, surrogates and what lies too high.
 bool second_byte_fits(uint8_t lead, uint8_t second) {
   switch (lead) {
-    case 0xE0: return in_range(second, 0xA0, 0xBF);
-    case 0xED: return in_range(second, 0x80, 0x9F);
-    case 0xF0: return in_range(second, 0x90, 0xBF);
-    case 0xF4: return in_range(second, 0x80, 0x8F);
-    default: return in_range(second, 0x80, 0xBF);
+    case 0xE0:
+      return in_range(second, 0xA0, 0xBF);
+    case 0xED:
+      return in_range(second, 0x80, 0x9F);
+    case 0xF0:
+      return in_range(second, 0x90, 0xBF);
+    case 0xF4:
+      return in_range(second, 0x80, 0x8F);
+    default:
+      return in_range(second, 0x80, 0xBF);
   }
 }
 
 void report_not_text(std::string_view text, size_t at, int line, int column, Reporter& reporter) {
   const std::string what =
       text[at] == '\0' ? "a NUL byte" : fmt::format("byte 0x{:02X}, which is not UTF-8,", byte_at(text, at));
-  reporter.error("not-text", line, column, fmt::format("{} stands at offset {} of the file: this is not text", what, at),
+  reporter.error("not-text", line, column,
+                 fmt::format("{} stands at offset {} of the file: this is not text", what, at),
                  "save the program as plain ASCII or UTF-8 text");
 }
 
@@ -42,7 +50,10 @@ void report_not_text(std::string_view text, size_t at, int line, int column, Rep
 int utf8_length(std::string_view text, size_t at) {
   const uint8_t lead = byte_at(text, at);
   if (lead < 0x80) return 1;
-  const int length = in_range(lead, 0xC2, 0xDF) ? 2 : in_range(lead, 0xE0, 0xEF) ? 3 : in_range(lead, 0xF0, 0xF4) ? 4 : 0;
+  const int length = in_range(lead, 0xC2, 0xDF)   ? 2
+                     : in_range(lead, 0xE0, 0xEF) ? 3
+                     : in_range(lead, 0xF0, 0xF4) ? 4
+                                                  : 0;
   if (length == 0 || !second_byte_fits(lead, byte_at(text, at + 1))) return 0;
   for (int i = 2; i < length; ++i) {
     if (!in_range(byte_at(text, at + static_cast<size_t>(i)), 0x80, 0xBF)) return 0;
@@ -90,7 +101,8 @@ std::string read_file(const std::string& path) {
   std::error_code problem;
   const auto status = std::filesystem::status(path, problem);
   if (status.type() == std::filesystem::file_type::not_found) {
-    throw InputError("file-not-found", {path, 0, 0}, "there is no such file", "check the path of the program");
+    throw InputError("file-not-found", {path, 0, 0}, "there is no such file",
+                     "check the path of the program");
   }
   std::ifstream stream(path, std::ios::binary);
   if (status.type() != std::filesystem::file_type::regular || !stream) {
