@@ -1,0 +1,30 @@
+// Colour spaces, and the scale that turns a deviation into a colour.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "render/draw_list.h"
+
+namespace swarf::render {
+
+/// sRGB transfer curve (IEC 61966-2-1), one channel, 0..1 both ways.
+float srgb_from_linear(float linear);
+float linear_from_srgb(float encoded);
+
+/// Linear 0..1 to 8-bit sRGB with alpha 255; channels outside 0..1 saturate, as a screen does.
+std::array<uint8_t, 4> srgb8_from_linear(const Rgb& linear);
+Rgb linear_from_srgb8(const std::array<uint8_t, 4>& encoded);
+
+/// Colour of a deviation on a diverging scale of half width `scale_um` (> 0).
+///
+/// Below zero (gouge) blue, at zero near-white (on size), above zero (excess) yellow, orange, red. Lightness falls
+/// evenly with |deviation| on both sides, so that the scale still reads in grey; the sides differ in the
+/// blue-yellow direction, which red-green blindness leaves intact. Interpolated in OKLab (Ottosson 2020).
+/// Beyond the scale: the end colours. NaN (unknown): dark grey, which the scale does not contain.
+Rgb deviation_colour(double deviation_um, double scale_um);
+
+/// Fills `mesh.colours` from `mesh.deviation_um`, which must be present.
+void colour_by_deviation(TriMesh& mesh, double scale_um);
+
+}  // namespace swarf::render

@@ -1,0 +1,106 @@
+#include "render/ray/still.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/check.h"
+#include "base/parallel.h"
+#include "render/figures/colour.h"
+#include "render/ray/tracer.h"
+
+namespace swarf::render {
+namespace {
+
+/// Side of the square tiles that are the units of parallel work.
+constexpr int kTile = 16;
+
+/// Rays through the pixels of a camera.
+struct Lens {
+  Vec3 eye, right, up, forward;  ///< right and up scaled to half the picture at distance 1
+
+  Lens(const Camera& camera, int width, int height) : eye(camera.eye) {
+    forward = (camera.target - camera.eye).normalized();
+    const Vec3 side = forward.cross(camera.up);
+    SWARF_CHECK(side.norm() > 0.0, "the camera looks along its own up direction");
+    const double half = std::tan(0.5 * camera.vertical_fov_rad);
+    right = side.normalized() * (half * width / height);
+    up = side.normalized().cross(forward) * half;
+  }
+  Vec3f ray(double x, double y) const { return (forward + x * right + y * up).normalized().cast<float>(); }
+};
+
+/// Identity up to the knee, then a rational shoulder towards 1 with equal slope at the knee.
+float tone(float x) {
+  constexpr float kKnee = 0.6F;
+  if (x <= kKnee) return std::max(x, 0.0F);
+  const float t = (x - kKnee) / (1.0F - kKnee);
+  return kKnee + (1.0F - kKnee) * t / (1.0F + t);
+}
+
+/// Offset in pixels of a tent filter two pixels wide, from a uniform number.
+double tent(float xi) {
+  return xi < 0.5F ? std::sqrt(2.0 * xi) - 1.0 : 1.0 - std::sqrt(2.0 - 2.0 * xi);
+}
+
+Vec3f to_eigen(const Rgb& c) { return {c[0], c[1], c[2]}; }
+
+struct Shot {
+  const StillOptions& options;
+  const Lens& lens;
+  const Tracer& tracer;
+  const BlueNoise& noise;
+
+  std::array<uint8_t, 4> pixel(int x, int y) const {
+    // One hot sample of a mirrored light must not outshine the whole pixel.
+    constexpr float kFirefly = 8.0F;
+    // After so many samples without a trace of the drawing or its shadow the pixel is backdrop.
+    constexpr int kProbe = 8;
+    Vec3f sum = Vec3f::Zero();
+    bool empty = true;
+    int taken = 0;
+    for (int s = 0; s < options.samples_per_pixel; ++s) {
+      Sampler sampler(noise, x, y, static_cast<uint32_t>(s), options.seed);
+      const Eigen::Vector2f xi = sampler.next();
+      const double px = (x + 0.5 + tent(xi.x())) / options.width, py = (y + 0.5 + tent(xi.y())) / options.height;
+      const auto down = std::clamp(static_cast<float>(py), 0.0F, 1.0F);
+      const Vec3f backdrop = (1.0F - down) * to_eigen(options.backdrop_top) + down * to_eigen(options.backdrop_bottom);
+      const Vec3f light = tracer.radiance(lens.eye.cast<float>(), lens.ray(2.0 * px - 1.0, 1.0 - 2.0 * py), backdrop, sampler);
+      sum += light.cwiseMin(kFirefly);
+      empty = empty && light == backdrop;
+      ++taken;
+      if (empty && taken == kProbe) break;
+    }
+    sum *= static_cast<float>(options.exposure) / static_cast<float>(taken);
+    return srgb8_from_linear({tone(sum.x()), tone(sum.y()), tone(sum.z())});
+  }
+
+  void tile(int tile_x, int tile_y, Image& image) const {
+    for (int y = tile_y * kTile; y < std::min(options.height, (tile_y + 1) * kTile); ++y) {
+      for (int x = tile_x * kTile; x < std::min(options.width, (tile_x + 1) * kTile); ++x) {
+        const auto value = pixel(x, y);
+        std::copy(value.begin(), value.end(), image.rgba.begin() + 4 * (static_cast<ptrdiff_t>(y) * options.width + x));
+      }
+    }
+  }
+};
+
+}  // namespace
+
+Image render_still(const DrawList& list, const StillOptions& options) {
+  SWARF_CHECK(options.width > 0 && options.height > 0 && options.samples_per_pixel > 0, "size of the still");
+  const Lens lens(list.camera, options.width, options.height);
+  const double radius_per_mm = std::tan(0.5 * list.camera.vertical_fov_rad) / options.height;
+  const RayScene scene(list, radius_per_mm);
+  const Studio studio(options);
+  const Tracer tracer(scene, studio, options);
+  static const BlueNoise noise;
+  const Shot shot{options, lens, tracer, noise};
+  Image image{options.width, options.height, std::vector<uint8_t>(size_t{4} * options.width * options.height)};
+  const int across = (options.width + kTile - 1) / kTile, down = (options.height + kTile - 1) / kTile;
+  parallel_chunks(static_cast<size_t>(across) * down, 1, [&](size_t begin, size_t) {
+    shot.tile(static_cast<int>(begin) % across, static_cast<int>(begin) / across, image);
+  });
+  return image;
+}
+
+}  // namespace swarf::render

@@ -1,0 +1,113 @@
+#include "render/ray/tracer.h"
+
+#include <algorithm>
+
+#include "base/units.h"
+
+namespace swarf::render {
+namespace {
+
+constexpr auto kPiF = static_cast<float>(kPi);
+/// Share of a line's colour that glows by itself, so that lines stay legible in shadow.
+constexpr float kLineGlow = 0.7F;
+/// What a metal met by a secondary ray mirrors, relative to the surroundings in that direction.
+constexpr float kSecondMirror = 0.8F;
+
+/// The shading normal, bent towards the viewer when interpolation turned it away.
+Vec3f facing_normal(const Hit& hit, const Vec3f& out) {
+  constexpr float kGrazing = 1e-3F;
+  const float cosine = hit.normal.dot(out);
+  if (cosine > kGrazing) return hit.normal;
+  return (hit.normal + (kGrazing - cosine) * out).normalized();
+}
+
+}  // namespace
+
+Tracer::Tracer(const RayScene& scene, const Studio& studio, const StillOptions& options)
+    : scene_(scene), studio_(studio), floor_(options.floor), floor_z_(scene.lowest_z()) {}
+
+Vec3f Tracer::radiance(const Vec3f& origin, const Vec3f& direction, const Vec3f& backdrop, Sampler& sampler) const {
+  if (const auto hit = scene_.nearest(origin, direction, true)) {
+    return hit->line ? tube(*hit) : solid(*hit, direction, sampler);
+  }
+  const float height = origin.z() - floor_z_;
+  if (!floor_ || direction.z() >= 0.0F || height <= 0.0F) return backdrop;
+  return floor_light(origin + height / -direction.z() * direction, sampler) * backdrop;
+}
+
+/// Light that reaches a floor point over what an empty studio would give it: 1 without shadow.
+float Tracer::floor_light(const Vec3f& point, Sampler& sampler) const {
+  const Vec3f start = point + scene_.offset() * Vec3f::UnitZ();
+  const Vec3f to_key = studio_.sample_key(sampler.next());
+  const Vec3f to_sky = sample_cosine(sampler.next());
+  const float key = studio_.key_strength() * std::max(0.0F, studio_.key_axis().z());
+  const float seen = (scene_.occluded(start, to_key) ? 0.0F : key) +
+                     (scene_.occluded(start, to_sky) ? 0.0F : studio_.mean_sky());
+  return seen / (key + studio_.mean_sky());
+}
+
+Vec3f Tracer::tube(const Hit& hit) const {
+  const float facing = 0.5F + 0.5F * hit.normal.dot(studio_.key_axis());
+  return (kLineGlow + (1.0F - kLineGlow) * facing) * hit.colour;
+}
+
+bool Tracer::key_visible(const Hit& hit, const Vec3f& direction) const {
+  return hit.face_normal.dot(direction) > 0.0F &&
+         !scene_.occluded(hit.position + scene_.offset() * hit.face_normal, direction);
+}
+
+Vec3f Tracer::solid(const Hit& hit, const Vec3f& direction, Sampler& sampler) const {
+  const Reflection reflection(hit);
+  const Eigen::Matrix3f frame = frame_about(facing_normal(hit, -direction));
+  const Vec3f out = frame.transpose() * -direction;
+  Vec3f light = key_light(hit, reflection, frame, out, sampler);
+  light += mirror_light(hit, reflection, frame, out, sampler);
+  const Eigen::Vector2f xi = sampler.next();
+  if (reflection.diffuse.maxCoeff() > 0.0F) {
+    const Vec3f in = frame * sample_cosine(xi);
+    const Vec3f start = hit.position + scene_.offset() * hit.face_normal;
+    if (in.dot(hit.face_normal) > 0.0F) light += reflection.diffuse.cwiseProduct(second_hit(start, in, sampler));
+  }
+  return light;
+}
+
+/// Key light by a sample of its disc; the mirror part shares the work with mirror_light (balance heuristic).
+Vec3f Tracer::key_light(const Hit& hit, const Reflection& reflection, const Eigen::Matrix3f& frame, const Vec3f& out,
+                        Sampler& sampler) const {
+  const Vec3f to_key = studio_.sample_key(sampler.next());
+  const Vec3f in = frame.transpose() * to_key;
+  if (in.z() <= 0.0F || !key_visible(hit, to_key)) return Vec3f::Zero();
+  const float share = studio_.key_pdf() / (studio_.key_pdf() + reflection.specular_pdf(out, in));
+  const Vec3f scatter = (in.z() / kPiF) * reflection.diffuse + share * reflection.specular_times_cosine(out, in);
+  return (studio_.key_radiance() / studio_.key_pdf()) * scatter;
+}
+
+Vec3f Tracer::mirror_light(const Hit& hit, const Reflection& reflection, const Eigen::Matrix3f& frame,
+                           const Vec3f& out, Sampler& sampler) const {
+  const Vec3f in = reflection.sample_specular(out, sampler.next());
+  const Vec3f direction = frame * in;
+  if (in.z() <= 0.0F || direction.dot(hit.face_normal) <= 0.0F) return Vec3f::Zero();
+  const float pdf = reflection.specular_pdf(out, in);
+  const Vec3f weight = reflection.specular_times_cosine(out, in) / pdf;
+  Vec3f arriving = second_hit(hit.position + scene_.offset() * hit.face_normal, direction, sampler);
+  if (studio_.in_key(direction) && key_visible(hit, direction)) {
+    arriving += Vec3f::Constant(studio_.key_radiance() * pdf / (pdf + studio_.key_pdf()));
+  }
+  return weight.cwiseProduct(arriving);
+}
+
+/// What a secondary ray brings: the surroundings, or a surface under the key light and an unshadowed sky.
+Vec3f Tracer::second_hit(const Vec3f& origin, const Vec3f& direction, Sampler& sampler) const {
+  const auto hit = scene_.nearest(origin, direction, false);
+  if (!hit) return Vec3f::Constant(studio_.surroundings(direction));
+  const Reflection reflection(*hit);
+  const Vec3f to_key = studio_.sample_key(sampler.next());
+  const float cosine = hit->normal.dot(to_key);
+  const float key = cosine > 0.0F && key_visible(*hit, to_key) ? cosine * studio_.key_strength() : 0.0F;
+  const float sky = studio_.mean_sky() * (0.5F + 0.5F * hit->normal.z());
+  const Vec3f mirrored = direction - 2.0F * direction.dot(hit->normal) * hit->normal;
+  return (key + sky) * reflection.diffuse +
+         (kSecondMirror * studio_.surroundings(mirrored)) * reflection.specular;
+}
+
+}  // namespace swarf::render
