@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/frames.h"
+#include "kinematics/rotary_pair.h"
 
 namespace swarf::kinematics {
 
@@ -69,21 +70,66 @@ struct InverseSolutions {
   int count = 0;
 };
 
+/// A solution counts only when forward() brings it back to the pose within these: tip (mm), axis (rad).
+inline constexpr double kTipTolerance = 1e-9;
+inline constexpr double kAxisTolerance = 1e-12;
+
 /// The closed-form inverse, prepared once per machine; solving allocates nothing.
 /// Three linear axes and up to two rotary axes in any table/head arrangement, orthogonal or not.
+///
+///  1. Rotary axes: R(e1, t1) R(e2, t2) tool_axis_M = R_MW axis_W (RotaryPair); two branches, one at the
+///  pole.
+///  2. Unwind each rotary value by whole turns to the one nearest to the hint. When that lies outside the
+///     travel and the value one turn towards the travel lies inside, the latter is taken.
+///  3. Linear axes: with the rotary axes set, the tip closes the loop work - base - tool, three equations
+///     linear in the three values.
+///  4. Proof: forward() of the values, which knows nothing of 1 to 3 and takes its sines and cosines from the
+///     final values, must give the pose back. A candidate that fails is dropped.
 class InverseKinematics {
  public:
-  /// Throws InputError when the chain has no unique inverse (linear axes dependent, rotary axes parallel).
+  /// Throws InputError when the chain has no unique inverse (linear axes dependent, rotary axes parallel, a
+  /// rotary axis along the tool).
   explicit InverseKinematics(const MachineModel& machine);
-  /// Both branches; rotary values lie within a turn of `hint` (unwound to be continuous with it).
+  /// Both branches; rotary values lie within a turn of `hint` (unwound to be continuous with it) when the
+  /// hint itself lies inside the travel. axis_W need not be exactly unit. NaN anywhere: no solution.
   InverseSolutions solve(const ToolPose& pose_W, const AxisValues& hint) const;
   /// The branch nearest to `hint` by rotary travel among those inside the travel limits; the continuous
-  /// choice through the pole (-a, b + 180 deg) falls out of this rule.
+  /// choice through the pole (-a, b + 180 deg) falls out of this rule. When none is inside, the nearest one,
+  /// marked kOutOfTravel.
   Branch solve_nearest(const ToolPose& pose_W, const AxisValues& hint) const;
+  /// Angle between the tool axis and the nearest direction where the outer rotary is free, rad; infinity for
+  /// a machine without such a pole (fewer than two rotary axes among them).
+  double pole_distance(const Vec3& axis_W) const;
 
  private:
+  /// A rotary solution before the linear axes are known.
+  struct Candidate {
+    TurnPair turns;
+    double value[2] = {0.0, 0.0};  ///< of the outer and the inner axis, unwound
+    double travel = 0.0;           ///< sum of the distances to the hint
+  };
+  /// One link on the way from the work or the tool to the base.
+  struct Step {
+    AxisKind kind = AxisKind::kLinear;
+    int slot = 0;        ///< rotary: 0 outer, 1 inner; linear: column of the loop equation
+    double sense = 1.0;  ///< of the link against the turn; of the value against the direction
+    Vec3 direction = Vec3::UnitX(), origin = Vec3::Zero();
+  };
+  int candidates(const Vec3& axis_M, const AxisValues& hint, Candidate out[2]) const;
+  int turns(const Vec3& axis_M, TurnPair out[2]) const;
+  double unwound(int axis, double turn, const AxisValues& hint) const;
+  bool locate(const Vec3& tip_M, const TurnPair& turns, Vec3& linear_values) const;
+  Vec3 walk(const std::vector<Step>& steps, Vec3 point, const TurnPair& turns, Mat3* columns) const;
+  Branch complete(const ToolPose& unit_W, const Vec3& tip_M, const Candidate& candidate) const;
+  int first_out_of_travel(const AxisValues& q) const;
+
   MachineModel machine_;
   std::vector<int> linear_, rotary_;
+  std::vector<Step> table_steps_, head_steps_;  ///< work to base, tool to base
+  RotaryPair pair_;
+  Vec3 single_basis_[2] = {Vec3::UnitX(), Vec3::UnitY()};  ///< one rotary axis: across it, from the tool axis
+  double single_along_ = 0.0, single_across_ = 1.0;        ///< one rotary axis: components of the tool axis
+  bool columns_constant_ = true;                           ///< no linear axis rides on a rotary one
   Mat3 linear_inverse_ = Mat3::Identity();
 };
 

@@ -1,0 +1,84 @@
+#include "kinematics/rotary_pair.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/units.h"
+
+namespace swarf::kinematics {
+namespace {
+
+/// By how much a direction may lie outside the reach and still count as rounding, rad; the forward check has
+/// the last word.
+constexpr double kReachTolerance = 1e-12;
+
+}  // namespace
+
+RotaryPair::RotaryPair(const Vec3& e1, const Vec3& e2, const Vec3& v)
+    : d_(e1.dot(e2)), s_(e1.cross(e2).norm()), c2_(e2.dot(v)) {
+  const Vec3 k = e1.cross(e2) / s_;
+  frame_ << e1.transpose(), k.cross(e1).transpose(), k.transpose();
+  p_at_pole_[0] = (c2_ - d_) / s_;
+  p_at_pole_[1] = (c2_ + d_) / s_;
+  for (double& p : p_at_pole_) {
+    if (std::abs(p) < kPoleTolerance) p = 0.0;
+  }
+  vm_ = v.dot(e2.cross(k));
+  vk_ = -v.dot(k);
+  v_angle_ = std::atan2(vk_, vm_);
+  across_squared_ = vm_ * vm_ + vk_ * vk_;
+}
+
+int RotaryPair::solve(const Vec3& w, TurnPair out[2]) const {
+  const Vec3 in_frame = frame_ * w;
+  const double c1 = in_frame[0], wn = in_frame[1], wk = in_frame[2];
+  const double rho_squared = wn * wn + wk * wk;
+  const double rho = std::sqrt(rho_squared);
+  const bool upper = c1 >= 0.0;
+  const double p_at_pole = p_at_pole_[upper ? 0 : 1];
+  // c2 - d c1 without cancellation: 1 - |c1| = rho^2 / (1 + |c1|).
+  const double from_pole = rho_squared / (1.0 + std::abs(c1));
+  const double p = p_at_pole + d_ * (upper ? from_pole : -from_pole) / s_;
+  if (rho < kPoleTolerance && p_at_pole == 0.0) {
+    out[0] = pole(c1);
+    return 1;
+  }
+  if (!(std::abs(p) <= rho + kReachTolerance) || rho < kPoleTolerance) return 0;
+  const double r = std::sqrt(std::max(0.0, (rho - p) * (rho + p)));
+  const double mu = (c1 - d_ * c2_) / s_;
+  const double w_angle = std::atan2(wk, wn);
+  const double z_angle = p == 0.0 ? 0.5 * kPi : std::atan2(r, p);
+  const double tilt = std::atan2(r, mu);
+  const double per_rho = 1.0 / rho_squared, per_across = 1.0 / across_squared_;
+  const int count = r > 0.0 ? 2 : 1;
+  for (int i = 0; i < count; ++i) {
+    const double sign = i == 0 ? 1.0 : -1.0;
+    const double ri = sign * r;
+    out[i].outer = {w_angle - sign * z_angle, (p * wk - ri * wn) * per_rho, (p * wn + ri * wk) * per_rho};
+    out[i].inner = {-sign * tilt - v_angle_, (-ri * vm_ - mu * vk_) * per_across,
+                    (mu * vm_ - ri * vk_) * per_across};
+    out[i].outer_free = false;
+  }
+  return count;
+}
+
+TurnPair RotaryPair::pole(double c1) const {
+  // z = +-e1 has the components (+-s, 0) in the basis (m, -k).
+  const double mu = c1 >= 0.0 ? s_ : -s_;
+  TurnPair pair;
+  pair.inner = {std::atan2(0.0, mu) - v_angle_, -mu * vk_ / across_squared_, mu * vm_ / across_squared_};
+  pair.outer_free = true;
+  return pair;
+}
+
+double RotaryPair::pole_distance(const Vec3& w) const {
+  const Vec3 in_frame = frame_ * w;
+  const double rho = std::hypot(in_frame[1], in_frame[2]);
+  double distance = std::numeric_limits<double>::infinity();
+  if (p_at_pole_[0] == 0.0) distance = std::atan2(rho, in_frame[0]);
+  if (p_at_pole_[1] == 0.0) distance = std::min(distance, std::atan2(rho, -in_frame[0]));
+  return distance;
+}
+
+}  // namespace swarf::kinematics
