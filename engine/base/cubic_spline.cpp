@@ -28,7 +28,7 @@ CubicSpline::CubicSpline(double first, double step, std::vector<double> values)
       diagonal[i] -= factor;
       right[i] -= factor * right[i - 1];
     }
-    if (n > 4) second_[n - 3] = right[n - 3] / diagonal[n - 3];
+    second_[n - 3] = right[n - 3] / diagonal[n - 3];
     for (size_t i = n - 4; i >= 2; --i) second_[i] = (right[i] - second_[i + 1]) / diagonal[i];
   }
   second_[0] = 2.0 * second_[1] - second_[2];

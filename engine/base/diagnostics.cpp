@@ -96,7 +96,10 @@ InputError::InputError(std::string code, SourceLocation where, std::string text,
 
 std::string nearest_name(std::string_view word, const std::vector<std::string>& candidates) {
   std::string best;
-  size_t best_distance = std::max<size_t>(2, word.size() / 3) + 1;
+  // A third of the letters may differ, at least two; but at most half, or short words would resemble
+  // anything.
+  const size_t limit = std::min(std::max<size_t>(2, word.size() / 3), std::max<size_t>(1, word.size() / 2));
+  size_t best_distance = limit + 1;
   for (const std::string& candidate : candidates) {
     const size_t distance = edit_distance(word, candidate);
     if (distance < best_distance) {

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <memory>
 
+#include "base/check.h"
+
 namespace swarf {
 namespace {
 
@@ -32,6 +34,7 @@ int thread_count() {
 }
 
 void parallel_chunks(size_t n, size_t chunk, const std::function<void(size_t, size_t)>& body) {
+  SWARF_CHECK(chunk > 0, "a chunk has at least one item");
   const size_t count = (n + chunk - 1) / chunk;
   tbb::parallel_for(size_t{0}, count, [&](size_t i) { body(i * chunk, std::min(n, (i + 1) * chunk)); });
 }

@@ -1,6 +1,7 @@
 // The one seeded generator (splitmix64): the same numbers on every system, which <random> does not promise.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 

@@ -23,6 +23,11 @@ bool is_sign(char c) {
 bool is_space(char c) {
   return c == ' ' || c == '\t';
 }
+/// A part of the program for a message, at most as long as a reader wants.
+std::string shown(std::string_view text) {
+  constexpr size_t kLongest = 40;
+  return text.size() <= kLongest ? std::string(text) : std::string(text.substr(0, kLongest)) + "...";
+}
 char upper(char c) {
   return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
 }
@@ -120,9 +125,9 @@ class LineLexer {
     std::string_view text = cursor_.since(start);
     if (text.empty()) return missing_number(word);
     if (skip_exponent(text)) {
-      return refuse(word,
-                    fmt::format("'{}' has an exponent, which NC numbers have not", cursor_.since(start)),
-                    "write all digits (0.001 for 1e-3); if E is a word of its own, put a space before it");
+      return refuse(
+          word, fmt::format("'{}' has an exponent, which NC numbers have not", shown(cursor_.since(start))),
+          "write all digits (0.001 for 1e-3); if E is a word of its own, put a space before it");
     }
     const bool plus = text.front() == '+';
     if (plus) text.remove_prefix(1);
@@ -134,7 +139,7 @@ class LineLexer {
                     "write a number of at most 15 digits");
     }
     if (problem != std::errc{} || end != text.data() + text.size() || (plus && text.front() == '-')) {
-      return refuse(word, fmt::format("'{}' is not a number", cursor_.since(start)),
+      return refuse(word, fmt::format("'{}' is not a number", shown(cursor_.since(start))),
                     "a number has one optional sign, digits and at most one point: -12.5");
     }
     return true;
@@ -175,7 +180,7 @@ class LineLexer {
     const size_t start = cursor_.position();
     const int column = cursor_.column();
     while (is_digit(cursor_.peek()) || is_sign(cursor_.peek()) || cursor_.peek() == '.') cursor_.skip();
-    report("bad-number", column, fmt::format("'{}' has no letter before it", cursor_.since(start)),
+    report("bad-number", column, fmt::format("'{}' has no letter before it", shown(cursor_.since(start))),
            "each number belongs to the letter before it; write no space inside a number");
   }
 

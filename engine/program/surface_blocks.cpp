@@ -220,7 +220,7 @@ class Interpreter {
       reporter_.error("no-operation", 0, 0, "the program has no operation: it cuts nothing",
                       "add G06.3 (whole surface) or G06.4 (one pass) after the surface is closed");
     }
-    if (end_line_ == 0 && !suspects_.program_end) {
+    if (end_line_ == 0 && !words_after_end_ && !suspects_.program_end) {
       reporter_.warning("no-program-end", last_line_, 0, "the program ends without M30 or M2",
                         "add M30 as the last block");
     }

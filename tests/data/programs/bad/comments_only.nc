@@ -1,0 +1,2 @@
+(expect: no-operation 0:0, no-program-end 0:0)
+(nothing)

@@ -1,0 +1,13 @@
+(expect: surface-degenerate 11:9)
+G17 G21 G54 G90
+T1 M6
+S12000 M3
+(x is 100 times the cube of u - 0.37: flat at one u)
+G10 L70 P1 Q3 R1
+G10 L71 P1 I1 J0 X41.07
+G10 L71 P1 I2 J0 X-111
+G10 L71 P1 I3 J0 X100
+G10 L71 P1 I0 J1 Y80
+G10 L79 P1
+G06.3 P1 B0 E0.010 K0.001 F3000 L1
+M30
