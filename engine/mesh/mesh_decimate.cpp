@@ -7,10 +7,12 @@
 #include <OpenMesh/Tools/Decimater/ModNormalFlippingT.hh>
 #include <OpenMesh/Tools/Decimater/ModQuadricT.hh>
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <span>
 
 #include "base/check.h"
-#include "base/units.h"
+#include "base/parallel.h"
 #include "mesh/mesh_distance.h"
 #include "mesh/mesh_ops.h"
 
@@ -26,7 +28,8 @@ constexpr size_t kOpenMeshTriangles = 60000;
 constexpr double kMaxAspect = 20.0;
 constexpr double kMaxNormalTurnDeg = 20.0;
 /// A quadric's error is a mean over planes and the measured one a maximum: the first try asks for this share.
-constexpr double kFirstBudget = 0.5;
+constexpr double kFirstBudget = 0.3;
+constexpr double kNextBudget = 0.6;
 constexpr int kTries = 6;
 
 /// The mesh as one list of indices in which vertices at one position are one vertex (the first of them).
@@ -34,22 +37,88 @@ Indices welded_indices(const TriMesh& mesh) {
   const auto* indices = reinterpret_cast<const uint32_t*>(mesh.triangles.data());
   Indices welded(3 * mesh.triangles.size());
   meshopt_generateShadowIndexBuffer(welded.data(), indices, welded.size(), mesh.positions.data(),
-                                    mesh.positions.size(), sizeof(mesh.positions[0]), sizeof(mesh.positions[0]));
+                                    mesh.positions.size(), sizeof(mesh.positions[0]),
+                                    sizeof(mesh.positions[0]));
   return welded;
 }
 
-Indices simplify(const TriMesh& mesh, const Indices& indices, double error_mm) {
-  const double extent = meshopt_simplifyScale(mesh.positions.front().data(), mesh.positions.size(),
-                                              sizeof(mesh.positions[0]));
-  Indices out(indices.size());
-  const size_t count = meshopt_simplify(out.data(), indices.data(), indices.size(), mesh.positions.front().data(),
-                                        mesh.positions.size(), sizeof(mesh.positions[0]), 0,
-                                        static_cast<float>(error_mm / extent), 0, nullptr);
-  out.resize(count);
+/// One round of meshoptimizer on the triangles whose numbers are listed; edges shared with others stay as
+/// they are.
+Indices simplify_cell(const TriMesh& mesh, const Indices& indices, std::span<const uint32_t> triangles,
+                      double error_mm) {
+  Indices vertices;
+  for (const uint32_t t : triangles) vertices.insert(vertices.end(), &indices[3 * t], &indices[3 * t] + 3);
+  Indices local = vertices;
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  std::vector<std::array<float, 3>> positions;
+  for (const uint32_t v : vertices) positions.push_back(mesh.positions[v]);
+  for (uint32_t& v : local) {
+    v = static_cast<uint32_t>(std::lower_bound(vertices.begin(), vertices.end(), v) - vertices.begin());
+  }
+  const float extent =
+      meshopt_simplifyScale(positions.front().data(), positions.size(), sizeof(positions.front()));
+  if (!(extent > 0.0F)) return {};  // only degenerate triangles at one point
+  Indices out(local.size());
+  out.resize(meshopt_simplify(out.data(), local.data(), local.size(), positions.front().data(),
+                              positions.size(), sizeof(positions.front()), 0,
+                              static_cast<float>(error_mm / extent), meshopt_SimplifyLockBorder, nullptr));
+  for (uint32_t& v : out) v = vertices[v];
   return out;
 }
 
-/// The triangles as an OpenMesh whose vertices know their index in the original; false if they are not manifold.
+/// Triangle numbers sorted by the cell of a grid of pitch `cell_mm` that holds their centroid, and where each
+/// cell's run starts.
+struct Cells {
+  Indices triangles;
+  std::vector<size_t> starts;
+};
+
+Cells sort_into_cells(const TriMesh& mesh, const Indices& indices, double cell_mm, double shift_mm) {
+  constexpr double kCellsAcross = 1 << 20;  // 3 x 21 bits of a key
+  std::vector<std::pair<uint64_t, uint32_t>> keyed(indices.size() / 3);
+  for (uint32_t t = 0; t < keyed.size(); ++t) {
+    uint64_t key = 0;
+    for (size_t k = 0; k < 3; ++k) {
+      double sum = 0.0;
+      for (size_t corner = 0; corner < 3; ++corner) sum += mesh.positions[indices[3 * t + corner]][k];
+      const double cell = std::floor((sum / 3.0 + shift_mm) / cell_mm) + 0.5 * kCellsAcross;
+      key = (key << 21) | static_cast<uint64_t>(std::clamp(cell, 0.0, kCellsAcross));
+    }
+    keyed[t] = {key, t};
+  }
+  std::sort(keyed.begin(), keyed.end());
+  Cells cells;
+  for (size_t i = 0; i < keyed.size(); ++i) {
+    if (i == 0 || keyed[i].first != keyed[i - 1].first) cells.starts.push_back(i);
+    cells.triangles.push_back(keyed[i].second);
+  }
+  cells.starts.push_back(keyed.size());
+  return cells;
+}
+
+/// meshoptimizer sums its quadrics in float, relative to the extent of what it is given: below kFloatFloor of
+/// the extent its errors are noise. So it gets cells small enough for the error asked for, in two rounds with
+/// the second grid shifted by half a cell, so that the first round's locked borders are open in the second.
+Indices simplify(const TriMesh& mesh, Indices indices, double error_mm) {
+  constexpr double kFloatFloor = 2.5e-4;
+  const double cell_mm = error_mm / kFloatFloor;
+  for (const double shift_mm : {0.0, 0.5 * cell_mm}) {
+    const Cells cells = sort_into_cells(mesh, indices, cell_mm, shift_mm);
+    std::vector<Indices> parts(cells.starts.size() - 1);
+    parallel_chunks(parts.size(), 1, [&](size_t i, size_t) {
+      const std::span all(cells.triangles);
+      parts[i] = simplify_cell(mesh, indices,
+                               all.subspan(cells.starts[i], cells.starts[i + 1] - cells.starts[i]), error_mm);
+    });
+    indices.clear();
+    for (const Indices& part : parts) indices.insert(indices.end(), part.begin(), part.end());
+  }
+  return indices;
+}
+
+/// The triangles as an OpenMesh whose vertices know their index in the original; false if they are not
+/// manifold.
 bool to_openmesh(const TriMesh& mesh, const Indices& indices, OmMesh& om,
                  OpenMesh::VPropHandleT<uint32_t> original) {
   std::vector<OmMesh::VertexHandle> handle(mesh.positions.size());
@@ -91,6 +160,8 @@ Indices refine_with_openmesh(const TriMesh& mesh, const Indices& indices, double
   const bool manifold = to_openmesh(mesh, indices, om, original);
   omerr().enable();
   if (!manifold) return indices;
+  // Quadrics of faces do not resist motion along an open border.
+  for (const auto v : om.vertices()) om.status(v).set_locked(om.is_boundary(v));
   om.update_face_normals();
   OpenMesh::Decimater::DecimaterT<OmMesh> decimater(om);
   OpenMesh::Decimater::ModQuadricT<OmMesh>::Handle quadric;
@@ -143,7 +214,7 @@ TriMesh decimate(const TriMesh& mesh, double max_error_mm, double* reached_error
   if (mesh.triangles.empty()) return mesh;
   const Indices welded = welded_indices(mesh);
   double budget = kFirstBudget * max_error_mm;
-  for (int attempt = 0; attempt < kTries; ++attempt, budget *= 0.5) {
+  for (int attempt = 0; attempt < kTries; ++attempt, budget *= kNextBudget) {
     Indices indices = simplify(mesh, welded, budget);
     if (indices.size() / 3 <= kOpenMeshTriangles) indices = refine_with_openmesh(mesh, indices, budget);
     TriMesh candidate = gather(mesh, indices);

@@ -16,8 +16,7 @@ constexpr uint32_t kLeafSize = 4;
 constexpr size_t kStackSize = 64;
 
 double box_distance_squared(const Eigen::Vector3f& lower, const Eigen::Vector3f& upper, const Vec3& p) {
-  const Vec3 outside =
-      (lower.cast<double>() - p).cwiseMax(p - upper.cast<double>()).cwiseMax(Vec3::Zero());
+  const Vec3 outside = (lower.cast<double>() - p).cwiseMax(p - upper.cast<double>()).cwiseMax(Vec3::Zero());
   return outside.squaredNorm();
 }
 
@@ -102,17 +101,22 @@ void MeshDistance::build(uint32_t begin, uint32_t end, const std::vector<Eigen::
   build(middle, end, centres);
 }
 
-double MeshDistance::leaf_distance_squared(const Node& leaf, const Vec3& p, double best) const {
+void MeshDistance::search_leaf(const Node& leaf, const Vec3& p, double& best, NearestPoint& nearest) const {
   for (uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
     const uint32_t t = order_[i];
-    best = std::min(best, (closest_point_on_triangle(p, vertex(t, 0), vertex(t, 1), vertex(t, 2)) - p).squaredNorm());
+    const Vec3 candidate = closest_point_on_triangle(p, vertex(t, 0), vertex(t, 1), vertex(t, 2));
+    const double distance = (candidate - p).squaredNorm();
+    if (distance >= best) continue;
+    best = distance;
+    nearest.point = candidate;
+    nearest.triangle = t;
   }
-  return best;
 }
 
-double MeshDistance::to(const Vec3& p) const {
-  double best = std::numeric_limits<double>::infinity();
-  if (nodes_.empty()) return best;
+NearestPoint MeshDistance::nearest(const Vec3& p) const {
+  NearestPoint nearest;
+  double best = nearest.distance_mm = std::numeric_limits<double>::infinity();
+  if (nodes_.empty()) return nearest;
   std::array<std::pair<uint32_t, double>, kStackSize> stack;
   size_t depth = 0;
   stack[depth++] = {0U, 0.0};
@@ -121,7 +125,7 @@ double MeshDistance::to(const Vec3& p) const {
     if (bound >= best) continue;
     const Node& node = nodes_[index];
     if (node.count > 0) {
-      best = leaf_distance_squared(node, p, best);
+      search_leaf(node, p, best, nearest);
       continue;
     }
     std::pair<uint32_t, double> near{index + 1, 0.0}, far{node.first, 0.0};
@@ -131,7 +135,8 @@ double MeshDistance::to(const Vec3& p) const {
     stack[depth++] = far;
     stack[depth++] = near;
   }
-  return std::sqrt(best);
+  nearest.distance_mm = std::sqrt(best);
+  return nearest;
 }
 
 double max_distance(std::span<const std::array<float, 3>> points, const TriMesh& mesh) {
@@ -141,7 +146,7 @@ double max_distance(std::span<const std::array<float, 3>> points, const TriMesh&
   parallel_chunks(points.size(), kChunk, [&](size_t begin, size_t end) {
     double& mine = worst[begin / kChunk];
     for (size_t i = begin; i < end; ++i) {
-      mine = std::max(mine, distance.to({points[i][0], points[i][1], points[i][2]}));
+      mine = std::max(mine, distance.nearest({points[i][0], points[i][1], points[i][2]}).distance_mm);
     }
   });
   return worst.empty() ? 0.0 : *std::max_element(worst.begin(), worst.end());

@@ -39,7 +39,8 @@ double corner_angle(const TriMesh& mesh, uint32_t corner) {
 struct CornerRows {
   std::vector<uint32_t> start, corners;
 
-  explicit CornerRows(const TriMesh& mesh) : start(mesh.positions.size() + 1, 0), corners(3 * mesh.triangles.size()) {
+  explicit CornerRows(const TriMesh& mesh)
+      : start(mesh.positions.size() + 1, 0), corners(3 * mesh.triangles.size()) {
     for (const auto& t : mesh.triangles) {
       for (const uint32_t v : t) ++start[v + 1];
     }
@@ -96,7 +97,8 @@ void compute_vertex_normals(TriMesh& mesh, double crease_rad) {
     std::map<std::array<float, 3>, uint32_t> copies;
     for (const uint32_t c : around) {
       const Vec3 n = corner_normal(around, faces, angles, c, min_cosine);
-      const std::array<float, 3> key{static_cast<float>(n.x()), static_cast<float>(n.y()), static_cast<float>(n.z())};
+      const std::array<float, 3> key{static_cast<float>(n.x()), static_cast<float>(n.y()),
+                                     static_cast<float>(n.z())};
       auto found = copies.find(key);
       if (found == copies.end()) {
         const uint32_t index = copies.empty() ? v : duplicate_vertex(mesh, v);

@@ -10,19 +10,19 @@ namespace swarf::mesh {
 Box bounds(const TriMesh& mesh);
 
 /// Replaces the normals by angle-weighted means of the faces around each vertex (Thuermer & Wuethrich 1998).
-/// Faces whose normals differ by more than `crease_rad` from the face at hand take no part, and a vertex that then
-/// has several normals is split into copies that carry the same other attributes. Degenerate faces count for
-/// nothing; a vertex that has only such faces gets (0, 0, 1).
+/// Faces whose normals differ by more than `crease_rad` from the face at hand take no part, and a vertex that
+/// then has several normals is split into copies that carry the same other attributes. Degenerate faces count
+/// for nothing; a vertex that has only such faces gets (0, 0, 1).
 void compute_vertex_normals(TriMesh& mesh, double crease_rad);
 
 /// A coarser mesh whose distance from every vertex of `mesh` is at most `max_error_mm` (> 0).
 ///
-/// meshoptimizer's quadric edge collapse does the bulk; when what is left is small, OpenMesh's decimater (quadrics,
-/// aspect ratio, normal flipping) goes on. The distance is then measured, independently of both, from every
-/// original vertex to the exact nearest point of the result; a result that fails is redone with half the budget, and
-/// if none passes the mesh is returned unchanged. `reached_error` (may be null) receives the measured distance, mm.
-/// Both methods keep a subset of the original vertices, so colours, deviations and normals are carried
-/// unchanged; of vertices that coincide in position the first one's are kept.
+/// meshoptimizer's quadric edge collapse does the bulk; when what is left is small, OpenMesh's decimater
+/// (quadrics, aspect ratio, normal flipping) goes on. The distance is then measured, independently of both,
+/// from every original vertex to the exact nearest point of the result; a result that fails is redone with a
+/// smaller budget, and if none passes the mesh is returned unchanged. `reached_error` (may be null) receives
+/// the measured distance, mm. Both methods keep a subset of the original vertices, so colours, deviations and
+/// normals are carried unchanged; of vertices that coincide in position the first one's are kept.
 TriMesh decimate(const TriMesh& mesh, double max_error_mm, double* reached_error);
 
 }  // namespace swarf::mesh

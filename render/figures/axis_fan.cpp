@@ -12,8 +12,8 @@ struct Pass {
   size_t begin, end;  ///< half-open range of points
 };
 
-/// Indices of at most `wanted` out of `count` passes at one stride, the first and the last among them. A stride
-/// that meets the last pass exactly is preferred: an uneven gap would look like a change of step-over.
+/// Indices of at most `wanted` out of `count` passes at one stride, the first and the last among them. A
+/// stride that meets the last pass exactly is preferred: an uneven gap would look like a change of step-over.
 std::vector<size_t> spread(size_t count, size_t wanted) {
   std::vector<size_t> chosen;
   if (count == 0) return chosen;
@@ -82,7 +82,8 @@ std::vector<DrawLine> axis_fan(const FanInput& input, const FanStyle& style) {
     const std::vector<double> length = arc_lengths(input, pass);
     const size_t path_points = 2 + static_cast<size_t>(length.back() / style.path_step_mm);
     DrawLine path{{}, style.path_colour, style.path_width_px};
-    for (const size_t i : equal_steps(length, path_points)) path.points.push_back(input.points[pass.begin + i]);
+    for (const size_t i : equal_steps(length, path_points))
+      path.points.push_back(input.points[pass.begin + i]);
     lines.push_back(std::move(path));
     for (const size_t i : equal_steps(length, static_cast<size_t>(style.axes_per_pass))) {
       const Vec3& foot = input.points[pass.begin + i];

@@ -9,16 +9,16 @@ namespace swarf::render {
 
 /// Every array in path order; one entry per tool sample.
 struct FanInput {
-  std::vector<Vec3> points;          ///< contact points, mm
-  std::vector<Vec3> axes;            ///< unit tool axes at the points, tip to spindle
-  std::vector<size_t> pass_starts;   ///< index of the first point of each pass, ascending, first is 0
+  std::vector<Vec3> points;         ///< contact points, mm
+  std::vector<Vec3> axes;           ///< unit tool axes at the points, tip to spindle
+  std::vector<size_t> pass_starts;  ///< index of the first point of each pass, ascending, first is 0
 };
 
 struct FanStyle {
-  int passes = 14;               ///< at most so many passes are drawn, first and last among them
-  int axes_per_pass = 13;        ///< axes at equal arc length, both ends among them
-  double axis_length_mm = 0.0;   ///< 0: a fifth of the diagonal of the points' box
-  double path_step_mm = 0.5;     ///< spacing of the drawn path points
+  int passes = 14;              ///< at most so many passes are drawn, first and last among them
+  int axes_per_pass = 13;       ///< axes at equal arc length, both ends among them
+  double axis_length_mm = 0.0;  ///< 0: a fifth of the diagonal of the points' box
+  double path_step_mm = 0.5;    ///< spacing of the drawn path points
   Rgb path_colour{0.02F, 0.10F, 0.35F};
   Rgb axis_colour{0.75F, 0.10F, 0.03F};
   float path_width_px = 2.0F;

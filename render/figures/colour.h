@@ -18,9 +18,9 @@ Rgb linear_from_srgb8(const std::array<uint8_t, 4>& encoded);
 
 /// Colour of a deviation on a diverging scale of half width `scale_um` (> 0).
 ///
-/// Below zero (gouge) blue, at zero near-white (on size), above zero (excess) yellow, orange, red. Lightness falls
-/// evenly with |deviation| on both sides, so that the scale still reads in grey; the sides differ in the
-/// blue-yellow direction, which red-green blindness leaves intact. Interpolated in OKLab (Ottosson 2020).
+/// Below zero (gouge) blue, at zero near-white (on size), above zero (excess) yellow, orange, red. Lightness
+/// falls evenly with |deviation| on both sides, so that the scale still reads in grey; the sides differ in
+/// the blue-yellow direction, which red-green blindness leaves intact. Interpolated in OKLab (Ottosson 2020).
 /// Beyond the scale: the end colours. NaN (unknown): dark grey, which the scale does not contain.
 Rgb deviation_colour(double deviation_um, double scale_um);
 

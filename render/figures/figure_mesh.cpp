@@ -63,7 +63,8 @@ TriMesh surface_grid_mesh(int nu, int nv, std::span<const Vec3> positions, std::
 }
 
 TriMesh revolved_profile(std::span<const Vec2> profile, int segments) {
-  SWARF_CHECK(profile.size() >= 2 && segments >= 3, "a body of revolution needs a profile and three segments");
+  SWARF_CHECK(profile.size() >= 2 && segments >= 3,
+              "a body of revolution needs a profile and three segments");
   TriMesh mesh;
   std::vector<uint32_t> ring_start;
   for (const Vec2& point : profile) {
@@ -71,7 +72,8 @@ TriMesh revolved_profile(std::span<const Vec2> profile, int segments) {
     const int copies = point.x() > 0.0 ? segments : 1;
     for (int k = 0; k < copies; ++k) {
       const double angle = 2.0 * kPi * k / segments;
-      mesh.positions.push_back(to_float({point.x() * std::cos(angle), point.x() * std::sin(angle), point.y()}));
+      mesh.positions.push_back(
+          to_float({point.x() * std::cos(angle), point.x() * std::sin(angle), point.y()}));
     }
   }
   for (size_t i = 0; i + 1 < profile.size(); ++i) {
@@ -92,8 +94,9 @@ TriMesh revolved_profile(std::span<const Vec2> profile, int segments) {
 TriMesh cylinder_mesh(double diameter, double length, double bevel, int segments) {
   const double r = 0.5 * diameter;
   SWARF_CHECK(bevel > 0.0 && bevel < r && 2.0 * bevel < length, "bevel of a cylinder");
-  const std::array<Vec2, 6> profile{Vec2(0, 0),      Vec2(r - bevel, 0),      Vec2(r, bevel),
-                                    Vec2(r, length - bevel), Vec2(r - bevel, length), Vec2(0, length)};
+  const std::array<Vec2, 6> profile{
+      Vec2(0, 0),     Vec2(r - bevel, 0), Vec2(r, bevel), Vec2(r, length - bevel), Vec2(r - bevel, length),
+      Vec2(0, length)};
   return revolved_profile(profile, segments);
 }
 

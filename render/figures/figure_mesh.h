@@ -14,8 +14,8 @@ namespace swarf::render {
 TriMesh surface_grid_mesh(int nu, int nv, std::span<const Vec3> positions, std::span<const Vec3> normals);
 
 /// Revolves a profile of (radius, z) points in mm about +Z; segments >= 3. The profile runs so that the body
-/// lies to its left when z points up and radius to the right: from the bottom centre outwards, up, and back to the
-/// top centre. Normals are smooth where neighbouring profile segments turn by less than 30 degrees.
+/// lies to its left when z points up and radius to the right: from the bottom centre outwards, up, and back
+/// to the top centre. Normals are smooth where neighbouring profile segments turn by less than 30 degrees.
 TriMesh revolved_profile(std::span<const Vec2> profile, int segments);
 
 /// Cylinder from z = 0 to `length` with edges bevelled by `bevel` (0 < bevel < half of both), mm.

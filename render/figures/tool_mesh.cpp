@@ -52,8 +52,8 @@ void add_ring(TriMesh& mesh, double radius, double depth, double turn_rad, doubl
     const double sector = std::floor(static_cast<double>(k) / kSection.size());
     const double angle = turn_rad + (sector + s.turn) * 2.0 * kPi / kFlutes;
     const double r = radius * (1.0 - depth * (1.0 - s.radius));
-    mesh.positions.push_back({static_cast<float>(r * std::cos(angle)), static_cast<float>(r * std::sin(angle)),
-                              static_cast<float>(z)});
+    mesh.positions.push_back({static_cast<float>(r * std::cos(angle)),
+                              static_cast<float>(r * std::sin(angle)), static_cast<float>(z)});
   }
 }
 
@@ -114,15 +114,28 @@ TriMesh holder_mesh(double diameter, double length) {
   SWARF_CHECK(diameter > 0.0 && length > 0.0, "size of the holder");
   const double r = 0.5 * diameter, l = length;
   const double b = std::min(0.03 * diameter, 0.02 * length);
-  const std::array<Vec2, 22> profile{
-      Vec2(0, 0),                   Vec2(0.52 * r - b, 0),        Vec2(0.52 * r, b),
-      Vec2(0.70 * r, 0.07 * l),     Vec2(0.70 * r, 0.24 * l - b), Vec2(0.70 * r - b, 0.24 * l),
-      Vec2(0.60 * r, 0.24 * l),     Vec2(0.60 * r, 0.60 * l),     Vec2(0.64 * r, 0.66 * l),
-      Vec2(0.72 * r, 0.70 * l),     Vec2(r - b, 0.70 * l),        Vec2(r, 0.70 * l + b),
-      Vec2(r, 0.77 * l - b),        Vec2(r - b, 0.77 * l),        Vec2(0.86 * r, 0.80 * l),
-      Vec2(0.86 * r, 0.85 * l),     Vec2(r - b, 0.88 * l),        Vec2(r, 0.88 * l + b),
-      Vec2(r, l - b),               Vec2(r - b, l),               Vec2(0.5 * r, l),
-      Vec2(0, l)};
+  const std::array<Vec2, 22> profile{Vec2(0, 0),
+                                     Vec2(0.52 * r - b, 0),
+                                     Vec2(0.52 * r, b),
+                                     Vec2(0.70 * r, 0.07 * l),
+                                     Vec2(0.70 * r, 0.24 * l - b),
+                                     Vec2(0.70 * r - b, 0.24 * l),
+                                     Vec2(0.60 * r, 0.24 * l),
+                                     Vec2(0.60 * r, 0.60 * l),
+                                     Vec2(0.64 * r, 0.66 * l),
+                                     Vec2(0.72 * r, 0.70 * l),
+                                     Vec2(r - b, 0.70 * l),
+                                     Vec2(r, 0.70 * l + b),
+                                     Vec2(r, 0.77 * l - b),
+                                     Vec2(r - b, 0.77 * l),
+                                     Vec2(0.86 * r, 0.80 * l),
+                                     Vec2(0.86 * r, 0.85 * l),
+                                     Vec2(r - b, 0.88 * l),
+                                     Vec2(r, 0.88 * l + b),
+                                     Vec2(r, l - b),
+                                     Vec2(r - b, l),
+                                     Vec2(0.5 * r, l),
+                                     Vec2(0, l)};
   return revolved_profile(profile, 96);
 }
 

@@ -9,7 +9,8 @@ namespace swarf::render {
 /// right-hand cutting. flute_length < length; the cutting edges reach exactly diameter / 2.
 TriMesh tool_mesh(double diameter, double flute_length, double shank_diameter, double length);
 
-/// A collet chuck: clamping nut, slim body, flange with the gripper groove. Nose centre at the origin, axis +Z.
+/// A collet chuck: clamping nut, slim body, flange with the gripper groove. Nose centre at the origin, axis
+/// +Z.
 TriMesh holder_mesh(double diameter, double length);
 
 }  // namespace swarf::render

@@ -26,8 +26,12 @@ struct Solid {
   std::vector<std::array<uint32_t, 3>> triangles;
 };
 
-Vec3f to_eigen(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
-Vec3f to_eigen(const Rgb& c, float scale) { return scale * Vec3f(c[0], c[1], c[2]); }
+Vec3f to_eigen(const std::array<float, 3>& v) {
+  return {v[0], v[1], v[2]};
+}
+Vec3f to_eigen(const Rgb& c, float scale) {
+  return scale * Vec3f(c[0], c[1], c[2]);
+}
 
 RTCRayHit make_ray(const Vec3f& origin, const Vec3f& direction) {
   RTCRayHit ray{};
@@ -108,14 +112,14 @@ void RayScene::Embree::add_tube(const DrawLine& line, const Vec3& eye, double ra
   if (line.points.size() < 2) return;
   const size_t n = line.points.size();
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE);
-  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
-                                                               RTC_FORMAT_FLOAT4, 4 * sizeof(float), n));
+  auto* vertices = static_cast<float*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 4 * sizeof(float), n));
   for (const Vec3& p : line.points) {
     for (int k = 0; k < 3; ++k) *vertices++ = static_cast<float>(p[k]);
     *vertices++ = static_cast<float>(line.width_px * radius_per_mm * (p - eye).norm());
   }
-  auto* indices = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0,
-                                                                 RTC_FORMAT_UINT, sizeof(uint32_t), n - 1));
+  auto* indices = static_cast<uint32_t*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, sizeof(uint32_t), n - 1));
   for (uint32_t i = 0; i + 1 < n; ++i) *indices++ = i;
   attach(tubes, geometry);
   tube_colours.push_back(to_eigen(line.colour, 1.0F));
@@ -194,6 +198,8 @@ float RayScene::offset() const {
   return embree_->solid_data.empty() ? 0.0F : kOffsetShare * (embree_->upper - embree_->lower).norm();
 }
 
-float RayScene::lowest_z() const { return embree_->solid_data.empty() ? 0.0F : embree_->lower.z(); }
+float RayScene::lowest_z() const {
+  return embree_->solid_data.empty() ? 0.0F : embree_->lower.z();
+}
 
 }  // namespace swarf::render

@@ -42,7 +42,9 @@ double tent(float xi) {
   return xi < 0.5F ? std::sqrt(2.0 * xi) - 1.0 : 1.0 - std::sqrt(2.0 - 2.0 * xi);
 }
 
-Vec3f to_eigen(const Rgb& c) { return {c[0], c[1], c[2]}; }
+Vec3f to_eigen(const Rgb& c) {
+  return {c[0], c[1], c[2]};
+}
 
 struct Shot {
   const StillOptions& options;
@@ -61,10 +63,13 @@ struct Shot {
     for (int s = 0; s < options.samples_per_pixel; ++s) {
       Sampler sampler(noise, x, y, static_cast<uint32_t>(s), options.seed);
       const Eigen::Vector2f xi = sampler.next();
-      const double px = (x + 0.5 + tent(xi.x())) / options.width, py = (y + 0.5 + tent(xi.y())) / options.height;
+      const double px = (x + 0.5 + tent(xi.x())) / options.width,
+                   py = (y + 0.5 + tent(xi.y())) / options.height;
       const auto down = std::clamp(static_cast<float>(py), 0.0F, 1.0F);
-      const Vec3f backdrop = (1.0F - down) * to_eigen(options.backdrop_top) + down * to_eigen(options.backdrop_bottom);
-      const Vec3f light = tracer.radiance(lens.eye.cast<float>(), lens.ray(2.0 * px - 1.0, 1.0 - 2.0 * py), backdrop, sampler);
+      const Vec3f backdrop =
+          (1.0F - down) * to_eigen(options.backdrop_top) + down * to_eigen(options.backdrop_bottom);
+      const Vec3f light = tracer.radiance(lens.eye.cast<float>(), lens.ray(2.0 * px - 1.0, 1.0 - 2.0 * py),
+                                          backdrop, sampler);
       sum += light.cwiseMin(kFirefly);
       empty = empty && light == backdrop;
       ++taken;
@@ -78,7 +83,8 @@ struct Shot {
     for (int y = tile_y * kTile; y < std::min(options.height, (tile_y + 1) * kTile); ++y) {
       for (int x = tile_x * kTile; x < std::min(options.width, (tile_x + 1) * kTile); ++x) {
         const auto value = pixel(x, y);
-        std::copy(value.begin(), value.end(), image.rgba.begin() + 4 * (static_cast<ptrdiff_t>(y) * options.width + x));
+        std::copy(value.begin(), value.end(),
+                  image.rgba.begin() + 4 * (static_cast<ptrdiff_t>(y) * options.width + x));
       }
     }
   }
@@ -95,7 +101,8 @@ Image render_still(const DrawList& list, const StillOptions& options) {
   const Tracer tracer(scene, studio, options);
   static const BlueNoise noise;
   const Shot shot{options, lens, tracer, noise};
-  Image image{options.width, options.height, std::vector<uint8_t>(size_t{4} * options.width * options.height)};
+  Image image{options.width, options.height,
+              std::vector<uint8_t>(size_t{4} * options.width * options.height)};
   const int across = (options.width + kTile - 1) / kTile, down = (options.height + kTile - 1) / kTile;
   parallel_chunks(static_cast<size_t>(across) * down, 1, [&](size_t begin, size_t) {
     shot.tile(static_cast<int>(begin) % across, static_cast<int>(begin) / across, image);

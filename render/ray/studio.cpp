@@ -21,8 +21,8 @@ constexpr float kStripReachRad = 1.30F;
 /// Radiance of floor and walls below the horizon, relative to the sky.
 constexpr float kFloorShare = 0.55F;
 
-/// Upright light panels stand round the subject: their number, half width, and how far up and down they reach.
-/// Below the horizon they are their own reflections in the floor, weaker.
+/// Upright light panels stand round the subject: their number, half width, and how far up and down they
+/// reach. Below the horizon they are their own reflections in the floor, weaker.
 constexpr int kPanels = 5;
 constexpr float kPanelHalfRad = 0.20F, kPanelEdgeRad = 0.06F, kPanelTop = 0.70F, kPanelBottom = -0.85F;
 constexpr float kPanelShare = 0.7F, kPanelMirrored = 0.5F;
@@ -58,7 +58,8 @@ Eigen::Matrix3f frame_about(const Vec3f& n) {
 
 Studio::Studio(const StillOptions& options)
     : key_axis_(options.key_light_direction.normalized().cast<float>()),
-      strip_axis_(Vec3(options.strip_direction.x(), options.strip_direction.y(), 0.0).normalized().cast<float>()),
+      strip_axis_(
+          Vec3(options.strip_direction.x(), options.strip_direction.y(), 0.0).normalized().cast<float>()),
       key_frame_(frame_about(key_axis_)),
       key_cosine_(static_cast<float>(std::cos(options.key_light_radius_rad))),
       key_strength_(static_cast<float>(options.key_light_strength)),
@@ -79,7 +80,8 @@ float Studio::strip_light(const Vec3f& d) const {
   const float along = std::abs(std::atan2(d.dot(strip_axis_), d.z()));
   const float phase = angle / strip_period_;
   const float from_centre = std::abs(phase - std::round(phase));
-  const float edge = 1.0F - smooth_step(0.5F * (kStripShare - kStripEdge), 0.5F * (kStripShare + kStripEdge), from_centre);
+  const float edge =
+      1.0F - smooth_step(0.5F * (kStripShare - kStripEdge), 0.5F * (kStripShare + kStripEdge), from_centre);
   const float reach = smooth_step(kStripReachRad, 0.8F * kStripReachRad, std::max(std::abs(angle), along));
   return strip_strength_ * edge * reach;
 }
@@ -95,10 +97,12 @@ float Studio::surroundings(const Vec3f& d) const {
 float Studio::panel_light(const Vec3f& d) const {
   if (strip_strength_ <= 0.0F || d.z() > kPanelTop || d.z() < kPanelBottom) return 0.0F;
   constexpr float kSector = 2.0F * kPiF / kPanels;
-  const float turn = std::atan2(strip_axis_.x() * d.y() - strip_axis_.y() * d.x(), d.dot(strip_axis_)) / kSector;
+  const float turn =
+      std::atan2(strip_axis_.x() * d.y() - strip_axis_.y() * d.x(), d.dot(strip_axis_)) / kSector;
   // Half a sector off the strips' direction, so that no panel stands behind the end of a strip.
   const float from_centre = std::abs(turn - 0.5F - std::round(turn - 0.5F)) * kSector;
-  const float width = 1.0F - smooth_step(kPanelHalfRad - kPanelEdgeRad, kPanelHalfRad + kPanelEdgeRad, from_centre);
+  const float width =
+      1.0F - smooth_step(kPanelHalfRad - kPanelEdgeRad, kPanelHalfRad + kPanelEdgeRad, from_centre);
   const float top = smooth_step(kPanelTop, kPanelTop - 0.15F, d.z());
   const float bottom = smooth_step(kPanelBottom, kPanelBottom + 0.5F, d.z());
   const float mirrored = d.z() < 0.0F ? kPanelMirrored * bottom : 1.0F;
@@ -118,9 +122,10 @@ Reflection::Reflection(const Hit& hit)
 
 Vec3f Reflection::specular_times_cosine(const Vec3f& out, const Vec3f& in) const {
   const Vec3f half = (out + in).normalized();
-  const float fresnel = std::pow(1.0F - std::clamp(out.dot(half), 0.0F, 1.0F), 5.0F);
-  const float shape = ggx_density(half.z(), alpha) * smith_g1(out.z(), alpha) * smith_g1(in.z(), alpha) /
-                      (4.0F * out.z());
+  const float grazing = 1.0F - std::clamp(out.dot(half), 0.0F, 1.0F), square = grazing * grazing;
+  const float fresnel = square * square * grazing;
+  const float shape =
+      ggx_density(half.z(), alpha) * smith_g1(out.z(), alpha) * smith_g1(in.z(), alpha) / (4.0F * out.z());
   return shape * (specular + fresnel * (Vec3f::Ones() - specular));
 }
 

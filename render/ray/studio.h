@@ -37,7 +37,8 @@ class Studio {
   float sky_, strip_period_, strip_strength_;
 };
 
-/// Reflection of a surface: Lambert under a GGX coat (Walter et al. 2007; Smith shadowing, Schlick's Fresnel).
+/// Reflection of a surface: Lambert under a GGX coat (Walter et al. 2007; Smith shadowing, Schlick's
+/// Fresnel).
 struct Reflection {
   Vec3f diffuse;   ///< albedo of the diffuse part
   Vec3f specular;  ///< reflectance at normal incidence
@@ -46,7 +47,8 @@ struct Reflection {
   explicit Reflection(const Hit& hit);
   /// Specular reflectance times cosine for directions in the frame of the normal (z = normal), both upwards.
   Vec3f specular_times_cosine(const Vec3f& out, const Vec3f& in) const;
-  /// A reflected direction distributed as specular_pdf (visible normals, Heitz 2018); z may be <= 0: no reflection.
+  /// A reflected direction distributed as specular_pdf (visible normals, Heitz 2018); z may be <= 0: no
+  /// reflection.
   Vec3f sample_specular(const Vec3f& out, const Eigen::Vector2f& xi) const;
   float specular_pdf(const Vec3f& out, const Vec3f& in) const;
 };

@@ -26,7 +26,8 @@ Vec3f facing_normal(const Hit& hit, const Vec3f& out) {
 Tracer::Tracer(const RayScene& scene, const Studio& studio, const StillOptions& options)
     : scene_(scene), studio_(studio), floor_(options.floor), floor_z_(scene.lowest_z()) {}
 
-Vec3f Tracer::radiance(const Vec3f& origin, const Vec3f& direction, const Vec3f& backdrop, Sampler& sampler) const {
+Vec3f Tracer::radiance(const Vec3f& origin, const Vec3f& direction, const Vec3f& backdrop,
+                       Sampler& sampler) const {
   if (const auto hit = scene_.nearest(origin, direction, true)) {
     return hit->line ? tube(*hit) : solid(*hit, direction, sampler);
   }
@@ -66,19 +67,21 @@ Vec3f Tracer::solid(const Hit& hit, const Vec3f& direction, Sampler& sampler) co
   if (reflection.diffuse.maxCoeff() > 0.0F) {
     const Vec3f in = frame * sample_cosine(xi);
     const Vec3f start = hit.position + scene_.offset() * hit.face_normal;
-    if (in.dot(hit.face_normal) > 0.0F) light += reflection.diffuse.cwiseProduct(second_hit(start, in, sampler));
+    if (in.dot(hit.face_normal) > 0.0F)
+      light += reflection.diffuse.cwiseProduct(second_hit(start, in, sampler));
   }
   return light;
 }
 
 /// Key light by a sample of its disc; the mirror part shares the work with mirror_light (balance heuristic).
-Vec3f Tracer::key_light(const Hit& hit, const Reflection& reflection, const Eigen::Matrix3f& frame, const Vec3f& out,
-                        Sampler& sampler) const {
+Vec3f Tracer::key_light(const Hit& hit, const Reflection& reflection, const Eigen::Matrix3f& frame,
+                        const Vec3f& out, Sampler& sampler) const {
   const Vec3f to_key = studio_.sample_key(sampler.next());
   const Vec3f in = frame.transpose() * to_key;
   if (in.z() <= 0.0F || !key_visible(hit, to_key)) return Vec3f::Zero();
   const float share = studio_.key_pdf() / (studio_.key_pdf() + reflection.specular_pdf(out, in));
-  const Vec3f scatter = (in.z() / kPiF) * reflection.diffuse + share * reflection.specular_times_cosine(out, in);
+  const Vec3f scatter =
+      (in.z() / kPiF) * reflection.diffuse + share * reflection.specular_times_cosine(out, in);
   return (studio_.key_radiance() / studio_.key_pdf()) * scatter;
 }
 

@@ -18,10 +18,10 @@ class Tracer {
   Vec3f solid(const Hit& hit, const Vec3f& direction, Sampler& sampler) const;
   Vec3f tube(const Hit& hit) const;
   float floor_light(const Vec3f& point, Sampler& sampler) const;
-  Vec3f key_light(const Hit& hit, const Reflection& reflection, const Eigen::Matrix3f& frame, const Vec3f& out,
-                  Sampler& sampler) const;
-  Vec3f mirror_light(const Hit& hit, const Reflection& reflection, const Eigen::Matrix3f& frame, const Vec3f& out,
-                     Sampler& sampler) const;
+  Vec3f key_light(const Hit& hit, const Reflection& reflection, const Eigen::Matrix3f& frame,
+                  const Vec3f& out, Sampler& sampler) const;
+  Vec3f mirror_light(const Hit& hit, const Reflection& reflection, const Eigen::Matrix3f& frame,
+                     const Vec3f& out, Sampler& sampler) const;
   Vec3f second_hit(const Vec3f& origin, const Vec3f& direction, Sampler& sampler) const;
   bool key_visible(const Hit& hit, const Vec3f& direction) const;
 

@@ -1,0 +1,38 @@
+// Binary glTF 2.0 of machines that move and parts that were measured.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "render/draw_list.h"
+
+namespace swarf::render {
+
+/// A mesh that stands or moves. Poses lead from the mesh's frame to its parent's, or to the scene's.
+struct GltfNode {
+  std::string name;
+  const TriMesh* mesh = nullptr;  ///< borrowed; null: a joint without a shape
+  Material material;
+  int parent = -1;              ///< index of an earlier node; -1: the scene
+  std::vector<double> times_s;  ///< strictly ascending; empty for a node that stands still
+  std::vector<Pose> poses;      ///< one for each time, or exactly one (empty: identity) without times
+};
+
+struct GltfScene {
+  std::vector<GltfNode> nodes;
+  std::vector<DrawLine> lines;
+  std::map<std::string, std::string> extras;  ///< written to asset.extras
+  double key_tolerance_mm = 0.02;             ///< how far thinned translations may stray
+  double key_tolerance_rad = 2e-4;            ///< how far thinned rotations may stray
+};
+
+/// Writes one .glb. Scene units are mm with Z up; a root node turns them into glTF's metres with Y up.
+/// Normals and colours are written where the mesh has them, colours as normalised 8-bit linear COLOR_0 (glTF
+/// demands linear), `deviation_um` as the float attribute _DEVIATION_UM. Lines of one colour share one unlit
+/// primitive of separate segments. Written to a temporary name and renamed; throws InputError when the path
+/// cannot be written.
+void write_glb(const std::filesystem::path& path, const GltfScene& scene);
+
+}  // namespace swarf::render
