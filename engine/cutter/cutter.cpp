@@ -2,12 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 namespace swarf::cutter {
 
 std::vector<std::string> validate(const Cutter& c) {
   std::vector<std::string> problems;
   const auto positive = [&](double value, const char* name) {
-    if (!(value > 0.0)) problems.push_back(fmt::format("{} must be above 0 mm, it is {:g}", name, value));
+    if (!(value > 0.0 && std::isfinite(value))) {
+      problems.push_back(fmt::format("{} must be above 0 mm and finite, it is {:g}", name, value));
+    }
   };
   positive(c.diameter_mm, "diameter_mm");
   positive(c.flute_length_mm, "flute_length_mm");
