@@ -19,9 +19,9 @@ enum class Tone { kNeutral, kOk, kWarning, kBad };
 
 /// One line of the scene's [accept] table.
 struct Criterion {
-  std::string name;      ///< "Scallop, highest"
-  std::string measured;  ///< "10.02 um"
-  std::string limit;     ///< "at most 10.5 um"
+  std::string name{};      ///< "Scallop, highest"
+  std::string measured{};  ///< "10.02 um"
+  std::string limit{};     ///< "at most 10.5 um"
   bool holds = true;
 };
 
@@ -33,59 +33,59 @@ struct Verdict {
 
 /// One of the six to eight figures that a reader looks for first.
 struct KeyNumber {
-  std::string label;  ///< "Highest scallop"
-  std::string value;  ///< "10.02"
-  std::string unit;   ///< "µm"; empty for a count
-  std::string hint;   ///< "theory 10.00 µm"; may be empty
+  std::string label{};  ///< "Highest scallop"
+  std::string value{};  ///< "10.02"
+  std::string unit{};   ///< "µm"; empty for a count
+  std::string hint{};   ///< "theory 10.00 µm"; may be empty
   Tone tone = Tone::kNeutral;
 };
 
 struct ReportFinding {
   std::string code;  ///< stable, kebab-case: "gouge"
   Severity severity = Severity::kError;
-  std::string text;      ///< what was found, with units
-  std::string fix;       ///< the smallest change that would help; may be empty
-  SourceLocation where;  ///< the block; file empty: not tied to one
+  std::string text{};      ///< what was found, with units
+  std::string fix{};       ///< the smallest change that would help; may be empty
+  SourceLocation where{};  ///< the block; file empty: not tied to one
   double time_s = std::numeric_limits<double>::quiet_NaN();  ///< program time; NaN: not tied to one
 };
 
 struct Column {
-  std::string title;
-  std::string unit;      ///< shown under the title; empty: none
+  std::string title{};
+  std::string unit{};    ///< shown under the title; empty: none
   bool numeric = false;  ///< right-aligned, figures of equal width
 };
 
 struct Table {
-  std::string title;
-  std::string intro;  ///< a sentence above the table; may be empty
+  std::string title{};
+  std::string intro{};  ///< a sentence above the table; may be empty
   std::vector<Column> columns;
   std::vector<std::vector<std::string>> rows;  ///< each as long as `columns`
-  std::vector<std::string> notes;              ///< below the table
+  std::vector<std::string> notes{};            ///< below the table
   int highlighted_row = -1;                    ///< the one that this run used; -1: none
 };
 
 /// A printed figure of the paper beside ours.
 struct PaperRow {
-  std::string quantity;  ///< "Chord error, 52 segments"
-  std::string place;     ///< "Eq. (8), Fig. 6"
-  std::string paper;     ///< "1"
-  std::string ours;      ///< "1.0947"
-  std::string unit;      ///< "µm"
-  std::string erratum;   ///< "E6"; empty: they agree
-  std::string why;       ///< what explains the difference
+  std::string quantity;   ///< "Chord error, 52 segments"
+  std::string place;      ///< "Eq. (8), Fig. 6"
+  std::string paper;      ///< "1"
+  std::string ours;       ///< "1.0947"
+  std::string unit{};     ///< "µm"
+  std::string erratum{};  ///< "E6"; empty: they agree
+  std::string why{};      ///< what explains the difference
 };
 
 /// What was checked, and what was not, with the reason.
 struct Check {
   enum class State { kHolds, kFails, kNotChecked };
-  std::string what;    ///< "Forward of inverse, all ticks"
-  std::string result;  ///< "largest 3.1e-13 mm, limit 1e-9 mm"
-  std::string reason;  ///< needed for kNotChecked
+  std::string what;      ///< "Forward of inverse, all ticks"
+  std::string result{};  ///< "largest 3.1e-13 mm, limit 1e-9 mm"
+  std::string reason{};  ///< needed for kNotChecked
   State state = State::kHolds;
 };
 
 struct Series {
-  std::string name;
+  std::string name{};
   std::vector<std::array<double, 2>> points;  ///< (x, y); a NaN breaks the line
 };
 
@@ -97,30 +97,30 @@ struct Bar {
 /// A limit or a theoretical value, drawn across the plot.
 struct LimitLine {
   double value = 0.0;
-  std::string label;
+  std::string label{};
   bool vertical = false;  ///< true: at x = value
 };
 
 /// Lines, or a histogram when `bars` is filled.
 struct Plot {
-  std::string title;
-  std::string caption;  ///< may be empty
-  std::string x_label, x_unit, y_label, y_unit;
-  std::vector<Series> series;
-  std::vector<Bar> bars;
-  std::vector<LimitLine> limits;
+  std::string title{};
+  std::string caption{};  ///< may be empty
+  std::string x_label{}, x_unit{}, y_label{}, y_unit{};
+  std::vector<Series> series{};
+  std::vector<Bar> bars{};
+  std::vector<LimitLine> limits{};
   bool y_from_zero = false;  ///< the y axis includes 0; always so for bars
 };
 
 struct Still {
   std::string png_path;
-  std::string caption;
+  std::string caption{};
 };
 
 /// The colours of deviation on the part: stops at equal distances from low to high.
 struct ColourBar {
-  std::string title;  ///< "Deviation from the design"
-  std::string unit;
+  std::string title{};  ///< "Deviation from the design"
+  std::string unit{};
   double low = 0.0, high = 0.0;
   std::vector<std::array<uint8_t, 3>> stops;  ///< sRGB; empty: no legend
 };
@@ -134,19 +134,19 @@ struct Viewer3d {
 };
 
 struct Fact {
-  std::string name;
-  std::string value;
+  std::string name{};
+  std::string value{};
 };
 
 /// "Program", "Machine", "Tool", "Build": what a run was made of. No dates, no host names: equal runs must
 /// give equal files.
 struct FactGroup {
-  std::string title;
-  std::vector<Fact> facts;
+  std::string title{};
+  std::vector<Fact> facts{};
 };
 
 struct ReportData {
-  std::string title;
+  std::string title{};
   std::string subtitle;
   Verdict verdict;
   std::vector<KeyNumber> key_numbers;
@@ -163,7 +163,7 @@ struct ReportData {
   std::string paper_title;  ///< "Lin & Koren (1996)"
   std::vector<Check> checks;
   std::vector<std::string> reproduce;  ///< shell commands
-  std::vector<FactGroup> facts;
+  std::vector<FactGroup> facts{};
 };
 
 }  // namespace swarf::reports

@@ -1,0 +1,327 @@
+#include "reports/page_sections.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/check.h"
+#include "reports/html.h"
+#include "reports/svg_plot.h"
+
+namespace swarf::reports {
+namespace {
+
+/// More would bury the page; findings.json has them all, and the page says so.
+constexpr size_t kFindingsShown = 200;
+
+std::string symbol(const char* name) {
+  return fmt::format(R"(<svg class="symbol {}" aria-hidden="true"><use href="#symbol-{}"/></svg>)", name,
+                     name);
+}
+
+/// An element around escaped text; nothing for empty text.
+std::string element(const char* tag, const char* css_class, const std::string& text) {
+  if (text.empty()) return "";
+  const std::string attribute = *css_class == '\0' ? "" : fmt::format(R"( class="{}")", css_class);
+  return fmt::format("<{}{}>{}</{}>", tag, attribute, escape(text), tag);
+}
+
+std::string section(const char* id, const std::string& title, const std::string& body) {
+  return fmt::format(R"(<section id="{}" aria-labelledby="{}-title"><h2 id="{}-title">{}</h2>{}</section>)",
+                     id, id, id, escape(title), body);
+}
+
+const char* tone_class(Tone tone) {
+  switch (tone) {
+    case Tone::kOk:
+      return "ok";
+    case Tone::kWarning:
+      return "warning";
+    case Tone::kBad:
+      return "bad";
+    case Tone::kNeutral:
+      break;
+  }
+  return "neutral";
+}
+
+std::string headline_of(const Verdict& verdict) {
+  if (!verdict.headline.empty()) return verdict.headline;
+  const size_t all = verdict.criteria.size();
+  const auto held = std::ranges::count_if(verdict.criteria, &Criterion::holds);
+  if (all == 0) return verdict.pass ? "Nothing was found." : "The scene states no limits; see the findings.";
+  if (verdict.pass) return fmt::format("Every one of the {} limits of the scene holds.", all);
+  return fmt::format("{} of the {} limits of the scene hold.", held, all);
+}
+
+std::string criteria_list(const std::vector<Criterion>& criteria) {
+  if (criteria.empty()) return "";
+  std::string out = "<ul class=\"criteria\">";
+  for (const Criterion& criterion : criteria) {
+    out += fmt::format(R"(<li>{}<span class="criterion">{}<span class="unseen">: {}</span></span>)",
+                       symbol(criterion.holds ? "ok" : "bad"), escape(criterion.name),
+                       criterion.holds ? "holds" : "does not hold");
+    out += element("b", "", criterion.measured) + element("span", "limit", criterion.limit) + "</li>";
+  }
+  return out + "</ul>";
+}
+
+std::string key_number(const KeyNumber& number) {
+  return fmt::format(R"(<div class="key {}"><dt>{}</dt><dd><b>{}</b>{}{}</dd></div>)",
+                     tone_class(number.tone), escape(number.label), escape(number.value),
+                     element("span", "unit", number.unit), element("small", "", number.hint));
+}
+
+std::string place_of(const ReportFinding& finding) {
+  std::string out;
+  if (!finding.where.file.empty()) {
+    out = finding.where.file;
+    if (finding.where.line > 0) out += fmt::format(":{}", finding.where.line);
+    if (finding.where.column > 0) out += fmt::format(":{}", finding.where.column);
+  }
+  return out;
+}
+
+std::string finding_row(const ReportFinding& finding) {
+  struct Look {
+    const char *symbol, *word;
+  };
+  static constexpr Look kLooks[] = {{"none", "Note"}, {"warning", "Warning"}, {"bad", "Error"}};
+  const Look& look = kLooks[static_cast<int>(finding.severity)];
+  const std::string time = std::isfinite(finding.time_s) ? fmt::format("{:.3f}", finding.time_s) : "–";
+  return fmt::format(R"(<tr><td class="nowrap">{}{}</td><td><code>{}</code></td><td class="prose">{}{}</td>)"
+                     R"(<td><code>{}</code></td><td class="number">{}</td></tr>)",
+                     symbol(look.symbol), look.word, escape(finding.code), escape(finding.text),
+                     element("span", "fix", finding.fix), escape(place_of(finding)), time);
+}
+
+std::string table_open(const std::vector<Column>& columns, const std::string& caption) {
+  std::string out = R"(<div class="scroll" tabindex="0" role="region" aria-label=")" + escape(caption) +
+                    R"("><table><caption class="unseen">)" + escape(caption) + "</caption><thead><tr>";
+  for (const Column& column : columns) {
+    out += fmt::format(R"(<th scope="col"{}>{}{}</th>)", column.numeric ? R"( class="number")" : "",
+                       escape(column.title), element("span", "unit", column.unit));
+  }
+  return out + "</tr></thead><tbody>";
+}
+
+constexpr const char* kTableClose = "</tbody></table></div>";
+
+std::string table_html(const Table& table) {
+  std::string out = "<article class=\"table\"><h3>" + escape(table.title) + "</h3>";
+  out += element("p", "intro", table.intro) + table_open(table.columns, table.title);
+  for (size_t r = 0; r < table.rows.size(); ++r) {
+    SWARF_CHECK(table.rows[r].size() == table.columns.size(),
+                "a row of \"" + table.title + "\" is not whole");
+    out += static_cast<int>(r) == table.highlighted_row ? "<tr class=\"used\">" : "<tr>";
+    for (size_t c = 0; c < table.columns.size(); ++c) {
+      const char* tag = c == 0 ? "th scope=\"row\"" : "td";
+      out += fmt::format("<{}{}>{}</{}>", tag, table.columns[c].numeric ? R"( class="number")" : "",
+                         escape(table.rows[r][c]), c == 0 ? "th" : "td");
+    }
+    out += "</tr>";
+  }
+  out += kTableClose;
+  for (const std::string& note : table.notes) out += element("p", "note", note);
+  return out + "</article>";
+}
+
+std::string colour_bar(const ColourBar& bar) {
+  if (bar.stops.empty()) return "";
+  std::string gradient;
+  for (const auto& [r, g, b] : bar.stops) gradient += fmt::format(",rgb({} {} {})", r, g, b);
+  const Ticks ticks = round_ticks(bar.low, bar.high, 4);
+  std::string out = fmt::format(
+      R"(<figure class="colour-bar" data-tab="part"><figcaption>{} <span class="unit">{}</span></figcaption>)"
+      R"html(<div class="ramp" style="background:linear-gradient(90deg{})"></div>)html"
+      R"html(<div class="ramp-ticks">)html",
+      escape(bar.title), escape(bar.unit), gradient);
+  for (const double tick : ticks.values) {
+    const double percent = 100.0 * (tick - bar.low) / (bar.high - bar.low);
+    constexpr double kSlackPercent = 1e-6;  // rounding of k * step only
+    if (percent < -kSlackPercent || percent > 100.0 + kSlackPercent) continue;
+    out += fmt::format(R"(<span style="left:{:.2f}%">{}</span>)", percent, tick_text(tick, ticks.step));
+  }
+  return out + "</div></figure>";
+}
+
+std::string embedded_glb(const char* id, const std::string& path) {
+  if (path.empty()) return "";
+  return fmt::format(R"(<script type="application/octet-stream" id="{}">{}</script>)", id,
+                     base64(read_file(path)));
+}
+
+std::string legend(const Plot& plot) {
+  if (plot.series.size() < 2) return "";
+  std::string out = "<ul class=\"legend\">";
+  for (size_t i = 0; i < plot.series.size(); ++i) {
+    out +=
+        fmt::format(R"(<li><svg viewBox="0 0 24 8" aria-hidden="true"><path class="series s{}" d="M1 4H23"/>)"
+                    R"(</svg>{}</li>)",
+                    i % 6, escape(plot.series[i].name));
+  }
+  return out + "</ul>";
+}
+
+}  // namespace
+
+std::string symbol_sprite() {
+  return R"(<svg class="sprite" aria-hidden="true"><symbol id="symbol-ok" viewBox="0 0 20 20">)"
+         R"(<circle cx="10" cy="10" r="9"/><path d="M5.8 10.4l2.9 2.9 5.6-6.2"/></symbol>)"
+         R"(<symbol id="symbol-bad" viewBox="0 0 20 20"><circle cx="10" cy="10" r="9"/>)"
+         R"(<path d="M6.7 6.7l6.6 6.6m0-6.6l-6.6 6.6"/></symbol><symbol id="symbol-warning")"
+         R"( viewBox="0 0 20 20"><path class="body" d="M10 1.5L19 18H1z"/>)"
+         R"(<path d="M10 7.5v5m0 2.3v.4"/></symbol><symbol id="symbol-none" viewBox="0 0 20 20">)"
+         R"(<circle cx="10" cy="10" r="9"/><path d="M6 10h8"/></symbol></svg>)";
+}
+
+std::string verdict_header(const ReportData& data) {
+  const char* kind = data.verdict.pass ? "ok" : "bad";
+  std::string out = fmt::format(
+      R"(<header class="{}"><div class="wrap"><p class="brand">Swarf simulation report</p>)", kind);
+  out += element("h1", "", data.title) + element("p", "subtitle", data.subtitle);
+  out +=
+      fmt::format(R"(<div class="verdict" role="status">{}<p><b>{}</b><span>{}</span></p></div>)",
+                  symbol(kind), data.verdict.pass ? "Pass" : "Findings", escape(headline_of(data.verdict)));
+  return out + criteria_list(data.verdict.criteria) + "</div></header>";
+}
+
+std::string overview_section(const ReportData& data) {
+  if (data.hero_png.empty() && data.key_numbers.empty()) return "";
+  std::string out = fmt::format(R"(<div class="overview{}">)", data.hero_png.empty() ? " no-hero" : "");
+  if (!data.hero_png.empty()) {
+    out += "<figure class=\"hero\">" + embedded_png(data.hero_png, data.hero_caption) +
+           element("figcaption", "", data.hero_caption) + "</figure>";
+  }
+  out += "<dl class=\"keys\">";
+  for (const KeyNumber& number : data.key_numbers) out += key_number(number);
+  return section("overview", "Key numbers", out + "</dl></div>");
+}
+
+std::string findings_section(const std::vector<ReportFinding>& findings) {
+  if (findings.empty()) {
+    return section("findings", "Findings",
+                   R"(<p class="nothing">)" + symbol("ok") +
+                       R"(<span>None, in what was checked. <a href="#checks">)"
+                       R"(What was checked, and what was not</a></span></p>)");
+  }
+  std::string out =
+      table_open({{"Severity"}, {"Code"}, {"What was found"}, {"Block"}, {"Time", "s", true}}, "Findings");
+  const size_t shown = std::min(findings.size(), kFindingsShown);
+  for (size_t i = 0; i < shown; ++i) out += finding_row(findings[i]);
+  out += kTableClose;
+  if (shown < findings.size()) {
+    out += fmt::format(R"(<p class="note">The first {} of {}; findings.json has them all.</p>)", shown,
+                       findings.size());
+  }
+  return section("findings", fmt::format("Findings ({})", findings.size()), out);
+}
+
+std::string viewer_section(const Viewer3d& viewer) {
+  if (viewer.part_glb.empty() && viewer.machine_glb.empty()) return "";
+  std::string out =
+      fmt::format(R"(<div id="viewer" data-time-scale="{:.9g}" data-unit="{}"><p class="fallback">)"
+                  R"(The 3D view needs JavaScript and WebGL. The stills below show the same part.</p></div>)",
+                  viewer.program_seconds_per_animation_second, escape(viewer.colour_bar.unit));
+  out += viewer.part_glb.empty() ? "" : colour_bar(viewer.colour_bar);
+  out += embedded_glb("part-glb", viewer.part_glb) + embedded_glb("machine-glb", viewer.machine_glb);
+  return section("view", "3D view", out);
+}
+
+std::string movie_section(const ReportData& data) {
+  if (data.movie_mp4.empty()) return "";
+  return section(
+      "movie", "Movie",
+      fmt::format(R"(<figure class="movie"><video controls playsinline preload="metadata" aria-label="{}")"
+                  R"( src="data:video/mp4;base64,{}"></video>{}</figure>)",
+                  escape(data.movie_caption), base64(read_file(data.movie_mp4)),
+                  element("figcaption", "", data.movie_caption)));
+}
+
+std::string stills_section(const std::vector<Still>& stills) {
+  if (stills.empty()) return "";
+  std::string out = "<div class=\"stills\">";
+  for (const Still& still : stills) {
+    out += "<figure>" + embedded_png(still.png_path, still.caption) +
+           element("figcaption", "", still.caption) + "</figure>";
+  }
+  return section("stills", "Stills", out + "</div>");
+}
+
+std::string plots_section(const std::vector<Plot>& plots) {
+  if (plots.empty()) return "";
+  std::string out = "<div class=\"plots\">";
+  for (const Plot& plot : plots) {
+    out += "<figure class=\"plot-card\"><h3>" + escape(plot.title) + "</h3>" + legend(plot) + plot_svg(plot) +
+           element("figcaption", "", plot.caption) + "</figure>";
+  }
+  return section("plots", "Plots", out + "</div>");
+}
+
+std::string tables_section(const std::vector<Table>& tables) {
+  if (tables.empty()) return "";
+  std::string out;
+  for (const Table& table : tables) out += table_html(table);
+  return section("tables", "Tables", out);
+}
+
+std::string paper_section(const ReportData& data) {
+  if (data.paper.empty()) return "";
+  std::string out = table_open({{"Quantity"},
+                                {"Where"},
+                                {"Paper", "", true},
+                                {"Ours", "", true},
+                                {"Unit"},
+                                {"Erratum"},
+                                {"Why they differ"}},
+                               "Paper against ours");
+  for (const PaperRow& row : data.paper) {
+    const std::string erratum = row.erratum.empty() ? "–" : element("span", "erratum", row.erratum);
+    out +=
+        fmt::format(R"(<tr><th scope="row">{}</th><td>{}</td><td class="number">{}</td><td class="number">)"
+                    R"({}</td><td>{}</td><td>{}</td><td class="prose">{}</td></tr>)",
+                    escape(row.quantity), escape(row.place), escape(row.paper), escape(row.ours),
+                    escape(row.unit), erratum, escape(row.why));
+  }
+  const std::string title = data.paper_title.empty() ? "" : ": " + data.paper_title;
+  return section("paper", "Paper against ours" + title, out + kTableClose);
+}
+
+std::string checks_section(const std::vector<Check>& checks) {
+  if (checks.empty()) return "";
+  struct Look {
+    const char *symbol, *word;
+  };
+  static constexpr Look kLooks[] = {{"ok", "Holds"}, {"bad", "Fails"}, {"none", "Not checked"}};
+  std::string out = table_open({{"State"}, {"Check"}, {"Result or reason"}}, "What was checked");
+  for (const Check& check : checks) {
+    const Look& look = kLooks[static_cast<int>(check.state)];
+    out += fmt::format(
+        R"(<tr><td class="nowrap">{}{}</td><th scope="row">{}</th><td class="prose">{}{}</td></tr>)",
+        symbol(look.symbol), look.word, escape(check.what), escape(check.result),
+        element("span", "fix", check.reason));
+  }
+  return section("checks", "What was checked, and what was not", out + kTableClose);
+}
+
+std::string reproduce_section(const ReportData& data) {
+  std::string out;
+  if (!data.reproduce.empty()) {
+    out += R"(<pre tabindex="0"><code>)";
+    for (const std::string& command : data.reproduce) out += escape(command) + "\n";
+    out += "</code></pre>";
+  }
+  if (!data.facts.empty()) out += "<div class=\"facts\">";
+  for (const FactGroup& group : data.facts) {
+    out += "<div><h3>" + escape(group.title) + "</h3><dl>";
+    for (const Fact& fact : group.facts) {
+      out += "<dt>" + escape(fact.name) + "</dt><dd>" + escape(fact.value) + "</dd>";
+    }
+    out += "</dl></div>";
+  }
+  if (!data.facts.empty()) out += "</div>";
+  return out.empty() ? "" : section("reproduce", "How to reproduce this", out);
+}
+
+}  // namespace swarf::reports

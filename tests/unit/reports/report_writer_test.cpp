@@ -1,0 +1,153 @@
+#include "reports/report_writer.h"
+
+#include <gtest/gtest.h>
+
+#include <regex>
+
+#include "base/diagnostics.h"
+#include "reports/html.h"
+#include "temporary_folder.h"
+
+namespace swarf::reports {
+namespace {
+
+/// The smallest PNG there is: one grey pixel.
+std::string tiny_png() {
+  return std::string(
+      "\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR\0\0\0\x01\0\0\0\x01\x08\0\0\0\0\x3a\x7e\x9b\x55\0\0\0\x0aIDAT\x78\x9c"
+      "\x63\x68\0\0"
+      "\0\x82\0\x81\x77\xcd\x72\xb6\0\0\0\0IEND\xae\x42\x60\x82",
+      67);
+}
+
+/// Something in every section, with markup in every kind of text.
+ReportData sample(const TemporaryFolder& folder) {
+  ReportData data;
+  data.title = "Dome <script>alert(1)</script>";
+  data.subtitle = "D10 & \"flat\"";
+  data.verdict = {
+      false, "", {{"Scallop <max>", "11 µm", "at most 10.5 µm", false}, {"Gouge", "0 µm", "1 µm"}}};
+  data.key_numbers = {{"Scallop", "11", "µm", "<hint>", Tone::kBad}};
+  data.findings = {{"scallop", Severity::kError, "too high <b>", "step over less", {"dome.nc", 11, 0}, 12.5}};
+  data.hero_png = folder.write("hero.png", tiny_png());
+  data.hero_caption = "The part";
+  data.viewer.part_glb = folder.write("part.glb", "glTF-part");
+  data.viewer.machine_glb = folder.write("machine.glb", "glTF-machine");
+  data.viewer.colour_bar = {"Deviation", "µm", -10, 10, {{{0, 0, 255}}, {{255, 255, 255}}, {{255, 0, 0}}}};
+  data.movie_mp4 = folder.write("movie.mp4", "movie bytes");
+  data.stills = {{data.hero_png, "From above"}};
+  data.plots = {{"Feed", "", "Time", "s", "Feed", "mm/min", {{"feed", {{0, 0}, {1, 3000}}}}, {}, {}}};
+  data.tables = {
+      {"Planners", "", {{"Planner"}, {"Passes", "", true}}, {{"constant <scallop>", "29"}}, {"note"}, 0}};
+  data.paper = {{"Segments", "Eq. (8)", "52", "55", "", "E6", "1 µm needs 55"}};
+  data.checks = {{"Gouge", "0.01 µm", "", Check::State::kHolds},
+                 {"Holder", "", "the scene has no holder", Check::State::kNotChecked}};
+  data.reproduce = {"swarf run scene.toml --set 'a=<b>'"};
+  data.facts = {{"Program", {{"File", "dome.nc"}}}};
+  return data;
+}
+
+/// The page without the code in its scripts, where words such as "src=" mean something else.
+std::string without_scripts(const std::string& page) {
+  std::string out;
+  for (size_t at = 0; at < page.size();) {
+    const size_t script = page.find("<script", at);
+    out += page.substr(at, script - at);
+    if (script == std::string::npos) break;
+    at = page.find("</script>", script) + 9;
+  }
+  return out;
+}
+
+TEST(ReportWriter, LoadsNothingFromAnywhere) {
+  const TemporaryFolder folder("swarf_report_self");
+  const std::string page = without_scripts(render_report(sample(folder)));
+  const std::regex load(R"re((src|href|poster|srcset|data)\s*=\s*["']?([^"'\s>]{0,12}))re");
+  int found = 0;
+  for (std::sregex_iterator it(page.begin(), page.end(), load), end; it != end; ++it, ++found) {
+    const std::string target = (*it)[2];
+    EXPECT_TRUE(target.starts_with("data:") || target.starts_with("#")) << it->str();
+  }
+  EXPECT_GT(found, 10);
+  for (const char* word : {"http:", "https:", "url(", "@import", "<link rel=\"stylesheet", "<iframe"}) {
+    EXPECT_EQ(page.find(word), std::string::npos) << word;
+  }
+  EXPECT_NE(page.find("default-src 'none'"), std::string::npos);
+}
+
+TEST(ReportWriter, TextNeverBecomesMarkup) {
+  const TemporaryFolder folder("swarf_report_escape");
+  const std::string page = render_report(sample(folder));
+  for (const char* text : {"<script>alert", "<max>", "<hint>", "high <b>", "<scallop>", "a=<b>"}) {
+    EXPECT_EQ(page.find(text), std::string::npos) << text;
+  }
+  EXPECT_NE(page.find("Dome &lt;script&gt;alert(1)&lt;/script&gt;"), std::string::npos);
+}
+
+TEST(ReportWriter, CarriesItsFilesInside) {
+  const TemporaryFolder folder("swarf_report_files");
+  const std::string page = render_report(sample(folder));
+  EXPECT_NE(page.find("id=\"part-glb\">" + base64("glTF-part") + "</script>"), std::string::npos);
+  EXPECT_NE(page.find("id=\"machine-glb\">" + base64("glTF-machine") + "</script>"), std::string::npos);
+  EXPECT_NE(page.find("data:video/mp4;base64," + base64("movie bytes")), std::string::npos);
+  EXPECT_NE(page.find("data:image/png;base64," + base64(tiny_png())), std::string::npos);
+  EXPECT_NE(page.find("width=\"1\" height=\"1\" alt=\"From above\""), std::string::npos);
+  EXPECT_GT(page.size(), 500000U) << "the viewer is missing";
+}
+
+TEST(ReportWriter, SaysWhatHoldsAndWhatWasNotChecked) {
+  const TemporaryFolder folder("swarf_report_words");
+  const std::string page = render_report(sample(folder));
+  for (const char* text : {"<b>Findings</b>", "1 of the 2 limits of the scene hold.", "Not checked",
+                           "the scene has no holder", "dome.nc:11", "12.500", ">E6<"}) {
+    EXPECT_NE(page.find(text), std::string::npos) << text;
+  }
+}
+
+TEST(ReportWriter, EmptySectionsAreLeftOut) {
+  ReportData data;
+  data.title = "Bare";
+  data.verdict.pass = true;
+  const std::string page = render_report(data);
+  for (const char* id : {"id=\"movie\"", "id=\"plots\"", "id=\"view\"", "id=\"stills\"", "href=\"#paper\""}) {
+    EXPECT_EQ(page.find(id), std::string::npos) << id;
+  }
+  EXPECT_LT(page.size(), 60000U) << "a page without a 3D view needs no viewer";
+}
+
+TEST(ReportWriter, EqualDataGiveEqualFilesAndNoLeftovers) {
+  const TemporaryFolder folder("swarf_report_equal");
+  const ReportData data = sample(folder);
+  const std::string a = folder.file("a.html"), b = folder.file("b.html");
+  write_report(a, data);
+  write_report(b, data);
+  write_report(b, data);  // over the one that is there
+  EXPECT_EQ(read_file(a), read_file(b));
+  for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
+    EXPECT_NE(entry.path().extension(), ".partial");
+  }
+}
+
+TEST(ReportWriter, MissingPictureIsAnErrorAndLeavesTheLastReport) {
+  const TemporaryFolder folder("swarf_report_missing");
+  ReportData data = sample(folder);
+  const std::string path = folder.write("report.html", "the last good one");
+  data.stills.push_back({folder.file("none.png"), "not there"});
+  EXPECT_THROW(write_report(path, data), InputError);
+  EXPECT_EQ(read_file(path), "the last good one");
+}
+
+TEST(ReportWriter, FolderThatDoesNotExistIsNamed) {
+  ReportData data;
+  data.title = "Nowhere";
+  try {
+    write_report("/no-such-folder/report.html", data);
+    FAIL() << "was written";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.diagnostics.list()[0].code, "output-unwritable");
+    EXPECT_EQ(error.diagnostics.list()[0].where.file, "/no-such-folder/report.html");
+  }
+}
+
+}  // namespace
+}  // namespace swarf::reports
