@@ -21,7 +21,8 @@ struct Lens {
   Lens(const Camera& camera, int width, int height) : eye(camera.eye) {
     forward = (camera.target - camera.eye).normalized();
     const Vec3 side = forward.cross(camera.up);
-    SWARF_CHECK(side.norm() > 0.0, "the camera looks along its own up direction");
+    constexpr double kParallel = 1e-9;  // sine of an angle that leaves no direction to the right
+    SWARF_CHECK(side.norm() > kParallel * camera.up.norm(), "the camera looks along its own up direction");
     const double half = std::tan(0.5 * camera.vertical_fov_rad);
     right = side.normalized() * (half * width / height);
     up = side.normalized().cross(forward) * half;

@@ -131,7 +131,12 @@ Vec3f Reflection::specular_times_cosine(const Vec3f& out, const Vec3f& in) const
 
 Vec3f Reflection::sample_specular(const Vec3f& out, const Eigen::Vector2f& xi) const {
   const Vec3f stretched = Vec3f(alpha * out.x(), alpha * out.y(), out.z()).normalized();
-  const Eigen::Matrix3f frame = frame_about(stretched);
+  // The half disc below is folded along the first tangent, which therefore must lie in the surface.
+  const float level = std::hypot(stretched.x(), stretched.y());
+  const Vec3f first =
+      level > 0.0F ? Vec3f(-stretched.y() / level, stretched.x() / level, 0.0F) : Vec3f::UnitX();
+  Eigen::Matrix3f frame;
+  frame << first, stretched.cross(first), stretched;
   const float r = std::sqrt(xi.x()), angle = 2.0F * kPiF * xi.y();
   const float x = r * std::cos(angle), s = 0.5F * (1.0F + stretched.z());
   const float y = (1.0F - s) * std::sqrt(1.0F - x * x) + s * r * std::sin(angle);
