@@ -27,6 +27,16 @@ std::string element(const char* tag, const char* css_class, const std::string& t
   return fmt::format("<{}{}>{}</{}>", tag, attribute, escape(text), tag);
 }
 
+/// Long paths may wrap after a slash. `text` is escaped already.
+std::string breakable(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    out += c;
+    if (c == '/') out += "<wbr>";
+  }
+  return out;
+}
+
 std::string section(const char* id, const std::string& title, const std::string& body) {
   return fmt::format(R"(<section id="{}" aria-labelledby="{}-title"><h2 id="{}-title">{}</h2>{}</section>)",
                      id, id, id, escape(title), body);
@@ -277,12 +287,13 @@ std::string paper_section(const ReportData& data) {
                                 {"Why they differ"}},
                                "Paper against ours");
   for (const PaperRow& row : data.paper) {
+    const bool agrees = row.erratum.empty() && row.why.empty();
     const std::string erratum = row.erratum.empty() ? "–" : element("span", "erratum", row.erratum);
-    out +=
-        fmt::format(R"(<tr><th scope="row">{}</th><td>{}</td><td class="number">{}</td><td class="number">)"
-                    R"({}</td><td>{}</td><td>{}</td><td class="prose">{}</td></tr>)",
-                    escape(row.quantity), escape(row.place), escape(row.paper), escape(row.ours),
-                    escape(row.unit), erratum, escape(row.why));
+    out += fmt::format(
+        R"(<tr><th scope="row">{}</th><td>{}</td><td class="number">{}</td><td class="number">)"
+        R"({}</td><td>{}</td><td>{}</td><td class="prose">{}</td></tr>)",
+        escape(row.quantity), escape(row.place), escape(row.paper), escape(row.ours), escape(row.unit),
+        erratum, agrees ? element("span", "unit", "they agree") : escape(row.why));
   }
   const std::string title = data.paper_title.empty() ? "" : ": " + data.paper_title;
   return section("paper", "Paper against ours" + title, out + kTableClose);
@@ -316,7 +327,7 @@ std::string reproduce_section(const ReportData& data) {
   for (const FactGroup& group : data.facts) {
     out += "<div><h3>" + escape(group.title) + "</h3><dl>";
     for (const Fact& fact : group.facts) {
-      out += "<dt>" + escape(fact.name) + "</dt><dd>" + escape(fact.value) + "</dd>";
+      out += "<dt>" + escape(fact.name) + "</dt><dd>" + breakable(escape(fact.value)) + "</dd>";
     }
     out += "</dl></div>";
   }

@@ -21,6 +21,9 @@ constexpr double kTickCharWidth = 7.2;  ///< of the 12-unit type that the style 
 constexpr int kColumns = 800;           ///< finer than a screen shows at this width
 constexpr int kSeriesColours = 6;       ///< in the style sheet
 
+/// Relative width below which a range counts as one value: no tick could show it with readable digits.
+constexpr double kNoWidth = 1e-9;
+
 struct Range {
   double low = std::numeric_limits<double>::infinity();
   double high = -std::numeric_limits<double>::infinity();
@@ -60,7 +63,8 @@ Axis make_axis(Range range, int wanted, bool to_ticks) {
   if (range.empty()) range = {0.0, 1.0};
   Axis axis{range, round_ticks(range.low, range.high, wanted)};
   axis.exponent = exponent_of(range);
-  if (to_ticks || range.low == range.high) {
+  const double size = std::max(std::abs(range.low), std::abs(range.high));
+  if (to_ticks || range.high - range.low <= kNoWidth * size) {
     axis.range = {axis.ticks.values.front(), axis.ticks.values.back()};
   } else {
     std::erase_if(axis.ticks.values, [&](double tick) {
@@ -72,7 +76,8 @@ Axis make_axis(Range range, int wanted, bool to_ticks) {
 }
 
 std::string superscript(int number) {
-  static constexpr std::string_view kDigits[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+  static constexpr std::string_view kDigits[] = {"⁰", "¹", "²", "³", "⁴",  //
+                                                 "⁵", "⁶", "⁷", "⁸", "⁹"};
   std::string out = number < 0 ? "⁻" : "";
   for (const char c : std::to_string(std::abs(number))) out += kDigits[c - '0'];
   return out;
@@ -210,10 +215,9 @@ std::string limit_lines(const Plot& plot, const Axis& x, const Axis& y) {
       label_y += 16.0;
     } else {
       const double at = y.pixel(limit.value);
-      const double label_at = at > kTop + 18.0 ? at - 5.0 : at + 14.0;
       out += fmt::format(
           R"(<path d="M{:.1f} {:.1f}H{:.1f}"/><text x="{:.1f}" y="{:.1f}" text-anchor="end">{}</text>)",
-          x.pixel_low, at, x.pixel_high, x.pixel_high - 2.0, label_at, escape(limit.label));
+          x.pixel_low, at, x.pixel_high, x.pixel_high - 2.0, at - 5.0, escape(limit.label));
     }
   }
   return plot.limits.empty() ? out : out + "</g>";
@@ -267,10 +271,11 @@ class ColumnThinner {
 }  // namespace
 
 Ticks round_ticks(double low, double high, int wanted) {
-  if (low == high) {
-    const double half = low == 0.0 ? 0.5 : std::abs(low) / 2;
-    low -= half;
-    high += half;
+  const double size = std::max(std::abs(low), std::abs(high));
+  if (high - low <= kNoWidth * size) {
+    const double middle = low + (high - low) / 2, half = size == 0.0 ? 0.5 : size / 2;
+    low = middle - half;
+    high = middle + half;
   }
   const double raw = (high - low) / wanted;
   const double decade = std::pow(10.0, std::floor(std::log10(raw)));
@@ -326,11 +331,12 @@ std::string plot_svg(const Plot& plot) {
   x.pixel_high = kWidth - kRight;
   y.pixel_low = kHeight - kBottom;
   y.pixel_high = kTop;
-  std::string out =
-      fmt::format(R"(<svg class="plot" viewBox="0 0 {} {}" role="img" aria-label="{}")"
-                  R"( data-box="{:.1f} {:.1f} {:.1f} {:.1f}" data-range="{:.9g} {:.9g} {:.9g} {:.9g}">)",
-                  kWidth, kHeight, escape(spoken(plot, x)), x.pixel_low, x.pixel_high, y.pixel_low,
-                  y.pixel_high, x.range.low, x.range.high, y.range.low, y.range.high);
+  std::string out = fmt::format(
+      R"(<svg class="plot" viewBox="0 0 {} {}" role="img" aria-label="{}")"
+      R"( data-box="{:.1f} {:.1f} {:.1f} {:.1f}" data-range="{:.9g} {:.9g} {:.9g} {:.9g}")"
+      R"( data-x-unit="{}" data-y-unit="{}">)",
+      kWidth, kHeight, escape(spoken(plot, x)), x.pixel_low, x.pixel_high, y.pixel_low, y.pixel_high,
+      x.range.low, x.range.high, y.range.low, y.range.high, escape(plot.x_unit), escape(plot.y_unit));
   out += grid(x, y) + bars(plot, x, y) + lines(plot, x, y) + limit_lines(plot, x, y) + lettering(plot, x, y);
   return out + "</svg>";
 }

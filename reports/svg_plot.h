@@ -11,7 +11,8 @@
 namespace swarf::reports {
 
 /// Round numbers at steps of 1, 2 or 5 times a power of ten that cover [low, high]: the first is <= low and
-/// the last >= high, with about `wanted` steps. A range of no width is widened around its value.
+/// the last >= high, with about `wanted` steps. A range of no width (below 1e-9 of its
+/// values) is widened around its value.
 struct Ticks {
   double step = 1.0;
   std::vector<double> values;

@@ -17,10 +17,13 @@
     return best;
   };
 
+  // As many digits as show a thousandth of the axis.
   const digits = (value, span) => {
-    const decimals = Math.max(0, Math.min(9, 3 - Math.floor(Math.log10(Math.abs(span) || 1))));
-    return value.toFixed(decimals).replace('-', '\u2212');
+    const decimals = 3 - Math.floor(Math.log10(span));
+    const text = decimals > 9 ? value.toExponential(3) : value.toFixed(Math.max(0, decimals));
+    return text.replaceAll('-', '\u2212');
   };
+  const withUnit = (text, unit) => (unit ? `${text} ${unit}` : text);
 
   function attach(card) {
     const svg = card.querySelector('svg.plot'), paths = [...svg.querySelectorAll('path.series')];
@@ -46,9 +49,9 @@
       const xValue = xLow + ((x - left) / (right - left)) * (xHigh - xLow);
       const rows = found.map(([, y], i) => {
         const value = yLow + ((y - bottom) / (top - bottom)) * (yHigh - yLow);
-        return `${names[i] ? names[i] + ': ' : ''}${digits(value, yHigh - yLow)}`;
+        return `${names[i] ? names[i] + ': ' : ''}${withUnit(digits(value, yHigh - yLow), svg.dataset.yUnit)}`;
       });
-      box.innerText = [`at ${digits(xValue, xHigh - xLow)}`, ...rows].join('\n');
+      box.innerText = [`at ${withUnit(digits(xValue, xHigh - xLow), svg.dataset.xUnit)}`, ...rows].join('\n');
       svg.append(rule);
       card.append(box);
       const place = x / scale + frame.left - card.getBoundingClientRect().left;

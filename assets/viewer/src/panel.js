@@ -10,10 +10,13 @@ function make(tag, properties = {}, ...children) {
   return node;
 }
 
-function checkbox(text, checked, onChange) {
+/** `colour`: of the lines that it switches; CSS text, or nothing. */
+function checkbox(text, checked, onChange, colour) {
   const input = make('input', { type: 'checkbox', checked });
   input.addEventListener('change', () => onChange(input.checked));
-  return make('label', {}, input, text);
+  const label = make('label', {}, input, text);
+  if (colour) label.append(make('span', { className: 'viewer-swatch', style: `background:${colour}` }));
+  return label;
 }
 
 /** "tool_axis_fan" reads better as "Tool axis fan". */
@@ -42,7 +45,7 @@ export class Panel {
     this.message = make('div', { className: 'viewer-message', role: 'status' });
     this.probe = make('div', { className: 'viewer-probe', hidden: true });
     this.stageBox = make('div', { className: 'viewer-stage' }, this.canvas, this.message, this.probe);
-    this.switches = make('div', { className: 'viewer-bar viewer-switches', style: 'padding:0;min-height:0' });
+    this.switches = make('div', { className: 'viewer-switches' });
     const reset = make('button', { type: 'button', className: 'plain', textContent: 'Reset view' });
     reset.addEventListener('click', () => { this.stage?.frame(); this.draw(); });
     const top = make('div', { className: 'viewer-bar top' }, this.buildTabs(), this.switches,
@@ -50,7 +53,7 @@ export class Panel {
     const hint = make('p', { className: 'viewer-hint',
       textContent: 'Drag to turn, wheel or pinch to zoom, right button to shift, double-click to centre on a point.' });
     this.host.replaceChildren(top, this.stageBox, this.buildPlayer());
-    this.host.after(hint);
+    (document.querySelector('.colour-bar[data-tab]') ?? this.host).after(hint);
     this.canvas.addEventListener('dblclick', (event) => {
       this.stage?.centreOn(this.pointer(event));
       this.draw();
@@ -110,23 +113,22 @@ export class Panel {
     this.stage.controls.connect(this.canvas);
     this.showSwitches();
     this.player.hidden = this.stage.duration === 0;
-    this.player.style.display = this.stage.duration === 0 ? 'none' : '';
     this.resize();
     this.seek(this.stage.time);
   }
 
   showSwitches() {
-    const switches = this.stage.lineGroups().map(([name, objects]) =>
-      checkbox(readable(name), objects[0].visible, (on) => {
-        for (const object of objects) object.visible = on;
-        this.draw();
-      }));
-    if (this.stage.coloured.length) {
-      switches.unshift(checkbox('Deviation colours', this.stage.coloursOn, (on) => {
-        this.stage.setColours(on);
-        this.draw();
-      }));
+    const { stage } = this;
+    const toggle = (text, checked, change, colour) =>
+      checkbox(text, checked, (on) => { change(on); this.draw(); }, colour);
+    const switches = [];
+    if (stage.coloured.length) switches.push(toggle('Deviation colours', stage.coloursOn, (on) => stage.setColours(on)));
+    for (const line of stage.lineGroups()) {
+      switches.push(toggle(readable(line.name), line.objects[0].visible, (on) => {
+        for (const object of line.objects) object.visible = on;
+      }, line.colour));
     }
+    if (stage.links.length) switches.push(toggle('See through the machine', stage.seeThrough, (on) => stage.setSeeThrough(on)));
     this.switches.replaceChildren(...switches);
   }
 

@@ -10,6 +10,9 @@ import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 /** From the front, the right and above: the way an operator looks through the door. */
 const lookFrom = new Vector3(0.62, 0.55, 1).normalize();
 
+/** Air around the model. */
+const margin = 1.05;
+
 /** Machined parts shine, but the colours of deviation must stay readable against their legend. */
 const partRoughness = 0.75;
 
@@ -28,6 +31,12 @@ function roomEnvironment(renderer) {
   }
   return environment;
 }
+
+/** Nodes at the heart of the machine; all others are its links. */
+const work = /^(part|stock|cutter|holder|tool)/;
+
+/** A mesh of several primitives is a group: its children only carry numbers. */
+const nodeName = (object) => object.name || object.parent?.name || '';
 
 /** The attribute that carries the deviation, whatever unit its name adds. */
 const deviationOf = (geometry) =>
@@ -60,6 +69,8 @@ export class Stage {
     this.lines = [];
     this.coloured = [];
     this.probed = [];
+    this.links = [];
+    this.seeThrough = false;
     this.coloursOn = true;
     root.traverse((object) => {
       if (object.isLine) this.lines.push(object);
@@ -69,7 +80,10 @@ export class Stage {
         object.material.roughness = Math.max(object.material.roughness, partRoughness);
         this.coloured.push(object);
       }
+      if (!work.test(nodeName(object))) this.links.push(object);
     });
+    // Without a cutter it is no machine, and there is nothing to see through.
+    if (!root.getObjectByName('cutter')) this.links = [];
   }
 
   startAnimation(gltf) {
@@ -91,15 +105,28 @@ export class Stage {
     this.mixer.setTime(this.time);
   }
 
-  /** Line objects by the name of the node that holds them: one switch each. */
+  /** Line objects by the name of the node that holds them, and by colour where one node holds several. */
   lineGroups() {
     const groups = new Map();
     for (const line of this.lines) {
-      const named = line.name || line.parent?.name || 'lines';
-      const name = named.replace(/_\d+$/, '');  // primitives of one mesh are numbered by the loader
-      groups.set(name, [...(groups.get(name) ?? []), line]);
+      const name = (line.name || line.parent?.name || 'lines').replace(/_\d+$/, '');  // the loader's numbers
+      const colour = `#${line.material.color.getHexString()}`;
+      const key = `${name} ${colour}`;
+      if (!groups.has(key)) groups.set(key, { name, colour, objects: [] });
+      groups.get(key).objects.push(line);
     }
-    return [...groups];
+    return [...groups.values()];
+  }
+
+  /** The machine becomes a shadow around the cutter and the part. */
+  setSeeThrough(on) {
+    this.seeThrough = on;
+    for (const { material } of this.links) {
+      material.transparent = on;
+      material.opacity = on ? 0.13 : 1;
+      material.depthWrite = !on;
+      material.needsUpdate = true;
+    }
   }
 
   setColours(on) {
@@ -113,20 +140,27 @@ export class Stage {
     }
   }
 
-  /** Puts the whole model into the picture. */
+  /** Puts the whole model into the picture, as large as its box allows. */
   frame() {
     const box = new Box3().setFromObject(this.scene);
-    const centre = box.getCenter(new Vector3());
-    const radius = Math.max(box.getSize(new Vector3()).length() / 2, 1e-6);
-    const halfAngle = Math.atan(Math.tan((this.camera.fov * Math.PI) / 360) * Math.min(1, this.camera.aspect));
-    const distance = (0.86 * radius) / Math.sin(halfAngle);  // a box fills less than its sphere
+    const centre = box.getCenter(new Vector3()), half = box.getSize(new Vector3()).multiplyScalar(0.5);
+    const radius = Math.max(half.length(), 1e-6);
+    const right = new Vector3(0, 1, 0).cross(lookFrom).normalize(), up = lookFrom.clone().cross(right);
+    const rise = Math.tan((this.camera.fov * Math.PI) / 360), run = rise * this.camera.aspect;
+    let distance = 0;
+    for (let corner = 0; corner < 8; ++corner) {
+      const at = new Vector3(corner & 1 ? half.x : -half.x, corner & 2 ? half.y : -half.y, corner & 4 ? half.z : -half.z);
+      const sideways = Math.max(Math.abs(at.dot(right)) / run, Math.abs(at.dot(up)) / rise);
+      distance = Math.max(distance, at.dot(lookFrom) + sideways);
+    }
+    distance *= margin;
     this.camera.position.copy(lookFrom).multiplyScalar(distance).add(centre);
     this.camera.near = radius / 100;
-    this.camera.far = distance + 20 * radius;
+    this.camera.far = 4 * distance + 20 * radius;
     this.camera.updateProjectionMatrix();
     this.controls.target.copy(centre);
     this.controls.minDistance = radius / 30;
-    this.controls.maxDistance = 8 * radius;
+    this.controls.maxDistance = 3 * distance;
     this.controls.update();
   }
 

@@ -43,6 +43,10 @@ TEST(Ticks, ARangeOfNoWidthIsWidened) {
     EXPECT_LT(ticks.values.front(), value);
     EXPECT_GT(ticks.values.back(), value);
   }
+  // One unit in the last place of a constant feed: a step of that size would not change a double.
+  const Ticks noise = round_ticks(3000.0, std::nextafter(3000.0, 4000.0), 5);
+  EXPECT_LT(noise.values.size(), 12U);
+  EXPECT_GT(noise.step, 1.0);
 }
 
 TEST(Ticks, TextHasTheDigitsOfItsStep) {
