@@ -1,0 +1,213 @@
+#include "toolpath/area.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+namespace swarf::toolpath {
+namespace {
+
+/// A cusp or gouge below this is rounding, not geometry: one nanometre.
+constexpr double kNegligibleHeight = 1e-6;
+/// Samples along a pass for extremes over it; they are smooth functions of t.
+constexpr int kSamples = 128;
+/// Samples of the surface's continuation, along an edge and away from it.
+constexpr int kEdgeSamples = 33;
+constexpr int kOutwardSamples = 5;
+
+/// Foot of the perpendicular from q to the pass, from a start nearby: (q - p).p' = 0 by Newton.
+double foot_on_pass(const PassSurface& surface, const CubicSpline& w, const Vec3& q, double t) {
+  constexpr int kMaxSteps = 20;
+  constexpr double kDone = 1e-9;  // mm: the chord depends on it quadratically
+  for (int i = 0; i < kMaxSteps; ++i) {
+    const GraphPoint g = graph_point(surface, w, t);
+    const Vec3 gap = q - g.p;
+    const double step = gap.dot(g.dp) / (g.dp.squaredNorm() - gap.dot(g.ddp));
+    t += step;
+    if (std::abs(step) * g.dp.norm() < kDone) break;
+  }
+  return t;
+}
+
+/// Largest value of f over 0..1 on samples, sharpened by golden section around the best one.
+double argmin_sampled(const std::function<double(double)>& f) {
+  int best = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i <= kSamples; ++i) {
+    const double value = f(static_cast<double>(i) / kSamples);
+    if (value < least) {
+      least = value;
+      best = i;
+    }
+  }
+  double low = std::max(0, best - 1) / static_cast<double>(kSamples);
+  double high = std::min(kSamples, best + 1) / static_cast<double>(kSamples);
+  const double ratio = 0.5 * (std::sqrt(5.0) - 1.0);
+  for (int i = 0; i < 40; ++i) {
+    const double left = high - ratio * (high - low);
+    const double right = low + ratio * (high - low);
+    if (f(left) < f(right)) {
+      high = right;
+    } else {
+      low = left;
+    }
+  }
+  return 0.5 * (low + high);
+}
+
+double scallop_of(const Area& area, const surface::Shape& shape, const Vec2& feed, double chord) {
+  const double curvature = relative_curvature(shape.K, feed, area.lean, area.radius_mm);
+  if (!area.lean.on_normal()) return 0.125 * chord * chord * std::max(0.0, curvature);
+  return curvature > 0.0 ? scallop_for_chord(1.0 / curvature, chord) : 0.0;
+}
+
+/// Samples |S_t x S_w| over a rectangle of pass parameters; also says whether the tool gouges anywhere in it.
+struct Regularity {
+  double least_area = std::numeric_limits<double>::infinity();
+  bool gouges = false;
+};
+Regularity regularity(const Area& area, Vec2 t_range, Vec2 w_range, int n_t, int n_w) {
+  const PassSurface surface = area.pass_surface();
+  Regularity result;
+  for (int i = 0; i < n_t; ++i) {
+    for (int j = 0; j < n_w; ++j) {
+      const double t = t_range[0] + (t_range[1] - t_range[0]) * i / (n_t - 1);
+      const double w = w_range[0] + (w_range[1] - w_range[0]) * j / (n_w - 1);
+      const surface::Derivatives d = surface.at(t, w);
+      const double element = d.Su.cross(d.Sv).norm();
+      result.least_area = std::min(result.least_area, element);
+      result.gouges = result.gouges || !(element > 0.0) ||
+                      gouges(surface::shape_at(d, surface.outward_sign()), area.lean, area.radius_mm);
+    }
+  }
+  return result;
+}
+
+/// Least |S_t| (or |S_w|) along an edge, to turn millimetres into parameters on the safe side.
+double least_speed_along(const Area& area, double t_edge) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < kEdgeSamples; ++i) {
+    const double w = static_cast<double>(i) / (kEdgeSamples - 1);
+    least = std::min(least, area.pass_surface().at(t_edge, w).Su.norm());
+  }
+  return least;
+}
+double least_speed_across(const Area& area) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < kEdgeSamples; ++i) {
+    const double t = static_cast<double>(i) / (kEdgeSamples - 1);
+    least = std::min(least, area.pass_surface().at(t, area.end_w).Sv.norm());
+  }
+  return least;
+}
+
+}  // namespace
+
+bool gouges(const surface::Shape& shape, const Lean& lean, double radius_mm) {
+  const double concave = -surface::principal_curvatures(shape).low;
+  // A flat bottom over a hollow of curvature k sinks in by k r^2 / 2.
+  const double rounding = 2.0 * kNegligibleHeight / (radius_mm * radius_mm);
+  return radius_mm * (concave - rounding) > std::sin(lean.angle);
+}
+
+Interval interval_at(const Area& area, const surface::Shape& shape, const Vec2& feed, IntervalRule rule) {
+  const double r = area.radius_mm;
+  const double h = area.scallop_mm;
+  Interval interval;
+  if (!area.lean.on_normal()) {
+    interval.curvature = relative_curvature(shape.K, feed, area.lean, r);
+    interval.chord_mm = leaned_chord(interval.curvature, h, area.lean, r);
+    interval.reach_mm = 2.0 * r * std::abs(std::cos(area.lean.yaw));
+    return interval;
+  }
+  const bool paper = rule == IntervalRule::kPaper;
+  const double curvature = paper ? cross_curvature(shape.K, feed) : strip_curvature(shape.K, feed);
+  interval.curvature = std::max(0.0, curvature);
+  const double R = 1.0 / interval.curvature;
+  interval.flat = 0.5 * r * r * interval.curvature < kNegligibleHeight;
+  interval.reach_mm =
+      reach_limit(2.0 * r, R, h) / (paper || interval.flat ? 1.0 : conjugate_stretch(shape.K, feed));
+  interval.chord_mm = interval.flat ? interval.reach_mm : chord_for_scallop(R, h);
+  return interval;
+}
+
+PassFrame pass_frame(const PassSurface& surface, const CubicSpline& w, double t) {
+  const GraphPoint g = graph_point(surface, w, t);
+  PassFrame frame{surface::shape_at(g.d, surface.outward_sign()), {}};
+  frame.unit_feed = frame.shape.in_tangent(g.dp).normalized();
+  return frame;
+}
+
+MinimumInterval minimum_interval(const Area& area, const CubicSpline& w, IntervalRule rule) {
+  const PassSurface surface = area.pass_surface();
+  const auto chord = [&](double t) {
+    const PassFrame frame = pass_frame(surface, w, t);
+    return interval_at(area, frame.shape, frame.unit_feed, rule).usable();
+  };
+  const double t = argmin_sampled(chord);
+  return {chord(t), t};
+}
+
+Strip measure_strip(const Area& area, const CubicSpline& previous, const CubicSpline& next, double t_low,
+                    double t_high) {
+  const PassSurface surface = area.pass_surface();
+  const int n = std::max(8, static_cast<int>(std::ceil(kSamples * (t_high - t_low))));
+  Strip strip{std::numeric_limits<double>::infinity(), 0.0, 0.0};
+  for (int i = 0; i <= n; ++i) {
+    const double t = t_low + (t_high - t_low) * i / n;
+    const double w = next.at(t).w;
+    const Vec3 q = surface.point(t, w);
+    const double s = foot_on_pass(surface, previous, q, t);
+    const double w_middle = 0.5 * (w + previous.at(s).w);
+    if (area.beyond_end(w_middle)) continue;
+    const GraphPoint before = graph_point(surface, previous, s);
+    const surface::Shape shape =
+        surface::shape_at(surface.at(0.5 * (s + t), w_middle), surface.outward_sign());
+    const Vec3 feed = before.dp.normalized() + graph_point(surface, next, t).dp.normalized();
+    const double chord = (q - before.p).norm();
+    strip.chord_min_mm = std::min(strip.chord_min_mm, chord);
+    strip.chord_max_mm = std::max(strip.chord_max_mm, chord);
+    strip.scallop_max_mm =
+        std::max(strip.scallop_max_mm, scallop_of(area, shape, shape.in_tangent(feed).normalized(), chord));
+  }
+  return strip;
+}
+
+void extend_beyond_edges(Area& area, double overrun_mm) {
+  const Regularity inside = regularity(area, {0.0, 1.0}, {0.0, 1.0}, kEdgeSamples, kEdgeSamples);
+  // "Well away from zero" is measured by the part itself: half of what it has at its worst.
+  const auto regular = [&](Vec2 t_range, Vec2 w_range, int n_t, int n_w) {
+    const Regularity found = regularity(area, t_range, w_range, n_t, n_w);
+    return !found.gouges && found.least_area >= 0.5 * inside.least_area;
+  };
+  double interval = 0.0;
+  for (int i = 0; i < kEdgeSamples; ++i) {
+    const PassFrame frame = pass_frame(area.pass_surface(), CubicSpline::constant(area.start_w),
+                                       static_cast<double>(i) / (kEdgeSamples - 1));
+    interval =
+        std::max(interval, interval_at(area, frame.shape, frame.unit_feed, IntervalRule::kExact).usable());
+  }
+  const double low_speed = least_speed_along(area, 0.0);
+  const double high_speed = least_speed_along(area, 1.0);
+  area.continues_along = false;
+  area.grid.first = 0.0;
+  double last = 1.0;
+  for (const double margin_mm : {overrun_mm + interval, overrun_mm}) {
+    const double low = -margin_mm / low_speed;
+    const double high = 1.0 + margin_mm / high_speed;
+    if (margin_mm > 0.0 && regular({low, 0.0}, {0.0, 1.0}, kOutwardSamples, kEdgeSamples) &&
+        regular({1.0, high}, {0.0, 1.0}, kOutwardSamples, kEdgeSamples)) {
+      area.continues_along = true;
+      area.grid.first = low;
+      last = high;
+      break;
+    }
+  }
+  area.grid.step = (last - area.grid.first) / area.grid.intervals;
+  const double across = interval / least_speed_across(area);
+  area.continues_across = regular({area.grid.first, last}, {area.end_w, area.end_w + area.forward() * across},
+                                  kEdgeSamples, kOutwardSamples);
+}
+
+}  // namespace swarf::toolpath

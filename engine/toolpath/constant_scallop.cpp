@@ -1,0 +1,176 @@
+#include "toolpath/constant_scallop.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "toolpath/offset_walk.h"
+
+namespace swarf::toolpath {
+namespace {
+
+/// Newton in one variable with an approximate second derivative, kept on the grid.
+constexpr int kMaxInnerSteps = 20;
+constexpr double kInnerDone = 1e-7;  ///< mm along the pass; the height depends on it quadratically
+
+/// A function of one parameter at s: its value, its slope, its second derivative (leading term) and |d/ds|.
+struct Local {
+  double value, slope, bend, speed;
+};
+
+/// Least value of `local(s)` near the start.
+template <class Function>
+EnvelopeHeight least_height(const Grid& grid, double s, const Function& local) {
+  EnvelopeHeight result;
+  result.s = std::clamp(s, grid.first, grid.last());
+  for (int i = 0; i < kMaxInnerSteps; ++i) {
+    const Local f = local(result.s);
+    result.height_mm = f.value;
+    // Straight along the feed: all planes are the same one, and any s will do.
+    if (!(f.bend > 0.0)) break;
+    const double wanted = result.s - f.slope / f.bend;
+    const double s_new = std::clamp(wanted, grid.first, grid.last());
+    result.outside = s_new != wanted;
+    const double moved = std::abs(s_new - result.s) * f.speed;
+    result.s = s_new;
+    if (moved < kInnerDone) break;
+  }
+  return result;
+}
+
+/// Height of the tangent plane at q (normal vector m_q, any length) over the ridge point nearest to it.
+EnvelopeHeight plane_over_ridge(const Area& area, const CubicSpline& ridge, const Vec3& q, const Vec3& m_q,
+                                double s_start) {
+  const PassSurface surface = area.pass_surface();
+  return least_height(area.grid, s_start, [&](double s) -> Local {
+    const GraphPoint r = graph_point(surface, ridge, s);
+    const NormalJet jet = normal_along(surface, r.d, ridge.at(s).dw);
+    const double length = jet.m.norm();
+    const Vec3 n = jet.m / length;
+    const Vec3 dn = (jet.dm - n * n.dot(jet.dm)) / length;
+    const double over = (q - r.p).dot(m_q);
+    const double rise = n.dot(m_q);
+    return {over / rise, (-r.dp.dot(m_q) * rise - over * dn.dot(m_q)) / (rise * rise), r.dp.dot(dn),
+            r.dp.norm()};
+  });
+}
+
+struct Level {
+  double w = 0.0;
+  EnvelopeHeight at;
+  bool found = false;
+};
+
+/// The w beyond `base` where height(w, s) = target. Heights grow with the square of the distance, so the
+/// distance is corrected by the square root of the ratio; every step gains about two digits.
+template <class Height>
+Level level_point(double base, double advance, double farthest, double s_start, double target,
+                  const Height& height) {
+  constexpr int kMaxSteps = 40;
+  constexpr double kDone = 1e-10;  // relative
+  Level level;
+  level.at.s = s_start;
+  for (int i = 0; i < kMaxSteps; ++i) {
+    level.w = base + advance;
+    level.at = height(level.w, level.at.s);
+    const double ratio = std::sqrt(target / level.at.height_mm);
+    if (!std::isfinite(ratio) || std::abs(advance) > farthest) return level;
+    if (std::abs(ratio - 1.0) < kDone) {
+      level.found = true;
+      return level;
+    }
+    advance *= ratio;
+  }
+  return level;
+}
+
+/// Advance in w that leaves half the interval between `pass` and the cusp.
+double half_advance(const Area& area, const CubicSpline& pass, double t) {
+  const PassSurface surface = area.pass_surface();
+  const GraphPoint g = graph_point(surface, pass, t);
+  const surface::Shape shape = surface::shape_at(g.d, surface.outward_sign());
+  const Vec2 feed = shape.in_tangent(g.dp).normalized();
+  const double across = (g.d.Sv - g.dp * g.dp.dot(g.d.Sv) / g.dp.squaredNorm()).norm();
+  return 0.5 * area.forward() * interval_at(area, shape, feed, IntervalRule::kExact).usable() / across;
+}
+
+/// The curve beyond `pass` on which height(t, w, s) equals the area's scallop, at the grid's abscissae.
+template <class Height>
+GridPoints level_curve(const Area& area, const CubicSpline& pass, const Height& height) {
+  const Grid& grid = area.grid;
+  GridPoints points(grid.size());
+  double shift = 0.0;  // of the foot, as found at the neighbour
+  for (int j = 0; j < grid.size(); ++j) {
+    const double t = grid.t(j);
+    const double advance = half_advance(area, pass, t);
+    // Four times the expected distance is a runaway, not a solution.
+    const Level level = level_point(pass.at(t).w, advance, 4.0 * std::abs(advance), t + shift,
+                                    area.scallop_mm, [&](double w, double s) { return height(t, w, s); });
+    if (!level.found) continue;
+    shift = level.at.s - t;
+    points.w[j] = level.w;
+    points.foot[j] = level.at.s;
+    // Without a margin the pass truly ends at the grid's border, and its last bottom is the one that counts.
+    const bool usable = !level.at.outside || !area.continues_along;
+    points.outcome[j] = usable ? PointOutcome::kSolved : PointOutcome::kFootOutside;
+  }
+  return points;
+}
+
+NextPass next_exact(const Area& area, const CubicSpline& previous) {
+  const PassSurface surface = area.pass_surface();
+  const auto left_by_previous = [&](double t, double w, double s) {
+    const surface::Derivatives d = surface.at(t, w);
+    const Vec3 normal = surface.outward_sign() * d.Su.cross(d.Sv).normalized();
+    return envelope_height(area, previous, d.S, normal, s);
+  };
+  const NextPass ridge = graph_of(area, previous, level_curve(area, previous, left_by_previous));
+  if (ridge.outcome != NextPass::kOk) return ridge;
+  const auto left_on_ridge = [&](double t, double w, double s) {
+    const surface::Derivatives d = surface.at(t, w);
+    return plane_over_ridge(area, ridge.w, d.S, surface.outward_sign() * d.Su.cross(d.Sv), s);
+  };
+  return graph_of(area, ridge.w, level_curve(area, ridge.w, left_on_ridge));
+}
+
+NextPass next_by_formula(const Area& area, const CubicSpline& previous) {
+  const PassSurface surface = area.pass_surface();
+  const auto rule = [&](double s, double t, double w) {
+    const surface::Derivatives d = surface.at(0.5 * (s + t), 0.5 * (previous.at(s).w + w));
+    const surface::Shape shape = surface::shape_at(d, surface.outward_sign());
+    const Vec2 feed = shape.in_tangent(graph_point(surface, previous, s).dp).normalized();
+    return interval_at(area, shape, feed, IntervalRule::kExact).usable();
+  };
+  return graph_of(area, previous, offset_walk(area, previous, rule));
+}
+
+bool flat_along(const Area& area, const CubicSpline& pass) {
+  const PassSurface surface = area.pass_surface();
+  for (int j = 0; j < area.grid.size(); ++j) {
+    const PassFrame frame = pass_frame(surface, pass, area.grid.t(j));
+    if (!interval_at(area, frame.shape, frame.unit_feed, IntervalRule::kExact).flat) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+EnvelopeHeight envelope_height(const Area& area, const CubicSpline& pass, const Vec3& point,
+                               const Vec3& normal, double s_start) {
+  const PassSurface surface = area.pass_surface();
+  return least_height(area.grid, s_start, [&](double s) -> Local {
+    const GraphPoint g = graph_point(surface, pass, s);
+    const NormalJet jet = normal_along(surface, g.d, pass.at(s).dw);
+    const double over = (g.p - point).dot(jet.m);
+    const double rise = normal.dot(jet.m);
+    // p'.m = 0: the tangent plane contains the feed.
+    const double slope = ((g.p - point).dot(jet.dm) * rise - over * normal.dot(jet.dm)) / (rise * rise);
+    return {over / rise, slope, g.dp.dot(jet.dm) / rise, g.dp.norm()};
+  });
+}
+
+NextPass next_constant_scallop(const Area& area, const CubicSpline& previous) {
+  if (area.lean.on_normal() && !flat_along(area, previous)) return next_exact(area, previous);
+  return next_by_formula(area, previous);
+}
+
+}  // namespace swarf::toolpath
