@@ -28,7 +28,7 @@ struct Grid {
   double u(int i) const { return static_cast<double>(i) / cells_u; }
   double v(int j) const { return static_cast<double>(j) / cells_v; }
   bool inside(int i, int j) const { return i >= 0 && j >= 0 && i <= cells_u && j <= cells_v; }
-  const Vec3& at(int i, int j) const { return cross[static_cast<size_t>(i * (cells_v + 1) + j)]; }
+  const Vec3& at(int i, int j) const { return cross[static_cast<size_t>(i) * (cells_v + 1) + j]; }
 };
 
 /// Fills the grid; the place of the first derivative that is not finite, if any.
@@ -127,7 +127,7 @@ std::optional<WeakSpot> find_degenerate_point(const surface::PolynomialSurface& 
 double bezier_conversion_error(const surface::PolynomialSurface& surface,
                                const std::vector<Vec3>& control_points) {
   constexpr int kCells = 8;
-  const auto row_length = static_cast<std::ptrdiff_t>(surface.degree_v() + 1);
+  const auto row_length = std::ptrdiff_t{surface.degree_v()} + 1;
   double worst = 0.0;
   for (int a = 0; a <= kCells; ++a) {
     for (int b = 0; b <= kCells; ++b) {

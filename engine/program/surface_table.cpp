@@ -137,7 +137,7 @@ std::shared_ptr<const surface::PolynomialSurface> check_close_surface(const Surf
 
   std::vector<Vec3> net(static_cast<size_t>((entry.degree_u + 1) * (entry.degree_v + 1)), Vec3::Zero());
   for (const auto& [index, coefficient] : entry.coefficients) {
-    net[static_cast<size_t>(index.first * (entry.degree_v + 1) + index.second)] = coefficient.value;
+    net[static_cast<size_t>(index.first) * (entry.degree_v + 1) + index.second] = coefficient.value;
   }
   auto shape = std::make_shared<const surface::PolynomialSurface>(
       build(entry, static_cast<int>(block.values.get('D', 1.0)), net));

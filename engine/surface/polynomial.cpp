@@ -45,7 +45,7 @@ PolynomialSurface::PolynomialSurface(int degree_u, int degree_v, std::vector<Vec
 PolynomialSurface PolynomialSurface::from_bezier(int degree_u, int degree_v,
                                                  const std::vector<Vec3>& control_points, int outward_sign) {
   // Power-basis coefficient of t^i in B_k^n(t) is (-1)^(i-k) C(n,i) C(i,k), for k <= i.
-  const auto index = [&](int i, int j) { return static_cast<size_t>(i * (degree_v + 1) + j); };
+  const auto index = [&](int i, int j) { return static_cast<size_t>(i) * (degree_v + 1) + j; };
   std::vector<Vec3> power(control_points.size(), Vec3::Zero());
   for (int i = 0; i <= degree_u; ++i) {
     for (int j = 0; j <= degree_v; ++j) {

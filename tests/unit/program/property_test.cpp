@@ -22,7 +22,7 @@ std::vector<Vec3> random_net(Rng& rng, int degree_u, int degree_v) {
   for (int i = 0; i <= degree_u; ++i) {
     for (int j = 0; j <= degree_v; ++j) {
       const Vec3 square(100.0 * i / degree_u, 100.0 * j / degree_v, 0.0);
-      net.push_back(square + Vec3(rng.uniform(-2, 2), rng.uniform(-2, 2), rng.uniform(-20, 20)));
+      net.push_back(square + Vec3{rng.uniform(-2, 2), rng.uniform(-2, 2), rng.uniform(-20, 20)});
     }
   }
   return net;
@@ -34,7 +34,7 @@ std::string surface_text(Rng& rng, int data_kind, int degree_u, int degree_v, co
   std::vector<std::string> blocks;
   for (int i = 0; i <= degree_u; ++i) {
     for (int j = 0; j <= degree_v; ++j) {
-      const Vec3& c = net[static_cast<size_t>(i * (degree_v + 1) + j)];
+      const Vec3& c = net[static_cast<size_t>(i) * (degree_v + 1) + j];
       // 18 places after the point carry every double of this size to within 1e-18 mm.
       blocks.push_back(fmt::format("G10 L{} P1 I{} J{} X{:.18f} Y{:.18f} Z{:.18f}\n", data_kind, i, j, c.x(),
                                    c.y(), c.z()));
@@ -96,7 +96,7 @@ TEST(SurfaceText, OfControlPointsInAnyOrderIsTheBezierSurface) {
       Vec3 expected = Vec3::Zero();
       for (int i = 0; i <= m; ++i) {
         for (int j = 0; j <= n; ++j)
-          expected += bernstein(m, i, u) * bernstein(n, j, v) * net[static_cast<size_t>(i * (n + 1) + j)];
+          expected += bernstein(m, i, u) * bernstein(n, j, v) * net[static_cast<size_t>(i) * (n + 1) + j];
       }
       // 1e-12 of the surface's size, 100 mm.
       ASSERT_LT((program.surfaces[0].surface->point(u, v) - expected).norm(), 1e-10)

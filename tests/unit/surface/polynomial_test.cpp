@@ -23,7 +23,7 @@ Vec3 direct_sum(const PolynomialSurface& surface, int du, int dv, double u, doub
   Vec3 sum = Vec3::Zero();
   for (int i = 0; i <= surface.degree_u(); ++i) {
     for (int j = 0; j <= surface.degree_v(); ++j) {
-      const Vec3& a = surface.coefficients()[static_cast<size_t>(i * (surface.degree_v() + 1) + j)];
+      const Vec3& a = surface.coefficients()[static_cast<size_t>(i) * (surface.degree_v() + 1) + j];
       sum += power(i, du, u) * power(j, dv, v) * a;
     }
   }
@@ -104,7 +104,7 @@ TEST_P(RandomPolynomial, BezierNetsGiveTheBernsteinSum) {
       Vec3 sum = Vec3::Zero();
       for (int i = 0; i <= m; ++i) {
         for (int j = 0; j <= n; ++j) {
-          sum += bernstein(m, i, u) * bernstein(n, j, v) * net[static_cast<size_t>(i * (n + 1) + j)];
+          sum += bernstein(m, i, u) * bernstein(n, j, v) * net[static_cast<size_t>(i) * (n + 1) + j];
         }
       }
       EXPECT_LT((surface.point(u, v) - sum).norm(), tolerance) << pasted(surface);

@@ -35,10 +35,10 @@ inline PolynomialSurface quadric(double a, double b, double c, int outward_sign)
 }
 
 inline std::vector<Vec3> random_points(Rng& rng, int degree_u, int degree_v, double size) {
-  std::vector<Vec3> points;
-  for (int k = 0; k < (degree_u + 1) * (degree_v + 1); ++k) {
-    points.emplace_back(rng.uniform(-size, size), rng.uniform(-size, size), rng.uniform(-size, size));
-  }
+  std::vector<Vec3> points(static_cast<size_t>(degree_u + 1) * (degree_v + 1));
+  // Braces fix the order of the three draws.
+  for (Vec3& p : points)
+    p = Vec3{rng.uniform(-size, size), rng.uniform(-size, size), rng.uniform(-size, size)};
   return points;
 }
 
