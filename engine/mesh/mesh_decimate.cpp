@@ -47,7 +47,8 @@ Indices welded_indices(const TriMesh& mesh) {
 Indices simplify_cell(const TriMesh& mesh, const Indices& indices, std::span<const uint32_t> triangles,
                       double error_mm) {
   Indices vertices;
-  for (const uint32_t t : triangles) vertices.insert(vertices.end(), &indices[3 * t], &indices[3 * t] + 3);
+  for (const uint32_t t : triangles)
+    vertices.insert(vertices.end(), &indices[size_t{3} * t], &indices[size_t{3} * t] + 3);
   Indices local = vertices;
   std::sort(vertices.begin(), vertices.end());
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
@@ -81,7 +82,7 @@ Cells sort_into_cells(const TriMesh& mesh, const Indices& indices, double cell_m
     uint64_t key = 0;
     for (size_t k = 0; k < 3; ++k) {
       double sum = 0.0;
-      for (size_t corner = 0; corner < 3; ++corner) sum += mesh.positions[indices[3 * t + corner]][k];
+      for (size_t corner = 0; corner < 3; ++corner) sum += mesh.positions[indices[size_t{3} * t + corner]][k];
       const double cell = std::floor((sum / 3.0 + shift_mm) / cell_mm) + 0.5 * kCellsAcross;
       key = (key << 21) | static_cast<uint64_t>(std::clamp(cell, 0.0, kCellsAcross));
     }

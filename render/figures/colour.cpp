@@ -98,7 +98,7 @@ void colour_by_deviation(TriMesh& mesh, double scale_um) {
     const double place = mesh.deviation_um[i] / scale_um;
     mesh.colours[i] = std::isnan(place)
                           ? srgb8_from_linear(kUnknownColour)
-                          : table[std::lround((std::clamp(place, -1.0, 1.0) + 1.0) * (kSteps / 2))];
+                          : table[std::lround((std::clamp(place, -1.0, 1.0) + 1.0) * (0.5 * kSteps))];
   }
 }
 

@@ -173,6 +173,7 @@ void Writer::add_rotation(const GltfNode& node, int index) {
 
 int Writer::key_times(const GltfNode& node, const std::vector<size_t>& keys) {
   std::vector<std::array<float, 1>> times;
+  times.reserve(keys.size());
   for (const size_t k : keys) times.push_back({static_cast<float>(node.times_s[k])});
   return buffer_.floats<1>(times, true, 0);
 }

@@ -48,6 +48,34 @@ RTCRayHit make_ray(const Vec3f& origin, const Vec3f& direction) {
   return ray;
 }
 
+/// Bounds of what a scene holds; most rays past a lone part end here, at a tenth of the cost of asking
+/// Embree.
+struct Bounds {
+  Vec3f lower = Vec3f::Constant(std::numeric_limits<float>::infinity());
+  Vec3f upper = -lower;
+
+  void add(const Vec3f& point, float radius) {
+    lower = lower.cwiseMin((point.array() - radius).matrix());
+    upper = upper.cwiseMax((point.array() + radius).matrix());
+  }
+  /// Slab test of a half line; a direction component of zero gives infinities that compare as they should,
+  /// and the NaN of a ray within a slab's plane counts as a hit.
+  bool missed_by(const Vec3f& origin, const Vec3f& direction) const {
+    if (lower.x() > upper.x()) return true;  // nothing inside
+    float enter = 0.0F, leave = std::numeric_limits<float>::infinity();
+    for (int k = 0; k < 3; ++k) {
+      const float inverse = 1.0F / direction[k];
+      const float a = (lower[k] - origin[k]) * inverse, b = (upper[k] - origin[k]) * inverse;
+      const float near = a < b ? a : b, far = a < b ? b : a;
+      if (near > enter) enter = near;
+      if (far < leave) leave = far;
+    }
+    return enter > leave * kBoundsSlack;
+  }
+  // The slab distances carry some float roundings each.
+  static constexpr float kBoundsSlack = 1.00001F;
+};
+
 }  // namespace
 
 struct RayScene::Embree {
@@ -55,8 +83,7 @@ struct RayScene::Embree {
   RTCScene solids = nullptr, tubes = nullptr;
   std::vector<Solid> solid_data;
   std::vector<Vec3f> tube_colours;
-  Vec3f lower = Vec3f::Constant(std::numeric_limits<float>::infinity());
-  Vec3f upper = -lower;
+  Bounds solid_bounds, tube_bounds;
 
   Embree();
   ~Embree();
@@ -96,8 +123,7 @@ void RayScene::Embree::add_solid(const DrawItem& item) {
       geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh.positions.size()));
   for (const auto& p : mesh.positions) {
     const Vec3f world = (item.X_world * Vec3(p[0], p[1], p[2])).cast<float>();
-    lower = lower.cwiseMin(world);
-    upper = upper.cwiseMax(world);
+    solid_bounds.add(world, 0.0F);
     positions = std::copy_n(world.data(), 3, positions);
   }
   auto* indices = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(
@@ -115,8 +141,10 @@ void RayScene::Embree::add_tube(const DrawLine& line, const Vec3& eye, double ra
   auto* vertices = static_cast<float*>(
       rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 4 * sizeof(float), n));
   for (const Vec3& p : line.points) {
-    for (int k = 0; k < 3; ++k) *vertices++ = static_cast<float>(p[k]);
-    *vertices++ = static_cast<float>(line.width_px * radius_per_mm * (p - eye).norm());
+    const Vec3f point = p.cast<float>();
+    vertices = std::copy_n(point.data(), 3, vertices);
+    *vertices = static_cast<float>(line.width_px * radius_per_mm * (p - eye).norm());
+    tube_bounds.add(point, *vertices++);
   }
   auto* indices = static_cast<uint32_t*>(
       rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, sizeof(uint32_t), n - 1));
@@ -157,13 +185,15 @@ RayScene::~RayScene() = default;
 
 std::optional<Hit> RayScene::nearest(const Vec3f& origin, const Vec3f& direction, bool with_lines) const {
   RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
   RTCRayHit ray = make_ray(origin, direction);
-  rtcIntersect1(embree_->solids, &context, &ray);
+  if (!embree_->solid_bounds.missed_by(origin, direction)) {
+    rtcInitIntersectContext(&context);
+    rtcIntersect1(embree_->solids, &context, &ray);
+  }
   const float solid_distance = ray.ray.tfar;
   const RTCHit solid = ray.hit;
   bool line = false;
-  if (with_lines && !embree_->tube_colours.empty()) {
+  if (with_lines && !embree_->tube_bounds.missed_by(origin, direction)) {
     rtcInitIntersectContext(&context);
     rtcIntersect1(embree_->tubes, &context, &ray);
     line = ray.ray.tfar < solid_distance;
@@ -187,6 +217,7 @@ std::optional<Hit> RayScene::nearest(const Vec3f& origin, const Vec3f& direction
 }
 
 bool RayScene::occluded(const Vec3f& origin, const Vec3f& direction) const {
+  if (embree_->solid_bounds.missed_by(origin, direction)) return false;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   RTCRay ray = make_ray(origin, direction).ray;
@@ -195,11 +226,13 @@ bool RayScene::occluded(const Vec3f& origin, const Vec3f& direction) const {
 }
 
 float RayScene::offset() const {
-  return embree_->solid_data.empty() ? 0.0F : kOffsetShare * (embree_->upper - embree_->lower).norm();
+  return embree_->solid_data.empty()
+             ? 0.0F
+             : kOffsetShare * (embree_->solid_bounds.upper - embree_->solid_bounds.lower).norm();
 }
 
 float RayScene::lowest_z() const {
-  return embree_->solid_data.empty() ? 0.0F : embree_->lower.z();
+  return embree_->solid_data.empty() ? 0.0F : embree_->solid_bounds.lower.z();
 }
 
 }  // namespace swarf::render
