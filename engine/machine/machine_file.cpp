@@ -1,0 +1,322 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "base/config.h"
+#include "base/units.h"
+#include "kinematics/model_check.h"
+#include "machine/machine_scene.h"
+#include "mesh/mesh_io.h"
+
+namespace swarf::machine {
+namespace {
+
+namespace fs = std::filesystem;
+using kinematics::Axis;
+using kinematics::AxisKind;
+
+const std::vector<std::string> kAxisLetters{"X", "Y", "Z", "A", "B", "C", "U", "V", "W"};
+
+/// A [[link]] as it stands in the file; names are resolved when all are known.
+struct LinkEntry {
+  ConfigTable table;
+  std::string name, parent, axis, mesh, mount;
+  Link link;
+};
+
+Vec3 read_vec3(ConfigTable& table, const std::string& key, std::optional<std::vector<double>> fallback = {}) {
+  const std::vector<double> v = table.numbers(key, 3, std::move(fallback));
+  return {v[0], v[1], v[2]};
+}
+
+Vec3 read_direction(ConfigTable& table, const std::string& key,
+                    std::optional<std::vector<double>> fallback = {}) {
+  const Vec3 direction = read_vec3(table, key, std::move(fallback));
+  const double length = direction.norm();
+  if (table.has(key) && std::abs(length - 1.0) > kinematics::kUnitTolerance) {
+    table.error("not-unit", key, fmt::format("'{}' is not a unit vector, its length is {:.9g}", key, length),
+                length > 0.0 ? fmt::format("write [{:.12g}, {:.12g}, {:.12g}]", direction.x() / length,
+                                           direction.y() / length, direction.z() / length)
+                             : "write a vector of length 1");
+    return Vec3::UnitX();
+  }
+  return direction;
+}
+
+/// Limits carry their unit in the key: min_mm, speed_max_mm_min, ... for linear, min_deg, speed_max_deg_s,
+/// ... for rotary axes.
+void read_limits(ConfigTable& table, Axis& axis) {
+  const bool rotary = axis.kind == AxisKind::kRotary;
+  const std::string unit = rotary ? "deg" : "mm";
+  const double scale = rotary ? rad_from_deg(1.0) : 1.0;
+  axis.min = scale * table.number("min_" + unit, {});
+  axis.max = scale * table.number("max_" + unit, {});
+  axis.speed_max = rotary ? scale * table.number("speed_max_deg_s", kAboveZero)
+                          : mm_s_from_mm_min(table.number("speed_max_mm_min", kAboveZero));
+  axis.acceleration_max = scale * table.number("acceleration_max_" + unit + "_s2", kAboveZero);
+  axis.jerk_max = scale * table.number("jerk_max_" + unit + "_s3", kAboveZero);
+  axis.home = scale * table.number("home_" + unit, {}, 0.0);
+  if (!table.has("min_" + unit) || !table.has("max_" + unit)) return;
+  if (!(axis.min < axis.max)) {
+    table.error("bad-travel", "min_" + unit,
+                fmt::format("the travel of axis {} ends at {:g} {} where it begins at {:g}", axis.name,
+                            axis.max / scale, unit, axis.min / scale),
+                "min must lie below max");
+  } else if (axis.home < axis.min || axis.home > axis.max) {
+    table.error("home-outside-travel", "home_" + unit,
+                fmt::format("home of axis {} is {:g} {}, outside its travel {:g} .. {:g}", axis.name,
+                            axis.home / scale, unit, axis.min / scale, axis.max / scale),
+                "put home inside the travel");
+  }
+}
+
+Axis read_axis(ConfigTable& table) {
+  Axis axis;
+  axis.name = table.text("name");
+  if (table.has("name") &&
+      std::find(kAxisLetters.begin(), kAxisLetters.end(), axis.name) == kAxisLetters.end()) {
+    table.error("unknown-axis", "name", fmt::format("there is no axis '{}'", axis.name),
+                fmt::format("axes are called {}", fmt::join(kAxisLetters, " ")));
+  }
+  axis.kind = table.choice("type", {"linear", "rotary"}) == "rotary" ? AxisKind::kRotary : AxisKind::kLinear;
+  axis.direction_M = read_direction(table, "direction");
+  if (axis.kind == AxisKind::kRotary)
+    axis.origin_M = read_vec3(table, "origin_mm", std::vector<double>{0, 0, 0});
+  axis.reversed = table.boolean("reversed", false);
+  read_limits(table, axis);
+  return axis;
+}
+
+LinkEntry read_link(ConfigTable table) {
+  LinkEntry entry{
+      table, table.text("name"), table.text("parent", ""), table.text("axis", ""), table.text("mesh", ""), "",
+      {}};
+  if (table.has("mount")) entry.mount = table.choice("mount", {"work", "tool"});
+  const Vec3 colour = read_vec3(table, "colour", std::vector<double>{0.7, 0.7, 0.7});
+  entry.link.name = entry.name;
+  for (int i = 0; i < 3; ++i) entry.link.colour[static_cast<size_t>(i)] = static_cast<float>(colour[i]);
+  entry.link.metalness = static_cast<float>(table.number("metalness", {0.0, 1.0}, 0.0));
+  entry.link.roughness = static_cast<float>(table.number("roughness", {0.0, 1.0}, 0.6));
+  return entry;
+}
+
+class MachineReader {
+ public:
+  MachineReader(const std::string& path, Diagnostics& diagnostics)
+      : path_(path), diagnostics_(diagnostics), root_(ConfigTable::load(path, {}, diagnostics)) {}
+
+  MachineScene read() {
+    if (diagnostics_.has_errors()) return {};
+    scene_.file = path_;
+    scene_.model.name = root_.text("name");
+    read_axes();
+    for (ConfigTable& table : root_.tables("link")) entries_.push_back(read_link(table));
+    ConfigTable work = root_.table("work");
+    scene_.model.X_MW.translation() = read_vec3(work, "origin_mm");
+    ConfigTable tool = root_.table("tool");
+    scene_.model.tip_M = read_vec3(tool, "tip_mm", std::vector<double>{0, 0, 0});
+    scene_.model.tool_axis_M = read_direction(tool, "axis", std::vector<double>{0, 0, 1});
+    root_.finish();
+    if (!diagnostics_.has_errors()) resolve_links();
+    if (!diagnostics_.has_errors()) make_chains();
+    if (!diagnostics_.has_errors()) check_kinematics();
+    if (!diagnostics_.has_errors()) load_meshes();
+    return std::move(scene_);
+  }
+
+ private:
+  void read_axes() {
+    for (ConfigTable& table : root_.tables("axis")) {
+      const Axis axis = read_axis(table);
+      if (axis_index(axis.name) >= 0) {
+        table.error("axis-twice", "name", fmt::format("axis {} is described twice", axis.name),
+                    "give each axis a letter of its own");
+      }
+      scene_.model.axes.push_back(axis);
+      axis_tables_.push_back(table);
+    }
+    if (scene_.model.axes.empty()) {
+      root_.error("missing-key", "axis", "the machine has no axes", "describe them in [[axis]] tables");
+    }
+    if (scene_.model.axes.size() > static_cast<size_t>(kinematics::kMaxAxes)) {
+      root_.error("too-many-axes", "axis", fmt::format("the machine has {} axes", scene_.model.axes.size()),
+                  "at most three linear and two rotary axes");
+    }
+  }
+
+  int axis_index(const std::string& name) const {
+    const auto& axes = scene_.model.axes;
+    const auto found =
+        std::find_if(axes.begin(), axes.end(), [&](const Axis& axis) { return axis.name == name; });
+    return found == axes.end() ? -1 : static_cast<int>(found - axes.begin());
+  }
+
+  int entry_index(const std::string& name) const {
+    const auto found =
+        std::find_if(entries_.begin(), entries_.end(), [&](const LinkEntry& e) { return e.name == name; });
+    return found == entries_.end() ? -1 : static_cast<int>(found - entries_.begin());
+  }
+
+  std::vector<std::string> link_names() const {
+    std::vector<std::string> names;
+    for (const LinkEntry& entry : entries_) names.push_back(entry.name);
+    return names;
+  }
+
+  /// Parents before children, names turned into indices.
+  void resolve_links() {
+    std::map<int, int> place;  // entry -> link
+    for (size_t i = 0; i < entries_.size(); ++i) place_link(static_cast<int>(i), place);
+    for (size_t i = 0; i < scene_.model.axes.size() && !diagnostics_.has_errors(); ++i) {
+      const bool carried = std::any_of(scene_.links.begin(), scene_.links.end(),
+                                       [&](const Link& l) { return l.axis == static_cast<int>(i); });
+      if (!carried) {
+        axis_tables_[i].error("axis-without-link", "name",
+                              fmt::format("axis {} moves no link", scene_.model.axes[i].name),
+                              "name it as the axis of a [[link]]");
+      }
+    }
+  }
+
+  void place_link(int entry_number, std::map<int, int>& place) {
+    // Walk up until a link that is placed (or the floor), then place the way down.
+    std::vector<int> way;
+    int at = entry_number;
+    while (at >= 0 && place.count(at) == 0) {
+      const auto again = std::find(way.begin(), way.end(), at);
+      if (again != way.end()) {
+        report_cycle({again, way.end()});
+        return;
+      }
+      way.push_back(at);
+      LinkEntry& entry = entries_[static_cast<size_t>(at)];
+      at = entry.parent.empty() ? -1 : entry_index(entry.parent);
+      if (at < 0 && !entry.parent.empty()) {
+        const std::string near = nearest_name(entry.parent, link_names());
+        entry.table.error("unknown-parent", "parent",
+                          fmt::format("link '{}' stands on '{}', which is no link", entry.name, entry.parent),
+                          near.empty() ? "name another link, or leave the key out for the floor"
+                                       : fmt::format("did you mean '{}'?", near));
+        return;
+      }
+    }
+    for (auto it = way.rbegin(); it != way.rend(); ++it) {
+      LinkEntry& entry = entries_[static_cast<size_t>(*it)];
+      entry.link.parent = entry.parent.empty() ? -1 : place.at(entry_index(entry.parent));
+      place[*it] = static_cast<int>(scene_.links.size());
+      add_link(entry);
+    }
+  }
+
+  void report_cycle(const std::vector<int>& loop) {
+    // The walk up from a tail may have entered the loop anywhere; it is reported once.
+    if (cycle_reported_) return;
+    cycle_reported_ = true;
+    std::string names;
+    for (const int entry : loop) names += entries_[static_cast<size_t>(entry)].name + " -> ";
+    entries_[static_cast<size_t>(loop.front())].table.error(
+        "chain-cycle", "parent",
+        fmt::format("the links stand on each other in a circle: {}{}", names,
+                    entries_[static_cast<size_t>(loop.front())].name),
+        "one of them must stand on the floor or on a link outside the circle");
+  }
+
+  void add_link(LinkEntry& entry) {
+    if (!entry.axis.empty()) {
+      entry.link.axis = axis_index(entry.axis);
+      if (entry.link.axis < 0) {
+        entry.table.error(
+            "unknown-axis", "axis",
+            fmt::format("link '{}' moves with axis '{}', which is not described", entry.name, entry.axis),
+            "describe it in an [[axis]] table or name another");
+      }
+    }
+    const int index = static_cast<int>(scene_.links.size());
+    if (entry.mount == "work") set_mount(scene_.work_link, index, entry);
+    if (entry.mount == "tool") set_mount(scene_.tool_link, index, entry);
+    scene_.links.push_back(entry.link);
+    placed_entries_.push_back(entry_index(entry.name));
+  }
+
+  static void set_mount(int& mount, int index, LinkEntry& entry) {
+    if (mount >= 0)
+      entry.table.error("mount-twice", "mount",
+                        fmt::format("link '{}' is a second {} mount", entry.name, entry.mount), "keep one");
+    mount = index;
+  }
+
+  void make_chains() {
+    for (const auto& [mount, name] :
+         {std::pair{scene_.work_link, "work"}, std::pair{scene_.tool_link, "tool"}}) {
+      if (mount < 0)
+        root_.error("no-mount", "link", fmt::format("no link carries the {}", name),
+                    fmt::format("add mount = \"{}\" to a [[link]]", name));
+    }
+    if (diagnostics_.has_errors()) return;
+    scene_.model.table_chain = chain_of(scene_.work_link, kinematics::Side::kTable);
+    scene_.model.head_chain = chain_of(scene_.tool_link, kinematics::Side::kHead);
+  }
+
+  /// Axes from the floor to the mount; their side follows from it.
+  std::vector<int> chain_of(int mount, kinematics::Side side) {
+    std::vector<int> chain;
+    for (int link = mount; link >= 0; link = scene_.links[static_cast<size_t>(link)].parent) {
+      const int axis = scene_.links[static_cast<size_t>(link)].axis;
+      if (axis < 0) continue;
+      scene_.model.axes[static_cast<size_t>(axis)].side = side;
+      chain.push_back(axis);
+    }
+    std::reverse(chain.begin(), chain.end());
+    return chain;
+  }
+
+  void check_kinematics() {
+    for (const kinematics::ModelProblem& problem : kinematics::check_model(scene_.model)) {
+      if (problem.axis >= 0) {
+        axis_tables_[static_cast<size_t>(problem.axis)].error(problem.code, "name", problem.text,
+                                                              problem.fix);
+      } else {
+        root_.error(problem.code, "axis", problem.text, problem.fix);
+      }
+    }
+  }
+
+  void load_meshes() {
+    for (size_t i = 0; i < scene_.links.size(); ++i) {
+      LinkEntry& entry = entries_[static_cast<size_t>(placed_entries_[i])];
+      if (entry.mesh.empty()) continue;
+      const fs::path file = fs::path(path_).parent_path() / entry.mesh;
+      try {
+        scene_.links[i].mesh = mesh::load_mesh(file.string());
+      } catch (const InputError& error) {
+        const Diagnostic& first = error.diagnostics.list().front();
+        entry.table.error(first.code, "mesh", fmt::format("{}: {}", file.string(), first.text), first.fix);
+      }
+    }
+  }
+
+  std::string path_;
+  Diagnostics& diagnostics_;
+  ConfigTable root_;
+  MachineScene scene_;
+  std::vector<LinkEntry> entries_;
+  std::vector<ConfigTable> axis_tables_;
+  std::vector<int> placed_entries_;  ///< link -> entry
+  bool cycle_reported_ = false;
+};
+
+}  // namespace
+
+MachineScene load_machine(const std::string& path) {
+  Diagnostics diagnostics;
+  MachineScene scene = MachineReader(path, diagnostics).read();
+  diagnostics.throw_if_errors();
+  return scene;
+}
+
+}  // namespace swarf::machine
