@@ -1,0 +1,132 @@
+#include "render/raster/gpu_mesh.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "base/check.h"
+#include "base/hash.h"
+
+namespace swarf::render {
+namespace {
+
+constexpr size_t kFingerprintSamples = 64;
+
+/// Sizes and some positions: tells a mesh from another that took its address.
+uint64_t fingerprint(const TriMesh& mesh) {
+  Hash hash;
+  for (const size_t size :
+       {mesh.positions.size(), mesh.triangles.size(), mesh.normals.size(), mesh.colours.size()}) {
+    hash.add(uint64_t{size});
+  }
+  const size_t step = mesh.positions.size() / kFingerprintSamples + 1;
+  for (size_t i = 0; i < mesh.positions.size(); i += step) {
+    for (const float c : mesh.positions[i]) hash.add(c);
+    if (!mesh.colours.empty()) {
+      for (const uint8_t c : mesh.colours[i]) hash.add(uint64_t{c});
+    }
+  }
+  return hash.value();
+}
+
+Box bounds_of(const TriMesh& mesh) {
+  Eigen::Array3f low = Eigen::Array3f::Constant(mesh.positions.empty() ? 0.0F : 1e30F), high = -low;
+  for (const auto& p : mesh.positions) {
+    const Eigen::Array3f v(p[0], p[1], p[2]);
+    low = low.min(v);
+    high = high.max(v);
+  }
+  return {low.matrix().cast<double>(), high.matrix().cast<double>()};
+}
+
+/// Vertices are split along creases, so vertices count as one where their positions are equal.
+std::vector<uint32_t> merged_vertices(const TriMesh& mesh) {
+  std::vector<uint32_t> order(mesh.positions.size()), merged(mesh.positions.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::sort(order.begin(), order.end(),
+            [&](uint32_t a, uint32_t b) { return mesh.positions[a] < mesh.positions[b]; });
+  for (size_t i = 0; i < order.size(); ++i) {
+    const bool same = i > 0 && mesh.positions[order[i]] == mesh.positions[order[i - 1]];
+    merged[order[i]] = same ? merged[order[i - 1]] : order[i];
+  }
+  return merged;
+}
+
+/// True when each edge is met as often in one direction as in the other.
+bool is_closed(const TriMesh& mesh) {
+  const std::vector<uint32_t> merged = merged_vertices(mesh);
+  std::vector<std::pair<uint32_t, uint32_t>> forward, backward;
+  for (const auto& triangle : mesh.triangles) {
+    for (size_t k = 0; k < 3; ++k) {
+      const uint32_t a = merged[triangle[k]], b = merged[triangle[(k + 1) % 3]];
+      if (a < b) forward.emplace_back(a, b);
+      if (b < a) backward.emplace_back(b, a);
+    }
+  }
+  std::sort(forward.begin(), forward.end());
+  std::sort(backward.begin(), backward.end());
+  return forward == backward;
+}
+
+}  // namespace
+
+const GpuMesh& GpuMeshCache::get(const TriMesh& mesh, bool dynamic) {
+  const auto [found, inserted] = entries_.try_emplace(&mesh);
+  Entry& entry = found->second;
+  entry.used = true;
+  const uint64_t now = fingerprint(mesh);
+  if (inserted || dynamic || entry.mesh.fingerprint != now) {
+    upload(mesh, dynamic, entry.mesh);
+    entry.mesh.fingerprint = now;
+  }
+  return entry.mesh;
+}
+
+void GpuMeshCache::collect() {
+  for (auto it = entries_.begin(); it != entries_.end();) {
+    if (it->second.used) {
+      it->second.used = false;
+      ++it;
+      continue;
+    }
+    gl_.DeleteVertexArrays(1, &it->second.mesh.vertex_array);
+    gl_.DeleteBuffers(4, it->second.mesh.buffers);
+    it = entries_.erase(it);
+  }
+}
+
+void GpuMeshCache::upload(const TriMesh& mesh, bool dynamic, GpuMesh& target) {
+  SWARF_CHECK(mesh.normals.empty() || mesh.normals.size() == mesh.positions.size(), "one normal per vertex");
+  SWARF_CHECK(mesh.colours.empty() || mesh.colours.size() == mesh.positions.size(), "one colour per vertex");
+  if (target.vertex_array != 0) {
+    gl_.DeleteVertexArrays(1, &target.vertex_array);
+    gl_.DeleteBuffers(4, target.buffers);
+  }
+  gl_.GenVertexArrays(1, &target.vertex_array);
+  gl_.GenBuffers(4, target.buffers);
+  gl_.BindVertexArray(target.vertex_array);
+  const GLenum usage = dynamic ? GL_STREAM_DRAW : GL_STATIC_DRAW;
+  const auto attribute = [&](GLuint index, GLint components, GLenum type, GLboolean normalised,
+                             const auto& data) {
+    if (data.empty()) return;
+    gl_.BindBuffer(GL_ARRAY_BUFFER, target.buffers[index]);
+    gl_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(data.size() * sizeof(data[0])), data.data(),
+                   usage);
+    gl_.VertexAttribPointer(index, components, type, normalised, 0, nullptr);
+    gl_.EnableVertexAttribArray(index);
+  };
+  attribute(0, 3, GL_FLOAT, GL_FALSE, mesh.positions);
+  attribute(1, 3, GL_FLOAT, GL_FALSE, mesh.normals);
+  attribute(2, 4, GL_UNSIGNED_BYTE, GL_TRUE, mesh.colours);
+  gl_.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, target.buffers[3]);
+  gl_.BufferData(GL_ELEMENT_ARRAY_BUFFER,
+                 static_cast<GLsizeiptr>(mesh.triangles.size() * sizeof(mesh.triangles[0])),
+                 mesh.triangles.data(), usage);
+  target.index_count = static_cast<GLsizei>(3 * mesh.triangles.size());
+  target.has_normals = !mesh.normals.empty();
+  target.has_colours = !mesh.colours.empty();
+  target.closed = !dynamic && is_closed(mesh);
+  target.bounds = bounds_of(mesh);
+}
+
+}  // namespace swarf::render

@@ -1,0 +1,60 @@
+#include "render/raster/scene_view.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/camera.h"
+
+namespace swarf::render {
+namespace {
+
+constexpr double kGroundReach = 2.2;   // radius of the floor in radii of the scene
+constexpr double kNearShare = 0.002;   // nearest plane as a share of the farthest: 24-bit depth stays fine
+constexpr double kLightMargin = 1.05;  // of the scene's radius: nothing touches the border of the shadow map
+
+/// A direction `left` and `elevation` (degrees) as the camera's bearing sees it: 0 is from behind the camera.
+Vec3 light_direction(const Vec3& forward, double left_deg, double elevation_deg) {
+  const double bearing = std::atan2(-forward.y(), -forward.x()) - left_deg * (M_PI / 180.0);
+  const double elevation = elevation_deg * (M_PI / 180.0);
+  return {std::cos(bearing) * std::cos(elevation), std::sin(bearing) * std::cos(elevation),
+          std::sin(elevation)};
+}
+
+Eigen::Matrix4d parallel_projection(const Vec3& towards_light, const Vec3& centre, double radius) {
+  const Vec3 right = Vec3::UnitZ().cross(towards_light).normalized();
+  Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
+  m.block<1, 3>(0, 0) = right / radius;
+  m.block<1, 3>(1, 0) = towards_light.cross(right) / radius;
+  m.block<1, 3>(2, 0) = -towards_light / radius;
+  m.block<3, 1>(0, 3) = -m.block<3, 3>(0, 0) * centre;
+  return m;
+}
+
+}  // namespace
+
+void extend(Box& bounds, const Box& box, const Pose& X_world) {
+  for (const Vec3& corner : corners(box)) {
+    const Vec3 p = X_world * corner;
+    bounds.lower = bounds.lower.cwiseMin(p);
+    bounds.upper = bounds.upper.cwiseMax(p);
+  }
+}
+
+SceneView scene_view(const Camera& camera, const Box& bounds, double aspect) {
+  SceneView view;
+  const double radius = std::max(0.5 * bounds.size().norm(), 1e-3);
+  const Vec3 forward = (camera.target - camera.eye).normalized();
+  view.key = light_direction(forward, 38.0, 52.0);
+  view.fill = light_direction(forward, -55.0, 20.0);
+  view.rim = light_direction(forward, -150.0, 35.0);
+  view.ground_centre = {bounds.centre().x(), bounds.centre().y(), bounds.lower.z()};
+  view.ground_radius = kGroundReach * radius;
+  const double far = (camera.eye - bounds.centre()).norm() + std::sqrt(2.0) * view.ground_radius + radius;
+  const double near = std::max((camera.eye - bounds.centre()).norm() - radius, kNearShare * far);
+  view.clip_from_world = perspective_matrix(camera.vertical_fov_rad, aspect, near, far) * view_matrix(camera);
+  view.light_extent_mm = 2.0 * kLightMargin * radius;
+  view.light_clip_from_world = parallel_projection(view.key, bounds.centre(), kLightMargin * radius);
+  return view;
+}
+
+}  // namespace swarf::render

@@ -1,0 +1,23 @@
+// Where the lights stand and how deep the scene is: everything a frame needs beside the items.
+#pragma once
+
+#include "render/draw_list.h"
+
+namespace swarf::render {
+
+struct SceneView {
+  Eigen::Matrix4d clip_from_world;
+  Eigen::Matrix4d light_clip_from_world;  ///< the key light's parallel projection of the scene
+  double light_extent_mm = 1.0;           ///< width of that projection
+  Vec3 key, fill, rim;                    ///< unit vectors towards the lights
+  Vec3 ground_centre;
+  double ground_radius = 1.0;
+};
+
+/// `bounds` holds every item of the scene in the drawing's frame.
+SceneView scene_view(const Camera& camera, const Box& bounds, double aspect);
+
+/// Grows `bounds` by a box at a pose.
+void extend(Box& bounds, const Box& box, const Pose& X_world);
+
+}  // namespace swarf::render
