@@ -33,10 +33,13 @@ class Stock {
 
   double voxel_mm() const;
   const Box& box() const;
-  double volume_mm3() const;                      ///< material left
+  /// Material left: every cell by the fraction that its level set fills (exact for planes, even oblique ones;
+  /// an edge of length l is off by up to l voxel^2 / 12, with opposite signs for convex and concave ones).
+  double volume_mm3() const;
   double distance_mm(const Vec3& point_W) const;  ///< trilinear signed distance, clamped to the band
   /// Closed surface of the material with outward normals; every triangle faces outward.
-  TriMesh mesh() const;
+  /// `adaptivity` > 0 merges flat regions (slower, loses features of its size in voxels).
+  TriMesh mesh(double adaptivity = 0.0) const;
   uint64_t hash() const;
   size_t memory_bytes() const;
   const CutStatistics& statistics() const;
@@ -48,7 +51,8 @@ class Stock {
   /// Throws InputError for what is not a level set written by save().
   static Stock load(const std::string& path);
 
-  /// Bytes that a box at this voxel size is expected to need, its peak while cutting included.
+  /// Bytes that a box at this voxel size is expected to need, its peak while cutting included: leaves along
+  /// its surface and along as much new surface again as half of that, plus the dense map of leaf positions.
   static size_t memory_estimate(const Box& box_W, double voxel_mm);
 
  private:

@@ -1,0 +1,220 @@
+// Cutting, in batches of sweeps:
+//   1. gather: every sweep lists the leaf positions it can change (parallel over sweeps)
+//   2. sort by position, then by sweep
+//   3. cut: each position applies its sweeps in order (parallel over positions; one task owns a leaf)
+//   4. settle: new leaves enter the tree, emptied ones leave it (serial, in order of position)
+// Each voxel ends as the maximum over the sweeps that reach it, whatever the batches, calls and threads.
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+
+#include "base/parallel.h"
+#include "stock/leaf_kernel.h"
+#include "stock/stock_grid_internal.h"
+#include "stock/sweep_distance.h"
+#include "stock/sweep_map.h"
+
+namespace swarf::stock {
+namespace {
+
+/// Large enough to share the sort and the task start-up, small enough for the pairs to stay in cache.
+constexpr size_t kBatch = 512;
+constexpr size_t kSweepsPerTask = 4;
+constexpr size_t kGroupsPerTask = 8;
+
+/// leaf position << 32 | sweep of the batch << 1 | the cutter swallows the whole leaf.
+using Pair = uint64_t;
+
+Pair make_pair(size_t leaf, size_t sweep, bool swallows) {
+  return static_cast<Pair>(leaf) << 32 | static_cast<Pair>(sweep) << 1 | static_cast<Pair>(swallows);
+}
+size_t leaf_of(Pair pair) {
+  return pair >> 32;
+}
+size_t sweep_of(Pair pair) {
+  return (pair & 0xffffffffu) >> 1;
+}
+bool swallows(Pair pair) {
+  return (pair & 1u) != 0;
+}
+
+struct Group {
+  size_t begin, end;  ///< in the sorted pairs
+};
+
+struct Batch {
+  std::span<const Sweep> sweeps;
+  std::vector<SweepMap> maps;
+  CutterSolid cutter;
+  std::vector<Pair> pairs;
+  std::vector<Group> groups;
+};
+
+/// Box around the standing cutter.
+Box cutter_box(const ToolPose& pose, const CutterSolid& cutter) {
+  Box box;
+  for (int a = 0; a < 3; ++a) {
+    const double side = cutter.radius * std::sqrt(std::max(0.0, 1.0 - pose.axis_W[a] * pose.axis_W[a]));
+    const double top = cutter.height * pose.axis_W[a];
+    box.lower[a] = pose.tip_W[a] + std::min(0.0, top) - side;
+    box.upper[a] = pose.tip_W[a] + std::max(0.0, top) + side;
+  }
+  return box;
+}
+
+/// Inclusive range of leaf positions along axis `a` that [low, high] mm reaches.
+std::pair<int, int> leaf_range(const LevelSet& set, int a, double low, double high) {
+  const double leaf_mm = kLeafSide * set.voxel;
+  const double first = std::floor(low / leaf_mm) - set.map.lower[a];
+  const double last = std::floor(high / leaf_mm) - set.map.lower[a];
+  const double top = set.map.dimension[a] - 1;
+  return {static_cast<int>(std::clamp(first, 0.0, top + 1.0)), static_cast<int>(std::clamp(last, -1.0, top))};
+}
+
+MovingPoint<double> moving_point(const SweepMap& map, const Vec3& point) {
+  const Vec3 P = map.start(point), D = map.end(point) - P;
+  return {P.x(), P.y(), P.z(), D.x(), D.y(), D.z()};
+}
+
+/// Lists the leaf positions whose values sweep `n` can raise: those whose centre is near enough, because the
+/// distance changes by no more than the way walked from there (1-Lipschitz).
+void gather_sweep(const LevelSet& set, const Batch& batch, size_t n, std::vector<Pair>& pairs) {
+  const Sweep& sweep = batch.sweeps[n];
+  const Box a = cutter_box(sweep.start, batch.cutter), b = cutter_box(sweep.end, batch.cutter);
+  // In the max norm the band reaches out by its width beside and below the cutter, so sqrt(2) at its edge.
+  const double margin =
+      std::sqrt(2.0) * set.band() + motion_bound(sweep, std::hypot(batch.cutter.height, batch.cutter.radius));
+  std::pair<int, int> range[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    range[axis] = leaf_range(set, axis, std::min(a.lower[axis], b.lower[axis]) - margin,
+                             std::max(a.upper[axis], b.upper[axis]) + margin);
+  }
+  const double reach = set.leaf_radius() + set.band();
+  for (int i = range[0].first; i <= range[0].second; ++i) {
+    for (int j = range[1].first; j <= range[1].second; ++j) {
+      for (int k = range[2].first; k <= range[2].second; ++k) {
+        const size_t leaf = set.map.index(i, j, k);
+        if (set.map.states[leaf] == LeafState::kAir) continue;
+        const double distance = swept_distance<double, true>(
+            moving_point(batch.maps[n], set.leaf_centre(leaf)), batch.cutter.radius, batch.cutter.height);
+        if (distance < reach) pairs.push_back(make_pair(leaf, n, distance < -reach));
+      }
+    }
+  }
+}
+
+void gather(const LevelSet& set, Batch& batch) {
+  const size_t count = batch.sweeps.size();
+  std::vector<std::vector<Pair>> found((count + kSweepsPerTask - 1) / kSweepsPerTask);
+  parallel_chunks(count, kSweepsPerTask, [&](size_t begin, size_t end) {
+    for (size_t n = begin; n < end; ++n) gather_sweep(set, batch, n, found[begin / kSweepsPerTask]);
+  });
+  batch.pairs.clear();
+  for (const auto& part : found) batch.pairs.insert(batch.pairs.end(), part.begin(), part.end());
+  tbb::parallel_sort(batch.pairs.begin(), batch.pairs.end());
+  batch.groups.clear();
+  for (size_t n = 0; n < batch.pairs.size(); ++n) {
+    if (n == 0 || leaf_of(batch.pairs[n]) != leaf_of(batch.pairs[n - 1])) batch.groups.push_back({n, n});
+    batch.groups.back().end = n + 1;
+  }
+}
+
+LeafMotion leaf_motion(const LevelSet& set, const SweepMap& map, const CutterSolid& cutter, size_t leaf) {
+  const openvdb::Coord origin = set.map.origin(leaf);
+  const Vec3 first = Vec3(origin.x(), origin.y(), origin.z()) * set.voxel;
+  const Vec3 start = map.start(first), end = map.end(first);
+  LeafMotion motion{};
+  for (int c = 0; c < 3; ++c) {
+    motion.start[c] = static_cast<float>(start[c]);
+    motion.end[c] = static_cast<float>(end[c]);
+    for (int a = 0; a < 3; ++a) {
+      motion.start_step[a][c] = static_cast<float>(map.R0t(c, a) * set.voxel);
+      motion.end_step[a][c] = static_cast<float>(map.R1t(c, a) * set.voxel);
+    }
+  }
+  motion.radius = static_cast<float>(cutter.radius);
+  motion.height = static_cast<float>(cutter.height);
+  motion.background = set.band();
+  // Below (height - band) the top end could only change values that the clamp makes equal anyway.
+  const Vec3 centre = set.leaf_centre(leaf);
+  const double highest = std::max(map.start(centre).z(), map.end(centre).z()) + set.leaf_radius();
+  motion.capped = highest > cutter.height - set.band();
+  return motion;
+}
+
+struct Outcome {
+  LeafState state = LeafState::kLeaf;
+  std::unique_ptr<LeafNode> made;
+  uint64_t evaluated = 0;  ///< pairs
+};
+
+/// Applies one group. The leaf is changed in place, or made when the position was solid so far.
+Outcome cut_leaf(const LevelSet& set, const Batch& batch, const Group& group) {
+  const size_t leaf = leaf_of(batch.pairs[group.begin]);
+  Outcome outcome;
+  for (size_t n = group.begin; n < group.end; ++n) {
+    if (!swallows(batch.pairs[n])) continue;
+    outcome.state = LeafState::kAir;
+    return outcome;
+  }
+  LeafNode* node = set.map.leaves[leaf];
+  if (node == nullptr) {
+    outcome.made = std::make_unique<LeafNode>(set.map.origin(leaf), -set.band(), false);
+    node = outcome.made.get();
+  }
+  static const LeafKernel kernel = leaf_kernel_variants().front().kernel;
+  float* values = node->buffer().data();
+  for (size_t n = group.begin; n < group.end; ++n) {
+    kernel(values, leaf_motion(set, batch.maps[sweep_of(batch.pairs[n])], batch.cutter, leaf));
+  }
+  outcome.evaluated = group.end - group.begin;
+  outcome.state = settle_leaf(*node, set.band());
+  return outcome;
+}
+
+void settle(LevelSet& set, size_t leaf, Outcome& outcome) {
+  auto& tree = set.grid->tree();
+  if (outcome.state == LeafState::kLeaf && outcome.made) {
+    set.map.leaves[leaf] = outcome.made.get();
+    tree.addLeaf(outcome.made.release());
+  } else if (outcome.state == LeafState::kAir) {
+    constexpr openvdb::Index kLeafLevel = 1;  // a tile that replaces one leaf
+    tree.addTile(kLeafLevel, set.map.origin(leaf), set.band(), false);
+    set.map.leaves[leaf] = nullptr;
+  }
+  set.map.states[leaf] = outcome.state;
+}
+
+void cut_batch(LevelSet& set, Batch& batch) {
+  gather(set, batch);
+  std::vector<Outcome> outcomes(batch.groups.size());
+  parallel_chunks(batch.groups.size(), kGroupsPerTask, [&](size_t begin, size_t end) {
+    for (size_t g = begin; g < end; ++g) outcomes[g] = cut_leaf(set, batch, batch.groups[g]);
+  });
+  for (size_t g = 0; g < outcomes.size(); ++g) {
+    set.statistics.leaf_visits += outcomes[g].evaluated;
+    settle(set, leaf_of(batch.pairs[batch.groups[g].begin]), outcomes[g]);
+  }
+}
+
+}  // namespace
+
+void cut_level_set(LevelSet& set, std::span<const Sweep> sweeps, const CutterSolid& cutter) {
+  const auto begun = std::chrono::steady_clock::now();
+  Batch batch;
+  batch.cutter = cutter;
+  for (size_t first = 0; first < sweeps.size(); first += kBatch) {
+    batch.sweeps = sweeps.subspan(first, std::min(kBatch, sweeps.size() - first));
+    batch.maps.clear();
+    for (const Sweep& sweep : batch.sweeps) batch.maps.push_back(sweep_map(sweep));
+    cut_batch(set, batch);
+  }
+  set.statistics.sweeps += sweeps.size();
+  set.statistics.voxel_updates = set.statistics.leaf_visits * kLeafVoxels;
+  set.statistics.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+}
+
+}  // namespace swarf::stock

@@ -1,0 +1,176 @@
+// Stock files: an OpenVDB file that other programs can open, with sixteen bytes after its end that they
+// ignore: a mark and a checksum of everything before. A file that is cut off or damaged is recognised by them
+// before any of it is interpreted.
+#include <fmt/format.h>
+#include <openvdb/io/Stream.h>
+
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "base/check.h"
+#include "base/diagnostics.h"
+#include "base/hash.h"
+#include "stock/stock_grid_internal.h"
+
+namespace swarf::stock {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr char kMark[] = "SWARFVDB";
+constexpr size_t kMarkBytes = 8;
+constexpr size_t kTrailerBytes = kMarkBytes + sizeof(uint64_t);
+constexpr char kFormatKey[] = "swarf_stock_format";
+constexpr char kFormat[] = "1";
+constexpr char kBoxLowerKey[] = "swarf_box_lower_mm";
+constexpr char kBoxUpperKey[] = "swarf_box_upper_mm";
+
+uint64_t checksum(std::string_view bytes) {
+  Hash hash;
+  hash.add(static_cast<uint64_t>(bytes.size()));
+  for (size_t at = 0; at < bytes.size(); at += sizeof(uint64_t)) {
+    uint64_t word = 0;
+    std::memcpy(&word, bytes.data() + at, std::min(sizeof(word), bytes.size() - at));
+    hash.add(word);
+  }
+  return hash.value();
+}
+
+[[noreturn]] void refuse(const std::string& code, const std::string& path, const std::string& text,
+                         const std::string& fix) {
+  throw InputError(code, {path, 0, 0}, text, fix);
+}
+
+std::string read_bytes(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream bytes;
+  if (!in || fs::is_directory(path)) {
+    refuse("stock-file-unreadable", path, "the stock file cannot be read",
+           "name a file written by swarf run");
+  }
+  bytes << in.rdbuf();
+  return std::move(bytes).str();
+}
+
+/// The OpenVDB part of a file whose trailer is whole.
+std::string verified_bytes(const std::string& path) {
+  std::string bytes = read_bytes(path);
+  if (bytes.empty()) {
+    refuse("stock-file-empty", path, "the stock file is empty", "run the scene again to write it");
+  }
+  const bool marked = bytes.size() > kTrailerBytes &&
+                      bytes.compare(bytes.size() - kTrailerBytes, kMarkBytes, kMark, kMarkBytes) == 0;
+  if (!marked) {
+    refuse("stock-file-incomplete", path,
+           fmt::format("the file of {} bytes does not end as swarf ends its stock files", bytes.size()),
+           "it was cut off, or another program wrote it: use a stock.vdb written by swarf run");
+  }
+  uint64_t expected = 0;
+  std::memcpy(&expected, bytes.data() + bytes.size() - sizeof(expected), sizeof(expected));
+  bytes.resize(bytes.size() - kTrailerBytes);
+  if (checksum(bytes) != expected) {
+    refuse("stock-file-damaged", path, "the checksum of the stock file does not match its content",
+           "run the scene again to write it");
+  }
+  return bytes;
+}
+
+openvdb::FloatGrid::Ptr parse_grid(const std::string& path, const std::string& bytes) {
+  empty_grid(1.0);  // registers the grid types
+  openvdb::GridPtrVecPtr grids;
+  try {
+    std::istringstream in(bytes);
+    openvdb::io::Stream stream(in, /*delayLoad=*/false);
+    grids = stream.getGrids();
+  } catch (const openvdb::Exception& error) {
+    refuse("stock-file-damaged", path, fmt::format("OpenVDB cannot read the file: {}", error.what()),
+           "run the scene again to write it");
+  }
+  const auto grid = grids && grids->size() == 1 ? openvdb::gridPtrCast<openvdb::FloatGrid>(grids->front())
+                                                : openvdb::FloatGrid::Ptr();
+  if (!grid || grid->getGridClass() != openvdb::GRID_LEVEL_SET ||
+      !grid->getMetadata<openvdb::Vec3DMetadata>(kBoxLowerKey) ||
+      !grid->getMetadata<openvdb::Vec3DMetadata>(kBoxUpperKey)) {
+    refuse("stock-not-level-set", path, "the file holds no single level set with a stock box",
+           "use a stock.vdb written by swarf run");
+  }
+  return grid;
+}
+
+Vec3 metadata_vector(const openvdb::FloatGrid& grid, const char* key) {
+  const openvdb::Vec3d v = grid.metaValue<openvdb::Vec3d>(key);
+  return {v.x(), v.y(), v.z()};
+}
+
+/// Fills the map from the tree's leaves and tile signs.
+void attach_map(LevelSet& set) {
+  set.map = empty_map(set.box, set.voxel);
+  size_t found = 0;
+  for (size_t n = 0; n < set.map.size(); ++n) {
+    const openvdb::Coord origin = set.map.origin(n);
+    set.map.leaves[n] = set.grid->tree().probeLeaf(origin);
+    const bool solid = set.grid->tree().getValue(origin) < 0.0F;
+    set.map.states[n] = set.map.leaves[n] ? LeafState::kLeaf : solid ? LeafState::kSolid : LeafState::kAir;
+    found += set.map.leaves[n] ? 1 : 0;
+  }
+  SWARF_CHECK(found == set.grid->tree().leafCount(), "a verified stock file has leaves outside its box");
+}
+
+void add_metadata(openvdb::FloatGrid& grid, const LevelSet& set,
+                  const std::map<std::string, std::string>& metadata) {
+  for (const auto& [key, text] : metadata) grid.insertMeta(key, openvdb::StringMetadata(text));
+  const auto vector = [](const Vec3& v) { return openvdb::Vec3DMetadata({v.x(), v.y(), v.z()}); };
+  grid.insertMeta(kFormatKey, openvdb::StringMetadata(kFormat));
+  grid.insertMeta(kBoxLowerKey, vector(set.box.lower));
+  grid.insertMeta(kBoxUpperKey, vector(set.box.upper));
+}
+
+void append_trailer(const std::string& path) {
+  const uint64_t sum = checksum(read_bytes(path));
+  std::ofstream out(path, std::ios::binary | std::ios::app);
+  out.write(kMark, kMarkBytes);
+  out.write(reinterpret_cast<const char*>(&sum), sizeof(sum));
+  out.flush();
+  if (!out)
+    refuse("stock-file-unwritable", path, "the end of the stock file cannot be written", "free space");
+}
+
+}  // namespace
+
+void write_level_set(const LevelSet& set, const std::string& path,
+                     const std::map<std::string, std::string>& metadata) {
+  const std::string temporary = path + ".part";
+  openvdb::FloatGrid::Ptr grid = set.grid->copy();  // shares the tree, owns its metadata
+  add_metadata(*grid, set, metadata);
+  try {
+    openvdb::io::File file(temporary);
+    file.write(openvdb::GridPtrVec{grid});
+    file.close();
+    append_trailer(temporary);
+    fs::rename(temporary, path);
+  } catch (const openvdb::Exception& error) {
+    std::error_code ignored;
+    fs::remove(temporary, ignored);
+    refuse("stock-file-unwritable", path, fmt::format("the stock file cannot be written: {}", error.what()),
+           "check that the folder exists, may be written and has space");
+  } catch (const fs::filesystem_error& error) {
+    std::error_code ignored;
+    fs::remove(temporary, ignored);
+    refuse("stock-file-unwritable", path, fmt::format("the stock file cannot be renamed: {}", error.what()),
+           "check that the folder may be written");
+  }
+}
+
+LevelSet read_level_set(const std::string& path) {
+  LevelSet set;
+  set.grid = parse_grid(path, verified_bytes(path));
+  set.voxel = set.grid->voxelSize().x();
+  set.box = {metadata_vector(*set.grid, kBoxLowerKey), metadata_vector(*set.grid, kBoxUpperKey)};
+  attach_map(set);
+  return set;
+}
+
+}  // namespace swarf::stock

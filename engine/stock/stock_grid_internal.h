@@ -1,0 +1,88 @@
+// The level set behind Stock: an OpenVDB grid and beside it a dense map of its leaves. Internal to this
+// folder: the only header here that includes OpenVDB.
+//
+// Grid points lie at index * voxel in W. Values are distances in mm, negative inside the material, clamped to
+// +-band. Every leaf position of the box is in one of three states; a position whose values are all +band is
+// air, all -band solid, and neither has a leaf, so equal material means equal states.
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "base/frames.h"
+#include "stock/stock.h"
+
+// Grid and tree are compiled once, in stock_grid.cpp: each further file would spend six seconds on them.
+namespace openvdb {
+OPENVDB_USE_VERSION_NAMESPACE
+namespace OPENVDB_VERSION_NAME {
+extern template class Grid<FloatTree>;
+namespace tree {
+extern template class Tree<FloatTree::RootNodeType>;
+}
+}  // namespace OPENVDB_VERSION_NAME
+}  // namespace openvdb
+
+namespace swarf::stock {
+
+using LeafNode = openvdb::FloatTree::LeafNodeType;
+
+/// Half width of the narrow band in voxels.
+inline constexpr int kBandVoxels = 3;
+
+enum class LeafState : uint8_t { kAir, kSolid, kLeaf };
+
+/// All leaf positions of the box and its band, z fastest; position (i,j,k) holds voxels (lower + ijk) * 8 and
+/// on.
+struct LeafMap {
+  openvdb::Coord lower;      ///< in leaves
+  openvdb::Coord dimension;  ///< number of leaves
+  std::vector<LeafState> states;
+  std::vector<LeafNode*> leaves;  ///< owned by the tree; nullptr unless the state is kLeaf
+
+  size_t size() const { return states.size(); }
+  size_t index(int i, int j, int k) const {
+    return (static_cast<size_t>(i) * dimension.y() + j) * dimension.z() + k;
+  }
+  openvdb::Coord origin(size_t index) const;  ///< first voxel
+};
+
+struct LevelSet {
+  Box box;
+  double voxel = 0.0;
+  openvdb::FloatGrid::Ptr grid;
+  LeafMap map;
+  CutStatistics statistics;
+
+  float band() const { return static_cast<float>(kBandVoxels * voxel); }
+  /// Centre of a leaf position in W.
+  Vec3 leaf_centre(size_t index) const;
+  /// From a leaf's centre to its farthest voxel.
+  double leaf_radius() const;
+  /// Value at a grid point; +band outside the map.
+  float value(const openvdb::Coord& ijk) const;
+};
+
+/// Positions that a box and its band need.
+LeafMap empty_map(const Box& box, double voxel);
+openvdb::FloatGrid::Ptr empty_grid(double voxel);
+LevelSet make_box(const Box& box, double voxel);
+
+/// What a leaf's values amount to; sets the leaf's mask of active voxels (those inside the band) when it
+/// stays.
+LeafState settle_leaf(LeafNode& leaf, float band);
+
+/// Removes the sweeps from the level set (stock_cut.cpp).
+void cut_level_set(LevelSet& level_set, std::span<const Sweep> sweeps, const CutterSolid& cutter);
+double volume(const LevelSet& level_set);
+double trilinear(const LevelSet& level_set, const Vec3& point_W);
+TriMesh surface_mesh(const LevelSet& level_set, double adaptivity);
+uint64_t state_hash(const LevelSet& level_set);
+std::string broken_invariant(const LevelSet& level_set);
+void write_level_set(const LevelSet& level_set, const std::string& path,
+                     const std::map<std::string, std::string>& metadata);
+LevelSet read_level_set(const std::string& path);
+
+}  // namespace swarf::stock

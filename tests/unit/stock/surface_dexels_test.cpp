@@ -1,0 +1,168 @@
+#include "stock/surface_dexels.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "base/diagnostics.h"
+#include "base/parallel.h"
+#include "dome.h"
+#include "stock/ray_height.h"
+#include "stock_test_support.h"
+
+namespace swarf::stock {
+namespace {
+
+const CutterSolid kCutter{5.0, 25.0};
+const Box kBox{{-55, -45, -10}, {55, 45, 45}};
+
+TEST(SurfaceDexels, GridHasThePitchAndStartsAtTheStock) {
+  const SurfaceDexels dexels(dome(), 1.0, kBox);
+  EXPECT_EQ(dexels.nu(), 111);  // longest curve v = const: 109.823 mm
+  EXPECT_EQ(dexels.heights_mm().size(), static_cast<size_t>(dexels.nu()) * dexels.nv());
+  for (size_t n = 0; n < dexels.points().size(); n += 97) {
+    const Vec3 top = dexels.points()[n] + dexels.heights_mm()[n] * dexels.normals()[n];
+    EXPECT_NEAR(std::min((kBox.upper - top).minCoeff(), (top - kBox.lower).minCoeff()), 0.0, 1e-9);
+    EXPECT_EQ(dexels.blocks()[n], kUncut);
+  }
+}
+
+TEST(SurfaceDexels, DesignOutsideTheStockIsMissingMaterial) {
+  const SurfaceDexels dexels(dome(), 4.0, {{-55, -45, -10}, {55, 45, 20}});
+  for (size_t n = 0; n < dexels.points().size(); ++n) {
+    if (dexels.points()[n].z() > 20.0 + 1e-9) {
+      EXPECT_LT(dexels.heights_mm()[n], 0.0);
+    } else {
+      EXPECT_GE(dexels.heights_mm()[n], -1e-9);
+    }
+  }
+}
+
+/// Every ray against every sweep, without tiles, bounds or kernels.
+void expect_brute_force(const SurfaceDexels& dexels, const SurfaceDexels& fresh,
+                        std::span<const Sweep> sweeps) {
+  for (size_t n = 0; n < dexels.points().size(); ++n) {
+    double expected = fresh.heights_mm()[n];
+    for (const Sweep& sweep : sweeps) {
+      const double height = ray_height(dexels.points()[n], dexels.normals()[n], sweep, kCutter);
+      if (height > -kSkin) expected = std::min(expected, height);
+    }
+    ASSERT_NEAR(dexels.heights_mm()[n], expected, 1e-10) << "ray " << n;
+    if (dexels.blocks()[n] == kUncut) continue;
+    ASSERT_NEAR(ray_height(dexels.points()[n], dexels.normals()[n], sweeps[dexels.blocks()[n]], kCutter),
+                expected, 1e-10);
+  }
+}
+
+TEST(SurfaceDexels, DomePassesEqualBruteForce) {
+  const std::vector<Sweep> sweeps = dome_passes(0.35, 0.6, 6, 24);
+  SurfaceDexels dexels(dome(), 1.3, kBox);
+  const SurfaceDexels fresh = dexels;
+  dexels.cut(sweeps, kCutter);
+  expect_brute_force(dexels, fresh, sweeps);
+}
+
+TEST(SurfaceDexels, WildSweepsEqualBruteForce) {
+  for (const uint64_t seed : {41, 42, 43}) {
+    Rng rng(seed);
+    std::vector<Sweep> sweeps;
+    for (uint32_t n = 0; n < 150; ++n) {
+      const Vec3 target = dome()->point(rng.uniform(), rng.uniform());
+      Sweep sweep = random_sweep(rng, 1.0, 4.0, 0.2);
+      const Vec3 tilt = (Vec3(0, 0, 2) + rng.direction()).normalized();
+      sweep.end.axis_W = (tilt + 0.1 * rng.direction()).normalized();
+      sweep.start.axis_W = tilt;
+      sweep.start.tip_W += target + Vec3(0, 0, 1.5);
+      sweep.end.tip_W += target + Vec3(0, 0, 1.5);
+      sweep.block = n;
+      sweeps.push_back(sweep);
+    }
+    SurfaceDexels dexels(dome(), 2.1, kBox);
+    dexels.cut(sweeps, kCutter);
+    // Wild cuts may run deep below the skin from the side; compare where they do not.
+    const SurfaceDexels fresh(dome(), 2.1, kBox);
+    for (size_t n = 0; n < dexels.points().size(); ++n) {
+      double expected = fresh.heights_mm()[n];
+      bool deep = false;
+      for (const Sweep& sweep : sweeps) {
+        const double height = ray_height(dexels.points()[n], dexels.normals()[n], sweep, kCutter);
+        deep |= height < -kSkin;
+        expected = std::min(expected, height);
+      }
+      if (deep) continue;
+      ASSERT_NEAR(dexels.heights_mm()[n], expected, 1e-10) << "seed " << seed << " ray " << n;
+    }
+  }
+}
+
+TEST(SurfaceDexels, OrderCallsAndThreadsDoNotMatter) {
+  const std::vector<Sweep> sweeps = dome_passes(0.1, 0.9, 8, 40);
+  SurfaceDexels once(dome(), 0.9, kBox);
+  once.cut(sweeps, kCutter);
+  for (const int threads : {1, 2, 4}) {
+    set_thread_count(threads);
+    std::vector<Sweep> reversed(sweeps.rbegin(), sweeps.rend());
+    SurfaceDexels other(dome(), 0.9, kBox);
+    for (size_t n = 0; n < reversed.size(); n += 50) {
+      other.cut(std::span(reversed).subspan(n, std::min<size_t>(50, reversed.size() - n)), kCutter);
+    }
+    EXPECT_EQ(other.heights_mm(), once.heights_mm()) << threads << " threads";
+    EXPECT_EQ(other.blocks(), once.blocks()) << threads << " threads";
+  }
+  set_thread_count(0);
+}
+
+TEST(SurfaceDexels, ACutBehindTheSkinIsNotMet) {
+  // The cutter works on the underside, 5 mm below the dome's foot plane; the dome's rays run through it.
+  SurfaceDexels dexels(dome(), 5.0, kBox);
+  const SurfaceDexels fresh = dexels;
+  dexels.cut(std::vector<Sweep>{{{{-40, 0, -5}, -Vec3::UnitZ()}, {{40, 0, -5}, -Vec3::UnitZ()}, 0}}, kCutter);
+  EXPECT_EQ(dexels.heights_mm(), fresh.heights_mm());
+}
+
+class SurfaceDexelsFile : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder = std::filesystem::path(::testing::TempDir()) / "surface_dexels_file";
+    std::filesystem::create_directories(folder);
+    path = (folder / "surface.rays").string();
+  }
+  std::string code_of_load(const surface::SurfacePtr& surface) const {
+    try {
+      SurfaceDexels::load(path, surface);
+    } catch (const InputError& error) {
+      return error.diagnostics.list().front().code;
+    }
+    return "";
+  }
+  std::filesystem::path folder;
+  std::string path;
+};
+
+TEST_F(SurfaceDexelsFile, RoundTripAndDamage) {
+  SurfaceDexels dexels(dome(), 2.0, kBox);
+  dexels.cut(dome_passes(0.4, 0.6, 3, 10), kCutter);
+  dexels.save(path);
+  const SurfaceDexels loaded = SurfaceDexels::load(path, dome());
+  EXPECT_EQ(loaded.heights_mm(), dexels.heights_mm());
+  EXPECT_EQ(loaded.blocks(), dexels.blocks());
+  EXPECT_EQ(code_of_load(dome(59.0)), "rays-file-other-surface");
+  const auto size = std::filesystem::file_size(path);
+  {
+    std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(static_cast<std::streamoff>(size / 2));
+    file.put('\x55');
+  }
+  EXPECT_EQ(code_of_load(dome()), "rays-file-damaged");
+  for (const uintmax_t keep : {size - 1, size / 2, uintmax_t{40}, uintmax_t{3}, uintmax_t{0}}) {
+    std::filesystem::resize_file(path, keep);
+    EXPECT_EQ(code_of_load(dome()), "rays-file-damaged") << keep;
+  }
+  std::filesystem::remove(path);
+  EXPECT_EQ(code_of_load(dome()), "rays-file-unreadable");
+  EXPECT_THROW(dexels.save((folder / "missing" / "x.rays").string()), InputError);
+}
+
+}  // namespace
+}  // namespace swarf::stock
