@@ -4,9 +4,9 @@
 
 #include "base/diagnostics.h"
 #include "base/units.h"
+#include "kinematics/chain.h"
 #include "kinematics/machine_model.h"
 #include "kinematics/model_check.h"
-#include "kinematics/rotation.h"
 
 namespace swarf::kinematics {
 namespace {
@@ -14,6 +14,16 @@ namespace {
 /// A direction that a machine with fewer than two rotary axes cannot reach differs by more than this from
 /// those that it can, rad. Wider than rounding: forward() has the last word.
 constexpr double kReachTolerance = 1e-11;
+
+/// A squared length this close to 1 is a unit vector up to rounding.
+constexpr double kUnitRounding = 1e-15;
+
+/// The tool axis of most poses is unit already: then nothing waits for a root and three divisions.
+Vec3 unit(const Vec3& axis) {
+  const double squared = axis.squaredNorm();
+  if (std::abs(squared - 1.0) <= kUnitRounding) return axis;
+  return axis / std::sqrt(squared);
+}
 
 double sense(const Axis& axis) {
   return axis.reversed ? -1.0 : 1.0;
@@ -31,24 +41,27 @@ InverseKinematics::InverseKinematics(const MachineModel& machine) : machine_(mac
   for (int i = 0; i < static_cast<int>(machine.axes.size()); ++i) {
     if (machine.axes[i].kind == AxisKind::kLinear) linear_.push_back(i);
   }
-  const auto step = [&](int index, double side) {
+  const auto step = [&](int index) {
     const Axis& axis = machine.axes[index];
-    const std::vector<int>& peers = axis.kind == AxisKind::kLinear ? linear_ : rotary_;
-    const int slot = static_cast<int>(std::find(peers.begin(), peers.end(), index) - peers.begin());
-    return Step{axis.kind, slot, axis.kind == AxisKind::kLinear ? sense(axis) : side, axis.direction_M,
+    const auto column = std::find(linear_.begin(), linear_.end(), index) - linear_.begin();
+    return Step{axis.kind,
+                index,
+                static_cast<int>(column),
+                axis.kind == AxisKind::kLinear ? sense(axis) : link_sense(axis),
+                axis.direction_M,
                 axis.origin_M};
   };
-  for (auto it = machine.table_chain.rbegin(); it != machine.table_chain.rend(); ++it)
-    table_steps_.push_back(step(*it, -1.0));
-  for (auto it = machine.head_chain.rbegin(); it != machine.head_chain.rend(); ++it)
-    head_steps_.push_back(step(*it, 1.0));
-  for (const auto* steps : {&table_steps_, &head_steps_}) {
-    bool linear_met = false;
-    for (const Step& one : *steps) {
-      if (one.kind == AxisKind::kLinear) linear_met = true;
-      if (one.kind == AxisKind::kRotary && linear_met) columns_constant_ = false;
-    }
-  }
+  const auto steps_to_base = [&](const std::vector<int>& chain) {
+    std::vector<Step> steps;
+    std::transform(chain.rbegin(), chain.rend(), std::back_inserter(steps), step);
+    const auto first_linear = std::find_if(steps.begin(), steps.end(),
+                                           [](const Step& one) { return one.kind == AxisKind::kLinear; });
+    if (std::any_of(first_linear, steps.end(), [](const Step& one) { return one.kind == AxisKind::kRotary; }))
+      columns_constant_ = false;
+    return steps;
+  };
+  table_steps_ = steps_to_base(machine.table_chain);
+  head_steps_ = steps_to_base(machine.head_chain);
   Mat3 columns;
   for (int i = 0; i < 3; ++i) {
     columns.col(i) = sense(machine.axes[linear_[i]]) * machine.axes[linear_[i]].direction_M;
@@ -70,78 +83,88 @@ InverseKinematics::InverseKinematics(const MachineModel& machine) : machine_(mac
 
 int InverseKinematics::turns(const Vec3& axis_M, TurnPair out[2]) const {
   if (rotary_.size() == 2) return pair_.solve(axis_M, out);
-  out[0] = TurnPair();
+  out[0] = {0.0, 0.0, false};
   if (rotary_.empty()) return (axis_M - machine_.tool_axis_M).norm() <= kReachTolerance ? 1 : 0;
   if (!(std::abs(machine_.axes[rotary_[0]].direction_M.dot(axis_M) - single_along_) <= kReachTolerance))
     return 0;
-  const double a = single_basis_[0].dot(axis_M), b = single_basis_[1].dot(axis_M);
-  out[0].outer = {std::atan2(b, a), b / single_across_, a / single_across_};
+  out[0].outer = std::atan2(single_basis_[1].dot(axis_M), single_basis_[0].dot(axis_M));
   return 1;
 }
 
-double InverseKinematics::unwound(int axis, double turn, const AxisValues& hint) const {
+double InverseKinematics::unwound(int slot, double turn, const AxisValues& hint) const {
   constexpr double kTurn = 2.0 * kPi;
-  const Axis& limits = machine_.axes[axis];
-  const double value = sense(limits) * turn;
-  const double nearest = value + kTurn * std::nearbyint((hint[axis] - value) * (1.0 / kTurn));
-  if (nearest >= limits.min && nearest <= limits.max) return nearest;
-  const double other = nearest < limits.min ? nearest + kTurn : nearest - kTurn;
-  return other >= limits.min && other <= limits.max ? other : nearest;
+  const Axis& limits = machine_.axes[rotary_[slot]];
+  double value = sense(limits) * turn;
+  const double away = hint[rotary_[slot]] - value;
+  if (std::abs(away) > kPi) value += kTurn * std::nearbyint(away * (1.0 / kTurn));
+  if (value >= limits.min && value <= limits.max) return value;
+  const double other = value < limits.min ? value + kTurn : value - kTurn;
+  return other >= limits.min && other <= limits.max ? other : value;
 }
 
 int InverseKinematics::candidates(const Vec3& axis_M, const AxisValues& hint, Candidate out[2]) const {
   TurnPair found[2];
   const int count = turns(axis_M, found);
+  const size_t rotaries = rotary_.size();
   for (int i = 0; i < count; ++i) {
     Candidate& one = out[i];
-    one.turns = found[i];
     one.travel = 0.0;
-    for (size_t slot = 0; slot < rotary_.size(); ++slot) {
-      const int axis = rotary_[slot];
-      if (slot == 0 && one.turns.outer_free) {
-        // The free rotary stays where it is; its value cannot matter to the tool axis, but it moves the tip.
-        const double turn = sense(machine_.axes[axis]) * hint[axis];
-        one.value[0] = hint[axis];
-        one.turns.outer = {turn, std::sin(turn), std::cos(turn)};
-        continue;
-      }
-      one.value[slot] = unwound(axis, slot == 0 ? one.turns.outer.angle : one.turns.inner.angle, hint);
-      one.travel += std::abs(one.value[slot] - hint[axis]);
+    one.outer_free = found[i].outer_free;
+    for (size_t slot = 0; slot < rotaries; ++slot) {
+      const double before = hint[rotary_[slot]];
+      const double turn = slot == 0 ? found[i].outer : found[i].inner;
+      // The free rotary stays where it is: its value does not matter to the tool axis, but it moves the tip.
+      one.value[slot] = slot == 0 && one.outer_free ? before : unwound(slot, turn, hint);
+      one.travel += std::abs(one.value[slot] - before);
     }
   }
   return count;
 }
 
-Vec3 InverseKinematics::walk(const std::vector<Step>& steps, Vec3 point, const TurnPair& turns,
-                             Mat3* columns) const {
+namespace {
+
+/// Carries the work or tool point to the base.
+template <class Step>
+inline void walk_to_base(const std::vector<Step>& steps, const Sines& of, Vec3& point) {
+  for (const Step& step : steps) {
+    if (step.kind == AxisKind::kLinear) continue;
+    point = step.origin + rotate(step.direction, step.sense * of.sine[step.axis], of.cosine[step.axis],
+                                 point - step.origin);
+  }
+}
+
+/// The directions in which the linear axes of one side move the tool, after the rotary axes below them.
+template <class Step>
+void turn_columns(const std::vector<Step>& steps, const Sines& of, Mat3& columns) {
   bool met[3] = {false, false, false};
   for (const Step& step : steps) {
     if (step.kind == AxisKind::kLinear) {
-      if (columns != nullptr) columns->col(step.slot) = step.sense * step.direction;
-      met[step.slot] = true;
-      continue;
+      met[step.column] = true;
+      columns.col(step.column) = step.sense * step.direction;
     }
-    const Turn& turn = step.slot == 0 ? turns.outer : turns.inner;
-    const double sine = step.sense * turn.sine;
-    point = step.origin + rotate(step.direction, sine, turn.cosine, point - step.origin);
-    for (int i = 0; columns != nullptr && i < 3; ++i) {
-      if (met[i]) columns->col(i) = rotate(step.direction, sine, turn.cosine, columns->col(i));
+    for (int i = 0; step.kind == AxisKind::kRotary && i < 3; ++i) {
+      if (!met[i]) continue;
+      columns.col(i) =
+          rotate(step.direction, step.sense * of.sine[step.axis], of.cosine[step.axis], columns.col(i));
     }
   }
-  return point;
 }
 
-bool InverseKinematics::locate(const Vec3& tip_M, const TurnPair& turns, Vec3& linear_values) const {
-  Mat3 columns = Mat3::Identity();
-  Mat3* varying = columns_constant_ ? nullptr : &columns;
-  const Vec3 gap =
-      walk(table_steps_, tip_M, turns, varying) - walk(head_steps_, machine_.tip_M, turns, varying);
+}  // namespace
+
+bool InverseKinematics::locate(const Vec3& tip_M, const Sines& of, Vec3& linear_values) const {
+  Vec3 work = tip_M, tool = machine_.tip_M;
+  walk_to_base(table_steps_, of, work);
+  walk_to_base(head_steps_, of, tool);
   if (columns_constant_) {
-    linear_values = linear_inverse_ * gap;
+    linear_values = linear_inverse_ * (work - tool);
     return true;
   }
+  Mat3 columns;
+  turn_columns(table_steps_, of, columns);
+  turn_columns(head_steps_, of, columns);
   if (!(std::abs(columns.determinant()) >= kParallelTolerance)) return false;
-  linear_values = columns.inverse() * gap;
+  linear_values = columns.inverse() * (work - tool);
   return true;
 }
 
@@ -158,24 +181,30 @@ int InverseKinematics::first_out_of_travel(const AxisValues& q) const {
 Branch InverseKinematics::complete(const ToolPose& unit_W, const Vec3& tip_M,
                                    const Candidate& candidate) const {
   Branch branch;
+  Sines of;
+  for (size_t slot = 0; slot < rotary_.size(); ++slot) {
+    const int axis = rotary_[slot];
+    branch.q[axis] = candidate.value[slot];
+    of.sine[axis] = std::sin(candidate.value[slot]);
+    of.cosine[axis] = std::cos(candidate.value[slot]);
+  }
   Vec3 linear_values;
-  if (!locate(tip_M, candidate.turns, linear_values)) return branch;
-  for (size_t slot = 0; slot < rotary_.size(); ++slot) branch.q[rotary_[slot]] = candidate.value[slot];
+  if (!locate(tip_M, of, linear_values)) return branch;
   for (int i = 0; i < 3; ++i) branch.q[linear_[i]] = linear_values[i];
 
-  const ToolPose back = forward(machine_, branch.q);
+  const ToolPose back = tool_in_work(machine_, branch.q, of);
   const bool proven = (back.tip_W - unit_W.tip_W).squaredNorm() <= kTipTolerance * kTipTolerance &&
                       (back.axis_W - unit_W.axis_W).squaredNorm() <= kAxisTolerance * kAxisTolerance;
   if (!proven) return branch;
   branch.out_of_travel_axis = first_out_of_travel(branch.q);
   branch.outcome = branch.out_of_travel_axis >= 0 ? InverseOutcome::kOutOfTravel
-                   : candidate.turns.outer_free   ? InverseOutcome::kSingular
+                   : candidate.outer_free         ? InverseOutcome::kSingular
                                                   : InverseOutcome::kOk;
   return branch;
 }
 
 InverseSolutions InverseKinematics::solve(const ToolPose& pose_W, const AxisValues& hint) const {
-  const ToolPose unit_W{pose_W.tip_W, pose_W.axis_W.normalized()};
+  const ToolPose unit_W{pose_W.tip_W, unit(pose_W.axis_W)};
   const Vec3 tip_M = machine_.X_MW * unit_W.tip_W;
   Candidate found[2];
   const int count = candidates(machine_.X_MW.linear() * unit_W.axis_W, hint, found);
@@ -188,7 +217,7 @@ InverseSolutions InverseKinematics::solve(const ToolPose& pose_W, const AxisValu
 }
 
 Branch InverseKinematics::solve_nearest(const ToolPose& pose_W, const AxisValues& hint) const {
-  const ToolPose unit_W{pose_W.tip_W, pose_W.axis_W.normalized()};
+  const ToolPose unit_W{pose_W.tip_W, unit(pose_W.axis_W)};
   const Vec3 tip_M = machine_.X_MW * unit_W.tip_W;
   Candidate found[2];
   const int count = candidates(machine_.X_MW.linear() * unit_W.axis_W, hint, found);

@@ -16,6 +16,8 @@
 
 namespace swarf::kinematics {
 
+struct Sines;
+
 enum class AxisKind { kLinear, kRotary };
 enum class Side { kTable, kHead };
 
@@ -104,22 +106,22 @@ class InverseKinematics {
  private:
   /// A rotary solution before the linear axes are known.
   struct Candidate {
-    TurnPair turns;
-    double value[2] = {0.0, 0.0};  ///< of the outer and the inner axis, unwound
-    double travel = 0.0;           ///< sum of the distances to the hint
+    double value[2];  ///< of the outer and the inner axis, unwound
+    double travel;    ///< sum of the distances to the hint
+    bool outer_free;
   };
   /// One link on the way from the work or the tool to the base.
   struct Step {
     AxisKind kind = AxisKind::kLinear;
-    int slot = 0;        ///< rotary: 0 outer, 1 inner; linear: column of the loop equation
-    double sense = 1.0;  ///< of the link against the turn; of the value against the direction
+    int axis = 0;
+    int column = 0;      ///< linear: column of the loop equation
+    double sense = 1.0;  ///< rotary: of the link; linear: of the value against the direction
     Vec3 direction = Vec3::UnitX(), origin = Vec3::Zero();
   };
   int candidates(const Vec3& axis_M, const AxisValues& hint, Candidate out[2]) const;
   int turns(const Vec3& axis_M, TurnPair out[2]) const;
-  double unwound(int axis, double turn, const AxisValues& hint) const;
-  bool locate(const Vec3& tip_M, const TurnPair& turns, Vec3& linear_values) const;
-  Vec3 walk(const std::vector<Step>& steps, Vec3 point, const TurnPair& turns, Mat3* columns) const;
+  double unwound(int slot, double turn, const AxisValues& hint) const;
+  bool locate(const Vec3& tip_M, const Sines& of, Vec3& linear_values) const;
   Branch complete(const ToolPose& unit_W, const Vec3& tip_M, const Candidate& candidate) const;
   int first_out_of_travel(const AxisValues& q) const;
 

@@ -24,10 +24,9 @@ RotaryPair::RotaryPair(const Vec3& e1, const Vec3& e2, const Vec3& v)
   for (double& p : p_at_pole_) {
     if (std::abs(p) < kPoleTolerance) p = 0.0;
   }
-  vm_ = v.dot(e2.cross(k));
-  vk_ = -v.dot(k);
-  v_angle_ = std::atan2(vk_, vm_);
-  across_squared_ = vm_ * vm_ + vk_ * vk_;
+  d_per_s_ = d_ / s_;
+  per_s_ = 1.0 / s_;
+  v_angle_ = std::atan2(-v.dot(k), v.dot(e2.cross(k)));
 }
 
 int RotaryPair::solve(const Vec3& w, TurnPair out[2]) const {
@@ -37,39 +36,26 @@ int RotaryPair::solve(const Vec3& w, TurnPair out[2]) const {
   const double rho = std::sqrt(rho_squared);
   const bool upper = c1 >= 0.0;
   const double p_at_pole = p_at_pole_[upper ? 0 : 1];
-  // c2 - d c1 without cancellation: 1 - |c1| = rho^2 / (1 + |c1|).
-  const double from_pole = rho_squared / (1.0 + std::abs(c1));
-  const double p = p_at_pole + d_ * (upper ? from_pole : -from_pole) / s_;
-  if (rho < kPoleTolerance && p_at_pole == 0.0) {
-    out[0] = pole(c1);
+  if (rho < kPoleTolerance) {
+    if (p_at_pole != 0.0) return 0;
+    // z = +-e1 has the components (+-s, 0) in the basis (m, -k).
+    out[0] = {0.0, std::atan2(0.0, upper ? s_ : -s_) - v_angle_, true};
     return 1;
   }
-  if (!(std::abs(p) <= rho + kReachTolerance) || rho < kPoleTolerance) return 0;
-  const double r = std::sqrt(std::max(0.0, (rho - p) * (rho + p)));
-  const double mu = (c1 - d_ * c2_) / s_;
+  double p = p_at_pole;
+  if (d_ != 0.0) {
+    // c2 - d c1 without cancellation: 1 - |c1| = rho^2 / (1 + |c1|).
+    const double from_pole = rho_squared / (1.0 + std::abs(c1));
+    p += d_per_s_ * (upper ? from_pole : -from_pole);
+  }
+  if (!(std::abs(p) <= rho + kReachTolerance)) return 0;
+  const double r = p == 0.0 ? rho : std::sqrt(std::max(0.0, (rho - p) * (rho + p)));
   const double w_angle = std::atan2(wk, wn);
   const double z_angle = p == 0.0 ? 0.5 * kPi : std::atan2(r, p);
-  const double tilt = std::atan2(r, mu);
-  const double per_rho = 1.0 / rho_squared, per_across = 1.0 / across_squared_;
-  const int count = r > 0.0 ? 2 : 1;
-  for (int i = 0; i < count; ++i) {
-    const double sign = i == 0 ? 1.0 : -1.0;
-    const double ri = sign * r;
-    out[i].outer = {w_angle - sign * z_angle, (p * wk - ri * wn) * per_rho, (p * wn + ri * wk) * per_rho};
-    out[i].inner = {-sign * tilt - v_angle_, (-ri * vm_ - mu * vk_) * per_across,
-                    (mu * vm_ - ri * vk_) * per_across};
-    out[i].outer_free = false;
-  }
-  return count;
-}
-
-TurnPair RotaryPair::pole(double c1) const {
-  // z = +-e1 has the components (+-s, 0) in the basis (m, -k).
-  const double mu = c1 >= 0.0 ? s_ : -s_;
-  TurnPair pair;
-  pair.inner = {std::atan2(0.0, mu) - v_angle_, -mu * vk_ / across_squared_, mu * vm_ / across_squared_};
-  pair.outer_free = true;
-  return pair;
+  const double tilt = std::atan2(r, (c1 - d_ * c2_) * per_s_);
+  out[0] = {w_angle - z_angle, -tilt - v_angle_, false};
+  out[1] = {w_angle + z_angle, tilt - v_angle_, false};
+  return r > 0.0 ? 2 : 1;
 }
 
 double RotaryPair::pole_distance(const Vec3& w) const {

@@ -23,17 +23,11 @@ namespace swarf::kinematics {
 /// vector (1e-16), which would otherwise choose the angle.
 inline constexpr double kPoleTolerance = 1e-13;
 
-/// An angle with its sine and cosine, which come from vector components rather than from the angle.
-struct Turn {
-  double angle = 0.0;  ///< rad, within a few turns of zero
-  double sine = 0.0;
-  double cosine = 1.0;
-};
-
-/// One solution: turns of the outer (next to the work) and the inner (next to the tool) axis.
+/// One solution: turns of the outer (next to the work) and the inner (next to the tool) axis, rad, within a
+/// few turns of zero. Without default values, so that arrays of them cost nothing.
 struct TurnPair {
-  Turn outer, inner;
-  bool outer_free = false;  ///< at the pole: the outer turn is not determined and stands at zero
+  double outer, inner;
+  bool outer_free;  ///< at the pole: the outer turn is not determined and stands at zero
 };
 
 class RotaryPair {
@@ -48,14 +42,11 @@ class RotaryPair {
   double pole_distance(const Vec3& w) const;
 
  private:
-  TurnPair pole(double c1) const;
-
   Mat3 frame_ = Mat3::Identity();  ///< rows e1, n, k
   double d_ = 0.0, s_ = 1.0, c2_ = 0.0;
   double p_at_pole_[2] = {0.0, 0.0};  ///< (c2 - d)/s and (c2 + d)/s; 0: w = e1 or w = -e1 is a pole
-  double vm_ = 1.0, vk_ = 0.0;        ///< v in the basis (m, -k) across e2, m = (e1 - d e2)/s
-  double v_angle_ = 0.0;              ///< atan2(vk, vm)
-  double across_squared_ = 1.0;       ///< vm^2 + vk^2 = 1 - c2^2
+  double d_per_s_ = 0.0, per_s_ = 1.0;
+  double v_angle_ = 0.0;  ///< of v in the basis (m, -k) across e2, m = (e1 - d e2)/s
 };
 
 }  // namespace swarf::kinematics
