@@ -5,10 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <span>
 
 #include "base/check.h"
-#include "base/parallel.h"
 #include "render/figures/colour.h"
 
 namespace swarf::render {

@@ -115,8 +115,9 @@ TEST(Decimate, VerticesAreOriginalOnesWithTheirAttributes) {
 TEST(Decimate, OpenBorderStays) {
   TriMesh mesh;
   constexpr uint32_t kSide = 101;
-  for (uint32_t i = 0; i < kSide * kSide; ++i) {
-    mesh.positions.push_back({static_cast<float>(i % kSide), static_cast<float>(i / kSide), 0.0F});
+  for (uint32_t y = 0; y < kSide; ++y) {
+    for (uint32_t x = 0; x < kSide; ++x)
+      mesh.positions.push_back({static_cast<float>(x), static_cast<float>(y), 0});
   }
   for (uint32_t y = 0; y + 1 < kSide; ++y) {
     for (uint32_t x = 0; x + 1 < kSide; ++x) {

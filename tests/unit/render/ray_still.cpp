@@ -224,7 +224,7 @@ TEST(Sampler, PairsOfOnePixelCoverTheSquareEvenly) {
     ASSERT_TRUE(p.x() >= 0 && p.x() < 1 && p.y() >= 0 && p.y() < 1);
     ++quadrant[(p.x() < 0.5F ? 0 : 1) + (p.y() < 0.5F ? 0 : 2)];
   }
-  for (const int count : quadrant) EXPECT_NEAR(count, kSamples / 4, 3);
+  for (const int count : quadrant) EXPECT_NEAR(count, 0.25 * kSamples, 3);
 }
 
 TEST(Sampler, BlueNoiseHasEveryRankOnceAndFarNeighbours) {
