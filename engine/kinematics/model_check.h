@@ -11,8 +11,8 @@ namespace swarf::kinematics {
 /// Two unit vectors with a smaller sine between them count as parallel, and three with a smaller triple
 /// product as dependent: the inverse would lose six of its sixteen digits.
 inline constexpr double kParallelTolerance = 1e-6;
-/// By how much the length of a direction may differ from 1.
-inline constexpr double kUnitTolerance = 1e-9;
+/// By how much the length of a direction may differ from 1: a metre away this is 1e-9 mm. Loaders normalise.
+inline constexpr double kUnitTolerance = 1e-12;
 
 struct ModelProblem {
   std::string code;  ///< as in Diagnostic

@@ -1,0 +1,60 @@
+// The control cycle must not allocate: every operator new of this executable is counted.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+#include "test_machines.h"
+
+namespace {
+std::atomic<long> allocations{0};
+
+void* counted(std::size_t size) {
+  ++allocations;
+  if (void* memory = std::malloc(size)) return memory;
+  throw std::bad_alloc();
+}
+}  // namespace
+
+void* operator new(std::size_t size) {
+  return counted(size);
+}
+void* operator new[](std::size_t size) {
+  return counted(size);
+}
+void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+
+namespace swarf::kinematics {
+namespace {
+
+TEST(Allocation, SolvingAndForwardAllocateNothing) {
+  const MachineModel machine = nutating_head();
+  const long before_building = allocations;
+  const InverseKinematics inverse(machine);
+  EXPECT_GT(allocations, before_building);  // the counter counts
+  Rng rng(1);
+  AxisValues q = AxisValues::Zero();
+  const long before = allocations;
+  for (int i = 0; i < 1000; ++i) {
+    const ToolPose pose{50.0 * rng.direction(), rng.direction()};
+    q += inverse.solve(pose, q).branch[0].q + inverse.solve_nearest(pose, q).q;
+    q += AxisValues::Constant(forward(machine, q).tip_W.x() * 1e-6);
+    q = AxisValues::Zero();
+  }
+  EXPECT_EQ(allocations, before);
+}
+
+}  // namespace
+}  // namespace swarf::kinematics
