@@ -1,0 +1,163 @@
+#include "render/lettering.h"
+
+#include <cairo/cairo.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "base/check.h"
+
+namespace swarf::render {
+namespace {
+
+constexpr double kTextShare = 0.024;  // text height as a share of the picture's height
+constexpr double kMinTextPx = 11.0;   // below this DejaVu is hard to read
+constexpr double kPlate[4] = {0.08, 0.10, 0.12, 0.72};
+
+/// A Cairo drawing over the pixels of an image; they are written back by finish().
+class Canvas {
+ public:
+  explicit Canvas(Image& image)
+      : image_(image),
+        surface_(cairo_image_surface_create(CAIRO_FORMAT_ARGB32, image.width, image.height),
+                 cairo_surface_destroy),
+        cairo_(cairo_create(surface_.get()), cairo_destroy) {
+    SWARF_CHECK(image.width > 0 && image.height > 0, "lettering needs a picture");
+    SWARF_CHECK(cairo_status(cairo_.get()) == CAIRO_STATUS_SUCCESS, "Cairo cannot make a surface");
+    cairo_select_font_face(cr(), "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
+    cairo_set_font_size(cr(), text_px());
+  }
+
+  cairo_t* cr() const { return cairo_.get(); }
+  double text_px() const { return std::max(kTextShare * image_.height, kMinTextPx); }
+  void bold(bool on) const {
+    cairo_select_font_face(cr(), "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL,
+                           on ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
+  }
+  double text_width(const std::string& text) const {
+    cairo_text_extents_t extents;
+    cairo_text_extents(cr(), text.c_str(), &extents);
+    return extents.x_advance;
+  }
+  void text(double x, double baseline, const std::string& words) const {
+    cairo_set_source_rgb(cr(), 0.96, 0.97, 0.98);
+    cairo_move_to(cr(), x, baseline);
+    cairo_show_text(cr(), words.c_str());
+  }
+  void plate(double x, double y, double width, double height) const {
+    const double r = 0.4 * text_px();
+    cairo_new_sub_path(cr());
+    cairo_arc(cr(), x + width - r, y + r, r, -M_PI / 2, 0);
+    cairo_arc(cr(), x + width - r, y + height - r, r, 0, M_PI / 2);
+    cairo_arc(cr(), x + r, y + height - r, r, M_PI / 2, M_PI);
+    cairo_arc(cr(), x + r, y + r, r, M_PI, 1.5 * M_PI);
+    cairo_close_path(cr());
+    cairo_set_source_rgba(cr(), kPlate[0], kPlate[1], kPlate[2], kPlate[3]);
+    cairo_fill(cr());
+  }
+  /// Lays the drawing over the picture.
+  void finish();
+
+ private:
+  Image& image_;
+  std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)> surface_;
+  std::unique_ptr<cairo_t, decltype(&cairo_destroy)> cairo_;
+};
+
+void Canvas::finish() {
+  cairo_surface_flush(surface_.get());
+  const uint8_t* rows = cairo_image_surface_get_data(surface_.get());
+  const int stride = cairo_image_surface_get_stride(surface_.get());
+  for (int y = 0; y < image_.height; ++y) {
+    const auto* over = reinterpret_cast<const uint32_t*>(rows + static_cast<ptrdiff_t>(y) * stride);
+    uint8_t* pixel = &image_.rgba[size_t{4} * image_.width * y];
+    for (int x = 0; x < image_.width; ++x, pixel += 4) {
+      const uint32_t value = over[x];  // premultiplied, alpha in the highest byte
+      const uint32_t alpha = value >> 24;
+      if (alpha == 0) continue;
+      for (int k = 0; k < 3; ++k) {
+        const uint32_t below = (pixel[k] * (255 - alpha) + 127) / 255;
+        pixel[k] = static_cast<uint8_t>(std::min<uint32_t>(((value >> (16 - 8 * k)) & 255) + below, 255));
+      }
+      pixel[3] = static_cast<uint8_t>(alpha + (pixel[3] * (255 - alpha) + 127) / 255);
+    }
+  }
+}
+
+double srgb(double linear) {
+  linear = std::clamp(linear, 0.0, 1.0);
+  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
+}
+
+struct BarLayout {
+  double x, y, width, height;
+};
+
+void draw_ramp(const Canvas& canvas, const ColourBar& bar, const BarLayout& at) {
+  const int rows = std::max(1, static_cast<int>(at.height));
+  for (int i = 0; i < rows; ++i) {
+    const double value = bar.high + (bar.low - bar.high) * (i + 0.5) / rows;
+    const Rgb c = bar.colour(value);
+    cairo_set_source_rgb(canvas.cr(), srgb(c[0]), srgb(c[1]), srgb(c[2]));
+    cairo_rectangle(canvas.cr(), at.x, at.y + i, at.width, 1.0);
+    cairo_fill(canvas.cr());
+  }
+}
+
+void draw_ticks(const Canvas& canvas, const ColourBar& bar, const BarLayout& at) {
+  const double text_px = canvas.text_px();
+  for (const ColourTick& tick : bar.ticks) {
+    SWARF_CHECK(tick.value >= bar.low && tick.value <= bar.high, "a tick outside the colour bar");
+    const double y = at.y + std::floor(at.height) * (bar.high - tick.value) / (bar.high - bar.low);
+    cairo_set_source_rgb(canvas.cr(), 0.96, 0.97, 0.98);
+    cairo_set_line_width(canvas.cr(), std::max(1.0, 0.07 * text_px));
+    cairo_move_to(canvas.cr(), at.x + at.width, y);
+    cairo_rel_line_to(canvas.cr(), 0.35 * text_px, 0.0);
+    cairo_stroke(canvas.cr());
+    canvas.text(at.x + at.width + 0.6 * text_px, y + 0.35 * text_px, tick.label);
+  }
+}
+
+}  // namespace
+
+void draw_caption(Image& image, const std::vector<std::string>& lines, Corner corner) {
+  if (lines.empty()) return;
+  Canvas canvas(image);
+  const double text_px = canvas.text_px(), pad = 0.8 * text_px, step = 1.35 * text_px;
+  double width = 0.0;
+  for (size_t i = 0; i < lines.size(); ++i) {
+    canvas.bold(i == 0);
+    width = std::max(width, canvas.text_width(lines[i]) + 2.0 * pad);
+  }
+  const double height = step * static_cast<double>(lines.size()) + 1.2 * pad;
+  const bool right = corner == Corner::kTopRight || corner == Corner::kBottomRight;
+  const bool bottom = corner == Corner::kBottomLeft || corner == Corner::kBottomRight;
+  const double x = right ? image.width - pad - width : pad;
+  const double y = bottom ? image.height - pad - height : pad;
+  canvas.plate(x, y, width, height);
+  for (size_t i = 0; i < lines.size(); ++i) {
+    canvas.bold(i == 0);
+    canvas.text(x + pad, y + 0.6 * pad + step * (static_cast<double>(i) + 0.77), lines[i]);
+  }
+  canvas.finish();
+}
+
+void draw_colour_bar(Image& image, const ColourBar& bar) {
+  SWARF_CHECK(bar.low < bar.high && bar.colour, "a colour bar needs a range and colours");
+  Canvas canvas(image);
+  const double text_px = canvas.text_px(), pad = 0.8 * text_px, bar_width = 1.1 * text_px;
+  double text_width = 0.0;
+  for (const ColourTick& tick : bar.ticks) text_width = std::max(text_width, canvas.text_width(tick.label));
+  const double inner = std::max(bar_width + 0.6 * text_px + text_width, canvas.text_width(bar.title));
+  const double height = 0.56 * image.height, top = 0.22 * image.height;
+  const double x = std::floor(image.width - 2.0 * pad - inner);
+  canvas.plate(x - pad, top - 2.0 * text_px - pad, inner + 2.0 * pad, height + 2.6 * text_px + 2.0 * pad);
+  canvas.text(x, top - text_px, bar.title);
+  const BarLayout at{x, std::floor(top), bar_width, std::floor(height)};
+  draw_ramp(canvas, bar, at);
+  draw_ticks(canvas, bar, at);
+  canvas.finish();
+}
+
+}  // namespace swarf::render

@@ -1,0 +1,33 @@
+// Text and colour bars on finished pictures (Cairo).
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "render/draw_list.h"
+
+namespace swarf::render {
+
+enum class Corner { kTopLeft, kTopRight, kBottomLeft, kBottomRight };
+
+/// Lines of text on a translucent plate in a corner of the picture; the first line is bold. Sizes follow the
+/// picture's height. An empty list draws nothing.
+void draw_caption(Image& image, const std::vector<std::string>& lines, Corner corner = Corner::kBottomLeft);
+
+struct ColourTick {
+  double value = 0.0;
+  std::string label;
+};
+
+/// A vertical bar at the right edge, low at the bottom.
+struct ColourBar {
+  double low = 0.0, high = 1.0;
+  std::function<Rgb(double value)> colour;  ///< linear RGB of a value in [low, high]
+  std::vector<ColourTick> ticks;            ///< values in [low, high]
+  std::string title;                        ///< above the bar, with the unit: "deviation, um"
+};
+
+void draw_colour_bar(Image& image, const ColourBar& bar);
+
+}  // namespace swarf::render

@@ -1,0 +1,46 @@
+#include "render/image_io.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "base/diagnostics.h"
+#include "base/rng.h"
+
+namespace swarf::render {
+namespace {
+
+const std::string kFolder = testing::TempDir();
+
+TEST(ImageIo, APictureComesBackByteForByte) {
+  Image image{37, 19, std::vector<uint8_t>(size_t{4} * 37 * 19)};
+  Rng rng(5);
+  for (uint8_t& byte : image.rgba) byte = static_cast<uint8_t>(rng.next());
+  const std::string path = kFolder + "swarf_round_trip.png";
+  save_png(image, path);
+  const Image back = load_png(path);
+  EXPECT_EQ(back.width, 37);
+  EXPECT_EQ(back.height, 19);
+  EXPECT_EQ(back.rgba, image.rgba);
+  EXPECT_FALSE(std::filesystem::exists(path + ".part"));
+  std::filesystem::remove(path);
+}
+
+TEST(ImageIo, SaysWhatIsWrongWithAPath) {
+  const Image image{1, 1, {1, 2, 3, 255}};
+  try {
+    save_png(image, kFolder + "no_such_folder/x.png");
+    FAIL() << "no error";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.diagnostics.list().at(0).code, "image-write");
+  }
+  const std::string path = kFolder + "swarf_no_picture.png";
+  std::ofstream(path) << "no picture";
+  EXPECT_THROW(load_png(path), InputError);
+  EXPECT_THROW(load_png(path + ".missing"), InputError);
+  std::filesystem::remove(path);
+}
+
+}  // namespace
+}  // namespace swarf::render

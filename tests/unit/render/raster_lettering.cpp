@@ -1,0 +1,78 @@
+#include "render/lettering.h"
+
+#include <gtest/gtest.h>
+
+#include "base/check.h"
+#include "raster_scene.h"
+
+namespace swarf::render {
+namespace {
+
+Image grey(int width, int height) {
+  Image image{width, height, std::vector<uint8_t>(size_t{4} * width * height, 128)};
+  for (size_t i = 3; i < image.rgba.size(); i += 4) image.rgba[i] = 255;
+  return image;
+}
+
+/// Changed pixels in a rectangle.
+int changed(const Image& image, int x0, int x1, int y0, int y1) {
+  int count = 0;
+  for (int y = y0; y < y1; ++y) {
+    for (int x = x0; x < x1; ++x) count += pixel(image, x, y).r != 128 ? 1 : 0;
+  }
+  return count;
+}
+
+TEST(Lettering, ACaptionStaysInItsCornerAndHasWrittenPixels) {
+  Image image = grey(640, 360);
+  draw_caption(image, {"Dome", "t = 12.5 s   F 1500 mm/min"}, Corner::kBottomLeft);
+  EXPECT_GT(changed(image, 0, 320, 270, 360), 3000);
+  EXPECT_EQ(changed(image, 0, 640, 0, 270), 0);
+  EXPECT_EQ(changed(image, 400, 640, 0, 360), 0);
+  int bright = 0;
+  for (size_t i = 0; i < image.rgba.size(); i += 4) bright += image.rgba[i] > 220 ? 1 : 0;
+  EXPECT_GT(bright, 150);  // the letters
+  EXPECT_EQ(image.rgba[3], 255);
+}
+
+TEST(Lettering, MoreLinesMakeATallerPlateAndNoneMakeNone) {
+  Image none = grey(640, 360), one = grey(640, 360), three = grey(640, 360);
+  draw_caption(none, {});
+  draw_caption(one, {"line"}, Corner::kTopRight);
+  draw_caption(three, {"line", "line", "line"}, Corner::kTopRight);
+  EXPECT_EQ(none.rgba, grey(640, 360).rgba);
+  EXPECT_GT(changed(three, 320, 640, 0, 180), 2 * changed(one, 320, 640, 0, 180) - 200);
+  EXPECT_EQ(changed(three, 0, 320, 0, 360), 0);
+}
+
+TEST(Lettering, AColourBarRunsFromLowBelowToHighAbove) {
+  Image image = grey(640, 360);
+  ColourBar bar;
+  bar.low = -5;
+  bar.high = 10;
+  bar.colour = [](double v) { return v > 0 ? Rgb{1, 0, 0} : Rgb{0, 0, 1}; };
+  bar.ticks = {{-5, "-5"}, {0, "0"}, {10, "10"}};
+  bar.title = "excess, um";
+  draw_colour_bar(image, bar);
+  int red = 0, blue = 0, lowest_red = 0, highest_blue = 360;
+  for (int y = 0; y < 360; ++y) {
+    for (int x = 320; x < 640; ++x) {
+      const Pixel p = pixel(image, x, y);
+      if (p.r == 255 && p.g == 0 && p.b == 0) ++red, lowest_red = std::max(lowest_red, y);
+      if (p.r == 0 && p.g == 0 && p.b == 255) ++blue, highest_blue = std::min(highest_blue, y);
+    }
+  }
+  EXPECT_GT(blue, 300);
+  EXPECT_NEAR(static_cast<double>(red) / blue, 2.0, 0.05);  // 10 above zero, 5 below
+  EXPECT_EQ(highest_blue, lowest_red + 1);
+}
+
+TEST(Lettering, RefusesABarWithoutARange) {
+  Image image = grey(64, 64);
+  ColourBar bar;
+  bar.high = bar.low;
+  EXPECT_THROW(draw_colour_bar(image, bar), InternalError);
+}
+
+}  // namespace
+}  // namespace swarf::render

@@ -1,0 +1,182 @@
+#include "render/raster/raster_renderer.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/check.h"
+#include "raster_scene.h"
+
+namespace swarf::render {
+namespace {
+
+constexpr int kWidth = 320, kHeight = 200;
+constexpr Rgb kRed{0.8F, 0.05F, 0.05F}, kGreen{0.05F, 0.6F, 0.05F};
+
+/// From the front, level: x to the right, z up.
+Camera front(double distance, double fov = 0.6) {
+  Camera camera;
+  camera.eye = {0, -distance, 0};
+  camera.vertical_fov_rad = fov;
+  return camera;
+}
+
+TEST(RasterRenderer, DrawsThingsWhereTheyAre) {
+  const TriMesh right = box_mesh({{20, -5, 10}, {30, 5, 20}}),
+                left = box_mesh({{-30, -5, -20}, {-20, 5, -10}});
+  DrawList list;
+  list.camera = front(200);
+  list.items = {item(right, kRed), item(left, kGreen)};
+  const Image image = RasterRenderer(kWidth, kHeight).draw(list);
+  ASSERT_EQ(image.rgba.size(), size_t{4} * kWidth * kHeight);
+  const double px_per_mm = 0.5 * kHeight / std::tan(0.3) / 200;
+  const auto at = [&](double x, double z) {
+    return pixel(image, static_cast<int>(kWidth / 2 + x * px_per_mm),
+                 static_cast<int>(kHeight / 2 - z * px_per_mm));
+  };
+  const Pixel red = at(25, 15), green = at(-25, -15);
+  EXPECT_GT(red.r, 2 * red.g);
+  EXPECT_GT(red.r, 90);
+  EXPECT_GT(green.g, 2 * green.r);
+  const Pixel neither = at(25, -15);
+  EXPECT_LT(std::abs(neither.r - neither.b), 30);  // backdrop: nearly grey
+}
+
+TEST(RasterRenderer, CoversTheAreaThatPerspectiveGives) {
+  const TriMesh box = box_mesh({{-30, 0, -20}, {30, 10, 20}});
+  DrawList list;
+  list.camera = front(150);
+  list.items = {item(box, kRed)};
+  const Image image = RasterRenderer(kWidth, kHeight).draw(list);
+  int covered = 0;
+  for (size_t i = 0; i < image.rgba.size(); i += 4) covered += image.rgba[i] > image.rgba[i + 2] + 40 ? 1 : 0;
+  const double px_per_mm = 0.5 * kHeight / std::tan(0.3) / 150;  // of the front face at y = 0
+  const double expected = 60 * 40 * px_per_mm * px_per_mm;
+  // The rim is smoothed: at most a pixel of its length is in doubt.
+  EXPECT_NEAR(covered, expected, 2 * (60 + 40) * px_per_mm);
+}
+
+TEST(RasterRenderer, GivesTheSameBytesEveryTime) {
+  const TriMesh box = box_mesh({{-30, -20, -20}, {30, 20, 20}});
+  DrawList list;
+  list.camera = look_at_box({{-30, -20, -20}, {30, 20, 20}}, {-1, 2, -1}, 0.5, 1.6);
+  list.items = {item(box, kRed)};
+  list.lines.push_back({{{-40, -25, 0}, {40, -25, 5}, {40, 25, 9}}, {1, 1, 0}, 2.0F});
+  RasterRenderer one(kWidth, kHeight), two(kWidth, kHeight);
+  const Image first = one.draw(list);
+  EXPECT_EQ(first.rgba, one.draw(list).rgba);
+  EXPECT_EQ(first.rgba, two.draw(list).rgba);
+}
+
+TEST(RasterRenderer, SmoothsEdgesByItsSamples) {
+  const TriMesh box = box_mesh({{-30, -20, -20}, {30, 20, 20}});
+  DrawList list;
+  list.camera = look_at_box({{-60, -40, -40}, {60, 40, 40}}, {-1, 2, -0.7}, 0.5, 1.6);
+  list.items = {item(box, kRed)};
+  const auto half_red = [](const Image& image) {
+    int count = 0;
+    for (size_t i = 0; i < image.rgba.size(); i += 4) {
+      const int over = image.rgba[i] - image.rgba[i + 2];
+      count += over > 15 && over < 60 ? 1 : 0;
+    }
+    return count;
+  };
+  EXPECT_GT(half_red(RasterRenderer(kWidth, kHeight, 4).draw(list)),
+            half_red(RasterRenderer(kWidth, kHeight, 1).draw(list)) + 50);
+  EXPECT_THROW(RasterRenderer(kWidth, kHeight, 1000), InternalError);
+}
+
+TEST(RasterRenderer, NoticesChangedAndMovedMeshes) {
+  TriMesh box = box_mesh({{-10, -10, -10}, {10, 10, 10}});
+  DrawList list;
+  list.camera = front(150);
+  list.items = {item(box, kRed)};
+  RasterRenderer renderer(kWidth, kHeight);
+  const Image before = renderer.draw(list);
+  box = box_mesh({{-20, -10, -20}, {20, 10, 20}});
+  const Image grown = renderer.draw(list);
+  EXPECT_NE(before.rgba, grown.rgba);
+  list.items[0].dynamic = true;
+  box = box_mesh({{-10, -10, -10}, {10, 10, 10}});
+  EXPECT_EQ(before.rgba, renderer.draw(list).rgba);
+  list.items[0].X_world.translation() = Vec3(20, 0, 0);
+  EXPECT_NE(before.rgba, renderer.draw(list).rgba);
+}
+
+TEST(RasterRenderer, VertexColoursWinOverTheMaterial) {
+  TriMesh box = box_mesh({{-10, -10, -10}, {10, 10, 10}});
+  box.colours.assign(box.positions.size(), {10, 200, 10, 255});
+  DrawList list;
+  list.camera = front(100);
+  list.items = {item(box, kRed)};
+  const Pixel centre = pixel(RasterRenderer(kWidth, kHeight).draw(list), kWidth / 2, kHeight / 2);
+  EXPECT_GT(centre.g, 2 * centre.r);
+}
+
+TEST(RasterRenderer, NormalsChangeTheShadeOfAFace) {
+  TriMesh box = box_mesh({{-10, -10, -10}, {10, 10, 10}});
+  DrawList list;
+  list.camera = front(100);
+  list.items = {item(box, {0.5F, 0.5F, 0.5F})};
+  RasterRenderer renderer(kWidth, kHeight);
+  const int flat = pixel(renderer.draw(list), kWidth / 2, kHeight / 2).r;
+  box.normals.assign(box.positions.size(), {0.0F, -0.3F, 0.953939F});  // leaning towards the light above
+  const int lit = pixel(renderer.draw(list), kWidth / 2, kHeight / 2).r;
+  EXPECT_GT(lit, flat + 10);
+}
+
+TEST(RasterRenderer, LinesHaveTheirColourWidthAndDepth) {
+  const TriMesh box = box_mesh({{-10, -10, -10}, {10, 10, 10}});
+  DrawList list;
+  list.camera = front(200);
+  list.items = {item(box, {0.2F, 0.2F, 0.2F})};
+  list.lines.push_back({{{-90, -12, 0}, {90, -12, 0}}, {1, 0, 0}, 6.0F});   // in front of the box
+  list.lines.push_back({{{-90, 12, 5}, {90, 12, 5}}, {0, 1, 0}, 6.0F});     // behind it
+  list.lines.push_back({{{0, -500, -5}, {0, -400, -5}}, {0, 0, 1}, 6.0F});  // behind the eye
+  const Image image = RasterRenderer(kWidth, kHeight).draw(list);
+  int red_rows = 0, green = 0, blue = 0;
+  for (int y = 0; y < kHeight; ++y) {
+    const Pixel p = pixel(image, kWidth / 2, y);
+    red_rows += p.r > 200 && p.g < 60 ? 1 : 0;
+    green += p.g > 200 && p.r < 60 ? 1 : 0;
+    blue += p.b > 200 && p.r < 60 ? 1 : 0;
+  }
+  EXPECT_NEAR(red_rows, 6, 1);
+  EXPECT_EQ(green, 0);
+  EXPECT_EQ(blue, 0);
+  const int beside = kHeight / 2 - static_cast<int>(5 * 0.5 * kHeight / std::tan(0.3) / 212);
+  EXPECT_GT(pixel(image, kWidth / 2 + 60, beside).g, 200);  // the second line, where the box does not hide it
+}
+
+TEST(RasterRenderer, TheKeyLightCastsAShadow) {
+  const TriMesh plate = box_mesh({{-60, -60, -2}, {60, 60, 0}}),
+                roof = box_mesh({{-20, -20, 30}, {20, 20, 34}});
+  DrawList list;
+  list.camera = look_at_box({{-60, -60, -2}, {60, 60, 34}}, {0, 1, -1.2}, 0.5, 1.6);
+  list.items = {item(plate, {0.5F, 0.5F, 0.5F})};
+  RasterRenderer renderer(kWidth, kHeight);
+  const auto darkest_plate = [&] {
+    const Image image = renderer.draw(list);
+    int darkest = 255;
+    for (int y = kHeight / 3; y < 2 * kHeight / 3; ++y) {
+      for (int x = kWidth / 3; x < 2 * kWidth / 3; ++x) darkest = std::min(darkest, pixel(image, x, y).r);
+    }
+    return darkest;
+  };
+  const int lit = darkest_plate();
+  list.items.push_back(item(roof, {0.9F, 0.9F, 0.9F}));
+  EXPECT_LT(darkest_plate(), lit - 30);
+}
+
+TEST(RasterRenderer, AnEmptyListIsABackdrop) {
+  const Image image = RasterRenderer(kWidth, kHeight).draw(DrawList{});
+  for (const int y : {0, kHeight / 2, kHeight - 1}) {
+    const Pixel p = pixel(image, kWidth / 2, y);
+    EXPECT_GT(p.r, 120);
+    EXPECT_LT(std::abs(p.r - p.b), 30);
+  }
+  EXPECT_GT(pixel(image, 0, 0).r, pixel(image, 0, kHeight - 1).r);  // lighter above
+}
+
+}  // namespace
+}  // namespace swarf::render
