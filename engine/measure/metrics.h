@@ -42,7 +42,10 @@ struct HistogramBin {
 struct CrossCheck {
   double mean_abs_um = 0.0, p99_um = 0.0, max_um = 0.0;
   double bound_um = 0.0;  ///< what the voxel size and the sweep bounds allow at most
-  bool holds = true;
+  bool holds = true;      ///< every compared sample lies within its own bound
+  size_t samples = 0;     ///< compared
+  size_t excluded =
+      0;  ///< uncut, at a wall, or at a face of the block, where the level set rounds a sharp edge
 };
 
 }  // namespace swarf::measure

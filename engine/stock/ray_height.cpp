@@ -159,11 +159,24 @@ double height_near_tip(const Bilinear& map) {
   return span2 > kDegenerate ? -A.dot(B) / span2 : 0.0;
 }
 
+/// The usual case: a ray that leaves on the tool's side meets the bottom disc itself at both ends. The disc's
+/// plane bounds the cutter from below and its height is monotone in t, so the lower end is the answer.
+std::optional<double> height_on_disc(const Vec3& P, const Vec3& N, const Vec3& P1, const Vec3& N1, double radius) {
+  constexpr double kFlattest = 0.01;  // below, the quotient loses digits; the general way has no such limit
+  if (!(std::min(N.z(), N1.z()) > kFlattest)) return std::nullopt;
+  const double s = -P.z() / N.z(), s1 = -P1.z() / N1.z();
+  const double radius2 = radius * radius;
+  const bool inside = (P + s * N).head<2>().squaredNorm() <= radius2 &&
+                      (P1 + s1 * N1).head<2>().squaredNorm() <= radius2;
+  return inside ? std::optional(std::min(s, s1)) : std::nullopt;
+}
+
 }  // namespace
 
 double ray_height(const Vec3& point, const Vec3& normal, const SweepMap& sweep, const CutterSolid& cutter) {
   const Vec3 P = sweep.start(point), P1 = sweep.end(point);
   const Vec3 N = sweep.R0t * normal, N1 = sweep.R1t * normal;
+  if (const auto height = height_on_disc(P, N, P1, N1, cutter.radius)) return *height;
   const Bilinear map{P, P1 - P, N, sweep.R0t == sweep.R1t ? Vec3(Vec3::Zero()) : Vec3(N1 - N)};
   double best = std::min(entry_of_pose(P, N, cutter), entry_of_pose(P1, N1, cutter));
   // With rotation Newton needs a start nearby: the lower end, or the tip where neither end is met.

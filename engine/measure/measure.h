@@ -1,0 +1,42 @@
+// Measuring the finished part on the rays of its design, and the level set against them.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "measure/metrics.h"
+#include "stock/stock.h"
+#include "stock/surface_dexels.h"
+#include "stock/sweep.h"
+
+namespace swarf::measure {
+
+struct MeasureLimits {
+  double scallop_mm = 0.01;  ///< a sample is within tolerance up to this above the design
+  double gouge_mm = 0.001;   ///< and down to this below it; also the limit of the gouged area
+};
+
+/// Scallops, gouges and excess of one surface.
+///   sweeps         what cut the dexels, indexed by Sweep::block
+///   pass_of_sweep  pass of each sweep, -1 for moves between passes; as long as `sweeps`
+///   ridges         every refined cusp is appended to it
+/// scallop_theory_um is left to the caller: it belongs to the path.
+SurfaceMetrics measure_surface(const stock::SurfaceDexels& dexels, std::span<const stock::Sweep> sweeps,
+                               std::span<const int> pass_of_sweep, const stock::CutterSolid& cutter,
+                               const MeasureLimits& limits, std::vector<Ridge>* ridges);
+
+/// Several surfaces as one; `ridges` are those of all of them. No parts: all zero.
+SurfaceMetrics combine(const std::vector<SurfaceMetrics>& parts, const std::vector<Ridge>& ridges);
+
+/// Equal bins over [low, high); heights beyond are counted in the first and the last.
+std::vector<HistogramBin> height_histogram(const stock::SurfaceDexels& dexels, double low_um, double high_um,
+                                           int bins);
+
+/// The level set's distance at the material's surface as the rays see it: zero but for
+///   sweep_bound                 the level set was cut by merged sweeps
+///   sqrt(3)/2 voxel slope       trilinear values cut a cusp of that slope low (toolchain 3.6, along a
+///   diagonal) 3/8 voxel^2 curvature       chord of a curved surface the rounding of floats
+/// Each sample is held to its own bound; bound_um is the greatest of them.
+CrossCheck cross_check(const stock::Stock& stock, const stock::SurfaceDexels& dexels, double sweep_bound_mm);
+
+}  // namespace swarf::measure
