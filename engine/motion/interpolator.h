@@ -1,8 +1,8 @@
 // From the tool path to one tool pose and one set of axis positions per control cycle.
 //
-//   ToolPath --> surface pass --> SurfaceInterpolator (taylor1, surface)  \
-//            --> surface pass --> segments (offline)                       >-- ToolSample --> inverse --> q
-//            --> free move    --> straight tip, slerp axis                 /
+//   ToolPath --> surface pass --> SurfaceInterpolator (taylor1, surface) --+
+//            --> surface pass --> straight segments (offline) -------------+--> ToolSample --> inverse --> q
+//            --> free move    --> straight tip, slerp axis ----------------+
 //
 // Every element starts and ends at rest; between them nothing moves. The rotary branch is chosen once,
 // nearest to home, and then follows by continuity.

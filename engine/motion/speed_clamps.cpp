@@ -36,14 +36,16 @@ bool is_coarse(const ToolPose& a, const ToolPose& b, const AxisValues& qa, const
   return turn > kPoleShare * std::max(inverse.pole_distance(a.axis_W), inverse.pole_distance(b.axis_W));
 }
 
-/// |q'| of the cell between nodes i and i + 1.
+/// q' of the cell between nodes i and i + 1.
 AxisValues rate(const std::vector<PathNode>& nodes, size_t i) {
+  if (!nodes[i].reached || !nodes[i + 1].reached) return AxisValues::Zero();
   return (nodes[i + 1].q - nodes[i].q) / (nodes[i + 1].s - nodes[i].s);
 }
 
 /// |q''| at node i; zero at the ends and at corners.
 AxisValues bend(const std::vector<PathNode>& nodes, size_t i) {
   if (i == 0 || i + 1 == nodes.size() || nodes[i].corner) return AxisValues::Zero();
+  if (!nodes[i - 1].reached || !nodes[i].reached || !nodes[i + 1].reached) return AxisValues::Zero();
   return (2.0 / (nodes[i + 1].s - nodes[i - 1].s) * (rate(nodes, i) - rate(nodes, i - 1))).cwiseAbs();
 }
 
@@ -78,13 +80,14 @@ void append_nodes(const PathShape& shape, const kinematics::InverseKinematics& i
     }
     const ToolPose pose = shape.pose(x);
     const Branch branch = inverse.solve_nearest(pose, last.q);
-    const AxisValues q = branch.outcome == InverseOutcome::kUnreachable ? last.q : branch.q;
-    if (step > kSpacingMin && is_coarse(from, pose, last.q, q, inverse, machine)) {
+    const bool reached = branch.outcome != InverseOutcome::kUnreachable;
+    const AxisValues q = reached ? branch.q : last.q;
+    if (step > kSpacingMin && last.reached && reached && is_coarse(from, pose, last.q, q, inverse, machine)) {
       pending.push_back(middle);
       continue;
     }
     pending.pop_back();
-    if (step > 0.0) nodes.push_back({x, last.s + step, q, false});
+    if (step > 0.0) nodes.push_back({x, last.s + step, q, false, reached});
     from = pose;
   }
 }

@@ -1,0 +1,218 @@
+#include "motion/interpolator.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "base/check.h"
+#include "base/units.h"
+#include "motion/block_interpolator.h"
+#include "motion/free_move.h"
+#include "motion/motion_statistics.h"
+#include "motion/pass_geometry.h"
+#include "motion/surface_interpolator.h"
+
+namespace swarf::motion {
+namespace {
+
+using kinematics::Branch;
+using kinematics::InverseOutcome;
+using toolpath::FreeMove;
+using toolpath::SurfacePass;
+using Clock = std::chrono::steady_clock;
+
+/// Cycles of one element beyond which the samples would fill the memory (about 200 bytes each).
+constexpr double kCyclesMax = 2e7;
+/// Elements must follow each other without a gap, mm and (per unit axis) rad.
+constexpr double kJoinTolerance = 1e-6;
+
+/// Collects samples and solves the inverse for each.
+class Recorder {
+ public:
+  Recorder(const toolpath::ToolPath& path, const kinematics::MachineModel& machine,
+           const cutter::Cutter& cutter, const MotionOptions& options)
+      : path_(path), machine_(machine), cutter_(cutter), options_(options), inverse_(machine) {
+    result_.trajectory.period_s = options.period_s;
+    for (size_t i = 0; i < machine.axes.size(); ++i) q_[static_cast<Eigen::Index>(i)] = machine.axes[i].home;
+  }
+
+  void run(int element) {
+    element_ = element;
+    const auto& what = path_.elements[static_cast<size_t>(element)].what;
+    outside_reach_ = 0;
+    if (const auto* move = std::get_if<FreeMove>(&what)) {
+      if (move->feed_mm_s > 0.0) check_cycles((move->to.tip_W - move->from.tip_W).norm(), move->feed_mm_s);
+      start_at(move->from, SampleKind::kRapid, {});
+      for (ToolSample& sample : sample_free_move(*move, machine_, inverse_, options_, q_)) record(sample);
+    } else {
+      run_pass(std::get<SurfacePass>(what));
+    }
+    report_outside_reach();
+  }
+
+  MotionResult finish() {
+    result_.statistics = measure_motion(result_.trajectory, path_, machine_, inverse_, cutter_);
+    rank_tick_costs();
+    for (MotionFinding& fault : find_axis_faults(result_.trajectory, path_, machine_))
+      result_.findings.push_back(std::move(fault));
+    std::stable_sort(result_.findings.begin(), result_.findings.end(),
+                     [](const MotionFinding& a, const MotionFinding& b) { return a.element < b.element; });
+    return std::move(result_);
+  }
+
+ private:
+  void run_pass(const SurfacePass& pass) {
+    check_cycles(pass_length(pass, pass.t_start, pass.t_end), pass.feed_mm_s);
+    const toolpath::CurvePoint start = curve_at(*pass.surface, pass.curve, pass.t_start);
+    start_at(contact_pose(pass, pass.t_start, cutter_.radius()), SampleKind::kCutting, start);
+    if (options_.mode == Mode::kOffline) {
+      for (ToolSample& sample : sample_offline_pass(pass, cutter_, machine_, inverse_, options_, q_))
+        record(sample);
+    } else {
+      run_in_real_time(pass);
+    }
+  }
+
+  void run_in_real_time(const SurfacePass& pass) {
+    SurfaceInterpolator interpolator(machine_, inverse_, cutter_, options_);
+    interpolator.begin(pass, q_);
+    StepOutput out;
+    while (!out.finished) {
+      const auto begin = Clock::now();
+      interpolator.step({}, out);
+      const Branch branch = inverse_.solve_nearest(out.pose, q_);
+      const auto end = Clock::now();
+      tick_ns_.push_back(std::chrono::duration<double, std::nano>(end - begin).count());
+      ToolSample sample;
+      sample.pose = out.pose;
+      sample.contact_W = out.contact_W;
+      sample.u = out.u;
+      sample.v = out.v;
+      sample.feed_mm_s = out.feed_mm_s;
+      sample.kind = SampleKind::kCutting;
+      record(sample, branch);
+    }
+  }
+
+  /// Records the very first pose; later ones must be where the element before ended.
+  void start_at(const ToolPose& pose, SampleKind kind, const toolpath::CurvePoint& at) {
+    if (result_.trajectory.samples.empty()) {
+      ToolSample sample;
+      sample.pose = pose;
+      sample.contact_W = pose.tip_W;
+      sample.kind = kind;
+      if (kind == SampleKind::kCutting) {
+        sample.contact_W = at.C;
+        sample.u = at.u;
+        sample.v = at.v;
+      }
+      record(sample);
+      return;
+    }
+    const ToolPose& before = result_.trajectory.samples.back().pose;
+    SWARF_CHECK((before.tip_W - pose.tip_W).norm() <= kJoinTolerance &&
+                    (before.axis_W - pose.axis_W).norm() <= kJoinTolerance,
+                fmt::format("element {} does not start where the one before ends", element_));
+  }
+
+  void record(ToolSample& sample) { record(sample, inverse_.solve_nearest(sample.pose, q_)); }
+
+  void record(ToolSample& sample, const Branch& branch) {
+    sample.t_s = static_cast<double>(result_.trajectory.samples.size()) * options_.period_s;
+    sample.element = element_;
+    if (branch.outcome != InverseOutcome::kUnreachable) {
+      q_ = branch.q;
+    } else if (outside_reach_++ == 0) {
+      outside_since_s_ = sample.t_s;
+      outside_pose_ = sample.pose;
+    }
+    result_.trajectory.samples.push_back(sample);
+    result_.trajectory.axes.push_back(q_);
+  }
+
+  void report_outside_reach() {
+    if (outside_reach_ == 0) return;
+    const Vec3& p = outside_pose_.tip_W;
+    const Vec3& a = outside_pose_.axis_W;
+    result_.findings.push_back(
+        {"unreachable",
+         fmt::format(
+             "the machine has no axis positions for {} cycles, first at tip ({:.3f}, {:.3f}, {:.3f}) mm, "
+             "axis ({:.4f}, {:.4f}, {:.4f}); its axes stood still there",
+             outside_reach_, p.x(), p.y(), p.z(), a.x(), a.y(), a.z()),
+         element_, outside_since_s_, path_.elements[static_cast<size_t>(element_)].where});
+  }
+
+  void check_cycles(double length, double feed_mm_s) const {
+    const double cycles = length / (feed_mm_s * options_.period_s);
+    if (cycles <= kCyclesMax) return;
+    throw InputError(
+        "too-many-cycles", path_.elements[static_cast<size_t>(element_)].where,
+        fmt::format("{:.3f} mm at {:g} mm/min take {:.3g} cycles of {:g} ms, more than {:g}", length,
+                    mm_min_from_mm_s(feed_mm_s), cycles, options_.period_s * 1e3, kCyclesMax),
+        fmt::format("raise F above {:.3g} mm/min, or the period",
+                    mm_min_from_mm_s(length / (kCyclesMax * options_.period_s))));
+  }
+
+  void rank_tick_costs() {
+    if (tick_ns_.empty()) return;
+    const auto rank = [&](double share) {
+      const auto at =
+          tick_ns_.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(tick_ns_.size() - 1));
+      std::nth_element(tick_ns_.begin(), at, tick_ns_.end());
+      return *at;
+    };
+    result_.statistics.tick_ns_median = rank(0.5);
+    result_.statistics.tick_ns_p999 = rank(0.999);
+  }
+
+  const toolpath::ToolPath& path_;
+  const kinematics::MachineModel& machine_;
+  const cutter::Cutter& cutter_;
+  const MotionOptions& options_;
+  kinematics::InverseKinematics inverse_;
+  kinematics::AxisValues q_ = kinematics::AxisValues::Zero();
+  int element_ = 0;
+  size_t outside_reach_ = 0;
+  double outside_since_s_ = 0.0;
+  ToolPose outside_pose_;
+  std::vector<double> tick_ns_;
+  MotionResult result_;
+};
+
+void throw_if_invalid(const MotionOptions& options) {
+  Diagnostics diagnostics;
+  for (const std::string& problem : validate(options)) diagnostics.error("bad-options", {}, problem, "");
+  diagnostics.throw_if_errors();
+}
+
+}  // namespace
+
+std::vector<std::string> validate(const MotionOptions& options) {
+  std::vector<std::string> problems;
+  const auto positive = [&](double value, const char* name, const char* unit) {
+    if (!(value > 0.0) || !std::isfinite(value))
+      problems.push_back(fmt::format("{} must be a number above 0 {}, it is {:g}", name, unit, value));
+  };
+  positive(options.period_s, "period_s", "s");
+  positive(options.path_acceleration_max, "path_acceleration_max", "mm/s^2");
+  positive(options.path_jerk_max, "path_jerk_max", "mm/s^3");
+  return problems;
+}
+
+MotionResult interpolate(const toolpath::ToolPath& path, const kinematics::MachineModel& machine,
+                         const cutter::Cutter& cutter, const MotionOptions& options, Progress& progress) {
+  throw_if_invalid(options);
+  Recorder recorder(path, machine, cutter, options);
+  progress.begin("interpolate", static_cast<double>(path.elements.size()), "elements");
+  for (size_t i = 0; i < path.elements.size() && !progress.stop_requested(); ++i) {
+    recorder.run(static_cast<int>(i));
+    progress.advance(static_cast<double>(i + 1));
+  }
+  progress.end();
+  return recorder.finish();
+}
+
+}  // namespace swarf::motion

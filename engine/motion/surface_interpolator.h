@@ -1,0 +1,91 @@
+// The real-time core: one call per control cycle gives position, exact orientation and feed on a surface
+// pass.
+//
+//   C(t_k)                     1. L = length of this cycle, from the look-ahead plan or from the caller
+//     o-------- L -------o     2. Taylor 2:  dt = L/s - L^2 (C'.C'')/(2 s^4),  s = |C'|      (theory 1.3)
+//      `-.____________.-'      3. twice Newton on |C(t) - C(t_k)|^2 = L^2
+//                  C(t)        4. surface normal and pose at C(t)
+//
+// In mode taylor1 steps 2 and 3 are Lin & Koren's Eq. (5), dt = L/s. Chords sum up to a little less than the
+// arc; begin() finds the length of the plan with which the last tick comes to lie on the end of the pass.
+#pragma once
+
+#include <optional>
+
+#include "cutter/cutter.h"
+#include "kinematics/machine_model.h"
+#include "motion/interpolator.h"
+#include "motion/jerk_profile.h"
+#include "motion/speed_clamps.h"
+#include "toolpath/tool_path.h"
+
+namespace swarf::motion {
+
+struct StepInput {
+  /// Feed of this cycle, mm/s; none: the plan of begin() gives it.
+  std::optional<double> feed_mm_s;
+  /// Measure tick_ns. Off by default: reading the clock twice costs a tenth of the cycle itself.
+  bool timed = false;
+};
+
+struct StepOutput {
+  ToolPose pose;
+  Vec3 contact_W = Vec3::Zero();
+  double t = 0.0;  ///< parameter of the pass' curve
+  double u = 0.0, v = 0.0;
+  double feed_mm_s = 0.0;  ///< commanded for this cycle: its chord is to be feed times period
+  double chord_mm = 0.0;   ///< what the chord has become
+  bool finished = false;   ///< the pose is the end of the pass
+  double tick_ns = 0.0;    ///< cost of this call when it was timed
+};
+
+class SurfaceInterpolator {
+ public:
+  /// The machine and its inverse must outlive the interpolator.
+  SurfaceInterpolator(const kinematics::MachineModel& machine, const kinematics::InverseKinematics& inverse,
+                      const cutter::Cutter& cutter, const MotionOptions& options);
+
+  /// Look-ahead for a pass: limits, speed plan, exact length. `hint`: axis values before the pass. Allocates.
+  void begin(const toolpath::SurfacePass& pass, const kinematics::AxisValues& hint);
+  /// Stands at the start of a pass without a plan: every step() needs a feed. The last one is shortened to
+  /// end on the end of the pass.
+  void begin_unplanned(const toolpath::SurfacePass& pass);
+
+  /// One control cycle. Allocates nothing. Must not be called again once finished.
+  void step(const StepInput& input, StepOutput& output);
+
+  /// Pose at the start of the pass.
+  ToolPose start_pose() const;
+  /// What begin() planned with and what came out.
+  const SpeedLimits& limits() const { return limits_; }
+  const Profile& profile() const { return profile_; }
+
+ private:
+  ToolPose pose_at(const toolpath::CurvePoint& at) const;
+  /// Parameter one chord of length L further on.
+  double advance(const toolpath::CurvePoint& at, double t, double length) const;
+  double advance_taylor1(const toolpath::CurvePoint& at, double t, double length) const;
+  double advance_chord(const toolpath::CurvePoint& at, double t, double length) const;
+  double beyond_end(double t) const { return direction_ * (t - pass_.t_end); }
+  void take_step(const StepInput& input, StepOutput& output);
+  /// Limits over the pass from feed, chord tolerance, path acceleration and the axes.
+  void find_limits(const kinematics::AxisValues& hint);
+  /// Plans, marches through the pass and corrects the plan's length until the march ends on its end.
+  void fit_plan();
+  /// mm along the curve by which the profile's chords run beyond the end; negative: stop short of it.
+  double overshoot() const;
+
+  const kinematics::MachineModel& machine_;
+  const kinematics::InverseKinematics& inverse_;
+  double radius_mm_;
+  MotionOptions options_;
+  toolpath::SurfacePass pass_;
+  double direction_ = 1.0;  ///< sign of t_end - t_start
+  SpeedLimits limits_;
+  Profile profile_;
+  size_t tick_ = 0;
+  double t_ = 0.0;
+  toolpath::CurvePoint at_;
+};
+
+}  // namespace swarf::motion
