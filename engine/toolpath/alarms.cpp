@@ -123,15 +123,17 @@ bool check_lean(const Area& area, const OperationContext& context, Diagnostics& 
   // the parabola of theory 1.1 does not describe.
   constexpr double kLeastCosine = 0.5;
   if (area.lean.on_normal() || std::abs(std::cos(area.lean.yaw)) >= kLeastCosine) return true;
+  // tan(yaw) = sin(tilt) / tan(lead).
+  const double least_lead =
+      std::atan(std::abs(std::sin(context.operation->tilt_rad)) / std::tan(std::acos(kLeastCosine)));
   diagnostics.error(
       "tilt-without-lead", context.operation->where,
       fmt::format(
           "tilt J{:.6g} with lead I{:.6g} degrees cuts with the corner of the flat end: saw teeth instead of "
           "scallops",
           deg_from_rad(context.operation->tilt_rad), deg_from_rad(context.operation->lead_rad)),
-      fmt::format(
-          "give a lead of at least {:.2f} degrees beside this tilt, or no tilt",
-          round_up(deg_from_rad(std::atan(std::abs(std::tan(area.lean.angle)) * kLeastCosine)), 0.01)));
+      fmt::format("give a lead of at least {:.2f} degrees beside this tilt, or no tilt",
+                  round_up(deg_from_rad(least_lead), 0.01)));
   return false;
 }
 

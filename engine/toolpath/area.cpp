@@ -57,8 +57,10 @@ double argmin_sampled(const std::function<double(double)>& f) {
 }
 
 double scallop_of(const Area& area, const surface::Shape& shape, const Vec2& feed, double chord) {
-  const double curvature = relative_curvature(shape.K, feed, area.lean, area.radius_mm);
-  if (!area.lean.on_normal()) return 0.125 * chord * chord * std::max(0.0, curvature);
+  if (!area.lean.on_normal())
+    return leaned_scallop(leaned_curvature(shape.K, feed, area.lean), chord, area.lean, area.radius_mm,
+                          area.rim_sides);
+  const double curvature = strip_curvature(shape.K, feed);
   return curvature > 0.0 ? scallop_for_chord(1.0 / curvature, chord) : 0.0;
 }
 
@@ -102,7 +104,26 @@ double least_speed_across(const Area& area) {
   return least;
 }
 
+/// Longest usable interval along a line w = const.
+double longest_interval(const Area& area, double w) {
+  double longest = 0.0;
+  for (int i = 0; i < kEdgeSamples; ++i) {
+    const PassFrame frame = pass_frame(area.pass_surface(), CubicSpline::constant(w),
+                                       static_cast<double>(i) / (kEdgeSamples - 1));
+    longest =
+        std::max(longest, interval_at(area, frame.shape, frame.unit_feed, IntervalRule::kExact).usable());
+  }
+  return longest;
+}
+
 }  // namespace
+
+Area strip_behind(Area area, size_t k) {
+  if (!area.zigzag) return area;
+  const bool next_is_left_of_t = area.forward() * area.pass_surface().outward_sign() > 0.0;
+  area.rim_sides = next_is_left_of_t == (k % 2 == 0) ? RimSides::kBothLeft : RimSides::kBothRight;
+  return area;
+}
 
 bool gouges(const surface::Shape& shape, const Lean& lean, double radius_mm) {
   const double concave = -surface::principal_curvatures(shape).low;
@@ -116,9 +137,9 @@ Interval interval_at(const Area& area, const surface::Shape& shape, const Vec2& 
   const double h = area.scallop_mm;
   Interval interval;
   if (!area.lean.on_normal()) {
-    interval.curvature = relative_curvature(shape.K, feed, area.lean, r);
-    interval.chord_mm = leaned_chord(interval.curvature, h, area.lean, r);
-    interval.reach_mm = 2.0 * r * std::abs(std::cos(area.lean.yaw));
+    interval.chord_mm =
+        leaned_chord(leaned_curvature(shape.K, feed, area.lean), h, area.lean, r, area.rim_sides);
+    interval.reach_mm = interval.chord_mm;  // leaned_chord ends at the rim
     return interval;
   }
   const bool paper = rule == IntervalRule::kPaper;
@@ -181,13 +202,7 @@ void extend_beyond_edges(Area& area, double overrun_mm) {
     const Regularity found = regularity(area, t_range, w_range, n_t, n_w);
     return !found.gouges && found.least_area >= 0.5 * inside.least_area;
   };
-  double interval = 0.0;
-  for (int i = 0; i < kEdgeSamples; ++i) {
-    const PassFrame frame = pass_frame(area.pass_surface(), CubicSpline::constant(area.start_w),
-                                       static_cast<double>(i) / (kEdgeSamples - 1));
-    interval =
-        std::max(interval, interval_at(area, frame.shape, frame.unit_feed, IntervalRule::kExact).usable());
-  }
+  const double interval = std::max(longest_interval(area, area.start_w), longest_interval(area, area.end_w));
   const double low_speed = least_speed_along(area, 0.0);
   const double high_speed = least_speed_along(area, 1.0);
   area.continues_along = false;

@@ -23,15 +23,20 @@ struct Area {
   double scallop_mm = 0.01;
   double radius_mm = 5.0;  ///< of the cutter
   Lean lean;
-  Grid grid;                     ///< covers [0,1] and a margin for the overrun at both ends
-  bool continues_across = true;  ///< the surface may be used beyond the boundary end_w
-  bool continues_along = true;   ///< the surface may be used beyond t = 0 and t = 1
+  RimSides rim_sides = RimSides::kBalanced;  ///< of the strip at hand
+  Grid grid;                                 ///< covers [0,1] and a margin for the overrun at both ends
+  bool zigzag = false;                       ///< every other pass is reversed
+  bool continues_across = true;              ///< the surface may be used beyond the boundary end_w
+  bool continues_along = true;               ///< the surface may be used beyond t = 0 and t = 1
 
   PassSurface pass_surface() const { return {*surface, along_u}; }
   double forward() const { return end_w - start_w; }  ///< +1 or -1
   /// True when w lies beyond the last boundary or on it.
   bool beyond_end(double w) const { return (w - end_w) * forward() >= 0.0; }
 };
+
+/// The area as seen by the strip between pass k (0-based) and the next one.
+Area strip_behind(Area area, size_t k);
 
 /// Which radius of curvature the interval is taken from.
 enum class IntervalRule {
@@ -42,7 +47,7 @@ enum class IntervalRule {
 struct Interval {
   double chord_mm = 0.0;   ///< leaves the wanted scallop; the cutter's width where the surface is flat
   double reach_mm = 0.0;   ///< longest chord at which the cutter reaches the cusp
-  double curvature = 0.0;  ///< 1/mm, that the chord was taken from
+  double curvature = 0.0;  ///< 1/mm, that the chord was taken from; on the normal only
   bool flat = false;       ///< no scallop worth the name within the cutter's width
   double usable() const { return std::min(chord_mm, reach_mm); }
 };
@@ -68,7 +73,7 @@ MinimumInterval minimum_interval(const Area& area, const CubicSpline& w, Interva
 /// strip lies within the part.
 struct Strip {
   double chord_min_mm = 0.0, chord_max_mm = 0.0;  ///< from the next pass to its foot on the previous one
-  double scallop_max_mm = 0.0;  ///< Eq. 1 with R = kappa_t/K_G, leaned P^2/8 det M/(t'Mt), at mid strip
+  double scallop_max_mm = 0.0;  ///< Eq. 1 with R = kappa_t/K_G, or leaned_scallop, at mid strip
 };
 Strip measure_strip(const Area& area, const CubicSpline& previous, const CubicSpline& next, double t_low,
                     double t_high);

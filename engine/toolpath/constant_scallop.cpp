@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "toolpath/chebyshev.h"
 #include "toolpath/offset_walk.h"
 
 namespace swarf::toolpath {
@@ -93,6 +94,19 @@ double half_advance(const Area& area, const CubicSpline& pass, double t) {
   return 0.5 * area.forward() * interval_at(area, shape, feed, IntervalRule::kExact).usable() / across;
 }
 
+/// Where the surface does not continue beyond the last boundary: the boundary itself, if the height there is
+/// not yet the wanted one.
+template <class Height>
+Level held_at_end(const Area& area, double base, double t, double s_start, const Height& height) {
+  Level level;
+  if (area.continues_across) return level;
+  level.w = area.end_w;
+  level.at.s = t;
+  if (!area.beyond_end(base)) level.at = height(area.end_w, s_start);
+  level.found = level.at.height_mm < area.scallop_mm;
+  return level;
+}
+
 /// The curve beyond `pass` on which height(t, w, s) equals the area's scallop, at the grid's abscissae.
 template <class Height>
 GridPoints level_curve(const Area& area, const CubicSpline& pass, const Height& height) {
@@ -101,10 +115,14 @@ GridPoints level_curve(const Area& area, const CubicSpline& pass, const Height& 
   double shift = 0.0;  // of the foot, as found at the neighbour
   for (int j = 0; j < grid.size(); ++j) {
     const double t = grid.t(j);
-    const double advance = half_advance(area, pass, t);
-    // Four times the expected distance is a runaway, not a solution.
-    const Level level = level_point(pass.at(t).w, advance, 4.0 * std::abs(advance), t + shift,
-                                    area.scallop_mm, [&](double w, double s) { return height(t, w, s); });
+    const double base = pass.at(t).w;
+    const auto here = [&](double w, double s) { return height(t, w, s); };
+    Level level = held_at_end(area, base, t, t + shift, here);
+    if (!level.found) {
+      // Four times the expected distance is a runaway, not a solution.
+      const double advance = half_advance(area, pass, t);
+      level = level_point(base, advance, 4.0 * std::abs(advance), t + shift, area.scallop_mm, here);
+    }
     if (!level.found) continue;
     shift = level.at.s - t;
     points.w[j] = level.w;
@@ -132,15 +150,35 @@ NextPass next_exact(const Area& area, const CubicSpline& previous) {
   return graph_of(area, ridge.w, level_curve(area, ridge.w, left_on_ridge));
 }
 
-NextPass next_by_formula(const Area& area, const CubicSpline& previous) {
+/// Chord wanted at each abscissa of the grid: by formula at mid strip, with the feed of the previous pass.
+/// `next` is the last guess of the next pass.
+std::vector<double> formula_chords(const Area& area, const CubicSpline& previous, const CubicSpline& next) {
   const PassSurface surface = area.pass_surface();
-  const auto rule = [&](double s, double t, double w) {
-    const surface::Derivatives d = surface.at(0.5 * (s + t), 0.5 * (previous.at(s).w + w));
-    const surface::Shape shape = surface::shape_at(d, surface.outward_sign());
-    const Vec2 feed = shape.in_tangent(graph_point(surface, previous, s).dp).normalized();
-    return interval_at(area, shape, feed, IntervalRule::kExact).usable();
-  };
-  return graph_of(area, previous, offset_walk(area, previous, rule));
+  std::vector<double> chords(area.grid.size());
+  for (int j = 0; j < area.grid.size(); ++j) {
+    const double t = area.grid.t(j);
+    const GraphPoint g = graph_point(surface, previous, t);
+    const surface::Derivatives middle = surface.at(t, 0.5 * (previous.at(t).w + next.at(t).w));
+    const surface::Shape shape = surface::shape_at(middle, surface.outward_sign());
+    chords[j] = interval_at(area, shape, shape.in_tangent(g.dp).normalized(), IntervalRule::kExact).usable();
+  }
+  return chords;
+}
+
+/// The chord of a leaned tool depends on the direction of the previous pass. Point by point that would make
+/// every pass sharpen the waves of the one before (the ridge of a wavy pass truly does), so the chords pass
+/// through a polynomial of this degree, lowered until it lies nowhere above them within the part.
+constexpr int kChordDegree = 10;
+
+NextPass next_by_formula(const Area& area, const CubicSpline& previous) {
+  constexpr int kRounds = 3;  // mid strip moves by a hundredth of the chord error: two digits each
+  NextPass next{NextPass::kOk, 0.0, previous};
+  for (int i = 0; i < kRounds && next.outcome == NextPass::kOk; ++i) {
+    const Chebyshev chord =
+        fitted_from_below(area.grid, formula_chords(area, previous, next.w), kChordDegree);
+    next = graph_of(area, previous, offset_walk(area, previous, [&](double s) { return chord.at(s); }));
+  }
+  return next;
 }
 
 bool flat_along(const Area& area, const CubicSpline& pass) {

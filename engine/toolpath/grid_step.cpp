@@ -1,6 +1,7 @@
 #include "toolpath/grid_step.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace swarf::toolpath {
 namespace {
@@ -9,47 +10,61 @@ namespace {
 /// from amplifying the noise at the ends.
 constexpr int kSlopeCells = 16;
 
-/// Solved points around the middle of the grid: [first, last], or first > last when there are none.
-struct Run {
-  int first, last;
-};
-Run solved_run(const GridPoints& points) {
-  const int n = static_cast<int>(points.w.size());
-  Run run{n / 2, n / 2 - 1};
-  while (run.last + 1 < n && points.outcome[run.last + 1] == PointOutcome::kSolved) ++run.last;
-  while (run.first - 1 >= 0 && points.outcome[run.first - 1] == PointOutcome::kSolved) --run.first;
-  return run;
+bool solved(const GridPoints& points, int j) {
+  return points.outcome[j] == PointOutcome::kSolved;
+}
+
+/// First place within 0..1 where the walk failed although a pass is needed there, or where its matching
+/// points fall behind their neighbours.
+NextPass check_points(const Area& area, const CubicSpline& previous, const GridPoints& points) {
+  const Grid& grid = area.grid;
+  int before = -1;
+  for (int j = 0; j < grid.size(); ++j) {
+    const double t = grid.t(j);
+    const double w = previous.at(t).w;
+    const bool needed = t >= 0.0 && t <= 1.0 && !area.beyond_end(w);
+    if (needed && points.outcome[j] == PointOutcome::kFailed) return {NextPass::kNoPoint, t, {}};
+    if (!solved(points, j)) continue;
+    const double advance = (points.w[j] - w) * area.forward();
+    // Passes may rest on a boundary beyond which the surface does not continue.
+    const bool rests = !area.continues_across && advance == 0.0;
+    const bool ordered = before < 0 || points.foot[j] >= points.foot[before];
+    if (needed && ((advance <= 0.0 && !rests) || !ordered)) return {NextPass::kFolds, t, {}};
+    before = j;
+  }
+  if (before < 0) return {NextPass::kNoPoint, grid.t(grid.intervals / 2), {}};
+  return {};
+}
+
+/// Fills the unsolved points: linearly between solved ones, and with the slope of the last solved ones
+/// outwards.
+void fill(std::vector<double>& advance, const GridPoints& points) {
+  const int n = static_cast<int>(advance.size());
+  std::vector<int> known;
+  for (int j = 0; j < n; ++j)
+    if (solved(points, j)) known.push_back(j);
+  const auto line = [&](int j, int a, int b) {
+    return a == b ? advance[a] : advance[a] + (advance[b] - advance[a]) * (j - a) / (b - a);
+  };
+  const size_t reach = std::min<size_t>(kSlopeCells, known.size() - 1);
+  for (int j = 0; j < known.front(); ++j) advance[j] = line(j, known.front(), known[reach]);
+  for (int j = known.back() + 1; j < n; ++j)
+    advance[j] = line(j, known.back(), known[known.size() - 1 - reach]);
+  for (size_t i = 0; i + 1 < known.size(); ++i)
+    for (int j = known[i] + 1; j < known[i + 1]; ++j) advance[j] = line(j, known[i], known[i + 1]);
 }
 
 }  // namespace
 
 NextPass graph_of(const Area& area, const CubicSpline& previous, const GridPoints& points) {
+  NextPass next = check_points(area, previous, points);
+  if (next.outcome != NextPass::kOk) return next;
   const Grid& grid = area.grid;
-  const int n = grid.size();
-  const Run run = solved_run(points);
-  NextPass next;
-  for (int j = 0; j < n; ++j) {
-    const bool within = grid.t(j) >= 0.0 && grid.t(j) <= 1.0;
-    const bool solved = run.first <= j && j <= run.last;
-    if (within && !solved && points.outcome[j] != PointOutcome::kFootOutside)
-      return {NextPass::kNoPoint, grid.t(j), {}};
-    if (run.first < j && j <= run.last && points.foot[j] < points.foot[j - 1])
-      return {NextPass::kFolds, grid.t(j), {}};
-  }
-  if (run.last - run.first < kSlopeCells) return {NextPass::kNoPoint, grid.t(n / 2), {}};
-
-  std::vector<double> advance(n);
-  for (int j = run.first; j <= run.last; ++j) {
-    advance[j] = points.w[j] - previous.at(grid.t(j)).w;
-    if (advance[j] * area.forward() <= 0.0) return {NextPass::kFolds, grid.t(j), {}};
-  }
-  const double low_slope = (advance[run.first + kSlopeCells] - advance[run.first]) / kSlopeCells;
-  const double high_slope = (advance[run.last] - advance[run.last - kSlopeCells]) / kSlopeCells;
-  for (int j = 0; j < run.first; ++j) advance[j] = advance[run.first] + low_slope * (j - run.first);
-  for (int j = run.last + 1; j < n; ++j) advance[j] = advance[run.last] + high_slope * (j - run.last);
-
-  std::vector<double> w(n);
-  for (int j = 0; j < n; ++j) w[j] = previous.at(grid.t(j)).w + advance[j];
+  std::vector<double> advance(grid.size());
+  for (int j = 0; j < grid.size(); ++j) advance[j] = points.w[j] - previous.at(grid.t(j)).w;
+  fill(advance, points);
+  std::vector<double> w(grid.size());
+  for (int j = 0; j < grid.size(); ++j) w[j] = previous.at(grid.t(j)).w + advance[j];
   next.w = CubicSpline(grid.first, grid.step, std::move(w));
   return next;
 }

@@ -27,10 +27,11 @@ struct NextPass {
   CubicSpline w;
 };
 
-/// Makes a graph of solved points. Where the previous pass was too short to answer (its foot lies outside the
-/// grid), the advance across the surface is continued linearly from the solved points: they lie in the
-/// margin, and any smooth continuation serves there. Fails where a point within 0..1 has no solution, or
-/// where the matching points do not follow each other in order (the path folds over itself).
+/// Makes a graph of solved points. Where there is none (the previous pass was too short to answer, or lies
+/// beyond the last boundary already, where no pass is needed) the advance across the surface is continued
+/// linearly from the solved points: that part lies in the margin, and any smooth continuation serves there.
+/// Fails where a point that is needed has no solution, or where the matching points do not follow each other
+/// in order (the path folds over itself).
 NextPass graph_of(const Area& area, const CubicSpline& previous, const GridPoints& points);
 
 }  // namespace swarf::toolpath

@@ -31,7 +31,7 @@ std::vector<double> walk(const Area& area, double factor, size_t steps) {
   std::vector<double> x{0.0};
   double step = 0.5 * area.scallop_mm / area.radius_mm;  // short of any sensible one; corrected at once
   while (steps == 0 ? x.back() < 1.0 : x.size() <= steps) {
-    if (x.back() < 1.0) step = longest_step(area, x.back(), step);
+    if (x.back() < 1.0) step = longest_step(strip_behind(area, x.size() - 1), x.back(), step);
     SWARF_CHECK(step > 0.0, "an iso-parametric step has no length");
     x.push_back(x.back() + factor * step);
   }

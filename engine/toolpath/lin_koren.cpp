@@ -12,7 +12,7 @@ NextPass next_lin_koren(const Area& area, const CubicSpline& previous) {
   double chord = minimum_interval(area, previous, IntervalRule::kPaper).chord_mm;
   NextPass next;
   for (int i = 0; i < kRounds; ++i) {
-    const auto rule = [chord](double, double, double) { return chord; };
+    const auto rule = [chord](double) { return chord; };
     next = graph_of(area, previous, offset_walk(area, previous, rule));
     if (next.outcome != NextPass::kOk) return next;
     const double scallop = measure_strip(area, previous, next.w, 0.0, 1.0).scallop_max_mm;

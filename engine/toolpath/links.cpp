@@ -10,6 +10,10 @@
 namespace swarf::toolpath {
 namespace {
 
+/// Links keep this share of the safe distance from points of the design that lie as far apart: no place
+/// between them is farther than 0.71 of that from a point, so 0.29 of it always remains.
+constexpr double kClearanceShare = 0.5;
+
 ToolPose lifted(const ToolPose& pose, double distance) {
   return {pose.tip_W + distance * pose.axis_W, pose.axis_W};
 }
@@ -88,7 +92,8 @@ double clear_height(const ToolPose& from, const ToolPose& to, const Obstacle& ob
                     const cutter::Cutter& cutter, double safe_distance) {
   const double limit = 2.0 * obstacle.diagonal_mm + 10.0 * safe_distance;
   for (double height = safe_distance; height <= limit; height *= 1.5)
-    if (move_is_clear(lifted(from, height), lifted(to, height), obstacle, cutter, 0.5 * safe_distance))
+    if (move_is_clear(lifted(from, height), lifted(to, height), obstacle, cutter,
+                      kClearanceShare * safe_distance))
       return height;
   return -1.0;
 }
@@ -107,13 +112,13 @@ bool link(Writer& writer, const ToolPose& from, const ToolPose& to, double feed,
 
 }  // namespace
 
-Obstacle obstacle_of(const surface::Surface& surface, double radius_mm) {
+Obstacle obstacle_of(const surface::Surface& surface, double spacing_mm) {
   const auto pieces = [&](bool along_u) {
     double longest = 0.0;
     for (int i = 0; i <= 4; ++i)
       longest =
           std::max(longest, curve_length(surface, {along_u, CubicSpline::constant(0.25 * i)}, 0.0, 1.0));
-    return std::max(1, static_cast<int>(std::ceil(longest / radius_mm)));
+    return std::max(1, static_cast<int>(std::ceil(longest / spacing_mm)));
   };
   const int nu = pieces(true);
   const int nv = pieces(false);
@@ -169,7 +174,7 @@ void append_passes(ToolPath& path, const std::vector<SurfacePass>& passes, int o
                    Diagnostics& diagnostics) {
   if (passes.empty()) return;
   const double feed = options.approach_feed_fraction * passes.front().feed_mm_s;
-  const Obstacle obstacle = obstacle_of(*passes.front().surface, cutter.radius());
+  const Obstacle obstacle = obstacle_of(*passes.front().surface, kClearanceShare * options.safe_distance_mm);
   Writer writer{path, operation, where};
   PassEnds before;
   for (size_t i = 0; i < passes.size(); ++i) {

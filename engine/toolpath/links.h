@@ -12,12 +12,12 @@
 
 namespace swarf::toolpath {
 
-/// What the links must keep clear of: points of the design, no farther apart than the cutter's radius.
+/// What the links must keep clear of: points of the design, no farther apart than the spacing.
 struct Obstacle {
   std::vector<Vec3> points;
   double diagonal_mm = 0.0;  ///< of their bounding box
 };
-Obstacle obstacle_of(const surface::Surface& surface, double radius_mm);
+Obstacle obstacle_of(const surface::Surface& surface, double spacing_mm);
 
 /// True when the cutter (a cylinder of the given radius and length on its tip), moved straight with its axis
 /// by slerp, keeps `clearance_mm` from every point of the obstacle. Checked by conservative advancement.

@@ -16,7 +16,7 @@ Match first_guess(const Area& area, const CubicSpline& previous, double t, const
   const Vec3& across = g.d.Sv;
   const double slope = across.dot(g.dp) / g.dp.squaredNorm();
   const double w = previous.at(t).w;
-  const double advance = area.forward() * rule(t, t, w) / (across - slope * g.dp).norm();
+  const double advance = area.forward() * rule(t) / (across - slope * g.dp).norm();
   return {t + slope * advance, w + advance, false};
 }
 
@@ -29,7 +29,7 @@ Match solve_point(const Area& area, const CubicSpline& previous, double t, const
     const GraphPoint g = graph_point(surface, previous, match.s);
     const surface::Derivatives d = surface.at(t, match.w);
     const Vec3 gap = d.S - g.p;
-    const double chord = rule(match.s, t, match.w);
+    const double chord = rule(match.s);
     const Vec2 residual(gap.dot(g.dp), gap.squaredNorm() - chord * chord);
     Mat2 jacobian;
     jacobian << gap.dot(g.ddp) - g.dp.squaredNorm(), d.Sv.dot(g.dp), -2.0 * gap.dot(g.dp),

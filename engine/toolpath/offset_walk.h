@@ -2,7 +2,7 @@
 //
 //            q = S(t,w)          For every t of the grid find w and the foot s on the previous pass p with
 //           /|                     (q - p(s)).p'(s) = 0     q lies in the plane perpendicular to the pass
-//        P / |                     |q - p(s)| = P(s,t,w)    at the wanted chord
+//        P / |                     |q - p(s)| = P(s)        at the wanted chord
 //   ------x--------> p(s)        by Newton in (s,w). Working back from q gives the graph w(t) at once.
 #pragma once
 
@@ -12,10 +12,10 @@
 
 namespace swarf::toolpath {
 
-/// Chord wanted between the previous pass at s and the point (t,w) of the next one, mm.
-using ChordRule = std::function<double(double s, double t, double w)>;
+/// Chord wanted from the previous pass at s, mm; it must vary slowly along the pass.
+using ChordRule = std::function<double(double s)>;
 
-/// Offsets a pass; the rule may depend on the answer (it is evaluated at the last iterate).
+/// Offsets a pass.
 GridPoints offset_walk(const Area& area, const CubicSpline& previous, const ChordRule& chord);
 
 }  // namespace swarf::toolpath

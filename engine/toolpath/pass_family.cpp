@@ -115,7 +115,8 @@ Family plan_isoparametric(const Area& area, double overrun_mm) {
     CubicSpline w = CubicSpline::constant(constants[i]);
     family.unreachable = beyond_reach(area, w, IntervalRule::kExact);
     const CubicSpline previous = family.passes.back().w;
-    family.passes.push_back(measured_pass(area, previous, std::move(w), {Span{}}, overrun_mm));
+    family.passes.push_back(
+        measured_pass(strip_behind(area, i - 1), previous, std::move(w), {Span{}}, overrun_mm));
   }
   return family;
 }
@@ -154,14 +155,15 @@ Family plan_family(const Area& area, Planner planner, double overrun_mm) {
   while (true) {
     const CubicSpline previous = family.passes.back().w;
     family.unreachable = beyond_reach(area, previous, paper ? IntervalRule::kPaper : IntervalRule::kExact);
-    const std::vector<Span> open = open_spans(area, previous);
+    const Area strip = strip_behind(area, family.passes.size() - 1);
+    const std::vector<Span> open = open_spans(strip, previous);
     if (open.empty() || !family.unreachable.empty()) return family;
-    NextPass next = paper ? next_lin_koren(area, previous) : next_constant_scallop(area, previous);
+    NextPass next = paper ? next_lin_koren(strip, previous) : next_constant_scallop(strip, previous);
     family.outcome = next.outcome;
     family.failed_t = next.t;
     if (next.outcome != NextPass::kOk) return family;
     if (!area.continues_across) next.w = held_at_boundary(area, next.w);
-    family.passes.push_back(measured_pass(area, previous, std::move(next.w), open, overrun_mm));
+    family.passes.push_back(measured_pass(strip, previous, std::move(next.w), open, overrun_mm));
   }
 }
 

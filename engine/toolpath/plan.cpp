@@ -17,6 +17,7 @@ Area area_of(const program::Operation& operation, const surface::SurfacePtr& sur
   area.surface = surface;
   area.scallop_mm = operation.scallop_mm;
   area.radius_mm = radius_mm;
+  area.zigzag = operation.zigzag;
   area.lean = lean_of(operation.lead_rad, operation.tilt_rad);
   if (operation.kind == program::OperationKind::kIsoPass) {
     area.start_w = operation.iso_v;
@@ -35,7 +36,7 @@ std::vector<SurfacePass> travelled(const Area& area, const Family& family,
   std::vector<SurfacePass> passes;
   for (size_t k = 0; k < family.passes.size(); ++k) {
     const FamilyPass& from = family.passes[k];
-    const bool reversed = operation.zigzag && k % 2 == 1;
+    const bool reversed = area.zigzag && k % 2 == 1;
     for (size_t i = 0; i < from.spans.size(); ++i) {
       const Span& span = from.spans[reversed ? from.spans.size() - 1 - i : i];
       SurfacePass pass;

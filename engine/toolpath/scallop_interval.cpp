@@ -14,6 +14,18 @@ Vec2 left_of(const Vec2& t) {
 /// Curvature along the feed below which it counts as straight: relative to the size of the matrix, rounding.
 constexpr double kStraight = 1e-12;
 
+/// The terms with the rim's bend are small corrections: each round gains a digit or more.
+constexpr int kRounds = 12;
+
+/// Where lean and hollow all but cancel, the twist would outweigh the rest; it is trusted up to this share of
+/// h.
+constexpr double kTwistShare = 0.5;
+
+double side_sign(RimSides sides) {
+  if (sides == RimSides::kBalanced) return 0.0;
+  return sides == RimSides::kBothLeft ? 1.0 : -1.0;
+}
+
 }  // namespace
 
 double chord_for_scallop(double R, double h) {
@@ -53,24 +65,38 @@ double conjugate_stretch(const Mat2& K, const Vec2& t) {
   return std::hypot(1.0, t.dot(K * left_of(t)) / along);
 }
 
-double effective_radius(double r, double rc, const Lean& lean) {
-  const double cosine = std::cos(lean.yaw);
-  const double sine = std::sin(lean.yaw);
-  return (rc + r / std::sin(lean.angle)) * cosine * cosine + rc * sine * sine;
+LeanedCurvature leaned_curvature(const Mat2& K, const Vec2& t, const Lean& lean) {
+  const Vec2 towards = std::cos(lean.yaw) * t + std::sin(lean.yaw) * left_of(t);
+  return {cross_curvature(K, towards), left_of(towards).dot(K * towards)};
 }
 
-double relative_curvature(const Mat2& K, const Vec2& t, const Lean& lean, double r) {
-  if (lean.on_normal()) return strip_curvature(K, t);
-  const double cosine = std::cos(lean.yaw);
-  const Vec2 towards = cosine * t + std::sin(lean.yaw) * left_of(t);
-  return cross_curvature(K, towards) / (cosine * cosine) + 1.0 / effective_radius(r, 0.0, lean);
+double leaned_chord(const LeanedCurvature& curvature, double h, const Lean& lean, double r, RimSides sides) {
+  const double H = r * std::sin(lean.angle);
+  const double q = 0.5 * r * r * curvature.across;
+  const double side = side_sign(sides);
+  double x = 0.0;
+  double back = 0.0;
+  for (int i = 0; i < kRounds; ++i) {
+    // With z = sqrt(1 - y) the equation of the header is the quadratic q z^2 + H z = H + q - h - twist term.
+    const double twist = std::clamp(side * curvature.twist * x * back, -kTwistShare * h, kTwistShare * h);
+    const double rest = H + q - h - twist;
+    const double z = rest > 0.0 ? 2.0 * rest / (H + std::sqrt(H * H + 4.0 * q * rest)) : 0.0;
+    x = r * std::sqrt(std::max(0.0, 1.0 - z * z));
+    back = r * (1.0 - std::min(z, 1.0)) * std::cos(lean.angle);
+  }
+  return 2.0 * (x * std::abs(std::cos(lean.yaw)) - side * back * std::sin(lean.yaw));
 }
 
-double leaned_chord(double curvature, double h, const Lean& lean, double r) {
-  const double rim_height = r * std::sin(lean.angle);
-  const double reach = 2.0 * r * std::abs(std::cos(lean.yaw));
-  if (h >= rim_height || curvature <= 0.0) return reach;
-  return std::min(reach, std::sqrt(8.0 * h / curvature * (1.0 - 0.5 * h / rim_height)));
+double leaned_scallop(const LeanedCurvature& curvature, double P, const Lean& lean, double r,
+                      RimSides sides) {
+  const double side = side_sign(sides);
+  double x = 0.0;
+  double back = 0.0;
+  for (int i = 0; i < kRounds; ++i) {
+    x = std::clamp((0.5 * P + side * back * std::sin(lean.yaw)) / std::abs(std::cos(lean.yaw)), 0.0, r);
+    back = (r - std::sqrt(r * r - x * x)) * std::cos(lean.angle);
+  }
+  return back * std::tan(lean.angle) + 0.5 * curvature.across * x * x - side * curvature.twist * x * back;
 }
 
 }  // namespace swarf::toolpath

@@ -46,17 +46,33 @@ struct Lean {
   bool on_normal() const { return angle == 0.0; }
 };
 
-/// Radius of the cross section swept by a leaned tool: (rc + r/sin(phi)) cos^2(omega) + rc sin^2(omega), with
-/// rc the corner radius (0: flat end) and r the radius of the circle of corner centres.
-double effective_radius(double radius_mm, double corner_radius_mm, const Lean& lean);
+/// Which side of the feed two adjacent passes see each other on. The rim of a leaned tool bends away from the
+/// lean, so with yaw the two flanks of a cusp differ; when the passes run the same way they balance each
+/// other.
+enum class RimSides {
+  kBalanced,  ///< same direction of travel, or no yaw
+  kBothLeft,  ///< opposite directions (zigzag), the strip lies to the left of both
+  kBothRight,
+};
 
-/// det M/(t'Mt) with M = T + K for a flat end of radius r: strip_curvature on the normal; leaned, the rim is
-/// infinitely curved towards the lean, and the limit is (c'Kc)/cos^2(omega) + 1/R_eff with c across the lean.
-double relative_curvature(const Mat2& K, const Vec2& unit_feed, const Lean& lean, double radius_mm);
+/// What a leaned tool feels of the shape matrix: m towards the lean, c square to it.
+struct LeanedCurvature {
+  double across = 0.0;  ///< c'Kc, 1/mm; concave < 0
+  double twist = 0.0;   ///< c'Km, 1/mm
+};
+LeanedCurvature leaned_curvature(const Mat2& K, const Vec2& unit_feed, const Lean& lean);
 
-/// Chord for scallop h of a leaned flat end over the relative curvature: sqrt(8h/curvature), times
-/// sqrt(1 - h/(2 r sin(phi))), which makes it exact on a plane (the swept rim is an ellipse) and keeps it on
-/// the safe side elsewhere. The rim reaches no farther than 2 r cos(omega), which bounds the result.
-double leaned_chord(double relative_curvature, double scallop_mm, const Lean& lean, double radius_mm);
+/// Leaned flat end of radius r. The rim point that is x away from the contact along c lies b = r (1 -
+/// sqrt(1-y)) cos(phi) back from it, y = x^2/r^2; it stands r sin(phi) (1 - sqrt(1-y)) above the tangent
+/// plane, and the surface falls c'Kc x^2/2 - c'Km x b away below it:
+///     r sin(phi) (1 - sqrt(1-y)) + c'Kc x^2/2 -+ c'Km x b = h,      P = 2 (x cos(omega) -+ b sin(omega))
+/// with the upper sign for a strip on the left of both passes, and neither term when they balance. Exact on a
+/// plane; for small h it is P = sqrt(8 h R), 1/R = det M/(t'Mt) = 1/R_eff + c'Kc/cos^2(omega), with the
+/// radius of the swept cross section R_eff = r cos^2(omega)/sin(phi). The chord for h, and the h that a chord
+/// leaves; x ends at the rim, x = r.
+double leaned_chord(const LeanedCurvature& curvature, double scallop_mm, const Lean& lean, double radius_mm,
+                    RimSides sides);
+double leaned_scallop(const LeanedCurvature& curvature, double chord_mm, const Lean& lean, double radius_mm,
+                      RimSides sides);
 
 }  // namespace swarf::toolpath
