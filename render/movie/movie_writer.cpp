@@ -71,6 +71,7 @@ void MovieWriter::Impl::require(int result, const char* what) const {
 
 MovieWriter::Impl::Impl(std::string file, int width, int height, int fps)
     : path(std::move(file)), temporary(path + ".part"), packet(av_packet_alloc()) {
+  av_log_set_level(AV_LOG_QUIET);  // libav talks on stderr; what goes wrong comes back as codes
   SWARF_CHECK(width > 0 && height > 0 && width % 2 == 0 && height % 2 == 0, "4:2:0 needs even sizes");
   SWARF_CHECK(fps > 0, "a movie needs frames per second");
   AVFormatContext* made = nullptr;
@@ -110,7 +111,6 @@ void MovieWriter::Impl::open_codec(int width, int height, int fps) {
   codec->gop_size = kKeyFrameSeconds * fps;
   codec->thread_count = 1;  // x264's bytes depend on the number of threads
   codec->flags |= AV_CODEC_FLAG_GLOBAL_HEADER | AV_CODEC_FLAG_BITEXACT;
-  codec->log_level_offset = AV_LOG_INFO;  // x264 greets on stderr; its errors come back as codes
   codec->color_primaries = AVCOL_PRI_BT709;
   codec->color_trc = AVCOL_TRC_BT709;
   codec->colorspace = AVCOL_SPC_BT709;

@@ -206,7 +206,6 @@ void RasterRenderer::Impl::draw_backdrop(const SceneView& view) {
   ground.set("light_from_world", view.light_clip_from_world);
   ground.set("centre", view.ground_centre);
   ground.set("radius", view.ground_radius);
-  ground.set("texel", 1.0 / kShadowSize);
   gl.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
   const Uniforms background(gl, background_program);
   background.set("height_px", static_cast<double>(height));

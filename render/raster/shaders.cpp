@@ -11,14 +11,8 @@ vec3 background(float t) {
   return mix(vec3(0.50, 0.53, 0.56), vec3(0.86, 0.89, 0.92), smoothstep(0.0, 1.0, t));
 }
 
-// Share of the key light that arrives; 1 outside the map.
-float key_light_at(vec3 world, float texel) {
-  vec3 p = (light_from_world * vec4(world, 1.0)).xyz * 0.5 + 0.5;
-  if (any(lessThan(p, vec3(0.0))) || any(greaterThan(p, vec3(1.0)))) return 1.0;
-  // Two filtered taps across the texel grid: eight texels weigh in.
-  return 0.5 * (texture(shadow_map, p + vec3(-0.6 * texel, -0.3 * texel, 0.0)) +
-                texture(shadow_map, p + vec3(0.6 * texel, 0.3 * texel, 0.0)));
-}
+// Where a point lies in the shadow map, 0..1 in each coordinate inside it.
+vec3 shadow_place(vec3 world) { return (light_from_world * vec4(world, 1.0)).xyz * 0.5 + 0.5; }
 
 // Linear up to 0.7, then a shoulder that never reaches 1.
 vec3 tone(vec3 c) {
@@ -85,7 +79,10 @@ void main() {
   if (dot(n, v) < 0.0) n = -n;
   float nv = max(dot(n, v), 0.02);
   float nl = dot(n, key);
-  float lit = nl > 0.0 ? key_light_at(world + n * (1.5 * texel_mm), texel) : 0.0;
+  // Two filtered taps across the texel grid: eight texels weigh in. The map holds the whole scene.
+  vec3 p = shadow_place(world + n * (1.5 * texel_mm));
+  float lit = 0.5 * (texture(shadow_map, p + vec3(-0.6 * texel, -0.3 * texel, 0.0)) +
+                     texture(shadow_map, p + vec3(0.6 * texel, 0.3 * texel, 0.0)));
   nl = max(nl, 0.0) * lit;
 
   vec3 diffuse = albedo * (1.0 - metalness);
@@ -133,12 +130,13 @@ in vec3 world;
 uniform vec3 centre;
 uniform float radius;
 uniform float height_px;
-uniform float texel;
 out vec4 result;
 void main() {
   float r = length(world.xy - centre.xy) / radius;
   float fade = 1.0 - smoothstep(0.25, 1.0, r);
-  float shade = mix(0.58, 1.0, key_light_at(world, 2.5 * texel));
+  vec3 p = shadow_place(world);
+  bool outside = any(lessThan(p, vec3(0.0))) || any(greaterThan(p, vec3(1.0)));
+  float shade = outside ? 1.0 : mix(0.58, 1.0, texture(shadow_map, p));
   // Darker close to the scene, where its bulk hides part of the sky.
   shade *= mix(0.80, 1.0, smoothstep(0.08, 0.45, r));
   vec3 floor_colour = vec3(0.56, 0.58, 0.60) * shade;

@@ -22,7 +22,7 @@ extern const ShaderSource kGroundShader;
 extern const ShaderSource kBackgroundShader;
 extern const ShaderSource kLineShader;
 
-/// Prepended to every fragment shader: version, background gradient, shadow test.
+/// Prepended to every fragment shader: version, background gradient, shadow map, tone curve.
 extern const char* const kFragmentPrelude;
 
 }  // namespace swarf::render

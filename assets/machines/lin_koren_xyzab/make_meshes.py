@@ -21,15 +21,15 @@ from solid_kit import (Part, along_x, along_y, box, circle, cylinder, lathe, mir
                        rectangle, tube, turn_z)
 
 # sRGB
-PAINT = (222, 224, 222)
+PAINT = (216, 218, 216)
 PAINT_DARK = (66, 73, 82)
 ACCENT = (24, 92, 138)
-STEEL = (176, 181, 186)
-GROUND = (205, 208, 210)
+STEEL = (150, 155, 160)
+GROUND = (160, 165, 170)
 OXIDE = (52, 54, 58)
 RUBBER = (30, 31, 34)
 BRASS = (196, 158, 84)
-ALUMINIUM = (190, 193, 197)
+ALUMINIUM = (138, 143, 149)
 ORANGE = (236, 122, 34)
 
 
@@ -357,16 +357,16 @@ def y_slide():
     for y in range(230, 560, 66):
         for x in (-1, 1):
             part.add(PAINT, box(*sorted((x * 94, x * 107)), y - 7, y + 7, 492, 676, 3))
-    for x in (-1, 1):  # gussets between plate and ram, above and below
+    for x in (-1, 1):  # gussets between plate and ram; below it flat ribs that pass the column's front
         part.add(PAINT, prism(outline([(146, 684), (330, 684), (146, 868)], 3), "x", x * 78 - 9, x * 78 + 9, 3),
-                 prism(outline([(146, 300), (300, 482), (146, 482)], 3), "x", x * 78 - 9, x * 78 + 9, 3))
+                 box(x * 78 - 9, x * 78 + 9, 146, 159, 262, 484, 3))
     part.add(ACCENT, box(-109, 109, 200, 596, 572, 592, 3))
     part.add(PAINT_DARK, prism(outline([(-84, 494), (84, 494), (84, 674), (-84, 674)], 12), "y", 606, 622, 4))
-    part.add(PAINT, prism(rectangle(-150, 150, 400, 580, 10), "z", 462, 484, 4))
+    part.add(PAINT, prism(rectangle(-150, 150, 404, 548, 10), "z", 462, 484, 4))
     for x in (-120, 120):
-        for y in (402, 506):
+        for y in (412, 486):
             part.add(STEEL, prism(outline([(x - 26, 422), (x - 11, 422), (x - 11, 440), (x + 11, 440), (x + 11, 422),
-                                           (x + 26, 422), (x + 26, 464, 3), (x - 26, 464, 3)]), "y", y, y + 72, 1.5))
+                                           (x + 26, 422), (x + 26, 464, 3), (x - 26, 464, 3)]), "y", y, y + 54, 1.5))
     part.add(BRASS, box(-24, 24, 450, 520, 441, 466, 3))
     return part
 
