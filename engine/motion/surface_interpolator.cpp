@@ -17,6 +17,8 @@ using toolpath::CurvePoint;
 /// error may be at 50 mm/s and 1 ms.
 constexpr double kEndTolerance = 5e-12;
 constexpr int kEndCorrections = 12;
+/// Each leaves about the step's share of the curve's unevenness, V T |C''| / |C'|^2, of the error before it.
+constexpr int kNodeCorrections = 2;
 
 }  // namespace
 
@@ -73,6 +75,8 @@ void SurfaceInterpolator::begin(const toolpath::SurfacePass& pass, const kinemat
 
 void SurfaceInterpolator::find_limits(const kinematics::AxisValues& hint) {
   const std::vector<PathNode> nodes = pass_nodes(pass_, radius_mm_, machine_, inverse_, hint);
+  node_t_.clear();
+  for (const PathNode& node : nodes) node_t_.push_back(node.x);
   limits_ = uniform_limits(nodes, pass_.feed_mm_s, options_.path_acceleration_max);
   for (size_t cell = 0; cell < limits_.speed.size(); ++cell) {
     const double curvature =
@@ -83,23 +87,47 @@ void SurfaceInterpolator::find_limits(const kinematics::AxisValues& hint) {
   clamp_by_axes(nodes, machine_, limits_);
 }
 
-double SurfaceInterpolator::overshoot() const {
+std::vector<double> SurfaceInterpolator::march() const {
+  std::vector<double> parameters;
+  parameters.reserve(profile_.step_mm.size());
   double t = pass_.t_start;
   CurvePoint at = curve_at(*pass_.surface, pass_.curve, t);
   for (const double length : profile_.step_mm) {
     t = advance(at, t, length);
     at = curve_at(*pass_.surface, pass_.curve, t);
+    parameters.push_back(t);
   }
-  const double rest = pass_length(pass_, t, pass_.t_end);
-  return beyond_end(t) > 0.0 ? rest : -rest;
+  return parameters;
+}
+
+double SurfaceInterpolator::overshoot(double t) const {
+  return std::copysign(pass_length(pass_, t, pass_.t_end), beyond_end(t));
+}
+
+void SurfaceInterpolator::follow_march(const std::vector<double>& march, SpeedPlan& plan) const {
+  size_t tick = 0;
+  double before = 0.0, t_before = pass_.t_start;  // length and parameter at the start of the tick
+  for (size_t i = 1; i + 1 < node_t_.size(); ++i) {
+    while (tick + 1 < march.size() && direction_ * (node_t_[i] - march[tick]) > 0.0) {
+      before += profile_.step_mm[tick];
+      t_before = march[tick++];
+    }
+    const double share = (node_t_[i] - t_before) / (march[tick] - t_before);
+    plan.limits.s[i] = before + share * profile_.step_mm[tick];
+  }
+  plan.limits.s.back() = profile_.position_mm.back() - overshoot(march.back());
 }
 
 void SurfaceInterpolator::fit_plan() {
-  const SpeedPlan plan = plan_speed(limits_, options_.path_jerk_max, options_.period_s);
-  double length = limits_.length();
+  SpeedPlan plan = plan_speed(limits_, options_.path_jerk_max, options_.period_s);
+  for (int i = 0; i < kNodeCorrections; ++i) {
+    profile_ = sample_plan(plan, plan.limits.length(), options_.period_s);
+    follow_march(march(), plan);
+  }
+  double length = plan.limits.length();
   for (int i = 0; i < kEndCorrections; ++i) {
     profile_ = sample_plan(plan, length, options_.period_s);
-    const double error = overshoot();
+    const double error = overshoot(march().back());
     if (std::abs(error) <= kEndTolerance) return;
     length -= error;
   }

@@ -6,11 +6,14 @@
 //      `-.____________.-'      3. twice Newton on |C(t) - C(t_k)|^2 = L^2
 //                  C(t)        4. surface normal and pose at C(t)
 //
-// In mode taylor1 steps 2 and 3 are Lin & Koren's Eq. (5), dt = L/s. Chords sum up to a little less than the
-// arc; begin() finds the length of the plan with which the last tick comes to lie on the end of the pass.
+// In mode taylor1 steps 2 and 3 are Lin & Koren's Eq. (5), dt = L/s. What the ticks sum
+// up to is not quite the arc: chords are a little shorter, and Eq. (5) misses by .1 %. begin() marches
+// through the pass beforehand and fits the plan to it, so that limits hold where they belong (near the pole
+// micrometres matter) and the last tick comes to lie on the end of the pass.
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "cutter/cutter.h"
 #include "kinematics/machine_model.h"
@@ -70,10 +73,14 @@ class SurfaceInterpolator {
   void take_step(const StepInput& input, StepOutput& output);
   /// Limits over the pass from feed, chord tolerance, path acceleration and the axes.
   void find_limits(const kinematics::AxisValues& hint);
-  /// Plans, marches through the pass and corrects the plan's length until the march ends on its end.
+  /// Plans, marches through the pass, and corrects the plan until the march ends on the pass' end.
   void fit_plan();
-  /// mm along the curve by which the profile's chords run beyond the end; negative: stop short of it.
-  double overshoot() const;
+  /// The parameter after each tick of the profile.
+  std::vector<double> march() const;
+  /// Moves the plan's nodes to where the march has them: what the ticks sum up to when it passes them.
+  void follow_march(const std::vector<double>& march, SpeedPlan& plan) const;
+  /// mm along the curve from the end of the pass to t; negative short of it.
+  double overshoot(double t) const;
 
   const kinematics::MachineModel& machine_;
   const kinematics::InverseKinematics& inverse_;
@@ -82,6 +89,7 @@ class SurfaceInterpolator {
   toolpath::SurfacePass pass_;
   double direction_ = 1.0;  ///< sign of t_end - t_start
   SpeedLimits limits_;
+  std::vector<double> node_t_;  ///< curve parameters of the nodes of limits_
   Profile profile_;
   size_t tick_ = 0;
   double t_ = 0.0;
