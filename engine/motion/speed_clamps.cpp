@@ -20,6 +20,10 @@ constexpr double kPoleShare = 0.02;
 constexpr double kTurnMax = 0.05;
 /// Nodes closer than this are not split further, mm: below, a turn takes place in no distance at all.
 constexpr double kSpacingMin = 1e-6;
+/// A rotary that turns by more than this between the closest nodes jumps, rad: it happens at the pole itself,
+/// where the turn takes place in no distance. No feed is slow enough for it; the trajectory's check reports
+/// it.
+constexpr double kJump = 0.5;
 /// Share of an axis' acceleration granted to the curvature of q(s); the rest is for changes of feed.
 constexpr double kCurvatureShare = 0.5;
 /// Share of an axis' limits that is planned with: the grid sees rates averaged over its cells.
@@ -34,6 +38,14 @@ bool is_coarse(const ToolPose& a, const ToolPose& b, const AxisValues& qa, const
   }
   const double turn = (b.axis_W - a.axis_W).norm();
   return turn > kPoleShare * std::max(inverse.pole_distance(a.axis_W), inverse.pole_distance(b.axis_W));
+}
+
+bool jumps(const AxisValues& qa, const AxisValues& qb, const MachineModel& machine) {
+  for (size_t i = 0; i < machine.axes.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    if (machine.axes[i].kind == AxisKind::kRotary && std::abs(qb[row] - qa[row]) > kJump) return true;
+  }
+  return false;
 }
 
 /// q' of the cell between nodes i and i + 1.
@@ -87,7 +99,8 @@ void append_nodes(const PathShape& shape, const kinematics::InverseKinematics& i
       continue;
     }
     pending.pop_back();
-    if (step > 0.0) nodes.push_back({x, last.s + step, q, false, reached});
+    const bool jump = last.reached && reached && jumps(last.q, q, machine);
+    if (step > 0.0) nodes.push_back({x, last.s + step, q, false, reached && !jump});
     from = pose;
   }
 }

@@ -30,7 +30,7 @@ struct PathNode {
   double s = 0.0;  ///< mm along it
   kinematics::AxisValues q = kinematics::AxisValues::Zero();
   bool corner = false;  ///< the path's direction breaks here: no second derivative is taken across
-  bool reached = true;  ///< false: out of the machine's reach, q repeats the node before; no rates are taken
+  bool reached = true;  ///< false: out of reach (q repeats the node before) or after a jump; gives no rates
 };
 
 /// A path as the grid needs it; x rises or falls.
@@ -44,8 +44,8 @@ struct PathShape {
 double chord_speed_limit(double radius_mm, double tolerance_mm, double period_s);
 
 /// Appends nodes after the last of `nodes` (which must hold at least the start) up to x_end, no further apart
-/// than `spacing_mm` and closer where an axis turns fast. Poses out of reach repeat the axis values before
-/// them and limit nothing: they are reported where they are commanded.
+/// than `spacing_mm` and closer where an axis turns fast. Poses out of reach and jumps at the very pole
+/// limit nothing: they are reported where they are commanded.
 void append_nodes(const PathShape& shape, const kinematics::InverseKinematics& inverse,
                   const kinematics::MachineModel& machine, double x_end, double spacing_mm,
                   std::vector<PathNode>& nodes);

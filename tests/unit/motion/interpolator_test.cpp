@@ -113,7 +113,7 @@ TEST(Interpolate, PassThroughThePoleChangesTheBranchInsteadOfTurning) {
 }
 
 TEST(Interpolate, RandomNearPolePassesKeepTheAxisSpeeds) {
-  constexpr int kCases = 24;
+  constexpr int kCases = 80;
   Rng rng(11);
   for (int i = 0; i < kCases; ++i) {
     // Distance from the apex line between 1 um and 2 mm, any length.
@@ -121,14 +121,30 @@ TEST(Interpolate, RandomNearPolePassesKeepTheAxisSpeeds) {
     toolpath::SurfacePass pass = iso_pass(dome(), 0.5 + distance / 80.0, rng.uniform(5.0, 120.0));
     pass.t_start = rng.uniform(0.0, 0.45);
     pass.t_end = rng.uniform(0.55, 1.0);
-    const MotionResult result = run(path_of({pass}, kCutter.radius()));
-    SCOPED_TRACE(testing::Message() << "v 0.5 + " << distance << " / 80, t " << pass.t_start << " .. "
-                                    << pass.t_end << ", feed " << pass.feed_mm_s);
+    MotionOptions options;
+    if (i % 2 == 1) options.mode = Mode::kTaylor1;
+    const MotionResult result = run(path_of({pass}, kCutter.radius()), options);
+    SCOPED_TRACE(testing::Message() << (i % 2 == 1 ? "taylor1" : "surface") << ": v 0.5 + " << distance
+                                    << " / 80, t " << pass.t_start << " .. " << pass.t_end << ", feed "
+                                    << pass.feed_mm_s);
     expect_clean(result, paper_machine());
     for (size_t axis = 0; axis < 5; ++axis)
       EXPECT_LE(result.statistics.axes[axis].acceleration_max, paper_machine().axes[axis].acceleration_max)
           << result.statistics.axes[axis].name;
   }
+}
+
+TEST(Interpolate, LeavingThePoleAtOnceIsAFindingAndTakesNoEternity) {
+  // The move starts at the pole and wants the rotary at 90 degrees at once: nothing can follow that.
+  toolpath::ToolPath path;
+  const ToolPose pole{Vec3(0, 0, 50), Vec3::UnitZ()};
+  const ToolPose aside{Vec3(0, 0, 50), Vec3(0.5, 0, std::sqrt(0.75))};
+  path.elements.push_back({toolpath::FreeMove{toolpath::MoveKind::kRapid, pole, aside, 0.0}, 0,
+                           SourceLocation{"test.nc", 11, 1}});
+  const MotionResult result = run(path);
+  EXPECT_LT(result.statistics.time_s, 10.0);
+  ASSERT_FALSE(result.findings.empty());
+  EXPECT_EQ(result.findings.front().code, "axis-speed");
 }
 
 TEST(Interpolate, TravelBeyondALimitIsAFindingWithAmountAndUnit) {
