@@ -21,4 +21,5 @@ target_include_directories(swarf_settings INTERFACE "${PROJECT_SOURCE_DIR}/engin
 target_link_libraries(swarf_settings INTERFACE Eigen3::Eigen fmt::fmt Threads::Threads)
 # -ffp-contract=off: with fused multiply-add, results would depend on the instruction set.
 # No -march here: Debian's libraries use Eigen with 16-byte alignment; only kernel files carry their own flags.
+target_compile_definitions(swarf_settings INTERFACE SWARF_VERSION="${PROJECT_VERSION}")
 target_compile_options(swarf_settings INTERFACE -Wall -Wextra -Wshadow -Wno-psabi -ffp-contract=off)

@@ -1,10 +1,10 @@
 #include "reports/metrics_json.h"
 
+#include <fmt/format.h>
 #include <sys/resource.h>
 
 #include <nlohmann/json.hpp>
 
-#include "base/hash.h"
 #include "base/units.h"
 
 namespace swarf::reports {
@@ -55,11 +55,7 @@ Json stock_json(const sim::Job& job, const sim::Result& result) {
           {"sweep_error_bound_um", um_from_mm(result.sweep_bound_mm)},
           {"volume_removed_mm3", result.volume_removed_mm3},
           {"volume_left_mm3", result.volume_left_mm3},
-          {"hash", [&] {
-             Hash hash;
-             hash.add(result.stock->hash());
-             return hash.text();
-           }()}};
+          {"hash", fmt::format("{:016x}", result.stock->hash())}};
 }
 
 Json surface_json(const measure::SurfaceMetrics& surface) {

@@ -77,7 +77,7 @@ Job load_job(const std::string& path, const std::vector<std::string>& overrides)
   diagnostics.throw_if_errors();
   // A user mends all files at once: what is wrong with one does not hide what is wrong with the other.
   collect(diagnostics, [&] { job.machine = machine::load_machine(job.scene.machine_file); });
-  collect(diagnostics, [&] { job.program = program::load_program(job.scene.program_file); });
+  collect(diagnostics, [&] { job.program = program::load_program(job.scene.program_file, &diagnostics); });
   diagnostics.throw_if_errors();
   check_tools(job, diagnostics);
   check_memory(job.scene, diagnostics);

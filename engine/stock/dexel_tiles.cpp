@@ -137,6 +137,37 @@ bool apply_sweep(const RayField& field, const SweepChain& chain, size_t sweep, W
   return changed;
 }
 
+/// The run whose tip passes nearest to the tile's middle, among those that may meet it; runs.size() when
+/// none.
+size_t nearest_run(const RayTile& tile, const Ball& ball, const SweepChain& chain) {
+  const Vec3 middle = tile.origin + tile.frame.transpose() * (0.5 * (tile.low + tile.high));
+  size_t nearest = chain.runs.size();
+  double least = std::numeric_limits<double>::infinity();
+  for (size_t n = 0; n < chain.runs.size(); ++n) {
+    const double distance2 = (chain.runs[n].tip - middle).squaredNorm();
+    if (distance2 >= least || run_misses(chain.runs[n], ball, chain.cutter)) continue;
+    least = distance2;
+    nearest = n;
+  }
+  return nearest;
+}
+
+/// Lowers the tile by the sweeps of one run; the ball shrinks with the material.
+uint64_t cut_by_run(const RayField& field, RayTile& tile, const SweepChain& chain, const SweepRun& run,
+                    Workspace& w, Ball& ball) {
+  uint64_t pairs = 0;
+  for (size_t n = run.begin; n < run.end; ++n) {
+    if (sweep_misses(chain.maps[n], ball, chain.cutter)) continue;
+    if (plane_above(tile, chain.maps[n], tile.highest)) continue;
+    if (!w.loaded) load(field, tile, w);
+    pairs += kTileRays;
+    if (!apply_sweep(field, chain, n, w)) continue;
+    tile.highest = *std::max_element(w.heights, w.heights + kTileRays);
+    ball = material_ball(tile);
+  }
+  return pairs;
+}
+
 SweepRun make_run(const SweepChain& chain, size_t begin, size_t end) {
   const Sweep& middle = chain.sweeps[begin + (end - begin) / 2];
   SweepRun run{begin, end, chain.maps[begin + (end - begin) / 2].R0t, middle.start.tip_W, 0.0, 0.0};
@@ -199,19 +230,13 @@ SweepChain make_chain(std::span<const Sweep> sweeps, const CutterSolid& cutter) 
 
 uint64_t cut_tile(const RayField& field, RayTile& tile, const SweepChain& chain) {
   Workspace w;
-  uint64_t pairs = 0;
   Ball ball = material_ball(tile);
-  for (const SweepRun& run : chain.runs) {
-    if (run_misses(run, ball, chain.cutter)) continue;
-    for (size_t n = run.begin; n < run.end; ++n) {
-      if (sweep_misses(chain.maps[n], ball, chain.cutter)) continue;
-      if (plane_above(tile, chain.maps[n], tile.highest)) continue;
-      if (!w.loaded) load(field, tile, w);
-      pairs += kTileRays;
-      if (!apply_sweep(field, chain, n, w)) continue;
-      tile.highest = *std::max_element(w.heights, w.heights + kTileRays);
-      ball = material_ball(tile);
-    }
+  const size_t first = nearest_run(tile, ball, chain);
+  if (first == chain.runs.size()) return 0;
+  uint64_t pairs = cut_by_run(field, tile, chain, chain.runs[first], w, ball);
+  for (size_t n = 0; n < chain.runs.size(); ++n) {
+    if (n == first || run_misses(chain.runs[n], ball, chain.cutter)) continue;
+    pairs += cut_by_run(field, tile, chain, chain.runs[n], w, ball);
   }
   if (w.loaded) store(field, w);
   return pairs;

@@ -5,7 +5,9 @@
 //   away
 //      than the ball around the tile's material
 //   2. single sweeps: the same, and the bottom plane lies above the highest material of the tile
-// What remains goes through the kernel, and near the disc's rim through ray_height.
+// What remains goes through the kernel, and near the disc's rim through ray_height. The run nearest to the
+// tile goes first: it brings the heights down, and the bounds then rule out nearly all the others. The order
+// does not show in the result, which is the least (height, block) over all sweeps.
 #pragma once
 
 #include <span>

@@ -28,10 +28,25 @@ SWARF_KERNEL_INLINE void fill_slice(Slice& slice, const LeafMotion& m) {
   }
 }
 
+/// Whether the bottom plane could raise any value of the slice: -F <= max(z_start, z_end).
+SWARF_KERNEL_INLINE bool plane_reaches(const float* row, const Slice& slice, float az, float bz,
+                                       float background) {
+  // More than the rounding of z along the motion, so that leaving a slice out never changes a bit of the
+  // result.
+  constexpr float kSlack = 1e-4F;
+  int open = 0;
+  for (int j = 0; j < kSlice; ++j) {
+    const float highest = kernel::max_of(slice.pz[j] + az, slice.qz[j] + bz) + kSlack;
+    open += row[j] < kernel::min_of(highest, background) ? 1 : 0;
+  }
+  return open > 0;
+}
+
 template <bool kCapped>
-SWARF_KERNEL_INLINE void cut_slices(float* values, const LeafMotion& m) {
+SWARF_KERNEL_INLINE int cut_slices(float* values, const LeafMotion& m) {
   Slice slice;
   fill_slice(slice, m);
+  int evaluated = 0;
   // Locals, not members: the float output could alias the struct, which would stop vectorisation.
   const float radius = m.radius, height = m.height, background = m.background;
   for (int x = 0; x < kLeafSide; ++x) {
@@ -39,6 +54,8 @@ SWARF_KERNEL_INLINE void cut_slices(float* values, const LeafMotion& m) {
     const float ax = m.start_step[0][0] * fx, ay = m.start_step[0][1] * fx, az = m.start_step[0][2] * fx;
     const float bx = m.end_step[0][0] * fx, by = m.end_step[0][1] * fx, bz = m.end_step[0][2] * fx;
     float* row = values + x * kSlice;
+    if (!plane_reaches(row, slice, az, bz, background)) continue;
+    evaluated += kSlice;
     for (int j = 0; j < kSlice; ++j) {
       const float px = slice.px[j] + ax, py = slice.py[j] + ay, pz = slice.pz[j] + az;
       const MovingPoint<float> point{
@@ -47,26 +64,23 @@ SWARF_KERNEL_INLINE void cut_slices(float* values, const LeafMotion& m) {
       row[j] = kernel::max_of(row[j], kernel::min_of(-distance, background));
     }
   }
+  return evaluated;
 }
 
-SWARF_KERNEL_INLINE void cut_leaf(float* values, const LeafMotion& motion) {
-  if (motion.capped) {
-    cut_slices<true>(values, motion);
-  } else {
-    cut_slices<false>(values, motion);
-  }
+SWARF_KERNEL_INLINE int cut_leaf(float* values, const LeafMotion& motion) {
+  return motion.capped ? cut_slices<true>(values, motion) : cut_slices<false>(values, motion);
 }
 
-void cut_leaf_baseline(float* values, const LeafMotion& motion) {
-  cut_leaf(values, motion);
+int cut_leaf_baseline(float* values, const LeafMotion& motion) {
+  return cut_leaf(values, motion);
 }
 
 #if defined(__x86_64__)
-__attribute__((target("arch=x86-64-v3"))) void cut_leaf_v3(float* values, const LeafMotion& motion) {
-  cut_leaf(values, motion);
+__attribute__((target("arch=x86-64-v3"))) int cut_leaf_v3(float* values, const LeafMotion& motion) {
+  return cut_leaf(values, motion);
 }
-__attribute__((target("arch=x86-64-v4"))) void cut_leaf_v4(float* values, const LeafMotion& motion) {
-  cut_leaf(values, motion);
+__attribute__((target("arch=x86-64-v4"))) int cut_leaf_v4(float* values, const LeafMotion& motion) {
+  return cut_leaf(values, motion);
 }
 #endif
 

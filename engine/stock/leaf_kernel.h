@@ -22,8 +22,10 @@ struct LeafMotion {
   bool capped;                             ///< the cutter's top end matters in this leaf
 };
 
-/// values = max(values, -distance to the swept cutter), index x * 64 + y * 8 + z.
-using LeafKernel = void (*)(float* values, const LeafMotion& motion);
+/// values = max(values, -distance to the swept cutter), index x * 64 + y * 8 + z. Returns the number of
+/// voxels evaluated: slices of 64 that lie wholly below the bottom plane's reach are left out, because no
+/// point of the cutter is nearer than that plane. The values do not depend on what is left out.
+using LeafKernel = int (*)(float* values, const LeafMotion& motion);
 
 struct LeafKernelVariant {
   const char* instruction_set;

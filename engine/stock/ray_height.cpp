@@ -161,13 +161,14 @@ double height_near_tip(const Bilinear& map) {
 
 /// The usual case: a ray that leaves on the tool's side meets the bottom disc itself at both ends. The disc's
 /// plane bounds the cutter from below and its height is monotone in t, so the lower end is the answer.
-std::optional<double> height_on_disc(const Vec3& P, const Vec3& N, const Vec3& P1, const Vec3& N1, double radius) {
+std::optional<double> height_on_disc(const Vec3& P, const Vec3& N, const Vec3& P1, const Vec3& N1,
+                                     double radius) {
   constexpr double kFlattest = 0.01;  // below, the quotient loses digits; the general way has no such limit
   if (!(std::min(N.z(), N1.z()) > kFlattest)) return std::nullopt;
   const double s = -P.z() / N.z(), s1 = -P1.z() / N1.z();
   const double radius2 = radius * radius;
-  const bool inside = (P + s * N).head<2>().squaredNorm() <= radius2 &&
-                      (P1 + s1 * N1).head<2>().squaredNorm() <= radius2;
+  const bool inside =
+      (P + s * N).head<2>().squaredNorm() <= radius2 && (P1 + s1 * N1).head<2>().squaredNorm() <= radius2;
   return inside ? std::optional(std::min(s, s1)) : std::nullopt;
 }
 

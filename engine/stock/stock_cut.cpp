@@ -7,8 +7,10 @@
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
+#include <cstring>
 #include <memory>
 
 #include "base/parallel.h"
@@ -79,28 +81,70 @@ MovingPoint<double> moving_point(const SweepMap& map, const Vec3& point) {
   return {P.x(), P.y(), P.z(), D.x(), D.y(), D.z()};
 }
 
-/// Lists the leaf positions whose values sweep `n` can raise: those whose centre is near enough, because the
-/// distance changes by no more than the way walked from there (1-Lipschitz).
-void gather_sweep(const LevelSet& set, const Batch& batch, size_t n, std::vector<Pair>& pairs) {
-  const Sweep& sweep = batch.sweeps[n];
-  const Box a = cutter_box(sweep.start, batch.cutter), b = cutter_box(sweep.end, batch.cutter);
+/// First position in [k, end) that is not air, or `end`; eight states at a time, for most of a box is air.
+size_t skip_air(const LeafState* states, size_t k, size_t end) {
+  while (k < end) {
+    uint64_t eight = 0;
+    static_assert(sizeof(LeafState) == 1 && static_cast<int>(LeafState::kAir) == 0);
+    if (k + sizeof(eight) <= end) {
+      std::memcpy(&eight, states + k, sizeof(eight));
+      if (eight == 0) {
+        k += sizeof(eight);
+        continue;
+      }
+    }
+    if (states[k] != LeafState::kAir) return k;
+    ++k;
+  }
+  return end;
+}
+
+/// What one sweep asks of each leaf position.
+struct LeafQuery {
+  const SweepMap& map;
+  const CutterSolid& cutter;
+  double reach;  ///< from a leaf's centre to the farthest place where a distance matters
+
+  /// Distance of the cutter from the centre, or a lower bound of it that is beyond reach already.
+  double distance(const Vec3& centre) const {
+    const double below =
+        std::min(-map.R0t.row(2).dot(centre - map.tip0), -map.R1t.row(2).dot(centre - map.tip1));
+    if (below >= reach) return below;
+    return swept_distance<double, true>(moving_point(map, centre), cutter.radius, cutter.height);
+  }
+};
+
+/// Range of leaf positions along each axis around the swept cutter and its band.
+std::array<std::pair<int, int>, 3> sweep_range(const LevelSet& set, const Sweep& sweep,
+                                               const CutterSolid& cutter) {
+  const Box a = cutter_box(sweep.start, cutter), b = cutter_box(sweep.end, cutter);
   // In the max norm the band reaches out by its width beside and below the cutter, so sqrt(2) at its edge.
   const double margin =
-      std::sqrt(2.0) * set.band() + motion_bound(sweep, std::hypot(batch.cutter.height, batch.cutter.radius));
-  std::pair<int, int> range[3];
+      std::sqrt(2.0) * set.band() + motion_bound(sweep, std::hypot(cutter.height, cutter.radius));
+  std::array<std::pair<int, int>, 3> range;
   for (int axis = 0; axis < 3; ++axis) {
     range[axis] = leaf_range(set, axis, std::min(a.lower[axis], b.lower[axis]) - margin,
                              std::max(a.upper[axis], b.upper[axis]) + margin);
   }
-  const double reach = set.leaf_radius() + set.band();
+  return range;
+}
+
+/// Lists the leaf positions whose values sweep `n` can raise: those whose centre is near enough, because the
+/// distance changes by no more than the way walked from there (1-Lipschitz).
+void gather_sweep(const LevelSet& set, const Batch& batch, size_t n, std::vector<Pair>& pairs) {
+  const auto range = sweep_range(set, batch.sweeps[n], batch.cutter);
+  if (range[2].second < range[2].first) return;
+  const LeafQuery query{batch.maps[n], batch.cutter, set.leaf_radius() + set.band()};
+  const double leaf_mm = kLeafSide * set.voxel;
   for (int i = range[0].first; i <= range[0].second; ++i) {
     for (int j = range[1].first; j <= range[1].second; ++j) {
-      for (int k = range[2].first; k <= range[2].second; ++k) {
-        const size_t leaf = set.map.index(i, j, k);
-        if (set.map.states[leaf] == LeafState::kAir) continue;
-        const double distance = swept_distance<double, true>(
-            moving_point(batch.maps[n], set.leaf_centre(leaf)), batch.cutter.radius, batch.cutter.height);
-        if (distance < reach) pairs.push_back(make_pair(leaf, n, distance < -reach));
+      const size_t column = set.map.index(i, j, 0);
+      const Vec3 foot = set.leaf_centre(column);
+      const LeafState* states = set.map.states.data() + column;
+      const auto end = static_cast<size_t>(range[2].second) + 1;
+      for (size_t k = static_cast<size_t>(range[2].first); (k = skip_air(states, k, end)) < end; ++k) {
+        const double distance = query.distance(foot + Vec3(0, 0, static_cast<double>(k) * leaf_mm));
+        if (distance < query.reach) pairs.push_back(make_pair(column + k, n, distance < -query.reach));
       }
     }
   }
@@ -148,7 +192,7 @@ LeafMotion leaf_motion(const LevelSet& set, const SweepMap& map, const CutterSol
 struct Outcome {
   LeafState state = LeafState::kLeaf;
   std::unique_ptr<LeafNode> made;
-  uint64_t evaluated = 0;  ///< pairs
+  uint64_t visits = 0, voxels = 0;
 };
 
 /// Applies one group. The leaf is changed in place, or made when the position was solid so far.
@@ -168,9 +212,10 @@ Outcome cut_leaf(const LevelSet& set, const Batch& batch, const Group& group) {
   static const LeafKernel kernel = leaf_kernel_variants().front().kernel;
   float* values = node->buffer().data();
   for (size_t n = group.begin; n < group.end; ++n) {
-    kernel(values, leaf_motion(set, batch.maps[sweep_of(batch.pairs[n])], batch.cutter, leaf));
+    outcome.voxels += static_cast<uint64_t>(
+        kernel(values, leaf_motion(set, batch.maps[sweep_of(batch.pairs[n])], batch.cutter, leaf)));
   }
-  outcome.evaluated = group.end - group.begin;
+  outcome.visits = group.end - group.begin;
   outcome.state = settle_leaf(*node, set.band());
   return outcome;
 }
@@ -195,7 +240,8 @@ void cut_batch(LevelSet& set, Batch& batch) {
     for (size_t g = begin; g < end; ++g) outcomes[g] = cut_leaf(set, batch, batch.groups[g]);
   });
   for (size_t g = 0; g < outcomes.size(); ++g) {
-    set.statistics.leaf_visits += outcomes[g].evaluated;
+    set.statistics.leaf_visits += outcomes[g].visits;
+    set.statistics.voxel_updates += outcomes[g].voxels;
     settle(set, leaf_of(batch.pairs[batch.groups[g].begin]), outcomes[g]);
   }
 }
@@ -213,7 +259,6 @@ void cut_level_set(LevelSet& set, std::span<const Sweep> sweeps, const CutterSol
     cut_batch(set, batch);
   }
   set.statistics.sweeps += sweeps.size();
-  set.statistics.voxel_updates = set.statistics.leaf_visits * kLeafVoxels;
   set.statistics.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
 }
 

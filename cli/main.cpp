@@ -1,0 +1,65 @@
+// swarf: the command line. Exit codes are in commands.h.
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <new>
+
+#include "base/check.h"
+#include "base/diagnostics.h"
+#include "cli/commands.h"
+#include "cli/terminal.h"
+
+namespace {
+
+const char* const kFooter = R"(Examples:
+  swarf run scenes/lin_koren_dome/scene.toml -o out/dome     simulate, measure, render, report
+  swarf run scene.toml --set stock.voxel_mm=0.1 --no-render  one key changed, numbers only
+  swarf check scene.toml program.nc machine.toml             find what is wrong, run nothing
+  swarf compare out/dome/stock.vdb scene.toml                a finished stock against its design
+  swarf render out/dome --still part.png --camera left       pictures without simulating again
+  swarf export out/dome --stl part.stl                       meshes without simulating again
+
+Exit codes: 0 every limit of [accept] holds; 1 findings (gouge, scallop, travel, ...); 2 the input is wrong;
+3 internal error; 130 stopped with Ctrl-C (what is finished is kept).)";
+
+int guarded(CLI::App& app, int argc, char** argv, const int& exit_code) {
+  try {
+    app.parse(argc, argv);
+    return exit_code;
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? swarf::cli::kPass : swarf::cli::kBadInput;
+  } catch (const swarf::InputError& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return swarf::cli::kBadInput;
+  } catch (const std::filesystem::filesystem_error& error) {
+    fmt::print(stderr, "error: {}\n    fix: check that the folder exists and may be written\n", error.what());
+    return swarf::cli::kBadInput;
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "error: out of memory\n    fix: raise stock.voxel_mm or free memory\n");
+    return swarf::cli::kInternalError;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "internal error: {}\n    please report it with the scene\n", error.what());
+    return swarf::cli::kInternalError;
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Swarf: headless, visual 5-axis NC simulator. A surface program goes in; a measured, rendered report comes out."};
+  app.set_version_flag("--version", SWARF_VERSION);
+  app.require_subcommand(1);
+  app.footer(kFooter);
+  int exit_code = swarf::cli::kPass;
+  swarf::cli::add_run(app, exit_code);
+  swarf::cli::add_check(app, exit_code);
+  swarf::cli::add_plan(app, exit_code);
+  swarf::cli::add_compare(app, exit_code);
+  swarf::cli::add_render(app, exit_code);
+  swarf::cli::add_export(app, exit_code);
+  swarf::cli::catch_interrupt();
+  return guarded(app, argc, argv, exit_code);
+}

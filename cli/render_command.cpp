@@ -1,0 +1,69 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "base/parallel.h"
+#include "cli/commands.h"
+#include "cli/terminal.h"
+#include "reports/part_view.h"
+#include "reports/pictures.h"
+#include "reports/run_output.h"
+
+namespace swarf::cli {
+namespace {
+
+struct RenderOptions {
+  std::string folder, movie, still, kind = "part", camera;
+  std::vector<int> size;
+  double seconds = -1.0;
+  int samples = 0, threads = 0;
+};
+
+int render(const RenderOptions& options) {
+  set_thread_count(options.threads);
+  if (options.movie.empty() && options.still.empty()) {
+    throw InputError("nothing-to-do", {"swarf render"}, "neither --movie nor --still was given",
+                     "write for example: swarf render DIR --still part.png");
+  }
+  const reports::StillKind kind = reports::still_kind(options.kind);
+  if (!options.camera.empty()) reports::camera_direction(options.camera);
+  reports::StoredRun stored = reports::read_run(options.folder);
+  if (options.size.size() == 2) {
+    stored.job.scene.stills.size = {options.size[0], options.size[1]};
+    stored.job.scene.movie.size = stored.job.scene.stills.size;
+  }
+  if (options.samples > 0) stored.job.scene.stills.samples = options.samples;
+  if (options.seconds > 0.0) stored.job.scene.movie.seconds = options.seconds;
+  const reports::FinishedRun run{stored.job, stored.trajectory, stored.stock, stored.dexels};
+  TerminalProgress progress;
+  if (!options.still.empty()) {
+    const std::string otherwise = kind == reports::StillKind::kMachine ? "machine" : "iso";
+    reports::make_still(run, reports::part_mesh(run), kind, options.camera.empty() ? otherwise : options.camera, options.still);
+    fmt::print("{}\n", options.still);
+  }
+  if (!options.movie.empty()) {
+    const reports::RenderStatistics statistics =
+        reports::make_movie(run, options.movie, options.camera.empty() ? "machine" : options.camera, progress);
+    fmt::print("{}: {} frames, {:.1f} ms each (median)\n", options.movie, statistics.frames, statistics.frame_ms_median);
+  }
+  return progress.stop_requested() ? kStopped : kPass;
+}
+
+}  // namespace
+
+void add_render(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<RenderOptions>();
+  CLI::App* command = app.add_subcommand("render", "Make pictures from a finished run, without simulating again");
+  command->add_option("folder", options->folder, "folder of a finished run")->required();
+  command->add_option("--movie", options->movie, "H.264 movie to write (.mp4)");
+  command->add_option("--still", options->still, "picture to write (.png)");
+  command->add_option("--kind", options->kind, "what the still shows: machine, part, deviation, fan")->capture_default_str();
+  command->add_option("--camera", options->camera, "machine, iso, raking, front, back, left, right, top, or x,y,z towards the eye");
+  command->add_option("--size", options->size, "width and height, px")->expected(2)->check(CLI::Range(64, 7680));
+  command->add_option("--seconds", options->seconds, "length of the movie, s")->check(CLI::PositiveNumber);
+  command->add_option("--samples", options->samples, "rays per pixel of the still")->check(CLI::Range(1, 4096));
+  command->add_option("--threads", options->threads, "threads to use (default: all cores)")->check(CLI::Range(1, 4096));
+  command->callback([options, &exit_code] { exit_code = render(*options); });
+}
+
+}  // namespace swarf::cli

@@ -1,0 +1,85 @@
+#include "cli/terminal.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <csignal>
+
+namespace swarf::cli {
+namespace {
+
+std::atomic<bool> stop_flag{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "the signal handler needs a lock-free flag");
+
+constexpr int kBarWidth = 28;
+constexpr std::chrono::milliseconds kRedraw{100};
+constexpr std::chrono::seconds kPlainLine{5};  // without a terminal: a line in so many seconds
+
+void on_interrupt(int signal_number) {
+  stop_flag = true;
+  std::signal(signal_number, SIG_DFL);
+}
+
+bool is_terminal() {
+  static const bool answer = isatty(STDERR_FILENO) != 0;
+  return answer;
+}
+
+}  // namespace
+
+void catch_interrupt() {
+  std::signal(SIGINT, on_interrupt);
+  std::signal(SIGTERM, on_interrupt);
+}
+
+bool interrupted() { return stop_flag; }
+
+void TerminalProgress::begin(std::string_view stage, double total, std::string_view unit) {
+  stage_ = stage;
+  unit_ = unit;
+  total_ = total;
+  start_ = Clock::now();
+  drawn_ = start_;
+  if (is_terminal()) draw(0.0);
+}
+
+void TerminalProgress::advance(double done) {
+  const Clock::time_point now = Clock::now();
+  if (is_terminal() ? now - drawn_ < kRedraw : now - drawn_ < kPlainLine) return;
+  drawn_ = now;
+  draw(done);
+}
+
+void TerminalProgress::draw(double done) {
+  const double share = total_ > 0.0 ? std::clamp(done / total_, 0.0, 1.0) : 0.0;
+  const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
+  const std::string left = share > 0.02 ? fmt::format("{:.0f} s left", elapsed * (1.0 - share) / share) : "";
+  if (is_terminal()) {
+    const int filled = static_cast<int>(share * kBarWidth);
+    fmt::print(stderr, "\r\033[K{:<22} [{:#<{}}{:.<{}}] {:3.0f} %  {}", stage_, "", filled, "", kBarWidth - filled,
+               100.0 * share, left);
+  } else {
+    fmt::print(stderr, "{:<22} {:3.0f} %  {:.0f} of {:.0f} {}  {}\n", stage_, 100.0 * share, done, total_, unit_, left);
+  }
+  std::fflush(stderr);
+}
+
+void TerminalProgress::end() {
+  const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
+  fmt::print(stderr, "{}{:<22} {:6.2f} s{}\n", is_terminal() ? "\r\033[K" : "", stage_, elapsed,
+             interrupted() ? "  (stopped)" : "");
+}
+
+void print_table(const std::vector<std::pair<std::string, std::string>>& rows) {
+  size_t width = 0;
+  for (const auto& [label, value] : rows) width = std::max(width, label.size());
+  for (const auto& [label, value] : rows) fmt::print("  {:<{}}  {}\n", label, width, value);
+}
+
+void print_diagnostics(const std::vector<Diagnostic>& diagnostics) {
+  for (const Diagnostic& diagnostic : diagnostics) fmt::print(stderr, "{}\n", format(diagnostic));
+}
+
+}  // namespace swarf::cli

@@ -1,0 +1,42 @@
+// What the user sees while and after a command works: progress, tables, diagnostics.
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/diagnostics.h"
+#include "base/progress.h"
+
+namespace swarf::cli {
+
+/// Ctrl-C asks the running command to stop and keep what is finished; a second one ends the program at once.
+void catch_interrupt();
+bool interrupted();
+
+/// On a terminal one line per stage, redrawn with a bar and the time left; otherwise plain lines.
+/// Everything goes to stderr, so that stdout stays free for --json.
+class TerminalProgress final : public Progress {
+ public:
+  void begin(std::string_view stage, double total, std::string_view unit) override;
+  void advance(double done) override;
+  void end() override;
+  bool stop_requested() const override { return interrupted(); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void draw(double done);
+
+  std::string stage_, unit_;
+  double total_ = 0.0;
+  Clock::time_point start_, drawn_;
+};
+
+/// Two aligned columns.
+void print_table(const std::vector<std::pair<std::string, std::string>>& rows);
+
+/// Warnings and notes that did not stop the command.
+void print_diagnostics(const std::vector<Diagnostic>& diagnostics);
+
+}  // namespace swarf::cli

@@ -1,0 +1,115 @@
+#include "measure/design_projection.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace swarf::measure {
+namespace {
+
+constexpr int kNewtonSteps = 4;          // from a ray a pitch away, quadratic convergence is down to rounding in three
+constexpr double kEdgeSlack = 1e-6;      // in u, v: a point exactly on the edge must not fall off by rounding
+
+struct GridPlace {
+  int iu, iv;
+  double fu, fv;  ///< fractions inside the cell
+};
+
+GridPlace place_of(const stock::SurfaceDexels& dexels, double u, double v) {
+  const double x = std::clamp(u, 0.0, 1.0) * (dexels.nu() - 1);
+  const double y = std::clamp(v, 0.0, 1.0) * (dexels.nv() - 1);
+  const int iu = std::min(static_cast<int>(x), dexels.nu() - 2);
+  const int iv = std::min(static_cast<int>(y), dexels.nv() - 2);
+  return {iu, iv, x - iu, y - iv};
+}
+
+}  // namespace
+
+size_t DesignProjection::CellHash::operator()(const Cell& cell) const {
+  uint64_t hash = 0;
+  for (const int32_t c : cell) hash = (hash ^ static_cast<uint32_t>(c)) * 0x9e3779b97f4a7c15ULL;
+  return hash ^ (hash >> 29);
+}
+
+DesignProjection::DesignProjection(const stock::SurfaceDexels& dexels, double reach_mm)
+    : dexels_(dexels), reach_mm_(reach_mm) {
+  // A cell as wide as the reach or the widest grid step, so that the 27 cells around a point hold its nearest ray.
+  double step = 0.0;
+  const auto& points = dexels.points();
+  const auto nu = static_cast<size_t>(dexels.nu());
+  for (size_t i = 0; i < points.size(); ++i) {
+    if ((i + 1) % nu != 0) step = std::max(step, (points[i + 1] - points[i]).norm());
+    if (i + nu < points.size()) step = std::max(step, (points[i + nu] - points[i]).norm());
+  }
+  cell_mm_ = std::max(reach_mm, 0.0) + step;
+  for (size_t i = 0; i < points.size(); ++i) cells_[cell_of(points[i])].push_back(static_cast<uint32_t>(i));
+}
+
+DesignProjection::Cell DesignProjection::cell_of(const Vec3& point) const {
+  return {static_cast<int32_t>(std::floor(point.x() / cell_mm_)), static_cast<int32_t>(std::floor(point.y() / cell_mm_)),
+          static_cast<int32_t>(std::floor(point.z() / cell_mm_))};
+}
+
+int64_t DesignProjection::nearest_ray(const Vec3& point) const {
+  const Cell centre = cell_of(point);
+  int64_t nearest = -1;
+  double best = std::numeric_limits<double>::infinity();
+  for (int32_t i = 0; i < 27; ++i) {
+    const auto found = cells_.find({centre[0] + i % 3 - 1, centre[1] + i / 3 % 3 - 1, centre[2] + i / 9 - 1});
+    if (found == cells_.end()) continue;
+    for (const uint32_t ray : found->second) {
+      const double distance = (dexels_.points()[ray] - point).squaredNorm();
+      if (distance < best) {
+        best = distance;
+        nearest = ray;
+      }
+    }
+  }
+  return nearest;
+}
+
+std::optional<Foot> DesignProjection::project(const Vec3& point) const {
+  const int64_t ray = nearest_ray(point);
+  if (ray < 0) return {};
+  double u = dexels_.u(static_cast<int>(ray % dexels_.nu()));
+  double v = dexels_.v(static_cast<int>(ray / dexels_.nu()));
+  surface::Derivatives d = dexels_.surface().derivatives(u, v);
+  for (int step = 0; step < kNewtonSteps; ++step) {
+    // Gradient and Hessian of |S - point|^2 / 2.
+    const Vec3 r = d.S - point;
+    const double gu = r.dot(d.Su);
+    const double gv = r.dot(d.Sv);
+    const double huu = d.Su.dot(d.Su) + r.dot(d.Suu);
+    const double huv = d.Su.dot(d.Sv) + r.dot(d.Suv);
+    const double hvv = d.Sv.dot(d.Sv) + r.dot(d.Svv);
+    const double det = huu * hvv - huv * huv;
+    if (det <= 0.0) return {};  // beyond the centre of curvature: no unique foot
+    u -= (hvv * gu - huv * gv) / det;
+    v -= (huu * gv - huv * gu) / det;
+    d = dexels_.surface().derivatives(u, v);
+  }
+  if (u < -kEdgeSlack || u > 1.0 + kEdgeSlack || v < -kEdgeSlack || v > 1.0 + kEdgeSlack) return {};
+  Foot foot{u, v, 0.0, surface::outward_normal(dexels_.surface(), d)};
+  foot.height_mm = (point - d.S).dot(foot.normal);
+  if (std::abs(foot.height_mm) > reach_mm_) return {};
+  return foot;
+}
+
+double height_at(const stock::SurfaceDexels& dexels, double u, double v) {
+  const GridPlace p = place_of(dexels, u, v);
+  const auto height = [&](int iu, int iv) {
+    return dexels.heights_mm()[static_cast<size_t>(iv) * static_cast<size_t>(dexels.nu()) + static_cast<size_t>(iu)];
+  };
+  const double low = (1.0 - p.fu) * height(p.iu, p.iv) + p.fu * height(p.iu + 1, p.iv);
+  const double high = (1.0 - p.fu) * height(p.iu, p.iv + 1) + p.fu * height(p.iu + 1, p.iv + 1);
+  return (1.0 - p.fv) * low + p.fv * high;
+}
+
+uint32_t block_at(const stock::SurfaceDexels& dexels, double u, double v) {
+  const GridPlace p = place_of(dexels, u, v);
+  const auto iu = static_cast<size_t>(p.iu + (p.fu > 0.5 ? 1 : 0));
+  const auto iv = static_cast<size_t>(p.iv + (p.fv > 0.5 ? 1 : 0));
+  return dexels.blocks()[iv * static_cast<size_t>(dexels.nu()) + iu];
+}
+
+}  // namespace swarf::measure

@@ -1,0 +1,18 @@
+// What `swarf compare -o DIR` leaves: the deviation map as mesh and picture, and its numbers.
+#pragma once
+
+#include <string>
+
+#include "mesh/tri_mesh.h"
+
+namespace swarf::reports {
+
+/// The file that marks a folder as a result of `swarf compare`.
+inline constexpr const char* kCompareMark = "deviation.ply";
+
+/// deviation.ply, deviation.png and metrics.json, the folder replaced whole; `scale_um` is the colour scale's
+/// half width.
+void write_compare(const std::string& folder, TriMesh stock, double scale_um,
+                   const std::string& metrics_json);
+
+}  // namespace swarf::reports

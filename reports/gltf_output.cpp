@@ -1,0 +1,119 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "mesh/mesh_ops.h"
+#include "render/figures/colour.h"
+#include "render/gltf/gltf_writer.h"
+#include "reports/part_view.h"
+#include "reports/pictures.h"
+
+namespace swarf::reports {
+namespace {
+
+constexpr double kAnimationSeconds = 30.0;  // the program is played in so long, or in its own time if that is shorter
+constexpr size_t kPosesPerSecond = 60;      // before thinning
+constexpr double kMachinePartError = 0.02;  // mm; the part in machine.glb is only looked at
+
+/// Copies of the vertices that the given triangles use.
+TriMesh sub_mesh(const TriMesh& mesh, const std::vector<std::array<uint32_t, 3>>& triangles, bool with_deviation) {
+  TriMesh part;
+  std::vector<uint32_t> place(mesh.positions.size(), UINT32_MAX);
+  for (const auto& triangle : triangles) {
+    std::array<uint32_t, 3> moved{};
+    for (size_t c = 0; c < 3; ++c) {
+      uint32_t& index = place[triangle[c]];
+      if (index == UINT32_MAX) {
+        index = static_cast<uint32_t>(part.positions.size());
+        part.positions.push_back(mesh.positions[triangle[c]]);
+        part.normals.push_back(mesh.normals[triangle[c]]);
+        if (with_deviation) part.deviation_um.push_back(mesh.deviation_um[triangle[c]]);
+      }
+      moved[c] = index;
+    }
+    part.triangles.push_back(moved);
+  }
+  return part;
+}
+
+/// glTF knows no NaN: the measured face and the rest of the part are meshes of their own.
+std::pair<TriMesh, TriMesh> split_by_measure(const TriMesh& mesh) {
+  std::vector<std::array<uint32_t, 3>> measured, rest;
+  for (const auto& triangle : mesh.triangles) {
+    const bool known = std::none_of(triangle.begin(), triangle.end(),
+                                    [&](uint32_t v) { return std::isnan(mesh.deviation_um[v]); });
+    (known ? measured : rest).push_back(triangle);
+  }
+  return {sub_mesh(mesh, measured, true), sub_mesh(mesh, rest, false)};
+}
+
+/// Evenly spaced samples of the program.
+std::vector<size_t> animation_samples(const FinishedRun& run) {
+  const size_t last = run.trajectory.samples.size() - 1;
+  const size_t count = std::min<size_t>(last, static_cast<size_t>(kAnimationSeconds) * kPosesPerSecond);
+  std::vector<size_t> samples;
+  for (size_t i = 0; i <= count; ++i) samples.push_back(count == 0 ? 0 : last * i / count);
+  samples.erase(std::unique(samples.begin(), samples.end()), samples.end());
+  return samples;
+}
+
+}  // namespace
+
+double animation_scale(const FinishedRun& run) {
+  return std::max(1.0, run.trajectory.samples.back().t_s / kAnimationSeconds);
+}
+
+double write_part_glb(const FinishedRun& run, const TriMesh& part, double max_error_mm, const std::string& path) {
+  double reached = 0.0;
+  auto [measured, rest] = split_by_measure(mesh::decimate(part, max_error_mm, &reached));
+  const double scale = deviation_scale_um(run.job);
+  render::colour_by_deviation(measured, scale);
+  render::GltfScene scene;
+  if (!measured.triangles.empty()) {
+    scene.nodes.push_back({"machined surface", &measured, {{1.0F, 1.0F, 1.0F}, 0.0F, 0.6F}, -1, {}, {}});
+  }
+  if (!rest.triangles.empty()) scene.nodes.push_back({"part", &rest, kStockMaterial, -1, {}, {}});
+  scene.lines = fan_lines(run);
+  scene.extras = {{"scene", run.job.scene.name},
+                  {"deviation_scale_um", fmt::format("{:g}", scale)},
+                  {"decimation_error_um", fmt::format("{:.4f}", reached * 1e3)}};
+  render::write_glb(path, scene);
+  return reached;
+}
+
+void write_machine_glb(const FinishedRun& run, const TriMesh& part, const std::string& path) {
+  const MachineView view(run.job);
+  const TriMesh light_part = mesh::decimate(part, kMachinePartError, nullptr);
+  TriMesh shown = light_part;
+  shown.deviation_um.clear();
+  const std::vector<size_t> samples = animation_samples(run);
+  const double scale = animation_scale(run);
+  std::vector<double> times;
+  std::vector<std::vector<Pose>> link_poses(run.job.machine.links.size());
+  std::vector<Pose> tool_poses, work_poses;
+  for (const size_t i : samples) {
+    const kinematics::AxisValues& q = run.trajectory.axes[i];
+    times.push_back(run.trajectory.samples[i].t_s / scale);
+    const std::vector<Pose> poses = machine::link_poses(run.job.machine, q);
+    for (size_t link = 0; link < poses.size(); ++link) link_poses[link].push_back(poses[link]);
+    tool_poses.push_back(view.tool_pose(q));
+    work_poses.push_back(view.work_pose(q));
+  }
+  render::GltfScene scene;
+  for (size_t link = 0; link < link_poses.size(); ++link) {
+    const machine::Link& l = run.job.machine.links[link];
+    if (!l.mesh.triangles.empty()) {
+      scene.nodes.push_back({l.name, &l.mesh, {l.colour, l.metalness, l.roughness}, -1, times, link_poses[link]});
+    }
+  }
+  scene.nodes.push_back({"cutter", &view.tool(), kToolMaterial, -1, times, tool_poses});
+  const int cutter = static_cast<int>(scene.nodes.size()) - 1;
+  scene.nodes.push_back({"holder", &view.holder(), kHolderMaterial, cutter, {}, {view.holder_in_tool()}});
+  scene.nodes.push_back({"part", &shown, kStockMaterial, -1, times, work_poses});
+  scene.extras = {{"scene", run.job.scene.name}, {"program_seconds_per_second", fmt::format("{:g}", scale)}};
+  render::write_glb(path, scene);
+}
+
+}  // namespace swarf::reports

@@ -1,0 +1,97 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "base/units.h"
+#include "render/lettering.h"
+#include "render/movie/movie_writer.h"
+#include "render/raster/raster_renderer.h"
+#include "reports/pictures.h"
+
+namespace swarf::reports {
+namespace {
+
+/// The stock as the program cuts it, at the movie's own voxel size.
+class MovieStock {
+ public:
+  explicit MovieStock(const FinishedRun& run)
+      : stock_(run.job.scene.stock.box_W, run.job.scene.movie.voxel_mm),
+        sweeps_(sim::merged_sweeps(run.trajectory, run.job.scene).sweeps),
+        solid_{run.job.scene.cutter.radius(), run.job.scene.cutter.flute_length_mm},
+        mesh_(stock_.mesh()) {}
+
+  /// Cuts everything up to and including this sample; the mesh follows when something was cut.
+  const TriMesh& at_sample(size_t sample) {
+    size_t end = done_;
+    while (end < sweeps_.size() && sweeps_[end].block <= sample) ++end;
+    if (end > done_) {
+      stock_.cut(std::span(sweeps_).subspan(done_, end - done_), solid_);
+      mesh_ = stock_.mesh();
+      done_ = end;
+    }
+    return mesh_;
+  }
+
+ private:
+  stock::Stock stock_;
+  std::vector<stock::Sweep> sweeps_;
+  stock::CutterSolid solid_;
+  size_t done_ = 0;
+  TriMesh mesh_;
+};
+
+std::vector<std::string> caption(const FinishedRun& run, size_t i) {
+  const motion::ToolSample& sample = run.trajectory.samples[i];
+  std::string axes;
+  for (size_t a = 0; a < run.job.machine.model.axes.size(); ++a) {
+    const kinematics::Axis& axis = run.job.machine.model.axes[a];
+    const double q = run.trajectory.axes[i][static_cast<Eigen::Index>(a)];
+    const bool rotary = axis.kind == kinematics::AxisKind::kRotary;
+    axes += fmt::format("{}{} {:8.2f}{}", axes.empty() ? "" : "   ", axis.name, rotary ? deg_from_rad(q) : q,
+                        rotary ? "°" : "");
+  }
+  return {fmt::format("t {:6.2f} s   F {:5.0f} mm/min", sample.t_s, mm_min_from_mm_s(sample.feed_mm_s)),
+          axes};
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
+
+RenderStatistics make_movie(const FinishedRun& run, const std::string& path, const std::string& camera_name,
+                            Progress& progress) {
+  const sim::MovieSettings& settings = run.job.scene.movie;
+  const MachineView view(run.job);
+  MovieStock stock(run);
+  render::RasterRenderer renderer(settings.size[0], settings.size[1]);
+  render::MovieWriter movie(path, settings.size[0], settings.size[1], settings.fps);
+  const int frames = std::max(1, static_cast<int>(settings.seconds * settings.fps));
+  const size_t last = run.trajectory.samples.size() - 1;
+  render::DrawList list;
+  list.camera = machine_camera(run, camera_name, settings.size);
+  std::vector<double> times;
+  progress.begin("movie", frames, "frames");
+  for (int frame = 0; frame < frames && !progress.stop_requested(); ++frame) {
+    const auto start = std::chrono::steady_clock::now();
+    const size_t sample =
+        frames == 1 ? last : last * static_cast<size_t>(frame) / static_cast<size_t>(frames - 1);
+    list.items = view.items(run.trajectory.axes[sample], &stock.at_sample(sample));
+    render::Image image = renderer.draw(list);
+    render::draw_caption(image, caption(run, sample));
+    movie.add(image);
+    times.push_back(1e3 * std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    progress.advance(frame + 1);
+  }
+  progress.end();
+  if (times.empty()) return {};
+  movie.finish();
+  return {static_cast<int>(times.size()), median(times)};
+}
+
+}  // namespace swarf::reports

@@ -1,0 +1,54 @@
+// Movie, stills and glTF of a finished run.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "base/progress.h"
+#include "render/draw_list.h"
+#include "render/ray/still.h"
+#include "reports/machine_view.h"
+#include "reports/metrics_json.h"
+#include "reports/report_data.h"
+
+namespace swarf::reports {
+
+/// Where a picture is taken from: "iso", "front", "left", "right", "back", "top", "raking", or "x,y,z": the
+/// direction from the subject to the eye. Throws InputError for anything else.
+Vec3 camera_direction(const std::string& name);
+
+/// A camera that keeps the stock at all its positions in the picture, in the machine frame.
+render::Camera machine_camera(const FinishedRun& run, const std::string& name,
+                              const std::array<int, 2>& size);
+
+/// The machine at work as H.264, replaced whole. Time runs evenly over the program. When the user stops it,
+/// the frames that are done stay a playable movie.
+RenderStatistics make_movie(const FinishedRun& run, const std::string& path, const std::string& camera,
+                            Progress& progress);
+
+/// One picture of the part by ray tracing.
+enum class StillKind { kMachine, kPart, kDeviation, kFan };
+StillKind still_kind(const std::string& name);  ///< "machine", "part", "deviation", "fan"; throws InputError
+void make_still(const FinishedRun& run, const TriMesh& part, StillKind kind, const std::string& camera,
+                const std::string& path);
+
+/// The colour bar of deviation pictures and the 3D view, from -scale to +scale.
+ColourBar deviation_colour_bar(double scale_um);
+
+/// A mesh whose colours show deviation, with its colour bar.
+render::Image deviation_picture(const TriMesh& coloured, double scale_um, const std::string& camera,
+                                render::StillOptions options);
+
+/// machine.glb: links, tool and finished part with the axes animated over the program.
+void write_machine_glb(const FinishedRun& run, const TriMesh& part, const std::string& path);
+
+/// part.glb: the finished part decimated to the stated error, deviation as colour and attribute, tool-axis
+/// fan as lines. Returns the error that the decimation reached, mm.
+double write_part_glb(const FinishedRun& run, const TriMesh& part, double max_error_mm,
+                      const std::string& path);
+
+/// Program seconds that one second of the glTF animation stands for.
+double animation_scale(const FinishedRun& run);
+
+}  // namespace swarf::reports

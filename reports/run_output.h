@@ -1,0 +1,34 @@
+// The folder that a run leaves: written beside its final place and moved there when it is complete.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/progress.h"
+#include "reports/metrics_json.h"
+#include "sim/simulation.h"
+
+namespace swarf::reports {
+
+struct OutputOptions {
+  bool render = true;                  ///< false: no movie, no stills
+  std::vector<std::string> overrides;  ///< the --set of this run, kept with it
+};
+
+/// The file that marks a folder as a result of `swarf run`.
+inline constexpr const char* kRunMark = "run.json";
+
+/// Writes everything into `folder`, replacing an earlier result whole; what stands there stays until then.
+void write_run(const std::string& folder, const sim::Job& job, sim::Result& result,
+               const OutputOptions& options, Progress& progress);
+
+/// A run read back from its folder: no simulation.
+struct StoredRun {
+  sim::Job job;
+  motion::Trajectory trajectory;
+  stock::Stock stock;
+  std::vector<stock::SurfaceDexels> dexels;
+};
+StoredRun read_run(const std::string& folder);
+
+}  // namespace swarf::reports

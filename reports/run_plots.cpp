@@ -1,0 +1,142 @@
+#include "reports/run_plots.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/units.h"
+#include "motion/offline_baseline.h"
+
+namespace swarf::reports {
+namespace {
+
+constexpr int kHistogramBins = 60;
+
+using kinematics::AxisKind;
+
+Plot feed_plot(const motion::Trajectory& trajectory) {
+  Plot plot;
+  plot.title = "Feed of the contact point";
+  plot.caption = "Falls where an axis would exceed its speed, above all near the pole of the rotary table.";
+  plot.x_label = "time";
+  plot.x_unit = "s";
+  plot.y_label = "feed";
+  plot.y_unit = "mm/s";
+  plot.y_from_zero = true;
+  Series series{"in contact", {}};
+  bool gap = false;
+  for (const motion::ToolSample& s : trajectory.samples) {
+    if (s.kind == motion::SampleKind::kCutting) {
+      series.points.push_back({s.t_s, s.feed_mm_s});
+      gap = false;
+    } else if (!gap) {
+      series.points.push_back({s.t_s, std::nan("")});
+      gap = true;
+    }
+  }
+  plot.series.push_back(std::move(series));
+  return plot;
+}
+
+/// One plot for the axes of one kind: positions, or speeds by central difference.
+Plot axis_plot(const sim::Job& job, const motion::Trajectory& trajectory, AxisKind kind, bool speed) {
+  const bool rotary = kind == AxisKind::kRotary;
+  Plot plot;
+  plot.title = fmt::format("{} of the {} axes", speed ? "Speeds" : "Positions", rotary ? "rotary" : "linear");
+  plot.x_label = "time";
+  plot.x_unit = "s";
+  plot.y_label = speed ? "speed" : "position";
+  plot.y_unit = fmt::format("{}{}", rotary ? "deg" : "mm", speed ? "/s" : "");
+  for (size_t a = 0; a < job.machine.model.axes.size(); ++a) {
+    const kinematics::Axis& axis = job.machine.model.axes[a];
+    if (axis.kind != kind) continue;
+    Series series{axis.name, {}};
+    const auto row = static_cast<Eigen::Index>(a);
+    for (size_t i = 1; i < trajectory.axes.size(); ++i) {
+      const double position = trajectory.axes[i][row];
+      const double value = speed ? (position - trajectory.axes[i - 1][row]) / trajectory.period_s : position;
+      series.points.push_back({trajectory.samples[i].t_s, rotary ? deg_from_rad(value) : value});
+    }
+    plot.series.push_back(std::move(series));
+    if (speed && rotary) plot.limits.push_back({deg_from_rad(axis.speed_max), axis.name + " limit", false});
+  }
+  return plot;
+}
+
+Plot scallop_plot(const sim::Result& result) {
+  Plot plot;
+  plot.title = "Height of the ridges between passes";
+  plot.caption = "Each ridge point is refined between the measuring rays.";
+  plot.x_label = "height";
+  plot.x_unit = "µm";
+  plot.y_label = "ridge points";
+  const auto& ridges = result.main.ridges;
+  if (ridges.empty()) return plot;
+  double low = ridges.front().height_um;
+  double high = low;
+  for (const measure::Ridge& ridge : ridges) {
+    low = std::min(low, ridge.height_um);
+    high = std::max(high, ridge.height_um);
+  }
+  const double width = std::max((high - low) / kHistogramBins, 1e-4);  // um; equal heights still make a bar
+  std::vector<double> counts(kHistogramBins, 0.0);
+  for (const measure::Ridge& ridge : ridges) {
+    const auto bin =
+        static_cast<size_t>(std::min<double>((ridge.height_um - low) / width, kHistogramBins - 1));
+    counts[bin] += 1.0;
+  }
+  for (int i = 0; i < kHistogramBins; ++i) {
+    plot.bars.push_back({low + i * width, low + (i + 1) * width, counts[static_cast<size_t>(i)]});
+  }
+  plot.limits.push_back({result.main.surface.scallop_theory_um, "theory", true});
+  return plot;
+}
+
+Plot height_plot(const sim::Job& job, const sim::Result& result) {
+  Plot plot;
+  plot.title = "Deviation of the finished surface from the design";
+  plot.x_label = "height over the design";
+  plot.x_unit = "µm";
+  plot.y_label = "measuring rays";
+  const double high = 1.1 * job.scene.accept.scallop_max_um;
+  for (const stock::SurfaceDexels& dexels : result.main.dexels) {
+    for (const measure::HistogramBin& bin :
+         measure::height_histogram(dexels, -0.1 * high, high, kHistogramBins)) {
+      plot.bars.push_back({bin.low_um, bin.high_um, static_cast<double>(bin.count)});
+    }
+    break;  // one histogram: the program's first surface
+  }
+  return plot;
+}
+
+Plot fig6_plot() {
+  Plot plot;
+  plot.title = "Fig. 6: orientation error of off-line segments, curve of Eq. (8)";
+  plot.caption = "Orientation linear along the chord, which is what the paper's 0.017 deg belongs to (E5).";
+  plot.x_label = "curve parameter u";
+  plot.y_label = "orientation error";
+  plot.y_unit = "deg";
+  for (const motion::Fig6Row& row : motion::reproduce_fig6()) {
+    Series series{fmt::format("{}, {} segments", row.segmentation, row.segments), {}};
+    for (const Vec2& point : row.curve) series.points.push_back({point.x(), point.y()});
+    plot.series.push_back(std::move(series));
+  }
+  return plot;
+}
+
+}  // namespace
+
+std::vector<Plot> run_plots(const sim::Job& job, const sim::Result& result) {
+  const motion::Trajectory& trajectory = result.main.motion.trajectory;
+  return {feed_plot(trajectory),
+          axis_plot(job, trajectory, AxisKind::kLinear, false),
+          axis_plot(job, trajectory, AxisKind::kRotary, false),
+          axis_plot(job, trajectory, AxisKind::kLinear, true),
+          axis_plot(job, trajectory, AxisKind::kRotary, true),
+          scallop_plot(result),
+          height_plot(job, result),
+          fig6_plot()};
+}
+
+}  // namespace swarf::reports

@@ -1,0 +1,278 @@
+#include "reports/run_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/units.h"
+#include "measure/measure.h"
+#include "motion/offline_baseline.h"
+#include "reports/paper_table.h"
+#include "reports/part_view.h"
+#include "reports/pictures.h"
+#include "reports/run_plots.h"
+
+namespace swarf::reports {
+namespace {
+
+std::string um(double value) {
+  return fmt::format("{:.3f}", value);
+}
+
+std::string duration(double seconds) {
+  return seconds < 100.0
+             ? fmt::format("{:.1f} s", seconds)
+             : fmt::format("{} min {:02d} s", static_cast<int>(seconds) / 60, static_cast<int>(seconds) % 60);
+}
+
+Verdict verdict_of(const sim::Job& job, const sim::Result& result) {
+  const sim::AcceptLimits& accept = job.scene.accept;
+  const measure::SurfaceMetrics& surface = result.main.surface;
+  Verdict verdict;
+  verdict.pass = sim::passes(result);
+  verdict.criteria = {
+      {"Highest scallop", um(surface.scallop_max_um) + " µm",
+       fmt::format("at most {:g} µm", accept.scallop_max_um),
+       surface.scallop_max_um <= accept.scallop_max_um},
+      {"Deepest gouge", um(surface.gouge_max_um) + " µm", fmt::format("at most {:g} µm", accept.gouge_max_um),
+       surface.gouge_max_um <= accept.gouge_max_um},
+      {"Shank or holder in the stock", fmt::format("{} poses", result.clearance.contacts),
+       fmt::format("at most {}", accept.collisions),
+       result.clearance.contacts <= static_cast<size_t>(accept.collisions)}};
+  return verdict;
+}
+
+std::vector<KeyNumber> key_numbers(const sim::Result& result) {
+  const measure::SurfaceMetrics& surface = result.main.surface;
+  const motion::MotionStatistics& motion = result.main.motion.statistics;
+  const bool holds = result.cross_check.holds;
+  return {
+      {"Highest scallop", um(surface.scallop_max_um), "µm",
+       fmt::format("theory {:.3f} µm", surface.scallop_theory_um)},
+      {"5 % of the ridges lie below", um(surface.scallop_p05_um), "µm",
+       fmt::format("{} ridge points", surface.ridges)},
+      {"Deepest gouge", um(surface.gouge_max_um), "µm", fmt::format("{} measuring rays", surface.samples)},
+      {"Within tolerance", fmt::format("{:.2f}", surface.within_tolerance_pct), "%",
+       "of the machined surface"},
+      {"Machining time", duration(motion.time_s), "", fmt::format("{} passes", result.main.path.passes)},
+      {"Feed error", fmt::format("{:.1e}", motion.feed_error_max_rel), "", "relative, largest of all cycles"},
+      {"Removed", fmt::format("{:.1f}", result.volume_removed_mm3 * 1e-3), "cm³",
+       fmt::format("{:.1f} cm³ left", result.volume_left_mm3 * 1e-3)},
+      {"Level set against rays", fmt::format("{:.2f}", result.cross_check.max_um), "µm",
+       fmt::format("bound {:.2f} µm", result.cross_check.bound_um), holds ? Tone::kOk : Tone::kBad}};
+}
+
+std::vector<ReportFinding> findings_of(const sim::Result& result) {
+  std::vector<ReportFinding> list;
+  for (const sim::Finding& f : result.findings)
+    list.push_back({f.code, f.severity, f.text, f.fix, f.where, f.t_s});
+  return list;
+}
+
+Table planner_table(const sim::Result& result) {
+  Table table;
+  table.title = "Planners compared";
+  table.intro = "The same program, cutter and interpolator; each path was interpolated, cut and measured.";
+  table.columns = {{"Planner"},
+                   {"Passes", "", true},
+                   {"Contact length", "mm", true},
+                   {"Links", "mm", true},
+                   {"Time", "s", true},
+                   {"Scallop max", "µm", true},
+                   {"Scallop 5 %", "µm", true},
+                   {"Theory", "µm", true},
+                   {"Gouge", "µm", true}};
+  for (const sim::ComparisonRow& row : result.planners) {
+    if (row.used) table.highlighted_row = static_cast<int>(table.rows.size());
+    table.rows.push_back({row.name, fmt::format("{}", row.passes), fmt::format("{:.1f}", row.pass_length_mm),
+                          fmt::format("{:.1f}", row.link_length_mm), fmt::format("{:.2f}", row.time_s),
+                          um(row.surface.scallop_max_um), um(row.surface.scallop_p05_um),
+                          um(row.surface.scallop_theory_um), um(row.surface.gouge_max_um)});
+  }
+  table.notes = {
+      "Scallop 5 %: 5 % of the ridge points lie below it; equal to the maximum when the cusp is constant."};
+  return table;
+}
+
+Table mode_table(const sim::Result& result) {
+  Table table;
+  table.title = "Interpolators compared";
+  table.intro =
+      "The same path; real-time interpolation on the surface against off-line line segments (erratum E19).";
+  table.columns = {{"Interpolator"},
+                   {"Time", "s", true},
+                   {"Feed error", "relative", true},
+                   {"Chord error", "µm", true},
+                   {"Orientation error", "deg", true},
+                   {"Gouge", "µm", true},
+                   {"Scallop max", "µm", true}};
+  for (const sim::ComparisonRow& row : result.modes) {
+    if (row.used) table.highlighted_row = static_cast<int>(table.rows.size());
+    table.rows.push_back({row.name, fmt::format("{:.2f}", row.time_s),
+                          fmt::format("{:.1e}", row.feed_error_max_rel),
+                          fmt::format("{:.4f}", um_from_mm(row.chord_error_max_mm)),
+                          fmt::format("{:.5f}", deg_from_rad(row.orientation_error_max_rad)),
+                          um(row.surface.gouge_max_um), um(row.surface.scallop_max_um)});
+  }
+  return table;
+}
+
+Table axis_table(const sim::Job& job, const sim::Result& result) {
+  Table table;
+  table.title = "Axes";
+  table.columns = {{"Axis"},
+                   {"Unit"},
+                   {"Least", "", true},
+                   {"Greatest", "", true},
+                   {"Limits", "", true},
+                   {"Travelled", "", true},
+                   {"Top speed", "per s", true},
+                   {"Limit", "per s", true}};
+  const motion::MotionStatistics& motion = result.main.motion.statistics;
+  for (size_t i = 0; i < motion.axes.size(); ++i) {
+    const kinematics::Axis& axis = job.machine.model.axes[i];
+    const bool rotary = axis.kind == kinematics::AxisKind::kRotary;
+    const auto shown = [&](double value) {
+      return fmt::format("{:.2f}", rotary ? deg_from_rad(value) : value);
+    };
+    table.rows.push_back({axis.name + (axis.reversed ? " (reversed)" : ""), rotary ? "deg" : "mm",
+                          shown(motion.axes[i].min), shown(motion.axes[i].max),
+                          shown(axis.min) + " .. " + shown(axis.max), shown(motion.axes[i].travel),
+                          shown(motion.axes[i].speed_max), shown(axis.speed_max)});
+  }
+  table.notes = {
+      "Reversed: the table itself turns positively (the paper's habit), not the tool relative to the work "
+      "(ISO 841)."};
+  return table;
+}
+
+std::vector<Check> checks_of(const sim::Result& result, bool rendered) {
+  using State = Check::State;
+  const motion::MotionStatistics& motion = result.main.motion.statistics;
+  const sim::ToolClearance& clearance = result.clearance;
+  const auto state = [](bool holds) { return holds ? State::kHolds : State::kFails; };
+  std::vector<Check> checks{
+      {"Forward of inverse kinematics, every cycle",
+       fmt::format("largest {:.1e} mm, limit 1e-9 mm", motion.fk_ik_error_max_mm), "",
+       state(motion.fk_ik_error_max_mm < 1e-9)},
+      {"Axis travel and speed limits", fmt::format("{} findings", result.main.motion.findings.size()), "",
+       state(result.main.motion.findings.empty())},
+      {"Joint-linear motion inside a cycle",
+       fmt::format("the tip leaves the path by at most {:.4f} µm", um_from_mm(motion.tip_error_max_mm)), ""},
+      {"Sweeps of the level set",
+       fmt::format("{} sweeps stay within {:.3f} µm of the {} cycles", result.merged_sweeps,
+                   um_from_mm(result.sweep_bound_mm), motion.ticks),
+       ""},
+      {"Level set against measuring rays",
+       fmt::format("largest difference {:.2f} µm, bound {:.2f} µm", result.cross_check.max_um,
+                   result.cross_check.bound_um),
+       "", state(result.cross_check.holds)},
+      {"Shank and holder against the stock",
+       fmt::format("{} contacts at {} poses", clearance.contacts, clearance.checked_poses), "",
+       state(clearance.contacts == 0)},
+      {"Machine parts against each other", "", "collision of meshes is not part of this version",
+       State::kNotChecked},
+      {"Cutter load, spindle power, deflection", "", "the simulation is geometric", State::kNotChecked}};
+  if (!rendered) {
+    checks.push_back({"Pictures and movie", "", "switched off with --no-render", State::kNotChecked});
+  }
+  return checks;
+}
+
+std::vector<FactGroup> facts_of(const sim::Job& job, const sim::Result& result, const RunFiles& files) {
+  const cutter::Cutter& c = job.scene.cutter;
+  const motion::MotionStatistics& motion = result.main.motion.statistics;
+  const stock::CutStatistics& cut = result.stock->statistics();
+  const Vec3 size = job.scene.stock.box_W.size();
+  const motion::ToolSample& first = result.main.motion.trajectory.samples.front();
+  const auto name_of = [](const std::string& path) { return path.substr(path.find_last_of('/') + 1); };
+  return {{"Job",
+           {{"Program", name_of(job.scene.program_file)},
+            {"Planner", result.main.path.planner},
+            {"Execution",
+             "every cycle is one pose of the tool tip in the work frame; axes are linear inside a cycle"},
+            {"Control period", fmt::format("{:g} ms", job.scene.motion.period_s * 1e3)},
+            {"Start", fmt::format("tip at ({:.2f}, {:.2f}, {:.2f}) mm: the first complete position",
+                                  first.pose.tip_W.x(), first.pose.tip_W.y(), first.pose.tip_W.z())},
+            {"Cycles", fmt::format("{}", motion.ticks)}}},
+          {"Machine and tool",
+           {{"Machine", job.machine.model.name},
+            {"Cutter", fmt::format("T{} flat end mill, D {:g} mm, flutes {:g} mm, length {:g} mm", c.number,
+                                   c.diameter_mm, c.flute_length_mm, c.length_mm)},
+            {"Holder", fmt::format("D {:g} mm, {:g} mm long", c.holder_diameter_mm, c.holder_length_mm)}}},
+          {"Stock",
+           {{"Box", fmt::format("{:g} x {:g} x {:g} mm", size.x(), size.y(), size.z())},
+            {"Voxel", fmt::format("{:g} mm", job.scene.stock.voxel_mm)},
+            {"Sweeps", fmt::format("{} ({} voxel updates)", cut.sweeps, cut.voxel_updates)},
+            {"Hash of the finished stock", fmt::format("{:016x}", result.stock->hash())},
+            {"part.glb", fmt::format("decimated, within {:.2f} µm of the level set's mesh",
+                                     um_from_mm(files.part_error_mm))},
+            {"Movie", fmt::format("shows a stock of {:g} mm voxels; nothing is measured on it",
+                                  job.scene.movie.voxel_mm)}}},
+          {"Program", {{"swarf", SWARF_VERSION}}}};
+}
+
+}  // namespace
+
+ReportData report_data(const sim::Job& job, const sim::Result& result, const RunFiles& files, bool rendered) {
+  ReportData data;
+  data.title = job.scene.title;
+  data.subtitle =
+      fmt::format("{} on {}", job.scene.program_file.substr(job.scene.program_file.find_last_of('/') + 1),
+                  job.machine.model.name);
+  data.verdict = verdict_of(job, result);
+  data.key_numbers = key_numbers(result);
+  data.findings = findings_of(result);
+  if (!files.stills.empty()) {
+    data.hero_png = files.stills.front().png_path;
+    data.hero_caption = files.stills.front().caption;
+    data.stills.assign(files.stills.begin() + 1, files.stills.end());
+  }
+  data.viewer = {files.part_glb, files.machine_glb, deviation_colour_bar(deviation_scale_um(job)),
+                 files.animation_scale};
+  data.movie_mp4 = files.movie;
+  data.movie_caption =
+      "The whole program, evenly sped up. The tool cuts the stock as it stands at that moment.";
+  data.plots = run_plots(job, result);
+  data.tables = {planner_table(result), mode_table(result), axis_table(job, result), fig6_table()};
+  data.paper_title = "Lin & Koren: the paper's figures against ours";
+  data.paper = paper_rows(job, result);
+  data.checks = checks_of(result, rendered);
+  data.reproduce = {fmt::format("./dev run scenes/{}/scene.toml", job.scene.name)};
+  data.facts = facts_of(job, result, files);
+  return data;
+}
+
+std::vector<std::pair<std::string, std::string>> summary_lines(const sim::Job& job,
+                                                               const sim::Result& result) {
+  const measure::SurfaceMetrics& s = result.main.surface;
+  const motion::MotionStatistics& m = result.main.motion.statistics;
+  const stock::CutStatistics& cut = result.stock->statistics();
+  return {
+      {"path", fmt::format("{} passes, {:.0f} mm in contact, planner {}", result.main.path.passes,
+                           result.main.path.pass_length_mm, result.main.path.planner)},
+      {"time", fmt::format("{} at F {:.0f} mm/min ({} cycles of {:g} ms)", duration(m.time_s),
+                           mm_min_from_mm_s(job.program.operations.front().feed_mm_s), m.ticks,
+                           job.scene.motion.period_s * 1e3)},
+      {"feed error",
+       fmt::format("{:.1e} relative; slowest {:.2f} mm/s in contact", m.feed_error_max_rel, m.feed_min_mm_s)},
+      {"cycle cost", fmt::format("{:.0f} ns median, {:.0f} ns at 99.9 %", m.tick_ns_median, m.tick_ns_p999)},
+      {"scallop", fmt::format("{:.3f} um highest, {:.3f} um at 5 %, theory {:.3f} um", s.scallop_max_um,
+                              s.scallop_p05_um, s.scallop_theory_um)},
+      {"gouge", fmt::format("{:.3f} um deepest", s.gouge_max_um)},
+      {"tolerance", fmt::format("{:.2f} % of {} rays within -{:g} .. +{:g} um", s.within_tolerance_pct,
+                                s.samples, job.scene.accept.gouge_max_um, job.scene.accept.scallop_max_um)},
+      {"removed",
+       fmt::format("{:.1f} mm3, {:.1f} mm3 left", result.volume_removed_mm3, result.volume_left_mm3)},
+      {"cutting",
+       fmt::format("{} blocks in {:.2f} s = {:.0f} blocks/s, {:g} mm voxels", cut.sweeps, cut.seconds,
+                   cut.seconds > 0 ? static_cast<double>(cut.sweeps) / cut.seconds : 0.0,
+                   job.scene.stock.voxel_mm)},
+      {"clearance", result.clearance.contacts > 0
+                        ? fmt::format("{} stands in the stock at {} poses", result.clearance.part,
+                                      result.clearance.contacts)
+                        : fmt::format("shank and holder free ({} poses)", result.clearance.checked_poses)}};
+}
+
+}  // namespace swarf::reports

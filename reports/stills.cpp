@@ -1,0 +1,167 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/config.h"
+#include "base/units.h"
+#include "mesh/mesh_ops.h"
+#include "render/camera.h"
+#include "render/figures/colour.h"
+#include "render/image_io.h"
+#include "render/lettering.h"
+#include "render/ray/still.h"
+#include "reports/part_view.h"
+#include "reports/pictures.h"
+
+namespace swarf::reports {
+namespace {
+
+constexpr double kFieldOfView = 0.45;  // rad, vertical: a long lens, little distortion
+constexpr int kColourStops = 33;
+
+const std::vector<std::pair<std::string, Vec3>>& directions() {
+  static const std::vector<std::pair<std::string, Vec3>> table{
+      {"iso", {-0.55, -0.85, 0.62}}, {"raking", {-0.35, -0.9, 0.55}}, {"front", {0.0, -1.0, 0.25}},
+      {"back", {0.0, 1.0, 0.3}},     {"left", {-1.0, -0.1, 0.3}},     {"right", {1.0, -0.1, 0.3}},
+      {"top", {0.0, -0.02, 1.0}},    {"machine", {-0.75, -1.0, 0.55}}};
+  return table;
+}
+
+double aspect(const std::array<int, 2>& size) {
+  return static_cast<double>(size[0]) / size[1];
+}
+
+render::StillOptions still_options(const sim::Job& job) {
+  render::StillOptions options;
+  options.width = job.scene.stills.size[0];
+  options.height = job.scene.stills.size[1];
+  options.samples_per_pixel = job.scene.stills.samples;
+  return options;
+}
+
+/// The colour bar as it is drawn on a picture.
+render::ColourBar lettered_bar(double scale_um) {
+  render::ColourBar bar;
+  bar.low = -scale_um;
+  bar.high = scale_um;
+  bar.colour = [scale_um](double um) { return render::deviation_colour(um, scale_um); };
+  bar.title = "deviation, µm";
+  for (int i = -2; i <= 2; ++i) bar.ticks.push_back({0.5 * i * scale_um, fmt::format("{:+g}", 0.5 * i * scale_um)});
+  return bar;
+}
+
+/// The sample in contact nearest to the middle of the program's time.
+size_t middle_sample(const motion::Trajectory& trajectory) {
+  const size_t middle = trajectory.samples.size() / 2;
+  for (size_t i = middle; i < trajectory.samples.size(); ++i) {
+    if (trajectory.samples[i].kind == motion::SampleKind::kCutting) return i;
+  }
+  return middle;
+}
+
+/// The stock as it stands at the middle of the program, at the movie's voxel size.
+TriMesh half_cut_stock(const FinishedRun& run, size_t sample) {
+  stock::Stock stock(run.job.scene.stock.box_W, run.job.scene.movie.voxel_mm);
+  const std::vector<stock::Sweep> sweeps = sim::merged_sweeps(run.trajectory, run.job.scene).sweeps;
+  const auto end =
+      std::find_if(sweeps.begin(), sweeps.end(), [&](const stock::Sweep& s) { return s.block > sample; });
+  stock.cut(std::span(sweeps.begin(), end),
+            {run.job.scene.cutter.radius(), run.job.scene.cutter.flute_length_mm});
+  return stock.mesh();
+}
+
+}  // namespace
+
+Vec3 camera_direction(const std::string& name) {
+  std::vector<std::string> names;
+  for (const auto& [known, direction] : directions()) {
+    if (known == name) return direction;
+    names.push_back(known);
+  }
+  Vec3 direction;
+  if (std::sscanf(name.c_str(), "%lf,%lf,%lf", &direction.x(), &direction.y(), &direction.z()) == 3 &&
+      direction.allFinite() && direction.norm() > 0.0) {
+    return direction;
+  }
+  throw InputError(
+      "unknown-camera", {"--camera"}, fmt::format("there is no camera '{}'", name),
+      fmt::format("one of {}, or a direction x,y,z from the subject to the eye", fmt::join(names, ", ")));
+}
+
+render::Camera machine_camera(const FinishedRun& run, const std::string& name,
+                              const std::array<int, 2>& size) {
+  // What the picture must hold: the stock at every table position, and the head above it.
+  const MachineView view(run.job);
+  const Box& box = run.job.scene.stock.box_W;
+  Box seen{Vec3::Constant(1e9), Vec3::Constant(-1e9)};
+  const size_t step = std::max<size_t>(1, run.trajectory.axes.size() / 50);
+  for (size_t i = 0; i < run.trajectory.axes.size(); i += step) {
+    const Vec3 centre = view.work_pose(run.trajectory.axes[i]) * box.centre();
+    seen.lower = seen.lower.cwiseMin(centre);
+    seen.upper = seen.upper.cwiseMax(centre);
+  }
+  const double margin = 0.9 * box.size().maxCoeff();
+  seen.lower.array() -= margin;
+  seen.upper.array() += margin;
+  return render::look_at_box(seen, -camera_direction(name), kFieldOfView, aspect(size));
+}
+
+StillKind still_kind(const std::string& name) {
+  if (name == "machine") return StillKind::kMachine;
+  if (name == "part") return StillKind::kPart;
+  if (name == "deviation") return StillKind::kDeviation;
+  if (name == "fan") return StillKind::kFan;
+  throw InputError("unknown-still", {"--kind"}, fmt::format("there is no still '{}'", name),
+                   "one of machine, part, deviation, fan");
+}
+
+ColourBar deviation_colour_bar(double scale_um) {
+  ColourBar bar{"Deviation from the design", "µm", -scale_um, scale_um, {}};
+  for (int i = 0; i < kColourStops; ++i) {
+    const double um = -scale_um + 2.0 * scale_um * i / (kColourStops - 1);
+    const auto rgba = render::srgb8_from_linear(render::deviation_colour(um, scale_um));
+    bar.stops.push_back({rgba[0], rgba[1], rgba[2]});
+  }
+  return bar;
+}
+
+render::Image deviation_picture(const TriMesh& coloured, double scale_um, const std::string& camera,
+                                render::StillOptions options) {
+  render::DrawList list;
+  const double ratio = static_cast<double>(options.width) / options.height;
+  list.camera = render::look_at_box(mesh::bounds(coloured), -camera_direction(camera), kFieldOfView, ratio);
+  list.items.push_back({&coloured, Pose::Identity(), {{1.0F, 1.0F, 1.0F}, 0.0F, 0.7F}});
+  options.strip_strength = 0.0;  // reflections would tint the colours
+  render::Image image = render::render_still(list, options);
+  render::draw_colour_bar(image, lettered_bar(scale_um));
+  return image;
+}
+
+void make_still(const FinishedRun& run, const TriMesh& part, StillKind kind, const std::string& camera,
+                const std::string& path) {
+  const render::StillOptions options = still_options(run.job);
+  if (kind == StillKind::kDeviation) {
+    TriMesh coloured = part;
+    const double scale = deviation_scale_um(run.job);
+    render::colour_by_deviation(coloured, scale);
+    render::save_png(deviation_picture(coloured, scale, camera, options), path);
+    return;
+  }
+  const MachineView view(run.job);
+  TriMesh half_cut;
+  render::DrawList list;
+  if (kind == StillKind::kMachine) {
+    const size_t sample = middle_sample(run.trajectory);
+    half_cut = half_cut_stock(run, sample);
+    list.items = view.items(run.trajectory.axes[sample], &half_cut);
+    list.camera = machine_camera(run, camera, run.job.scene.stills.size);
+  } else {
+    list.camera = render::look_at_box(mesh::bounds(part), -camera_direction(camera), kFieldOfView,
+                                      aspect(run.job.scene.stills.size));
+    list.items.push_back({&part, Pose::Identity(), kStockMaterial});
+  }
+  if (kind == StillKind::kFan) list.lines = fan_lines(run);
+  render::save_png(render::render_still(list, options), path);
+}
+
+}  // namespace swarf::reports
