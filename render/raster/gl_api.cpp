@@ -47,7 +47,7 @@ const OsmesaContext::Library& OsmesaContext::library() {
   return kLibrary;
 }
 
-OsmesaContext::OsmesaContext() : surface_(kSurfaceSize * kSurfaceSize) {
+OsmesaContext::OsmesaContext() : surface_(size_t{kSurfaceSize} * kSurfaceSize) {
   const int attributes[] = {OSMESA_FORMAT,
                             OSMESA_RGBA,
                             OSMESA_PROFILE,

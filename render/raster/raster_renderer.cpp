@@ -1,6 +1,7 @@
 #include "render/raster/raster_renderer.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstring>
 #include <string>
 
@@ -107,11 +108,13 @@ RasterRenderer::Impl::Impl(int width_px, int height_px, int samples)
   gl.GenBuffers(1, &line_buffer);
   gl.BindVertexArray(line_array);
   gl.BindBuffer(GL_ARRAY_BUFFER, line_buffer);
-  for (GLuint i = 0; i < 2; ++i) {
-    gl.VertexAttribPointer(i, 3, GL_FLOAT, GL_FALSE, sizeof(LineVertex),
-                           reinterpret_cast<const void*>(i * sizeof(LineVertex::ndc)));
-    gl.EnableVertexAttribArray(i);
-  }
+  gl.VertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(LineVertex), nullptr);
+  // With a buffer bound, OpenGL takes the pointer as an offset into it.
+  // NOLINTNEXTLINE(performance-no-int-to-ptr)
+  const auto* colour_offset = reinterpret_cast<const void*>(offsetof(LineVertex, colour));
+  gl.VertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, sizeof(LineVertex), colour_offset);
+  gl.EnableVertexAttribArray(0);
+  gl.EnableVertexAttribArray(1);
 }
 
 GLuint RasterRenderer::Impl::make_target(int samples) {

@@ -31,8 +31,8 @@ TEST(RasterRenderer, DrawsThingsWhereTheyAre) {
   ASSERT_EQ(image.rgba.size(), size_t{4} * kWidth * kHeight);
   const double px_per_mm = 0.5 * kHeight / std::tan(0.3) / 200;
   const auto at = [&](double x, double z) {
-    return pixel(image, static_cast<int>(kWidth / 2 + x * px_per_mm),
-                 static_cast<int>(kHeight / 2 - z * px_per_mm));
+    return pixel(image, static_cast<int>(0.5 * kWidth + x * px_per_mm),
+                 static_cast<int>(0.5 * kHeight - z * px_per_mm));
   };
   const Pixel red = at(25, 15), green = at(-25, -15);
   EXPECT_GT(red.r, 2 * red.g);
