@@ -7,7 +7,6 @@
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstring>
@@ -55,16 +54,59 @@ struct Batch {
   std::vector<Group> groups;
 };
 
-/// Box around the standing cutter.
-Box cutter_box(const ToolPose& pose, const CutterSolid& cutter) {
-  Box box;
-  for (int a = 0; a < 3; ++a) {
-    const double side = cutter.radius * std::sqrt(std::max(0.0, 1.0 - pose.axis_W[a] * pose.axis_W[a]));
-    const double top = cutter.height * pose.axis_W[a];
-    box.lower[a] = pose.tip_W[a] + std::min(0.0, top) - side;
-    box.upper[a] = pose.tip_W[a] + std::max(0.0, top) + side;
+/// A capsule around the swept cutter: every place that is nearer to it than `reach` lies within `radius` of
+/// the segment from `tip` along `axis`.
+struct Capsule {
+  Vec3 tip, axis;
+  double length, radius;
+};
+
+Capsule capsule_of(const Sweep& sweep, const CutterSolid& cutter, double reach) {
+  const double travel = (sweep.end.tip_W - sweep.start.tip_W).norm() +
+                        cutter.height * (sweep.end.axis_W - sweep.start.axis_W).norm();
+  const double bow = motion_bound(sweep, std::hypot(cutter.height, cutter.radius));
+  // The distance is a max norm: at the edge of the bottom it reaches sqrt(2) farther.
+  return {0.5 * (sweep.start.tip_W + sweep.end.tip_W), 0.5 * (sweep.start.axis_W + sweep.end.axis_W),
+          cutter.height, cutter.radius + std::sqrt(2.0) * reach + 0.5 * travel + bow};
+}
+
+/// The part [low, high] of a vertical line that lies inside the capsule's neighbourhood; empty when low >
+/// high.
+struct Span {
+  double low = 0.0, high = -1.0;
+};
+Span vertical_span(const Capsule& capsule, double x, double y) {
+  const Vec2 offset = Vec2(x, y) - capsule.tip.head<2>();
+  const Vec2 lean = capsule.axis.head<2>();
+  const double lean2 = lean.squaredNorm(), radius2 = capsule.radius * capsule.radius;
+  double first = 0.0, last = capsule.length;  // along the axis, where it passes the line closely enough
+  constexpr double kUpright = 1e-12;
+  if (lean2 > kUpright) {
+    const double middle = offset.dot(lean) / lean2;
+    const double miss2 = (offset - middle * lean).squaredNorm();
+    if (miss2 > radius2) return {};
+    const double half = std::sqrt((radius2 - miss2) / lean2);
+    first = std::max(first, middle - half);
+    last = std::min(last, middle + half);
+    if (first > last) return {};
+  } else if (offset.norm() > capsule.radius + capsule.length * std::sqrt(kUpright)) {
+    return {};
   }
-  return box;
+  const double z0 = capsule.tip.z() + first * capsule.axis.z(),
+               z1 = capsule.tip.z() + last * capsule.axis.z();
+  return {std::min(z0, z1) - capsule.radius, std::max(z0, z1) + capsule.radius};
+}
+
+/// Cuts off the part of the line below both ends' bottom planes by more than `reach`.
+void clip_at_bottom(Span& span, const SweepMap& map, double reach, double x, double y) {
+  constexpr double kUpright =
+      0.1;  // flatter planes cut little off a vertical line, and the quotient grows coarse
+  const double az0 = map.R0t(2, 2), az1 = map.R1t(2, 2);
+  if (std::min(az0, az1) < kUpright) return;
+  const auto plane = [&](const Mat3& Rt, const Vec3& tip) {
+    return tip.z() - (reach + Rt(2, 0) * (x - tip.x()) + Rt(2, 1) * (y - tip.y())) / Rt(2, 2);
+  };
+  span.low = std::max(span.low, std::min(plane(map.R0t, map.tip0), plane(map.R1t, map.tip1)));
 }
 
 /// Inclusive range of leaf positions along axis `a` that [low, high] mm reaches.
@@ -114,35 +156,30 @@ struct LeafQuery {
   }
 };
 
-/// Range of leaf positions along each axis around the swept cutter and its band.
-std::array<std::pair<int, int>, 3> sweep_range(const LevelSet& set, const Sweep& sweep,
-                                               const CutterSolid& cutter) {
-  const Box a = cutter_box(sweep.start, cutter), b = cutter_box(sweep.end, cutter);
-  // In the max norm the band reaches out by its width beside and below the cutter, so sqrt(2) at its edge.
-  const double margin =
-      std::sqrt(2.0) * set.band() + motion_bound(sweep, std::hypot(cutter.height, cutter.radius));
-  std::array<std::pair<int, int>, 3> range;
-  for (int axis = 0; axis < 3; ++axis) {
-    range[axis] = leaf_range(set, axis, std::min(a.lower[axis], b.lower[axis]) - margin,
-                             std::max(a.upper[axis], b.upper[axis]) + margin);
-  }
-  return range;
-}
-
 /// Lists the leaf positions whose values sweep `n` can raise: those whose centre is near enough, because the
 /// distance changes by no more than the way walked from there (1-Lipschitz).
 void gather_sweep(const LevelSet& set, const Batch& batch, size_t n, std::vector<Pair>& pairs) {
-  const auto range = sweep_range(set, batch.sweeps[n], batch.cutter);
-  if (range[2].second < range[2].first) return;
   const LeafQuery query{batch.maps[n], batch.cutter, set.leaf_radius() + set.band()};
+  const Capsule capsule = capsule_of(batch.sweeps[n], batch.cutter, query.reach);
+  const Vec3 top = capsule.tip + capsule.length * capsule.axis;
+  const auto range = [&](int axis) {
+    return leaf_range(set, axis, std::min(capsule.tip[axis], top[axis]) - capsule.radius,
+                      std::max(capsule.tip[axis], top[axis]) + capsule.radius);
+  };
+  const auto [i_first, i_last] = range(0);
+  const auto [j_first, j_last] = range(1);
   const double leaf_mm = kLeafSide * set.voxel;
-  for (int i = range[0].first; i <= range[0].second; ++i) {
-    for (int j = range[1].first; j <= range[1].second; ++j) {
+  for (int i = i_first; i <= i_last; ++i) {
+    for (int j = j_first; j <= j_last; ++j) {
       const size_t column = set.map.index(i, j, 0);
       const Vec3 foot = set.leaf_centre(column);
+      Span span = vertical_span(capsule, foot.x(), foot.y());
+      clip_at_bottom(span, query.map, query.reach, foot.x(), foot.y());
+      const auto [k_first, k_last] = leaf_range(set, 2, span.low - leaf_mm, span.high + leaf_mm);
+      if (span.low > span.high || k_first > k_last) continue;
       const LeafState* states = set.map.states.data() + column;
-      const auto end = static_cast<size_t>(range[2].second) + 1;
-      for (size_t k = static_cast<size_t>(range[2].first); (k = skip_air(states, k, end)) < end; ++k) {
+      const auto end = static_cast<size_t>(k_last) + 1;
+      for (size_t k = static_cast<size_t>(k_first); (k = skip_air(states, k, end)) < end; ++k) {
         const double distance = query.distance(foot + Vec3(0, 0, static_cast<double>(k) * leaf_mm));
         if (distance < query.reach) pairs.push_back(make_pair(column + k, n, distance < -query.reach));
       }

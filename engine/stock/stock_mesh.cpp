@@ -16,11 +16,43 @@ struct Neighbourhood {
   float values[4][4][4];
 };
 
+/// The values of one leaf position: an array, or one value for all of it.
+struct LeafView {
+  const float* values = nullptr;
+  float constant = 0.0F;
+};
+
+LeafView leaf_view(const LevelSet& set, int i, int j, int k) {
+  const openvdb::Coord place = openvdb::Coord(i, j, k) - set.map.lower;
+  const openvdb::Coord& size = set.map.dimension;
+  const bool known = place.x() >= 0 && place.y() >= 0 && place.z() >= 0 && place.x() < size.x() &&
+                     place.y() < size.y() && place.z() < size.z();
+  if (!known) return {nullptr, set.band()};
+  const size_t n = set.map.index(place.x(), place.y(), place.z());
+  if (set.map.states[n] == LeafState::kLeaf) return {set.map.leaves[n]->buffer().data(), 0.0F};
+  return {nullptr, set.map.states[n] == LeafState::kSolid ? -set.band() : set.band()};
+}
+
+/// Looks the leaves up once for all 64 values; there are at most two along each axis.
 Neighbourhood neighbourhood(const LevelSet& set, const openvdb::Coord& low) {
+  const openvdb::Coord first = low.offsetBy(-1), leaf(first.x() >> 3, first.y() >> 3, first.z() >> 3);
+  const auto next = [&](int axis, int n) { return ((first[axis] + n) >> 3) - leaf[axis]; };  // 0 or 1
+  LeafView views[2][2][2];
+  for (int i = 0; i <= next(0, 3); ++i) {
+    for (int j = 0; j <= next(1, 3); ++j) {
+      for (int k = 0; k <= next(2, 3); ++k) {
+        views[i][j][k] = leaf_view(set, leaf.x() + i, leaf.y() + j, leaf.z() + k);
+      }
+    }
+  }
   Neighbourhood around;
   for (int i = 0; i < 4; ++i) {
     for (int j = 0; j < 4; ++j) {
-      for (int k = 0; k < 4; ++k) around.values[i][j][k] = set.value(low.offsetBy(i - 1, j - 1, k - 1));
+      for (int k = 0; k < 4; ++k) {
+        const LeafView& view = views[next(0, i)][next(1, j)][next(2, k)];
+        const int offset = ((first.x() + i) & 7) * 64 + ((first.y() + j) & 7) * 8 + ((first.z() + k) & 7);
+        around.values[i][j][k] = view.values != nullptr ? view.values[offset] : view.constant;
+      }
     }
   }
   return around;
