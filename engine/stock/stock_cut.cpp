@@ -118,11 +118,6 @@ std::pair<int, int> leaf_range(const LevelSet& set, int a, double low, double hi
   return {static_cast<int>(std::clamp(first, 0.0, top + 1.0)), static_cast<int>(std::clamp(last, -1.0, top))};
 }
 
-MovingPoint<double> moving_point(const SweepMap& map, const Vec3& point) {
-  const Vec3 P = map.start(point), D = map.end(point) - P;
-  return {P.x(), P.y(), P.z(), D.x(), D.y(), D.z()};
-}
-
 /// First position in [k, end) that is not air, or `end`; eight states at a time, for most of a box is air.
 size_t skip_air(const LeafState* states, size_t k, size_t end) {
   while (k < end) {
@@ -147,12 +142,19 @@ struct LeafQuery {
   const CutterSolid& cutter;
   double reach;  ///< from a leaf's centre to the farthest place where a distance matters
 
-  /// Distance of the cutter from the centre, or a lower bound of it that is beyond reach already.
-  double distance(const Vec3& centre) const {
-    const double below =
-        std::min(-map.R0t.row(2).dot(centre - map.tip0), -map.R1t.row(2).dot(centre - map.tip1));
-    if (below >= reach) return below;
-    return swept_distance<double, true>(moving_point(map, centre), cutter.radius, cutter.height);
+  enum class Answer { kOutOfReach, kReaches, kSwallows };
+
+  /// The pose at half time decides nearly always: the point moves by at most half its way from there.
+  Answer ask(const Vec3& centre) const {
+    const Vec3 P = map.start(centre), D = map.end(centre) - P;
+    const Vec3 X = P + 0.5 * D;
+    const double middle = std::max({X.head<2>().norm() - cutter.radius, -X.z(), X.z() - cutter.height});
+    if (middle < -reach) return Answer::kSwallows;
+    if (middle < reach) return Answer::kReaches;
+    if (middle - 0.5 * D.norm() > reach) return Answer::kOutOfReach;
+    const MovingPoint<double> point{P.x(), P.y(), P.z(), D.x(), D.y(), D.z()};
+    const bool reaches = swept_distance<double, true>(point, cutter.radius, cutter.height) < reach;
+    return reaches ? Answer::kReaches : Answer::kOutOfReach;
   }
 };
 
@@ -180,8 +182,9 @@ void gather_sweep(const LevelSet& set, const Batch& batch, size_t n, std::vector
       const LeafState* states = set.map.states.data() + column;
       const auto end = static_cast<size_t>(k_last) + 1;
       for (size_t k = static_cast<size_t>(k_first); (k = skip_air(states, k, end)) < end; ++k) {
-        const double distance = query.distance(foot + Vec3(0, 0, static_cast<double>(k) * leaf_mm));
-        if (distance < query.reach) pairs.push_back(make_pair(column + k, n, distance < -query.reach));
+        const LeafQuery::Answer answer = query.ask(foot + Vec3(0, 0, static_cast<double>(k) * leaf_mm));
+        if (answer == LeafQuery::Answer::kOutOfReach) continue;
+        pairs.push_back(make_pair(column + k, n, answer == LeafQuery::Answer::kSwallows));
       }
     }
   }
