@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "base/config.h"
@@ -19,6 +20,10 @@ namespace {
 namespace fs = std::filesystem;
 using kinematics::Axis;
 using kinematics::AxisKind;
+
+/// A direction in a file carries the digits that a person wrote; within this it is meant as a unit vector and
+/// is normalised.
+constexpr double kWrittenUnitTolerance = 1e-9;
 
 const std::vector<std::string> kAxisLetters{"X", "Y", "Z", "A", "B", "C", "U", "V", "W"};
 
@@ -36,16 +41,19 @@ Vec3 read_vec3(ConfigTable& table, const std::string& key, std::optional<std::ve
 
 Vec3 read_direction(ConfigTable& table, const std::string& key,
                     std::optional<std::vector<double>> fallback = {}) {
+  // What is no vector at all has one diagnostic, not a second one for its length.
+  if (table.has(key)) fallback = std::vector<double>{1, 0, 0};
   const Vec3 direction = read_vec3(table, key, std::move(fallback));
   const double length = direction.norm();
-  if (table.has(key) && std::abs(length - 1.0) > kinematics::kUnitTolerance) {
-    table.error("not-unit", key, fmt::format("'{}' is not a unit vector, its length is {:.9g}", key, length),
+  if (table.has(key) && std::abs(length - 1.0) > kWrittenUnitTolerance) {
+    table.error("direction-not-unit", key,
+                fmt::format("'{}' is not a unit vector, its length is {:.9g}", key, length),
                 length > 0.0 ? fmt::format("write [{:.12g}, {:.12g}, {:.12g}]", direction.x() / length,
                                            direction.y() / length, direction.z() / length)
                              : "write a vector of length 1");
     return Vec3::UnitX();
   }
-  return direction;
+  return length > 0.0 ? Vec3(direction / length) : Vec3::UnitX();
 }
 
 /// Limits carry their unit in the key: min_mm, speed_max_mm_min, ... for linear, min_deg, speed_max_deg_s,
@@ -83,7 +91,12 @@ Axis read_axis(ConfigTable& table) {
     table.error("unknown-axis", "name", fmt::format("there is no axis '{}'", axis.name),
                 fmt::format("axes are called {}", fmt::join(kAxisLetters, " ")));
   }
-  axis.kind = table.choice("type", {"linear", "rotary"}) == "rotary" ? AxisKind::kRotary : AxisKind::kLinear;
+  // A misspelt type is one mistake: the unit of the limits tells what was meant, and they are read as such.
+  const bool in_degrees = table.has("min_deg") || table.has("max_deg") || table.has("speed_max_deg_s");
+  std::optional<std::string> meant;
+  if (table.has("type")) meant = in_degrees ? "rotary" : "linear";
+  axis.kind =
+      table.choice("type", {"linear", "rotary"}, meant) == "rotary" ? AxisKind::kRotary : AxisKind::kLinear;
   axis.direction_M = read_direction(table, "direction");
   if (axis.kind == AxisKind::kRotary)
     axis.origin_M = read_vec3(table, "origin_mm", std::vector<double>{0, 0, 0});
@@ -98,6 +111,11 @@ LinkEntry read_link(ConfigTable table) {
       {}};
   if (table.has("mount")) entry.mount = table.choice("mount", {"work", "tool"});
   const Vec3 colour = read_vec3(table, "colour", std::vector<double>{0.7, 0.7, 0.7});
+  if (colour.minCoeff() < 0.0 || colour.maxCoeff() > 1.0) {
+    table.error("out-of-range", "colour",
+                fmt::format("the colour is [{:g}, {:g}, {:g}]", colour.x(), colour.y(), colour.z()),
+                "each of red, green and blue (linear) must be from 0 to 1");
+  }
   entry.link.name = entry.name;
   for (int i = 0; i < 3; ++i) entry.link.colour[static_cast<size_t>(i)] = static_cast<float>(colour[i]);
   entry.link.metalness = static_cast<float>(table.number("metalness", {0.0, 1.0}, 0.0));
@@ -115,7 +133,7 @@ class MachineReader {
     scene_.file = path_;
     scene_.model.name = root_.text("name");
     read_axes();
-    for (ConfigTable& table : root_.tables("link")) entries_.push_back(read_link(table));
+    read_links();
     ConfigTable work = root_.table("work");
     scene_.model.X_MW.translation() = read_vec3(work, "origin_mm");
     ConfigTable tool = root_.table("tool");
@@ -139,13 +157,27 @@ class MachineReader {
       }
       scene_.model.axes.push_back(axis);
       axis_tables_.push_back(table);
+      written_sides_.push_back(table.has("side") ? table.choice("side", {"table", "head"}) : "");
     }
-    if (scene_.model.axes.empty()) {
+    if (!root_.has("axis")) {
       root_.error("missing-key", "axis", "the machine has no axes", "describe them in [[axis]] tables");
     }
     if (scene_.model.axes.size() > static_cast<size_t>(kinematics::kMaxAxes)) {
       root_.error("too-many-axes", "axis", fmt::format("the machine has {} axes", scene_.model.axes.size()),
                   "at most three linear and two rotary axes");
+    }
+  }
+
+  void read_links() {
+    for (const ConfigTable& table : root_.tables("link")) {
+      LinkEntry entry = read_link(table);
+      if (entry.name.empty() && entry.table.has("name")) {
+        entry.table.error("out-of-range", "name", "the link has an empty name", "give it a name");
+      } else if (!entry.name.empty() && entry_index(entry.name) >= 0) {
+        entry.table.error("link-twice", "name", fmt::format("a second link is called '{}'", entry.name),
+                          "give each link a name of its own");
+      }
+      entries_.push_back(std::move(entry));
     }
   }
 
@@ -183,50 +215,54 @@ class MachineReader {
     }
   }
 
+  /// -1: the floor, or a name that no link has.
+  int parent_of(int entry) const {
+    const std::string& parent = entries_[static_cast<size_t>(entry)].parent;
+    return parent.empty() ? -1 : entry_index(parent);
+  }
+
+  /// False, with a diagnostic, when the way up ends or turns back at this entry.
+  bool can_go_on(int at, const std::vector<int>& way) {
+    LinkEntry& entry = entries_[static_cast<size_t>(at)];
+    const auto again = std::find(way.begin(), way.end(), at);
+    if (again != way.end()) {
+      std::string names;
+      for (auto it = again; it != way.end(); ++it) names += entries_[static_cast<size_t>(*it)].name + " -> ";
+      entry.table.error("chain-cycle", "parent",
+                        fmt::format("the links stand on each other in a circle: {}{}", names, entry.name),
+                        "one of them must stand on the floor or on a link outside the circle");
+      return false;
+    }
+    if (entry.parent.empty() || parent_of(at) >= 0) return true;
+    const std::string near = nearest_name(entry.parent, link_names());
+    entry.table.error("unknown-parent", "parent",
+                      fmt::format("link '{}' stands on '{}', which is no link", entry.name, entry.parent),
+                      near.empty() ? "name another link, or leave the key out for the floor"
+                                   : fmt::format("did you mean '{}'?", near));
+    return false;
+  }
+
   void place_link(int entry_number, std::map<int, int>& place) {
     // Walk up until a link that is placed (or the floor), then place the way down.
     std::vector<int> way;
-    int at = entry_number;
-    while (at >= 0 && place.count(at) == 0) {
-      const auto again = std::find(way.begin(), way.end(), at);
-      if (again != way.end()) {
-        report_cycle({again, way.end()});
-        return;
-      }
+    for (int at = entry_number; at >= 0 && place.count(at) == 0; at = parent_of(at)) {
+      if (broken_.count(at) == 0 && !can_go_on(at, way)) broken_.insert(at);
       way.push_back(at);
-      LinkEntry& entry = entries_[static_cast<size_t>(at)];
-      at = entry.parent.empty() ? -1 : entry_index(entry.parent);
-      if (at < 0 && !entry.parent.empty()) {
-        const std::string near = nearest_name(entry.parent, link_names());
-        entry.table.error("unknown-parent", "parent",
-                          fmt::format("link '{}' stands on '{}', which is no link", entry.name, entry.parent),
-                          near.empty() ? "name another link, or leave the key out for the floor"
-                                       : fmt::format("did you mean '{}'?", near));
+      if (broken_.count(at) > 0) {
+        broken_.insert(way.begin(), way.end());
         return;
       }
     }
     for (auto it = way.rbegin(); it != way.rend(); ++it) {
       LinkEntry& entry = entries_[static_cast<size_t>(*it)];
-      entry.link.parent = entry.parent.empty() ? -1 : place.at(entry_index(entry.parent));
+      entry.link.parent = entry.parent.empty() ? -1 : place.at(parent_of(*it));
       place[*it] = static_cast<int>(scene_.links.size());
-      add_link(entry);
+      add_link(*it);
     }
   }
 
-  void report_cycle(const std::vector<int>& loop) {
-    // The walk up from a tail may have entered the loop anywhere; it is reported once.
-    if (cycle_reported_) return;
-    cycle_reported_ = true;
-    std::string names;
-    for (const int entry : loop) names += entries_[static_cast<size_t>(entry)].name + " -> ";
-    entries_[static_cast<size_t>(loop.front())].table.error(
-        "chain-cycle", "parent",
-        fmt::format("the links stand on each other in a circle: {}{}", names,
-                    entries_[static_cast<size_t>(loop.front())].name),
-        "one of them must stand on the floor or on a link outside the circle");
-  }
-
-  void add_link(LinkEntry& entry) {
+  void add_link(int entry_number) {
+    LinkEntry& entry = entries_[static_cast<size_t>(entry_number)];
     if (!entry.axis.empty()) {
       entry.link.axis = axis_index(entry.axis);
       if (entry.link.axis < 0) {
@@ -240,7 +276,7 @@ class MachineReader {
     if (entry.mount == "work") set_mount(scene_.work_link, index, entry);
     if (entry.mount == "tool") set_mount(scene_.tool_link, index, entry);
     scene_.links.push_back(entry.link);
-    placed_entries_.push_back(entry_index(entry.name));
+    placed_entries_.push_back(entry_number);
   }
 
   static void set_mount(int& mount, int index, LinkEntry& entry) {
@@ -270,6 +306,16 @@ class MachineReader {
       if (axis < 0) continue;
       scene_.model.axes[static_cast<size_t>(axis)].side = side;
       chain.push_back(axis);
+      const std::string found = side == kinematics::Side::kTable ? "table" : "head";
+      const std::string& written = written_sides_[static_cast<size_t>(axis)];
+      if (!written.empty() && written != found) {
+        axis_tables_[static_cast<size_t>(axis)].error(
+            "wrong-side", "side",
+            fmt::format("axis {} says side = \"{}\", but its link is on the way to the {}",
+                        scene_.model.axes[static_cast<size_t>(axis)].name, written,
+                        side == kinematics::Side::kTable ? "work" : "tool"),
+            fmt::format("write \"{}\", or move the axis to another link", found));
+      }
     }
     std::reverse(chain.begin(), chain.end());
     return chain;
@@ -306,8 +352,9 @@ class MachineReader {
   MachineScene scene_;
   std::vector<LinkEntry> entries_;
   std::vector<ConfigTable> axis_tables_;
-  std::vector<int> placed_entries_;  ///< link -> entry
-  bool cycle_reported_ = false;
+  std::vector<std::string> written_sides_;  ///< per axis; "": not written
+  std::vector<int> placed_entries_;         ///< link -> entry
+  std::set<int> broken_;                    ///< entries whose way to the floor is broken, reported already
 };
 
 }  // namespace

@@ -10,8 +10,10 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <map>
 
 #include "base/diagnostics.h"
+#include "mesh/ply_check.h"
 
 namespace swarf::mesh {
 namespace {
@@ -97,6 +99,11 @@ std::string ply_bytes(const TriMesh& mesh) {
   return out;
 }
 
+[[noreturn]] void refuse(const std::string& path, const std::string& reason) {
+  throw InputError("mesh-unreadable", {path}, fmt::format("this is not a mesh: {}", reason),
+                   "use STL, PLY or OBJ in mm");
+}
+
 }  // namespace
 
 TriMesh load_mesh(const std::string& path) {
@@ -104,14 +111,16 @@ TriMesh load_mesh(const std::string& path) {
     throw InputError("mesh-not-found", {path}, "the mesh file cannot be opened",
                      "check the path and its spelling");
   }
+  const std::string ending = extension(path);
+  const std::string broken = ending == ".ply" ? check_ply_whole(path) : "";
+  if (!broken.empty()) refuse(path, broken);
   Assimp::Importer importer;
-  const aiScene* scene = importer.ReadFile(
-      path, aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_PreTransformVertices);
-  if (scene == nullptr) {
-    throw InputError("mesh-unreadable", {path},
-                     fmt::format("this is not a mesh: {}", importer.GetErrorString()),
-                     "use STL, PLY or OBJ in mm");
-  }
+  // The normals of STL are those of its facets: they say nothing new and would keep vertices apart.
+  importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, ending == ".stl" ? int{aiComponent_NORMALS} : 0);
+  const aiScene* scene =
+      importer.ReadFile(path, aiProcess_RemoveComponent | aiProcess_Triangulate |
+                                  aiProcess_JoinIdenticalVertices | aiProcess_PreTransformVertices);
+  if (scene == nullptr) refuse(path, importer.GetErrorString());
   TriMesh mesh;
   for (unsigned i = 0; i < scene->mNumMeshes; ++i) append(*scene->mMeshes[i], mesh);
   if (mesh.normals.size() != mesh.positions.size()) mesh.normals.clear();
@@ -120,9 +129,7 @@ TriMesh load_mesh(const std::string& path) {
     return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
   });
   if (mesh.triangles.empty() || !finite) {
-    throw InputError("mesh-unreadable", {path},
-                     finite ? "the mesh has no triangles" : "the mesh has positions that are not finite",
-                     "write the mesh again");
+    refuse(path, finite ? "it has no triangles" : "it has positions that are not finite");
   }
   return mesh;
 }
@@ -138,17 +145,38 @@ void save_mesh(const std::string& path, const TriMesh& mesh) {
   std::ofstream file(temporary, std::ios::binary);
   file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   file.close();
-  if (!file)
+  std::error_code failure;
+  if (file) fs::rename(temporary, path, failure);
+  if (!file || failure) {
+    fs::remove(temporary, failure);
     throw InputError("cannot-write", {path}, "the file cannot be written",
                      "check that its folder exists and may be written");
-  fs::rename(temporary, path);
+  }
 }
 
+namespace {
+
+/// Per vertex the number of its position: vertices that were split for their normals become one again.
+std::vector<uint32_t> welded(const TriMesh& mesh) {
+  std::map<std::array<float, 3>, uint32_t> seen;
+  std::vector<uint32_t> number;
+  for (const auto& position : mesh.positions) {
+    number.push_back(seen.emplace(position, static_cast<uint32_t>(number.size())).first->second);
+  }
+  return number;
+}
+
+}  // namespace
+
 std::string check_closed(const TriMesh& mesh) {
+  const std::vector<uint32_t> number = welded(mesh);
   std::vector<std::array<uint32_t, 2>> edges;
   edges.reserve(mesh.triangles.size() * 3);
   for (const auto& t : mesh.triangles) {
-    for (size_t i = 0; i < 3; ++i) edges.push_back({t[i], t[(i + 1) % 3]});
+    const uint32_t corner[3] = {number[t[0]], number[t[1]], number[t[2]]};
+    // A triangle that has collapsed to an edge or a point closes and opens nothing.
+    if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) continue;
+    for (size_t i = 0; i < 3; ++i) edges.push_back({corner[i], corner[(i + 1) % 3]});
   }
   std::sort(edges.begin(), edges.end());
   const auto twice = std::adjacent_find(edges.begin(), edges.end());

@@ -17,7 +17,8 @@ TriMesh load_mesh(const std::string& path);
 void save_mesh(const std::string& path, const TriMesh& mesh);
 
 /// "" when the mesh is closed and evenly oriented (each edge once in each direction); else the first reason
-/// why not.
+/// why not. Vertices with equal positions count as one, and triangles that collapse by
+/// that do not count.
 std::string check_closed(const TriMesh& mesh);
 
 }  // namespace swarf::mesh
