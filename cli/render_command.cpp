@@ -58,7 +58,7 @@ void add_render(CLI::App& app, int& exit_code) {
   command->add_option("--movie", options->movie, "H.264 movie to write (.mp4)");
   command->add_option("--still", options->still, "picture to write (.png)");
   command->add_option("--kind", options->kind, "what the still shows: machine, part, deviation, fan")->capture_default_str();
-  command->add_option("--camera", options->camera, "machine, iso, raking, front, back, left, right, top, or x,y,z towards the eye");
+  command->add_option("--camera", options->camera, "machine, iso, low, front, back, left, right, top, or x,y,z towards the eye");
   command->add_option("--size", options->size, "width and height, px")->expected(2)->check(CLI::Range(64, 7680));
   command->add_option("--seconds", options->seconds, "length of the movie, s")->check(CLI::PositiveNumber);
   command->add_option("--samples", options->samples, "rays per pixel of the still")->check(CLI::Range(1, 4096));

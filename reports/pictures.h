@@ -14,7 +14,7 @@
 
 namespace swarf::reports {
 
-/// Where a picture is taken from: "iso", "front", "left", "right", "back", "top", "raking", or "x,y,z": the
+/// Where a picture is taken from: "machine", "iso", "low", "front", "left", "right", "back", "top", or "x,y,z": the
 /// direction from the subject to the eye. Throws InputError for anything else.
 Vec3 camera_direction(const std::string& name);
 

@@ -48,8 +48,8 @@ void write_pictures(const PendingFolder& folder, const FinishedRun& run, const T
   };
   const std::vector<Picture> pictures{
       {StillKind::kMachine, "still_machine.png", "machine", "The machine near the middle of the program."},
-      {StillKind::kPart, "still_part.png", "raking",
-       "The finished part in raking light: each stripe is one pass."},
+      {StillKind::kPart, "still_part.png", "iso",
+       "The finished part: strip lights break at each ridge, so every band is one pass."},
       {StillKind::kDeviation, "still_deviation.png", "iso",
        "Deviation from the design, from the measuring rays."},
       {StillKind::kFan, "still_fan.png", "iso", "Paths and tool axes (Lin & Koren, Fig. 13)."}};

@@ -19,9 +19,13 @@ namespace {
 constexpr double kFieldOfView = 0.45;  // rad, vertical: a long lens, little distortion
 constexpr int kColourStops = 33;
 
+// Bare cut metal: the strip lights break at each ridge, which is what makes cusps of a few micrometres visible.
+constexpr render::Material kPolished{{0.56F, 0.57F, 0.59F}, 1.0F, 0.16F};
+constexpr render::Material kMatt{{0.75F, 0.76F, 0.78F}, 0.0F, 0.6F};  // behind lines: no reflections
+
 const std::vector<std::pair<std::string, Vec3>>& directions() {
   static const std::vector<std::pair<std::string, Vec3>> table{
-      {"iso", {-0.55, -0.85, 0.62}}, {"raking", {-0.35, -0.9, 0.55}}, {"front", {0.0, -1.0, 0.25}},
+      {"iso", {0.55, -0.87, 0.64}}, {"low", {0.3, -0.95, 0.3}}, {"front", {0.0, -1.0, 0.25}},
       {"back", {0.0, 1.0, 0.3}},     {"left", {-1.0, -0.1, 0.3}},     {"right", {1.0, -0.1, 0.3}},
       {"top", {0.0, -0.02, 1.0}},    {"machine", {-0.75, -1.0, 0.55}}};
   return table;
@@ -139,7 +143,7 @@ render::Image deviation_picture(const TriMesh& coloured, double scale_um, const 
 
 void make_still(const FinishedRun& run, const TriMesh& part, StillKind kind, const std::string& camera,
                 const std::string& path) {
-  const render::StillOptions options = still_options(run.job);
+  render::StillOptions options = still_options(run.job);
   if (kind == StillKind::kDeviation) {
     TriMesh coloured = part;
     const double scale = deviation_scale_um(run.job);
@@ -158,9 +162,12 @@ void make_still(const FinishedRun& run, const TriMesh& part, StillKind kind, con
   } else {
     list.camera = render::look_at_box(mesh::bounds(part), -camera_direction(camera), kFieldOfView,
                                       aspect(run.job.scene.stills.size));
-    list.items.push_back({&part, Pose::Identity(), kStockMaterial});
+    list.items.push_back({&part, Pose::Identity(), kind == StillKind::kFan ? kMatt : kPolished});
   }
-  if (kind == StillKind::kFan) list.lines = fan_lines(run);
+  if (kind == StillKind::kFan) {
+    list.lines = fan_lines(run);
+    options.strip_strength = 0.0;
+  }
   render::save_png(render::render_still(list, options), path);
 }
 

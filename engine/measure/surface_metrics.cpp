@@ -51,7 +51,8 @@ void add_sample(const stock::SurfaceDexels& dexels, int iu, int iv, const Measur
   const size_t n = static_cast<size_t>(iv) * static_cast<size_t>(dexels.nu()) + static_cast<size_t>(iu);
   const double height = dexels.heights_mm()[n];
   const uint32_t block = dexels.blocks()[n];
-  if (block == stock::kUncut) ++metrics.uncut_samples;
+  // A ray at the stock's very border starts with no material over the design: there is nothing left to cut.
+  if (block == stock::kUncut && height > 0.0) ++metrics.uncut_samples;
   if (height >= -limits.gouge_mm && height <= limits.scallop_mm) ++sums.within;
   if (height < -limits.gouge_mm) metrics.gouge_area_mm2 += area_of_ray(dexels, iu, iv);
   if (-height > sums.deepest) {

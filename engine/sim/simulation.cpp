@@ -74,7 +74,7 @@ void measure_dexels(const Job& job, MeasuredPath& measured) {
 
 void cut_dexels(const Job& job, MeasuredPath& measured) {
   const auto start = std::chrono::steady_clock::now();
-  measured.sweeps = tick_sweeps(measured.motion.trajectory);
+  measured.sweeps = cycle_sweeps(measured.motion.trajectory, job.machine.model);
   for (const program::SurfaceDefinition& definition : job.program.surfaces) {
     measured.dexels.emplace_back(definition.surface, job.scene.dexel_pitch_mm, job.scene.stock.box_W);
     measured.dexels.back().cut(measured.sweeps, solid_of(job.scene.cutter));
@@ -215,11 +215,18 @@ void measure_part(const Job& job, Progress& progress, Result& result) {
 
 }  // namespace
 
-std::vector<stock::Sweep> tick_sweeps(const motion::Trajectory& trajectory) {
-  std::vector<stock::Sweep> sweeps(trajectory.samples.size());
-  for (size_t i = 0; i < sweeps.size(); ++i) {
-    const ToolPose& start = trajectory.samples[i == 0 ? 0 : i - 1].pose;
-    sweeps[i] = {start, trajectory.samples[i].pose, static_cast<uint32_t>(i)};
+std::vector<stock::Sweep> cycle_sweeps(const motion::Trajectory& trajectory, const kinematics::MachineModel& machine) {
+  const size_t count = trajectory.samples.size();
+  std::vector<stock::Sweep> sweeps(count);
+  if (count == 0) return sweeps;
+  // The nodes lie half way between the samples, where the joint-linear motion of the axes strays most from the path.
+  ToolPose node = trajectory.samples.front().pose;
+  for (size_t i = 0; i < count; ++i) {
+    const ToolPose next = i + 1 < count
+                              ? kinematics::forward(machine, 0.5 * (trajectory.axes[i] + trajectory.axes[i + 1]))
+                              : trajectory.samples[i].pose;
+    sweeps[i] = {node, next, static_cast<uint32_t>(i)};
+    node = next;
   }
   return sweeps;
 }

@@ -30,7 +30,7 @@ struct Finding {
 struct MeasuredPath {
   toolpath::ToolPath path;
   motion::MotionResult motion;
-  std::vector<stock::Sweep> sweeps;  ///< tick by tick; Sweep::block = index of its end sample
+  std::vector<stock::Sweep> sweeps;  ///< cycle by cycle; Sweep::block = index of its sample
   std::vector<stock::SurfaceDexels> dexels;  ///< one per surface of the program, in its order
   std::vector<measure::Ridge> ridges;
   measure::SurfaceMetrics surface;
@@ -61,8 +61,10 @@ struct Result {
   bool stopped = false;  ///< the user stopped it; what follows the cut is missing
 };
 
-/// Sweeps between consecutive samples, ids = sample indices; the first sample is a sweep of zero length.
-std::vector<stock::Sweep> tick_sweeps(const motion::Trajectory& trajectory);
+/// One sweep per cycle, id = index of its sample, from the middle of the cycle before to the middle of the one after.
+/// The axes move linearly inside a cycle, and half way is where the tool then strays most from the path: with these
+/// poses as nodes the chord of a cycle is cut as deep as the machine cuts it, and the samples stay on the path.
+std::vector<stock::Sweep> cycle_sweeps(const motion::Trajectory& trajectory, const kinematics::MachineModel& machine);
 
 /// Ticks merged within the scene's tolerance, for the level set.
 stock::MergedSweeps merged_sweeps(const motion::Trajectory& trajectory, const Scene& scene);
