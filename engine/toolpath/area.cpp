@@ -69,7 +69,7 @@ struct Regularity {
   double least_area = std::numeric_limits<double>::infinity();
   bool gouges = false;
 };
-Regularity regularity(const Area& area, Vec2 t_range, Vec2 w_range, int n_t, int n_w) {
+Regularity regularity(const Area& area, const Vec2& t_range, const Vec2& w_range, int n_t, int n_w) {
   const PassSurface surface = area.pass_surface();
   Regularity result;
   for (int i = 0; i < n_t; ++i) {
@@ -198,7 +198,7 @@ Strip measure_strip(const Area& area, const CubicSpline& previous, const CubicSp
 void extend_beyond_edges(Area& area, double overrun_mm) {
   const Regularity inside = regularity(area, {0.0, 1.0}, {0.0, 1.0}, kEdgeSamples, kEdgeSamples);
   // "Well away from zero" is measured by the part itself: half of what it has at its worst.
-  const auto regular = [&](Vec2 t_range, Vec2 w_range, int n_t, int n_w) {
+  const auto regular = [&](const Vec2& t_range, const Vec2& w_range, int n_t, int n_w) {
     const Regularity found = regularity(area, t_range, w_range, n_t, n_w);
     return !found.gouges && found.least_area >= 0.5 * inside.least_area;
   };

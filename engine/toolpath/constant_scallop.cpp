@@ -141,7 +141,7 @@ NextPass next_exact(const Area& area, const CubicSpline& previous) {
     const Vec3 normal = surface.outward_sign() * d.Su.cross(d.Sv).normalized();
     return envelope_height(area, previous, d.S, normal, s);
   };
-  const NextPass ridge = graph_of(area, previous, level_curve(area, previous, left_by_previous));
+  NextPass ridge = graph_of(area, previous, level_curve(area, previous, left_by_previous));
   if (ridge.outcome != NextPass::kOk) return ridge;
   const auto left_on_ridge = [&](double t, double w, double s) {
     const surface::Derivatives d = surface.at(t, w);

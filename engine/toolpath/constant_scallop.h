@@ -9,7 +9,7 @@
 //
 // The planes through a cusp point touch the surface on a small closed curve around it; p touches all these
 // curves from one side, q from the other. So the method has no error of higher order in P.
-// A leaned tool takes P from h = (P^2/8) det M/(t'Mt) at mid strip instead, iterated.
+// A leaned tool takes P from leaned_chord at mid strip instead, iterated, as a smooth profile along the pass.
 #pragma once
 
 #include "toolpath/grid_step.h"

@@ -50,6 +50,7 @@ std::vector<double> isoparametric_passes(const Area& area) {
     x = walk(area, factor, steps);
   }
   std::vector<double> passes;
+  passes.reserve(x.size());
   for (const double place : x) passes.push_back(area.start_w + area.forward() * place / x.back());
   passes.back() = area.end_w;
   return passes;

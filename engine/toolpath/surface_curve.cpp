@@ -12,7 +12,7 @@ constexpr double kLengthPieces = 128.0;
 }  // namespace
 
 surface::Derivatives PassSurface::at(double t, double w) const {
-  const surface::Derivatives d = surface_->derivatives(u(t, w), v(t, w));
+  surface::Derivatives d = surface_->derivatives(u(t, w), v(t, w));
   if (along_u_) return d;
   return {d.S, d.Sv, d.Su, d.Svv, d.Suv, d.Suu};
 }

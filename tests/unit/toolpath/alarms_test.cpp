@@ -84,6 +84,16 @@ TEST(Alarms, TheAdvisedLeanIsAcceptedAndLessIsNot) {
   EXPECT_GT(enough.path.passes, 10);
 }
 
+TEST(Alarms, APathThatFoldsNamesThePlace) {
+  // Lean and hollow cancel at the middle of the saddle only: there the interval is three times as long, and
+  // the passes bend until they run across the others.
+  program::Program program = test::area_program(saddle(), StartBoundary::kV0, 0.01);
+  program.operations[0].lead_rad =
+      rad_from_deg(number_after(plan_with(program).diagnostics.list().at(0).fix, "at least "));
+  const Diagnostic d = only_error(plan_with(program), "path-folds");
+  EXPECT_NE(d.text.find("near u="), std::string::npos) << d.text;
+}
+
 TEST(Alarms, AHollowSmallerThanTheCutterTakesNoLean) {
   const surface::SurfacePtr bowl = test::quadric(20, 20, -50, 50, -50, 50);
   const Diagnostic d =
