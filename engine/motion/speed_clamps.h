@@ -6,6 +6,7 @@
 //                                                          |q'| a    <= (1 - beta) qddot_max
 // q(s) is sampled on a grid that closes in on the pole, where q' grows without bound: the turn of the outer
 // rotary from one node to the next stays a small share of a radian however near the pole is passed.
+// Known limit: what passes within a few nanometres of the pole counts as passing through it.
 #pragma once
 
 #include <functional>

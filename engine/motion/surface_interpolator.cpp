@@ -17,6 +17,9 @@ using toolpath::CurvePoint;
 /// error may be at 50 mm/s and 1 ms.
 constexpr double kEndTolerance = 5e-12;
 constexpr int kEndCorrections = 12;
+/// First Newton steps up to this share of the chord are followed by a second one without a new position: the
+/// third order is its cube, 1e-9, times the chord's own third-order term.
+constexpr double kTaylorShare = 1e-3;
 /// Each leaves about the step's share of the curve's unevenness, V T |C''| / |C'|^2, of the error before it.
 constexpr int kNodeCorrections = 2;
 
@@ -47,9 +50,15 @@ double SurfaceInterpolator::advance_chord(const CurvePoint& at, double t, double
   Vec3 chord = near.C - at.C;
   const double first = (target - chord.squaredNorm()) / (2.0 * chord.dot(near.dC));
   t += first;
-  // The second step needs only the position: over so small a step the derivative continues linearly.
-  chord = curve_point(*pass_.surface, pass_.curve, t) - at.C;
-  return t + (target - chord.squaredNorm()) / (2.0 * chord.dot(near.dC + first * near.ddC));
+  // The second step needs position and derivative so near by that Taylor gives them; only after a long first
+  // step would the third order be felt.
+  const Vec3 slope = near.dC + first * near.ddC;
+  if (std::abs(first) * near.dC.norm() <= kTaylorShare * length) {
+    chord += first * (near.dC + 0.5 * first * near.ddC);
+  } else {
+    chord = curve_point(*pass_.surface, pass_.curve, t) - at.C;
+  }
+  return t + (target - chord.squaredNorm()) / (2.0 * chord.dot(slope));
 }
 
 double SurfaceInterpolator::advance(const CurvePoint& at, double t, double length) const {

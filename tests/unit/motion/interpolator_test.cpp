@@ -116,8 +116,8 @@ TEST(Interpolate, RandomNearPolePassesKeepTheAxisSpeeds) {
   constexpr int kCases = 80;
   Rng rng(11);
   for (int i = 0; i < kCases; ++i) {
-    // Distance from the apex line between 1 um and 2 mm, any length.
-    const double distance = std::exp(rng.uniform(std::log(1e-3), std::log(2.0)));
+    // Distance from the apex line between 10 nm and 2 mm, any length.
+    const double distance = std::exp(rng.uniform(std::log(1e-5), std::log(2.0)));
     toolpath::SurfacePass pass = iso_pass(dome(), 0.5 + distance / 80.0, rng.uniform(5.0, 120.0));
     pass.t_start = rng.uniform(0.0, 0.45);
     pass.t_end = rng.uniform(0.55, 1.0);
