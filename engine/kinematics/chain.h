@@ -32,10 +32,12 @@ inline void carry(const Axis& axis, double way, double value, double sine, doubl
   tool_axis = rotate(axis.direction_M, sense * sine, cosine, tool_axis);
 }
 
-/// Both vectors wander from the tool to the base with the head links, then against the table links to the
-/// work.
-inline ToolPose tool_in_work(const MachineModel& machine, const AxisValues& q, const Sines& of) {
-  Vec3 point = machine.tip_M, tool_axis = machine.tool_axis_M;
+/// Tool tip and axis in M as the work sees them: both vectors wander from the tool to the base with the head
+/// links, then against the table links to where the work stands at zero axes.
+inline void carry_tool_to_work(const MachineModel& machine, const AxisValues& q, const Sines& of, Vec3& point,
+                               Vec3& tool_axis) {
+  point = machine.tip_M;
+  tool_axis = machine.tool_axis_M;
   for (size_t n = machine.head_chain.size(); n-- > 0;) {
     const int i = machine.head_chain[n];
     carry(machine.axes[i], 1.0, q[i], of.sine[i], of.cosine[i], point, tool_axis);
@@ -43,8 +45,6 @@ inline ToolPose tool_in_work(const MachineModel& machine, const AxisValues& q, c
   for (const int i : machine.table_chain) {
     carry(machine.axes[i], -1.0, q[i], of.sine[i], of.cosine[i], point, tool_axis);
   }
-  const auto R_WM = machine.X_MW.linear().transpose();
-  return {R_WM * (point - machine.X_MW.translation()), R_WM * tool_axis};
 }
 
 }  // namespace swarf::kinematics

@@ -24,7 +24,10 @@ ToolPose forward(const MachineModel& machine, const AxisValues& q) {
     of.sine[i] = std::sin(q[i]);
     of.cosine[i] = std::cos(q[i]);
   }
-  return tool_in_work(machine, q, of);
+  Vec3 point, tool_axis;
+  carry_tool_to_work(machine, q, of, point, tool_axis);
+  return {machine.X_MW.linear().transpose() * (point - machine.X_MW.translation()),
+          machine.X_MW.linear().transpose() * tool_axis};
 }
 
 }  // namespace swarf::kinematics

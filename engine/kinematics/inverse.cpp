@@ -68,27 +68,32 @@ InverseKinematics::InverseKinematics(const MachineModel& machine) : machine_(mac
   }
   linear_inverse_ = columns.inverse();
 
-  const Vec3& tool = machine.tool_axis_M;
+  const Mat3 R_WM = machine.X_MW.linear().transpose();
+  const auto direction_W = [&](int axis) -> Vec3 {
+    return (R_WM * machine.axes[axis].direction_M).normalized();
+  };
+  tool_W_ = (R_WM * machine.tool_axis_M).normalized();
   if (rotary_.size() == 2) {
-    pair_ = RotaryPair(machine.axes[rotary_[0]].direction_M, machine.axes[rotary_[1]].direction_M, tool);
+    pair_ = RotaryPair(direction_W(rotary_[0]), direction_W(rotary_[1]), tool_W_);
   } else if (rotary_.size() == 1) {
-    const Vec3& e = machine.axes[rotary_[0]].direction_M;
-    single_along_ = e.dot(tool);
-    single_basis_[0] = tool - single_along_ * e;
-    single_across_ = single_basis_[0].norm();
-    single_basis_[0] /= single_across_;
-    single_basis_[1] = e.cross(single_basis_[0]);
+    single_direction_W_ = direction_W(rotary_[0]);
+    single_along_ = single_direction_W_.dot(tool_W_);
+    single_basis_W_[0] = (tool_W_ - single_along_ * single_direction_W_).normalized();
+    single_basis_W_[1] = single_direction_W_.cross(single_basis_W_[0]);
   }
 }
 
-int InverseKinematics::turns(const Vec3& axis_M, TurnPair out[2]) const {
-  if (rotary_.size() == 2) return pair_.solve(axis_M, out);
+int InverseKinematics::turns(const Vec3& axis_W, TurnPair out[2]) const {
+  if (rotary_.size() == 2) return pair_.solve(axis_W, out);
   out[0] = {0.0, 0.0, false};
-  if (rotary_.empty()) return (axis_M - machine_.tool_axis_M).norm() <= kReachTolerance ? 1 : 0;
-  if (!(std::abs(machine_.axes[rotary_[0]].direction_M.dot(axis_M) - single_along_) <= kReachTolerance))
-    return 0;
-  out[0].outer = std::atan2(single_basis_[1].dot(axis_M), single_basis_[0].dot(axis_M));
+  if (rotary_.empty()) return (axis_W - tool_W_).norm() <= kReachTolerance ? 1 : 0;
+  if (!(std::abs(single_direction_W_.dot(axis_W) - single_along_) <= kReachTolerance)) return 0;
+  out[0].outer = std::atan2(single_basis_W_[1].dot(axis_W), single_basis_W_[0].dot(axis_W));
   return 1;
+}
+
+InverseKinematics::Target InverseKinematics::target(const Vec3& tip_W, const Vec3& axis_W) const {
+  return {machine_.X_MW * tip_W, machine_.X_MW.linear() * axis_W};
 }
 
 double InverseKinematics::unwound(int slot, double turn, const AxisValues& hint) const {
@@ -102,9 +107,9 @@ double InverseKinematics::unwound(int slot, double turn, const AxisValues& hint)
   return other >= limits.min && other <= limits.max ? other : value;
 }
 
-int InverseKinematics::candidates(const Vec3& axis_M, const AxisValues& hint, Candidate out[2]) const {
+int InverseKinematics::candidates(const Vec3& axis_W, const AxisValues& hint, Candidate out[2]) const {
   TurnPair found[2];
-  const int count = turns(axis_M, found);
+  const int count = turns(axis_W, found);
   const size_t rotaries = rotary_.size();
   for (int i = 0; i < count; ++i) {
     Candidate& one = out[i];
@@ -178,9 +183,8 @@ int InverseKinematics::first_out_of_travel(const AxisValues& q) const {
   return -1;
 }
 
-Branch InverseKinematics::complete(const ToolPose& unit_W, const Vec3& tip_M,
-                                   const Candidate& candidate) const {
-  Branch branch;
+// Fills its result in place: copying it would wait for the single values to reach the cache.
+void InverseKinematics::complete(const Target& target, const Candidate& candidate, Branch& branch) const {
   Sines of;
   for (size_t slot = 0; slot < rotary_.size(); ++slot) {
     const int axis = rotary_[slot];
@@ -189,50 +193,55 @@ Branch InverseKinematics::complete(const ToolPose& unit_W, const Vec3& tip_M,
     of.cosine[axis] = std::cos(candidate.value[slot]);
   }
   Vec3 linear_values;
-  if (!locate(tip_M, of, linear_values)) return branch;
+  if (!locate(target.tip_M, of, linear_values)) return;
   for (int i = 0; i < 3; ++i) branch.q[linear_[i]] = linear_values[i];
 
-  const ToolPose back = tool_in_work(machine_, branch.q, of);
-  const bool proven = (back.tip_W - unit_W.tip_W).squaredNorm() <= kTipTolerance * kTipTolerance &&
-                      (back.axis_W - unit_W.axis_W).squaredNorm() <= kAxisTolerance * kAxisTolerance;
-  if (!proven) return branch;
+  // forward() without its last step, the turn into W, which changes no distance.
+  Vec3 back_tip_M, back_axis_M;
+  carry_tool_to_work(machine_, branch.q, of, back_tip_M, back_axis_M);
+  const bool proven = (back_tip_M - target.tip_M).squaredNorm() <= kTipTolerance * kTipTolerance &&
+                      (back_axis_M - target.axis_M).squaredNorm() <= kAxisTolerance * kAxisTolerance;
+  if (!proven) return;
   branch.out_of_travel_axis = first_out_of_travel(branch.q);
   branch.outcome = branch.out_of_travel_axis >= 0 ? InverseOutcome::kOutOfTravel
                    : candidate.outer_free         ? InverseOutcome::kSingular
                                                   : InverseOutcome::kOk;
-  return branch;
 }
 
 InverseSolutions InverseKinematics::solve(const ToolPose& pose_W, const AxisValues& hint) const {
-  const ToolPose unit_W{pose_W.tip_W, unit(pose_W.axis_W)};
-  const Vec3 tip_M = machine_.X_MW * unit_W.tip_W;
+  const Vec3 axis_W = unit(pose_W.axis_W);
   Candidate found[2];
-  const int count = candidates(machine_.X_MW.linear() * unit_W.axis_W, hint, found);
+  const int count = candidates(axis_W, hint, found);
+  const Target pose_M = target(pose_W.tip_W, axis_W);
   InverseSolutions solutions;
   for (int i = 0; i < count; ++i) {
-    const Branch branch = complete(unit_W, tip_M, found[i]);
-    if (branch.outcome != InverseOutcome::kUnreachable) solutions.branch[solutions.count++] = branch;
+    Branch& branch = solutions.branch[solutions.count];
+    branch = Branch();
+    complete(pose_M, found[i], branch);
+    if (branch.outcome != InverseOutcome::kUnreachable) ++solutions.count;
   }
   return solutions;
 }
 
 Branch InverseKinematics::solve_nearest(const ToolPose& pose_W, const AxisValues& hint) const {
-  const ToolPose unit_W{pose_W.tip_W, unit(pose_W.axis_W)};
-  const Vec3 tip_M = machine_.X_MW * unit_W.tip_W;
+  const Vec3 axis_W = unit(pose_W.axis_W);
   Candidate found[2];
-  const int count = candidates(machine_.X_MW.linear() * unit_W.axis_W, hint, found);
-  if (count == 0) return {};
+  const int count = candidates(axis_W, hint, found);
+  const Target pose_M = target(pose_W.tip_W, axis_W);
+  Branch best;
+  if (count == 0) return best;
   const int near = count == 2 && found[1].travel < found[0].travel ? 1 : 0;
-  const Branch first = complete(unit_W, tip_M, found[near]);
-  if (count == 1 || first.outcome == InverseOutcome::kOk) return first;
-  const Branch second = complete(unit_W, tip_M, found[1 - near]);
-  const bool better = second.outcome == InverseOutcome::kOk || first.outcome == InverseOutcome::kUnreachable;
-  return better ? second : first;
+  complete(pose_M, found[near], best);
+  if (count == 1 || best.outcome == InverseOutcome::kOk) return best;
+  Branch other;
+  complete(pose_M, found[1 - near], other);
+  if (other.outcome == InverseOutcome::kOk || best.outcome == InverseOutcome::kUnreachable) best = other;
+  return best;
 }
 
 double InverseKinematics::pole_distance(const Vec3& axis_W) const {
   if (rotary_.size() < 2) return std::numeric_limits<double>::infinity();
-  return pair_.pole_distance(machine_.X_MW.linear() * axis_W);
+  return pair_.pole_distance(axis_W);
 }
 
 }  // namespace swarf::kinematics

@@ -79,8 +79,8 @@ inline constexpr double kAxisTolerance = 1e-12;
 /// The closed-form inverse, prepared once per machine; solving allocates nothing.
 /// Three linear axes and up to two rotary axes in any table/head arrangement, orthogonal or not.
 ///
-///  1. Rotary axes: R(e1, t1) R(e2, t2) tool_axis_M = R_MW axis_W (RotaryPair); two branches, one at the
-///  pole.
+///  1. Rotary axes: R(e1, t1) R(e2, t2) v = axis_W, all directions in W at zero axes (RotaryPair); two
+///  branches, one at the pole.
 ///  2. Unwind each rotary value by whole turns to the one nearest to the hint. When that lies outside the
 ///     travel and the value one turn towards the travel lies inside, the latter is taken.
 ///  3. Linear axes: with the rotary axes set, the tip closes the loop work - base - tool, three equations
@@ -118,20 +118,28 @@ class InverseKinematics {
     double sense = 1.0;  ///< rotary: of the link; linear: of the value against the direction
     Vec3 direction = Vec3::UnitX(), origin = Vec3::Zero();
   };
-  int candidates(const Vec3& axis_M, const AxisValues& hint, Candidate out[2]) const;
-  int turns(const Vec3& axis_M, TurnPair out[2]) const;
+  /// The pose to reach, in M.
+  struct Target {
+    Vec3 tip_M, axis_M;
+  };
+  int candidates(const Vec3& axis_W, const AxisValues& hint, Candidate out[2]) const;
+  int turns(const Vec3& axis_W, TurnPair out[2]) const;
+  Target target(const Vec3& tip_W, const Vec3& axis_W) const;
   double unwound(int slot, double turn, const AxisValues& hint) const;
   bool locate(const Vec3& tip_M, const Sines& of, Vec3& linear_values) const;
-  Branch complete(const ToolPose& unit_W, const Vec3& tip_M, const Candidate& candidate) const;
+  void complete(const Target& target, const Candidate& candidate, Branch& branch) const;
   int first_out_of_travel(const AxisValues& q) const;
 
   MachineModel machine_;
-  std::vector<int> linear_, rotary_;
+  std::vector<int> linear_, rotary_;            ///< indices into axes; rotary_: from the work to the tool
   std::vector<Step> table_steps_, head_steps_;  ///< work to base, tool to base
-  RotaryPair pair_;
-  Vec3 single_basis_[2] = {Vec3::UnitX(), Vec3::UnitY()};  ///< one rotary axis: across it, from the tool axis
-  double single_along_ = 0.0, single_across_ = 1.0;        ///< one rotary axis: components of the tool axis
-  bool columns_constant_ = true;                           ///< no linear axis rides on a rotary one
+  RotaryPair pair_;              ///< of the directions in W at zero axes, as the pose gives its axis
+  Vec3 tool_W_ = Vec3::UnitZ();  ///< tool axis with all axes at zero
+  /// One rotary axis: the part of the tool axis along it, and the basis across it that the turn is counted
+  /// in.
+  Vec3 single_direction_W_ = Vec3::UnitX(), single_basis_W_[2] = {Vec3::UnitX(), Vec3::UnitY()};
+  double single_along_ = 0.0;
+  bool columns_constant_ = true;  ///< no linear axis rides on a rotary one
   Mat3 linear_inverse_ = Mat3::Identity();
 };
 
