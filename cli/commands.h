@@ -1,11 +1,13 @@
-// The subcommands of swarf. Each adds itself to the parser; its callback returns the exit code through `exit_code`.
+// The subcommands of swarf. Each adds itself to the parser; its callback returns the exit code through
+// `exit_code`.
 #pragma once
 
 #include <CLI/CLI.hpp>
 
 namespace swarf::cli {
 
-/// Exit codes: 0 every criterion holds, 1 findings, 2 the input is wrong, 3 internal error, 130 stopped by Ctrl-C.
+/// Exit codes: 0 every criterion holds, 1 findings, 2 the input is wrong, 3 internal error, 130 stopped by
+/// Ctrl-C.
 inline constexpr int kPass = 0;
 inline constexpr int kFindings = 1;
 inline constexpr int kBadInput = 2;

@@ -25,16 +25,28 @@ namespace fs = std::filesystem;
 
 struct CompareOptions {
   std::string stock, design, output;
-  double reach_mm = 1.0, scallop_um = 10.0, gouge_um = 1.0, pitch_mm = 0.5;
+  double reach_mm = 1.0, scallop_um = 10.0, gouge_um = 1.0, pitch_mm = 0.5, edge_mm = -1.0;
   bool json = false;
 };
 
 constexpr double kSmooth = kPi;  // rad: no creases, so that each vertex has one normal
 
-std::string extension(const std::string& file) { return fs::path(file).extension().string(); }
+std::string extension(const std::string& file) {
+  return fs::path(file).extension().string();
+}
 
-TriMesh load_stock(const std::string& file) {
-  if (extension(file) == ".vdb") return stock::Stock::load(file).mesh();
+/// Half a voxel is what the mesh of a level set takes off a sharp edge, on either side; twice that for
+/// safety.
+constexpr double kRoundedVoxels = 1.0;
+
+/// The stock as a mesh; fills in the margin of the edges that its grid has rounded.
+TriMesh load_stock(const std::string& file, double& edge_mm) {
+  if (extension(file) == ".vdb") {
+    const stock::Stock stock = stock::Stock::load(file);
+    if (edge_mm < 0.0) edge_mm = kRoundedVoxels * stock.voxel_mm();
+    return stock.mesh();
+  }
+  edge_mm = std::max(edge_mm, 0.0);
   TriMesh mesh = mesh::load_mesh(file);
   if (mesh.normals.empty()) mesh::compute_vertex_normals(mesh, kSmooth);
   return mesh;
@@ -59,7 +71,8 @@ void measure_stock(const CompareOptions& options, TriMesh& stock) {
   }
   const Box box = mesh::bounds(stock);
   for (const program::SurfaceDefinition& definition : design_surfaces(options.design)) {
-    measure::deviation_from_surface(stock, stock::SurfaceDexels(definition.surface, options.pitch_mm, box), options.reach_mm);
+    measure::deviation_from_surface(stock, stock::SurfaceDexels(definition.surface, options.pitch_mm, box),
+                                    options.reach_mm, options.edge_mm);
   }
 }
 
@@ -74,30 +87,34 @@ std::string json_text(const measure::DeviationSummary& s, bool holds) {
                                   {"mean_abs_um", s.mean_abs_um},
                                   {"rms_um", s.rms_um},
                                   {"within_tolerance_pct", s.within_tolerance_pct}}}}
-             .dump(2) + "\n";
+             .dump(2) +
+         "\n";
 }
 
 void print_summary(const CompareOptions& options, const measure::DeviationSummary& s) {
   fmt::print("{} against {}\n", options.stock, options.design);
-  print_table({{"measured", fmt::format("{} vertices; {} have no foot on the design within {:g} mm", s.measured, s.unmeasured,
-                                        options.reach_mm)},
-               {"excess", fmt::format("{:.2f} um highest", s.excess_max_um)},
-               {"gouge", fmt::format("{:.2f} um deepest", s.gouge_max_um)},
-               {"mean", fmt::format("{:.2f} um absolute, {:.2f} um rms", s.mean_abs_um, s.rms_um)},
-               {"tolerance", fmt::format("{:.2f} % within -{:g} .. +{:g} um", s.within_tolerance_pct, options.gouge_um,
-                                         options.scallop_um)}});
+  print_table(
+      {{"measured",
+        fmt::format("{} vertices; {} have no foot on the design within {:g} mm or lie {:g} mm from its edge",
+                    s.measured, s.unmeasured, options.reach_mm, std::max(options.edge_mm, 0.0))},
+       {"excess", fmt::format("{:.2f} um highest", s.excess_max_um)},
+       {"gouge", fmt::format("{:.2f} um deepest", s.gouge_max_um)},
+       {"mean", fmt::format("{:.2f} um absolute, {:.2f} um rms", s.mean_abs_um, s.rms_um)},
+       {"tolerance", fmt::format("{:.2f} % within -{:g} .. +{:g} um", s.within_tolerance_pct,
+                                 options.gouge_um, options.scallop_um)}});
 }
 
-int compare(const CompareOptions& options) {
+int compare(CompareOptions options) {
   if (!options.output.empty()) reports::check_output_folder(options.output, reports::kCompareMark);
-  TriMesh stock = load_stock(options.stock);
+  TriMesh stock = load_stock(options.stock, options.edge_mm);
   measure_stock(options, stock);
   const measure::DeviationSummary summary =
       measure::summarise(stock, {options.scallop_um * kMicrometre, options.gouge_um * kMicrometre});
   if (summary.measured == 0) {
-    throw InputError("nothing-measured", {options.stock},
-                     fmt::format("no vertex of the stock lies within {:g} mm of the design", options.reach_mm),
-                     "check that both are in the same frame and in mm, or raise --reach-mm");
+    throw InputError(
+        "nothing-measured", {options.stock},
+        fmt::format("no vertex of the stock lies within {:g} mm of the design", options.reach_mm),
+        "check that both are in the same frame and in mm, or raise --reach-mm");
   }
   const bool holds = summary.excess_max_um <= options.scallop_um && summary.gouge_max_um <= options.gouge_um;
   const std::string json = json_text(summary, holds);
@@ -117,17 +134,34 @@ int compare(const CompareOptions& options) {
 
 void add_compare(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<CompareOptions>();
-  CLI::App* command = app.add_subcommand("compare", "Compare a finished stock (vdb, stl, ply, obj) with a design");
+  CLI::App* command =
+      app.add_subcommand("compare", "Compare a finished stock (vdb, stl, ply, obj) with a design");
   command->add_option("stock", options->stock, "stock.vdb of a run, or a mesh in mm")->required();
-  command->add_option("design", options->design, "a scene or program with surface blocks, or a closed mesh in mm")->required();
-  command->add_option("-o,--output", options->output, "folder for deviation.ply, deviation.png and metrics.json");
-  command->add_option("--reach-mm", options->reach_mm, "measure what lies so near to the design")->capture_default_str()
+  command
+      ->add_option("design", options->design,
+                   "a scene or program with surface blocks, or a closed mesh in mm")
+      ->required();
+  command->add_option("-o,--output", options->output,
+                      "folder for deviation.ply, deviation.png and metrics.json");
+  command->add_option("--reach-mm", options->reach_mm, "measure what lies so near to the design")
+      ->capture_default_str()
       ->check(CLI::PositiveNumber);
-  command->add_option("--scallop-um", options->scallop_um, "allowed excess")->capture_default_str()->check(CLI::PositiveNumber);
-  command->add_option("--gouge-um", options->gouge_um, "allowed gouge")->capture_default_str()->check(CLI::NonNegativeNumber);
+  command->add_option("--scallop-um", options->scallop_um, "allowed excess")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  command->add_option("--gouge-um", options->gouge_um, "allowed gouge")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+  command
+      ->add_option("--edge-mm", options->edge_mm,
+                   "leave out what lies so near to the edge of a design surface (default: one voxel of a "
+                   ".vdb, whose grid "
+                   "rounds edges; 0 for meshes)")
+      ->check(CLI::NonNegativeNumber);
   command->add_flag("--json", options->json, "print JSON instead of the table");
-  command->footer("The vertices of the stock are measured, so the accuracy is that of its grid or mesh. The run itself\n"
-                  "measures with rays from the design, far below the voxel size: see surface in metrics.json.");
+  command->footer(
+      "The vertices of the stock are measured, so the accuracy is that of its grid or mesh. The run itself\n"
+      "measures with rays from the design, far below the voxel size: see surface in metrics.json.");
   command->callback([options, &exit_code] { exit_code = compare(*options); });
 }
 

@@ -21,7 +21,8 @@ struct ExportOptions {
 };
 
 int export_run(const ExportOptions& options) {
-  if (options.gltf.empty() && options.machine_gltf.empty() && options.stl.empty() && options.ply.empty() && options.vdb.empty()) {
+  if (options.gltf.empty() && options.machine_gltf.empty() && options.stl.empty() && options.ply.empty() &&
+      options.vdb.empty()) {
     throw InputError("nothing-to-do", {"swarf export"}, "no format was given",
                      "write for example: swarf export DIR --stl part.stl");
   }
@@ -57,14 +58,17 @@ int export_run(const ExportOptions& options) {
 
 void add_export(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<ExportOptions>();
-  CLI::App* command = app.add_subcommand("export", "Write meshes of a finished run, without simulating again");
+  CLI::App* command =
+      app.add_subcommand("export", "Write meshes of a finished run, without simulating again");
   command->add_option("folder", options->folder, "folder of a finished run")->required();
-  command->add_option("--gltf", options->gltf, "finished part with deviation colours and tool-axis fan (.glb)");
+  command->add_option("--gltf", options->gltf,
+                      "finished part with deviation colours and tool-axis fan (.glb)");
   command->add_option("--machine-gltf", options->machine_gltf, "animated machine (.glb)");
   command->add_option("--stl", options->stl, "finished part (.stl, mm)");
   command->add_option("--ply", options->ply, "finished part with deviation (.ply, mm)");
   command->add_option("--vdb", options->vdb, "finished stock as a level set (.vdb)");
-  command->add_option("--error-um", options->error_um, "largest error of the decimation for --gltf")->capture_default_str()
+  command->add_option("--error-um", options->error_um, "largest error of the decimation for --gltf")
+      ->capture_default_str()
       ->check(CLI::PositiveNumber);
   command->callback([options, &exit_code] { exit_code = export_run(*options); });
 }

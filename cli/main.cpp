@@ -49,7 +49,9 @@ int guarded(CLI::App& app, int argc, char** argv, const int& exit_code) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Swarf: headless, visual 5-axis NC simulator. A surface program goes in; a measured, rendered report comes out."};
+  CLI::App app{
+      "Swarf: headless, visual 5-axis NC simulator. A surface program goes in; a measured, rendered report "
+      "comes out."};
   app.set_version_flag("--version", SWARF_VERSION);
   app.require_subcommand(1);
   app.footer(kFooter);

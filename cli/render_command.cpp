@@ -38,13 +38,15 @@ int render(const RenderOptions& options) {
   TerminalProgress progress;
   if (!options.still.empty()) {
     const std::string otherwise = kind == reports::StillKind::kMachine ? "machine" : "iso";
-    reports::make_still(run, reports::part_mesh(run), kind, options.camera.empty() ? otherwise : options.camera, options.still);
+    reports::make_still(run, reports::part_mesh(run), kind,
+                        options.camera.empty() ? otherwise : options.camera, options.still);
     fmt::print("{}\n", options.still);
   }
   if (!options.movie.empty()) {
-    const reports::RenderStatistics statistics =
-        reports::make_movie(run, options.movie, options.camera.empty() ? "machine" : options.camera, progress);
-    fmt::print("{}: {} frames, {:.1f} ms each (median)\n", options.movie, statistics.frames, statistics.frame_ms_median);
+    const reports::RenderStatistics statistics = reports::make_movie(
+        run, options.movie, options.camera.empty() ? "machine" : options.camera, progress);
+    fmt::print("{}: {} frames, {:.1f} ms each (median)\n", options.movie, statistics.frames,
+               statistics.frame_ms_median);
   }
   return progress.stop_requested() ? kStopped : kPass;
 }
@@ -53,16 +55,23 @@ int render(const RenderOptions& options) {
 
 void add_render(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<RenderOptions>();
-  CLI::App* command = app.add_subcommand("render", "Make pictures from a finished run, without simulating again");
+  CLI::App* command =
+      app.add_subcommand("render", "Make pictures from a finished run, without simulating again");
   command->add_option("folder", options->folder, "folder of a finished run")->required();
   command->add_option("--movie", options->movie, "H.264 movie to write (.mp4)");
   command->add_option("--still", options->still, "picture to write (.png)");
-  command->add_option("--kind", options->kind, "what the still shows: machine, part, deviation, fan")->capture_default_str();
-  command->add_option("--camera", options->camera, "machine, iso, low, front, back, left, right, top, or x,y,z towards the eye");
-  command->add_option("--size", options->size, "width and height, px")->expected(2)->check(CLI::Range(64, 7680));
+  command->add_option("--kind", options->kind, "what the still shows: machine, part, deviation, fan")
+      ->capture_default_str();
+  command->add_option("--camera", options->camera,
+                      "machine, iso, low, front, back, left, right, top, or x,y,z towards the eye");
+  command->add_option("--size", options->size, "width and height, px")
+      ->expected(2)
+      ->check(CLI::Range(64, 7680));
   command->add_option("--seconds", options->seconds, "length of the movie, s")->check(CLI::PositiveNumber);
-  command->add_option("--samples", options->samples, "rays per pixel of the still")->check(CLI::Range(1, 4096));
-  command->add_option("--threads", options->threads, "threads to use (default: all cores)")->check(CLI::Range(1, 4096));
+  command->add_option("--samples", options->samples, "rays per pixel of the still")
+      ->check(CLI::Range(1, 4096));
+  command->add_option("--threads", options->threads, "threads to use (default: all cores)")
+      ->check(CLI::Range(1, 4096));
   command->callback([options, &exit_code] { exit_code = render(*options); });
 }
 

@@ -26,7 +26,8 @@ void print_outcome(const sim::Job& job, const sim::Result& result, const std::st
   fmt::print("\n{}\n", job.scene.title);
   print_table(reports::summary_lines(job, result));
   for (const sim::Finding& finding : result.findings) {
-    fmt::print("  finding: {}\n", format({finding.code, finding.severity, finding.where, finding.text, finding.fix}));
+    fmt::print("  finding: {}\n",
+               format({finding.code, finding.severity, finding.where, finding.text, finding.fix}));
   }
   fmt::print("  {}\n  report: {}\n", sim::passes(result) ? "PASS: every limit of [accept] holds" : "FINDINGS",
              (std::filesystem::path(folder) / "report.html").string());
@@ -57,14 +58,17 @@ int run(const RunOptions& options) {
 
 void add_run(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<RunOptions>();
-  CLI::App* command = app.add_subcommand("run", "Simulate a scene: plan, interpolate, cut, measure, render, report");
+  CLI::App* command =
+      app.add_subcommand("run", "Simulate a scene: plan, interpolate, cut, measure, render, report");
   command->add_option("scene", options->scene, "scene.toml")->required();
   command->add_option("-o,--output", options->output, "folder for the results (default: out/<scene folder>)");
   command->add_option("--set", options->overrides, "replace a key of the scene: --set stock.voxel_mm=0.1")
       ->type_name("KEY=VALUE")
       ->expected(1)
       ->take_all();
-  command->add_option("--threads", options->threads, "threads to use (default: all cores); results do not depend on it")
+  command
+      ->add_option("--threads", options->threads,
+                   "threads to use (default: all cores); results do not depend on it")
       ->check(CLI::Range(1, 4096));
   command->add_flag("--no-render", options->no_render, "no movie and no stills");
   command->add_flag("--json", options->json, "print metrics.json instead of the table");

@@ -34,7 +34,9 @@ void catch_interrupt() {
   std::signal(SIGTERM, on_interrupt);
 }
 
-bool interrupted() { return stop_flag; }
+bool interrupted() {
+  return stop_flag;
+}
 
 void TerminalProgress::begin(std::string_view stage, double total, std::string_view unit) {
   stage_ = stage;
@@ -58,10 +60,11 @@ void TerminalProgress::draw(double done) {
   const std::string left = share > 0.02 ? fmt::format("{:.0f} s left", elapsed * (1.0 - share) / share) : "";
   if (is_terminal()) {
     const int filled = static_cast<int>(share * kBarWidth);
-    fmt::print(stderr, "\r\033[K{:<22} [{:#<{}}{:.<{}}] {:3.0f} %  {}", stage_, "", filled, "", kBarWidth - filled,
-               100.0 * share, left);
+    fmt::print(stderr, "\r\033[K{:<22} [{:#<{}}{:.<{}}] {:3.0f} %  {}", stage_, "", filled, "",
+               kBarWidth - filled, 100.0 * share, left);
   } else {
-    fmt::print(stderr, "{:<22} {:3.0f} %  {:.0f} of {:.0f} {}  {}\n", stage_, 100.0 * share, done, total_, unit_, left);
+    fmt::print(stderr, "{:<22} {:3.0f} %  {:.0f} of {:.0f} {}  {}\n", stage_, 100.0 * share, done, total_,
+               unit_, left);
   }
   std::fflush(stderr);
 }

@@ -13,12 +13,14 @@
 namespace swarf::reports {
 namespace {
 
-constexpr double kAnimationSeconds = 30.0;  // the program is played in so long, or in its own time if that is shorter
+constexpr double kAnimationSeconds =
+    30.0;  // the program is played in so long, or in its own time if that is shorter
 constexpr size_t kPosesPerSecond = 60;      // before thinning
 constexpr double kMachinePartError = 0.02;  // mm; the part in machine.glb is only looked at
 
 /// Copies of the vertices that the given triangles use.
-TriMesh sub_mesh(const TriMesh& mesh, const std::vector<std::array<uint32_t, 3>>& triangles, bool with_deviation) {
+TriMesh sub_mesh(const TriMesh& mesh, const std::vector<std::array<uint32_t, 3>>& triangles,
+                 bool with_deviation) {
   TriMesh part;
   std::vector<uint32_t> place(mesh.positions.size(), UINT32_MAX);
   for (const auto& triangle : triangles) {
@@ -65,7 +67,8 @@ double animation_scale(const FinishedRun& run) {
   return std::max(1.0, run.trajectory.samples.back().t_s / kAnimationSeconds);
 }
 
-double write_part_glb(const FinishedRun& run, const TriMesh& part, double max_error_mm, const std::string& path) {
+double write_part_glb(const FinishedRun& run, const TriMesh& part, double max_error_mm,
+                      const std::string& path) {
   double reached = 0.0;
   auto [measured, rest] = split_by_measure(mesh::decimate(part, max_error_mm, &reached));
   const double scale = deviation_scale_um(run.job);
@@ -105,7 +108,8 @@ void write_machine_glb(const FinishedRun& run, const TriMesh& part, const std::s
   for (size_t link = 0; link < link_poses.size(); ++link) {
     const machine::Link& l = run.job.machine.links[link];
     if (!l.mesh.triangles.empty()) {
-      scene.nodes.push_back({l.name, &l.mesh, {l.colour, l.metalness, l.roughness}, -1, times, link_poses[link]});
+      scene.nodes.push_back(
+          {l.name, &l.mesh, {l.colour, l.metalness, l.roughness}, -1, times, link_poses[link]});
     }
   }
   scene.nodes.push_back({"cutter", &view.tool(), kToolMaterial, -1, times, tool_poses});

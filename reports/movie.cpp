@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <future>
 
 #include "base/units.h"
 #include "render/lettering.h"
@@ -18,19 +19,16 @@ class MovieStock {
   explicit MovieStock(const FinishedRun& run)
       : stock_(run.job.scene.stock.box_W, run.job.scene.movie.voxel_mm),
         sweeps_(sim::merged_sweeps(run.trajectory, run.job.scene).sweeps),
-        solid_{run.job.scene.cutter.radius(), run.job.scene.cutter.flute_length_mm},
-        mesh_(stock_.mesh()) {}
+        solid_{run.job.scene.cutter.radius(), run.job.scene.cutter.flute_length_mm} {}
 
-  /// Cuts everything up to and including this sample; the mesh follows when something was cut.
-  const TriMesh& at_sample(size_t sample) {
+  /// Cuts everything up to and including this sample and meshes what is left. Runs beside the drawing of the
+  /// frame before: the software renderer's vertex work leaves the second processor idle.
+  TriMesh at_sample(size_t sample) {
     size_t end = done_;
     while (end < sweeps_.size() && sweeps_[end].block <= sample) ++end;
-    if (end > done_) {
-      stock_.cut(std::span(sweeps_).subspan(done_, end - done_), solid_);
-      mesh_ = stock_.mesh();
-      done_ = end;
-    }
-    return mesh_;
+    stock_.cut(std::span(sweeps_).subspan(done_, end - done_), solid_);
+    done_ = end;
+    return stock_.mesh();
   }
 
  private:
@@ -38,7 +36,6 @@ class MovieStock {
   std::vector<stock::Sweep> sweeps_;
   stock::CutterSolid solid_;
   size_t done_ = 0;
-  TriMesh mesh_;
 };
 
 std::vector<std::string> caption(const FinishedRun& run, size_t i) {
@@ -76,12 +73,21 @@ RenderStatistics make_movie(const FinishedRun& run, const std::string& path, con
   render::DrawList list;
   list.camera = machine_camera(run, camera_name, settings.size);
   std::vector<double> times;
+  const auto sample_of = [&](int frame) {
+    return frames == 1 ? last : last * static_cast<size_t>(frame) / static_cast<size_t>(frames - 1);
+  };
+  const auto mesh_for = [&](int frame) {
+    return std::async(std::launch::async,
+                      [&stock, sample = sample_of(frame)] { return stock.at_sample(sample); });
+  };
   progress.begin("movie", frames, "frames");
+  std::future<TriMesh> next = mesh_for(0);
   for (int frame = 0; frame < frames && !progress.stop_requested(); ++frame) {
     const auto start = std::chrono::steady_clock::now();
-    const size_t sample =
-        frames == 1 ? last : last * static_cast<size_t>(frame) / static_cast<size_t>(frames - 1);
-    list.items = view.items(run.trajectory.axes[sample], &stock.at_sample(sample));
+    const size_t sample = sample_of(frame);
+    const TriMesh mesh = next.get();
+    if (frame + 1 < frames) next = mesh_for(frame + 1);
+    list.items = view.items(run.trajectory.axes[sample], &mesh);
     render::Image image = renderer.draw(list);
     render::draw_caption(image, caption(run, sample));
     movie.add(image);

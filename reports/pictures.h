@@ -14,8 +14,8 @@
 
 namespace swarf::reports {
 
-/// Where a picture is taken from: "machine", "iso", "low", "front", "left", "right", "back", "top", or "x,y,z": the
-/// direction from the subject to the eye. Throws InputError for anything else.
+/// Where a picture is taken from: "machine", "iso", "low", "front", "left", "right", "back", "top", or
+/// "x,y,z": the direction from the subject to the eye. Throws InputError for anything else.
 Vec3 camera_direction(const std::string& name);
 
 /// A camera that keeps the stock at all its positions in the picture, in the machine frame.

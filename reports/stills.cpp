@@ -19,15 +19,16 @@ namespace {
 constexpr double kFieldOfView = 0.45;  // rad, vertical: a long lens, little distortion
 constexpr int kColourStops = 33;
 
-// Bare cut metal: the strip lights break at each ridge, which is what makes cusps of a few micrometres visible.
+// Bare cut metal: the strip lights break at each ridge, which is what makes cusps of a few micrometres
+// visible.
 constexpr render::Material kPolished{{0.56F, 0.57F, 0.59F}, 1.0F, 0.16F};
 constexpr render::Material kMatt{{0.75F, 0.76F, 0.78F}, 0.0F, 0.6F};  // behind lines: no reflections
 
 const std::vector<std::pair<std::string, Vec3>>& directions() {
   static const std::vector<std::pair<std::string, Vec3>> table{
-      {"iso", {0.55, -0.87, 0.64}}, {"low", {0.3, -0.95, 0.3}}, {"front", {0.0, -1.0, 0.25}},
-      {"back", {0.0, 1.0, 0.3}},     {"left", {-1.0, -0.1, 0.3}},     {"right", {1.0, -0.1, 0.3}},
-      {"top", {0.0, -0.02, 1.0}},    {"machine", {-0.75, -1.0, 0.55}}};
+      {"iso", {0.55, -0.87, 0.64}}, {"low", {0.3, -0.95, 0.3}},      {"front", {0.0, -1.0, 0.25}},
+      {"back", {0.0, 1.0, 0.3}},    {"left", {-1.0, -0.1, 0.3}},     {"right", {1.0, -0.1, 0.3}},
+      {"top", {0.0, -0.02, 1.0}},   {"machine", {-0.75, -1.0, 0.55}}};
   return table;
 }
 
@@ -50,7 +51,8 @@ render::ColourBar lettered_bar(double scale_um) {
   bar.high = scale_um;
   bar.colour = [scale_um](double um) { return render::deviation_colour(um, scale_um); };
   bar.title = "deviation, µm";
-  for (int i = -2; i <= 2; ++i) bar.ticks.push_back({0.5 * i * scale_um, fmt::format("{:+g}", 0.5 * i * scale_um)});
+  for (int i = -2; i <= 2; ++i)
+    bar.ticks.push_back({0.5 * i * scale_um, fmt::format("{:+g}", 0.5 * i * scale_um)});
   return bar;
 }
 

@@ -7,8 +7,9 @@
 namespace swarf::measure {
 namespace {
 
-constexpr int kNewtonSteps = 4;          // from a ray a pitch away, quadratic convergence is down to rounding in three
-constexpr double kEdgeSlack = 1e-6;      // in u, v: a point exactly on the edge must not fall off by rounding
+constexpr int kNewtonSteps =
+    4;  // from a ray a pitch away, quadratic convergence is down to rounding in three
+constexpr double kEdgeSlack = 1e-6;  // in u, v: a point exactly on the edge must not fall off by rounding
 
 struct GridPlace {
   int iu, iv;
@@ -33,7 +34,8 @@ size_t DesignProjection::CellHash::operator()(const Cell& cell) const {
 
 DesignProjection::DesignProjection(const stock::SurfaceDexels& dexels, double reach_mm)
     : dexels_(dexels), reach_mm_(reach_mm) {
-  // A cell as wide as the reach or the widest grid step, so that the 27 cells around a point hold its nearest ray.
+  // A cell as wide as the reach or the widest grid step, so that the 27 cells around a point hold its nearest
+  // ray.
   double step = 0.0;
   const auto& points = dexels.points();
   const auto nu = static_cast<size_t>(dexels.nu());
@@ -46,7 +48,8 @@ DesignProjection::DesignProjection(const stock::SurfaceDexels& dexels, double re
 }
 
 DesignProjection::Cell DesignProjection::cell_of(const Vec3& point) const {
-  return {static_cast<int32_t>(std::floor(point.x() / cell_mm_)), static_cast<int32_t>(std::floor(point.y() / cell_mm_)),
+  return {static_cast<int32_t>(std::floor(point.x() / cell_mm_)),
+          static_cast<int32_t>(std::floor(point.y() / cell_mm_)),
           static_cast<int32_t>(std::floor(point.z() / cell_mm_))};
 }
 
@@ -89,8 +92,9 @@ std::optional<Foot> DesignProjection::project(const Vec3& point) const {
     d = dexels_.surface().derivatives(u, v);
   }
   if (u < -kEdgeSlack || u > 1.0 + kEdgeSlack || v < -kEdgeSlack || v > 1.0 + kEdgeSlack) return {};
-  Foot foot{u, v, 0.0, surface::outward_normal(dexels_.surface(), d)};
+  Foot foot{u, v, 0.0, surface::outward_normal(dexels_.surface(), d), 0.0};
   foot.height_mm = (point - d.S).dot(foot.normal);
+  foot.to_edge_mm = std::min(std::min(u, 1.0 - u) * d.Su.norm(), std::min(v, 1.0 - v) * d.Sv.norm());
   if (std::abs(foot.height_mm) > reach_mm_) return {};
   return foot;
 }
@@ -98,7 +102,8 @@ std::optional<Foot> DesignProjection::project(const Vec3& point) const {
 double height_at(const stock::SurfaceDexels& dexels, double u, double v) {
   const GridPlace p = place_of(dexels, u, v);
   const auto height = [&](int iu, int iv) {
-    return dexels.heights_mm()[static_cast<size_t>(iv) * static_cast<size_t>(dexels.nu()) + static_cast<size_t>(iu)];
+    return dexels
+        .heights_mm()[static_cast<size_t>(iv) * static_cast<size_t>(dexels.nu()) + static_cast<size_t>(iu)];
   };
   const double low = (1.0 - p.fu) * height(p.iu, p.iv) + p.fu * height(p.iu + 1, p.iv);
   const double high = (1.0 - p.fu) * height(p.iu, p.iv + 1) + p.fu * height(p.iu + 1, p.iv + 1);

@@ -16,6 +16,7 @@ struct Foot {
   double u = 0.0, v = 0.0;
   double height_mm = 0.0;  ///< along the outward normal: > 0 above the design
   Vec3 normal = Vec3::UnitZ();
+  double to_edge_mm = 0.0;  ///< along the surface to the nearest edge of the patch, to first order
 };
 
 /// Finds feet by the nearest measuring ray (hashed cells of the grid) and Newton steps on the surface.

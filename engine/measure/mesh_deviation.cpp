@@ -16,7 +16,9 @@ constexpr double kFaceCosine = 0.8;  // of the angle between the stock's normal 
 constexpr size_t kChunk = 4096;
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
-Vec3 as_vec3(const std::array<float, 3>& a) { return {a[0], a[1], a[2]}; }
+Vec3 as_vec3(const std::array<float, 3>& a) {
+  return {a[0], a[1], a[2]};
+}
 
 /// Mean of the triangle's vertex normals, weighted by the point's barycentric coordinates.
 Vec3 normal_at(const TriMesh& mesh, const mesh::NearestPoint& nearest) {
@@ -35,13 +37,15 @@ Vec3 normal_at(const TriMesh& mesh, const mesh::NearestPoint& nearest) {
 
 }  // namespace
 
-void deviation_from_surface(TriMesh& stock, const stock::SurfaceDexels& design, double reach_mm) {
+void deviation_from_surface(TriMesh& stock, const stock::SurfaceDexels& design, double reach_mm,
+                            double edge_mm) {
   const DesignProjection projection(design, reach_mm);
   stock.deviation_um.resize(stock.positions.size(), kUnknown);
   parallel_chunks(stock.positions.size(), kChunk, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const auto foot = projection.project(as_vec3(stock.positions[i]));
-      if (!foot || as_vec3(stock.normals[i]).dot(foot->normal) < kFaceCosine) continue;
+      if (!foot || foot->to_edge_mm < edge_mm) continue;
+      if (as_vec3(stock.normals[i]).dot(foot->normal) < kFaceCosine) continue;
       stock.deviation_um[i] = static_cast<float>(um_from_mm(foot->height_mm));
     }
   });
@@ -56,7 +60,8 @@ void deviation_from_mesh(TriMesh& stock, const TriMesh& design, double reach_mm)
       const mesh::NearestPoint nearest = distance.nearest(p);
       if (nearest.distance_mm > reach_mm) continue;
       const bool outside = (p - nearest.point).dot(normal_at(design, nearest)) >= 0.0;
-      stock.deviation_um[i] = static_cast<float>(um_from_mm(outside ? nearest.distance_mm : -nearest.distance_mm));
+      stock.deviation_um[i] =
+          static_cast<float>(um_from_mm(outside ? nearest.distance_mm : -nearest.distance_mm));
     }
   });
 }

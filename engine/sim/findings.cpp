@@ -12,7 +12,8 @@ class Collector {
   Collector(const Job& job, const Result& result) : job_(job), result_(result) {}
 
   void add(std::string code, std::string text, std::string fix, SourceLocation where, double t_s) {
-    findings.push_back({std::move(code), Severity::kError, std::move(text), std::move(fix), std::move(where), t_s});
+    findings.push_back(
+        {std::move(code), Severity::kError, std::move(text), std::move(fix), std::move(where), t_s});
   }
   void at_sample(std::string code, std::string text, std::string fix, uint32_t sample) {
     const motion::Trajectory& trajectory = result_.main.motion.trajectory;
@@ -44,21 +45,22 @@ void surface_faults(const Job& job, const Result& result, Collector& collect) {
       }
     }
     collect.at_sample("scallop",
-                      fmt::format("the highest scallop is {:.3f} um, [accept] allows {:g} um", surface.scallop_max_um,
-                                  accept.scallop_max_um),
+                      fmt::format("the highest scallop is {:.3f} um, [accept] allows {:g} um",
+                                  surface.scallop_max_um, accept.scallop_max_um),
                       "lower the scallop word E of the G06.3 block", block);
   }
   if (surface.gouge_max_um > accept.gouge_max_um) {
-    collect.at_sample("gouge",
-                      fmt::format("the deepest gouge is {:.3f} um over {:.2f} mm2, [accept] allows {:g} um",
-                                  surface.gouge_max_um, surface.gouge_area_mm2, accept.gouge_max_um),
-                      "lower the feed F or the control period: the chord of one cycle cuts into a convex surface",
-                      surface.gouge_block);
+    collect.at_sample(
+        "gouge",
+        fmt::format("the deepest gouge is {:.3f} um over {:.2f} mm2, [accept] allows {:g} um",
+                    surface.gouge_max_um, surface.gouge_area_mm2, accept.gouge_max_um),
+        "lower the feed F or the control period: the chord of one cycle cuts into a convex surface",
+        surface.gouge_block);
   }
   if (surface.uncut_samples > 0) {
     collect.add("uncut",
-                fmt::format("{} of {} measuring points were never reached by the cutter", surface.uncut_samples,
-                            surface.samples),
+                fmt::format("{} of {} measuring points were never reached by the cutter",
+                            surface.uncut_samples, surface.samples),
                 "machine the whole surface (G06.3), or measure only what the program machines",
                 {job.program.file}, 0.0);
   }
@@ -73,12 +75,13 @@ void motion_faults(const Result& result, Collector& collect) {
 void clearance_faults(const Job& job, const Result& result, Collector& collect) {
   const ToolClearance& clearance = result.clearance;
   if (clearance.contacts <= static_cast<size_t>(job.scene.accept.collisions)) return;
-  collect.at_sample(clearance.part + "-in-stock",
-                    fmt::format("the {} stands in the stock at {} of {} poses, {:.2f} mm deep (depths are known to "
-                                "{:.2f} mm)",
-                                clearance.part, clearance.contacts, clearance.checked_poses, clearance.deepest_mm,
-                                clearance.band_mm),
-                    "use a longer cutter, or rough the stock first", clearance.first_block);
+  collect.at_sample(
+      clearance.part + "-in-stock",
+      fmt::format("the {} stands in the stock at {} of {} poses, {:.2f} mm deep (depths are known to "
+                  "{:.2f} mm)",
+                  clearance.part, clearance.contacts, clearance.checked_poses, clearance.deepest_mm,
+                  clearance.band_mm),
+      "use a longer cutter, or rough the stock first", clearance.first_block);
 }
 
 void built_in_checks(const Job& job, const Result& result, Collector& collect) {

@@ -30,20 +30,21 @@ double available_memory_mb() {
 /// The smallest voxel, to two digits, whose estimate fits.
 double voxel_that_fits(const Box& box, double voxel, double limit_mb) {
   double fitting = voxel;
-  while (static_cast<double>(stock::Stock::memory_estimate(box, fitting)) / kMegabyte > limit_mb) fitting *= 1.05;
+  while (static_cast<double>(stock::Stock::memory_estimate(box, fitting)) / kMegabyte > limit_mb)
+    fitting *= 1.05;
   const double digit = std::pow(10.0, std::floor(std::log10(fitting)) - 1.0);
   return std::ceil(fitting / digit) * digit;
 }
 
 void check_memory(const Scene& scene, Diagnostics& diagnostics) {
-  const double limit =
-      scene.stock.max_memory_mb > 0.0 ? scene.stock.max_memory_mb : kShareOfFreeMemory * available_memory_mb();
+  const double limit = scene.stock.max_memory_mb > 0.0 ? scene.stock.max_memory_mb
+                                                       : kShareOfFreeMemory * available_memory_mb();
   const double need =
       static_cast<double>(stock::Stock::memory_estimate(scene.stock.box_W, scene.stock.voxel_mm)) / kMegabyte;
   if (need <= limit) return;
   diagnostics.error("out-of-memory", {scene.file},
-                    fmt::format("stock.voxel_mm = {:g} needs about {:.0f} MB, {:.0f} MB may be used", scene.stock.voxel_mm,
-                                need, limit),
+                    fmt::format("stock.voxel_mm = {:g} needs about {:.0f} MB, {:.0f} MB may be used",
+                                scene.stock.voxel_mm, need, limit),
                     fmt::format("voxel_mm = {:g} fits; or raise stock.max_memory_mb",
                                 voxel_that_fits(scene.stock.box_W, scene.stock.voxel_mm, limit)));
 }
@@ -51,10 +52,11 @@ void check_memory(const Scene& scene, Diagnostics& diagnostics) {
 void check_tools(const Job& job, Diagnostics& diagnostics) {
   for (const program::Operation& operation : job.program.operations) {
     if (operation.tool == job.scene.cutter.number) continue;
-    diagnostics.error("unknown-tool", operation.where,
-                      fmt::format("the block uses T{}, the scene describes T{} only", operation.tool,
-                                  job.scene.cutter.number),
-                      fmt::format("call T{} or set cutter.number = {}", job.scene.cutter.number, operation.tool));
+    diagnostics.error(
+        "unknown-tool", operation.where,
+        fmt::format("the block uses T{}, the scene describes T{} only", operation.tool,
+                    job.scene.cutter.number),
+        fmt::format("call T{} or set cutter.number = {}", job.scene.cutter.number, operation.tool));
     return;
   }
 }
@@ -77,8 +79,10 @@ Job load_job(const std::string& path, const std::vector<std::string>& overrides)
   diagnostics.throw_if_errors();
   // A user mends all files at once: what is wrong with one does not hide what is wrong with the other.
   collect(diagnostics, [&] { job.machine = machine::load_machine(job.scene.machine_file); });
-  collect(diagnostics, [&] { job.program = program::load_program(job.scene.program_file, &diagnostics); });
+  Diagnostics warnings;
+  collect(diagnostics, [&] { job.program = program::load_program(job.scene.program_file, &warnings); });
   diagnostics.throw_if_errors();
+  diagnostics.append(warnings);
   check_tools(job, diagnostics);
   check_memory(job.scene, diagnostics);
   diagnostics.throw_if_errors();

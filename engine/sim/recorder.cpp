@@ -17,7 +17,8 @@ namespace {
 
 using kinematics::AxisKind;
 
-constexpr std::array<const char*, 4> kKindNames{"cut", "approach", "retract", "rapid"};  // order of SampleKind
+constexpr std::array<const char*, 4> kKindNames{"cut", "approach", "retract",
+                                                "rapid"};  // order of SampleKind
 
 std::string header(const kinematics::MachineModel& machine) {
   std::string line = "t_s,block,x_mm,y_mm,z_mm,i,j,k,feed_mm_min";
@@ -27,20 +28,22 @@ std::string header(const kinematics::MachineModel& machine) {
   return line + ",contact_x_mm,contact_y_mm,contact_z_mm,u,v,element,kind";
 }
 
-double shown(const kinematics::Axis& axis, double q) { return axis.kind == AxisKind::kRotary ? deg_from_rad(q) : q; }
+double shown(const kinematics::Axis& axis, double q) {
+  return axis.kind == AxisKind::kRotary ? deg_from_rad(q) : q;
+}
 
 void append_row(fmt::memory_buffer& out, const motion::ToolSample& s, const kinematics::AxisValues& q,
                 const kinematics::MachineModel& machine, int line) {
   auto it = std::back_inserter(out);
   const Vec3& p = s.pose.tip_W;
   const Vec3& a = s.pose.axis_W;
-  fmt::format_to(it, "{:.6f},{},{:.7f},{:.7f},{:.7f},{:.10f},{:.10f},{:.10f},{:.4f}", s.t_s, line, p.x(), p.y(), p.z(),
-                 a.x(), a.y(), a.z(), mm_min_from_mm_s(s.feed_mm_s));
+  fmt::format_to(it, "{:.6f},{},{:.7f},{:.7f},{:.7f},{:.10f},{:.10f},{:.10f},{:.4f}", s.t_s, line, p.x(),
+                 p.y(), p.z(), a.x(), a.y(), a.z(), mm_min_from_mm_s(s.feed_mm_s));
   for (size_t i = 0; i < machine.axes.size(); ++i) {
     fmt::format_to(it, ",{:.7f}", shown(machine.axes[i], q[static_cast<Eigen::Index>(i)]));
   }
-  fmt::format_to(it, ",{:.7f},{:.7f},{:.7f},{:.9f},{:.9f},{},{}\n", s.contact_W.x(), s.contact_W.y(), s.contact_W.z(),
-                 s.u, s.v, s.element, kKindNames[static_cast<size_t>(s.kind)]);
+  fmt::format_to(it, ",{:.7f},{:.7f},{:.7f},{:.9f},{:.9f},{},{}\n", s.contact_W.x(), s.contact_W.y(),
+                 s.contact_W.z(), s.u, s.v, s.element, kKindNames[static_cast<size_t>(s.kind)]);
 }
 
 /// The fields of one line; text fields are kept as they are.
@@ -94,8 +97,8 @@ bool parse_row(std::string_view line, const kinematics::MachineModel& machine, m
 
 }  // namespace
 
-void write_trajectory(const std::string& path, const motion::Trajectory& trajectory, const toolpath::ToolPath& tool_path,
-                      const kinematics::MachineModel& machine) {
+void write_trajectory(const std::string& path, const motion::Trajectory& trajectory,
+                      const toolpath::ToolPath& tool_path, const kinematics::MachineModel& machine) {
   fmt::memory_buffer out;
   fmt::format_to(std::back_inserter(out), "{}\n", header(machine));
   for (size_t i = 0; i < trajectory.samples.size(); ++i) {
@@ -112,15 +115,17 @@ void write_trajectory(const std::string& path, const motion::Trajectory& traject
   std::filesystem::rename(temporary, path);
 }
 
-motion::Trajectory read_trajectory(const std::string& path, const kinematics::MachineModel& machine, double period_s) {
+motion::Trajectory read_trajectory(const std::string& path, const kinematics::MachineModel& machine,
+                                   double period_s) {
   std::ifstream file(path);
   std::string line;
   if (!file || !std::getline(file, line)) {
-    throw InputError("file-not-found", {path}, "the trajectory of the run cannot be read", "run the scene again");
+    throw InputError("file-not-found", {path}, "the trajectory of the run cannot be read",
+                     "run the scene again");
   }
   if (line != header(machine)) {
-    throw InputError("trajectory-mismatch", {path, 1, 1}, "the columns do not belong to the machine of this run",
-                     "run the scene again");
+    throw InputError("trajectory-mismatch", {path, 1, 1},
+                     "the columns do not belong to the machine of this run", "run the scene again");
   }
   motion::Trajectory trajectory;
   trajectory.period_s = period_s;
@@ -128,7 +133,8 @@ motion::Trajectory read_trajectory(const std::string& path, const kinematics::Ma
     motion::ToolSample sample;
     kinematics::AxisValues q = kinematics::AxisValues::Zero();
     if (!parse_row(line, machine, sample, q)) {
-      throw InputError("trajectory-broken", {path, number, 1}, "this line is not a sample of a run", "run the scene again");
+      throw InputError("trajectory-broken", {path, number, 1}, "this line is not a sample of a run",
+                       "run the scene again");
     }
     trajectory.samples.push_back(sample);
     trajectory.axes.push_back(q);

@@ -17,10 +17,10 @@
 namespace swarf::sim {
 
 struct StockSettings {
-  Box box_W;                       ///< mm
-  double voxel_mm = 0.2;           ///< smaller: finer solid, memory grows with the square
+  Box box_W;                         ///< mm
+  double voxel_mm = 0.2;             ///< smaller: finer solid, memory grows with the square
   double sweep_tolerance_mm = 1e-3;  ///< ticks are merged into sweeps that stay this close to them
-  double max_memory_mb = 0.0;      ///< 0: 80 % of the memory that is free when the run starts
+  double max_memory_mb = 0.0;        ///< 0: 80 % of the memory that is free when the run starts
 };
 
 struct AcceptLimits {
@@ -33,7 +33,7 @@ struct MovieSettings {
   double seconds = 10.0;
   std::array<int, 2> size{1280, 720};
   int fps = 30;
-  double voxel_mm = 0.5;  ///< of the stock that the movie shows; it is not measured
+  double voxel_mm = 0.8;  ///< of the stock that the movie shows; it is not measured
 };
 
 struct StillSettings {
@@ -42,15 +42,15 @@ struct StillSettings {
 };
 
 struct Scene {
-  std::string file;   ///< scene.toml
-  std::string name;   ///< of its folder
+  std::string file;  ///< scene.toml
+  std::string name;  ///< of its folder
   std::string title;
   std::string machine_file, program_file;
   cutter::Cutter cutter;
   StockSettings stock;
   double dexel_pitch_mm = 0.2;  ///< grid of measuring rays on the design; cusps are refined between them
   toolpath::PlanOptions toolpath;
-  bool compare_planners = true;  ///< plan, interpolate and measure the other planners too
+  bool compare_planners = true;              ///< plan, interpolate and measure the other planners too
   std::optional<double> chord_tolerance_mm;  ///< replaces the program's K
   motion::MotionOptions motion;
   AcceptLimits accept;
@@ -68,10 +68,11 @@ struct Job {
 
 /// Reads scene.toml; `overrides` are "key=value" in TOML. Paths in it are relative to its folder.
 /// Problems go to `diagnostics`.
-Scene load_scene(const std::string& path, const std::vector<std::string>& overrides, Diagnostics& diagnostics);
+Scene load_scene(const std::string& path, const std::vector<std::string>& overrides,
+                 Diagnostics& diagnostics);
 
-/// Loads scene, machine and program and checks them against each other (tool numbers, memory, chord tolerance).
-/// Throws InputError with everything that is wrong.
+/// Loads scene, machine and program and checks them against each other (tool numbers, memory, chord
+/// tolerance). Throws InputError with everything that is wrong.
 Job load_job(const std::string& path, const std::vector<std::string>& overrides);
 
 }  // namespace swarf::sim

@@ -59,8 +59,8 @@ void read_interpolator(ConfigTable table, Scene& scene) {
   options.mode = mode == "taylor1"   ? motion::Mode::kTaylor1
                  : mode == "offline" ? motion::Mode::kOffline
                                      : motion::Mode::kSurface;
-  const std::string orientation =
-      table.choice("offline_orientation", {"constant", "linear_in_u", "linear_along_chord"}, "linear_along_chord");
+  const std::string orientation = table.choice(
+      "offline_orientation", {"constant", "linear_in_u", "linear_along_chord"}, "linear_along_chord");
   options.orientation = orientation == "constant"      ? motion::OfflineOrientation::kConstant
                         : orientation == "linear_in_u" ? motion::OfflineOrientation::kLinearInU
                                                        : motion::OfflineOrientation::kLinearAlongChord;
@@ -69,7 +69,8 @@ void read_interpolator(ConfigTable table, Scene& scene) {
   if (table.has("chord_tolerance_um")) {
     scene.chord_tolerance_mm = table.number("chord_tolerance_um", kAboveZero, 1.0) * kMicrometre;
   }
-  options.path_acceleration_max = table.number("path_acceleration_max_mm_s2", kAboveZero, options.path_acceleration_max);
+  options.path_acceleration_max =
+      table.number("path_acceleration_max_mm_s2", kAboveZero, options.path_acceleration_max);
   options.path_jerk_max = table.number("path_jerk_max_mm_s3", kAboveZero, options.path_jerk_max);
 }
 
@@ -110,7 +111,8 @@ std::string beside(const std::string& scene_file, const std::string& path) {
 
 }  // namespace
 
-Scene load_scene(const std::string& path, const std::vector<std::string>& overrides, Diagnostics& diagnostics) {
+Scene load_scene(const std::string& path, const std::vector<std::string>& overrides,
+                 Diagnostics& diagnostics) {
   Scene scene;
   scene.file = path;
   scene.name = fs::absolute(path).parent_path().filename().string();

@@ -19,7 +19,9 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-stock::CutterSolid solid_of(const cutter::Cutter& cutter) { return {cutter.radius(), cutter.flute_length_mm}; }
+stock::CutterSolid solid_of(const cutter::Cutter& cutter) {
+  return {cutter.radius(), cutter.flute_length_mm};
+}
 
 toolpath::ToolPath plan_path(const Job& job, toolpath::Planner planner, const cutter::Cutter& cutter) {
   toolpath::PlanOptions options = job.scene.toolpath;
@@ -65,8 +67,8 @@ void measure_dexels(const Job& job, MeasuredPath& measured) {
                                       job.scene.accept.gouge_max_um * kMicrometre};
   std::vector<measure::SurfaceMetrics> parts;
   for (const stock::SurfaceDexels& dexels : measured.dexels) {
-    parts.push_back(measure::measure_surface(dexels, measured.sweeps, passes, solid_of(job.scene.cutter), limits,
-                                             &measured.ridges));
+    parts.push_back(measure::measure_surface(dexels, measured.sweeps, passes, solid_of(job.scene.cutter),
+                                             limits, &measured.ridges));
   }
   measured.surface = measure::combine(parts, measured.ridges);
   measured.surface.scallop_theory_um = theory_scallop_um(measured.path);
@@ -89,7 +91,8 @@ MeasuredPath plan_and_move(const Job& job, toolpath::Planner planner, const moti
   measured.path = plan_path(job, planner, job.scene.cutter);
   measured.plan_seconds = seconds_since(start);
   start = std::chrono::steady_clock::now();
-  measured.motion = motion::interpolate(measured.path, job.machine.model, job.scene.cutter, options, progress);
+  measured.motion =
+      motion::interpolate(measured.path, job.machine.model, job.scene.cutter, options, progress);
   measured.motion_seconds = seconds_since(start);
   return measured;
 }
@@ -105,9 +108,10 @@ void require_contact(const Job& job, const motion::Trajectory& trajectory) {
     nearest = std::min(nearest, (sample.contact_W - inside).norm());
   }
   if (nearest <= reach) return;
-  throw InputError("path-misses-stock", {job.scene.file},
-                   fmt::format("the path never meets the stock: it stays {:.1f} mm away from stock.box_mm", nearest),
-                   "move stock.box_mm to where the surface is (both are in the work frame, mm)");
+  throw InputError(
+      "path-misses-stock", {job.scene.file},
+      fmt::format("the path never meets the stock: it stays {:.1f} mm away from stock.box_mm", nearest),
+      "move stock.box_mm to where the surface is (both are in the work frame, mm)");
 }
 
 ComparisonRow row_of(const std::string& name, const MeasuredPath& measured, bool used) {
@@ -144,7 +148,8 @@ void compare_planners(const Job& job, Progress& progress, Result& result) {
   progress.end();
 }
 
-/// The paper's comparison: real-time interpolation against off-line segments, with and without look-ahead (E19).
+/// The paper's comparison: real-time interpolation against off-line segments, with and without look-ahead
+/// (E19).
 void compare_modes(const Job& job, Progress& progress, Result& result) {
   struct Case {
     const char* name;
@@ -188,7 +193,8 @@ void cut_stock(const Job& job, Progress& progress, Result& result) {
   const double full = result.stock->volume_mm3();
   progress.begin("cut", static_cast<double>(merged.sweeps.size()), "blocks");
   for (size_t i = 0; i < merged.sweeps.size() && !progress.stop_requested(); i += kSweepsPerBatch) {
-    const auto batch = std::span(merged.sweeps).subspan(i, std::min(kSweepsPerBatch, merged.sweeps.size() - i));
+    const auto batch =
+        std::span(merged.sweeps).subspan(i, std::min(kSweepsPerBatch, merged.sweeps.size() - i));
     result.stock->cut(batch, solid_of(job.scene.cutter));
     clearance.check(*result.stock, batch);
     progress.advance(static_cast<double>(i + batch.size()));
@@ -215,16 +221,18 @@ void measure_part(const Job& job, Progress& progress, Result& result) {
 
 }  // namespace
 
-std::vector<stock::Sweep> cycle_sweeps(const motion::Trajectory& trajectory, const kinematics::MachineModel& machine) {
+std::vector<stock::Sweep> cycle_sweeps(const motion::Trajectory& trajectory,
+                                       const kinematics::MachineModel& machine) {
   const size_t count = trajectory.samples.size();
   std::vector<stock::Sweep> sweeps(count);
   if (count == 0) return sweeps;
-  // The nodes lie half way between the samples, where the joint-linear motion of the axes strays most from the path.
+  // The nodes lie half way between the samples, where the joint-linear motion of the axes strays most from
+  // the path.
   ToolPose node = trajectory.samples.front().pose;
   for (size_t i = 0; i < count; ++i) {
-    const ToolPose next = i + 1 < count
-                              ? kinematics::forward(machine, 0.5 * (trajectory.axes[i] + trajectory.axes[i + 1]))
-                              : trajectory.samples[i].pose;
+    const ToolPose next =
+        i + 1 < count ? kinematics::forward(machine, 0.5 * (trajectory.axes[i] + trajectory.axes[i + 1]))
+                      : trajectory.samples[i].pose;
     sweeps[i] = {node, next, static_cast<uint32_t>(i)};
     node = next;
   }

@@ -1,4 +1,5 @@
-// The run: program -> tool path -> samples -> axes -> cuts -> measures. The only place that joins all modules.
+// The run: program -> tool path -> samples -> axes -> cuts -> measures. The only place that joins all
+// modules.
 #pragma once
 
 #include <memory>
@@ -30,7 +31,7 @@ struct Finding {
 struct MeasuredPath {
   toolpath::ToolPath path;
   motion::MotionResult motion;
-  std::vector<stock::Sweep> sweeps;  ///< cycle by cycle; Sweep::block = index of its sample
+  std::vector<stock::Sweep> sweeps;          ///< cycle by cycle; Sweep::block = index of its sample
   std::vector<stock::SurfaceDexels> dexels;  ///< one per surface of the program, in its order
   std::vector<measure::Ridge> ridges;
   measure::SurfaceMetrics surface;
@@ -52,7 +53,7 @@ struct Result {
   std::vector<ComparisonRow> planners;  ///< the scene's interpolator, every planner
   std::vector<ComparisonRow> modes;     ///< the scene's planner, the interpolators of the paper's comparison
   std::unique_ptr<stock::Stock> stock;
-  double sweep_bound_mm = 0.0;          ///< of the sweeps that cut the level set
+  double sweep_bound_mm = 0.0;  ///< of the sweeps that cut the level set
   uint64_t merged_sweeps = 0;
   double volume_removed_mm3 = 0.0, volume_left_mm3 = 0.0;
   measure::CrossCheck cross_check;
@@ -61,10 +62,12 @@ struct Result {
   bool stopped = false;  ///< the user stopped it; what follows the cut is missing
 };
 
-/// One sweep per cycle, id = index of its sample, from the middle of the cycle before to the middle of the one after.
-/// The axes move linearly inside a cycle, and half way is where the tool then strays most from the path: with these
-/// poses as nodes the chord of a cycle is cut as deep as the machine cuts it, and the samples stay on the path.
-std::vector<stock::Sweep> cycle_sweeps(const motion::Trajectory& trajectory, const kinematics::MachineModel& machine);
+/// One sweep per cycle, id = index of its sample, from the middle of the cycle before to the middle of the
+/// one after. The axes move linearly inside a cycle, and half way is where the tool then strays most from the
+/// path: with these poses as nodes the chord of a cycle is cut as deep as the machine cuts it, and the
+/// samples stay on the path.
+std::vector<stock::Sweep> cycle_sweeps(const motion::Trajectory& trajectory,
+                                       const kinematics::MachineModel& machine);
 
 /// Ticks merged within the scene's tolerance, for the level set.
 stock::MergedSweeps merged_sweeps(const motion::Trajectory& trajectory, const Scene& scene);

@@ -14,7 +14,8 @@ constexpr double kBandVoxels = 3.0;    // half width of the level set
 
 }  // namespace
 
-ToolClearanceCheck::ToolClearanceCheck(const cutter::Cutter& cutter, double voxel_mm) : tolerance_mm_(voxel_mm) {
+ToolClearanceCheck::ToolClearanceCheck(const cutter::Cutter& cutter, double voxel_mm)
+    : tolerance_mm_(voxel_mm) {
   const auto ring = [&](double radius, double height, bool holder) {
     const int count = std::max(6, static_cast<int>(std::ceil(2.0 * kPi * radius / kPointSpacing)));
     for (int i = 0; i < count; ++i) {
@@ -38,7 +39,8 @@ ToolClearanceCheck::ToolClearanceCheck(const cutter::Cutter& cutter, double voxe
   result_.nearest_mm = result_.band_mm;
 }
 
-double ToolClearanceCheck::depth_at(const stock::Stock& stock, const ToolPose& pose, const char** part) const {
+double ToolClearanceCheck::depth_at(const stock::Stock& stock, const ToolPose& pose,
+                                    const char** part) const {
   const Vec3 x = pose.axis_W.unitOrthogonal();
   const Vec3 y = pose.axis_W.cross(x);
   double nearest = result_.band_mm;

@@ -15,16 +15,16 @@ namespace swarf::sim {
 
 struct ToolClearance {
   size_t checked_poses = 0;
-  size_t contacts = 0;           ///< poses at which shank or holder stands in material
-  double deepest_mm = 0.0;       ///< penetration of the worst of them (saturates at the level set's band)
-  std::string part;              ///< "shank" or "holder", of the first contact
-  uint32_t first_block = 0;      ///< Sweep::block of the first contact
-  double nearest_mm = 0.0;       ///< closest approach seen; saturates at band_mm
-  double band_mm = 0.0;          ///< distances are known up to here
+  size_t contacts = 0;       ///< poses at which shank or holder stands in material
+  double deepest_mm = 0.0;   ///< penetration of the worst of them (saturates at the level set's band)
+  std::string part;          ///< "shank" or "holder", of the first contact
+  uint32_t first_block = 0;  ///< Sweep::block of the first contact
+  double nearest_mm = 0.0;   ///< closest approach seen; saturates at band_mm
+  double band_mm = 0.0;      ///< distances are known up to here
 };
 
-/// Samples points on shank and holder (rings, about 2 mm apart) against the level set. Material less than one voxel
-/// deep is not counted: the flank of the cutter leaves it there.
+/// Samples points on shank and holder (rings, about 2 mm apart) against the level set. Material less than one
+/// voxel deep is not counted: the flank of the cutter leaves it there.
 class ToolClearanceCheck {
  public:
   ToolClearanceCheck(const cutter::Cutter& cutter, double voxel_mm);

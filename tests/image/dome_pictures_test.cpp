@@ -14,15 +14,17 @@ namespace {
 namespace fs = std::filesystem;
 using swarf::render::Image;
 
-// Mean difference of a channel, of 255. The pictures are seeded, so on one machine it is 0; another instruction set
-// of Embree or llvmpipe moves single pixels at edges, which changes the mean by less than this.
+// Mean difference of a channel, of 255. The pictures are seeded, so on one machine it is 0; another
+// instruction set of Embree or llvmpipe moves single pixels at edges, which changes the mean by less than
+// this.
 constexpr double kMeanTolerance = 1.5;
 
 const fs::path kReferences = SWARF_SOURCE_DIR "/tests/image/reference";
 
 double mean_difference(const Image& a, const Image& b) {
   double sum = 0.0;
-  for (size_t i = 0; i < a.rgba.size(); ++i) sum += std::abs(static_cast<int>(a.rgba[i]) - static_cast<int>(b.rgba[i]));
+  for (size_t i = 0; i < a.rgba.size(); ++i)
+    sum += std::abs(static_cast<int>(a.rgba[i]) - static_cast<int>(b.rgba[i]));
   return sum / static_cast<double>(a.rgba.size());
 }
 
@@ -30,9 +32,10 @@ class DomePictures : public testing::TestWithParam<const char*> {
  protected:
   static void SetUpTestSuite() {
     folder_ = swarf::test::fresh_folder("pictures") / "run";
-    run_ = swarf::test::run_swarf("run " SWARF_SOURCE_DIR "/scenes/lin_koren_dome/scene.toml -o " + folder_.string() +
-                                  " --set movie.seconds=0 --set toolpath.compare=false --set 'stills.size=[480,270]' "
-                                  "--set stills.samples=4");
+    run_ = swarf::test::run_swarf(
+        "run " SWARF_SOURCE_DIR "/scenes/lin_koren_dome/scene.toml -o " + folder_.string() +
+        " --set movie.seconds=0 --set toolpath.compare=false --set 'stills.size=[480,270]' "
+        "--set stills.samples=4");
   }
   static void TearDownTestSuite() { fs::remove_all(folder_.parent_path()); }
   static fs::path folder_;

@@ -1,4 +1,5 @@
-// Every bad input of the DOME job on the shipped program: exit 2, the place, the code, the remedy, and no output folder.
+// Every bad input of the DOME job on the shipped program: exit 2, the place, the code, the remedy, and no
+// output folder.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -23,7 +24,9 @@ struct BadInput {
   const char* place;  ///< "file:line:" or a prefix of it that must be printed
 };
 
-void PrintTo(const BadInput& bad, std::ostream* out) { *out << bad.name; }
+void PrintTo(const BadInput& bad, std::ostream* out) {
+  *out << bad.name;
+}
 
 /// A copy of the DOME job that stands alone in `folder`.
 void copy_job(const fs::path& folder) {
@@ -51,7 +54,8 @@ TEST_P(BadInputTest, IsRefusedWithItsPlaceAndNothingIsWritten) {
     text.replace(at, bad.find.size(), bad.replace);
   }
   write_text(folder / bad.file, text);
-  const auto run = run_swarf("run " + (folder / "scene.toml").string() + " --no-render -o " + (folder / "out").string());
+  const auto run =
+      run_swarf("run " + (folder / "scene.toml").string() + " --no-render -o " + (folder / "out").string());
   EXPECT_EQ(run.exit_code, 2) << run.output;
   EXPECT_NE(run.output.find(std::string("[") + bad.code + "]"), std::string::npos) << run.output;
   EXPECT_NE(run.output.find(bad.place), std::string::npos) << run.output;
@@ -60,54 +64,62 @@ TEST_P(BadInputTest, IsRefusedWithItsPlaceAndNothingIsWritten) {
   fs::remove_all(folder);
 }
 
-const std::string kFirstConcave = "N60 G10 L71 P1 I1 J0 X100 Y0 Z-80";
-
 std::vector<BadInput> bad_inputs() {
   return {
-      {"misspelt_key", "scene.toml", "voxel_mm = 0.2", "voxle_mm = 0.2", "unknown-key", "scene.toml:20:"},
-      {"misspelt_table", "scene.toml", "[interpolator]", "[interpolater]", "unknown-key", "scene.toml:29:"},
-      {"unknown_planner", "scene.toml", "\"constant_scallop\"", "\"constant_scalop\"", "unknown-choice", "scene.toml:26:"},
-      {"number_nan", "scene.toml", "voxel_mm = 0.2", "voxel_mm = nan", "out-of-range", "scene.toml:20:"},
-      {"number_1e400", "scene.toml", "voxel_mm = 0.2", "voxel_mm = 1e400", "toml-syntax", "scene.toml:20:"},
+      {"misspelt_key", "scene.toml", "voxel_mm = 0.2", "voxle_mm = 0.2", "unknown-key", "scene.toml:18:"},
+      {"misspelt_table", "scene.toml", "[interpolator]", "[interpolater]", "unknown-key", "scene.toml:27:"},
+      {"unknown_planner", "scene.toml", "\"constant_scallop\"", "\"constant_scalop\"", "unknown-choice",
+       "scene.toml:24:"},
+      {"number_nan", "scene.toml", "voxel_mm = 0.2", "voxel_mm = nan", "out-of-range", "scene.toml:18:"},
+      {"number_1e400", "scene.toml", "voxel_mm = 0.2", "voxel_mm = 1e400", "toml-syntax", "scene.toml:18:"},
       {"voxel_too_small", "scene.toml", "voxel_mm = 0.2", "voxel_mm = 0.0005", "out-of-memory", "scene.toml"},
-      {"box_upside_down", "scene.toml", "[50, 40, 37]", "[50, 40, -37]", "out-of-range", "scene.toml:19:"},
-      {"path_misses_stock", "scene.toml", "[[-50, -40, -20], [50, 40, 37]]", "[[200, 200, -20], [300, 300, 37]]",
-       "path-misses-stock", "scene.toml"},
+      {"box_upside_down", "scene.toml", "[50, 40, 37]", "[50, 40, -37]", "out-of-range", "scene.toml:17:"},
+      {"path_misses_stock", "scene.toml", "[[-50, -40, -20], [50, 40, 37]]",
+       "[[200, 200, -20], [300, 300, 37]]", "path-misses-stock", "scene.toml"},
       {"program_not_found", "scene.toml", "\"dome.nc\"", "\"doom.nc\"", "file-not-found", "doom.nc"},
-      {"machine_not_found", "scene.toml", "machine/machine.toml", "machine/machin.toml", "file-not-found", "machin.toml"},
-      {"corner_radius", "scene.toml", "corner_radius_mm = 0", "corner_radius_mm = 1", "bad-cutter", "scene.toml:8:"},
-      {"flutes_longer_than_tool", "scene.toml", "flute_length_mm = 45", "flute_length_mm = 65", "bad-cutter", "scene.toml:8:"},
+      {"machine_not_found", "scene.toml", "machine/machine.toml", "machine/machin.toml", "file-not-found",
+       "machin.toml"},
+      {"corner_radius", "scene.toml", "corner_radius_mm = 0", "corner_radius_mm = 1", "bad-cutter",
+       "scene.toml:8:"},
+      {"flutes_longer_than_tool", "scene.toml", "flute_length_mm = 45", "flute_length_mm = 65", "bad-cutter",
+       "scene.toml:8:"},
       {"scene_empty", "scene.toml", "", "", "empty-file", "scene.toml"},
       {"scene_not_text", "scene.toml", "", std::string("title = \"a\"\0b", 13), "not-text", "scene.toml"},
       {"tool_not_described", "dome.nc", "T1 M6", "T7 M6", "unknown-tool", "dome.nc:13:"},
       {"unknown_word", "dome.nc", "N110 G06.3 P1", "N110 G06.3 P1 W3", "unknown-word", "dome.nc:13:"},
       {"after_l79", "dome.nc", "N110", "N105 G10 L71 P1 I2 J2 Z1\nN110", "surface-closed", "dome.nc:13:"},
       {"unclosed", "dome.nc", "N100 G10 L79 P1 D1\n", "", "surface-not-closed", "dome.nc:12:"},
-      {"unknown_surface", "dome.nc", "G06.3 P1", "G06.3 P2", "unknown-surface", "dome.nc:13:"},
-      {"degenerate", "dome.nc", "X0 Y80 Z60", "X0 Y0 Z0", "degenerate-surface", "dome.nc:"},
-      {"saddle", "dome.nc", "N70 G10 L71 P1 I2 J0 X0 Y0 Z-80", "N70 G10 L71 P1 I2 J0 X0 Y0 Z80", "saddle-or-concave", "dome.nc:13:"},
+      {"unknown_surface", "dome.nc", "G06.3 P1", "G06.3 P2", "surface-unknown", "dome.nc:13:"},
+      {"degenerate", "dome.nc", "X0 Y80 Z60", "X0 Y0 Z0", "surface-degenerate", "dome.nc:12:"},
+      {"saddle", "dome.nc", "N70 G10 L71 P1 I2 J0 X0 Y0 Z-80", "N70 G10 L71 P1 I2 J0 X0 Y0 Z80",
+       "saddle-or-concave", "dome.nc:13:"},
       {"beyond_cutter", "dome.nc", "E0.010", "E0.9", "interval-beyond-cutter", "dome.nc:13:"},
-      {"negative_feed", "dome.nc", "F3000", "F-3000", "bad-feed", "dome.nc:13:"},
+      {"negative_feed", "dome.nc", "F3000", "F-3000", "out-of-range", "dome.nc:13:"},
       {"missing_feed", "dome.nc", " F3000", "", "missing-feed", "dome.nc:13:"},
-      {"scallop_zero", "dome.nc", "E0.010", "E0", "bad-scallop", "dome.nc:13:"},
+      {"scallop_zero", "dome.nc", "E0.010", "E0", "out-of-range", "dome.nc:13:"},
       {"no_tool", "dome.nc", "N20 T1 M6\n", "", "no-tool", "dome.nc:12:"},
       {"nan_coefficient", "dome.nc", "X-50", "XNAN", "bad-number", "dome.nc:7:"},
       {"huge_coefficient", "dome.nc", "X-50", "X1e400", "bad-number", "dome.nc:7:"},
       {"program_empty", "dome.nc", "", "", "empty-file", "dome.nc"},
       {"program_not_text", "dome.nc", "", std::string("G17\0\xff", 5), "not-text", "dome.nc"},
-      {"machine_cycle", "machine/machine.toml", "parent = \"bed\"", "parent = \"rotary_table\"", "chain-cycle", "machine.toml:"},
+      {"machine_cycle", "machine/machine.toml", "name = \"x_slide\"\nparent = \"bed\"",
+       "name = \"x_slide\"\nparent = \"cradle\"", "chain-cycle", "machine.toml:"},
       {"machine_missing_limit", "machine/machine.toml", "min_mm", "# min_mm", "missing-key", "machine.toml:"},
-      {"machine_unknown_axis", "machine/machine.toml", "name = \"X\"", "name = \"Q\"", "unknown-axis", "machine.toml:"},
+      {"machine_unknown_axis", "machine/machine.toml", "name = \"X\"", "name = \"Q\"", "unknown-axis",
+       "machine.toml:"},
   };
 }
 
 INSTANTIATE_TEST_SUITE_P(Dome, BadInputTest, testing::ValuesIn(bad_inputs()),
-                         [](const testing::TestParamInfo<BadInput>& info) { return std::string(info.param.name); });
+                         [](const testing::TestParamInfo<BadInput>& one) {
+                           return std::string(one.param.name);
+                         });
 
 TEST(OutputFolder, OfSomebodyElseIsNotReplaced) {
   const fs::path folder = swarf::test::fresh_folder("precious");
   write_text(folder / "thesis.txt", "years of work");
-  const auto run = run_swarf("run " SWARF_SOURCE_DIR "/scenes/lin_koren_dome/scene.toml --no-render -o " + folder.string());
+  const auto run = run_swarf("run " SWARF_SOURCE_DIR "/scenes/lin_koren_dome/scene.toml --no-render -o " +
+                             folder.string());
   EXPECT_EQ(run.exit_code, 2) << run.output;
   EXPECT_EQ(read_text(folder / "thesis.txt"), "years of work");
   fs::remove_all(folder);

@@ -19,14 +19,17 @@ using swarf::test::run_swarf;
 
 const std::string kScene = SWARF_SOURCE_DIR "/scenes/lin_koren_dome/scene.toml";
 
-json read_json(const fs::path& path) { return json::parse(std::ifstream(path)); }
+json read_json(const fs::path& path) {
+  return json::parse(std::ifstream(path));
+}
 
 class DomeRun : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder_ = swarf::test::fresh_folder("dome") / "run";
     run_ = run_swarf("run " + kScene + " -o " + folder_.string() +
-                     " --set movie.seconds=0.2 --set 'movie.size=[320,180]' --set 'stills.size=[320,180]' --set stills.samples=2");
+                     " --set movie.seconds=0.2 --set 'movie.size=[320,180]' --set 'stills.size=[320,180]' "
+                     "--set stills.samples=2");
   }
   static void TearDownTestSuite() { fs::remove_all(folder_.parent_path()); }
 
@@ -66,8 +69,9 @@ TEST_F(DomeRun, LinKorenPlannerMeetsItsOwnTheory) {
 }
 
 TEST_F(DomeRun, LeavesEveryFile) {
-  for (const char* file : {"report.html", "metrics.json", "findings.json", "trajectory.csv", "movie.mp4", "still_part.png",
-                           "still_deviation.png", "still_fan.png", "still_machine.png", "machine.glb", "part.glb", "stock.vdb"}) {
+  for (const char* file : {"report.html", "metrics.json", "findings.json", "trajectory.csv", "movie.mp4",
+                           "still_part.png", "still_deviation.png", "still_fan.png", "still_machine.png",
+                           "machine.glb", "part.glb", "stock.vdb"}) {
     EXPECT_TRUE(fs::exists(folder_ / file)) << file;
     EXPECT_GT(fs::file_size(folder_ / file), 2U) << file;
   }
@@ -75,13 +79,14 @@ TEST_F(DomeRun, LeavesEveryFile) {
 }
 
 TEST_F(DomeRun, GltfValidatorFindsNoError) {
-  const std::string command = SWARF_SOURCE_DIR "/tests/gltf/validate.sh " + (folder_ / "machine.glb").string() + " " +
-                              (folder_ / "part.glb").string();
+  const std::string command = SWARF_SOURCE_DIR "/tests/gltf/validate.sh " +
+                              (folder_ / "machine.glb").string() + " " + (folder_ / "part.glb").string();
   EXPECT_EQ(std::system(command.c_str()), 0);
 }
 
 TEST_F(DomeRun, ComparesStockWithDesign) {
-  const auto run = run_swarf("compare " + (folder_ / "stock.vdb").string() + " " + kScene + " --json --scallop-um 25 --gouge-um 15");
+  const auto run = run_swarf("compare " + (folder_ / "stock.vdb").string() + " " + kScene +
+                             " --json --scallop-um 25 --gouge-um 15");
   EXPECT_EQ(run.exit_code, 0) << run.output;
   const json result = json::parse(run.output);
   EXPECT_GT(at_path(result, "surface.measured"), 100000);
@@ -90,9 +95,11 @@ TEST_F(DomeRun, ComparesStockWithDesign) {
 
 TEST_F(DomeRun, ExportsWithoutSimulating) {
   const std::string stl = (folder_ / "part.stl").string();
-  const auto run = run_swarf("export " + folder_.string() + " --stl " + stl + " --ply " + (folder_ / "part.ply").string());
+  const auto run =
+      run_swarf("export " + folder_.string() + " --stl " + stl + " --ply " + (folder_ / "part.ply").string());
   EXPECT_EQ(run.exit_code, 0) << run.output;
-  const auto compare = run_swarf("compare " + (folder_ / "part.ply").string() + " " + stl + " --scallop-um 0.1 --gouge-um 0.1");
+  const auto compare = run_swarf("compare " + (folder_ / "part.ply").string() + " " + stl +
+                                 " --scallop-um 0.1 --gouge-um 0.1");
   EXPECT_EQ(compare.exit_code, 0) << compare.output;
 }
 
@@ -108,11 +115,14 @@ TEST(DomeThreads, HashIsTheSameForAnyNumber) {
   std::string hash;
   for (const char* threads : {"1", "2", "4"}) {
     const fs::path folder = swarf::test::fresh_folder("dome_threads") / "run";
-    const auto run = run_swarf("run " + kScene + " --no-render --set toolpath.compare=false --set stock.voxel_mm=0.5 --threads " +
-                               threads + " -o " + folder.string());
+    const auto run = run_swarf(
+        "run " + kScene + " --no-render --set toolpath.compare=false --set stock.voxel_mm=0.5 --threads " +
+        threads + " -o " + folder.string());
     EXPECT_EQ(run.exit_code, 0) << run.output;
     const std::string found = at_path(read_json(folder / "metrics.json"), "stock.hash");
-    if (!hash.empty()) EXPECT_EQ(found, hash) << threads << " threads";
+    if (!hash.empty()) {
+      EXPECT_EQ(found, hash) << threads << " threads";
+    }
     hash = found;
     fs::remove_all(folder.parent_path());
   }

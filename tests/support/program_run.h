@@ -24,7 +24,8 @@ inline ProgramRun run_swarf(const std::string& arguments) {
   if (pipe == nullptr) throw std::runtime_error("cannot start " + command);
   ProgramRun run;
   std::array<char, 4096> buffer{};
-  while (const size_t count = std::fread(buffer.data(), 1, buffer.size(), pipe)) run.output.append(buffer.data(), count);
+  while (const size_t count = std::fread(buffer.data(), 1, buffer.size(), pipe))
+    run.output.append(buffer.data(), count);
   const int status = pclose(pipe);
   run.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   return run;

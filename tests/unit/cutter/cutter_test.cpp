@@ -44,7 +44,7 @@ INSTANTIATE_TEST_SUITE_P(All, Lengths,
                                          Case{"length_mm", &Cutter::length_mm},
                                          Case{"holder_diameter_mm", &Cutter::holder_diameter_mm},
                                          Case{"holder_length_mm", &Cutter::holder_length_mm}),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& one) { return one.param.name; });
 
 TEST(Cutter, OnlyFlatEndsAreCutByThisVersion) {
   Cutter cutter;
