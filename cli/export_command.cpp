@@ -29,13 +29,11 @@ int export_run(const ExportOptions& options) {
   const reports::StoredRun stored = reports::read_run(options.folder);
   const reports::FinishedRun run{stored.job, stored.trajectory, stored.stock, stored.dexels};
   const TriMesh part = reports::part_mesh(run);
-  if (!options.gltf.empty()) {
-    const double reached = reports::write_part_glb(run, part, options.error_um * kMicrometre, options.gltf);
-    fmt::print("{}: finished part, decimated within {:.3f} um\n", options.gltf, um_from_mm(reached));
-  }
-  if (!options.machine_gltf.empty()) {
-    reports::write_machine_glb(run, part, options.machine_gltf);
-    fmt::print("{}: animated machine\n", options.machine_gltf);
+  if (!options.gltf.empty() || !options.machine_gltf.empty()) {
+    const reports::DisplayMesh light = reports::display_mesh(part, options.error_um * kMicrometre);
+    if (!options.gltf.empty()) reports::write_part_glb(run, light, options.gltf);
+    if (!options.machine_gltf.empty()) reports::write_machine_glb(run, light, options.machine_gltf);
+    fmt::print("glTF: finished part decimated within {:.3f} um\n", um_from_mm(light.error_mm));
   }
   if (!options.stl.empty()) {
     mesh::save_mesh(options.stl, part);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/units.h"
 #include "mesh/mesh_ops.h"
 #include "render/figures/colour.h"
 #include "render/gltf/gltf_writer.h"
@@ -67,10 +68,8 @@ double animation_scale(const FinishedRun& run) {
   return std::max(1.0, run.trajectory.samples.back().t_s / kAnimationSeconds);
 }
 
-double write_part_glb(const FinishedRun& run, const TriMesh& part, double max_error_mm,
-                      const std::string& path) {
-  double reached = 0.0;
-  auto [measured, rest] = split_by_measure(mesh::decimate(part, max_error_mm, &reached));
+void write_part_glb(const FinishedRun& run, const DisplayMesh& part, const std::string& path) {
+  auto [measured, rest] = split_by_measure(part.mesh);
   const double scale = deviation_scale_um(run.job);
   render::colour_by_deviation(measured, scale);
   render::GltfScene scene;
@@ -81,15 +80,19 @@ double write_part_glb(const FinishedRun& run, const TriMesh& part, double max_er
   scene.lines = fan_lines(run);
   scene.extras = {{"scene", run.job.scene.name},
                   {"deviation_scale_um", fmt::format("{:g}", scale)},
-                  {"decimation_error_um", fmt::format("{:.4f}", reached * 1e3)}};
+                  {"decimation_error_um", fmt::format("{:.4f}", um_from_mm(part.error_mm))}};
   render::write_glb(path, scene);
-  return reached;
 }
 
-void write_machine_glb(const FinishedRun& run, const TriMesh& part, const std::string& path) {
+DisplayMesh display_mesh(const TriMesh& part, double max_error_mm) {
+  DisplayMesh display;
+  display.mesh = mesh::decimate(part, max_error_mm, &display.error_mm);
+  return display;
+}
+
+void write_machine_glb(const FinishedRun& run, const DisplayMesh& part, const std::string& path) {
   const MachineView view(run.job);
-  const TriMesh light_part = mesh::decimate(part, kMachinePartError, nullptr);
-  TriMesh shown = light_part;
+  TriMesh shown = mesh::decimate(part.mesh, kMachinePartError, nullptr);
   shown.deviation_um.clear();
   const std::vector<size_t> samples = animation_samples(run);
   const double scale = animation_scale(run);

@@ -66,7 +66,7 @@ RenderStatistics make_movie(const FinishedRun& run, const std::string& path, con
   const sim::MovieSettings& settings = run.job.scene.movie;
   const MachineView view(run.job);
   MovieStock stock(run);
-  render::RasterRenderer renderer(settings.size[0], settings.size[1]);
+  render::RasterRenderer renderer(settings.size[0], settings.size[1], settings.samples);
   render::MovieWriter movie(path, settings.size[0], settings.size[1], settings.fps);
   const int frames = std::max(1, static_cast<int>(settings.seconds * settings.fps));
   const size_t last = run.trajectory.samples.size() - 1;

@@ -40,13 +40,18 @@ ColourBar deviation_colour_bar(double scale_um);
 render::Image deviation_picture(const TriMesh& coloured, double scale_um, const std::string& camera,
                                 render::StillOptions options);
 
-/// machine.glb: links, tool and finished part with the axes animated over the program.
-void write_machine_glb(const FinishedRun& run, const TriMesh& part, const std::string& path);
+/// The part made light enough to be sent around.
+struct DisplayMesh {
+  TriMesh mesh;
+  double error_mm = 0.0;  ///< that the decimation reached, measured
+};
+DisplayMesh display_mesh(const TriMesh& part, double max_error_mm);
 
-/// part.glb: the finished part decimated to the stated error, deviation as colour and attribute, tool-axis
-/// fan as lines. Returns the error that the decimation reached, mm.
-double write_part_glb(const FinishedRun& run, const TriMesh& part, double max_error_mm,
-                      const std::string& path);
+/// machine.glb: links, tool and finished part with the axes animated over the program.
+void write_machine_glb(const FinishedRun& run, const DisplayMesh& part, const std::string& path);
+
+/// part.glb: the finished part with deviation as colour and attribute, the tool-axis fan as lines.
+void write_part_glb(const FinishedRun& run, const DisplayMesh& part, const std::string& path);
 
 /// Program seconds that one second of the glTF animation stands for.
 double animation_scale(const FinishedRun& run);

@@ -93,10 +93,12 @@ void write_run(const std::string& target, const sim::Job& job, sim::Result& resu
   progress.begin("glTF", 3, "files");
   const TriMesh part = part_mesh(run);
   progress.advance(1);
-  files.part_error_mm = write_part_glb(run, part, kPartGlbError, folder.file("part.glb"));
+  const DisplayMesh light = display_mesh(part, kPartGlbError);
+  files.part_error_mm = light.error_mm;
+  write_part_glb(run, light, folder.file("part.glb"));
   files.part_glb = folder.file("part.glb");
   progress.advance(2);
-  write_machine_glb(run, part, folder.file("machine.glb"));
+  write_machine_glb(run, light, folder.file("machine.glb"));
   files.machine_glb = folder.file("machine.glb");
   files.animation_scale = animation_scale(run);
   progress.end();

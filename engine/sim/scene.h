@@ -33,6 +33,7 @@ struct MovieSettings {
   double seconds = 10.0;
   std::array<int, 2> size{1280, 720};
   int fps = 30;
+  int samples = 1;        ///< per pixel, 1 or 4: 4 smooths edges and takes twice as long
   double voxel_mm = 0.8;  ///< of the stock that the movie shows; it is not measured
 };
 

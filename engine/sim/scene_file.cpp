@@ -92,6 +92,11 @@ void read_pictures(ConfigTable& root, Scene& scene) {
   scene.movie.size = read_size(movie);
   scene.movie.fps = movie.integer("fps", 1, 120, scene.movie.fps);
   scene.movie.voxel_mm = movie.number("voxel_mm", kAboveZero, scene.movie.voxel_mm);
+  scene.movie.samples = movie.integer("samples", 1, 4, scene.movie.samples);
+  if (scene.movie.samples != 1 && scene.movie.samples != 4) {
+    movie.error("out-of-range", "samples", fmt::format("'movie.samples' is {}", scene.movie.samples),
+                "write 1 or 4");
+  }
   ConfigTable stills = root.table("stills");
   scene.stills.size = read_size(stills);
   scene.stills.samples = stills.integer("samples", 1, 4096, scene.stills.samples);
