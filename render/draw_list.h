@@ -23,7 +23,8 @@ struct DrawItem {
   const TriMesh* mesh = nullptr;
   Pose X_world = Pose::Identity();  ///< from the mesh's frame to the drawing's frame
   Material material;
-  bool dynamic = false;  ///< true: the mesh changes between frames; false: renderers may keep it by its address
+  bool dynamic =
+      false;  ///< true: the mesh changes between frames; false: renderers may keep it by its address
 };
 
 struct DrawLine {

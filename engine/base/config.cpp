@@ -195,7 +195,7 @@ bool ConfigTable::boolean(const std::string& key, std::optional<bool> fallback) 
   return fallback.value_or(false);
 }
 
-std::string ConfigTable::text(const std::string& key, std::optional<std::string> fallback) {
+std::string ConfigTable::text(const std::string& key, const std::optional<std::string>& fallback) {
   const toml::node* value = node_->find(key);
   if (value != nullptr && value->is_string()) return *value->value<std::string>();
   if (value != nullptr || !fallback) {
@@ -208,7 +208,7 @@ std::string ConfigTable::text(const std::string& key, std::optional<std::string>
 }
 
 std::string ConfigTable::choice(const std::string& key, const std::vector<std::string>& words,
-                                std::optional<std::string> fallback) {
+                                const std::optional<std::string>& fallback) {
   const std::string word = text(key, fallback);
   for (const std::string& candidate : words) {
     if (word == candidate) return word;
@@ -223,7 +223,7 @@ std::string ConfigTable::choice(const std::string& key, const std::vector<std::s
 }
 
 std::vector<double> ConfigTable::numbers(const std::string& key, size_t count,
-                                         std::optional<std::vector<double>> fallback) {
+                                         const std::optional<std::vector<double>>& fallback) {
   const toml::node* value = node_->find(key);
   const std::vector<double> otherwise = fallback.value_or(std::vector<double>(count, 0.0));
   if (value == nullptr && fallback) return otherwise;

@@ -41,12 +41,12 @@ class ConfigTable {
   double number(const std::string& key, Range range, std::optional<double> fallback = {});
   int integer(const std::string& key, int low, int high, std::optional<int> fallback = {});
   bool boolean(const std::string& key, std::optional<bool> fallback = {});
-  std::string text(const std::string& key, std::optional<std::string> fallback = {});
+  std::string text(const std::string& key, const std::optional<std::string>& fallback = {});
   /// One of the given words.
   std::string choice(const std::string& key, const std::vector<std::string>& words,
-                     std::optional<std::string> fallback = {});
+                     const std::optional<std::string>& fallback = {});
   std::vector<double> numbers(const std::string& key, size_t count,
-                              std::optional<std::vector<double>> fallback = {});
+                              const std::optional<std::vector<double>>& fallback = {});
   /// [[x,y,z],[x,y,z]] with lower < upper in each direction.
   Box box(const std::string& key);
 

@@ -112,8 +112,8 @@ double height_at(const stock::SurfaceDexels& dexels, double u, double v) {
 
 uint32_t block_at(const stock::SurfaceDexels& dexels, double u, double v) {
   const GridPlace p = place_of(dexels, u, v);
-  const auto iu = static_cast<size_t>(p.iu + (p.fu > 0.5 ? 1 : 0));
-  const auto iv = static_cast<size_t>(p.iv + (p.fv > 0.5 ? 1 : 0));
+  const auto iu = static_cast<size_t>(p.iu) + (p.fu > 0.5 ? 1U : 0U);
+  const auto iv = static_cast<size_t>(p.iv) + (p.fv > 0.5 ? 1U : 0U);
   return dexels.blocks()[iv * static_cast<size_t>(dexels.nu()) + iu];
 }
 

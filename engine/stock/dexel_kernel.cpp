@@ -68,7 +68,7 @@ void tile_heights_baseline(const TileRays& rays, const SweepMap& map, double rad
   tile_heights(rays, map, radius, out);
 }
 
-#if defined(__x86_64__)
+#ifdef SWARF_KERNEL_VARIANTS
 __attribute__((target("arch=x86-64-v3"))) void tile_heights_v3(const TileRays& rays, const SweepMap& map,
                                                                double radius, TileHeights& out) {
   tile_heights(rays, map, radius, out);
@@ -81,7 +81,7 @@ __attribute__((target("arch=x86-64-v4"))) void tile_heights_v4(const TileRays& r
 
 std::vector<DexelKernelVariant> supported_variants() {
   std::vector<DexelKernelVariant> variants;
-#if defined(__x86_64__)
+#ifdef SWARF_KERNEL_VARIANTS
   if (__builtin_cpu_supports("x86-64-v4")) variants.push_back({"x86-64-v4", tile_heights_v4});
   if (__builtin_cpu_supports("x86-64-v3")) variants.push_back({"x86-64-v3", tile_heights_v3});
 #endif

@@ -75,7 +75,7 @@ int cut_leaf_baseline(float* values, const LeafMotion& motion) {
   return cut_leaf(values, motion);
 }
 
-#if defined(__x86_64__)
+#ifdef SWARF_KERNEL_VARIANTS
 __attribute__((target("arch=x86-64-v3"))) int cut_leaf_v3(float* values, const LeafMotion& motion) {
   return cut_leaf(values, motion);
 }
@@ -86,7 +86,7 @@ __attribute__((target("arch=x86-64-v4"))) int cut_leaf_v4(float* values, const L
 
 std::vector<LeafKernelVariant> supported_variants() {
   std::vector<LeafKernelVariant> variants;
-#if defined(__x86_64__)
+#ifdef SWARF_KERNEL_VARIANTS
   if (__builtin_cpu_supports("x86-64-v4")) variants.push_back({"x86-64-v4", cut_leaf_v4});
   if (__builtin_cpu_supports("x86-64-v3")) variants.push_back({"x86-64-v3", cut_leaf_v3});
 #endif

@@ -80,7 +80,7 @@ SurfaceDexels::SurfaceDexels(surface::SurfacePtr surface, int nu, int nv)
   make_tiles();
 }
 
-SurfaceDexels::SurfaceDexels(surface::SurfacePtr surface, double pitch_mm, const Box& stock_box)
+SurfaceDexels::SurfaceDexels(const surface::SurfacePtr& surface, double pitch_mm, const Box& stock_box)
     : SurfaceDexels(surface, rays_along(*surface, true, pitch_mm), rays_along(*surface, false, pitch_mm)) {
   SWARF_CHECK(pitch_mm > 0.0, "dexels need a pitch");
   for (size_t n = 0; n < points_.size(); ++n) heights_[n] = height_of_box(stock_box, points_[n], normals_[n]);

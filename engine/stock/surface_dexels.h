@@ -34,7 +34,7 @@ class SurfaceDexels {
  public:
   /// Grid of about `pitch_mm` over the unit square. Rays start at the stock's surface: initial height is
   /// where the ray leaves `stock_box`, 0 or less if the design point lies outside it.
-  SurfaceDexels(surface::SurfacePtr surface, double pitch_mm, const Box& stock_box);
+  SurfaceDexels(const surface::SurfacePtr& surface, double pitch_mm, const Box& stock_box);
 
   /// Lowers the heights by the sweeps; parallel, order-independent, ties keep the smaller block id.
   void cut(std::span<const Sweep> sweeps, const CutterSolid& cutter);

@@ -42,6 +42,9 @@ HEAVY = {
     "libpng": (r"png\.h", ("render/image_io.cpp",)),
 }
 
+# Headers that only the .cpp files beside them include: they may show the library.
+PRIVATE_HEADERS = {"stock_grid_internal.h", "gltf_buffer.h", "gl_api.h"}
+
 
 def module_of(path):
     parts = path.relative_to(ROOT).parts
@@ -66,7 +69,7 @@ def problems():
                 for library, (pattern, homes) in HEAVY.items():
                     if re.match(pattern, target) and not (
                         any(place.startswith(home) for home in homes)
-                        and (path.suffix == ".cpp" or "_internal" in path.name)
+                        and (path.suffix == ".cpp" or path.name in PRIVATE_HEADERS)
                     ):
                         yield f"{place}:{number}: {library} belongs to the .cpp files of {', '.join(homes)}"
 

@@ -93,7 +93,7 @@ void expect_kept(const SpeedLimits& limits, const Profile& profile, double jerk_
 }
 
 TEST(JerkProfile, RandomLimitsAreKeptEverywhere) {
-  constexpr int kCases = 300;
+  constexpr int kCases = 120;
   constexpr uint64_t kSeed = 1993;
   Rng rng(kSeed);
   for (int i = 0; i < kCases; ++i) {

@@ -17,16 +17,31 @@ namespace {
 std::atomic<size_t> allocations{0};
 }  // namespace
 
-// Not inlined: the compiler would see malloc paired with delete and warn.
-__attribute__((noinline)) void* operator new(size_t size) {
+// Every form is replaced, so that none is paired with the library's. Not inlined: the compiler would see
+// malloc paired with delete and warn.
+#define COUNTED __attribute__((noinline))
+
+COUNTED void* operator new(size_t size, const std::nothrow_t&) noexcept {
   ++allocations;
-  if (void* memory = std::malloc(size)) return memory;
+  return std::malloc(size);
+}
+COUNTED void* operator new(size_t size) {
+  if (void* memory = operator new(size, std::nothrow)) return memory;
   throw std::bad_alloc();
 }
-__attribute__((noinline)) void operator delete(void* memory) noexcept {
+COUNTED void* operator new[](size_t size) {
+  return operator new(size);
+}
+COUNTED void operator delete(void* memory) noexcept {
   std::free(memory);
 }
-__attribute__((noinline)) void operator delete(void* memory, size_t) noexcept {
+COUNTED void operator delete(void* memory, size_t) noexcept {
+  std::free(memory);
+}
+COUNTED void operator delete[](void* memory) noexcept {
+  std::free(memory);
+}
+COUNTED void operator delete[](void* memory, size_t) noexcept {
   std::free(memory);
 }
 
