@@ -34,8 +34,9 @@ struct LinkEntry {
   Link link;
 };
 
-Vec3 read_vec3(ConfigTable& table, const std::string& key, std::optional<std::vector<double>> fallback = {}) {
-  const std::vector<double> v = table.numbers(key, 3, std::move(fallback));
+Vec3 read_vec3(ConfigTable& table, const std::string& key,
+               const std::optional<std::vector<double>>& fallback = {}) {
+  const std::vector<double> v = table.numbers(key, 3, fallback);
   return {v[0], v[1], v[2]};
 }
 
@@ -43,7 +44,7 @@ Vec3 read_direction(ConfigTable& table, const std::string& key,
                     std::optional<std::vector<double>> fallback = {}) {
   // What is no vector at all has one diagnostic, not a second one for its length.
   if (table.has(key)) fallback = std::vector<double>{1, 0, 0};
-  const Vec3 direction = read_vec3(table, key, std::move(fallback));
+  const Vec3 direction = read_vec3(table, key, fallback);
   const double length = direction.norm();
   if (table.has(key) && std::abs(length - 1.0) > kWrittenUnitTolerance) {
     table.error("direction-not-unit", key,
