@@ -57,6 +57,11 @@ size_t reach(std::span<const ToolPose> poses, size_t first, size_t limit, double
 
 }  // namespace
 
+CutterSolid::CutterSolid(double flat_radius, double flute_height)
+    : radius(flat_radius),
+      height(flute_height),
+      pieces{cutter::ConvexPiece::cylinder(flat_radius, flute_height)} {}
+
 MergedSweeps merge_sweeps(std::span<const ToolPose> poses, std::span<const uint8_t> breaks, double lever_mm,
                           double tolerance_mm) {
   SWARF_CHECK(breaks.size() == poses.size(), "one break flag per pose");

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/frames.h"
+#include "cutter/convex_piece.h"
 
 namespace swarf::stock {
 
@@ -16,11 +17,16 @@ struct Sweep {
   uint32_t block = 0;  ///< caller's id: which samples or block this is
 };
 
-/// The cutting part as a solid of revolution: a flat-end cylinder, radius and height in mm, standing on the
-/// tip.
+/// The cutting part (flutes only) as a solid of revolution standing on the tip: a union of convex pieces.
 struct CutterSolid {
-  double radius = 5.0;
-  double height = 25.0;
+  double radius = 5.0;   ///< greatest, mm
+  double height = 25.0;  ///< of the flutes, mm
+  std::vector<cutter::ConvexPiece> pieces;
+
+  /// A flat end mill.
+  CutterSolid(double flat_radius = 5.0, double flute_height = 25.0);
+  /// One piece that is a plain cylinder: the kernels know it in closed form.
+  bool is_cylinder() const { return pieces.size() == 1 && pieces.front().is_cylinder(); }
 };
 
 /// Poses of consecutive ticks joined greedily into as few sweeps as the tolerance allows.
