@@ -10,10 +10,16 @@ double cross(const Vec2& a, const Vec2& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
-double distance(const Round& round, const Vec2& p) {
+Support support_of(const Face& face, const Vec2& p) {
+  return {face.normal.dot(p) - face.offset, face.normal};
+}
+
+Support support_of(const Round& round, const Vec2& p) {
   const Vec2 d = p - round.centre;
-  const bool within = cross(round.from, d) >= 0.0 && cross(d, round.to) >= 0.0;
-  return (within ? d.norm() : std::max(d.dot(round.from), d.dot(round.to))) - round.radius;
+  const double length = d.norm();
+  const bool within = length > 0.0 && cross(round.from, d) >= 0.0 && cross(d, round.to) >= 0.0;
+  const Vec2 normal = within ? Vec2(d / length) : d.dot(round.from) > d.dot(round.to) ? round.from : round.to;
+  return {d.dot(normal) - round.radius, normal};
 }
 
 }  // namespace
@@ -28,12 +34,19 @@ bool ConvexPiece::is_cylinder() const {
                      [](const Face& face) { return face.normal.x() == 0.0 || face.normal.y() == 0.0; });
 }
 
-double signed_distance(const ConvexPiece& piece, double rho, double z) {
+Support support(const ConvexPiece& piece, double rho, double z) {
   const Vec2 p(rho, z);
-  double value = -std::numeric_limits<double>::infinity();
-  for (const Face& face : piece.faces) value = std::max(value, face.normal.dot(p) - face.offset);
-  for (const Round& round : piece.rounds) value = std::max(value, distance(round, p));
-  return value;
+  Support greatest{-std::numeric_limits<double>::infinity(), Vec2::Zero()};
+  const auto raise = [&](const Support& other) {
+    if (other.value > greatest.value) greatest = other;
+  };
+  for (const Face& face : piece.faces) raise(support_of(face, p));
+  for (const Round& round : piece.rounds) raise(support_of(round, p));
+  return greatest;
+}
+
+double signed_distance(const ConvexPiece& piece, double rho, double z) {
+  return support(piece, rho, z).value;
 }
 
 }  // namespace swarf::cutter

@@ -41,6 +41,13 @@ struct ConvexPiece {
   bool is_cylinder() const;
 };
 
+/// What bounds the piece at a point: F in mm and its gradient, a unit vector in (rho, z).
+struct Support {
+  double value = 0.0;
+  Vec2 normal{0.0, 0.0};
+};
+Support support(const ConvexPiece& piece, double rho, double z);
+
 /// F at (rho, z), mm.
 double signed_distance(const ConvexPiece& piece, double rho, double z);
 
