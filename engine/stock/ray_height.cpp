@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "stock/convex_ray.h"
 #include "stock/surface_dexels.h"
 
 namespace swarf::stock {
@@ -25,6 +26,11 @@ constexpr double kConverged = 1e-13;
 
 struct Instant {
   double t, s;
+};
+
+/// A flat end: the solid that the closed form knows.
+struct Cylinder {
+  double radius, height;
 };
 
 /// X(t, s) = P + t D + s N + t s E.
@@ -60,7 +66,7 @@ std::optional<Interval> circle_crossings(const Vec2& U, const Vec2& V, double ra
 }
 
 /// Where the line A + s B enters the standing cutter.
-double entry_of_pose(const Vec3& A, const Vec3& B, const CutterSolid& cutter) {
+double entry_of_pose(const Vec3& A, const Vec3& B, const Cylinder& cutter) {
   Interval inside;
   if (B.z() * B.z() > kDegenerate) {
     inside.clip(-A.z() / B.z(), (cutter.height - A.z()) / B.z());
@@ -108,7 +114,7 @@ std::optional<Instant> flank_contact(const Bilinear& m, double radius, int branc
   return Instant{-(U + s * V).dot(W) / travel2, s};
 }
 
-std::optional<Instant> contact(const Bilinear& m, Contact kind, int branch, const CutterSolid& cutter) {
+std::optional<Instant> contact(const Bilinear& m, Contact kind, int branch, const Cylinder& cutter) {
   switch (kind) {
     case Contact::kBottomRim:
       return rim_contact(m, 0.0, cutter.radius, branch);
@@ -122,7 +128,7 @@ std::optional<Instant> contact(const Bilinear& m, Contact kind, int branch, cons
 
 /// The candidate's s when it belongs to the swept set.
 double height_of_contact(const Bilinear& map, const Instant& guess, Contact kind, int branch,
-                         const CutterSolid& cutter) {
+                         const Cylinder& cutter) {
   const bool translation = map.E == Vec3::Zero();
   Instant at = guess;
   for (int step = 0; step < (translation ? 1 : kNewtonSteps); ++step) {
@@ -142,7 +148,7 @@ double height_of_contact(const Bilinear& map, const Instant& guess, Contact kind
   return inside ? at.s : kMiss;
 }
 
-double lowest_contact(const Bilinear& map, const Instant& guess, const CutterSolid& cutter) {
+double lowest_contact(const Bilinear& map, const Instant& guess, const Cylinder& cutter) {
   double lowest = kMiss;
   for (const Contact kind : {Contact::kBottomRim, Contact::kTopRim, Contact::kFlank}) {
     for (int branch = 0; branch < 2; ++branch) {
@@ -172,9 +178,8 @@ std::optional<double> height_on_disc(const Vec3& P, const Vec3& N, const Vec3& P
   return inside ? std::optional(std::min(s, s1)) : std::nullopt;
 }
 
-}  // namespace
-
-double ray_height(const Vec3& point, const Vec3& normal, const SweepMap& sweep, const CutterSolid& cutter) {
+double lowest_of_cylinder(const Vec3& point, const Vec3& normal, const SweepMap& sweep,
+                          const Cylinder& cutter) {
   const Vec3 P = sweep.start(point), P1 = sweep.end(point);
   const Vec3 N = sweep.R0t * normal, N1 = sweep.R1t * normal;
   if (const auto height = height_on_disc(P, N, P1, N1, cutter.radius)) return *height;
@@ -186,8 +191,34 @@ double ray_height(const Vec3& point, const Vec3& normal, const SweepMap& sweep, 
   return best;
 }
 
+/// Lowest s of the piece's sweep; pieces above `highest` need not be told from a miss.
+double lowest_of_piece(const Vec3& point, const Vec3& direction, const SweepMap& map,
+                       const cutter::ConvexPiece& piece, double highest) {
+  if (piece.is_cylinder()) return lowest_of_cylinder(point, direction, map, {piece.radius, piece.high});
+  return lowest_in_sweep(piece, point, direction, map, highest);
+}
+
+}  // namespace
+
+double ray_height(const Vec3& point, const Vec3& normal, const SweepMap& map, const CutterSolid& cutter) {
+  double lowest = kMiss;
+  for (const cutter::ConvexPiece& piece : cutter.pieces) {
+    lowest = std::min(lowest, lowest_of_piece(point, normal, map, piece, lowest));
+  }
+  return lowest;
+}
+
 double ray_height(const Vec3& point, const Vec3& normal, const Sweep& sweep, const CutterSolid& cutter) {
   return ray_height(point, normal, sweep_map(sweep), cutter);
+}
+
+RayInterval ray_interval(const Vec3& point, const Vec3& normal, const SweepMap& map,
+                         const cutter::ConvexPiece& piece) {
+  const double low = lowest_of_piece(point, normal, map, piece, kMiss);
+  if (low == kMiss) return {};
+  // The ray touches the sweep, so its far end cannot be missed; rounding may, at a point of tangency.
+  const double high = -lowest_of_piece(point, -normal, map, piece, kMiss);
+  return {low, std::max(low, high)};
 }
 
 }  // namespace swarf::stock
