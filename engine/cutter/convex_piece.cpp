@@ -10,19 +10,15 @@ double cross(const Vec2& a, const Vec2& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
-Support support_of(const Face& face, const Vec2& p) {
-  return {face.normal.dot(p) - face.offset, face.normal};
-}
+}  // namespace
 
-Support support_of(const Round& round, const Vec2& p) {
+Support support(const Round& round, const Vec2& p) {
   const Vec2 d = p - round.centre;
   const double length = d.norm();
   const bool within = length > 0.0 && cross(round.from, d) >= 0.0 && cross(d, round.to) >= 0.0;
   const Vec2 normal = within ? Vec2(d / length) : d.dot(round.from) > d.dot(round.to) ? round.from : round.to;
   return {d.dot(normal) - round.radius, normal};
 }
-
-}  // namespace
 
 ConvexPiece ConvexPiece::cylinder(double radius, double height) {
   return {{{{0.0, -1.0}, 0.0}, {{1.0, 0.0}, radius}, {{0.0, 1.0}, height}}, {}, radius, 0.0, height};
@@ -40,8 +36,8 @@ Support support(const ConvexPiece& piece, double rho, double z) {
   const auto raise = [&](const Support& other) {
     if (other.value > greatest.value) greatest = other;
   };
-  for (const Face& face : piece.faces) raise(support_of(face, p));
-  for (const Round& round : piece.rounds) raise(support_of(round, p));
+  for (const Face& face : piece.faces) raise(support(face, p));
+  for (const Round& round : piece.rounds) raise(support(round, p));
   return greatest;
 }
 

@@ -48,6 +48,12 @@ struct Support {
 };
 Support support(const ConvexPiece& piece, double rho, double z);
 
+/// The same of one bound; p = (rho, z).
+inline Support support(const Face& face, const Vec2& p) {
+  return {face.normal.dot(p) - face.offset, face.normal};
+}
+Support support(const Round& round, const Vec2& p);
+
 /// F at (rho, z), mm.
 double signed_distance(const ConvexPiece& piece, double rho, double z);
 

@@ -98,6 +98,7 @@ LeafMap empty_map(const Box& box, double voxel) {
   const size_t count = static_cast<size_t>(map.dimension.x()) * map.dimension.y() * map.dimension.z();
   map.states.assign(count, LeafState::kAir);
   map.leaves.assign(count, nullptr);
+  map.floors.assign(count, {static_cast<float>(-kBandVoxels * voxel), {}});
   return map;
 }
 
@@ -112,20 +113,15 @@ openvdb::FloatGrid::Ptr empty_grid(double voxel) {
 }
 
 LeafState settle_leaf(LeafNode& leaf, float band) {
-  const float* values = leaf.buffer().data();
-  auto& mask = leaf.getValueMask();
-  bool air = true, solid = true;
+  static const LeafSummary summary = leaf_kernel_variants().front().summary;
+  uint64_t active[kLeafVoxels / 64];
+  const LeafRange range = summary(leaf.buffer().data(), band, active);
   for (int word = 0; word < kLeafVoxels / 64; ++word) {
-    uint64_t active = 0;
-    for (int bit = 0; bit < 64; ++bit) {
-      const float value = values[word * 64 + bit];
-      active |= static_cast<uint64_t>(value > -band && value < band) << bit;
-      air &= value >= band;
-      solid &= value <= -band;
-    }
-    mask.getWord<openvdb::Index64>(word) = active;
+    leaf.getValueMask().getWord<openvdb::Index64>(word) = active[word];
   }
-  return air ? LeafState::kAir : solid ? LeafState::kSolid : LeafState::kLeaf;
+  return range.least >= band       ? LeafState::kAir
+         : range.greatest <= -band ? LeafState::kSolid
+                                   : LeafState::kLeaf;
 }
 
 LevelSet make_box(const Box& box, double voxel) {

@@ -34,6 +34,13 @@ inline constexpr int kBandVoxels = 3;
 
 enum class LeafState : uint8_t { kAir, kSolid, kLeaf };
 
+/// What is known of a leaf position without looking at its values: none of them lies below
+/// min(value + slope . (x - centre), band).
+struct LeafFloor {
+  float value = 0.0F;   ///< mm
+  float slope[3] = {};  ///< per mm
+};
+
 /// All leaf positions of the box and its band, z fastest; position (i,j,k) holds voxels (lower + ijk) * 8 and
 /// on.
 struct LeafMap {
@@ -41,6 +48,7 @@ struct LeafMap {
   openvdb::Coord dimension;  ///< number of leaves
   std::vector<LeafState> states;
   std::vector<LeafNode*> leaves;  ///< owned by the tree; nullptr unless the state is kLeaf
+  std::vector<LeafFloor> floors;  ///< raised by cutting; -band, which always holds, after loading
 
   size_t size() const { return states.size(); }
   size_t index(int i, int j, int k) const {

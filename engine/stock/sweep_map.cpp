@@ -50,10 +50,10 @@ SweepMap sweep_map(const Sweep& sweep) {
   return map;
 }
 
-double motion_bound(const Sweep& sweep, double lever_mm) {
-  const double theta =
-      std::atan2(sweep.start.axis_W.cross(sweep.end.axis_W).norm(), sweep.start.axis_W.dot(sweep.end.axis_W));
-  const double travel = (sweep.end.tip_W - sweep.start.tip_W).norm();
+double motion_bound(const SweepMap& map, double lever_mm) {
+  const Vec3 axis0 = map.R0t.row(2), axis1 = map.R1t.row(2);
+  const double theta = std::atan2(axis0.cross(axis1).norm(), axis0.dot(axis1));
+  const double travel = (map.tip1 - map.tip0).norm();
   return theta * (theta * lever_mm + 2.0 * travel) / 8.0;
 }
 

@@ -1,0 +1,62 @@
+// Sixteen swept pieces against one leaf: which of them may still raise a value there.
+//
+// The bounds of sweep_reach.h, in single precision for a run of consecutive sweeps at once. Compiled like
+// leaf_kernel.cpp. All comparisons carry a slack above the rounding, so a verdict never changes a bit of the
+// stock.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "cutter/convex_piece.h"
+
+namespace swarf::stock {
+
+inline constexpr int kLanes = 16;
+
+/// Maps into the tool frame (sweep_map.h) by component; tips relative to the run's origin. Lanes beyond the
+/// last sweep repeat it.
+struct Lanes {
+  alignas(64) float R0t[3][3][kLanes], R1t[3][3][kLanes];  ///< [row][column]
+  alignas(64) float tip0[3][kLanes], tip1[3][kLanes];      ///< mm
+};
+
+/// A convex piece by components.
+struct LanePiece {
+  struct Face {
+    float rho, z, offset;
+  };
+  struct Round {
+    float centre_rho, centre_z, radius, from_rho, from_z, to_rho, to_z;
+  };
+  std::vector<Face> faces;
+  std::vector<Round> rounds;
+};
+LanePiece lane_piece(const cutter::ConvexPiece& piece);
+
+/// The leaf and what is known of its values (LeafFloor).
+struct LaneQuery {
+  float centre[3];  ///< relative to the run's origin, mm
+  float floor, floor_slope[3];
+  float half;   ///< from the centre to the leaf's faces, mm
+  float reach;  ///< from the centre to the farthest place where a distance matters, mm
+};
+
+struct LaneAnswer {
+  uint32_t open;      ///< bit n: lane n may raise a value
+  uint32_t swallows;  ///< bit n: every voxel of the leaf lies deeper inside lane n's cutter than the band
+  alignas(64) float distance[kLanes];  ///< F at the centre at half time, mm: the lowest cuts deepest
+};
+
+using LaneKernel = void (*)(const Lanes& lanes, const LanePiece& piece, const LaneQuery& query,
+                            LaneAnswer& out);
+
+struct LaneKernelVariant {
+  const char* instruction_set;
+  LaneKernel kernel;
+};
+/// The variants this processor can run, fastest first.
+std::span<const LaneKernelVariant> lane_kernel_variants();
+
+}  // namespace swarf::stock
