@@ -1,124 +1,121 @@
 #include "stock/lane_kernel.h"
 
 #include <cmath>
+#include <cstring>
 
 #include "stock/sweep_distance.h"
 
 namespace swarf::stock {
 namespace {
 
-using Lane = float[kLanes];
+using V = LaneVector;
+using Mask = int32_t __attribute__((vector_size(kLanes * sizeof(int32_t))));
 
-struct Points {
-  alignas(64) float x[kLanes], y[kLanes], z[kLanes];
-};
-
-SWARF_KERNEL_INLINE void to_tool(Points& out, const float (&R)[3][3][kLanes], const float (&tip)[3][kLanes],
-                                 const float* centre) {
-  const float cx = centre[0], cy = centre[1], cz = centre[2];
-  for (int n = 0; n < kLanes; ++n) {
-    const float dx = cx - tip[0][n], dy = cy - tip[1][n], dz = cz - tip[2][n];
-    out.x[n] = R[0][0][n] * dx + R[0][1][n] * dy + R[0][2][n] * dz;
-    out.y[n] = R[1][0][n] * dx + R[1][1][n] * dy + R[1][2][n] * dz;
-    out.z[n] = R[2][0][n] * dx + R[2][1][n] * dy + R[2][2][n] * dz;
-  }
+SWARF_KERNEL_INLINE V max_of(V a, V b) {
+  return a > b ? a : b;
+}
+SWARF_KERNEL_INLINE V min_of(V a, V b) {
+  return a < b ? a : b;
+}
+SWARF_KERNEL_INLINE V magnitude(V a) {
+  return max_of(a, -a);
+}
+SWARF_KERNEL_INLINE V root(V a) {
+  V result;
+  for (int n = 0; n < kLanes; ++n) result[n] = std::sqrt(a[n]);
+  return result;
 }
 
-/// The outermost face or round of each lane and the next one: value and gradient (rho, z).
+struct Point {
+  V x, y, z;
+};
+
+SWARF_KERNEL_INLINE Point to_tool(const V (&R)[3][3], const V (&tip)[3], const float* centre) {
+  const V dx = centre[0] - tip[0], dy = centre[1] - tip[1], dz = centre[2] - tip[2];
+  return {R[0][0] * dx + R[0][1] * dy + R[0][2] * dz, R[1][0] * dx + R[1][1] * dy + R[1][2] * dz,
+          R[2][0] * dx + R[2][1] * dy + R[2][2] * dz};
+}
+
+/// A face or round: value and gradient (rho, z).
+struct Bound {
+  V value, rho, z;
+};
+/// The outermost one of each lane and the next.
 struct Outermost {
-  alignas(64) float value[2][kLanes], rho[2][kLanes], z[2][kLanes];
+  Bound first, second;
 };
-
-SWARF_KERNEL_INLINE void insert(Outermost& o, int n, float value, float rho, float z) {
-  const bool first = value > o.value[0][n];
-  const bool second = value > o.value[1][n];
-  o.value[1][n] = first ? o.value[0][n] : second ? value : o.value[1][n];
-  o.rho[1][n] = first ? o.rho[0][n] : second ? rho : o.rho[1][n];
-  o.z[1][n] = first ? o.z[0][n] : second ? z : o.z[1][n];
-  o.value[0][n] = first ? value : o.value[0][n];
-  o.rho[0][n] = first ? rho : o.rho[0][n];
-  o.z[0][n] = first ? z : o.z[0][n];
+// Each comparison stands where it is used: kept as a variable it would leave the mask registers.
+SWARF_KERNEL_INLINE void insert(Outermost& o, const Bound& b) {
+  const V a = o.first.value;
+  const Bound rest{b.value > a ? a : b.value, b.value > a ? o.first.rho : b.rho,
+                   b.value > a ? o.first.z : b.z};
+  o.first = {b.value > a ? b.value : a, b.value > a ? b.rho : o.first.rho, b.value > a ? b.z : o.first.z};
+  const V c = o.second.value;
+  o.second = {rest.value > c ? rest.value : c, rest.value > c ? rest.rho : o.second.rho,
+              rest.value > c ? rest.z : o.second.z};
 }
 
-SWARF_KERNEL_INLINE void add_face(Outermost& o, const Lane& rho, const Lane& z, const LanePiece::Face& face) {
-  const float nr = face.rho, nz = face.z, offset = face.offset;
-  for (int n = 0; n < kLanes; ++n) insert(o, n, nr * rho[n] + nz * z[n] - offset, nr, nz);
+SWARF_KERNEL_INLINE Bound face_bound(const LanePiece::Face& face, V rho, V z) {
+  const V zero{};
+  return {face.rho * rho + face.z * z - face.offset, zero + face.rho, zero + face.z};
 }
 
-SWARF_KERNEL_INLINE void add_round(Outermost& o, const Lane& rho, const Lane& z, const LanePiece::Round& r) {
-  const LanePiece::Round round = r;
-  for (int n = 0; n < kLanes; ++n) {
-    const float dr = rho[n] - round.centre_rho, dz = z[n] - round.centre_z;
-    const float length = std::sqrt(dr * dr + dz * dz);
-    const float inverse = 1.0F / kernel::max_of(length, 1e-20F);
-    const bool within = (round.from_rho * dz - round.from_z * dr >= 0.0F) &
-                        (dr * round.to_z - dz * round.to_rho >= 0.0F) & (length > 0.0F);
-    const float from = dr * round.from_rho + dz * round.from_z, to = dr * round.to_rho + dz * round.to_z;
-    const float nr = within ? dr * inverse : from > to ? round.from_rho : round.to_rho;
-    const float nz = within ? dz * inverse : from > to ? round.from_z : round.to_z;
-    insert(o, n, dr * nr + dz * nz - round.radius, nr, nz);
-  }
+SWARF_KERNEL_INLINE Bound round_bound(const LanePiece::Round& r, V rho, V z) {
+  const V zero{};
+  const V dr = rho - r.centre_rho, dz = z - r.centre_z;
+  const V length = root(dr * dr + dz * dz);
+  const V inverse = 1.0F / max_of(length, zero + 1e-20F);
+  const Mask within =
+      (r.from_rho * dz - r.from_z * dr >= 0.0F) & (dr * r.to_z - dz * r.to_rho >= 0.0F) & (length > 0.0F);
+  const V from = dr * r.from_rho + dz * r.from_z, to = dr * r.to_rho + dz * r.to_z;
+  const Mask lower = from > to;
+  const V nr = within ? dr * inverse : (lower ? zero + r.from_rho : zero + r.to_rho);
+  const V nz = within ? dz * inverse : (lower ? zero + r.from_z : zero + r.to_z);
+  return {dr * nr + dz * nz - r.radius, nr, nz};
 }
 
-/// Highest value that the bound of one face allows above the floor anywhere in the leaf.
-SWARF_KERNEL_INLINE float above_floor(const Lanes& l, int n, const float* g, float value, float change,
-                                      const LaneQuery& q) {
-  float start = 0.0F, end = 0.0F;
+/// Greatest excess of a linear bound with tool-frame gradient g over the floor's slope, within the leaf.
+SWARF_KERNEL_INLINE V spread(const V (&R)[3][3], const Point& g, const LaneQuery& q) {
+  V sum{};
   for (int c = 0; c < 3; ++c) {
-    start +=
-        std::abs(l.R0t[0][c][n] * g[0] + l.R0t[1][c][n] * g[1] + l.R0t[2][c][n] * g[2] + q.floor_slope[c]);
-    end += std::abs(l.R1t[0][c][n] * g[0] + l.R1t[1][c][n] * g[1] + l.R1t[2][c][n] * g[2] + q.floor_slope[c]);
+    sum += magnitude(R[0][c] * g.x + R[1][c] * g.y + R[2][c] * g.z + q.floor_slope[c]);
   }
-  return kernel::max_of(change + q.half * start, q.half * end - change) - value;
+  return q.half * sum;
 }
 
-SWARF_KERNEL_INLINE uint32_t packed(const uint8_t (&flags)[kLanes]) {
-  uint32_t bits = 0;
-  for (int n = 0; n < kLanes; ++n) bits |= static_cast<uint32_t>(flags[n]) << n;
-  return bits;
+/// Bit n: a[n] >= level.
+SWARF_KERNEL_INLINE uint32_t at_least(V a, float level) {
+  alignas(sizeof(V)) float value[kLanes];
+  std::memcpy(value, &a, sizeof(value));
+  int32_t bits = 0;
+  for (int n = 0; n < kLanes; ++n) bits += value[n] >= level ? 1 << n : 0;
+  return static_cast<uint32_t>(bits);
 }
 
 SWARF_KERNEL_INLINE void judge(const Lanes& lanes, const LanePiece& piece, const LaneQuery& query,
                                LaneAnswer& out) {
   constexpr float kSlack = 2e-4F;  // mm; coordinates of up to a metre round to a third of it
-  constexpr float kLowest = -1e30F;
-  Points P, Q;
-  to_tool(P, lanes.R0t, lanes.tip0, query.centre);
-  to_tool(Q, lanes.R1t, lanes.tip1, query.centre);
-  alignas(64) Lane rho, z;
-  Outermost outer;
-  for (int n = 0; n < kLanes; ++n) {
-    const float x = 0.5F * (P.x[n] + Q.x[n]), y = 0.5F * (P.y[n] + Q.y[n]);
-    rho[n] = std::sqrt(x * x + y * y);
-    z[n] = 0.5F * (P.z[n] + Q.z[n]);
-    for (int k = 0; k < 2; ++k) {
-      outer.value[k][n] = kLowest;
-      outer.rho[k][n] = 0.0F;
-      outer.z[k][n] = 0.0F;
-    }
-  }
-  for (const LanePiece::Face& face : piece.faces) add_face(outer, rho, z, face);
-  for (const LanePiece::Round& round : piece.rounds) add_round(outer, rho, z, round);
-  const LaneQuery q = query;
-  uint8_t open[kLanes], swallows[kLanes];
-  for (int n = 0; n < kLanes; ++n) {
-    const float dx = Q.x[n] - P.x[n], dy = Q.y[n] - P.y[n], dz = Q.z[n] - P.z[n];
-    const float inverse = 1.0F / kernel::max_of(rho[n], 1e-20F);
-    // On the axis every direction is a subgradient; the zero of 0 * inverse is not, so x = 1 is taken there.
-    const float ux = rho[n] > 0.0F ? 0.5F * (P.x[n] + Q.x[n]) * inverse : 1.0F;
-    const float uy = 0.5F * (P.y[n] + Q.y[n]) * inverse;
-    float least = 1e30F;
-    for (int k = 0; k < 2; ++k) {
-      const float g[3] = {outer.rho[k][n] * ux, outer.rho[k][n] * uy, outer.z[k][n]};
-      const float change = 0.5F * (g[0] * dx + g[1] * dy + g[2] * dz);
-      least = kernel::min_of(least, above_floor(lanes, n, g, outer.value[k][n], change, q));
-    }
-    open[n] = static_cast<uint8_t>(least + kSlack >= q.floor);
-    swallows[n] = static_cast<uint8_t>(outer.value[0][n] + kSlack < -q.reach);
-    out.distance[n] = outer.value[0][n];
-  }
-  out.open = packed(open);
-  out.swallows = packed(swallows);
+  const V zero{};
+  const Point P = to_tool(lanes.R0t, lanes.tip0, query.centre),
+              Q = to_tool(lanes.R1t, lanes.tip1, query.centre);
+  const V x = 0.5F * (P.x + Q.x), y = 0.5F * (P.y + Q.y), z = 0.5F * (P.z + Q.z);
+  const V rho = root(x * x + y * y);
+  const Bound lowest{zero - 1e30F, zero, zero};
+  Outermost outer{lowest, lowest};
+  for (const LanePiece::Face& face : piece.faces) insert(outer, face_bound(face, rho, z));
+  for (const LanePiece::Round& round : piece.rounds) insert(outer, round_bound(round, rho, z));
+  // On the axis every direction is a subgradient.
+  const V inverse = 1.0F / max_of(rho, zero + 1e-20F);
+  const V ux = rho > 0.0F ? x * inverse : zero + 1.0F, uy = y * inverse;
+  const auto above_floor = [&](const Bound& bound) {
+    const Point g{bound.rho * ux, bound.rho * uy, bound.z};
+    const V change = 0.5F * (g.x * (Q.x - P.x) + g.y * (Q.y - P.y) + g.z * (Q.z - P.z));
+    return max_of(change + spread(lanes.R0t, g, query), spread(lanes.R1t, g, query) - change) - bound.value;
+  };
+  const V above = min_of(above_floor(outer.first), above_floor(outer.second));
+  out.open = at_least(above, query.floor - kSlack);
+  out.swallows = at_least(-outer.first.value, query.reach + kSlack);
+  out.depth = -outer.first.value;
 }
 
 void judge_baseline(const Lanes& lanes, const LanePiece& piece, const LaneQuery& query, LaneAnswer& out) {
@@ -130,8 +127,10 @@ __attribute__((target("arch=x86-64-v3"))) void judge_v3(const Lanes& lanes, cons
                                                         const LaneQuery& query, LaneAnswer& out) {
   judge(lanes, piece, query, out);
 }
-__attribute__((target("arch=x86-64-v4"))) void judge_v4(const Lanes& lanes, const LanePiece& piece,
-                                                        const LaneQuery& query, LaneAnswer& out) {
+__attribute__((target("arch=x86-64-v4,prefer-vector-width=512"))) void judge_v4(const Lanes& lanes,
+                                                                                const LanePiece& piece,
+                                                                                const LaneQuery& query,
+                                                                                LaneAnswer& out) {
   judge(lanes, piece, query, out);
 }
 #endif

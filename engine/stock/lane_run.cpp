@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "base/parallel.h"
 #include "stock/leaf_kernel.h"
@@ -17,16 +18,11 @@ double reach_of(const LevelSet& set) {
   return set.leaf_radius() + set.band();
 }
 
-/// The pose of a swept piece at t, for bounds only: between the ends its axis is a chord.
-ToolPose pose_at(const SweptPiece& swept, double t) {
-  const Vec3 axis0 = swept.map.R0t.row(2), axis1 = swept.map.R1t.row(2);
-  return {(1.0 - t) * swept.map.tip0 + t * swept.map.tip1, (1.0 - t) * axis0 + t * axis1};
-}
-
-std::vector<Capsule::Plane> bottom_planes(const std::vector<ToolPose>& poses, double low, double reach) {
+std::vector<Neighbourhood::Plane> bottom_planes(const std::vector<ToolPose>& poses, double low,
+                                                double reach) {
   // Flatter planes cut little off a vertical line, and the quotient grows coarse.
   constexpr double kUpright = 0.1;
-  std::vector<Capsule::Plane> planes;
+  std::vector<Neighbourhood::Plane> planes;
   for (const ToolPose& pose : poses) {
     const Vec3& a = pose.axis_W;
     if (a.z() < kUpright) return {};
@@ -37,10 +33,32 @@ std::vector<Capsule::Plane> bottom_planes(const std::vector<ToolPose>& poses, do
   return planes;
 }
 
+/// Fills the rectangle around the piece at all poses, enlarged by `margin`.
+void set_rectangle(Neighbourhood& around, const std::vector<ToolPose>& poses,
+                   const cutter::ConvexPiece& piece, double margin) {
+  const Vec2 way = (poses.back().tip_W - poses.front().tip_W).head<2>();
+  if (way.norm() > 0.0) around.along = way.normalized();
+  const Vec2 across(-around.along.y(), around.along.x());
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  Vec2 low(kFar, kFar), high(-kFar, -kFar);
+  for (const ToolPose& pose : poses) {
+    for (const double z : {piece.low, piece.high}) {
+      const Vec2 p = (pose.tip_W + z * pose.axis_W).head<2>();
+      const Vec2 local(p.dot(around.along), p.dot(across));
+      low = low.cwiseMin(local);
+      high = high.cwiseMax(local);
+    }
+  }
+  const Vec2 centre = 0.5 * (low + high);
+  around.centre = centre.x() * around.along + centre.y() * across;
+  around.half_along = 0.5 * (high.x() - low.x()) + margin;
+  around.half_across = 0.5 * (high.y() - low.y()) + margin;
+}
+
 /// Around the poses and everything that moves straight between neighbours of them; `bow`: how far the motion
 /// strays from straight, mm.
-Capsule capsule_around(const std::vector<ToolPose>& poses, const cutter::ConvexPiece& piece, double reach,
-                       double bow) {
+Neighbourhood neighbourhood(const std::vector<ToolPose>& poses, const cutter::ConvexPiece& piece,
+                            double reach, double bow) {
   Vec3 tip = Vec3::Zero(), axis = Vec3::Zero();
   for (const ToolPose& pose : poses) {
     tip += pose.tip_W / static_cast<double>(poses.size());
@@ -51,22 +69,31 @@ Capsule capsule_around(const std::vector<ToolPose>& poses, const cutter::ConvexP
     const double turn = std::max(std::abs(piece.low), std::abs(piece.high)) * (pose.axis_W - axis).norm();
     stray = std::max(stray, (pose.tip_W - tip).norm() + turn);
   }
-  // F is a distance to planes: at a sharp edge it reaches farther than a distance would, at right angles by
-  // sqrt(2); between chords of turned axes the cutter is a trifle wider.
-  const double radius = piece.radius + std::sqrt(2.0) * (reach + bow) + stray;
-  return {tip + piece.low * axis, axis, piece.high - piece.low, radius,
-          bottom_planes(poses, piece.low, reach + bow)};
+  // F is a distance to planes: beyond an edge it reaches farther than a distance, at right angles by sqrt(2).
+  const double margin = piece.radius + std::sqrt(2.0) * (reach + bow);
+  Neighbourhood around;
+  set_rectangle(around, poses, piece, margin);
+  around.foot = tip + piece.low * axis;
+  around.axis = axis;
+  around.length = piece.high - piece.low;
+  around.radius = margin + stray;
+  around.bottoms = bottom_planes(poses, piece.low, reach + bow);
+  return around;
 }
 
-/// The part [low, high] of a vertical line that lies inside the capsule; empty when low > high.
+/// The part [low, high] of a vertical line that the run may reach; empty when low > high.
 struct Span {
   double low = 0.0, high = -1.0;
 };
-Span vertical_span(const Capsule& capsule, double x, double y) {
-  const Vec2 offset = Vec2(x, y) - capsule.foot.head<2>();
-  const Vec2 lean = capsule.axis.head<2>();
-  const double lean2 = lean.squaredNorm(), radius2 = capsule.radius * capsule.radius;
-  double first = 0.0, last = capsule.length;  // along the axis, where it passes the line closely enough
+Span vertical_span(const Neighbourhood& around, double x, double y) {
+  const Vec2 local = Vec2(x, y) - around.centre;
+  const double across = around.along.x() * local.y() - around.along.y() * local.x();
+  if (std::abs(local.dot(around.along)) > around.half_along || std::abs(across) > around.half_across)
+    return {};
+  const Vec2 offset = Vec2(x, y) - around.foot.head<2>();
+  const Vec2 lean = around.axis.head<2>();
+  const double lean2 = lean.squaredNorm(), radius2 = around.radius * around.radius;
+  double first = 0.0, last = around.length;  // along the axis, where it passes the line closely enough
   constexpr double kUpright = 1e-12;
   if (lean2 > kUpright) {
     const double middle = offset.dot(lean) / lean2;
@@ -76,14 +103,13 @@ Span vertical_span(const Capsule& capsule, double x, double y) {
     first = std::max(first, middle - half);
     last = std::min(last, middle + half);
     if (first > last) return {};
-  } else if (offset.norm() > capsule.radius + capsule.length * std::sqrt(kUpright)) {
+  } else if (offset.norm() > around.radius + around.length * std::sqrt(kUpright)) {
     return {};
   }
-  const double z0 = capsule.foot.z() + first * capsule.axis.z(),
-               z1 = capsule.foot.z() + last * capsule.axis.z();
-  Span span{std::min(z0, z1) - capsule.radius, std::max(z0, z1) + capsule.radius};
-  double bottom = capsule.bottoms.empty() ? span.low : span.high;
-  for (const Capsule::Plane& plane : capsule.bottoms)
+  const double z0 = around.foot.z() + first * around.axis.z(), z1 = around.foot.z() + last * around.axis.z();
+  Span span{std::min(z0, z1) - around.radius, std::max(z0, z1) + around.radius};
+  double bottom = around.bottoms.empty() ? span.low : span.high;
+  for (const Neighbourhood::Plane& plane : around.bottoms)
     bottom = std::min(bottom, plane.z + plane.x * x + plane.y * y);
   span.low = std::max(span.low, bottom);
   return span;
@@ -117,26 +143,28 @@ size_t skip_air(const LeafState* states, size_t k, size_t end) {
 }
 
 template <typename Visit>
-void visit_leaves(const LevelSet& set, const Capsule& capsule, Visit visit) {
-  const Vec3 top = capsule.foot + capsule.length * capsule.axis;
-  const auto range = [&](int axis) {
-    return leaf_range(set, axis, std::min(capsule.foot[axis], top[axis]) - capsule.radius,
-                      std::max(capsule.foot[axis], top[axis]) + capsule.radius);
-  };
-  const auto [i_first, i_last] = range(0);
-  const auto [j_first, j_last] = range(1);
+void visit_leaves(const LevelSet& set, const Neighbourhood& around, Visit visit) {
+  const Vec2 along = around.along.cwiseAbs();
+  const Vec2 half(along.x() * around.half_along + along.y() * around.half_across,
+                  along.y() * around.half_along + along.x() * around.half_across);
+  const auto [i_first, i_last] =
+      leaf_range(set, 0, around.centre.x() - half.x(), around.centre.x() + half.x());
+  const auto [j_first, j_last] =
+      leaf_range(set, 1, around.centre.y() - half.y(), around.centre.y() + half.y());
+  const double leaf_mm = kLeafSide * set.voxel;
   for (int i = i_first; i <= i_last; ++i) {
     for (int j = j_first; j <= j_last; ++j) {
       const size_t column = set.map.index(i, j, 0);
       const Vec3 foot = set.leaf_centre(column);
-      const Span span = vertical_span(capsule, foot.x(), foot.y());
+      const Span span = vertical_span(around, foot.x(), foot.y());
       if (span.low > span.high) continue;
       const auto [k_first, k_last] = leaf_range(set, 2, span.low, span.high);
       if (k_first > k_last) continue;
       const LeafState* states = set.map.states.data() + column;
       const auto last = static_cast<size_t>(k_last) + 1;
-      for (size_t k = static_cast<size_t>(k_first); (k = skip_air(states, k, last)) < last; ++k)
-        visit(column + k);
+      for (size_t k = static_cast<size_t>(k_first); (k = skip_air(states, k, last)) < last; ++k) {
+        visit(column + k, Vec3(foot.x(), foot.y(), foot.z() + static_cast<double>(k) * leaf_mm));
+      }
     }
   }
 }
@@ -152,29 +180,17 @@ void fill_lane(LaneRun& run, size_t lane, const SweepMap& map) {
   }
 }
 
-/// Moves of which one capsule would cover far more than the motion touches are covered by several.
-void add_capsules(LaneRun& run, std::span<const SweptPiece> pieces, double reach, double spread) {
+Neighbourhood neighbourhood(std::span<const SweptPiece> pieces, double reach) {
   const cutter::ConvexPiece& piece = *pieces.front().piece;
   const double lever = std::hypot(std::max(std::abs(piece.low), std::abs(piece.high)), piece.radius);
-  if (pieces.size() > 1) {
-    std::vector<ToolPose> poses;
-    double bow = 0.0;
-    for (const SweptPiece& swept : pieces) {
-      poses.push_back(pose_at(swept, 0.0));
-      poses.push_back(pose_at(swept, 1.0));
-      bow = std::max(bow, motion_bound(swept.map, lever));
-    }
-    run.capsules.push_back(capsule_around(poses, piece, reach, bow));
-    return;
+  std::vector<ToolPose> poses;
+  double bow = 0.0;
+  for (const SweptPiece& swept : pieces) {
+    poses.push_back({swept.map.tip0, swept.map.R0t.row(2)});
+    poses.push_back({swept.map.tip1, swept.map.R1t.row(2)});
+    bow = std::max(bow, motion_bound(swept.map, lever));
   }
-  const SweptPiece& swept = pieces.front();
-  const double travel = (swept.map.tip1 - swept.map.tip0).norm();
-  const auto parts = std::max(1, static_cast<int>(std::ceil(travel / spread)));
-  for (int part = 0; part < parts; ++part) {
-    const double from = static_cast<double>(part) / parts, to = static_cast<double>(part + 1) / parts;
-    run.capsules.push_back(capsule_around({pose_at(swept, from), pose_at(swept, to)}, piece, reach,
-                                          motion_bound(swept.map, lever)));
-  }
+  return neighbourhood(poses, piece, reach, bow);
 }
 
 /// How many pieces from `first` on make one run: the same convex piece, and all within `spread` of each
@@ -218,12 +234,11 @@ std::vector<LaneRun> make_runs(const LevelSet& set, const std::vector<SweptPiece
     for (size_t r = begin; r < end; ++r) {
       LaneRun& run = runs[r];
       const auto own = std::span(pieces).subspan(run.first, run.count);
-      const double spread = 2.0 * own.front().piece->radius + 4.0 * kLeafSide * set.voxel;
       run.origin = own.front().map.tip0;
       run.piece = lane_piece(*own.front().piece);
       for (size_t lane = 0; lane < kLanes; ++lane)
         fill_lane(run, lane, own[std::min(lane, run.count - 1)].map);
-      add_capsules(run, own, reach_of(set), spread);
+      run.around = neighbourhood(own, reach_of(set));
     }
   });
   return runs;
@@ -232,17 +247,15 @@ std::vector<LaneRun> make_runs(const LevelSet& set, const std::vector<SweptPiece
 void gather_leaves(const LevelSet& set, const LaneRun& run, size_t index, std::vector<LeafPair>& pairs) {
   static const LaneKernel kernel = lane_kernel_variants().front().kernel;
   LaneAnswer answer;
-  for (const Capsule& capsule : run.capsules) {
-    visit_leaves(set, capsule, [&](size_t leaf) {
-      kernel(run.lanes, run.piece, run.query(set, set.leaf_centre(leaf), set.map.floors[leaf]), answer);
-      const LeafPair position = static_cast<LeafPair>(leaf) << 32 | index;
-      if ((answer.swallows & run.all()) != 0) {
-        pairs.push_back(position);
-      } else if ((answer.open & run.all()) != 0) {
-        pairs.push_back(position | kReaches);
-      }
-    });
-  }
+  visit_leaves(set, run.around, [&](size_t leaf, const Vec3& centre) {
+    kernel(run.lanes, run.piece, run.query(set, centre, set.map.floors[leaf]), answer);
+    const LeafPair position = static_cast<LeafPair>(leaf) << 32 | index;
+    if ((answer.swallows & run.all()) != 0) {
+      pairs.push_back(position);
+    } else if ((answer.open & run.all()) != 0) {
+      pairs.push_back(position | kReaches);
+    }
+  });
 }
 
 }  // namespace swarf::stock

@@ -13,9 +13,12 @@
 
 namespace swarf::stock {
 
-/// The neighbourhood of a swept piece, or of several together: every place nearer than the reach lies within
-/// `radius` of the segment from `foot` along `axis`, and above one of the bottom planes.
-struct Capsule {
+/// The places that a run of sweeps may reach, seen from above and along vertical lines.
+struct Neighbourhood {
+  // A rectangle that holds them all, along the way of the tip.
+  Vec2 centre = Vec2::Zero(), along = Vec2::UnitX();
+  double half_along = 0.0, half_across = 0.0;
+  // They lie within `radius` of the segment from `foot` along `axis`, and above one of the bottom planes.
   Vec3 foot = Vec3::Zero(), axis = Vec3::UnitZ();
   double length = 0.0, radius = 0.0;
   struct Plane {
@@ -30,7 +33,7 @@ struct LaneRun {
   Vec3 origin = Vec3::Zero();   ///< W
   Lanes lanes;
   LanePiece piece;
-  std::vector<Capsule> capsules;
+  Neighbourhood around;
 
   LaneQuery query(const LevelSet& set, const Vec3& centre, const LeafFloor& floor) const;
   uint32_t all() const { return (1U << count) - 1U; }
@@ -53,7 +56,7 @@ inline bool swallows(LeafPair pair) {
   return (pair & kReaches) == 0;
 }
 
-/// Appends the pairs of one run; a leaf may be listed more than once.
+/// Appends the pairs of one run.
 void gather_leaves(const LevelSet& set, const LaneRun& run, size_t index, std::vector<LeafPair>& pairs);
 
 }  // namespace swarf::stock

@@ -149,7 +149,7 @@ SWARF_KERNEL_INLINE LeafRange summarise(const float* values, float band, uint64_
 SWARF_LEAF_VARIANT(baseline, )
 #ifdef SWARF_KERNEL_VARIANTS
 SWARF_LEAF_VARIANT(v3, __attribute__((target("arch=x86-64-v3"))))
-SWARF_LEAF_VARIANT(v4, __attribute__((target("arch=x86-64-v4"))))
+SWARF_LEAF_VARIANT(v4, __attribute__((target("arch=x86-64-v4,prefer-vector-width=512"))))
 #endif
 #undef SWARF_LEAF_VARIANT
 

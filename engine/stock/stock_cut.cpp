@@ -21,9 +21,9 @@ namespace {
 
 /// Large enough to share the sort and the task start-up and to meet a leaf's deepest sweep early, small
 /// enough that what one batch leaves is known to the next.
-constexpr size_t kBatch = 256;
+constexpr size_t kBatch = 512;
 constexpr size_t kRunsPerTask = 1;
-constexpr size_t kGroupsPerTask = 8;
+constexpr size_t kGroupsPerTask = 32;
 
 struct Group {
   size_t begin, end;  ///< in the sorted pairs
@@ -41,12 +41,13 @@ void gather(const LevelSet& set, Batch& batch) {
   const size_t count = batch.runs.size();
   std::vector<std::vector<LeafPair>> found((count + kRunsPerTask - 1) / kRunsPerTask);
   parallel_chunks(count, kRunsPerTask, [&](size_t begin, size_t end) {
-    for (size_t n = begin; n < end; ++n) gather_leaves(set, batch.runs[n], n, found[begin / kRunsPerTask]);
+    std::vector<LeafPair> own;  // not in place: neighbours in `found` share a cache line
+    for (size_t n = begin; n < end; ++n) gather_leaves(set, batch.runs[n], n, own);
+    found[begin / kRunsPerTask] = std::move(own);
   });
   batch.pairs.clear();
   for (const auto& part : found) batch.pairs.insert(batch.pairs.end(), part.begin(), part.end());
   tbb::parallel_sort(batch.pairs.begin(), batch.pairs.end());
-  batch.pairs.erase(std::unique(batch.pairs.begin(), batch.pairs.end()), batch.pairs.end());
   batch.groups.clear();
   for (size_t n = 0; n < batch.pairs.size(); ++n) {
     if (n == 0 || leaf_of(batch.pairs[n]) != leaf_of(batch.pairs[n - 1])) batch.groups.push_back({n, n});
@@ -110,7 +111,7 @@ LeafFloor fitted_floor(const LevelSet& set, const float* values, const LeafBound
 
 /// A sweep that may raise a value of the leaf.
 struct Candidate {
-  float distance;  ///< F at the leaf's centre
+  float depth;     ///< of the leaf's centre inside the cutter, mm
   uint32_t piece;  ///< in the batch
 };
 
@@ -126,11 +127,11 @@ void find_candidates(const LevelSet& set, const Batch& batch, const Group& group
     kernel(run.lanes, run.piece, run.query(set, centre, floor), answer);
     for (uint32_t open = answer.open & run.all(); open != 0; open &= open - 1) {
       const auto lane = static_cast<uint32_t>(__builtin_ctz(open));
-      candidates.push_back({answer.distance[lane], static_cast<uint32_t>(run.first) + lane});
+      candidates.push_back({answer.depth[lane], static_cast<uint32_t>(run.first) + lane});
     }
   }
   std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
-    return a.distance < b.distance || (a.distance == b.distance && a.piece < b.piece);
+    return a.depth > b.depth || (a.depth == b.depth && a.piece < b.piece);
   });
 }
 
@@ -163,7 +164,8 @@ void apply_candidates(const LevelSet& set, const Batch& batch, size_t leaf,
 }
 
 /// Applies one group. The leaf is changed in place, or made when the position was solid so far.
-Outcome cut_leaf(const LevelSet& set, const Batch& batch, const Group& group) {
+Outcome cut_leaf(const LevelSet& set, const Batch& batch, const Group& group,
+                 std::vector<Candidate>& candidates) {
   const size_t leaf = leaf_of(batch.pairs[group.begin]);
   Outcome outcome;
   outcome.floor = set.map.floors[leaf];
@@ -176,7 +178,6 @@ Outcome cut_leaf(const LevelSet& set, const Batch& batch, const Group& group) {
     outcome.made = std::make_unique<LeafNode>(set.map.origin(leaf), -set.band(), false);
     node = outcome.made.get();
   }
-  std::vector<Candidate> candidates;
   find_candidates(set, batch, group, outcome.floor, candidates);
   apply_candidates(set, batch, leaf, candidates, node->buffer().data(), outcome);
   outcome.state = settle_leaf(*node, set.band());
@@ -201,7 +202,8 @@ void cut_batch(LevelSet& set, Batch& batch) {
   gather(set, batch);
   std::vector<Outcome> outcomes(batch.groups.size());
   parallel_chunks(batch.groups.size(), kGroupsPerTask, [&](size_t begin, size_t end) {
-    for (size_t g = begin; g < end; ++g) outcomes[g] = cut_leaf(set, batch, batch.groups[g]);
+    std::vector<Candidate> scratch;
+    for (size_t g = begin; g < end; ++g) outcomes[g] = cut_leaf(set, batch, batch.groups[g], scratch);
   });
   for (size_t g = 0; g < outcomes.size(); ++g) {
     set.statistics.leaf_visits += outcomes[g].visits;
