@@ -142,24 +142,59 @@ struct Outcome {
   uint64_t visits = 0, slices = 0;
 };
 
-/// Raises the values by the candidates, deepest first; each looks at the leaf only when the floor that the
-/// ones before it left does not rule it out.
+/// The bottom plane of a flat end whose height over every voxel does not change while it moves. Once one such
+/// sweep has passed over the whole leaf, another one with the same plane to the last bit has nothing to
+/// raise: the floors of pockets and the rows of a plane are cut once, not once for each row that overlaps.
+class LevelPlane {
+ public:
+  bool repeats(const LeafMotion& motion) const { return known_ && same(motion_, motion); }
+
+  /// Remembers the sweep if its flat end passes over the whole leaf, deeper inside than the band.
+  void remember(const LeafMotion& motion, const SweptPiece& swept, const Vec3& centre, double leaf_radius) {
+    if (known_ || !swept.piece->is_cylinder() || !level(motion)) return;
+    const Vec2 P = swept.map.start(centre).head<2>(), D = swept.map.end(centre).head<2>() - P;
+    const double t = D.squaredNorm() > 0.0 ? std::clamp(-P.dot(D) / D.squaredNorm(), 0.0, 1.0) : 0.0;
+    known_ = (P + t * D).norm() + leaf_radius < motion.radius - motion.background && !motion.capped;
+    motion_ = motion;
+  }
+
+ private:
+  static bool same(const LeafMotion& a, const LeafMotion& b) {
+    return a.start[2] == b.start[2] && a.start_step[0][2] == b.start_step[0][2] &&
+           a.start_step[1][2] == b.start_step[1][2] && a.start_step[2][2] == b.start_step[2][2] && level(b);
+  }
+  static bool level(const LeafMotion& m) {
+    return m.start[2] == m.end[2] && m.start_step[0][2] == m.end_step[0][2] &&
+           m.start_step[1][2] == m.end_step[1][2] && m.start_step[2][2] == m.end_step[2][2];
+  }
+
+  LeafMotion motion_{};
+  bool known_ = false;
+};
+
+/// Raises the values by the candidates, deepest first; each looks at the leaf only when what the ones before
+/// it left does not rule it out.
 void apply_candidates(const LevelSet& set, const Batch& batch, size_t leaf,
                       const std::vector<Candidate>& candidates, float* values, Outcome& outcome) {
   const LeafKernelVariant& kernels = leaf_kernel_variants().front();
   const Vec3 centre = set.leaf_centre(leaf);
   const double half = 0.5 * (kLeafSide - 1) * set.voxel;
+  LevelPlane plane;
   for (const Candidate& candidate : candidates) {
     const SweptPiece& swept = batch.pieces[candidate.piece];
     const ReachBound reach = reach_bound(swept, swept.map.start(centre), swept.map.end(centre));
     if (stands_above(outcome.floor, reach, half)) continue;
+    const LeafMotion motion = leaf_motion(set, swept, leaf);
+    if (plane.repeats(motion)) continue;
     const LeafBound bound = leaf_bound(set, reach);
     const uint32_t slices = kernels.bound_test(values, bound, set.band());
-    if (slices == 0) continue;
-    kernels.kernel(values, leaf_motion(set, swept, leaf), slices);
-    if (outcome.visits == 0) outcome.floor = fitted_floor(set, values, bound);
-    ++outcome.visits;
-    outcome.slices += static_cast<uint64_t>(__builtin_popcount(slices));
+    if (slices != 0) {
+      kernels.kernel(values, motion, slices);
+      if (outcome.visits == 0) outcome.floor = fitted_floor(set, values, bound);
+      ++outcome.visits;
+      outcome.slices += static_cast<uint64_t>(__builtin_popcount(slices));
+    }
+    plane.remember(motion, swept, centre, set.leaf_radius());
   }
 }
 

@@ -31,10 +31,19 @@ double box_distance(const Box& box, const Vec3& point) {
 
 void fill_leaf(LeafNode& leaf, const Box& box, double voxel, float band) {
   float* values = leaf.buffer().data();
-  const openvdb::Coord origin = leaf.origin();
+  const Vec3 centre = box.centre(), half = 0.5 * box.size();
+  double q[3][kLeafSide];  // distance beyond the box's faces, by axis
+  for (int a = 0; a < 3; ++a) {
+    for (int i = 0; i < kLeafSide; ++i) {
+      q[a][i] = std::abs((leaf.origin()[a] + i) * voxel - centre[a]) - half[a];
+    }
+  }
   for (int n = 0; n < kLeafVoxels; ++n) {
-    const Vec3 ijk(origin.x() + n / 64, origin.y() + n / 8 % 8, origin.z() + n % 8);
-    values[n] = std::clamp(static_cast<float>(box_distance(box, ijk * voxel)), -band, band);
+    const double x = q[0][n / 64], y = q[1][n / 8 % 8], z = q[2][n % 8];
+    const double inside = std::min(std::max({x, y, z}), 0.0);
+    const double ox = std::max(x, 0.0), oy = std::max(y, 0.0), oz = std::max(z, 0.0);
+    const double distance = std::sqrt(ox * ox + oy * oy + oz * oz) + inside;
+    values[n] = std::clamp(static_cast<float>(distance), -band, band);
   }
 }
 

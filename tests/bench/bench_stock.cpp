@@ -1,6 +1,9 @@
 // Cutting, dexels and meshing on DOME (theory 1.6), D10 flat end, axis on the normal, five axes.
 #include <benchmark/benchmark.h>
 
+#include <chrono>
+#include <cmath>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -92,6 +95,70 @@ BENCHMARK(cut_stock)
     ->Args({200, 2})
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
+
+/// Poses 1 mm apart on a zigzag over a block of 100 x 100 mm: rows 2 mm apart, the axis upright.
+std::vector<ToolPose> zigzag_poses(const std::function<double(double, double)>& height) {
+  std::vector<ToolPose> poses;
+  for (int row = 0; row <= 50; ++row) {
+    for (int i = 0; i <= 100; ++i) {
+      const double x = row % 2 == 0 ? i : 100 - i, y = 2.0 * row;
+      poses.push_back({{x, y, height(x, y)}, Vec3::UnitZ()});
+    }
+  }
+  return poses;
+}
+
+void run_three_axes(benchmark::State& state, const std::vector<ToolPose>& poses,
+                    const stock::CutterSolid& cutter) {
+  set_thread_count(static_cast<int>(state.range(1)));
+  constexpr double kTolerance = 1e-3;
+  const std::vector<uint8_t> breaks(poses.size(), 0);
+  std::vector<stock::Sweep> blocks;
+  for (size_t i = 0; i + 1 < poses.size(); ++i)
+    blocks.push_back({poses[i], poses[i + 1], static_cast<uint32_t>(i)});
+  const Box box{{0, 0, 0}, {100, 100, 20}};
+  double seconds = 0.0;
+  size_t sweeps = 0;
+  for (auto _ : state) {
+    state.PauseTiming();
+    stock::Stock stock(box, 0.1);
+    state.ResumeTiming();
+    const auto begun = std::chrono::steady_clock::now();
+    if (state.range(0) != 0) {
+      const stock::MergedSweeps merged = stock::merge_sweeps(poses, breaks, cutter.height, kTolerance);
+      stock.cut(merged.sweeps, cutter);
+      sweeps = merged.sweeps.size();
+    } else {
+      stock.cut(blocks, cutter);
+      sweeps = blocks.size();
+    }
+    seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  }
+  state.counters["blocks_per_s"] =
+      static_cast<double>(blocks.size()) * static_cast<double>(state.iterations()) / seconds;
+  state.counters["sweeps"] = static_cast<double>(sweeps);
+  set_thread_count(0);
+}
+
+/// 3-axis finishing at 0.1 mm: range(0): collinear blocks merged first (1 um), range(1): threads.
+void cut_plane_3axis(benchmark::State& state) {
+  run_three_axes(state, zigzag_poses([](double, double) { return 19.0; }), {5.0, 25.0});
+}
+void cut_wave_3axis(benchmark::State& state) {
+  const auto wave = [](double x, double y) { return 18.5 + 0.5 * std::sin(x / 10.0) * std::cos(y / 15.0); };
+  run_three_axes(state, zigzag_poses(wave), {5.0, 25.0});
+}
+#define THREE_AXES(name)                \
+  BENCHMARK(name)                       \
+      ->ArgNames({"merged", "threads"}) \
+      ->Args({0, 1})                    \
+      ->Args({0, 2})                    \
+      ->Args({1, 1})                    \
+      ->Args({1, 2})                    \
+      ->Unit(benchmark::kMillisecond)   \
+      ->UseRealTime()
+THREE_AXES(cut_plane_3axis);
+THREE_AXES(cut_wave_3axis);
 
 /// Control cycles of 1 ms at 50 mm/s, rays every 0.2 mm; range(0): threads.
 void cut_dexels(benchmark::State& state) {
