@@ -169,17 +169,6 @@ void visit_leaves(const LevelSet& set, const Neighbourhood& around, Visit visit)
   }
 }
 
-void fill_lane(LaneRun& run, size_t lane, const SweepMap& map) {
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) {
-      run.lanes.R0t[row][column][lane] = static_cast<float>(map.R0t(row, column));
-      run.lanes.R1t[row][column][lane] = static_cast<float>(map.R1t(row, column));
-    }
-    run.lanes.tip0[row][lane] = static_cast<float>(map.tip0[row] - run.origin[row]);
-    run.lanes.tip1[row][lane] = static_cast<float>(map.tip1[row] - run.origin[row]);
-  }
-}
-
 Neighbourhood neighbourhood(std::span<const SweptPiece> pieces, double reach) {
   const cutter::ConvexPiece& piece = *pieces.front().piece;
   const double lever = std::hypot(std::max(std::abs(piece.low), std::abs(piece.high)), piece.radius);
@@ -213,6 +202,17 @@ size_t run_length(const std::vector<SweptPiece>& pieces, size_t first, double sp
 
 }  // namespace
 
+void LaneRun::set_lane(size_t lane, const SweepMap& map) {
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      lanes.R0t[row][column][lane] = static_cast<float>(map.R0t(row, column));
+      lanes.R1t[row][column][lane] = static_cast<float>(map.R1t(row, column));
+    }
+    lanes.tip0[row][lane] = static_cast<float>(map.tip0[row] - origin[row]);
+    lanes.tip1[row][lane] = static_cast<float>(map.tip1[row] - origin[row]);
+  }
+}
+
 LaneQuery LaneRun::query(const LevelSet& set, const Vec3& centre, const LeafFloor& floor) const {
   const Eigen::Vector3f at = (centre - origin).cast<float>();
   return {{at.x(), at.y(), at.z()},
@@ -236,8 +236,7 @@ std::vector<LaneRun> make_runs(const LevelSet& set, const std::vector<SweptPiece
       const auto own = std::span(pieces).subspan(run.first, run.count);
       run.origin = own.front().map.tip0;
       run.piece = lane_piece(*own.front().piece);
-      for (size_t lane = 0; lane < kLanes; ++lane)
-        fill_lane(run, lane, own[std::min(lane, run.count - 1)].map);
+      for (size_t lane = 0; lane < kLanes; ++lane) run.set_lane(lane, own[std::min(lane, run.count - 1)].map);
       run.around = neighbourhood(own, reach_of(set));
     }
   });

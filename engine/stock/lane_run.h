@@ -35,6 +35,7 @@ struct LaneRun {
   LanePiece piece;
   Neighbourhood around;
 
+  void set_lane(size_t lane, const SweepMap& map);
   LaneQuery query(const LevelSet& set, const Vec3& centre, const LeafFloor& floor) const;
   uint32_t all() const { return (1U << count) - 1U; }
 };

@@ -1,0 +1,198 @@
+// What is left out while cutting must not show in the result: verdicts of whole runs, bounds and floors are
+// held against plain evaluation.
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "base/parallel.h"
+#include "cutter_shapes.h"
+#include "stock/lane_run.h"
+#include "stock/leaf_kernel.h"
+#include "stock/stock.h"
+#include "stock_test_support.h"
+
+namespace swarf::stock {
+namespace {
+
+/// Least F over the motion, by a scan of its instants refined around the best (F is convex along the motion).
+double scanned(const SweptPiece& swept, const Vec3& point) {
+  double best = 1e300, low = 0.0, high = 1.0;
+  for (int level = 0; level < 3; ++level) {
+    const double step = (high - low) / 50;
+    double best_t = low;
+    for (int i = 0; i <= 50; ++i) {
+      const double t = low + i * step;
+      const Vec3 X = (1.0 - t) * swept.map.start(point) + t * swept.map.end(point);
+      const double value = cutter::signed_distance(*swept.piece, X.head<2>().norm(), X.z());
+      if (value < best) {
+        best = value;
+        best_t = t;
+      }
+    }
+    low = std::max(0.0, best_t - step);
+    high = std::min(1.0, best_t + step);
+  }
+  return best;
+}
+
+TEST(ReachBound, NothingThatASweepWritesLiesAboveIt) {
+  constexpr uint64_t kSeed = 71;
+  Rng rng(kSeed);
+  for (int n = 0; n < 400; ++n) {
+    const Sweep sweep = random_sweep(rng, 3.0, 3.0, n % 2 == 0 ? 0.0 : 0.3);
+    const cutter::ConvexPiece piece =
+        n % 4 == 0 ? cutter::ConvexPiece::cylinder(4.0, 12.0) : random_piece(rng);
+    const SweptPiece swept{sweep_map(sweep), &piece};
+    const Vec3 centre = sweep.start.tip_W + 8.0 * rng.direction() * rng.uniform();
+    const ReachBound bound = reach_bound(swept, swept.map.start(centre), swept.map.end(centre));
+    for (int k = 0; k < 20; ++k) {
+      const Vec3 x = rng.direction() * rng.uniform();
+      const double written = -scanned(swept, centre + x);
+      for (const LinearBound& linear : bound.of_face) {
+        const double most =
+            std::max(linear.start + linear.start_slope.dot(x), linear.end + linear.end_slope.dot(x));
+        ASSERT_LE(written, most + 1e-9) << "seed " << kSeed << " case " << n << ": " << text(sweep)
+                                        << " centre " << text(centre) << " offset " << text(x) << "\n"
+                                        << text(piece);
+      }
+    }
+  }
+}
+
+/// A leaf position and sixteen sweeps near it.
+struct LaneCase {
+  std::vector<Sweep> sweeps;
+  std::vector<SweptPiece> pieces;
+  Vec3 centre;
+};
+LaneCase random_case(Rng& rng, const cutter::ConvexPiece& piece) {
+  LaneCase made;
+  for (int lane = 0; lane < kLanes; ++lane) {
+    made.sweeps.push_back(random_sweep(rng, 2.0, 2.0, 0.1));
+    made.pieces.push_back({sweep_map(made.sweeps.back()), &piece});
+  }
+  made.centre = 6.0 * rng.direction() * rng.uniform();
+  return made;
+}
+
+TEST(LaneKernel, AllInstructionSetsJudgeAlikeAndNeverCloseALeafThatASweepRaises) {
+  constexpr uint64_t kSeed = 72;
+  constexpr double kHalf = 0.35, kReach = 0.9;
+  Rng rng(kSeed);
+  int closed = 0;
+  for (int n = 0; n < 300; ++n) {
+    const cutter::ConvexPiece piece =
+        n % 4 == 0 ? cutter::ConvexPiece::cylinder(4.0, 12.0) : random_piece(rng);
+    const LaneCase lane_case = random_case(rng, piece);
+    LaneRun run;
+    run.piece = lane_piece(piece);
+    for (int lane = 0; lane < kLanes; ++lane)
+      run.set_lane(static_cast<size_t>(lane), lane_case.pieces[static_cast<size_t>(lane)].map);
+    const Vec3 slope = 0.9 * rng.direction();
+    const double level = rng.uniform(-0.6, 0.6);
+    const Eigen::Vector3f centre = lane_case.centre.cast<float>(), s = slope.cast<float>();
+    const LaneQuery query{{centre.x(), centre.y(), centre.z()},
+                          static_cast<float>(level),
+                          {s.x(), s.y(), s.z()},
+                          static_cast<float>(kHalf),
+                          static_cast<float>(kReach)};
+    LaneAnswer answer, other;
+    lane_kernel_variants().front().kernel(run.lanes, run.piece, query, answer);
+    for (const LaneKernelVariant& variant : lane_kernel_variants()) {
+      variant.kernel(run.lanes, run.piece, query, other);
+      ASSERT_EQ(other.open, answer.open) << variant.instruction_set << " case " << n;
+      ASSERT_EQ(other.swallows, answer.swallows) << variant.instruction_set << " case " << n;
+      ASSERT_EQ(std::memcmp(&other.depth, &answer.depth, sizeof(answer.depth)), 0) << variant.instruction_set;
+    }
+    for (int lane = 0; lane < kLanes; ++lane) {
+      if ((answer.open >> lane & 1U) != 0) continue;
+      ++closed;
+      for (int corner = 0; corner < 8; ++corner) {
+        const Vec3 x = kHalf * Vec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
+        const double written = -scanned(lane_case.pieces[static_cast<size_t>(lane)], lane_case.centre + x);
+        ASSERT_LE(written, level + slope.dot(x))
+            << "seed " << kSeed << " case " << n << " lane " << lane << ": "
+            << text(lane_case.sweeps[static_cast<size_t>(lane)]) << "\n"
+            << text(piece);
+      }
+    }
+  }
+  EXPECT_GT(closed, 1000);
+}
+
+TEST(LeafKernel, BoundTestFloorAndRangeAreAlikeInAllInstructionSets) {
+  constexpr uint64_t kSeed = 73;
+  Rng rng(kSeed);
+  for (int n = 0; n < 300; ++n) {
+    float values[kLeafVoxels];
+    for (float& value : values) value = static_cast<float>(std::clamp(rng.uniform(-0.5, 0.5), -0.3, 0.3));
+    LeafBound bound{};
+    for (LeafBound::Linear& face : bound.of_face) {
+      face.start = static_cast<float>(rng.uniform(-0.6, 0.3));
+      face.end = static_cast<float>(rng.uniform(-0.6, 0.3));
+      for (int a = 0; a < 3; ++a) {
+        face.start_step[a] = static_cast<float>(rng.uniform(-0.1, 0.1));
+        face.end_step[a] = static_cast<float>(rng.uniform(-0.1, 0.1));
+      }
+    }
+    const LeafKernelVariant& base = leaf_kernel_variants().back();
+    uint64_t active[kLeafSide], other[kLeafSide];
+    const LeafRange range = base.summary(values, 0.3F, active);
+    for (const LeafKernelVariant& variant : leaf_kernel_variants()) {
+      ASSERT_EQ(variant.bound_test(values, bound, 0.3F), base.bound_test(values, bound, 0.3F));
+      ASSERT_EQ(variant.floor_fit(values, bound.of_face[0].start_step, 0.3F),
+                base.floor_fit(values, bound.of_face[0].start_step, 0.3F));
+      const LeafRange again = variant.summary(values, 0.3F, other);
+      ASSERT_TRUE(again.least == range.least && again.greatest == range.greatest);
+      ASSERT_EQ(std::memcmp(active, other, sizeof(active)), 0);
+    }
+    for (int voxel = 0; voxel < kLeafVoxels; ++voxel) {
+      const bool on = values[voxel] > -0.3F && values[voxel] < 0.3F;
+      ASSERT_EQ((active[voxel / 64] >> (voxel % 64) & 1U) != 0, on);
+    }
+  }
+}
+
+/// The block that repeated rows, tilted passes, plunges and a long move across cut, in pieces of `pieces`
+/// sweeps.
+uint64_t hash_of_cut(size_t pieces, int threads) {
+  set_thread_count(threads);
+  Stock stock({{0, 0, 0}, {40, 30, 12}}, 0.25);
+  std::vector<Sweep> sweeps;
+  Rng rng(74);
+  for (int row = 0; row < 12; ++row) {
+    const Vec3 level(0, 2.5 * row, 10.0);
+    for (const Sweep& s :
+         straight_sweeps({level, Vec3::UnitZ()}, {level + Vec3(40, 0, 0), Vec3::UnitZ()}, 20)) {
+      sweeps.push_back(s);
+    }
+    const Vec3 axis = Vec3(0.1 * std::sin(row), 0.2, 1.0).normalized(),
+               turned = Vec3(0.3, -0.1, 1.0).normalized();
+    for (const Sweep& s :
+         straight_sweeps({level - Vec3(0, 0, 2), axis}, {level + Vec3(40, 3, -3), turned}, 25)) {
+      sweeps.push_back(s);
+    }
+    sweeps.push_back({{level, Vec3::UnitZ()}, {level - Vec3(0, 0, 6), Vec3::UnitZ()}, 0});
+  }
+  sweeps.push_back({{{-5, -5, 5}, Vec3::UnitZ()}, {{45, 35, 5}, Vec3::UnitZ()}, 0});
+  const CutterSolid cutter{3.0, 15.0};
+  for (size_t first = 0; first < sweeps.size(); first += pieces) {
+    stock.cut(std::span(sweeps).subspan(first, std::min(pieces, sweeps.size() - first)), cutter);
+  }
+  EXPECT_EQ(stock.check(), "");
+  set_thread_count(0);
+  return stock.hash();
+}
+
+TEST(Stock, BatchesAndThreadsLeaveTheSameBits) {
+  const uint64_t expected = hash_of_cut(1, 1);
+  for (const int threads : {1, 2, 4}) {
+    for (const size_t pieces : {size_t{1}, size_t{64}, size_t{4096}}) {
+      ASSERT_EQ(hash_of_cut(pieces, threads), expected)
+          << pieces << " sweeps a call, " << threads << " threads";
+    }
+  }
+}
+
+}  // namespace
+}  // namespace swarf::stock
