@@ -6,8 +6,7 @@
 #include "base/config.h"
 #include "cli/commands.h"
 #include "cli/terminal.h"
-#include "sim/scene.h"
-#include "toolpath/tool_path.h"
+#include "sim/simulation.h"
 
 namespace swarf::cli {
 namespace {
@@ -17,22 +16,28 @@ bool is_scene(const std::string& file) {
   Diagnostics diagnostics;
   const ConfigTable table = ConfigTable::load(file, {}, diagnostics);
   diagnostics.throw_if_errors();
-  return table.has("program") || !table.has("axis");
+  return table.has("program") || table.has("cl") || !table.has("axis");
 }
 
 std::string check_scene(const std::string& file) {
   const sim::Job job = sim::load_job(file, {});
   print_diagnostics(job.warnings);
   Diagnostics diagnostics;
-  const toolpath::ToolPath path =
-      toolpath::plan(job.program, job.scene.cutter, job.scene.toolpath, diagnostics);
-  diagnostics.throw_if_errors();
+  const toolpath::ToolPath path = sim::job_path(job, diagnostics);
   print_diagnostics(diagnostics.list());
+  if (job.cl) {
+    return fmt::format("scene is right: {} blocks, {:.0f} mm of feed moves, {:.0f} mm of rapids",
+                       path.elements.size(), path.pass_length_mm, path.link_length_mm);
+  }
   return fmt::format("scene is right: {} passes, {:.0f} mm in contact", path.passes, path.pass_length_mm);
 }
 
 std::string check_file(const std::string& file) {
   const std::string extension = std::filesystem::path(file).extension().string();
+  if (extension == ".cl" || extension == ".cls" || extension == ".apt" || extension == ".cldata") {
+    const program::ClProgram program = program::load_cl(file);
+    return fmt::format("CL data is right: {} statements, {} moves", program.statements, program.moves.size());
+  }
   if (extension != ".toml") {
     const program::Program program = program::load_program(file);
     return fmt::format("program is right: {} blocks, {} surfaces, {} operations", program.blocks,
@@ -61,8 +66,9 @@ int check(const std::vector<std::string>& files) {
 
 void add_check(CLI::App& app, int& exit_code) {
   auto files = std::make_shared<std::vector<std::string>>();
-  CLI::App* command = app.add_subcommand(
-      "check", "Parse and validate scenes and machines (.toml) and programs (.nc); run nothing");
+  CLI::App* command = app.add_subcommand("check",
+                                         "Parse and validate scenes and machines (.toml), programs (.nc) and "
+                                         "CL data (.cl, .cls, .apt, .cldata); run nothing");
   command->add_option("files", *files, "files to check")->required();
   command->callback([files, &exit_code] { exit_code = check(*files); });
 }

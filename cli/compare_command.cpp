@@ -52,9 +52,19 @@ TriMesh load_stock(const std::string& file, double& edge_mm) {
   return mesh;
 }
 
-std::vector<program::SurfaceDefinition> design_surfaces(const std::string& file) {
-  if (extension(file) == ".toml") return sim::load_job(file, {}).program.surfaces;
-  return program::load_program(file).surfaces;
+std::vector<surface::SurfacePtr> design_surfaces(const std::string& file) {
+  std::vector<surface::SurfacePtr> surfaces;
+  if (extension(file) == ".toml") {
+    surfaces = sim::load_job(file, {}).design;
+  } else {
+    for (const program::SurfaceDefinition& definition : program::load_program(file).surfaces)
+      surfaces.push_back(definition.surface);
+  }
+  if (surfaces.empty()) {
+    throw InputError("no-design", {file}, "there is no design surface to compare with",
+                     "name a scene with a [design], a program of surface blocks or a mesh");
+  }
+  return surfaces;
 }
 
 bool is_mesh(const std::string& file) {
@@ -70,8 +80,8 @@ void measure_stock(const CompareOptions& options, TriMesh& stock) {
     return;
   }
   const Box box = mesh::bounds(stock);
-  for (const program::SurfaceDefinition& definition : design_surfaces(options.design)) {
-    measure::deviation_from_surface(stock, stock::SurfaceDexels(definition.surface, options.pitch_mm, box),
+  for (const surface::SurfacePtr& surface : design_surfaces(options.design)) {
+    measure::deviation_from_surface(stock, stock::SurfaceDexels(surface, options.pitch_mm, box),
                                     options.reach_mm, options.edge_mm);
   }
 }

@@ -52,10 +52,12 @@ std::string cl_text(const sim::Job& job, const toolpath::ToolPath& path,
 
 int plan(const PlanCommand& options) {
   const sim::Job job = sim::load_job(options.scene, options.overrides);
+  if (job.cl) {
+    throw InputError("nothing-to-plan", {options.scene}, "the scene's program is CL data already",
+                     fmt::format("run it: swarf run {}", options.scene));
+  }
   Diagnostics diagnostics;
-  const toolpath::ToolPath path =
-      toolpath::plan(job.program, job.scene.cutter, job.scene.toolpath, diagnostics);
-  diagnostics.throw_if_errors();
+  const toolpath::ToolPath path = sim::job_path(job, diagnostics);
   print_diagnostics(diagnostics.list());
   TerminalProgress progress;
   const motion::MotionResult motion =

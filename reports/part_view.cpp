@@ -29,7 +29,8 @@ void take_measures(const FinishedRun& run, const stock::SurfaceDexels& dexels, T
       if (!foot || as_vec3(mesh.normals[i]).dot(foot->normal) < kFaceCosine) continue;
       mesh.deviation_um[i] = static_cast<float>(um_from_mm(measure::height_at(dexels, foot->u, foot->v)));
       const uint32_t block = measure::block_at(dexels, foot->u, foot->v);
-      if (block == stock::kUncut) continue;
+      // A CL job's blocks are sweeps, not cycles, and mostly cut with the flank.
+      if (block == stock::kUncut || run.job.cl) continue;
       // The bottom of a flat end left this facet, so the tool's axis is its exact normal.
       const Vec3& axis = run.trajectory.samples[block].pose.axis_W;
       if (axis.dot(foot->normal) < kFaceCosine) continue;
@@ -49,7 +50,7 @@ TriMesh part_mesh(const FinishedRun& run) {
 }
 
 double deviation_scale_um(const sim::Job& job) {
-  double allowed = job.scene.accept.scallop_max_um;
+  double allowed = job.scene.accept.scallop_band_um();
   const double digit = std::pow(10.0, std::floor(std::log10(allowed)));
   return std::ceil(allowed / digit - 0.2) * digit;
 }

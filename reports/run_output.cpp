@@ -25,12 +25,17 @@ void keep_inputs(const PendingFolder& folder, const sim::Job& job, const OutputO
   const fs::path input = folder.file("input");
   fs::create_directories(input);
   fs::copy_file(job.scene.file, input / "scene.toml");
-  fs::copy_file(job.scene.program_file, input / "program.nc");
+  const std::string program = job.cl ? "program.cl" : "program.nc";
+  fs::copy_file(job.scene.program_file, input / program);
   fs::copy(fs::path(job.scene.machine_file).parent_path(), input / "machine", fs::copy_options::recursive);
   std::vector<std::string> overrides = options.overrides;
   overrides.push_back(
       fmt::format("machine=\"machine/{}\"", fs::path(job.scene.machine_file).filename().string()));
-  overrides.push_back("program=\"program.nc\"");
+  overrides.push_back(fmt::format("{}=\"{}\"", job.cl ? "cl" : "program", program));
+  if (job.scene.design.kind == sim::DesignKind::kSurface) {
+    fs::copy_file(job.scene.design.surface_file, input / "design.nc");
+    overrides.push_back("design.surface=\"design.nc\"");
+  }
   const nlohmann::ordered_json manifest{{"swarf", SWARF_VERSION},
                                         {"scene", job.scene.name},
                                         {"program", fs::path(job.scene.program_file).filename()},
@@ -46,13 +51,16 @@ void write_pictures(const PendingFolder& folder, const FinishedRun& run, const T
     const char* camera;
     const char* caption;
   };
-  const std::vector<Picture> pictures{
+  std::vector<Picture> pictures{
       {StillKind::kMachine, "still_machine.png", "machine", "The machine near the middle of the program."},
       {StillKind::kPart, "still_part.png", "iso",
-       "The finished part: strip lights break at each ridge, so every band is one pass."},
-      {StillKind::kDeviation, "still_deviation.png", "iso",
-       "Deviation from the design, from the measuring rays."},
+       run.job.cl ? "The finished part."
+                  : "The finished part: strip lights break at each ridge, so every band is one pass."},
       {StillKind::kFan, "still_fan.png", "iso", "Paths and tool axes (Lin & Koren, Fig. 13)."}};
+  if (!run.dexels.empty()) {
+    pictures.insert(pictures.begin() + 2, {StillKind::kDeviation, "still_deviation.png", "iso",
+                                           "Deviation from the design, from the measuring rays."});
+  }
   progress.begin("stills", static_cast<double>(pictures.size()), "pictures");
   for (const Picture& picture : pictures) {
     if (progress.stop_requested()) break;
@@ -130,10 +138,10 @@ StoredRun read_run(const std::string& folder) {
   motion::Trajectory trajectory =
       sim::read_trajectory((root / "trajectory.csv").string(), job.machine.model, job.scene.motion.period_s);
   StoredRun run{std::move(job), std::move(trajectory), stock::Stock::load((root / "stock.vdb").string()), {}};
-  for (size_t i = 0; i < run.job.program.surfaces.size(); ++i) {
+  for (size_t i = 0; i < run.job.design.size(); ++i) {
     const fs::path rays = root / fmt::format("surface_{}.rays", i);
     if (!fs::exists(rays)) break;  // a run that was stopped before it was measured
-    run.dexels.push_back(stock::SurfaceDexels::load(rays.string(), run.job.program.surfaces[i].surface));
+    run.dexels.push_back(stock::SurfaceDexels::load(rays.string(), run.job.design[i]));
   }
   return run;
 }

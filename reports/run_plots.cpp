@@ -99,7 +99,7 @@ Plot height_plot(const sim::Job& job, const sim::Result& result) {
   plot.x_label = "height over the design";
   plot.x_unit = "µm";
   plot.y_label = "measuring rays";
-  const double high = 1.1 * job.scene.accept.scallop_max_um;
+  const double high = 1.1 * job.scene.accept.scallop_band_um();
   for (const stock::SurfaceDexels& dexels : result.main.dexels) {
     for (const measure::HistogramBin& bin :
          measure::height_histogram(dexels, -0.1 * high, high, kHistogramBins)) {
@@ -129,14 +129,14 @@ Plot fig6_plot() {
 
 std::vector<Plot> run_plots(const sim::Job& job, const sim::Result& result) {
   const motion::Trajectory& trajectory = result.main.motion.trajectory;
-  return {feed_plot(trajectory),
-          axis_plot(job, trajectory, AxisKind::kLinear, false),
-          axis_plot(job, trajectory, AxisKind::kRotary, false),
-          axis_plot(job, trajectory, AxisKind::kLinear, true),
-          axis_plot(job, trajectory, AxisKind::kRotary, true),
-          scallop_plot(result),
-          height_plot(job, result),
-          fig6_plot()};
+  std::vector<Plot> plots{feed_plot(trajectory), axis_plot(job, trajectory, AxisKind::kLinear, false),
+                          axis_plot(job, trajectory, AxisKind::kRotary, false),
+                          axis_plot(job, trajectory, AxisKind::kLinear, true),
+                          axis_plot(job, trajectory, AxisKind::kRotary, true)};
+  if (!result.main.ridges.empty() || !job.cl) plots.push_back(scallop_plot(result));
+  if (!result.main.dexels.empty()) plots.push_back(height_plot(job, result));
+  if (!job.cl) plots.push_back(fig6_plot());
+  return plots;
 }
 
 }  // namespace swarf::reports

@@ -31,16 +31,40 @@ Verdict verdict_of(const sim::Job& job, const sim::Result& result) {
   const measure::SurfaceMetrics& surface = result.main.surface;
   Verdict verdict;
   verdict.pass = sim::passes(result);
-  verdict.criteria = {
-      {"Highest scallop", um(surface.scallop_max_um) + " µm",
-       fmt::format("at most {:g} µm", accept.scallop_max_um),
-       surface.scallop_max_um <= accept.scallop_max_um},
-      {"Deepest gouge", um(surface.gouge_max_um) + " µm", fmt::format("at most {:g} µm", accept.gouge_max_um),
-       surface.gouge_max_um <= accept.gouge_max_um},
-      {"Shank or holder in the stock", fmt::format("{} poses", result.clearance.contacts),
-       fmt::format("at most {}", accept.collisions),
-       result.clearance.contacts <= static_cast<size_t>(accept.collisions)}};
+  if (accept.scallop_max_um) {
+    verdict.criteria.push_back({"Highest scallop", um(surface.scallop_max_um) + " µm",
+                                fmt::format("at most {:g} µm", *accept.scallop_max_um),
+                                surface.scallop_max_um <= *accept.scallop_max_um});
+  }
+  if (accept.gouge_max_um) {
+    verdict.criteria.push_back({"Deepest gouge", um(surface.gouge_max_um) + " µm",
+                                fmt::format("at most {:g} µm", *accept.gouge_max_um),
+                                surface.gouge_max_um <= *accept.gouge_max_um});
+  }
+  if (accept.collisions) {
+    verdict.criteria.push_back({"Shank or holder in the stock",
+                                fmt::format("{} poses", result.clearance.contacts),
+                                fmt::format("at most {}", *accept.collisions),
+                                result.clearance.contacts <= static_cast<size_t>(*accept.collisions)});
+  }
   return verdict;
+}
+
+/// The numbers of a CL job: its surface, when it has one, is measured for excess and gouge.
+std::vector<KeyNumber> cl_key_numbers(const sim::Result& result) {
+  const measure::SurfaceMetrics& surface = result.main.surface;
+  std::vector<KeyNumber> numbers{{"Machining time", duration(result.main.motion.statistics.time_s), "",
+                                  fmt::format("{} blocks", result.main.path.elements.size())},
+                                 {"Removed", fmt::format("{:.1f}", result.volume_removed_mm3 * 1e-3), "cm³",
+                                  fmt::format("{:.1f} cm³ left", result.volume_left_mm3 * 1e-3)}};
+  if (surface.samples == 0) return numbers;
+  const std::string rays = fmt::format("{} measuring rays", surface.samples);
+  numbers.push_back({"Highest material", um(surface.excess_max_um), "µm", rays});
+  numbers.push_back({"Deepest gouge", um(surface.gouge_max_um), "µm", rays});
+  numbers.push_back({"Level set against rays", fmt::format("{:.2f}", result.cross_check.max_um), "µm",
+                     fmt::format("bound {:.2f} µm", result.cross_check.bound_um),
+                     result.cross_check.holds ? Tone::kOk : Tone::kBad});
+  return numbers;
 }
 
 std::vector<KeyNumber> key_numbers(const sim::Result& result) {
@@ -147,7 +171,7 @@ Table axis_table(const sim::Job& job, const sim::Result& result) {
   return table;
 }
 
-std::vector<Check> checks_of(const sim::Result& result, bool rendered) {
+std::vector<Check> checks_of(const sim::Job& job, const sim::Result& result, bool rendered) {
   using State = Check::State;
   const motion::MotionStatistics& motion = result.main.motion.statistics;
   const sim::ToolClearance& clearance = result.clearance;
@@ -161,23 +185,57 @@ std::vector<Check> checks_of(const sim::Result& result, bool rendered) {
       {"Joint-linear motion inside a cycle",
        fmt::format("the tip leaves the path by at most {:.4f} µm", um_from_mm(motion.tip_error_max_mm)), ""},
       {"Sweeps of the level set",
-       fmt::format("{} sweeps stay within {:.3f} µm of the {} cycles", result.merged_sweeps,
-                   um_from_mm(result.sweep_bound_mm), motion.ticks),
+       fmt::format("{} sweeps stay within {:.3f} µm of the {} {}", result.merged_sweeps,
+                   um_from_mm(result.sweep_bound_mm),
+                   job.cl ? result.main.path.elements.size() : motion.ticks, job.cl ? "blocks" : "cycles"),
        ""},
-      {"Level set against measuring rays",
-       fmt::format("largest difference {:.2f} µm, bound {:.2f} µm", result.cross_check.max_um,
-                   result.cross_check.bound_um),
-       "", state(result.cross_check.holds)},
       {"Shank and holder against the stock",
        fmt::format("{} contacts at {} poses", clearance.contacts, clearance.checked_poses), "",
        state(clearance.contacts == 0)},
       {"Machine parts against each other", "", "collision of meshes is not part of this version",
        State::kNotChecked},
       {"Cutter load, spindle power, deflection", "", "the simulation is geometric", State::kNotChecked}};
+  if (job.design.empty()) {
+    checks.push_back(
+        {"Finished part against a design", "", "the scene has design.kind = \"none\"", State::kNotChecked});
+  } else {
+    checks.insert(checks.begin() + 4, {"Level set against measuring rays",
+                                       fmt::format("largest difference {:.2f} µm, bound {:.2f} µm",
+                                                   result.cross_check.max_um, result.cross_check.bound_um),
+                                       "", state(result.cross_check.holds)});
+  }
+  if (job.cl) {
+    checks.push_back(
+        {"Speed at the corners between blocks", "",
+         "a run of one feed passes its corners at full feed: look-ahead is not part of this version",
+         State::kNotChecked});
+    checks.push_back({"Planners and interpolators compared", "", "a CL program is one path: not applicable",
+                      State::kNotChecked});
+  }
   if (!rendered) {
     checks.push_back({"Pictures and movie", "", "switched off with --no-render", State::kNotChecked});
   }
   return checks;
+}
+
+const char* execution_of(const sim::Job& job) {
+  if (!job.cl)
+    return "every cycle is one pose of the tool tip in the work frame; axes are linear inside a cycle";
+  switch (job.scene.block_law) {
+    case toolpath::BlockLaw::kTcp:
+      return "tcp: in each block the tip is straight or on its arc, the axis turns evenly along the great "
+             "circle; "
+             "the stock is cut by the blocks themselves";
+    case toolpath::BlockLaw::kJoint:
+      return "joint: in each block all machine axes are linear between its ends; the stock is cut by the "
+             "blocks "
+             "themselves";
+    case toolpath::BlockLaw::kEnds:
+      return "ends: in each block the tip and every guide point on the axis are straight; the stock is cut "
+             "by "
+             "the blocks themselves";
+  }
+  return "";
 }
 
 std::vector<FactGroup> facts_of(const sim::Job& job, const sim::Result& result, const RunFiles& files) {
@@ -190,8 +248,7 @@ std::vector<FactGroup> facts_of(const sim::Job& job, const sim::Result& result, 
   return {{"Job",
            {{"Program", name_of(job.scene.program_file)},
             {"Planner", result.main.path.planner},
-            {"Execution",
-             "every cycle is one pose of the tool tip in the work frame; axes are linear inside a cycle"},
+            {"Execution", execution_of(job)},
             {"Control period", fmt::format("{:g} ms", job.scene.motion.period_s * 1e3)},
             {"Start", fmt::format("tip at ({:.2f}, {:.2f}, {:.2f}) mm: the first complete position",
                                   first.pose.tip_W.x(), first.pose.tip_W.y(), first.pose.tip_W.z())},
@@ -213,6 +270,53 @@ std::vector<FactGroup> facts_of(const sim::Job& job, const sim::Result& result, 
           {"Program", {{"swarf", SWARF_VERSION}}}};
 }
 
+using Lines = std::vector<std::pair<std::string, std::string>>;
+
+Lines path_lines(const sim::Job& job, const sim::Result& result) {
+  const motion::MotionStatistics& m = result.main.motion.statistics;
+  return {
+      {"path", fmt::format("{} passes, {:.0f} mm in contact, planner {}", result.main.path.passes,
+                           result.main.path.pass_length_mm, result.main.path.planner)},
+      {"time", fmt::format("{} at F {:.0f} mm/min ({} cycles of {:g} ms)", duration(m.time_s),
+                           mm_min_from_mm_s(job.program.operations.front().feed_mm_s), m.ticks,
+                           job.scene.motion.period_s * 1e3)},
+      {"feed error",
+       fmt::format("{:.1e} relative; slowest {:.2f} mm/s in contact", m.feed_error_max_rel, m.feed_min_mm_s)},
+      {"cycle cost", fmt::format("{:.0f} ns median, {:.0f} ns at 99.9 %", m.tick_ns_median, m.tick_ns_p999)}};
+}
+
+Lines cl_path_lines(const sim::Job& job, const sim::Result& result) {
+  const motion::MotionStatistics& m = result.main.motion.statistics;
+  const Vec3& start = job.cl->start.tip_W;
+  return {{"path", fmt::format("{} blocks, {:.0f} mm of feed moves, {:.0f} mm of rapids, law {}",
+                               result.main.path.elements.size(), result.main.path.pass_length_mm,
+                               result.main.path.link_length_mm, toolpath::law_name(job.scene.block_law))},
+          {"start", fmt::format("({:.3f}, {:.3f}, {:.3f}) mm, line {}: the first complete position",
+                                start.x(), start.y(), start.z(), job.cl->start_line)},
+          {"time", fmt::format("{} ({} cycles of {:g} ms); corners between blocks are not slowed down",
+                               duration(m.time_s), m.ticks, job.scene.motion.period_s * 1e3)}};
+}
+
+Lines surface_lines(const sim::Job& job, const sim::Result& result) {
+  const measure::SurfaceMetrics& s = result.main.surface;
+  if (job.design.empty()) return {{"design", "none: the finished part is not measured"}};
+  Lines lines;
+  if (job.cl) {
+    lines.emplace_back("design", job.scene.design.name);
+    lines.emplace_back("excess", fmt::format("{:.3f} um highest material", s.excess_max_um));
+    if (s.ridges > 0) lines.emplace_back("scallop", fmt::format("{:.3f} um highest", s.scallop_max_um));
+  } else {
+    lines.emplace_back("scallop", fmt::format("{:.3f} um highest, {:.3f} um at 5 %, theory {:.3f} um",
+                                              s.scallop_max_um, s.scallop_p05_um, s.scallop_theory_um));
+  }
+  lines.emplace_back("gouge", fmt::format("{:.3f} um deepest", s.gouge_max_um));
+  lines.emplace_back(
+      "tolerance",
+      fmt::format("{:.2f} % of {} rays within -{:g} .. +{:g} um", s.within_tolerance_pct, s.samples,
+                  job.scene.accept.gouge_band_um(), job.scene.accept.scallop_band_um()));
+  return lines;
+}
+
 }  // namespace
 
 ReportData report_data(const sim::Job& job, const sim::Result& result, const RunFiles& files, bool rendered) {
@@ -222,7 +326,7 @@ ReportData report_data(const sim::Job& job, const sim::Result& result, const Run
       fmt::format("{} on {}", job.scene.program_file.substr(job.scene.program_file.find_last_of('/') + 1),
                   job.machine.model.name);
   data.verdict = verdict_of(job, result);
-  data.key_numbers = key_numbers(result);
+  data.key_numbers = job.cl ? cl_key_numbers(result) : key_numbers(result);
   data.findings = findings_of(result);
   if (!files.stills.empty()) {
     data.hero_png = files.stills.front().png_path;
@@ -235,10 +339,14 @@ ReportData report_data(const sim::Job& job, const sim::Result& result, const Run
   data.movie_caption =
       "The whole program, evenly sped up. The tool cuts the stock as it stands at that moment.";
   data.plots = run_plots(job, result);
-  data.tables = {planner_table(result), mode_table(result), axis_table(job, result), fig6_table()};
-  data.paper_title = "Lin & Koren: the paper's figures against ours";
-  data.paper = paper_rows(job, result);
-  data.checks = checks_of(result, rendered);
+  if (job.cl) {
+    data.tables = {axis_table(job, result)};
+  } else {
+    data.tables = {planner_table(result), mode_table(result), axis_table(job, result), fig6_table()};
+    data.paper_title = "Lin & Koren: the paper's figures against ours";
+    data.paper = paper_rows(job, result);
+  }
+  data.checks = checks_of(job, result, rendered);
   data.reproduce = {fmt::format("./dev run scenes/{}/scene.toml", job.scene.name)};
   data.facts = facts_of(job, result, files);
   return data;
@@ -246,33 +354,23 @@ ReportData report_data(const sim::Job& job, const sim::Result& result, const Run
 
 std::vector<std::pair<std::string, std::string>> summary_lines(const sim::Job& job,
                                                                const sim::Result& result) {
-  const measure::SurfaceMetrics& s = result.main.surface;
-  const motion::MotionStatistics& m = result.main.motion.statistics;
+  Lines lines = job.cl ? cl_path_lines(job, result) : path_lines(job, result);
+  const Lines surface = surface_lines(job, result);
+  lines.insert(lines.end(), surface.begin(), surface.end());
   const stock::CutStatistics& cut = result.stock->statistics();
-  return {
-      {"path", fmt::format("{} passes, {:.0f} mm in contact, planner {}", result.main.path.passes,
-                           result.main.path.pass_length_mm, result.main.path.planner)},
-      {"time", fmt::format("{} at F {:.0f} mm/min ({} cycles of {:g} ms)", duration(m.time_s),
-                           mm_min_from_mm_s(job.program.operations.front().feed_mm_s), m.ticks,
-                           job.scene.motion.period_s * 1e3)},
-      {"feed error",
-       fmt::format("{:.1e} relative; slowest {:.2f} mm/s in contact", m.feed_error_max_rel, m.feed_min_mm_s)},
-      {"cycle cost", fmt::format("{:.0f} ns median, {:.0f} ns at 99.9 %", m.tick_ns_median, m.tick_ns_p999)},
-      {"scallop", fmt::format("{:.3f} um highest, {:.3f} um at 5 %, theory {:.3f} um", s.scallop_max_um,
-                              s.scallop_p05_um, s.scallop_theory_um)},
-      {"gouge", fmt::format("{:.3f} um deepest", s.gouge_max_um)},
-      {"tolerance", fmt::format("{:.2f} % of {} rays within -{:g} .. +{:g} um", s.within_tolerance_pct,
-                                s.samples, job.scene.accept.gouge_max_um, job.scene.accept.scallop_max_um)},
-      {"removed",
-       fmt::format("{:.1f} mm3, {:.1f} mm3 left", result.volume_removed_mm3, result.volume_left_mm3)},
-      {"cutting",
-       fmt::format("{} blocks in {:.2f} s = {:.0f} blocks/s, {:g} mm voxels", cut.sweeps, cut.seconds,
-                   cut.seconds > 0 ? static_cast<double>(cut.sweeps) / cut.seconds : 0.0,
-                   job.scene.stock.voxel_mm)},
-      {"clearance", result.clearance.contacts > 0
-                        ? fmt::format("{} stands in the stock at {} poses", result.clearance.part,
-                                      result.clearance.contacts)
-                        : fmt::format("shank and holder free ({} poses)", result.clearance.checked_poses)}};
+  lines.emplace_back("removed", fmt::format("{:.1f} mm3, {:.1f} mm3 left", result.volume_removed_mm3,
+                                            result.volume_left_mm3));
+  lines.emplace_back(
+      "cutting",
+      fmt::format("{} blocks in {:.2f} s = {:.0f} blocks/s, {:g} mm voxels", cut.sweeps, cut.seconds,
+                  cut.seconds > 0 ? static_cast<double>(cut.sweeps) / cut.seconds : 0.0,
+                  job.scene.stock.voxel_mm));
+  lines.emplace_back("clearance",
+                     result.clearance.contacts > 0
+                         ? fmt::format("{} stands in the stock at {} poses", result.clearance.part,
+                                       result.clearance.contacts)
+                         : fmt::format("shank and holder free ({} poses)", result.clearance.checked_poses));
+  return lines;
 }
 
 }  // namespace swarf::reports

@@ -9,6 +9,7 @@
 #include "base/check.h"
 #include "base/units.h"
 #include "motion/block_interpolator.h"
+#include "motion/block_run.h"
 #include "motion/free_move.h"
 #include "motion/motion_statistics.h"
 #include "motion/pass_geometry.h"
@@ -41,10 +42,9 @@ class Recorder {
   void run(int element) {
     element_ = element;
     const auto& what = path_.elements[static_cast<size_t>(element)].what;
-    outside_reach_ = 0;
     if (const auto* move = std::get_if<FreeMove>(&what)) {
       if (move->feed_mm_s > 0.0) check_cycles((move->to.tip_W - move->from.tip_W).norm(), move->feed_mm_s);
-      start_at(move->from, SampleKind::kRapid, {});
+      start_at(move->from, SampleKind::kRapid, {move->from.tip_W});
       for (ToolSample& sample : sample_free_move(*move, machine_, inverse_, options_, q_)) record(sample);
     } else {
       run_pass(std::get<SurfacePass>(what));
@@ -52,8 +52,27 @@ class Recorder {
     report_outside_reach();
   }
 
-  MotionResult finish() {
-    result_.statistics = measure_motion(result_.trajectory, path_, machine_, inverse_, cutter_);
+  /// The blocks [first, end) of a CL program, which are one run.
+  void run_blocks(const std::vector<BlockMotion>& motions, size_t first, size_t end) {
+    element_ = static_cast<int>(first);
+    const toolpath::BlockMove& block = *motions[first].block;
+    if (block.feed_mm_s > 0.0) check_cycles(run_length(motions, first, end), block.feed_mm_s);
+    start_at(block.from, block.feed_mm_s > 0.0 ? SampleKind::kCutting : SampleKind::kRapid,
+             {block.from.tip_W});
+    for (BlockTick& tick : sample_run(motions, first, end, inverse_, options_)) {
+      if (tick.sample.element != element_) report_outside_reach();
+      element_ = tick.sample.element;
+      if (motions[first].block->law == toolpath::BlockLaw::kJoint) {
+        record(tick.sample, {tick.q, InverseOutcome::kOk});
+      } else {
+        record(tick.sample);
+      }
+    }
+    report_outside_reach();
+  }
+
+  MotionResult finish(const std::vector<BlockMotion>& motions) {
+    result_.statistics = measure_motion(result_.trajectory, path_, motions, machine_, inverse_, cutter_);
     rank_tick_costs();
     for (MotionFinding& fault : find_axis_faults(result_.trajectory, path_, machine_))
       result_.findings.push_back(std::move(fault));
@@ -66,7 +85,8 @@ class Recorder {
   void run_pass(const SurfacePass& pass) {
     check_cycles(pass_length(pass, pass.t_start, pass.t_end), pass.feed_mm_s);
     const toolpath::CurvePoint start = curve_at(*pass.surface, pass.curve, pass.t_start);
-    start_at(contact_pose(pass, pass.t_start, cutter_.radius()), SampleKind::kCutting, start);
+    start_at(contact_pose(pass, pass.t_start, cutter_.radius()), SampleKind::kCutting,
+             {start.C, start.u, start.v});
     if (options_.mode == Mode::kOffline) {
       for (ToolSample& sample : sample_offline_pass(pass, cutter_, machine_, inverse_, options_, q_))
         record(sample);
@@ -96,18 +116,20 @@ class Recorder {
     }
   }
 
+  struct Contact {
+    Vec3 point_W = Vec3::Zero();
+    double u = 0.0, v = 0.0;
+  };
+
   /// Records the very first pose; later ones must be where the element before ended.
-  void start_at(const ToolPose& pose, SampleKind kind, const toolpath::CurvePoint& at) {
+  void start_at(const ToolPose& pose, SampleKind kind, const Contact& at) {
     if (result_.trajectory.samples.empty()) {
       ToolSample sample;
       sample.pose = pose;
-      sample.contact_W = pose.tip_W;
+      sample.contact_W = at.point_W;
       sample.kind = kind;
-      if (kind == SampleKind::kCutting) {
-        sample.contact_W = at.C;
-        sample.u = at.u;
-        sample.v = at.v;
-      }
+      sample.u = at.u;
+      sample.v = at.v;
       record(sample);
       return;
     }
@@ -143,6 +165,7 @@ class Recorder {
              "axis ({:.4f}, {:.4f}, {:.4f}); its axes stood still there",
              outside_reach_, p.x(), p.y(), p.z(), a.x(), a.y(), a.z()),
          element_, outside_since_s_, path_.elements[static_cast<size_t>(element_)].where});
+    outside_reach_ = 0;
   }
 
   void check_cycles(double length, double feed_mm_s) const {
@@ -206,13 +229,21 @@ MotionResult interpolate(const toolpath::ToolPath& path, const kinematics::Machi
                          const cutter::Cutter& cutter, const MotionOptions& options, Progress& progress) {
   throw_if_invalid(options);
   Recorder recorder(path, machine, cutter, options);
+  const bool blocks = toolpath::holds_blocks(path);
+  const std::vector<BlockMotion> motions = blocks ? block_motions(path, machine) : std::vector<BlockMotion>{};
   progress.begin("interpolate", static_cast<double>(path.elements.size()), "elements");
-  for (size_t i = 0; i < path.elements.size() && !progress.stop_requested(); ++i) {
-    recorder.run(static_cast<int>(i));
-    progress.advance(static_cast<double>(i + 1));
+  for (size_t i = 0; i < path.elements.size() && !progress.stop_requested();) {
+    if (blocks) {
+      const size_t end = run_end(motions, i);
+      recorder.run_blocks(motions, i, end);
+      i = end;
+    } else {
+      recorder.run(static_cast<int>(i++));
+    }
+    progress.advance(static_cast<double>(i));
   }
   progress.end();
-  return recorder.finish();
+  return recorder.finish(motions);
 }
 
 }  // namespace swarf::motion

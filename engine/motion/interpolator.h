@@ -3,9 +3,10 @@
 //   ToolPath --> surface pass --> SurfaceInterpolator (taylor1, surface) --+
 //            --> surface pass --> straight segments (offline) -------------+--> ToolSample --> inverse --> q
 //            --> free move    --> straight tip, slerp axis ----------------+
+//            --> CL blocks    --> their own law (block_motion.h), by runs --+
 //
-// Every element starts and ends at rest; between them nothing moves. The rotary branch is chosen once,
-// nearest to home, and then follows by continuity.
+// Every pass and move, and every run of CL blocks of one feed, starts and ends at rest; between them nothing
+// moves. The rotary branch is chosen once, nearest to home, and then follows by continuity.
 #pragma once
 
 #include <cstdint>

@@ -15,6 +15,7 @@ namespace {
 using kinematics::AxisKind;
 using kinematics::AxisValues;
 using kinematics::MachineModel;
+using toolpath::BlockMove;
 using toolpath::FreeMove;
 using toolpath::SurfacePass;
 
@@ -36,10 +37,12 @@ double distance_across(const Vec3& gap, const Vec3& along) {
 /// What is measured of one tick, from the sample before it to its own.
 class TickMeter {
  public:
-  TickMeter(const Trajectory& trajectory, const toolpath::ToolPath& path, const MachineModel& machine,
-            const kinematics::InverseKinematics& inverse, double radius, MotionStatistics& statistics)
+  TickMeter(const Trajectory& trajectory, const toolpath::ToolPath& path, std::span<const BlockMotion> blocks,
+            const MachineModel& machine, const kinematics::InverseKinematics& inverse, double radius,
+            MotionStatistics& statistics)
       : trajectory_(trajectory),
         path_(path),
+        blocks_(blocks),
         machine_(machine),
         inverse_(inverse),
         radius_(radius),
@@ -54,16 +57,20 @@ class TickMeter {
     const auto& what = path_.elements[static_cast<size_t>(sample.element)].what;
     const ToolPose middle =
         k > 0 ? kinematics::forward(machine_, 0.5 * (trajectory_.axes[k - 1] + trajectory_.axes[k])) : back;
+    if (sample.kind == SampleKind::kCutting && pole < out_.pole_distance_min_rad) {
+      out_.pole_distance_min_rad = pole;
+      out_.pole_element = sample.element;
+    }
+    if (k == 0) return;
+    const ToolSample& before = trajectory_.samples[k - 1];
     if (const auto* pass = std::get_if<SurfacePass>(&what)) {
-      if (pole < out_.pole_distance_min_rad) {
-        out_.pole_distance_min_rad = pole;
-        out_.pole_element = sample.element;
-      }
-      if (k > 0) measure_contact(*pass, trajectory_.samples[k - 1], sample, middle);
-    } else if (k > 0) {
-      const auto& move = std::get<FreeMove>(what);
-      const double error = distance_across(middle.tip_W - move.from.tip_W, move.to.tip_W - move.from.tip_W);
+      measure_contact(*pass, before, sample, middle);
+    } else if (const auto* move = std::get_if<FreeMove>(&what)) {
+      const double error =
+          distance_across(middle.tip_W - move->from.tip_W, move->to.tip_W - move->from.tip_W);
       out_.tip_error_max_mm = std::max(out_.tip_error_max_mm, error);
+    } else {
+      measure_block(std::get<BlockMove>(what), before, sample, middle);
     }
   }
 
@@ -89,6 +96,24 @@ class TickMeter {
     out_.tip_error_max_mm = std::max(out_.tip_error_max_mm, tip_error);
   }
 
+  void measure_block(const BlockMove& block, const ToolSample& before, const ToolSample& sample,
+                     const ToolPose& middle) {
+    const Vec3 chord = sample.pose.tip_W - before.pose.tip_W;
+    const bool cutting = sample.kind == SampleKind::kCutting;
+    if (cutting) out_.path_length_mm += chord.norm();
+    if (before.element != sample.element) return;
+    const ToolPose exact = pose_at(blocks_[static_cast<size_t>(sample.element)], 0.5 * (before.u + sample.u));
+    const double tip_error = distance_across(middle.tip_W - exact.tip_W, chord);
+    out_.tip_error_max_mm = std::max(out_.tip_error_max_mm, tip_error);
+    if (!cutting) return;
+    const double period = trajectory_.period_s;
+    out_.feed_error_max_rel =
+        std::max(out_.feed_error_max_rel,
+                 std::abs(chord.norm() - sample.feed_mm_s * period) / (block.feed_mm_s * period));
+    const Vec3 gap = 0.5 * (sample.pose.tip_W + before.pose.tip_W) - exact.tip_W;
+    out_.chord_error_max_mm = std::max(out_.chord_error_max_mm, distance_across(gap, chord));
+  }
+
   /// The first tick of a pass comes from a free move, which ends on its start.
   static double previous_parameter(const SurfacePass& pass, const ToolSample& before) {
     return before.kind == SampleKind::kCutting ? curve_parameter(pass, before.u, before.v) : pass.t_start;
@@ -96,6 +121,7 @@ class TickMeter {
 
   const Trajectory& trajectory_;
   const toolpath::ToolPath& path_;
+  std::span<const BlockMotion> blocks_;
   const MachineModel& machine_;
   const kinematics::InverseKinematics& inverse_;
   double radius_;
@@ -164,6 +190,8 @@ double feed_min(const Trajectory& trajectory) {
 std::string element_name(const toolpath::Element& element) {
   if (const auto* pass = std::get_if<SurfacePass>(&element.what))
     return fmt::format("pass {}", pass->pass + 1);
+  if (std::holds_alternative<BlockMove>(element.what))
+    return fmt::format("the block of line {}", element.where.line);
   switch (std::get<FreeMove>(element.what).kind) {
     case toolpath::MoveKind::kApproach:
       return "an approach";
@@ -230,14 +258,14 @@ void find_in_element(const Trajectory& trajectory, size_t begin, size_t end, con
 }  // namespace
 
 MotionStatistics measure_motion(const Trajectory& trajectory, const toolpath::ToolPath& path,
-                                const MachineModel& machine, const kinematics::InverseKinematics& inverse,
-                                const cutter::Cutter& cutter) {
+                                std::span<const BlockMotion> blocks, const MachineModel& machine,
+                                const kinematics::InverseKinematics& inverse, const cutter::Cutter& cutter) {
   MotionStatistics statistics;
   statistics.pole_distance_min_rad = kPi;
   if (trajectory.samples.empty()) return statistics;
   statistics.ticks = trajectory.samples.size() - 1;
   statistics.time_s = trajectory.samples.back().t_s;
-  TickMeter meter(trajectory, path, machine, inverse, cutter.radius(), statistics);
+  TickMeter meter(trajectory, path, blocks, machine, inverse, cutter.radius(), statistics);
   for (size_t k = 0; k < trajectory.samples.size(); ++k) meter.measure(k);
   statistics.feed_min_mm_s = feed_min(trajectory);
   statistics.axes = measure_axes(trajectory, machine);

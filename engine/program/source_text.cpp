@@ -61,7 +61,7 @@ int utf8_length(std::string_view text, size_t at) {
   return length;
 }
 
-bool check_text(std::string_view text, Reporter& reporter) {
+bool check_text(std::string_view text, Reporter& reporter, const char* what_to_give) {
   int line = 1;
   int column = 1;
   bool blank = true;
@@ -79,8 +79,7 @@ bool check_text(std::string_view text, Reporter& reporter) {
     at += static_cast<size_t>(length);
   }
   if (blank) {
-    reporter.error("empty-file", 0, 0, "the program is empty",
-                   "give a program with a surface (G10 L70 ... L79) and an operation (G06.3 or G06.4)");
+    reporter.error("empty-file", 0, 0, "the program is empty", what_to_give);
   }
   return !blank;
 }

@@ -11,7 +11,8 @@ namespace swarf::program {
 
 /// Reports "empty-file" (no character but white space) or "not-text" (a NUL, or bytes that are not
 /// UTF-8, with line, column and byte offset) and returns false; true when the text can be read.
-bool check_text(std::string_view text, Reporter& reporter);
+/// `what_to_give`: the advice for an empty file.
+bool check_text(std::string_view text, Reporter& reporter, const char* what_to_give);
 
 /// Lines without their ends; CR LF, LF and CR all end a line. A byte order mark is left out.
 std::vector<std::string_view> split_lines(std::string_view text);

@@ -37,7 +37,8 @@ class Interpreter {
   }
 
   Program run(const std::string& text) {
-    if (!check_text(text, reporter_)) return std::move(program_);
+    if (!check_text(text, reporter_,
+                    "give a program with a surface (G10 L70 ... L79) and an operation (G06.3 or G06.4)")) return std::move(program_);
     int line_number = 0;
     for (const std::string_view line : split_lines(text)) {
       read_block(lex_line(line, ++line_number, reporter_));

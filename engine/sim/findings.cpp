@@ -15,15 +15,17 @@ class Collector {
     findings.push_back(
         {std::move(code), Severity::kError, std::move(text), std::move(fix), std::move(where), t_s});
   }
-  void at_sample(std::string code, std::string text, std::string fix, uint32_t sample) {
-    const motion::Trajectory& trajectory = result_.main.motion.trajectory;
-    if (sample >= trajectory.samples.size()) {
-      add(std::move(code), std::move(text), std::move(fix), {job_.program.file}, 0.0);
+  /// At the block that a sweep comes from; at the program when no sweep is to blame.
+  void at_block(std::string code, std::string text, std::string fix, const std::vector<SweepSource>& sources,
+                uint32_t block) {
+    if (block >= sources.size()) {
+      add(std::move(code), std::move(text), std::move(fix), {job_.scene.program_file}, 0.0);
       return;
     }
-    const motion::ToolSample& tick = trajectory.samples[sample];
+    const SweepSource& source = sources[block];
     add(std::move(code), std::move(text), std::move(fix),
-        result_.main.path.elements[static_cast<size_t>(tick.element)].where, tick.t_s);
+        result_.main.path.elements[static_cast<size_t>(source.element)].where,
+        result_.main.motion.trajectory.samples[source.sample].t_s);
   }
   std::vector<Finding> findings;
 
@@ -35,7 +37,7 @@ class Collector {
 void surface_faults(const Job& job, const Result& result, Collector& collect) {
   const measure::SurfaceMetrics& surface = result.main.surface;
   const AcceptLimits& accept = job.scene.accept;
-  if (surface.scallop_max_um > accept.scallop_max_um) {
+  if (accept.scallop_max_um && surface.scallop_max_um > *accept.scallop_max_um) {
     uint32_t block = stock::kUncut;
     double highest = -1.0;
     for (const measure::Ridge& ridge : result.main.ridges) {
@@ -44,25 +46,29 @@ void surface_faults(const Job& job, const Result& result, Collector& collect) {
         block = ridge.block_a;
       }
     }
-    collect.at_sample("scallop",
-                      fmt::format("the highest scallop is {:.3f} um, [accept] allows {:g} um",
-                                  surface.scallop_max_um, accept.scallop_max_um),
-                      "lower the scallop word E of the G06.3 block", block);
+    collect.at_block(
+        "scallop",
+        fmt::format("the highest scallop is {:.3f} um, [accept] allows {:g} um", surface.scallop_max_um,
+                    *accept.scallop_max_um),
+        job.cl ? "bring the passes closer together" : "lower the scallop word E of the G06.3 block",
+        result.main.rays.sources, block);
   }
-  if (surface.gouge_max_um > accept.gouge_max_um) {
-    collect.at_sample(
+  if (accept.gouge_max_um && surface.gouge_max_um > *accept.gouge_max_um) {
+    collect.at_block(
         "gouge",
         fmt::format("the deepest gouge is {:.3f} um over {:.2f} mm2, [accept] allows {:g} um",
-                    surface.gouge_max_um, surface.gouge_area_mm2, accept.gouge_max_um),
-        "lower the feed F or the control period: the chord of one cycle cuts into a convex surface",
-        surface.gouge_block);
+                    surface.gouge_max_um, surface.gouge_area_mm2, *accept.gouge_max_um),
+        job.cl ? "move the tool of this block away from the design"
+               : "lower the feed F or the control period: the chord of one cycle cuts into a convex surface",
+        result.main.rays.sources, surface.gouge_block);
   }
-  if (surface.uncut_samples > 0) {
+  const bool uncut_counts = !job.cl || accept.scallop_max_um.has_value();
+  if (surface.uncut_samples > 0 && uncut_counts) {
     collect.add("uncut",
                 fmt::format("{} of {} measuring points were never reached by the cutter",
                             surface.uncut_samples, surface.samples),
-                "machine the whole surface (G06.3), or measure only what the program machines",
-                {job.program.file}, 0.0);
+                "machine the whole surface, or measure only what the program machines",
+                {job.scene.program_file}, 0.0);
   }
 }
 
@@ -74,18 +80,19 @@ void motion_faults(const Result& result, Collector& collect) {
 
 void clearance_faults(const Job& job, const Result& result, Collector& collect) {
   const ToolClearance& clearance = result.clearance;
-  if (clearance.contacts <= static_cast<size_t>(job.scene.accept.collisions)) return;
-  collect.at_sample(
+  const std::optional<int> allowed = job.scene.accept.collisions;
+  if (!allowed || clearance.contacts <= static_cast<size_t>(*allowed)) return;
+  collect.at_block(
       clearance.part + "-in-stock",
       fmt::format("the {} stands in the stock at {} of {} poses, {:.2f} mm deep (depths are known to "
                   "{:.2f} mm)",
                   clearance.part, clearance.contacts, clearance.checked_poses, clearance.deepest_mm,
                   clearance.band_mm),
-      "use a longer cutter, or rough the stock first", clearance.first_block);
+      "use a longer cutter, or rough the stock first", result.cut_sources, clearance.first_block);
 }
 
 void built_in_checks(const Job& job, const Result& result, Collector& collect) {
-  if (!result.cross_check.holds) {
+  if (!job.design.empty() && !result.cross_check.holds) {
     collect.add("stock-and-rays-disagree",
                 fmt::format("level set and measuring rays differ by {:.1f} um, the bound is {:.1f} um",
                             result.cross_check.max_um, result.cross_check.bound_um),

@@ -61,6 +61,45 @@ void check_tools(const Job& job, Diagnostics& diagnostics) {
   }
 }
 
+/// One parameter of CUTTER against the scene's cutter; what is not given contradicts nothing.
+void check_parameter(const program::ClCutter& cutter, size_t index, const char* name, double ours,
+                     const char* key, Diagnostics& diagnostics) {
+  constexpr double kSame = 1e-3;  // CAM systems write three or four digits
+  if (index >= cutter.parameters.size() || std::abs(cutter.parameters[index] - ours) <= kSame) return;
+  diagnostics.error(
+      "cutter-contradiction", cutter.where,
+      fmt::format("CUTTER says {} = {:g}, the scene has {:g}", name, cutter.parameters[index], ours),
+      fmt::format("set {} in the scene, or mend the CL file", key));
+}
+
+/// LOADTL and CUTTER of a CL file against the scene's cutter.
+void check_cl_tools(const Job& job, Diagnostics& diagnostics) {
+  const cutter::Cutter& ours = job.scene.cutter;
+  for (const program::ClCutter& cutter : job.cl->cutters) {
+    check_parameter(cutter, 0, "d (mm)", ours.diameter_mm, "cutter.diameter_mm", diagnostics);
+    check_parameter(cutter, 1, "r (mm)", ours.corner_radius_mm, "cutter.corner_radius_mm", diagnostics);
+    check_parameter(cutter, 4, "alpha (deg)", 0.0, "the shape", diagnostics);
+    check_parameter(cutter, 5, "beta (deg)", 0.0, "the shape", diagnostics);
+  }
+  for (const program::ClMove& move : job.cl->moves) {
+    if (move.tool == 0 || move.tool == ours.number) continue;
+    diagnostics.error(
+        "unknown-tool", {job.cl->file, move.line, move.column},
+        fmt::format("the move uses tool {}, the scene describes tool {} only", move.tool, ours.number),
+        fmt::format("load tool {} or set cutter.number = {}", ours.number, move.tool));
+    return;
+  }
+}
+
+/// The surfaces that the part is measured against.
+void load_design(Job& job) {
+  const DesignSettings& design = job.scene.design;
+  std::vector<program::SurfaceDefinition> defined = job.program.surfaces;
+  if (design.kind == DesignKind::kSurface) defined = program::load_program(design.surface_file).surfaces;
+  for (const program::SurfaceDefinition& definition : defined) job.design.push_back(definition.surface);
+  if (design.kind == DesignKind::kAnalytic) job.design.push_back(design.surface);
+}
+
 template <typename Load>
 void collect(Diagnostics& diagnostics, Load load) {
   try {
@@ -80,10 +119,21 @@ Job load_job(const std::string& path, const std::vector<std::string>& overrides)
   // A user mends all files at once: what is wrong with one does not hide what is wrong with the other.
   collect(diagnostics, [&] { job.machine = machine::load_machine(job.scene.machine_file); });
   Diagnostics warnings;
-  collect(diagnostics, [&] { job.program = program::load_program(job.scene.program_file, &warnings); });
+  collect(diagnostics, [&] {
+    if (job.scene.cl) {
+      job.cl = program::load_cl(job.scene.program_file, &warnings);
+    } else {
+      job.program = program::load_program(job.scene.program_file, &warnings);
+    }
+  });
+  collect(diagnostics, [&] { load_design(job); });
   diagnostics.throw_if_errors();
   diagnostics.append(warnings);
-  check_tools(job, diagnostics);
+  if (job.cl) {
+    check_cl_tools(job, diagnostics);
+  } else {
+    check_tools(job, diagnostics);
+  }
   check_memory(job.scene, diagnostics);
   diagnostics.throw_if_errors();
   job.warnings = diagnostics.list();

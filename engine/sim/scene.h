@@ -11,7 +11,9 @@
 #include "cutter/cutter.h"
 #include "machine/machine_scene.h"
 #include "motion/interpolator.h"
+#include "program/cl_program.h"
 #include "program/program.h"
+#include "sim/design_keys.h"
 #include "toolpath/tool_path.h"
 
 namespace swarf::sim {
@@ -23,10 +25,15 @@ struct StockSettings {
   double max_memory_mb = 0.0;        ///< 0: 80 % of the memory that is free when the run starts
 };
 
+/// Criteria that are not given do not count. Scenes of surface blocks have all three: 10.5, 1, 0 by default.
 struct AcceptLimits {
-  double scallop_max_um = 10.5;
-  double gouge_max_um = 1.0;
-  int collisions = 0;  ///< of shank and holder with the stock
+  std::optional<double> scallop_max_um;
+  std::optional<double> gouge_max_um;
+  std::optional<int> collisions;  ///< of shank and holder with the stock
+
+  /// Band of the share within tolerance and of the colour scale where the scene gives no limit, um.
+  double scallop_band_um() const { return scallop_max_um.value_or(10.0); }
+  double gouge_band_um() const { return gouge_max_um.value_or(1.0); }
 };
 
 struct MovieSettings {
@@ -46,10 +53,13 @@ struct Scene {
   std::string file;  ///< scene.toml
   std::string name;  ///< of its folder
   std::string title;
-  std::string machine_file, program_file;
+  std::string machine_file;
+  std::string program_file;                                 ///< `program` or `cl`
+  bool cl = false;                                          ///< the program is CL data
+  toolpath::BlockLaw block_law = toolpath::BlockLaw::kTcp;  ///< CL: interpolator.mode
   cutter::Cutter cutter;
   StockSettings stock;
-  double dexel_pitch_mm = 0.2;  ///< grid of measuring rays on the design; cusps are refined between them
+  DesignSettings design;
   toolpath::PlanOptions toolpath;
   bool compare_planners = true;              ///< plan, interpolate and measure the other planners too
   std::optional<double> chord_tolerance_mm;  ///< replaces the program's K
@@ -63,7 +73,9 @@ struct Scene {
 struct Job {
   Scene scene;
   machine::MachineScene machine;
-  program::Program program;
+  program::Program program;                 ///< of surface blocks; empty for CL jobs
+  std::optional<program::ClProgram> cl;     ///< of CL jobs
+  std::vector<surface::SurfacePtr> design;  ///< what the part is measured against; may be empty for CL jobs
   std::vector<Diagnostic> warnings;
 };
 
@@ -72,8 +84,8 @@ struct Job {
 Scene load_scene(const std::string& path, const std::vector<std::string>& overrides,
                  Diagnostics& diagnostics);
 
-/// Loads scene, machine and program and checks them against each other (tool numbers, memory, chord
-/// tolerance). Throws InputError with everything that is wrong.
+/// Loads scene, machine, program and design and checks them against each other (tool numbers, CUTTER words,
+/// memory, chord tolerance). Throws InputError with everything that is wrong.
 Job load_job(const std::string& path, const std::vector<std::string>& overrides);
 
 }  // namespace swarf::sim

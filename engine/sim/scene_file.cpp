@@ -53,6 +53,21 @@ void read_toolpath(ConfigTable table, Scene& scene) {
   options.rapid_clearance_mm = table.number("rapid_clearance_mm", kAboveZero, options.rapid_clearance_mm);
 }
 
+void read_period_and_limits(ConfigTable& table, motion::MotionOptions& options) {
+  options.period_s = table.number("period_ms", {0.01, 100.0}, options.period_s * 1e3) * 1e-3;
+  options.path_acceleration_max =
+      table.number("path_acceleration_max_mm_s2", kAboveZero, options.path_acceleration_max);
+  options.path_jerk_max = table.number("path_jerk_max_mm_s3", kAboveZero, options.path_jerk_max);
+}
+
+void read_cl_interpolator(ConfigTable table, Scene& scene) {
+  const std::string mode = table.choice("mode", {"tcp", "joint", "ends"}, "tcp");
+  scene.block_law = mode == "joint"  ? toolpath::BlockLaw::kJoint
+                    : mode == "ends" ? toolpath::BlockLaw::kEnds
+                                     : toolpath::BlockLaw::kTcp;
+  read_period_and_limits(table, scene.motion);
+}
+
 void read_interpolator(ConfigTable table, Scene& scene) {
   motion::MotionOptions& options = scene.motion;
   const std::string mode = table.choice("mode", {"surface", "taylor1", "offline"}, "surface");
@@ -65,13 +80,10 @@ void read_interpolator(ConfigTable table, Scene& scene) {
                         : orientation == "linear_in_u" ? motion::OfflineOrientation::kLinearInU
                                                        : motion::OfflineOrientation::kLinearAlongChord;
   options.look_ahead = table.boolean("offline_look_ahead", options.look_ahead);
-  options.period_s = table.number("period_ms", {0.01, 100.0}, options.period_s * 1e3) * 1e-3;
   if (table.has("chord_tolerance_um")) {
     scene.chord_tolerance_mm = table.number("chord_tolerance_um", kAboveZero, 1.0) * kMicrometre;
   }
-  options.path_acceleration_max =
-      table.number("path_acceleration_max_mm_s2", kAboveZero, options.path_acceleration_max);
-  options.path_jerk_max = table.number("path_jerk_max_mm_s3", kAboveZero, options.path_jerk_max);
+  read_period_and_limits(table, options);
 }
 
 std::array<int, 2> read_size(ConfigTable& table) {
@@ -102,16 +114,29 @@ void read_pictures(ConfigTable& root, Scene& scene) {
   scene.stills.samples = stills.integer("samples", 1, 4096, scene.stills.samples);
 }
 
-void read_accept(ConfigTable table, AcceptLimits& accept) {
-  accept.scallop_max_um = table.number("scallop_max_um", kAboveZero, accept.scallop_max_um);
-  accept.gouge_max_um = table.number("gouge_max_um", kAboveZero, accept.gouge_max_um);
-  accept.collisions = table.integer("collisions", 0, 1000000, accept.collisions);
-}
-
 /// A path in the scene, made relative to the scene's folder.
 std::string beside(const std::string& scene_file, const std::string& path) {
   if (path.empty() || fs::path(path).is_absolute()) return path;
   return (fs::path(scene_file).parent_path() / path).lexically_normal().string();
+}
+
+/// Scenes of surface blocks have defaults; in CL scenes only the criteria that are given count.
+void read_accept(ConfigTable table, bool cl, AcceptLimits& accept) {
+  if (!cl || table.has("scallop_max_um")) {
+    accept.scallop_max_um = table.number("scallop_max_um", kAboveZero, 10.5);
+  }
+  if (!cl || table.has("gouge_max_um")) accept.gouge_max_um = table.number("gouge_max_um", kAboveZero, 1.0);
+  if (!cl || table.has("collisions")) accept.collisions = table.integer("collisions", 0, 1000000, 0);
+}
+
+/// `program` or `cl`, exactly one of the two.
+void read_program(ConfigTable& root, Scene& scene) {
+  scene.cl = root.has("cl");
+  if (scene.cl && root.has("program")) {
+    root.error("two-programs", "cl", "the scene names a 'program' and a 'cl' file", "keep one of the two");
+  }
+  scene.program_file = beside(scene.file, root.text(scene.cl ? "cl" : "program"));
+  if (scene.cl && root.has("program")) root.text("program");
 }
 
 }  // namespace
@@ -125,13 +150,18 @@ Scene load_scene(const std::string& path, const std::vector<std::string>& overri
   if (diagnostics.has_errors()) return scene;
   scene.title = root.text("title", scene.name);
   scene.machine_file = beside(path, root.text("machine"));
-  scene.program_file = beside(path, root.text("program"));
+  read_program(root, scene);
   scene.cutter = read_cutter(root.table("cutter"));
   scene.stock = read_stock(root.table("stock"));
-  scene.dexel_pitch_mm = root.table("design").number("pitch_mm", kAboveZero, scene.dexel_pitch_mm);
-  read_toolpath(root.table("toolpath"), scene);
-  read_interpolator(root.table("interpolator"), scene);
-  read_accept(root.table("accept"), scene.accept);
+  scene.design = read_design(root.table("design"), scene.cl);
+  scene.design.surface_file = beside(path, scene.design.surface_file);
+  if (scene.cl) {
+    read_cl_interpolator(root.table("interpolator"), scene);
+  } else {
+    read_toolpath(root.table("toolpath"), scene);
+    read_interpolator(root.table("interpolator"), scene);
+  }
+  read_accept(root.table("accept"), scene.cl, scene.accept);
   read_pictures(root, scene);
   root.finish();
   scene.toolpath.stock_top_mm = scene.stock.box_W.upper.z();

@@ -9,6 +9,7 @@
 
 #include "base/units.h"
 #include "sim/findings.h"
+#include "toolpath/cl_path.h"
 
 namespace swarf::sim {
 namespace {
@@ -23,11 +24,11 @@ stock::CutterSolid solid_of(const cutter::Cutter& cutter) {
   return {cutter.radius(), cutter.flute_length_mm};
 }
 
-toolpath::ToolPath plan_path(const Job& job, toolpath::Planner planner, const cutter::Cutter& cutter) {
+toolpath::ToolPath plan_path(const Job& job, toolpath::Planner planner, Diagnostics& diagnostics) {
   toolpath::PlanOptions options = job.scene.toolpath;
   options.planner = planner;
-  Diagnostics diagnostics;
-  toolpath::ToolPath path = toolpath::plan(job.program, cutter, options, diagnostics);
+  toolpath::ToolPath path = job.cl ? toolpath::cl_path(*job.cl, job.scene.block_law, diagnostics)
+                                   : toolpath::plan(job.program, job.scene.cutter, options, diagnostics);
   diagnostics.throw_if_errors();
   if (job.scene.chord_tolerance_mm) {
     for (toolpath::Element& element : path.elements) {
@@ -37,18 +38,6 @@ toolpath::ToolPath plan_path(const Job& job, toolpath::Planner planner, const cu
     }
   }
   return path;
-}
-
-/// The pass that each sample belongs to; -1 on free moves.
-std::vector<int> pass_of_samples(const MeasuredPath& measured) {
-  std::vector<int> passes(measured.motion.trajectory.samples.size(), -1);
-  for (size_t i = 0; i < passes.size(); ++i) {
-    const auto element = static_cast<size_t>(measured.motion.trajectory.samples[i].element);
-    if (const auto* pass = std::get_if<toolpath::SurfacePass>(&measured.path.elements[element].what)) {
-      passes[i] = pass->pass;
-    }
-  }
-  return passes;
 }
 
 double theory_scallop_um(const toolpath::ToolPath& path) {
@@ -62,12 +51,12 @@ double theory_scallop_um(const toolpath::ToolPath& path) {
 }
 
 void measure_dexels(const Job& job, MeasuredPath& measured) {
-  const std::vector<int> passes = pass_of_samples(measured);
-  const measure::MeasureLimits limits{job.scene.accept.scallop_max_um * kMicrometre,
-                                      job.scene.accept.gouge_max_um * kMicrometre};
+  const std::vector<int> passes = pass_of_blocks(measured.rays, measured.path);
+  const measure::MeasureLimits limits{job.scene.accept.scallop_band_um() * kMicrometre,
+                                      job.scene.accept.gouge_band_um() * kMicrometre};
   std::vector<measure::SurfaceMetrics> parts;
   for (const stock::SurfaceDexels& dexels : measured.dexels) {
-    parts.push_back(measure::measure_surface(dexels, measured.sweeps, passes, solid_of(job.scene.cutter),
+    parts.push_back(measure::measure_surface(dexels, measured.rays.sweeps, passes, solid_of(job.scene.cutter),
                                              limits, &measured.ridges));
   }
   measured.surface = measure::combine(parts, measured.ridges);
@@ -76,10 +65,10 @@ void measure_dexels(const Job& job, MeasuredPath& measured) {
 
 void cut_dexels(const Job& job, MeasuredPath& measured) {
   const auto start = std::chrono::steady_clock::now();
-  measured.sweeps = cycle_sweeps(measured.motion.trajectory, job.machine.model);
-  for (const program::SurfaceDefinition& definition : job.program.surfaces) {
-    measured.dexels.emplace_back(definition.surface, job.scene.dexel_pitch_mm, job.scene.stock.box_W);
-    measured.dexels.back().cut(measured.sweeps, solid_of(job.scene.cutter));
+  if (!job.design.empty()) measured.rays = ray_sweeps(job, measured.path, measured.motion.trajectory);
+  for (const surface::SurfacePtr& surface : job.design) {
+    measured.dexels.emplace_back(surface, job.scene.design.pitch_mm, job.scene.stock.box_W);
+    measured.dexels.back().cut(measured.rays.sweeps, solid_of(job.scene.cutter));
   }
   measured.dexel_seconds = seconds_since(start);
 }
@@ -88,13 +77,21 @@ MeasuredPath plan_and_move(const Job& job, toolpath::Planner planner, const moti
                            Progress& progress) {
   MeasuredPath measured;
   auto start = std::chrono::steady_clock::now();
-  measured.path = plan_path(job, planner, job.scene.cutter);
+  Diagnostics diagnostics;
+  measured.path = plan_path(job, planner, diagnostics);
   measured.plan_seconds = seconds_since(start);
   start = std::chrono::steady_clock::now();
   measured.motion =
       motion::interpolate(measured.path, job.machine.model, job.scene.cutter, options, progress);
   measured.motion_seconds = seconds_since(start);
   return measured;
+}
+
+InputError path_misses_stock(const Job& job, const std::string& how) {
+  return {"path-misses-stock",
+          {job.scene.file},
+          fmt::format("the path never meets the stock: {}", how),
+          "move stock.box_mm to where the path is (both are in the work frame, mm)"};
 }
 
 /// A path that stays a cutter's reach away from the stock is a wrong scene, not a clean run.
@@ -108,10 +105,7 @@ void require_contact(const Job& job, const motion::Trajectory& trajectory) {
     nearest = std::min(nearest, (sample.contact_W - inside).norm());
   }
   if (nearest <= reach) return;
-  throw InputError(
-      "path-misses-stock", {job.scene.file},
-      fmt::format("the path never meets the stock: it stays {:.1f} mm away from stock.box_mm", nearest),
-      "move stock.box_mm to where the surface is (both are in the work frame, mm)");
+  throw path_misses_stock(job, fmt::format("it stays {:.1f} mm away from stock.box_mm", nearest));
 }
 
 ComparisonRow row_of(const std::string& name, const MeasuredPath& measured, bool used) {
@@ -185,7 +179,8 @@ void compare_modes(const Job& job, Progress& progress, Result& result) {
 }
 
 void cut_stock(const Job& job, Progress& progress, Result& result) {
-  const stock::MergedSweeps merged = merged_sweeps(result.main.motion.trajectory, job.scene);
+  JobSweeps merged = stock_sweeps(job, result.main.path, result.main.motion.trajectory);
+  result.cut_sources = std::move(merged.sources);
   result.sweep_bound_mm = merged.error_bound_mm;
   result.merged_sweeps = merged.sweeps.size();
   result.stock = std::make_unique<stock::Stock>(job.scene.stock.box_W, job.scene.stock.voxel_mm);
@@ -221,49 +216,32 @@ void measure_part(const Job& job, Progress& progress, Result& result) {
 
 }  // namespace
 
-std::vector<stock::Sweep> cycle_sweeps(const motion::Trajectory& trajectory,
-                                       const kinematics::MachineModel& machine) {
-  const size_t count = trajectory.samples.size();
-  std::vector<stock::Sweep> sweeps(count);
-  if (count == 0) return sweeps;
-  // The nodes lie half way between the samples, where the joint-linear motion of the axes strays most from
-  // the path.
-  ToolPose node = trajectory.samples.front().pose;
-  for (size_t i = 0; i < count; ++i) {
-    const ToolPose next =
-        i + 1 < count ? kinematics::forward(machine, 0.5 * (trajectory.axes[i] + trajectory.axes[i + 1]))
-                      : trajectory.samples[i].pose;
-    sweeps[i] = {node, next, static_cast<uint32_t>(i)};
-    node = next;
-  }
-  return sweeps;
-}
-
-stock::MergedSweeps merged_sweeps(const motion::Trajectory& trajectory, const Scene& scene) {
-  std::vector<ToolPose> poses;
-  poses.reserve(trajectory.samples.size());
-  for (const motion::ToolSample& sample : trajectory.samples) poses.push_back(sample.pose);
-  const std::vector<uint8_t> breaks(poses.size(), 0);
-  return stock::merge_sweeps(poses, breaks, scene.cutter.flute_length_mm, scene.stock.sweep_tolerance_mm);
+toolpath::ToolPath job_path(const Job& job, Diagnostics& diagnostics) {
+  return plan_path(job, job.scene.toolpath.planner, diagnostics);
 }
 
 Result simulate(const Job& job, Progress& progress) {
   Result result;
   progress.begin("plan", 1, "paths");
-  result.main.path = plan_path(job, job.scene.toolpath.planner, job.scene.cutter);
+  Diagnostics diagnostics;
+  result.main.path = job_path(job, diagnostics);
   progress.end();
   result.main.motion =
       motion::interpolate(result.main.path, job.machine.model, job.scene.cutter, job.scene.motion, progress);
-  require_contact(job, result.main.motion.trajectory);
+  if (!job.cl) require_contact(job, result.main.motion.trajectory);
   cut_stock(job, progress, result);
   result.stopped = progress.stop_requested();
   if (result.stopped) return result;
+  if (job.cl && result.volume_removed_mm3 <= 0.0) throw path_misses_stock(job, "nothing was cut");
   progress.begin("cut measuring rays", 1, "surfaces");
   cut_dexels(job, result.main);
   progress.end();
   measure_part(job, progress, result);
-  compare_planners(job, progress, result);
-  compare_modes(job, progress, result);
+  // A CL program is one path with one law: there is nothing to compare it with.
+  if (!job.cl) {
+    compare_planners(job, progress, result);
+    compare_modes(job, progress, result);
+  }
   result.findings = find_faults(job, result);
   result.stopped = progress.stop_requested();
   return result;

@@ -10,6 +10,7 @@
 #include "measure/measure.h"
 #include "measure/metrics.h"
 #include "motion/interpolator.h"
+#include "sim/job_sweeps.h"
 #include "sim/scene.h"
 #include "sim/tool_clearance.h"
 #include "stock/stock.h"
@@ -31,8 +32,8 @@ struct Finding {
 struct MeasuredPath {
   toolpath::ToolPath path;
   motion::MotionResult motion;
-  std::vector<stock::Sweep> sweeps;          ///< cycle by cycle; Sweep::block = index of its sample
-  std::vector<stock::SurfaceDexels> dexels;  ///< one per surface of the program, in its order
+  JobSweeps rays;                            ///< what cut the measuring rays; Sweep::block is its index
+  std::vector<stock::SurfaceDexels> dexels;  ///< one per surface of Job::design, in its order
   std::vector<measure::Ridge> ridges;
   measure::SurfaceMetrics surface;
   double plan_seconds = 0.0, motion_seconds = 0.0, dexel_seconds = 0.0;
@@ -53,8 +54,9 @@ struct Result {
   std::vector<ComparisonRow> planners;  ///< the scene's interpolator, every planner
   std::vector<ComparisonRow> modes;     ///< the scene's planner, the interpolators of the paper's comparison
   std::unique_ptr<stock::Stock> stock;
-  double sweep_bound_mm = 0.0;  ///< of the sweeps that cut the level set
-  uint64_t merged_sweeps = 0;
+  std::vector<SweepSource> cut_sources;  ///< of the sweeps that cut the level set, by Sweep::block
+  double sweep_bound_mm = 0.0;           ///< of the same sweeps
+  uint64_t merged_sweeps = 0;            ///< how many they are
   double volume_removed_mm3 = 0.0, volume_left_mm3 = 0.0;
   measure::CrossCheck cross_check;
   ToolClearance clearance;
@@ -62,15 +64,9 @@ struct Result {
   bool stopped = false;  ///< the user stopped it; what follows the cut is missing
 };
 
-/// One sweep per cycle, id = index of its sample, from the middle of the cycle before to the middle of the
-/// one after. The axes move linearly inside a cycle, and half way is where the tool then strays most from the
-/// path: with these poses as nodes the chord of a cycle is cut as deep as the machine cuts it, and the
-/// samples stay on the path.
-std::vector<stock::Sweep> cycle_sweeps(const motion::Trajectory& trajectory,
-                                       const kinematics::MachineModel& machine);
-
-/// Ticks merged within the scene's tolerance, for the level set.
-stock::MergedSweeps merged_sweeps(const motion::Trajectory& trajectory, const Scene& scene);
+/// The scene's own path: planned on the surfaces, or the blocks of the CL program. Throws InputError when it
+/// cannot be planned; what is only worth a warning goes to `diagnostics`.
+toolpath::ToolPath job_path(const Job& job, Diagnostics& diagnostics);
 
 /// Runs everything. Throws InputError when the path cannot be planned or never meets the stock.
 Result simulate(const Job& job, Progress& progress);

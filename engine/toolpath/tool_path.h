@@ -1,6 +1,8 @@
-// The tool path: passes on a surface and free moves between them, in the work frame.
+// The tool path in the work frame: passes on a surface and free moves between them, or the blocks of a CL
+// program.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -9,6 +11,7 @@
 #include "base/diagnostics.h"
 #include "base/frames.h"
 #include "cutter/cutter.h"
+#include "program/cl_program.h"
 #include "program/program.h"
 #include "surface/surface.h"
 
@@ -52,19 +55,45 @@ struct FreeMove {
   double feed_mm_s = 0.0;  ///< 0: rapid, limited by the machine alone
 };
 
+/// How the tool moves between the two poses of a block.
+enum class BlockLaw {
+  kTcp,    ///< "tcp": the tip straight or on its arc, the axis turning evenly along the great circle
+  kJoint,  ///< "joint": every machine axis linear between its values at both ends
+  kEnds,   ///< "ends": the tip and every other point given on the axis straight (theory 5, flank blocks):
+           ///< the axis runs through the linear means of its ends, whatever the guide points' distance
+};
+/// "tcp" and so on, for reports and TOML.
+const char* law_name(BlockLaw law);
+
+/// One move of a CL program. The law belongs to the block: it says what the tool does between its ends.
+struct BlockMove {
+  ToolPose from, to;
+  std::optional<program::ClArc> arc;  ///< kTcp only
+  BlockLaw law = BlockLaw::kTcp;
+  double feed_mm_s = 0.0;  ///< 0: rapid, limited by the machine alone
+  int pass = -1;           ///< 0-based count of the passes; -1 on rapids
+};
+/// Angle in (0, 2 pi] that the tip of an arc block goes round.
+double arc_angle(const BlockMove& block);
+/// Way of the tip under kTcp, mm.
+double tip_way(const BlockMove& block);
+
 struct Element {
-  std::variant<SurfacePass, FreeMove> what;
-  int operation = 0;     ///< index into Program::operations
+  std::variant<SurfacePass, FreeMove, BlockMove> what;
+  int operation = 0;     ///< index into Program::operations; 0 for CL programs
   SourceLocation where;  ///< the block that caused it
 };
 
 struct ToolPath {
-  std::string planner;  ///< "constant_scallop" | "lin_koren" | "isoparametric"
+  std::string planner;  ///< "constant_scallop" | "lin_koren" | "isoparametric"; "cl" for CL programs
   std::vector<Element> elements;
   int passes = 0;
   double pass_length_mm = 0.0;  ///< contact length, without links
   double link_length_mm = 0.0;
 };
+
+/// True for the path of a CL program: its elements are blocks and nothing else.
+bool holds_blocks(const ToolPath& path);
 
 /// Tool pose in contact at a curve point: flat end, axis = normal turned by lead (about the cross direction,
 /// towards the feed) and tilt (towards the left of the feed). With zero lean the tip centre is the contact

@@ -1,0 +1,295 @@
+#include "motion/block_motion.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/check.h"
+#include "kinematics/chain.h"
+#include "motion/free_move.h"
+
+namespace swarf::motion {
+namespace {
+
+using kinematics::AxisKind;
+using kinematics::AxisValues;
+using kinematics::MachineModel;
+using toolpath::BlockLaw;
+using toolpath::BlockMove;
+
+constexpr int kPiecesMax = 10'000'000;
+/// Nodes per radian that all rotary axes turn together: the part added for what lies between the nodes then
+/// stays a small share.
+constexpr double kNodesPerRadian = 48.0;
+
+double angle_between(const Vec3& a, const Vec3& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+/// Position and two derivatives by s.
+struct Jet {
+  Vec3 value, first = Vec3::Zero(), second = Vec3::Zero();
+};
+
+/// An arc as polar coordinates about its axis; radius and height may differ a little between the ends.
+struct ArcShape {
+  Vec3 centre, along, across, normal;
+  double angle, r_from, r_to, h_from, h_to;
+
+  explicit ArcShape(const BlockMove& block)
+      : centre(block.arc->centre_W), normal(block.arc->normal_W), angle(toolpath::arc_angle(block)) {
+    const Vec3 from = block.from.tip_W - centre, to = block.to.tip_W - centre;
+    h_from = from.dot(normal);
+    h_to = to.dot(normal);
+    along = (from - h_from * normal).normalized();
+    across = normal.cross(along);
+    r_from = (from - h_from * normal).norm();
+    r_to = (to - h_to * normal).norm();
+  }
+  Vec3 point(double s) const {
+    const double r = r_from + s * (r_to - r_from);
+    return centre + (h_from + s * (h_to - h_from)) * normal +
+           r * (std::cos(s * angle) * along + std::sin(s * angle) * across);
+  }
+  double speed() const {
+    return std::max(r_from, r_to) * angle + std::abs(r_to - r_from) + std::abs(h_to - h_from);
+  }
+  double acceleration() const {
+    return std::max(r_from, r_to) * angle * angle + 2.0 * std::abs(r_to - r_from) * angle;
+  }
+};
+
+/// Rates of the axes over the block and what follows from them for tip and axis in the work.
+class JointChain {
+ public:
+  explicit JointChain(const BlockMotion& motion)
+      : machine_(*motion.machine), q_(motion.q_from), dq_(motion.q_to - motion.q_from) {
+    for (size_t i = 0; i < machine_.axes.size(); ++i) {
+      if (machine_.axes[i].kind == AxisKind::kRotary) turn_ += std::abs(dq_[static_cast<Eigen::Index>(i)]);
+    }
+    find_tip_bounds();
+  }
+
+  /// Sum of the turns of all rotary axes: bounds |a'|, its powers |a''| and |a'''|.
+  double turn() const { return turn_; }
+  double speed() const { return speed_; }                ///< bound of |p'|
+  double acceleration() const { return acceleration_; }  ///< bound of |p''|
+  double jerk() const { return jerk_; }                  ///< bound of |p'''|
+
+  /// Tip and axis in M as the work sees them; the work's own frame adds a constant rotation only.
+  void derivatives(double s, Jet& tip, Jet& axis) const {
+    tip = {machine_.tip_M};
+    axis = {machine_.tool_axis_M};
+    each_link([&](int i, double way) { carry(i, way, s, tip, axis); });
+  }
+
+ private:
+  template <typename F>
+  void each_link(const F& f) const {
+    for (size_t n = machine_.head_chain.size(); n-- > 0;) f(machine_.head_chain[n], 1.0);
+    for (const int i : machine_.table_chain) f(i, -1.0);
+  }
+
+  void carry(int i, double way, double s, Jet& tip, Jet& axis) const {
+    const kinematics::Axis& link = machine_.axes[static_cast<size_t>(i)];
+    const double sense = way * link_sense(link);
+    const double value = sense * (q_[i] + s * dq_[i]);
+    const Vec3 rate = (sense * dq_[i]) * link.direction_M;
+    if (link.kind == AxisKind::kLinear) {
+      tip.value += value * link.direction_M;
+      tip.first += rate;
+      return;
+    }
+    const double sine = std::sin(value), cosine = std::cos(value);
+    const auto turn = [&](const Vec3& v) { return kinematics::rotate(link.direction_M, sine, cosine, v); };
+    const auto carried = [&](const Jet& x) {
+      const Vec3 across = rate.cross(x.value);
+      return Jet{turn(x.value), turn(x.first + across),
+                 turn(x.second + 2.0 * rate.cross(x.first) + rate.cross(across))};
+    };
+    tip.value -= link.origin_M;
+    tip = carried(tip);
+    tip.value += link.origin_M;
+    axis = carried(axis);
+  }
+
+  /// Bounds by the triangle inequality, link by link; a point's distance from an axis is that at mid block
+  /// plus half its way.
+  void find_tip_bounds() {
+    Jet tip{machine_.tip_M}, axis{machine_.tool_axis_M};
+    each_link([&](int i, double way) {
+      const kinematics::Axis& link = machine_.axes[static_cast<size_t>(i)];
+      const double rate = std::abs(dq_[i]);
+      if (link.kind == AxisKind::kLinear) {
+        speed_ += rate;
+      } else {
+        const double arm = link.direction_M.cross(tip.value - link.origin_M).norm() + 0.5 * speed_;
+        jerk_ += 3.0 * rate * acceleration_ + 3.0 * rate * rate * speed_ + rate * rate * rate * arm;
+        acceleration_ += 2.0 * rate * speed_ + rate * rate * arm;
+        speed_ += rate * arm;
+      }
+      carry(i, way, 0.5, tip, axis);
+    });
+  }
+
+  const MachineModel& machine_;
+  AxisValues q_, dq_;
+  double turn_ = 0.0, speed_ = 0.0, acceleration_ = 0.0, jerk_ = 0.0;
+};
+
+MotionBounds tcp_bounds(const BlockMove& block) {
+  const double theta = angle_between(block.from.axis_W, block.to.axis_W);
+  MotionBounds bounds;
+  bounds.turn_rate = theta;
+  if (block.arc) {
+    const ArcShape arc(block);
+    bounds.speed = arc.speed();
+    bounds.bend = arc.acceleration() + 2.0 * theta * arc.speed();
+    return bounds;
+  }
+  const Vec3 way = block.to.tip_W - block.from.tip_W;
+  const Vec3 across = block.from.axis_W.cross(block.to.axis_W);
+  bounds.speed = way.norm();
+  if (theta > 0.0 && across.norm() > 0.0) bounds.bend = 2.0 * theta * across.normalized().cross(way).norm();
+  return bounds;
+}
+
+/// a = d/|d| with d linear: its angle turns at sin(theta)/|d|^2, and |d| >= cos(theta/2).
+MotionBounds ends_bounds(const BlockMove& block) {
+  MotionBounds bounds = tcp_bounds(block);
+  const double theta = bounds.turn_rate;
+  if (theta == 0.0) return bounds;
+  const double half_sine = std::sin(0.5 * theta), least = std::cos(0.5 * theta);
+  bounds.turn_rate = 2.0 * std::tan(0.5 * theta);
+  bounds.turn_acceleration = 4.0 * std::sin(theta) * half_sine * half_sine / std::pow(least, 4);
+  bounds.bend *= bounds.turn_rate / theta;
+  return bounds;
+}
+
+MotionBounds joint_bounds(const BlockMotion& motion) {
+  const JointChain chain(motion);
+  MotionBounds bounds;
+  bounds.great_circle = false;
+  const double turn = chain.turn();
+  const int cells = turn > 0.0 ? 2 + static_cast<int>(std::ceil(kNodesPerRadian * turn)) : 1;
+  const double reach = 0.5 / cells;  // from any place to the nearest node
+  Jet tip, axis;
+  for (int i = 0; i <= cells; ++i) {
+    chain.derivatives(static_cast<double>(i) / cells, tip, axis);
+    const Vec3 w = axis.value.cross(axis.first);
+    bounds.bend = std::max(bounds.bend, (2.0 * w.cross(tip.first) - tip.second).norm());
+    bounds.turn_acceleration = std::max(bounds.turn_acceleration, axis.value.cross(axis.second).norm());
+    bounds.turn_rate = std::max(bounds.turn_rate, axis.first.norm());
+    bounds.speed = std::max(bounds.speed, tip.first.norm());
+  }
+  if (turn == 0.0) return {0.0, 0.0, 0.0, bounds.speed, true};
+  bounds.bend +=
+      reach * (2.0 * turn * turn * chain.speed() + 2.0 * turn * chain.acceleration() + chain.jerk());
+  bounds.turn_acceleration += reach * 2.0 * turn * turn * turn;
+  bounds.turn_rate += reach * turn * turn;
+  bounds.speed += reach * chain.acceleration();
+  return bounds;
+}
+
+}  // namespace
+
+std::vector<BlockMotion> block_motions(const toolpath::ToolPath& path, const MachineModel& machine) {
+  const kinematics::InverseKinematics inverse(machine);
+  AxisValues q = AxisValues::Zero();
+  for (size_t i = 0; i < machine.axes.size(); ++i) q[static_cast<Eigen::Index>(i)] = machine.axes[i].home;
+  std::vector<BlockMotion> motions;
+  motions.reserve(path.elements.size());
+  for (const toolpath::Element& element : path.elements) {
+    const auto& block = std::get<BlockMove>(element.what);
+    const auto solve = [&](const ToolPose& pose) {
+      const kinematics::Branch branch = inverse.solve_nearest(pose, q);
+      if (branch.outcome != kinematics::InverseOutcome::kUnreachable) {
+        q = branch.q;
+      } else if (block.law == BlockLaw::kJoint) {
+        throw InputError(
+            "unreachable", element.where,
+            fmt::format("the machine has no axis values for tip ({:.3f}, {:.3f}, {:.3f}) mm, axis "
+                        "({:.4f}, {:.4f}, {:.4f})",
+                        pose.tip_W.x(), pose.tip_W.y(), pose.tip_W.z(), pose.axis_W.x(), pose.axis_W.y(),
+                        pose.axis_W.z()),
+            "give positions that the machine reaches, or interpolator.mode = \"tcp\"");
+      }
+    };
+    if (motions.empty()) solve(block.from);
+    const AxisValues from = q;
+    solve(block.to);
+    motions.push_back({&block, &machine, from, q});
+  }
+  return motions;
+}
+
+ToolPose pose_at(const BlockMotion& motion, double s) {
+  const BlockMove& block = *motion.block;
+  if (s <= 0.0) return block.from;
+  if (s >= 1.0) return block.to;
+  switch (block.law) {
+    case BlockLaw::kJoint:
+      return kinematics::forward(*motion.machine, motion.q_from + s * (motion.q_to - motion.q_from));
+    case BlockLaw::kEnds:
+      return {block.from.tip_W + s * (block.to.tip_W - block.from.tip_W),
+              (block.from.axis_W + s * (block.to.axis_W - block.from.axis_W)).normalized()};
+    case BlockLaw::kTcp:
+      break;
+  }
+  ToolPose pose = pose_between(block.from, block.to, s);
+  if (block.arc) pose.tip_W = ArcShape(block).point(s);
+  return pose;
+}
+
+MotionBounds motion_bounds(const BlockMotion& motion) {
+  switch (motion.block->law) {
+    case BlockLaw::kJoint:
+      return joint_bounds(motion);
+    case BlockLaw::kEnds:
+      return ends_bounds(*motion.block);
+    case BlockLaw::kTcp:
+      break;
+  }
+  return tcp_bounds(*motion.block);
+}
+
+double split_error(const MotionBounds& bounds, int pieces, double lever_mm) {
+  SWARF_CHECK(pieces > 0, "a block has at least one piece");
+  const double h = 1.0 / pieces;
+  const double turn = h * bounds.turn_rate;
+  if (turn > 1.0) return std::numeric_limits<double>::infinity();
+  const double lever = lever_mm + h * bounds.speed;
+  const double bending = bounds.turn_acceleration + bounds.turn_rate * bounds.turn_rate;
+  const double error = h * h / 8.0 * (bounds.bend + (bending > 0.0 ? bending * lever : 0.0));
+  if (bounds.great_circle) return error;
+  const double sine = h * h * bounds.turn_acceleration / 8.0 / (1.0 - turn * turn / 8.0);
+  if (sine >= 1.0) return std::numeric_limits<double>::infinity();
+  return error + turn * std::tan(std::asin(sine)) * lever;
+}
+
+std::vector<ToolPose> subdivide(const BlockMotion& motion, double lever_mm, double tolerance_mm) {
+  SWARF_CHECK(lever_mm >= 0.0 && tolerance_mm > 0.0, "a lever and a tolerance");
+  const MotionBounds bounds = motion_bounds(motion);
+  // The error falls with the square of the number or faster: start where that puts it and close in.
+  int pieces = 1 + static_cast<int>(std::min<double>(bounds.turn_rate, kPiecesMax));
+  for (double error; (error = split_error(bounds, pieces, lever_mm)) > tolerance_mm;) {
+    const double growth = std::isfinite(error) ? std::clamp(std::sqrt(error / tolerance_mm), 1.0, 1e4) : 2.0;
+    // Slightly less than the square root asks for: the cubic parts fall faster.
+    const double next = std::max(pieces + 1.0, std::floor(0.97 * growth * pieces));
+    if (next > kPiecesMax) {
+      throw InputError("too-many-sweeps", {},
+                       fmt::format("a block of {:.3f} mm needs more than {} sweeps to stay within {:g} um",
+                                   bounds.speed, kPiecesMax, tolerance_mm * 1e3),
+                       "raise the tolerance of the sweeps, or give the block in shorter pieces");
+    }
+    pieces = static_cast<int>(next);
+  }
+  std::vector<ToolPose> poses;
+  poses.reserve(static_cast<size_t>(pieces) + 1);
+  for (int i = 0; i <= pieces; ++i) poses.push_back(pose_at(motion, static_cast<double>(i) / pieces));
+  return poses;
+}
+
+}  // namespace swarf::motion

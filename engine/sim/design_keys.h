@@ -1,0 +1,33 @@
+// The [design] table of a CL scene: what the finished part is measured against.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/config.h"
+#include "surface/surface.h"
+
+namespace swarf::sim {
+
+enum class DesignKind {
+  kProgram,   ///< the surfaces of the scene's own program
+  kNone,      ///< nothing is measured
+  kSurface,   ///< the surfaces of another program of surface blocks
+  kAnalytic,  ///< one analytic surface
+};
+
+struct DesignSettings {
+  DesignKind kind = DesignKind::kProgram;
+  std::string name = "program";  ///< as in the scene: "hyperboloid"
+  double pitch_mm = 0.2;         ///< grid of measuring rays on the design; cusps are refined between them
+  /// CL scenes: blocks are divided into sweeps that stay this close to their motion for the measuring rays.
+  double sweep_tolerance_mm = 2e-5;
+  std::string surface_file;     ///< kSurface
+  surface::SurfacePtr surface;  ///< kAnalytic
+};
+
+/// Reads [design]; `cl` tells which keys belong there. Problems go to the table's diagnostics; `surface_file`
+/// is left as written.
+DesignSettings read_design(ConfigTable table, bool cl);
+
+}  // namespace swarf::sim

@@ -1,0 +1,179 @@
+#include "sim/job_sweeps.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "motion/block_motion.h"
+
+namespace swarf::sim {
+namespace {
+
+using toolpath::BlockMove;
+
+/// Distance from the tip to the farthest point of the flutes.
+double lever_of(const cutter::Cutter& cutter) {
+  return std::hypot(cutter.radius(), cutter.flute_length_mm);
+}
+
+/// Sources of a surface job: blocks are samples.
+std::vector<SweepSource> sources_of_samples(const motion::Trajectory& trajectory) {
+  std::vector<SweepSource> sources(trajectory.samples.size());
+  for (size_t i = 0; i < sources.size(); ++i)
+    sources[i] = {trajectory.samples[i].element, static_cast<uint32_t>(i)};
+  return sources;
+}
+
+/// Finds the cycle in which the tool comes to a place of a block. Places must be asked for in order.
+class SampleFinder {
+ public:
+  explicit SampleFinder(const motion::Trajectory& trajectory) : samples_(trajectory.samples) {}
+  uint32_t at(int element, double s) {
+    const auto short_of = [&](const motion::ToolSample& sample) {
+      return sample.element < element || (sample.element == element && sample.u < s);
+    };
+    while (next_ + 1 < samples_.size() && short_of(samples_[next_])) ++next_;
+    return static_cast<uint32_t>(next_);
+  }
+
+ private:
+  const std::vector<motion::ToolSample>& samples_;
+  size_t next_ = 0;
+};
+
+/// Collects the sweeps of a CL job, each with a block of its own.
+class BlockSweeper {
+ public:
+  BlockSweeper(const Job& job, const toolpath::ToolPath& path, const motion::Trajectory& trajectory,
+               double tolerance_mm)
+      : motions_(motion::block_motions(path, job.machine.model)),
+        finder_(trajectory),
+        lever_mm_(lever_of(job.scene.cutter)),
+        tolerance_mm_(tolerance_mm) {}
+
+  JobSweeps each_block() {
+    for (size_t i = 0; i < motions_.size(); ++i) add_block(i);
+    return std::move(out_);
+  }
+
+  JobSweeps straight_blocks_merged() {
+    for (size_t i = 0; i < motions_.size();) {
+      const size_t end = straight_end(i);
+      if (end > i + 1) {
+        add_straight(i, end);
+      } else {
+        add_block(i);
+      }
+      i = std::max(end, i + 1);
+    }
+    return std::move(out_);
+  }
+
+ private:
+  bool is_straight(size_t i) const {
+    const BlockMove& block = *motions_[i].block;
+    return !block.arc && block.from.axis_W == block.to.axis_W &&
+           (block.law != toolpath::BlockLaw::kJoint || turns_nothing(motions_[i]));
+  }
+  static bool turns_nothing(const motion::BlockMotion& motion) {
+    for (size_t i = 0; i < motion.machine->axes.size(); ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      if (motion.machine->axes[i].kind == kinematics::AxisKind::kRotary &&
+          motion.q_from[row] != motion.q_to[row])
+        return false;
+    }
+    return true;
+  }
+  /// First block from `first` on that does not join a row of straight blocks of one axis and feed.
+  size_t straight_end(size_t first) const {
+    size_t end = first;
+    while (end < motions_.size() && is_straight(end) &&
+           motions_[end].block->feed_mm_s == motions_[first].block->feed_mm_s &&
+           motions_[end].block->from.axis_W == motions_[first].block->from.axis_W)
+      ++end;
+    return end;
+  }
+
+  void add(const ToolPose& start, const ToolPose& end, size_t element, double s) {
+    out_.sweeps.push_back({start, end, static_cast<uint32_t>(out_.sources.size())});
+    const int index = static_cast<int>(element);
+    out_.sources.push_back({index, finder_.at(index, s)});
+  }
+
+  void add_block(size_t i) {
+    const std::vector<ToolPose> poses = motion::subdivide(motions_[i], lever_mm_, tolerance_mm_);
+    const size_t pieces = poses.size() - 1;
+    for (size_t k = 0; k < pieces; ++k)
+      add(poses[k], poses[k + 1], i, static_cast<double>(k + 1) / static_cast<double>(pieces));
+    const double error =
+        motion::split_error(motion::motion_bounds(motions_[i]), static_cast<int>(pieces), lever_mm_);
+    out_.error_bound_mm = std::max(out_.error_bound_mm, error);
+  }
+
+  void add_straight(size_t first, size_t end) {
+    std::vector<ToolPose> poses{motions_[first].block->from};
+    for (size_t i = first; i < end; ++i) poses.push_back(motions_[i].block->to);
+    const std::vector<uint8_t> breaks(poses.size(), 0);
+    const stock::MergedSweeps merged = stock::merge_sweeps(poses, breaks, lever_mm_, tolerance_mm_);
+    for (const stock::Sweep& sweep : merged.sweeps) add(sweep.start, sweep.end, first + sweep.block - 1, 1.0);
+    out_.error_bound_mm = std::max(out_.error_bound_mm, merged.error_bound_mm);
+  }
+
+  std::vector<motion::BlockMotion> motions_;
+  SampleFinder finder_;
+  double lever_mm_, tolerance_mm_;
+  JobSweeps out_;
+};
+
+}  // namespace
+
+std::vector<stock::Sweep> cycle_sweeps(const motion::Trajectory& trajectory,
+                                       const kinematics::MachineModel& machine) {
+  const size_t count = trajectory.samples.size();
+  std::vector<stock::Sweep> sweeps(count);
+  if (count == 0) return sweeps;
+  // The nodes lie half way between the samples, where the joint-linear motion of the axes strays most from
+  // the path.
+  ToolPose node = trajectory.samples.front().pose;
+  for (size_t i = 0; i < count; ++i) {
+    const ToolPose next =
+        i + 1 < count ? kinematics::forward(machine, 0.5 * (trajectory.axes[i] + trajectory.axes[i + 1]))
+                      : trajectory.samples[i].pose;
+    sweeps[i] = {node, next, static_cast<uint32_t>(i)};
+    node = next;
+  }
+  return sweeps;
+}
+
+stock::MergedSweeps merged_sweeps(const motion::Trajectory& trajectory, const Scene& scene) {
+  std::vector<ToolPose> poses;
+  poses.reserve(trajectory.samples.size());
+  for (const motion::ToolSample& sample : trajectory.samples) poses.push_back(sample.pose);
+  const std::vector<uint8_t> breaks(poses.size(), 0);
+  return stock::merge_sweeps(poses, breaks, scene.cutter.flute_length_mm, scene.stock.sweep_tolerance_mm);
+}
+
+JobSweeps stock_sweeps(const Job& job, const toolpath::ToolPath& path, const motion::Trajectory& trajectory) {
+  if (job.cl)
+    return BlockSweeper(job, path, trajectory, job.scene.stock.sweep_tolerance_mm).straight_blocks_merged();
+  stock::MergedSweeps merged = merged_sweeps(trajectory, job.scene);
+  return {std::move(merged.sweeps), sources_of_samples(trajectory), merged.error_bound_mm};
+}
+
+JobSweeps ray_sweeps(const Job& job, const toolpath::ToolPath& path, const motion::Trajectory& trajectory) {
+  if (job.cl) return BlockSweeper(job, path, trajectory, job.scene.design.sweep_tolerance_mm).each_block();
+  return {cycle_sweeps(trajectory, job.machine.model), sources_of_samples(trajectory), 0.0};
+}
+
+std::vector<int> pass_of_blocks(const JobSweeps& sweeps, const toolpath::ToolPath& path) {
+  std::vector<int> passes;
+  passes.reserve(sweeps.sources.size());
+  for (const SweepSource& source : sweeps.sources) {
+    const auto& what = path.elements[static_cast<size_t>(source.element)].what;
+    const auto* pass = std::get_if<toolpath::SurfacePass>(&what);
+    const auto* block = std::get_if<BlockMove>(&what);
+    passes.push_back(pass != nullptr ? pass->pass : block != nullptr ? block->pass : -1);
+  }
+  return passes;
+}
+
+}  // namespace swarf::sim

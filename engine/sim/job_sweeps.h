@@ -1,0 +1,51 @@
+// What cuts the stock and the measuring rays, for both kinds of job, and what a Sweep::block then means.
+//
+//   surface job   level set: cycles merged within the tolerance     rays: one sweep per cycle
+//   CL job        level set and rays: the blocks' own motions, divided within a tolerance of each
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "motion/interpolator.h"
+#include "sim/scene.h"
+#include "stock/sweep.h"
+#include "toolpath/tool_path.h"
+
+namespace swarf::sim {
+
+/// Where a sweep comes from.
+struct SweepSource {
+  int element = 0;      ///< index into ToolPath::elements
+  uint32_t sample = 0;  ///< cycle in which the tool comes to the sweep's end
+};
+
+struct JobSweeps {
+  std::vector<stock::Sweep> sweeps;
+  /// By Sweep::block.
+  std::vector<SweepSource> sources;
+  /// Greatest distance between the sweeps and the motion they stand for, mm.
+  double error_bound_mm = 0.0;
+};
+
+/// One sweep per cycle, id = index of its sample, from the middle of the cycle before to the middle of the
+/// one after. The axes move linearly inside a cycle, and half way is where the tool then strays most from the
+/// path: with these poses as nodes the chord of a cycle is cut as deep as the machine cuts it, and the
+/// samples stay on the path.
+std::vector<stock::Sweep> cycle_sweeps(const motion::Trajectory& trajectory,
+                                       const kinematics::MachineModel& machine);
+
+/// Ticks merged within the scene's tolerance, whatever the job: for pictures.
+stock::MergedSweeps merged_sweeps(const motion::Trajectory& trajectory, const Scene& scene);
+
+/// For the level set, within stock.sweep_tolerance. CL: collinear blocks of one feed that keep their axis are
+/// merged.
+JobSweeps stock_sweeps(const Job& job, const toolpath::ToolPath& path, const motion::Trajectory& trajectory);
+
+/// For the measuring rays; each sweep has a block of its own. CL: within design.sweep_tolerance.
+JobSweeps ray_sweeps(const Job& job, const toolpath::ToolPath& path, const motion::Trajectory& trajectory);
+
+/// Pass of each block in `sources`; -1 between passes.
+std::vector<int> pass_of_blocks(const JobSweeps& sweeps, const toolpath::ToolPath& path);
+
+}  // namespace swarf::sim

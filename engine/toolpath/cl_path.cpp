@@ -1,0 +1,120 @@
+#include "toolpath/cl_path.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "base/units.h"
+
+namespace swarf::toolpath {
+namespace {
+
+using program::ClMove;
+
+/// Ends of an arc nearer than this are the same point: the arc is a whole circle, mm.
+constexpr double kWholeCircle = 1e-6;
+/// Cosine below which two axes count as opposite: within 0.008 degrees.
+constexpr double kReversed = -1.0 + 1e-8;
+
+/// Direction in which the tip leaves (at_end false) or arrives; zero when it stands.
+Vec3 tip_direction(const BlockMove& block, bool at_end) {
+  if (!block.arc) return (block.to.tip_W - block.from.tip_W).normalized();
+  const Vec3& tip = at_end ? block.to.tip_W : block.from.tip_W;
+  return block.arc->normal_W.cross(tip - block.arc->centre_W).normalized();
+}
+
+bool stands_still(const ClMove& move) {
+  return !move.arc && move.from.tip_W == move.to.tip_W && move.from.axis_W == move.to.axis_W;
+}
+
+/// Numbers the passes as the blocks come.
+class PassCounter {
+ public:
+  int next(const BlockMove& block) {
+    if (block.feed_mm_s == 0.0) {
+      open_ = false;
+      return -1;
+    }
+    const Vec3 leaving = tip_direction(block, false);
+    const bool moves = leaving.squaredNorm() > 0.0;
+    const bool corner =
+        moves && arriving_.squaredNorm() > 0.0 && arriving_.dot(leaving) < std::cos(kPassCorner_rad);
+    if (!open_ || corner) ++pass_;
+    open_ = true;
+    if (moves) arriving_ = tip_direction(block, true);
+    return pass_;
+  }
+  int count() const { return pass_ + 1; }
+
+ private:
+  int pass_ = -1;
+  bool open_ = false;
+  Vec3 arriving_ = Vec3::Zero();
+};
+
+}  // namespace
+
+const char* law_name(BlockLaw law) {
+  switch (law) {
+    case BlockLaw::kTcp:
+      return "tcp";
+    case BlockLaw::kJoint:
+      return "joint";
+    case BlockLaw::kEnds:
+      return "ends";
+  }
+  return "";
+}
+
+bool holds_blocks(const ToolPath& path) {
+  return !path.elements.empty() && std::holds_alternative<BlockMove>(path.elements.front().what);
+}
+
+double arc_angle(const BlockMove& block) {
+  const Vec3 from = block.from.tip_W - block.arc->centre_W;
+  const Vec3 to = block.to.tip_W - block.arc->centre_W;
+  if ((to - from).norm() < kWholeCircle) return 2.0 * kPi;
+  const Vec3& n = block.arc->normal_W;
+  const double angle = std::atan2(n.dot(from.cross(to)), from.dot(to) - n.dot(from) * n.dot(to));
+  return angle > 0.0 ? angle : angle + 2.0 * kPi;
+}
+
+double tip_way(const BlockMove& block) {
+  if (!block.arc) return (block.to.tip_W - block.from.tip_W).norm();
+  const Vec3 arm = block.from.tip_W - block.arc->centre_W;
+  return arc_angle(block) * block.arc->normal_W.cross(arm).norm();
+}
+
+ToolPath cl_path(const program::ClProgram& program, BlockLaw law, Diagnostics& diagnostics) {
+  ToolPath path;
+  path.planner = "cl";
+  path.elements.reserve(program.moves.size());
+  PassCounter passes;
+  for (const ClMove& move : program.moves) {
+    if (stands_still(move)) continue;
+    const SourceLocation where{program.file, move.line, move.column};
+    if (move.arc && law != BlockLaw::kTcp) {
+      diagnostics.error(
+          "arc-needs-tcp", where,
+          fmt::format("an arc of the tip contradicts interpolator.mode = \"{}\"", law_name(law)),
+          "write interpolator.mode = \"tcp\", or give the arc as short GOTO moves");
+      return {};
+    }
+    if (law != BlockLaw::kJoint && move.from.axis_W.dot(move.to.axis_W) < kReversed) {
+      diagnostics.error("axis-reversed", where,
+                        "the tool axis is reversed in one move: it could turn any way",
+                        "give a position between them");
+      return {};
+    }
+    const bool rapid = move.feed_mm_s == 0.0;
+    const BlockLaw own = rapid && law == BlockLaw::kEnds ? BlockLaw::kTcp : law;
+    BlockMove block{move.from, move.to, move.arc, own, move.feed_mm_s, -1};
+    block.pass = passes.next(block);
+    (rapid ? path.link_length_mm : path.pass_length_mm) += tip_way(block);
+    path.elements.push_back({std::move(block), 0, where});
+  }
+  path.passes = passes.count();
+  return path;
+}
+
+}  // namespace swarf::toolpath
