@@ -15,13 +15,15 @@ namespace swarf::stock {
 
 inline constexpr int kLanes = 16;
 /// One number of each lane.
-using LaneVector = float __attribute__((vector_size(kLanes * sizeof(float))));
+struct alignas(kLanes * sizeof(float)) LaneFloats {
+  float lane[kLanes];
+};
 
 /// Maps into the tool frame (sweep_map.h) by component; tips relative to the run's origin. Lanes beyond the
 /// last sweep repeat it.
 struct Lanes {
-  LaneVector R0t[3][3], R1t[3][3];  ///< [row][column]
-  LaneVector tip0[3], tip1[3];      ///< mm
+  LaneFloats R0t[3][3], R1t[3][3];  ///< [row][column]
+  LaneFloats tip0[3], tip1[3];      ///< mm
 };
 
 /// A convex piece by components.
@@ -48,7 +50,7 @@ struct LaneQuery {
 struct LaneAnswer {
   uint32_t open;      ///< bit n: lane n may raise a value
   uint32_t swallows;  ///< bit n: every voxel of the leaf lies deeper inside lane n's cutter than the band
-  LaneVector depth;   ///< of the leaf's centre inside the cutter at half time (-F), mm
+  LaneFloats depth;   ///< of the leaf's centre inside the cutter at half time (-F), mm
 };
 
 using LaneKernel = void (*)(const Lanes& lanes, const LanePiece& piece, const LaneQuery& query,

@@ -205,11 +205,11 @@ size_t run_length(const std::vector<SweptPiece>& pieces, size_t first, double sp
 void LaneRun::set_lane(size_t lane, const SweepMap& map) {
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) {
-      lanes.R0t[row][column][lane] = static_cast<float>(map.R0t(row, column));
-      lanes.R1t[row][column][lane] = static_cast<float>(map.R1t(row, column));
+      lanes.R0t[row][column].lane[lane] = static_cast<float>(map.R0t(row, column));
+      lanes.R1t[row][column].lane[lane] = static_cast<float>(map.R1t(row, column));
     }
-    lanes.tip0[row][lane] = static_cast<float>(map.tip0[row] - origin[row]);
-    lanes.tip1[row][lane] = static_cast<float>(map.tip1[row] - origin[row]);
+    lanes.tip0[row].lane[lane] = static_cast<float>(map.tip0[row] - origin[row]);
+    lanes.tip1[row].lane[lane] = static_cast<float>(map.tip1[row] - origin[row]);
   }
 }
 

@@ -113,9 +113,13 @@ LeafFloor fitted_floor(const LevelSet& set, const float* values, const LeafBound
 struct Candidate {
   float depth;     ///< of the leaf's centre inside the cutter, mm
   uint32_t piece;  ///< in the batch
+
+  bool before(const Candidate& other) const {
+    return depth > other.depth || (depth == other.depth && piece < other.piece);
+  }
 };
 
-/// The candidates of a group, deepest first.
+/// The candidates of a group in the order of the path, as far as the floor does not rule them out.
 void find_candidates(const LevelSet& set, const Batch& batch, const Group& group, const LeafFloor& floor,
                      std::vector<Candidate>& candidates) {
   static const LaneKernel kernel = lane_kernel_variants().front().kernel;
@@ -127,12 +131,9 @@ void find_candidates(const LevelSet& set, const Batch& batch, const Group& group
     kernel(run.lanes, run.piece, run.query(set, centre, floor), answer);
     for (uint32_t open = answer.open & run.all(); open != 0; open &= open - 1) {
       const auto lane = static_cast<uint32_t>(__builtin_ctz(open));
-      candidates.push_back({answer.depth[lane], static_cast<uint32_t>(run.first) + lane});
+      candidates.push_back({answer.depth.lane[lane], static_cast<uint32_t>(run.first) + lane});
     }
   }
-  std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
-    return a.depth > b.depth || (a.depth == b.depth && a.piece < b.piece);
-  });
 }
 
 struct Outcome {
@@ -172,29 +173,60 @@ class LevelPlane {
   bool known_ = false;
 };
 
-/// Raises the values by the candidates, deepest first; each looks at the leaf only when what the ones before
-/// it left does not rule it out.
-void apply_candidates(const LevelSet& set, const Batch& batch, size_t leaf,
-                      const std::vector<Candidate>& candidates, float* values, Outcome& outcome) {
-  const LeafKernelVariant& kernels = leaf_kernel_variants().front();
-  const Vec3 centre = set.leaf_centre(leaf);
-  const double half = 0.5 * (kLeafSide - 1) * set.voxel;
-  LevelPlane plane;
-  for (const Candidate& candidate : candidates) {
-    const SweptPiece& swept = batch.pieces[candidate.piece];
-    const ReachBound reach = reach_bound(swept, swept.map.start(centre), swept.map.end(centre));
-    if (stands_above(outcome.floor, reach, half)) continue;
-    const LeafMotion motion = leaf_motion(set, swept, leaf);
-    if (plane.repeats(motion)) continue;
-    const LeafBound bound = leaf_bound(set, reach);
-    const uint32_t slices = kernels.bound_test(values, bound, set.band());
+/// One leaf position while its group is applied.
+class LeafCut {
+ public:
+  LeafCut(const LevelSet& set, const Batch& batch, size_t leaf, float* values, Outcome& outcome)
+      : set_(set),
+        batch_(batch),
+        leaf_(leaf),
+        values_(values),
+        outcome_(outcome),
+        centre_(set.leaf_centre(leaf)) {}
+
+  /// Raises the values by one sweep, if what the ones before it left does not rule it out.
+  void apply(const Candidate& candidate) {
+    const LeafKernelVariant& kernels = leaf_kernel_variants().front();
+    const SweptPiece& swept = batch_.pieces[candidate.piece];
+    const ReachBound reach = reach_bound(swept, swept.map.start(centre_), swept.map.end(centre_));
+    if (stands_above(outcome_.floor, reach, 0.5 * (kLeafSide - 1) * set_.voxel)) return;
+    const LeafMotion motion = leaf_motion(set_, swept, leaf_);
+    if (plane_.repeats(motion)) return;
+    const LeafBound bound = leaf_bound(set_, reach);
+    const uint32_t slices = kernels.bound_test(values_, bound, set_.band());
     if (slices != 0) {
-      kernels.kernel(values, motion, slices);
-      if (outcome.visits == 0) outcome.floor = fitted_floor(set, values, bound);
-      ++outcome.visits;
-      outcome.slices += static_cast<uint64_t>(__builtin_popcount(slices));
+      kernels.kernel(values_, motion, slices);
+      if (outcome_.visits == 0) outcome_.floor = fitted_floor(set_, values_, bound);
+      ++outcome_.visits;
+      outcome_.slices += static_cast<uint64_t>(__builtin_popcount(slices));
     }
-    plane.remember(motion, swept, centre, set.leaf_radius());
+    plane_.remember(motion, swept, centre_, set_.leaf_radius());
+  }
+
+ private:
+  const LevelSet& set_;
+  const Batch& batch_;
+  size_t leaf_;
+  float* values_;
+  Outcome& outcome_;
+  Vec3 centre_;
+  LevelPlane plane_;
+};
+
+/// Deepest first: what it leaves rules out most of the others.
+void apply_candidates(const LevelSet& set, const Batch& batch, const Group& group,
+                      std::vector<Candidate>& candidates, float* values, Outcome& outcome) {
+  const auto before = [](const Candidate& a, const Candidate& b) { return a.before(b); };
+  find_candidates(set, batch, group, outcome.floor, candidates);
+  if (candidates.empty()) return;
+  LeafCut cut(set, batch, leaf_of(batch.pairs[group.begin]), values, outcome);
+  const Candidate deepest = *std::min_element(candidates.begin(), candidates.end(), before);
+  cut.apply(deepest);
+  if (candidates.size() == 1) return;
+  find_candidates(set, batch, group, outcome.floor, candidates);
+  std::sort(candidates.begin(), candidates.end(), before);
+  for (const Candidate& candidate : candidates) {
+    if (candidate.piece != deepest.piece) cut.apply(candidate);
   }
 }
 
@@ -213,8 +245,7 @@ Outcome cut_leaf(const LevelSet& set, const Batch& batch, const Group& group,
     outcome.made = std::make_unique<LeafNode>(set.map.origin(leaf), -set.band(), false);
     node = outcome.made.get();
   }
-  find_candidates(set, batch, group, outcome.floor, candidates);
-  apply_candidates(set, batch, leaf, candidates, node->buffer().data(), outcome);
+  apply_candidates(set, batch, group, candidates, node->buffer().data(), outcome);
   outcome.state = settle_leaf(*node, set.band());
   return outcome;
 }

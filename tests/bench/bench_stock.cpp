@@ -11,6 +11,7 @@
 #include "measure/measure.h"
 #include "stock/stock.h"
 #include "stock/surface_dexels.h"
+#include "stock/sweep_map.h"
 #include "surface/polynomial.h"
 
 namespace swarf {
@@ -54,12 +55,33 @@ Path dome_path(double step_mm) {
   return path;
 }
 
+/// Each block of 1 mm (tip straight, axis turning evenly) as so many sweeps that none strays by more than 1
+/// um.
+std::vector<stock::Sweep> subdivided(const std::vector<stock::Sweep>& blocks, double lever_mm) {
+  constexpr double kTolerance = 1e-3;
+  std::vector<stock::Sweep> sweeps;
+  for (const stock::Sweep& block : blocks) {
+    const auto count =
+        static_cast<int>(std::ceil(std::sqrt(stock::motion_bound(block, lever_mm) / kTolerance)));
+    const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(block.start.axis_W, block.end.axis_W);
+    const auto pose = [&](int i) -> ToolPose {
+      if (i == 0 || i == count) return i == 0 ? block.start : block.end;
+      const double t = static_cast<double>(i) / count;
+      return {(1.0 - t) * block.start.tip_W + t * block.end.tip_W,
+              Eigen::Quaterniond::Identity().slerp(t, turn) * block.start.axis_W};
+    };
+    for (int i = 0; i < count; ++i) sweeps.push_back({pose(i), pose(i + 1), block.block});
+  }
+  return sweeps;
+}
+
 /// Blocks of 1 mm; range(0): voxel in um, range(1): threads. The block is already roughed to about 1 mm above
 /// DOME.
 void cut_stock(benchmark::State& state) {
   set_thread_count(static_cast<int>(state.range(1)));
   const double voxel = 1e-3 * static_cast<double>(state.range(0));
   const Path finish = dome_path(1.0);
+  const std::vector<stock::Sweep> sweeps = subdivided(finish.sweeps, kCutter.height);
   Path rough = finish;
   for (stock::Sweep& sweep : rough.sweeps) {
     sweep.start.tip_W += sweep.start.axis_W;
@@ -73,7 +95,7 @@ void cut_stock(benchmark::State& state) {
     stock->cut(rough.sweeps, kCutter);
     const stock::CutStatistics before = stock->statistics();
     state.ResumeTiming();
-    stock->cut(finish.sweeps, kCutter);
+    stock->cut(sweeps, kCutter);
     seconds += stock->statistics().seconds - before.seconds;
     voxels += stock->statistics().voxel_updates - before.voxel_updates;
     blocks += finish.sweeps.size();
@@ -82,6 +104,8 @@ void cut_stock(benchmark::State& state) {
     state.ResumeTiming();
   }
   state.counters["blocks_per_s"] = static_cast<double>(blocks) / seconds;
+  state.counters["sweeps_per_block"] =
+      static_cast<double>(sweeps.size()) / static_cast<double>(finish.sweeps.size());
   state.counters["voxels_per_s"] = static_cast<double>(voxels) / seconds;
   // A voxel update reads and writes one float; the reference machine's triad moves 47-76 GB/s on two threads.
   state.counters["bytes_per_s"] = 8.0 * static_cast<double>(voxels) / seconds;
