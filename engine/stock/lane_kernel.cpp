@@ -24,6 +24,9 @@ struct FloatVector<16> {
   using type = float __attribute__((vector_size(64)));
 };
 
+constexpr int32_t kBitOfLane[kLanes] = {1,   2,   4,    8,    16,   32,   64,    128,
+                                        256, 512, 1024, 2048, 4096, 8192, 16384, 32768};
+
 /// The arithmetic for kWidth lanes at a time: as many as one register of the instruction set holds. Wider
 /// vectors than that the compiler takes apart into single floats.
 template <int kWidth>
@@ -37,11 +40,6 @@ struct Judge {
   struct Bound {
     V value, rho, z;
   };
-  /// The outermost one of each lane and the next.
-  struct Outermost {
-    Bound first, second;
-  };
-
   static SWARF_KERNEL_INLINE V load(const LaneFloats& floats, int from) {
     V v;
     std::memcpy(&v, floats.lane + from, sizeof(v));
@@ -66,21 +64,6 @@ struct Judge {
     return {row(0), row(1), row(2)};
   }
 
-  // Each comparison stands where it is used: kept as a variable it would leave the mask registers.
-  static SWARF_KERNEL_INLINE void insert(Outermost& o, const Bound& b) {
-    const V a = o.first.value;
-    const Bound rest{b.value > a ? a : b.value, b.value > a ? o.first.rho : b.rho,
-                     b.value > a ? o.first.z : b.z};
-    o.first = {b.value > a ? b.value : a, b.value > a ? b.rho : o.first.rho, b.value > a ? b.z : o.first.z};
-    const V c = o.second.value;
-    o.second = {rest.value > c ? rest.value : c, rest.value > c ? rest.rho : o.second.rho,
-                rest.value > c ? rest.z : o.second.z};
-  }
-
-  static SWARF_KERNEL_INLINE Bound face_bound(const LanePiece::Face& face, V rho, V z) {
-    return {face.rho * rho + face.z * z - face.offset, all(face.rho), all(face.z)};
-  }
-
   static SWARF_KERNEL_INLINE Bound round_bound(const LanePiece::Round& r, V rho, V z) {
     const V dr = rho - r.centre_rho, dz = z - r.centre_z;
     const V length = max_of(root(dr * dr + dz * dz), all(1e-20F));
@@ -93,54 +76,87 @@ struct Judge {
     return {dr * rho_n + dz * z_n - r.radius, rho_n, z_n};
   }
 
+  static SWARF_KERNEL_INLINE V magnitude(V a) { return max_of(a, -a); }
+
   /// Greatest excess of a linear bound with tool-frame gradient g over the floor's slope, within the leaf.
   static SWARF_KERNEL_INLINE V spread(const LaneFloats (&R)[3][3], int from, const Point& g,
                                       const LaneQuery& q) {
     V sum{};
     for (int c = 0; c < 3; ++c) {
-      const V slope = load(R[0][c], from) * g.x + load(R[1][c], from) * g.y + load(R[2][c], from) * g.z;
-      sum += max_of(slope + q.floor_slope[c], -slope - q.floor_slope[c]);
+      sum += magnitude(load(R[0][c], from) * g.x + load(R[1][c], from) * g.y + load(R[2][c], from) * g.z +
+                       q.floor_slope[c]);
     }
     return q.half * sum;
   }
-
-  static SWARF_KERNEL_INLINE auto bits_of_lanes() {
-    decltype(V{} >= V{}) bits;
-    for (int n = 0; n < kWidth; ++n) bits[n] = 1 << n;
-    return bits;
+  /// The same for g = (0, 0, z).
+  static SWARF_KERNEL_INLINE V spread(const LaneFloats (&R)[3][3], int from, float z, const LaneQuery& q) {
+    V sum{};
+    for (int c = 0; c < 3; ++c) sum += magnitude(load(R[2][c], from) * z + q.floor_slope[c]);
+    return q.half * sum;
   }
+
   /// Bit n: a[n] >= level.
   static SWARF_KERNEL_INLINE uint32_t at_least(V a, float level) {
     int32_t flag[kWidth];
-    const auto flags = (a >= level) & bits_of_lanes();
+    decltype(a >= level) weights;
+    std::memcpy(&weights, kBitOfLane, sizeof(weights));
+    const auto flags = (a >= level) & weights;
     std::memcpy(flag, &flags, sizeof(flag));
     int32_t bits = 0;
     for (int n = 0; n < kWidth; ++n) bits += flag[n];
     return static_cast<uint32_t>(bits);
   }
 
+  /// The leaf's centre in the tool frames at both ends, and the radial direction at half time.
+  struct Place {
+    Point P, Q;
+    V rho, z, ux, uy;
+  };
+  static SWARF_KERNEL_INLINE Place place(const Lanes& lanes, int from, const float* centre) {
+    const Point P = to_tool(lanes.R0t, lanes.tip0, from, centre);
+    const Point Q = to_tool(lanes.R1t, lanes.tip1, from, centre);
+    const V x = 0.5F * (P.x + Q.x), y = 0.5F * (P.y + Q.y);
+    const V rho = root(x * x + y * y);
+    const V inverse = 1.0F / max_of(rho, all(1e-20F));
+    // On the axis every direction is a subgradient.
+    return {P, Q, rho, 0.5F * (P.z + Q.z), rho > 0.0F ? x * inverse : all(1.0F), y * inverse};
+  }
+
+  /// How far a face's or round's bound rises above the floor anywhere in the leaf.
+  static SWARF_KERNEL_INLINE V above_floor(const Lanes& lanes, int from, const Place& at, const Bound& bound,
+                                           const LaneQuery& query) {
+    const Point g{bound.rho * at.ux, bound.rho * at.uy, bound.z};
+    const V change = 0.5F * (g.x * (at.Q.x - at.P.x) + g.y * (at.Q.y - at.P.y) + g.z * (at.Q.z - at.P.z));
+    return max_of(change + spread(lanes.R0t, from, g, query), spread(lanes.R1t, from, g, query) - change) -
+           bound.value;
+  }
+  /// The same for a face at right angles to the axis.
+  static SWARF_KERNEL_INLINE V above_floor(const Lanes& lanes, int from, const Place& at, float nz, V value,
+                                           const LaneQuery& query) {
+    const V change = (0.5F * nz) * (at.Q.z - at.P.z);
+    return max_of(change + spread(lanes.R0t, from, nz, query), spread(lanes.R1t, from, nz, query) - change) -
+           value;
+  }
+
   static SWARF_KERNEL_INLINE void lanes_from(int from, const Lanes& lanes, const LanePiece& piece,
                                              const LaneQuery& query, LaneAnswer& out) {
     constexpr float kSlack = 2e-4F;  // mm; coordinates of up to a metre round to a third of it
-    const Point P = to_tool(lanes.R0t, lanes.tip0, from, query.centre);
-    const Point Q = to_tool(lanes.R1t, lanes.tip1, from, query.centre);
-    const V x = 0.5F * (P.x + Q.x), y = 0.5F * (P.y + Q.y), z = 0.5F * (P.z + Q.z);
-    const V rho = root(x * x + y * y);
-    const Bound lowest{all(-1e30F), V{}, V{}};
-    Outermost outer{lowest, lowest};
-    for (const LanePiece::Face& face : piece.faces) insert(outer, face_bound(face, rho, z));
-    for (const LanePiece::Round& round : piece.rounds) insert(outer, round_bound(round, rho, z));
-    // On the axis every direction is a subgradient.
-    const V inverse = 1.0F / max_of(rho, all(1e-20F));
-    const V ux = rho > 0.0F ? x * inverse : all(1.0F), uy = y * inverse;
-    const auto above_floor = [&](const Bound& bound) __attribute__((always_inline)) {
-      const Point g{bound.rho * ux, bound.rho * uy, bound.z};
-      const V change = 0.5F * (g.x * (Q.x - P.x) + g.y * (Q.y - P.y) + g.z * (Q.z - P.z));
-      return max_of(change + spread(lanes.R0t, from, g, query), spread(lanes.R1t, from, g, query) - change) -
-             bound.value;
-    };
-    const V above = min_of(above_floor(outer.first), above_floor(outer.second));
-    const V depth = -outer.first.value;
+    const Place at = place(lanes, from, query.centre);
+    V above = all(1e30F), value = all(-1e30F);
+    for (const LanePiece::Face& face : piece.faces) {
+      const V distance = face.rho * at.rho + face.z * at.z - face.offset;
+      const V excess = face.rho == 0.0F
+                           ? above_floor(lanes, from, at, face.z, distance, query)
+                           : above_floor(lanes, from, at, {distance, all(face.rho), all(face.z)}, query);
+      above = min_of(above, excess);
+      value = max_of(value, distance);
+    }
+    for (const LanePiece::Round& round : piece.rounds) {
+      const Bound bound = round_bound(round, at.rho, at.z);
+      above = min_of(above, above_floor(lanes, from, at, bound, query));
+      value = max_of(value, bound.value);
+    }
+    const V depth = -value;
     out.open |= at_least(above, query.floor - kSlack) << from;
     out.swallows |= at_least(depth, query.reach + kSlack) << from;
     std::memcpy(out.depth.lane + from, &depth, sizeof(depth));
