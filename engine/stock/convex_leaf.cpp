@@ -156,11 +156,11 @@ bool prepare_convex_leaf(const LeafPlace& place, const SweepMap& map, const cutt
 }
 
 int cut_leaf_by_piece(float* values, const LeafPlace& place, const SweepMap& map,
-                      const cutter::ConvexPiece& piece) {
+                      const cutter::ConvexPiece& piece, uint32_t slices) {
   ConvexLeaf leaf;
   if (!prepare_convex_leaf(place, map, piece, leaf)) return 0;
   static const ConvexKernel kernel = convex_kernel_variants().front().kernel;
-  return kernel(values, leaf);
+  return kernel(values, leaf, slices);
 }
 
 double convex_kernel_error_mm(const cutter::ConvexPiece& piece, double voxel_mm, double band_mm) {

@@ -148,12 +148,14 @@ SWARF_KERNEL_INLINE int make_brackets(const Lines& lines, const ConvexLeaf& leaf
 }
 
 /// Chooses the next instant in each bracket (by crossing tangents, secant of the slopes or halving, in turn).
-/// Returns the number of voxels whose value is still open.
+/// Returns the number of voxels whose value is still open; 0 also when the sweep can no longer raise any.
+/// That shortcut apart, the number of steps does not look at the row, so that what a sweep writes is a
+/// function of the sweep and the leaf alone and the order of sweeps cannot show.
 SWARF_KERNEL_INLINE int next_instants(const Tangents& low, const Tangents& high, const float* row,
                                       float tolerance, float background, int kind, Tangents& next) {
   const float crossing = kind == 0 ? 1.0F : 0.0F, secant = kind == 1 ? 1.0F : 0.0F;
   const float middle = kind == 2 ? 0.5F : 0.0F;
-  int open = 0;
+  int open = 0, raising = 0;
   for (int j = 0; j < kSlice; ++j) {
     const float width = high.t[j] - low.t[j];
     const float change = max_of(high.slope[j] - low.slope[j], kTiny);
@@ -161,12 +163,14 @@ SWARF_KERNEL_INLINE int next_instants(const Tangents& low, const Tangents& high,
     const float floor = low.value[j] + low.slope[j] * step;
     const float least = min_of(low.value[j], high.value[j]);
     const bool falling = (low.slope[j] < 0.0F) & (high.slope[j] > 0.0F);
-    const bool matters = (-floor > row[j]) & (least > -background);
-    open += (falling & matters & (least - floor > tolerance)) ? 1 : 0;
+    const bool in_band = (floor < background) & (least > -background);
+    open += (falling & in_band & (least - floor > tolerance)) ? 1 : 0;
+    // The tolerance is above the rounding of the floor.
+    raising += (falling ? floor : least) - tolerance < -row[j] ? 1 : 0;
     const float inside = crossing * step + width * (secant * (-low.slope[j] / change) + middle);
     next.t[j] = low.t[j] + min_of(max_of(inside, 0.0F), width);
   }
-  return open;
+  return raising > 0 ? open : 0;
 }
 
 SWARF_KERNEL_INLINE void shrink(const Tangents& next, Tangents& low, Tangents& high) {
@@ -207,26 +211,29 @@ SWARF_KERNEL_INLINE int cut_slice(float* row, const Lines& lines, const ConvexLe
   return evaluated;
 }
 
-SWARF_KERNEL_INLINE int cut_leaf(float* values, const ConvexLeaf& leaf) {
+SWARF_KERNEL_INLINE int cut_leaf(float* values, const ConvexLeaf& leaf, uint32_t slices) {
   int evaluated = 0;
   Lines lines;
   for (int x = 0; x < kLeafSide; ++x) {
+    if ((slices >> x & 1U) == 0) continue;
     fill_lines(lines, leaf, x);
     evaluated += cut_slice(values + x * kSlice, lines, leaf);
   }
   return evaluated;
 }
 
-int cut_leaf_baseline(float* values, const ConvexLeaf& leaf) {
-  return cut_leaf(values, leaf);
+int cut_leaf_baseline(float* values, const ConvexLeaf& leaf, uint32_t slices) {
+  return cut_leaf(values, leaf, slices);
 }
 
 #ifdef SWARF_KERNEL_VARIANTS
-__attribute__((target("arch=x86-64-v3"))) int cut_leaf_v3(float* values, const ConvexLeaf& leaf) {
-  return cut_leaf(values, leaf);
+__attribute__((target("arch=x86-64-v3"))) int cut_leaf_v3(float* values, const ConvexLeaf& leaf,
+                                                          uint32_t slices) {
+  return cut_leaf(values, leaf, slices);
 }
-__attribute__((target("arch=x86-64-v4"))) int cut_leaf_v4(float* values, const ConvexLeaf& leaf) {
-  return cut_leaf(values, leaf);
+__attribute__((target("arch=x86-64-v4"))) int cut_leaf_v4(float* values, const ConvexLeaf& leaf,
+                                                          uint32_t slices) {
+  return cut_leaf(values, leaf, slices);
 }
 #endif
 

@@ -10,6 +10,7 @@
 // convex_leaf_kernel.cpp is compiled like leaf_kernel.cpp, and its variants too give the same bits.
 #pragma once
 
+#include <cstdint>
 #include <span>
 
 namespace swarf::stock {
@@ -43,9 +44,9 @@ struct ConvexLeaf {
   float ball_z;
 };
 
-/// values = max(values, -distance to the swept piece), index x * 64 + y * 8 + z. Returns the number of
-/// evaluations of F, which tells the length of the search.
-using ConvexKernel = int (*)(float* values, const ConvexLeaf& leaf);
+/// values = max(values, -distance to the swept piece), index x * 64 + y * 8 + z, in the slices whose bit x is
+/// set. Returns the number of evaluations of F, which tells the length of the search.
+using ConvexKernel = int (*)(float* values, const ConvexLeaf& leaf, uint32_t slices);
 
 struct ConvexKernelVariant {
   const char* instruction_set;

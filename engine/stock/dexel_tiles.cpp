@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/parallel.h"
+#include "stock/convex_contact.h"
 #include "stock/dexel_kernel.h"
 #include "stock/ray_height.h"
 #include "stock/sweep_distance.h"
@@ -106,6 +107,7 @@ void store(const RayField& field, const Workspace& w) {
 bool belongs_to_ray(double height, const RayField& field, size_t ray, const SweepMap& map,
                     const CutterSolid& cutter) {
   if (height >= -kSkin) return true;
+  if (!cutter.is_cylinder()) return swept_contact(field.points[ray], map, cutter).distance_mm <= 0.0;
   const Vec3 P = map.start(field.points[ray]), D = map.end(field.points[ray]) - P;
   const MovingPoint<double> foot{P.x(), P.y(), P.z(), D.x(), D.y(), D.z()};
   return swept_distance<double, true>(foot, cutter.radius, cutter.height) <= 0.0;
@@ -124,11 +126,12 @@ bool apply_sweep(const RayField& field, const SweepChain& chain, size_t sweep, W
   const SweepMap& map = chain.maps[sweep];
   static const DexelKernel kernel = dexel_kernel_variants().front().kernel;
   kernel(w.rays, map, chain.cutter.radius, w.found);
+  const bool flat_end = chain.cutter.is_cylinder();  // of other cutters the kernel knows the bound alone
   bool changed = false;
   for (int n = 0; n < kTileRays; ++n) {
     if (w.found.bound[n] > w.heights[n] + kBoundSlack) continue;
     double height = w.found.exact[n];
-    if (height == kNoHeight) {
+    if (height == kNoHeight || !flat_end) {
       height = ray_height(field.points[w.index[n]], field.normals[w.index[n]], map, chain.cutter);
     }
     if (height > w.heights[n] || !belongs_to_ray(height, field, w.index[n], map, chain.cutter)) continue;

@@ -12,6 +12,7 @@
 #include <memory>
 
 #include "base/parallel.h"
+#include "stock/convex_leaf.h"
 #include "stock/lane_run.h"
 #include "stock/leaf_kernel.h"
 #include "stock/stock_grid_internal.h"
@@ -191,11 +192,16 @@ class LeafCut {
     const ReachBound reach = reach_bound(swept, swept.map.start(centre_), swept.map.end(centre_));
     if (stands_above(outcome_.floor, reach, 0.5 * (kLeafSide - 1) * set_.voxel)) return;
     const LeafMotion motion = leaf_motion(set_, swept, leaf_);
-    if (plane_.repeats(motion)) return;
+    const bool flat_end = swept.piece->is_cylinder();
+    if (flat_end && plane_.repeats(motion)) return;
     const LeafBound bound = leaf_bound(set_, reach);
     const uint32_t slices = kernels.bound_test(values_, bound, set_.band());
     if (slices != 0) {
-      kernels.kernel(values_, motion, slices);
+      if (flat_end) {
+        kernels.kernel(values_, motion, slices);
+      } else {
+        cut_by_search(swept, slices);
+      }
       if (outcome_.visits == 0) outcome_.floor = fitted_floor(set_, values_, bound);
       ++outcome_.visits;
       outcome_.slices += static_cast<uint64_t>(__builtin_popcount(slices));
@@ -204,6 +210,13 @@ class LeafCut {
   }
 
  private:
+  /// Every piece but the plain cylinder, which has a closed form.
+  void cut_by_search(const SweptPiece& swept, uint32_t slices) {
+    const openvdb::Coord origin = set_.map.origin(leaf_);
+    const LeafPlace place{Vec3(origin.x(), origin.y(), origin.z()) * set_.voxel, set_.voxel, set_.band()};
+    cut_leaf_by_piece(values_, place, swept.map, *swept.piece, slices);
+  }
+
   const LevelSet& set_;
   const Batch& batch_;
   size_t leaf_;

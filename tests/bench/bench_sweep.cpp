@@ -59,7 +59,7 @@ std::vector<LeafCase> leaves_of(const CutterSolid& cutter, bool turning) {
     const LeafPlace place{first, kVoxel, kBand};
     float values[kLeafVoxels];
     std::fill(std::begin(values), std::end(values), static_cast<float>(-kBand));
-    cut_leaf_by_piece(values, place, map, cutter.pieces.front());
+    cut_leaf_by_piece(values, place, map, cutter.pieces.front(), kAllSlices);
     const auto [least, most] = std::minmax_element(std::begin(values), std::end(values));
     if (*least < 0.0F && *most > 0.0F) cases.push_back({map, place});
   }
@@ -81,7 +81,7 @@ void convex_leaf(benchmark::State& state) {
     for (const LeafCase& c : cases) {
       float values[kLeafVoxels];
       std::fill(std::begin(values), std::end(values), static_cast<float>(-kBand));
-      evaluations += cut_leaf_by_piece(values, c.place, c.map, cutter.pieces.front());
+      evaluations += cut_leaf_by_piece(values, c.place, c.map, cutter.pieces.front(), kAllSlices);
       benchmark::DoNotOptimize(values[0]);
       voxels += kLeafVoxels;
     }
@@ -121,7 +121,8 @@ void cylinder_leaf(benchmark::State& state) {
     for (const LeafMotion& motion : motions) {
       float values[kLeafVoxels];
       std::fill(std::begin(values), std::end(values), static_cast<float>(-kBand));
-      voxels += kernel(values, motion);
+      kernel(values, motion, kAllSlices);
+      voxels += kLeafVoxels;
       benchmark::DoNotOptimize(values[0]);
     }
   }
