@@ -18,8 +18,8 @@ constexpr size_t kMapsPerTask = 1024;
 /// Bounds are compared with this slack, so that their own rounding never decides; mm.
 constexpr double kBoundSlack = 1e-9;
 
-/// Distance to the standing cutter from a point in its frame; 1-Lipschitz.
-double cutter_distance(const Vec3& X, const CutterSolid& cutter) {
+/// Distance to the cylinder around the standing cutter from a point in its frame; 1-Lipschitz.
+double hull_distance(const Vec3& X, const CutterSolid& cutter) {
   return std::max({X.head<2>().norm() - cutter.radius, -X.z(), X.z() - cutter.height});
 }
 
@@ -43,13 +43,13 @@ Ball material_ball(const RayTile& tile) {
 bool run_misses(const SweepRun& run, const Ball& ball, const CutterSolid& cutter) {
   const Vec3 offset = ball.centre - run.tip;
   const double spread = run.tip_spread + run.axis_spread * offset.norm();
-  return cutter_distance(run.Rt * offset, cutter) - spread > ball.radius + kBoundSlack;
+  return hull_distance(run.Rt * offset, cutter) - spread > ball.radius + kBoundSlack;
 }
 
 bool sweep_misses(const SweepMap& map, const Ball& ball, const CutterSolid& cutter) {
   const Vec3 X = map.start(ball.centre);
   const double travel = (map.end(ball.centre) - X).norm();
-  return cutter_distance(X, cutter) - travel > ball.radius + kBoundSlack;
+  return hull_distance(X, cutter) - travel > ball.radius + kBoundSlack;
 }
 
 /// Lowest height that the bottom plane of one pose can leave in the tile, or -infinity where the bound does

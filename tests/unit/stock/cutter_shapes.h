@@ -94,10 +94,11 @@ inline CutterSolid drill(double radius, double point_angle_deg, double height) {
                        .line(height - radius / std::tan(half))
                        .close()});
 }
-/// A T-slot cutter: a disc and a thinner neck above it.
+/// A T-slot cutter: a disc and a thinner neck, which overlap (pieces that only touch would leave a skin).
 inline CutterSolid t_slot(double radius, double thickness, double neck, double height) {
+  const double foot = 0.5 * thickness;
   return solid_of({cutter::ConvexPiece::cylinder(radius, thickness),
-                   ProfileWalk({0, thickness}, -90).line(neck).turn_to(0).line(height - thickness).close()});
+                   ProfileWalk({0, foot}, -90).line(neck).turn_to(0).line(height - foot).close()});
 }
 /// Barrel: ball tip, flank of a large radius whose centre lies beyond the axis.
 inline CutterSolid barrel() {

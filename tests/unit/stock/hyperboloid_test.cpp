@@ -3,8 +3,12 @@
 // cutting.
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "base/units.h"
+#include "cutter_shapes.h"
 #include "stock/stock.h"
+#include "stock/surface_dexels.h"
 #include "stock_test_support.h"
 
 namespace swarf::stock {
@@ -43,6 +47,36 @@ TEST(Hyperboloid, CoreRadiusAtTheOracleHeights) {
   EXPECT_LT(core_error(0.0, 25.0), 0.01);
   EXPECT_LT(core_error(9.602891161, 25.198577496), 0.01);
   EXPECT_LT(core_error(38.334330944, 28.028236159), 0.01);
+}
+
+/// Greatest height that rays outward from the exact core leave, up or down, between the directions of the
+/// poses, mm. As for dexels, what is cut off the far side of the core does not belong to a ray.
+double ray_error(double z, double rho, const CutterSolid& cutter) {
+  double worst = 0.0;
+  const std::vector<Sweep> sweeps = full_turn(3600);
+  for (int i = 0; i < 8; ++i) {
+    const double angle = 0.1234 + 2.0 * kPi * i / 8.0;
+    const Vec3 outward(std::cos(angle), std::sin(angle), 0.0);
+    double least = std::numeric_limits<double>::infinity();
+    for (const Sweep& sweep : sweeps) {
+      const double height = ray_height(rho * outward + Vec3(0, 0, z), outward, sweep, cutter);
+      if (height > -kSkin) least = std::min(least, height);
+    }
+    worst = std::max(worst, std::abs(least));
+  }
+  return worst;
+}
+
+TEST(Hyperboloid, RaysMeetTheCoreWithinAFifthOfAMicrometre) {
+  // The second solid is the same cylinder, unrecognised: it goes the general way.
+  const CutterSolid general =
+      solid_of({ProfileWalk({0, 0}, -90).line(kRadius).turn_to(1e-9).line(80.0).close()});
+  ASSERT_FALSE(general.is_cylinder());
+  for (const CutterSolid& cutter : {kCutter, general}) {
+    EXPECT_LT(ray_error(0.0, 25.0, cutter), 2e-4);
+    EXPECT_LT(ray_error(9.602891161, 25.198577496, cutter), 2e-4);
+    EXPECT_LT(ray_error(38.334330944, 28.028236159, cutter), 2e-4);
+  }
 }
 
 }  // namespace
