@@ -1,0 +1,179 @@
+#include <chrono>
+#include <limits>
+
+#include "base/rng.h"
+#include "program/cl_program.h"
+#include "unit/program/support.h"
+
+namespace swarf::program {
+namespace {
+
+ClProgram read_clean(const std::string& text) {
+  Diagnostics diagnostics;
+  ClProgram program = parse_cl(text, "test.cl", diagnostics);
+  EXPECT_TRUE(diagnostics.list().empty()) << all_text(diagnostics) << "--- of\n" << text;
+  return program;
+}
+
+TEST(ClReader, MovesFromTheFirstCompletePosition) {
+  const ClProgram p = read_clean(
+      "PARTNO/bracket, left\nUNITS/MM\nLOADTL/3\nCUTTER/10,0\nSPINDL/8000,CLW\nCOOLNT/ON\nMULTAX/ON\n"
+      "RAPID\nGOTO/1,2,3,0,0,1\nFEDRAT/600,MMPM\nGOTO/4,5,6\nGODLTA/0,0,-1\nRAPID\nGOTO/"
+      "0,0,50,0,0.6,0.8\nFINI\n");
+  EXPECT_EQ(p.start_line, 9);
+  EXPECT_EQ(p.start.tip_W, Vec3(1, 2, 3));
+  ASSERT_EQ(p.moves.size(), 3U);
+  EXPECT_EQ(p.moves[0].from.tip_W, Vec3(1, 2, 3));
+  EXPECT_EQ(p.moves[0].to.axis_W, Vec3::UnitZ()) << "three numbers keep the axis";
+  EXPECT_DOUBLE_EQ(p.moves[0].feed_mm_s, 10.0);
+  EXPECT_EQ(p.moves[0].line, 11);
+  EXPECT_EQ(p.moves[1].to.tip_W, Vec3(4, 5, 5));
+  EXPECT_EQ(p.moves[2].feed_mm_s, 0.0);
+  EXPECT_LT((p.moves[2].to.axis_W - Vec3(0, 0.6, 0.8)).norm(), 1e-15);
+  EXPECT_EQ(p.moves[2].tool, 3);
+  EXPECT_DOUBLE_EQ(p.moves[2].spindle_rpm, 8000.0);
+  ASSERT_EQ(p.notes.size(), 2U);
+  EXPECT_EQ(p.notes[0].text, "bracket, left");
+}
+
+TEST(ClReader, RapidHoldsForOneMove) {
+  const ClProgram p = read_clean("FEDRAT/60\nFROM/0,0,0\nRAPID\nGOTO/1,0,0\nGOTO/2,0,0\n");
+  EXPECT_EQ(p.moves[0].feed_mm_s, 0.0);
+  EXPECT_EQ(p.moves[1].feed_mm_s, 1.0);
+}
+
+TEST(ClReader, ContinuationCommentsBlanksAndSmallLetters) {
+  const ClProgram p = read_clean(
+      "$$ a comment\r\n  multax / on $$ another\r\nfedrat/100\r\nGOTO / 1.5, +2, $ the rest follows\r\n"
+      "  -3E0, 0, $\r\n 0,1\r\nGOTO/2,2,2\r\n\r\n");
+  ASSERT_EQ(p.moves.size(), 1U);
+  EXPECT_EQ(p.moves[0].from.tip_W, Vec3(1.5, 2, -3));
+  EXPECT_EQ(p.moves[0].line, 7);
+}
+
+TEST(ClReader, AnArcStaysAnArc) {
+  const ClProgram p =
+      read_clean("FEDRAT/100\nGOTO/10,0,0\nCIRCLE/0,0,0,0,0,1,10,0.005,0.5,10,0\nGOTO/0,10,0\nGOTO/0,0,0\n");
+  ASSERT_EQ(p.moves.size(), 2U);
+  ASSERT_TRUE(p.moves[0].arc);
+  EXPECT_EQ(p.moves[0].arc->normal_W, Vec3::UnitZ());
+  EXPECT_FALSE(p.moves[1].arc);
+}
+
+TEST(ClReader, MultaxOffTurnsTheToolBackInTheNextMove) {
+  const ClProgram p =
+      read_clean("MULTAX/ON\nFEDRAT/100\nGOTO/0,0,0,0,0.6,0.8\nGOTO/1,0,0\nMULTAX/OFF\nGOTO/2,0,0\n");
+  EXPECT_LT((p.moves[1].from.axis_W - Vec3(0, 0.6, 0.8)).norm(), 1e-15);
+  EXPECT_EQ(p.moves[1].to.axis_W, Vec3::UnitZ());
+}
+
+TEST(ClReader, NormalisesAxesThatAreUnitWithinRounding) {
+  const ClProgram p = read_clean("MULTAX/ON\nFEDRAT/100\nGOTO/0,0,0,0,0.6,0.80005\nGOTO/1,0,0\n");
+  EXPECT_NEAR(p.start.axis_W.norm(), 1.0, 1e-15);
+}
+
+struct BadProgram {
+  const char* name;
+  const char* text;
+  const char* place;  ///< "code line:column" of the first problem
+  const char* says = "";
+};
+void PrintTo(const BadProgram& bad, std::ostream* out) {
+  *out << bad.name;
+}
+
+class BadCl : public testing::TestWithParam<BadProgram> {};
+
+TEST_P(BadCl, IsRefusedWhereItIsWrong) {
+  Diagnostics diagnostics;
+  parse_cl(GetParam().text, "test.cl", diagnostics);
+  ASSERT_TRUE(diagnostics.has_errors());
+  EXPECT_EQ(places(diagnostics).front(), GetParam().place) << all_text(diagnostics);
+  EXPECT_NE(all_text(diagnostics).find(GetParam().says), std::string::npos) << all_text(diagnostics);
+}
+
+const BadProgram kBad[] = {
+    {"empty", " \n", "empty-file 0:0"},
+    {"unknown_word", "FEDRAT/1\nGOTO/0,0,0\n  GOTOO/1,2,3\n", "unknown-word 3:3", "did you mean GOTO?"},
+    {"unsupported_word", "CYCLE/DRILL,5\n", "unsupported-word 1:1"},
+    {"not_a_statement", "FEDRAT/1\n123,4\n", "bad-statement 2:1"},
+    {"no_slash", "GOTO 1,2,3\n", "bad-statement 1:6"},
+    {"empty_argument", "GOTO/1,,3\n", "bad-statement 1:8"},
+    {"last_argument_empty", "GOTO/1,2,\n", "bad-statement 1:10"},
+    {"no_arguments", "GOTO/\n", "bad-statement 1:6"},
+    {"nan", "GOTO/1,nan,3\n", "bad-number 1:8"},
+    {"nan_capitals", "GOTO/1,NaN,3\n", "bad-number 1:8"},
+    {"infinite", "GOTO/1,1e999,3\n", "bad-number 1:8"},
+    {"half_a_number", "GOTO/1,2x,3\n", "bad-number 1:8"},
+    {"word_for_number", "GOTO/1,TWO,3\n", "wrong-arguments 1:8"},
+    {"four_numbers", "GOTO/1,2,3,4\n", "wrong-arguments 1:1"},
+    {"ends_after_dollar", "GOTO/1,2,$\n", "bad-statement 1:1"},
+    {"axis_too_long", "MULTAX/ON\nGOTO/1,2,3,0,0,1.001\n", "axis-not-unit 2:12", "length 1.001"},
+    {"axis_zero", "MULTAX/ON\nGOTO/1,2,3,0,0,0\n", "axis-not-unit 2:12"},
+    {"multax_missing", "GOTO/1,2,3,0,0,1\n", "missing-multax 1:12"},
+    {"axis_missing", "MULTAX/ON\nGOTO/1,2,3\n", "missing-axis 2:1"},
+    {"delta_first", "GODLTA/1,2,3\n", "no-position 1:1"},
+    {"no_feed", "GOTO/0,0,0\nGOTO/1,2,3\n", "missing-feed 2:1"},
+    {"feed_zero", "FEDRAT/0,MMPM\n", "out-of-range 1:8"},
+    {"feed_inch", "FEDRAT/10,IPM\n", "unsupported-word 1:11"},
+    {"feed_without_number", "FEDRAT/MMPM\n", "wrong-arguments 1:1"},
+    {"inches", "UNITS/INCHES\n", "unsupported-word 1:1"},
+    {"from_late", "GOTO/0,0,0\nFROM/1,1,1\n", "from-not-first 2:1"},
+    {"rapid_with_argument", "RAPID/5\n", "wrong-arguments 1:7"},
+    {"multax_maybe", "MULTAX/MAYBE\n", "wrong-arguments 1:1"},
+    {"tool_nothing", "LOADTL/X\n", "wrong-arguments 1:1"},
+    {"tool_half", "LOADTL/1.5\n", "wrong-arguments 1:1"},
+    {"cutter_empty", "CUTTER\n", "wrong-arguments 1:1"},
+    {"cutter_eight", "CUTTER/1,2,3,4,5,6,7,8\n", "wrong-arguments 1:1"},
+    {"spindle_word", "SPINDL/100,SLOWLY\n", "unsupported-word 1:12"},
+    {"spindle_negative", "SPINDL/-5\n", "out-of-range 1:8"},
+    {"after_end", "FEDRAT/9\nGOTO/0,0,0\nGOTO/1,0,0\nFINI\nGOTO/0,0,0\n", "word-after-end 5:1"},
+    {"one_position", "GOTO/0,0,0\n", "no-motion 0:0"},
+    {"no_position", "UNITS/MM\n", "no-motion 0:0"},
+    {"circle_short", "CIRCLE/0,0,0,0,0,1\n", "wrong-arguments 1:1"},
+    {"circle_axis", "CIRCLE/0,0,0,0,0,2,10\n", "axis-not-unit 1:14"},
+    {"circle_radius", "CIRCLE/0,0,0,0,0,1,0\n", "out-of-range 1:20"},
+    {"arc_off_circle", "FEDRAT/9\nGOTO/10,0,0\nCIRCLE/0,0,0,0,0,1,10\nGOTO/0,11,0\n", "bad-arc 4:1",
+     "11.0000"},
+    {"arc_off_plane", "FEDRAT/9\nGOTO/10,0,0\nCIRCLE/0,0,0,0,0,1,10\nGOTO/0,10,1\n", "bad-arc 4:1"},
+    {"arc_first", "FEDRAT/9\nCIRCLE/0,0,0,0,0,1,10\nGOTO/10,0,0\nGOTO/0,0,0\n", "no-position 3:1"},
+    {"arc_rapid", "GOTO/10,0,0\nRAPID\nCIRCLE/0,0,0,0,0,1,10\nGOTO/0,10,0\n", "bad-arc 4:1"},
+};
+INSTANTIATE_TEST_SUITE_P(Programs, BadCl, testing::ValuesIn(kBad),
+                         [](const auto& test) { return std::string(test.param.name); });
+
+TEST(ClReader, RandomBytesNeverCrashIt) {
+  Rng rng(3);
+  const std::string pieces[] = {"GOTO/",   "1",         ",",     "$", "$$", "\n",      "-",
+                                ".5E",     "MULTAX/ON", "FROM/", " ", "/",  "CIRCLE/", "0,0,1",
+                                "FEDRAT/", "RAPID",     "FINI",  "x", "\t", "PPRINT "};
+  for (int trial = 0; trial < 3000; ++trial) {
+    std::string text;
+    for (int i = 0; i < 30; ++i) text += pieces[rng.next() % std::size(pieces)];
+    Diagnostics diagnostics;
+    const ClProgram p = parse_cl(text, "test.cl", diagnostics);
+    if (diagnostics.has_errors()) continue;
+    for (const ClMove& move : p.moves) {
+      ASSERT_TRUE(move.to.tip_W.allFinite()) << text;
+      ASSERT_NEAR(move.to.axis_W.norm(), 1.0, 1e-12) << text;
+    }
+  }
+}
+
+TEST(ClReader, AHundredThousandBlocksTakeLessThanASecond) {
+  std::string text = "MULTAX/ON\nFEDRAT/1000,MMPM\n";
+  for (int i = 0; i < 100000; ++i) {
+    text +=
+        "GOTO/" + std::to_string(0.001 * i) + ",20.123456,-3.654321,0.000000000,0.600000000,0.800000000\n";
+  }
+  Diagnostics diagnostics;
+  const auto start = std::chrono::steady_clock::now();
+  const ClProgram p = parse_cl(text, "test.cl", diagnostics);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  EXPECT_EQ(p.moves.size(), 99999U);
+  EXPECT_LT(seconds, 1.0);
+  RecordProperty("seconds", std::to_string(seconds));
+}
+
+}  // namespace
+}  // namespace swarf::program
