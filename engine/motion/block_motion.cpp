@@ -269,7 +269,8 @@ double split_error(const MotionBounds& bounds, int pieces, double lever_mm) {
   return error + turn * std::tan(std::asin(sine)) * lever;
 }
 
-std::vector<ToolPose> subdivide(const BlockMotion& motion, double lever_mm, double tolerance_mm) {
+std::vector<ToolPose> subdivide(const BlockMotion& motion, double lever_mm, double tolerance_mm,
+                                const SourceLocation& where) {
   SWARF_CHECK(lever_mm >= 0.0 && tolerance_mm > 0.0, "a lever and a tolerance");
   const MotionBounds bounds = motion_bounds(motion);
   // The error falls with the square of the number or faster: start where that puts it and close in.
@@ -279,7 +280,7 @@ std::vector<ToolPose> subdivide(const BlockMotion& motion, double lever_mm, doub
     // Slightly less than the square root asks for: the cubic parts fall faster.
     const double next = std::max(pieces + 1.0, std::floor(0.97 * growth * pieces));
     if (next > kPiecesMax) {
-      throw InputError("too-many-sweeps", {},
+      throw InputError("too-many-sweeps", where,
                        fmt::format("a block of {:.3f} mm needs more than {} sweeps to stay within {:g} um",
                                    bounds.speed, kPiecesMax, tolerance_mm * 1e3),
                        "raise the tolerance of the sweeps, or give the block in shorter pieces");

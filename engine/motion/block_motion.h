@@ -61,7 +61,8 @@ double split_error(const MotionBounds& bounds, int pieces, double lever_mm);
 
 /// Poses at equal steps of s, both ends included, so close that every sweep between neighbours stays within
 /// the tolerance for the part of the tool within `lever_mm` of the tip. Throws InputError "too-many-sweeps"
-/// when more than ten million would be needed.
-std::vector<ToolPose> subdivide(const BlockMotion& motion, double lever_mm, double tolerance_mm);
+/// at `where` when more than ten million would be needed.
+std::vector<ToolPose> subdivide(const BlockMotion& motion, double lever_mm, double tolerance_mm,
+                                const SourceLocation& where = {});
 
 }  // namespace swarf::motion

@@ -45,7 +45,8 @@ class BlockSweeper {
  public:
   BlockSweeper(const Job& job, const toolpath::ToolPath& path, const motion::Trajectory& trajectory,
                double tolerance_mm)
-      : motions_(motion::block_motions(path, job.machine.model)),
+      : path_(path),
+        motions_(motion::block_motions(path, job.machine.model)),
         finder_(trajectory),
         lever_mm_(lever_of(job.scene.cutter)),
         tolerance_mm_(tolerance_mm) {}
@@ -100,7 +101,8 @@ class BlockSweeper {
   }
 
   void add_block(size_t i) {
-    const std::vector<ToolPose> poses = motion::subdivide(motions_[i], lever_mm_, tolerance_mm_);
+    const std::vector<ToolPose> poses =
+        motion::subdivide(motions_[i], lever_mm_, tolerance_mm_, path_.elements[i].where);
     const size_t pieces = poses.size() - 1;
     for (size_t k = 0; k < pieces; ++k)
       add(poses[k], poses[k + 1], i, static_cast<double>(k + 1) / static_cast<double>(pieces));
@@ -118,6 +120,7 @@ class BlockSweeper {
     out_.error_bound_mm = std::max(out_.error_bound_mm, merged.error_bound_mm);
   }
 
+  const toolpath::ToolPath& path_;
   std::vector<motion::BlockMotion> motions_;
   SampleFinder finder_;
   double lever_mm_, tolerance_mm_;
