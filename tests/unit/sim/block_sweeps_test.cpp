@@ -124,7 +124,9 @@ TEST(JobSweeps, FollowEachOtherAndNameTheirElementAndCycle) {
     EXPECT_LE(sweeps.error_bound_mm, job.scene.stock.sweep_tolerance_mm);
     for (size_t i = 0; i < sweeps.sweeps.size(); ++i) {
       EXPECT_EQ(sweeps.sweeps[i].block, i);
-      if (i > 0) EXPECT_EQ(sweeps.sweeps[i].start.tip_W, sweeps.sweeps[i - 1].end.tip_W);
+      if (i > 0) {
+        EXPECT_EQ(sweeps.sweeps[i].start.tip_W, sweeps.sweeps[i - 1].end.tip_W);
+      }
       const SweepSource& source = sweeps.sources[i];
       // The tool is where the sweep ends, as near as a cycle takes it.
       const ToolPose& at = trajectory.samples[source.sample].pose;
