@@ -16,6 +16,12 @@ using kinematics::MachineModel;
 using toolpath::BlockLaw;
 using toolpath::BlockMove;
 
+void append(toolpath::ToolPath& path, const BlockMove& block, int line) {
+  toolpath::Element& element = path.elements.emplace_back();
+  element.what = block;
+  element.where = {"test.cl", line, 1};
+}
+
 TEST(BlockMotion, BoundsHoldTheDerivativesOfRandomJointBlocks) {
   Rng rng(47);
   constexpr double kStep = 1e-4;
@@ -100,7 +106,7 @@ TEST(BlockMotions, FollowTheBranchNearestToTheValuesBefore) {
     block.to = pose(i + 1);
     block.law = BlockLaw::kJoint;
     block.feed_mm_s = 10;
-    path.elements.push_back({block, 0, {"test.cl", i + 1, 1}});
+    append(path, block, i + 1);
   }
   const std::vector<BlockMotion> motions = block_motions(path, machine);
   const AxisValues way = motions.back().q_to - motions.front().q_from;
@@ -116,7 +122,7 @@ TEST(BlockMotions, JointLawRefusesWhatTheMachineCannotReach) {
   BlockMove block;
   block.to = {{10, 0, 0}, Vec3(1, 0, 1).normalized()};
   block.law = BlockLaw::kJoint;
-  path.elements.push_back({block, 0, {"test.cl", 7, 1}});
+  append(path, block, 7);
   try {
     block_motions(path, machine);
     FAIL() << "no error";
