@@ -36,15 +36,16 @@ double Stock::volume_mm3() const {
 double Stock::distance_mm(const Vec3& point_W) const {
   return trilinear(impl_->level_set, point_W);
 }
-TriMesh Stock::mesh(double adaptivity) const {
-  return surface_mesh(impl_->level_set, adaptivity);
+const LevelSet& Stock::level_set() const {
+  return impl_->level_set;
 }
 uint64_t Stock::hash() const {
   return state_hash(impl_->level_set);
 }
 size_t Stock::memory_bytes() const {
   const LeafMap& map = impl_->level_set.map;
-  return impl_->level_set.grid->memUsage() + map.size() * (sizeof(LeafState) + sizeof(LeafNode*));
+  return impl_->level_set.grid->memUsage() +
+         map.size() * (sizeof(LeafState) + sizeof(LeafNode*) + sizeof(map.cuts[0]));
 }
 const CutStatistics& Stock::statistics() const {
   return impl_->level_set.statistics;
@@ -66,7 +67,8 @@ size_t Stock::memory_estimate(const Box& box_W, double voxel_mm) {
   constexpr double kLeafBytes = 2200.0;   // 512 floats, mask, node; measured 2168 per leaf
   constexpr double kLayers = 14.0 / 8.0;  // leaves per face of a leaf
   constexpr double kNewSurface = 0.5;     // of the box's area, while it is cut
-  constexpr double kMapBytes = sizeof(LeafState) + 2.0 * sizeof(LeafNode*);  // twice: while the box is made
+  constexpr double kMapBytes =
+      sizeof(LeafState) + sizeof(uint32_t) + 2.0 * sizeof(LeafNode*);  // twice: while the box is made
   const Vec3 d = box_W.size();
   const double area = 2.0 * (d.x() * d.y() + d.y() * d.z() + d.z() * d.x());
   const double leaf_mm = 8.0 * voxel_mm;

@@ -13,6 +13,8 @@
 
 namespace swarf::stock {
 
+struct LevelSet;  // internal to this folder
+
 struct CutStatistics {
   uint64_t sweeps = 0;
   uint64_t voxel_updates = 0;  ///< voxels evaluated
@@ -37,9 +39,9 @@ class Stock {
   /// an edge of length l is off by up to l voxel^2 / 12, with opposite signs for convex and concave ones).
   double volume_mm3() const;
   double distance_mm(const Vec3& point_W) const;  ///< trilinear signed distance, clamped to the band
-  /// Closed surface of the material with outward normals; every triangle faces outward.
-  /// `adaptivity` > 0 merges flat regions (slower, loses features of its size in voxels).
-  TriMesh mesh(double adaptivity = 0.0) const;
+  /// Closed surface of the material with sharp edges and outward normals: see StockMesher, which makes it, and
+  /// makes it faster when it is asked for again after some cutting.
+  TriMesh mesh() const;
   uint64_t hash() const;
   size_t memory_bytes() const;
   const CutStatistics& statistics() const;
@@ -56,7 +58,9 @@ class Stock {
   static size_t memory_estimate(const Box& box_W, double voxel_mm);
 
  private:
+  friend class StockMesher;
   struct Impl;
+  const LevelSet& level_set() const;
   explicit Stock(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };

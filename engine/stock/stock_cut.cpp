@@ -273,8 +273,10 @@ void settle(LevelSet& set, size_t leaf, Outcome& outcome) {
     tree.addTile(kLeafLevel, set.map.origin(leaf), set.band(), false);
     set.map.leaves[leaf] = nullptr;
   }
+  const bool changed = outcome.visits > 0 || outcome.state != set.map.states[leaf];
   set.map.states[leaf] = outcome.state;
   set.map.floors[leaf] = outcome.floor;
+  set.map.cuts[leaf] += changed ? 1 : 0;
 }
 
 void cut_batch(LevelSet& set, Batch& batch) {

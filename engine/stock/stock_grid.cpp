@@ -108,6 +108,7 @@ LeafMap empty_map(const Box& box, double voxel) {
   map.states.assign(count, LeafState::kAir);
   map.leaves.assign(count, nullptr);
   map.floors.assign(count, {static_cast<float>(-kBandVoxels * voxel), {}});
+  map.cuts.assign(count, 0);
   return map;
 }
 

@@ -49,6 +49,7 @@ struct LeafMap {
   std::vector<LeafState> states;
   std::vector<LeafNode*> leaves;  ///< owned by the tree; nullptr unless the state is kLeaf
   std::vector<LeafFloor> floors;  ///< raised by cutting; -band, which always holds, after loading
+  std::vector<uint32_t> cuts;     ///< how often cutting has changed the position's values
 
   size_t size() const { return states.size(); }
   size_t index(int i, int j, int k) const {
@@ -86,7 +87,6 @@ LeafState settle_leaf(LeafNode& leaf, float band);
 void cut_level_set(LevelSet& level_set, std::span<const Sweep> sweeps, const CutterSolid& cutter);
 double volume(const LevelSet& level_set);
 double trilinear(const LevelSet& level_set, const Vec3& point_W);
-TriMesh surface_mesh(const LevelSet& level_set, double adaptivity);
 uint64_t state_hash(const LevelSet& level_set);
 std::string broken_invariant(const LevelSet& level_set);
 void write_level_set(const LevelSet& level_set, const std::string& path,

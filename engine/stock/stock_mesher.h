@@ -1,0 +1,39 @@
+// The surface mesh of a stock, made again only where the stock has changed.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+
+#include "mesh/tri_mesh.h"
+#include "stock/stock.h"
+
+namespace swarf::stock {
+
+/// Dual mesh of the stock's level set with sharp edges and corners (mesher_cell.h: topology, mesher_vertex.h:
+/// where the vertices lie). Closed, manifold and oriented whatever was cut; a wall thinner than a voxel is
+/// kept where it contains grid points and lost where it does not. Planes are exact, curved sheets of radius r
+/// within voxel^2 / (8 r); borders of two or three sheets that are smooth over three voxels lie within 0.1
+/// voxel of the true edge if the sheets meet at more than 15 degrees.
+class StockMesher {
+ public:
+  /// Borrows the stock, which must not be destroyed or assigned to meanwhile (moving it elsewhere is
+  /// allowed).
+  explicit StockMesher(const Stock& stock);
+  ~StockMesher();
+  StockMesher(StockMesher&&) noexcept;
+
+  /// The whole surface, vertices with outward unit normals (on an edge that of one of its sides). Leaves that
+  /// were cut since the last call, and those beside them, are meshed again; the result is the same as that of
+  /// a new mesher, for any number of threads.
+  TriMesh mesh();
+  /// Leaves whose vertices the last call made again.
+  size_t leaves_meshed() const;
+  /// What is remembered between calls.
+  size_t memory_bytes() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace swarf::stock
