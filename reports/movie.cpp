@@ -5,13 +5,18 @@
 #include <future>
 
 #include "base/units.h"
+#include "mesh/mesh_ops.h"
 #include "render/lettering.h"
 #include "render/movie/movie_writer.h"
 #include "render/raster/raster_renderer.h"
 #include "reports/pictures.h"
+#include "stock/stock_mesher.h"
 
 namespace swarf::reports {
 namespace {
+
+/// Edges of the stock that turn by more are shaded as edges.
+constexpr double kCreaseRad = 0.5;
 
 /// The stock as the program cuts it, at the movie's own voxel size.
 class MovieStock {
@@ -28,11 +33,14 @@ class MovieStock {
     while (end < sweeps_.size() && sweeps_[end].block <= sample) ++end;
     stock_.cut(std::span(sweeps_).subspan(done_, end - done_), solid_);
     done_ = end;
-    return stock_.mesh();
+    TriMesh mesh = mesher_.mesh();
+    mesh::split_creases(mesh, kCreaseRad);
+    return mesh;
   }
 
  private:
   stock::Stock stock_;
+  stock::StockMesher mesher_{stock_};
   std::vector<stock::Sweep> sweeps_;
   stock::CutterSolid solid_;
   size_t done_ = 0;

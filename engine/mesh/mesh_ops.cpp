@@ -6,6 +6,7 @@
 #include <span>
 
 #include "base/check.h"
+#include "base/parallel.h"
 
 namespace swarf::mesh {
 namespace {
@@ -15,13 +16,19 @@ Vec3 position(const TriMesh& mesh, uint32_t vertex) {
   return {p[0], p[1], p[2]};
 }
 
+/// Outward, as long as twice the triangle's area.
+Vec3 cross_of(const TriMesh& mesh, uint32_t triangle) {
+  const auto& t = mesh.triangles[triangle];
+  const Vec3 a = position(mesh, t[0]);
+  return (position(mesh, t[1]) - a).cross(position(mesh, t[2]) - a);
+}
+
 /// Unit normal of each face; zero for faces without area.
 std::vector<Vec3> face_normals(const TriMesh& mesh) {
   std::vector<Vec3> normals;
   normals.reserve(mesh.triangles.size());
-  for (const auto& t : mesh.triangles) {
-    const Vec3 a = position(mesh, t[0]);
-    const Vec3 cross = (position(mesh, t[1]) - a).cross(position(mesh, t[2]) - a);
+  for (uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Vec3 cross = cross_of(mesh, t);
     const double length = cross.norm();
     normals.push_back(length > 0.0 ? Vec3(cross / length) : Vec3::Zero());
   }
@@ -71,6 +78,30 @@ uint32_t duplicate_vertex(TriMesh& mesh, uint32_t v) {
   return copy;
 }
 
+/// Corners (3 * triangle + place) whose triangle turns away from the vertex normal, ascending by vertex.
+std::vector<std::pair<uint32_t, uint32_t>> creased_corners(const TriMesh& mesh, double min_cosine) {
+  constexpr size_t kTrianglesPerTask = 8192;
+  std::vector<std::vector<std::pair<uint32_t, uint32_t>>> parts(mesh.triangles.size() / kTrianglesPerTask +
+                                                                1);
+  parallel_chunks(mesh.triangles.size(), kTrianglesPerTask, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const Vec3 cross = cross_of(mesh, static_cast<uint32_t>(i));
+      const double least = min_cosine * cross.norm();
+      for (uint32_t c = 0; c < 3; ++c) {
+        const uint32_t v = mesh.triangles[i][c];
+        const Vec3 normal(mesh.normals[v][0], mesh.normals[v][1], mesh.normals[v][2]);
+        if (cross.dot(normal) < least) {
+          parts[begin / kTrianglesPerTask].emplace_back(v, 3 * static_cast<uint32_t>(i) + c);
+        }
+      }
+    }
+  });
+  std::vector<std::pair<uint32_t, uint32_t>> corners;
+  for (const auto& part : parts) corners.insert(corners.end(), part.begin(), part.end());
+  std::sort(corners.begin(), corners.end());
+  return corners;
+}
+
 }  // namespace
 
 Box bounds(const TriMesh& mesh) {
@@ -107,6 +138,31 @@ void compute_vertex_normals(TriMesh& mesh, double crease_rad) {
       }
       mesh.triangles[c / 3][c % 3] = found->second;
     }
+  }
+}
+
+void split_creases(TriMesh& mesh, double crease_rad) {
+  SWARF_CHECK(mesh.normals.size() == mesh.positions.size(), "creases are found by the vertex normals");
+  const double min_cosine = std::cos(crease_rad);
+  const auto corners = creased_corners(mesh, min_cosine);
+  /// A new vertex of the vertex at hand, and the sum of its triangles.
+  struct Copy {
+    uint32_t vertex;
+    Vec3 sum;
+  };
+  std::vector<Copy> copies;
+  for (size_t i = 0; i < corners.size(); ++i) {
+    const auto [v, corner] = corners[i];
+    if (i == 0 || corners[i - 1].first != v) copies.clear();
+    const Vec3 cross = cross_of(mesh, corner / 3);
+    auto copy = std::find_if(copies.begin(), copies.end(), [&](const Copy& c) {
+      return c.sum.dot(cross) >= min_cosine * c.sum.norm() * cross.norm();
+    });
+    if (copy == copies.end()) copy = copies.insert(copies.end(), {duplicate_vertex(mesh, v), Vec3::Zero()});
+    copy->sum += cross;
+    const Eigen::Vector3f normal = copy->sum.normalized().cast<float>();
+    mesh.normals[copy->vertex] = {normal.x(), normal.y(), normal.z()};
+    mesh.triangles[corner / 3][corner % 3] = copy->vertex;
   }
 }
 

@@ -15,6 +15,13 @@ Box bounds(const TriMesh& mesh);
 /// for nothing; a vertex that has only such faces gets (0, 0, 1).
 void compute_vertex_normals(TriMesh& mesh, double crease_rad);
 
+/// Makes a mesh with given normals fit for smooth shading: where a vertex normal differs by more than
+/// `crease_rad` from the normal of one of its triangles, the triangle gets a copy of the vertex with the
+/// area-weighted mean normal of those beside it that lie within the crease angle of each other. The copies
+/// follow the vertices there were; positions stay, so the surface is the same but no longer closed by
+/// indices: for display only. Parallel, same result for any number of threads.
+void split_creases(TriMesh& mesh, double crease_rad);
+
 /// A coarser mesh whose distance from every vertex of `mesh` is at most `max_error_mm` (> 0).
 ///
 /// meshoptimizer's quadric edge collapse does the bulk; when what is left is small, OpenMesh's decimater
