@@ -1,5 +1,8 @@
 #include "reports/machine_view.h"
 
+#include "cutter/profile.h"
+#include "cutter/tool_walls.h"
+#include "render/figures/figure_mesh.h"
 #include "render/figures/tool_mesh.h"
 
 namespace swarf::reports {
@@ -13,13 +16,52 @@ Pose standing_on(const Vec3& tip, const Vec3& axis) {
   return pose;
 }
 
+/// Below this share of the diameter nobody sees the corners of a drawn arc.
+constexpr double kArcTolerance = 5e-4;
+
+int drawn_flutes(cutter::Shape shape) {
+  if (shape == cutter::Shape::kDrill) return 2;
+  return shape == cutter::Shape::kWoodruff ? 8 : 4;
+}
+
+render::ToolFigure tool_figure(const cutter::Cutter& c) {
+  render::ToolFigure figure;
+  figure.flutes = cutter::sample_outline(cutter::outline(c), kArcTolerance * c.diameter_mm);
+  figure.flute_count = drawn_flutes(c.shape);
+  for (const cutter::ToolWall& wall : cutter::tool_walls(c)) {
+    if (wall.low >= c.length_mm) break;  // the holder is drawn by itself
+    figure.above.emplace_back(wall.low_radius, wall.low);
+    figure.above.emplace_back(wall.high_radius, wall.high);
+  }
+  return figure;
+}
+
+/// One cylinder is drawn as a collet chuck of that size; anything else as it is described.
+TriMesh holder_figure(const cutter::Cutter& c) {
+  const cutter::ToolSection& first = c.holder.front();
+  if (c.holder.size() == 1 && first.diameter_mm == first.top_diameter_mm) {
+    return render::holder_mesh(first.diameter_mm, first.length_mm);
+  }
+  std::vector<Vec2> corners{Vec2::Zero()};
+  const auto add = [&](double radius, double z) {
+    if (corners.back() != Vec2(radius, z)) corners.emplace_back(radius, z);
+  };
+  double z = 0.0;
+  for (const cutter::ToolSection& section : c.holder) {
+    add(0.5 * section.diameter_mm, z);
+    z += section.length_mm;
+    add(0.5 * section.top_diameter_mm, z);
+  }
+  add(0.0, z);
+  return render::revolved_profile(corners, 96);
+}
+
 }  // namespace
 
-MachineView::MachineView(const sim::Job& job) : job_(job) {
-  const cutter::Cutter& c = job.scene.cutter;
-  tool_ = render::tool_mesh(c.diameter_mm, c.flute_length_mm, c.shank_diameter_mm, c.length_mm);
-  holder_ = render::holder_mesh(c.holder_diameter_mm, c.holder_length_mm);
-}
+MachineView::MachineView(const sim::Job& job)
+    : job_(job),
+      tool_(render::tool_mesh(tool_figure(job.scene.cutter))),
+      holder_(holder_figure(job.scene.cutter)) {}
 
 Pose MachineView::work_pose(const kinematics::AxisValues& q) const {
   const auto link = static_cast<size_t>(job_.machine.work_link);

@@ -24,7 +24,7 @@ class MovieStock {
   explicit MovieStock(const FinishedRun& run)
       : stock_(run.job.scene.stock.box_W, run.job.scene.movie.voxel_mm),
         sweeps_(sim::merged_sweeps(run.trajectory, run.job.scene).sweeps),
-        solid_{run.job.scene.cutter.radius(), run.job.scene.cutter.flute_length_mm} {}
+        solid_(run.job.scene.cutter) {}
 
   /// Cuts everything up to and including this sample and meshes what is left. Runs beside the drawing of the
   /// frame before: the software renderer's vertex work leaves the second processor idle.

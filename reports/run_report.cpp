@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/units.h"
+#include "cutter/cutting_pieces.h"
 #include "measure/measure.h"
 #include "motion/offline_baseline.h"
 #include "reports/paper_table.h"
@@ -238,6 +239,25 @@ const char* execution_of(const sim::Job& job) {
   return "";
 }
 
+std::string solid_fact(const cutter::Cutter& cutter) {
+  const double error = cutter::chord_error_mm(cutter);
+  const size_t pieces = cutter::cutting_pieces(cutter).size();
+  const std::string exact =
+      error > 0.0 ? fmt::format("hollow arcs as chords, at most {:.2f} µm too large", um_from_mm(error))
+                  : "exact";
+  return fmt::format("{} convex {} of revolution, {}", pieces, pieces == 1 ? "solid" : "solids", exact);
+}
+
+std::string holder_fact(const cutter::Cutter& cutter) {
+  std::string text;
+  for (const cutter::ToolSection& s : cutter.holder) {
+    const bool cone = s.top_diameter_mm != s.diameter_mm;
+    text += fmt::format("{}D {:g}{} mm, {:g} mm long", text.empty() ? "" : "; ", s.diameter_mm,
+                        cone ? fmt::format(" to {:g}", s.top_diameter_mm) : "", s.length_mm);
+  }
+  return text;
+}
+
 std::vector<FactGroup> facts_of(const sim::Job& job, const sim::Result& result, const RunFiles& files) {
   const cutter::Cutter& c = job.scene.cutter;
   const motion::MotionStatistics& motion = result.main.motion.statistics;
@@ -255,9 +275,9 @@ std::vector<FactGroup> facts_of(const sim::Job& job, const sim::Result& result, 
             {"Cycles", fmt::format("{}", motion.ticks)}}},
           {"Machine and tool",
            {{"Machine", job.machine.model.name},
-            {"Cutter", fmt::format("T{} flat end mill, D {:g} mm, flutes {:g} mm, length {:g} mm", c.number,
-                                   c.diameter_mm, c.flute_length_mm, c.length_mm)},
-            {"Holder", fmt::format("D {:g} mm, {:g} mm long", c.holder_diameter_mm, c.holder_length_mm)}}},
+            {"Cutter", fmt::format("T{} {}", c.number, cutter::describe(c))},
+            {"Cutter's solid", solid_fact(c)},
+            {"Holder", holder_fact(c)}}},
           {"Stock",
            {{"Box", fmt::format("{:g} x {:g} x {:g} mm", size.x(), size.y(), size.z())},
             {"Voxel", fmt::format("{:g} mm", job.scene.stock.voxel_mm)},

@@ -71,8 +71,7 @@ TriMesh half_cut_stock(const FinishedRun& run, size_t sample) {
   const std::vector<stock::Sweep> sweeps = sim::merged_sweeps(run.trajectory, run.job.scene).sweeps;
   const auto end =
       std::find_if(sweeps.begin(), sweeps.end(), [&](const stock::Sweep& s) { return s.block > sample; });
-  stock.cut(std::span(sweeps.begin(), end),
-            {run.job.scene.cutter.radius(), run.job.scene.cutter.flute_length_mm});
+  stock.cut(std::span(sweeps.begin(), end), stock::CutterSolid(run.job.scene.cutter));
   return stock.mesh();
 }
 

@@ -2,33 +2,51 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include <algorithm>
+#include <array>
+
+#include "base/units.h"
+#include "cutter/profile.h"
 
 namespace swarf::cutter {
+namespace {
 
-std::vector<std::string> validate(const Cutter& c) {
-  std::vector<std::string> problems;
-  const auto positive = [&](double value, const char* name) {
-    if (!(value > 0.0 && std::isfinite(value))) {
-      problems.push_back(fmt::format("{} must be above 0 mm and finite, it is {:g}", name, value));
-    }
-  };
-  positive(c.diameter_mm, "diameter_mm");
-  positive(c.flute_length_mm, "flute_length_mm");
-  positive(c.shank_diameter_mm, "shank_diameter_mm");
-  positive(c.length_mm, "length_mm");
-  positive(c.holder_diameter_mm, "holder_diameter_mm");
-  positive(c.holder_length_mm, "holder_length_mm");
-  if (c.corner_radius_mm != 0.0) {
-    problems.push_back(fmt::format(
-        "corner_radius_mm is {:g}: this version cuts with flat end mills (corner_radius_mm = 0) only",
-        c.corner_radius_mm));
+constexpr std::array<const char*, 9> kNames{"flat",    "ball",     "bull_nose", "taper",  "drill",
+                                            "chamfer", "woodruff", "apt",       "profile"};
+
+/// What the shape adds to diameter and corner radius.
+std::string extra(const Cutter& c) {
+  switch (c.shape) {
+    case Shape::kTaper:
+      return fmt::format(", {:g}° a side", deg_from_rad(c.taper_rad));
+    case Shape::kDrill:
+      return fmt::format(", point {:g}°", deg_from_rad(c.point_angle_rad));
+    case Shape::kChamfer:
+      return fmt::format(", point {:g}°, tip D {:g} mm", deg_from_rad(c.point_angle_rad), c.tip_diameter_mm);
+    case Shape::kApt:
+      return fmt::format(", alpha {:g}°, beta {:g}°", deg_from_rad(c.alpha_rad), deg_from_rad(c.beta_rad));
+    case Shape::kProfile:
+      return fmt::format(", {} corners", c.profile.size());
+    default:
+      return "";
   }
-  if (c.flute_length_mm > c.length_mm) {
-    problems.push_back(fmt::format("flute_length_mm {:g} is longer than the tool, length_mm {:g}",
-                                   c.flute_length_mm, c.length_mm));
-  }
-  return problems;
+}
+
+}  // namespace
+
+const char* shape_name(Shape shape) {
+  return kNames.at(static_cast<size_t>(shape));
+}
+
+std::vector<std::string> shape_names() {
+  return {kNames.begin(), kNames.end()};
+}
+
+std::string describe(const Cutter& c) {
+  const std::string corner =
+      c.corner_radius_mm > 0.0 ? fmt::format(", corner radius {:g} mm", c.corner_radius_mm) : "";
+  return fmt::format("{}, D {:g} mm{}{}, flutes {:g} mm, length {:g} mm", shape_name(c.shape), c.diameter_mm,
+                     corner, extra(c), c.flute_length_mm, c.length_mm);
 }
 
 }  // namespace swarf::cutter

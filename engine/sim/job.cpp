@@ -6,6 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "base/units.h"
+#include "cutter/profile.h"
 #include "sim/scene.h"
 #include "stock/stock.h"
 
@@ -75,11 +77,14 @@ void check_parameter(const program::ClCutter& cutter, size_t index, const char* 
 /// LOADTL and CUTTER of a CL file against the scene's cutter.
 void check_cl_tools(const Job& job, Diagnostics& diagnostics) {
   const cutter::Cutter& ours = job.scene.cutter;
+  const std::optional<cutter::AptForm> form = cutter::apt_form(ours);
   for (const program::ClCutter& cutter : job.cl->cutters) {
-    check_parameter(cutter, 0, "d (mm)", ours.diameter_mm, "cutter.diameter_mm", diagnostics);
-    check_parameter(cutter, 1, "r (mm)", ours.corner_radius_mm, "cutter.corner_radius_mm", diagnostics);
-    check_parameter(cutter, 4, "alpha (deg)", 0.0, "the shape", diagnostics);
-    check_parameter(cutter, 5, "beta (deg)", 0.0, "the shape", diagnostics);
+    check_parameter(cutter, 0, "d (mm)", form ? form->d : ours.diameter_mm, "cutter.diameter_mm",
+                    diagnostics);
+    if (!form) continue;  // seven parameters cannot say what the others are
+    check_parameter(cutter, 1, "r (mm)", form->r, "cutter.corner_radius_mm", diagnostics);
+    check_parameter(cutter, 4, "alpha (deg)", deg_from_rad(form->alpha), "the shape", diagnostics);
+    check_parameter(cutter, 5, "beta (deg)", deg_from_rad(form->beta), "the shape", diagnostics);
   }
   for (const program::ClMove& move : job.cl->moves) {
     if (move.tool == 0 || move.tool == ours.number) continue;
@@ -98,6 +103,15 @@ void load_design(Job& job) {
   if (design.kind == DesignKind::kSurface) defined = program::load_program(design.surface_file).surfaces;
   for (const program::SurfaceDefinition& definition : defined) job.design.push_back(definition.surface);
   if (design.kind == DesignKind::kAnalytic) job.design.push_back(design.surface);
+}
+
+/// G06.3 and G06.4 put the centre of a flat end's face on the surface; no other shape has been derived.
+void check_planner_cutter(const Job& job, Diagnostics& diagnostics) {
+  if (job.program.operations.empty() || job.scene.cutter.shape == cutter::Shape::kFlat) return;
+  diagnostics.error("planner-needs-flat-end", job.program.operations.front().where,
+                    fmt::format("surface blocks are planned for flat ends only, T{} is {}",
+                                job.scene.cutter.number, cutter::describe(job.scene.cutter)),
+                    "set cutter.shape = \"flat\", or run a program that brings its own tool positions");
 }
 
 template <typename Load>
@@ -133,6 +147,7 @@ Job load_job(const std::string& path, const std::vector<std::string>& overrides)
     check_cl_tools(job, diagnostics);
   } else {
     check_tools(job, diagnostics);
+    check_planner_cutter(job, diagnostics);
   }
   check_memory(job.scene, diagnostics);
   diagnostics.throw_if_errors();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cutter/profile.h"
 #include "motion/block_motion.h"
 
 namespace swarf::sim {
@@ -12,7 +13,7 @@ using toolpath::BlockMove;
 
 /// Distance from the tip to the farthest point of the flutes.
 double lever_of(const cutter::Cutter& cutter) {
-  return std::hypot(cutter.radius(), cutter.flute_length_mm);
+  return std::hypot(cutter::greatest_radius(cutter::outline(cutter)), cutter.flute_length_mm);
 }
 
 /// Sources of a surface job: blocks are samples.

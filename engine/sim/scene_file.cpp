@@ -5,28 +5,13 @@
 
 #include "base/config.h"
 #include "base/units.h"
+#include "sim/cutter_keys.h"
 #include "sim/scene.h"
 
 namespace swarf::sim {
 namespace {
 
 namespace fs = std::filesystem;
-
-cutter::Cutter read_cutter(ConfigTable table) {
-  cutter::Cutter c;
-  c.number = table.integer("number", 0, 99999, 1);
-  c.diameter_mm = table.number("diameter_mm", kAboveZero);
-  c.corner_radius_mm = table.number("corner_radius_mm", kZeroOrMore, 0.0);
-  c.flute_length_mm = table.number("flute_length_mm", kAboveZero);
-  c.shank_diameter_mm = table.number("shank_diameter_mm", kAboveZero, c.diameter_mm);
-  c.length_mm = table.number("length_mm", kAboveZero);
-  c.holder_diameter_mm = table.number("holder_diameter_mm", kAboveZero, c.holder_diameter_mm);
-  c.holder_length_mm = table.number("holder_length_mm", kAboveZero, c.holder_length_mm);
-  for (const std::string& problem : cutter::validate(c)) {
-    table.error("bad-cutter", "diameter_mm", "[cutter]: " + problem, "mend the cutter's numbers (mm)");
-  }
-  return c;
-}
 
 StockSettings read_stock(ConfigTable table) {
   StockSettings stock;

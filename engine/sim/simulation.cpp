@@ -20,10 +20,6 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-stock::CutterSolid solid_of(const cutter::Cutter& cutter) {
-  return {cutter.radius(), cutter.flute_length_mm};
-}
-
 toolpath::ToolPath plan_path(const Job& job, toolpath::Planner planner, Diagnostics& diagnostics) {
   toolpath::PlanOptions options = job.scene.toolpath;
   options.planner = planner;
@@ -56,8 +52,8 @@ void measure_dexels(const Job& job, MeasuredPath& measured) {
                                       job.scene.accept.gouge_band_um() * kMicrometre};
   std::vector<measure::SurfaceMetrics> parts;
   for (const stock::SurfaceDexels& dexels : measured.dexels) {
-    parts.push_back(measure::measure_surface(dexels, measured.rays.sweeps, passes, solid_of(job.scene.cutter),
-                                             limits, &measured.ridges));
+    parts.push_back(measure::measure_surface(dexels, measured.rays.sweeps, passes,
+                                             stock::CutterSolid(job.scene.cutter), limits, &measured.ridges));
   }
   measured.surface = measure::combine(parts, measured.ridges);
   measured.surface.scallop_theory_um = theory_scallop_um(measured.path);
@@ -68,7 +64,7 @@ void cut_dexels(const Job& job, MeasuredPath& measured) {
   if (!job.design.empty()) measured.rays = ray_sweeps(job, measured.path, measured.motion.trajectory);
   for (const surface::SurfacePtr& surface : job.design) {
     measured.dexels.emplace_back(surface, job.scene.design.pitch_mm, job.scene.stock.box_W);
-    measured.dexels.back().cut(measured.rays.sweeps, solid_of(job.scene.cutter));
+    measured.dexels.back().cut(measured.rays.sweeps, stock::CutterSolid(job.scene.cutter));
   }
   measured.dexel_seconds = seconds_since(start);
 }
@@ -185,12 +181,13 @@ void cut_stock(const Job& job, Progress& progress, Result& result) {
   result.merged_sweeps = merged.sweeps.size();
   result.stock = std::make_unique<stock::Stock>(job.scene.stock.box_W, job.scene.stock.voxel_mm);
   ToolClearanceCheck clearance(job.scene.cutter, job.scene.stock.voxel_mm);
+  const stock::CutterSolid solid(job.scene.cutter);
   const double full = result.stock->volume_mm3();
   progress.begin("cut", static_cast<double>(merged.sweeps.size()), "blocks");
   for (size_t i = 0; i < merged.sweeps.size() && !progress.stop_requested(); i += kSweepsPerBatch) {
     const auto batch =
         std::span(merged.sweeps).subspan(i, std::min(kSweepsPerBatch, merged.sweeps.size() - i));
-    result.stock->cut(batch, solid_of(job.scene.cutter));
+    result.stock->cut(batch, solid);
     clearance.check(*result.stock, batch);
     progress.advance(static_cast<double>(i + batch.size()));
   }

@@ -5,6 +5,8 @@
 
 #include "base/parallel.h"
 #include "base/units.h"
+#include "cutter/profile.h"
+#include "cutter/tool_walls.h"
 
 namespace swarf::sim {
 namespace {
@@ -12,29 +14,39 @@ namespace {
 constexpr double kPointSpacing = 2.0;  // mm; the stock's features are a cutter diameter wide
 constexpr double kBandVoxels = 3.0;    // half width of the level set
 
+double flute_end_radius(const cutter::Cutter& cutter) {
+  return cutter::outline(cutter).back().to.x();
+}
+
 }  // namespace
 
 ToolClearanceCheck::ToolClearanceCheck(const cutter::Cutter& cutter, double voxel_mm)
     : tolerance_mm_(voxel_mm) {
-  const auto ring = [&](double radius, double height, bool holder) {
+  const auto ring = [&](double radius, double height, const char* part) {
     const int count = std::max(6, static_cast<int>(std::ceil(2.0 * kPi * radius / kPointSpacing)));
     for (int i = 0; i < count; ++i) {
       const double angle = 2.0 * kPi * i / count;
-      points_.push_back({radius, height, std::cos(angle), std::sin(angle), holder});
+      points_.push_back({radius, height, std::cos(angle), std::sin(angle), part});
     }
   };
-  const auto wall = [&](double radius, double from, double to, bool holder) {
-    const int steps = std::max(1, static_cast<int>(std::ceil((to - from) / kPointSpacing)));
-    for (int i = 0; i <= steps; ++i) ring(radius, from + (to - from) * i / steps, holder);
+  // Rings along a line of the outline, without its first end.
+  const auto line = [&](const Vec2& from, const Vec2& to, const char* part) {
+    const int steps = static_cast<int>(std::ceil((to - from).norm() / kPointSpacing));
+    for (int i = 1; i <= steps; ++i) {
+      const Vec2 p = from + (to - from) * i / steps;
+      ring(p.x(), p.y(), part);
+    }
   };
-  if (cutter.length_mm > cutter.flute_length_mm) {
-    wall(0.5 * cutter.shank_diameter_mm, cutter.flute_length_mm, cutter.length_mm, false);
+  const std::vector<cutter::ToolWall> walls = cutter::tool_walls(cutter);
+  // The flutes' own upper end cuts.
+  Vec2 last(std::min(flute_end_radius(cutter), walls.front().low_radius), cutter.flute_length_mm);
+  for (const cutter::ToolWall& wall : walls) {
+    const Vec2 low(wall.low_radius, wall.low), high(wall.high_radius, wall.high);
+    line(last, low, wall.part);  // the shoulder between two parts belongs to the upper one
+    if (last == low) ring(low.x(), low.y(), wall.part);
+    line(low, high, wall.part);
+    last = high;
   }
-  const double holder_radius = 0.5 * cutter.holder_diameter_mm;
-  for (double r = 0.5 * cutter.shank_diameter_mm; r < holder_radius; r += kPointSpacing) {
-    ring(r, cutter.length_mm, true);
-  }
-  wall(holder_radius, cutter.length_mm, cutter.length_mm + cutter.holder_length_mm, true);
   result_.band_mm = kBandVoxels * voxel_mm;
   result_.nearest_mm = result_.band_mm;
 }
@@ -49,7 +61,7 @@ double ToolClearanceCheck::depth_at(const stock::Stock& stock, const ToolPose& p
     const double distance = stock.distance_mm(point);
     if (distance < nearest) {
       nearest = distance;
-      *part = p.holder ? "holder" : "shank";
+      *part = p.part;
     }
   }
   return nearest;

@@ -1,4 +1,4 @@
-// Shank and holder against the stock as it stands at that moment of the program.
+// Neck, shank and holder against the stock as it stands at that moment of the program.
 #pragma once
 
 #include <cstddef>
@@ -15,16 +15,17 @@ namespace swarf::sim {
 
 struct ToolClearance {
   size_t checked_poses = 0;
-  size_t contacts = 0;       ///< poses at which shank or holder stands in material
+  size_t contacts = 0;       ///< poses at which a part above the flutes stands in material
   double deepest_mm = 0.0;   ///< penetration of the worst of them (saturates at the level set's band)
-  std::string part;          ///< "shank" or "holder", of the first contact
+  std::string part;          ///< "neck", "shank" or "holder", of the first contact
   uint32_t first_block = 0;  ///< Sweep::block of the first contact
   double nearest_mm = 0.0;   ///< closest approach seen; saturates at band_mm
   double band_mm = 0.0;      ///< distances are known up to here
 };
 
-/// Samples points on shank and holder (rings, about 2 mm apart) against the level set. Material less than one
-/// voxel deep is not counted: the flank of the cutter leaves it there.
+/// Samples points on neck, shank and holder as they are shaped (rings on walls and shoulders, at most 2 mm
+/// apart) against the level set. Material less than one voxel deep is not counted: the flank of the cutter
+/// leaves it there.
 class ToolClearanceCheck {
  public:
   ToolClearanceCheck(const cutter::Cutter& cutter, double voxel_mm);
@@ -34,7 +35,7 @@ class ToolClearanceCheck {
  private:
   struct Point {
     double radius, height, cosine, sine;
-    bool holder;
+    const char* part;
   };
   double depth_at(const stock::Stock& stock, const ToolPose& pose, const char** part) const;
 

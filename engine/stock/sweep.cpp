@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/check.h"
+#include "cutter/cutting_pieces.h"
 #include "stock/sweep_map.h"
 
 namespace swarf::stock {
@@ -61,6 +62,11 @@ CutterSolid::CutterSolid(double flat_radius, double flute_height)
     : radius(flat_radius),
       height(flute_height),
       pieces{cutter::ConvexPiece::cylinder(flat_radius, flute_height)} {}
+
+CutterSolid::CutterSolid(const cutter::Cutter& cutter)
+    : radius(0.0), height(cutter.flute_length_mm), pieces(cutter::cutting_pieces(cutter)) {
+  for (const cutter::ConvexPiece& piece : pieces) radius = std::max(radius, piece.radius);
+}
 
 MergedSweeps merge_sweeps(std::span<const ToolPose> poses, std::span<const uint8_t> breaks, double lever_mm,
                           double tolerance_mm) {

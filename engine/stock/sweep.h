@@ -7,6 +7,7 @@
 
 #include "base/frames.h"
 #include "cutter/convex_piece.h"
+#include "cutter/cutter.h"
 
 namespace swarf::stock {
 
@@ -25,6 +26,8 @@ struct CutterSolid {
 
   /// A flat end mill.
   CutterSolid(double flat_radius = 5.0, double flute_height = 25.0);
+  /// The flutes of any cutter without problems.
+  explicit CutterSolid(const cutter::Cutter& cutter);
   /// One piece that is a plain cylinder: the kernels know it in closed form.
   bool is_cylinder() const { return pieces.size() == 1 && pieces.front().is_cylinder(); }
 };

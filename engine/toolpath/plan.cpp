@@ -96,7 +96,7 @@ const char* planner_name(Planner planner) {
 
 ToolPath plan(const program::Program& program, const cutter::Cutter& cutter, const PlanOptions& options,
               Diagnostics& diagnostics) {
-  SWARF_CHECK(cutter.corner_radius_mm == 0.0, "the planners know the flat end only");
+  SWARF_CHECK(cutter.shape == cutter::Shape::kFlat, "the planners know the flat end only");
   ToolPath path;
   path.planner = planner_name(options.planner);
   for (size_t i = 0; i < program.operations.size(); ++i) {

@@ -64,6 +64,9 @@ TEST_P(BadInputTest, IsRefusedWithItsPlaceAndNothingIsWritten) {
   fs::remove_all(folder);
 }
 
+/// The keys of [cutter] that a profile stands for.
+const char* const kPlainFlutes = "diameter_mm = 10\ncorner_radius_mm = 0\nflute_length_mm = 45";
+
 std::vector<BadInput> bad_inputs() {
   return {
       {"misspelt_key", "scene.toml", "voxel_mm = 0.2", "voxle_mm = 0.2", "unknown-key", "scene.toml:18:"},
@@ -79,10 +82,37 @@ std::vector<BadInput> bad_inputs() {
       {"program_not_found", "scene.toml", "\"dome.nc\"", "\"doom.nc\"", "file-not-found", "doom.nc"},
       {"machine_not_found", "scene.toml", "machine/machine.toml", "machine/machin.toml", "file-not-found",
        "machin.toml"},
-      {"corner_radius", "scene.toml", "corner_radius_mm = 0", "corner_radius_mm = 1", "bad-cutter",
-       "scene.toml:8:"},
+      {"corner_above_radius", "scene.toml", "corner_radius_mm = 0", "corner_radius_mm = 6", "bad-cutter",
+       "scene.toml:9:"},
+      {"flat_with_corner", "scene.toml", "corner_radius_mm = 0", "corner_radius_mm = 1\nshape = \"flat\"",
+       "bad-cutter", "scene.toml:9:"},
+      {"unknown_shape", "scene.toml", "corner_radius_mm = 0", "shape = \"bal\"", "unknown-choice",
+       "scene.toml:9:"},
+      {"key_of_another_shape", "scene.toml", "corner_radius_mm = 0", "taper_deg = 5", "unknown-key",
+       "scene.toml:9:"},
+      {"planned_with_a_ball", "scene.toml", "corner_radius_mm = 0", "corner_radius_mm = 5",
+       "planner-needs-flat-end", "dome.nc:13:"},
+      {"apt_centre_contradicts", "scene.toml", "corner_radius_mm = 0",
+       "corner_radius_mm = 1\nshape = \"apt\"\ncorner_centre_mm = [4.5, 1]", "bad-cutter", "scene.toml:11:"},
+      {"apt_flank_meets_axis", "scene.toml", "corner_radius_mm = 0", "shape = \"apt\"\nbeta_deg = -20",
+       "bad-cutter", "scene.toml:10:"},
+      {"profile_crosses_itself", "scene.toml", kPlainFlutes,
+       "shape = \"profile\"\nprofile = [{to_mm=[0,0]}, {to_mm=[5,0]}, {to_mm=[2,10]}, {to_mm=[2,4]}, "
+       "{to_mm=[6,8]}, {to_mm=[6,20]}]",
+       "bad-cutter", "scene.toml:9:"},
+      {"profile_off_the_axis", "scene.toml", kPlainFlutes,
+       "shape = \"profile\"\nprofile = [{to_mm=[1,0]}, {to_mm=[5,0]}, {to_mm=[5,20]}]", "bad-cutter",
+       "scene.toml:9:"},
+      {"profile_missing", "scene.toml", kPlainFlutes, "shape = \"profile\"", "bad-cutter", "scene.toml:6:"},
+      {"flutes_of_no_length", "scene.toml", "flute_length_mm = 45", "flute_length_mm = 0", "out-of-range",
+       "scene.toml:10:"},
       {"flutes_longer_than_tool", "scene.toml", "flute_length_mm = 45", "flute_length_mm = 65", "bad-cutter",
-       "scene.toml:8:"},
+       "scene.toml:10:"},
+      {"neck_longer_than_tool", "scene.toml", "shank_diameter_mm = 10",
+       "neck_length_mm = 20\nneck_diameter_mm = 9", "bad-cutter", "scene.toml:11:"},
+      {"holder_described_twice", "scene.toml", "holder_diameter_mm = 40",
+       "holder = [{ diameter_mm = 40, length_mm = 20 }]\nholder_diameter_mm = 40", "unknown-key",
+       "scene.toml:14:"},
       {"scene_empty", "scene.toml", "", "", "empty-file", "scene.toml"},
       {"scene_not_text", "scene.toml", "", std::string("title = \"a\"\0b", 13), "not-text", "scene.toml"},
       {"tool_not_described", "dome.nc", "T1 M6", "T7 M6", "unknown-tool", "dome.nc:13:"},

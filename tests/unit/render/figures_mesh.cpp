@@ -60,8 +60,17 @@ TEST(FigureMesh, CylinderIsClosedAndHasTheVolumeOfItsPolygon) {
   EXPECT_NEAR(volume(mesh), expected, 1e-5 * expected);
 }
 
-TEST(FigureMesh, ToolAndHolderAreClosedSolidsOfTheStatedSize) {
-  const TriMesh tool = tool_mesh(10, 25, 12, 60);
+/// Greatest radius of the mesh within a span of heights.
+double reach(const TriMesh& mesh, double low, double high) {
+  double greatest = 0;
+  for (const auto& p : mesh.positions) {
+    if (p[2] >= low && p[2] <= high) greatest = std::max(greatest, std::hypot(double{p[0]}, double{p[1]}));
+  }
+  return greatest;
+}
+
+TEST(FigureMesh, ToolIsAClosedSolidOfTheStatedSize) {
+  const TriMesh tool = tool_mesh({{{0, 0}, {5, 0}, {5, 25}}, {{6, 25}, {6, 60}}, 4});
   EXPECT_TRUE(closed(tool));
   EXPECT_GT(volume(tool), 0.5 * kPi * 25 * 25 + 0.9 * kPi * 36 * 35);
   EXPECT_LT(volume(tool), kPi * 25 * 25 + kPi * 36 * 35);
@@ -69,12 +78,36 @@ TEST(FigureMesh, ToolAndHolderAreClosedSolidsOfTheStatedSize) {
   EXPECT_NEAR(tool_box.upper.x(), 6, 0.02);
   EXPECT_EQ(tool_box.lower.z(), 0);
   EXPECT_EQ(tool_box.upper.z(), 60);
-  double reach = 0;
-  for (const auto& p : tool.positions) {
-    if (p[2] < 24) reach = std::max(reach, std::hypot(double{p[0]}, double{p[1]}));
-  }
-  EXPECT_NEAR(reach, 5, 1e-5) << "the edges cut the nominal diameter";
+  EXPECT_NEAR(reach(tool, 0, 24), 5, 1e-5) << "the edges cut the nominal diameter";
+}
 
+TEST(FigureMesh, ToolFollowsItsOutline) {
+  // A ball, a drill, a disc whose teeth go through, and a flat end without a shank.
+  std::vector<Vec2> ball;
+  for (int i = 0; i <= 20; ++i) {
+    ball.emplace_back(5 * std::sin(i * kPi / 40), 5 - 5 * std::cos(i * kPi / 40));
+  }
+  ball.emplace_back(5, 25);
+  const std::vector<ToolFigure> figures{{ball, {{5, 25}, {5, 60}}, 4},
+                                        {{{0, 0}, {4, 2.4}, {4, 40}}, {{4, 40}, {4, 80}}, 2},
+                                        {{{0, 0}, {10, 0}, {10, 4}}, {{4, 4}, {4, 60}}, 8},
+                                        {{{0, 0}, {5, 0}, {5, 25}}, {}, 4}};
+  for (size_t i = 0; i < figures.size(); ++i) {
+    SCOPED_TRACE(i);
+    const TriMesh tool = tool_mesh(figures[i]);
+    EXPECT_TRUE(closed(tool));
+    EXPECT_EQ(mesh::bounds(tool).lower.z(), 0);
+    for (const Vec2& p : figures[i].flutes) {
+      if (p.x() == 0) continue;
+      EXPECT_NEAR(reach(tool, p.y() - 1e-3, p.y() + 1e-3), p.x(), 0.02) << p.y();
+    }
+  }
+  // The teeth of the disc are cut into its upper face, above the shank's 4 mm too.
+  const TriMesh disc = tool_mesh(figures[2]);
+  EXPECT_LT(volume(disc), 0.9 * kPi * 100 * 4 + kPi * 16 * 56);
+}
+
+TEST(FigureMesh, HolderIsAClosedSolidOfTheStatedSize) {
   const TriMesh holder = holder_mesh(40, 50);
   EXPECT_TRUE(closed(holder));
   EXPECT_TRUE(normals_face_outwards(holder));
