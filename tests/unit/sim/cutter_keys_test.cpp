@@ -58,8 +58,8 @@ TEST(CutterKeys, EachShapeHasItsOwn) {
   const Cutter disc = good("shape = \"woodruff\"\ndiameter_mm = 20\nwidth_mm = 4\nshank_diameter_mm = 8");
   EXPECT_EQ(disc.flute_length_mm, 4.0);
   const Cutter apt = good(
-      "shape = \"apt\"\nalpha_deg = 10\nbeta_deg = 20\ncorner_radius_mm = 1\ncorner_centre_mm = [4.4397, "
-      "1.7983]\n" +
+      "shape = \"apt\"\nalpha_deg = 10\nbeta_deg = 20\ncorner_radius_mm = 1\ncorner_centre_mm = [4.2578, "
+      "1.7662]\n" +
       lengths);
   EXPECT_NEAR(apt.corner_centre_mm->x(), cutter::apt_form(apt)->corner_centre().x(), 1e-4);
 }
