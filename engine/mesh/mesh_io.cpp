@@ -10,10 +10,11 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <map>
+#include <optional>
 
 #include "base/diagnostics.h"
 #include "mesh/ply_check.h"
+#include "mesh/stl_reader.h"
 
 namespace swarf::mesh {
 namespace {
@@ -104,14 +105,7 @@ std::string ply_bytes(const TriMesh& mesh) {
                    "use STL, PLY or OBJ in mm");
 }
 
-}  // namespace
-
-TriMesh load_mesh(const std::string& path) {
-  if (!fs::is_regular_file(path)) {
-    throw InputError("mesh-not-found", {path}, "the mesh file cannot be opened",
-                     "check the path and its spelling");
-  }
-  const std::string ending = extension(path);
+TriMesh read_with_assimp(const std::string& path, const std::string& ending) {
   const std::string broken = ending == ".ply" ? check_ply_whole(path) : "";
   if (!broken.empty()) refuse(path, broken);
   Assimp::Importer importer;
@@ -125,13 +119,27 @@ TriMesh load_mesh(const std::string& path) {
   for (unsigned i = 0; i < scene->mNumMeshes; ++i) append(*scene->mMeshes[i], mesh);
   if (mesh.normals.size() != mesh.positions.size()) mesh.normals.clear();
   if (mesh.colours.size() != mesh.positions.size()) mesh.colours.clear();
-  const bool finite = std::all_of(mesh.positions.begin(), mesh.positions.end(), [](const auto& p) {
-    return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
-  });
-  if (mesh.triangles.empty() || !finite) {
-    refuse(path, finite ? "it has no triangles" : "it has positions that are not finite");
-  }
   return mesh;
+}
+
+}  // namespace
+
+TriMesh load_mesh(const std::string& path) {
+  if (!fs::is_regular_file(path)) {
+    throw InputError("mesh-not-found", {path}, "the mesh file cannot be opened",
+                     "check the path and its spelling");
+  }
+  const std::string ending = extension(path);
+  std::optional<TriMesh> mesh = ending == ".stl" ? read_binary_stl(path) : std::nullopt;
+  if (!mesh) mesh = read_with_assimp(path, ending);
+  const auto broken = std::count_if(mesh->positions.begin(), mesh->positions.end(), [](const auto& p) {
+    return !(std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]));
+  });
+  if (mesh->triangles.empty()) refuse(path, "it has no triangles");
+  if (broken > 0) {
+    refuse(path, fmt::format("{} of its {} positions are not finite", broken, mesh->positions.size()));
+  }
+  return std::move(*mesh);
 }
 
 void save_mesh(const std::string& path, const TriMesh& mesh) {
@@ -152,42 +160,6 @@ void save_mesh(const std::string& path, const TriMesh& mesh) {
     throw InputError("cannot-write", {path}, "the file cannot be written",
                      "check that its folder exists and may be written");
   }
-}
-
-namespace {
-
-/// Per vertex the number of its position: vertices that were split for their normals become one again.
-std::vector<uint32_t> welded(const TriMesh& mesh) {
-  std::map<std::array<float, 3>, uint32_t> seen;
-  std::vector<uint32_t> number;
-  for (const auto& position : mesh.positions) {
-    number.push_back(seen.emplace(position, static_cast<uint32_t>(number.size())).first->second);
-  }
-  return number;
-}
-
-}  // namespace
-
-std::string check_closed(const TriMesh& mesh) {
-  const std::vector<uint32_t> number = welded(mesh);
-  std::vector<std::array<uint32_t, 2>> edges;
-  edges.reserve(mesh.triangles.size() * 3);
-  for (const auto& t : mesh.triangles) {
-    const uint32_t corner[3] = {number[t[0]], number[t[1]], number[t[2]]};
-    // A triangle that has collapsed to an edge or a point closes and opens nothing.
-    if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) continue;
-    for (size_t i = 0; i < 3; ++i) edges.push_back({corner[i], corner[(i + 1) % 3]});
-  }
-  std::sort(edges.begin(), edges.end());
-  const auto twice = std::adjacent_find(edges.begin(), edges.end());
-  if (twice != edges.end())
-    return fmt::format("edge {}-{} runs twice in the same direction", (*twice)[0], (*twice)[1]);
-  for (const auto& [a, b] : edges) {
-    if (!std::binary_search(edges.begin(), edges.end(), std::array<uint32_t, 2>{b, a})) {
-      return fmt::format("edge {}-{} has a triangle on one side only", a, b);
-    }
-  }
-  return "";
 }
 
 }  // namespace swarf::mesh

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "mesh/mesh_check.h"
 #include "mesh/tri_mesh.h"
 
 namespace swarf::mesh {
@@ -15,10 +16,5 @@ TriMesh load_mesh(const std::string& path);
 /// the ending of the name; the file is replaced whole. Throws InputError for another ending or when it cannot
 /// be written.
 void save_mesh(const std::string& path, const TriMesh& mesh);
-
-/// "" when the mesh is closed and evenly oriented (each edge once in each direction); else the first reason
-/// why not. Vertices with equal positions count as one, and triangles that collapse by
-/// that do not count.
-std::string check_closed(const TriMesh& mesh);
 
 }  // namespace swarf::mesh

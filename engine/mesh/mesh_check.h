@@ -1,0 +1,45 @@
+// Whether a mesh can serve as a design: closed, turned outward, in mm, and every facet sound.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/diagnostics.h"
+#include "base/frames.h"
+#include "mesh/tri_mesh.h"
+
+namespace swarf::mesh {
+
+/// The mesh with equal positions as one vertex, in the order of their first use; triangles that collapse to
+/// an edge or a point by that are left out.
+struct WeldedMesh {
+  std::vector<Vec3> points;  ///< mm
+  std::vector<std::array<uint32_t, 3>> triangles;
+};
+WeldedMesh weld(const TriMesh& mesh);
+
+/// Per vertex the number of its position, counted in the order of first occurrence. Expected time linear.
+std::vector<uint32_t> position_numbers(const std::vector<std::array<float, 3>>& positions);
+
+/// Holds a design mesh against what measuring needs; each fault is a diagnostic of file `path`:
+///   mesh-empty            error    no facet with area
+///   mesh-not-finite       error    NaN or infinite positions, how many
+///   mesh-zero-area        warning  facets without area, how many and where the first lies; they are not
+///   measured mesh-open             error    edges with a facet on one side only: how many, the first, the
+///   box around all mesh-non-manifold     error    edges shared by more than two facets mesh-turned-facets
+///   error    edges that both neighbours run through in the same direction mesh-inverted         error
+///   closed, but the enclosed volume is negative mesh-in-inches        error    25.4 times larger it would
+///   lie inside the stock, and it fills < 1/15 of it now mesh-scaled-by-25     error    the other way round
+///   mesh-outside-stock    error    it reaches beyond the stock: material that cannot be there
+/// `stock_W` may be null when there is no stock to compare with.
+void check_design_mesh(const TriMesh& mesh, const std::string& path, const Box* stock_W,
+                       Diagnostics& diagnostics);
+
+/// "" when the mesh is closed and evenly oriented (each edge once in each direction); else the first reason
+/// why not. Vertices with equal positions count as one, and triangles that collapse by
+/// that do not count.
+std::string check_closed(const TriMesh& mesh);
+
+}  // namespace swarf::mesh
