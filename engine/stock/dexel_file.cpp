@@ -1,10 +1,9 @@
-// Files of surface dexels: a header, heights, blocks, and a checksum of it all.
+// Files of surface dexels: a header, heights, blocks, material above gaps, and a checksum of it all.
 #include <fmt/format.h>
 
-#include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
+#include <utility>
 
 #include "base/diagnostics.h"
 #include "base/hash.h"
@@ -15,18 +14,24 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr uint64_t kMagic = 0x31737961726677ULL;  // "wfrays1"
-/// A grid larger than this on a side comes from a damaged file.
-constexpr uint64_t kMostRays = 1u << 20;
+constexpr uint64_t kMagic = 0x32737961726677ULL;  // "wfrays2"
 
 struct Header {
-  uint64_t magic, nu, nv, surface;
+  uint64_t magic, rays, above, design;
+  double pitch_mm, chord_mm;
 };
 
-/// Identifies the surface and the grid on it: equal points and normals, equal hash.
-uint64_t surface_hash(const SurfaceDexels& dexels) {
+/// Material above a gap, by the place of its ray in RayField::order.
+struct StoredAbove {
+  uint64_t place;
+  double low, high;
+  uint32_t low_block, high_block;
+};
+
+/// Identifies the design and the rays on it: equal points and normals, equal hash.
+uint64_t design_hash(const RayField& field) {
   Hash hash;
-  for (const auto* vectors : {&dexels.points(), &dexels.normals()}) {
+  for (const auto* vectors : {&field.points, &field.normals}) {
     for (const Vec3& v : *vectors) {
       for (int a = 0; a < 3; ++a) hash.add(v[a]);
     }
@@ -34,12 +39,29 @@ uint64_t surface_hash(const SurfaceDexels& dexels) {
   return hash.value();
 }
 
-uint64_t checksum(const std::vector<double>& heights, const std::vector<uint32_t>& blocks) {
-  Hash hash;
-  for (const double height : heights) hash.add(height);
-  for (const uint32_t block : blocks) hash.add(uint64_t{block});
-  return hash.value();
-}
+/// What a file holds.
+struct Content {
+  Header header{};
+  std::vector<double> heights;
+  std::vector<uint32_t> blocks;
+  std::vector<StoredAbove> above;
+
+  uint64_t checksum() const {
+    Hash hash;
+    for (const uint64_t word : {header.rays, header.above, header.design}) hash.add(word);
+    hash.add(header.pitch_mm);
+    hash.add(header.chord_mm);
+    for (const double height : heights) hash.add(height);
+    for (const uint32_t block : blocks) hash.add(uint64_t{block});
+    for (const StoredAbove& m : above) {
+      hash.add(m.place);
+      hash.add(m.low);
+      hash.add(m.high);
+      hash.add(uint64_t{m.low_block} << 32U | m.high_block);
+    }
+    return hash.value();
+  }
+};
 
 template <class T>
 void put(std::ostream& out, const T* data, size_t count) {
@@ -61,25 +83,68 @@ Header read_header(std::istream& in, const std::string& path) {
   if (!in || header.magic != kMagic) refuse("rays-file-damaged", path, "this is no file of surface rays");
   std::error_code error;
   const uint64_t size = fs::file_size(path, error);
-  const bool sane = header.nu >= 2 && header.nv >= 2 && header.nu <= kMostRays && header.nv <= kMostRays;
+  constexpr uint64_t kRay = sizeof(double) + sizeof(uint32_t);
+  const bool sane = header.rays <= size / kRay && header.above <= size / sizeof(StoredAbove) &&
+                    header.pitch_mm > 0.0 && header.chord_mm >= 0.0;
   const uint64_t needed =
-      sizeof(Header) + header.nu * header.nv * (sizeof(double) + sizeof(uint32_t)) + sizeof(uint64_t);
+      sizeof(Header) + header.rays * kRay + header.above * sizeof(StoredAbove) + sizeof(uint64_t);
   if (!sane || error || size != needed) {
     refuse("rays-file-damaged", path, fmt::format("the file of surface rays is cut off at {} bytes", size));
   }
   return header;
 }
 
+Content read_content(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  Content content{read_header(in, path), {}, {}, {}};
+  content.heights.resize(content.header.rays);
+  content.blocks.resize(content.header.rays);
+  content.above.resize(content.header.above);
+  uint64_t sum = 0;
+  get(in, content.heights.data(), content.heights.size());
+  get(in, content.blocks.data(), content.blocks.size());
+  get(in, content.above.data(), content.above.size());
+  get(in, &sum, 1);
+  if (!in || sum != content.checksum()) {
+    refuse("rays-file-damaged", path, "the checksum of the surface rays does not match their content");
+  }
+  return content;
+}
+
+/// The intervals by tile. What the checksum has passed was written by save(): order and range hold.
+std::vector<std::vector<MaterialAbove>> by_tile(const std::vector<StoredAbove>& above,
+                                                const RayField& field) {
+  std::vector<std::vector<MaterialAbove>> tiles(field.tiles.size());
+  size_t tile = 0;
+  for (const StoredAbove& m : above) {
+    while (m.place >= field.tiles[tile].begin + field.tiles[tile].count) ++tile;
+    const auto ray = static_cast<uint32_t>(m.place - field.tiles[tile].begin);
+    tiles[tile].push_back({ray, m.low_block, m.high_block, m.low, m.high});
+  }
+  return tiles;
+}
+
 }  // namespace
 
 void SurfaceDexels::save(const std::string& path) const {
+  Content content{{kMagic, heights_.size(), 0, design_hash(*field_), field_->pitch_mm, field_->chord_mm},
+                  heights_,
+                  blocks_,
+                  {}};
+  for (size_t tile = 0; tile < above_.size(); ++tile) {
+    for (const MaterialAbove& m : above_[tile]) {
+      content.above.push_back(
+          {uint64_t{field_->tiles[tile].begin} + m.ray, m.low, m.high, m.low_block, m.high_block});
+    }
+  }
+  content.header.above = content.above.size();
+  const uint64_t sum = content.checksum();
   const std::string temporary = path + ".part";
   std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
-  const Header header{kMagic, static_cast<uint64_t>(nu_), static_cast<uint64_t>(nv_), surface_hash(*this)};
-  const uint64_t sum = checksum(heights_, blocks_);
-  put(out, &header, 1);
-  put(out, heights_.data(), heights_.size());
-  put(out, blocks_.data(), blocks_.size());
+  put(out, &content.header, 1);
+  put(out, content.heights.data(), content.heights.size());
+  put(out, content.blocks.data(), content.blocks.size());
+  put(out, content.above.data(), content.above.size());
   put(out, &sum, 1);
   out.close();
   std::error_code error;
@@ -90,21 +155,21 @@ void SurfaceDexels::save(const std::string& path) const {
   }
 }
 
-SurfaceDexels SurfaceDexels::load(const std::string& path, surface::SurfacePtr surface) {
-  std::ifstream in(path, std::ios::binary);
-  const Header header = read_header(in, path);
-  SurfaceDexels dexels(std::move(surface), static_cast<int>(header.nu), static_cast<int>(header.nv));
-  if (surface_hash(dexels) != header.surface) {
-    refuse("rays-file-other-surface", path, "the rays were measured on another surface");
+SurfaceDexels SurfaceDexels::load(const std::string& path, const surface::SurfacePtr& surface) {
+  const Header header = read_content(path).header;
+  if (!(header.chord_mm > 0.0)) refuse("rays-file-other-surface", path, "the rays were measured on a mesh");
+  return load(path, rays_on_surface(surface, header.pitch_mm, header.chord_mm));
+}
+
+SurfaceDexels SurfaceDexels::load(const std::string& path, RayFieldPtr field) {
+  Content content = read_content(path);
+  if (content.header.rays != field->size() || design_hash(*field) != content.header.design) {
+    refuse("rays-file-other-surface", path, "the rays were measured on another design");
   }
-  uint64_t sum = 0;
-  get(in, dexels.heights_.data(), dexels.heights_.size());
-  get(in, dexels.blocks_.data(), dexels.blocks_.size());
-  get(in, &sum, 1);
-  if (!in || sum != checksum(dexels.heights_, dexels.blocks_)) {
-    refuse("rays-file-damaged", path, "the checksum of the surface rays does not match their content");
-  }
-  dexels.refresh_highest();
+  SurfaceDexels dexels(std::move(field));
+  dexels.heights_ = std::move(content.heights);
+  dexels.blocks_ = std::move(content.blocks);
+  dexels.above_ = by_tile(content.above, *dexels.field_);
   return dexels;
 }
 

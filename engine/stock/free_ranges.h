@@ -1,0 +1,21 @@
+// How far along its normal a ray answers for material: up to where another part of the design is nearer.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "stock/ray_field.h"
+
+namespace swarf::stock {
+
+/// Per ray of fields[which] the height up to which its foot is the nearest point of the whole design: the
+/// radius of the ball that touches the design at the foot from outside and holds none of it (the medial
+/// ball),
+///   min over the design's points q of |q - p|^2 / (2 n.(q - p)),   n.(q - p) > sin(15 deg) |q - p|.
+/// +infinity where the design turns away. In a slot each wall answers for the half on its side. The design's
+/// points are the rays' feet, so the range is known to about the pitch; a foot closer to a concave corner
+/// than half the pitch has range 0. Points that the ray sees under less than 15 degrees are left out: the
+/// facets of a coarse mesh are no walls; so concave edges that turn by less than 30 degrees limit nothing.
+std::vector<double> free_ranges(std::span<const RayFieldPtr> fields, size_t which);
+
+}  // namespace swarf::stock
