@@ -3,6 +3,7 @@
 #include <numeric>
 #include <optional>
 
+#include "base/check.h"
 #include "base/parallel.h"
 #include "base/units.h"
 #include "measure/measure.h"
@@ -94,6 +95,7 @@ Sample compare(const Grid& grid, const stock::Stock& stock, int iu, int iv, doub
 }  // namespace
 
 CrossCheck cross_check(const stock::Stock& stock, const stock::SurfaceDexels& dexels, double sweep_bound_mm) {
+  SWARF_CHECK(dexels.field().surface != nullptr, "the cross check knows the slopes of grids only");
   const Grid grid{dexels};
   std::vector<Sample> samples(dexels.heights_mm().size());
   parallel_chunks(static_cast<size_t>(dexels.nv()), kRowsPerTask, [&](size_t begin, size_t end) {

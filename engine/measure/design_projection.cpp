@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+
+#include "base/check.h"
 
 namespace swarf::measure {
 namespace {
@@ -16,12 +19,18 @@ struct GridPlace {
   double fu, fv;  ///< fractions inside the cell
 };
 
+/// The interval of the grid's lines that holds t, and how far inside.
+std::pair<int, double> interval_of(const std::vector<double>& lines, double t) {
+  const double inside = std::clamp(t, 0.0, 1.0);
+  const auto above = std::upper_bound(lines.begin() + 1, lines.end() - 1, inside);
+  const double low = *(above - 1);
+  return {static_cast<int>(above - lines.begin()) - 1, (inside - low) / (*above - low)};
+}
+
 GridPlace place_of(const stock::SurfaceDexels& dexels, double u, double v) {
-  const double x = std::clamp(u, 0.0, 1.0) * (dexels.nu() - 1);
-  const double y = std::clamp(v, 0.0, 1.0) * (dexels.nv() - 1);
-  const int iu = std::min(static_cast<int>(x), dexels.nu() - 2);
-  const int iv = std::min(static_cast<int>(y), dexels.nv() - 2);
-  return {iu, iv, x - iu, y - iv};
+  const auto [iu, fu] = interval_of(dexels.field().u_lines, u);
+  const auto [iv, fv] = interval_of(dexels.field().v_lines, v);
+  return {iu, iv, fu, fv};
 }
 
 }  // namespace
@@ -34,6 +43,7 @@ size_t DesignProjection::CellHash::operator()(const Cell& cell) const {
 
 DesignProjection::DesignProjection(const stock::SurfaceDexels& dexels, double reach_mm)
     : dexels_(dexels), reach_mm_(reach_mm) {
+  SWARF_CHECK(dexels.field().surface != nullptr, "projection needs a parametric design");
   // A cell as wide as the reach or the widest grid step, so that the 27 cells around a point hold its nearest
   // ray.
   double step = 0.0;

@@ -22,7 +22,7 @@ struct Foot {
 /// Finds feet by the nearest measuring ray (hashed cells of the grid) and Newton steps on the surface.
 class DesignProjection {
  public:
-  /// `reach_mm`: points farther from the design than this have no foot.
+  /// Parametric designs only. `reach_mm`: points farther from the design than this have no foot.
   DesignProjection(const stock::SurfaceDexels& dexels, double reach_mm);
   /// The foot inside the unit square, or nothing when the point is out of reach or beyond the edge.
   std::optional<Foot> project(const Vec3& point) const;

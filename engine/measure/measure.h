@@ -16,10 +16,14 @@ struct MeasureLimits {
   double gouge_mm = 0.001;   ///< and down to this below it; also the limit of the gouged area
 };
 
-/// Scallops, gouges and excess of one surface.
+/// Scallops, gouges and excess on the rays of one surface or mesh.
 ///   sweeps         what cut the dexels, indexed by Sweep::block
-///   pass_of_sweep  pass of each sweep, -1 for moves between passes; as long as `sweeps`
+///   pass_of_sweep  pass of each sweep, -1 for moves between passes; as long as `sweeps`. Empty for a path
+///   whose
+///                  passes nobody knows: two sweeps then belong to different passes when the way between them
+///                  along the path is more than twice the straight line (pass_rule.h)
 ///   ridges         every refined cusp is appended to it
+/// Areas weigh: gouged area and the share within tolerance do not depend on how the rays are spread.
 /// scallop_theory_um is left to the caller: it belongs to the path.
 SurfaceMetrics measure_surface(const stock::SurfaceDexels& dexels, std::span<const stock::Sweep> sweeps,
                                std::span<const int> pass_of_sweep, const stock::CutterSolid& cutter,
@@ -36,7 +40,7 @@ std::vector<HistogramBin> height_histogram(const stock::SurfaceDexels& dexels, d
 ///   sweep_bound                 the level set was cut by merged sweeps
 ///   sqrt(3)/2 voxel slope       trilinear values cut a cusp of that slope low (toolchain 3.6, along a
 ///   diagonal) 3/8 voxel^2 curvature       chord of a curved surface the rounding of floats
-/// Each sample is held to its own bound; bound_um is the greatest of them.
+/// Each sample is held to its own bound; bound_um is the greatest of them. Parametric designs only.
 CrossCheck cross_check(const stock::Stock& stock, const stock::SurfaceDexels& dexels, double sweep_bound_mm);
 
 }  // namespace swarf::measure

@@ -14,23 +14,40 @@ struct Ridge {
   double u = 0.0, v = 0.0;
   double height_um = 0.0;
   uint32_t block_a = 0, block_b = 0;  ///< sweeps on its two sides
+  Vec3 point = Vec3::Zero();          ///< its foot on the design, W, mm; u and v are 0 on a mesh
 };
+
+/// A connected part of the design that lies deeper (a gouge) or stands higher (excess) than the limit.
+struct Region {
+  double worst_um = 0.0;         ///< its greatest depth or height, > 0
+  double area_mm2 = 0.0;         ///< of the design; 0 for a gouge so narrow that no ray met it
+  Vec3 place = Vec3::Zero();     ///< where the worst is: a point of the design, W, mm
+  uint32_t block = 0xffffffffu;  ///< Sweep::block of the worst; kUncut where no sweep came
+  size_t rays = 0;
+  uint32_t ray = 0;  ///< the worst ray
+};
+/// SurfaceMetrics lists no more regions of a kind than this, the worst.
+inline constexpr size_t kListedRegions = 20;
 
 struct SurfaceMetrics {
   size_t samples = 0;
+  double area_mm2 = 0.0;         ///< of the design
   double scallop_max_um = 0.0;   ///< highest refined ridge
   double scallop_mean_um = 0.0;  ///< mean of the refined ridges
   double scallop_p05_um = 0.0;   ///< 5th percentile of the ridges
   double scallop_p95_um = 0.0;
   double scallop_theory_um = 0.0;  ///< from the planner's intervals
   size_t ridges = 0;
-  double gouge_max_um = 0.0;    ///< deepest cut below the design, >= 0
+  double gouge_max_um = 0.0;    ///< deepest cut below the design, >= 0; refined between the rays
   double gouge_area_mm2 = 0.0;  ///< area deeper than the gouge limit
   uint32_t gouge_block = 0xffffffffu;
-  double excess_max_um = 0.0;  ///< highest material anywhere, uncut included
+  double excess_max_um = 0.0;  ///< highest material anywhere: uncut, or left above an undercut, included
   uint32_t excess_block = 0xffffffffu;
-  double within_tolerance_pct = 0.0;  ///< share of samples between -gouge limit and +scallop limit
+  double within_tolerance_pct = 0.0;  ///< share of the area between -gouge limit and +scallop limit
   size_t uncut_samples = 0;
+  size_t overhung_samples = 0;                   ///< rays with material above a gap
+  size_t gouge_regions = 0, excess_regions = 0;  ///< all of them
+  std::vector<Region> gouges, excesses;          ///< the worst kListedRegions, worst first
 };
 
 struct HistogramBin {

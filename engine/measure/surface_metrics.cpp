@@ -4,6 +4,8 @@
 #include "base/check.h"
 #include "base/units.h"
 #include "measure/measure.h"
+#include "measure/pass_rule.h"
+#include "measure/regions.h"
 #include "measure/ridges.h"
 
 namespace swarf::measure {
@@ -33,43 +35,67 @@ void summarise_ridges(const std::vector<Ridge>& ridges, SurfaceMetrics& metrics)
   metrics.scallop_p95_um = percentile(heights, 0.95);
 }
 
-/// Area that a ray stands for: |Su x Sv| du dv, half and quarter cells at the grid's edges.
-double area_of_ray(const stock::SurfaceDexels& dexels, int iu, int iv) {
-  const surface::Derivatives d = dexels.surface().derivatives(dexels.u(iu), dexels.v(iv));
-  const double du = (iu == 0 || iu == dexels.nu() - 1 ? 0.5 : 1.0) / (dexels.nu() - 1);
-  const double dv = (iv == 0 || iv == dexels.nv() - 1 ? 0.5 : 1.0) / (dexels.nv() - 1);
-  return d.Su.cross(d.Sv).norm() * du * dv;
-}
+/// Material above a gap thinner than this is the rounding of two cuts that share an end; mm.
+constexpr double kSliver = 1e-6;
 
-struct Sums {
-  size_t within = 0;
-  double deepest = 0.0, highest = 0.0;  ///< mm, both >= 0
+/// The highest material on every ray and the block under or beside it.
+struct Tops {
+  std::vector<double> heights_mm;
+  std::vector<uint32_t> blocks;
+  size_t overhung = 0;
 };
 
-void add_sample(const stock::SurfaceDexels& dexels, int iu, int iv, const MeasureLimits& limits,
-                SurfaceMetrics& metrics, Sums& sums) {
-  const size_t n = static_cast<size_t>(iv) * static_cast<size_t>(dexels.nu()) + static_cast<size_t>(iu);
-  const double height = dexels.heights_mm()[n];
-  const uint32_t block = dexels.blocks()[n];
-  // A ray at the stock's very border starts with no material over the design: there is nothing left to cut.
-  if (block == stock::kUncut && height > 0.0) ++metrics.uncut_samples;
-  if (height >= -limits.gouge_mm && height <= limits.scallop_mm) ++sums.within;
-  if (height < -limits.gouge_mm) metrics.gouge_area_mm2 += area_of_ray(dexels, iu, iv);
-  if (-height > sums.deepest) {
-    sums.deepest = -height;
-    metrics.gouge_block = block;
+Tops tops_of(const stock::SurfaceDexels& dexels) {
+  Tops tops{dexels.heights_mm(), dexels.blocks(), 0};
+  uint32_t last = 0xffffffffU;
+  dexels.each_above([&](uint32_t ray, const stock::MaterialAbove& m) {
+    if (m.high - m.low < kSliver) return;
+    tops.overhung += ray != last ? 1 : 0;
+    last = ray;
+    tops.heights_mm[ray] = m.high;
+    tops.blocks[ray] = m.high_block != stock::kUncut ? m.high_block : m.low_block;
+  });
+  return tops;
+}
+
+void keep_worst(std::vector<Region>& regions) {
+  std::sort(regions.begin(), regions.end(), larger);
+  if (regions.size() > kListedRegions) regions.resize(kListedRegions);
+}
+
+/// Areas and counts of the rays themselves.
+void summarise_rays(const stock::SurfaceDexels& dexels, const Tops& tops, const MeasureLimits& limits,
+                    SurfaceMetrics& metrics) {
+  const stock::RayField& field = dexels.field();
+  metrics.samples = field.size();
+  metrics.overhung_samples = tops.overhung;
+  double within = 0.0;
+  for (size_t n = 0; n < field.size(); ++n) {
+    const double height = dexels.heights_mm()[n], top = tops.heights_mm[n], area = field.areas_mm2[n];
+    metrics.area_mm2 += area;
+    // A ray at the stock's very border starts with no material over the design: there is nothing left to cut.
+    if (dexels.blocks()[n] == stock::kUncut && height > 0.0) ++metrics.uncut_samples;
+    if (height >= -limits.gouge_mm && top <= limits.scallop_mm) within += area;
+    if (height < -limits.gouge_mm) metrics.gouge_area_mm2 += area;
+    if (um_from_mm(top) > metrics.excess_max_um) {
+      metrics.excess_max_um = um_from_mm(top);
+      metrics.excess_block = tops.blocks[n];
+    }
   }
-  if (height > sums.highest) {
-    sums.highest = height;
-    metrics.excess_block = block;
-  }
+  metrics.within_tolerance_pct = 100.0 * within / metrics.area_mm2;
 }
 
 void merge(const SurfaceMetrics& part, SurfaceMetrics& whole, double& within) {
   whole.samples += part.samples;
+  whole.area_mm2 += part.area_mm2;
+  whole.overhung_samples += part.overhung_samples;
+  whole.gouge_regions += part.gouge_regions;
+  whole.excess_regions += part.excess_regions;
+  whole.gouges.insert(whole.gouges.end(), part.gouges.begin(), part.gouges.end());
+  whole.excesses.insert(whole.excesses.end(), part.excesses.begin(), part.excesses.end());
   whole.uncut_samples += part.uncut_samples;
   whole.gouge_area_mm2 += part.gouge_area_mm2;
-  within += part.within_tolerance_pct * static_cast<double>(part.samples);
+  within += part.within_tolerance_pct * part.area_mm2;
   if (part.gouge_max_um > whole.gouge_max_um) {
     whole.gouge_max_um = part.gouge_max_um;
     whole.gouge_block = part.gouge_block;
@@ -86,22 +112,26 @@ void merge(const SurfaceMetrics& part, SurfaceMetrics& whole, double& within) {
 SurfaceMetrics measure_surface(const stock::SurfaceDexels& dexels, std::span<const stock::Sweep> sweeps,
                                std::span<const int> pass_of_sweep, const stock::CutterSolid& cutter,
                                const MeasureLimits& limits, std::vector<Ridge>* ridges) {
-  SWARF_CHECK(sweeps.size() == pass_of_sweep.size(), "one pass number per sweep");
+  SWARF_CHECK(pass_of_sweep.empty() || sweeps.size() == pass_of_sweep.size(),
+              "one pass number per sweep, or none");
   for (const uint32_t block : dexels.blocks()) {
     const bool known = block == stock::kUncut || (block < sweeps.size() && sweeps[block].block == block);
     SWARF_CHECK(known, "sweeps must be indexed by the block that the dexels remember");
   }
   SurfaceMetrics metrics;
-  metrics.samples = dexels.heights_mm().size();
-  Sums sums;
-  for (int iv = 0; iv < dexels.nv(); ++iv) {
-    for (int iu = 0; iu < dexels.nu(); ++iu) add_sample(dexels, iu, iv, limits, metrics, sums);
-  }
-  metrics.gouge_max_um = um_from_mm(sums.deepest);
-  metrics.excess_max_um = um_from_mm(sums.highest);
-  metrics.within_tolerance_pct =
-      100.0 * static_cast<double>(sums.within) / static_cast<double>(metrics.samples);
-  const std::vector<Ridge> found = find_ridges(dexels, sweeps, pass_of_sweep, cutter);
+  const Tops tops = tops_of(dexels);
+  summarise_rays(dexels, tops, limits, metrics);
+  metrics.excesses = find_regions(dexels.field(), tops.heights_mm, tops.blocks, limits.scallop_mm, nullptr);
+  metrics.excess_regions = metrics.excesses.size();
+  const PassRule rule(sweeps, pass_of_sweep, dexels.field().pitch_mm);
+  Region deepest;
+  metrics.gouges = find_gouges(dexels, sweeps, rule, cutter, limits.gouge_mm, &deepest);
+  metrics.gouge_regions = metrics.gouges.size();
+  metrics.gouge_max_um = deepest.worst_um;
+  metrics.gouge_block = deepest.block;
+  keep_worst(metrics.gouges);
+  keep_worst(metrics.excesses);
+  const std::vector<Ridge> found = find_ridges(dexels, sweeps, rule, cutter);
   summarise_ridges(found, metrics);
   if (ridges != nullptr) ridges->insert(ridges->end(), found.begin(), found.end());
   return metrics;
@@ -111,7 +141,9 @@ SurfaceMetrics combine(const std::vector<SurfaceMetrics>& parts, const std::vect
   SurfaceMetrics whole;
   double within = 0.0;
   for (const SurfaceMetrics& part : parts) merge(part, whole, within);
-  if (whole.samples > 0) whole.within_tolerance_pct = within / static_cast<double>(whole.samples);
+  if (whole.area_mm2 > 0.0) whole.within_tolerance_pct = within / whole.area_mm2;
+  keep_worst(whole.gouges);
+  keep_worst(whole.excesses);
   summarise_ridges(ridges, whole);
   return whole;
 }

@@ -10,7 +10,8 @@
 
 namespace swarf::measure {
 
-inline const stock::CutterSolid kCutter{5.0, 25.0};
+/// Flutes as long as the stock is high: shorter ones leave material hanging over the edges of the dome.
+inline const stock::CutterSolid kCutter{5.0, 60.0};
 inline const Box kDomeBox{{-55, -45, -10}, {55, 45, 45}};
 
 /// DOME of theory 1.6.

@@ -9,30 +9,10 @@
 #include "base/rng.h"
 #include "base/units.h"
 #include "dome_cut.h"
+#include "test_surfaces.h"
 
 namespace swarf::measure {
 namespace {
-
-/// Part of a cylinder of radius R about the x axis: u along the axis, v the angle. Convex.
-class Cylinder final : public surface::Surface {
- public:
-  Cylinder(double radius, double length, double angle) : radius_(radius), length_(length), angle_(angle) {}
-  Vec3 point(double u, double v) const override { return derivatives(u, v).S; }
-  surface::Derivatives derivatives(double u, double v) const override {
-    const double a = angle_ * (v - 0.5), s = std::sin(a), c = std::cos(a);
-    surface::Derivatives d;
-    d.S = {length_ * u, radius_ * s, radius_ * c};
-    d.Su = {length_, 0, 0};
-    d.Sv = angle_ * radius_ * Vec3(0, c, -s);
-    d.Suu = d.Suv = Vec3::Zero();
-    d.Svv = -angle_ * angle_ * radius_ * Vec3(0, s, c);
-    return d;
-  }
-  int outward_sign() const override { return 1; }
-
- private:
-  double radius_, length_, angle_;
-};
 
 /// Swaps the parameters of a surface: ridges then run along v.
 class Swapped final : public surface::Surface {
@@ -158,7 +138,7 @@ TEST(Gouge, PlantedDepthAndBlockAreFound) {
     ASSERT_EQ(gouging.pass_of_sweep[planted], 16);
     sweep.start.tip_W -= depth_um * kMicrometre * sweep.start.axis_W;
     sweep.end.tip_W -= depth_um * kMicrometre * sweep.end.axis_W;
-    stock::SurfaceDexels dexels(surface, 0.2, kDomeBox);
+    stock::SurfaceDexels dexels(surface, 0.4, kDomeBox);
     dexels.cut(gouging.sweeps, kCutter);
     const SurfaceMetrics m =
         measure_surface(dexels, gouging.sweeps, gouging.pass_of_sweep, kCutter, {0.01, 0.0001}, nullptr);
@@ -171,6 +151,85 @@ TEST(Gouge, PlantedDepthAndBlockAreFound) {
   }
 }
 
+// A ball that runs 1 um too deep on a plane leaves a groove 0.2 mm wide; rays every 0.6 mm miss it
+// altogether.
+TEST(Gouge, BetweenTheRaysItIsFoundFromThePath) {
+  const stock::CutterSolid cutter = ball(5.0, 60.0);
+  const auto plane = std::make_shared<Paraboloid>(0.0, 0.0, 6.0);
+  for (const double depth_um : {20.0, 5.0, 1.0}) {
+    // Grid lines at y = -6 + 0.6 k; passes half way between them.
+    Passes passes = passes_along(
+        [](int pass, double t) {
+          return ToolPose{{-7.0 + 14.0 * t, -6.3 + 1.2 * pass, 0.0}, Vec3::UnitZ()};
+        },
+        11, 28);
+    const uint32_t first = 5 * 28 + 11;  // six sweeps of 0.5 mm on the middle pass
+    for (uint32_t n = first; n < first + 6; ++n) {
+      passes.sweeps[n].start.tip_W.z() -= depth_um * kMicrometre;
+      passes.sweeps[n].end.tip_W.z() -= depth_um * kMicrometre;
+    }
+    stock::SurfaceDexels dexels(plane, 0.6, {{-6, -6, -9}, {6, 6, 9}});
+    dexels.cut(passes.sweeps, cutter);
+    const auto lowest = *std::min_element(dexels.heights_mm().begin(), dexels.heights_mm().end());
+    EXPECT_EQ(lowest > 0.0, depth_um < 10.0);
+    for (const bool numbered : {true, false}) {
+      const SurfaceMetrics m =
+          measure_surface(dexels, passes.sweeps, numbered ? passes.pass_of_sweep : std::vector<int>(), cutter,
+                          {1.0, 1e-4}, nullptr);
+      EXPECT_NEAR(m.gouge_max_um, depth_um, 0.002);
+      EXPECT_GE(m.gouge_block, first);
+      EXPECT_LT(m.gouge_block, first + 6);
+      ASSERT_GE(m.gouges.size(), 1u);
+      EXPECT_NEAR(m.gouges.front().worst_um, depth_um, 0.002);
+      EXPECT_NEAR(m.gouges.front().place.y(), -0.3, 0.02);
+      EXPECT_LT(std::abs(m.gouges.front().place.x()), 1.6);
+    }
+  }
+}
+
+// A gouge of 3 mm on a convex surface, by a tool that stands on the normal: the true depth is the planted
+// one.
+TEST(Gouge, ThreeMillimetresOnTheDomeAreOneRegion) {
+  const surface::SurfacePtr surface = dome();
+  for (const double depth_um : {20.0, 5.0, 1.0}) {
+    Passes gouging = dome_passes(*surface, true, 33, 0.01, 0.05);
+    const uint32_t planted = 16 * 110 + 55;
+    for (uint32_t n = planted; n < planted + 3; ++n) {
+      stock::Sweep& sweep = gouging.sweeps[n];
+      sweep.start.tip_W -= depth_um * kMicrometre * sweep.start.axis_W;
+      sweep.end.tip_W -= depth_um * kMicrometre * sweep.end.axis_W;
+    }
+    stock::SurfaceDexels dexels(surface, 0.5, kDomeBox);
+    dexels.cut(gouging.sweeps, kCutter);
+    // The chords of the sweeps, 1 mm long, cut up to 2 um into the dome everywhere: the limit lies above
+    // them.
+    const double limit_um = depth_um > 4.0 ? 3.0 : 0.5;
+    const SurfaceMetrics m = measure_surface(dexels, gouging.sweeps, gouging.pass_of_sweep, kCutter,
+                                             {0.01, limit_um * kMicrometre}, nullptr);
+    EXPECT_NEAR(m.gouge_max_um, depth_um, 0.2);
+    EXPECT_GE(m.gouge_block, planted);
+    EXPECT_LE(m.gouge_block, planted + 2);
+    ASSERT_GE(m.gouge_regions, 1u);
+    EXPECT_EQ(m.gouges.front().block, m.gouge_block);
+    EXPECT_LE(m.gouges.front().area_mm2, m.gouge_area_mm2 + 1e-9);
+  }
+}
+
+TEST(Metrics, MaterialAboveAGapIsExcess) {
+  stock::SurfaceDexels dexels(std::make_shared<Paraboloid>(0.0, 0.0, 5.0), 1.0, {{-5, -5, -5}, {5, 5, 10}});
+  const stock::CutterSolid disc(20.0, 3.0);
+  const std::vector<stock::Sweep> sweeps{{{{-4, 0, 0}, Vec3::UnitZ()}, {{4, 0, 0}, Vec3::UnitZ()}, 0}};
+  dexels.cut(sweeps, disc);
+  const SurfaceMetrics m = measure_surface(dexels, sweeps, std::vector<int>{0}, disc, kLimits, nullptr);
+  EXPECT_DOUBLE_EQ(m.excess_max_um, 1e4);
+  EXPECT_EQ(m.excess_block, 0u);  // the cutter that left it
+  EXPECT_EQ(m.overhung_samples, m.samples);
+  EXPECT_EQ(m.excess_regions, 1u);
+  EXPECT_NEAR(m.excesses.front().area_mm2, 100.0, 1e-9);
+  EXPECT_DOUBLE_EQ(m.within_tolerance_pct, 0.0);
+  EXPECT_EQ(m.gouge_max_um, 0.0);
+}
+
 TEST(Metrics, UncutMaterialIsExcess) {
   const stock::SurfaceDexels dexels(dome(), 2.0, kDomeBox);
   const SurfaceMetrics m = measure_surface(dexels, {}, {}, kCutter, kLimits, nullptr);
@@ -181,17 +240,19 @@ TEST(Metrics, UncutMaterialIsExcess) {
   EXPECT_DOUBLE_EQ(m.within_tolerance_pct, 0.0);
 }
 
-TEST(Metrics, CombineWeighsBySamplesAndKeepsTheWorst) {
+TEST(Metrics, CombineWeighsByAreaAndKeepsTheWorst) {
   SurfaceMetrics a, b;
-  a.samples = 100;
+  a.samples = 300;
+  a.area_mm2 = 10.0;
   a.within_tolerance_pct = 100.0;
   a.gouge_max_um = 2.0;
   a.gouge_block = 7;
-  b.samples = 300;
+  b.samples = 100;
+  b.area_mm2 = 30.0;
   b.within_tolerance_pct = 50.0;
   b.excess_max_um = 30.0;
   b.excess_block = 9;
-  const std::vector<Ridge> ridges{{0, 0, 9.0, 0, 1}, {0, 0, 11.0, 0, 1}};
+  const std::vector<Ridge> ridges{{0, 0, 9.0, 0, 1, Vec3::Zero()}, {0, 0, 11.0, 0, 1, Vec3::Zero()}};
   const SurfaceMetrics whole = combine({a, b}, ridges);
   EXPECT_EQ(whole.samples, 400u);
   EXPECT_DOUBLE_EQ(whole.within_tolerance_pct, 62.5);

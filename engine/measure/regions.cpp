@@ -1,0 +1,67 @@
+#include "measure/regions.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "base/units.h"
+
+namespace swarf::measure {
+namespace {
+
+/// A forest over rays; roots are the least rays of their trees.
+class RaySets {
+ public:
+  explicit RaySets(size_t rays) : parent_(rays) { std::iota(parent_.begin(), parent_.end(), 0U); }
+  uint32_t root(uint32_t n) {
+    while (parent_[n] != n) n = parent_[n] = parent_[parent_[n]];
+    return n;
+  }
+  void join(uint32_t a, uint32_t b) {
+    const uint32_t ra = root(a), rb = root(b);
+    parent_[std::max(ra, rb)] = std::min(ra, rb);
+  }
+
+ private:
+  std::vector<uint32_t> parent_;
+};
+
+}  // namespace
+
+bool larger(const Region& a, const Region& b) {
+  return a.worst_um != b.worst_um ? a.worst_um > b.worst_um : a.ray < b.ray;
+}
+
+std::vector<Region> find_regions(const stock::RayField& field, std::span<const double> values_mm,
+                                 std::span<const uint32_t> blocks, double limit_mm,
+                                 std::vector<uint32_t>* region_of) {
+  RaySets sets(field.size());
+  for (const auto& [a, b] : field.edges) {
+    if (values_mm[a] > limit_mm && values_mm[b] > limit_mm) sets.join(a, b);
+  }
+  std::vector<Region> regions;
+  std::vector<uint32_t> found_in(field.size(), kNoRegion);
+  for (uint32_t n = 0; n < field.size(); ++n) {
+    if (!(values_mm[n] > limit_mm)) continue;
+    const uint32_t root = sets.root(n);
+    if (root == n) regions.emplace_back();
+    found_in[n] = root == n ? static_cast<uint32_t>(regions.size() - 1) : found_in[root];
+    Region& region = regions[found_in[n]];
+    region.area_mm2 += field.areas_mm2[n];
+    ++region.rays;
+    if (root != n && um_from_mm(values_mm[n]) <= region.worst_um) continue;
+    region.worst_um = um_from_mm(values_mm[n]);
+    region.place = field.points[n];
+    region.block = blocks[n];
+    region.ray = n;
+  }
+  std::sort(regions.begin(), regions.end(), larger);
+  if (region_of == nullptr) return regions;
+  std::vector<uint32_t> place(regions.size());  // in the sorted list, by the number it was found under
+  for (uint32_t i = 0; i < regions.size(); ++i) place[found_in[regions[i].ray]] = i;
+  for (uint32_t& region : found_in) region = region == kNoRegion ? kNoRegion : place[region];
+  *region_of = std::move(found_in);
+  return regions;
+}
+
+}  // namespace swarf::measure
