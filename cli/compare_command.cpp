@@ -57,7 +57,7 @@ std::vector<surface::SurfacePtr> design_surfaces(const std::string& file) {
   if (extension(file) == ".toml") {
     surfaces = sim::load_job(file, {}).design;
   } else {
-    for (const program::SurfaceDefinition& definition : program::load_program(file).surfaces)
+    for (const program::SurfaceDefinition& definition : program::load_surfaces(file))
       surfaces.push_back(definition.surface);
   }
   if (surfaces.empty()) {

@@ -48,12 +48,19 @@ struct Program {
   int blocks = 0;  ///< lines with at least one word
 };
 
+/// What a text is read for: a program must machine something, a design must describe a surface.
+enum class Purpose { kMachining, kDesign };
+
 /// Parses a program text. Problems go to `diagnostics`; the result is meaningful only without errors.
 /// Geometric alarms of theory 1.6 that need no cutter (|Su x Sv| = 0) are raised here.
-Program parse_surface_blocks(const std::string& text, const std::string& file, Diagnostics& diagnostics);
+Program parse_surface_blocks(const std::string& text, const std::string& file, Diagnostics& diagnostics,
+                             Purpose purpose = Purpose::kMachining);
 
 /// Reads the file (refusing what is empty or not text) and parses it. Throws InputError.
 /// `warnings`, when given, receives what was found without being an error.
 Program load_program(const std::string& path, Diagnostics* warnings = nullptr);
+
+/// The surfaces of a file that need not machine them: a design. Throws InputError.
+std::vector<SurfaceDefinition> load_surfaces(const std::string& path);
 
 }  // namespace swarf::program

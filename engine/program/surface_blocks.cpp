@@ -32,13 +32,15 @@ struct Suspects {
 
 class Interpreter {
  public:
-  Interpreter(const std::string& file, Diagnostics& diagnostics) : reporter_(diagnostics, file) {
+  Interpreter(const std::string& file, Purpose purpose, Diagnostics& diagnostics)
+      : reporter_(diagnostics, file), purpose_(purpose) {
     program_.file = file;
   }
 
   Program run(const std::string& text) {
     if (!check_text(text, reporter_,
-                    "give a program with a surface (G10 L70 ... L79) and an operation (G06.3 or G06.4)")) return std::move(program_);
+                    "give a program with a surface (G10 L70 ... L79) and an operation (G06.3 or G06.4)"))
+      return std::move(program_);
     int line_number = 0;
     for (const std::string_view line : split_lines(text)) {
       read_block(lex_line(line, ++line_number, reporter_));
@@ -217,7 +219,12 @@ class Interpreter {
                       fmt::format("surface {} is never closed", number),
                       fmt::format("write G10 L79 P{} D1", number));
     }
-    if (program_.operations.empty() && !suspects_.operation) {
+    if (purpose_ == Purpose::kDesign) {
+      if (table_.empty()) {
+        reporter_.error("no-surface", 0, 0, "the file describes no surface",
+                        "write one between G10 L70 and G10 L79");
+      }
+    } else if (program_.operations.empty() && !suspects_.operation) {
       reporter_.error("no-operation", 0, 0, "the program has no operation: it cuts nothing",
                       "add G06.3 (whole surface) or G06.4 (one pass) after the surface is closed");
     }
@@ -228,6 +235,7 @@ class Interpreter {
   }
 
   Reporter reporter_;
+  Purpose purpose_;
   Program program_;
   Modal modal_;
   SurfaceTable table_;
@@ -241,8 +249,9 @@ class Interpreter {
 
 }  // namespace
 
-Program parse_surface_blocks(const std::string& text, const std::string& file, Diagnostics& diagnostics) {
-  return Interpreter(file, diagnostics).run(text);
+Program parse_surface_blocks(const std::string& text, const std::string& file, Diagnostics& diagnostics,
+                             Purpose purpose) {
+  return Interpreter(file, purpose, diagnostics).run(text);
 }
 
 Program load_program(const std::string& path, Diagnostics* warnings) {
@@ -251,6 +260,13 @@ Program load_program(const std::string& path, Diagnostics* warnings) {
   diagnostics.throw_if_errors();
   if (warnings != nullptr) *warnings = std::move(diagnostics);
   return program;
+}
+
+std::vector<SurfaceDefinition> load_surfaces(const std::string& path) {
+  Diagnostics diagnostics;
+  Program program = parse_surface_blocks(read_file(path), path, diagnostics, Purpose::kDesign);
+  diagnostics.throw_if_errors();
+  return std::move(program.surfaces);
 }
 
 }  // namespace swarf::program

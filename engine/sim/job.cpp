@@ -100,7 +100,7 @@ void check_cl_tools(const Job& job, Diagnostics& diagnostics) {
 void load_design(Job& job) {
   const DesignSettings& design = job.scene.design;
   std::vector<program::SurfaceDefinition> defined = job.program.surfaces;
-  if (design.kind == DesignKind::kSurface) defined = program::load_program(design.surface_file).surfaces;
+  if (design.kind == DesignKind::kSurface) defined = program::load_surfaces(design.surface_file);
   for (const program::SurfaceDefinition& definition : defined) job.design.push_back(definition.surface);
   if (design.kind == DesignKind::kAnalytic) job.design.push_back(design.surface);
 }

@@ -1,6 +1,7 @@
 // Cutting, dexels and meshing on DOME (theory 1.6), D10 flat end, axis on the normal, five axes.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <functional>
@@ -183,6 +184,43 @@ void cut_wave_3axis(benchmark::State& state) {
       ->UseRealTime()
 THREE_AXES(cut_plane_3axis);
 THREE_AXES(cut_wave_3axis);
+
+/// Cost of a block, late against early: 100 equal slots of 1000 blocks each, D10, 0.2 mm voxels. Median time
+/// of the first and of the last five slots.
+void cost_per_block(benchmark::State& state) {
+  set_thread_count(static_cast<int>(state.range(0)));
+  constexpr int kSlots = 100, kBlocks = 1000, kCompared = 5;
+  std::vector<double> seconds(kSlots);
+  for (auto _ : state) {
+    stock::Stock stock({{0, 0, 0}, {110, 12.0 * kSlots, 8}}, 0.2);
+    for (int slot = 0; slot < kSlots; ++slot) {
+      std::vector<stock::Sweep> sweeps;
+      const auto pose = [&](int i) {
+        return ToolPose{{5 + 0.1 * i, 6 + 12.0 * slot, 5 + 1e-3 * (i % 2)}, Vec3::UnitZ()};
+      };
+      for (int i = 0; i < kBlocks; ++i) sweeps.push_back({pose(i), pose(i + 1), static_cast<uint32_t>(i)});
+      const double before = stock.statistics().seconds;
+      stock.cut(sweeps, {5.0, 25.0});
+      seconds[static_cast<size_t>(slot)] = stock.statistics().seconds - before;
+    }
+  }
+  const auto median = [&](auto first) {
+    std::vector<double> part(first, first + kCompared);
+    std::nth_element(part.begin(), part.begin() + kCompared / 2, part.end());
+    return part[kCompared / 2] / kBlocks;
+  };
+  state.counters["first_us"] = 1e6 * median(seconds.begin());
+  state.counters["last_us"] = 1e6 * median(seconds.end() - kCompared);
+  state.counters["ratio"] = median(seconds.end() - kCompared) / median(seconds.begin());
+  set_thread_count(0);
+}
+BENCHMARK(cost_per_block)
+    ->ArgNames({"threads"})
+    ->Arg(1)
+    ->Arg(2)
+    ->Iterations(1)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
 
 /// Control cycles of 1 ms at 50 mm/s, rays every 0.2 mm; range(0): threads.
 void cut_dexels(benchmark::State& state) {

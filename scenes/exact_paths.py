@@ -1,0 +1,180 @@
+#!/usr/bin/env python3
+"""Writes the CL paths of the exact_* scenes: cases of theory 1.1 and 6 whose answer is known in closed form.
+
+Run it in this folder after a change; the paths are committed, so that a scene needs nothing but swarf.
+"""
+from math import acos, asin, cos, pi, radians, sin, sqrt, tan
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+UP = (0.0, 0.0, 1.0)
+
+
+class Path_:
+    """A CL program; positions in mm, axes are normalised here."""
+
+    def __init__(self, title, cutter, start, axis=UP, feed=1200):
+        self.lines = [f"PARTNO/{title}", "UNITS/MM", "LOADTL/1", cutter, "MULTAX/ON", "SPINDL/8000,CLW"]
+        self.lines.append("FROM/" + self._pose(start, axis))
+        self.feed = None
+        self.set_feed(feed)
+
+    @staticmethod
+    def _pose(p, a):
+        length = sqrt(sum(c * c for c in a))
+        return ",".join(f"{c + 0.0:.9f}" for c in p) + "," + ",".join(f"{c / length + 0.0:.12f}" for c in a)
+
+    def note(self, text):
+        self.lines.append("$$ " + text)
+
+    def set_feed(self, feed):
+        if feed != self.feed:
+            self.lines.append(f"FEDRAT/{feed},MMPM")
+            self.feed = feed
+
+    def rapid(self, p, a=UP):
+        self.lines += ["RAPID", "GOTO/" + self._pose(p, a)]
+
+    def to(self, p, a=UP):
+        self.lines.append("GOTO/" + self._pose(p, a))
+
+    def write(self, scene):
+        text = "\n".join(self.lines + ["FINI"]) + "\n"
+        (HERE / scene / "path.cl").write_text(text)
+
+
+def slot(scene, title, cutter):
+    path = Path_(title, cutter, (0, 0, 30), feed=300)
+    path.rapid((0, 0, 2))
+    path.to((0, 0, -3))
+    path.set_feed(600)
+    path.to((30, 0, -3))
+    path.to((30, 0, 20))
+    path.write(scene)
+
+
+def passes(scene, title, cutter, rows, top, feed=1200):
+    """Zigzag over rows, each a list of (position, axis); rows are joined outside of the part."""
+    first = rows[0][0]
+    path = Path_(title, cutter, (first[0][0], first[0][1], top + 20), first[1], feed)
+    path.rapid((first[0][0], first[0][1], top), first[1])
+    for n, row in enumerate(rows):
+        for p, a in row if n % 2 == 0 else reversed(row):
+            path.to(p, a)
+        if n + 1 < len(rows):  # lift, so that the link cuts nothing
+            end = row[-1] if n % 2 == 0 else row[0]
+            following = rows[n + 1][-1] if n % 2 == 0 else rows[n + 1][0]
+            path.rapid((end[0][0], end[0][1], top), end[1])
+            path.rapid((following[0][0], following[0][1], top), following[1])
+    last = rows[-1][-1] if len(rows) % 2 else rows[-1][0]
+    path.rapid((last[0][0], last[0][1], top + 20), last[1])
+    path.write(scene)
+
+
+def along_x(y, z, axis, reach):
+    return [((-reach, y, z), axis), ((reach, y, z), axis)]
+
+
+def scallop_flat_cylinder():
+    """Flat end on the normal of a cylinder R = 50: adjacent bottoms meet at R / cos(theta)."""
+    R, h = 50.0, 0.01
+    theta = acos(R / (R + h))
+    rows = []
+    for k in range(-3, 4):
+        n = (0.0, sin(2 * k * theta), cos(2 * k * theta))
+        rows.append(along_x(R * n[1], R * n[2] - R, n, 18))
+    passes("exact_scallop_flat_cylinder", "FLAT END ON A CYLINDER: H = R (1 / COS(THETA) - 1)", "CUTTER/10,0", rows, 15)
+
+
+def scallop_flat_lead():
+    """Flat end leaned by 10 degrees along the feed, on a plane: h = r sin(phi) (1 - sqrt(1 - (P / 2r)^2))."""
+    r, phi, P = 5.0, radians(10), 4.0
+    axis = (sin(phi), 0.0, cos(phi))
+    rows = [along_x(P * k, r * sin(phi), axis, 25) for k in range(-2, 3)]
+    passes("exact_scallop_flat_lead", "FLAT END WITH A LEAD OF 10 DEGREES ON A PLANE", "CUTTER/10,0", rows, 15)
+
+
+def scallop_ball_plane():
+    rows = [along_x(1.0 * k, 0.0, UP, 16) for k in range(-4, 5)]
+    passes("exact_scallop_ball_plane", "BALL D10 ON A PLANE, INTERVAL 1 MM", "CUTTER/10,5", rows, 15)
+
+
+def scallop_ball_circle(scene, title, R):
+    """Ball on a convex (R > 0) or concave (R < 0) cylinder; contact points P = 1 mm apart by chord."""
+    theta = asin(1.0 / (2 * abs(R)))
+    rows = []
+    for k in range(-4, 5):
+        a = 2 * k * theta
+        n = (0.0, sin(a) if R > 0 else -sin(a), cos(a))
+        z = R * cos(a) - R
+        rows.append(along_x(abs(R) * sin(a), z, n, 16))
+    passes(scene, title, "CUTTER/10,5", rows, 15)
+
+
+def scallop_flat_oblique():
+    """Disc on the normal of z = -(x^2/40 + y^2/120)/2, feed at 45 degrees, passes 2 mm on each side of the ridge."""
+    rows = []
+    for offset in (-6, -2, 2, 6):
+        row = []
+        for i in range(-120, 121):
+            s = 0.1 * i
+            x, y = (s - offset) / sqrt(2), (s + offset) / sqrt(2)
+            row.append(((x, y, -(x * x / 40 + y * y / 120) / 2), (x / 40, y / 120, 1.0)))
+        rows.append(row)
+    passes("exact_scallop_flat_oblique", "DISC ON AN ELLIPTIC PATCH, FEED AT 45 DEGREES", "CUTTER/16,0", rows, 15, 600)
+
+
+def cone():
+    """Frustum: base radius 40, half angle 15 degrees, axis inclined by 30 degrees about X, milled by the flank."""
+    half, tilt, r, low = radians(15), radians(30), 10.0, -6.0
+    axis = (0.0, -sin(tilt), cos(tilt))
+    across = (0.0, cos(tilt), sin(tilt))
+
+    def pose(phi, outward):
+        e = tuple(cos(phi) * (1.0, 0.0, 0.0)[c] + sin(phi) * across[c] for c in range(3))
+        ruling = tuple(axis[c] * cos(half) - e[c] * sin(half) for c in range(3))
+        normal = tuple(e[c] * cos(half) + axis[c] * sin(half) for c in range(3))
+        radius = 40.0 - low * tan(half)
+        tip = tuple(radius * e[c] + low * axis[c] + (r + outward) * normal[c] for c in range(3))
+        return tip, ruling
+
+    far, ruling = pose(0.0, 80.0)
+    path = Path_("CONE FRUSTUM BY THE FLANK, TCP", "CUTTER/20,0", far, ruling, 3000)
+    for outward, blocks in ((18.0, 120), (0.0, 1080)):
+        path.note(f"{outward:g} mm outside of the finished cone, {blocks} blocks")
+        for i in range(blocks + 1):
+            path.to(*pose(2 * pi * i / blocks, outward))
+    path.to(*pose(0.0, 60.0))
+    path.write("exact_cone_flank")
+
+
+def gouges():
+    """A plane finished by a ball D6, then three planted gouges of 20, 5 and 1 um, 3 mm long, on the passes."""
+    path = Path_("PLANTED GOUGES OF 20, 5 AND 1 UM", "CUTTER/6,3", (-14, -6, 30))
+    path.rapid((-14, -6, 5))
+    for n in range(31):
+        y = -6 + 0.4 * n
+        ends = ((-14, y, 0), (14, y, 0))
+        for p in ends if n % 2 == 0 else ends[::-1]:
+            path.to(p)
+    path.to((14, 6, 5))
+    for depth, x, y in ((0.020, -8.0, -3.13), (0.005, -1.5, 0.07), (0.001, 5.0, 3.27)):
+        path.rapid((x, y, 5))
+        path.note(f"gouge of {1000 * depth:g} um")
+        path.to((x, y, -depth))
+        path.to((x + 3.0, y, -depth))
+        path.to((x + 3.0, y, 5))
+    path.write("exact_gouges")
+
+
+if __name__ == "__main__":
+    slot("exact_slot_flat", "SLOT BY A FLAT END: (2 R L + PI R^2) D", "CUTTER/10,0")
+    slot("exact_slot_ball", "SLOT BY A BALL: A L + PI D^2 (3 R - D) / 3", "CUTTER/10,5")
+    scallop_flat_cylinder()
+    scallop_flat_lead()
+    scallop_ball_plane()
+    scallop_ball_circle("exact_scallop_ball_convex", "BALL D10 ON A CONVEX CYLINDER R 50", 50.0)
+    scallop_ball_circle("exact_scallop_ball_concave", "BALL D10 ON A CONCAVE CYLINDER R 50", -50.0)
+    scallop_flat_oblique()
+    cone()
+    gouges()
