@@ -121,7 +121,7 @@ def scallop_flat_oblique():
             x, y = (s - offset) / sqrt(2), (s + offset) / sqrt(2)
             row.append(((x, y, -(x * x / 40 + y * y / 120) / 2), (x / 40, y / 120, 1.0)))
         rows.append(row)
-    passes("exact_scallop_flat_oblique", "DISC ON AN ELLIPTIC PATCH, FEED AT 45 DEGREES", "CUTTER/16,0", rows, 15, 600)
+    passes("exact_scallop_flat_oblique", "DISC ON AN ELLIPTIC PATCH, FEED AT 45 DEGREES", "CUTTER/16,0", rows, 15, 60)
 
 
 def cone():
