@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "cutter_shapes.h"
+#include "dome.h"
 #include "stock/convex_contact.h"
 #include "stock/stock.h"
 #include "stock/surface_dexels.h"
@@ -161,6 +162,27 @@ TEST(ConvexStock, LeanedFlatEndLeavesItsExactScallop) {
     for (const CutterSolid& cutter : {CutterSolid(5.0, 20.0), general}) {
       EXPECT_NEAR(ray_height({0, 0.5 * o.P, 0}, Vec3::UnitZ(), pass, cutter), o.h, 1e-7) << o.phi_deg;
     }
+  }
+}
+
+TEST(ConvexStock, DexelsTakeEveryCutter) {
+  // Passes 2.4 mm apart over DOME: each ray ends at the lowest of the single sweeps' heights.
+  const std::vector<Sweep> sweeps = dome_passes(0.45, 0.51, 3, 12);
+  for (const CutterSolid& cutter : {ball_nose(5.0, 25.0), bull_nose(5.0, 1.5, 25.0), barrel()}) {
+    SurfaceDexels dexels(dome(), 2.0, {{-50, -40, -20}, {50, 40, 40}});
+    const std::vector<double> before = dexels.heights_mm();
+    dexels.cut(sweeps, cutter);
+    int lowered = 0;
+    for (size_t i = 0; i < before.size(); ++i) {
+      double lowest = before[i];
+      for (const Sweep& sweep : sweeps) {
+        const double height = ray_height(dexels.points()[i], dexels.normals()[i], sweep, cutter);
+        if (height >= -kSkin) lowest = std::min(lowest, height);
+      }
+      ASSERT_EQ(dexels.heights_mm()[i], lowest) << "ray " << i;
+      lowered += lowest < before[i] ? 1 : 0;
+    }
+    EXPECT_GT(lowered, 50);
   }
 }
 
