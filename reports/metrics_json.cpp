@@ -58,8 +58,28 @@ Json stock_json(const sim::Job& job, const sim::Result& result) {
           {"hash", fmt::format("{:016x}", result.stock->hash())}};
 }
 
+/// The worst regions with the line of the program that cut them; 0 where no block did.
+Json regions_json(const sim::Result& result, const std::vector<measure::Region>& regions) {
+  Json list = Json::array();
+  const std::vector<sim::SweepSource>& sources = result.main.rays.sources;
+  for (const measure::Region& region : regions) {
+    int line = 0;
+    if (region.block < sources.size()) {
+      line = result.main.path.elements[static_cast<size_t>(sources[region.block].element)].where.line;
+    }
+    list.push_back({{"worst_um", region.worst_um},
+                    {"area_mm2", region.area_mm2},
+                    {"x_mm", region.place.x()},
+                    {"y_mm", region.place.y()},
+                    {"z_mm", region.place.z()},
+                    {"line", line}});
+  }
+  return list;
+}
+
 Json surface_json(const measure::SurfaceMetrics& surface) {
-  return {{"scallop_max_um", surface.scallop_max_um},
+  return {{"area_mm2", surface.area_mm2},
+          {"scallop_max_um", surface.scallop_max_um},
           {"scallop_mean_um", surface.scallop_mean_um},
           {"scallop_p05_um", surface.scallop_p05_um},
           {"scallop_p95_um", surface.scallop_p95_um},
@@ -70,7 +90,10 @@ Json surface_json(const measure::SurfaceMetrics& surface) {
           {"excess_max_um", surface.excess_max_um},
           {"within_tolerance_pct", surface.within_tolerance_pct},
           {"samples", surface.samples},
-          {"uncut_samples", surface.uncut_samples}};
+          {"uncut_samples", surface.uncut_samples},
+          {"overhung_samples", surface.overhung_samples},
+          {"gouge_regions", surface.gouge_regions},
+          {"excess_regions", surface.excess_regions}};
 }
 
 Json comparison_json(const std::vector<sim::ComparisonRow>& rows) {
@@ -130,6 +153,8 @@ std::string metrics_json(const sim::Job& job, const sim::Result& result, const R
             {"kinematics", kinematics_json(job, motion)},
             {"stock", stock_json(job, result)},
             {"surface", surface_json(result.main.surface)},
+            {"gouges", regions_json(result, result.main.surface.gouges)},
+            {"excesses", regions_json(result, result.main.surface.excesses)},
             {"cross_check", cross_check_json(result.cross_check)},
             {"planners", comparison_json(result.planners)},
             {"interpolators", comparison_json(result.modes)},

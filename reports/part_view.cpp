@@ -6,6 +6,7 @@
 #include "base/parallel.h"
 #include "base/units.h"
 #include "measure/design_projection.h"
+#include "measure/mesh_deviation.h"
 #include "render/figures/axis_fan.h"
 
 namespace swarf::reports {
@@ -45,6 +46,10 @@ void take_measures(const FinishedRun& run, const stock::SurfaceDexels& dexels, T
 TriMesh part_mesh(const FinishedRun& run) {
   TriMesh mesh = run.stock.mesh();
   mesh.deviation_um.assign(mesh.positions.size(), std::numeric_limits<float>::quiet_NaN());
+  if (run.job.design_mesh) {
+    measure::deviation_from_mesh(mesh, *run.job.design_mesh, kReachVoxels * run.stock.voxel_mm());
+    return mesh;
+  }
   for (const stock::SurfaceDexels& dexels : run.dexels) take_measures(run, dexels, mesh);
   return mesh;
 }

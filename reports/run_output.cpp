@@ -11,6 +11,7 @@
 #include "reports/pictures.h"
 #include "reports/report_writer.h"
 #include "reports/run_report.h"
+#include "sim/design_rays.h"
 #include "sim/recorder.h"
 
 namespace swarf::reports {
@@ -35,6 +36,11 @@ void keep_inputs(const PendingFolder& folder, const sim::Job& job, const OutputO
   if (job.scene.design.kind == sim::DesignKind::kSurface) {
     fs::copy_file(job.scene.design.surface_file, input / "design.nc");
     overrides.push_back("design.surface=\"design.nc\"");
+  }
+  if (job.scene.design.kind == sim::DesignKind::kMesh) {
+    const std::string mesh = "design" + fs::path(job.scene.design.mesh_file).extension().string();
+    fs::copy_file(job.scene.design.mesh_file, input / mesh);
+    overrides.push_back(fmt::format("design.mesh=\"{}\"", mesh));
   }
   const nlohmann::ordered_json manifest{{"swarf", SWARF_VERSION},
                                         {"scene", job.scene.name},
@@ -138,10 +144,11 @@ StoredRun read_run(const std::string& folder) {
   motion::Trajectory trajectory =
       sim::read_trajectory((root / "trajectory.csv").string(), job.machine.model, job.scene.motion.period_s);
   StoredRun run{std::move(job), std::move(trajectory), stock::Stock::load((root / "stock.vdb").string()), {}};
-  for (size_t i = 0; i < run.job.design.size(); ++i) {
+  const std::vector<stock::RayFieldPtr> fields = sim::design_rays(run.job);
+  for (size_t i = 0; i < fields.size(); ++i) {
     const fs::path rays = root / fmt::format("surface_{}.rays", i);
     if (!fs::exists(rays)) break;  // a run that was stopped before it was measured
-    run.dexels.push_back(stock::SurfaceDexels::load(rays.string(), run.job.design[i]));
+    run.dexels.push_back(stock::SurfaceDexels::load(rays.string(), fields[i]));
   }
   return run;
 }

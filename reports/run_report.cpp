@@ -37,6 +37,11 @@ Verdict verdict_of(const sim::Job& job, const sim::Result& result) {
                                 fmt::format("at most {:g} µm", *accept.scallop_max_um),
                                 surface.scallop_max_um <= *accept.scallop_max_um});
   }
+  if (accept.excess_max_um) {
+    verdict.criteria.push_back({"Highest material", um(surface.excess_max_um) + " µm",
+                                fmt::format("at most {:g} µm", *accept.excess_max_um),
+                                surface.excess_max_um <= *accept.excess_max_um});
+  }
   if (accept.gouge_max_um) {
     verdict.criteria.push_back({"Deepest gouge", um(surface.gouge_max_um) + " µm",
                                 fmt::format("at most {:g} µm", *accept.gouge_max_um),
@@ -196,7 +201,11 @@ std::vector<Check> checks_of(const sim::Job& job, const sim::Result& result, boo
       {"Machine parts against each other", "", "collision of meshes is not part of this version",
        State::kNotChecked},
       {"Cutter load, spindle power, deflection", "", "the simulation is geometric", State::kNotChecked}};
-  if (job.design.empty()) {
+  if (job.design_mesh) {
+    checks.push_back({"Level set against measuring rays", "",
+                      "the bound needs the curvature of a design surface; the design is a mesh",
+                      State::kNotChecked});
+  } else if (job.design.empty()) {
     checks.push_back(
         {"Finished part against a design", "", "the scene has design.kind = \"none\"", State::kNotChecked});
   } else {
@@ -319,7 +328,7 @@ Lines cl_path_lines(const sim::Job& job, const sim::Result& result) {
 
 Lines surface_lines(const sim::Job& job, const sim::Result& result) {
   const measure::SurfaceMetrics& s = result.main.surface;
-  if (job.design.empty()) return {{"design", "none: the finished part is not measured"}};
+  if (!job.has_design()) return {{"design", "none: the finished part is not measured"}};
   Lines lines;
   if (job.cl) {
     lines.emplace_back("design", job.scene.design.name);

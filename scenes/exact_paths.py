@@ -99,6 +99,21 @@ def scallop_ball_plane():
     passes("exact_scallop_ball_plane", "BALL D10 ON A PLANE, INTERVAL 1 MM", "CUTTER/10,5", rows, 15)
 
 
+def scallop_mesh():
+    """The plane of scallop_ball_plane as the top of a block given as an STL mesh."""
+    rows = [along_x(1.0 * k, 0.0, UP, 16) for k in range(-9, 10)]
+    passes("exact_scallop_mesh", "BALL D10 ON THE TOP OF A MESH, INTERVAL 1 MM", "CUTTER/10,5", rows, 15)
+    low, high = (-10, -8, -5), (10, 8, 0)
+    corner = [tuple((high if n >> a & 1 else low)[a] for a in range(3)) for n in range(8)]
+    quads = ((0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5))
+    text = "solid block\n"
+    for a, b, c, d in quads:
+        for triangle in ((a, b, c), (a, c, d)):
+            text += "facet normal 0 0 0\nouter loop\n"
+            text += "".join("vertex %g %g %g\n" % corner[n] for n in triangle) + "endloop\nendfacet\n"
+    (HERE / "exact_scallop_mesh" / "block.stl").write_text(text + "endsolid block\n")
+
+
 def scallop_ball_circle(scene, title, R):
     """Ball on a convex (R > 0) or concave (R < 0) cylinder; contact points P = 1 mm apart by chord."""
     theta = asin(1.0 / (2 * abs(R)))
@@ -122,6 +137,29 @@ def scallop_flat_oblique():
             row.append(((x, y, -(x * x / 40 + y * y / 120) / 2), (x / 40, y / 120, 1.0)))
         rows.append(row)
     passes("exact_scallop_flat_oblique", "DISC ON AN ELLIPTIC PATCH, FEED AT 45 DEGREES", "CUTTER/16,0", rows, 15, 60)
+
+
+def hyperboloid():
+    """Fixed cylinder r = 5, skew by 20 degrees, while the table turns about X-8 Y0: 9 mm outside, then the core."""
+    skew, low = radians(20), -25.0
+
+    def pose(distance, turn):
+        c, s = cos(turn), sin(turn)
+        x, y = distance, low * sin(skew)
+        axis = (-s * sin(skew), c * sin(skew), cos(skew))
+        return (c * x - s * y - 8.0, s * x + c * y, low * cos(skew)), axis
+
+    path = Path_("HYPERBOLOID: THE TABLE TURNS UNDER A FIXED SKEW CYLINDER", "CUTTER/10,0", *pose(60.0, 0.0))
+    path.note("In joint mode the rotary axis alone moves while the table turns.")
+    path.rapid(*pose(49.0, 0.0))
+    for turn, distance in enumerate((39.0, 30.0)):
+        path.set_feed(600)
+        path.to(*pose(distance, 2 * pi * turn))
+        path.set_feed(1200)
+        for i in range(1, 25):
+            path.to(*pose(distance, 2 * pi * (turn + i / 24)))
+    path.rapid(*pose(60.0, 4 * pi))
+    path.write("exact_hyperboloid")
 
 
 def cone():
@@ -173,8 +211,10 @@ if __name__ == "__main__":
     scallop_flat_cylinder()
     scallop_flat_lead()
     scallop_ball_plane()
+    scallop_mesh()
     scallop_ball_circle("exact_scallop_ball_convex", "BALL D10 ON A CONVEX CYLINDER R 50", 50.0)
     scallop_ball_circle("exact_scallop_ball_concave", "BALL D10 ON A CONCAVE CYLINDER R 50", -50.0)
     scallop_flat_oblique()
+    hyperboloid()
     cone()
     gouges()

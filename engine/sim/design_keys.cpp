@@ -117,17 +117,17 @@ DesignSettings read_design(ConfigTable table, bool cl) {
   if (!cl) return design;
   design.name =
       table.choice("kind", {"none", "surface", "plane", "cylinder", "cone", "sphere", "hyperboloid", "mesh"});
-  if (design.name == "mesh") {
-    table.error("not-yet", "kind", "a mesh as the design of a CL scene is not read by this version",
-                "use kind = \"none\" and compare the stock with the mesh: swarf compare stock.vdb part.stl");
-    return design;
-  }
   if (design.name == "none" || design.name.empty()) {
     design.kind = DesignKind::kNone;
     return design;
   }
   design.sweep_tolerance_mm =
       table.number("sweep_tolerance_um", kAboveZero, um_from_mm(design.sweep_tolerance_mm)) * kMicrometre;
+  if (design.name == "mesh") {
+    design.kind = DesignKind::kMesh;
+    design.mesh_file = table.text("mesh");
+    return design;
+  }
   if (design.name == "surface") {
     design.kind = DesignKind::kSurface;
     design.surface_file = table.text("surface");

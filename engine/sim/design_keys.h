@@ -14,6 +14,7 @@ enum class DesignKind {
   kNone,      ///< nothing is measured
   kSurface,   ///< the surfaces of another program of surface blocks
   kAnalytic,  ///< one analytic surface
+  kMesh,      ///< a closed triangle mesh: STL, PLY or OBJ, mm
 };
 
 struct DesignSettings {
@@ -23,11 +24,12 @@ struct DesignSettings {
   /// CL scenes: blocks are divided into sweeps that stay this close to their motion for the measuring rays.
   double sweep_tolerance_mm = 2e-5;
   std::string surface_file;     ///< kSurface
+  std::string mesh_file;        ///< kMesh
   surface::SurfacePtr surface;  ///< kAnalytic
 };
 
 /// Reads [design]; `cl` tells which keys belong there. Problems go to the table's diagnostics; `surface_file`
-/// is left as written.
+/// and `mesh_file` are left as written.
 DesignSettings read_design(ConfigTable table, bool cl);
 
 }  // namespace swarf::sim

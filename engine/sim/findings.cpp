@@ -34,6 +34,34 @@ class Collector {
   const Result& result_;
 };
 
+std::string place(const measure::Region& region) {
+  return fmt::format("{:.3f} um over {:.2f} mm2 about ({:.3f}, {:.3f}, {:.3f}) mm", region.worst_um,
+                     region.area_mm2, region.place.x(), region.place.y(), region.place.z());
+}
+
+/// One finding for each listed region beyond its limit.
+void region_faults(const Job& job, const Result& result, Collector& collect) {
+  const measure::SurfaceMetrics& surface = result.main.surface;
+  const AcceptLimits& accept = job.scene.accept;
+  const char* remedy = job.cl ? "move the tool of this block away from the design"
+                              : "lower the feed F or the control period: the chord of one cycle cuts into a "
+                                "convex surface";
+  for (const measure::Region& region : surface.gouges) {
+    if (!accept.gouge_max_um || region.worst_um <= *accept.gouge_max_um) continue;
+    collect.at_block("gouge",
+                     fmt::format("a gouge, {}; [accept] allows {:g} um", place(region), *accept.gouge_max_um),
+                     remedy, result.main.rays.sources, region.block);
+  }
+  for (const measure::Region& region : surface.excesses) {
+    if (!accept.excess_max_um || region.worst_um <= *accept.excess_max_um) continue;
+    collect.at_block("excess",
+                     fmt::format("material stands above the design, {}; [accept] allows {:g} um",
+                                 place(region), *accept.excess_max_um),
+                     "machine this place too, or start from a smaller stock", result.main.rays.sources,
+                     region.block);
+  }
+}
+
 void surface_faults(const Job& job, const Result& result, Collector& collect) {
   const measure::SurfaceMetrics& surface = result.main.surface;
   const AcceptLimits& accept = job.scene.accept;
@@ -53,16 +81,9 @@ void surface_faults(const Job& job, const Result& result, Collector& collect) {
         job.cl ? "bring the passes closer together" : "lower the scallop word E of the G06.3 block",
         result.main.rays.sources, block);
   }
-  if (accept.gouge_max_um && surface.gouge_max_um > *accept.gouge_max_um) {
-    collect.at_block(
-        "gouge",
-        fmt::format("the deepest gouge is {:.3f} um over {:.2f} mm2, [accept] allows {:g} um",
-                    surface.gouge_max_um, surface.gouge_area_mm2, *accept.gouge_max_um),
-        job.cl ? "move the tool of this block away from the design"
-               : "lower the feed F or the control period: the chord of one cycle cuts into a convex surface",
-        result.main.rays.sources, surface.gouge_block);
-  }
-  const bool uncut_counts = !job.cl || accept.scallop_max_um.has_value();
+  region_faults(job, result, collect);
+  // A mesh has faces that the stock brings along: there only excess tells what is missing.
+  const bool uncut_counts = !job.design_mesh && (!job.cl || accept.scallop_max_um.has_value());
   if (surface.uncut_samples > 0 && uncut_counts) {
     collect.add("uncut",
                 fmt::format("{} of {} measuring points were never reached by the cutter",
@@ -92,7 +113,7 @@ void clearance_faults(const Job& job, const Result& result, Collector& collect) 
 }
 
 void built_in_checks(const Job& job, const Result& result, Collector& collect) {
-  if (!job.design.empty() && !result.cross_check.holds) {
+  if (job.has_design() && !result.cross_check.holds) {
     collect.add("stock-and-rays-disagree",
                 fmt::format("level set and measuring rays differ by {:.1f} um, the bound is {:.1f} um",
                             result.cross_check.max_um, result.cross_check.bound_um),

@@ -3,11 +3,15 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
+#include <memory>
 #include <string>
 #include <utility>
 
 #include "base/units.h"
 #include "cutter/profile.h"
+#include "mesh/mesh_check.h"
+#include "mesh/mesh_io.h"
+#include "mesh/mesh_ops.h"
 #include "sim/scene.h"
 #include "stock/stock.h"
 
@@ -96,13 +100,20 @@ void check_cl_tools(const Job& job, Diagnostics& diagnostics) {
   }
 }
 
-/// The surfaces that the part is measured against.
-void load_design(Job& job) {
+/// What the part is measured against.
+void load_design(Job& job, Diagnostics& diagnostics) {
   const DesignSettings& design = job.scene.design;
   std::vector<program::SurfaceDefinition> defined = job.program.surfaces;
   if (design.kind == DesignKind::kSurface) defined = program::load_surfaces(design.surface_file);
   for (const program::SurfaceDefinition& definition : defined) job.design.push_back(definition.surface);
   if (design.kind == DesignKind::kAnalytic) job.design.push_back(design.surface);
+  if (design.kind == DesignKind::kMesh) {
+    auto mesh = std::make_shared<TriMesh>(mesh::load_mesh(design.mesh_file));
+    mesh::check_design_mesh(*mesh, design.mesh_file, &job.scene.stock.box_W, diagnostics);
+    constexpr double kNoCreases = kPi;  // one normal for each vertex
+    if (mesh->normals.empty()) mesh::compute_vertex_normals(*mesh, kNoCreases);
+    job.design_mesh = std::move(mesh);
+  }
 }
 
 /// G06.3 and G06.4 put the centre of a flat end's face on the surface; no other shape has been derived.
@@ -140,7 +151,7 @@ Job load_job(const std::string& path, const std::vector<std::string>& overrides)
       job.program = program::load_program(job.scene.program_file, &warnings);
     }
   });
-  collect(diagnostics, [&] { load_design(job); });
+  collect(diagnostics, [&] { load_design(job, diagnostics); });
   diagnostics.throw_if_errors();
   diagnostics.append(warnings);
   if (job.cl) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "base/frames.h"
 #include "cutter/cutter.h"
 #include "machine/machine_scene.h"
+#include "mesh/tri_mesh.h"
 #include "motion/interpolator.h"
 #include "program/cl_program.h"
 #include "program/program.h"
@@ -29,6 +31,7 @@ struct StockSettings {
 struct AcceptLimits {
   std::optional<double> scallop_max_um;
   std::optional<double> gouge_max_um;
+  std::optional<double> excess_max_um;  ///< material anywhere above the design, ridges included
   std::optional<int> collisions;  ///< of shank and holder with the stock
 
   /// Band of the share within tolerance and of the colour scale where the scene gives no limit, um.
@@ -76,6 +79,9 @@ struct Job {
   program::Program program;                 ///< of surface blocks; empty for CL jobs
   std::optional<program::ClProgram> cl;     ///< of CL jobs
   std::vector<surface::SurfacePtr> design;  ///< what the part is measured against; may be empty for CL jobs
+  std::shared_ptr<const TriMesh> design_mesh;  ///< or a closed mesh with normals; null without one
+
+  bool has_design() const { return !design.empty() || design_mesh != nullptr; }
   std::vector<Diagnostic> warnings;
 };
 

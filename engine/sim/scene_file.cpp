@@ -110,6 +110,7 @@ void read_accept(ConfigTable table, bool cl, AcceptLimits& accept) {
   if (!cl || table.has("scallop_max_um")) {
     accept.scallop_max_um = table.number("scallop_max_um", kAboveZero, 10.5);
   }
+  if (table.has("excess_max_um")) accept.excess_max_um = table.number("excess_max_um", kAboveZero, 1.0);
   if (!cl || table.has("gouge_max_um")) accept.gouge_max_um = table.number("gouge_max_um", kAboveZero, 1.0);
   if (!cl || table.has("collisions")) accept.collisions = table.integer("collisions", 0, 1000000, 0);
 }
@@ -140,6 +141,7 @@ Scene load_scene(const std::string& path, const std::vector<std::string>& overri
   scene.stock = read_stock(root.table("stock"));
   scene.design = read_design(root.table("design"), scene.cl);
   scene.design.surface_file = beside(path, scene.design.surface_file);
+  scene.design.mesh_file = beside(path, scene.design.mesh_file);
   if (scene.cl) {
     read_cl_interpolator(root.table("interpolator"), scene);
   } else {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/units.h"
+#include "sim/design_rays.h"
 #include "sim/findings.h"
 #include "toolpath/cl_path.h"
 
@@ -61,10 +62,10 @@ void measure_dexels(const Job& job, MeasuredPath& measured) {
 
 void cut_dexels(const Job& job, MeasuredPath& measured) {
   const auto start = std::chrono::steady_clock::now();
-  if (!job.design.empty()) measured.rays = ray_sweeps(job, measured.path, measured.motion.trajectory);
-  for (const surface::SurfacePtr& surface : job.design) {
-    measured.dexels.emplace_back(surface, job.scene.design.pitch_mm, job.scene.stock.box_W);
-    measured.dexels.back().cut(measured.rays.sweeps, stock::CutterSolid(job.scene.cutter));
+  if (job.has_design()) measured.rays = ray_sweeps(job, measured.path, measured.motion.trajectory);
+  measured.dexels = design_dexels(job);
+  for (stock::SurfaceDexels& dexels : measured.dexels) {
+    dexels.cut(measured.rays.sweeps, stock::CutterSolid(job.scene.cutter));
   }
   measured.dexel_seconds = seconds_since(start);
 }
@@ -203,6 +204,7 @@ void measure_part(const Job& job, Progress& progress, Result& result) {
   progress.advance(1);
   std::vector<measure::CrossCheck> checks;
   for (const stock::SurfaceDexels& dexels : result.main.dexels) {
+    if (dexels.field().surface == nullptr) continue;  // its bound needs the curvature of a surface
     checks.push_back(measure::cross_check(*result.stock, dexels, result.sweep_bound_mm));
   }
   for (const measure::CrossCheck& check : checks) {

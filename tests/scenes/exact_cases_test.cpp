@@ -40,7 +40,7 @@ swarf::test::ProgramRun HyperboloidRun::run_;
 
 TEST_F(HyperboloidRun, PassesAndSaysWhereItStartedAndWhatIsNotLimited) {
   EXPECT_EQ(run_.exit_code, 0) << run_.output;
-  EXPECT_NE(run_.output.find("line 8: the first complete position"), std::string::npos) << run_.output;
+  EXPECT_NE(run_.output.find("line 7: the first complete position"), std::string::npos) << run_.output;
   EXPECT_NE(run_.output.find("corners between blocks are not slowed down"), std::string::npos) << run_.output;
 }
 
@@ -70,9 +70,9 @@ TEST(ExactCases, AGougeNamesTheBlockOfTheClFile) {
   for (const json& finding : read_json(folder / "findings.json")) {
     if (finding.at("code") != "gouge") continue;
     named = true;
-    EXPECT_NE(finding.at("file").get<std::string>().find("turn.cl"), std::string::npos);
-    EXPECT_GE(finding.at("line").get<int>(), 15);
-    EXPECT_LE(finding.at("line").get<int>(), 38);
+    EXPECT_NE(finding.at("file").get<std::string>().find("path.cl"), std::string::npos);
+    EXPECT_GE(finding.at("line").get<int>(), 42);
+    EXPECT_LE(finding.at("line").get<int>(), 65);
     EXPECT_GT(finding.at("t_s").get<double>(), 0.0);
   }
   EXPECT_TRUE(named) << run.output;
@@ -90,7 +90,7 @@ TEST(ExactCases, WithoutADesignNothingIsMeasuredAndTheReportSaysSo) {
   text.replace(text.find("../.."), 5, SWARF_SOURCE_DIR);
   text.replace(text.find("voxel_mm = 0.25"), 15, "voxel_mm = 1.0");
   std::ofstream(folder / "scene.toml") << text;
-  fs::copy_file(kFolder + "turn.cl", folder / "turn.cl");
+  fs::copy_file(kFolder + "path.cl", folder / "path.cl");
   const auto run =
       run_swarf("run " + (folder / "scene.toml").string() + " --no-render -o " + (folder / "run").string());
   EXPECT_EQ(run.exit_code, 0) << run.output;
@@ -105,10 +105,10 @@ TEST(ExactCases, ContradictionsOfSceneAndClFileAreErrors) {
   };
   const auto cutter = exit_code_with("cutter.diameter_mm=12");
   EXPECT_EQ(cutter.exit_code, 2);
-  EXPECT_NE(cutter.output.find("turn.cl:5:1"), std::string::npos) << cutter.output;
+  EXPECT_NE(cutter.output.find("path.cl:4:1"), std::string::npos) << cutter.output;
   EXPECT_NE(cutter.output.find("cutter-contradiction"), std::string::npos) << cutter.output;
   EXPECT_NE(exit_code_with("cutter.number=2").output.find("unknown-tool"), std::string::npos);
-  EXPECT_NE(exit_code_with("program=turn.cl").output.find("two-programs"), std::string::npos);
+  EXPECT_NE(exit_code_with("program=path.cl").output.find("two-programs"), std::string::npos);
   EXPECT_NE(exit_code_with("interpolator.mode=offline").output.find("unknown-choice"), std::string::npos);
   EXPECT_NE(exit_code_with("toolpath.compare=false").output.find("unknown-key"), std::string::npos);
 }
