@@ -50,6 +50,19 @@ bool passes_above(const RayPassage& ray, const cutter::ConvexPiece& piece, doubl
   return std::max(nearest.normal.dot(N0), nearest.normal.dot(N1)) <= 0.0;
 }
 
+/// A ray below the design that runs along the swept surface without entering it: a face beside an edge that
+/// was milled exactly to size, seen by the rays of the other face. Rounding must not make a cut of it.
+bool only_touches(const RayPassage& ray, const cutter::ConvexPiece& piece, const RayInterval& interval,
+                  double probe) {
+  constexpr double kNoteworthy =
+      1e-3;                        // mm below the design; above, a touch changes nothing that is measured
+  constexpr double kTouch = 1e-7;  // mm; rounding of coordinates of a metre
+  if (interval.low > -kNoteworthy) return false;
+  const Vec3 inside = ray.at(interval.high < kNever ? 0.5 * (interval.low + interval.high) : probe);
+  const Vec3 start = ray.map.start(inside);
+  return nearest_instant(piece, start, ray.map.end(inside) - start).floor > -kTouch;
+}
+
 }  // namespace
 
 RayInterval cut_from(double low, const RayPassage& ray, const cutter::ConvexPiece& piece, double limit) {
@@ -57,8 +70,9 @@ RayInterval cut_from(double low, const RayPassage& ray, const cutter::ConvexPiec
   constexpr double kInside = 1e-6;  // mm
   double probe = std::max(limit, low + kInside);
   if (low < -kSkin) probe = std::max(probe, 0.0);  // whether the cut comes up to the design decides about it
-  if (covers(ray.map, piece, ray.at(probe))) return {low, kNever};
-  return {low, exit_height(ray, piece)};
+  RayInterval interval{low, kNever};
+  if (!covers(ray.map, piece, ray.at(probe))) interval.high = exit_height(ray, piece);
+  return only_touches(ray, piece, interval, probe) ? RayInterval{} : interval;
 }
 
 RayInterval cut_of_piece(const RayPassage& ray, const cutter::ConvexPiece& piece, double limit) {
@@ -68,7 +82,8 @@ RayInterval cut_of_piece(const RayPassage& ray, const cutter::ConvexPiece& piece
     return low > limit ? RayInterval{} : cut_from(low, ray, piece, limit);
   }
   const RayInterval interval = ray_interval(ray.point, ray.normal, ray.map, piece);
-  return interval.low > limit ? RayInterval{} : interval;
+  const bool misses = interval.low > limit || only_touches(ray, piece, interval, limit);
+  return misses ? RayInterval{} : interval;
 }
 
 bool beyond_cutter(const RayPassage& ray, const CutterSolid& cutter, const Extent& extent) {
