@@ -58,9 +58,13 @@ bool only_touches(const RayPassage& ray, const cutter::ConvexPiece& piece, const
       1e-3;                        // mm below the design; above, a touch changes nothing that is measured
   constexpr double kTouch = 1e-7;  // mm; rounding of coordinates of a metre
   if (interval.low > -kNoteworthy) return false;
-  const Vec3 inside = ray.at(interval.high < kNever ? 0.5 * (interval.low + interval.high) : probe);
-  const Vec3 start = ray.map.start(inside);
-  return nearest_instant(piece, start, ray.map.end(inside) - start).floor > -kTouch;
+  const auto outside = [&](double s) {
+    const Vec3 start = ray.map.start(ray.at(s));
+    return nearest_instant(piece, start, ray.map.end(ray.at(s)) - start).floor > -kTouch;
+  };
+  // With a turning axis the middle may lie in a gap of the interval: its lower end is asked too.
+  const double middle = interval.high < kNever ? 0.5 * (interval.low + interval.high) : probe;
+  return outside(middle) && outside(interval.low + kNoteworthy);
 }
 
 }  // namespace
