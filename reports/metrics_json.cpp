@@ -130,6 +130,20 @@ Json collisions_json(const sim::ToolClearance& clearance) {
   return json;
 }
 
+Json flank_json(const measure::FlankError& flank) {
+  Json rows = Json::array();
+  for (const measure::FlankRow& row : flank.rows) {
+    rows.push_back({{"blocks", row.blocks},
+                    {"envelope_error_mm", row.envelope.error_mm},
+                    {"u", row.envelope.u},
+                    {"v", row.envelope.v}});
+  }
+  return {
+      {"cutter_radius_mm", flank.cutter_radius_mm},       {"psi_max_deg", deg_from_rad(flank.psi_max_rad)},
+      {"twist_bound_mm", flank.twist_bound_mm},           {"static_error_mm", flank.standing_error_mm},
+      {"continuous_error_mm", flank.continuous.error_mm}, {"rows", rows}};
+}
+
 std::string severity_name(Severity severity) {
   if (severity == Severity::kError) return "error";
   return severity == Severity::kWarning ? "warning" : "note";
@@ -161,6 +175,7 @@ std::string metrics_json(const sim::Job& job, const sim::Result& result, const R
             {"collisions", collisions_json(result.clearance)},
             {"render", {{"frames", render.frames}, {"frame_ms_median", render.frame_ms_median}}},
             {"memory_peak_mb", peak_memory_mb()}};
+  if (result.flank) json["flank"] = flank_json(*result.flank);
   return json.dump(2) + "\n";
 }
 

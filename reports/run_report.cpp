@@ -9,6 +9,7 @@
 #include "cutter/cutting_pieces.h"
 #include "measure/measure.h"
 #include "motion/offline_baseline.h"
+#include "reports/flank_table.h"
 #include "reports/paper_table.h"
 #include "reports/part_view.h"
 #include "reports/pictures.h"
@@ -370,6 +371,7 @@ ReportData report_data(const sim::Job& job, const sim::Result& result, const Run
   data.plots = run_plots(job, result);
   if (job.cl) {
     data.tables = {axis_table(job, result)};
+    if (result.flank) data.tables.insert(data.tables.begin(), flank_table(*result.flank));
   } else {
     data.tables = {planner_table(result), mode_table(result), axis_table(job, result), fig6_table()};
     data.paper_title = "Lin & Koren: the paper's figures against ours";

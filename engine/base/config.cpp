@@ -243,6 +243,30 @@ std::vector<double> ConfigTable::numbers(const std::string& key, size_t count,
   return found;
 }
 
+std::vector<Vec3> ConfigTable::points(const std::string& key) {
+  const toml::node* value = node_->find(key);
+  std::vector<Vec3> found;
+  bool right = value != nullptr && value->is_array() && !value->as_array()->empty();
+  if (right) {
+    for (const toml::node& row : *value->as_array()) {
+      std::vector<double> numbers;
+      if (row.is_array()) {
+        for (const toml::node& item : *row.as_array()) {
+          const std::optional<double> number = item.is_number() ? item.value<double>() : std::nullopt;
+          if (number && std::isfinite(*number)) numbers.push_back(*number);
+        }
+      }
+      right = right && numbers.size() == 3 && row.as_array()->size() == 3;
+      if (right) found.emplace_back(numbers[0], numbers[1], numbers[2]);
+    }
+  }
+  if (right) return found;
+  error(value == nullptr ? "missing-key" : "wrong-type", key,
+        fmt::format("'{}{}' must be an array of rows of three finite numbers", node_->name, key),
+        fmt::format("write {} = [[x, y, z], [x, y, z]]", key));
+  return {};
+}
+
 Box ConfigTable::box(const std::string& key) {
   const toml::node* value = node_->find(key);
   std::vector<double> found;

@@ -246,7 +246,8 @@ FlankError flank_error(const Surface& surface, double radius_mm) {
   result.twist_bound_mm = radius_mm * (1.0 - std::cos(0.5 * result.psi_max_rad));
   const LineMinimum standing =
       least_over_unit(kGridU, [&](double u) { return standing_error(surface, radius_mm, u); });
-  result.standing = {standing.value, standing.at, 0.0};
+  result.standing_error_mm = standing.value;
+  result.standing_u = standing.at;
   result.continuous = continuous_envelope_error(surface, radius_mm);
   for (int blocks = 1; blocks <= kBlocksMax; blocks *= 2) {
     result.rows.push_back({blocks, block_envelope_error(surface, radius_mm, blocks)});

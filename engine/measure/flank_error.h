@@ -38,10 +38,11 @@ struct FlankError {
   double cutter_radius_mm = 0.0;
   double psi_max_rad = 0.0;
   double psi_max_u = 0.0;
-  double twist_bound_mm = 0.0;  ///< r(1-cos(psi_max/2)) of E18: no feed and no block count goes below it
-  FlankDepth standing;          ///< every ruling against its own axis, standing
-  FlankDepth continuous;        ///< the axis on both guide curves at every instant
-  std::vector<FlankRow> rows;   ///< blocks 1, 2, 4, 8, 16, 32
+  double twist_bound_mm = 0.0;     ///< r(1-cos(psi_max/2)) of E18: no feed and no block count goes below it
+  double standing_error_mm = 0.0;  ///< every ruling against its own axis, standing: the deepest
+  double standing_u = 0.0;
+  FlankDepth continuous;       ///< the axis on both guide curves at every instant
+  std::vector<FlankRow> rows;  ///< blocks 1, 2, 4, 8, 16, 32
 };
 
 /// True when S is linear in v: S_vv vanishes on a grid, to 1e-9 of the ruling's length.

@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include "base/units.h"
 #include "surface/analytic.h"
+#include "surface/polynomial.h"
 
 namespace swarf::sim {
 namespace {
@@ -102,10 +105,44 @@ surface::SurfacePtr read_hyperboloid(ConfigTable& table) {
   return surface::hyperboloid_surface(turn, shape, z[0], z[1]);
 }
 
+/// A place of S where Su x Sv vanishes, on a grid that holds both guide curves.
+bool has_normals(const surface::Surface& S) {
+  constexpr int kNodes = 64;
+  for (int i = 0; i <= kNodes; ++i) {
+    for (const double v : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+      const surface::Derivatives d = S.derivatives(static_cast<double>(i) / kNodes, v);
+      if (d.Su.cross(d.Sv).norm() <= 1e-9 * d.Su.norm() * d.Sv.norm()) return false;
+    }
+  }
+  return true;
+}
+
+/// S(u,v) = (1-v) C0(u) + v C1(u), C0 and C1 polynomials in u.
+surface::SurfacePtr read_ruled(ConfigTable& table) {
+  std::vector<Vec3> c0 = table.points("guide0_mm"), c1 = table.points("guide1_mm");
+  const bool out = table.choice("outward", {"u_cross_v", "v_cross_u"}) != "v_cross_u";
+  if (c0.empty() || c1.empty()) return nullptr;
+  const size_t count = std::max(c0.size(), c1.size());
+  c0.resize(count, Vec3::Zero());
+  c1.resize(count, Vec3::Zero());
+  std::vector<Vec3> coefficients;
+  for (size_t i = 0; i < count; ++i) {
+    coefficients.push_back(c0[i]);
+    coefficients.emplace_back(c1[i] - c0[i]);
+  }
+  auto ruled = std::make_shared<surface::PolynomialSurface>(static_cast<int>(count) - 1, 1,
+                                                            std::move(coefficients), out ? 1 : -1);
+  if (has_normals(*ruled)) return ruled;
+  table.error("out-of-range", "guide1_mm", "the ruled surface has a place without a normal",
+              "the guide curves must not stand still, meet, or run along their rulings");
+  return nullptr;
+}
+
 surface::SurfacePtr read_analytic(ConfigTable& table, const std::string& kind) {
   if (kind == "plane") return read_plane(table);
   if (kind == "sphere") return read_sphere(table);
   if (kind == "hyperboloid") return read_hyperboloid(table);
+  if (kind == "ruled") return read_ruled(table);
   return read_cone(table, kind == "cylinder");
 }
 
@@ -115,8 +152,8 @@ DesignSettings read_design(ConfigTable table, bool cl) {
   DesignSettings design;
   design.pitch_mm = table.number("pitch_mm", kAboveZero, design.pitch_mm);
   if (!cl) return design;
-  design.name =
-      table.choice("kind", {"none", "surface", "plane", "cylinder", "cone", "sphere", "hyperboloid", "mesh"});
+  design.name = table.choice(
+      "kind", {"none", "surface", "plane", "cylinder", "cone", "sphere", "hyperboloid", "ruled", "mesh"});
   if (design.name == "none" || design.name.empty()) {
     design.kind = DesignKind::kNone;
     return design;

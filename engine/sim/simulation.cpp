@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/units.h"
+#include "cutter/profile.h"
 #include "sim/design_rays.h"
 #include "sim/findings.h"
 #include "toolpath/cl_path.h"
@@ -213,6 +214,21 @@ void measure_part(const Job& job, Progress& progress, Result& result) {
   progress.end();
 }
 
+/// Radius of the cutter's cylindrical flank, mm; none when its flank is no cylinder.
+std::optional<double> flank_radius(const cutter::Cutter& cutter) {
+  const std::optional<cutter::AptForm> form = cutter::apt_form(cutter);
+  if (!form || form->beta != 0.0 || form->flank_end().y() <= form->flank_start().y()) return std::nullopt;
+  return 0.5 * form->d;
+}
+
+void measure_flank(const Job& job, Progress& progress, Result& result) {
+  const std::optional<double> radius = flank_radius(job.scene.cutter);
+  if (job.scene.design.name != "ruled" || !radius) return;
+  progress.begin("flank error", 1, "surfaces");
+  result.flank = measure::flank_error(*job.design.front(), *radius);
+  progress.end();
+}
+
 }  // namespace
 
 toolpath::ToolPath job_path(const Job& job, Diagnostics& diagnostics) {
@@ -236,6 +252,7 @@ Result simulate(const Job& job, Progress& progress) {
   cut_dexels(job, result.main);
   progress.end();
   measure_part(job, progress, result);
+  measure_flank(job, progress, result);
   // A CL program is one path with one law: there is nothing to compare it with.
   if (!job.cl) {
     compare_planners(job, progress, result);

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/progress.h"
+#include "measure/flank_error.h"
 #include "measure/measure.h"
 #include "measure/metrics.h"
 #include "motion/interpolator.h"
@@ -60,6 +62,7 @@ struct Result {
   double volume_removed_mm3 = 0.0, volume_left_mm3 = 0.0;
   measure::CrossCheck cross_check;
   ToolClearance clearance;
+  std::optional<measure::FlankError> flank;  ///< of a ruled design and a cutter with a cylindrical flank
   std::vector<Finding> findings;
   bool stopped = false;  ///< the user stopped it; what follows the cut is missing
 };

@@ -68,10 +68,10 @@ TEST(FlankError, OracleF1Envelopes) {
   const FlankError error = flank_error(f1(), kRadius);
   EXPECT_NEAR(error.psi_max_rad, std::atan(1.0 / 3.0), 1e-12);
   EXPECT_NEAR(error.psi_max_u, 0.5, 1e-6);
-  EXPECT_NEAR(error.standing.error_mm, -0.103300339, 1e-9);
+  EXPECT_NEAR(error.standing_error_mm, -0.103300339, 1e-9);
   EXPECT_NEAR(error.continuous.error_mm, -0.103373, 1e-6);
   // E18: half way along a symmetric ruling the twist bound is the standing error itself.
-  EXPECT_NEAR(error.twist_bound_mm, -error.standing.error_mm, 1e-12);
+  EXPECT_NEAR(error.twist_bound_mm, -error.standing_error_mm, 1e-12);
   ASSERT_EQ(error.rows.size(), 6u);
   // Twice computed: here and by a program that shares no line with this one (dense poses and a pattern
   // search).
@@ -117,7 +117,7 @@ TEST(FlankError, ConeHasNoTwistAndItsBlocksLeaveTheSagittaOfTheirChords) {
   ASSERT_TRUE(is_ruled(*cone));
   const FlankError error = flank_error(*cone, kRadius);
   EXPECT_NEAR(error.psi_max_rad, 0.0, 1e-12);
-  EXPECT_NEAR(error.standing.error_mm, 0.0, 1e-12);
+  EXPECT_NEAR(error.standing_error_mm, 0.0, 1e-12);
   EXPECT_NEAR(error.continuous.error_mm, 0.0, 1e-10);
   for (const FlankRow& row : error.rows) {
     const double squeeze = std::cos(0.5 * span / row.blocks);
