@@ -205,6 +205,36 @@ def gouges():
     path.write("exact_gouges")
 
 
+def flank_f1():
+    """Oracle F1 of theory 5: the axis through C0 + 8 N0 and C1 + 8 N1 at nine rulings equal in u, eight blocks."""
+    def axis_at(u):
+        def normal(v):
+            n = (600 * v, -1800.0, 1200 * (u - 0.5))
+            return [c / sqrt(sum(e * e for e in n)) for c in n]
+        n0, n1 = normal(0), normal(1)
+        g0 = [60 * u + 8 * n0[0], 8 * n0[1], 8 * n0[2]]
+        g1 = [60 * u + 8 * n1[0], 20 * (u - 0.5) + 8 * n1[1], 30 + 8 * n1[2]]
+        a = [q - p for p, q in zip(g0, g1)]
+        length = sqrt(sum(c * c for c in a))
+        a = [c / length for c in a]
+        return [p - 3 * c for p, c in zip(g0, a)], a  # the flat end passes 3 mm below the edge of the surface
+
+    def off(pose, y, along):
+        return [p + along * c + (-y if i == 1 else 0) for i, (p, c) in enumerate(zip(*pose))], pose[1]
+
+    first, last = axis_at(0), axis_at(1)
+    path = Path_("FLANK F1: A TWISTED RULED SURFACE BY A CYLINDER", "CUTTER/16,0", *off(first, 25, 40), 600)
+    path.rapid(*off(first, 25, 0))
+    path.to(*first)
+    path.set_feed(1200)
+    for i in range(1, 9):
+        path.to(*axis_at(i / 8))
+    path.set_feed(600)
+    path.to(*off(last, 25, 0))
+    path.rapid(*off(last, 25, 40))
+    path.write("exact_flank_f1")
+
+
 if __name__ == "__main__":
     slot("exact_slot_flat", "SLOT BY A FLAT END: (2 R L + PI R^2) D", "CUTTER/10,0")
     slot("exact_slot_ball", "SLOT BY A BALL: A L + PI D^2 (3 R - D) / 3", "CUTTER/10,5")
@@ -218,3 +248,4 @@ if __name__ == "__main__":
     hyperboloid()
     cone()
     gouges()
+    flank_f1()
