@@ -38,8 +38,8 @@ Vec3 f1_guide(double u, double v) {
   return {60.0 * u, 20.0 * (u - 0.5) * v, 30.0 * v};
 }
 
-/// The least of distance - r at one surface point over standing poses, 1/`poses` of a block apart, each an
-/// infinite line, `window` blocks to both sides.
+/// The least of distance - r at one surface point over poses that stand 1/`poses` of a block apart, each an
+/// infinite line.
 double brute_force(double u, double v, int blocks, int poses) {
   const Vec3 x = f1_guide(u, v);
   double least = std::numeric_limits<double>::infinity();
@@ -105,10 +105,9 @@ TEST(FlankError, BothSidesAreMirrorImages) {
 }
 
 TEST(FlankError, ConeHasNoTwistAndItsBlocksLeaveTheSagittaOfTheirChords) {
-  // Axis points stand at radius rho(z) = R(z) + r cos(alpha) about the cone's axis; a block of angle phi
-  // draws them onto chords. By symmetry the deepest place lies half way in angle, where the axis line is that
-  // of the cone's generator moved inwards by rho (1 - cos(phi/2)) at its height: rho depends on z linearly,
-  // so the line is turned too, and the distance of the generator to it follows in the plane of both.
+  // Both guide points of the axis run on circles about the cone's axis; a block of angle phi draws them onto
+  // parallel chords, so its axis patch is flat. By symmetry the ruling half way is the deepest, and nearest
+  // to the axis half way, whose guide points have their radius times cos(phi/2): two segments in one plane.
   const double alpha = rad_from_deg(15.0), base = 40.0, height = 20.0, span = rad_from_deg(80.0);
   surface::Turn turn;
   turn.to_rad = span;
@@ -121,15 +120,12 @@ TEST(FlankError, ConeHasNoTwistAndItsBlocksLeaveTheSagittaOfTheirChords) {
   EXPECT_NEAR(error.continuous.error_mm, 0.0, 1e-10);
   for (const FlankRow& row : error.rows) {
     const double squeeze = std::cos(0.5 * span / row.blocks);
-    // In the half plane (rho, z): generator from (base, 0) to (top, height), axis line through G + r n with
-    // its rho times squeeze. The deepest end is the one with the greater rho: the base.
     const double top = base - height * std::tan(alpha);
     const Vec3 n(std::cos(alpha), 0.0, std::sin(alpha));
     Vec3 a = Vec3(base, 0, 0) + kRadius * n, b = Vec3(top, 0, height) + kRadius * n;
     a.x() *= squeeze;
     b.x() *= squeeze;
-    const double expected =
-        std::min(segment_distance({base, 0, 0}, a, b), segment_distance({top, 0, height}, a, b)) - kRadius;
+    const double expected = segment_distance({base, 0, 0}, {top, 0, height}, a, b) - kRadius;
     EXPECT_NEAR(row.envelope.error_mm, expected, 1e-9) << "blocks " << row.blocks;
   }
 }
