@@ -226,10 +226,8 @@ def flank_f1():
     path = Path_("FLANK F1: A TWISTED RULED SURFACE BY A CYLINDER", "CUTTER/16,0", *off(first, 25, 40), 600)
     path.rapid(*off(first, 25, 0))
     path.to(*first)
-    path.set_feed(1200)
     for i in range(1, 9):
         path.to(*axis_at(i / 8))
-    path.set_feed(600)
     path.to(*off(last, 25, 0))
     path.rapid(*off(last, 25, 40))
     path.write("exact_flank_f1")

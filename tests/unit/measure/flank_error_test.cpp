@@ -105,10 +105,11 @@ TEST(FlankError, BothSidesAreMirrorImages) {
 }
 
 TEST(FlankError, ConeHasNoTwistAndItsBlocksLeaveTheSagittaOfTheirChords) {
+  // Half way the axis must stay outside of the cone: 47.7 cos(20 deg) > 40.
   // Both guide points of the axis run on circles about the cone's axis; a block of angle phi draws them onto
   // parallel chords, so its axis patch is flat. By symmetry the ruling half way is the deepest, and nearest
   // to the axis half way, whose guide points have their radius times cos(phi/2): two segments in one plane.
-  const double alpha = rad_from_deg(15.0), base = 40.0, height = 20.0, span = rad_from_deg(80.0);
+  const double alpha = rad_from_deg(15.0), base = 40.0, height = 20.0, span = rad_from_deg(40.0);
   surface::Turn turn;
   turn.to_rad = span;
   const surface::SurfacePtr cone =
