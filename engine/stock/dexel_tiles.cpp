@@ -117,7 +117,7 @@ class TileCut {
     const bool above = !extent_above_.empty() && !sweep_misses(map, ball_above_, cutter) &&
                        !beyond_top(tile_, map, extent_above_, cutter.height);
     if (!above && (sweep_misses(map, ball_, cutter) || plane_above(tile_, map, highest_))) return;
-    if (!above && !cutter.is_cylinder() && pieces_above(tile_, map, cutter, highest_)) return;
+    if (!above && !chain_.cylinder && pieces_above(tile_, map, cutter, highest_)) return;
     if (!loaded_) load();
     pairs_ += kTileRays;
     static const DexelKernel kernel = dexel_kernel_variants().front().kernel;
@@ -139,7 +139,7 @@ class TileCut {
                              chain_.maps[sweep]};
     const CutterSolid& cutter = chain_.cutter;
     bool changed = false;
-    if (w_.found.exact[n] != kNoHeight && cutter.is_cylinder()) {
+    if (w_.found.exact[n] != kNoHeight && chain_.cylinder) {
       const double low = w_.found.exact[n];
       if (low > limit || (low > w_.standing[n].height && misses_above(n, passage))) return false;
       return remove(cut_from(low, passage, cutter.pieces.front(), limit), sweep, n);
@@ -205,7 +205,7 @@ SweepRun make_run(const SweepChain& chain, size_t begin, size_t end) {
 }  // namespace
 
 SweepChain make_chain(std::span<const Sweep> sweeps, const CutterSolid& cutter) {
-  SweepChain chain{sweeps, cutter, std::vector<SweepMap>(sweeps.size()), {}};
+  SweepChain chain{sweeps, cutter, std::vector<SweepMap>(sweeps.size()), {}, cutter.is_cylinder()};
   parallel_chunks(sweeps.size(), kMapsPerTask, [&](size_t begin, size_t end) {
     for (size_t n = begin; n < end; ++n) chain.maps[n] = sweep_map(sweeps[n]);
   });

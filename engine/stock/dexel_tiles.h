@@ -26,6 +26,7 @@ struct SweepChain {
   CutterSolid cutter;
   std::vector<SweepMap> maps;
   std::vector<SweepRun> runs;
+  bool cylinder = false;  ///< the cutter is a plain one: asked once, not for each ray
 };
 SweepChain make_chain(std::span<const Sweep> sweeps, const CutterSolid& cutter);
 
