@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <span>
 
 #include "base/check.h"
@@ -118,19 +119,72 @@ Indices simplify(const TriMesh& mesh, Indices indices, double error_mm) {
   return indices;
 }
 
-/// The triangles as an OpenMesh whose vertices know their index in the original; false if they are not
+/// Triangles whose corners are numbers of vertices; a number's own vertex in the mesh is originals[number].
+struct Surface {
+  Indices indices, originals;
+};
+
+/// Collapses can make sheets touch at a vertex or along an edge, where meshoptimizer does not ask. Around a
+/// vertex of a closed surface each triangle leads from one neighbour to the next, and as many lead to a
+/// neighbour as away from it; so they part into loops that meet each neighbour once. Every loop but the first
+/// gets a copy of the vertex, after which the surface is manifold. Vertices on a border stay.
+void split_fans(Surface& surface) {
+  const size_t count = surface.originals.size();
+  std::vector<size_t> start(count + 1, 0);
+  for (const uint32_t v : surface.indices) ++start[v + 1];
+  for (size_t v = 0; v < count; ++v) start[v + 1] += start[v];
+  std::vector<size_t> corners(surface.indices.size()), next(start.begin(), start.end() - 1);
+  for (size_t c = 0; c < corners.size(); ++c) corners[next[surface.indices[c]]++] = c;
+  const auto neighbour = [&](size_t corner, size_t step) {
+    return surface.indices[corner / 3 * 3 + (corner + step) % 3];
+  };
+  std::vector<size_t> rest, path, loops;
+  for (uint32_t v = 0; v < count; ++v) {
+    rest.assign(corners.begin() + static_cast<std::ptrdiff_t>(start[v]),
+                corners.begin() + static_cast<std::ptrdiff_t>(start[v + 1]));
+    loops.clear();
+    bool closed = true;
+    for (bool first = true; closed && !(rest.empty() && path.empty());) {
+      // On from where the path ends, or anywhere.
+      const auto on = path.empty() ? rest.begin() : std::find_if(rest.begin(), rest.end(), [&](size_t c) {
+        return neighbour(c, 1) == neighbour(path.back(), 2);
+      });
+      closed = on != rest.end();
+      if (!closed) break;
+      path.push_back(*on);
+      rest.erase(on);
+      const auto back = std::find_if(path.begin(), path.end(),
+                                     [&](size_t c) { return neighbour(c, 1) == neighbour(path.back(), 2); });
+      if (back == path.end()) continue;
+      if (!first) loops.insert(loops.end(), back, path.end());
+      if (!first) loops.push_back(corners.size());  // ends a loop
+      first = false;
+      path.erase(back, path.end());
+    }
+    path.clear();
+    if (!closed) continue;
+    for (size_t i = 0; i < loops.size(); ++i) {
+      if (i == 0 || loops[i - 1] == corners.size()) surface.originals.push_back(surface.originals[v]);
+      if (loops[i] == corners.size()) continue;
+      surface.indices[loops[i]] = static_cast<uint32_t>(surface.originals.size() - 1);
+    }
+  }
+}
+
+/// The triangles as an OpenMesh whose vertices know their number; false if they are not
 /// manifold.
-bool to_openmesh(const TriMesh& mesh, const Indices& indices, OmMesh& om,
-                 OpenMesh::VPropHandleT<uint32_t> original) {
-  std::vector<OmMesh::VertexHandle> handle(mesh.positions.size());
+bool to_openmesh(const TriMesh& mesh, const Surface& surface, OmMesh& om,
+                 OpenMesh::VPropHandleT<uint32_t> number) {
+  const Indices& indices = surface.indices;
+  std::vector<OmMesh::VertexHandle> handle(surface.originals.size());
   for (size_t i = 0; i < indices.size(); i += 3) {
     std::array<OmMesh::VertexHandle, 3> corner;
     for (size_t k = 0; k < 3; ++k) {
       OmMesh::VertexHandle& h = handle[indices[i + k]];
       if (!h.is_valid()) {
-        const auto& p = mesh.positions[indices[i + k]];
+        const auto& p = mesh.positions[surface.originals[indices[i + k]]];
         h = om.add_vertex({p[0], p[1], p[2]});
-        om.property(original, h) = indices[i + k];
+        om.property(number, h) = indices[i + k];
       }
       corner[k] = h;
     }
@@ -147,20 +201,20 @@ double mean_area(const OmMesh& om) {
   return sum / static_cast<double>(om.n_faces());
 }
 
-/// OpenMesh's decimater within the error; a mesh it cannot represent is returned as it came.
-Indices refine_with_openmesh(const TriMesh& mesh, const Indices& indices, double error_mm) {
+/// OpenMesh's decimater within the error; a mesh it cannot represent stays as it is.
+void refine_with_openmesh(const TriMesh& mesh, double error_mm, Surface& surface) {
   OmMesh om;
-  OpenMesh::VPropHandleT<uint32_t> original;
-  om.add_property(original);
+  OpenMesh::VPropHandleT<uint32_t> number;
+  om.add_property(number);
   om.request_face_normals();
   om.request_vertex_status();
   om.request_edge_status();
   om.request_face_status();
   // OpenMesh writes about complex edges to its error stream; the result tells us what we need.
   omerr().disable();
-  const bool manifold = to_openmesh(mesh, indices, om, original);
+  const bool manifold = to_openmesh(mesh, surface, om, number);
   omerr().enable();
-  if (!manifold) return indices;
+  if (!manifold) return;
   // Quadrics of faces do not resist motion along an open border.
   for (const auto v : om.vertices()) om.status(v).set_locked(om.is_boundary(v));
   om.update_face_normals();
@@ -175,30 +229,30 @@ Indices refine_with_openmesh(const TriMesh& mesh, const Indices& indices, double
   decimater.module(quadric).set_max_err(error_mm * error_mm * mean_area(om), false);
   decimater.module(aspect).set_aspect_ratio(kMaxAspect);
   decimater.module(flipping).set_max_normal_deviation(kMaxNormalTurnDeg);
-  if (!decimater.initialize()) return indices;
+  if (!decimater.initialize()) return;
   decimater.decimate();
   om.garbage_collection();
-  Indices out;
-  out.reserve(3 * om.n_faces());
+  surface.indices.clear();
   for (const auto face : om.faces()) {
-    for (const auto v : om.fv_range(face)) out.push_back(om.property(original, v));
+    for (const auto v : om.fv_range(face)) surface.indices.push_back(om.property(number, v));
   }
-  return out;
 }
 
-/// The mesh of `indices`, with the vertices in use only, in their original order, and their attributes.
-TriMesh gather(const TriMesh& mesh, const Indices& indices) {
+/// The surface with the vertices in use only, in the order of their numbers, and their attributes.
+TriMesh gather(const TriMesh& mesh, const Surface& surface) {
+  const Indices& indices = surface.indices;
   constexpr uint32_t kUnused = std::numeric_limits<uint32_t>::max();
-  std::vector<uint32_t> place(mesh.positions.size(), kUnused);
+  std::vector<uint32_t> place(surface.originals.size(), kUnused);
   for (const uint32_t i : indices) place[i] = 0;
   TriMesh out;
   for (uint32_t v = 0; v < place.size(); ++v) {
     if (place[v] == kUnused) continue;
     place[v] = static_cast<uint32_t>(out.positions.size());
-    out.positions.push_back(mesh.positions[v]);
-    if (!mesh.normals.empty()) out.normals.push_back(mesh.normals[v]);
-    if (!mesh.colours.empty()) out.colours.push_back(mesh.colours[v]);
-    if (!mesh.deviation_um.empty()) out.deviation_um.push_back(mesh.deviation_um[v]);
+    const uint32_t original = surface.originals[v];
+    out.positions.push_back(mesh.positions[original]);
+    if (!mesh.normals.empty()) out.normals.push_back(mesh.normals[original]);
+    if (!mesh.colours.empty()) out.colours.push_back(mesh.colours[original]);
+    if (!mesh.deviation_um.empty()) out.deviation_um.push_back(mesh.deviation_um[original]);
   }
   out.triangles.reserve(indices.size() / 3);
   for (size_t i = 0; i < indices.size(); i += 3) {
@@ -216,9 +270,11 @@ TriMesh decimate(const TriMesh& mesh, double max_error_mm, double* reached_error
   const Indices welded = welded_indices(mesh);
   double budget = kFirstBudget * max_error_mm;
   for (int attempt = 0; attempt < kTries; ++attempt, budget *= kNextBudget) {
-    Indices indices = simplify(mesh, welded, budget);
-    if (indices.size() / 3 <= kOpenMeshTriangles) indices = refine_with_openmesh(mesh, indices, budget);
-    TriMesh candidate = gather(mesh, indices);
+    Surface surface{simplify(mesh, welded, budget), Indices(mesh.positions.size())};
+    std::iota(surface.originals.begin(), surface.originals.end(), 0U);
+    split_fans(surface);
+    if (surface.indices.size() / 3 <= kOpenMeshTriangles) refine_with_openmesh(mesh, budget, surface);
+    TriMesh candidate = gather(mesh, surface);
     const double error = max_distance(mesh.positions, candidate);
     if (error > max_error_mm) continue;
     if (reached_error != nullptr) *reached_error = error;

@@ -29,7 +29,9 @@ void split_creases(TriMesh& mesh, double crease_rad);
 /// from every original vertex to the exact nearest point of the result; a result that fails is redone with a
 /// smaller budget, and if none passes the mesh is returned unchanged. `reached_error` (may be null) receives
 /// the measured distance, mm. Both methods keep a subset of the original vertices, so colours, deviations and
-/// normals are carried unchanged; of vertices that coincide in position the first one's are kept.
+/// normals are carried unchanged; of vertices that coincide in position the first one's are kept. A closed
+/// mesh stays closed, and becomes manifold: where sheets touch after their collapses, each has vertices of
+/// its own at the same positions.
 TriMesh decimate(const TriMesh& mesh, double max_error_mm, double* reached_error);
 
 }  // namespace swarf::mesh

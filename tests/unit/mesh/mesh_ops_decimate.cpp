@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "base/parallel.h"
 #include "base/rng.h"
@@ -164,6 +165,23 @@ TEST(Decimate, EmptyMeshStaysEmpty) {
   double reached = -1;
   EXPECT_TRUE(decimate(TriMesh{}, 0.1, &reached).triangles.empty());
   EXPECT_EQ(reached, 0.0);
+}
+
+TEST(Decimate, SheetsThatTouchAlongAnEdgeGetVerticesOfTheirOwn) {
+  // Two tetrahedra on the edge 0-1.
+  TriMesh mesh;
+  mesh.positions = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}};
+  mesh.triangles = {{0, 3, 2}, {0, 1, 3}, {0, 2, 1}, {1, 2, 3}, {0, 5, 4}, {0, 1, 5}, {0, 4, 1}, {1, 4, 5}};
+  for (int v = 0; v < 6; ++v) mesh.deviation_um.push_back(static_cast<float>(v));
+  const TriMesh result = decimate(mesh, 1e-4, nullptr);
+  ASSERT_EQ(result.triangles.size(), 8U);
+  ASSERT_EQ(result.positions.size(), 8U);
+  std::set<std::pair<uint32_t, uint32_t>> edges;
+  for (const auto& t : result.triangles) {
+    for (int c = 0; c < 3; ++c) EXPECT_TRUE(edges.emplace(t[c], t[(c + 1) % 3]).second);
+  }
+  for (const auto& [from, to] : edges) EXPECT_TRUE(edges.contains({to, from})) << from << " " << to;
+  EXPECT_EQ(result.deviation_um, (std::vector<float>{0, 1, 2, 3, 4, 5, 0, 1}));
 }
 
 }  // namespace

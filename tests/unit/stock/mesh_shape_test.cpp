@@ -108,32 +108,6 @@ TEST(MeshShape, CylinderWithinAnEighthOfVoxelSquaredOverRadius) {
   }
 }
 
-TEST(MeshShape, RidgesOfTenMicrometresStay) {
-  // Flat end across the feed on a cylinder would do as well: here grooves of a wide radius side by side,
-  // whose ridges stand 10 um over the grooves' bottoms.
-  constexpr double kRadius = 50.0, kRidge = 0.010;
-  const double pitch = 2.0 * std::sqrt(2.0 * kRadius * kRidge);
-  Stock stock({{-6, -1, -2}, {6, 1, 0.5}}, 0.1);
-  for (int n = -3; n <= 3; ++n) {
-    const Vec3 tip(n * pitch + 0.013, -10, kRadius);
-    stock.cut(std::vector<Sweep>{{{tip, Vec3::UnitY()}, {tip, Vec3::UnitY()}, 0}}, {kRadius, 20.0});
-  }
-  const TriMesh mesh = stock.mesh();
-  double highest = -1.0, lowest = 1.0;
-  for (uint32_t v = 0; v < mesh.positions.size(); ++v) {
-    const Vec3 p = vertex(mesh, v);
-    if (std::abs(p.x()) > 5.0 || std::abs(p.y()) > 0.8 || p.z() < -0.5) continue;
-    highest = std::max(highest, p.z());
-    lowest = std::min(lowest, p.z());
-  }
-  // Sheets that meet at two degrees are one to the mesher, so a vertex lies up to half a voxel beside the
-  // ridge.
-  const double slope = 0.5 * pitch / kRadius;
-  EXPECT_GE(highest, kRidge - slope * 0.5 * 0.1);
-  EXPECT_LE(highest, 1.005 * kRidge);
-  EXPECT_NEAR(lowest, 0.0, 1e-4);
-}
-
 TEST(MeshShape, NothingLeftGivesAnEmptyMesh) {
   Stock stock({{-1, -1, -1}, {1, 1, 1}}, 0.2);
   stock.cut(std::vector<Sweep>{{{{0, 0, -5}, Vec3::UnitZ()}, {{0, 0, -5}, Vec3::UnitZ()}, 0}}, {5.0, 20.0});
@@ -195,16 +169,8 @@ TEST(MeshShape, DecimationKeepsTheSlotsEdges) {
   double reached = 0.0;
   const TriMesh coarse = mesh::decimate(fine, 0.005, &reached);
   EXPECT_LE(reached, 0.005);
-  EXPECT_LT(coarse.triangles.size(), fine.triangles.size() / 15);
-  // Closed: each directed edge as often as its reverse. Collapses may pinch vertices together, so that an
-  // edge has four triangles.
-  std::map<std::pair<uint32_t, uint32_t>, int> edges;
-  for (const auto& t : coarse.triangles) {
-    for (int c = 0; c < 3; ++c) ++edges[{t[c], t[(c + 1) % 3]}];
-  }
-  for (const auto& [edge, count] : std::map(edges)) {
-    EXPECT_EQ(count, (edges[{edge.second, edge.first}])) << edge.first << " " << edge.second;
-  }
+  EXPECT_LT(coarse.triangles.size(), fine.triangles.size() / 20);
+  EXPECT_EQ(manifold_fault(coarse), "");
   std::vector<EdgeLine> lines;
   for (const double z : {0.0, -1.53}) {
     lines.push_back(straight_edge({0.03, 2.02, z}, {4.03, 2.02, z}));
@@ -219,7 +185,7 @@ bool same(const TriMesh& a, const TriMesh& b) {
 
 TEST(StockMesher, GivesTheSameAsANewOneAfterEveryCut) {
   constexpr uint64_t kSeed = 73;
-  const std::vector<Sweep> sweeps = random_cuts(kSeed, 50, 7.0);
+  const std::vector<Sweep> sweeps = random_cuts(kSeed, 25, 7.0);
   Stock stock({{-6, -6, -6}, {6, 6, 6}}, 0.2);
   StockMesher mesher(stock);
   mesher.mesh();
