@@ -28,22 +28,23 @@ int export_run(const ExportOptions& options) {
   }
   const reports::StoredRun stored = reports::read_run(options.folder);
   const reports::FinishedRun run{stored.job, stored.trajectory, stored.stock, stored.dexels};
-  const TriMesh part = reports::part_mesh(run);
   if (!options.gltf.empty() || !options.machine_gltf.empty()) {
-    const reports::DisplayMesh light = reports::display_mesh(part, options.error_um * kMicrometre);
+    const reports::DisplayMesh light =
+        reports::display_mesh(run, stored.stock.mesh(), options.error_um * kMicrometre);
     if (!options.gltf.empty()) reports::write_part_glb(run, light, options.gltf);
     if (!options.machine_gltf.empty()) reports::write_machine_glb(run, light, options.machine_gltf);
     fmt::print("glTF: finished part decimated within {:.3f} um\n", um_from_mm(light.error_mm));
   }
   if (!options.stl.empty()) {
+    const TriMesh part = stored.stock.mesh();
     mesh::save_mesh(options.stl, part);
     fmt::print("{}: {} triangles, mm\n", options.stl, part.triangles.size());
   }
   if (!options.ply.empty()) {
-    TriMesh coloured = part;
+    TriMesh coloured = reports::part_mesh(run);
     render::colour_by_deviation(coloured, reports::deviation_scale_um(stored.job));
     mesh::save_mesh(options.ply, coloured);
-    fmt::print("{}: {} triangles with deviation in um, mm\n", options.ply, part.triangles.size());
+    fmt::print("{}: {} triangles with deviation in um, mm\n", options.ply, coloured.triangles.size());
   }
   if (!options.vdb.empty()) {
     stored.stock.save(options.vdb, {{"scene", stored.job.scene.name}, {"swarf", SWARF_VERSION}});

@@ -38,7 +38,7 @@ int render(const RenderOptions& options) {
   TerminalProgress progress;
   if (!options.still.empty()) {
     const std::string otherwise = kind == reports::StillKind::kMachine ? "machine" : "iso";
-    reports::make_still(run, reports::part_mesh(run), kind,
+    reports::make_still(run, reports::shown_part(run, stored.stock.mesh()), kind,
                         options.camera.empty() ? otherwise : options.camera, options.still);
     fmt::print("{}\n", options.still);
   }

@@ -84,9 +84,9 @@ void write_part_glb(const FinishedRun& run, const DisplayMesh& part, const std::
   render::write_glb(path, scene);
 }
 
-DisplayMesh display_mesh(const TriMesh& part, double max_error_mm) {
+DisplayMesh display_mesh(const FinishedRun& run, const TriMesh& closed, double max_error_mm) {
   DisplayMesh display;
-  display.mesh = mesh::decimate(part, max_error_mm, &display.error_mm);
+  display.mesh = shown_part(run, mesh::decimate(closed, max_error_mm, &display.error_mm));
   return display;
 }
 
@@ -94,6 +94,7 @@ void write_machine_glb(const FinishedRun& run, const DisplayMesh& part, const st
   const MachineView view(run.job);
   TriMesh shown = mesh::decimate(part.mesh, kMachinePartError, nullptr);
   shown.deviation_um.clear();
+  mesh::split_creases(shown, kCreaseRad);  // decimate() has joined them
   const std::vector<size_t> samples = animation_samples(run);
   const double scale = animation_scale(run);
   std::vector<double> times;

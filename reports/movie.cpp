@@ -9,14 +9,12 @@
 #include "render/lettering.h"
 #include "render/movie/movie_writer.h"
 #include "render/raster/raster_renderer.h"
+#include "reports/part_view.h"
 #include "reports/pictures.h"
 #include "stock/stock_mesher.h"
 
 namespace swarf::reports {
 namespace {
-
-/// Edges of the stock that turn by more are shaded as edges.
-constexpr double kCreaseRad = 0.5;
 
 /// The stock as the program cuts it, at the movie's own voxel size.
 class MovieStock {

@@ -7,6 +7,7 @@
 #include "base/units.h"
 #include "measure/design_projection.h"
 #include "measure/mesh_deviation.h"
+#include "mesh/mesh_ops.h"
 #include "render/figures/axis_fan.h"
 
 namespace swarf::reports {
@@ -41,17 +42,27 @@ void take_measures(const FinishedRun& run, const stock::SurfaceDexels& dexels, T
   });
 }
 
+void take_measures(const FinishedRun& run, TriMesh& mesh) {
+  mesh.deviation_um.assign(mesh.positions.size(), std::numeric_limits<float>::quiet_NaN());
+  if (run.job.design_mesh) {
+    measure::deviation_from_mesh(mesh, *run.job.design_mesh, kReachVoxels * run.stock.voxel_mm());
+    return;
+  }
+  for (const stock::SurfaceDexels& dexels : run.dexels) take_measures(run, dexels, mesh);
+}
+
 }  // namespace
 
 TriMesh part_mesh(const FinishedRun& run) {
   TriMesh mesh = run.stock.mesh();
-  mesh.deviation_um.assign(mesh.positions.size(), std::numeric_limits<float>::quiet_NaN());
-  if (run.job.design_mesh) {
-    measure::deviation_from_mesh(mesh, *run.job.design_mesh, kReachVoxels * run.stock.voxel_mm());
-    return mesh;
-  }
-  for (const stock::SurfaceDexels& dexels : run.dexels) take_measures(run, dexels, mesh);
+  take_measures(run, mesh);
   return mesh;
+}
+
+TriMesh shown_part(const FinishedRun& run, TriMesh closed) {
+  mesh::split_creases(closed, kCreaseRad);
+  take_measures(run, closed);
+  return closed;
 }
 
 double deviation_scale_um(const sim::Job& job) {

@@ -27,7 +27,7 @@ render::Camera machine_camera(const FinishedRun& run, const std::string& name,
 RenderStatistics make_movie(const FinishedRun& run, const std::string& path, const std::string& camera,
                             Progress& progress);
 
-/// One picture of the part by ray tracing.
+/// One picture of the part (shown_part) by ray tracing.
 enum class StillKind { kMachine, kPart, kDeviation, kFan };
 StillKind still_kind(const std::string& name);  ///< "machine", "part", "deviation", "fan"; throws InputError
 void make_still(const FinishedRun& run, const TriMesh& part, StillKind kind, const std::string& camera,
@@ -40,12 +40,12 @@ ColourBar deviation_colour_bar(double scale_um);
 render::Image deviation_picture(const TriMesh& coloured, double scale_um, const std::string& camera,
                                 render::StillOptions options);
 
-/// The part made light enough to be sent around.
+/// The part for the eye, made light enough to be sent around.
 struct DisplayMesh {
-  TriMesh mesh;
+  TriMesh mesh;           ///< shown_part of the decimated mesh
   double error_mm = 0.0;  ///< that the decimation reached, measured
 };
-DisplayMesh display_mesh(const TriMesh& part, double max_error_mm);
+DisplayMesh display_mesh(const FinishedRun& run, const TriMesh& closed, double max_error_mm);
 
 /// machine.glb: links, tool and finished part with the axes animated over the program.
 void write_machine_glb(const FinishedRun& run, const DisplayMesh& part, const std::string& path);

@@ -105,9 +105,9 @@ void write_run(const std::string& target, const sim::Job& job, sim::Result& resu
   RunFiles files;
   RenderStatistics statistics;
   progress.begin("glTF", 3, "files");
-  const TriMesh part = part_mesh(run);
+  const TriMesh closed = run.stock.mesh();
   progress.advance(1);
-  const DisplayMesh light = display_mesh(part, kPartGlbError);
+  const DisplayMesh light = display_mesh(run, closed, kPartGlbError);
   files.part_error_mm = light.error_mm;
   write_part_glb(run, light, folder.file("part.glb"));
   files.part_glb = folder.file("part.glb");
@@ -116,7 +116,7 @@ void write_run(const std::string& target, const sim::Job& job, sim::Result& resu
   files.machine_glb = folder.file("machine.glb");
   files.animation_scale = animation_scale(run);
   progress.end();
-  if (options.render) write_pictures(folder, run, part, progress, files, statistics);
+  if (options.render) write_pictures(folder, run, shown_part(run, closed), progress, files, statistics);
   result.stopped = progress.stop_requested();
   progress.begin("report", 1, "files");
   write_report(folder.file("report.html"), report_data(job, result, files, options.render));

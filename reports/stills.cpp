@@ -72,7 +72,9 @@ TriMesh half_cut_stock(const FinishedRun& run, size_t sample) {
   const auto end =
       std::find_if(sweeps.begin(), sweeps.end(), [&](const stock::Sweep& s) { return s.block > sample; });
   stock.cut(std::span(sweeps.begin(), end), stock::CutterSolid(run.job.scene.cutter));
-  return stock.mesh();
+  TriMesh mesh = stock.mesh();
+  mesh::split_creases(mesh, kCreaseRad);
+  return mesh;
 }
 
 }  // namespace
