@@ -171,10 +171,35 @@ void split_fans(Surface& surface) {
   }
 }
 
+/// Whether OpenMesh can hold the triangles: it asserts instead of refusing. Each directed edge once, at most
+/// one border through a vertex, and no inner vertex with fewer than three triangles (two sheets folded flat).
+bool fits_openmesh(const Surface& surface) {
+  const size_t count = surface.originals.size();
+  std::vector<uint64_t> edges;
+  std::vector<uint32_t> triangles(count, 0), borders(count, 0);
+  for (size_t c = 0; c < surface.indices.size(); ++c) {
+    const uint64_t from = surface.indices[c], to = surface.indices[c / 3 * 3 + (c + 1) % 3];
+    if (from == to) return false;
+    edges.push_back(from << 32 | to);
+    ++triangles[from];
+  }
+  std::sort(edges.begin(), edges.end());
+  if (std::adjacent_find(edges.begin(), edges.end()) != edges.end()) return false;
+  for (const uint64_t edge : edges) {
+    const uint64_t back = edge << 32 | edge >> 32;
+    if (!std::binary_search(edges.begin(), edges.end(), back)) ++borders[edge >> 32];
+  }
+  for (size_t v = 0; v < count; ++v) {
+    if (borders[v] > 1 || (borders[v] == 0 && triangles[v] > 0 && triangles[v] < 3)) return false;
+  }
+  return true;
+}
+
 /// The triangles as an OpenMesh whose vertices know their number; false if they are not
 /// manifold.
 bool to_openmesh(const TriMesh& mesh, const Surface& surface, OmMesh& om,
                  OpenMesh::VPropHandleT<uint32_t> number) {
+  if (!fits_openmesh(surface)) return false;
   const Indices& indices = surface.indices;
   std::vector<OmMesh::VertexHandle> handle(surface.originals.size());
   for (size_t i = 0; i < indices.size(); i += 3) {
