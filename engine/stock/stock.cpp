@@ -50,15 +50,24 @@ size_t Stock::memory_bytes() const {
 const CutStatistics& Stock::statistics() const {
   return impl_->level_set.statistics;
 }
-std::string Stock::check() const {
-  return broken_invariant(impl_->level_set);
+std::string Stock::check(CheckLevel level) const {
+  return broken_invariant(impl_->level_set, level);
+}
+std::string Stock::check_since(const Stock& earlier) const {
+  return gained_material(impl_->level_set, earlier.impl_->level_set);
+}
+Stock Stock::clone() const {
+  return Stock(std::make_unique<Impl>(Impl{deep_copy(impl_->level_set)}));
 }
 
-void Stock::save(const std::string& path, const std::map<std::string, std::string>& metadata) const {
+void Stock::save(const std::string& path, const StockMetadata& metadata) const {
   write_level_set(impl_->level_set, path, metadata);
 }
-Stock Stock::load(const std::string& path) {
-  return Stock(std::make_unique<Impl>(Impl{read_level_set(path)}));
+Stock Stock::load(const std::string& path, StockMetadata* metadata) {
+  StockMetadata found;
+  Stock stock(std::make_unique<Impl>(Impl{read_level_set(path, found)}));
+  if (metadata != nullptr) *metadata = std::move(found);
+  return stock;
 }
 
 size_t Stock::memory_estimate(const Box& box_W, double voxel_mm) {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <openvdb/io/Stream.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -55,6 +56,32 @@ std::string read_bytes(const std::string& path) {
   return std::move(bytes).str();
 }
 
+/// Refuses a file without swarf's trailer and says what it is. OpenVDB does not get to read it: its reader
+/// trusts lengths that a damaged file may hold. The texts looked for stand uncompressed in an OpenVDB file.
+[[noreturn]] void refuse_unmarked(const std::string& path, const std::string& bytes) {
+  const auto holds = [&](std::string_view text) { return bytes.find(text) != std::string::npos; };
+  constexpr std::string_view kOpenVdbMagic{" BDV\0\0\0\0", 8};
+  const size_t begun = std::min(bytes.size(), kOpenVdbMagic.size());
+  if (bytes.compare(0, begun, kOpenVdbMagic.substr(0, begun)) != 0) {
+    refuse("stock-file-foreign", path, "this is not an OpenVDB file",
+           "name a stock.vdb written by swarf run");
+  }
+  // The grid's transform ("UniformScaleMap", "AffineMap", ...) follows all of its metadata.
+  if (holds(kFormatKey) || !holds("Map")) {
+    refuse("stock-file-incomplete", path,
+           fmt::format("the file of {} bytes does not end as swarf ends its stock files", bytes.size()),
+           "it was cut off, or another program saved it again: run the scene again to write it");
+  }
+  if (!holds("level set")) {
+    refuse(
+        "stock-not-level-set", path,
+        holds("fog volume") ? "the file holds a fog volume, not a level set" : "the file holds no level set",
+        "name a stock.vdb written by swarf run");
+  }
+  refuse("stock-file-foreign", path, "the level set was written by another program: its box is not known",
+         "name a stock.vdb written by swarf run");
+}
+
 /// The OpenVDB part of a file whose trailer is whole.
 std::string verified_bytes(const std::string& path) {
   std::string bytes = read_bytes(path);
@@ -63,11 +90,7 @@ std::string verified_bytes(const std::string& path) {
   }
   const bool marked = bytes.size() > kTrailerBytes &&
                       bytes.compare(bytes.size() - kTrailerBytes, kMarkBytes, kMark, kMarkBytes) == 0;
-  if (!marked) {
-    refuse("stock-file-incomplete", path,
-           fmt::format("the file of {} bytes does not end as swarf ends its stock files", bytes.size()),
-           "it was cut off, or another program wrote it: use a stock.vdb written by swarf run");
-  }
+  if (!marked) refuse_unmarked(path, bytes);
   uint64_t expected = 0;
   std::memcpy(&expected, bytes.data() + bytes.size() - sizeof(expected), sizeof(expected));
   bytes.resize(bytes.size() - kTrailerBytes);
@@ -116,11 +139,10 @@ void attach_map(LevelSet& set) {
     set.map.states[n] = set.map.leaves[n] ? LeafState::kLeaf : solid ? LeafState::kSolid : LeafState::kAir;
     found += set.map.leaves[n] ? 1 : 0;
   }
-  SWARF_CHECK(found == set.grid->tree().leafCount(), "a verified stock file has leaves outside its box");
+  SWARF_CHECK(found == set.grid->tree().leafCount(), "a level set has leaves outside its box");
 }
 
-void add_metadata(openvdb::FloatGrid& grid, const LevelSet& set,
-                  const std::map<std::string, std::string>& metadata) {
+void add_metadata(openvdb::FloatGrid& grid, const LevelSet& set, const StockMetadata& metadata) {
   for (const auto& [key, text] : metadata) grid.insertMeta(key, openvdb::StringMetadata(text));
   const auto vector = [](const Vec3& v) { return openvdb::Vec3DMetadata({v.x(), v.y(), v.z()}); };
   grid.insertMeta(kFormatKey, openvdb::StringMetadata(kFormat));
@@ -140,8 +162,7 @@ void append_trailer(const std::string& path) {
 
 }  // namespace
 
-void write_level_set(const LevelSet& set, const std::string& path,
-                     const std::map<std::string, std::string>& metadata) {
+void write_level_set(const LevelSet& set, const std::string& path, const StockMetadata& metadata) {
   const std::string temporary = path + ".part";
   openvdb::FloatGrid::Ptr grid = set.grid->copy();  // shares the tree, owns its metadata
   add_metadata(*grid, set, metadata);
@@ -164,11 +185,26 @@ void write_level_set(const LevelSet& set, const std::string& path,
   }
 }
 
-LevelSet read_level_set(const std::string& path) {
+LevelSet read_level_set(const std::string& path, StockMetadata& metadata) {
   LevelSet set;
   set.grid = parse_grid(path, verified_bytes(path));
+  for (auto meta = set.grid->beginMeta(); meta != set.grid->endMeta(); ++meta) {
+    if (meta->second->typeName() == openvdb::StringMetadata::staticTypeName()) {
+      metadata[meta->first] = meta->second->str();
+    }
+  }
   set.voxel = set.grid->voxelSize().x();
   set.box = {metadata_vector(*set.grid, kBoxLowerKey), metadata_vector(*set.grid, kBoxUpperKey)};
+  attach_map(set);
+  return set;
+}
+
+LevelSet deep_copy(const LevelSet& original) {
+  LevelSet set;
+  set.box = original.box;
+  set.voxel = original.voxel;
+  set.grid = original.grid->deepCopy();
+  set.statistics = original.statistics;
   attach_map(set);
   return set;
 }

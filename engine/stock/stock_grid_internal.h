@@ -88,9 +88,12 @@ void cut_level_set(LevelSet& level_set, std::span<const Sweep> sweeps, const Cut
 double volume(const LevelSet& level_set);
 double trilinear(const LevelSet& level_set, const Vec3& point_W);
 uint64_t state_hash(const LevelSet& level_set);
-std::string broken_invariant(const LevelSet& level_set);
-void write_level_set(const LevelSet& level_set, const std::string& path,
-                     const std::map<std::string, std::string>& metadata);
-LevelSet read_level_set(const std::string& path);
+/// Invariants, see Stock::check (stock_check.cpp).
+std::string broken_invariant(const LevelSet& level_set, CheckLevel level);
+std::string gained_material(const LevelSet& level_set, const LevelSet& earlier);
+void write_level_set(const LevelSet& level_set, const std::string& path, const StockMetadata& metadata);
+/// `metadata` receives what write_level_set was given.
+LevelSet read_level_set(const std::string& path, StockMetadata& metadata);
+LevelSet deep_copy(const LevelSet& level_set);
 
 }  // namespace swarf::stock

@@ -1,9 +1,8 @@
-// What is read off the level set: volume, distance, state hash, invariants.
-#include <fmt/format.h>
-
+// What is read off the level set: volume, distance, state hash.
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 
 #include "base/hash.h"
 #include "base/parallel.h"
@@ -43,64 +42,24 @@ double leaf_volume(const LeafMap& map, size_t n) {
   return sum;
 }
 
+/// Four lanes of FNV-1a by words, so that the processor works on four multiplications at a time: a leaf of
+/// 2 kB then costs little more than reading it.
 uint64_t leaf_hash(const LeafMap& map, size_t n) {
   Hash hash;
+  hash.add(static_cast<uint64_t>(n));
   hash.add(static_cast<uint64_t>(map.states[n]));
   if (map.states[n] == LeafState::kLeaf) {
+    constexpr int kLanes = 4, kWords = kLeafVoxels * sizeof(float) / sizeof(uint64_t);
     const float* values = map.leaves[n]->buffer().data();
-    for (int voxel = 0; voxel < kLeafVoxels; ++voxel) hash.add(values[voxel]);
+    std::array<Hash, kLanes> lanes;
+    for (int word = 0; word < kWords; word += kLanes) {
+      std::array<uint64_t, kLanes> words;
+      std::memcpy(words.data(), values + 2 * word, sizeof(words));
+      for (int lane = 0; lane < kLanes; ++lane) lanes[lane].add(words[lane]);
+    }
+    for (const Hash& lane : lanes) hash.add(lane.value());
   }
   return hash.value();
-}
-
-/// Invariants 1 and 2: the tree and the map name the same leaves.
-std::string map_fault(const LevelSet& set) {
-  size_t leaves = 0;
-  for (size_t n = 0; n < set.map.size(); ++n) {
-    if (set.map.states[n] != LeafState::kLeaf) continue;
-    ++leaves;
-    if (set.grid->tree().probeConstLeaf(set.map.origin(n)) != set.map.leaves[n]) {
-      return fmt::format("1: leaf position {} of the map is not the tree's leaf", n);
-    }
-  }
-  if (leaves != set.grid->tree().leafCount()) {
-    return fmt::format("2: the tree has {} leaves, the map {}", set.grid->tree().leafCount(), leaves);
-  }
-  return "";
-}
-
-/// Invariant 3: tiles of the tree carry the state's sign.
-std::string tile_fault(const LevelSet& set, size_t n) {
-  if (set.map.states[n] == LeafState::kLeaf) return "";
-  const float expected = set.map.states[n] == LeafState::kSolid ? -set.band() : set.band();
-  if (set.grid->tree().getValue(set.map.origin(n)) == expected) return "";
-  return fmt::format("3: tile at leaf position {} differs from the map's state", n);
-}
-
-/// Invariants 4 to 6 of one leaf: values inside the band, mask of active voxels, slopes within the norm.
-std::string leaf_fault(const LevelSet& set, size_t n) {
-  if (set.map.states[n] != LeafState::kLeaf) return "";
-  const LeafNode& leaf = *set.map.leaves[n];
-  const float band = set.band();
-  // A distance changes by at most one voxel per voxel; floats of 50 mm coordinates add 1e-5 mm.
-  const float steepest = static_cast<float>(set.voxel) + 2e-5F;
-  for (auto voxel = leaf.cbeginValueAll(); voxel; ++voxel) {
-    const openvdb::Coord ijk = voxel.getCoord();
-    const float value = *voxel;
-    if (!(value >= -band && value <= band)) return fmt::format("4: value {} mm outside the band", value);
-    if (voxel.isValueOn() != (value > -band && value < band)) {
-      return fmt::format("5: activity of voxel ({}, {}, {})", ijk.x(), ijk.y(), ijk.z());
-    }
-    for (int axis = 0; axis < 3; ++axis) {
-      openvdb::Coord next = ijk;
-      ++next[axis];
-      if (std::abs(set.value(next) - value) > steepest) {
-        return fmt::format("6: step of {} mm beside voxel ({}, {}, {})", set.value(next) - value, ijk.x(),
-                           ijk.y(), ijk.z());
-      }
-    }
-  }
-  return "";
 }
 
 }  // namespace
@@ -134,31 +93,18 @@ double trilinear(const LevelSet& set, const Vec3& point_W) {
 }
 
 uint64_t state_hash(const LevelSet& set) {
-  std::vector<uint64_t> parts(set.map.size());
-  parallel_chunks(parts.size(), kPositionsPerTask, [&](size_t begin, size_t end) {
-    for (size_t n = begin; n < end; ++n) parts[n] = leaf_hash(set.map, n);
+  const size_t chunks = (set.map.size() + kPositionsPerTask - 1) / kPositionsPerTask;
+  std::vector<uint64_t> parts(chunks, 0);
+  parallel_chunks(set.map.size(), kPositionsPerTask, [&](size_t begin, size_t end) {
+    for (size_t n = begin; n < end; ++n) parts[begin / kPositionsPerTask] += leaf_hash(set.map, n);
   });
+  // A sum, because it does not care for order: integers wrap, so every split into chunks adds up alike.
+  uint64_t sum = 0;
+  for (const uint64_t part : parts) sum += part;
   Hash hash;
   hash.add(set.voxel);
-  for (const uint64_t part : parts) hash.add(part);
+  hash.add(sum);
   return hash.value();
-}
-
-std::string broken_invariant(const LevelSet& set) {
-  if (std::string fault = map_fault(set); !fault.empty()) return fault;
-  const size_t chunks = (set.map.size() + kPositionsPerTask - 1) / kPositionsPerTask;
-  std::vector<std::string> faults(chunks);
-  parallel_chunks(set.map.size(), kPositionsPerTask, [&](size_t begin, size_t end) {
-    std::string& fault = faults[begin / kPositionsPerTask];
-    for (size_t n = begin; n < end && fault.empty(); ++n) {
-      fault = tile_fault(set, n);
-      if (fault.empty()) fault = leaf_fault(set, n);
-    }
-  });
-  for (const std::string& fault : faults) {
-    if (!fault.empty()) return fault;
-  }
-  return "";
 }
 
 }  // namespace swarf::stock

@@ -106,20 +106,63 @@ TEST_F(StockFile, WhatIsNoStockFileIsRefused) {
   write("");
   EXPECT_EQ(code_of_load(), "stock-file-empty");
   write("G21 G90\nM30\n");
-  EXPECT_EQ(code_of_load(), "stock-file-incomplete");
+  EXPECT_EQ(code_of_load(), "stock-file-foreign");
   fs::remove(path);
   fs::create_directory(path);
   EXPECT_EQ(code_of_load(), "stock-file-unreadable");
 }
 
-TEST_F(StockFile, AnotherProgramsGridIsRefused) {
+/// Writes a grid as any OpenVDB program does.
+void write_grid(const std::string& path, openvdb::GridClass grid_class) {
   openvdb::initialize();
   const auto grid = openvdb::FloatGrid::create(1.0F);
   grid->setName("density");
+  grid->setGridClass(grid_class);
   openvdb::io::File file(path);
   file.write(openvdb::GridPtrVec{grid});
   file.close();
+}
+
+TEST_F(StockFile, AnotherProgramsGridIsRefused) {
+  write_grid(path, openvdb::GRID_LEVEL_SET);
+  EXPECT_EQ(code_of_load(), "stock-file-foreign");
+  write_grid(path, openvdb::GRID_FOG_VOLUME);
+  EXPECT_EQ(code_of_load(), "stock-not-level-set");
+  write_grid(path, openvdb::GRID_UNKNOWN);
+  EXPECT_EQ(code_of_load(), "stock-not-level-set");
+}
+
+TEST_F(StockFile, SavedAgainByAnotherProgramIsRefused) {
+  small_stock().save(path, {});
+  openvdb::io::File file(path);
+  file.open();
+  const auto grids = file.getGrids();
+  file.close();
+  openvdb::io::File(path).write(*grids);
   EXPECT_EQ(code_of_load(), "stock-file-incomplete");
+}
+
+TEST_F(StockFile, MetadataComesBack) {
+  small_stock().save(path, {{"swarf_scene", "dome"}, {"swarf_block", "17"}});
+  StockMetadata metadata;
+  Stock::load(path, &metadata);
+  EXPECT_EQ(metadata.at("swarf_scene"), "dome");
+  EXPECT_EQ(metadata.at("swarf_block"), "17");
+}
+
+TEST_F(StockFile, CloneIsItsOwnStock) {
+  Stock stock = small_stock();
+  Stock copy = stock.clone();
+  EXPECT_EQ(copy.hash(), stock.hash());
+  EXPECT_EQ(copy.check(), "");
+  const uint64_t before = stock.hash();
+  copy.cut(std::vector<Sweep>{{{{0, -7, -2}, Vec3::UnitZ()}, {{0, 7, -3}, Vec3::UnitZ()}, 1}},
+           CutterSolid{2.0, 10.0});
+  EXPECT_NE(copy.hash(), before);
+  EXPECT_EQ(stock.hash(), before);
+  EXPECT_EQ(copy.check_since(stock), "");
+  // The other way round material grows.
+  EXPECT_NE(stock.check_since(copy), "");
 }
 
 TEST_F(StockFile, FailedSaveSaysSoAndKeepsTheOldFile) {
