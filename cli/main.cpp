@@ -17,6 +17,9 @@ namespace {
 const char* const kFooter = R"(Examples:
   swarf run scenes/lin_koren_dome/scene.toml -o out/dome     simulate, measure, render, report
   swarf run scene.toml --set stock.voxel_mm=0.1 --no-render  one key changed, numbers only
+  swarf run scene.toml --save-stock-after 13,12.5s           stocks after program line 13 and after 12.5 s
+  swarf run scene.toml --from out/dome/stock.vdb             go on from a saved or stopped stock
+  swarf replay out/dome/run.record                           does the scene still cut the same, block by block?
   swarf check scene.toml program.nc machine.toml             find what is wrong, run nothing
   swarf compare out/dome/stock.vdb scene.toml                a finished stock against its design
   swarf render out/dome --still part.png --camera left       pictures without simulating again
@@ -57,6 +60,7 @@ int main(int argc, char** argv) {
   app.footer(kFooter);
   int exit_code = swarf::cli::kPass;
   swarf::cli::add_run(app, exit_code);
+  swarf::cli::add_replay(app, exit_code);
   swarf::cli::add_check(app, exit_code);
   swarf::cli::add_plan(app, exit_code);
   swarf::cli::add_compare(app, exit_code);

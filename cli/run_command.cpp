@@ -18,8 +18,11 @@ namespace {
 struct RunOptions {
   std::string scene, output;
   std::vector<std::string> overrides;
+  std::string from, save_after;
   int threads = 0;
-  bool no_render = false, json = false;
+  size_t record_every = 256;
+  double max_memory_mb = 0.0;
+  bool no_render = false, json = false, record = false, check = false;
 };
 
 void print_outcome(const sim::Job& job, const sim::Result& result, const std::string& folder) {
@@ -33,17 +36,47 @@ void print_outcome(const sim::Job& job, const sim::Result& result, const std::st
              (std::filesystem::path(folder) / "report.html").string());
 }
 
+/// How to go on after Ctrl-C.
+void print_stopped(const RunOptions& options, const sim::Result& result, const std::string& folder) {
+  const sim::CutState& state = result.cut.state;
+  std::string again = "swarf run " + options.scene;
+  for (const std::string& set : options.overrides) again += fmt::format(" --set '{}'", set);
+  fmt::print(stderr,
+             "stopped: {} of {} blocks are cut, up to program line {}, {:.3f} s; what was finished is in {}\n"
+             "  go on with: {} --from {} -o {}\n",
+             state.sweeps, result.merged_sweeps, state.place.line, state.place.t_s, folder, again,
+             (std::filesystem::path(folder) / "stock.vdb").string(), folder);
+}
+
+sim::CutOptions cut_options(const RunOptions& options, const reports::PendingFolder& folder) {
+  sim::CutOptions cut;
+  cut.resume_file = options.from;
+  if (!options.save_after.empty()) cut.save_after = sim::parse_places(options.save_after);
+  cut.save_folder = folder.path();
+  cut.record = options.record;
+  cut.record_every = options.record_every;
+  cut.check_voxels = options.check;
+  cut.render = !options.no_render;
+  cut.overrides = options.overrides;
+  return cut;
+}
+
 int run(const RunOptions& options) {
   set_thread_count(options.threads);
-  const sim::Job job = sim::load_job(options.scene, options.overrides);
+  std::vector<std::string> overrides = options.overrides;
+  if (options.max_memory_mb > 0.0) {
+    overrides.push_back(fmt::format("stock.max_memory_mb={}", options.max_memory_mb));
+  }
+  const sim::Job job = sim::load_job(options.scene, overrides);
   print_diagnostics(job.warnings);
   const std::string folder = options.output.empty() ? "out/" + job.scene.name : options.output;
   reports::check_output_folder(folder, reports::kRunMark);
+  reports::PendingFolder pending(folder);
   TerminalProgress progress;
-  sim::Result result = sim::simulate(job, progress);
-  reports::write_run(folder, job, result, {!options.no_render, options.overrides}, progress);
+  sim::Result result = sim::simulate(job, cut_options(options, pending), progress);
+  reports::write_run(pending, job, result, {!options.no_render, options.overrides}, progress);
   if (result.stopped) {
-    fmt::print(stderr, "stopped: what was finished is in {}\n", folder);
+    print_stopped(options, result, folder);
     return kStopped;
   }
   if (options.json) {
@@ -52,6 +85,34 @@ int run(const RunOptions& options) {
     print_outcome(job, result, folder);
   }
   return sim::passes(result) ? kPass : kFindings;
+}
+
+/// Options of the stock on its way.
+void add_stock_options(CLI::App& command, RunOptions& options) {
+  CLI::Option* from = command.add_option(
+      "--from", options.from,
+      "go on from a stock.vdb that this scene has saved or left when it was stopped; the finished stock is "
+      "bit-identical to that of an uninterrupted run");
+  command
+      .add_option("--save-stock-after", options.save_after,
+                  "save the stock after these places in the program: lines as findings name them (13) and "
+                  "program times (12.5s), separated by commas; stock_after_*.vdb in the results")
+      ->type_name("PLACE[,PLACE...]");
+  command
+      .add_flag("--record", options.record,
+                "keep every sweep and hashes of the stock in run.record, for swarf replay")
+      ->excludes(from);
+  command.add_option("--record-every", options.record_every, "sweeps between two hashes of --record")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000000));
+  command.add_flag("--check", options.check,
+                   "check the costly invariants of the stock on the way too, not only at the end");
+  command
+      .add_option("--max-memory", options.max_memory_mb,
+                  "refuse to start when more is expected to be needed (default: stock.max_memory_mb, else "
+                  "80 % of what is free)")
+      ->type_name("MB")
+      ->check(CLI::PositiveNumber);
 }
 
 }  // namespace
@@ -70,6 +131,7 @@ void add_run(CLI::App& app, int& exit_code) {
       ->add_option("--threads", options->threads,
                    "threads to use (default: all cores); results do not depend on it")
       ->check(CLI::Range(1, 4096));
+  add_stock_options(*command, *options);
   command->add_flag("--no-render", options->no_render, "no movie and no stills");
   command->add_flag("--json", options->json, "print metrics.json instead of the table");
   command->callback([options, &exit_code] { exit_code = run(*options); });

@@ -42,6 +42,7 @@ void TerminalProgress::begin(std::string_view stage, double total, std::string_v
   stage_ = stage;
   unit_ = unit;
   total_ = total;
+  first_ = 0.0;
   start_ = Clock::now();
   drawn_ = start_;
   if (is_terminal()) draw(0.0);
@@ -57,7 +58,11 @@ void TerminalProgress::advance(double done) {
 void TerminalProgress::draw(double done) {
   const double share = total_ > 0.0 ? std::clamp(done / total_, 0.0, 1.0) : 0.0;
   const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
-  const std::string left = share > 0.02 ? fmt::format("{:.0f} s left", elapsed * (1.0 - share) / share) : "";
+  const double rate = elapsed > 0.0 ? (done - first_) / elapsed : 0.0;
+  const bool known = total_ > 0.0 && done - first_ > 0.02 * (total_ - first_);
+  const std::string left = known ? fmt::format("{:.{}f} {}/s  {:.0f} s left", rate, rate < 10.0 ? 1 : 0,
+                                               unit_, (total_ - done) / rate)
+                                 : "";
   if (is_terminal()) {
     const int filled = static_cast<int>(share * kBarWidth);
     fmt::print(stderr, "\r\033[K{:<22} [{:#<{}}{:.<{}}] {:3.0f} %  {}", stage_, "", filled, "",
@@ -67,6 +72,10 @@ void TerminalProgress::draw(double done) {
                unit_, left);
   }
   std::fflush(stderr);
+}
+
+void TerminalProgress::note(std::string_view text) {
+  fmt::print(stderr, "{}\n", text);
 }
 
 void TerminalProgress::end() {

@@ -21,6 +21,8 @@ class TerminalProgress final : public Progress {
  public:
   void begin(std::string_view stage, double total, std::string_view unit) override;
   void advance(double done) override;
+  void start_at(double done) override { first_ = done; }
+  void note(std::string_view text) override;
   void end() override;
   bool stop_requested() const override { return interrupted(); }
 
@@ -29,7 +31,7 @@ class TerminalProgress final : public Progress {
   void draw(double done);
 
   std::string stage_, unit_;
-  double total_ = 0.0;
+  double total_ = 0.0, first_ = 0.0;
   Clock::time_point start_, drawn_;
 };
 

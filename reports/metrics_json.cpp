@@ -49,6 +49,7 @@ Json stock_json(const sim::Job& job, const sim::Result& result) {
   const stock::CutStatistics& cut = result.stock->statistics();
   return {{"voxel_mm", job.scene.stock.voxel_mm},
           {"blocks", cut.sweeps},
+          {"blocks_resumed", result.cut.resumed_from},
           {"seconds", cut.seconds},
           {"blocks_per_s", cut.seconds > 0.0 ? static_cast<double>(cut.sweeps) / cut.seconds : 0.0},
           {"voxel_updates", cut.voxel_updates},
@@ -174,6 +175,12 @@ std::string metrics_json(const sim::Job& job, const sim::Result& result, const R
             {"interpolators", comparison_json(result.modes)},
             {"collisions", collisions_json(result.clearance)},
             {"render", {{"frames", render.frames}, {"frame_ms_median", render.frame_ms_median}}},
+            {"checks",
+             {{"stock_map", result.cut.map_checks},
+              {"stock_voxels", result.cut.voxel_checks},
+              {"stock_broken", result.cut.broken_invariant}}},
+            {"memory_predicted_mb", result.memory.peak_mb},
+            {"memory_stock_predicted_mb", result.memory.stock_mb},
             {"memory_peak_mb", peak_memory_mb()}};
   if (result.flank) json["flank"] = flank_json(*result.flank);
   return json.dump(2) + "\n";

@@ -17,6 +17,7 @@ class PendingFolder {
 
   /// Path of a file inside the pending folder.
   std::string file(const std::string& name) const;
+  std::string path() const { return pending_.string(); }
   /// Takes the target's place; what stood there is removed last.
   void move_into_place();
 

@@ -82,15 +82,14 @@ void write_pictures(const PendingFolder& folder, const FinishedRun& run, const T
 
 }  // namespace
 
-void write_run(const std::string& target, const sim::Job& job, sim::Result& result,
-               const OutputOptions& options, Progress& progress) {
-  PendingFolder folder(target);
+void write_run(PendingFolder& folder, const sim::Job& job, sim::Result& result, const OutputOptions& options,
+               Progress& progress) {
   keep_inputs(folder, job, options);
   progress.begin("write results", 3, "files");
   sim::write_trajectory(folder.file("trajectory.csv"), result.main.motion.trajectory, result.main.path,
                         job.machine.model);
   progress.advance(1);
-  result.stock->save(folder.file("stock.vdb"), {{"scene", job.scene.name}, {"swarf", SWARF_VERSION}});
+  result.stock->save(folder.file("stock.vdb"), result.cut.metadata);
   progress.advance(2);
   for (size_t i = 0; i < result.main.dexels.size(); ++i) {
     result.main.dexels[i].save(folder.file(fmt::format("surface_{}.rays", i)));

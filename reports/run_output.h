@@ -6,6 +6,7 @@
 
 #include "base/progress.h"
 #include "reports/metrics_json.h"
+#include "reports/pending_folder.h"
 #include "sim/simulation.h"
 
 namespace swarf::reports {
@@ -18,9 +19,10 @@ struct OutputOptions {
 /// The file that marks a folder as a result of `swarf run`.
 inline constexpr const char* kRunMark = "run.json";
 
-/// Writes everything into `folder`, replacing an earlier result whole; what stands there stays until then.
-void write_run(const std::string& folder, const sim::Job& job, sim::Result& result,
-               const OutputOptions& options, Progress& progress);
+/// Writes everything into `folder` beside what the run has saved there already, and moves it into place: an
+/// earlier result is replaced whole; it stays until then.
+void write_run(PendingFolder& folder, const sim::Job& job, sim::Result& result, const OutputOptions& options,
+               Progress& progress);
 
 /// A run read back from its folder: no simulation.
 struct StoredRun {

@@ -196,6 +196,12 @@ std::vector<Check> checks_of(const sim::Job& job, const sim::Result& result, boo
                    um_from_mm(result.sweep_bound_mm),
                    job.cl ? result.main.path.elements.size() : motion.ticks, job.cl ? "blocks" : "cycles"),
        ""},
+      {"Invariants of the level set",
+       result.cut.broken_invariant.empty()
+           ? fmt::format("numbers 1 to 8 hold ({} checks of all, {} of 1 to 4 on the way)",
+                         result.cut.voxel_checks, result.cut.map_checks)
+           : result.cut.broken_invariant,
+       "", state(result.cut.broken_invariant.empty())},
       {"Shank and holder against the stock",
        fmt::format("{} contacts at {} poses", clearance.contacts, clearance.checked_poses), "",
        state(clearance.contacts == 0)},
@@ -297,7 +303,13 @@ std::vector<FactGroup> facts_of(const sim::Job& job, const sim::Result& result, 
                                      um_from_mm(files.part_error_mm))},
             {"Movie", fmt::format("shows a stock of {:g} mm voxels; nothing is measured on it",
                                   job.scene.movie.voxel_mm)}}},
-          {"Program", {{"swarf", SWARF_VERSION}}}};
+          {"Program",
+           {{"swarf", SWARF_VERSION},
+            {"Memory", fmt::format("{:.0f} MB expected for the whole run; metrics.json has its measured peak",
+                                   result.memory.peak_mb)},
+            {"Cut", result.cut.resumed_from > 0 ? fmt::format("resumed after {} of {} sweeps",
+                                                              result.cut.resumed_from, result.merged_sweeps)
+                                                : "from the box"}}}};
 }
 
 using Lines = std::vector<std::pair<std::string, std::string>>;

@@ -13,6 +13,10 @@ class Progress {
   virtual void begin(std::string_view stage, double total, std::string_view unit);
   /// `done` of the stage's total is finished.
   virtual void advance(double done);
+  /// The stage goes on from what an earlier run has done: that much took no time.
+  virtual void start_at(double done);
+  /// One line to be read while the work goes on: "memory: 168 MB expected, ...".
+  virtual void note(std::string_view text);
   /// The stage is over.
   virtual void end();
   /// True once the user has asked to stop; long loops look at it between units of work.

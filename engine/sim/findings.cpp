@@ -113,6 +113,11 @@ void clearance_faults(const Job& job, const Result& result, Collector& collect) 
 }
 
 void built_in_checks(const Job& job, const Result& result, Collector& collect) {
+  if (!result.cut.broken_invariant.empty()) {
+    collect.add("stock-invariant",
+                fmt::format("the level set broke its invariant {}", result.cut.broken_invariant),
+                "this is a fault of the program: please report it with the scene", {job.scene.file}, 0.0);
+  }
   if (job.has_design() && !result.cross_check.holds) {
     collect.add("stock-and-rays-disagree",
                 fmt::format("level set and measuring rays differ by {:.1f} um, the bound is {:.1f} um",

@@ -1,8 +1,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
-#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -12,6 +10,7 @@
 #include "mesh/mesh_check.h"
 #include "mesh/mesh_io.h"
 #include "mesh/mesh_ops.h"
+#include "sim/memory.h"
 #include "sim/scene.h"
 #include "stock/stock.h"
 
@@ -19,19 +18,6 @@ namespace swarf::sim {
 namespace {
 
 constexpr double kMegabyte = 1024.0 * 1024.0;
-constexpr double kShareOfFreeMemory = 0.8;
-
-/// Free memory of the machine in MB, as the kernel estimates it; infinity where it does not say.
-double available_memory_mb() {
-  std::ifstream meminfo("/proc/meminfo");
-  std::string name, unit;
-  double kilobytes = 0.0;
-  while (meminfo >> name >> kilobytes) {
-    std::getline(meminfo, unit);
-    if (name == "MemAvailable:") return kilobytes / 1024.0;
-  }
-  return std::numeric_limits<double>::infinity();
-}
 
 /// The smallest voxel, to two digits, whose estimate fits.
 double voxel_that_fits(const Box& box, double voxel, double limit_mb) {
@@ -42,16 +28,16 @@ double voxel_that_fits(const Box& box, double voxel, double limit_mb) {
   return std::ceil(fitting / digit) * digit;
 }
 
+/// What the box alone needs is known without a path: a wrong digit in voxel_mm is refused at once.
 void check_memory(const Scene& scene, Diagnostics& diagnostics) {
-  const double limit = scene.stock.max_memory_mb > 0.0 ? scene.stock.max_memory_mb
-                                                       : kShareOfFreeMemory * available_memory_mb();
+  const double limit = memory_limit_mb(scene);
   const double need =
       static_cast<double>(stock::Stock::memory_estimate(scene.stock.box_W, scene.stock.voxel_mm)) / kMegabyte;
   if (need <= limit) return;
   diagnostics.error("out-of-memory", {scene.file},
                     fmt::format("stock.voxel_mm = {:g} needs about {:.0f} MB, {:.0f} MB may be used",
                                 scene.stock.voxel_mm, need, limit),
-                    fmt::format("voxel_mm = {:g} fits; or raise stock.max_memory_mb",
+                    fmt::format("voxel_mm = {:g} fits; or raise --max-memory",
                                 voxel_that_fits(scene.stock.box_W, scene.stock.voxel_mm, limit)));
 }
 

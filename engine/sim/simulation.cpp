@@ -16,8 +16,6 @@
 namespace swarf::sim {
 namespace {
 
-constexpr size_t kSweepsPerBatch = 256;  // between two looks at the holder, the progress bar and Ctrl-C
-
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
@@ -176,29 +174,6 @@ void compare_modes(const Job& job, Progress& progress, Result& result) {
   progress.end();
 }
 
-void cut_stock(const Job& job, Progress& progress, Result& result) {
-  JobSweeps merged = stock_sweeps(job, result.main.path, result.main.motion.trajectory);
-  result.cut_sources = std::move(merged.sources);
-  result.sweep_bound_mm = merged.error_bound_mm;
-  result.merged_sweeps = merged.sweeps.size();
-  result.stock = std::make_unique<stock::Stock>(job.scene.stock.box_W, job.scene.stock.voxel_mm);
-  ToolClearanceCheck clearance(job.scene.cutter, job.scene.stock.voxel_mm);
-  const stock::CutterSolid solid(job.scene.cutter);
-  const double full = result.stock->volume_mm3();
-  progress.begin("cut", static_cast<double>(merged.sweeps.size()), "blocks");
-  for (size_t i = 0; i < merged.sweeps.size() && !progress.stop_requested(); i += kSweepsPerBatch) {
-    const auto batch =
-        std::span(merged.sweeps).subspan(i, std::min(kSweepsPerBatch, merged.sweeps.size() - i));
-    result.stock->cut(batch, solid);
-    clearance.check(*result.stock, batch);
-    progress.advance(static_cast<double>(i + batch.size()));
-  }
-  progress.end();
-  result.clearance = clearance.result();
-  result.volume_left_mm3 = result.stock->volume_mm3();
-  result.volume_removed_mm3 = full - result.volume_left_mm3;
-}
-
 void measure_part(const Job& job, Progress& progress, Result& result) {
   progress.begin("measure", 2, "steps");
   measure_dexels(job, result.main);
@@ -235,16 +210,26 @@ toolpath::ToolPath job_path(const Job& job, Diagnostics& diagnostics) {
   return plan_path(job, job.scene.toolpath.planner, diagnostics);
 }
 
-Result simulate(const Job& job, Progress& progress) {
-  Result result;
+MeasuredPath move_tool(const Job& job, Progress& progress) {
+  MeasuredPath measured;
   progress.begin("plan", 1, "paths");
   Diagnostics diagnostics;
-  result.main.path = job_path(job, diagnostics);
+  measured.path = job_path(job, diagnostics);
   progress.end();
-  result.main.motion =
-      motion::interpolate(result.main.path, job.machine.model, job.scene.cutter, job.scene.motion, progress);
-  if (!job.cl) require_contact(job, result.main.motion.trajectory);
-  cut_stock(job, progress, result);
+  measured.motion =
+      motion::interpolate(measured.path, job.machine.model, job.scene.cutter, job.scene.motion, progress);
+  if (!job.cl) require_contact(job, measured.motion.trajectory);
+  return measured;
+}
+
+Result simulate(const Job& job, const CutOptions& options, Progress& progress) {
+  Result result;
+  result.main = move_tool(job, progress);
+  result.memory = predict_memory(job, result.main, options.render, options.check_voxels ? 2 : 1);
+  require_memory(job, result.memory);
+  progress.note(fmt::format("memory: stock {:.0f} MB, whole run {:.0f} MB expected; limit {:.0f} MB",
+                            result.memory.stock_mb, result.memory.peak_mb, result.memory.limit_mb));
+  cut_stock(job, options, progress, result);
   result.stopped = progress.stop_requested();
   if (result.stopped) return result;
   if (job.cl && result.volume_removed_mm3 <= 0.0) throw path_misses_stock(job, "nothing was cut");

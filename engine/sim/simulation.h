@@ -12,7 +12,9 @@
 #include "measure/measure.h"
 #include "measure/metrics.h"
 #include "motion/interpolator.h"
+#include "sim/cut_stage.h"
 #include "sim/job_sweeps.h"
+#include "sim/memory.h"
 #include "sim/scene.h"
 #include "sim/tool_clearance.h"
 #include "stock/stock.h"
@@ -63,6 +65,8 @@ struct Result {
   measure::CrossCheck cross_check;
   ToolClearance clearance;
   std::optional<measure::FlankError> flank;  ///< of a ruled design and a cutter with a cylindrical flank
+  CutOutcome cut;
+  MemoryPrediction memory;
   std::vector<Finding> findings;
   bool stopped = false;  ///< the user stopped it; what follows the cut is missing
 };
@@ -71,8 +75,12 @@ struct Result {
 /// cannot be planned; what is only worth a warning goes to `diagnostics`.
 toolpath::ToolPath job_path(const Job& job, Diagnostics& diagnostics);
 
-/// Runs everything. Throws InputError when the path cannot be planned or never meets the stock.
-Result simulate(const Job& job, Progress& progress);
+/// Plans and interpolates the job's program, nothing else. Throws InputError when the path cannot be planned
+/// or never meets the stock.
+MeasuredPath move_tool(const Job& job, Progress& progress);
+
+/// Runs everything. Throws InputError as move_tool and cut_stock do.
+Result simulate(const Job& job, const CutOptions& options, Progress& progress);
 
 /// Free of charge: true when every limit of [accept] holds and there is no finding of severity error.
 bool passes(const Result& result);

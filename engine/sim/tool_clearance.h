@@ -31,6 +31,8 @@ class ToolClearanceCheck {
   ToolClearanceCheck(const cutter::Cutter& cutter, double voxel_mm);
   void check(const stock::Stock& stock, std::span<const stock::Sweep> sweeps);
   const ToolClearance& result() const { return result_; }
+  /// Goes on from an earlier result of the same cutter and voxel size.
+  void resume(const ToolClearance& earlier) { result_ = earlier; }
 
  private:
   struct Point {

@@ -3,9 +3,18 @@
 #include <utility>
 
 #include "base/check.h"
+#include "stock/leaf_kernel.h"
 #include "stock/stock_grid_internal.h"
 
 namespace swarf::stock {
+
+namespace {
+
+/// Of LeafMap, for each leaf position.
+constexpr size_t kMapBytes =
+    sizeof(LeafState) + sizeof(LeafNode*) + sizeof(LeafFloor) + sizeof(decltype(LeafMap::cuts)::value_type);
+
+}  // namespace
 
 struct Stock::Impl {
   LevelSet level_set;
@@ -43,9 +52,7 @@ uint64_t Stock::hash() const {
   return state_hash(impl_->level_set);
 }
 size_t Stock::memory_bytes() const {
-  const LeafMap& map = impl_->level_set.map;
-  return impl_->level_set.grid->memUsage() +
-         map.size() * (sizeof(LeafState) + sizeof(LeafNode*) + sizeof(map.cuts[0]));
+  return impl_->level_set.grid->memUsage() + impl_->level_set.map.size() * kMapBytes;
 }
 const CutStatistics& Stock::statistics() const {
   return impl_->level_set.statistics;
@@ -70,20 +77,26 @@ Stock Stock::load(const std::string& path, StockMetadata* metadata) {
   return stock;
 }
 
+size_t Stock::leaves() const {
+  return impl_->level_set.grid->tree().leafCount();
+}
+
+size_t Stock::memory_for(const Box& box_W, double voxel_mm, double leaves) {
+  constexpr double kLeafBytes = 2200.0;             // 512 floats, mask, node; measured 2168 per leaf
+  constexpr double kTransient = sizeof(LeafNode*);  // per position while the box is made
+  constexpr double kPositionBytes = kMapBytes + kTransient;
+  const double positions = (box_W.size() / (kLeafSide * voxel_mm) + Vec3::Constant(2.0)).prod();
+  return static_cast<size_t>(leaves * kLeafBytes + positions * kPositionBytes);
+}
+
 size_t Stock::memory_estimate(const Box& box_W, double voxel_mm) {
   // A surface element is met by leaves of (8 voxel)^2 face area; the band is 6 voxels thick, so a leaf
   // position along the surface's normal is touched with probability (8 + 6) / 8.
-  constexpr double kLeafBytes = 2200.0;   // 512 floats, mask, node; measured 2168 per leaf
-  constexpr double kLayers = 14.0 / 8.0;  // leaves per face of a leaf
-  constexpr double kNewSurface = 0.5;     // of the box's area, while it is cut
-  constexpr double kMapBytes =
-      sizeof(LeafState) + sizeof(uint32_t) + 2.0 * sizeof(LeafNode*);  // twice: while the box is made
+  constexpr double kLayers = (kLeafSide + 2.0 * kBandVoxels) / kLeafSide;
   const Vec3 d = box_W.size();
   const double area = 2.0 * (d.x() * d.y() + d.y() * d.z() + d.z() * d.x());
-  const double leaf_mm = 8.0 * voxel_mm;
-  const double leaves = kLayers * area * (1.0 + kNewSurface) / (leaf_mm * leaf_mm);
-  const double positions = (d / leaf_mm + Vec3::Constant(2.0)).prod();
-  return static_cast<size_t>(leaves * kLeafBytes + positions * kMapBytes);
+  const double leaf_mm = kLeafSide * voxel_mm;
+  return memory_for(box_W, voxel_mm, kLayers * area / (leaf_mm * leaf_mm));
 }
 
 }  // namespace swarf::stock

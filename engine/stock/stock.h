@@ -48,8 +48,8 @@ class Stock {
   /// an edge of length l is off by up to l voxel^2 / 12, with opposite signs for convex and concave ones).
   double volume_mm3() const;
   double distance_mm(const Vec3& point_W) const;  ///< trilinear signed distance, clamped to the band
-  /// Closed surface of the material with sharp edges and outward normals: see StockMesher, which makes it, and
-  /// makes it faster when it is asked for again after some cutting.
+  /// Closed surface of the material with sharp edges and outward normals: see StockMesher, which makes it,
+  /// and makes it faster when it is asked for again after some cutting.
   TriMesh mesh() const;
   uint64_t hash() const;
   size_t memory_bytes() const;
@@ -80,8 +80,11 @@ class Stock {
   /// OpenVDB's own.
   static Stock load(const std::string& path, StockMetadata* metadata = nullptr);
 
-  /// Bytes that a box at this voxel size is expected to need, its peak while cutting included: leaves along
-  /// its surface and along as much new surface again as half of that, plus the dense map of leaf positions.
+  size_t leaves() const;  ///< blocks of 8x8x8 voxels along the surface
+
+  /// Bytes of a stock with so many leaves: theirs and those of the map of all leaf positions.
+  static size_t memory_for(const Box& box_W, double voxel_mm, double leaves);
+  /// Bytes of the uncut box, by its area: the least that a run needs.
   static size_t memory_estimate(const Box& box_W, double voxel_mm);
 
  private:

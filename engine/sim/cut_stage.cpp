@@ -1,0 +1,200 @@
+#include "sim/cut_stage.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "sim/cut_record.h"
+#include "sim/simulation.h"
+
+namespace swarf::sim {
+namespace {
+
+constexpr size_t kSweepsPerBatch = 256;  // between two looks at the holder, the progress bar and Ctrl-C
+constexpr size_t kChecks = 8;            // of the invariants on the way, evenly spread over the sweeps
+
+size_t next_multiple(size_t at, size_t step) {
+  return (at / step + 1) * step;
+}
+
+class CutStage {
+ public:
+  CutStage(const Job& job, const CutOptions& options, Progress& progress, Result& result)
+      : job_(job),
+        options_(options),
+        progress_(progress),
+        result_(result),
+        outcome_(result.cut),
+        merged_(stock_sweeps(job, result.main.path, result.main.motion.trajectory)),
+        cutter_(job.scene.cutter),
+        identity_(cut_identity(job, merged_.sweeps)),
+        clearance_(job.scene.cutter, job.scene.stock.voxel_mm) {
+    outcome_.state.clearance = clearance_.result();
+    result_.sweep_bound_mm = merged_.error_bound_mm;
+    result_.merged_sweeps = merged_.sweeps.size();
+  }
+
+  void run() {
+    find_saves();
+    make_stock();
+    progress_.begin("cut", static_cast<double>(merged_.sweeps.size()), "blocks");
+    progress_.start_at(static_cast<double>(at_));
+    save_due();
+    while (at_ < merged_.sweeps.size() && !progress_.stop_requested()) cut_on();
+    progress_.end();
+    check(CheckKind::kAtEnd);
+    finish();
+  }
+
+ private:
+  enum class CheckKind { kOnTheWay, kAtEnd };
+  struct Save {
+    size_t after;  ///< sweeps
+    const ProgramPlace* place;
+  };
+
+  void find_saves() {
+    for (const ProgramPlace& place : options_.save_after) {
+      const size_t after = sweeps_until(place, merged_, result_.main.motion.trajectory, result_.main.path);
+      saves_.push_back({after, &place});
+    }
+    std::stable_sort(saves_.begin(), saves_.end(),
+                     [](const Save& a, const Save& b) { return a.after < b.after; });
+  }
+
+  void make_stock() {
+    const StockSettings& settings = job_.scene.stock;
+    result_.stock = std::make_unique<stock::Stock>(settings.box_W, settings.voxel_mm);
+    full_mm3_ = result_.stock->volume_mm3();
+    if (!options_.resume_file.empty()) {
+      result_.stock.reset();
+      result_.stock =
+          std::make_unique<stock::Stock>(load_in_process(options_.resume_file, identity_, outcome_.state));
+      at_ = outcome_.resumed_from = outcome_.state.sweeps;
+      clearance_.resume(outcome_.state.clearance);
+      for (const Save& save : saves_) {
+        if (save.after >= at_) continue;
+        throw InputError("place-before-resume", {save.place->text},
+                         fmt::format("the stock to go on from was cut up to line {}, {:.3f}s already",
+                                     outcome_.state.place.line, outcome_.state.place.t_s),
+                         "save after a later place, or run from the start");
+      }
+    }
+    if (options_.check_voxels) checked_ = result_.stock->clone();
+  }
+
+  /// Cuts up to the next place where something is due, and does it. The looks at shank and holder follow the
+  /// program's own batches, so that they do not depend on where the run began or what it saves.
+  void cut_on() {
+    const size_t total = merged_.sweeps.size();
+    const size_t batch_end = std::min(next_multiple(at_, kSweepsPerBatch), total);
+    size_t end = batch_end;
+    if (options_.record) end = std::min(end, next_multiple(at_, options_.record_every));
+    if (next_save_ < saves_.size() && saves_[next_save_].after > at_) {
+      end = std::min(end, saves_[next_save_].after);
+    }
+    result_.stock->cut(sweeps(at_, end), cutter_);
+    at_ = end;
+    if (at_ == batch_end) {
+      clearance_.check(*result_.stock, sweeps((at_ - 1) / kSweepsPerBatch * kSweepsPerBatch, at_));
+      outcome_.state.clearance = clearance_.result();
+      const size_t before = (at_ - 1) / kSweepsPerBatch * kSweepsPerBatch;
+      if (before * kChecks / total != at_ * kChecks / total) check(CheckKind::kOnTheWay);
+      progress_.advance(static_cast<double>(at_));
+    }
+    if (options_.record && (at_ % options_.record_every == 0 || at_ == total)) {
+      record_.states.push_back(result_.stock->hash());
+    }
+    save_due();
+  }
+
+  std::span<const stock::Sweep> sweeps(size_t begin, size_t end) const {
+    return std::span(merged_.sweeps).subspan(begin, end - begin);
+  }
+
+  CutState state() const {
+    CutState state = outcome_.state;
+    state.sweeps = at_;
+    if (at_ > 0) state.place = place(at_ - 1);
+    return state;
+  }
+  CutPlace place(size_t sweep) const {
+    return place_of(merged_.sweeps[sweep], merged_.sources, result_.main.motion.trajectory,
+                    result_.main.path);
+  }
+
+  void save_due() {
+    for (; next_save_ < saves_.size() && saves_[next_save_].after <= at_; ++next_save_) {
+      const std::string name = saved_stock_name(*saves_[next_save_].place);
+      result_.stock->save(options_.save_folder + "/" + name,
+                          cut_metadata(job_.scene.name, identity_, state()));
+      outcome_.saved.push_back(name);
+    }
+  }
+
+  /// The first broken invariant is kept; the run goes on and reports it.
+  void check(CheckKind kind) {
+    const bool voxels = options_.check_voxels || kind == CheckKind::kAtEnd;
+    std::string broken = result_.stock->check(voxels ? stock::CheckLevel::kVoxels : stock::CheckLevel::kMap);
+    ++(voxels ? outcome_.voxel_checks : outcome_.map_checks);
+    if (checked_) {
+      if (broken.empty()) broken = result_.stock->check_since(*checked_);
+      checked_ = result_.stock->clone();
+    }
+    if (broken.empty() || !outcome_.broken_invariant.empty()) return;
+    outcome_.broken_invariant = fmt::format("{} (after {} of {} sweeps, line {}, {:.3f}s)", broken, at_,
+                                            merged_.sweeps.size(), state().place.line, state().place.t_s);
+  }
+
+  void finish() {
+    outcome_.state = state();
+    outcome_.metadata = cut_metadata(job_.scene.name, identity_, outcome_.state);
+    result_.clearance = clearance_.result();
+    result_.volume_left_mm3 = result_.stock->volume_mm3();
+    result_.volume_removed_mm3 = full_mm3_ - result_.volume_left_mm3;
+    if (options_.record) write_states();
+    result_.cut_sources = std::move(merged_.sources);
+  }
+
+  void write_states() {
+    record_.scene = job_.scene.file;
+    record_.overrides = options_.overrides;
+    record_.identity = identity_;
+    record_.every = options_.record_every;
+    record_.program_sweeps = merged_.sweeps.size();
+    record_.sweeps.assign(merged_.sweeps.begin(), merged_.sweeps.begin() + static_cast<ptrdiff_t>(at_));
+    for (size_t n = 0; n < at_; ++n) record_.places.push_back(place(n));
+    // A stopped run ends between two hashes.
+    if (record_.states.size() * record_.every < at_) record_.states.push_back(result_.stock->hash());
+    write_record(options_.save_folder + "/" + kRecordFile, record_);
+  }
+
+  const Job& job_;
+  const CutOptions& options_;
+  Progress& progress_;
+  Result& result_;
+  CutOutcome& outcome_;
+  JobSweeps merged_;
+  stock::CutterSolid cutter_;
+  CutIdentity identity_;
+  ToolClearanceCheck clearance_;
+  std::vector<Save> saves_;
+  size_t next_save_ = 0, at_ = 0;
+  double full_mm3_ = 0.0;
+  std::optional<stock::Stock> checked_;  ///< the state at the last check
+  CutRecord record_;
+};
+
+}  // namespace
+
+std::string saved_stock_name(const ProgramPlace& place) {
+  return fmt::format("stock_after_{}{}.vdb", place.line > 0 ? "line_" : "", place.text);
+}
+
+void cut_stock(const Job& job, const CutOptions& options, Progress& progress, Result& result) {
+  CutStage(job, options, progress, result).run();
+}
+
+}  // namespace swarf::sim

@@ -1,0 +1,162 @@
+#include "sim/memory.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <span>
+#include <string>
+#include <variant>
+
+#include "motion/jerk_profile.h"
+#include "sim/simulation.h"
+#include "stock/ray_field.h"
+
+namespace swarf::sim {
+namespace {
+
+constexpr double kMegabyte = 1024.0 * 1024.0;
+constexpr double kShareOfFreeMemory = 0.8;
+
+// What a run holds besides the stock, in bytes; peaks measured with tests/scenes/memory_test.cpp's scenes.
+constexpr double kBase = 66.0 * kMegabyte;    // code, libraries, tables of the program, thread pools
+constexpr double kRender = 95.0 * kMegabyte;  // Mesa, Embree and the encoder, with pictures of 1280 x 720
+constexpr double kRow = 200.0;                // one line of trajectory.csv
+constexpr double kRowCopies = 2.5;            // the text while its buffer grows by half
+constexpr double kRay = 83.0;                 // point, normal, height, block; its share of a tile
+// Each triangle of the mesh, half a vertex with it, from the mesher's points to the decimated copy.
+constexpr double kTriangle = 105.0;
+// A tick of a path that is only compared: its sample, axes and sweep, and what vectors that grow hold beside.
+constexpr double kComparedTick = 530.0;
+
+/// Free memory of the machine in MB, as the kernel estimates it; infinity where it does not say.
+double available_memory_mb() {
+  std::ifstream meminfo("/proc/meminfo");
+  std::string name, unit;
+  double kilobytes = 0.0;
+  while (meminfo >> name >> kilobytes) {
+    std::getline(meminfo, unit);
+    if (name == "MemAvailable:") return kilobytes / 1024.0;
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+/// Counts of a stock while and after it is cut.
+struct SurfaceCounts {
+  double leaves_most = 0.0, triangles = 0.0;
+};
+
+constexpr double kCoarser = 4.0;
+constexpr size_t kPieces = 32;  // looks at the number of leaves
+
+SurfaceCounts preview(const Job& job, const motion::Trajectory& trajectory) {
+  const StockSettings& settings = job.scene.stock;
+  // Three voxels to the cutter's radius still show every groove.
+  const double voxel =
+      std::max(settings.voxel_mm, std::min(kCoarser * settings.voxel_mm, job.scene.cutter.radius() / 3.0));
+  Scene coarse = job.scene;
+  coarse.stock.sweep_tolerance_mm = voxel / 8.0;
+  const std::vector<stock::Sweep> sweeps = merged_sweeps(trajectory, coarse).sweeps;
+  stock::Stock stock(settings.box_W, voxel);
+  const stock::CutterSolid cutter(job.scene.cutter);
+  double most = static_cast<double>(stock.leaves());
+  const size_t piece = sweeps.size() / kPieces + 1;
+  for (size_t i = 0; i < sweeps.size(); i += piece) {
+    stock.cut(std::span(sweeps).subspan(i, std::min(piece, sweeps.size() - i)), cutter);
+    most = std::max(most, static_cast<double>(stock.leaves()));
+  }
+  const double finer = std::pow(voxel / settings.voxel_mm, 2);
+  return {most * finer, static_cast<double>(stock.mesh().triangles.size()) * finer};
+}
+
+/// Rays of the design. Surfaces: counted eight times as coarse, where the chord may stray 64 times as far.
+/// Meshes: counted as they will be made, because facets smaller than the pitch are not divided.
+double ray_count(const Job& job) {
+  constexpr double kCoarse = 8.0, kChord = 0.005;
+  const double pitch = job.scene.design.pitch_mm;
+  double rays =
+      job.design_mesh ? static_cast<double>(stock::rays_on_mesh(*job.design_mesh, pitch)->size()) : 0.0;
+  for (const surface::SurfacePtr& surface : job.design) {
+    const auto grid = stock::rays_on_surface(surface, kCoarse * pitch, kCoarse * kCoarse * kChord);
+    rays += kCoarse * static_cast<double>(grid->u_lines.size() - 1) * kCoarse *
+            static_cast<double>(grid->v_lines.size() - 1);
+  }
+  return rays;
+}
+
+/// Ticks of the longest path of the comparisons: the off-line one that stops at the end of each segment. The
+/// sagitta of a few ticks of the main path gives the length of a segment within the chord tolerance there.
+double longest_comparison(const Job& job, const MeasuredPath& path) {
+  constexpr size_t kReach = 10;
+  const auto& samples = path.motion.trajectory.samples;
+  const motion::MotionOptions& options = job.scene.motion;
+  double seconds = 0.0;
+  for (size_t i = 2 * kReach; i < samples.size(); i += kReach) {
+    const motion::ToolSample &a = samples[i - 2 * kReach], &b = samples[i - kReach], &c = samples[i];
+    const auto* pass =
+        std::get_if<toolpath::SurfacePass>(&path.path.elements[static_cast<size_t>(b.element)].what);
+    const double chord = (c.contact_W - a.contact_W).norm();
+    const double sagitta = (b.contact_W - 0.5 * (a.contact_W + c.contact_W)).norm();
+    if (pass == nullptr || a.element != c.element || !(chord > 0.0)) {
+      seconds += kReach * options.period_s;
+      continue;
+    }
+    const double longest = chord * std::sqrt(pass->chord_tolerance_mm / std::max(sagitta, 1e-12));
+    const double length = std::min(longest, 1e3);
+    const motion::RestToRest segment(length, pass->feed_mm_s, options.path_acceleration_max,
+                                     options.path_jerk_max);
+    seconds += (c.contact_W - b.contact_W).norm() / length * segment.duration();
+  }
+  return seconds / options.period_s;
+}
+
+/// The smallest voxel, to two digits, at which what grows with it fits.
+double voxel_that_fits(const Job& job, const MemoryPrediction& prediction) {
+  double fitting = job.scene.stock.voxel_mm;
+  const double grows = prediction.peak_mb - kBase / kMegabyte;
+  const double room = std::max(prediction.limit_mb - kBase / kMegabyte, 0.05 * grows);
+  fitting *= std::sqrt(grows / room);
+  const double digit = std::pow(10.0, std::floor(std::log10(fitting)) - 1.0);
+  return std::ceil(fitting / digit) * digit;
+}
+
+}  // namespace
+
+double memory_limit_mb(const Scene& scene) {
+  return scene.stock.max_memory_mb > 0.0 ? scene.stock.max_memory_mb
+                                         : kShareOfFreeMemory * available_memory_mb();
+}
+
+MemoryPrediction predict_memory(const Job& job, const MeasuredPath& path, bool render, int stocks) {
+  const motion::Trajectory& trajectory = path.motion.trajectory;
+  const SurfaceCounts counts = preview(job, trajectory);
+  const StockSettings& settings = job.scene.stock;
+  const double stock =
+      static_cast<double>(stock::Stock::memory_for(settings.box_W, settings.voxel_mm, counts.leaves_most));
+  const auto ticks = static_cast<double>(trajectory.samples.size());
+  const double sample = sizeof(motion::ToolSample) + sizeof(kinematics::AxisValues) + sizeof(stock::Sweep);
+  const double rays = ray_count(job) * kRay;
+  const double held = kBase + ticks * sample + rays;
+  // The stages that hold most; each ends before the next begins.
+  const double cutting = held - rays + stocks * stock + ticks * sizeof(ToolPose);
+  const double compared = std::max(ticks, longest_comparison(job, path));
+  const double comparing =
+      job.scene.compare_planners && !job.cl ? held + stock + compared * kComparedTick + rays : 0.0;
+  const double writing = held + stock + ticks * kRow * kRowCopies;
+  const double meshing = held + stock + counts.triangles * kTriangle + (render ? kRender : 0.0);
+  return {stocks * stock / kMegabyte, std::max({cutting, comparing, writing, meshing}) / kMegabyte,
+          memory_limit_mb(job.scene)};
+}
+
+void require_memory(const Job& job, const MemoryPrediction& prediction) {
+  if (prediction.peak_mb <= prediction.limit_mb) return;
+  throw InputError(
+      "out-of-memory", {job.scene.file},
+      fmt::format("stock.voxel_mm = {:g} is expected to need {:.0f} MB, {:.0f} MB may be used",
+                  job.scene.stock.voxel_mm, prediction.peak_mb, prediction.limit_mb),
+      fmt::format("voxel_mm = {:g} fits; or raise --max-memory", voxel_that_fits(job, prediction)));
+}
+
+}  // namespace swarf::sim

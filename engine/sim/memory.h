@@ -1,0 +1,29 @@
+// The memory that a run will need, told before it is taken.
+#pragma once
+
+#include "sim/scene.h"
+
+namespace swarf::sim {
+
+struct MeasuredPath;
+
+/// MB are 2^20 bytes.
+struct MemoryPrediction {
+  double stock_mb = 0.0;  ///< of the level set at its greatest
+  double peak_mb = 0.0;   ///< of the whole process: libraries, path, rays, meshes and pictures included
+  double limit_mb = 0.0;  ///< what may be used: see memory_limit_mb
+};
+
+/// stock.max_memory_mb of the scene, else 80 % of the memory that is free now.
+double memory_limit_mb(const Scene& scene);
+
+/// Cuts the path into a stock of voxels up to four times as large, with sweeps merged as coarsely, and counts
+/// leaves and triangles: both grow with the square of the voxel sizes' ratio. The rest follows from the sizes
+/// of what the run holds at the same time; memory.cpp states each constant with what it stands for.
+/// `render`: stills and a movie follow. `stocks`: copies of the level set held at once (2 with --check).
+MemoryPrediction predict_memory(const Job& job, const MeasuredPath& path, bool render, int stocks);
+
+/// Throws InputError "out-of-memory" with a voxel size that fits when the prediction exceeds its limit.
+void require_memory(const Job& job, const MemoryPrediction& prediction);
+
+}  // namespace swarf::sim

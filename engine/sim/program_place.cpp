@@ -1,0 +1,72 @@
+#include "sim/program_place.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cstdlib>
+#include <string_view>
+
+#include "base/diagnostics.h"
+
+namespace swarf::sim {
+namespace {
+
+template <typename Number>
+bool parse_whole(std::string_view text, Number& value) {
+  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return failure == std::errc() && end == text.data() + text.size();
+}
+
+ProgramPlace parse_place(const std::string& text) {
+  ProgramPlace place{text, 0, 0.0};
+  const bool is_time = !text.empty() && text.back() == 's';
+  const bool read = is_time ? parse_whole(std::string_view(text).substr(0, text.size() - 1), place.t_s)
+                            : parse_whole(std::string_view(text), place.line);
+  if (read && (is_time ? place.t_s >= 0.0 : place.line > 0)) return place;
+  throw InputError("bad-place", {text}, "this is no place in a program",
+                   "write a line of the program (13) or a program time in seconds (12.5s)");
+}
+
+}  // namespace
+
+std::vector<ProgramPlace> parse_places(const std::string& list) {
+  std::vector<ProgramPlace> places;
+  for (size_t begin = 0; begin <= list.size();) {
+    const size_t comma = std::min(list.find(',', begin), list.size());
+    places.push_back(parse_place(list.substr(begin, comma - begin)));
+    begin = comma + 1;
+  }
+  return places;
+}
+
+CutPlace place_of(const stock::Sweep& sweep, std::span<const SweepSource> sources,
+                  const motion::Trajectory& trajectory, const toolpath::ToolPath& path) {
+  const SweepSource& source = sources[sweep.block];
+  return {sweep.block, path.elements.at(static_cast<size_t>(source.element)).where.line,
+          trajectory.samples.at(source.sample).t_s};
+}
+
+size_t sweeps_until(const ProgramPlace& place, const JobSweeps& sweeps, const motion::Trajectory& trajectory,
+                    const toolpath::ToolPath& path) {
+  size_t count = 0;
+  int nearest = 0;
+  for (size_t n = 0; n < sweeps.sweeps.size(); ++n) {
+    const CutPlace at = place_of(sweeps.sweeps[n], sweeps.sources, trajectory, path);
+    if (place.line > 0 ? at.line == place.line : at.t_s <= place.t_s) count = n + 1;
+    if (std::abs(at.line - place.line) < std::abs(nearest - place.line)) nearest = at.line;
+  }
+  const double last_s = trajectory.samples.empty() ? 0.0 : trajectory.samples.back().t_s;
+  if (place.line > 0 && count == 0) {
+    throw InputError("place-unknown", {place.text},
+                     fmt::format("line {} of the program moves nothing", place.line),
+                     fmt::format("the nearest line with motion is {}", nearest));
+  }
+  if (place.line == 0 && (count == 0 || place.t_s > last_s)) {
+    throw InputError("place-unknown", {place.text},
+                     "no motion is complete at this program time, or it is over",
+                     fmt::format("write a time up to {:.3f}s", last_s));
+  }
+  return count;
+}
+
+}  // namespace swarf::sim

@@ -1,0 +1,82 @@
+// Memory on the shipped program: predicted within 25 % of the real peak, and refused when it is too much.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "support/json_path.h"
+#include "support/program_run.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using swarf::test::at_path;
+using swarf::test::run_swarf;
+
+const std::string kScene = SWARF_SOURCE_DIR "/scenes/lin_koren_dome/scene.toml";
+const std::string kAlone = " --set toolpath.compare=false ";
+
+struct Setting {
+  const char *name, *options;
+};
+void PrintTo(const Setting& setting, std::ostream* out) {
+  *out << setting.name;
+}
+
+class MemoryTest : public testing::TestWithParam<Setting> {};
+
+TEST_P(MemoryTest, IsPredictedWithin25Percent) {
+  const fs::path out = swarf::test::fresh_folder(std::string("memory_") + GetParam().name) / "run";
+  const auto run = run_swarf("run " + kScene + " " + GetParam().options + " -o " + out.string());
+  ASSERT_LE(run.exit_code, 1) << run.output;
+  const json metrics = json::parse(std::ifstream(out / "metrics.json"));
+  const double predicted = at_path(metrics, "memory_predicted_mb"), peak = at_path(metrics, "memory_peak_mb");
+  std::printf("%s: predicted %.0f MB, peak %.0f MB, ratio %.3f\n", GetParam().name, predicted, peak,
+              predicted / peak);
+  EXPECT_NEAR(predicted / peak, 1.0, 0.25);
+  EXPECT_NE(run.output.find("memory: stock "), std::string::npos) << run.output;
+  fs::remove_all(out.parent_path());
+}
+
+// What takes the most memory differs: the path, the rays, a fine stock, much new surface, comparisons,
+// pictures.
+INSTANTIATE_TEST_SUITE_P(
+    Dome, MemoryTest,
+    testing::Values(Setting{"path",
+                            "--no-render --set toolpath.compare=false --set stock.voxel_mm=2 "
+                            "--set design.pitch_mm=2 --set interpolator.period_ms=0.5"},
+                    Setting{"rays",
+                            "--no-render --set toolpath.compare=false --set stock.voxel_mm=1 "
+                            "--set design.pitch_mm=0.1"},
+                    Setting{"stock",
+                            "--no-render --set toolpath.compare=false --set stock.voxel_mm=0.15 "
+                            "--set design.pitch_mm=1"},
+                    Setting{"big_box",
+                            "--no-render --set toolpath.compare=false --set stock.voxel_mm=0.25 "
+                            "--set design.pitch_mm=1 --set 'stock.box_mm=[[-80,-70,-60],[80,70,37]]'"},
+                    Setting{"comparisons", "--no-render --set stock.voxel_mm=1 --set design.pitch_mm=0.5"},
+                    Setting{"pictures",
+                            "--set toolpath.compare=false --set stock.voxel_mm=0.4 --set design.pitch_mm=0.5 "
+                            "--set movie.seconds=0.2"}),
+    [](const testing::TestParamInfo<Setting>& one) { return std::string(one.param.name); });
+
+TEST(MemoryLimit, IsRefusedWithAVoxelThatFits) {
+  const fs::path out = swarf::test::fresh_folder("memory_limit") / "run";
+  const std::string options =
+      kAlone + "--no-render --set design.pitch_mm=1 --max-memory 300 -o " + out.string();
+  const auto refused = run_swarf("run " + kScene + " --set stock.voxel_mm=0.1" + options);
+  EXPECT_EQ(refused.exit_code, 2) << refused.output;
+  EXPECT_NE(refused.output.find("[out-of-memory]"), std::string::npos) << refused.output;
+  EXPECT_FALSE(fs::exists(out));
+  const size_t at = refused.output.find("voxel_mm = ", refused.output.find("fix: "));
+  ASSERT_NE(at, std::string::npos) << refused.output;
+  const std::string fitting = std::to_string(std::stod(refused.output.substr(at + 11)));
+  const auto accepted = run_swarf("run " + kScene + " --set stock.voxel_mm=" + fitting + options);
+  EXPECT_EQ(accepted.exit_code, 0) << accepted.output;
+  fs::remove_all(out.parent_path());
+}
+
+}  // namespace
