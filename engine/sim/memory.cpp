@@ -21,11 +21,11 @@ constexpr double kMegabyte = 1024.0 * 1024.0;
 constexpr double kShareOfFreeMemory = 0.8;
 
 // What a run holds besides the stock, in bytes; peaks measured with tests/scenes/memory_test.cpp's scenes.
-constexpr double kBase = 66.0 * kMegabyte;    // code, libraries, tables of the program, thread pools
-constexpr double kRender = 95.0 * kMegabyte;  // Mesa, Embree and the encoder, with pictures of 1280 x 720
-constexpr double kRow = 200.0;                // one line of trajectory.csv
-constexpr double kRowCopies = 2.5;            // the text while its buffer grows by half
-constexpr double kRay = 83.0;                 // point, normal, height, block; its share of a tile
+constexpr double kBase = 66.0 * kMegabyte;     // code, libraries, tables of the program, thread pools
+constexpr double kRender = 270.0 * kMegabyte;  // Mesa, Embree and the encoder, with pictures of 1280 x 720
+constexpr double kRow = 200.0;                 // one line of trajectory.csv
+constexpr double kRowCopies = 2.5;             // the text while its buffer grows by half
+constexpr double kRay = 83.0;                  // point, normal, height, block; its share of a tile
 // Each triangle of the mesh, half a vertex with it, from the mesher's points to the decimated copy.
 constexpr double kTriangle = 105.0;
 // A tick of a path that is only compared: its sample, axes and sweep, and what vectors that grow hold beside.
@@ -112,12 +112,12 @@ double longest_comparison(const Job& job, const MeasuredPath& path) {
   return seconds / options.period_s;
 }
 
-/// The smallest voxel, to two digits, at which what grows with it fits.
+/// A voxel, to two digits, at which what grows with 1/voxel^2 fits beside the rest.
 double voxel_that_fits(const Job& job, const MemoryPrediction& prediction) {
-  double fitting = job.scene.stock.voxel_mm;
-  const double grows = prediction.peak_mb - kBase / kMegabyte;
-  const double room = std::max(prediction.limit_mb - kBase / kMegabyte, 0.05 * grows);
-  fitting *= std::sqrt(grows / room);
+  constexpr double kMargin = 1.1;  // the prediction itself wavers with the voxel
+  const double rest = prediction.peak_mb - prediction.scaling_mb;
+  const double room = std::max(prediction.limit_mb - rest, 0.05 * prediction.scaling_mb);
+  const double fitting = kMargin * job.scene.stock.voxel_mm * std::sqrt(prediction.scaling_mb / room);
   const double digit = std::pow(10.0, std::floor(std::log10(fitting)) - 1.0);
   return std::ceil(fitting / digit) * digit;
 }
@@ -147,7 +147,7 @@ MemoryPrediction predict_memory(const Job& job, const MeasuredPath& path, bool r
   const double writing = held + stock + ticks * kRow * kRowCopies;
   const double meshing = held + stock + counts.triangles * kTriangle + (render ? kRender : 0.0);
   return {stocks * stock / kMegabyte, std::max({cutting, comparing, writing, meshing}) / kMegabyte,
-          memory_limit_mb(job.scene)};
+          (stock + counts.triangles * kTriangle) / kMegabyte, memory_limit_mb(job.scene)};
 }
 
 void require_memory(const Job& job, const MemoryPrediction& prediction) {

@@ -9,9 +9,10 @@ struct MeasuredPath;
 
 /// MB are 2^20 bytes.
 struct MemoryPrediction {
-  double stock_mb = 0.0;  ///< of the level set at its greatest
-  double peak_mb = 0.0;   ///< of the whole process: libraries, path, rays, meshes and pictures included
-  double limit_mb = 0.0;  ///< what may be used: see memory_limit_mb
+  double stock_mb = 0.0;    ///< of the level set at its greatest
+  double peak_mb = 0.0;     ///< of the whole process: libraries, path, rays, meshes and pictures included
+  double scaling_mb = 0.0;  ///< of what grows with 1/voxel^2: level set and its mesh
+  double limit_mb = 0.0;    ///< what may be used: see memory_limit_mb
 };
 
 /// stock.max_memory_mb of the scene, else 80 % of the memory that is free now.

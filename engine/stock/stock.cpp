@@ -96,7 +96,10 @@ size_t Stock::memory_estimate(const Box& box_W, double voxel_mm) {
   const Vec3 d = box_W.size();
   const double area = 2.0 * (d.x() * d.y() + d.y() * d.z() + d.z() * d.x());
   const double leaf_mm = kLeafSide * voxel_mm;
-  return memory_for(box_W, voxel_mm, kLayers * area / (leaf_mm * leaf_mm));
+  // Edges and corners are met by more leaves than their share of the faces, and the tree has inner nodes.
+  constexpr double kRest = 1.3;
+  return static_cast<size_t>(
+      kRest * static_cast<double>(memory_for(box_W, voxel_mm, kLayers * area / (leaf_mm * leaf_mm))));
 }
 
 }  // namespace swarf::stock
