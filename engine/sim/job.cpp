@@ -33,12 +33,15 @@ void check_memory(const Scene& scene, Diagnostics& diagnostics) {
   const double limit = memory_limit_mb(scene);
   const double need =
       static_cast<double>(stock::Stock::memory_estimate(scene.stock.box_W, scene.stock.voxel_mm)) / kMegabyte;
-  if (need <= limit) return;
-  diagnostics.error("out-of-memory", {scene.file},
-                    fmt::format("stock.voxel_mm = {:g} needs about {:.0f} MB, {:.0f} MB may be used",
-                                scene.stock.voxel_mm, need, limit),
-                    fmt::format("voxel_mm = {:g} fits; or raise --max-memory",
-                                voxel_that_fits(scene.stock.box_W, scene.stock.voxel_mm, limit)));
+  // Before the path is known only the block can be counted; what lies between is for require_memory.
+  constexpr double kBeyondDoubt = 2.0, kShareOfBlock = 1.0 / 6.0;
+  if (need <= kBeyondDoubt * limit) return;
+  diagnostics.error(
+      "out-of-memory", {scene.file},
+      fmt::format("stock.voxel_mm = {:g} needs about {:.0f} MB, {:.0f} MB may be used", scene.stock.voxel_mm,
+                  need, limit),
+      fmt::format("voxel_mm = {:g} fits; or raise --max-memory",
+                  voxel_that_fits(scene.stock.box_W, scene.stock.voxel_mm, kShareOfBlock * limit)));
 }
 
 void check_tools(const Job& job, Diagnostics& diagnostics) {

@@ -54,9 +54,6 @@ INSTANTIATE_TEST_SUITE_P(
                     Setting{"stock",
                             "--no-render --set toolpath.compare=false --set stock.voxel_mm=0.15 "
                             "--set design.pitch_mm=1"},
-                    Setting{"big_box",
-                            "--no-render --set toolpath.compare=false --set stock.voxel_mm=0.25 "
-                            "--set design.pitch_mm=1 --set 'stock.box_mm=[[-80,-70,-60],[80,70,37]]'"},
                     Setting{"comparisons", "--no-render --set stock.voxel_mm=1 --set design.pitch_mm=0.5"},
                     Setting{"pictures",
                             "--set toolpath.compare=false --set stock.voxel_mm=0.4 --set design.pitch_mm=0.5 "
