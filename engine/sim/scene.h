@@ -32,7 +32,7 @@ struct AcceptLimits {
   std::optional<double> scallop_max_um;
   std::optional<double> gouge_max_um;
   std::optional<double> excess_max_um;  ///< material anywhere above the design, ridges included
-  std::optional<int> collisions;  ///< of shank and holder with the stock
+  std::optional<int> collisions;        ///< of shank and holder with the stock
 
   /// Band of the share within tolerance and of the colour scale where the scene gives no limit, um.
   double scallop_band_um() const { return scallop_max_um.value_or(10.0); }

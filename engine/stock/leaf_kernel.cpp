@@ -132,6 +132,7 @@ SWARF_KERNEL_INLINE LeafRange summarise(const float* values, float band, uint64_
 }
 
 // Each variant is the same source under another instruction set; helpers are inlined into it.
+// NOLINTBEGIN(bugprone-macro-parentheses): an attribute cannot stand in parentheses
 #define SWARF_LEAF_VARIANT(name, attribute)                                                             \
   attribute void cut_leaf_##name(float* values, const LeafMotion& motion, uint32_t slices) {            \
     cut_leaf(values, motion, slices);                                                                   \
@@ -152,6 +153,7 @@ SWARF_LEAF_VARIANT(v3, __attribute__((target("arch=x86-64-v3"))))
 SWARF_LEAF_VARIANT(v4, __attribute__((target("arch=x86-64-v4,prefer-vector-width=512"))))
 #endif
 #undef SWARF_LEAF_VARIANT
+// NOLINTEND(bugprone-macro-parentheses)
 
 std::vector<LeafKernelVariant> supported_variants() {
   std::vector<LeafKernelVariant> variants;

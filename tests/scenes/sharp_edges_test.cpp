@@ -27,8 +27,8 @@ double worst_distance(const swarf::mesh::MeshDistance& mesh, const Vec3& from, c
 TEST(SharpEdges, OfASlotLieWithinTenMicrometresOfTheTruth) {
   const auto folder = swarf::test::fresh_folder("sharp_edges");
   const std::string run = (folder / "run").string(), ply = (folder / "part.ply").string();
-  const auto cut = swarf::test::run_swarf("run " SWARF_SOURCE_DIR "/scenes/exact_slot_flat/scene.toml -o " + run +
-                                          " --no-render --set stock.voxel_mm=0.1");
+  const auto cut = swarf::test::run_swarf("run " SWARF_SOURCE_DIR "/scenes/exact_slot_flat/scene.toml -o " +
+                                          run + " --no-render --set stock.voxel_mm=0.1");
   ASSERT_EQ(cut.exit_code, 0) << cut.output;
   const auto exported = swarf::test::run_swarf("export " + run + " --ply " + ply);
   ASSERT_EQ(exported.exit_code, 0) << exported.output;
@@ -42,7 +42,8 @@ TEST(SharpEdges, OfASlotLieWithinTenMicrometresOfTheTruth) {
     const double angle = M_PI * (i + 0.5) / 180.0 - M_PI / 2;
     for (const double z : {0.0, -3.0}) {
       const Vec3 point(30.0 + 5.0 * std::cos(angle), 5.0 * std::sin(angle), z);
-      EXPECT_LE((distance.nearest(point).point - point).norm(), 0.010) << "round end, " << angle << " rad, z " << z;
+      EXPECT_LE((distance.nearest(point).point - point).norm(), 0.010)
+          << "round end, " << angle << " rad, z " << z;
     }
   }
   std::filesystem::remove_all(folder);
