@@ -247,6 +247,9 @@ const char* execution_of(const sim::Job& job) {
       return "joint: in each block all machine axes are linear between its ends; the stock is cut by the "
              "blocks "
              "themselves";
+    case toolpath::BlockLaw::kTcpAxes:
+      return "tcp_axes: in each block the tip is straight or on its arc and the rotary axes are linear; the "
+             "stock is cut by the blocks themselves";
     case toolpath::BlockLaw::kEnds:
       return "ends: in each block the tip and every guide point on the axis are straight; the stock is cut "
              "by "

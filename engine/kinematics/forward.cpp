@@ -30,4 +30,10 @@ ToolPose forward(const MachineModel& machine, const AxisValues& q) {
           machine.X_MW.linear().transpose() * tool_axis};
 }
 
+MachineModel with_tool(const MachineModel& machine, double length_mm) {
+  MachineModel with = machine;
+  if (with.gauge_M) with.tip_M = *with.gauge_M - length_mm * with.tool_axis_M;
+  return with;
+}
+
 }  // namespace swarf::kinematics

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,7 +34,14 @@ struct Axis {
   double speed_max = 0.0;
   double acceleration_max = 0.0;
   double jerk_max = 0.0;
+  double rapid_max = 0.0;  ///< speed in rapid moves; 0: speed_max
   double home = 0.0;
+};
+
+/// What the axes do in a rapid move.
+enum class RapidMotion {
+  kLinear,  ///< all arrive together, on a straight line of axis values
+  kDogLeg,  ///< each runs at its own rapid speed and waits for the others
 };
 
 inline constexpr int kMaxAxes = 5;
@@ -48,7 +56,16 @@ struct MachineModel {
   Pose X_MW = Pose::Identity();      ///< work frame with all axes at zero
   Vec3 tip_M = Vec3::Zero();         ///< tool tip with all axes at zero
   Vec3 tool_axis_M = Vec3::UnitZ();  ///< tip to spindle, all axes at zero
+  /// Spindle gauge line with all axes at zero; none: the tip stands at tip_M whatever the tool.
+  std::optional<Vec3> gauge_M;
+  RapidMotion rapid = RapidMotion::kLinear;
+  /// Where tools are changed; none: at home.
+  std::optional<AxisValues> tool_change;
 };
+
+/// The machine with a tool of this length (gauge line to tip, mm) in its spindle: tip_M = gauge_M - length
+/// tool_axis_M. Without a gauge line the tip stays where the machine says.
+MachineModel with_tool(const MachineModel& machine, double length_mm);
 
 /// Displacement of the link that the axis carries, in M, at value q: identity at 0.
 Pose axis_motion(const Axis& axis, double q);

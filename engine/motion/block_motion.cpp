@@ -168,6 +168,26 @@ MotionBounds ends_bounds(const BlockMove& block) {
   return bounds;
 }
 
+/// The tip as under tcp, the axis as under joint: its derivatives are bounded by powers of the rotary turns.
+MotionBounds tcp_axes_bounds(const BlockMotion& motion) {
+  const double turn = JointChain(motion).turn();
+  if (turn == 0.0) return tcp_bounds(*motion.block);
+  MotionBounds bounds;
+  bounds.great_circle = false;
+  bounds.turn_rate = turn;
+  bounds.turn_acceleration = turn * turn;
+  const Vec3 way = motion.block->to.tip_W - motion.block->from.tip_W;
+  bounds.speed = way.norm();
+  double bending = 0.0;
+  if (motion.block->arc) {
+    const ArcShape arc(*motion.block);
+    bounds.speed = arc.speed();
+    bending = arc.acceleration();
+  }
+  bounds.bend = 2.0 * turn * bounds.speed + bending;
+  return bounds;
+}
+
 MotionBounds joint_bounds(const BlockMotion& motion) {
   const JointChain chain(motion);
   MotionBounds bounds;
@@ -203,11 +223,16 @@ std::vector<BlockMotion> block_motions(const toolpath::ToolPath& path, const Mac
   motions.reserve(path.elements.size());
   for (const toolpath::Element& element : path.elements) {
     const auto& block = std::get<BlockMove>(element.what);
+    if (block.axes) {
+      q = block.axes->to;
+      motions.push_back({&block, &machine, block.axes->from, block.axes->to});
+      continue;
+    }
     const auto solve = [&](const ToolPose& pose) {
       const kinematics::Branch branch = inverse.solve_nearest(pose, q);
       if (branch.outcome != kinematics::InverseOutcome::kUnreachable) {
         q = branch.q;
-      } else if (block.law == BlockLaw::kJoint) {
+      } else if (block.law == BlockLaw::kJoint || block.law == BlockLaw::kTcpAxes) {
         throw InputError(
             "unreachable", element.where,
             fmt::format("the machine has no axis values for tip ({:.3f}, {:.3f}, {:.3f}) mm, axis "
@@ -236,9 +261,14 @@ ToolPose pose_at(const BlockMotion& motion, double s) {
       return {block.from.tip_W + s * (block.to.tip_W - block.from.tip_W),
               (block.from.axis_W + s * (block.to.axis_W - block.from.axis_W)).normalized()};
     case BlockLaw::kTcp:
+    case BlockLaw::kTcpAxes:
       break;
   }
   ToolPose pose = pose_between(block.from, block.to, s);
+  if (block.law == BlockLaw::kTcpAxes) {
+    pose.axis_W =
+        kinematics::forward(*motion.machine, motion.q_from + s * (motion.q_to - motion.q_from)).axis_W;
+  }
   if (block.arc) pose.tip_W = ArcShape(block).point(s);
   return pose;
 }
@@ -249,6 +279,8 @@ MotionBounds motion_bounds(const BlockMotion& motion) {
       return joint_bounds(motion);
     case BlockLaw::kEnds:
       return ends_bounds(*motion.block);
+    case BlockLaw::kTcpAxes:
+      return tcp_axes_bounds(motion);
     case BlockLaw::kTcp:
       break;
   }

@@ -30,7 +30,7 @@ namespace swarf::motion {
 struct BlockMotion {
   const toolpath::BlockMove* block = nullptr;
   const kinematics::MachineModel* machine = nullptr;
-  /// Axis values at both ends; used by the joint law only.
+  /// Axis values at both ends; used by the joint and tcp_axes laws only.
   kinematics::AxisValues q_from = kinematics::AxisValues::Zero();
   kinematics::AxisValues q_to = kinematics::AxisValues::Zero();
 };

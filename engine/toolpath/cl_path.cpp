@@ -54,18 +54,6 @@ class PassCounter {
 
 }  // namespace
 
-const char* law_name(BlockLaw law) {
-  switch (law) {
-    case BlockLaw::kTcp:
-      return "tcp";
-    case BlockLaw::kJoint:
-      return "joint";
-    case BlockLaw::kEnds:
-      return "ends";
-  }
-  return "";
-}
-
 bool holds_blocks(const ToolPath& path) {
   return !path.elements.empty() && std::holds_alternative<BlockMove>(path.elements.front().what);
 }
@@ -108,7 +96,12 @@ ToolPath cl_path(const program::ClProgram& program, BlockLaw law, Diagnostics& d
     }
     const bool rapid = move.feed_mm_s == 0.0;
     const BlockLaw own = rapid && law == BlockLaw::kEnds ? BlockLaw::kTcp : law;
-    BlockMove block{move.from, move.to, move.arc, own, move.feed_mm_s, -1};
+    BlockMove block;
+    block.from = move.from;
+    block.to = move.to;
+    block.arc = move.arc;
+    block.law = own;
+    block.feed_mm_s = move.feed_mm_s;
     block.pass = passes.next(block);
     (rapid ? path.link_length_mm : path.pass_length_mm) += tip_way(block);
     path.elements.push_back({std::move(block), 0, where});

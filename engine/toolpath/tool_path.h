@@ -11,6 +11,8 @@
 #include "base/diagnostics.h"
 #include "base/frames.h"
 #include "cutter/cutter.h"
+#include "kinematics/machine_model.h"
+#include "program/block_law.h"
 #include "program/cl_program.h"
 #include "program/program.h"
 #include "surface/surface.h"
@@ -55,23 +57,28 @@ struct FreeMove {
   double feed_mm_s = 0.0;  ///< 0: rapid, limited by the machine alone
 };
 
-/// How the tool moves between the two poses of a block.
-enum class BlockLaw {
-  kTcp,    ///< "tcp": the tip straight or on its arc, the axis turning evenly along the great circle
-  kJoint,  ///< "joint": every machine axis linear between its values at both ends
-  kEnds,   ///< "ends": the tip and every other point given on the axis straight (theory 5, flank blocks):
-           ///< the axis runs through the linear means of its ends, whatever the guide points' distance
-};
-/// "tcp" and so on, for reports and TOML.
-const char* law_name(BlockLaw law);
+using program::BlockLaw;
+using program::law_name;
 
-/// One move of a CL program. The law belongs to the block: it says what the tool does between its ends.
+/// Axis values at both ends of a block, mm and rad.
+struct AxisSpan {
+  kinematics::AxisValues from = kinematics::AxisValues::Zero(), to = kinematics::AxisValues::Zero();
+};
+
+/// One move of a CL or NC program.
 struct BlockMove {
   ToolPose from, to;
-  std::optional<program::ClArc> arc;  ///< kTcp only
+  std::optional<program::ClArc> arc;  ///< the tip's; kTcp and kTcpAxes only
   BlockLaw law = BlockLaw::kTcp;
-  double feed_mm_s = 0.0;  ///< 0: rapid, limited by the machine alone
-  int pass = -1;           ///< 0-based count of the passes; -1 on rapids
+  double feed_mm_s = 0.0;  ///< of the tip; 0 with duration_s 0: rapid, limited by the machine alone
+  /// Above 0: how long the block takes at its programmed feed, where that is not simply that of the tip.
+  double duration_s = 0.0;
+  double dwell_s = 0.0;              ///< the tool stands this long before it moves
+  bool exact_stop = false;           ///< comes to rest at its end
+  double corner_tolerance_mm = 0.0;  ///< the corner at its end may be rounded by this much; 0: the default
+  std::optional<AxisSpan> axes;      ///< as the program commands them; none: they follow from the poses
+  int tool = 0;                      ///< index into the job's tools
+  int pass = -1;                     ///< 0-based count of the passes; -1 on rapids
 };
 /// Angle in (0, 2 pi] that the tip of an arc block goes round.
 double arc_angle(const BlockMove& block);

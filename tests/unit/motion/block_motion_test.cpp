@@ -48,7 +48,18 @@ TEST(BlockMotion, TranslationsNeedOneSweepAndHaveNoError) {
   for (const BlockLaw law : {BlockLaw::kTcp, BlockLaw::kEnds}) {
     RandomBlock c;
     c.machine = paper_machine();
-    c.block = {{{0, 0, 0}, Vec3::UnitZ()}, {{100, 20, -3}, Vec3::UnitZ()}, {}, law, 10.0, 0};
+    c.block = {{{0, 0, 0}, Vec3::UnitZ()},
+               {{100, 20, -3}, Vec3::UnitZ()},
+               {},
+               law,
+               10.0,
+               0.0,
+               0.0,
+               false,
+               0.0,
+               {},
+               0,
+               0};
     EXPECT_EQ(split_error(motion_bounds(c.motion()), 1, 60.0), 0.0);
     EXPECT_EQ(subdivide(c.motion(), 60.0, 1e-9).size(), 2U);
   }
@@ -66,8 +77,18 @@ TEST(BlockMotion, ArcsAreCutWithTheSagittaOfTheirPieces) {
   // Half a circle of radius 10: pieces of angle phi have sagitta 10 (1 - cos(phi/2)) = 10 phi^2/8.
   RandomBlock c;
   c.machine = paper_machine();
-  c.block = {
-      {{10, 0, 0}, Vec3::UnitZ()}, {{-10, 0, 0}, Vec3::UnitZ()}, program::ClArc{}, BlockLaw::kTcp, 10, 0};
+  c.block = {{{10, 0, 0}, Vec3::UnitZ()},
+             {{-10, 0, 0}, Vec3::UnitZ()},
+             program::ClArc{},
+             BlockLaw::kTcp,
+             10,
+             0,
+             0,
+             false,
+             0,
+             {},
+             0,
+             0};
   EXPECT_NEAR(toolpath::arc_angle(c.block), kPi, 1e-12);
   EXPECT_NEAR(toolpath::tip_way(c.block), 10 * kPi, 1e-12);
   const std::vector<ToolPose> poses = subdivide(c.motion(), 60.0, 1e-3);

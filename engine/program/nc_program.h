@@ -1,0 +1,102 @@
+// What an NC program says, as the control that reads it executes it: a stream of complete moves.
+//
+//   text --dialect--> Control (modal state, offsets, frames, TCP, machine) --> NcMove, NcMove, ... --> NcSink
+//
+// The control knows the machine, so every move has both its axis values and its tool poses; nothing is left
+// to interpret. Programs are streamed: only the sink decides what is kept.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/diagnostics.h"
+#include "base/frames.h"
+#include "kinematics/machine_model.h"
+#include "program/block_law.h"
+#include "program/cl_program.h"
+
+namespace swarf::program {
+
+/// What the control's tool table says of a tool.
+struct NcTool {
+  int number = 0;                 ///< T word; 0: known by its name only
+  std::string name;               ///< T="name"; empty: known by its number only
+  double length_mm = 0.0;         ///< gauge line to tip
+  double diameter_mm = 0.0;       ///< for cutter radius compensation
+  double corner_radius_mm = 0.0;  ///< for LN blocks that give the contact point
+};
+
+/// One block's motion.
+struct NcMove {
+  kinematics::AxisValues q_from = kinematics::AxisValues::Zero();  ///< machine coordinates, mm, rad
+  kinematics::AxisValues q_to = kinematics::AxisValues::Zero();
+  ToolPose from, to;  ///< of the active tool's tip in W; `from` is not the last `to` where the tool changed
+  BlockLaw law = BlockLaw::kJoint;
+  std::optional<ClArc> arc;  ///< the tip's, in W
+  bool rapid = false;
+  double duration_s = 0.0;  ///< of a feed move at its programmed feed (G93, G94, G95 alike); 0 for rapids
+  double feed_mm_s = 0.0;   ///< F as programmed, of the tip; 0 where the block is timed another way (G93,
+                            ///< turns without a tip way) and for rapids
+  double dwell_s = 0.0;     ///< the tool stands this long before the move (G4 and the dwells of cycles)
+  bool exact_stop = false;  ///< G9, G60, G61: comes to rest at its end
+  double corner_tolerance_mm = 0.0;  ///< G64 P, CYCLE832, TOLERANCE: the corner at its end may be rounded by
+                                     ///< this much; 0: the control's own default
+  double spindle_rpm = 0.0;  ///< above 0 clockwise (M3), below 0 counter-clockwise (M4), 0 stopped
+  int tool = -1;             ///< index into ControlSetup::tools; -1: none is in the spindle
+  int file = 0;              ///< index into NcSummary::files
+  int line = 0, column = 0;
+};
+
+/// A message, comment or machine function without effect on the geometry: kept for the report.
+struct NcNote {
+  std::string word, text;
+  int file = 0, line = 0;
+};
+
+/// Takes the moves as they are executed. Returning false stops the program (the user pressed Ctrl-C).
+class NcSink {
+ public:
+  virtual ~NcSink() = default;
+  virtual bool move(const NcMove& move) = 0;
+  virtual void note(const NcNote& /*note*/) {}
+};
+
+/// The dialects that are read.
+enum class Dialect { kLinuxCnc, kFanuc, kSiemens, kHeidenhain };
+/// "linuxcnc" and so on.
+const char* dialect_name(Dialect dialect);
+
+/// What stands in the control before the program starts.
+struct ControlSetup {
+  kinematics::MachineModel machine;  ///< with gauge_M, or with one fixed tip for every tool
+  std::vector<NcTool> tools;
+  /// Work offsets by number (1: G54, 2: G55, ...), mm and rad, as differences from the machine position at
+  /// which the tip stands on the work's origin with the rotary axes at zero. What is not given is zero.
+  std::map<int, kinematics::AxisValues> work_offsets;
+  /// Axis values where the program starts. None: the first move with all axes given starts it (reported).
+  std::optional<kinematics::AxisValues> start;
+  std::vector<std::string>
+      subprogram_folders;       ///< where called programs are looked for besides the program's own
+  long moves_max = 50'000'000;  ///< endless loops end here, with the line that broke the limit
+};
+
+/// What was read, for the report.
+struct NcSummary {
+  Dialect dialect = Dialect::kLinuxCnc;
+  std::string dialect_reason;      ///< why it was recognised; "the scene says so"
+  std::vector<std::string> files;  ///< the program, then each file it called
+  long lines = 0, blocks = 0, moves = 0;
+  std::string start;                   ///< in words: where the program started and why there
+  std::vector<int> tools_used;         ///< indices into ControlSetup::tools, in order of their first cut
+  std::vector<std::string> functions;  ///< words that were read and have no effect on the geometry (M8, MSG),
+                                       ///< each once, for "what was not simulated"
+};
+
+/// Runs the program file. `dialect` none: recognised from the text, "unknown-dialect" when it is ambiguous.
+/// Problems go to `diagnostics` with file:line:column; moves that came before an error have reached the sink.
+NcSummary run_nc(const std::string& path, std::optional<Dialect> dialect, const ControlSetup& setup,
+                 NcSink& sink, Diagnostics& diagnostics);
+
+}  // namespace swarf::program
