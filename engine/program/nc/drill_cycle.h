@@ -1,0 +1,33 @@
+// Canned drilling cycles as data: a dialect fills in what its words mean, the control expands them into
+// moves.
+#pragma once
+
+#include "program/nc/target.h"
+
+namespace swarf::program::nc {
+
+/// What the tool does on the way down and at the bottom. All heights are program coordinates along the
+/// plane's normal, mm.
+///
+///   safe ----.........   rapid to the hole at the present height, rapid to `approach`,
+///            :       ^   feed (in pecks) to `bottom`, dwell, spindle, then out to `retract`
+///   approach +--.    :
+///               |feed:
+///   bottom      +----+
+struct DrillCycle {
+  double approach = 0.0;  ///< R plane: where the feed starts
+  double bottom = 0.0;
+  double retract = 0.0;  ///< where the tool goes at last (G98: the height before the cycle, G99: approach)
+  enum class Peck { kNone, kFull, kChipBreak };
+  Peck peck = Peck::kNone;
+  double peck_mm = 0.0;  ///< depth per peck, above 0 with pecking
+  double clearance_mm =
+      0.0;               ///< kFull: rapid back down to this above the last depth; kChipBreak: retreat by this
+  double dwell_s = 0.0;  ///< at the bottom
+  bool feed_out = false;        ///< out at feed (boring, tapping) down to `approach`, then rapid to `retract`
+  bool stop_at_bottom = false;  ///< G86: the spindle stops at the bottom, starts again at the top
+  bool reverse_at_bottom = false;  ///< G84, G74: tapping, the spindle turns the other way on the way out
+  double pitch_mm = 0.0;           ///< tapping: mm/rev, the feed is pitch x speed; 0: the programmed feed
+};
+
+}  // namespace swarf::program::nc
