@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "base/config.h"
-#include "base/units.h"
 #include "kinematics/model_check.h"
+#include "machine/axis_table.h"
 #include "machine/machine_scene.h"
 #include "mesh/mesh_io.h"
 
@@ -19,13 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using kinematics::Axis;
-using kinematics::AxisKind;
-
-/// A direction in a file carries the digits that a person wrote; within this it is meant as a unit vector and
-/// is normalised.
-constexpr double kWrittenUnitTolerance = 1e-9;
-
-const std::vector<std::string> kAxisLetters{"X", "Y", "Z", "A", "B", "C", "U", "V", "W"};
 
 /// A [[link]] as it stands in the file; names are resolved when all are known.
 struct LinkEntry {
@@ -33,78 +26,6 @@ struct LinkEntry {
   std::string name, parent, axis, mesh, mount;
   Link link;
 };
-
-Vec3 read_vec3(ConfigTable& table, const std::string& key,
-               const std::optional<std::vector<double>>& fallback = {}) {
-  const std::vector<double> v = table.numbers(key, 3, fallback);
-  return {v[0], v[1], v[2]};
-}
-
-Vec3 read_direction(ConfigTable& table, const std::string& key,
-                    std::optional<std::vector<double>> fallback = {}) {
-  // What is no vector at all has one diagnostic, not a second one for its length.
-  if (table.has(key)) fallback = std::vector<double>{1, 0, 0};
-  const Vec3 direction = read_vec3(table, key, fallback);
-  const double length = direction.norm();
-  if (table.has(key) && std::abs(length - 1.0) > kWrittenUnitTolerance) {
-    table.error("direction-not-unit", key,
-                fmt::format("'{}' is not a unit vector, its length is {:.9g}", key, length),
-                length > 0.0 ? fmt::format("write [{:.12g}, {:.12g}, {:.12g}]", direction.x() / length,
-                                           direction.y() / length, direction.z() / length)
-                             : "write a vector of length 1");
-    return Vec3::UnitX();
-  }
-  return length > 0.0 ? Vec3(direction / length) : Vec3::UnitX();
-}
-
-/// Limits carry their unit in the key: min_mm, speed_max_mm_min, ... for linear, min_deg, speed_max_deg_s,
-/// ... for rotary axes.
-void read_limits(ConfigTable& table, Axis& axis) {
-  const bool rotary = axis.kind == AxisKind::kRotary;
-  const std::string unit = rotary ? "deg" : "mm";
-  const double scale = rotary ? rad_from_deg(1.0) : 1.0;
-  axis.min = scale * table.number("min_" + unit, {});
-  axis.max = scale * table.number("max_" + unit, {});
-  axis.speed_max = rotary ? scale * table.number("speed_max_deg_s", kAboveZero)
-                          : mm_s_from_mm_min(table.number("speed_max_mm_min", kAboveZero));
-  axis.acceleration_max = scale * table.number("acceleration_max_" + unit + "_s2", kAboveZero);
-  axis.jerk_max = scale * table.number("jerk_max_" + unit + "_s3", kAboveZero);
-  axis.home = scale * table.number("home_" + unit, {}, 0.0);
-  if (!table.has("min_" + unit) || !table.has("max_" + unit)) return;
-  if (!(axis.min < axis.max)) {
-    table.error("bad-travel", "min_" + unit,
-                fmt::format("the travel of axis {} ends at {:g} {} where it begins at {:g}", axis.name,
-                            axis.max / scale, unit, axis.min / scale),
-                "min must lie below max");
-  } else if (axis.home < axis.min || axis.home > axis.max) {
-    table.error("home-outside-travel", "home_" + unit,
-                fmt::format("home of axis {} is {:g} {}, outside its travel {:g} .. {:g}", axis.name,
-                            axis.home / scale, unit, axis.min / scale, axis.max / scale),
-                "put home inside the travel");
-  }
-}
-
-Axis read_axis(ConfigTable& table) {
-  Axis axis;
-  axis.name = table.text("name");
-  if (table.has("name") &&
-      std::find(kAxisLetters.begin(), kAxisLetters.end(), axis.name) == kAxisLetters.end()) {
-    table.error("unknown-axis", "name", fmt::format("there is no axis '{}'", axis.name),
-                fmt::format("axes are called {}", fmt::join(kAxisLetters, " ")));
-  }
-  // A misspelt type is one mistake: the unit of the limits tells what was meant, and they are read as such.
-  const bool in_degrees = table.has("min_deg") || table.has("max_deg") || table.has("speed_max_deg_s");
-  std::optional<std::string> meant;
-  if (table.has("type")) meant = in_degrees ? "rotary" : "linear";
-  axis.kind =
-      table.choice("type", {"linear", "rotary"}, meant) == "rotary" ? AxisKind::kRotary : AxisKind::kLinear;
-  axis.direction_M = read_direction(table, "direction");
-  if (axis.kind == AxisKind::kRotary)
-    axis.origin_M = read_vec3(table, "origin_mm", std::vector<double>{0, 0, 0});
-  axis.reversed = table.boolean("reversed", false);
-  read_limits(table, axis);
-  return axis;
-}
 
 LinkEntry read_link(ConfigTable table) {
   LinkEntry entry{
@@ -137,9 +58,8 @@ class MachineReader {
     read_links();
     ConfigTable work = root_.table("work");
     scene_.model.X_MW.translation() = read_vec3(work, "origin_mm");
-    ConfigTable tool = root_.table("tool");
-    scene_.model.tip_M = read_vec3(tool, "tip_mm", std::vector<double>{0, 0, 0});
-    scene_.model.tool_axis_M = read_direction(tool, "axis", std::vector<double>{0, 0, 1});
+    read_tool(root_, scene_.model);
+    read_rapid(root_, scene_.model);
     root_.finish();
     if (!diagnostics_.has_errors()) resolve_links();
     if (!diagnostics_.has_errors()) make_chains();
