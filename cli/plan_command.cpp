@@ -4,9 +4,9 @@
 #include <fstream>
 #include <memory>
 
-#include "base/units.h"
 #include "cli/commands.h"
 #include "cli/terminal.h"
+#include "program/cl_writer.h"
 #include "sim/simulation.h"
 
 namespace swarf::cli {
@@ -17,52 +17,57 @@ struct PlanCommand {
   std::vector<std::string> overrides;
 };
 
-void append_goto(std::string& text, const ToolPose& pose) {
-  const Vec3& p = pose.tip_W;
-  const Vec3& a = pose.axis_W;
-  text += fmt::format("GOTO/{:.6f},{:.6f},{:.6f},{:.9f},{:.9f},{:.9f}\n", p.x(), p.y(), p.z(), a.x(), a.y(),
-                      a.z());
+/// A move to `to` with the feed of the element it belongs to; 0: rapid.
+void add_move(program::ClProgram& program, const ToolPose& to, double feed_mm_s) {
+  if (program.start_line == 0) {
+    program.start = to;
+    program.start_line = 1;
+    return;
+  }
+  program::ClMove move;
+  move.from = program.moves.empty() ? program.start : program.moves.back().to;
+  move.to = to;
+  move.feed_mm_s = feed_mm_s;
+  move.tool = 0;
+  program.moves.push_back(move);
 }
 
-/// The path as APT CL data: one GOTO for each control cycle in contact, for both ends of a free move.
-std::string cl_text(const sim::Job& job, const toolpath::ToolPath& path,
-                    const motion::Trajectory& trajectory) {
+/// The path as CL data: one GOTO for each control cycle in contact, for both ends of a free move.
+program::ClProgram cl_program(const sim::Job& job, const toolpath::ToolPath& path,
+                              const motion::Trajectory& trajectory) {
   const cutter::Cutter& c = job.scene.cutter;
-  std::string text = fmt::format("PARTNO/{}\nUNITS/MM\nLOADTL/{}\nCUTTER/{:g},{:g}\nMULTAX/ON\n",
-                                 job.scene.name, c.number, c.diameter_mm, c.corner_radius_mm);
+  program::ClProgram program;
+  program.notes.push_back({"PARTNO", job.scene.name, 0});
+  program.tools.push_back({c.number, {}, {}});
+  program.cutters.push_back({{c.diameter_mm, c.corner_radius_mm}, 0, {}});
   int element = -1;
   for (const motion::ToolSample& sample : trajectory.samples) {
-    const bool cutting = sample.kind == motion::SampleKind::kCutting;
-    if (sample.element != element) {
-      element = sample.element;
-      const toolpath::Element& entry = path.elements[static_cast<size_t>(element)];
-      if (const auto* move = std::get_if<toolpath::FreeMove>(&entry.what)) {
-        text += move->feed_mm_s > 0.0 ? fmt::format("FEDRAT/{:.3f},MMPM\n", mm_min_from_mm_s(move->feed_mm_s))
-                                      : "RAPID\n";
-        append_goto(text, move->to);
-      } else {
-        text += fmt::format("FEDRAT/{:.3f},MMPM\n",
-                            mm_min_from_mm_s(std::get<toolpath::SurfacePass>(entry.what).feed_mm_s));
-      }
-    }
-    if (cutting) append_goto(text, sample.pose);
+    const toolpath::Element& entry = path.elements[static_cast<size_t>(sample.element)];
+    const auto* move = std::get_if<toolpath::FreeMove>(&entry.what);
+    if (sample.element != element && move != nullptr) add_move(program, move->to, move->feed_mm_s);
+    if (move == nullptr && sample.kind == motion::SampleKind::kCutting)
+      add_move(program, sample.pose, std::get<toolpath::SurfacePass>(entry.what).feed_mm_s);
+    element = sample.element;
   }
-  return text + "FINI\n";
+  return program;
+}
+
+/// The text that -o takes: the scene's own path, or its CL file again, in mm, without cycles and systems.
+std::string planned_text(const sim::Job& job, toolpath::ToolPath& path) {
+  Diagnostics diagnostics;
+  path = sim::job_path(job, diagnostics);
+  print_diagnostics(diagnostics.list());
+  if (job.cl) return program::write_cl(*job.cl);
+  TerminalProgress progress;
+  const motion::MotionResult motion =
+      motion::interpolate(path, job.machine.model, job.scene.cutter, job.scene.motion, progress);
+  return program::write_cl(cl_program(job, path, motion.trajectory));
 }
 
 int plan(const PlanCommand& options) {
   const sim::Job job = sim::load_job(options.scene, options.overrides);
-  if (job.cl) {
-    throw InputError("nothing-to-plan", {options.scene}, "the scene's program is CL data already",
-                     fmt::format("run it: swarf run {}", options.scene));
-  }
-  Diagnostics diagnostics;
-  const toolpath::ToolPath path = sim::job_path(job, diagnostics);
-  print_diagnostics(diagnostics.list());
-  TerminalProgress progress;
-  const motion::MotionResult motion =
-      motion::interpolate(path, job.machine.model, job.scene.cutter, job.scene.motion, progress);
-  const std::string text = cl_text(job, path, motion.trajectory);
+  toolpath::ToolPath path;
+  const std::string text = planned_text(job, path);
   const std::string temporary = options.output + ".part";
   {
     std::ofstream file(temporary, std::ios::binary);
@@ -81,7 +86,10 @@ int plan(const PlanCommand& options) {
 
 void add_plan(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<PlanCommand>();
-  CLI::App* command = app.add_subcommand("plan", "Plan the tool path of a scene and write it as APT CL data");
+  CLI::App* command = app.add_subcommand(
+      "plan",
+      "Plan the tool path of a scene and write it as APT CL data; a CL file is written again, in mm, "
+      "without cycles and coordinate systems");
   command->add_option("scene", options->scene, "scene.toml")->required();
   command->add_option("-o,--output", options->output, "CL file to write")->required();
   command

@@ -25,7 +25,8 @@ char capital(char c) {
 }
 
 bool carries_text(const std::string& word) {
-  return word == "PARTNO" || word == "PPRINT" || word == "INSERT" || word == "REMARK";
+  return word == "PARTNO" || word == "PPRINT" || word == "INSERT" || word == "REMARK" || word == "PAINT" ||
+         word == "TOOL PATH" || word == "MACHIN";
 }
 
 int column_of(size_t at) {
@@ -71,6 +72,11 @@ bool ClScanner::next(ClStatement& statement, Reporter& reporter) {
     statement.arguments.clear();
     size_t at = begin;
     for (; at < line.size() && is_word_character(line[at]); ++at) statement.word += capital(line[at]);
+    // The one word of two words.
+    if (statement.word == "TOOL" && line.substr(at).starts_with(" PATH")) {
+      statement.word = "TOOL PATH";
+      at += 5;
+    }
     if (carries_text(statement.word)) {
       const std::string_view whole = lines_[line_ - 1];
       const size_t text = whole.find_first_not_of(" \t/", at);

@@ -79,12 +79,14 @@ void check_cl_tools(const Job& job, Diagnostics& diagnostics) {
     check_parameter(cutter, 4, "alpha (deg)", deg_from_rad(form->alpha), "the shape", diagnostics);
     check_parameter(cutter, 5, "beta (deg)", deg_from_rad(form->beta), "the shape", diagnostics);
   }
-  for (const program::ClMove& move : job.cl->moves) {
-    if (move.tool == 0 || move.tool == ours.number) continue;
+  for (const program::ClTool& tool : job.cl->tools) {
+    // A tool that is called by its name alone is taken for the scene's one while there is no other.
+    if (tool.number == ours.number || (tool.number == 0 && job.cl->tools.size() == 1)) continue;
+    const std::string called = tool.number != 0 ? fmt::format("tool {}", tool.number) : "tool " + tool.name;
     diagnostics.error(
-        "unknown-tool", {job.cl->file, move.line, move.column},
-        fmt::format("the move uses tool {}, the scene describes tool {} only", move.tool, ours.number),
-        fmt::format("load tool {} or set cutter.number = {}", ours.number, move.tool));
+        "unknown-tool", tool.where,
+        fmt::format("the program loads {}, the scene describes tool {} only", called, ours.number),
+        fmt::format("load tool {} or set cutter.number", ours.number));
     return;
   }
 }

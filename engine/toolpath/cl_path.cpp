@@ -102,6 +102,7 @@ ToolPath cl_path(const program::ClProgram& program, BlockLaw law, Diagnostics& d
     block.arc = move.arc;
     block.law = own;
     block.feed_mm_s = move.feed_mm_s;
+    block.dwell_s = move.dwell_s;
     block.pass = passes.next(block);
     (rapid ? path.link_length_mm : path.pass_length_mm) += tip_way(block);
     path.elements.push_back({std::move(block), 0, where});

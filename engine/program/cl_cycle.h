@@ -1,0 +1,40 @@
+// Drilling cycles of CL data as single steps.
+//
+//   C = P + clear a   ---- rapid ---->  feed to P - depth a, dwell, out again
+//
+// P is the point of GOTO, a its tool axis. DEEP comes out to C between its pecks and goes back in rapid to
+// kPeckGap above the ground; BRKCHP only lifts by kPeckGap.
+#pragma once
+
+#include <vector>
+
+#include "base/frames.h"
+
+namespace swarf::program {
+
+enum class ClCycleKind { kDrill, kFace, kDeep, kChipBreak, kBore, kTap };
+
+struct ClCycle {
+  ClCycleKind kind = ClCycleKind::kDrill;
+  double depth_mm = 0.0;    ///< below the point
+  double clear_mm = 0.0;    ///< above it
+  double retract_mm = 0.0;  ///< above it, when the hole is done
+  double step_mm = 0.0;     ///< of DEEP and BRKCHP
+  double dwell_s = 0.0;     ///< on the ground
+  double feed_mm_s = 0.0;
+};
+
+/// Distance above the ground of the last peck that is approached in rapid, mm.
+inline constexpr double kPeckGap = 0.5;
+
+/// A step along the axis of the hole.
+struct ClCycleStep {
+  double height_mm = 0.0;  ///< of its end above the point
+  bool rapid = false;
+  double dwell_s = 0.0;  ///< before it
+};
+
+/// The steps of one hole after the tool has come to `clear_mm`.
+std::vector<ClCycleStep> cycle_steps(const ClCycle& cycle);
+
+}  // namespace swarf::program
