@@ -116,6 +116,8 @@ class Control {
   /// outside one plane, "compensation-no-tool" without a radius. Off: the next move leads out.
   void set_compensation(Compensation side, double radius_mm, int column);
   Compensation compensation() const;
+  /// Where the lead-in ends; kAcrossNext unless the dialect says otherwise.
+  void set_compensation_entry(CompensationEntry entry);
 
   // --- Frames and offsets ----------------------------------------------------------------------------------
   /// Work offset by number (1: G54); 0: none (G53, G500: the work zero itself).
@@ -142,6 +144,7 @@ class Control {
   bool exact_stop() const { return exact_stop_; }
   void set_corner_tolerance(double mm) { corner_tolerance_mm_ = mm; }
   double corner_tolerance() const { return corner_tolerance_mm_; }
+  /// G4: the next move waits this long before it starts.
   void dwell(double seconds);
 
   // --- Motion ----------------------------------------------------------------------------------------------
@@ -165,6 +168,8 @@ class Control {
                                        int column) const;
   /// Moves the rotaries to those of `q`: linear axes stand (tip_stands false) or keep the tip in W.
   void turn_rotaries(Motion motion, const kinematics::AxisValues& q, bool tip_stands);
+  /// To be called at each jump back and each call: "endless-loop" after a million of them without a move.
+  void jump();
   /// Ends what is still in look-ahead; at the end of the program, before positions are read, before M6.
   void flush();
   /// Ends the program: flush, the last dwell, "no-start" when no complete position came.
@@ -192,26 +197,38 @@ class Control {
 
  private:
   friend class Contour;
-  struct Goal;
+  /// Where a block goes, in full.
+  struct Goal {
+    Vec3 p = Vec3::Zero();
+    std::array<double, 3> rotary{};      ///< machine values of A B C
+    std::array<double, 3> programmed{};  ///< program values of A B C
+    bool turns = false;                  ///< a rotary axis moves
+  };
+  void refresh_position();
   Goal resolve(const Target& target);
-  void resolve_rotaries(const Target& target, Goal& goal);
+  double rotary_goal(const Target& target, int slot) const;
   void solve_vector(const Target& target, Goal& goal);
-  double rotary_goal(const Target& target, int word, double zero) const;
-  bool establish_start(Motion motion, const Target& target, Goal& goal);
-  void start_here(const Goal& goal);
-  Segment segment(Motion motion, const Goal& goal);
-  void programmed(const Segment& segment);
+  void check_axes(const Target& target) const;
+  bool ready(Motion motion, const Target& target, bool machine);
+  bool learn_linear(const Target& target, bool machine);
+  void start_here(const std::string& how);
+  void count_unwinding(int slot, double turn);
+  void prepare(Motion motion, const Target& target, Segment& segment);
+  void take(Segment& segment);
+  void arrive(const Goal& goal);
+  void place_circle(Motion motion, const ArcWords& words, Segment& segment) const;
   void emit(const Segment& segment);
-  void send(NcMove& move);
-  void set_time(const Segment& segment, NcMove& move, double tip_way, double axis_way);
-  void place_arc(const Segment& segment, NcMove& move) const;
-  void drill_down(const DrillCycle& cycle, const Target& hole);
-  void moved_frame();
+  void emit_piece(const Segment& segment, const Vec3& p_to, const std::array<double, 3>& rotary_to,
+                  double share, double turn);
+  void send(const Segment& segment, NcMove& move);
+  void set_time(const Segment& segment, double way, double turn_deg, double share, NcMove& move) const;
+  void place_arc(const Segment& segment, NcMove& move);
+  void go(Motion motion, int normal, double height);
+  void peck_down(const DrillCycle& cycle, int normal, double sign);
+  void moved_frame(const char* what);
   void set_true_tool();
-  int checked_tool(int index, const std::string& asked, int column);
-  std::string tool_list() const;
+  int not_found(const std::string& asked, int column);
   std::string missing_axes() const;
-  double feed_mm_s() const;
 
   const ControlSetup& setup_;
   NcSink& sink_;
@@ -245,8 +262,11 @@ class Control {
   uint8_t known_ = 0;  ///< axes whose value is known, by AxisWord, before the start
   bool started_ = false;
   ToolPose pose_;  ///< of the true tool at q_
-  bool pose_valid_ = false;
   std::vector<std::string> warned_;
+  long jumps_ = 0;
+  bool axes_rigid_ = true;  ///< linear axis values and W differ by a rigid motion or its mirror image
+  long unwound_[3] = {0, 0, 0};
+  Place first_motion_;
 };
 
 }  // namespace swarf::program::nc

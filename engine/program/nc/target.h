@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "base/frames.h"
+#include "program/block_law.h"
 
 namespace swarf::program::nc {
 
@@ -61,6 +62,12 @@ enum class Tcp {
 /// The side of the contour, looking along the travel, on which the cutter goes.
 enum class Compensation { kOff, kLeft, kRight };
 
+/// Where the first compensated move ends, a cutter radius beside its programmed end.
+enum class CompensationEntry {
+  kAlongEntry,  ///< across the lead-in itself; the corner to the next move is then an ordinary one (LinuxCNC)
+  kAcrossNext,  ///< across the start of the next move (Fanuc type A, 840D NORM, Heidenhain)
+};
+
 /// Where a block goes. Unset words stay where they are. mm, rad.
 struct Target {
   std::array<double, kAxisWords> value{};
@@ -112,9 +119,12 @@ struct Segment {
   bool turns_rotaries = false;
   Vec3 centre = Vec3::Zero(), normal = Vec3::UnitZ();  ///< of arcs; counter-clockwise about the normal
   int further_turns = 0;
-  bool machine = false;  ///< from and to are linear axis values
+  bool machine = false;  ///< from and to are linear axis values, and `law` is theirs
+  BlockLaw law = BlockLaw::kJoint;
   // Modal words that held when it was programmed:
-  double feed = 0.0;
+  double feed = 0.0;  ///< as written
+  double unit_mm = 1.0;
+  FeedMode feed_mode = FeedMode::kPerMinute;
   double dwell_s = 0.0, corner_tolerance_mm = 0.0, spindle_rpm = 0.0;
   bool exact_stop = false;
   Place place;

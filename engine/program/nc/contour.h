@@ -1,0 +1,77 @@
+// Cutter radius compensation: the programmed contour, moved aside by a cutter radius, one corner of
+// look-ahead.
+//
+//        outer corner                 inner corner
+//      ------.  arc about the       --------+      both pieces end where
+//      ----+  \  corner             ------+ |      their offsets meet
+//          |   |                          | |
+//
+// 1. A straight or circular piece moves aside by r along n = side (normal x tangent); arcs keep their centre.
+// 2. Outer corners get an arc of radius r about the programmed corner; smooth ones nothing.
+// 3. Inner corners end at the intersection of both offset curves. When it lies outside a piece the cutter
+// would
+//    cut beyond the corner: "compensation-gouge"; so does an arc whose inside is not wider than the cutter.
+// 4. The first move (lead-in) ends a radius beside its programmed end, the first one after G40 starts there.
+// 5. Moves along the plane's normal wait for the corner that they stand in.
+// Known limit: only neighbouring pieces are compared; a slot narrower than the cutter is seen by the
+// simulation.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "program/nc/target.h"
+
+namespace swarf::program::nc {
+
+class Control;
+
+class Contour {
+ public:
+  explicit Contour(Control& control) : control_(control) {}
+  Compensation side() const { return side_; }
+  /// The next move in the plane leads out.
+  bool leading_out() const { return leading_out_; }
+  void set_side(Compensation side, double radius_mm, int column);
+  void set_entry(CompensationEntry entry) { entry_ = entry; }
+  void add(const Segment& programmed);
+  /// Emits what waits for a corner that does not come; the compensated end stays where it is.
+  void flush();
+
+ private:
+  struct Piece {
+    Segment segment;                ///< compensated
+    Vec3 corner;                    ///< its end as programmed
+    Vec3 tangent_from, tangent_to;  ///< at both programmed ends, unit, in the plane
+    double way = 0.0;               ///< programmed, mm
+    bool lead_in = false;
+  };
+  Vec3 normal() const;
+  Vec3 flat(const Vec3& v) const;
+  Vec3 at_height(const Vec3& in_plane, const Vec3& height) const;
+  /// Unit vector to the side of the travel on which the cutter goes.
+  Vec3 aside(const Vec3& tangent) const;
+  Vec3 tangent(const Segment& segment, const Vec3& at) const;
+  Piece offset(const Segment& programmed) const;
+  void lead_in(const Segment& programmed);
+  void lead_out(const Segment& programmed);
+  void join(const Piece& next);
+  void outer(const Piece& next);
+  void inner(const Piece& next);
+  void send_pending();
+  void send_waiting(const Vec3& offset);
+  Vec3 meet(const Piece& before, const Piece& after) const;
+  [[noreturn]] void gouge(const Segment& segment, const char* why) const;
+
+  Control& control_;
+  CompensationEntry entry_ = CompensationEntry::kAcrossNext;
+  Compensation side_ = Compensation::kOff;
+  double radius_ = 0.0;
+  bool leading_in_ = false, leading_out_ = false;
+  std::optional<Piece> pending_;
+  std::vector<Segment> waiting_;  ///< along the normal, after `pending_`
+  Vec3 tool_ = Vec3::Zero();      ///< compensated point reached so far, program coordinates
+  bool tool_known_ = false;
+};
+
+}  // namespace swarf::program::nc

@@ -1,0 +1,239 @@
+// Drilling cycles, curves and tilted planes: what expands into several moves.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/units.h"
+#include "kinematics/model_check.h"
+#include "program/nc/control.h"
+
+namespace swarf::program::nc {
+namespace {
+
+using kinematics::AxisValues;
+
+/// Halvings of a curve piece; 2^20 pieces of the smallest curve are far below any tolerance.
+constexpr int kHalvings = 20;
+/// A cycle with more pecks than this is a slip of the depth per peck.
+constexpr double kPecksMax = 100'000.0;
+
+double off_chord(const Vec3& a, const Vec3& b, const Vec3& p) {
+  const Vec3 way = b - a;
+  const double length_squared = way.squaredNorm();
+  const double s = length_squared > 0.0 ? std::clamp((p - a).dot(way) / length_squared, 0.0, 1.0) : 0.0;
+  return (p - a - s * way).norm();
+}
+
+/// Appends the parameters that end the pieces of [a, b].
+void split(const Curve& curve, double a, const Vec3& at_a, double b, const Vec3& at_b, double tolerance,
+           int depth, std::vector<double>& ends) {
+  bool close = true;
+  for (const double s : {0.25, 0.5, 0.75})
+    close = close && off_chord(at_a, at_b, curve.at(a + s * (b - a)).tip) <= tolerance;
+  if (close || depth == 0) {
+    ends.push_back(b);
+    return;
+  }
+  const double middle = 0.5 * (a + b);
+  const Vec3 at_middle = curve.at(middle).tip;
+  split(curve, a, at_a, middle, at_middle, tolerance, depth - 1, ends);
+  split(curve, middle, at_middle, b, at_b, tolerance, depth - 1, ends);
+}
+
+}  // namespace
+
+// --- Drilling
+// ------------------------------------------------------------------------------------------------
+
+void Control::go(Motion motion, int normal, double height) {
+  Target target;
+  target.set(normal, height, false);
+  line(motion, target);
+}
+
+void Control::drill(const DrillCycle& cycle, const Target& hole) {
+  const PlaneAxes axes = axes_of(plane_);
+  const double sign = cycle.bottom <= cycle.approach ? 1.0 : -1.0;  // +1: drills against the normal
+  Target above = hole;
+  above.given = static_cast<uint8_t>(hole.given & ~(1u << axes.normal));
+  if (!started_) {
+    fail("start-unknown", hole.column, "a cycle starts, and the position is not known yet",
+         "position all axes with G0 before the cycle");
+  }
+  if (cycle.peck != DrillCycle::Peck::kNone &&
+      !(std::abs(cycle.bottom - cycle.approach) <= kPecksMax * cycle.peck_mm)) {
+    fail("bad-cycle", hole.column, fmt::format("the depth per peck is {:g} mm", cycle.peck_mm),
+         "give a depth per peck above zero");
+  }
+  if (sign * (position_xyz()[axes.normal] - cycle.approach) < 0.0)
+    go(Motion::kRapid, axes.normal, cycle.approach);
+  if (above.any()) line(Motion::kRapid, above);
+  go(Motion::kRapid, axes.normal, cycle.approach);
+  const double feed = feed_;
+  const FeedMode mode = feed_mode_;
+  if (cycle.pitch_mm > 0.0) {
+    if (speed_rpm_ <= 0.0) {
+      fail("feed-without-spindle", hole.column, "tapping without a spindle speed",
+           "write S before the cycle");
+    }
+    feed_mode_ = FeedMode::kPerMinute;
+    feed_ = cycle.pitch_mm * speed_rpm_ / unit_mm_;
+  }
+  peck_down(cycle, axes.normal, sign);
+  if (cycle.dwell_s > 0.0) pending_dwell_s_ += cycle.dwell_s;
+  const int spindle_down = spindle_;
+  if (cycle.stop_at_bottom) spindle_ = 0;
+  if (cycle.reverse_at_bottom) spindle_ = -spindle_;
+  if (cycle.feed_out) {
+    feed_fresh_ = true;
+    go(Motion::kFeed, axes.normal, cycle.approach);
+  }
+  go(Motion::kRapid, axes.normal, cycle.retract);
+  spindle_ = spindle_down;
+  feed_ = feed;
+  feed_mode_ = mode;
+}
+
+void Control::peck_down(const DrillCycle& cycle, int normal, double sign) {
+  double depth = cycle.approach;
+  const bool pecks = cycle.peck != DrillCycle::Peck::kNone;
+  const bool fresh = feed_fresh_;
+  for (;;) {
+    const double next = depth - sign * cycle.peck_mm;
+    const bool last = !pecks || sign * (next - cycle.bottom) <= 1e-9;
+    feed_fresh_ = fresh || cycle.pitch_mm > 0.0;
+    go(Motion::kFeed, normal, last ? cycle.bottom : next);
+    if (last) return;
+    depth = next;
+    if (cycle.peck == DrillCycle::Peck::kChipBreak) {
+      go(Motion::kRapid, normal, depth + sign * cycle.clearance_mm);
+    } else {
+      go(Motion::kRapid, normal, cycle.approach);
+      const double down = depth + sign * cycle.clearance_mm;
+      if (sign * (cycle.approach - down) > 0.0) go(Motion::kRapid, normal, down);
+    }
+  }
+}
+
+// --- Curves
+// --------------------------------------------------------------------------------------------------
+
+void Control::curve(const Curve& curve, double tolerance_mm) {
+  std::vector<double> stops = curve.breaks();
+  stops.push_back(1.0);
+  std::vector<double> ends;
+  double a = 0.0;
+  for (const double b : stops) {
+    split(curve, a, curve.at(a).tip, b, curve.at(b).tip, tolerance_mm, kHalvings, ends);
+    a = b;
+  }
+  std::vector<CurvePoint> points;
+  double way = 0.0;
+  Vec3 before = curve.at(0.0).tip;
+  for (const double u : ends) {
+    points.push_back(curve.at(u));
+    way += (points.back().tip - before).norm();
+    before = points.back().tip;
+  }
+  const double whole_feed = feed_;
+  const bool inverse = feed_mode_ == FeedMode::kInverseTime;
+  const bool fresh = feed_fresh_;
+  for (const CurvePoint& point : points) {
+    Target target;
+    const Vec3 here = position_xyz();
+    for (int i = 0; i < 3; ++i) {
+      target.set(i, point.tip[i], false);
+      const auto& rotary = point.rotary[static_cast<size_t>(i)];
+      if (rotary) target.set(i + 3, *rotary, false);
+    }
+    target.axis_P = point.axis;
+    // The time of a G93 block is shared out by way.
+    if (inverse && way > 0.0) feed_ = whole_feed * way / std::max((point.tip - here).norm(), 1e-12 * way);
+    feed_fresh_ = fresh;
+    line(Motion::kFeed, target);
+  }
+  feed_ = whole_feed;
+}
+
+// --- Tilted planes
+// -------------------------------------------------------------------------------------------
+
+std::vector<AxisValues> Control::tilt_solutions(const Vec3& axis_P) const {
+  const Vec3 axis_W = (space_.frame().linear() * axis_P).normalized();
+  const Vec3 tip_W = kinematics::forward(kinematics::with_tool(setup_.machine, 0.0), q_).tip_W;
+  const kinematics::InverseSolutions found = space_.inverse().solve({tip_W, axis_W}, q_);
+  std::vector<AxisValues> solutions;
+  const auto inside = [&](const AxisValues& q) {
+    for (int word = 3; word < kAxisWords; ++word) {
+      const int i = axis_of(static_cast<AxisWord>(word));
+      if (i < 0) continue;
+      const kinematics::Axis& axis = setup_.machine.axes[static_cast<size_t>(i)];
+      if (q[i] < axis.min - kinematics::kAxisTolerance || q[i] > axis.max + kinematics::kAxisTolerance)
+        return false;
+    }
+    return true;
+  };
+  for (int i = 0; i < found.count; ++i) {
+    if (inside(found.branch[i].q)) solutions.push_back(found.branch[i].q);
+  }
+  const auto travel = [&](const AxisValues& q) {
+    double sum = 0.0;
+    for (int word = 3; word < kAxisWords; ++word) {
+      const int i = axis_of(static_cast<AxisWord>(word));
+      if (i >= 0) sum += std::abs(q[i] - q_[i]);
+    }
+    return sum;
+  };
+  std::stable_sort(solutions.begin(), solutions.end(),
+                   [&](const AxisValues& a, const AxisValues& b) { return travel(a) < travel(b); });
+  return solutions;
+}
+
+AxisValues Control::tilt_solution(const Vec3& axis_P, const TiltPreference& preference, int column) const {
+  const std::vector<AxisValues> solutions = tilt_solutions(axis_P);
+  int axis = preference.axis >= 0 ? axis_of(static_cast<AxisWord>(preference.axis)) : -1;
+  const std::vector<int> order = kinematics::rotary_order(setup_.machine);
+  if (axis < 0 && !order.empty()) axis = order.back();
+  for (const AxisValues& q : solutions) {
+    const double value = axis >= 0 ? q[axis] : 0.0;
+    const bool fits = preference.choice == TiltPreference::Choice::kNearest || std::abs(value) <= 1e-9 ||
+                      (value > 0.0) == (preference.choice == TiltPreference::Choice::kPositive);
+    if (fits) return q;
+  }
+  const Vec3 axis_W = (space_.frame().linear() * axis_P).normalized();
+  fail("unreachable-orientation", column,
+       fmt::format("the rotary axes cannot point the tool along ({:.6f}, {:.6f}, {:.6f}) in W{}", axis_W.x(),
+                   axis_W.y(), axis_W.z(),
+                   solutions.empty() ? " within their travel" : " with the solution that is asked for"),
+       "change the angles of the plane, or the machine");
+}
+
+void Control::turn_rotaries(Motion motion, const AxisValues& q, bool tip_stands) {
+  flush();
+  if (!started_) {
+    fail("start-unknown", 0, "the rotary axes turn, and the position is not known yet",
+         "give the start position in the scene, or position all axes with G0 before it");
+  }
+  const std::array<double, 3> rotary = space_.rotary_of(q);
+  Vec3 linear = space_.linear_of(q_);
+  if (tip_stands) {
+    const LinearMap now = space_.compensated(space_.rotary_of(q_));
+    const LinearMap& then = space_.compensated(rotary);
+    linear = then.inverse * (now.base_W + now.columns_W * linear - then.base_W);
+  }
+  Segment segment;
+  prepare(motion, Target(), segment);
+  segment.machine = true;
+  segment.law = tip_stands ? BlockLaw::kTcpAxes : BlockLaw::kJoint;
+  segment.from = space_.linear_of(q_);
+  segment.to = linear;
+  segment.rotary_from = space_.rotary_of(q_);
+  segment.rotary_to = rotary;
+  segment.turns_rotaries = rotary != segment.rotary_from;
+  if (tip_stands) segment.from = segment.to;  // no way of the tip: the feed counts degrees
+  emit(segment);
+  position_valid_ = false;
+}
+
+}  // namespace swarf::program::nc

@@ -1,0 +1,90 @@
+#include "program/nc/curve.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace swarf::program::nc {
+namespace {
+
+/// A point in homogeneous coordinates: everything that the basis functions blend.
+struct Blend {
+  Vec3 tip = Vec3::Zero(), axis = Vec3::Zero();
+  double rotary[3] = {0.0, 0.0, 0.0}, weight = 0.0;
+
+  void add(const CurvePoint& point, double share) {
+    tip += share * point.tip;
+    if (point.axis) axis += share * *point.axis;
+    for (size_t i = 0; i < 3; ++i) rotary[i] += share * point.rotary[i].value_or(0.0);
+    weight += share;
+  }
+};
+
+}  // namespace
+
+NurbsCurve::NurbsCurve(int order, std::vector<CurvePoint> points, std::vector<double> weights,
+                       std::vector<double> knots)
+    : order_(order), points_(std::move(points)), weights_(std::move(weights)), knots_(std::move(knots)) {
+  const size_t wanted = points_.size() + static_cast<size_t>(std::max(order_, 0));
+  if (order_ < 2) throw std::invalid_argument("the order of a NURBS is at least 2");
+  if (points_.size() < static_cast<size_t>(order_))
+    throw std::invalid_argument("a NURBS needs at least as many points as its order");
+  if (weights_.size() != points_.size()) throw std::invalid_argument("each point needs one weight");
+  if (knots_.size() != wanted)
+    throw std::invalid_argument("a NURBS needs as many knots as points and order together");
+  if (!std::is_sorted(knots_.begin(), knots_.end())) throw std::invalid_argument("the knots decrease");
+  if (!(knots_[points_.size()] > knots_[static_cast<size_t>(order_) - 1]))
+    throw std::invalid_argument("the knots span nothing");
+  if (std::any_of(weights_.begin(), weights_.end(), [](double weight) { return !(weight > 0.0); }))
+    throw std::invalid_argument("a weight is not above zero");
+}
+
+CurvePoint NurbsCurve::at(double u) const {
+  const size_t degree = static_cast<size_t>(order_) - 1;
+  const double low = knots_[degree], high = knots_[points_.size()];
+  const double t = low + u * (high - low);
+  // The span that holds t; the last one holds its end too (A2.1).
+  const auto after = std::upper_bound(knots_.begin() + static_cast<long>(degree),
+                                      knots_.begin() + static_cast<long>(points_.size()), t);
+  size_t span = static_cast<size_t>(after - knots_.begin()) - 1;
+  while (span > degree && knots_[span] == knots_[span + 1]) --span;
+  // Basis functions of the span (A2.2).
+  std::vector<double> basis(degree + 1, 0.0);
+  basis[0] = 1.0;
+  for (size_t j = 1; j <= degree; ++j) {
+    double saved = 0.0;
+    for (size_t r = 0; r < j; ++r) {
+      const double right = knots_[span + r + 1] - t, left = t - knots_[span + 1 + r - j];
+      const double share = basis[r] / (right + left);
+      basis[r] = saved + right * share;
+      saved = left * share;
+    }
+    basis[j] = saved;
+  }
+  Blend blend;
+  for (size_t j = 0; j <= degree; ++j) {
+    const size_t i = span - degree + j;
+    blend.add(points_[i], basis[j] * weights_[i]);
+  }
+  CurvePoint point;
+  point.tip = blend.tip / blend.weight;
+  const CurvePoint& first = points_.front();
+  if (first.axis) point.axis = blend.axis / blend.weight;
+  for (size_t i = 0; i < 3; ++i) {
+    if (first.rotary[i]) point.rotary[i] = blend.rotary[i] / blend.weight;
+  }
+  return point;
+}
+
+std::vector<double> NurbsCurve::breaks() const {
+  const size_t degree = static_cast<size_t>(order_) - 1;
+  const double low = knots_[degree], high = knots_[points_.size()];
+  std::vector<double> inner;
+  for (size_t i = degree + 1; i < points_.size(); ++i) {
+    const double u = (knots_[i] - low) / (high - low);
+    if (u > 0.0 && u < 1.0 && (inner.empty() || u > inner.back())) inner.push_back(u);
+  }
+  return inner;
+}
+
+}  // namespace swarf::program::nc
