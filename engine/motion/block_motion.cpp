@@ -8,6 +8,7 @@
 
 #include "base/check.h"
 #include "kinematics/chain.h"
+#include "kinematics/reach.h"
 #include "motion/free_move.h"
 
 namespace swarf::motion {
@@ -233,13 +234,8 @@ std::vector<BlockMotion> block_motions(const toolpath::ToolPath& path, const Mac
       if (branch.outcome != kinematics::InverseOutcome::kUnreachable) {
         q = branch.q;
       } else if (block.law == BlockLaw::kJoint || block.law == BlockLaw::kTcpAxes) {
-        throw InputError(
-            "unreachable", element.where,
-            fmt::format("the machine has no axis values for tip ({:.3f}, {:.3f}, {:.3f}) mm, axis "
-                        "({:.4f}, {:.4f}, {:.4f})",
-                        pose.tip_W.x(), pose.tip_W.y(), pose.tip_W.z(), pose.axis_W.x(), pose.axis_W.y(),
-                        pose.axis_W.z()),
-            "give positions that the machine reaches, or interpolator.mode = \"tcp\"");
+        const kinematics::UnreachableText why = kinematics::unreachable_text(machine, pose);
+        throw InputError("unreachable", element.where, why.text, why.fix);
       }
     };
     if (motions.empty()) solve(block.from);

@@ -8,6 +8,7 @@
 
 #include "base/check.h"
 #include "base/units.h"
+#include "kinematics/reach.h"
 #include "motion/block_interpolator.h"
 #include "motion/block_run.h"
 #include "motion/free_move.h"
@@ -156,14 +157,11 @@ class Recorder {
 
   void report_outside_reach() {
     if (outside_reach_ == 0) return;
-    const Vec3& p = outside_pose_.tip_W;
-    const Vec3& a = outside_pose_.axis_W;
+    const kinematics::UnreachableText why = kinematics::unreachable_text(machine_, outside_pose_);
     result_.findings.push_back(
         {"unreachable",
-         fmt::format(
-             "the machine has no axis positions for {} cycles, first at tip ({:.3f}, {:.3f}, {:.3f}) mm, "
-             "axis ({:.4f}, {:.4f}, {:.4f}); its axes stood still there",
-             outside_reach_, p.x(), p.y(), p.z(), a.x(), a.y(), a.z()),
+         fmt::format("its axes stood still for {} cycles, from the first pose out of reach: {}; {}",
+                     outside_reach_, why.text, why.fix),
          element_, outside_since_s_, path_.elements[static_cast<size_t>(element_)].where});
     outside_reach_ = 0;
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/units.h"
+#include "kinematics/reach.h"
 #include "kinematics/rotary_pair.h"
 #include "motion/pass_geometry.h"
 
@@ -238,7 +239,7 @@ void find_in_element(const Trajectory& trajectory, size_t begin, size_t end, con
     Worst travel, speed;
     for (size_t k = begin; k < end; ++k) {
       const double q = trajectory.axes[k][row];
-      const double beyond = std::max(axis.min - q, q - axis.max);
+      const double beyond = std::abs(kinematics::travel_excess(axis, q));
       if (beyond > kTravelTolerance) travel.see(beyond, q, q < axis.min ? axis.min : axis.max, k);
       if (k == 0) continue;
       const double v = std::abs(q - trajectory.axes[k - 1][row]) / trajectory.period_s;

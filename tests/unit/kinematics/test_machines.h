@@ -1,6 +1,7 @@
 // Machines that the kinematics tests are run on, and the independent forward by 4x4 poses.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <initializer_list>
 #include <ostream>
@@ -105,6 +106,24 @@ inline ToolPose forward_by_poses(const MachineModel& machine, const AxisValues& 
 inline double angle_between(const Vec3& a, const Vec3& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
+
+/// Linear values within 300 mm of zero, rotary ones within half a turn.
+inline AxisValues random_values(const MachineModel& machine, Rng& rng) {
+  AxisValues q = AxisValues::Zero();
+  for (size_t i = 0; i < machine.axes.size(); ++i) {
+    q[i] = machine.axes[i].kind == AxisKind::kLinear ? rng.uniform(-300.0, 300.0) : rng.uniform(-kPi, kPi);
+  }
+  return q;
+}
+
+/// The largest errors met so far, mm and rad.
+struct Errors {
+  double tip = 0.0, axis = 0.0;
+  void add(const ToolPose& back, const ToolPose& pose) {
+    tip = std::max(tip, (back.tip_W - pose.tip_W).norm());
+    axis = std::max(axis, angle_between(back.axis_W, pose.axis_W));
+  }
+};
 
 }  // namespace swarf::kinematics
 

@@ -1,34 +1,15 @@
 // Every machine of assets/machines: that it loads, and that the figures its comments state are true.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <filesystem>
-
 #include "base/rng.h"
 #include "base/units.h"
-#include "machine/machine_scene.h"
+#include "shipped_machines.h"
 
 namespace swarf::machine {
 namespace {
 
-namespace fs = std::filesystem;
 using kinematics::AxisValues;
 using kinematics::MachineModel;
-
-const std::string kMachines = SWARF_SOURCE_DIR "/assets/machines/";
-
-std::vector<std::string> shipped() {
-  std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(kMachines)) {
-    if (fs::exists(entry.path() / "machine.toml")) names.push_back(entry.path().filename().string());
-  }
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
-MachineModel machine(const std::string& name) {
-  return load_machine(kMachines + name + "/machine.toml").model;
-}
 
 /// Axis values in the file's units: mm and degrees.
 AxisValues axis_values(const MachineModel& of, const std::vector<double>& written) {
@@ -41,14 +22,14 @@ AxisValues axis_values(const MachineModel& of, const std::vector<double>& writte
 }
 
 TEST(ShippedMachines, AreThoseOfTheReferencePage) {
-  EXPECT_EQ(shipped(),
+  EXPECT_EQ(shipped_machines(),
             (std::vector<std::string>{"fork_head", "head_table_bc", "lin_koren_xyzab", "maho_600c",
                                       "mikron_ucp710", "mill_3axis", "nutating_head", "spinner_u5_620"}));
 }
 
 /// Theory 2: m = Rx(-A)(Rz(-C) p + t) - t with t = (0, 49.93, -120), O = (sin A sin C, -sin A cos C, cos A).
 TEST(MikronUcp710, TakesTheProgramsOfSoEtAl) {
-  const MachineModel mikron = machine("mikron_ucp710");
+  const MachineModel mikron = shipped_machine("mikron_ucp710");
   const Vec3 t(0.0, 49.93, -120.0);
   Rng rng(710);
   for (int i = 0; i < 1000; ++i) {
@@ -70,7 +51,7 @@ TEST(MikronUcp710, TakesTheProgramsOfSoEtAl) {
 /// The production programs: SUPA G0 Z610 X-365 Y224 B0 C0 before each tool; G0 B90 C90 goes with
 /// AROT X-90, AROT Z90, whose plane has its normal along +Y.
 TEST(SpinnerU5620, HasTheHomeAndTheSensesOfItsPrograms) {
-  const MachineModel spinner = machine("spinner_u5_620");
+  const MachineModel spinner = shipped_machine("spinner_u5_620");
   const AxisValues home = axis_values(spinner, {-365.0, 224.0, 610.0, 0.0, 0.0});
   for (int i = 0; i < 5; ++i) EXPECT_EQ(spinner.axes[static_cast<size_t>(i)].home, home[i]);
   ASSERT_TRUE(spinner.tool_change);
@@ -92,8 +73,8 @@ TEST(SpinnerU5620, HasTheHomeAndTheSensesOfItsPrograms) {
 /// The gauge line stands where the axis values say, and the tip is lower by the tool.
 TEST(GaugeLine, TheTipIsLowerByTheToolOnEveryMachineThatHasOne) {
   int with_gauge = 0;
-  for (const std::string& name : shipped()) {
-    const MachineModel bare = machine(name);
+  for (const std::string& name : shipped_machines()) {
+    const MachineModel bare = shipped_machine(name);
     AxisValues home = AxisValues::Zero();
     for (size_t i = 0; i < bare.axes.size(); ++i) home[static_cast<int>(i)] = bare.axes[i].home;
     const ToolPose at = forward(bare, home), with = forward(kinematics::with_tool(bare, 123.5), home);
@@ -105,14 +86,14 @@ TEST(GaugeLine, TheTipIsLowerByTheToolOnEveryMachineThatHasOne) {
 }
 
 TEST(RapidMoves, AreReadWithTheirSpeeds) {
-  const MachineModel maho = machine("maho_600c");
+  const MachineModel maho = shipped_machine("maho_600c");
   EXPECT_EQ(maho.rapid, kinematics::RapidMotion::kDogLeg);
   EXPECT_DOUBLE_EQ(maho.axes[0].rapid_max, 10000.0 / 60.0);
   EXPECT_DOUBLE_EQ(maho.axes[3].rapid_max, rad_from_deg(36.0));
   EXPECT_EQ(maho.axes[4].name, "C");
   ASSERT_TRUE(maho.tool_change);
   EXPECT_EQ(*maho.tool_change, axis_values(maho, {300.0, 250.0, 550.0, 0.0, 0.0}));
-  const MachineModel paper = machine("lin_koren_xyzab");
+  const MachineModel paper = shipped_machine("lin_koren_xyzab");
   EXPECT_EQ(paper.rapid, kinematics::RapidMotion::kLinear);
   EXPECT_EQ(paper.axes[0].rapid_max, 0.0);
   EXPECT_FALSE(paper.tool_change);
