@@ -41,16 +41,19 @@ class Surroundings {
     const auto foot = field_.displaced(ray_, x.x() * e1_ + x.y() * e2_);
     if (!foot) return -PassHeight::kHigh;
     place_ = foot->point;
+    normal_ = foot->normal;
     return -height_(foot->point, foot->normal);
   }
   const Vec3& place() const { return place_; }  ///< of the last depth
+  /// As much of the last depth as its foot answers for.
+  double own(double depth) const { return field_.own_depth(place_, normal_, depth); }
   uint32_t owner() const { return height_.owner(); }
 
  private:
   const stock::RayField& field_;
   uint32_t ray_;
   PassHeight height_;
-  Vec3 e1_, e2_, place_ = Vec3::Zero();
+  Vec3 e1_, e2_, place_ = Vec3::Zero(), normal_ = Vec3::UnitZ();
 };
 
 /// Depth that a parabola through the ray and its surroundings promises, mm.
@@ -90,7 +93,9 @@ Region refined(const Context& context, uint32_t ray) {
       if (candidate.norm() > kReach * field.pitch_mm) continue;
       const double found = around.depth(candidate);
       if (found <= depth) continue;
-      depth = found;
+      const double own = around.own(found);
+      if (own <= depth) continue;
+      depth = own;
       next = candidate;
       best.place = around.place();
       best.block = around.owner();

@@ -94,6 +94,8 @@ std::optional<Ridge> ridge_on_edge(const Context& context, uint32_t first, uint3
   TwoPasses passes(context, a, b);
   const stock::Foot foot = field.between(first, second, crossing(passes, field, first, second));
   passes.difference(foot.point, foot.normal);
+  // Between two faces both passes may end short of the edge: nothing stands there that a pass has left.
+  if (passes.lower_height() > 0.5 * kHigh) return std::nullopt;
   const Ridge ridge{foot.u,           foot.v,           um_from_mm(passes.lower_height()),
                     passes.block_a(), passes.block_b(), foot.point};
   const bool squarely = crosses_squarely(passes, foot, field.points[second] - field.points[first]);

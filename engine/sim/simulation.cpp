@@ -65,6 +65,7 @@ void cut_dexels(const Job& job, MeasuredPath& measured) {
   measured.dexels = design_dexels(job);
   for (stock::SurfaceDexels& dexels : measured.dexels) {
     dexels.cut(measured.rays.sweeps, stock::CutterSolid(job.scene.cutter));
+    dexels.limit_depths();
   }
   measured.dexel_seconds = seconds_since(start);
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/frames.h"
+#include "mesh/mesh_distance.h"
 #include "mesh/tri_mesh.h"
 #include "surface/surface.h"
 
@@ -29,6 +30,16 @@ struct RayTile {
 struct Foot {
   Vec3 point, normal;       ///< W, mm; unit, out of the material
   double u = 0.0, v = 0.0;  ///< parametric designs only
+};
+
+/// The mesh that rays stand on, with its own distances.
+struct DesignMesh {
+  explicit DesignMesh(const TriMesh& design) : mesh(design), distance(mesh) {}
+  DesignMesh(const DesignMesh&) = delete;
+  DesignMesh& operator=(const DesignMesh&) = delete;
+
+  const TriMesh mesh;
+  const mesh::MeshDistance distance;
 };
 
 struct RayField {
@@ -52,6 +63,14 @@ struct RayField {
   /// order in (u,v), on a mesh on the facets up to two edges away. Nothing beyond the end of either.
   std::optional<Foot> displaced(uint32_t ray, const Vec3& tangent_mm) const;
 
+  /// How much of a cut `depth_mm` below a foot (at `point`, mm, outward `normal`) is the foot's to answer
+  /// for: down to where another face of the design is nearer (the medial ball inside the part). A tool that
+  /// touches a wall's edge along the floor cuts the whole length of the wall's ray, but the depth of the
+  /// gouge is the floor's. On a parametric surface, which bounds no body, all of it.
+  double own_depth(const Vec3& point, const Vec3& normal, double depth_mm) const;
+
+  /// Meshes: the mesh as it was given.
+  std::shared_ptr<const DesignMesh> design;
   /// Meshes: the triangles around ray n are star[star_begin[n] .. star_begin[n + 1]).
   std::vector<uint32_t> star_begin, star;
 };

@@ -227,6 +227,7 @@ RayFieldPtr rays_on_mesh(const TriMesh& mesh, double pitch_mm, double crease_rad
   SWARF_CHECK(!facets.triangles.empty(), "a design mesh needs facets with area");
   auto field = std::make_shared<RayField>();
   field->pitch_mm = pitch_mm;
+  field->design = std::make_shared<DesignMesh>(mesh);
   place_rays(facets, welded.points, crease_rad, *field);
   while (divide_long_edges(*field)) {
   }
@@ -235,6 +236,25 @@ RayFieldPtr rays_on_mesh(const TriMesh& mesh, double pitch_mm, double crease_rad
   std::iota(sorted.begin(), sorted.end(), 0U);
   group_rays(*field, 0, static_cast<uint32_t>(sorted.size()), sorted);
   return field;
+}
+
+double RayField::own_depth(const Vec3& point, const Vec3& normal, double depth_mm) const {
+  if (design == nullptr || depth_mm <= 0.0) return depth_mm;
+  // Interpolated normals lean up to the crease's angle from the facets: the distance then is that much
+  // shorter.
+  constexpr double kLean = 0.85;       // cos(30 deg), and a little for rounding
+  constexpr double kFloatMesh = 2e-5;  // mm: vertices are floats
+  constexpr int kHalvings = 40;
+  const auto is_own = [&](double s) {
+    return design->distance.nearest(point - s * normal).distance_mm >= kLean * s - kFloatMesh;
+  };
+  if (is_own(depth_mm)) return depth_mm;
+  double low = 0.0, high = depth_mm;
+  for (int i = 0; i < kHalvings && high - low > 1e-9; ++i) {
+    const double middle = 0.5 * (low + high);
+    (is_own(middle) ? low : high) = middle;
+  }
+  return low;
 }
 
 }  // namespace swarf::stock

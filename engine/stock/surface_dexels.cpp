@@ -57,6 +57,14 @@ SurfaceDexels::SurfaceDexels(const surface::SurfacePtr& surface, double pitch_mm
   for (size_t n = 0; n < heights_.size(); ++n) heights_[n] = std::min(heights_[n], ranges[n]);
 }
 
+void SurfaceDexels::limit_depths() {
+  constexpr size_t kRaysPerTask = 1024;
+  parallel_chunks(heights_.size(), kRaysPerTask, [&](size_t begin, size_t end) {
+    for (size_t n = begin; n < end; ++n)
+      heights_[n] = -field_->own_depth(field_->points[n], field_->normals[n], -heights_[n]);
+  });
+}
+
 void SurfaceDexels::cut(std::span<const Sweep> sweeps, const CutterSolid& cutter) {
   const SweepChain chain = make_chain(sweeps, cutter);
   const size_t tiles = field_->tiles.size();

@@ -35,6 +35,9 @@ class SurfaceDexels {
   /// Removes the sweeps; parallel, order-independent, ties keep the smaller block id.
   void cut(std::span<const Sweep> sweeps, const CutterSolid& cutter);
 
+  /// Takes back what each ray lost beyond RayField::own_depth: other faces answer for it. After the last cut.
+  void limit_depths();
+
   /// Writes the material and its blocks; the file is replaced whole. Throws InputError when it cannot be.
   void save(const std::string& path) const;
   /// Reads what save() wrote for the same surface. Throws InputError for a file that is cut off, damaged or

@@ -117,6 +117,32 @@ TEST(RayField, TheGridIsFinerWhereTheSurfaceBends) {
   EXPECT_NEAR(std::accumulate(field->areas_mm2.begin(), field->areas_mm2.end(), 0.0), length, 2e-2);
 }
 
+TEST(OwnDepth, EndsWhereAnotherFaceIsNearer) {
+  const RayFieldPtr field = rays_on_mesh(box_mesh(40, 30, 20), 5.0);
+  const Vec3 out(-1, 0, 0);
+  // On the wall x = 0, at depth s the other faces are as near as the foot is to their edges. The test takes
+  // what is nearer than .85 s for another face's, so the answer is at most that much too deep.
+  for (const double below : {0.0, 0.002, 0.5, 3.0}) {
+    const double own = field->own_depth({0, 15, 20 - below}, out, 40.0);
+    EXPECT_GE(own, below - 1e-6) << below;
+    EXPECT_LE(own, below / 0.85 + 1e-4) << below;
+  }
+  EXPECT_NEAR(field->own_depth({0, 15, 10}, out, 0.5), 0.5, 0.0) << "all of a shallow cut";
+  EXPECT_EQ(field->own_depth({0, 15, 10}, out, -0.5), -0.5) << "material above the design stays";
+}
+
+TEST(OwnDepth, AFloorCutAlongItsEdgeIsNoGougeOfTheWall) {
+  // A step: the tool's flat end runs over the top face at the design's height and 20 um below it.
+  for (const double deep : {0.0, 0.02}) {
+    SurfaceDexels dexels(rays_on_mesh(box_mesh(40, 30, 20), 2.0), {{0, 0, 0}, {40, 30, 25}}, {});
+    const Sweep sweep{{{-10, 15, 20 - deep}, Vec3::UnitZ()}, {{50, 15, 20 - deep}, Vec3::UnitZ()}, 0};
+    dexels.cut({&sweep, 1}, CutterSolid(20.0, 30.0));
+    dexels.limit_depths();
+    const double deepest = -*std::min_element(dexels.heights_mm().begin(), dexels.heights_mm().end());
+    EXPECT_NEAR(deepest, deep, 5e-5) << "floats of the mesh: 2e-5 mm, once more over 0.85";
+  }
+}
+
 TEST(FreeRanges, EachWallOfASlotAnswersForItsHalf) {
   // A slot 10 wide and 6 deep: floor at z = 0, walls at x = 0 and x = 10.
   TriMesh mesh;
