@@ -22,7 +22,8 @@ constexpr double kShareOfFreeMemory = 0.8;
 
 // What a run holds besides the stock, in bytes; peaks measured with tests/scenes/memory_test.cpp's scenes.
 constexpr double kBase = 66.0 * kMegabyte;     // code, libraries, tables of the program, thread pools
-constexpr double kRender = 270.0 * kMegabyte;  // Mesa, Embree and the encoder, with pictures of 1280 x 720
+constexpr double kMovie = 270.0 * kMegabyte;   // Mesa, Embree and the encoder, with pictures of 1280 x 720
+constexpr double kStills = 120.0 * kMegabyte;  // Embree alone
 constexpr double kRow = 200.0;                 // one line of trajectory.csv
 constexpr double kRowCopies = 2.5;             // the text while its buffer grows by half
 constexpr double kRay = 83.0;                  // point, normal, height, block; its share of a tile
@@ -145,7 +146,8 @@ MemoryPrediction predict_memory(const Job& job, const MeasuredPath& path, bool r
   const double comparing =
       job.scene.compare_planners && !job.cl ? held + stock + compared * kComparedTick + rays : 0.0;
   const double writing = held + stock + ticks * kRow * kRowCopies;
-  const double meshing = held + stock + counts.triangles * kTriangle + (render ? kRender : 0.0);
+  const double pictures = !render ? 0.0 : job.scene.movie.seconds > 0.0 ? kMovie : kStills;
+  const double meshing = held + stock + counts.triangles * kTriangle + pictures;
   return {stocks * stock / kMegabyte, std::max({cutting, comparing, writing, meshing}) / kMegabyte,
           (stock + counts.triangles * kTriangle) / kMegabyte, memory_limit_mb(job.scene)};
 }

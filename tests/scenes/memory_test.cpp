@@ -21,6 +21,7 @@ const std::string kAlone = " --set toolpath.compare=false ";
 
 struct Setting {
   const char *name, *options;
+  const char* scene = "lin_koren_dome";
 };
 void PrintTo(const Setting& setting, std::ostream* out) {
   *out << setting.name;
@@ -30,7 +31,8 @@ class MemoryTest : public testing::TestWithParam<Setting> {};
 
 TEST_P(MemoryTest, IsPredictedWithin25Percent) {
   const fs::path out = swarf::test::fresh_folder(std::string("memory_") + GetParam().name) / "run";
-  const auto run = run_swarf("run " + kScene + " " + GetParam().options + " -o " + out.string());
+  const auto run = run_swarf("run " SWARF_SOURCE_DIR "/scenes/" + std::string(GetParam().scene) +
+                             "/scene.toml " + GetParam().options + " -o " + out.string());
   ASSERT_LE(run.exit_code, 1) << run.output;
   const json metrics = json::parse(std::ifstream(out / "metrics.json"));
   const double predicted = at_path(metrics, "memory_predicted_mb"), peak = at_path(metrics, "memory_peak_mb");
@@ -41,10 +43,9 @@ TEST_P(MemoryTest, IsPredictedWithin25Percent) {
   fs::remove_all(out.parent_path());
 }
 
-// What takes the most memory differs: the path, the rays, a fine stock, much new surface, comparisons,
-// pictures.
+// What takes the most memory differs: the path, the rays, a fine stock, comparisons, a movie, stills.
 INSTANTIATE_TEST_SUITE_P(
-    Dome, MemoryTest,
+    Runs, MemoryTest,
     testing::Values(Setting{"path",
                             "--no-render --set toolpath.compare=false --set stock.voxel_mm=2 "
                             "--set design.pitch_mm=2 --set interpolator.period_ms=0.5"},
@@ -55,7 +56,8 @@ INSTANTIATE_TEST_SUITE_P(
                             "--no-render --set toolpath.compare=false --set stock.voxel_mm=0.15 "
                             "--set design.pitch_mm=1"},
                     Setting{"comparisons", "--no-render --set stock.voxel_mm=1 --set design.pitch_mm=0.5"},
-                    Setting{"pictures",
+                    Setting{"stills", "--set stills.samples=1", "cl_simple_block"},
+                    Setting{"movie",
                             "--set toolpath.compare=false --set stock.voxel_mm=0.4 --set design.pitch_mm=0.5 "
                             "--set movie.seconds=0.2"}),
     [](const testing::TestParamInfo<Setting>& one) { return std::string(one.param.name); });
