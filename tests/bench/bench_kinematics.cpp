@@ -1,4 +1,5 @@
-// Time of the kinematics on the paper's machine: forward, the nearest branch, both branches.
+// Time of the kinematics, one thread: forward and the nearest branch on the paper's machine, all branches on
+// machines of each arrangement (orthogonal table-table, nutating head, fork head, head and table).
 #include <benchmark/benchmark.h>
 
 #include <string>
@@ -6,35 +7,17 @@
 
 #include "base/rng.h"
 #include "kinematics/machine_model.h"
+#include "machine/machine_scene.h"
 
 namespace swarf::kinematics {
 namespace {
 
-Axis axis(const std::string& name, AxisKind kind, Side side, const Vec3& direction,
-          const Vec3& origin = Vec3::Zero(), bool reversed = false) {
-  Axis one;
-  one.name = name;
-  one.kind = kind;
-  one.side = side;
-  one.direction_M = direction;
-  one.origin_M = origin;
-  one.reversed = reversed;
-  one.min = -5000.0;
-  one.max = 5000.0;
-  return one;
+MachineModel shipped(const std::string& name) {
+  return machine::load_machine(SWARF_SOURCE_DIR "/assets/machines/" + name + "/machine.toml").model;
 }
 
 MachineModel paper_machine() {
-  MachineModel machine;
-  machine.axes = {axis("X", AxisKind::kLinear, Side::kTable, Vec3::UnitX()),
-                  axis("A", AxisKind::kRotary, Side::kTable, Vec3::UnitX(), Vec3::Zero(), true),
-                  axis("B", AxisKind::kRotary, Side::kTable, Vec3::UnitZ(), Vec3(0.0, 96.0, 120.0), true),
-                  axis("Y", AxisKind::kLinear, Side::kHead, Vec3::UnitY()),
-                  axis("Z", AxisKind::kLinear, Side::kHead, Vec3::UnitZ())};
-  machine.table_chain = {0, 1, 2};
-  machine.head_chain = {3, 4};
-  machine.X_MW.translation() = Vec3(8.0, 96.0, 120.0);
-  return machine;
+  return shipped("lin_koren_xyzab");
 }
 
 /// Poses in no order, so that the branch predictor learns nothing.
@@ -75,9 +58,11 @@ void BM_SolveNearestRandom(benchmark::State& state) {
   nearest(state, random_poses());
 }
 
-void BM_SolveBoth(benchmark::State& state) {
-  const InverseKinematics inverse(paper_machine());
-  const std::vector<ToolPose> poses = path_poses();
+/// All branches of poses in the upper half space, in no order, which every five-axis machine here reaches.
+void all_branches(benchmark::State& state, const std::string& name) {
+  const InverseKinematics inverse(with_tool(shipped(name), 120.0));
+  std::vector<ToolPose> poses = random_poses();
+  for (ToolPose& pose : poses) pose.axis_W.z() = std::abs(pose.axis_W.z());
   size_t i = 0;
   for (auto _ : state) {
     const InverseSolutions both = inverse.solve(poses[i++ % poses.size()], AxisValues::Zero());
@@ -85,12 +70,19 @@ void BM_SolveBoth(benchmark::State& state) {
   }
 }
 
+void BM_AllBranches(benchmark::State& state) {
+  static const char* const names[] = {"mikron_ucp710", "nutating_head", "fork_head", "head_table_bc"};
+  const char* name = names[state.range(0)];
+  state.SetLabel(name);
+  all_branches(state, name);
+}
+
 void BM_Forward(benchmark::State& state) {
   const MachineModel machine = paper_machine();
   AxisValues q;
-  q << 10.0, 0.4, 0.8, 20.0, 30.0;
+  q << 10.0, 20.0, 30.0, 0.4, 0.8;
   for (auto _ : state) {
-    q[1] += 1e-4;
+    q[3] += 1e-4;
     const ToolPose pose = forward(machine, q);
     benchmark::DoNotOptimize(pose);
   }
@@ -98,7 +90,7 @@ void BM_Forward(benchmark::State& state) {
 
 BENCHMARK(BM_SolveNearestAlongPath);
 BENCHMARK(BM_SolveNearestRandom);
-BENCHMARK(BM_SolveBoth);
+BENCHMARK(BM_AllBranches)->DenseRange(0, 3);
 BENCHMARK(BM_Forward);
 
 }  // namespace

@@ -13,6 +13,9 @@ sources | xargs clang-format --dry-run --Werror || { say "run clang-format -i on
 say "include directions and folders of heavy libraries"
 python3 tests/lint/includes.py || failed=1
 
+say "reference page of the machines"
+python3 assets/machines/reference_page.py --check || failed=1
+
 say "file sizes (600 lines)"
 long=$(sources | xargs wc -l | awk '$2 != "total" && $1 > 600 {print "  " $2 ": " $1 " lines"}')
 [ -z "$long" ] || { echo "$long"; failed=1; }

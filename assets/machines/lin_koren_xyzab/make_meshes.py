@@ -17,30 +17,11 @@ import sys
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+from machine_kit import (ACCENT, ALUMINIUM, BRASS, GROUND, ORANGE, OXIDE, PAINT, PAINT_DARK, RUBBER, STEEL,  # noqa: E402
+                         cap_screw, downward, screw_circle, sector)
 from solid_kit import (Part, along_x, along_y, box, circle, cylinder, lathe, mirror_x, move, outline, prism,  # noqa: E402
                        rectangle, tube, turn_z)
 
-# sRGB
-PAINT = (216, 218, 216)
-PAINT_DARK = (66, 73, 82)
-ACCENT = (24, 92, 138)
-STEEL = (150, 155, 160)
-GROUND = (160, 165, 170)
-OXIDE = (52, 54, 58)
-RUBBER = (30, 31, 34)
-BRASS = (196, 158, 84)
-ALUMINIUM = (138, 143, 149)
-ORANGE = (236, 122, 34)
-
-
-def cap_screw(r=4.0, height=4.0):
-    """A socket-head screw standing on z = 0; the socket is a recess of the turned section."""
-    return lathe([(0, -1.0), (r, -1.0), (r, height, 0.5), (0.55 * r, height), (0.55 * r, 0.35 * height),
-                  (0, 0.35 * height)], 10)
-
-
-def screw_circle(radius, count, z, r=4.0, height=4.0, start=0.0):
-    return [turn_z(move(cap_screw(r, height), radius, 0, z), start + 360.0 * k / count) for k in range(count)]
 
 
 def hexagon_nut(x, y, z, across=16.0, height=9.0):
@@ -246,7 +227,7 @@ def cradle():
     part.add(ACCENT, prism(rectangle(-130, 130, -20, 208, 20), "z", -8, 40, 5))
     part.add(ACCENT, box(-124, 124, 202, 211, -2, 34, 3))
     part.add(PAINT_DARK, move(lathe([(0, -52), (64, -52, 4), (72, -44, 3), (72, -4), (0, -4)], 48), 0, 96))
-    part.add(STEEL, *[move(s, 0, 96) for s in _downward(screw_circle(56, 8, 0, 4, 3.5), -52)])
+    part.add(STEEL, *[move(s, 0, 96) for s in downward(screw_circle(56, 8, 0, 4, 3.5), -52)])
     # journals with seal rings, cap screws of the flange
     journal = along_x(lathe([(0, 146), (56, 146), (56, 154, 1.5), (44, 154), (44, 166), (0, 166)], 48))
     part.add(STEEL, journal, mirror_x(journal))
@@ -261,11 +242,6 @@ def cradle():
     return part
 
 
-def _downward(solids, z):
-    """Mirrors solids that stand on z = 0 to hang below `z`."""
-    return [([((p[0], -p[1], z - p[2]), (n[0], -n[1], -n[2])) for p, n in v], t) for v, t in solids]
-
-
 def rotary_table():
     part = Part()
     part.add(GROUND, move(lathe([(0, 44.6), (110, 44.6, 1), (110, 58, 0.8), (0, 58)], 96), 0, 96))
@@ -273,7 +249,7 @@ def rotary_table():
     for k in range(6):
         middle = 60.0 * k + 30.0
         for z0, z1, half_gap, bevel in ((57.5, 63, 9.0, 0.3), (62.5, 70, 5.0, 1.0)):
-            part.add(GROUND, move(_sector(110, 24, half_gap, middle, z0, z1, bevel), 0, 96))
+            part.add(GROUND, move(sector(110, 24, half_gap, middle, z0, z1, bevel), 0, 96))
     part.add(STEEL, move(lathe([(0, 57), (25, 57), (25, 69.5, 1), (16, 69.5), (16, 66), (0, 66)], 40), 0, 96))
     # graduation ring: a line each 5 degrees, longer each 15
     for k in range(72):
@@ -281,33 +257,6 @@ def rotary_table():
         line = box(109.4, 110.25, -0.45, 0.45, 47, 55.5 if long else 51.5, 0)
         part.add(OXIDE, move(turn_z(line, 5.0 * k), 0, 96))
     return part
-
-
-def _sector(outer, inner, half_gap, middle, z0, z1, bevel):
-    """A sixth of a disc whose straight sides stay `half_gap` off the slot centre lines at +-30 degrees."""
-    def on(r, sign):
-        angle = math.radians(30.0) - math.asin(half_gap / r)
-        return (r, sign * angle)
-    r0 = max(inner, 2.2 * half_gap)
-    (_, a0), (_, a1) = on(outer, -1), on(outer, 1)
-    points, smooth = [], []
-    for k in range(9):
-        a = a0 + (a1 - a0) * k / 8
-        points.append((outer * math.cos(a), outer * math.sin(a)))
-        smooth.append((math.cos(a), math.sin(a)))
-    _, b = on(r0, 1)
-    points += [(r0 * math.cos(b), r0 * math.sin(b)), (r0 * math.cos(b), -r0 * math.sin(b))]
-    shape = outline(points)
-    result = []
-    for i, (p, n0, n1) in enumerate(shape):
-        if 0 < i < 8:
-            n0 = n1 = smooth[i]
-        elif i == 0:
-            n1 = smooth[0]
-        elif i == 8:
-            n0 = smooth[8]
-        result.append((p, n0, n1))
-    return turn_z(prism(result, "z", z0, z1, bevel), middle)
 
 
 def fixture():
@@ -385,7 +334,7 @@ def spindle_head():
     part.add(STEEL, lathe([(0, 110), (32, 110, 1), (34, 116), (46, 116, 1.5), (46, 128), (0, 128)], 56))
     part.add(GROUND, lathe([(0, 127), (54, 127, 2), (60, 160, 2), (60, 178), (0, 178)], 64))
     part.add(OXIDE, lathe([(0, 177), (72, 177, 2), (72, 192, 2), (0, 192)], 64))
-    part.add(STEEL, *[s for s in _downward(screw_circle(65.5, 12, 0, 4, 3.5, 15), 177)])
+    part.add(STEEL, *[s for s in downward(screw_circle(65.5, 12, 0, 4, 3.5, 15), 177)])
     part.add(ORANGE, lathe([(58.0, 164), (60.8, 164), (60.8, 168), (58.0, 168)], 64))
     # coolant nozzles: knuckles on the flange, pipes aimed at the tip
     for x, y in ((46, -34), (-46, -34), (50, 26)):

@@ -142,13 +142,6 @@ TEST(PaperMachine, HasThePapersKinematics) {
   }
 }
 
-TEST(PaperMachine, EveryMeshIsClosedAndNothingLacksOne) {
-  for (const Link& link : load_machine(kPaperMachine).links) {
-    EXPECT_FALSE(link.mesh.triangles.empty()) << link.name;
-    EXPECT_EQ(mesh::check_closed(link.mesh), "") << link.name;
-  }
-}
-
 /// The whole DOME job (theory 1.6) with the tool along the normal, and the way home.
 TEST(PaperMachine, ReachesTheDomeInsideItsTravel) {
   const kinematics::MachineModel machine = load_machine(kPaperMachine).model;
