@@ -1,0 +1,193 @@
+// Calls of Siemens 840D: drilling cycles, the high-speed settings, messages.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "program/nc/siemens_executor.h"
+#include "program/nc/siemens_functions.h"
+
+namespace swarf::program::siemens {
+
+using nc::DrillCycle;
+
+namespace {
+
+/// The first arguments of every drilling cycle.
+enum Drill { kRtp, kRfp, kSdis, kDp, kDpr };
+/// CYCLE83 goes back down to this above the last depth (holes up to 30 mm), and retreats by kChipBreak, mm.
+constexpr double kAhead = 0.6, kChipBreak = 1.0;
+
+}  // namespace
+
+bool has_argument(const CycleCall& call, size_t index) {
+  return index < call.arguments.size() && call.arguments[index].has_value();
+}
+
+double argument(const CycleCall& call, size_t index, const LineRef& line, std::optional<double> fallback) {
+  if (has_argument(call, index)) {
+    return converted(*call.arguments[index], Type::kReal, line, call.offsets[index]).number;
+  }
+  if (fallback) return *fallback;
+  refuse(line, call.offset, "missing-argument", fmt::format("{} needs its argument {}", call.name, index + 1),
+         "give the value; arguments that are left out keep their comma");
+}
+
+int whole_argument(const CycleCall& call, size_t index, const LineRef& line, std::optional<double> fallback) {
+  const double value = argument(call, index, line, fallback);
+  if (value != std::floor(value) || std::abs(value) > 1e9) {
+    refuse(line, call.offsets[index], "not-whole-number",
+           fmt::format("argument {} of {} is a whole number", index + 1, call.name),
+           "write it without a fraction");
+  }
+  return static_cast<int>(value);
+}
+
+void Executor::run_call(const CycleCall& call) {
+  if (call.name == "CYCLE800") {
+    swivel(call);
+  } else if (call.name == "CYCLE832") {
+    high_speed(call);
+  } else if (call.name.starts_with("CYCLE8")) {
+    const DrillCycle cycle = drilling(call);
+    drill(cycle, call);
+  } else {
+    std::string text;
+    for (const auto& one : call.arguments)
+      text += (text.empty() ? "" : ", ") + (one ? as_text(*one) : std::string());
+    control_.without_effect(call.name);
+    control_.note(call.name, text);
+  }
+}
+
+/// CYCLE832(tolerance, machining type, ...): continuous path with this corner tolerance. CYCLE832() and type
+/// 0 go back to what held before.
+void Executor::high_speed(const CycleCall& call) {
+  const double tolerance = control_.mm(argument(call, 0, *line_, 0.0));
+  const int type = whole_argument(call, 1, *line_, call.arguments.empty() ? 0.0 : 1.0);
+  if (!(tolerance >= 0.0))
+    fail("out-of-range", call.offsets[0], "the tolerance of CYCLE832 is below zero", "CYCLE832(0.02,1,1)");
+  if (type < 0 || type % 10 > 4) {
+    fail("out-of-range", call.offsets[1], fmt::format("{} is not a type of machining", type),
+         "0 off, 1 finishing, 2 pre-finishing, 3 roughing");
+  }
+  const bool on = type % 10 != 0;
+  if (on && !has_argument(call, 0))
+    fail("missing-argument", call.offset, "CYCLE832 needs its tolerance", "CYCLE832(0.02,1,1)");
+  if (on && !before_) before_ = Corner{corner_, tolerance_mm_};
+  if (on) {
+    corner_ = kG642;
+    tolerance_mm_ = tolerance;
+  } else if (before_) {
+    corner_ = before_->code;
+    tolerance_mm_ = before_->tolerance_mm;
+    before_.reset();
+  }
+  apply_corner();
+}
+
+/// The cycle's heights along the plane's normal, and what it does at the bottom.
+DrillCycle Executor::drilling(const CycleCall& call) const {
+  const double reference = argument(call, kRfp, *line_, std::nullopt);
+  const double safety = std::abs(argument(call, kSdis, *line_, 0.0));
+  if (has_argument(call, kDp) == has_argument(call, kDpr)) {
+    fail("wrong-arguments", call.offset, fmt::format("{} takes the depth once, as DP or as DPR", call.name),
+         "CYCLE81(10,0,2,-20) or CYCLE81(10,0,2,,20)");
+  }
+  const double bottom = has_argument(call, kDp) ? argument(call, kDp, *line_, 0.0)
+                                                : reference - std::abs(argument(call, kDpr, *line_, 0.0));
+  const double sign = bottom <= reference ? 1.0 : -1.0;
+  DrillCycle cycle;
+  cycle.retract = control_.mm(argument(call, kRtp, *line_, std::nullopt));
+  cycle.approach = control_.mm(reference + sign * safety);
+  cycle.bottom = control_.mm(bottom);
+  if (sign * (cycle.retract - cycle.approach) < 0.0) {
+    fail("bad-cycle", call.offset,
+         fmt::format("the retraction plane {:g} mm lies below the start of drilling {:g} mm", cycle.retract,
+                     cycle.approach),
+         "RTP lies above RFP by SDIS or more");
+  }
+  if (call.name == "CYCLE83") {
+    pecking(call, reference, cycle);
+  } else if (call.name == "CYCLE84") {
+    tapping(call, cycle);
+  } else if (call.name != "CYCLE81") {
+    cycle.dwell_s = argument(call, 5, *line_, 0.0);
+    cycle.feed_out = call.name == "CYCLE85";
+    cycle.stop_at_bottom = call.name == "CYCLE86";
+    if (call.name == "CYCLE86" && argument(call, 7, *line_, 0.0) != 0.0) {
+      fail("unsupported-word", call.offsets[7],
+           "CYCLE86 that lifts off at the bottom (RPA, RPO) is not supported", "leave RPA and RPO out");
+    }
+    if (call.name == "CYCLE85" && (has_argument(call, 6) || has_argument(call, 7))) {
+      fail("unsupported-word", call.offset, "CYCLE85 with feeds of its own (FFR, RFF) is not supported",
+           "write the feed as F before the cycle");
+    }
+  }
+  if (!(cycle.dwell_s >= 0.0))
+    fail("unsupported-word", call.offsets[5], "a dwell below zero counts turns", "give seconds");
+  return cycle;
+}
+
+/// CYCLE83(RTP,RFP,SDIS,DP,DPR,FDEP,FDPR,DAM,DTB,DTS,FRF,VARI)
+void Executor::pecking(const CycleCall& call, double reference, DrillCycle& cycle) const {
+  if (has_argument(call, 5) == has_argument(call, 6)) {
+    fail("wrong-arguments", call.offset, "CYCLE83 takes the first depth once, as FDEP or as FDPR",
+         "CYCLE83(10,0,2,-20,,,5,0,0,0,1,0)");
+  }
+  const double first = has_argument(call, 5) ? std::abs(reference - argument(call, 5, *line_, 0.0))
+                                             : std::abs(argument(call, 6, *line_, 0.0));
+  if (argument(call, 7, *line_, 0.0) != 0.0) {
+    fail("unsupported-word", call.offsets[7],
+         "CYCLE83 with depths that become smaller (DAM) is not supported", "give DAM as 0");
+  }
+  const double share = argument(call, 10, *line_, 1.0);
+  if (share != 1.0) {
+    fail("unsupported-word", call.offsets[10], "CYCLE83 with a slower first peck (FRF) is not supported",
+         "give FRF as 1");
+  }
+  const int kind = whole_argument(call, 11, *line_, 0.0);
+  if (kind != 0 && kind != 1)
+    fail("out-of-range", call.offsets[11], "VARI is 0 (chip breaking) or 1 (swarf removal)", "0 or 1");
+  if (!(first > 0.0))
+    fail("bad-cycle", call.offset, "the first depth of CYCLE83 is zero", "give FDPR above zero");
+  cycle.peck = kind == 1 ? DrillCycle::Peck::kFull : DrillCycle::Peck::kChipBreak;
+  cycle.peck_mm = control_.mm(first);
+  cycle.clearance_mm = kind == 1 ? kAhead : kChipBreak;
+  cycle.dwell_s = argument(call, 8, *line_, 0.0);
+}
+
+/// CYCLE84(RTP,RFP,SDIS,DP,DPR,DTB,SDAC,MPIT,PIT,POSS,SST,SST1)
+void Executor::tapping(const CycleCall& call, DrillCycle& cycle) const {
+  if (has_argument(call, 7)) {
+    fail("unsupported-word", call.offsets[7], "thread sizes (MPIT) are not looked up",
+         "give the pitch, PIT, in mm");
+  }
+  const double pitch = argument(call, 8, *line_, std::nullopt);
+  if (pitch == 0.0)
+    fail("bad-cycle", call.offsets[8], "the pitch is zero",
+         "give the pitch in mm, below zero for left-hand threads");
+  cycle.pitch_mm = control_.mm(std::abs(pitch));
+  cycle.dwell_s = argument(call, 5, *line_, 0.0);
+  cycle.reverse_at_bottom = true;
+  cycle.feed_out = true;
+}
+
+void Executor::drill(const DrillCycle& cycle, const CycleCall& call) {
+  if (call.name == "CYCLE84") {
+    const double speed = argument(call, 10, *line_, std::nullopt);
+    if (!(speed > 0.0))
+      fail("out-of-range", call.offsets[10], "the speed of tapping (SST) is not above zero", "SST is in rpm");
+    control_.set_speed(speed);
+    control_.set_spindle(argument(call, 8, *line_, std::nullopt) > 0.0 ? 1 : -1);
+  }
+  control_.drill(cycle, nc::Target());
+  last_.valid = false;
+  if (call.name != "CYCLE84") return;
+  const int after = whole_argument(call, 6, *line_, 5.0);
+  if (after != 3 && after != 4 && after != 5) {
+    fail("out-of-range", call.offsets[6], "SDAC is 3, 4 or 5: the spindle after the cycle", "5 stops it");
+  }
+  control_.set_spindle(after == 3 ? 1 : after == 4 ? -1 : 0);
+}
+
+}  // namespace swarf::program::siemens

@@ -1,0 +1,120 @@
+// What the words of Siemens 840D blocks do: calls of the control.
+//
+// Settings of the control that a program cannot show are those of delivery: G1, G17, G710, G90, G94, G60 at
+// the start, D1 after a tool change (MD20270), RPY order of ROT (MD10600), circle tolerance 0.01 mm or one
+// thousandth of the radius (MD21000, MD21010), ORIWKS (great circle) for orientations.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "program/nc/control.h"
+#include "program/nc/siemens_block.h"
+#include "program/nc/siemens_flow.h"
+
+namespace swarf::program::siemens {
+
+class Executor final : public BlockTarget {
+ public:
+  explicit Executor(nc::Control& control);
+
+  Outcome block(TokenReader& reader, Variables& variables) override;
+  bool knows(const std::string& name) const override { return find_word(name) != nullptr; }
+  const std::vector<std::string>& names() const override { return word_names(); }
+  void note(const std::string& word, const std::string& text, const std::string& file, int line) override;
+  long moves() const override;
+
+ private:
+  /// The last piece of contour, for CT.
+  struct Piece {
+    Vec3 direction = Vec3::Zero();  ///< tangent at its end, program coordinates
+    bool valid = false;
+  };
+  /// What CYCLE832() goes back to.
+  struct Corner {
+    int code = kG60;
+    double tolerance_mm = 0.0;
+  };
+
+  int column(size_t offset) const { return column_of(*line_, offset); }
+  [[noreturn]] void fail(const char* code, size_t offset, std::string text, std::string fix) const;
+
+  // siemens_executor.cpp
+  void modal_words(const BlockWords& words);
+  void corner_words(const BlockWords& words);
+  void apply_corner();
+  void feed_words(const BlockWords& words);
+  void tool_words(const BlockWords& words);
+  void set_cutting_edge(double edge, size_t offset);
+  void spindle_words(const BlockWords& words);
+  void noted_words(const BlockWords& words);
+  void cutter_words(const BlockWords& words);
+  Outcome end_words(const BlockWords& words);
+
+  // siemens_motion.cpp
+  void motion_words(const BlockWords& words);
+  nc::Target target_of(const BlockWords& words, bool machine) const;
+  void orientation(const BlockWords& words, nc::Target& target);
+  void straight(nc::Motion motion, const nc::Target& target);
+  void circle(const BlockWords& words, const nc::Target& target);
+  void opened(const BlockWords& words, nc::ArcWords& arc, nc::Target& target, const Vec3& from,
+              nc::Motion motion);
+  void circle_through(const BlockWords& words, const nc::Target& target);
+  void circle_tangential(const nc::Target& target);
+  void send_arc(nc::Motion motion, const nc::Target& target, nc::ArcWords& arc, size_t offset);
+  Vec3 end_of(const nc::Target& target, const Vec3& from) const;
+  void machine_move(const BlockWords& words);
+  void dwell(const BlockWords& words);
+  void approach_point(const BlockWords& words, int code);
+
+  // siemens_frames.cpp
+  void frame_words(const BlockWords& words);
+  void transform_words(const BlockWords& words);
+  void set_frame();
+  void choose_interpolation();
+  Mat3 rotation_of(const BlockWords& words) const;
+  void swivel(const CycleCall& call);
+  void swivel_off();
+  Pose swivel_plane(const CycleCall& call);
+  void retract(const CycleCall& call, int how);
+
+  // siemens_cycles.cpp
+  void run_call(const CycleCall& call);
+  void high_speed(const CycleCall& call);
+  nc::DrillCycle drilling(const CycleCall& call) const;
+  void pecking(const CycleCall& call, double reference, nc::DrillCycle& cycle) const;
+  void tapping(const CycleCall& call, nc::DrillCycle& cycle) const;
+  void drill(const nc::DrillCycle& cycle, const CycleCall& call);
+
+  nc::Control& control_;
+  const LineRef* line_ = nullptr;
+  const std::string* file_name_ = nullptr;
+  int file_ = 0;
+  BlockWords words_;
+
+  int motion_ = kG1;
+  bool incremental_ = false;
+  int units_ = kG710;
+  int corner_ = kG60;
+  double tolerance_mm_ = 0.0;           ///< of CYCLE832 or CTOL, for G642
+  double rounding_mm_ = 0.0;            ///< ADIS, for G641
+  std::optional<Corner> before_;        ///< while CYCLE832 is on
+  Pose programmed_ = Pose::Identity();  ///< TRANS, ROT ...
+  Pose swivelled_ = Pose::Identity();   ///< CYCLE800
+  bool traori_ = false, swivel_on_ = false;
+  int interpolation_ = kOriWks;  ///< ORIWKS, ORIMKS, ORIVECT, ORIAXES
+  bool interpolation_chosen_ = false;
+  std::optional<int> angles_;  ///< ORIEULER, ORIRPY
+  Piece last_;
+  std::optional<CycleCall> modal_cycle_;
+};
+
+/// An argument of a cycle as a number; `fallback` where it is left out. Throws InputError "wrong-type", and
+/// "missing-argument" when there is no fallback.
+double argument(const CycleCall& call, size_t index, const LineRef& line, std::optional<double> fallback);
+/// The same, a whole number.
+int whole_argument(const CycleCall& call, size_t index, const LineRef& line, std::optional<double> fallback);
+bool has_argument(const CycleCall& call, size_t index);
+
+}  // namespace swarf::program::siemens

@@ -1,0 +1,279 @@
+#include "program/nc/siemens_expression.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <span>
+
+#include "base/units.h"
+#include "program/nc/siemens_functions.h"
+
+namespace swarf::program::siemens {
+namespace {
+
+constexpr int kDepthMax = 100;
+constexpr double kRelativeEquality = 1e-12;
+
+/// Binary operators by priority, loosest first (header).
+constexpr std::array<std::array<std::string_view, 6>, 10> kLevels = {{
+    {"==", "<>", ">", "<", ">=", "<="},
+    {"<<"},
+    {"OR"},
+    {"XOR"},
+    {"AND"},
+    {"B_OR"},
+    {"B_XOR"},
+    {"B_AND"},
+    {"+", "-"},
+    {"*", "/", "DIV", "MOD"},
+}};
+
+class Evaluator {
+ public:
+  Evaluator(TokenReader& reader, Variables& variables) : reader_(reader), variables_(variables) {}
+
+  Value level(size_t n) {
+    if (n == kLevels.size()) return unary();
+    Value left = level(n + 1);
+    while (const std::string_view* symbol = operator_here(n)) {
+      const size_t offset = reader_.offset();
+      reader_.next();
+      const Value right = level(n + 1);
+      left = binary(*symbol, left, right, offset);
+    }
+    return left;
+  }
+
+ private:
+  const std::string_view* operator_here(size_t n) const {
+    const Token& token = reader_.peek();
+    if (token.kind != TokenKind::kSymbol && token.kind != TokenKind::kName) return nullptr;
+    for (const std::string_view& symbol : kLevels[n]) {
+      if (!symbol.empty() && token.name == symbol) return &symbol;
+    }
+    return nullptr;
+  }
+
+  Value unary() {
+    if (++depth_ > kDepthMax) {
+      fail("bad-expression", reader_.offset(), "the formula is nested too deeply", "split it up");
+    }
+    const size_t offset = reader_.offset();
+    Value value;
+    if (reader_.skip("-")) {
+      const Value operand = number(unary(), offset);
+      value = {operand.type == Type::kBool ? Type::kInt : operand.type, -operand.number, {}};
+    } else if (reader_.skip("+")) {
+      value = number(unary(), offset);
+    } else if (reader_.skip("NOT")) {
+      value = Value::boolean(number(unary(), offset).number == 0.0);
+    } else if (reader_.skip("B_NOT")) {
+      value = Value::integer(~bits(unary(), offset));
+    } else {
+      value = primary();
+    }
+    --depth_;
+    return value;
+  }
+
+  Value primary() {
+    const size_t offset = reader_.offset();
+    if (reader_.done()) fail("bad-expression", offset, "the formula ends too early", "write its next value");
+    const Token& token = reader_.next();
+    switch (token.kind) {
+      case TokenKind::kNumber:
+        return token.whole && std::fabs(token.number) <= INT32_MAX ? Value::integer(token.number)
+                                                                   : Value::real(token.number);
+      case TokenKind::kString:
+        return Value::string(std::string(token.text));
+      case TokenKind::kAddress:
+        if (token.letter == 'R' && token.whole) return variables_.parameter(token.number, line(), offset);
+        break;
+      case TokenKind::kName:
+        return named(token, offset);
+      case TokenKind::kSymbol:
+        if (token.name == "(") {
+          Value value = level(0);
+          reader_.expect(")", "the formula in parentheses");
+          return value;
+        }
+        break;
+    }
+    fail("bad-expression", offset, fmt::format("'{}' is not a value", token.text),
+         "a formula has numbers, R parameters, variables and functions");
+  }
+
+  Value named(const Token& token, size_t offset) {
+    if (token.name == "TRUE" || token.name == "FALSE") return Value::boolean(token.name == "TRUE");
+    if (token.name == "R" && reader_.peek().symbol("[")) {
+      return variables_.parameter(index(), line(), offset);
+    }
+    if (reader_.peek().symbol("(")) return function(token, offset);
+    if (token.name[0] == '$') {
+      if (token.name == "$PI") return Value::real(kPi);
+      fail("unsupported-word", offset, fmt::format("the system variable {} is not simulated", token.name),
+           "write its value, or assign it to a variable of the program");
+    }
+    std::vector<double> indices;
+    if (reader_.peek().symbol("[")) indices = evaluate_indices(reader_, variables_);
+    return variables_.element(token.name, indices, line(), offset);
+  }
+
+  double index() {
+    reader_.expect("[", "R");
+    const size_t offset = reader_.offset();
+    const double value = number(level(0), offset).number;
+    reader_.expect("]", "the index");
+    return value;
+  }
+
+  Value function(const Token& token, size_t offset) {
+    const std::string name = token.name;
+    reader_.expect("(", name);
+    std::vector<Value> arguments;
+    if (!reader_.skip(")")) {
+      do {
+        arguments.push_back(level(0));
+      } while (reader_.skip(","));
+      reader_.expect(")", "the arguments of " + name);
+    }
+    return call_function(name, arguments, line(), offset);
+  }
+
+  Value binary(std::string_view symbol, const Value& left, const Value& right, size_t offset) {
+    if (symbol == "<<") return Value::string(as_text(left) + as_text(right));
+    if (const bool texts = left.type == Type::kString && right.type == Type::kString;
+        texts && (symbol == "==" || symbol == "<>")) {
+      return Value::boolean((left.text == right.text) == (symbol == "=="));
+    }
+    const double a = number(left, offset).number, b = number(right, offset).number;
+    if (symbol == "==" || symbol == "<>" || symbol[0] == '<' || symbol[0] == '>') {
+      return compare(symbol, a, b);
+    }
+    if (symbol == "AND") return Value::boolean(a != 0.0 && b != 0.0);
+    if (symbol == "OR") return Value::boolean(a != 0.0 || b != 0.0);
+    if (symbol == "XOR") return Value::boolean((a != 0.0) != (b != 0.0));
+    if (symbol == "B_AND") return Value::integer(bits(left, offset) & bits(right, offset));
+    if (symbol == "B_OR") return Value::integer(bits(left, offset) | bits(right, offset));
+    if (symbol == "B_XOR") return Value::integer(bits(left, offset) ^ bits(right, offset));
+    return arithmetic(symbol, left, right, offset);
+  }
+
+  static Value compare(std::string_view symbol, double a, double b) {
+    const bool same = std::fabs(a - b) <= kRelativeEquality * std::max(std::fabs(a), std::fabs(b));
+    if (symbol == "==") return Value::boolean(same);
+    if (symbol == "<>") return Value::boolean(!same);
+    if (symbol == "<=") return Value::boolean(same || a < b);
+    if (symbol == ">=") return Value::boolean(same || a > b);
+    return Value::boolean(!same && (symbol == "<" ? a < b : a > b));
+  }
+
+  Value arithmetic(std::string_view symbol, const Value& left, const Value& right, size_t offset) {
+    const double a = left.number, b = right.number;
+    const bool whole = left.type != Type::kReal && right.type != Type::kReal;
+    const bool divides = symbol == "/" || symbol == "DIV" || symbol == "MOD";
+    if (divides && b == 0.0) {
+      fail("division-by-zero", offset, fmt::format("{:g} {} {:g} divides by zero", a, symbol, b),
+           "test the divisor before this block");
+    }
+    if (symbol == "MOD" && !whole) {
+      fail("wrong-type", offset, "MOD takes whole numbers", "convert with TRUNC or ROUND into an INT first");
+    }
+    const double result = symbol == "+"     ? a + b
+                          : symbol == "-"   ? a - b
+                          : symbol == "*"   ? a * b
+                          : symbol == "/"   ? a / b
+                          : symbol == "DIV" ? std::trunc(a / b)
+                                            : std::fmod(a, b);
+    if (!std::isfinite(result)) {
+      fail("out-of-range", offset, "the result does not fit the range of floating point",
+           "check the values of the formula");
+    }
+    const bool integer = whole && symbol != "/";
+    if (integer && std::fabs(result) > INT32_MAX) {
+      fail("out-of-range", offset, fmt::format("{:g} does not fit INT", result),
+           "write one of the numbers with a point to reckon with REAL");
+    }
+    return {integer ? Type::kInt : Type::kReal, result, {}};
+  }
+
+  int32_t bits(const Value& value, size_t offset) {
+    return static_cast<int32_t>(converted(number(value, offset), Type::kInt, line(), offset).number);
+  }
+
+  const Value& number(const Value& value, size_t offset) const {
+    if (value.type == Type::kString) {
+      refuse(line(), offset, "wrong-type", "a text stands where a number is wanted",
+             "texts can be compared with == and <> and joined with <<");
+    }
+    return value;
+  }
+
+  [[noreturn]] void fail(std::string code, size_t offset, std::string text, std::string fix) const {
+    refuse(line(), offset, std::move(code), std::move(text), std::move(fix));
+  }
+  const LineRef& line() const { return reader_.line(); }
+
+  TokenReader& reader_;
+  Variables& variables_;
+  int depth_ = 0;
+};
+
+}  // namespace
+
+bool TokenReader::skip(std::string_view symbol_or_name) {
+  const Token& token = peek();
+  const bool here = !done() && (token.kind == TokenKind::kSymbol || token.kind == TokenKind::kName) &&
+                    token.name == symbol_or_name;
+  if (here) ++at_;
+  return here;
+}
+
+void TokenReader::expect(std::string_view symbol, std::string_view after) {
+  if (skip(symbol)) return;
+  refuse(line_, offset(), "bad-block", fmt::format("'{}' is missing after {}", symbol, after),
+         fmt::format("write '{}' here", symbol));
+}
+
+size_t TokenReader::end_offset() const {
+  if (tokens_.empty()) return 0;
+  const Token& last = tokens_.back();
+  return last.kind == TokenKind::kString ? last.offset + last.text.size() + 2
+                                         : last.offset + last.text.size();
+}
+
+Value evaluate(TokenReader& reader, Variables& variables) {
+  return Evaluator(reader, variables).level(0);
+}
+
+double evaluate_number(TokenReader& reader, Variables& variables) {
+  const size_t offset = reader.offset();
+  return converted(evaluate(reader, variables), Type::kReal, reader.line(), offset).number;
+}
+
+std::vector<double> evaluate_indices(TokenReader& reader, Variables& variables) {
+  std::vector<double> indices;
+  reader.expect("[", "the name");
+  do {
+    indices.push_back(evaluate_number(reader, variables));
+  } while (reader.skip(","));
+  reader.expect("]", "the index");
+  return indices;
+}
+
+const std::vector<std::string>& expression_words() {
+  static const std::vector<std::string> words = [] {
+    std::vector<std::string> all = function_names();
+    for (const char* word :
+         {"AND", "OR", "XOR", "NOT", "B_AND", "B_OR", "B_XOR", "B_NOT", "DIV", "MOD", "TRUE", "FALSE"}) {
+      all.emplace_back(word);
+    }
+    return all;
+  }();
+  return words;
+}
+
+}  // namespace swarf::program::siemens
