@@ -157,6 +157,12 @@ class BlockReader {
       coordinate(words_.between[kCentreNames.find(name[0])], number, way, token, false);
       return;
     }
+    if (name.size() == 2 && name[1] == '1' && kAxisNames.find(name[0]) != std::string_view::npos) {
+      const size_t axis = kAxisNames.find(name[0]);
+      coordinate(words_.axes[axis], number, way, token, axis >= 3);
+      if (machine_axis_ == nullptr) machine_axis_ = &words_.axes[axis];
+      return;
+    }
     if (way != Way::kModal) {
       fail("words-conflict", offset, fmt::format("{} takes no AC, IC, DC, ACP or ACN", name),
            fmt::format("write {}=10", name));
@@ -336,6 +342,11 @@ class BlockReader {
   }
 
   void check() {
+    const std::optional<int> point = words_.code(Group::kNoMotion);
+    if (machine_axis_ != nullptr && point != kG74 && point != kG75) {
+      fail("unexpected-word", machine_axis_->offset, "machine axes (X1=) belong to G74 and G75",
+           "write X, Y, Z, A, B or C");
+    }
     if ((words_.frame || words_.transform || !words_.calls.empty()) && words_.codes.size() > 0 &&
         words_.motion) {
       fail("words-conflict", words_.motion_offset,
@@ -357,6 +368,7 @@ class BlockReader {
   TokenReader& reader_;
   Variables& variables_;
   BlockWords& words_;
+  const Coordinate* machine_axis_ = nullptr;  ///< the first one that is named as such (X1=)
 };
 
 }  // namespace

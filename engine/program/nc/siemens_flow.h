@@ -34,8 +34,8 @@ class BlockTarget {
 };
 
 struct FlowLimits {
-  int levels_max = 16;         ///< program levels of the control
-  long jumps_max = 1'000'000;  ///< jumps back without a move in between
+  int levels_max = 16;       ///< program levels of the control
+  long jumps_max = 200'000;  ///< jumps back without a move in between
 };
 
 /// Runs a program and what it calls. Throws InputError for the first thing that is wrong:

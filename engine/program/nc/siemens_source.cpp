@@ -60,7 +60,7 @@ Head head_of(std::string_view line) {
 /// "N0100" and "N100" are one number.
 std::string without_zeros(const std::string& number) {
   const size_t first = number.find_first_not_of('0', 1);
-  return first == std::string::npos ? "N0" : "N" + number.substr(first);
+  return first == std::string::npos ? "N0" : fmt::format("N{}", number.substr(first));
 }
 
 /// Whether a block that begins with IF is one by itself (IF ... GOTOF ...), or REPEAT names labels.

@@ -1,8 +1,8 @@
 #include "program/nc/siemens_words.h"
 
-#include <algorithm>
+#include <fmt/format.h>
+
 #include <array>
-#include <charconv>
 #include <map>
 
 namespace swarf::program::siemens {
@@ -86,10 +86,10 @@ constexpr const char* kNotedCalls[] = {"MSG", "WORKPIECE", "GROUP_BEGIN", "GROUP
 constexpr const char* kCycles[] = {"CYCLE81", "CYCLE82", "CYCLE83",  "CYCLE84",
                                    "CYCLE85", "CYCLE86", "CYCLE800", "CYCLE832"};
 
-constexpr const char* kAddresses[] = {"X",  "Y",    "Z",    "A",       "B",   "C",    "I",    "J",    "K",
-                                      "I1", "J1",   "K1",   "A2",      "B2",  "C2",   "A3",   "B3",   "C3",
-                                      "CR", "AR",   "F",    "S",       "T",   "D",    "H",    "M",    "G",
-                                      "P",  "TURN", "ADIS", "ADISPOS", "RPL", "CTOL", "OTOL", "SPOS", "N"};
+constexpr const char* kAddresses[] = {
+    "X",  "Y",  "Z",  "A",  "B",  "C",  "I",    "J",    "K",       "X1",  "Y1",   "Z1",   "A1",   "B1",
+    "C1", "I1", "J1", "K1", "A2", "B2", "C2",   "A3",   "B3",      "C3",  "CR",   "AR",   "F",    "S",
+    "T",  "D",  "H",  "M",  "G",  "P",  "TURN", "ADIS", "ADISPOS", "RPL", "CTOL", "OTOL", "SPOS", "N"};
 
 constexpr const char* kFlowWords[] = {
     "IF",      "ELSE",    "ENDIF", "WHILE", "ENDWHILE", "FOR",   "ENDFOR", "LOOP", "ENDLOOP",
@@ -171,8 +171,8 @@ const Table& table() {
       }
     }
     all.emplace("G500", modal(Group::kOffset, 0));
-    for (int n = 54; n <= 57; ++n) all.emplace("G" + std::to_string(n), modal(Group::kOffset, n - 53));
-    for (int n = 505; n <= 599; ++n) all.emplace("G" + std::to_string(n), modal(Group::kOffset, n - 500));
+    for (int n = 54; n <= 57; ++n) all.emplace(fmt::format("G{}", n), modal(Group::kOffset, n - 53));
+    for (int n = 505; n <= 599; ++n) all.emplace(fmt::format("G{}", n), modal(Group::kOffset, n - 500));
     return all;
   }();
   return words;
@@ -188,7 +188,7 @@ const VocabularyWord* find_word(std::string_view name) {
 const VocabularyWord* find_g(int number) {
   static const std::array<const VocabularyWord*, 1000> by_number = [] {
     std::array<const VocabularyWord*, 1000> all{};
-    for (size_t n = 0; n < all.size(); ++n) all[n] = find_word("G" + std::to_string(n));
+    for (size_t n = 0; n < all.size(); ++n) all[n] = find_word(fmt::format("G{}", n));
     return all;
   }();
   return number >= 0 && number < 1000 ? by_number[static_cast<size_t>(number)] : nullptr;
