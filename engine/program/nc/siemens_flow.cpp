@@ -89,7 +89,6 @@ void Flow::skip_head(TokenReader& reader) {
     if (level) reader.next();
     target_.note("/", "block skip is off: the block is executed", source().path(), current_ + 1);
   }
-  if (reader.skip(":") && reader.peek().kind == TokenKind::kNumber) reader.next();
   const Token& number = reader.peek();
   if (number.kind == TokenKind::kAddress && number.letter == 'N') {
     if (!number.whole || number.number < 0) {

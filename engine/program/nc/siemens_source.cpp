@@ -120,7 +120,12 @@ std::optional<int> Source::find_label(std::string_view label, int from, int step
 int Source::partner(int index) {
   if (!paired_) pair_structures();
   paired_ = true;
-  return partner_.at(index);
+  const auto found = partner_.find(index);
+  if (found != partner_.end()) return found->second;
+  const LineRef here = line(index);
+  refuse(here, here.text.find_first_not_of(" \t"), "bad-block",
+         "this word of a loop or branch does not begin its block",
+         "write it first, after the block number and the label");
 }
 
 void Source::pair_structures() {
