@@ -43,9 +43,9 @@ struct NcMove {
   bool exact_stop = false;  ///< G9, G60, G61: comes to rest at its end
   double corner_tolerance_mm = 0.0;  ///< G64 P, CYCLE832, TOLERANCE: the corner at its end may be rounded by
                                      ///< this much; 0: the control's own default
-  double spindle_rpm = 0.0;  ///< above 0 clockwise (M3), below 0 counter-clockwise (M4), 0 stopped
-  int tool = -1;             ///< index into ControlSetup::tools; -1: none is in the spindle
-  int file = 0;              ///< index into NcSummary::files
+  double spindle_rpm = 0.0;          ///< above 0 clockwise (M3), below 0 counter-clockwise (M4), 0 stopped
+  int tool = -1;                     ///< index into ControlSetup::tools; -1: none is in the spindle
+  int file = 0;                      ///< index into NcSummary::files
   int line = 0, column = 0;
 };
 
