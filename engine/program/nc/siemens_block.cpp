@@ -347,7 +347,7 @@ class BlockReader {
       fail("unexpected-word", machine_axis_->offset, "machine axes (X1=) belong to G74 and G75",
            "write X, Y, Z, A, B or C");
     }
-    if ((words_.frame || words_.transform || !words_.calls.empty()) && words_.codes.size() > 0 &&
+    if ((words_.frame || words_.transform || !words_.calls.empty()) && !words_.codes.empty() &&
         words_.motion) {
       fail("words-conflict", words_.motion_offset,
            "a motion stands beside a frame, a transformation or a cycle", "write it in a block of its own");
