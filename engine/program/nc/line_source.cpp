@@ -73,6 +73,7 @@ bool LineSource::next(std::string_view& line) {
     length = static_cast<size_t>(lone_return - begin);
     skip = length + 1 < whole.size() || found == nullptr ? length + 1 : skip;
   }
+  last_mark_ = mark();
   ++line_;
   at_ += skip;
   line = std::string_view(begin, length);

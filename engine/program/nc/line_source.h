@@ -31,6 +31,8 @@ class LineSource {
   int file() const { return file_; }          ///< index into NcSummary::files
   const std::string& path() const { return path_; }
   Mark mark() const { return {base_ + at_, line_}; }  ///< of the next line
+  /// Of the line given last.
+  Mark line_mark() const { return last_mark_; }
   void seek(const Mark& mark);
 
  private:
@@ -42,6 +44,7 @@ class LineSource {
   size_t at_ = 0, end_ = 0;  ///< unread part of the buffer
   uint64_t base_ = 0;        ///< file offset of buffer_[0]
   long line_ = 0;
+  Mark last_mark_;
   int file_ = 0;
   bool last_ = false;
 };

@@ -1,0 +1,200 @@
+#include "program/nc/letter_block.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "base/units.h"
+
+namespace swarf::program::nc {
+namespace {
+
+/// "43.4" from 434.
+std::string code_name(char letter, int tenths) {
+  return tenths % 10 == 0 ? fmt::format("{}{}", letter, tenths / 10)
+                          : fmt::format("{}{}.{}", letter, tenths / 10, tenths % 10);
+}
+
+void skip_parentheses(FormulaReader& reader, Control& control, std::string_view& message) {
+  const size_t from = reader.at();
+  const size_t close = reader.line().find_first_of("()", from + 1);
+  if (close == std::string_view::npos || reader.line()[close] == '(') {
+    control.fail("unclosed-comment", reader.column_of(from),
+                 close == std::string_view::npos
+                     ? "this comment is not closed on its line"
+                     : "a comment opens inside this comment; controls disagree on its end",
+                 "close it with ')'");
+  }
+  reader.skip();
+  reader.skip_space();
+  if (reader.take("MSG,") || reader.take("DEBUG,") || reader.take("PRINT,"))
+    message = reader.line().substr(reader.at(), close - reader.at());
+  reader.move_to(close + 1);
+}
+
+void add_code(char letter, const CodeTable& table, double number, size_t place, FormulaReader& reader,
+              Control& control, LetterBlock& block) {
+  const double tenths_number = number * 10.0;
+  const long tenths = std::lround(std::min(std::max(tenths_number, -1.0), 99999.0));
+  const Code* code = std::abs(tenths_number - static_cast<double>(tenths)) < 1e-6
+                         ? table.find(static_cast<int>(tenths))
+                         : nullptr;
+  if (code == nullptr) {
+    control.fail("unknown-word", reader.column_of(place),
+                 fmt::format("{}{:g} is no code of this dialect", letter, number),
+                 "correct the code, or choose the dialect that the program is written in");
+  }
+  check_use(*code, letter, reader.column_of(place), control);
+  if (letter == 'M') {
+    if (block.m_count == kMCodesMax)
+      control.fail("modal-conflict", reader.column_of(place), "too many M codes in one block",
+                   "split the block");
+    if (code->group != kFree && (block.m_groups >> code->group & 1u) != 0)
+      control.fail("modal-conflict", reader.column_of(place),
+                   fmt::format("{} contradicts another M code of this block", code_name('M', code->tenths)),
+                   "write them in two blocks");
+    if (code->group != kFree) block.m_groups |= 1u << code->group;
+    block.m[static_cast<size_t>(block.m_count)] = code->tenths;
+    block.m_places[static_cast<size_t>(block.m_count++)] = static_cast<uint16_t>(place);
+    return;
+  }
+  if (code->group == kFree) return;
+  const auto group = static_cast<size_t>(code->group);
+  if (block.has_g(code->group)) {
+    const bool motion = code->group == 1;
+    control.fail(motion ? "two-motion-words" : "modal-conflict", reader.column_of(place),
+                 fmt::format("{} and {} contradict each other in one block", code_name('G', block.g[group]),
+                             code_name('G', code->tenths)),
+                 "write them in two blocks");
+  }
+  block.g_given |= 1u << group;
+  block.g[group] = code->tenths;
+  block.g_places[group] = static_cast<uint16_t>(place);
+}
+
+}  // namespace
+
+CodeTable::CodeTable(std::span<const Code> codes) : codes_(codes) {
+  index_.fill(-1);
+  for (size_t i = 0; i < codes.size(); ++i)
+    index_[static_cast<size_t>(codes[i].tenths)] = static_cast<int16_t>(i);
+}
+
+bool LetterBlock::has_m(int tenths) const {
+  for (int i = 0; i < m_count; ++i) {
+    if (m[static_cast<size_t>(i)] == tenths) return true;
+  }
+  return false;
+}
+
+void check_use(const Code& code, char letter, int column, Control& control) {
+  if (code.use == Code::Use::kRead) return;
+  const std::string name = code_name(letter, code.tenths);
+  if (code.use == Code::Use::kUnsupported) {
+    control.fail("unsupported-word", column, fmt::format("{} ({}) is not supported", name, code.meaning),
+                 "post the program without it");
+  }
+  control.without_effect(fmt::format("{} ({})", name, code.meaning));
+}
+
+void skip_comments(const LetterSyntax& syntax, FormulaReader& reader, Control& control,
+                   std::string_view& message) {
+  for (reader.skip_space(); !reader.done(); reader.skip_space()) {
+    const char c = reader.peek();
+    if (c == '(') {
+      skip_parentheses(reader, control, message);
+    } else if (c == ';') {
+      if (syntax.semicolon_comment ||
+          reader.line().find_first_not_of("; \t\r", reader.at()) == std::string_view::npos)
+        reader.move_to(reader.line().size());
+      else
+        control.fail("unexpected-character", reader.column(), "words follow the end of the block",
+                     "write one block per line");
+    } else {
+      return;
+    }
+  }
+}
+
+void read_words(const LetterSyntax& syntax, FormulaReader& reader, Control& control, LetterBlock& block,
+                char stop) {
+  bool any = false;
+  for (skip_comments(syntax, reader, control, block.message); !reader.done();
+       skip_comments(syntax, reader, control, block.message)) {
+    if (stop != 0 && reader.peek() == stop) return;
+    const size_t place = reader.at();
+    const char letter = reader.peek_upper();
+    if (letter < 'A' || letter > 'Z') {
+      if (letter == '/' && !any) {
+        block.skip_mark = true;
+        reader.skip();
+        if (reader.peek() >= '1' && reader.peek() <= '9') reader.skip();
+        continue;
+      }
+      const bool number = letter >= '0' && letter <= '9';
+      control.fail(
+          number || letter == '.' || letter == '-' || letter == '+' ? "bad-number" : "unexpected-character",
+          reader.column(),
+          number ? "this number has no letter before it" : "this character does not belong here",
+          "a block has words (a letter and a number) and comments");
+    }
+    if (syntax.letters.find(letter) == std::string_view::npos) {
+      control.fail("unknown-word", reader.column(), fmt::format("{} is no word of this dialect", letter),
+                   "take it out, or choose the dialect that the program is written in");
+    }
+    if (!any) block.first = place;
+    any = true;
+    reader.skip();
+    const double value = reader.value();
+    if (letter == 'N') continue;
+    if (letter == 'G' || letter == 'M') {
+      add_code(letter, letter == 'G' ? *syntax.g_codes : *syntax.m_codes, value, place, reader, control,
+               block);
+      continue;
+    }
+    if (block.has(letter)) {
+      control.fail("word-twice", reader.column_of(place),
+                   fmt::format("{} stands twice in this block", letter), "write it once");
+    }
+    const auto slot = static_cast<size_t>(letter - 'A');
+    block.given |= 1u << slot;
+    block.values[slot] = value;
+    block.places[slot] = static_cast<uint16_t>(place);
+  }
+}
+
+Target target_of(const LetterBlock& block, bool incremental, const FormulaReader& reader,
+                 const Control& control) {
+  constexpr std::string_view kLetters = kAxisLetters;
+  constexpr uint32_t kLinear = 7u << ('X' - 'A'), kRotary = 7u;
+  Target target;
+  if ((block.given & (kLinear | kRotary)) == 0) return target;
+  size_t first = reader.line().size();
+  for (int word = 0; word < kAxisWords; ++word) {
+    const char letter = kLetters[static_cast<size_t>(word)];
+    if (!block.has(letter)) continue;
+    const double value = block.get(letter);
+    target.set(word, word < 3 ? control.mm(value) : rad_from_deg(value), incremental);
+    first = std::min(first, block.place(letter));
+  }
+  target.column = static_cast<int>(first) + 1;
+  return target;
+}
+
+int whole(const LetterBlock& block, char letter, int low, int high, const FormulaReader& reader,
+          Control& control) {
+  const double value = block.get(letter);
+  const int column = reader.column_of(block.place(letter));
+  if (std::abs(value - std::round(value)) > 1e-6) {
+    control.fail("not-whole-number", column, fmt::format("{} {:g} is not a whole number", letter, value),
+                 "write a whole number");
+  }
+  if (!(value >= low - 0.5 && value <= high + 0.5)) {
+    control.fail("out-of-range", column,
+                 fmt::format("{} {:g} lies outside {} to {}", letter, value, low, high),
+                 fmt::format("write a number from {} to {}", low, high));
+  }
+  return static_cast<int>(std::lround(value));
+}
+
+}  // namespace swarf::program::nc

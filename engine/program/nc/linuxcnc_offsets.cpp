@@ -1,0 +1,140 @@
+// G10, G28, G30, G52, G92: positions and offsets that belong to no modal group.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "base/units.h"
+#include "program/nc/linuxcnc.h"
+
+namespace swarf::program::nc {
+
+using kinematics::AxisValues;
+
+void LinuxCnc::non_modal() {
+  switch (block_.g[kNonModal]) {
+    case 100:
+      return set_data();
+    case 280:
+    case 300:
+      return reference(block_.g[kNonModal]);
+    case 520:
+      return shift_to_words(false);
+    case 920:
+      return shift_to_words(true);
+    case 921:
+      shift_ = AxisValues::Zero();
+      return update_shift();
+    case 922:
+      shift_on_ = false;
+      return update_shift();
+    case 923:
+      shift_on_ = true;
+      return update_shift();
+    default:
+      return;  // G4 has been done
+  }
+}
+
+/// The rotation of the offset stands inside the G92 shift: p turns, the shift does not (RS274/NGC: the shift
+/// is added before the turn).
+void LinuxCnc::update_shift() {
+  const AxisValues on = shift_on_ ? shift_ : AxisValues(AxisValues::Zero());
+  const int offset = control_.work_offset();
+  const double turn = offset < 10 ? offset_turn_[static_cast<size_t>(offset)] : 0.0;
+  Pose frame = Pose::Identity();
+  if (turn != 0.0) frame.linear() = Eigen::AngleAxisd(turn, Vec3::UnitZ()).toRotationMatrix();
+  AxisValues rotary = on;
+  Vec3 linear = Vec3::Zero();
+  for (int i = 0; i < 3; ++i) {
+    const int axis = control_.axis_of(static_cast<AxisWord>(i));
+    linear[i] = on[axis];
+    rotary[axis] = 0.0;
+  }
+  frame.translation() = frame.linear() * linear;
+  control_.set_shift(rotary);
+  control_.set_frame(frame);
+}
+
+void LinuxCnc::set_data() {
+  need('L', "G10");
+  need('P', "G10");
+  const int kind = whole(block_, 'L', 0, 20, reader_, control_);
+  if (kind != 2 && kind != 20)
+    control_.fail("unsupported-word", column('L'), fmt::format("G10 L{} changes the tool table", kind),
+                  "give the tool table as a file; G10 L2 and L20 are read");
+  int number = whole(block_, 'P', 0, 9, reader_, control_);
+  if (number == 0) number = control_.work_offset();
+  const Target words = target_of(block_, false, reader_, control_);
+  AxisValues origin = control_.offset_origin(number);
+  const std::array<double, kAxisWords> here = control_.position();
+  if (block_.has('R')) {
+    if (kind != 2)
+      control_.fail("unexpected-word", column('R'), "R turns an offset with G10 L2 only", "write G10 L2");
+    offset_turn_[static_cast<size_t>(number)] = rad_from_deg(block_.get('R'));
+  }
+  const double turn = offset_turn_[static_cast<size_t>(number)];
+  if (kind == 20 && turn != 0.0)
+    control_.fail("unsupported-word", column('L'),
+                  "G10 L20 into an offset that is turned (R) is not supported",
+                  "write the offset with G10 L2");
+  for (int word = 0; word < kAxisWords; ++word) {
+    if (!words.has(word)) continue;
+    const int axis = control_.require_axis(static_cast<AxisWord>(word), words.column);
+    const double value = words.value[static_cast<size_t>(word)];
+    if (kind == 2) {
+      origin[axis] = incremental_ ? origin[axis] + value : value;
+      continue;
+    }
+    if (!std::isfinite(here[static_cast<size_t>(word)]))
+      control_.fail("start-unknown", words.column, "G10 L20 needs the position, which is not known yet",
+                    "give the start position in the scene");
+    // In the offset that is active: so that the present position reads `value`.
+    origin[axis] =
+        control_.offset_origin(control_.work_offset())[axis] + here[static_cast<size_t>(word)] - value;
+  }
+  control_.set_offset_origin(number, origin);
+  update_shift();
+}
+
+void LinuxCnc::reference(int tenths) {
+  const kinematics::MachineModel& machine = control_.machine();
+  if (tenths == 300 && !machine.tool_change)
+    control_.fail("no-reference", g_column(kNonModal),
+                  "G30 goes to the tool change position, and the machine has none",
+                  "add tool_change to the machine file, or write G28");
+  const Target words = target_of(block_, incremental_, reader_, control_);
+  if (words.any()) control_.line(Motion::kRapid, words);
+  Target home;
+  home.column = g_column(kNonModal);
+  for (int word = 0; word < kAxisWords; ++word) {
+    const int axis = control_.axis_of(static_cast<AxisWord>(word));
+    if (axis < 0 || (words.any() && !words.has(word))) continue;
+    home.set(word,
+             tenths == 280 ? machine.axes[static_cast<size_t>(axis)].home : (*machine.tool_change)[axis],
+             false);
+  }
+  control_.machine_line(Motion::kRapid, home);
+}
+
+/// G92: the present position reads as written. G52: the shift is as written.
+void LinuxCnc::shift_to_words(bool position) {
+  const Target words = target_of(block_, false, reader_, control_);
+  if (!words.any())
+    control_.fail("missing-word", g_column(kNonModal), "this shift has no axis words",
+                  "add the axes that it shifts");
+  const std::array<double, kAxisWords> here = control_.position();
+  if (position && !shift_on_) shift_ = AxisValues::Zero();
+  for (int word = 0; word < kAxisWords; ++word) {
+    if (!words.has(word)) continue;
+    const int axis = control_.require_axis(static_cast<AxisWord>(word), words.column);
+    const double value = words.value[static_cast<size_t>(word)], now = here[static_cast<size_t>(word)];
+    if (position && !std::isfinite(now))
+      control_.fail("start-unknown", words.column, "G92 needs the position, which is not known yet",
+                    "give the start position in the scene");
+    shift_[axis] = position ? shift_[axis] + now - value : value;
+  }
+  shift_on_ = true;
+  update_shift();
+}
+
+}  // namespace swarf::program::nc

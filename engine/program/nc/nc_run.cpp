@@ -1,0 +1,122 @@
+// run_nc: which dialect, then its reader on a control.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <filesystem>
+#include <fstream>
+
+#include "program/nc/control.h"
+#include "program/nc/dialect.h"
+#include "program/nc_program.h"
+
+namespace swarf::program {
+namespace {
+
+using nc::DialectReader;
+using nc::Evidence;
+
+/// Every dialect that can be read.
+constexpr std::array kReaders{&nc::kLinuxCncReader};
+
+const DialectReader* reader_of(Dialect dialect) {
+  const auto found = std::find_if(kReaders.begin(), kReaders.end(),
+                                  [&](const DialectReader* reader) { return reader->dialect == dialect; });
+  return found == kReaders.end() ? nullptr : *found;
+}
+
+std::string head_of(const std::string& path) {
+  constexpr size_t kHead = size_t{1} << 18;
+  std::ifstream stream(path, std::ios::binary);
+  std::string head(kHead, '\0');
+  stream.read(head.data(), static_cast<std::streamsize>(kHead));
+  head.resize(static_cast<size_t>(stream.gcount()));
+  return head;
+}
+
+std::string fix_of_dialect() {
+  std::string names;
+  for (const DialectReader* reader : kReaders)
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", reader->name);
+  return "name it: " + names;
+}
+
+/// The reader whose evidence is the strongest; a tie is ambiguous.
+const DialectReader* recognised(const std::string& path, NcSummary& summary) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string head = head_of(path);
+  const DialectReader* best = nullptr;
+  Evidence strongest;
+  const DialectReader* rival = nullptr;
+  for (const DialectReader* reader : kReaders) {
+    Evidence evidence = reader->recognise(head, extension);
+    if (evidence.score <= 0) continue;
+    if (best != nullptr && evidence.score == strongest.score) rival = reader;
+    if (best != nullptr && evidence.score <= strongest.score) continue;
+    best = reader;
+    rival = nullptr;
+    strongest = std::move(evidence);
+  }
+  if (best == nullptr) {
+    throw InputError("unknown-dialect", {path, 0, 0},
+                     "nothing in this program shows in which dialect it is written", fix_of_dialect());
+  }
+  if (rival != nullptr) {
+    throw InputError("unknown-dialect", {path, 0, 0},
+                     fmt::format("this program could be {} or {}", best->name, rival->name),
+                     fix_of_dialect());
+  }
+  summary.dialect_reason = "recognised by " + strongest.reason;
+  return best;
+}
+
+void run(const std::string& path, std::optional<Dialect> dialect, const ControlSetup& setup, NcSink& sink,
+         Diagnostics& diagnostics, NcSummary& summary) {
+  if (!std::filesystem::is_regular_file(path))
+    throw InputError("file-not-found", {path, 0, 0}, "there is no such file",
+                     "check the path of the program");
+  summary.dialect_reason = "the scene says so";
+  const DialectReader* reader = dialect ? reader_of(*dialect) : recognised(path, summary);
+  if (reader == nullptr) {
+    throw InputError("unknown-dialect", {path, 0, 0},
+                     fmt::format("programs in {} are not read yet", dialect_name(*dialect)),
+                     fix_of_dialect());
+  }
+  summary.dialect = reader->dialect;
+  nc::Control control(setup, sink, diagnostics, summary);
+  reader->run(path, control);
+}
+
+}  // namespace
+
+const char* dialect_name(Dialect dialect) {
+  switch (dialect) {
+    case Dialect::kLinuxCnc:
+      return "linuxcnc";
+    case Dialect::kFanuc:
+      return "fanuc";
+    case Dialect::kSiemens:
+      return "siemens";
+    case Dialect::kHeidenhain:
+      return "heidenhain";
+  }
+  return "";
+}
+
+NcSummary run_nc(const std::string& path, std::optional<Dialect> dialect, const ControlSetup& setup,
+                 NcSink& sink, Diagnostics& diagnostics) {
+  NcSummary summary;
+  try {
+    run(path, dialect, setup, sink, diagnostics, summary);
+  } catch (const InputError& error) {
+    diagnostics.append(error.diagnostics);
+  } catch (const nc::ProgramStopped&) {
+    diagnostics.note("stopped", {path}, "the program was stopped before its end");
+  }
+  return summary;
+}
+
+}  // namespace swarf::program

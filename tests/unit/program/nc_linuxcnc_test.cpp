@@ -1,0 +1,184 @@
+// RS274/NGC programs with moves worked out by hand.
+#include <cmath>
+
+#include "unit/program/nc_support.h"
+
+namespace swarf::program {
+namespace {
+
+TEST(NcLinuxCnc, StraightMovesHaveTimesAndFeeds) {
+  const NcRun run = linuxcnc("G21 G90 G0 X10\nG1 X40 Y40 F600\nG91 X-10\nG20 X1\nG93 G90 X0 F4\nG94\nM2\n");
+  ASSERT_EQ(run.text(), "");
+  ASSERT_EQ(run.moves().size(), 5u);
+  EXPECT_TRUE(run.moves()[0].rapid);
+  EXPECT_EQ(run.moves()[0].duration_s, 0.0);
+  expect_tip(run.moves()[1], 40, 40, 0);
+  EXPECT_DOUBLE_EQ(run.moves()[1].duration_s, 5.0);  // 50 mm at 10 mm/s
+  EXPECT_DOUBLE_EQ(run.moves()[1].feed_mm_s, 10.0);
+  expect_tip(run.moves()[2], 30, 40, 0);
+  expect_tip(run.moves()[3], 55.4, 40, 0);
+  expect_tip(run.moves()[4], 0, 40, 0);
+  EXPECT_EQ(run.moves()[4].duration_s, 15.0);  // G93 F4: a quarter of a minute, exactly
+  EXPECT_EQ(run.moves()[4].feed_mm_s, 0.0);
+  EXPECT_EQ(run.moves()[2].line, 3);
+}
+
+TEST(NcLinuxCnc, ArcsInAllPlanesByCentreAndRadius) {
+  const NcRun run = linuxcnc(
+      "G21 G17 F600\nG3 X20 Y0 I10 J0\nG2 X0 Y0 Z5 R10\nG18 G2 X10 Z15 I0 K10\nG19 G3 Y-10 Z25 R-10\n"
+      "G17 G3 I-5 P3 Z28\n");
+  ASSERT_EQ(run.text(), "");
+  ASSERT_EQ(run.moves().size(), 7u);
+  const NcMove& half = run.moves()[0];
+  ASSERT_TRUE(half.arc);
+  EXPECT_NEAR((half.arc->centre_W - Vec3(10, 0, 0)).norm(), 0.0, 1e-12);
+  EXPECT_NEAR((half.arc->normal_W - Vec3(0, 0, 1)).norm(), 0.0, 1e-12);
+  EXPECT_NEAR(half.duration_s, kPi, 1e-12);  // 10 pi mm at 10 mm/s
+  const NcMove& back = run.moves()[1];
+  EXPECT_NEAR((back.arc->centre_W - Vec3(10, 0, 0)).norm(), 0.0, 1e-7);
+  EXPECT_NEAR((back.arc->normal_W - Vec3(0, 0, -1)).norm(), 0.0, 1e-12);
+  expect_tip(back, 0, 0, 5);
+  EXPECT_NEAR(back.duration_s, std::hypot(10 * kPi, 5.0) / 10.0, 1e-9);
+  const NcMove& zx = run.moves()[2];
+  EXPECT_NEAR((zx.arc->centre_W - Vec3(0, 0, 15)).norm(), 0.0, 1e-12);
+  EXPECT_NEAR((zx.arc->normal_W - Vec3(0, -1, 0)).norm(), 0.0, 1e-12);
+  // Counter-clockwise about X from (y 0, z 15) to (-10, 25), the longer way: of the two centres (-10, 15) and
+  // (0, 25), the one to the left of the chord would give the shorter arc.
+  const NcMove& yz = run.moves()[3];
+  EXPECT_NEAR((yz.arc->centre_W - Vec3(10, 0, 25)).norm(), 0.0, 1e-9);
+  for (size_t i = 4; i < 7; ++i) expect_tip(run.moves()[i], 10, -10, 25.0 + static_cast<double>(i - 3));
+  double time = 0.0;
+  for (size_t i = 4; i < 7; ++i) time += run.moves()[i].duration_s;
+  EXPECT_NEAR(time, std::hypot(3 * 10 * kPi, 3.0) / 10.0, 1e-9);
+}
+
+TEST(NcLinuxCnc, ParametersExpressionsAndLoops) {
+  const NcRun run = linuxcnc(
+      "#1=3 #<depth>=[2**3-#1] #<_all>=[10 MOD 4]\n"
+      "o100 sub\n  G0 X[#1*10] Y#<_all> Z[atan[1]/[1]]\no100 endsub\n"
+      "o1 while [#1 GT 0]\n  o100 call [#1]\n  #1=[#1-1]\no1 endwhile\n"
+      "o2 repeat [2]\n G91 G0 X1\no2 endrepeat\n"
+      "G90\no3 if [#<depth> EQ 5]\nG0 Y[-sqrt[16]]\no3 elseif [1]\nG0 Y99\no3 else\nG0 Y98\no3 endif\n"
+      "o4 do\n#1=[#1+1]\no5 if [#1 EQ 2]\no4 break\no5 endif\nG0 Z#1\no4 while [1]\nG0 Z50\nM2\n");
+  ASSERT_EQ(run.text(), "");
+  ASSERT_EQ(run.moves().size(), 8u);
+  expect_tip(run.moves()[0], 30, 2, 45);
+  expect_tip(run.moves()[1], 20, 2, 45);
+  expect_tip(run.moves()[2], 10, 2, 45);
+  expect_tip(run.moves()[3], 11, 2, 45);
+  expect_tip(run.moves()[4], 12, 2, 45);
+  expect_tip(run.moves()[5], 12, -4, 45);
+  expect_tip(run.moves()[6], 12, -4, 1);
+  expect_tip(run.moves()[7], 12, -4, 50);
+}
+
+TEST(NcLinuxCnc, NumberedSubprogramsRepeat) {
+  const NcRun run = linuxcnc("G91\nM98 P100 L3\nM2\nO100\nG0 X2\nM99\n");
+  ASSERT_EQ(run.text(), "");
+  ASSERT_EQ(run.moves().size(), 3u);
+  expect_tip(run.moves()[2], 6, 0, 0);
+}
+
+TEST(NcLinuxCnc, OffsetsShiftsAndTurns) {
+  const NcRun run = linuxcnc(
+      "G10 L2 P2 X100 Y50 Z-20\nG55 G0 X1 Y2 Z3\nG92 X0\nG0 X5\nG92.1\nG0 X7\nG54 G52 X10 Y10\nG0 X0 Y0 Z0\n"
+      "G52 X0 Y0\nG10 L2 P1 R90\nG0 X10 Y0\nG53 G0 X-3\nG10 L20 P2 X1\nG55 G0 X2\n");
+  ASSERT_EQ(run.text(), "");
+  ASSERT_EQ(run.moves().size(), 7u);
+  expect_tip(run.moves()[0], 101, 52, -17);
+  expect_tip(run.moves()[1], 106, 52, -17);
+  expect_tip(run.moves()[2], 107, 52, -17);
+  expect_tip(run.moves()[3], 10, 10, 0);
+  expect_tip(run.moves()[4], 0, 10, 0);
+  expect_tip(run.moves()[5], -3, 10, 0);
+}
+
+TEST(NcLinuxCnc, ToolLengthComesFromTheTable) {
+  const NcRun run = linuxcnc("T2 M6\nG43 G0 Z10\nG49 G0 Z10\nT0 M6\nM2\n");
+  ASSERT_EQ(run.text(), "");
+  ASSERT_EQ(run.moves().size(), 2u);
+  expect_tip(run.moves()[0], 0, 0, 10);
+  EXPECT_NEAR(run.moves()[0].q_to[2], 60.0, 1e-12);
+  expect_tip(run.moves()[1], 0, 0, -40);
+  EXPECT_EQ(run.moves()[0].tool, 1);
+  EXPECT_NEAR(run.moves()[0].from.tip_W.z(), -50.0, 1e-12);  // the tool hangs below the gauge line
+}
+
+TEST(NcLinuxCnc, DrillingCycles) {
+  const NcRun run = linuxcnc(
+      "G0 Z20\nG99 G83 X10 Y0 Z-10 R2 Q5 F300\nG98 X20\nG80\nG73 X30 Z-10 R2 Q7\nG82 X40 Z-3 R2 P0.5\n"
+      "G91 G81 X5 Z-4 R-15 L2\nM2\n");
+  ASSERT_EQ(run.text(), "");
+  std::vector<double> heights;
+  for (const NcMove& move : run.moves()) heights.push_back(move.to.tip_W.z());
+  const std::vector<double> expected = {
+      20, 20, 2,  -3,     2,   -2.746, -8,     2,   -7.746, -10, 2,  // G83, G99: 12 mm in pecks of 5
+      2,  -3, 2,  -2.746, -8,  2,      -7.746, -10, 20,              // second hole, G98: back to 20
+      20, 2,  -5, -4.746, -10, 20,                                   // G73
+      20, 2,  -3, 20,                                                // G82
+      20, 5,  1,  20,     20,  5,      1,      20};                  // G91, twice
+  ASSERT_EQ(heights.size(), expected.size());
+  for (size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(heights[i], expected[i], 1e-9) << i;
+  EXPECT_NEAR(run.moves()[29].dwell_s, 0.5, 0.0);  // on the way out of G82
+  expect_tip(run.moves().back(), 50, 0, 20);
+}
+
+TEST(NcLinuxCnc, DwellExactStopAndCorners) {
+  const NcRun run = linuxcnc("G64 P0.05 G1 X1 F100\nG4 P1.5\nG61 X2\nM3 S1000 X3\nG4 P2\nM2\n");
+  ASSERT_EQ(run.text(), "");
+  ASSERT_EQ(run.moves().size(), 4u);
+  EXPECT_EQ(run.moves()[0].corner_tolerance_mm, 0.05);
+  EXPECT_EQ(run.moves()[1].dwell_s, 1.5);
+  EXPECT_TRUE(run.moves()[1].exact_stop);
+  EXPECT_EQ(run.moves()[2].spindle_rpm, 1000.0);
+  EXPECT_EQ(run.moves()[3].dwell_s, 2.0);  // a last wait is not lost
+  EXPECT_EQ(run.moves()[3].to.tip_W, run.moves()[3].from.tip_W);
+}
+
+TEST(NcLinuxCnc, StartIsTheFirstCompletePosition) {
+  ControlSetup setup = three_axis_setup();
+  setup.start.reset();
+  const NcRun run = linuxcnc("G0 Z50\nX10 Y20\nX30\nM2\n", setup);
+  ASSERT_EQ(run.text(), "");
+  ASSERT_EQ(run.moves().size(), 1u);
+  EXPECT_NEAR((run.moves()[0].from.tip_W - Vec3(10, 20, 50)).norm(), 0.0, 1e-12);
+  EXPECT_NE(run.summary.start.find("line 2"), std::string::npos) << run.summary.start;
+  EXPECT_EQ(linuxcnc("G1 Z50 F100\nM2\n", setup).first_error(), "start-unknown 1:4");
+  EXPECT_EQ(linuxcnc("G0 Z50\nM2\n", setup).first_error(), "no-start 1:1");
+}
+
+TEST(NcLinuxCnc, TcpKeepsTheTipOnItsLine) {
+  ControlSetup setup = five_axis_setup();
+  const NcRun run = linuxcnc(
+      "T2 M6 G43\nG0 X10 Y20 Z30 A0 C0\nM428\nG1 X20 Y20 Z30 A30 C40 F600\nG1 A0 C0\nM429\nG1 A10 F600\nM2\n",
+      setup);
+  ASSERT_EQ(run.text(), "");
+  ASSERT_EQ(run.moves().size(), 4u);
+  const NcMove& tcp = run.moves()[1];
+  EXPECT_EQ(tcp.law, BlockLaw::kTcpAxes);
+  expect_tip(tcp, 20, 20, 30);
+  EXPECT_NEAR(tcp.feed_mm_s, 10.0, 1e-12);
+  EXPECT_NEAR(tcp.duration_s, 1.0, 1e-12);
+  expect_tip(run.moves()[2], 20, 20, 30);
+  EXPECT_EQ(run.moves()[3].law, BlockLaw::kJoint);
+  EXPECT_NEAR(run.moves()[3].duration_s, 1.0, 1e-9);  // 10 degrees at 600 degrees per minute
+  for (const NcMove& move : run.moves()) {
+    const ToolPose pose = kinematics::forward(kinematics::with_tool(setup.machine, 50.0), move.q_to);
+    EXPECT_NEAR((pose.tip_W - move.to.tip_W).norm(), 0.0, 1e-9);
+    EXPECT_NEAR((pose.axis_W - move.to.axis_W).norm(), 0.0, 1e-12);
+  }
+}
+
+TEST(NcLinuxCnc, SinkStopsTheProgram) {
+  const auto setup = three_axis_setup();
+  NcRun run;
+  run.sink.stop_after = 2;
+  const auto path = std::filesystem::temp_directory_path() / "swarf_nc_stop.ngc";
+  std::ofstream(path) << "G0 X1\nX2\nX3\nM2\n";
+  run.summary = run_nc(path.string(), Dialect::kLinuxCnc, setup, run.sink, run.diagnostics);
+  EXPECT_EQ(run.moves().size(), 2u);
+  EXPECT_FALSE(run.diagnostics.has_errors());
+}
+
+}  // namespace
+}  // namespace swarf::program
