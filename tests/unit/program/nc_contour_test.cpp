@@ -16,7 +16,9 @@ TEST(NcContour, SquareFromOutside) {
   ASSERT_EQ(run.moves().size(), ends.size());
   for (size_t i = 0; i < ends.size(); ++i) {
     expect_tip(run.moves()[i], ends[i].x(), ends[i].y(), ends[i].z());
-    if (i > 0) EXPECT_NEAR((run.moves()[i].from.tip_W - ends[i - 1]).norm(), 0.0, 1e-9) << i;
+    if (i > 0) {
+      EXPECT_NEAR((run.moves()[i].from.tip_W - ends[i - 1]).norm(), 0.0, 1e-9) << i;
+    }
   }
   ASSERT_TRUE(run.moves()[3].arc);
   EXPECT_NEAR((run.moves()[3].arc->centre_W - Vec3(30, 0, 0)).norm(), 0.0, 1e-9);
@@ -75,7 +77,7 @@ TEST(NcContour, DepthMovesStandInTheirCorner) {
 
 TEST(NcContour, WhatGougesIsRefused) {
   EXPECT_EQ(linuxcnc("T1 M6 G43 F600\nG0 X-20 Y0\nG41 G1 X0\nX3\nY2\nX0\n").first_error(),
-            "compensation-gouge 6:1");
+            "compensation-gouge 4:1");
   EXPECT_EQ(linuxcnc("T1 M6 G43 F600\nG0 X-20 Y0\nG41 G1 X0\nG3 X0 Y6 I0 J3\nX-9\n").first_error(),
             "compensation-gouge 4:4");
   EXPECT_EQ(linuxcnc("T1 M6 G43 F600\nG0 X-2 Y0\nG41 G1 X0\n").first_error(), "compensation-entry 3:8");

@@ -54,7 +54,7 @@ TEST(NcLinuxCnc, ArcsInAllPlanesByCentreAndRadius) {
 
 TEST(NcLinuxCnc, ParametersExpressionsAndLoops) {
   const NcRun run = linuxcnc(
-      "#1=3 #<depth>=[2**3-#1] #<_all>=[10 MOD 4]\n"
+      "#1=3 #<_all>=[10 MOD 4]\n#<depth>=[2**3-#1]\n"
       "o100 sub\n  G0 X[#1*10] Y#<_all> Z[atan[1]/[1]]\no100 endsub\n"
       "o1 while [#1 GT 0]\n  o100 call [#1]\n  #1=[#1-1]\no1 endwhile\n"
       "o2 repeat [2]\n G91 G0 X1\no2 endrepeat\n"
