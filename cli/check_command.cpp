@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "base/config.h"
+#include "cli/check_nc.h"
 #include "cli/commands.h"
 #include "cli/terminal.h"
 #include "sim/simulation.h"
@@ -32,7 +33,8 @@ std::string check_scene(const std::string& file) {
   return fmt::format("scene is right: {} passes, {:.0f} mm in contact", path.passes, path.pass_length_mm);
 }
 
-std::string check_file(const std::string& file) {
+std::string check_file(const std::string& file, const NcCheckOptions& nc) {
+  if (is_nc_program(file, nc)) return check_nc(file, nc);
   const std::string extension = std::filesystem::path(file).extension().string();
   if (extension == ".cl" || extension == ".cls" || extension == ".apt" || extension == ".cldata") {
     const program::ClProgram program = program::load_cl(file);
@@ -49,11 +51,11 @@ std::string check_file(const std::string& file) {
                      machine.links.size());
 }
 
-int check(const std::vector<std::string>& files) {
+int check(const std::vector<std::string>& files, const NcCheckOptions& nc) {
   int exit_code = kPass;
   for (const std::string& file : files) {
     try {
-      fmt::print("{}: {}\n", file, check_file(file));
+      fmt::print("{}: {}\n", file, check_file(file, nc));
     } catch (const InputError& error) {
       fmt::print(stderr, "{}\n", error.what());
       exit_code = kBadInput;
@@ -66,11 +68,17 @@ int check(const std::vector<std::string>& files) {
 
 void add_check(CLI::App& app, int& exit_code) {
   auto files = std::make_shared<std::vector<std::string>>();
-  CLI::App* command = app.add_subcommand("check",
-                                         "Parse and validate scenes and machines (.toml), programs (.nc) and "
-                                         "CL data (.cl, .cls, .apt, .cldata); run nothing");
+  auto nc = std::make_shared<NcCheckOptions>();
+  CLI::App* command =
+      app.add_subcommand("check",
+                         "Parse and validate scenes and machines (.toml), programs (.nc, .ngc, "
+                         ".mpf, .h) and CL data (.cl, .cls, .apt, .cldata); run nothing");
   command->add_option("files", *files, "files to check")->required();
-  command->callback([files, &exit_code] { exit_code = check(*files); });
+  command->add_option("--machine", nc->machine, "machine.toml that NC programs are read for");
+  command->add_option("--dialect", nc->dialect,
+                      "linuxcnc, fanuc, siemens or heidenhain; recognised when left out");
+  command->add_flag("--home", nc->at_home, "NC programs start at the machine's home");
+  command->callback([files, nc, &exit_code] { exit_code = check(*files, *nc); });
 }
 
 }  // namespace swarf::cli

@@ -4,6 +4,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 
 #include "base/units.h"
 
@@ -38,6 +39,15 @@ double rounded(double x) {
   return std::round(x);
 }
 
+/// Bit by bit, of whole numbers below 2^31.
+std::optional<double> of_bits(Operator op, double a, double b, std::string& why) {
+  constexpr double kMost = 2147483648.0;
+  if (!(a >= 0.0 && a < kMost && b >= 0.0 && b < kMost && a == std::floor(a) && b == std::floor(b)))
+    return refuse(why, fmt::format("{:g} and {:g} have no bits: they must be whole and not negative", a, b));
+  const auto x = static_cast<uint32_t>(a), y = static_cast<uint32_t>(b);
+  return op == Operator::kBitAnd ? x & y : op == Operator::kBitOr ? x | y : x ^ y;
+}
+
 bool truth(double x) {
   return x != 0.0;
 }
@@ -69,6 +79,10 @@ std::optional<double> apply(Function function, double x, std::string& why) {
       return std::log(x);
     case Function::kRound:
       return rounded(x);
+    case Function::kTruncate:
+      return std::trunc(x);
+    case Function::kAway:
+      return x < 0.0 ? std::floor(x) : std::ceil(x);
     case Function::kSign:
       return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : 0.0;
     case Function::kSin:
@@ -111,6 +125,10 @@ std::optional<double> apply(Operator op, double a, double b, std::string& why) {
       return truth(a) || truth(b) ? 1.0 : 0.0;
     case Operator::kXor:
       return truth(a) != truth(b) ? 1.0 : 0.0;
+    case Operator::kBitAnd:
+    case Operator::kBitOr:
+    case Operator::kBitXor:
+      return of_bits(op, a, b, why);
     case Operator::kEqual:
       return a == b ? 1.0 : 0.0;
     case Operator::kNotEqual:

@@ -21,7 +21,9 @@ enum class Function {
   kSin,
   kSqrt,
   kTan,
-  kSign
+  kSign,
+  kTruncate,  ///< towards zero
+  kAway       ///< away from zero
 };
 enum class Operator {
   kAdd,
@@ -34,6 +36,9 @@ enum class Operator {
   kAnd,
   kOr,
   kXor,
+  kBitAnd,
+  kBitOr,
+  kBitXor,
   kEqual,
   kNotEqual,
   kLess,

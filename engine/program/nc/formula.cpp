@@ -51,17 +51,6 @@ bool FormulaReader::take(std::string_view word) {
   return true;
 }
 
-bool FormulaReader::starts_value() const {
-  const char c = upper(peek());
-  if ((c >= '0' && c <= '9') || c == '.' || c == '+' || c == '-' || c == '#' || c == '[') return true;
-  return std::any_of(syntax_.functions.begin(), syntax_.functions.end(), [&](const FunctionWord& one) {
-    const std::string_view rest = line_.substr(at_, one.word.size() + 1);
-    return rest.size() > one.word.size() && rest.back() == '[' &&
-           std::equal(one.word.begin(), one.word.end(), rest.begin(),
-                      [](char a, char b) { return a == upper(b); });
-  });
-}
-
 double FormulaReader::value() {
   skip_space();
   const size_t from = at_;

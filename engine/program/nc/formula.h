@@ -60,12 +60,12 @@ class FormulaReader {
   bool take(std::string_view word);
   /// A value of a word: number, parameter, formula, function, with an optional sign.
   double value();
+  /// A formula without brackets, as far as it goes (right sides of Fanuc's assignments).
+  double open_formula() { return expression(0); }
   /// What stands in brackets, the opening one still to come.
   double bracketed();
   /// '#' and what it names: a number, or a name (returned in `name`, in small letters).
   long parameter_number(std::string& name);
-  /// A bracketed truth is not zero.
-  bool starts_value() const;
 
  private:
   double expression(int lowest_rank);

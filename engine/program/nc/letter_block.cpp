@@ -58,7 +58,10 @@ void add_code(char letter, const CodeTable& table, double number, size_t place, 
     block.m_places[static_cast<size_t>(block.m_count++)] = static_cast<uint16_t>(place);
     return;
   }
-  if (code->group == kFree) return;
+  if (code->group == kFree) {
+    ++block.free_g;
+    return;
+  }
   const auto group = static_cast<size_t>(code->group);
   if (block.has_g(code->group)) {
     const bool motion = code->group == 1;
@@ -179,6 +182,46 @@ Target target_of(const LetterBlock& block, bool incremental, const FormulaReader
   }
   target.column = static_cast<int>(first) + 1;
   return target;
+}
+
+std::optional<ArcWords> arc_words(const LetterBlock& block, const Target& target, bool absolute,
+                                  const FormulaReader& reader, Control& control) {
+  const PlaneAxes axes = axes_of(control.plane());
+  const auto column = [&](char letter) { return reader.column_of(block.place(letter)); };
+  ArcWords words;
+  words.column = reader.column_of(block.first);
+  const bool radius = block.has('R');
+  const bool centre = block.has('I') || block.has('J') || block.has('K');
+  if (!target.any() && !centre && !radius) return std::nullopt;  // only the mode
+  if (radius && centre)
+    control.fail("bad-arc", column('R'), "the arc has a radius and a centre", "write either R or I J K");
+  if (!radius && !centre)
+    control.fail("bad-arc", words.column, "the arc has neither a centre nor a radius", "add I J K, or R");
+  const char normal_letter = "IJK"[axes.normal];
+  if (block.has(normal_letter))
+    control.fail("bad-arc", column(normal_letter),
+                 fmt::format("{} lies across the plane of this arc", normal_letter),
+                 "take it out, or select the plane with G17 to G19");
+  if (radius) {
+    words.radius = control.mm(block.get('R'));
+    if (!target.has(axes.first) && !target.has(axes.second))
+      control.fail("bad-arc", column('R'), "an arc by radius needs an end in its plane",
+                   "add the end, or I J K");
+    return words;
+  }
+  const Vec3 here = control.position_xyz();
+  Vec3 point = here;
+  for (const int i : {axes.first, axes.second}) {
+    const char letter = "IJK"[i];
+    if (absolute && !block.has(letter))
+      control.fail("missing-word", words.column,
+                   fmt::format("an absolute centre wants {} in each arc", letter),
+                   fmt::format("add {}", letter));
+    const double value = control.mm(block.get(letter, 0.0));
+    point[i] = absolute ? value : here[i] + value;
+  }
+  words.centre = point;
+  return words;
 }
 
 int whole(const LetterBlock& block, char letter, int low, int high, const FormulaReader& reader,

@@ -57,13 +57,14 @@ struct LetterBlock {
   std::array<uint16_t, kMCodesMax> m_places{};
   int m_count = 0;
   uint32_t m_groups = 0;
+  int free_g = 0;  ///< number of G codes without a group
   size_t first = 0;          ///< byte offset of the first word
   bool skip_mark = false;    ///< '/' before it
   std::string_view message;  ///< text of the last (MSG, ...) comment
 
   void clear() {
     given = g_given = m_groups = 0;
-    m_count = 0;
+    m_count = free_g = 0;
     skip_mark = false;
     message = {};
   }
@@ -73,7 +74,7 @@ struct LetterBlock {
   size_t place(char letter) const { return places[static_cast<size_t>(letter - 'A')]; }
   bool has_g(int group) const { return (g_given >> group & 1u) != 0; }
   bool has_m(int tenths) const;
-  bool empty() const { return (given | g_given) == 0 && m_count == 0; }
+  bool empty() const { return (given | g_given) == 0 && m_count == 0 && free_g == 0; }
 };
 
 /// Reads the words from where `reader` stands to the end of the line into `block`, which must be clear.
@@ -93,6 +94,11 @@ void check_use(const Code& code, char letter, int column, Control& control);
 /// The axis words of the block as a target, mm and rad.
 Target target_of(const LetterBlock& block, bool incremental, const FormulaReader& reader,
                  const Control& control);
+
+/// The circle of a G2 or G3 block, from R or from I J K (`absolute`: in program coordinates instead of
+/// relative to the start); nothing when the block has no geometry. "bad-arc", "missing-word".
+std::optional<ArcWords> arc_words(const LetterBlock& block, const Target& target, bool absolute,
+                                  const FormulaReader& reader, Control& control);
 
 /// A whole number in [low, high]; "not-whole-number", "out-of-range".
 int whole(const LetterBlock& block, char letter, int low, int high, const FormulaReader& reader,

@@ -156,7 +156,6 @@ class LinuxCnc final : public Parameters {
   void motion();
   void arc(int tenths);
   void cycle(int tenths);
-  Vec3 arc_offset(double here_scale) const;
   int column(char letter) const { return reader_.column_of(block_.place(letter)); }
   int g_column(int group) const { return reader_.column_of(block_.g_places[static_cast<size_t>(group)]); }
   bool is_axis_given() const { return (block_.given & kAxisBits) != 0; }

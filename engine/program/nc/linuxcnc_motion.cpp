@@ -41,43 +41,16 @@ void LinuxCnc::motion() {
 void LinuxCnc::arc(int tenths) {
   const PlaneAxes axes = axes_of(control_.plane());
   const Target target = target_of(block_, incremental_, reader_, control_);
-  ArcWords words;
-  words.column = reader_.column_of(block_.first);
-  const bool radius = block_.has('R');
-  const bool centre = block_.has('I') || block_.has('J') || block_.has('K');
-  if (!target.any() && !centre && !radius) return;  // only the mode
-  if (radius && centre)
-    control_.fail("bad-arc", column('R'), "the arc has a radius and a centre", "write either R or I J K");
-  if (!radius && !centre)
-    control_.fail("bad-arc", words.column, "the arc has neither a centre nor a radius", "add I J K, or R");
-  const char normal_letter = "IJK"[axes.normal];
-  if (block_.has(normal_letter))
-    control_.fail("bad-arc", column(normal_letter),
-                  fmt::format("{} lies across the plane of this arc", normal_letter),
-                  "take it out, or select the plane with G17 to G19");
-  if (block_.has('P')) words.further_turns = whole(block_, 'P', 1, 100000, reader_, control_) - 1;
-  if (radius) {
-    words.radius = control_.mm(block_.get('R'));
-    if (!target.has(axes.first) && !target.has(axes.second))
-      control_.fail("bad-arc", column('R'), "an arc by radius needs an end in its plane",
-                    "add the end, or I J K");
-  } else {
-    const Vec3 here = control_.position_xyz();
-    Vec3 point = here;
-    for (const int i : {axes.first, axes.second}) {
-      const char letter = "IJK"[i];
-      if (arc_absolute_ && !block_.has(letter))
-        control_.fail("missing-word", words.column, fmt::format("G90.1 wants {} in each arc", letter),
-                      fmt::format("add {}", letter));
-      const double value = control_.mm(block_.get(letter, 0.0));
-      point[i] = arc_absolute_ ? value : here[i] + value;
-    }
-    words.centre = point;
-    const double r = std::hypot(point[axes.first] - here[axes.first], point[axes.second] - here[axes.second]);
+  std::optional<ArcWords> words = arc_words(block_, target, arc_absolute_, reader_, control_);
+  if (!words) return;
+  if (block_.has('P')) words->further_turns = whole(block_, 'P', 1, 100000, reader_, control_) - 1;
+  if (words->centre) {
+    const Vec3 out = *words->centre - control_.position_xyz();
     // LinuxCNC's rule: 5 um, or a thousandth of the radius up to half a millimetre.
-    words.radius_tolerance_mm = std::max(5e-3, std::min(0.5, 1e-3 * r));
+    words->radius_tolerance_mm =
+        std::max(5e-3, std::min(0.5, 1e-3 * std::hypot(out[axes.first], out[axes.second])));
   }
-  control_.arc(tenths == 20 ? Motion::kClockwise : Motion::kCounterClockwise, target, words);
+  control_.arc(tenths == 20 ? Motion::kClockwise : Motion::kCounterClockwise, target, *words);
 }
 
 void LinuxCnc::cycle(int tenths) {

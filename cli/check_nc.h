@@ -1,0 +1,23 @@
+// swarf check of NC programs: read and interpreted, nothing simulated.
+#pragma once
+
+#include <string>
+
+namespace swarf::cli {
+
+/// What an NC program is checked with.
+struct NcCheckOptions {
+  std::string machine;   ///< machine.toml; "": a plain XYZ machine without limits
+  std::string dialect;   ///< "linuxcnc" ...; "": recognised
+  bool at_home = false;  ///< the program starts at the machine's home
+};
+
+/// True for the endings of NC programs, or when options only they have are given. A .nc file with surface
+/// blocks (G10 L70) is no NC program in this sense.
+bool is_nc_program(const std::string& file, const NcCheckOptions& options);
+
+/// Reads the program and tells lines, moves, time, tools, travel, start and what has no effect. Throws
+/// InputError.
+std::string check_nc(const std::string& file, const NcCheckOptions& options);
+
+}  // namespace swarf::cli

@@ -1,0 +1,165 @@
+// Third and fourth step: rules of a block's words, then modal words in the control's order.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "base/units.h"
+#include "program/nc/fanuc.h"
+
+namespace swarf::program::nc {
+
+void Fanuc::check_letter(char letter, bool allowed, const char* used_with) {
+  if (!block_.has(letter) || allowed) return;
+  control_.fail("unexpected-word", column(letter), fmt::format("{} has no meaning in this block", letter),
+                fmt::format("{} stands with {}", letter, used_with));
+}
+
+void Fanuc::need(char letter, const char* with) {
+  if (block_.has(letter)) return;
+  control_.fail("missing-word", 0, fmt::format("{} needs the word {}", with, letter),
+                fmt::format("add {}", letter));
+}
+
+Target Fanuc::words() {
+  return target_of(block_, incremental_, reader_, control_);
+}
+
+void Fanuc::check_words() {
+  const int one_shot = g(kFanucOneShot);
+  if (one_shot == 650) return;  // every letter is an argument
+  for (const char letter : {'U', 'V', 'W', 'E'}) {
+    if (block_.has(letter))
+      control_.fail(letter == 'E' ? "unknown-word" : "axis-missing", column(letter),
+                    fmt::format("the machine {} has no axis {}", control_.machine().name, letter),
+                    "take the word out, or choose the machine that the program was posted for");
+  }
+  const int motion = g(kFanucMotion) >= 0 ? g(kFanucMotion) : motion_;
+  const int cycle = g(kFanucCycle) >= 0 ? g(kFanucCycle) : g(kFanucMotion) >= 0 ? 800 : cycle_;
+  const bool in_cycle = cycle != 800, arc = !in_cycle && (motion == 20 || motion == 30),
+             turn = g(kFanucTurn) >= 680;
+  const bool vectors = (tcp_ == Tcp::kVector || g(kFanucLength) == 435) && !arc;
+  const bool ends = block_.has_m(980) || block_.has_m(990);
+  for (const char letter : {'I', 'J', 'K'})
+    check_letter(letter, arc || turn || vectors || motion == 62 || (letter == 'K' && in_cycle),
+                 "G2, G3, G43.5, G68.2");
+  check_letter('R', arc || in_cycle || turn || motion == 62 || one_shot == 100,
+               "arcs, cycles, G68 and G06.2");
+  check_letter('Q', in_cycle || block_.free_g > 0, "pecking cycles");
+  check_letter('P',
+               in_cycle || one_shot == 40 || one_shot == 100 || one_shot == 300 || motion == 62 || ends ||
+                   g(kFanucOffset) == 541 || turn || block_.free_g > 0,
+               "G04, G10, M98 and cycles");
+  check_letter('L', in_cycle || one_shot == 100 || ends, "G10, M98 and cycles");
+  check_letter('D', g(kFanucRadius) > 400, "G41 and G42");
+  check_letter('H', g(kFanucLength) > 400 && g(kFanucLength) != 490, "G43");
+  if (g(kFanucCycle) > 800 && g(kFanucMotion) >= 0)
+    control_.fail("two-motion-words", g_column(kFanucMotion), "a motion and a cycle stand in one block",
+                  "write them in two blocks");
+  if (block_.has('F') && !(block_.get('F') > 0.0))
+    control_.fail("bad-feed", column('F'), fmt::format("F {:g} is not a feed", block_.get('F')),
+                  "write a feed above zero");
+  if (block_.has('S') && block_.get('S') < 0.0)
+    control_.fail("out-of-range", column('S'), fmt::format("S {:g} is below zero", block_.get('S')),
+                  "write S0 or more");
+  if (one_shot == 40 && !block_.has('P') && !block_.has('X'))
+    control_.fail("missing-word", g_column(kFanucOneShot), "G04 has no time", "add P (ms) or X (s)");
+}
+
+void Fanuc::apply() {
+  if (g(kFanucOneShot) == 650) return call_macro();
+  apply_machine();
+  apply_modes();
+  if (block_.has_g(kFanucTurn)) return turn(block_.g[kFanucTurn]);
+  if (block_.has_g(kFanucOneShot) && block_.g[kFanucOneShot] != 90 && block_.g[kFanucOneShot] != 530)
+    return one_shot();
+  if (g(kFanucOneShot) == 90) control_.exact_stop_once();
+  motion();
+}
+
+void Fanuc::apply_machine() {
+  if (block_.has_g(kFanucUnits)) control_.set_inches(block_.g[kFanucUnits] == 200);
+  if (block_.has_g(kFanucFeed)) {
+    const int code = block_.g[kFanucFeed];
+    control_.set_feed_mode(code == 930   ? FeedMode::kInverseTime
+                           : code == 940 ? FeedMode::kPerMinute
+                                         : FeedMode::kPerRevolution);
+  }
+  if (block_.has('F')) control_.set_feed(block_.get('F'), column('F'));
+  if (block_.has('S')) control_.set_speed(block_.get('S'));
+  if (block_.has('T')) {
+    const int number = whole(block_, 'T', 0, 99999999, reader_, control_);
+    control_.select_tool(number == 0 ? -1 : control_.find_tool(number, column('T')), number);
+  }
+  if (block_.has_m(60)) control_.change_tool();
+  for (int i = 0; i < block_.m_count; ++i) {
+    const int code = block_.m[static_cast<size_t>(i)];
+    if (code == 30 || code == 40 || code == 50) control_.set_spindle(code == 30 ? 1 : code == 40 ? -1 : 0);
+  }
+}
+
+void Fanuc::apply_modes() {
+  if (block_.g_given == 0) return;
+  if (block_.has_g(kFanucPlane))
+    control_.set_plane(block_.g[kFanucPlane] == 170   ? Plane::kXY
+                       : block_.g[kFanucPlane] == 180 ? Plane::kZX
+                                                      : Plane::kYZ);
+  if (block_.has_g(kFanucDistance)) incremental_ = block_.g[kFanucDistance] == 910;
+  if (block_.has_g(kFanucRetract)) retract_to_r_ = block_.g[kFanucRetract] == 990;
+  if (block_.has_g(kFanucPath))
+    control_.set_exact_stop(block_.g[kFanucPath] == 610 || block_.g[kFanucPath] == 611);
+  if (block_.has_g(kFanucRadius)) apply_radius();
+  if (block_.has_g(kFanucOffset)) {
+    const int code = block_.g[kFanucOffset];
+    if (code == 541) need('P', "G54.1");
+    control_.set_work_offset(code == 541 ? 100 + whole(block_, 'P', 1, 300, reader_, control_)
+                                         : (code - 530) / 10);
+    update_space();
+  }
+  if (block_.has_g(kFanucLength)) apply_length();
+}
+
+double Fanuc::tool_value(char letter, bool length) {
+  const int number = whole(block_, letter, 0, 99999999, reader_, control_);
+  if (number == 0) return 0.0;
+  const int index = control_.find_tool(number, column(letter));
+  if (index < 0) return 0.0;
+  return length ? control_.tool_at(index).length_mm : 0.5 * control_.tool_at(index).diameter_mm;
+}
+
+void Fanuc::apply_radius() {
+  const int code = block_.g[kFanucRadius], at = g_column(kFanucRadius);
+  if (code == 400) return control_.set_compensation(Compensation::kOff, 0.0, at);
+  if (!block_.has('D') && control_.active_tool() == nullptr)
+    control_.fail("compensation-no-tool", at, "cutter compensation has no D word and no tool",
+                  "add D with the tool's number");
+  const double radius = block_.has('D') ? tool_value('D', false) : 0.5 * control_.active_tool()->diameter_mm;
+  control_.set_compensation(code == 410 ? Compensation::kLeft : Compensation::kRight, radius, at);
+}
+
+void Fanuc::apply_length() {
+  const int code = block_.g[kFanucLength];
+  if (code == 490) {
+    tcp_ = Tcp::kOff;
+    control_.set_length_compensation(0.0, false);
+    return update_space();
+  }
+  if (!block_.has('H') && control_.active_tool() == nullptr && !control_.setup().tools.empty())
+    control_.fail("missing-word", g_column(kFanucLength), "the length compensation has no H word and no tool",
+                  "add H with the tool's number");
+  const NcTool* tool = control_.active_tool();
+  const double length = block_.has('H') ? tool_value('H', true) : tool != nullptr ? tool->length_mm : 0.0;
+  control_.set_length_compensation(code == 440 ? -length : length, true);
+  tcp_ = code == 434 ? Tcp::kAxes : code == 435 ? Tcp::kVector : Tcp::kOff;
+  update_space();
+}
+
+/// TCP, tilted plane and shifts as the control understands them: the frame of G68 or G68.2 stands in the work
+/// offset with its shifts (30i: G52 and G92 move the workpiece coordinate system).
+void Fanuc::update_space() {
+  control_.set_shift(shift_ + local_);
+  control_.set_tcp(tcp_);
+  if (tcp_ == Tcp::kOff && turned_.on && turned_.in_work) control_.set_coordinates(Coordinates::kWork);
+  control_.set_frame(turned_.on ? turned_.frame : Pose::Identity());
+}
+
+}  // namespace swarf::program::nc

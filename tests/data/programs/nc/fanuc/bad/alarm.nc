@@ -1,0 +1,2 @@
+(expect: program-alarm 2:1)
+#3000=1 (NO TOOL)

@@ -1,0 +1,2 @@
+(expect: bad-arc 2:1)
+G02 X10 R4 F100

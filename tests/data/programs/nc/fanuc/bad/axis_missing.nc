@@ -1,0 +1,2 @@
+(expect: axis-missing 2:5)
+G00 A10

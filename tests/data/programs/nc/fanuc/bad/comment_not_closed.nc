@@ -1,0 +1,2 @@
+(expect: unclosed-comment 2:8)
+G00 X1 (comment

@@ -1,0 +1,2 @@
+(expect: bad-statement 2:1)
+END1

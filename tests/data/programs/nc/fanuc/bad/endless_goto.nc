@@ -1,0 +1,3 @@
+(expect: endless-loop 3:1)
+N10 #1=1
+GOTO 10

@@ -1,0 +1,2 @@
+(expect: modal-conflict 2:1)
+G53.1

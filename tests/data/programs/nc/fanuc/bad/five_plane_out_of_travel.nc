@@ -1,0 +1,3 @@
+(expect: unreachable-orientation 3:1)
+G68.2 X0 Y0 Z0 I0 J150 K0
+G53.1

@@ -1,0 +1,2 @@
+(expect: unexpected-word 2:8)
+G01 X1 K1 F100

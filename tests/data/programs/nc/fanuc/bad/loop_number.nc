@@ -1,0 +1,2 @@
+(expect: out-of-range 2:3)
+DO4

@@ -1,0 +1,2 @@
+(expect: unknown-subprogram 2:1)
+G65 P9999 A1

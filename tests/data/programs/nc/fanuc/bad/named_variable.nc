@@ -1,0 +1,2 @@
+(expect: bad-number 2:7)
+G00 X#<x>

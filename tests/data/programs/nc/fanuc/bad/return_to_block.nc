@@ -1,0 +1,5 @@
+(expect: unsupported-word 5:1)
+M98 P1
+M30
+O0001
+M99 P10

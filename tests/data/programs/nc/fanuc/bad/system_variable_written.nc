@@ -1,0 +1,2 @@
+(expect: bad-parameter 2:1)
+#5001=1

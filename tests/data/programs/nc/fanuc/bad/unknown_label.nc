@@ -1,0 +1,2 @@
+(expect: unknown-label 2:1)
+GOTO 100

@@ -1,0 +1,2 @@
+(expect: unknown-tool 2:5)
+G43 H9 Z10

@@ -1,0 +1,2 @@
+(expect: unknown-word 2:5)
+G00 E1

@@ -1,0 +1,2 @@
+(expect: unknown-word 2:1)
+M88

@@ -1,0 +1,2 @@
+(expect: unknown-tool 2:1)
+T99 M06

@@ -1,0 +1,2 @@
+(expect: undefined-parameter 2:6)
+G00 X#100

@@ -1,0 +1,171 @@
+// Fanuc programs: macros, TCP, tilted planes, NURBS, against closed forms.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "base/rng.h"
+#include "program/nc/control.h"
+#include "unit/program/nc_support.h"
+
+namespace swarf::program {
+namespace {
+
+NcRun fanuc(const std::string& text, const ControlSetup& setup = three_axis_setup()) {
+  return run_text(text, Dialect::kFanuc, setup);
+}
+
+TEST(NcFanuc, MacrosLoopsAndCalls) {
+  const NcRun run = fanuc(
+      "O0001\nG21 G90\n#100=3\nWHILE [#100 GT 0] DO1\nG00 X[#100*10]\n#100=#100-1\nEND1\nN5 #101=7\n"
+      "IF [#101 LT 9] THEN #101=9\nG00 Y#101\nIF [#101 GE 9] GOTO 20\nG00 Y99\nN20 G65 P0010 A2.5 X4 L2\n"
+      "M98 P0020011\nM30\nO0010\nG91 G00 Z[#1+#24]\nG90 M99\nO0011\nG91 G00 X1\nG90 M99\n");
+  ASSERT_EQ(run.text(), "");
+  ASSERT_EQ(run.moves().size(), 8u);
+  expect_tip(run.moves()[0], 30, 0, 0);
+  expect_tip(run.moves()[2], 10, 0, 0);
+  expect_tip(run.moves()[3], 10, 9, 0);
+  expect_tip(run.moves()[5], 10, 9, 13);
+  expect_tip(run.moves()[7], 12, 9, 13);
+}
+
+TEST(NcFanuc, TcpByRotariesAndByVectors) {
+  const ControlSetup setup = five_axis_setup();
+  const NcRun run = fanuc(
+      "T2 M06\nG43.4 H2 G00 X0 Y0 Z20 A0 C0\nG01 X10 A20 C30 F500\nG49\nG43.5 H2\n"
+      "G01 X20 Y5 Z20 I0.5 J0 K0.866025403784439 F500\nG49\nM30\n",
+      setup);
+  ASSERT_EQ(run.text(), "");
+  ASSERT_EQ(run.moves().size(), 3u);
+  EXPECT_EQ(run.moves()[1].law, BlockLaw::kTcpAxes);
+  expect_tip(run.moves()[1], 10, 0, 20);
+  EXPECT_EQ(run.moves()[2].law, BlockLaw::kTcp);
+  expect_tip(run.moves()[2], 20, 5, 20);
+  EXPECT_NEAR((run.moves()[2].to.axis_W - Vec3(0.5, 0, std::sqrt(0.75))).norm(), 0.0, 1e-12);
+  EXPECT_NEAR(run.moves()[2].feed_mm_s, 500.0 / 60.0, 1e-12);
+}
+
+TEST(NcFanuc, TiltedPlaneDrillsAlongItsNormal) {
+  const ControlSetup setup = five_axis_setup();
+  const NcRun run = fanuc(
+      "T2 M06\nG43 H2 G00 X0 Y0 Z120\nG68.2 X5 Y6 Z7 I30 J40 K0\nG53.1\nG00 X10 Y0 Z20\nG01 Z-5 F300\n"
+      "G02 X12 Y2 R2\nG69\nG49\nM30\n",
+      setup);
+  ASSERT_EQ(run.text(), "");
+  const Mat3 R = (Eigen::AngleAxisd(rad_from_deg(30), Vec3::UnitZ()) *
+                  Eigen::AngleAxisd(rad_from_deg(40), Vec3::UnitX()))
+                     .toRotationMatrix();
+  ASSERT_EQ(run.moves().size(), 5u);
+  const auto in_work = [&](double x, double y, double z) { return Vec3(Vec3(5, 6, 7) + R * Vec3(x, y, z)); };
+  EXPECT_NEAR((run.moves()[1].to.axis_W - R.col(2)).norm(), 0.0, 1e-12);
+  EXPECT_NEAR((run.moves()[2].to.tip_W - in_work(10, 0, 20)).norm(), 0.0, 1e-9);
+  EXPECT_NEAR((run.moves()[3].to.tip_W - in_work(10, 0, -5)).norm(), 0.0, 1e-9);
+  EXPECT_NEAR((run.moves()[4].to.tip_W - in_work(12, 2, -5)).norm(), 0.0, 1e-9);
+  ASSERT_TRUE(run.moves()[4].arc);
+  EXPECT_NEAR((run.moves()[4].arc->centre_W - in_work(12, 0, -5)).norm(), 0.0, 1e-9);
+  EXPECT_NEAR((run.moves()[4].arc->normal_W + R.col(2)).norm(), 0.0, 1e-12);
+}
+
+// Every orientation of a 5 degree grid: the plane's angles I and J, each in [0, 360).
+TEST(NcFanuc, EveryTiltedPlaneOfTheGridIsReachedOrRefused) {
+  ControlSetup setup = five_axis_setup();
+  for (kinematics::Axis& axis : setup.machine.axes) {
+    if (axis.name == "A") axis.min = -kPi, axis.max = kPi;
+  }
+  const kinematics::MachineModel bare = kinematics::with_tool(setup.machine, 0.0);
+  Recorder sink;
+  Diagnostics diagnostics;
+  NcSummary summary;
+  nc::Control control(setup, sink, diagnostics, summary);
+  int reached = 0;
+  for (int i = 0; i < 72; ++i) {
+    for (int j = 0; j < 72; ++j) {
+      const Mat3 R = (Eigen::AngleAxisd(rad_from_deg(5.0 * i), Vec3::UnitZ()) *
+                      Eigen::AngleAxisd(rad_from_deg(5.0 * j), Vec3::UnitX()))
+                         .toRotationMatrix();
+      Pose frame = Pose::Identity();
+      frame.linear() = R;
+      frame.translation() = Vec3(3, -4, 5);
+      control.set_coordinates(nc::Coordinates::kWork);
+      control.set_frame(frame);
+      const auto solutions = control.tilt_solutions(Vec3::UnitZ());
+      ASSERT_FALSE(solutions.empty()) << "I " << 5 * i << " J " << 5 * j;
+      for (const AxisValues& q : solutions) {
+        const ToolPose pose = kinematics::forward(bare, q);
+        ASSERT_NEAR((pose.axis_W - R.col(2)).norm(), 0.0, 1e-9) << "I " << 5 * i << " J " << 5 * j;
+      }
+      control.turn_rotaries(nc::Motion::kRapid, control.tilt_solution(Vec3::UnitZ(), {}, 0), false);
+      nc::Target target;
+      target.set(nc::kX, 7.0, false);
+      target.set(nc::kY, -8.0, false);
+      target.set(nc::kZ, 9.0, false);
+      control.line(nc::Motion::kRapid, target);
+      const ToolPose pose = kinematics::forward(bare, control.axis_values());
+      ASSERT_NEAR((pose.tip_W - frame * Vec3(7, -8, 9)).norm(), 0.0, 1e-9) << "I " << 5 * i << " J " << 5 * j;
+      ASSERT_NEAR((pose.axis_W - R.col(2)).norm(), 0.0, 1e-9) << "I " << 5 * i << " J " << 5 * j;
+      ++reached;
+    }
+  }
+  EXPECT_EQ(reached, 5184);
+}
+
+// A full quarter circle as a rational quadratic: every point lies on it, the length is a quarter of the
+// circle's.
+TEST(NcFanuc, NurbsQuarterCircle) {
+  const NcRun run = fanuc(
+      "G01 X10 Y0 F600\nG06.2 P3 K0 X10 Y0 Z0 R1\nK0 X10 Y10 R0.707106781186548\nK0 X0 Y10 "
+      "R1\nK1\nK1\nK1\nG01 X-5\nM30\n");
+  ASSERT_EQ(run.text(), "");
+  ASSERT_GE(run.moves().size(), 10u);
+  double time = 0.0;
+  for (size_t i = 1; i + 1 < run.moves().size(); ++i) {
+    EXPECT_NEAR(run.moves()[i].to.tip_W.norm(), 10.0, 1e-9);
+    const Vec3 middle = 0.5 * (run.moves()[i].from.tip_W + run.moves()[i].to.tip_W);
+    EXPECT_GT(middle.norm(), 10.0 - 1.01e-4);
+    time += run.moves()[i].duration_s;
+  }
+  EXPECT_NEAR(time, 5.0 * kPi / 10.0, 1e-4);
+  expect_tip(run.moves().back(), -5, 10, 0);
+}
+
+TEST(NcFanuc, ReferencesAndShifts) {
+  const NcRun run = fanuc(
+      "G10 L2 P2 X100\nG55 G00 X1 Z20\nG91 G28 Z0\nG90 G52 X5\nG00 X1\nG52 X0\nG53 G00 X0\n"
+      "G54.1 P3 G00 X7\nG68 X0 Y0 R90\nG00 X10 Y0\nG69\nM30\n");
+  ASSERT_EQ(run.text(), "");
+  ASSERT_EQ(run.moves().size(), 6u);
+  expect_tip(run.moves()[0], 101, 0, 20);
+  expect_tip(run.moves()[1], 101, 0, 0);
+  expect_tip(run.moves()[2], 106, 0, 0);
+  expect_tip(run.moves()[3], 0, 0, 0);
+  expect_tip(run.moves()[4], 7, 0, 0);
+  expect_tip(run.moves()[5], 0, 10, 0);
+}
+
+// Straight programs written with the numbers of known moves give those moves back.
+TEST(NcRoundTrip, StraightPrograms) {
+  Rng rng(7);
+  for (int round = 0; round < 50; ++round) {
+    std::string text = "G21 G90\n";
+    std::vector<Vec3> points;
+    for (int i = 0; i < 40; ++i) {
+      const auto number = [&] { return std::round((rng.uniform() - 0.5) * 2e6) / 1e4; };
+      points.emplace_back(number(), number(), number());
+      text += fmt::format("G1 X{:.4f} Y{:.4f} Z{:.4f} F{}\n", points.back().x(), points.back().y(),
+                          points.back().z(), 100 + i);
+    }
+    for (const Dialect dialect : {Dialect::kLinuxCnc, Dialect::kFanuc}) {
+      const NcRun run = run_text(text + "M30\n", dialect, three_axis_setup());
+      ASSERT_EQ(run.text(), "") << text;
+      ASSERT_EQ(run.moves().size(), points.size()) << text;
+      for (size_t i = 0; i < points.size(); ++i) {
+        ASSERT_NEAR((run.moves()[i].to.tip_W - points[i]).norm(), 0.0, 1e-10) << text;
+        ASSERT_NEAR(run.moves()[i].duration_s * run.moves()[i].feed_mm_s,
+                    (run.moves()[i].to.tip_W - run.moves()[i].from.tip_W).norm(), 1e-9)
+            << text;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace swarf::program
