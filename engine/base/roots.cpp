@@ -13,29 +13,6 @@ double horner(std::span<const double> c, double t) {
   return value;
 }
 
-/// The root between a and b, where the signs differ: false position with Illinois' halving, bisection at
-/// least every third step.
-double bracketed_root(std::span<const double> c, double a, double b, double at_a, double at_b) {
-  for (int step = 0; step < 200; ++step) {
-    const double middle = 0.5 * (a + b);
-    if (middle <= a || middle >= b) break;
-    double t = step % 3 == 2 ? middle : b - at_b * ((b - a) / (at_b - at_a));
-    if (!(t > a && t < b)) t = middle;
-    const double value = horner(c, t);
-    if (value == 0.0) return t;
-    if ((value > 0.0) == (at_b > 0.0)) {
-      b = t;
-      at_b = value;
-      at_a *= 0.5;
-    } else {
-      a = t;
-      at_a = value;
-      at_b *= 0.5;
-    }
-  }
-  return 0.5 * (a + b);
-}
-
 }  // namespace
 
 UnitRoots unit_roots(std::span<const double> coefficients) {
@@ -54,7 +31,8 @@ UnitRoots unit_roots(std::span<const double> coefficients) {
     if (at_b == 0.0 && b > a) {
       roots.t[static_cast<size_t>(roots.count++)] = b;
     } else if ((at_a < 0.0 && at_b > 0.0) || (at_a > 0.0 && at_b < 0.0)) {
-      roots.t[static_cast<size_t>(roots.count++)] = bracketed_root(coefficients, a, b, at_a, at_b);
+      roots.t[static_cast<size_t>(roots.count++)] =
+          bracketed_root([&](double t) { return horner(coefficients, t); }, a, b, at_a, at_b);
     }
     a = b;
     at_a = at_b;

@@ -7,32 +7,24 @@
 #include <limits>
 
 #include "base/check.h"
-#include "kinematics/chain.h"
+#include "kinematics/joint_path.h"
 #include "kinematics/reach.h"
 #include "motion/free_move.h"
 
 namespace swarf::motion {
 namespace {
 
-using kinematics::AxisKind;
 using kinematics::AxisValues;
+using kinematics::Jet;
+using kinematics::JointPath;
 using kinematics::MachineModel;
 using toolpath::BlockLaw;
 using toolpath::BlockMove;
 
 constexpr int kPiecesMax = 10'000'000;
-/// Nodes per radian that all rotary axes turn together: the part added for what lies between the nodes then
-/// stays a small share.
-constexpr double kNodesPerRadian = 48.0;
-
 double angle_between(const Vec3& a, const Vec3& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
-
-/// Position and two derivatives by s.
-struct Jet {
-  Vec3 value, first = Vec3::Zero(), second = Vec3::Zero();
-};
 
 /// An arc as polar coordinates about its axis; radius and height may differ a little between the ends.
 struct ArcShape {
@@ -60,84 +52,6 @@ struct ArcShape {
   double acceleration() const {
     return std::max(r_from, r_to) * angle * angle + 2.0 * std::abs(r_to - r_from) * angle;
   }
-};
-
-/// Rates of the axes over the block and what follows from them for tip and axis in the work.
-class JointChain {
- public:
-  explicit JointChain(const BlockMotion& motion)
-      : machine_(*motion.machine), q_(motion.q_from), dq_(motion.q_to - motion.q_from) {
-    for (size_t i = 0; i < machine_.axes.size(); ++i) {
-      if (machine_.axes[i].kind == AxisKind::kRotary) turn_ += std::abs(dq_[static_cast<Eigen::Index>(i)]);
-    }
-    find_tip_bounds();
-  }
-
-  /// Sum of the turns of all rotary axes: bounds |a'|, its powers |a''| and |a'''|.
-  double turn() const { return turn_; }
-  double speed() const { return speed_; }                ///< bound of |p'|
-  double acceleration() const { return acceleration_; }  ///< bound of |p''|
-  double jerk() const { return jerk_; }                  ///< bound of |p'''|
-
-  /// Tip and axis in M as the work sees them; the work's own frame adds a constant rotation only.
-  void derivatives(double s, Jet& tip, Jet& axis) const {
-    tip = {machine_.tip_M};
-    axis = {machine_.tool_axis_M};
-    each_link([&](int i, double way) { carry(i, way, s, tip, axis); });
-  }
-
- private:
-  template <typename F>
-  void each_link(const F& f) const {
-    for (size_t n = machine_.head_chain.size(); n-- > 0;) f(machine_.head_chain[n], 1.0);
-    for (const int i : machine_.table_chain) f(i, -1.0);
-  }
-
-  void carry(int i, double way, double s, Jet& tip, Jet& axis) const {
-    const kinematics::Axis& link = machine_.axes[static_cast<size_t>(i)];
-    const double sense = way * link_sense(link);
-    const double value = sense * (q_[i] + s * dq_[i]);
-    const Vec3 rate = (sense * dq_[i]) * link.direction_M;
-    if (link.kind == AxisKind::kLinear) {
-      tip.value += value * link.direction_M;
-      tip.first += rate;
-      return;
-    }
-    const double sine = std::sin(value), cosine = std::cos(value);
-    const auto turn = [&](const Vec3& v) { return kinematics::rotate(link.direction_M, sine, cosine, v); };
-    const auto carried = [&](const Jet& x) {
-      const Vec3 across = rate.cross(x.value);
-      return Jet{turn(x.value), turn(x.first + across),
-                 turn(x.second + 2.0 * rate.cross(x.first) + rate.cross(across))};
-    };
-    tip.value -= link.origin_M;
-    tip = carried(tip);
-    tip.value += link.origin_M;
-    axis = carried(axis);
-  }
-
-  /// Bounds by the triangle inequality, link by link; a point's distance from an axis is that at mid block
-  /// plus half its way.
-  void find_tip_bounds() {
-    Jet tip{machine_.tip_M}, axis{machine_.tool_axis_M};
-    each_link([&](int i, double way) {
-      const kinematics::Axis& link = machine_.axes[static_cast<size_t>(i)];
-      const double rate = std::abs(dq_[i]);
-      if (link.kind == AxisKind::kLinear) {
-        speed_ += rate;
-      } else {
-        const double arm = link.direction_M.cross(tip.value - link.origin_M).norm() + 0.5 * speed_;
-        jerk_ += 3.0 * rate * acceleration_ + 3.0 * rate * rate * speed_ + rate * rate * rate * arm;
-        acceleration_ += 2.0 * rate * speed_ + rate * rate * arm;
-        speed_ += rate * arm;
-      }
-      carry(i, way, 0.5, tip, axis);
-    });
-  }
-
-  const MachineModel& machine_;
-  AxisValues q_, dq_;
-  double turn_ = 0.0, speed_ = 0.0, acceleration_ = 0.0, jerk_ = 0.0;
 };
 
 MotionBounds tcp_bounds(const BlockMove& block) {
@@ -171,7 +85,7 @@ MotionBounds ends_bounds(const BlockMove& block) {
 
 /// The tip as under tcp, the axis as under joint: its derivatives are bounded by powers of the rotary turns.
 MotionBounds tcp_axes_bounds(const BlockMotion& motion) {
-  const double turn = JointChain(motion).turn();
+  const double turn = JointPath(*motion.machine, motion.q_from, motion.q_to).turn();
   if (turn == 0.0) return tcp_bounds(*motion.block);
   MotionBounds bounds;
   bounds.great_circle = false;
@@ -190,11 +104,11 @@ MotionBounds tcp_axes_bounds(const BlockMotion& motion) {
 }
 
 MotionBounds joint_bounds(const BlockMotion& motion) {
-  const JointChain chain(motion);
+  const JointPath chain(*motion.machine, motion.q_from, motion.q_to);
   MotionBounds bounds;
   bounds.great_circle = false;
   const double turn = chain.turn();
-  const int cells = turn > 0.0 ? 2 + static_cast<int>(std::ceil(kNodesPerRadian * turn)) : 1;
+  const int cells = node_cells(chain);
   const double reach = 0.5 / cells;  // from any place to the nearest node
   Jet tip, axis;
   for (int i = 0; i <= cells; ++i) {
