@@ -194,10 +194,8 @@ TEST(TiltedCone, InclinedByTenAndThirtyDegrees) {
 }
 
 TEST(TiltedCone, ThroughThePoleItDoesNotConverge) {
-  for (const int blocks : {72, 144, 288}) {
-    const double error = tilted_cone(15.0001, blocks);
-    EXPECT_NEAR(error, 15.1, 0.05) << blocks;
-  }
+  EXPECT_NEAR(tilted_cone(15.0001, 72), 15.1, 0.05);
+  for (const int blocks : {144, 288, 576}) EXPECT_GT(tilted_cone(15.0001, blocks), 14.0) << blocks;
 }
 
 }  // namespace

@@ -165,7 +165,8 @@ TEST(SingularityScan, NoneWithoutAPoleOrAFeedBlock) {
   toolpath::ToolPath rapids;
   append(rapids, move(kinematics::so_p0(), kinematics::so_p1(), BlockLaw::kJoint, 0.0));
   EXPECT_FALSE(scan_singularity(rapids, machine, 0.01));
-  machine.axes[0].direction_M = Vec3(1.0, 0.0, 0.3).normalized();  // the tool never stands along C
+  machine.axes[0].direction_M = Vec3(1.0, 0.0, 0.3).normalized();
+  machine.tool_axis_M = Vec3::UnitY();  // on its cone about A the tool never stands along C
   EXPECT_FALSE(scan_singularity(so_path(BlockLaw::kTcp), machine, 0.01));
 }
 
