@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "base/units.h"
 
@@ -145,6 +147,51 @@ Json flank_json(const measure::FlankError& flank) {
       {"continuous_error_mm", flank.continuous.error_mm}, {"rows", rows}};
 }
 
+/// A direction without a great circle has no deviation from it: null.
+Json number_or_null(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json count_or_null(const std::optional<int>& count) {
+  return count ? Json(*count) : Json(nullptr);
+}
+
+/// Of the block that linear axes lead farthest from its segment; `law` is the one it runs under.
+Json singularity_json(const toolpath::ToolPath& path, const motion::SingularityScan& scan) {
+  const motion::BlockSingularity& worst = scan.worst.front();
+  const toolpath::Element& element = path.elements[static_cast<size_t>(worst.pole.element)];
+  const toolpath::BlockLaw law = std::get<toolpath::BlockMove>(element.what).law;
+  const kinematics::TrajectoryError& error = worst.error;
+  const int nearest_line = path.elements[static_cast<size_t>(scan.nearest.element)].where.line;
+  return {{"block_line", element.where.line},
+          {"law", toolpath::law_name(law)},
+          {"tip_error_mm", law == toolpath::BlockLaw::kJoint ? error.segment.value : 0.0},
+          {"deviation_line_max_mm", error.line.value},
+          {"u_at_max", error.line.u},
+          {"analytic_max_mm", worst.analytic.value},
+          {"analytic_u_at_max", worst.analytic.u},
+          {"deviation_segment_max_mm", error.segment.value},
+          {"segment_u_at_max", error.segment.u},
+          {"bound_mm", error.bound_mm},
+          {"overshoot_mm", error.beyond.value},
+          {"path_length_mm", error.length_mm},
+          {"programmed_length_mm", error.chord_mm},
+          {"orientation_deviation_max_deg", number_or_null(deg_from_rad(error.orientation_rad))},
+          {"outer_axis", scan.outer_axis},
+          {"outer_swing_deg", deg_from_rad(worst.pole.outer_swing_rad)},
+          {"linearise_tolerance_mm", scan.tolerance_mm},
+          {"linearised_blocks", count_or_null(worst.greedy)},
+          {"linearised_blocks_equal", count_or_null(worst.equal)},
+          {"pole_distance_min_deg", deg_from_rad(scan.nearest.pole_distance_rad)},
+          {"pole_block_line", nearest_line},
+          {"singular_cone_deg", deg_from_rad(scan.nearest.cone_rad)},
+          {"blocks", scan.blocks},
+          {"blocks_in_cone", scan.in_cone},
+          {"rapids_not_measured", scan.rapids},
+          {"arcs_not_measured", scan.arcs},
+          {"unreachable_not_measured", scan.unreachable}};
+}
+
 std::string severity_name(Severity severity) {
   if (severity == Severity::kError) return "error";
   return severity == Severity::kWarning ? "warning" : "note";
@@ -183,6 +230,7 @@ std::string metrics_json(const sim::Job& job, const sim::Result& result, const R
             {"memory_stock_predicted_mb", result.memory.stock_mb},
             {"memory_peak_mb", peak_memory_mb()}};
   if (result.flank) json["flank"] = flank_json(*result.flank);
+  if (result.singularity) json["singularity"] = singularity_json(result.main.path, *result.singularity);
   return json.dump(2) + "\n";
 }
 

@@ -276,6 +276,23 @@ std::string tables_section(const std::vector<Table>& tables) {
   return section("tables", "Tables", out);
 }
 
+std::string topic_section(const Topic& topic) {
+  std::string out = element("p", "intro", topic.intro);
+  if (!topic.figures.empty()) out += "<div class=\"plots\">";
+  for (const Figure& figure : topic.figures) {
+    out += "<figure class=\"figure-card\"><h3>" + escape(figure.title) + "</h3><ul class=\"legend\">";
+    for (const Figure::Entry& entry : figure.legend) {
+      out += fmt::format(
+          R"(<li><svg viewBox="0 0 24 8" aria-hidden="true"><path class="{}" d="M1 4H23"/></svg>{}</li>)",
+          entry.css_class, escape(entry.name));
+    }
+    out += "</ul>" + figure.svg + element("figcaption", "", figure.caption) + "</figure>";
+  }
+  if (!topic.figures.empty()) out += "</div>";
+  for (const Table& table : topic.tables) out += table_html(table);
+  return section(topic.id.c_str(), topic.title, out);
+}
+
 std::string paper_section(const ReportData& data) {
   if (data.paper.empty()) return "";
   std::string out = table_open({{"Quantity"},

@@ -16,6 +16,7 @@ std::string movie_section(const ReportData& data);
 std::string stills_section(const std::vector<Still>& stills);
 std::string plots_section(const std::vector<Plot>& plots);
 std::string tables_section(const std::vector<Table>& tables);
+std::string topic_section(const Topic& topic);
 std::string paper_section(const ReportData& data);
 std::string checks_section(const std::vector<Check>& checks);
 std::string reproduce_section(const ReportData& data);

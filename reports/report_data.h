@@ -112,6 +112,18 @@ struct Plot {
   bool y_from_zero = false;  ///< the y axis includes 0; always so for bars
 };
 
+/// A drawing that is no plot over one axis: finished SVG in the classes of the style sheet.
+struct Figure {
+  std::string title{};
+  std::string svg{};
+  std::string caption{};  ///< may be empty
+  struct Entry {
+    std::string css_class{};  ///< of its line in the drawing: "series s0"
+    std::string name{};
+  };
+  std::vector<Entry> legend{};
+};
+
 struct Still {
   std::string png_path;
   std::string caption{};
@@ -131,6 +143,16 @@ struct Viewer3d {
   std::string machine_glb;  ///< path; empty: no such tab
   ColourBar colour_bar;
   double program_seconds_per_animation_second = 1.0;
+};
+
+/// A section of its own on one subject: figures above tables.
+struct Topic {
+  std::string id{};    ///< of the section in the page
+  std::string name{};  ///< in the navigation
+  std::string title{};
+  std::string intro{};
+  std::vector<Figure> figures{};
+  std::vector<Table> tables{};
 };
 
 struct Fact {
@@ -159,6 +181,7 @@ struct ReportData {
   std::vector<Still> stills;
   std::vector<Plot> plots;
   std::vector<Table> tables;  ///< planner comparison, axes, Fig. 6, ...
+  std::vector<Topic> topics{};
   std::vector<PaperRow> paper;
   std::string paper_title;  ///< "Lin & Koren (1996)"
   std::vector<Check> checks;

@@ -51,7 +51,7 @@ InputError unwritable(const std::string& path, const std::string& reason) {
 }  // namespace
 
 std::string render_report(const ReportData& data) {
-  const std::vector<NamedSection> sections = {
+  std::vector<NamedSection> sections = {
       {"overview", "Key numbers", overview_section(data)},
       {"findings", "Findings", findings_section(data.findings)},
       {"view", "3D view", viewer_section(data.viewer)},
@@ -59,10 +59,14 @@ std::string render_report(const ReportData& data) {
       {"stills", "Stills", stills_section(data.stills)},
       {"plots", "Plots", plots_section(data.plots)},
       {"tables", "Tables", tables_section(data.tables)},
+  };
+  for (const Topic& topic : data.topics) sections.push_back({topic.id, topic.name, topic_section(topic)});
+  const std::vector<NamedSection> closing = {
       {"paper", "Paper", paper_section(data)},
       {"checks", "Checks", checks_section(data.checks)},
       {"reproduce", "Reproduce", reproduce_section(data)},
   };
+  sections.insert(sections.end(), closing.begin(), closing.end());
   std::string out = head(data) + symbol_sprite() + verdict_header(data) + navigation(sections);
   out += "<main class=\"wrap\">";
   bool has_view = false;

@@ -14,6 +14,8 @@
 #include "reports/part_view.h"
 #include "reports/pictures.h"
 #include "reports/run_plots.h"
+#include "reports/singularity_section.h"
+#include "reports/so_paper.h"
 
 namespace swarf::reports {
 namespace {
@@ -391,6 +393,11 @@ ReportData report_data(const sim::Job& job, const sim::Result& result, const Run
     data.tables = {planner_table(result), mode_table(result), axis_table(job, result), fig6_table()};
     data.paper_title = "Lin & Koren: the paper's figures against ours";
     data.paper = paper_rows(job, result);
+  }
+  if (result.singularity) {
+    data.topics = {singularity_topic(job.machine.model, result.main.path, *result.singularity)};
+    data.paper = so_paper_rows(job.machine.model, *result.singularity);
+    if (!data.paper.empty()) data.paper_title = "So et al. (2008), Table 2 and section 5";
   }
   data.checks = checks_of(job, result, rendered);
   data.reproduce = {fmt::format("./dev run scenes/{}/scene.toml", job.scene.name)};

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the CL paths of the exact_* scenes: cases of theory 1.1 and 6 whose answer is known in closed form.
+"""Writes the CL paths of the exact_* and so_* scenes: cases of theory 1.1, 2 and 6 whose answer is known.
 
 Run it in this folder after a change; the paths are committed, so that a scene needs nothing but swarf.
 """
@@ -233,6 +233,27 @@ def flank_f1():
     path.write("exact_flank_f1")
 
 
+def so_singularity():
+    """So et al., Table 2: P0 to P1. The start leans by 40 degrees, which only the branch with A above 0 reaches."""
+    p0, a0 = (75.2110, -51.4295, 228.6808), (0.0095944, 0.0159479, 0.9998268)
+    p1, a1 = (74.5130, -50.5510, 228.6857), (0.0175393, 0.0107682, 0.9997882)
+    lean, flat = radians(40), sqrt(a0[0] ** 2 + a0[1] ** 2)
+    start = (sin(lean) * a0[0] / flat, sin(lean) * a0[1] / flat, cos(lean))
+
+    def off(p, a, way):
+        return tuple(c + way * d for c, d in zip(p, a))
+
+    path = Path_("SO ET AL., TABLE 2: FROM P0 TO P1 NEAR THE POLE", "CUTTER/2,1", off(p0, start, 60), start, 280)
+    path.rapid(off(p0, a0, 60), a0)
+    path.rapid(off(p0, a0, 3), a0)
+    path.to(p0, a0)
+    path.note("the block of Table 2")
+    path.to(p1, a1)
+    path.to(off(p1, a1, 3), a1)
+    path.rapid(off(p1, a1, 60), a1)
+    path.write("so_singularity")
+
+
 if __name__ == "__main__":
     slot("exact_slot_flat", "SLOT BY A FLAT END: (2 R L + PI R^2) D", "CUTTER/10,0")
     slot("exact_slot_ball", "SLOT BY A BALL: A L + PI D^2 (3 R - D) / 3", "CUTTER/10,5")
@@ -247,3 +268,4 @@ if __name__ == "__main__":
     cone()
     gouges()
     flank_f1()
+    so_singularity()

@@ -60,6 +60,7 @@ struct Scene {
   std::string program_file;                                 ///< `program` or `cl`
   bool cl = false;                                          ///< the program is CL data
   toolpath::BlockLaw block_law = toolpath::BlockLaw::kTcp;  ///< CL: interpolator.mode
+  double linearise_tolerance_mm = 0.01;  ///< of the pieces that blocks near the pole would need (joint)
   cutter::Cutter cutter;
   StockSettings stock;
   DesignSettings design;

@@ -50,6 +50,7 @@ void read_cl_interpolator(ConfigTable table, Scene& scene) {
   scene.block_law = mode == "joint"  ? toolpath::BlockLaw::kJoint
                     : mode == "ends" ? toolpath::BlockLaw::kEnds
                                      : toolpath::BlockLaw::kTcp;
+  scene.linearise_tolerance_mm = table.number("linearise_tolerance_um", kAboveZero, 10.0) * kMicrometre;
   read_period_and_limits(table, scene.motion);
 }
 

@@ -244,6 +244,10 @@ Result simulate(const Job& job, const CutOptions& options, Progress& progress) {
     compare_planners(job, progress, result);
     compare_modes(job, progress, result);
   }
+  progress.begin("singularity", 1, "paths");
+  result.singularity =
+      motion::scan_singularity(result.main.path, job.machine.model, job.scene.linearise_tolerance_mm);
+  progress.end();
   result.findings = find_faults(job, result);
   result.stopped = progress.stop_requested();
   return result;

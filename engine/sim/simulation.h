@@ -12,6 +12,7 @@
 #include "measure/measure.h"
 #include "measure/metrics.h"
 #include "motion/interpolator.h"
+#include "motion/singularity_scan.h"
 #include "sim/cut_stage.h"
 #include "sim/job_sweeps.h"
 #include "sim/memory.h"
@@ -65,6 +66,7 @@ struct Result {
   measure::CrossCheck cross_check;
   ToolClearance clearance;
   std::optional<measure::FlankError> flank;  ///< of a ruled design and a cutter with a cylindrical flank
+  std::optional<motion::SingularityScan> singularity;  ///< of blocks on a machine with a pole
   CutOutcome cut;
   MemoryPrediction memory;
   std::vector<Finding> findings;

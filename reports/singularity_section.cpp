@@ -1,0 +1,172 @@
+#include "reports/singularity_section.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "base/units.h"
+#include "motion/linearise.h"
+#include "reports/singularity_figures.h"
+
+namespace swarf::reports {
+namespace {
+
+using kinematics::MachineModel;
+using motion::BlockSingularity;
+using motion::SingularityScan;
+
+/// Below this the worst block is straight: there is nothing to draw, mm.
+constexpr double kStraight = 1e-6;
+
+std::string degrees(double rad) {
+  return fmt::format("{:.3f}", deg_from_rad(rad));
+}
+
+std::string pieces_text(const std::optional<int>& pieces) {
+  return pieces ? fmt::format("{}", *pieces) : "none helps";
+}
+
+const char* law_of(const toolpath::ToolPath& path, const BlockSingularity& block) {
+  const auto& what = path.elements[static_cast<size_t>(block.pole.element)].what;
+  return toolpath::law_name(std::get<toolpath::BlockMove>(what).law);
+}
+
+int line_of(const toolpath::ToolPath& path, const BlockSingularity& block) {
+  return path.elements[static_cast<size_t>(block.pole.element)].where.line;
+}
+
+Table worst_table(const toolpath::ToolPath& path, const SingularityScan& scan) {
+  Table table;
+  table.title = "The blocks whose tip would leave its line most with linear axes";
+  table.columns = {{"Block", "line", true},
+                   {"Law"},
+                   {"To the pole", "deg", true},
+                   {"Singular cone", "deg", true},
+                   {scan.outer_axis + " swings", "deg", true},
+                   {"From the segment", "mm", true},
+                   {"at u", "", true},
+                   {"From the line", "mm", true},
+                   {"at u", "", true},
+                   {"Analytic", "mm", true},
+                   {"Past its end", "mm", true},
+                   {"Bound", "mm", true},
+                   {"Pieces, equal", "", true},
+                   {"greedy", "", true}};
+  for (const BlockSingularity& block : scan.worst) {
+    table.rows.push_back(
+        {fmt::format("{}", line_of(path, block)), law_of(path, block), degrees(block.pole.pole_distance_rad),
+         degrees(block.pole.cone_rad) + (block.pole.in_cone() ? " (inside)" : ""),
+         degrees(block.pole.outer_swing_rad), fmt::format("{:.6f}", block.error.segment.value),
+         fmt::format("{:.4f}", block.error.segment.u), fmt::format("{:.6f}", block.error.line.value),
+         fmt::format("{:.4f}", block.error.line.u), fmt::format("{:.6f}", block.analytic.value),
+         fmt::format("{:.6f}", block.error.beyond.value), fmt::format("{:.6f}", block.error.bound_mm),
+         pieces_text(block.equal), pieces_text(block.greedy)});
+  }
+  table.notes = {
+      fmt::format(
+          "{} of {} feed blocks enter their singular cone: there {} would have to turn faster than it "
+          "can to keep the block's feed. Not looked at: {} rapids, {} arcs of the tip (no line to "
+          "leave), {} blocks without axis values.",
+          scan.in_cone, scan.blocks, scan.outer_axis, scan.rapids, scan.arcs, scan.unreachable),
+      fmt::format(
+          "Maxima are roots of the exact derivative, proven to 1e-9 mm. Analytic: So's Eq. (3), (8), (6) "
+          "as corrected, distance to the line. Bound: 1/8 max|p''|. Pieces: for {:g} µm from their own "
+          "segments.",
+          um_from_mm(scan.tolerance_mm))};
+  return table;
+}
+
+Table pieces_table(const MachineModel& machine, const BlockSingularity& block, int line) {
+  const kinematics::InverseKinematics inverse(machine);
+  Table table;
+  table.title = fmt::format("Line {} cut into pieces on its programmed line", line);
+  table.intro =
+      "At the cuts the tip stands on the line, the axis on the great circle, and the axis values are exact; "
+      "between them the axes are linear.";
+  table.columns = {
+      {"Equal pieces", "", true}, {"From their segments", "mm", true}, {"From their lines", "mm", true}};
+  for (int pieces = 1; pieces <= 32; pieces *= 2) {
+    const motion::PiecesError error = motion::equal_pieces_error(machine, inverse, block.ends, pieces);
+    table.rows.push_back({fmt::format("{}", pieces), fmt::format("{:.6f}", error.segment_mm),
+                          fmt::format("{:.6f}", error.line_mm)});
+  }
+  return table;
+}
+
+Table tolerance_table(const MachineModel& machine, const BlockSingularity& block, int line) {
+  const kinematics::InverseKinematics inverse(machine);
+  Table table;
+  table.title = fmt::format("Pieces that line {} needs", line);
+  table.columns = {{"Tolerance", "mm", true}, {"Equal pieces", "", true}, {"Greedy", "", true}};
+  for (const double tolerance_mm : {0.1, 0.05, 0.02, 0.01, 0.005, 0.001}) {
+    const auto cuts = motion::greedy_cuts(machine, inverse, block.ends, tolerance_mm);
+    table.rows.push_back({fmt::format("{:g}", tolerance_mm),
+                          pieces_text(motion::equal_pieces(machine, inverse, block.ends, tolerance_mm)),
+                          cuts ? fmt::format("{}", cuts->size() - 1) : "none helps"});
+  }
+  table.notes = {
+      "Greedy: each piece as long as the tolerance allows. None helps: the block passes the pole itself."};
+  return table;
+}
+
+std::string branch_text(const kinematics::BranchChoice& choice) {
+  const auto one = [](bool other) { return other ? "second" : "first"; };
+  return fmt::format("{} to {}", one(choice.other_from), one(choice.other_to));
+}
+
+Table branch_table(const MachineModel& machine, const SingularityScan& scan, const BlockSingularity& block,
+                   int line) {
+  Table table;
+  table.title = fmt::format("Line {}: the other rotary solution and the other way round", line);
+  table.columns = {{"Solution at its ends"},
+                   {"Way of " + scan.outer_axis},
+                   {scan.outer_axis + " swings", "deg", true},
+                   {scan.inner_axis + " swings", "deg", true},
+                   {"From the segment", "mm", true},
+                   {"From the line", "mm", true},
+                   {"Travel"}};
+  const auto choices =
+      kinematics::branch_choices(machine, kinematics::InverseKinematics(machine), block.ends);
+  for (const kinematics::BranchChoice& choice : choices) {
+    const int beyond = choice.out_of_travel_axis;
+    table.rows.push_back(
+        {branch_text(choice), choice.long_way ? "long" : "short", degrees(choice.outer_swing_rad),
+         degrees(choice.inner_swing_rad), fmt::format("{:.6f}", choice.segment_mm),
+         fmt::format("{:.6f}", choice.line_mm),
+         beyond < 0 ? "inside" : machine.axes[static_cast<size_t>(beyond)].name + " leaves it"});
+  }
+  table.highlighted_row = choices.empty() ? -1 : 0;
+  table.notes = {"First: the solution as the block runs; its row is marked. All with linear axes."};
+  return table;
+}
+
+}  // namespace
+
+Topic singularity_topic(const MachineModel& machine, const toolpath::ToolPath& path,
+                        const SingularityScan& scan) {
+  Topic topic;
+  topic.id = "singularity";
+  topic.name = "Singularity";
+  topic.title = "Singularity (So et al.)";
+  const BlockSingularity& worst = scan.worst.front();
+  const int line = line_of(path, worst);
+  const bool joint = std::string(law_of(path, worst)) == toolpath::law_name(toolpath::BlockLaw::kJoint);
+  topic.intro = fmt::format(
+      "With linear axes the tip leaves its programmed segment by {:.6f} mm in line {}, {} deg away from the "
+      "pole. {}",
+      worst.error.segment.value, line, degrees(worst.pole.pole_distance_rad),
+      joint ? "The program runs with linear axes: this is the error of the run. Under TCP it would be 0, and "
+              "the "
+              "cost would be time."
+            : "The program runs under TCP, so that the run does not have this error: it is what a control "
+              "without TCP would do.");
+  topic.tables = {worst_table(path, scan)};
+  if (worst.error.segment.value <= kStraight) return topic;
+  topic.figures = {trajectory_figure(machine, worst), pole_figure(machine, worst)};
+  topic.tables.push_back(tolerance_table(machine, worst, line));
+  topic.tables.push_back(pieces_table(machine, worst, line));
+  topic.tables.push_back(branch_table(machine, scan, worst, line));
+  return topic;
+}
+
+}  // namespace swarf::reports

@@ -1,0 +1,112 @@
+// The section on the singularity, computed from the shipped scene so_singularity: every figure of theory 2.
+#include "reports/singularity_section.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "reports/page_sections.h"
+#include "reports/so_paper.h"
+#include "sim/simulation.h"
+
+namespace swarf::reports {
+namespace {
+
+class SoSection : public testing::Test {
+ protected:
+  SoSection()
+      : job_(sim::load_job(SWARF_SOURCE_DIR "/scenes/so_singularity/scene.toml", {})),
+        path_(sim::job_path(job_, diagnostics_)),
+        scan_(*motion::scan_singularity(path_, job_.machine.model, job_.scene.linearise_tolerance_mm)),
+        rows_(so_paper_rows(job_.machine.model, scan_)) {}
+
+  const PaperRow& row(const std::string& quantity) const {
+    const auto found = std::find_if(rows_.begin(), rows_.end(),
+                                    [&](const PaperRow& one) { return one.quantity == quantity; });
+    EXPECT_NE(found, rows_.end()) << quantity;
+    return *found;
+  }
+  void expect_near(const std::string& quantity, double value, double tolerance = 1e-6) const {
+    EXPECT_NEAR(std::stod(row(quantity).ours), value, tolerance) << quantity;
+  }
+
+  Diagnostics diagnostics_;
+  sim::Job job_;
+  toolpath::ToolPath path_;
+  motion::SingularityScan scan_;
+  std::vector<PaperRow> rows_;
+};
+
+TEST_F(SoSection, TheRowsOfTheoryTwo) {
+  ASSERT_TRUE(runs_so_block(job_.machine.model, scan_));
+  const double p0[] = {-90.959486, 7.310307, 227.634115, 1.066422, 148.968506};
+  const double printed_p1[] = {-82.0656, -34.8175, 228.3975, 1.1793, 121.5477};
+  for (int i = 0; i < 5; ++i) {
+    const std::string letter(1, "XYZAC"[i]);
+    expect_near("P0: inverse, " + letter, p0[i]);
+    expect_near("P1: inverse, " + letter, printed_p1[i], i < 3 ? 0.13e-3 : 5e-5);
+  }
+  expect_near("Deviation from the line at u = .4101, printed NC data", 0.938286);
+  expect_near("Analytic deviation at u = .4101, Eq. (3), (6)", 0.938189);
+  expect_near("Greatest deviation from the line", 0.938333);
+  EXPECT_EQ(row("Greatest deviation from the line").ours, "0.938333 at u = 0.404124");
+  EXPECT_EQ(row("Greatest deviation from the line, printed NC data").ours, "0.938447 at u = 0.404136");
+  EXPECT_EQ(row("Greatest analytic deviation, Eq. (8)").ours, "0.938350 at u = 0.404120");
+  EXPECT_EQ(row("The same with C as printed").ours, "0.938351 at u = 0.404120");
+  EXPECT_EQ(row("Greatest distance to the segment").ours, "2.126416 at u = 0.5454");
+  expect_near("Past P1 along the line", 1.952073);
+  expect_near("Length of the real path", 5.462893);
+  expect_near("Tool axis off the great circle", 0.034036);
+  EXPECT_EQ(row("Trajectory point p(0.25)").ours, "(73.281468, -50.317918, 228.697628)");
+  EXPECT_EQ(row("Trajectory point p(0.5)").ours, "(72.624794, -49.620049, 228.704054)");
+  EXPECT_EQ(row("Trajectory point p(0.75)").ours, "(73.098517, -49.614769, 228.700078)");
+  EXPECT_EQ(row("Greatest distance to the segment").erratum, "E15");
+}
+
+TEST_F(SoSection, SecondBranchOfP0) {
+  double x, y, z, a, c;
+  const std::string text = row("P0: second branch (X, Y, Z, A, C)").ours;
+  ASSERT_EQ(std::sscanf(text.c_str(), "(%lf, %lf, %lf, %lf, %lf)", &x, &y, &z, &a, &c), 5);
+  EXPECT_NEAR(x, 90.959486, 1e-6);
+  EXPECT_NEAR(y, -7.327604, 2e-6);  // theory 2 has t_y = 49.9338 here, the paper's data fit 49.93
+  EXPECT_NEAR(z, 229.492730, 2e-4);
+  EXPECT_NEAR(a, -1.066422, 1e-6);
+  EXPECT_NEAR(std::remainder(c + 31.031494, 360.0), 0.0, 1e-6);
+}
+
+TEST_F(SoSection, TheTopicHasItsFiguresAndTables) {
+  const Topic topic = singularity_topic(job_.machine.model, path_, scan_);
+  ASSERT_EQ(topic.figures.size(), 2u);
+  ASSERT_EQ(topic.tables.size(), 4u);
+  const Table& tolerances = topic.tables[1];
+  ASSERT_EQ(tolerances.rows.size(), 6u);
+  const char* equal[] = {"4", "5", "8", "11", "15", "32"};
+  const char* greedy[] = {"4", "5", "7", "10", "14", "31"};
+  for (size_t i = 0; i < 6; ++i) {
+    EXPECT_EQ(tolerances.rows[i][1], equal[i]);
+    EXPECT_EQ(tolerances.rows[i][2], greedy[i]);
+  }
+  const Table& pieces = topic.tables[2];
+  EXPECT_EQ(pieces.rows[1][2], "0.250863");  // theory 2 cuts the seventh digit: .250862
+  EXPECT_EQ(pieces.rows[2][2], "0.063519");
+  EXPECT_EQ(pieces.rows[3][2], "0.015896");
+  EXPECT_EQ(pieces.rows[4][2], "0.003973");
+  EXPECT_EQ(pieces.rows[5][2], "0.000993");
+  EXPECT_EQ(topic.tables[3].rows.size(), 8u);
+  const std::string html = topic_section(topic);
+  EXPECT_NE(html.find("Singularity (So et al.)"), std::string::npos);
+  EXPECT_EQ(html.find("nan"), std::string::npos);
+  EXPECT_EQ(html.find("inf"), html.find("infinite"));
+}
+
+/// Another program on the same machine shows no figure of the paper.
+TEST_F(SoSection, OnlyTheBlockOfTheTableShowsTheTable) {
+  motion::SingularityScan other = scan_;
+  for (motion::BlockSingularity& block : other.worst) block.ends.to.tip_W.x() += 1e-3;
+  EXPECT_FALSE(runs_so_block(job_.machine.model, other));
+  EXPECT_TRUE(so_paper_rows(job_.machine.model, other).empty());
+}
+
+}  // namespace
+}  // namespace swarf::reports
