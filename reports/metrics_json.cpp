@@ -184,7 +184,7 @@ Json singularity_json(const toolpath::ToolPath& path, const motion::SingularityS
           {"linearised_blocks_equal", count_or_null(worst.equal)},
           {"pole_distance_min_deg", deg_from_rad(scan.nearest.pole_distance_rad)},
           {"pole_block_line", nearest_line},
-          {"singular_cone_deg", deg_from_rad(scan.nearest.cone_rad)},
+          {"singular_cone_deg", deg_from_rad(worst.pole.cone_rad)},
           {"blocks", scan.blocks},
           {"blocks_in_cone", scan.in_cone},
           {"rapids_not_measured", scan.rapids},

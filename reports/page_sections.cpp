@@ -280,7 +280,8 @@ std::string topic_section(const Topic& topic) {
   std::string out = element("p", "intro", topic.intro);
   if (!topic.figures.empty()) out += "<div class=\"plots\">";
   for (const Figure& figure : topic.figures) {
-    out += "<figure class=\"figure-card\"><h3>" + escape(figure.title) + "</h3><ul class=\"legend\">";
+    out += fmt::format(R"(<figure class="figure-card{}"><h3>)", figure.wide ? " wide" : "") +
+           escape(figure.title) + "</h3><ul class=\"legend\">";
     for (const Figure::Entry& entry : figure.legend) {
       out += fmt::format(
           R"(<li><svg viewBox="0 0 24 8" aria-hidden="true"><path class="{}" d="M1 4H23"/></svg>{}</li>)",

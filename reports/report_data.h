@@ -122,6 +122,7 @@ struct Figure {
     std::string name{};
   };
   std::vector<Entry> legend{};
+  bool wide = false;  ///< takes the whole width of the page
 };
 
 struct Still {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "base/units.h"
 #include "kinematics/singularity_model.h"
@@ -20,7 +21,8 @@ using kinematics::MachineModel;
 using motion::BlockSingularity;
 
 constexpr int kSamples = 400;
-constexpr double kWidth = 540.0;  ///< of a drawing, in its own units
+/// Of a drawing, in its own units: half the page and all of it.
+constexpr double kHalfWidth = 540.0, kFullWidth = 1120.0;
 constexpr double kMargin = 46.0;
 
 ToolPose pose_of(const MachineModel& machine, const BlockEnds& ends, double u) {
@@ -51,16 +53,16 @@ class LineView {
 /// A drawing with one scale for both directions.
 class Canvas {
  public:
-  Canvas(const Vec2& low, const Vec2& high, double height_max)
-      : scale_(std::min((kWidth - 2.0 * kMargin) / (high - low).x(),
+  Canvas(const Vec2& low, const Vec2& high, double width, double height_max)
+      : width_(width),
+        scale_(std::min((width - 2.0 * kMargin) / (high - low).x(),
                         (height_max - 2.0 * kMargin) / (high - low).y())),
         height_(2.0 * kMargin + scale_ * (high - low).y()),
         centre_(0.5 * (low + high)) {}
 
   Vec2 pixel(const Vec2& p) const {
-    return {0.5 * kWidth + scale_ * (p.x() - centre_.x()), 0.5 * height_ - scale_ * (p.y() - centre_.y())};
+    return {0.5 * width_ + scale_ * (p.x() - centre_.x()), 0.5 * height_ - scale_ * (p.y() - centre_.y())};
   }
-  double scale() const { return scale_; }
 
   void path(const char* css_class, const std::vector<Vec2>& points, bool closed = false) {
     body_ += fmt::format(R"(<path class="{}" d="M)", css_class);
@@ -92,7 +94,7 @@ class Canvas {
 
   std::string svg(const std::string& spoken) const {
     return fmt::format(
-        R"(<svg class="drawing" viewBox="0 0 {:.0f} {:.0f}" role="img" aria-label="{}">{}</svg>)", kWidth,
+        R"(<svg class="drawing" viewBox="0 0 {:.0f} {:.0f}" role="img" aria-label="{}">{}</svg>)", width_,
         height_, escape(spoken), body_);
   }
 
@@ -102,7 +104,7 @@ class Canvas {
                          escape(word));
   }
 
-  double scale_, height_;
+  double width_, scale_, height_;
   Vec2 centre_;
   std::string body_;
 };
@@ -126,13 +128,24 @@ void draw_scales(Canvas& canvas, const Vec2& low, const Vec2& high) {
   canvas.text({low.x(), high.y()}, "across it (mm)", {-38.0, -12.0}, "start");
 }
 
-/// From a point of the trajectory to the nearest point of the segment, with its length.
+/// A line from a point of the trajectory to what its distance is measured from.
 void draw_measure(Canvas& canvas, const Vec2& from, const Vec2& to, const std::string& word,
                   const Vec2& shift, const char* anchor) {
   canvas.open("measure");
   canvas.path("dimension", {from, to});
-  canvas.text(0.5 * (from + to), word, shift, anchor);
+  canvas.text(from, word, shift, anchor);
   canvas.close();
+}
+
+/// Where a word stands beside a point: away from `middle`.
+struct Beside {
+  Vec2 shift;
+  const char* anchor;
+};
+Beside beside(const Vec2& point, const Vec2& middle) {
+  const Vec2 gap = point - middle;
+  const Vec2 d = gap.norm() > 0.0 ? Vec2(gap.normalized()) : Vec2(Vec2::UnitY());
+  return {{12.0 * d.x(), -14.0 * d.y() + 4.0}, d.x() > 0.4 ? "start" : d.x() < -0.4 ? "end" : "middle"};
 }
 
 }  // namespace
@@ -151,10 +164,11 @@ Figure trajectory_figure(const MachineModel& machine, const BlockSingularity& bl
     low = low.cwiseMin(real.back());
     high = high.cwiseMax(real.back());
   }
-  const Vec2 room = Vec2::Constant(0.08 * (high - low).maxCoeff());
-  low -= room;
-  high += room;
-  Canvas canvas(low, high, 420.0);
+  const Vec2 centre = std::accumulate(real.begin(), real.end(), Vec2(Vec2::Zero())) / (kSamples + 1.0);
+  const double extent = (high - low).maxCoeff();
+  low -= Vec2::Constant(0.06 * extent);
+  high += Vec2(0.36, 0.12) * extent;  // the words stand above and to the right
+  Canvas canvas(low, high, kFullWidth, 560.0);
   draw_scales(canvas, low, high);
   const Vec2 p0 = view(ends.from.tip_W), p1 = view(ends.to.tip_W);
   canvas.path("programmed", {p0, p1});
@@ -162,27 +176,27 @@ Figure trajectory_figure(const MachineModel& machine, const BlockSingularity& bl
   canvas.path("dots", analytic);
 
   const auto at = [&](double u) { return view(pose_of(machine, ends, u).tip_W); };
-  const double side = at(block.error.line.u).y() < 0.0 ? -1.0 : 1.0;  // on which side of the line it bulges
   const Vec2 farthest = at(block.error.line.u);
+  const double side = farthest.y() < 0.0 ? -1.0 : 1.0;  // on which side of the line it bulges
   draw_measure(
       canvas, farthest, {farthest.x(), 0.0},
-      fmt::format("{:.3f} mm from the line (u = {:.4f})", block.error.line.value, block.error.line.u),
-      {-8.0, 0.0}, "end");
-  const Vec2 out = at(block.error.segment.u);
-  const Vec2 foot =
-      p0 +
-      (p1 - p0) * std::clamp((out - p0).dot(p1 - p0) / std::max((p1 - p0).squaredNorm(), 1e-300), 0.0, 1.0);
-  draw_measure(canvas, out, foot,
-               fmt::format("{:.3f} mm from the segment (u = {:.4f})", block.error.segment.value,
+      fmt::format("{:.6f} mm from the line (u = {:.4f})", block.error.line.value, block.error.line.u),
+      {0.0, side > 0.0 ? -12.0 : 20.0}, "end");
+  const Vec2 out = at(block.error.segment.u), way = p1 - p0;
+  const double share = way.norm() > 0.0 ? (out - p0).dot(way) / way.squaredNorm() : 0.0;
+  draw_measure(canvas, out, p0 + std::clamp(share, 0.0, 1.0) * way,
+               fmt::format("{:.6f} mm from the segment (u = {:.4f})", block.error.segment.value,
                            block.error.segment.u),
-               {0.0, side * 18.0}, "middle");
-  for (const double u : {0.25, 0.5, 0.75})
-    canvas.point("mark", at(u), fmt::format("u = {:g}", u), {0.0, side * -10.0 + (side < 0 ? 6.0 : 0.0)},
-                 "middle");
-  canvas.point("point", p0, "P0", {-6.0, side * 18.0}, "end");
-  canvas.point("point", p1, "P1", {6.0, side * 18.0}, "start");
+               {10.0, 5.0}, "start");
+  for (const double u : {0.25, 0.5, 0.75}) {
+    const Beside place = beside(at(u), centre);
+    canvas.point("mark", at(u), fmt::format("u = {:g}", u), place.shift, place.anchor);
+  }
+  canvas.point("point", p0, "P0", {0.0, side * 20.0}, "middle");
+  canvas.point("point", p1, "P1", {0.0, side * 20.0}, "middle");
 
   Figure figure;
+  figure.wide = true;
   figure.title = "Fig. 9: the block's real path, the analytic one and the programmed line";
   figure.svg =
       canvas.svg(fmt::format("The tip leaves its line of {:.3f} mm by {:.3f} mm sideways and passes its "
@@ -224,7 +238,7 @@ Figure pole_figure(const MachineModel& machine, const BlockSingularity& block) {
   }
   const Ticks rings = round_ticks(0.0, farthest, 4);
   const double rim = rings.values.back();
-  Canvas canvas(Vec2::Constant(-rim), Vec2::Constant(rim), 460.0);
+  Canvas canvas(Vec2::Constant(-rim), Vec2::Constant(rim), kHalfWidth, 500.0);
   canvas.open("grid");
   for (const double ring : rings.values) {
     if (ring > 0.0) canvas.circle("ring", Vec2::Zero(), ring);

@@ -23,7 +23,7 @@ std::string degrees(double rad) {
 }
 
 std::string pieces_text(const std::optional<int>& pieces) {
-  return pieces ? fmt::format("{}", *pieces) : "none helps";
+  return pieces ? fmt::format("{}", *pieces) : "none";
 }
 
 const char* law_of(const toolpath::ToolPath& path, const BlockSingularity& block) {
@@ -50,17 +50,21 @@ Table worst_table(const toolpath::ToolPath& path, const SingularityScan& scan) {
                    {"Analytic", "mm", true},
                    {"Past its end", "mm", true},
                    {"Bound", "mm", true},
-                   {"Pieces, equal", "", true},
-                   {"greedy", "", true}};
+                   {"Pieces", "equal / greedy", true}};
+  const auto mm = [](double value) { return fmt::format("{:.4f}", value); };
   for (const BlockSingularity& block : scan.worst) {
-    table.rows.push_back(
-        {fmt::format("{}", line_of(path, block)), law_of(path, block), degrees(block.pole.pole_distance_rad),
-         degrees(block.pole.cone_rad) + (block.pole.in_cone() ? " (inside)" : ""),
-         degrees(block.pole.outer_swing_rad), fmt::format("{:.6f}", block.error.segment.value),
-         fmt::format("{:.4f}", block.error.segment.u), fmt::format("{:.6f}", block.error.line.value),
-         fmt::format("{:.4f}", block.error.line.u), fmt::format("{:.6f}", block.analytic.value),
-         fmt::format("{:.6f}", block.error.beyond.value), fmt::format("{:.6f}", block.error.bound_mm),
-         pieces_text(block.equal), pieces_text(block.greedy)});
+    const kinematics::TrajectoryError& error = block.error;
+    const bool straight = error.segment.value <= kStraight;
+    const auto place = [&](const kinematics::Peak& peak) {
+      return straight ? "–" : fmt::format("{:.4f}", peak.u);
+    };
+    const std::string cone = degrees(block.pole.cone_rad) + (block.pole.in_cone() ? ", inside" : "");
+    table.rows.push_back({fmt::format("{}", line_of(path, block)), law_of(path, block),
+                          degrees(block.pole.pole_distance_rad), block.pole.cone_rad == 0.0 ? "–" : cone,
+                          degrees(block.pole.outer_swing_rad), mm(error.segment.value), place(error.segment),
+                          mm(error.line.value), place(error.line), mm(block.analytic.value),
+                          mm(error.beyond.value), mm(error.bound_mm),
+                          pieces_text(block.equal) + " / " + pieces_text(block.greedy)});
   }
   table.notes = {
       fmt::format(
@@ -102,10 +106,11 @@ Table tolerance_table(const MachineModel& machine, const BlockSingularity& block
     const auto cuts = motion::greedy_cuts(machine, inverse, block.ends, tolerance_mm);
     table.rows.push_back({fmt::format("{:g}", tolerance_mm),
                           pieces_text(motion::equal_pieces(machine, inverse, block.ends, tolerance_mm)),
-                          cuts ? fmt::format("{}", cuts->size() - 1) : "none helps"});
+                          cuts ? fmt::format("{}", cuts->size() - 1) : "none"});
   }
   table.notes = {
-      "Greedy: each piece as long as the tolerance allows. None helps: the block passes the pole itself."};
+      "Greedy: each piece as long as the tolerance allows. None: no number helps, the block passes the pole "
+      "itself."};
   return table;
 }
 

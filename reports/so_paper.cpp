@@ -1,7 +1,6 @@
 #include "reports/so_paper.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -76,10 +75,6 @@ double shown(const AxisValues& q, const MachineModel& machine, int i) {
   return i < 3 ? value : deg_from_rad(value);
 }
 
-std::string tuple(const Vec3& v) {
-  return fmt::format("({:.6f}, {:.6f}, {:.6f})", v.x(), v.y(), v.z());
-}
-
 std::string number(double value) {
   return fmt::format("{:.6f}", value);
 }
@@ -114,15 +109,14 @@ class Rows {
   void forward_and_inverse(int end) {
     const PrintedPoint& printed = kPrinted[end];
     const ToolPose back = kinematics::forward(machine_, printed_values(machine_, printed));
-    const auto& cl = printed.cl;
-    const std::string rounding = "the printed NC data have four digits";
-    add({fmt::format("{}: forward of the NC data, tip", printed.name), "Table 2",
-         fmt::format("({:.4f}, {:.4f}, {:.4f})", cl[0], cl[1], cl[2]), tuple(back.tip_W), "mm", "",
-         rounding});
-    add({fmt::format("{}: forward of the NC data, axis", printed.name), "Table 2",
-         fmt::format("({:.7f}, {:.7f}, {:.7f})", cl[3], cl[4], cl[5]),
-         fmt::format("({:.7f}, {:.7f}, {:.7f})", back.axis_W.x(), back.axis_W.y(), back.axis_W.z()), "", "",
-         rounding});
+    const std::array<double, 6> ours{back.tip_W.x(),  back.tip_W.y(),  back.tip_W.z(),
+                                     back.axis_W.x(), back.axis_W.y(), back.axis_W.z()};
+    for (size_t i = 0; i < 6; ++i) {
+      add({fmt::format("{}: forward of the NC data, {}", printed.name, "xyzijk"[i]), "Table 2",
+           fmt::format("{:.{}f}", printed.cl[i], i < 3 ? 4 : 7),
+           fmt::format("{:.{}f}", ours[i], i < 3 ? 6 : 7), i < 3 ? "mm" : "", "",
+           "the printed NC data have four digits"});
+    }
     const AxisValues& q = end == 0 ? ends_.q_from : ends_.q_to;
     for (int i = 0; i < 5; ++i) {
       const double ours = shown(q, machine_, i), paper = printed.nc[static_cast<size_t>(i)];
@@ -137,10 +131,11 @@ class Rows {
     for (const kinematics::BranchChoice& choice :
          kinematics::branch_choices(machine_, kinematics::InverseKinematics(machine_), ends_)) {
       if (!choice.other_from) continue;
-      std::array<std::string, 5> values;
-      for (int i = 0; i < 5; ++i) values[static_cast<size_t>(i)] = number(shown(choice.q_from, machine_, i));
-      add({"P0: second branch (X, Y, Z, A, C)", "Table 2", "–", fmt::format("({})", fmt::join(values, ", ")),
-           "mm, deg", "", "not in the paper; (-A, C - 180 deg)"});
+      for (int i = 0; i < 5; ++i) {
+        add({fmt::format("P0: second branch, {}", kAxisNames[i]), "Table 2", "–",
+             number(shown(choice.q_from, machine_, i)), i < 3 ? "mm" : "deg", "",
+             "not in the paper: (-A, C - 180 deg)"});
+      }
       return;
     }
   }
@@ -148,8 +143,11 @@ class Rows {
   void trajectory_points() {
     for (const double u : {0.25, 0.5, 0.75}) {
       const AxisValues q = ends_.q_from + u * (ends_.q_to - ends_.q_from);
-      add({fmt::format("Trajectory point p({:g})", u), "Fig. 9", "–",
-           tuple(kinematics::forward(machine_, q).tip_W), "mm", "", "the paper draws them"});
+      const Vec3 tip = kinematics::forward(machine_, q).tip_W;
+      for (int i = 0; i < 3; ++i) {
+        add({fmt::format("Trajectory point, {}({:g})", "xyz"[i], u), "Fig. 9", "–", number(tip[i]), "mm", "",
+             "the paper draws it"});
+      }
     }
   }
 
