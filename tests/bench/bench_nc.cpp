@@ -36,7 +36,7 @@ std::string written(const std::string& name, const std::string& text) {
 
 /// A zigzag finishing program as CAM writes it: modal words, three decimals.
 std::string three_axis_program(int lines) {
-  std::string text = "G21 G90 G94\nG0 X0 Y0 Z20\nG1 Z0 F2000\n";
+  std::string text = "G90 G94\nG0 X0 Y0 Z20\nG1 Z0 F2000\n";
   for (int i = 0; i < lines - 4; ++i) {
     const double x = 0.25 * (i % 400), y = 0.3 * (i / 400);
     text += fmt::format("X{:.3f} Y{:.3f} Z{:.3f}\n", (i / 400) % 2 == 0 ? x : 100.0 - x, y,
@@ -57,36 +57,98 @@ std::string five_axis_program(int lines) {
   return text + "M2\n";
 }
 
+/// Rows of a TCP finishing pass: X Y Z and both rotary words, modal feed.
+std::string rotary_rows(int rows) {
+  std::string text;
+  for (int i = 0; i < rows; ++i) {
+    text += fmt::format("X{:.4f} Y{:.4f} Z{:.4f} A{:.4f} B{:.4f}\n", 40.0 * std::cos(0.01 * i),
+                        40.0 * std::sin(0.01 * i), 5.0 * std::sin(0.003 * i),
+                        20.0 + 10.0 * std::sin(0.003 * i), 30.0 * std::sin(0.002 * i));
+  }
+  return text;
+}
+
+std::string fanuc_program(int lines) {
+  return "O1000\nG21 G90 G94\nG00 X0 Y0 Z20 A0 B0\nG43.4 H1\nG01 F2000\n" + rotary_rows(lines - 7) +
+         "G49\nM30\n";
+}
+
+std::string siemens_program(int lines) {
+  return "G17 G710 G90 G94\nG0 X0 Y0 Z20 A0 B0\nTRAORI\nORIAXES\nG1 F2000\n" + rotary_rows(lines - 7) +
+         "TRAFOOF\nM30\n";
+}
+
+/// Tool vectors, as CAM posts them for 840D.
+std::string siemens_vector_program(int lines) {
+  std::string text = "G17 G710 G90 G94\nG0 X0 Y0 Z20 A0 B0\nTRAORI\nORIWKS\nG1 F2000\n";
+  for (int i = 0; i < lines - 7; ++i) {
+    text += fmt::format("N{} X{:.4f} Y{:.4f} Z{:.4f} A3={:.6f} B3={:.6f} C3={:.6f}\n", 10 * i,
+                        40.0 * std::cos(0.01 * i), 40.0 * std::sin(0.01 * i), 5.0 * std::sin(0.003 * i),
+                        0.3 * std::sin(0.003 * i), 0.3 * std::cos(0.002 * i), 0.9);
+  }
+  return text + "TRAFOOF\nM30\n";
+}
+
 ControlSetup setup(const std::string& machine) {
   ControlSetup one;
   one.machine =
       machine::load_machine(std::string(SWARF_SOURCE_DIR) + "/assets/machines/" + machine + "/machine.toml")
           .model;
   one.start = kinematics::AxisValues::Zero();
+  one.tools = {{1, "MILL10", 0.0, 10.0, 0.0}};
   return one;
 }
 
-void run(benchmark::State& state, const std::string& path, const ControlSetup& control, int lines) {
+/// One program through the interpreter: lines per second, file to sink.
+void run(benchmark::State& state, Dialect dialect, const std::string& name, const std::string& text) {
+  const std::string path = written(name, text);
+  const ControlSetup control = setup("lin_koren_xyzab");
   for (auto step : state) {
     Counter counter;
     Diagnostics diagnostics;
-    run_nc(path, Dialect::kLinuxCnc, control, counter, diagnostics);
+    run_nc(path, dialect, control, counter, diagnostics);
     diagnostics.throw_if_errors();
-    if (counter.moves < lines - 10) state.SkipWithError("moves are missing");
+    if (counter.moves < kLines - 10) state.SkipWithError("moves are missing");
     benchmark::DoNotOptimize(counter.way);
   }
-  state.SetItemsProcessed(state.iterations() * lines);
+  state.SetItemsProcessed(state.iterations() * kLines);
+  std::filesystem::remove(path);
 }
 
-void three_axes(benchmark::State& state) {
-  run(state, written("swarf_bench_3.ngc", three_axis_program(kLines)), setup("lin_koren_xyzab"), kLines);
+void linuxcnc_three_axes(benchmark::State& state) {
+  run(state, Dialect::kLinuxCnc, "swarf_bench_3.ngc", three_axis_program(kLines));
 }
-BENCHMARK(three_axes)->Unit(benchmark::kMillisecond);
+BENCHMARK(linuxcnc_three_axes)->Unit(benchmark::kMillisecond);
 
-void five_axes_formulas(benchmark::State& state) {
-  run(state, written("swarf_bench_5.ngc", five_axis_program(kLines)), setup("lin_koren_xyzab"), kLines);
+void linuxcnc_five_axes_formulas(benchmark::State& state) {
+  run(state, Dialect::kLinuxCnc, "swarf_bench_5.ngc", five_axis_program(kLines));
 }
-BENCHMARK(five_axes_formulas)->Unit(benchmark::kMillisecond);
+BENCHMARK(linuxcnc_five_axes_formulas)->Unit(benchmark::kMillisecond);
+
+void fanuc_three_axes(benchmark::State& state) {
+  run(state, Dialect::kFanuc, "swarf_bench_3.nc", three_axis_program(kLines));
+}
+BENCHMARK(fanuc_three_axes)->Unit(benchmark::kMillisecond);
+
+void fanuc_tcp_rotaries(benchmark::State& state) {
+  run(state, Dialect::kFanuc, "swarf_bench_5.nc", fanuc_program(kLines));
+}
+BENCHMARK(fanuc_tcp_rotaries)->Unit(benchmark::kMillisecond);
+
+void siemens_three_axes(benchmark::State& state) {
+  run(state, Dialect::kSiemens, "swarf_bench_3.mpf", three_axis_program(kLines));
+}
+BENCHMARK(siemens_three_axes)->Unit(benchmark::kMillisecond);
+
+void siemens_tcp_rotaries(benchmark::State& state) {
+  run(state, Dialect::kSiemens, "swarf_bench_5.mpf", siemens_program(kLines));
+}
+BENCHMARK(siemens_tcp_rotaries)->Unit(benchmark::kMillisecond);
+
+void siemens_tcp_vectors(benchmark::State& state) {
+  run(state, Dialect::kSiemens, "swarf_bench_v.mpf", siemens_vector_program(kLines));
+}
+BENCHMARK(siemens_tcp_vectors)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace swarf::program

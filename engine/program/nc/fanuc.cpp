@@ -144,27 +144,27 @@ void Fanuc::assign(long number, double value, size_t place) {
   }
 }
 
-double Fanuc::read(long number, int column) {
+double Fanuc::read(long number, size_t place) {
   if (number >= 1 && number <= kLocals) {
     const Call& here = locals();
     if ((here.assigned >> number & 1u) != 0) return here.locals[static_cast<size_t>(number)];
   } else if (number >= kFirstCommon && number <= kLastCommon && common_set_[static_cast<size_t>(number)]) {
     return commons_[static_cast<size_t>(number)];
   } else if (number > kLastCommon) {
-    return system_variable(number, column);
+    return system_variable(number, place);
   }
-  control_.fail("undefined-parameter", column, fmt::format("#{} is vacant: nothing assigned it", number),
-                "assign it before it is read");
+  control_.fail("undefined-parameter", reader_.column_of(place),
+                fmt::format("#{} is vacant: nothing assigned it", number), "assign it before it is read");
 }
 
-double Fanuc::system_variable(long number, int column) {
+double Fanuc::system_variable(long number, size_t place) {
   const auto in_words = [&](double value, long word) {
     return word < 3 ? value / control_.mm(1.0) : deg_from_rad(value);
   };
   const auto programmed = [&](long word) {
     const double value = control_.position()[static_cast<size_t>(word)];
     if (!std::isfinite(value))
-      control_.fail("start-unknown", column,
+      control_.fail("start-unknown", reader_.column_of(place),
                     fmt::format("#{} asks for a position that is not known yet", number),
                     "give the start position in the scene");
     return in_words(value, word);
@@ -186,14 +186,14 @@ double Fanuc::system_variable(long number, int column) {
   if (number == 4120) return control_.tool_number();
   if (number == 4119) return control_.speed_rpm();
   if (number == 4109) return control_.feed();
-  control_.fail("undefined-parameter", column,
+  control_.fail("undefined-parameter", reader_.column_of(place),
                 fmt::format("#{} is no variable that can be read here", number),
                 "read #5001 to #5046 (positions) or #5221 to #5326 (offsets)");
 }
 
-double Fanuc::read_named(std::string_view name, int column) {
-  control_.fail("bad-parameter", column, fmt::format("#<{}>: this dialect has no named variables", name),
-                "write #100");
+double Fanuc::read_named(std::string_view name, size_t place) {
+  control_.fail("bad-parameter", reader_.column_of(place),
+                fmt::format("#<{}>: this dialect has no named variables", name), "write #100");
 }
 
 bool Fanuc::exists(std::string_view /*name*/) {

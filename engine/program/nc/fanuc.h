@@ -37,8 +37,8 @@ class Fanuc final : public Parameters {
  public:
   Fanuc(const std::string& path, Control& control);
   void run();
-  double read(long number, int column) override;
-  double read_named(std::string_view name, int column) override;
+  double read(long number, size_t place) override;
+  double read_named(std::string_view name, size_t place) override;
   bool exists(std::string_view name) override;
 
  private:
@@ -75,7 +75,7 @@ class Fanuc final : public Parameters {
   void assignment();
   void assign(long number, double value, size_t place);
   Call& locals();
-  double system_variable(long number, int column);
+  double system_variable(long number, size_t place);
   // fanuc_flow.cpp
   bool macro_word();
   double condition();

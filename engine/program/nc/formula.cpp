@@ -96,9 +96,11 @@ double FormulaReader::bracketed() {
 
 const OperatorWord* FormulaReader::peek_operator() {
   skip_space();
+  const char first = peek_upper();
+  if (first == ']' || first == '\0') return nullptr;
   for (const OperatorWord& one : syntax_.operators) {
     const size_t from = at_;
-    if (!take(one.word)) continue;
+    if (one.word[0] != first || !take(one.word)) continue;
     at_ = from;
     return &one;
   }
@@ -134,10 +136,8 @@ double FormulaReader::function_value() {
     skip();
     return parameters_.exists(name) ? 1.0 : 0.0;
   }
-  const bool arc_tangent_here = take("ATAN[");
-  at_ = from;
-  if (arc_tangent_here) {
-    at_ += 4;
+  if (take("ATAN[")) {
+    --at_;
     const double y = bracketed();
     skip_space();
     std::string why;
@@ -147,8 +147,9 @@ double FormulaReader::function_value() {
     skip_space();
     return checked(arc_tangent(y, bracketed(), syntax_.arc_tangent_positive, why), from, why);
   }
+  const char first = peek_upper();
   for (const FunctionWord& one : syntax_.functions) {
-    if (!take(one.word)) continue;
+    if (one.word[0] != first || !take(one.word)) continue;
     skip_space();
     if (peek() == '[') {
       const double argument = bracketed();
@@ -193,8 +194,7 @@ double FormulaReader::parameter_value() {
            "compute a part of the formula into a parameter first");
   const long number = parameter_number(name);
   --depth_;
-  return name.empty() ? parameters_.read(number, column_of(from))
-                      : parameters_.read_named(name, column_of(from));
+  return name.empty() ? parameters_.read(number, from) : parameters_.read_named(name, from);
 }
 
 }  // namespace swarf::program::nc

@@ -30,9 +30,9 @@ struct FormulaSyntax {
 class Parameters {
  public:
   virtual ~Parameters() = default;
-  /// "undefined-parameter" where none was assigned.
-  virtual double read(long number, int column) = 0;
-  virtual double read_named(std::string_view name, int column) = 0;
+  /// "undefined-parameter" where none was assigned. `place`: byte offset in the line, for faults.
+  virtual double read(long number, size_t place) = 0;
+  virtual double read_named(std::string_view name, size_t place) = 0;
   virtual bool exists(std::string_view name) = 0;
 };
 

@@ -57,7 +57,7 @@ struct LetterBlock {
   std::array<uint16_t, kMCodesMax> m_places{};
   int m_count = 0;
   uint32_t m_groups = 0;
-  int free_g = 0;  ///< number of G codes without a group
+  int free_g = 0;            ///< number of G codes without a group
   size_t first = 0;          ///< byte offset of the first word
   bool skip_mark = false;    ///< '/' before it
   std::string_view message;  ///< text of the last (MSG, ...) comment

@@ -27,7 +27,11 @@ bool all_text(std::string_view line) {
 
 }  // namespace
 
-LineSource::LineSource(const std::string& path, Control& control) : path_(path), control_(control) {
+LineSource::LineSource(const std::string& path, Control& control) : LineSource(path) {
+  file_ = control.enter_file(path);
+}
+
+LineSource::LineSource(const std::string& path) : path_(path) {
   std::error_code problem;
   const auto status = std::filesystem::status(path, problem);
   if (status.type() == std::filesystem::file_type::not_found) {
@@ -39,12 +43,12 @@ LineSource::LineSource(const std::string& path, Control& control) : path_(path),
     throw InputError("file-unreadable", {path, 0, 0}, "this is not a file that can be read",
                      "give the path of a program file that you may read");
   }
-  file_ = control.enter_file(path);
   buffer_.resize(kBuffer);
   if (!fill()) {
     throw InputError("empty-file", {path, 0, 0}, "the program is empty", "give a file with NC blocks");
   }
   if (std::string_view(buffer_.data(), end_).starts_with(kByteOrderMark)) at_ = kByteOrderMark.size();
+  begin_ = at_;
 }
 
 bool LineSource::fill() {
@@ -60,50 +64,55 @@ bool LineSource::fill() {
   return got > 0;
 }
 
+void LineSource::refuse_bytes(std::string_view line) const {
+  const auto found =
+      std::find_if(line.begin(), line.end(), [](char c) { return !is_text(static_cast<unsigned char>(c)); });
+  const auto bad = static_cast<size_t>(found - line.begin());
+  throw InputError("not-text", {path_, static_cast<int>(line_), column_at(line, bad)},
+                   fmt::format("byte 0x{:02X} stands here: this is not text",
+                               static_cast<unsigned>(static_cast<unsigned char>(line[bad]))),
+                   "save the program as plain text");
+}
+
 bool LineSource::next(std::string_view& line) {
-  const char* begin = buffer_.data() + at_;
-  const auto* found = static_cast<const char*>(std::memchr(begin, '\n', end_ - at_));
-  if (found == nullptr && fill()) return next(line);
-  if (found == nullptr && at_ == end_) return false;
-  size_t length = found == nullptr ? end_ - at_ : static_cast<size_t>(found - begin);
-  size_t skip = found == nullptr ? length : length + 1;
-  const std::string_view whole(begin, length);
-  const auto* lone_return = static_cast<const char*>(std::memchr(begin, '\r', length));
-  if (lone_return != nullptr) {
-    length = static_cast<size_t>(lone_return - begin);
-    skip = length + 1 < whole.size() || found == nullptr ? length + 1 : skip;
-  }
+  // No line is longer than the window, so that neither a long one nor a file of lone CR is read on and on.
+  const auto line_in_window = [&] {
+    const std::string_view window(buffer_.data() + at_, std::min(end_ - at_, kMaxLine + 1));
+    const auto* feed = static_cast<const char*>(std::memchr(window.data(), '\n', window.size()));
+    const std::string_view before =
+        feed == nullptr ? window : window.substr(0, static_cast<size_t>(feed - window.data()));
+    const auto* lone = static_cast<const char*>(std::memchr(before.data(), '\r', before.size()));
+    return lone == nullptr ? before : before.substr(0, static_cast<size_t>(lone - before.data()));
+  };
+  line = line_in_window();
+  // Two more bytes must be there to tell CR LF from CR.
+  if (at_ + line.size() + 2 > end_ && fill()) line = line_in_window();
+  if (at_ == end_) return false;
   last_mark_ = mark();
   ++line_;
-  at_ += skip;
-  line = std::string_view(begin, length);
   if (line.size() > kMaxLine) {
     throw InputError("line-too-long", {path_, static_cast<int>(line_), 1},
                      fmt::format("this line is longer than {} characters", kMaxLine),
                      "no NC program has such lines: check the file");
   }
-  if (!all_text(line)) {
-    const size_t bad =
-        static_cast<size_t>(std::find_if(line.begin(), line.end(),
-                                         [](char c) { return !is_text(static_cast<unsigned char>(c)); }) -
-                            line.begin());
-    throw InputError("not-text", {path_, static_cast<int>(line_), column_at(line, bad)},
-                     fmt::format("byte 0x{:02X} stands here: this is not text",
-                                 static_cast<unsigned>(static_cast<unsigned char>(line[bad]))),
-                     "save the program as plain text");
-  }
+  at_ += line.size();
+  const bool returned = at_ < end_ && buffer_[at_] == '\r';
+  if (at_ < end_) ++at_;
+  if (returned && at_ < end_ && buffer_[at_] == '\n') ++at_;
+  if (!all_text(line)) refuse_bytes(line);
   return true;
 }
 
 void LineSource::seek(const Mark& mark) {
   line_ = mark.line;
-  if (mark.offset >= base_ && mark.offset <= base_ + end_) {
-    at_ = static_cast<size_t>(mark.offset - base_);
+  const uint64_t offset = std::max(mark.offset, begin_);
+  if (offset >= base_ && offset <= base_ + end_) {
+    at_ = static_cast<size_t>(offset - base_);
     return;
   }
   stream_.clear();
-  stream_.seekg(static_cast<std::streamoff>(mark.offset));
-  base_ = mark.offset;
+  stream_.seekg(static_cast<std::streamoff>(offset));
+  base_ = offset;
   at_ = end_ = 0;
   last_ = false;
   fill();

@@ -22,6 +22,8 @@ class LineSource {
     long line = 0;  ///< number of the line before it
   };
   /// Throws InputError: "file-not-found", "file-unreadable", "empty-file". `path` as given.
+  explicit LineSource(const std::string& path);
+  /// The same, with its index in NcSummary::files.
   LineSource(const std::string& path, Control& control);
   /// The next line without its end (LF, CR LF or CR), valid until the next call; false at the end of the
   /// file. Bytes that no text has (NUL and other control characters) are refused ("not-text"), as are lines
@@ -37,12 +39,13 @@ class LineSource {
 
  private:
   bool fill();
+  void refuse_bytes(std::string_view line) const;
   std::string path_;
-  Control& control_;
   std::ifstream stream_;
   std::vector<char> buffer_;
   size_t at_ = 0, end_ = 0;  ///< unread part of the buffer
   uint64_t base_ = 0;        ///< file offset of buffer_[0]
+  uint64_t begin_ = 0;       ///< of the first line: behind a byte order mark
   long line_ = 0;
   Mark last_mark_;
   int file_ = 0;

@@ -124,7 +124,7 @@ void LinuxCnc::assign() {
   }
 }
 
-double LinuxCnc::read(long number, int column) {
+double LinuxCnc::read(long number, size_t place) {
   if (number >= 1 && number <= kArguments) {
     // Arguments that a call does not give are zero; the main program has none.
     if ((frame().assigned >> number & 1u) != 0 || calls_.size() > 1)
@@ -132,13 +132,13 @@ double LinuxCnc::read(long number, int column) {
   } else if (number > kArguments && number < kNumbers && number_set_[static_cast<size_t>(number)]) {
     return numbers_[static_cast<size_t>(number)];
   } else if (number >= 5161) {
-    return system_parameter(number, column);
+    return system_parameter(number, place);
   }
-  control_.fail("undefined-parameter", column, fmt::format("#{} has no value: nothing assigned it", number),
-                "assign it before it is read");
+  control_.fail("undefined-parameter", reader_.column_of(place),
+                fmt::format("#{} has no value: nothing assigned it", number), "assign it before it is read");
 }
 
-double LinuxCnc::system_parameter(long number, int column) {
+double LinuxCnc::system_parameter(long number, size_t place) {
   const double unit = control_.mm(1.0);
   const auto by_word = [&](const kinematics::AxisValues& q, long word) {
     const int axis = word < kAxisWords ? control_.axis_of(static_cast<AxisWord>(word)) : -1;
@@ -160,24 +160,24 @@ double LinuxCnc::system_parameter(long number, int column) {
     if (word >= kAxisWords) return 0.0;
     const double value = control_.position()[static_cast<size_t>(word)];
     if (!std::isfinite(value))
-      control_.fail("start-unknown", column,
+      control_.fail("start-unknown", reader_.column_of(place),
                     fmt::format("#{} asks for a position that is not known yet", number),
                     "give the start position in the scene");
     return word < 3 ? value / unit : deg_from_rad(value);
   }
-  control_.fail("undefined-parameter", column,
+  control_.fail("undefined-parameter", reader_.column_of(place),
                 fmt::format("#{} is no parameter that can be read here", number),
                 "read #5211 to #5389 (offsets), #5400 to #5410 (tool), #5420 to #5425 (position)");
 }
 
-double LinuxCnc::read_named(std::string_view name, int column) {
+double LinuxCnc::read_named(std::string_view name, size_t place) {
   const auto& list = name[0] == '_' ? globals_ : frame().named;
   const auto found =
       std::find_if(list.begin(), list.end(), [&](const Named& one) { return one.name == name; });
   if (found != list.end()) return found->value;
   constexpr std::string_view kPositions[] = {"_x", "_y", "_z", "_a", "_b", "_c"};
   for (long word = 0; word < kAxisWords; ++word) {
-    if (name == kPositions[word]) return system_parameter(5420 + word, column);
+    if (name == kPositions[word]) return system_parameter(5420 + word, place);
   }
   if (name == "_feed") return control_.feed();
   if (name == "_rpm") return control_.speed_rpm();
@@ -195,7 +195,8 @@ double LinuxCnc::read_named(std::string_view name, int column) {
   if (name == "_spindle_on") return control_.spindle() != 0 ? 1.0 : 0.0;
   if (name == "_coord_system")
     return control_.work_offset() <= 6 ? 530 + 10 * control_.work_offset() : 584 + control_.work_offset();
-  control_.fail("undefined-parameter", column, fmt::format("#<{}> has no value: nothing assigned it", name),
+  control_.fail("undefined-parameter", reader_.column_of(place),
+                fmt::format("#<{}> has no value: nothing assigned it", name),
                 "assign it before it is read, or ask EXISTS first");
 }
 

@@ -50,8 +50,8 @@ class LinuxCnc final : public Parameters {
   LinuxCnc(const std::string& path, Control& control);
   void run();
 
-  double read(long number, int column) override;
-  double read_named(std::string_view name, int column) override;
+  double read(long number, size_t place) override;
+  double read_named(std::string_view name, size_t place) override;
   bool exists(std::string_view name) override;
 
  private:
@@ -162,7 +162,7 @@ class LinuxCnc final : public Parameters {
   bool uses_axis_words() const;
   Call& frame() { return calls_.back(); }
   LineSource& source() { return *calls_.back().source; }
-  double system_parameter(long number, int column);
+  double system_parameter(long number, size_t place);
 
   static constexpr uint32_t kAxisBits = 7u | 7u << ('X' - 'A');
 

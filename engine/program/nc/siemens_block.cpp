@@ -145,13 +145,11 @@ class BlockReader {
       return;
     }
     const double number = converted(value, Type::kReal, reader_.line(), offset).number;
-    if (const size_t axis = kAxisNames.find(name); name.size() == 1 && axis != std::string_view::npos) {
-      coordinate(words_.axes[axis], number, way, token, axis >= 3);
-      return;
-    }
-    if (name.size() == 1 && kCentreNames.find(name) != std::string_view::npos) {
-      coordinate(words_.centre[kCentreNames.find(name)], number, way, token, false);
-      return;
+    if (name.size() == 1) {
+      if (const size_t axis = kAxisNames.find(name[0]); axis != std::string_view::npos)
+        return coordinate(words_.axes[axis], number, way, token, axis >= 3);
+      if (const size_t centre = kCentreNames.find(name[0]); centre != std::string_view::npos)
+        return coordinate(words_.centre[centre], number, way, token, false);
     }
     if (name.size() == 2 && name[1] == '1' && kCentreNames.find(name[0]) != std::string_view::npos) {
       coordinate(words_.between[kCentreNames.find(name[0])], number, way, token, false);
@@ -171,10 +169,20 @@ class BlockReader {
   }
 
   void plain(const std::string& name, double number, const Token& token) {
-    static const std::vector<std::pair<const char*, Amount BlockWords::*>> kPlain = {
-        {"CR", &BlockWords::radius},     {"AR", &BlockWords::opening},     {"TURN", &BlockWords::turns},
-        {"F", &BlockWords::feed},        {"S", &BlockWords::speed},        {"D", &BlockWords::cutting_edge},
-        {"ADIS", &BlockWords::rounding}, {"RPL", &BlockWords::plane_turn}, {"CTOL", &BlockWords::contour}};
+    if (name.size() == 2 && (name[1] == '2' || name[1] == '3') && name[0] >= 'A' && name[0] <= 'C') {
+      auto& vector = name[1] == '2' ? words_.angles : words_.vector;
+      return once(vector[static_cast<size_t>(name[0] - 'A')], number, token);
+    }
+    using Plain = std::pair<std::string_view, Amount BlockWords::*>;
+    static constexpr std::array<Plain, 9> kPlain = {{{"CR", &BlockWords::radius},
+                                                     {"AR", &BlockWords::opening},
+                                                     {"TURN", &BlockWords::turns},
+                                                     {"F", &BlockWords::feed},
+                                                     {"S", &BlockWords::speed},
+                                                     {"D", &BlockWords::cutting_edge},
+                                                     {"ADIS", &BlockWords::rounding},
+                                                     {"RPL", &BlockWords::plane_turn},
+                                                     {"CTOL", &BlockWords::contour}}};
     for (const auto& [word, member] : kPlain) {
       if (name == word) {
         once(words_.*member, number, token);
@@ -186,9 +194,6 @@ class BlockReader {
     } else if (name == "H" || name == "SPOS" || name == "OTOL" || name == "ADISPOS") {
       words_.noted.push_back(
           {fmt::format("{}{:g}", name.size() == 1 ? name : name + "=", number), token.offset});
-    } else if (name.size() == 2 && (name[1] == '2' || name[1] == '3') && name[0] >= 'A' && name[0] <= 'C') {
-      once((name[1] == '2' ? words_.angles : words_.vector)[static_cast<size_t>(name[0] - 'A')], number,
-           token);
     } else {
       refused_letter(name, token);
     }
@@ -372,6 +377,24 @@ class BlockReader {
 };
 
 }  // namespace
+
+void BlockWords::clear() {
+  axes = {};
+  centre = between = {};
+  angles = vector = {};
+  for (Amount* amount :
+       {&radius, &opening, &turns, &feed, &speed, &cutting_edge, &rounding, &plane_turn, &contour})
+    *amount = {};
+  tool.given = false;
+  functions.clear();
+  codes.clear();
+  motion.reset();
+  frame.reset();
+  transform.reset();
+  calls.clear();
+  noted.clear();
+  ends_program = false;
+}
 
 bool BlockWords::any_axis() const {
   return std::any_of(axes.begin(), axes.end(), [](const Coordinate& c) { return c.given; });

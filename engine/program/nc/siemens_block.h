@@ -79,6 +79,8 @@ struct BlockWords {
   std::vector<NamedPlace> noted;
   bool ends_program = false;  ///< RET
 
+  /// As made, with the memory of its lists.
+  void clear();
   bool any_axis() const;
   bool moves() const;  ///< something that a motion is made of
   std::optional<int> code(Group group) const;

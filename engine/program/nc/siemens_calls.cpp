@@ -6,7 +6,6 @@
 #include <filesystem>
 
 #include "program/nc/siemens_flow.h"
-#include "program/source_text.h"
 
 namespace swarf::program::siemens {
 namespace {
@@ -58,7 +57,7 @@ int Flow::loaded(const std::string& name) {
   for (size_t n = 0; n < sources_.size(); ++n) {
     if (sources_[n]->path() == path) return static_cast<int>(n);
   }
-  sources_.push_back(std::make_unique<Source>(path, read_file(path)));
+  sources_.push_back(std::make_unique<Source>(path));
   lines_ += sources_.back()->lines();
   return static_cast<int>(sources_.size()) - 1;
 }
@@ -143,7 +142,7 @@ void Flow::on_mcall(TokenReader& reader) {
 }
 
 void Flow::call(int file, TokenReader* arguments, const std::vector<Value>& values, int times) {
-  const LineRef from = source().line(current_);
+  const LineRef& from = running_;
   if (static_cast<int>(std::count_if(levels_.begin(), levels_.end(),
                                      [](const Level& l) { return !l.part; })) >= limits_.levels_max) {
     refuse(from, from.text.find_first_not_of(" \t"), "too-deep",
@@ -188,7 +187,7 @@ void Flow::bind(Level& level, TokenReader* arguments, const std::vector<Value>& 
   } else {
     for (const Value& value : values) given.push_back({value, {}, 0});
   }
-  const LineRef from = source().line(current_);
+  const LineRef& from = running_;
   if (entry < 0) {
     if (given.empty()) return;
     refuse(from, given[0].offset, "wrong-arguments",

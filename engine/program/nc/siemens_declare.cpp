@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "program/nc/arithmetic.h"
 #include "program/nc/siemens_flow.h"
 
 namespace swarf::program::siemens {
@@ -85,7 +87,11 @@ bool assign(TokenReader& reader, Variables& variables) {
   }
   const Value value = evaluate(reader, variables);
   if (parameter) {
-    const double index = name.name == "R" ? indices[0] : std::stod(name.name.substr(1));
+    double index = 0.0;
+    if (name.name == "R")
+      index = indices[0];
+    else if (nc::read_number(std::string_view(name.name).substr(1), index) == std::string_view::npos)
+      index = std::numeric_limits<double>::infinity();
     variables.set_parameter(index, value, line, offset);
     return true;
   }

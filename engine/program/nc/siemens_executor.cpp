@@ -37,7 +37,7 @@ Outcome Executor::block(TokenReader& reader, Variables& variables) {
   }
   control_.at(file_, line_->line, column(reader.offset()));
   const bool modal_call = reader.position() > 0 && reader.previous().named("MCALL");
-  words_ = BlockWords();
+  words_.clear();
   read_block(reader, variables, words_);
   if (modal_call) {
     modal_cycle_.reset();

@@ -17,44 +17,52 @@ namespace {
 constexpr int kDepthMax = 100;
 constexpr double kRelativeEquality = 1e-12;
 
-/// Binary operators by priority, loosest first (header).
-constexpr std::array<std::array<std::string_view, 6>, 10> kLevels = {{
-    {"==", "<>", ">", "<", ">=", "<="},
-    {"<<"},
-    {"OR"},
-    {"XOR"},
-    {"AND"},
-    {"B_OR"},
-    {"B_XOR"},
-    {"B_AND"},
-    {"+", "-"},
-    {"*", "/", "DIV", "MOD"},
-}};
-
+struct Binary {
+  std::string_view symbol;
+  int rank;  ///< binds more tightly when larger; equal ranks from the left (header)
+};
+constexpr std::array<Binary, 19> kBinary = {{{"==", 0},
+                                             {"<>", 0},
+                                             {">", 0},
+                                             {"<", 0},
+                                             {">=", 0},
+                                             {"<=", 0},
+                                             {"<<", 1},
+                                             {"OR", 2},
+                                             {"XOR", 3},
+                                             {"AND", 4},
+                                             {"B_OR", 5},
+                                             {"B_XOR", 6},
+                                             {"B_AND", 7},
+                                             {"+", 8},
+                                             {"-", 8},
+                                             {"*", 9},
+                                             {"/", 9},
+                                             {"DIV", 9},
+                                             {"MOD", 9}}};
 class Evaluator {
  public:
   Evaluator(TokenReader& reader, Variables& variables) : reader_(reader), variables_(variables) {}
 
-  Value level(size_t n) {
-    if (n == kLevels.size()) return unary();
-    Value left = level(n + 1);
-    while (const std::string_view* symbol = operator_here(n)) {
+  /// A formula of operators that bind at least as tightly as `lowest`.
+  Value formula(int lowest) {
+    Value left = unary();
+    for (const Binary* op = operator_here(); op != nullptr && op->rank >= lowest; op = operator_here()) {
       const size_t offset = reader_.offset();
       reader_.next();
-      const Value right = level(n + 1);
-      left = binary(*symbol, left, right, offset);
+      const Value right = formula(op->rank + 1);
+      left = binary(op->symbol, left, right, offset);
     }
     return left;
   }
 
  private:
-  const std::string_view* operator_here(size_t n) const {
+  const Binary* operator_here() const {
     const Token& token = reader_.peek();
     if (token.kind != TokenKind::kSymbol && token.kind != TokenKind::kName) return nullptr;
-    for (const std::string_view& symbol : kLevels[n]) {
-      if (!symbol.empty() && token.name == symbol) return &symbol;
-    }
-    return nullptr;
+    const auto found = std::find_if(kBinary.begin(), kBinary.end(),
+                                    [&](const Binary& one) { return one.symbol == token.name; });
+    return found == kBinary.end() ? nullptr : &*found;
   }
 
   Value unary() {
@@ -96,7 +104,7 @@ class Evaluator {
         return named(token, offset);
       case TokenKind::kSymbol:
         if (token.name == "(") {
-          Value value = level(0);
+          Value value = formula(0);
           reader_.expect(")", "the formula in parentheses");
           return value;
         }
@@ -125,7 +133,7 @@ class Evaluator {
   double index() {
     reader_.expect("[", "R");
     const size_t offset = reader_.offset();
-    const double value = number(level(0), offset).number;
+    const double value = number(formula(0), offset).number;
     reader_.expect("]", "the index");
     return value;
   }
@@ -136,7 +144,7 @@ class Evaluator {
     std::vector<Value> arguments;
     if (!reader_.skip(")")) {
       do {
-        arguments.push_back(level(0));
+        arguments.push_back(formula(0));
       } while (reader_.skip(","));
       reader_.expect(")", "the arguments of " + name);
     }
@@ -246,7 +254,7 @@ size_t TokenReader::end_offset() const {
 }
 
 Value evaluate(TokenReader& reader, Variables& variables) {
-  return Evaluator(reader, variables).level(0);
+  return Evaluator(reader, variables).formula(0);
 }
 
 double evaluate_number(TokenReader& reader, Variables& variables) {

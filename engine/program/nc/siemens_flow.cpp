@@ -6,8 +6,6 @@
 #include <array>
 #include <cmath>
 
-#include "program/source_text.h"
-
 namespace swarf::program::siemens {
 
 Flow::Flow(BlockTarget& target, std::vector<std::string> subprogram_folders, FlowLimits limits)
@@ -22,7 +20,7 @@ std::vector<std::string> Flow::files() const {
 }
 
 void Flow::run(const std::string& path) {
-  sources_.push_back(std::make_unique<Source>(path, read_file(path)));
+  sources_.push_back(std::make_unique<Source>(path));
   lines_ = sources_[0]->lines();
   Level main;
   main.stop = sources_[0]->lines();
@@ -67,7 +65,10 @@ bool Flow::leave_level(bool to_caller) {
 }
 
 void Flow::statement() {
-  const LineRef line = source().line(current_);
+  const LineRef there = source().line(current_);
+  text_ = there.text;  // stays while other lines are looked at
+  running_ = {there.file, there.line, text_};
+  const LineRef& line = running_;
   if (current_ == 0 && line.text.starts_with('%')) {
     target_.note("%", std::string(line.text), source().path(),
                  1);  // name of the program, as archives have it

@@ -138,6 +138,8 @@ class Flow {
   std::vector<Level> levels_;
   std::map<std::string, std::string> found_;  ///< name of a subprogram -> path, "" when there is none
   ModalCall modal_;
+  std::string text_;
+  LineRef running_;  ///< the block that is running, in text_
   std::vector<Token> tokens_;
   int current_ = 0;  ///< line that is running, from 0
   long lines_ = 0, blocks_ = 0, jumps_ = 0, moves_seen_ = 0;

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <array>
 
-#include "program/source_text.h"
-
 namespace swarf::program::siemens {
 namespace {
 
@@ -77,6 +75,9 @@ bool single_block(const LineRef& line, std::string_view word) {
   return repeat != tokens.end() && repeat + 1 != tokens.end();
 }
 
+/// So many lines are passed to come to one that is jumped to.
+constexpr int kMarked = 64;
+
 struct Pair {
   std::string_view head, end;
 };
@@ -85,27 +86,33 @@ constexpr std::array<Pair, 5> kPairs = {
 
 }  // namespace
 
-Source::Source(std::string path, std::string text) : path_(std::move(path)), text_(std::move(text)) {
-  Diagnostics diagnostics;
-  Reporter reporter(diagnostics, path_);
-  check_text(text_, reporter, "give an NC program");
-  diagnostics.throw_if_errors();
-  const std::string_view all = text_;
-  for (size_t at = all.starts_with("\xEF\xBB\xBF") ? 3 : 0; at < all.size();) {
-    starts_.push_back(at);
-    const size_t end = std::min(all.find_first_of("\r\n", at), all.size());
-    at = end + (all.substr(end).starts_with("\r\n") ? 2 : 1);
+Source::Source(const std::string& path) : reader_(path) {
+  bool blank = true;
+  std::string_view line;
+  for (;;) {
+    const nc::LineSource::Mark here = reader_.mark();
+    if (!reader_.next(line)) break;
+    if (lines_++ % kMarked == 0) marks_.push_back(here);
+    blank = blank && line.find_first_not_of(" \t") == std::string_view::npos;
   }
+  if (blank) throw InputError("empty-file", {path, 0, 0}, "the program is empty", "give an NC program");
 }
 
-LineRef Source::line(int index) const {
-  const std::string_view all = text_;
-  const size_t start = starts_[static_cast<size_t>(index)];
-  const size_t end = std::min(all.find_first_of("\r\n", start), all.size());
-  return {&path_, index + 1, all.substr(start, end - start)};
+LineRef Source::line(int index) {
+  const bool ahead = reader_.line_number() <= index && index - reader_.line_number() < kMarked;
+  if (!ahead) reader_.seek(marks_[static_cast<size_t>(index / kMarked)]);
+  std::string_view text;
+  while (reader_.line_number() <= index) reader_.next(text);
+  return {&reader_.path(), index + 1, text};
 }
 
-std::optional<int> Source::find_label(std::string_view label, int from, int step) const {
+std::optional<int> Source::find_label(std::string_view label, int from, int step) {
+  const auto [place, fresh] = labels_.try_emplace({std::string(label), from, step});
+  if (fresh) place->second = search_label(label, from, step);
+  return place->second;
+}
+
+std::optional<int> Source::search_label(std::string_view label, int from, int step) {
   const bool number = label.size() > 1 && label[0] == 'N' && is_digit(label[1]);
   const std::string wanted = number ? without_zeros(std::string(label)) : std::string(label);
   for (int index = from; index >= 0 && index < lines(); index += step) {

@@ -1,31 +1,35 @@
-// One program file of Siemens 840D: its lines, labels, block numbers and the partners of its loops.
+// One program file of Siemens 840D: its lines, labels, block numbers and the partners of its loops. The text
+// stays in the file; only a window of it is kept.
 #pragma once
 
 #include <map>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
+#include "program/nc/line_source.h"
 #include "program/nc/siemens_lexer.h"
 
 namespace swarf::program::siemens {
 
 class Source {
  public:
-  /// Throws InputError "not-text", "empty-file".
-  Source(std::string path, std::string text);
+  /// Reads the file once. Throws InputError "not-text", "line-too-long", "empty-file" (also when it has
+  /// nothing but white space), "file-not-found", "file-unreadable".
+  explicit Source(const std::string& path);
   Source(const Source&) = delete;
   Source& operator=(const Source&) = delete;
 
-  const std::string& path() const { return path_; }
-  int lines() const { return static_cast<int>(starts_.size()); }
-  /// `index` counts from 0, LineRef::line from 1.
-  LineRef line(int index) const;
+  const std::string& path() const { return reader_.path(); }
+  int lines() const { return lines_; }
+  /// `index` counts from 0, LineRef::line from 1. Valid until this source is asked for anything else.
+  LineRef line(int index);
 
   /// The line with this label or block number (N100), looking from `from` forwards (step 1) or backwards
   /// (step -1), `from` itself included.
-  std::optional<int> find_label(std::string_view label, int from, int step) const;
+  std::optional<int> find_label(std::string_view label, int from, int step);
 
   /// Where IF, ELSE, WHILE, FOR, LOOP, REPEAT and their ends jump to:
   ///   IF -> ELSE or ENDIF, ELSE -> ENDIF; a loop's head <-> its end.
@@ -34,9 +38,12 @@ class Source {
 
  private:
   void pair_structures();
+  std::optional<int> search_label(std::string_view label, int from, int step);
 
-  std::string path_, text_;
-  std::vector<size_t> starts_;
+  nc::LineSource reader_;
+  std::vector<nc::LineSource::Mark> marks_;  ///< of every kMarked-th line
+  int lines_ = 0;
+  std::map<std::tuple<std::string, int, int>, std::optional<int>> labels_;  ///< jumps that were looked for
   bool paired_ = false;
   std::map<int, int> partner_;
 };

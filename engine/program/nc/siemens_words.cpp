@@ -4,6 +4,7 @@
 
 #include <array>
 #include <map>
+#include <unordered_map>
 
 namespace swarf::program::siemens {
 namespace {
@@ -181,8 +182,13 @@ const Table& table() {
 }  // namespace
 
 const VocabularyWord* find_word(std::string_view name) {
-  const auto found = table().find(name);
-  return found == table().end() ? nullptr : &found->second;
+  static const std::unordered_map<std::string_view, const VocabularyWord*> words = [] {
+    std::unordered_map<std::string_view, const VocabularyWord*> all;
+    for (const auto& [word, meaning] : table()) all.emplace(word, &meaning);
+    return all;
+  }();
+  const auto found = words.find(name);
+  return found == words.end() ? nullptr : found->second;
 }
 
 const VocabularyWord* find_g(int number) {

@@ -64,20 +64,6 @@ TEST(NcBadInput, BinaryEmptyAndMissingFiles) {
             "file-not-found 0:0");
 }
 
-TEST(NcBadInput, LineOfHundredMegabytesIsNotKept) {
-  const auto path = fs::temp_directory_path() / "swarf_nc_long_line.ngc";
-  {
-    std::ofstream out(path, std::ios::binary);
-    out << "G0 X1\n";
-    const std::string piece(1 << 20, '1');
-    for (int i = 0; i < 100; ++i) out << piece;
-  }
-  const NcRun run = run_file(path.string(), Dialect::kLinuxCnc, three_axis_setup());
-  EXPECT_EQ(run.first_error(), "line-too-long 2:1");
-  EXPECT_EQ(run.moves().size(), 1u);
-  fs::remove(path);
-}
-
 TEST(NcBadInput, DialectsAreRecognisedOrAskedFor) {
   const ControlSetup setup = three_axis_setup();
   const auto recognised = [&](const std::string& name, const std::string& text) {
@@ -93,6 +79,11 @@ TEST(NcBadInput, DialectsAreRecognisedOrAskedFor) {
   const NcRun fanuc_run = recognised(".nc", "%\nO0123\nG05.1 Q1\nG0 X1\nM30\n%\n");
   EXPECT_EQ(fanuc_run.text(), "");
   EXPECT_EQ(fanuc_run.summary.dialect, Dialect::kFanuc);
+  const NcRun siemens_run = recognised(".nc", "DEF REAL _X=5\nG0 X=_X\nCYCLE832()\nM30\n");
+  EXPECT_EQ(siemens_run.text(), "");
+  EXPECT_EQ(siemens_run.summary.dialect, Dialect::kSiemens);
+  EXPECT_EQ(siemens_run.summary.dialect_reason, "recognised by 'DEF REAL _X=5' in line 1");
+  EXPECT_EQ(recognised(".mpf", "G0 X1\nM30\n").summary.dialect_reason, "recognised by the ending .mpf");
 }
 
 // Cut off anywhere, or with bytes changed: a diagnostic or a run, never a crash, never a place outside the
