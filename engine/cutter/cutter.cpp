@@ -42,6 +42,19 @@ std::vector<std::string> shape_names() {
   return {kNames.begin(), kNames.end()};
 }
 
+double gauge_length(const Cutter& cutter) {
+  if (cutter.gauge_length_mm) return *cutter.gauge_length_mm;
+  double length = cutter.length_mm;
+  for (const ToolSection& section : cutter.holder) length += section.length_mm;
+  return length;
+}
+
+std::string call_name(const Cutter& cutter) {
+  if (cutter.number == 0) return cutter.name;
+  return cutter.name.empty() ? fmt::format("T{}", cutter.number)
+                             : fmt::format("T{} ({})", cutter.number, cutter.name);
+}
+
 std::string describe(const Cutter& c) {
   const std::string corner =
       c.corner_radius_mm > 0.0 ? fmt::format(", corner radius {:g} mm", c.corner_radius_mm) : "";

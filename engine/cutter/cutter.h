@@ -51,7 +51,9 @@ struct ToolSection {
 
 /// Lengths in mm, heights measured from the tip along the axis.
 struct Cutter {
-  int number = 0;  ///< T word
+  int number = 0;          ///< T word; 0: known by its name only
+  std::string name;        ///< T="name"; empty: known by its number only
+  bool left_hand = false;  ///< cuts while it turns counter-clockwise (M4)
   Shape shape = Shape::kFlat;
   double diameter_mm = 10.0;      ///< APT d: twice the radius at which bottom line and flank line cross
   double corner_radius_mm = 0.0;  ///< APT r
@@ -69,6 +71,7 @@ struct Cutter {
   double shank_diameter_mm = 10.0;
   double length_mm = 60.0;                         ///< tip to the holder's face
   std::vector<ToolSection> holder{ToolSection{}};  ///< from the face upwards
+  std::optional<double> gauge_length_mm;           ///< gauge line to tip; none: it lies on top of the holder
 
   double radius() const { return 0.5 * diameter_mm; }
 };
@@ -82,6 +85,12 @@ struct Problem {
 
 /// Every contradiction; empty when the cutter can be used.
 std::vector<Problem> validate(const Cutter& cutter);
+
+/// From the spindle's gauge line to the tip: as given, or length and holder together. mm
+double gauge_length(const Cutter& cutter);
+
+/// What a program calls it: "T3", "T3 (MILL_10)", "MILL_10".
+std::string call_name(const Cutter& cutter);
 
 /// One line for a report: "bull_nose, D 10 mm, corner radius 1 mm, flutes 25 mm, length 60 mm".
 std::string describe(const Cutter& cutter);

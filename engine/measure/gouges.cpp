@@ -20,7 +20,7 @@ struct Context {
   const stock::SurfaceDexels& dexels;
   std::span<const stock::Sweep> sweeps;
   const PassRule& rule;
-  const stock::CutterSolid& cutter;
+  const SweepCutters& cutters;
 };
 
 /// Depths around one ray; x is the foot's displacement in the ray's tangent plane.
@@ -29,7 +29,7 @@ class Surroundings {
   Surroundings(const Context& context, uint32_t ray)
       : field_(context.dexels.field()),
         ray_(ray),
-        height_(context.sweeps, context.rule, context.cutter, context.dexels.blocks()[ray]) {
+        height_(context.sweeps, context.rule, context.cutters, context.dexels.blocks()[ray]) {
     int least = 0;
     field_.normals[ray].cwiseAbs().minCoeff(&least);
     e1_ = field_.normals[ray].cross(Vec3::Unit(least)).normalized();
@@ -159,9 +159,9 @@ void add_gouge(const Region& found, uint32_t region_of_ray, double pitch_mm, std
 }  // namespace
 
 std::vector<Region> find_gouges(const stock::SurfaceDexels& dexels, std::span<const stock::Sweep> sweeps,
-                                const PassRule& rule, const stock::CutterSolid& cutter, double limit_mm,
+                                const PassRule& rule, const SweepCutters& cutters, double limit_mm,
                                 Region* deepest) {
-  const Context context{dexels, sweeps, rule, cutter};
+  const Context context{dexels, sweeps, rule, cutters};
   std::vector<double> depths;
   for (const double height : dexels.heights_mm()) depths.push_back(-height);
   std::vector<uint32_t> region_of;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "measure/metrics.h"
+#include "measure/sweep_cutters.h"
 #include "stock/stock.h"
 #include "stock/surface_dexels.h"
 #include "stock/sweep.h"
@@ -22,11 +23,12 @@ struct MeasureLimits {
 ///   whose
 ///                  passes nobody knows: two sweeps then belong to different passes when the way between them
 ///                  along the path is more than twice the straight line (pass_rule.h)
+///   cutters        of each sweep
 ///   ridges         every refined cusp is appended to it
 /// Areas weigh: gouged area and the share within tolerance do not depend on how the rays are spread.
 /// scallop_theory_um is left to the caller: it belongs to the path.
 SurfaceMetrics measure_surface(const stock::SurfaceDexels& dexels, std::span<const stock::Sweep> sweeps,
-                               std::span<const int> pass_of_sweep, const stock::CutterSolid& cutter,
+                               std::span<const int> pass_of_sweep, const SweepCutters& cutters,
                                const MeasureLimits& limits, std::vector<Ridge>* ridges);
 
 /// Several surfaces as one; `ridges` are those of all of them. No parts: all zero.

@@ -33,7 +33,7 @@ bool PassRule::same(uint32_t a, uint32_t b) const {
 }
 
 double PassHeight::height(const Vec3& point, const Vec3& normal, uint32_t sweep) const {
-  return std::min(kHigh, stock::ray_height(point, normal, sweeps_[sweep], cutter_));
+  return std::min(kHigh, stock::ray_height(point, normal, sweeps_[sweep], cutters_[sweep]));
 }
 
 double PassHeight::operator()(const Vec3& point, const Vec3& normal) {

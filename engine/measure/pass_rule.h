@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "measure/sweep_cutters.h"
 #include "stock/sweep.h"
 
 namespace swarf::measure {
@@ -39,9 +40,9 @@ class PassRule {
 /// The height that one pass leaves on any ray: its sweeps from a known one on, as long as the height falls.
 class PassHeight {
  public:
-  PassHeight(std::span<const stock::Sweep> sweeps, const PassRule& rule, const stock::CutterSolid& cutter,
+  PassHeight(std::span<const stock::Sweep> sweeps, const PassRule& rule, const SweepCutters& cutters,
              uint32_t owner)
-      : sweeps_(sweeps), rule_(rule), cutter_(cutter), first_(owner), owner_(owner) {}
+      : sweeps_(sweeps), rule_(rule), cutters_(cutters), first_(owner), owner_(owner) {}
 
   /// mm; at most kHigh, which stands for "not under the cutter". Along a pass the height has one minimum near
   /// the sweep that owns the neighbouring ray; the owner is remembered for the next call.
@@ -55,7 +56,7 @@ class PassHeight {
 
   std::span<const stock::Sweep> sweeps_;
   const PassRule& rule_;
-  const stock::CutterSolid& cutter_;
+  const SweepCutters& cutters_;
   uint32_t first_, owner_;
 };
 

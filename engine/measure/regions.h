@@ -36,7 +36,7 @@ std::vector<Region> find_regions(const stock::RayField& field, std::span<const d
 /// `deepest` receives the deepest place of all, beyond the limit or not; it is left alone when nothing lies
 /// below the design.
 std::vector<Region> find_gouges(const stock::SurfaceDexels& dexels, std::span<const stock::Sweep> sweeps,
-                                const PassRule& rule, const stock::CutterSolid& cutter, double limit_mm,
+                                const PassRule& rule, const SweepCutters& cutters, double limit_mm,
                                 Region* deepest);
 
 }  // namespace swarf::measure

@@ -17,15 +17,15 @@ struct Context {
   const stock::SurfaceDexels& dexels;
   std::span<const stock::Sweep> sweeps;
   const PassRule& rule;
-  const stock::CutterSolid& cutter;
+  const SweepCutters& cutters;
 };
 
 /// The heights that two passes leave at one foot.
 class TwoPasses {
  public:
   TwoPasses(const Context& context, uint32_t a, uint32_t b)
-      : a_(context.sweeps, context.rule, context.cutter, a),
-        b_(context.sweeps, context.rule, context.cutter, b) {}
+      : a_(context.sweeps, context.rule, context.cutters, a),
+        b_(context.sweeps, context.rule, context.cutters, b) {}
 
   /// Height of pass A minus that of pass B.
   double difference(const Vec3& point, const Vec3& normal) {
@@ -105,8 +105,8 @@ std::optional<Ridge> ridge_on_edge(const Context& context, uint32_t first, uint3
 }  // namespace
 
 std::vector<Ridge> find_ridges(const stock::SurfaceDexels& dexels, std::span<const stock::Sweep> sweeps,
-                               const PassRule& rule, const stock::CutterSolid& cutter) {
-  const Context context{dexels, sweeps, rule, cutter};
+                               const PassRule& rule, const SweepCutters& cutters) {
+  const Context context{dexels, sweeps, rule, cutters};
   const auto& edges = dexels.field().edges;
   std::vector<std::vector<Ridge>> parts((edges.size() + kEdgesPerTask - 1) / kEdgesPerTask);
   parallel_chunks(edges.size(), kEdgesPerTask, [&](size_t begin, size_t end) {

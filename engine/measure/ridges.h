@@ -23,6 +23,6 @@ namespace swarf::measure {
 /// by 45 degrees or more: on a grid once per grid line. The pitch must be well below the interval of the
 /// passes.
 std::vector<Ridge> find_ridges(const stock::SurfaceDexels& dexels, std::span<const stock::Sweep> sweeps,
-                               const PassRule& rule, const stock::CutterSolid& cutter);
+                               const PassRule& rule, const SweepCutters& cutters);
 
 }  // namespace swarf::measure

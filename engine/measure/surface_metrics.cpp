@@ -110,7 +110,7 @@ void merge(const SurfaceMetrics& part, SurfaceMetrics& whole, double& within) {
 }  // namespace
 
 SurfaceMetrics measure_surface(const stock::SurfaceDexels& dexels, std::span<const stock::Sweep> sweeps,
-                               std::span<const int> pass_of_sweep, const stock::CutterSolid& cutter,
+                               std::span<const int> pass_of_sweep, const SweepCutters& cutters,
                                const MeasureLimits& limits, std::vector<Ridge>* ridges) {
   SWARF_CHECK(pass_of_sweep.empty() || sweeps.size() == pass_of_sweep.size(),
               "one pass number per sweep, or none");
@@ -125,13 +125,13 @@ SurfaceMetrics measure_surface(const stock::SurfaceDexels& dexels, std::span<con
   metrics.excess_regions = metrics.excesses.size();
   const PassRule rule(sweeps, pass_of_sweep, dexels.field().pitch_mm);
   Region deepest;
-  metrics.gouges = find_gouges(dexels, sweeps, rule, cutter, limits.gouge_mm, &deepest);
+  metrics.gouges = find_gouges(dexels, sweeps, rule, cutters, limits.gouge_mm, &deepest);
   metrics.gouge_regions = metrics.gouges.size();
   metrics.gouge_max_um = deepest.worst_um;
   metrics.gouge_block = deepest.block;
   keep_worst(metrics.gouges);
   keep_worst(metrics.excesses);
-  const std::vector<Ridge> found = find_ridges(dexels, sweeps, rule, cutter);
+  const std::vector<Ridge> found = find_ridges(dexels, sweeps, rule, cutters);
   summarise_ridges(found, metrics);
   if (ridges != nullptr) ridges->insert(ridges->end(), found.begin(), found.end());
   return metrics;

@@ -130,14 +130,22 @@ MotionBounds joint_bounds(const BlockMotion& motion) {
 
 }  // namespace
 
-std::vector<BlockMotion> block_motions(const toolpath::ToolPath& path, const MachineModel& machine) {
-  const kinematics::InverseKinematics inverse(machine);
+std::vector<BlockMotion> block_motions(const toolpath::ToolPath& path,
+                                       std::span<const MachineModel> by_tool) {
+  const std::vector<kinematics::InverseKinematics> inverses(by_tool.begin(), by_tool.end());
+  const std::vector<kinematics::Axis>& axes = by_tool.front().axes;
   AxisValues q = AxisValues::Zero();
-  for (size_t i = 0; i < machine.axes.size(); ++i) q[static_cast<Eigen::Index>(i)] = machine.axes[i].home;
+  for (size_t i = 0; i < axes.size(); ++i) q[static_cast<Eigen::Index>(i)] = axes[i].home;
+  int tool_before = -1;
   std::vector<BlockMotion> motions;
   motions.reserve(path.elements.size());
   for (const toolpath::Element& element : path.elements) {
     const auto& block = std::get<BlockMove>(element.what);
+    const size_t index = by_tool.size() == 1 ? 0 : static_cast<size_t>(block.tool);
+    const MachineModel& machine = by_tool[index];
+    const kinematics::InverseKinematics& inverse = inverses[index];
+    const bool tool_is_new = block.tool != tool_before;
+    tool_before = block.tool;
     if (block.axes) {
       q = block.axes->to;
       motions.push_back({&block, &machine, block.axes->from, block.axes->to});
@@ -152,7 +160,7 @@ std::vector<BlockMotion> block_motions(const toolpath::ToolPath& path, const Mac
         throw InputError("unreachable", element.where, why.text, why.fix);
       }
     };
-    if (motions.empty()) solve(block.from);
+    if (tool_is_new) solve(block.from);
     const AxisValues from = q;
     solve(block.to);
     motions.push_back({&block, &machine, from, q});

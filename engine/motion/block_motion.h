@@ -19,6 +19,7 @@
 // r and angle phi adds |p''| = r phi^2: an eighth of it is the sagitta's leading term.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "kinematics/machine_model.h"
@@ -38,8 +39,13 @@ struct BlockMotion {
 /// The motions of a path's blocks, in its order (it must hold nothing else). Axis values follow by
 /// continuity: the branch nearest to the values before, the first nearest to home. Throws InputError
 /// "unreachable" for a position under the joint law that the machine has no axis values for.
+/// `by_tool`: the machine with each tool in its spindle (BlockMove::tool), or one for whatever tool.
 std::vector<BlockMotion> block_motions(const toolpath::ToolPath& path,
-                                       const kinematics::MachineModel& machine);
+                                       std::span<const kinematics::MachineModel> by_tool);
+inline std::vector<BlockMotion> block_motions(const toolpath::ToolPath& path,
+                                              const kinematics::MachineModel& machine) {
+  return block_motions(path, std::span(&machine, 1));
+}
 
 /// Pose at s in [0,1]: exactly the block's poses at both ends.
 ToolPose pose_at(const BlockMotion& motion, double s);

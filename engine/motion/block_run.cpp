@@ -151,9 +151,12 @@ double run_length(std::span<const BlockMotion> motions, size_t first, size_t end
 }
 
 size_t run_end(std::span<const BlockMotion> motions, size_t first) {
-  const double feed = motions[first].block->feed_mm_s;
+  const toolpath::BlockMove& block = *motions[first].block;
+  const auto joins = [&](const toolpath::BlockMove& next) {
+    return next.feed_mm_s == block.feed_mm_s && next.tool == block.tool;
+  };
   size_t end = first + 1;
-  while (feed > 0.0 && end < motions.size() && motions[end].block->feed_mm_s == feed) ++end;
+  while (block.feed_mm_s > 0.0 && end < motions.size() && joins(*motions[end].block)) ++end;
   return end;
 }
 

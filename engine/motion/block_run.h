@@ -18,7 +18,8 @@ namespace swarf::motion {
 /// an axis would then exceed its speed, with what the feed covers while that axis goes its way at its limit.
 double run_length(std::span<const BlockMotion> motions, size_t first, size_t end);
 
-/// First block after `first` that does not belong to its run: a rapid is a run of its own.
+/// First block after `first` that does not belong to its run: a rapid is a run of its own, another tool
+/// begins another.
 size_t run_end(std::span<const BlockMotion> motions, size_t first);
 
 /// A sample and where it comes from.

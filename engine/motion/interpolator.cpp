@@ -33,11 +33,16 @@ constexpr double kJoinTolerance = 1e-6;
 /// Collects samples and solves the inverse for each.
 class Recorder {
  public:
-  Recorder(const toolpath::ToolPath& path, const kinematics::MachineModel& machine,
+  Recorder(const toolpath::ToolPath& path, std::span<const kinematics::MachineModel> by_tool,
            const cutter::Cutter& cutter, const MotionOptions& options)
-      : path_(path), machine_(machine), cutter_(cutter), options_(options), inverse_(machine) {
+      : path_(path),
+        machine_(by_tool.front()),
+        cutter_(cutter),
+        options_(options),
+        inverses_(by_tool.begin(), by_tool.end()) {
     result_.trajectory.period_s = options.period_s;
-    for (size_t i = 0; i < machine.axes.size(); ++i) q_[static_cast<Eigen::Index>(i)] = machine.axes[i].home;
+    for (size_t i = 0; i < machine_.axes.size(); ++i)
+      q_[static_cast<Eigen::Index>(i)] = machine_.axes[i].home;
   }
 
   void run(int element) {
@@ -46,7 +51,7 @@ class Recorder {
     if (const auto* move = std::get_if<FreeMove>(&what)) {
       if (move->feed_mm_s > 0.0) check_cycles((move->to.tip_W - move->from.tip_W).norm(), move->feed_mm_s);
       start_at(move->from, SampleKind::kRapid, {move->from.tip_W});
-      for (ToolSample& sample : sample_free_move(*move, machine_, inverse_, options_, q_)) record(sample);
+      for (ToolSample& sample : sample_free_move(*move, machine_, inverse(), options_, q_)) record(sample);
     } else {
       run_pass(std::get<SurfacePass>(what));
     }
@@ -57,10 +62,13 @@ class Recorder {
   void run_blocks(const std::vector<BlockMotion>& motions, size_t first, size_t end) {
     element_ = static_cast<int>(first);
     const toolpath::BlockMove& block = *motions[first].block;
+    tool_in_spindle_ = block.tool;
+    // Another tool's tip stands elsewhere.
+    joins_ = first == 0 || motions[first - 1].block->tool == block.tool;
     if (block.feed_mm_s > 0.0) check_cycles(run_length(motions, first, end), block.feed_mm_s);
     start_at(block.from, block.feed_mm_s > 0.0 ? SampleKind::kCutting : SampleKind::kRapid,
              {block.from.tip_W});
-    for (BlockTick& tick : sample_run(motions, first, end, inverse_, options_)) {
+    for (BlockTick& tick : sample_run(motions, first, end, inverse(), options_)) {
       if (tick.sample.element != element_) report_outside_reach();
       element_ = tick.sample.element;
       if (motions[first].block->law == toolpath::BlockLaw::kJoint) {
@@ -73,7 +81,7 @@ class Recorder {
   }
 
   MotionResult finish(const std::vector<BlockMotion>& motions) {
-    result_.statistics = measure_motion(result_.trajectory, path_, motions, machine_, inverse_, cutter_);
+    result_.statistics = measure_motion(result_.trajectory, path_, motions, machine_, inverse(), cutter_);
     rank_tick_costs();
     for (MotionFinding& fault : find_axis_faults(result_.trajectory, path_, machine_))
       result_.findings.push_back(std::move(fault));
@@ -89,7 +97,7 @@ class Recorder {
     start_at(contact_pose(pass, pass.t_start, cutter_.radius()), SampleKind::kCutting,
              {start.C, start.u, start.v});
     if (options_.mode == Mode::kOffline) {
-      for (ToolSample& sample : sample_offline_pass(pass, cutter_, machine_, inverse_, options_, q_))
+      for (ToolSample& sample : sample_offline_pass(pass, cutter_, machine_, inverse(), options_, q_))
         record(sample);
     } else {
       run_in_real_time(pass);
@@ -97,13 +105,13 @@ class Recorder {
   }
 
   void run_in_real_time(const SurfacePass& pass) {
-    SurfaceInterpolator interpolator(machine_, inverse_, cutter_, options_);
+    SurfaceInterpolator interpolator(machine_, inverse(), cutter_, options_);
     interpolator.begin(pass, q_);
     StepOutput out;
     while (!out.finished) {
       const auto begin = Clock::now();
       interpolator.step({}, out);
-      const Branch branch = inverse_.solve_nearest(out.pose, q_);
+      const Branch branch = inverse().solve_nearest(out.pose, q_);
       const auto end = Clock::now();
       tick_ns_.push_back(std::chrono::duration<double, std::nano>(end - begin).count());
       ToolSample sample;
@@ -117,14 +125,18 @@ class Recorder {
     }
   }
 
+  const kinematics::InverseKinematics& inverse() const {
+    return inverses_[inverses_.size() == 1 ? 0 : static_cast<size_t>(tool_in_spindle_)];
+  }
+
   struct Contact {
     Vec3 point_W = Vec3::Zero();
     double u = 0.0, v = 0.0;
   };
 
-  /// Records the very first pose; later ones must be where the element before ended.
+  /// Records the very first pose and that of a new tool; others must be where the element before ended.
   void start_at(const ToolPose& pose, SampleKind kind, const Contact& at) {
-    if (result_.trajectory.samples.empty()) {
+    if (result_.trajectory.samples.empty() || !joins_) {
       ToolSample sample;
       sample.pose = pose;
       sample.contact_W = at.point_W;
@@ -140,11 +152,12 @@ class Recorder {
                 fmt::format("element {} does not start where the one before ends", element_));
   }
 
-  void record(ToolSample& sample) { record(sample, inverse_.solve_nearest(sample.pose, q_)); }
+  void record(ToolSample& sample) { record(sample, inverse().solve_nearest(sample.pose, q_)); }
 
   void record(ToolSample& sample, const Branch& branch) {
     sample.t_s = static_cast<double>(result_.trajectory.samples.size()) * options_.period_s;
     sample.element = element_;
+    sample.tool = static_cast<int16_t>(tool_in_spindle_);
     if (branch.outcome != InverseOutcome::kUnreachable) {
       q_ = branch.q;
     } else if (outside_reach_++ == 0) {
@@ -193,7 +206,9 @@ class Recorder {
   const kinematics::MachineModel& machine_;
   const cutter::Cutter& cutter_;
   const MotionOptions& options_;
-  kinematics::InverseKinematics inverse_;
+  std::vector<kinematics::InverseKinematics> inverses_;  ///< by tool, or one for whatever tool
+  int tool_in_spindle_ = 0;
+  bool joins_ = true;  ///< the element starts where the one before ended
   kinematics::AxisValues q_ = kinematics::AxisValues::Zero();
   int element_ = 0;
   size_t outside_reach_ = 0;
@@ -223,12 +238,12 @@ std::vector<std::string> validate(const MotionOptions& options) {
   return problems;
 }
 
-MotionResult interpolate(const toolpath::ToolPath& path, const kinematics::MachineModel& machine,
+MotionResult interpolate(const toolpath::ToolPath& path, std::span<const kinematics::MachineModel> by_tool,
                          const cutter::Cutter& cutter, const MotionOptions& options, Progress& progress) {
   throw_if_invalid(options);
-  Recorder recorder(path, machine, cutter, options);
+  Recorder recorder(path, by_tool, cutter, options);
   const bool blocks = toolpath::holds_blocks(path);
-  const std::vector<BlockMotion> motions = blocks ? block_motions(path, machine) : std::vector<BlockMotion>{};
+  const std::vector<BlockMotion> motions = blocks ? block_motions(path, by_tool) : std::vector<BlockMotion>{};
   progress.begin("interpolate", static_cast<double>(path.elements.size()), "elements");
   for (size_t i = 0; i < path.elements.size() && !progress.stop_requested();) {
     if (blocks) {

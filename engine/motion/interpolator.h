@@ -6,10 +6,12 @@
 //            --> CL blocks    --> their own law (block_motion.h), by runs --+
 //
 // Every pass and move, and every run of CL blocks of one feed, starts and ends at rest; between them nothing
-// moves. The rotary branch is chosen once, nearest to home, and then follows by continuity.
+// moves. The rotary branch is chosen once, nearest to home, and then follows by continuity. The first block
+// of another tool begins with a sample of its own; how the axes come there is not part of the program.
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -98,7 +100,14 @@ struct MotionResult {
 /// Interpolates the whole path. Deterministic but for tick_ns_*. When the user stops it, the elements
 /// finished so far are returned. Throws InputError ("bad-options", "too-many-cycles") for input that cannot
 /// be used.
-MotionResult interpolate(const toolpath::ToolPath& path, const kinematics::MachineModel& machine,
+/// `by_tool`: the machine with each tool in its spindle (BlockMove::tool), or one for whatever tool.
+/// `cutter`: of surface passes.
+MotionResult interpolate(const toolpath::ToolPath& path, std::span<const kinematics::MachineModel> by_tool,
                          const cutter::Cutter& cutter, const MotionOptions& options, Progress& progress);
+inline MotionResult interpolate(const toolpath::ToolPath& path, const kinematics::MachineModel& machine,
+                                const cutter::Cutter& cutter, const MotionOptions& options,
+                                Progress& progress) {
+  return interpolate(path, std::span(&machine, 1), cutter, options, progress);
+}
 
 }  // namespace swarf::motion

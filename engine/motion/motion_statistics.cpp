@@ -51,13 +51,15 @@ class TickMeter {
 
   void measure(size_t k) {
     const ToolSample& sample = trajectory_.samples[k];
-    const ToolPose back = kinematics::forward(machine_, trajectory_.axes[k]);
+    const MachineModel& machine =
+        blocks_.empty() ? machine_ : *blocks_[static_cast<size_t>(sample.element)].machine;
+    const ToolPose back = kinematics::forward(machine, trajectory_.axes[k]);
     out_.fk_ik_error_max_mm = std::max(out_.fk_ik_error_max_mm, (back.tip_W - sample.pose.tip_W).norm());
     const double pole = inverse_.pole_distance(sample.pose.axis_W);
     if (pole < kinematics::kPoleTolerance) ++out_.singular_ticks;
     const auto& what = path_.elements[static_cast<size_t>(sample.element)].what;
     const ToolPose middle =
-        k > 0 ? kinematics::forward(machine_, 0.5 * (trajectory_.axes[k - 1] + trajectory_.axes[k])) : back;
+        k > 0 ? kinematics::forward(machine, 0.5 * (trajectory_.axes[k - 1] + trajectory_.axes[k])) : back;
     if (sample.kind == SampleKind::kCutting && pole < out_.pole_distance_min_rad) {
       out_.pole_distance_min_rad = pole;
       out_.pole_element = sample.element;
@@ -101,6 +103,8 @@ class TickMeter {
                      const ToolPose& middle) {
     const Vec3 chord = sample.pose.tip_W - before.pose.tip_W;
     const bool cutting = sample.kind == SampleKind::kCutting;
+    const BlockMove& last = *blocks_[static_cast<size_t>(before.element)].block;
+    if (last.tool != block.tool) return;  // another tool's tip: no way between them
     if (cutting) out_.path_length_mm += chord.norm();
     if (before.element != sample.element) return;
     const ToolPose exact = pose_at(blocks_[static_cast<size_t>(sample.element)], 0.5 * (before.u + sample.u));
@@ -129,6 +133,11 @@ class TickMeter {
   MotionStatistics& out_;
 };
 
+/// The sample stands where another tool begins: how the axes came there is not part of the program.
+bool tool_changes(const Trajectory& trajectory, size_t k) {
+  return trajectory.samples[k].tool != trajectory.samples[k - 1].tool;
+}
+
 std::vector<AxisStatistics> measure_axes(const Trajectory& trajectory, const MachineModel& machine) {
   std::vector<AxisStatistics> all;
   const std::vector<AxisValues>& q = trajectory.axes;
@@ -141,6 +150,10 @@ std::vector<AxisStatistics> measure_axes(const Trajectory& trajectory, const Mac
     for (size_t k = 1; k < q.size(); ++k) {
       axis.min = std::min(axis.min, q[k][row]);
       axis.max = std::max(axis.max, q[k][row]);
+      if (tool_changes(trajectory, k)) {
+        speed = 0.0;
+        continue;
+      }
       const double change = q[k][row] - q[k - 1][row];
       axis.travel += std::abs(change);
       const double before = speed;
@@ -241,7 +254,7 @@ void find_in_element(const Trajectory& trajectory, size_t begin, size_t end, con
       const double q = trajectory.axes[k][row];
       const double beyond = std::abs(kinematics::travel_excess(axis, q));
       if (beyond > kTravelTolerance) travel.see(beyond, q, q < axis.min ? axis.min : axis.max, k);
-      if (k == 0) continue;
+      if (k == 0 || tool_changes(trajectory, k)) continue;
       const double v = std::abs(q - trajectory.axes[k - 1][row]) / trajectory.period_s;
       if (v > axis.speed_max * (1.0 + kAxisSpeedTolerance))
         speed.see(v - axis.speed_max, v, axis.speed_max, k);

@@ -40,7 +40,8 @@ double block_seconds(const BlockMove& block) {
   return toolpath::tip_way(block) / block.feed_mm_s;
 }
 
-BlockPole pole_of(const BlockMotion& motion, int element, const MachineModel& machine, const Poles& poles) {
+BlockPole pole_of(const BlockMotion& motion, int element, const Poles& poles) {
+  const MachineModel& machine = *motion.machine;
   const BlockMove& block = *motion.block;
   const BlockEnds ends = ends_of(motion);
   BlockPole pole;
@@ -60,8 +61,7 @@ BlockPole pole_of(const BlockMotion& motion, int element, const MachineModel& ma
 }
 
 /// Sorts the path's blocks into those that are looked at and those that are not.
-std::vector<int> feed_blocks(const std::vector<BlockMotion>& motions, const MachineModel& machine,
-                             SingularityScan& scan) {
+std::vector<int> feed_blocks(const std::vector<BlockMotion>& motions, SingularityScan& scan) {
   std::vector<int> elements;
   for (size_t i = 0; i < motions.size(); ++i) {
     const BlockMove& block = *motions[i].block;
@@ -69,7 +69,7 @@ std::vector<int> feed_blocks(const std::vector<BlockMotion>& motions, const Mach
       ++scan.rapids;
     } else if (block.arc) {
       ++scan.arcs;
-    } else if (!reached(machine, ends_of(motions[i]))) {
+    } else if (!reached(*motions[i].machine, ends_of(motions[i]))) {
       ++scan.unreachable;
     } else {
       elements.push_back(static_cast<int>(i));
@@ -80,7 +80,7 @@ std::vector<int> feed_blocks(const std::vector<BlockMotion>& motions, const Mach
 
 /// Blocks in the order of their bounds are measured until the bound falls below the least that is kept.
 void find_worst(const std::vector<BlockMotion>& motions, const std::vector<BlockPole>& all,
-                const MachineModel& machine, SingularityScan& scan) {
+                SingularityScan& scan) {
   std::vector<size_t> order(all.size());
   std::iota(order.begin(), order.end(), size_t{0});
   std::stable_sort(order.begin(), order.end(),
@@ -94,8 +94,9 @@ void find_worst(const std::vector<BlockMotion>& motions, const std::vector<Block
     if (full && all[i].bound_mm <= scan.worst.back().error.segment.value) break;
     BlockSingularity block;
     block.pole = all[i];
-    block.ends = ends_of(motions[static_cast<size_t>(all[i].element)]);
-    block.error = kinematics::trajectory_error(machine, block.ends);
+    const BlockMotion& motion = motions[static_cast<size_t>(all[i].element)];
+    block.ends = ends_of(motion);
+    block.error = kinematics::trajectory_error(*motion.machine, block.ends);
     scan.worst.insert(std::lower_bound(scan.worst.begin(), scan.worst.end(), block, worse), block);
     if (full) scan.worst.pop_back();
   }
@@ -103,24 +104,26 @@ void find_worst(const std::vector<BlockMotion>& motions, const std::vector<Block
 
 }  // namespace
 
-std::optional<SingularityScan> scan_singularity(const toolpath::ToolPath& path, const MachineModel& machine,
-                                                double tolerance_mm) {
+std::optional<SingularityScan> scan_singularity(const toolpath::ToolPath& path,
+                                                std::span<const MachineModel> by_tool, double tolerance_mm) {
   if (!toolpath::holds_blocks(path)) return std::nullopt;
+  // Poles and axes are those of the machine, whatever its tool.
+  const MachineModel& machine = by_tool.front();
   const Poles poles = kinematics::find_poles(machine);
   if (poles.at.empty()) return std::nullopt;
   SingularityScan scan;
   scan.tolerance_mm = tolerance_mm;
   scan.outer_axis = machine.axes[static_cast<size_t>(poles.outer)].name;
   scan.inner_axis = machine.axes[static_cast<size_t>(poles.inner)].name;
-  const std::vector<BlockMotion> motions = block_motions(path, machine);
-  const std::vector<int> elements = feed_blocks(motions, machine, scan);
+  const std::vector<BlockMotion> motions = block_motions(path, by_tool);
+  const std::vector<int> elements = feed_blocks(motions, scan);
   scan.blocks = static_cast<int>(elements.size());
   if (elements.empty()) return std::nullopt;
 
   std::vector<BlockPole> all(elements.size());
   parallel_chunks(elements.size(), kChunk, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
-      all[i] = pole_of(motions[static_cast<size_t>(elements[i])], elements[i], machine, poles);
+      all[i] = pole_of(motions[static_cast<size_t>(elements[i])], elements[i], poles);
     }
   });
   scan.nearest = all.front();
@@ -128,14 +131,15 @@ std::optional<SingularityScan> scan_singularity(const toolpath::ToolPath& path, 
     if (pole.pole_distance_rad < scan.nearest.pole_distance_rad) scan.nearest = pole;
     if (pole.in_cone()) ++scan.in_cone;
   }
-  find_worst(motions, all, machine, scan);
-  const InverseKinematics inverse(machine);
+  find_worst(motions, all, scan);
   parallel_chunks(scan.worst.size(), 1, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       BlockSingularity& block = scan.worst[i];
-      block.analytic = kinematics::SingularityModel(machine, block.ends).greatest_deviation();
-      block.equal = equal_pieces(machine, inverse, block.ends, tolerance_mm);
-      const auto cuts = greedy_cuts(machine, inverse, block.ends, tolerance_mm);
+      const MachineModel& own = *motions[static_cast<size_t>(block.pole.element)].machine;
+      const InverseKinematics inverse(own);
+      block.analytic = kinematics::SingularityModel(own, block.ends).greatest_deviation();
+      block.equal = equal_pieces(own, inverse, block.ends, tolerance_mm);
+      const auto cuts = greedy_cuts(own, inverse, block.ends, tolerance_mm);
       if (cuts) block.greedy = static_cast<int>(cuts->size()) - 1;
     }
   });

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -48,8 +49,14 @@ struct SingularityScan {
 inline constexpr int kWorstBlocks = 10;
 
 /// None when the machine has no pole, or the path no feed block with a line. Deterministic for any number of
-/// threads. Blocks are those of block_motions(path, machine).
+/// threads. Blocks are those of block_motions(path, by_tool).
 std::optional<SingularityScan> scan_singularity(const toolpath::ToolPath& path,
-                                                const kinematics::MachineModel& machine, double tolerance_mm);
+                                                std::span<const kinematics::MachineModel> by_tool,
+                                                double tolerance_mm);
+inline std::optional<SingularityScan> scan_singularity(const toolpath::ToolPath& path,
+                                                       const kinematics::MachineModel& machine,
+                                                       double tolerance_mm) {
+  return scan_singularity(path, std::span(&machine, 1), tolerance_mm);
+}
 
 }  // namespace swarf::motion

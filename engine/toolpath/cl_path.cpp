@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/units.h"
+#include "toolpath/pass_counter.h"
 
 namespace swarf::toolpath {
 namespace {
@@ -16,41 +17,9 @@ constexpr double kWholeCircle = 1e-6;
 /// Cosine below which two axes count as opposite: within 0.008 degrees.
 constexpr double kReversed = -1.0 + 1e-8;
 
-/// Direction in which the tip leaves (at_end false) or arrives; zero when it stands.
-Vec3 tip_direction(const BlockMove& block, bool at_end) {
-  if (!block.arc) return (block.to.tip_W - block.from.tip_W).normalized();
-  const Vec3& tip = at_end ? block.to.tip_W : block.from.tip_W;
-  return block.arc->normal_W.cross(tip - block.arc->centre_W).normalized();
-}
-
 bool stands_still(const ClMove& move) {
   return !move.arc && move.from.tip_W == move.to.tip_W && move.from.axis_W == move.to.axis_W;
 }
-
-/// Numbers the passes as the blocks come.
-class PassCounter {
- public:
-  int next(const BlockMove& block) {
-    if (block.feed_mm_s == 0.0) {
-      open_ = false;
-      return -1;
-    }
-    const Vec3 leaving = tip_direction(block, false);
-    const bool moves = leaving.squaredNorm() > 0.0;
-    const bool corner =
-        moves && arriving_.squaredNorm() > 0.0 && arriving_.dot(leaving) < std::cos(kPassCorner_rad);
-    if (!open_ || corner) ++pass_;
-    open_ = true;
-    if (moves) arriving_ = tip_direction(block, true);
-    return pass_;
-  }
-  int count() const { return pass_ + 1; }
-
- private:
-  int pass_ = -1;
-  bool open_ = false;
-  Vec3 arriving_ = Vec3::Zero();
-};
 
 }  // namespace
 
@@ -73,7 +42,8 @@ double tip_way(const BlockMove& block) {
   return arc_angle(block) * block.arc->normal_W.cross(arm).norm();
 }
 
-ToolPath cl_path(const program::ClProgram& program, BlockLaw law, Diagnostics& diagnostics) {
+ToolPath cl_path(const program::ClProgram& program, BlockLaw law, Diagnostics& diagnostics,
+                 std::span<const int> tools) {
   ToolPath path;
   path.planner = "cl";
   path.elements.reserve(program.moves.size());
@@ -103,6 +73,7 @@ ToolPath cl_path(const program::ClProgram& program, BlockLaw law, Diagnostics& d
     block.law = own;
     block.feed_mm_s = move.feed_mm_s;
     block.dwell_s = move.dwell_s;
+    block.tool = move.tool < 0 || tools.empty() ? 0 : tools[static_cast<size_t>(move.tool)];
     block.pass = passes.next(block);
     (rapid ? path.link_length_mm : path.pass_length_mm) += tip_way(block);
     path.elements.push_back({std::move(block), 0, where});

@@ -39,7 +39,7 @@ TEST(ClPath, PassesEndAtRapidsAndCorners) {
 TEST(ClPath, AWholeCircleAndTheLongWayRound) {
   Diagnostics diagnostics;
   const ToolPath path = path_of(
-      "FEDRAT/60\nGOTO/10,0,0\nCIRCLE/0,0,0,0,0,1,10\nGOTO/10,0,0\nCIRCLE/0,0,0,0,0,-1,10\nGOTO/0,10,0\n",
+      "FEDRAT/60\nGOTO/10,0,0\nCIRCLE/0,0,0,0,0,1,10\nGOTO/10,0,0\nCIRCLE/0,0,0,0,0,1,10\nGOTO/0,10,0\n",
       BlockLaw::kTcp, diagnostics);
   ASSERT_EQ(path.elements.size(), 2U);
   EXPECT_DOUBLE_EQ(arc_angle(std::get<BlockMove>(path.elements[0].what)), 2 * kPi);
