@@ -17,7 +17,7 @@ bool is_scene(const std::string& file) {
   Diagnostics diagnostics;
   const ConfigTable table = ConfigTable::load(file, {}, diagnostics);
   diagnostics.throw_if_errors();
-  return table.has("program") || table.has("cl") || !table.has("axis");
+  return table.has("program") || table.has("cl") || table.has("nc") || !table.has("axis");
 }
 
 std::string check_scene(const std::string& file) {
@@ -26,7 +26,7 @@ std::string check_scene(const std::string& file) {
   Diagnostics diagnostics;
   const toolpath::ToolPath path = sim::job_path(job, diagnostics);
   print_diagnostics(diagnostics.list());
-  if (job.cl) {
+  if (job.scene.has_blocks()) {
     return fmt::format("scene is right: {} blocks, {:.0f} mm of feed moves, {:.0f} mm of rapids",
                        path.elements.size(), path.pass_length_mm, path.link_length_mm);
   }

@@ -35,7 +35,7 @@ void add_move(program::ClProgram& program, const ToolPose& to, double feed_mm_s)
 /// The path as CL data: one GOTO for each control cycle in contact, for both ends of a free move.
 program::ClProgram cl_program(const sim::Job& job, const toolpath::ToolPath& path,
                               const motion::Trajectory& trajectory) {
-  const cutter::Cutter& c = job.scene.cutter;
+  const cutter::Cutter& c = job.scene.tools.front();
   program::ClProgram program;
   program.notes.push_back({"PARTNO", job.scene.name, 0});
   program.tools.push_back({c.number, {}, {}});
@@ -58,9 +58,13 @@ std::string planned_text(const sim::Job& job, toolpath::ToolPath& path) {
   path = sim::job_path(job, diagnostics);
   print_diagnostics(diagnostics.list());
   if (job.cl) return program::write_cl(*job.cl);
+  if (job.scene.has_blocks()) {
+    throw InputError("nothing-to-plan", {job.scene.file}, "the scene's program is an NC program",
+                     fmt::format("run it: swarf run {}", job.scene.file));
+  }
   TerminalProgress progress;
-  const motion::MotionResult motion =
-      motion::interpolate(path, job.machine.model, job.scene.cutter, job.scene.motion, progress);
+  const motion::MotionResult motion = motion::interpolate(
+      path, sim::machines_by_tool(job), job.scene.tools.front(), job.scene.motion, progress);
   return program::write_cl(cl_program(job, path, motion.trajectory));
 }
 

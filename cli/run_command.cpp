@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <map>
 #include <memory>
 
 #include "base/parallel.h"
@@ -25,13 +27,34 @@ struct RunOptions {
   bool no_render = false, json = false, record = false, check = false;
 };
 
+void print_finding(const sim::Finding& finding) {
+  fmt::print("  finding: {}\n",
+             format({finding.code, finding.severity, finding.where, finding.text, finding.fix}));
+  if (!finding.block.empty()) fmt::print("    t = {:.3f} s: {}\n", finding.t_s, finding.block);
+}
+
+/// By code, in the order in which the codes first appear: the first of each, and how many more there are.
+void print_findings(const std::vector<sim::Finding>& findings) {
+  constexpr size_t kPrinted = 5;
+  std::vector<std::string> codes;
+  std::map<std::string, std::vector<const sim::Finding*>> by_code;
+  for (const sim::Finding& finding : findings) {
+    std::vector<const sim::Finding*>& same = by_code[finding.code];
+    if (same.empty()) codes.push_back(finding.code);
+    same.push_back(&finding);
+  }
+  for (const std::string& code : codes) {
+    const std::vector<const sim::Finding*>& same = by_code[code];
+    for (size_t i = 0; i < std::min(kPrinted, same.size()); ++i) print_finding(*same[i]);
+    if (same.size() > kPrinted)
+      fmt::print("  and {} more of {} in findings.json\n", same.size() - kPrinted, code);
+  }
+}
+
 void print_outcome(const sim::Job& job, const sim::Result& result, const std::string& folder) {
   fmt::print("\n{}\n", job.scene.title);
   print_table(reports::summary_lines(job, result));
-  for (const sim::Finding& finding : result.findings) {
-    fmt::print("  finding: {}\n",
-               format({finding.code, finding.severity, finding.where, finding.text, finding.fix}));
-  }
+  print_findings(result.findings);
   fmt::print("  {}\n  report: {}\n", sim::passes(result) ? "PASS: every limit of [accept] holds" : "FINDINGS",
              (std::filesystem::path(folder) / "report.html").string());
 }
@@ -95,8 +118,9 @@ void add_stock_options(CLI::App& command, RunOptions& options) {
       "bit-identical to that of an uninterrupted run");
   command
       .add_option("--save-stock-after", options.save_after,
-                  "save the stock after these places in the program: lines as findings name them (13) and "
-                  "program times (12.5s), separated by commas; stock_after_*.vdb in the results")
+                  "save the stock after these places in the program: lines as findings name them (13), "
+                  "program times (12.5s) and tools (T5, T=NAME), separated by commas; stock_after_*.vdb in "
+                  "the results")
       ->type_name("PLACE[,PLACE...]");
   command
       .add_flag("--record", options.record,

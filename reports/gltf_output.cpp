@@ -74,9 +74,9 @@ void write_part_glb(const FinishedRun& run, const DisplayMesh& part, const std::
   render::colour_by_deviation(measured, scale);
   render::GltfScene scene;
   if (!measured.triangles.empty()) {
-    scene.nodes.push_back({"machined surface", &measured, {{1.0F, 1.0F, 1.0F}, 0.0F, 0.6F}, -1, {}, {}});
+    scene.nodes.push_back({"machined surface", &measured, {{1.0F, 1.0F, 1.0F}, 0.0F, 0.6F}, -1, {}, {}, {}});
   }
-  if (!rest.triangles.empty()) scene.nodes.push_back({"part", &rest, kStockMaterial, -1, {}, {}});
+  if (!rest.triangles.empty()) scene.nodes.push_back({"part", &rest, kStockMaterial, -1, {}, {}, {}});
   scene.lines = fan_lines(run);
   scene.extras = {{"scene", run.job.scene.name},
                   {"deviation_scale_um", fmt::format("{:g}", scale)},
@@ -99,13 +99,19 @@ void write_machine_glb(const FinishedRun& run, const DisplayMesh& part, const st
   const double scale = animation_scale(run);
   std::vector<double> times;
   std::vector<std::vector<Pose>> link_poses(run.job.machine.links.size());
-  std::vector<Pose> tool_poses, work_poses;
+  const size_t tools = run.job.scene.tools.size();
+  std::vector<std::vector<Pose>> tool_poses(tools);
+  std::vector<std::vector<uint8_t>> tool_shown(tools);
+  std::vector<Pose> work_poses;
   for (const size_t i : samples) {
     const kinematics::AxisValues& q = run.trajectory.axes[i];
     times.push_back(run.trajectory.samples[i].t_s / scale);
     const std::vector<Pose> poses = machine::link_poses(run.job.machine, q);
     for (size_t link = 0; link < poses.size(); ++link) link_poses[link].push_back(poses[link]);
-    tool_poses.push_back(view.tool_pose(q));
+    for (size_t tool = 0; tool < tools; ++tool) {
+      tool_poses[tool].push_back(view.tool_pose(q, tool));
+      tool_shown[tool].push_back(run.tool_at(i) == tool ? 1 : 0);
+    }
     work_poses.push_back(view.work_pose(q));
   }
   render::GltfScene scene;
@@ -113,13 +119,19 @@ void write_machine_glb(const FinishedRun& run, const DisplayMesh& part, const st
     const machine::Link& l = run.job.machine.links[link];
     if (!l.mesh.triangles.empty()) {
       scene.nodes.push_back(
-          {l.name, &l.mesh, {l.colour, l.metalness, l.roughness}, -1, times, link_poses[link]});
+          {l.name, &l.mesh, {l.colour, l.metalness, l.roughness}, -1, times, link_poses[link], {}});
     }
   }
-  scene.nodes.push_back({"cutter", &view.tool(), kToolMaterial, -1, times, tool_poses});
-  const int cutter = static_cast<int>(scene.nodes.size()) - 1;
-  scene.nodes.push_back({"holder", &view.holder(), kHolderMaterial, cutter, {}, {view.holder_in_tool()}});
-  scene.nodes.push_back({"part", &shown, kStockMaterial, -1, times, work_poses});
+  for (size_t tool = 0; tool < tools; ++tool) {
+    const std::string name =
+        tools > 1 ? fmt::format(" {}", cutter::call_name(run.job.scene.tools[tool])) : "";
+    scene.nodes.push_back(
+        {"cutter" + name, &view.cutter(tool), kToolMaterial, -1, times, tool_poses[tool], tool_shown[tool]});
+    const int cutter = static_cast<int>(scene.nodes.size()) - 1;
+    scene.nodes.push_back(
+        {"holder" + name, &view.holder(tool), kHolderMaterial, cutter, {}, {view.holder_in_tool(tool)}, {}});
+  }
+  scene.nodes.push_back({"part", &shown, kStockMaterial, -1, times, work_poses, {}});
   scene.extras = {{"scene", run.job.scene.name}, {"program_seconds_per_second", fmt::format("{:g}", scale)}};
   render::write_glb(path, scene);
 }

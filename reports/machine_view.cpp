@@ -58,29 +58,32 @@ TriMesh holder_figure(const cutter::Cutter& c) {
 
 }  // namespace
 
-MachineView::MachineView(const sim::Job& job)
-    : job_(job),
-      tool_(render::tool_mesh(tool_figure(job.scene.cutter))),
-      holder_(holder_figure(job.scene.cutter)) {}
+MachineView::MachineView(const sim::Job& job) : job_(job) {
+  const std::vector<kinematics::MachineModel> machines = sim::machines_by_tool(job);
+  for (size_t i = 0; i < machines.size(); ++i) {
+    const cutter::Cutter& tool = job.scene.tools[i];
+    figures_.push_back({render::tool_mesh(tool_figure(tool)), holder_figure(tool), machines[i]});
+  }
+}
 
 Pose MachineView::work_pose(const kinematics::AxisValues& q) const {
   const auto link = static_cast<size_t>(job_.machine.work_link);
   return machine::link_poses(job_.machine, q)[link] * job_.machine.model.X_MW;
 }
 
-Pose MachineView::tool_pose(const kinematics::AxisValues& q) const {
+Pose MachineView::tool_pose(const kinematics::AxisValues& q, size_t tool) const {
   const auto link = static_cast<size_t>(job_.machine.tool_link);
-  const kinematics::MachineModel& model = job_.machine.model;
+  const kinematics::MachineModel& model = figures_[tool].machine;
   return machine::link_poses(job_.machine, q)[link] * standing_on(model.tip_M, model.tool_axis_M);
 }
 
-Pose MachineView::holder_in_tool() const {
+Pose MachineView::holder_in_tool(size_t tool) const {
   Pose pose = Pose::Identity();
-  pose.translation() = Vec3(0.0, 0.0, job_.scene.cutter.length_mm);
+  pose.translation() = Vec3(0.0, 0.0, job_.scene.tools[tool].length_mm);
   return pose;
 }
 
-std::vector<render::DrawItem> MachineView::items(const kinematics::AxisValues& q,
+std::vector<render::DrawItem> MachineView::items(const kinematics::AxisValues& q, size_t tool,
                                                  const TriMesh* stock_mesh) const {
   std::vector<render::DrawItem> list;
   const std::vector<Pose> poses = machine::link_poses(job_.machine, q);
@@ -89,9 +92,9 @@ std::vector<render::DrawItem> MachineView::items(const kinematics::AxisValues& q
     if (link.mesh.triangles.empty()) continue;
     list.push_back({&link.mesh, poses[i], {link.colour, link.metalness, link.roughness}});
   }
-  const Pose X_MT = tool_pose(q);
-  list.push_back({&tool_, X_MT, kToolMaterial});
-  list.push_back({&holder_, X_MT * holder_in_tool(), kHolderMaterial});
+  const Pose X_MT = tool_pose(q, tool);
+  list.push_back({&cutter(tool), X_MT, kToolMaterial});
+  list.push_back({&holder(tool), X_MT * holder_in_tool(tool), kHolderMaterial});
   if (stock_mesh != nullptr) list.push_back({stock_mesh, work_pose(q), kStockMaterial, true});
   return list;
 }

@@ -1,6 +1,8 @@
 // The machine as things to draw: links, cutter, holder and stock at given axis positions.
 #pragma once
 
+#include <vector>
+
 #include "kinematics/machine_model.h"
 #include "render/draw_list.h"
 #include "sim/scene.h"
@@ -15,27 +17,36 @@ struct FinishedRun {
   const motion::Trajectory& trajectory;
   const stock::Stock& stock;
   const std::vector<stock::SurfaceDexels>& dexels;
+
+  /// In the spindle at this sample: index into Scene::tools.
+  size_t tool_at(size_t sample) const { return static_cast<size_t>(trajectory.samples[sample].tool); }
 };
 
-/// Meshes of cutter and holder, made once from the scene's [cutter].
+/// Meshes of cutters and holders, made once from the scene's tools. `tool`: index into Scene::tools.
 class MachineView {
  public:
   explicit MachineView(const sim::Job& job);
 
-  /// Links, cutter, holder and the given stock mesh (work frame; may be null), in the machine frame at q.
-  std::vector<render::DrawItem> items(const kinematics::AxisValues& q, const TriMesh* stock_mesh) const;
+  /// Links, cutter and holder in the spindle, and the given stock mesh (work frame; may be null), in the
+  /// machine frame at q.
+  std::vector<render::DrawItem> items(const kinematics::AxisValues& q, size_t tool,
+                                      const TriMesh* stock_mesh) const;
   /// Work frame to machine frame at q.
   Pose work_pose(const kinematics::AxisValues& q) const;
   /// Tool frame (tip, axis +Z) to machine frame at q.
-  Pose tool_pose(const kinematics::AxisValues& q) const;
-  const TriMesh& tool() const { return tool_; }
-  const TriMesh& holder() const { return holder_; }
+  Pose tool_pose(const kinematics::AxisValues& q, size_t tool) const;
+  const TriMesh& cutter(size_t tool) const { return figures_[tool].cutter; }
+  const TriMesh& holder(size_t tool) const { return figures_[tool].holder; }
   /// The holder's nose in the tool frame.
-  Pose holder_in_tool() const;
+  Pose holder_in_tool(size_t tool) const;
 
  private:
+  struct Figure {
+    TriMesh cutter, holder;
+    kinematics::MachineModel machine;  ///< with this tool
+  };
   const sim::Job& job_;
-  TriMesh tool_, holder_;
+  std::vector<Figure> figures_;  ///< by tool
 };
 
 inline constexpr render::Material kStockMaterial{{0.62F, 0.64F, 0.67F}, 0.55F, 0.38F};

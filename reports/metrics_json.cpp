@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "base/units.h"
+#include "reports/tools_table.h"
 
 namespace swarf::reports {
 namespace {
@@ -192,6 +194,31 @@ Json singularity_json(const toolpath::ToolPath& path, const motion::SingularityS
           {"unreachable_not_measured", scan.unreachable}};
 }
 
+/// Tools of the scene with the time that each stood in the spindle.
+Json tools_json(const sim::Job& job, const sim::Result& result) {
+  const std::vector<double> times = time_by_tool(job, result.main.motion.trajectory);
+  Json list = Json::array();
+  for (size_t i = 0; i < times.size(); ++i) {
+    const cutter::Cutter& tool = job.scene.tools[i];
+    list.push_back({{"number", tool.number},
+                    {"name", tool.name},
+                    {"cutter", cutter::describe(tool)},
+                    {"gauge_length_mm", cutter::gauge_length(tool)},
+                    {"time_s", times[i]}});
+  }
+  return list;
+}
+
+Json bad_cuts_json(const sim::Result& result) {
+  const auto count = [&](bool rapid) {
+    const auto& cuts = result.cut.state.bad_cuts;
+    return std::count_if(cuts.begin(), cuts.end(), [&](const sim::BadCut& cut) {
+      return (cut.kind == sim::BadCutKind::kRapid) == rapid;
+    });
+  };
+  return {{"rapids_in_material", count(true)}, {"spindle_wrong", count(false)}};
+}
+
 std::string severity_name(Severity severity) {
   if (severity == Severity::kError) return "error";
   return severity == Severity::kWarning ? "warning" : "note";
@@ -221,6 +248,8 @@ std::string metrics_json(const sim::Job& job, const sim::Result& result, const R
             {"planners", comparison_json(result.planners)},
             {"interpolators", comparison_json(result.modes)},
             {"collisions", collisions_json(result.clearance)},
+            {"bad_cuts", bad_cuts_json(result)},
+            {"tools", tools_json(job, result)},
             {"render", {{"frames", render.frames}, {"frame_ms_median", render.frame_ms_median}}},
             {"checks",
              {{"stock_map", result.cut.map_checks},
@@ -245,6 +274,7 @@ std::string findings_json(const sim::Result& result) {
                       {"fix", finding.fix},
                       {"file", finding.where.file},
                       {"line", finding.where.line},
+                      {"block", finding.block},
                       {"t_s", finding.t_s}});
     }
   }

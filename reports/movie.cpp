@@ -20,16 +20,19 @@ namespace {
 class MovieStock {
  public:
   explicit MovieStock(const FinishedRun& run)
-      : stock_(run.job.scene.stock.box_W, run.job.scene.movie.voxel_mm),
+      : run_(run),
+        stock_(run.job.scene.stock.box_W, run.job.scene.movie.voxel_mm),
         sweeps_(sim::merged_sweeps(run.trajectory, run.job.scene).sweeps),
-        solid_(run.job.scene.cutter) {}
+        solids_(sim::tool_solids(run.job.scene)) {}
 
   /// Cuts everything up to and including this sample and meshes what is left. Runs beside the drawing of the
   /// frame before: the software renderer's vertex work leaves the second processor idle.
   TriMesh at_sample(size_t sample) {
     size_t end = done_;
     while (end < sweeps_.size() && sweeps_[end].block <= sample) ++end;
-    stock_.cut(std::span(sweeps_).subspan(done_, end - done_), solid_);
+    sim::for_each_tool(
+        std::span(sweeps_).subspan(done_, end - done_), [&](uint32_t at) { return run_.tool_at(at); },
+        [&](size_t tool, std::span<const stock::Sweep> part) { stock_.cut(part, solids_[tool]); });
     done_ = end;
     TriMesh mesh = mesher_.mesh();
     mesh::split_creases(mesh, kCreaseRad);
@@ -37,10 +40,11 @@ class MovieStock {
   }
 
  private:
+  const FinishedRun& run_;
   stock::Stock stock_;
   stock::StockMesher mesher_{stock_};
   std::vector<stock::Sweep> sweeps_;
-  stock::CutterSolid solid_;
+  std::vector<stock::CutterSolid> solids_;  ///< by tool
   size_t done_ = 0;
 };
 
@@ -54,8 +58,12 @@ std::vector<std::string> caption(const FinishedRun& run, size_t i) {
     axes += fmt::format("{}{} {:8.2f}{}", axes.empty() ? "" : "   ", axis.name, rotary ? deg_from_rad(q) : q,
                         rotary ? "°" : "");
   }
-  return {fmt::format("t {:6.2f} s   F {:5.0f} mm/min", sample.t_s, mm_min_from_mm_s(sample.feed_mm_s)),
-          axes};
+  const std::vector<cutter::Cutter>& tools = run.job.scene.tools;
+  const std::string tool =
+      tools.size() > 1 ? fmt::format("   {}", cutter::call_name(tools[run.tool_at(i)])) : "";
+  return {
+      fmt::format("t {:6.2f} s   F {:5.0f} mm/min{}", sample.t_s, mm_min_from_mm_s(sample.feed_mm_s), tool),
+      axes};
 }
 
 double median(std::vector<double> values) {
@@ -93,7 +101,7 @@ RenderStatistics make_movie(const FinishedRun& run, const std::string& path, con
     const size_t sample = sample_of(frame);
     const TriMesh mesh = next.get();
     if (frame + 1 < frames) next = mesh_for(frame + 1);
-    list.items = view.items(run.trajectory.axes[sample], &mesh);
+    list.items = view.items(run.trajectory.axes[sample], run.tool_at(sample), &mesh);
     render::Image image = renderer.draw(list);
     render::draw_caption(image, caption(run, sample));
     movie.add(image);

@@ -103,7 +103,8 @@ std::string finding_row(const ReportFinding& finding) {
   return fmt::format(R"(<tr><td class="nowrap">{}{}</td><td><code>{}</code></td><td class="prose">{}{}</td>)"
                      R"(<td><code>{}</code></td><td class="number">{}</td></tr>)",
                      symbol(look.symbol), look.word, escape(finding.code), escape(finding.text),
-                     element("span", "fix", finding.fix), escape(place_of(finding)), time);
+                     element("span", "fix", finding.fix),
+                     escape(place_of(finding)) + element("span", "fix", finding.block), time);
 }
 
 std::string table_open(const std::vector<Column>& columns, const std::string& caption) {

@@ -31,8 +31,8 @@ void take_measures(const FinishedRun& run, const stock::SurfaceDexels& dexels, T
       if (!foot || as_vec3(mesh.normals[i]).dot(foot->normal) < kFaceCosine) continue;
       mesh.deviation_um[i] = static_cast<float>(um_from_mm(measure::height_at(dexels, foot->u, foot->v)));
       const uint32_t block = measure::block_at(dexels, foot->u, foot->v);
-      // A CL job's blocks are sweeps, not cycles, and mostly cut with the flank.
-      if (block == stock::kUncut || run.job.cl) continue;
+      // The blocks of CL and NC jobs are sweeps, not cycles, and mostly cut with the flank.
+      if (block == stock::kUncut || run.job.scene.has_blocks()) continue;
       // The bottom of a flat end left this facet, so the tool's axis is its exact normal.
       const Vec3& axis = run.trajectory.samples[block].pose.axis_W;
       if (axis.dot(foot->normal) < kFaceCosine) continue;

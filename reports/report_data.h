@@ -47,6 +47,7 @@ struct ReportFinding {
   std::string fix{};       ///< the smallest change that would help; may be empty
   SourceLocation where{};  ///< the block; file empty: not tied to one
   double time_s = std::numeric_limits<double>::quiet_NaN();  ///< program time; NaN: not tied to one
+  std::string block{};  ///< the program's text there; empty: not tied to a line
 };
 
 struct Column {

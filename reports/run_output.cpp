@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -19,6 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::array<const char*, 3> kProgramKeys{"program", "cl", "nc"};  // order of ProgramKind
 constexpr double kPartGlbError = 2e-3;  // mm; a fifth of a usual scallop, far below a pixel
 
 /// Copies of the inputs, so that the folder can be rendered and exported on its own.
@@ -26,13 +28,20 @@ void keep_inputs(const PendingFolder& folder, const sim::Job& job, const OutputO
   const fs::path input = folder.file("input");
   fs::create_directories(input);
   fs::copy_file(job.scene.file, input / "scene.toml");
-  const std::string program = job.cl ? "program.cl" : "program.nc";
+  const std::string program =
+      "program" + (job.scene.has_blocks() ? fs::path(job.scene.program_file).extension().string() : ".nc");
   fs::copy_file(job.scene.program_file, input / program);
   fs::copy(fs::path(job.scene.machine_file).parent_path(), input / "machine", fs::copy_options::recursive);
   std::vector<std::string> overrides = options.overrides;
   overrides.push_back(
       fmt::format("machine=\"machine/{}\"", fs::path(job.scene.machine_file).filename().string()));
-  overrides.push_back(fmt::format("{}=\"{}\"", job.cl ? "cl" : "program", program));
+  overrides.push_back(
+      fmt::format("{}=\"{}\"", kProgramKeys.at(static_cast<size_t>(job.scene.kind)), program));
+  if (!job.scene.tool_table_file.empty()) {
+    const std::string table = "tools" + fs::path(job.scene.tool_table_file).extension().string();
+    fs::copy_file(job.scene.tool_table_file, input / table);
+    overrides.push_back(fmt::format("tool_table=\"{}\"", table));
+  }
   if (job.scene.design.kind == sim::DesignKind::kSurface) {
     fs::copy_file(job.scene.design.surface_file, input / "design.nc");
     overrides.push_back("design.surface=\"design.nc\"");
@@ -60,8 +69,9 @@ void write_pictures(const PendingFolder& folder, const FinishedRun& run, const T
   std::vector<Picture> pictures{
       {StillKind::kMachine, "still_machine.png", "machine", "The machine near the middle of the program."},
       {StillKind::kPart, "still_part.png", "iso",
-       run.job.cl ? "The finished part."
-                  : "The finished part: strip lights break at each ridge, so every band is one pass."},
+       run.job.scene.has_blocks()
+           ? "The finished part."
+           : "The finished part: strip lights break at each ridge, so every band is one pass."},
       {StillKind::kFan, "still_fan.png", "iso", "Paths and tool axes (Lin & Koren, Fig. 13)."}};
   if (!run.dexels.empty()) {
     pictures.insert(pictures.begin() + 2, {StillKind::kDeviation, "still_deviation.png", "iso",
@@ -86,8 +96,7 @@ void write_run(PendingFolder& folder, const sim::Job& job, sim::Result& result, 
                Progress& progress) {
   keep_inputs(folder, job, options);
   progress.begin("write results", 3, "files");
-  sim::write_trajectory(folder.file("trajectory.csv"), result.main.motion.trajectory, result.main.path,
-                        job.machine.model);
+  sim::write_trajectory(folder.file("trajectory.csv"), result.main.motion.trajectory, result.main.path, job);
   progress.advance(1);
   result.stock->save(folder.file("stock.vdb"), result.cut.metadata);
   progress.advance(2);
@@ -140,8 +149,7 @@ StoredRun read_run(const std::string& folder) {
   sim::Job job = sim::load_job((root / "input" / "scene.toml").string(),
                                json.at("overrides").get<std::vector<std::string>>());
   job.scene.name = json.value("scene", job.scene.name);
-  motion::Trajectory trajectory =
-      sim::read_trajectory((root / "trajectory.csv").string(), job.machine.model, job.scene.motion.period_s);
+  motion::Trajectory trajectory = sim::read_trajectory((root / "trajectory.csv").string(), job);
   StoredRun run{std::move(job), std::move(trajectory), stock::Stock::load((root / "stock.vdb").string()), {}};
   const std::vector<stock::RayFieldPtr> fields = sim::design_rays(run.job);
   for (size_t i = 0; i < fields.size(); ++i) {

@@ -133,9 +133,9 @@ std::vector<Plot> run_plots(const sim::Job& job, const sim::Result& result) {
                           axis_plot(job, trajectory, AxisKind::kRotary, false),
                           axis_plot(job, trajectory, AxisKind::kLinear, true),
                           axis_plot(job, trajectory, AxisKind::kRotary, true)};
-  if (!result.main.ridges.empty() || !job.cl) plots.push_back(scallop_plot(result));
+  if (!result.main.ridges.empty() || !job.scene.has_blocks()) plots.push_back(scallop_plot(result));
   if (!result.main.dexels.empty()) plots.push_back(height_plot(job, result));
-  if (!job.cl) plots.push_back(fig6_plot());
+  if (!job.scene.has_blocks()) plots.push_back(fig6_plot());
   return plots;
 }
 

@@ -16,6 +16,7 @@
 #include "reports/run_plots.h"
 #include "reports/singularity_section.h"
 #include "reports/so_paper.h"
+#include "reports/tools_table.h"
 
 namespace swarf::reports {
 namespace {
@@ -99,7 +100,7 @@ std::vector<KeyNumber> key_numbers(const sim::Result& result) {
 std::vector<ReportFinding> findings_of(const sim::Result& result) {
   std::vector<ReportFinding> list;
   for (const sim::Finding& f : result.findings)
-    list.push_back({f.code, f.severity, f.text, f.fix, f.where, f.t_s});
+    list.push_back({f.code, f.severity, f.text, f.fix, f.where, f.t_s, f.block});
   return list;
 }
 
@@ -180,6 +181,17 @@ Table axis_table(const sim::Job& job, const sim::Result& result) {
   return table;
 }
 
+/// Rapids in material, cuts with a spindle that stands or turns the wrong way.
+Check rapids_check(const sim::Job& job, const sim::Result& result) {
+  const char* const what = "Rapids in material, spindle while cutting";
+  if (!job.scene.has_blocks()) {
+    return {what, "", "surface blocks: the links are planned above the surface", Check::State::kNotChecked};
+  }
+  const size_t found = result.cut.state.bad_cuts.size();
+  return {what, fmt::format("{} findings; material less than a voxel deep is not counted", found), "",
+          found == 0 ? Check::State::kHolds : Check::State::kFails};
+}
+
 std::vector<Check> checks_of(const sim::Job& job, const sim::Result& result, bool rendered) {
   using State = Check::State;
   const motion::MotionStatistics& motion = result.main.motion.statistics;
@@ -196,7 +208,8 @@ std::vector<Check> checks_of(const sim::Job& job, const sim::Result& result, boo
       {"Sweeps of the level set",
        fmt::format("{} sweeps stay within {:.3f} µm of the {} {}", result.merged_sweeps,
                    um_from_mm(result.sweep_bound_mm),
-                   job.cl ? result.main.path.elements.size() : motion.ticks, job.cl ? "blocks" : "cycles"),
+                   job.scene.has_blocks() ? result.main.path.elements.size() : motion.ticks,
+                   job.scene.has_blocks() ? "blocks" : "cycles"),
        ""},
       {"Invariants of the level set",
        result.cut.broken_invariant.empty()
@@ -207,6 +220,7 @@ std::vector<Check> checks_of(const sim::Job& job, const sim::Result& result, boo
       {"Shank and holder against the stock",
        fmt::format("{} contacts at {} poses", clearance.contacts, clearance.checked_poses), "",
        state(clearance.contacts == 0)},
+      rapids_check(job, result),
       {"Machine parts against each other", "", "collision of meshes is not part of this version",
        State::kNotChecked},
       {"Cutter load, spindle power, deflection", "", "the simulation is geometric", State::kNotChecked}};
@@ -223,7 +237,7 @@ std::vector<Check> checks_of(const sim::Job& job, const sim::Result& result, boo
                                                    result.cross_check.max_um, result.cross_check.bound_um),
                                        "", state(result.cross_check.holds)});
   }
-  if (job.cl) {
+  if (job.scene.has_blocks()) {
     checks.push_back(
         {"Speed at the corners between blocks", "",
          "a run of one feed passes its corners at full feed: look-ahead is not part of this version",
@@ -238,7 +252,7 @@ std::vector<Check> checks_of(const sim::Job& job, const sim::Result& result, boo
 }
 
 const char* execution_of(const sim::Job& job) {
-  if (!job.cl)
+  if (!job.scene.has_blocks())
     return "every cycle is one pose of the tool tip in the work frame; axes are linear inside a cycle";
   switch (job.scene.block_law) {
     case toolpath::BlockLaw::kTcp:
@@ -279,8 +293,19 @@ std::string holder_fact(const cutter::Cutter& cutter) {
   return text;
 }
 
+FactGroup tool_facts(const sim::Job& job) {
+  FactGroup group{"Machine and tools", {{"Machine", job.machine.model.name}}};
+  for (const cutter::Cutter& tool : job.scene.tools) {
+    group.facts.push_back({cutter::call_name(tool), cutter::describe(tool)});
+    group.facts.push_back({"its solid", solid_fact(tool)});
+    group.facts.push_back({"its holder", holder_fact(tool)});
+    if (!job.machine.model.gauge_M) continue;
+    group.facts.push_back({"gauge line to tip", fmt::format("{:g} mm", cutter::gauge_length(tool))});
+  }
+  return group;
+}
+
 std::vector<FactGroup> facts_of(const sim::Job& job, const sim::Result& result, const RunFiles& files) {
-  const cutter::Cutter& c = job.scene.cutter;
   const motion::MotionStatistics& motion = result.main.motion.statistics;
   const stock::CutStatistics& cut = result.stock->statistics();
   const Vec3 size = job.scene.stock.box_W.size();
@@ -294,11 +319,7 @@ std::vector<FactGroup> facts_of(const sim::Job& job, const sim::Result& result, 
             {"Start", fmt::format("tip at ({:.2f}, {:.2f}, {:.2f}) mm: the first complete position",
                                   first.pose.tip_W.x(), first.pose.tip_W.y(), first.pose.tip_W.z())},
             {"Cycles", fmt::format("{}", motion.ticks)}}},
-          {"Machine and tool",
-           {{"Machine", job.machine.model.name},
-            {"Cutter", fmt::format("T{} {}", c.number, cutter::describe(c))},
-            {"Cutter's solid", solid_fact(c)},
-            {"Holder", holder_fact(c)}}},
+          tool_facts(job),
           {"Stock",
            {{"Box", fmt::format("{:g} x {:g} x {:g} mm", size.x(), size.y(), size.z())},
             {"Voxel", fmt::format("{:g} mm", job.scene.stock.voxel_mm)},
@@ -348,7 +369,7 @@ Lines surface_lines(const sim::Job& job, const sim::Result& result) {
   const measure::SurfaceMetrics& s = result.main.surface;
   if (!job.has_design()) return {{"design", "none: the finished part is not measured"}};
   Lines lines;
-  if (job.cl) {
+  if (job.scene.has_blocks()) {
     lines.emplace_back("design", job.scene.design.name);
     lines.emplace_back("excess", fmt::format("{:.3f} um highest material", s.excess_max_um));
     if (s.ridges > 0) lines.emplace_back("scallop", fmt::format("{:.3f} um highest", s.scallop_max_um));
@@ -364,6 +385,13 @@ Lines surface_lines(const sim::Job& job, const sim::Result& result) {
   return lines;
 }
 
+/// With the tool that is in the spindle where linear axes lead farthest from the path.
+kinematics::MachineModel machine_of_worst(const sim::Job& job, const sim::Result& result) {
+  const auto element = static_cast<size_t>(result.singularity->worst.front().pole.element);
+  const auto& block = std::get<toolpath::BlockMove>(result.main.path.elements[element].what);
+  return sim::machines_by_tool(job)[static_cast<size_t>(block.tool)];
+}
+
 }  // namespace
 
 ReportData report_data(const sim::Job& job, const sim::Result& result, const RunFiles& files, bool rendered) {
@@ -373,7 +401,7 @@ ReportData report_data(const sim::Job& job, const sim::Result& result, const Run
       fmt::format("{} on {}", job.scene.program_file.substr(job.scene.program_file.find_last_of('/') + 1),
                   job.machine.model.name);
   data.verdict = verdict_of(job, result);
-  data.key_numbers = job.cl ? cl_key_numbers(result) : key_numbers(result);
+  data.key_numbers = job.scene.has_blocks() ? cl_key_numbers(result) : key_numbers(result);
   data.findings = findings_of(result);
   if (!files.stills.empty()) {
     data.hero_png = files.stills.front().png_path;
@@ -386,8 +414,9 @@ ReportData report_data(const sim::Job& job, const sim::Result& result, const Run
   data.movie_caption =
       "The whole program, evenly sped up. The tool cuts the stock as it stands at that moment.";
   data.plots = run_plots(job, result);
-  if (job.cl) {
+  if (job.scene.has_blocks()) {
     data.tables = {axis_table(job, result)};
+    if (job.scene.tools.size() > 1) data.tables.insert(data.tables.begin(), tools_table(job, result));
     if (result.flank) data.tables.insert(data.tables.begin(), flank_table(*result.flank));
   } else {
     data.tables = {planner_table(result), mode_table(result), axis_table(job, result), fig6_table()};
@@ -395,8 +424,9 @@ ReportData report_data(const sim::Job& job, const sim::Result& result, const Run
     data.paper = paper_rows(job, result);
   }
   if (result.singularity) {
-    data.topics = {singularity_topic(job.machine.model, result.main.path, *result.singularity)};
-    data.paper = so_paper_rows(job.machine.model, *result.singularity);
+    const kinematics::MachineModel machine = machine_of_worst(job, result);
+    data.topics = {singularity_topic(machine, result.main.path, *result.singularity)};
+    data.paper = so_paper_rows(machine, *result.singularity);
     if (!data.paper.empty()) data.paper_title = "So et al. (2008), Table 2 and section 5";
   }
   data.checks = checks_of(job, result, rendered);
@@ -407,7 +437,7 @@ ReportData report_data(const sim::Job& job, const sim::Result& result, const Run
 
 std::vector<std::pair<std::string, std::string>> summary_lines(const sim::Job& job,
                                                                const sim::Result& result) {
-  Lines lines = job.cl ? cl_path_lines(job, result) : path_lines(job, result);
+  Lines lines = job.scene.has_blocks() ? cl_path_lines(job, result) : path_lines(job, result);
   const Lines surface = surface_lines(job, result);
   lines.insert(lines.end(), surface.begin(), surface.end());
   const stock::CutStatistics& cut = result.stock->statistics();

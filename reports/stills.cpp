@@ -71,7 +71,10 @@ TriMesh half_cut_stock(const FinishedRun& run, size_t sample) {
   const std::vector<stock::Sweep> sweeps = sim::merged_sweeps(run.trajectory, run.job.scene).sweeps;
   const auto end =
       std::find_if(sweeps.begin(), sweeps.end(), [&](const stock::Sweep& s) { return s.block > sample; });
-  stock.cut(std::span(sweeps.begin(), end), stock::CutterSolid(run.job.scene.cutter));
+  const std::vector<stock::CutterSolid> solids = sim::tool_solids(run.job.scene);
+  sim::for_each_tool(
+      std::span(sweeps.begin(), end), [&](uint32_t at) { return run.tool_at(at); },
+      [&](size_t tool, std::span<const stock::Sweep> part) { stock.cut(part, solids[tool]); });
   TriMesh mesh = stock.mesh();
   mesh::split_creases(mesh, kCreaseRad);
   return mesh;
@@ -160,7 +163,7 @@ void make_still(const FinishedRun& run, const TriMesh& part, StillKind kind, con
   if (kind == StillKind::kMachine) {
     const size_t sample = middle_sample(run.trajectory);
     half_cut = half_cut_stock(run, sample);
-    list.items = view.items(run.trajectory.axes[sample], &half_cut);
+    list.items = view.items(run.trajectory.axes[sample], run.tool_at(sample), &half_cut);
     list.camera = machine_camera(run, camera, run.job.scene.stills.size);
   } else {
     list.camera = render::look_at_box(mesh::bounds(part), -camera_direction(camera), kFieldOfView,

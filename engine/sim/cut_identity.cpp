@@ -54,7 +54,23 @@ std::string cutter_text(const cutter::Cutter& c) {
     hash.add(section.top_diameter_mm);
     hash.add(section.length_mm);
   }
-  return fmt::format("T{} {}, outline and holder {}", c.number, cutter::describe(c), hash.text());
+  return fmt::format("{} {}, outline and holder {}", cutter::call_name(c), cutter::describe(c), hash.text());
+}
+
+std::string tools_text(const std::vector<cutter::Cutter>& tools) {
+  std::string text;
+  for (const cutter::Cutter& tool : tools) text += (text.empty() ? "" : "; ") + cutter_text(tool);
+  return text;
+}
+
+/// Which tool makes which sweeps; nothing new with one tool.
+void add_tools(Hash& hash, const JobSweeps& sweeps) {
+  const auto tool_of = [&](uint32_t block) { return sweeps.sources[block].tool; };
+  for_each_tool(sweeps.sweeps, tool_of, [&](size_t tool, std::span<const stock::Sweep> part) {
+    if (part.size() == sweeps.sweeps.size()) return;
+    hash.add(uint64_t{tool});
+    hash.add(uint64_t{part.size()});
+  });
 }
 
 std::string box_text(const Box& box) {
@@ -78,16 +94,17 @@ std::string toolpath_text(const Scene& scene) {
       scene.chord_tolerance_mm ? fmt::format("{} mm", *scene.chord_tolerance_mm) : "of the program");
 }
 
-std::string motion_text(std::span<const stock::Sweep> sweeps) {
+std::string motion_text(const JobSweeps& merged) {
   Hash hash;
-  for (const stock::Sweep& sweep : sweeps) {
+  for (const stock::Sweep& sweep : merged.sweeps) {
     for (const ToolPose* pose : {&sweep.start, &sweep.end}) {
       add(hash, pose->tip_W);
       add(hash, pose->axis_W);
     }
     hash.add(uint64_t{sweep.block});
   }
-  return fmt::format("{} sweeps {}", sweeps.size(), hash.text());
+  add_tools(hash, merged);
+  return fmt::format("{} sweeps {}", merged.sweeps.size(), hash.text());
 }
 
 std::string value_of(const CutIdentity& identity, const std::string& name) {
@@ -98,13 +115,13 @@ std::string value_of(const CutIdentity& identity, const std::string& name) {
 
 }  // namespace
 
-CutIdentity cut_identity(const Job& job, std::span<const stock::Sweep> sweeps) {
+CutIdentity cut_identity(const Job& job, const JobSweeps& sweeps) {
   const Scene& scene = job.scene;
   return {{kAlgorithmPart, fmt::format("{}", kCutAlgorithm)},
           {kBoxPart, box_text(scene.stock.box_W)},
           {kVoxelPart, fmt::format("{}", scene.stock.voxel_mm)},
           {"stock.sweep_tolerance_um", fmt::format("{:g}", um_from_mm(scene.stock.sweep_tolerance_mm))},
-          {kCutterPart, cutter_text(scene.cutter)},
+          {kCutterPart, tools_text(scene.tools)},
           {"program", file_text(scene.program_file)},
           {"machine", file_text(scene.machine_file)},
           {"toolpath", toolpath_text(scene)},

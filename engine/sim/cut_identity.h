@@ -2,12 +2,11 @@
 // a difference can be named.
 #pragma once
 
-#include <span>
 #include <string>
 #include <vector>
 
+#include "sim/job_sweeps.h"
 #include "sim/scene.h"
-#include "stock/sweep.h"
 
 namespace swarf::sim {
 
@@ -20,8 +19,9 @@ struct IdentityPart {
 };
 using CutIdentity = std::vector<IdentityPart>;
 
-/// The last part, kMotionPart, is the hash of the sweeps themselves: whatever else may differ shows there.
-CutIdentity cut_identity(const Job& job, std::span<const stock::Sweep> sweeps);
+/// The last part, kMotionPart, is the hash of the sweeps themselves and of their tools: whatever else may
+/// differ shows there.
+CutIdentity cut_identity(const Job& job, const JobSweeps& sweeps);
 inline constexpr const char* kMotionPart = "tool motion";
 
 struct IdentityDifference {
@@ -30,7 +30,7 @@ struct IdentityDifference {
 /// Every part whose value differs or is missing. The motion is named only when nothing else explains it.
 std::vector<IdentityDifference> differences(const CutIdentity& before, const CutIdentity& now);
 
-/// Parts that must be equal for two cuts to be compared block by block: algorithm, box, voxel, cutter.
+/// Parts that must be equal for two cuts to be compared block by block: algorithm, box, voxel, tools.
 bool needed_to_compare(const std::string& part_name);
 
 }  // namespace swarf::sim

@@ -74,8 +74,14 @@ class Words {
   std::string_view text_;
 };
 
-/// Reads one line into the record; `last` is where the tool stands. False: the line is not understood.
-bool read_line(std::string_view line, CutRecord& record, ToolPose& last) {
+/// The tool that is in the spindle, and where it stands.
+struct Stand {
+  int tool = 0;
+  ToolPose pose;
+};
+
+/// Reads one line into the record and moves the tool. False: the line is not understood.
+bool read_line(std::string_view line, CutRecord& record, Stand& last) {
   const size_t space = std::min(line.find(' '), line.size());
   const std::string_view key = line.substr(0, space);
   const std::string_view rest = line.substr(std::min(space + 1, line.size()));
@@ -96,16 +102,18 @@ bool read_line(std::string_view line, CutRecord& record, ToolPose& last) {
   }
   if (key == "every") return words.number(record.every) && record.every > 0 && words.at_end();
   if (key == "program") return words.number(record.program_sweeps) && words.at_end();
-  if (key == "jump") return words.pose(last) && words.at_end();
+  if (key == "tool") return words.number(last.tool) && last.tool >= 0 && words.at_end();
+  if (key == "jump") return words.pose(last.pose) && words.at_end();
   if (key == "state") return words.number(record.states.emplace_back(), 16) && words.at_end();
   if (key != "sweep") return false;
   CutPlace place;
   ToolPose end;
   const bool good =
       words.number(place.block) && words.number(place.line) && words.number(place.t_s) && words.pose(end);
-  record.sweeps.push_back({last, end, place.block});
+  record.sweeps.push_back({last.pose, end, place.block});
   record.places.push_back(place);
-  last = end;
+  record.tools.push_back(last.tool);
+  last.pose = end;
   return good && words.at_end();
 }
 
@@ -143,18 +151,19 @@ void write_record(const std::string& path, const CutRecord& record) {
   for (const IdentityPart& part : record.identity)
     fmt::format_to(to, "part {} = {}\n", part.name, part.value);
   fmt::format_to(to, "every {}\nprogram {}\n", record.every, record.program_sweeps);
-  ToolPose last;
+  Stand last;
   size_t states = 0;
   for (size_t n = 0; n < record.sweeps.size(); ++n) {
     const stock::Sweep& sweep = record.sweeps[n];
     const CutPlace& place = record.places[n];
-    if (!same(sweep.start, last)) {
+    if (record.tools[n] != last.tool) fmt::format_to(to, "tool {}\n", last.tool = record.tools[n]);
+    if (!same(sweep.start, last.pose)) {
       fmt::format_to(to, "jump");
       append_pose(out, sweep.start);
     }
     fmt::format_to(to, "sweep {} {} {}", place.block, place.line, place.t_s);
     append_pose(out, sweep.end);
-    last = sweep.end;
+    last.pose = sweep.end;
     if ((n + 1) % record.every == 0 || n + 1 == record.sweeps.size()) {
       fmt::format_to(to, "state {:016x}\n", record.states.at(states++));
     }
@@ -176,7 +185,7 @@ void write_record(const std::string& path, const CutRecord& record) {
 CutRecord read_record(const std::string& path) {
   const std::string text = verified_text(path);
   CutRecord record;
-  ToolPose last;
+  Stand last;
   std::string_view rest(text);
   rest.remove_prefix(kFirstLine.size());
   for (int number = 2; !rest.empty(); ++number) {

@@ -7,6 +7,7 @@
 //   every 256
 //   program <number of sweeps>          of the whole program; a stopped run holds fewer
 //   sweep <block> <line> <t_s> <tip x y z> <axis i j k>     where it ends; it starts where the last one ended
+//   tool <index>                        of the scene's tools, from here on; 0 before the first
 //   jump <tip x y z> <axis i j k>       or here
 //   state <hash>                        of the stock after so many sweeps, and at the end
 //   end <number of sweeps> <checksum of all before>
@@ -31,6 +32,7 @@ struct CutRecord {
   size_t program_sweeps = 0;  ///< of the whole program: a stopped run holds fewer
   std::vector<stock::Sweep> sweeps;
   std::vector<CutPlace> places;  ///< one per sweep
+  std::vector<int> tools;        ///< one per sweep: index into the scene's tools
   std::vector<uint64_t> states;  ///< after `every`, 2 `every`, ... sweeps, and after the last
 };
 

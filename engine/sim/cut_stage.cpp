@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <optional>
 #include <utility>
 
@@ -28,9 +29,10 @@ class CutStage {
         result_(result),
         outcome_(result.cut),
         merged_(stock_sweeps(job, result.main.path, result.main.motion.trajectory)),
-        cutter_(job.scene.cutter),
-        identity_(cut_identity(job, merged_.sweeps)),
-        clearance_(job.scene.cutter, job.scene.stock.voxel_mm) {
+        solids_(tool_solids(job.scene)),
+        identity_(cut_identity(job, merged_)),
+        clearance_(job.scene.tools, job.scene.stock.voxel_mm),
+        bad_cuts_(job, result.main.path, merged_) {
     outcome_.state.clearance = clearance_.result();
     result_.sweep_bound_mm = merged_.error_bound_mm;
     result_.merged_sweeps = merged_.sweeps.size();
@@ -57,7 +59,8 @@ class CutStage {
 
   void find_saves() {
     for (const ProgramPlace& place : options_.save_after) {
-      const size_t after = sweeps_until(place, merged_, result_.main.motion.trajectory, result_.main.path);
+      const size_t after =
+          sweeps_until(place, merged_, result_.main.motion.trajectory, result_.main.path, job_.scene.tools);
       saves_.push_back({after, &place});
     }
     std::stable_sort(saves_.begin(), saves_.end(),
@@ -74,6 +77,7 @@ class CutStage {
           std::make_unique<stock::Stock>(load_in_process(options_.resume_file, identity_, outcome_.state));
       at_ = outcome_.resumed_from = outcome_.state.sweeps;
       clearance_.resume(outcome_.state.clearance);
+      bad_cuts_.resume(outcome_.state.bad_cuts);
       for (const Save& save : saves_) {
         if (save.after >= at_) continue;
         throw InputError("place-before-resume", {save.place->text},
@@ -95,12 +99,15 @@ class CutStage {
     if (next_save_ < saves_.size() && saves_[next_save_].after > at_) {
       end = std::min(end, saves_[next_save_].after);
     }
-    result_.stock->cut(sweeps(at_, end), cutter_);
+    each_tool(at_, end,
+              [&](size_t tool, std::span<const stock::Sweep> part) { cut_row(part, solids_[tool]); });
     at_ = end;
     if (at_ == batch_end) {
-      clearance_.check(*result_.stock, sweeps((at_ - 1) / kSweepsPerBatch * kSweepsPerBatch, at_));
-      outcome_.state.clearance = clearance_.result();
       const size_t before = (at_ - 1) / kSweepsPerBatch * kSweepsPerBatch;
+      each_tool(before, at_, [&](size_t tool, std::span<const stock::Sweep> part) {
+        clearance_.check(*result_.stock, part, tool);
+      });
+      outcome_.state.clearance = clearance_.result();
       if (before * kChecks / total != at_ * kChecks / total) check(CheckKind::kOnTheWay);
       progress_.advance(static_cast<double>(at_));
     }
@@ -110,8 +117,28 @@ class CutStage {
     save_due();
   }
 
-  std::span<const stock::Sweep> sweeps(size_t begin, size_t end) const {
-    return std::span(merged_.sweeps).subspan(begin, end - begin);
+  /// Sweeps of one tool; those that must take nothing are looked at one by one, each before it is cut.
+  void cut_row(std::span<const stock::Sweep> sweeps, const stock::CutterSolid& solid) {
+    while (!sweeps.empty()) {
+      const auto suspicious = [&](const stock::Sweep& sweep) { return bad_cuts_.suspicious(sweep); };
+      const auto first = std::find_if(sweeps.begin(), sweeps.end(), suspicious);
+      const auto plain = static_cast<size_t>(first - sweeps.begin());
+      result_.stock->cut(sweeps.first(plain), solid);
+      sweeps = sweeps.subspan(plain);
+      if (sweeps.empty()) break;
+      bad_cuts_.check(*result_.stock, sweeps.front());
+      result_.stock->cut(sweeps.first(1), solid);
+      sweeps = sweeps.subspan(1);
+    }
+    outcome_.state.bad_cuts = bad_cuts_.result();
+  }
+
+  /// Sweeps [begin, end) as rows of one tool.
+  template <typename Visit>
+  void each_tool(size_t begin, size_t end, const Visit& visit) const {
+    for_each_tool(
+        std::span(merged_.sweeps).subspan(begin, end - begin),
+        [&](uint32_t block) { return merged_.sources[block].tool; }, visit);
   }
 
   CutState state() const {
@@ -165,7 +192,10 @@ class CutStage {
     record_.every = options_.record_every;
     record_.program_sweeps = merged_.sweeps.size();
     record_.sweeps.assign(merged_.sweeps.begin(), merged_.sweeps.begin() + static_cast<ptrdiff_t>(at_));
-    for (size_t n = 0; n < at_; ++n) record_.places.push_back(place(n));
+    for (size_t n = 0; n < at_; ++n) {
+      record_.places.push_back(place(n));
+      record_.tools.push_back(merged_.sources[merged_.sweeps[n].block].tool);
+    }
     // A stopped run ends between two hashes.
     if (record_.states.size() * record_.every < at_) record_.states.push_back(result_.stock->hash());
     write_record(options_.save_folder + "/" + kRecordFile, record_);
@@ -177,9 +207,10 @@ class CutStage {
   Result& result_;
   CutOutcome& outcome_;
   JobSweeps merged_;
-  stock::CutterSolid cutter_;
+  std::vector<stock::CutterSolid> solids_;  ///< by tool
   CutIdentity identity_;
   ToolClearanceCheck clearance_;
+  BadCutCheck bad_cuts_;
   std::vector<Save> saves_;
   size_t next_save_ = 0, at_ = 0;
   double full_mm3_ = 0.0;
@@ -190,7 +221,11 @@ class CutStage {
 }  // namespace
 
 std::string saved_stock_name(const ProgramPlace& place) {
-  return fmt::format("stock_after_{}{}.vdb", place.line > 0 ? "line_" : "", place.text);
+  std::string text = place.text;
+  for (char& c : text) {
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '.' && c != '-') c = '_';
+  }
+  return fmt::format("stock_after_{}{}.vdb", place.line > 0 ? "line_" : "", text);
 }
 
 void cut_stock(const Job& job, const CutOptions& options, Progress& progress, Result& result) {

@@ -105,13 +105,14 @@ void read_tool_above(ConfigTable& table, Cutter& c) {
     c.neck_length_mm = table.number("neck_length_mm", kAboveZero);
   }
   c.holder = read_holder(table);
+  if (table.has("gauge_length_mm")) c.gauge_length_mm = table.number("gauge_length_mm", kAboveZero);
 }
 
-}  // namespace
+void read_hand(ConfigTable& table, Cutter& c) {
+  c.left_hand = table.choice("hand", {"right", "left"}, "right") == "left";
+}
 
-Cutter read_cutter(ConfigTable table) {
-  Cutter c;
-  c.number = table.integer("number", 0, 99999, 1);
+Cutter read_body(ConfigTable& table, Cutter c, const std::string& what) {
   c.shape = read_shape(table);
   if (c.shape == Shape::kProfile) {
     cutter::set_profile(c, read_profile(table));
@@ -120,15 +121,33 @@ Cutter read_cutter(ConfigTable table) {
     read_shape_keys(table, c);
   }
   read_tool_above(table, c);
+  read_hand(table, c);
   for (const cutter::Problem& problem : cutter::validate(c)) {
     table.error(
-        "bad-cutter", problem.key, "[cutter]: " + problem.text,
+        "bad-cutter", problem.key, what + ": " + problem.text,
         problem.key == "profile"
             ? "profile = [{ to_mm = [0, 0] }, { to_mm = [5, 0] }, { to_mm = [5, 20] }] is a flat end; "
               "radius_mm makes a line an arc, below 0 a hollow one"
             : "mend this number, or what it is compared with");
   }
   return c;
+}
+
+}  // namespace
+
+Cutter read_cutter(ConfigTable table) {
+  Cutter c;
+  c.number = table.integer("number", 0, 99999, 1);
+  c.name = table.text("name", "");
+  return read_body(table, std::move(c), "[cutter]");
+}
+
+Cutter read_tool(ConfigTable table) {
+  Cutter c;
+  c.number = table.integer("number", 0, 99999, 0);
+  c.name = table.text("name", "");
+  const std::string what = "[[tool]] " + cutter::call_name(c);
+  return read_body(table, std::move(c), what);
 }
 
 }  // namespace swarf::sim

@@ -2,7 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <map>
+#include <string_view>
+
 #include "base/units.h"
+#include "program/source_text.h"
 
 namespace swarf::sim {
 namespace {
@@ -12,8 +17,8 @@ class Collector {
   Collector(const Job& job, const Result& result) : job_(job), result_(result) {}
 
   void add(std::string code, std::string text, std::string fix, SourceLocation where, double t_s) {
-    findings.push_back(
-        {std::move(code), Severity::kError, std::move(text), std::move(fix), std::move(where), t_s});
+    findings_.push_back(
+        {std::move(code), Severity::kError, std::move(text), std::move(fix), std::move(where), t_s, ""});
   }
   /// At the block that a sweep comes from; at the program when no sweep is to blame.
   void at_block(std::string code, std::string text, std::string fix, const std::vector<SweepSource>& sources,
@@ -27,9 +32,22 @@ class Collector {
         result_.main.path.elements[static_cast<size_t>(source.element)].where,
         result_.main.motion.trajectory.samples[source.sample].t_s);
   }
-  std::vector<Finding> findings;
+  /// The findings with the text of their blocks.
+  std::vector<Finding> take() {
+    std::map<std::string, std::string> texts;
+    for (Finding& finding : findings_) {
+      if (finding.where.line == 0 || finding.where.file == job_.scene.file) continue;
+      auto [text, is_new] = texts.try_emplace(finding.where.file);
+      if (is_new) text->second = program::read_file(finding.where.file);
+      const std::vector<std::string_view> lines = program::split_lines(text->second);
+      const auto index = static_cast<size_t>(finding.where.line) - 1;
+      if (index < lines.size()) finding.block = lines[index];
+    }
+    return std::move(findings_);
+  }
 
  private:
+  std::vector<Finding> findings_;
   const Job& job_;
   const Result& result_;
 };
@@ -43,9 +61,10 @@ std::string place(const measure::Region& region) {
 void region_faults(const Job& job, const Result& result, Collector& collect) {
   const measure::SurfaceMetrics& surface = result.main.surface;
   const AcceptLimits& accept = job.scene.accept;
-  const char* remedy = job.cl ? "move the tool of this block away from the design"
-                              : "lower the feed F or the control period: the chord of one cycle cuts into a "
-                                "convex surface";
+  const char* remedy = job.scene.has_blocks()
+                           ? "move the tool of this block away from the design"
+                           : "lower the feed F or the control period: the chord of one cycle cuts into a "
+                             "convex surface";
   for (const measure::Region& region : surface.gouges) {
     if (!accept.gouge_max_um || region.worst_um <= *accept.gouge_max_um) continue;
     collect.at_block("gouge",
@@ -74,16 +93,17 @@ void surface_faults(const Job& job, const Result& result, Collector& collect) {
         block = ridge.block_a;
       }
     }
-    collect.at_block(
-        "scallop",
-        fmt::format("the highest scallop is {:.3f} um, [accept] allows {:g} um", surface.scallop_max_um,
-                    *accept.scallop_max_um),
-        job.cl ? "bring the passes closer together" : "lower the scallop word E of the G06.3 block",
-        result.main.rays.sources, block);
+    collect.at_block("scallop",
+                     fmt::format("the highest scallop is {:.3f} um, [accept] allows {:g} um",
+                                 surface.scallop_max_um, *accept.scallop_max_um),
+                     job.scene.has_blocks() ? "bring the passes closer together"
+                                            : "lower the scallop word E of the G06.3 block",
+                     result.main.rays.sources, block);
   }
   region_faults(job, result, collect);
   // A mesh has faces that the stock brings along: there only excess tells what is missing.
-  const bool uncut_counts = !job.design_mesh && (!job.cl || accept.scallop_max_um.has_value());
+  const bool uncut_counts =
+      !job.design_mesh && (!job.scene.has_blocks() || accept.scallop_max_um.has_value());
   if (surface.uncut_samples > 0 && uncut_counts) {
     collect.add("uncut",
                 fmt::format("{} of {} measuring points were never reached by the cutter",
@@ -112,6 +132,27 @@ void clearance_faults(const Job& job, const Result& result, Collector& collect) 
       "use a longer cutter, or rough the stock first", result.cut_sources, clearance.first_block);
 }
 
+/// Moves that must not cut; the first of many, and how many more.
+void bad_cut_faults(const Result& result, Collector& collect) {
+  constexpr size_t kListed = 50;
+  const std::vector<BadCut>& cuts = result.cut.state.bad_cuts;
+  for (size_t i = 0; i < std::min(kListed, cuts.size()); ++i) {
+    const BadCut& cut = cuts[i];
+    const bool rapid = cut.kind == BadCutKind::kRapid;
+    std::string text = rapid
+                           ? "a rapid move removes material"
+                           : fmt::format("the tool cuts with {}", cut.kind == BadCutKind::kSpindleStands
+                                                                      ? "the spindle stopped"
+                                                                      : "the spindle turning the wrong way");
+    text += fmt::format(", {:.2f} mm deep or more", cut.depth_mm);
+    if (i + 1 == kListed && cuts.size() > kListed)
+      text += fmt::format("; {} more of these follow", cuts.size() - kListed);
+    collect.at_block(rapid ? "rapid-cut" : "spindle", text,
+                     rapid ? "move there with G1, or retract first" : "start the spindle before it: M3, S",
+                     result.cut_sources, cut.block);
+  }
+}
+
 void built_in_checks(const Job& job, const Result& result, Collector& collect) {
   if (!result.cut.broken_invariant.empty()) {
     collect.add("stock-invariant",
@@ -133,8 +174,9 @@ std::vector<Finding> find_faults(const Job& job, const Result& result) {
   surface_faults(job, result, collect);
   motion_faults(result, collect);
   clearance_faults(job, result, collect);
+  bad_cut_faults(result, collect);
   built_in_checks(job, result, collect);
-  return std::move(collect.findings);
+  return collect.take();
 }
 
 }  // namespace swarf::sim

@@ -17,6 +17,7 @@ constexpr const char* kTimeKey = "swarf_time_s";
 constexpr const char* kBlockKey = "swarf_block";
 constexpr const char* kSweepsKey = "swarf_sweeps";
 constexpr const char* kClearanceKey = "swarf_clearance";
+constexpr const char* kBadCutsKey = "swarf_bad_cuts";
 constexpr const char* kPartPrefix = "swarf_part_";
 
 /// Shortest decimals that read back to the same bits.
@@ -49,9 +50,11 @@ bool parse_state(const stock::StockMetadata& metadata, CutState& state) {
     return std::from_chars(found->second.data(), end, value).ptr == end;
   };
   const auto clearance = metadata.find(kClearanceKey);
+  const auto bad_cuts = metadata.find(kBadCutsKey);
   return number(kSweepsKey, state.sweeps) && number(kLineKey, state.place.line) &&
          number(kTimeKey, state.place.t_s) && number(kBlockKey, state.place.block) &&
-         clearance != metadata.end() && parse_clearance(clearance->second, state.clearance);
+         clearance != metadata.end() && parse_clearance(clearance->second, state.clearance) &&
+         bad_cuts != metadata.end() && parse_bad_cuts(bad_cuts->second, state.bad_cuts);
 }
 
 }  // namespace
@@ -64,7 +67,8 @@ stock::StockMetadata cut_metadata(const std::string& scene_name, const CutIdenti
                                 {kTimeKey, fmt::format("{}", state.place.t_s)},
                                 {kBlockKey, fmt::format("{}", state.place.block)},
                                 {kSweepsKey, fmt::format("{}", state.sweeps)},
-                                {kClearanceKey, clearance_text(state.clearance)}};
+                                {kClearanceKey, clearance_text(state.clearance)},
+                                {kBadCutsKey, bad_cuts_text(state.bad_cuts)}};
   for (const IdentityPart& part : identity) metadata[kPartPrefix + part.name] = part.value;
   return metadata;
 }

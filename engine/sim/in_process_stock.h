@@ -2,7 +2,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "sim/bad_cuts.h"
 #include "sim/cut_identity.h"
 #include "sim/program_place.h"
 #include "sim/tool_clearance.h"
@@ -15,6 +17,7 @@ struct CutState {
   size_t sweeps = 0;        ///< of the program's sweeps, from the first
   CutPlace place;           ///< of the last of them
   ToolClearance clearance;  ///< up to the last whole batch of sweeps
+  std::vector<BadCut> bad_cuts;
 };
 
 /// Texts of a stock file: keys swarf_scene, swarf_program_line, swarf_time_s, swarf_sweeps, swarf_cutter,

@@ -12,6 +12,7 @@
 #include "mesh/mesh_ops.h"
 #include "sim/memory.h"
 #include "sim/scene.h"
+#include "sim/tool_table.h"
 #include "stock/stock.h"
 
 namespace swarf::sim {
@@ -45,13 +46,13 @@ void check_memory(const Scene& scene, Diagnostics& diagnostics) {
 }
 
 void check_tools(const Job& job, Diagnostics& diagnostics) {
+  const cutter::Cutter& ours = job.scene.tools.front();
   for (const program::Operation& operation : job.program.operations) {
-    if (operation.tool == job.scene.cutter.number) continue;
-    diagnostics.error(
-        "unknown-tool", operation.where,
-        fmt::format("the block uses T{}, the scene describes T{} only", operation.tool,
-                    job.scene.cutter.number),
-        fmt::format("call T{} or set cutter.number = {}", job.scene.cutter.number, operation.tool));
+    if (operation.tool == ours.number) continue;
+    diagnostics.error("unknown-tool", operation.where,
+                      fmt::format("the block uses T{}, the scene describes {} only", operation.tool,
+                                  cutter::call_name(ours)),
+                      fmt::format("call T{} or set cutter.number = {}", ours.number, operation.tool));
     return;
   }
 }
@@ -67,27 +68,39 @@ void check_parameter(const program::ClCutter& cutter, size_t index, const char* 
       fmt::format("set {} in the scene, or mend the CL file", key));
 }
 
-/// LOADTL and CUTTER of a CL file against the scene's cutter.
-void check_cl_tools(const Job& job, Diagnostics& diagnostics) {
-  const cutter::Cutter& ours = job.scene.cutter;
+/// CUTTER of a CL file against the scene's cutter.
+void check_cl_cutter(const program::ClCutter& cutter, const cutter::Cutter& ours, Diagnostics& diagnostics) {
   const std::optional<cutter::AptForm> form = cutter::apt_form(ours);
-  for (const program::ClCutter& cutter : job.cl->cutters) {
-    check_parameter(cutter, 0, "d (mm)", form ? form->d : ours.diameter_mm, "cutter.diameter_mm",
-                    diagnostics);
-    if (!form) continue;  // seven parameters cannot say what the others are
-    check_parameter(cutter, 1, "r (mm)", form->r, "cutter.corner_radius_mm", diagnostics);
-    check_parameter(cutter, 4, "alpha (deg)", deg_from_rad(form->alpha), "the shape", diagnostics);
-    check_parameter(cutter, 5, "beta (deg)", deg_from_rad(form->beta), "the shape", diagnostics);
-  }
-  for (const program::ClTool& tool : job.cl->tools) {
-    // A tool that is called by its name alone is taken for the scene's one while there is no other.
-    if (tool.number == ours.number || (tool.number == 0 && job.cl->tools.size() == 1)) continue;
+  check_parameter(cutter, 0, "d (mm)", form ? form->d : ours.diameter_mm, "cutter.diameter_mm", diagnostics);
+  if (!form) return;  // seven parameters cannot say what the others are
+  check_parameter(cutter, 1, "r (mm)", form->r, "cutter.corner_radius_mm", diagnostics);
+  check_parameter(cutter, 4, "alpha (deg)", deg_from_rad(form->alpha), "the shape", diagnostics);
+  check_parameter(cutter, 5, "beta (deg)", deg_from_rad(form->beta), "the shape", diagnostics);
+}
+
+/// The tools that a CL file loads, and its CUTTERs, against the scene's tools.
+void check_cl_tools(const Job& job, Diagnostics& diagnostics) {
+  const std::vector<int> tools = cl_tools(job);
+  const std::string ours = list_tools(job.scene.tools);
+  for (size_t i = 0; i < tools.size(); ++i) {
+    if (tools[i] >= 0) continue;
+    const program::ClTool& tool = job.cl->tools[i];
     const std::string called = tool.number != 0 ? fmt::format("tool {}", tool.number) : "tool " + tool.name;
-    diagnostics.error(
-        "unknown-tool", tool.where,
-        fmt::format("the program loads {}, the scene describes tool {} only", called, ours.number),
-        fmt::format("load tool {} or set cutter.number", ours.number));
-    return;
+    diagnostics.error("unknown-tool", tool.where,
+                      fmt::format("the program loads {}, the scene describes {} only", called, ours),
+                      "load one of them, or describe it in the scene: [[tool]], cutter.number");
+  }
+  for (const program::ClMove& move : job.cl->moves) {
+    if (move.tool >= 0 || job.scene.tools.size() == 1) continue;
+    diagnostics.error("tool-not-loaded", {job.cl->file, move.line, move.column},
+                      fmt::format("no tool is loaded for this move, the scene describes {}", ours),
+                      "write LOADTL before it");
+    break;
+  }
+  for (const program::ClCutter& cutter : job.cl->cutters) {
+    if (cutter.tool < 0 && job.scene.tools.size() > 1) continue;  // nobody can say whose it is
+    const int index = cutter.tool < 0 ? 0 : tools[static_cast<size_t>(cutter.tool)];
+    if (index >= 0) check_cl_cutter(cutter, job.scene.tools[static_cast<size_t>(index)], diagnostics);
   }
 }
 
@@ -109,11 +122,12 @@ void load_design(Job& job, Diagnostics& diagnostics) {
 
 /// G06.3 and G06.4 put the centre of a flat end's face on the surface; no other shape has been derived.
 void check_planner_cutter(const Job& job, Diagnostics& diagnostics) {
-  if (job.program.operations.empty() || job.scene.cutter.shape == cutter::Shape::kFlat) return;
-  diagnostics.error("planner-needs-flat-end", job.program.operations.front().where,
-                    fmt::format("surface blocks are planned for flat ends only, T{} is {}",
-                                job.scene.cutter.number, cutter::describe(job.scene.cutter)),
-                    "set cutter.shape = \"flat\", or run a program that brings its own tool positions");
+  if (job.program.operations.empty() || job.scene.tools.front().shape == cutter::Shape::kFlat) return;
+  diagnostics.error(
+      "planner-needs-flat-end", job.program.operations.front().where,
+      fmt::format("surface blocks are planned for flat ends only, {} is {}",
+                  cutter::call_name(job.scene.tools.front()), cutter::describe(job.scene.tools.front())),
+      "set cutter.shape = \"flat\", or run a program that brings its own tool positions");
 }
 
 template <typename Load>
@@ -127,18 +141,43 @@ void collect(Diagnostics& diagnostics, Load load) {
 
 }  // namespace
 
+std::vector<int> cl_tools(const Job& job) {
+  const std::vector<cutter::Cutter>& ours = job.scene.tools;
+  std::vector<int> tools;
+  for (const program::ClTool& tool : job.cl->tools) {
+    // A tool that is called by its name is the scene's only one while neither has another.
+    const bool only =
+        tool.number == 0 && job.cl->tools.size() == 1 && ours.size() == 1 && ours[0].name.empty();
+    tools.push_back(only ? 0 : tool_index(ours, tool.number, tool.name));
+  }
+  return tools;
+}
+
+std::vector<kinematics::MachineModel> machines_by_tool(const Job& job) {
+  std::vector<kinematics::MachineModel> machines;
+  for (const cutter::Cutter& tool : job.scene.tools) {
+    machines.push_back(kinematics::with_tool(job.machine.model, cutter::gauge_length(tool)));
+  }
+  return machines;
+}
+
 Job load_job(const std::string& path, const std::vector<std::string>& overrides) {
   Diagnostics diagnostics;
   Job job;
   job.scene = load_scene(path, overrides, diagnostics);
   diagnostics.throw_if_errors();
   // A user mends all files at once: what is wrong with one does not hide what is wrong with the other.
-  collect(diagnostics, [&] { job.machine = machine::load_machine(job.scene.machine_file); });
+  collect(diagnostics, [&] {
+    job.machine = machine::load_machine(job.scene.machine_file);
+    if (job.scene.setup.work_origin_mm) {
+      job.machine.model.X_MW.translation() = *job.scene.setup.work_origin_mm;
+    }
+  });
   Diagnostics warnings;
   collect(diagnostics, [&] {
-    if (job.scene.cl) {
+    if (job.scene.kind == ProgramKind::kCl) {
       job.cl = program::load_cl(job.scene.program_file, &warnings);
-    } else {
+    } else if (job.scene.kind == ProgramKind::kSurfaceBlocks) {
       job.program = program::load_program(job.scene.program_file, &warnings);
     }
   });
@@ -147,7 +186,7 @@ Job load_job(const std::string& path, const std::vector<std::string>& overrides)
   diagnostics.append(warnings);
   if (job.cl) {
     check_cl_tools(job, diagnostics);
-  } else {
+  } else if (job.scene.kind == ProgramKind::kSurfaceBlocks) {
     check_tools(job, diagnostics);
     check_planner_cutter(job, diagnostics);
   }

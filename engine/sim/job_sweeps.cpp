@@ -20,7 +20,7 @@ double lever_of(const cutter::Cutter& cutter) {
 std::vector<SweepSource> sources_of_samples(const motion::Trajectory& trajectory) {
   std::vector<SweepSource> sources(trajectory.samples.size());
   for (size_t i = 0; i < sources.size(); ++i)
-    sources[i] = {trajectory.samples[i].element, static_cast<uint32_t>(i)};
+    sources[i] = {trajectory.samples[i].element, static_cast<uint32_t>(i), trajectory.samples[i].tool};
   return sources;
 }
 
@@ -47,10 +47,12 @@ class BlockSweeper {
   BlockSweeper(const Job& job, const toolpath::ToolPath& path, const motion::Trajectory& trajectory,
                double tolerance_mm)
       : path_(path),
-        motions_(motion::block_motions(path, job.machine.model)),
+        machines_(machines_by_tool(job)),
+        motions_(motion::block_motions(path, machines_)),
         finder_(trajectory),
-        lever_mm_(lever_of(job.scene.cutter)),
-        tolerance_mm_(tolerance_mm) {}
+        tolerance_mm_(tolerance_mm) {
+    for (const cutter::Cutter& tool : job.scene.tools) levers_mm_.push_back(lever_of(tool));
+  }
 
   JobSweeps each_block() {
     for (size_t i = 0; i < motions_.size(); ++i) add_block(i);
@@ -85,30 +87,32 @@ class BlockSweeper {
     }
     return true;
   }
-  /// First block from `first` on that does not join a row of straight blocks of one axis and feed.
+  /// First block from `first` on that does not join a row of straight blocks of one axis, feed and tool.
   size_t straight_end(size_t first) const {
     size_t end = first;
-    while (end < motions_.size() && is_straight(end) &&
-           motions_[end].block->feed_mm_s == motions_[first].block->feed_mm_s &&
-           motions_[end].block->from.axis_W == motions_[first].block->from.axis_W)
-      ++end;
+    const BlockMove& block = *motions_[first].block;
+    const auto joins = [&](const BlockMove& next) {
+      return next.feed_mm_s == block.feed_mm_s && next.from.axis_W == block.from.axis_W &&
+             next.tool == block.tool && is_rapid(next) == is_rapid(block);
+    };
+    while (end < motions_.size() && is_straight(end) && joins(*motions_[end].block)) ++end;
     return end;
   }
 
   void add(const ToolPose& start, const ToolPose& end, size_t element, double s) {
     out_.sweeps.push_back({start, end, static_cast<uint32_t>(out_.sources.size())});
     const int index = static_cast<int>(element);
-    out_.sources.push_back({index, finder_.at(index, s)});
+    out_.sources.push_back({index, finder_.at(index, s), motions_[element].block->tool});
   }
 
   void add_block(size_t i) {
     const std::vector<ToolPose> poses =
-        motion::subdivide(motions_[i], lever_mm_, tolerance_mm_, path_.elements[i].where);
+        motion::subdivide(motions_[i], lever(i), tolerance_mm_, path_.elements[i].where);
     const size_t pieces = poses.size() - 1;
     for (size_t k = 0; k < pieces; ++k)
       add(poses[k], poses[k + 1], i, static_cast<double>(k + 1) / static_cast<double>(pieces));
     const double error =
-        motion::split_error(motion::motion_bounds(motions_[i]), static_cast<int>(pieces), lever_mm_);
+        motion::split_error(motion::motion_bounds(motions_[i]), static_cast<int>(pieces), lever(i));
     out_.error_bound_mm = std::max(out_.error_bound_mm, error);
   }
 
@@ -116,15 +120,19 @@ class BlockSweeper {
     std::vector<ToolPose> poses{motions_[first].block->from};
     for (size_t i = first; i < end; ++i) poses.push_back(motions_[i].block->to);
     const std::vector<uint8_t> breaks(poses.size(), 0);
-    const stock::MergedSweeps merged = stock::merge_sweeps(poses, breaks, lever_mm_, tolerance_mm_);
+    const stock::MergedSweeps merged = stock::merge_sweeps(poses, breaks, lever(first), tolerance_mm_);
     for (const stock::Sweep& sweep : merged.sweeps) add(sweep.start, sweep.end, first + sweep.block - 1, 1.0);
     out_.error_bound_mm = std::max(out_.error_bound_mm, merged.error_bound_mm);
   }
 
+  double lever(size_t i) const { return levers_mm_[static_cast<size_t>(motions_[i].block->tool)]; }
+
   const toolpath::ToolPath& path_;
+  std::vector<kinematics::MachineModel> machines_;  ///< by tool
   std::vector<motion::BlockMotion> motions_;
   SampleFinder finder_;
-  double lever_mm_, tolerance_mm_;
+  std::vector<double> levers_mm_;  ///< by tool
+  double tolerance_mm_;
   JobSweeps out_;
 };
 
@@ -150,21 +158,40 @@ std::vector<stock::Sweep> cycle_sweeps(const motion::Trajectory& trajectory,
 
 stock::MergedSweeps merged_sweeps(const motion::Trajectory& trajectory, const Scene& scene) {
   std::vector<ToolPose> poses;
+  std::vector<uint8_t> breaks;
   poses.reserve(trajectory.samples.size());
-  for (const motion::ToolSample& sample : trajectory.samples) poses.push_back(sample.pose);
-  const std::vector<uint8_t> breaks(poses.size(), 0);
-  return stock::merge_sweeps(poses, breaks, scene.cutter.flute_length_mm, scene.stock.sweep_tolerance_mm);
+  breaks.reserve(trajectory.samples.size());
+  for (const motion::ToolSample& sample : trajectory.samples) {
+    const bool changed = !poses.empty() && trajectory.samples[poses.size() - 1].tool != sample.tool;
+    poses.push_back(sample.pose);
+    breaks.push_back(changed ? 1 : 0);
+  }
+  double lever = 0.0;
+  for (const cutter::Cutter& tool : scene.tools) lever = std::max(lever, tool.flute_length_mm);
+  return stock::merge_sweeps(poses, breaks, lever, scene.stock.sweep_tolerance_mm);
+}
+
+std::vector<stock::CutterSolid> tool_solids(const Scene& scene) {
+  return {scene.tools.begin(), scene.tools.end()};
+}
+
+std::vector<int> tool_of_blocks(const JobSweeps& sweeps) {
+  std::vector<int> tools;
+  tools.reserve(sweeps.sources.size());
+  for (const SweepSource& source : sweeps.sources) tools.push_back(source.tool);
+  return tools;
 }
 
 JobSweeps stock_sweeps(const Job& job, const toolpath::ToolPath& path, const motion::Trajectory& trajectory) {
-  if (job.cl)
+  if (job.scene.has_blocks())
     return BlockSweeper(job, path, trajectory, job.scene.stock.sweep_tolerance_mm).straight_blocks_merged();
   stock::MergedSweeps merged = merged_sweeps(trajectory, job.scene);
   return {std::move(merged.sweeps), sources_of_samples(trajectory), merged.error_bound_mm};
 }
 
 JobSweeps ray_sweeps(const Job& job, const toolpath::ToolPath& path, const motion::Trajectory& trajectory) {
-  if (job.cl) return BlockSweeper(job, path, trajectory, job.scene.design.sweep_tolerance_mm).each_block();
+  if (job.scene.has_blocks())
+    return BlockSweeper(job, path, trajectory, job.scene.design.sweep_tolerance_mm).each_block();
   return {cycle_sweeps(trajectory, job.machine.model), sources_of_samples(trajectory), 0.0};
 }
 

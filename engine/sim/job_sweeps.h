@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "motion/interpolator.h"
@@ -18,6 +19,7 @@ namespace swarf::sim {
 struct SweepSource {
   int element = 0;      ///< index into ToolPath::elements
   uint32_t sample = 0;  ///< cycle in which the tool comes to the sweep's end
+  int tool = 0;         ///< index into Scene::tools
 };
 
 struct JobSweeps {
@@ -35,8 +37,22 @@ struct JobSweeps {
 std::vector<stock::Sweep> cycle_sweeps(const motion::Trajectory& trajectory,
                                        const kinematics::MachineModel& machine);
 
-/// Ticks merged within the scene's tolerance, whatever the job: for pictures.
+/// Ticks merged within the scene's tolerance, whatever the job: for pictures. Nothing is swept where the tool
+/// changes; the tool of a sweep is that of its last sample, Sweep::block.
 stock::MergedSweeps merged_sweeps(const motion::Trajectory& trajectory, const Scene& scene);
+
+/// The flutes of each tool of the scene.
+std::vector<stock::CutterSolid> tool_solids(const Scene& scene);
+
+/// Calls visit(tool, sweeps) for each row of consecutive sweeps of one tool. `tool_of`: from Sweep::block.
+template <typename ToolOf, typename Visit>
+void for_each_tool(std::span<const stock::Sweep> sweeps, const ToolOf& tool_of, const Visit& visit) {
+  for (size_t begin = 0, end = 0; begin < sweeps.size(); begin = end) {
+    const auto tool = tool_of(sweeps[begin].block);
+    while (end < sweeps.size() && tool_of(sweeps[end].block) == tool) ++end;
+    visit(static_cast<size_t>(tool), sweeps.subspan(begin, end - begin));
+  }
+}
 
 /// For the level set, within stock.sweep_tolerance. CL: collinear blocks of one feed that keep their axis are
 /// merged.
@@ -44,6 +60,9 @@ JobSweeps stock_sweeps(const Job& job, const toolpath::ToolPath& path, const mot
 
 /// For the measuring rays; each sweep has a block of its own. CL: within design.sweep_tolerance.
 JobSweeps ray_sweeps(const Job& job, const toolpath::ToolPath& path, const motion::Trajectory& trajectory);
+
+/// Tool of each block in `sources`.
+std::vector<int> tool_of_blocks(const JobSweeps& sweeps);
 
 /// Pass of each block in `sources`; -1 between passes.
 std::vector<int> pass_of_blocks(const JobSweeps& sweeps, const toolpath::ToolPath& path);

@@ -54,18 +54,22 @@ constexpr size_t kPieces = 32;  // looks at the number of leaves
 
 SurfaceCounts preview(const Job& job, const motion::Trajectory& trajectory) {
   const StockSettings& settings = job.scene.stock;
-  // Three voxels to the cutter's radius still show every groove.
-  const double voxel =
-      std::max(settings.voxel_mm, std::min(kCoarser * settings.voxel_mm, job.scene.cutter.radius() / 3.0));
+  // Three voxels to the thinnest cutter's radius still show every groove.
+  double thinnest = std::numeric_limits<double>::infinity();
+  for (const cutter::Cutter& tool : job.scene.tools) thinnest = std::min(thinnest, tool.radius());
+  const double voxel = std::max(settings.voxel_mm, std::min(kCoarser * settings.voxel_mm, thinnest / 3.0));
   Scene coarse = job.scene;
   coarse.stock.sweep_tolerance_mm = voxel / 8.0;
   const std::vector<stock::Sweep> sweeps = merged_sweeps(trajectory, coarse).sweeps;
   stock::Stock stock(settings.box_W, voxel);
-  const stock::CutterSolid cutter(job.scene.cutter);
+  const std::vector<stock::CutterSolid> solids = tool_solids(job.scene);
   double most = static_cast<double>(stock.leaves());
   const size_t piece = sweeps.size() / kPieces + 1;
   for (size_t i = 0; i < sweeps.size(); i += piece) {
-    stock.cut(std::span(sweeps).subspan(i, std::min(piece, sweeps.size() - i)), cutter);
+    for_each_tool(
+        std::span(sweeps).subspan(i, std::min(piece, sweeps.size() - i)),
+        [&](uint32_t sample) { return trajectory.samples[sample].tool; },
+        [&](size_t tool, std::span<const stock::Sweep> part) { stock.cut(part, solids[tool]); });
     most = std::max(most, static_cast<double>(stock.leaves()));
   }
   const double finer = std::pow(voxel / settings.voxel_mm, 2);
@@ -143,8 +147,9 @@ MemoryPrediction predict_memory(const Job& job, const MeasuredPath& path, bool r
   // The stages that hold most; each ends before the next begins.
   const double cutting = held - rays + stocks * stock + ticks * sizeof(ToolPose);
   const double compared = std::max(ticks, longest_comparison(job, path));
-  const double comparing =
-      job.scene.compare_planners && !job.cl ? held + stock + compared * kComparedTick + rays : 0.0;
+  const double comparing = job.scene.compare_planners && !job.scene.has_blocks()
+                               ? held + stock + compared * kComparedTick + rays
+                               : 0.0;
   const double writing = held + stock + ticks * kRow * kRowCopies;
   const double pictures = !render ? 0.0 : job.scene.movie.seconds > 0.0 ? kMovie : kStills;
   const double meshing = held + stock + counts.triangles * kTriangle + pictures;

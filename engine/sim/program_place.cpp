@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "base/diagnostics.h"
+#include "sim/tool_table.h"
 
 namespace swarf::sim {
 namespace {
@@ -17,14 +18,38 @@ bool parse_whole(std::string_view text, Number& value) {
   return failure == std::errc() && end == text.data() + text.size();
 }
 
+/// "T5" or "T=DRILL_8".
+bool parse_tool(const std::string& text, ProgramPlace& place) {
+  if (text.size() < 2 || text[0] != 'T') return false;
+  if (text[1] != '=')
+    return parse_whole(std::string_view(text).substr(1), place.tool_number) && place.tool_number > 0;
+  place.tool_name = text.substr(2);
+  return !place.tool_name.empty();
+}
+
 ProgramPlace parse_place(const std::string& text) {
-  ProgramPlace place{text, 0, 0.0};
+  ProgramPlace place{text, 0, 0.0, 0, ""};
+  if (parse_tool(text, place)) return place;
   const bool is_time = !text.empty() && text.back() == 's';
   const bool read = is_time ? parse_whole(std::string_view(text).substr(0, text.size() - 1), place.t_s)
                             : parse_whole(std::string_view(text), place.line);
   if (read && (is_time ? place.t_s >= 0.0 : place.line > 0)) return place;
-  throw InputError("bad-place", {text}, "this is no place in a program",
-                   "write a line of the program (13) or a program time in seconds (12.5s)");
+  throw InputError(
+      "bad-place", {text}, "this is no place in a program",
+      "write a line of the program (13), a program time in seconds (12.5s) or a tool (T5, T=NAME)");
+}
+
+size_t sweeps_until_tool(const ProgramPlace& place, const JobSweeps& sweeps,
+                         const std::vector<cutter::Cutter>& tools) {
+  const int tool = tool_index(tools, place.tool_number, place.tool_name);
+  size_t count = 0;
+  for (size_t n = 0; n < sweeps.sweeps.size() && tool >= 0; ++n) {
+    if (sweeps.sources[sweeps.sweeps[n].block].tool == tool) count = n + 1;
+  }
+  if (count > 0) return count;
+  throw InputError("place-unknown", {place.text},
+                   tool < 0 ? "the scene has no such tool" : "the program never moves this tool",
+                   "the scene's tools: " + list_tools(tools));
 }
 
 }  // namespace
@@ -47,7 +72,8 @@ CutPlace place_of(const stock::Sweep& sweep, std::span<const SweepSource> source
 }
 
 size_t sweeps_until(const ProgramPlace& place, const JobSweeps& sweeps, const motion::Trajectory& trajectory,
-                    const toolpath::ToolPath& path) {
+                    const toolpath::ToolPath& path, const std::vector<cutter::Cutter>& tools) {
+  if (place.tool_number > 0 || !place.tool_name.empty()) return sweeps_until_tool(place, sweeps, tools);
   size_t count = 0;
   int nearest = 0;
   for (size_t n = 0; n < sweeps.sweeps.size(); ++n) {

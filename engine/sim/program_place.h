@@ -15,10 +15,13 @@ namespace swarf::sim {
 
 /// "13": after the last motion of program line 13, the line that findings and trajectory.csv name.
 /// "12.5s": program time, after the last motion that is complete then.
+/// "T5", "T=DRILL_8": after the last motion of that tool.
 struct ProgramPlace {
   std::string text;  ///< as written
   int line = 0;      ///< 1-based; 0: a time is meant
   double t_s = 0.0;
+  int tool_number = 0;    ///< above 0: a tool is meant
+  std::string tool_name;  ///< not empty: a tool is meant
 };
 
 /// A list with commas. Throws InputError "bad-place".
@@ -36,8 +39,8 @@ CutPlace place_of(const stock::Sweep& sweep, std::span<const SweepSource> source
                   const motion::Trajectory& trajectory, const toolpath::ToolPath& path);
 
 /// Number of sweeps up to and including the place. Throws InputError "place-unknown" for a line without
-/// motion (naming the nearest with) and for a time outside the program.
+/// motion (naming the nearest with), for a time outside the program and for a tool that never moves.
 size_t sweeps_until(const ProgramPlace& place, const JobSweeps& sweeps, const motion::Trajectory& trajectory,
-                    const toolpath::ToolPath& path);
+                    const toolpath::ToolPath& path, const std::vector<cutter::Cutter>& tools);
 
 }  // namespace swarf::sim

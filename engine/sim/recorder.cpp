@@ -25,7 +25,11 @@ std::string header(const kinematics::MachineModel& machine) {
   for (const kinematics::Axis& axis : machine.axes) {
     line += fmt::format(",{}_{}", axis.name, axis.kind == AxisKind::kRotary ? "deg" : "mm");
   }
-  return line + ",contact_x_mm,contact_y_mm,contact_z_mm,u,v,element,kind";
+  return line + ",contact_x_mm,contact_y_mm,contact_z_mm,u,v,element,kind,tool";
+}
+
+std::string tool_field(const cutter::Cutter& tool) {
+  return tool.number > 0 ? fmt::format("{}", tool.number) : tool.name;
 }
 
 double shown(const kinematics::Axis& axis, double q) {
@@ -33,7 +37,8 @@ double shown(const kinematics::Axis& axis, double q) {
 }
 
 void append_row(fmt::memory_buffer& out, const motion::ToolSample& s, const kinematics::AxisValues& q,
-                const kinematics::MachineModel& machine, int line) {
+                const Job& job, int line) {
+  const kinematics::MachineModel& machine = job.machine.model;
   auto it = std::back_inserter(out);
   const Vec3& p = s.pose.tip_W;
   const Vec3& a = s.pose.axis_W;
@@ -42,8 +47,9 @@ void append_row(fmt::memory_buffer& out, const motion::ToolSample& s, const kine
   for (size_t i = 0; i < machine.axes.size(); ++i) {
     fmt::format_to(it, ",{:.7f}", shown(machine.axes[i], q[static_cast<Eigen::Index>(i)]));
   }
-  fmt::format_to(it, ",{:.7f},{:.7f},{:.7f},{:.9f},{:.9f},{},{}\n", s.contact_W.x(), s.contact_W.y(),
-                 s.contact_W.z(), s.u, s.v, s.element, kKindNames[static_cast<size_t>(s.kind)]);
+  fmt::format_to(it, ",{:.7f},{:.7f},{:.7f},{:.9f},{:.9f},{},{},{}\n", s.contact_W.x(), s.contact_W.y(),
+                 s.contact_W.z(), s.u, s.v, s.element, kKindNames[static_cast<size_t>(s.kind)],
+                 tool_field(job.scene.tools[static_cast<size_t>(s.tool)]));
 }
 
 /// The fields of one line; text fields are kept as they are.
@@ -71,12 +77,21 @@ bool parse_kind(std::string_view field, motion::SampleKind& kind) {
   return false;
 }
 
-bool parse_row(std::string_view line, const kinematics::MachineModel& machine, motion::ToolSample& s,
-               kinematics::AxisValues& q) {
+bool parse_tool(std::string_view field, const std::vector<cutter::Cutter>& tools, int16_t& tool) {
+  for (size_t i = 0; i < tools.size(); ++i) {
+    if (field != tool_field(tools[i])) continue;
+    tool = static_cast<int16_t>(i);
+    return true;
+  }
+  return false;
+}
+
+bool parse_row(std::string_view line, const Job& job, motion::ToolSample& s, kinematics::AxisValues& q) {
+  const kinematics::MachineModel& machine = job.machine.model;
   const std::vector<std::string_view> fields = split(line);
   const size_t axes = machine.axes.size();
-  if (fields.size() != 9 + axes + 7) return false;
-  std::vector<double> x(fields.size() - 1);
+  if (fields.size() != 9 + axes + 8) return false;
+  std::vector<double> x(fields.size() - 2);
   for (size_t i = 0; i < x.size(); ++i) {
     if (!parse(fields[i], x[i])) return false;
   }
@@ -92,18 +107,18 @@ bool parse_row(std::string_view line, const kinematics::MachineModel& machine, m
   s.u = rest[3];
   s.v = rest[4];
   s.element = static_cast<int>(rest[5]);
-  return parse_kind(fields.back(), s.kind);
+  return parse_kind(fields[x.size()], s.kind) && parse_tool(fields.back(), job.scene.tools, s.tool);
 }
 
 }  // namespace
 
 void write_trajectory(const std::string& path, const motion::Trajectory& trajectory,
-                      const toolpath::ToolPath& tool_path, const kinematics::MachineModel& machine) {
+                      const toolpath::ToolPath& tool_path, const Job& job) {
   fmt::memory_buffer out;
-  fmt::format_to(std::back_inserter(out), "{}\n", header(machine));
+  fmt::format_to(std::back_inserter(out), "{}\n", header(job.machine.model));
   for (size_t i = 0; i < trajectory.samples.size(); ++i) {
     const motion::ToolSample& sample = trajectory.samples[i];
-    append_row(out, sample, trajectory.axes[i], machine,
+    append_row(out, sample, trajectory.axes[i], job,
                tool_path.elements[static_cast<size_t>(sample.element)].where.line);
   }
   const std::string temporary = path + ".part";
@@ -115,24 +130,23 @@ void write_trajectory(const std::string& path, const motion::Trajectory& traject
   std::filesystem::rename(temporary, path);
 }
 
-motion::Trajectory read_trajectory(const std::string& path, const kinematics::MachineModel& machine,
-                                   double period_s) {
+motion::Trajectory read_trajectory(const std::string& path, const Job& job) {
   std::ifstream file(path);
   std::string line;
   if (!file || !std::getline(file, line)) {
     throw InputError("file-not-found", {path}, "the trajectory of the run cannot be read",
                      "run the scene again");
   }
-  if (line != header(machine)) {
+  if (line != header(job.machine.model)) {
     throw InputError("trajectory-mismatch", {path, 1, 1},
                      "the columns do not belong to the machine of this run", "run the scene again");
   }
   motion::Trajectory trajectory;
-  trajectory.period_s = period_s;
+  trajectory.period_s = job.scene.motion.period_s;
   for (int number = 2; std::getline(file, line); ++number) {
     motion::ToolSample sample;
     kinematics::AxisValues q = kinematics::AxisValues::Zero();
-    if (!parse_row(line, machine, sample, q)) {
+    if (!parse_row(line, job, sample, q)) {
       throw InputError("trajectory-broken", {path, number, 1}, "this line is not a sample of a run",
                        "run the scene again");
     }

@@ -18,14 +18,6 @@ bool same_sweep(const stock::Sweep& a, const stock::Sweep& b) {
   return same_pose(a.start, b.start) && same_pose(a.end, b.end);
 }
 
-/// The first sweep that differs or that one of them lacks.
-size_t first_other_motion(std::span<const stock::Sweep> a, std::span<const stock::Sweep> b) {
-  const size_t count = std::min(a.size(), b.size());
-  size_t n = 0;
-  while (n < count && same_sweep(a[n], b[n])) ++n;
-  return n;
-}
-
 class Replay {
  public:
   Replay(const CutRecord& record, const Job& job, Progress& progress)
@@ -34,14 +26,14 @@ class Replay {
         path_(move_tool(job, progress)),
         merged_(stock_sweeps(job, path_.path, path_.motion.trajectory)),
         sweeps_(merged_.sweeps),
-        cutter_(job.scene.cutter),
+        solids_(tool_solids(job.scene)),
         stock_(job.scene.stock.box_W, job.scene.stock.voxel_mm) {
-    result_.parts = differences(record.identity, cut_identity(job, sweeps_));
+    result_.parts = differences(record.identity, cut_identity(job, merged_));
   }
 
   ReplayResult run() {
     require_same_grid();
-    const size_t other = first_other_motion(record_.sweeps, sweeps_);
+    const size_t other = first_other_motion();
     const bool stopped = record_.sweeps.size() < record_.program_sweeps;
     length_ = stopped ? record_.sweeps.size() : std::max(record_.sweeps.size(), sweeps_.size());
     result_.same_motion = other == length_;
@@ -65,8 +57,22 @@ class Replay {
     diagnostics.throw_if_errors();
   }
 
+  int tool_of(uint32_t block) const { return merged_.sources[block].tool; }
+
+  /// The first sweep that differs, by its poses or its tool, or that one of them lacks.
+  size_t first_other_motion() const {
+    const size_t count = std::min(record_.sweeps.size(), sweeps_.size());
+    size_t n = 0;
+    while (n < count && same_sweep(record_.sweeps[n], sweeps_[n]) &&
+           record_.tools[n] == tool_of(sweeps_[n].block))
+      ++n;
+    return n;
+  }
+
   void cut(size_t begin, size_t end) {
-    stock_.cut(std::span(sweeps_).subspan(begin, end - begin), cutter_);
+    for_each_tool(
+        std::span(sweeps_).subspan(begin, end - begin), [&](uint32_t block) { return tool_of(block); },
+        [&](size_t tool, std::span<const stock::Sweep> part) { stock_.cut(part, solids_[tool]); });
     progress_.advance(static_cast<double>(end));
   }
 
@@ -92,7 +98,10 @@ class Replay {
   void compare_sweeps(size_t other) {
     stock::Stock recorded = stock_.clone();
     for (size_t n = other; n < length_ && !progress_.stop_requested(); ++n) {
-      if (n < record_.sweeps.size()) recorded.cut(std::span(record_.sweeps).subspan(n, 1), cutter_);
+      if (n < record_.sweeps.size()) {
+        const auto tool = static_cast<size_t>(record_.tools[n]);
+        recorded.cut(std::span(record_.sweeps).subspan(n, 1), solids_.at(tool));
+      }
       if (n < sweeps_.size()) cut(n, n + 1);
       result_.sweeps = n + 1;
       ++result_.states;
@@ -112,7 +121,7 @@ class Replay {
   MeasuredPath path_;
   JobSweeps merged_;
   const std::vector<stock::Sweep>& sweeps_;
-  stock::CutterSolid cutter_;
+  std::vector<stock::CutterSolid> solids_;  ///< by tool
   stock::Stock stock_;
   size_t length_ = 0;  ///< sweeps to compare: a stopped run only as far as it went
   ReplayResult result_;

@@ -14,8 +14,10 @@
 #include "mesh/tri_mesh.h"
 #include "motion/interpolator.h"
 #include "program/cl_program.h"
+#include "program/nc_program.h"
 #include "program/program.h"
 #include "sim/design_keys.h"
+#include "sim/setup_keys.h"
 #include "toolpath/tool_path.h"
 
 namespace swarf::sim {
@@ -52,16 +54,27 @@ struct StillSettings {
   int samples = 16;  ///< rays per pixel: more is smoother and slower
 };
 
+/// What the scene's program is.
+enum class ProgramKind {
+  kSurfaceBlocks,  ///< `program`: surfaces and areas; the tool path is planned
+  kCl,             ///< `cl`: CL data
+  kNc,             ///< `nc`: a part program as a control reads it
+};
+
 struct Scene {
   std::string file;  ///< scene.toml
   std::string name;  ///< of its folder
   std::string title;
   std::string machine_file;
-  std::string program_file;                                 ///< `program` or `cl`
-  bool cl = false;                                          ///< the program is CL data
+  std::string program_file;  ///< `program`, `cl` or `nc`
+  ProgramKind kind = ProgramKind::kSurfaceBlocks;
   toolpath::BlockLaw block_law = toolpath::BlockLaw::kTcp;  ///< CL: interpolator.mode
-  double linearise_tolerance_mm = 0.01;  ///< of the pieces that blocks near the pole would need (joint)
-  cutter::Cutter cutter;
+  double linearise_tolerance_mm = 0.01;     ///< of the pieces that blocks near the pole would need (joint)
+  std::optional<program::Dialect> dialect;  ///< NC; none: recognised from the text
+  SetupSettings setup;
+  std::string tool_table_file;  ///< `tool_table`; "": none
+  /// What BlockMove::tool and ToolSample::tool count in. Surface blocks: one.
+  std::vector<cutter::Cutter> tools{cutter::Cutter{}};
   StockSettings stock;
   DesignSettings design;
   toolpath::PlanOptions toolpath;
@@ -71,15 +84,19 @@ struct Scene {
   AcceptLimits accept;
   MovieSettings movie;
   StillSettings stills;
+
+  /// The program brings its own blocks: CL data or an NC program.
+  bool has_blocks() const { return kind != ProgramKind::kSurfaceBlocks; }
 };
 
 /// Everything that a run needs, loaded and checked; nothing has been written yet.
 struct Job {
   Scene scene;
   machine::MachineScene machine;
-  program::Program program;                 ///< of surface blocks; empty for CL jobs
-  std::optional<program::ClProgram> cl;     ///< of CL jobs
-  std::vector<surface::SurfacePtr> design;  ///< what the part is measured against; may be empty for CL jobs
+  program::Program program;              ///< of surface blocks; empty for other jobs
+  std::optional<program::ClProgram> cl;  ///< of CL jobs
+  std::vector<surface::SurfacePtr>
+      design;  ///< what the part is measured against; may be empty for jobs of blocks
   std::shared_ptr<const TriMesh> design_mesh;  ///< or a closed mesh with normals; null without one
 
   bool has_design() const { return !design.empty() || design_mesh != nullptr; }
@@ -90,6 +107,12 @@ struct Job {
 /// Problems go to `diagnostics`.
 Scene load_scene(const std::string& path, const std::vector<std::string>& overrides,
                  Diagnostics& diagnostics);
+
+/// Scene::tools by ClProgram::tools; -1: the scene lacks it.
+std::vector<int> cl_tools(const Job& job);
+
+/// The machine with each tool of the scene in its spindle.
+std::vector<kinematics::MachineModel> machines_by_tool(const Job& job);
 
 /// Loads scene, machine, program and design and checks them against each other (tool numbers, CUTTER words,
 /// memory, chord tolerance). Throws InputError with everything that is wrong.

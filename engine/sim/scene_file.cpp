@@ -1,12 +1,14 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <utility>
 
 #include "base/config.h"
 #include "base/units.h"
-#include "sim/cutter_keys.h"
 #include "sim/scene.h"
+#include "sim/tool_table.h"
 
 namespace swarf::sim {
 namespace {
@@ -45,7 +47,9 @@ void read_period_and_limits(ConfigTable& table, motion::MotionOptions& options) 
   options.path_jerk_max = table.number("path_jerk_max_mm_s3", kAboveZero, options.path_jerk_max);
 }
 
-void read_cl_interpolator(ConfigTable table, Scene& scene) {
+/// An NC program says itself what the tool does between two positions.
+void read_block_interpolator(ConfigTable table, Scene& scene) {
+  if (scene.kind == ProgramKind::kNc) return read_period_and_limits(table, scene.motion);
   const std::string mode = table.choice("mode", {"tcp", "joint", "ends"}, "tcp");
   scene.block_law = mode == "joint"  ? toolpath::BlockLaw::kJoint
                     : mode == "ends" ? toolpath::BlockLaw::kEnds
@@ -106,24 +110,46 @@ std::string beside(const std::string& scene_file, const std::string& path) {
   return (fs::path(scene_file).parent_path() / path).lexically_normal().string();
 }
 
-/// Scenes of surface blocks have defaults; in CL scenes only the criteria that are given count.
-void read_accept(ConfigTable table, bool cl, AcceptLimits& accept) {
-  if (!cl || table.has("scallop_max_um")) {
+/// Scenes of surface blocks have defaults; where the program brings its blocks only the criteria that are
+/// given count.
+void read_accept(ConfigTable table, bool blocks, AcceptLimits& accept) {
+  if (!blocks || table.has("scallop_max_um")) {
     accept.scallop_max_um = table.number("scallop_max_um", kAboveZero, 10.5);
   }
   if (table.has("excess_max_um")) accept.excess_max_um = table.number("excess_max_um", kAboveZero, 1.0);
-  if (!cl || table.has("gouge_max_um")) accept.gouge_max_um = table.number("gouge_max_um", kAboveZero, 1.0);
-  if (!cl || table.has("collisions")) accept.collisions = table.integer("collisions", 0, 1000000, 0);
+  if (!blocks || table.has("gouge_max_um"))
+    accept.gouge_max_um = table.number("gouge_max_um", kAboveZero, 1.0);
+  if (!blocks || table.has("collisions")) accept.collisions = table.integer("collisions", 0, 1000000, 0);
 }
 
-/// `program` or `cl`, exactly one of the two.
+/// `program`, `cl` or `nc`, exactly one of them.
 void read_program(ConfigTable& root, Scene& scene) {
-  scene.cl = root.has("cl");
-  if (scene.cl && root.has("program")) {
-    root.error("two-programs", "cl", "the scene names a 'program' and a 'cl' file", "keep one of the two");
+  const std::array<std::pair<const char*, ProgramKind>, 2> kinds{
+      {{"cl", ProgramKind::kCl}, {"program", ProgramKind::kSurfaceBlocks}}};
+  const char* first = nullptr;
+  for (const auto& [key, kind] : kinds) {
+    if (!root.has(key)) continue;
+    const std::string file = root.text(key);
+    if (first != nullptr) {
+      root.error("two-programs", first, fmt::format("the scene names a '{}' and a '{}' file", key, first),
+                 "keep one of program, cl and nc");
+      continue;
+    }
+    first = key;
+    scene.kind = kind;
+    scene.program_file = beside(scene.file, file);
   }
-  scene.program_file = beside(scene.file, root.text(scene.cl ? "cl" : "program"));
-  if (scene.cl && root.has("program")) root.text("program");
+  if (first == nullptr) root.text("program");  // reports that it is missing
+}
+
+/// Surface blocks are planned for one cutter.
+void read_scene_tools(ConfigTable& root, Scene& scene, Diagnostics& diagnostics) {
+  scene.tool_table_file = beside(scene.file, root.text("tool_table", ""));
+  scene.tools = read_tools(root, scene.tool_table_file, diagnostics);
+  if (scene.has_blocks() || scene.tools.size() == 1) return;
+  root.error("planner-needs-one-tool", "tool",
+             fmt::format("surface blocks are planned for one cutter, the scene has {}", scene.tools.size()),
+             "describe one, or run a program that brings its own tool positions");
 }
 
 }  // namespace
@@ -138,18 +164,19 @@ Scene load_scene(const std::string& path, const std::vector<std::string>& overri
   scene.title = root.text("title", scene.name);
   scene.machine_file = beside(path, root.text("machine"));
   read_program(root, scene);
-  scene.cutter = read_cutter(root.table("cutter"));
+  read_scene_tools(root, scene, diagnostics);
+  scene.setup = read_setup(root.table("setup"), scene.kind == ProgramKind::kNc);
   scene.stock = read_stock(root.table("stock"));
-  scene.design = read_design(root.table("design"), scene.cl);
+  scene.design = read_design(root.table("design"), scene.has_blocks());
   scene.design.surface_file = beside(path, scene.design.surface_file);
   scene.design.mesh_file = beside(path, scene.design.mesh_file);
-  if (scene.cl) {
-    read_cl_interpolator(root.table("interpolator"), scene);
+  if (scene.has_blocks()) {
+    read_block_interpolator(root.table("interpolator"), scene);
   } else {
     read_toolpath(root.table("toolpath"), scene);
     read_interpolator(root.table("interpolator"), scene);
   }
-  read_accept(root.table("accept"), scene.cl, scene.accept);
+  read_accept(root.table("accept"), scene.has_blocks(), scene.accept);
   read_pictures(root, scene);
   root.finish();
   scene.toolpath.stock_top_mm = scene.stock.box_W.upper.z();

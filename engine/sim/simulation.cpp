@@ -20,19 +20,23 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-toolpath::ToolPath plan_path(const Job& job, toolpath::Planner planner, Diagnostics& diagnostics) {
+toolpath::ToolPath plan_surfaces(const Job& job, toolpath::Planner planner, Diagnostics& diagnostics) {
   toolpath::PlanOptions options = job.scene.toolpath;
   options.planner = planner;
-  toolpath::ToolPath path = job.cl ? toolpath::cl_path(*job.cl, job.scene.block_law, diagnostics)
-                                   : toolpath::plan(job.program, job.scene.cutter, options, diagnostics);
-  diagnostics.throw_if_errors();
-  if (job.scene.chord_tolerance_mm) {
-    for (toolpath::Element& element : path.elements) {
-      if (auto* pass = std::get_if<toolpath::SurfacePass>(&element.what)) {
-        pass->chord_tolerance_mm = *job.scene.chord_tolerance_mm;
-      }
-    }
+  toolpath::ToolPath path = toolpath::plan(job.program, job.scene.tools.front(), options, diagnostics);
+  for (toolpath::Element& element : path.elements) {
+    auto* pass = std::get_if<toolpath::SurfacePass>(&element.what);
+    if (pass != nullptr && job.scene.chord_tolerance_mm)
+      pass->chord_tolerance_mm = *job.scene.chord_tolerance_mm;
   }
+  return path;
+}
+
+toolpath::ToolPath plan_path(const Job& job, toolpath::Planner planner, Diagnostics& diagnostics) {
+  toolpath::ToolPath path = job.cl
+                                ? toolpath::cl_path(*job.cl, job.scene.block_law, diagnostics, cl_tools(job))
+                                : plan_surfaces(job, planner, diagnostics);
+  diagnostics.throw_if_errors();
   return path;
 }
 
@@ -50,10 +54,13 @@ void measure_dexels(const Job& job, MeasuredPath& measured) {
   const std::vector<int> passes = pass_of_blocks(measured.rays, measured.path);
   const measure::MeasureLimits limits{job.scene.accept.scallop_band_um() * kMicrometre,
                                       job.scene.accept.gouge_band_um() * kMicrometre};
+  const std::vector<stock::CutterSolid> solids = tool_solids(job.scene);
+  const std::vector<int> tools = tool_of_blocks(measured.rays);
+  const measure::SweepCutters cutters(solids, tools);
   std::vector<measure::SurfaceMetrics> parts;
   for (const stock::SurfaceDexels& dexels : measured.dexels) {
-    parts.push_back(measure::measure_surface(dexels, measured.rays.sweeps, passes,
-                                             stock::CutterSolid(job.scene.cutter), limits, &measured.ridges));
+    parts.push_back(
+        measure::measure_surface(dexels, measured.rays.sweeps, passes, cutters, limits, &measured.ridges));
   }
   measured.surface = measure::combine(parts, measured.ridges);
   measured.surface.scallop_theory_um = theory_scallop_um(measured.path);
@@ -63,8 +70,11 @@ void cut_dexels(const Job& job, MeasuredPath& measured) {
   const auto start = std::chrono::steady_clock::now();
   if (job.has_design()) measured.rays = ray_sweeps(job, measured.path, measured.motion.trajectory);
   measured.dexels = design_dexels(job);
+  const std::vector<stock::CutterSolid> solids = tool_solids(job.scene);
+  const auto tool_of = [&](uint32_t block) { return measured.rays.sources[block].tool; };
   for (stock::SurfaceDexels& dexels : measured.dexels) {
-    dexels.cut(measured.rays.sweeps, stock::CutterSolid(job.scene.cutter));
+    for_each_tool(measured.rays.sweeps, tool_of,
+                  [&](size_t tool, std::span<const stock::Sweep> part) { dexels.cut(part, solids[tool]); });
     dexels.limit_depths();
   }
   measured.dexel_seconds = seconds_since(start);
@@ -79,7 +89,7 @@ MeasuredPath plan_and_move(const Job& job, toolpath::Planner planner, const moti
   measured.plan_seconds = seconds_since(start);
   start = std::chrono::steady_clock::now();
   measured.motion =
-      motion::interpolate(measured.path, job.machine.model, job.scene.cutter, options, progress);
+      motion::interpolate(measured.path, machines_by_tool(job), job.scene.tools.front(), options, progress);
   measured.motion_seconds = seconds_since(start);
   return measured;
 }
@@ -94,7 +104,7 @@ InputError path_misses_stock(const Job& job, const std::string& how) {
 /// A path that stays a cutter's reach away from the stock is a wrong scene, not a clean run.
 void require_contact(const Job& job, const motion::Trajectory& trajectory) {
   const Box& box = job.scene.stock.box_W;
-  const double reach = job.scene.cutter.radius();
+  const double reach = job.scene.tools.front().radius();
   double nearest = std::numeric_limits<double>::infinity();
   for (const motion::ToolSample& sample : trajectory.samples) {
     if (sample.kind != motion::SampleKind::kCutting) continue;
@@ -165,7 +175,8 @@ void compare_modes(const Job& job, Progress& progress, Result& result) {
       options.look_ahead = one.look_ahead;
       MeasuredPath other;
       other.path = result.main.path;
-      other.motion = motion::interpolate(other.path, job.machine.model, job.scene.cutter, options, silent);
+      other.motion =
+          motion::interpolate(other.path, machines_by_tool(job), job.scene.tools.front(), options, silent);
       cut_dexels(job, other);
       measure_dexels(job, other);
       result.modes.push_back(row_of(one.name, other, false));
@@ -198,8 +209,9 @@ std::optional<double> flank_radius(const cutter::Cutter& cutter) {
 }
 
 void measure_flank(const Job& job, Progress& progress, Result& result) {
-  const std::optional<double> radius = flank_radius(job.scene.cutter);
-  if (job.scene.design.name != "ruled" || !radius) return;
+  if (job.scene.design.name != "ruled" || job.scene.tools.size() != 1) return;
+  const std::optional<double> radius = flank_radius(job.scene.tools.front());
+  if (!radius) return;
   progress.begin("flank error", 1, "surfaces");
   result.flank = measure::flank_error(*job.design.front(), *radius);
   progress.end();
@@ -217,9 +229,9 @@ MeasuredPath move_tool(const Job& job, Progress& progress) {
   Diagnostics diagnostics;
   measured.path = job_path(job, diagnostics);
   progress.end();
-  measured.motion =
-      motion::interpolate(measured.path, job.machine.model, job.scene.cutter, job.scene.motion, progress);
-  if (!job.cl) require_contact(job, measured.motion.trajectory);
+  measured.motion = motion::interpolate(measured.path, machines_by_tool(job), job.scene.tools.front(),
+                                        job.scene.motion, progress);
+  if (!job.scene.has_blocks()) require_contact(job, measured.motion.trajectory);
   return measured;
 }
 
@@ -233,20 +245,21 @@ Result simulate(const Job& job, const CutOptions& options, Progress& progress) {
   cut_stock(job, options, progress, result);
   result.stopped = progress.stop_requested();
   if (result.stopped) return result;
-  if (job.cl && result.volume_removed_mm3 <= 0.0) throw path_misses_stock(job, "nothing was cut");
+  if (job.scene.has_blocks() && result.volume_removed_mm3 <= 0.0)
+    throw path_misses_stock(job, "nothing was cut");
   progress.begin("cut measuring rays", 1, "surfaces");
   cut_dexels(job, result.main);
   progress.end();
   measure_part(job, progress, result);
   measure_flank(job, progress, result);
-  // A CL program is one path with one law: there is nothing to compare it with.
-  if (!job.cl) {
+  // A program of blocks is one path: there is nothing to compare it with.
+  if (!job.scene.has_blocks()) {
     compare_planners(job, progress, result);
     compare_modes(job, progress, result);
   }
   progress.begin("singularity", 1, "paths");
   result.singularity =
-      motion::scan_singularity(result.main.path, job.machine.model, job.scene.linearise_tolerance_mm);
+      motion::scan_singularity(result.main.path, machines_by_tool(job), job.scene.linearise_tolerance_mm);
   progress.end();
   result.findings = find_faults(job, result);
   result.stopped = progress.stop_requested();

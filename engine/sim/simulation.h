@@ -31,6 +31,7 @@ struct Finding {
   std::string text, fix;
   SourceLocation where;
   double t_s = 0.0;
+  std::string block;  ///< the program's text there; "" where no line is meant
 };
 
 /// One path, interpolated and measured on the surface dexels.
@@ -73,8 +74,9 @@ struct Result {
   bool stopped = false;  ///< the user stopped it; what follows the cut is missing
 };
 
-/// The scene's own path: planned on the surfaces, or the blocks of the CL program. Throws InputError when it
-/// cannot be planned; what is only worth a warning goes to `diagnostics`.
+/// The scene's own path: planned on the surfaces, or the blocks of the CL or NC program. Throws InputError
+/// when it cannot be planned; what is only worth a warning goes to `diagnostics`. `reading`, if given,
+/// receives what an NC program says besides its moves.
 toolpath::ToolPath job_path(const Job& job, Diagnostics& diagnostics);
 
 /// Plans and interpolates the job's program, nothing else. Throws InputError when the path cannot be planned

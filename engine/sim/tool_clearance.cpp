@@ -20,13 +20,20 @@ double flute_end_radius(const cutter::Cutter& cutter) {
 
 }  // namespace
 
-ToolClearanceCheck::ToolClearanceCheck(const cutter::Cutter& cutter, double voxel_mm)
+ToolClearanceCheck::ToolClearanceCheck(std::span<const cutter::Cutter> tools, double voxel_mm)
     : tolerance_mm_(voxel_mm) {
+  for (const cutter::Cutter& tool : tools) points_.push_back(points_of(tool));
+  result_.band_mm = kBandVoxels * voxel_mm;
+  result_.nearest_mm = result_.band_mm;
+}
+
+ToolClearanceCheck::Points ToolClearanceCheck::points_of(const cutter::Cutter& cutter) {
+  Points points;
   const auto ring = [&](double radius, double height, const char* part) {
     const int count = std::max(6, static_cast<int>(std::ceil(2.0 * kPi * radius / kPointSpacing)));
     for (int i = 0; i < count; ++i) {
       const double angle = 2.0 * kPi * i / count;
-      points_.push_back({radius, height, std::cos(angle), std::sin(angle), part});
+      points.push_back({radius, height, std::cos(angle), std::sin(angle), part});
     }
   };
   // Rings along a line of the outline, without its first end.
@@ -47,16 +54,15 @@ ToolClearanceCheck::ToolClearanceCheck(const cutter::Cutter& cutter, double voxe
     line(low, high, wall.part);
     last = high;
   }
-  result_.band_mm = kBandVoxels * voxel_mm;
-  result_.nearest_mm = result_.band_mm;
+  return points;
 }
 
-double ToolClearanceCheck::depth_at(const stock::Stock& stock, const ToolPose& pose,
+double ToolClearanceCheck::depth_at(const stock::Stock& stock, const ToolPose& pose, const Points& points,
                                     const char** part) const {
   const Vec3 x = pose.axis_W.unitOrthogonal();
   const Vec3 y = pose.axis_W.cross(x);
   double nearest = result_.band_mm;
-  for (const Point& p : points_) {
+  for (const Point& p : points) {
     const Vec3 point = pose.tip_W + p.height * pose.axis_W + p.radius * (p.cosine * x + p.sine * y);
     const double distance = stock.distance_mm(point);
     if (distance < nearest) {
@@ -67,11 +73,12 @@ double ToolClearanceCheck::depth_at(const stock::Stock& stock, const ToolPose& p
   return nearest;
 }
 
-void ToolClearanceCheck::check(const stock::Stock& stock, std::span<const stock::Sweep> sweeps) {
+void ToolClearanceCheck::check(const stock::Stock& stock, std::span<const stock::Sweep> sweeps, size_t tool) {
   std::vector<double> nearest(sweeps.size());
   std::vector<const char*> parts(sweeps.size(), "");
   parallel_chunks(sweeps.size(), 16, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) nearest[i] = depth_at(stock, sweeps[i].end, &parts[i]);
+    for (size_t i = begin; i < end; ++i)
+      nearest[i] = depth_at(stock, sweeps[i].end, points_[tool], &parts[i]);
   });
   for (size_t i = 0; i < sweeps.size(); ++i) {
     ++result_.checked_poses;

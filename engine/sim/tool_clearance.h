@@ -28,10 +28,11 @@ struct ToolClearance {
 /// leaves it there.
 class ToolClearanceCheck {
  public:
-  ToolClearanceCheck(const cutter::Cutter& cutter, double voxel_mm);
-  void check(const stock::Stock& stock, std::span<const stock::Sweep> sweeps);
+  ToolClearanceCheck(std::span<const cutter::Cutter> tools, double voxel_mm);
+  /// Sweeps of one tool, by its index.
+  void check(const stock::Stock& stock, std::span<const stock::Sweep> sweeps, size_t tool);
   const ToolClearance& result() const { return result_; }
-  /// Goes on from an earlier result of the same cutter and voxel size.
+  /// Goes on from an earlier result of the same tools and voxel size.
   void resume(const ToolClearance& earlier) { result_ = earlier; }
 
  private:
@@ -39,9 +40,12 @@ class ToolClearanceCheck {
     double radius, height, cosine, sine;
     const char* part;
   };
-  double depth_at(const stock::Stock& stock, const ToolPose& pose, const char** part) const;
+  using Points = std::vector<Point>;
+  static Points points_of(const cutter::Cutter& cutter);
+  double depth_at(const stock::Stock& stock, const ToolPose& pose, const Points& points,
+                  const char** part) const;
 
-  std::vector<Point> points_;
+  std::vector<Points> points_;  ///< by tool
   double tolerance_mm_;
   ToolClearance result_;
 };

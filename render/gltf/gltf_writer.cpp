@@ -34,7 +34,9 @@ class Writer {
   void animate(const GltfNode& node, int index);
   void add_translation(const GltfNode& node, int index);
   void add_rotation(const GltfNode& node, int index);
-  void add_channel(int node, const std::string& path, int times, int values);
+  void add_visibility(const GltfNode& node, int index);
+  void add_channel(int node, const std::string& path, int times, int values,
+                   const char* interpolation = "LINEAR");
   int key_times(const GltfNode& node, const std::vector<size_t>& keys);
   void add_lines();
   int unlit_material(const Rgb& colour);
@@ -140,6 +142,26 @@ void Writer::animate(const GltfNode& node, int index) {
   }
   add_translation(node, index);
   add_rotation(node, index);
+  add_visibility(node, index);
+}
+
+void Writer::add_visibility(const GltfNode& node, int index) {
+  if (std::find(node.shown.begin(), node.shown.end(), 0) == node.shown.end()) return;
+  SWARF_CHECK(node.shown.size() == node.times_s.size(), "times and visibility of node " + node.name);
+  std::vector<size_t> keys{0};
+  for (size_t k = 1; k < node.shown.size(); ++k) {
+    if (node.shown[k] != node.shown[k - 1]) keys.push_back(k);
+  }
+  Floats3 values;
+  for (const size_t k : keys) {
+    const float scale = node.shown[k] != 0 ? 1.0F : 0.0F;
+    values.push_back({scale, scale, scale});
+  }
+  if (keys.size() == 1) {
+    model_.nodes[static_cast<size_t>(index)].scale = {0.0, 0.0, 0.0};
+    return;
+  }
+  add_channel(index, "scale", key_times(node, keys), buffer_.floats<3>(values, false, 0), "STEP");
 }
 
 void Writer::add_translation(const GltfNode& node, int index) {
@@ -178,11 +200,12 @@ int Writer::key_times(const GltfNode& node, const std::vector<size_t>& keys) {
   return buffer_.floats<1>(times, true, 0);
 }
 
-void Writer::add_channel(int node, const std::string& path, int times, int values) {
+void Writer::add_channel(int node, const std::string& path, int times, int values,
+                         const char* interpolation) {
   tinygltf::AnimationSampler sampler;
   sampler.input = times;
   sampler.output = values;
-  sampler.interpolation = "LINEAR";
+  sampler.interpolation = interpolation;
   tinygltf::AnimationChannel channel;
   channel.sampler = static_cast<int>(animation_.samplers.size());
   channel.target_node = node;

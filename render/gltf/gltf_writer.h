@@ -1,6 +1,7 @@
 // Binary glTF 2.0 of machines that move and parts that were measured.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -18,6 +19,9 @@ struct GltfNode {
   int parent = -1;              ///< index of an earlier node; -1: the scene
   std::vector<double> times_s;  ///< strictly ascending; empty for a node that stands still
   std::vector<Pose> poses;      ///< one for each time, or exactly one (empty: identity) without times
+  /// One for each time: 0 hides the node and its children (a scale of zero, which holds until the next time).
+  /// Empty: always shown.
+  std::vector<uint8_t> shown{};
 };
 
 struct GltfScene {

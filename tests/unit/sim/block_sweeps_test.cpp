@@ -74,7 +74,7 @@ namespace {
 
 Job job_of(const std::string& text) {
   Job job;
-  job.scene.cl = true;
+  job.scene.kind = ProgramKind::kCl;
   job.machine.model = motion::paper_machine();
   Diagnostics diagnostics;
   job.cl = program::parse_cl(text, "test.cl", diagnostics);
@@ -92,8 +92,8 @@ Swept sweep_through(const Job& job) {
   Diagnostics diagnostics;
   Progress silent;
   swept.path = job_path(job, diagnostics);
-  swept.motion =
-      motion::interpolate(swept.path, job.machine.model, job.scene.cutter, job.scene.motion, silent);
+  swept.motion = motion::interpolate(swept.path, machines_by_tool(job), job.scene.tools.front(),
+                                     job.scene.motion, silent);
   return swept;
 }
 

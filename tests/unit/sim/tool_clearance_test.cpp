@@ -33,8 +33,8 @@ ToolClearance drilled(const cutter::Cutter& cutter, double tip_z) {
   stock::Stock stock = block();
   const std::vector<stock::Sweep> sweeps{plunge(tip_z)};
   stock.cut(sweeps, stock::CutterSolid(cutter));
-  ToolClearanceCheck check(cutter, kVoxel);
-  check.check(stock, sweeps);
+  ToolClearanceCheck check(std::span(&cutter, 1), kVoxel);
+  check.check(stock, sweeps, 0);
   return check.result();
 }
 
@@ -103,9 +103,9 @@ TEST(ToolClearance, TheTopOfADiscIsTheCuttersOwn) {
   slot.length_mm = 40.0;
   stock.cut(cuts, stock::CutterSolid(slot));
   stock.cut(cuts, stock::CutterSolid(c));
-  ToolClearanceCheck check(c, kVoxel);
+  ToolClearanceCheck check(std::span(&c, 1), kVoxel);
   const std::vector<stock::Sweep> stand{{cuts[0].start, {{0, 0, 12}, Vec3::UnitZ()}, 2}};
-  check.check(stock, stand);
+  check.check(stock, stand, 0);
   EXPECT_EQ(check.result().contacts, 0U);
   EXPECT_NEAR(check.result().nearest_mm, 1.0, 0.05);
 }

@@ -1,0 +1,41 @@
+// The [setup] table of a scene: where the work is clamped, and what stands in the control before the program
+// starts.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/config.h"
+#include "kinematics/machine_model.h"
+
+namespace swarf::sim {
+
+/// X_mm = 12.5 or C_deg = 90.
+struct AxisSetting {
+  std::string axis;
+  bool rotary = false;
+  double value = 0.0;  ///< mm or rad
+  SourceLocation where;
+};
+using AxisSettings = std::vector<AxisSetting>;
+
+struct SetupSettings {
+  /// Origin of W in M with all axes at zero; none: what the machine says.
+  std::optional<Vec3> work_origin_mm;
+  std::map<int, AxisSettings> offsets;  ///< 1: G54, ..., 6: G59, 7: G59.1, 8: G59.2, 9: G59.3
+  std::optional<AxisSettings> start;    ///< axis values where the program starts
+};
+
+/// Reads [setup]; offsets and start belong to NC programs only. "bad-axis-key" for keys that are not a letter
+/// with its unit, "unknown-offset" for what is not G54 to G59.3.
+SetupSettings read_setup(ConfigTable table, bool nc);
+
+/// The settings as values of this machine; what is not named is zero. "unknown-axis" for an axis that it
+/// lacks, "wrong-unit" for mm on a rotary axis and the reverse. `complete`: every axis has to be named
+/// ("missing-axis").
+kinematics::AxisValues axis_values(const AxisSettings& settings, const kinematics::MachineModel& machine,
+                                   bool complete, Diagnostics& diagnostics);
+
+}  // namespace swarf::sim
