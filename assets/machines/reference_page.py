@@ -194,7 +194,7 @@ def axis_row(machine, axis):
     change = machine.toml.get("tool_change", {}).get(f'{axis["name"]}_{unit}', axis.get(f"home_{unit}", 0))
     return (f'| {axis["name"]} | {machine.side(axis["name"])} | {vector(axis["direction"])} | {origin} | {sense} '
             f'| {number(axis[f"min_{unit}"])} .. {number(axis[f"max_{unit}"])} {unit} | {number(axis.get(f"home_{unit}", 0))} '
-            f'| {number(change)} | {number(speed)} {speed_unit} | {number(rapid)} '
+            f'| {number(change)} | {number(speed)} {speed_unit} | {number(rapid)} {speed_unit} '
             f'| {number(axis[f"acceleration_max_{unit}_s2"])} {unit}/s2 | {number(axis[f"jerk_max_{unit}_s3"])} {unit}/s3 |')
 
 

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "kinematics/machine_model.h"
-#include "kinematics/rotation.h"
 
 namespace swarf::kinematics {
 
@@ -20,31 +19,30 @@ inline double link_sense(const Axis& axis) {
   return (axis.side == Side::kTable) == axis.reversed ? 1.0 : -1.0;
 }
 
-/// Carries point and tool axis along with the link of axis `i`; `way` is +1 outwards, -1 back.
-inline void carry(const Axis& axis, double way, double value, double sine, double cosine, Vec3& point,
-                  Vec3& tool_axis) {
-  const double sense = way * link_sense(axis);
-  if (axis.kind == AxisKind::kLinear) {
-    point += (sense * value) * axis.direction_M;
-    return;
-  }
-  point = axis.origin_M + rotate(axis.direction_M, sense * sine, cosine, point - axis.origin_M);
-  tool_axis = rotate(axis.direction_M, sense * sine, cosine, tool_axis);
+/// `way` is +1 outwards with the link, -1 back.
+inline LinkStep link_step(const MachineModel& machine, int axis, double way) {
+  const Axis& of = machine.axes[static_cast<size_t>(axis)];
+  return {of.kind == AxisKind::kRotary, axis,           way * link_sense(of),
+          along(of.direction_M),        of.direction_M, of.origin_M};
 }
 
-/// Tool tip and axis in M as the work sees them: both vectors wander from the tool to the base with the head
-/// links, then against the table links to where the work stands at zero axes.
-inline void carry_tool_to_work(const MachineModel& machine, const AxisValues& q, const Sines& of, Vec3& point,
-                               Vec3& tool_axis) {
-  point = machine.tip_M;
-  tool_axis = machine.tool_axis_M;
-  for (size_t n = machine.head_chain.size(); n-- > 0;) {
-    const int i = machine.head_chain[n];
-    carry(machine.axes[i], 1.0, q[i], of.sine[i], of.cosine[i], point, tool_axis);
+/// Carries point and tool axis along with the link.
+inline void carry(const LinkStep& step, const AxisValues& q, const Sines& of, Vec3& point, Vec3& tool_axis) {
+  if (!step.rotary) {
+    point += (step.sense * q[step.axis]) * step.direction;
+    return;
   }
-  for (const int i : machine.table_chain) {
-    carry(machine.axes[i], -1.0, q[i], of.sine[i], of.cosine[i], point, tool_axis);
-  }
+  const double sine = step.sense * of.sine[step.axis], cosine = of.cosine[step.axis];
+  point = step.origin + rotate(step.along, step.direction, sine, cosine, point - step.origin);
+  tool_axis = rotate(step.along, step.direction, sine, cosine, tool_axis);
+}
+
+/// Calls `visit` with the steps from the tool to where the work stands at zero axes: to the base with the
+/// head links, then back against the table links.
+template <class Visit>
+void from_tool_to_work(const MachineModel& machine, const Visit& visit) {
+  for (size_t n = machine.head_chain.size(); n-- > 0;) visit(link_step(machine, machine.head_chain[n], 1.0));
+  for (const int i : machine.table_chain) visit(link_step(machine, i, -1.0));
 }
 
 }  // namespace swarf::kinematics

@@ -24,8 +24,8 @@ ToolPose forward(const MachineModel& machine, const AxisValues& q) {
     of.sine[i] = std::sin(q[i]);
     of.cosine[i] = std::cos(q[i]);
   }
-  Vec3 point, tool_axis;
-  carry_tool_to_work(machine, q, of, point, tool_axis);
+  Vec3 point = machine.tip_M, tool_axis = machine.tool_axis_M;
+  from_tool_to_work(machine, [&](const LinkStep& step) { carry(step, q, of, point, tool_axis); });
   return {machine.X_MW.linear().transpose() * (point - machine.X_MW.translation()),
           machine.X_MW.linear().transpose() * tool_axis};
 }

@@ -39,40 +39,50 @@ InverseKinematics::InverseKinematics(const MachineModel& machine) : machine_(mac
   diagnostics.throw_if_errors();
   rotary_ = rotary_order(machine);
   for (int i = 0; i < static_cast<int>(machine.axes.size()); ++i) {
-    if (machine.axes[i].kind == AxisKind::kLinear) linear_.push_back(i);
+    const Axis& axis = machine.axes[i];
+    const bool linear = axis.kind == AxisKind::kLinear;
+    // What the proof lets pass as rounding is not held against a pose at the very end of the travel.
+    const double rounding = linear ? kTipTolerance : kAxisTolerance;
+    travel_min_[i] = axis.min - rounding;
+    travel_max_[i] = axis.max + rounding;
+    if (!linear) continue;
+    column_[i] = static_cast<int>(linear_.size());
+    linear_.push_back(i);
   }
-  const auto step = [&](int index) {
-    const Axis& axis = machine.axes[index];
-    const auto column = std::find(linear_.begin(), linear_.end(), index) - linear_.begin();
-    return Step{axis.kind,
-                index,
-                static_cast<int>(column),
-                axis.kind == AxisKind::kLinear ? sense(axis) : link_sense(axis),
-                axis.direction_M,
-                axis.origin_M};
-  };
+  prepare_steps();
+  prepare_pair();
+}
+
+void InverseKinematics::prepare_steps() {
   const auto steps_to_base = [&](const std::vector<int>& chain) {
-    std::vector<Step> steps;
-    std::transform(chain.rbegin(), chain.rend(), std::back_inserter(steps), step);
-    const auto first_linear = std::find_if(steps.begin(), steps.end(),
-                                           [](const Step& one) { return one.kind == AxisKind::kLinear; });
-    if (std::any_of(first_linear, steps.end(), [](const Step& one) { return one.kind == AxisKind::kRotary; }))
-      columns_constant_ = false;
+    std::vector<LinkStep> steps;
+    bool linear_met = false;
+    for (auto axis = chain.rbegin(); axis != chain.rend(); ++axis) {
+      LinkStep step = link_step(machine_, *axis, 1.0);
+      // A linear step counts in the loop equation: by which way the axis value moves the tool, not the link.
+      if (!step.rotary) step.sense = sense(machine_.axes[*axis]);
+      if (step.rotary && linear_met) columns_constant_ = false;
+      linear_met = linear_met || !step.rotary;
+      steps.push_back(step);
+    }
     return steps;
   };
-  table_steps_ = steps_to_base(machine.table_chain);
-  head_steps_ = steps_to_base(machine.head_chain);
+  table_steps_ = steps_to_base(machine_.table_chain);
+  head_steps_ = steps_to_base(machine_.head_chain);
+  from_tool_to_work(machine_, [&](const LinkStep& step) { tool_to_work_.push_back(step); });
   Mat3 columns;
   for (int i = 0; i < 3; ++i) {
-    columns.col(i) = sense(machine.axes[linear_[i]]) * machine.axes[linear_[i]].direction_M;
+    columns.col(i) = sense(machine_.axes[linear_[i]]) * machine_.axes[linear_[i]].direction_M;
   }
   linear_inverse_ = columns.inverse();
+}
 
-  const Mat3 R_WM = machine.X_MW.linear().transpose();
+void InverseKinematics::prepare_pair() {
+  const Mat3 R_WM = machine_.X_MW.linear().transpose();
   const auto direction_W = [&](int axis) -> Vec3 {
-    return (R_WM * machine.axes[axis].direction_M).normalized();
+    return (R_WM * machine_.axes[axis].direction_M).normalized();
   };
-  tool_W_ = (R_WM * machine.tool_axis_M).normalized();
+  tool_W_ = (R_WM * machine_.tool_axis_M).normalized();
   if (rotary_.size() == 2) {
     pair_ = RotaryPair(direction_W(rotary_[0]), direction_W(rotary_[1]), tool_W_);
   } else if (rotary_.size() == 1) {
@@ -98,10 +108,12 @@ InverseKinematics::Target InverseKinematics::target(const Vec3& tip_W, const Vec
 
 double InverseKinematics::unwound(int slot, double turn, const AxisValues& hint) const {
   constexpr double kTurn = 2.0 * kPi;
+  // Adding and taking away 1.5 * 2^52 leaves the nearest whole number, without a call and without a branch.
+  constexpr double kWhole = 6755399441055744.0;
   const Axis& limits = machine_.axes[rotary_[slot]];
   double value = sense(limits) * turn;
-  const double away = hint[rotary_[slot]] - value;
-  if (std::abs(away) > kPi) value += kTurn * std::nearbyint(away * (1.0 / kTurn));
+  const double turns_away = (hint[rotary_[slot]] - value) * (1.0 / kTurn);
+  value += kTurn * ((turns_away + kWhole) - kWhole);
   if (value >= limits.min && value <= limits.max) return value;
   const double other = value < limits.min ? value + kTurn : value - kTurn;
   return other >= limits.min && other <= limits.max ? other : value;
@@ -128,29 +140,28 @@ int InverseKinematics::candidates(const Vec3& axis_W, const AxisValues& hint, Ca
 
 namespace {
 
-/// Carries the work or tool point to the base.
-template <class Step>
-inline void walk_to_base(const std::vector<Step>& steps, const Sines& of, Vec3& point) {
-  for (const Step& step : steps) {
-    if (step.kind == AxisKind::kLinear) continue;
-    point = step.origin + rotate(step.direction, step.sense * of.sine[step.axis], of.cosine[step.axis],
-                                 point - step.origin);
+/// Carries the work or tool point to the base; the linear axes are what is looked for.
+inline void walk_to_base(const std::vector<LinkStep>& steps, const Sines& of, Vec3& point) {
+  for (const LinkStep& step : steps) {
+    if (!step.rotary) continue;
+    point = step.origin + rotate(step.along, step.direction, step.sense * of.sine[step.axis],
+                                 of.cosine[step.axis], point - step.origin);
   }
 }
 
 /// The directions in which the linear axes of one side move the tool, after the rotary axes below them.
-template <class Step>
-void turn_columns(const std::vector<Step>& steps, const Sines& of, Mat3& columns) {
+void turn_columns(const std::vector<LinkStep>& steps, const int (&column)[kMaxAxes], const Sines& of,
+                  Mat3& columns) {
   bool met[3] = {false, false, false};
-  for (const Step& step : steps) {
-    if (step.kind == AxisKind::kLinear) {
-      met[step.column] = true;
-      columns.col(step.column) = step.sense * step.direction;
+  for (const LinkStep& step : steps) {
+    if (!step.rotary) {
+      met[column[step.axis]] = true;
+      columns.col(column[step.axis]) = step.sense * step.direction;
     }
-    for (int i = 0; step.kind == AxisKind::kRotary && i < 3; ++i) {
+    for (int i = 0; step.rotary && i < 3; ++i) {
       if (!met[i]) continue;
-      columns.col(i) =
-          rotate(step.direction, step.sense * of.sine[step.axis], of.cosine[step.axis], columns.col(i));
+      columns.col(i) = rotate(step.along, step.direction, step.sense * of.sine[step.axis],
+                              of.cosine[step.axis], columns.col(i));
     }
   }
 }
@@ -166,19 +177,16 @@ bool InverseKinematics::locate(const Vec3& tip_M, const Sines& of, Vec3& linear_
     return true;
   }
   Mat3 columns;
-  turn_columns(table_steps_, of, columns);
-  turn_columns(head_steps_, of, columns);
+  turn_columns(table_steps_, column_, of, columns);
+  turn_columns(head_steps_, column_, of, columns);
   if (!(std::abs(columns.determinant()) >= kParallelTolerance)) return false;
   linear_values = columns.inverse() * (work - tool);
   return true;
 }
 
 int InverseKinematics::first_out_of_travel(const AxisValues& q) const {
-  for (int i = 0; i < static_cast<int>(machine_.axes.size()); ++i) {
-    const Axis& axis = machine_.axes[i];
-    // What the proof lets pass as rounding is not held against a pose at the very end of the travel.
-    const double rounding = axis.kind == AxisKind::kLinear ? kTipTolerance : kAxisTolerance;
-    if (!(q[i] >= axis.min - rounding && q[i] <= axis.max + rounding)) return i;
+  for (int i = 0; i < kMaxAxes; ++i) {
+    if (!(q[i] >= travel_min_[i] && q[i] <= travel_max_[i])) return i;
   }
   return -1;
 }
@@ -197,8 +205,8 @@ void InverseKinematics::complete(const Target& target, const Candidate& candidat
   for (int i = 0; i < 3; ++i) branch.q[linear_[i]] = linear_values[i];
 
   // forward() without its last step, the turn into W, which changes no distance.
-  Vec3 back_tip_M, back_axis_M;
-  carry_tool_to_work(machine_, branch.q, of, back_tip_M, back_axis_M);
+  Vec3 back_tip_M = machine_.tip_M, back_axis_M = machine_.tool_axis_M;
+  for (const LinkStep& step : tool_to_work_) carry(step, branch.q, of, back_tip_M, back_axis_M);
   const bool proven = (back_tip_M - target.tip_M).squaredNorm() <= kTipTolerance * kTipTolerance &&
                       (back_axis_M - target.axis_M).squaredNorm() <= kAxisTolerance * kAxisTolerance;
   if (!proven) return;

@@ -8,11 +8,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "base/frames.h"
+#include "kinematics/link_step.h"
 #include "kinematics/rotary_pair.h"
 
 namespace swarf::kinematics {
@@ -127,18 +129,12 @@ class InverseKinematics {
     double travel;    ///< sum of the distances to the hint
     bool outer_free;
   };
-  /// One link on the way from the work or the tool to the base.
-  struct Step {
-    AxisKind kind = AxisKind::kLinear;
-    int axis = 0;
-    int column = 0;      ///< linear: column of the loop equation
-    double sense = 1.0;  ///< rotary: of the link; linear: of the value against the direction
-    Vec3 direction = Vec3::UnitX(), origin = Vec3::Zero();
-  };
   /// The pose to reach, in M.
   struct Target {
     Vec3 tip_M, axis_M;
   };
+  void prepare_steps();
+  void prepare_pair();
   int candidates(const Vec3& axis_W, const AxisValues& hint, Candidate out[2]) const;
   int turns(const Vec3& axis_W, TurnPair out[2]) const;
   Target target(const Vec3& tip_W, const Vec3& axis_W) const;
@@ -148,8 +144,13 @@ class InverseKinematics {
   int first_out_of_travel(const AxisValues& q) const;
 
   MachineModel machine_;
-  std::vector<int> linear_, rotary_;            ///< indices into axes; rotary_: from the work to the tool
-  std::vector<Step> table_steps_, head_steps_;  ///< work to base, tool to base
+  std::vector<int> linear_, rotary_;                ///< indices into axes; rotary_: from the work to the tool
+  std::vector<LinkStep> table_steps_, head_steps_;  ///< work to base, tool to base
+  std::vector<LinkStep> tool_to_work_;              ///< the steps of forward()
+  int column_[kMaxAxes] = {};                       ///< of a linear axis in the loop equation, by axis
+  /// Travel by axis, wider by what the proof lets pass as rounding; without limits beyond the last axis.
+  AxisValues travel_min_ = AxisValues::Constant(-std::numeric_limits<double>::infinity());
+  AxisValues travel_max_ = AxisValues::Constant(std::numeric_limits<double>::infinity());
   RotaryPair pair_;              ///< of the directions in W at zero axes, as the pose gives its axis
   Vec3 tool_W_ = Vec3::UnitZ();  ///< tool axis with all axes at zero
   /// One rotary axis: the part of the tool axis along it, and the basis across it that the turn is counted
