@@ -7,6 +7,7 @@
 #include "cli/check_nc.h"
 #include "cli/commands.h"
 #include "cli/terminal.h"
+#include "kinematics/round_trip.h"
 #include "sim/simulation.h"
 
 namespace swarf::cli {
@@ -33,7 +34,24 @@ std::string check_scene(const std::string& file) {
   return fmt::format("scene is right: {} passes, {:.0f} mm in contact", path.passes, path.pass_length_mm);
 }
 
-std::string check_file(const std::string& file, const NcCheckOptions& nc) {
+/// A machine file that reads well is still wrong when its inverse does not lead back.
+std::string check_machine(const std::string& file, int poses) {
+  const machine::MachineScene machine = machine::load_machine(file);
+  const kinematics::RoundTrip trip = kinematics::round_trip(machine.model, poses, 1);
+  if (!trip.holds()) {
+    throw InputError("no-inverse", {file, 0, 0},
+                     fmt::format("of {} random poses {} have no solution and {} another one", trip.poses,
+                                 trip.unsolved, trip.not_found),
+                     "this is a fault of Swarf: please report it with the file");
+  }
+  return fmt::format(
+      "machine is right: {}, {} axes, {} links\n"
+      "  inverse: {} random poses, {} solutions, forward again within {:.2g} mm and {:.2g} rad",
+      machine.model.name, machine.model.axes.size(), machine.links.size(), trip.poses, trip.branches,
+      trip.tip_mm, trip.axis_rad);
+}
+
+std::string check_file(const std::string& file, const NcCheckOptions& nc, int poses) {
   if (is_nc_program(file, nc)) return check_nc(file, nc);
   const std::string extension = std::filesystem::path(file).extension().string();
   if (extension == ".cl" || extension == ".cls" || extension == ".apt" || extension == ".cldata") {
@@ -46,16 +64,14 @@ std::string check_file(const std::string& file, const NcCheckOptions& nc) {
                        program.surfaces.size(), program.operations.size());
   }
   if (is_scene(file)) return check_scene(file);
-  const machine::MachineScene machine = machine::load_machine(file);
-  return fmt::format("machine is right: {}, {} axes, {} links", machine.model.name, machine.model.axes.size(),
-                     machine.links.size());
+  return check_machine(file, poses);
 }
 
-int check(const std::vector<std::string>& files, const NcCheckOptions& nc) {
+int check(const std::vector<std::string>& files, const NcCheckOptions& nc, int poses) {
   int exit_code = kPass;
   for (const std::string& file : files) {
     try {
-      fmt::print("{}: {}\n", file, check_file(file, nc));
+      fmt::print("{}: {}\n", file, check_file(file, nc, poses));
     } catch (const InputError& error) {
       fmt::print(stderr, "{}\n", error.what());
       exit_code = kBadInput;
@@ -69,6 +85,7 @@ int check(const std::vector<std::string>& files, const NcCheckOptions& nc) {
 void add_check(CLI::App& app, int& exit_code) {
   auto files = std::make_shared<std::vector<std::string>>();
   auto nc = std::make_shared<NcCheckOptions>();
+  auto poses = std::make_shared<int>(10000);
   CLI::App* command =
       app.add_subcommand("check",
                          "Parse and validate scenes and machines (.toml), programs (.nc, .ngc, "
@@ -78,7 +95,10 @@ void add_check(CLI::App& app, int& exit_code) {
   command->add_option("--dialect", nc->dialect,
                       "linuxcnc, fanuc, siemens or heidenhain; recognised when left out");
   command->add_flag("--home", nc->at_home, "NC programs start at the machine's home");
-  command->callback([files, nc, &exit_code] { exit_code = check(*files, *nc); });
+  command->add_option("--poses", *poses, "random poses that a machine's inverse must give back")
+      ->check(CLI::Range(1, 100000000))
+      ->capture_default_str();
+  command->callback([files, nc, poses, &exit_code] { exit_code = check(*files, *nc, *poses); });
 }
 
 }  // namespace swarf::cli

@@ -2,13 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <mutex>
 
-#include "base/parallel.h"
 #include "base/rng.h"
 #include "base/units.h"
 #include "kinematics/model_check.h"
 #include "kinematics/reach.h"
+#include "kinematics/round_trip.h"
 #include "shipped_machines.h"
 
 namespace swarf::machine {
@@ -65,38 +64,14 @@ double angle_between(const Vec3& a, const Vec3& b) {
 }
 
 TEST_P(Shipped, ForwardOfTheInverseGivesAMillionPosesBackInEveryBranch) {
-  constexpr size_t kPoses = 1000000, kChunk = 10000;
-  double tip = 0.0, axis = 0.0;
-  size_t solved = 0, branches = 0;
-  std::mutex mutex;
-  parallel_chunks(kPoses, kChunk, [&](size_t begin, size_t end) {
-    Rng rng(1 + begin / kChunk);
-    double tip_here = 0.0, axis_here = 0.0;
-    size_t solved_here = 0, branches_here = 0;
-    for (size_t i = begin; i < end; ++i) {
-      const AxisValues q = random_values(rng);
-      const ToolPose pose = forward(machine_, q);
-      const InverseSolutions solutions = inverse_.solve(pose, q);
-      solved_here += solutions.count > 0 ? 1 : 0;
-      branches_here += static_cast<size_t>(solutions.count);
-      for (int k = 0; k < solutions.count; ++k) {
-        const ToolPose back = forward(machine_, solutions.branch[k].q);
-        tip_here = std::max(tip_here, (back.tip_W - pose.tip_W).norm());
-        axis_here = std::max(axis_here, angle_between(back.axis_W, pose.axis_W));
-      }
-    }
-    const std::lock_guard lock(mutex);
-    tip = std::max(tip, tip_here);
-    axis = std::max(axis, axis_here);
-    solved += solved_here;
-    branches += branches_here;
-  });
-  EXPECT_EQ(solved, kPoses);
-  EXPECT_EQ(branches, rotary_.size() == 2 ? 2 * kPoses : kPoses);
-  EXPECT_LT(tip, 1e-9);
-  EXPECT_LT(axis, 1e-12);
-  std::printf("%s: %zu branches of %zu poses, tip %.3g mm, axis %.3g rad\n", GetParam().c_str(), branches,
-              kPoses, tip, axis);
+  const kinematics::RoundTrip trip = kinematics::round_trip(machine_, 1000000, 1);
+  EXPECT_EQ(trip.unsolved, 0);
+  EXPECT_EQ(trip.not_found, 0);
+  EXPECT_EQ(trip.branches, rotary_.size() == 2 ? 2 * trip.poses : trip.poses);
+  EXPECT_LT(trip.tip_mm, 1e-9);
+  EXPECT_LT(trip.axis_rad, 1e-12);
+  std::printf("%s: %lld branches of %d poses, tip %.3g mm, axis %.3g rad\n", GetParam().c_str(),
+              static_cast<long long>(trip.branches), trip.poses, trip.tip_mm, trip.axis_rad);
 }
 
 /// At each pole the axis next to the work is free and keeps the value that it has; beside it, it is not.
