@@ -18,7 +18,8 @@ using nc::DialectReader;
 using nc::Evidence;
 
 /// Every dialect that can be read.
-constexpr std::array kReaders{&nc::kLinuxCncReader, &nc::kFanucReader, &nc::kSiemensReader};
+constexpr std::array kReaders{&nc::kLinuxCncReader, &nc::kFanucReader, &nc::kSiemensReader,
+                              &nc::kHeidenhainReader};
 
 const DialectReader* reader_of(Dialect dialect) {
   const auto found = std::find_if(kReaders.begin(), kReaders.end(),
