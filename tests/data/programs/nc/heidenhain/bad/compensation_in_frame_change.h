@@ -1,0 +1,7 @@
+; expect: compensation-active 6:1
+BEGIN PGM T MM
+TOOL CALL 1 Z
+L X+10 RL F100
+CYCL DEF 7.0 D
+CYCL DEF 7.1 X+1
+END PGM T MM

@@ -1,0 +1,5 @@
+; expect: unsupported-word 3:10
+BEGIN PGM T MM
+CYCL DEF 8.0 MIRROR IMAGE
+CYCL DEF 8.1 X
+END PGM T MM

@@ -1,0 +1,4 @@
+; expect: unexpected-word 3:30
+BEGIN PGM T MM
+CYCL DEF 200 DRILLING Q200=2 Q239=1
+END PGM T MM

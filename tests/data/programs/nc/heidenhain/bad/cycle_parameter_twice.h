@@ -1,0 +1,4 @@
+; expect: word-twice 3:30
+BEGIN PGM T MM
+CYCL DEF 200 DRILLING Q200=2 Q200=1
+END PGM T MM

@@ -1,0 +1,4 @@
+; expect: unsupported-word 3:10
+BEGIN PGM T MM
+CYCL DEF 251 RECTANGULAR POCKET
+END PGM T MM

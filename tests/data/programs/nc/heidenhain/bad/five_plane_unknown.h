@@ -1,0 +1,4 @@
+; expect: unknown-word 3:1
+BEGIN PGM T MM
+PLANE SPACE SPA+10 TURN FMAX
+END PGM T MM

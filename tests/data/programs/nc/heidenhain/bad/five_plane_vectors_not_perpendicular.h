@@ -1,0 +1,4 @@
+; expect: bad-vector 3:1
+BEGIN PGM T MM
+PLANE VECTOR BX+1 BY+0 BZ+0.1 NX+0 NY+0 NZ+1 TURN FMAX
+END PGM T MM

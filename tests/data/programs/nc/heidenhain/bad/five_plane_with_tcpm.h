@@ -1,0 +1,5 @@
+; expect: unsupported-word 4:1
+BEGIN PGM T MM
+M128
+PLANE SPATIAL SPA+10 SPB+0 SPC+0 TURN FMAX
+END PGM T MM

@@ -1,0 +1,4 @@
+; expect: missing-feed 3:1
+BEGIN PGM T MM
+PLANE SPATIAL SPA+10 SPB+0 SPC+0 TURN
+END PGM T MM

@@ -1,0 +1,4 @@
+; expect: missing-word 3:15
+BEGIN PGM T MM
+FUNCTION TCPM F TCP AXIS POS
+END PGM T MM

@@ -1,0 +1,6 @@
+; expect: tcp-length 5:1
+BEGIN PGM T MM
+TOOL CALL 2 Z DL+1
+M128
+L A+20 F100
+END PGM T MM

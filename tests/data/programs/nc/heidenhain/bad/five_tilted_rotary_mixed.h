@@ -1,0 +1,5 @@
+; expect: words-conflict 4:1
+BEGIN PGM T MM
+PLANE SPATIAL SPA+10 SPB+0 SPC+0 STAY
+L X+5 A+10 F100
+END PGM T MM

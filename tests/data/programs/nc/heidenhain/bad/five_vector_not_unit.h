@@ -1,0 +1,5 @@
+; expect: bad-vector 4:16
+BEGIN PGM T MM
+M128
+LN X+1 Y+2 Z+3 TX+0 TY+0 TZ+0.9 F100
+END PGM T MM

@@ -1,0 +1,4 @@
+; expect: unknown-label 3:10
+BEGIN PGM T MM
+CALL LBL 7
+END PGM T MM

@@ -1,0 +1,3 @@
+; expect: missing-end 3:1
+BEGIN PGM T MM
+L X+1 FMAX

@@ -1,0 +1,4 @@
+; expect: bad-expression 3:8
+BEGIN PGM T MM
+Q1 = 1 2
+END PGM T MM

@@ -1,0 +1,4 @@
+; expect: unknown-offset 3:10
+BEGIN PGM T MM
+CYCL DEF 247 DATUM Q339=4
+END PGM T MM

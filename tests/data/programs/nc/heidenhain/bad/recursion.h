@@ -1,0 +1,6 @@
+; expect: too-deep 4:10
+BEGIN PGM T MM
+LBL 1
+CALL LBL 1
+LBL 0
+END PGM T MM

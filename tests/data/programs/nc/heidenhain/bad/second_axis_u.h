@@ -1,0 +1,4 @@
+; expect: unsupported-word 3:3
+BEGIN PGM T MM
+L U+1 FMAX
+END PGM T MM

@@ -1,0 +1,4 @@
+; expect: out-of-range 3:16
+BEGIN PGM T MM
+SPL X+10 K3X+1E300 F100
+END PGM T MM

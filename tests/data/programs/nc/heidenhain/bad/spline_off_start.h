@@ -1,0 +1,4 @@
+; expect: bad-spline 3:22
+BEGIN PGM T MM
+SPL X+10 K3X+0 K2X+0 K1X-9
+END PGM T MM

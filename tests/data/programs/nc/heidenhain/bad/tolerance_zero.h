@@ -1,0 +1,5 @@
+; expect: out-of-range 4:15
+BEGIN PGM T MM
+CYCL DEF 32.0 T
+CYCL DEF 32.1 T0
+END PGM T MM

@@ -1,0 +1,6 @@
+; expect: too-many-moves 4:1
+BEGIN PGM T MM
+LBL 1
+L IX+1 FMAX
+CALL LBL 1 REP 5000
+END PGM T MM

@@ -1,0 +1,4 @@
+; expect: word-twice 3:21
+BEGIN PGM T MM
+TOOL CALL 1 Z S1000 S2000
+END PGM T MM
