@@ -158,6 +158,18 @@ Json count_or_null(const std::optional<int>& count) {
   return count ? Json(*count) : Json(nullptr);
 }
 
+Json circle_json(const toolpath::ToolPath& path, const motion::CircleError& circle) {
+  const auto line = [&](int element) { return path.elements[static_cast<size_t>(element)].where.line; };
+  return {{"deviation_circle_max_mm", circle.value_mm},
+          {"block_line", line(circle.element)},
+          {"u_at_max", circle.u},
+          {"chord_mm", circle.chord_mm},
+          {"radius_mm", circle.radius_mm},
+          {"blocks", circle.blocks()},
+          {"first_line", line(circle.first)},
+          {"last_line", line(circle.last)}};
+}
+
 /// Of the block that linear axes lead farthest from its segment; `law` is the one it runs under.
 Json singularity_json(const toolpath::ToolPath& path, const motion::SingularityScan& scan) {
   const motion::BlockSingularity& worst = scan.worst.front();
@@ -165,7 +177,8 @@ Json singularity_json(const toolpath::ToolPath& path, const motion::SingularityS
   const toolpath::BlockLaw law = std::get<toolpath::BlockMove>(element.what).law;
   const kinematics::TrajectoryError& error = worst.error;
   const int nearest_line = path.elements[static_cast<size_t>(scan.nearest.element)].where.line;
-  return {{"block_line", element.where.line},
+  return {{"circle", scan.circle ? circle_json(path, *scan.circle) : Json(nullptr)},
+          {"block_line", element.where.line},
           {"law", toolpath::law_name(law)},
           {"tip_error_mm", law == toolpath::BlockLaw::kJoint ? error.segment.value : 0.0},
           {"deviation_line_max_mm", error.line.value},

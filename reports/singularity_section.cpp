@@ -145,6 +145,16 @@ Table branch_table(const MachineModel& machine, const SingularityScan& scan, con
   return table;
 }
 
+std::string circle_text(const toolpath::ToolPath& path, const motion::CircleError& circle) {
+  const auto line = [&](int element) { return path.elements[static_cast<size_t>(element)].where.line; };
+  return fmt::format(
+      " Lines {} to {} are a circle of radius {:.4f} mm in {} blocks: linear axes lead the tip {:.6f} mm "
+      "away "
+      "from it (line {}), straight blocks {:.6f} mm.",
+      line(circle.first), line(circle.last), circle.radius_mm, circle.blocks(), circle.value_mm,
+      line(circle.element), circle.chord_mm);
+}
+
 }  // namespace
 
 Topic singularity_topic(const MachineModel& machine, const toolpath::ToolPath& path,
@@ -165,6 +175,7 @@ Topic singularity_topic(const MachineModel& machine, const toolpath::ToolPath& p
               "cost would be time."
             : "The program runs under TCP, so that the run does not have this error: it is what a control "
               "without TCP would do.");
+  if (scan.circle) topic.intro += circle_text(path, *scan.circle);
   topic.tables = {worst_table(path, scan)};
   if (worst.error.segment.value <= kStraight) return topic;
   topic.figures = {trajectory_figure(machine, worst), pole_figure(machine, worst)};

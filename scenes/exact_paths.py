@@ -254,6 +254,33 @@ def so_singularity():
     path.write("so_singularity")
 
 
+def so_tilted_cone(incline):
+    """Theory 2: 72 blocks of equal angle around a cone inclined about X, by the flank of a cylinder r = 10."""
+    half, lean = radians(15), radians(incline)
+
+    def turned(p):
+        return (p[0], p[1] * cos(lean) - p[2] * sin(lean), p[1] * sin(lean) + p[2] * cos(lean))
+
+    def pose(i):
+        c, s = cos(2 * pi * i / 72), sin(2 * pi * i / 72)
+        tip = turned(((40 + 10 * cos(half)) * c, (40 + 10 * cos(half)) * s, 10 * sin(half)))
+        return (tip[0], tip[1], tip[2] + 50), turned((-sin(half) * c, -sin(half) * s, cos(half)))
+
+    def off(i, way):
+        """Away from the cone's surface and up."""
+        (p, a), c, s = pose(i), cos(2 * pi * i / 72), sin(2 * pi * i / 72)
+        n = turned((cos(half) * c, cos(half) * s, sin(half)))
+        return tuple(x + 20 * y + way * z for x, y, z in zip(p, n, a)), a
+
+    path = Path_(f"CIRCLE ROUND A CONE INCLINED BY {incline} DEG, LINEAR AXES", "CUTTER/20,0", *off(0, 100), 1500)
+    path.rapid(*off(0, 0))
+    for i in range(73):
+        path.to(*pose(i))
+    path.rapid(*off(72, 0))
+    path.rapid(*off(72, 100))
+    path.write(f"so_tilted_cone_{incline}")
+
+
 if __name__ == "__main__":
     slot("exact_slot_flat", "SLOT BY A FLAT END: (2 R L + PI R^2) D", "CUTTER/10,0")
     slot("exact_slot_ball", "SLOT BY A BALL: A L + PI D^2 (3 R - D) / 3", "CUTTER/10,5")
@@ -269,3 +296,5 @@ if __name__ == "__main__":
     gouges()
     flank_f1()
     so_singularity()
+    so_tilted_cone(10)
+    so_tilted_cone(30)

@@ -132,6 +132,7 @@ std::optional<SingularityScan> scan_singularity(const toolpath::ToolPath& path,
     if (pole.in_cone()) ++scan.in_cone;
   }
   find_worst(motions, all, scan);
+  scan.circle = circle_error(motions, elements);
   parallel_chunks(scan.worst.size(), 1, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       BlockSingularity& block = scan.worst[i];

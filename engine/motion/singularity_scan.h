@@ -11,6 +11,7 @@
 
 #include "kinematics/singularity.h"
 #include "motion/block_motion.h"
+#include "motion/circle_error.h"
 #include "toolpath/tool_path.h"
 
 namespace swarf::motion {
@@ -45,6 +46,7 @@ struct SingularityScan {
   /// Those that deviate most from their segment, greatest first; at most kWorstBlocks. Proven: every block
   /// whose bound exceeds the last of them was measured.
   std::vector<BlockSingularity> worst;
+  std::optional<CircleError> circle;  ///< of the longest circle that the program gives as lines
 };
 inline constexpr int kWorstBlocks = 10;
 
