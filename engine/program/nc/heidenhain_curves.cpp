@@ -17,8 +17,7 @@ namespace {
 constexpr unsigned kAlways = kFeedAllowed | kFunctionsAllowed | kCompensationAllowed;
 
 Vec3 unit_vector(BlockReader& reader, const std::array<Amount, 3>& words, const char* name) {
-  const auto first =
-      std::find_if(words.begin(), words.end(), [](const Amount& word) { return word.given; });
+  const auto first = std::find_if(words.begin(), words.end(), [](const Amount& word) { return word.given; });
   Vec3 v;
   for (int i = 0; i < 3; ++i) {
     const Amount& word = words[static_cast<size_t>(i)];
