@@ -97,6 +97,7 @@ int run(const RunOptions& options) {
   reports::PendingFolder pending(folder);
   TerminalProgress progress;
   sim::Result result = sim::simulate(job, cut_options(options, pending), progress);
+  print_diagnostics(result.main.warnings);
   reports::write_run(pending, job, result, {!options.no_render, options.overrides}, progress);
   if (result.stopped) {
     print_stopped(options, result, folder);

@@ -222,6 +222,26 @@ Json tools_json(const sim::Job& job, const sim::Result& result) {
   return list;
 }
 
+Json nc_json(const sim::Job& job, const toolpath::NcReading& nc) {
+  Json laws = Json::object();
+  for (size_t i = 0; i < nc.feed_moves_by_law.size(); ++i) {
+    laws[toolpath::law_name(static_cast<toolpath::BlockLaw>(i))] = nc.feed_moves_by_law.at(i);
+  }
+  const bool dog_leg = job.machine.model.rapid == kinematics::RapidMotion::kDogLeg;
+  return {{"dialect", program::dialect_name(nc.summary.dialect)},
+          {"dialect_reason", nc.summary.dialect_reason},
+          {"files", nc.summary.files.size()},
+          {"lines", nc.summary.lines},
+          {"blocks", nc.summary.blocks},
+          {"moves", nc.summary.moves},
+          {"start", nc.summary.start},
+          {"feed_moves", laws},
+          {"rapids", nc.rapids},
+          {"rapid_motion", dog_leg ? "dog_leg" : "linear"},
+          {"moves_without_tool", nc.moves_without_tool},
+          {"not_simulated", nc.summary.functions}};
+}
+
 Json bad_cuts_json(const sim::Result& result) {
   const auto count = [&](bool rapid) {
     const auto& cuts = result.cut.state.bad_cuts;
@@ -271,6 +291,7 @@ std::string metrics_json(const sim::Job& job, const sim::Result& result, const R
             {"memory_predicted_mb", result.memory.peak_mb},
             {"memory_stock_predicted_mb", result.memory.stock_mb},
             {"memory_peak_mb", peak_memory_mb()}};
+  if (result.main.nc) json["program"] = nc_json(job, *result.main.nc);
   if (result.flank) json["flank"] = flank_json(*result.flank);
   if (result.singularity) json["singularity"] = singularity_json(result.main.path, *result.singularity);
   return json.dump(2) + "\n";

@@ -10,6 +10,7 @@
 #include "measure/measure.h"
 #include "motion/offline_baseline.h"
 #include "reports/flank_table.h"
+#include "reports/nc_report.h"
 #include "reports/paper_table.h"
 #include "reports/part_view.h"
 #include "reports/pictures.h"
@@ -242,8 +243,8 @@ std::vector<Check> checks_of(const sim::Job& job, const sim::Result& result, boo
         {"Speed at the corners between blocks", "",
          "a run of one feed passes its corners at full feed: look-ahead is not part of this version",
          State::kNotChecked});
-    checks.push_back({"Planners and interpolators compared", "", "a CL program is one path: not applicable",
-                      State::kNotChecked});
+    checks.push_back({"Planners and interpolators compared", "",
+                      "a program of blocks is one path: not applicable", State::kNotChecked});
   }
   if (!rendered) {
     checks.push_back({"Pictures and movie", "", "switched off with --no-render", State::kNotChecked});
@@ -252,6 +253,8 @@ std::vector<Check> checks_of(const sim::Job& job, const sim::Result& result, boo
 }
 
 const char* execution_of(const sim::Job& job) {
+  if (job.scene.kind == sim::ProgramKind::kNc)
+    return "as the program's own words choose in each block; the stock is cut by the blocks themselves";
   if (!job.scene.has_blocks())
     return "every cycle is one pose of the tool tip in the work frame; axes are linear inside a cycle";
   switch (job.scene.block_law) {
@@ -316,8 +319,10 @@ std::vector<FactGroup> facts_of(const sim::Job& job, const sim::Result& result, 
             {"Planner", result.main.path.planner},
             {"Execution", execution_of(job)},
             {"Control period", fmt::format("{:g} ms", job.scene.motion.period_s * 1e3)},
-            {"Start", fmt::format("tip at ({:.2f}, {:.2f}, {:.2f}) mm: the first complete position",
-                                  first.pose.tip_W.x(), first.pose.tip_W.y(), first.pose.tip_W.z())},
+            {"Start",
+             fmt::format("tip at ({:.2f}, {:.2f}, {:.2f}) mm: {}", first.pose.tip_W.x(), first.pose.tip_W.y(),
+                         first.pose.tip_W.z(),
+                         result.main.nc ? result.main.nc->summary.start : "the first complete position")},
             {"Cycles", fmt::format("{}", motion.ticks)}}},
           tool_facts(job),
           {"Stock",
@@ -432,12 +437,19 @@ ReportData report_data(const sim::Job& job, const sim::Result& result, const Run
   data.checks = checks_of(job, result, rendered);
   data.reproduce = {fmt::format("./dev run scenes/{}/scene.toml", job.scene.name)};
   data.facts = facts_of(job, result, files);
+  if (result.main.nc) {
+    data.facts.insert(data.facts.begin() + 1, nc_facts(job, result));
+    const std::vector<Check> more = nc_checks(result);
+    data.checks.insert(data.checks.end(), more.begin(), more.end());
+  }
   return data;
 }
 
 std::vector<std::pair<std::string, std::string>> summary_lines(const sim::Job& job,
                                                                const sim::Result& result) {
-  Lines lines = job.scene.has_blocks() ? cl_path_lines(job, result) : path_lines(job, result);
+  Lines lines = result.main.nc ? nc_lines(job, result)
+                : job.cl       ? cl_path_lines(job, result)
+                               : path_lines(job, result);
   const Lines surface = surface_lines(job, result);
   lines.insert(lines.end(), surface.begin(), surface.end());
   const stock::CutStatistics& cut = result.stock->statistics();

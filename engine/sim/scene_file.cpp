@@ -124,8 +124,8 @@ void read_accept(ConfigTable table, bool blocks, AcceptLimits& accept) {
 
 /// `program`, `cl` or `nc`, exactly one of them.
 void read_program(ConfigTable& root, Scene& scene) {
-  const std::array<std::pair<const char*, ProgramKind>, 2> kinds{
-      {{"cl", ProgramKind::kCl}, {"program", ProgramKind::kSurfaceBlocks}}};
+  const std::array<std::pair<const char*, ProgramKind>, 3> kinds{
+      {{"cl", ProgramKind::kCl}, {"nc", ProgramKind::kNc}, {"program", ProgramKind::kSurfaceBlocks}}};
   const char* first = nullptr;
   for (const auto& [key, kind] : kinds) {
     if (!root.has(key)) continue;
@@ -140,6 +140,13 @@ void read_program(ConfigTable& root, Scene& scene) {
     scene.program_file = beside(scene.file, file);
   }
   if (first == nullptr) root.text("program");  // reports that it is missing
+  if (scene.kind != ProgramKind::kNc) return;
+  if (root.has("dialect")) {
+    const std::vector<std::string> names{"linuxcnc", "fanuc", "siemens", "heidenhain"};  // order of Dialect
+    const std::string word = root.choice("dialect", names);
+    scene.dialect =
+        static_cast<program::Dialect>(std::find(names.begin(), names.end(), word) - names.begin());
+  }
 }
 
 /// Surface blocks are planned for one cutter.

@@ -11,6 +11,7 @@
 #include "cutter/profile.h"
 #include "sim/design_rays.h"
 #include "sim/findings.h"
+#include "sim/nc_job.h"
 #include "toolpath/cl_path.h"
 
 namespace swarf::sim {
@@ -18,6 +19,12 @@ namespace {
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+toolpath::ToolPath nc_path(const Job& job, Diagnostics& diagnostics, toolpath::NcReading* reading) {
+  toolpath::NcPath nc = read_nc_program(job, diagnostics);
+  if (reading != nullptr) *reading = std::move(nc.reading);
+  return std::move(nc.path);
 }
 
 toolpath::ToolPath plan_surfaces(const Job& job, toolpath::Planner planner, Diagnostics& diagnostics) {
@@ -32,8 +39,10 @@ toolpath::ToolPath plan_surfaces(const Job& job, toolpath::Planner planner, Diag
   return path;
 }
 
-toolpath::ToolPath plan_path(const Job& job, toolpath::Planner planner, Diagnostics& diagnostics) {
-  toolpath::ToolPath path = job.cl
+toolpath::ToolPath plan_path(const Job& job, toolpath::Planner planner, Diagnostics& diagnostics,
+                             toolpath::NcReading* reading) {
+  toolpath::ToolPath path = job.scene.kind == ProgramKind::kNc ? nc_path(job, diagnostics, reading)
+                            : job.cl
                                 ? toolpath::cl_path(*job.cl, job.scene.block_law, diagnostics, cl_tools(job))
                                 : plan_surfaces(job, planner, diagnostics);
   diagnostics.throw_if_errors();
@@ -85,7 +94,7 @@ MeasuredPath plan_and_move(const Job& job, toolpath::Planner planner, const moti
   MeasuredPath measured;
   auto start = std::chrono::steady_clock::now();
   Diagnostics diagnostics;
-  measured.path = plan_path(job, planner, diagnostics);
+  measured.path = plan_path(job, planner, diagnostics, nullptr);
   measured.plan_seconds = seconds_since(start);
   start = std::chrono::steady_clock::now();
   measured.motion =
@@ -219,15 +228,18 @@ void measure_flank(const Job& job, Progress& progress, Result& result) {
 
 }  // namespace
 
-toolpath::ToolPath job_path(const Job& job, Diagnostics& diagnostics) {
-  return plan_path(job, job.scene.toolpath.planner, diagnostics);
+toolpath::ToolPath job_path(const Job& job, Diagnostics& diagnostics, toolpath::NcReading* reading) {
+  return plan_path(job, job.scene.toolpath.planner, diagnostics, reading);
 }
 
 MeasuredPath move_tool(const Job& job, Progress& progress) {
   MeasuredPath measured;
   progress.begin("plan", 1, "paths");
   Diagnostics diagnostics;
-  measured.path = job_path(job, diagnostics);
+  toolpath::NcReading reading;
+  measured.path = job_path(job, diagnostics, &reading);
+  if (job.scene.kind == ProgramKind::kNc) measured.nc = std::move(reading);
+  measured.warnings = diagnostics.list();
   progress.end();
   measured.motion = motion::interpolate(measured.path, machines_by_tool(job), job.scene.tools.front(),
                                         job.scene.motion, progress);

@@ -20,6 +20,7 @@
 #include "sim/tool_clearance.h"
 #include "stock/stock.h"
 #include "stock/surface_dexels.h"
+#include "toolpath/nc_path.h"
 #include "toolpath/tool_path.h"
 
 namespace swarf::sim {
@@ -40,6 +41,8 @@ struct MeasuredPath {
   motion::MotionResult motion;
   JobSweeps rays;                            ///< what cut the measuring rays; Sweep::block is its index
   std::vector<stock::SurfaceDexels> dexels;  ///< one per surface of Job::design, in its order
+  std::optional<toolpath::NcReading> nc;     ///< of NC jobs
+  std::vector<Diagnostic> warnings;          ///< of the program
   std::vector<measure::Ridge> ridges;
   measure::SurfaceMetrics surface;
   double plan_seconds = 0.0, motion_seconds = 0.0, dexel_seconds = 0.0;
@@ -77,7 +80,7 @@ struct Result {
 /// The scene's own path: planned on the surfaces, or the blocks of the CL or NC program. Throws InputError
 /// when it cannot be planned; what is only worth a warning goes to `diagnostics`. `reading`, if given,
 /// receives what an NC program says besides its moves.
-toolpath::ToolPath job_path(const Job& job, Diagnostics& diagnostics);
+toolpath::ToolPath job_path(const Job& job, Diagnostics& diagnostics, toolpath::NcReading* reading = nullptr);
 
 /// Plans and interpolates the job's program, nothing else. Throws InputError when the path cannot be planned
 /// or never meets the stock.
