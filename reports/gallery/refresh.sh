@@ -10,3 +10,5 @@ refresh() {
 }
 refresh lin_koren_dome machine part deviation fan
 refresh exact_gouges deviation
+refresh so_singularity
+reports/gallery/figure.sh reports/out/so_singularity/report.html "Fig. 9" reports/gallery/so_singularity_fig9.png
