@@ -98,6 +98,9 @@ void Control::set_feed(double value, int column) {
 }
 
 void Control::dwell(double seconds) {
+  if (!(seconds >= 0.0)) {
+    fail("out-of-range", 0, fmt::format("a dwell of {:g} s", seconds), "write a time of zero or more");
+  }
   pending_dwell_s_ += seconds;
 }
 

@@ -144,7 +144,7 @@ class Control {
   bool exact_stop() const { return exact_stop_; }
   void set_corner_tolerance(double mm) { corner_tolerance_mm_ = mm; }
   double corner_tolerance() const { return corner_tolerance_mm_; }
-  /// G4: the next move waits this long before it starts.
+  /// G4: the next move waits this long before it starts. Zero or more ("out-of-range").
   void dwell(double seconds);
 
   // --- Motion ----------------------------------------------------------------------------------------------
@@ -163,7 +163,7 @@ class Control {
   /// Both rotary solutions that bring the tool axis to `axis_P` (program frame F), nearest to the present
   /// values first; empty when the machine cannot point there. Linear values keep the tip where it is in W.
   std::vector<kinematics::AxisValues> tilt_solutions(const Vec3& axis_P) const;
-  /// The one that `preference` chooses ("unreachable-orientation").
+  /// The one that `preference` chooses ("unreachable-orientation", with the degrees that are missing).
   kinematics::AxisValues tilt_solution(const Vec3& axis_P, const TiltPreference& preference,
                                        int column) const;
   /// Moves the rotaries to those of `q`: linear axes stand (tip_stands false) or keep the tip in W.
@@ -229,6 +229,9 @@ class Control {
   void set_true_tool();
   int not_found(const std::string& asked, int column);
   std::string missing_axes() const;
+  [[noreturn]] void fail_tilt(const Vec3& axis_P, const TiltPreference& preference, int axis,
+                              int column) const;
+  kinematics::InverseSolutions tilt_branches(const Vec3& axis_P) const;
 
   const ControlSetup& setup_;
   NcSink& sink_;

@@ -6,6 +6,7 @@
 
 #include "base/units.h"
 #include "kinematics/model_check.h"
+#include "kinematics/reach.h"
 #include "program/nc/control.h"
 
 namespace swarf::program::nc {
@@ -65,6 +66,10 @@ void Control::drill(const DrillCycle& cycle, const Target& hole) {
       !(std::abs(cycle.bottom - cycle.approach) <= kPecksMax * cycle.peck_mm)) {
     fail("bad-cycle", hole.column, fmt::format("the depth per peck is {:g} mm", cycle.peck_mm),
          "give a depth per peck above zero");
+  }
+  if (!(cycle.dwell_s >= 0.0)) {
+    fail("out-of-range", hole.column, fmt::format("the cycle dwells {:g} s", cycle.dwell_s),
+         "write a time of zero or more");
   }
   if (sign * (position_xyz()[axes.normal] - cycle.approach) < 0.0)
     go(Motion::kRapid, axes.normal, cycle.approach);
@@ -159,10 +164,15 @@ void Control::curve(const Curve& curve, double tolerance_mm) {
 // --- Tilted planes
 // -------------------------------------------------------------------------------------------
 
-std::vector<AxisValues> Control::tilt_solutions(const Vec3& axis_P) const {
+/// Both branches for the gauge line where it stands, inside the travel or not.
+kinematics::InverseSolutions Control::tilt_branches(const Vec3& axis_P) const {
   const Vec3 axis_W = (space_.frame().linear() * axis_P).normalized();
   const Vec3 tip_W = kinematics::forward(kinematics::with_tool(setup_.machine, 0.0), q_).tip_W;
-  const kinematics::InverseSolutions found = space_.inverse().solve({tip_W, axis_W}, q_);
+  return space_.inverse().solve({tip_W, axis_W}, q_);
+}
+
+std::vector<AxisValues> Control::tilt_solutions(const Vec3& axis_P) const {
+  const kinematics::InverseSolutions found = tilt_branches(axis_P);
   std::vector<AxisValues> solutions;
   const auto inside = [&](const AxisValues& q) {
     for (int word = 3; word < kAxisWords; ++word) {
@@ -201,12 +211,42 @@ AxisValues Control::tilt_solution(const Vec3& axis_P, const TiltPreference& pref
                       (value > 0.0) == (preference.choice == TiltPreference::Choice::kPositive);
     if (fits) return q;
   }
+  fail_tilt(axis_P, preference, axis, column);
+}
+
+void Control::fail_tilt(const Vec3& axis_P, const TiltPreference& preference, int axis, int column) const {
+  const kinematics::InverseSolutions found = tilt_branches(axis_P);
   const Vec3 axis_W = (space_.frame().linear() * axis_P).normalized();
+  if (found.count == 0) {
+    const kinematics::MachineModel bare = kinematics::with_tool(setup_.machine, 0.0);
+    const auto [text, fix] =
+        kinematics::unreachable_text(bare, {kinematics::forward(bare, q_).tip_W, axis_W});
+    fail("unreachable-orientation", column, text, fix);
+  }
+  std::string text;
+  for (int i = 0; i < found.count; ++i) {
+    text += i == 0 ? ": " : "; or ";
+    std::string beyond;
+    for (const int one : kinematics::rotary_order(setup_.machine)) {
+      const kinematics::Axis& rotary = setup_.machine.axes[static_cast<size_t>(one)];
+      const double value = found.branch[i].q[one], excess = kinematics::travel_excess(rotary, value);
+      text += fmt::format("{}{:.3f} ", rotary.name, deg_from_rad(value));
+      if (std::abs(excess) > kinematics::kAxisTolerance)
+        beyond += fmt::format(", {:.4g} deg are missing in the travel of {}", deg_from_rad(std::abs(excess)),
+                              rotary.name);
+    }
+    text += "deg" + beyond;
+  }
+  const bool chosen = preference.choice != TiltPreference::Choice::kNearest && axis >= 0;
+  if (chosen) {
+    text += fmt::format("; {} is asked to be {}", setup_.machine.axes[static_cast<size_t>(axis)].name,
+                        preference.choice == TiltPreference::Choice::kPositive ? "positive" : "negative");
+  }
   fail("unreachable-orientation", column,
        fmt::format("the rotary axes cannot point the tool along ({:.6f}, {:.6f}, {:.6f}) in W{}", axis_W.x(),
-                   axis_W.y(), axis_W.z(),
-                   solutions.empty() ? " within their travel" : " with the solution that is asked for"),
-       "change the angles of the plane, or the machine");
+                   axis_W.y(), axis_W.z(), text),
+       chosen ? "ask for the other solution, or change the angles of the plane"
+              : "change the angles of the plane, or the machine");
 }
 
 void Control::turn_rotaries(Motion motion, const AxisValues& q, bool tip_stands) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/units.h"
+#include "kinematics/reach.h"
 #include "program/nc/contour.h"
 #include "program/nc/control.h"
 
@@ -85,10 +86,8 @@ void Control::solve_vector(const Target& target, Goal& goal) {
   const kinematics::Branch branch =
       space_.inverse().solve_nearest({X_WP * goal.p + gauge * axis_W, axis_W}, q_);
   if (branch.outcome == kinematics::InverseOutcome::kUnreachable) {
-    fail("unreachable-orientation", target.column,
-         fmt::format("the machine cannot point its tool along ({:.6f}, {:.6f}, {:.6f}) in W", axis_W.x(),
-                     axis_W.y(), axis_W.z()),
-         "choose a machine with the rotary axes that the program needs");
+    const auto [text, fix] = kinematics::unreachable_text(setup_.machine, {X_WP * goal.p, axis_W});
+    fail("unreachable-orientation", target.column, text, fix);
   }
   const std::array<double, 3> before = goal.rotary;
   goal.rotary = space_.rotary_of(branch.q);

@@ -118,18 +118,19 @@ void Fanuc::assignment() {
   assign(number, reader_.open_formula(), place);
 }
 
-Fanuc::Call& Fanuc::locals() {
-  for (size_t i = calls_.size(); i-- > 0;) {
-    if (calls_[i].own_locals) return calls_[i];
-  }
-  return calls_.front();
+/// The call whose #1 to #33 hold here.
+size_t Fanuc::locals() const {
+  size_t level = calls_.size() - 1;
+  while (level > 0 && !calls_[level].own_locals) --level;
+  return level;
 }
 
 void Fanuc::assign(long number, double value, size_t place) {
   const int at = reader_.column_of(place);
   if (number >= 1 && number <= kLocals) {
-    locals().locals[static_cast<size_t>(number)] = value;
-    locals().assigned |= uint64_t{1} << number;
+    Call& here = calls_[locals()];
+    here.locals[static_cast<size_t>(number)] = value;
+    here.assigned |= uint64_t{1} << number;
   } else if (number >= kFirstCommon && number <= kLastCommon) {
     commons_[static_cast<size_t>(number)] = value;
     common_set_[static_cast<size_t>(number)] = true;
@@ -146,7 +147,7 @@ void Fanuc::assign(long number, double value, size_t place) {
 
 double Fanuc::read(long number, size_t place) {
   if (number >= 1 && number <= kLocals) {
-    const Call& here = locals();
+    const Call& here = calls_[locals()];
     if ((here.assigned >> number & 1u) != 0) return here.locals[static_cast<size_t>(number)];
   } else if (number >= kFirstCommon && number <= kLastCommon && common_set_[static_cast<size_t>(number)]) {
     return commons_[static_cast<size_t>(number)];
@@ -198,6 +199,12 @@ double Fanuc::read_named(std::string_view name, size_t place) {
 
 bool Fanuc::exists(std::string_view /*name*/) {
   return false;
+}
+
+bool Fanuc::vacant(long number) const {
+  if (number >= 1 && number <= kLocals) return (calls_[locals()].assigned >> number & 1u) == 0;
+  if (number >= kFirstCommon && number <= kLastCommon) return !common_set_[static_cast<size_t>(number)];
+  return number == 0;
 }
 
 namespace {

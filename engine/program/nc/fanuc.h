@@ -40,6 +40,7 @@ class Fanuc final : public Parameters {
   double read(long number, size_t place) override;
   double read_named(std::string_view name, size_t place) override;
   bool exists(std::string_view name) override;
+  bool vacant(long number) const override;
 
  private:
   struct Call {
@@ -74,7 +75,7 @@ class Fanuc final : public Parameters {
   bool statement();
   void assignment();
   void assign(long number, double value, size_t place);
-  Call& locals();
+  size_t locals() const;
   double system_variable(long number, size_t place);
   // fanuc_flow.cpp
   bool macro_word();

@@ -13,6 +13,13 @@ constexpr Code kGCodes[] = {
     {10, 1},
     {20, 1},
     {30, 1},
+    {22, 1, kUnsupported, "involute"},
+    {23, 1, kUnsupported, "exponential curve"},
+    {24, 1, kUnsupported, "arc in space"},
+    {32, 1, kUnsupported, "involute"},
+    {33, 1, kUnsupported, "exponential curve"},
+    {34, 1, kUnsupported, "arc in space"},
+    {61, 1, kUnsupported, "spline"},
     {62, 1},
     {40, 0},
     {50, kFree, kNoEffect, "high precision contour control"},
@@ -42,6 +49,8 @@ constexpr Code kGCodes[] = {
     {400, 7},
     {410, 7},
     {420, 7},
+    {412, 7, kUnsupported, "cutter compensation in space"},
+    {422, 7, kUnsupported, "cutter compensation in space"},
     {430, 8},
     {434, 8},
     {435, 8},
@@ -55,8 +64,11 @@ constexpr Code kGCodes[] = {
     {520, 0},
     {530, 0},
     {531, 0},
+    {536, 0, kUnsupported, "tool axis to the plane with the tip held"},
     {540, 14},
     {541, 14},
+    {542, 19, kUnsupported, "rotary table dynamic offset"},
+    {544, 19, kUnsupported, "workpiece setting error"},
     {550, 14},
     {560, 14},
     {570, 14},
@@ -73,6 +85,8 @@ constexpr Code kGCodes[] = {
     {670, 12, kNoEffect, "modal macro call off"},
     {680, 16},
     {682, 16},
+    {683, 16, kUnsupported, "tilted plane from the tool axis"},
+    {684, 16, kUnsupported, "tilted plane on top of another"},
     {690, 16},
     {730, 9},
     {740, 9},
@@ -119,6 +133,7 @@ constexpr Code kMCodes[] = {
     {490, kFree, kNoEffect, "override"},
     {980, 0},
     {990, 0},
+    {1980, 0, kUnsupported, "a program on another device"},
 };
 
 const CodeTable kGTable{kGCodes};
@@ -141,6 +156,6 @@ constexpr OperatorWord kOperators[] = {
 }  // namespace
 
 const LetterSyntax kFanucSyntax{&kGTable, &kMTable, "ABCDEFGHIJKLMNOPQRSTUVWXYZ", false};
-const FormulaSyntax kFanucFormula{kFunctions, kOperators, false, true};
+const FormulaSyntax kFanucFormula{kFunctions, kOperators, false, true, true};
 
 }  // namespace swarf::program::nc

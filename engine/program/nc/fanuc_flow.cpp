@@ -203,9 +203,6 @@ void Fanuc::call(int number, long times, int column, const Call* macro) {
 
 void Fanuc::leave(int column) {
   Call& here = calls_.back();
-  if (block_.has('P'))
-    control_.fail("unsupported-word", column, "M99 P (return to another block) is not supported",
-                  "return without P");
   if (here.left > 0) {
     --here.left;
     control_.jump();
@@ -215,6 +212,7 @@ void Fanuc::leave(int column) {
   const LineSource::Mark back = here.back;
   calls_.pop_back();
   source().seek(back);
+  if (block_.has('P')) go_to(whole(block_, 'P', 1, 99999999, reader_, control_), column);
 }
 
 void Fanuc::call_macro() {
@@ -258,6 +256,10 @@ bool Fanuc::apply_calls() {
     if (code != 990) continue;
     if (calls_.size() > 1) {
       leave(at);
+      return true;
+    }
+    if (block_.has('P')) {
+      go_to(whole(block_, 'P', 1, 99999999, reader_, control_), at);
       return true;
     }
     control_.warn_once("main-program-repeats", at, "M99 repeats the main program for ever; it was run once",

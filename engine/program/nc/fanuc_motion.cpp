@@ -48,6 +48,9 @@ void Fanuc::one_shot() {
 void Fanuc::reference() {
   const kinematics::MachineModel& machine = control_.machine();
   const bool second = block_.g[kFanucOneShot] == 300;
+  if (second && block_.has('P') && whole(block_, 'P', 2, 4, reader_, control_) != 2)
+    control_.fail("unsupported-word", column('P'), "the third and fourth reference positions are not known",
+                  "write G30 P2, which goes to the tool change position");
   if (second && !machine.tool_change)
     control_.fail("no-reference", g_column(kFanucOneShot),
                   "G30 goes to the tool change position, and the machine has none",

@@ -186,6 +186,25 @@ long FormulaReader::parameter_number(std::string& name) {
   return whole;
 }
 
+/// The rest of "#1 EQ #0" and "#0 NE #1", where the reader stands behind the first variable.
+std::optional<double> FormulaReader::vacancy(long number) {
+  const size_t from = at_;
+  const OperatorWord* op = peek_operator();
+  if (op != nullptr && (op->op == Operator::kEqual || op->op == Operator::kNotEqual)) {
+    at_ += op->word.size();
+    skip_space();
+    std::string name;
+    const long other = peek() == '#' ? parameter_number(name) : -1;
+    if (other >= 0 && (number == 0 || other == 0)) {
+      const bool both =
+          (number == 0 || parameters_.vacant(number)) && (other == 0 || parameters_.vacant(other));
+      return both == (op->op == Operator::kEqual) ? 1.0 : 0.0;
+    }
+  }
+  at_ = from;
+  return std::nullopt;
+}
+
 double FormulaReader::parameter_value() {
   const size_t from = at_;
   std::string name;
@@ -194,6 +213,9 @@ double FormulaReader::parameter_value() {
            "compute a part of the formula into a parameter first");
   const long number = parameter_number(name);
   --depth_;
+  if (syntax_.null_variable) {
+    if (const std::optional<double> answer = vacancy(number)) return *answer;
+  }
   return name.empty() ? parameters_.read(number, from) : parameters_.read_named(name, from);
 }
 

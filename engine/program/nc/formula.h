@@ -1,6 +1,7 @@
 // Values in letter dialects: numbers, #parameters, [formulas] and functions, as data says how they are spelt.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -23,6 +24,7 @@ struct FormulaSyntax {
   std::span<const FunctionWord> functions;
   std::span<const OperatorWord> operators;
   bool named_parameters = false;      ///< #<name> and EXISTS[#<name>]
+  bool null_variable = false;         ///< #0 is vacant: [#1 EQ #0] asks whether #1 has a value
   bool arc_tangent_positive = false;  ///< ATAN[y]/[x] in [0, 360)
 };
 
@@ -34,6 +36,8 @@ class Parameters {
   virtual double read(long number, size_t place) = 0;
   virtual double read_named(std::string_view name, size_t place) = 0;
   virtual bool exists(std::string_view name) = 0;
+  /// Whether nothing assigned it; asked only where FormulaSyntax::null_variable is set.
+  virtual bool vacant(long number) const = 0;
 };
 
 /// Reads values out of one line.
@@ -71,6 +75,7 @@ class FormulaReader {
   double expression(int lowest_rank);
   double function_value();
   double parameter_value();
+  std::optional<double> vacancy(long number);
   const OperatorWord* peek_operator();
   [[noreturn]] void refuse(size_t at, const char* code, std::string text, std::string fix) const;
   double checked(std::optional<double> result, size_t at, const std::string& why) const;

@@ -13,6 +13,7 @@ namespace {
 
 constexpr long kNumbers = 5400;
 constexpr long kArguments = 30;
+constexpr std::string_view kPositionNames[] = {"_x", "_y", "_z", "_a", "_b", "_c"};
 
 }  // namespace
 
@@ -144,6 +145,11 @@ double LinuxCnc::system_parameter(long number, size_t place) {
     const int axis = word < kAxisWords ? control_.axis_of(static_cast<AxisWord>(word)) : -1;
     return axis < 0 ? 0.0 : word < 3 ? q[axis] / unit : deg_from_rad(q[axis]);
   };
+  for (const long first : {5161L, 5181L}) {
+    const bool second = first == 5181;
+    if (number >= first && number < first + 9 && reference_position(second))
+      return by_word(*reference_position(second), number - first);
+  }
   if (number >= 5211 && number <= 5219) return by_word(shift_, number - 5211);
   if (number == 5220) return control_.work_offset();
   if (number >= 5221 && number <= 5389) {
@@ -175,34 +181,60 @@ double LinuxCnc::read_named(std::string_view name, size_t place) {
   const auto found =
       std::find_if(list.begin(), list.end(), [&](const Named& one) { return one.name == name; });
   if (found != list.end()) return found->value;
-  constexpr std::string_view kPositions[] = {"_x", "_y", "_z", "_a", "_b", "_c"};
   for (long word = 0; word < kAxisWords; ++word) {
-    if (name == kPositions[word]) return system_parameter(5420 + word, place);
+    if (name == kPositionNames[word]) return system_parameter(5420 + word, place);
   }
-  if (name == "_feed") return control_.feed();
-  if (name == "_rpm") return control_.speed_rpm();
-  if (name == "_current_tool") return control_.tool_number();
-  if (name == "_selected_tool") return control_.selected_number();
-  if (name == "_tool_offset") return control_.length_compensation() / control_.mm(1.0);
-  if (name == "_metric") return control_.inches() ? 0.0 : 1.0;
-  if (name == "_imperial") return control_.inches() ? 1.0 : 0.0;
-  if (name == "_absolute") return incremental_ ? 0.0 : 1.0;
-  if (name == "_incremental") return incremental_ ? 1.0 : 0.0;
-  if (name == "_line") return static_cast<double>(source().line_number());
-  if (name == "_motion_mode") return motion_;
-  if (name == "_call_level") return static_cast<double>(calls_.size() - 1);
-  if (name == "_value") return returned_;
-  if (name == "_spindle_on") return control_.spindle() != 0 ? 1.0 : 0.0;
-  if (name == "_coord_system")
-    return control_.work_offset() <= 6 ? 530 + 10 * control_.work_offset() : 584 + control_.work_offset();
+  if (const std::optional<double> value = predefined(name)) return *value;
   control_.fail("undefined-parameter", reader_.column_of(place),
                 fmt::format("#<{}> has no value: nothing assigned it", name),
                 "assign it before it is read, or ask EXISTS first");
 }
 
+std::optional<double> LinuxCnc::predefined(std::string_view name) const {
+  const FeedMode feed = control_.feed_mode();
+  const Compensation side = control_.compensation();
+  const std::pair<std::string_view, double> values[] = {
+      {"_feed", control_.feed()},
+      {"_rpm", control_.speed_rpm()},
+      {"_current_tool", control_.tool_number()},
+      {"_selected_tool", control_.selected_number()},
+      {"_tool_offset", control_.length_compensation() / control_.mm(1.0)},
+      {"_metric", control_.inches() ? 0.0 : 1.0},
+      {"_imperial", control_.inches() ? 1.0 : 0.0},
+      {"_absolute", incremental_ ? 0.0 : 1.0},
+      {"_incremental", incremental_ ? 1.0 : 0.0},
+      {"_inverse_time", feed == FeedMode::kInverseTime ? 1.0 : 0.0},
+      {"_units_per_minute", feed == FeedMode::kPerMinute ? 1.0 : 0.0},
+      {"_units_per_rev", feed == FeedMode::kPerRevolution ? 1.0 : 0.0},
+      {"_ijk_absolute_mode", arc_absolute_ ? 1.0 : 0.0},
+      {"_ijk_incremental_mode", arc_absolute_ ? 0.0 : 1.0},
+      {"_retract_r_plane", retract_to_r_ ? 1.0 : 0.0},
+      {"_retract_old_z", retract_to_r_ ? 0.0 : 1.0},
+      {"_plane", 170.0 + 10.0 * static_cast<int>(control_.plane())},
+      {"_ccomp", side == Compensation::kOff    ? 400.0
+                 : side == Compensation::kLeft ? 410.0
+                                               : 420.0},
+      {"_line", static_cast<double>(calls_.back().source->line_number())},
+      {"_motion_mode", motion_},
+      {"_call_level", static_cast<double>(calls_.size() - 1)},
+      {"_value", returned_},
+      {"_value_returned", value_returned_ ? 1.0 : 0.0},
+      {"_spindle_on", control_.spindle() != 0 ? 1.0 : 0.0},
+      {"_spindle_cw", control_.spindle() > 0 ? 1.0 : 0.0},
+      {"_coord_system",
+       control_.work_offset() <= 6 ? 530 + 10 * control_.work_offset() : 584 + control_.work_offset()},
+  };
+  for (const auto& [word, value] : values) {
+    if (word == name) return value;
+  }
+  return std::nullopt;
+}
+
 bool LinuxCnc::exists(std::string_view name) {
   const auto& list = name[0] == '_' ? globals_ : frame().named;
-  return std::any_of(list.begin(), list.end(), [&](const Named& one) { return one.name == name; });
+  return std::any_of(list.begin(), list.end(), [&](const Named& one) { return one.name == name; }) ||
+         std::find(std::begin(kPositionNames), std::end(kPositionNames), name) != std::end(kPositionNames) ||
+         predefined(name).has_value();
 }
 
 namespace {

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -53,6 +54,7 @@ class LinuxCnc final : public Parameters {
   double read(long number, size_t place) override;
   double read_named(std::string_view name, size_t place) override;
   bool exists(std::string_view name) override;
+  bool vacant(long /*number*/) const override { return false; }
 
  private:
   enum class Keyword {
@@ -150,6 +152,8 @@ class LinuxCnc final : public Parameters {
   void non_modal();
   void set_data();
   void reference(int tenths);
+  void set_reference(int tenths);
+  std::optional<kinematics::AxisValues> reference_position(bool second) const;
   void shift_to_words(bool absolute);
   void update_shift();
   // linuxcnc_motion.cpp
@@ -163,6 +167,7 @@ class LinuxCnc final : public Parameters {
   Call& frame() { return calls_.back(); }
   LineSource& source() { return *calls_.back().source; }
   double system_parameter(long number, size_t place);
+  std::optional<double> predefined(std::string_view name) const;
 
   static constexpr uint32_t kAxisBits = 7u | 7u << ('X' - 'A');
 
@@ -180,6 +185,7 @@ class LinuxCnc final : public Parameters {
   std::vector<std::pair<std::string, double>> new_names_;
   bool ended_ = false, percent_seen_ = false;
   double returned_ = 0.0;
+  bool value_returned_ = false;
 
   int motion_ = -1;  ///< tenths; -1: none
   bool incremental_ = false, arc_absolute_ = false, retract_to_r_ = false;
@@ -187,7 +193,8 @@ class LinuxCnc final : public Parameters {
   double cycle_start_ = 0.0;  ///< height before the first hole of a series
   kinematics::AxisValues shift_ = kinematics::AxisValues::Zero();  ///< G92, G52
   bool shift_on_ = true;
-  std::array<double, 10> offset_turn_{};  ///< G10 L2 R, rad
+  std::array<std::optional<kinematics::AxisValues>, 2> references_;  ///< G28.1, G30.1
+  std::array<double, 10> offset_turn_{};                             ///< G10 L2 R, rad
 };
 
 }  // namespace swarf::program::nc

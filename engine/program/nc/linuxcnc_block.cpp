@@ -53,7 +53,9 @@ void LinuxCnc::check_words() {
     const bool radius = block_.has_g(kRadiusGroup) && block_.g[kRadiusGroup] != 400;
     const bool path = block_.has_g(kPathGroup) && block_.g[kPathGroup] == 640;
     check_letter('D', radius, "G41 and G42");
-    check_letter('H', block_.has_g(kLengthGroup) && block_.g[kLengthGroup] == 430, "G43");
+    check_letter(
+        'H', block_.has_g(kLengthGroup) && (block_.g[kLengthGroup] == 430 || block_.g[kLengthGroup] == 432),
+        "G43 and G43.2");
     for (const char letter : {'I', 'J', 'K'}) check_letter(letter, arc, "G2 and G3");
     check_letter('R', cycle || arc || data, "arcs, cycles and G10 L2");
     check_letter('P', cycle || arc || data || non_modal == 40 || path || block_.m_count > 0,
@@ -196,6 +198,10 @@ void LinuxCnc::apply_compensation() {
   } else if (!block_.has('H') && control_.active_tool() != nullptr) {
     length = control_.active_tool()->length_mm;
   }
+  if (code == 432) {
+    need('H', "G43.2");
+    length += control_.length_compensation();
+  }
   control_.set_length_compensation(length, true);
 }
 
@@ -210,6 +216,7 @@ void LinuxCnc::apply_path_mode() {
   if (!block_.has_g(kPathGroup)) return;
   const int code = block_.g[kPathGroup];
   control_.set_exact_stop(code != 640);
+  if (code == 640 && block_.has('Q')) control_.without_effect("G64 Q (merging of short blocks)");
   control_.set_corner_tolerance(code == 640 && block_.has('P') ? control_.mm(block_.get('P')) : 0.0);
 }
 

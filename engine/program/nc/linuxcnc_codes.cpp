@@ -30,9 +30,9 @@ constexpr Code kGCodes[] = {
     {200, 6},
     {210, 6},
     {280, 0},
-    {281, 0, kUnsupported, "a new reference position"},
+    {281, 0},
     {300, 0},
-    {301, 0, kUnsupported, "a new reference position"},
+    {301, 0},
     {330, 1, kUnsupported, "synchronised motion"},
     {331, 1, kUnsupported, "rigid tapping"},
     {382, 1, kUnsupported, "probing"},
@@ -46,7 +46,7 @@ constexpr Code kGCodes[] = {
     {421, 7},
     {430, 8},
     {431, 8},
-    {432, 8, kUnsupported, "added tool offsets"},
+    {432, 8},
     {490, 8},
     {520, 0},
     {530, 14},
@@ -154,6 +154,6 @@ constexpr OperatorWord kOperators[] = {
 }  // namespace
 
 const LetterSyntax kLinuxCncSyntax{&kGTable, &kMTable, "ABCDFGHIJKLMNPQRSTUVWXYZ", true};
-const FormulaSyntax kLinuxCncFormula{kFunctions, kOperators, true, false};
+const FormulaSyntax kLinuxCncFormula{kFunctions, kOperators, true, false, false};
 
 }  // namespace swarf::program::nc

@@ -99,7 +99,8 @@ void LinuxCnc::flow() {
         control_.fail("bad-o-word", word.column, "this ends a subprogram, and none was called",
                       "take it out");
       reader_.skip_space();
-      returned_ = reader_.peek() == '[' ? reader_.bracketed() : 0.0;
+      value_returned_ = reader_.peek() == '[';
+      returned_ = value_returned_ ? reader_.bracketed() : 0.0;
       return leave();
     case Keyword::kIf:
     case Keyword::kElseIf:

@@ -17,6 +17,9 @@ void LinuxCnc::non_modal() {
     case 280:
     case 300:
       return reference(block_.g[kNonModal]);
+    case 281:
+    case 301:
+      return set_reference(block_.g[kNonModal]);
     case 520:
       return shift_to_words(false);
     case 920:
@@ -96,12 +99,31 @@ void LinuxCnc::set_data() {
   update_shift();
 }
 
-void LinuxCnc::reference(int tenths) {
+/// G28.1, G30.1: the place where the machine stands is the one that G28, G30 go to.
+void LinuxCnc::set_reference(int tenths) {
+  if (!control_.started())
+    control_.fail("start-unknown", g_column(kNonModal), "the position to keep is not known yet",
+                  "give the start position in the scene");
+  control_.flush();
+  references_[tenths == 281 ? 0 : 1] = control_.axis_values();
+}
+
+/// Where G28 (home, or kept by G28.1) and G30 (where tools are changed, or kept by G30.1) go.
+std::optional<AxisValues> LinuxCnc::reference_position(bool second) const {
+  if (references_[second ? 1 : 0]) return references_[second ? 1 : 0];
   const kinematics::MachineModel& machine = control_.machine();
-  if (tenths == 300 && !machine.tool_change)
+  if (second) return machine.tool_change;
+  AxisValues home = AxisValues::Zero();
+  for (size_t i = 0; i < machine.axes.size(); ++i) home[static_cast<long>(i)] = machine.axes[i].home;
+  return home;
+}
+
+void LinuxCnc::reference(int tenths) {
+  const std::optional<AxisValues> goal = reference_position(tenths == 300);
+  if (!goal)
     control_.fail("no-reference", g_column(kNonModal),
                   "G30 goes to the tool change position, and the machine has none",
-                  "add tool_change to the machine file, or write G28");
+                  "add tool_change to the machine file, write G30.1 before it, or write G28");
   const Target words = target_of(block_, incremental_, reader_, control_);
   if (words.any()) control_.line(Motion::kRapid, words);
   Target home;
@@ -109,9 +131,7 @@ void LinuxCnc::reference(int tenths) {
   for (int word = 0; word < kAxisWords; ++word) {
     const int axis = control_.axis_of(static_cast<AxisWord>(word));
     if (axis < 0 || (words.any() && !words.has(word))) continue;
-    home.set(word,
-             tenths == 280 ? machine.axes[static_cast<size_t>(axis)].home : (*machine.tool_change)[axis],
-             false);
+    home.set(word, (*goal)[axis], false);
   }
   control_.machine_line(Motion::kRapid, home);
 }

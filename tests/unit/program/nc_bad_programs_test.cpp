@@ -2,7 +2,6 @@
 // (expect: code line:column). Names that begin with five_ run on the five-axis machine.
 #include <algorithm>
 
-#include "base/rng.h"
 #include "program/source_text.h"
 #include "unit/program/nc_support.h"
 
@@ -84,50 +83,6 @@ TEST(NcBadInput, DialectsAreRecognisedOrAskedFor) {
   EXPECT_EQ(siemens_run.summary.dialect, Dialect::kSiemens);
   EXPECT_EQ(siemens_run.summary.dialect_reason, "recognised by 'DEF REAL _X=5' in line 1");
   EXPECT_EQ(recognised(".mpf", "G0 X1\nM30\n").summary.dialect_reason, "recognised by the ending .mpf");
-}
-
-// Cut off anywhere, or with bytes changed: a diagnostic or a run, never a crash, never a place outside the
-// file.
-TEST(NcBadInput, TruncatedAndMutatedProgramsNeverCrash) {
-  const std::vector<std::string> files = bad_files();
-  Rng rng(20261121);
-  std::vector<std::string> seeds;
-  for (const std::string& file : files) seeds.push_back(read_file(file));
-  seeds.push_back(
-      "%\nO1\nG21 G90 G54\nT1 M6 G43 H1\nS1000 M3\nG0 X0 Y0 Z5\nG41 D1 G1 X20 F100\nG2 X30 Y10 R10\nG40 G1 "
-      "X50\nG81 X1 Z-2 R1\nG80\n#101=[1+2*3]\no1 while [#101 GT 3]\n#101=[#101-1]\no1 endwhile\nM2\n");
-  const std::string alphabet = "0123456789.-+#[]()<>=GMXYZABCIJKRFSTDHLPQON \n%;/owhileifcall*&\x01\xC3\xA4";
-  const auto path = fs::temp_directory_path() / "swarf_nc_fuzz.ngc";
-  for (int round = 0; round < 3000; ++round) {
-    std::string text = seeds[rng.next() % seeds.size()];
-    const size_t changes = rng.next() % 6;
-    for (size_t i = 0; i < changes && !text.empty(); ++i) {
-      const size_t at = rng.next() % text.size();
-      const char c = alphabet[rng.next() % alphabet.size()];
-      switch (rng.next() % 3) {
-        case 0:
-          text[at] = c;
-          break;
-        case 1:
-          text.insert(at, 1, c);
-          break;
-        default:
-          text.erase(at, 1 + rng.next() % 4);
-      }
-    }
-    if (rng.next() % 3 == 0 && !text.empty()) text.resize(rng.next() % text.size());
-    std::ofstream(path, std::ios::binary) << text;
-    ControlSetup setup = rng.next() % 2 == 0 ? three_axis_setup() : five_axis_setup();
-    setup.moves_max = 300;
-    const Dialect dialect = rng.next() % 2 == 0 ? Dialect::kLinuxCnc : Dialect::kFanuc;
-    const NcRun run = run_file(path.string(), dialect, setup);
-    const long lines =
-        std::count(text.begin(), text.end(), '\n') + std::count(text.begin(), text.end(), '\r') + 1;
-    for (const Diagnostic& one : run.diagnostics.list())
-      ASSERT_LE(one.where.line, lines) << "program:\n" << text;
-    for (const NcMove& move : run.moves())
-      ASSERT_TRUE(move.q_to.allFinite() && move.to.tip_W.allFinite()) << "program:\n" << text;
-  }
 }
 
 }  // namespace

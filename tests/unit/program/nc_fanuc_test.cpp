@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "base/rng.h"
-#include "program/nc/control.h"
 #include "unit/program/nc_support.h"
 
 namespace swarf::program {
@@ -26,6 +25,23 @@ TEST(NcFanuc, MacrosLoopsAndCalls) {
   expect_tip(run.moves()[3], 10, 9, 0);
   expect_tip(run.moves()[5], 10, 9, 13);
   expect_tip(run.moves()[7], 12, 9, 13);
+}
+
+TEST(NcFanuc, VacantVariablesAndReturnsToBlocks) {
+  const NcRun run = fanuc(
+      "O0001\n#100=2\nIF [#1 EQ #0] THEN #2=7\nIF [#0 NE #2] THEN #3=8\nIF [#100 EQ #0] THEN #3=9\n"
+      "IF [[#5 EQ #0] AND [#2 NE #0]] THEN #4=1\nG00 X#2 Y#3 Z#4\nG65 P2 A5\nG00 X99\nN30 M98 P3\nN40 G00 "
+      "X50\n"
+      "M30\nO0002\nIF [#2 NE #0] GOTO 1\nG00 X[#1*2]\nN1 M99 P30\nO0003\nM99 P40\n");
+  ASSERT_EQ(run.text(), "");
+  ASSERT_EQ(run.moves().size(), 3u);
+  expect_tip(run.moves()[0], 7, 8, 1);
+  expect_tip(run.moves()[1], 10, 8, 1);
+  expect_tip(run.moves()[2], 50, 8, 1);
+  // M99 P in the main program is a jump: counted, it ends.
+  const NcRun main = fanuc("#100=0\nN10 #100=#100+1\nG91 G00 X1\nIF [#100 GE 3] GOTO 20\nM99 P10\nN20 M30\n");
+  ASSERT_EQ(main.text(), "");
+  EXPECT_EQ(main.moves().size(), 3u);
 }
 
 TEST(NcFanuc, TcpByRotariesAndByVectors) {
@@ -63,49 +79,6 @@ TEST(NcFanuc, TiltedPlaneDrillsAlongItsNormal) {
   ASSERT_TRUE(run.moves()[4].arc);
   EXPECT_NEAR((run.moves()[4].arc->centre_W - in_work(12, 0, -5)).norm(), 0.0, 1e-9);
   EXPECT_NEAR((run.moves()[4].arc->normal_W + R.col(2)).norm(), 0.0, 1e-12);
-}
-
-// Every orientation of a 5 degree grid: the plane's angles I and J, each in [0, 360).
-TEST(NcFanuc, EveryTiltedPlaneOfTheGridIsReachedOrRefused) {
-  ControlSetup setup = five_axis_setup();
-  for (kinematics::Axis& axis : setup.machine.axes) {
-    if (axis.name == "A") axis.min = -kPi, axis.max = kPi;
-  }
-  const kinematics::MachineModel bare = kinematics::with_tool(setup.machine, 0.0);
-  Recorder sink;
-  Diagnostics diagnostics;
-  NcSummary summary;
-  nc::Control control(setup, sink, diagnostics, summary);
-  int reached = 0;
-  for (int i = 0; i < 72; ++i) {
-    for (int j = 0; j < 72; ++j) {
-      const Mat3 R = (Eigen::AngleAxisd(rad_from_deg(5.0 * i), Vec3::UnitZ()) *
-                      Eigen::AngleAxisd(rad_from_deg(5.0 * j), Vec3::UnitX()))
-                         .toRotationMatrix();
-      Pose frame = Pose::Identity();
-      frame.linear() = R;
-      frame.translation() = Vec3(3, -4, 5);
-      control.set_coordinates(nc::Coordinates::kWork);
-      control.set_frame(frame);
-      const auto solutions = control.tilt_solutions(Vec3::UnitZ());
-      ASSERT_FALSE(solutions.empty()) << "I " << 5 * i << " J " << 5 * j;
-      for (const AxisValues& q : solutions) {
-        const ToolPose pose = kinematics::forward(bare, q);
-        ASSERT_NEAR((pose.axis_W - R.col(2)).norm(), 0.0, 1e-9) << "I " << 5 * i << " J " << 5 * j;
-      }
-      control.turn_rotaries(nc::Motion::kRapid, control.tilt_solution(Vec3::UnitZ(), {}, 0), false);
-      nc::Target target;
-      target.set(nc::kX, 7.0, false);
-      target.set(nc::kY, -8.0, false);
-      target.set(nc::kZ, 9.0, false);
-      control.line(nc::Motion::kRapid, target);
-      const ToolPose pose = kinematics::forward(bare, control.axis_values());
-      ASSERT_NEAR((pose.tip_W - frame * Vec3(7, -8, 9)).norm(), 0.0, 1e-9) << "I " << 5 * i << " J " << 5 * j;
-      ASSERT_NEAR((pose.axis_W - R.col(2)).norm(), 0.0, 1e-9) << "I " << 5 * i << " J " << 5 * j;
-      ++reached;
-    }
-  }
-  EXPECT_EQ(reached, 5184);
 }
 
 // A full quarter circle as a rational quadratic: every point lies on it, the length is a quarter of the

@@ -93,6 +93,45 @@ TEST(NcLinuxCnc, OffsetsShiftsAndTurns) {
   expect_tip(run.moves()[5], -3, 10, 0);
 }
 
+TEST(NcLinuxCnc, ReferencePositionsAreKept) {
+  ControlSetup setup = three_axis_setup();
+  setup.machine.axes[0].home = 400.0;
+  AxisValues change = AxisValues::Zero();
+  change[2] = 250.0;
+  setup.machine.tool_change = change;
+  const NcRun run = linuxcnc(
+      "G28 X0\nG30\nG0 X10 Y20 Z30\nG28.1\nG0 X1 Y2 Z3\nG30.1\nG0 X50 Y60 Z70\nG28\nG0 Z80\nG30 Z90\n"
+      "G0 X#5161 Y#5182 Z[#5163+#5183]\nM2\n",
+      setup);
+  ASSERT_EQ(run.text(), "");
+  std::vector<Vec3> tips;
+  for (const NcMove& move : run.moves()) tips.push_back(move.to.tip_W);
+  const std::vector<Vec3> expected = {{400, 0, 0},  {0, 0, 250},  {10, 20, 30}, {1, 2, 3},   {50, 60, 70},
+                                      {10, 20, 30}, {10, 20, 80}, {10, 20, 90}, {10, 20, 3}, {10, 2, 33}};
+  ASSERT_EQ(tips.size(), expected.size());
+  for (size_t i = 0; i < tips.size(); ++i) EXPECT_NEAR((tips[i] - expected[i]).norm(), 0.0, 1e-9) << i;
+}
+
+TEST(NcLinuxCnc, ToolLengthsAddUp) {
+  const NcRun run = linuxcnc("T2 M6 G43\nG43.2 H7\nG0 Z10\nM2\n");
+  ASSERT_EQ(run.text(), "");
+  EXPECT_NEAR(run.moves()[0].q_to[2], 10.0 + 50.0 + 80.0, 1e-12);
+}
+
+TEST(NcLinuxCnc, PredefinedNamesSayWhatHolds) {
+  const NcRun run = linuxcnc(
+      "G18 G91.1 G93 G99 S1000 M3\no9 sub\no9 return [17]\no9 endsub\n"
+      "o1 if [#<_plane> EQ 180 AND #<_inverse_time> EQ 1 AND #<_units_per_minute> EQ 0]\nG0 X1\no1 endif\n"
+      "o2 if [#<_ijk_incremental_mode> EQ 1 AND #<_retract_r_plane> EQ 1 AND #<_ccomp> EQ 400]\nG0 X2\no2 "
+      "endif\n"
+      "o3 if [EXISTS[#<_plane>] AND EXISTS[#<_x>] AND [EXISTS[#<_nothing>] EQ 0]]\nG0 X3\no3 endif\n"
+      "o9 call\no4 if [#<_value> EQ 17 AND #<_value_returned> EQ 1 AND #<_spindle_cw> EQ 1]\nG0 X4\no4 "
+      "endif\nM2\n");
+  ASSERT_EQ(run.text(), "");
+  ASSERT_EQ(run.moves().size(), 4u);
+  for (size_t i = 0; i < 4; ++i) expect_tip(run.moves()[i], static_cast<double>(i + 1), 0, 0);
+}
+
 TEST(NcLinuxCnc, ToolLengthComesFromTheTable) {
   const NcRun run = linuxcnc("T2 M6\nG43 G0 Z10\nG49 G0 Z10\nT0 M6\nM2\n");
   ASSERT_EQ(run.text(), "");

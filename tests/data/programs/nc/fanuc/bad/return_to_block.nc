@@ -1,4 +1,4 @@
-(expect: unsupported-word 5:1)
+(expect: unknown-label 5:1)
 M98 P1
 M30
 O0001

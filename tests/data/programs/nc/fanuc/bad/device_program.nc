@@ -1,0 +1,3 @@
+(expect: unsupported-word 2:1)
+M198 P1
+M30

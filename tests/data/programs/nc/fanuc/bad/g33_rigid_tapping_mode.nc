@@ -1,0 +1,3 @@
+(expect: unsupported-word 2:1)
+G63
+M30

@@ -1,0 +1,3 @@
+(expect: unsupported-word 2:1)
+G68.3 X0 Y0 Z0
+M30

@@ -1,0 +1,3 @@
+(expect: undefined-parameter 2:7)
+G00 X[#1+#0]
+M30
