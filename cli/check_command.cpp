@@ -80,6 +80,22 @@ int check(const std::vector<std::string>& files, const NcCheckOptions& nc, int p
   return exit_code;
 }
 
+const char* const kCheckFooter =
+    R"(What is printed for an NC program: the dialect and why, lines and moves, the way of the tip in feed and rapid moves,
+times at the programmed feed, tools that cut, where it starts, extents of cut and axes, words without effect.
+Every fault is told with file:line:column and what to do; the program is read up to its first one.
+
+Where a program starts: no position is assumed. The first block after which every axis has a place starts it;
+a program that feeds before that needs --home, or a scene with `start`.
+
+Examples:
+  swarf check part.ngc                                     three axes without limits
+  swarf check part.mpf --machine assets/machines/spinner_u5_620/machine.toml --tools tools.toml --home
+  swarf check part.nc --dialect fanuc                      when nothing in the text shows the dialect
+  swarf check scene.toml machine.toml path.cls             scenes, machines and CL data
+
+Exit codes: 0 all are right; 2 at least one is wrong.)";
+
 }  // namespace
 
 void add_check(CLI::App& app, int& exit_code) {
@@ -94,10 +110,13 @@ void add_check(CLI::App& app, int& exit_code) {
   command->add_option("--machine", nc->machine, "machine.toml that NC programs are read for");
   command->add_option("--dialect", nc->dialect,
                       "linuxcnc, fanuc, siemens or heidenhain; recognised when left out");
+  command->add_option("--tools", nc->tools,
+                      "tool table of NC programs: .toml with [[tool]], or LinuxCNC's .tbl");
   command->add_flag("--home", nc->at_home, "NC programs start at the machine's home");
   command->add_option("--poses", *poses, "random poses that a machine's inverse must give back")
       ->check(CLI::Range(1, 100000000))
       ->capture_default_str();
+  command->footer(kCheckFooter);
   command->callback([files, nc, poses, &exit_code] { exit_code = check(*files, *nc, *poses); });
 }
 

@@ -12,9 +12,11 @@
 #include <optional>
 
 #include "base/units.h"
+#include "cli/nc_totals.h"
 #include "cli/terminal.h"
 #include "machine/machine_scene.h"
 #include "program/nc_program.h"
+#include "sim/tool_table.h"
 
 namespace swarf::cli {
 namespace {
@@ -40,46 +42,62 @@ kinematics::MachineModel plain_machine() {
     machine.axes.push_back(axis);
     machine.head_chain.push_back(static_cast<int>(i));
   }
+  machine.gauge_M = Vec3::Zero();
   return machine;
 }
 
-/// Adds up the moves; keeps none.
-class Totals final : public program::NcSink {
- public:
-  explicit Totals(const kinematics::MachineModel& machine) : machine_(machine) {}
-  bool move(const program::NcMove& move) override {
-    (move.rapid ? rapids : feeds) += 1;
-    feed_s += move.duration_s;
-    dwell_s += move.dwell_s;
-    if (feeds + rapids == 1) low = high = move.q_from;
-    low = low.cwiseMin(move.q_to);
-    high = high.cwiseMax(move.q_to);
-    if (move.arc) ++arcs;
-    for (size_t i = 0; i < machine_.axes.size() && out_of_travel.empty(); ++i) {
-      const kinematics::Axis& axis = machine_.axes[i];
-      const double q = move.q_to[static_cast<long>(i)];
-      if (q < axis.min - 1e-9 || q > axis.max + 1e-9)
-        out_of_travel = fmt::format("{} leaves its travel first in line {}", axis.name, move.line);
-    }
-    return true;
-  }
-  long rapids = 0, feeds = 0, arcs = 0;
-  double feed_s = 0.0, dwell_s = 0.0;
-  AxisValues low = AxisValues::Zero(), high = AxisValues::Zero();
-  std::string out_of_travel;
+std::string extent(double low, double high, bool linear) {
+  const auto shown = [&](double q) { return linear ? q : deg_from_rad(q); };
+  return fmt::format("{:.3f} to {:.3f} {}", shown(low), shown(high), linear ? "mm" : "deg");
+}
 
- private:
-  const kinematics::MachineModel& machine_;
-};
+/// "2 h 05 min 07 s", "12.34 s".
+std::string spoken(double seconds) {
+  if (seconds < 60.0) return fmt::format("{:.2f} s", seconds);
+  const auto whole = static_cast<long>(std::llround(seconds));
+  if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
+  return fmt::format("{} h {:02} min {:02} s", whole / 3600, whole / 60 % 60, whole % 60);
+}
 
-std::string travel(const kinematics::MachineModel& machine, const Totals& totals) {
+/// "1 arc", "3 arcs".
+std::string counted(long count, const char* what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
+std::string time_text(const NcTotals& totals) {
+  return fmt::format(
+      "feed {} at the programmed feed, dwells {}, rapids {}", spoken(totals.feed_s), spoken(totals.dwell_s),
+      totals.rapids_timed ? spoken(totals.rapid_s) + " at the axes' rapid speeds; accelerations not counted"
+                          : "not timed (give --machine)");
+}
+
+std::string tools_text(const program::ControlSetup& setup, const program::NcSummary& summary) {
+  if (setup.tools.empty()) return "not looked up, lengths are taken as 0 mm (give --tools)";
   std::string text;
-  for (size_t i = 0; i < machine.axes.size(); ++i) {
-    const bool linear = machine.axes[i].kind == AxisKind::kLinear;
-    const auto shown = [&](double q) { return linear ? q : deg_from_rad(q); };
+  for (const int index : summary.tools_used) {
+    const program::NcTool& tool = setup.tools[static_cast<size_t>(index)];
+    text += text.empty() ? "" : ", ";
+    text += tool.number > 0 ? fmt::format("T{}", tool.number) : "";
+    if (!tool.name.empty()) text += fmt::format("{}\"{}\"", tool.number > 0 ? " " : "", tool.name);
+    text += fmt::format(" (D {:g} mm, length {:g} mm)", tool.diameter_mm, tool.length_mm);
+  }
+  return text.empty() ? "none cuts" : text;
+}
+
+std::string places_text(const program::ControlSetup& setup, const NcTotals& totals) {
+  std::string text;
+  if (!totals.cut_W.isEmpty()) {
+    for (int i = 0; i < 3; ++i) {
+      text += fmt::format("\n  {:<9} {} {}", i == 0 ? "cuts" : "", "XYZ"[i],
+                          extent(totals.cut_W.min()[i], totals.cut_W.max()[i], true));
+    }
+    text += ", the tip in the work";
+  }
+  for (size_t i = 0; i < setup.machine.axes.size(); ++i) {
+    const kinematics::Axis& axis = setup.machine.axes[i];
     const auto index = static_cast<long>(i);
-    text += fmt::format("\n  {} {:.3f} to {:.3f} {}", machine.axes[i].name, shown(totals.low[index]),
-                        shown(totals.high[index]), linear ? "mm" : "deg");
+    text += fmt::format("\n  {:<9} {} {}", i == 0 ? "axes" : "", axis.name,
+                        extent(totals.low[index], totals.high[index], axis.kind == AxisKind::kLinear));
   }
   return text;
 }
@@ -103,6 +121,16 @@ bool has_surface_blocks(const std::string& file) {
   return head.find("G10L7") != std::string::npos || head.find("G06.3") != std::string::npos;
 }
 
+std::vector<program::NcTool> tools_of(const std::string& table) {
+  Diagnostics diagnostics;
+  std::vector<program::NcTool> tools;
+  for (const cutter::Cutter& one : sim::read_tool_table(table, diagnostics))
+    tools.push_back({one.number, one.name, cutter::gauge_length(one), one.diameter_mm, one.corner_radius_mm});
+  diagnostics.throw_if_errors();
+  print_diagnostics(diagnostics.list());
+  return tools;
+}
+
 std::string extension_of(const std::string& file) {
   std::string extension = std::filesystem::path(file).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
@@ -117,7 +145,8 @@ bool is_nc_program(const std::string& file, const NcCheckOptions& options) {
   constexpr std::array kOwn{".ngc", ".mpf", ".spf", ".h", ".tap", ".eia"};
   if (std::find(kOwn.begin(), kOwn.end(), extension) != kOwn.end()) return true;
   if (extension == ".toml" || extension.starts_with(".cl") || extension == ".apt") return false;
-  return !options.machine.empty() || !options.dialect.empty() || !has_surface_blocks(file);
+  return !options.machine.empty() || !options.dialect.empty() || !options.tools.empty() ||
+         !has_surface_blocks(file);
 }
 
 std::string check_nc(const std::string& file, const NcCheckOptions& options) {
@@ -129,24 +158,32 @@ std::string check_nc(const std::string& file, const NcCheckOptions& options) {
       home[static_cast<long>(i)] = setup.machine.axes[i].home;
     setup.start = home;
   }
-  Totals totals(setup.machine);
+  if (!options.tools.empty()) setup.tools = tools_of(options.tools);
+  NcTotals totals(setup.machine);
   Diagnostics diagnostics;
   const program::NcSummary summary =
       program::run_nc(file, chosen(file, options.dialect), setup, totals, diagnostics);
   diagnostics.throw_if_errors();
   print_diagnostics(diagnostics.list());
   std::string text = fmt::format(
-      "NC program is right: {} ({}), {} lines, {} blocks, {} feed moves ({} arcs), {} rapids\n"
-      "  feed moves {:.3f} s at the programmed feed, dwells {:.3f} s; rapids are timed by a run\n"
-      "  machine: {}\n  start: {}",
-      program::dialect_name(summary.dialect), summary.dialect_reason, summary.lines, summary.blocks,
-      totals.feeds, totals.arcs, totals.rapids, totals.feed_s, totals.dwell_s, setup.machine.name,
+      "NC program is right\n"
+      "  dialect   {} ({})\n"
+      "  read      {}, {} with words, {}\n"
+      "  moves     {} ({}), {}\n"
+      "  path      feed {:.3f} mm, rapid {:.3f} mm, of the tip\n"
+      "  time      {}\n"
+      "  tools     {}\n"
+      "  machine   {}\n"
+      "  start     {}",
+      program::dialect_name(summary.dialect), summary.dialect_reason, counted(summary.lines, "line"),
+      counted(summary.blocks, "block"), counted(static_cast<long>(summary.files.size()), "file"),
+      counted(totals.feeds, "feed move"), counted(totals.arcs, "arc"), counted(totals.rapids, "rapid"),
+      totals.feed_mm, totals.rapid_mm, time_text(totals), tools_text(setup, summary), setup.machine.name,
       summary.start.empty() ? "no motion" : summary.start);
-  if (totals.feeds + totals.rapids > 0) text += travel(setup.machine, totals);
-  if (!totals.out_of_travel.empty()) text += "\n  finding: " + totals.out_of_travel;
-  text += "\n  tools: not looked up (no tool table given), lengths are taken as 0 mm";
+  if (totals.feeds + totals.rapids > 0) text += places_text(setup, totals);
+  if (!totals.out_of_travel.empty()) text += "\n  finding   " + totals.out_of_travel;
   if (!summary.functions.empty()) {
-    text += "\n  read, without effect on the geometry:";
+    text += "\n  no effect on the geometry:";
     for (const std::string& word : summary.functions) text += " " + word + ";";
   }
   return text;

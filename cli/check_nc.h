@@ -9,6 +9,7 @@ namespace swarf::cli {
 struct NcCheckOptions {
   std::string machine;   ///< machine.toml; "": a plain XYZ machine without limits
   std::string dialect;   ///< "linuxcnc" ...; "": recognised
+  std::string tools;     ///< tool table, .toml or .tbl; "": none, lengths are 0
   bool at_home = false;  ///< the program starts at the machine's home
 };
 
@@ -16,8 +17,8 @@ struct NcCheckOptions {
 /// blocks (G10 L70) is no NC program in this sense.
 bool is_nc_program(const std::string& file, const NcCheckOptions& options);
 
-/// Reads the program and tells lines, moves, time, tools, travel, start and what has no effect. Throws
-/// InputError.
+/// Reads the program and tells dialect, lines, moves, paths, times, tools, start, extents and what has no
+/// effect. Throws InputError.
 std::string check_nc(const std::string& file, const NcCheckOptions& options);
 
 }  // namespace swarf::cli

@@ -202,6 +202,26 @@ void join_tbl(std::vector<Described>& tools, const std::vector<Described>& measu
   }
 }
 
+/// Appends what a table file describes.
+void add_table(std::vector<Described>& tools, const std::string& table_file, Diagnostics& diagnostics) {
+  if (std::filesystem::path(table_file).extension() == ".tbl") {
+    join_tbl(tools, read_tbl_lines(table_file, diagnostics), diagnostics);
+    return;
+  }
+  ConfigTable table = ConfigTable::load(table_file, {}, diagnostics);
+  for (Described& tool : read_entries(table)) tools.push_back(std::move(tool));
+  table.finish();
+}
+
+/// Names and numbers checked.
+std::vector<Cutter> cutters_of(std::vector<Described>& tools, Diagnostics& diagnostics) {
+  for (const Described& tool : tools) check_name(tool, diagnostics);
+  check_twice(tools, diagnostics);
+  std::vector<Cutter> cutters;
+  for (Described& tool : tools) cutters.push_back(std::move(tool.cutter));
+  return cutters;
+}
+
 }  // namespace
 
 std::vector<Cutter> read_tools(ConfigTable& scene, const std::string& table_file, Diagnostics& diagnostics) {
@@ -212,21 +232,20 @@ std::vector<Cutter> read_tools(ConfigTable& scene, const std::string& table_file
     read_cutter(scene.table("cutter"));
   }
   std::vector<Described> tools = read_entries(scene);
-  if (std::filesystem::path(table_file).extension() == ".tbl") {
-    join_tbl(tools, read_tbl_lines(table_file, diagnostics), diagnostics);
-  } else if (!table_file.empty()) {
-    ConfigTable table = ConfigTable::load(table_file, {}, diagnostics);
-    for (Described& tool : read_entries(table)) tools.push_back(std::move(tool));
-    table.finish();
-  }
-  for (const Described& tool : tools) check_name(tool, diagnostics);
-  check_twice(tools, diagnostics);
+  if (!table_file.empty()) add_table(tools, table_file, diagnostics);
   if (tools.empty() && !diagnostics.has_errors()) {
     scene.error("no-tools", "tool_table", "the scene has no tool", "describe at least one as [[tool]]");
   }
-  std::vector<Cutter> cutters;
-  for (Described& tool : tools) cutters.push_back(std::move(tool.cutter));
-  return cutters;
+  return cutters_of(tools, diagnostics);
+}
+
+std::vector<Cutter> read_tool_table(const std::string& table_file, Diagnostics& diagnostics) {
+  std::vector<Described> tools;
+  add_table(tools, table_file, diagnostics);
+  if (tools.empty() && !diagnostics.has_errors()) {
+    diagnostics.error("no-tools", {table_file, 0, 0}, "the table has no tool", "describe at least one");
+  }
+  return cutters_of(tools, diagnostics);
 }
 
 int tool_index(const std::vector<Cutter>& tools, int number, const std::string& name) {

@@ -25,6 +25,9 @@ namespace swarf::sim {
 std::vector<cutter::Cutter> read_tools(ConfigTable& scene, const std::string& table_file,
                                        Diagnostics& diagnostics);
 
+/// The tools of a table file alone, TOML or .tbl; errors as above.
+std::vector<cutter::Cutter> read_tool_table(const std::string& table_file, Diagnostics& diagnostics);
+
 /// Index of the tool with that number (above 0), or with that name; -1: the table lacks it.
 int tool_index(const std::vector<cutter::Cutter>& tools, int number, const std::string& name);
 

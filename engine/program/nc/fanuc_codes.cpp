@@ -136,6 +136,7 @@ constexpr Code kMCodes[] = {
     {1980, 0, kUnsupported, "a program on another device"},
 };
 
+static_assert(fits_tables(kGCodes) && fits_tables(kMCodes));
 const CodeTable kGTable{kGCodes};
 const CodeTable kMTable{kMCodes};
 

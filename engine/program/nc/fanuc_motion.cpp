@@ -78,7 +78,7 @@ void Fanuc::set_data() {
     control_.fail("unsupported-word", column('L'), fmt::format("G10 L{} changes data of the control", kind),
                   "give tools as a table; G10 L2 and L20 set work offsets");
   need('P', "G10");
-  const int p = whole(block_, 'P', kind == 2 ? 1 : 1, kind == 2 ? 6 : 300, reader_, control_);
+  const int p = whole(block_, 'P', 1, kind == 2 ? 6 : 300, reader_, control_);
   const int number = kind == 2 ? p : 100 + p;
   const Target values = target_of(block_, false, reader_, control_);
   AxisValues origin = control_.offset_origin(number);
@@ -257,7 +257,7 @@ void Fanuc::nurbs() {
 }
 
 bool Fanuc::add_to_nurbs() {
-  if (block_.has_g(kFanucMotion) && nurbs_->knots.size() > 0) {
+  if (block_.has_g(kFanucMotion) && !nurbs_->knots.empty()) {
     control_.fail("bad-nurbs", g_column(kFanucMotion),
                   fmt::format("another motion begins after {} knots; {} points of order {} want {}",
                               nurbs_->knots.size(), nurbs_->points.size(), nurbs_->order,

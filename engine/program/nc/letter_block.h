@@ -19,23 +19,33 @@ struct Code {
   const char* meaning = "";  ///< for messages about codes without effect or support
 };
 inline constexpr int8_t kFree = -1;
-inline constexpr int kGroups = 20;
+inline constexpr int kGroups = 22;
 inline constexpr int kMCodesMax = 8;
+
+inline constexpr int kCodeTenths = 5000;
+
+/// Whether a list can be indexed; dialects assert it of theirs.
+constexpr bool fits_tables(std::span<const Code> codes) {
+  for (const Code& code : codes) {
+    if (code.tenths < 0 || code.tenths >= kCodeTenths || code.group < kFree || code.group >= kGroups)
+      return false;
+  }
+  return true;
+}
 
 /// G or M codes by their number in tenths, made once from the dialect's list.
 class CodeTable {
  public:
   explicit CodeTable(std::span<const Code> codes);
   const Code* find(int tenths) const {
-    return tenths >= 0 && tenths < kSize && index_[static_cast<size_t>(tenths)] >= 0
+    return tenths >= 0 && tenths < kCodeTenths && index_[static_cast<size_t>(tenths)] >= 0
                ? &codes_[static_cast<size_t>(index_[static_cast<size_t>(tenths)])]
                : nullptr;
   }
 
  private:
-  static constexpr int kSize = 5000;
   std::span<const Code> codes_;
-  std::array<int16_t, kSize> index_{};
+  std::array<int16_t, kCodeTenths> index_{};
 };
 
 struct LetterSyntax {

@@ -134,6 +134,7 @@ constexpr Code kMCodes[] = {
     {4300, 5, kUnsupported, "kinematics of the machine builder"},
 };
 
+static_assert(fits_tables(kGCodes) && fits_tables(kMCodes));
 const CodeTable kGTable{kGCodes};
 const CodeTable kMTable{kMCodes};
 

@@ -40,7 +40,7 @@ const char* const kLinuxCnc =
     "M9\nM2\no7\nG0 X1\nM99\n";
 
 const char* const kFanuc =
-    "%\nO1234 (EVERYTHING)\nN10 G21 G17 G90 G94 G40 G49 G80 "
+    "%\nO1234 (EVERYTHING)\nG13.1 G15 G50.1 G22\nN10 G21 G17 G90 G94 G40 G49 G80 "
     "G54\n#100=2.5*[1+3]\n#101=SQRT[#100]+ATAN[1]/[1]\n"
     "IF [#1 EQ #0] THEN #102=3\nIF [#100 LT 5] GOTO 10\nWHILE [#102 GT 0] DO1\n#102=#102-1\nG01 X[#102*2] "
     "F200\nEND1\n"

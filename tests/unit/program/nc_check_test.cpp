@@ -1,0 +1,57 @@
+// swarf check of NC programs as a user meets it.
+#include <fmt/format.h>
+
+#include "support/program_run.h"
+#include "unit/program/nc_support.h"
+
+namespace swarf::program {
+namespace {
+
+test::ProgramRun check(const std::string& name, const std::string& text, const std::string& options) {
+  const auto folder = test::fresh_folder("nc_check");
+  test::write_text(folder / name, text);
+  test::write_text(folder / "tools.tbl", "T3 P3 Z75 D8 ; ball END8\n");
+  const std::string tools =
+      options.find("--tools") == std::string::npos ? "" : (folder / "tools.tbl").string();
+  return test::run_swarf("check " + options + tools + " " + (folder / name).string());
+}
+
+void expect_lines(const test::ProgramRun& run, const std::vector<std::string>& lines) {
+  for (const std::string& line : lines)
+    EXPECT_NE(run.output.find(line), std::string::npos) << "'" << line << "' is missing in\n" << run.output;
+}
+
+/// A square of 100 mm with a half circle of 20 mm outwards: lengths, times and extents by hand.
+TEST(NcCheck, TellsPathTimeToolsAndExtents) {
+  const test::ProgramRun run = check("part.ngc",
+                                     "T3 M6 G43\nS1000 M3\nM8\nG0 X0 Y0 Z10\nG1 Z0 F600\nG1 X100\nY30\n"
+                                     "G3 X100 Y70 I0 J20\nG1 Y100\nX0\nY0\nG4 P2\nG0 Z10\nM2\n",
+                                     "--home --tools ");
+  EXPECT_EQ(run.exit_code, 0) << run.output;
+  const double feed = 10.0 + 100.0 + 30.0 + 20.0 * kPi + 30.0 + 100.0 + 100.0;
+  expect_lines(run,
+               {"dialect   linuxcnc (recognised by the file's ending .ngc)", "read      14 lines",
+                "moves     7 feed moves (1 arc), 2 rapids", fmt::format("path      feed {:.3f} mm", feed),
+                fmt::format("time      feed {:.2f} s at the programmed feed, dwells 2.00 s", feed / 10.0),
+                "tools     T3", "D 8 mm, length 75 mm", "X 0.000 to 120.000 mm", "Y 0.000 to 100.000 mm",
+                "Z 0.000 to 10.000 mm, the tip in the work", "M8 (flood)"});
+}
+
+TEST(NcCheck, TimesRapidsOnAMachineAndFindsTravel) {
+  const std::string machine =
+      "--home --machine " + std::string(SWARF_SOURCE_DIR) + "/assets/machines/spinner_u5_620/machine.toml";
+  const test::ProgramRun run = check("part.mpf", "SUPA G0 X0\nSUPA G0 X5000\nM30\n", machine);
+  EXPECT_EQ(run.exit_code, 0) << run.output;
+  expect_lines(run, {"dialect   siemens", "at the axes' rapid speeds",
+                     "finding   X goes to 5000.000 mm in line 2 first; its travel is"});
+}
+
+TEST(NcCheck, RefusesWithPlaceAndAdvice) {
+  const test::ProgramRun run = check("part.ngc", "G0 X0 Y0 Z0\nG1 X5\nM2\n", "");
+  EXPECT_EQ(run.exit_code, 2);
+  expect_lines(run, {"part.ngc:2:4: error: this feed move has no F", "fix: add the feed: F1000"});
+  expect_lines(test::run_swarf("check --help"), {"--tools", "--dialect", "Examples:", "Exit codes:"});
+}
+
+}  // namespace
+}  // namespace swarf::program
