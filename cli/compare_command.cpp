@@ -9,6 +9,7 @@
 
 #include "base/units.h"
 #include "cli/commands.h"
+#include "cli/compare_runs.h"
 #include "cli/terminal.h"
 #include "measure/mesh_deviation.h"
 #include "mesh/mesh_io.h"
@@ -25,7 +26,7 @@ namespace fs = std::filesystem;
 
 struct CompareOptions {
   std::string stock, design, output;
-  double reach_mm = 1.0, scallop_um = 10.0, gouge_um = 1.0, pitch_mm = 0.5, edge_mm = -1.0;
+  double reach_mm = 1.0, scallop_um = 10.0, gouge_um = 1.0, pitch_mm = 0.5, edge_mm = -1.0, rays_um = 0.2;
   bool json = false;
 };
 
@@ -115,6 +116,8 @@ void print_summary(const CompareOptions& options, const measure::DeviationSummar
 }
 
 int compare(CompareOptions options) {
+  if (fs::is_directory(options.stock) && fs::is_directory(options.design))
+    return compare_runs(options.stock, options.design, options.rays_um, options.json);
   if (!options.output.empty()) reports::check_output_folder(options.output, reports::kCompareMark);
   TriMesh stock = load_stock(options.stock, options.edge_mm);
   measure_stock(options, stock);
@@ -144,18 +147,25 @@ int compare(CompareOptions options) {
 
 void add_compare(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<CompareOptions>();
-  CLI::App* command =
-      app.add_subcommand("compare", "Compare a finished stock (vdb, stl, ply, obj) with a design");
-  command->add_option("stock", options->stock, "stock.vdb of a run, or a mesh in mm")->required();
+  CLI::App* command = app.add_subcommand("compare",
+                                         "Compare a finished stock (vdb, stl, ply, obj) with a design, or "
+                                         "two finished runs ray by ray");
+  command->add_option("stock", options->stock, "stock.vdb of a run, or a mesh in mm; or the folder of a run")
+      ->required();
   command
-      ->add_option("design", options->design,
-                   "a scene or program with surface blocks, or a closed mesh in mm")
+      ->add_option(
+          "design", options->design,
+          "a scene or program with surface blocks, or a closed mesh in mm; or the folder of another run "
+          "with the same design")
       ->required();
   command->add_option("-o,--output", options->output,
                       "folder for deviation.ply, deviation.png and metrics.json");
   command->add_option("--reach-mm", options->reach_mm, "measure what lies so near to the design")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
+  command->add_option("--rays-um", options->rays_um, "allowed difference between the rays of two runs")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
   command->add_option("--scallop-um", options->scallop_um, "allowed excess")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
