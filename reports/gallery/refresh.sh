@@ -10,5 +10,7 @@ refresh() {
 }
 refresh lin_koren_dome machine part deviation fan
 refresh exact_gouges deviation
+refresh nc_pocket part
+refresh spinner_axis_cross part machine
 refresh so_singularity
 reports/gallery/figure.sh reports/out/so_singularity/report.html "Fig. 9" reports/gallery/so_singularity_fig9.png
