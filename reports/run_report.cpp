@@ -413,7 +413,8 @@ ReportData report_data(const sim::Job& job, const sim::Result& result, const Run
     data.hero_caption = files.stills.front().caption;
     data.stills.assign(files.stills.begin() + 1, files.stills.end());
   }
-  data.viewer = {files.part_glb, files.machine_glb, deviation_colour_bar(deviation_scale_um(job)),
+  data.viewer = {files.part_glb, files.machine_glb,
+                 job.has_design() ? deviation_colour_bar(deviation_scale_um(job)) : ColourBar(),
                  files.animation_scale};
   data.movie_mp4 = files.movie;
   data.movie_caption =

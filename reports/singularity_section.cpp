@@ -54,10 +54,8 @@ Table worst_table(const toolpath::ToolPath& path, const SingularityScan& scan) {
   const auto mm = [](double value) { return fmt::format("{:.4f}", value); };
   for (const BlockSingularity& block : scan.worst) {
     const kinematics::TrajectoryError& error = block.error;
-    const bool straight = error.segment.value <= kStraight;
-    const auto place = [&](const kinematics::Peak& peak) {
-      return straight ? "–" : fmt::format("{:.4f}", peak.u);
-    };
+    if (error.segment.value <= kStraight) break;  // they are in falling order
+    const auto place = [&](const kinematics::Peak& peak) { return fmt::format("{:.4f}", peak.u); };
     const std::string cone = degrees(block.pole.cone_rad) + (block.pole.in_cone() ? ", inside" : "");
     table.rows.push_back({fmt::format("{}", line_of(path, block)), law_of(path, block),
                           degrees(block.pole.pole_distance_rad), block.pole.cone_rad == 0.0 ? "–" : cone,
@@ -165,19 +163,24 @@ Topic singularity_topic(const MachineModel& machine, const toolpath::ToolPath& p
   topic.title = "Singularity (So et al.)";
   const BlockSingularity& worst = scan.worst.front();
   const int line = line_of(path, worst);
+  if (worst.error.segment.value <= kStraight) {
+    topic.intro = fmt::format(
+        "With linear axes the tip stays on its lines in all {} feed blocks that were looked at, within 1e-6 "
+        "mm. Not looked at: {} rapids, {} arcs of the tip, {} blocks without axis values.",
+        scan.blocks, scan.rapids, scan.arcs, scan.unreachable);
+    return topic;
+  }
   const bool joint = std::string(law_of(path, worst)) == toolpath::law_name(toolpath::BlockLaw::kJoint);
   topic.intro = fmt::format(
       "With linear axes the tip leaves its programmed segment by {:.6f} mm in line {}, {} deg away from the "
       "pole. {}",
       worst.error.segment.value, line, degrees(worst.pole.pole_distance_rad),
       joint ? "The program runs with linear axes: this is the error of the run. Under TCP it would be 0, and "
-              "the "
-              "cost would be time."
+              "the cost would be time."
             : "The program runs under TCP, so that the run does not have this error: it is what a control "
               "without TCP would do.");
   if (scan.circle) topic.intro += circle_text(path, *scan.circle);
   topic.tables = {worst_table(path, scan)};
-  if (worst.error.segment.value <= kStraight) return topic;
   topic.figures = {trajectory_figure(machine, worst), pole_figure(machine, worst)};
   topic.tables.push_back(tolerance_table(machine, worst, line));
   topic.tables.push_back(pieces_table(machine, worst, line));
