@@ -169,9 +169,9 @@ Job load_job(const std::string& path, const std::vector<std::string>& overrides)
   // A user mends all files at once: what is wrong with one does not hide what is wrong with the other.
   collect(diagnostics, [&] {
     job.machine = machine::load_machine(job.scene.machine_file);
-    if (job.scene.setup.work_origin_mm) {
-      job.machine.model.X_MW.translation() = *job.scene.setup.work_origin_mm;
-    }
+    Pose& X_MW = job.machine.model.X_MW;
+    if (job.scene.setup.work_origin_mm) X_MW.translation() = *job.scene.setup.work_origin_mm;
+    X_MW.linear() = Eigen::AngleAxisd(job.scene.setup.work_rotation_rad, Vec3::UnitZ()).toRotationMatrix();
   });
   Diagnostics warnings;
   collect(diagnostics, [&] {

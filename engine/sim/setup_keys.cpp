@@ -39,6 +39,7 @@ SetupSettings read_setup(ConfigTable table, bool nc) {
     const std::vector<double> origin = table.numbers("work_origin_mm", 3);
     if (origin.size() == 3) setup.work_origin_mm = Vec3(origin[0], origin[1], origin[2]);
   }
+  setup.work_rotation_rad = rad_from_deg(table.number("work_rotation_deg", {-360.0, 360.0}, 0.0));
   if (!nc) return setup;
   if (table.has("start")) setup.start = read_axes(table.table("start"));
   ConfigTable offsets = table.table("offsets");

@@ -24,6 +24,7 @@ using AxisSettings = std::vector<AxisSetting>;
 struct SetupSettings {
   /// Origin of W in M with all axes at zero; none: what the machine says.
   std::optional<Vec3> work_origin_mm;
+  double work_rotation_rad = 0.0;       ///< of W about Z of M, through its origin: how the part is clamped
   std::map<int, AxisSettings> offsets;  ///< 1: G54, ..., 6: G59, 7: G59.1, 8: G59.2, 9: G59.3
   std::optional<AxisSettings> start;    ///< axis values where the program starts
 };

@@ -93,6 +93,28 @@ TEST_F(NcJob, WorkOffsetsShiftTheProgram) {
   EXPECT_NEAR(at_path(metrics(), "stock.volume_removed_mm3").get<double>(), 60.0 * 10.0 * depth, 2.0);
 }
 
+TEST_F(NcJob, TheWorkTurnsOnTheTableAndTheProgramDoesNot) {
+  // The slot runs along the machine's X: along -Y of a block that is turned by 90 degrees, through its 40 mm.
+  std::string program = kSlot;
+  program.replace(program.find("X-10 Y0"), 7, "X-40 Y30");
+  write(program, kStart + "work_rotation_deg = 90\n");
+  const auto done = run();
+  ASSERT_EQ(done.exit_code, 0) << done.output;
+  EXPECT_NEAR(at_path(metrics(), "stock.volume_removed_mm3").get<double>(), 40.0 * 10.0 * 4.0, 2.0);
+  const std::string cl =
+      "UNITS/MM\nLOADTL/2\nSPINDL/3000,CLW\nFROM/-10,0,-4\nFEDRAT/1200\nGOTO/70,0,-4\nFINI\n";
+  write_text(root_ / "job.cl", cl);
+  std::string scene = read_text(root_ / "scene.toml");
+  scene.replace(scene.find("nc = \"job.ngc\""), 14, "cl = \"job.cl\"");
+  scene.erase(scene.find(kStart), kStart.size());
+  write_text(root_ / "scene.toml", scene);
+  const auto turned = run();
+  ASSERT_EQ(turned.exit_code, 0) << turned.output;
+  EXPECT_NEAR(at_path(metrics(), "stock.volume_removed_mm3").get<double>(), kSlotVolume, 2.0);
+  EXPECT_NEAR(at_path(metrics(), "kinematics.axes.0.travel").get<double>(), 0.0, 1e-9);
+  EXPECT_NEAR(at_path(metrics(), "kinematics.axes.1.travel").get<double>(), 80.0, 1e-9);
+}
+
 TEST_F(NcJob, ChecksAsScene) {
   write(kSlot, kStart);
   const auto checked = run_swarf("check " + (root_ / "scene.toml").string());
