@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "base/check.h"
 #include "kinematics/joint_path.h"
@@ -83,23 +84,35 @@ MotionBounds ends_bounds(const BlockMove& block) {
   return bounds;
 }
 
-/// The tip as under tcp, the axis as under joint: its derivatives are bounded by powers of the rotary turns.
+/// The tip as under tcp, the axis as under joint: values at nodes, plus half a node spacing times what bounds
+/// the next derivative; |w'| <= |a x a''| is within the square of the turns.
 MotionBounds tcp_axes_bounds(const BlockMotion& motion) {
-  const double turn = JointPath(*motion.machine, motion.q_from, motion.q_to).turn();
+  const JointPath chain(*motion.machine, motion.q_from, motion.q_to);
+  const double turn = chain.turn();
   if (turn == 0.0) return tcp_bounds(*motion.block);
+  const BlockMove& block = *motion.block;
+  const Mat3 to_M = motion.machine->X_MW.linear();
+  const Vec3 way = block.to.tip_W - block.from.tip_W;
+  std::optional<ArcShape> arc;
+  if (block.arc) arc.emplace(block);
+  const double bending = arc ? arc->acceleration() : 0.0;
   MotionBounds bounds;
   bounds.great_circle = false;
-  bounds.turn_rate = turn;
-  bounds.turn_acceleration = turn * turn;
-  const Vec3 way = motion.block->to.tip_W - motion.block->from.tip_W;
-  bounds.speed = way.norm();
-  double bending = 0.0;
-  if (motion.block->arc) {
-    const ArcShape arc(*motion.block);
-    bounds.speed = arc.speed();
-    bending = arc.acceleration();
+  bounds.speed = arc ? arc->speed() : way.norm();
+  const int cells = node_cells(chain);
+  const double reach = 0.5 / cells;
+  Jet tip, axis;
+  for (int i = 0; i <= cells; ++i) {
+    chain.derivatives(static_cast<double>(i) / cells, tip, axis);
+    const Vec3 w = axis.value.cross(axis.first);
+    const double across = arc ? w.norm() * bounds.speed : w.cross(to_M * way).norm();
+    bounds.bend = std::max(bounds.bend, 2.0 * across + bending);
+    bounds.turn_acceleration = std::max(bounds.turn_acceleration, axis.value.cross(axis.second).norm());
+    bounds.turn_rate = std::max(bounds.turn_rate, axis.first.norm());
   }
-  bounds.bend = 2.0 * turn * bounds.speed + bending;
+  bounds.bend += reach * 2.0 * turn * turn * bounds.speed;
+  bounds.turn_acceleration += reach * 2.0 * turn * turn * turn;
+  bounds.turn_rate += reach * turn * turn;
   return bounds;
 }
 

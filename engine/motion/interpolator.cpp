@@ -11,6 +11,7 @@
 #include "kinematics/reach.h"
 #include "motion/block_interpolator.h"
 #include "motion/block_run.h"
+#include "motion/block_turns.h"
 #include "motion/free_move.h"
 #include "motion/motion_statistics.h"
 #include "motion/pass_geometry.h"
@@ -25,8 +26,9 @@ using toolpath::FreeMove;
 using toolpath::SurfacePass;
 using Clock = std::chrono::steady_clock;
 
-/// Cycles of one element beyond which the samples would fill the memory (about 200 bytes each).
+/// Cycles beyond which the samples would fill the memory: five and a half hours at 1 ms.
 constexpr double kCyclesMax = 2e7;
+constexpr double kCycleBytes = sizeof(ToolSample) + sizeof(kinematics::AxisValues);
 /// Elements must follow each other without a gap, mm and (per unit axis) rad.
 constexpr double kJoinTolerance = 1e-6;
 
@@ -58,20 +60,27 @@ class Recorder {
     report_outside_reach();
   }
 
-  /// The blocks [first, end) of a CL program, which are one run.
+  /// The blocks [first, end) of a program, which are one run.
   void run_blocks(const std::vector<BlockMotion>& motions, size_t first, size_t end) {
     element_ = static_cast<int>(first);
     const toolpath::BlockMove& block = *motions[first].block;
     tool_in_spindle_ = block.tool;
     // Another tool's tip stands elsewhere.
     joins_ = first == 0 || motions[first - 1].block->tool == block.tool;
-    if (block.feed_mm_s > 0.0) check_cycles(run_length(motions, first, end), block.feed_mm_s);
-    start_at(block.from, block.feed_mm_s > 0.0 ? SampleKind::kCutting : SampleKind::kRapid,
-             {block.from.tip_W});
-    for (BlockTick& tick : sample_run(motions, first, end, inverse(), options_)) {
+    const SampleKind kind = is_rapid(block) ? SampleKind::kRapid : SampleKind::kCutting;
+    const bool starts = result_.trajectory.samples.empty() || !joins_;
+    start_at(block.from, kind, {block.from.tip_W});
+    if (starts && block.axes) result_.trajectory.axes.back() = q_ = block.axes->from;
+    stand(block, kind);
+    const PlannedRun run = plan_run(motions, first, end, inverse(), options_);
+    add_cycles(run.duration_s, "moves");
+    RunSampler sampler(run, options_.period_s);
+    result_.trajectory.samples.reserve(grown(sampler.ticks()));
+    result_.trajectory.axes.reserve(grown(sampler.ticks()));
+    for (BlockTick tick; sampler.next(tick);) {
       if (tick.sample.element != element_) report_outside_reach();
       element_ = tick.sample.element;
-      if (motions[first].block->law == toolpath::BlockLaw::kJoint) {
+      if (tick.followed) {
         record(tick.sample, {tick.q, InverseOutcome::kOk});
       } else {
         record(tick.sample);
@@ -85,6 +94,8 @@ class Recorder {
     rank_tick_costs();
     for (MotionFinding& fault : find_axis_faults(result_.trajectory, path_, machine_))
       result_.findings.push_back(std::move(fault));
+    for (MotionFinding& warning : find_fast_turns(path_, motions, options_))
+      result_.findings.push_back(std::move(warning));
     std::stable_sort(result_.findings.begin(), result_.findings.end(),
                      [](const MotionFinding& a, const MotionFinding& b) { return a.element < b.element; });
     return std::move(result_);
@@ -127,6 +138,25 @@ class Recorder {
 
   const kinematics::InverseKinematics& inverse() const {
     return inverses_[inverses_.size() == 1 ? 0 : static_cast<size_t>(tool_in_spindle_)];
+  }
+
+  /// The dwell of a block before it moves.
+  void stand(const toolpath::BlockMove& block, SampleKind kind) {
+    add_cycles(block.dwell_s, "dwells");
+    const double ticks = std::ceil(block.dwell_s / options_.period_s * (1.0 - 1e-12));
+    for (double k = 0.0; k < ticks; ++k) {
+      ToolSample sample;
+      sample.pose = block.from;
+      sample.contact_W = block.from.tip_W;
+      sample.kind = kind;
+      record(sample, {q_, InverseOutcome::kOk});
+    }
+  }
+
+  /// Samples to make room for, so that many runs do not copy what is there many times.
+  size_t grown(size_t more) const {
+    const size_t now = result_.trajectory.samples.size(), room = result_.trajectory.samples.capacity();
+    return now + more <= room ? room : std::max(now + more, room + room / 2);
   }
 
   struct Contact {
@@ -179,6 +209,7 @@ class Recorder {
     outside_reach_ = 0;
   }
 
+  /// Refuses a feed move that alone would take too many cycles, before it is planned.
   void check_cycles(double length, double feed_mm_s) const {
     const double cycles = length / (feed_mm_s * options_.period_s);
     if (cycles <= kCyclesMax) return;
@@ -188,6 +219,21 @@ class Recorder {
                     mm_min_from_mm_s(feed_mm_s), cycles, options_.period_s * 1e3, kCyclesMax),
         fmt::format("raise F above {:.3g} mm/min, or the period",
                     mm_min_from_mm_s(length / (kCyclesMax * options_.period_s))));
+  }
+
+  /// Refuses what would make the whole program too long, before its samples take memory.
+  void add_cycles(double seconds, const char* what) {
+    time_s_ += seconds;
+    const double cycles = time_s_ / options_.period_s;
+    if (cycles <= kCyclesMax) return;
+    throw InputError(
+        "too-many-cycles", path_.elements[static_cast<size_t>(element_)].where,
+        fmt::format(
+            "the program {} for {:.3g} h up to here: {:.3g} cycles of {:g} ms, more than {:g} ({:.1f} GB)",
+            what, time_s_ / 3600.0, cycles, options_.period_s * 1e3, kCyclesMax,
+            kCyclesMax * kCycleBytes / 1e9),
+        fmt::format("a period_ms of {:.2g} or more, or a shorter program",
+                    std::ceil(10.0 * time_s_ / kCyclesMax * 1e3) / 10.0));
   }
 
   void rank_tick_costs() {
@@ -211,6 +257,7 @@ class Recorder {
   bool joins_ = true;  ///< the element starts where the one before ended
   kinematics::AxisValues q_ = kinematics::AxisValues::Zero();
   int element_ = 0;
+  double time_s_ = 0.0;  ///< of the blocks so far
   size_t outside_reach_ = 0;
   double outside_since_s_ = 0.0;
   ToolPose outside_pose_;
@@ -235,6 +282,9 @@ std::vector<std::string> validate(const MotionOptions& options) {
   positive(options.period_s, "period_s", "s");
   positive(options.path_acceleration_max, "path_acceleration_max", "mm/s^2");
   positive(options.path_jerk_max, "path_jerk_max", "mm/s^3");
+  positive(options.corner_tolerance_mm, "corner_tolerance_mm", "mm");
+  positive(options.fast_rotary_rad_mm, "fast_rotary_rad_mm", "rad/mm");
+  positive(options.swing_rad, "swing_rad", "rad");
   return problems;
 }
 

@@ -3,11 +3,12 @@
 //   ToolPath --> surface pass --> SurfaceInterpolator (taylor1, surface) --+
 //            --> surface pass --> straight segments (offline) -------------+--> ToolSample --> inverse --> q
 //            --> free move    --> straight tip, slerp axis ----------------+
-//            --> CL blocks    --> their own law (block_motion.h), by runs --+
+//            --> blocks       --> their own law (block_motion.h), by runs --+
 //
-// Every pass and move, and every run of CL blocks of one feed, starts and ends at rest; between them nothing
-// moves. The rotary branch is chosen once, nearest to home, and then follows by continuity. The first block
-// of another tool begins with a sample of its own; how the axes come there is not part of the program.
+// Every pass and move, and every run of blocks (block_run.h), starts and ends at rest; between them nothing
+// moves. The rotary branch is chosen once, nearest to home, and then follows by continuity; blocks that give
+// axis values keep theirs. The first block of another tool begins with a sample of its own; how the axes come
+// there is not part of the program.
 #pragma once
 
 #include <cstdint>
@@ -17,6 +18,7 @@
 
 #include "base/diagnostics.h"
 #include "base/progress.h"
+#include "base/units.h"
 #include "cutter/cutter.h"
 #include "kinematics/machine_model.h"
 #include "motion/tool_sample.h"
@@ -50,6 +52,13 @@ struct MotionOptions {
   /// Off-line mode only: pass through corners at the speed that the chord tolerance allows instead of
   /// stopping at the end of each block (erratum E19). Without effect on constant orientation.
   bool look_ahead = true;
+  /// Blocks: how far the tip may leave a corner between blocks that give no tolerance of their own (G64 P,
+  /// CYCLE832), mm. Larger: corners are passed faster.
+  double corner_tolerance_mm = 0.01;
+  /// Feed blocks that turn their rotary axes by more per mm of the tip are reported, rad/mm.
+  double fast_rotary_rad_mm = 10.0 * kPi / 180.0;
+  /// Blocks that turn one rotary axis by more are reported, rad.
+  double swing_rad = kPi;
 };
 
 /// Every contradiction in the options, in words with numbers; empty when they can be used.
@@ -60,7 +69,23 @@ struct AxisStatistics {
   std::string name;
   double min = 0.0, max = 0.0;
   double travel = 0.0;  ///< sum of all movements
-  double speed_max = 0.0, acceleration_max = 0.0;
+  double speed_max = 0.0, acceleration_max = 0.0, jerk_max = 0.0;
+  double time_at_speed_limit_s = 0.0;  ///< with at least kAtLimit of its speed limit
+};
+inline constexpr double kAtLimit = 0.99;
+
+/// Time of a program by what it is spent on, s.
+struct CycleTime {
+  double feed_s = 0.0, rapid_s = 0.0, dwell_s = 0.0;
+  std::vector<double> by_tool_s;  ///< by BlockMove::tool, all of the above
+};
+
+/// How far the tip would be off, were the blocks driven in the other mode: under tcp and ends the axes
+/// linear, under joint the tip straight.
+struct OtherMode {
+  double tip_error_max_mm = 0.0;  ///< distance from the straight line between a block's ends, or its arc
+  int element = -1;               ///< where that is; -1: no block turns
+  double share = 0.0;
 };
 
 /// Measured on the finished trajectory, not taken from the planner.
@@ -80,15 +105,21 @@ struct MotionStatistics {
   int pole_element = -1;               ///< where that was
   double feed_min_mm_s = 0.0;        ///< in contact, between the first and last time a pass has its top feed
   std::vector<AxisStatistics> axes;  ///< order of MachineModel::axes
+  CycleTime cycle;
+  OtherMode other_mode;
+  /// Greatest distance of the tip from the programmed place in a rounded corner, and its element.
+  double corner_deviation_max_mm = 0.0;
+  int corner_element = -1;
 };
 
 /// The program asks of the machine what it cannot do.
 struct MotionFinding {
-  std::string code;  ///< "travel" | "axis-speed" | "unreachable"
+  std::string code;  ///< "travel" | "axis-speed" | "unreachable"; warnings: "fast-rotary" | "swing"
   std::string text;
   int element = 0;
   double t_s = 0.0;  ///< of the worst sample
   SourceLocation where;
+  Severity severity = Severity::kError;
 };
 
 struct MotionResult {

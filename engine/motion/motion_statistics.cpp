@@ -8,6 +8,8 @@
 #include "base/units.h"
 #include "kinematics/reach.h"
 #include "kinematics/rotary_pair.h"
+#include "motion/block_run.h"
+#include "motion/block_turns.h"
 #include "motion/pass_geometry.h"
 
 namespace swarf::motion {
@@ -106,7 +108,8 @@ class TickMeter {
     const BlockMove& last = *blocks_[static_cast<size_t>(before.element)].block;
     if (last.tool != block.tool) return;  // another tool's tip: no way between them
     if (cutting) out_.path_length_mm += chord.norm();
-    if (before.element != sample.element) return;
+    if (sample.rounded) measure_corner(sample);
+    if (before.element != sample.element || before.rounded || sample.rounded) return;
     const ToolPose exact = pose_at(blocks_[static_cast<size_t>(sample.element)], 0.5 * (before.u + sample.u));
     const double tip_error = distance_across(middle.tip_W - exact.tip_W, chord);
     out_.tip_error_max_mm = std::max(out_.tip_error_max_mm, tip_error);
@@ -114,9 +117,21 @@ class TickMeter {
     const double period = trajectory_.period_s;
     out_.feed_error_max_rel =
         std::max(out_.feed_error_max_rel,
-                 std::abs(chord.norm() - sample.feed_mm_s * period) / (block.feed_mm_s * period));
+                 std::abs(chord.norm() - sample.feed_mm_s * period) / (programmed_feed(block) * period));
     const Vec3 gap = 0.5 * (sample.pose.tip_W + before.pose.tip_W) - exact.tip_W;
     out_.chord_error_max_mm = std::max(out_.chord_error_max_mm, distance_across(gap, chord));
+  }
+
+  void measure_corner(const ToolSample& sample) {
+    const BlockMotion& motion = blocks_[static_cast<size_t>(sample.element)];
+    const double deviation = (sample.pose.tip_W - pose_at(motion, sample.u).tip_W).norm();
+    if (deviation <= out_.corner_deviation_max_mm) return;
+    out_.corner_deviation_max_mm = deviation;
+    out_.corner_element = sample.element;
+  }
+
+  static double programmed_feed(const BlockMove& block) {
+    return block.duration_s > 0.0 ? toolpath::tip_way(block) / block.duration_s : block.feed_mm_s;
   }
 
   /// The first tick of a pass comes from a free move, which ends on its start.
@@ -146,7 +161,8 @@ std::vector<AxisStatistics> measure_axes(const Trajectory& trajectory, const Mac
     AxisStatistics axis;
     axis.name = machine.axes[i].name;
     axis.min = axis.max = q.front()[row];
-    double speed = 0.0;
+    double speed = 0.0, acceleration = 0.0;
+    const double at_limit = kAtLimit * machine.axes[i].speed_max;
     for (size_t k = 1; k < q.size(); ++k) {
       axis.min = std::min(axis.min, q[k][row]);
       axis.max = std::max(axis.max, q[k][row]);
@@ -159,11 +175,40 @@ std::vector<AxisStatistics> measure_axes(const Trajectory& trajectory, const Mac
       const double before = speed;
       speed = change / trajectory.period_s;
       axis.speed_max = std::max(axis.speed_max, std::abs(speed));
-      axis.acceleration_max = std::max(axis.acceleration_max, std::abs(speed - before) / trajectory.period_s);
+      const double acceleration_before = acceleration;
+      acceleration = (speed - before) / trajectory.period_s;
+      axis.acceleration_max = std::max(axis.acceleration_max, std::abs(acceleration));
+      axis.jerk_max =
+          std::max(axis.jerk_max, std::abs(acceleration - acceleration_before) / trajectory.period_s);
+      if (std::abs(speed) >= at_limit) axis.time_at_speed_limit_s += trajectory.period_s;
     }
     all.push_back(axis);
   }
   return all;
+}
+
+bool is_rapid_element(const toolpath::Element& element) {
+  if (const auto* move = std::get_if<FreeMove>(&element.what)) return move->feed_mm_s == 0.0;
+  const auto* block = std::get_if<BlockMove>(&element.what);
+  return block != nullptr && is_rapid(*block);
+}
+
+CycleTime measure_cycle(const Trajectory& trajectory, const toolpath::ToolPath& path) {
+  CycleTime cycle;
+  for (size_t k = 1; k < trajectory.samples.size(); ++k) {
+    const ToolSample& sample = trajectory.samples[k];
+    const toolpath::Element& element = path.elements[static_cast<size_t>(sample.element)];
+    const auto* block = std::get_if<BlockMove>(&element.what);
+    // A block's dwell stands at its start; all its other ticks are further on.
+    const bool dwells = block != nullptr && block->dwell_s > 0.0 && sample.u == 0.0;
+    (dwells                      ? cycle.dwell_s
+     : is_rapid_element(element) ? cycle.rapid_s
+                                 : cycle.feed_s) += trajectory.period_s;
+    const size_t tool = block != nullptr ? static_cast<size_t>(block->tool) : 0;
+    if (cycle.by_tool_s.size() <= tool) cycle.by_tool_s.resize(tool + 1, 0.0);
+    cycle.by_tool_s[tool] += trajectory.period_s;
+  }
+  return cycle;
 }
 
 /// First sample of the element after the one at `begin`.
@@ -246,9 +291,12 @@ std::string speed_text(const kinematics::Axis& axis, const Worst& worst, const s
 void find_in_element(const Trajectory& trajectory, size_t begin, size_t end, const toolpath::Element& element,
                      const MachineModel& machine, std::vector<MotionFinding>& findings) {
   const int index = trajectory.samples[begin].element;
+  const auto* block = std::get_if<BlockMove>(&element.what);
+  const bool rapid = block != nullptr && is_rapid(*block);
   for (size_t i = 0; i < machine.axes.size(); ++i) {
     const kinematics::Axis& axis = machine.axes[i];
     const auto row = static_cast<Eigen::Index>(i);
+    const double most = speed_limit(axis, rapid);
     Worst travel, speed;
     for (size_t k = begin; k < end; ++k) {
       const double q = trajectory.axes[k][row];
@@ -256,8 +304,7 @@ void find_in_element(const Trajectory& trajectory, size_t begin, size_t end, con
       if (beyond > kTravelTolerance) travel.see(beyond, q, q < axis.min ? axis.min : axis.max, k);
       if (k == 0 || tool_changes(trajectory, k)) continue;
       const double v = std::abs(q - trajectory.axes[k - 1][row]) / trajectory.period_s;
-      if (v > axis.speed_max * (1.0 + kAxisSpeedTolerance))
-        speed.see(v - axis.speed_max, v, axis.speed_max, k);
+      if (v > most * (1.0 + kAxisSpeedTolerance)) speed.see(v - most, v, most, k);
     }
     const std::string where = element_name(element);
     if (travel.excess > 0.0)
@@ -283,6 +330,8 @@ MotionStatistics measure_motion(const Trajectory& trajectory, const toolpath::To
   for (size_t k = 0; k < trajectory.samples.size(); ++k) meter.measure(k);
   statistics.feed_min_mm_s = feed_min(trajectory);
   statistics.axes = measure_axes(trajectory, machine);
+  statistics.cycle = measure_cycle(trajectory, path);
+  statistics.other_mode = other_mode(blocks);
   return statistics;
 }
 

@@ -91,7 +91,7 @@ void append_nodes(const PathShape& shape, const kinematics::InverseKinematics& i
       continue;
     }
     const ToolPose pose = shape.pose(x);
-    const Branch branch = inverse.solve_nearest(pose, last.q);
+    const Branch branch = shape.solve ? shape.solve(pose, last.q) : inverse.solve_nearest(pose, last.q);
     const bool reached = branch.outcome != InverseOutcome::kUnreachable;
     const AxisValues q = reached ? branch.q : last.q;
     if (step > kSpacingMin && last.reached && reached && is_coarse(from, pose, last.q, q, inverse, machine)) {

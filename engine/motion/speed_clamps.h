@@ -38,6 +38,8 @@ struct PathNode {
 struct PathShape {
   std::function<ToolPose(double x)> pose;
   std::function<double(double from, double to)> length;  ///< mm, positive
+  /// Axis values of a pose after others; none: InverseKinematics::solve_nearest().
+  std::function<kinematics::Branch(const ToolPose&, const kinematics::AxisValues&)> solve = {};
 };
 
 /// Greatest feed whose chord over one period leaves a curve of this radius by no more than the tolerance:

@@ -20,7 +20,8 @@ struct ToolSample {
   double feed_mm_s = 0.0;         ///< commanded speed of the contact point over the cycle that ends here
   int element = 0;                ///< index into ToolPath::elements
   SampleKind kind = SampleKind::kRapid;
-  int16_t tool = 0;  ///< in the spindle: index into the job's tools
+  int16_t tool = 0;      ///< in the spindle: index into the job's tools
+  bool rounded = false;  ///< in the rounded corner between two blocks: the pose leaves their path a little
 };
 
 /// Samples and axis positions of a whole program, same length.

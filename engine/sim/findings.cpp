@@ -16,9 +16,10 @@ class Collector {
  public:
   Collector(const Job& job, const Result& result) : job_(job), result_(result) {}
 
-  void add(std::string code, std::string text, std::string fix, SourceLocation where, double t_s) {
+  void add(std::string code, std::string text, std::string fix, SourceLocation where, double t_s,
+           Severity severity = Severity::kError) {
     findings_.push_back(
-        {std::move(code), Severity::kError, std::move(text), std::move(fix), std::move(where), t_s, ""});
+        {std::move(code), severity, std::move(text), std::move(fix), std::move(where), t_s, ""});
   }
   /// At the block that a sweep comes from; at the program when no sweep is to blame.
   void at_block(std::string code, std::string text, std::string fix, const std::vector<SweepSource>& sources,
@@ -115,7 +116,7 @@ void surface_faults(const Job& job, const Result& result, Collector& collect) {
 
 void motion_faults(const Result& result, Collector& collect) {
   for (const motion::MotionFinding& fault : result.main.motion.findings) {
-    collect.add(fault.code, fault.text, "", fault.where, fault.t_s);
+    collect.add(fault.code, fault.text, "", fault.where, fault.t_s, fault.severity);
   }
 }
 

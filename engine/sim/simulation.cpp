@@ -9,6 +9,7 @@
 
 #include "base/units.h"
 #include "cutter/profile.h"
+#include "motion/dog_leg.h"
 #include "sim/design_rays.h"
 #include "sim/findings.h"
 #include "sim/nc_job.h"
@@ -46,7 +47,7 @@ toolpath::ToolPath plan_path(const Job& job, toolpath::Planner planner, Diagnost
                                 ? toolpath::cl_path(*job.cl, job.scene.block_law, diagnostics, cl_tools(job))
                                 : plan_surfaces(job, planner, diagnostics);
   diagnostics.throw_if_errors();
-  return path;
+  return motion::with_dog_legs(std::move(path), machines_by_tool(job));
 }
 
 double theory_scallop_um(const toolpath::ToolPath& path) {
