@@ -16,9 +16,28 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json motion_json(const motion::MotionStatistics& motion) {
+/// Line of the program that an element comes from; null for none.
+Json line_json(const sim::Result& result, int element) {
+  if (element < 0) return nullptr;
+  return result.main.path.elements[static_cast<size_t>(element)].where.line;
+}
+
+Json motion_json(const sim::Job& job, const sim::Result& result) {
+  const motion::MotionStatistics& motion = result.main.motion.statistics;
   return {{"ticks", motion.ticks},
           {"time_s", motion.time_s},
+          {"time_feed_s", motion.cycle.feed_s},
+          {"time_rapid_s", motion.cycle.rapid_s},
+          {"time_dwell_s", motion.cycle.dwell_s},
+          {"time_by_tool_s", motion.cycle.by_tool_s},
+          {"corner_tolerance_mm", job.scene.motion.corner_tolerance_mm},
+          {"corner_deviation_max_mm", motion.corner_deviation_max_mm},
+          {"corner_deviation_line", line_json(result, motion.corner_element)},
+          {"tip_error_other_mode_max_mm", motion.other_mode.tip_error_max_mm},
+          {"tip_error_other_mode_line", line_json(result, motion.other_mode.element)},
+          {"tip_error_other_mode_share", motion.other_mode.share},
+          {"fast_rotary_threshold_deg_mm", deg_from_rad(job.scene.motion.fast_rotary_rad_mm)},
+          {"swing_threshold_deg", deg_from_rad(job.scene.motion.swing_rad)},
           {"path_length_mm", motion.path_length_mm},
           {"feed_error_max_rel", motion.feed_error_max_rel},
           {"feed_min_mm_s", motion.feed_min_mm_s},
@@ -40,7 +59,9 @@ Json kinematics_json(const sim::Job& job, const motion::MotionStatistics& motion
                     {"max", shown(axis.max)},
                     {"travel", shown(axis.travel)},
                     {"speed_max", shown(axis.speed_max)},
-                    {"accel_max", shown(axis.acceleration_max)}});
+                    {"accel_max", shown(axis.acceleration_max)},
+                    {"jerk_max", shown(axis.jerk_max)},
+                    {"time_at_speed_limit_s", axis.time_at_speed_limit_s}});
   }
   return {{"fk_ik_error_max_um", um_from_mm(motion.fk_ik_error_max_mm)},
           {"singular_ticks", motion.singular_ticks},
@@ -271,7 +292,7 @@ std::string metrics_json(const sim::Job& job, const sim::Result& result, const R
             {"swarf", SWARF_VERSION},
             {"scene", job.scene.name},
             {"verdict", sim::passes(result) ? "pass" : "findings"},
-            {"motion", motion_json(motion)},
+            {"motion", motion_json(job, result)},
             {"kinematics", kinematics_json(job, motion)},
             {"stock", stock_json(job, result)},
             {"surface", surface_json(result.main.surface)},

@@ -17,6 +17,7 @@
 #include "reports/run_plots.h"
 #include "reports/singularity_section.h"
 #include "reports/so_paper.h"
+#include "reports/time_facts.h"
 #include "reports/tools_table.h"
 
 namespace swarf::reports {
@@ -193,6 +194,12 @@ Check rapids_check(const sim::Job& job, const sim::Result& result) {
           found == 0 ? Check::State::kHolds : Check::State::kFails};
 }
 
+std::ptrdiff_t axis_faults(const sim::Result& result) {
+  const std::vector<motion::MotionFinding>& all = result.main.motion.findings;
+  return std::count_if(all.begin(), all.end(),
+                       [](const motion::MotionFinding& f) { return f.severity == Severity::kError; });
+}
+
 std::vector<Check> checks_of(const sim::Job& job, const sim::Result& result, bool rendered) {
   using State = Check::State;
   const motion::MotionStatistics& motion = result.main.motion.statistics;
@@ -202,8 +209,8 @@ std::vector<Check> checks_of(const sim::Job& job, const sim::Result& result, boo
       {"Forward of inverse kinematics, every cycle",
        fmt::format("largest {:.1e} mm, limit 1e-9 mm", motion.fk_ik_error_max_mm), "",
        state(motion.fk_ik_error_max_mm < 1e-9)},
-      {"Axis travel and speed limits", fmt::format("{} findings", result.main.motion.findings.size()), "",
-       state(result.main.motion.findings.empty())},
+      {"Axis travel and speed limits", fmt::format("{} findings", axis_faults(result)), "",
+       state(axis_faults(result) == 0)},
       {"Joint-linear motion inside a cycle",
        fmt::format("the tip leaves the path by at most {:.4f} µm", um_from_mm(motion.tip_error_max_mm)), ""},
       {"Sweeps of the level set",
@@ -366,8 +373,9 @@ Lines cl_path_lines(const sim::Job& job, const sim::Result& result) {
                                result.main.path.link_length_mm, toolpath::law_name(job.scene.block_law))},
           {"start", fmt::format("({:.3f}, {:.3f}, {:.3f}) mm, line {}: the first complete position",
                                 start.x(), start.y(), start.z(), job.cl->start_line)},
-          {"time", fmt::format("{} ({} cycles of {:g} ms); corners between blocks are not slowed down",
-                               duration(m.time_s), m.ticks, job.scene.motion.period_s * 1e3)}};
+          {"time", fmt::format("{} ({} cycles of {:g} ms): feed {:.2f} s, rapid {:.2f} s, dwell {:.2f} s",
+                               duration(m.time_s), m.ticks, job.scene.motion.period_s * 1e3, m.cycle.feed_s,
+                               m.cycle.rapid_s, m.cycle.dwell_s)}};
 }
 
 Lines surface_lines(const sim::Job& job, const sim::Result& result) {
@@ -421,11 +429,12 @@ ReportData report_data(const sim::Job& job, const sim::Result& result, const Run
       "The whole program, evenly sped up. The tool cuts the stock as it stands at that moment.";
   data.plots = run_plots(job, result);
   if (job.scene.has_blocks()) {
-    data.tables = {axis_table(job, result)};
+    data.tables = {axis_table(job, result), axis_limit_table(job, result)};
     if (job.scene.tools.size() > 1) data.tables.insert(data.tables.begin(), tools_table(job, result));
     if (result.flank) data.tables.insert(data.tables.begin(), flank_table(*result.flank));
   } else {
-    data.tables = {planner_table(result), mode_table(result), axis_table(job, result), fig6_table()};
+    data.tables = {planner_table(result), mode_table(result), axis_table(job, result),
+                   axis_limit_table(job, result), fig6_table()};
     data.paper_title = "Lin & Koren: the paper's figures against ours";
     data.paper = paper_rows(job, result);
   }
@@ -438,6 +447,7 @@ ReportData report_data(const sim::Job& job, const sim::Result& result, const Run
   data.checks = checks_of(job, result, rendered);
   data.reproduce = {fmt::format("./dev run scenes/{}/scene.toml", job.scene.name)};
   data.facts = facts_of(job, result, files);
+  data.facts.insert(data.facts.begin() + 1, time_facts(job, result));
   if (result.main.nc) {
     data.facts.insert(data.facts.begin() + 1, nc_facts(job, result));
     const std::vector<Check> more = nc_checks(result);
