@@ -246,10 +246,6 @@ std::vector<Check> checks_of(const sim::Job& job, const sim::Result& result, boo
                                        "", state(result.cross_check.holds)});
   }
   if (job.scene.has_blocks()) {
-    checks.push_back(
-        {"Speed at the corners between blocks", "",
-         "a run of one feed passes its corners at full feed: look-ahead is not part of this version",
-         State::kNotChecked});
     checks.push_back({"Planners and interpolators compared", "",
                       "a program of blocks is one path: not applicable", State::kNotChecked});
   }

@@ -212,8 +212,8 @@ class Builder {
 
   /// Greatest distance of the tip from the programmed one at the same s.
   double deviation(size_t a, size_t b, const Blend& blend) const {
-    constexpr int kPlaces = 8;
-    double greatest_distance = 0.0;
+    constexpr int kPlaces = 16;
+    std::array<double, kPlaces + 1> distance{};
     for (int i = 1; i < kPlaces; ++i) {
       const double s = blend.length * i / kPlaces;
       const BlockCurve& in = path_.curves[a];
@@ -221,9 +221,12 @@ class Builder {
                                       ? pose_at(motions_[a], in.share(in.length() - blend.before + s))
                                       : pose_at(motions_[b], path_.curves[b].share(s - blend.before));
       const ToolPose rounded = kinematics::forward(machine_, blend.q(s));
-      greatest_distance = std::max(greatest_distance, (rounded.tip_W - programmed.tip_W).norm());
+      distance[static_cast<size_t>(i)] = (rounded.tip_W - programmed.tip_W).norm();
     }
-    return greatest_distance;
+    // Between the places: the top of the parabola through the greatest and those beside it.
+    const auto top = std::max_element(distance.begin() + 1, distance.end() - 1);
+    const double before = *(top - 1), after = *(top + 1), bend = 2.0 * *top - before - after;
+    return bend > 0.0 ? *top + std::pow(before - after, 2) / (8.0 * bend) : *top;
   }
 
   std::span<const BlockMotion> motions_;
