@@ -27,6 +27,11 @@ constexpr double kTopFeedShare = 0.999;
 /// A fine excess of travel counts as rounding, mm or rad.
 constexpr double kTravelTolerance = 1e-9;
 
+/// The sample stands where another tool begins: how the axes came there is not part of the program.
+bool tool_changes(const Trajectory& trajectory, size_t k) {
+  return trajectory.samples[k].tool != trajectory.samples[k - 1].tool;
+}
+
 double angle_between(const Vec3& a, const Vec3& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
@@ -148,11 +153,6 @@ class TickMeter {
   MotionStatistics& out_;
 };
 
-/// The sample stands where another tool begins: how the axes came there is not part of the program.
-bool tool_changes(const Trajectory& trajectory, size_t k) {
-  return trajectory.samples[k].tool != trajectory.samples[k - 1].tool;
-}
-
 std::vector<AxisStatistics> measure_axes(const Trajectory& trajectory, const MachineModel& machine) {
   std::vector<AxisStatistics> all;
   const std::vector<AxisValues>& q = trajectory.axes;
@@ -196,6 +196,7 @@ bool is_rapid_element(const toolpath::Element& element) {
 CycleTime measure_cycle(const Trajectory& trajectory, const toolpath::ToolPath& path) {
   CycleTime cycle;
   for (size_t k = 1; k < trajectory.samples.size(); ++k) {
+    if (tool_changes(trajectory, k)) continue;
     const ToolSample& sample = trajectory.samples[k];
     const toolpath::Element& element = path.elements[static_cast<size_t>(sample.element)];
     const auto* block = std::get_if<BlockMove>(&element.what);
