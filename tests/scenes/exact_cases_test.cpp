@@ -38,10 +38,10 @@ class HyperboloidRun : public testing::Test {
 fs::path HyperboloidRun::folder_;
 swarf::test::ProgramRun HyperboloidRun::run_;
 
-TEST_F(HyperboloidRun, PassesAndSaysWhereItStartedAndWhatIsNotLimited) {
+TEST_F(HyperboloidRun, PassesAndSaysWhereItStartedAndWhatTookTheTime) {
   EXPECT_EQ(run_.exit_code, 0) << run_.output;
   EXPECT_NE(run_.output.find("line 7: the first complete position"), std::string::npos) << run_.output;
-  EXPECT_NE(run_.output.find("corners between blocks are not slowed down"), std::string::npos) << run_.output;
+  EXPECT_NE(run_.output.find("rapid 0.37 s, dwell 0.00 s"), std::string::npos) << run_.output;
 }
 
 TEST_F(HyperboloidRun, RendersExportsAndComparesFromItsFolder) {
