@@ -254,6 +254,14 @@ def so_singularity():
     path.write("so_singularity")
 
 
+def so_c_limit():
+    """The block of Table 2 alone, at a feed that nothing can follow."""
+    path = Path_("SO ET AL., TABLE 2, AT A FEED THAT NOTHING CAN FOLLOW", "CUTTER/2,1", (75.2110, -51.4295, 228.6808),
+                 (0.0095944, 0.0159479, 0.9998268), 60000)
+    path.to((74.5130, -50.5510, 228.6857), (0.0175393, 0.0107682, 0.9997882))
+    path.write("so_c_limit")
+
+
 def so_tilted_cone(incline):
     """Theory 2: 72 blocks of equal angle around a cone inclined about X, by the flank of a cylinder r = 10."""
     half, lean = radians(15), radians(incline)
@@ -296,5 +304,6 @@ if __name__ == "__main__":
     gouges()
     flank_f1()
     so_singularity()
+    so_c_limit()
     so_tilted_cone(10)
     so_tilted_cone(30)
