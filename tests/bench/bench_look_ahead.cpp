@@ -1,0 +1,68 @@
+// Look-ahead over programs of 200 blocks, one thread: planning alone, and with the samples of every cycle.
+#include <benchmark/benchmark.h>
+
+#include <vector>
+
+#include "motion/block_run.h"
+#include "unit/motion/random_program.h"
+
+namespace swarf::motion {
+namespace {
+
+constexpr int kPrograms = 20, kBlocks = 200;
+
+/// The programs of the tests of look-ahead (tests/unit/motion/look_ahead_property_test.cpp).
+std::vector<toolpath::ToolPath> programs(const kinematics::MachineModel& machine) {
+  std::vector<toolpath::ToolPath> paths;
+  for (uint64_t seed = 1000; seed < 1000 + kPrograms; ++seed) {
+    Rng rng(seed);
+    paths.push_back(random_program(machine, rng, kBlocks));
+  }
+  return paths;
+}
+
+void report(benchmark::State& state, double cycles) {
+  const auto runs = static_cast<double>(state.iterations());
+  state.counters["blocks_per_s"] =
+      benchmark::Counter(runs * kPrograms * kBlocks, benchmark::Counter::kIsRate);
+  if (cycles > 0.0) state.counters["cycles_per_s"] = benchmark::Counter(cycles, benchmark::Counter::kIsRate);
+}
+
+void BM_Plan(benchmark::State& state) {
+  const kinematics::MachineModel machine = paper_machine();
+  const kinematics::InverseKinematics inverse(machine);
+  const std::vector<toolpath::ToolPath> paths = programs(machine);
+  const MotionOptions options;
+  for (auto _ : state) {
+    for (const toolpath::ToolPath& path : paths) {
+      const std::vector<BlockMotion> motions = block_motions(path, machine);
+      for (size_t first = 0; first < motions.size();) {
+        const size_t end = run_end(motions, first);
+        benchmark::DoNotOptimize(plan_run(motions, first, end, inverse, options).duration_s);
+        first = end;
+      }
+    }
+  }
+  report(state, 0.0);
+}
+BENCHMARK(BM_Plan)->Unit(benchmark::kMillisecond);
+
+void BM_PlanAndSample(benchmark::State& state) {
+  const kinematics::MachineModel machine = paper_machine();
+  const std::vector<toolpath::ToolPath> paths = programs(machine);
+  double cycles = 0.0;
+  for (auto _ : state) {
+    for (const toolpath::ToolPath& path : paths) {
+      Progress silent;
+      const MotionResult result = interpolate(path, machine, cutter::Cutter{}, MotionOptions{}, silent);
+      cycles += static_cast<double>(result.statistics.ticks);
+    }
+  }
+  report(state, cycles);
+}
+BENCHMARK(BM_PlanAndSample)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace swarf::motion
+
+BENCHMARK_MAIN();
