@@ -6,6 +6,7 @@
 #include <string>
 
 #include "program/cl_cycle.h"
+#include "program/cl_nurbs.h"
 #include "program/cl_program.h"
 #include "program/cl_statement.h"
 #include "program/reporter.h"
@@ -51,6 +52,15 @@ class ClInterpreter {
   void rapid(const ClStatement& s);
   void system(const ClStatement& s);
 
+  // MOVNRB (cl_nurbs.cpp).
+  void nurbs(const ClStatement& s);
+  void nurbs_sizes(const ClStatement& s);
+  void nurbs_values(const ClStatement& s);
+  /// MOVNRB/NEXT: the curve is whole; its moves.
+  void follow_nurbs(const ClStatement& s);
+  /// True when the statement belongs to the curve that is open, or is refused there.
+  bool inside_nurbs(const ClStatement& s);
+
   // Everything else (cl_words.cpp).
   void feed_rate(const ClStatement& s);
   void spindle(const ClStatement& s);
@@ -91,6 +101,7 @@ class ClInterpreter {
   int tool_ = -1;
   std::optional<ClArc> arc_;
   std::optional<ClCycle> cycle_;
+  std::optional<ClNurbs> nurbs_;  ///< from MOVNRB/3AXIS or 5AXIS to MOVNRB/OFF
 };
 
 }  // namespace swarf::program

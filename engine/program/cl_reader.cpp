@@ -13,9 +13,9 @@ namespace swarf::program {
 namespace {
 
 /// CL words that other versions of APT have and this reader does not follow.
-constexpr std::array kUnsupported{"MOVNRB", "ROTABL", "ROTATE", "ORIGIN", "GOHOME", "ARCSLP", "CLAMP",
-                                  "MODE",   "TOOLNO", "TRANS",  "GOFWD",  "GOLFT",  "GORGT",  "TLON",
-                                  "THREAD", "TURRET", "PREFUN", "AUXFUN", "COPY",   "INDEX"};
+constexpr std::array kUnsupported{"ROTABL", "ROTATE", "ORIGIN", "GOHOME", "ARCSLP", "CLAMP", "MODE",
+                                  "TOOLNO", "TRANS",  "GOFWD",  "GOLFT",  "GORGT",  "TLON",  "THREAD",
+                                  "TURRET", "PREFUN", "AUXFUN", "COPY",   "INDEX"};
 
 }  // namespace
 
@@ -45,45 +45,24 @@ ClProgram ClInterpreter::run(const std::string& text) {
 /// The most frequent words first.
 std::span<const ClInterpreter::Word> ClInterpreter::words() {
   using C = ClInterpreter;
-  static constexpr Word kWords[] = {{"GOTO", &C::go_to},
-                                    {"CIRCLE", &C::circle},
-                                    {"FEDRAT", &C::feed_rate},
-                                    {"RAPID", &C::rapid},
-                                    {"PAINT", &C::note},
-                                    {"PPRINT", &C::note},
-                                    {"GODLTA", &C::go_delta},
-                                    {"FROM", &C::from},
-                                    {"CYCLE", &C::cycle},
-                                    {"DELAY", &C::delay},
-                                    {"INSERT", &C::note},
-                                    {"REMARK", &C::note},
-                                    {"PARTNO", &C::note},
-                                    {"COOLNT", &C::note},
-                                    {"SPINDL", &C::spindle},
-                                    {"MULTAX", &C::multi_axis},
-                                    {"LOADTL", &C::load_tool},
-                                    {"LOAD", &C::load},
-                                    {"SELECT", &C::load},
-                                    {"TOOL PATH", &C::tool_path},
-                                    {"TLDATA", &C::tool_data},
-                                    {"CUTTER", &C::cutter},
-                                    {"CUTCOM", &C::cutter_compensation},
-                                    {"MSYS", &C::system},
-                                    {"CSYS", &C::system},
-                                    {"SET", &C::set_mode},
-                                    {"UNITS", &C::units},
-                                    {"MACHIN", &C::note},
-                                    {"INTOL", &C::note},
-                                    {"OUTTOL", &C::note},
-                                    {"STOP", &C::note},
-                                    {"OPSTOP", &C::note},
-                                    {"REWIND", &C::note},
-                                    {"END-OF-PATH", &C::note},
-                                    {"FINI", &C::end}};
+  static constexpr Word kWords[] = {
+      {"GOTO", &C::go_to},       {"CIRCLE", &C::circle},     {"FEDRAT", &C::feed_rate},
+      {"RAPID", &C::rapid},      {"MOVNRB", &C::nurbs},      {"PAINT", &C::note},
+      {"PPRINT", &C::note},      {"GODLTA", &C::go_delta},   {"FROM", &C::from},
+      {"CYCLE", &C::cycle},      {"DELAY", &C::delay},       {"INSERT", &C::note},
+      {"REMARK", &C::note},      {"PARTNO", &C::note},       {"COOLNT", &C::note},
+      {"SPINDL", &C::spindle},   {"MULTAX", &C::multi_axis}, {"LOADTL", &C::load_tool},
+      {"LOAD", &C::load},        {"SELECT", &C::load},       {"TOOL PATH", &C::tool_path},
+      {"TLDATA", &C::tool_data}, {"CUTTER", &C::cutter},     {"CUTCOM", &C::cutter_compensation},
+      {"MSYS", &C::system},      {"CSYS", &C::system},       {"SET", &C::set_mode},
+      {"UNITS", &C::units},      {"MACHIN", &C::note},       {"INTOL", &C::note},
+      {"OUTTOL", &C::note},      {"STOP", &C::note},         {"OPSTOP", &C::note},
+      {"REWIND", &C::note},      {"END-OF-PATH", &C::note},  {"FINI", &C::end}};
   return kWords;
 }
 
 void ClInterpreter::take(const ClStatement& statement) {
+  if (nurbs_ && inside_nurbs(statement)) return;
   for (const Word& entry : words()) {
     if (statement.word == entry.name) return (this->*entry.handler)(statement);
   }
@@ -137,6 +116,10 @@ bool ClInterpreter::unit_vector(const ClStatement& s, size_t first, const char* 
 }
 
 void ClInterpreter::finish() {
+  if (nurbs_) {
+    reporter_.error("bad-nurbs", nurbs_->line, nurbs_->column, "this MOVNRB curve does not end",
+                    "write MOVNRB/OFF behind its last point");
+  }
   if (reporter_.errors() > 0 || !program_.moves.empty()) return;
   reporter_.error("no-motion", 0, 0,
                   positioned_ ? "the program has one position and no move" : "the program has no position",

@@ -149,8 +149,10 @@ bool ClScanner::read_argument(std::string_view line, size_t begin, size_t end, C
     return false;
   }
   argument.text = text;
-  if (is_letter(text[0]) && text != "nan" && text != "inf" && text != "NaN" && text != "NAN" &&
-      text != "INF" && text != "infinity") {
+  if (text == "3AXIS" || text == "5AXIS") {
+    // The words of CL data that begin with a figure: MOVNRB's.
+  } else if (is_letter(text[0]) && text != "nan" && text != "inf" && text != "NaN" && text != "NAN" &&
+             text != "INF" && text != "infinity") {
     for (char& c : argument.text) c = capital(c);
   } else if (parse_number(text, argument.value) == text.size() && std::isfinite(argument.value)) {
     argument.number = true;

@@ -20,7 +20,45 @@ struct Blend {
   }
 };
 
+/// Halvings of a curve piece; 2^20 pieces of the smallest curve are far below any tolerance.
+constexpr int kHalvings = 20;
+
+double off_chord(const Vec3& a, const Vec3& b, const Vec3& p) {
+  const Vec3 way = b - a;
+  const double length_squared = way.squaredNorm();
+  const double s = length_squared > 0.0 ? std::clamp((p - a).dot(way) / length_squared, 0.0, 1.0) : 0.0;
+  return (p - a - s * way).norm();
+}
+
+/// Appends the parameters that end the pieces of [a, b].
+void split(const Curve& curve, double a, const Vec3& at_a, double b, const Vec3& at_b, double tolerance,
+           int depth, std::vector<double>& ends) {
+  bool close = true;
+  for (const double s : {0.25, 0.5, 0.75})
+    close = close && off_chord(at_a, at_b, curve.at(a + s * (b - a)).tip) <= tolerance;
+  if (close || depth == 0) {
+    ends.push_back(b);
+    return;
+  }
+  const double middle = 0.5 * (a + b);
+  const Vec3 at_middle = curve.at(middle).tip;
+  split(curve, a, at_a, middle, at_middle, tolerance, depth - 1, ends);
+  split(curve, middle, at_middle, b, at_b, tolerance, depth - 1, ends);
+}
+
 }  // namespace
+
+std::vector<double> chord_ends(const Curve& curve, double tolerance_mm) {
+  std::vector<double> stops = curve.breaks();
+  stops.push_back(1.0);
+  std::vector<double> ends;
+  double a = 0.0;
+  for (const double b : stops) {
+    split(curve, a, curve.at(a).tip, b, curve.at(b).tip, tolerance_mm, kHalvings, ends);
+    a = b;
+  }
+  return ends;
+}
 
 NurbsCurve::NurbsCurve(int order, std::vector<CurvePoint> points, std::vector<double> weights,
                        std::vector<double> knots)

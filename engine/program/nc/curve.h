@@ -25,6 +25,10 @@ class Curve {
   virtual std::vector<double> breaks() const { return {}; }
 };
 
+/// Ends (0, 1] of the pieces whose chords the curve's tip leaves by at most the tolerance, mm; its breaks are
+/// among them.
+std::vector<double> chord_ends(const Curve& curve, double tolerance_mm);
+
 /// Rational B-spline: de Boor's recursion on homogeneous coordinates (Piegl & Tiller, The NURBS Book, A4.1).
 class NurbsCurve final : public Curve {
  public:

@@ -62,7 +62,7 @@ void add_code(char letter, const CodeTable& table, double number, size_t place, 
     ++block.free_g;
     return;
   }
-  const auto group = static_cast<size_t>(code->group);
+  const auto group = static_cast<size_t>(static_cast<unsigned char>(code->group));
   if (block.has_g(code->group)) {
     const bool motion = code->group == 1;
     control.fail(motion ? "two-motion-words" : "modal-conflict", reader.column_of(place),

@@ -165,7 +165,7 @@ TEST_P(BadCl, IsRefusedWhereItIsWrong) {
 const BadProgram kBad[] = {
     {"empty", " \n", "empty-file 0:0"},
     {"unknown_word", "FEDRAT/1\nGOTO/0,0,0\n  GOTOO/1,2,3\n", "unknown-word 3:3", "did you mean GOTO?"},
-    {"unsupported_word", "MOVNRB/1\n", "unsupported-word 1:1"},
+    {"unsupported_word", "ROTABL/1\n", "unsupported-word 1:1"},
     {"not_a_statement", "FEDRAT/1\n123,4\n", "bad-statement 2:1"},
     {"no_slash", "GOTO 1,2,3\n", "bad-statement 1:6"},
     {"empty_argument", "GOTO/1,,3\n", "bad-statement 1:8"},
