@@ -18,9 +18,7 @@ constexpr long kFirstCommon = 100, kLastCommon = 999;
 }  // namespace
 
 Fanuc::Fanuc(const std::string& path, Control& control)
-    : control_(control),
-      path_(path),
-      reader_(kFanucFormula, *this, control),
+    : LetterDialect(path, control, kFanucFormula),
       commons_(kLastCommon + 1, 0.0),
       common_set_(kLastCommon + 1, false) {
   Call main;
@@ -43,9 +41,8 @@ void Fanuc::run() {
                       "add the END of the loop");
       break;
     }
-    ++control_.summary().lines;
-    control_.at(source().file(), static_cast<int>(source().line_number()), 1);
-    ended_ = !execute(line);
+    at_line(source());
+    if (!percent(line)) ended_ = !execute();
   }
   if (nurbs_) {
     const Place where = nurbs_->where;
@@ -57,17 +54,7 @@ void Fanuc::run() {
   control_.finish();
 }
 
-bool Fanuc::execute(std::string_view line) {
-  reader_.begin(line);
-  reader_.skip_space();
-  if (reader_.peek() == '%') {
-    if (line.find_first_not_of("% \t\r", reader_.at()) != std::string_view::npos)
-      control_.fail("unexpected-character", reader_.column() + 1, "'%' stands alone on its line",
-                    "put the words on a line of their own");
-    const bool second = percent_seen_;
-    percent_seen_ = true;
-    return !second;
-  }
+bool Fanuc::execute() {
   if (statement()) {
     ++control_.summary().blocks;
     return true;

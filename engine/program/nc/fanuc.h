@@ -2,12 +2,10 @@
 #pragma once
 
 #include <array>
-#include <memory>
 #include <string>
 #include <vector>
 
-#include "program/nc/letter_block.h"
-#include "program/nc/line_source.h"
+#include "program/nc/letter_dialect.h"
 
 namespace swarf::program::nc {
 
@@ -33,7 +31,7 @@ enum FanucGroup {
   kFanucSpindle = 2
 };
 
-class Fanuc final : public Parameters {
+class Fanuc final : public LetterDialect {
  public:
   Fanuc(const std::string& path, Control& control);
   void run();
@@ -71,7 +69,7 @@ class Fanuc final : public Parameters {
   };
 
   // fanuc.cpp
-  bool execute(std::string_view line);
+  bool execute();
   bool statement();
   void assignment();
   void assign(long number, double value, size_t place);
@@ -84,7 +82,6 @@ class Fanuc final : public Parameters {
   void skip_to_end(int loop);
   int loop_number();
   bool labelled(std::string_view line, long label);
-  LineSource& open(const std::string& path);
   const Known* find_program(int number);
   const Known* scan(LineSource& in, int number);
   void call(int number, long times, int column, const Call* macro);
@@ -93,8 +90,6 @@ class Fanuc final : public Parameters {
   bool apply_calls();
   // fanuc_block.cpp
   void check_words();
-  void check_letter(char letter, bool allowed, const char* used_with);
-  void need(char letter, const char* with);
   void apply();
   void apply_machine();
   void apply_modes();
@@ -114,23 +109,15 @@ class Fanuc final : public Parameters {
   void nurbs();
   bool add_to_nurbs();
   Target words();
-  int column(char letter) const { return reader_.column_of(block_.place(letter)); }
-  int g_column(int group) const { return reader_.column_of(block_.g_places[static_cast<size_t>(group)]); }
   int g(int group) const { return block_.has_g(group) ? block_.g[static_cast<size_t>(group)] : -1; }
   LineSource& source() { return *calls_.back().source; }
 
   static constexpr uint32_t kAxisBits = 7u | 7u << ('X' - 'A');
 
-  Control& control_;
-  std::string path_, kept_line_;
-  FormulaReader reader_;
-  LetterBlock block_;
-  std::vector<std::unique_ptr<LineSource>> sources_;
   std::vector<Call> calls_;
   std::vector<Known> programs_;
   std::vector<double> commons_;  ///< #100 to #999
   std::vector<bool> common_set_;
-  bool ended_ = false, percent_seen_ = false;
 
   int motion_ = 0, cycle_ = 800;  ///< tenths
   bool incremental_ = false, retract_to_r_ = false;

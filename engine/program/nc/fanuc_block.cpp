@@ -8,18 +8,6 @@
 
 namespace swarf::program::nc {
 
-void Fanuc::check_letter(char letter, bool allowed, const char* used_with) {
-  if (!block_.has(letter) || allowed) return;
-  control_.fail("unexpected-word", column(letter), fmt::format("{} has no meaning in this block", letter),
-                fmt::format("{} stands with {}", letter, used_with));
-}
-
-void Fanuc::need(char letter, const char* with) {
-  if (block_.has(letter)) return;
-  control_.fail("missing-word", 0, fmt::format("{} needs the word {}", with, letter),
-                fmt::format("add {}", letter));
-}
-
 Target Fanuc::words() {
   return target_of(block_, incremental_, reader_, control_);
 }
@@ -55,12 +43,7 @@ void Fanuc::check_words() {
   if (g(kFanucCycle) > 800 && g(kFanucMotion) >= 0)
     control_.fail("two-motion-words", g_column(kFanucMotion), "a motion and a cycle stand in one block",
                   "write them in two blocks");
-  if (block_.has('F') && !(block_.get('F') > 0.0))
-    control_.fail("bad-feed", column('F'), fmt::format("F {:g} is not a feed", block_.get('F')),
-                  "write a feed above zero");
-  if (block_.has('S') && block_.get('S') < 0.0)
-    control_.fail("out-of-range", column('S'), fmt::format("S {:g} is below zero", block_.get('S')),
-                  "write S0 or more");
+  check_feed_and_speed();
   if (one_shot == 40 && !block_.has('P') && !block_.has('X'))
     control_.fail("missing-word", g_column(kFanucOneShot), "G04 has no time", "add P (ms) or X (s)");
 }

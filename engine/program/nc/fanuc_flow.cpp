@@ -132,14 +132,6 @@ void Fanuc::go_to(long label, int column) {
                 "add the block number");
 }
 
-LineSource& Fanuc::open(const std::string& path) {
-  for (const auto& one : sources_) {
-    if (one->path() == path) return *one;
-  }
-  sources_.push_back(std::make_unique<LineSource>(path, control_));
-  return *sources_.back();
-}
-
 const Fanuc::Known* Fanuc::scan(LineSource& in, int number) {
   const LineSource::Mark back = in.mark();
   const std::string kept(reader_.line());

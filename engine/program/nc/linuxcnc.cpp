@@ -18,11 +18,7 @@ constexpr std::string_view kPositionNames[] = {"_x", "_y", "_z", "_a", "_b", "_c
 }  // namespace
 
 LinuxCnc::LinuxCnc(const std::string& path, Control& control)
-    : control_(control),
-      path_(path),
-      reader_(kLinuxCncFormula, *this, control),
-      numbers_(kNumbers, 0.0),
-      number_set_(kNumbers, false) {
+    : LetterDialect(path, control, kLinuxCncFormula), numbers_(kNumbers, 0.0), number_set_(kNumbers, false) {
   Call main;
   main.source = &open(path);
   calls_.push_back(std::move(main));
@@ -37,24 +33,13 @@ void LinuxCnc::run() {
       end_of_flow();
       continue;
     }
-    ++control_.summary().lines;
-    control_.at(source().file(), static_cast<int>(source().line_number()), 1);
-    ended_ = !execute(line);
+    at_line(source());
+    if (!percent(line)) ended_ = !execute();
   }
   control_.finish();
 }
 
-bool LinuxCnc::execute(std::string_view line) {
-  reader_.begin(line);
-  reader_.skip_space();
-  if (reader_.peek() == '%') {
-    if (line.find_first_not_of("% \t\r", reader_.at()) != std::string_view::npos)
-      control_.fail("unexpected-character", reader_.column() + 1, "'%' stands alone on its line",
-                    "put the words on a line of their own");
-    const bool second = percent_seen_;
-    percent_seen_ = true;
-    return !second;
-  }
+bool LinuxCnc::execute() {
   if (at_o_word()) {
     ++control_.summary().blocks;
     flow();

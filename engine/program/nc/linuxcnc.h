@@ -3,14 +3,12 @@
 #pragma once
 
 #include <array>
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "program/nc/letter_block.h"
-#include "program/nc/line_source.h"
+#include "program/nc/letter_dialect.h"
 
 namespace swarf::program::nc {
 
@@ -46,7 +44,7 @@ struct StickyCycle {
   bool has_z = false, has_r = false, has_q = false, has_p = false;
 };
 
-class LinuxCnc final : public Parameters {
+class LinuxCnc final : public LetterDialect {
  public:
   LinuxCnc(const std::string& path, Control& control);
   void run();
@@ -125,19 +123,16 @@ class LinuxCnc final : public Parameters {
   void enter(const Sub& sub, Call call);
   void leave();
   void call_number(int number, long times, int column);
-  LineSource& open(const std::string& path);
   double condition();
   void end_of_flow();
 
   // linuxcnc.cpp
-  bool execute(std::string_view line);
+  bool execute();
   void read_assignment();
   void assign();
   // linuxcnc_block.cpp
   void check_words();
   void check_axes_and_motion();
-  void check_letter(char letter, bool allowed, const char* used_with);
-  void need(char letter, const char* with);
   void apply();
   void apply_feed_and_speed();
   void apply_tool();
@@ -160,8 +155,6 @@ class LinuxCnc final : public Parameters {
   void motion();
   void arc(int tenths);
   void cycle(int tenths);
-  int column(char letter) const { return reader_.column_of(block_.place(letter)); }
-  int g_column(int group) const { return reader_.column_of(block_.g_places[static_cast<size_t>(group)]); }
   bool is_axis_given() const { return (block_.given & kAxisBits) != 0; }
   bool uses_axis_words() const;
   Call& frame() { return calls_.back(); }
@@ -171,11 +164,6 @@ class LinuxCnc final : public Parameters {
 
   static constexpr uint32_t kAxisBits = 7u | 7u << ('X' - 'A');
 
-  Control& control_;
-  std::string path_, kept_line_;
-  FormulaReader reader_;
-  LetterBlock block_;
-  std::vector<std::unique_ptr<LineSource>> sources_;
   std::vector<Call> calls_;
   std::vector<Sub> subs_;
   std::vector<Named> globals_;
@@ -183,7 +171,6 @@ class LinuxCnc final : public Parameters {
   std::vector<bool> number_set_;
   std::vector<std::pair<long, double>> new_numbers_;
   std::vector<std::pair<std::string, double>> new_names_;
-  bool ended_ = false, percent_seen_ = false;
   double returned_ = 0.0;
   bool value_returned_ = false;
 

@@ -18,18 +18,6 @@ bool is_arc(int tenths) {
 
 }  // namespace
 
-void LinuxCnc::check_letter(char letter, bool allowed, const char* used_with) {
-  if (!block_.has(letter) || allowed) return;
-  control_.fail("unexpected-word", column(letter), fmt::format("{} has no meaning in this block", letter),
-                fmt::format("{} stands with {}", letter, used_with));
-}
-
-void LinuxCnc::need(char letter, const char* with) {
-  if (block_.has(letter)) return;
-  control_.fail("missing-word", 0, fmt::format("{} needs the word {}", with, letter),
-                fmt::format("add {}", letter));
-}
-
 bool LinuxCnc::uses_axis_words() const {
   if (!block_.has_g(kNonModal)) return block_.has_g(kLengthGroup) && block_.g[kLengthGroup] == 431;
   const int code = block_.g[kNonModal];
@@ -65,12 +53,7 @@ void LinuxCnc::check_words() {
   }
   check_axes_and_motion();
   if (non_modal == 40) need('P', "G4");
-  if (block_.has('F') && !(block_.get('F') > 0.0))
-    control_.fail("bad-feed", column('F'), fmt::format("F {:g} is not a feed", block_.get('F')),
-                  "write a feed above zero");
-  if (block_.has('S') && block_.get('S') < 0.0)
-    control_.fail("out-of-range", column('S'), fmt::format("S {:g} is below zero", block_.get('S')),
-                  "write S0 or more; M4 turns the other way");
+  check_feed_and_speed();
 }
 
 void LinuxCnc::check_axes_and_motion() {

@@ -247,14 +247,6 @@ void LinuxCnc::leave_loop(const OWord& word) {
 // --- Subprograms
 // ---------------------------------------------------------------------------------------------
 
-LineSource& LinuxCnc::open(const std::string& path) {
-  for (const auto& one : sources_) {
-    if (one->path() == path) return *one;
-  }
-  sources_.push_back(std::make_unique<LineSource>(path, control_));
-  return *sources_.back();
-}
-
 void LinuxCnc::define_sub(const OWord& word) {
   const bool known = std::any_of(subs_.begin(), subs_.end(),
                                  [&](const Sub& sub) { return sub.name == word.name && !sub.numbered; });

@@ -2,8 +2,8 @@
 // a position that is not a number.
 #include <algorithm>
 
-#include "base/rng.h"
 #include "unit/program/heidenhain_support.h"
+#include "unit/program/mutate.h"
 
 namespace swarf::program {
 namespace {
@@ -70,26 +70,7 @@ TEST(HeidenhainFuzz, MutatedProgramsAreRefusedOrRun) {
   Rng rng(640);
   for (int round = 0; round < 2000; ++round) {
     std::string text = original;
-    const int changes = 1 + static_cast<int>(rng.next() % 4);
-    for (int n = 0; n < changes; ++n) {
-      const size_t at = rng.next() % text.size();
-      const char c = pool[rng.next() % pool.size()];
-      switch (rng.next() % 4) {
-        case 0:
-          text[at] = c;
-          break;
-        case 1:
-          text.insert(at, 1, c);
-          break;
-        case 2:
-          text.erase(at, 1 + rng.next() % 3);
-          break;
-        default: {
-          const size_t from = rng.next() % text.size();
-          text.insert(at, text.substr(from, 1 + rng.next() % 20));
-        }
-      }
-    }
+    for (size_t n = 1 + rng.next() % 4; n > 0 && !text.empty(); --n) mutate(text, pool, rng);
     expect_sound(text);
     if (HasFatalFailure()) return;
   }

@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
-#include "base/rng.h"
 #include "program/source_text.h"
+#include "unit/program/mutate.h"
 #include "unit/program/nc_support.h"
 
 namespace swarf::program {
@@ -132,28 +132,7 @@ std::vector<std::string> seeds_of(const Language& language) {
   return seeds;
 }
 
-void mutate(std::string& text, Rng& rng) {
-  static const std::string pool =
-      "0123456789.-+#[]()<>=GMXYZABCIJKRFSTDHLPQON \n\r\t%;/*&owhileifcall_\x01\xC3\xA4$";
-  const size_t at = rng.next() % text.size();
-  const char c = pool[rng.next() % pool.size()];
-  switch (rng.next() % 5) {
-    case 0:
-      text[at] = c;
-      break;
-    case 1:
-      text.insert(at, 1, c);
-      break;
-    case 2:
-      text.erase(at, 1 + rng.next() % 4);
-      break;
-    case 3:
-      text.insert(at, 1 + rng.next() % 30, c);
-      break;
-    default:
-      text.insert(at, text.substr(rng.next() % text.size(), 1 + rng.next() % 20));
-  }
-}
+const std::string kPool = "0123456789.-+#[]()<>=GMXYZABCIJKRFSTDHLPQON \n\r\t%;/*&owhileifcall_\x01\xC3\xA4$";
 
 TEST(NcFuzz, MutatedProgramsAreRefusedOrRun) {
   const ControlSetup setup = fuzz_setup();
@@ -163,7 +142,7 @@ TEST(NcFuzz, MutatedProgramsAreRefusedOrRun) {
     const std::vector<std::string> seeds = seeds_of(language);
     for (long round = 0; round < rounds; ++round) {
       std::string text = seeds[rng.next() % seeds.size()];
-      for (size_t n = 1 + rng.next() % 5; n > 0 && !text.empty(); --n) mutate(text, rng);
+      for (size_t n = 1 + rng.next() % 5; n > 0 && !text.empty(); --n) mutate(text, kPool, rng);
       expect_sound(text, language, setup);
       if (HasFatalFailure()) return;
     }

@@ -2,7 +2,7 @@
 // never a position that is not a number.
 #include <cmath>
 
-#include "base/rng.h"
+#include "unit/program/mutate.h"
 #include "unit/program/siemens_support.h"
 
 namespace swarf::program::siemens {
@@ -56,26 +56,7 @@ TEST(SiemensFuzz, MutatedProgramsAreRefusedOrRun) {
   Rng rng(840);
   for (int round = 0; round < 1500; ++round) {
     std::string text = original;
-    const int changes = 1 + static_cast<int>(rng.next() % 4);
-    for (int n = 0; n < changes; ++n) {
-      const size_t at = rng.next() % text.size();
-      const char c = pool[rng.next() % pool.size()];
-      switch (rng.next() % 4) {
-        case 0:
-          text[at] = c;
-          break;
-        case 1:
-          text.insert(at, 1, c);
-          break;
-        case 2:
-          text.erase(at, 1 + rng.next() % 3);
-          break;
-        default: {
-          const size_t from = rng.next() % text.size();
-          text.insert(at, text.substr(from, 1 + rng.next() % 20));
-        }
-      }
-    }
+    for (size_t n = 1 + rng.next() % 4; n > 0 && !text.empty(); --n) mutate(text, pool, rng);
     expect_sound(text);
     if (HasFatalFailure()) return;
   }
