@@ -288,6 +288,8 @@ double peak_memory_mb() {
 
 std::string metrics_json(const sim::Job& job, const sim::Result& result, const RenderStatistics& render) {
   const motion::MotionStatistics& motion = result.main.motion.statistics;
+  // Without a design nothing is measured, and a 0 would read as a perfect part.
+  const auto measured = [&](Json value) { return job.has_design() ? std::move(value) : Json(nullptr); };
   Json json{{"schema", 1},
             {"swarf", SWARF_VERSION},
             {"scene", job.scene.name},
@@ -295,10 +297,10 @@ std::string metrics_json(const sim::Job& job, const sim::Result& result, const R
             {"motion", motion_json(job, result)},
             {"kinematics", kinematics_json(job, motion)},
             {"stock", stock_json(job, result)},
-            {"surface", surface_json(result.main.surface)},
-            {"gouges", regions_json(result, result.main.surface.gouges)},
-            {"excesses", regions_json(result, result.main.surface.excesses)},
-            {"cross_check", cross_check_json(result.cross_check)},
+            {"surface", measured(surface_json(result.main.surface))},
+            {"gouges", measured(regions_json(result, result.main.surface.gouges))},
+            {"excesses", measured(regions_json(result, result.main.surface.excesses))},
+            {"cross_check", measured(cross_check_json(result.cross_check))},
             {"planners", comparison_json(result.planners)},
             {"interpolators", comparison_json(result.modes)},
             {"collisions", collisions_json(result.clearance)},

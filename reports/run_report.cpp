@@ -8,6 +8,7 @@
 #include "base/units.h"
 #include "cutter/cutting_pieces.h"
 #include "measure/measure.h"
+#include "motion/look_ahead.h"
 #include "motion/offline_baseline.h"
 #include "reports/flank_table.h"
 #include "reports/nc_report.h"
@@ -164,7 +165,8 @@ Table axis_table(const sim::Job& job, const sim::Result& result) {
                    {"Limits", "", true},
                    {"Travelled", "", true},
                    {"Top speed", "per s", true},
-                   {"Limit", "per s", true}};
+                   {"Limit", "per s", true},
+                   {"in rapids", "per s", true}};
   const motion::MotionStatistics& motion = result.main.motion.statistics;
   for (size_t i = 0; i < motion.axes.size(); ++i) {
     const kinematics::Axis& axis = job.machine.model.axes[i];
@@ -172,10 +174,10 @@ Table axis_table(const sim::Job& job, const sim::Result& result) {
     const auto shown = [&](double value) {
       return fmt::format("{:.2f}", rotary ? deg_from_rad(value) : value);
     };
-    table.rows.push_back({axis.name + (axis.reversed ? " (reversed)" : ""), rotary ? "deg" : "mm",
-                          shown(motion.axes[i].min), shown(motion.axes[i].max),
-                          shown(axis.min) + " .. " + shown(axis.max), shown(motion.axes[i].travel),
-                          shown(motion.axes[i].speed_max), shown(axis.speed_max)});
+    table.rows.push_back(
+        {axis.name + (axis.reversed ? " (reversed)" : ""), rotary ? "deg" : "mm", shown(motion.axes[i].min),
+         shown(motion.axes[i].max), shown(axis.min) + " .. " + shown(axis.max), shown(motion.axes[i].travel),
+         shown(motion.axes[i].speed_max), shown(axis.speed_max), shown(motion::speed_limit(axis, true))});
   }
   table.notes = {
       "Reversed: the table itself turns positively (the paper's habit), not the tool relative to the work "
@@ -205,6 +207,7 @@ std::vector<Check> checks_of(const sim::Job& job, const sim::Result& result, boo
   const motion::MotionStatistics& motion = result.main.motion.statistics;
   const sim::ToolClearance& clearance = result.clearance;
   const auto state = [](bool holds) { return holds ? State::kHolds : State::kFails; };
+  const bool blocks_cut = job.scene.has_blocks() && !job.scene.cuts_cycles();
   std::vector<Check> checks{
       {"Forward of inverse kinematics, every cycle",
        fmt::format("largest {:.1e} mm, limit 1e-9 mm", motion.fk_ik_error_max_mm), "",
@@ -216,8 +219,8 @@ std::vector<Check> checks_of(const sim::Job& job, const sim::Result& result, boo
       {"Sweeps of the level set",
        fmt::format("{} sweeps stay within {:.3f} µm of the {} {}", result.merged_sweeps,
                    um_from_mm(result.sweep_bound_mm),
-                   job.scene.has_blocks() ? result.main.path.elements.size() : motion.ticks,
-                   job.scene.has_blocks() ? "blocks" : "cycles"),
+                   blocks_cut ? result.main.path.elements.size() : motion.ticks,
+                   blocks_cut ? "blocks" : "cycles"),
        ""},
       {"Invariants of the level set",
        result.cut.broken_invariant.empty()

@@ -107,7 +107,7 @@ struct MotionStatistics {
   std::vector<AxisStatistics> axes;  ///< order of MachineModel::axes
   CycleTime cycle;
   OtherMode other_mode;
-  /// Greatest distance of the tip from the programmed place in a rounded corner, and its element.
+  /// Greatest distance of the tip from the programmed place in a rounded corner of feeds, and its element.
   double corner_deviation_max_mm = 0.0;
   int corner_element = -1;
 };

@@ -10,6 +10,7 @@
 #include "kinematics/rotary_pair.h"
 #include "motion/block_run.h"
 #include "motion/block_turns.h"
+#include "motion/look_ahead.h"
 #include "motion/pass_geometry.h"
 
 namespace swarf::motion {
@@ -113,7 +114,7 @@ class TickMeter {
     const BlockMove& last = *blocks_[static_cast<size_t>(before.element)].block;
     if (last.tool != block.tool) return;  // another tool's tip: no way between them
     if (cutting) out_.path_length_mm += chord.norm();
-    if (sample.rounded) measure_corner(sample);
+    if (sample.rounded && cutting) measure_corner(sample);
     if (before.element != sample.element || before.rounded || sample.rounded) return;
     const ToolPose exact = pose_at(blocks_[static_cast<size_t>(sample.element)], 0.5 * (before.u + sample.u));
     const double tip_error = distance_across(middle.tip_W - exact.tip_W, chord);
@@ -162,7 +163,6 @@ std::vector<AxisStatistics> measure_axes(const Trajectory& trajectory, const Mac
     axis.name = machine.axes[i].name;
     axis.min = axis.max = q.front()[row];
     double speed = 0.0, acceleration = 0.0;
-    const double at_limit = kAtLimit * machine.axes[i].speed_max;
     for (size_t k = 1; k < q.size(); ++k) {
       axis.min = std::min(axis.min, q[k][row]);
       axis.max = std::max(axis.max, q[k][row]);
@@ -180,7 +180,9 @@ std::vector<AxisStatistics> measure_axes(const Trajectory& trajectory, const Mac
       axis.acceleration_max = std::max(axis.acceleration_max, std::abs(acceleration));
       axis.jerk_max =
           std::max(axis.jerk_max, std::abs(acceleration - acceleration_before) / trajectory.period_s);
-      if (std::abs(speed) >= at_limit) axis.time_at_speed_limit_s += trajectory.period_s;
+      const bool rapid = trajectory.samples[k].kind == SampleKind::kRapid;
+      if (std::abs(speed) >= kAtLimit * speed_limit(machine.axes[i], rapid))
+        axis.time_at_speed_limit_s += trajectory.period_s;
     }
     all.push_back(axis);
   }

@@ -5,16 +5,12 @@
 
 #include "cutter/profile.h"
 #include "motion/block_motion.h"
+#include "sim/driven_sweeps.h"
 
 namespace swarf::sim {
 namespace {
 
 using toolpath::BlockMove;
-
-/// Distance from the tip to the farthest point of the flutes.
-double lever_of(const cutter::Cutter& cutter) {
-  return std::hypot(cutter::greatest_radius(cutter::outline(cutter)), cutter.flute_length_mm);
-}
 
 /// Sources of a surface job: blocks are samples.
 std::vector<SweepSource> sources_of_samples(const motion::Trajectory& trajectory) {
@@ -138,6 +134,10 @@ class BlockSweeper {
 
 }  // namespace
 
+double lever_of(const cutter::Cutter& cutter) {
+  return std::hypot(cutter::greatest_radius(cutter::outline(cutter)), cutter.flute_length_mm);
+}
+
 std::vector<stock::Sweep> cycle_sweeps(const motion::Trajectory& trajectory,
                                        const kinematics::MachineModel& machine) {
   const size_t count = trajectory.samples.size();
@@ -183,15 +183,17 @@ std::vector<int> tool_of_blocks(const JobSweeps& sweeps) {
 }
 
 JobSweeps stock_sweeps(const Job& job, const toolpath::ToolPath& path, const motion::Trajectory& trajectory) {
-  if (job.scene.has_blocks())
-    return BlockSweeper(job, path, trajectory, job.scene.stock.sweep_tolerance_mm).straight_blocks_merged();
+  const double tolerance = job.scene.stock.sweep_tolerance_mm;
+  if (job.scene.cuts_cycles()) return driven_sweeps(job, path, trajectory, tolerance, true);
+  if (job.scene.has_blocks()) return BlockSweeper(job, path, trajectory, tolerance).straight_blocks_merged();
   stock::MergedSweeps merged = merged_sweeps(trajectory, job.scene);
   return {std::move(merged.sweeps), sources_of_samples(trajectory), merged.error_bound_mm};
 }
 
 JobSweeps ray_sweeps(const Job& job, const toolpath::ToolPath& path, const motion::Trajectory& trajectory) {
-  if (job.scene.has_blocks())
-    return BlockSweeper(job, path, trajectory, job.scene.design.sweep_tolerance_mm).each_block();
+  const double tolerance = job.scene.design.sweep_tolerance_mm;
+  if (job.scene.cuts_cycles()) return driven_sweeps(job, path, trajectory, tolerance, false);
+  if (job.scene.has_blocks()) return BlockSweeper(job, path, trajectory, tolerance).each_block();
   return {cycle_sweeps(trajectory, job.machine.model), sources_of_samples(trajectory), 0.0};
 }
 

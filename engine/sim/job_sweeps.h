@@ -1,7 +1,8 @@
 // What cuts the stock and the measuring rays, for both kinds of job, and what a Sweep::block then means.
 //
 //   surface job   level set: cycles merged within the tolerance     rays: one sweep per cycle
-//   CL job        level set and rays: the blocks' own motions, divided within a tolerance of each
+//   block job     level set and rays: the blocks' own motions, divided within a tolerance of each,
+//                 or the cycles as the axes drive them (Scene::cuts_cycles)
 #pragma once
 
 #include <cstdint>
@@ -54,11 +55,14 @@ void for_each_tool(std::span<const stock::Sweep> sweeps, const ToolOf& tool_of, 
   }
 }
 
-/// For the level set, within stock.sweep_tolerance. CL: collinear blocks of one feed that keep their axis are
-/// merged.
+/// Distance from the tip to the farthest point of the flutes, mm.
+double lever_of(const cutter::Cutter& cutter);
+
+/// For the level set, within stock.sweep_tolerance. Blocks: collinear ones of one feed that keep their axis
+/// are merged.
 JobSweeps stock_sweeps(const Job& job, const toolpath::ToolPath& path, const motion::Trajectory& trajectory);
 
-/// For the measuring rays; each sweep has a block of its own. CL: within design.sweep_tolerance.
+/// For the measuring rays; each sweep has a block of its own. Blocks: within design.sweep_tolerance.
 JobSweeps ray_sweeps(const Job& job, const toolpath::ToolPath& path, const motion::Trajectory& trajectory);
 
 /// Tool of each block in `sources`.

@@ -22,11 +22,18 @@
 
 namespace swarf::sim {
 
+/// What cuts stock and measuring rays in a job of blocks.
+enum class CutBy {
+  kBlocks,  ///< the motions that the program asks for
+  kCycles,  ///< the control's cycles: with rounded corners, chords and dog-legs
+};
+
 struct StockSettings {
   Box box_W;                         ///< mm
   double voxel_mm = 0.2;             ///< smaller: finer solid, memory grows with the square
   double sweep_tolerance_mm = 1e-3;  ///< ticks are merged into sweeps that stay this close to them
-  double max_memory_mb = 0.0;        ///< 0: 80 % of the memory that is free when the run starts
+  CutBy cut_by = CutBy::kBlocks;
+  double max_memory_mb = 0.0;  ///< 0: 80 % of the memory that is free when the run starts
 };
 
 /// Criteria that are not given do not count. Scenes of surface blocks have all three: 10.5, 1, 0 by default.
@@ -87,6 +94,7 @@ struct Scene {
 
   /// The program brings its own blocks: CL data or an NC program.
   bool has_blocks() const { return kind != ProgramKind::kSurfaceBlocks; }
+  bool cuts_cycles() const { return has_blocks() && stock.cut_by == CutBy::kCycles; }
 };
 
 /// Everything that a run needs, loaded and checked; nothing has been written yet.

@@ -15,11 +15,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-StockSettings read_stock(ConfigTable table) {
+/// Surface blocks are always cut by their cycles.
+StockSettings read_stock(ConfigTable table, bool blocks) {
   StockSettings stock;
   stock.box_W = table.box("box_mm");
   stock.voxel_mm = table.number("voxel_mm", kAboveZero);
   stock.sweep_tolerance_mm = table.number("sweep_tolerance_um", kAboveZero, 1.0) * kMicrometre;
+  if (blocks && table.choice("cut_by", {"blocks", "cycles"}, "blocks") == "cycles")
+    stock.cut_by = CutBy::kCycles;
   stock.max_memory_mb = table.number("max_memory_mb", kZeroOrMore, 0.0);
   return stock;
 }
@@ -173,7 +176,7 @@ Scene load_scene(const std::string& path, const std::vector<std::string>& overri
   read_program(root, scene);
   read_scene_tools(root, scene, diagnostics);
   scene.setup = read_setup(root.table("setup"), scene.kind == ProgramKind::kNc);
-  scene.stock = read_stock(root.table("stock"));
+  scene.stock = read_stock(root.table("stock"), scene.has_blocks());
   scene.design = read_design(root.table("design"), scene.has_blocks());
   scene.design.surface_file = beside(path, scene.design.surface_file);
   scene.design.mesh_file = beside(path, scene.design.mesh_file);

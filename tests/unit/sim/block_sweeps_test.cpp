@@ -138,5 +138,80 @@ TEST(JobSweeps, FollowEachOtherAndNameTheirElementAndCycle) {
   }
 }
 
+double distance_to_way(const Vec3& from, const Vec3& to, const Vec3& p) {
+  const Vec3 way = to - from;
+  const double t = way.isZero() ? 0.0 : std::clamp((p - from).dot(way) / way.squaredNorm(), 0.0, 1.0);
+  return (from + t * way - p).norm();
+}
+
+/// Greatest distance of the tool's tip and of its upper end from the sweeps, over places inside the cycles
+/// where the axes have moved linearly.
+double farthest_from_sweeps(const Job& job, const motion::Trajectory& trajectory, const JobSweeps& sweeps) {
+  const std::vector<kinematics::MachineModel> machines = machines_by_tool(job);
+  double worst = 0.0;
+  for (const stock::Sweep& sweep : sweeps.sweeps) {
+    const uint32_t cycle = sweeps.sources[sweep.block].sample;
+    for (int k = 0; k <= 16; ++k) {
+      const kinematics::AxisValues q =
+          trajectory.axes[cycle - 1] + k / 16.0 * (trajectory.axes[cycle] - trajectory.axes[cycle - 1]);
+      const ToolPose pose = kinematics::forward(machines.front(), q);
+      const auto off = [&](double height) {
+        const Vec3 at = pose.tip_W + height * pose.axis_W;
+        double nearest = 1e9;
+        for (const stock::Sweep& part : sweeps.sweeps) {
+          if (sweeps.sources[part.block].sample != cycle) continue;
+          const Vec3 a = part.start.tip_W + height * part.start.axis_W;
+          nearest = std::min(nearest, distance_to_way(a, part.end.tip_W + height * part.end.axis_W, at));
+        }
+        return nearest;
+      };
+      worst = std::max({worst, off(0.0), off(lever_of(job.scene.tools.front()))});
+    }
+  }
+  return worst;
+}
+
+// Ten-millisecond cycles that turn fast: the chord of a cycle is far from where the tool goes.
+TEST(DrivenSweeps, StayWithinTheToleranceOfTheAxesMotion) {
+  Job job = job_of(
+      "MULTAX/ON\nFEDRAT/6000\nGOTO/20,0,0,0,0.342020143,0.939692621\n"
+      "GOTO/10,17,0,-0.296198133,0.171010072,0.939692621\nGOTO/-20,17,0,0,0,1\n");
+  job.scene.stock.cut_by = CutBy::kCycles;
+  job.scene.motion.period_s = 0.01;
+  const Swept swept = sweep_through(job);
+  const JobSweeps rays = ray_sweeps(job, swept.path, swept.motion.trajectory);
+  EXPECT_LE(rays.error_bound_mm, job.scene.design.sweep_tolerance_mm);
+  EXPECT_GT(rays.sweeps.size(), 2 * swept.motion.trajectory.samples.size()) << "turning cycles are divided";
+  EXPECT_LT(farthest_from_sweeps(job, swept.motion.trajectory, rays), job.scene.design.sweep_tolerance_mm);
+  const JobSweeps level_set = stock_sweeps(job, swept.path, swept.motion.trajectory);
+  EXPECT_LE(level_set.error_bound_mm, job.scene.stock.sweep_tolerance_mm);
+  EXPECT_LT(level_set.sweeps.size(), rays.sweeps.size()) << "joined";
+}
+
+TEST(DrivenSweeps, FollowTheRoundedCornerAndKeepRapidsApart) {
+  Job job =
+      job_of("FEDRAT/3000\nGOTO/0,0,0\nGOTO/20,0,0\nGOTO/20,20,0\nRAPID\nGOTO/20,20,50\nGOTO/20,30,0\n");
+  job.scene.stock.cut_by = CutBy::kCycles;
+  const Swept swept = sweep_through(job);
+  for (const JobSweeps& sweeps : {stock_sweeps(job, swept.path, swept.motion.trajectory),
+                                  ray_sweeps(job, swept.path, swept.motion.trajectory)}) {
+    double nearest = 1.0;
+    for (size_t i = 0; i < sweeps.sweeps.size(); ++i) {
+      const stock::Sweep& sweep = sweeps.sweeps[i];
+      nearest = std::min(nearest, distance_to_way(sweep.start.tip_W, sweep.end.tip_W, Vec3(20, 0, 0)));
+      if (i > 0) {
+        EXPECT_EQ(sweep.start.tip_W, sweeps.sweeps[i - 1].end.tip_W);
+      }
+      const auto& block = std::get<toolpath::BlockMove>(
+          swept.path.elements[static_cast<size_t>(sweeps.sources[i].element)].what);
+      const bool lifts = sweep.end.tip_W.z() > sweep.start.tip_W.z() + 1e-3;
+      EXPECT_TRUE(!lifts || is_rapid(block)) << "sweep " << i;
+    }
+    EXPECT_GT(nearest, 0.5 * job.scene.motion.corner_tolerance_mm);
+    // A cycle's chord lies a little farther inside the corner than its ends.
+    EXPECT_LT(nearest, 1.02 * job.scene.motion.corner_tolerance_mm);
+  }
+}
+
 }  // namespace
 }  // namespace swarf::sim
