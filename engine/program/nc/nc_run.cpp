@@ -5,10 +5,10 @@
 #include <array>
 #include <cctype>
 #include <filesystem>
-#include <fstream>
 
 #include "program/nc/control.h"
 #include "program/nc/dialect.h"
+#include "program/nc/line_source.h"
 #include "program/nc_program.h"
 
 namespace swarf::program {
@@ -27,12 +27,12 @@ const DialectReader* reader_of(Dialect dialect) {
   return found == kReaders.end() ? nullptr : *found;
 }
 
+/// The first lines, checked as every reader checks them: what is no text shows no dialect either.
 std::string head_of(const std::string& path) {
   constexpr size_t kHead = size_t{1} << 18;
-  std::ifstream stream(path, std::ios::binary);
-  std::string head(kHead, '\0');
-  stream.read(head.data(), static_cast<std::streamsize>(kHead));
-  head.resize(static_cast<size_t>(stream.gcount()));
+  nc::LineSource source(path);
+  std::string head;
+  for (std::string_view line; head.size() < kHead && source.next(line);) head.append(line) += '\n';
   return head;
 }
 
@@ -76,9 +76,6 @@ const DialectReader* recognised(const std::string& path, NcSummary& summary) {
 
 void run(const std::string& path, std::optional<Dialect> dialect, const ControlSetup& setup, NcSink& sink,
          Diagnostics& diagnostics, NcSummary& summary) {
-  if (!std::filesystem::is_regular_file(path))
-    throw InputError("file-not-found", {path, 0, 0}, "there is no such file",
-                     "check the path of the program");
   summary.dialect_reason = "the scene says so";
   const DialectReader* reader = dialect ? reader_of(*dialect) : recognised(path, summary);
   if (reader == nullptr) {

@@ -82,6 +82,12 @@ TEST(NcBadInput, DialectsAreRecognisedOrAskedFor) {
   EXPECT_EQ(siemens_run.text(), "");
   EXPECT_EQ(siemens_run.summary.dialect, Dialect::kSiemens);
   EXPECT_EQ(siemens_run.summary.dialect_reason, "recognised by 'DEF REAL _X=5' in line 1");
+  // What is no program shows no dialect: the place of the fault is said, not that the dialect is unknown.
+  EXPECT_EQ(recognised(".nc", std::string("G0 X1\nG0 \0 X2\n", 14)).first_error(), "not-text 2:4");
+  EXPECT_EQ(recognised(".nc", "G0 X1\n" + std::string(100'000, 'X')).first_error(), "line-too-long 2:1");
+  EXPECT_EQ(recognised(".nc", "").first_error(), "empty-file 0:0");
+  EXPECT_EQ(run_file(fs::temp_directory_path().string(), std::nullopt, setup).first_error(),
+            "file-unreadable 0:0");
   EXPECT_EQ(recognised(".mpf", "G0 X1\nM30\n").summary.dialect_reason, "recognised by the ending .mpf");
 }
 
