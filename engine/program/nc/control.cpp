@@ -120,6 +120,10 @@ Compensation Control::compensation() const {
   return contour_->side();
 }
 
+bool Control::leading_out() const {
+  return contour_->leading_out();
+}
+
 // --- Tools
 // ---------------------------------------------------------------------------------------------------
 

@@ -116,6 +116,8 @@ class Control {
   /// outside one plane, "compensation-no-tool" without a radius. Off: the next move leads out.
   void set_compensation(Compensation side, double radius_mm, int column);
   Compensation compensation() const;
+  /// G40 was given, and the move in the plane that leads out has not come yet.
+  bool leading_out() const;
   /// Where the lead-in ends; kAcrossNext unless the dialect says otherwise.
   void set_compensation_entry(CompensationEntry entry);
 

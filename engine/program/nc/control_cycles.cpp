@@ -112,7 +112,12 @@ void Control::curve(const Curve& curve, double tolerance_mm) {
   const double whole_feed = feed_;
   const bool inverse = feed_mode_ == FeedMode::kInverseTime;
   const bool fresh = feed_fresh_;
+  // The block comes to rest at its end, its chords do not.
+  const bool exact_stop = exact_stop_, once = exact_stop_once_;
   for (const CurvePoint& point : points) {
+    const bool last = &point == &points.back();
+    exact_stop_ = last && exact_stop;
+    exact_stop_once_ = last && once;
     Target target;
     const Vec3 here = position_xyz();
     for (int i = 0; i < 3; ++i) {

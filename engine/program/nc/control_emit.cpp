@@ -91,6 +91,7 @@ void Control::emit(const Segment& segment) {
   const double last = swept(segment);
   const double whole = last + kTurn * segment.further_turns;
   Segment piece = segment;
+  piece.exact_stop = false;  // whole turns go on
   const double rise = (segment.to - segment.from).dot(segment.normal);
   for (int i = 0; i < segment.further_turns; ++i) {
     const double share = kTurn / whole;
@@ -105,6 +106,7 @@ void Control::emit(const Segment& segment) {
   }
   piece.to = segment.to;
   piece.rotary_to = segment.rotary_to;
+  piece.exact_stop = segment.exact_stop;
   emit_piece(piece, piece.to, piece.rotary_to, last / whole, last);
 }
 

@@ -71,7 +71,41 @@ class BlockReader {
     if (word == nullptr && extended(token)) return;
     if (word == nullptr) unknown(token);
     reader_.next();
-    vocabulary(*word, token.name, token.offset);
+    if (word->meaning == Meaning::kPolynomial) {
+      polynomial(token);
+    } else {
+      vocabulary(*word, token.name, token.offset);
+    }
+  }
+
+  /// PO[X]=(...), PO[]=(...).
+  void polynomial(const Token& po) {
+    reader_.expect("[", "PO");
+    if (reader_.skip("]")) {
+      reader_.expect("=", "PO[]");
+      if (words_.divisor) twice(po);
+      words_.divisor = read_coefficients(reader_, variables_, po.offset, words_.divisor_end);
+      return;
+    }
+    const Token axis = reader_.peek();
+    const size_t index = axis.name.size() == 1 ? kAxisNames.find(axis.name[0]) : std::string_view::npos;
+    if (index == std::string_view::npos) {
+      fail("unsupported-word", axis.offset,
+           fmt::format("PO[{}] is not supported: polynomials are read for X Y Z A B C", axis.text),
+           "give the orientation with PO of the rotary axes under ORIAXES, or as A3= B3= C3= without "
+           "polynomial");
+    }
+    reader_.next();
+    reader_.expect("]", "the axis of PO");
+    reader_.expect("=", "PO[X]");
+    polynomial_of(axis, index, po.offset);
+  }
+
+  void polynomial_of(const Token& axis, size_t index, size_t offset) {
+    if (words_.axes[index]) twice(axis);
+    double end = 0.0;
+    words_.polynomials[index] = read_coefficients(reader_, variables_, offset, end);
+    coordinate(words_.axes[index], end, Way::kModal, axis, index >= 3);
   }
 
   /// S1=500, M1=3, T1="D8": the spindle 1 is the one that there is.
@@ -116,6 +150,11 @@ class BlockReader {
     if (!reader_.skip("=")) {
       fail("bad-number", token.offset, fmt::format("{} has no number", token.text),
            fmt::format("write {}=10", token.name));
+    }
+    if (const size_t axis = token.name.size() == 1 ? kAxisNames.find(token.name[0]) : std::string_view::npos;
+        axis != std::string_view::npos && reader_.skip("PO")) {
+      polynomial_of(token, axis, token.offset);
+      return;
     }
     Way way = Way::kModal;
     const size_t offset = reader_.offset();
@@ -174,15 +213,16 @@ class BlockReader {
       return once(vector[static_cast<size_t>(name[0] - 'A')], number, token);
     }
     using Plain = std::pair<std::string_view, Amount BlockWords::*>;
-    static constexpr std::array<Plain, 9> kPlain = {{{"CR", &BlockWords::radius},
-                                                     {"AR", &BlockWords::opening},
-                                                     {"TURN", &BlockWords::turns},
-                                                     {"F", &BlockWords::feed},
-                                                     {"S", &BlockWords::speed},
-                                                     {"D", &BlockWords::cutting_edge},
-                                                     {"ADIS", &BlockWords::rounding},
-                                                     {"RPL", &BlockWords::plane_turn},
-                                                     {"CTOL", &BlockWords::contour}}};
+    static constexpr std::array<Plain, 10> kPlain = {{{"CR", &BlockWords::radius},
+                                                      {"AR", &BlockWords::opening},
+                                                      {"TURN", &BlockWords::turns},
+                                                      {"F", &BlockWords::feed},
+                                                      {"S", &BlockWords::speed},
+                                                      {"D", &BlockWords::cutting_edge},
+                                                      {"ADIS", &BlockWords::rounding},
+                                                      {"RPL", &BlockWords::plane_turn},
+                                                      {"CTOL", &BlockWords::contour},
+                                                      {"PL", &BlockWords::interval}}};
     for (const auto& [word, member] : kPlain) {
       if (name == word) {
         once(words_.*member, number, token);
@@ -287,6 +327,7 @@ class BlockReader {
       case Meaning::kUnsupported:
         fail("unsupported-word", offset, fmt::format("{} is known and not supported", name), word.advice);
       case Meaning::kAddress:
+      case Meaning::kPolynomial:
       case Meaning::kFlow:
         if (name == "MCALL") return;
         fail("bad-block", offset, fmt::format("{} stands at the start of a block", name),
@@ -319,7 +360,7 @@ class BlockReader {
       const bool other_motion = group == Group::kMotion || group == Group::kNoMotion;
       if (motion && other_motion) {
         fail("two-motion-words", offset, fmt::format("{} is the second motion of this block", name),
-             "a block has one of G0 G1 G2 G3 CIP CT G4 G74 G75");
+             "a block has one of G0 G1 G2 G3 CIP CT POLY G4 G74 G75");
       }
       if (group == word.group) {
         fail("modal-conflict", offset, fmt::format("{} belongs to the same group as a word before it", name),
@@ -357,6 +398,13 @@ class BlockReader {
       fail("words-conflict", words_.motion_offset,
            "a motion stands beside a frame, a transformation or a cycle", "write it in a block of its own");
     }
+    const Coefficients* polynomial = words_.divisor ? &words_.divisor : nullptr;
+    for (const Coefficients& one : words_.polynomials) polynomial = one ? &one : polynomial;
+    if (polynomial != nullptr && (words_.frame || words_.transform || !words_.calls.empty() || point)) {
+      fail("words-conflict", polynomial->offset,
+           "a polynomial stands in a block that is no motion along a path",
+           "write POLY PO[X]=(10,2) in a block of its own");
+    }
     if (words_.calls.size() > 1) {
       fail("words-conflict", words_.calls[1].offset, "two cycles stand in one block", "write one per block");
     }
@@ -383,8 +431,10 @@ void BlockWords::clear() {
   centre = between = {};
   angles = vector = {};
   for (Amount* amount :
-       {&radius, &opening, &turns, &feed, &speed, &cutting_edge, &rounding, &plane_turn, &contour})
+       {&radius, &opening, &turns, &feed, &speed, &cutting_edge, &rounding, &plane_turn, &contour, &interval})
     *amount = {};
+  polynomials = {};
+  divisor = {};
   tool.given = false;
   functions.clear();
   codes.clear();

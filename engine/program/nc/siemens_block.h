@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "program/nc/siemens_expression.h"
+#include "program/nc/siemens_polynomial.h"
 #include "program/nc/siemens_words.h"
 
 namespace swarf::program::siemens {
@@ -61,14 +62,18 @@ struct NamedPlace {
 };
 
 struct BlockWords {
-  std::array<Coordinate, 6> axes;        ///< X Y Z A B C
-  std::array<Coordinate, 3> centre;      ///< I J K
-  std::array<Coordinate, 3> between;     ///< I1 J1 K1
-  std::array<Amount, 3> angles;          ///< A2 B2 C2
-  std::array<Amount, 3> vector;          ///< A3 B3 C3
-  Amount radius, opening, turns;         ///< CR AR TURN
-  Amount feed, speed, cutting_edge;      ///< F S D
-  Amount rounding, plane_turn, contour;  ///< ADIS RPL CTOL
+  std::array<Coordinate, 6> axes;           ///< X Y Z A B C
+  std::array<Coordinate, 3> centre;         ///< I J K
+  std::array<Coordinate, 3> between;        ///< I1 J1 K1
+  std::array<Amount, 3> angles;             ///< A2 B2 C2
+  std::array<Amount, 3> vector;             ///< A3 B3 C3
+  Amount radius, opening, turns;            ///< CR AR TURN
+  Amount feed, speed, cutting_edge;         ///< F S D
+  Amount rounding, plane_turn, contour;     ///< ADIS RPL CTOL
+  std::array<Coefficients, 6> polynomials;  ///< PO of X Y Z A B C; their ends stand in `axes`
+  Coefficients divisor;                     ///< PO[]
+  double divisor_end = 1.0;
+  Amount interval;  ///< PL
   ToolCall tool;
   std::vector<Amount> functions;  ///< M
   std::vector<std::pair<Group, int>> codes;
@@ -88,7 +93,7 @@ struct BlockWords {
 
 /// Reads the rest of a block; assignments to variables are done as they are met. Throws InputError:
 ///   "unknown-word", "unsupported-word", "word-twice", "two-motion-words", "modal-conflict", "bad-block",
-///   "bad-number", "not-whole-number", "wrong-type", "words-conflict".
+///   "bad-number", "not-whole-number", "wrong-type", "words-conflict", "too-many-coefficients".
 void read_block(TokenReader& reader, Variables& variables, BlockWords& words);
 
 }  // namespace swarf::program::siemens

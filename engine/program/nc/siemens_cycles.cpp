@@ -50,6 +50,8 @@ void Executor::run_call(const CycleCall& call) {
   } else if (call.name.starts_with("CYCLE8")) {
     const DrillCycle cycle = drilling(call);
     drill(cycle, call);
+  } else if (call.name == "POLYPATH") {
+    polynomial_path(call);
   } else {
     std::string text;
     for (const auto& one : call.arguments)

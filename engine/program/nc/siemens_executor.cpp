@@ -94,6 +94,9 @@ void Executor::modal_words(const BlockWords& words) {
       case Group::kAngles:
         angles_ = code;
         break;
+      case Group::kPathReference:
+        by_way_ = code == kSpath;
+        break;
       case Group::kExact:
         control_.exact_stop_once();
         break;

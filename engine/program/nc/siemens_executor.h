@@ -68,6 +68,14 @@ class Executor final : public BlockTarget {
   void dwell(const BlockWords& words);
   void approach_point(const BlockWords& words, int code);
 
+  // siemens_curves.cpp
+  static const Coefficients* first_polynomial(const BlockWords& words);
+  void check_polynomial(const BlockWords& words) const;
+  PolynomialBlock polynomial_block(const BlockWords& words, const nc::Target& target);
+  void polynomial_orientation(const BlockWords& words, const nc::Target& target, PolynomialBlock& block);
+  void polynomial(const BlockWords& words, const nc::Target& target);
+  void polynomial_path(const CycleCall& call);
+
   // siemens_frames.cpp
   void frame_words(const BlockWords& words);
   void transform_words(const BlockWords& words);
@@ -106,6 +114,7 @@ class Executor final : public BlockTarget {
   int interpolation_ = kOriWks;  ///< ORIWKS, ORIMKS, ORIVECT, ORIAXES
   bool interpolation_chosen_ = false;
   std::optional<int> angles_;  ///< ORIEULER, ORIRPY
+  bool by_way_ = true;         ///< SPATH; false: UPATH
   Piece last_;
   std::optional<CycleCall> modal_cycle_;
 };

@@ -100,8 +100,13 @@ void Executor::motion_words(const BlockWords& words) {
     }
     return;
   }
-  const bool arc = motion_ != kG0 && motion_ != kG1;
+  const bool arc = motion_ != kG0 && motion_ != kG1 && motion_ != kPoly;
+  check_polynomial(words);
   if (!words.moves()) {
+    if (const Coefficients* divisor = first_polynomial(words)) {
+      fail("unexpected-word", divisor->offset, "PO[] stands without polynomials of axes",
+           "PO[X]=(0,-10) PO[Y]=(10) PO[]=(2,1)");
+    }
     for (const Amount* word : {&words.radius, &words.opening, &words.turns}) {
       if (*word)
         fail("unexpected-word", word->offset, "this word belongs to an arc, and nothing moves here",
@@ -136,6 +141,12 @@ void Executor::motion_words(const BlockWords& words) {
   }
   if (motion_ == kG0 || motion_ == kG1) {
     straight(motion_ == kG0 ? Motion::kRapid : Motion::kFeed, target);
+  } else if (motion_ == kPoly) {
+    if (first_polynomial(words) != nullptr) {
+      polynomial(words, target);
+    } else {
+      straight(Motion::kFeed, target);
+    }
   } else if (motion_ == kCip) {
     circle_through(words, target);
   } else if (motion_ == kCt) {
@@ -325,7 +336,7 @@ void Executor::machine_move(const BlockWords& words) {
          "write TRAFOOF before it");
   }
   if (motion_ != kG0 && motion_ != kG1) {
-    fail("words-conflict", offset, "machine coordinates take G0 or G1, an arc is active",
+    fail("words-conflict", offset, "machine coordinates take G0 or G1, another motion is active",
          "write G0 in this block");
   }
   Target target = target_of(words, true);

@@ -25,6 +25,7 @@ constexpr Entry kModalWords[] = {
     {"G3", modal(Group::kMotion, kG3)},
     {"CIP", modal(Group::kMotion, kCip)},
     {"CT", modal(Group::kMotion, kCt)},
+    {"POLY", modal(Group::kMotion, kPoly)},
     {"G4", modal(Group::kNoMotion, kG4)},
     {"G74", modal(Group::kNoMotion, kG74)},
     {"G75", modal(Group::kNoMotion, kG75)},
@@ -61,6 +62,9 @@ constexpr Entry kModalWords[] = {
     {"ORIAXES", modal(Group::kOrientation, kOriAxes)},
     {"ORIEULER", modal(Group::kAngles, kOriEuler)},
     {"ORIRPY", modal(Group::kAngles, kOriRpy)},
+    {"SPATH", modal(Group::kPathReference, kSpath)},
+    {"UPATH", modal(Group::kPathReference, kUpath)},
+    {"PO", {Meaning::kPolynomial, Group::kNone, 0, ""}},
     {"TRANS", {Meaning::kFrame, Group::kNone, kTrans, ""}},
     {"ATRANS", {Meaning::kFrame, Group::kNone, kATrans, ""}},
     {"ROT", {Meaning::kFrame, Group::kNone, kRot, ""}},
@@ -74,23 +78,23 @@ constexpr Entry kModalWords[] = {
 
 /// Dynamics, compressors, measuring and messages: they change times, not the programmed geometry.
 constexpr const char* kNotedWords[] = {
-    "G601",       "G602",    "G603",    "G62",    "G621",    "G97",      "G290",     "G450",
-    "NORM",       "FNORM",   "FLIN",    "FCUB",   "CFC",     "CFTCP",    "CFIN",     "BRISK",
-    "SOFT",       "DRIVE",   "FFWON",   "FFWOF",  "COMPOF",  "COMPON",   "COMPCURV", "COMPCAD",
-    "COMPSURF",   "STOPRE",  "UPATH",   "SPATH",  "DYNNORM", "DYNPOS",   "DYNROUGH", "DYNFINISH",
-    "DYNSEMIFIN", "DYNPREC", "ORISON",  "ORISOF", "CPRECON", "CPRECOF",  "FIFOCTRL", "STARTFIFO",
-    "STOPFIFO",   "WALIMON", "WALIMOF", "DIAMOF", "CUT2D",   "RTLION",   "SBLOF",    "SBLON",
-    "DISPLOF",    "DISPLON", "CDOF",    "CDOF2",  "CDON",    "FENDNORM", "PAROTOF",  "TOROTOF"};
+    "G601",     "G602",   "G603",    "G62",      "G621",     "G97",       "G290",       "G450",
+    "NORM",     "FNORM",  "FLIN",    "FCUB",     "CFC",      "CFTCP",     "CFIN",       "BRISK",
+    "SOFT",     "DRIVE",  "FFWON",   "FFWOF",    "COMPOF",   "COMPON",    "COMPCURV",   "COMPCAD",
+    "COMPSURF", "STOPRE", "DYNNORM", "DYNPOS",   "DYNROUGH", "DYNFINISH", "DYNSEMIFIN", "DYNPREC",
+    "ORISON",   "ORISOF", "CPRECON", "CPRECOF",  "FIFOCTRL", "STARTFIFO", "STOPFIFO",   "WALIMON",
+    "WALIMOF",  "DIAMOF", "CUT2D",   "RTLION",   "SBLOF",    "SBLON",     "DISPLOF",    "DISPLON",
+    "CDOF",     "CDOF2",  "CDON",    "FENDNORM", "PAROTOF",  "TOROTOF"};
 
-constexpr const char* kNotedCalls[] = {"MSG", "WORKPIECE", "GROUP_BEGIN", "GROUP_END"};
+constexpr const char* kNotedCalls[] = {"MSG", "POLYPATH", "WORKPIECE", "GROUP_BEGIN", "GROUP_END"};
 
 constexpr const char* kCycles[] = {"CYCLE81", "CYCLE82", "CYCLE83",  "CYCLE84",
                                    "CYCLE85", "CYCLE86", "CYCLE800", "CYCLE832"};
 
 constexpr const char* kAddresses[] = {
-    "X",  "Y",  "Z",  "A",  "B",  "C",  "I",    "J",    "K",       "X1",  "Y1",   "Z1",   "A1",   "B1",
-    "C1", "I1", "J1", "K1", "A2", "B2", "C2",   "A3",   "B3",      "C3",  "CR",   "AR",   "F",    "S",
-    "T",  "D",  "H",  "M",  "G",  "P",  "TURN", "ADIS", "ADISPOS", "RPL", "CTOL", "OTOL", "SPOS", "N"};
+    "X",  "Y",  "Z",  "A",  "B",    "C",    "I",       "J",   "K",    "X1",   "Y1",   "Z1", "A1", "B1", "C1",
+    "I1", "J1", "K1", "A2", "B2",   "C2",   "A3",      "B3",  "C3",   "CR",   "AR",   "F",  "S",  "T",  "D",
+    "H",  "M",  "G",  "P",  "TURN", "ADIS", "ADISPOS", "RPL", "CTOL", "OTOL", "SPOS", "N",  "PL"};
 
 constexpr const char* kFlowWords[] = {
     "IF",      "ELSE",    "ENDIF", "WHILE", "ENDWHILE", "FOR",   "ENDFOR", "LOOP", "ENDLOOP",
@@ -106,9 +110,12 @@ struct Refused {
 
 const std::vector<Refused>& refused_words() {
   static const std::vector<Refused> words = {
-      {"post the curve as G1, G2 and G3 blocks",
-       {"POLY", "POLYPATH", "ASPLINE", "BSPLINE", "CSPLINE", "INVCW", "INVCCW", "SPLINEPATH", "BAUTO", "BNAT",
-        "BTAN", "EAUTO", "ENAT", "ETAN", "PO", "PW", "SD", "PL"}},
+      {"the control spaces the knots of its splines by a rule that it does not publish: post the curve as "
+       "POLY, "
+       "G1, G2 and G3 blocks",
+       {"ASPLINE", "BSPLINE", "CSPLINE", "SPLINEPATH", "BAUTO", "BNAT", "BTAN", "EAUTO", "ENAT", "ETAN", "PW",
+        "SD"}},
+      {"post the curve as POLY, G1, G2 and G3 blocks", {"INVCW", "INVCCW"}},
       {"threads are cut with CYCLE84", {"G33", "G34", "G35", "G63", "G331", "G332"}},
       {"write X Y Z instead of polar coordinates", {"G110", "G111", "G112", "AP", "RP"}},
       {"write the blocks of the approach",

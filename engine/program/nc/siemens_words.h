@@ -9,20 +9,21 @@ namespace swarf::program::siemens {
 
 /// Words of one group exclude each other in a block and replace each other from block to block.
 enum class Group {
-  kMotion,       ///< G0 G1 G2 G3 CIP CT
-  kNoMotion,     ///< G4 G74 G75
-  kPlane,        ///< G17 G18 G19
-  kCutter,       ///< G40 G41 G42
-  kOffset,       ///< G500 G54 ... G599
-  kSuppress,     ///< G53 G153 SUPA
-  kCorner,       ///< G60 G64 G641 G642 ...
-  kExact,        ///< G9
-  kUnits,        ///< G70 G71 G700 G710
-  kMeasure,      ///< G90 G91
-  kFeed,         ///< G93 G94 G95
-  kOrientation,  ///< ORIWKS ORIMKS ORIVECT ORIAXES
-  kAngles,       ///< ORIEULER ORIRPY
-  kNone,         ///< not a member of a group
+  kMotion,         ///< G0 G1 G2 G3 CIP CT POLY
+  kNoMotion,       ///< G4 G74 G75
+  kPlane,          ///< G17 G18 G19
+  kCutter,         ///< G40 G41 G42
+  kOffset,         ///< G500 G54 ... G599
+  kSuppress,       ///< G53 G153 SUPA
+  kCorner,         ///< G60 G64 G641 G642 ...
+  kExact,          ///< G9
+  kUnits,          ///< G70 G71 G700 G710
+  kMeasure,        ///< G90 G91
+  kFeed,           ///< G93 G94 G95
+  kOrientation,    ///< ORIWKS ORIMKS ORIVECT ORIAXES
+  kAngles,         ///< ORIEULER ORIRPY
+  kPathReference,  ///< SPATH UPATH
+  kNone,           ///< not a member of a group
 };
 
 enum class Meaning {
@@ -34,6 +35,7 @@ enum class Meaning {
   kCall,         ///< a call with arguments that has no effect on the geometry: MSG(...)
   kEnd,          ///< RET
   kAddress,      ///< CR= TURN= A3=: a value follows
+  kPolynomial,   ///< PO: PO[X]=(...) or X=PO(...)
   kFlow,         ///< IF, DEF ...: belongs to the flow of the program
   kUnsupported,  ///< known, and refused
 };
@@ -45,6 +47,7 @@ enum Code {
   kG3,
   kCip,
   kCt,
+  kPoly,
   kG4,
   kG74,
   kG75,
@@ -73,6 +76,8 @@ enum Code {
   kOriAxes,
   kOriEuler,
   kOriRpy,
+  kSpath,
+  kUpath,
   kTrans,
   kATrans,
   kRot,
