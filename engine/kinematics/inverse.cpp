@@ -5,6 +5,7 @@
 #include "base/diagnostics.h"
 #include "base/units.h"
 #include "kinematics/chain.h"
+#include "kinematics/lanes.h"
 #include "kinematics/machine_model.h"
 #include "kinematics/model_check.h"
 
@@ -125,8 +126,7 @@ int InverseKinematics::candidates(const Vec3& axis_W, const AxisValues& hint, Ca
   const size_t rotaries = rotary_.size();
   for (int i = 0; i < count; ++i) {
     Candidate& one = out[i];
-    one.travel = 0.0;
-    one.outer_free = found[i].outer_free;
+    one = {{0.0, 0.0}, 0.0, found[i].outer_free};
     for (size_t slot = 0; slot < rotaries; ++slot) {
       const double before = hint[rotary_[slot]];
       const double turn = slot == 0 ? found[i].outer : found[i].inner;
@@ -192,14 +192,9 @@ int InverseKinematics::first_out_of_travel(const AxisValues& q) const {
 }
 
 // Fills its result in place: copying it would wait for the single values to reach the cache.
-void InverseKinematics::complete(const Target& target, const Candidate& candidate, Branch& branch) const {
-  Sines of;
-  for (size_t slot = 0; slot < rotary_.size(); ++slot) {
-    const int axis = rotary_[slot];
-    branch.q[axis] = candidate.value[slot];
-    of.sine[axis] = std::sin(candidate.value[slot]);
-    of.cosine[axis] = std::cos(candidate.value[slot]);
-  }
+void InverseKinematics::complete(const Target& target, const Candidate& candidate, const Sines& of,
+                                 Branch& branch) const {
+  for (size_t slot = 0; slot < rotary_.size(); ++slot) branch.q[rotary_[slot]] = candidate.value[slot];
   Vec3 linear_values;
   if (!locate(target.tip_M, of, linear_values)) return;
   for (int i = 0; i < 3; ++i) branch.q[linear_[i]] = linear_values[i];
@@ -216,16 +211,45 @@ void InverseKinematics::complete(const Target& target, const Candidate& candidat
                                                   : InverseOutcome::kOk;
 }
 
+namespace {
+
+void set(Sines& of, const std::vector<int>& rotary, const double* sine, const double* cosine) {
+  for (size_t slot = 0; slot < rotary.size(); ++slot) {
+    of.sine[rotary[slot]] = sine[slot];
+    of.cosine[rotary[slot]] = cosine[slot];
+  }
+}
+
+}  // namespace
+
+Sines InverseKinematics::sines_of(const Candidate& one) const {
+  double sine[2], cosine[2];
+  lane_sines<2>(one.value, sine, cosine);
+  Sines of;
+  set(of, rotary_, sine, cosine);
+  return of;
+}
+
+void InverseKinematics::sines_of(const Candidate (&both)[2], Sines (&of)[2]) const {
+  const double angle[4] = {both[0].value[0], both[0].value[1], both[1].value[0], both[1].value[1]};
+  double sine[4], cosine[4];
+  lane_sines<4>(angle, sine, cosine);
+  set(of[0], rotary_, sine, cosine);
+  set(of[1], rotary_, sine + 2, cosine + 2);
+}
+
 InverseSolutions InverseKinematics::solve(const ToolPose& pose_W, const AxisValues& hint) const {
   const Vec3 axis_W = unit(pose_W.axis_W);
-  Candidate found[2];
+  Candidate found[2]{};
   const int count = candidates(axis_W, hint, found);
+  Sines of[2];
+  sines_of(found, of);
   const Target pose_M = target(pose_W.tip_W, axis_W);
   InverseSolutions solutions;
   for (int i = 0; i < count; ++i) {
     Branch& branch = solutions.branch[solutions.count];
     branch = Branch();
-    complete(pose_M, found[i], branch);
+    complete(pose_M, found[i], of[i], branch);
     if (branch.outcome != InverseOutcome::kUnreachable) ++solutions.count;
   }
   return solutions;
@@ -235,14 +259,14 @@ Branch InverseKinematics::solve_nearest(const ToolPose& pose_W, const AxisValues
   const Vec3 axis_W = unit(pose_W.axis_W);
   Candidate found[2];
   const int count = candidates(axis_W, hint, found);
-  const Target pose_M = target(pose_W.tip_W, axis_W);
   Branch best;
   if (count == 0) return best;
+  const Target pose_M = target(pose_W.tip_W, axis_W);
   const int near = count == 2 && found[1].travel < found[0].travel ? 1 : 0;
-  complete(pose_M, found[near], best);
+  complete(pose_M, found[near], sines_of(found[near]), best);
   if (count == 1 || best.outcome == InverseOutcome::kOk) return best;
   Branch other;
-  complete(pose_M, found[1 - near], other);
+  complete(pose_M, found[1 - near], sines_of(found[1 - near]), other);
   if (other.outcome == InverseOutcome::kOk || best.outcome == InverseOutcome::kUnreachable) best = other;
   return best;
 }

@@ -125,7 +125,7 @@ class InverseKinematics {
  private:
   /// A rotary solution before the linear axes are known.
   struct Candidate {
-    double value[2];  ///< of the outer and the inner axis, unwound
+    double value[2];  ///< of the outer and the inner axis, unwound; 0 for those that the machine lacks
     double travel;    ///< sum of the distances to the hint
     bool outer_free;
   };
@@ -140,7 +140,9 @@ class InverseKinematics {
   Target target(const Vec3& tip_W, const Vec3& axis_W) const;
   double unwound(int slot, double turn, const AxisValues& hint) const;
   bool locate(const Vec3& tip_M, const Sines& of, Vec3& linear_values) const;
-  void complete(const Target& target, const Candidate& candidate, Branch& branch) const;
+  Sines sines_of(const Candidate& one) const;
+  void sines_of(const Candidate (&both)[2], Sines (&of)[2]) const;
+  void complete(const Target& target, const Candidate& candidate, const Sines& of, Branch& branch) const;
   int first_out_of_travel(const AxisValues& q) const;
 
   MachineModel machine_;

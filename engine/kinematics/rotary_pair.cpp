@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/units.h"
+#include "kinematics/lanes.h"
 
 namespace swarf::kinematics {
 namespace {
@@ -50,11 +51,12 @@ int RotaryPair::solve(const Vec3& w, TurnPair out[2]) const {
   }
   if (!(std::abs(p) <= rho + kReachTolerance)) return 0;
   const double r = p == 0.0 ? rho : std::sqrt(std::max(0.0, (rho - p) * (rho + p)));
-  const double w_angle = std::atan2(wk, wn);
+  const double across = (c1 - d_ * c2_) * per_s_;
+  double angle[2];  // of w, the tilt
+  lane_atan2<2>({wk, r}, {wn, across}, angle);
   const double z_angle = p == 0.0 ? 0.5 * kPi : std::atan2(r, p);
-  const double tilt = std::atan2(r, (c1 - d_ * c2_) * per_s_);
-  out[0] = {w_angle - z_angle, -tilt - v_angle_, false};
-  out[1] = {w_angle + z_angle, tilt - v_angle_, false};
+  out[0] = {angle[0] - z_angle, -angle[1] - v_angle_, false};
+  out[1] = {angle[0] + z_angle, angle[1] - v_angle_, false};
   return r > 0.0 ? 2 : 1;
 }
 
