@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/check.h"
 #include "base/units.h"
 #include "program/nc/control.h"
 
@@ -90,12 +91,22 @@ void Contour::set_side(Compensation side, double radius_mm, int column) {
   if (side_ != Compensation::kOff || leading_out_) {
     control_.fail("compensation-active", column,
                   "cutter compensation changes its side or radius while it is on",
-                  "write G40 and a straight move before it");
+                  fmt::format("write {} and a straight move before it", control_.words().compensation_off));
   }
   side_ = side;
   radius_ = radius_mm;
   leading_in_ = true;
   tool_known_ = false;
+}
+
+void Contour::enter(Compensation side, double radius_mm, const Vec3& tool) {
+  SWARF_CHECK(side_ == Compensation::kOff && !leading_out_ && !pending_,
+              "compensation is entered while it is on");
+  side_ = side;
+  radius_ = radius_mm;
+  leading_in_ = false;
+  tool_ = tool;
+  tool_known_ = true;
 }
 
 void Contour::gouge(const Segment& segment, const char* why) const {
@@ -117,7 +128,8 @@ Contour::Piece Contour::offset(const Segment& programmed) const {
     const Vec3 axis = programmed.normal;
     if (std::abs(axis.dot(normal())) < 1.0 - 1e-9) {
       control_.fail("compensation-plane", programmed.place.column,
-                    "cutter compensation of an arc outside its plane", "switch it off first: G40");
+                    "cutter compensation of an arc outside its plane",
+                    fmt::format("switch it off first: {}", control_.words().compensation_off));
     }
     const Vec3 outwards = flat(programmed.from - programmed.centre);
     const double way = aside(piece.tangent_from).dot(outwards.normalized()) * radius_;
@@ -132,7 +144,8 @@ Contour::Piece Contour::offset(const Segment& programmed) const {
 void Contour::add(const Segment& programmed) {
   if (programmed.turns_rotaries) {
     control_.fail("compensation-rotaries", programmed.place.column,
-                  "a rotary axis turns while cutter compensation is on", "switch it off first: G40");
+                  "a rotary axis turns while cutter compensation is on",
+                  fmt::format("switch it off first: {}", control_.words().compensation_off));
   }
   const bool moves = programmed.is_arc() || flat(programmed.to - programmed.from).norm() > kNoWay;
   if (!moves) {
@@ -237,8 +250,9 @@ void Contour::outer(const Piece& next) {
   round.normal = side_ == Compensation::kLeft ? Vec3(-normal()) : normal();
   if ((round.to - round.from).norm() <= kNoWay) return;
   if (round.motion == Motion::kRapid) {
-    control_.fail("compensation-rapid", round.place.column, "a rapid move goes round a compensated corner",
-                  "switch the compensation off before rapid moves, or use G1");
+    control_.fail(
+        "compensation-rapid", round.place.column, "a rapid move goes round a compensated corner",
+        fmt::format("switch the compensation off before rapid moves, or use {}", control_.words().feed_move));
   }
   round.motion = Motion::kCounterClockwise;
   round.further_turns = 0;

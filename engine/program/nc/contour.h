@@ -33,6 +33,8 @@ class Contour {
   /// The next move in the plane leads out.
   bool leading_out() const { return leading_out_; }
   void set_side(Compensation side, double radius_mm, int column);
+  /// The compensated tool stands at `tool` already; no lead-in follows.
+  void enter(Compensation side, double radius_mm, const Vec3& tool);
   void set_entry(CompensationEntry entry) { entry_ = entry; }
   void add(const Segment& programmed);
   /// Emits what waits for a corner that does not come; the compensated end stays where it is.

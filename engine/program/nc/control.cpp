@@ -77,7 +77,7 @@ void Control::set_plane(Plane plane) {
   if (plane == plane_) return;
   if (compensation() != Compensation::kOff) {
     fail("compensation-plane", 0, "the plane changes while cutter radius compensation is on",
-         "switch it off first: G40");
+         fmt::format("switch it off first: {}", words_.compensation_off));
   }
   plane_ = plane;
 }
@@ -122,6 +122,12 @@ Compensation Control::compensation() const {
 
 bool Control::leading_out() const {
   return contour_->leading_out();
+}
+
+void Control::enter_compensation(Compensation side, double radius_mm, const Vec3& contour_point) {
+  const Vec3 tool = position_xyz();
+  contour_->enter(side, radius_mm, tool);
+  for (int i = 0; i < 3; ++i) position_[static_cast<size_t>(i)] = contour_point[i];
 }
 
 // --- Tools
@@ -174,7 +180,7 @@ const NcTool* Control::active_tool() const {
 void Control::change_tool() {
   if (compensation() != Compensation::kOff) {
     fail("compensation-active", 0, "the tool changes while cutter radius compensation is on",
-         "switch it off first: G40");
+         fmt::format("switch it off first: {}", words_.compensation_off));
   }
   flush();
   spindle_ = 0;
@@ -217,7 +223,7 @@ void Control::set_length_compensation(double length_mm, bool on) {
 void Control::moved_frame(const char* what) {
   if (compensation() != Compensation::kOff) {
     fail("compensation-active", 0, fmt::format("{} changes while cutter radius compensation is on", what),
-         "switch it off first: G40");
+         fmt::format("switch it off first: {}", words_.compensation_off));
   }
   flush();
   position_valid_ = false;

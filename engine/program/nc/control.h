@@ -36,6 +36,7 @@
 
 #include "kinematics/machine_model.h"
 #include "program/nc/curve.h"
+#include "program/nc/dialect_words.h"
 #include "program/nc/drill_cycle.h"
 #include "program/nc/target.h"
 #include "program/nc/work_space.h"
@@ -70,6 +71,9 @@ class Control {
   /// A word that was read and has no effect on the geometry: listed once in NcSummary::functions.
   void without_effect(std::string_view word);
   void note(std::string_view word, std::string_view text);
+  /// What remedies call things; the words of letter dialects unless the dialect says otherwise.
+  void set_words(const DialectWords& words) { words_ = words; }
+  const DialectWords& words() const { return words_; }
 
   // --- Units, plane, feed, spindle -------------------------------------------------------------------------
   void set_inches(bool inches) { unit_mm_ = inches ? 25.4 : 1.0; }
@@ -118,6 +122,9 @@ class Control {
   Compensation compensation() const;
   /// G40 was given, and the move in the plane that leads out has not come yet.
   bool leading_out() const;
+  /// Compensation begins where the tool stands, a cutter radius beside `contour_point` (program coordinates),
+  /// from which the next move counts: approaches that a dialect has moved itself. No lead-in follows.
+  void enter_compensation(Compensation side, double radius_mm, const Vec3& contour_point);
   /// Where the lead-in ends; kAcrossNext unless the dialect says otherwise.
   void set_compensation_entry(CompensationEntry entry);
 
@@ -242,6 +249,7 @@ class Control {
   WorkSpace space_;
   std::unique_ptr<Contour> contour_;
 
+  DialectWords words_;
   Place place_;
   double unit_mm_ = 1.0;
   Plane plane_ = Plane::kXY;

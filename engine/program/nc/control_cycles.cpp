@@ -35,7 +35,7 @@ void Control::drill(const DrillCycle& cycle, const Target& hole) {
   above.given = static_cast<uint8_t>(hole.given & ~(1u << axes.normal));
   if (!started_) {
     fail("start-unknown", hole.column, "a cycle starts, and the position is not known yet",
-         "position all axes with G0 before the cycle");
+         fmt::format("position all axes with {} before the cycle", words_.rapid));
   }
   if (cycle.peck != DrillCycle::Peck::kNone &&
       !(std::abs(cycle.bottom - cycle.approach) <= kPecksMax * cycle.peck_mm)) {
@@ -226,7 +226,8 @@ void Control::turn_rotaries(Motion motion, const AxisValues& q, bool tip_stands)
   flush();
   if (!started_) {
     fail("start-unknown", 0, "the rotary axes turn, and the position is not known yet",
-         "give the start position in the scene, or position all axes with G0 before it");
+         fmt::format("give the start position in the scene, or position all axes with {} before it",
+                     words_.rapid));
   }
   const std::array<double, 3> rotary = space_.rotary_of(q);
   Vec3 linear = space_.linear_of(q_);

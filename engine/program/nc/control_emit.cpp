@@ -167,7 +167,7 @@ void Control::send(const Segment& segment, NcMove& move) {
           fmt::format("the tool length compensation is off: programmed coordinates are those of the gauge "
                       "line, the tip stands {:.4f} mm further",
                       active_tool()->length_mm),
-          "switch it on before the cut (G43 H), unless the program means it so");
+          fmt::format("switch it on before the cut ({}), unless the program means it so", words_.length_on));
     }
   }
   if (++summary_.moves > setup_.moves_max) {

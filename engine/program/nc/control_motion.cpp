@@ -188,7 +188,9 @@ bool Control::ready(Motion motion, const Target& target, bool machine) {
       !learn_linear(target, machine)) {
     fail("start-unknown", target.column,
          fmt::format("this block needs the position before it, and {} is not known yet", missing_axes()),
-         "give the start position in the scene, or position all axes with absolute G0 blocks before it");
+         fmt::format(
+             "give the start position in the scene, or position all axes with absolute {} blocks before it",
+             words_.rapid));
   }
   const std::string missing = missing_axes();
   if (missing.empty()) {
@@ -198,7 +200,8 @@ bool Control::ready(Motion motion, const Target& target, bool machine) {
   if (motion == Motion::kFeed) {
     fail("start-unknown", target.column,
          fmt::format("this is a feed move, and {} has no position yet", missing),
-         "give the start position in the scene, or position all axes with G0 before it");
+         fmt::format("give the start position in the scene, or position all axes with {} before it",
+                     words_.rapid));
   }
   return false;
 }
@@ -229,7 +232,8 @@ void Control::prepare(Motion motion, const Target& target, Segment& segment) {
   }
   if (feed_mode_ == FeedMode::kPerRevolution && segment.spindle_rpm == 0.0) {
     fail("feed-without-spindle", segment.place.column,
-         "the feed is per revolution (G95), and the spindle stands", "start the spindle before it: S1000 M3");
+         fmt::format("the feed is per revolution ({}), and the spindle stands", words_.per_revolution),
+         fmt::format("start the spindle before it: {}", words_.spindle_on));
   }
 }
 
@@ -268,7 +272,8 @@ void Control::machine_line(Motion motion, const Target& target) {
   check_axes(target);
   if (compensation() != Compensation::kOff) {
     fail("compensation-active", target.column,
-         "a move in machine coordinates while cutter compensation is on", "switch it off first: G40");
+         "a move in machine coordinates while cutter compensation is on",
+         fmt::format("switch it off first: {}", words_.compensation_off));
   }
   flush();
   if (!ready(motion, target, true)) return;
@@ -325,7 +330,7 @@ void Control::place_circle(Motion motion, const ArcWords& words, Segment& segmen
       fail("bad-arc", words.column,
            half > 0.0 ? "the arc has no radius"
                       : "an arc by radius ends where it starts: its centre is anywhere",
-           "give the centre of a whole circle with I J K");
+           fmt::format("give the centre of a whole circle with {}", words_.centre));
     }
     if (half > radius + words.radius_tolerance_mm) {
       fail("bad-arc", words.column,
@@ -347,7 +352,8 @@ void Control::place_circle(Motion motion, const ArcWords& words, Segment& segmen
          "correct the centre or the end of the arc");
   }
   if (!(r_from > 1e-9) || !(r_to > 1e-9)) {
-    fail("bad-arc", words.column, "the arc has a radius of zero", "give the centre with I J K, or a radius");
+    fail("bad-arc", words.column, "the arc has a radius of zero",
+         fmt::format("give the centre with {}, or a radius", words_.centre));
   }
 }
 
