@@ -89,6 +89,42 @@ std::string siemens_vector_program(int lines) {
   return text + "TRAFOOF\nM30\n";
 }
 
+std::string klartext_header() {
+  return "0 BEGIN PGM BENCH MM\n1 TOOL CALL 1 Z S12000 F2000\n2 L X+0 Y+0 Z+20 A+0 B+0 R0 FMAX M3\n";
+}
+
+/// The zigzag as a post-processor writes it in conversational: numbered blocks, signed words.
+std::string klartext_program(int lines) {
+  std::string text = klartext_header() + "3 L Z+0 F2000\n";
+  for (int i = 0; i < lines - 6; ++i) {
+    const double x = 0.25 * (i % 400), y = 0.3 * (i / 400);
+    text += fmt::format("{} L X{:+.3f} Y{:+.3f} Z{:+.3f}\n", i + 4, (i / 400) % 2 == 0 ? x : 100.0 - x, y,
+                        5.0 * std::sin(0.07 * x) * std::cos(0.05 * y));
+  }
+  return text + "L M30\nEND PGM BENCH MM\n";
+}
+
+/// M128 with rotary words.
+std::string klartext_tcpm_program(int lines) {
+  std::string text = klartext_header() + "3 L Z+10 F2000 M128\n";
+  for (int i = 0; i < lines - 6; ++i) {
+    text += fmt::format("{} L X{:+.4f} Y{:+.4f} Z{:+.4f} A{:+.4f} B{:+.4f}\n", i + 4,
+                        40.0 * std::cos(0.01 * i), 40.0 * std::sin(0.01 * i), 5.0 * std::sin(0.003 * i),
+                        20.0 + 10.0 * std::sin(0.003 * i), 30.0 * std::sin(0.002 * i));
+  }
+  return text + "M129\nEND PGM BENCH MM\n";
+}
+
+/// Formulas of Q parameters, each in a block of its own before the move that uses it.
+std::string klartext_formula_program(int lines) {
+  std::string text = klartext_header() + "Q1 = +40\nL Z+10 F2000\n";
+  for (int i = 0; i < lines - 6; i += 3) {
+    text += fmt::format("Q2 = Q1 * COS {:.3f}\nFN 1: Q3 = +Q1 + {:+.3f}\nL X+Q2 Y+Q3\n", 0.05 * i,
+                        0.01 * (i % 99));
+  }
+  return text + "END PGM BENCH MM\n";
+}
+
 ControlSetup setup(const std::string& machine) {
   ControlSetup one;
   one.machine =
@@ -100,7 +136,8 @@ ControlSetup setup(const std::string& machine) {
 }
 
 /// One program through the interpreter: lines per second, file to sink.
-void run(benchmark::State& state, Dialect dialect, const std::string& name, const std::string& text) {
+void run(benchmark::State& state, Dialect dialect, const std::string& name, const std::string& text,
+         int moves = kLines - 10) {
   const std::string path = written(name, text);
   const ControlSetup control = setup("lin_koren_xyzab");
   for (auto step : state) {
@@ -108,7 +145,7 @@ void run(benchmark::State& state, Dialect dialect, const std::string& name, cons
     Diagnostics diagnostics;
     run_nc(path, dialect, control, counter, diagnostics);
     diagnostics.throw_if_errors();
-    if (counter.moves < kLines - 10) state.SkipWithError("moves are missing");
+    if (counter.moves < moves) state.SkipWithError("moves are missing");
     benchmark::DoNotOptimize(counter.way);
   }
   state.SetItemsProcessed(state.iterations() * kLines);
@@ -149,6 +186,22 @@ void siemens_tcp_vectors(benchmark::State& state) {
   run(state, Dialect::kSiemens, "swarf_bench_v.mpf", siemens_vector_program(kLines));
 }
 BENCHMARK(siemens_tcp_vectors)->Unit(benchmark::kMillisecond);
+
+void heidenhain_three_axes(benchmark::State& state) {
+  run(state, Dialect::kHeidenhain, "swarf_bench_3.h", klartext_program(kLines));
+}
+BENCHMARK(heidenhain_three_axes)->Unit(benchmark::kMillisecond);
+
+void heidenhain_tcp_rotaries(benchmark::State& state) {
+  run(state, Dialect::kHeidenhain, "swarf_bench_5.h", klartext_tcpm_program(kLines));
+}
+BENCHMARK(heidenhain_tcp_rotaries)->Unit(benchmark::kMillisecond);
+
+/// A third of the lines move.
+void heidenhain_formulas(benchmark::State& state) {
+  run(state, Dialect::kHeidenhain, "swarf_bench_q.h", klartext_formula_program(kLines), kLines / 3 - 10);
+}
+BENCHMARK(heidenhain_formulas)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace swarf::program

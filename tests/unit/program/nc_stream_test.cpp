@@ -22,6 +22,7 @@ struct Kind {
   Dialect dialect;
   const char* head;
   std::string (*row)(int);
+  const char* end = "M30\n";
 };
 
 std::string plain_row(int i) {
@@ -40,6 +41,22 @@ std::string rotary_row(int i) {
 std::string vector_row(int i) {
   return fmt::format("G1 X{:.3f} A3={:.3f} B3=.25 C3=1 F500\n", 0.1 * (i % 100), 0.01 * (i % 50));
 }
+std::string klartext_row(int i) {
+  return fmt::format("{} L X{:+.3f} Y{:+.3f} IZ+0,125 R0 F500\n", i, 0.1 * (i % 100), 0.2 * (i % 77));
+}
+std::string klartext_arc_row(int i) {
+  return i % 2 == 0 ? "CC X+5 Y+0\n" : "C X+10 Y+0 DR+ F500\nCR X+0 Y+0 R+5 DR-\n";
+}
+std::string klartext_rotary_row(int i) {
+  return fmt::format("L X{:+.3f} A{:+.2f} C{:+.2f} F500\n", 0.1 * (i % 100), 0.1 * (i % 300),
+                     0.1 * (i % 700));
+}
+std::string klartext_vector_row(int i) {
+  return fmt::format("LN X{:+.3f} TX+0 TY{} TZ+0.8 F500\n", 0.1 * (i % 100), i % 2 == 0 ? "+0.6" : "-0.6");
+}
+std::string klartext_formula_row(int i) {
+  return i % 2 == 0 ? fmt::format("Q5 = Q31 * SIN {} + ( Q1 - 2 ) ^ 2\n", i % 360) : "L X+Q5 IY-Q1 F500\n";
+}
 std::string arc_row(int i) {
   return i % 2 == 0 ? "G2 X10 Y0 I5 J0 F500\n" : "G3 X0 Y0 R5 F500\n";
 }
@@ -53,6 +70,11 @@ const Kind kKinds[] = {
     {Dialect::kSiemens, "G710 G90\nR1=2\n", plain_siemens_row},
     {Dialect::kSiemens, "TRAORI\nORIAXES\n", rotary_row},
     {Dialect::kSiemens, "TRAORI\nORIVECT\n", vector_row},
+    {Dialect::kHeidenhain, "BEGIN PGM A MM\n", klartext_row, "END PGM A MM\n"},
+    {Dialect::kHeidenhain, "BEGIN PGM A MM\n", klartext_arc_row, "END PGM A MM\n"},
+    {Dialect::kHeidenhain, "BEGIN PGM A MM\nM128\n", klartext_rotary_row, "END PGM A MM\n"},
+    {Dialect::kHeidenhain, "BEGIN PGM A MM\nM128\n", klartext_vector_row, "END PGM A MM\n"},
+    {Dialect::kHeidenhain, "BEGIN PGM A MM\nQ31 = 5\nQ1 = 1\n", klartext_formula_row, "END PGM A MM\n"},
 };
 
 TEST(NcStream, LinesAllocateNothing) {
@@ -62,14 +84,14 @@ TEST(NcStream, LinesAllocateNothing) {
       std::string text = kind.head;
       for (int i = 0; i < rows; ++i) text += kind.row(i);
       const auto path = std::filesystem::temp_directory_path() / "swarf_nc_stream.txt";
-      std::ofstream(path) << text << "M30\n";
+      std::ofstream(path) << text << kind.end;
       Counter counter;
       Diagnostics diagnostics;
       const long before = allocations;
       run_nc(path.string(), kind.dialect, setup, counter, diagnostics);
       const long during = allocations - before;
       EXPECT_FALSE(diagnostics.has_errors()) << format(diagnostics.list().front());
-      EXPECT_GE(counter.moves, rows - 1);
+      EXPECT_GE(counter.moves, rows / 2 - 1);
       return during;
     };
     const long few = allocated(3000), many = allocated(9000);
@@ -88,14 +110,17 @@ double children_peak_mb() {
 
 TEST(NcStream, LongProgramsNeedNoMoreMemory) {
   const auto folder = test::fresh_folder("nc_stream");
-  for (const char* name : {"long.ngc", "long.mpf"}) {
+  for (const char* name : {"long.ngc", "long.mpf", "long.h"}) {
+    const bool klartext = std::string(name) == "long.h";
     const auto check = [&](int lines) {
       {
         std::ofstream out(folder / name, std::ios::binary);
-        out << "G90\nG0 X0 Y0 Z20\nG1 Z0 F2000\n";
+        out << (klartext ? "BEGIN PGM A MM\nL X+0 Y+0 Z+20 FMAX\nL Z+0 F2000\n"
+                         : "G90\nG0 X0 Y0 Z20\nG1 Z0 F2000\n");
         for (int i = 0; i < lines; ++i)
-          out << fmt::format("X{:.3f} Y{:.3f} ; a row\n", 0.1 * (i % 100), 0.2 * (i % 77));
-        out << "M30\n";
+          out << fmt::format("{}X{:.3f} Y{:.3f} ; a row\n", klartext ? "L " : "", 0.1 * (i % 100),
+                             0.2 * (i % 77));
+        out << (klartext ? "END PGM A MM\n" : "M30\n");
       }
       const test::ProgramRun run = test::run_swarf(fmt::format("check --home {}", (folder / name).string()));
       EXPECT_EQ(run.exit_code, 0) << run.output;
@@ -111,7 +136,7 @@ TEST(NcStream, LongProgramsNeedNoMoreMemory) {
 
 TEST(NcStream, LineOfHundredMegabytesIsRefusedAndNotKept) {
   const auto folder = test::fresh_folder("nc_long_line");
-  for (const char* name : {"one.ngc", "one.nc", "one.mpf"}) {
+  for (const char* name : {"one.ngc", "one.nc", "one.mpf", "one.h"}) {
     {
       std::ofstream out(folder / name, std::ios::binary);
       out << "G0 X1\n";
@@ -120,6 +145,7 @@ TEST(NcStream, LineOfHundredMegabytesIsRefusedAndNotKept) {
     }
     const std::string dialect = std::string(name) == "one.nc"    ? " --dialect fanuc "
                                 : std::string(name) == "one.mpf" ? " --dialect siemens "
+                                : std::string(name) == "one.h"   ? " --dialect heidenhain "
                                                                  : " --dialect linuxcnc ";
     const test::ProgramRun run = test::run_swarf("check --home" + dialect + (folder / name).string());
     EXPECT_EQ(run.exit_code, 2) << run.output;
