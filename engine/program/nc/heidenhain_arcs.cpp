@@ -30,7 +30,14 @@ Vec3 polar(const nc::PlaneAxes& axes, double radius, double angle_deg) {
 int Executor::sense(BlockReader& reader, const MotionWords& words, size_t start) {
   if (words.sense == 0)
     reader.fail("missing-word", start, "the arc has no DR", "DR+ turns counter-clockwise, DR- clockwise");
-  return words.sense;
+  const nc::PlaneAxes axes = nc::axes_of(control_.plane());
+  plane_scale(reader, start);
+  return stretch_.turns_over(axes.first, axes.second) ? -words.sense : words.sense;
+}
+
+/// The way from the pole to a point at this radius and angle, as it lies in the control's frame.
+Vec3 Executor::from_pole(double radius_mm, double angle_deg) const {
+  return stretch_.factor.cwiseProduct(polar(nc::axes_of(control_.plane()), radius_mm, angle_deg));
 }
 
 /// Arcs move in the working plane.
@@ -45,13 +52,13 @@ void Executor::only_plane(BlockReader& reader, const MotionWords& words) {
   }
 }
 
-/// LP PR+20 IPA+30: about the pole CC; PR and PA are modal.
-void Executor::polar_line(BlockReader& reader, size_t start) {
-  const MotionWords words = read_motion_words(reader, kAxesAllowed | kPolarAllowed | kAlways);
+/// Where PR and PA, which are modal, lead about the pole CC.
+Vec3 Executor::polar_end(BlockReader& reader, const MotionWords& words, size_t start) {
   const nc::PlaneAxes axes = nc::axes_of(control_.plane());
   if (words.any_rotary() || words.axes[static_cast<size_t>(axes.first)] ||
       words.axes[static_cast<size_t>(axes.second)])
-    reader.fail("unexpected-word", start, "LP takes PR, PA and the height alone", "LP PR+20 PA+30 Z-5");
+    reader.fail("unexpected-word", start, "a polar end is given by PR, PA and the height alone",
+                "LP PR+20 PA+30 Z-5");
   const Vec3 about = centre(reader, start);
   for (const auto& [word, kept, factor] : {std::tuple{&words.polar_radius, &polar_radius_, control_.mm(1.0)},
                                            std::tuple{&words.polar_angle, &polar_angle_, 1.0}}) {
@@ -62,11 +69,18 @@ void Executor::polar_line(BlockReader& reader, size_t start) {
     *kept = {(word->incremental ? kept->value : 0.0) + factor * word->value, word->offset, true, false};
   }
   if (!polar_radius_ || !polar_angle_)
-    reader.fail("missing-word", start, "LP needs PR and PA", "LP PR+20 PA+30");
+    reader.fail("missing-word", start, "a polar end needs PR and PA", "LP PR+20 PA+30");
+  return about + from_pole(polar_radius_.value, polar_angle_.value);
+}
+
+/// LP PR+20 IPA+30: about the pole CC.
+void Executor::polar_line(BlockReader& reader, size_t start) {
+  const MotionWords words = read_motion_words(reader, kAxesAllowed | kPolarAllowed | kAlways);
+  const nc::PlaneAxes axes = nc::axes_of(control_.plane());
+  const Vec3 end = polar_end(reader, words, start);
   Element element;
   element.offset = start;
   element.target = target_of(reader, words);
-  const Vec3 end = about + polar(axes, polar_radius_.value, polar_angle_.value);
   element.target.set(axes.first, end[axes.first], false);
   element.target.set(axes.second, end[axes.second], false);
   move(reader, words, element);
@@ -85,9 +99,9 @@ void Executor::pole(BlockReader& reader) {
   for (const int i : {axes.first, axes.second}) {
     const Amount& word = words.axes[static_cast<size_t>(i)];
     if (word && !word.incremental) {
-      at[i] = control_.mm(word.value);
+      at[i] = stretch_.along(i, control_.mm(word.value), false);
     } else if (word || none) {
-      at[i] = here[i] + (word ? control_.mm(word.value) : 0.0);
+      at[i] = here[i] + (word ? stretch_.along(i, control_.mm(word.value), true) : 0.0);
     } else if (centre_) {
       at[i] = (*centre_)[i];
     } else {
@@ -136,7 +150,8 @@ void Executor::circle_by_radius(BlockReader& reader, size_t start) {
   const Vec3 from = present();
   Vec3 chord = end_of(element.target) - from;
   chord[axes.normal] = 0.0;
-  const double radius = control_.mm(words.radius.value), half = 0.5 * chord.norm();
+  const double radius = plane_scale(reader, start) * control_.mm(words.radius.value),
+               half = 0.5 * chord.norm();
   if (!chord.allFinite())
     reader.fail("start-unknown", start, "this arc starts at a position that is not known yet",
                 "position all axes before it");
@@ -165,6 +180,7 @@ void Executor::circle_tangential(BlockReader& reader, size_t start) {
     reader.fail("missing-tangent", start,
                 held_ ? "CT cannot follow a corner" : "CT follows no piece of contour",
                 "write a straight piece or an arc before it");
+  plane_scale(reader, start);
   const Vec3 from = present();
   Vec3 chord = end_of(element.target) - from;
   chord[axes.normal] = 0.0;
@@ -201,11 +217,12 @@ void Executor::polar_circle(BlockReader& reader, size_t start) {
                 "position all axes before it");
   const double angle = words.polar_angle.value;
   double end_deg = angle;
+  const Vec3 written = out.cwiseQuotient(stretch_.factor);
   if (words.polar_angle.incremental) {
-    if (angle == 0.0 || (angle > 0.0) != (turn > 0))
+    if (angle == 0.0 || (angle > 0.0) != (words.sense > 0))
       reader.fail("words-conflict", words.polar_angle.offset, "IPA and DR turn to different sides",
                   "give both the same sign");
-    end_deg += deg_from_rad(std::atan2(out[axes.second], out[axes.first]));
+    end_deg += deg_from_rad(std::atan2(written[axes.second], written[axes.first]));
     const double turns = std::ceil(std::abs(angle) / 360.0 - 1e-12);
     if (turns > 10000.0)
       reader.fail("out-of-range", words.polar_angle.offset, "this helix has more than 10000 turns",
@@ -213,7 +230,7 @@ void Executor::polar_circle(BlockReader& reader, size_t start) {
     element.arc.further_turns = static_cast<int>(turns) - 1;
   }
   const bool whole = words.polar_angle.incremental && std::remainder(angle, 360.0) == 0.0;
-  const Vec3 end = about + (whole ? out : polar(axes, out.norm(), end_deg));
+  const Vec3 end = about + (whole ? out : from_pole(written.norm(), end_deg));
   element.target.set(axes.first, end[axes.first], false);
   element.target.set(axes.second, end[axes.second], false);
   element.arc.centre = about;

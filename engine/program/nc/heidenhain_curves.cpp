@@ -91,8 +91,8 @@ class CubicCurve final : public nc::Curve {
 };
 
 /// The polynomials of a block, checked against the position before it.
-std::array<Cubic, nc::kAxisWords> cubics(BlockReader& reader, const MotionWords& words, const Target& end,
-                                         size_t start) {
+std::array<Cubic, nc::kAxisWords> cubics(BlockReader& reader, const MotionWords& words,
+                                         const SplineWords& spline, const Target& end, size_t start) {
   nc::Control& control = reader.control();
   if (!end.any()) reader.fail("missing-word", start, "SPL has no end", "SPL X+10 K3X+0 K2X+0 K1X-10");
   if (!control.started())
@@ -100,7 +100,7 @@ std::array<Cubic, nc::kAxisWords> cubics(BlockReader& reader, const MotionWords&
                 "position all axes before it");
   std::array<Cubic, nc::kAxisWords> all;
   for (size_t i = 0; i < all.size(); ++i) {
-    const auto& k = words.coefficients[i];
+    const auto& k = spline[i];
     const char letter = nc::kAxisLetters[i];
     const bool complete = k[0] && k[1] && k[2];
     if (!words.axes[i] && !k[0] && !k[1] && !k[2]) continue;
@@ -159,6 +159,7 @@ void Executor::surface_line(BlockReader& reader, size_t start) {
   if (words.compensation && *words.compensation != nc::Compensation::kOff)
     reader.fail("unsupported-word", start, "RL and RR in LN (peripheral milling) are not supported",
                 "write R0");
+  need_true_size(reader, start, "LN");
   if (words.has_function(128)) set_tcpm(true, false, false, false);
   Element element;
   element.offset = start;
@@ -190,9 +191,11 @@ void Executor::surface_line(BlockReader& reader, size_t start) {
 
 /// SPL X Y .. K3X K2X K1X ..: each axis along K3 t^3 + K2 t^2 + K1 t + end, t from 1 to 0.
 void Executor::spline(BlockReader& reader, size_t start) {
-  const MotionWords words =
-      read_motion_words(reader, kAxesAllowed | kCoefficientsAllowed | kFeedAllowed | kFunctionsAllowed);
+  SplineWords spline;
+  const MotionWords words = read_motion_words(
+      reader, kAxesAllowed | kCoefficientsAllowed | kFeedAllowed | kFunctionsAllowed, &spline);
   no_open_corner(reader, start);
+  need_true_size(reader, start, "SPL");
   if (control_.compensation() != nc::Compensation::kOff)
     reader.fail("unsupported-word", start, "SPL while RL or RR is active is not supported",
                 "write R0 before it");
@@ -206,7 +209,7 @@ void Executor::spline(BlockReader& reader, size_t start) {
                 "write F with a value");
   functions_before(reader, words);
   if (words.any_rotary()) turn_by(nc::Tcp::kAxes);
-  const CubicCurve curve(cubics(reader, words, target_of(reader, words), start), control_.position());
+  const CubicCurve curve(cubics(reader, words, spline, target_of(reader, words), start), control_.position());
   if (feed > 0.0) set_feed(feed, !words.any_linear());
   control_.curve(curve, kChordToleranceMm);
   tangent_.reset();

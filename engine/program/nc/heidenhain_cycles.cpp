@@ -25,14 +25,22 @@ const std::vector<CycleParameters>& parameter_cycles() {
       {205, {200, 201, 206, 202, 203}, {204, 212, 205, 258, 259, 257, 256, 211, 379, 253, 208, 395}},
       {206, {200, 201, 206, 203}, {211, 204}},
       {207, {200, 201, 239, 203}, {204}},
+      {202, {200, 201, 206, 203}, {211, 208, 204, 214, 336}},
+      {204, {200, 249, 250, 251, 252, 253, 254, 203, 214}, {255, 204, 336}},
+      {208, {200, 201, 206, 334, 203, 335}, {204, 342, 351, 370}},
+      {220, {216, 217, 244, 245, 246, 247, 241}, {200, 203, 204, 301, 365}},
+      {221, {225, 226, 237, 238, 242, 243, 224}, {200, 203, 204, 301}},
+      {240, {200, 343, 201, 206, 203}, {344, 211, 204, 342, 253}},
+      {241,
+       {200, 201, 206, 203},
+       {211, 204, 379, 253, 208, 426, 427, 428, 429, 430, 435, 401, 202, 212, 205}},
       {247, {339}, {}}};
   return cycles;
 }
 
 /// Cycles of the control that are not executed here.
 bool known_cycle(int number) {
-  constexpr int kOld[] = {3,  4,  5,  6,  8,  11, 12, 13, 14, 15, 16, 17, 18,
-                          20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30, 39};
+  constexpr int kOld[] = {3, 4, 5, 6, 12, 13, 14, 15, 16, 17, 18, 20, 21, 22, 23, 24, 25, 27, 28, 29, 30, 39};
   return (number >= 200 && number <= 299) || (number >= 400 && number <= 499) ||
          (number >= 800 && number <= 899) || (number >= 1000 && number <= 1499) ||
          std::find(std::begin(kOld), std::end(kOld), number) != std::end(kOld);
@@ -49,7 +57,7 @@ void Executor::cycle_definition(BlockReader& reader) {
     reader.skip();
     number.part = static_cast<int>(reader.whole_number(99));
   }
-  const int old[] = {1, 2, 7, 9, 10, 19, 32};
+  const int old[] = {1, 2, 7, 8, 9, 10, 11, 19, 26, 32};
   const bool is_old = std::find(std::begin(old), std::end(old), number.number) != std::end(old);
   if (is_old) {
     if (number.part < 0)
@@ -62,7 +70,7 @@ void Executor::cycle_definition(BlockReader& reader) {
   if (known_cycle(number.number))
     reader.fail("unsupported-word", offset,
                 fmt::format("cycle {} is known, but not supported here", number.number),
-                "1, 2, 7, 9, 10, 19, 32, 200, 201, 203, 205, 206, 207 and 247 are");
+                "1, 2, 7 to 11, 19, 26, 32, 200 to 208, 220, 221, 240, 241 and 247 are");
   reader.fail("unknown-word", offset, fmt::format("there is no cycle {}", number.number), "CYCL DEF 200");
 }
 
@@ -91,8 +99,14 @@ void Executor::old_cycle(BlockReader& reader, CycleNumber number, size_t offset)
         reader.fail("out-of-range", at, fmt::format("{:g} s is no dwell", seconds), "0 to 30000 s");
       return control_.dwell(seconds);
     }
+    case 8:
+      return mirror_image(reader);
     case 10:
       return rotation(reader);
+    case 11:
+      return scaling(reader);
+    case 26:
+      return axis_scaling(reader);
     case 19:
       return tilt_cycle(reader);
     case 32:
@@ -162,66 +176,9 @@ void Executor::parameter_cycle(BlockReader& reader, int number, size_t offset) {
                   fmt::format("Q{}=...", needed));
   }
   if (number == 247) return preset(reader, cycle);
+  if (number == 220 || number == 221) return pattern_cycle(reader, cycle);
   cycle_ = cycle;
   modal_call_ = false;
-}
-
-/// 7.1 X+10, 7.2 IY-5 ...: in the tilted plane when one is tilted.
-void Executor::datum_shift(BlockReader& reader) {
-  reader.done();
-  if (reader.peek() == '#' || reader.letters() == "D")
-    reader.fail("unsupported-word", reader.offset(), "datum tables are not supported",
-                "write the shift as X Y Z");
-  const size_t start = reader.offset();
-  const MotionWords words = read_motion_words(reader, kAxesAllowed);
-  Vec3 shift = level().shift;
-  for (int i = 0; i < nc::kAxisWords; ++i) {
-    const Amount& word = words.axes[static_cast<size_t>(i)];
-    if (!word) continue;
-    if (i >= 3) {
-      if (word.value == 0.0 && !word.incremental) continue;
-      reader.fail("unsupported-word", word.offset, "datum shifts of rotary axes are not supported",
-                  "put the angle into the preset");
-    }
-    shift[i] = control_.mm(word.value) + (word.incremental ? shift[i] : 0.0);
-  }
-  if (level().turn_deg != 0.0 && shift != level().shift && !shift.isZero(0.0))
-    reader.fail("unsupported-word", start,
-                "a datum shift while cycle 10 turns the coordinates is not supported",
-                "shift first, then rotate");
-  level().shift = shift;
-  update_frame();
-}
-
-/// TRANS DATUM AXIS X+10, TRANS DATUM RESET.
-void Executor::datum_transform(BlockReader& reader, size_t start) {
-  if (!reader.take("DATUM"))
-    reader.fail("unsupported-word", start, "of TRANS, only DATUM AXIS and DATUM RESET are supported",
-                "CYCL DEF 10 rotates");
-  if (reader.take("RESET")) {
-    reader.expect_end();
-    level().shift = Vec3::Zero();
-    return update_frame();
-  }
-  if (!reader.take("AXIS"))
-    reader.fail("unsupported-word", start, "of TRANS DATUM, only AXIS and RESET are supported",
-                "TRANS DATUM AXIS X+10");
-  datum_shift(reader);
-}
-
-/// 10.1 ROT+30, 10.1 IROT+15: about the datum, in the working plane XY.
-void Executor::rotation(BlockReader& reader) {
-  reader.done();
-  const size_t start = reader.offset();
-  const bool added = reader.take("IROT");
-  if (!added && !reader.take("ROT")) refuse_word(reader, start, reader.take_letters());
-  const double angle = reader.value();
-  reader.expect_end();
-  if (control_.plane() != nc::Plane::kXY)
-    reader.fail("unsupported-word", start, "cycle 10 is supported with the tool axis Z alone",
-                "TOOL CALL 5 Z");
-  level().turn_deg = angle + (added ? level().turn_deg : 0.0);
-  update_frame();
 }
 
 /// 19.1 A+0 B+45 C+0: spatial angles; without words, no tilted plane.
@@ -266,15 +223,19 @@ void Executor::preset(BlockReader& reader, const Cycle& cycle) {
   tangent_.reset();
 }
 
-/// CYCL CALL M3, CYCL CALL POS X+10 Y+20 Z+0 FMAX.
+/// CYCL CALL M3, CYCL CALL POS X+10 Y+20 Z+0 FMAX, CYCL CALL PAT FMAX.
 void Executor::cycle_call(BlockReader& reader, size_t start) {
-  if (reader.letters() == "PAT")
-    reader.fail("unsupported-word", reader.offset(), "CYCL CALL PAT is not supported",
-                "call the cycle at each position");
-  const bool at_position = reader.take("POS");
-  const MotionWords words = read_motion_words(
-      reader, at_position ? kAxesAllowed | kFeedAllowed | kFunctionsAllowed : unsigned{kFunctionsAllowed});
+  const bool pattern = reader.take("PAT"), at_position = !pattern && reader.take("POS");
+  const unsigned feeds = pattern || at_position ? unsigned{kFeedAllowed} : 0u;
+  const MotionWords words =
+      read_motion_words(reader, kFunctionsAllowed | feeds | (at_position ? unsigned{kAxesAllowed} : 0u));
   functions_before(reader, words);
+  if (pattern) {
+    nc::Motion motion = nc::Motion::kFeed;
+    const double feed = feed_of(reader, words, motion);
+    call_pattern(reader, motion, feed, start);
+    return functions_after(reader, words.functions);
+  }
   if (at_position) {
     if (words.any_rotary() || words.axes[2])
       reader.fail("unsupported-word", start, "CYCL CALL POS is supported with X and Y alone",

@@ -5,6 +5,8 @@
 namespace swarf::program::heidenhain {
 
 Executor::Executor(nc::Control& control) : control_(control), flow_(control, parameters_) {
+  control_.set_words(
+      {"R0", "L .. FMAX", "L with F", "CC", "M136, FU", "TOOL CALL 5 Z S1000, then M3", "TOOL CALL"});
   control_.set_feed_rule(nc::FeedRule::kAllAxes);
   control_.set_compensation_entry(nc::CompensationEntry::kAcrossNext);
 }
@@ -40,7 +42,9 @@ void Executor::block(BlockReader& reader) {
                                              {"CR", &Executor::circle_by_radius},
                                              {"CT", &Executor::circle_tangential},
                                              {"CP", &Executor::polar_circle},
-                                             {"SPL", &Executor::spline}};
+                                             {"SPL", &Executor::spline},
+                                             {"APPR", &Executor::approach},
+                                             {"DEP", &Executor::depart}};
   for (const MotionBlock& one : kMotions) {
     if (one.word != word) continue;
     reader.take_letters();
@@ -87,12 +91,14 @@ bool Executor::statement(BlockReader& reader, std::string_view word, size_t star
     } else {
       reader.fail("missing-word", start, "CYCL without DEF or CALL", "CYCL DEF 200, CYCL CALL");
     }
+  } else if (word == "PATTERN") {
+    pattern_definition(reader, start);
   } else if (word == "PLANE") {
     plane(reader, start);
   } else if (word == "FUNCTION") {
     function_word(reader, start);
   } else if (word == "TRANS") {
-    datum_transform(reader, start);
+    transform(reader, start);
   } else if (word == "STOP" || word == "M") {
     if (word == "STOP") control_.without_effect("STOP");
     if (word == "M") reader.move_to(start);

@@ -2,7 +2,8 @@
 //
 // The frame is  T(shift) Rz(turn) R_tilt T(shift') Rz(turn'),  the first pair as cycles 7 and 10 say before a
 // plane is tilted, the second as they say within it. R_tilt by spatial angles: Rz(SPC) Ry(SPB) Rx(SPA), that
-// is SPA about the fixed X, then SPB about the fixed Y, then SPC about the fixed Z.
+// is SPA about the fixed X, then SPB about the fixed Y, then SPC about the fixed Z. Mirror images and
+// scalings are applied to the words (heidenhain_frame.h).
 //
 // Settings of the control that a program cannot show are those of delivery: M127 (rotary axes as written),
 // M129, R0, preset 1; F in inch programs counts tenths of an inch per minute; a circle's ends may differ by
@@ -17,71 +18,21 @@
 #include "program/nc/control.h"
 #include "program/nc/heidenhain_corner.h"
 #include "program/nc/heidenhain_flow.h"
+#include "program/nc/heidenhain_frame.h"
+#include "program/nc/heidenhain_words.h"
 
 namespace swarf::program::heidenhain {
 
-/// A word with a value; `offset` of its letters in the block.
-struct Amount {
-  double value = 0.0;
-  size_t offset = 0;
-  bool given = false, incremental = false;
-  explicit operator bool() const { return given; }
-};
-
-struct MWord {
-  int number = 0;
-  size_t offset = 0;
-  Amount amount;     ///< M140 MB, M128 F
-  bool max = false;  ///< M140 MB MAX
-  uint8_t axes = 0;  ///< M94 A B C, bit per nc::AxisWord
-};
-
-enum class FeedWord { kNone, kValue, kMax, kAuto, kPerRevolution };
-
-/// The words of a motion block.
-struct MotionWords {
-  std::array<Amount, nc::kAxisWords> axes;
-  Amount polar_radius, polar_angle, radius;
-  std::array<Amount, 3> normal, tool;
-  std::array<std::array<Amount, 3>, nc::kAxisWords> coefficients;  ///< K1, K2, K3 of each axis (SPL)
-  std::optional<nc::Compensation> compensation;
-  int sense = 0;  ///< DR+ 1, DR- -1
-  FeedWord feed = FeedWord::kNone;
-  Amount feed_value;
-  std::vector<MWord> functions;
-  bool any_linear() const { return axes[0] || axes[1] || axes[2]; }
-  bool any_rotary() const { return axes[3] || axes[4] || axes[5]; }
-  /// A block after which a modal cycle (M89) drills.
-  bool positions() const { return any_linear() || polar_radius || polar_angle; }
-  bool has_function(int number) const;
-};
-
-/// Which words a block may have besides M and F.
-enum WordSet : unsigned {
-  kAxesAllowed = 1,
-  kPolarAllowed = 2,
-  kRadiusAllowed = 4,
-  kSenseAllowed = 8,
-  kCompensationAllowed = 16,
-  kVectorsAllowed = 32,
-  kFeedAllowed = 64,
-  kFunctionsAllowed = 128,
-  kMachineAllowed = 256,  ///< M91
-  kTcpAllowed = 512,      ///< M128
-  kCoefficientsAllowed = 1024,
-};
-/// Reads to the end of the block. "unknown-word", "unexpected-word", "word-twice", "unsupported-word".
-MotionWords read_motion_words(BlockReader& reader, unsigned allowed);
-/// "unknown-word" with the nearest known one, "unsupported-word" for one that the control knows.
-[[noreturn]] void refuse_word(BlockReader& reader, size_t offset, std::string_view word);
 /// FMAX as a cycle's feed: what the control keeps of it in the Q parameter.
 inline constexpr double kRapidFeed = 99999.999;
-/// Spatial angles SPA SPB SPC in degrees: about the fixed X, then the fixed Y, then the fixed Z.
-Mat3 spatial_rotation(double a_deg, double b_deg, double c_deg);
 /// The number of a cycle and of its part, as in "7.1".
 struct CycleNumber {
   int number = 0, part = -1;
 };
+
+/// Directions of X Y Z of the machine, and of the tool's own frame, in W.
+Mat3 linear_columns_W(const kinematics::MachineModel& machine, const kinematics::AxisValues& q);
+Mat3 tool_frame_W(const kinematics::MachineModel& machine, const kinematics::AxisValues& q);
 
 class Executor {
  public:
@@ -105,16 +56,49 @@ class Executor {
     double size_mm = 0.0, feed = 0.0;
     nc::Place place;
   };
-  struct Level {
-    Vec3 shift = Vec3::Zero();
-    double turn_deg = 0.0;
-    bool none() const { return shift.isZero(0.0) && turn_deg == 0.0; }
+  /// APPR, which waits for the first piece of contour behind it.
+  struct Approach {
+    std::string kind;                   ///< LT, LN, CT or LCT
+    Vec3 contour = Vec3::Zero();        ///< its first point
+    double length = 0.0, radius = 0.0;  ///< LEN and R, mm
+    double angle = 0.0;                 ///< CCA, rad
+    nc::Compensation side = nc::Compensation::kOff;
+    double cutter = 0.0;                   ///< radius that RL or RR compensate, mm
+    nc::Motion entry = nc::Motion::kFeed;  ///< of the way to the auxiliary point
+    double entry_feed = 0.0;
+    nc::Motion motion = nc::Motion::kFeed;  ///< from there
+    double feed = 0.0;
+    nc::Place place;
   };
   /// A cycle that CYCL CALL executes.
   struct Cycle {
     int number = 0;
     std::map<int, double> q;  ///< by number of the Q parameter
     size_t offset = 0;
+  };
+
+  /// How PLANE goes to its position.
+  struct Positioning {
+    std::string kind;  ///< MOVE, TURN or STAY
+    nc::TiltPreference preference;
+    nc::Motion motion = nc::Motion::kFeed;
+    double feed = 0.0;
+    double distance = 0.0;  ///< DIST, mm: from the tip to the point about which MOVE turns
+    size_t distance_offset = 0;
+    bool turns_table = false;          ///< TABLE ROT
+    bool retracts = false;             ///< MB
+    std::optional<double> retraction;  ///< mm; none: MB MAX
+  };
+  /// A place for a cycle, as programmed, mm.
+  struct PatternPoint {
+    Vec2 at = Vec2::Zero();
+    double height = 0.0;  ///< added to the cycle's surface
+  };
+  struct Rows {
+    Vec2 first, column_step, line_step;
+    int columns, lines;
+    double height;
+    bool frame;  ///< its outline alone
   };
 
   // heidenhain_executor.cpp
@@ -128,6 +112,8 @@ class Executor {
   void tool_call(BlockReader& reader);
   void tool_ready(BlockReader& reader);
   void blank_form(BlockReader& reader);
+
+  // heidenhain_functions.cpp
   void functions_before(BlockReader& reader, const MotionWords& words);
   void functions_after(BlockReader& reader, const std::vector<MWord>& words);
   void reduce_display(const MWord& word);
@@ -141,7 +127,10 @@ class Executor {
   void circle_by_radius(BlockReader& reader, size_t start);
   void circle_tangential(BlockReader& reader, size_t start);
   void polar_circle(BlockReader& reader, size_t start);
+  /// +1 counter-clockwise, -1 clockwise in the control's frame.
   int sense(BlockReader& reader, const MotionWords& words, size_t start);
+  Vec3 from_pole(double radius_mm, double angle_deg) const;
+  Vec3 polar_end(BlockReader& reader, const MotionWords& words, size_t start);
   void only_plane(BlockReader& reader, const MotionWords& words);
   const Vec3& centre(BlockReader& reader, size_t offset);
 
@@ -154,16 +143,19 @@ class Executor {
   void line(BlockReader& reader, size_t start);
   void move_without_axes(BlockReader& reader, const MotionWords& words, Element& element, size_t start);
   void machine_line(BlockReader& reader, const MotionWords& words, size_t start);
-  nc::Target target_of(BlockReader& reader, const MotionWords& words);
+  /// `words_taken`: so many of X Y Z A B C.
+  nc::Target target_of(BlockReader& reader, const MotionWords& words, int words_taken = nc::kAxisWords);
   double feed_of(BlockReader& reader, const MotionWords& words, nc::Motion& motion);
   void set_feed(double feed, bool degrees);
   void rotary_move(nc::Motion motion, const nc::Target& target);
   /// Moves now, or waits when a corner follows.
-  void move(BlockReader& reader, const MotionWords& words, Element element);
+  void move(BlockReader& reader, const MotionWords& words, Element& element);
   void emit(const Element& element);
   Vec3 present();
   Vec3 end_of(const nc::Target& target);
   void finish_motion(BlockReader& reader, const MotionWords& words);
+  double cutter_radius(BlockReader& reader);
+  nc::Compensation side_of(nc::Compensation written) const;
 
   // heidenhain_path.cpp
   void corner(BlockReader& reader, bool round, size_t start);
@@ -175,35 +167,89 @@ class Executor {
   void old_cycle(BlockReader& reader, CycleNumber number, size_t offset);
   void old_drilling(BlockReader& reader, CycleNumber number);
   void parameter_cycle(BlockReader& reader, int number, size_t offset);
-  void datum_shift(BlockReader& reader);
-  void datum_transform(BlockReader& reader, size_t start);
-  void rotation(BlockReader& reader);
   void tilt_cycle(BlockReader& reader);
   void tolerance(BlockReader& reader, int part);
   void preset(BlockReader& reader, const Cycle& cycle);
   void cycle_call(BlockReader& reader, size_t start);
 
+  // heidenhain_frame.cpp
+  void datum_shift(BlockReader& reader);
+  void transform(BlockReader& reader, size_t start);
+  void mirror_image(BlockReader& reader);
+  void rotation(BlockReader& reader);
+  void scaling(BlockReader& reader);
+  void axis_scaling(BlockReader& reader);
+  double scale_factor(BlockReader& reader);
+  void need_order(BlockReader& reader, size_t start, bool later_active, const char* what);
+  double plane_scale(BlockReader& reader, size_t offset);
+  void need_true_size(BlockReader& reader, size_t offset, const char* what);
+  void update_frame();
+  Level& level() { return tilted_ ? inner_ : outer_; }
+  const Level& level() const { return tilted_ ? inner_ : outer_; }
+
+  // heidenhain_approach.cpp
+  void approach(BlockReader& reader, size_t start);
+  void depart(BlockReader& reader, size_t start);
+  void close_approach(const Element& first);
+  void check_approach(BlockReader& reader, const std::string& kind, const MotionWords& words, size_t start);
+  void straight(nc::Motion motion, double feed, const Vec3& to);
+  void circle_move(double feed, const Vec3& to, const Vec3& centre, bool counter_clockwise,
+                   int further_turns);
+  void round(nc::Motion motion, double feed, const Vec3& to, const Vec3& centre, bool counter_clockwise);
+
   // heidenhain_drilling.cpp
   void run_cycle(BlockReader& reader, size_t offset);
+  void execute_cycle();
+  void check_values() const;
   void check_cycle() const;
   void drill_pecking();
   void drill_once();
+  void drill_deep();
   double feed_out() const;
   void go(nc::Motion motion, double height, double feed);
   double q(int number) const;
+  double length(int number) const;
+  double surface() const;
+
+  // heidenhain_boring.cpp
+  void bore();
+  void back_bore();
+  void mill_bore();
+  void free_edge(int direction, double way, double feed);
+  int disengaging_direction(int least) const;
+
+  // heidenhain_pattern.cpp
+  void pattern_definition(BlockReader& reader, size_t start);
+  void call_pattern(BlockReader& reader, nc::Motion motion, double feed, size_t offset);
+  void pattern_cycle(BlockReader& reader, const Cycle& pattern);
+  static void add_points(std::vector<PatternPoint>& points, const PatternPoint& point, BlockReader& reader,
+                         size_t start);
+  static void add_rows(std::vector<PatternPoint>& points, const Rows& rows, BlockReader& reader,
+                       size_t start);
+  void go_to_point(nc::Motion motion, double feed, const Vec2& point);
 
   // heidenhain_plane.cpp
   void plane(BlockReader& reader, size_t start);
   Mat3 plane_rotation(BlockReader& reader, const std::string& kind, size_t start);
-  void position_plane(BlockReader& reader, bool reset, size_t start);
+  void axial_plane(BlockReader& reader, size_t start);
   void tilt(BlockReader& reader, const Mat3& rotation, bool on, size_t start);
+
+  // heidenhain_tilt.cpp
+  Positioning positioning(BlockReader& reader, size_t start);
+  void position_plane(BlockReader& reader, const Positioning& how, const kinematics::AxisValues* goal,
+                      size_t start);
+  void turn_about(const kinematics::AxisValues& goal, const Positioning& how);
+  bool rotary_is_free(const kinematics::AxisValues& q) const;
   void rotary_parameters(const kinematics::AxisValues& values);
+
+  // heidenhain_tcpm.cpp
   void function_word(BlockReader& reader, size_t start);
   void tcpm(BlockReader& reader);
   void set_tcpm(bool on, bool by_vector, bool spatial, bool chosen);
+  void compensate_heads(BlockReader& reader, size_t offset, bool on);
+  void reference_point(BlockReader& reader, size_t at);
+  double rotary_feed(const Element& element) const;
   void turn_by(nc::Tcp law);
-  void update_frame();
-  Level& level() { return tilted_ ? inner_ : outer_; }
 
   nc::Control& control_;
   Parameters parameters_;
@@ -213,6 +259,7 @@ class Executor {
   double feed_ = 0.0;                               ///< as written; 0: none
   double tool_feed_ = 0.0;                          ///< F of TOOL CALL, for FAUTO
   double delta_radius_ = 0.0, delta_corner_ = 0.0;  ///< DR, DR2 of TOOL CALL, mm
+  std::map<int, double> defined_radius_;            ///< by TOOL DEF where there is no tool table, mm
   bool shortest_ = false;                           ///< M126
   bool per_revolution_ = false;                     ///< M136
   bool tcpm_ = false, path_chosen_ = false, spatial_ = false;
@@ -222,12 +269,20 @@ class Executor {
   std::optional<Vec3> tangent_;        ///< at the end of the last element
   std::optional<Element> held_;
   std::optional<Corner> corner_;
+  std::optional<Approach> approach_;
   std::optional<Cycle> cycle_;
   int open_cycle_ = 0;       ///< the old cycle whose parts are being read
   bool modal_call_ = false;  ///< M89
+  std::vector<PatternPoint> pattern_;
+  double raised_ = 0.0;  ///< of the point whose cycle runs, mm
   Level outer_, inner_;
   Mat3 tilt_ = Mat3::Identity();
   bool tilted_ = false;
+  std::array<double, 3> axial_deg_{};  ///< A B C of PLANE AXIAL, which are modal
+  bool compensates_heads_ = false;     ///< M114, M144
+  bool rotary_feed_mm_ = false;        ///< M116
+  Stretch stretch_;                    ///< of level()
+  bool last_rapid_ = false;            ///< the last motion block went at FMAX
 };
 
 }  // namespace swarf::program::heidenhain

@@ -39,7 +39,7 @@ const BlockText* Flow::next() {
   control_.at(now_.file, now_.line(), 1);
   if (!now_.comment.empty()) control_.note(";", now_.comment);
   ++control_.summary().blocks;
-  control_.summary().lines += static_cast<long>(now_.lines.size());
+  control_.summary().lines += static_cast<long>(now_.pieces.size()) + now_.skipped;
   return &now_;
 }
 
@@ -150,12 +150,16 @@ void Flow::call_label(BlockReader& reader) {
   level.returns.push_back(back);
 }
 
-void Flow::call_program(BlockReader& reader) {
-  reader.done();
-  const size_t offset = reader.offset();
-  std::string name =
-      reader.peek() == '"' || reader.letters() == "QS" ? reader.text_value() : std::string(reader.rest());
+/// The name of a program, in quotes or not.
+std::string Flow::program_name(BlockReader& reader) {
+  std::string name = !reader.done() && (reader.peek() == '"' || reader.letters() == "QS")
+                         ? reader.text_value()
+                         : std::string(reader.rest());
   reader.expect_end();
+  return name;
+}
+
+void Flow::call_program(BlockReader& reader, std::string name, size_t offset) {
   std::replace(name.begin(), name.end(), '\\', '/');
   if (name.starts_with("TNC:/")) name = name.substr(5);
   const std::string path =
@@ -179,13 +183,29 @@ bool Flow::statement(BlockReader& reader) {
     return true;
   }
   const size_t start = reader.offset();
+  if (reader.take("SEL")) {
+    if (!reader.take("PGM"))
+      reader.fail("unsupported-word", start, "of SEL, only SEL PGM is supported", "SEL PGM \"NAME.H\"");
+    selected_ = program_name(reader);
+    return true;
+  }
   if (!reader.take("CALL")) return false;
   if (reader.take("LBL")) {
     call_label(reader);
   } else if (reader.take("PGM")) {
-    call_program(reader);
+    reader.done();
+    const size_t offset = reader.offset();
+    call_program(reader, program_name(reader), offset);
+  } else if (reader.take("SELECTED")) {
+    if (!reader.take("PGM"))
+      reader.fail("missing-word", start, "CALL SELECTED without PGM", "CALL SELECTED PGM");
+    reader.expect_end();
+    if (selected_.empty())
+      reader.fail("unknown-subprogram", start, "no SEL PGM stands before this call", "SEL PGM \"NAME.H\"");
+    call_program(reader, selected_, start);
   } else {
-    reader.fail("unsupported-word", start, "this kind of CALL is not supported", "CALL LBL and CALL PGM are");
+    reader.fail("unsupported-word", start, "this kind of CALL is not supported",
+                "CALL LBL, CALL PGM and CALL SELECTED PGM are");
   }
   return true;
 }

@@ -52,7 +52,8 @@ class Flow {
   void go(BlockReader& reader, const std::string& name, size_t offset);
   void go(Level& level, const nc::LineSource::Mark& mark);
   void call_label(BlockReader& reader);
-  void call_program(BlockReader& reader);
+  static std::string program_name(BlockReader& reader);
+  void call_program(BlockReader& reader, std::string name, size_t offset);
   void set_label(BlockReader& reader);
 
   nc::Control& control_;
@@ -60,6 +61,7 @@ class Flow {
   std::vector<std::unique_ptr<Level>> levels_;
   BlockText now_;
   std::vector<std::pair<int, std::string>> comments_;
+  std::string selected_;  ///< by SEL PGM
   bool ended_ = false;
 };
 

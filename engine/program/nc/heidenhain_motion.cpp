@@ -19,6 +19,7 @@ constexpr double kTurn = 2.0 * kPi;
 }  // namespace
 
 Vec3 Executor::present() {
+  if (approach_) return approach_->contour;
   return held_ ? held_->to : control_.position_xyz();
 }
 
@@ -31,15 +32,17 @@ Vec3 Executor::end_of(const Target& target) {
   return end;
 }
 
-Target Executor::target_of(BlockReader& reader, const MotionWords& words) {
+Target Executor::target_of(BlockReader& reader, const MotionWords& words, int words_taken) {
   Target target;
   target.column = control_.place().column;
   const bool shortest = words.has_function(126) || (shortest_ && !words.has_function(127));
-  for (int i = 0; i < nc::kAxisWords; ++i) {
+  for (int i = 0; i < words_taken; ++i) {
     const Amount& word = words.axes[static_cast<size_t>(i)];
     if (!word) continue;
     if (i >= 3) control_.require_axis(static_cast<nc::AxisWord>(i), reader.column(word.offset));
-    target.set(i, i < 3 ? control_.mm(word.value) : rad_from_deg(word.value), word.incremental);
+    target.set(
+        i, i < 3 ? stretch_.along(i, control_.mm(word.value), word.incremental) : rad_from_deg(word.value),
+        word.incremental);
     if (i >= 3 && shortest) target.way[static_cast<size_t>(i) - 3] = nc::RotaryWay::kShortest;
   }
   return target;
@@ -48,6 +51,7 @@ Target Executor::target_of(BlockReader& reader, const MotionWords& words) {
 /// The feed of this block as the control takes it; F is modal, FMAX holds in its block.
 double Executor::feed_of(BlockReader& reader, const MotionWords& words, Motion& motion) {
   motion = words.feed == FeedWord::kMax ? Motion::kRapid : Motion::kFeed;
+  last_rapid_ = motion == Motion::kRapid;
   if (words.feed == FeedWord::kAuto) {
     if (!(tool_feed_ > 0.0))
       reader.fail("missing-feed", words.feed_value.offset, "FAUTO, and TOOL CALL gave no F",
@@ -69,7 +73,7 @@ double Executor::feed_of(BlockReader& reader, const MotionWords& words, Motion& 
 }
 
 /// What stands in every motion block around its motion.
-void Executor::move(BlockReader& reader, const MotionWords& words, Element element) {
+void Executor::move(BlockReader& reader, const MotionWords& words, Element& element) {
   if (spatial_ && (element.target.given & 0x38u) != 0)
     reader.fail("unsupported-word", element.offset, "spatial angles (AXIS SPAT) are supported in L alone",
                 "write them in a block L");
@@ -89,14 +93,11 @@ void Executor::move(BlockReader& reader, const MotionWords& words, Element eleme
     for (int i = 0; i < 3; ++i) element.target.set(i, element.to[i], false);
     close_corner(element);
   }
+  if (approach_) close_approach(element);
   functions_before(reader, words);
   if (words.compensation) {
-    const NcTool* tool = control_.active_tool();
-    const bool on = *words.compensation != nc::Compensation::kOff;
-    if (on && tool == nullptr)
-      reader.fail("compensation-no-tool", 0, "RL or RR without a tool of the table in the spindle",
-                  "TOOL CALL 5 Z");
-    control_.set_compensation(*words.compensation, on ? 0.5 * tool->diameter_mm + delta_radius_ : 0.0,
+    const nc::Compensation side = side_of(*words.compensation);
+    control_.set_compensation(side, side != nc::Compensation::kOff ? cutter_radius(reader) : 0.0,
                               element.place.column);
   }
   const BlockText* next = flow_.following();
@@ -109,6 +110,23 @@ void Executor::move(BlockReader& reader, const MotionWords& words, Element eleme
     emit(element);
   }
   finish_motion(reader, words);
+}
+
+/// RL and RR of the program; a mirror image has the cutter on the other side.
+nc::Compensation Executor::side_of(nc::Compensation written) const {
+  const nc::PlaneAxes axes = nc::axes_of(control_.plane());
+  if (written == nc::Compensation::kOff || !stretch_.turns_over(axes.first, axes.second)) return written;
+  return written == nc::Compensation::kLeft ? nc::Compensation::kRight : nc::Compensation::kLeft;
+}
+
+double Executor::cutter_radius(BlockReader& reader) {
+  const NcTool* tool = control_.active_tool();
+  const auto defined = defined_radius_.find(control_.tool_number());
+  if (tool == nullptr && defined != defined_radius_.end()) return defined->second + delta_radius_;
+  if (tool == nullptr)
+    reader.fail("compensation-no-tool", 0, "RL or RR without a tool of the table in the spindle",
+                "TOOL CALL 5 Z");
+  return 0.5 * tool->diameter_mm + delta_radius_;
 }
 
 void Executor::finish_motion(BlockReader& reader, const MotionWords& words) {
@@ -130,7 +148,7 @@ void Executor::finish_motion(BlockReader& reader, const MotionWords& words) {
 void Executor::emit(const Element& element) {
   control_.at(element.place.file, element.place.line, element.place.column);
   if (element.motion != Motion::kRapid && element.feed > 0.0)
-    set_feed(element.feed, (element.target.given & 7u) == 0 && !element.target.axis_P);
+    set_feed(rotary_feed(element), (element.target.given & 7u) == 0 && !element.target.axis_P);
   const nc::PlaneAxes axes = nc::axes_of(control_.plane());
   const bool arc = element.motion == Motion::kClockwise || element.motion == Motion::kCounterClockwise;
   if (arc) {
@@ -165,9 +183,7 @@ void Executor::line(BlockReader& reader, size_t start) {
   Element element;
   element.offset = start;
   const bool spatial = words.any_rotary() && tcpm_ && spatial_;
-  MotionWords by_axes = words;
-  if (spatial) by_axes.axes[3] = by_axes.axes[4] = by_axes.axes[5] = Amount();
-  element.target = target_of(reader, by_axes);
+  element.target = target_of(reader, words, spatial ? nc::kA : nc::kAxisWords);
   if (spatial) {
     for (size_t i = 3; i < 6; ++i) {
       if (!words.axes[i] || words.axes[i].incremental)
@@ -203,6 +219,7 @@ void Executor::line(BlockReader& reader, size_t start) {
 /// L R0 F100 M3: words without a motion.
 void Executor::move_without_axes(BlockReader& reader, const MotionWords& words, Element& element,
                                  size_t start) {
+  if (approach_) no_open_corner(reader, start);
   if (held_) {
     element.from = element.to = present();
     close_corner(element);

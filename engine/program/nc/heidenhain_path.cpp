@@ -30,7 +30,7 @@ void Executor::corner(BlockReader& reader, bool round, size_t start) {
   if (round) reader.take("R");
   Corner corner;
   corner.round = round;
-  corner.size_mm = control_.mm(reader.value());
+  corner.size_mm = plane_scale(reader, at) * control_.mm(reader.value());
   corner.place = control_.place();
   corner.feed = held_->feed;
   if (!(corner.size_mm > 0.0))
@@ -98,6 +98,9 @@ void Executor::close_corner(Element& next) {
 }
 
 void Executor::no_open_corner(BlockReader& reader, size_t offset) {
+  if (approach_)
+    reader.fail("bad-approach", offset, "APPR before this block has no piece of contour behind it",
+                "write L, LP, C, CR or CP in the working plane right behind APPR");
   if (!held_) return;
   reader.fail("bad-corner", offset, "the corner before this block has no piece of contour behind it",
               "write L, C, CR or CP right behind RND and CHF");

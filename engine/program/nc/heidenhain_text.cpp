@@ -29,6 +29,9 @@ std::string_view trimmed(std::string_view text) {
 
 /// Offset of the ';' that starts the comment, npos without one.
 size_t comment_start(std::string_view line) {
+  const size_t first = line.find(';');
+  if (first == std::string_view::npos || line.substr(0, first).find('"') == std::string_view::npos)
+    return first;
   bool quoted = false;
   for (size_t i = 0; i < line.size(); ++i) {
     if (line[i] == '"') quoted = !quoted;
@@ -37,9 +40,20 @@ size_t comment_start(std::string_view line) {
   return std::string_view::npos;
 }
 
+/// Makes the letters outside of quotes capitals.
+void capitalise(std::string& text, size_t from) {
+  bool quoted = false;
+  for (size_t i = from; i < text.size(); ++i) {
+    char& c = text[i];
+    if (c == '"') quoted = !quoted;
+    if (!quoted && c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+  }
+}
+
 /// Appends the words of a line; true when the block goes on in the next one.
 bool append_line(std::string_view line, int number, BlockText& block) {
-  block.lines.emplace_back(line);
+  const size_t written = block.written.size();
+  block.written += line;
   std::string_view rest = trimmed(line);
   const bool goes_on = rest.ends_with('~');
   if (goes_on) rest.remove_suffix(1);
@@ -51,15 +65,13 @@ bool append_line(std::string_view line, int number, BlockText& block) {
   }
   const size_t comment = comment_start(rest);
   if (comment != std::string_view::npos) {
-    if (block.comment.empty()) block.comment = std::string(trimmed(rest.substr(comment + 1)));
+    if (block.comment.empty()) block.comment = trimmed(rest.substr(comment + 1));
     rest = rest.substr(0, std::max(begin, comment));
   }
-  block.pieces.push_back({block.text.size(), number, begin});
-  bool quoted = false;
-  for (const char c : trimmed(rest.substr(begin))) {
-    if (c == '"') quoted = !quoted;
-    block.text += !quoted && c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
-  }
+  const size_t from = block.text.size();
+  block.pieces.push_back({from, number, begin, written});
+  block.text += trimmed(rest.substr(begin));
+  capitalise(block.text, from);
   block.text += '\n';
   return goes_on;
 }
@@ -70,14 +82,15 @@ void BlockText::clear() {
   text.clear();
   comment.clear();
   pieces.clear();
-  lines.clear();
+  written.clear();
 }
 
 bool read_block(nc::LineSource& source, nc::Control& control, BlockText& block,
                 std::vector<std::pair<int, std::string>>& comments) {
   std::string_view line;
-  for (;;) {
+  for (long skipped = 0;; skipped += static_cast<long>(block.pieces.size())) {
     block.clear();
+    block.skipped = skipped;
     block.file = source.file();
     block.mark = source.mark();
     if (!source.next(line)) return false;
@@ -91,7 +104,7 @@ bool read_block(nc::LineSource& source, nc::Control& control, BlockText& block,
       goes_on = append_line(line, static_cast<int>(source.line_number()), block);
     }
     const bool heading = block.text.starts_with('*');
-    if (heading) block.comment = std::string(trimmed(block.text));
+    if (heading) block.comment = trimmed(block.text);
     const bool blank = trimmed(block.text).empty();
     if (!heading && !blank) return true;
     if (!block.comment.empty()) comments.emplace_back(block.line(), block.comment);
@@ -102,7 +115,7 @@ nc::Place BlockReader::place_of(size_t offset) const {
   size_t n = 0;
   while (n + 1 < block_.pieces.size() && block_.pieces[n + 1].offset <= offset) ++n;
   const BlockText::Piece& piece = block_.pieces[n];
-  return {block_.file, piece.line, nc::column_at(block_.lines[n], piece.skipped + offset - piece.offset)};
+  return {block_.file, piece.line, nc::column_at(block_.line_text(n), piece.skipped + offset - piece.offset)};
 }
 
 void BlockReader::fail(const char* code, size_t offset, std::string text, std::string fix) const {
@@ -164,11 +177,13 @@ double BlockReader::value() {
   }
   double number = 0.0;
   const std::string_view here = std::string_view(block_.text).substr(at_);
+  size_t length = nc::read_number(here, number);
   // Older controls write the decimal point as a comma.
-  std::string with_point(here.substr(0, std::min<size_t>(here.size(), 400)));
-  const size_t comma = with_point.find(',');
-  if (comma != std::string::npos && comma > 0 && is_digit(with_point[comma - 1])) with_point[comma] = '.';
-  const size_t length = nc::read_number(with_point, number);
+  if (length > 0 && length < here.size() && here[length] == ',' && is_digit(here[length - 1])) {
+    std::string with_point(here.substr(0, std::min<size_t>(here.size(), 400)));
+    with_point[length] = '.';
+    length = nc::read_number(with_point, number);
+  }
   if (length == std::string::npos) fail("bad-number", at_, "this number is too large", "write a number");
   if (length == 0) {
     fail("missing-number", start, "a number or a Q parameter is missing here", "write X+10 or X+Q1");

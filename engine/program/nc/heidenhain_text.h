@@ -22,14 +22,21 @@ struct BlockText {
     size_t offset = 0;   ///< in `text`, where this line's part starts
     int line = 0;        ///< 1-based
     size_t skipped = 0;  ///< bytes of the line before that part
+    size_t begin = 0;    ///< in `written`, where the line starts
   };
   std::string text;
   std::string comment;  ///< what stood behind ';', or the '*' line
   std::vector<Piece> pieces;
-  std::vector<std::string> lines;  ///< as written, one per piece
+  std::string written;  ///< the lines as they stand in the file, one behind the other
+  long skipped = 0;     ///< lines before it that have no words: comments, empty ones
   int file = 0;
   nc::LineSource::Mark mark;  ///< where it starts, to be read again after a jump
   int line() const { return pieces.empty() ? 0 : pieces.front().line; }
+  /// The n-th line of the block as it stands in the file.
+  std::string_view line_text(size_t n) const {
+    const size_t end = n + 1 < pieces.size() ? pieces[n + 1].begin : written.size();
+    return std::string_view(written).substr(pieces[n].begin, end - pieces[n].begin);
+  }
   void clear();
 };
 

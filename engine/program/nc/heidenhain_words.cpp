@@ -4,31 +4,33 @@
 #include <algorithm>
 #include <cmath>
 
-#include "program/nc/heidenhain_executor.h"
+#include "program/nc/heidenhain_words.h"
 
 namespace swarf::program::heidenhain {
 namespace {
 
 const std::vector<std::string>& known_words() {
   static const std::vector<std::string> words{
-      "BEGIN",  "END",     "BLK",   "FORM",     "TOOL", "DEF",   "CALL",  "L",       "LN",    "CC",
-      "C",      "CR",      "CT",    "CP",       "LP",   "SPL",   "CHF",   "RND",     "FN",    "LBL",
-      "PGM",    "CYCL",    "PLANE", "STOP",     "X",    "Y",     "Z",     "A",       "B",     "C",
-      "IX",     "IY",      "IZ",    "IA",       "IB",   "IC",    "PR",    "PA",      "IPR",   "IPA",
-      "DR",     "R",       "RL",    "RR",       "F",    "FMAX",  "FAUTO", "FU",      "M",     "S",
-      "NX",     "NY",      "NZ",    "TX",       "TY",   "TZ",    "DL",    "REP",     "GOTO",  "Q",
-      "QL",     "QR",      "QS",    "FUNCTION", "TCPM", "TRANS", "DATUM", "SPATIAL", "EULER", "VECTOR",
-      "POINTS", "RELATIV", "RESET", "MOVE",     "TURN", "STAY",  "DIST",  "SEQ"};
+      "BEGIN",   "END",     "BLK",    "FORM",     "TOOL",  "DEF",   "CALL",  "L",       "LN",      "CC",
+      "C",       "CR",      "CT",     "CP",       "LP",    "SPL",   "CHF",   "RND",     "FN",      "LBL",
+      "PGM",     "CYCL",    "PLANE",  "STOP",     "X",     "Y",     "Z",     "A",       "B",       "C",
+      "IX",      "IY",      "IZ",     "IA",       "IB",    "IC",    "PR",    "PA",      "IPR",     "IPA",
+      "DR",      "R",       "RL",     "RR",       "F",     "FMAX",  "FAUTO", "FU",      "M",       "S",
+      "NX",      "NY",      "NZ",     "TX",       "TY",    "TZ",    "DL",    "REP",     "GOTO",    "Q",
+      "QL",      "QR",      "QS",     "FUNCTION", "TCPM",  "TRANS", "DATUM", "SPATIAL", "EULER",   "VECTOR",
+      "POINTS",  "RELATIV", "RESET",  "MOVE",     "TURN",  "STAY",  "DIST",  "SEQ",     "APPR",    "DEP",
+      "LEN",     "CCA",     "MIRROR", "ROTATION", "SCALE", "SCL",   "ROT",   "IROT",    "PATTERN", "SEL",
+      "SELECTED"};
   return words;
 }
 
 /// Words of the control that are not executed here.
 const std::vector<std::string>& unsupported_words() {
   static const std::vector<std::string> words{
-      "U",      "V",    "W",     "IU",      "IV",      "IW",      "FZ",  "APPR",    "DEP",     "FL",
-      "FLT",    "FC",   "FCT",   "FPOL",    "CTP",     "SEL",     "TCH", "PATTERN", "CONTOUR", "POLARKIN",
-      "OPEN",   "READ", "WRITE", "DECLARE", "COMP",    "SECTION", "OEM", "PRESET",  "NC",      "FSELECT",
-      "CALLED", "IF",   "WHILE", "FOR",     "TABDATA", "ICC",     "TRY"};
+      "U",    "V",       "W",     "IU",      "IV",   "IW",      "FZ",      "FL",
+      "FLT",  "FC",      "FCT",   "FPOL",    "CTP",  "TCH",     "CONTOUR", "POLARKIN",
+      "OPEN", "READ",    "WRITE", "DECLARE", "COMP", "SECTION", "OEM",     "PRESET",
+      "NC",   "FSELECT", "IF",    "WHILE",   "FOR",  "TABDATA", "ICC",     "TRY"};
   return words;
 }
 
@@ -45,11 +47,11 @@ int axis_index(std::string_view word) {
 
 class WordReader {
  public:
-  WordReader(BlockReader& reader, unsigned allowed) : reader_(reader), allowed_(allowed) {}
+  WordReader(BlockReader& reader, unsigned allowed, MotionWords& words, SplineWords* spline)
+      : reader_(reader), allowed_(allowed), words_(words), spline_(spline) {}
 
-  MotionWords read() {
+  void read() {
     while (!reader_.done()) one();
-    return words_;
   }
 
  private:
@@ -69,13 +71,13 @@ class WordReader {
 
   void one() {
     const size_t start = reader_.offset();
-    const std::string word(reader_.take_letters());
+    const std::string_view word = reader_.take_letters();
     if (word.empty()) {
       reader_.fail("unexpected-character", start, fmt::format("'{}' starts no word", reader_.peek()),
                    "write words of letters and numbers: X+10");
     }
     const bool incremental = word.size() > 1 && word[0] == 'I';
-    const std::string plain = incremental ? word.substr(1) : word;
+    const std::string_view plain = incremental ? word.substr(1) : word;
     const int axis = axis_index(plain);
     if (axis >= 0) {
       need(kAxesAllowed, start, word);
@@ -86,6 +88,10 @@ class WordReader {
       return amount(plain == "PR" ? words_.polar_radius : words_.polar_angle, incremental, start, word);
     }
     if (word == "R" || word == "RL" || word == "RR") return radius_word(word, start);
+    if (word == "LEN" || word == "CCA") {
+      need(kApproachAllowed, start, word);
+      return amount(word == "LEN" ? words_.length : words_.angle, false, start, word);
+    }
     if (word == "DR") return sense(start);
     if (word == "K") return coefficient(start);
     if (word.size() == 2 && (word[0] == 'N' || word[0] == 'T') && axis_index(word.substr(1)) >= 0 &&
@@ -108,14 +114,14 @@ class WordReader {
       reader_.fail("unknown-word", start, "K is written with 1, 2 or 3 and its axis", "K3X+0.5");
     reader_.skip();
     reader_.skip();
-    Amount& into = words_.coefficients[static_cast<size_t>(axis)][static_cast<size_t>(power - '1')];
+    Amount& into = (*spline_)[static_cast<size_t>(axis)][static_cast<size_t>(power - '1')];
     amount(into, false, start, fmt::format("K{}{}", power, nc::kAxisLetters[axis]));
     if (reader_.take("E")) into.value *= std::pow(10.0, static_cast<double>(reader_.whole_value(-255, 255)));
     if (!std::isfinite(into.value))
       reader_.fail("out-of-range", start, "this coefficient is no finite number", "correct its exponent");
   }
 
-  void radius_word(const std::string& word, size_t start) {
+  void radius_word(std::string_view word, size_t start) {
     if (word != "R") {
       need(kCompensationAllowed, start, word);
       once(words_.compensation.has_value(), start, word);
@@ -150,7 +156,7 @@ class WordReader {
     }
   }
 
-  bool feed(const std::string& word, size_t start) {
+  bool feed(std::string_view word, size_t start) {
     FeedWord kind = FeedWord::kNone;
     if (word == "F") kind = FeedWord::kValue;
     if (word == "FMAX") kind = FeedWord::kMax;
@@ -168,7 +174,7 @@ class WordReader {
     return true;
   }
 
-  void function(const std::string& word, size_t start) {
+  void function(std::string_view word, size_t start) {
     if (word != "M") refuse_word(reader_, start, word);
     need(kFunctionsAllowed, start, word);
     MWord function;
@@ -184,6 +190,13 @@ class WordReader {
     } else if (function.number == 128) {
       reader_.take("FMAX");
     }
+    if (function.number == 118) {  // X1 Y1: how far the handwheel may lead
+      for (int i = 0; i < nc::kAxisWords; ++i) {
+        if (reader_.take(std::string_view(nc::kAxisLetters).substr(static_cast<size_t>(i), 1)))
+          reader_.value();
+      }
+    }
+    if (function.number == 120 && reader_.take("LA")) reader_.value();
     if (function.number == 140) retraction(function);
     if (function.number == 94) {
       for (int slot = 3; slot < nc::kAxisWords; ++slot) {
@@ -210,7 +223,8 @@ class WordReader {
 
   BlockReader& reader_;
   unsigned allowed_;
-  MotionWords words_;
+  MotionWords& words_;
+  SplineWords* spline_;
 };
 
 }  // namespace
@@ -220,8 +234,10 @@ bool MotionWords::has_function(int number) const {
                      [&](const MWord& one) { return one.number == number; });
 }
 
-MotionWords read_motion_words(BlockReader& reader, unsigned allowed) {
-  return WordReader(reader, allowed).read();
+MotionWords read_motion_words(BlockReader& reader, unsigned allowed, SplineWords* spline) {
+  MotionWords words;
+  WordReader(reader, allowed, words, spline).read();
+  return words;
 }
 
 void refuse_word(BlockReader& reader, size_t offset, std::string_view word) {

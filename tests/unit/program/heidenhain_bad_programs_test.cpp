@@ -1,6 +1,7 @@
 // tests/data/programs/nc/heidenhain/bad: each file states in its first line, "; expect: code line:column",
 // the error that stops it. Names that begin with five_ run on the five-axis machine.
 #include <algorithm>
+#include <regex>
 
 #include "program/source_text.h"
 #include "unit/program/heidenhain_support.h"
@@ -32,6 +33,9 @@ TEST_P(BadHeidenhainProgram, IsRefusedWhereItStates) {
   EXPECT_EQ(run.first_error(), expected) << run.text();
   for (const Diagnostic& one : run.diagnostics.list()) {
     EXPECT_FALSE(one.text.empty());
+    for (const std::string& said : {one.text, one.fix}) {  // nobody is told to write G-code
+      EXPECT_FALSE(std::regex_search(said, std::regex("\\bG[0-9]"))) << said;
+    }
     if (one.severity == Severity::kError) {
       EXPECT_FALSE(one.fix.empty()) << format(one);
       EXPECT_EQ(one.where.file, GetParam());

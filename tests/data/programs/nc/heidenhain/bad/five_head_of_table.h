@@ -1,4 +1,4 @@
 ; expect: unsupported-word 3:1
 BEGIN PGM T MM
-CALL SELECTED PGM
+M144
 END PGM T MM

@@ -1,5 +1,5 @@
-; expect: unsupported-word 3:10
+; expect: unsupported-word 4:16
 BEGIN PGM T MM
 CYCL DEF 8.0 MIRROR IMAGE
-CYCL DEF 8.1 X
+CYCL DEF 8.1 X C
 END PGM T MM

@@ -1,0 +1,4 @@
+; expect: out-of-range 3:14
+BEGIN PGM T MM
+APPR CT X+10 CCA400 R+10 RL F100
+END PGM T MM

@@ -1,0 +1,7 @@
+; expect: bad-approach 5:1
+BEGIN PGM T MM
+TOOL CALL 1 Z S100
+L X-9 Y+0 FMAX
+APPR LCT X+0 Y+0 R5 RL F100
+L Y+20
+END PGM T MM

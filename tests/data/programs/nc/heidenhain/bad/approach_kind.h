@@ -1,0 +1,4 @@
+; expect: unknown-word 3:1
+BEGIN PGM T MM
+APPR LX X+10 Y+0 LEN5 R0 F100
+END PGM T MM

@@ -1,0 +1,4 @@
+; expect: unexpected-word 3:25
+BEGIN PGM T MM
+APPR CT X+10 CCA90 R+10 LEN4 RL F100
+END PGM T MM

@@ -1,0 +1,4 @@
+; expect: out-of-range 3:15
+BEGIN PGM T MM
+APPR LCT X+10 R-10 RL F100
+END PGM T MM

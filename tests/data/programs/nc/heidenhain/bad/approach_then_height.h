@@ -1,0 +1,6 @@
+; expect: bad-approach 4:1
+BEGIN PGM T MM
+TOOL CALL 1 Z S100
+APPR LT X+10 Y+0 LEN5 RL F100
+L Z-5
+END PGM T MM

@@ -1,0 +1,6 @@
+; expect: compensation-active 5:1
+BEGIN PGM T MM
+TOOL CALL 1 Z S100
+L X+30 RL F100
+APPR LT X+10 Y+0 LEN5 RL F100
+END PGM T MM

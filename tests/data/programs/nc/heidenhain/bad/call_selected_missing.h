@@ -1,0 +1,5 @@
+; expect: unknown-subprogram 4:1
+BEGIN PGM T MM
+SEL PGM "NOWHERE.H"
+CALL SELECTED PGM
+END PGM T MM

@@ -1,0 +1,7 @@
+; expect: bad-approach 6:1
+BEGIN PGM T MM
+TOOL CALL 1 Z S100
+L X-20 FMAX
+L X+0 RL F100
+DEP LCT X+0 Y+9 R5
+END PGM T MM

@@ -1,0 +1,5 @@
+; expect: words-conflict 4:1
+BEGIN PGM T MM
+L X+10 F100
+DEP LT LEN5 RL F100
+END PGM T MM

@@ -1,0 +1,5 @@
+; expect: missing-word 4:1
+BEGIN PGM T MM
+L X+10 F100
+DEP LN LEN5 F100
+END PGM T MM

@@ -1,0 +1,4 @@
+; expect: axis-missing 3:13
+BEGIN PGM T MM
+PLANE AXIAL B+10 TURN FMAX
+END PGM T MM

@@ -1,0 +1,4 @@
+; expect: word-twice 3:18
+BEGIN PGM T MM
+PLANE AXIAL A+10 A+20 TURN FMAX
+END PGM T MM

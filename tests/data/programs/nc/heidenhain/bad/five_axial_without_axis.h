@@ -1,0 +1,4 @@
+; expect: missing-word 3:1
+BEGIN PGM T MM
+PLANE AXIAL TURN FMAX
+END PGM T MM

@@ -1,0 +1,6 @@
+; expect: bad-feed 5:1
+BEGIN PGM T MM
+L X+0 Y+0 Z+0 A+0 C+0 FMAX
+M116
+L C+90 F500
+END PGM T MM

@@ -1,0 +1,4 @@
+; expect: unexpected-word 3:1
+BEGIN PGM T MM
+PLANE SPATIAL SPA+10 SPB+0 SPC+0 STAY MB MAX
+END PGM T MM

@@ -1,0 +1,5 @@
+; expect: unsupported-word 4:19
+BEGIN PGM T MM
+TRANS ROTATION ROT+30
+TRANS MIRROR AXIS X
+END PGM T MM

@@ -1,0 +1,5 @@
+; expect: unsupported-word 4:14
+BEGIN PGM T MM
+CYCL DEF 8.0 MIRROR IMAGE
+CYCL DEF 8.1 Z
+END PGM T MM

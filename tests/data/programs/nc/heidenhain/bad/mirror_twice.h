@@ -1,0 +1,5 @@
+; expect: word-twice 4:16
+BEGIN PGM T MM
+CYCL DEF 8.0 MIRROR IMAGE
+CYCL DEF 8.1 X X
+END PGM T MM

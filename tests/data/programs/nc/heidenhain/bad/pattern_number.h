@@ -1,0 +1,4 @@
+; expect: out-of-range 3:13
+BEGIN PGM T MM
+PATTERN DEF ROW1 (X+1 Y+3 D+4 NUM0)
+END PGM T MM

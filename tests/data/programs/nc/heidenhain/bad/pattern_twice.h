@@ -1,0 +1,4 @@
+; expect: word-twice 3:23
+BEGIN PGM T MM
+PATTERN DEF POS1 (X+1 X+3)
+END PGM T MM

@@ -1,0 +1,4 @@
+; expect: missing-word 3:18
+BEGIN PGM T MM
+PATTERN DEF POS1 X+1 Y+3
+END PGM T MM

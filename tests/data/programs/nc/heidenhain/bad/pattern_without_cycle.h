@@ -1,0 +1,5 @@
+; expect: no-cycle 4:1
+BEGIN PGM T MM
+PATTERN DEF POS1 (X+1 Y+2 Z+0)
+CYCL CALL PAT FMAX
+END PGM T MM

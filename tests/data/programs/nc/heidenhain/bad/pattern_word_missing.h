@@ -1,0 +1,4 @@
+; expect: missing-word 3:13
+BEGIN PGM T MM
+PATTERN DEF ROW1 (X+1 Y+3 NUM3)
+END PGM T MM

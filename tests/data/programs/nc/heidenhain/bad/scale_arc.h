@@ -1,0 +1,7 @@
+; expect: bad-arc 6:1
+BEGIN PGM T MM
+CYCL DEF 26.0 S
+CYCL DEF 26.1 X2
+CC X+0 Y+5
+C X+0 Y+10 DR+ F100
+END PGM T MM

@@ -1,0 +1,5 @@
+; expect: missing-word 4:13
+BEGIN PGM T MM
+CYCL DEF 26.0 S
+CYCL DEF 26.1 CCX+4
+END PGM T MM

@@ -1,0 +1,5 @@
+; expect: unsupported-word 4:1
+BEGIN PGM T MM
+TRANS SCALE SCL2
+SPL X+1 K3X+0 K2X+0 K1X-1 F100
+END PGM T MM

@@ -1,0 +1,6 @@
+; expect: unsupported-word 5:14
+BEGIN PGM T MM
+TRANS SCALE SCL2
+CYCL DEF 26.0 S
+CYCL DEF 26.1 X2
+END PGM T MM

@@ -1,0 +1,5 @@
+; expect: out-of-range 4:18
+BEGIN PGM T MM
+CYCL DEF 11.0 S
+CYCL DEF 11.1 SCL 0
+END PGM T MM

@@ -1,0 +1,5 @@
+; expect: unsupported-word 4:18
+BEGIN PGM T MM
+TRANS SCALE SCL2
+TRANS DATUM AXIS X+10
+END PGM T MM
