@@ -116,16 +116,18 @@ void Executor::old_cycle(BlockReader& reader, CycleNumber number, size_t offset)
   }
 }
 
-/// Cycles 1 and 2: SET UP, DEPTH, PECKG, DWELL, F; kept under the numbers of cycle 200.
+/// Cycles 1 and 2: SET UP, DEPTH, PECKG, DWELL, F, or as German controls write them: ABST, TIEFE, ZUSTLG,
+/// V.ZEIT; kept under the numbers of cycle 200.
 void Executor::old_drilling(BlockReader& reader, CycleNumber number) {
   reader.done();
   const size_t start = reader.offset();
   const std::string word(reader.take_letters());
   int key = 0;
   if (word == "SET") reader.take("UP"), key = 200;
-  if (word == "DEPTH") key = 201;
-  if (word == "PECKG" && number.number == 1) key = 202;
-  if (word == "DWELL") key = 211;
+  if (word == "ABST") key = 200;
+  if (word == "DEPTH" || word == "TIEFE") key = 201;
+  if ((word == "PECKG" || word == "ZUSTLG") && number.number == 1) key = 202;
+  if (word == "DWELL" || (word == "V" && reader.take_char('.') && reader.take("ZEIT"))) key = 211;
   if (word == "F") key = 206;
   if (key == 0) refuse_word(reader, start, word);
   const double value = reader.value();
@@ -183,7 +185,12 @@ void Executor::parameter_cycle(BlockReader& reader, int number, size_t offset) {
 
 /// 19.1 A+0 B+45 C+0: spatial angles; without words, no tilted plane.
 void Executor::tilt_cycle(BlockReader& reader) {
+  reader.done();
   const size_t start = reader.offset();
+  if (reader.block().text.find("ABST") != std::string::npos ||
+      reader.block().text.find("SET UP") != std::string::npos)
+    reader.fail("unsupported-word", start, "whether cycle 19 turns the axes itself depends on the machine",
+                "PLANE SPATIAL SPA+0 SPB+45 SPC+0 MOVE DIST50 F2000");
   const MotionWords words = read_motion_words(reader, kAxesAllowed | kFeedAllowed);
   const bool added = words.axes[3].incremental || words.axes[4].incremental || words.axes[5].incremental;
   if (words.any_linear() || words.feed != FeedWord::kNone || added)

@@ -160,7 +160,7 @@ void Executor::function_number(BlockReader& reader, size_t start) {
   }
   if (number >= 15 && number <= 38) {
     reader.fail("unsupported-word", start, fmt::format("FN {} is known, but not supported here", number),
-                "FN 0 to FN 14 and FN 16 are");
+                "FN 0 to FN 14, FN 16 and FN 38 are");
   }
   reader.fail("unknown-word", start, fmt::format("there is no FN {}", number), "FN 0 to FN 38");
 }

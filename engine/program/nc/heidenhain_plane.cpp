@@ -170,7 +170,7 @@ void Executor::tilt(BlockReader& reader, const Mat3& rotation, bool on, size_t s
   if (!inner_.none())
     reader.fail("words-conflict", start, "a transformation within the tilted plane is still active",
                 "reset it (CYCL DEF 7, 8, 10, 11, 26) before the plane changes");
-  if (outer_.stretches())
+  if (on && outer_.stretches())
     reader.fail("unsupported-word", start,
                 "tilting while a mirror image or a scaling is active is not supported",
                 "tilt first, then mirror or scale within the plane");

@@ -10,6 +10,9 @@ namespace swarf::program::heidenhain {
 
 void Executor::set_tcpm(bool on, bool by_vector, bool spatial, bool chosen) {
   if (!on && !tcpm_) return;
+  if (on && compensates_heads_)
+    control_.fail("words-conflict", 0, "M128 or FUNCTION TCPM while M114 or M144 is on",
+                  "write M115 or M145 before it");
   tcpm_ = on;
   spatial_ = on && spatial;
   path_chosen_ = on && chosen;

@@ -129,10 +129,21 @@ bool BlockReader::done() {
   return at_ >= block_.text.size();
 }
 
+/// Q1, QL1, QR1: the parameter of FQ50, not a part of the word.
+bool BlockReader::parameter_at(size_t offset) const {
+  if (block_.text[offset] != 'Q' || offset + 1 >= block_.text.size()) return false;
+  const char next = block_.text[offset + 1];
+  if (next != 'L' && next != 'R') return is_digit(next);
+  return offset + 2 < block_.text.size() && is_digit(block_.text[offset + 2]);
+}
+
 std::string_view BlockReader::letters() {
   done();
   size_t end = at_;
-  while (end < block_.text.size() && is_letter(block_.text[end])) ++end;
+  while (end < block_.text.size() && is_letter(block_.text[end])) {
+    if (end > at_ && parameter_at(end)) break;
+    ++end;
+  }
   return std::string_view(block_.text).substr(at_, end - at_);
 }
 

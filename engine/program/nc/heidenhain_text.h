@@ -62,7 +62,8 @@ class BlockReader {
     return at_ + ahead < block_.text.size() ? block_.text[at_ + ahead] : '\0';
   }
   void skip() { ++at_; }
-  /// The run of letters here; empty when something else stands here. White space before it is passed.
+  /// The run of letters here, up to a parameter (F of FQ50); empty when something else stands here. White
+  /// space before it is passed.
   std::string_view letters();
   /// The same, and passes it.
   std::string_view take_letters();
@@ -98,6 +99,8 @@ class BlockReader {
   [[noreturn]] void fail(const char* code, size_t offset, std::string text, std::string fix) const;
 
  private:
+  bool parameter_at(size_t offset) const;
+
   const BlockText& block_;
   nc::Control& control_;
   Parameters& parameters_;

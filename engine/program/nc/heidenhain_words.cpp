@@ -244,7 +244,8 @@ void refuse_word(BlockReader& reader, size_t offset, std::string_view word) {
   if (contains(unsupported_words(), word)) {
     reader.fail("unsupported-word", offset,
                 fmt::format("{} is a word of this control, but not supported here", word),
-                "post the program without it");
+                word == "IF" || word == "WHILE" || word == "FOR" ? "FN 9 to FN 12 jump to labels"
+                                                                 : "post the program without it");
   }
   if (contains(known_words(), word)) {
     reader.fail("unexpected-word", offset, fmt::format("{} does not stand in this place", word),

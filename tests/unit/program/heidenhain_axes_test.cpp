@@ -155,7 +155,7 @@ TEST(HeidenhainAxes, ReferencePointsOfRoundToolsAreRefused) {
   setup.tools.push_back({9, "BALL", 50.0, 20.0, 10.0});
   const NcRun run =
       klartext("TOOL CALL 9 Z\nFUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS REFPNT CENTER-CENTER\n", setup);
-  EXPECT_EQ(run.first_error(), "unsupported-word 3:43") << run.text();
+  EXPECT_EQ(run.first_error(), "unsupported-word 3:44") << run.text();
 }
 
 }  // namespace

@@ -83,7 +83,7 @@ TEST(HeidenhainFrame, MirroredContoursKeepTheirSideOfThePart) {
       "R6\n";
   const std::string head = "TOOL CALL 1 Z S1000\n";
   const NcRun plain = klartext_clean(head + "L X+0 Y-30 FMAX\n" + contour);
-  for (const std::string& axis : {"X", "Y", "X Y"}) {
+  for (const std::string axis : {"X", "Y", "X Y"}) {
     const NcRun run =
         klartext_clean(head + "CYCL DEF 8.0 M\nCYCL DEF 8.1 " + axis + "\nL X+0 Y-30 FMAX\n" + contour);
     ASSERT_EQ(run.moves().size(), plain.moves().size()) << axis;

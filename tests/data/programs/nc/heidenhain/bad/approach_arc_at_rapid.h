@@ -1,6 +1,7 @@
-; expect: unexpected-word 4:1
+; expect: unexpected-word 5:1
 BEGIN PGM T MM
 TOOL CALL 1 Z S100
+L X-20 FMAX
 APPR CT X+10 Y+0 CCA90 R5 RL FMAX
 L X+20
 END PGM T MM

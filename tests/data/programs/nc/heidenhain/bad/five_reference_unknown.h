@@ -1,4 +1,4 @@
-; expect: unknown-word 3:43
+; expect: unknown-word 3:44
 BEGIN PGM T MM
 FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS REFPNT TIP-TOP
 END PGM T MM

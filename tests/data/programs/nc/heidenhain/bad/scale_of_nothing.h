@@ -1,4 +1,4 @@
-; expect: missing-word 4:13
+; expect: missing-word 4:15
 BEGIN PGM T MM
 CYCL DEF 26.0 S
 CYCL DEF 26.1 CCX+4

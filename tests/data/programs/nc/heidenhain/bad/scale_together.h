@@ -1,4 +1,4 @@
-; expect: unsupported-word 5:14
+; expect: unsupported-word 5:15
 BEGIN PGM T MM
 TRANS SCALE SCL2
 CYCL DEF 26.0 S

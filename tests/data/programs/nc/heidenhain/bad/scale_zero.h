@@ -1,4 +1,4 @@
-; expect: out-of-range 4:18
+; expect: out-of-range 4:19
 BEGIN PGM T MM
 CYCL DEF 11.0 S
 CYCL DEF 11.1 SCL 0

@@ -1,0 +1,5 @@
+; expect: unsupported-word 4:20
+BEGIN PGM T MM
+CYCL DEF 19.0 WORKING PLANE
+CYCL DEF 19.1      A+30 B+0 C+0 F5000 ABST50
+END PGM T MM
