@@ -20,7 +20,8 @@ constexpr int kNumberMax = 1999;
 
 double checked(BlockReader& reader, std::optional<double> value, size_t offset, const std::string& why) {
   if (value && std::isfinite(*value)) return *value;
-  reader.fail("out-of-domain", offset, why, "correct the formula, or the values that it is given");
+  reader.fail("out-of-domain", offset, why.empty() ? "the result is too large for a number" : why,
+              "correct the formula, or the values that it is given");
 }
 
 double sum(BlockReader& reader, int depth);
@@ -39,7 +40,7 @@ double apply_function(BlockReader& reader, std::string_view word, double x, size
                                                 {"SQRT", Function::kSqrt},
                                                 {"LN", Function::kLn},
                                                 {"EXP", Function::kExp}}};
-  std::string why = "the result is too large for a number";
+  std::string why;
   for (const Named& one : kNamed) {
     if (one.word == word) return checked(reader, nc::apply(one.function, x, why), offset, why);
   }
@@ -233,7 +234,7 @@ void basic_function(BlockReader& reader, int number) {
   sign('=');
   reader.done();
   const size_t start = reader.offset();
-  std::string why = "the result is too large for a number";
+  std::string why;
   std::optional<double> result;
   if (number >= 5 && number <= 7) {
     word(number == 5 ? "SQRT" : number == 6 ? "SIN" : "COS");
