@@ -40,7 +40,7 @@ const std::vector<CycleParameters>& parameter_cycles() {
 
 /// Cycles of the control that are not executed here.
 bool known_cycle(int number) {
-  constexpr int kOld[] = {3, 4, 5, 6, 12, 13, 14, 15, 16, 17, 18, 20, 21, 22, 23, 24, 25, 27, 28, 29, 30, 39};
+  constexpr int kOld[] = {3, 4, 5, 6, 12, 14, 15, 16, 17, 18, 20, 21, 22, 23, 24, 25, 27, 28, 29, 30, 39};
   return (number >= 200 && number <= 299) || (number >= 400 && number <= 499) ||
          (number >= 800 && number <= 899) || (number >= 1000 && number <= 1499) ||
          std::find(std::begin(kOld), std::end(kOld), number) != std::end(kOld);
@@ -57,7 +57,7 @@ void Executor::cycle_definition(BlockReader& reader) {
     reader.skip();
     number.part = static_cast<int>(reader.whole_number(99));
   }
-  const int old[] = {1, 2, 7, 8, 9, 10, 11, 19, 26, 32};
+  const int old[] = {1, 2, 7, 8, 9, 10, 11, 13, 19, 26, 32};
   const bool is_old = std::find(std::begin(old), std::end(old), number.number) != std::end(old);
   if (is_old) {
     if (number.part < 0)
@@ -70,7 +70,7 @@ void Executor::cycle_definition(BlockReader& reader) {
   if (known_cycle(number.number))
     reader.fail("unsupported-word", offset,
                 fmt::format("cycle {} is known, but not supported here", number.number),
-                "1, 2, 7 to 11, 19, 26, 32, 200 to 208, 220, 221, 240, 241 and 247 are");
+                "1, 2, 7 to 11, 13, 19, 26, 32, 200 to 208, 220, 221, 240, 241 and 247 are");
   reader.fail("unknown-word", offset, fmt::format("there is no cycle {}", number.number), "CYCL DEF 200");
 }
 
@@ -107,6 +107,10 @@ void Executor::old_cycle(BlockReader& reader, CycleNumber number, size_t offset)
       return scaling(reader);
     case 26:
       return axis_scaling(reader);
+    case 13:  // the spindle turns to an angle
+      control_.without_effect("CYCL DEF 13");
+      reader.rest();
+      return;
     case 19:
       return tilt_cycle(reader);
     case 32:
@@ -218,7 +222,8 @@ void Executor::tolerance(BlockReader& reader, int part) {
   control_.set_corner_tolerance(control_.mm(width));
 }
 
-/// Cycle 247: the work offset with this number.
+/// Cycle 247: the work offset with this number. The control ends shift, mirror image, rotation and scaling
+/// with it.
 void Executor::preset(BlockReader& reader, const Cycle& cycle) {
   const double number = cycle.q.at(339);
   const bool given = number >= 1.0 && number == std::floor(number) && number < 1e6 &&
@@ -226,8 +231,13 @@ void Executor::preset(BlockReader& reader, const Cycle& cycle) {
   if (!given)
     reader.fail("unknown-offset", cycle.offset, fmt::format("there is no preset {:g}", number),
                 "give the work offset with this number in the scene");
+  if (tilted_)
+    reader.fail("unsupported-word", cycle.offset,
+                "a preset while the working plane is tilted is not supported",
+                "write PLANE RESET STAY before it");
   control_.set_work_offset(static_cast<int>(number));
-  tangent_.reset();
+  outer_ = Level();
+  update_frame();
 }
 
 /// CYCL CALL M3, CYCL CALL POS X+10 Y+20 Z+0 FMAX, CYCL CALL PAT FMAX.

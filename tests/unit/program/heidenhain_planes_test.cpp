@@ -132,6 +132,20 @@ TEST(HeidenhainPlanes, PresetsAreWorkOffsets) {
   EXPECT_NEAR((q.head<3>() - Eigen::Vector3d(101, 202, 303)).norm(), 0.0, 1e-12);
 }
 
+// The manual: a preset ends shift, mirror image, rotation and scaling.
+TEST(HeidenhainPlanes, PresetsEndTheTransformationsBeforeThem) {
+  const NcRun run = klartext_clean(
+      "TRANS DATUM AXIS X+10\nTRANS MIRROR AXIS Y\nTRANS ROTATION ROT+30\nTRANS SCALE SCL2\nCYCL DEF 247 "
+      "PRESET "
+      "Q339=+1\nCYCL DEF 13.0 ORIENTATION\nCYCL DEF 13.1 ANGLE 180\nL X+1 Y+2 Z+3 FMAX\n");
+  ASSERT_EQ(run.moves().size(), 1u);
+  expect_tip(run.moves()[0], 1, 2, 3);
+  EXPECT_EQ(
+      klartext("PLANE SPATIAL SPA+10 SPB+0 SPC+0 STAY\nCYCL DEF 247 PRESET Q339=+1\n", free_five_axis_setup())
+          .first_error(),
+      "unsupported-word 3:10");
+}
+
 // M128 and each FUNCTION TCPM: the tip goes where it is programmed, whatever the rotary axes do.
 TEST(HeidenhainTcpm, TipStandsWhereItIsProgrammed) {
   const std::string head = "TOOL CALL 2 Z S1000\nL X+0 Y+0 Z+50 A+0 C+0 FMAX\n";
