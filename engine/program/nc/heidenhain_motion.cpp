@@ -39,7 +39,8 @@ Target Executor::target_of(BlockReader& reader, const MotionWords& words, int wo
   for (int i = 0; i < words_taken; ++i) {
     const Amount& word = words.axes[static_cast<size_t>(i)];
     if (!word) continue;
-    if (i >= 3) control_.require_axis(static_cast<nc::AxisWord>(i), reader.column(word.offset));
+    const auto axis = static_cast<nc::AxisWord>(i);
+    if (i >= 3 && control_.axis_of(axis) < 0) control_.require_axis(axis, reader.column(word.offset));
     target.set(
         i, i < 3 ? stretch_.along(i, control_.mm(word.value), word.incremental) : rad_from_deg(word.value),
         word.incremental);
