@@ -49,6 +49,9 @@ struct ProgramStopped {};
 
 class Contour;
 
+/// The radius at which one degree is one mm of arc.
+inline constexpr double kDegreePerMm = 57.29577951308232;
+
 class Control {
  public:
   /// All references must outlive the control. Throws InputError when the machine has no unique inverse, lacks
@@ -88,6 +91,8 @@ class Control {
   void set_feed(double value, int column);
   double feed() const { return feed_; }
   void set_feed_rule(FeedRule rule) { feed_rule_ = rule; }
+  /// Radii at which rotary axes A B C count for F, mm; 180/pi as long as none is set: a degree is a mm.
+  void set_feed_radii(const std::array<double, 3>& radii_mm) { feed_radii_mm_ = radii_mm; }
   void set_speed(double rpm) { speed_rpm_ = rpm; }
   double speed_rpm() const { return speed_rpm_; }
   /// +1 clockwise (M3), -1 counter-clockwise (M4), 0 stopped (M5).
@@ -255,6 +260,7 @@ class Control {
   Plane plane_ = Plane::kXY;
   FeedMode feed_mode_ = FeedMode::kPerMinute;
   FeedRule feed_rule_ = FeedRule::kLinearFirst;
+  std::array<double, 3> feed_radii_mm_{kDegreePerMm, kDegreePerMm, kDegreePerMm};
   double feed_ = 0.0;        ///< 0: none
   bool feed_fresh_ = false;  ///< F stood in this block
   double speed_rpm_ = 0.0;

@@ -14,9 +14,14 @@ constexpr double kTurn = 2.0 * kPi;
 /// Shorter ways are rounding of coordinates (mm); a segment without way and without dwell is none.
 constexpr double kNoWay = 1e-10;
 
-double turn_deg(const std::array<double, 3>& from, const std::array<double, 3>& to) {
+/// Way of the rotary axes as F counts it: degrees, unless radii are set.
+double turn_way(const std::array<double, 3>& from, const std::array<double, 3>& to,
+                const std::array<double, 3>& radii_mm) {
   double sum = 0.0;
-  for (size_t i = 0; i < 3; ++i) sum += (to[i] - from[i]) * (to[i] - from[i]);
+  for (size_t i = 0; i < 3; ++i) {
+    const double weight = radii_mm[i] / kDegreePerMm;
+    sum += weight * weight * (to[i] - from[i]) * (to[i] - from[i]);
+  }
   return deg_from_rad(std::sqrt(sum));
 }
 
@@ -122,7 +127,7 @@ void Control::emit_piece(const Segment& segment, const Vec3& p_to, const std::ar
   const bool arc = angle > 0.0;
   const bool stands = !arc && (move.q_to - q_).cwiseAbs().maxCoeff() <= kNoWay;
   if (stands && segment.dwell_s == 0.0) return;
-  const double turn = segment.turns_rotaries ? turn_deg(segment.rotary_from, rotary_to) : 0.0;
+  const double turn = segment.turns_rotaries ? turn_way(segment.rotary_from, rotary_to, feed_radii_mm_) : 0.0;
   move.law = segment.machine      ? segment.law
              : tcp_ == Tcp::kOff  ? BlockLaw::kJoint
              : tcp_ == Tcp::kAxes ? BlockLaw::kTcpAxes

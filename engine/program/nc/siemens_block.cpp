@@ -200,6 +200,10 @@ class BlockReader {
       if (machine_axis_ == nullptr) machine_axis_ = &words_.axes[axis];
       return;
     }
+    if (name == "AP" || name == "RP") {
+      coordinate(name == "AP" ? words_.polar_angle : words_.polar_radius, number, way, token, false);
+      return;
+    }
     if (way != Way::kModal) {
       fail("words-conflict", offset, fmt::format("{} takes no AC, IC, DC, ACP or ACN", name),
            fmt::format("write {}=10", name));
@@ -213,7 +217,7 @@ class BlockReader {
       return once(vector[static_cast<size_t>(name[0] - 'A')], number, token);
     }
     using Plain = std::pair<std::string_view, Amount BlockWords::*>;
-    static constexpr std::array<Plain, 10> kPlain = {{{"CR", &BlockWords::radius},
+    static constexpr std::array<Plain, 11> kPlain = {{{"CR", &BlockWords::radius},
                                                       {"AR", &BlockWords::opening},
                                                       {"TURN", &BlockWords::turns},
                                                       {"F", &BlockWords::feed},
@@ -222,7 +226,8 @@ class BlockReader {
                                                       {"ADIS", &BlockWords::rounding},
                                                       {"RPL", &BlockWords::plane_turn},
                                                       {"CTOL", &BlockWords::contour},
-                                                      {"PL", &BlockWords::interval}}};
+                                                      {"PL", &BlockWords::interval},
+                                                      {"OFFN", &BlockWords::allowance}}};
     for (const auto& [word, member] : kPlain) {
       if (name == word) {
         once(words_.*member, number, token);
@@ -231,7 +236,7 @@ class BlockReader {
     }
     if (name == "M") {
       words_.functions.push_back({whole(number, token), token.offset, true});
-    } else if (name == "H" || name == "SPOS" || name == "OTOL" || name == "ADISPOS") {
+    } else if (name == "H" || name == "SPOS" || name == "OTOL" || name == "ADISPOS" || name == "LIMS") {
       words_.noted.push_back(
           {fmt::format("{}{:g}", name.size() == 1 ? name : name + "=", number), token.offset});
     } else {
@@ -315,6 +320,7 @@ class BlockReader {
         return;
       case Meaning::kTransform:
         alone(words_.transform, word.code, name, offset);
+        words_.other_offset = offset;
         transform_number();
         return;
       case Meaning::kCycle:
@@ -323,6 +329,16 @@ class BlockReader {
         return;
       case Meaning::kEnd:
         words_.ends_program = true;
+        return;
+      case Meaning::kFeedGroup:
+        if (word.code == 0) {
+          feed_group(name, offset);
+        } else {
+          feed_radius(name, offset);
+        }
+        return;
+      case Meaning::kNotedIndex:
+        noted_index(name, offset);
         return;
       case Meaning::kUnsupported:
         fail("unsupported-word", offset, fmt::format("{} is known and not supported", name), word.advice);
@@ -360,7 +376,7 @@ class BlockReader {
       const bool other_motion = group == Group::kMotion || group == Group::kNoMotion;
       if (motion && other_motion) {
         fail("two-motion-words", offset, fmt::format("{} is the second motion of this block", name),
-             "a block has one of G0 G1 G2 G3 CIP CT POLY G4 G74 G75");
+             "a block has one of G0 G1 G2 G3 CIP CT POLY G4 G74 G75 G110 G111 G112");
       }
       if (group == word.group) {
         fail("modal-conflict", offset, fmt::format("{} belongs to the same group as a word before it", name),
@@ -387,14 +403,91 @@ class BlockReader {
     words_.calls.push_back(std::move(call));
   }
 
+  /// The first word that a frame cannot use; npos when there is none.
+  size_t stray_offset() const {
+    size_t first = std::string_view::npos;
+    const auto look = [&](const auto& word) {
+      if (word.given) first = std::min(first, word.offset);
+    };
+    for (const auto* three : {&words_.centre, &words_.between}) {
+      for (const Coordinate& word : *three) look(word);
+    }
+    for (const auto* three : {&words_.angles, &words_.vector}) {
+      for (const Amount& word : *three) look(word);
+    }
+    look(words_.polar_angle);
+    look(words_.polar_radius);
+    for (const Amount* word : {&words_.radius, &words_.opening, &words_.turns}) look(*word);
+    for (const CycleCall& call : words_.calls) first = std::min(first, call.offset);
+    return first;
+  }
+
+  /// X, Y, Z, A, B or C, whose place in that list is given.
+  size_t axis_here(const std::string& of) {
+    const Token axis = reader_.peek();
+    const size_t index = axis.name.size() == 1 ? kAxisNames.find(axis.name[0]) : std::string_view::npos;
+    if (index == std::string_view::npos) {
+      fail("bad-block", reader_.offset(), fmt::format("{} names the axes X Y Z A B C", of), "FGROUP(X,Y,Z)");
+    }
+    reader_.next();
+    return index;
+  }
+
+  /// FGROUP(X,Y,Z): the names become the texts of its arguments.
+  void feed_group(const std::string& name, size_t offset) {
+    CycleCall call{name, {}, {}, offset};
+    reader_.expect("(", name);
+    if (!reader_.skip(")")) {
+      do {
+        call.offsets.push_back(reader_.offset());
+        call.arguments.emplace_back(Value::string(std::string(1, kAxisNames[axis_here(name)])));
+      } while (reader_.skip(","));
+      reader_.expect(")", "the axes of FGROUP");
+    }
+    words_.calls.push_back(std::move(call));
+  }
+
+  /// FGREF[B]=50.
+  void feed_radius(const std::string& name, size_t offset) {
+    reader_.expect("[", name);
+    const size_t index = axis_here(name);
+    if (index < 3) {
+      fail("words-conflict", offset, "FGREF is the radius of a rotary axis", "FGREF[C]=50");
+    }
+    reader_.expect("]", "the axis of FGREF");
+    reader_.expect("=", name);
+    Amount& radius = words_.feed_radii[index - 3];
+    radius = {evaluate_number(reader_, variables_), offset, true};
+  }
+
+  /// ACC[X]=50.
+  void noted_index(const std::string& name, size_t offset) {
+    reader_.expect("[", name);
+    const std::string axis = capitals(reader_.peek().text);
+    if (!reader_.done()) reader_.next();
+    reader_.expect("]", "the axis");
+    reader_.expect("=", name);
+    const double value = evaluate_number(reader_, variables_);
+    words_.noted.push_back({fmt::format("{}[{}]={:g}", name, axis, value), offset});
+  }
+
   void check() {
     const std::optional<int> point = words_.code(Group::kNoMotion);
     if (machine_axis_ != nullptr && point != kG74 && point != kG75) {
       fail("unexpected-word", machine_axis_->offset, "machine axes (X1=) belong to G74 and G75",
            "write X, Y, Z, A, B or C");
     }
-    if ((words_.frame || words_.transform || !words_.calls.empty()) && !words_.codes.empty() &&
-        words_.motion) {
+    const bool cycle = std::any_of(words_.calls.begin(), words_.calls.end(), [](const CycleCall& call) {
+      return find_word(call.name)->meaning == Meaning::kCycle;
+    });
+    if (words_.frame) {
+      const size_t stray = stray_offset();
+      if (stray != std::string_view::npos) {
+        fail("words-conflict", stray, "this word does not belong beside a frame",
+             "a frame stands in a block of its own: TRANS X10 Y20");
+      }
+    }
+    if ((words_.frame || words_.transform || cycle) && words_.motion) {
       fail("words-conflict", words_.motion_offset,
            "a motion stands beside a frame, a transformation or a cycle", "write it in a block of its own");
     }
@@ -429,9 +522,11 @@ class BlockReader {
 void BlockWords::clear() {
   axes = {};
   centre = between = {};
+  polar_angle = polar_radius = {};
+  feed_radii = {};
   angles = vector = {};
-  for (Amount* amount :
-       {&radius, &opening, &turns, &feed, &speed, &cutting_edge, &rounding, &plane_turn, &contour, &interval})
+  for (Amount* amount : {&radius, &opening, &turns, &feed, &speed, &cutting_edge, &rounding, &plane_turn,
+                         &contour, &interval, &allowance})
     *amount = {};
   polynomials = {};
   divisor = {};
@@ -452,7 +547,7 @@ bool BlockWords::any_axis() const {
 
 bool BlockWords::moves() const {
   const auto given = [](const auto& x) { return x.given; };
-  return any_axis() || std::any_of(centre.begin(), centre.end(), given) ||
+  return any_axis() || polar_angle || polar_radius || std::any_of(centre.begin(), centre.end(), given) ||
          std::any_of(angles.begin(), angles.end(), given) || std::any_of(vector.begin(), vector.end(), given);
 }
 

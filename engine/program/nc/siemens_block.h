@@ -65,6 +65,7 @@ struct BlockWords {
   std::array<Coordinate, 6> axes;           ///< X Y Z A B C
   std::array<Coordinate, 3> centre;         ///< I J K
   std::array<Coordinate, 3> between;        ///< I1 J1 K1
+  Coordinate polar_angle, polar_radius;     ///< AP RP
   std::array<Amount, 3> angles;             ///< A2 B2 C2
   std::array<Amount, 3> vector;             ///< A3 B3 C3
   Amount radius, opening, turns;            ///< CR AR TURN
@@ -73,7 +74,9 @@ struct BlockWords {
   std::array<Coefficients, 6> polynomials;  ///< PO of X Y Z A B C; their ends stand in `axes`
   Coefficients divisor;                     ///< PO[]
   double divisor_end = 1.0;
-  Amount interval;  ///< PL
+  Amount interval;                   ///< PL
+  Amount allowance;                  ///< OFFN
+  std::array<Amount, 3> feed_radii;  ///< FGREF of A B C
   ToolCall tool;
   std::vector<Amount> functions;  ///< M
   std::vector<std::pair<Group, int>> codes;

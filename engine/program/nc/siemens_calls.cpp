@@ -92,18 +92,21 @@ void Flow::call_here(TokenReader& reader, const std::string& name, size_t offset
   call(file, &reader, {}, 1);
 }
 
-/// CALL "NAME" or CALL NAME.
+/// CALL "NAME", CALL NAME, EXTCALL("FOLDER/NAME.SPF").
 void Flow::on_call(TokenReader& reader) {
   const size_t offset = reader.offset();
   const Token& token = reader.peek();
   const bool variable = token.kind == TokenKind::kName && variables_.find(token.name) != nullptr;
   std::string name;
-  if (token.kind == TokenKind::kString || variable) {
+  if (token.kind == TokenKind::kString || token.symbol("(") || variable) {
     name = capitals(converted(evaluate(reader, variables_), Type::kString, reader.line(), offset).text);
   } else if (token.kind == TokenKind::kName || token.kind == TokenKind::kAddress) {
     name = capitals(reader.next().text);
   }
-  for (const char* end : {".SPF", ".MPF"}) {
+  // Folders belong to the control: files are looked for beside the program.
+  if (const size_t folder = name.find_last_of("/\\"); folder != std::string::npos) name.erase(0, folder + 1);
+  if (name.starts_with("_N_")) name.erase(0, 3);
+  for (const char* end : {".SPF", ".MPF", "_SPF", "_MPF"}) {
     if (name.ends_with(end)) name.resize(name.size() - 4);
   }
   const int file = name.empty() ? -1 : loaded(name);

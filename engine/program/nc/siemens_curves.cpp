@@ -74,7 +74,7 @@ PolynomialBlock Executor::polynomial_block(const BlockWords& words, const Target
     if (target.has(word)) axis.to = target.value[n] + (target.is_incremental(word) ? here[n] : 0.0);
     for (size_t k = 0; k < axis.a.size(); ++k) {
       const double a = words.polynomials[n].a[k];
-      axis.a[k] = !words.polynomials[n] ? 0.0 : rotary ? rad_from_deg(a) : control_.mm(a);
+      axis.a[k] = !words.polynomials[n] ? 0.0 : rotary ? rad_from_deg(a) : control_.mm(a) * shape_[word];
     }
     if (!rotary) {
       block.linear[n] = axis;

@@ -73,6 +73,18 @@ bool assign(TokenReader& reader, Variables& variables) {
   const Token& name = reader.peek();
   if (name.kind != TokenKind::kName) return false;
   const LineRef& line = reader.line();
+  if (name.name[0] == '$') {
+    const SystemName asked = system_name(reader, variables);
+    reader.expect("=", asked.name);
+    const Value value = evaluate(reader, variables);
+    if (variables.system() == nullptr) {
+      refuse(line, asked.offset, "unsupported-word",
+             fmt::format("the system variable {} is not simulated", asked.name),
+             "assign to a variable of the program");
+    }
+    variables.system()->write_system(asked, value);
+    return true;
+  }
   const bool parameter = is_parameter(name.name) || (name.name == "R" && reader.peek(1).symbol("["));
   Variable* variable = parameter ? nullptr : variables.find(name.name);
   if (!parameter && variable == nullptr) return false;

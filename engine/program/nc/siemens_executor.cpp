@@ -38,11 +38,17 @@ Outcome Executor::block(TokenReader& reader, Variables& variables) {
   control_.at(file_, line_->line, column(reader.offset()));
   const bool modal_call = reader.position() > 0 && reader.previous().named("MCALL");
   words_.clear();
+  pattern_done_ = false;
   read_block(reader, variables, words_);
   if (modal_call) {
     modal_cycle_.reset();
     if (words_.calls.empty()) return Outcome::kNext;
-    modal_cycle_ = words_.calls.front();
+    const CycleCall& call = words_.calls.front();
+    if (call.name.size() != 7 || !call.name.starts_with("CYCLE8")) {
+      fail("unsupported-word", call.offset, fmt::format("MCALL {} is not supported", call.name),
+           "MCALL takes a drilling cycle or a program: MCALL CYCLE81(10,0,2,-20)");
+    }
+    modal_cycle_ = call;
     drilling(*modal_cycle_);  // refuses now what could not be drilled later
     return Outcome::kNext;
   }
@@ -69,9 +75,10 @@ void Executor::modal_words(const BlockWords& words) {
         break;
       case Group::kPlane:
         control_.set_plane(code == kG17 ? Plane::kXY : code == kG18 ? Plane::kZX : Plane::kYZ);
+        polar_angle_.reset();
         break;
       case Group::kOffset:
-        control_.set_work_offset(code);
+        use_offset(code);
         last_.valid = false;
         break;
       case Group::kUnits:
@@ -86,9 +93,9 @@ void Executor::modal_words(const BlockWords& words) {
                                : code == kG94 ? FeedMode::kPerMinute
                                               : FeedMode::kPerRevolution);
         break;
+      case Group::kReference:
       case Group::kOrientation:
-        interpolation_ = code;
-        interpolation_chosen_ = true;
+        (group == Group::kReference ? reference_ : interpolation_) = code;
         if (traori_) choose_interpolation();
         break;
       case Group::kAngles:
@@ -133,6 +140,16 @@ void Executor::apply_corner() {
 
 /// F is mm/min under G70 too, which changes the unit of lengths alone.
 void Executor::feed_words(const BlockWords& words) {
+  for (size_t i = 0; i < 3; ++i) {
+    const Amount& radius = words.feed_radii[i];
+    if (!radius) continue;
+    if (!(radius.value > 0.0) || control_.inches()) {
+      fail("out-of-range", radius.offset, "FGREF is a radius above zero, in mm",
+           "FGREF[C]=50, in a metric program");
+    }
+    feed_radii_mm_[i] = radius.value;
+    control_.set_feed_radii(feed_radii_mm_);
+  }
   if (!words.feed || words.code(Group::kNoMotion) == kG4) return;
   const bool lengths_alone = units_ == kG70 && control_.feed_mode() != FeedMode::kInverseTime;
   control_.set_feed(lengths_alone ? words.feed.value / 25.4 : words.feed.value, column(words.feed.offset));
@@ -199,9 +216,40 @@ void Executor::noted_words(const BlockWords& words) {
   }
 }
 
-/// G40, G41, G42: before the motion of their block.
+/// FGROUP: X Y Z, or them and every rotary axis, which then count with FGREF. FGROUP() is X Y Z again.
+void Executor::feed_group(const CycleCall& call) {
+  unsigned given = 0, rotary = 0;
+  for (const auto& axis : call.arguments) {
+    const size_t word = std::string_view(nc::kAxisLetters).find(axis->text[0]);
+    control_.require_axis(static_cast<nc::AxisWord>(word), column(call.offset));
+    given |= 1u << word;
+  }
+  for (int word = 3; word < nc::kAxisWords; ++word) {
+    if (control_.axis_of(static_cast<nc::AxisWord>(word)) >= 0) rotary |= 1u << word;
+  }
+  const bool linear = given == 0 || given == 0x07u, all = given == (0x07u | rotary);
+  if (!linear && !all) {
+    fail("unsupported-word", call.offset, "FGROUP is supported with X Y Z, or with all axes of the machine",
+         "FGROUP(X,Y,Z), or FGROUP() as the control starts");
+  }
+  if (!linear && traori_) {
+    fail("unsupported-word", call.offset, "FGROUP with rotary axes under TRAORI is not supported",
+         "F is that of the tip there: FGROUP(X,Y,Z)");
+  }
+  feed_of_rotaries_ = !linear;
+  control_.set_feed_rule(linear ? nc::FeedRule::kLinearFirst : nc::FeedRule::kAllAxes);
+}
+
+/// G40, G41, G42: before the motion of their block. OFFN widens the cutter from the next G41, G42 on.
 void Executor::cutter_words(const BlockWords& words) {
   const std::optional<int> code = words.code(Group::kCutter);
+  if (words.allowance) {
+    allowance_mm_ = control_.mm(words.allowance.value);
+    if (control_.compensation() != Compensation::kOff && !code) {
+      fail("unsupported-word", words.allowance.offset,
+           "OFFN that changes while G41 or G42 is active is not supported", "write OFFN with G41 or G42");
+    }
+  }
   if (!code) return;
   if (*code == kG40) {
     control_.set_compensation(Compensation::kOff, 0.0, control_.place().column);
@@ -213,8 +261,16 @@ void Executor::cutter_words(const BlockWords& words) {
                   "cutter radius compensation has no tool: none is in the spindle, or D0",
                   "load a tool of the table and write D1");
   }
-  control_.set_compensation(*code == kG41 ? Compensation::kLeft : Compensation::kRight,
-                            0.5 * tool->diameter_mm, control_.place().column);
+  const double radius = 0.5 * tool->diameter_mm + allowance_mm_;
+  if (!(radius >= 0.0)) {
+    fail("out-of-range", words.allowance ? words.allowance.offset : 0,
+         fmt::format("OFFN {:g} mm takes more than the radius {:g} mm of the cutter", allowance_mm_,
+                     0.5 * tool->diameter_mm),
+         "compensate on the other side");
+  }
+  const bool left = (*code == kG41) != mirrored();
+  control_.set_compensation(left ? Compensation::kLeft : Compensation::kRight, radius,
+                            control_.place().column);
 }
 
 Outcome Executor::end_words(const BlockWords& words) {
@@ -222,7 +278,8 @@ Outcome Executor::end_words(const BlockWords& words) {
     if (function.value == 2 || function.value == 30) return Outcome::kEnd;
     if (function.value == 17) return Outcome::kReturn;
   }
-  return words.ends_program ? Outcome::kReturn : Outcome::kNext;
+  if (words.ends_program) return Outcome::kReturn;
+  return pattern_done_ ? Outcome::kPattern : Outcome::kNext;
 }
 
 }  // namespace swarf::program::siemens

@@ -5,6 +5,8 @@
 // thousandth of the radius (MD21000, MD21010), ORIWKS (great circle) for orientations.
 #pragma once
 
+#include <array>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,6 +22,8 @@ class Executor final : public BlockTarget {
   explicit Executor(nc::Control& control);
 
   Outcome block(TokenReader& reader, Variables& variables) override;
+  Value read_system(const SystemName& asked) override;
+  void write_system(const SystemName& asked, const Value& value) override;
   bool knows(const std::string& name) const override { return find_word(name) != nullptr; }
   const std::vector<std::string>& names() const override { return word_names(); }
   void note(const std::string& word, const std::string& text, const std::string& file, int line) override;
@@ -50,6 +54,7 @@ class Executor final : public BlockTarget {
   void spindle_words(const BlockWords& words);
   void noted_words(const BlockWords& words);
   void cutter_words(const BlockWords& words);
+  void feed_group(const CycleCall& call);
   Outcome end_words(const BlockWords& words);
 
   // siemens_motion.cpp
@@ -67,6 +72,28 @@ class Executor final : public BlockTarget {
   void machine_move(const BlockWords& words);
   void dwell(const BlockWords& words);
   void approach_point(const BlockWords& words, int code);
+  double arc_scale(size_t offset) const;
+  bool mirrored() const;
+  nc::Motion turned(nc::Motion motion) const;
+
+  // siemens_polar.cpp
+  Vec3 polar_way(double angle_deg, double radius_mm) const;
+  double polar_radius(const Coordinate& word) const;
+  void set_pole(const BlockWords& words, int code);
+  void polar_end(const BlockWords& words, nc::Target& target);
+
+  // siemens_patterns.cpp
+  std::vector<Vec2> places(const CycleCall& call);
+  void pattern(const CycleCall& call);
+
+  // siemens_system.cpp
+  int system_axis(const SystemName& asked, size_t n) const;
+  void check_metric(const SystemName& asked) const;
+  int offset_index(const SystemName& asked, bool& shifts) const;
+  kinematics::AxisValues offset_of(int number) const;
+  Value position_of(const SystemName& asked);
+  Value tool_data(const SystemName& asked);
+  void use_offset(int number);
 
   // siemens_curves.cpp
   static const Coefficients* first_polynomial(const BlockWords& words);
@@ -82,15 +109,21 @@ class Executor final : public BlockTarget {
   void set_frame();
   void choose_interpolation();
   Mat3 rotation_of(const BlockWords& words) const;
+  void scale_words(const BlockWords& words, bool mirrors);
   void swivel(const CycleCall& call);
   void swivel_off();
   Pose swivel_plane(const CycleCall& call);
+  double travel_along_tool(const CycleCall& call) const;
   void retract(const CycleCall& call, int how);
 
   // siemens_cycles.cpp
   void run_call(const CycleCall& call);
   void high_speed(const CycleCall& call);
   nc::DrillCycle drilling(const CycleCall& call) const;
+  double depth_of(const CycleCall& call, double reference) const;
+  void boring(const CycleCall& call, nc::DrillCycle& cycle) const;
+  void only_zero(const CycleCall& call, size_t first, size_t last) const;
+  void modes(const CycleCall& call, size_t first) const;
   void pecking(const CycleCall& call, double reference, nc::DrillCycle& cycle) const;
   void tapping(const CycleCall& call, nc::DrillCycle& cycle) const;
   void drill(const nc::DrillCycle& cycle, const CycleCall& call);
@@ -109,12 +142,21 @@ class Executor final : public BlockTarget {
   double rounding_mm_ = 0.0;            ///< ADIS, for G641
   std::optional<Corner> before_;        ///< while CYCLE832 is on
   Pose programmed_ = Pose::Identity();  ///< TRANS, ROT ...
-  Pose swivelled_ = Pose::Identity();   ///< CYCLE800
+  Vec3 shape_ = Vec3::Ones();  ///< SCALE, MIRROR: the control's coordinates are these times the program's
+  Pose swivelled_ = Pose::Identity();  ///< CYCLE800
   bool traori_ = false, swivel_on_ = false;
-  int interpolation_ = kOriWks;  ///< ORIWKS, ORIMKS, ORIVECT, ORIAXES
-  bool interpolation_chosen_ = false;
-  std::optional<int> angles_;  ///< ORIEULER, ORIRPY
-  bool by_way_ = true;         ///< SPATH; false: UPATH
+  std::optional<int> reference_;      ///< ORIWKS, ORIMKS
+  std::optional<int> interpolation_;  ///< ORIVECT, ORIAXES: goes before ORIWKS and ORIMKS
+  std::optional<int> angles_;         ///< ORIEULER, ORIRPY
+  bool by_way_ = true;                ///< SPATH; false: UPATH
+  double allowance_mm_ = 0.0;         ///< OFFN
+  bool feed_of_rotaries_ = false;     ///< FGROUP has them
+  std::array<double, 3> feed_radii_mm_{nc::kDegreePerMm, nc::kDegreePerMm, nc::kDegreePerMm};
+  Vec3 pole_ = Vec3::Zero();                               ///< program coordinates, mm
+  std::optional<double> polar_angle_;                      ///< AP, degrees
+  std::optional<double> polar_radius_;                     ///< RP, mm
+  std::map<int, kinematics::AxisValues> pending_offsets_;  ///< written, and not called yet
+  bool pattern_done_ = false;                              ///< the block was a pattern
   Piece last_;
   std::optional<CycleCall> modal_cycle_;
 };

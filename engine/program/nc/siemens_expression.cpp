@@ -40,6 +40,17 @@ constexpr std::array<Binary, 19> kBinary = {{{"==", 0},
                                              {"/", 9},
                                              {"DIV", 9},
                                              {"MOD", 9}}};
+/// Names that the control has for the types of machining of CYCLE832; a variable of the program goes before.
+std::optional<int> cycle_constant(std::string_view name) {
+  static constexpr std::pair<std::string_view, int> kNames[] = {
+      {"_OFF", 0},         {"_FINISH", 1},       {"_SEMIFIN", 2},   {"_ROUGH", 3},
+      {"_ORI_FINISH", 11}, {"_ORI_SEMIFIN", 12}, {"_ORI_ROUGH", 13}};
+  for (const auto& [known, value] : kNames) {
+    if (name == known) return value;
+  }
+  return std::nullopt;
+}
+
 class Evaluator {
  public:
   Evaluator(TokenReader& reader, Variables& variables) : reader_(reader), variables_(variables) {}
@@ -115,6 +126,8 @@ class Evaluator {
   }
 
   Value named(const Token& token, size_t offset) {
+    if (const auto constant = cycle_constant(token.name); constant && variables_.find(token.name) == nullptr)
+      return Value::integer(*constant);
     if (token.name == "TRUE" || token.name == "FALSE") return Value::boolean(token.name == "TRUE");
     if (token.name == "R" && reader_.peek().symbol("[")) {
       return variables_.parameter(index(), line(), offset);
@@ -122,7 +135,10 @@ class Evaluator {
     if (reader_.peek().symbol("(")) return function(token, offset);
     if (token.name[0] == '$') {
       if (token.name == "$PI") return Value::real(kPi);
-      fail("unsupported-word", offset, fmt::format("the system variable {} is not simulated", token.name),
+      reader_.back();
+      const SystemName asked = system_name(reader_, variables_);
+      if (variables_.system() != nullptr) return variables_.system()->read_system(asked);
+      fail("unsupported-word", offset, fmt::format("the system variable {} is not simulated", asked.name),
            "write its value, or assign it to a variable of the program");
     }
     std::vector<double> indices;
@@ -140,6 +156,10 @@ class Evaluator {
 
   Value function(const Token& token, size_t offset) {
     const std::string name = token.name;
+    if (name == "CTRANS" || name == "CROT" || name == "CSCALE" || name == "CMIRROR") {
+      fail("unsupported-word", offset, fmt::format("{} gives a frame, which no variable holds here", name),
+           "write $P_UIFR[1,X,TR]= for offsets, TRANS and AROT for frames");
+    }
     reader_.expect("(", name);
     std::vector<Value> arguments;
     if (!reader_.skip(")")) {
@@ -270,6 +290,27 @@ std::vector<double> evaluate_indices(TokenReader& reader, Variables& variables) 
   } while (reader.skip(","));
   reader.expect("]", "the index");
   return indices;
+}
+
+SystemName system_name(TokenReader& reader, Variables& variables) {
+  SystemName asked{reader.peek().name, {}, reader.line(), reader.offset()};
+  reader.next();
+  if (!reader.skip("[")) return asked;
+  do {
+    const Token& token = reader.peek();
+    const bool ends = reader.peek(1).symbol(",") || reader.peek(1).symbol("]");
+    const bool name =
+        token.kind == TokenKind::kName && token.name[0] != '$' && variables.find(token.name) == nullptr;
+    const bool machine_axis = token.kind == TokenKind::kAddress && token.letter != 'R';
+    if (ends && (name || machine_axis)) {
+      asked.indices.push_back(Value::string(capitals(token.text)));
+      reader.next();
+    } else {
+      asked.indices.push_back(evaluate(reader, variables));
+    }
+  } while (reader.skip(","));
+  reader.expect("]", "the index");
+  return asked;
 }
 
 const std::vector<std::string>& expression_words() {

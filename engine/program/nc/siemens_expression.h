@@ -25,6 +25,8 @@ class TokenReader {
   }
   const Token& next() { return tokens_[at_++]; }
   const Token& previous() const { return tokens_[at_ - 1]; }
+  /// Steps back to the token before.
+  void back() { --at_; }
   bool skip(std::string_view symbol_or_name);
   /// Throws InputError "bad-block" unless the symbol stands here.
   void expect(std::string_view symbol, std::string_view after);
@@ -49,6 +51,9 @@ Value evaluate(TokenReader& reader, Variables& variables);
 double evaluate_number(TokenReader& reader, Variables& variables);
 /// [a] or [a,b]: reads the brackets and their formulas.
 std::vector<double> evaluate_indices(TokenReader& reader, Variables& variables);
+
+/// $NAME or $NAME[...], which stands here. Names among the indices (X, TR) that are no variables are texts.
+SystemName system_name(TokenReader& reader, Variables& variables);
 
 /// Names that formulas know: functions and operators.
 const std::vector<std::string>& expression_words();

@@ -9,7 +9,9 @@
 namespace swarf::program::siemens {
 
 Flow::Flow(BlockTarget& target, std::vector<std::string> subprogram_folders, FlowLimits limits)
-    : target_(target), folders_(std::move(subprogram_folders)), limits_(limits) {}
+    : target_(target), folders_(std::move(subprogram_folders)), limits_(limits) {
+  variables_.connect(target_);
+}
 
 Flow::~Flow() = default;
 
@@ -115,11 +117,19 @@ void Flow::words(TokenReader& reader) {
   if (subprogram_here(reader)) return;
   const long before = target_.moves();
   const Outcome outcome = target_.block(reader, variables_);
-  if (outcome == Outcome::kEnd) {
+  const auto programs =
+      std::count_if(levels_.begin(), levels_.end(), [](const Level& level) { return !level.part; });
+  const bool modal = modal_.file >= 0 && levels_.size() == modal_.depth;
+  if (outcome == Outcome::kEnd && programs > 1) {
+    leave_level(true);  // a main program that is called: M2 and M30 mean M17 (manual, subprograms)
+  } else if (outcome == Outcome::kEnd) {
     levels_.clear();
   } else if (outcome == Outcome::kReturn) {
     leave_level(true);
-  } else if (modal_.file >= 0 && levels_.size() == modal_.depth && target_.moves() != before) {
+  } else if (modal && outcome == Outcome::kPattern) {
+    refuse(running_, 0, "unsupported-word", "a position pattern while MCALL calls a program is not supported",
+           "write the positions as blocks, or MCALL with a drilling cycle");
+  } else if (modal && target_.moves() != before) {
     const ModalCall call_now = modal_;
     call(call_now.file, nullptr, call_now.arguments, 1);
   }
@@ -134,7 +144,7 @@ Flow::Handler Flow::handler_of(const std::string& word) {
       {"GOTOF", &Flow::on_goto},    {"GOTOB", &Flow::on_goto},    {"GOTO", &Flow::on_goto},
       {"GOTOC", &Flow::on_goto},    {"CASE", &Flow::on_case},     {"DEF", &Flow::on_def},
       {"PROC", &Flow::on_proc},     {"EXTERN", &Flow::on_extern}, {"CALL", &Flow::on_call},
-      {"MCALL", &Flow::on_mcall},
+      {"EXTCALL", &Flow::on_call},  {"MCALL", &Flow::on_mcall},
   };
   const auto found = handlers.find(word);
   return found == handlers.end() ? nullptr : found->second;
@@ -265,7 +275,7 @@ void Flow::go(TokenReader& reader) {
   if (label.empty()) {
     refuse(reader.line(), reader.offset(), "bad-block",
            fmt::format("{} needs a label or a block number", how),
-           fmt::format("write {} LABEL or {} N100", how, how));
+           fmt::format("write {} LABEL or {} N100; a label begins with two letters or '_'", how, how));
   }
   const size_t offset = reader.offset();
   reader.next();

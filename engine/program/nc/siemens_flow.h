@@ -15,12 +15,16 @@
 
 namespace swarf::program::siemens {
 
-enum class Outcome { kNext, kReturn, kEnd };
+enum class Outcome {
+  kNext,
+  kPattern,  ///< as kNext; the block was a position pattern, at each place of which MCALL works
+  kReturn,
+  kEnd,
+};
 
 /// Executes the blocks of words.
-class BlockTarget {
+class BlockTarget : public SystemVariables {
  public:
-  virtual ~BlockTarget() = default;
   /// The rest of a block, from the reader's place on.
   virtual Outcome block(TokenReader& reader, Variables& variables) = 0;
   /// Whether a name belongs to the language: no variable and no program can have it.

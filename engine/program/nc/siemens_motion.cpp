@@ -30,7 +30,8 @@ Target Executor::target_of(const BlockWords& words, bool machine) const {
     const Coordinate& word = words.axes[n];
     if (!word) continue;
     const bool rotary = n >= 3;
-    const double value = rotary ? rad_from_deg(word.value) : control_.mm(word.value);
+    const double value = rotary ? rad_from_deg(word.value)
+                                : control_.mm(word.value) * (machine ? 1.0 : shape_[static_cast<long>(n)]);
     const bool incremental = word.way == Way::kIncremental || (word.way == Way::kModal && incremental_);
     if (machine && incremental) {
       fail("words-conflict", word.offset, "machine coordinates are absolute, this word is incremental",
@@ -46,6 +47,28 @@ Target Executor::target_of(const BlockWords& words, bool machine) const {
     }
   }
   return target;
+}
+
+/// What the radius of an arc in the plane is multiplied by.
+double Executor::arc_scale(size_t offset) const {
+  const nc::PlaneAxes plane = nc::axes_of(control_.plane());
+  const double one = std::abs(shape_[plane.first]), other = std::abs(shape_[plane.second]);
+  if (one != other) {
+    fail("bad-arc", offset, "the axes of the plane are scaled differently: an arc would be an ellipse",
+         "SCALE both axes of the plane alike");
+  }
+  return one;
+}
+
+/// One of the plane's axes runs the other way: arcs turn the other way, the cutter goes on the other side.
+bool Executor::mirrored() const {
+  const nc::PlaneAxes plane = nc::axes_of(control_.plane());
+  return shape_[plane.first] * shape_[plane.second] < 0.0;
+}
+
+Motion Executor::turned(Motion motion) const {
+  if (!mirrored()) return motion;
+  return motion == Motion::kClockwise ? Motion::kCounterClockwise : Motion::kClockwise;
 }
 
 /// A3= B3= C3= and A2= B2= C2=.
@@ -69,12 +92,17 @@ void Executor::orientation(const BlockWords& words, Target& target) {
     fail("words-conflict", given->offset, "the orientation is given in two ways in this block",
          "write rotary axes, or A3= B3= C3=, or A2= B2= C2=");
   }
-  if (interpolation_ == kOriMks && !programmed_.linear().isIdentity(1e-12)) {
+  if (shape_.cwiseAbs() != Vec3(Vec3::Constant(std::abs(shape_[0])))) {
+    fail("unsupported-word", given->offset,
+         "an orientation while the axes are scaled differently is not supported", "SCALE all axes alike");
+  }
+  if (reference_ == kOriMks && !interpolation_ && !programmed_.linear().isIdentity(1e-12)) {
     fail("unsupported-word", given->offset, "ORIMKS with an orientation in a rotated frame is not supported",
          "write ORIWKS, or give the rotary axes");
   }
   if (vector != nullptr) {
-    target.axis_P = Vec3(words.vector[0].value, words.vector[1].value, words.vector[2].value);
+    const Vec3 axis(words.vector[0].value, words.vector[1].value, words.vector[2].value);
+    target.axis_P = axis.cwiseProduct(shape_);
     return;
   }
   if (!angles_) {
@@ -83,10 +111,11 @@ void Executor::orientation(const BlockWords& words, Target& target) {
   }
   const auto turn = [](double deg, const Vec3& axis) { return Eigen::AngleAxisd(rad_from_deg(deg), axis); };
   const double a = words.angles[0].value, b = words.angles[1].value, c = words.angles[2].value;
-  target.axis_P = *angles_ == kOriEuler
-                      ? Vec3(turn(a, Vec3::UnitZ()) * (turn(b, Vec3::UnitX()) * Vec3::UnitZ()))
-                      : Vec3(turn(c, Vec3::UnitZ()) *
-                             (turn(b, Vec3::UnitY()) * (turn(a, Vec3::UnitX()) * Vec3::UnitZ())));
+  const Vec3 axis = *angles_ == kOriEuler
+                        ? Vec3(turn(a, Vec3::UnitZ()) * (turn(b, Vec3::UnitX()) * Vec3::UnitZ()))
+                        : Vec3(turn(c, Vec3::UnitZ()) *
+                               (turn(b, Vec3::UnitY()) * (turn(a, Vec3::UnitX()) * Vec3::UnitZ())));
+  target.axis_P = axis.cwiseProduct(shape_);
 }
 
 void Executor::motion_words(const BlockWords& words) {
@@ -95,6 +124,8 @@ void Executor::motion_words(const BlockWords& words) {
   if (other) {
     if (*other == kG4) {
       dwell(words);
+    } else if (*other == kG110 || *other == kG111 || *other == kG112) {
+      set_pole(words, *other);
     } else {
       approach_point(words, *other);
     }
@@ -132,8 +163,9 @@ void Executor::motion_words(const BlockWords& words) {
     }
   }
   Target target = target_of(words, false);
+  if (words.polar_angle || words.polar_radius) polar_end(words, target);
   orientation(words, target);
-  if (traori_ && target.rotary() && !interpolation_chosen_) {
+  if (traori_ && target.rotary() && !reference_ && !interpolation_) {
     control_.warn_once("orientation-assumed", target.column,
                        "tool orientations change under TRAORI and the program says not how: ORIWKS (the "
                        "great circle) is taken",
@@ -206,7 +238,7 @@ void Executor::send_arc(Motion motion, const Target& target, ArcWords& arc, size
 /// G2, G3 with I J K, CR= or AR=.
 void Executor::circle(const BlockWords& words, const Target& written) {
   Target target = written;
-  const Motion motion = motion_ == kG2 ? Motion::kClockwise : Motion::kCounterClockwise;
+  const Motion motion = turned(motion_ == kG2 ? Motion::kClockwise : Motion::kCounterClockwise);
   const nc::PlaneAxes plane = nc::axes_of(control_.plane());
   const Vec3 from = control_.position_xyz();
   ArcWords arc;
@@ -220,7 +252,11 @@ void Executor::circle(const BlockWords& words, const Target& written) {
            "G17 has I J, G18 has I K, G19 has J K");
     }
     centred = true;
-    centre[n] = word.way == Way::kAbsolute ? control_.mm(word.value) : from[n] + control_.mm(word.value);
+    centre[n] = (word.way == Way::kAbsolute ? 0.0 : from[n]) + control_.mm(word.value) * shape_[n];
+  }
+  if (!centred && !words.radius && !words.opening && (words.polar_angle || words.polar_radius)) {
+    centred = true;  // the pole is the centre
+    centre = pole_.cwiseProduct(shape_);
   }
   const int ways = (centred ? 1 : 0) + (words.radius ? 1 : 0);
   const size_t offset = words.radius ? words.radius.offset : line_->text.find_first_not_of(" \t");
@@ -239,7 +275,8 @@ void Executor::circle(const BlockWords& words, const Target& written) {
     arc.further_turns = static_cast<int>(turns);
   }
   if (centred) arc.centre = centre;
-  if (words.radius) arc.radius = control_.mm(words.radius.value);
+  const double scale = arc_scale(offset);
+  if (words.radius) arc.radius = control_.mm(words.radius.value) * scale;
   if (words.opening) opened(words, arc, target, from, motion);
   send_arc(motion, target, arc, words.opening ? words.opening.offset : offset);
   if (!arc.centre) last_.valid = false;
@@ -285,8 +322,9 @@ void Executor::circle_through(const BlockWords& words, const Target& target) {
     given = true;
     offset = word.offset;
     const bool incremental = word.way == Way::kIncremental || (word.way == Way::kModal && incremental_);
-    between[n] = (incremental ? from[n] : 0.0) + control_.mm(word.value);
+    between[n] = (incremental ? from[n] : 0.0) + control_.mm(word.value) * shape_[n];
   }
+  if (shape_.cwiseAbs() != Vec3(Vec3::Constant(std::abs(shape_[0])))) arc_scale(offset);
   const Vec3 a = between - from, b = to - from, cross = a.cross(b);
   if (!given || !(cross.norm() > kParallel * a.norm() * b.norm()) || !(cross.norm() > 0.0)) {
     fail("bad-arc", offset, "CIP needs three points that are not on one line",
@@ -303,6 +341,7 @@ void Executor::circle_through(const BlockWords& words, const Target& target) {
 /// lies ahead.
 void Executor::circle_tangential(const Target& target) {
   const size_t offset = line_->text.find_first_not_of(" \t");
+  arc_scale(offset);
   if (!last_.valid) {
     fail("bad-arc", offset, "CT goes on in the direction of the last move, and there is none",
          "write G1 before it, or G2 with a centre");

@@ -45,9 +45,29 @@ using Scope = std::map<std::string, Variable>;
 inline constexpr int kParametersMax = 1000;  ///< R0 to R999, the most that the control can be set up for
 inline constexpr size_t kArrayMax = 100'000;
 
+/// A system variable as a program names it: $P_UIFR[1,X,TR] has the indices 1, "X" and "TR".
+struct SystemName {
+  std::string name;
+  std::vector<Value> indices;
+  const LineRef& line;
+  size_t offset = 0;
+};
+
+/// What the control says in system variables ($...). Both throw InputError "unsupported-word",
+/// "out-of-range", "axis-missing", "start-unknown", "unknown-tool".
+class SystemVariables {
+ public:
+  virtual ~SystemVariables() = default;
+  virtual Value read_system(const SystemName& asked) = 0;
+  virtual void write_system(const SystemName& asked, const Value& value) = 0;
+};
+
 /// R parameters of the channel and the scope of the running program.
 class Variables {
  public:
+  /// None: system variables are refused. Must outlive its use.
+  void connect(SystemVariables& system) { system_ = &system; }
+  SystemVariables* system() { return system_; }
   /// The scope of the running program; must outlive its use.
   void enter(Scope& scope) { scope_ = &scope; }
   Variable* find(const std::string& name);
@@ -68,6 +88,7 @@ class Variables {
   static int parameter_index(double index, const LineRef& line, size_t offset);
 
   Scope* scope_ = nullptr;
+  SystemVariables* system_ = nullptr;
   std::map<int, Value> parameters_;
 };
 

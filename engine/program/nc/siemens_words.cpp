@@ -29,6 +29,9 @@ constexpr Entry kModalWords[] = {
     {"G4", modal(Group::kNoMotion, kG4)},
     {"G74", modal(Group::kNoMotion, kG74)},
     {"G75", modal(Group::kNoMotion, kG75)},
+    {"G110", modal(Group::kNoMotion, kG110)},
+    {"G111", modal(Group::kNoMotion, kG111)},
+    {"G112", modal(Group::kNoMotion, kG112)},
     {"G17", modal(Group::kPlane, kG17)},
     {"G18", modal(Group::kPlane, kG18)},
     {"G19", modal(Group::kPlane, kG19)},
@@ -55,8 +58,8 @@ constexpr Entry kModalWords[] = {
     {"G93", modal(Group::kFeed, kG93)},
     {"G94", modal(Group::kFeed, kG94)},
     {"G95", modal(Group::kFeed, kG95)},
-    {"ORIWKS", modal(Group::kOrientation, kOriWks)},
-    {"ORIMKS", modal(Group::kOrientation, kOriMks)},
+    {"ORIWKS", modal(Group::kReference, kOriWks)},
+    {"ORIMKS", modal(Group::kReference, kOriMks)},
     {"ORIVECT", modal(Group::kOrientation, kOriVect)},
     {"ORIPLANE", modal(Group::kOrientation, kOriVect)},
     {"ORIAXES", modal(Group::kOrientation, kOriAxes)},
@@ -70,9 +73,13 @@ constexpr Entry kModalWords[] = {
     {"ROT", {Meaning::kFrame, Group::kNone, kRot, ""}},
     {"AROT", {Meaning::kFrame, Group::kNone, kARot, ""}},
     {"SCALE", {Meaning::kFrame, Group::kNone, kScale, ""}},
+    {"ASCALE", {Meaning::kFrame, Group::kNone, kAScale, ""}},
     {"MIRROR", {Meaning::kFrame, Group::kNone, kMirror, ""}},
+    {"AMIRROR", {Meaning::kFrame, Group::kNone, kAMirror, ""}},
     {"TRAORI", {Meaning::kTransform, Group::kNone, kTraori, ""}},
     {"TRAFOOF", {Meaning::kTransform, Group::kNone, kTrafoof, ""}},
+    {"FGROUP", {Meaning::kFeedGroup, Group::kNone, 0, ""}},
+    {"FGREF", {Meaning::kFeedGroup, Group::kNone, 1, ""}},
     {"RET", {Meaning::kEnd, Group::kNone, 0, ""}},
 };
 
@@ -86,22 +93,28 @@ constexpr const char* kNotedWords[] = {
     "WALIMOF",  "DIAMOF", "CUT2D",   "RTLION",   "SBLOF",    "SBLON",     "DISPLOF",    "DISPLON",
     "CDOF",     "CDOF2",  "CDON",    "FENDNORM", "PAROTOF",  "TOROTOF"};
 
-constexpr const char* kNotedCalls[] = {"MSG", "POLYPATH", "WORKPIECE", "GROUP_BEGIN", "GROUP_END"};
+constexpr const char* kNotedCalls[] = {"MSG",   "POLYPATH", "WORKPIECE", "GROUP_BEGIN", "GROUP_END", "SETMS",
+                                       "WAITM", "WAITMC",   "WAITE",     "SETM",        "CLEARM"};
 
-constexpr const char* kCycles[] = {"CYCLE81", "CYCLE82", "CYCLE83",  "CYCLE84",
-                                   "CYCLE85", "CYCLE86", "CYCLE800", "CYCLE832"};
+/// Limits of dynamics of one axis: ACC[X]=50.
+constexpr const char* kNotedIndexed[] = {"ACC",      "VELOLIM",  "JERKLIM", "ACCLIMA",
+                                         "VELOLIMA", "JERKLIMA", "ATOL"};
+
+constexpr const char* kCycles[] = {"CYCLE81",  "CYCLE82",  "CYCLE83",  "CYCLE84", "CYCLE85", "CYCLE86",
+                                   "CYCLE800", "CYCLE832", "CYCLE801", "HOLES1",  "HOLES2"};
 
 constexpr const char* kAddresses[] = {
-    "X",  "Y",  "Z",  "A",  "B",    "C",    "I",       "J",   "K",    "X1",   "Y1",   "Z1", "A1", "B1", "C1",
-    "I1", "J1", "K1", "A2", "B2",   "C2",   "A3",      "B3",  "C3",   "CR",   "AR",   "F",  "S",  "T",  "D",
-    "H",  "M",  "G",  "P",  "TURN", "ADIS", "ADISPOS", "RPL", "CTOL", "OTOL", "SPOS", "N",  "PL"};
+    "X",       "Y",   "Z",    "A",    "B",    "C",  "I",  "J",  "K",  "X1",   "Y1",   "Z1",
+    "A1",      "B1",  "C1",   "I1",   "J1",   "K1", "A2", "B2", "C2", "A3",   "B3",   "C3",
+    "CR",      "AR",  "F",    "S",    "T",    "D",  "H",  "M",  "G",  "P",    "TURN", "ADIS",
+    "ADISPOS", "RPL", "CTOL", "OTOL", "SPOS", "N",  "PL", "AP", "RP", "OFFN", "LIMS"};
 
 constexpr const char* kFlowWords[] = {
-    "IF",      "ELSE",    "ENDIF", "WHILE", "ENDWHILE", "FOR",   "ENDFOR", "LOOP", "ENDLOOP",
-    "REPEAT",  "REPEATB", "UNTIL", "GOTO",  "GOTOF",    "GOTOB", "GOTOC",  "CASE", "OF",
-    "DEFAULT", "TO",      "DEF",   "PROC",  "EXTERN",   "CALL",  "MCALL",  "REAL", "INT",
-    "BOOL",    "STRING",  "CHAR",  "AXIS",  "FRAME",    "SET",   "REP",    "VAR",  "AC",
-    "IC",      "DC",      "ACP",   "ACN",   "ENDLABEL"};
+    "IF",      "ELSE",    "ENDIF",  "WHILE", "ENDWHILE", "FOR",     "ENDFOR",  "LOOP",  "ENDLOOP",
+    "REPEAT",  "REPEATB", "UNTIL",  "GOTO",  "GOTOF",    "GOTOB",   "GOTOC",   "CASE",  "OF",
+    "DEFAULT", "TO",      "DEF",    "PROC",  "EXTERN",   "CALL",    "EXTCALL", "MCALL", "REAL",
+    "INT",     "BOOL",    "STRING", "CHAR",  "AXIS",     "FRAME",   "SET",     "REP",   "VAR",
+    "AC",      "IC",      "DC",     "ACP",   "ACN",      "ENDLABEL"};
 
 struct Refused {
   const char* advice;
@@ -117,43 +130,42 @@ const std::vector<Refused>& refused_words() {
         "SD"}},
       {"post the curve as POLY, G1, G2 and G3 blocks", {"INVCW", "INVCCW"}},
       {"threads are cut with CYCLE84", {"G33", "G34", "G35", "G63", "G331", "G332"}},
-      {"write X Y Z instead of polar coordinates", {"G110", "G111", "G112", "AP", "RP"}},
       {"write the blocks of the approach",
        {"G140", "G141", "G142", "G143", "G147", "G148", "G247", "G248", "G347", "G348", "G340", "G341",
         "DISR", "DISCL"}},
       {"write the corner as blocks of its own", {"RND", "RNDM", "CHF", "CHR", "ANG"}},
       {"TRANS and AROT are supported",
-       {"G58",      "G59",      "ASCALE",   "AMIRROR", "ROTS",   "AROTS",    "CROTS",    "TOFRAME",
-        "TOFRAMEZ", "TOFRAMEX", "TOFRAMEY", "TOROT",   "TOROTX", "TOROTY",   "TOROTZ",   "PAROT",
-        "CTRANS",   "CROT",     "CSCALE",   "CMIRROR", "CRPL",   "MEAFRAME", "PRESETON", "GEOAX"}},
+       {"G58",      "G59",     "ROTS",   "AROTS",    "CROTS",    "TOFRAME", "TOFRAMEZ", "TOFRAMEX",
+        "TOFRAMEY", "TOROT",   "TOROTX", "TOROTY",   "TOROTZ",   "PAROT",   "CTRANS",   "CROT",
+        "CSCALE",   "CMIRROR", "CRPL",   "MEAFRAME", "PRESETON", "GEOAX"}},
       {"TRAORI is supported", {"TRANSMIT", "TRACYL", "TRAANG", "TRACON", "TCARR", "TCOABS", "TCOFR"}},
       {"give the orientation with rotary axes, A3= B3= C3= or A2= B2= C2=",
        {"LEAD",     "TILT",      "ORIRPY2",  "ORIPATH",  "ORIPATHS", "ORIVIRT1", "ORIVIRT2", "ORICURVE",
         "ORICONCW", "ORICONCCW", "ORICONIO", "ORICONTO", "ORIROTA",  "ORIROTR",  "ORIROTT",  "ORIROTC",
         "THETA",    "A4",        "B4",       "C4",       "A5",       "B5",       "C5",       "A6",
         "B6",       "C6",        "A7",       "B7",       "C7",       "NUT",      "ORID",     "ORIS"}},
-      {"spindle speed is S with M3 or M4",
-       {"G96", "G961", "G962", "G971", "G972", "G973", "LIMS", "G25", "G26"}},
+      {"constant cutting speed belongs to turning: write G97 and the speed S with M3 or M4",
+       {"G96", "G961", "G962", "G971", "G972", "G973", "G25", "G26"}},
       {"outer corners are rounded (G450)",
        {"G451", "KONT", "KONTC", "KONTT", "CUT3DC", "CUT3DF", "CUT3DFS", "CUT3DFF", "CUT3DCC", "CUT2DF",
-        "OFFN", "G461", "G462"}},
+        "G461", "G462"}},
       {"the feed is given with F under G93, G94 or G95",
-       {"FRC", "FRCM", "FB", "FZ", "FPO", "FGROUP", "FGREF", "FL", "OVR", "OVRA", "ACC"}},
+       {"FRC", "FRCM", "FB", "FZ", "FPO", "FL", "OVR", "OVRA"}},
       {"the machine file says how rapid moves run", {"RTLIOF"}},
       {"position rotary axes with G0", {"POS", "POSA", "SPOSA", "FA", "IPTRLOCK", "FXS", "FXST", "FXSW"}},
       {"the cycle has to be written as blocks",
-       {"CYCLE60", "CYCLE61",  "CYCLE62",  "CYCLE63",  "CYCLE64",  "CYCLE70",  "CYCLE71",  "CYCLE72",
-        "CYCLE73", "CYCLE74",  "CYCLE75",  "CYCLE76",  "CYCLE77",  "CYCLE78",  "CYCLE79",  "CYCLE87",
-        "CYCLE88", "CYCLE89",  "CYCLE90",  "CYCLE840", "CYCLE801", "CYCLE802", "CYCLE899", "CYCLE95",
-        "CYCLE97", "CYCLE951", "CYCLE977", "CYCLE978", "CYCLE996", "HOLES1",   "HOLES2",   "POCKET1",
-        "POCKET2", "POCKET3",  "POCKET4",  "LONGHOLE", "SLOT1",    "SLOT2"}},
+       {"CYCLE60",  "CYCLE61", "CYCLE62", "CYCLE63",  "CYCLE64",  "CYCLE70",  "CYCLE71",
+        "CYCLE72",  "CYCLE73", "CYCLE74", "CYCLE75",  "CYCLE76",  "CYCLE77",  "CYCLE78",
+        "CYCLE79",  "CYCLE87", "CYCLE88", "CYCLE89",  "CYCLE90",  "CYCLE840", "CYCLE802",
+        "CYCLE899", "CYCLE95", "CYCLE97", "CYCLE951", "CYCLE977", "CYCLE978", "CYCLE996",
+        "POCKET1",  "POCKET2", "POCKET3", "POCKET4",  "LONGHOLE", "SLOT1",    "SLOT2"}},
       {"the program is run in the dialect of Siemens", {"G291"}},
       {"synchronised actions are not simulated", {"WHEN", "WHENEVER", "EVERY", "DO", "ID", "IDS", "CANCEL"}},
       {"axes U V W are not simulated", {"U", "V", "W", "Q"}},
       {"measuring and couplings are not simulated",
-       {"MEAS",   "MEAW",   "MEASA",  "TRAILON", "TRAILOF", "LEADON", "LEADOF", "TANG",   "TANGON",
-        "TANGOF", "COUPON", "COUPOF", "INIT",    "START",   "WAITM",  "WAITE",  "WAITMC", "SETM",
-        "CLEARM", "SETAL",  "SETINT", "ASUP",    "SAVE",    "GETT",   "SETTA",  "DELT"}},
+       {"MEAS",  "MEAW",   "MEASA",  "TRAILON", "TRAILOF", "LEADON", "LEADOF",
+        "TANG",  "TANGON", "TANGOF", "COUPON",  "COUPOF",  "INIT",   "START",
+        "SETAL", "SETINT", "ASUP",   "SAVE",    "GETT",    "SETTA",  "DELT"}},
       {"oblique plunging belongs to grinding", {"G7", "G5"}},
   };
   return words;
@@ -170,6 +182,7 @@ const Table& table() {
     };
     add(kNotedWords, Meaning::kNoted);
     add(kNotedCalls, Meaning::kCall);
+    add(kNotedIndexed, Meaning::kNotedIndex);
     add(kCycles, Meaning::kCycle);
     add(kAddresses, Meaning::kAddress);
     add(kFlowWords, Meaning::kFlow);

@@ -10,7 +10,7 @@ namespace swarf::program::siemens {
 /// Words of one group exclude each other in a block and replace each other from block to block.
 enum class Group {
   kMotion,         ///< G0 G1 G2 G3 CIP CT POLY
-  kNoMotion,       ///< G4 G74 G75
+  kNoMotion,       ///< G4 G74 G75 G110 G111 G112
   kPlane,          ///< G17 G18 G19
   kCutter,         ///< G40 G41 G42
   kOffset,         ///< G500 G54 ... G599
@@ -20,7 +20,8 @@ enum class Group {
   kUnits,          ///< G70 G71 G700 G710
   kMeasure,        ///< G90 G91
   kFeed,           ///< G93 G94 G95
-  kOrientation,    ///< ORIWKS ORIMKS ORIVECT ORIAXES
+  kReference,      ///< ORIWKS ORIMKS
+  kOrientation,    ///< ORIVECT ORIPLANE ORIAXES
   kAngles,         ///< ORIEULER ORIRPY
   kPathReference,  ///< SPATH UPATH
   kNone,           ///< not a member of a group
@@ -34,6 +35,8 @@ enum class Meaning {
   kCycle,        ///< CYCLE81 ...: a call with arguments
   kCall,         ///< a call with arguments that has no effect on the geometry: MSG(...)
   kEnd,          ///< RET
+  kNotedIndex,   ///< ACC[X]=50: no effect on the geometry
+  kFeedGroup,    ///< FGROUP(X,Y,Z), FGREF[B]=50
   kAddress,      ///< CR= TURN= A3=: a value follows
   kPolynomial,   ///< PO: PO[X]=(...) or X=PO(...)
   kFlow,         ///< IF, DEF ...: belongs to the flow of the program
@@ -51,6 +54,9 @@ enum Code {
   kG4,
   kG74,
   kG75,
+  kG110,
+  kG111,
+  kG112,
   kG17,
   kG18,
   kG19,
@@ -83,7 +89,9 @@ enum Code {
   kRot,
   kARot,
   kScale,
+  kAScale,
   kMirror,
+  kAMirror,
   kTraori,
   kTrafoof,
 };
