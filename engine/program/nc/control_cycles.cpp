@@ -79,8 +79,9 @@ void Control::peck_down(const DrillCycle& cycle, int normal, double sign) {
   double depth = cycle.approach;
   const bool pecks = cycle.peck != DrillCycle::Peck::kNone;
   const bool fresh = feed_fresh_;
-  for (;;) {
-    const double next = depth - sign * cycle.peck_mm;
+  double peck = cycle.first_peck_mm > 0.0 ? cycle.first_peck_mm : cycle.peck_mm;
+  for (;; peck = cycle.peck_mm) {
+    const double next = depth - sign * peck;
     const bool last = !pecks || sign * (next - cycle.bottom) <= 1e-9;
     feed_fresh_ = fresh || cycle.pitch_mm > 0.0;
     go(Motion::kFeed, normal, last ? cycle.bottom : next);

@@ -20,7 +20,8 @@ struct DrillCycle {
   double retract = 0.0;  ///< where the tool goes at last (G98: the height before the cycle, G99: approach)
   enum class Peck { kNone, kFull, kChipBreak };
   Peck peck = Peck::kNone;
-  double peck_mm = 0.0;  ///< depth per peck, above 0 with pecking
+  double peck_mm = 0.0;        ///< depth per peck, above 0 with pecking
+  double first_peck_mm = 0.0;  ///< depth of the first one below `approach`; 0: peck_mm
   double clearance_mm =
       0.0;               ///< kFull: rapid back down to this above the last depth; kChipBreak: retreat by this
   double dwell_s = 0.0;  ///< at the bottom

@@ -225,6 +225,8 @@ void Executor::pecking(const CycleCall& call, double reference, DrillCycle& cycl
     fail("bad-cycle", call.offset, "the first depth of CYCLE83 is zero", "give FDPR above zero");
   cycle.peck = kind == 1 ? DrillCycle::Peck::kFull : DrillCycle::Peck::kChipBreak;
   cycle.peck_mm = control_.mm(first);
+  // The first depth counts from the reference plane, the cycle starts SDIS above it.
+  cycle.first_peck_mm = control_.mm(first + std::abs(argument(call, kSdis, *line_, 0.0)));
   const double given = argument(call, kind == 1 ? 16 : 14, *line_, 0.0);  // _DIS1, _VRT
   if (!(given >= 0.0)) fail("out-of-range", call.offset, "_VRT and _DIS1 are distances", "give 0 or more");
   cycle.clearance_mm = given > 0.0 ? control_.mm(given) : kind == 1 ? kAhead : kChipBreak;

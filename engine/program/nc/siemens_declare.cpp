@@ -55,6 +55,30 @@ void check_length(const Variable& variable, const Value& value, const LineRef& l
   }
 }
 
+/// $P_UIFR[1]=CTRANS(X,10,Z,-5): the offset is zero but for the axes that are named.
+void write_offset(TokenReader& reader, Variables& variables, const SystemName& asked) {
+  const size_t offset = reader.offset();
+  if (!reader.skip("CTRANS")) {
+    refuse(reader.line(), offset, "unsupported-word", "an offset as a whole is given with CTRANS alone",
+           "$P_UIFR[1]=CTRANS(X,10,Y,20), or $P_UIFR[1,X,TR]=10");
+  }
+  variables.system()->write_system(asked, Value::real(0.0));
+  reader.expect("(", "CTRANS");
+  while (!reader.skip(")")) {
+    SystemName one = asked;
+    one.offset = reader.offset();
+    one.indices = {asked.indices[0], Value::string(capitals(reader.peek().text)), Value::string("TR")};
+    if (!reader.done()) reader.next();
+    reader.expect(",", "the axis of CTRANS");
+    variables.system()->write_system(one, evaluate(reader, variables));
+    if (!reader.skip(",") && !reader.peek().symbol(")")) reader.expect(")", "CTRANS");
+  }
+  if (reader.peek().symbol(":")) {
+    refuse(reader.line(), reader.offset(), "unsupported-word",
+           "offsets that turn, scale or mirror are not supported", "shift with CTRANS, rotate with AROT");
+  }
+}
+
 }  // namespace
 
 Type read_type(TokenReader& reader) {
@@ -76,6 +100,10 @@ bool assign(TokenReader& reader, Variables& variables) {
   if (name.name[0] == '$') {
     const SystemName asked = system_name(reader, variables);
     reader.expect("=", asked.name);
+    if (asked.name == "$P_UIFR" && asked.indices.size() == 1 && variables.system() != nullptr) {
+      write_offset(reader, variables, asked);
+      return true;
+    }
     const Value value = evaluate(reader, variables);
     if (variables.system() == nullptr) {
       refuse(line, asked.offset, "unsupported-word",

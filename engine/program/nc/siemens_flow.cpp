@@ -120,11 +120,11 @@ void Flow::words(TokenReader& reader) {
   const auto programs =
       std::count_if(levels_.begin(), levels_.end(), [](const Level& level) { return !level.part; });
   const bool modal = modal_.file >= 0 && levels_.size() == modal_.depth;
-  if (outcome == Outcome::kEnd && programs > 1) {
-    leave_level(true);  // a main program that is called: M2 and M30 mean M17 (manual, subprograms)
-  } else if (outcome == Outcome::kEnd) {
+  // In a main program that is called, M2 and M30 mean M17 (manual, subprograms).
+  const bool ends = outcome == Outcome::kEnd && programs == 1;
+  if (ends) {
     levels_.clear();
-  } else if (outcome == Outcome::kReturn) {
+  } else if (outcome == Outcome::kReturn || outcome == Outcome::kEnd) {
     leave_level(true);
   } else if (modal && outcome == Outcome::kPattern) {
     refuse(running_, 0, "unsupported-word", "a position pattern while MCALL calls a program is not supported",

@@ -121,6 +121,12 @@ void Executor::orientation(const BlockWords& words, Target& target) {
 void Executor::motion_words(const BlockWords& words) {
   cutter_words(words);
   const std::optional<int> other = words.code(Group::kNoMotion);
+  const bool polar = words.polar_angle || words.polar_radius;
+  const int point = other.value_or(kG4);
+  if (polar && (point == kG74 || point == kG75 || words.code(Group::kSuppress))) {
+    fail("words-conflict", words.polar_angle ? words.polar_angle.offset : words.polar_radius.offset,
+         "AP= and RP= stand in a block of machine coordinates", "write the axes");
+  }
   if (other) {
     if (*other == kG4) {
       dwell(words);
@@ -163,7 +169,7 @@ void Executor::motion_words(const BlockWords& words) {
     }
   }
   Target target = target_of(words, false);
-  if (words.polar_angle || words.polar_radius) polar_end(words, target);
+  if (polar) polar_end(words, target);
   orientation(words, target);
   if (traori_ && target.rotary() && !reference_ && !interpolation_) {
     control_.warn_once("orientation-assumed", target.column,

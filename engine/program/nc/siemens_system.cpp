@@ -158,6 +158,16 @@ void Executor::write_system(const SystemName& asked, const Value& value) {
            "work offsets can be written: $P_UIFR[1,X,TR]=10");
   }
   bool shifts = false;
+  if (asked.indices.size() == 1) {  // every axis: CTRANS names those that are not zero
+    SystemName one = asked;
+    for (int word = 0; word < nc::kAxisWords; ++word) {
+      if (control_.axis_of(static_cast<nc::AxisWord>(word)) < 0) continue;
+      one.indices = {asked.indices[0], Value::string(std::string(1, nc::kAxisLetters[word])),
+                     Value::string("TR")};
+      write_system(one, value);
+    }
+    return;
+  }
   const int number = offset_index(asked, shifts);
   const int word = system_axis(asked, 1);
   const double amount = converted(value, Type::kReal, asked.line, asked.offset).number;

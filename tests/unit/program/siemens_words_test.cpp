@@ -195,6 +195,12 @@ TEST(SiemensSystem, OffsetsAreReadAndHoldFromTheNextG54On) {
   expect_near(end_of("$P_UIFR[1,X,TR]=$P_UIFR[1,X,TR]+10\nG54\nG0 X1 Y2 Z300"), {11, 2, 300}, 1e-12, "G54");
   expect_near(end_of("$P_UIFR[2,Y,TR]=$P_UIFR[1,Y,TR]-3\nG55\nG0 X1 Y2 Z300"), {1, -1, 300}, 1e-12, "G55");
   expect_near(end_of("$P_UIFR[1,X,FI]=0\nG505\nG0 X=$P_UIFRNUM Y2 Z300"), {5, 2, 300}, 1e-12, "number");
+  const std::string whole =
+      "$P_UIFR[2]=CTRANS(X,$P_UIFR[1,X,TR]+10,Y,20,Z,$P_UIFR[1,Z,TR])\nG55\nG0 X1 Y2 Z300";
+  const Ran written = run_clean(whole + "\nM30\n");
+  EXPECT_NEAR(written.moves.back().to.tip_W.x(), 11.0, 1e-12);
+  EXPECT_NEAR(written.moves.back().q_to[1], 22.0, 1e-12) << "machine coordinates of the offset";
+  EXPECT_NEAR(written.moves.back().to.tip_W.z(), 300.0, 1e-12);
   const Ran turned = run_clean("$P_UIFR[1,C,TR]=30\nG54\nG0 C10\nM30\n");
   EXPECT_NEAR(deg_from_rad(turned.moves.back().q_to[4]), 40.0, 1e-9);
 }
@@ -273,6 +279,15 @@ TEST(SiemensTraoriGroups, OriaxesHoldsBesideOriwks) {
 }
 
 TEST(SiemensDrillingDepths, DepthsAndDwellsInBothStyles) {
+  std::vector<double> depths;
+  for (const NcMove& move :
+       run_clean("F200\nG0 X0 Y0 Z300\nCYCLE83(290,250,2,230,,,8,0,0,0,1,1)\nM30\n").moves) {
+    if (!move.rapid) depths.push_back(move.to.tip_W.z());
+  }
+  ASSERT_EQ(depths.size(), 3U);
+  EXPECT_NEAR(depths[0], 242.0, 1e-9) << "the first depth counts from the reference plane";
+  EXPECT_NEAR(depths[1], 234.0, 1e-9);
+  EXPECT_NEAR(depths[2], 230.0, 1e-9);
   const auto bottom = [](const std::string& cycle) {
     double lowest = 1e9, dwell = 0.0;
     for (const NcMove& move : run_clean("F200\nG0 X0 Y0 Z300\n" + cycle + "\nM30\n").moves) {
