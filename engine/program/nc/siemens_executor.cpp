@@ -11,6 +11,9 @@ using nc::FeedMode;
 using nc::Plane;
 
 Executor::Executor(nc::Control& control) : control_(control) {
+  nc::DialectWords words;
+  words.length_on = "D1";
+  control_.set_words(words);
   control_.set_compensation_entry(nc::CompensationEntry::kAcrossNext);
   control_.set_exact_stop(true);
 }

@@ -317,6 +317,12 @@ TEST(SiemensWords, Cycle832TakesItsTypesByName) {
   EXPECT_EQ(run_clean("CYCLE832(0,_OFF,1)\nG1 X1 F100\nM30\n").moves.back().corner_tolerance_mm, 0.0);
 }
 
+TEST(SiemensWords, RemediesNameTheWordsOfTheControl) {
+  const Ran ran = run_clean("T=\"MILL10\" M6\nD0\nG0 X0 Y0 Z400\nG1 X1 F100\nM30\n");
+  EXPECT_NE(all_text(ran.diagnostics).find("switch it on before the cut (D1)"), std::string::npos)
+      << all_text(ran.diagnostics);
+}
+
 TEST(SiemensWords, SettingsWithoutEffectAreListed) {
   const Ran ran = run_clean("SETMS(1)\nACC[X]=50 LIMS=5000\nWAITM(1,1,2)\nG0 X1 MSG(\"GO\")\nM30\n");
   EXPECT_EQ(ran.summary.functions,
