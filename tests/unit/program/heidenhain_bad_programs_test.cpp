@@ -1,7 +1,7 @@
 // tests/data/programs/nc/heidenhain/bad: each file states in its first line, "; expect: code line:column",
 // the error that stops it. Names that begin with five_ run on the five-axis machine.
 #include <algorithm>
-#include <regex>
+#include <cctype>
 
 #include "program/source_text.h"
 #include "unit/program/heidenhain_support.h"
@@ -19,6 +19,15 @@ std::vector<std::string> bad_files() {
   return files;
 }
 
+/// "G40": a word of letter dialects.
+bool speaks_g_code(const std::string& text) {
+  for (size_t i = 0; i + 1 < text.size(); ++i) {
+    const bool begins = i == 0 || std::isalnum(static_cast<unsigned char>(text[i - 1])) == 0;
+    if (begins && text[i] == 'G' && std::isdigit(static_cast<unsigned char>(text[i + 1])) != 0) return true;
+  }
+  return false;
+}
+
 class BadHeidenhainProgram : public testing::TestWithParam<std::string> {};
 
 TEST_P(BadHeidenhainProgram, IsRefusedWhereItStates) {
@@ -34,7 +43,7 @@ TEST_P(BadHeidenhainProgram, IsRefusedWhereItStates) {
   for (const Diagnostic& one : run.diagnostics.list()) {
     EXPECT_FALSE(one.text.empty());
     for (const std::string& said : {one.text, one.fix}) {  // nobody is told to write G-code
-      EXPECT_FALSE(std::regex_search(said, std::regex("\\bG[0-9]"))) << said;
+      EXPECT_FALSE(speaks_g_code(said)) << said;
     }
     if (one.severity == Severity::kError) {
       EXPECT_FALSE(one.fix.empty()) << format(one);
