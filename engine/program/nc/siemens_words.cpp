@@ -118,7 +118,7 @@ constexpr const char* kFlowWords[] = {
 
 struct Refused {
   const char* advice;
-  std::initializer_list<const char*> names;
+  std::vector<const char*> names;
 };
 
 const std::vector<Refused>& refused_words() {
