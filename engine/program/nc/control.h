@@ -238,7 +238,12 @@ class Control {
   void set_time(const Segment& segment, double way, double turn_deg, double share, NcMove& move) const;
   void place_arc(const Segment& segment, NcMove& move);
   void go(Motion motion, int normal, double height);
+  void check_cycle(const DrillCycle& cycle, const Target& hole);
   void peck_down(const DrillCycle& cycle, int normal, double sign);
+  void draw_out(const DrillCycle& cycle, int normal);
+  void step_aside(const Vec3& by);
+  void leave_aside(const DrillCycle& cycle, int normal);
+  void bore_back(const DrillCycle& cycle, const Target& above);
   void moved_frame(const char* what);
   void set_true_tool();
   int not_found(const std::string& asked, int column);

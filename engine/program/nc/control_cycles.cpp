@@ -28,11 +28,7 @@ void Control::go(Motion motion, int normal, double height) {
   line(motion, target);
 }
 
-void Control::drill(const DrillCycle& cycle, const Target& hole) {
-  const PlaneAxes axes = axes_of(plane_);
-  const double sign = cycle.bottom <= cycle.approach ? 1.0 : -1.0;  // +1: drills against the normal
-  Target above = hole;
-  above.given = static_cast<uint8_t>(hole.given & ~(1u << axes.normal));
+void Control::check_cycle(const DrillCycle& cycle, const Target& hole) {
   if (!started_) {
     fail("start-unknown", hole.column, "a cycle starts, and the position is not known yet",
          fmt::format("position all axes with {} before the cycle", words_.rapid));
@@ -46,6 +42,27 @@ void Control::drill(const DrillCycle& cycle, const Target& hole) {
     fail("out-of-range", hole.column, fmt::format("the cycle dwells {:g} s", cycle.dwell_s),
          "write a time of zero or more");
   }
+  if (cycle.bore != DrillCycle::Bore::kPlain) {
+    warn_once("oriented-tool", hole.column,
+              "the tool passes the bore beside its axis with the spindle stopped at a known angle; the "
+              "simulated tool is a body of revolution, so it may cut there what the oriented edge does not",
+              "judge gouges and cuts without spindle of this cycle by the shape of the boring bar");
+  }
+  if (cycle.manual_out) {
+    warn_once("manual-retract", hole.column,
+              "this cycle waits at the bottom until the tool is drawn out by hand; simulated as a straight "
+              "rapid move to the approach height",
+              "add the time that the operator takes");
+  }
+}
+
+void Control::drill(const DrillCycle& cycle, const Target& hole) {
+  const PlaneAxes axes = axes_of(plane_);
+  const double sign = cycle.bottom <= cycle.approach ? 1.0 : -1.0;  // +1: drills against the normal
+  Target above = hole;
+  above.given = static_cast<uint8_t>(hole.given & ~(1u << axes.normal));
+  check_cycle(cycle, hole);
+  if (cycle.bore == DrillCycle::Bore::kBack) return bore_back(cycle, above);
   if (sign * (position_xyz()[axes.normal] - cycle.approach) < 0.0)
     go(Motion::kRapid, axes.normal, cycle.approach);
   if (above.any()) line(Motion::kRapid, above);
@@ -62,17 +79,58 @@ void Control::drill(const DrillCycle& cycle, const Target& hole) {
   }
   peck_down(cycle, axes.normal, sign);
   if (cycle.dwell_s > 0.0) pending_dwell_s_ += cycle.dwell_s;
+  draw_out(cycle, axes.normal);
+  feed_ = feed;
+  feed_mode_ = mode;
+}
+
+void Control::draw_out(const DrillCycle& cycle, int normal) {
   const int spindle_down = spindle_;
-  if (cycle.stop_at_bottom) spindle_ = 0;
+  if (cycle.bore == DrillCycle::Bore::kFine) return leave_aside(cycle, normal);
+  if (cycle.stop_at_bottom || cycle.manual_out) spindle_ = 0;
   if (cycle.reverse_at_bottom) spindle_ = -spindle_;
   if (cycle.feed_out) {
     feed_fresh_ = true;
-    go(Motion::kFeed, axes.normal, cycle.approach);
+    go(Motion::kFeed, normal, cycle.approach);
+    if (cycle.reverse_at_bottom) pending_dwell_s_ += cycle.dwell_s;
   }
-  go(Motion::kRapid, axes.normal, cycle.retract);
+  if (cycle.manual_out) {
+    go(Motion::kRapid, normal, cycle.approach);
+    spindle_ = spindle_down;
+  }
+  go(Motion::kRapid, normal, cycle.retract);
   spindle_ = spindle_down;
-  feed_ = feed;
-  feed_mode_ = mode;
+}
+
+void Control::step_aside(const Vec3& by) {
+  Target target;
+  for (int i = 0; i < 3; ++i) {
+    if (by[i] != 0.0) target.set(i, by[i], true);
+  }
+  if (target.any()) line(Motion::kRapid, target);
+}
+
+void Control::leave_aside(const DrillCycle& cycle, int normal) {
+  const int turning = spindle_;
+  spindle_ = 0;
+  step_aside(cycle.aside);
+  go(Motion::kRapid, normal, cycle.retract);
+  step_aside(-cycle.aside);
+  spindle_ = turning;
+}
+
+void Control::bore_back(const DrillCycle& cycle, const Target& above) {
+  const int normal = axes_of(plane_).normal, turning = spindle_;
+  if (above.any()) line(Motion::kRapid, above);
+  spindle_ = 0;
+  step_aside(cycle.aside);
+  go(Motion::kRapid, normal, cycle.approach);
+  step_aside(-cycle.aside);
+  spindle_ = turning;
+  go(Motion::kFeed, normal, cycle.bottom);
+  if (cycle.dwell_s > 0.0) pending_dwell_s_ += cycle.dwell_s;
+  if (cycle.feed_out) go(Motion::kFeed, normal, cycle.approach);
+  leave_aside(cycle, normal);
 }
 
 void Control::peck_down(const DrillCycle& cycle, int normal, double sign) {

@@ -24,11 +24,22 @@ struct DrillCycle {
   double first_peck_mm = 0.0;  ///< depth of the first one below `approach`; 0: peck_mm
   double clearance_mm =
       0.0;               ///< kFull: rapid back down to this above the last depth; kChipBreak: retreat by this
-  double dwell_s = 0.0;  ///< at the bottom
-  bool feed_out = false;        ///< out at feed (boring, tapping) down to `approach`, then rapid to `retract`
-  bool stop_at_bottom = false;  ///< G86: the spindle stops at the bottom, starts again at the top
+  double dwell_s = 0.0;  ///< at the bottom; with reverse_at_bottom at `approach` too, on the way out
+  bool feed_out = false;           ///< out at feed (boring, tapping) to `approach`, then rapid to `retract`
+  bool stop_at_bottom = false;     ///< G86: the spindle stops at the bottom, starts again at the top
   bool reverse_at_bottom = false;  ///< G84, G74: tapping, the spindle turns the other way on the way out
+  bool manual_out = false;         ///< G88: the spindle stops at the bottom, the tool is drawn out by hand to
+                                   ///< `approach`, where the spindle starts again
   double pitch_mm = 0.0;           ///< tapping: mm/rev, the feed is pitch x speed; 0: the programmed feed
+  /// Boring bars with one edge pass the bore beside its axis with the spindle stopped at a known angle.
+  ///   kFine (G76): at the bottom the spindle stops oriented, rapid by `aside`, rapid to `retract`, back.
+  ///   kBack (G87): over the hole the spindle stops oriented, rapid by `aside`, rapid down to `approach`,
+  ///                which lies below the face to cut, back; the spindle turns, feed up to `bottom`, dwell,
+  ///                (feed down to `approach` where `feed_out` is set,) oriented stop, rapid by `aside`, rapid
+  ///                to `retract`, back.
+  enum class Bore { kPlain, kFine, kBack };
+  Bore bore = Bore::kPlain;
+  Vec3 aside = Vec3::Zero();  ///< away from the edge, in the plane, program coordinates, mm
 };
 
 }  // namespace swarf::program::nc

@@ -68,6 +68,12 @@ class Fanuc final : public LetterDialect {
     bool on = false, in_work = false;
   };
 
+  /// Words of a canned cycle that stay until G80 or another motion, mm and s.
+  struct CycleWords {
+    double z = 0.0, r = 0.0, q = 0.0, p = 0.0, i = 0.0, j = 0.0;
+    bool has_z = false, has_r = false, has_q = false, has_i = false, has_j = false;
+  };
+
   // fanuc.cpp
   bool execute();
   bool statement();
@@ -97,13 +103,18 @@ class Fanuc final : public LetterDialect {
   void apply_length();
   void update_space();
   double tool_value(char letter, bool length);
+  // fanuc_cycles.cpp
+  void cycle(int tenths);
+  void keep_cycle_words(char depth_letter);
+  void check_cycle_words(int tenths, char depth_letter);
+  Vec3 bore_shift();
+  DrillCycle drill_cycle(int tenths);
   // fanuc_motion.cpp
   void one_shot();
   void reference();
   void shift_to_words(bool position);
   void set_data();
   void motion();
-  void cycle(int tenths);
   void turn(int tenths);
   void tilt_rotaries();
   void nurbs();
@@ -121,8 +132,8 @@ class Fanuc final : public LetterDialect {
 
   int motion_ = 0, cycle_ = 800;  ///< tenths
   bool incremental_ = false, retract_to_r_ = false;
-  double z_ = 0.0, r_ = 0.0, q_ = 0.0, p_ = 0.0, cycle_start_ = 0.0;
-  bool has_z_ = false, has_r_ = false, has_q_ = false;
+  CycleWords sticky_;
+  double cycle_start_ = 0.0;  ///< initial level: the height before the first cycle of a series
   Tcp tcp_ = Tcp::kOff;
   Turned turned_;
   kinematics::AxisValues shift_ = kinematics::AxisValues::Zero();  ///< G92

@@ -27,8 +27,9 @@ void Fanuc::check_words() {
              turn = g(kFanucTurn) >= 680;
   const bool vectors = (tcp_ == Tcp::kVector || g(kFanucLength) == 435) && !arc;
   const bool ends = block_.has_m(980) || block_.has_m(990);
+  const bool bore = cycle == 760 || cycle == 870;
   for (const char letter : {'I', 'J', 'K'})
-    check_letter(letter, arc || turn || vectors || motion == 62 || (letter == 'K' && in_cycle),
+    check_letter(letter, arc || turn || vectors || motion == 62 || (letter == 'K' ? in_cycle : bore),
                  "G2, G3, G43.5, G68.2");
   check_letter('R', arc || in_cycle || turn || motion == 62 || one_shot == 100,
                "arcs, cycles, G68 and G06.2");

@@ -13,9 +13,6 @@ namespace {
 
 using kinematics::AxisValues;
 
-/// How far G73 draws back and G83 stays above the last depth (parameters 5114, 5115; 0.5 mm as delivered
-/// here).
-constexpr double kPeckClearanceMm = 0.5;
 /// Chords of a NURBS miss it by at most this much: a tenth of what surface checks can see.
 constexpr double kNurbsToleranceMm = 1e-4;
 /// The first control point must be where the tool stands, mm.
@@ -118,11 +115,11 @@ void Fanuc::motion() {
   if (block_.has_g(kFanucMotion)) {
     motion_ = block_.g[kFanucMotion];
     cycle_ = 800;
-    has_z_ = has_r_ = has_q_ = false;
+    sticky_ = CycleWords();
   }
   if (block_.has_g(kFanucCycle)) {
     const int code = block_.g[kFanucCycle];
-    if (code == 800) has_z_ = has_r_ = has_q_ = false;
+    if (code == 800) sticky_ = CycleWords();
     if (code != 800 && cycle_ == 800)
       cycle_start_ = control_.position_xyz()[axes_of(control_.plane()).normal];
     cycle_ = code;
@@ -149,49 +146,6 @@ void Fanuc::motion() {
     control_.machine_line(kind, target);
   else
     control_.line(kind, target);
-}
-
-void Fanuc::cycle(int tenths) {
-  const PlaneAxes axes = axes_of(control_.plane());
-  const char depth_letter = "XYZ"[axes.normal];
-  const int at = reader_.column_of(block_.first);
-  if (block_.has(depth_letter)) z_ = control_.mm(block_.get(depth_letter)), has_z_ = true;
-  if (block_.has('R')) r_ = control_.mm(block_.get('R')), has_r_ = true;
-  if (block_.has('Q')) q_ = control_.mm(block_.get('Q')), has_q_ = true;
-  if (block_.has('P')) p_ = 1e-3 * block_.get('P');
-  const Target hole = words();
-  if (!hole.any() && !block_.has_g(kFanucCycle)) return;
-  const bool pecks = tenths == 730 || tenths == 830;
-  if (!has_z_ || !has_r_ || (pecks && !has_q_))
-    control_.fail("missing-word", at,
-                  fmt::format("the cycle G{} needs the word {}", tenths / 10,
-                              !has_z_   ? depth_letter
-                              : !has_r_ ? 'R'
-                                        : 'Q'),
-                  "add it");
-  if (pecks && !(q_ > 0.0))
-    control_.fail("out-of-range", at, fmt::format("Q {:g} is no depth per peck", q_), "write Q above zero");
-  DrillCycle cycle;
-  cycle.approach = incremental_ ? cycle_start_ + r_ : r_;
-  cycle.bottom = incremental_ ? cycle.approach + z_ : z_;
-  if (cycle.bottom > cycle.approach)
-    control_.fail("bad-cycle", at,
-                  fmt::format("the bottom {:.4f} mm lies above the approach height {:.4f} mm", cycle.bottom,
-                              cycle.approach),
-                  "R must lie above the depth");
-  cycle.retract = retract_to_r_ ? cycle.approach : std::max(cycle.approach, cycle_start_);
-  cycle.peck = tenths == 730   ? DrillCycle::Peck::kChipBreak
-               : tenths == 830 ? DrillCycle::Peck::kFull
-                               : DrillCycle::Peck::kNone;
-  cycle.peck_mm = q_;
-  cycle.clearance_mm = kPeckClearanceMm;
-  cycle.dwell_s = tenths == 820 || tenths == 890 ? p_ : 0.0;
-  cycle.feed_out = tenths == 840 || tenths == 740 || tenths == 850 || tenths == 890;
-  cycle.stop_at_bottom = tenths == 860;
-  cycle.reverse_at_bottom = tenths == 840 || tenths == 740;
-  const char repeat = block_.has('K') ? 'K' : 'L';
-  const int times = block_.has(repeat) ? whole(block_, repeat, 0, 9999, reader_, control_) : 1;
-  for (int i = 0; i < times; ++i) control_.drill(cycle, hole);
 }
 
 /// G68.2 X Y Z I J K: origin and Euler angles (Z, X', Z''), in the work. G68 X Y R: a turn in the plane.

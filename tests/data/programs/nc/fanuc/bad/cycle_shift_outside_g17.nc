@@ -1,0 +1,3 @@
+(expect: unsupported-word 2:20)
+G18 G76 X1 Y-5 R2 I1 F100
+M30
