@@ -68,6 +68,21 @@ enum class Dialect { kLinuxCnc, kFanuc, kSiemens, kHeidenhain };
 /// "linuxcnc" and so on.
 const char* dialect_name(Dialect dialect);
 
+/// What X Y Z of a program are: axis values, or the tip in the work with the law of TCP.
+enum class Kinematics { kIdentity, kTcp };
+/// "identity", "tcp".
+const char* kinematics_name(Kinematics kinematics);
+
+/// What LinuxCNC's kinematics switches mean on this machine. Which kinematics a number selects is the INI
+/// file's affair: [KINS]KINEMATICS with sparm=identityfirst exchanges types 0 and 1, remaps turn them into
+/// M428 to M430, and type 2 is a module of the machine's owner.
+struct KinematicsSwitch {
+  std::optional<Kinematics> start;  ///< what a program starts with; none: identity
+  std::optional<Kinematics> m428;  ///< none: TCP, as in LinuxCNC's own table-tilting and bridge mill machines
+  std::optional<Kinematics> m429;  ///< none: identity, as there
+  std::optional<Kinematics> m430;  ///< none: unknown, M430 is refused
+};
+
 /// What stands in the control before the program starts.
 struct ControlSetup {
   kinematics::MachineModel machine;  ///< with gauge_M, or with one fixed tip for every tool
@@ -78,8 +93,9 @@ struct ControlSetup {
   /// Axis values where the program starts. None: the first move with all axes given starts it (reported).
   std::optional<kinematics::AxisValues> start;
   std::vector<std::string>
-      subprogram_folders;       ///< where called programs are looked for besides the program's own
-  long moves_max = 50'000'000;  ///< endless loops end here, with the line that broke the limit
+      subprogram_folders;              ///< where called programs are looked for besides the program's own
+  KinematicsSwitch kinematics_switch;  ///< LinuxCNC only
+  long moves_max = 50'000'000;         ///< endless loops end here, with the line that broke the limit
 };
 
 /// What was read, for the report.

@@ -11,6 +11,9 @@
 namespace swarf::program::nc {
 namespace {
 
+/// Values closer than this are equal for kNearlyEqual.
+constexpr double kNearby = 1e-6;
+
 /// Sine of degrees, exact at multiples of 90.
 double sine_deg(double deg) {
   const double turn = std::fmod(deg, 360.0);
@@ -114,6 +117,12 @@ std::optional<double> apply(Operator op, double a, double b, std::string& why) {
     case Operator::kModulo:
       if (b == 0.0) return refuse(why, "remainder of a division by zero");
       return finite(a - std::floor(a / b) * b, why);
+    case Operator::kPositiveModulo:
+      if (b == 0.0) return refuse(why, "remainder of a division by zero");
+      if (b < 0.0)
+        return refuse(
+            why, fmt::format("the remainder of a division by {:g}: the reference does not say its sign", b));
+      return finite(a - std::floor(a / b) * b, why);
     case Operator::kPower:
       if (a < 0.0 && b != std::floor(b))
         return refuse(why, fmt::format("{:g} to the power of {:g} does not exist", a, b));
@@ -133,6 +142,10 @@ std::optional<double> apply(Operator op, double a, double b, std::string& why) {
       return a == b ? 1.0 : 0.0;
     case Operator::kNotEqual:
       return a != b ? 1.0 : 0.0;
+    case Operator::kNearlyEqual:
+      return std::abs(a - b) < kNearby ? 1.0 : 0.0;
+    case Operator::kNotNearlyEqual:
+      return std::abs(a - b) < kNearby ? 0.0 : 1.0;
     case Operator::kLess:
       return a < b ? 1.0 : 0.0;
     case Operator::kLessEqual:

@@ -31,7 +31,9 @@ enum class Operator {
   kMultiply,
   kDivide,
   kPower,
-  kModulo,
+  kModulo,          ///< with the sign of the divisor
+  kPositiveModulo,  ///< by divisors above zero alone (MOD of LinuxCNC, whose sign for others is not
+                    ///< documented)
   kIntegerDivide,
   kAnd,
   kOr,
@@ -41,6 +43,8 @@ enum class Operator {
   kBitXor,
   kEqual,
   kNotEqual,
+  kNearlyEqual,  ///< within 1e-6 (EQ of LinuxCNC)
+  kNotNearlyEqual,
   kLess,
   kLessEqual,
   kGreater,

@@ -203,6 +203,13 @@ void Control::change_tool() {
   set_true_tool();
 }
 
+void Control::declare_tool(int index, int number) {
+  flush();
+  tool_ = index;
+  tool_number_ = number;
+  set_true_tool();
+}
+
 void Control::set_true_tool() {
   const NcTool* tool = active_tool();
   space_.set_true_length(tool == nullptr ? 0.0 : tool->length_mm);

@@ -90,6 +90,8 @@ class Control {
   /// F as written: units/min and deg/min, units/rev, or 1/min. Above 0 ("bad-feed").
   void set_feed(double value, int column);
   double feed() const { return feed_; }
+  /// The mode and the F (0: none) that held when they were kept; no F of the present block.
+  void restore_feed(FeedMode mode, double feed) { feed_mode_ = mode, feed_ = feed, feed_fresh_ = false; }
   void set_feed_rule(FeedRule rule) { feed_rule_ = rule; }
   /// Radii at which rotary axes A B C count for F, mm; 180/pi as long as none is set: a degree is a mm.
   void set_feed_radii(const std::array<double, 3>& radii_mm) { feed_radii_mm_ = radii_mm; }
@@ -110,6 +112,8 @@ class Control {
   /// M6: moves to MachineModel::tool_change where the machine has one (rapid, all axes), stops the spindle.
   /// The compensated length stays what it is; the dialect sets it.
   void change_tool();
+  /// The tool that is in the spindle already: no change, no motion.
+  void declare_tool(int index, int number);
   int tool() const { return tool_; }
   int tool_number() const { return tool_number_; }
   /// The tool in the spindle, null when there is none or no table.

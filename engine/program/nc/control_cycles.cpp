@@ -91,8 +91,8 @@ void Control::draw_out(const DrillCycle& cycle, int normal) {
   if (cycle.reverse_at_bottom) spindle_ = -spindle_;
   if (cycle.feed_out) {
     feed_fresh_ = true;
-    go(Motion::kFeed, normal, cycle.approach);
-    if (cycle.reverse_at_bottom) pending_dwell_s_ += cycle.dwell_s;
+    go(Motion::kFeed, normal, cycle.feed_to_retract ? cycle.retract : cycle.approach);
+    if (cycle.reverse_at_bottom && !cycle.feed_to_retract) pending_dwell_s_ += cycle.dwell_s;
   }
   if (cycle.manual_out) {
     go(Motion::kRapid, normal, cycle.approach);

@@ -10,6 +10,9 @@
 
 namespace swarf::program::nc {
 
+/// How far the chords of a programmed curve may lie beside it: a tenth of what motion keeps to.
+inline constexpr double kCurveToleranceMm = 1e-4;
+
 /// A point of a curve, program coordinates.
 struct CurvePoint {
   Vec3 tip = Vec3::Zero();

@@ -26,6 +26,7 @@ struct DrillCycle {
       0.0;               ///< kFull: rapid back down to this above the last depth; kChipBreak: retreat by this
   double dwell_s = 0.0;  ///< at the bottom; with reverse_at_bottom at `approach` too, on the way out
   bool feed_out = false;           ///< out at feed (boring, tapping) to `approach`, then rapid to `retract`
+  bool feed_to_retract = false;    ///< with feed_out: at feed up to `retract`, without a dwell on the way
   bool stop_at_bottom = false;     ///< G86: the spindle stops at the bottom, starts again at the top
   bool reverse_at_bottom = false;  ///< G84, G74: tapping, the spindle turns the other way on the way out
   bool manual_out = false;         ///< G88: the spindle stops at the bottom, the tool is drawn out by hand to

@@ -122,7 +122,11 @@ double FormulaReader::expression(int lowest_rank) {
 
 double FormulaReader::function_value() {
   const size_t from = at_;
-  if (syntax_.named_parameters && take("EXISTS[")) {
+  if (syntax_.named_parameters && take("EXISTS")) {
+    skip_space();
+    if (peek() != '[')
+      refuse(at_, "bad-expression", "EXISTS asks for a named parameter", "write EXISTS[#<name>]");
+    skip();
     skip_space();
     std::string name;
     if (peek() != '#')
@@ -136,8 +140,8 @@ double FormulaReader::function_value() {
     skip();
     return parameters_.exists(name) ? 1.0 : 0.0;
   }
-  if (take("ATAN[")) {
-    --at_;
+  if (take("ATAN")) {
+    skip_space();
     const double y = bracketed();
     skip_space();
     std::string why;
@@ -159,7 +163,9 @@ double FormulaReader::function_value() {
     at_ = from;
   }
   refuse(from, "bad-number",
-         done() ? "a number is missing at the end of the line" : "a number is missing here",
+         done()          ? "a number is missing at the end of the line"
+         : peek() == '(' ? "a comment stands between the letter and its number"
+                         : "a number is missing here",
          "write a number, #parameter or [formula]");
 }
 

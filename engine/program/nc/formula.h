@@ -45,7 +45,7 @@ class FormulaReader {
  public:
   FormulaReader(const FormulaSyntax& syntax, Parameters& parameters, Control& control)
       : syntax_(syntax), parameters_(parameters), control_(control) {}
-  void begin(std::string_view line) { line_ = line, at_ = 0; }
+  void begin(std::string_view line) { line_ = line, at_ = 0, depth_ = 0; }
 
   std::string_view line() const { return line_; }
   size_t at() const { return at_; }

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "program/nc/curve.h"
 #include "program/nc/letter_dialect.h"
 
 namespace swarf::program::nc {
@@ -38,14 +40,44 @@ enum LinuxCncGroup {
   kKinsGroup = 5
 };
 
-/// Words of a canned cycle that stay until G80 or another motion.
+/// Words of a canned cycle that stay while the same cycle goes on; R while any cycle does. Lengths in mm.
 struct StickyCycle {
-  double z = 0.0, r = 0.0, q = 0.0, p = 0.0;
-  bool has_z = false, has_r = false, has_q = false, has_p = false;
+  std::optional<double> depth, r, q, p;
+  std::array<std::optional<double>, 3> ijk;
+};
+
+/// What M70 and M73 keep: the words that the reference lists for them, and no others (not the motion mode,
+/// the kinematics, G52, G92).
+struct ModalState {
+  bool inches = false, incremental = false, arc_absolute = false, retract_to_r = false;
+  Plane plane = Plane::kXY;
+  FeedMode feed_mode = FeedMode::kPerMinute;
+  double feed = 0.0, speed_rpm = 0.0;
+  int spindle = 0, work_offset = 1, tool_number = 0;
+  int radius_code = 400;
+  double diameter_mm = 0.0;  ///< of the cutter that is compensated
+  double length_mm = 0.0;
+  bool length_on = false, exact_stop = false, mist = false, flood = false;
+  double corner_tolerance_mm = 0.0;
+};
+
+/// What G10 wrote over the tool table.
+struct ToolData {
+  std::optional<double> length_mm, diameter_mm;
+};
+
+/// The points of G5.2 that have come so far.
+struct OpenNurbs {
+  int order = 0;
+  std::vector<CurvePoint> points;
+  std::vector<double> weights;
+  Place place;  ///< of G5.2
 };
 
 class LinuxCnc final : public LetterDialect {
  public:
+  /// Parameters up to #30 are arguments, from kNumbers on they belong to the control.
+  static constexpr long kNumbers = 5400, kArguments = 30;
   LinuxCnc(const std::string& path, Control& control);
   void run();
 
@@ -96,9 +128,12 @@ class LinuxCnc final : public LetterDialect {
     bool numbered = false;       ///< M98: ends with M99
     long left = 0;               ///< repetitions still to come (M98 L)
     std::array<double, 31> arguments{};
-    uint64_t assigned = 0;  ///< bits of `arguments`
+    uint64_t assigned = 0;   ///< bits of `arguments`
+    uint64_t ambiguous = 0;  ///< not passed, and not zero in the calling context
     std::vector<Named> named;
     std::vector<Loop> loops;
+    std::optional<ModalState> saved;  ///< M70, M73
+    bool restores = false;            ///< M73: the state comes back at the end of the subprogram
   };
   struct Sub {
     std::string name;
@@ -130,37 +165,75 @@ class LinuxCnc final : public LetterDialect {
   bool execute();
   void read_assignment();
   void assign();
+  std::string message_text();
   // linuxcnc_block.cpp
   void check_words();
+  void check_letters();
   void check_axes_and_motion();
   void apply();
   void apply_feed_and_speed();
-  void apply_tool();
-  void apply_spindle();
-  void apply_compensation();
+  void apply_machine_functions();
   void apply_offsets();
   void apply_path_mode();
-  void apply_machine_codes();
   bool apply_end();
-  void set_kinematics(int tenths);
+  // linuxcnc_tools.cpp
+  void apply_tool();
+  void declare_tool();
+  void apply_compensation();
+  void apply_length();
+  std::optional<double> diameter_of(int number, int column);
+  double length_of(int number, int column);
+  int tool_word(char letter);
+  void set_tool_data(int kind);
+  double touched_length(int kind, double value) const;
+  // linuxcnc_state.cpp
+  void apply_saved_state(int tenths, int column);
+  ModalState modal_state() const;
+  void restore(const ModalState& state, int column);
+  // linuxcnc_machine.cpp
+  void read_input();
+  void warn_of_output();
+  void switch_kinematics(int tenths, int column);
+  void assume_kinematics(int number, Kinematics kinematics, int column);
   // linuxcnc_offsets.cpp
   void non_modal();
   void set_data();
   void reference(int tenths);
   void set_reference(int tenths);
   std::optional<kinematics::AxisValues> reference_position(bool second) const;
-  void shift_to_words(bool absolute);
+  void shift_to_words(bool position);
+  void check_unnamed_shifts(const Target& words) const;
   void update_shift();
   // linuxcnc_motion.cpp
   void motion();
+  void spline(int tenths);
   void arc(int tenths);
+  // linuxcnc_cycles.cpp
   void cycle(int tenths);
+  void check_cycle(int tenths) const;
+  void keep_cycle_words(bool same);
+  double cycle_word(const std::optional<double>& value, char letter) const;
+  void back_bore(double approach, double bottom, double retract, const Target& hole);
+  // linuxcnc_curves.cpp
+  void check_curve(const char* name) const;
+  void cubic_spline();
+  void quadratic_spline();
+  Vec3 end_of_curve();
+  void check_nurbs_words();
+  void nurbs_point();
+  void close_nurbs();
+  [[noreturn]] void fail_open_nurbs() const;
   bool is_axis_given() const { return (block_.given & kAxisBits) != 0; }
   bool uses_axis_words() const;
   Call& frame() { return calls_.back(); }
   LineSource& source() { return *calls_.back().source; }
+  // linuxcnc_parameters.cpp
   double system_parameter(long number, size_t place);
-  std::optional<double> predefined(std::string_view name) const;
+  double position_parameter(long number, size_t place);
+  double machine_length(double mm, long number, size_t place) const;
+  std::optional<double> predefined(std::string_view name);
+  bool is_read_only(std::string_view name);
+  void refuse_machine_value(std::string_view name, size_t place) const;
 
   static constexpr uint32_t kAxisBits = 7u | 7u << ('X' - 'A');
 
@@ -177,9 +250,16 @@ class LinuxCnc final : public LetterDialect {
   int motion_ = -1;  ///< tenths; -1: none
   bool incremental_ = false, arc_absolute_ = false, retract_to_r_ = false;
   StickyCycle cycle_;
+  std::optional<Vec3> spline_tangent_;  ///< where the last G5 leads on to, mm; none: the next is the first
+  std::optional<OpenNurbs> nurbs_;
   double cycle_start_ = 0.0;  ///< height before the first hole of a series
   kinematics::AxisValues shift_ = kinematics::AxisValues::Zero();  ///< G92, G52
-  bool shift_on_ = true;
+  bool shift_on_ = false;  ///< G92.2 keeps the values and switches them off
+  std::map<int, ToolData> tool_data_;
+  bool tool_called_ = false, mist_ = false, flood_ = false, input_read_ = false;
+  int radius_code_ = 400;                  ///< tenths: G40, G41, G41.1, ...
+  double diameter_mm_ = 0.0;               ///< of the cutter that G41 or G42 compensate
+  std::array<bool, 3> kinematics_told_{};  ///< M428, M429, M430: the default has been reported
   std::array<std::optional<kinematics::AxisValues>, 2> references_;  ///< G28.1, G30.1
   std::array<double, 10> offset_turn_{};                             ///< G10 L2 R, rad
 };

@@ -1,9 +1,9 @@
 // Third and fourth step: the rules of a block's words, then what they do, in the control's order.
 #include <fmt/format.h>
 
-#include <cmath>
+#include <algorithm>
+#include <utility>
 
-#include "base/units.h"
 #include "program/nc/linuxcnc.h"
 
 namespace swarf::program::nc {
@@ -15,11 +15,15 @@ bool is_cycle(int tenths) {
 bool is_arc(int tenths) {
   return tenths == 20 || tenths == 30;
 }
+constexpr int kCubic = 50, kQuadratic = 51, kNurbs = 52;
 
 }  // namespace
 
 bool LinuxCnc::uses_axis_words() const {
-  if (!block_.has_g(kNonModal)) return block_.has_g(kLengthGroup) && block_.g[kLengthGroup] == 431;
+  if (!block_.has_g(kNonModal)) {
+    const int length = block_.has_g(kLengthGroup) ? block_.g[kLengthGroup] : 0;
+    return length == 431 || (length == 432 && !block_.has('H'));
+  }
   const int code = block_.g[kNonModal];
   return code == 100 || code == 280 || code == 300 || code == 520 || code == 920;
 }
@@ -31,29 +35,48 @@ void LinuxCnc::check_words() {
                     fmt::format("the machine {} has no axis {}", control_.machine().name, letter),
                     "take the word out, or choose the machine that the program was posted for");
   }
-  constexpr uint32_t kRare = (1u << ('D' - 'A')) | (1u << ('H' - 'A')) | (7u << ('I' - 'A')) |
-                             (1u << ('L' - 'A')) | (1u << ('P' - 'A')) | (1u << ('Q' - 'A')) |
-                             (1u << ('R' - 'A'));
-  const int non_modal = block_.has_g(kNonModal) ? block_.g[kNonModal] : -1;
-  const int motion = block_.has_g(kMotionGroup) ? block_.g[kMotionGroup] : uses_axis_words() ? -1 : motion_;
-  if ((block_.given & kRare) != 0) {
-    const bool cycle = is_cycle(motion), arc = is_arc(motion), data = non_modal == 100;
-    const bool radius = block_.has_g(kRadiusGroup) && block_.g[kRadiusGroup] != 400;
-    const bool path = block_.has_g(kPathGroup) && block_.g[kPathGroup] == 640;
-    check_letter('D', radius, "G41 and G42");
-    check_letter(
-        'H', block_.has_g(kLengthGroup) && (block_.g[kLengthGroup] == 430 || block_.g[kLengthGroup] == 432),
-        "G43 and G43.2");
-    for (const char letter : {'I', 'J', 'K'}) check_letter(letter, arc, "G2 and G3");
-    check_letter('R', cycle || arc || data, "arcs, cycles and G10 L2");
-    check_letter('P', cycle || arc || data || non_modal == 40 || path || block_.m_count > 0,
-                 "G4, G10, G64, arcs and cycles");
-    check_letter('Q', cycle || path || block_.m_count > 0, "G64 and pecking cycles");
-    check_letter('L', cycle || data || block_.has_m(980), "G10, cycles and M98");
-  }
+  if (nurbs_) return check_nurbs_words();
+  check_letters();
   check_axes_and_motion();
-  if (non_modal == 40) need('P', "G4");
+  if (block_.has_g(kNonModal) && block_.g[kNonModal] == 40) need('P', "G4");
   check_feed_and_speed();
+}
+
+/// Words that only some codes take.
+void LinuxCnc::check_letters() {
+  const auto bit = [](char letter) { return 1u << (letter - 'A'); };
+  const uint32_t rare =
+      bit('D') | bit('E') | bit('H') | 7u << ('I' - 'A') | bit('L') | bit('P') | bit('Q') | bit('R');
+  if ((block_.given & rare) == 0) return;
+  const int non_modal = block_.has_g(kNonModal) ? block_.g[kNonModal] : -1;
+  // A modal motion acts in blocks with axis words only.
+  const bool acts = is_axis_given() && !uses_axis_words();
+  const int motion = block_.has_g(kMotionGroup) ? block_.g[kMotionGroup] : acts ? motion_ : -1;
+  const auto moves = [&](std::initializer_list<int> codes) {
+    return std::find(codes.begin(), codes.end(), motion) != codes.end();
+  };
+  const auto has_m = [&](std::initializer_list<int> codes) {
+    return std::any_of(codes.begin(), codes.end(), [&](int code) { return block_.has_m(code); });
+  };
+  const bool cycle = is_cycle(motion), arc = is_arc(motion), data = non_modal == 100;
+  const bool radius = block_.has_g(kRadiusGroup) && block_.g[kRadiusGroup] != 400;
+  const bool path = block_.has_g(kPathGroup) && block_.g[kPathGroup] == 640;
+  const int length = block_.has_g(kLengthGroup) ? block_.g[kLengthGroup] : 0;
+  check_letter('D', radius, "G41 and G42");
+  check_letter('E', has_m({660, 670, 680}), "M66, M67 and M68");
+  check_letter('H', length == 430 || length == 432, "G43 and G43.2");
+  for (const char letter : {'I', 'J'})
+    check_letter(letter, arc || moves({kCubic, kQuadratic, 870}) || data, "G2, G3, G5, G5.1, G87 and G10 L1");
+  check_letter('K', arc || motion == 870, "G2, G3 and G87");
+  check_letter('R', cycle || arc || data || block_.has_m(190), "arcs, cycles, G10 L1 and L2");
+  check_letter('P',
+               arc || data || non_modal == 40 || path ||
+                   moves({kCubic, kNurbs, 730, 740, 820, 830, 840, 860, 880, 890}) ||
+                   has_m({190, 500, 510, 520, 530, 620, 630, 640, 650, 660, 980}),
+               "G4, G5, G10, G64, arcs, cycles that dwell and M98");
+  check_letter('Q', path || data || moves({kCubic, 730, 830}) || has_m({190, 610, 660, 670, 680}),
+               "G5, G64, G73, G83, M61 and M66");
+  check_letter('L', cycle || data || motion == kNurbs || has_m({660, 980}), "G5.2, G10, cycles, M66 and M98");
 }
 
 void LinuxCnc::check_axes_and_motion() {
@@ -80,8 +103,10 @@ void LinuxCnc::check_axes_and_motion() {
 void LinuxCnc::apply() {
   apply_feed_and_speed();
   if ((block_.given & (1u << ('T' - 'A'))) != 0 || block_.m_count > 0) {
+    if (block_.has_m(660)) read_input();
+    if (block_.has_m(680)) warn_of_output();
     apply_tool();
-    apply_spindle();
+    apply_machine_functions();
   }
   constexpr uint32_t kModal = 1u << kPlaneGroup | 1u << kUnitsGroup | 1u << kRadiusGroup |
                               1u << kLengthGroup | 1u << kOffsetGroup | 1u << kPathGroup |
@@ -94,6 +119,7 @@ void LinuxCnc::apply() {
                                                         : Plane::kYZ);
     if (block_.has_g(kUnitsGroup)) control_.set_inches(block_.g[kUnitsGroup] == 200);
     apply_compensation();
+    apply_length();
     apply_offsets();
     apply_path_mode();
     if (block_.has_g(kDistanceGroup)) incremental_ = block_.g[kDistanceGroup] == 910;
@@ -117,75 +143,20 @@ void LinuxCnc::apply_feed_and_speed() {
   if (block_.has('S')) control_.set_speed(block_.get('S'));
 }
 
-void LinuxCnc::apply_tool() {
-  if (block_.has('T')) {
-    const int number = whole(block_, 'T', 0, 99999999, reader_, control_);
-    control_.select_tool(number == 0 ? -1 : control_.find_tool(number, column('T')), number);
+void LinuxCnc::apply_machine_functions() {
+  constexpr std::pair<int, int> kSpindle[] = {{30, 1}, {40, -1}, {50, 0}};
+  for (const auto& [code, sense] : kSpindle) {
+    if (block_.has_m(code)) control_.set_spindle(sense);
   }
-  if (!block_.has_m(60)) return;
-  control_.change_tool();
-}
-
-void LinuxCnc::apply_spindle() {
   for (int i = 0; i < block_.m_count; ++i) {
     const int code = block_.m[static_cast<size_t>(i)];
-    if (code == 30) control_.set_spindle(1);
-    if (code == 40) control_.set_spindle(-1);
-    if (code == 50) control_.set_spindle(0);
-    if (code == 4280 || code == 4290) set_kinematics(code);
+    const int at = reader_.column_of(block_.m_places[static_cast<size_t>(i)]);
+    if (code >= 700 && code <= 730) apply_saved_state(code, at);
+    if (code >= 4280) switch_kinematics(code, at);
   }
-}
-
-void LinuxCnc::set_kinematics(int tenths) {
-  control_.set_tcp(tenths == 4280 ? Tcp::kAxes : Tcp::kOff);
-}
-
-void LinuxCnc::apply_compensation() {
-  if (block_.has_g(kRadiusGroup)) {
-    const int code = block_.g[kRadiusGroup];
-    const int at = g_column(kRadiusGroup);
-    if (code == 400) {
-      control_.set_compensation(Compensation::kOff, 0.0, at);
-    } else {
-      double diameter = 0.0;
-      if (code == 411 || code == 421) {
-        need('D', "G41.1");
-        diameter = control_.mm(block_.get('D'));
-      } else if (block_.has('D') && block_.get('D') != 0.0) {
-        const int index = control_.find_tool(whole(block_, 'D', 0, 99999999, reader_, control_), column('D'));
-        if (index >= 0) diameter = control_.tool_at(index).diameter_mm;
-      } else if (const NcTool* tool = control_.active_tool()) {
-        diameter = tool->diameter_mm;
-      } else {
-        control_.fail("compensation-no-tool", at, "cutter compensation has no tool to take its radius from",
-                      "load a tool that the table knows, or write G41.1 D");
-      }
-      const bool left = code == 410 || code == 411;
-      control_.set_compensation(left == (diameter >= 0.0) ? Compensation::kLeft : Compensation::kRight,
-                                0.5 * std::abs(diameter), at);
-    }
-  }
-  if (!block_.has_g(kLengthGroup)) return;
-  const int code = block_.g[kLengthGroup];
-  if (code == 490) return control_.set_length_compensation(0.0, false);
-  if (code == 431) {
-    if ((block_.given & kAxisBits) != 1u << ('Z' - 'A'))
-      control_.fail("unsupported-word", g_column(kLengthGroup),
-                    "G43.1 is read with Z alone (a length along the tool)", "write G43.1 Z");
-    return control_.set_length_compensation(control_.mm(block_.get('Z')), true);
-  }
-  double length = 0.0;
-  if (block_.has('H') && block_.get('H') != 0.0) {
-    const int index = control_.find_tool(whole(block_, 'H', 0, 99999999, reader_, control_), column('H'));
-    if (index >= 0) length = control_.tool_at(index).length_mm;
-  } else if (!block_.has('H') && control_.active_tool() != nullptr) {
-    length = control_.active_tool()->length_mm;
-  }
-  if (code == 432) {
-    need('H', "G43.2");
-    length += control_.length_compensation();
-  }
-  control_.set_length_compensation(length, true);
+  if (block_.has_m(70)) mist_ = true;
+  if (block_.has_m(80)) flood_ = true;
+  if (block_.has_m(90)) mist_ = flood_ = false;
 }
 
 void LinuxCnc::apply_offsets() {

@@ -1,4 +1,6 @@
 // The words of RS274/NGC as data: codes with their modal groups, functions, operators.
+#include <array>
+
 #include "program/nc/linuxcnc.h"
 
 namespace swarf::program::nc {
@@ -14,19 +16,22 @@ constexpr Code kGCodes[] = {
     {20, 1},
     {30, 1},
     {40, 0},
-    {50, 1, kUnsupported, "cubic spline"},
-    {51, 1, kUnsupported, "quadratic spline"},
-    {52, 1, kUnsupported, "NURBS block"},
-    {53, 1, kUnsupported, "NURBS block"},
+    {50, 1},
+    {51, 1},
+    {52, 1},
+    {53, 1},
+    {62, 1, kUnsupported, "NURBS of releases after 2.9; G5.2 is read"},
     {70, 15, kUnsupported, "lathe diameter mode"},
     {80, 15, kNoEffect, "lathe radius mode"},
     {100, 0},
+    {121, 0, kUnsupported, "kinematics by number of releases after 2.9; M428, M429 and M430 are read"},
+    {131, 0, kUnsupported, "kinematics by number of releases after 2.9; M428, M429 and M430 are read"},
     {170, 2},
     {180, 2},
     {190, 2},
-    {171, 2, kUnsupported, "plane of U V W"},
-    {181, 2, kUnsupported, "plane of U V W"},
-    {191, 2, kUnsupported, "plane of U V W"},
+    {171, 2, kUnsupported, "plane of U V W, which no machine here has"},
+    {181, 2, kUnsupported, "plane of U V W, which no machine here has"},
+    {191, 2, kUnsupported, "plane of U V W, which no machine here has"},
     {200, 6},
     {210, 6},
     {280, 0},
@@ -75,8 +80,8 @@ constexpr Code kGCodes[] = {
     {840, 1},
     {850, 1},
     {860, 1},
-    {870, 1, kUnsupported, "back boring"},
-    {880, 1, kUnsupported, "boring with manual out"},
+    {870, 1},
+    {880, 1},
     {890, 1},
     {900, 3},
     {910, 3},
@@ -89,7 +94,7 @@ constexpr Code kGCodes[] = {
     {930, 5},
     {940, 5},
     {950, 5},
-    {960, 16, kUnsupported, "constant surface speed"},
+    {960, 16, kUnsupported, "a speed that follows X of a turned part; write G97 S"},
     {970, 16, kRead},
     {980, 10},
     {990, 10},
@@ -115,28 +120,40 @@ constexpr Code kMCodes[] = {
     {510, kFree, kNoEffect, "speed override"},
     {520, kFree, kNoEffect, "adaptive feed"},
     {530, kFree, kNoEffect, "feed stop"},
-    {610, 1, kUnsupported, "tool number without a change"},
+    {610, 1},
     {620, kFree, kNoEffect, "output"},
     {630, kFree, kNoEffect, "output"},
     {640, kFree, kNoEffect, "output"},
     {650, kFree, kNoEffect, "output"},
-    {660, kFree, kUnsupported, "reading an input"},
+    {660, kFree},
     {670, kFree, kNoEffect, "analog output"},
     {680, kFree, kNoEffect, "analog output"},
-    {700, kFree, kUnsupported, "saved modal state"},
-    {710, kFree, kUnsupported, "saved modal state"},
-    {720, kFree, kUnsupported, "saved modal state"},
-    {730, kFree, kUnsupported, "saved modal state"},
+    {700, 7},
+    {710, 7},
+    {720, 7},
+    {730, 7},
     {980, 4},
     {990, 4},
     {4280, 5},
     {4290, 5},
-    {4300, 5, kUnsupported, "kinematics of the machine builder"},
+    {4300, 5},
 };
 
-static_assert(fits_tables(kGCodes) && fits_tables(kMCodes));
+/// M100 to M199 run programs of the machine's owner.
+template <size_t kCount>
+constexpr std::array<Code, kCount + 100> with_user_codes(const Code (&own)[kCount]) {
+  std::array<Code, kCount + 100> all{};
+  for (size_t i = 0; i < kCount; ++i) all[i] = own[i];
+  for (int i = 0; i < 100; ++i)
+    all[kCount + static_cast<size_t>(i)] = {1000 + 10 * i, kFree, kUnsupported,
+                                            "a program of the machine's owner"};
+  return all;
+}
+constexpr auto kAllMCodes = with_user_codes(kMCodes);
+
+static_assert(fits_tables(kGCodes) && fits_tables(kAllMCodes));
 const CodeTable kGTable{kGCodes};
-const CodeTable kMTable{kMCodes};
+const CodeTable kMTable{kAllMCodes};
 
 constexpr FunctionWord kFunctions[] = {
     {"ABS", Function::kAbs}, {"ACOS", Function::kAcos}, {"ASIN", Function::kAsin},
@@ -145,16 +162,19 @@ constexpr FunctionWord kFunctions[] = {
     {"SIN", Function::kSin}, {"SQRT", Function::kSqrt}, {"TAN", Function::kTan},
 };
 constexpr OperatorWord kOperators[] = {
-    {"**", Operator::kPower, 5},        {"*", Operator::kMultiply, 4},  {"/", Operator::kDivide, 4},
-    {"MOD", Operator::kModulo, 4},      {"+", Operator::kAdd, 3},       {"-", Operator::kSubtract, 3},
-    {"EQ", Operator::kEqual, 2},        {"NE", Operator::kNotEqual, 2}, {"GT", Operator::kGreater, 2},
-    {"GE", Operator::kGreaterEqual, 2}, {"LT", Operator::kLess, 2},     {"LE", Operator::kLessEqual, 2},
-    {"AND", Operator::kAnd, 1},         {"OR", Operator::kOr, 1},       {"XOR", Operator::kXor, 1},
+    {"**", Operator::kPower, 5},       {"*", Operator::kMultiply, 4},
+    {"/", Operator::kDivide, 4},       {"MOD", Operator::kPositiveModulo, 4},
+    {"+", Operator::kAdd, 3},          {"-", Operator::kSubtract, 3},
+    {"EQ", Operator::kNearlyEqual, 2}, {"NE", Operator::kNotNearlyEqual, 2},
+    {"GT", Operator::kGreater, 2},     {"GE", Operator::kGreaterEqual, 2},
+    {"LT", Operator::kLess, 2},        {"LE", Operator::kLessEqual, 2},
+    {"AND", Operator::kAnd, 1},        {"OR", Operator::kOr, 1},
+    {"XOR", Operator::kXor, 1},
 };
 
 }  // namespace
 
-const LetterSyntax kLinuxCncSyntax{&kGTable, &kMTable, "ABCDFGHIJKLMNPQRSTUVWXYZ", true};
+const LetterSyntax kLinuxCncSyntax{&kGTable, &kMTable, "ABCDEFGHIJKLMNPQRSTUVWXYZ", true};
 const FormulaSyntax kLinuxCncFormula{kFunctions, kOperators, true, false, false};
 
 }  // namespace swarf::program::nc

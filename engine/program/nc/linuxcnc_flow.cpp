@@ -9,15 +9,21 @@
 namespace swarf::program::nc {
 namespace {
 
-constexpr size_t kCallsMax = 100;
+/// "The maximum subroutine nesting level is 10."
+constexpr size_t kCallsMax = 10;
 
 }  // namespace
 
 bool LinuxCnc::at_o_word() {
   const size_t from = reader_.at();
+  if (reader_.peek() == '/') {
+    reader_.skip();
+    reader_.skip_space();
+  }
   if (reader_.peek_upper() == 'N') {
     reader_.skip();
-    while (reader_.peek() >= '0' && reader_.peek() <= '9') reader_.skip();
+    reader_.skip_space();
+    while ((reader_.peek() >= '0' && reader_.peek() <= '9') || reader_.peek() == '.') reader_.skip();
     reader_.skip_space();
   }
   const bool found = reader_.peek_upper() == 'O';
@@ -286,14 +292,20 @@ const LinuxCnc::Sub* LinuxCnc::scan(LineSource& in, const std::string& name, boo
   return found;
 }
 
+/// O...sub must have been passed before its call, a numbered subprogram follows it; both may have a file of
+/// their own.
 const LinuxCnc::Sub* LinuxCnc::find_sub(const std::string& name, bool numbered) {
   for (const Sub& sub : subs_) {
     if (sub.name == name && sub.numbered == numbered) return &sub;
   }
-  if (const Sub* here = scan(source(), name, numbered)) return here;
-  if (&source() != sources_.front().get()) {
-    if (const Sub* in_main = scan(*sources_.front(), name, numbered)) return in_main;
-  }
+  LineSource& main = *sources_.front();
+  const Sub* here = scan(source(), name, numbered);
+  if (here == nullptr && &source() != &main) here = scan(main, name, numbered);
+  if (here != nullptr && !numbered)
+    control_.fail("unknown-subprogram", 0,
+                  fmt::format("O{} is called before its definition in line {}", name, here->body.line),
+                  "write the subprogram before its first call");
+  if (here != nullptr) return here;
   const std::string file = find_subprogram(path_, control_.setup(), name, {".ngc", ".nc", ""});
   return file.empty() ? nullptr : scan(open(file), name, numbered);
 }
@@ -319,6 +331,14 @@ void LinuxCnc::call_sub(const OWord& word) {
                   fmt::format("O{} is called, and no such subprogram is in this file or in {}.ngc", word.name,
                               word.name),
                   "define it with O... sub, or give the folder of the file");
+  // What the call does not pass: the caller's values by one chapter of the reference, zeros by another.
+  call.ambiguous = frame().ambiguous & ~frame().assigned & ~call.assigned;
+  for (size_t i = 1; i < frame().arguments.size(); ++i) {
+    const bool differs = (frame().assigned >> i & 1u) != 0 && frame().arguments[i] != 0.0;
+    if (differs && (call.assigned >> i & 1u) == 0) call.ambiguous |= uint64_t{1} << i;
+  }
+  returned_ = 0.0;
+  value_returned_ = false;
   enter(*sub, std::move(call));
 }
 
@@ -338,11 +358,19 @@ void LinuxCnc::enter(const Sub& sub, Call call) {
 
 void LinuxCnc::leave() {
   Call& call = frame();
+  if (call.restores) restore(*call.saved, 0);
+  call.restores = false;
   if (call.left > 0) {
     --call.left;
     control_.jump();
     call.source->seek(call.top);
     return;
+  }
+  if (call.numbered) {  // #1 to #30 are global there
+    Call& caller = calls_[calls_.size() - 2];
+    caller.arguments = call.arguments;
+    caller.assigned = call.assigned;
+    caller.ambiguous = call.ambiguous;
   }
   const LineSource::Mark back = call.back;
   calls_.pop_back();
@@ -357,6 +385,12 @@ void LinuxCnc::call_number(int number, long times, int column) {
     control_.fail("unknown-subprogram", column,
                   fmt::format("M98 calls O{}, and it is neither in this file nor in {}.ngc", number, number),
                   "add the subprogram, or give the folder of its file");
+  if (sub->source == &source() && sub->body.line <= source().line_number())
+    control_.fail(
+        "unknown-subprogram", column,
+        fmt::format("O{} stands before this M98, in line {}: numbered subprograms follow their call", number,
+                    sub->body.line),
+        "write it behind the end of the main program");
   Call call;
   call.sub = name;
   call.numbered = true;
@@ -364,6 +398,7 @@ void LinuxCnc::call_number(int number, long times, int column) {
   // Numbered subprograms share the parameters of their caller.
   call.arguments = frame().arguments;
   call.assigned = frame().assigned;
+  call.ambiguous = frame().ambiguous;
   enter(*sub, std::move(call));
 }
 

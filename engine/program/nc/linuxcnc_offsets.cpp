@@ -26,6 +26,7 @@ void LinuxCnc::non_modal() {
       return shift_to_words(true);
     case 921:
       shift_ = AxisValues::Zero();
+      shift_on_ = false;
       return update_shift();
     case 922:
       shift_on_ = false;
@@ -60,11 +61,16 @@ void LinuxCnc::update_shift() {
 
 void LinuxCnc::set_data() {
   need('L', "G10");
-  need('P', "G10");
   const int kind = whole(block_, 'L', 0, 20, reader_, control_);
+  if (kind == 1 || kind == 10 || kind == 11) {
+    need('P', "G10");
+    return set_tool_data(kind);
+  }
   if (kind != 2 && kind != 20)
-    control_.fail("unsupported-word", column('L'), fmt::format("G10 L{} changes the tool table", kind),
-                  "give the tool table as a file; G10 L2 and L20 are read");
+    control_.fail("unsupported-word", column('L'), fmt::format("G10 L{} is not read", kind),
+                  "G10 L1, L10 and L11 write tool data, L2 and L20 offsets");
+  need('P', "G10");
+  for (const char letter : {'I', 'J', 'Q'}) check_letter(letter, false, "G10 L1");
   int number = whole(block_, 'P', 0, 9, reader_, control_);
   if (number == 0) number = control_.work_offset();
   const Target words = target_of(block_, false, reader_, control_);
@@ -84,8 +90,8 @@ void LinuxCnc::set_data() {
     if (!words.has(word)) continue;
     const int axis = control_.require_axis(static_cast<AxisWord>(word), words.column);
     const double value = words.value[static_cast<size_t>(word)];
-    if (kind == 2) {
-      origin[axis] = incremental_ ? origin[axis] + value : value;
+    if (kind == 2) {  // G91 has no effect on it
+      origin[axis] = value;
       continue;
     }
     if (!std::isfinite(here[static_cast<size_t>(word)]))
@@ -125,6 +131,7 @@ void LinuxCnc::reference(int tenths) {
                   "G30 goes to the tool change position, and the machine has none",
                   "add tool_change to the machine file, write G30.1 before it, or write G28");
   const Target words = target_of(block_, incremental_, reader_, control_);
+  spline_tangent_.reset();
   if (words.any()) control_.line(Motion::kRapid, words);
   Target home;
   home.column = g_column(kNonModal);
@@ -136,6 +143,22 @@ void LinuxCnc::reference(int tenths) {
   control_.machine_line(Motion::kRapid, home);
 }
 
+/// What becomes of the shift of an axis that G92 does not name: the reference says that it becomes zero,
+/// RS274/NGC that it stays.
+void LinuxCnc::check_unnamed_shifts(const Target& words) const {
+  for (int word = 0; word < kAxisWords; ++word) {
+    const int axis = control_.axis_of(static_cast<AxisWord>(word));
+    if (axis < 0 || words.has(word) || shift_[axis] == 0.0) continue;
+    control_.fail(
+        "ambiguous-shift", g_column(kNonModal),
+        fmt::format(
+            "{} is shifted already, and this G92 does not name it: the reference takes the shift away, "
+            "RS274/NGC keeps it",
+            kAxisLetters[word]),
+        fmt::format("name {} as well, or write G92.1 before it", kAxisLetters[word]));
+  }
+}
+
 /// G92: the present position reads as written. G52: the shift is as written.
 void LinuxCnc::shift_to_words(bool position) {
   const Target words = target_of(block_, false, reader_, control_);
@@ -143,7 +166,8 @@ void LinuxCnc::shift_to_words(bool position) {
     control_.fail("missing-word", g_column(kNonModal), "this shift has no axis words",
                   "add the axes that it shifts");
   const std::array<double, kAxisWords> here = control_.position();
-  if (position && !shift_on_) shift_ = AxisValues::Zero();
+  if (!shift_on_) shift_ = AxisValues::Zero();
+  if (position) check_unnamed_shifts(words);
   for (int word = 0; word < kAxisWords; ++word) {
     if (!words.has(word)) continue;
     const int axis = control_.require_axis(static_cast<AxisWord>(word), words.column);

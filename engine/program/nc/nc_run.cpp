@@ -104,6 +104,10 @@ const char* dialect_name(Dialect dialect) {
   return "";
 }
 
+const char* kinematics_name(Kinematics kinematics) {
+  return kinematics == Kinematics::kTcp ? "tcp" : "identity";
+}
+
 NcSummary run_nc(const std::string& path, std::optional<Dialect> dialect, const ControlSetup& setup,
                  NcSink& sink, Diagnostics& diagnostics) {
   NcSummary summary;

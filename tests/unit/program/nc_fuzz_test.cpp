@@ -36,7 +36,12 @@ const char* const kLinuxCnc =
     "Q1.5 F100\n"
     "X3 L2\nG98 G73 X5 Z-3 R2 Q1\nG82 X6 Z-1 R2 P.1\nG80\nG93 G1 X1 F10\nG95 M3 X2 F.1\nG94 F100\nG53 G0 "
     "Z5\nG49\nM428\n"
-    "G1 X5 A10 C20 F500\nM429\nG4 P.5\nG20 X.1\nG21\nG61 X5\nM98 P7 L2\n/G0 X1\n(MSG, done)\nM5 "
+    "G1 X5 A10 C20 F500\nM430\nM429\nG4 P.5\nG20 X.1\nG21\nG61 X5\nM98 P7 L2\n/G0 X1\n(MSG, done)\n"
+    "G0 X0 Y0\nG5 I0 J3 P0 Q-3 X1 Y1 F100\nP0 Q-3 X2 Y2\nG5.1 X3 I1 J1\nG5.2 P1 L3\nX1 Y2 P.5\nX3 Y1\nG5.3\n"
+    "M70\nG20 G91 F3\nM72\nM71\nG10 L1 P2 Z50 R5\nG10 L10 P2 Z60\nG10 L11 P2 Z3\nM66 P0 L3 Q5\nM61 Q1\nS100 "
+    "M3\n"
+    "G87 X1 Y1 Z-9 R2 I1 J1 K-3\nG88 X2 Z-3 R2 P.1\nG84 X3 Z-3 R2\nG80 M68 E3 Q1\n(DEBUG, %.2f#31 of "
+    "#<step>)\nM5 "
     "M9\nM2\no7\nG0 X1\nM99\n";
 
 const char* const kFanuc =
@@ -70,6 +75,7 @@ const Language kLanguages[] = {{Dialect::kLinuxCnc, kLinuxCnc, "linuxcnc"},
 ControlSetup fuzz_setup() {
   ControlSetup setup = five_axis_setup();
   setup.machine.tool_change = AxisValues::Zero();
+  setup.kinematics_switch.m430 = Kinematics::kTcp;
   setup.moves_max = 2000;
   return setup;
 }

@@ -188,6 +188,7 @@ TEST(NcLinuxCnc, StartIsTheFirstCompletePosition) {
 
 TEST(NcLinuxCnc, TcpKeepsTheTipOnItsLine) {
   ControlSetup setup = five_axis_setup();
+  setup.kinematics_switch = {{}, Kinematics::kTcp, Kinematics::kIdentity, {}};
   const NcRun run = linuxcnc(
       "T2 M6 G43\nG0 X10 Y20 Z30 A0 C0\nM428\nG1 X20 Y20 Z30 A30 C40 F600\nG1 A0 C0\nM429\nG1 A10 F600\nM2\n",
       setup);
@@ -206,6 +207,40 @@ TEST(NcLinuxCnc, TcpKeepsTheTipOnItsLine) {
     EXPECT_NEAR((pose.tip_W - move.to.tip_W).norm(), 0.0, 1e-9);
     EXPECT_NEAR((pose.axis_W - move.to.axis_W).norm(), 0.0, 1e-12);
   }
+}
+
+TEST(NcLinuxCnc, KinematicsSwitchesAreWhatTheMachineSays) {
+  const auto law_after = [](const std::string& code, const KinematicsSwitch& told) {
+    ControlSetup setup = five_axis_setup();
+    setup.kinematics_switch = told;
+    const NcRun run =
+        linuxcnc("T2 M6 G43\nG0 X10 Y20 Z30 A0 C0\n" + code + "\nG1 X20 A30 C40 F600\nM2\n", setup);
+    EXPECT_FALSE(run.diagnostics.has_errors()) << run.text();
+    return run.moves().back().law;
+  };
+  constexpr auto kTcp = Kinematics::kTcp, kIdentity = Kinematics::kIdentity;
+  // LinuxCNC's own machines: the kinematics of the machine, identity, userk (here a copy of identity).
+  EXPECT_EQ(law_after("M428", {}), BlockLaw::kTcpAxes);
+  EXPECT_EQ(law_after("M428\nM429", {}), BlockLaw::kJoint);
+  EXPECT_EQ(law_after("M428\nM430", {{}, {}, {}, kIdentity}), BlockLaw::kJoint);
+  EXPECT_EQ(law_after("M430", {{}, {}, {}, kTcp}), BlockLaw::kTcpAxes);
+  // The nutating machines count from identity, and a bridge mill starts in its own kinematics.
+  EXPECT_EQ(law_after("M429", {{}, kIdentity, kTcp, {}}), BlockLaw::kTcpAxes);
+  EXPECT_EQ(law_after("M429\nM428", {{}, kIdentity, kTcp, {}}), BlockLaw::kJoint);
+  EXPECT_EQ(law_after("", {kTcp, {}, {}, {}}), BlockLaw::kTcpAxes);
+  EXPECT_EQ(law_after("", {}), BlockLaw::kJoint);
+}
+
+TEST(NcLinuxCnc, KinematicsThatNobodyStatesAreToldOnce) {
+  const ControlSetup setup = five_axis_setup();
+  const NcRun run = linuxcnc("G0 X1 Y2 Z3 A0 C0\nM428\nM429\nM428\nM429\nM2\n", setup);
+  ASSERT_EQ(run.diagnostics.list().size(), 2u) << run.text();
+  for (const Diagnostic& one : run.diagnostics.list()) {
+    EXPECT_EQ(one.severity, Severity::kNote);
+    EXPECT_EQ(one.code, "kinematics-assumed");
+  }
+  EXPECT_NE(run.diagnostics.list()[0].text.find("M428 is taken as TCP"), std::string::npos);
+  EXPECT_EQ(run.diagnostics.list()[1].where.line, 3);
 }
 
 TEST(NcLinuxCnc, SinkStopsTheProgram) {
