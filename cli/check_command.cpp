@@ -112,6 +112,9 @@ void add_check(CLI::App& app, int& exit_code) {
                       "linuxcnc, fanuc, siemens or heidenhain; recognised when left out");
   command->add_option("--tools", nc->tools,
                       "tool table of NC programs: .toml with [[tool]], or LinuxCNC's .tbl");
+  command->add_option(
+      "--kinematics", nc->kinematics,
+      "what LinuxCNC's M428 M429 M430 select on this machine: m430=identity, m428=tcp, start=tcp, ...");
   command->add_flag("--home", nc->at_home, "NC programs start at the machine's home");
   command->add_option("--poses", *poses, "random poses that a machine's inverse must give back")
       ->check(CLI::Range(1, 100000000))

@@ -111,6 +111,30 @@ std::optional<program::Dialect> chosen(const std::string& file, const std::strin
                    "choose linuxcnc, fanuc, siemens or heidenhain");
 }
 
+/// Reads "m430=identity" and its like.
+program::KinematicsSwitch kinematics_of(const std::string& file, const std::vector<std::string>& words) {
+  program::KinematicsSwitch kinematics;
+  const std::array<std::pair<const char*, std::optional<program::Kinematics>*>, 4> keys{
+      {{"start", &kinematics.start},
+       {"m428", &kinematics.m428},
+       {"m429", &kinematics.m429},
+       {"m430", &kinematics.m430}}};
+  for (const std::string& word : words) {
+    bool known = false;
+    for (const auto& [key, value] : keys) {
+      for (const auto choice : {program::Kinematics::kIdentity, program::Kinematics::kTcp}) {
+        if (word != fmt::format("{}={}", key, program::kinematics_name(choice))) continue;
+        *value = choice;
+        known = true;
+      }
+    }
+    if (!known)
+      throw InputError("bad-option", {file, 0, 0}, fmt::format("--kinematics {} is not understood", word),
+                       "write start, m428, m429 or m430, then =identity or =tcp: --kinematics m430=identity");
+  }
+  return kinematics;
+}
+
 /// G10 L70 opens a surface: that is a program of surface blocks.
 bool has_surface_blocks(const std::string& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -158,6 +182,7 @@ std::string check_nc(const std::string& file, const NcCheckOptions& options) {
       home[static_cast<long>(i)] = setup.machine.axes[i].home;
     setup.start = home;
   }
+  setup.kinematics_switch = kinematics_of(file, options.kinematics);
   if (!options.tools.empty()) setup.tools = tools_of(options.tools);
   NcTotals totals(setup.machine);
   Diagnostics diagnostics;

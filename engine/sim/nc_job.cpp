@@ -25,6 +25,7 @@ program::ControlSetup control_setup(const Job& job, Diagnostics& diagnostics) {
   for (const auto& [number, axes] : settings.offsets) {
     setup.work_offsets[number] = axis_values(axes, setup.machine, false, diagnostics);
   }
+  setup.kinematics_switch = job.scene.kinematics_switch;
   if (settings.start) setup.start = axis_values(*settings.start, setup.machine, true, diagnostics);
   return setup;
 }

@@ -125,6 +125,21 @@ void read_accept(ConfigTable table, bool blocks, AcceptLimits& accept) {
   if (!blocks || table.has("collisions")) accept.collisions = table.integer("collisions", 0, 1000000, 0);
 }
 
+/// What M428 to M430 mean, for LinuxCNC alone.
+program::KinematicsSwitch read_kinematics_switch(ConfigTable table) {
+  program::KinematicsSwitch kinematics;
+  const std::vector<std::string> names{"identity", "tcp"};  // order of Kinematics
+  const auto read = [&](const char* key, std::optional<program::Kinematics>& value) {
+    if (!table.has(key)) return;
+    value = table.choice(key, names) == names[1] ? program::Kinematics::kTcp : program::Kinematics::kIdentity;
+  };
+  read("start", kinematics.start);
+  read("m428", kinematics.m428);
+  read("m429", kinematics.m429);
+  read("m430", kinematics.m430);
+  return kinematics;
+}
+
 /// `program`, `cl` or `nc`, exactly one of them.
 void read_program(ConfigTable& root, Scene& scene) {
   const std::array<std::pair<const char*, ProgramKind>, 3> kinds{
@@ -150,6 +165,10 @@ void read_program(ConfigTable& root, Scene& scene) {
     scene.dialect =
         static_cast<program::Dialect>(std::find(names.begin(), names.end(), word) - names.begin());
   }
+  // Of another dialect the key stays unread, and is reported as unknown.
+  if (root.has("kinematics_switch") &&
+      scene.dialect.value_or(program::Dialect::kLinuxCnc) == program::Dialect::kLinuxCnc)
+    scene.kinematics_switch = read_kinematics_switch(root.table("kinematics_switch"));
 }
 
 /// Surface blocks are planned for one cutter.
