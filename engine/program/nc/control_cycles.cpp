@@ -92,7 +92,7 @@ void Control::draw_out(const DrillCycle& cycle, int normal) {
   if (cycle.feed_out) {
     feed_fresh_ = true;
     go(Motion::kFeed, normal, cycle.feed_to_retract ? cycle.retract : cycle.approach);
-    if (cycle.reverse_at_bottom && !cycle.feed_to_retract) pending_dwell_s_ += cycle.dwell_s;
+    pending_dwell_s_ += cycle.dwell_out_s;
   }
   if (cycle.manual_out) {
     go(Motion::kRapid, normal, cycle.approach);

@@ -24,9 +24,10 @@ struct DrillCycle {
   double first_peck_mm = 0.0;  ///< depth of the first one below `approach`; 0: peck_mm
   double clearance_mm =
       0.0;               ///< kFull: rapid back down to this above the last depth; kChipBreak: retreat by this
-  double dwell_s = 0.0;  ///< at the bottom; with reverse_at_bottom at `approach` too, on the way out
+  double dwell_s = 0.0;  ///< at the bottom
+  double dwell_out_s = 0.0;        ///< with feed_out: at `approach`, on the way out (tapping of Fanuc)
   bool feed_out = false;           ///< out at feed (boring, tapping) to `approach`, then rapid to `retract`
-  bool feed_to_retract = false;    ///< with feed_out: at feed up to `retract`, without a dwell on the way
+  bool feed_to_retract = false;    ///< with feed_out: at feed up to `retract`
   bool stop_at_bottom = false;     ///< G86: the spindle stops at the bottom, starts again at the top
   bool reverse_at_bottom = false;  ///< G84, G74: tapping, the spindle turns the other way on the way out
   bool manual_out = false;         ///< G88: the spindle stops at the bottom, the tool is drawn out by hand to

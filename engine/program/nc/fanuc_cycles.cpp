@@ -96,6 +96,7 @@ DrillCycle Fanuc::drill_cycle(int tenths) {
   cycle.feed_out = taps || tenths == 850 || tenths == 890;
   cycle.stop_at_bottom = tenths == 860;
   cycle.reverse_at_bottom = taps;
+  if (taps) cycle.dwell_out_s = sticky_.p;
   cycle.manual_out = tenths == 880;
   if (bores(tenths)) {
     cycle.bore = back ? DrillCycle::Bore::kBack : DrillCycle::Bore::kFine;
