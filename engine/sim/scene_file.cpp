@@ -166,8 +166,8 @@ void read_program(ConfigTable& root, Scene& scene) {
         static_cast<program::Dialect>(std::find(names.begin(), names.end(), word) - names.begin());
   }
   // Of another dialect the key stays unread, and is reported as unknown.
-  if (root.has("kinematics_switch") &&
-      scene.dialect.value_or(program::Dialect::kLinuxCnc) == program::Dialect::kLinuxCnc)
+  if (scene.dialect.value_or(program::Dialect::kLinuxCnc) == program::Dialect::kLinuxCnc &&
+      root.has("kinematics_switch"))
     scene.kinematics_switch = read_kinematics_switch(root.table("kinematics_switch"));
 }
 
