@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "base/config.h"
+#include "cli/check_cl.h"
 #include "cli/check_nc.h"
 #include "cli/commands.h"
 #include "cli/terminal.h"
@@ -51,14 +52,24 @@ std::string check_machine(const std::string& file, int poses) {
       trip.tip_mm, trip.axis_rad);
 }
 
-std::string check_file(const std::string& file, const NcCheckOptions& nc, int poses) {
+/// --cutcom and --circle as they were given.
+struct ClCheckOptions {
+  std::string cutcom, circle;
+};
+
+program::ClOptions cl_options(const ClCheckOptions& given) {
+  program::ClOptions options;
+  if (!given.cutcom.empty())
+    options.cutcom = given.cutcom == "centre" ? program::ClPoints::kCentre : program::ClPoints::kContour;
+  if (!given.circle.empty()) options.circle_clockwise = given.circle == "clockwise";
+  return options;
+}
+
+std::string check_file(const std::string& file, const NcCheckOptions& nc, const ClCheckOptions& cl,
+                       int poses) {
+  if (is_cl_file(file)) return check_cl(file, cl_options(cl));
   if (is_nc_program(file, nc)) return check_nc(file, nc);
-  const std::string extension = std::filesystem::path(file).extension().string();
-  if (extension == ".cl" || extension == ".cls" || extension == ".apt" || extension == ".cldata") {
-    const program::ClProgram program = program::load_cl(file);
-    return fmt::format("CL data is right: {} statements, {} moves", program.statements, program.moves.size());
-  }
-  if (extension != ".toml") {
+  if (std::filesystem::path(file).extension() != ".toml") {
     const program::Program program = program::load_program(file);
     return fmt::format("program is right: {} blocks, {} surfaces, {} operations", program.blocks,
                        program.surfaces.size(), program.operations.size());
@@ -67,11 +78,12 @@ std::string check_file(const std::string& file, const NcCheckOptions& nc, int po
   return check_machine(file, poses);
 }
 
-int check(const std::vector<std::string>& files, const NcCheckOptions& nc, int poses) {
+int check(const std::vector<std::string>& files, const NcCheckOptions& nc, const ClCheckOptions& cl,
+          int poses) {
   int exit_code = kPass;
   for (const std::string& file : files) {
     try {
-      fmt::print("{}: {}\n", file, check_file(file, nc, poses));
+      fmt::print("{}: {}\n", file, check_file(file, nc, cl, poses));
     } catch (const InputError& error) {
       fmt::print(stderr, "{}\n", error.what());
       exit_code = kBadInput;
@@ -84,6 +96,8 @@ const char* const kCheckFooter =
     R"(What is printed for an NC program: the dialect and why, lines and moves, the way of the tip in feed and rapid moves,
 times at the programmed feed, tools that cut, where it starts, extents of cut and axes, words without effect.
 Every fault is told with file:line:column and what to do; the program is read up to its first one.
+
+For CL data: writer and its mark, statements and moves, tools, start, extents, words without effect.
 
 Where a program starts: no position is assumed. The first block after which every axis has a place starts it;
 a program that feeds before that needs --home, or a scene with `start`.
@@ -101,11 +115,12 @@ Exit codes: 0 all are right; 2 at least one is wrong.)";
 void add_check(CLI::App& app, int& exit_code) {
   auto files = std::make_shared<std::vector<std::string>>();
   auto nc = std::make_shared<NcCheckOptions>();
+  auto cl = std::make_shared<ClCheckOptions>();
   auto poses = std::make_shared<int>(10000);
   CLI::App* command =
       app.add_subcommand("check",
                          "Parse and validate scenes and machines (.toml), programs (.nc, .ngc, "
-                         ".mpf, .h) and CL data (.cl, .cls, .apt, .cldata); run nothing");
+                         ".mpf, .h) and CL data (.cls, .clt, .ncl, .apt, .cldata); run nothing");
   command->add_option("files", *files, "files to check")->required();
   command->add_option("--machine", nc->machine, "machine.toml that NC programs are read for");
   command->add_option("--dialect", nc->dialect,
@@ -116,11 +131,19 @@ void add_check(CLI::App& app, int& exit_code) {
       "--kinematics", nc->kinematics,
       "what LinuxCNC's M428 M429 M430 select on this machine: m430=identity, m428=tcp, start=tcp, ...");
   command->add_flag("--home", nc->at_home, "NC programs start at the machine's home");
+  command
+      ->add_option("--cutcom", cl->cutcom,
+                   "points of CL data under CUTCOM: of the cutter's centre, or of the part's contour")
+      ->check(CLI::IsMember({"centre", "contour"}));
+  command
+      ->add_option("--circle", cl->circle,
+                   "how CIRCLE of CL data runs about its vector; as its writer does when left out")
+      ->check(CLI::IsMember({"clockwise", "counter_clockwise"}));
   command->add_option("--poses", *poses, "random poses that a machine's inverse must give back")
       ->check(CLI::Range(1, 100000000))
       ->capture_default_str();
   command->footer(kCheckFooter);
-  command->callback([files, nc, poses, &exit_code] { exit_code = check(*files, *nc, *poses); });
+  command->callback([files, nc, cl, poses, &exit_code] { exit_code = check(*files, *nc, *cl, *poses); });
 }
 
 }  // namespace swarf::cli

@@ -10,6 +10,7 @@
 #include "measure/measure.h"
 #include "motion/look_ahead.h"
 #include "motion/offline_baseline.h"
+#include "reports/cl_report.h"
 #include "reports/flank_table.h"
 #include "reports/nc_report.h"
 #include "reports/paper_table.h"
@@ -367,14 +368,19 @@ Lines path_lines(const sim::Job& job, const sim::Result& result) {
 Lines cl_path_lines(const sim::Job& job, const sim::Result& result) {
   const motion::MotionStatistics& m = result.main.motion.statistics;
   const Vec3& start = job.cl->start.tip_W;
-  return {{"path", fmt::format("{} blocks, {:.0f} mm of feed moves, {:.0f} mm of rapids, law {}",
-                               result.main.path.elements.size(), result.main.path.pass_length_mm,
-                               result.main.path.link_length_mm, toolpath::law_name(job.scene.block_law))},
-          {"start", fmt::format("({:.3f}, {:.3f}, {:.3f}) mm, line {}: the first complete position",
-                                start.x(), start.y(), start.z(), job.cl->start_line)},
-          {"time", fmt::format("{} ({} cycles of {:g} ms): feed {:.2f} s, rapid {:.2f} s, dwell {:.2f} s",
-                               duration(m.time_s), m.ticks, job.scene.motion.period_s * 1e3, m.cycle.feed_s,
-                               m.cycle.rapid_s, m.cycle.dwell_s)}};
+  Lines lines{{"writer", program::writer_name(job.cl->writer)}};
+  for (const std::string& remark : job.cl->remarks) lines.emplace_back("note", remark);
+  const Lines path{
+      {"path", fmt::format("{} blocks, {:.0f} mm of feed moves, {:.0f} mm of rapids, law {}",
+                           result.main.path.elements.size(), result.main.path.pass_length_mm,
+                           result.main.path.link_length_mm, toolpath::law_name(job.scene.block_law))},
+      {"start", fmt::format("({:.3f}, {:.3f}, {:.3f}) mm, line {}: the first complete position", start.x(),
+                            start.y(), start.z(), job.cl->start_line)},
+      {"time", fmt::format("{} ({} cycles of {:g} ms): feed {:.2f} s, rapid {:.2f} s, dwell {:.2f} s",
+                           duration(m.time_s), m.ticks, job.scene.motion.period_s * 1e3, m.cycle.feed_s,
+                           m.cycle.rapid_s, m.cycle.dwell_s)}};
+  lines.insert(lines.end(), path.begin(), path.end());
+  return lines;
 }
 
 Lines surface_lines(const sim::Job& job, const sim::Result& result) {
@@ -450,6 +456,11 @@ ReportData report_data(const sim::Job& job, const sim::Result& result, const Run
   if (result.main.nc) {
     data.facts.insert(data.facts.begin() + 1, nc_facts(job, result));
     const std::vector<Check> more = nc_checks(result);
+    data.checks.insert(data.checks.end(), more.begin(), more.end());
+  }
+  if (job.cl) {
+    data.facts.insert(data.facts.begin() + 1, cl_facts(*job.cl));
+    const std::vector<Check> more = cl_checks(*job.cl);
     data.checks.insert(data.checks.end(), more.begin(), more.end());
   }
   return data;

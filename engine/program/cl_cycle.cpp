@@ -22,6 +22,7 @@ void peck(const ClCycle& cycle, std::vector<ClCycleStep>& steps) {
 
 std::vector<ClCycleStep> cycle_steps(const ClCycle& cycle) {
   std::vector<ClCycleStep> steps;
+  if (cycle.arrive_mm > cycle.clear_mm) steps.push_back({cycle.clear_mm, true, 0.0});
   if (cycle.kind == ClCycleKind::kDeep || cycle.kind == ClCycleKind::kChipBreak) {
     peck(cycle, steps);
   } else {

@@ -1,6 +1,6 @@
 // Drilling cycles of CL data as single steps.
 //
-//   C = P + clear a   ---- rapid ---->  feed to P - depth a, dwell, out again
+//   A = P + arrive a  ---- rapid ---->  C = P + clear a  ---->  feed to P - depth a, dwell, out again
 //
 // P is the point of GOTO, a its tool axis. DEEP comes out to C between its pecks and goes back in rapid to
 // kPeckGap above the ground; BRKCHP only lifts by kPeckGap.
@@ -16,11 +16,13 @@ enum class ClCycleKind { kDrill, kFace, kDeep, kChipBreak, kBore, kTap };
 
 struct ClCycle {
   ClCycleKind kind = ClCycleKind::kDrill;
-  double depth_mm = 0.0;    ///< below the point
-  double clear_mm = 0.0;    ///< above it
-  double retract_mm = 0.0;  ///< above it, when the hole is done
-  double step_mm = 0.0;     ///< of DEEP and BRKCHP
-  double dwell_s = 0.0;     ///< on the ground
+  double depth_mm = 0.0;          ///< below the point
+  double arrive_mm = 0.0;         ///< above it: where the tool comes to, in rapid
+  double clear_mm = 0.0;          ///< above it: where the feed begins
+  double retract_mm = 0.0;        ///< above it, when the hole is done
+  bool retract_to_start = false;  ///< RTRCTO,AUTO: to where the tool stood before the cycle, instead
+  double step_mm = 0.0;           ///< of DEEP and BRKCHP
+  double dwell_s = 0.0;           ///< on the ground
   double feed_mm_s = 0.0;
 };
 
@@ -34,7 +36,7 @@ struct ClCycleStep {
   double dwell_s = 0.0;  ///< before it
 };
 
-/// The steps of one hole after the tool has come to `clear_mm`.
+/// The steps of one hole after the tool has come to `arrive_mm`.
 std::vector<ClCycleStep> cycle_steps(const ClCycle& cycle);
 
 }  // namespace swarf::program

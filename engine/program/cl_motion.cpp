@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -24,7 +23,7 @@ bool ClInterpreter::pose_of(const ClStatement& s, ToolPose& pose) {
   }
   if (!axis_known_) {
     fault("missing-axis", s, fmt::format("{} gives no tool axis, and none stands before it", s.word),
-          "give x,y,z,i,j,k in the first position after MULTAX/ON");
+          "give x,y,z,i,j,k in the first position after MULTAX/ON, or TLAXIS/i,j,k before it");
     return false;
   }
   pose.axis_W = axis_W_;
@@ -32,37 +31,65 @@ bool ClInterpreter::pose_of(const ClStatement& s, ToolPose& pose) {
 }
 
 void ClInterpreter::go_to(const ClStatement& s) {
-  ToolPose to;
-  if (pose_of(s, to)) {
-    if (cycle_) {
-      drill(s, to);
-    } else {
-      move_to(s, to);
+  if (circle_ && s.arguments.size() > 3) {
+    go_round(s);
+  } else {
+    ToolPose to;
+    if (pose_of(s, to)) {
+      if (cycle_) {
+        drill(s, to);
+      } else if (!continues_arc(s, to.tip_W)) {
+        move_to(s, to);
+      }
     }
   }
   rapid_ = false;
-  arc_.reset();
+  circle_.reset();
 }
 
 void ClInterpreter::go_delta(const ClStatement& s) {
+  Vec3 axis = axis_W_;
   if (!positioned_) {
     fault("no-position", s, "GODLTA moves from a position, and none has been given",
           "give FROM or GOTO first");
-  } else if (numbers(s, 3, 3, "GODLTA/dx,dy,dz")) {
-    move_to(s, {pose_.tip_W + X_WC_.linear() * point_at(s, 0), axis_W_});
+  } else if (cycle_) {
+    fault("bad-cycle", s, "GODLTA stands inside of a cycle", "give the hole with GOTO, or write CYCLE/OFF");
+  } else if (numbers(s, 3, 6, "GODLTA/dx,dy,dz or GODLTA/dx,dy,dz,i,j,k (unit vector)")) {
+    const bool turned = s.arguments.size() == 6;
+    if (!turned || unit_vector(s, 3, "tool axis", axis)) {
+      if (turned) axis = X_WC_.linear() * axis;
+      move_to(s, {pose_.tip_W + X_WC_.linear() * point_at(s, 0), axis});
+    }
   }
   rapid_ = false;
-  arc_.reset();
+  circle_.reset();
 }
 
 void ClInterpreter::from(const ClStatement& s) {
-  if (positioned_) {
-    fault("from-not-first", s, "FROM stands after a position has been given",
-          "FROM gives the start: put it first, or write GOTO");
+  ToolPose pose;
+  if (!pose_of(s, pose)) return;
+  if (!positioned_) {
+    start_at(s, pose);
+    home_ = pose;
     return;
   }
-  ToolPose pose;
-  if (pose_of(s, pose)) start_at(s, pose);
+  constexpr double kSame = 1e-6;  // mm, and of unit vectors
+  if ((pose.tip_W - pose_.tip_W).norm() <= kSame && (pose.axis_W - pose_.axis_W).norm() <= kSame) return;
+  fault("from-not-first", s, "FROM stands after a position has been given, and the tool is elsewhere",
+        "FROM gives the start: put it first, or write GOTO");
+}
+
+void ClInterpreter::go_home(const ClStatement& s) {
+  if (!not_compensated(s)) return;
+  if (!s.arguments.empty()) return go_to(s);  // NX gives the place: a position like another
+  if (!home_) {
+    fault("no-home", s, "GOHOME, and no FROM says where that is",
+          "give FROM at the start of the file, or write GOTO");
+    return;
+  }
+  rapid_ = true;
+  move_to(s, *home_);
+  rapid_ = false;
 }
 
 void ClInterpreter::start_at(const ClStatement& s, const ToolPose& pose) {
@@ -74,7 +101,7 @@ void ClInterpreter::start_at(const ClStatement& s, const ToolPose& pose) {
 
 void ClInterpreter::move_to(const ClStatement& s, const ToolPose& to) {
   if (!positioned_) {
-    if (arc_) fault("no-position", s, "an arc needs a position to start from", "give FROM or GOTO first");
+    if (circle_) fault("no-position", s, "an arc needs a position to start from", "give FROM or GOTO first");
     start_at(s, to);
     return;
   }
@@ -86,87 +113,65 @@ void ClInterpreter::move_to(const ClStatement& s, const ToolPose& to) {
     }
     feed_missed_ = true;
   }
+  if (circle_) return add_arc(s, to);
   add_move(s, to, rapid_ ? 0.0 : feed_mm_s_, 0.0);
 }
 
 void ClInterpreter::add_move(const ClStatement& s, const ToolPose& to, double feed_mm_s, double dwell_s) {
-  ClMove move{pose_, to, arc_, feed_mm_s, dwell_s + dwell_s_, spindle_rpm_, tool_, s.line, s.column};
-  dwell_s_ = 0.0;
-  if (!arc_ || arc_fits(s, move)) program_.moves.push_back(std::move(move));
+  send(s, to, std::nullopt, feed_mm_s, dwell_s);
+}
+
+void ClInterpreter::send(const ClStatement& s, const ToolPose& to, const std::optional<ClArc>& arc,
+                         double feed_mm_s, double dwell_s) {
+  const double dwell = dwell_s + std::exchange(dwell_s_, 0.0);
+  if (cutter_ >= 0) program_.cutters[static_cast<size_t>(std::exchange(cutter_, -1))].tool = tool_;
+  if (compensation_) {
+    compensate(s, to, arc, feed_mm_s, dwell);
+  } else {
+    ClMove move;
+    move.from = pose_;
+    move.to = to;
+    move.arc = arc;
+    move.feed_mm_s = feed_mm_s;
+    move.dwell_s = dwell;
+    move.spindle_rpm = spindle_rpm_;
+    move.tool = tool_;
+    move.line = s.line;
+    move.column = s.column;
+    emit(move);
+  }
   pose_ = to;
   axis_W_ = to.axis_W;
 }
 
+void ClInterpreter::emit(const ClMove& move) {
+  ++program_.motions;
+  sink_.move(move);
+}
+
 void ClInterpreter::drill(const ClStatement& s, const ToolPose& hole) {
-  if (arc_) fault("bad-arc", s, "an arc stands inside a cycle", "write CYCLE/OFF before it");
   const auto at = [&](double height) { return ToolPose{hole.tip_W + height * hole.axis_W, hole.axis_W}; };
-  const ToolPose above = at(cycle_->clear_mm);
+  const ToolPose above = at(cycle_->arrive_mm);
+  ClCycle cycle = *cycle_;
   if (!positioned_) {
     start_at(s, above);
+    cycle_start_W_ = above.tip_W;
   } else {
     add_move(s, above, 0.0, 0.0);
   }
-  for (const ClCycleStep& step : cycle_steps(*cycle_))
-    add_move(s, at(step.height_mm), step.rapid ? 0.0 : cycle_->feed_mm_s, step.dwell_s);
-}
-
-bool ClInterpreter::arc_fits(const ClStatement& s, const ClMove& move) {
-  if (rapid_) {
-    fault("bad-arc", s, "an arc stands in a rapid move", "take the RAPID away: an arc needs a feed");
-    return false;
+  if (cycle.retract_to_start) {
+    cycle.retract_mm = (cycle_start_W_ - hole.tip_W).dot(hole.axis_W);
+    if (cycle.retract_mm < cycle.arrive_mm) {
+      fault("bad-cycle", s,
+            fmt::format("RTRCTO,AUTO goes back to where the tool stood before the cycle, {:g} mm above this "
+                        "hole: below its clearance of {:g} mm",
+                        cycle.retract_mm, cycle.arrive_mm),
+            "write RTRCTO with a distance");
+      return;
+    }
   }
-  for (const Vec3& tip : {move.from.tip_W, move.to.tip_W}) {
-    const Vec3 arm = tip - move.arc->centre_W;
-    const double height = arm.dot(move.arc->normal_W);
-    const double radius = (arm - height * move.arc->normal_W).norm();
-    if (std::abs(radius - arc_radius_) <= kArcTolerance && std::abs(height) <= kArcTolerance) continue;
-    fault("bad-arc", s,
-          fmt::format("({:.4f}, {:.4f}, {:.4f}) does not lie on the circle of radius {:.4f} mm: its "
-                      "distance from the axis is {:.4f} mm, from the plane {:.4f} mm",
-                      tip.x(), tip.y(), tip.z(), arc_radius_, radius, std::abs(height)),
-          fmt::format("both ends must lie on the circle within {:g} mm", kArcTolerance));
-    return false;
-  }
-  return true;
-}
-
-void ClInterpreter::circle(const ClStatement& s) {
-  const char* form = "CIRCLE/cx,cy,cz,i,j,k,r (unit vector)";
-  // CAM systems append tolerances and the tool's diameter; they are checked to be numbers, not used.
-  if (s.arguments.size() < 7) {
-    fault("wrong-arguments", s, fmt::format("CIRCLE has {} arguments", s.arguments.size()),
-          fmt::format("write {}", form));
-    return;
-  }
-  Vec3 axis;
-  if (!numbers(s, s.arguments.size(), 7, form) || !unit_vector(s, 3, "circle's axis", axis)) return;
-  arc_radius_ = mm(s.arguments[6].value);
-  if (arc_radius_ <= kArcTolerance) {
-    fault("out-of-range", s.arguments[6], fmt::format("the circle's radius is {:g} mm", arc_radius_),
-          fmt::format("it must be above {:g} mm", kArcTolerance));
-    return;
-  }
-  // Clockwise about the axis; ClArc runs counter-clockwise about its normal.
-  arc_ = ClArc{X_WC_ * point_at(s, 0), -(X_WC_.linear() * axis)};
-}
-
-void ClInterpreter::system(const ClStatement& s) {
-  if (!numbers(s, 9, 9, "MSYS/ox,oy,oz, xi,xj,xk, yi,yj,yk (origin, unit X axis, unit Y axis)")) return;
-  Vec3 x, y;
-  if (!unit_vector(s, 3, "X axis of the system", x) || !unit_vector(s, 6, "Y axis of the system", y)) return;
-  if (std::abs(x.dot(y)) > kAxisLengthTolerance) {
-    fault("out-of-range", s.arguments[6],
-          fmt::format("the axes of the system stand at {:.6g} deg to each other",
-                      deg_from_rad(std::acos(std::clamp(x.dot(y), -1.0, 1.0)))),
-          "give two axes at right angles");
-    return;
-  }
-  Mat3 R;
-  R.col(0) = x;
-  R.col(2) = x.cross(y).normalized();
-  R.col(1) = R.col(2).cross(x);
-  X_WC_.linear() = R;
-  X_WC_.translation() = point_at(s, 0);
+  for (const ClCycleStep& step : cycle_steps(cycle))
+    add_move(s, at(step.height_mm), step.rapid ? 0.0 : cycle.feed_mm_s, step.dwell_s);
 }
 
 void ClInterpreter::rapid(const ClStatement& s) {
@@ -175,4 +180,45 @@ void ClInterpreter::rapid(const ClStatement& s) {
   }
   rapid_ = true;
 }
+
+void ClInterpreter::clearance_plane(const ClStatement& s) {
+  const char* form = "CLEARP/XYPLAN,50 or CLEARP/PLANE,0,0,1,50 (normal and distance from zero), CLEARP/OFF";
+  if (fits(s, "OFF")) {
+    clearance_.reset();
+    return;
+  }
+  Vec3 normal = Vec3::UnitZ();
+  if (fits(s, "YZPLAN #")) normal = Vec3::UnitX();
+  if (fits(s, "ZXPLAN #")) normal = Vec3::UnitY();
+  if (fits(s, "PLANE ####") || fits(s, "####")) {
+    if (!unit_vector(s, s.arguments.size() - 4, "normal of the plane", normal)) return;
+  } else if (!fits(s, "XYPLAN #") && !fits(s, "YZPLAN #") && !fits(s, "ZXPLAN #")) {
+    fault("wrong-arguments", s, "CLEARP gives no plane", fmt::format("write {}", form));
+    return;
+  }
+  clearance_ = Plane{X_WC_ * Vec3(mm(s.arguments.back().value) * normal), X_WC_.linear() * normal};
+}
+
+void ClInterpreter::retract(const ClStatement& s) {
+  if (!not_compensated(s)) return;
+  if (!s.arguments.empty() || !clearance_ || !positioned_) {
+    fault(clearance_ ? "wrong-arguments" : "unsupported-word", s,
+          "RETRCT lifts the tool to a plane, and no CLEARP gives one",
+          "write CLEARP/XYPLAN,50 before it, or the lift as RAPID and GOTO");
+    return;
+  }
+  const double height = (clearance_->point_W - pose_.tip_W).dot(clearance_->normal_W);
+  const double along = pose_.axis_W.dot(clearance_->normal_W);
+  constexpr double kLeastSlope = 1e-3;
+  if (height < 0.0) return;  // above it already
+  if (along < kLeastSlope) {
+    fault("out-of-range", s, "RETRCT: the tool axis does not lead to the plane of CLEARP",
+          "write the lift as RAPID and GOTO");
+    return;
+  }
+  rapid_ = true;
+  move_to(s, {pose_.tip_W + height / along * pose_.axis_W, pose_.axis_W});
+  rapid_ = false;
+}
+
 }  // namespace swarf::program

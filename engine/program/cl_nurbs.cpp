@@ -94,8 +94,9 @@ void ClInterpreter::nurbs_sizes(const ClStatement& s) {
     return;
   }
   if (s.arguments[3].value != 0.0) {
-    fault("unsupported-word", s.arguments[3], "this curve has weights",
-          "write it without: the third number is 0");
+    fault("unsupported-word", s.arguments[3],
+          "this curve has weights, whose statements Creo does not document",
+          "write it without: the third number of MOVNRB/ON is always 0 (OUTPUT_3DNURBS)");
     return;
   }
   nurbs_->order = static_cast<int>(s.arguments[1].value);

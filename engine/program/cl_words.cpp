@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string_view>
 #include <utility>
 
 #include "base/units.h"
@@ -11,11 +13,23 @@ namespace swarf::program {
 
 namespace {
 
-constexpr double kInch = 25.4;
+constexpr double kInch = 25.4, kFoot = 12.0 * kInch;
 
-bool is_feed_unit(const std::string& word) {
-  return word == "MMPM" || word == "PERMIN" || word == "IPM" || word == "MMPR" || word == "PERREV" ||
-         word == "IPR";
+/// What a number with the word behind FEDRAT counts.
+struct FeedUnit {
+  std::string_view word;
+  double length_mm;  ///< 0: the unit of the program
+  bool per_revolution;
+};
+constexpr std::array kFeedUnits{FeedUnit{"MMPM", 1.0, false},  FeedUnit{"PERMIN", 0.0, false},
+                                FeedUnit{"IPM", kInch, false}, FeedUnit{"MMPR", 1.0, true},
+                                FeedUnit{"PERREV", 0.0, true}, FeedUnit{"IPR", kInch, true},
+                                FeedUnit{"FPM", kFoot, false}, FeedUnit{"FPR", kFoot, true}};
+
+const FeedUnit* find_unit(std::string_view word) {
+  const auto found = std::find_if(kFeedUnits.begin(), kFeedUnits.end(),
+                                  [&](const FeedUnit& unit) { return unit.word == word; });
+  return found == kFeedUnits.end() ? nullptr : &*found;
 }
 
 }  // namespace
@@ -25,10 +39,10 @@ double ClInterpreter::feed_of(const ClArgument& value, const std::string& unit) 
     fault("out-of-range", value, fmt::format("the feed is {:g}", value.value), "it must be above 0");
     return 0.0;
   }
-  double length = mm(value.value);
-  if (unit == "MMPM" || unit == "MMPR") length = value.value;
-  if (unit == "IPM" || unit == "IPR") length = kInch * value.value;
-  if (unit != "MMPR" && unit != "PERREV" && unit != "IPR") return mm_s_from_mm_min(length);
+  const FeedUnit* known = find_unit(unit);
+  const double length =
+      known != nullptr && known->length_mm > 0.0 ? known->length_mm * value.value : mm(value.value);
+  if (known == nullptr || !known->per_revolution) return mm_s_from_mm_min(length);
   if (spindle_rpm_ == 0.0) {
     fault("missing-spindle", value, "a feed per revolution, and the spindle stands",
           "write SPINDL/RPM,8000,CLW before it");
@@ -37,16 +51,16 @@ double ClInterpreter::feed_of(const ClArgument& value, const std::string& unit) 
 }
 
 void ClInterpreter::feed_rate(const ClStatement& s) {
-  const char* form = "write FEDRAT/500,MMPM (mm/min), or MMPR, IPM, IPR, PERMIN, PERREV";
+  const char* form = "write FEDRAT/500,MMPM (mm/min), or MMPR, IPM, IPR, FPM, FPR, PERMIN, PERREV";
   const ClArgument* value = nullptr;
   std::string unit;
   for (const ClArgument& argument : s.arguments) {
     if (argument.number && value == nullptr) {
       value = &argument;
-    } else if (unit.empty() && is_feed_unit(argument.text)) {
+    } else if (unit.empty() && find_unit(argument.text) != nullptr) {
       unit = argument.text;
     } else {
-      fault("unsupported-word", argument, fmt::format("FEDRAT with '{}' is not followed", argument.text),
+      fault("unsupported-word", argument, fmt::format("FEDRAT with '{}' is not followed", shown(argument)),
             form);
       return;
     }
@@ -61,16 +75,18 @@ void ClInterpreter::feed_rate(const ClStatement& s) {
 
 void ClInterpreter::spindle(const ClStatement& s) {
   double rpm = std::abs(spindle_rpm_);
-  bool clockwise = spindle_rpm_ >= 0.0;
+  bool clockwise = spindle_rpm_ >= 0.0, number = false;
   for (const ClArgument& argument : s.arguments) {
-    if (argument.number) {
+    if (argument.text == "RANGE") break;  // the gear, and what follows it
+    if (argument.number && !number) {
       rpm = argument.value;
+      number = true;
     } else if (argument.text == "OFF") {
       rpm = 0.0;
     } else if (argument.text == "CLW" || argument.text == "CCLW") {
       clockwise = argument.text == "CLW";
     } else if (argument.text != "RPM" && argument.text != "ON") {
-      fault("unsupported-word", argument, fmt::format("SPINDL with '{}' is not followed", argument.text),
+      fault("unsupported-word", argument, fmt::format("SPINDL with '{}' is not followed", shown(argument)),
             "write SPINDL/RPM,8000,CLW (rev/min) or SPINDL/OFF");
       return;
     }
@@ -91,99 +107,14 @@ void ClInterpreter::multi_axis(const ClStatement& s) {
   }
   if (!on) axis_W_ = X_WC_.linear().col(2);
   axis_known_ = !on || positioned_;
+  multi_axis_ = on;
 }
 
-bool ClInterpreter::tool_number(const ClArgument& argument, const ClStatement& s) {
-  const double number = argument.number ? argument.value : 0.0;
-  if (number < 1.0 || number > 99999999.0 || number != std::floor(number)) {
-    fault("wrong-arguments", s, fmt::format("{} gives no tool number", s.word),
-          fmt::format("write {}", s.word == "LOADTL" ? "LOADTL/1" : "LOAD/TOOL,1"));
-    return false;
-  }
-  call_tool({static_cast<int>(number), {}, reporter_.at(s.line, s.column)});
-  return true;
-}
-
-void ClInterpreter::call_tool(const ClTool& tool) {
-  const auto same = [&](const ClTool& other) {
-    return other.number == tool.number && other.name == tool.name;
-  };
-  const auto found = std::find_if(program_.tools.begin(), program_.tools.end(), same);
-  tool_ = static_cast<int>(found - program_.tools.begin());
-  if (found == program_.tools.end()) program_.tools.push_back(tool);
-}
-
-void ClInterpreter::load_tool(const ClStatement& s) {
-  // What follows the number (OSETNO, ADJUST, lengths) speaks of the control's registers.
-  tool_number(s.arguments.empty() ? ClArgument{} : s.arguments[0], s);
-}
-
-void ClInterpreter::load(const ClStatement& s) {
-  if (s.arguments.size() < 2 || s.arguments[0].text != "TOOL") {
-    fault("wrong-arguments", s, fmt::format("{} is not followed by TOOL and a number", s.word),
-          fmt::format("write {}/TOOL,1", s.word));
-  } else if (s.word == "LOAD") {
-    tool_number(s.arguments[1], s);
-  }
-  // SELECT only brings the tool to the magazine's gate.
-}
-
-void ClInterpreter::tool_path(const ClStatement& s) {
-  // TOOL PATH/operation,TOOL,name: the name may be anything but a comma.
-  const std::string_view text = s.text;
-  const size_t word = text.rfind(",TOOL,");
-  const size_t name = word == std::string_view::npos ? text.size() : word + 6;
-  const size_t end = text.find_last_not_of(" \t\r");
-  if (end == std::string_view::npos || name > end) {
-    fault("wrong-arguments", s, "TOOL PATH names no tool", "write TOOL PATH/ROUGHING,TOOL,MILL-20MM");
-    return;
-  }
-  call_tool({0, std::string(text.substr(name, end + 1 - name)), reporter_.at(s.line, s.column)});
-  program_.notes.push_back({s.word, s.text, s.line});
-}
-
-void ClInterpreter::tool_data(const ClStatement& s) {
-  const char* form = "TLDATA/MILL,diameter,corner radius,length,taper,tip angle";
-  const bool mill = !s.arguments.empty() && s.arguments[0].text == "MILL";
-  const bool drill = !s.arguments.empty() && s.arguments[0].text == "DRILL";
-  if (!mill && !drill) {
-    fault("unsupported-word", s, "TLDATA of this tool is not followed", fmt::format("write {}", form));
-    return;
-  }
-  for (size_t i = 1; i < s.arguments.size(); ++i) {
-    if (s.arguments[i].number) continue;
-    fault("wrong-arguments", s.arguments[i], fmt::format("'{}' is no number", s.arguments[i].text),
-          fmt::format("write {}", form));
-    return;
-  }
-  if (s.arguments.size() < 2) {
-    fault("wrong-arguments", s, "TLDATA gives no diameter", fmt::format("write {}", form));
-    return;
-  }
-  ClCutter cutter{{mm(s.arguments[1].value)}, tool_, reporter_.at(s.line, s.column)};
-  if (mill && s.arguments.size() > 2) cutter.parameters.push_back(mm(s.arguments[2].value));
-  program_.cutters.push_back(std::move(cutter));
-}
-
-void ClInterpreter::cutter(const ClStatement& s) {
-  if (s.arguments.empty() || s.arguments.size() > 7) {
-    fault("wrong-arguments", s, fmt::format("CUTTER has {} numbers", s.arguments.size()),
-          "write CUTTER/d,r or all seven: CUTTER/d,r,e,f,alpha,beta,h (angles in degrees)");
-    return;
-  }
-  if (!numbers(s, s.arguments.size(), 7, "CUTTER/d,r")) return;
-  ClCutter cutter{{}, tool_, reporter_.at(s.line, s.column)};
-  for (size_t i = 0; i < s.arguments.size(); ++i) {
-    const bool angle = i == 4 || i == 5;
-    cutter.parameters.push_back(angle ? s.arguments[i].value : mm(s.arguments[i].value));
-  }
-  program_.cutters.push_back(std::move(cutter));
-}
-
-void ClInterpreter::cutter_compensation(const ClStatement& s) {
-  if (s.arguments.size() == 1 && s.arguments[0].text == "OFF") return;
-  fault("unsupported-word", s, "CUTCOM shifts the path by a radius that only the control knows",
-        "write the path of the tool's centre and CUTCOM/OFF");
+void ClInterpreter::tool_axis(const ClStatement& s) {
+  Vec3 axis;
+  if (!numbers(s, 3, 3, "TLAXIS/i,j,k (unit vector)") || !unit_vector(s, 0, "tool axis", axis)) return;
+  axis_W_ = X_WC_.linear() * axis;
+  axis_known_ = true;
 }
 
 void ClInterpreter::cycle(const ClStatement& s) {
@@ -191,19 +122,27 @@ void ClInterpreter::cycle(const ClStatement& s) {
     cycle_.reset();
     return;
   }
+  if (!not_compensated(s)) return;
   ClCycle cycle;
   cycle.feed_mm_s = feed_mm_s_;
-  if (read_cycle(s, cycle)) cycle_ = cycle;
+  if (!read_cycle(s, cycle)) return;
+  if (!cycle_) cycle_start_W_ = pose_.tip_W;
+  cycle_ = cycle;
 }
 
 void ClInterpreter::delay(const ClStatement& s) {
-  if (!numbers(s, 1, 1, "DELAY/seconds")) return;
-  if (s.arguments[0].value < 0.0) {
-    fault("out-of-range", s.arguments[0], fmt::format("the delay is {:g} s", s.arguments[0].value),
+  const bool turns = fits(s, "# REV");
+  if (!turns && !numbers(s, 1, 1, "DELAY/seconds or DELAY/turns,REV")) return;
+  const ClArgument& given = s.arguments[0];
+  if (given.value < 0.0) {
+    fault("out-of-range", given, fmt::format("the delay is {:g} {}", given.value, turns ? "turns" : "s"),
           "it must not be below 0");
-    return;
+  } else if (turns && spindle_rpm_ == 0.0) {
+    fault("missing-spindle", given, "a delay in turns, and the spindle stands",
+          "write SPINDL/RPM,8000,CLW before it");
+  } else {
+    dwell_s_ += turns ? 60.0 * given.value / std::abs(spindle_rpm_) : given.value;
   }
-  dwell_s_ += s.arguments[0].value;
 }
 
 void ClInterpreter::units(const ClStatement& s) {
@@ -221,16 +160,48 @@ void ClInterpreter::units(const ClStatement& s) {
 }
 
 void ClInterpreter::set_mode(const ClStatement& s) {
-  if (s.arguments.size() == 2 && s.arguments[0].text == "MODE" && s.arguments[1].text == "ABSOL") return;
+  if (fits(s, "MODE ABSOL")) return;
   fault("unsupported-word", s, "SET is not followed by MODE,ABSOL", "write absolute positions, or GODLTA");
+}
+
+void ClInterpreter::mode(const ClStatement& s) {
+  if (fits(s, "MILL")) return note(s);
+  fault("unsupported-word", s, "MODE is not followed by MILL", "give the path of a mill: MODE/MILL");
+}
+
+void ClInterpreter::auxiliary(const ClStatement& s) {
+  if (s.arguments.empty() || !s.arguments[0].number) {
+    fault("wrong-arguments", s, "AUXFUN gives no number", "write AUXFUN/8");
+    return;
+  }
+  const double code = s.arguments[0].value;
+  if (code >= 3.0 && code <= 6.0) {
+    fault("unsupported-word", s.arguments[0],
+          fmt::format("AUXFUN/{:g} {} behind the file's back", code,
+                      code == 6.0 ? "changes the tool" : "starts or stops the spindle"),
+          code == 6.0 ? "write LOADTL/1" : "write SPINDL/RPM,8000,CLW, CCLW or SPINDL/OFF");
+    return;
+  }
+  note(s);
+}
+
+void ClInterpreter::tolerance(const ClStatement& s) {
+  if (!numbers(s, 1, 1, "INTOL/0.01 (mm)")) return;
+  if (s.arguments[0].value < 0.0) {
+    fault("out-of-range", s.arguments[0], fmt::format("{} is {:g}", s.word, s.arguments[0].value),
+          "it must not be below 0");
+    return;
+  }
+  note(s);
 }
 
 void ClInterpreter::note(const ClStatement& s) {
   std::string text = s.text;
   for (const ClArgument& argument : s.arguments) {
     if (!text.empty()) text += ',';
-    text += argument.text;
+    text += argument.number ? fmt::format("{}", argument.value) : argument.text;
   }
-  program_.notes.push_back({s.word, std::move(text), s.line});
+  sink_.note({s.word, std::move(text), s.line});
 }
+
 }  // namespace swarf::program

@@ -16,9 +16,11 @@ class Writer {
   explicit Writer(const ClProgram& program) : program_(program) {}
 
   std::string write() {
+    line("$$ SWARF CL DATA");
     notes_until(0);
     line("UNITS/MM");
     line("MULTAX/ON");
+    cutters_of(-1);
     if (!program_.moves.empty()) tool_of(program_.moves.front());
     if (program_.start_line > 0) go_to(program_.start);
     for (const ClMove& move : program_.moves) {
@@ -63,8 +65,12 @@ class Writer {
     const ClTool& tool = program_.tools[static_cast<size_t>(tool_)];
     line(tool.number != 0 ? fmt::format("LOADTL/{}", tool.number)
                           : fmt::format("TOOL PATH/PATH,TOOL,{}", tool.name));
+    cutters_of(tool_);
+  }
+
+  void cutters_of(int tool) {
     for (const ClCutter& cutter : program_.cutters) {
-      if (cutter.tool == tool_) line(fmt::format("CUTTER/{}", fmt::join(cutter.parameters, ",")));
+      if (cutter.tool == tool) line(fmt::format("CUTTER/{}", fmt::join(cutter.parameters, ",")));
     }
   }
 

@@ -176,7 +176,7 @@ Job load_job(const std::string& path, const std::vector<std::string>& overrides)
   Diagnostics warnings;
   collect(diagnostics, [&] {
     if (job.scene.kind == ProgramKind::kCl) {
-      job.cl = program::load_cl(job.scene.program_file, &warnings);
+      job.cl = program::load_cl(job.scene.program_file, &warnings, job.scene.cl_options);
     } else if (job.scene.kind == ProgramKind::kSurfaceBlocks) {
       job.program = program::load_program(job.scene.program_file, &warnings);
     }

@@ -76,6 +76,7 @@ struct Scene {
   std::string program_file;  ///< `program`, `cl` or `nc`
   ProgramKind kind = ProgramKind::kSurfaceBlocks;
   toolpath::BlockLaw block_law = toolpath::BlockLaw::kTcp;  ///< CL: interpolator.mode
+  program::ClOptions cl_options;            ///< CL: cutcom, cl_circle, and the radii of `tools`
   double linearise_tolerance_mm = 0.01;     ///< of the pieces that blocks near the pole would need (joint)
   std::optional<program::Dialect> dialect;  ///< NC; none: recognised from the text
   program::KinematicsSwitch kinematics_switch;  ///< NC, LinuxCNC's M428 to M430

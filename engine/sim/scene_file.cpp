@@ -171,6 +171,20 @@ void read_program(ConfigTable& root, Scene& scene) {
     scene.kinematics_switch = read_kinematics_switch(root.table("kinematics_switch"));
 }
 
+/// What a CL file leaves open.
+void read_cl_keys(ConfigTable& root, Scene& scene) {
+  if (scene.kind != ProgramKind::kCl) return;
+  program::ClOptions& options = scene.cl_options;
+  if (root.has("cutcom")) {
+    const bool centre = root.choice("cutcom", {"centre", "contour"}) == "centre";
+    options.cutcom = centre ? program::ClPoints::kCentre : program::ClPoints::kContour;
+  }
+  if (root.has("cl_circle"))
+    options.circle_clockwise = root.choice("cl_circle", {"clockwise", "counter_clockwise"}) == "clockwise";
+  for (const cutter::Cutter& tool : scene.tools)
+    options.tools.push_back({tool.number, tool.name, 0.5 * tool.diameter_mm});
+}
+
 /// Surface blocks are planned for one cutter.
 void read_scene_tools(ConfigTable& root, Scene& scene, Diagnostics& diagnostics) {
   scene.tool_table_file = beside(scene.file, root.text("tool_table", ""));
@@ -194,6 +208,7 @@ Scene load_scene(const std::string& path, const std::vector<std::string>& overri
   scene.machine_file = beside(path, root.text("machine"));
   read_program(root, scene);
   read_scene_tools(root, scene, diagnostics);
+  read_cl_keys(root, scene);
   scene.setup = read_setup(root.table("setup"), scene.kind == ProgramKind::kNc);
   scene.stock = read_stock(root.table("stock"), scene.has_blocks());
   scene.design = read_design(root.table("design"), scene.has_blocks());

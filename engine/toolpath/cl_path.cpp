@@ -21,6 +21,14 @@ bool stands_still(const ClMove& move) {
   return !move.arc && move.from.tip_W == move.to.tip_W && move.from.axis_W == move.to.axis_W;
 }
 
+/// At its feed, where that is not simply the way of the tip in the arc's plane; 0: it is no helix.
+double helix_time(const BlockMove& block) {
+  if (!block.arc || block.feed_mm_s == 0.0) return 0.0;
+  const double rise = (block.to.tip_W - block.from.tip_W).dot(block.arc->normal_W);
+  if (std::abs(rise) <= program::kArcTolerance) return 0.0;
+  return std::hypot(tip_way(block), rise) / block.feed_mm_s;
+}
+
 }  // namespace
 
 bool holds_blocks(const ToolPath& path) {
@@ -30,8 +38,9 @@ bool holds_blocks(const ToolPath& path) {
 double arc_angle(const BlockMove& block) {
   const Vec3 from = block.from.tip_W - block.arc->centre_W;
   const Vec3 to = block.to.tip_W - block.arc->centre_W;
-  if ((to - from).norm() < kWholeCircle) return 2.0 * kPi;
   const Vec3& n = block.arc->normal_W;
+  // In the plane: the ends of a helix of one turn lie above each other.
+  if (n.cross(to - from).norm() < kWholeCircle) return 2.0 * kPi;
   const double angle = std::atan2(n.dot(from.cross(to)), from.dot(to) - n.dot(from) * n.dot(to));
   return angle > 0.0 ? angle : angle + 2.0 * kPi;
 }
@@ -73,6 +82,7 @@ ToolPath cl_path(const program::ClProgram& program, BlockLaw law, Diagnostics& d
     block.law = own;
     block.feed_mm_s = move.feed_mm_s;
     block.dwell_s = move.dwell_s;
+    block.duration_s = helix_time(block);
     block.tool = move.tool < 0 || tools.empty() ? 0 : tools[static_cast<size_t>(move.tool)];
     block.pass = passes.next(block);
     (rapid ? path.link_length_mm : path.pass_length_mm) += tip_way(block);

@@ -203,6 +203,47 @@ void heidenhain_formulas(benchmark::State& state) {
 }
 BENCHMARK(heidenhain_formulas)->Unit(benchmark::kMillisecond);
 
+/// Adds up what it gets, so that nothing can be left out.
+class ClCounter final : public ClSink {
+ public:
+  void move(const ClMove& move) override { way += (move.to.tip_W - move.from.tip_W).norm(); }
+  void note(ClNote /*note*/) override {}
+  double way = 0.0;
+};
+
+/// Positions as CAM systems write them; `axes`: with tool axes, under MULTAX.
+void read_cl(benchmark::State& state, bool axes) {
+  std::string text = "TOOL PATH/FINISH,TOOL,BALL\nFEDRAT/MMPM,2000\n";
+  text += axes ? "MULTAX/ON\nGOTO/0,0,20,0,0,1\n" : "GOTO/0,0,20\n";
+  for (int i = 0; i < kLines; ++i) {
+    const double lean = 0.2 + 0.1 * std::sin(0.003 * i);
+    text += fmt::format("GOTO/{:.4f},{:.4f},{:.4f}", 40.0 * std::cos(0.01 * i), 40.0 * std::sin(0.01 * i),
+                        5.0 * std::sin(0.003 * i));
+    text += axes ? fmt::format(",{:.7f},0.0000000,{:.7f}\n", std::sin(lean), std::cos(lean)) : "\n";
+  }
+  const std::string path = written("swarf_bench.cls", text);
+  for (auto step : state) {
+    ClCounter counter;
+    Diagnostics diagnostics;
+    const ClProgram program = stream_cl(path, counter, diagnostics);
+    diagnostics.throw_if_errors();
+    if (program.motions != kLines) state.SkipWithError("moves are missing");
+    benchmark::DoNotOptimize(counter.way);
+  }
+  state.SetItemsProcessed(state.iterations() * kLines);
+  std::filesystem::remove(path);
+}
+
+void cl_positions(benchmark::State& state) {
+  read_cl(state, false);
+}
+BENCHMARK(cl_positions)->Unit(benchmark::kMillisecond);
+
+void cl_positions_and_axes(benchmark::State& state) {
+  read_cl(state, true);
+}
+BENCHMARK(cl_positions_and_axes)->Unit(benchmark::kMillisecond);
+
 }  // namespace
 }  // namespace swarf::program
 

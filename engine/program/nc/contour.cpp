@@ -9,7 +9,6 @@
 
 #include "base/check.h"
 #include "base/units.h"
-#include "program/nc/control.h"
 
 namespace swarf::program::nc {
 namespace {

@@ -18,17 +18,33 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
+#include "program/nc/dialect_words.h"
 #include "program/nc/target.h"
 
 namespace swarf::program::nc {
 
-class Control;
+/// Who runs the contour: the control of an NC program, or the reader of CL data.
+class ContourHost {
+ public:
+  virtual Plane plane() const = 0;
+  /// How remedies name things.
+  virtual const DialectWords& words() const = 0;
+  /// The place that the next fail() names.
+  virtual void at(int file, int line, int column) = 0;
+  [[noreturn]] virtual void fail(const char* code, int column, std::string text, std::string fix) const = 0;
+  /// A compensated segment, in order.
+  virtual void emit(const Segment& segment) = 0;
+
+ protected:
+  ~ContourHost() = default;
+};
 
 class Contour {
  public:
-  explicit Contour(Control& control) : control_(control) {}
+  explicit Contour(ContourHost& host) : control_(host) {}
   Compensation side() const { return side_; }
   /// The next move in the plane leads out.
   bool leading_out() const { return leading_out_; }
@@ -63,9 +79,10 @@ class Contour {
   void send_pending();
   void send_waiting(const Vec3& offset);
   Vec3 meet(const Piece& before, const Piece& after) const;
-  [[noreturn]] void gouge(const Segment& segment, const char* why) const;
+  /// Throws, by way of the host.
+  void gouge(const Segment& segment, const char* why) const;
 
-  Control& control_;
+  ContourHost& control_;
   CompensationEntry entry_ = CompensationEntry::kAcrossNext;
   Compensation side_ = Compensation::kOff;
   double radius_ = 0.0;

@@ -35,6 +35,7 @@
 #include <vector>
 
 #include "kinematics/machine_model.h"
+#include "program/nc/contour.h"
 #include "program/nc/curve.h"
 #include "program/nc/dialect_words.h"
 #include "program/nc/drill_cycle.h"
@@ -47,12 +48,10 @@ namespace swarf::program::nc {
 /// Thrown where the sink wants no more moves; run_nc catches it.
 struct ProgramStopped {};
 
-class Contour;
-
 /// The radius at which one degree is one mm of arc.
 inline constexpr double kDegreePerMm = 57.29577951308232;
 
-class Control {
+class Control final : public ContourHost {
  public:
   /// All references must outlive the control. Throws InputError when the machine has no unique inverse, lacks
   /// one of X Y Z, or names an axis other than X Y Z A B C ("axis-names").
@@ -63,12 +62,12 @@ class Control {
 
   // --- Place: which block is being executed; every fault and move carries it -------------------------------
   /// `file`: index into NcSummary::files, see enter_file().
-  void at(int file, int line, int column) { place_ = {file, line, column}; }
+  void at(int file, int line, int column) override { place_ = {file, line, column}; }
   Place place() const { return place_; }
   /// The index of this file in NcSummary::files, added when it is new.
   int enter_file(const std::string& path);
   /// A fault in the current block. `column` 0: the column of at().
-  [[noreturn]] void fail(const char* code, int column, std::string text, std::string fix) const;
+  [[noreturn]] void fail(const char* code, int column, std::string text, std::string fix) const override;
   /// A warning that is given once per `code` and program.
   void warn_once(const char* code, int column, std::string text, std::string fix);
   /// A word that was read and has no effect on the geometry: listed once in NcSummary::functions.
@@ -76,14 +75,14 @@ class Control {
   void note(std::string_view word, std::string_view text);
   /// What remedies call things; the words of letter dialects unless the dialect says otherwise.
   void set_words(const DialectWords& words) { words_ = words; }
-  const DialectWords& words() const { return words_; }
+  const DialectWords& words() const override { return words_; }
 
   // --- Units, plane, feed, spindle -------------------------------------------------------------------------
   void set_inches(bool inches) { unit_mm_ = inches ? 25.4 : 1.0; }
   bool inches() const { return unit_mm_ != 1.0; }
   double mm(double program_length) const { return program_length * unit_mm_; }
   void set_plane(Plane plane);
-  Plane plane() const { return plane_; }
+  Plane plane() const override { return plane_; }
   /// A new mode forgets F, as controls do; G93 wants F in each feed block ("missing-feed").
   void set_feed_mode(FeedMode mode);
   FeedMode feed_mode() const { return feed_mode_; }
@@ -214,7 +213,6 @@ class Control {
   Diagnostics& diagnostics() { return diagnostics_; }
 
  private:
-  friend class Contour;
   /// Where a block goes, in full.
   struct Goal {
     Vec3 p = Vec3::Zero();
@@ -235,7 +233,7 @@ class Control {
   void take(Segment& segment);
   void arrive(const Goal& goal);
   void place_circle(Motion motion, const ArcWords& words, Segment& segment) const;
-  void emit(const Segment& segment);
+  void emit(const Segment& segment) override;
   void emit_piece(const Segment& segment, const Vec3& p_to, const std::array<double, 3>& rotary_to,
                   double share, double turn);
   void send(const Segment& segment, NcMove& move);

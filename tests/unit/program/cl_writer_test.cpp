@@ -3,17 +3,10 @@
 #include <algorithm>
 
 #include "base/rng.h"
-#include "unit/program/support.h"
+#include "unit/program/cl_support.h"
 
 namespace swarf::program {
 namespace {
-
-ClProgram read_clean(const std::string& text) {
-  Diagnostics diagnostics;
-  ClProgram program = parse_cl(text, "test.cl", diagnostics);
-  EXPECT_TRUE(diagnostics.list().empty()) << all_text(diagnostics) << "--- of\n" << text;
-  return program;
-}
 
 void expect_same_tool(const ClProgram& a, int in_a, const ClProgram& b, int in_b) {
   ASSERT_EQ(in_a < 0, in_b < 0);
@@ -27,7 +20,9 @@ constexpr double kAxisRounding = 5e-16;
 
 void expect_round_trip(const ClProgram& p) {
   const std::string text = write_cl(p);
-  const ClProgram q = read_clean(text);
+  ClOptions options;
+  options.cutcom = ClPoints::kCentre;  // CUTCOM is written where the points are the centre
+  const ClProgram q = read_cl_clean(text, options);
   ASSERT_EQ(q.moves.size(), p.moves.size()) << text;
   EXPECT_EQ(q.start.tip_W, p.start.tip_W);
   for (size_t i = 0; i < p.moves.size(); ++i) {
@@ -57,7 +52,7 @@ std::string random_statement(Rng& rng) {
   const auto vector = [](const Vec3& v) {
     return std::to_string(v.x()) + "," + std::to_string(v.y()) + "," + std::to_string(v.z());
   };
-  switch (rng.next() % 10) {
+  switch (rng.next() % 12) {
     case 0:
       return "RAPID\n";
     case 1:
@@ -76,6 +71,14 @@ std::string random_statement(Rng& rng) {
              ",0,5,0,0,1," + std::to_string(r) + "\nGOTO/" + std::to_string(x - r) + ",0,5\n";
     }
     case 7:
+      return rng.next() % 2 ? "CUTCOM/LEFT,1\n" : "CUTCOM/OFF\n";
+    case 8: {
+      const double x = rng.uniform(-50, 50), r = rng.uniform(1, 30), down = rng.uniform(0.1, 4);
+      return "CYCLE/OFF\nGOTO/" + std::to_string(x + r) + ",0,5\nCIRCLE/" + std::to_string(x) +
+             ",0,5,0,0,1," + std::to_string(r) + ",TIMES," + std::to_string(1 + rng.next() % 3) + "\nGOTO/" +
+             std::to_string(x + r) + ",0," + std::to_string(5 - down) + "\n";
+    }
+    case 9:
       return "CYCLE/DEEP,DEPTH,9,CLEAR,2,STEP,4,MMPM,120\n";
     default:
       return "GOTO/" + number() + "," + number() + "," + number() + "," + vector(axis) + "\n";
@@ -95,7 +98,9 @@ TEST(ClWriter, RoundTripOfRandomPrograms) {
     }
     text += "CYCLE/OFF\nGOTO/0,0,100\n";
     Diagnostics diagnostics;
-    const ClProgram program = parse_cl(text, "test.cl", diagnostics);
+    ClOptions options = as_nx();
+    options.cutcom = ClPoints::kCentre;
+    const ClProgram program = parse_cl(text, "test.cl", diagnostics, options);
     ASSERT_TRUE(diagnostics.list().empty()) << all_text(diagnostics) << "--- of\n" << text;
     expect_round_trip(program);
     if (testing::Test::HasFailure()) FAIL() << "seed " << seed << ":\n" << text;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include "program/cl_program.h"
 #include "support/counted_new.h"
 #include "support/program_run.h"
 #include "unit/program/nc_support.h"
@@ -99,6 +100,50 @@ TEST(NcStream, LinesAllocateNothing) {
     // A Siemens source notes the place of each 64th line: a vector that grows.
     EXPECT_LE(many - few, 4) << dialect_name(kind.dialect) << ": " << kind.row(1);
   }
+}
+
+struct ClCounter final : ClSink {
+  void move(const ClMove& move) override {
+    ++moves;
+    way += (move.to.tip_W - move.from.tip_W).norm();
+  }
+  void note(ClNote /*note*/) override { ++notes; }
+  long moves = 0, notes = 0;
+  double way = 0.0;
+};
+
+TEST(NcStream, ClLinesAllocateNothing) {
+  const auto path = (std::filesystem::temp_directory_path() / "swarf_cl_stream.cls").string();
+  const auto allocated = [&](int rows, bool arcs) {
+    {
+      std::ofstream file(path);
+      file << "TOOL PATH/A,TOOL,B\nMULTAX/ON\nFEDRAT/500,MMPM\nGOTO/5,0,0,0,0,1\n";
+      for (int i = 0; i < rows; ++i) {
+        if (arcs)
+          file << fmt::format("PAINT/COLOR,31\nCIRCLE/0,0,0,0,0,{},5\nGOTO/{},0,0\n", i % 2 ? 1 : -1,
+                              i % 2 ? 5 : -5);
+        else
+          file << fmt::format("GOTO/{:.6f},{:.6f},-123.{:06},0.6000000,0.0000000,0.8000000\n",
+                              0.1 * (i % 977), 0.2 * (i % 77), i % 1000000);
+      }
+    }
+    ClCounter counter;
+    Diagnostics diagnostics;
+    const long before = allocations;
+    const ClProgram program = stream_cl(path, counter, diagnostics);
+    const long during = allocations - before;
+    EXPECT_FALSE(diagnostics.has_errors()) << format(diagnostics.list().front());
+    EXPECT_EQ(counter.moves, rows);
+    EXPECT_EQ(program.motions, rows);
+    EXPECT_TRUE(program.moves.empty());
+    return during;
+  };
+  for (const bool arcs : {false, true}) {
+    const long few = allocated(3000, arcs), many = allocated(9000, arcs);
+    EXPECT_GT(few, 0);  // the counter counts
+    EXPECT_LE(many - few, 4) << arcs;
+  }
+  std::filesystem::remove(path);
 }
 
 /// Peak memory of all programs started so far, MB.

@@ -8,7 +8,7 @@ namespace swarf::toolpath {
 namespace {
 
 ToolPath path_of(const std::string& text, BlockLaw law, Diagnostics& diagnostics) {
-  const program::ClProgram program = program::parse_cl(text, "test.cl", diagnostics);
+  const program::ClProgram program = program::parse_cl(text, "test.cl", diagnostics, {{}, true, {}});
   return cl_path(program, law, diagnostics);
 }
 

@@ -1,0 +1,95 @@
+#include "cli/check_cl.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include "base/units.h"
+#include "cli/terminal.h"
+
+namespace swarf::cli {
+namespace {
+
+/// Adds up what passes.
+class Totals final : public program::ClSink {
+ public:
+  void move(const program::ClMove& move) override {
+    const bool feeds = move.feed_mm_s > 0.0;
+    const double way = (move.to.tip_W - move.from.tip_W).norm();  // arcs are counted, their ways are not
+    arcs_ += move.arc ? 1 : 0;
+    (feeds ? feed_mm_ : rapid_mm_) += way;
+    (feeds ? feeds_ : rapids_) += 1;
+    if (feeds_ + rapids_ == 1) extent_ = {move.from.tip_W, move.from.tip_W};
+    extent_.lower = extent_.lower.cwiseMin(move.to.tip_W);
+    extent_.upper = extent_.upper.cwiseMax(move.to.tip_W);
+    turned_ |= move.to.axis_W.z() < 1.0 - 1e-9;
+  }
+  void note(program::ClNote note) override { ++notes_[note.word]; }
+
+  std::string text() const {
+    std::string text = fmt::format(
+        "\n  {} feed moves, {} of them arcs; {} rapids; {:.0f} mm and {:.0f} mm between their ends\n"
+        "  tips from ({:.3f}, {:.3f}, {:.3f}) to ({:.3f}, {:.3f}, {:.3f}) mm, tool axis {}",
+        feeds_, arcs_, rapids_, feed_mm_, rapid_mm_, extent_.lower.x(), extent_.lower.y(), extent_.lower.z(),
+        extent_.upper.x(), extent_.upper.y(), extent_.upper.z(), turned_ ? "turns" : "stays (0, 0, 1)");
+    std::string kept;
+    for (const auto& [word, count] : notes_)
+      kept += fmt::format("{}{} ({})", kept.empty() ? "" : ", ", word, count);
+    if (!kept.empty()) text += "\n  without effect on the geometry: " + kept;
+    return text;
+  }
+
+ private:
+  long feeds_ = 0, rapids_ = 0, arcs_ = 0;
+  double feed_mm_ = 0.0, rapid_mm_ = 0.0;
+  Box extent_;
+  bool turned_ = false;
+  std::map<std::string, long> notes_;
+};
+
+}  // namespace
+
+bool is_cl_file(const std::string& file) {
+  std::string name = std::filesystem::path(file).filename().string();
+  std::transform(name.begin(), name.end(), name.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const size_t last = name.find_last_not_of("0123456789");
+  if (last != std::string::npos && name[last] == '.' && last + 1 < name.size() &&
+      name.substr(0, last).ends_with(".ncl"))
+    name.resize(last);
+  constexpr std::array kEndings{".cl", ".cls", ".clt", ".ncl", ".apt", ".aptsource", ".cldata"};
+  return std::any_of(kEndings.begin(), kEndings.end(),
+                     [&](const char* ending) { return name.ends_with(ending); });
+}
+
+std::string check_cl(const std::string& file, const program::ClOptions& options) {
+  Diagnostics diagnostics;
+  Totals totals;
+  const program::ClProgram program = program::stream_cl(file, totals, diagnostics, options);
+  diagnostics.throw_if_errors();
+  print_diagnostics(diagnostics.list());
+  std::string text =
+      fmt::format("CL data is right: {} statements, {} moves", program.statements, program.motions);
+  text += fmt::format("\n  written by: {}", program.writer_reason.empty()
+                                                ? "unknown, the file bears no mark"
+                                                : fmt::format("{} ({})", program::writer_name(program.writer),
+                                                              program.writer_reason));
+  text += totals.text();
+  const Vec3& start = program.start.tip_W;
+  text += fmt::format("\n  starts at ({:.3f}, {:.3f}, {:.3f}) mm, its first position, line {}", start.x(),
+                      start.y(), start.z(), program.start_line);
+  std::string tools;
+  for (const program::ClTool& tool : program.tools)
+    tools += fmt::format("{}{}", tools.empty() ? "" : ", ",
+                         tool.number != 0 ? fmt::format("T{}", tool.number) : tool.name);
+  if (!tools.empty()) text += "\n  tools: " + tools;
+  for (const std::string& remark : program.remarks) text += "\n  " + remark;
+  return text;
+}
+
+}  // namespace swarf::cli
