@@ -316,6 +316,10 @@ Vec3 Control::tool_axis_P() {
   return space_.X_WP().linear().transpose() * space_.compensated(space_.rotary_of(q_)).axis_W;
 }
 
+Vec3 Control::tool_axis_at_zero_P() const {
+  return space_.X_WP().linear().transpose() * space_.axis_at_zero_W();
+}
+
 void Control::flush() {
   // Without the lead-out, the tool stands beside the programmed point.
   if (contour_->leading_out()) position_valid_ = false;

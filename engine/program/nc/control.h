@@ -201,6 +201,8 @@ class Control final : public ContourHost {
   const kinematics::AxisValues& axis_values() const { return q_; }
   /// Present orientation of the tool in the program frame.
   Vec3 tool_axis_P();
+  /// The tool axis with all rotary axes at zero, in the program frame.
+  Vec3 tool_axis_at_zero_P() const;
   bool started() const { return started_; }
   /// Index into MachineModel::axes of a word's axis; -1: the machine has none.
   int axis_of(AxisWord word) const { return space_.axis_of(word); }

@@ -6,14 +6,12 @@
 #include <cctype>
 #include <cmath>
 
-#include "base/units.h"
 #include "program/nc/dialect.h"
 
 namespace swarf::program::nc {
 namespace {
 
-constexpr long kLocals = 33;
-constexpr long kFirstCommon = 100, kLastCommon = 999;
+constexpr const char* kSkipMark = "/ (block delete is off: such blocks are executed)";
 
 }  // namespace
 
@@ -42,7 +40,10 @@ void Fanuc::run() {
       break;
     }
     at_line(source());
-    if (!percent(line)) ended_ = !execute();
+    if (!percent(line))
+      ended_ = !execute();
+    else if (ended_ && calls_.size() > 1)
+      control_.fail("unclosed-subprogram", 0, "the file ends within a subprogram", "end it with M99");
   }
   if (nurbs_) {
     const Place where = nurbs_->where;
@@ -51,10 +52,61 @@ void Fanuc::run() {
                   "this NURBS does not end: it needs as many knots after the points as its order",
                   "add blocks with K alone");
   }
+  block_.clear();
+  expect_plane_block();
   control_.finish();
 }
 
+/// ":1234" (ISO code) and "<NAME>" at the head of a program.
+bool Fanuc::program_head() {
+  reader_.skip_space();
+  if (reader_.peek() != ':' && reader_.peek() != '<') return false;
+  const size_t from = reader_.at();
+  const std::string_view line = reader_.line();
+  if (line[from] == ':') {
+    reader_.skip();
+    reader_.value();
+  } else {
+    const size_t end = line.find('>', from);
+    if (end == std::string_view::npos)
+      control_.fail("unexpected-character", reader_.column_of(from), "this program name does not end",
+                    "close it with '>'");
+    control_.note("program", line.substr(from + 1, end - from - 1));
+    reader_.move_to(end + 1);
+  }
+  std::string_view message;
+  skip_comments(kFanucSyntax, reader_, control_, message);
+  if (!reader_.done())
+    control_.fail("unexpected-character", reader_.column(), "words follow the name of the program",
+                  "write one block per line");
+  return true;
+}
+
+/// Says once how numbers without a decimal point are read: parameter 3401 chooses millimetres (calculator
+/// type, as here) or increments of the control.
+void Fanuc::state_number_rule() {
+  for (const char letter : std::string_view("XYZABC")) {
+    const double value = block_.has(letter) ? block_.get(letter) : 0.0;
+    if (value == 0.0 || value != std::trunc(value) || !without_point(letter)) continue;
+    number_rule_stated_ = true;
+    control_.summary().dialect_reason += fmt::format(
+        "; {}{:g} in line {} has no decimal point: such numbers are {} and degrees (calculator "
+        "type, parameter 3401)",
+        letter, value, source().line_number(), control_.inches() ? "inches" : "millimetres");
+    return;
+  }
+}
+
+/// The letter's number is digits alone.
+bool Fanuc::without_point(char letter) const {
+  std::string_view text = reader_.line().substr(block_.place(letter) + 1);
+  text.remove_prefix(std::min(text.find_first_not_of(" \t+-"), text.size()));
+  const size_t end = text.find_first_not_of("0123456789");
+  return end != 0 && (end == std::string_view::npos ? !text.empty() : text[end] != '.');
+}
+
 bool Fanuc::execute() {
+  if (program_head()) return true;
   if (statement()) {
     ++control_.summary().blocks;
     return true;
@@ -62,136 +114,54 @@ bool Fanuc::execute() {
   block_.clear();
   read_words(kFanucSyntax, reader_, control_, block_, 0);
   if (!block_.message.empty()) control_.note("MSG", block_.message);
-  if (block_.skip_mark) control_.without_effect("/ (block delete is off: such blocks are executed)");
+  if (block_.skip_mark) control_.without_effect(kSkipMark);
   if (block_.empty()) return true;
   ++control_.summary().blocks;
   control_.at(source().file(), static_cast<int>(source().line_number()), reader_.column_of(block_.first));
   if (nurbs_ && add_to_nurbs()) return true;
+  expect_plane_block();
+  if (!number_rule_stated_) state_number_rule();
   check_words();
+  moved_ = false;
   apply();
+  if (moved_ && calls_.back().modals > 0) {
+    call_modal_macro();
+    return true;
+  }
   return apply_calls();
+}
+
+void Fanuc::skip_block_number() {
+  reader_.skip_space();
+  if (reader_.peek_upper() != 'N') return;
+  reader_.skip();
+  reader_.skip_space();
+  while (reader_.peek() >= '0' && reader_.peek() <= '9') reader_.skip();
+  reader_.skip_space();
 }
 
 /// A macro statement or an assignment; the reader stands behind it then.
 bool Fanuc::statement() {
   const size_t from = reader_.at();
-  if (reader_.peek_upper() == 'N' && reader_.at() + 1 < reader_.line().size()) {
+  const bool marked = reader_.peek() == '/';
+  if (marked) {
     reader_.skip();
-    while (reader_.peek() >= '0' && reader_.peek() <= '9') reader_.skip();
-    reader_.skip_space();
+    if (reader_.peek() >= '1' && reader_.peek() <= '9') reader_.skip();
   }
+  skip_block_number();
   if (reader_.peek() == '#') {
     assignment();
   } else if (!macro_word()) {
     reader_.move_to(from);
     return false;
   }
+  if (marked) control_.without_effect(kSkipMark);
   std::string_view message;
   skip_comments(kFanucSyntax, reader_, control_, message);
   if (!reader_.done())
     control_.fail("unexpected-character", reader_.column(), "words follow a macro statement",
                   "write one statement per block");
   return true;
-}
-
-void Fanuc::assignment() {
-  const size_t place = reader_.at();
-  std::string name;
-  const long number = reader_.parameter_number(name);
-  reader_.skip_space();
-  if (reader_.peek() != '=')
-    control_.fail("bad-parameter", reader_.column(), "'=' is missing after the variable", "write #1=2.5");
-  reader_.skip();
-  assign(number, reader_.open_formula(), place);
-}
-
-/// The call whose #1 to #33 hold here.
-size_t Fanuc::locals() const {
-  size_t level = calls_.size() - 1;
-  while (level > 0 && !calls_[level].own_locals) --level;
-  return level;
-}
-
-void Fanuc::assign(long number, double value, size_t place) {
-  const int at = reader_.column_of(place);
-  if (number >= 1 && number <= kLocals) {
-    Call& here = calls_[locals()];
-    here.locals[static_cast<size_t>(number)] = value;
-    here.assigned |= uint64_t{1} << number;
-  } else if (number >= kFirstCommon && number <= kLastCommon) {
-    commons_[static_cast<size_t>(number)] = value;
-    common_set_[static_cast<size_t>(number)] = true;
-  } else if (number == 3000) {
-    control_.fail("program-alarm", at, fmt::format("the program raises its alarm {:g} here", value),
-                  "find out why the program stops itself");
-  } else if (number == 3006) {
-    control_.note("#3006", fmt::format("stop {:g}", value));
-  } else {
-    control_.fail("bad-parameter", at, fmt::format("#{} cannot be assigned", number),
-                  "programs may set #1 to #33 and #100 to #999; offsets with G10 L2");
-  }
-}
-
-double Fanuc::read(long number, size_t place) {
-  if (number >= 1 && number <= kLocals) {
-    const Call& here = calls_[locals()];
-    if ((here.assigned >> number & 1u) != 0) return here.locals[static_cast<size_t>(number)];
-  } else if (number >= kFirstCommon && number <= kLastCommon && common_set_[static_cast<size_t>(number)]) {
-    return commons_[static_cast<size_t>(number)];
-  } else if (number > kLastCommon) {
-    return system_variable(number, place);
-  }
-  control_.fail("undefined-parameter", reader_.column_of(place),
-                fmt::format("#{} is vacant: nothing assigned it", number), "assign it before it is read");
-}
-
-double Fanuc::system_variable(long number, size_t place) {
-  const auto in_words = [&](double value, long word) {
-    return word < 3 ? value / control_.mm(1.0) : deg_from_rad(value);
-  };
-  const auto programmed = [&](long word) {
-    const double value = control_.position()[static_cast<size_t>(word)];
-    if (!std::isfinite(value))
-      control_.fail("start-unknown", reader_.column_of(place),
-                    fmt::format("#{} asks for a position that is not known yet", number),
-                    "give the start position in the scene");
-    return in_words(value, word);
-  };
-  if (number >= 5001 && number <= 5006) return programmed(number - 5001);
-  if (number >= 5041 && number <= 5046) return programmed(number - 5041);
-  if (number >= 5021 && number <= 5026) {
-    const long word = number - 5021;
-    const int axis = control_.axis_of(static_cast<AxisWord>(word));
-    return axis < 0 ? 0.0 : in_words(control_.axis_values()[axis], word);
-  }
-  if (number >= 5221 && number <= 5326 && (number - 5221) % 20 < kAxisWords) {
-    const long word = (number - 5221) % 20;
-    const int axis = control_.axis_of(static_cast<AxisWord>(word));
-    return axis < 0
-               ? 0.0
-               : in_words(control_.offset_origin(static_cast<int>((number - 5221) / 20 + 1))[axis], word);
-  }
-  if (number == 4120) return control_.tool_number();
-  if (number == 4119) return control_.speed_rpm();
-  if (number == 4109) return control_.feed();
-  control_.fail("undefined-parameter", reader_.column_of(place),
-                fmt::format("#{} is no variable that can be read here", number),
-                "read #5001 to #5046 (positions) or #5221 to #5326 (offsets)");
-}
-
-double Fanuc::read_named(std::string_view name, size_t place) {
-  control_.fail("bad-parameter", reader_.column_of(place),
-                fmt::format("#<{}>: this dialect has no named variables", name), "write #100");
-}
-
-bool Fanuc::exists(std::string_view /*name*/) {
-  return false;
-}
-
-bool Fanuc::vacant(long number) const {
-  if (number >= 1 && number <= kLocals) return (calls_[locals()].assigned >> number & 1u) == 0;
-  if (number >= kFirstCommon && number <= kLastCommon) return !common_set_[static_cast<size_t>(number)];
-  return number == 0;
 }
 
 namespace {

@@ -8,13 +8,9 @@
 
 namespace swarf::program::nc {
 
-Target Fanuc::words() {
-  return target_of(block_, incremental_, reader_, control_);
-}
-
 void Fanuc::check_words() {
   const int one_shot = g(kFanucOneShot);
-  if (one_shot == 650) return;  // every letter is an argument
+  if (one_shot == 650 || g(kFanucMacro) == 660) return;  // every letter is an argument
   for (const char letter : {'U', 'V', 'W', 'E'}) {
     if (block_.has(letter))
       control_.fail(letter == 'E' ? "unknown-word" : "axis-missing", column(letter),
@@ -24,23 +20,24 @@ void Fanuc::check_words() {
   const int motion = g(kFanucMotion) >= 0 ? g(kFanucMotion) : motion_;
   const int cycle = g(kFanucCycle) >= 0 ? g(kFanucCycle) : g(kFanucMotion) >= 0 ? 800 : cycle_;
   const bool in_cycle = cycle != 800, arc = !in_cycle && (motion == 20 || motion == 30),
-             turn = g(kFanucTurn) >= 680;
+             turn = (g(kFanucTurn) >= 680 && g(kFanucTurn) != 690) || g(kFanucScale) == 510;
+  const bool tilts = one_shot == 531 || one_shot == 536;
   const bool vectors = (tcp_ == Tcp::kVector || g(kFanucLength) == 435) && !arc;
-  const bool ends = block_.has_m(980) || block_.has_m(990);
+  const bool calls = block_.has_m(980) || block_.has_m(1980), ends = calls || block_.has_m(990);
   const bool bore = cycle == 760 || cycle == 870;
   for (const char letter : {'I', 'J', 'K'})
     check_letter(letter, arc || turn || vectors || motion == 62 || (letter == 'K' ? in_cycle : bore),
-                 "G2, G3, G43.5, G68.2");
-  check_letter('R', arc || in_cycle || turn || motion == 62 || one_shot == 100,
+                 "G2, G3, G43.5, G51, G68.2");
+  check_letter('R', arc || in_cycle || turn || tilts || motion == 62 || one_shot == 100 || block_.free_g > 0,
                "arcs, cycles, G68 and G06.2");
-  check_letter('Q', in_cycle || block_.free_g > 0, "pecking cycles");
+  check_letter('Q', in_cycle || turn || block_.free_g > 0, "pecking cycles and G68.2");
   check_letter('P',
                in_cycle || one_shot == 40 || one_shot == 100 || one_shot == 300 || motion == 62 || ends ||
-                   g(kFanucOffset) == 541 || turn || block_.free_g > 0,
+                   g(kFanucOffset) == 541 || turn || tilts || block_.free_g > 0,
                "G04, G10, M98 and cycles");
-  check_letter('L', in_cycle || one_shot == 100 || ends, "G10, M98 and cycles");
+  check_letter('L', in_cycle || one_shot == 100 || calls, "G10, M98 and cycles");
   check_letter('D', g(kFanucRadius) > 400, "G41 and G42");
-  check_letter('H', g(kFanucLength) > 400 && g(kFanucLength) != 490, "G43");
+  check_letter('H', (g(kFanucLength) > 400 && g(kFanucLength) != 490) || one_shot == 536, "G43 and G53.6");
   if (g(kFanucCycle) > 800 && g(kFanucMotion) >= 0)
     control_.fail("two-motion-words", g_column(kFanucMotion), "a motion and a cycle stand in one block",
                   "write them in two blocks");
@@ -51,9 +48,24 @@ void Fanuc::check_words() {
 
 void Fanuc::apply() {
   if (g(kFanucOneShot) == 650) return call_macro();
+  if (g(kFanucMacro) == 660) return set_modal_macro();
   apply_machine();
   apply_modes();
-  if (block_.has_g(kFanucTurn)) return turn(block_.g[kFanucTurn]);
+  keep_motion_codes();
+  if (block_.has_g(kFanucMacro)) set_modal_macro();
+  if (block_.has_g(kFanucPolar)) polar(block_.g[kFanucPolar]);
+  if (block_.has_g(kFanucScale)) scale(block_.g[kFanucScale]);
+  if (block_.has_g(kFanucMirror)) mirror(block_.g[kFanucMirror]);
+  const bool axes_given = (block_.given & kAxisBits) != 0;
+  if (g(kFanucScale) == 510 || (block_.has_g(kFanucMirror) && axes_given)) return;  // words of the centre
+  if (block_.has_g(kFanucTurn)) {
+    const bool tilted = turned_.in_work;
+    turn(block_.g[kFanucTurn]);
+    if (block_.g[kFanucTurn] != 690 || !axes_given) return;
+    if (tilted)
+      control_.fail("unexpected-word", g_column(kFanucTurn), "a move stands with G69 of a tilted plane",
+                    "write G69 in a block of its own");
+  }
   if (block_.has_g(kFanucOneShot) && block_.g[kFanucOneShot] != 90 && block_.g[kFanucOneShot] != 530)
     return one_shot();
   if (g(kFanucOneShot) == 90) control_.exact_stop_once();
@@ -94,20 +106,13 @@ void Fanuc::apply_modes() {
   if (block_.has_g(kFanucRadius)) apply_radius();
   if (block_.has_g(kFanucOffset)) {
     const int code = block_.g[kFanucOffset];
+    refuse_mapped(g_column(kFanucOffset), "the work offset changes", false);
     if (code == 541) need('P', "G54.1");
     control_.set_work_offset(code == 541 ? 100 + whole(block_, 'P', 1, 300, reader_, control_)
                                          : (code - 530) / 10);
     update_space();
   }
   if (block_.has_g(kFanucLength)) apply_length();
-}
-
-double Fanuc::tool_value(char letter, bool length) {
-  const int number = whole(block_, letter, 0, 99999999, reader_, control_);
-  if (number == 0) return 0.0;
-  const int index = control_.find_tool(number, column(letter));
-  if (index < 0) return 0.0;
-  return length ? control_.tool_at(index).length_mm : 0.5 * control_.tool_at(index).diameter_mm;
 }
 
 void Fanuc::apply_radius() {
@@ -117,11 +122,14 @@ void Fanuc::apply_radius() {
     control_.fail("compensation-no-tool", at, "cutter compensation has no D word and no tool",
                   "add D with the tool's number");
   const double radius = block_.has('D') ? tool_value('D', false) : 0.5 * control_.active_tool()->diameter_mm;
-  control_.set_compensation(code == 410 ? Compensation::kLeft : Compensation::kRight, radius, at);
+  const bool left = (code == 410) != (mapped() && reversed());
+  control_.set_compensation(left ? Compensation::kLeft : Compensation::kRight, radius, at);
 }
 
 void Fanuc::apply_length() {
   const int code = block_.g[kFanucLength];
+  if (code >= 434 && code <= 435) refuse_mapped(g_column(kFanucLength), "TCP is switched on", true);
+  length_code_ = code;
   if (code == 490) {
     tcp_ = Tcp::kOff;
     control_.set_length_compensation(0.0, false);

@@ -6,6 +6,7 @@ namespace {
 
 constexpr auto kRead = Code::Use::kRead;
 constexpr auto kNoEffect = Code::Use::kNoEffect;
+constexpr auto kArguments = Code::Use::kArguments;
 constexpr auto kUnsupported = Code::Use::kUnsupported;
 
 constexpr Code kGCodes[] = {
@@ -31,8 +32,8 @@ constexpr Code kGCodes[] = {
     {110, 0},
     {121, 21, kUnsupported, "polar coordinate interpolation"},
     {131, 21, kNoEffect, "polar interpolation off"},
-    {150, 17, kNoEffect, "polar coordinates off"},
-    {160, 17, kUnsupported, "polar coordinates"},
+    {150, 17},
+    {160, 17},
     {170, 2},
     {180, 2},
     {190, 2},
@@ -40,9 +41,9 @@ constexpr Code kGCodes[] = {
     {210, 6},
     {220, 4, kNoEffect, "stroke check on"},
     {230, 4, kNoEffect, "stroke check off"},
-    {270, 0, kUnsupported, "reference check"},
+    {270, 0},
     {280, 0},
-    {290, 0, kUnsupported, "return from the reference"},
+    {290, 0},
     {300, 0},
     {310, 0, kUnsupported, "skip"},
     {330, 1, kUnsupported, "threading"},
@@ -57,14 +58,14 @@ constexpr Code kGCodes[] = {
     {440, 8},
     {490, 8},
     {491, 8, kUnsupported, "another offset cancel"},
-    {500, 11, kNoEffect, "scaling off"},
-    {510, 11, kUnsupported, "scaling"},
-    {501, 18, kNoEffect, "mirror off"},
-    {511, 18, kUnsupported, "programmable mirror"},
+    {500, 11},
+    {510, 11},
+    {501, 18},
+    {511, 18},
     {520, 0},
     {530, 0},
     {531, 0},
-    {536, 0, kUnsupported, "tool axis to the plane with the tip held"},
+    {536, 0},
     {540, 14},
     {541, 14},
     {542, 19, kUnsupported, "rotary table dynamic offset"},
@@ -74,19 +75,21 @@ constexpr Code kGCodes[] = {
     {570, 14},
     {580, 14},
     {590, 14},
-    {600, 0, kUnsupported, "single direction positioning"},
+    {600, 0, kUnsupported,
+     "positioning from one side, by a way that parameter 5440 says; G00 ends there too"},
     {610, 15},
     {611, 15},
     {620, 15, kNoEffect, "corner override"},
     {630, 15, kUnsupported, "tapping mode"},
     {640, 15},
-    {650, 0},
-    {660, 12, kUnsupported, "modal macro call"},
-    {670, 12, kNoEffect, "modal macro call off"},
+    {650, 0, kArguments},
+    {660, 12, kArguments},
+    {661, 12, kUnsupported, "macro call in each block"},
+    {670, 12},
     {680, 16},
     {682, 16},
-    {683, 16, kUnsupported, "tilted plane from the tool axis"},
-    {684, 16, kUnsupported, "tilted plane on top of another"},
+    {683, 16},
+    {684, 16},
     {690, 16},
     {730, 9},
     {740, 9},
@@ -111,6 +114,8 @@ constexpr Code kGCodes[] = {
     {970, 13, kRead},
     {980, 10},
     {990, 10},
+    {1870, 0, kUnsupported, "smoothness on controls of another maker; Fanuc has G05.1"},
+    {3320, 0, kUnsupported, "high precision mode of another maker; Fanuc has G05.1"},
 };
 
 constexpr Code kMCodes[] = {
@@ -133,7 +138,7 @@ constexpr Code kMCodes[] = {
     {490, kFree, kNoEffect, "override"},
     {980, 0},
     {990, 0},
-    {1980, 0, kUnsupported, "a program on another device"},
+    {1980, 0},
 };
 
 static_assert(fits_tables(kGCodes) && fits_tables(kMCodes));

@@ -32,6 +32,8 @@ void Fanuc::keep_cycle_words(char depth_letter) {
   keep(depth_letter, sticky_.z, sticky_.has_z);
   keep('R', sticky_.r, sticky_.has_r);
   keep('Q', sticky_.q, sticky_.has_q);
+  if (block_.has(depth_letter)) sticky_.z_incremental = incremental_;
+  if (block_.has('R')) sticky_.r_incremental = incremental_;
   keep('I', sticky_.i, sticky_.has_i);
   keep('J', sticky_.j, sticky_.has_j);
   if (block_.has('P')) sticky_.p = 1e-3 * block_.get('P');
@@ -75,8 +77,14 @@ Vec3 Fanuc::bore_shift() {
 
 DrillCycle Fanuc::drill_cycle(int tenths) {
   DrillCycle cycle;
-  cycle.approach = incremental_ ? cycle_start_ + sticky_.r : sticky_.r;
-  cycle.bottom = incremental_ ? cycle.approach + sticky_.z : sticky_.z;
+  // Scaling moves R and Z; depths per peck and shifts stay as written.
+  const AxisMap& map = map_[static_cast<size_t>(axes_of(control_.plane()).normal)];
+  if (map.mirrors())
+    control_.fail("modal-conflict", reader_.column_of(block_.first), "a cycle drills along a mirrored axis",
+                  "end the mirror image of the drilling axis before it");
+  const double r = map.at(sticky_.r, sticky_.r_incremental), z = map.at(sticky_.z, sticky_.z_incremental);
+  cycle.approach = sticky_.r_incremental ? cycle_start_ + r : r;
+  cycle.bottom = sticky_.z_incremental ? cycle.approach + z : z;
   const bool back = tenths == 870;
   if (back ? cycle.bottom < cycle.approach : cycle.bottom > cycle.approach)
     control_.fail("bad-cycle", reader_.column_of(block_.first),
@@ -93,6 +101,7 @@ DrillCycle Fanuc::drill_cycle(int tenths) {
   cycle.clearance_mm = kPeckClearanceMm;
   const bool taps = tenths == 840 || tenths == 740;
   cycle.dwell_s = taps || bores(tenths) || tenths == 820 || tenths == 880 || tenths == 890 ? sticky_.p : 0.0;
+  cycle.dwell_out_s = taps ? sticky_.p : 0.0;
   cycle.feed_out = taps || tenths == 850 || tenths == 890;
   cycle.stop_at_bottom = tenths == 860;
   cycle.reverse_at_bottom = taps;
@@ -114,7 +123,9 @@ void Fanuc::cycle(int tenths) {
   const DrillCycle cycle = drill_cycle(tenths);
   const char repeat = block_.has('K') ? 'K' : 'L';
   const int times = block_.has(repeat) ? whole(block_, repeat, 0, 9999, reader_, control_) : 1;
-  for (int i = 0; i < times; ++i) control_.drill(cycle, hole);
+  moved_ = times > 0;
+  // Each repeat reads its words again: an incremental polar angle goes on.
+  for (int i = 0; i < times; ++i) control_.drill(cycle, i == 0 ? hole : words());
 }
 
 }  // namespace swarf::program::nc

@@ -1,4 +1,4 @@
-// Motions, cycles, tilted planes, NURBS, references.
+// Motions, NURBS, reference points.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,16 +11,20 @@
 namespace swarf::program::nc {
 namespace {
 
-using kinematics::AxisValues;
-
 /// Chords of a NURBS miss it by at most this much: a tenth of what surface checks can see.
 constexpr double kNurbsToleranceMm = 1e-4;
+/// An axis closer than this (mm, rad) stands at its reference position.
+constexpr double kReferenceTolerance = 1e-6;
 /// The first control point must be where the tool stands, mm.
 constexpr double kNurbsStartMm = 5e-3;
 
 }  // namespace
 
 void Fanuc::one_shot() {
+  const int code = block_.g[kFanucOneShot];
+  if (code != 40 && code != 100 && code != 110 && code != 90)
+    refuse_mapped(g_column(kFanucOneShot), "coordinate systems, reference points and planes are used",
+                  code >= 270 && code <= 300);
   switch (block_.g[kFanucOneShot]) {
     case 40:
       return control_.dwell(block_.has('X') ? block_.get('X') : 1e-3 * block_.get('P'));
@@ -28,20 +32,34 @@ void Fanuc::one_shot() {
       return set_data();
     case 110:
       return;
+    case 270:
     case 280:
+    case 290:
     case 300:
-      return reference();
+      return references();
     case 520:
       return shift_to_words(false);
     case 920:
       return shift_to_words(true);
     case 531:
-      return tilt_rotaries();
+    case 536:
+      return tilt_rotaries(block_.g[kFanucOneShot] == 536);
     default:
       return motion();
   }
 }
 
+void Fanuc::references() {
+  const int code = block_.g[kFanucOneShot];
+  if (calls_.back().modals > 0)
+    control_.fail("modal-conflict", g_column(kFanucOneShot),
+                  "a reference point is approached while G66 is on", "write G67 before it");
+  if (code == 270) return check_reference();
+  if (code == 290) return return_from_reference();
+  reference();
+}
+
+/// G28, G30 (P2): through the point that the words give to the reference position. The point is kept for G29.
 void Fanuc::reference() {
   const kinematics::MachineModel& machine = control_.machine();
   const bool second = block_.g[kFanucOneShot] == 300;
@@ -56,11 +74,18 @@ void Fanuc::reference() {
   if (!through.any())
     control_.fail("missing-word", g_column(kFanucOneShot), "G28 has no axis words",
                   "name the axes: G91 G28 Z0");
-  control_.line(Motion::kRapid, through);
+  // G91 G28 Z0 at the head of a program: the point is where the axis stands, known or not.
+  const bool at_once =
+      !control_.started() && through.given == through.incremental &&
+      std::all_of(through.value.begin(), through.value.end(), [](double x) { return x == 0.0; });
+  if (!at_once) control_.line(Motion::kRapid, through);
   Target home;
   home.column = g_column(kFanucOneShot);
   for (int word = 0; word < kAxisWords; ++word) {
     if (!through.has(word)) continue;
+    const auto slot = static_cast<size_t>(word);
+    const double passed = control_.position()[slot];
+    through_[slot] = std::isfinite(passed) ? std::optional(passed) : std::nullopt;
     const int axis = control_.require_axis(static_cast<AxisWord>(word), through.column);
     home.set(word, second ? (*machine.tool_change)[axis] : machine.axes[static_cast<size_t>(axis)].home,
              false);
@@ -68,72 +93,83 @@ void Fanuc::reference() {
   control_.machine_line(Motion::kRapid, home);
 }
 
-void Fanuc::set_data() {
-  need('L', "G10");
-  const int kind = whole(block_, 'L', 0, 100, reader_, control_);
-  if (kind != 2 && kind != 20)
-    control_.fail("unsupported-word", column('L'), fmt::format("G10 L{} changes data of the control", kind),
-                  "give tools as a table; G10 L2 and L20 set work offsets");
-  need('P', "G10");
-  const int p = whole(block_, 'P', 1, kind == 2 ? 6 : 300, reader_, control_);
-  const int number = kind == 2 ? p : 100 + p;
-  const Target values = target_of(block_, false, reader_, control_);
-  AxisValues origin = control_.offset_origin(number);
+/// G27: rapid to the point; it must be the reference position of the axes that are named.
+void Fanuc::check_reference() {
+  const Target target = words();
+  if (!target.any())
+    control_.fail("missing-word", g_column(kFanucOneShot), "G27 has no axis words", "name the axes: G27 X0");
+  control_.line(Motion::kRapid, target);
+  control_.flush();
   for (int word = 0; word < kAxisWords; ++word) {
-    if (!values.has(word)) continue;
-    const int axis = control_.require_axis(static_cast<AxisWord>(word), values.column);
-    const double value = values.value[static_cast<size_t>(word)];
-    origin[axis] = incremental_ ? origin[axis] + value : value;
+    if (!target.has(word)) continue;
+    const int axis = control_.require_axis(static_cast<AxisWord>(word), target.column);
+    const double home = control_.machine().axes[static_cast<size_t>(axis)].home;
+    const double off = control_.axis_values()[axis] - home;
+    if (std::abs(off) > kReferenceTolerance)
+      control_.fail(
+          "not-at-reference", target.column,
+          word < 3 ? fmt::format("{} stands {:.4f} mm from its reference position", kAxisLetters[word], off)
+                   : fmt::format("{} stands {:.4f} degrees from its reference position", kAxisLetters[word],
+                                 deg_from_rad(off)),
+          "correct the point, or cancel offsets before G27");
   }
-  control_.set_offset_origin(number, origin);
 }
 
-/// G92: the present position reads as written. G52: the local shift is as written.
-void Fanuc::shift_to_words(bool position) {
-  const Target values = target_of(block_, false, reader_, control_);
-  if (turned_.on || tcp_ != Tcp::kOff)
-    control_.fail("modal-conflict", g_column(kFanucOneShot),
-                  "the work offset shifts while a turned frame or TCP is on",
-                  "switch it off first: G69, G49");
-  const std::array<double, kAxisWords> here = control_.position();
+/// G29: from the reference position through the point of the last G28 or G30 to the point written; under G91
+/// the words count from that point.
+void Fanuc::return_from_reference() {
+  const Target target = words();
+  if (!target.any())
+    control_.fail("missing-word", g_column(kFanucOneShot), "G29 has no axis words", "name the axes: G29 X0");
+  Target through;
+  through.column = target.column;
   for (int word = 0; word < kAxisWords; ++word) {
-    if (!values.has(word)) continue;
-    const int axis = control_.require_axis(static_cast<AxisWord>(word), values.column);
-    const double value = values.value[static_cast<size_t>(word)], now = here[static_cast<size_t>(word)];
-    if (position && !std::isfinite(now))
-      control_.fail("start-unknown", values.column, "G92 needs the position, which is not known yet",
-                    "give the start position in the scene");
-    if (position)
-      shift_[axis] += now - value;
-    else
-      local_[axis] = value;
+    if (!target.has(word)) continue;
+    const auto& point = through_[static_cast<size_t>(word)];
+    if (!point)
+      control_.fail(
+          "no-reference", target.column,
+          fmt::format("G29 comes back through the point of G28, and {} has none", kAxisLetters[word]),
+          "write G28 with this axis before it, or G00");
+    through.set(word, *point, false);
   }
-  update_space();
+  control_.line(Motion::kRapid, through);
+  control_.line(Motion::kRapid, target);
 }
 
-void Fanuc::motion() {
+/// G00 to G03 and G73 to G89 hold from this block on, whatever else it does.
+void Fanuc::keep_motion_codes() {
   if (block_.has_g(kFanucMotion)) {
     motion_ = block_.g[kFanucMotion];
     cycle_ = 800;
     sticky_ = CycleWords();
   }
-  if (block_.has_g(kFanucCycle)) {
-    const int code = block_.g[kFanucCycle];
-    if (code == 800) sticky_ = CycleWords();
-    if (code != 800 && cycle_ == 800)
-      cycle_start_ = control_.position_xyz()[axes_of(control_.plane()).normal];
-    cycle_ = code;
-  }
+  if (!block_.has_g(kFanucCycle)) return;
+  const int code = block_.g[kFanucCycle];
+  if (code == 800) sticky_ = CycleWords();
+  if (code != 800 && cycle_ == 800) cycle_start_ = control_.position_xyz()[axes_of(control_.plane()).normal];
+  cycle_ = code;
+}
+
+void Fanuc::motion() {
+  const bool machine = g(kFanucOneShot) == 530;
+  if (cycle_ != 800 && machine)
+    control_.fail("modal-conflict", g_column(kFanucOneShot), "G53 stands while a canned cycle is on",
+                  "end the cycle first: G80");
   if (cycle_ != 800) return cycle(cycle_);
   if (motion_ == 62) return nurbs();
-  const bool machine = g(kFanucOneShot) == 530;
+  if (machine) refuse_mapped(g_column(kFanucOneShot), "G53 stands", false);
   Target target = machine ? target_of(block_, false, reader_, control_) : words();
   if (motion_ == 20 || motion_ == 30) {
     if (machine)
       control_.fail("modal-conflict", g_column(kFanucOneShot), "G53 goes with G00 and G01 only",
                     "write G53 G00");
     std::optional<ArcWords> arc = arc_words(block_, target, false, reader_, control_);
-    if (arc) control_.arc(motion_ == 20 ? Motion::kClockwise : Motion::kCounterClockwise, target, *arc);
+    if (!arc) return;
+    moved_ = true;
+    map_arc(*arc);
+    const bool clockwise = (motion_ == 20) != (mapped() && reversed());
+    control_.arc(clockwise ? Motion::kClockwise : Motion::kCounterClockwise, target, *arc);
     return;
   }
   if (tcp_ == Tcp::kVector && (block_.has('I') || block_.has('J') || block_.has('K'))) {
@@ -141,6 +177,7 @@ void Fanuc::motion() {
     if (target.column == 0) target.column = reader_.column_of(block_.first);
   }
   if (!target.any()) return;
+  moved_ = true;
   const Motion kind = motion_ == 0 ? Motion::kRapid : Motion::kFeed;
   if (machine)
     control_.machine_line(kind, target);
@@ -148,59 +185,11 @@ void Fanuc::motion() {
     control_.line(kind, target);
 }
 
-/// G68.2 X Y Z I J K: origin and Euler angles (Z, X', Z''), in the work. G68 X Y R: a turn in the plane.
-void Fanuc::turn(int tenths) {
-  if (tenths == 690) {
-    turned_ = Turned();
-    return update_space();
-  }
-  const Target at = target_of(block_, false, reader_, control_);
-  if ((at.given & 0x38u) != 0)
-    control_.fail("unexpected-word", at.column, "rotary words have no meaning with G68",
-                  "give the angles as I J K or R");
-  turned_.on = true;
-  turned_.in_work = tenths == 682;
-  Vec3 origin = Vec3::Zero();
-  const Vec3 here = tenths == 680 ? control_.position_xyz() : Vec3(Vec3::Zero());
-  for (int i = 0; i < 3; ++i) origin[i] = at.has(i) ? at.value[static_cast<size_t>(i)] : here[i];
-  Mat3 rotation;
-  const auto about = [](double deg, const Vec3& axis) {
-    return Mat3(Eigen::AngleAxisd(rad_from_deg(deg), axis).toRotationMatrix());
-  };
-  if (tenths == 682) {
-    if (block_.has('P') && block_.get('P') != 0.0)
-      control_.fail("unsupported-word", column('P'), "G68.2 is read with Euler angles (P0)",
-                    "post it with I J K as Euler angles");
-    rotation = about(block_.get('I', 0.0), Vec3::UnitZ()) * about(block_.get('J', 0.0), Vec3::UnitX()) *
-               about(block_.get('K', 0.0), Vec3::UnitZ());
-  } else {
-    need('R', "G68");
-    origin[axes_of(control_.plane()).normal] = 0.0;
-    if (!origin.allFinite())
-      control_.fail("start-unknown", 0, "G68 turns about the present position, which is not known yet",
-                    "give its centre");
-    rotation = about(block_.get('R'), Vec3::Unit(axes_of(control_.plane()).normal));
-  }
-  turned_.frame = Pose::Identity();
-  turned_.frame.linear() = rotation;
-  turned_.frame.translation() = tenths == 682 ? origin : Vec3(origin - rotation * origin);
-  update_space();
-}
-
-void Fanuc::tilt_rotaries() {
-  const int at = g_column(kFanucOneShot);
-  if (!turned_.on || !turned_.in_work)
-    control_.fail("modal-conflict", at, "G53.1 positions to a tilted plane, and none is on",
-                  "write G68.2 before it");
-  const Motion kind = motion_ == 0 ? Motion::kRapid : Motion::kFeed;
-  control_.turn_rotaries(kind, control_.tilt_solution(Vec3::UnitZ(), TiltPreference(), at),
-                         tcp_ != Tcp::kOff);
-}
-
 // --- NURBS
 // ---------------------------------------------------------------------------------------------------
 
 void Fanuc::nurbs() {
+  refuse_mapped(g_column(kFanucMotion), "a NURBS begins", true);
   Nurbs nurbs;
   nurbs.where = control_.place();
   if (block_.has('P')) nurbs.order = whole(block_, 'P', 2, 6, reader_, control_);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "program/nc/line_source.h"
 
@@ -85,6 +86,9 @@ double FormulaReader::bracketed() {
            "compute a part of the formula into a parameter first");
   skip();
   const double result = expression(0);
+  if (std::isnan(result))
+    refuse(from, "undefined-parameter", "the variable in these brackets is vacant: nothing assigned it",
+           "assign it before it is read");
   skip_space();
   if (peek() != ']')
     refuse(at_, "bad-expression", done() ? "the '[' is not closed" : "an operator or ']' is missing here",
@@ -115,7 +119,8 @@ double FormulaReader::expression(int lowest_rank) {
     at_ += op->word.size();
     const double right = expression(op->rank + 1);
     std::string why;
-    left = checked(apply(op->op, left, right, why), from, why);
+    left = std::isnan(left) || std::isnan(right) ? with_vacant(op->op, left, right, from)
+                                                 : checked(apply(op->op, left, right, why), from, why);
   }
   return left;
 }
@@ -185,30 +190,22 @@ long FormulaReader::parameter_number(std::string& name) {
     return 0;
   }
   const double number = value();
-  const long whole = std::lround(std::clamp(number, -1e9, 1e9));
-  if (std::abs(number - static_cast<double>(whole)) > 1e-6 || whole < 0)
+  const long whole = std::isnan(number) ? -1 : std::lround(std::clamp(number, -1e9, 1e9));
+  if (!(std::abs(number - static_cast<double>(whole)) <= 1e-6) || whole < 0)
     refuse(from, "bad-parameter", fmt::format("#{:g} is not the number of a parameter", number),
            "parameters have whole numbers from 1");
   return whole;
 }
 
-/// The rest of "#1 EQ #0" and "#0 NE #1", where the reader stands behind the first variable.
-std::optional<double> FormulaReader::vacancy(long number) {
-  const size_t from = at_;
-  const OperatorWord* op = peek_operator();
-  if (op != nullptr && (op->op == Operator::kEqual || op->op == Operator::kNotEqual)) {
-    at_ += op->word.size();
-    skip_space();
-    std::string name;
-    const long other = peek() == '#' ? parameter_number(name) : -1;
-    if (other >= 0 && (number == 0 || other == 0)) {
-      const bool both =
-          (number == 0 || parameters_.vacant(number)) && (other == 0 || parameters_.vacant(other));
-      return both == (op->op == Operator::kEqual) ? 1.0 : 0.0;
-    }
-  }
-  at_ = from;
-  return std::nullopt;
+/// A vacant variable equals another vacant one and no number; elsewhere it counts as zero.
+double FormulaReader::with_vacant(Operator op, double left, double right, size_t from) {
+  const bool both = std::isnan(left) && std::isnan(right);
+  if (op == Operator::kEqual) return both ? 1.0 : 0.0;
+  if (op == Operator::kNotEqual) return both ? 0.0 : 1.0;
+  control_.warn_once("vacant-value", column_at(line_, from), "a vacant variable counts as zero here",
+                     "assign it before it is read");
+  std::string why;
+  return checked(apply(op, std::isnan(left) ? 0.0 : left, std::isnan(right) ? 0.0 : right, why), from, why);
 }
 
 double FormulaReader::parameter_value() {
@@ -219,9 +216,7 @@ double FormulaReader::parameter_value() {
            "compute a part of the formula into a parameter first");
   const long number = parameter_number(name);
   --depth_;
-  if (syntax_.null_variable) {
-    if (const std::optional<double> answer = vacancy(number)) return *answer;
-  }
+  if (syntax_.null_variable && parameters_.vacant(number)) return std::numeric_limits<double>::quiet_NaN();
   return name.empty() ? parameters_.read(number, from) : parameters_.read_named(name, from);
 }
 

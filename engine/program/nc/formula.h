@@ -24,7 +24,7 @@ struct FormulaSyntax {
   std::span<const FunctionWord> functions;
   std::span<const OperatorWord> operators;
   bool named_parameters = false;      ///< #<name> and EXISTS[#<name>]
-  bool null_variable = false;         ///< #0 is vacant: [#1 EQ #0] asks whether #1 has a value
+  bool null_variable = false;         ///< #0 and variables without a value are vacant: not a number
   bool arc_tangent_positive = false;  ///< ATAN[y]/[x] in [0, 360)
 };
 
@@ -62,9 +62,11 @@ class FormulaReader {
   int column_of(size_t at) const;
   /// True when `word` (capitals) stands here; skips it then.
   bool take(std::string_view word);
-  /// A value of a word: number, parameter, formula, function, with an optional sign.
+  /// A value of a word: number, parameter, formula, function, with an optional sign; not a number for a
+  /// vacant variable.
   double value();
-  /// A formula without brackets, as far as it goes (right sides of Fanuc's assignments).
+  /// A formula without brackets, as far as it goes (right sides of Fanuc's assignments); not a number where
+  /// it is a vacant variable alone.
   double open_formula() { return expression(0); }
   /// What stands in brackets, the opening one still to come.
   double bracketed();
@@ -75,7 +77,7 @@ class FormulaReader {
   double expression(int lowest_rank);
   double function_value();
   double parameter_value();
-  std::optional<double> vacancy(long number);
+  double with_vacant(Operator op, double left, double right, size_t from);
   const OperatorWord* peek_operator();
   [[noreturn]] void refuse(size_t at, const char* code, std::string text, std::string fix) const;
   double checked(std::optional<double> result, size_t at, const std::string& why) const;

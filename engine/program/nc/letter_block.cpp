@@ -45,6 +45,7 @@ void add_code(char letter, const CodeTable& table, double number, size_t place, 
                  "correct the code, or choose the dialect that the program is written in");
   }
   check_use(*code, letter, reader.column_of(place), control);
+  block.arguments = block.arguments || code->use == Code::Use::kArguments;
   if (letter == 'M') {
     if (block.m_count == kMCodesMax)
       control.fail("modal-conflict", reader.column_of(place), "too many M codes in one block",
@@ -91,7 +92,7 @@ bool LetterBlock::has_m(int tenths) const {
 }
 
 void check_use(const Code& code, char letter, int column, Control& control) {
-  if (code.use == Code::Use::kRead) return;
+  if (code.use == Code::Use::kRead || code.use == Code::Use::kArguments) return;
   const std::string name = code_name(letter, code.tenths);
   if (code.use == Code::Use::kUnsupported) {
     control.fail("unsupported-word", column, fmt::format("{} ({}) is not supported", name, code.meaning),
@@ -139,7 +140,8 @@ void read_words(const LetterSyntax& syntax, FormulaReader& reader, Control& cont
           number || letter == '.' || letter == '-' || letter == '+' ? "bad-number" : "unexpected-character",
           reader.column(),
           number ? "this number has no letter before it" : "this character does not belong here",
-          "a block has words (a letter and a number) and comments");
+          letter == '<' ? "programs are called by number, not by name: M98 P1234"
+                        : "a block has words (a letter and a number) and comments");
     }
     if (syntax.letters.find(letter) == std::string_view::npos) {
       control.fail("unknown-word", reader.column(), fmt::format("{} is no word of this dialect", letter),
@@ -150,9 +152,21 @@ void read_words(const LetterSyntax& syntax, FormulaReader& reader, Control& cont
     reader.skip();
     const double value = reader.value();
     if (letter == 'N') continue;
-    if (letter == 'G' || letter == 'M') {
+    if (std::isnan(value)) {
+      control.warn_once("vacant-word", reader.column_of(place),
+                        fmt::format("{} is left out: its variable is vacant", letter),
+                        "assign the variable where the word is meant");
+      continue;
+    }
+    if (letter == 'G' || (letter == 'M' && !block.arguments)) {
       add_code(letter, letter == 'G' ? *syntax.g_codes : *syntax.m_codes, value, place, reader, control,
                block);
+      continue;
+    }
+    const bool repeats = block.arguments && letter >= 'I' && letter <= 'K';
+    if (repeats && block.has(letter) && block.repeat_count < kRepeatsMax) {
+      block.repeats[static_cast<size_t>(block.repeat_count++)] = {letter, value,
+                                                                  static_cast<uint16_t>(place)};
       continue;
     }
     if (block.has(letter)) {

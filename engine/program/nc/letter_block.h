@@ -15,12 +15,16 @@ namespace swarf::program::nc {
 struct Code {
   int tenths;    ///< ten times its number: G43.4 is 434
   int8_t group;  ///< two codes of one group contradict each other; kFree: they never do
-  enum class Use : uint8_t { kRead, kNoEffect, kUnsupported } use = Use::kRead;
+  /// kArguments: read; M behind it is a word, and I J K may stand several times (arguments of macros).
+  enum class Use : uint8_t { kRead, kNoEffect, kUnsupported, kArguments } use = Use::kRead;
   const char* meaning = "";  ///< for messages about codes without effect or support
 };
 inline constexpr int8_t kFree = -1;
 inline constexpr int kGroups = 22;
 inline constexpr int kMCodesMax = 8;
+
+/// I J K of the second to the tenth set of a macro's arguments.
+inline constexpr int kRepeatsMax = 27;
 
 inline constexpr int kCodeTenths = 5000;
 
@@ -67,15 +71,23 @@ struct LetterBlock {
   std::array<uint16_t, kMCodesMax> m_places{};
   int m_count = 0;
   uint32_t m_groups = 0;
-  int free_g = 0;            ///< number of G codes without a group
-  size_t first = 0;          ///< byte offset of the first word
+  int free_g = 0;    ///< number of G codes without a group
+  size_t first = 0;  ///< byte offset of the first word
+  struct Repeat {
+    char letter;
+    double value;
+    uint16_t place;
+  };
+  bool arguments = false;  ///< a code of Code::Use::kArguments stands in it
+  std::array<Repeat, kRepeatsMax> repeats{};
+  int repeat_count = 0;
   bool skip_mark = false;    ///< '/' before it
   std::string_view message;  ///< text of the last (MSG, ...) comment
 
   void clear() {
     given = g_given = m_groups = 0;
-    m_count = free_g = 0;
-    skip_mark = false;
+    m_count = free_g = repeat_count = 0;
+    skip_mark = arguments = false;
     message = {};
   }
   bool has(char letter) const { return (given >> (letter - 'A') & 1u) != 0; }

@@ -46,6 +46,8 @@ class WorkSpace {
   Vec3 program_from_linear(const Vec3& linear, const std::array<double, 3>& rotary);
   /// Machine value of a rotary word and back; `slot` 0 1 2: A B C.
   double rotary_zero(int slot) const;
+  /// Tool axis in W with the rotary axes at zero.
+  const Vec3& axis_at_zero_W() const { return at_zero_.axis_W; }
   /// W from program coordinates (kWork).
   Pose X_WP() const;
 

@@ -1,3 +1,5 @@
-(expect: unsupported-word 2:1)
+(expect: unknown-subprogram 2:1)
 M198 P1
 M30
+O0001
+M99

@@ -1,2 +1,5 @@
 (expect: unsupported-word 2:1)
-G51 X1
+G66.1 P10 A1
+M30
+O0010
+M99

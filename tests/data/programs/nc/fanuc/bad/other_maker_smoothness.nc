@@ -1,2 +1,2 @@
 (expect: unsupported-word 2:1)
-G16
+G187 P1

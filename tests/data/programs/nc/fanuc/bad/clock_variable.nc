@@ -1,2 +1,3 @@
 (expect: undefined-parameter 2:6)
-G00 X#100
+#100=#3001
+M30

@@ -1,3 +1,3 @@
 (expect: undefined-parameter 2:7)
-G00 X[#1+#0]
+G00 X#[#1]
 M30

@@ -1,3 +1,3 @@
 (expect: undefined-parameter 2:6)
-G00 X#5
+G00 X[#5]
 M30

@@ -1,3 +1,2 @@
 (expect: unsupported-word 2:1)
-G68.3 X0 Y0 Z0
-M30
+G12.1

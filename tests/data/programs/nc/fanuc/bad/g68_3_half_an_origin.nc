@@ -1,0 +1,2 @@
+(expect: missing-word 2:1)
+G68.3 X0 Y0

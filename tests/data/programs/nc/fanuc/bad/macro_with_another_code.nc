@@ -1,0 +1,5 @@
+(expect: modal-conflict 2:5)
+G90 G65 P10 A1
+M30
+O0010
+M99

@@ -1,0 +1,2 @@
+(expect: unsupported-word 2:1)
+G332 R1

@@ -1,0 +1,2 @@
+(expect: unexpected-word 2:5)
+M99 L5

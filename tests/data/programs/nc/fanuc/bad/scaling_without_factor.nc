@@ -1,0 +1,2 @@
+(expect: missing-word 2:1)
+G51 X1

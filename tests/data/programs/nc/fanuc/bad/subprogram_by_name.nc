@@ -1,0 +1,2 @@
+(expect: unexpected-character 2:5)
+M98 <SUB>

@@ -1,0 +1,3 @@
+(expect: undefined-parameter 2:5)
+GOTO#1
+M30
