@@ -30,7 +30,7 @@ constexpr std::array kDialects{program::Dialect::kLinuxCnc, program::Dialect::kF
 /// Three axes that go anywhere, for programs without rotary words.
 kinematics::MachineModel plain_machine() {
   kinematics::MachineModel machine;
-  machine.name = "XYZ without limits";
+  machine.name = "XYZ without limits (no --machine was given)";
   const std::array<Vec3, 3> directions{Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
   for (size_t i = 0; i < 3; ++i) {
     kinematics::Axis axis;
