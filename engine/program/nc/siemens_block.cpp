@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "program/nc/siemens_block_calls.h"
 #include "program/nc/siemens_flow.h"
 
 namespace swarf::program::siemens {
 namespace {
 
-constexpr std::string_view kAxisNames = "XYZABC";
 constexpr std::string_view kCentreNames = "IJK";
 
 /// One value of a block and where it goes.
@@ -21,7 +21,7 @@ class BlockReader {
 
   void run() {
     while (!reader_.done()) item();
-    check();
+    check_block(words_, machine_axis_, reader_.line());
   }
 
  private:
@@ -325,20 +325,20 @@ class BlockReader {
         return;
       case Meaning::kCycle:
       case Meaning::kCall:
-        call(name, offset);
+        read_call(reader_, variables_, words_, name, offset);
         return;
       case Meaning::kEnd:
         words_.ends_program = true;
         return;
       case Meaning::kFeedGroup:
         if (word.code == 0) {
-          feed_group(name, offset);
+          read_feed_group(reader_, words_, name, offset);
         } else {
-          feed_radius(name, offset);
+          read_feed_radius(reader_, variables_, words_, name, offset);
         }
         return;
       case Meaning::kNotedIndex:
-        noted_index(name, offset);
+        read_noted_index(reader_, variables_, words_, name, offset);
         return;
       case Meaning::kUnsupported:
         fail("unsupported-word", offset, fmt::format("{} is known and not supported", name), word.advice);
@@ -388,125 +388,6 @@ class BlockReader {
     words_.codes.emplace_back(word.group, word.code);
   }
 
-  void call(const std::string& name, size_t offset) {
-    CycleCall call;
-    call.name = name;
-    call.offset = offset;
-    if (reader_.skip("(") && !reader_.skip(")")) {
-      do {
-        call.offsets.push_back(reader_.offset());
-        const bool empty = reader_.peek().symbol(",") || reader_.peek().symbol(")");
-        call.arguments.push_back(empty ? std::nullopt : std::optional(evaluate(reader_, variables_)));
-      } while (reader_.skip(","));
-      reader_.expect(")", "the arguments of " + name);
-    }
-    words_.calls.push_back(std::move(call));
-  }
-
-  /// The first word that a frame cannot use; npos when there is none.
-  size_t stray_offset() const {
-    size_t first = std::string_view::npos;
-    const auto look = [&](const auto& word) {
-      if (word.given) first = std::min(first, word.offset);
-    };
-    for (const auto* three : {&words_.centre, &words_.between}) {
-      for (const Coordinate& word : *three) look(word);
-    }
-    for (const auto* three : {&words_.angles, &words_.vector}) {
-      for (const Amount& word : *three) look(word);
-    }
-    look(words_.polar_angle);
-    look(words_.polar_radius);
-    for (const Amount* word : {&words_.radius, &words_.opening, &words_.turns}) look(*word);
-    for (const CycleCall& call : words_.calls) first = std::min(first, call.offset);
-    return first;
-  }
-
-  /// X, Y, Z, A, B or C, whose place in that list is given.
-  size_t axis_here(const std::string& of) {
-    const Token axis = reader_.peek();
-    const size_t index = axis.name.size() == 1 ? kAxisNames.find(axis.name[0]) : std::string_view::npos;
-    if (index == std::string_view::npos) {
-      fail("bad-block", reader_.offset(), fmt::format("{} names the axes X Y Z A B C", of), "FGROUP(X,Y,Z)");
-    }
-    reader_.next();
-    return index;
-  }
-
-  /// FGROUP(X,Y,Z): the names become the texts of its arguments.
-  void feed_group(const std::string& name, size_t offset) {
-    CycleCall call{name, {}, {}, offset};
-    reader_.expect("(", name);
-    if (!reader_.skip(")")) {
-      do {
-        call.offsets.push_back(reader_.offset());
-        call.arguments.emplace_back(Value::string(std::string(1, kAxisNames[axis_here(name)])));
-      } while (reader_.skip(","));
-      reader_.expect(")", "the axes of FGROUP");
-    }
-    words_.calls.push_back(std::move(call));
-  }
-
-  /// FGREF[B]=50.
-  void feed_radius(const std::string& name, size_t offset) {
-    reader_.expect("[", name);
-    const size_t index = axis_here(name);
-    if (index < 3) {
-      fail("words-conflict", offset, "FGREF is the radius of a rotary axis", "FGREF[C]=50");
-    }
-    reader_.expect("]", "the axis of FGREF");
-    reader_.expect("=", name);
-    Amount& radius = words_.feed_radii[index - 3];
-    radius = {evaluate_number(reader_, variables_), offset, true};
-  }
-
-  /// ACC[X]=50.
-  void noted_index(const std::string& name, size_t offset) {
-    reader_.expect("[", name);
-    const std::string axis = capitals(reader_.peek().text);
-    if (!reader_.done()) reader_.next();
-    reader_.expect("]", "the axis");
-    reader_.expect("=", name);
-    const double value = evaluate_number(reader_, variables_);
-    words_.noted.push_back({fmt::format("{}[{}]={:g}", name, axis, value), offset});
-  }
-
-  void check() {
-    const std::optional<int> point = words_.code(Group::kNoMotion);
-    if (machine_axis_ != nullptr && point != kG74 && point != kG75) {
-      fail("unexpected-word", machine_axis_->offset, "machine axes (X1=) belong to G74 and G75",
-           "write X, Y, Z, A, B or C");
-    }
-    const bool cycle = std::any_of(words_.calls.begin(), words_.calls.end(), [](const CycleCall& call) {
-      return find_word(call.name)->meaning == Meaning::kCycle;
-    });
-    if (words_.frame) {
-      const size_t stray = stray_offset();
-      if (stray != std::string_view::npos) {
-        fail("words-conflict", stray, "this word does not belong beside a frame",
-             "a frame stands in a block of its own: TRANS X10 Y20");
-      }
-    }
-    if ((words_.frame || words_.transform || cycle) && words_.motion) {
-      fail("words-conflict", words_.motion_offset,
-           "a motion stands beside a frame, a transformation or a cycle", "write it in a block of its own");
-    }
-    const Coefficients* polynomial = words_.divisor ? &words_.divisor : nullptr;
-    for (const Coefficients& one : words_.polynomials) polynomial = one ? &one : polynomial;
-    if (polynomial != nullptr && (words_.frame || words_.transform || !words_.calls.empty() || point)) {
-      fail("words-conflict", polynomial->offset,
-           "a polynomial stands in a block that is no motion along a path",
-           "write POLY PO[X]=(10,2) in a block of its own");
-    }
-    if (words_.calls.size() > 1) {
-      fail("words-conflict", words_.calls[1].offset, "two cycles stand in one block", "write one per block");
-    }
-    if (words_.functions.size() > 5) {
-      fail("words-conflict", words_.functions[5].offset, "a block has at most five M functions",
-           "spread them over two blocks");
-    }
-  }
-
   [[noreturn]] void fail(std::string code, size_t offset, std::string text, std::string fix) const {
     refuse(reader_.line(), offset, std::move(code), std::move(text), std::move(fix));
   }
@@ -518,45 +399,6 @@ class BlockReader {
 };
 
 }  // namespace
-
-void BlockWords::clear() {
-  axes = {};
-  centre = between = {};
-  polar_angle = polar_radius = {};
-  feed_radii = {};
-  angles = vector = {};
-  for (Amount* amount : {&radius, &opening, &turns, &feed, &speed, &cutting_edge, &rounding, &plane_turn,
-                         &contour, &interval, &allowance})
-    *amount = {};
-  polynomials = {};
-  divisor = {};
-  tool.given = false;
-  functions.clear();
-  codes.clear();
-  motion.reset();
-  frame.reset();
-  transform.reset();
-  calls.clear();
-  noted.clear();
-  ends_program = false;
-}
-
-bool BlockWords::any_axis() const {
-  return std::any_of(axes.begin(), axes.end(), [](const Coordinate& c) { return c.given; });
-}
-
-bool BlockWords::moves() const {
-  const auto given = [](const auto& x) { return x.given; };
-  return any_axis() || polar_angle || polar_radius || std::any_of(centre.begin(), centre.end(), given) ||
-         std::any_of(angles.begin(), angles.end(), given) || std::any_of(vector.begin(), vector.end(), given);
-}
-
-std::optional<int> BlockWords::code(Group group) const {
-  for (const auto& [of, code] : codes) {
-    if (of == group) return code;
-  }
-  return std::nullopt;
-}
 
 void read_block(TokenReader& reader, Variables& variables, BlockWords& words) {
   BlockReader(reader, variables, words).run();

@@ -94,6 +94,10 @@ struct BlockWords {
   std::optional<int> code(Group group) const;
 };
 
+/// Words that contradict each other throw InputError "words-conflict", "unexpected-word". `machine_axis`: the
+/// first axis that is named as the machine's (X1=); `line`: the block's text, for the place.
+void check_block(const BlockWords& words, const Coordinate* machine_axis, const LineRef& line);
+
 /// Reads the rest of a block; assignments to variables are done as they are met. Throws InputError:
 ///   "unknown-word", "unsupported-word", "word-twice", "two-motion-words", "modal-conflict", "bad-block",
 ///   "bad-number", "not-whole-number", "wrong-type", "words-conflict", "too-many-coefficients".
