@@ -128,8 +128,8 @@ const std::vector<Control>& controls() {
        [](const Step& step, const Vec3& from) { return letters(step, from, "P"); }},
       {Dialect::kFanuc, "%\nO0001\nG21 G90 G94 G17 G40 G49 G54 G61\nT2 M06\nG43 H2\nS4000 M03\n",
        "G43.4 H2\n", "M30\n%\n", [](const Step& step, const Vec3& from) { return letters(step, from, "X"); }},
-      {Dialect::kSiemens, "G71 G90 G94 G17 G40 G54 G60\nT=2 M6\nD1\nS4000 M3\n", "TRAORI\nORIAXES\n",
-       "M30\n", [](const Step& step, const Vec3& from) { return letters(step, from, "F"); }},
+      {Dialect::kSiemens, "G71 G90 G94 G17 G40 G54 G60\nT=2 M6\nD1\nS4000 M3\n", "TRAORI\nORIAXES\n", "M30\n",
+       [](const Step& step, const Vec3& from) { return letters(step, from, "F"); }},
       {Dialect::kHeidenhain, "BEGIN PGM TEST MM\nTOOL CALL 2 Z S4000\nCYCL DEF 247 Q339=+1\nM3\n", "M128\n",
        "END PGM TEST MM\n", [](const Step& step, const Vec3&) { return klartext(step); }}};
   return all;
