@@ -119,10 +119,10 @@ class Rows {
     }
     const AxisValues& q = end == 0 ? ends_.q_from : ends_.q_to;
     for (int i = 0; i < 5; ++i) {
-      const double ours = shown(q, machine_, i), paper = printed.nc[static_cast<size_t>(i)];
+      const double value = shown(q, machine_, i), paper = printed.nc[static_cast<size_t>(i)];
       add({fmt::format("{}: inverse, {}", printed.name, kAxisNames[i]), "Table 2",
-           fmt::format("{:.4f}", paper), number(ours), i < 3 ? "mm" : "deg", "",
-           fmt::format("they differ by {:.1e} {}: rounding of the printed data", ours - paper,
+           fmt::format("{:.4f}", paper), number(value), i < 3 ? "mm" : "deg", "",
+           fmt::format("they differ by {:.1e} {}: rounding of the printed data", value - paper,
                        i < 3 ? "mm" : "deg")});
     }
   }
