@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 
 #include "base/units.h"
 #include "reports/tools_table.h"
@@ -120,6 +121,15 @@ Json surface_json(const measure::SurfaceMetrics& surface) {
           {"overhung_samples", surface.overhung_samples},
           {"gouge_regions", surface.gouge_regions},
           {"excess_regions", surface.excess_regions}};
+}
+
+/// Without a design nothing is measured, and a 0 would read as a perfect part: the names stay, their values
+/// are null. Counts are 0.
+Json unmeasured(Json values) {
+  for (auto& [name, value] : values.items()) {
+    if (!value.is_number_integer()) value = nullptr;
+  }
+  return values;
 }
 
 Json comparison_json(const std::vector<sim::ComparisonRow>& rows) {
@@ -288,8 +298,9 @@ double peak_memory_mb() {
 
 std::string metrics_json(const sim::Job& job, const sim::Result& result, const RenderStatistics& render) {
   const motion::MotionStatistics& motion = result.main.motion.statistics;
-  // Without a design nothing is measured, and a 0 would read as a perfect part.
-  const auto measured = [&](Json value) { return job.has_design() ? std::move(value) : Json(nullptr); };
+  const auto measured = [&](Json values) {
+    return job.has_design() ? std::move(values) : unmeasured(std::move(values));
+  };
   Json json{{"schema", 1},
             {"swarf", SWARF_VERSION},
             {"scene", job.scene.name},
@@ -298,8 +309,8 @@ std::string metrics_json(const sim::Job& job, const sim::Result& result, const R
             {"kinematics", kinematics_json(job, motion)},
             {"stock", stock_json(job, result)},
             {"surface", measured(surface_json(result.main.surface))},
-            {"gouges", measured(regions_json(result, result.main.surface.gouges))},
-            {"excesses", measured(regions_json(result, result.main.surface.excesses))},
+            {"gouges", regions_json(result, result.main.surface.gouges)},
+            {"excesses", regions_json(result, result.main.surface.excesses)},
             {"cross_check", measured(cross_check_json(result.cross_check))},
             {"planners", comparison_json(result.planners)},
             {"interpolators", comparison_json(result.modes)},

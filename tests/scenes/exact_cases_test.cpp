@@ -95,7 +95,11 @@ TEST(ExactCases, WithoutADesignNothingIsMeasuredAndTheReportSaysSo) {
       run_swarf("run " + (folder / "scene.toml").string() + " --no-render -o " + (folder / "run").string());
   EXPECT_EQ(run.exit_code, 0) << run.output;
   EXPECT_NE(run.output.find("none: the finished part is not measured"), std::string::npos) << run.output;
-  EXPECT_EQ(at_path(read_json(folder / "run/metrics.json"), "surface.samples"), 0);
+  const auto metrics = read_json(folder / "run/metrics.json");
+  EXPECT_EQ(at_path(metrics, "surface.samples"), 0);
+  for (const char* measured : {"gouge_max_um", "excess_max_um", "within_tolerance_pct"})
+    EXPECT_TRUE(metrics.at("surface").at(measured).is_null()) << measured;
+  EXPECT_TRUE(metrics.at("cross_check").at("holds").is_null());
   fs::remove_all(folder);
 }
 
