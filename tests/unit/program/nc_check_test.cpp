@@ -53,5 +53,48 @@ TEST(NcCheck, RefusesWithPlaceAndAdvice) {
   expect_lines(test::run_swarf("check --help"), {"--tools", "--dialect", "Examples:", "Exit codes:"});
 }
 
+/// A corner of 50 x 50 mm, the cutter on its left: the points are the part's, or the centre's.
+constexpr const char* kCutcomFile =
+    "TOOL PATH/A,TOOL,T1\nTLDATA/MILL,10.0,0.0,75.0,0.0,0.0\nUNITS/MM\nSPINDL/RPM,3000,CLW\nFEDRAT/500\n"
+    "GOTO/0,-20,10\nGOTO/0,-20,-5\nCUTCOM/LEFT\nGOTO/0,0,-5\nGOTO/0,50,-5\nGOTO/50,50,-5\nCUTCOM/OFF\n"
+    "GOTO/60,40,-5\n";
+
+TEST(ClCheck, CutcomNeedsItsMeaning) {
+  const auto run = [](const char* options) {
+    const auto folder = test::fresh_folder("cl_check");
+    test::write_text(folder / "part.cls", kCutcomFile);
+    return test::run_swarf(std::string("check ") + options + " " + (folder / "part.cls").string());
+  };
+  const test::ProgramRun without = run("");
+  EXPECT_EQ(without.exit_code, 2);
+  expect_lines(without, {"part.cls:8:1: error:", "[cutcom-meaning]", "--cutcom"});
+  expect_lines(run("--cutcom contour"),
+               {"tips from (-5.000, -20.000, -5.000) to (60.000, 55.000, 10.000) mm"});
+  expect_lines(run("--cutcom centre"), {"tips from (0.000, -20.000, -5.000) to (60.000, 50.000, 10.000) mm",
+                                        "the wear offset of the control is taken as 0"});
+}
+
+TEST(ClCheck, TheSceneSaysWhatCutcomMeans) {
+  const auto check_scene = [](const std::string& key) {
+    const auto folder = test::fresh_folder("cl_scene_check");
+    test::write_text(folder / "part.cls", kCutcomFile);
+    test::write_text(folder / "scene.toml",
+                     "machine = \"" SWARF_SOURCE_DIR
+                     "/assets/machines/mill_3axis/machine.toml\"\ncl = \"part.cls\"\n" +
+                         key +
+                         "[cutter]\nnumber = 1\nshape = \"flat\"\ndiameter_mm = 10\nflute_length_mm = 20\n"
+                         "length_mm = 75\n[stock]\nbox_mm = [[-10, -10, -10], [60, 60, 0]]\nvoxel_mm = 1\n"
+                         "[design]\nkind = \"none\"\n");
+    return test::run_swarf("check " + (folder / "scene.toml").string());
+  };
+  const test::ProgramRun without = check_scene("");
+  EXPECT_EQ(without.exit_code, 2);
+  expect_lines(without, {"part.cls:8:1: error:", "[cutcom-meaning]", "cutcom = \"centre\""});
+  for (const char* meaning : {"centre", "contour"}) {
+    const test::ProgramRun with = check_scene(std::string("cutcom = \"") + meaning + "\"\n");
+    EXPECT_EQ(with.exit_code, 0) << with.output;
+  }
+}
+
 }  // namespace
 }  // namespace swarf::program
