@@ -13,9 +13,8 @@
 namespace swarf::program::nc {
 namespace {
 
-/// Shorter ways in the plane are none, and smaller sines between tangents are a smooth corner.
+/// Shorter ways in the plane are none.
 constexpr double kNoWay = 1e-9;
-constexpr double kSmooth = 1e-9;
 constexpr double kTurn = 2.0 * kPi;
 
 struct Crossings {
@@ -224,15 +223,14 @@ void Contour::join(const Piece& next) {
     send_pending();
     return;
   }
-  const double turn = before.tangent_to.cross(next.tangent_from).dot(normal());
-  const bool back = before.tangent_to.dot(next.tangent_from) < 0.0;
-  if (std::abs(turn) <= kSmooth && !back) {
+  const double turn = std::atan2(before.tangent_to.cross(next.tangent_from).dot(normal()),
+                                 before.tangent_to.dot(next.tangent_from));
+  if (std::abs(turn) <= smooth_rad_) {
     send_pending();
     return;
   }
-  const bool turns_left = turn > 0.0;
-  const bool is_inner = std::abs(turn) > kSmooth && turns_left == (side_ == Compensation::kLeft);
-  if (is_inner) {
+  const bool turns_left = turn > 0.0, reverses = std::abs(turn) >= kPi - smooth_rad_;
+  if (turns_left == (side_ == Compensation::kLeft) && !reverses) {
     inner(next);
   } else {
     outer(next);
@@ -261,7 +259,7 @@ void Contour::outer(const Piece& next) {
     // G93 times the programmed move; the corner goes at the speed that this gives.
     round.feed_mode = FeedMode::kPerMinute;
     round.feed = next.way * next.segment.feed;
-    round.unit_mm = 1.0;
+    round.feed_unit_mm = 1.0;
   }
   control_.emit(round);
   tool_ = round.to;

@@ -7,7 +7,9 @@
 //          |   |                          | |
 //
 // 1. A straight or circular piece moves aside by r along n = side (normal x tangent); arcs keep their centre.
-// 2. Outer corners get an arc of radius r about the programmed corner; smooth ones nothing.
+// 2. Outer corners get an arc of radius r about the programmed corner, and so do reversals; smooth ones
+// nothing:
+//    each piece goes on from where the one before it ended.
 // 3. Inner corners end at the intersection of both offset curves. When it lies outside a piece the cutter
 // would
 //    cut beyond the corner: "compensation-gouge"; so does an arc whose inside is not wider than the cutter.
@@ -52,6 +54,8 @@ class Contour {
   /// The compensated tool stands at `tool` already; no lead-in follows.
   void enter(Compensation side, double radius_mm, const Vec3& tool);
   void set_entry(CompensationEntry entry) { entry_ = entry; }
+  /// Corners that turn by no more, or within as much of half a turn back, count as smooth or as reversals.
+  void set_smooth(double angle_rad) { smooth_rad_ = angle_rad; }
   void add(const Segment& programmed);
   /// Emits what waits for a corner that does not come; the compensated end stays where it is.
   void flush();
@@ -85,7 +89,7 @@ class Contour {
   ContourHost& control_;
   CompensationEntry entry_ = CompensationEntry::kAcrossNext;
   Compensation side_ = Compensation::kOff;
-  double radius_ = 0.0;
+  double radius_ = 0.0, smooth_rad_ = 1e-9;
   bool leading_in_ = false, leading_out_ = false;
   std::optional<Piece> pending_;
   std::vector<Segment> waiting_;  ///< along the normal, after `pending_`

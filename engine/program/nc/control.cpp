@@ -89,12 +89,20 @@ void Control::set_feed_mode(FeedMode mode) {
   feed_fresh_ = false;
 }
 
-void Control::set_feed(double value, int column) {
+void Control::set_feed_in(double unit_mm, double value, int column) {
   if (!(value > 0.0)) {
     fail("bad-feed", column, fmt::format("F {:g} is not a feed", value), "write a feed above zero: F1000");
   }
   feed_ = value;
+  feed_unit_mm_ = unit_mm;
   feed_fresh_ = true;
+}
+
+void Control::restore_feed(FeedMode mode, double feed) {
+  feed_mode_ = mode;
+  feed_ = feed;
+  feed_unit_mm_ = unit_mm_;
+  feed_fresh_ = false;
 }
 
 void Control::dwell(double seconds) {
@@ -102,6 +110,10 @@ void Control::dwell(double seconds) {
     fail("out-of-range", 0, fmt::format("a dwell of {:g} s", seconds), "write a time of zero or more");
   }
   pending_dwell_s_ += seconds;
+}
+
+void Control::set_compensation_smooth(double angle_rad) {
+  contour_->set_smooth(angle_rad);
 }
 
 void Control::set_compensation_entry(CompensationEntry entry) {

@@ -86,11 +86,14 @@ class Control final : public ContourHost {
   /// A new mode forgets F, as controls do; G93 wants F in each feed block ("missing-feed").
   void set_feed_mode(FeedMode mode);
   FeedMode feed_mode() const { return feed_mode_; }
-  /// F as written: units/min and deg/min, units/rev, or 1/min. Above 0 ("bad-feed").
-  void set_feed(double value, int column);
+  /// F as written: units/min and deg/min, units/rev, or 1/min. Above 0 ("bad-feed"). It is a speed: a later
+  /// change of the units leaves it what it is.
+  void set_feed(double value, int column) { set_feed_in(unit_mm_, value, column); }
+  /// Where F counts in other units of length than X Y Z do.
+  void set_feed_in(double unit_mm, double value, int column);
   double feed() const { return feed_; }
-  /// The mode and the F (0: none) that held when they were kept; no F of the present block.
-  void restore_feed(FeedMode mode, double feed) { feed_mode_ = mode, feed_ = feed, feed_fresh_ = false; }
+  /// The mode and the F (0: none), in the units that hold; no F of the present block.
+  void restore_feed(FeedMode mode, double feed);
   void set_feed_rule(FeedRule rule) { feed_rule_ = rule; }
   /// Radii at which rotary axes A B C count for F, mm; 180/pi as long as none is set: a degree is a mm.
   void set_feed_radii(const std::array<double, 3>& radii_mm) { feed_radii_mm_ = radii_mm; }
@@ -135,6 +138,8 @@ class Control final : public ContourHost {
   void enter_compensation(Compensation side, double radius_mm, const Vec3& contour_point);
   /// Where the lead-in ends; kAcrossNext unless the dialect says otherwise.
   void set_compensation_entry(CompensationEntry entry);
+  /// Which corners the control takes for smooth ones, rad; as good as none unless the dialect says otherwise.
+  void set_compensation_smooth(double angle_rad);
 
   // --- Frames and offsets ----------------------------------------------------------------------------------
   /// Work offset by number (1: G54); 0: none (G53, G500: the work zero itself).
@@ -270,8 +275,9 @@ class Control final : public ContourHost {
   FeedMode feed_mode_ = FeedMode::kPerMinute;
   FeedRule feed_rule_ = FeedRule::kLinearFirst;
   std::array<double, 3> feed_radii_mm_{kDegreePerMm, kDegreePerMm, kDegreePerMm};
-  double feed_ = 0.0;        ///< 0: none
-  bool feed_fresh_ = false;  ///< F stood in this block
+  double feed_ = 0.0;          ///< 0: none
+  double feed_unit_mm_ = 1.0;  ///< of the length in F
+  bool feed_fresh_ = false;    ///< F stood in this block
   double speed_rpm_ = 0.0;
   int spindle_ = 0;
   int selected_ = -1, selected_number_ = 0;

@@ -67,7 +67,7 @@ void Control::drill(const DrillCycle& cycle, const Target& hole) {
     go(Motion::kRapid, axes.normal, cycle.approach);
   if (above.any()) line(Motion::kRapid, above);
   go(Motion::kRapid, axes.normal, cycle.approach);
-  const double feed = feed_;
+  const double feed = feed_, feed_unit_mm = feed_unit_mm_;
   const FeedMode mode = feed_mode_;
   if (cycle.pitch_mm > 0.0) {
     if (speed_rpm_ <= 0.0) {
@@ -75,12 +75,14 @@ void Control::drill(const DrillCycle& cycle, const Target& hole) {
            "write S before the cycle");
     }
     feed_mode_ = FeedMode::kPerMinute;
-    feed_ = cycle.pitch_mm * speed_rpm_ / unit_mm_;
+    feed_ = cycle.pitch_mm * speed_rpm_;
+    feed_unit_mm_ = 1.0;
   }
   peck_down(cycle, axes.normal, sign);
   if (cycle.dwell_s > 0.0) pending_dwell_s_ += cycle.dwell_s;
   draw_out(cycle, axes.normal);
   feed_ = feed;
+  feed_unit_mm_ = feed_unit_mm;
   feed_mode_ = mode;
 }
 

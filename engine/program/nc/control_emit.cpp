@@ -51,7 +51,7 @@ void Control::set_time(const Segment& segment, double way, double turn, double s
   }
   const bool per_minute = segment.feed_mode == FeedMode::kPerMinute;
   const double rate = per_minute ? 1.0 : std::abs(segment.spindle_rpm);
-  const double mm_s = segment.feed * segment.unit_mm * rate / 60.0, deg_s = segment.feed * rate / 60.0;
+  const double mm_s = segment.feed * segment.feed_unit_mm * rate / 60.0, deg_s = segment.feed * rate / 60.0;
   const bool tip_alone = tcp_ != Tcp::kOff || turn == 0.0;
   if (way > kNoWay && (tip_alone || feed_rule_ == FeedRule::kLinearFirst)) {
     move.duration_s = way / mm_s;

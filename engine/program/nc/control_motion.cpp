@@ -214,7 +214,7 @@ void Control::prepare(Motion motion, const Target& target, Segment& segment) {
   segment.place = place_;
   if (target.column > 0) segment.place.column = target.column;
   segment.feed = feed_;
-  segment.unit_mm = unit_mm_;
+  segment.feed_unit_mm = feed_unit_mm_;
   segment.feed_mode = feed_mode_;
   segment.corner_tolerance_mm = corner_tolerance_mm_;
   segment.exact_stop = exact_stop_ || exact_stop_once_;

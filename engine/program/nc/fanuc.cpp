@@ -37,10 +37,11 @@ void Fanuc::run() {
                       fmt::format("DO{} has no END{}", calls_.back().loops.back().first,
                                   calls_.back().loops.back().first),
                       "add the END of the loop");
+      warn_of_missing_end("M02, M30, M99 or %");
       break;
     }
     at_line(source());
-    if (!percent(line))
+    if (!percent(line, false))
       ended_ = !execute();
     else if (ended_ && calls_.size() > 1)
       control_.fail("unclosed-subprogram", 0, "the file ends within a subprogram", "end it with M99");

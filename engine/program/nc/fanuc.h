@@ -155,6 +155,7 @@ class Fanuc final : public LetterDialect {
   void check_words();
   void apply();
   void apply_machine();
+  void set_units(bool inches);
   void apply_modes();
   void apply_radius();
   void apply_length();

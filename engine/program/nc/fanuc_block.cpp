@@ -72,8 +72,15 @@ void Fanuc::apply() {
   motion();
 }
 
+/// The manual lists F among the values whose unit G20 and G21 change, and not what becomes of the one that
+/// holds: it is forgotten, so that the next feed wants its own.
+void Fanuc::set_units(bool inches) {
+  if (inches != control_.inches()) control_.restore_feed(control_.feed_mode(), 0.0);
+  control_.set_inches(inches);
+}
+
 void Fanuc::apply_machine() {
-  if (block_.has_g(kFanucUnits)) control_.set_inches(block_.g[kFanucUnits] == 200);
+  if (block_.has_g(kFanucUnits)) set_units(block_.g[kFanucUnits] == 200);
   if (block_.has_g(kFanucFeed)) {
     const int code = block_.g[kFanucFeed];
     control_.set_feed_mode(code == 930   ? FeedMode::kInverseTime

@@ -161,7 +161,7 @@ constexpr OperatorWord kOperators[] = {
 
 }  // namespace
 
-const LetterSyntax kFanucSyntax{&kGTable, &kMTable, "ABCDEFGHIJKLMNOPQRSTUVWXYZ", false};
+const LetterSyntax kFanucSyntax{&kGTable, &kMTable, "ABCDEFGHIJKLMNOPQRSTUVWXYZ", false, false};
 const FormulaSyntax kFanucFormula{kFunctions, kOperators, false, true, true};
 
 }  // namespace swarf::program::nc

@@ -147,10 +147,16 @@ void read_words(const LetterSyntax& syntax, FormulaReader& reader, Control& cont
       control.fail("unknown-word", reader.column(), fmt::format("{} is no word of this dialect", letter),
                    "take it out, or choose the dialect that the program is written in");
     }
+    if (letter == 'N' && any && syntax.number_first)
+      control.fail("unexpected-word", reader.column(), "N stands behind other words",
+                   "write the block number first");
     if (!any) block.first = place;
     any = true;
     reader.skip();
     const double value = reader.value();
+    if (letter == 'N' && value < 0.0)
+      control.fail("out-of-range", reader.column_of(place), fmt::format("the block number {:g}", value),
+                   "number blocks from 0");
     if (letter == 'N') continue;
     if (std::isnan(value)) {
       control.warn_once("vacant-word", reader.column_of(place),

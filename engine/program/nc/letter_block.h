@@ -57,6 +57,7 @@ struct LetterSyntax {
   const CodeTable* m_codes;
   std::string_view letters;  ///< that are words
   bool semicolon_comment;    ///< ';' starts a comment; else it ends the block
+  bool number_first;         ///< N stands at the head of its block or nowhere
 };
 
 /// The words of one line.

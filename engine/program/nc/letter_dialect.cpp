@@ -17,16 +17,26 @@ void LetterDialect::at_line(const LineSource& source) {
   control_.at(source.file(), static_cast<int>(source.line_number()), 1);
 }
 
-bool LetterDialect::percent(std::string_view line) {
+bool LetterDialect::percent(std::string_view line, bool in_pairs) {
   reader_.begin(line);
   reader_.skip_space();
   if (reader_.peek() != '%') return false;
   if (line.find_first_not_of("% \t\r", reader_.at()) != std::string_view::npos)
     control_.fail("unexpected-character", reader_.column() + 1, "'%' stands alone on its line",
                   "put the words on a line of their own");
-  ended_ = percent_seen_;
+  const bool after_blocks = control_.summary().blocks > 0;
+  if (in_pairs && after_blocks && !percent_seen_)
+    control_.fail("unexpected-character", reader_.column(), "'%' ends a program that does not begin with '%'",
+                  "write '%' in the first line too, or end with M2 or M30");
+  ended_ = percent_seen_ || after_blocks;
   percent_seen_ = true;
   return true;
+}
+
+void LetterDialect::warn_of_missing_end(const char* ends) {
+  control_.warn_once("missing-end", 0,
+                     fmt::format("the program ends with its file, without {}: it may be cut off", ends),
+                     "transfer it again, or write its end");
 }
 
 void LetterDialect::check_letter(char letter, bool allowed, const char* used_with) {

@@ -21,8 +21,11 @@ class LetterDialect : public Parameters {
   LineSource& open(const std::string& path);
   /// Counts a line that is about to be executed and gives errors its place.
   void at_line(const LineSource& source);
-  /// True for a line with '%', which must stand alone; the second one ends the program.
-  bool percent(std::string_view line);
+  /// True for a line with '%', which must stand alone; the second one ends the program. So does one that
+  /// blocks stand before, unless they come `in_pairs`: then it is a fault.
+  bool percent(std::string_view line, bool in_pairs);
+  /// Warns of a main program that ends with its file: it may have been cut off.
+  void warn_of_missing_end(const char* ends);
   /// Fails when the block has the letter where it means nothing.
   void check_letter(char letter, bool allowed, const char* used_with);
   /// Fails when the block lacks the letter.

@@ -7,6 +7,13 @@
 #include "program/nc/dialect.h"
 
 namespace swarf::program::nc {
+namespace {
+
+/// Corners up to 0.05 rad are none to LinuxCNC: no arc and no intersection joins the pieces, and the cutter
+/// may cut radius (1 - cos 0.05 rad) too deep there (measured on LinuxCNC 2.9).
+constexpr double kSmoothCornerRad = 0.05;
+
+}  // namespace
 
 LinuxCnc::LinuxCnc(const std::string& path, Control& control)
     : LetterDialect(path, control, kLinuxCncFormula), numbers_(kNumbers, 0.0), number_set_(kNumbers, false) {
@@ -15,6 +22,7 @@ LinuxCnc::LinuxCnc(const std::string& path, Control& control)
   calls_.push_back(std::move(main));
   control_.set_feed_rule(FeedRule::kLinearFirst);
   control_.set_compensation_entry(CompensationEntry::kAlongEntry);
+  control_.set_compensation_smooth(kSmoothCornerRad);
   if (control.setup().kinematics_switch.start == Kinematics::kTcp) control_.set_tcp(Tcp::kAxes);
 }
 
@@ -26,7 +34,7 @@ void LinuxCnc::run() {
       continue;
     }
     at_line(source());
-    if (!percent(line)) ended_ = !execute();
+    if (!percent(line, true)) ended_ = !execute();
   }
   if (nurbs_) fail_open_nurbs();
   control_.finish();

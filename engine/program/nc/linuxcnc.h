@@ -128,8 +128,7 @@ class LinuxCnc final : public LetterDialect {
     bool numbered = false;       ///< M98: ends with M99
     long left = 0;               ///< repetitions still to come (M98 L)
     std::array<double, 31> arguments{};
-    uint64_t assigned = 0;   ///< bits of `arguments`
-    uint64_t ambiguous = 0;  ///< not passed, and not zero in the calling context
+    uint64_t assigned = 0;  ///< bits of `arguments`
     std::vector<Named> named;
     std::vector<Loop> loops;
     std::optional<ModalState> saved;  ///< M70, M73
@@ -172,6 +171,7 @@ class LinuxCnc final : public LetterDialect {
   void check_axes_and_motion();
   void apply();
   void apply_feed_and_speed();
+  void warn_of_feed_units();
   void apply_machine_functions();
   void apply_offsets();
   void apply_path_mode();
@@ -202,7 +202,6 @@ class LinuxCnc final : public LetterDialect {
   void set_reference(int tenths);
   std::optional<kinematics::AxisValues> reference_position(bool second) const;
   void shift_to_words(bool position);
-  void check_unnamed_shifts(const Target& words) const;
   void update_shift();
   // linuxcnc_motion.cpp
   void motion();
@@ -213,6 +212,7 @@ class LinuxCnc final : public LetterDialect {
   void check_cycle(int tenths) const;
   void keep_cycle_words(bool same);
   double cycle_word(const std::optional<double>& value, char letter) const;
+  void above_hole(const Target& hole, double r);
   void back_bore(double approach, double bottom, double retract, const Target& hole);
   // linuxcnc_curves.cpp
   void check_curve(const char* name) const;
@@ -248,7 +248,8 @@ class LinuxCnc final : public LetterDialect {
   bool value_returned_ = false;
 
   int motion_ = -1;  ///< tenths; -1: none
-  bool incremental_ = false, arc_absolute_ = false, retract_to_r_ = false;
+  bool incremental_ = false, arc_absolute_ = false;
+  bool retract_to_r_ = true, retract_known_ = false;  ///< G99; a G98 or G99 was read
   StickyCycle cycle_;
   std::optional<Vec3> spline_tangent_;  ///< where the last G5 leads on to, mm; none: the next is the first
   std::optional<OpenNurbs> nurbs_;

@@ -89,6 +89,10 @@ void LinuxCnc::check_axes_and_motion() {
     if (motion != 0 && motion != 10)
       control_.fail("modal-conflict", g_column(kMachineGroup), "G53 goes with G0 and G1 only",
                     "write G53 G0");
+    const bool incremental = block_.has_g(kDistanceGroup) ? block_.g[kDistanceGroup] == 910 : incremental_;
+    if (incremental)
+      control_.fail("modal-conflict", g_column(kMachineGroup), "G53 wants a position, and G91 is active",
+                    "write G90 before it");
     if (!is_axis_given())
       control_.fail("missing-word", g_column(kMachineGroup), "G53 has no axis words",
                     "add the axes that move");
@@ -124,7 +128,10 @@ void LinuxCnc::apply() {
     apply_path_mode();
     if (block_.has_g(kDistanceGroup)) incremental_ = block_.g[kDistanceGroup] == 910;
     if (block_.has_g(kArcDistanceGroup)) arc_absolute_ = block_.g[kArcDistanceGroup] == 901;
-    if (block_.has_g(kRetractGroup)) retract_to_r_ = block_.g[kRetractGroup] == 990;
+    if (block_.has_g(kRetractGroup)) {
+      retract_to_r_ = block_.g[kRetractGroup] == 990;
+      retract_known_ = true;
+    }
   }
   if (block_.has_g(kNonModal)) non_modal();
   if (block_.has_g(kMotionGroup) || (is_axis_given() && !uses_axis_words())) motion();
@@ -137,10 +144,22 @@ void LinuxCnc::apply_feed_and_speed() {
                            : code == 940 ? FeedMode::kPerMinute
                                          : FeedMode::kPerRevolution);
   }
-  // F counts in the units of its own block.
-  if (block_.has_g(kUnitsGroup)) control_.set_inches(block_.g[kUnitsGroup] == 200);
-  if (block_.has('F')) control_.set_feed(block_.get('F'), column('F'));
+  if (block_.has('F')) {
+    control_.set_feed(block_.get('F'), column('F'));
+    warn_of_feed_units();
+  }
   if (block_.has('S')) control_.set_speed(block_.get('S'));
+}
+
+/// LinuxCNC takes F before G20 and G21 of its block (order of execution).
+void LinuxCnc::warn_of_feed_units() {
+  if (!block_.has_g(kUnitsGroup) || control_.inches() == (block_.g[kUnitsGroup] == 200)) return;
+  if (control_.feed_mode() == FeedMode::kInverseTime) return;
+  control_.warn_once(
+      "feed-before-units", column('F'),
+      fmt::format("F{:g} counts in {}: LinuxCNC takes it before the {} of its block", block_.get('F'),
+                  control_.inches() ? "inches" : "millimetres", control_.inches() ? "G21" : "G20"),
+      "write F in a block after it");
 }
 
 void LinuxCnc::apply_machine_functions() {

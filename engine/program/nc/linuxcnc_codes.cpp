@@ -110,9 +110,9 @@ constexpr Code kMCodes[] = {
     {30, 2},
     {40, 2},
     {50, 2},
-    {70, kFree, kNoEffect, "mist"},
-    {80, kFree, kNoEffect, "flood"},
-    {90, kFree, kNoEffect, "coolant off"},
+    {70, 8, kNoEffect, "mist"},
+    {80, 8, kNoEffect, "flood"},
+    {90, 8, kNoEffect, "coolant off"},
     {190, kFree, kNoEffect, "spindle orientation"},
     {480, 6, kNoEffect, "overrides on"},
     {490, 6, kNoEffect, "overrides off"},
@@ -174,7 +174,7 @@ constexpr OperatorWord kOperators[] = {
 
 }  // namespace
 
-const LetterSyntax kLinuxCncSyntax{&kGTable, &kMTable, "ABCDEFGHIJKLMNPQRSTUVWXYZ", true};
+const LetterSyntax kLinuxCncSyntax{&kGTable, &kMTable, "ABCDEFGHIJKLMNPQRSTUVWXYZ", true, true};
 const FormulaSyntax kLinuxCncFormula{kFunctions, kOperators, true, false, false};
 
 }  // namespace swarf::program::nc

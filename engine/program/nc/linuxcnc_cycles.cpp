@@ -84,14 +84,28 @@ double LinuxCnc::cycle_word(const std::optional<double>& value, char letter) con
   return *value;
 }
 
-/// Under G91 R counts from where the tool stands and the depth from there; the words of a series count anew
-/// in each block.
+/// Above the hole at the height that LinuxCNC keeps: not below the present one or R, under G98 not below that
+/// before the series. It rises on the way there, and before it where R lies above the height of the series.
+void LinuxCnc::above_hole(const Target& hole, double r) {
+  const int normal = axes_of(control_.plane()).normal;
+  Target height;
+  height.column = hole.column;
+  height.set(normal, r, false);
+  if (cycle_start_ < r) control_.line(Motion::kRapid, height);
+  Target above = hole;
+  const double now = control_.position_xyz()[normal];
+  above.set(normal, std::max({now, r, retract_to_r_ ? r : cycle_start_}), false);
+  control_.line(Motion::kRapid, above);
+}
+
+/// Under G91 R counts from the height before the series and the depth from R, in each block of it (measured
+/// on LinuxCNC 2.9).
 void LinuxCnc::cycle(int tenths) {
   const PlaneAxes axes = axes_of(control_.plane());
   const int at = reader_.column_of(block_.first);
   const double depth = cycle_word(cycle_.depth, "XYZ"[axes.normal]), r = cycle_word(cycle_.r, 'R');
   DrillCycle cycle;
-  cycle.approach = incremental_ ? control_.position_xyz()[axes.normal] + r : r;
+  cycle.approach = incremental_ ? cycle_start_ + r : r;
   cycle.bottom = incremental_ ? cycle.approach + depth : depth;
   if (cycle.bottom > cycle.approach)
     control_.fail("bad-cycle", at,
@@ -116,18 +130,30 @@ void LinuxCnc::cycle(int tenths) {
   cycle.reverse_at_bottom = taps(tenths);
   const int times = block_.has('L') ? whole(block_, 'L', 1, 100000, reader_, control_) : 1;
   const Target hole = target_of(block_, incremental_, reader_, control_);
+  if (!retract_known_)
+    control_.warn_once("retract-mode", at,
+                       "neither G98 nor G99 stands before this cycle: the tool goes back to R (G99), with "
+                       "which LinuxCNC starts unless the startup code of its INI file says otherwise",
+                       "write G98 or G99 before it");
   if (tenths == 880)
     control_.warn_once(
         "cycle-of-rs274", at,
         "G88: RS274/NGC lets the operator retract by hand, LinuxCNC leaves it undefined; the tool is "
         "taken out straight",
         "write G86 or G89");
+  Target here;
+  here.column = hole.column;
+  const bool exact_stop = control_.exact_stop();
+  control_.set_exact_stop(true);  // cycles run in exact path mode, whatever G64 says
   for (int i = 0; i < times; ++i) {
-    if (tenths == 870)
+    if (tenths == 870) {
       back_bore(cycle.approach, cycle.bottom, cycle.retract, hole);
-    else
-      control_.drill(cycle, hole);
+    } else {
+      above_hole(hole, cycle.approach);
+      control_.drill(cycle, here);
+    }
   }
+  control_.set_exact_stop(exact_stop);
 }
 
 /// G87 as the RS274/NGC report of NIST (NISTIR 6556, 3.5.16.7) has it: in X Y, I and J are the way from the

@@ -331,12 +331,6 @@ void LinuxCnc::call_sub(const OWord& word) {
                   fmt::format("O{} is called, and no such subprogram is in this file or in {}.ngc", word.name,
                               word.name),
                   "define it with O... sub, or give the folder of the file");
-  // What the call does not pass: the caller's values by one chapter of the reference, zeros by another.
-  call.ambiguous = frame().ambiguous & ~frame().assigned & ~call.assigned;
-  for (size_t i = 1; i < frame().arguments.size(); ++i) {
-    const bool differs = (frame().assigned >> i & 1u) != 0 && frame().arguments[i] != 0.0;
-    if (differs && (call.assigned >> i & 1u) == 0) call.ambiguous |= uint64_t{1} << i;
-  }
   returned_ = 0.0;
   value_returned_ = false;
   enter(*sub, std::move(call));
@@ -370,7 +364,6 @@ void LinuxCnc::leave() {
     Call& caller = calls_[calls_.size() - 2];
     caller.arguments = call.arguments;
     caller.assigned = call.assigned;
-    caller.ambiguous = call.ambiguous;
   }
   const LineSource::Mark back = call.back;
   calls_.pop_back();
@@ -398,7 +391,6 @@ void LinuxCnc::call_number(int number, long times, int column) {
   // Numbered subprograms share the parameters of their caller.
   call.arguments = frame().arguments;
   call.assigned = frame().assigned;
-  call.ambiguous = frame().ambiguous;
   enter(*sub, std::move(call));
 }
 
@@ -410,6 +402,7 @@ void LinuxCnc::end_of_flow() {
                   "add its end");
   }
   if (calls_.size() == 1) {
+    warn_of_missing_end("M2, M30 or %");
     ended_ = true;
     return;
   }

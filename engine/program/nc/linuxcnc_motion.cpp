@@ -26,7 +26,7 @@ void LinuxCnc::motion() {
   if (tenths >= 50) return spline(tenths);
   const Motion kind = tenths == 0 ? Motion::kRapid : Motion::kFeed;
   const bool machine = block_.has_g(kMachineGroup);
-  const Target target = target_of(block_, incremental_ && !machine, reader_, control_);
+  const Target target = target_of(block_, incremental_, reader_, control_);
   if (!target.any()) return;
   if (machine)
     control_.machine_line(kind, target);
@@ -46,7 +46,9 @@ void LinuxCnc::arc(int tenths) {
   const PlaneAxes axes = axes_of(control_.plane());
   const Target target = target_of(block_, incremental_, reader_, control_);
   std::optional<ArcWords> words = arc_words(block_, target, arc_absolute_, reader_, control_);
-  if (!words) return;
+  if (!words)
+    control_.fail("bad-arc", g_column(kMotionGroup), "the arc has neither an end nor a centre",
+                  "add X Y Z and I J K, or R");
   if (block_.has('P')) words->further_turns = whole(block_, 'P', 1, 100000, reader_, control_) - 1;
   if (words->centre) {
     const Vec3 out = *words->centre - control_.position_xyz();

@@ -143,23 +143,7 @@ void LinuxCnc::reference(int tenths) {
   control_.machine_line(Motion::kRapid, home);
 }
 
-/// What becomes of the shift of an axis that G92 does not name: the reference says that it becomes zero,
-/// RS274/NGC that it stays.
-void LinuxCnc::check_unnamed_shifts(const Target& words) const {
-  for (int word = 0; word < kAxisWords; ++word) {
-    const int axis = control_.axis_of(static_cast<AxisWord>(word));
-    if (axis < 0 || words.has(word) || shift_[axis] == 0.0) continue;
-    control_.fail(
-        "ambiguous-shift", g_column(kNonModal),
-        fmt::format(
-            "{} is shifted already, and this G92 does not name it: the reference takes the shift away, "
-            "RS274/NGC keeps it",
-            kAxisLetters[word]),
-        fmt::format("name {} as well, or write G92.1 before it", kAxisLetters[word]));
-  }
-}
-
-/// G92: the present position reads as written. G52: the shift is as written.
+/// G92: the present position reads as written. G52: the shift is as written. Axes without a word keep theirs.
 void LinuxCnc::shift_to_words(bool position) {
   const Target words = target_of(block_, false, reader_, control_);
   if (!words.any())
@@ -167,7 +151,6 @@ void LinuxCnc::shift_to_words(bool position) {
                   "add the axes that it shifts");
   const std::array<double, kAxisWords> here = control_.position();
   if (!shift_on_) shift_ = AxisValues::Zero();
-  if (position) check_unnamed_shifts(words);
   for (int word = 0; word < kAxisWords; ++word) {
     if (!words.has(word)) continue;
     const int axis = control_.require_axis(static_cast<AxisWord>(word), words.column);

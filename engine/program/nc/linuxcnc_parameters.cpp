@@ -33,13 +33,6 @@ bool of_machine(std::string_view name) {
 double LinuxCnc::read(long number, size_t place) {
   if (number >= 1 && number <= kArguments) {
     // Arguments that a call does not give are zero; the main program has none.
-    if ((frame().assigned >> number & 1u) == 0 && (frame().ambiguous >> number & 1u) != 0)
-      control_.fail(
-          "ambiguous-parameter", reader_.column_of(place),
-          fmt::format("#{} was not passed, and it has a value where the call stands: the reference says that "
-                      "it is that value, and that it is zero",
-                      number),
-          "pass it in the call, or use a named parameter");
     if ((frame().assigned >> number & 1u) != 0 || calls_.size() > 1)
       return frame().arguments[static_cast<size_t>(number)];
   } else if (number == 5399 && input_read_) {

@@ -65,6 +65,9 @@ void LinuxCnc::apply_compensation() {
   const int at = g_column(kRadiusGroup);
   radius_code_ = code;
   if (code == 400) return control_.set_compensation(Compensation::kOff, 0.0, at);
+  if (control_.plane() == Plane::kYZ)
+    control_.fail("compensation-plane", at, "LinuxCNC compensates the cutter's radius in G17 and G18 only",
+                  "write the path of the cutter's centre");
   if (code == 411 || code == 421) {
     need('D', "G41.1");
     diameter_mm_ = control_.mm(block_.get('D'));

@@ -65,6 +65,10 @@ void run(const std::string& path, Control& control) {
   control.enter_file(path);
   siemens::Flow flow(executor, control.setup().subprogram_folders);
   flow.run(path);
+  if (!flow.ended())
+    control.warn_once("missing-end", 0,
+                      "the program ends with its file, without M30, M17 or RET: it may be cut off",
+                      "transfer it again, or write its end");
   control.finish();
   control.summary().lines = flow.lines();
   control.summary().blocks = flow.blocks();

@@ -154,8 +154,8 @@ void Executor::feed_words(const BlockWords& words) {
     control_.set_feed_radii(feed_radii_mm_);
   }
   if (!words.feed || words.code(Group::kNoMotion) == kG4) return;
-  const bool lengths_alone = units_ == kG70 && control_.feed_mode() != FeedMode::kInverseTime;
-  control_.set_feed(lengths_alone ? words.feed.value / 25.4 : words.feed.value, column(words.feed.offset));
+  const double unit_mm = units_ == kG70 ? 1.0 : control_.mm(1.0);  // G70 and G71 are about lengths alone
+  control_.set_feed_in(unit_mm, words.feed.value, column(words.feed.offset));
 }
 
 void Executor::tool_words(const BlockWords& words) {

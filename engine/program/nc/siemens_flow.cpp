@@ -124,8 +124,10 @@ void Flow::words(TokenReader& reader) {
   const bool ends = outcome == Outcome::kEnd && programs == 1;
   if (ends) {
     levels_.clear();
+    ended_ = true;
   } else if (outcome == Outcome::kReturn || outcome == Outcome::kEnd) {
     leave_level(true);
+    ended_ = levels_.empty();
   } else if (modal && outcome == Outcome::kPattern) {
     refuse(running_, 0, "unsupported-word", "a position pattern while MCALL calls a program is not supported",
            "write the positions as blocks, or MCALL with a drilling cycle");

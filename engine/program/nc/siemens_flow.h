@@ -56,6 +56,8 @@ class Flow {
 
   /// The program, then each file it called.
   std::vector<std::string> files() const;
+  /// A word ended the program (M2, M30, M17, RET), not the end of its file.
+  bool ended() const { return ended_; }
   long lines() const { return lines_; }
   long blocks() const { return blocks_; }
 
@@ -147,7 +149,7 @@ class Flow {
   std::vector<Token> tokens_;
   int current_ = 0;  ///< line that is running, from 0
   long lines_ = 0, blocks_ = 0, jumps_ = 0, moves_seen_ = 0;
-  bool stopped_ = false;
+  bool stopped_ = false, ended_ = false;
 };
 
 /// Reads REAL, INT, BOOL or STRING; CHAR, AXIS, FRAME, CHAN and NCK are known and refused.

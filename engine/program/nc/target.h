@@ -80,8 +80,9 @@ struct Target {
 
   void set(int word, double amount, bool is_incremental) {
     value[static_cast<size_t>(word)] = amount;
-    given = static_cast<uint8_t>(given | (1u << word));
-    if (is_incremental) incremental = static_cast<uint8_t>(incremental | (1u << word));
+    const unsigned bit = 1u << word;
+    given = static_cast<uint8_t>(given | bit);
+    incremental = static_cast<uint8_t>(is_incremental ? incremental | bit : incremental & ~bit);
   }
   bool has(int word) const { return (given >> word & 1u) != 0; }
   bool is_incremental(int word) const { return (incremental >> word & 1u) != 0; }
@@ -123,7 +124,7 @@ struct Segment {
   BlockLaw law = BlockLaw::kJoint;
   // Modal words that held when it was programmed:
   double feed = 0.0;  ///< as written
-  double unit_mm = 1.0;
+  double feed_unit_mm = 1.0;
   FeedMode feed_mode = FeedMode::kPerMinute;
   double dwell_s = 0.0, corner_tolerance_mm = 0.0, spindle_rpm = 0.0;
   bool exact_stop = false;

@@ -39,7 +39,7 @@ TEST(LinuxCncCycles, TheThreeHolesOfTheReference) {
 
 TEST(LinuxCncCycles, TwelveHolesOfTheReference) {
   const NcRun run = linuxcnc(
-      "G90 G0 X0 Y0 Z0\nG1 F50 X0 G4 P0.1\nG91 G81 X1 Y0 Z-0.5 R1 L4\nX0 Y1 R0 L3\nX-1 Y0 L3\nX0 Y-1 "
+      "G90 G98 G0 X0 Y0 Z0\nG1 F50 X0 G4 P0.1\nG91 G81 X1 Y0 Z-0.5 R1 L4\nX0 Y1 R0 L3\nX-1 Y0 L3\nX0 Y-1 "
       "L2\nG80\n"
       "G90 G0 X0\nY0\nZ0\nM2\n");
   ASSERT_EQ(run.text(), "");
@@ -50,9 +50,11 @@ TEST(LinuxCncCycles, TwelveHolesOfTheReference) {
   const std::vector<std::pair<double, double>> places = {{1, 0}, {2, 0}, {3, 0}, {4, 0}, {4, 1}, {4, 2},
                                                          {4, 3}, {3, 3}, {2, 3}, {1, 3}, {1, 2}, {1, 1}};
   ASSERT_EQ(holes.size(), 12u);
-  // R0 of the second block counts from Z1, where the first series has left the tool.
-  for (size_t i = 0; i < 12; ++i)
-    EXPECT_NEAR((holes[i] - Vec3(places[i].first, places[i].second, 0.5)).norm(), 0.0, 1e-12) << i;
+  // R0 of the second block counts from Z0, where the series began (as LinuxCNC 2.9 does).
+  for (size_t i = 0; i < 12; ++i) {
+    const double bottom = i < 4 ? 0.5 : -0.5;
+    EXPECT_NEAR((holes[i] - Vec3(places[i].first, places[i].second, bottom)).norm(), 0.0, 1e-12) << i;
+  }
 }
 
 TEST(LinuxCncCycles, TheFirstHeightStaysOverDifferentCycles) {
@@ -63,12 +65,12 @@ TEST(LinuxCncCycles, TheFirstHeightStaysOverDifferentCycles) {
   ASSERT_EQ(series.text(), "");
   std::vector<double> heights;
   for (const NcMove& move : series.moves()) heights.push_back(move.to.tip_W.z());
-  EXPECT_EQ(heights, (std::vector<double>{20, 20, 2, -1, 2, 2, -1, 20, 10, 10, 2, -1, 10}));
+  EXPECT_EQ(heights, (std::vector<double>{20, 20, 2, -1, 2, 20, 2, -1, 20, 10, 10, 2, -1, 10}));
 }
 
 TEST(LinuxCncCycles, TappingAndBoringComeOutAsTheReferenceSays) {
   const NcRun run = linuxcnc(
-      "S100 M3 G0 Z10\nG84 X1 Z-5 R2 F125 P0.2\nG85 X2 Z-5 R2\nG89 X3 Z-5 R2 P1\nG86 X4 Z-5 R2 P1\n"
+      "S100 M3 G0 Z10 G98\nG84 X1 Z-5 R2 F125 P0.2\nG85 X2 Z-5 R2\nG89 X3 Z-5 R2 P1\nG86 X4 Z-5 R2 P1\n"
       "G80 M4\nG74 X5 Z-5 R2\nM2\n");
   ASSERT_EQ(run.text(), "");
   expect_steps(run, 1, {{1, 0, 10, true, 100},   {1, 0, 2, true, 100},    {1, 0, -5, false, 100},
@@ -94,15 +96,15 @@ TEST(LinuxCncCycles, BackBoringOfRs274) {
                              {x, 5, out, true, 0}};
   };
   std::vector<Step> steps = hole(10, 20, 2, -30, -12, 2);
-  // Under G91 from Z2: R2 is Z4, Z-30 is Z-26, K4 is Z-22, and G98 goes back to Z20.
-  steps.push_back({10, 5, 4, true, 100});
-  for (const Step& step : hole(30, 4, 4, -26, -22, 20)) steps.push_back(step);
+  // Under G91 from Z20, where the series began: R2 is Z22, Z-30 is Z-8, K4 is Z-4; G98 goes back to R.
+  steps.push_back({10, 5, 22, true, 100});
+  for (const Step& step : hole(30, 22, 22, -8, -4, 22)) steps.push_back(step);
   steps.erase(steps.begin() + 12);  // the tool stands at R already
   expect_steps(run, 1, steps);
 }
 
 TEST(LinuxCncCycles, BackBoringInAnotherPlane) {
-  const NcRun run = linuxcnc("S100 M3\nG19 G0 X20\nG87 X-30 Y10 Z5 R2 J-3 K1 I-12 F100\nM2\n");
+  const NcRun run = linuxcnc("S100 M3\nG19 G98 G0 X20\nG87 X-30 Y10 Z5 R2 J-3 K1 I-12 F100\nM2\n");
   EXPECT_FALSE(run.diagnostics.has_errors()) << run.text();
   ASSERT_EQ(run.moves().size(), 11u);
   expect_tip(run.moves()[3], 2, 7, 6);
@@ -112,7 +114,7 @@ TEST(LinuxCncCycles, BackBoringInAnotherPlane) {
 }
 
 TEST(LinuxCncCycles, ManualBoringIsToldAndGoesStraightOut) {
-  const NcRun run = linuxcnc("S100 M3 G0 Z10\nG88 X1 Z-5 R2 P.5 F100\nM2\n");
+  const NcRun run = linuxcnc("S100 M3 G0 Z10 G98\nG88 X1 Z-5 R2 P.5 F100\nM2\n");
   EXPECT_FALSE(run.diagnostics.has_errors()) << run.text();
   EXPECT_NE(run.text().find("cycle-of-rs274"), std::string::npos);
   expect_steps(run, 1,

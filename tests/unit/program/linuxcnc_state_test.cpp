@@ -66,7 +66,7 @@ void expect_same(const std::vector<NcMove>& a, const std::vector<NcMove>& b) {
 
 const char* const kState =
     "G21 G90 G17 G94 G98 G64 P0.02 G91.1 G55 F200 S2500 M3 M8\nT2 M6 G43\nM3\nG0 Z20\n";
-const char* const kChanges = "g20 g91 g18 g95 g99 g61.1 g90.1 g54 f.2 s300 m4 m9 g49\n";
+const char* const kChanges = "g20 g91 g18 g95 g99 g61.1 g90.1 g54\nf.2 s300 m4 m9 g49\n";
 const char* const kUse =
     "G1 X10 Y0\nG3 X20 I5\nG81 X30 Y0 Z-3 R2\nG80\nG1 X[10*#<_flood>] Z[5*#<_absolute>]\nM2\n";
 

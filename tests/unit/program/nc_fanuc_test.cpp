@@ -100,6 +100,22 @@ TEST(NcFanuc, NurbsQuarterCircle) {
   expect_tip(run.moves().back(), -5, 10, 0);
 }
 
+TEST(NcFanuc, UnitsForgetTheFeed) {
+  EXPECT_EQ(fanuc("G21 F100\nG20 G01 X1\nM30\n").first_error(), "missing-feed 2:9");
+  const NcRun run = fanuc("G21 F100\nG20 G01 X1 F10\nG20 X2\nM30\n");
+  ASSERT_EQ(run.text(), "");
+  EXPECT_NEAR(run.moves()[1].feed_mm_s, 254.0 / 60.0, 1e-12);
+}
+
+TEST(NcFanuc, PercentOrMissingEndEndsTheProgram) {
+  const NcRun ended = fanuc("G00 X1\n%\nG00 X2\n");
+  EXPECT_EQ(ended.text(), "");
+  EXPECT_EQ(ended.moves().size(), 1u);
+  const NcRun cut_off = fanuc("%\nG00 X1\n");
+  EXPECT_FALSE(cut_off.diagnostics.has_errors());
+  EXPECT_NE(cut_off.text().find("missing-end"), std::string::npos) << cut_off.text();
+}
+
 TEST(NcFanuc, ReferencesAndShifts) {
   const NcRun run = fanuc(
       "G10 L2 P2 X100\nG55 G00 X1 Z20\nG91 G28 Z0\nG90 G52 X5\nG00 X1\nG52 X0\nG53 G00 X0\n"

@@ -26,7 +26,7 @@ TEST(NcLinuxCnc, StraightMovesHaveTimesAndFeeds) {
 TEST(NcLinuxCnc, ArcsInAllPlanesByCentreAndRadius) {
   const NcRun run = linuxcnc(
       "G21 G17 F600\nG3 X20 Y0 I10 J0\nG2 X0 Y0 Z5 R10\nG18 G2 X10 Z15 I0 K10\nG19 G3 Y-10 Z25 R-10\n"
-      "G17 G3 I-5 P3 Z28\n");
+      "G17 G3 I-5 P3 Z28\nM2\n");
   ASSERT_EQ(run.text(), "");
   ASSERT_EQ(run.moves().size(), 7u);
   const NcMove& half = run.moves()[0];
@@ -82,7 +82,7 @@ TEST(NcLinuxCnc, NumberedSubprogramsRepeat) {
 TEST(NcLinuxCnc, OffsetsShiftsAndTurns) {
   const NcRun run = linuxcnc(
       "G10 L2 P2 X100 Y50 Z-20\nG55 G0 X1 Y2 Z3\nG92 X0\nG0 X5\nG92.1\nG0 X7\nG54 G52 X10 Y10\nG0 X0 Y0 Z0\n"
-      "G52 X0 Y0\nG10 L2 P1 R90\nG0 X10 Y0\nG53 G0 X-3\nG10 L20 P2 X1\nG55 G0 X2\n");
+      "G52 X0 Y0\nG10 L2 P1 R90\nG0 X10 Y0\nG53 G0 X-3\nG10 L20 P2 X1\nG55 G0 X2\nM2\n");
   ASSERT_EQ(run.text(), "");
   ASSERT_EQ(run.moves().size(), 7u);
   expect_tip(run.moves()[0], 101, 52, -17);
@@ -146,19 +146,19 @@ TEST(NcLinuxCnc, ToolLengthComesFromTheTable) {
 TEST(NcLinuxCnc, DrillingCycles) {
   const NcRun run = linuxcnc(
       "G0 Z20\nG99 G83 X10 Y0 Z-10 R2 Q5 F300\nG98 X20\nG80\nG73 X30 Z-10 R2 Q7\nG82 X40 Z-3 R2 P0.5\n"
-      "G91 G81 X5 Z-4 R-15 L2\nM2\n");
+      "G91 G81 X5 Z-4 R-15 L2\nM2\n");  // from Z20: R is Z5
   ASSERT_EQ(run.text(), "");
   std::vector<double> heights;
   for (const NcMove& move : run.moves()) heights.push_back(move.to.tip_W.z());
   const std::vector<double> expected = {
-      20, 20, 2,  -3,     2,   -2.746, -8,     2,   -7.746, -10, 2,  // G83, G99: 12 mm in pecks of 5
-      2,  -3, 2,  -2.746, -8,  2,      -7.746, -10, 20,              // second hole, G98: back to 20
-      20, 2,  -5, -4.746, -10, 20,                                   // G73
-      20, 2,  -3, 20,                                                // G82
-      20, 5,  1,  20,     20,  5,      1,      20};                  // G91, twice
+      20, 20, 2,  -3,     2,      -2.746, -8, 2,      -7.746, -10, 2,  // G83, G99: 12 mm in pecks of 5
+      20, 2,  -3, 2,      -2.746, -8,     2,  -7.746, -10,    20,      // second hole, G98: rises on the way
+      20, 2,  -5, -4.746, -10,    20,                                  // G73
+      20, 2,  -3, 20,                                                  // G82
+      20, 5,  1,  20,     20,     5,      1,  20};                     // G91, twice
   ASSERT_EQ(heights.size(), expected.size());
   for (size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(heights[i], expected[i], 1e-9) << i;
-  EXPECT_NEAR(run.moves()[29].dwell_s, 0.5, 0.0);  // on the way out of G82
+  EXPECT_NEAR(run.moves()[30].dwell_s, 0.5, 0.0);  // on the way out of G82
   expect_tip(run.moves().back(), 50, 0, 20);
 }
 
@@ -229,6 +229,19 @@ TEST(NcLinuxCnc, KinematicsSwitchesAreWhatTheMachineSays) {
   EXPECT_EQ(law_after("M429\nM428", {{}, kIdentity, kTcp, {}}), BlockLaw::kJoint);
   EXPECT_EQ(law_after("", {kTcp, {}, {}, {}}), BlockLaw::kTcpAxes);
   EXPECT_EQ(law_after("", {}), BlockLaw::kJoint);
+}
+
+TEST(NcLinuxCnc, WhatTheControlLeavesUnsaidIsTold) {
+  const auto warning = [](const std::string& text) {
+    const NcRun run = linuxcnc(text);
+    return run.diagnostics.list().size() == 1 ? run.diagnostics.list()[0].code : run.text();
+  };
+  EXPECT_EQ(warning("G0 X1\n"), "missing-end");
+  EXPECT_EQ(warning("%\nG0 X1\n"), "missing-end");
+  EXPECT_EQ(warning("G0 Z5\nG81 X1 Z-1 R2 F100\nM2\n"), "retract-mode");
+  EXPECT_EQ(warning("G20 F7\nG1 X1\nM2\n"), "feed-before-units");
+  EXPECT_EQ(warning("G21 F7\nG1 X1\nM2\n"), "");
+  EXPECT_EQ(warning("G93 G1 X1 F7 G20\nM2\n"), "");
 }
 
 TEST(NcLinuxCnc, KinematicsThatNobodyStatesAreToldOnce) {

@@ -123,6 +123,8 @@ TEST(SiemensMotion, FeedsAndTimes) {
   EXPECT_NEAR(seconds("S1000 M3 G95 G1 X100 F0.2"), 30.0, 1e-9);
   EXPECT_NEAR(seconds("G70 G1 X1 F254"), 6.0, 1e-9);  // 25.4 mm at 254 mm/min
   EXPECT_NEAR(seconds("G700 G1 X1 F10"), 6.0, 1e-9);  // one inch at 10 in/min
+  EXPECT_NEAR(seconds("F254\nG70 G1 X1"), 6.0, 1e-9);
+  EXPECT_NEAR(seconds("F254\nG700 G1 X1"), 6.0, 1e-9);  // F stays the speed that it was
   EXPECT_NEAR(last_of(run_clean("G700 G1 X2 F10\nM30\n")).to.tip_W.x(), 50.8, 1e-9);
   EXPECT_NEAR(last_of(run_clean("G4 F1.5\nG1 X1 F100\nM30\n")).dwell_s, 1.5, 1e-12);
   EXPECT_NEAR(last_of(run_clean("S600 M3\nG4 S20\nG1 X1 F100\nM30\n")).dwell_s, 2.0, 1e-12);
