@@ -135,6 +135,20 @@ program::KinematicsSwitch kinematics_of(const std::string& file, const std::vect
   return kinematics;
 }
 
+/// Reads "M68" and "M68=clamp C".
+std::map<int, std::string> functions_of(const std::string& file, const std::vector<std::string>& words) {
+  std::map<int, std::string> functions;
+  for (const std::string& word : words) {
+    const size_t equals = std::min(word.find('='), word.size());
+    const std::optional<int> number = program::m_number(word.substr(0, equals));
+    if (!number)
+      throw InputError("bad-option", {file, 0, 0}, fmt::format("--function {} is not understood", word),
+                       "write M and its number: --function M68, or --function \"M68=clamp C\"");
+    functions[*number] = equals < word.size() ? word.substr(equals + 1) : "of the machine's builder";
+  }
+  return functions;
+}
+
 /// G10 L70 opens a surface: that is a program of surface blocks.
 bool has_surface_blocks(const std::string& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -183,6 +197,7 @@ std::string check_nc(const std::string& file, const NcCheckOptions& options) {
     setup.start = home;
   }
   setup.kinematics_switch = kinematics_of(file, options.kinematics);
+  setup.m_functions = functions_of(file, options.functions);
   if (!options.tools.empty()) setup.tools = tools_of(options.tools);
   NcTotals totals(setup.machine);
   Diagnostics diagnostics;

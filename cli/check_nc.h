@@ -13,6 +13,7 @@ struct NcCheckOptions {
   std::string tools;                    ///< tool table, .toml or .tbl; "": none, lengths are 0
   bool at_home = false;                 ///< the program starts at the machine's home
   std::vector<std::string> kinematics;  ///< "m430=identity" ...: what LinuxCNC's kinematics switches mean
+  std::vector<std::string> functions;   ///< "M68" or "M68=clamp C": M functions of the machine's builder
 };
 
 /// True for the endings of NC programs, or when options only they have are given. A .nc file with surface

@@ -83,6 +83,9 @@ struct KinematicsSwitch {
   std::optional<Kinematics> m430;  ///< none: unknown, M430 is refused
 };
 
+/// 68 of "M68" or "m068", as keys of m_functions are written; none for other words.
+std::optional<int> m_number(const std::string& word);
+
 /// What stands in the control before the program starts.
 struct ControlSetup {
   kinematics::MachineModel machine;  ///< with gauge_M, or with one fixed tip for every tool
@@ -95,7 +98,10 @@ struct ControlSetup {
   std::vector<std::string>
       subprogram_folders;              ///< where called programs are looked for besides the program's own
   KinematicsSwitch kinematics_switch;  ///< LinuxCNC only
-  long moves_max = 50'000'000;         ///< endless loops end here, with the line that broke the limit
+  /// M functions of the machine's builder that move nothing, by number, with what they do. LinuxCNC (M100 to
+  /// M199) and Fanuc; the other dialects list every M that they do not act on.
+  std::map<int, std::string> m_functions;
+  long moves_max = 50'000'000;  ///< endless loops end here, with the line that broke the limit
 };
 
 /// What was read, for the report.

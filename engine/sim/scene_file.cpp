@@ -140,6 +140,19 @@ program::KinematicsSwitch read_kinematics_switch(ConfigTable table) {
   return kinematics;
 }
 
+/// { M68 = "clamp C" }: M functions of the machine's builder.
+std::map<int, std::string> read_m_functions(ConfigTable table) {
+  std::map<int, std::string> functions;
+  for (const std::string& key : table.keys()) {
+    const std::optional<int> number = program::m_number(key);
+    if (number)
+      functions[*number] = table.text(key);
+    else
+      table.error("bad-key", key, fmt::format("'{}' is no M function", key), "write M and its number: M68");
+  }
+  return functions;
+}
+
 /// `program`, `cl` or `nc`, exactly one of them.
 void read_program(ConfigTable& root, Scene& scene) {
   const std::array<std::pair<const char*, ProgramKind>, 3> kinds{
@@ -169,6 +182,9 @@ void read_program(ConfigTable& root, Scene& scene) {
   if (scene.dialect.value_or(program::Dialect::kLinuxCnc) == program::Dialect::kLinuxCnc &&
       root.has("kinematics_switch"))
     scene.kinematics_switch = read_kinematics_switch(root.table("kinematics_switch"));
+  const bool letters = scene.dialect.value_or(program::Dialect::kFanuc) == program::Dialect::kFanuc ||
+                       scene.dialect == program::Dialect::kLinuxCnc;
+  if (letters && root.has("m_functions")) scene.m_functions = read_m_functions(root.table("m_functions"));
 }
 
 /// What a CL file leaves open.

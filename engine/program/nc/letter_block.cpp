@@ -32,6 +32,24 @@ void skip_parentheses(FormulaReader& reader, Control& control, std::string_view&
   reader.move_to(close + 1);
 }
 
+constexpr const char* kBuildersRemedy =
+    "correct the code; an M of the machine's builder that moves nothing is named in m_functions "
+    "(swarf check --function)";
+
+/// True for an M function that ControlSetup::m_functions names.
+bool is_named_function(int tenths, const Code* code, int column, Control& control) {
+  const auto& named = control.setup().m_functions;
+  const auto found = named.empty() || tenths % 10 != 0 ? named.end() : named.find(tenths / 10);
+  if (found == named.end()) return false;
+  if (code != nullptr && code->use != Code::Use::kUnsupported)
+    control.fail("reserved-function", column,
+                 fmt::format("{} has its meaning in this dialect, and m_functions names it '{}'",
+                             code_name('M', tenths), found->second),
+                 "take it out of m_functions");
+  control.without_effect(fmt::format("{} ({})", code_name('M', tenths), found->second));
+  return true;
+}
+
 void add_code(char letter, const CodeTable& table, double number, size_t place, FormulaReader& reader,
               Control& control, LetterBlock& block) {
   const double tenths_number = number * 10.0;
@@ -39,10 +57,13 @@ void add_code(char letter, const CodeTable& table, double number, size_t place, 
   const Code* code = std::abs(tenths_number - static_cast<double>(tenths)) < 1e-6
                          ? table.find(static_cast<int>(tenths))
                          : nullptr;
+  if (letter == 'M' && is_named_function(static_cast<int>(tenths), code, reader.column_of(place), control))
+    return;
   if (code == nullptr) {
     control.fail("unknown-word", reader.column_of(place),
                  fmt::format("{}{:g} is no code of this dialect", letter, number),
-                 "correct the code, or choose the dialect that the program is written in");
+                 letter == 'M' ? kBuildersRemedy
+                               : "correct the code, or choose the dialect that the program is written in");
   }
   check_use(*code, letter, reader.column_of(place), control);
   block.arguments = block.arguments || code->use == Code::Use::kArguments;
@@ -96,7 +117,7 @@ void check_use(const Code& code, char letter, int column, Control& control) {
   const std::string name = code_name(letter, code.tenths);
   if (code.use == Code::Use::kUnsupported) {
     control.fail("unsupported-word", column, fmt::format("{} ({}) is not supported", name, code.meaning),
-                 "post the program without it");
+                 letter == 'M' ? kBuildersRemedy : "post the program without it");
   }
   control.without_effect(fmt::format("{} ({})", name, code.meaning));
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <charconv>
 #include <filesystem>
 
 #include "program/nc/control.h"
@@ -102,6 +103,14 @@ const char* dialect_name(Dialect dialect) {
       return "heidenhain";
   }
   return "";
+}
+
+std::optional<int> m_number(const std::string& word) {
+  int number = 0;
+  const char* end = word.data() + word.size();
+  if (word.size() < 2 || word.size() > 5 || (word[0] != 'M' && word[0] != 'm')) return std::nullopt;
+  const auto [last, problem] = std::from_chars(word.data() + 1, end, number);
+  return problem == std::errc() && last == end && number >= 0 ? std::optional(number) : std::nullopt;
 }
 
 const char* kinematics_name(Kinematics kinematics) {

@@ -100,6 +100,22 @@ TEST(NcFanuc, NurbsQuarterCircle) {
   expect_tip(run.moves().back(), -5, 10, 0);
 }
 
+TEST(NcFanuc, FunctionsOfTheBuilderAreNamedOrRefused) {
+  ControlSetup setup = three_axis_setup();
+  const std::string text = "G00 X1 M68\nM46\nM30\n";
+  EXPECT_EQ(run_text(text, Dialect::kFanuc, setup).first_error(), "unknown-word 1:8");
+  setup.m_functions = {{46, "probe out"}, {68, "clamp C"}};
+  const NcRun run = run_text(text, Dialect::kFanuc, setup);
+  ASSERT_EQ(run.text(), "");
+  EXPECT_EQ(run.summary.functions, (std::vector<std::string>{"M68 (clamp C)", "M46 (probe out)"}));
+  EXPECT_EQ(run.moves().size(), 1u);
+  setup.m_functions = {{3, "fan"}};
+  EXPECT_EQ(run_text("M03 S1\nM30\n", Dialect::kFanuc, setup).first_error(), "reserved-function 1:1");
+  setup.m_functions = {{150, "part counter"}};
+  EXPECT_EQ(run_text("M150\nM2\n", Dialect::kLinuxCnc, setup).text(), "");
+  EXPECT_EQ(run_text("M151\nM2\n", Dialect::kLinuxCnc, setup).first_error(), "unsupported-word 1:1");
+}
+
 TEST(NcFanuc, UnitsForgetTheFeed) {
   EXPECT_EQ(fanuc("G21 F100\nG20 G01 X1\nM30\n").first_error(), "missing-feed 2:9");
   const NcRun run = fanuc("G21 F100\nG20 G01 X1 F10\nG20 X2\nM30\n");

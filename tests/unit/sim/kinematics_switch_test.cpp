@@ -1,4 +1,4 @@
-// The scene's key for LinuxCNC's M428, M429 and M430.
+// The scene's keys for LinuxCNC's M428, M429 and M430, and for M functions of the machine's builder.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -47,6 +47,17 @@ TEST(KinematicsSwitch, IsReadFromTheScene) {
   const Loaded silent = load("nc = \"p.ngc\"\ndialect = \"linuxcnc\"\n");
   EXPECT_EQ(silent.errors, "");
   EXPECT_FALSE(silent.scene.kinematics_switch.m430);
+}
+
+TEST(MFunctions, AreReadFromTheScene) {
+  const Loaded told = load("nc = \"p.nc\"\nm_functions = { M68 = \"clamp C\", m046 = \"probe out\" }\n");
+  EXPECT_EQ(told.errors, "");
+  EXPECT_EQ(told.scene.m_functions, (std::map<int, std::string>{{46, "probe out"}, {68, "clamp C"}}));
+  EXPECT_NE(load("nc = \"p.nc\"\nm_functions = { G68 = \"x\" }\n").errors.find("'G68'"), std::string::npos);
+  EXPECT_NE(load("nc = \"p.nc\"\nm_functions = { M68 = 1 }\n").errors, "");
+  EXPECT_NE(load("nc = \"p.h\"\ndialect = \"heidenhain\"\nm_functions = { M68 = \"x\" }\n")
+                .errors.find("m_functions"),
+            std::string::npos);
 }
 
 TEST(KinematicsSwitch, WrongWordsAreRefused) {
