@@ -130,9 +130,12 @@ void add_check(CLI::App& app, int& exit_code) {
   command->add_option(
       "--kinematics", nc->kinematics,
       "what LinuxCNC's M428 M429 M430 select on this machine: m430=identity, m428=tcp, start=tcp, ...");
-  command->add_option(
-      "--function", nc->functions,
-      "M function of the machine's builder that moves nothing (LinuxCNC, Fanuc): M68, \"M68=clamp C\"");
+  command
+      ->add_option(
+          "--function", nc->functions,
+          "M function of the machine's builder that moves nothing (LinuxCNC, Fanuc): M68, \"M68=clamp C\"; "
+          "once for each")
+      ->allow_extra_args(false);
   command->add_flag("--home", nc->at_home, "NC programs start at the machine's home");
   command
       ->add_option("--cutcom", cl->cutcom,
