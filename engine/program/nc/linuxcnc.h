@@ -143,6 +143,8 @@ class LinuxCnc final : public LetterDialect {
 
   // linuxcnc_flow.cpp
   bool at_o_word();
+  /// Fails with `what` unless only comments follow.
+  void end_of_o_word(const char* what);
   OWord read_o_word();
   void flow();
   void step_if(const OWord& word);

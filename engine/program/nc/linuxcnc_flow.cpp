@@ -84,13 +84,25 @@ LinuxCnc::OWord LinuxCnc::read_o_word() {
   return word;
 }
 
+void LinuxCnc::end_of_o_word(const char* what) {
+  std::string_view message;
+  skip_comments(kLinuxCncSyntax, reader_, control_, message);
+  if (!reader_.done()) control_.fail("unexpected-character", reader_.column(), what, "take it out");
+}
+
 double LinuxCnc::condition() {
   reader_.skip_space();
-  return reader_.bracketed();
+  const double value = reader_.bracketed();
+  end_of_o_word("nothing follows the condition of an O word");
+  return value;
 }
 
 void LinuxCnc::flow() {
   const OWord word = read_o_word();
+  constexpr Keyword kAlone[] = {Keyword::kSub,      Keyword::kElse,      Keyword::kEndIf, Keyword::kDo,
+                                Keyword::kEndWhile, Keyword::kEndRepeat, Keyword::kBreak, Keyword::kContinue};
+  if (std::find(std::begin(kAlone), std::end(kAlone), word.keyword) != std::end(kAlone))
+    end_of_o_word("nothing follows this O word");
   switch (word.keyword) {
     case Keyword::kNone:
       // A program number; in a numbered subprogram list the next one ends the main program's text.
@@ -107,6 +119,7 @@ void LinuxCnc::flow() {
       reader_.skip_space();
       value_returned_ = reader_.peek() == '[';
       returned_ = value_returned_ ? reader_.bracketed() : 0.0;
+      end_of_o_word("only a value in [ ] follows the end of a subprogram");
       return leave();
     case Keyword::kIf:
     case Keyword::kElseIf:
@@ -320,11 +333,7 @@ void LinuxCnc::call_sub(const OWord& word) {
     call.arguments[count] = reader_.bracketed();
     call.assigned |= uint64_t{1} << count;
   }
-  std::string_view message;
-  skip_comments(kLinuxCncSyntax, reader_, control_, message);
-  if (!reader_.done())
-    control_.fail("unexpected-character", reader_.column(), "only arguments in [ ] follow a call",
-                  "take it out");
+  end_of_o_word("only arguments in [ ] follow a call");
   const Sub* sub = find_sub(word.name, false);
   if (sub == nullptr)
     control_.fail("unknown-subprogram", word.column,

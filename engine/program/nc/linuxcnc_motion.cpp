@@ -5,6 +5,11 @@
 #include "program/nc/linuxcnc.h"
 
 namespace swarf::program::nc {
+namespace {
+
+constexpr double kSqrt2 = 1.4142135623730951;
+
+}  // namespace
 
 void LinuxCnc::motion() {
   const bool written = block_.has_g(kMotionGroup);
@@ -52,9 +57,10 @@ void LinuxCnc::arc(int tenths) {
   if (block_.has('P')) words->further_turns = whole(block_, 'P', 1, 100000, reader_, control_) - 1;
   if (words->centre) {
     const Vec3 out = *words->centre - control_.position_xyz();
-    // LinuxCNC's rule: 5 um, or a thousandth of the radius up to half a millimetre.
+    // LinuxCNC's rule unless its INI file has another one: a thousandth of the radius, within these bounds.
+    const double least = control_.inches() ? 0.0508 * kSqrt2 : 0.02 * kSqrt2;
     words->radius_tolerance_mm =
-        std::max(5e-3, std::min(0.5, 1e-3 * std::hypot(out[axes.first], out[axes.second])));
+        std::clamp(1e-3 * std::hypot(out[axes.first], out[axes.second]), least, 100.0 * least);
   }
   control_.arc(tenths == 20 ? Motion::kClockwise : Motion::kCounterClockwise, target, *words);
 }
