@@ -140,9 +140,10 @@ void LinuxCnc::apply() {
 void LinuxCnc::apply_feed_and_speed() {
   if (block_.has_g(kFeedGroup)) {
     const int code = block_.g[kFeedGroup];
-    control_.set_feed_mode(code == 930   ? FeedMode::kInverseTime
-                           : code == 940 ? FeedMode::kPerMinute
-                                         : FeedMode::kPerRevolution);
+    const FeedMode mode = code == 930   ? FeedMode::kInverseTime
+                          : code == 940 ? FeedMode::kPerMinute
+                                        : FeedMode::kPerRevolution;
+    control_.restore_feed(mode, 0.0);  // F is forgotten, also by the word that holds already
   }
   if (block_.has('F')) {
     control_.set_feed(block_.get('F'), column('F'));
