@@ -44,6 +44,19 @@ class Totals final : public program::ClSink {
     return text;
   }
 
+  /// The same, appended to `numbers`.
+  void add_to(nlohmann::ordered_json& numbers) const {
+    const auto side = [&](int i) { return std::array{extent_.lower[i], extent_.upper[i]}; };
+    numbers["feed_moves"] = feeds_;
+    numbers["arcs"] = arcs_;
+    numbers["rapids"] = rapids_;
+    numbers["feed_mm"] = feed_mm_;
+    numbers["rapid_mm"] = rapid_mm_;
+    numbers["tips_mm"] = {{"x", side(0)}, {"y", side(1)}, {"z", side(2)}};
+    numbers["axis_turns"] = turned_;
+    numbers["no_effect"] = notes_;
+  }
+
  private:
   long feeds_ = 0, rapids_ = 0, arcs_ = 0;
   double feed_mm_ = 0.0, rapid_mm_ = 0.0;
@@ -67,12 +80,11 @@ bool is_cl_file(const std::string& file) {
                      [&](const char* ending) { return name.ends_with(ending); });
 }
 
-std::string check_cl(const std::string& file, const program::ClOptions& options) {
+Checked check_cl(const std::string& file, const program::ClOptions& options) {
   Diagnostics diagnostics;
   Totals totals;
   const program::ClProgram program = program::stream_cl(file, totals, diagnostics, options);
   diagnostics.throw_if_errors();
-  print_diagnostics(diagnostics.list());
   std::string text =
       fmt::format("CL data is right: {} statements, {} moves", program.statements, program.motions);
   text += fmt::format("\n  written by: {}", program.writer_reason.empty()
@@ -89,7 +101,18 @@ std::string check_cl(const std::string& file, const program::ClOptions& options)
                          tool.number != 0 ? fmt::format("T{}", tool.number) : tool.name);
   if (!tools.empty()) text += "\n  tools: " + tools;
   for (const std::string& remark : program.remarks) text += "\n  " + remark;
-  return text;
+  nlohmann::ordered_json numbers{{"writer", program::writer_name(program.writer)},
+                                 {"writer_reason", program.writer_reason},
+                                 {"statements", program.statements},
+                                 {"moves", program.motions}};
+  totals.add_to(numbers);
+  numbers["start_mm"] = {start.x(), start.y(), start.z()};
+  numbers["start_line"] = program.start_line;
+  numbers["tools"] = nlohmann::ordered_json::array();
+  for (const program::ClTool& tool : program.tools)
+    numbers["tools"].push_back({{"number", tool.number}, {"name", tool.name}});
+  numbers["remarks"] = program.remarks;
+  return {"cl", text, numbers, diagnostics.list()};
 }
 
 }  // namespace swarf::cli

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "cli/checked.h"
 #include "program/cl_program.h"
 
 namespace swarf::cli {
@@ -13,6 +14,6 @@ bool is_cl_file(const std::string& file);
 
 /// Reads the file and tells writer, statements, moves, paths, tools, start, extents and what was taken as
 /// given. Memory does not grow with the file. Throws InputError.
-std::string check_cl(const std::string& file, const program::ClOptions& options);
+Checked check_cl(const std::string& file, const program::ClOptions& options);
 
 }  // namespace swarf::cli

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "base/config.h"
 #include "cli/check_cl.h"
@@ -9,6 +10,7 @@
 #include "cli/commands.h"
 #include "cli/terminal.h"
 #include "kinematics/round_trip.h"
+#include "reports/metrics_json.h"
 #include "sim/simulation.h"
 
 namespace swarf::cli {
@@ -22,21 +24,29 @@ bool is_scene(const std::string& file) {
   return table.has("program") || table.has("cl") || table.has("nc") || !table.has("axis");
 }
 
-std::string check_scene(const std::string& file) {
+Checked check_scene(const std::string& file) {
   const sim::Job job = sim::load_job(file, {});
-  print_diagnostics(job.warnings);
   Diagnostics diagnostics;
   const toolpath::ToolPath path = sim::job_path(job, diagnostics);
-  print_diagnostics(diagnostics.list());
+  std::vector<Diagnostic> told = job.warnings;
+  told.insert(told.end(), diagnostics.list().begin(), diagnostics.list().end());
+  const nlohmann::ordered_json numbers{{"elements", path.elements.size()},
+                                       {"passes", path.passes},
+                                       {"feed_mm", path.pass_length_mm},
+                                       {"link_mm", path.link_length_mm}};
   if (job.scene.has_blocks()) {
-    return fmt::format("scene is right: {} blocks, {:.0f} mm of feed moves, {:.0f} mm of rapids",
-                       path.elements.size(), path.pass_length_mm, path.link_length_mm);
+    return {"scene",
+            fmt::format("scene is right: {} blocks, {:.0f} mm of feed moves, {:.0f} mm of rapids",
+                        path.elements.size(), path.pass_length_mm, path.link_length_mm),
+            numbers, told};
   }
-  return fmt::format("scene is right: {} passes, {:.0f} mm in contact", path.passes, path.pass_length_mm);
+  return {"scene",
+          fmt::format("scene is right: {} passes, {:.0f} mm in contact", path.passes, path.pass_length_mm),
+          numbers, told};
 }
 
 /// A machine file that reads well is still wrong when its inverse does not lead back.
-std::string check_machine(const std::string& file, int poses) {
+Checked check_machine(const std::string& file, int poses) {
   const machine::MachineScene machine = machine::load_machine(file);
   const kinematics::RoundTrip trip = kinematics::round_trip(machine.model, poses, 1);
   if (!trip.holds()) {
@@ -45,11 +55,32 @@ std::string check_machine(const std::string& file, int poses) {
                                  trip.unsolved, trip.not_found),
                      "this is a fault of Swarf: please report it with the file");
   }
-  return fmt::format(
+  const std::string text = fmt::format(
       "machine is right: {}, {} axes, {} links\n"
       "  inverse: {} random poses, {} solutions, forward again within {:.2g} mm and {:.2g} rad",
       machine.model.name, machine.model.axes.size(), machine.links.size(), trip.poses, trip.branches,
       trip.tip_mm, trip.axis_rad);
+  return {"machine",
+          text,
+          {{"name", machine.model.name},
+           {"axes", machine.model.axes.size()},
+           {"links", machine.links.size()},
+           {"poses", trip.poses},
+           {"solutions", trip.branches},
+           {"tip_error_max_mm", trip.tip_mm},
+           {"axis_error_max_rad", trip.axis_rad}},
+          {}};
+}
+
+Checked check_surface_blocks(const std::string& file) {
+  const program::Program program = program::load_program(file);
+  return {"surface_blocks",
+          fmt::format("program is right: {} blocks, {} surfaces, {} operations", program.blocks,
+                      program.surfaces.size(), program.operations.size()),
+          {{"blocks", program.blocks},
+           {"surfaces", program.surfaces.size()},
+           {"operations", program.operations.size()}},
+          {}};
 }
 
 /// --cutcom and --circle as they were given.
@@ -65,29 +96,64 @@ program::ClOptions cl_options(const ClCheckOptions& given) {
   return options;
 }
 
-std::string check_file(const std::string& file, const NcCheckOptions& nc, const ClCheckOptions& cl,
-                       int poses) {
-  if (is_cl_file(file)) return check_cl(file, cl_options(cl));
-  if (is_nc_program(file, nc)) return check_nc(file, nc);
-  if (std::filesystem::path(file).extension() != ".toml") {
-    const program::Program program = program::load_program(file);
-    return fmt::format("program is right: {} blocks, {} surfaces, {} operations", program.blocks,
-                       program.surfaces.size(), program.operations.size());
-  }
-  if (is_scene(file)) return check_scene(file);
-  return check_machine(file, poses);
+struct CheckOptions {
+  std::vector<std::string> files;
+  NcCheckOptions nc;
+  ClCheckOptions cl;
+  int poses = 10000;
+  bool json = false;
+};
+
+Checked check_file(const std::string& file, const CheckOptions& options) {
+  if (is_cl_file(file)) return check_cl(file, cl_options(options.cl));
+  if (is_nc_program(file, options.nc)) return check_nc(file, options.nc);
+  if (std::filesystem::path(file).extension() != ".toml") return check_surface_blocks(file);
+  return is_scene(file) ? check_scene(file) : check_machine(file, options.poses);
 }
 
-int check(const std::vector<std::string>& files, const NcCheckOptions& nc, const ClCheckOptions& cl,
-          int poses) {
+/// One object for each file; a wrong one has no kind, and its errors among the diagnostics.
+nlohmann::ordered_json object_of(const std::string& file, const std::optional<Checked>& checked,
+                                 const std::vector<Diagnostic>& told) {
+  nlohmann::ordered_json object{{"file", file}, {"right", checked.has_value()}};
+  object["kind"] = checked ? nlohmann::ordered_json(checked->kind) : nlohmann::ordered_json();
+  object["diagnostics"] = nlohmann::ordered_json::array();
+  for (const Diagnostic& one : told) {
+    object["diagnostics"].push_back({{"code", one.code},
+                                     {"severity", reports::severity_name(one.severity)},
+                                     {"file", one.where.file},
+                                     {"line", one.where.line},
+                                     {"column", one.where.column},
+                                     {"text", one.text},
+                                     {"fix", one.fix}});
+  }
+  if (checked) object.update(checked->numbers);
+  return object;
+}
+
+int check(const CheckOptions& options) {
+  nlohmann::ordered_json objects = nlohmann::ordered_json::array();
   int exit_code = kPass;
-  for (const std::string& file : files) {
+  for (const std::string& file : options.files) {
+    std::optional<Checked> checked;
+    std::vector<Diagnostic> told;
     try {
-      fmt::print("{}: {}\n", file, check_file(file, nc, cl, poses));
+      checked = check_file(file, options);
+      told = checked->told;
     } catch (const InputError& error) {
-      fmt::print(stderr, "{}\n", error.what());
+      told = error.diagnostics.list();
       exit_code = kBadInput;
     }
+    if (options.json) {
+      objects.push_back(object_of(file, checked, told));
+      continue;
+    }
+    print_diagnostics(told);
+    if (checked) fmt::print("{}: {}\n", file, checked->text);
+  }
+  if (options.json) {
+    const nlohmann::ordered_json all{
+        {"schema", 1}, {"swarf", SWARF_VERSION}, {"right", exit_code == kPass}, {"files", objects}};
+    fmt::print("{}\n", all.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
   }
   return exit_code;
 }
@@ -107,49 +173,48 @@ Examples:
   swarf check part.mpf --machine assets/machines/spinner_u5_620/machine.toml --tools tools.toml --home
   swarf check part.nc --dialect fanuc                      when nothing in the text shows the dialect
   swarf check scene.toml machine.toml path.cls             scenes, machines and CL data
+  swarf check --json *.nc --dialect fanuc                  for a pipeline: every file's numbers and diagnostics
 
 Exit codes: 0 all are right; 2 at least one is wrong.)";
 
 }  // namespace
 
 void add_check(CLI::App& app, int& exit_code) {
-  auto files = std::make_shared<std::vector<std::string>>();
-  auto nc = std::make_shared<NcCheckOptions>();
-  auto cl = std::make_shared<ClCheckOptions>();
-  auto poses = std::make_shared<int>(10000);
+  auto options = std::make_shared<CheckOptions>();
   CLI::App* command =
       app.add_subcommand("check",
                          "Parse and validate scenes and machines (.toml), programs (.nc, .ngc, "
                          ".mpf, .h) and CL data (.cls, .clt, .ncl, .apt, .cldata); run nothing");
-  command->add_option("files", *files, "files to check")->required();
-  command->add_option("--machine", nc->machine, "machine.toml that NC programs are read for");
-  command->add_option("--dialect", nc->dialect,
+  command->add_option("files", options->files, "files to check")->required();
+  command->add_option("--machine", options->nc.machine, "machine.toml that NC programs are read for");
+  command->add_option("--dialect", options->nc.dialect,
                       "linuxcnc, fanuc, siemens or heidenhain; recognised when left out");
-  command->add_option("--tools", nc->tools,
+  command->add_option("--tools", options->nc.tools,
                       "tool table of NC programs: .toml with [[tool]], or LinuxCNC's .tbl");
   command->add_option(
-      "--kinematics", nc->kinematics,
+      "--kinematics", options->nc.kinematics,
       "what LinuxCNC's M428 M429 M430 select on this machine: m430=identity, m428=tcp, start=tcp, ...");
   command
       ->add_option(
-          "--function", nc->functions,
+          "--function", options->nc.functions,
           "M function of the machine's builder that moves nothing (LinuxCNC, Fanuc): M68, \"M68=clamp C\"; "
           "once for each")
       ->allow_extra_args(false);
-  command->add_flag("--home", nc->at_home, "NC programs start at the machine's home");
+  command->add_flag("--home", options->nc.at_home, "NC programs start at the machine's home");
   command
-      ->add_option("--cutcom", cl->cutcom,
+      ->add_option("--cutcom", options->cl.cutcom,
                    "points of CL data under CUTCOM: of the cutter's centre, or of the part's contour")
       ->check(CLI::IsMember({"centre", "contour"}));
   command
-      ->add_option("--circle", cl->circle,
+      ->add_option("--circle", options->cl.circle,
                    "how CIRCLE of CL data runs about its vector; as its writer does when left out")
       ->check(CLI::IsMember({"clockwise", "counter_clockwise"}));
-  command->add_option("--poses", *poses, "random poses that a machine's inverse must give back")
+  command->add_option("--poses", options->poses, "random poses that a machine's inverse must give back")
       ->check(CLI::Range(1, 100000000))
       ->capture_default_str();
   command->footer(kCheckFooter);
-  command->callback([files, nc, cl, poses, &exit_code] { exit_code = check(*files, *nc, *cl, *poses); });
+  command->add_flag("--json", options->json, "print one JSON object instead of text");
+  command->callback([options, &exit_code] { exit_code = check(*options); });
 }
 
 }  // namespace swarf::cli

@@ -159,14 +159,72 @@ bool has_surface_blocks(const std::string& file) {
   return head.find("G10L7") != std::string::npos || head.find("G06.3") != std::string::npos;
 }
 
-std::vector<program::NcTool> tools_of(const std::string& table) {
+std::vector<program::NcTool> tools_of(const std::string& table, Diagnostics& told) {
   Diagnostics diagnostics;
   std::vector<program::NcTool> tools;
   for (const cutter::Cutter& one : sim::read_tool_table(table, diagnostics))
     tools.push_back({one.number, one.name, cutter::gauge_length(one), one.diameter_mm, one.corner_radius_mm});
   diagnostics.throw_if_errors();
-  print_diagnostics(diagnostics.list());
+  told.append(diagnostics);
   return tools;
+}
+
+nlohmann::ordered_json tools_json(const program::ControlSetup& setup, const program::NcSummary& summary) {
+  nlohmann::ordered_json tools = nlohmann::ordered_json::array();
+  for (const int index : summary.tools_used) {
+    const program::NcTool& tool = setup.tools[static_cast<size_t>(index)];
+    tools.push_back({{"number", tool.number},
+                     {"name", tool.name},
+                     {"diameter_mm", tool.diameter_mm},
+                     {"length_mm", tool.length_mm}});
+  }
+  return tools;
+}
+
+nlohmann::ordered_json axes_json(const program::ControlSetup& setup, const NcTotals& totals) {
+  nlohmann::ordered_json axes = nlohmann::ordered_json::array();
+  for (size_t i = 0; i < setup.machine.axes.size(); ++i) {
+    const kinematics::Axis& axis = setup.machine.axes[i];
+    const double low = totals.low[static_cast<long>(i)], high = totals.high[static_cast<long>(i)];
+    if (axis.kind == AxisKind::kLinear)
+      axes.push_back({{"name", axis.name}, {"min_mm", low}, {"max_mm", high}});
+    else
+      axes.push_back({{"name", axis.name}, {"min_deg", deg_from_rad(low)}, {"max_deg", deg_from_rad(high)}});
+  }
+  return axes;
+}
+
+/// What the text says, as numbers; null where there is none.
+nlohmann::ordered_json numbers_of(const program::ControlSetup& setup, const program::NcSummary& summary,
+                                  const NcTotals& totals) {
+  using Json = nlohmann::ordered_json;
+  const auto box = [&] {
+    Json sides = Json::object();
+    for (int i = 0; i < 3; ++i)
+      sides[std::string(1, "xyz"[i])] = {totals.cut_W.min()[i], totals.cut_W.max()[i]};
+    return sides;
+  };
+  const bool moves = totals.feeds + totals.rapids > 0;
+  return {{"dialect", program::dialect_name(summary.dialect)},
+          {"dialect_reason", summary.dialect_reason},
+          {"files", summary.files},
+          {"lines", summary.lines},
+          {"blocks", summary.blocks},
+          {"feed_moves", totals.feeds},
+          {"arcs", totals.arcs},
+          {"rapids", totals.rapids},
+          {"feed_mm", totals.feed_mm},
+          {"rapid_mm", totals.rapid_mm},
+          {"feed_s", totals.feed_s},
+          {"dwell_s", totals.dwell_s},
+          {"rapid_s", totals.rapids_timed ? Json(totals.rapid_s) : Json()},
+          {"tools", tools_json(setup, summary)},
+          {"machine", setup.machine.name},
+          {"start", summary.start},
+          {"cut_mm", totals.cut_W.isEmpty() ? Json() : box()},
+          {"axes", moves ? axes_json(setup, totals) : Json()},
+          {"out_of_travel", totals.out_of_travel.empty() ? Json() : Json(totals.out_of_travel)},
+          {"no_effect", summary.functions}};
 }
 
 std::string extension_of(const std::string& file) {
@@ -187,8 +245,9 @@ bool is_nc_program(const std::string& file, const NcCheckOptions& options) {
          !has_surface_blocks(file);
 }
 
-std::string check_nc(const std::string& file, const NcCheckOptions& options) {
+Checked check_nc(const std::string& file, const NcCheckOptions& options) {
   program::ControlSetup setup;
+  Diagnostics diagnostics;
   setup.machine = options.machine.empty() ? plain_machine() : machine::load_machine(options.machine).model;
   if (options.at_home) {
     AxisValues home = AxisValues::Zero();
@@ -198,13 +257,11 @@ std::string check_nc(const std::string& file, const NcCheckOptions& options) {
   }
   setup.kinematics_switch = kinematics_of(file, options.kinematics);
   setup.m_functions = functions_of(file, options.functions);
-  if (!options.tools.empty()) setup.tools = tools_of(options.tools);
+  if (!options.tools.empty()) setup.tools = tools_of(options.tools, diagnostics);
   NcTotals totals(setup.machine);
-  Diagnostics diagnostics;
   const program::NcSummary summary =
       program::run_nc(file, chosen(file, options.dialect), setup, totals, diagnostics);
   diagnostics.throw_if_errors();
-  print_diagnostics(diagnostics.list());
   std::string text = fmt::format(
       "NC program is right\n"
       "  dialect   {} ({})\n"
@@ -226,7 +283,7 @@ std::string check_nc(const std::string& file, const NcCheckOptions& options) {
     text += "\n  no effect on the geometry:";
     for (const std::string& word : summary.functions) text += " " + word + ";";
   }
-  return text;
+  return {"nc", text, numbers_of(setup, summary, totals), diagnostics.list()};
 }
 
 }  // namespace swarf::cli

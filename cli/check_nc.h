@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "cli/checked.h"
+
 namespace swarf::cli {
 
 /// What an NC program is checked with.
@@ -22,6 +24,6 @@ bool is_nc_program(const std::string& file, const NcCheckOptions& options);
 
 /// Reads the program and tells dialect, lines, moves, paths, times, tools, start, extents and what has no
 /// effect. Throws InputError.
-std::string check_nc(const std::string& file, const NcCheckOptions& options);
+Checked check_nc(const std::string& file, const NcCheckOptions& options);
 
 }  // namespace swarf::cli

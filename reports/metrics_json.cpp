@@ -283,12 +283,12 @@ Json bad_cuts_json(const sim::Result& result) {
   return {{"rapids_in_material", count(true)}, {"spindle_wrong", count(false)}};
 }
 
+}  // namespace
+
 std::string severity_name(Severity severity) {
   if (severity == Severity::kError) return "error";
   return severity == Severity::kWarning ? "warning" : "note";
 }
-
-}  // namespace
 
 double peak_memory_mb() {
   rusage usage{};

@@ -22,4 +22,7 @@ std::string findings_json(const sim::Result& result);
 /// Peak resident memory of this process so far, MB.
 double peak_memory_mb();
 
+/// "error", "warning" or "note", as every JSON of the program has it.
+std::string severity_name(Severity severity);
+
 }  // namespace swarf::reports

@@ -1,6 +1,8 @@
 // swarf check of NC programs as a user meets it.
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "support/program_run.h"
 #include "unit/program/nc_support.h"
 
@@ -35,6 +37,38 @@ TEST(NcCheck, TellsPathTimeToolsAndExtents) {
                 fmt::format("time      feed {:.2f} s at the programmed feed, dwells 2.00 s", feed / 10.0),
                 "tools     T3", "D 8 mm, length 75 mm", "X 0.000 to 120.000 mm", "Y 0.000 to 100.000 mm",
                 "Z 0.000 to 10.000 mm, the tip in the work", "M8 (flood)"});
+}
+
+TEST(NcCheck, TellsProgramsTheSameAsPeople) {
+  const test::ProgramRun run = check(
+      "part.ngc", "T3 M6 G43\nG0 X0 Y0 Z10\nG1 Z0 F600\nG3 X0 Y40 J20\nM8\nM2\n", "--json --home --tools ");
+  ASSERT_EQ(run.exit_code, 0) << run.output;
+  const nlohmann::json all = nlohmann::json::parse(run.output);
+  EXPECT_EQ(all["right"], true);
+  const nlohmann::json& file = all["files"][0];
+  EXPECT_EQ(file["kind"], "nc");
+  EXPECT_EQ(file["dialect"], "linuxcnc");
+  ASSERT_EQ(file["diagnostics"].size(), 1u) << file["diagnostics"];
+  EXPECT_EQ(file["diagnostics"][0]["code"], "tool-shape-assumed");
+  EXPECT_NEAR(file["feed_mm"].get<double>(), 10.0 + 20.0 * kPi, 1e-9);
+  EXPECT_NEAR(file["feed_s"].get<double>(), 1.0 + 2.0 * kPi, 1e-9);
+  EXPECT_TRUE(file["rapid_s"].is_null());
+  EXPECT_EQ(file["tools"][0]["number"], 3);
+  EXPECT_NEAR(file["cut_mm"]["x"][1].get<double>(), 20.0, 1e-9);
+  EXPECT_EQ(file["no_effect"][0], "M8 (flood)");
+}
+
+TEST(NcCheck, TellsProgramsWhatIsWrong) {
+  const test::ProgramRun run = check("part.ngc", "G0 X0 Y0 Z10\nG1 X1\nM2\n", "--json --home");
+  EXPECT_EQ(run.exit_code, 2);
+  const nlohmann::json all = nlohmann::json::parse(run.output);
+  EXPECT_EQ(all["right"], false);
+  const nlohmann::json& file = all["files"][0];
+  EXPECT_TRUE(file["kind"].is_null());
+  ASSERT_EQ(file["diagnostics"].size(), 1u);
+  EXPECT_EQ(file["diagnostics"][0]["code"], "missing-feed");
+  EXPECT_EQ(file["diagnostics"][0]["line"], 2);
+  EXPECT_EQ(file["diagnostics"][0]["severity"], "error");
 }
 
 TEST(NcCheck, TimesRapidsOnAMachineAndFindsTravel) {
