@@ -9,6 +9,7 @@
 
 #include "base/check.h"
 #include "base/units.h"
+#include "program/nc/curve.h"
 
 namespace swarf::program::nc {
 namespace {
@@ -31,14 +32,6 @@ Crossings line_circle(const Vec3& a, const Vec3& d, const Vec3& c, double radius
   if (square < -1e-9 * radius) return {};
   const double half = std::sqrt(std::max(0.0, square));
   return {{Vec3(a + (along - half) * d), Vec3(a + (along + half) * d)}, 2};
-}
-
-/// Angle of an arc without its further turns, (0, 2 pi].
-double sweep(const Segment& arc) {
-  const Vec3 a = arc.from - arc.centre, b = arc.to - arc.centre;
-  const double angle =
-      std::atan2(a.cross(b).dot(arc.normal), a.dot(b) - a.dot(arc.normal) * b.dot(arc.normal));
-  return angle > 1e-12 ? angle : angle + kTurn;
 }
 
 Crossings circle_circle(const Vec3& a, double ra, const Vec3& b, double rb, const Vec3& normal) {
@@ -131,7 +124,7 @@ Contour::Piece Contour::offset(const Segment& programmed) const {
     }
     const Vec3 outwards = flat(programmed.from - programmed.centre);
     const double way = aside(piece.tangent_from).dot(outwards.normalized()) * radius_;
-    piece.way = outwards.norm() * sweep(programmed);
+    piece.way = outwards.norm() * swept(programmed);
     if (!(outwards.norm() + way > kNoWay)) gouge(programmed, "the inside of this arc is too narrow");
   }
   piece.segment.from = programmed.from + radius_ * aside(piece.tangent_from);

@@ -173,7 +173,8 @@ class Control final : public ContourHost {
   /// Rapid or feed on a straight line (or the joint-linear one, see above). What the target does not give
   /// stays.
   void line(Motion motion, const Target& target);
-  /// G2, G3 in the active plane (or about ArcWords::normal). "bad-arc", "arc-with-rotaries".
+  /// G2, G3 in the active plane (or about ArcWords::normal). "bad-arc". Without TCP an arc during which
+  /// rotary axes turn is one of axis values and no arc on the part: it comes as chords (curve.h).
   void arc(Motion motion, const Target& target, const ArcWords& words);
   /// One hole, at the target's place in the plane: the positions of the cycle's moves along the plane's
   /// normal.
@@ -239,6 +240,7 @@ class Control final : public ContourHost {
   void prepare(Motion motion, const Target& target, Segment& segment);
   void take(Segment& segment);
   void arrive(const Goal& goal);
+  void turning_arc(Motion motion, const ArcWords& words, const Goal& goal);
   void place_circle(Motion motion, const ArcWords& words, Segment& segment) const;
   void emit(const Segment& segment) override;
   void emit_piece(const Segment& segment, const Vec3& p_to, const std::array<double, 3>& rotary_to,

@@ -25,15 +25,6 @@ double turn_way(const std::array<double, 3>& from, const std::array<double, 3>& 
   return deg_from_rad(std::sqrt(sum));
 }
 
-/// Angle in (0, 2 pi] counter-clockwise about the segment's normal; whole circles end where they start.
-double swept(const Segment& arc) {
-  const auto flat = [&](const Vec3& v) { return Vec3(v - v.dot(arc.normal) * arc.normal); };
-  const Vec3 a = flat(arc.from - arc.centre), b = flat(arc.to - arc.centre);
-  if ((a - b).norm() <= 1e-9) return kTurn;
-  const double angle = std::atan2(a.cross(b).dot(arc.normal), a.dot(b));
-  return angle > 0.0 ? angle : angle + kTurn;
-}
-
 double arc_way(const Segment& arc, double angle) {
   const Vec3 a = arc.from - arc.centre;
   const double radius = (a - a.dot(arc.normal) * arc.normal).norm();

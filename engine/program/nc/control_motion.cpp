@@ -299,14 +299,10 @@ void Control::machine_line(Motion motion, const Target& target) {
 void Control::arc(Motion motion, const Target& target, const ArcWords& words) {
   check_axes(target);
   if (!ready(motion, target, false)) return;
+  const Goal goal = resolve(target);
+  if (goal.turns && tcp_ == Tcp::kOff) return turning_arc(motion, words, goal);
   Segment segment;
   prepare(motion, target, segment);
-  const Goal goal = resolve(target);
-  if (goal.turns && tcp_ == Tcp::kOff) {
-    fail("arc-with-rotaries", words.column,
-         "rotary axes turn during this arc without TCP: it would be no arc on the part",
-         "switch TCP on, or turn them in a block of their own");
-  }
   segment.from = position_xyz();
   segment.to = goal.p;
   segment.rotary_from = space_.rotary_of(q_);
@@ -316,6 +312,23 @@ void Control::arc(Motion motion, const Target& target, const ArcWords& words) {
   place_circle(motion, words, segment);
   take(segment);
   arrive(goal);
+}
+
+void Control::turning_arc(Motion motion, const ArcWords& words, const Goal& goal) {
+  Segment circle;
+  circle.place = place_;
+  circle.from = position_xyz();
+  circle.to = goal.p;
+  circle.further_turns = words.further_turns;
+  place_circle(motion, words, circle);
+  const std::array<double, kAxisWords>& here = position();
+  TurningArc::Rotaries from, to;
+  for (size_t slot = 0; slot < 3; ++slot) {
+    if (axis_of(static_cast<AxisWord>(slot + 3)) < 0) continue;
+    from[slot] = here[slot + 3];
+    to[slot] = goal.programmed[slot];
+  }
+  curve(TurningArc(circle, swept(circle) + kTurn * circle.further_turns, from, to), kCurveToleranceMm);
 }
 
 void Control::place_circle(Motion motion, const ArcWords& words, Segment& segment) const {

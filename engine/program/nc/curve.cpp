@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "base/units.h"
+
 namespace swarf::program::nc {
 namespace {
 
@@ -58,6 +60,42 @@ std::vector<double> chord_ends(const Curve& curve, double tolerance_mm) {
     a = b;
   }
   return ends;
+}
+
+double swept(const Segment& arc) {
+  const auto flat = [&](const Vec3& v) { return Vec3(v - v.dot(arc.normal) * arc.normal); };
+  const Vec3 a = flat(arc.from - arc.centre), b = flat(arc.to - arc.centre);
+  if ((a - b).norm() <= 1e-9) return 2.0 * kPi;
+  const double angle = std::atan2(a.cross(b).dot(arc.normal), a.dot(b));
+  return angle > 0.0 ? angle : angle + 2.0 * kPi;
+}
+
+TurningArc::TurningArc(const Segment& arc, double angle, const Rotaries& from, const Rotaries& to)
+    : arc_(arc), angle_(angle), from_(from), to_(to) {
+  const auto radius = [&](const Vec3& p) { return arc.normal.cross(p - arc.centre).norm(); };
+  growth_ = radius(arc.to) / radius(arc.from) - 1.0;
+}
+
+CurvePoint TurningArc::at(double u) const {
+  const Vec3 start = arc_.from - arc_.centre;
+  const Vec3 out = start - start.dot(arc_.normal) * arc_.normal;
+  const double angle = u * angle_, rise = u * (arc_.to - arc_.from).dot(arc_.normal);
+  CurvePoint point;
+  point.tip = arc_.from - out + rise * arc_.normal +
+              (1.0 + u * growth_) * (std::cos(angle) * out + std::sin(angle) * arc_.normal.cross(out));
+  if (u == 1.0) point.tip = arc_.to;
+  for (size_t i = 0; i < 3; ++i) {
+    if (from_[i] && to_[i]) point.rotary[i] = *from_[i] + u * (*to_[i] - *from_[i]);
+  }
+  return point;
+}
+
+/// Quarters of a turn: no piece of the search for chords can miss one.
+std::vector<double> TurningArc::breaks() const {
+  std::vector<double> breaks;
+  for (double angle = 0.5 * kPi; angle < angle_ * (1.0 - 1e-9); angle += 0.5 * kPi)
+    breaks.push_back(angle / angle_);
+  return breaks;
 }
 
 NurbsCurve::NurbsCurve(int order, std::vector<CurvePoint> points, std::vector<double> weights,

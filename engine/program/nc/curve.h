@@ -32,6 +32,25 @@ class Curve {
 /// among them.
 std::vector<double> chord_ends(const Curve& curve, double tolerance_mm);
 
+/// Angle of an arc without its further turns, in (0, 2 pi], counter-clockwise about its normal; one that ends
+/// where it starts is a whole circle.
+double swept(const Segment& arc);
+
+/// An arc or helix of the linear axes with rotary axes that turn evenly along it.
+class TurningArc final : public Curve {
+ public:
+  using Rotaries = std::array<std::optional<double>, 3>;  ///< programmed values of A B C, rad
+  /// `angle`: that the arc goes round, further turns included, rad. The radius may grow evenly on the way.
+  TurningArc(const Segment& arc, double angle, const Rotaries& from, const Rotaries& to);
+  CurvePoint at(double u) const override;
+  std::vector<double> breaks() const override;
+
+ private:
+  Segment arc_;
+  double angle_, growth_;  ///< growth: of the radius, as a factor less one
+  Rotaries from_, to_;
+};
+
 /// Rational B-spline: de Boor's recursion on homogeneous coordinates (Piegl & Tiller, The NURBS Book, A4.1).
 class NurbsCurve final : public Curve {
  public:

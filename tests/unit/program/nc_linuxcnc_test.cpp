@@ -231,6 +231,44 @@ TEST(NcLinuxCnc, KinematicsSwitchesAreWhatTheMachineSays) {
   EXPECT_EQ(law_after("", {}), BlockLaw::kJoint);
 }
 
+/// Without TCP the axes run on their circle while A and C turn evenly: chords, each end exactly there.
+TEST(NcLinuxCnc, ArcsWithRotaryAxesAreChordsOfTheirCircle) {
+  const ControlSetup setup = five_axis_setup();
+  const NcRun run = linuxcnc(
+      "G21 G90 G94 F600\nG0 X20 Y0 Z0 A10 C0\nG3 X20 I-20 Z8 A70 C-30 P2\nG93 G2 X-20 I-20 C60 F4\nM2\n",
+      setup);
+  ASSERT_EQ(run.text(), "");
+  const auto axis = [&](const AxisValues& q, const char* name) {
+    for (size_t i = 0; i < setup.machine.axes.size(); ++i) {
+      if (setup.machine.axes[i].name == name) return q[static_cast<long>(i)];
+    }
+    return std::nan("");
+  };
+  double seconds = 0.0, timed = 0.0;
+  AxisValues before = run.moves()[0].q_to;
+  for (size_t i = 1; i < run.moves().size(); ++i) {
+    SCOPED_TRACE(i);
+    const NcMove& move = run.moves()[i];
+    const AxisValues q = move.q_to, middle = 0.5 * (q + before);
+    const double x = axis(q, "X"), y = axis(q, "Y");
+    (move.line == 3 ? seconds : timed) += move.duration_s;
+    EXPECT_EQ(move.law, BlockLaw::kJoint);
+    EXPECT_NEAR(std::hypot(x, y), 20.0, 1e-9);
+    EXPECT_GE(std::hypot(axis(middle, "X"), axis(middle, "Y")), 20.0 - 1.01e-4);
+    if (move.line == 3) {
+      const double share = (axis(q, "Z") - axis(run.moves()[0].q_to, "Z")) / 8.0;
+      EXPECT_NEAR(std::remainder(4.0 * kPi * share - std::atan2(y, x), 2.0 * kPi), 0.0, 1e-9);
+      EXPECT_NEAR(deg_from_rad(axis(q, "A")), 10.0 + 60.0 * share, 1e-9);
+      EXPECT_NEAR(deg_from_rad(axis(q, "C")), -30.0 * share, 1e-9);
+    }
+    before = q;
+  }
+  EXPECT_NEAR(seconds, std::hypot(80.0 * kPi, 8.0) / 10.0, 1e-3);  // the chords are a little shorter
+  EXPECT_NEAR(timed, 15.0, 1e-9);
+  EXPECT_NEAR(deg_from_rad(axis(before, "C")), 60.0, 1e-9);
+  EXPECT_NEAR(axis(before, "X"), -20.0, 1e-9);
+}
+
 TEST(NcLinuxCnc, WhatTheControlLeavesUnsaidIsTold) {
   const auto warning = [](const std::string& text) {
     const NcRun run = linuxcnc(text);
