@@ -40,11 +40,21 @@ constexpr std::array<Binary, 19> kBinary = {{{"==", 0},
                                              {"/", 9},
                                              {"DIV", 9},
                                              {"MOD", 9}}};
-/// Names that the control has for the types of machining of CYCLE832; a variable of the program goes before.
+/// Names that the control has for the types of machining of CYCLE832 (SINUMERIK ONE, NC programming, 12/2019:
+/// units the type, tens the orientation tolerance, millions Top Surface); a variable of the program goes
+/// before.
 std::optional<int> cycle_constant(std::string_view name) {
-  static constexpr std::pair<std::string_view, int> kNames[] = {
-      {"_OFF", 0},         {"_FINISH", 1},       {"_SEMIFIN", 2},   {"_ROUGH", 3},
-      {"_ORI_FINISH", 11}, {"_ORI_SEMIFIN", 12}, {"_ORI_ROUGH", 13}};
+  static constexpr std::pair<std::string_view, int> kNames[] = {{"_OFF", 0},
+                                                                {"_FINISH", 1},
+                                                                {"_SEMIFIN", 2},
+                                                                {"_ROUGH", 3},
+                                                                {"_PRECISION", 4},
+                                                                {"_ORI_FINISH", 11},
+                                                                {"_ORI_SEMIFIN", 12},
+                                                                {"_ORI_ROUGH", 13},
+                                                                {"_ORI_PRECISION", 14},
+                                                                {"_TOP_SURFACE_SMOOTH_OFF", 1000000},
+                                                                {"_TOP_SURFACE_SMOOTH_ON", 2000000}};
   for (const auto& [known, value] : kNames) {
     if (name == known) return value;
   }
