@@ -195,10 +195,10 @@ void add_check(CLI::App& app, int& exit_code) {
       "--kinematics", options->nc.kinematics,
       "what LinuxCNC's M428 M429 M430 select on this machine: m430=identity, m428=tcp, start=tcp, ...");
   command
-      ->add_option(
-          "--function", options->nc.functions,
-          "M function of the machine's builder that moves nothing (LinuxCNC, Fanuc): M68, \"M68=clamp C\"; "
-          "once for each")
+      ->add_option("--builder-word", options->nc.builder_words,
+                   "what the machine's builder added and what moves nothing: M68, \"M68=clamp C\", \"CYCL "
+                   "DEF 392\", the name of "
+                   "a program (840D); once for each")
       ->allow_extra_args(false);
   command->add_flag("--home", options->nc.at_home, "NC programs start at the machine's home");
   command

@@ -136,17 +136,17 @@ program::KinematicsSwitch kinematics_of(const std::string& file, const std::vect
 }
 
 /// Reads "M68" and "M68=clamp C".
-std::map<int, std::string> functions_of(const std::string& file, const std::vector<std::string>& words) {
-  std::map<int, std::string> functions;
-  for (const std::string& word : words) {
-    const size_t equals = std::min(word.find('='), word.size());
-    const std::optional<int> number = program::m_number(word.substr(0, equals));
-    if (!number)
-      throw InputError("bad-option", {file, 0, 0}, fmt::format("--function {} is not understood", word),
-                       "write M and its number: --function M68, or --function \"M68=clamp C\"");
-    functions[*number] = equals < word.size() ? word.substr(equals + 1) : "of the machine's builder";
+program::BuilderWords builder_words_of(const std::string& file, const std::vector<std::string>& given) {
+  program::BuilderWords words;
+  for (const std::string& one : given) {
+    const size_t equals = std::min(one.find('='), one.size());
+    const std::string word = program::builder_word(one.substr(0, equals));
+    if (word.empty())
+      throw InputError("bad-option", {file, 0, 0}, fmt::format("--builder-word {} is not understood", one),
+                       "write M68, \"CYCL DEF 392\" or the name of a program, and =what it does if you like");
+    words[word] = equals < one.size() ? one.substr(equals + 1) : "of the machine's builder";
   }
-  return functions;
+  return words;
 }
 
 /// G10 L70 opens a surface: that is a program of surface blocks.
@@ -256,7 +256,7 @@ Checked check_nc(const std::string& file, const NcCheckOptions& options) {
     setup.start = home;
   }
   setup.kinematics_switch = kinematics_of(file, options.kinematics);
-  setup.m_functions = functions_of(file, options.functions);
+  setup.builder_words = builder_words_of(file, options.builder_words);
   if (!options.tools.empty()) setup.tools = tools_of(options.tools, diagnostics);
   NcTotals totals(setup.machine);
   const program::NcSummary summary =

@@ -10,12 +10,12 @@ namespace swarf::cli {
 
 /// What an NC program is checked with.
 struct NcCheckOptions {
-  std::string machine;                  ///< machine.toml; "": a plain XYZ machine without limits
-  std::string dialect;                  ///< "linuxcnc" ...; "": recognised
-  std::string tools;                    ///< tool table, .toml or .tbl; "": none, lengths are 0
-  bool at_home = false;                 ///< the program starts at the machine's home
-  std::vector<std::string> kinematics;  ///< "m430=identity" ...: what LinuxCNC's kinematics switches mean
-  std::vector<std::string> functions;   ///< "M68" or "M68=clamp C": M functions of the machine's builder
+  std::string machine;                     ///< machine.toml; "": a plain XYZ machine without limits
+  std::string dialect;                     ///< "linuxcnc" ...; "": recognised
+  std::string tools;                       ///< tool table, .toml or .tbl; "": none, lengths are 0
+  bool at_home = false;                    ///< the program starts at the machine's home
+  std::vector<std::string> kinematics;     ///< "m430=identity" ...: what LinuxCNC's kinematics switches mean
+  std::vector<std::string> builder_words;  ///< "M68", "M68=clamp C", "CYCL DEF 392", "LASERCHECK"
 };
 
 /// True for the endings of NC programs, or when options only they have are given. A .nc file with surface

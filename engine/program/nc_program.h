@@ -83,8 +83,12 @@ struct KinematicsSwitch {
   std::optional<Kinematics> m430;  ///< none: unknown, M430 is refused
 };
 
-/// 68 of "M68" or "m068", as keys of m_functions are written; none for other words.
-std::optional<int> m_number(const std::string& word);
+/// Words that the machine's builder gave a meaning and that move nothing, with what they do: "M68"
+/// (LinuxCNC's M100 to M199, Fanuc; the other dialects list every M that they do not act on), "CYCL DEF 392"
+/// (Heidenhain), the name of a program (840D). Each is listed as without effect where it stands.
+using BuilderWords = std::map<std::string, std::string>;
+/// A key of BuilderWords as it is looked up ("m068" is "M68"); empty when it is none of the three.
+std::string builder_word(const std::string& written);
 
 /// What stands in the control before the program starts.
 struct ControlSetup {
@@ -98,9 +102,7 @@ struct ControlSetup {
   std::vector<std::string>
       subprogram_folders;              ///< where called programs are looked for besides the program's own
   KinematicsSwitch kinematics_switch;  ///< LinuxCNC only
-  /// M functions of the machine's builder that move nothing, by number, with what they do. LinuxCNC (M100 to
-  /// M199) and Fanuc; the other dialects list every M that they do not act on.
-  std::map<int, std::string> m_functions;
+  BuilderWords builder_words;
   long moves_max = 50'000'000;  ///< endless loops end here, with the line that broke the limit
 };
 

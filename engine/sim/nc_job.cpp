@@ -26,7 +26,7 @@ program::ControlSetup control_setup(const Job& job, Diagnostics& diagnostics) {
     setup.work_offsets[number] = axis_values(axes, setup.machine, false, diagnostics);
   }
   setup.kinematics_switch = job.scene.kinematics_switch;
-  setup.m_functions = job.scene.m_functions;
+  setup.builder_words = job.scene.builder_words;
   if (settings.start) setup.start = axis_values(*settings.start, setup.machine, true, diagnostics);
   return setup;
 }

@@ -80,7 +80,7 @@ struct Scene {
   double linearise_tolerance_mm = 0.01;     ///< of the pieces that blocks near the pole would need (joint)
   std::optional<program::Dialect> dialect;  ///< NC; none: recognised from the text
   program::KinematicsSwitch kinematics_switch;  ///< NC, LinuxCNC's M428 to M430
-  std::map<int, std::string> m_functions;       ///< NC, LinuxCNC and Fanuc: of the machine's builder
+  program::BuilderWords builder_words;          ///< NC
   SetupSettings setup;
   std::string tool_table_file;  ///< `tool_table`; "": none
   /// What BlockMove::tool and ToolSample::tool count in. Surface blocks: one.

@@ -140,17 +140,18 @@ program::KinematicsSwitch read_kinematics_switch(ConfigTable table) {
   return kinematics;
 }
 
-/// { M68 = "clamp C" }: M functions of the machine's builder.
-std::map<int, std::string> read_m_functions(ConfigTable table) {
-  std::map<int, std::string> functions;
+/// { M68 = "clamp C", "CYCL DEF 392" = "tuning" }.
+program::BuilderWords read_builder_words(ConfigTable table) {
+  program::BuilderWords words;
   for (const std::string& key : table.keys()) {
-    const std::optional<int> number = program::m_number(key);
-    if (number)
-      functions[*number] = table.text(key);
+    const std::string word = program::builder_word(key);
+    if (!word.empty())
+      words[word] = table.text(key);
     else
-      table.error("bad-key", key, fmt::format("'{}' is no M function", key), "write M and its number: M68");
+      table.error("bad-key", key, fmt::format("'{}' is no word of a machine's builder", key),
+                  "write M68, \"CYCL DEF 392\" or the name of a program");
   }
-  return functions;
+  return words;
 }
 
 /// `program`, `cl` or `nc`, exactly one of them.
@@ -182,9 +183,7 @@ void read_program(ConfigTable& root, Scene& scene) {
   if (scene.dialect.value_or(program::Dialect::kLinuxCnc) == program::Dialect::kLinuxCnc &&
       root.has("kinematics_switch"))
     scene.kinematics_switch = read_kinematics_switch(root.table("kinematics_switch"));
-  const bool letters = scene.dialect.value_or(program::Dialect::kFanuc) == program::Dialect::kFanuc ||
-                       scene.dialect == program::Dialect::kLinuxCnc;
-  if (letters && root.has("m_functions")) scene.m_functions = read_m_functions(root.table("m_functions"));
+  if (root.has("builder_words")) scene.builder_words = read_builder_words(root.table("builder_words"));
 }
 
 /// What a CL file leaves open.

@@ -61,6 +61,15 @@ void Control::warn_once(const char* code, int column, std::string text, std::str
       std::move(text), std::move(fix));
 }
 
+bool Control::take_builder_word(const std::string& word) {
+  if (setup_.builder_words.empty()) return false;
+  const auto found = setup_.builder_words.find(word);
+  if (found == setup_.builder_words.end()) return false;
+  without_effect(fmt::format("{} ({})", word, found->second));
+  note(word, found->second);
+  return true;
+}
+
 void Control::without_effect(std::string_view word) {
   auto& functions = summary_.functions;
   if (std::find(functions.begin(), functions.end(), word) == functions.end()) functions.emplace_back(word);

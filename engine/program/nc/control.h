@@ -70,6 +70,8 @@ class Control final : public ContourHost {
   [[noreturn]] void fail(const char* code, int column, std::string text, std::string fix) const override;
   /// A warning that is given once per `code` and program.
   void warn_once(const char* code, int column, std::string text, std::string fix);
+  /// True for a word of ControlSetup::builder_words, as builder_word() gives it: it is listed.
+  bool take_builder_word(const std::string& word);
   /// A word that was read and has no effect on the geometry: listed once in NcSummary::functions.
   void without_effect(std::string_view word);
   void note(std::string_view word, std::string_view text);

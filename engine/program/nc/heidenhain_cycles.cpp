@@ -67,11 +67,23 @@ void Executor::cycle_definition(BlockReader& reader) {
   for (const CycleParameters& one : parameter_cycles()) {
     if (one.number == number.number) return parameter_cycle(reader, number.number, offset);
   }
+  if (control_.take_builder_word(fmt::format("CYCL DEF {}", number.number))) return builders_cycle(reader);
   if (known_cycle(number.number))
     reader.fail("unsupported-word", offset,
                 fmt::format("cycle {} is known, but not supported here", number.number),
                 "1, 2, 7 to 11, 13, 19, 26, 32, 200 to 208, 220, 221, 240, 241 and 247 are");
-  reader.fail("unknown-word", offset, fmt::format("there is no cycle {}", number.number), "CYCL DEF 200");
+  reader.fail("unknown-word", offset, fmt::format("there is no cycle {}", number.number),
+              "CYCL DEF 200; a cycle of the machine's builder that moves nothing is named in builder_words");
+}
+
+/// Its Q parameters have their values from then on, as those of every cycle.
+void Executor::builders_cycle(BlockReader& reader) {
+  while (!reader.done() && !reader.parameter_follows()) reader.skip();
+  while (!reader.done()) {
+    const Parameters::Name name = Parameters::name(reader);
+    if (!reader.take_char('=')) reader.fail("missing-word", reader.offset(), "'=' is missing here", "Q200=2");
+    parameters_.set(name, reader.value());
+  }
 }
 
 void Executor::old_cycle(BlockReader& reader, CycleNumber number, size_t offset) {

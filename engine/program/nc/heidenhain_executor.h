@@ -166,6 +166,7 @@ class Executor {
   void cycle_definition(BlockReader& reader);
   void old_cycle(BlockReader& reader, CycleNumber number, size_t offset);
   void old_drilling(BlockReader& reader, CycleNumber number);
+  void builders_cycle(BlockReader& reader);
   void parameter_cycle(BlockReader& reader, int number, size_t offset);
   void tilt_cycle(BlockReader& reader);
   void tolerance(BlockReader& reader, int part);

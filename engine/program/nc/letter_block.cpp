@@ -33,21 +33,19 @@ void skip_parentheses(FormulaReader& reader, Control& control, std::string_view&
 }
 
 constexpr const char* kBuildersRemedy =
-    "correct the code; an M of the machine's builder that moves nothing is named in m_functions "
-    "(swarf check --function)";
+    "correct the code; an M of the machine's builder that moves nothing is named in builder_words "
+    "(swarf check --builder-word)";
 
-/// True for an M function that ControlSetup::m_functions names.
-bool is_named_function(int tenths, const Code* code, int column, Control& control) {
-  const auto& named = control.setup().m_functions;
-  const auto found = named.empty() || tenths % 10 != 0 ? named.end() : named.find(tenths / 10);
-  if (found == named.end()) return false;
-  if (code != nullptr && code->use != Code::Use::kUnsupported)
-    control.fail("reserved-function", column,
-                 fmt::format("{} has its meaning in this dialect, and m_functions names it '{}'",
-                             code_name('M', tenths), found->second),
-                 "take it out of m_functions");
-  control.without_effect(fmt::format("{} ({})", code_name('M', tenths), found->second));
-  return true;
+/// True for an M that ControlSetup::builder_words names.
+bool is_builders(int tenths, const Code* code, int column, Control& control) {
+  if (control.setup().builder_words.empty() || tenths % 10 != 0) return false;
+  const std::string word = code_name('M', tenths);
+  const bool own = code != nullptr && code->use != Code::Use::kUnsupported;
+  if (own && control.setup().builder_words.count(word) != 0)
+    control.fail("reserved-word", column,
+                 fmt::format("{} has its meaning in this dialect, and builder_words names it", word),
+                 "take it out of builder_words");
+  return !own && control.take_builder_word(word);
 }
 
 void add_code(char letter, const CodeTable& table, double number, size_t place, FormulaReader& reader,
@@ -57,8 +55,7 @@ void add_code(char letter, const CodeTable& table, double number, size_t place, 
   const Code* code = std::abs(tenths_number - static_cast<double>(tenths)) < 1e-6
                          ? table.find(static_cast<int>(tenths))
                          : nullptr;
-  if (letter == 'M' && is_named_function(static_cast<int>(tenths), code, reader.column_of(place), control))
-    return;
+  if (letter == 'M' && is_builders(static_cast<int>(tenths), code, reader.column_of(place), control)) return;
   if (code == nullptr) {
     control.fail("unknown-word", reader.column_of(place),
                  fmt::format("{}{:g} is no code of this dialect", letter, number),

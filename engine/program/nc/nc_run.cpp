@@ -6,6 +6,7 @@
 #include <cctype>
 #include <charconv>
 #include <filesystem>
+#include <string_view>
 
 #include "program/nc/control.h"
 #include "program/nc/dialect.h"
@@ -105,12 +106,27 @@ const char* dialect_name(Dialect dialect) {
   return "";
 }
 
-std::optional<int> m_number(const std::string& word) {
-  int number = 0;
-  const char* end = word.data() + word.size();
-  if (word.size() < 2 || word.size() > 5 || (word[0] != 'M' && word[0] != 'm')) return std::nullopt;
-  const auto [last, problem] = std::from_chars(word.data() + 1, end, number);
-  return problem == std::errc() && last == end && number >= 0 ? std::optional(number) : std::nullopt;
+std::string builder_word(const std::string& written) {
+  std::string word;
+  for (const char c : written) {
+    if (c == ' ' && (word.empty() || word.back() == ' ')) continue;
+    word += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  }
+  const auto number_after = [&](std::string_view head) -> std::string {
+    int number = 0;
+    const char* end = word.data() + word.size();
+    const auto [last, problem] = std::from_chars(word.data() + head.size(), end, number);
+    const bool whole = problem == std::errc() && last == end && number >= 0 && number < 10000;
+    return whole ? fmt::format("{}{}", head, number) : "";
+  };
+  constexpr std::string_view kCycle = "CYCL DEF ";
+  if (word.starts_with(kCycle)) return number_after(kCycle);
+  if (word.size() > 1 && word[0] == 'M' && std::isdigit(static_cast<unsigned char>(word[1])) != 0)
+    return number_after("M");
+  const auto of_names = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
+  const bool name = word.size() > 1 && std::isdigit(static_cast<unsigned char>(word[0])) == 0 &&
+                    std::all_of(word.begin(), word.end(), of_names);
+  return name ? word : "";
 }
 
 const char* kinematics_name(Kinematics kinematics) {

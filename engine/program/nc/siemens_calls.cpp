@@ -72,6 +72,7 @@ bool Flow::subprogram_here(TokenReader& reader) {
   }
   if (token.kind == TokenKind::kAddress && token.letter == 'L' && token.whole) name = capitals(token.text);
   if (name.empty()) return false;
+  if (target_.takes_builders(name, reader.line())) return true;  // with its arguments
   reader.next();
   call_here(reader, name, token.offset);
   return true;
@@ -83,11 +84,14 @@ void Flow::call_here(TokenReader& reader, const std::string& name, size_t offset
     std::vector<std::string> known = target_.names();
     for (const std::string& variable : variables_.names()) known.push_back(variable);
     const std::string near = nearest_name(name, known);
-    refuse(reader.line(), offset, "unknown-word",
-           fmt::format("{} is neither a word that is read, nor a variable, nor the name of a program", name),
-           !near.empty()
-               ? fmt::format("did you mean {}?", near)
-               : fmt::format("put {}.spf into the program's folder or one of subprogram_folders", name));
+    refuse(
+        reader.line(), offset, "unknown-word",
+        fmt::format("{} is neither a word that is read, nor a variable, nor the name of a program", name),
+        !near.empty()
+            ? fmt::format("did you mean {}?", near)
+            : fmt::format("put {}.spf into the program's folder or one of subprogram_folders; a program of "
+                          "the machine's builder that moves nothing is named in builder_words",
+                          name));
   }
   call(file, &reader, {}, 1);
 }

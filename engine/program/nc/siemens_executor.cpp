@@ -32,6 +32,11 @@ void Executor::note(const std::string& word, const std::string& text, const std:
   control_.note(word, text);
 }
 
+bool Executor::takes_builders(const std::string& name, const LineRef& line) {
+  control_.at(control_.enter_file(*line.file), line.line, 1);
+  return control_.take_builder_word(name);
+}
+
 Outcome Executor::block(TokenReader& reader, Variables& variables) {
   line_ = &reader.line();
   if (line_->file != file_name_) {

@@ -27,6 +27,7 @@ class Executor final : public BlockTarget {
   bool knows(const std::string& name) const override { return find_word(name) != nullptr; }
   const std::vector<std::string>& names() const override { return word_names(); }
   void note(const std::string& word, const std::string& text, const std::string& file, int line) override;
+  bool takes_builders(const std::string& name, const LineRef& line) override;
   long moves() const override;
 
  private:

@@ -33,6 +33,8 @@ class BlockTarget : public SystemVariables {
   virtual const std::vector<std::string>& names() const = 0;
   /// Words without effect: declarations that are read over, a block skip that is off.
   virtual void note(const std::string& word, const std::string& text, const std::string& file, int line) = 0;
+  /// True for a program of the machine's builder that moves nothing, and is listed.
+  virtual bool takes_builders(const std::string& name, const LineRef& line) = 0;
   /// Moves so far: loops that move nothing are endless.
   virtual long moves() const = 0;
 };

@@ -100,20 +100,46 @@ TEST(NcFanuc, NurbsQuarterCircle) {
   expect_tip(run.moves().back(), -5, 10, 0);
 }
 
-TEST(NcFanuc, FunctionsOfTheBuilderAreNamedOrRefused) {
+TEST(NcBuilderWords, OfLettersAreNamedOrRefused) {
   ControlSetup setup = three_axis_setup();
   const std::string text = "G00 X1 M68\nM46\nM30\n";
   EXPECT_EQ(run_text(text, Dialect::kFanuc, setup).first_error(), "unknown-word 1:8");
-  setup.m_functions = {{46, "probe out"}, {68, "clamp C"}};
+  setup.builder_words = {{"M46", "probe out"}, {"M68", "clamp C"}};
   const NcRun run = run_text(text, Dialect::kFanuc, setup);
   ASSERT_EQ(run.text(), "");
   EXPECT_EQ(run.summary.functions, (std::vector<std::string>{"M68 (clamp C)", "M46 (probe out)"}));
   EXPECT_EQ(run.moves().size(), 1u);
-  setup.m_functions = {{3, "fan"}};
-  EXPECT_EQ(run_text("M03 S1\nM30\n", Dialect::kFanuc, setup).first_error(), "reserved-function 1:1");
-  setup.m_functions = {{150, "part counter"}};
+  setup.builder_words = {{"M3", "fan"}};
+  EXPECT_EQ(run_text("M03 S1\nM30\n", Dialect::kFanuc, setup).first_error(), "reserved-word 1:1");
+  setup.builder_words = {{"M150", "part counter"}};
   EXPECT_EQ(run_text("M150\nM2\n", Dialect::kLinuxCnc, setup).text(), "");
   EXPECT_EQ(run_text("M151\nM2\n", Dialect::kLinuxCnc, setup).first_error(), "unsupported-word 1:1");
+}
+
+TEST(NcBuilderWords, CyclesAndProgramsAreNamedOrRefused) {
+  ControlSetup setup = three_axis_setup();
+  const std::string cycle =
+      "BEGIN PGM A MM\nCYCL DEF 392 ATC~\n Q240=7 ;MODE~\n Q241=1\nL X+Q240 FMAX\nEND PGM A MM\n";
+  const std::string call = "LASERCHECK(1,\"X\")\nL701 P2\nG0 X7\nM30\n";
+  EXPECT_EQ(run_text(cycle, Dialect::kHeidenhain, setup).first_error(), "unknown-word 2:10");
+  EXPECT_EQ(run_text(call, Dialect::kSiemens, setup).first_error(), "unknown-word 1:1");
+  setup.builder_words = {{"CYCL DEF 392", "tuning"}, {"LASERCHECK", "tool measured"}, {"L701", "pallet"}};
+  const NcRun tuned = run_text(cycle, Dialect::kHeidenhain, setup),
+              checked = run_text(call, Dialect::kSiemens, setup);
+  EXPECT_EQ(tuned.text() + checked.text(), "");
+  ASSERT_EQ(tuned.moves().size() + checked.moves().size(), 2u);
+  EXPECT_EQ(tuned.moves()[0].to.tip_W.x(), 7.0);
+  EXPECT_EQ(tuned.summary.functions, (std::vector<std::string>{"CYCL DEF 392 (tuning)"}));
+  EXPECT_EQ(checked.summary.functions,
+            (std::vector<std::string>{"LASERCHECK (tool measured)", "L701 (pallet)"}));
+}
+
+TEST(NcBuilderWords, AreWrittenInAFewWays) {
+  EXPECT_EQ(builder_word("m068"), "M68");
+  EXPECT_EQ(builder_word("cycl  def 392"), "CYCL DEF 392");
+  EXPECT_EQ(builder_word("LaserCheck_1"), "LASERCHECK_1");
+  for (const char* wrong : {"", "M", "G68 X", "68", "M6.5", "CYCL DEF x", "M99999", "a-b"})
+    EXPECT_EQ(builder_word(wrong), "") << wrong;
 }
 
 TEST(NcFanuc, UnitsForgetTheFeed) {

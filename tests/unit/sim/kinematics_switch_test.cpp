@@ -1,4 +1,4 @@
-// The scene's keys for LinuxCNC's M428, M429 and M430, and for M functions of the machine's builder.
+// The scene's keys for LinuxCNC's M428, M429 and M430, and for the words of the machine's builder.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -49,14 +49,17 @@ TEST(KinematicsSwitch, IsReadFromTheScene) {
   EXPECT_FALSE(silent.scene.kinematics_switch.m430);
 }
 
-TEST(MFunctions, AreReadFromTheScene) {
-  const Loaded told = load("nc = \"p.nc\"\nm_functions = { M68 = \"clamp C\", m046 = \"probe out\" }\n");
+TEST(BuilderWords, AreReadFromTheScene) {
+  const Loaded told = load(
+      "nc = \"p.nc\"\nbuilder_words = { M68 = \"clamp C\", \"cycl def 392\" = \"tuning\", m046 = \"probe "
+      "out\" }\n");
   EXPECT_EQ(told.errors, "");
-  EXPECT_EQ(told.scene.m_functions, (std::map<int, std::string>{{46, "probe out"}, {68, "clamp C"}}));
-  EXPECT_NE(load("nc = \"p.nc\"\nm_functions = { G68 = \"x\" }\n").errors.find("'G68'"), std::string::npos);
-  EXPECT_NE(load("nc = \"p.nc\"\nm_functions = { M68 = 1 }\n").errors, "");
-  EXPECT_NE(load("nc = \"p.h\"\ndialect = \"heidenhain\"\nm_functions = { M68 = \"x\" }\n")
-                .errors.find("m_functions"),
+  EXPECT_EQ(told.scene.builder_words,
+            (program::BuilderWords{{"M46", "probe out"}, {"M68", "clamp C"}, {"CYCL DEF 392", "tuning"}}));
+  EXPECT_NE(load("nc = \"p.nc\"\nbuilder_words = { \"G68 X\" = \"x\" }\n").errors.find("'G68 X'"),
+            std::string::npos);
+  EXPECT_NE(load("nc = \"p.nc\"\nbuilder_words = { M68 = 1 }\n").errors, "");
+  EXPECT_NE(load("cl = \"p.cl\"\nbuilder_words = { M68 = \"x\" }\n").errors.find("builder_words"),
             std::string::npos);
 }
 
