@@ -37,7 +37,8 @@ inline constexpr int kRootDegreeMax = 6;
 struct UnitRoots {
   std::array<double, kRootDegreeMax + 1> t{};
   int count = 0;
-  std::span<const double> all() const { return {t.data(), static_cast<size_t>(count)}; }
+  std::span<const double> all() const& { return {t.data(), static_cast<size_t>(count)}; }
+  std::span<const double> all() const&& = delete;  // it would outlive what it shows
 };
 
 /// Every t in [0,1] where sum coefficients[k] t^k changes its sign, to the last bits of double. The roots of

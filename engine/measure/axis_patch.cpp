@@ -59,7 +59,8 @@ double AxisPatch::distance(const Vec3& x) const {
   }
   double least = std::min({segment_distance(x, P0_, Q0_), segment_distance(x, P1_, Q1_),
                            segment_distance(x, P0_, P1_), segment_distance(x, Q0_, Q1_)});
-  for (const double t : unit_roots(slope).all()) {
+  const UnitRoots inside = unit_roots(slope);
+  for (const double t : inside.all()) {
     const Vec3 P = P0_ + t * dP_;
     least = std::min(least, segment_distance(x, P, P + Q_ + t * dQ_));
   }

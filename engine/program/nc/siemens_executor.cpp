@@ -219,6 +219,7 @@ void Executor::noted_words(const BlockWords& words) {
     control_.note(name, "");
   }
   for (const NamedPlace& word : words.noted) {
+    keep_contour_rule(word);
     control_.without_effect(word.name);
     control_.note(word.name, "");
   }
@@ -249,6 +250,26 @@ void Executor::feed_group(const CycleCall& call) {
 }
 
 /// G40, G41, G42: before the motion of their block. OFFN widens the cutter from the next G41, G42 on.
+/// How G41 and G42 enter contours and pass corners: without effect as long as they are off.
+void Executor::keep_contour_rule(const NamedPlace& word) {
+  const bool entry = word.name == "NORM" || word.name.starts_with("KONT");
+  if (!entry && word.name != "G450" && word.name != "G451") return;
+  std::string& rule = entry ? entry_rule_ : corner_rule_;
+  if (rule == word.name) return;
+  rule = word.name;
+  if (control_.compensation() != Compensation::kOff) check_contour_rules(word.offset);
+}
+
+void Executor::check_contour_rules(size_t offset) const {
+  if (corner_rule_ != "G450")
+    fail("unsupported-word", offset,
+         "G41 and G42 with G451 (outer corners that run out to a point) are not supported",
+         "G450: outer corners are rounded");
+  if (entry_rule_ != "NORM")
+    fail("unsupported-word", offset, fmt::format("G41 and G42 with {} are not supported", entry_rule_),
+         "NORM: contours are entered at a right angle");
+}
+
 void Executor::cutter_words(const BlockWords& words) {
   const std::optional<int> code = words.code(Group::kCutter);
   if (words.allowance) {
@@ -263,6 +284,7 @@ void Executor::cutter_words(const BlockWords& words) {
     control_.set_compensation(Compensation::kOff, 0.0, control_.place().column);
     return;
   }
+  check_contour_rules(0);
   const NcTool* tool = control_.active_tool();
   if (tool == nullptr || !control_.length_compensated()) {
     control_.fail("compensation-no-tool", 0,

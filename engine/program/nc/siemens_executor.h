@@ -54,6 +54,8 @@ class Executor final : public BlockTarget {
   void set_cutting_edge(double edge, size_t offset);
   void spindle_words(const BlockWords& words);
   void noted_words(const BlockWords& words);
+  void keep_contour_rule(const NamedPlace& word);
+  void check_contour_rules(size_t offset) const;
   void cutter_words(const BlockWords& words);
   void feed_group(const CycleCall& call);
   Outcome end_words(const BlockWords& words);
@@ -151,7 +153,8 @@ class Executor final : public BlockTarget {
   std::optional<int> angles_;         ///< ORIEULER, ORIRPY
   bool by_way_ = true;                ///< SPATH; false: UPATH
   double allowance_mm_ = 0.0;         ///< OFFN
-  bool feed_of_rotaries_ = false;     ///< FGROUP has them
+  std::string corner_rule_ = "G450", entry_rule_ = "NORM";
+  bool feed_of_rotaries_ = false;  ///< FGROUP has them
   std::array<double, 3> feed_radii_mm_{nc::kDegreePerMm, nc::kDegreePerMm, nc::kDegreePerMm};
   Vec3 pole_ = Vec3::Zero();                               ///< program coordinates, mm
   std::optional<double> polar_angle_;                      ///< AP, degrees

@@ -91,7 +91,8 @@ constexpr const char* kNotedWords[] = {
     "COMPSURF", "STOPRE", "DYNNORM", "DYNPOS",   "DYNROUGH", "DYNFINISH", "DYNSEMIFIN", "DYNPREC",
     "ORISON",   "ORISOF", "CPRECON", "CPRECOF",  "FIFOCTRL", "STARTFIFO", "STOPFIFO",   "WALIMON",
     "WALIMOF",  "DIAMOF", "CUT2D",   "RTLION",   "SBLOF",    "SBLON",     "DISPLOF",    "DISPLON",
-    "CDOF",     "CDOF2",  "CDON",    "FENDNORM", "PAROTOF",  "TOROTOF"};
+    "CDOF",     "CDOF2",  "CDON",    "FENDNORM", "PAROTOF",  "TOROTOF",   "NEWCONF",    "G451",
+    "KONT",     "KONTC",  "KONTT"};
 
 constexpr const char* kNotedCalls[] = {"MSG",   "POLYPATH", "WORKPIECE", "GROUP_BEGIN", "GROUP_END", "SETMS",
                                        "WAITM", "WAITMC",   "WAITE",     "SETM",        "CLEARM"};
@@ -147,8 +148,7 @@ const std::vector<Refused>& refused_words() {
       {"constant cutting speed belongs to turning: write G97 and the speed S with M3 or M4",
        {"G96", "G961", "G962", "G971", "G972", "G973", "G25", "G26"}},
       {"outer corners are rounded (G450)",
-       {"G451", "KONT", "KONTC", "KONTT", "CUT3DC", "CUT3DF", "CUT3DFS", "CUT3DFF", "CUT3DCC", "CUT2DF",
-        "G461", "G462"}},
+       {"CUT3DC", "CUT3DF", "CUT3DFS", "CUT3DFF", "CUT3DCC", "CUT2DF", "G461", "G462"}},
       {"the feed is given with F under G93, G94 or G95",
        {"FRC", "FRCM", "FB", "FZ", "FPO", "FL", "OVR", "OVRA"}},
       {"the machine file says how rapid moves run", {"RTLIOF"}},

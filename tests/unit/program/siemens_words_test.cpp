@@ -309,6 +309,19 @@ TEST(SiemensSwivel, RetractsAlongTheToolToTheEndOfTravel) {
   EXPECT_EQ(ran.moves[1].q_to[0], 10.0);
 }
 
+TEST(SiemensWords, RulesOfContoursMatterUnderCompensationOnly) {
+  EXPECT_EQ(run_clean("G153 G0 G17 G90 G40 G60 G451 G601 CFC NORM\nNEWCONF\nG0 X1\nM30\n").moves.size(), 1U);
+  for (const char* word : {"G451", "KONT", "KONTC"}) {
+    const Ran ran = run_text(fmt::format("{}\nG41 G1 X10 Y10 F100\nM30\n", word));
+    ASSERT_FALSE(errors_of(ran.diagnostics).empty()) << word;
+    EXPECT_NE(errors_of(ran.diagnostics)[0].find("unsupported-word"), std::string::npos)
+        << errors_of(ran.diagnostics)[0];
+  }
+  const Ran back = run_text("G451 KONT\nG450 NORM\nG41 G1 X10 Y10 F100\nM30\n");
+  ASSERT_FALSE(errors_of(back.diagnostics).empty());  // no tool is in the spindle
+  EXPECT_NE(errors_of(back.diagnostics)[0].find("compensation-no-tool"), std::string::npos);
+}
+
 TEST(SiemensWords, Cycle832TakesItsTypesByName) {
   for (const char* type : {"_ROUGH", "_SEMIFIN", "_FINISH", "_ORI_FINISH"}) {
     const Ran ran = run_clean(fmt::format("CYCLE832(0.03,{},1)\nG1 X1 F100\nM30\n", type));
