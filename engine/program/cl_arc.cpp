@@ -67,6 +67,32 @@ void ClInterpreter::circle(const ClStatement& s) {
   circle_ = Circle{centre_W, *sense * axis_W, radius, turns};
 }
 
+/// ISO 4343: counter-clockwise about its vector, round an angle that stands with it.
+void ClInterpreter::move_arc(const ClStatement& s) {
+  const bool form = s.arguments.size() == 9 && s.arguments[7].text == "ANGLE" &&
+                    std::all_of(s.arguments.begin(), s.arguments.end(),
+                                [&](const ClArgument& one) { return one.number || &one == &s.arguments[7]; });
+  if (!form) {
+    fault("wrong-arguments", s, "MOVARC takes a centre, a vector, a radius and an angle",
+          "write MOVARC/cx,cy,cz,i,j,k,r,ANGLE,a (a in degrees)");
+    return;
+  }
+  Vec3 axis;
+  if (!unit_vector(s, 3, "arc's axis", axis)) return;
+  const double radius = mm(s.arguments[6].value), degrees = s.arguments[8].value;
+  if (radius <= kArcTolerance || !(degrees > 0.0 && degrees <= 3.6e6)) {
+    fault("out-of-range", s,
+          fmt::format("the arc has a radius of {:g} mm and goes round {:g} deg", radius, degrees),
+          fmt::format("both are above zero, the radius above {:g} mm", kArcTolerance));
+    return;
+  }
+  if (cycle_) {
+    fault("bad-arc", s, "an arc stands inside a cycle", "write CYCLE/OFF before it");
+    return;
+  }
+  circle_ = Circle{X_WC_ * point_at(s, 0), X_WC_.linear() * axis, radius, degrees / 360.0};
+}
+
 void ClInterpreter::go_round(const ClStatement& s) {
   const char* form = "the points of the arc as x,y,z, or as x,y,z,i,j,k under MULTAX/ON; the last is its end";
   if (!all_numbers(s, form)) return;

@@ -87,6 +87,7 @@ class ClInterpreter {
 
   // Arcs (cl_arc.cpp).
   void circle(const ClStatement& s);
+  void move_arc(const ClStatement& s);
   void direction(const ClStatement& s);
   void part_surface(const ClStatement& s);
   void tool_on(const ClStatement& s);
@@ -107,6 +108,7 @@ class ClInterpreter {
 
   // Coordinate systems (cl_system.cpp).
   void system(const ClStatement& s);
+  void matrix_system(const ClStatement& s);
   void creo_system(const ClStatement& s);
   void catia_system(const ClStatement& s);
   void origin(const ClStatement& s);

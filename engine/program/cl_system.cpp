@@ -83,6 +83,22 @@ void ClInterpreter::system(const ClStatement& s) {
   set_system(X_SC);
 }
 
+/// Three axes of the system and its origin, as the CAMplete output of Autodesk's systems has them.
+void ClInterpreter::matrix_system(const ClStatement& s) {
+  if (!may_change_system(s)) return;
+  if (!numbers(s, 12, 12, "MCS/xi,xj,xk, yi,yj,yk, zi,zj,zk, ox,oy,oz (unit axes, origin)")) return;
+  std::array<double, 12> rows{};
+  for (size_t column = 0; column < 4; ++column) {
+    for (size_t row = 0; row < 3; ++row) rows[4 * row + column] = s.arguments[3 * column + row].value;
+  }
+  const std::optional<Pose> X_SC = pose_from_rows(rows, unit_mm_);
+  if (!X_SC) {
+    fault("bad-system", s, "MCS holds no rotation", "its axes must be unit vectors at right angles");
+    return;
+  }
+  set_system(*X_SC);
+}
+
 void ClInterpreter::creo_system(const ClStatement& s) {
   if (!may_change_system(s)) return;
   mark(ClWriter::kCreo, s.word, s);

@@ -38,6 +38,15 @@ void expect_moves(const ClProgram& p, const std::vector<Expected>& expected) {
   }
 }
 
+TEST(ClWriters, ArcsOfIso4343AndSystemsByMatrix) {
+  const ClProgram p = read_good("autodesk.apt");
+  expect_moves(p, {{'a', 0, 10, 5},   // 90 degrees
+                   {'c', -10, 0, 5},  // 270 degrees the other way
+                   {'a', -10, 0, 1},  // a helix of a turn and a quarter: 4 of 5 mm in the whole turn
+                   {'a', 0, -10, 0},
+                   {'f', 100, 5, 0}});  // 5 along the X of a system that is turned by 90 degrees
+}
+
 TEST(ClWriters, HelicesAndCyclesOfNx) {
   const ClProgram p = read_good("nx_helix.cls");
   EXPECT_EQ(p.writer, ClWriter::kNx);
