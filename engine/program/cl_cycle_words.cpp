@@ -19,7 +19,8 @@ constexpr std::array kKinds{KindName{"DRILL", ClCycleKind::kDrill},      KindNam
                             KindName{"REAM", ClCycleKind::kBore},        KindName{"TAP", ClCycleKind::kTap}};
 constexpr const char* kForm =
     "write CYCLE/DRILL,DEPTH,20,MMPM,100,CLEAR,5 (kinds DRILL FACE CSINK DEEP BRKCHP BORE REAM TAP; words "
-    "DEPTH or FEDTO, a feed, CLEAR or RAPTO, RTRCTO or RETURN, DWELL, STEP), or CYCLE/OFF";
+    "DEPTH or FEDTO, a feed, CLEAR or RAPTO, RTRCTO or RETURN, DWELL, STEP), CYCLE/ON with the words that "
+    "change, or CYCLE/OFF";
 constexpr double kNotGiven = -1.0;
 
 bool is_feed(const std::string& word) {
@@ -45,6 +46,7 @@ bool ClInterpreter::read_retract(const ClStatement& s, size_t& at, ClCycle& cycl
     return false;
   } else {
     cycle.retract_mm = mm(value.value);
+    cycle.retract_to_start = false;
   }
   at += manual ? 3 : 2;
   return true;
@@ -103,24 +105,43 @@ bool ClInterpreter::read_fixed_cycle(const ClStatement& s, ClCycle& cycle) {
   return cycle.feed_mm_s > 0.0;
 }
 
-bool ClInterpreter::read_cycle(const ClStatement& s, ClCycle& cycle) {
-  const KindName* kind = nullptr;
-  for (const KindName& known : kKinds) {
-    if (!s.arguments.empty() && s.arguments[0].text == known.word) kind = &known;
+/// The kind, or NX's DRILL with DEEP or BRKCHP behind it; ON: the words of the cycle before. `at`: of the
+/// first word after it.
+bool ClInterpreter::read_cycle_kind(const ClStatement& s, size_t& at, ClCycle& cycle) {
+  at = 1;
+  const auto word = [&](size_t i) { return i < s.arguments.size() ? s.arguments[i].text : std::string(); };
+  if (word(0) == "ON") {
+    if (cycle_words_) cycle = *cycle_words_;
+    if (!cycle_words_)
+      fault("bad-cycle", s, "CYCLE/ON changes the words of a cycle, and none stands before it", kForm);
+    return cycle_words_.has_value();
   }
-  if (kind == nullptr) {
+  const auto* kind = std::find_if(kKinds.begin(), kKinds.end(),
+                                  [&](const KindName& known) { return word(0) == known.word; });
+  if (kind == kKinds.end()) {
     fault("unsupported-word", s, "this CYCLE is not followed", kForm);
     return false;
   }
   cycle.kind = kind->kind;
   cycle.retract_mm = cycle.arrive_mm = cycle.clear_mm = kNotGiven;
-  if (s.arguments.size() > 1 && s.arguments[1].number) {
+  if (word(0) == "DRILL" && (word(1) == "DEEP" || word(1) == "BRKCHP")) {
+    cycle.kind = word(1) == "DEEP" ? ClCycleKind::kDeep : ClCycleKind::kChipBreak;
+    at = 2;
+  }
+  return true;
+}
+
+bool ClInterpreter::read_cycle(const ClStatement& s, ClCycle& cycle) {
+  size_t at = 0;
+  if (!read_cycle_kind(s, at, cycle)) return false;
+  if (at < s.arguments.size() && s.arguments[at].number) {
     if (!read_fixed_cycle(s, cycle)) return false;
   } else {
-    for (size_t at = 1; at < s.arguments.size();) {
+    while (at < s.arguments.size()) {
       if (!read_cycle_word(s, at, cycle)) return false;
     }
   }
+  cycle_words_ = cycle;
   const bool both = cycle.arrive_mm != kNotGiven && cycle.clear_mm != kNotGiven;
   if (both && program_.writer != ClWriter::kCreo) {
     fault("bad-cycle", s, "the cycle has CLEAR and RAPTO: Creo counts RAPTO from CLEAR, others from the hole",

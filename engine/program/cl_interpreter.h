@@ -167,6 +167,7 @@ class ClInterpreter {
   // CYCLE (cl_cycle_words.cpp).
   bool read_cycle(const ClStatement& s, ClCycle& cycle);
   bool read_fixed_cycle(const ClStatement& s, ClCycle& cycle);
+  bool read_cycle_kind(const ClStatement& s, size_t& at, ClCycle& cycle);
   bool read_cycle_word(const ClStatement& s, size_t& at, ClCycle& cycle);
   bool read_retract(const ClStatement& s, size_t& at, ClCycle& cycle);
   /// False with a fault when the cycle contradicts itself.
@@ -200,8 +201,9 @@ class ClInterpreter {
   std::optional<Plane> part_surface_, clearance_;
   std::optional<ToolPose> home_;  ///< FROM
   std::optional<ClCycle> cycle_;
-  Vec3 cycle_start_W_ = Vec3::Zero();  ///< where the tip stood when the cycle began
-  std::optional<ClNurbs> nurbs_;       ///< from MOVNRB/3AXIS or 5AXIS to MOVNRB/OFF
+  std::optional<ClCycle> cycle_words_;  ///< of the last CYCLE, as they were given: what CYCLE/ON changes
+  Vec3 cycle_start_W_ = Vec3::Zero();   ///< where the tip stood when the cycle began
+  std::optional<ClNurbs> nurbs_;        ///< from MOVNRB/3AXIS or 5AXIS to MOVNRB/OFF
   std::unique_ptr<ClCompensation> compensation_;
   nc::Compensation last_side_ = nc::Compensation::kOff;  ///< what CUTCOM/ON switches on again
   nc::Plane last_plane_ = nc::Plane::kXY;

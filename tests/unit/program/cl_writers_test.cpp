@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "program/cl_cycle.h"
 #include "program/cl_writer.h"
 #include "unit/program/cl_support.h"
 
@@ -45,6 +46,24 @@ TEST(ClWriters, ArcsOfIso4343AndSystemsByMatrix) {
                    {'a', -10, 0, 1},  // a helix of a turn and a quarter: 4 of 5 mm in the whole turn
                    {'a', 0, -10, 0},
                    {'f', 100, 5, 0}});  // 5 along the X of a system that is turned by 90 degrees
+}
+
+TEST(ClWriters, DeepHolesOfNxAndTheirChanges) {
+  const ClProgram p = read_good("nx_deep_holes.cls");
+  const double gap = kPeckGap;
+  std::vector<Expected> expected;
+  const auto hole = [&](double x, double depth, double out) {
+    expected.push_back({'r', x, 0, -47});  // CLEAR,3 above the hole at -50 of W
+    expected.push_back({'f', x, 0, -70});
+    expected.push_back({'r', x, 0, -47});
+    expected.push_back({'r', x, 0, -70 + gap});
+    expected.push_back({'f', x, 0, -50 - depth});
+    expected.push_back({'r', x, 0, out});
+  };
+  hole(10, 36, 30);  // AUTO: back to the height before the cycle
+  hole(20, 38.5, 30);
+  hole(30, 36, -42);  // RTRCTO,8
+  expect_moves(p, expected);
 }
 
 TEST(ClWriters, HelicesAndCyclesOfNx) {
