@@ -23,7 +23,7 @@ OtherMode other_mode(std::span<const BlockMotion> motions);
 
 /// Warnings "fast-rotary" (rotary distance per tip distance beyond the threshold, feed blocks) and "swing"
 /// (one rotary axis turns far within a block, and which way): the first kListed of each with their blocks,
-/// then how many there are.
+/// then how many there are. Their times are left to the caller.
 std::vector<MotionFinding> find_fast_turns(const toolpath::ToolPath& path,
                                            std::span<const BlockMotion> motions,
                                            const MotionOptions& options);

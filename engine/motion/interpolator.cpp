@@ -94,8 +94,10 @@ class Recorder {
     rank_tick_costs();
     for (MotionFinding& fault : find_axis_faults(result_.trajectory, path_, machine_))
       result_.findings.push_back(std::move(fault));
-    for (MotionFinding& warning : find_fast_turns(path_, motions, options_))
+    for (MotionFinding& warning : find_fast_turns(path_, motions, options_)) {
+      warning.t_s = first_time(warning.element);
       result_.findings.push_back(std::move(warning));
+    }
     std::stable_sort(result_.findings.begin(), result_.findings.end(),
                      [](const MotionFinding& a, const MotionFinding& b) { return a.element < b.element; });
     return std::move(result_);
@@ -134,6 +136,15 @@ class Recorder {
       sample.kind = SampleKind::kCutting;
       record(sample, branch);
     }
+  }
+
+  /// Of the first sample in the element, or behind it when it is shorter than a cycle.
+  double first_time(int element) const {
+    const std::vector<ToolSample>& samples = result_.trajectory.samples;
+    const auto first =
+        std::lower_bound(samples.begin(), samples.end(), element,
+                         [](const ToolSample& one, int sought) { return one.element < sought; });
+    return first == samples.end() ? result_.statistics.time_s : first->t_s;
   }
 
   const kinematics::InverseKinematics& inverse() const {

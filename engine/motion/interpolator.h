@@ -117,7 +117,7 @@ struct MotionFinding {
   std::string code;  ///< "travel" | "axis-speed" | "unreachable"; warnings: "fast-rotary" | "swing"
   std::string text;
   int element = 0;
-  double t_s = 0.0;  ///< of the worst sample
+  double t_s = 0.0;  ///< of the worst sample; of the block's first one for a warning
   SourceLocation where;
   Severity severity = Severity::kError;
 };

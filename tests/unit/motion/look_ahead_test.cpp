@@ -141,6 +141,19 @@ TEST(LookAhead, TurnsOfTheProgramAreFollowed) {
   }
 }
 
+TEST(LookAhead, WarningsHaveTheTimeOfTheirBlock) {
+  const MachineModel machine = paper_machine();
+  const AxisValues from = values(0, 0, 0, 0.4, 0.1), there = values(100, 0, 0, 0.4, 0.1);
+  const MotionResult result = run(
+      path_through(machine, {from, there, values(100, 0, 0, 0.4, 0.1 + 1.5 * kPi)}, BlockLaw::kJoint, 20.0),
+      machine);
+  ASSERT_FALSE(result.findings.empty());
+  const MotionFinding& swing = result.findings.back();
+  EXPECT_EQ(swing.code, "swing");
+  EXPECT_EQ(swing.element, 1);
+  EXPECT_NEAR(swing.t_s, RestToRest(100, 20, 2000, 5e4).duration(), 2e-3);  // after the first block
+}
+
 TEST(LookAhead, TheBranchIsThatOfTheProgramEvenOutOfTravel) {
   MachineModel machine = paper_machine();
   machine.axes[3].max = 0.2;  // the program tilts further; the other branch would be within travel
