@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,13 @@ struct Region {
 /// SurfaceMetrics lists no more regions of a kind than this, the worst.
 inline constexpr size_t kListedRegions = 20;
 
+/// What is proven of the whole design, between the rays too (theory 8): no place of it lies deeper, or carries
+/// higher material, than this.
+struct Bound {
+  double um = 0.0;
+  Vec3 place = Vec3::Zero();  ///< about where the proof is loosest: a point of the design, W, mm
+};
+
 struct SurfaceMetrics {
   size_t samples = 0;
   double area_mm2 = 0.0;         ///< of the design
@@ -44,6 +52,9 @@ struct SurfaceMetrics {
   double excess_max_um = 0.0;  ///< highest material anywhere: uncut, or left above an undercut, included
   uint32_t excess_block = 0xffffffffu;
   double within_tolerance_pct = 0.0;  ///< share of the area between -gouge limit and +scallop limit
+  /// None: not proven (no design, or the proof was not asked for). Never below gouge_max_um, excess_max_um.
+  std::optional<Bound> gouge_bound, excess_bound;
+  double unmeasured_area_mm2 = 0.0;  ///< of the design, that neither rays nor the proof have looked at
   size_t uncut_samples = 0;
   size_t overhung_samples = 0;                   ///< rays with material above a gap
   size_t gouge_regions = 0, excess_regions = 0;  ///< all of them
