@@ -55,7 +55,7 @@ void print_outcome(const sim::Job& job, const sim::Result& result, const std::st
   fmt::print("\n{}\n", job.scene.title);
   print_table(reports::summary_lines(job, result));
   print_findings(result.findings);
-  fmt::print("  {}\n  report: {}\n", sim::passes(result) ? "PASS: every limit of [accept] holds" : "FINDINGS",
+  fmt::print("  {}\n  report: {}\n", sim::verdict_sentence(result.checks),
              (std::filesystem::path(folder) / "report.html").string());
 }
 

@@ -38,7 +38,7 @@ std::vector<Check> cl_checks(const program::ClProgram& program) {
   }
   if (words.empty()) return {};
   return {{"Words of the CL data without effect on the geometry", "",
-           fmt::format("read, not simulated: {}", fmt::join(words, ", ")), Check::State::kNotChecked}};
+           fmt::format("read, not simulated: {}", fmt::join(words, ", ")), State::kNotChecked}};
 }
 
 }  // namespace swarf::reports

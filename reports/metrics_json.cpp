@@ -104,6 +104,11 @@ Json regions_json(const sim::Result& result, const std::vector<measure::Region>&
   return list;
 }
 
+/// Not proven: null.
+Json bound_json(const std::optional<measure::Bound>& bound) {
+  return bound ? Json(bound->um) : Json(nullptr);
+}
+
 Json surface_json(const measure::SurfaceMetrics& surface) {
   return {{"area_mm2", surface.area_mm2},
           {"scallop_max_um", surface.scallop_max_um},
@@ -113,8 +118,11 @@ Json surface_json(const measure::SurfaceMetrics& surface) {
           {"scallop_theory_um", surface.scallop_theory_um},
           {"ridges", surface.ridges},
           {"gouge_max_um", surface.gouge_max_um},
+          {"gouge_bound_um", bound_json(surface.gouge_bound)},
           {"gouge_area_mm2", surface.gouge_area_mm2},
           {"excess_max_um", surface.excess_max_um},
+          {"excess_bound_um", bound_json(surface.excess_bound)},
+          {"unmeasured_area_mm2", surface.unmeasured_area_mm2},
           {"within_tolerance_pct", surface.within_tolerance_pct},
           {"samples", surface.samples},
           {"uncut_samples", surface.uncut_samples},
@@ -149,12 +157,12 @@ Json comparison_json(const std::vector<sim::ComparisonRow>& rows) {
   return list;
 }
 
-Json cross_check_json(const measure::CrossCheck& check) {
-  return {{"mean_abs_um", check.mean_abs_um},
-          {"p99_um", check.p99_um},
-          {"max_um", check.max_um},
-          {"bound_um", check.bound_um},
-          {"holds", check.holds}};
+Json cross_check_json(const std::optional<measure::CrossCheck>& compared) {
+  const measure::CrossCheck check = compared.value_or(measure::CrossCheck());
+  const Json json = {{"mean_abs_um", check.mean_abs_um}, {"p99_um", check.p99_um}, {"max_um", check.max_um},
+                     {"bound_um", check.bound_um},       {"holds", check.holds},   {"samples", check.samples},
+                     {"excluded", check.excluded}};
+  return compared ? json : unmeasured(json);
 }
 
 Json collisions_json(const sim::ToolClearance& clearance) {
@@ -178,6 +186,34 @@ Json flank_json(const measure::FlankError& flank) {
       {"cutter_radius_mm", flank.cutter_radius_mm},       {"psi_max_deg", deg_from_rad(flank.psi_max_rad)},
       {"twist_bound_mm", flank.twist_bound_mm},           {"static_error_mm", flank.standing_error_mm},
       {"continuous_error_mm", flank.continuous.error_mm}, {"rows", rows}};
+}
+
+Json number_or_null(const std::optional<double>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+Json checks_json(const std::vector<sim::Check>& checks) {
+  Json list = Json::array();
+  for (const sim::Check& check : checks) {
+    list.push_back({{"name", check.name},
+                    {"outcome", sim::outcome_name(check.outcome)},
+                    {"unit", check.unit},
+                    {"limit", number_or_null(check.limit)},
+                    {"value", number_or_null(check.value)},
+                    {"bound", number_or_null(check.bound)},
+                    {"text", check.what},
+                    {"reason", check.reason}});
+  }
+  return list;
+}
+
+Json not_judged_json(const std::vector<sim::Check>& checks) {
+  Json list = Json::array();
+  for (const sim::Check& check : checks) {
+    if (check.outcome == sim::Outcome::kNotJudged)
+      list.push_back({{"name", check.name}, {"reason", check.reason}});
+  }
+  return list;
 }
 
 /// A direction without a great circle has no deviation from it: null.
@@ -305,20 +341,23 @@ std::string metrics_json(const sim::Job& job, const sim::Result& result, const R
             {"swarf", SWARF_VERSION},
             {"scene", job.scene.name},
             {"verdict", sim::passes(result) ? "pass" : "findings"},
+            {"verdict_text", sim::verdict_sentence(result.checks)},
+            {"checks", checks_json(result.checks)},
+            {"not_judged", not_judged_json(result.checks)},
             {"motion", motion_json(job, result)},
             {"kinematics", kinematics_json(job, motion)},
             {"stock", stock_json(job, result)},
             {"surface", measured(surface_json(result.main.surface))},
             {"gouges", regions_json(result, result.main.surface.gouges)},
             {"excesses", regions_json(result, result.main.surface.excesses)},
-            {"cross_check", measured(cross_check_json(result.cross_check))},
+            {"cross_check", cross_check_json(result.cross_check)},
             {"planners", comparison_json(result.planners)},
             {"interpolators", comparison_json(result.modes)},
             {"collisions", collisions_json(result.clearance)},
             {"bad_cuts", bad_cuts_json(result)},
             {"tools", tools_json(job, result)},
             {"render", {{"frames", render.frames}, {"frame_ms_median", render.frame_ms_median}}},
-            {"checks",
+            {"self_checks",
              {{"stock_map", result.cut.map_checks},
               {"stock_voxels", result.cut.voxel_checks},
               {"stock_broken", result.cut.broken_invariant}}},
@@ -338,6 +377,7 @@ std::string findings_json(const sim::Result& result) {
       if (finding.severity != severity) continue;
       list.push_back({{"code", finding.code},
                       {"severity", severity_name(severity)},
+                      {"check", finding.check.empty() ? Json(nullptr) : Json(finding.check)},
                       {"text", finding.text},
                       {"fix", finding.fix},
                       {"file", finding.where.file},

@@ -78,16 +78,16 @@ std::vector<Check> nc_checks(const sim::Result& result) {
   if (!nc.summary.functions.empty()) {
     checks.push_back({"Functions of the program without effect on the geometry", "",
                       fmt::format("read, not simulated: {}", fmt::join(nc.summary.functions, ", ")),
-                      Check::State::kNotChecked});
+                      State::kNotChecked});
   }
   if (nc.moves_without_tool > 0) {
     checks.push_back(
         {"Moves before the first tool", "",
          fmt::format("{} rapids with an empty spindle are left out of path and time", nc.moves_without_tool),
-         Check::State::kNotChecked});
+         State::kNotChecked});
   }
   checks.push_back(
-      {"Time of tool changes", "", "the machine does not say how long one takes", Check::State::kNotChecked});
+      {"Time of tool changes", "", "the machine does not say how long one takes", State::kNotChecked});
   return checks;
 }
 

@@ -56,22 +56,31 @@ const char* tone_class(Tone tone) {
   return "neutral";
 }
 
-std::string headline_of(const Verdict& verdict) {
-  if (!verdict.headline.empty()) return verdict.headline;
-  const size_t all = verdict.criteria.size();
-  const auto held = std::ranges::count_if(verdict.criteria, &Criterion::holds);
-  if (all == 0) return verdict.pass ? "Nothing was found." : "The scene states no limits; see the findings.";
-  if (verdict.pass) return fmt::format("Every one of the {} limits of the scene holds.", all);
-  return fmt::format("{} of the {} limits of the scene hold.", held, all);
+struct StateLook {
+  const char *symbol, *word;
+};
+
+StateLook look_of(State state) {
+  switch (state) {
+    case State::kHolds:
+      return {"ok", "Holds"};
+    case State::kFails:
+      return {"bad", "Fails"};
+    case State::kNotProven:
+      return {"warning", "Not proven"};
+    case State::kNotChecked:
+      break;
+  }
+  return {"none", "Not checked"};
 }
 
 std::string criteria_list(const std::vector<Criterion>& criteria) {
   if (criteria.empty()) return "";
   std::string out = "<ul class=\"criteria\">";
   for (const Criterion& criterion : criteria) {
+    const StateLook look = look_of(criterion.state);
     out += fmt::format(R"(<li>{}<span class="criterion">{}<span class="unseen">: {}</span></span>)",
-                       symbol(criterion.holds ? "ok" : "bad"), escape(criterion.name),
-                       criterion.holds ? "holds" : "does not hold");
+                       symbol(look.symbol), escape(criterion.name), look.word);
     out += element("b", "", criterion.measured) + element("span", "limit", criterion.limit) + "</li>";
   }
   return out + "</ul>";
@@ -192,9 +201,8 @@ std::string verdict_header(const ReportData& data) {
   std::string out = fmt::format(
       R"(<header class="{}"><div class="wrap"><p class="brand">Swarf simulation report</p>)", kind);
   out += element("h1", "", data.title) + element("p", "subtitle", data.subtitle);
-  out +=
-      fmt::format(R"(<div class="verdict" role="status">{}<p><b>{}</b><span>{}</span></p></div>)",
-                  symbol(kind), data.verdict.pass ? "Pass" : "Findings", escape(headline_of(data.verdict)));
+  out += fmt::format(R"(<div class="verdict" role="status">{}<p><b>{}</b><span>{}</span></p></div>)",
+                     symbol(kind), data.verdict.pass ? "Pass" : "Findings", escape(data.verdict.headline));
   return out + criteria_list(data.verdict.criteria) + "</div></header>";
 }
 
@@ -320,13 +328,9 @@ std::string paper_section(const ReportData& data) {
 
 std::string checks_section(const std::vector<Check>& checks) {
   if (checks.empty()) return "";
-  struct Look {
-    const char *symbol, *word;
-  };
-  static constexpr Look kLooks[] = {{"ok", "Holds"}, {"bad", "Fails"}, {"none", "Not checked"}};
   std::string out = table_open({{"State"}, {"Check"}, {"Result or reason"}}, "What was checked");
   for (const Check& check : checks) {
-    const Look& look = kLooks[static_cast<int>(check.state)];
+    const StateLook look = look_of(check.state);
     out += fmt::format(
         R"(<tr><td class="nowrap">{}{}</td><th scope="row">{}</th><td class="prose">{}{}</td></tr>)",
         symbol(look.symbol), look.word, escape(check.what), escape(check.result),

@@ -17,17 +17,20 @@ namespace swarf::reports {
 /// How a value is to be read; always shown in words or by a sign too, never by colour alone.
 enum class Tone { kNeutral, kOk, kWarning, kBad };
 
-/// One line of the scene's [accept] table.
+/// How a check came out. The page shows it and decides nothing.
+enum class State { kHolds, kFails, kNotProven, kNotChecked };
+
+/// One check with a limit.
 struct Criterion {
-  std::string name{};      ///< "Scallop, highest"
-  std::string measured{};  ///< "10.02 um"
-  std::string limit{};     ///< "at most 10.5 um"
-  bool holds = true;
+  std::string name{};      ///< "Highest scallop"
+  std::string measured{};  ///< "10.02 µm"
+  std::string limit{};     ///< "at most 10.5 µm"
+  State state = State::kNotChecked;
 };
 
 struct Verdict {
   bool pass = false;
-  std::string headline;  ///< one sentence; empty: made from the criteria
+  std::string headline;  ///< one sentence that says what was not judged too
   std::vector<Criterion> criteria;
 };
 
@@ -78,11 +81,10 @@ struct PaperRow {
 
 /// What was checked, and what was not, with the reason.
 struct Check {
-  enum class State { kHolds, kFails, kNotChecked };
   std::string what;      ///< "Forward of inverse, all ticks"
   std::string result{};  ///< "largest 3.1e-13 mm, limit 1e-9 mm"
-  std::string reason{};  ///< needed for kNotChecked
-  State state = State::kHolds;
+  std::string reason{};  ///< needed for kNotChecked and kNotProven
+  State state = State::kNotChecked;
 };
 
 struct Series {

@@ -10,6 +10,7 @@
 #include "measure/measure.h"
 #include "motion/look_ahead.h"
 #include "motion/offline_baseline.h"
+#include "reports/check_rows.h"
 #include "reports/cl_report.h"
 #include "reports/flank_table.h"
 #include "reports/nc_report.h"
@@ -35,33 +36,18 @@ std::string duration(double seconds) {
              : fmt::format("{} min {:02d} s", static_cast<int>(seconds) / 60, static_cast<int>(seconds) % 60);
 }
 
-Verdict verdict_of(const sim::Job& job, const sim::Result& result) {
-  const sim::AcceptLimits& accept = job.scene.accept;
-  const measure::SurfaceMetrics& surface = result.main.surface;
-  Verdict verdict;
-  verdict.pass = sim::passes(result);
-  if (accept.scallop_max_um) {
-    verdict.criteria.push_back({"Highest scallop", um(surface.scallop_max_um) + " µm",
-                                fmt::format("at most {:g} µm", *accept.scallop_max_um),
-                                surface.scallop_max_um <= *accept.scallop_max_um});
-  }
-  if (accept.excess_max_um) {
-    verdict.criteria.push_back({"Highest material", um(surface.excess_max_um) + " µm",
-                                fmt::format("at most {:g} µm", *accept.excess_max_um),
-                                surface.excess_max_um <= *accept.excess_max_um});
-  }
-  if (accept.gouge_max_um) {
-    verdict.criteria.push_back({"Deepest gouge", um(surface.gouge_max_um) + " µm",
-                                fmt::format("at most {:g} µm", *accept.gouge_max_um),
-                                surface.gouge_max_um <= *accept.gouge_max_um});
-  }
-  if (accept.collisions) {
-    verdict.criteria.push_back({"Shank or holder in the stock",
-                                fmt::format("{} poses", result.clearance.contacts),
-                                fmt::format("at most {}", *accept.collisions),
-                                result.clearance.contacts <= static_cast<size_t>(*accept.collisions)});
-  }
-  return verdict;
+/// A measure of the surface, in the tone of the check that judged it; not judged is neutral, never green.
+KeyNumber judged_number(const sim::Result& result, const char* check_name, const char* label,
+                        const std::string& hint) {
+  const sim::Check& check = *sim::find_check(result.checks, check_name);
+  if (!check.value) return {label, "not judged", "", check.reason};
+  return {label, um(*check.value), "µm", hint, tone_of(check)};
+}
+
+KeyNumber rays_number(const sim::Result& result) {
+  const sim::Check& check = *sim::find_check(result.checks, "stock_and_rays");
+  return judged_number(result, "stock_and_rays", "Level set against rays",
+                       check.limit ? fmt::format("bound {:.2f} µm", *check.limit) : "");
 }
 
 /// The numbers of a CL job: its surface, when it has one, is measured for excess and gouge.
@@ -73,32 +59,28 @@ std::vector<KeyNumber> cl_key_numbers(const sim::Result& result) {
                                   fmt::format("{:.1f} cm³ left", result.volume_left_mm3 * 1e-3)}};
   if (surface.samples == 0) return numbers;
   const std::string rays = fmt::format("{} measuring rays", surface.samples);
-  numbers.push_back({"Highest material", um(surface.excess_max_um), "µm", rays});
-  numbers.push_back({"Deepest gouge", um(surface.gouge_max_um), "µm", rays});
-  numbers.push_back({"Level set against rays", fmt::format("{:.2f}", result.cross_check.max_um), "µm",
-                     fmt::format("bound {:.2f} µm", result.cross_check.bound_um),
-                     result.cross_check.holds ? Tone::kOk : Tone::kBad});
+  numbers.push_back(judged_number(result, "excess", "Highest material", rays));
+  numbers.push_back(judged_number(result, "gouge", "Deepest gouge", rays));
+  numbers.push_back(rays_number(result));
   return numbers;
 }
 
 std::vector<KeyNumber> key_numbers(const sim::Result& result) {
   const measure::SurfaceMetrics& surface = result.main.surface;
   const motion::MotionStatistics& motion = result.main.motion.statistics;
-  const bool holds = result.cross_check.holds;
   return {
-      {"Highest scallop", um(surface.scallop_max_um), "µm",
-       fmt::format("theory {:.3f} µm", surface.scallop_theory_um)},
+      judged_number(result, "scallop", "Highest scallop",
+                    fmt::format("theory {:.3f} µm", surface.scallop_theory_um)),
       {"5 % of the ridges lie below", um(surface.scallop_p05_um), "µm",
        fmt::format("{} ridge points", surface.ridges)},
-      {"Deepest gouge", um(surface.gouge_max_um), "µm", fmt::format("{} measuring rays", surface.samples)},
+      judged_number(result, "gouge", "Deepest gouge", fmt::format("{} measuring rays", surface.samples)),
       {"Within tolerance", fmt::format("{:.2f}", surface.within_tolerance_pct), "%",
        "of the machined surface"},
       {"Machining time", duration(motion.time_s), "", fmt::format("{} passes", result.main.path.passes)},
       {"Feed error", fmt::format("{:.1e}", motion.feed_error_max_rel), "", "relative, largest of all cycles"},
       {"Removed", fmt::format("{:.1f}", result.volume_removed_mm3 * 1e-3), "cm³",
        fmt::format("{:.1f} cm³ left", result.volume_left_mm3 * 1e-3)},
-      {"Level set against rays", fmt::format("{:.2f}", result.cross_check.max_um), "µm",
-       fmt::format("bound {:.2f} µm", result.cross_check.bound_um), holds ? Tone::kOk : Tone::kBad}};
+      rays_number(result)};
 }
 
 std::vector<ReportFinding> findings_of(const sim::Result& result) {
@@ -186,69 +168,11 @@ Table axis_table(const sim::Job& job, const sim::Result& result) {
   return table;
 }
 
-/// Rapids in material, cuts with a spindle that stands or turns the wrong way.
-Check rapids_check(const sim::Job& job, const sim::Result& result) {
-  const char* const what = "Rapids in material, spindle while cutting";
-  if (!job.scene.has_blocks()) {
-    return {what, "", "surface blocks: the links are planned above the surface", Check::State::kNotChecked};
-  }
-  const size_t found = result.cut.state.bad_cuts.size();
-  return {what, fmt::format("{} findings; material less than a voxel deep is not counted", found), "",
-          found == 0 ? Check::State::kHolds : Check::State::kFails};
-}
-
-std::ptrdiff_t axis_faults(const sim::Result& result) {
-  const std::vector<motion::MotionFinding>& all = result.main.motion.findings;
-  return std::count_if(all.begin(), all.end(),
-                       [](const motion::MotionFinding& f) { return f.severity == Severity::kError; });
-}
-
+/// The judge's list, then what this program does not look at.
 std::vector<Check> checks_of(const sim::Job& job, const sim::Result& result, bool rendered) {
-  using State = Check::State;
-  const motion::MotionStatistics& motion = result.main.motion.statistics;
-  const sim::ToolClearance& clearance = result.clearance;
-  const auto state = [](bool holds) { return holds ? State::kHolds : State::kFails; };
-  const bool blocks_cut = job.scene.has_blocks() && !job.scene.cuts_cycles();
-  std::vector<Check> checks{
-      {"Forward of inverse kinematics, every cycle",
-       fmt::format("largest {:.1e} mm, limit 1e-9 mm", motion.fk_ik_error_max_mm), "",
-       state(motion.fk_ik_error_max_mm < 1e-9)},
-      {"Axis travel and speed limits", fmt::format("{} findings", axis_faults(result)), "",
-       state(axis_faults(result) == 0)},
-      {"Joint-linear motion inside a cycle",
-       fmt::format("the tip leaves the path by at most {:.4f} µm", um_from_mm(motion.tip_error_max_mm)), ""},
-      {"Sweeps of the level set",
-       fmt::format("{} sweeps stay within {:.3f} µm of the {} {}", result.merged_sweeps,
-                   um_from_mm(result.sweep_bound_mm),
-                   blocks_cut ? result.main.path.elements.size() : motion.ticks,
-                   blocks_cut ? "blocks" : "cycles"),
-       ""},
-      {"Invariants of the level set",
-       result.cut.broken_invariant.empty()
-           ? fmt::format("numbers 1 to 8 hold ({} checks of all, {} of 1 to 4 on the way)",
-                         result.cut.voxel_checks, result.cut.map_checks)
-           : result.cut.broken_invariant,
-       "", state(result.cut.broken_invariant.empty())},
-      {"Shank and holder against the stock",
-       fmt::format("{} contacts at {} poses", clearance.contacts, clearance.checked_poses), "",
-       state(clearance.contacts == 0)},
-      rapids_check(job, result),
-      {"Machine parts against each other", "", "collision of meshes is not part of this version",
-       State::kNotChecked},
-      {"Cutter load, spindle power, deflection", "", "the simulation is geometric", State::kNotChecked}};
-  if (job.design_mesh) {
-    checks.push_back({"Level set against measuring rays", "",
-                      "the bound needs the curvature of a design surface; the design is a mesh",
-                      State::kNotChecked});
-  } else if (job.design.empty()) {
-    checks.push_back(
-        {"Finished part against a design", "", "the scene has design.kind = \"none\"", State::kNotChecked});
-  } else {
-    checks.insert(checks.begin() + 4, {"Level set against measuring rays",
-                                       fmt::format("largest difference {:.2f} µm, bound {:.2f} µm",
-                                                   result.cross_check.max_um, result.cross_check.bound_um),
-                                       "", state(result.cross_check.holds)});
-  }
+  std::vector<Check> checks = check_rows(result.checks);
+  checks.push_back(
+      {"Cutter load, spindle power, deflection", "", "the simulation is geometric", State::kNotChecked});
   if (job.scene.has_blocks()) {
     checks.push_back({"Planners and interpolators compared", "",
                       "a program of blocks is one path: not applicable", State::kNotChecked});
@@ -259,29 +183,39 @@ std::vector<Check> checks_of(const sim::Job& job, const sim::Result& result, boo
   return checks;
 }
 
-const char* execution_of(const sim::Job& job) {
-  if (job.scene.kind == sim::ProgramKind::kNc)
-    return "as the program's own words choose in each block; the stock is cut by the blocks themselves";
+const char* law_in_words(const sim::Job& job) {
+  if (job.scene.kind == sim::ProgramKind::kNc) return "as the program's own words choose in each block";
   if (!job.scene.has_blocks())
     return "every cycle is one pose of the tool tip in the work frame; axes are linear inside a cycle";
   switch (job.scene.block_law) {
     case toolpath::BlockLaw::kTcp:
       return "tcp: in each block the tip is straight or on its arc, the axis turns evenly along the great "
-             "circle; "
-             "the stock is cut by the blocks themselves";
+             "circle";
     case toolpath::BlockLaw::kJoint:
-      return "joint: in each block all machine axes are linear between its ends; the stock is cut by the "
-             "blocks "
-             "themselves";
+      return "joint: in each block all machine axes are linear between its ends";
     case toolpath::BlockLaw::kTcpAxes:
-      return "tcp_axes: in each block the tip is straight or on its arc and the rotary axes are linear; the "
-             "stock is cut by the blocks themselves";
+      return "tcp_axes: in each block the tip is straight or on its arc and the rotary axes are linear";
     case toolpath::BlockLaw::kEnds:
-      return "ends: in each block the tip and every guide point on the axis are straight; the stock is cut "
-             "by "
-             "the blocks themselves";
+      return "ends: in each block the tip and every guide point on the axis are straight";
   }
   return "";
+}
+
+/// What the control's cycles or the blocks themselves cut.
+bool blocks_cut(const sim::Job& job) {
+  return job.scene.has_blocks() && !job.scene.cuts_cycles();
+}
+
+std::string execution_of(const sim::Job& job) {
+  return fmt::format("{}; the stock is cut by {}", law_in_words(job),
+                     blocks_cut(job) ? "the blocks themselves" : "what the axes do in the control's cycles");
+}
+
+std::string sweeps_fact(const sim::Job& job, const sim::Result& result) {
+  const auto cycles = static_cast<size_t>(result.main.motion.statistics.ticks);
+  return fmt::format(
+      "{} sweeps stay within {:.3f} µm of the {} {}", result.merged_sweeps, um_from_mm(result.sweep_bound_mm),
+      blocks_cut(job) ? result.main.path.elements.size() : cycles, blocks_cut(job) ? "blocks" : "cycles");
 }
 
 std::string solid_fact(const cutter::Cutter& cutter) {
@@ -330,12 +264,15 @@ std::vector<FactGroup> facts_of(const sim::Job& job, const sim::Result& result, 
              fmt::format("tip at ({:.2f}, {:.2f}, {:.2f}) mm: {}", first.pose.tip_W.x(), first.pose.tip_W.y(),
                          first.pose.tip_W.z(),
                          result.main.nc ? result.main.nc->summary.start : "the first complete position")},
-            {"Cycles", fmt::format("{}", motion.ticks)}}},
+            {"Cycles", fmt::format("{}", motion.ticks)},
+            {"Inside a cycle", fmt::format("axes are linear: the tip leaves the path by at most {:.4f} µm",
+                                           um_from_mm(motion.tip_error_max_mm))}}},
           tool_facts(job),
           {"Stock",
            {{"Box", fmt::format("{:g} x {:g} x {:g} mm", size.x(), size.y(), size.z())},
             {"Voxel", fmt::format("{:g} mm", job.scene.stock.voxel_mm)},
-            {"Sweeps", fmt::format("{} ({} voxel updates)", cut.sweeps, cut.voxel_updates)},
+            {"Sweeps", sweeps_fact(job, result)},
+            {"Cut", fmt::format("{} sweeps, {} voxel updates", cut.sweeps, cut.voxel_updates)},
             {"Hash of the finished stock", fmt::format("{:016x}", result.stock->hash())},
             {"part.glb", fmt::format("decimated, within {:.2f} µm of the level set's mesh",
                                      um_from_mm(files.part_error_mm))},
@@ -418,7 +355,7 @@ ReportData report_data(const sim::Job& job, const sim::Result& result, const Run
   data.subtitle =
       fmt::format("{} on {}", job.scene.program_file.substr(job.scene.program_file.find_last_of('/') + 1),
                   job.machine.model.name);
-  data.verdict = verdict_of(job, result);
+  data.verdict = verdict_of(result.checks);
   data.key_numbers = job.scene.has_blocks() ? cl_key_numbers(result) : key_numbers(result);
   data.findings = findings_of(result);
   if (!files.stills.empty()) {

@@ -125,4 +125,20 @@ CrossCheck cross_check(const stock::Stock& stock, const stock::SurfaceDexels& de
   return check;
 }
 
+std::optional<CrossCheck> combine(const std::vector<CrossCheck>& parts) {
+  std::optional<CrossCheck> worst;
+  size_t samples = 0, excluded = 0;
+  for (const CrossCheck& part : parts) {
+    samples += part.samples;
+    excluded += part.excluded;
+    if (part.samples == 0) continue;
+    const bool worse = !worst || (part.holds == worst->holds ? part.max_um > worst->max_um : !part.holds);
+    if (worse) worst = part;
+  }
+  if (!worst) return worst;
+  worst->samples = samples;
+  worst->excluded = excluded;
+  return worst;
+}
+
 }  // namespace swarf::measure

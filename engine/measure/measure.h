@@ -1,6 +1,7 @@
 // Measuring the finished part on the rays of its design, and the level set against them.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -44,5 +45,9 @@ std::vector<HistogramBin> height_histogram(const stock::SurfaceDexels& dexels, d
 ///   diagonal) 3/8 voxel^2 curvature       chord of a curved surface the rounding of floats
 /// Each sample is held to its own bound; bound_um is the greatest of them. Parametric designs only.
 CrossCheck cross_check(const stock::Stock& stock, const stock::SurfaceDexels& dexels, double sweep_bound_mm);
+
+/// Several surfaces as one: it holds when all hold. Figures are of the worst, a failing one first whatever
+/// the others show; counts are of all. None: nothing was compared.
+std::optional<CrossCheck> combine(const std::vector<CrossCheck>& parts);
 
 }  // namespace swarf::measure

@@ -6,6 +6,7 @@
 #include <map>
 #include <string_view>
 
+#include "base/check.h"
 #include "base/units.h"
 #include "program/source_text.h"
 
@@ -16,10 +17,20 @@ class Collector {
  public:
   Collector(const Job& job, const Result& result) : job_(job), result_(result) {}
 
-  void add(std::string code, std::string text, std::string fix, SourceLocation where, double t_s,
-           Severity severity = Severity::kError) {
-    findings_.push_back(
-        {std::move(code), severity, std::move(text), std::move(fix), std::move(where), t_s, ""});
+  /// What follows breaks this check: an error unless [accept] allows so much of it.
+  void begin(const char* check_name) {
+    check_ = find_check(result_.checks, check_name);
+    SWARF_CHECK(check_ != nullptr, "a finding must belong to a check of the judge");
+  }
+  const Check& check() const { return *check_; }
+
+  void add(std::string code, std::string text, std::string fix, SourceLocation where, double t_s) {
+    findings_.push_back({std::move(code), breaks() ? Severity::kError : Severity::kWarning, std::move(text),
+                         std::move(fix), std::move(where), t_s, "", check_->name});
+  }
+  /// Breaks nothing.
+  void warn(const motion::MotionFinding& fault) {
+    findings_.push_back({fault.code, fault.severity, fault.text, "", fault.where, fault.t_s, "", ""});
   }
   /// At the block that a sweep comes from; at the program when no sweep is to blame.
   void at_block(std::string code, std::string text, std::string fix, const std::vector<SweepSource>& sources,
@@ -48,7 +59,10 @@ class Collector {
   }
 
  private:
+  bool breaks() const { return check_->outcome == Outcome::kFails || check_->outcome == Outcome::kNotProven; }
+
   std::vector<Finding> findings_;
+  const Check* check_ = nullptr;
   const Job& job_;
   const Result& result_;
 };
@@ -58,10 +72,22 @@ std::string place(const measure::Region& region) {
                      region.area_mm2, region.place.x(), region.place.y(), region.place.z());
 }
 
+/// A limit that the measures meet and no proof does.
+void not_proven(const Job& job, Collector& collect) {
+  const Check& check = collect.check();
+  if (check.outcome != Outcome::kNotProven) return;
+  const std::string wider = check.bound ? fmt::format("allow {:.3f} um in [accept]", *check.bound)
+                                        : "take the limit out of [accept]";
+  collect.add(check.name + "-not-proven", fmt::format("{}: {}", check.subject, check.reason),
+              "a smaller design.pitch_mm gives the proof smaller cells to settle this; or " + wider,
+              {job.scene.program_file}, 0.0);
+}
+
 /// One finding for each listed region beyond its limit.
 void region_faults(const Job& job, const Result& result, Collector& collect) {
   const measure::SurfaceMetrics& surface = result.main.surface;
   const AcceptLimits& accept = job.scene.accept;
+  collect.begin("gouge");
   const char* remedy = job.scene.has_blocks()
                            ? "move the tool of this block away from the design"
                            : "lower the feed F or the control period: the chord of one cycle cuts into a "
@@ -72,6 +98,8 @@ void region_faults(const Job& job, const Result& result, Collector& collect) {
                      fmt::format("a gouge, {}; [accept] allows {:g} um", place(region), *accept.gouge_max_um),
                      remedy, result.main.rays.sources, region.block);
   }
+  not_proven(job, collect);
+  collect.begin("excess");
   for (const measure::Region& region : surface.excesses) {
     if (!accept.excess_max_um || region.worst_um <= *accept.excess_max_um) continue;
     collect.at_block("excess",
@@ -80,12 +108,14 @@ void region_faults(const Job& job, const Result& result, Collector& collect) {
                      "machine this place too, or start from a smaller stock", result.main.rays.sources,
                      region.block);
   }
+  not_proven(job, collect);
 }
 
 void surface_faults(const Job& job, const Result& result, Collector& collect) {
   const measure::SurfaceMetrics& surface = result.main.surface;
   const AcceptLimits& accept = job.scene.accept;
-  if (accept.scallop_max_um && surface.scallop_max_um > *accept.scallop_max_um) {
+  collect.begin("scallop");
+  if (collect.check().outcome == Outcome::kFails) {
     uint32_t block = stock::kUncut;
     double highest = -1.0;
     for (const measure::Ridge& ridge : result.main.ridges) {
@@ -101,11 +131,10 @@ void surface_faults(const Job& job, const Result& result, Collector& collect) {
                                             : "lower the scallop word E of the G06.3 block",
                      result.main.rays.sources, block);
   }
+  not_proven(job, collect);
   region_faults(job, result, collect);
-  // A mesh has faces that the stock brings along: there only excess tells what is missing.
-  const bool uncut_counts =
-      !job.design_mesh && (!job.scene.has_blocks() || accept.scallop_max_um.has_value());
-  if (surface.uncut_samples > 0 && uncut_counts) {
+  collect.begin("uncut");
+  if (collect.check().outcome == Outcome::kFails) {
     collect.add("uncut",
                 fmt::format("{} of {} measuring points were never reached by the cutter",
                             surface.uncut_samples, surface.samples),
@@ -116,14 +145,19 @@ void surface_faults(const Job& job, const Result& result, Collector& collect) {
 
 void motion_faults(const Result& result, Collector& collect) {
   for (const motion::MotionFinding& fault : result.main.motion.findings) {
-    collect.add(fault.code, fault.text, "", fault.where, fault.t_s, fault.severity);
+    if (fault.severity != Severity::kError) {
+      collect.warn(fault);
+      continue;
+    }
+    collect.begin(fault.code == "axis-speed" ? "axis_speed" : "travel");
+    collect.add(fault.code, fault.text, "", fault.where, fault.t_s);
   }
 }
 
-void clearance_faults(const Job& job, const Result& result, Collector& collect) {
+void clearance_faults(const Result& result, Collector& collect) {
   const ToolClearance& clearance = result.clearance;
-  const std::optional<int> allowed = job.scene.accept.collisions;
-  if (!allowed || clearance.contacts <= static_cast<size_t>(*allowed)) return;
+  collect.begin("collisions");
+  if (clearance.contacts == 0) return;
   collect.at_block(
       clearance.part + "-in-stock",
       fmt::format("the {} stands in the stock at {} of {} poses, {:.2f} mm deep (depths are known to "
@@ -140,6 +174,7 @@ void bad_cut_faults(const Result& result, Collector& collect) {
   for (size_t i = 0; i < std::min(kListed, cuts.size()); ++i) {
     const BadCut& cut = cuts[i];
     const bool rapid = cut.kind == BadCutKind::kRapid;
+    collect.begin(rapid ? "rapids_in_material" : "spindle_wrong");
     std::string text = rapid
                            ? "a rapid move removes material"
                            : fmt::format("the tool cuts with {}", cut.kind == BadCutKind::kSpindleStands
@@ -155,15 +190,22 @@ void bad_cut_faults(const Result& result, Collector& collect) {
 }
 
 void built_in_checks(const Job& job, const Result& result, Collector& collect) {
+  collect.begin("stock_invariants");
   if (!result.cut.broken_invariant.empty()) {
     collect.add("stock-invariant",
                 fmt::format("the level set broke its invariant {}", result.cut.broken_invariant),
                 "this is a fault of the program: please report it with the scene", {job.scene.file}, 0.0);
   }
-  if (job.has_design() && !result.cross_check.holds) {
+  collect.begin("stock_and_rays");
+  if (result.cross_check && !result.cross_check->holds) {
     collect.add("stock-and-rays-disagree",
                 fmt::format("level set and measuring rays differ by {:.1f} um, the bound is {:.1f} um",
-                            result.cross_check.max_um, result.cross_check.bound_um),
+                            result.cross_check->max_um, result.cross_check->bound_um),
+                "this is a fault of the program: please report it with the scene", {job.scene.file}, 0.0);
+  }
+  collect.begin("round_trip");
+  if (collect.check().outcome == Outcome::kFails) {
+    collect.add("round-trip", collect.check().what,
                 "this is a fault of the program: please report it with the scene", {job.scene.file}, 0.0);
   }
 }
@@ -174,7 +216,7 @@ std::vector<Finding> find_faults(const Job& job, const Result& result) {
   Collector collect(job, result);
   surface_faults(job, result, collect);
   motion_faults(result, collect);
-  clearance_faults(job, result, collect);
+  clearance_faults(result, collect);
   bad_cut_faults(result, collect);
   built_in_checks(job, result, collect);
   return collect.take();

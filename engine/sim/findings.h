@@ -1,4 +1,5 @@
-// From measures to findings: each broken limit with its block, time and what would help.
+// From the judge's list to findings: where and when each check that does not hold is broken, and what would
+// help.
 #pragma once
 
 #include <vector>
@@ -7,7 +8,7 @@
 
 namespace swarf::sim {
 
-/// Every limit of [accept], every travel and speed limit of the machine, and the built-in checks.
+/// Of Result::checks: at least one error for each check that fails or is not proven, none for any other.
 std::vector<Finding> find_faults(const Job& job, const Result& result);
 
 }  // namespace swarf::sim

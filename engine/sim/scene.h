@@ -36,12 +36,17 @@ struct StockSettings {
   double max_memory_mb = 0.0;  ///< 0: 80 % of the memory that is free when the run starts
 };
 
-/// Criteria that are not given do not count. Scenes of surface blocks have all three: 10.5, 1, 0 by default.
+/// Limits of the surface that are not given do not count; scenes of surface blocks have 10.5 and 1 by
+/// default. The counts hold for every job: above 0 only where the scene writes so.
 struct AcceptLimits {
   std::optional<double> scallop_max_um;
   std::optional<double> gouge_max_um;
   std::optional<double> excess_max_um;  ///< material anywhere above the design, ridges included
-  std::optional<int> collisions;        ///< of shank and holder with the stock
+  int collisions = 0;                   ///< of neck, shank and holder with the stock
+  int rapids_in_material = 0;           ///< rapid moves that remove material
+  int spindle_wrong = 0;                ///< cuts with the spindle stopped or turning the wrong way
+  int travel = 0;                       ///< moves beyond the travel of an axis, or out of the machine's reach
+  int axis_speed = 0;                   ///< moves faster than an axis
 
   /// Band of the share within tolerance and of the colour scale where the scene gives no limit, um.
   double scallop_band_um() const { return scallop_max_um.value_or(10.0); }

@@ -113,8 +113,8 @@ std::string beside(const std::string& scene_file, const std::string& path) {
   return (fs::path(scene_file).parent_path() / path).lexically_normal().string();
 }
 
-/// Scenes of surface blocks have defaults; where the program brings its blocks only the criteria that are
-/// given count.
+/// Surfaces: scenes of surface blocks have defaults; where the program brings its blocks only the limits that
+/// are given count. What no tool and no axis may do counts everywhere.
 void read_accept(ConfigTable table, bool blocks, AcceptLimits& accept) {
   if (!blocks || table.has("scallop_max_um")) {
     accept.scallop_max_um = table.number("scallop_max_um", kAboveZero, 10.5);
@@ -122,7 +122,12 @@ void read_accept(ConfigTable table, bool blocks, AcceptLimits& accept) {
   if (table.has("excess_max_um")) accept.excess_max_um = table.number("excess_max_um", kAboveZero, 1.0);
   if (!blocks || table.has("gouge_max_um"))
     accept.gouge_max_um = table.number("gouge_max_um", kAboveZero, 1.0);
-  if (!blocks || table.has("collisions")) accept.collisions = table.integer("collisions", 0, 1000000, 0);
+  const auto count = [&](const char* key) { return table.integer(key, 0, 1000000, 0); };
+  accept.collisions = count("collisions");
+  accept.rapids_in_material = count("rapids_in_material");
+  accept.spindle_wrong = count("spindle_wrong");
+  accept.travel = count("travel");
+  accept.axis_speed = count("axis_speed");
 }
 
 /// What M428 to M430 mean, for LinuxCNC alone.

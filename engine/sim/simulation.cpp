@@ -205,9 +205,7 @@ void measure_part(const Job& job, Progress& progress, Result& result) {
     if (dexels.field().surface == nullptr) continue;  // its bound needs the curvature of a surface
     checks.push_back(measure::cross_check(*result.stock, dexels, result.sweep_bound_mm));
   }
-  for (const measure::CrossCheck& check : checks) {
-    if (check.max_um >= result.cross_check.max_um) result.cross_check = check;
-  }
+  result.cross_check = measure::combine(checks);
   progress.end();
 }
 
@@ -274,14 +272,10 @@ Result simulate(const Job& job, const CutOptions& options, Progress& progress) {
   result.singularity =
       motion::scan_singularity(result.main.path, machines_by_tool(job), job.scene.linearise_tolerance_mm);
   progress.end();
+  result.checks = judge(job, result);
   result.findings = find_faults(job, result);
   result.stopped = progress.stop_requested();
   return result;
-}
-
-bool passes(const Result& result) {
-  return std::none_of(result.findings.begin(), result.findings.end(),
-                      [](const Finding& finding) { return finding.severity == Severity::kError; });
 }
 
 }  // namespace swarf::sim

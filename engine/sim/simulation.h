@@ -15,6 +15,7 @@
 #include "motion/singularity_scan.h"
 #include "sim/cut_stage.h"
 #include "sim/job_sweeps.h"
+#include "sim/judge.h"
 #include "sim/memory.h"
 #include "sim/scene.h"
 #include "sim/tool_clearance.h"
@@ -25,14 +26,16 @@
 
 namespace swarf::sim {
 
-/// What is wrong with the job (not with the input): where on the part, in which block, when.
+/// What is wrong with the job (not with the input): where on the part, in which block, when. An error where
+/// its check fails or is not proven, else a warning.
 struct Finding {
   std::string code;  ///< stable: "gouge", "scallop", "travel", ...
   Severity severity = Severity::kError;
   std::string text, fix;
   SourceLocation where;
   double t_s = 0.0;
-  std::string block;  ///< the program's text there; "" where no line is meant
+  std::string block;    ///< the program's text there; "" where no line is meant
+  std::string check{};  ///< Check::name of what it breaks; "" where it breaks nothing
 };
 
 /// One path, interpolated and measured on the surface dexels.
@@ -67,12 +70,13 @@ struct Result {
   double sweep_bound_mm = 0.0;           ///< of the same sweeps
   uint64_t merged_sweeps = 0;            ///< how many they are
   double volume_removed_mm3 = 0.0, volume_left_mm3 = 0.0;
-  measure::CrossCheck cross_check;
+  std::optional<measure::CrossCheck> cross_check;  ///< none: no ray of a parametric design could be compared
   ToolClearance clearance;
   std::optional<measure::FlankError> flank;  ///< of a ruled design and a cutter with a cylindrical flank
   std::optional<motion::SingularityScan> singularity;  ///< of blocks on a machine with a pole
   CutOutcome cut;
   MemoryPrediction memory;
+  std::vector<Check> checks;  ///< what the verdict rests on; empty when the run was stopped
   std::vector<Finding> findings;
   bool stopped = false;  ///< the user stopped it; what follows the cut is missing
 };
@@ -89,7 +93,9 @@ MeasuredPath move_tool(const Job& job, Progress& progress);
 /// Runs everything. Throws InputError as move_tool and cut_stock do.
 Result simulate(const Job& job, const CutOptions& options, Progress& progress);
 
-/// Free of charge: true when every limit of [accept] holds and there is no finding of severity error.
-bool passes(const Result& result);
+/// The verdict: of Result::checks.
+inline bool passes(const Result& result) {
+  return passes(result.checks);
+}
 
 }  // namespace swarf::sim

@@ -171,8 +171,8 @@ TEST_F(Resume, ExpensiveChecksHold) {
   const fs::path out = root_ / "checked";
   const auto run = run_swarf("run " + kScene + kCoarse + "--check -o " + out.string());
   ASSERT_EQ(run.exit_code, 0) << run.output;
-  EXPECT_GE(at_path(metrics_of(out), "checks.stock_voxels").get<int>(), 8);
-  EXPECT_EQ(at_path(metrics_of(out), "checks.stock_broken"), "");
+  EXPECT_GE(at_path(metrics_of(out), "self_checks.stock_voxels").get<int>(), 8);
+  EXPECT_EQ(at_path(metrics_of(out), "self_checks.stock_broken"), "");
   EXPECT_EQ(hash_of(out), hash_of(root_ / "full"));
 }
 

@@ -25,8 +25,10 @@ ReportData sample(const TemporaryFolder& folder) {
   ReportData data;
   data.title = "Dome <script>alert(1)</script>";
   data.subtitle = "D10 & \"flat\"";
-  data.verdict = {
-      false, "", {{"Scallop <max>", "11 µm", "at most 10.5 µm", false}, {"Gouge", "0 µm", "1 µm"}}};
+  data.verdict = {false,
+                  "scallop fails; 1 check holds; not judged: <holder>",
+                  {{"Scallop <max>", "11 µm", "at most 10.5 µm", State::kFails},
+                   {"Gouge", "0 µm", "1 µm", State::kHolds}}};
   data.key_numbers = {{"Scallop", "11", "µm", "<hint>", Tone::kBad}};
   data.findings = {{"scallop", Severity::kError, "too high <b>", "step over less", {"dome.nc", 11, 0}, 12.5}};
   data.hero_png = folder.write("hero.png", tiny_png());
@@ -40,8 +42,9 @@ ReportData sample(const TemporaryFolder& folder) {
   data.tables = {
       {"Planners", "", {{"Planner"}, {"Passes", "", true}}, {{"constant <scallop>", "29"}}, {"note"}, 0}};
   data.paper = {{"Segments", "Eq. (8)", "52", "55", "", "E6", "1 µm needs 55"}};
-  data.checks = {{"Gouge", "0.01 µm", "", Check::State::kHolds},
-                 {"Holder", "", "the scene has no holder", Check::State::kNotChecked}};
+  data.checks = {{"Gouge", "0.01 µm", "", State::kHolds},
+                 {"Excess", "9.9 µm", "proven 10.2 µm", State::kNotProven},
+                 {"Holder", "", "the scene has no holder", State::kNotChecked}};
   data.reproduce = {"swarf run scene.toml --set 'a=<b>'"};
   data.facts = {{"Program", {{"File", "dome.nc"}}}};
   return data;
@@ -98,8 +101,9 @@ TEST(ReportWriter, CarriesItsFilesInside) {
 TEST(ReportWriter, SaysWhatHoldsAndWhatWasNotChecked) {
   const TemporaryFolder folder("swarf_report_words");
   const std::string page = render_report(sample(folder));
-  for (const char* text : {"<b>Findings</b>", "1 of the 2 limits of the scene hold.", "Not checked",
-                           "the scene has no holder", "dome.nc:11", "12.500", ">E6<"}) {
+  for (const char* text :
+       {"<b>Findings</b>", "1 check holds; not judged: &lt;holder&gt;", "symbol-warning\"/></svg>Not proven",
+        "symbol-none\"/></svg>Not checked", "the scene has no holder", "dome.nc:11", "12.500", ">E6<"}) {
     EXPECT_NE(page.find(text), std::string::npos) << text;
   }
 }

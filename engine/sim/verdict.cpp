@@ -1,0 +1,102 @@
+// What a list of checks comes to.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "sim/judge.h"
+
+namespace swarf::sim {
+namespace {
+
+size_t count(std::span<const Check> checks, Outcome outcome) {
+  return static_cast<size_t>(
+      std::count_if(checks.begin(), checks.end(), [&](const Check& c) { return c.outcome == outcome; }));
+}
+
+std::string spoken(std::string name) {
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
+/// "gouge, travel".
+std::string names(std::span<const Check> checks, Outcome outcome) {
+  std::string text;
+  for (const Check& check : checks) {
+    if (check.outcome == outcome) text += (text.empty() ? "" : ", ") + spoken(check.name);
+  }
+  return text;
+}
+
+/// "gouge, excess (no design), spindle (the program does not say when it turns)".
+std::string not_judged(std::span<const Check> checks) {
+  std::vector<std::pair<std::string, std::string>> by_reason;  // reason, names
+  for (const Check& check : checks) {
+    if (check.outcome != Outcome::kNotJudged) continue;
+    const auto same = std::find_if(by_reason.begin(), by_reason.end(),
+                                   [&](const auto& one) { return one.first == check.reason; });
+    if (same == by_reason.end())
+      by_reason.emplace_back(check.reason, spoken(check.name));
+    else
+      same->second += ", " + spoken(check.name);
+  }
+  std::string text;
+  for (const auto& [reason, list] : by_reason)
+    text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", list, reason);
+  return text;
+}
+
+/// Those that hold by the rays alone: less than a proof.
+std::string by_rays_only(std::span<const Check> checks) {
+  std::string list;
+  for (const Check& check : checks) {
+    if (check.outcome == Outcome::kHolds && check.reason == kRaysOnly)
+      list += (list.empty() ? "" : ", ") + spoken(check.name);
+  }
+  return list.empty() ? "" : fmt::format(" ({}: {})", list, kRaysOnly);
+}
+
+}  // namespace
+
+bool passes(std::span<const Check> checks) {
+  return !checks.empty() && std::none_of(checks.begin(), checks.end(), [](const Check& check) {
+    return check.outcome == Outcome::kFails || check.outcome == Outcome::kNotProven;
+  });
+}
+
+std::string verdict_sentence(std::span<const Check> checks) {
+  return (passes(checks) ? "PASS: " : "FINDINGS: ") + verdict_text(checks);
+}
+
+std::string verdict_text(std::span<const Check> checks) {
+  if (checks.empty()) return "nothing was judged";
+  std::string text;
+  const std::string fails = names(checks, Outcome::kFails), open = names(checks, Outcome::kNotProven);
+  if (!fails.empty()) text += fails + (count(checks, Outcome::kFails) == 1 ? " fails; " : " fail; ");
+  if (!open.empty()) text += open + " not proven; ";
+  const size_t held = count(checks, Outcome::kHolds);
+  text += fmt::format("{} {}{}", held, held == 1 ? "check holds" : "checks hold", by_rays_only(checks));
+  const std::string silent = not_judged(checks);
+  return silent.empty() ? text : text + "; not judged: " + silent;
+}
+
+const char* outcome_name(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::kHolds:
+      return "holds";
+    case Outcome::kFails:
+      return "fails";
+    case Outcome::kNotProven:
+      return "not_proven";
+    case Outcome::kNotJudged:
+      break;
+  }
+  return "not_judged";
+}
+
+const Check* find_check(std::span<const Check> checks, const std::string& name) {
+  const auto found =
+      std::find_if(checks.begin(), checks.end(), [&](const Check& check) { return check.name == name; });
+  return found == checks.end() ? nullptr : &*found;
+}
+
+}  // namespace swarf::sim

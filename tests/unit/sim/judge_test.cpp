@@ -1,0 +1,193 @@
+// The one judge: what counts, what is loosened only in writing, and what is never green.
+#include "sim/judge.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "sim/findings.h"
+#include "sim/simulation.h"
+
+namespace swarf::sim {
+namespace {
+
+/// A CL job with a plane as its design and a gouge limit; nothing wrong with it.
+class Judge : public testing::Test {
+ protected:
+  void SetUp() override {
+    job_.scene.kind = ProgramKind::kCl;
+    job_.scene.file = "scene.toml";
+    job_.scene.program_file = "path.cl";
+    job_.design.push_back(nullptr);  // the judge only asks whether there is one
+    job_.scene.accept.gouge_max_um = 1.0;
+    toolpath::BlockMove move;
+    move.feed_mm_s = 5.0;
+    move.spindle_rpm = 8000.0;
+    result_.main.path.elements.push_back({move, 0, {"path.cl", 0, 0}});
+    result_.main.surface.gouge_max_um = 0.2;
+    result_.cross_check = compared(3.0, 4.0, true);
+  }
+
+  static measure::CrossCheck compared(double max_um, double bound_um, bool holds) {
+    measure::CrossCheck check;
+    check.max_um = max_um;
+    check.bound_um = bound_um;
+    check.holds = holds;
+    check.samples = 100;
+    return check;
+  }
+  void find(BadCutKind kind) { result_.cut.state.bad_cuts.push_back({kind, 0, 0.5}); }
+  void fault(const char* code) {
+    motion::MotionFinding finding;
+    finding.code = code;
+    result_.main.motion.findings.push_back(finding);
+  }
+
+  /// Judges, and holds findings and verdict to the list.
+  Check judged(const std::string& name) {
+    result_.checks = judge(job_, result_);
+    result_.findings = find_faults(job_, result_);
+    for (const Check& check : result_.checks) {
+      const bool breaks = check.outcome == Outcome::kFails || check.outcome == Outcome::kNotProven;
+      const bool told = std::any_of(result_.findings.begin(), result_.findings.end(), [&](const Finding& f) {
+        return f.check == check.name && f.severity == Severity::kError;
+      });
+      EXPECT_EQ(breaks, told) << check.name;
+      if (check.outcome == Outcome::kNotJudged) EXPECT_FALSE(check.reason.empty()) << check.name;
+    }
+    const bool errors = std::any_of(result_.findings.begin(), result_.findings.end(),
+                                    [](const Finding& f) { return f.severity == Severity::kError; });
+    EXPECT_EQ(passes(result_), !errors);
+    const Check* found = find_check(result_.checks, name);
+    EXPECT_NE(found, nullptr) << name;
+    return found != nullptr ? *found : Check{};
+  }
+  Outcome outcome(const std::string& name) { return judged(name).outcome; }
+
+  Job job_;
+  Result result_;
+};
+
+TEST_F(Judge, PassesACleanRunAndSaysWhatItDidNotLookAt) {
+  EXPECT_EQ(outcome("gouge"), Outcome::kHolds);
+  EXPECT_TRUE(passes(result_));
+  const std::string sentence = verdict_sentence(result_.checks);
+  EXPECT_TRUE(sentence.starts_with("PASS: ")) << sentence;
+  EXPECT_NE(sentence.find("not judged: "), std::string::npos) << sentence;
+  EXPECT_NE(sentence.find("excess, scallop (no limit in [accept])"), std::string::npos) << sentence;
+  EXPECT_NE(sentence.find("machine parts (collision of meshes is not part of this version)"),
+            std::string::npos)
+      << sentence;
+}
+
+TEST_F(Judge, ARunThatWasNotFinishedDoesNotPass) {
+  EXPECT_FALSE(passes(Result{}));
+}
+
+TEST_F(Judge, WhatNoToolAndNoAxisMayDoCountsUnlessItIsLoosenedInWriting) {
+  struct Case {
+    const char* name;
+    int* limit;
+  };
+  AcceptLimits& accept = job_.scene.accept;
+  result_.clearance.contacts = 2;
+  find(BadCutKind::kRapid);
+  find(BadCutKind::kRapid);
+  find(BadCutKind::kSpindleStands);
+  find(BadCutKind::kSpindleReversed);
+  for (const char* code : {"travel", "unreachable", "axis-speed", "axis-speed"}) fault(code);
+  for (const Case& one : {Case{"collisions", &accept.collisions},
+                          {"rapids_in_material", &accept.rapids_in_material},
+                          {"spindle_wrong", &accept.spindle_wrong},
+                          {"travel", &accept.travel},
+                          {"axis_speed", &accept.axis_speed}}) {
+    EXPECT_EQ(judged(one.name).value, 2.0) << one.name;
+    EXPECT_EQ(outcome(one.name), Outcome::kFails) << one.name;
+    *one.limit = 1;
+    EXPECT_EQ(outcome(one.name), Outcome::kFails) << one.name;
+    *one.limit = 2;
+    EXPECT_EQ(outcome(one.name), Outcome::kHolds) << one.name;
+  }
+  EXPECT_TRUE(passes(result_)) << verdict_sentence(result_.checks);
+  // Loosened is not hidden: the findings stay, as warnings.
+  EXPECT_EQ(result_.findings.size(), 9U);
+}
+
+TEST_F(Judge, AGougeWithinItsLimitButABoundBeyondItIsNotProven) {
+  result_.main.surface.gouge_bound = measure::Bound{1.31, {1.0, 2.0, 3.0}};
+  const Check check = judged("gouge");
+  EXPECT_EQ(check.outcome, Outcome::kNotProven);
+  EXPECT_FALSE(passes(result_));
+  EXPECT_NE(check.reason.find("not proven below 1 um: proven 1.310 um at (1.000, 2.000, 3.000)"),
+            std::string::npos)
+      << check.reason;
+  EXPECT_NE(result_.findings.front().text.find("not proven below 1 um"), std::string::npos);
+  EXPECT_FALSE(result_.findings.front().fix.empty());
+  result_.main.surface.gouge_bound->um = 0.999;
+  EXPECT_EQ(outcome("gouge"), Outcome::kHolds);
+  EXPECT_EQ(judged("gouge").bound, 0.999);
+}
+
+TEST_F(Judge, RaysAloneAreSaidToBeRaysAlone) {
+  EXPECT_EQ(judged("gouge").reason, kRaysOnly);
+  EXPECT_NE(verdict_sentence(result_.checks).find("(gouge: rays only"), std::string::npos);
+}
+
+TEST_F(Judge, WithoutADesignNothingOfTheSurfaceIsJudged) {
+  job_.design.clear();
+  result_.cross_check.reset();
+  for (const char* name : {"gouge", "excess", "scallop", "uncut", "stock_and_rays"}) {
+    const Check check = judged(name);
+    EXPECT_EQ(check.outcome, Outcome::kNotJudged) << name;
+    EXPECT_FALSE(check.value.has_value()) << name;
+    EXPECT_EQ(check.reason, "no design") << name;
+  }
+  EXPECT_NE(
+      verdict_sentence(result_.checks).find("gouge, excess, scallop, uncut, stock and rays (no design)"),
+      std::string::npos)
+      << verdict_sentence(result_.checks);
+}
+
+TEST_F(Judge, AMeshIsNotComparedWithTheLevelSetAndSaysSo) {
+  job_.design.clear();
+  job_.design_mesh = std::make_shared<TriMesh>();
+  result_.cross_check.reset();
+  EXPECT_EQ(outcome("stock_and_rays"), Outcome::kNotJudged);
+}
+
+TEST_F(Judge, ASilentProgramIsNotCheckedForItsSpindle) {
+  std::get<toolpath::BlockMove>(result_.main.path.elements.front().what).spindle_rpm.reset();
+  const Check check = judged("spindle_wrong");
+  EXPECT_EQ(check.outcome, Outcome::kNotJudged);
+  EXPECT_FALSE(check.value.has_value());
+  EXPECT_NE(verdict_sentence(result_.checks).find("spindle wrong (the program does not say when it turns)"),
+            std::string::npos);
+}
+
+TEST_F(Judge, FailedChecksOfItselfFailTheRun) {
+  result_.cut.broken_invariant = "8 (values differ)";
+  EXPECT_EQ(outcome("stock_invariants"), Outcome::kFails);
+  result_.cut.broken_invariant.clear();
+  result_.cross_check = compared(5.0, 4.0, false);
+  EXPECT_EQ(outcome("stock_and_rays"), Outcome::kFails);
+  result_.cross_check = compared(3.0, 4.0, true);
+  result_.main.motion.statistics.fk_ik_error_max_mm = std::nan("");
+  EXPECT_EQ(outcome("round_trip"), Outcome::kFails);
+}
+
+TEST_F(Judge, AFailedCrossCheckIsNotHiddenByAnotherSurface) {
+  const auto both = measure::combine({compared(5.0, 4.0, false), compared(9.0, 10.0, true)});
+  ASSERT_TRUE(both.has_value());
+  EXPECT_FALSE(both->holds);
+  EXPECT_EQ(both->max_um, 5.0);
+  EXPECT_EQ(both->samples, 200U);
+  const auto turned = measure::combine({compared(9.0, 10.0, true), compared(5.0, 4.0, false)});
+  EXPECT_EQ(turned->max_um, 5.0);
+  EXPECT_FALSE(measure::combine({}).has_value());
+  EXPECT_FALSE(measure::combine({measure::CrossCheck{}}).has_value()) << "nothing was compared";
+}
+
+}  // namespace
+}  // namespace swarf::sim
