@@ -262,7 +262,9 @@ class MachineReader {
         scene_.links[i].mesh = mesh::load_mesh(file.string());
       } catch (const InputError& error) {
         const Diagnostic& first = error.diagnostics.list().front();
-        entry.table.error(first.code, "mesh", fmt::format("{}: {}", file.string(), first.text), first.fix);
+        std::string place = first.where.file;
+        if (first.where.line > 0) place += fmt::format(":{}:{}", first.where.line, first.where.column);
+        entry.table.error(first.code, "mesh", fmt::format("{}: {}", place, first.text), first.fix);
       }
     }
   }

@@ -29,7 +29,7 @@ struct MachineScene {
   std::string file;         ///< machine.toml it came from
 };
 
-/// Reads machine.toml and its meshes (assimp). Throws InputError with every problem found: a cycle, a missing
+/// Reads machine.toml and its meshes. Throws InputError with every problem found: a cycle, a missing
 /// limit, an unknown axis letter, a mesh that is not there, an unknown key (with the nearest known one).
 MachineScene load_machine(const std::string& path);
 

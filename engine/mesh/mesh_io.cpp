@@ -1,19 +1,21 @@
 #include "mesh/mesh_io.h"
 
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <assimp/Importer.hpp>
-#include <cmath>
+#include <bit>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <optional>
+#include <limits>
+#include <new>
+#include <unordered_map>
 
 #include "base/diagnostics.h"
-#include "mesh/ply_check.h"
+#include "base/hash.h"
+#include "mesh/mesh_source.h"
+#include "mesh/obj_reader.h"
+#include "mesh/ply_reader.h"
 #include "mesh/stl_reader.h"
 
 namespace swarf::mesh {
@@ -26,32 +28,6 @@ std::string extension(const std::string& path) {
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](unsigned char c) { return std::tolower(c); });
   return ending;
-}
-
-uint8_t byte_from_unit(float value) {
-  return static_cast<uint8_t>(std::lround(std::clamp(value, 0.0F, 1.0F) * 255.0F));
-}
-
-void append(const aiMesh& part, TriMesh& mesh) {
-  const auto base = static_cast<uint32_t>(mesh.positions.size());
-  for (unsigned i = 0; i < part.mNumVertices; ++i) {
-    const aiVector3D& p = part.mVertices[i];
-    mesh.positions.push_back({p.x, p.y, p.z});
-    if (part.HasNormals()) {
-      const aiVector3D& n = part.mNormals[i];
-      mesh.normals.push_back({n.x, n.y, n.z});
-    }
-    if (part.HasVertexColors(0)) {
-      const aiColor4D& c = part.mColors[0][i];
-      mesh.colours.push_back(
-          {byte_from_unit(c.r), byte_from_unit(c.g), byte_from_unit(c.b), byte_from_unit(c.a)});
-    }
-  }
-  for (unsigned i = 0; i < part.mNumFaces; ++i) {
-    const aiFace& face = part.mFaces[i];
-    if (face.mNumIndices != 3) continue;  // points and lines of the file are no surface
-    mesh.triangles.push_back({base + face.mIndices[0], base + face.mIndices[1], base + face.mIndices[2]});
-  }
 }
 
 /// Bytes of one value, as the machine stores it: both formats are little-endian, and so is every system we
@@ -100,26 +76,76 @@ std::string ply_bytes(const TriMesh& mesh) {
   return out;
 }
 
-[[noreturn]] void refuse(const std::string& path, const std::string& reason) {
-  throw InputError("mesh-unreadable", {path}, fmt::format("this is not a mesh: {}", reason),
-                   "use STL, PLY or OBJ in mm");
+/// What makes two vertices one: place, normal and colour, as bits.
+using VertexKey = std::array<uint32_t, 7>;
+
+struct VertexHash {
+  size_t operator()(const VertexKey& key) const {
+    Hash hash;
+    for (const uint32_t word : key) hash.add(uint64_t{word});
+    return hash.value();
+  }
+};
+
+VertexKey key_of(const TriMesh& mesh, uint32_t v) {
+  VertexKey key{};
+  const auto bits = [](float value) {
+    return std::bit_cast<uint32_t>(value + 0.0F);
+  };  // -0 and 0 are one place
+  for (size_t i = 0; i < 3; ++i) key.at(i) = bits(mesh.positions[v].at(i));
+  for (size_t i = 0; i < 3 && !mesh.normals.empty(); ++i) key.at(3 + i) = bits(mesh.normals[v].at(i));
+  if (!mesh.colours.empty()) std::memcpy(&key[6], mesh.colours[v].data(), sizeof(uint32_t));
+  return key;
 }
 
-TriMesh read_with_assimp(const std::string& path, const std::string& ending) {
-  const std::string broken = ending == ".ply" ? check_ply_whole(path) : "";
-  if (!broken.empty()) refuse(path, broken);
-  Assimp::Importer importer;
-  // The normals of STL are those of its facets: they say nothing new and would keep vertices apart.
-  importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, ending == ".stl" ? int{aiComponent_NORMALS} : 0);
-  const aiScene* scene =
-      importer.ReadFile(path, aiProcess_RemoveComponent | aiProcess_Triangulate |
-                                  aiProcess_JoinIdenticalVertices | aiProcess_PreTransformVertices);
-  if (scene == nullptr) refuse(path, importer.GetErrorString());
+/// Equal vertices as one, in the order of the file; those that no triangle uses left out.
+TriMesh tidied(const TriMesh& mesh) {
+  constexpr uint32_t kUnused = std::numeric_limits<uint32_t>::max();
+  std::vector<bool> used(mesh.positions.size(), false);
+  for (const auto& t : mesh.triangles) {
+    for (const uint32_t v : t) used.at(v) = true;
+  }
+  TriMesh tidy;
+  std::unordered_map<VertexKey, uint32_t, VertexHash> known;
+  known.reserve(mesh.positions.size());
+  std::vector<uint32_t> numbers(mesh.positions.size(), kUnused);
+  for (uint32_t v = 0; v < numbers.size(); ++v) {
+    if (!used[v]) continue;
+    const auto [found, fresh] =
+        known.try_emplace(key_of(mesh, v), static_cast<uint32_t>(tidy.positions.size()));
+    numbers[v] = found->second;
+    if (!fresh) continue;
+    tidy.positions.push_back(mesh.positions[v]);
+    if (!mesh.normals.empty()) tidy.normals.push_back(mesh.normals[v]);
+    if (!mesh.colours.empty()) tidy.colours.push_back(mesh.colours[v]);
+  }
+  tidy.triangles.reserve(mesh.triangles.size());
+  for (const auto& t : mesh.triangles) {
+    tidy.triangles.push_back({numbers[t[0]], numbers[t[1]], numbers[t[2]]});
+  }
+  return tidy;
+}
+
+/// A normal of no direction says nothing; the mesh then has none, and who needs them takes the facets'.
+void drop_empty_normals(TriMesh& mesh) {
+  const bool empty = std::any_of(mesh.normals.begin(), mesh.normals.end(),
+                                 [](const auto& n) { return n[0] == 0.0F && n[1] == 0.0F && n[2] == 0.0F; });
+  if (empty) mesh.normals.clear();
+}
+
+TriMesh read_by_ending(const std::string& path) {
+  const std::string ending = extension(path);
+  if (ending == ".stl") return read_stl(path);
   TriMesh mesh;
-  for (unsigned i = 0; i < scene->mNumMeshes; ++i) append(*scene->mMeshes[i], mesh);
-  if (mesh.normals.size() != mesh.positions.size()) mesh.normals.clear();
-  if (mesh.colours.size() != mesh.positions.size()) mesh.colours.clear();
-  return mesh;
+  if (ending == ".ply") {
+    mesh = read_ply(path);
+  } else if (ending == ".obj") {
+    mesh = read_obj(path);
+  } else {
+    refuse_mesh({path}, fmt::format("'{}' is no ending of a mesh file that is read", shown(ending)));
+  }
+  drop_empty_normals(mesh);
+  return tidied(mesh);
 }
 
 }  // namespace
@@ -129,17 +155,14 @@ TriMesh load_mesh(const std::string& path) {
     throw InputError("mesh-not-found", {path}, "the mesh file cannot be opened",
                      "check the path and its spelling");
   }
-  const std::string ending = extension(path);
-  std::optional<TriMesh> mesh = ending == ".stl" ? read_binary_stl(path) : std::nullopt;
-  if (!mesh) mesh = read_with_assimp(path, ending);
-  const auto broken = std::count_if(mesh->positions.begin(), mesh->positions.end(), [](const auto& p) {
-    return !(std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]));
-  });
-  if (mesh->triangles.empty()) refuse(path, "it has no triangles");
-  if (broken > 0) {
-    refuse(path, fmt::format("{} of its {} positions are not finite", broken, mesh->positions.size()));
+  try {
+    TriMesh mesh = read_by_ending(path);
+    if (mesh.triangles.empty()) refuse_mesh({path}, "the mesh has no triangles");
+    return mesh;
+  } catch (const std::bad_alloc&) {
+    throw InputError("out-of-memory", {path}, "there is not enough memory for this mesh",
+                     "make the mesh coarser, or free memory");
   }
-  return std::move(*mesh);
 }
 
 void save_mesh(const std::string& path, const TriMesh& mesh) {

@@ -1,4 +1,6 @@
-// Mesh files: reading through assimp, writing STL and PLY.
+// Mesh files: the one door through which meshes come in, and writing STL and PLY. What comes through is
+// finite, within a kilometre of the origin (kFarthest) and soundly indexed, so that the libraries behind need
+// not ask.
 #pragma once
 
 #include <string>
@@ -8,8 +10,9 @@
 
 namespace swarf::mesh {
 
-/// Reads .stl, .ply or .obj (mm): all meshes of the file joined, equal vertices merged, normals and colours
-/// kept where the file has them. Throws InputError when the file is missing, not a mesh, or empty.
+/// Reads .stl, .ply or .obj (mm): all meshes of the file joined, polygons split into triangles, equal
+/// vertices merged, normals and colours kept where every vertex has them. Throws InputError with the line or
+/// byte of what is wrong when the file is missing, not a mesh, damaged, or empty.
 TriMesh load_mesh(const std::string& path);
 
 /// Writes .stl (binary) or .ply (binary, with normals, colours and `deviation_um` where the mesh has them) by

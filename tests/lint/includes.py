@@ -31,7 +31,6 @@ ALLOWED["cli"] = ENGINE | {"render", "reports"}
 HEAVY = {
     "OpenVDB": (r"openvdb/", ("engine/stock/",)),
     "OpenMesh": (r"OpenMesh/", ("engine/mesh/",)),
-    "assimp": (r"assimp/", ("engine/mesh/",)),
     "meshoptimizer": (r"meshoptimizer", ("engine/mesh/",)),
     "toml++": (r"toml\+\+", ("engine/base/config.cpp",)),
     "Embree": (r"embree", ("render/ray/",)),

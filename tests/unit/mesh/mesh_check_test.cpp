@@ -11,7 +11,6 @@
 #include <fstream>
 
 #include "mesh/mesh_io.h"
-#include "mesh/stl_reader.h"
 
 namespace swarf::mesh {
 namespace {
@@ -132,7 +131,6 @@ TEST(MeshCheck, ALargeBinaryStlIsReadWhole) {
   std::printf("%zu facets: read in %.2f s, checked in %.2f s\n", back.triangles.size(), read_s,
               both_s - read_s);
   std::filesystem::resize_file(path, std::filesystem::file_size(path) - 1);
-  EXPECT_FALSE(read_binary_stl(path).has_value());
   EXPECT_THROW(load_mesh(path), InputError);
   std::filesystem::remove(path);
 }

@@ -149,7 +149,7 @@ TEST_F(MeshIo, RefusesPositionsThatAreNotFinite) {
 }
 
 TEST_F(MeshIo, EveryTruncationIsRefusedOrHasSoundIndices) {
-  // assimp alone reads for ever when a PLY file ends too early.
+  // A PLY file that ends too early must neither be waited for nor be filled up.
   save_mesh(file("ring.stl"), torus(6));
   save_mesh(file("ring.ply"), torus(6));
   fs::copy_file(SWARF_SOURCE_DIR "/tests/data/machines/tetrahedron.ply", file("ascii.ply"));
