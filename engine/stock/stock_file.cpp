@@ -150,9 +150,34 @@ void add_metadata(openvdb::FloatGrid& grid, const LevelSet& set, const StockMeta
   grid.insertMeta(kBoxUpperKey, vector(set.box.upper));
 }
 
-void append_trailer(const std::string& path) {
-  const uint64_t sum = checksum(read_bytes(path));
-  std::ofstream out(path, std::ios::binary | std::ios::app);
+/// OpenVDB names each file it writes by a random UUID. Ours is made from the content, so that equal stocks
+/// are equal files; it stands behind magic number, three version numbers and a flag.
+constexpr size_t kUuidAt = 8 + 3 * 4 + 1, kUuidLetters = 36;
+
+void name_by_content(std::string& bytes) {
+  SWARF_CHECK(
+      bytes.size() > kUuidAt + kUuidLetters && bytes[kUuidAt + 8] == '-' && bytes[kUuidAt + 23] == '-',
+      "OpenVDB has changed where the UUID of a file stands");
+  bytes.replace(kUuidAt, kUuidLetters, kUuidLetters, '0');
+  const uint64_t first = checksum(bytes);
+  Hash second;
+  second.add(first);
+  const std::string digits = fmt::format("{:016x}{:016x}", first, second.value());
+  // Version 8 of RFC 9562 is the writer's own.
+  const std::string uuid = fmt::format("{}-{}-8{}-8{}-{}", digits.substr(0, 8), digits.substr(8, 4),
+                                       digits.substr(13, 3), digits.substr(17, 3), digits.substr(20, 12));
+  bytes.replace(kUuidAt, kUuidLetters, uuid);
+}
+
+/// Names the file by its content and ends it with mark and checksum.
+void finish_file(const std::string& path) {
+  std::string bytes = read_bytes(path);
+  name_by_content(bytes);
+  const uint64_t sum = checksum(bytes);
+  std::fstream out(path, std::ios::binary | std::ios::in | std::ios::out);
+  out.seekp(kUuidAt);
+  out.write(bytes.data() + kUuidAt, kUuidLetters);
+  out.seekp(0, std::ios::end);
   out.write(kMark, kMarkBytes);
   out.write(reinterpret_cast<const char*>(&sum), sizeof(sum));
   out.flush();
@@ -170,7 +195,7 @@ void write_level_set(const LevelSet& set, const std::string& path, const StockMe
     openvdb::io::File file(temporary);
     file.write(openvdb::GridPtrVec{grid});
     file.close();
-    append_trailer(temporary);
+    finish_file(temporary);
     fs::rename(temporary, path);
   } catch (const openvdb::Exception& error) {
     std::error_code ignored;

@@ -61,6 +61,18 @@ TEST_F(StockFile, RoundTripIsBitIdenticalAndCutsOn) {
   EXPECT_FALSE(fs::exists(path + ".part"));
 }
 
+TEST_F(StockFile, EqualStocksAreEqualFiles) {
+  const auto bytes_of = [&](const Stock& stock, const StockMetadata& metadata) {
+    stock.save(path, metadata);
+    std::ifstream in(path, std::ios::binary);
+    return std::string((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  };
+  const std::string first = bytes_of(small_stock(), {{"scene", "test"}});
+  EXPECT_EQ(bytes_of(small_stock(), {{"scene", "test"}}), first);
+  EXPECT_EQ(bytes_of(Stock::load(path), {{"scene", "test"}}), first);
+  EXPECT_NE(bytes_of(small_stock(), {{"scene", "other"}}), first);
+}
+
 TEST_F(StockFile, OpensInOpenVdbWithItsMetadata) {
   small_stock().save(path, {{"scene", "test"}});
   openvdb::io::File file(path);
