@@ -9,6 +9,7 @@
 #include "mesh/mesh_ops.h"
 #include "render/figures/colour.h"
 #include "reports/part_view.h"
+#include "reports/pending_folder.h"
 #include "reports/pictures.h"
 #include "reports/run_output.h"
 
@@ -26,6 +27,8 @@ int export_run(const ExportOptions& options) {
     throw InputError("nothing-to-do", {"swarf export"}, "no format was given",
                      "write for example: swarf export DIR --stl part.stl");
   }
+  for (const std::string& file : {options.gltf, options.machine_gltf, options.stl, options.ply, options.vdb})
+    reports::check_output_file(file);
   const reports::StoredRun stored = reports::read_run(options.folder);
   const reports::FinishedRun run{stored.job, stored.trajectory, stored.stock, stored.dexels};
   if (!options.gltf.empty() || !options.machine_gltf.empty()) {

@@ -1,12 +1,11 @@
 #include <fmt/format.h>
 
-#include <filesystem>
-#include <fstream>
 #include <memory>
 
 #include "cli/commands.h"
 #include "cli/terminal.h"
 #include "program/cl_writer.h"
+#include "reports/pending_folder.h"
 #include "sim/simulation.h"
 
 namespace swarf::cli {
@@ -70,17 +69,10 @@ std::string planned_text(const sim::Job& job, toolpath::ToolPath& path) {
 
 int plan(const PlanCommand& options) {
   const sim::Job job = sim::load_job(options.scene, options.overrides);
+  reports::check_output_file(options.output);
   toolpath::ToolPath path;
   const std::string text = planned_text(job, path);
-  const std::string temporary = options.output + ".part";
-  {
-    std::ofstream file(temporary, std::ios::binary);
-    file << text;
-    if (!file.flush())
-      throw InputError("cannot-write", {options.output}, "the file cannot be written",
-                       "check folder and rights");
-  }
-  std::filesystem::rename(temporary, options.output);
+  reports::write_text(options.output, text);
   fmt::print("{}: {} passes, {:.1f} mm in contact, {:.1f} mm of links\n", options.output, path.passes,
              path.pass_length_mm, path.link_length_mm);
   return kPass;

@@ -6,6 +6,7 @@
 #include "cli/commands.h"
 #include "cli/terminal.h"
 #include "reports/part_view.h"
+#include "reports/pending_folder.h"
 #include "reports/pictures.h"
 #include "reports/run_output.h"
 
@@ -27,6 +28,7 @@ int render(const RenderOptions& options) {
   }
   const reports::StillKind kind = reports::still_kind(options.kind);
   if (!options.camera.empty()) reports::camera_direction(options.camera);
+  for (const std::string& file : {options.movie, options.still}) reports::check_output_file(file);
   reports::StoredRun stored = reports::read_run(options.folder);
   if (options.size.size() == 2) {
     stored.job.scene.stills.size = {options.size[0], options.size[1]};

@@ -7,6 +7,7 @@
 
 #include "base/parallel.h"
 #include "cli/commands.h"
+#include "cli/shell_text.h"
 #include "cli/terminal.h"
 #include "reports/metrics_json.h"
 #include "reports/pending_folder.h"
@@ -59,16 +60,49 @@ void print_outcome(const sim::Job& job, const sim::Result& result, const std::st
              (std::filesystem::path(folder) / "report.html").string());
 }
 
+/// The command that was given, with every option that is not at its default.
+std::vector<std::string> command_words(const RunOptions& options) {
+  std::vector<std::string> words{"swarf", "run", options.scene};
+  const auto add = [&](bool given, const char* option, const std::string& value) {
+    if (given) words.insert(words.end(), {option, value});
+  };
+  const auto flag = [&](bool given, const char* option) {
+    if (given) words.emplace_back(option);
+  };
+  for (const std::string& set : options.overrides) add(true, "--set", set);
+  add(!options.from.empty(), "--from", options.from);
+  add(!options.save_after.empty(), "--save-stock-after", options.save_after);
+  flag(options.record, "--record");
+  add(options.record_every != RunOptions{}.record_every, "--record-every",
+      fmt::format("{}", options.record_every));
+  flag(options.check, "--check");
+  add(options.max_memory_mb > 0.0, "--max-memory", fmt::format("{}", options.max_memory_mb));
+  add(options.threads > 0, "--threads", fmt::format("{}", options.threads));
+  flag(options.no_render, "--no-render");
+  flag(options.json, "--json");
+  add(!options.output.empty(), "-o", options.output);
+  return words;
+}
+
 /// How to go on after Ctrl-C.
 void print_stopped(const RunOptions& options, const sim::Result& result, const std::string& folder) {
   const sim::CutState& state = result.cut.state;
-  std::string again = "swarf run " + options.scene;
-  for (const std::string& set : options.overrides) again += fmt::format(" --set '{}'", set);
+  RunOptions again = options;
+  again.from = (std::filesystem::path(folder) / "stock.vdb").string();
+  again.output = folder;
+  again.record = false;  // a record starts with the program
   fmt::print(stderr,
              "stopped: {} of {} blocks are cut, up to program line {}, {:.3f} s; what was finished is in {}\n"
-             "  go on with: {} --from {} -o {}\n",
-             state.sweeps, result.merged_sweeps, state.place.line, state.place.t_s, folder, again,
-             (std::filesystem::path(folder) / "stock.vdb").string(), folder);
+             "  go on with: {}\n",
+             state.sweeps, result.merged_sweeps, state.place.line, state.place.t_s, folder,
+             shell_text(command_words(again)));
+}
+
+/// Room that the results take at the least, bytes: the stock as a compressed grid.
+double least_bytes(const sim::Scene& scene) {
+  constexpr double kShareOnDisk = 0.05;  // of the memory of an uncut block; a cut one takes more
+  return kShareOnDisk *
+         static_cast<double>(stock::Stock::memory_estimate(scene.stock.box_W, scene.stock.voxel_mm));
 }
 
 sim::CutOptions cut_options(const RunOptions& options, const reports::PendingFolder& folder) {
@@ -93,12 +127,16 @@ int run(const RunOptions& options) {
   const sim::Job job = sim::load_job(options.scene, overrides);
   print_diagnostics(job.warnings);
   const std::string folder = options.output.empty() ? "out/" + job.scene.name : options.output;
-  reports::check_output_folder(folder, reports::kRunMark);
+  reports::check_output_folder(folder, reports::kRunMark, least_bytes(job.scene));
   reports::PendingFolder pending(folder);
+  const reports::OutputOptions output{!options.no_render, options.overrides,
+                                      shell_text(command_words(options))};
+  reports::begin_run(pending, job, output);
   TerminalProgress progress;
   sim::Result result = sim::simulate(job, cut_options(options, pending), progress);
   print_diagnostics(result.main.warnings);
-  reports::write_run(pending, job, result, {!options.no_render, options.overrides}, progress);
+  const std::vector<Diagnostic> failures = reports::write_run(pending, job, result, output, progress);
+  print_diagnostics(failures);
   if (result.stopped) {
     print_stopped(options, result, folder);
     return kStopped;
@@ -108,6 +146,7 @@ int run(const RunOptions& options) {
   } else {
     print_outcome(job, result, folder);
   }
+  if (!failures.empty()) return kBadInput;  // not everything that was asked for is there
   return sim::passes(result) ? kPass : kFindings;
 }
 

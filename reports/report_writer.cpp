@@ -85,8 +85,11 @@ void write_report(const std::string& path, const ReportData& data) {
   std::ofstream file(temporary, std::ios::binary | std::ios::trunc);
   file << page;
   file.close();
-  if (!file) throw unwritable(path, "writing " + temporary + " failed");
   std::error_code error;
+  if (!file) {
+    std::filesystem::remove(temporary, error);
+    throw unwritable(path, "writing " + temporary + " failed");
+  }
   std::filesystem::rename(temporary, path, error);
   if (error) {
     std::filesystem::remove(temporary, error);

@@ -2,11 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <array>
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "reports/kept_inputs.h"
 #include "reports/part_view.h"
 #include "reports/pending_folder.h"
 #include "reports/pictures.h"
@@ -20,42 +21,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<const char*, 3> kProgramKeys{"program", "cl", "nc"};  // order of ProgramKind
 constexpr double kPartGlbError = 2e-3;  // mm; a fifth of a usual scallop, far below a pixel
 
-/// Copies of the inputs, so that the folder can be rendered and exported on its own.
-void keep_inputs(const PendingFolder& folder, const sim::Job& job, const OutputOptions& options) {
-  const fs::path input = folder.file("input");
-  fs::create_directories(input);
-  fs::copy_file(job.scene.file, input / "scene.toml");
-  const std::string program =
-      "program" + (job.scene.has_blocks() ? fs::path(job.scene.program_file).extension().string() : ".nc");
-  fs::copy_file(job.scene.program_file, input / program);
-  fs::copy(fs::path(job.scene.machine_file).parent_path(), input / "machine", fs::copy_options::recursive);
-  std::vector<std::string> overrides = options.overrides;
-  overrides.push_back(
-      fmt::format("machine=\"machine/{}\"", fs::path(job.scene.machine_file).filename().string()));
-  overrides.push_back(
-      fmt::format("{}=\"{}\"", kProgramKeys.at(static_cast<size_t>(job.scene.kind)), program));
-  if (!job.scene.tool_table_file.empty()) {
-    const std::string table = "tools" + fs::path(job.scene.tool_table_file).extension().string();
-    fs::copy_file(job.scene.tool_table_file, input / table);
-    overrides.push_back(fmt::format("tool_table=\"{}\"", table));
+/// Runs one part of the writing; what goes wrong there does not take the rest with it.
+template <typename Part>
+void attempt(std::vector<Diagnostic>& failures, Part part) {
+  try {
+    part();
+  } catch (const InputError& error) {
+    const auto& found = error.diagnostics.list();
+    failures.insert(failures.end(), found.begin(), found.end());
   }
-  if (job.scene.design.kind == sim::DesignKind::kSurface) {
-    fs::copy_file(job.scene.design.surface_file, input / "design.nc");
-    overrides.push_back("design.surface=\"design.nc\"");
-  }
-  if (job.scene.design.kind == sim::DesignKind::kMesh) {
-    const std::string mesh = "design" + fs::path(job.scene.design.mesh_file).extension().string();
-    fs::copy_file(job.scene.design.mesh_file, input / mesh);
-    overrides.push_back(fmt::format("design.mesh=\"{}\"", mesh));
-  }
-  const nlohmann::ordered_json manifest{{"swarf", SWARF_VERSION},
-                                        {"scene", job.scene.name},
-                                        {"program", fs::path(job.scene.program_file).filename()},
-                                        {"overrides", overrides}};
-  write_text(folder.file("run.json"), manifest.dump(2) + "\n");
 }
 
 void write_pictures(const PendingFolder& folder, const FinishedRun& run, const TriMesh& part,
@@ -90,48 +66,92 @@ void write_pictures(const PendingFolder& folder, const FinishedRun& run, const T
   if (statistics.frames > 0) files.movie = folder.file("movie.mp4");
 }
 
-}  // namespace
-
-void write_run(PendingFolder& folder, const sim::Job& job, sim::Result& result, const OutputOptions& options,
-               Progress& progress) {
-  keep_inputs(folder, job, options);
+/// What pictures and measures can be made from again, the most precious first.
+void write_state(const PendingFolder& folder, const sim::Job& job, const sim::Result& result,
+                 Progress& progress) {
   progress.begin("write results", 3, "files");
-  sim::write_trajectory(folder.file("trajectory.csv"), result.main.motion.trajectory, result.main.path, job);
-  progress.advance(1);
   result.stock->save(folder.file("stock.vdb"), result.cut.metadata);
+  progress.advance(1);
+  sim::write_trajectory(folder.file("trajectory.csv"), result.main.motion.trajectory, result.main.path, job);
   progress.advance(2);
   for (size_t i = 0; i < result.main.dexels.size(); ++i) {
     result.main.dexels[i].save(folder.file(fmt::format("surface_{}.rays", i)));
   }
-  progress.end();
-  if (result.stopped) {
-    folder.move_into_place();
-    return;
+  if (result.main.nc) keep_called_programs(folder, job, result.main.nc->summary.files);
+  if (!result.stopped) {
+    write_text(folder.file("metrics.json"), metrics_json(job, result, {}));
+    write_text(folder.file("findings.json"), findings_json(result));
   }
+  progress.end();
+}
 
-  const FinishedRun run{job, result.main.motion.trajectory, *result.stock, result.main.dexels};
-  RunFiles files;
-  RenderStatistics statistics;
-  progress.begin("glTF", 3, "files");
-  const TriMesh closed = run.stock.mesh();
-  progress.advance(1);
+/// As write_state; what could be written is not thrown away when the rest cannot.
+void write_state_or_keep(PendingFolder& folder, const sim::Job& job, const sim::Result& result,
+                         Progress& progress) {
+  try {
+    write_state(folder, job, result, progress);
+  } catch (const InputError& error) {
+    if (!fs::exists(folder.file("stock.vdb"))) throw;
+    Diagnostics told = error.diagnostics;
+    const std::string place = folder.keep_incomplete();
+    told.note("results-incomplete", {place}, "what could be written is kept here; nothing was replaced");
+    throw InputError(told);
+  }
+}
+
+void write_glb(const PendingFolder& folder, const FinishedRun& run, const TriMesh& closed, Progress& progress,
+               RunFiles& files) {
+  progress.begin("glTF", 2, "files");
   const DisplayMesh light = display_mesh(run, closed, kPartGlbError);
   files.part_error_mm = light.error_mm;
   write_part_glb(run, light, folder.file("part.glb"));
   files.part_glb = folder.file("part.glb");
-  progress.advance(2);
+  progress.advance(1);
   write_machine_glb(run, light, folder.file("machine.glb"));
   files.machine_glb = folder.file("machine.glb");
   files.animation_scale = animation_scale(run);
   progress.end();
-  if (options.render) write_pictures(folder, run, shown_part(run, closed), progress, files, statistics);
+}
+
+}  // namespace
+
+void begin_run(const PendingFolder& folder, const sim::Job& job, const OutputOptions& options) {
+  const nlohmann::ordered_json manifest{{"swarf", SWARF_VERSION},
+                                        {"scene", job.scene.name},
+                                        {"program", fs::path(job.scene.program_file).filename().string()},
+                                        {"command", options.command},
+                                        {"overrides", keep_inputs(folder, job, options.overrides)}};
+  write_text(folder.file(kRunMark),
+             manifest.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+}
+
+std::vector<Diagnostic> write_run(PendingFolder& folder, const sim::Job& job, sim::Result& result,
+                                  const OutputOptions& options, Progress& progress) {
+  write_state_or_keep(folder, job, result, progress);
+  std::vector<Diagnostic> failures;
+  if (result.stopped) {
+    folder.move_into_place();
+    return failures;
+  }
+  const FinishedRun run{job, result.main.motion.trajectory, *result.stock, result.main.dexels};
+  RunFiles files;
+  RenderStatistics statistics;
+  const TriMesh closed = run.stock.mesh();
+  attempt(failures, [&] { write_glb(folder, run, closed, progress, files); });
+  attempt(failures, [&] {
+    if (options.render) write_pictures(folder, run, shown_part(run, closed), progress, files, statistics);
+  });
   result.stopped = progress.stop_requested();
   progress.begin("report", 1, "files");
-  write_report(folder.file("report.html"), report_data(job, result, files, options.render));
-  write_text(folder.file("metrics.json"), metrics_json(job, result, statistics));
-  write_text(folder.file("findings.json"), findings_json(result));
+  attempt(failures, [&] {
+    ReportData data = report_data(job, result, files, options.render);
+    data.reproduce = {options.command};
+    write_report(folder.file("report.html"), data);
+  });
+  attempt(failures, [&] { write_text(folder.file("metrics.json"), metrics_json(job, result, statistics)); });
   progress.end();
   folder.move_into_place();
+  return failures;
 }
 
 StoredRun read_run(const std::string& folder) {
@@ -142,7 +162,10 @@ StoredRun read_run(const std::string& folder) {
                      "name the folder that 'swarf run ... -o DIR' wrote");
   }
   const auto json = nlohmann::json::parse(manifest, nullptr, false);
-  if (json.is_discarded() || !json.contains("overrides")) {
+  const auto is_text = [](const nlohmann::json& value) { return value.is_string(); };
+  if (!json.is_object() || !json.contains("overrides") || !json.at("overrides").is_array() ||
+      !std::all_of(json.at("overrides").begin(), json.at("overrides").end(), is_text) ||
+      (json.contains("scene") && !json.at("scene").is_string())) {
     throw InputError("not-a-run", {(root / "run.json").string()}, "this file is broken",
                      "run the scene again");
   }

@@ -14,15 +14,21 @@ namespace swarf::reports {
 struct OutputOptions {
   bool render = true;                  ///< false: no movie, no stills
   std::vector<std::string> overrides;  ///< the --set of this run, kept with it
+  std::string command;                 ///< as it was given, ready for a shell
 };
 
 /// The file that marks a folder as a result of `swarf run`.
 inline constexpr const char* kRunMark = "run.json";
 
+/// Before the work: copies the inputs into `folder` (kept_inputs.h) and marks it as a run. Throws InputError.
+void begin_run(const PendingFolder& folder, const sim::Job& job, const OutputOptions& options);
+
 /// Writes everything into `folder` beside what the run has saved there already, and moves it into place: an
-/// earlier result is replaced whole; it stays until then.
-void write_run(PendingFolder& folder, const sim::Job& job, sim::Result& result, const OutputOptions& options,
-               Progress& progress);
+/// earlier result is replaced whole; it stays until then. Stock, trajectory, rays and numbers come first:
+/// when one of them cannot be written, InputError says why, and what could be is kept beside the target. What
+/// goes wrong with pictures and page is returned; the rest is there.
+std::vector<Diagnostic> write_run(PendingFolder& folder, const sim::Job& job, sim::Result& result,
+                                  const OutputOptions& options, Progress& progress);
 
 /// A run read back from its folder: no simulation.
 struct StoredRun {

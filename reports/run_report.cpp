@@ -387,7 +387,6 @@ ReportData report_data(const sim::Job& job, const sim::Result& result, const Run
     if (!data.paper.empty()) data.paper_title = "So et al. (2008), Table 2 and section 5";
   }
   data.checks = checks_of(job, result, rendered);
-  data.reproduce = {fmt::format("./dev run scenes/{}/scene.toml", job.scene.name)};
   data.facts = facts_of(job, result, files);
   data.facts.insert(data.facts.begin() + 1, time_facts(job, result));
   if (result.main.nc) {

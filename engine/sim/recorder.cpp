@@ -125,7 +125,12 @@ void write_trajectory(const std::string& path, const motion::Trajectory& traject
   {
     std::ofstream file(temporary, std::ios::binary);
     file.write(out.data(), static_cast<std::streamsize>(out.size()));
-    if (!file.flush()) throw std::runtime_error(fmt::format("{}: cannot be written", temporary));
+    if (!file.flush()) {
+      std::error_code ignored;
+      std::filesystem::remove(temporary, ignored);
+      throw InputError("cannot-write", {path}, "the trajectory cannot be written",
+                       "check that the folder may be written and has space");
+    }
   }
   std::filesystem::rename(temporary, path);
 }

@@ -18,8 +18,9 @@ struct ProgramRun {
   std::string output;  ///< stdout and stderr together
 };
 
-inline ProgramRun run_swarf(const std::string& arguments) {
-  const std::string command = std::string(SWARF_PROGRAM) + " " + arguments + " 2>&1";
+/// A command of the shell.
+inline ProgramRun run_command(const std::string& words) {
+  const std::string command = "{ " + words + "; } 2>&1";
   FILE* pipe = popen(command.c_str(), "r");
   if (pipe == nullptr) throw std::runtime_error("cannot start " + command);
   ProgramRun run;
@@ -29,6 +30,10 @@ inline ProgramRun run_swarf(const std::string& arguments) {
   const int status = pclose(pipe);
   run.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   return run;
+}
+
+inline ProgramRun run_swarf(const std::string& arguments) {
+  return run_command(std::string(SWARF_PROGRAM) + " " + arguments);
 }
 
 /// An empty folder of this test's own, below the system's temporary folder.

@@ -1,0 +1,154 @@
+#include "reports/kept_inputs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <utility>
+
+#include "base/config.h"
+
+namespace swarf::reports {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<const char*, 3> kProgramKeys{"program", "cl", "nc"};  // order of ProgramKind
+
+void keep_copy(const fs::path& from, const fs::path& to) {
+  std::error_code error;
+  fs::create_directories(to.parent_path(), error);
+  if (!error) fs::copy_file(from, to, fs::copy_options::overwrite_existing, error);
+  if (error) {
+    throw InputError("cannot-copy", {from.string()},
+                     fmt::format("the file cannot be kept with the results: {}", error.message()),
+                     "check that it may be read and that the disk has space");
+  }
+}
+
+std::string text_of(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+/// A TOML text; the path may hold what has a meaning there.
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + "\"";
+}
+
+/// The file's own name where every program can write it down, else `otherwise` with its ending.
+fs::path plain_name(const fs::path& file, const std::string& otherwise) {
+  const std::string name = file.filename().string();
+  const bool plain = std::all_of(name.begin(), name.end(), [](char c) { return c >= ' ' && c <= '~'; });
+  return plain ? fs::path(name) : fs::path(otherwise);
+}
+
+/// The meshes as machine.toml names them, each once.
+std::vector<std::string> mesh_names(const std::string& machine_file) {
+  Diagnostics ignored;  // the file has been read before
+  ConfigTable root = ConfigTable::load(machine_file, {}, ignored);
+  std::vector<std::string> names;
+  for (ConfigTable& link : root.tables("link")) {
+    const std::string name = link.text("mesh", "");
+    if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  }
+  return names;
+}
+
+/// The most folders above its start that a relative path visits.
+int folders_above(const fs::path& path) {
+  int depth = 0, least = 0;
+  for (const fs::path& part : path) {
+    if (part == "..") {
+      least = std::min(least, --depth);
+    } else if (part != ".") {
+      ++depth;
+    }
+  }
+  return -least;
+}
+
+void replace_all(std::string& text, const std::string& from, const std::string& to) {
+  for (size_t at = 0; (at = text.find(from, at)) != text.npos; at += to.size())
+    text.replace(at, from.size(), to);
+}
+
+/// Below input/machine, so deep that every relative mesh lies below it too; returns machine.toml's place.
+fs::path keep_machine(const fs::path& input, const std::string& machine_file) {
+  const std::vector<std::string> meshes = mesh_names(machine_file);
+  int above = 0;
+  for (const std::string& mesh : meshes) {
+    if (!fs::path(mesh).is_absolute()) above = std::max(above, folders_above(mesh));
+  }
+  fs::path place = "machine";
+  for (int i = 0; i < above; ++i) place /= fmt::format("below_{}", i + 1);
+  const fs::path folder = fs::path(machine_file).parent_path();
+  std::string text = text_of(machine_file);
+  for (size_t i = 0; i < meshes.size(); ++i) {
+    fs::path mesh = meshes[i];
+    if (mesh.is_absolute()) {
+      mesh = fmt::format("kept_{}{}", i, mesh.extension().string());
+      replace_all(text, "\"" + meshes[i] + "\"", "\"" + mesh.string() + "\"");
+      replace_all(text, "'" + meshes[i] + "'", "\"" + mesh.string() + "\"");
+      keep_copy(meshes[i], input / place / mesh);
+    } else {
+      keep_copy(folder / mesh, input / place / mesh);
+    }
+  }
+  place /= fs::path(machine_file).filename();
+  fs::create_directories((input / place).parent_path());
+  write_text((input / place).string(), text);
+  return place;
+}
+
+constexpr const char* kProgramFolder = "program";
+
+}  // namespace
+
+std::vector<std::string> keep_inputs(const PendingFolder& folder, const sim::Job& job,
+                                     const std::vector<std::string>& overrides) {
+  const fs::path input = folder.file("input");
+  std::vector<std::string> all = overrides;
+  const auto keep = [&](const char* key, const std::string& file, const fs::path& place) {
+    if (file.empty()) return;
+    keep_copy(file, input / place);
+    all.push_back(fmt::format("{}={}", key, quoted(place.string())));
+  };
+  const auto beside = [](const std::string& file, const char* name) {
+    return fs::path(name + fs::path(file).extension().string());
+  };
+  const sim::Scene& scene = job.scene;
+  keep_copy(scene.file, input / "scene.toml");
+  const fs::path machine = keep_machine(input, scene.machine_file);
+  all.push_back(fmt::format("machine={}", quoted(machine.string())));
+  keep(kProgramKeys.at(static_cast<size_t>(scene.kind)), scene.program_file,
+       fs::path(kProgramFolder) / plain_name(scene.program_file, "program"));
+  keep("tool_table", scene.tool_table_file, beside(scene.tool_table_file, "tools"));
+  if (scene.design.kind == sim::DesignKind::kSurface)
+    keep("design.surface", scene.design.surface_file, beside(scene.design.surface_file, "design"));
+  if (scene.design.kind == sim::DesignKind::kMesh)
+    keep("design.mesh", scene.design.mesh_file, beside(scene.design.mesh_file, "design"));
+  return all;
+}
+
+void keep_called_programs(const PendingFolder& folder, const sim::Job& job,
+                          const std::vector<std::string>& called) {
+  const fs::path home = fs::path(job.scene.program_file).parent_path();
+  const fs::path kept = fs::path(folder.file("input")) / kProgramFolder;
+  for (const std::string& file : called) {
+    const fs::path seen = fs::path(file).lexically_proximate(home);
+    const bool below = !seen.is_absolute() && folders_above(seen) == 0;
+    const fs::path place = kept / (below ? seen : seen.filename());
+    if (!fs::exists(place)) keep_copy(file, place);
+  }
+}
+
+}  // namespace swarf::reports
