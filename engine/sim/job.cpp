@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -20,29 +21,85 @@ namespace {
 
 constexpr double kMegabyte = 1024.0 * 1024.0;
 
-/// The smallest voxel, to two digits, whose estimate fits.
-double voxel_that_fits(const Box& box, double voxel, double limit_mb) {
-  double fitting = voxel;
-  while (static_cast<double>(stock::Stock::memory_estimate(box, fitting)) / kMegabyte > limit_mb)
-    fitting *= 1.05;
-  const double digit = std::pow(10.0, std::floor(std::log10(fitting)) - 1.0);
-  return std::ceil(fitting / digit) * digit;
+/// Upwards to two digits.
+double two_digits(double value) {
+  const double digit = std::pow(10.0, std::floor(std::log10(value)) - 1.0);
+  return std::ceil(value / digit) * digit;
 }
 
-/// What the box alone needs is known without a path: a wrong digit in voxel_mm is refused at once.
-void check_memory(const Scene& scene, Diagnostics& diagnostics) {
+/// The smallest voxel, to two digits, whose estimate fits.
+double voxel_that_fits(const Box& box, double voxel, double limit_mb) {
+  constexpr double kFinest = 1e-6;  // of the box: no memory holds more
+  double fitting = std::max(voxel, kFinest * box.size().maxCoeff());
+  while (static_cast<double>(stock::Stock::memory_estimate(box, fitting)) / kMegabyte > limit_mb)
+    fitting *= 1.05;
+  return two_digits(fitting);
+}
+
+/// What a box of voxels alone needs is known without a path: a wrong digit is refused at once.
+void check_voxels(const Scene& scene, const char* key, double voxel, Diagnostics& diagnostics) {
   const double limit = memory_limit_mb(scene);
   const double need =
-      static_cast<double>(stock::Stock::memory_estimate(scene.stock.box_W, scene.stock.voxel_mm)) / kMegabyte;
+      static_cast<double>(stock::Stock::memory_estimate(scene.stock.box_W, voxel)) / kMegabyte;
   // Before the path is known only the block can be counted; what lies between is for require_memory.
   constexpr double kBeyondDoubt = 2.0, kShareOfBlock = 1.0 / 6.0;
   if (need <= kBeyondDoubt * limit) return;
   diagnostics.error(
       "out-of-memory", {scene.file},
-      fmt::format("stock.voxel_mm = {:g} needs about {:.0f} MB, {:.0f} MB may be used", scene.stock.voxel_mm,
-                  need, limit),
+      fmt::format("{} = {:g} needs about {:.0f} MB, {:.0f} MB may be used", key, voxel, need, limit),
       fmt::format("voxel_mm = {:g} fits; or raise --max-memory",
-                  voxel_that_fits(scene.stock.box_W, scene.stock.voxel_mm, kShareOfBlock * limit)));
+                  voxel_that_fits(scene.stock.box_W, voxel, kShareOfBlock * limit)));
+}
+
+double triangle_area(const Vec3& a, const Vec3& b, const Vec3& c) {
+  return 0.5 * (b - a).cross(c - a).norm();
+}
+
+/// mm2; of surfaces from below, by chords.
+double design_area(const Job& job) {
+  constexpr int kParts = 16;
+  double area = 0.0;
+  if (job.design_mesh) {
+    const auto corner = [&](uint32_t v) {
+      const auto& p = job.design_mesh->positions[v];
+      return Vec3(p[0], p[1], p[2]);
+    };
+    for (const auto& t : job.design_mesh->triangles)
+      area += triangle_area(corner(t[0]), corner(t[1]), corner(t[2]));
+  }
+  for (const surface::SurfacePtr& surface : job.design) {
+    const auto at = [&](int i, int k) { return surface->point(double(i) / kParts, double(k) / kParts); };
+    for (int i = 0; i < kParts * kParts; ++i) {
+      const int u = i / kParts, v = i % kParts;
+      area += triangle_area(at(u, v), at(u + 1, v), at(u, v + 1)) +
+              triangle_area(at(u + 1, v), at(u + 1, v + 1), at(u, v + 1));
+    }
+  }
+  return area;
+}
+
+/// One measuring ray stands for a square of the pitch at the most: a wrong digit is refused before any is
+/// made.
+void check_rays(const Job& job, Diagnostics& diagnostics) {
+  constexpr double kRayBytes = 80.0;
+  const double limit = memory_limit_mb(job.scene), area = design_area(job), pitch = job.scene.design.pitch_mm;
+  const double need = kRayBytes * area / pitch / pitch / kMegabyte;
+  if (need <= limit) return;
+  diagnostics.error(
+      "out-of-memory", {job.scene.file},
+      fmt::format(
+          "design.pitch_mm = {:g} needs about {:.0f} MB for the measuring rays of {:.0f} mm2, {:.0f} MB "
+          "may be used",
+          pitch, need, area, limit),
+      fmt::format("pitch_mm = {:g} fits",
+                  two_digits(std::sqrt(4.0 * kRayBytes * area / (limit * kMegabyte)))));
+}
+
+void check_memory(const Job& job, Diagnostics& diagnostics) {
+  check_voxels(job.scene, "stock.voxel_mm", job.scene.stock.voxel_mm, diagnostics);
+  if (job.scene.movie.seconds > 0.0)
+    check_voxels(job.scene, "movie.voxel_mm", job.scene.movie.voxel_mm, diagnostics);
+  check_rays(job, diagnostics);
 }
 
 void check_tools(const Job& job, Diagnostics& diagnostics) {
@@ -190,7 +247,7 @@ Job load_job(const std::string& path, const std::vector<std::string>& overrides)
     check_tools(job, diagnostics);
     check_planner_cutter(job, diagnostics);
   }
-  check_memory(job.scene, diagnostics);
+  check_memory(job, diagnostics);
   diagnostics.throw_if_errors();
   job.warnings = diagnostics.list();
   return job;

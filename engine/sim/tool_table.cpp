@@ -54,10 +54,13 @@ class TblLine {
            "only lengths along the tool axis (Z) are known");
     }
     Cutter c;
-    c.number = static_cast<int>(words_['T']);
-    if (words_.count('T') != 0 && (c.number < 1 || c.number != words_['T'])) {
-      fail("bad-tool-line", fmt::format("T{:g} is no tool number", words_['T']), "a whole number above 0");
+    constexpr double kLargestNumber = 1e9;
+    const double number = words_['T'];
+    if (words_.count('T') != 0 &&
+        !(number >= 1.0 && number <= kLargestNumber && number == std::floor(number))) {
+      fail("bad-tool-line", fmt::format("T{:g} is no tool number", number), "a whole number above 0");
     }
+    c.number = good_ ? static_cast<int>(number) : 1;
     for (const char letter : {'Z', 'D'}) {
       if (words_.count(letter) == 0 || words_[letter] > 0.0) continue;
       fail("bad-tool-line", fmt::format("{} is {:g} mm", letter, words_[letter]), "give it above 0");
@@ -184,6 +187,10 @@ void join_tbl(std::vector<Described>& tools, const std::vector<Described>& measu
       return tool.cutter.number == line.cutter.number;
     });
     if (same == tools.end()) {
+      for (const cutter::Problem& problem : cutter::validate(line.cutter)) {
+        diagnostics.error("bad-tool-line", line.where, problem.text,
+                          "mend Z or D, or describe the tool: [[tool]] number and shape");
+      }
       warn_of_shape(line, diagnostics);
       tools.push_back(line);
       continue;

@@ -1,5 +1,6 @@
 #include "stock/stock.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "base/check.h"
@@ -86,7 +87,8 @@ size_t Stock::memory_for(const Box& box_W, double voxel_mm, double leaves) {
   constexpr double kTransient = sizeof(LeafNode*);  // per position while the box is made
   constexpr double kPositionBytes = kMapBytes + kTransient;
   const double positions = (box_W.size() / (kLeafSide * voxel_mm) + Vec3::Constant(2.0)).prod();
-  return static_cast<size_t>(leaves * kLeafBytes + positions * kPositionBytes);
+  constexpr double kEverything = 1e18;  // what is more has no number of bytes
+  return static_cast<size_t>(std::min(leaves * kLeafBytes + positions * kPositionBytes, kEverything));
 }
 
 size_t Stock::memory_estimate(const Box& box_W, double voxel_mm) {

@@ -97,6 +97,17 @@ TEST_F(ToolTable, TomlTableAddsItsToolsBehindThoseOfTheScene) {
   EXPECT_EQ(all.tools[1].shape, Shape::kDrill);
 }
 
+TEST_F(ToolTable, TblLinesThatCannotBeAToolAreRefused) {
+  for (const char* line : {"T2 Z80 D999999 ; ball", "T1e300 Z80 D6", "T-3 Z80 D6", "T1.5 Z80 D6"}) {
+    const Read all = read("tool_table = \"tools.tbl\"\n", file("tools.tbl", std::string(line) + "\n"));
+    EXPECT_NE(all.text().find("bad-tool-line"), std::string::npos) << line << "\n" << all.text();
+  }
+  // The scene's own description counts, not the shape that a .tbl would be taken for.
+  const Read own = read("tool_table = \"tools.tbl\"\n" + tool("number = 2", kMill),
+                        file("tools.tbl", "T2 Z3 D10 ; ball\n"));
+  EXPECT_EQ(own.text().find("bad-tool-line"), std::string::npos) << own.text();
+}
+
 TEST_F(ToolTable, TblGivesLengthAndDiameterAndSaysWhatItAssumes) {
   const std::string table = file("tools.tbl",
                                  "; machine 1\n"
