@@ -82,7 +82,7 @@ std::string json_text(const sim::ReplayResult& result) {
                           {"recorded", place_json(d.recorded)},
                           {"now", place_json(d.now)}};
   }
-  return json.dump(2) + "\n";
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
 int replay(const ReplayOptions& options) {

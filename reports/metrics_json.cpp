@@ -15,6 +15,11 @@
 namespace swarf::reports {
 namespace {
 
+/// Names of folders and texts of programs need not be UTF-8: what is not shows as U+FFFD.
+std::string text_of(const nlohmann::ordered_json& json) {
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
 using Json = nlohmann::ordered_json;
 
 /// Line of the program that an element comes from; null for none.
@@ -367,7 +372,7 @@ std::string metrics_json(const sim::Job& job, const sim::Result& result, const R
   if (result.main.nc) json["program"] = nc_json(job, *result.main.nc);
   if (result.flank) json["flank"] = flank_json(*result.flank);
   if (result.singularity) json["singularity"] = singularity_json(result.main.path, *result.singularity);
-  return json.dump(2) + "\n";
+  return text_of(json);
 }
 
 std::string findings_json(const sim::Result& result) {
@@ -386,7 +391,7 @@ std::string findings_json(const sim::Result& result) {
                       {"t_s", finding.t_s}});
     }
   }
-  return list.dump(2) + "\n";
+  return text_of(list);
 }
 
 }  // namespace swarf::reports

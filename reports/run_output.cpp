@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "reports/kept_inputs.h"
 #include "reports/part_view.h"
@@ -23,16 +25,31 @@ namespace fs = std::filesystem;
 
 constexpr double kPartGlbError = 2e-3;  // mm; a fifth of a usual scallop, far below a pixel
 
-/// Runs one part of the writing; what goes wrong there does not take the rest with it.
-template <typename Part>
-void attempt(std::vector<Diagnostic>& failures, Part part) {
-  try {
-    part();
-  } catch (const InputError& error) {
-    const auto& found = error.diagnostics.list();
-    failures.insert(failures.end(), found.begin(), found.end());
+/// Runs the parts of the writing one after the other; what goes wrong in one does not take the others with
+/// it.
+class Attempts {
+ public:
+  template <typename Part>
+  void run(Part part) {
+    try {
+      part();
+    } catch (const InputError& error) {
+      const auto& found = error.diagnostics.list();
+      failures.insert(failures.end(), found.begin(), found.end());
+    } catch (...) {
+      if (!fault_) fault_ = std::current_exception();
+    }
   }
-}
+  /// What was no fault of the input, when everything else has been written.
+  void rethrow() const {
+    if (fault_) std::rethrow_exception(fault_);
+  }
+
+  std::vector<Diagnostic> failures;
+
+ private:
+  std::exception_ptr fault_;
+};
 
 void write_pictures(const PendingFolder& folder, const FinishedRun& run, const TriMesh& part,
                     Progress& progress, RunFiles& files, RenderStatistics& statistics) {
@@ -90,10 +107,13 @@ void write_state_or_keep(PendingFolder& folder, const sim::Job& job, const sim::
                          Progress& progress) {
   try {
     write_state(folder, job, result, progress);
-  } catch (const InputError& error) {
+  } catch (const std::exception& error) {
     if (!fs::exists(folder.file("stock.vdb"))) throw;
-    Diagnostics told = error.diagnostics;
     const std::string place = folder.keep_incomplete();
+    const auto* input = dynamic_cast<const InputError*>(&error);
+    if (input == nullptr)
+      throw std::runtime_error(fmt::format("{} (what could be written is kept in {})", error.what(), place));
+    Diagnostics told = input->diagnostics;
     told.note("results-incomplete", {place}, "what could be written is kept here; nothing was replaced");
     throw InputError(told);
   }
@@ -128,30 +148,31 @@ void begin_run(const PendingFolder& folder, const sim::Job& job, const OutputOpt
 std::vector<Diagnostic> write_run(PendingFolder& folder, const sim::Job& job, sim::Result& result,
                                   const OutputOptions& options, Progress& progress) {
   write_state_or_keep(folder, job, result, progress);
-  std::vector<Diagnostic> failures;
+  Attempts attempts;
   if (result.stopped) {
     folder.move_into_place();
-    return failures;
+    return {};
   }
   const FinishedRun run{job, result.main.motion.trajectory, *result.stock, result.main.dexels};
   RunFiles files;
   RenderStatistics statistics;
   const TriMesh closed = run.stock.mesh();
-  attempt(failures, [&] { write_glb(folder, run, closed, progress, files); });
-  attempt(failures, [&] {
+  attempts.run([&] { write_glb(folder, run, closed, progress, files); });
+  attempts.run([&] {
     if (options.render) write_pictures(folder, run, shown_part(run, closed), progress, files, statistics);
   });
   result.stopped = progress.stop_requested();
   progress.begin("report", 1, "files");
-  attempt(failures, [&] {
+  attempts.run([&] {
     ReportData data = report_data(job, result, files, options.render);
     data.reproduce = {options.command};
     write_report(folder.file("report.html"), data);
   });
-  attempt(failures, [&] { write_text(folder.file("metrics.json"), metrics_json(job, result, statistics)); });
+  attempts.run([&] { write_text(folder.file("metrics.json"), metrics_json(job, result, statistics)); });
   progress.end();
   folder.move_into_place();
-  return failures;
+  attempts.rethrow();
+  return attempts.failures;
 }
 
 StoredRun read_run(const std::string& folder) {

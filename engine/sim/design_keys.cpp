@@ -97,6 +97,7 @@ surface::SurfacePtr read_hyperboloid(ConfigTable& table) {
   shape.skew_rad = rad_from_deg(table.number("skew_deg", kBelowRightAngle));
   shape.cutter_radius = table.number("cutter_radius_mm", kAboveZero);
   const auto z = read_interval(table, "z_mm", -1e6, 1e6);
+  if (shape.distance <= 0.0 || shape.cutter_radius <= 0.0 || !(z[0] < z[1])) return nullptr;  // said above
   if (shape.distance <= shape.cutter_radius) {
     table.error("out-of-range", "distance_mm", "the cutter reaches the axis: no core is left",
                 "distance_mm must be above cutter_radius_mm");

@@ -30,8 +30,10 @@ double two_digits(double value) {
 /// The smallest voxel, to two digits, whose estimate fits.
 double voxel_that_fits(const Box& box, double voxel, double limit_mb) {
   constexpr double kFinest = 1e-6;  // of the box: no memory holds more
-  double fitting = std::max(voxel, kFinest * box.size().maxCoeff());
-  while (static_cast<double>(stock::Stock::memory_estimate(box, fitting)) / kMegabyte > limit_mb)
+  const double longest = box.size().maxCoeff();
+  double fitting = std::max(voxel, kFinest * longest);
+  while (fitting<longest&& static_cast<double>(stock::Stock::memory_estimate(box, fitting)) / kMegabyte>
+             limit_mb)
     fitting *= 1.05;
   return two_digits(fitting);
 }

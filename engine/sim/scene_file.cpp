@@ -15,10 +15,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// As for meshes: a kilometre from the origin of the work, mm.
+constexpr double kFarthest = 1e6;
+
 /// Surface blocks are always cut by their cycles.
 StockSettings read_stock(ConfigTable table, bool blocks) {
   StockSettings stock;
   stock.box_W = table.box("box_mm");
+  if (std::max(stock.box_W.lower.cwiseAbs().maxCoeff(), stock.box_W.upper.cwiseAbs().maxCoeff()) >
+      kFarthest) {
+    table.error("out-of-range", "box_mm", "the stock reaches too far from the origin of the work",
+                fmt::format("every number must be from {:g} to {:g} mm", -kFarthest, kFarthest));
+    stock.box_W = {Vec3::Zero(), Vec3::Ones()};
+  }
   stock.voxel_mm = table.number("voxel_mm", kAboveZero);
   stock.sweep_tolerance_mm = table.number("sweep_tolerance_um", kAboveZero, 1.0) * kMicrometre;
   if (blocks && table.choice("cut_by", {"blocks", "cycles"}, "blocks") == "cycles")
@@ -105,6 +114,30 @@ void read_pictures(ConfigTable& root, Scene& scene) {
   ConfigTable stills = root.table("stills");
   scene.stills.size = read_size(stills);
   scene.stills.samples = stills.integer("samples", 1, 4096, scene.stills.samples);
+}
+
+/// A name as every file of the results can hold it: what is not UTF-8 (folders of other systems) becomes '?'.
+std::string utf8_only(const std::string& name) {
+  std::string text;
+  for (size_t at = 0; at < name.size();) {
+    const auto byte = [&](size_t i) {
+      return at + i < name.size() ? static_cast<unsigned char>(name[at + i]) : 0U;
+    };
+    const size_t length = byte(0) < 0x80                      ? 1
+                          : byte(0) >= 0xc2 && byte(0) < 0xe0 ? 2
+                          : byte(0) >= 0xe0 && byte(0) < 0xf0 ? 3
+                                                              : 4;
+    bool good = byte(0) < 0x80 || (byte(0) >= 0xc2 && byte(0) < 0xf5);
+    for (size_t i = 1; i < length; ++i) good = good && (byte(i) & 0xc0U) == 0x80U;
+    // Forms that are too long, halves of surrogate pairs, and numbers beyond the last letter.
+    if (byte(0) == 0xe0 && byte(1) < 0xa0) good = false;
+    if (byte(0) == 0xed && byte(1) >= 0xa0) good = false;
+    if (byte(0) == 0xf0 && byte(1) < 0x90) good = false;
+    if (byte(0) == 0xf4 && byte(1) >= 0x90) good = false;
+    text += good ? name.substr(at, length) : "?";
+    at += good ? length : 1;
+  }
+  return text;
 }
 
 /// A path in the scene, made relative to the scene's folder.
@@ -221,10 +254,10 @@ Scene load_scene(const std::string& path, const std::vector<std::string>& overri
                  Diagnostics& diagnostics) {
   Scene scene;
   scene.file = path;
-  scene.name = fs::absolute(path).parent_path().filename().string();
+  scene.name = utf8_only(fs::absolute(path).parent_path().filename().string());
   ConfigTable root = ConfigTable::load(path, overrides, diagnostics);
   if (diagnostics.has_errors()) return scene;
-  scene.title = root.text("title", scene.name);
+  scene.title = utf8_only(root.text("title", scene.name));
   scene.machine_file = beside(path, root.text("machine"));
   read_program(root, scene);
   read_scene_tools(root, scene, diagnostics);

@@ -76,6 +76,8 @@ std::vector<BadInput> bad_inputs() {
       {"number_nan", "scene.toml", "voxel_mm = 0.2", "voxel_mm = nan", "out-of-range", "scene.toml:18:"},
       {"number_1e400", "scene.toml", "voxel_mm = 0.2", "voxel_mm = 1e400", "toml-syntax", "scene.toml:18:"},
       {"voxel_too_small", "scene.toml", "voxel_mm = 0.2", "voxel_mm = 0.0005", "out-of-memory", "scene.toml"},
+      {"box_beyond_everything", "scene.toml", "[50, 40, 37]", "[1e308, 40, 37]", "out-of-range",
+       "scene.toml:17:"},
       {"voxel_denormal", "scene.toml", "voxel_mm = 0.2", "voxel_mm = 5e-324", "out-of-memory", "scene.toml"},
       {"movie_voxel_tiny", "scene.toml", "[movie]", "[movie]\nvoxel_mm = 1e-5", "out-of-memory",
        "scene.toml"},

@@ -248,6 +248,21 @@ TEST_F(ResultsKept, TheCommandIsPrintedAsItWasGiven) {
   EXPECT_EQ(read_text(job_ / "out/stock.vdb"), stock);
 }
 
+TEST_F(ResultsKept, NamesAndCommentsNeedNotBeUtf8) {
+  const fs::path latin = folder_ / "Fr\xe4sen";
+  fs::rename(job_, latin);
+  job_ = latin;
+  write_text(
+      job_ / "slot.ngc",
+      "G21 G90 G54\nT1 M6 (FR\xc4SER)\nS5000 M3\nG0 X-12 Y0 Z5 A0 B0\nG0 Z-1\nG0 X12 (NUT FR\xc4SEN)\nG1 Y1 "
+      "F100\nG0 Z50\nM2\n");
+  const auto run = swarf_there("run scene.toml --no-render -o out");
+  EXPECT_EQ(run.exit_code, 1) << run.output;  // a rapid through the material
+  const auto findings = nlohmann::json::parse(read_text(job_ / "out/findings.json"));
+  EXPECT_NE(findings.dump().find("(NUT FR\xef\xbf\xbdSEN)"), std::string::npos) << findings.dump();
+  EXPECT_EQ(nlohmann::json::parse(read_text(job_ / "out/metrics.json")).at("scene"), "Fr?sen");
+}
+
 /// Runs the program and interrupts it after a while; returns its exit code.
 int interrupted_after(std::chrono::milliseconds delay, const fs::path& folder,
                       const std::vector<std::string>& words) {
