@@ -1,11 +1,13 @@
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "base/parallel.h"
 #include "cli/commands.h"
 #include "cli/terminal.h"
+#include "reports/run_output.h"
 #include "sim/replay.h"
 
 namespace swarf::cli {
@@ -85,13 +87,26 @@ std::string json_text(const sim::ReplayResult& result) {
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
+/// The job to compare with. When the recorded scene is no longer where it was, the copies that were kept with
+/// the record stand for it.
+sim::Job job_to_compare(const ReplayOptions& options, const sim::CutRecord& record) {
+  if (!options.scene.empty()) return sim::load_job(options.scene, options.overrides);
+  const std::string folder = std::filesystem::absolute(options.record).parent_path().string();
+  const bool gone = !std::filesystem::exists(record.scene);
+  if (gone && std::filesystem::exists(std::filesystem::path(folder) / reports::kRunMark)) {
+    fmt::print(stderr, "{} is not there: its copy in {} is taken\n", record.scene, folder);
+    return reports::read_job(folder, options.overrides);
+  }
+  std::vector<std::string> overrides = record.overrides;
+  overrides.insert(overrides.end(), options.overrides.begin(), options.overrides.end());
+  return sim::load_job(record.scene, overrides);
+}
+
 int replay(const ReplayOptions& options) {
   set_thread_count(options.threads);
   const sim::CutRecord record = sim::read_record(options.record);
   const bool own_scene = options.scene.empty();
-  std::vector<std::string> overrides = own_scene ? record.overrides : std::vector<std::string>{};
-  overrides.insert(overrides.end(), options.overrides.begin(), options.overrides.end());
-  const sim::Job job = sim::load_job(own_scene ? record.scene : options.scene, overrides);
+  const sim::Job job = job_to_compare(options, record);
   print_diagnostics(job.warnings);
   TerminalProgress progress;
   const sim::ReplayResult result = sim::replay(record, job, progress);
@@ -116,8 +131,10 @@ void add_replay(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "replay", "Cut a recorded run again and name the first block at which the stocks differ");
   command->add_option("record", options->record, "run.record, written by swarf run --record")->required();
-  command->add_option("--scene", options->scene,
-                      "compare with this scene (default: the recorded one, which must be unchanged)");
+  command->add_option(
+      "--scene", options->scene,
+      "compare with this scene (default: the recorded one, which must be unchanged; where it is gone, the "
+      "copy kept with the record)");
   command
       ->add_option("--set", options->overrides,
                    "replace a key of the scene; what was set in the recorded run is set again unless --scene "

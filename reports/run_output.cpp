@@ -175,7 +175,7 @@ std::vector<Diagnostic> write_run(PendingFolder& folder, const sim::Job& job, si
   return attempts.failures;
 }
 
-StoredRun read_run(const std::string& folder) {
+sim::Job read_job(const std::string& folder, const std::vector<std::string>& overrides) {
   const fs::path root(folder);
   std::ifstream manifest(root / "run.json");
   if (!manifest) {
@@ -190,9 +190,16 @@ StoredRun read_run(const std::string& folder) {
     throw InputError("not-a-run", {(root / "run.json").string()}, "this file is broken",
                      "run the scene again");
   }
-  sim::Job job = sim::load_job((root / "input" / "scene.toml").string(),
-                               json.at("overrides").get<std::vector<std::string>>());
+  auto all = json.at("overrides").get<std::vector<std::string>>();
+  all.insert(all.end(), overrides.begin(), overrides.end());
+  sim::Job job = sim::load_job((root / "input" / "scene.toml").string(), all);
   job.scene.name = json.value("scene", job.scene.name);
+  return job;
+}
+
+StoredRun read_run(const std::string& folder) {
+  const fs::path root(folder);
+  sim::Job job = read_job(folder, {});
   motion::Trajectory trajectory = sim::read_trajectory((root / "trajectory.csv").string(), job);
   StoredRun run{std::move(job), std::move(trajectory), stock::Stock::load((root / "stock.vdb").string()), {}};
   const std::vector<stock::RayFieldPtr> fields = sim::design_rays(run.job);

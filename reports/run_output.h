@@ -30,6 +30,10 @@ void begin_run(const PendingFolder& folder, const sim::Job& job, const OutputOpt
 std::vector<Diagnostic> write_run(PendingFolder& folder, const sim::Job& job, sim::Result& result,
                                   const OutputOptions& options, Progress& progress);
 
+/// The job of a run, from the copies in its folder; `overrides` come on top of those that it was run with.
+/// Throws InputError "not-a-run" and as load_job does.
+sim::Job read_job(const std::string& folder, const std::vector<std::string>& overrides);
+
 /// A run read back from its folder: no simulation.
 struct StoredRun {
   sim::Job job;

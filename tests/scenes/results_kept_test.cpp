@@ -74,7 +74,7 @@ class ResultsKept : public testing::Test {
 using Files = std::vector<std::string>;
 
 TEST_F(ResultsKept, SceneBesideItsMachineWithResultsBelow) {
-  const auto run = swarf_there("run scene.toml --no-render -o results/first");
+  const auto run = swarf_there("run scene.toml --no-render --record -o results/first");
   EXPECT_EQ(run.exit_code, 0) << run.output;
   EXPECT_EQ(files_below(job_ / "results/first/input"),
             (Files{"machine/machine.toml", "machine/tetrahedron.ply", "machine/tetrahedron.stl",
@@ -89,6 +89,8 @@ TEST_F(ResultsKept, SceneBesideItsMachineWithResultsBelow) {
   const auto again = run_swarf("export " + results + " --machine-gltf " + (folder_ / "m.glb").string() +
                                " --stl " + (folder_ / "p.stl").string());
   EXPECT_EQ(again.exit_code, 0) << again.output;
+  const auto replay = run_swarf("replay " + results + "/run.record");
+  EXPECT_EQ(replay.exit_code, 0) << replay.output;
 }
 
 TEST_F(ResultsKept, OnlyNamedFilesAreCopiedFromAFullHome) {
