@@ -4,6 +4,7 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -65,7 +66,8 @@ std::vector<std::string_view> split(std::string_view line) {
 
 bool parse(std::string_view field, double& value) {
   const auto [end, failure] = std::from_chars(field.data(), field.data() + field.size(), value);
-  return failure == std::errc() && end == field.data() + field.size();
+  constexpr double kBeyondAnyRun = 1e9;  // of times, places, angles and numbers of elements
+  return failure == std::errc() && end == field.data() + field.size() && std::abs(value) <= kBeyondAnyRun;
 }
 
 bool parse_kind(std::string_view field, motion::SampleKind& kind) {
@@ -151,12 +153,16 @@ motion::Trajectory read_trajectory(const std::string& path, const Job& job) {
   for (int number = 2; std::getline(file, line); ++number) {
     motion::ToolSample sample;
     kinematics::AxisValues q = kinematics::AxisValues::Zero();
-    if (!parse_row(line, job, sample, q)) {
+    const double before = trajectory.samples.empty() ? sample.t_s : trajectory.samples.back().t_s;
+    if (!parse_row(line, job, sample, q) || sample.t_s < before) {
       throw InputError("trajectory-broken", {path, number, 1}, "this line is not a sample of a run",
                        "run the scene again");
     }
     trajectory.samples.push_back(sample);
     trajectory.axes.push_back(q);
+  }
+  if (trajectory.samples.empty()) {
+    throw InputError("trajectory-broken", {path}, "the trajectory has no sample", "run the scene again");
   }
   return trajectory;
 }

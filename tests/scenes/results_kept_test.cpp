@@ -181,6 +181,24 @@ TEST_F(ResultsKept, OutputFilesAreTriedBeforeTheWork) {
   expect_refused(swarf_there("plan scene.toml -o no/such/file.cl"), "No such file or directory");
 }
 
+TEST_F(ResultsKept, ADamagedTrajectoryIsRefused) {
+  ASSERT_EQ(swarf_there("run scene.toml --no-render -o out").exit_code, 0);
+  const std::string sound = read_text(job_ / "out/trajectory.csv");
+  const size_t body = sound.find('\n') + 1, second = sound.find('\n', body) + 1;
+  for (const std::string& damaged :
+       {sound.substr(0, body), sound.substr(0, second) + "nan" + sound.substr(second + 8),
+        sound.substr(0, second) + "1e300" + sound.substr(second + 8),
+        sound + sound.substr(body, second - body)}) {
+    write_text(job_ / "out/trajectory.csv", damaged);
+    for (const char* command :
+         {"render out --still x.png --kind machine", "export out --machine-gltf x.glb"}) {
+      const auto run = swarf_there(command);
+      EXPECT_EQ(run.exit_code, 2) << run.output;
+      EXPECT_NE(run.output.find("[trajectory-broken]"), std::string::npos) << run.output;
+    }
+  }
+}
+
 TEST_F(ResultsKept, FilesOfTheUserStayInAnEarlierResult) {
   ASSERT_EQ(swarf_there("run scene.toml --no-render -o out").exit_code, 0);
   write_text(job_ / "out/notes.txt", "good edge on the left");
