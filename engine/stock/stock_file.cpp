@@ -108,7 +108,7 @@ openvdb::FloatGrid::Ptr parse_grid(const std::string& path, const std::string& b
     std::istringstream in(bytes);
     openvdb::io::Stream stream(in, /*delayLoad=*/false);
     grids = stream.getGrids();
-  } catch (const openvdb::Exception& error) {
+  } catch (const std::exception& error) {  // OpenVDB's own, and those of the memory that it asks for
     refuse("stock-file-damaged", path, fmt::format("OpenVDB cannot read the file: {}", error.what()),
            "run the scene again to write it");
   }

@@ -72,6 +72,13 @@ constexpr Attack kAttacks[] = {
     {"sound/run.record", "replay sound/run.record"},
 };
 
+/// The sanitizers need terabytes of address space that they never fill.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+const std::string kMemory;
+#else
+const std::string kMemory = "ulimit -v 4194304; ";
+#endif
+
 class FuzzProgram : public testing::Test {
  protected:
   void SetUp() override {
@@ -86,8 +93,8 @@ class FuzzProgram : public testing::Test {
 
   ProgramRun run_limited(const std::string& arguments) const {
     fs::remove_all(job_ / "out");
-    return run_command("cd " + job_.string() + "; ulimit -c 0; ulimit -t 20; ulimit -v 4194304; " +
-                       SWARF_PROGRAM + " " + arguments);
+    return run_command("cd " + job_.string() + "; ulimit -c 0; ulimit -t 20; " + kMemory + SWARF_PROGRAM +
+                       " " + arguments);
   }
 
   fs::path job_ = fresh_folder("fuzz_program");
