@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <stdexcept>
 
 #include "base/check.h"
 #include "base/diagnostics.h"
@@ -108,6 +109,7 @@ openvdb::FloatGrid::Ptr parse_grid(const std::string& path, const std::string& b
     std::istringstream in(bytes);
     openvdb::io::Stream stream(in, /*delayLoad=*/false);
     grids = stream.getGrids();
+    if (!in) throw std::runtime_error("it ends before its grid does");
   } catch (const std::exception& error) {  // OpenVDB's own, and those of the memory that it asks for
     refuse("stock-file-damaged", path, fmt::format("OpenVDB cannot read the file: {}", error.what()),
            "run the scene again to write it");
@@ -169,9 +171,11 @@ void name_by_content(std::string& bytes) {
   bytes.replace(kUuidAt, kUuidLetters, uuid);
 }
 
-/// Names the file by its content and ends it with mark and checksum.
+/// Names the file by its content and ends it with mark and checksum. It is read back first: OpenVDB does not
+/// say when a full disk has taken its end.
 void finish_file(const std::string& path) {
   std::string bytes = read_bytes(path);
+  parse_grid(path, bytes);
   name_by_content(bytes);
   const uint64_t sum = checksum(bytes);
   std::fstream out(path, std::ios::binary | std::ios::in | std::ios::out);
@@ -202,6 +206,11 @@ void write_level_set(const LevelSet& set, const std::string& path, const StockMe
     fs::remove(temporary, ignored);
     refuse("stock-file-unwritable", path, fmt::format("the stock file cannot be written: {}", error.what()),
            "check that the folder exists, may be written and has space");
+  } catch (const InputError&) {  // it came back incomplete
+    std::error_code ignored;
+    fs::remove(temporary, ignored);
+    refuse("stock-file-unwritable", path, "the stock file cannot be written to its end",
+           "check that the folder may be written and has space");
   } catch (const fs::filesystem_error& error) {
     std::error_code ignored;
     fs::remove(temporary, ignored);
