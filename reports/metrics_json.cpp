@@ -170,12 +170,31 @@ Json cross_check_json(const std::optional<measure::CrossCheck>& compared) {
   return compared ? json : unmeasured(json);
 }
 
-Json collisions_json(const sim::ToolClearance& clearance) {
-  Json json{{"count", clearance.contacts}, {"checked_poses", clearance.checked_poses}};
-  // Beyond the level set's band the distance is only known to be larger.
+/// A row of blocks in contact: first and last line, first contact, deepest place.
+Json event_json(const toolpath::ToolPath& path, const sim::ContactEvent& event) {
+  const auto line = [&](int element) { return path.elements[static_cast<size_t>(element)].where.line; };
+  return {{"part", event.part},
+          {"line", line(event.first.element)},
+          {"last_line", line(event.last_element)},
+          {"t_s", event.first.t_s},
+          {"depth_mm", event.depth_mm},
+          {"deepest_line", line(event.deepest.element)},
+          {"deepest_t_s", event.deepest.t_s},
+          {"deepest_mm", {event.deepest_W.x(), event.deepest_W.y(), event.deepest_W.z()}}};
+}
+
+Json collisions_json(const sim::Result& result) {
+  const sim::ToolClearance& clearance = result.clearance;
+  Json json{{"count", clearance.events.size()},
+            {"checked_sweeps", clearance.checked_sweeps},
+            {"found_from_mm", clearance.sees_mm}};
+  // Beyond the band gaps are only known to be larger.
   const bool known = clearance.nearest_mm < clearance.band_mm;
   json["near_miss_min_mm"] = known ? Json(clearance.nearest_mm) : Json(nullptr);
   json["near_miss_above_mm"] = clearance.band_mm;
+  json["events"] = Json::array();
+  for (const sim::ContactEvent& event : clearance.events)
+    json["events"].push_back(event_json(result.main.path, event));
   return json;
 }
 
@@ -321,7 +340,14 @@ Json bad_cuts_json(const sim::Result& result) {
       return (cut.kind == sim::BadCutKind::kRapid) == rapid;
     });
   };
-  return {{"rapids_in_material", count(true)}, {"spindle_wrong", count(false)}};
+  Json events = Json::array();
+  for (const sim::BadCut& cut : result.cut.state.bad_cuts) {
+    events.push_back(event_json(result.main.path, cut.event));
+    events.back()["kind"] = cut.kind == sim::BadCutKind::kRapid           ? "rapid"
+                            : cut.kind == sim::BadCutKind::kSpindleStands ? "spindle_stopped"
+                                                                          : "spindle_reversed";
+  }
+  return {{"rapids_in_material", count(true)}, {"spindle_wrong", count(false)}, {"events", events}};
 }
 
 }  // namespace
@@ -358,7 +384,7 @@ std::string metrics_json(const sim::Job& job, const sim::Result& result, const R
             {"cross_check", cross_check_json(result.cross_check)},
             {"planners", comparison_json(result.planners)},
             {"interpolators", comparison_json(result.modes)},
-            {"collisions", collisions_json(result.clearance)},
+            {"collisions", collisions_json(result)},
             {"bad_cuts", bad_cuts_json(result)},
             {"tools", tools_json(job, result)},
             {"render", {{"frames", render.frames}, {"frame_ms_median", render.frame_ms_median}}},

@@ -402,6 +402,19 @@ ReportData report_data(const sim::Job& job, const sim::Result& result, const Run
   return data;
 }
 
+/// Contacts of neck, shank and holder, or how near they came.
+std::string clearance_line(const sim::ToolClearance& clearance) {
+  if (clearance.events.empty()) {
+    return fmt::format(
+        "shank and holder free over the whole way of {} sweeps (contacts of {:.3f} mm and more)",
+        clearance.checked_sweeps, clearance.sees_mm);
+  }
+  const auto deepest = std::max_element(clearance.events.begin(), clearance.events.end(),
+                                        [](const auto& a, const auto& b) { return a.depth_mm < b.depth_mm; });
+  return fmt::format("{} contacts; the {} stands {:.2f} mm deep in the stock", clearance.events.size(),
+                     deepest->part, deepest->depth_mm);
+}
+
 std::vector<std::pair<std::string, std::string>> summary_lines(const sim::Job& job,
                                                                const sim::Result& result) {
   Lines lines = result.main.nc ? nc_lines(job, result)
@@ -417,11 +430,7 @@ std::vector<std::pair<std::string, std::string>> summary_lines(const sim::Job& j
       fmt::format("{} blocks in {:.2f} s = {:.0f} blocks/s, {:g} mm voxels", cut.sweeps, cut.seconds,
                   cut.seconds > 0 ? static_cast<double>(cut.sweeps) / cut.seconds : 0.0,
                   job.scene.stock.voxel_mm));
-  lines.emplace_back("clearance",
-                     result.clearance.contacts > 0
-                         ? fmt::format("{} stands in the stock at {} poses", result.clearance.part,
-                                       result.clearance.contacts)
-                         : fmt::format("shank and holder free ({} poses)", result.clearance.checked_poses));
+  lines.emplace_back("clearance", clearance_line(result.clearance));
   return lines;
 }
 

@@ -1,140 +1,156 @@
 #include "sim/bad_cuts.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <cmath>
-#include <sstream>
 #include <variant>
 
-#include "base/units.h"
-#include "cutter/profile.h"
+#include "base/parallel.h"
 
 namespace swarf::sim {
 namespace {
 
 using toolpath::BlockMove;
 
-constexpr double kPointSpacing = 2.0;   // mm
-constexpr double kOutlineError = 0.02;  // mm, of the lines that rounded ends are walked along
-constexpr double kStepOfRadius = 0.25;  // poses of a sweep are this share of the radius apart
-constexpr double kBandVoxels = 3.0;     // half width of the level set
+constexpr size_t kSweepsPerTask = 16;
 
-std::optional<BadCutKind> kind_of(const BlockMove& block, const cutter::Cutter& tool) {
-  if (toolpath::is_rapid(block)) return BadCutKind::kRapid;
-  if (!block.spindle_rpm) return std::nullopt;
-  if (*block.spindle_rpm == 0.0) return BadCutKind::kSpindleStands;
-  const bool counter_clockwise = *block.spindle_rpm < 0.0;
-  return counter_clockwise == tool.left_hand ? std::nullopt : std::optional(BadCutKind::kSpindleReversed);
+std::optional<BadCutKind> kind_of(const toolpath::Element& element,
+                                  const std::vector<cutter::Cutter>& tools) {
+  if (const auto* free = std::get_if<toolpath::FreeMove>(&element.what))
+    return free->feed_mm_s == 0.0 ? std::optional(BadCutKind::kRapid) : std::nullopt;
+  const auto* block = std::get_if<BlockMove>(&element.what);
+  if (block == nullptr) return std::nullopt;
+  if (toolpath::is_rapid(*block)) return BadCutKind::kRapid;
+  if (!block->spindle_rpm) return std::nullopt;
+  if (*block->spindle_rpm == 0.0) return BadCutKind::kSpindleStands;
+  const bool counter_clockwise = *block->spindle_rpm < 0.0;
+  const bool right = counter_clockwise == tools[static_cast<size_t>(block->tool)].left_hand;
+  return right ? std::nullopt : std::optional(BadCutKind::kSpindleReversed);
 }
 
-/// Rings on the flutes, the end's face included.
-std::vector<Vec3> flute_points(const cutter::Cutter& tool) {
-  std::vector<Vec3> points;
-  const auto ring = [&](double radius, double height) {
-    const int count = std::max(1, static_cast<int>(std::ceil(2.0 * kPi * radius / kPointSpacing)));
-    for (int i = 0; i < count; ++i) {
-      const double angle = 2.0 * kPi * i / count;
-      points.emplace_back(radius * std::cos(angle), radius * std::sin(angle), height);
-    }
-  };
-  const std::vector<Vec2> line = cutter::sample_outline(cutter::outline(tool), kOutlineError);
-  ring(line.front().x(), line.front().y());
-  double since = 0.0;
-  for (size_t i = 1; i < line.size(); ++i) {
-    const double length = (line[i] - line[i - 1]).norm();
-    const int steps = std::max(1, static_cast<int>(std::ceil(length / kPointSpacing)));
-    since += length;
-    // Short chords of an arc share their rings.
-    if (steps == 1 && since < kPointSpacing && i + 1 < line.size()) continue;
-    since = 0.0;
-    for (int k = 1; k <= steps; ++k) {
-      const Vec2 p = line[i - 1] + (line[i] - line[i - 1]) * k / steps;
-      ring(p.x(), p.y());
-    }
-  }
-  return points;
+ToolPose pose_at(const stock::Sweep& sweep, double t) {
+  return {(1.0 - t) * sweep.start.tip_W + t * sweep.end.tip_W,
+          ((1.0 - t) * sweep.start.axis_W + t * sweep.end.axis_W).normalized()};
+}
+
+stock::Sweep share(const stock::Sweep& sweep, double from_t, double to_t) {
+  return {from_t <= 0.0 ? sweep.start : pose_at(sweep, from_t),
+          to_t >= 1.0 ? sweep.end : pose_at(sweep, to_t), sweep.block};
 }
 
 }  // namespace
 
-BadCutCheck::BadCutCheck(const Job& job, const toolpath::ToolPath& path, const JobSweeps& sweeps)
-    : sweeps_(sweeps), voxel_mm_(job.scene.stock.voxel_mm) {
+BadCutCheck::BadCutCheck(const Job& job, const toolpath::ToolPath& path, const motion::Trajectory& trajectory,
+                         const JobSweeps& sweeps, const SweepPlaces& places)
+    : trajectory_(trajectory), sweeps_(sweeps), places_(places), has_blocks_(job.scene.has_blocks()) {
   for (const cutter::Cutter& tool : job.scene.tools) {
-    points_.push_back(flute_points(tool));
-    reach_mm_.push_back(std::hypot(cutter::greatest_radius(cutter::outline(tool)), tool.flute_length_mm));
-    step_mm_.push_back(std::max(voxel_mm_, kStepOfRadius * tool.radius()));
+    flutes_.emplace_back(tool);
+    parts_.emplace_back();
+    for (const cutter::ConvexPiece& piece : flutes_.back().pieces) parts_.back().emplace_back(piece);
   }
   int row = 0;
   for (const toolpath::Element& element : path.elements) {
-    Element entry;
-    if (const auto* block = std::get_if<BlockMove>(&element.what)) {
-      entry.kind = kind_of(*block, job.scene.tools[static_cast<size_t>(block->tool)]);
-    }
+    Element entry{kind_of(element, job.scene.tools), 0};
     const bool same = !elements_.empty() && elements_.back().kind == entry.kind;
     entry.row = same && entry.kind != BadCutKind::kRapid ? row : ++row;
     elements_.push_back(entry);
   }
 }
 
-bool BadCutCheck::suspicious(const stock::Sweep& sweep) const {
-  const Element& element = element_of(sweep.block);
-  if (!element.kind) return false;
-  return std::none_of(found_.begin(), found_.end(),
-                      [&](const BadCut& cut) { return element_of(cut.block).row == element.row; });
+std::vector<BadCutCheck::Move> BadCutCheck::moves(size_t sweep) const {
+  if (has_blocks_) {
+    const Element& element = elements_[static_cast<size_t>(source(sweep).element)];
+    if (!element.kind) return {};
+    return {{0.0, 1.0, *element.kind, element.row}};
+  }
+  std::vector<Move> moves;
+  const SweepPlaces::Samples range = places_.samples(sweep);
+  double from_t = 0.0;
+  for (size_t k = range.first + 1; k <= range.last; ++k) {
+    const double to_t = k == range.last ? 1.0 : places_.progress(sweep, k);
+    const Element& element = elements_[static_cast<size_t>(trajectory_.samples[k].element)];
+    if (element.kind && !moves.empty() && moves.back().to_t == from_t) {
+      moves.back().to_t = to_t;
+    } else if (element.kind) {
+      moves.push_back({from_t, to_t, *element.kind, element.row});
+    }
+    from_t = to_t;
+  }
+  return moves;
 }
 
-double BadCutCheck::depth_at(const stock::Stock& stock, const ToolPose& pose, size_t tool) const {
-  const Vec3 nearest = pose.tip_W.cwiseMax(stock.box().lower).cwiseMin(stock.box().upper);
-  if ((nearest - pose.tip_W).norm() > reach_mm_[tool]) return 0.0;
-  const Vec3 x = pose.axis_W.unitOrthogonal();
-  const Vec3 y = pose.axis_W.cross(x);
-  double deepest = 0.0;
-  for (const Vec3& p : points_[tool]) {
-    const Vec3 point = pose.tip_W + p.x() * x + p.y() * y + p.z() * pose.axis_W;
-    deepest = std::max(deepest, -stock.distance_mm(point));
-  }
-  return deepest;
+bool BadCutCheck::wanted(const Move& move) const {
+  if (move.kind == BadCutKind::kRapid) return true;
+  return std::none_of(found_.begin(), found_.end(), [&](const BadCut& cut) {
+    return elements_[static_cast<size_t>(cut.event.first.element)].row == move.row;
+  });
 }
 
-void BadCutCheck::check(const stock::Stock& stock, const stock::Sweep& sweep) {
-  const SweepSource& source = sweeps_.sources[sweep.block];
-  const auto tool = static_cast<size_t>(source.tool);
-  // A turn moves the flutes' far end even where the tip stands.
-  const double way = (sweep.end.tip_W - sweep.start.tip_W).norm() +
-                     (sweep.end.axis_W - sweep.start.axis_W).norm() * reach_mm_[tool];
-  const int steps = std::max(1, static_cast<int>(std::ceil(way / step_mm_[tool])));
-  double deepest = 0.0;
-  for (int i = 1; i <= steps; ++i) {
-    const double s = static_cast<double>(i) / steps;
-    const ToolPose pose{sweep.start.tip_W + s * (sweep.end.tip_W - sweep.start.tip_W),
-                        (sweep.start.axis_W + s * (sweep.end.axis_W - sweep.start.axis_W)).normalized()};
-    deepest = std::max(deepest, depth_at(stock, pose, tool));
-    if (deepest >= kBandVoxels * voxel_mm_ * (1.0 - 1e-6)) break;
-  }
-  if (deepest <= voxel_mm_) return;
-  found_.push_back({*element_of(sweep.block).kind, sweep.block, deepest});
+std::vector<size_t> BadCutCheck::look_ahead(const stock::ContactFinder& finder, size_t begin,
+                                            size_t end) const {
+  std::vector<uint8_t> meets(end - begin, 0);
+  parallel_chunks(meets.size(), kSweepsPerTask, [&](size_t from, size_t to) {
+    for (size_t i = from; i < to; ++i) {
+      for (const Move& move : moves(begin + i)) {
+        if (meets[i] != 0 || !wanted(move)) continue;
+        const stock::SweepMap map =
+            stock::sweep_map(share(sweeps_.sweeps[begin + i], move.from_t, move.to_t));
+        for (const stock::RevolvedPart& part : parts_[static_cast<size_t>(source(begin + i).tool)]) {
+          if (finder.gap(map, part, -finder.deep_mm()) < -finder.deep_mm()) meets[i] = 1;
+        }
+      }
+    }
+  });
+  std::vector<size_t> suspects;
+  for (size_t i = 0; i < meets.size(); ++i)
+    if (meets[i] != 0) suspects.push_back(begin + i);
+  return suspects;
 }
 
-std::string bad_cuts_text(const std::vector<BadCut>& cuts) {
-  std::string text;
-  for (const BadCut& cut : cuts) {
-    text += fmt::format("{} {} {};", static_cast<int>(cut.kind), cut.block, cut.depth_mm);
+std::optional<stock::Contact> BadCutCheck::contact(const stock::ContactFinder& finder, size_t sweep,
+                                                   const Move& move) const {
+  const stock::Sweep& whole = sweeps_.sweeps[sweep];
+  const auto tool = static_cast<size_t>(source(sweep).tool);
+  const stock::SweepMap map = stock::sweep_map(share(whole, move.from_t, move.to_t));
+  const stock::OwnCut before{&flutes_[tool], stock::sweep_map(share(whole, 0.0, move.from_t)), false};
+  std::optional<stock::Contact> found;
+  for (const stock::RevolvedPart& part : parts_[tool]) {
+    const auto one = finder.contact(map, part, move.from_t > 0.0 ? &before : nullptr);
+    if (!one) continue;
+    if (!found) found = one;
+    found->first_t = std::min(found->first_t, one->first_t);
+    found->last_t = std::max(found->last_t, one->last_t);
+    if (one->depth_mm <= found->depth_mm) continue;
+    found->depth_mm = one->depth_mm;
+    found->deepest_t = one->deepest_t;
+    found->place_W = one->place_W;
   }
-  return text;
+  if (!found) return found;
+  for (double* t : {&found->first_t, &found->last_t, &found->deepest_t})
+    *t = move.from_t + *t * (move.to_t - move.from_t);
+  return found;
 }
 
-bool parse_bad_cuts(const std::string& text, std::vector<BadCut>& cuts) {
-  std::istringstream in(text);
-  int kind = 0;
-  BadCut cut;
-  char end = ';';
-  while (in >> kind >> cut.block >> cut.depth_mm >> end) {
-    if (kind < 0 || kind > static_cast<int>(BadCutKind::kSpindleReversed) || end != ';') return false;
-    cut.kind = static_cast<BadCutKind>(kind);
-    cuts.push_back(cut);
+void BadCutCheck::judge(const stock::ContactFinder& finder, size_t sweep) {
+  for (const Move& move : moves(sweep)) {
+    if (!wanted(move)) continue;
+    const std::optional<stock::Contact> contact = this->contact(finder, sweep, move);
+    if (contact) add({move.kind, event_of("flutes", source(sweep).tool, *contact, places_, sweep)}, move.row);
   }
-  return in.eof() && end == ';';
+}
+
+int BadCutCheck::last_of_row(int row) const {
+  const auto after = std::upper_bound(elements_.begin(), elements_.end(), row,
+                                      [](int r, const Element& element) { return r < element.row; });
+  return static_cast<int>(after - elements_.begin()) - 1;
+}
+
+void BadCutCheck::add(BadCut cut, int row) {
+  if (cut.kind != BadCutKind::kRapid) {
+    cut.event.last_element = last_of_row(row);
+  } else if (!found_.empty() && found_.back().kind == cut.kind && goes_on(found_.back().event, cut.event)) {
+    join(found_.back().event, cut.event);
+    return;
+  }
+  found_.push_back(std::move(cut));
 }
 
 }  // namespace swarf::sim

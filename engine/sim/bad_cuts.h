@@ -1,5 +1,5 @@
 // Material taken by moves that must not take any: rapids, and cuts with a spindle that stands or turns the
-// wrong way. Programs of blocks only.
+// wrong way. Whole flutes, whole moves, against the stock as it stands before each sweep.
 #pragma once
 
 #include <optional>
@@ -7,34 +7,25 @@
 #include <string>
 #include <vector>
 
-#include "sim/job_sweeps.h"
 #include "sim/scene.h"
-#include "stock/stock.h"
+#include "sim/sweep_places.h"
+#include "stock/contact_finder.h"
 
 namespace swarf::sim {
 
-enum class BadCutKind {
-  kRapid,            ///< the move is a rapid
-  kSpindleStands,    ///< S is 0, M3 is missing
-  kSpindleReversed,  ///< M4 with a right-hand tool, M3 with a left-hand one
-};
-
-struct BadCut {
-  BadCutKind kind = BadCutKind::kRapid;
-  uint32_t block = 0;     ///< Sweep::block of the first sweep that met material
-  double depth_mm = 0.0;  ///< how deep the flutes stood in it; saturates at the level set's band
-};
-
-/// Points on the flutes (rings at most 2 mm apart) at poses along each suspicious sweep, against the stock as
-/// it stands before that sweep. Material less than one voxel deep is not counted: the cuts before leave it.
-/// Of a row of feed moves with the same wrong spindle the first that cuts is kept; of rapids each.
+/// Material less than one voxel deep is not counted: the cuts before leave it. Rapids of surface jobs (their
+/// retracts and links) lie in sweeps that may hold a feed too; only the rapid's share of them is judged.
 class BadCutCheck {
  public:
-  /// Path and sweeps must outlive it.
-  BadCutCheck(const Job& job, const toolpath::ToolPath& path, const JobSweeps& sweeps);
-  /// True when the sweep has to be looked at before it is cut.
-  bool suspicious(const stock::Sweep& sweep) const;
-  void check(const stock::Stock& stock, const stock::Sweep& sweep);
+  /// All must outlive it.
+  BadCutCheck(const Job& job, const toolpath::ToolPath& path, const motion::Trajectory& trajectory,
+              const JobSweeps& sweeps, const SweepPlaces& places);
+
+  /// Those of sweeps [begin, end) whose bad moves are not clear of the stock as it stands now.
+  std::vector<size_t> look_ahead(const stock::ContactFinder& finder, size_t begin, size_t end) const;
+  /// One of them, before it is cut.
+  void judge(const stock::ContactFinder& finder, size_t sweep);
+
   const std::vector<BadCut>& result() const { return found_; }
   /// Goes on from what was found before.
   void resume(const std::vector<BadCut>& earlier) { found_ = earlier; }
@@ -44,21 +35,28 @@ class BadCutCheck {
     std::optional<BadCutKind> kind;
     int row = 0;  ///< elements of one row have the same kind without another between them
   };
-  const Element& element_of(uint32_t block) const {
-    return elements_[static_cast<size_t>(sweeps_.sources[block].element)];
-  }
-  double depth_at(const stock::Stock& stock, const ToolPose& pose, size_t tool) const;
+  /// A share of a sweep that must not cut.
+  struct Move {
+    double from_t = 0.0, to_t = 1.0;
+    BadCutKind kind = BadCutKind::kRapid;
+    int row = 0;
+  };
+  std::vector<Move> moves(size_t sweep) const;
+  bool wanted(const Move& move) const;
+  std::optional<stock::Contact> contact(const stock::ContactFinder& finder, size_t sweep,
+                                        const Move& move) const;
+  void add(BadCut cut, int row);
+  int last_of_row(int row) const;
+  const SweepSource& source(size_t sweep) const { return sweeps_.sources[sweeps_.sweeps[sweep].block]; }
 
+  const motion::Trajectory& trajectory_;
   const JobSweeps& sweeps_;
-  std::vector<Element> elements_;           ///< by ToolPath::elements
-  std::vector<std::vector<Vec3>> points_;   ///< of each tool's flutes, in the tool's frame
-  std::vector<double> reach_mm_, step_mm_;  ///< by tool: of the flutes from the tip; between two poses
-  double voxel_mm_;
+  const SweepPlaces& places_;
+  bool has_blocks_;
+  std::vector<Element> elements_;                        ///< by ToolPath::elements
+  std::vector<stock::CutterSolid> flutes_;               ///< by tool
+  std::vector<std::vector<stock::RevolvedPart>> parts_;  ///< the same, by tool
   std::vector<BadCut> found_;
 };
-
-/// "kind block depth;..." for stock files, and back; false: not such a text.
-std::string bad_cuts_text(const std::vector<BadCut>& cuts);
-bool parse_bad_cuts(const std::string& text, std::vector<BadCut>& cuts);
 
 }  // namespace swarf::sim

@@ -4,17 +4,22 @@
 
 #include <algorithm>
 #include <cctype>
+#include <limits>
 #include <optional>
 #include <utility>
 
+#include "sim/bad_cuts.h"
 #include "sim/cut_record.h"
 #include "sim/simulation.h"
+#include "sim/tool_clearance.h"
 
 namespace swarf::sim {
 namespace {
 
-constexpr size_t kSweepsPerBatch = 256;  // between two looks at the holder, the progress bar and Ctrl-C
-constexpr size_t kChecks = 8;            // of the invariants on the way, evenly spread over the sweeps
+constexpr size_t kSweepsPerBatch = 2048;  // between two looks ahead at the whole tool
+constexpr size_t kSweepsPerStep = 512;    // between two looks at the progress bar and Ctrl-C
+constexpr size_t kSuspectsPerStep = 32;   // the same, where sweeps are judged one by one
+constexpr size_t kChecks = 8;             // of the invariants on the way, evenly spread over the sweeps
 
 size_t next_multiple(size_t at, size_t step) {
   return (at / step + 1) * step;
@@ -31,8 +36,9 @@ class CutStage {
         merged_(stock_sweeps(job, result.main.path, result.main.motion.trajectory)),
         solids_(tool_solids(job.scene)),
         identity_(cut_identity(job, merged_)),
-        clearance_(job.scene.tools, job.scene.stock.voxel_mm),
-        bad_cuts_(job, result.main.path, merged_) {
+        places_(merged_, result.main.path, result.main.motion.trajectory),
+        clearance_(job.scene.tools, merged_, places_, job.scene.stock.voxel_mm),
+        bad_cuts_(job, result.main.path, result.main.motion.trajectory, merged_, places_) {
     outcome_.state.clearance = clearance_.result();
     result_.sweep_bound_mm = merged_.error_bound_mm;
     result_.merged_sweeps = merged_.sweeps.size();
@@ -86,51 +92,87 @@ class CutStage {
                          "save after a later place, or run from the start");
       }
     }
+    finder_.emplace(*result_.stock);
     if (options_.check_voxels) checked_ = result_.stock->clone();
   }
 
-  /// Cuts up to the next place where something is due, and does it. The looks at shank and holder follow the
-  /// program's own batches, so that they do not depend on where the run began or what it saves.
+  /// Cuts up to the next place where something is due, and does it. The looks ahead follow the program's own
+  /// batches, so that they do not depend on where the run began or what it saves.
   void cut_on() {
     const size_t total = merged_.sweeps.size();
-    const size_t batch_end = std::min(next_multiple(at_, kSweepsPerBatch), total);
-    size_t end = batch_end;
+    if (at_ >= batch().end) begin_batch();
+    const size_t checks_before = at_ * kChecks / total;
+    size_t end = std::min({batch().end, at_ + kSweepsPerStep, after_suspects(kSuspectsPerStep),
+                           ((checks_before + 1) * total + kChecks - 1) / kChecks, total});
     if (options_.record) end = std::min(end, next_multiple(at_, options_.record_every));
     if (next_save_ < saves_.size() && saves_[next_save_].after > at_) {
       end = std::min(end, saves_[next_save_].after);
     }
-    each_tool(at_, end,
-              [&](size_t tool, std::span<const stock::Sweep> part) { cut_row(part, solids_[tool]); });
-    at_ = end;
-    if (at_ == batch_end) {
-      const size_t before = (at_ - 1) / kSweepsPerBatch * kSweepsPerBatch;
-      each_tool(before, at_, [&](size_t tool, std::span<const stock::Sweep> part) {
-        clearance_.check(*result_.stock, part, tool);
-      });
-      outcome_.state.clearance = clearance_.result();
-      if (before * kChecks / total != at_ * kChecks / total) check(CheckKind::kOnTheWay);
-      progress_.advance(static_cast<double>(at_));
-    }
+    while (at_ < end) cut_to(std::min(end, next_suspect()));
+    if (at_ == batch().end) end_batch();
+    progress_.advance(static_cast<double>(at_));
+    if (checks_before != at_ * kChecks / total && at_ < total) check(CheckKind::kOnTheWay);
     if (options_.record && (at_ % options_.record_every == 0 || at_ == total)) {
       record_.states.push_back(result_.stock->hash());
     }
     save_due();
   }
 
-  /// Sweeps of one tool; those that must take nothing are looked at one by one, each before it is cut.
-  void cut_row(std::span<const stock::Sweep> sweeps, const stock::CutterSolid& solid) {
-    while (!sweeps.empty()) {
-      const auto suspicious = [&](const stock::Sweep& sweep) { return bad_cuts_.suspicious(sweep); };
-      const auto first = std::find_if(sweeps.begin(), sweeps.end(), suspicious);
-      const auto plain = static_cast<size_t>(first - sweeps.begin());
-      result_.stock->cut(sweeps.first(plain), solid);
-      sweeps = sweeps.subspan(plain);
-      if (sweeps.empty()) break;
-      bad_cuts_.check(*result_.stock, sweeps.front());
-      result_.stock->cut(sweeps.first(1), solid);
-      sweeps = sweeps.subspan(1);
+  BatchState& batch() { return outcome_.state.batch; }
+
+  /// Which sweeps of the batch are clear of the stock as it stands now, and so of all that is left of it.
+  void begin_batch() {
+    const size_t end = std::min(next_multiple(at_, kSweepsPerBatch), merged_.sweeps.size());
+    finder_->refresh();
+    ToolClearanceCheck::Outlook outlook = clearance_.look_ahead(*finder_, at_, end);
+    batch() = {end, outlook.nearest_mm, std::move(outlook.suspects),
+               bad_cuts_.look_ahead(*finder_, at_, end)};
+  }
+  void end_batch() {
+    clearance_.saw(batch().nearest_mm);
+    outcome_.state.clearance = clearance_.result();
+    batch() = {};
+  }
+
+  /// The first suspect from at_ on; none: far away.
+  size_t next_suspect() {
+    size_t next = std::numeric_limits<size_t>::max();
+    for (const std::vector<size_t>* suspects : {&batch().suspects, &batch().bad_suspects}) {
+      const auto first = std::lower_bound(suspects->begin(), suspects->end(), at_);
+      if (first != suspects->end()) next = std::min(next, *first);
     }
-    outcome_.state.bad_cuts = bad_cuts_.result();
+    return next;
+  }
+  /// Behind so many suspects from at_ on.
+  size_t after_suspects(size_t count) {
+    size_t after = std::numeric_limits<size_t>::max();
+    for (const std::vector<size_t>* suspects : {&batch().suspects, &batch().bad_suspects}) {
+      const auto first = std::lower_bound(suspects->begin(), suspects->end(), at_);
+      if (static_cast<size_t>(suspects->end() - first) >= count)
+        after = std::min(after, *(first + static_cast<ptrdiff_t>(count) - 1) + 1);
+    }
+    return after;
+  }
+
+  /// Cuts sweeps up to `end`, where a suspect may stand: then that one is judged and cut too.
+  void cut_to(size_t end) {
+    if (end > at_) {
+      each_tool(at_, end, [&](size_t tool, std::span<const stock::Sweep> part) {
+        result_.stock->cut(part, solids_[tool]);
+      });
+      at_ = end;
+      return;
+    }
+    const auto is_in = [&](const std::vector<size_t>& suspects) {
+      return std::binary_search(suspects.begin(), suspects.end(), at_);
+    };
+    const bool tool_meets = is_in(batch().suspects);
+    if (tool_meets) clearance_.judge_before(*finder_, at_);
+    if (is_in(batch().bad_suspects)) bad_cuts_.judge(*finder_, at_);
+    const auto tool = static_cast<size_t>(merged_.sources[merged_.sweeps[at_].block].tool);
+    result_.stock->cut(std::span(merged_.sweeps).subspan(at_, 1), solids_[tool]);
+    if (tool_meets) clearance_.judge_after(*finder_, at_);
+    ++at_;
   }
 
   /// Sweeps [begin, end) as rows of one tool.
@@ -144,6 +186,9 @@ class CutStage {
   CutState state() const {
     CutState state = outcome_.state;
     state.sweeps = at_;
+    state.clearance = clearance_.result();
+    state.clearance.checked_sweeps = at_;
+    state.bad_cuts = bad_cuts_.result();
     if (at_ > 0) state.place = place(at_ - 1);
     return state;
   }
@@ -178,7 +223,7 @@ class CutStage {
   void finish() {
     outcome_.state = state();
     outcome_.metadata = cut_metadata(job_.scene.name, identity_, outcome_.state);
-    result_.clearance = clearance_.result();
+    result_.clearance = outcome_.state.clearance;
     result_.volume_left_mm3 = result_.stock->volume_mm3();
     result_.volume_removed_mm3 = full_mm3_ - result_.volume_left_mm3;
     if (options_.record) write_states();
@@ -209,6 +254,8 @@ class CutStage {
   JobSweeps merged_;
   std::vector<stock::CutterSolid> solids_;  ///< by tool
   CutIdentity identity_;
+  SweepPlaces places_;
+  std::optional<stock::ContactFinder> finder_;
   ToolClearanceCheck clearance_;
   BadCutCheck bad_cuts_;
   std::vector<Save> saves_;

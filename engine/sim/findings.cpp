@@ -44,6 +44,11 @@ class Collector {
         result_.main.path.elements[static_cast<size_t>(source.element)].where,
         result_.main.motion.trajectory.samples[source.sample].t_s);
   }
+  /// At the block in which the tool first touches.
+  void at_event(std::string code, std::string text, std::string fix, const ContactEvent& event) {
+    add(std::move(code), std::move(text), std::move(fix),
+        result_.main.path.elements[static_cast<size_t>(event.first.element)].where, event.first.t_s);
+  }
   /// The findings with the text of their blocks.
   std::vector<Finding> take() {
     std::map<std::string, std::string> texts;
@@ -154,38 +159,68 @@ void motion_faults(const Result& result, Collector& collect) {
   }
 }
 
-void clearance_faults(const Result& result, Collector& collect) {
-  const ToolClearance& clearance = result.clearance;
-  collect.begin("collisions");
-  if (clearance.contacts == 0) return;
-  collect.at_block(
-      clearance.part + "-in-stock",
-      fmt::format("the {} stands in the stock at {} of {} poses, {:.2f} mm deep (depths are known to "
-                  "{:.2f} mm)",
-                  clearance.part, clearance.contacts, clearance.checked_poses, clearance.deepest_mm,
-                  clearance.band_mm),
-      "use a longer cutter, or rough the stock first", result.cut_sources, clearance.first_block);
+/// "line 14" or "lines 14 to 20".
+std::string lines_of(const Result& result, const ContactEvent& event) {
+  const auto line = [&](int element) {
+    return result.main.path.elements[static_cast<size_t>(element)].where.line;
+  };
+  const int first = line(event.first.element), last = line(event.last_element);
+  return first == last ? fmt::format("line {}", first) : fmt::format("lines {} to {}", first, last);
 }
 
-/// Moves that must not cut; the first of many, and how many more.
+/// How deep, where, when.
+std::string depth_text(const Result& result, const ContactEvent& event) {
+  const int line = result.main.path.elements[static_cast<size_t>(event.deepest.element)].where.line;
+  return fmt::format("{:.2f} mm deep at ({:.2f}, {:.2f}, {:.2f}) mm, line {}, {:.3f} s", event.depth_mm,
+                     event.deepest_W.x(), event.deepest_W.y(), event.deepest_W.z(), line, event.deepest.t_s);
+}
+
+std::string longer_tool(const cutter::Cutter& tool, const ContactEvent& event) {
+  if (event.part == "holder") {
+    return fmt::format("let {} stand out {:.1f} mm more (length_mm {:.1f}), or rough the stock first",
+                       cutter::call_name(tool), event.depth_mm, tool.length_mm + event.depth_mm);
+  }
+  return fmt::format(
+      "take a tool whose flutes, or a neck inside their radius, reach {:.1f} mm more, or rough "
+      "the stock first",
+      event.depth_mm);
+}
+
+/// The first of many, and how many more.
+constexpr size_t kListed = 50;
+std::string and_more(size_t listed, size_t all) {
+  return listed == kListed && all > kListed ? fmt::format("; {} more of these follow", all - kListed) : "";
+}
+
+void clearance_faults(const Job& job, const Result& result, Collector& collect) {
+  const std::vector<ContactEvent>& events = result.clearance.events;
+  collect.begin("collisions");
+  for (size_t i = 0; i < std::min(kListed, events.size()); ++i) {
+    const ContactEvent& event = events[i];
+    collect.at_event(event.part + "-in-stock",
+                     fmt::format("the {} stands in the stock, {}: {}{}", event.part, lines_of(result, event),
+                                 depth_text(result, event), and_more(i + 1, events.size())),
+                     longer_tool(job.scene.tools[static_cast<size_t>(event.tool)], event), event);
+  }
+}
+
+/// Moves that must not cut.
 void bad_cut_faults(const Result& result, Collector& collect) {
-  constexpr size_t kListed = 50;
   const std::vector<BadCut>& cuts = result.cut.state.bad_cuts;
   for (size_t i = 0; i < std::min(kListed, cuts.size()); ++i) {
     const BadCut& cut = cuts[i];
     const bool rapid = cut.kind == BadCutKind::kRapid;
     collect.begin(rapid ? "rapids_in_material" : "spindle_wrong");
-    std::string text = rapid
-                           ? "a rapid move removes material"
-                           : fmt::format("the tool cuts with {}", cut.kind == BadCutKind::kSpindleStands
-                                                                      ? "the spindle stopped"
-                                                                      : "the spindle turning the wrong way");
-    text += fmt::format(", {:.2f} mm deep or more", cut.depth_mm);
-    if (i + 1 == kListed && cuts.size() > kListed)
-      text += fmt::format("; {} more of these follow", cuts.size() - kListed);
-    collect.at_block(rapid ? "rapid-cut" : "spindle", text,
+    const std::string text =
+        rapid ? "a rapid move removes material"
+              : fmt::format("the tool cuts with {}", cut.kind == BadCutKind::kSpindleStands
+                                                         ? "the spindle stopped"
+                                                         : "the spindle turning the wrong way");
+    collect.at_event(rapid ? "rapid-cut" : "spindle",
+                     fmt::format("{}, {}: {}{}", text, lines_of(result, cut.event),
+                                 depth_text(result, cut.event), and_more(i + 1, cuts.size())),
                      rapid ? "move there with G1, or retract first" : "start the spindle before it: M3, S",
-                     result.cut_sources, cut.block);
+                     cut.event);
   }
 }
 
@@ -216,7 +251,7 @@ std::vector<Finding> find_faults(const Job& job, const Result& result) {
   Collector collect(job, result);
   surface_faults(job, result, collect);
   motion_faults(result, collect);
-  clearance_faults(result, collect);
+  clearance_faults(job, result, collect);
   bad_cut_faults(result, collect);
   built_in_checks(job, result, collect);
   return collect.take();

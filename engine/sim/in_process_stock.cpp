@@ -18,18 +18,28 @@ constexpr const char* kBlockKey = "swarf_block";
 constexpr const char* kSweepsKey = "swarf_sweeps";
 constexpr const char* kClearanceKey = "swarf_clearance";
 constexpr const char* kBadCutsKey = "swarf_bad_cuts";
+constexpr const char* kBatchKey = "swarf_batch";
 constexpr const char* kPartPrefix = "swarf_part_";
 
 /// Shortest decimals that read back to the same bits.
-std::string clearance_text(const ToolClearance& c) {
-  return fmt::format("{} {} {} {} {} {} {}", c.checked_poses, c.contacts, c.deepest_mm, c.first_block,
-                     c.nearest_mm, c.band_mm, c.part.empty() ? "-" : c.part);
+std::string batch_text(const BatchState& batch) {
+  std::string text = fmt::format("{} {} {}", batch.end, batch.nearest_mm, batch.suspects.size());
+  for (const size_t sweep : batch.suspects) text += fmt::format(" {}", sweep);
+  text += fmt::format(" {}", batch.bad_suspects.size());
+  for (const size_t sweep : batch.bad_suspects) text += fmt::format(" {}", sweep);
+  return text;
 }
 
-bool parse_clearance(const std::string& text, ToolClearance& c) {
+bool parse_batch(const std::string& text, BatchState& batch) {
   std::istringstream in(text);
-  in >> c.checked_poses >> c.contacts >> c.deepest_mm >> c.first_block >> c.nearest_mm >> c.band_mm >> c.part;
-  if (c.part == "-") c.part.clear();
+  const auto list = [&](std::vector<size_t>& sweeps) {
+    size_t count = 0;
+    in >> count;
+    for (size_t i = 0, sweep = 0; i < count && in >> sweep; ++i) sweeps.push_back(sweep);
+  };
+  in >> batch.end >> batch.nearest_mm;
+  list(batch.suspects);
+  list(batch.bad_suspects);
   return !in.fail();
 }
 
@@ -51,10 +61,12 @@ bool parse_state(const stock::StockMetadata& metadata, CutState& state) {
   };
   const auto clearance = metadata.find(kClearanceKey);
   const auto bad_cuts = metadata.find(kBadCutsKey);
+  const auto batch = metadata.find(kBatchKey);
   return number(kSweepsKey, state.sweeps) && number(kLineKey, state.place.line) &&
          number(kTimeKey, state.place.t_s) && number(kBlockKey, state.place.block) &&
          clearance != metadata.end() && parse_clearance(clearance->second, state.clearance) &&
-         bad_cuts != metadata.end() && parse_bad_cuts(bad_cuts->second, state.bad_cuts);
+         bad_cuts != metadata.end() && parse_bad_cuts(bad_cuts->second, state.bad_cuts) &&
+         batch != metadata.end() && parse_batch(batch->second, state.batch);
 }
 
 }  // namespace
@@ -68,7 +80,8 @@ stock::StockMetadata cut_metadata(const std::string& scene_name, const CutIdenti
                                 {kBlockKey, fmt::format("{}", state.place.block)},
                                 {kSweepsKey, fmt::format("{}", state.sweeps)},
                                 {kClearanceKey, clearance_text(state.clearance)},
-                                {kBadCutsKey, bad_cuts_text(state.bad_cuts)}};
+                                {kBadCutsKey, bad_cuts_text(state.bad_cuts)},
+                                {kBatchKey, batch_text(state.batch)}};
   for (const IdentityPart& part : identity) metadata[kPartPrefix + part.name] = part.value;
   return metadata;
 }

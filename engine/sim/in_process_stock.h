@@ -4,20 +4,28 @@
 #include <string>
 #include <vector>
 
-#include "sim/bad_cuts.h"
+#include "sim/contact_event.h"
 #include "sim/cut_identity.h"
 #include "sim/program_place.h"
-#include "sim/tool_clearance.h"
 #include "stock/stock.h"
 
 namespace swarf::sim {
+
+/// What is known of the batch of sweeps that the cut stands in, from the stock before its first one.
+struct BatchState {
+  size_t end = 0;                    ///< sweeps, of the program's own batch; 0: none is begun
+  double nearest_mm = 0.0;           ///< least gap of those that are clear of it
+  std::vector<size_t> suspects;      ///< those that are not: judged when it is their turn
+  std::vector<size_t> bad_suspects;  ///< of BadCutCheck
+};
 
 /// How far a cut has come.
 struct CutState {
   size_t sweeps = 0;        ///< of the program's sweeps, from the first
   CutPlace place;           ///< of the last of them
-  ToolClearance clearance;  ///< up to the last whole batch of sweeps
+  ToolClearance clearance;  ///< of the sweeps so far
   std::vector<BadCut> bad_cuts;
+  BatchState batch;
 };
 
 /// Texts of a stock file: keys swarf_scene, swarf_program_line, swarf_time_s, swarf_sweeps, swarf_cutter,

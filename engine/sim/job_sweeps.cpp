@@ -83,13 +83,15 @@ class BlockSweeper {
     }
     return true;
   }
-  /// First block from `first` on that does not join a row of straight blocks of one axis, feed and tool.
+  /// First block from `first` on that does not join a row of straight blocks of one axis, feed,
+  /// spindle and tool.
   size_t straight_end(size_t first) const {
     size_t end = first;
     const BlockMove& block = *motions_[first].block;
     const auto joins = [&](const BlockMove& next) {
       return next.feed_mm_s == block.feed_mm_s && next.from.axis_W == block.from.axis_W &&
-             next.tool == block.tool && is_rapid(next) == is_rapid(block);
+             next.tool == block.tool && is_rapid(next) == is_rapid(block) &&
+             next.spindle_rpm == block.spindle_rpm;
     };
     while (end < motions_.size() && is_straight(end) && joins(*motions_[end].block)) ++end;
     return end;

@@ -144,15 +144,14 @@ Check spindle_check(const Job& job, const Result& result) {
 
 void add_tool_checks(const Job& job, const Result& result, std::vector<Check>& checks) {
   const AcceptLimits& accept = job.scene.accept;
-  checks.push_back(counted("collisions", "Neck, shank or holder in the stock", result.clearance.contacts,
+  const std::string rests_on = fmt::format(
+      "whole moves, each against the stock before it: found from {:.3f} mm on", result.clearance.sees_mm);
+  checks.push_back(counted("collisions", "Neck, shank or holder in the stock", result.clearance.events.size(),
                            accept.collisions));
-  if (job.scene.has_blocks()) {
-    checks.push_back(counted("rapids_in_material", "Rapid moves that remove material",
-                             count_bad_cuts(result, true), accept.rapids_in_material));
-  } else {
-    checks.push_back(not_judged("rapids_in_material", "Rapid moves that remove material",
-                                "surface blocks: the links are planned above the surface"));
-  }
+  checks.back().reason = rests_on;
+  checks.push_back(counted("rapids_in_material", "Rapid moves that remove material",
+                           count_bad_cuts(result, true), accept.rapids_in_material));
+  checks.back().reason = rests_on;
   checks.push_back(spindle_check(job, result));
 }
 

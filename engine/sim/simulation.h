@@ -18,7 +18,7 @@
 #include "sim/judge.h"
 #include "sim/memory.h"
 #include "sim/scene.h"
-#include "sim/tool_clearance.h"
+#include "sim/contact_event.h"
 #include "stock/stock.h"
 #include "stock/surface_dexels.h"
 #include "toolpath/nc_path.h"

@@ -4,91 +4,109 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "base/units.h"
-#include "cutter/profile.h"
 #include "cutter/tool_walls.h"
 
 namespace swarf::sim {
 namespace {
 
-constexpr double kPointSpacing = 2.0;  // mm; the stock's features are a cutter diameter wide
-constexpr double kBandVoxels = 3.0;    // half width of the level set
+constexpr double kBandVoxels = 3.0;  // half width of the level set
+constexpr size_t kSweepsPerTask = 16;
 
-double flute_end_radius(const cutter::Cutter& cutter) {
-  return cutter::outline(cutter).back().to.x();
+/// The sweeps follow the motion within a bound as far up as the flutes reach; a turn takes the tool's far end
+/// away from it in the ratio of the levers.
+double bound_at_far_end_mm(std::span<const cutter::Cutter> tools, const JobSweeps& sweeps) {
+  double ratio = 1.0;
+  for (const cutter::Cutter& tool : tools) {
+    for (const cutter::ToolWall& wall : cutter::tool_walls(tool)) {
+      const double lever = std::hypot(std::max(wall.low_radius, wall.high_radius), wall.high);
+      ratio = std::max(ratio, lever / tool.flute_length_mm);
+    }
+  }
+  return ratio * sweeps.error_bound_mm;
 }
 
 }  // namespace
 
-ToolClearanceCheck::ToolClearanceCheck(std::span<const cutter::Cutter> tools, double voxel_mm)
-    : tolerance_mm_(voxel_mm) {
-  for (const cutter::Cutter& tool : tools) points_.push_back(points_of(tool));
+std::vector<ToolPart> tool_parts(const cutter::Cutter& cutter) {
+  std::vector<ToolPart> parts;
+  for (const cutter::ToolWall& wall : cutter::tool_walls(cutter)) {
+    parts.push_back(
+        {wall.part, stock::RevolvedPart::frustum(wall.low, wall.high, wall.low_radius, wall.high_radius)});
+  }
+  return parts;
+}
+
+ToolClearanceCheck::ToolClearanceCheck(std::span<const cutter::Cutter> tools, const JobSweeps& sweeps,
+                                       const SweepPlaces& places, double voxel_mm)
+    : sweeps_(sweeps), places_(places) {
+  for (const cutter::Cutter& tool : tools) {
+    parts_.push_back(tool_parts(tool));
+    flutes_.emplace_back(tool);
+  }
   result_.band_mm = kBandVoxels * voxel_mm;
   result_.nearest_mm = result_.band_mm;
+  result_.sees_mm = voxel_mm + bound_at_far_end_mm(tools, sweeps);
 }
 
-ToolClearanceCheck::Points ToolClearanceCheck::points_of(const cutter::Cutter& cutter) {
-  Points points;
-  const auto ring = [&](double radius, double height, const char* part) {
-    const int count = std::max(6, static_cast<int>(std::ceil(2.0 * kPi * radius / kPointSpacing)));
-    for (int i = 0; i < count; ++i) {
-      const double angle = 2.0 * kPi * i / count;
-      points.push_back({radius, height, std::cos(angle), std::sin(angle), part});
+ToolClearanceCheck::Outlook ToolClearanceCheck::look_ahead(const stock::ContactFinder& finder, size_t begin,
+                                                           size_t end) const {
+  std::vector<double> gaps(end - begin);
+  parallel_chunks(gaps.size(), kSweepsPerTask, [&](size_t from, size_t to) {
+    double least = result_.band_mm;  // what is farther than a gap seen need not be known
+    for (size_t i = from; i < to; ++i) {
+      const stock::SweepMap map = stock::sweep_map(sweeps_.sweeps[begin + i]);
+      gaps[i] = least;
+      for (const ToolPart& part : parts_[tool_of(begin + i)])
+        gaps[i] = std::min(gaps[i], finder.gap(map, part.body, gaps[i]));
+      if (gaps[i] > -finder.deep_mm()) least = gaps[i];
     }
-  };
-  // Rings along a line of the outline, without its first end.
-  const auto line = [&](const Vec2& from, const Vec2& to, const char* part) {
-    const int steps = static_cast<int>(std::ceil((to - from).norm() / kPointSpacing));
-    for (int i = 1; i <= steps; ++i) {
-      const Vec2 p = from + (to - from) * i / steps;
-      ring(p.x(), p.y(), part);
-    }
-  };
-  const std::vector<cutter::ToolWall> walls = cutter::tool_walls(cutter);
-  // The flutes' own upper end cuts.
-  Vec2 last(std::min(flute_end_radius(cutter), walls.front().low_radius), cutter.flute_length_mm);
-  for (const cutter::ToolWall& wall : walls) {
-    const Vec2 low(wall.low_radius, wall.low), high(wall.high_radius, wall.high);
-    line(last, low, wall.part);  // the shoulder between two parts belongs to the upper one
-    if (last == low) ring(low.x(), low.y(), wall.part);
-    line(low, high, wall.part);
-    last = high;
-  }
-  return points;
-}
-
-double ToolClearanceCheck::depth_at(const stock::Stock& stock, const ToolPose& pose, const Points& points,
-                                    const char** part) const {
-  const Vec3 x = pose.axis_W.unitOrthogonal();
-  const Vec3 y = pose.axis_W.cross(x);
-  double nearest = result_.band_mm;
-  for (const Point& p : points) {
-    const Vec3 point = pose.tip_W + p.height * pose.axis_W + p.radius * (p.cosine * x + p.sine * y);
-    const double distance = stock.distance_mm(point);
-    if (distance < nearest) {
-      nearest = distance;
-      *part = p.part;
-    }
-  }
-  return nearest;
-}
-
-void ToolClearanceCheck::check(const stock::Stock& stock, std::span<const stock::Sweep> sweeps, size_t tool) {
-  std::vector<double> nearest(sweeps.size());
-  std::vector<const char*> parts(sweeps.size(), "");
-  parallel_chunks(sweeps.size(), 16, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i)
-      nearest[i] = depth_at(stock, sweeps[i].end, points_[tool], &parts[i]);
   });
-  for (size_t i = 0; i < sweeps.size(); ++i) {
-    ++result_.checked_poses;
-    result_.nearest_mm = std::min(result_.nearest_mm, nearest[i]);
-    if (nearest[i] >= -tolerance_mm_) continue;
-    if (result_.contacts++ == 0) {
-      result_.part = parts[i];
-      result_.first_block = sweeps[i].block;
+  Outlook outlook{{}, result_.band_mm};
+  for (size_t i = 0; i < gaps.size(); ++i) {
+    if (gaps[i] < -finder.deep_mm()) {
+      outlook.suspects.push_back(begin + i);
+    } else {
+      outlook.nearest_mm = std::min(outlook.nearest_mm, gaps[i]);
     }
-    result_.deepest_mm = std::max(result_.deepest_mm, -nearest[i]);
+  }
+  return outlook;
+}
+
+void ToolClearanceCheck::saw(double gap_mm) {
+  result_.nearest_mm = std::min(result_.nearest_mm, std::max(0.0, gap_mm));
+}
+
+void ToolClearanceCheck::judge_before(const stock::ContactFinder& finder, size_t sweep) {
+  const size_t tool = tool_of(sweep);
+  const stock::SweepMap map = stock::sweep_map(sweeps_.sweeps[sweep]);
+  const stock::OwnCut own{&flutes_[tool], map, true};
+  free_.clear();
+  for (const ToolPart& part : parts_[tool]) {
+    const double gap = finder.gap(map, part.body, result_.nearest_mm);
+    if (gap >= -finder.deep_mm()) {
+      saw(gap);
+    } else if (const auto contact = finder.contact(map, part.body, &own)) {
+      add(event_of(part.name, static_cast<int>(tool), *contact, places_, sweep));
+    } else {
+      free_.push_back(&part.body);
+    }
+  }
+}
+
+void ToolClearanceCheck::judge_after(const stock::ContactFinder& finder, size_t sweep) {
+  const stock::SweepMap map = stock::sweep_map(sweeps_.sweeps[sweep]);
+  for (const stock::RevolvedPart* part : free_) saw(finder.gap(map, *part, result_.nearest_mm));
+}
+
+void ToolClearanceCheck::add(const ContactEvent& event) {
+  saw(0.0);
+  // Each part has a row of its own: the last one of this part.
+  const auto last = std::find_if(result_.events.rbegin(), result_.events.rend(),
+                                 [&](const ContactEvent& e) { return e.part == event.part; });
+  if (last != result_.events.rend() && goes_on(*last, event)) {
+    join(*last, event);
+  } else {
+    result_.events.push_back(event);
   }
 }
 

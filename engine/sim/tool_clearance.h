@@ -1,52 +1,62 @@
-// Neck, shank and holder against the stock as it stands at that moment of the program.
+// Neck, shank and holder against the stock as it stands before each sweep, over the whole sweep.
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "cutter/cutter.h"
-#include "stock/stock.h"
-#include "stock/sweep.h"
+#include "sim/sweep_places.h"
+#include "stock/contact_finder.h"
 
 namespace swarf::sim {
 
-struct ToolClearance {
-  size_t checked_poses = 0;
-  size_t contacts = 0;       ///< poses at which a part above the flutes stands in material
-  double deepest_mm = 0.0;   ///< penetration of the worst of them (saturates at the level set's band)
-  std::string part;          ///< "neck", "shank" or "holder", of the first contact
-  uint32_t first_block = 0;  ///< Sweep::block of the first contact
-  double nearest_mm = 0.0;   ///< closest approach seen; saturates at band_mm
-  double band_mm = 0.0;      ///< distances are known up to here
+/// A part of the tool that does not cut, by its shape.
+struct ToolPart {
+  std::string name;  ///< "neck", "shank", "holder"
+  stock::RevolvedPart body;
 };
+std::vector<ToolPart> tool_parts(const cutter::Cutter& cutter);
 
-/// Samples points on neck, shank and holder as they are shaped (rings on walls and shoulders, at most 2 mm
-/// apart) against the level set. Material less than one voxel deep is not counted: the flank of the cutter
-/// leaves it there.
+/// Material only shrinks: what is clear of the stock before a batch of sweeps is clear throughout it. The
+/// others, the suspects, are judged one by one against the stock as it stands before their own sweep, less
+/// what their own flutes have taken until the part comes. Material less than a voxel deep is not counted: the
+/// cuts leave it at the flank.
 class ToolClearanceCheck {
  public:
-  ToolClearanceCheck(std::span<const cutter::Cutter> tools, double voxel_mm);
-  /// Sweeps of one tool, by its index.
-  void check(const stock::Stock& stock, std::span<const stock::Sweep> sweeps, size_t tool);
+  /// `places` and `sweeps` must outlive it.
+  ToolClearanceCheck(std::span<const cutter::Cutter> tools, const JobSweeps& sweeps,
+                     const SweepPlaces& places, double voxel_mm);
+
+  /// Gaps of sweeps [begin, end), before any of them is cut.
+  struct Outlook {
+    std::vector<size_t> suspects;  ///< indices of sweeps
+    double nearest_mm = 0.0;       ///< of the others
+  };
+  Outlook look_ahead(const stock::ContactFinder& finder, size_t begin, size_t end) const;
+  /// Takes a gap into the result.
+  void saw(double gap_mm);
+
+  /// One suspect, before it is cut, and again when it is.
+  void judge_before(const stock::ContactFinder& finder, size_t sweep);
+  void judge_after(const stock::ContactFinder& finder, size_t sweep);
+
   const ToolClearance& result() const { return result_; }
   /// Goes on from an earlier result of the same tools and voxel size.
   void resume(const ToolClearance& earlier) { result_ = earlier; }
 
  private:
-  struct Point {
-    double radius, height, cosine, sine;
-    const char* part;
-  };
-  using Points = std::vector<Point>;
-  static Points points_of(const cutter::Cutter& cutter);
-  double depth_at(const stock::Stock& stock, const ToolPose& pose, const Points& points,
-                  const char** part) const;
+  void add(const ContactEvent& event);
+  size_t tool_of(size_t sweep) const {
+    return static_cast<size_t>(sweeps_.sources[sweeps_.sweeps[sweep].block].tool);
+  }
 
-  std::vector<Points> points_;  ///< by tool
-  double tolerance_mm_;
+  const JobSweeps& sweeps_;
+  const SweepPlaces& places_;
+  std::vector<std::vector<ToolPart>> parts_;      ///< by tool
+  std::vector<stock::CutterSolid> flutes_;        ///< by tool
+  std::vector<const stock::RevolvedPart*> free_;  ///< parts of the suspect that its own flutes clear the way
   ToolClearance result_;
 };
 

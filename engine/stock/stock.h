@@ -88,6 +88,7 @@ class Stock {
   static size_t memory_estimate(const Box& box_W, double voxel_mm);
 
  private:
+  friend class ContactFinder;
   friend class StockMesher;
   struct Impl;
   const LevelSet& level_set() const;

@@ -15,6 +15,7 @@
 #include "base/check.h"
 #include "base/diagnostics.h"
 #include "base/hash.h"
+#include "stock/leaf_kernel.h"
 #include "stock/stock_grid_internal.h"
 
 namespace swarf::stock {
@@ -189,9 +190,19 @@ void finish_file(const std::string& path) {
     refuse("stock-file-unwritable", path, "the end of the stock file cannot be written", "free space");
 }
 
+/// Equal stocks are equal files: -0 equals 0, and which of the two stands depends on the order of the cuts.
+void drop_minus_zero(const LevelSet& set) {
+  for (LeafNode* leaf : set.map.leaves) {
+    if (leaf == nullptr) continue;
+    float* values = leaf->buffer().data();
+    for (int n = 0; n < kLeafVoxels; ++n) values[n] += 0.0F;
+  }
+}
+
 }  // namespace
 
 void write_level_set(const LevelSet& set, const std::string& path, const StockMetadata& metadata) {
+  drop_minus_zero(set);
   const std::string temporary = path + ".part";
   openvdb::FloatGrid::Ptr grid = set.grid->copy();  // shares the tree, owns its metadata
   add_metadata(*grid, set, metadata);

@@ -42,6 +42,13 @@ double leaf_volume(const LeafMap& map, size_t n) {
   return sum;
 }
 
+/// -0 equals 0, and which of the two the greatest of many cuts leaves depends on their order.
+std::array<float, kLeafVoxels> without_minus_zero(const float* values) {
+  std::array<float, kLeafVoxels> plain;
+  for (int n = 0; n < kLeafVoxels; ++n) plain[n] = values[n] + 0.0F;
+  return plain;
+}
+
 /// Four lanes of FNV-1a by words, so that the processor works on four multiplications at a time: a leaf of
 /// 2 kB then costs little more than reading it.
 uint64_t leaf_hash(const LeafMap& map, size_t n) {
@@ -50,11 +57,11 @@ uint64_t leaf_hash(const LeafMap& map, size_t n) {
   hash.add(static_cast<uint64_t>(map.states[n]));
   if (map.states[n] == LeafState::kLeaf) {
     constexpr int kLanes = 4, kWords = kLeafVoxels * sizeof(float) / sizeof(uint64_t);
-    const float* values = map.leaves[n]->buffer().data();
+    const std::array<float, kLeafVoxels> values = without_minus_zero(map.leaves[n]->buffer().data());
     std::array<Hash, kLanes> lanes;
     for (int word = 0; word < kWords; word += kLanes) {
       std::array<uint64_t, kLanes> words;
-      std::memcpy(words.data(), values + 2 * word, sizeof(words));
+      std::memcpy(words.data(), values.data() + 2 * word, sizeof(words));
       for (int lane = 0; lane < kLanes; ++lane) lanes[lane].add(words[lane]);
     }
     for (const Hash& lane : lanes) hash.add(lane.value());

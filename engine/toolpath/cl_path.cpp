@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/units.h"
@@ -19,6 +20,12 @@ constexpr double kReversed = -1.0 + 1e-8;
 
 bool stands_still(const ClMove& move) {
   return !move.arc && move.from.tip_W == move.to.tip_W && move.from.axis_W == move.to.axis_W;
+}
+
+/// Many CL files leave the spindle to the post-processor: only one that starts it says when it stands.
+bool tells_spindle(const program::ClProgram& program) {
+  return std::any_of(program.moves.begin(), program.moves.end(),
+                     [](const ClMove& move) { return move.spindle_rpm != 0.0; });
 }
 
 /// At its feed, where that is not simply the way of the tip in the arc's plane; 0: it is no helix.
@@ -57,6 +64,7 @@ ToolPath cl_path(const program::ClProgram& program, BlockLaw law, Diagnostics& d
   path.planner = "cl";
   path.elements.reserve(program.moves.size());
   PassCounter passes;
+  const bool spindle_told = tells_spindle(program);
   for (const ClMove& move : program.moves) {
     if (stands_still(move)) continue;
     const SourceLocation where{program.file, move.line, move.column};
@@ -83,6 +91,7 @@ ToolPath cl_path(const program::ClProgram& program, BlockLaw law, Diagnostics& d
     block.feed_mm_s = move.feed_mm_s;
     block.dwell_s = move.dwell_s;
     block.duration_s = helix_time(block);
+    if (spindle_told) block.spindle_rpm = move.spindle_rpm;
     block.tool = move.tool < 0 || tools.empty() ? 0 : tools[static_cast<size_t>(move.tool)];
     block.pass = passes.next(block);
     (rapid ? path.link_length_mm : path.pass_length_mm) += tip_way(block);

@@ -38,7 +38,9 @@ class Judge : public testing::Test {
     check.samples = 100;
     return check;
   }
-  void find(BadCutKind kind) { result_.cut.state.bad_cuts.push_back({kind, 0, 0.5}); }
+  void find(BadCutKind kind) {
+    result_.cut.state.bad_cuts.push_back({kind, {"flutes", 0, {}, 0, 0.5, {}, Vec3::Zero()}});
+  }
   void fault(const char* code) {
     motion::MotionFinding finding;
     finding.code = code;
@@ -92,7 +94,7 @@ TEST_F(Judge, WhatNoToolAndNoAxisMayDoCountsUnlessItIsLoosenedInWriting) {
     int* limit;
   };
   AcceptLimits& accept = job_.scene.accept;
-  result_.clearance.contacts = 2;
+  result_.clearance.events.resize(2);
   find(BadCutKind::kRapid);
   find(BadCutKind::kRapid);
   find(BadCutKind::kSpindleStands);
@@ -112,7 +114,7 @@ TEST_F(Judge, WhatNoToolAndNoAxisMayDoCountsUnlessItIsLoosenedInWriting) {
   }
   EXPECT_TRUE(passes(result_)) << verdict_sentence(result_.checks);
   // Loosened is not hidden: the findings stay, as warnings.
-  EXPECT_EQ(result_.findings.size(), 9U);
+  EXPECT_EQ(result_.findings.size(), 10U);
 }
 
 TEST_F(Judge, AGougeWithinItsLimitButABoundBeyondItIsNotProven) {

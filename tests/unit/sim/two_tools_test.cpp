@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "../motion/dome.h"
+#include "contact_run.h"
 #include "sim/bad_cuts.h"
 #include "sim/job_sweeps.h"
 #include "sim/simulation.h"
@@ -83,26 +83,15 @@ TEST(TwoTools, AProgramsToolThatTheSceneLacksIsNotFound) {
   EXPECT_EQ(cl_tools(job), std::vector<int>{-1});
 }
 
-/// A box below z = 0 and a path through it, one sweep at a time.
-std::vector<BadCut> bad_cuts_of(Job job, const std::vector<toolpath::BlockMove>& blocks) {
-  job.scene.stock.box_W = {{-10, -10, -10}, {70, 10, 0}};
-  job.scene.stock.voxel_mm = 0.5;
-  toolpath::ToolPath path;
-  JobSweeps sweeps;
+/// A box below z = 0 and a path through it.
+std::vector<BadCut> bad_cuts_of(const Job& job, const std::vector<toolpath::BlockMove>& blocks) {
+  ContactRun run(job.scene.tools, {{-10, -10, -10}, {70, 10, 0}}, 0.5);
   for (const toolpath::BlockMove& block : blocks) {
-    const auto n = static_cast<uint32_t>(path.elements.size());
-    path.elements.push_back({block, 0, {"test.nc", static_cast<int>(n) + 1}});
-    sweeps.sweeps.push_back({block.from, block.to, n});
-    sweeps.sources.push_back({static_cast<int>(n), 0, block.tool});
+    run.start(block.from);
+    run.turn(block.to) = block;
   }
-  BadCutCheck check(job, path, sweeps);
-  stock::Stock stock(job.scene.stock.box_W, job.scene.stock.voxel_mm);
-  const std::vector<stock::CutterSolid> solids = tool_solids(job.scene);
-  for (const stock::Sweep& sweep : sweeps.sweeps) {
-    if (check.suspicious(sweep)) check.check(stock, sweep);
-    stock.cut(std::span(&sweep, 1), solids[static_cast<size_t>(sweeps.sources[sweep.block].tool)]);
-  }
-  return check.result();
+  run.cut();
+  return run.bad_cuts();
 }
 
 toolpath::BlockMove move(const Vec3& from, const Vec3& to, double feed, double rpm) {
@@ -122,8 +111,8 @@ TEST(BadCuts, ARapidInMaterialIsFoundAndOneInTheGrooveIsNot) {
                         move({60, 0, 20}, {60, 0, -1.5}, 0, 3000)});
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found[0].kind, BadCutKind::kRapid);
-  EXPECT_EQ(found[0].block, 4U);
-  EXPECT_GT(found[0].depth_mm, 1.0);
+  EXPECT_EQ(found[0].event.first.element, 4);
+  EXPECT_NEAR(found[0].event.depth_mm, 1.5, 0.5);
 }
 
 TEST(BadCuts, TheSpindleMustTurnAndTheRightWayRound) {
@@ -143,22 +132,54 @@ TEST(BadCuts, TheSpindleMustTurnAndTheRightWayRound) {
   job.scene.tools[0].left_hand = true;
   const std::vector<BadCut> left = bad_cuts_of(job, blocks(-3000));
   ASSERT_EQ(left.size(), 1U) << "M3 with a left-hand tool";
-  EXPECT_EQ(left[0].block, 2U);
+  EXPECT_EQ(left[0].event.first.element, 2);
+}
+
+TEST(BadCuts, NeighbouringRapidsAreOneEventOverTheWholeWay) {
+  // The first rapid touches in its middle alone, the box lies between its ends; the second deepens its slot.
+  const Job job = job_of(kTwoTools);
+  const std::vector<BadCut> found =
+      bad_cuts_of(job, {move({-40, 0, -4}, {100, 0, -4}, 0, 3000), move({100, 0, -4}, {40, 0, -6}, 0, 3000),
+                        move({40, 0, -6}, {40, 0, 20}, 0, 3000)});
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].event.part, "flutes");
+  EXPECT_EQ(found[0].event.first.element, 0);
+  EXPECT_EQ(found[0].event.last_element, 1);
+  EXPECT_NEAR(found[0].event.depth_mm, 4.0, 0.5);
+  EXPECT_NEAR(found[0].event.deepest_W.z(), -4.0, 0.5);
+}
+
+TEST(BadCuts, ARapidThatStartsInMaterialIsFound) {
+  const Job job = job_of(kTwoTools);
+  const std::vector<BadCut> found = bad_cuts_of(job, {move({30, 0, -7}, {30, 0, 20}, 0, 3000)});
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_NEAR(found[0].event.depth_mm, 7.0, 0.5);
+}
+
+TEST(BadCuts, AStoppedSpindleIsSeenBetweenCollinearBlocks) {
+  const Job job = job_of(kTwoTools);
+  const std::vector<BadCut> found =
+      bad_cuts_of(job, {move({-30, 0, -2}, {10, 0, -2}, 20, 3000), move({10, 0, -2}, {20, 0, -2}, 20, 0),
+                        move({20, 0, -2}, {100, 0, -2}, 20, 3000)});
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].kind, BadCutKind::kSpindleStands);
+  EXPECT_EQ(found[0].event.first.element, 1);
+  EXPECT_EQ(found[0].event.last_element, 1);
+  EXPECT_NEAR(found[0].event.depth_mm, 2.0, 0.5);
 }
 
 TEST(BadCuts, SurviveAStockFile) {
-  const std::vector<BadCut> cuts{{BadCutKind::kRapid, 17, 0.1},
-                                 {BadCutKind::kSpindleReversed, 4000000000U, 1.0 / 3}};
+  const ContactEvent event{"flutes", 1, {17, 0.1}, 19, 1.0 / 3, {18, 0.2}, {1, 2, 1.0 / 7}};
+  const std::vector<BadCut> cuts{{BadCutKind::kRapid, event}, {BadCutKind::kSpindleReversed, event}};
   std::vector<BadCut> back;
   ASSERT_TRUE(parse_bad_cuts(bad_cuts_text(cuts), back));
   ASSERT_EQ(back.size(), 2U);
   EXPECT_EQ(back[1].kind, cuts[1].kind);
-  EXPECT_EQ(back[1].block, cuts[1].block);
-  EXPECT_EQ(back[1].depth_mm, cuts[1].depth_mm);
+  EXPECT_EQ(bad_cuts_text(back), bad_cuts_text(cuts));
   back.clear();
   EXPECT_TRUE(parse_bad_cuts("", back));
-  EXPECT_FALSE(parse_bad_cuts("7 1 2;", back));
-  EXPECT_FALSE(parse_bad_cuts("0 1 x;", back));
+  EXPECT_FALSE(parse_bad_cuts("7 flutes 1 2 3 4 5 6 7 8 9 10 11;", back));
+  EXPECT_FALSE(parse_bad_cuts("0 flutes 1 x;", back));
 }
 
 }  // namespace

@@ -155,6 +155,28 @@ TEST(Stock, HashDoesNotDependOnThreadsOrCalls) {
   set_thread_count(0);
 }
 
+TEST(Stock, HashDoesNotDependOnCallsWherePlanesPassThroughGridPoints) {
+  // A slot along the grid: distances of exactly zero come with either sign.
+  const auto at = [](double x, double z) { return ToolPose{{x, 0, z}, Vec3::UnitZ()}; };
+  const std::vector<Sweep> sweeps{{at(-15, 5), at(-15, -3), 0},
+                                  {at(-15, -3), at(15, -3), 1},
+                                  {at(15, -3), at(15, 5), 2},
+                                  {at(15, 5), at(-15, -2), 3}};
+  const auto hash_of = [&](std::initializer_list<size_t> calls) {
+    Stock stock({{-20, -10, -10}, {20, 10, 0}}, 0.1);
+    size_t done = 0;
+    for (const size_t count : calls) {
+      stock.cut(std::span(sweeps).subspan(done, count), CutterSolid(5.0, 25.0));
+      done += count;
+    }
+    return stock.hash();
+  };
+  const uint64_t whole = hash_of({4});
+  EXPECT_EQ(hash_of({1, 2, 1}), whole);
+  EXPECT_EQ(hash_of({1, 1, 1, 1}), whole);
+  EXPECT_EQ(hash_of({3, 1}), whole);
+}
+
 TEST(Stock, CuttingAgainChangesNothingAndHashTellsMaterialApart) {
   const std::vector<Sweep> sweeps = wild_path(32, 50);
   Stock stock(kBlock, 0.2);
