@@ -2,22 +2,17 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <limits>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "base/units.h"
 #include "cli/commands.h"
+#include "cli/compare_inputs.h"
 #include "cli/compare_runs.h"
+#include "cli/compare_text.h"
 #include "cli/terminal.h"
-#include "measure/mesh_deviation.h"
-#include "mesh/mesh_io.h"
 #include "mesh/mesh_ops.h"
 #include "reports/compare_output.h"
 #include "reports/pending_folder.h"
-#include "sim/scene.h"
-#include "stock/stock.h"
 
 namespace swarf::cli {
 namespace {
@@ -26,121 +21,172 @@ namespace fs = std::filesystem;
 
 struct CompareOptions {
   std::string stock, design, output;
-  double reach_mm = 1.0, scallop_um = 10.0, gouge_um = 1.0, pitch_mm = 0.5, edge_mm = -1.0, rays_um = 0.2;
+  std::optional<double> excess_um, gouge_um, pitch_mm, edge_mm, reach_mm;
+  double allowance_mm = 0.0, rays_um = 0.2;
   bool json = false;
 };
 
-constexpr double kSmooth = kPi;  // rad: no creases, so that each vertex has one normal
+constexpr double kExcessUm = 10.0, kGougeUm = 1.0;  // without a scene that says otherwise
+/// Where no pitch is given: samples along the diagonal of the smaller of the two boxes, and over both
+/// surfaces.
+constexpr double kSamplesAcross = 400.0;
+constexpr double kSamples = 250'000.0;
+/// Facets of parametric surfaces, mm: curvature makes them smaller where it must.
+constexpr double kPatchPitch = 0.5;
 
-std::string extension(const std::string& file) {
-  return fs::path(file).extension().string();
-}
-
-/// Half a voxel is what the mesh of a level set takes off a sharp edge, on either side; twice that for
-/// safety.
-constexpr double kRoundedVoxels = 1.0;
-
-/// The stock as a mesh; fills in the margin of the edges that its grid has rounded.
-TriMesh load_stock(const std::string& file, double& edge_mm) {
-  if (extension(file) == ".vdb") {
-    const stock::Stock stock = stock::Stock::load(file);
-    if (edge_mm < 0.0) edge_mm = kRoundedVoxels * stock.voxel_mm();
-    return stock.mesh();
+/// What the user gives, else the scene's [accept], else the defaults.
+void set_limits(const CompareOptions& options, const ComparedDesign& design,
+                measure::ComparisonInput& input) {
+  std::optional<double> excess = options.excess_um, gouge = options.gouge_um;
+  if (design.accept) {
+    if (!excess)
+      excess = design.accept->excess_max_um ? design.accept->excess_max_um : design.accept->scallop_max_um;
+    if (!gouge) gouge = design.accept->gouge_max_um;
   }
-  edge_mm = std::max(edge_mm, 0.0);
-  TriMesh mesh = mesh::load_mesh(file);
-  if (mesh.normals.empty()) mesh::compute_vertex_normals(mesh, kSmooth);
-  return mesh;
+  input.excess = excess.value_or(kExcessUm) * kMicrometre;
+  input.gouge = gouge.value_or(kGougeUm) * kMicrometre;
 }
 
-std::vector<surface::SurfacePtr> design_surfaces(const std::string& file) {
-  std::vector<surface::SurfacePtr> surfaces;
-  if (extension(file) == ".toml") {
-    surfaces = sim::load_job(file, {}).design;
-  } else {
-    for (const program::SurfaceDefinition& definition : program::load_surfaces(file))
-      surfaces.push_back(definition.surface);
+/// About how many cells of this pitch a surface needs; long thin facets need them along their length.
+double cells_at(const mesh::SignedDistance& mesh, double pitch_mm) {
+  double cells = 0.0;
+  for (uint32_t t = 0; t < mesh.mesh().triangles.size(); ++t) {
+    const measure::Corners corners{mesh.corner(t, 0), mesh.corner(t, 1), mesh.corner(t, 2)};
+    cells += measure::area_of(corners) / (pitch_mm * pitch_mm) + measure::radius_of(corners) / pitch_mm;
   }
-  if (surfaces.empty()) {
-    throw InputError("no-design", {file}, "there is no design surface to compare with",
-                     "name a scene with a [design], a program of surface blocks or a mesh");
-  }
-  return surfaces;
+  return cells;
 }
 
-bool is_mesh(const std::string& file) {
-  const std::string kind = extension(file);
-  return kind == ".stl" || kind == ".ply" || kind == ".obj";
+double default_pitch(const mesh::SignedDistance& stock, const mesh::SignedDistance& design) {
+  constexpr double kCoarser = 1.25;
+  double pitch =
+      std::min(mesh::bounds(stock.mesh()).size().norm(), mesh::bounds(design.mesh()).size().norm()) /
+      kSamplesAcross;
+  const auto allowed = [&](const mesh::SignedDistance& mesh) {
+    return std::max(kSamples, static_cast<double>(mesh.mesh().triangles.size()));
+  };
+  while (cells_at(stock, pitch) > allowed(stock) || cells_at(design, pitch) > allowed(design))
+    pitch *= kCoarser;
+  return pitch;
 }
 
-void measure_stock(const CompareOptions& options, TriMesh& stock) {
-  if (is_mesh(options.design)) {
-    TriMesh design = mesh::load_mesh(options.design);
-    mesh::compute_vertex_normals(design, kSmooth);
-    measure::deviation_from_mesh(stock, design, options.reach_mm);
-    return;
-  }
-  const Box box = mesh::bounds(stock);
-  for (const surface::SurfacePtr& surface : design_surfaces(options.design)) {
-    measure::deviation_from_surface(stock, stock::SurfaceDexels(surface, options.pitch_mm, box),
-                                    options.reach_mm, options.edge_mm);
-  }
+measure::ComparisonInput comparison_of(const CompareOptions& options, const ComparedStock& stock,
+                                       const ComparedDesign& design) {
+  measure::ComparisonInput input;
+  input.stock = stock.mesh.get();
+  input.design = design.mesh.get();
+  input.open_design = design.open;
+  input.allowance = options.allowance_mm;
+  set_limits(options, design, input);
+  input.pitch = options.pitch_mm.value_or(default_pitch(*stock.mesh, *design.mesh));
+  input.design_error = design.error_mm;
+  input.stock_error = stock.error;
+  input.stock_edge = stock.edge;
+  input.edge = options.edge_mm.value_or(stock.voxel_mm);
+  input.reach = options.reach_mm;
+  return input;
 }
 
-std::string json_text(const measure::DeviationSummary& s, bool holds) {
-  return nlohmann::ordered_json{{"schema", 1},
-                                {"verdict", holds ? "pass" : "findings"},
-                                {"surface",
-                                 {{"measured", s.measured},
-                                  {"unmeasured", s.unmeasured},
-                                  {"excess_max_um", s.excess_max_um},
-                                  {"gouge_max_um", s.gouge_max_um},
-                                  {"mean_abs_um", s.mean_abs_um},
-                                  {"rms_um", s.rms_um},
-                                  {"within_tolerance_pct", s.within_tolerance_pct}}}}
-             .dump(2) +
-         "\n";
+void check_measured(const CompareOptions& options, const measure::PartComparison& result) {
+  if (result.stock.area_mm2 + result.design.area_mm2 > 0.0) return;
+  throw InputError("nothing-measured", {options.stock},
+                   "nothing of stock and design lies within --reach-mm of the other",
+                   "check that both are in the same frame and in mm, or raise --reach-mm");
 }
 
-void print_summary(const CompareOptions& options, const measure::DeviationSummary& s) {
-  fmt::print("{} against {}\n", options.stock, options.design);
-  print_table(
-      {{"measured",
-        fmt::format("{} vertices; {} have no foot on the design within {:g} mm or lie {:g} mm from its edge",
-                    s.measured, s.unmeasured, options.reach_mm, std::max(options.edge_mm, 0.0))},
-       {"excess", fmt::format("{:.2f} um highest", s.excess_max_um)},
-       {"gouge", fmt::format("{:.2f} um deepest", s.gouge_max_um)},
-       {"mean", fmt::format("{:.2f} um absolute, {:.2f} um rms", s.mean_abs_um, s.rms_um)},
-       {"tolerance", fmt::format("{:.2f} % within -{:g} .. +{:g} um", s.within_tolerance_pct,
-                                 options.gouge_um, options.scallop_um)}});
-}
-
-int compare(CompareOptions options) {
-  if (fs::is_directory(options.stock) && fs::is_directory(options.design))
-    return compare_runs(options.stock, options.design, options.rays_um, options.json);
+int compare_solids(const CompareOptions& options) {
   if (!options.output.empty()) reports::check_output_folder(options.output, reports::kCompareMark);
-  TriMesh stock = load_stock(options.stock, options.edge_mm);
-  measure_stock(options, stock);
-  const measure::DeviationSummary summary =
-      measure::summarise(stock, {options.scallop_um * kMicrometre, options.gouge_um * kMicrometre});
-  if (summary.measured == 0) {
-    throw InputError(
-        "nothing-measured", {options.stock},
-        fmt::format("no vertex of the stock lies within {:g} mm of the design", options.reach_mm),
-        "check that both are in the same frame and in mm, or raise --reach-mm");
-  }
-  const bool holds = summary.excess_max_um <= options.scallop_um && summary.gouge_max_um <= options.gouge_um;
-  const std::string json = json_text(summary, holds);
+  const ComparedStock stock = load_stock(options.stock);
+  const ComparedDesign design = load_design(options.design, kPatchPitch);
+  check_boxes(stock, design, options.stock, options.design);
+  const measure::ComparisonInput input = comparison_of(options, stock, design);
+  const measure::PartComparison result = measure::compare_parts(input);
+  check_measured(options, result);
+  const std::vector<sim::Check> checks = judge_comparison(input, result);
+  const std::string json = comparison_json(stock, input, result, checks);
   if (!options.output.empty()) {
-    reports::write_compare(options.output, stock, std::max(options.scallop_um, options.gouge_um), json);
+    reports::write_compare(options.output, result.stock_map, result.design_map,
+                           um_from_mm(std::max({input.excess, input.gouge, 1e-5})), json);
   }
   if (options.json) {
     fmt::print("{}", json);
   } else {
-    print_summary(options, summary);
-    fmt::print("  {}\n", holds ? "PASS" : "FINDINGS");
+    fmt::print("{} against {}\n", options.stock, options.design);
+    print_table(comparison_rows(stock, input, result));
+    for (const sim::Check& check : checks) {
+      if (check.outcome != sim::Outcome::kHolds)
+        fmt::print("  {}\n", check.reason.empty() ? check.what : check.reason);
+    }
+    fmt::print("  {}\n", sim::passes(checks) ? "PASS" : "FINDINGS");
   }
-  return holds ? kPass : kFindings;
+  return sim::passes(checks) ? kPass : kFindings;
+}
+
+int compare(const CompareOptions& options) {
+  if (fs::is_directory(options.stock) && fs::is_directory(options.design))
+    return compare_runs(options.stock, options.design, options.rays_um, options.json);
+  return compare_solids(options);
+}
+
+constexpr const char* kFooter =
+    R"(What is measured
+  Both surfaces, by area, each against the other: every point of the stock to the design (a boss too many,
+  a pocket not cut) and every point of the design to the stock (a boss missing, a wall cut away). Positive
+  is excess, material where the design has none; negative is gouge. Nothing is left out for being far away.
+
+What PASS means
+  Between the samples the deviation is bounded: a distance changes by no more than the way to the next
+  sample, and over facets that face each other by what their corners are apart. Cells are divided until
+  the bound meets the limit. PASS is given when the bound, errors of facets and grid included, meets it;
+  "not proven below .." says how far the proof went where it does not.
+
+Input
+  Meshes must be closed, manifold, turned outward and free of crossings, in mm; anything else is refused.
+  A scene's [accept] gives the limits (excess_max_um, else scallop_max_um; gouge_max_um). Parametric
+  designs are open patches: what of the stock lies beyond them is not compared, and stated in mm2.
+  A .vdb is as good as its grid: the error is added to the bound, and at sharp edges, which a grid rounds,
+  one voxel (--edge-mm) is taken off. The run itself measures far below the voxel size.
+
+Examples
+  swarf compare reports/out/dome/stock.vdb scenes/lin_koren_dome/scene.toml
+  swarf compare scanned.stl part.stl --excess-um 20 --gouge-um 20 -o out
+  swarf compare roughed.stl part.stl --allowance-mm 0.3 --excess-um 100 --gouge-um 50
+  swarf compare RUN_A RUN_B --rays-um 0.2
+
+Exit code 0: pass, 1: findings, 2: the input cannot be compared.)";
+
+void add_limits(CLI::App& command, CompareOptions& options) {
+  command
+      .add_option("--excess-um,--scallop-um", options.excess_um,
+                  "allowed excess (default: the scene's [accept], else 10)")
+      ->check(CLI::NonNegativeNumber);
+  command.add_option("--gouge-um", options.gouge_um, "allowed gouge (default: the scene's [accept], else 1)")
+      ->check(CLI::NonNegativeNumber);
+  command
+      .add_option("--allowance-mm", options.allowance_mm,
+                  "stock left on purpose: the target is the design offset outward by so much")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+  command.add_option("--rays-um", options.rays_um, "allowed difference between the rays of two runs")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+}
+
+void add_sampling(CLI::App& command, CompareOptions& options) {
+  command
+      .add_option("--pitch-mm", options.pitch_mm,
+                  "every point lies so near to a sample, before the proof divides further (default: 1/400 of "
+                  "the smaller diagonal, or some 250 000 samples a surface)")
+      ->check(CLI::PositiveNumber);
+  command
+      .add_option("--edge-mm", options.edge_mm,
+                  "what a rounded edge may be off, and the width along the border of a parametric design "
+                  "(default: one voxel of a .vdb, 0 for meshes)")
+      ->check(CLI::NonNegativeNumber);
+  command
+      .add_option("--reach-mm", options.reach_mm,
+                  "measure only what lies so near; what does not is a finding with its area (default: all)")
+      ->check(CLI::PositiveNumber);
 }
 
 }  // namespace
@@ -159,29 +205,11 @@ void add_compare(CLI::App& app, int& exit_code) {
           "with the same design")
       ->required();
   command->add_option("-o,--output", options->output,
-                      "folder for deviation.ply, deviation.png and metrics.json");
-  command->add_option("--reach-mm", options->reach_mm, "measure what lies so near to the design")
-      ->capture_default_str()
-      ->check(CLI::PositiveNumber);
-  command->add_option("--rays-um", options->rays_um, "allowed difference between the rays of two runs")
-      ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
-  command->add_option("--scallop-um", options->scallop_um, "allowed excess")
-      ->capture_default_str()
-      ->check(CLI::PositiveNumber);
-  command->add_option("--gouge-um", options->gouge_um, "allowed gouge")
-      ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
-  command
-      ->add_option("--edge-mm", options->edge_mm,
-                   "leave out what lies so near to the edge of a design surface (default: one voxel of a "
-                   ".vdb, whose grid "
-                   "rounds edges; 0 for meshes)")
-      ->check(CLI::NonNegativeNumber);
+                      "folder for deviation.ply and .png, design.ply and .png, and metrics.json");
+  add_limits(*command, *options);
+  add_sampling(*command, *options);
   command->add_flag("--json", options->json, "print JSON instead of the table");
-  command->footer(
-      "The vertices of the stock are measured, so the accuracy is that of its grid or mesh. The run itself\n"
-      "measures with rays from the design, far below the voxel size: see surface in metrics.json.");
+  command->footer(kFooter);
   command->callback([options, &exit_code] { exit_code = compare(*options); });
 }
 

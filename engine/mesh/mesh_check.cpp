@@ -72,7 +72,8 @@ struct EdgeFaults {
 };
 
 /// True when the surface is closed and evenly oriented.
-bool check_edges(const WeldedMesh& mesh, const SourceLocation& where, Diagnostics& diagnostics) {
+bool check_edges(const WeldedMesh& mesh, const SourceLocation& where, const std::string& name,
+                 Diagnostics& diagnostics) {
   EdgeFaults open, crowded, turned;
   for (const Edge& e : edges_of(mesh)) {
     EdgeFaults* faults = e.up + e.down == 1  ? &open
@@ -83,7 +84,7 @@ bool check_edges(const WeldedMesh& mesh, const SourceLocation& where, Diagnostic
   }
   if (open.count > 0) {
     diagnostics.error("mesh-open", where,
-                      fmt::format("the design mesh is open: {} boundary edges, {}", open.count, open.where()),
+                      fmt::format("the {} is open: {} boundary edges, {}", name, open.count, open.where()),
                       "close the holes in the CAD or repair program and export again");
   }
   if (crowded.count > 0) {
@@ -212,7 +213,7 @@ WeldedMesh weld(const TriMesh& mesh) {
 }
 
 void check_design_mesh(const TriMesh& mesh, const std::string& path, const Box* stock_W,
-                       Diagnostics& diagnostics) {
+                       Diagnostics& diagnostics, const std::string& name) {
   const SourceLocation where{path, 0, 0};
   const auto broken = std::count_if(mesh.positions.begin(), mesh.positions.end(), [](const auto& p) {
     return !(std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]));
@@ -227,19 +228,52 @@ void check_design_mesh(const TriMesh& mesh, const std::string& path, const Box* 
   if (count_facets(mesh, where, diagnostics) == 0) {
     diagnostics.error(
         "mesh-empty", where,
-        fmt::format("the design mesh has no facet with area ({} facets read)", mesh.triangles.size()),
+        fmt::format("the {} has no facet with area ({} facets read)", name, mesh.triangles.size()),
         "export the solid, not its edges or points");
     return;
   }
   const WeldedMesh welded = weld(mesh);
-  const bool closed = check_edges(welded, where, diagnostics);
+  const bool closed = check_edges(welded, where, name, diagnostics);
   const double volume = volume_of(welded);
   if (closed && volume < 0.0) {
     diagnostics.error("mesh-inverted", where,
-                      fmt::format("the design mesh is inside out: it encloses {:.3f} mm3", volume),
+                      fmt::format("the {} is inside out: it encloses {:.3f} mm3", name, volume),
                       "turn all its facets round (\"flip normals\")");
   }
   if (stock_W != nullptr) check_size(bounds(mesh), *stock_W, where, diagnostics);
+}
+
+std::vector<uint32_t> facets_across(const std::vector<std::array<uint32_t, 3>>& triangles) {
+  constexpr uint32_t kNone = 0xffffffffU;
+  struct Side {
+    uint64_t ends;
+    uint32_t place;
+    bool operator<(const Side& other) const {
+      return ends != other.ends ? ends < other.ends : place < other.place;
+    }
+  };
+  std::vector<Side> sides;
+  sides.reserve(3 * triangles.size());
+  for (uint32_t i = 0; i < 3 * triangles.size(); ++i) {
+    const uint64_t a = triangles[i / 3][i % 3], b = triangles[i / 3][(i + 1) % 3];
+    sides.push_back({std::min(a, b) << 32U | std::max(a, b), i});
+  }
+  std::sort(sides.begin(), sides.end());
+  std::vector<uint32_t> across(sides.size(), kNone);
+  for (size_t i = 0; i < sides.size();) {
+    size_t end = i + 1;
+    while (end < sides.size() && sides[end].ends == sides[i].ends) ++end;
+    if (end - i == 2) {
+      across[sides[i].place] = sides[i + 1].place / 3;
+      across[sides[i + 1].place] = sides[i].place / 3;
+    }
+    i = end;
+  }
+  return across;
+}
+
+double enclosed_volume(const TriMesh& mesh) {
+  return volume_of(weld(mesh));
 }
 
 std::string check_closed(const TriMesh& mesh) {

@@ -23,19 +23,26 @@ WeldedMesh weld(const TriMesh& mesh);
 /// Per vertex the number of its position, counted in the order of first occurrence. Expected time linear.
 std::vector<uint32_t> position_numbers(const std::vector<std::array<float, 3>>& positions);
 
-/// Holds a design mesh against what measuring needs; each fault is a diagnostic of file `path`:
-///   mesh-empty            error    no facet with area
-///   mesh-not-finite       error    NaN or infinite positions, how many
-///   mesh-zero-area        warning  facets without area, how many and where the first lies; they are not
-///   measured mesh-open             error    edges with a facet on one side only: how many, the first, the
-///   box around all mesh-non-manifold     error    edges shared by more than two facets mesh-turned-facets
-///   error    edges that both neighbours run through in the same direction mesh-inverted         error
-///   closed, but the enclosed volume is negative mesh-in-inches        error    25.4 times larger it would
-///   lie inside the stock, and it fills < 1/15 of it now mesh-scaled-by-25     error    the other way round
-///   mesh-outside-stock    error    it reaches beyond the stock: material that cannot be there
-/// `stock_W` may be null when there is no stock to compare with.
+/// The facet across each side (3 * triangle + place of the side's first corner) where exactly two facets
+/// share it, else 0xffffffff. For triangles whose vertices are welded.
+std::vector<uint32_t> facets_across(const std::vector<std::array<uint32_t, 3>>& triangles);
+
+/// Volume that a closed mesh encloses, mm3; negative when it is inside out.
+double enclosed_volume(const TriMesh& mesh);
+
+/// Holds a mesh against what measuring needs; each fault is a diagnostic of file `path`:
+///   mesh-empty          error    no facet with area
+///   mesh-not-finite     error    NaN or infinite positions, how many
+///   mesh-zero-area      warning  facets without area, how many and where the first lies; not measured
+///   mesh-open           error    edges with a facet on one side only: how many, the first, the box around
+///   all mesh-non-manifold   error    edges shared by more than two facets mesh-turned-facets  error    edges
+///   that both neighbours run through in the same direction mesh-inverted       error    closed, but the
+///   enclosed volume is negative mesh-in-inches      error    25.4 times larger it would lie inside the
+///   stock; it fills < 1/15 of it now mesh-scaled-by-25   error    the other way round mesh-outside-stock
+///   error    it reaches beyond the stock: material that cannot be there
+/// `stock_W` may be null when there is no stock to compare with. `name`: what the texts call the mesh.
 void check_design_mesh(const TriMesh& mesh, const std::string& path, const Box* stock_W,
-                       Diagnostics& diagnostics);
+                       Diagnostics& diagnostics, const std::string& name = "design mesh");
 
 /// "" when the mesh is closed and evenly oriented (each edge once in each direction); else the first reason
 /// why not. Vertices with equal positions count as one, and triangles that collapse by

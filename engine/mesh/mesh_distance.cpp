@@ -1,142 +1,184 @@
 #include "mesh/mesh_distance.h"
 
+#include <embree3/rtcore.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
-#include <numeric>
+#include <vector>
 
+#include "base/check.h"
 #include "base/parallel.h"
 
 namespace swarf::mesh {
 namespace {
 
-constexpr uint32_t kLeafSize = 4;
-/// Deeper than any median-split tree over 2^32 triangles.
-constexpr size_t kStackSize = 64;
+/// Roundings of a coordinate on its way through Embree's box test (the point's own, the box's, the
+/// difference, its square and the sum), in units of the largest coordinate's last place; with room to spare.
+constexpr double kRoundings = 16.0;
+constexpr double kFloatEpsilon = std::numeric_limits<float>::epsilon();
 
-double box_distance_squared(const Eigen::Vector3f& lower, const Eigen::Vector3f& upper, const Vec3& p) {
-  const Vec3 outside = (lower.cast<double>() - p).cwiseMax(p - upper.cast<double>()).cwiseMax(Vec3::Zero());
-  return outside.squaredNorm();
-}
-
-Vec3 closest_on_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
+Vec3 closest_on_segment(const Vec3& p, const Vec3& a, const Vec3& b, double& t) {
   const Vec3 ab = b - a;
   const double length_squared = ab.squaredNorm();
-  if (length_squared == 0.0) return a;
-  return a + std::clamp((p - a).dot(ab) / length_squared, 0.0, 1.0) * ab;
+  t = length_squared == 0.0 ? 0.0 : std::clamp((p - a).dot(ab) / length_squared, 0.0, 1.0);
+  return a + t * ab;
 }
 
 /// Nearest of the three edges' points: for triangles without area.
-Vec3 closest_on_edges(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-  Vec3 best = closest_on_segment(p, a, b);
-  for (const Vec3& q : {closest_on_segment(p, b, c), closest_on_segment(p, c, a)}) {
-    if ((q - p).squaredNorm() < (best - p).squaredNorm()) best = q;
+Vec3 closest_on_edges(const Vec3& p, const std::array<Vec3, 3>& corners, Feature& feature) {
+  constexpr std::array<Feature, 3> kEdges{Feature::kEdgeAB, Feature::kEdgeBC, Feature::kEdgeCA};
+  constexpr std::array<Feature, 3> kCorners{Feature::kA, Feature::kB, Feature::kC};
+  Vec3 best = Vec3::Zero();
+  double least = std::numeric_limits<double>::infinity();
+  for (size_t i = 0; i < 3; ++i) {
+    double t = 0.0;
+    const Vec3 q = closest_on_segment(p, corners[i], corners[(i + 1) % 3], t);
+    if ((q - p).squaredNorm() >= least) continue;
+    least = (q - p).squaredNorm();
+    best = q;
+    feature = t == 0.0 ? kCorners[i] : t == 1.0 ? kCorners[(i + 1) % 3] : kEdges[i];
   }
   return best;
 }
 
+/// One device for the process; Embree works on the same TBB threads as everything else.
+RTCDevice device() {
+  static const RTCDevice shared = [] {
+    const RTCDevice made = rtcNewDevice(nullptr);
+    SWARF_CHECK(made != nullptr, "Embree cannot open its device");
+    return made;
+  }();
+  return shared;
+}
+
 }  // namespace
 
-Vec3 closest_point_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+Vec3 closest_point_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c, Feature* feature) {
+  Feature unused{};
+  Feature& found = feature != nullptr ? *feature : unused;
   const Vec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
   const double d1 = ab.dot(ap), d2 = ac.dot(ap);
+  found = Feature::kA;
   if (d1 <= 0.0 && d2 <= 0.0) return a;
   const double d3 = ab.dot(bp), d4 = ac.dot(bp);
+  found = Feature::kB;
   if (d3 >= 0.0 && d4 <= d3) return b;
   const double d5 = ab.dot(cp), d6 = ac.dot(cp);
+  found = Feature::kC;
   if (d6 >= 0.0 && d5 <= d6) return c;
   const double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
   const double area = va + vb + vc;
-  if (!(area > 0.0) || va <= 0.0 || vb <= 0.0 || vc <= 0.0) return closest_on_edges(p, a, b, c);
+  if (!(area > 0.0) || va <= 0.0 || vb <= 0.0 || vc <= 0.0) return closest_on_edges(p, {a, b, c}, found);
+  found = Feature::kFace;
   return a + (vb / area) * ab + (vc / area) * ac;
 }
 
-MeshDistance::MeshDistance(const TriMesh& mesh) : mesh_(mesh), order_(mesh.triangles.size()) {
-  std::iota(order_.begin(), order_.end(), 0U);
-  std::vector<Eigen::Vector3f> centres(order_.size());
-  for (uint32_t t = 0; t < centres.size(); ++t) {
-    centres[t] = ((vertex(t, 0) + vertex(t, 1) + vertex(t, 2)) / 3.0).cast<float>();
+struct MeshDistance::Tree {
+  explicit Tree(const TriMesh& design) : mesh(design) {}
+
+  const TriMesh& mesh;
+  RTCScene scene = nullptr;
+  double slack_mm = 0.0;  ///< by which Embree's boxes may be off
+
+  Vec3 vertex(uint32_t triangle, size_t corner) const {
+    const auto& p = mesh.positions[mesh.triangles[triangle][corner]];
+    return {p[0], p[1], p[2]};
   }
-  nodes_.reserve(order_.size());
-  if (!order_.empty()) build(0, static_cast<uint32_t>(order_.size()), centres);
+  void build();
+  RTCPointQuery query(const Vec3& p, double radius_mm) const;
+  float radius(double mm, const Vec3& p) const {
+    const double wide = mm * (1.0 + kRoundings * kFloatEpsilon) + slack_mm +
+                        kRoundings * kFloatEpsilon * p.cwiseAbs().maxCoeff();
+    constexpr double kLargest = std::numeric_limits<float>::max();
+    return wide >= kLargest ? std::numeric_limits<float>::infinity() : static_cast<float>(wide);
+  }
+};
+
+void MeshDistance::Tree::build() {
+  scene = rtcNewScene(device());
+  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+  RTCGeometry geometry = rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* positions = static_cast<float*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh.positions.size()));
+  float largest = 0.0F;
+  for (const auto& p : mesh.positions) {
+    for (const float value : p) largest = std::max(largest, std::abs(value));
+    positions = std::copy_n(p.data(), 3, positions);
+  }
+  slack_mm = kRoundings * kFloatEpsilon * largest;
+  auto* indices = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t), mesh.triangles.size()));
+  for (const auto& t : mesh.triangles) indices = std::copy_n(t.data(), 3, indices);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(scene, geometry);
+  rtcReleaseGeometry(geometry);
+  rtcCommitScene(scene);
 }
 
-Vec3 MeshDistance::vertex(uint32_t triangle, int corner) const {
-  const auto& p = mesh_.positions[mesh_.triangles[triangle][corner]];
-  return {p[0], p[1], p[2]};
+RTCPointQuery MeshDistance::Tree::query(const Vec3& p, double radius_mm) const {
+  RTCPointQuery query{};
+  query.x = static_cast<float>(p.x());
+  query.y = static_cast<float>(p.y());
+  query.z = static_cast<float>(p.z());
+  query.radius = radius(radius_mm, p);
+  return query;
 }
 
-void MeshDistance::grow(Node& node, uint32_t begin, uint32_t end) const {
-  node.lower.setConstant(std::numeric_limits<float>::infinity());
-  node.upper = -node.lower;
-  for (uint32_t i = begin; i < end; ++i) {
-    for (int corner = 0; corner < 3; ++corner) {
-      const auto& p = mesh_.positions[mesh_.triangles[order_[i]][corner]];
-      const Eigen::Vector3f v(p[0], p[1], p[2]);
-      node.lower = node.lower.cwiseMin(v);
-      node.upper = node.upper.cwiseMax(v);
+MeshDistance::MeshDistance(const TriMesh& mesh) : tree_(std::make_unique<Tree>(mesh)) {
+  if (!mesh.triangles.empty()) tree_->build();
+}
+
+MeshDistance::~MeshDistance() {
+  if (tree_->scene != nullptr) rtcReleaseScene(tree_->scene);
+}
+
+NearestPoint MeshDistance::nearest(const Vec3& p, double within_mm) const {
+  struct Search {
+    const Tree& tree;
+    const Vec3& p;
+    double best;  ///< squared
+    NearestPoint found;
+
+    static bool visit(RTCPointQueryFunctionArguments* arguments) {
+      auto& self = *static_cast<Search*>(arguments->userPtr);
+      const uint32_t t = arguments->primID;
+      Feature feature{};
+      const Vec3 q = closest_point_on_triangle(self.p, self.tree.vertex(t, 0), self.tree.vertex(t, 1),
+                                               self.tree.vertex(t, 2), &feature);
+      const double squared = (q - self.p).squaredNorm();
+      const bool first = std::isinf(self.found.distance_mm);
+      if (squared > self.best || (squared == self.best && !first && t > self.found.triangle)) return false;
+      self.best = squared;
+      self.found = {q, std::sqrt(squared), t, feature};
+      const float radius = self.tree.radius(self.found.distance_mm, self.p);
+      if (radius >= arguments->query->radius) return false;
+      arguments->query->radius = radius;
+      return true;
     }
-  }
+  };
+  Search search{*tree_, p, within_mm * within_mm, {}};
+  search.found.distance_mm = std::numeric_limits<double>::infinity();
+  if (tree_->scene == nullptr) return search.found;
+  RTCPointQuery query = tree_->query(p, within_mm);
+  RTCPointQueryContext context;
+  rtcInitPointQueryContext(&context);
+  rtcPointQuery(tree_->scene, &query, &context, Search::visit, &search);
+  return search.found;
 }
 
-void MeshDistance::build(uint32_t begin, uint32_t end, const std::vector<Eigen::Vector3f>& centres) {
-  const size_t self = nodes_.size();
-  nodes_.emplace_back();
-  grow(nodes_[self], begin, end);
-  if (end - begin <= kLeafSize) {
-    nodes_[self].first = begin;
-    nodes_[self].count = end - begin;
-    return;
-  }
-  int axis = 0;
-  (nodes_[self].upper - nodes_[self].lower).maxCoeff(&axis);
-  const uint32_t middle = begin + (end - begin) / 2;
-  std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
-                   [&](uint32_t s, uint32_t t) {
-                     return std::pair(centres[s][axis], s) < std::pair(centres[t][axis], t);
-                   });
-  build(begin, middle, centres);
-  nodes_[self].first = static_cast<uint32_t>(nodes_.size());
-  build(middle, end, centres);
-}
-
-void MeshDistance::search_leaf(const Node& leaf, const Vec3& p, double& best, NearestPoint& nearest) const {
-  for (uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
-    const uint32_t t = order_[i];
-    const Vec3 candidate = closest_point_on_triangle(p, vertex(t, 0), vertex(t, 1), vertex(t, 2));
-    const double distance = (candidate - p).squaredNorm();
-    if (distance >= best) continue;
-    best = distance;
-    nearest.point = candidate;
-    nearest.triangle = t;
-  }
-}
-
-NearestPoint MeshDistance::nearest(const Vec3& p) const {
-  NearestPoint nearest;
-  double best = nearest.distance_mm = std::numeric_limits<double>::infinity();
-  if (nodes_.empty()) return nearest;
-  std::array<std::pair<uint32_t, double>, kStackSize> stack;
-  size_t depth = 0;
-  stack[depth++] = {0U, 0.0};
-  while (depth > 0) {
-    const auto [index, bound] = stack[--depth];
-    if (bound >= best) continue;
-    const Node& node = nodes_[index];
-    if (node.count > 0) {
-      search_leaf(node, p, best, nearest);
-      continue;
-    }
-    std::pair<uint32_t, double> near{index + 1, 0.0}, far{node.first, 0.0};
-    near.second = box_distance_squared(nodes_[near.first].lower, nodes_[near.first].upper, p);
-    far.second = box_distance_squared(nodes_[far.first].lower, nodes_[far.first].upper, p);
-    if (far.second < near.second) std::swap(near, far);
-    stack[depth++] = far;
-    stack[depth++] = near;
-  }
-  nearest.distance_mm = std::sqrt(best);
-  return nearest;
+void MeshDistance::each_near(const Vec3& p, double radius_mm,
+                             const std::function<void(uint32_t)>& visit) const {
+  if (tree_->scene == nullptr) return;
+  RTCPointQuery query = tree_->query(p, radius_mm);
+  RTCPointQueryContext context;
+  rtcInitPointQueryContext(&context);
+  const auto call = [](RTCPointQueryFunctionArguments* arguments) {
+    (*static_cast<const std::function<void(uint32_t)>*>(arguments->userPtr))(arguments->primID);
+    return false;
+  };
+  // Embree passes the pointer through; what it points to is not changed.
+  rtcPointQuery(tree_->scene, &query, &context, call, const_cast<std::function<void(uint32_t)>*>(&visit));
 }
 
 double max_distance(std::span<const std::array<float, 3>> points, const TriMesh& mesh) {

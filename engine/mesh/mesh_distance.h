@@ -2,47 +2,54 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <limits>
+#include <memory>
 #include <span>
-#include <vector>
 
 #include "base/frames.h"
 #include "mesh/tri_mesh.h"
 
 namespace swarf::mesh {
 
+/// Where on a triangle (a, b, c) a point lies.
+enum class Feature : uint8_t { kFace, kEdgeAB, kEdgeBC, kEdgeCA, kA, kB, kC };
+
 /// Nearest point of the triangle (a, b, c) to `p`, by the Voronoi regions of its features
-/// (Ericson, Real-Time Collision Detection, 5.1.5). A degenerate triangle acts as its edges.
-Vec3 closest_point_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
+/// (Ericson, Real-Time Collision Detection, 5.1.5). A degenerate triangle acts as its edges. `feature` (may
+/// be null) receives where it lies.
+Vec3 closest_point_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c,
+                               Feature* feature = nullptr);
 
 /// The point of a mesh that lies nearest to a given one.
 struct NearestPoint {
   Vec3 point = Vec3::Zero();
   double distance_mm = 0.0;  ///< +infinity for a mesh without triangles
-  uint32_t triangle = 0;
+  uint32_t triangle = 0;     ///< of several the one with the least index
+  Feature feature = Feature::kFace;
 };
 
-/// A bounding-volume tree over the triangles of a mesh, which is borrowed and must outlive it.
+/// Distances to the triangles of a mesh, which is borrowed and must outlive it. Embree's tree finds the
+/// candidates in single precision, with a radius that is wider by its rounding; the distances themselves are
+/// double, so results are those of a loop over all triangles.
 class MeshDistance {
  public:
   explicit MeshDistance(const TriMesh& mesh);
+  ~MeshDistance();
+  MeshDistance(const MeshDistance&) = delete;
+  MeshDistance& operator=(const MeshDistance&) = delete;
 
-  NearestPoint nearest(const Vec3& p) const;
+  /// The nearest point no farther than `within_mm` (a good guess makes the search short); without one its
+  /// distance is +infinity.
+  NearestPoint nearest(const Vec3& p, double within_mm = std::numeric_limits<double>::infinity()) const;
+
+  /// Calls visit(triangle) for every triangle that may lie within `radius_mm` of p, in no particular order:
+  /// all that do, and some that are a little farther.
+  void each_near(const Vec3& p, double radius_mm, const std::function<void(uint32_t)>& visit) const;
 
  private:
-  struct Node {
-    Eigen::Vector3f lower, upper;
-    uint32_t first =
-        0;  ///< leaf: first triangle in order_; inner: index of the right child, the left one follows
-    uint32_t count = 0;  ///< 0: inner node
-  };
-  void build(uint32_t begin, uint32_t end, const std::vector<Eigen::Vector3f>& centres);
-  void grow(Node& node, uint32_t begin, uint32_t end) const;
-  void search_leaf(const Node& leaf, const Vec3& p, double& best, NearestPoint& nearest) const;
-  Vec3 vertex(uint32_t triangle, int corner) const;
-
-  const TriMesh& mesh_;
-  std::vector<uint32_t> order_;
-  std::vector<Node> nodes_;
+  struct Tree;
+  std::unique_ptr<Tree> tree_;
 };
 
 /// The largest distance from any of the points to the mesh, mm; 0 for no points. Parallel.

@@ -33,7 +33,8 @@ HEAVY = {
     "OpenMesh": (r"OpenMesh/", ("engine/mesh/",)),
     "meshoptimizer": (r"meshoptimizer", ("engine/mesh/",)),
     "toml++": (r"toml\+\+", ("engine/base/config.cpp",)),
-    "Embree": (r"embree", ("render/ray/",)),
+    # One file each for what it is good at: nearest triangles of a mesh, and light.
+    "Embree": (r"embree", ("engine/mesh/mesh_distance.cpp", "render/ray/")),
     "OSMesa": (r"GL/", ("render/raster/",)),
     "libav": (r"libav|libsw", ("render/movie/",)),
     "tinygltf": (r"tiny_gltf", ("render/gltf/",)),

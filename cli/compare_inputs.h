@@ -1,0 +1,43 @@
+// What swarf compare compares: the stock and the design as meshes, checked, with what is known of their
+// errors.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mesh/signed_distance.h"
+#include "sim/scene.h"
+
+namespace swarf::cli {
+
+struct ComparedStock {
+  std::shared_ptr<const mesh::SignedDistance> mesh;
+  double voxel_mm = 0.0;      ///< 0: a mesh file
+  std::vector<double> error;  ///< per vertex of the mesh, mm; empty for mesh files
+  std::vector<uint8_t> edge;  ///< per vertex: rounded by the grid; empty for mesh files
+};
+
+struct ComparedDesign {
+  std::shared_ptr<const mesh::SignedDistance> mesh;
+  bool open = false;                        ///< patches of parametric surfaces
+  double error_mm = 0.0;                    ///< by which the facets stray from the surfaces
+  std::optional<sim::AcceptLimits> accept;  ///< of a scene
+};
+
+/// A stock of a run (.vdb), or a closed mesh. Throws InputError for anything else, and for meshes that are
+/// open, not manifold, inside out or cross themselves.
+ComparedStock load_stock(const std::string& file);
+
+/// A scene, a program of surface blocks, or a mesh of the same quality. `pitch_mm`: of the facets that stand
+/// for parametric surfaces.
+ComparedDesign load_design(const std::string& file, double pitch_mm);
+
+/// Throws InputError when the boxes do not meet ("boxes-apart"), or one is the other in another unit
+/// ("looks-like-inches", "looks-like-metres",
+/// "looks-like-centimetres").
+void check_boxes(const ComparedStock& stock, const ComparedDesign& design, const std::string& stock_file,
+                 const std::string& design_file);
+
+}  // namespace swarf::cli

@@ -1,0 +1,25 @@
+// What swarf compare says: checks, table and JSON.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cli/compare_inputs.h"
+#include "measure/part_comparison.h"
+#include "sim/judge.h"
+
+namespace swarf::cli {
+
+/// Excess, gouge and the area that was not measured, against their limits.
+std::vector<sim::Check> judge_comparison(const measure::ComparisonInput& input,
+                                         const measure::PartComparison& result);
+
+std::string comparison_json(const ComparedStock& stock, const measure::ComparisonInput& input,
+                            const measure::PartComparison& result, const std::vector<sim::Check>& checks);
+
+std::vector<std::pair<std::string, std::string>> comparison_rows(const ComparedStock& stock,
+                                                                 const measure::ComparisonInput& input,
+                                                                 const measure::PartComparison& result);
+
+}  // namespace swarf::cli

@@ -1,0 +1,210 @@
+#include "measure/clear_column.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace swarf::measure {
+namespace {
+
+constexpr double kRim = 1e-9;           // mm; floats of 100 mm differ by 8e-6, doubles by 1e-14
+constexpr double kMostWidening = 1e-5;  // mm: needles for which the rim matters more are not covered
+/// The number of sheets is whole; this is for the rounding of the areas.
+constexpr double kWhole = 1e-3;
+/// Facets in the column; with more the triangle is better halved.
+constexpr size_t kMostFacets = 96;
+/// Clear slabs thinner than this tell nothing, mm; and so many are asked whether they are inside or outside.
+constexpr double kThinnest = 1e-6;
+constexpr size_t kMostSlabs = 4;
+
+/// A convex polygon: a facet clipped by three planes has at most six corners.
+struct Polygon {
+  std::array<Vec3, 9> points;
+  size_t count = 0;
+};
+
+/// Keeps what lies left of the line from a to b (x, y only).
+void clip(Polygon& polygon, const Vec3& a, const Vec3& b) {
+  const auto height = [&](const Vec3& p) {
+    return (b.x() - a.x()) * (p.y() - a.y()) - (b.y() - a.y()) * (p.x() - a.x());
+  };
+  Polygon kept;
+  for (size_t i = 0; i < polygon.count; ++i) {
+    const Vec3 &p = polygon.points[i], &q = polygon.points[(i + 1) % polygon.count];
+    const double hp = height(p), hq = height(q);
+    if (hp >= 0.0) kept.points[kept.count++] = p;
+    if ((hp > 0.0 && hq < 0.0) || (hp < 0.0 && hq > 0.0))
+      kept.points[kept.count++] = p + hp / (hp - hq) * (q - p);
+  }
+  polygon = kept;
+}
+
+double signed_area(const Polygon& polygon) {
+  double twice = 0.0;
+  for (size_t i = 0; i < polygon.count; ++i) {
+    const Vec3 &p = polygon.points[i], &q = polygon.points[(i + 1) % polygon.count];
+    twice += p.x() * q.y() - p.y() * q.x();
+  }
+  return 0.5 * twice;
+}
+
+/// Heights from low to high over a triangle.
+struct Slab {
+  double low = 0.0, high = 0.0;
+  /// How far every point of the triangle is from it.
+  double depth() const { return std::max({0.0, low, -high}); }
+};
+
+/// The column of a triangle, in a frame whose third axis is the triangle's normal.
+class Column {
+ public:
+  bool set(const Corners& triangle, double height_mm) {
+    centre_ = centroid_of(triangle);
+    const Vec3 normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
+    const double twice_area = normal.norm();
+    const size_t side = longest_side(triangle);
+    const Vec3 along = triangle[(side + 1) % 3] - triangle[side];
+    if (!(twice_area > 0.0)) return false;
+    frame_.row(0) = along.normalized();
+    frame_.row(2) = normal / twice_area;
+    frame_.row(1) = Vec3(frame_.row(2)).cross(Vec3(frame_.row(0)));
+    double round = 0.0;
+    for (size_t i = 0; i < 3; ++i) round += (triangle[(i + 1) % 3] - triangle[i]).norm();
+    const double shrink = kRim / (twice_area / round);  // rim over the radius of the inscribed circle
+    widening_mm = shrink * radius_of(triangle);
+    if (!(widening_mm <= kMostWidening)) return false;
+    for (size_t i = 0; i < 3; ++i) {
+      corners_[i] = (1.0 - shrink) * (frame_ * (triangle[i] - centre_));
+      corners_[i].z() = 0.0;
+    }
+    area_ = 0.5 * twice_area * (1.0 - shrink) * (1.0 - shrink);
+    height_ = height_mm;
+    return true;
+  }
+
+  void add(const Corners& facet) {
+    Polygon polygon;
+    for (const Vec3& corner : facet) polygon.points[polygon.count++] = frame_ * (corner - centre_);
+    for (size_t i = 0; i < 3 && polygon.count > 0; ++i) clip(polygon, corners_[i], corners_[(i + 1) % 3]);
+    if (polygon.count == 0) return;
+    double least = polygon.points[0].z(), most = least;
+    for (size_t i = 1; i < polygon.count; ++i) {
+      least = std::min(least, polygon.points[i].z());
+      most = std::max(most, polygon.points[i].z());
+    }
+    if (least > height_ || most < -height_) return;
+    covered_ += signed_area(polygon);
+    heights_[count_++] = {least, most};
+  }
+
+  /// The clear slabs of the column, those nearest to the triangle first.
+  std::vector<Slab> clear_slabs() {
+    std::sort(heights_.begin(), heights_.begin() + static_cast<ptrdiff_t>(count_),
+              [](const Slab& a, const Slab& b) { return a.low < b.low; });
+    std::vector<Slab> slabs;
+    double top = -height_;
+    for (size_t i = 0; i <= count_; ++i) {
+      const double next = i < count_ ? heights_[i].low : height_;
+      if (next - top > kThinnest) slabs.push_back({top, next});
+      if (i < count_) top = std::max(top, heights_[i].high);
+    }
+    std::sort(slabs.begin(), slabs.end(), [](const Slab& a, const Slab& b) { return a.depth() < b.depth(); });
+    return slabs;
+  }
+
+  bool covered_once() const { return std::abs(covered_ / area_ - 1.0) <= kWhole; }
+  Vec3 over_centre(double height_mm) const { return centre_ + height_mm * Vec3(frame_.row(2)); }
+
+  double widening_mm = 0.0;
+
+ private:
+  Vec3 centre_ = Vec3::Zero();
+  Mat3 frame_ = Mat3::Identity();
+  Corners corners_;
+  double area_ = 0.0, height_ = 0.0, covered_ = 0.0;
+  std::array<Slab, kMostFacets> heights_;  ///< of the facets in the column
+  size_t count_ = 0;
+};
+
+/// All facets of the column; false when there are too many.
+bool fill(Column& column, const Corners& triangle, const mesh::SignedDistance& target, double height_mm) {
+  std::array<uint32_t, kMostFacets> facets{};
+  size_t count = 0;
+  target.tree().each_near(centroid_of(triangle), std::hypot(radius_of(triangle), height_mm),
+                          [&](uint32_t facet) {
+                            if (count < kMostFacets) facets[count] = facet;
+                            ++count;
+                          });
+  if (count > kMostFacets) return false;
+  std::sort(facets.begin(), facets.begin() + static_cast<ptrdiff_t>(count));  // sums in one order
+  for (size_t i = 0; i < count; ++i) {
+    const uint32_t f = facets[i];
+    column.add({target.corner(f, 0), target.corner(f, 1), target.corner(f, 2)});
+  }
+  return true;
+}
+
+/// Every point of the triangle lies within `depth` of a clear part that is wholly outside or inside.
+void bound_by(double depth, bool outside, DistanceRange& range) {
+  if (outside) {
+    range.low = std::max(range.low, -depth);
+  } else {
+    range.high = std::min(range.high, depth);
+  }
+}
+
+/// Nearest points of two segments (Ericson, Real-Time Collision Detection, 5.1.9).
+double segment_distance(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s) {
+  const Vec3 d1 = q - p, d2 = s - r, w = p - r;
+  const double a = d1.squaredNorm(), e = d2.squaredNorm(), f = d2.dot(w), c = d1.dot(w), b = d1.dot(d2);
+  const double denominator = a * e - b * b;
+  double t = denominator > 0.0 ? std::clamp((b * f - c * e) / denominator, 0.0, 1.0) : 0.0;
+  double u = e > 0.0 ? (b * t + f) / e : 0.0;
+  if (u < 0.0 || u > 1.0) {
+    u = std::clamp(u, 0.0, 1.0);
+    t = a > 0.0 ? std::clamp((b * u - c) / a, 0.0, 1.0) : 0.0;
+  }
+  return (p + t * d1 - r - u * d2).norm();
+}
+
+double corner_distance(const Corners& corners, const Corners& facet) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Vec3& p : corners)
+    least = std::min(least, (mesh::closest_point_on_triangle(p, facet[0], facet[1], facet[2]) - p).norm());
+  return least;
+}
+
+}  // namespace
+
+DistanceRange clear_column(const Corners& triangle, const mesh::SignedDistance& target, double height_mm,
+                           bool open) {
+  DistanceRange range;
+  Column column;
+  if (!column.set(triangle, height_mm) || !fill(column, triangle, target, height_mm)) return range;
+  if (open && !column.covered_once()) return range;
+  size_t asked = 0;
+  for (const Slab& slab : column.clear_slabs()) {
+    if (++asked > kMostSlabs || (std::isfinite(range.low) && std::isfinite(range.high))) break;
+    const Vec3 inside = column.over_centre(0.5 * (slab.low + slab.high));
+    bound_by(slab.depth() + column.widening_mm, target.at(inside).distance_mm > 0.0, range);
+  }
+  return range;
+}
+
+double least_distance(const Corners& triangle, const mesh::SignedDistance& target, double within_mm) {
+  double least = within_mm;
+  target.tree().each_near(centroid_of(triangle), radius_of(triangle) + within_mm, [&](uint32_t f) {
+    const Corners facet{target.corner(f, 0), target.corner(f, 1), target.corner(f, 2)};
+    least = std::min({least, corner_distance(triangle, facet), corner_distance(facet, triangle)});
+    for (size_t i = 0; i < 3; ++i) {
+      for (size_t j = 0; j < 3; ++j) {
+        least = std::min(least,
+                         segment_distance(triangle[i], triangle[(i + 1) % 3], facet[j], facet[(j + 1) % 3]));
+      }
+    }
+  });
+  return least;
+}
+
+}  // namespace swarf::measure

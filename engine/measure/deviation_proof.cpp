@@ -1,0 +1,288 @@
+// The extremes of a comparison and the proof that nothing exceeds them.
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "measure/deviation_side.h"
+
+namespace swarf::measure {
+namespace {
+
+constexpr size_t kChunk = 64;
+/// Samples that each cell may cost at first, and all the cells of a side that are left may cost together.
+constexpr uint32_t kFirstWork = 16;
+constexpr uint32_t kMostWork = 1U << 16U;
+constexpr uint32_t kAllWork = 1'000'000;
+/// A bound on what is beyond its limit anyhow need not be tighter than this share of it.
+constexpr double kFailedGap = 2e-3;
+/// Cells that the search for the greatest deviation follows, and how often it halves them.
+constexpr size_t kBeam = 64;
+constexpr int kBeamHalvings = 40;
+
+/// A place inside a cell that is no worse than its centroid by this is not kept, mm.
+constexpr double kWorse = 1e-9;
+
+using Pair = std::array<double, 2>;  ///< excess, gouge
+
+/// A part of a cell.
+struct Piece {
+  Corners corners;
+  DeviationSample sample;  ///< at its centroid
+};
+
+Piece piece_of(const DeviationSide& side, uint32_t triangle, const Corners& corners, const Piece& from) {
+  const double step = (centroid_of(corners) - centroid_of(from.corners)).norm();
+  return {corners, side.look(triangle, centroid_of(corners), std::abs(from.sample.distance) + step)};
+}
+
+/// What is proven of one cell.
+struct CellProof {
+  Pair bound{0.0, 0.0};  ///< errors included
+  std::array<Vec3, 2> bound_place{Vec3::Zero(), Vec3::Zero()};
+  Pair value{0.0, 0.0};
+  std::array<Vec3, 2> place{Vec3::Zero(), Vec3::Zero()};
+  double error = 0.0;  ///< the greatest that was added
+  uint32_t samples = 0;
+  bool whole = true;  ///< every piece meets the target or is tight
+};
+
+class Prover {
+ public:
+  Prover(const SampledSide& sampled, const ComparisonInput& input, const Pair& target, const Pair& gap,
+         uint32_t work)
+      : sampled_(sampled), input_(input), target_(target), gap_(gap), work_(work) {}
+
+  CellProof prove(uint32_t cell) const {
+    CellProof proof;
+    const uint32_t triangle = sampled_.cells[cell].triangle;
+    std::vector<Piece> pieces{{sampled_.cells.corners(cell), sampled_.samples[cell]}};
+    while (!pieces.empty()) {
+      const Piece piece = pieces.back();
+      pieces.pop_back();
+      note_sample(piece, proof);
+      if (settles(triangle, piece, proof)) continue;
+      for (const Corners& half : halves_of(piece.corners))
+        pieces.push_back(piece_of(sampled_.side, triangle, half, piece));
+      proof.samples += 2;
+    }
+    return proof;
+  }
+
+ private:
+  static void note_sample(const Piece& piece, CellProof& proof) {
+    for (size_t k = 0; k < 2; ++k) {
+      const double value = counted_of(piece.sample, k == 1);
+      if (value <= proof.value[k]) continue;
+      proof.value[k] = value;
+      proof.place[k] = centroid_of(piece.corners);
+    }
+  }
+
+  /// The deviation that counts over a piece is at most this, without and with the errors of grid and facets.
+  double counted_bound(const Piece& piece, const DistanceRange& range, size_t k) const {
+    if (k == 0 && piece.sample.inside > radius_of(piece.corners)) return 0.0;
+    const double most = k == 0 ? range.high : -range.low;
+    return std::max(0.0, piece.sample.edge ? most - input_.edge : most);
+  }
+
+  bool settles(uint32_t triangle, const Piece& piece, CellProof& proof) const {
+    if (piece.sample.state != CellState::kMeasured) return true;
+    for (const bool thorough : {false, true}) {
+      const DistanceRange range = sampled_.side.range_over(triangle, piece.corners, piece.sample, thorough);
+      bool settled = true;
+      for (size_t k = 0; k < 2; ++k) {
+        const double bound = counted_bound(piece, range, k);
+        settled = settled && (bound + piece.sample.error <= target_[k] ||
+                              bound - counted_of(piece.sample, k == 1) <= gap_[k]);
+      }
+      const bool last = thorough && proof.samples >= work_;
+      if (!settled && !last) continue;
+      proof.whole = proof.whole && settled;
+      note_bound(piece, range, proof);
+      return true;
+    }
+    return false;
+  }
+
+  void note_bound(const Piece& piece, const DistanceRange& range, CellProof& proof) const {
+    proof.error = std::max(proof.error, piece.sample.error);
+    for (size_t k = 0; k < 2; ++k) {
+      const double bound = counted_bound(piece, range, k) + piece.sample.error;
+      if (bound <= proof.bound[k]) continue;
+      proof.bound[k] = bound;
+      proof.bound_place[k] = centroid_of(piece.corners);
+    }
+  }
+
+  const SampledSide& sampled_;
+  const ComparisonInput& input_;
+  Pair target_, gap_;
+  uint32_t work_;
+};
+
+/// The cells of the greatest deviation of one sign halved again and again: what their centroids miss.
+void climb(SampledSide& sampled, bool gouge) {
+  struct Rung {
+    double value;
+    uint32_t cell;
+    Piece piece;
+  };
+  const auto higher = [](const Rung& a, const Rung& b) { return a.value > b.value; };
+  std::vector<std::pair<double, uint32_t>> leaves;
+  for (uint32_t c = 0; c < sampled.cells.size(); ++c) {
+    const double value = sampled.worst(c, gouge);
+    if (value > 0.0) leaves.emplace_back(-value, c);
+  }
+  const size_t kept = std::min(kBeam, leaves.size());
+  std::partial_sort(leaves.begin(), leaves.begin() + static_cast<ptrdiff_t>(kept), leaves.end());
+  std::vector<Rung> rungs;
+  for (size_t i = 0; i < kept; ++i) {
+    const uint32_t c = leaves[i].second;
+    rungs.push_back({-leaves[i].first, c, {sampled.cells.corners(c), sampled.samples[c]}});
+  }
+  for (int step = 0; step < kBeamHalvings; ++step) {
+    std::vector<Rung> next;
+    for (const Rung& rung : rungs) {
+      const uint32_t triangle = sampled.cells[rung.cell].triangle;
+      for (const Corners& half : halves_of(rung.piece.corners)) {
+        const Piece piece = piece_of(sampled.side, triangle, half, rung.piece);
+        next.push_back({counted_of(piece.sample, gouge), rung.cell, piece});
+      }
+    }
+    std::stable_sort(next.begin(), next.end(), higher);
+    if (next.size() > kBeam) next.erase(next.begin() + kBeam, next.end());
+    rungs = std::move(next);
+    if (rungs.empty()) return;
+    if (rungs.front().value > sampled.worst(rungs.front().cell, gouge)) {
+      sampled.findings[gouge ? 1 : 0][rungs.front().cell] = {rungs.front().value,
+                                                             centroid_of(rungs.front().piece.corners)};
+    }
+  }
+}
+
+double greatest(const SampledSide& sampled, bool gouge, Vec3& place, double so_far) {
+  double most = so_far;
+  for (uint32_t c = 0; c < sampled.cells.size(); ++c) {
+    const double value = sampled.worst(c, gouge);
+    if (value <= most) continue;
+    most = value;
+    place = sampled.worst_place(c, gouge);
+  }
+  return most;
+}
+
+/// The targets and gaps that the first, and then the second attempt of the proof aims at.
+struct Aim {
+  Pair target, gap;
+};
+Aim aim(const Pair& found, const ComparisonInput& input, bool second) {
+  Aim aim;
+  const Pair limits{input.excess, input.gouge};
+  for (size_t k = 0; k < 2; ++k) {
+    const bool failed = found[k] > limits[k];
+    aim.gap[k] = failed ? std::max(kProofGap, kFailedGap * found[k]) : kProofGap;
+    const double tight = found[k] + aim.gap[k];
+    aim.target[k] = !failed && (second || tight > limits[k]) ? limits[k] : tight;
+  }
+  return aim;
+}
+
+std::vector<CellProof> prove_cells(const SampledSide& sampled, const std::vector<uint32_t>& cells,
+                                   const ComparisonInput& input, const Aim& aim, uint32_t work) {
+  const Prover prover(sampled, input, aim.target, aim.gap, work);
+  std::vector<CellProof> proofs(cells.size());
+  parallel_chunks(cells.size(), kChunk, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) proofs[i] = prover.prove(cells[i]);
+  });
+  return proofs;
+}
+
+class SideProof {
+ public:
+  SideProof(SampledSide& sampled, const ComparisonInput& input) : sampled_(sampled), input_(input) {
+    for (uint32_t c = 0; c < sampled.cells.size(); ++c) {
+      if (sampled.cells.is_leaf(c) && sampled.samples[c].state == CellState::kMeasured) cells_.push_back(c);
+    }
+  }
+  void first(const Pair& found) {
+    take(prove_cells(sampled_, cells_, input_, aim(found, input_, false), kFirstWork));
+  }
+  /// Cells that the first attempt left open, if their bound decides anything.
+  void second(const Pair& found) {
+    const Aim goal = aim(found, input_, true);
+    std::vector<uint32_t> open, places;
+    for (uint32_t i = 0; i < cells_.size(); ++i) {
+      const CellProof& proof = proofs_[i];
+      if (proof.whole || (proof.bound[0] <= goal.target[0] && proof.bound[1] <= goal.target[1])) continue;
+      open.push_back(cells_[i]);
+      places.push_back(i);
+    }
+    if (open.empty()) return;
+    const auto work =
+        static_cast<uint32_t>(std::clamp<size_t>(kAllWork / open.size(), kFirstWork, kMostWork));
+    const std::vector<CellProof> again = prove_cells(sampled_, open, input_, goal, work);
+    for (size_t i = 0; i < open.size(); ++i) proofs_[places[i]] = again[i];
+    note_findings();
+  }
+  void add_to(PartComparison& result) const {
+    SideSummary& summary = sampled_.side.on_design() ? result.design : result.stock;
+    for (const CellProof& proof : proofs_) {
+      summary.proof_samples += proof.samples;
+      result.grid_error_um = std::max(result.grid_error_um, 1e3 * proof.error);
+      for (size_t k = 0; k < 2; ++k) {
+        DeviationExtreme& extreme = k == 0 ? result.excess : result.gouge;
+        if (1e3 * proof.bound[k] <= extreme.bound_um) continue;
+        extreme.bound_um = 1e3 * proof.bound[k];
+        extreme.bound_place = proof.bound_place[k];
+      }
+    }
+  }
+
+ private:
+  void take(std::vector<CellProof> proofs) {
+    proofs_ = std::move(proofs);
+    note_findings();
+  }
+  void note_findings() {
+    for (size_t i = 0; i < cells_.size(); ++i) {
+      for (size_t k = 0; k < 2; ++k) {
+        const CellProof& proof = proofs_[i];
+        if (proof.value[k] > sampled_.worst(cells_[i], k == 1) + kWorse)
+          sampled_.findings[k][cells_[i]] = {proof.value[k], proof.place[k]};
+      }
+    }
+  }
+
+  SampledSide& sampled_;
+  const ComparisonInput& input_;
+  std::vector<uint32_t> cells_;
+  std::vector<CellProof> proofs_;
+};
+
+}  // namespace
+
+void prove_extremes(std::array<SampledSide*, 2> sides, const ComparisonInput& input, PartComparison& result) {
+  const auto extremes = [&] {
+    Pair found{0.0, 0.0};
+    for (const SampledSide* side : sides) {
+      found[0] = greatest(*side, false, result.excess.place, found[0]);
+      found[1] = greatest(*side, true, result.gouge.place, found[1]);
+    }
+    return found;
+  };
+  for (SampledSide* side : sides) {
+    climb(*side, false);
+    climb(*side, true);
+  }
+  std::array<SideProof, 2> proofs{SideProof(*sides[0], input), SideProof(*sides[1], input)};
+  const Pair before = extremes();
+  for (SideProof& proof : proofs) proof.first(before);
+  const Pair between = extremes();
+  for (SideProof& proof : proofs) proof.second(between);
+  const Pair found = extremes();
+  result.excess.um = 1e3 * found[0];
+  result.gouge.um = 1e3 * found[1];
+  for (const SideProof& proof : proofs) proof.add_to(result);
+}
+
+}  // namespace swarf::measure

@@ -1,0 +1,187 @@
+#include "measure/deviation_side.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+
+namespace swarf::measure {
+namespace {
+
+constexpr size_t kChunk = 512;
+/// Points above the border of a patch that lie no farther beside it than this still see the patch; mm.
+constexpr double kBorderSlack = 1e-4;
+/// Cosine of normals that look the same way.
+constexpr double kFacing = 0.2;
+/// A point of the offset design that lies so much nearer to the design is not on its surface, mm.
+constexpr double kInsideOffset = 1e-5;
+/// Rounding of the guess that bounds a search.
+constexpr double kGuessSlack = 1e-9;
+/// What a column leaves open at its rim, mm.
+constexpr double kClear = 2e-5;
+/// Distances below this are rounding of doubles, mm.
+constexpr double kRounding = 1e-11;
+
+}  // namespace
+
+ComparisonScene::ComparisonScene(const ComparisonInput& comparison) : input(comparison) {
+  if (!input.open_design || input.edge <= 0.0) return;
+  border_mesh.positions = input.design->mesh().positions;
+  const auto& across = input.design->across();
+  for (uint32_t side = 0; side < across.size(); ++side) {
+    if (across[side] != mesh::SignedDistance::kBorder) continue;
+    const auto& t = input.design->mesh().triangles[side / 3];
+    border_mesh.triangles.push_back({t[side % 3], t[(side + 1) % 3], t[(side + 1) % 3]});
+  }
+  border = std::make_unique<mesh::MeshDistance>(border_mesh);
+}
+
+DeviationSide::DeviationSide(const ComparisonScene& scene, bool on_design)
+    : scene_(scene), in_(scene.input), on_design_(on_design) {}
+
+double DeviationSide::stock_error(uint32_t triangle) const {
+  if (in_.stock_error.empty()) return 0.0;
+  const auto& t = in_.stock->mesh().triangles[triangle];
+  return std::max({in_.stock_error[t[0]], in_.stock_error[t[1]], in_.stock_error[t[2]]});
+}
+
+bool DeviationSide::stock_edge(uint32_t triangle) const {
+  if (in_.stock_edge.empty()) return false;
+  const auto& t = in_.stock->mesh().triangles[triangle];
+  return (in_.stock_edge[t[0]] | in_.stock_edge[t[1]] | in_.stock_edge[t[2]]) != 0;
+}
+
+bool DeviationSide::near_border(const Vec3& point) const {
+  return scene_.border != nullptr && scene_.border->nearest(point, in_.edge).distance_mm <= in_.edge;
+}
+
+void DeviationSide::discount(DeviationSample& sample) const {
+  sample.counted = sample.raw;
+  if (!sample.edge) return;
+  sample.error = 0.0;
+  const double rest = std::max(0.0, std::abs(sample.raw) - in_.edge);
+  sample.counted = std::copysign(rest, sample.raw);
+}
+
+DeviationSample DeviationSide::look_from_stock(uint32_t triangle, const Vec3& point, double within) const {
+  const mesh::SignedPoint seen = in_.design->at(point, within);
+  DeviationSample sample;
+  sample.distance = seen.distance_mm;
+  sample.facet = seen.triangle;
+  sample.foot = seen.foot;
+  sample.raw = seen.distance_mm - in_.allowance;
+  sample.error = stock_error(triangle) + in_.design_error;
+  if (in_.open_design &&
+      (seen.beyond_mm > kBorderSlack || in_.stock->face_normal(triangle).dot(seen.normal) < kFacing)) {
+    sample.state = CellState::kBeyond;
+    return sample;
+  }
+  sample.edge = stock_edge(triangle) || near_border(seen.foot);
+  return sample;
+}
+
+DeviationSample DeviationSide::look_from_design(uint32_t triangle, const Vec3& point, double within) const {
+  const Vec3 target = point + in_.allowance * in_.design->face_normal(triangle);
+  const mesh::SignedPoint seen = in_.stock->at(target, within);
+  DeviationSample sample;
+  sample.distance = seen.distance_mm;
+  sample.facet = seen.triangle;
+  sample.foot = seen.foot;
+  sample.raw = -seen.distance_mm;
+  sample.error = stock_error(seen.triangle) + in_.design_error;
+  sample.edge = stock_edge(seen.triangle) || near_border(point);
+  if (in_.allowance > 0.0) {
+    const double depth = in_.allowance - in_.design->at(target, in_.allowance).distance_mm;
+    sample.inside = depth > kInsideOffset ? depth : 0.0;
+  }
+  return sample;
+}
+
+DeviationSample DeviationSide::look(uint32_t triangle, const Vec3& point, double within) const {
+  const double guess = within * (1.0 + kGuessSlack) + kGuessSlack;
+  DeviationSample sample =
+      on_design_ ? look_from_design(triangle, point, guess) : look_from_stock(triangle, point, guess);
+  if (std::abs(sample.raw) < kRounding) sample.raw = 0.0;
+  if (in_.reach && std::abs(sample.distance) > *in_.reach && sample.state == CellState::kMeasured)
+    sample.state = CellState::kFar;
+  discount(sample);
+  return sample;
+}
+
+Corners DeviationSide::moved(uint32_t triangle, const Corners& corners) const {
+  if (!on_design_ || in_.allowance == 0.0) return corners;
+  const Vec3 by = in_.allowance * in_.design->face_normal(triangle);
+  return {corners[0] + by, corners[1] + by, corners[2] + by};
+}
+
+DistanceRange DeviationSide::range_over(uint32_t triangle, const Corners& cell, const DeviationSample& centre,
+                                        bool thorough) const {
+  const Corners corners = moved(triangle, cell);
+  const double r = radius_of(corners);
+  double low = centre.distance - r, high = centre.distance + r;
+  if (thorough) {
+    const auto facet = [&](size_t i) { return other().corner(centre.facet, i); };
+    double most = 0.0;
+    for (const Vec3& p : corners) {
+      const Vec3 q = mesh::closest_point_on_triangle(p, facet(0), facet(1), facet(2));
+      most = std::max(most, (q - p).norm());
+    }
+    low = std::max(low, -most);
+    high = std::min(high, most);
+    // Heights along the triangle's normal exceed distances where the sheets lean; half as much again is room.
+    const DistanceRange column =
+        clear_column(corners, other(), 1.5 * std::abs(centre.distance) + r, in_.open_design && !on_design_);
+    low = std::max(low, column.low);
+    high = std::min(high, column.high);
+    // Against an offset design the distance itself must not fall short.
+    if (in_.allowance > 0.0 && !on_design_ && low < in_.allowance && centre.distance > 0.0 &&
+        column.low >= -kClear)
+      low = std::max(low, least_distance(corners, other(), centre.distance));
+  }
+  if (on_design_) return {-high, -low};
+  return {low - in_.allowance, high - in_.allowance};
+}
+
+SampledSide::SampledSide(const ComparisonScene& scene, bool on_design)
+    : side(scene, on_design), cells(side.own()) {}
+
+void SampledSide::sample() {
+  for (size_t i = 0; i < cells.size(); ++i) {
+    if (radius_of(cells.corners(i)) > side.pitch()) cells.halve(static_cast<uint32_t>(i));
+  }
+  samples.resize(cells.size());
+  parallel_chunks(cells.size(), kChunk, [&](size_t begin, size_t end) {
+    double last = std::numeric_limits<double>::infinity();
+    Vec3 last_place = Vec3::Zero();
+    for (size_t i = begin; i < end; ++i) {
+      if (!cells.is_leaf(i)) continue;
+      const Vec3 place = centroid_of(side.moved(cells[i].triangle, cells.corners(i)));
+      // Distances change no faster than the place: the neighbour's is a guess for this one.
+      samples[i] =
+          side.look(cells[i].triangle, centroid_of(cells.corners(i)), last + (place - last_place).norm());
+      last = std::abs(samples[i].distance);
+      last_place = place;
+    }
+  });
+}
+
+double counted_of(const DeviationSample& sample, bool gouge) {
+  if (sample.state != CellState::kMeasured || (!gouge && sample.inside > 0.0)) return 0.0;
+  return std::max(0.0, gouge ? -sample.counted : sample.counted);
+}
+
+double SampledSide::worst(size_t cell, bool gouge) const {
+  if (!cells.is_leaf(cell)) return 0.0;
+  const auto found = findings[gouge ? 1 : 0].find(static_cast<uint32_t>(cell));
+  const double own = counted_of(samples[cell], gouge);
+  return found == findings[gouge ? 1 : 0].end() ? own : std::max(own, found->second.value);
+}
+
+Vec3 SampledSide::worst_place(size_t cell, bool gouge) const {
+  const auto found = findings[gouge ? 1 : 0].find(static_cast<uint32_t>(cell));
+  if (found != findings[gouge ? 1 : 0].end() && found->second.value > counted_of(samples[cell], gouge))
+    return found->second.place;
+  return centroid_of(cells.corners(cell));
+}
+
+}  // namespace swarf::measure

@@ -1,0 +1,109 @@
+// One surface of a comparison, seen from its own cells. Internal to this folder.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "measure/clear_column.h"
+#include "measure/part_comparison.h"
+
+namespace swarf::measure {
+
+enum class CellState : uint8_t {
+  kMeasured,
+  kBeyond,  ///< no part of the comparison: off the patches, or facing another way
+  kFar,     ///< beyond the reach
+};
+
+/// The deviation at one point of a surface.
+struct DeviationSample {
+  CellState state = CellState::kMeasured;
+  bool edge = false;      ///< at a rounded edge
+  double inside = 0.0;    ///< how far inside the offset design: its concave corners are no surface of it
+  double raw = 0.0;       ///< deviation, mm
+  double counted = 0.0;   ///< the same less what a rounded edge may be off
+  double error = 0.0;     ///< of grid and facets
+  double distance = 0.0;  ///< signed, to the other surface
+  uint32_t facet = 0;     ///< of the other surface
+  Vec3 foot = Vec3::Zero();
+};
+
+/// Deviation of the wanted sign that counts at a sample; 0 where none does.
+double counted_of(const DeviationSample& sample, bool gouge);
+
+/// What is common to both sides and made once.
+struct ComparisonScene {
+  explicit ComparisonScene(const ComparisonInput& comparison);
+  const ComparisonInput& input;
+  /// The border of open patches as facets without area; null when there is none.
+  TriMesh border_mesh;
+  std::unique_ptr<mesh::MeshDistance> border;
+};
+
+class DeviationSide {
+ public:
+  DeviationSide(const ComparisonScene& scene, bool on_design);
+
+  const mesh::SignedDistance& own() const { return on_design_ ? *in_.design : *in_.stock; }
+  const mesh::SignedDistance& other() const { return on_design_ ? *in_.stock : *in_.design; }
+  bool on_design() const { return on_design_; }
+  double pitch() const { return in_.pitch; }
+
+  /// At a point of own triangle `triangle`; `within`: an upper bound of |distance|, mm.
+  DeviationSample look(uint32_t triangle, const Vec3& point, double within) const;
+  /// The triangle as it is measured: that of the design moved by the allowance.
+  Corners moved(uint32_t triangle, const Corners& corners) const;
+  /// Bounds of `raw` over all of a cell whose centroid's sample is given: low and high.
+  DistanceRange range_over(uint32_t triangle, const Corners& cell, const DeviationSample& centre,
+                           bool thorough) const;
+
+ private:
+  DeviationSample look_from_stock(uint32_t triangle, const Vec3& point, double within) const;
+  DeviationSample look_from_design(uint32_t triangle, const Vec3& point, double within) const;
+  void discount(DeviationSample& sample) const;
+  double stock_error(uint32_t triangle) const;
+  bool stock_edge(uint32_t triangle) const;
+  bool near_border(const Vec3& point) const;
+
+  const ComparisonScene& scene_;
+  const ComparisonInput& in_;
+  bool on_design_;
+};
+
+/// The leaves of a side and what was measured at their centroids.
+struct SampledSide {
+  SampledSide(const ComparisonScene& scene, bool on_design);
+  /// Halves and samples until every cell is as small as the pitch.
+  void sample();
+  /// Greatest deviation of the wanted sign that counts in a cell; 0 where none does.
+  double worst(size_t cell, bool gouge) const;
+  Vec3 worst_place(size_t cell, bool gouge) const;
+
+  DeviationSide side;
+  SurfaceCells cells;
+  std::vector<DeviationSample> samples;  ///< per cell
+  /// Worse places inside cells that the proof came across: excess, then gouge.
+  struct Finding {
+    double value;
+    Vec3 place;
+  };
+  std::array<std::map<uint32_t, Finding>, 2> findings;
+};
+
+/// Finds the extremes of both sides and proves bounds for them.
+void prove_extremes(std::array<SampledSide*, 2> sides, const ComparisonInput& input, PartComparison& result);
+
+/// Regions with areas; volumes are added by measure_volumes.
+struct RegionMap {
+  std::vector<DeviationRegion> regions;            ///< worst first, all of them
+  std::array<std::vector<uint32_t>, 2> region_of;  ///< per cell of stock and design; kNoDeviationRegion
+};
+inline constexpr uint32_t kNoDeviationRegion = 0xffffffffU;
+RegionMap connect_regions(const std::array<SampledSide*, 2>& sides, const ComparisonInput& input);
+
+/// Volumes of the listed regions and of the whole.
+void measure_volumes(const std::array<SampledSide*, 2>& sides, const RegionMap& map,
+                     const ComparisonInput& input, PartComparison& result);
+
+}  // namespace swarf::measure

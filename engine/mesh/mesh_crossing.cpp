@@ -1,0 +1,164 @@
+#include "mesh/mesh_crossing.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "base/parallel.h"
+
+namespace swarf::mesh {
+namespace {
+
+using Corners = std::array<Vec3, 3>;
+__extension__ using Wide = __float128;  // 113 bits: products of three differences of floats fit
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+/// Roundings of a determinant of three differences, each term relative to its absolute value (Shewchuk 1997
+/// has 7; some more for the simpler form here).
+constexpr double kDeterminantRoundings = 16.0;
+
+int sign_of(Wide value) {
+  return value > 0 ? 1 : value < 0 ? -1 : 0;
+}
+
+template <typename Number>
+Number determinant(const std::array<std::array<Number, 3>, 3>& m) {
+  return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) +
+         m[0][1] * (m[1][2] * m[2][0] - m[1][0] * m[2][2]) +
+         m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+}
+
+/// On which side of the plane (a, b, c) d lies: +1 above (counter-clockwise seen from there), 0 in it.
+int side(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  const Vec3 u = b - a, v = c - a, w = d - a;
+  const double value = u.cross(v).dot(w);
+  const double sum = std::abs(w[0]) * (std::abs(u[1] * v[2]) + std::abs(u[2] * v[1])) +
+                     std::abs(w[1]) * (std::abs(u[2] * v[0]) + std::abs(u[0] * v[2])) +
+                     std::abs(w[2]) * (std::abs(u[0] * v[1]) + std::abs(u[1] * v[0]));
+  if (std::abs(value) > kDeterminantRoundings * kEpsilon * sum) return value > 0.0 ? 1 : -1;
+  std::array<std::array<Wide, 3>, 3> rows;
+  for (int k = 0; k < 3; ++k) {
+    rows[0][k] = Wide(b[k]) - Wide(a[k]);
+    rows[1][k] = Wide(c[k]) - Wide(a[k]);
+    rows[2][k] = Wide(d[k]) - Wide(a[k]);
+  }
+  return sign_of(determinant(rows));
+}
+
+/// Turn of a, b, c in the plane without axis `drop`: exact.
+int turn(const Vec3& a, const Vec3& b, const Vec3& c, int drop) {
+  const int x = (drop + 1) % 3, y = (drop + 2) % 3;
+  const Wide abx = Wide(b[x]) - Wide(a[x]), aby = Wide(b[y]) - Wide(a[y]);
+  const Wide acx = Wide(c[x]) - Wide(a[x]), acy = Wide(c[y]) - Wide(a[y]);
+  return sign_of(abx * acy - aby * acx);
+}
+
+/// Facets in one plane: no side of either has the other beyond it.
+bool overlap_in_plane(const Corners& s, const Corners& t) {
+  int drop = 0;
+  (s[1] - s[0]).cross(s[2] - s[0]).cwiseAbs().maxCoeff(&drop);
+  const auto separated = [&](const Corners& a, const Corners& b) {
+    const int own = turn(a[0], a[1], a[2], drop);
+    for (size_t i = 0; i < 3; ++i) {
+      const auto beyond = [&](const Vec3& p) { return turn(a[i], a[(i + 1) % 3], p, drop) * own <= 0; };
+      if (std::all_of(b.begin(), b.end(), beyond)) return true;
+    }
+    return false;
+  };
+  return !separated(s, t) && !separated(t, s);
+}
+
+/// The line p-q runs through (a, b, c), border included; p and q lie on its two sides.
+bool runs_through(const Vec3& p, const Vec3& q, const Corners& t) {
+  const int s0 = side(p, q, t[0], t[1]), s1 = side(p, q, t[1], t[2]), s2 = side(p, q, t[2], t[0]);
+  return (s0 >= 0 && s1 >= 0 && s2 >= 0) || (s0 <= 0 && s1 <= 0 && s2 <= 0);
+}
+
+bool edges_cross(const Corners& s, const std::array<int, 3>& sides, const Corners& t) {
+  for (size_t i = 0; i < 3; ++i) {
+    const size_t j = (i + 1) % 3;
+    if (sides[i] * sides[j] < 0 && runs_through(s[i], s[j], t)) return true;
+  }
+  return false;
+}
+
+std::array<int, 3> sides_of(const Corners& s, const Corners& plane) {
+  return {side(plane[0], plane[1], plane[2], s[0]), side(plane[0], plane[1], plane[2], s[1]),
+          side(plane[0], plane[1], plane[2], s[2])};
+}
+
+bool cross(const Corners& s, const Corners& t) {
+  const std::array<int, 3> of_s = sides_of(s, t);
+  if (of_s == std::array{0, 0, 0}) return overlap_in_plane(s, t);
+  if (of_s == std::array{1, 1, 1} || of_s == std::array{-1, -1, -1}) return false;
+  return edges_cross(s, of_s, t) || edges_cross(t, sides_of(t, s), s);
+}
+
+/// Multiples of this are so few bits that determinants of them fit into 113: three differences of 36 bits and
+/// their sum. It is about 1e-10 of the largest coordinate, far below the spacing of floats there.
+double grid_of(const TriMesh& mesh) {
+  float largest = 0.0F;
+  for (const auto& p : mesh.positions)
+    largest = std::max({largest, std::abs(p[0]), std::abs(p[1]), std::abs(p[2])});
+  constexpr int kBits = 34;
+  return std::ldexp(1.0, std::ilogb(std::max(largest, std::numeric_limits<float>::min())) + 1 - kBits);
+}
+
+struct Span {
+  Vec3 low, high;
+  explicit Span(const Corners& t)
+      : low(t[0].cwiseMin(t[1]).cwiseMin(t[2])), high(t[0].cwiseMax(t[1]).cwiseMax(t[2])) {}
+  bool meets(const Span& other) const {
+    return (low.array() <= other.high.array()).all() && (other.low.array() <= high.array()).all();
+  }
+};
+
+}  // namespace
+
+bool edge_crosses(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
+  return side(a, b, c, p) * side(a, b, c, q) < 0 && runs_through(p, q, {a, b, c});
+}
+
+Crossings find_crossings(const SignedDistance& mesh) {
+  constexpr size_t kChunk = 512;
+  const size_t count = mesh.mesh().triangles.size();
+  std::vector<Crossings> parts((count + kChunk - 1) / kChunk);
+  const double grid = grid_of(mesh.mesh());
+  const auto corners = [&](uint32_t t) {
+    Corners rounded{mesh.corner(t, 0), mesh.corner(t, 1), mesh.corner(t, 2)};
+    for (Vec3& p : rounded) p = grid * (p / grid).array().round().matrix();
+    return rounded;
+  };
+  parallel_chunks(count, kChunk, [&](size_t begin, size_t end) {
+    Crossings& mine = parts[begin / kChunk];
+    std::vector<uint32_t> met;
+    for (auto t = static_cast<uint32_t>(begin); t < end; ++t) {
+      const Corners own = corners(t);
+      const Span span(own);
+      const Vec3 centre = 0.5 * (span.low + span.high);
+      met.clear();
+      mesh.tree().each_near(centre, 0.5 * (span.high - span.low).norm(), [&](uint32_t other) {
+        if (other <= t) return;
+        const Corners theirs = corners(other);
+        if (span.meets(Span(theirs)) && cross(own, theirs)) met.push_back(other);
+      });
+      if (met.empty()) continue;
+      if (mine.pairs == 0) {
+        mine.first = t;
+        mine.second = *std::min_element(met.begin(), met.end());
+        mine.place = own[0];
+      }
+      mine.pairs += met.size();
+    }
+  });
+  Crossings all;
+  for (const Crossings& part : parts) {
+    const size_t pairs = all.pairs + part.pairs;
+    if (all.pairs == 0) all = part;
+    all.pairs = pairs;
+  }
+  return all;
+}
+
+}  // namespace swarf::mesh

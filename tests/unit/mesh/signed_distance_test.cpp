@@ -1,0 +1,120 @@
+// Signs at faces, edges and vertices, and meshes that run through themselves.
+#include <gtest/gtest.h>
+
+#include "base/rng.h"
+#include "mesh/mesh_check.h"
+#include "mesh/mesh_crossing.h"
+#include "mesh/signed_distance.h"
+#include "support/solids.h"
+
+namespace swarf::mesh {
+namespace {
+
+/// Signed distance to an axis-aligned box, by its closed form.
+double box_distance(const Vec3& p, const Vec3& half) {
+  const Vec3 q = p.cwiseAbs() - half;
+  return q.cwiseMax(Vec3::Zero()).norm() + std::min(0.0, q.maxCoeff());
+}
+
+TEST(SignedDistance, OfABoxIsItsClosedFormEverywhere) {
+  const Vec3 half(3, 2, 1);
+  const SignedDistance distance(test::block(-half, half));
+  Rng rng(7);
+  for (int i = 0; i < 2000; ++i) {
+    Vec3 p(rng.uniform(-5, 5), rng.uniform(-4, 4), rng.uniform(-3, 3));
+    if (i % 4 == 1) p.x() = 3.0 + p.y() - 2.0;                    // in the plane that halves an edge's angle
+    if (i % 4 == 2) p = (1.0 + 0.1 * rng.uniform(-5, 5)) * half;  // along the diagonal: a vertex is nearest
+    ASSERT_NEAR(distance.at(p).distance_mm, box_distance(p, half), 1e-12)
+        << "seed 7, point " << p.transpose();
+  }
+}
+
+/// A needle of a notch: the mean of the vertex normals would give the wrong sign above its tip.
+TEST(SignedDistance, HoldsItsSignAtAcuteCornersInAndOut) {
+  const std::vector<double> x{0, 1, 1.02, 3}, y{0, 1, 2};
+  const TriMesh slit = test::towers(x, y, 0.0, [](int i, int j) { return i == 1 && j == 0 ? 0.5 : 2.0; });
+  const SignedDistance distance(slit);
+  EXPECT_NEAR(distance.at({1.01, 0.5, 1.0}).distance_mm, 0.01, 1e-6);   // in the slit: air
+  EXPECT_NEAR(distance.at({1.03, 0.5, 1.0}).distance_mm, -0.01, 1e-6);  // beside it: material
+  EXPECT_NEAR(distance.at({1.01, 0.5, 0.4}).distance_mm, -0.1, 1e-6);   // below it
+}
+
+TEST(SignedDistance, PointsBesideAnOpenSheetLieBeyondIt) {
+  TriMesh sheet;
+  test::add_quad(sheet, {0, 0, 0}, {4, 0, 0}, {4, 3, 0}, {0, 3, 0});
+  const SignedDistance distance(sheet);
+  EXPECT_DOUBLE_EQ(distance.at({2, 1, 0.5}).distance_mm, 0.5);
+  EXPECT_DOUBLE_EQ(distance.at({2, 1, -0.5}).distance_mm, -0.5);
+  EXPECT_DOUBLE_EQ(distance.at({2, 1, 0.5}).beyond_mm, 0.0);
+  EXPECT_NEAR(distance.at({4.25, 1, 0.5}).beyond_mm, 0.25, 1e-12);
+}
+
+TEST(SignedDistance, NothingIsFoundBeyondTheGivenReach) {
+  const SignedDistance distance(test::block({0, 0, 0}, {1, 1, 1}));
+  EXPECT_TRUE(std::isinf(distance.at({3, 0.5, 0.5}, 1.9).distance_mm));
+  EXPECT_DOUBLE_EQ(distance.at({3, 0.5, 0.5}, 2.0).distance_mm, 2.0);
+}
+
+size_t crossings(const TriMesh& mesh) {
+  return find_crossings(SignedDistance(mesh)).pairs;
+}
+
+TEST(MeshCrossing, SoundSolidsHaveNone) {
+  EXPECT_EQ(crossings(test::block({0, 0, 0}, {1, 2, 3})), 0U);
+  EXPECT_EQ(crossings(test::towers({0, 1, 2, 3}, {0, 1, 2, 3}, 0,
+                                   [](int i, int j) { return 1.0 + (i == 1 && j == 1); })),
+            0U);
+  EXPECT_EQ(crossings(test::sphere(25, {0.007, 0, 0}, 120, 60)), 0U);
+  EXPECT_EQ(crossings(test::torus(30, 10, {0, 0, 0}, 120, 48)), 0U);
+  TriMesh apart = test::block({0, 0, 0}, {1, 1, 1});
+  test::append(apart, test::block({1.5, 0, 0}, {2, 1, 1}));
+  EXPECT_EQ(crossings(apart), 0U);
+}
+
+TEST(MeshCrossing, BodiesThatRunThroughEachOtherAreFoundHoweverTheyLie) {
+  const TriMesh first = test::block({0, 0, 0}, {2, 2, 2});
+  const std::vector<std::pair<Vec3, Vec3>> others{{{1, 0, 0}, {3, 2, 2}},           // sides in one plane
+                                                  {{1, 0.5, 0.5}, {3, 1.5, 1.5}},   // through a face
+                                                  {{1, 1, 1}, {3, 3, 3}},           // corner in corner
+                                                  {{-1, 0.5, 0.5}, {3, 1.5, 1.5}},  // right through
+                                                  {{1.999, 0, 0}, {3, 2, 2}}};
+  for (const auto& [low, high] : others) {
+    TriMesh both = first;
+    test::append(both, test::block(low, high));
+    EXPECT_GT(crossings(both), 0U) << low.transpose() << " .. " << high.transpose();
+  }
+}
+
+/// Random rotations of a pair that crosses by .01 mm, and of one that stays .01 mm apart.
+TEST(MeshCrossing, RandomPosesOfNearMissesAreToldFromCrossings) {
+  for (uint64_t seed = 1; seed <= 40; ++seed) {
+    Rng rng(seed);
+    const Vec3 axis(rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(-1, 1));
+    const Mat3 turn = Eigen::AngleAxisd(rng.uniform(0, 3), axis.normalized()).toRotationMatrix();
+    for (const double gap : {0.01, -0.01}) {
+      TriMesh both = test::block({-10, -10, -10}, {10, 10, 10});
+      test::append(both, test::block({10 + gap, -5, -5}, {20, 5, 5}));
+      for (auto& p : both.positions) {
+        const Eigen::Vector3f q = (turn * Vec3(p[0], p[1], p[2])).cast<float>();
+        p = {q.x(), q.y(), q.z()};
+      }
+      ASSERT_EQ(crossings(both) > 0, gap < 0) << "seed " << seed << " gap " << gap;
+    }
+  }
+}
+
+TEST(FacetsAcross, NamesTheOtherFacetOfEachSide) {
+  const TriMesh mesh = test::block({0, 0, 0}, {1, 1, 1});
+  const auto welded = weld(mesh);
+  const auto across = facets_across(welded.triangles);
+  for (uint32_t side = 0; side < across.size(); ++side) {
+    ASSERT_LT(across[side], welded.triangles.size());
+    const auto& t = welded.triangles[side / 3];
+    const auto& other = welded.triangles[across[side]];
+    for (const uint32_t v : {t[side % 3], t[(side + 1) % 3]})
+      EXPECT_TRUE(std::find(other.begin(), other.end(), v) != other.end());
+  }
+}
+
+}  // namespace
+}  // namespace swarf::mesh
