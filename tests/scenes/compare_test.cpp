@@ -102,7 +102,7 @@ TEST_F(Compare, TellsTwelveWrongPairsInBothDirections) {
   const TriMesh solid = block({-20, -20, 0}, {20, 20, 10});
   expect_wrong("pocket not cut", solid, pocketed(6.0), 4000.0, 1600.0);
   expect_wrong("boss of 5 mm", plate(15.0), plate(10.0), 5000.0, 125.0);
-  expect_wrong("hole of 5 mm", plate(10.0), plate(7.0), 2500.0, 75.0);  // as deep as its half width
+  expect_wrong("hole of 5 mm", plate(10.0), plate(7.0), 3000.0, 75.0);
   expect_wrong("pocket floor .02 high", pocketed(6.02), pocketed(6.0), 20.0, 8.0);
   expect_wrong("top .02 high", block({-20, -20, 0}, {20, 20, 10.02}), solid, 20.0, 32.0);
   expect_wrong("one of two bodies", two_bodies(10.0), block({-20, -20, 0}, {-5, 20, 10}), 25000.0, 6000.0);
