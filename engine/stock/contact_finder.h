@@ -14,6 +14,7 @@
 // is 0.87 voxels away).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -77,8 +78,8 @@ class ContactFinder {
   /// Below the distance of the moving part, from the centre of a cell: the lesser of two linear functions.
   struct Bound {
     Vec3 centre = Vec3::Zero();
-    double at[2] = {0.0, 0.0};
-    Vec3 slope[2] = {Vec3::Zero(), Vec3::Zero()};
+    std::array<double, 2> at{};
+    std::array<Vec3, 2> slope{Vec3::Zero(), Vec3::Zero()};
     double least(double half) const;
   };
   Bound bound_at(const SweepMap& map, const RevolvedPart& part, const Vec3& centre, double enough) const;

@@ -80,7 +80,7 @@ RevolvedPart RevolvedPart::frustum(double low, double high, double low_radius, d
 
 RevolvedPart::RevolvedPart(const cutter::ConvexPiece& piece) : RevolvedPart(corners_of(piece)) {}
 
-RevolvedPart::RevolvedPart(std::vector<Vec2> corners) {
+RevolvedPart::RevolvedPart(const std::vector<Vec2>& corners) {
   for (const Vec2& corner : corners) {
     if (!corners_.empty() && (corner - corners_.back()).norm() < kSame) continue;
     corners_.push_back(corner);

@@ -49,7 +49,7 @@ class RevolvedPart {
                   double enough = std::numeric_limits<double>::infinity()) const;
 
  private:
-  explicit RevolvedPart(std::vector<Vec2> corners);
+  explicit RevolvedPart(const std::vector<Vec2>& corners);
   struct Side {
     Vec2 from, along, outward;
     double length;
