@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "base/config.h"
 #include "cli/check_cl.h"
@@ -24,25 +25,51 @@ bool is_scene(const std::string& file) {
   return table.has("program") || table.has("cl") || table.has("nc") || !table.has("axis");
 }
 
+/// What the machine cannot do, beyond what [accept] allows: the judge's own checks of the motion.
+void find_motion_faults(const sim::Job& job, sim::MeasuredPath moved, Checked& checked) {
+  for (const motion::MotionFinding& fault : moved.motion.findings) {
+    const Diagnostic told{fault.code, fault.severity, fault.where, fault.text, ""};
+    if (fault.severity != Severity::kError) checked.told.push_back(told);
+  }
+  sim::Result result;
+  result.main = std::move(moved);
+  for (const sim::Check& check : sim::judge_motion(job, result)) {
+    checked.numbers[check.name] = sim::outcome_name(check.outcome);
+    if (check.outcome != sim::Outcome::kFails) continue;
+    const size_t before = checked.findings.size();
+    for (const motion::MotionFinding& fault : result.main.motion.findings) {
+      if (fault.severity == Severity::kError && sim::check_of(fault) == check.name)
+        checked.findings.push_back({fault.code, fault.severity, fault.where, fault.text, ""});
+    }
+    if (checked.findings.size() == before)
+      checked.findings.push_back({check.name, Severity::kError, {job.scene.file}, check.what, ""});
+  }
+}
+
+/// Plans the path and moves the axes along it; cuts nothing.
 Checked check_scene(const std::string& file) {
   const sim::Job job = sim::load_job(file, {});
-  Diagnostics diagnostics;
-  const toolpath::ToolPath path = sim::job_path(job, diagnostics);
+  Progress silent;
+  sim::MeasuredPath moved = sim::move_tool(job, silent);
+  const toolpath::ToolPath& path = moved.path;
   std::vector<Diagnostic> told = job.warnings;
-  told.insert(told.end(), diagnostics.list().begin(), diagnostics.list().end());
+  told.insert(told.end(), moved.warnings.begin(), moved.warnings.end());
   const nlohmann::ordered_json numbers{{"elements", path.elements.size()},
                                        {"passes", path.passes},
                                        {"feed_mm", path.pass_length_mm},
-                                       {"link_mm", path.link_length_mm}};
-  if (job.scene.has_blocks()) {
-    return {"scene",
-            fmt::format("scene is right: {} blocks, {:.0f} mm of feed moves, {:.0f} mm of rapids",
-                        path.elements.size(), path.pass_length_mm, path.link_length_mm),
-            numbers, told};
-  }
-  return {"scene",
-          fmt::format("scene is right: {} passes, {:.0f} mm in contact", path.passes, path.pass_length_mm),
-          numbers, told};
+                                       {"link_mm", path.link_length_mm},
+                                       {"time_s", moved.motion.statistics.time_s}};
+  const std::string what =
+      job.scene.has_blocks()
+          ? fmt::format("{} blocks, {:.0f} mm of feed moves, {:.0f} mm of rapids", path.elements.size(),
+                        path.pass_length_mm, path.link_length_mm)
+          : fmt::format("{} passes, {:.0f} mm in contact", path.passes, path.pass_length_mm);
+  Checked checked{"scene", "", numbers, told};
+  find_motion_faults(job, std::move(moved), checked);
+  checked.text = checked.findings.empty()
+                     ? "scene is right: " + what + "; within travel, reach and speed of the axes"
+                     : "scene reads well: " + what + "; the machine cannot do it";
+  return checked;
 }
 
 /// A machine file that reads well is still wrong when its inverse does not lead back.
@@ -111,10 +138,10 @@ Checked check_file(const std::string& file, const CheckOptions& options) {
   return is_scene(file) ? check_scene(file) : check_machine(file, options.poses);
 }
 
-/// One object for each file; a wrong one has no kind, and its errors among the diagnostics.
+/// One object for each file; one that cannot be read has no kind, and its errors among the diagnostics.
 nlohmann::ordered_json object_of(const std::string& file, const std::optional<Checked>& checked,
                                  const std::vector<Diagnostic>& told) {
-  nlohmann::ordered_json object{{"file", file}, {"right", checked.has_value()}};
+  nlohmann::ordered_json object{{"file", file}, {"right", checked && checked->findings.empty()}};
   object["kind"] = checked ? nlohmann::ordered_json(checked->kind) : nlohmann::ordered_json();
   object["diagnostics"] = nlohmann::ordered_json::array();
   for (const Diagnostic& one : told) {
@@ -138,7 +165,9 @@ int check(const CheckOptions& options) {
     std::vector<Diagnostic> told;
     try {
       checked = check_file(file, options);
-      told = checked->told;
+      told = checked->findings;
+      told.insert(told.end(), checked->told.begin(), checked->told.end());
+      if (!checked->findings.empty() && exit_code == kPass) exit_code = kFindings;
     } catch (const InputError& error) {
       told = error.diagnostics.list();
       exit_code = kBadInput;
@@ -175,7 +204,10 @@ Examples:
   swarf check scene.toml machine.toml path.cls             scenes, machines and CL data
   swarf check --json *.nc --dialect fanuc                  for a pipeline: every file's numbers and diagnostics
 
-Exit codes: 0 all are right; 2 at least one is wrong.)";
+A scene's path is planned and its axes are moved along it: moves out of travel or reach, or faster than an axis,
+are findings. An NC program alone is held to the travel of --machine; how fast its axes go takes a scene.
+
+Exit codes: 0 all are right; 1 at least one asks for what its machine cannot do; 2 at least one is wrong.)";
 
 }  // namespace
 
@@ -183,8 +215,8 @@ void add_check(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<CheckOptions>();
   CLI::App* command =
       app.add_subcommand("check",
-                         "Parse and validate scenes and machines (.toml), programs (.nc, .ngc, "
-                         ".mpf, .h) and CL data (.cls, .clt, .ncl, .apt, .cldata); run nothing");
+                         "Validate scenes and machines (.toml), programs (.nc, .ngc, .mpf, .h) and CL data "
+                         "(.cls, .clt, .ncl, .apt, .cldata); move the axes of scenes, cut nothing");
   command->add_option("files", options->files, "files to check")->required();
   command->add_option("--machine", options->nc.machine, "machine.toml that NC programs are read for");
   command->add_option("--dialect", options->nc.dialect,

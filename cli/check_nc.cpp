@@ -263,7 +263,7 @@ Checked check_nc(const std::string& file, const NcCheckOptions& options) {
       program::run_nc(file, chosen(file, options.dialect), setup, totals, diagnostics);
   diagnostics.throw_if_errors();
   std::string text = fmt::format(
-      "NC program is right\n"
+      "NC program {}\n"
       "  dialect   {} ({})\n"
       "  read      {}, {} with words, {}\n"
       "  moves     {} ({}), {}\n"
@@ -272,6 +272,7 @@ Checked check_nc(const std::string& file, const NcCheckOptions& options) {
       "  tools     {}\n"
       "  machine   {}\n"
       "  start     {}",
+      totals.out_of_travel.empty() ? "is right" : "reads well, the machine cannot do it",
       program::dialect_name(summary.dialect), summary.dialect_reason, counted(summary.lines, "line"),
       counted(summary.blocks, "block"), counted(static_cast<long>(summary.files.size()), "file"),
       counted(totals.feeds, "feed move"), counted(totals.arcs, "arc"), counted(totals.rapids, "rapid"),
@@ -283,7 +284,14 @@ Checked check_nc(const std::string& file, const NcCheckOptions& options) {
     text += "\n  no effect on the geometry:";
     for (const std::string& word : summary.functions) text += " " + word + ";";
   }
-  return {"nc", text, numbers_of(setup, summary, totals), diagnostics.list()};
+  Checked checked{"nc", text, numbers_of(setup, summary, totals), diagnostics.list()};
+  if (!totals.out_of_travel.empty())
+    checked.findings.push_back({"travel",
+                                Severity::kError,
+                                {file, totals.out_of_travel_line, 0},
+                                totals.out_of_travel,
+                                "clamp the work elsewhere, or move less far"});
+  return checked;
 }
 
 }  // namespace swarf::cli

@@ -45,7 +45,7 @@ int export_run(const ExportOptions& options) {
   }
   if (!options.ply.empty()) {
     TriMesh coloured = reports::part_mesh(run);
-    render::colour_by_deviation(coloured, reports::deviation_scale_um(stored.job));
+    render::colour_by_deviation(coloured, reports::deviation_scale(stored.job));
     mesh::save_mesh(options.ply, coloured);
     fmt::print("{}: {} triangles with deviation in um, mm\n", options.ply, coloured.triangles.size());
   }

@@ -64,6 +64,7 @@ void NcTotals::check_travel(const program::NcMove& move) {
     if (q >= axis.min - 1e-9 && q <= axis.max + 1e-9) continue;
     const bool linear = axis.kind == kinematics::AxisKind::kLinear;
     const auto shown = [&](double x) { return linear ? x : deg_from_rad(x); };
+    out_of_travel_line = move.line;
     out_of_travel =
         fmt::format("{} goes to {:.3f} {} in line {} first; its travel is {:.3f} to {:.3f}", axis.name,
                     shown(q), linear ? "mm" : "deg", move.line, shown(axis.min), shown(axis.max));

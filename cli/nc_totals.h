@@ -25,6 +25,7 @@ class NcTotals final : public program::NcSink {
   kinematics::AxisValues low = kinematics::AxisValues::Zero(), high = kinematics::AxisValues::Zero();
   Eigen::AlignedBox3d cut_W;  ///< of the tip in feed moves, arcs with their bulge; empty without one
   std::string out_of_travel;  ///< the first axis that leaves its travel, and the line; "": none
+  int out_of_travel_line = 0;
 
  private:
   void add_arc(const program::NcMove& move);

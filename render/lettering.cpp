@@ -119,6 +119,15 @@ void draw_ticks(const Canvas& canvas, const ColourBar& bar, const BarLayout& at)
   }
 }
 
+void draw_apart(const Canvas& canvas, const ColourBar& bar, const BarLayout& at) {
+  const double text_px = canvas.text_px();
+  const Rgb& c = bar.apart_colour;
+  cairo_set_source_rgb(canvas.cr(), srgb(c[0]), srgb(c[1]), srgb(c[2]));
+  cairo_rectangle(canvas.cr(), at.x, at.y, at.width, at.height);
+  cairo_fill(canvas.cr());
+  canvas.text(at.x + at.width + 0.6 * text_px, at.y + 0.5 * at.height + 0.35 * text_px, bar.apart);
+}
+
 }  // namespace
 
 void draw_caption(Image& image, const std::vector<std::string>& lines, Corner corner) {
@@ -149,14 +158,20 @@ void draw_colour_bar(Image& image, const ColourBar& bar) {
   const double text_px = canvas.text_px(), pad = 0.8 * text_px, bar_width = 1.1 * text_px;
   double text_width = 0.0;
   for (const ColourTick& tick : bar.ticks) text_width = std::max(text_width, canvas.text_width(tick.label));
+  const double below = bar.apart.empty() ? 0.0 : 1.8 * text_px;
+  text_width = std::max(text_width, canvas.text_width(bar.apart));
   const double inner = std::max(bar_width + 0.6 * text_px + text_width, canvas.text_width(bar.title));
   const double height = 0.56 * image.height, top = 0.22 * image.height;
   const double x = std::floor(image.width - 2.0 * pad - inner);
-  canvas.plate(x - pad, top - 2.0 * text_px - pad, inner + 2.0 * pad, height + 2.6 * text_px + 2.0 * pad);
+  canvas.plate(x - pad, top - 2.0 * text_px - pad, inner + 2.0 * pad,
+               height + below + 2.6 * text_px + 2.0 * pad);
   canvas.text(x, top - text_px, bar.title);
   const BarLayout at{x, std::floor(top), bar_width, std::floor(height)};
   draw_ramp(canvas, bar, at);
   draw_ticks(canvas, bar, at);
+  if (!bar.apart.empty())
+    draw_apart(canvas, bar,
+               {x, std::floor(at.y + at.height + 0.8 * text_px), bar_width, std::floor(text_px)});
   canvas.finish();
 }
 

@@ -26,6 +26,8 @@ struct ColourBar {
   std::function<Rgb(double value)> colour;  ///< linear RGB of a value in [low, high]
   std::vector<ColourTick> ticks;            ///< values in [low, high]
   std::string title;                        ///< above the bar, with the unit: "deviation, um"
+  std::string apart;                   ///< below the bar, beside a patch of its own: "not measured"; "": none
+  Rgb apart_colour{0.0F, 0.0F, 0.0F};  ///< linear RGB of that patch
 };
 
 void draw_colour_bar(Image& image, const ColourBar& bar);

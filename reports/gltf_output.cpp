@@ -70,7 +70,7 @@ double animation_scale(const FinishedRun& run) {
 
 void write_part_glb(const FinishedRun& run, const DisplayMesh& part, const std::string& path) {
   auto [measured, rest] = split_by_measure(part.mesh);
-  const double scale = deviation_scale_um(run.job);
+  const render::DeviationScale scale = deviation_scale(run.job);
   render::colour_by_deviation(measured, scale);
   render::GltfScene scene;
   if (!measured.triangles.empty()) {
@@ -79,7 +79,8 @@ void write_part_glb(const FinishedRun& run, const DisplayMesh& part, const std::
   if (!rest.triangles.empty()) scene.nodes.push_back({"part", &rest, kStockMaterial, -1, {}, {}, {}});
   scene.lines = fan_lines(run);
   scene.extras = {{"scene", run.job.scene.name},
-                  {"deviation_scale_um", fmt::format("{:g}", scale)},
+                  {"deviation_scale_below_um", fmt::format("{:g}", scale.below_um)},
+                  {"deviation_scale_above_um", fmt::format("{:g}", scale.above_um)},
                   {"decimation_error_um", fmt::format("{:.4f}", um_from_mm(part.error_mm))}};
   render::write_glb(path, scene);
 }

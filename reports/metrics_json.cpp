@@ -87,6 +87,7 @@ Json stock_json(const sim::Job& job, const sim::Result& result) {
           {"sweep_error_bound_um", um_from_mm(result.sweep_bound_mm)},
           {"volume_removed_mm3", result.volume_removed_mm3},
           {"volume_left_mm3", result.volume_left_mm3},
+          {"volume_error_bound_mm3", result.volume_error_bound_mm3},
           {"hash", fmt::format("{:016x}", result.stock->hash())}};
 }
 

@@ -151,19 +151,30 @@ std::string colour_bar(const ColourBar& bar) {
   if (bar.stops.empty()) return "";
   std::string gradient;
   for (const auto& [r, g, b] : bar.stops) gradient += fmt::format(",rgb({} {} {})", r, g, b);
-  const Ticks ticks = round_ticks(bar.low, bar.high, 4);
+  std::vector<std::pair<double, std::string>> ticks = bar.ticks;
+  if (ticks.empty()) {
+    const Ticks round = round_ticks(bar.low, bar.high, 4);
+    for (const double tick : round.values) ticks.emplace_back(tick, tick_text(tick, round.step));
+  }
   std::string out = fmt::format(
       R"(<figure class="colour-bar" data-tab="part"><figcaption>{} <span class="unit">{}</span></figcaption>)"
       R"html(<div class="ramp" style="background:linear-gradient(90deg{})"></div>)html"
       R"html(<div class="ramp-ticks">)html",
       escape(bar.title), escape(bar.unit), gradient);
-  for (const double tick : ticks.values) {
+  for (const auto& [tick, label] : ticks) {
     const double percent = 100.0 * (tick - bar.low) / (bar.high - bar.low);
     constexpr double kSlackPercent = 1e-6;  // rounding of k * step only
     if (percent < -kSlackPercent || percent > 100.0 + kSlackPercent) continue;
-    out += fmt::format(R"(<span style="left:{:.2f}%">{}</span>)", percent, tick_text(tick, ticks.step));
+    out += fmt::format(R"(<span style="left:{:.2f}%">{}</span>)", percent, escape(label));
   }
-  return out + "</div></figure>";
+  out += "</div>";
+  if (!bar.apart.empty()) {
+    const auto& [r, g, b] = bar.apart_colour;
+    out += fmt::format(
+        R"html(<p class="apart"><span class="patch" style="background:rgb({} {} {})"></span>{}</p>)html", r,
+        g, b, escape(bar.apart));
+  }
+  return out + "</figure>";
 }
 
 std::string embedded_glb(const char* id, const std::string& path) {

@@ -1,5 +1,6 @@
 #include "reports/part_view.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -7,6 +8,7 @@
 #include "base/units.h"
 #include "measure/design_projection.h"
 #include "measure/mesh_deviation.h"
+#include "measure/seen_surface.h"
 #include "mesh/mesh_ops.h"
 #include "render/figures/axis_fan.h"
 
@@ -15,8 +17,7 @@ namespace {
 
 /// Vertices of the level set's mesh lie within half a voxel of the true surface, cusps included.
 constexpr double kReachVoxels = 0.6;
-/// A vertex belongs to the machined face only if its own normal agrees with the design's: not a side wall
-/// near it.
+/// A facet that the bottom of a flat end has left turns no farther from the design.
 constexpr double kFaceCosine = 0.8;
 
 Vec3 as_vec3(const std::array<float, 3>& a) {
@@ -24,28 +25,41 @@ Vec3 as_vec3(const std::array<float, 3>& a) {
 }
 
 void take_measures(const FinishedRun& run, const stock::SurfaceDexels& dexels, TriMesh& mesh) {
-  const measure::DesignProjection projection(dexels, kReachVoxels * run.stock.voxel_mm());
+  const measure::SeenSurface seen(dexels, kReachVoxels * run.stock.voxel_mm());
   parallel_chunks(mesh.positions.size(), 4096, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
-      const auto foot = projection.project(as_vec3(mesh.positions[i]));
-      if (!foot || as_vec3(mesh.normals[i]).dot(foot->normal) < kFaceCosine) continue;
-      mesh.deviation_um[i] = static_cast<float>(um_from_mm(measure::height_at(dexels, foot->u, foot->v)));
-      const uint32_t block = measure::block_at(dexels, foot->u, foot->v);
+      const auto here = seen.at(as_vec3(mesh.positions[i]), as_vec3(mesh.normals[i]));
+      if (!here) continue;
+      const auto deviation = static_cast<float>(um_from_mm(here->deviation_mm));
+      // Where two surfaces of the design see one point, the worse of both.
+      if (!(std::abs(deviation) < std::abs(mesh.deviation_um[i]))) mesh.deviation_um[i] = deviation;
+      const measure::Foot& foot = here->foot;
+      const uint32_t block = measure::block_at(dexels, foot.u, foot.v);
       // The blocks of CL and NC jobs are sweeps, not cycles, and mostly cut with the flank.
-      if (block == stock::kUncut || run.job.scene.has_blocks()) continue;
+      if (!here->on_face || block == stock::kUncut || run.job.scene.has_blocks()) continue;
       // The bottom of a flat end left this facet, so the tool's axis is its exact normal.
       const Vec3& axis = run.trajectory.samples[block].pose.axis_W;
-      if (axis.dot(foot->normal) < kFaceCosine) continue;
+      if (axis.dot(foot.normal) < kFaceCosine) continue;
       mesh.normals[i] = {static_cast<float>(axis.x()), static_cast<float>(axis.y()),
                          static_cast<float>(axis.z())};
     }
   });
 }
 
+/// The farthest that any ray's material ends from the design, mm.
+double greatest_height(const FinishedRun& run) {
+  double greatest = 0.0;
+  for (const stock::SurfaceDexels& dexels : run.dexels) {
+    for (const double height : dexels.heights_mm()) greatest = std::max(greatest, std::abs(height));
+  }
+  return greatest;
+}
+
 void take_measures(const FinishedRun& run, TriMesh& mesh) {
   mesh.deviation_um.assign(mesh.positions.size(), std::numeric_limits<float>::quiet_NaN());
   if (run.job.design_mesh) {
-    measure::deviation_from_mesh(mesh, *run.job.design_mesh, kReachVoxels * run.stock.voxel_mm());
+    const double reach = greatest_height(run) + kReachVoxels * run.stock.voxel_mm();
+    measure::deviation_from_mesh(mesh, *run.job.design_mesh, reach);
     return;
   }
   for (const stock::SurfaceDexels& dexels : run.dexels) take_measures(run, dexels, mesh);
@@ -65,10 +79,10 @@ TriMesh shown_part(const FinishedRun& run, TriMesh closed) {
   return closed;
 }
 
-double deviation_scale_um(const sim::Job& job) {
-  double allowed = job.scene.accept.scallop_band_um();
-  const double digit = std::pow(10.0, std::floor(std::log10(allowed)));
-  return std::ceil(allowed / digit - 0.2) * digit;
+render::DeviationScale deviation_scale(const sim::Job& job) {
+  const sim::AcceptLimits& accept = job.scene.accept;
+  const double above = std::max(accept.scallop_max_um.value_or(0.0), accept.excess_max_um.value_or(0.0));
+  return {accept.gouge_band_um(), above > 0.0 ? above : accept.scallop_band_um()};
 }
 
 std::vector<render::DrawLine> fan_lines(const FinishedRun& run) {

@@ -7,6 +7,7 @@
 
 #include "base/progress.h"
 #include "render/draw_list.h"
+#include "render/figures/colour.h"
 #include "render/ray/still.h"
 #include "reports/machine_view.h"
 #include "reports/metrics_json.h"
@@ -33,12 +34,12 @@ StillKind still_kind(const std::string& name);  ///< "machine", "part", "deviati
 void make_still(const FinishedRun& run, const TriMesh& part, StillKind kind, const std::string& camera,
                 const std::string& path);
 
-/// The colour bar of deviation pictures and the 3D view, from -scale to +scale.
-ColourBar deviation_colour_bar(double scale_um);
+/// The colour bar of the 3D view; its ends are those of the scale.
+ColourBar deviation_colour_bar(const render::DeviationScale& scale);
 
 /// A mesh whose colours show deviation, with its colour bar.
-render::Image deviation_picture(const TriMesh& coloured, double scale_um, const std::string& camera,
-                                render::StillOptions options);
+render::Image deviation_picture(const TriMesh& coloured, const render::DeviationScale& scale,
+                                const std::string& camera, render::StillOptions options);
 
 /// The part for the eye, made light enough to be sent around.
 struct DisplayMesh {

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/diagnostics.h"
@@ -138,7 +139,10 @@ struct ColourBar {
   std::string title{};  ///< "Deviation from the design"
   std::string unit{};
   double low = 0.0, high = 0.0;
-  std::vector<std::array<uint8_t, 3>> stops;  ///< sRGB; empty: no legend
+  std::vector<std::array<uint8_t, 3>> stops;            ///< sRGB; empty: no legend
+  std::vector<std::pair<double, std::string>> ticks{};  ///< value and label; empty: round values
+  std::string apart{};                                  ///< a colour beside the bar: "not measured"
+  std::array<uint8_t, 3> apart_colour{};                ///< sRGB
 };
 
 /// The 3D view: glTF in metres with Y up; line objects can be switched on and off by their node's name.

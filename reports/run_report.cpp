@@ -364,7 +364,7 @@ ReportData report_data(const sim::Job& job, const sim::Result& result, const Run
     data.stills.assign(files.stills.begin() + 1, files.stills.end());
   }
   data.viewer = {files.part_glb, files.machine_glb,
-                 job.has_design() ? deviation_colour_bar(deviation_scale_um(job)) : ColourBar(),
+                 job.has_design() ? deviation_colour_bar(deviation_scale(job)) : ColourBar(),
                  files.animation_scale};
   data.movie_mp4 = files.movie;
   data.movie_caption =
@@ -423,8 +423,9 @@ std::vector<std::pair<std::string, std::string>> summary_lines(const sim::Job& j
   const Lines surface = surface_lines(job, result);
   lines.insert(lines.end(), surface.begin(), surface.end());
   const stock::CutStatistics& cut = result.stock->statistics();
-  lines.emplace_back("removed", fmt::format("{:.1f} mm3, {:.1f} mm3 left", result.volume_removed_mm3,
-                                            result.volume_left_mm3));
+  lines.emplace_back("removed", fmt::format("{:.1f} mm3, {:.1f} mm3 left, proven within {:.1f} mm3",
+                                            result.volume_removed_mm3, result.volume_left_mm3,
+                                            result.volume_error_bound_mm3));
   lines.emplace_back(
       "cutting",
       fmt::format("{} blocks in {:.2f} s = {:.0f} blocks/s, {:g} mm voxels", cut.sweeps, cut.seconds,

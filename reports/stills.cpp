@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <limits>
 
 #include "base/config.h"
 #include "base/units.h"
@@ -44,15 +46,23 @@ render::StillOptions still_options(const sim::Job& job) {
   return options;
 }
 
+constexpr std::array<double, 5> kTickPlaces{-1.0, -0.5, 0.0, 0.5, 1.0};
+constexpr const char* kNotMeasured = "not measured";
+
+std::string tick_label(const render::DeviationScale& scale, double place) {
+  return place == 0.0 ? "0" : fmt::format("{:+.3g}", scale.at(place));
+}
+
 /// The colour bar as it is drawn on a picture.
-render::ColourBar lettered_bar(double scale_um) {
+render::ColourBar lettered_bar(const render::DeviationScale& scale) {
   render::ColourBar bar;
-  bar.low = -scale_um;
-  bar.high = scale_um;
-  bar.colour = [scale_um](double um) { return render::deviation_colour(um, scale_um); };
+  bar.low = -1.0;
+  bar.high = 1.0;
+  bar.colour = [scale](double place) { return render::deviation_colour(scale.at(place), scale); };
   bar.title = "deviation, µm";
-  for (int i = -2; i <= 2; ++i)
-    bar.ticks.push_back({0.5 * i * scale_um, fmt::format("{:+g}", 0.5 * i * scale_um)});
+  for (const double place : kTickPlaces) bar.ticks.push_back({place, tick_label(scale, place)});
+  bar.apart = kNotMeasured;
+  bar.apart_colour = render::deviation_colour(std::numeric_limits<double>::quiet_NaN(), scale);
   return bar;
 }
 
@@ -125,25 +135,29 @@ StillKind still_kind(const std::string& name) {
                    "one of machine, part, deviation, fan");
 }
 
-ColourBar deviation_colour_bar(double scale_um) {
-  ColourBar bar{"Deviation from the design", "µm", -scale_um, scale_um, {}};
+ColourBar deviation_colour_bar(const render::DeviationScale& scale) {
+  ColourBar bar{"Deviation from the design; the scale ends at the scene's limits", "µm", -1.0, 1.0, {}};
   for (int i = 0; i < kColourStops; ++i) {
-    const double um = -scale_um + 2.0 * scale_um * i / (kColourStops - 1);
-    const auto rgba = render::srgb8_from_linear(render::deviation_colour(um, scale_um));
+    const double um = scale.at(2.0 * i / (kColourStops - 1) - 1.0);
+    const auto rgba = render::srgb8_from_linear(render::deviation_colour(um, scale));
     bar.stops.push_back({rgba[0], rgba[1], rgba[2]});
   }
+  for (const double place : kTickPlaces) bar.ticks.emplace_back(place, tick_label(scale, place));
+  const auto rest = render::srgb8_from_linear(kStockMaterial.colour);
+  bar.apart = kNotMeasured;
+  bar.apart_colour = {rest[0], rest[1], rest[2]};
   return bar;
 }
 
-render::Image deviation_picture(const TriMesh& coloured, double scale_um, const std::string& camera,
-                                render::StillOptions options) {
+render::Image deviation_picture(const TriMesh& coloured, const render::DeviationScale& scale,
+                                const std::string& camera, render::StillOptions options) {
   render::DrawList list;
   const double ratio = static_cast<double>(options.width) / options.height;
   list.camera = render::look_at_box(mesh::bounds(coloured), -camera_direction(camera), kFieldOfView, ratio);
   list.items.push_back({&coloured, Pose::Identity(), {{1.0F, 1.0F, 1.0F}, 0.0F, 0.7F}});
   options.strip_strength = 0.0;  // reflections would tint the colours
   render::Image image = render::render_still(list, options);
-  render::draw_colour_bar(image, lettered_bar(scale_um));
+  render::draw_colour_bar(image, lettered_bar(scale));
   return image;
 }
 
@@ -152,7 +166,7 @@ void make_still(const FinishedRun& run, const TriMesh& part, StillKind kind, con
   render::StillOptions options = still_options(run.job);
   if (kind == StillKind::kDeviation) {
     TriMesh coloured = part;
-    const double scale = deviation_scale_um(run.job);
+    const render::DeviationScale scale = deviation_scale(run.job);
     render::colour_by_deviation(coloured, scale);
     render::save_png(deviation_picture(coloured, scale, camera, options), path);
     return;

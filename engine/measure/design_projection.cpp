@@ -81,12 +81,11 @@ int64_t DesignProjection::nearest_ray(const Vec3& point) const {
   return nearest;
 }
 
-std::optional<Foot> DesignProjection::project(const Vec3& point) const {
-  const int64_t ray = nearest_ray(point);
-  if (ray < 0) return {};
-  double u = dexels_.u(static_cast<int>(ray % dexels_.nu()));
-  double v = dexels_.v(static_cast<int>(ray / dexels_.nu()));
-  surface::Derivatives d = dexels_.surface().derivatives(u, v);
+std::optional<Foot> foot_near(const stock::SurfaceDexels& dexels, uint32_t ray, const Vec3& point) {
+  const int at = static_cast<int>(ray);
+  double u = dexels.u(at % dexels.nu());
+  double v = dexels.v(at / dexels.nu());
+  surface::Derivatives d = dexels.surface().derivatives(u, v);
   for (int step = 0; step < kNewtonSteps; ++step) {
     // Gradient and Hessian of |S - point|^2 / 2.
     const Vec3 r = d.S - point;
@@ -99,13 +98,20 @@ std::optional<Foot> DesignProjection::project(const Vec3& point) const {
     if (det <= 0.0) return {};  // beyond the centre of curvature: no unique foot
     u -= (hvv * gu - huv * gv) / det;
     v -= (huu * gv - huv * gu) / det;
-    d = dexels_.surface().derivatives(u, v);
+    d = dexels.surface().derivatives(u, v);
   }
   if (u < -kEdgeSlack || u > 1.0 + kEdgeSlack || v < -kEdgeSlack || v > 1.0 + kEdgeSlack) return {};
-  Foot foot{u, v, 0.0, surface::outward_normal(dexels_.surface(), d), 0.0};
+  Foot foot{u, v, 0.0, surface::outward_normal(dexels.surface(), d), 0.0};
   foot.height_mm = (point - d.S).dot(foot.normal);
   foot.to_edge_mm = std::min(std::min(u, 1.0 - u) * d.Su.norm(), std::min(v, 1.0 - v) * d.Sv.norm());
-  if (std::abs(foot.height_mm) > reach_mm_) return {};
+  return foot;
+}
+
+std::optional<Foot> DesignProjection::project(const Vec3& point) const {
+  const int64_t ray = nearest_ray(point);
+  if (ray < 0) return {};
+  const std::optional<Foot> foot = foot_near(dexels_, static_cast<uint32_t>(ray), point);
+  if (!foot || std::abs(foot->height_mm) > reach_mm_) return {};
   return foot;
 }
 

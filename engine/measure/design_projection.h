@@ -19,6 +19,10 @@ struct Foot {
   double to_edge_mm = 0.0;  ///< along the surface to the nearest edge of the patch, to first order
 };
 
+/// The foot that Newton steps find from a ray near it, inside the unit square; nothing beyond the patch's
+/// edge or the centre of curvature. However far the point lies from the design.
+std::optional<Foot> foot_near(const stock::SurfaceDexels& dexels, uint32_t ray, const Vec3& point);
+
 /// Finds feet by the nearest measuring ray (hashed cells of the grid) and Newton steps on the surface.
 class DesignProjection {
  public:

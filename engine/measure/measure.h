@@ -40,11 +40,18 @@ std::vector<HistogramBin> height_histogram(const stock::SurfaceDexels& dexels, d
                                            int bins);
 
 /// The level set's distance at the material's surface as the rays see it: zero but for
-///   sweep_bound                 the level set was cut by merged sweeps
-///   sqrt(3)/2 voxel slope       trilinear values cut a cusp of that slope low (toolchain 3.6, along a
-///   diagonal) 3/8 voxel^2 curvature       chord of a curved surface the rounding of floats
-/// Each sample is held to its own bound; bound_um is the greatest of them. Parametric designs only.
-CrossCheck cross_check(const stock::Stock& stock, const stock::SurfaceDexels& dexels, double sweep_bound_mm);
+///   sweep_bound                  what cut the level set and what cut the rays lie so far from one motion
+///   sqrt(3)/2 voxel slope        trilinear values cut a cusp of that slope low (toolchain 3.6)
+///   3/8 voxel^2 curvature        chord of a curved surface
+///   the rounding of floats
+/// Slopes and curvature are taken between rays. A sample beyond them is looked at again: the level set there
+/// must be, within sweep bound and rounding, what the sweeps themselves make of its grid points; its bound
+/// then is the exact level set's own distance. Each sample is held to its own bound; bound_um is the greatest
+/// of them, or that of the sample that fails worst. `sweeps` cut the rays, by Sweep::block; parametric
+/// designs only.
+CrossCheck cross_check(const stock::Stock& stock, const stock::SurfaceDexels& dexels,
+                       std::span<const stock::Sweep> sweeps, const SweepCutters& cutters,
+                       double sweep_bound_mm);
 
 /// Several surfaces as one: it holds when all hold. Figures are of the worst, a failing one first whatever
 /// the others show; counts are of all. None: nothing was compared.

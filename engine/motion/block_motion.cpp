@@ -11,6 +11,7 @@
 #include "kinematics/joint_path.h"
 #include "kinematics/reach.h"
 #include "motion/free_move.h"
+#include "motion/pole_turn.h"
 
 namespace swarf::motion {
 namespace {
@@ -174,7 +175,7 @@ std::vector<BlockMotion> block_motions(const toolpath::ToolPath& path,
       }
     };
     if (tool_is_new) solve(block.from);
-    const AxisValues from = q;
+    const AxisValues from = q = leaving_pole(inverse, block, q);
     solve(block.to);
     motions.push_back({&block, &machine, from, q});
   }

@@ -37,7 +37,8 @@ struct BlockMotion {
 };
 
 /// The motions of a path's blocks, in its order (it must hold nothing else). Axis values follow by
-/// continuity: the branch nearest to the values before, the first nearest to home. Throws InputError
+/// continuity: the branch nearest to the values before, the first nearest to home; but a block that leaves
+/// the pole starts with the outer axis where it then needs it (pole_turn.h). Throws InputError
 /// "unreachable" for a position under the joint law that the machine has no axis values for.
 /// `by_tool`: the machine with each tool in its spindle (BlockMove::tool), or one for whatever tool.
 std::vector<BlockMotion> block_motions(const toolpath::ToolPath& path,

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "motion/pole_turn.h"
+
 namespace swarf::motion {
 namespace {
 
@@ -19,7 +21,9 @@ bool stops_between(const BlockMove& before, const BlockMove& after) {
 
 size_t run_end(std::span<const BlockMotion> motions, size_t first) {
   size_t end = first + 1;
-  while (end < motions.size() && !stops_between(*motions[end - 1].block, *motions[end].block)) ++end;
+  while (end < motions.size() && !stops_between(*motions[end - 1].block, *motions[end].block) &&
+         !turns_at_rest(motions[end - 1], motions[end]))
+    ++end;
   return end;
 }
 

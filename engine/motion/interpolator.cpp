@@ -9,12 +9,14 @@
 #include "base/check.h"
 #include "base/units.h"
 #include "kinematics/reach.h"
+#include "kinematics/rotary_pair.h"
 #include "motion/block_interpolator.h"
 #include "motion/block_run.h"
 #include "motion/block_turns.h"
 #include "motion/free_move.h"
 #include "motion/motion_statistics.h"
 #include "motion/pass_geometry.h"
+#include "motion/pole_turn.h"
 #include "motion/surface_interpolator.h"
 
 namespace swarf::motion {
@@ -71,7 +73,10 @@ class Recorder {
     const bool starts = result_.trajectory.samples.empty() || !joins_;
     start_at(block.from, kind, {block.from.tip_W});
     if (starts && block.axes) result_.trajectory.axes.back() = q_ = block.axes->from;
+    if (starts && !block.axes && inverse().pole_distance(block.from.axis_W) < kinematics::kPoleTolerance)
+      result_.trajectory.axes.back() = q_ = motions[first].q_from;
     stand(block, kind);
+    if (!starts && turns_at_rest(motions[first - 1], motions[first])) turn_at_pole(motions[first], kind);
     const PlannedRun run = plan_run(motions, first, end, inverse(), options_);
     add_cycles(run.duration_s, "moves");
     RunSampler sampler(run, options_.period_s);
@@ -161,6 +166,20 @@ class Recorder {
       sample.contact_W = block.from.tip_W;
       sample.kind = kind;
       record(sample, {q_, InverseOutcome::kOk});
+    }
+  }
+
+  /// The tool stands while the rotary axes turn to where the block needs them.
+  void turn_at_pole(const BlockMotion& motion, SampleKind kind) {
+    const PoleTurn turn(inverse(), *motion.machine, motion.block->from, q_, motion.q_from);
+    add_cycles(turn.duration_s(), "turns at the pole");
+    const double ticks = std::ceil(turn.duration_s() / options_.period_s * (1.0 - 1e-12));
+    for (double k = 1.0; k <= ticks; ++k) {
+      ToolSample sample;
+      sample.pose = motion.block->from;
+      sample.contact_W = sample.pose.tip_W;
+      sample.kind = kind;
+      record(sample, {turn.at(k * options_.period_s), InverseOutcome::kOk});
     }
   }
 

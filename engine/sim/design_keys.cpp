@@ -84,9 +84,12 @@ surface::SurfacePtr read_sphere(ConfigTable& table) {
   const surface::Turn turn = read_turn(table, "centre_mm");
   const surface::MaterialSide side = read_side(table);
   const double radius = table.number("radius_mm", kAboveZero);
-  // Poles have no parameters, so the rays keep a little away from them.
-  const auto polar = read_interval(table, "polar_deg", 0.1, 179.9);
+  auto polar = read_interval(table, "polar_deg", 0.0, 180.0);
   if (radius <= 0.0) return nullptr;
+  // At a pole itself a normal cannot be taken from the parameters. Its nearest line of rays stands this far
+  // from it: on a sphere of a metre that leaves out a cap of 2 um.
+  constexpr double kNearestPole = 1e-4;  // deg
+  for (double& angle : polar) angle = std::clamp(angle, kNearestPole, 180.0 - kNearestPole);
   return surface::sphere_surface(turn, radius, rad_from_deg(polar[0]), rad_from_deg(polar[1]), side);
 }
 

@@ -154,7 +154,7 @@ void motion_faults(const Result& result, Collector& collect) {
       collect.warn(fault);
       continue;
     }
-    collect.begin(fault.code == "axis-speed" ? "axis_speed" : "travel");
+    collect.begin(check_of(fault));
     collect.add(fault.code, fault.text, "", fault.where, fault.t_s);
   }
 }

@@ -169,7 +169,7 @@ stock::MergedSweeps merged_sweeps(const motion::Trajectory& trajectory, const Sc
     breaks.push_back(changed ? 1 : 0);
   }
   double lever = 0.0;
-  for (const cutter::Cutter& tool : scene.tools) lever = std::max(lever, tool.flute_length_mm);
+  for (const cutter::Cutter& tool : scene.tools) lever = std::max(lever, lever_of(tool));
   return stock::merge_sweeps(poses, breaks, lever, scene.stock.sweep_tolerance_mm);
 }
 

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string_view>
+#include <utility>
 #include <variant>
 
 #include "base/units.h"
@@ -155,26 +157,11 @@ void add_tool_checks(const Job& job, const Result& result, std::vector<Check>& c
   checks.push_back(spindle_check(job, result));
 }
 
-size_t count_faults(const Result& result, bool speed) {
+size_t count_faults(const Result& result, std::string_view check) {
   const std::vector<motion::MotionFinding>& all = result.main.motion.findings;
   return static_cast<size_t>(std::count_if(all.begin(), all.end(), [&](const motion::MotionFinding& fault) {
-    return fault.severity == Severity::kError && (fault.code == "axis-speed") == speed;
+    return fault.severity == Severity::kError && check_of(fault) == check;
   }));
-}
-
-void add_motion_checks(const Job& job, const Result& result, std::vector<Check>& checks) {
-  const AcceptLimits& accept = job.scene.accept;
-  checks.push_back(
-      counted("travel", "Moves beyond the travel of an axis", count_faults(result, false), accept.travel));
-  checks.push_back(
-      counted("axis_speed", "Moves faster than an axis", count_faults(result, true), accept.axis_speed));
-  Check trip{"round_trip", "Forward of inverse kinematics, every cycle"};
-  trip.unit = "mm";
-  trip.limit = kRoundTrip;
-  trip.value = result.main.motion.statistics.fk_ik_error_max_mm;
-  trip.outcome = *trip.value < *trip.limit ? Outcome::kHolds : Outcome::kFails;
-  trip.what = fmt::format("{}: {:.1e} mm, below {:.0e} mm", trip.subject, *trip.value, *trip.limit);
-  checks.push_back(std::move(trip));
 }
 
 Check invariants_check(const Result& result) {
@@ -215,11 +202,32 @@ bool proven(const std::optional<double>& bound, double limit) {
   return bound ? *bound <= limit : kMissingBoundHolds;
 }
 
+const char* check_of(const motion::MotionFinding& fault) {
+  return fault.code == "axis-speed" ? "axis_speed" : "travel";
+}
+
+std::vector<Check> judge_motion(const Job& job, const Result& result) {
+  const AcceptLimits& accept = job.scene.accept;
+  std::vector<Check> checks;
+  checks.push_back(
+      counted("travel", "Moves beyond the travel of an axis", count_faults(result, "travel"), accept.travel));
+  checks.push_back(counted("axis_speed", "Moves faster than an axis", count_faults(result, "axis_speed"),
+                           accept.axis_speed));
+  Check trip{"round_trip", "Forward of inverse kinematics, every cycle"};
+  trip.unit = "mm";
+  trip.limit = kRoundTrip;
+  trip.value = result.main.motion.statistics.fk_ik_error_max_mm;
+  trip.outcome = *trip.value < *trip.limit ? Outcome::kHolds : Outcome::kFails;
+  trip.what = fmt::format("{}: {:.1e} mm, below {:.0e} mm", trip.subject, *trip.value, *trip.limit);
+  checks.push_back(std::move(trip));
+  return checks;
+}
+
 std::vector<Check> judge(const Job& job, const Result& result) {
   std::vector<Check> checks;
   add_surface_checks(job, result, checks);
   add_tool_checks(job, result, checks);
-  add_motion_checks(job, result, checks);
+  for (Check& check : judge_motion(job, result)) checks.push_back(std::move(check));
   checks.push_back(invariants_check(result));
   checks.push_back(rays_check(job, result));
   checks.push_back(not_judged("machine_parts", "Machine parts against each other",

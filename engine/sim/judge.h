@@ -11,6 +11,10 @@
 #include <string>
 #include <vector>
 
+namespace swarf::motion {
+struct MotionFinding;
+}
+
 namespace swarf::sim {
 
 struct Job;
@@ -39,6 +43,12 @@ inline constexpr const char* kRaysOnly = "rays only, between the rays not proven
 
 /// The list for a finished run; the same checks in the same order for every job.
 std::vector<Check> judge(const Job& job, const Result& result);
+
+/// Those of the list that judge motion alone: travel, axis_speed, round_trip. Of `result` only main is read.
+std::vector<Check> judge_motion(const Job& job, const Result& result);
+
+/// Check::name of what a fault of the motion breaks.
+const char* check_of(const motion::MotionFinding& fault);
 
 /// No check fails or is not proven. Of an empty list, a run that was not finished: false.
 bool passes(std::span<const Check> checks);

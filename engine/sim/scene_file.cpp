@@ -18,8 +18,27 @@ namespace fs = std::filesystem;
 /// As for meshes: a kilometre from the origin of the work, mm.
 constexpr double kFarthest = 1e6;
 
+/// A grid on which the block or a tool's cut has no extent shows nothing.
+void check_voxel(ConfigTable& table, const StockSettings& stock, const std::vector<cutter::Cutter>& tools) {
+  const double side = stock.box_W.size().minCoeff();
+  if (side > 0.0 && stock.voxel_mm > side) {
+    table.error("out-of-range", "voxel_mm",
+                fmt::format("'stock.voxel_mm' is {:g}, the block is {:g} mm thick", stock.voxel_mm, side),
+                fmt::format("write at most {:.2g}, a tenth of that", 0.1 * side));
+    return;
+  }
+  for (const cutter::Cutter& tool : tools) {
+    if (!(tool.diameter_mm > 0.0) || stock.voxel_mm <= tool.diameter_mm) continue;
+    table.error("out-of-range", "voxel_mm",
+                fmt::format("'stock.voxel_mm' is {:g}, {} has a diameter of {:g} mm", stock.voxel_mm,
+                            cutter::call_name(tool), tool.diameter_mm),
+                fmt::format("write at most {:.2g}, a tenth of that", 0.1 * tool.diameter_mm));
+    return;
+  }
+}
+
 /// Surface blocks are always cut by their cycles.
-StockSettings read_stock(ConfigTable table, bool blocks) {
+StockSettings read_stock(ConfigTable table, const std::vector<cutter::Cutter>& tools, bool blocks) {
   StockSettings stock;
   stock.box_W = table.box("box_mm");
   if (std::max(stock.box_W.lower.cwiseAbs().maxCoeff(), stock.box_W.upper.cwiseAbs().maxCoeff()) >
@@ -29,6 +48,7 @@ StockSettings read_stock(ConfigTable table, bool blocks) {
     stock.box_W = {Vec3::Zero(), Vec3::Ones()};
   }
   stock.voxel_mm = table.number("voxel_mm", kAboveZero);
+  check_voxel(table, stock, tools);
   stock.sweep_tolerance_mm = table.number("sweep_tolerance_um", kAboveZero, 1.0) * kMicrometre;
   if (blocks && table.choice("cut_by", {"blocks", "cycles"}, "blocks") == "cycles")
     stock.cut_by = CutBy::kCycles;
@@ -263,7 +283,7 @@ Scene load_scene(const std::string& path, const std::vector<std::string>& overri
   read_scene_tools(root, scene, diagnostics);
   read_cl_keys(root, scene);
   scene.setup = read_setup(root.table("setup"), scene.kind == ProgramKind::kNc);
-  scene.stock = read_stock(root.table("stock"), scene.has_blocks());
+  scene.stock = read_stock(root.table("stock"), scene.tools, scene.has_blocks());
   scene.design = read_design(root.table("design"), scene.has_blocks());
   scene.design.surface_file = beside(path, scene.design.surface_file);
   scene.design.mesh_file = beside(path, scene.design.mesh_file);

@@ -196,14 +196,29 @@ void compare_modes(const Job& job, Progress& progress, Result& result) {
   progress.end();
 }
 
+/// Removed and left add up to the box. The level set rounds the edges of the uncut box too, so what was
+/// removed is the difference of two of its volumes, and what is left the rest of the exact box.
+void measure_volume(const Job& job, Result& result) {
+  const double box = job.scene.stock.box_W.size().prod();
+  result.volume_left_mm3 = box - result.volume_removed_mm3;
+  const stock::VolumeRange range = result.stock->volume_between(result.sweep_bound_mm);
+  result.volume_error_bound_mm3 =
+      std::max(range.greatest - result.volume_left_mm3, result.volume_left_mm3 - range.least);
+}
+
 void measure_part(const Job& job, Progress& progress, Result& result) {
   progress.begin("measure", 2, "steps");
   measure_dexels(job, result.main);
   progress.advance(1);
+  const std::vector<stock::CutterSolid> solids = tool_solids(job.scene);
+  const std::vector<int> tools = tool_of_blocks(result.main.rays);
+  const measure::SweepCutters cutters(solids, tools);
+  const double sweep_bound = result.sweep_bound_mm + result.main.rays.error_bound_mm;
   std::vector<measure::CrossCheck> checks;
   for (const stock::SurfaceDexels& dexels : result.main.dexels) {
     if (dexels.field().surface == nullptr) continue;  // its bound needs the curvature of a surface
-    checks.push_back(measure::cross_check(*result.stock, dexels, result.sweep_bound_mm));
+    checks.push_back(
+        measure::cross_check(*result.stock, dexels, result.main.rays.sweeps, cutters, sweep_bound));
   }
   result.cross_check = measure::combine(checks);
   progress.end();
@@ -254,6 +269,7 @@ Result simulate(const Job& job, const CutOptions& options, Progress& progress) {
   progress.note(fmt::format("memory: stock {:.0f} MB, whole run {:.0f} MB expected; limit {:.0f} MB",
                             result.memory.stock_mb, result.memory.peak_mb, result.memory.limit_mb));
   cut_stock(job, options, progress, result);
+  measure_volume(job, result);
   result.stopped = progress.stop_requested();
   if (result.stopped) return result;
   if (job.scene.has_blocks() && result.volume_removed_mm3 <= 0.0)

@@ -5,46 +5,12 @@
 
 #include "base/check.h"
 #include "stock/leaf_kernel.h"
+#include "stock/piece_window.h"
 
 namespace swarf::stock {
 namespace {
 
-/// The bounds below are taken this much wider, mm: more than the rounding of the floats they decide about.
-constexpr double kSlack = 1e-3;
 constexpr double kSearchTolerance = 1e-5, kSearchRounding = 3e-7, kValueRounding = 1e-6;
-
-double leaf_radius(double voxel_mm) {
-  return 0.5 * (kLeafSide - 1) * std::sqrt(3.0) * voxel_mm;
-}
-
-struct Window {
-  double low = 0.0, high = 1.0;
-  bool empty() const { return !(low <= high); }
-  void clip(double a, double b) {
-    low = std::max(low, std::min(a, b));
-    high = std::min(high, std::max(a, b));
-  }
-  static Window nothing() { return {1.0, 0.0}; }
-};
-
-/// The time in which P + t D lies within `reach` of the cylinder around the piece.
-Window time_in_reach(const cutter::ConvexPiece& piece, const Vec3& P, const Vec3& D, double reach) {
-  Window window;
-  const double low = piece.low - reach, high = piece.high + reach, radius = piece.radius + reach;
-  if (D.z() != 0.0) {
-    window.clip((low - P.z()) / D.z(), (high - P.z()) / D.z());
-  } else if (P.z() < low || P.z() > high) {
-    return Window::nothing();
-  }
-  const double a = D.head<2>().squaredNorm();
-  if (a == 0.0) return P.head<2>().norm() > radius ? Window::nothing() : window;
-  const double b = P.head<2>().dot(D.head<2>());
-  const double miss = P.x() * D.y() - P.y() * D.x();
-  const double half2 = a * radius * radius - miss * miss;
-  if (half2 < 0.0) return Window::nothing();
-  window.clip((-b - std::sqrt(half2)) / a, (-b + std::sqrt(half2)) / a);
-  return window;
-}
 
 /// The piece and the way of the leaf's centre past it: every part is convex along it, so greatest at an end.
 struct Passage {
@@ -141,7 +107,7 @@ bool prepare_convex_leaf(const LeafPlace& place, const SweepMap& map, const cutt
                          ConvexLeaf& leaf) {
   SWARF_CHECK(piece.faces.size() <= kMostParts && piece.rounds.size() <= kMostParts,
               "a convex piece has at most 64 faces and 64 rounds");
-  const double radius = leaf_radius(place.voxel_mm) + kSlack;
+  const double radius = leaf_radius(place.voxel_mm) + kReachSlack;
   const Vec3 centre = place.first_W + Vec3::Constant(0.5 * (kLeafSide - 1) * place.voxel_mm);
   const Vec3 P = map.start(centre), D = map.end(centre) - P;
   const Window window = time_in_reach(piece, P, D, radius + place.band_mm);
@@ -164,7 +130,7 @@ int cut_leaf_by_piece(float* values, const LeafPlace& place, const SweepMap& map
 }
 
 double convex_kernel_error_mm(const cutter::ConvexPiece& piece, double voxel_mm, double band_mm) {
-  const double reach = 2.0 * (leaf_radius(voxel_mm) + kSlack) + band_mm;
+  const double reach = 2.0 * (leaf_radius(voxel_mm) + kReachSlack) + band_mm;
   const double scale =
       std::hypot(piece.radius + reach, std::max(std::abs(piece.low), std::abs(piece.high)) + reach);
   return kSearchTolerance + (kSearchRounding + kValueRounding) * scale;

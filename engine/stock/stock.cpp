@@ -43,6 +43,12 @@ const Box& Stock::box() const {
 double Stock::volume_mm3() const {
   return volume(impl_->level_set);
 }
+VolumeRange Stock::volume_between(double slack_mm) const {
+  return stock::volume_between(impl_->level_set, slack_mm);
+}
+double Stock::rounding_mm() const {
+  return impl_->level_set.rounding_mm;
+}
 double Stock::distance_mm(const Vec3& point_W) const {
   return trilinear(impl_->level_set, point_W);
 }

@@ -25,6 +25,11 @@ struct CutStatistics {
 /// Texts kept in a stock file, by key.
 using StockMetadata = std::map<std::string, std::string>;
 
+/// Least and greatest volume, mm3.
+struct VolumeRange {
+  double least = 0.0, greatest = 0.0;
+};
+
 /// How far Stock::check goes.
 enum class CheckLevel {
   kMap,     ///< invariants 1 to 4: leaf positions only, about a millisecond per 100 000 of them
@@ -47,6 +52,12 @@ class Stock {
   /// Material left: every cell by the fraction that its level set fills (exact for planes, even oblique ones;
   /// an edge of length l is off by up to l voxel^2 / 12, with opposite signs for convex and concave ones).
   double volume_mm3() const;
+  /// Proven: the material whose distances the level set holds lies between these. Each grid point of distance
+  /// d has a ball of radius |d| about it that is all material or all air; what no ball settles may be either.
+  /// `slack_mm`: how far the sweeps that cut it may lie from the motion they stand for.
+  VolumeRange volume_between(double slack_mm) const;
+  /// Values are the distances of box and sweeps within this, mm: what the kernels round at most.
+  double rounding_mm() const;
   double distance_mm(const Vec3& point_W) const;  ///< trilinear signed distance, clamped to the band
   /// Closed surface of the material with sharp edges and outward normals: see StockMesher, which makes it,
   /// and makes it faster when it is asked for again after some cutting.

@@ -91,12 +91,10 @@ std::string value_fault(const LevelSet& set, size_t n) {
 std::string step_fault(const LevelSet& set, size_t n) {
   const float* values = set.map.leaves[n]->buffer().data();
   const openvdb::Coord origin = set.map.origin(n);
-  // A distance changes by at most one voxel per voxel. The kernels compute it in floats from coordinates that
-  // may be as far apart as the stock and a tool that retracts from it are long: a few roundings of that at
-  // both ends of the step.
-  constexpr double kRoundings = 16.0, kFloatRounding = 6e-8, kLeastLength = 50.0;
-  const double length = std::max(kLeastLength, (set.box.upper - set.box.lower).norm());
-  const auto steepest = static_cast<float>(set.voxel + kRoundings * kFloatRounding * length);
+  // A distance changes by at most one voxel per voxel; both ends of the step are rounded by the kernels, and
+  // their difference and the voxel once more.
+  constexpr float kStepRounding = 1e-6F;  // mm
+  const auto steepest = static_cast<float>(set.voxel + 2.0 * set.rounding_mm) + kStepRounding;
   constexpr int kStrides[3] = {64, 8, 1};
   for (int v = 0; v < kLeafVoxels; ++v) {
     const int place[3] = {v / 64, v / 8 % 8, v % 8};

@@ -15,6 +15,7 @@
 #include "stock/convex_leaf.h"
 #include "stock/lane_run.h"
 #include "stock/leaf_kernel.h"
+#include "stock/piece_window.h"
 #include "stock/stock_grid_internal.h"
 
 namespace swarf::stock {
@@ -56,25 +57,37 @@ void gather(const LevelSet& set, Batch& batch) {
   }
 }
 
+/// The time in which the piece can change a value of the leaf; all of it when it cannot.
+Window window_of(const LevelSet& set, const SweptPiece& swept, const Vec3& centre) {
+  const Vec3 P = swept.map.start(centre), D = swept.map.end(centre) - P;
+  const double reach = set.leaf_radius() + kReachSlack + set.band();
+  const Window window = time_in_reach(*swept.piece, P, D, reach);
+  return window.empty() ? Window{} : window;
+}
+
 LeafMotion leaf_motion(const LevelSet& set, const SweptPiece& swept, size_t leaf) {
   const SweepMap& map = swept.map;
   const openvdb::Coord origin = set.map.origin(leaf);
   const Vec3 first = Vec3(origin.x(), origin.y(), origin.z()) * set.voxel;
+  const Vec3 centre = set.leaf_centre(leaf);
+  const Window window = window_of(set, swept, centre);
   const Vec3 start = map.start(first), end = map.end(first);
+  // As start + t (end - start), so that what does not change stays equal to the last bit (LevelPlane).
+  const auto at = [](double t, double a, double b) { return static_cast<float>(a + t * (b - a)); };
   LeafMotion motion{};
   for (int c = 0; c < 3; ++c) {
-    motion.start[c] = static_cast<float>(start[c]);
-    motion.end[c] = static_cast<float>(end[c]);
+    motion.start[c] = at(window.low, start[c], end[c]);
+    motion.end[c] = at(window.high, start[c], end[c]);
     for (int a = 0; a < 3; ++a) {
-      motion.start_step[a][c] = static_cast<float>(map.R0t(c, a) * set.voxel);
-      motion.end_step[a][c] = static_cast<float>(map.R1t(c, a) * set.voxel);
+      const double from = map.R0t(c, a) * set.voxel, to = map.R1t(c, a) * set.voxel;
+      motion.start_step[a][c] = at(window.low, from, to);
+      motion.end_step[a][c] = at(window.high, from, to);
     }
   }
   motion.radius = static_cast<float>(swept.piece->radius);
   motion.height = static_cast<float>(swept.piece->high);
   motion.background = set.band();
   // Below (height - band) the top end could only change values that the clamp makes equal anyway.
-  const Vec3 centre = set.leaf_centre(leaf);
   const double highest = std::max(map.start(centre).z(), map.end(centre).z()) + set.leaf_radius();
   motion.capped = highest > swept.piece->high - set.band();
   return motion;
@@ -293,6 +306,16 @@ void cut_batch(LevelSet& set, Batch& batch) {
   }
 }
 
+/// What the kernels round at most.
+double rounding_of(const LevelSet& set, const CutterSolid& cutter) {
+  double rounding = 0.0;
+  for (const cutter::ConvexPiece& piece : cutter.pieces) {
+    rounding = std::max(rounding, piece.is_cylinder() ? cylinder_kernel_error_mm(piece, set.voxel, set.band())
+                                                      : convex_kernel_error_mm(piece, set.voxel, set.band()));
+  }
+  return rounding;
+}
+
 }  // namespace
 
 void cut_level_set(LevelSet& set, std::span<const Sweep> sweeps, const CutterSolid& cutter) {
@@ -306,6 +329,7 @@ void cut_level_set(LevelSet& set, std::span<const Sweep> sweeps, const CutterSol
     }
     cut_batch(set, batch);
   }
+  if (!sweeps.empty()) set.rounding_mm = std::max(set.rounding_mm, rounding_of(set, cutter));
   set.statistics.sweeps += sweeps.size();
   set.statistics.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
 }

@@ -30,6 +30,7 @@ constexpr char kFormatKey[] = "swarf_stock_format";
 constexpr char kFormat[] = "1";
 constexpr char kBoxLowerKey[] = "swarf_box_lower_mm";
 constexpr char kBoxUpperKey[] = "swarf_box_upper_mm";
+constexpr char kRoundingKey[] = "swarf_rounding_mm";
 
 uint64_t checksum(std::string_view bytes) {
   Hash hash;
@@ -131,6 +132,15 @@ Vec3 metadata_vector(const openvdb::FloatGrid& grid, const char* key) {
   return {v.x(), v.y(), v.z()};
 }
 
+/// Files written before the rounding was kept: what kernels that did not shorten long sweeps rounded, eight
+/// times half the spacing of floats at the length of the stock or of a retract from it.
+double rounding_of(const LevelSet& set) {
+  if (set.grid->getMetadata<openvdb::DoubleMetadata>(kRoundingKey))
+    return set.grid->metaValue<double>(kRoundingKey);
+  constexpr double kRoundings = 8.0, kHalfSpacing = 6e-8, kLeastLength = 50.0;
+  return kRoundings * kHalfSpacing * std::max(kLeastLength, set.box.size().norm());
+}
+
 /// Fills the map from the tree's leaves and tile signs.
 void attach_map(LevelSet& set) {
   set.map = empty_map(set.box, set.voxel);
@@ -151,6 +161,7 @@ void add_metadata(openvdb::FloatGrid& grid, const LevelSet& set, const StockMeta
   grid.insertMeta(kFormatKey, openvdb::StringMetadata(kFormat));
   grid.insertMeta(kBoxLowerKey, vector(set.box.lower));
   grid.insertMeta(kBoxUpperKey, vector(set.box.upper));
+  grid.insertMeta(kRoundingKey, openvdb::DoubleMetadata(set.rounding_mm));
 }
 
 /// OpenVDB names each file it writes by a random UUID. Ours is made from the content, so that equal stocks
@@ -240,6 +251,7 @@ LevelSet read_level_set(const std::string& path, StockMetadata& metadata) {
   }
   set.voxel = set.grid->voxelSize().x();
   set.box = {metadata_vector(*set.grid, kBoxLowerKey), metadata_vector(*set.grid, kBoxUpperKey)};
+  set.rounding_mm = rounding_of(set);
   attach_map(set);
   return set;
 }
@@ -250,6 +262,7 @@ LevelSet deep_copy(const LevelSet& original) {
   set.voxel = original.voxel;
   set.grid = original.grid->deepCopy();
   set.statistics = original.statistics;
+  set.rounding_mm = original.rounding_mm;
   attach_map(set);
   return set;
 }

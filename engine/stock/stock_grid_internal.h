@@ -32,6 +32,9 @@ using LeafNode = openvdb::FloatTree::LeafNodeType;
 /// Half width of the narrow band in voxels.
 inline constexpr int kBandVoxels = 3;
 
+/// Distances of the uncut box, rounded to floats; mm.
+inline constexpr double kBoxRounding = 1e-6;
+
 enum class LeafState : uint8_t { kAir, kSolid, kLeaf };
 
 /// What is known of a leaf position without looking at its values: none of them lies below
@@ -64,6 +67,7 @@ struct LevelSet {
   openvdb::FloatGrid::Ptr grid;
   LeafMap map;
   CutStatistics statistics;
+  double rounding_mm = kBoxRounding;  ///< values are the distances they stand for within this
 
   float band() const { return static_cast<float>(kBandVoxels * voxel); }
   /// Centre of a leaf position in W.
@@ -86,6 +90,8 @@ LeafState settle_leaf(LeafNode& leaf, float band);
 /// Removes the sweeps from the level set (stock_cut.cpp).
 void cut_level_set(LevelSet& level_set, std::span<const Sweep> sweeps, const CutterSolid& cutter);
 double volume(const LevelSet& level_set);
+/// See Stock::volume_between (stock_volume.cpp).
+VolumeRange volume_between(const LevelSet& level_set, double slack_mm);
 double trilinear(const LevelSet& level_set, const Vec3& point_W);
 uint64_t state_hash(const LevelSet& level_set);
 /// Invariants, see Stock::check (stock_check.cpp).

@@ -72,10 +72,10 @@ Rgb linear_from_srgb8(const std::array<uint8_t, 4>& encoded) {
   return {table[encoded[0]], table[encoded[1]], table[encoded[2]]};
 }
 
-Rgb deviation_colour(double deviation_um, double scale_um) {
-  SWARF_CHECK(scale_um > 0.0, "the colour scale needs a width above zero");
+Rgb deviation_colour(double deviation_um, const DeviationScale& scale) {
+  SWARF_CHECK(scale.below_um > 0.0 && scale.above_um > 0.0, "the colour scale needs a width above zero");
   if (std::isnan(deviation_um)) return kUnknownColour;
-  const double place = std::clamp(deviation_um / scale_um, -1.0, 1.0);
+  const double place = std::clamp(scale.place(deviation_um), -1.0, 1.0);
   size_t i = 1;
   while (i + 1 < kAnchors.size() && place > kAnchors[i].place) ++i;
   const Anchor &low = kAnchors[i - 1], &high = kAnchors[i];
@@ -85,17 +85,17 @@ Rgb deviation_colour(double deviation_um, double scale_um) {
   return linear_from_oklab(a + t * (b - a));
 }
 
-void colour_by_deviation(TriMesh& mesh, double scale_um) {
+void colour_by_deviation(TriMesh& mesh, const DeviationScale& scale) {
   SWARF_CHECK(mesh.deviation_um.size() == mesh.positions.size(), "the mesh carries no deviation");
   // A table is finer than 8-bit colours and saves the cube roots for a million vertices.
   constexpr int kSteps = 1024;
   std::vector<std::array<uint8_t, 4>> table(kSteps + 1);
   for (int i = 0; i <= kSteps; ++i) {
-    table[i] = srgb8_from_linear(deviation_colour((2.0 * i / kSteps - 1.0) * scale_um, scale_um));
+    table[i] = srgb8_from_linear(deviation_colour(scale.at(2.0 * i / kSteps - 1.0), scale));
   }
   mesh.colours.resize(mesh.positions.size());
   for (size_t i = 0; i < mesh.colours.size(); ++i) {
-    const double place = mesh.deviation_um[i] / scale_um;
+    const double place = scale.place(mesh.deviation_um[i]);
     mesh.colours[i] = std::isnan(place)
                           ? srgb8_from_linear(kUnknownColour)
                           : table[std::lround((std::clamp(place, -1.0, 1.0) + 1.0) * (0.5 * kSteps))];

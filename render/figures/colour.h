@@ -16,15 +16,27 @@ float linear_from_srgb(float encoded);
 std::array<uint8_t, 4> srgb8_from_linear(const Rgb& linear);
 Rgb linear_from_srgb8(const std::array<uint8_t, 4>& encoded);
 
-/// Colour of a deviation on a diverging scale of half width `scale_um` (> 0).
+/// Where the colours of deviation end below (gouge) and above (excess), um, both > 0.
+struct DeviationScale {
+  double below_um = 1.0, above_um = 1.0;
+  DeviationScale(double below, double above) : below_um(below), above_um(above) {}
+  /// As wide on both sides.
+  DeviationScale(double half_width) : DeviationScale(half_width, half_width) {}
+  /// -1 .. 1 within the scale.
+  double place(double um) const { return um / (um < 0.0 ? below_um : above_um); }
+  /// The deviation at a place.
+  double at(double place) const { return place * (place < 0.0 ? below_um : above_um); }
+};
+
+/// Colour of a deviation on a diverging scale.
 ///
 /// Below zero (gouge) blue, at zero near-white (on size), above zero (excess) yellow, orange, red. Lightness
 /// falls evenly with |deviation| on both sides, so that the scale still reads in grey; the sides differ in
 /// the blue-yellow direction, which red-green blindness leaves intact. Interpolated in OKLab (Ottosson 2020).
 /// Beyond the scale: the end colours. NaN (unknown): dark grey, which the scale does not contain.
-Rgb deviation_colour(double deviation_um, double scale_um);
+Rgb deviation_colour(double deviation_um, const DeviationScale& scale);
 
 /// Fills `mesh.colours` from `mesh.deviation_um`, which must be present.
-void colour_by_deviation(TriMesh& mesh, double scale_um);
+void colour_by_deviation(TriMesh& mesh, const DeviationScale& scale);
 
 }  // namespace swarf::render

@@ -293,7 +293,7 @@ TEST(CrossCheck, DomeLevelSetAgreesWithItsDexelsAndWithTheVolume) {
   EXPECT_NEAR(stock.volume_mm3(), exact, 1e-3 * 186666.6667);
   stock::SurfaceDexels dexels(surface, 0.2, stock.box());
   dexels.cut(passes.sweeps, cutter);
-  const CrossCheck check = cross_check(stock, dexels, 0.0);
+  const CrossCheck check = cross_check(stock, dexels, passes.sweeps, cutter, 0.0);
   EXPECT_TRUE(check.holds);
   EXPECT_GT(check.samples, 4 * check.excluded);
   EXPECT_LT(check.max_um, check.bound_um);
@@ -308,7 +308,7 @@ TEST(CrossCheck, DomeLevelSetAgreesWithItsDexelsAndWithTheVolume) {
   deeper.start.tip_W -= 0.02 * deeper.start.axis_W;
   deeper.end.tip_W -= 0.02 * deeper.end.axis_W;
   stock.cut(std::vector<stock::Sweep>{deeper}, cutter);
-  EXPECT_FALSE(cross_check(stock, dexels, 0.0).holds);
+  EXPECT_FALSE(cross_check(stock, dexels, passes.sweeps, cutter, 0.0).holds);
 }
 
 }  // namespace

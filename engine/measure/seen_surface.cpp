@@ -1,0 +1,102 @@
+#include "measure/seen_surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/check.h"
+
+namespace swarf::measure {
+namespace {
+
+/// A point belongs to the machined face only if its own normal agrees with the design's: not a side wall near
+/// it.
+constexpr double kFaceCosine = 0.8;
+/// Places along one ray; of a ray that is longer they lie farther apart.
+constexpr double kMostPlaces = 256.0;
+
+}  // namespace
+
+size_t SeenSurface::CellHash::operator()(const Cell& cell) const {
+  uint64_t hash = 0;
+  for (const int32_t c : cell) hash = (hash ^ static_cast<uint32_t>(c)) * 0x9e3779b97f4a7c15ULL;
+  return hash ^ (hash >> 29);
+}
+
+SeenSurface::SeenSurface(const stock::SurfaceDexels& dexels, double slack_mm)
+    : dexels_(dexels), slack_mm_(slack_mm) {
+  SWARF_CHECK(dexels.field().surface != nullptr, "feet are found on a parametric design");
+  const auto& points = dexels.points();
+  const auto nu = static_cast<size_t>(dexels.nu());
+  double step = 0.0;
+  for (size_t i = 0; i < points.size(); ++i) {
+    if ((i + 1) % nu != 0) step = std::max(step, (points[i + 1] - points[i]).norm());
+    if (i + nu < points.size()) step = std::max(step, (points[i + nu] - points[i]).norm());
+  }
+  cell_mm_ = step + slack_mm;
+  for (size_t n = 0; n < points.size(); ++n) {
+    const double height = dexels.heights_mm()[n];
+    const double places = std::clamp(std::ceil(std::abs(height) / cell_mm_), 1.0, kMostPlaces);
+    for (double k = 0.0; k <= places; k += 1.0)
+      add(points[n] + k / places * height * dexels.normals()[n], static_cast<uint32_t>(n));
+  }
+}
+
+SeenSurface::Cell SeenSurface::cell_of(const Vec3& point) const {
+  const Vec3 cell = (point / cell_mm_).array().floor();
+  return {static_cast<int32_t>(cell.x()), static_cast<int32_t>(cell.y()), static_cast<int32_t>(cell.z())};
+}
+
+std::optional<uint32_t> SeenSurface::nearest_ray(const Vec3& point) const {
+  const Cell centre = cell_of(point);
+  std::optional<uint32_t> nearest;
+  double best = std::numeric_limits<double>::infinity();
+  for (int32_t i = 0; i < 27; ++i) {
+    const auto found = cells_.find({centre[0] + i % 3 - 1, centre[1] + i / 3 % 3 - 1, centre[2] + i / 9 - 1});
+    if (found == cells_.end()) continue;
+    for (const Place& place : found->second) {
+      const double distance = (place.point - point).squaredNorm();
+      if (distance >= best) continue;
+      best = distance;
+      nearest = place.ray;
+    }
+  }
+  return nearest;
+}
+
+std::array<double, 2> SeenSurface::heights_around(const Foot& foot) const {
+  const auto& u = dexels_.field().u_lines;
+  const auto& v = dexels_.field().v_lines;
+  const auto line = [](const std::vector<double>& lines, double at) {
+    const auto above = std::upper_bound(lines.begin() + 1, lines.end() - 1, at);
+    return static_cast<size_t>(above - lines.begin()) - 1;
+  };
+  const size_t iu = line(u, foot.u), iv = line(v, foot.v);
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const size_t row : {iv, iv + 1}) {
+    for (const size_t column : {iu, iu + 1}) {
+      const double height = dexels_.heights_mm()[row * u.size() + column];
+      low = std::min(low, height);
+      high = std::max(high, height);
+    }
+  }
+  return {low, high};
+}
+
+std::optional<Seen> SeenSurface::at(const Vec3& point, const Vec3& normal) const {
+  const auto ray = nearest_ray(point);
+  if (!ray) return {};
+  const std::optional<Foot> foot = foot_near(dexels_, *ray, point);
+  if (!foot) return {};
+  const double own = foot->height_mm;
+  const auto [low, high] = heights_around(*foot);
+  if (own < std::min(low, 0.0) - slack_mm_ || own > std::max(high, 0.0) + slack_mm_) return {};
+  const bool along = normal.dot(foot->normal) >= kFaceCosine;
+  const double rays = height_at(dexels_, foot->u, foot->v);
+  if (along && std::abs(own - rays) <= slack_mm_) return Seen{*foot, rays, true};
+  // Beside the design's own height only the face counts: the block's side walls begin there.
+  if (std::abs(own) <= slack_mm_ || (std::abs(low) <= slack_mm_ && std::abs(high) <= slack_mm_)) return {};
+  return Seen{*foot, own, false};
+}
+
+}  // namespace swarf::measure

@@ -1,0 +1,40 @@
+// The share of a sweep in which a piece of the cutter comes near a leaf. A kernel that looks at no more than
+// this handles coordinates as large as the cutter, however long the sweep is, and rounds accordingly.
+// Internal to this folder.
+#pragma once
+
+#include <algorithm>
+
+#include "base/frames.h"
+#include "cutter/convex_piece.h"
+
+namespace swarf::stock {
+
+/// From which to which t of the sweep.
+struct Window {
+  double low = 0.0, high = 1.0;
+  bool empty() const { return !(low <= high); }
+  void clip(double a, double b) {
+    low = std::max(low, std::min(a, b));
+    high = std::min(high, std::max(a, b));
+  }
+  static Window nothing() { return {1.0, 0.0}; }
+};
+
+/// The bounds of reach are taken this much wider, mm: more than the rounding of the floats they decide about.
+inline constexpr double kReachSlack = 1e-3;
+
+/// The time in which P + t D lies within `reach` of the cylinder around the piece.
+Window time_in_reach(const cutter::ConvexPiece& piece, const Vec3& P, const Vec3& D, double reach);
+
+/// From a leaf's centre to its farthest voxel, mm.
+double leaf_radius(double voxel_mm);
+
+/// Bound on the error of a voxel's distance to a plain cylinder's sweep, mm, for sweeps of any length. With L
+/// the greatest distance from the axis of a voxel in reach and u = 6e-8 half the spacing of floats at 1:
+///   16 u L             positions: start and change are rounded, then joined (11 roundings in x and in y)
+///   48 u L^2 of rho^2  a t^2 + 2 b t + c with a <= 4 L^2, |b| <= 2 L^2, c <= L^2: 48 roundings of L^2, which
+///                      is 48 u L^2 / (2 rho) of rho; rho is at least radius - band where the clamp leaves it
+double cylinder_kernel_error_mm(const cutter::ConvexPiece& piece, double voxel_mm, double band_mm);
+
+}  // namespace swarf::stock

@@ -1,0 +1,181 @@
+// One judge, on the shipped program: what it says, to whom, and that false alarms are gone.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "support/json_path.h"
+#include "support/program_run.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using swarf::test::run_swarf;
+
+const std::string kScenes = SWARF_SOURCE_DIR "/scenes/";
+
+struct Judged {
+  swarf::test::ProgramRun run;
+  json metrics, findings;
+
+  const json& check(const std::string& name) const {
+    const json& checks = metrics.at("checks");
+    return *std::find_if(checks.begin(), checks.end(), [&](const json& c) { return c.at("name") == name; });
+  }
+  std::string outcome(const std::string& name) const { return check(name).at("outcome"); }
+};
+
+Judged run_scene(const std::string& scene, const std::string& options = "") {
+  const fs::path folder = swarf::test::fresh_folder("verdict");
+  Judged judged;
+  judged.run = run_swarf("run " + scene + " --no-render -o " + (folder / "run").string() +
+                         " --set movie.seconds=0 " + options);
+  judged.metrics = json::parse(std::ifstream(folder / "run" / "metrics.json"));
+  judged.findings = json::parse(std::ifstream(folder / "run" / "findings.json"));
+  fs::remove_all(folder);
+  return judged;
+}
+
+std::string shipped(const std::string& name) {
+  return kScenes + name + "/scene.toml";
+}
+
+/// The scene in a folder of its own, its paths made absolute, with texts replaced in scene and program.
+std::string altered(const std::string& name, const std::array<std::string, 2>& in_scene,
+                    const std::array<std::string, 2>& in_program) {
+  const fs::path folder = swarf::test::fresh_folder("verdict_altered");
+  const auto replaced = [](std::string text, const std::array<std::string, 2>& change) {
+    const size_t at = change[0].empty() ? std::string::npos : text.find(change[0]);
+    EXPECT_EQ(at == std::string::npos, change[0].empty()) << change[0];
+    return at == std::string::npos ? text : text.replace(at, change[0].size(), change[1]);
+  };
+  std::string scene = swarf::test::read_text(shipped(name));
+  scene = replaced(scene, {"../../assets", SWARF_SOURCE_DIR "/assets"});
+  swarf::test::write_text(folder / "scene.toml", replaced(scene, in_scene));
+  swarf::test::write_text(folder / "path.cl",
+                          replaced(swarf::test::read_text(kScenes + name + "/path.cl"), in_program));
+  return (folder / "scene.toml").string();
+}
+
+TEST(Verdict, IsOneListForTerminalExitCodeAndFiles) {
+  const Judged judged = run_scene(shipped("exact_slot_flat"));
+  EXPECT_EQ(judged.run.exit_code, 0) << judged.run.output;
+  EXPECT_EQ(judged.metrics.at("verdict"), "pass");
+  const std::string sentence = judged.metrics.at("verdict_text");
+  EXPECT_NE(judged.run.output.find(sentence), std::string::npos) << judged.run.output;
+  EXPECT_TRUE(sentence.starts_with("PASS: ")) << sentence;
+  EXPECT_NE(sentence.find("not judged: excess (no limit in [accept])"), std::string::npos) << sentence;
+  for (const json& one : judged.metrics.at("not_judged")) {
+    EXPECT_EQ(judged.outcome(one.at("name")), "not_judged");
+    EXPECT_FALSE(one.at("reason").get<std::string>().empty());
+  }
+  EXPECT_EQ(judged.outcome("collisions"), "holds");
+  EXPECT_EQ(judged.check("collisions").at("limit"), 0.0);
+}
+
+TEST(Verdict, TheSpindleOfClDataIsJudgedWhereItIsSaid) {
+  EXPECT_EQ(run_scene(shipped("exact_slot_flat")).outcome("spindle_wrong"), "holds");
+  const Judged reversed = run_scene(altered("exact_slot_flat", {}, {"8000,CLW", "8000,CCLW"}));
+  EXPECT_EQ(reversed.run.exit_code, 1) << reversed.run.output;
+  EXPECT_EQ(reversed.outcome("spindle_wrong"), "fails");
+  const Judged silent = run_scene(altered("exact_slot_flat", {}, {"SPINDL/8000,CLW\n", ""}));
+  EXPECT_EQ(silent.run.exit_code, 0) << silent.run.output;
+  EXPECT_EQ(silent.outcome("spindle_wrong"), "not_judged");
+  EXPECT_TRUE(silent.check("spindle_wrong").at("value").is_null());
+}
+
+TEST(Verdict, RapidsInMaterialCountUntilTheSceneAllowsThem) {
+  const std::array<std::string, 2> rapid{"FEDRAT/600,MMPM\n", "RAPID\n"};
+  const Judged found = run_scene(altered("exact_slot_flat", {}, rapid));
+  EXPECT_EQ(found.run.exit_code, 1) << found.run.output;
+  EXPECT_EQ(found.outcome("rapids_in_material"), "fails");
+  const Judged allowed =
+      run_scene(altered("exact_slot_flat", {"[accept]\n", "[accept]\nrapids_in_material = 1\n"}, rapid));
+  EXPECT_EQ(allowed.run.exit_code, 0) << allowed.run.output;
+  EXPECT_EQ(allowed.outcome("rapids_in_material"), "holds");
+  const bool warned = std::any_of(allowed.findings.begin(), allowed.findings.end(), [](const json& f) {
+    return f.at("check") == "rapids_in_material" && f.at("severity") == "warning";
+  });
+  EXPECT_TRUE(warned) << allowed.findings.dump(2);
+}
+
+TEST(Verdict, AMeshIsNotComparedWithTheLevelSet) {
+  const Judged judged = run_scene(shipped("exact_scallop_mesh"));
+  EXPECT_EQ(judged.outcome("stock_and_rays"), "not_judged");
+  for (const char* name : {"holds", "max_um", "bound_um"})
+    EXPECT_TRUE(judged.metrics.at("cross_check").at(name).is_null()) << name;
+}
+
+TEST(Verdict, CoarseRaysDoNotDisagreeWithTheStock) {
+  for (const std::string pitch : {"0.2", "0.5", "1", "2"}) {
+    for (const char* scene : {"exact_gouges", "exact_scallop_ball_plane"}) {
+      const Judged judged = run_scene(shipped(scene), "--set design.pitch_mm=" + pitch);
+      EXPECT_EQ(judged.outcome("stock_and_rays"), "holds")
+          << scene << " at " << pitch << ": " << judged.check("stock_and_rays").dump(2);
+    }
+  }
+}
+
+/// 2 R L + pi R^2 by D; A L + pi D^2 (3 R - D) / 3 with the circle's segment A below the block's top.
+TEST(Verdict, VolumesLieWithinTheirBounds) {
+  constexpr double pi = 3.14159265358979323846, R = 5.0, L = 30.0, D = 3.0;
+  const double flat = (2.0 * R * L + pi * R * R) * D;
+  const double half = std::acos((R - D) / R);
+  const double segment = R * R * (half - std::sin(half) * std::cos(half));
+  const double ball = segment * L + pi * D * D * (3.0 * R - D) / 3.0;
+  for (const double voxel : {0.2, 0.37}) {
+    for (const auto& [scene, exact] : {std::pair{"exact_slot_flat", flat}, {"exact_slot_ball", ball}}) {
+      const Judged judged = run_scene(shipped(scene), "--set stock.voxel_mm=" + std::to_string(voxel));
+      const json& stock = judged.metrics.at("stock");
+      const double removed = stock.at("volume_removed_mm3"), left = stock.at("volume_left_mm3");
+      const double bound = stock.at("volume_error_bound_mm3");
+      EXPECT_NEAR(removed + left, 50.0 * 20.0 * 8.0, 1e-9) << scene;
+      EXPECT_LE(std::abs(removed - exact), bound) << scene << " voxel " << voxel;
+      // Some 3700 mm2 of surface: a fifth of a voxel on all of it.
+      EXPECT_LE(bound, 0.2 * voxel * 3700.0) << scene;
+    }
+  }
+}
+
+TEST(Verdict, CheckFindsWhatTheMachineCannotDo) {
+  const std::string far =
+      altered("exact_slot_flat", {"[design]", "[setup]\nwork_origin_mm = [290, 0, 0]\n\n[design]"}, {});
+  const auto found = run_swarf("check --json " + far);
+  EXPECT_EQ(found.exit_code, 1) << found.output;
+  const json object = json::parse(found.output);
+  EXPECT_FALSE(object.at("right"));
+  EXPECT_FALSE(object.at("files").at(0).at("right"));
+  EXPECT_EQ(object.at("files").at(0).at("travel"), "fails");
+  EXPECT_EQ(object.at("files").at(0).at("diagnostics").at(0).at("code"), "travel");
+  const auto right = run_swarf("check --json " + shipped("exact_slot_flat"));
+  EXPECT_EQ(right.exit_code, 0) << right.output;
+  EXPECT_TRUE(json::parse(right.output).at("right"));
+}
+
+TEST(Verdict, AGridCoarserThanTheBlockOrTheToolIsRefused) {
+  for (const char* voxel : {"1e9", "10.5", "9"}) {
+    const auto run =
+        run_swarf("run " + shipped("exact_slot_flat") + " --no-render -o " +
+                  swarf::test::fresh_folder("verdict_voxel").string() + " --set stock.voxel_mm=" + voxel);
+    EXPECT_EQ(run.exit_code, 2) << voxel << run.output;
+    EXPECT_NE(run.output.find("voxel_mm"), std::string::npos) << run.output;
+  }
+}
+
+TEST(Verdict, AFolderOrAFullDiskIsAWrongInputNotAFaultOfTheProgram) {
+  for (const std::string command :
+       {"run " + kScenes, "check " + kScenes, "compare " + kScenes + " " + kScenes,
+        "plan " + shipped("exact_slot_flat") + " -o /dev/full/path.cl"}) {
+    const auto run = run_swarf(command);
+    EXPECT_EQ(run.exit_code, 2) << command << "\n" << run.output;
+    EXPECT_EQ(run.output.find("internal error"), std::string::npos) << command << "\n" << run.output;
+  }
+}
+
+}  // namespace

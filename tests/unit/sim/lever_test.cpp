@@ -1,0 +1,32 @@
+// Merging cycles of a cutter that is wider than it is long: its rim is what strays.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "sim/job_sweeps.h"
+
+namespace swarf::sim {
+namespace {
+
+TEST(Lever, TheRimOfAFlatDiscCounts) {
+  Scene scene;
+  scene.tools.front().diameter_mm = 50.0;
+  scene.tools.front().flute_length_mm = 4.0;
+  scene.stock.sweep_tolerance_mm = 1e-3;
+  // Three poses of a turn about the tip; the one in the middle is off by `stray`, rad.
+  for (const double stray : {1e-5, 3e-5, 1e-4, 2e-4}) {
+    motion::Trajectory trajectory;
+    for (const double angle : {0.0, 0.01 + stray, 0.02}) {
+      motion::ToolSample sample;
+      sample.pose = {Vec3::Zero(), Vec3(std::sin(angle), 0.0, std::cos(angle))};
+      trajectory.samples.push_back(sample);
+    }
+    const stock::MergedSweeps merged = merged_sweeps(trajectory, scene);
+    EXPECT_TRUE(merged.sweeps.size() == 2 || merged.error_bound_mm >= 25.0 * stray)
+        << stray << ": " << merged.sweeps.size() << " sweeps, bound " << merged.error_bound_mm;
+    EXPECT_LE(merged.error_bound_mm, scene.stock.sweep_tolerance_mm);
+  }
+}
+
+}  // namespace
+}  // namespace swarf::sim
