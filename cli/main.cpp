@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <ios>
 #include <new>
 
 #include "base/check.h"
@@ -25,7 +26,7 @@ const char* const kFooter = R"(Examples:
   swarf render out/dome --still part.png --camera left       pictures without simulating again
   swarf export out/dome --stl part.stl                       meshes without simulating again
 
-Exit codes: 0 every limit of [accept] holds; 1 findings (gouge, scallop, travel, ...); 2 the input is wrong;
+Exit codes: 0 no check of the verdict fails or is open; 1 findings (gouge, scallop, travel, ...); 2 the input is wrong;
 3 internal error; 130 stopped with Ctrl-C (what is finished is kept).)";
 
 int guarded(CLI::App& app, int argc, char** argv, const int& exit_code) {
@@ -39,6 +40,10 @@ int guarded(CLI::App& app, int argc, char** argv, const int& exit_code) {
     return swarf::cli::kBadInput;
   } catch (const std::filesystem::filesystem_error& error) {
     fmt::print(stderr, "error: {}\n    fix: check that the folder exists and may be written\n", error.what());
+    return swarf::cli::kBadInput;
+  } catch (const std::ios_base::failure& error) {
+    fmt::print(stderr, "error: {}\n    fix: name files that can be read, and places with space\n",
+               error.what());
     return swarf::cli::kBadInput;
   } catch (const std::bad_alloc&) {
     fmt::print(stderr, "error: out of memory\n    fix: raise stock.voxel_mm or free memory\n");

@@ -4,9 +4,11 @@
 #include <toml++/toml.h>
 
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <set>
+#include <system_error>
 #include <utility>
 
 namespace swarf {
@@ -80,6 +82,12 @@ void apply_override(toml::table& root, const std::string& text, Diagnostics& dia
 }
 
 std::optional<std::string> read_file(const std::string& path, Diagnostics& diagnostics) {
+  // A folder opens like a file and cannot be read.
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) {
+    diagnostics.error("file-not-found", {path}, "this is a folder", "name a TOML file: scene.toml in it");
+    return {};
+  }
   std::ifstream in(path, std::ios::binary);
   if (!in) {
     diagnostics.error("file-not-found", {path}, "the file cannot be opened",

@@ -10,6 +10,8 @@ namespace {
 
 constexpr size_t kRun = 32;
 constexpr size_t kRunsPerTask = 64;
+/// Of half the turn of a sweep: no sweep turns by more than 120 degrees.
+constexpr double kLeastCosine = 0.5;
 
 double distance_to(const Box& box, const Vec3& point) {
   return (point - point.cwiseMax(box.lower).cwiseMin(box.upper)).norm();
@@ -22,10 +24,13 @@ NearSweeps::Capsule NearSweeps::capsule(uint32_t sweep) const {
   const stock::CutterSolid& solid = cutters_[s.block];
   const double half = 0.5 * solid.height;
   const Vec3 from = s.start.tip_W + half * s.start.axis_W, to = s.end.tip_W + half * s.end.axis_W;
-  // The middle of a turning sweep leaves the straight line by no more than the turn over the half height; and
-  // the axis between its ends is shorter than 1 by less than the turn.
-  const double turn = (s.end.axis_W - s.start.axis_W).norm();
-  return {from, to - from, std::hypot(solid.radius, half) + half * turn};
+  // At t a point x stands in the tool's frame at M(x), the mean of two rigid maps (sweep_map.h). With c on
+  // the straight line of the middle m, |M(c) - m| <= t (1 - t) |R0 - R1| |way|, and |M(x) - M(c)| is at least
+  // the cosine of half the turn times |x - c|. |R0 - R1| is the chord of the turn.
+  const double chord = (s.end.axis_W - s.start.axis_W).norm();
+  const double cosine = std::sqrt(std::max(kLeastCosine * kLeastCosine, 1.0 - 0.25 * chord * chord));
+  const double radius = (std::hypot(solid.radius, half) + 0.25 * chord * (to - from).norm()) / cosine;
+  return {from, to - from, radius};
 }
 
 NearSweeps::NearSweeps(std::span<const stock::Sweep> sweeps, const SweepCutters& cutters)
@@ -44,15 +49,15 @@ NearSweeps::NearSweeps(std::span<const stock::Sweep> sweeps, const SweepCutters&
 }
 
 std::vector<uint32_t> NearSweeps::around(const Vec3& point_W, double distance_mm) const {
+  const double reach = distance_mm / kLeastCosine;
   std::vector<uint32_t> near;
   for (size_t run = 0; run < runs_.size(); ++run) {
-    if (distance_to(runs_[run], point_W) > distance_mm) continue;
+    if (distance_to(runs_[run], point_W) > reach) continue;
     for (size_t n = run * kRun; n < std::min(sweeps_.size(), (run + 1) * kRun); ++n) {
       const Capsule c = capsule(static_cast<uint32_t>(n));
       const double length2 = c.way.squaredNorm();
       const double t = length2 > 0.0 ? std::clamp((point_W - c.from).dot(c.way) / length2, 0.0, 1.0) : 0.0;
-      if ((point_W - c.from - t * c.way).norm() <= c.radius + distance_mm)
-        near.push_back(static_cast<uint32_t>(n));
+      if ((point_W - c.from - t * c.way).norm() <= c.radius + reach) near.push_back(static_cast<uint32_t>(n));
     }
   }
   return near;

@@ -73,8 +73,8 @@ std::array<double, 2> SeenSurface::heights_around(const Foot& foot) const {
   };
   const size_t iu = line(u, foot.u), iv = line(v, foot.v);
   double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const size_t row : {iv, iv + 1}) {
-    for (const size_t column : {iu, iu + 1}) {
+  for (size_t row = iv - std::min<size_t>(iv, 1); row < std::min(iv + 3, v.size()); ++row) {
+    for (size_t column = iu - std::min<size_t>(iu, 1); column < std::min(iu + 3, u.size()); ++column) {
       const double height = dexels_.heights_mm()[row * u.size() + column];
       low = std::min(low, height);
       high = std::max(high, height);

@@ -39,7 +39,8 @@ class SeenSurface {
   Cell cell_of(const Vec3& point) const;
   void add(const Vec3& point, uint32_t ray) { cells_[cell_of(point)].push_back({point, ray}); }
   std::optional<uint32_t> nearest_ray(const Vec3& point) const;
-  /// Least and greatest height of the rays around a foot, mm.
+  /// Least and greatest height of the rays around a foot, mm: of its cell and of those beside it, because a
+  /// wall may stand anywhere between two rays and is known to the slack only.
   std::array<double, 2> heights_around(const Foot& foot) const;
 
   const stock::SurfaceDexels& dexels_;

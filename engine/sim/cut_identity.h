@@ -11,7 +11,7 @@
 namespace swarf::sim {
 
 /// Counts up whenever equal sweeps may leave other bits in the stock: saved stocks then belong to the past.
-inline constexpr int kCutAlgorithm = 1;
+inline constexpr int kCutAlgorithm = 2;
 
 struct IdentityPart {
   std::string name;   ///< "stock.voxel_mm", "program", ...

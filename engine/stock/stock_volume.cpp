@@ -20,8 +20,8 @@ namespace {
 
 constexpr size_t kPositionsPerTask = 16;
 
-constexpr int kRods = 4;             // along each side of a cell
-constexpr int kAcross = 2;           // grid points on each side of a cell whose balls are looked at, across
+constexpr int kRods = 3;             // along each side of a cell
+constexpr int kAcross = 1;           // grid points on each side of a cell whose balls are looked at, across
 constexpr int kAlong = kBandVoxels;  // and along the rods: the farthest ball in the band
 constexpr int kRim = 3, kSide = kLeafSide + 2 * kRim;
 static_assert(kRim >= kAlong && kRim >= kAcross);
@@ -103,7 +103,7 @@ class Cell {
         for (int k = -kAlong; k <= kAlong; ++k) {
           const float value = here[k * stride(0) + (a - kAcross) * stride(1) + (b - kAcross) * stride(2)];
           const float radius = std::abs(value) - slack;
-          if (radius <= 0.5F) continue;  // settles less than its own cell
+          if (radius <= 1.0F) continue;  // nearer ones settle what farther ones do
           (value < 0.0F ? solid_ : air_).push_back({radius * radius, a, b, static_cast<float>(k)});
         }
   }

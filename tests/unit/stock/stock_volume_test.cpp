@@ -56,7 +56,7 @@ TEST(StockVolume, AFlatSlotAndABallSlot) {
     expect_within(flat, block_volume() - 8.0 * 4.0 * length, 0.4, block_area() + 8.0 * length, "flat");
     cutter::Cutter ball;
     ball.diameter_mm = 8.0;
-    ball.corner_radius_mm = 4.0;
+    ball.shape = cutter::Shape::kBall;
     ball.flute_length_mm = 25.0;
     Stock round(kBlock, voxel);
     round.cut(slot(4.0, 4.0), CutterSolid(ball));
