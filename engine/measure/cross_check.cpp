@@ -27,7 +27,7 @@ constexpr double kRayRounding = 1e-6;
 
 /// Samples beyond the bound of their slopes that are looked at by the sweeps themselves, the worst first;
 /// each costs as much as all the slopes of a row.
-constexpr size_t kMostExact = 4096;
+constexpr size_t kMostExact = 1024;
 constexpr size_t kExactPerTask = 16;
 
 struct Sample {
