@@ -102,6 +102,7 @@ Json regions_json(const sim::Result& result, const std::vector<measure::Region>&
     }
     list.push_back({{"worst_um", region.worst_um},
                     {"area_mm2", region.area_mm2},
+                    {"volume_mm3", region.volume_mm3},
                     {"x_mm", region.place.x()},
                     {"y_mm", region.place.y()},
                     {"z_mm", region.place.z()},

@@ -169,7 +169,7 @@ std::vector<Region> find_gouges(const stock::SurfaceDexels& dexels, std::span<co
   const auto low = std::max_element(depths.begin(), depths.end());
   if (low != depths.end() && *low > 0.0) {
     const auto ray = static_cast<uint32_t>(low - depths.begin());
-    *deepest = {um_from_mm(*low), 0.0, dexels.points()[ray], dexels.blocks()[ray], 0, ray};
+    *deepest = {um_from_mm(*low), 0.0, 0.0, dexels.points()[ray], dexels.blocks()[ray], 0, ray};
   }
   std::vector<uint32_t> rays = promising_rays(context);
   for (size_t i = 0; i < std::min(kRefined, regions.size()); ++i) {

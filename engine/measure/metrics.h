@@ -21,7 +21,8 @@ struct Ridge {
 /// A connected part of the design that lies deeper (a gouge) or stands higher (excess) than the limit.
 struct Region {
   double worst_um = 0.0;         ///< its greatest depth or height, > 0
-  double area_mm2 = 0.0;         ///< of the design; 0 for a gouge so narrow that no ray met it
+  double area_mm2 = 0.0;         ///< of the design
+  double volume_mm3 = 0.0;       ///< between the design and the part, over that area
   Vec3 place = Vec3::Zero();     ///< where the worst is: a point of the design, W, mm
   uint32_t block = 0xffffffffu;  ///< Sweep::block of the worst; kUncut where no sweep came
   size_t rays = 0;
@@ -30,8 +31,8 @@ struct Region {
 /// SurfaceMetrics lists no more regions of a kind than this, the worst.
 inline constexpr size_t kListedRegions = 20;
 
-/// What is proven of the whole design, between the rays too (theory 8): no place of it lies deeper, or carries
-/// higher material, than this.
+/// What is proven of the whole design, between the rays too (theory 8): no place of it lies deeper, or
+/// carries higher material, than this.
 struct Bound {
   double um = 0.0;
   Vec3 place = Vec3::Zero();  ///< about where the proof is loosest: a point of the design, W, mm

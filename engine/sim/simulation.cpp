@@ -13,6 +13,7 @@
 #include "sim/design_rays.h"
 #include "sim/findings.h"
 #include "sim/nc_job.h"
+#include "sim/prove_part.h"
 #include "toolpath/cl_path.h"
 
 namespace swarf::sim {
@@ -278,6 +279,7 @@ Result simulate(const Job& job, const CutOptions& options, Progress& progress) {
   cut_dexels(job, result.main);
   progress.end();
   measure_part(job, progress, result);
+  prove_part(job, progress, result);
   measure_flank(job, progress, result);
   // A program of blocks is one path: there is nothing to compare it with.
   if (!job.scene.has_blocks()) {

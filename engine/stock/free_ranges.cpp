@@ -48,6 +48,8 @@ double least_radius(const Vec3& p, const Vec3& n, const Node& box) {
   return near2 / (2.0 * along);
 }
 
+}  // namespace
+
 class DesignTree {
  public:
   explicit DesignTree(std::span<const RayFieldPtr> fields) : fields_(fields) {
@@ -157,7 +159,15 @@ class DesignTree {
   std::vector<Node> nodes_;
 };
 
-}  // namespace
+FreeRange::FreeRange(std::span<const RayFieldPtr> fields)
+    : fields_(fields.begin(), fields.end()), tree_(std::make_unique<const DesignTree>(fields_)) {}
+FreeRange::~FreeRange() = default;
+FreeRange::FreeRange(FreeRange&&) noexcept = default;
+
+double FreeRange::operator()(const Vec3& point, const Vec3& normal) const {
+  std::vector<uint32_t> open;
+  return tree_->range(point, normal, open);
+}
 
 std::vector<double> free_ranges(std::span<const RayFieldPtr> fields, size_t which) {
   const RayField& field = *fields[which];

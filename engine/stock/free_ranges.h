@@ -1,6 +1,7 @@
 // How far along its normal a ray answers for material: up to where another part of the design is nearer.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -17,5 +18,19 @@ namespace swarf::stock {
 /// than half the pitch has range 0. Points that the ray sees under less than 15 degrees are left out: the
 /// facets of a coarse mesh are no walls; so concave edges that turn by less than 30 degrees limit nothing.
 std::vector<double> free_ranges(std::span<const RayFieldPtr> fields, size_t which);
+
+/// The same range for any place of the design, between the feet too: never below the true one, and known to
+/// about the pitch like that of the rays.
+class FreeRange {
+ public:
+  explicit FreeRange(std::span<const RayFieldPtr> fields);
+  ~FreeRange();
+  FreeRange(FreeRange&&) noexcept;
+  double operator()(const Vec3& point, const Vec3& normal) const;
+
+ private:
+  std::vector<RayFieldPtr> fields_;
+  std::unique_ptr<const class DesignTree> tree_;
+};
 
 }  // namespace swarf::stock

@@ -42,6 +42,12 @@ struct DesignMesh {
   const mesh::MeshDistance distance;
 };
 
+/// An edge of a mesh whose facets turn by more than the crease angle: the rays of its two ends on either
+/// side.
+struct SharpEdge {
+  std::array<uint32_t, 2> left, right;
+};
+
 struct RayField {
   std::vector<Vec3> points, normals;               ///< W, mm; unit, out of the material
   std::vector<double> areas_mm2;                   ///< the share of the design's area each ray stands for
@@ -69,6 +75,9 @@ struct RayField {
   /// gouge is the floor's. On a parametric surface, which bounds no body, all of it.
   double own_depth(const Vec3& point, const Vec3& normal, double depth_mm) const;
 
+  /// Meshes: the facets before their division, by the rays at their corners, and the sharp edges.
+  std::vector<std::array<uint32_t, 3>> facets;
+  std::vector<SharpEdge> sharp_edges;
   /// Meshes: the mesh as it was given.
   std::shared_ptr<const DesignMesh> design;
   /// Meshes: the triangles around ray n are star[star_begin[n] .. star_begin[n + 1]).

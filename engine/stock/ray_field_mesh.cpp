@@ -91,6 +91,23 @@ CornerSets smooth_corners(const Facets& facets, double crease_rad) {
   return sets;
 }
 
+/// The edges between two facets whose corners did not join.
+std::vector<SharpEdge> sharp_edges(const Facets& facets, double crease_rad, const RayField& field) {
+  std::vector<SharpEdge> edges;
+  const std::vector<Side> sides = sides_of(facets.triangles);
+  const double least_cosine = std::cos(crease_rad);
+  const auto ray = [&](uint32_t corner) { return field.triangles[corner / 3][corner % 3]; };
+  for (size_t i = 0; i + 1 < sides.size(); ++i) {
+    const uint32_t a = sides[i].corner, b = sides[i + 1].corner;
+    if (sides[i].low != sides[i + 1].low || sides[i].high != sides[i + 1].high) continue;
+    if (facets.normals[a / 3].dot(facets.normals[b / 3]) >= least_cosine) continue;
+    const bool same = facets.triangles[a / 3][a % 3] == facets.triangles[b / 3][b % 3];
+    edges.push_back(
+        {{ray(a), ray(next_corner(a))}, {ray(same ? b : next_corner(b)), ray(same ? next_corner(b) : b)}});
+  }
+  return edges;
+}
+
 double corner_angle(const Triangle& t, size_t place, const std::vector<Vec3>& points) {
   const Vec3& apex = points[t[place]];
   const Vec3 a = points[t[(place + 1) % 3]] - apex, b = points[t[(place + 2) % 3]] - apex;
@@ -229,6 +246,8 @@ RayFieldPtr rays_on_mesh(const TriMesh& mesh, double pitch_mm, double crease_rad
   field->pitch_mm = pitch_mm;
   field->design = std::make_shared<DesignMesh>(mesh);
   place_rays(facets, welded.points, crease_rad, *field);
+  field->facets = field->triangles;
+  field->sharp_edges = sharp_edges(facets, crease_rad, *field);
   while (divide_long_edges(*field)) {
   }
   connect_rays(*field);

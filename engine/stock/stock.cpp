@@ -84,6 +84,10 @@ Stock Stock::load(const std::string& path, StockMetadata* metadata) {
   return stock;
 }
 
+double Stock::air_radius_mm(const Vec3& point_W) const {
+  return air_radius(impl_->level_set, point_W);
+}
+
 size_t Stock::leaves() const {
   return impl_->level_set.grid->tree().leafCount();
 }

@@ -62,6 +62,11 @@ class Stock {
   /// Closed surface of the material with sharp edges and outward normals: see StockMesher, which makes it,
   /// and makes it faster when it is asked for again after some cutting.
   TriMesh mesh() const;
+  /// Radius in mm of a ball about the point in which there is certainly no material, as far as the grid
+  /// tells; 0: nothing is known. Values are distance bounds (each cut is 1-Lipschitz and only raises them),
+  /// so a grid point of value v > 0 has no material within v. The caller takes off how far the sweeps that
+  /// cut the grid stray from the motion.
+  double air_radius_mm(const Vec3& point_W) const;
   uint64_t hash() const;
   size_t memory_bytes() const;
   const CutStatistics& statistics() const;

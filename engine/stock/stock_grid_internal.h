@@ -93,6 +93,7 @@ double volume(const LevelSet& level_set);
 /// See Stock::volume_between (stock_volume.cpp).
 VolumeRange volume_between(const LevelSet& level_set, double slack_mm);
 double trilinear(const LevelSet& level_set, const Vec3& point_W);
+double air_radius(const LevelSet& level_set, const Vec3& point_W);
 uint64_t state_hash(const LevelSet& level_set);
 /// Invariants, see Stock::check (stock_check.cpp).
 std::string broken_invariant(const LevelSet& level_set, CheckLevel level);

@@ -99,6 +99,31 @@ double trilinear(const LevelSet& set, const Vec3& point_W) {
   return sum;
 }
 
+double air_radius(const LevelSet& set, const Vec3& point_W) {
+  constexpr double kFar = 1e9;      // the casts below would overflow there
+  constexpr double kFloats = 2e-5;  // mm, of the values and of coordinates in the tool frame
+  const Vec3 index = point_W / set.voxel;
+  if (!(index.cwiseAbs().maxCoeff() < kFar)) return set.band();
+  const Vec3 nearest = index.array().round();
+  const openvdb::Coord at(static_cast<int>(nearest.x()), static_cast<int>(nearest.y()),
+                          static_cast<int>(nearest.z()));
+  double radius = set.value(at) - (index - nearest).norm() * set.voxel;
+  // A leaf position without a leaf holds +band at all its points: their balls cover its cube and more.
+  const openvdb::Coord leaf(at.x() >> 3, at.y() >> 3, at.z() >> 3);
+  const openvdb::Coord place(leaf.x() - set.map.lower.x(), leaf.y() - set.map.lower.y(),
+                             leaf.z() - set.map.lower.z());
+  const bool known = place.x() >= 0 && place.y() >= 0 && place.z() >= 0 &&
+                     place.x() < set.map.dimension.x() && place.y() < set.map.dimension.y() &&
+                     place.z() < set.map.dimension.z();
+  if (known && set.map.states[set.map.index(place.x(), place.y(), place.z())] == LeafState::kAir) {
+    const Vec3 low(leaf.x() * 8.0, leaf.y() * 8.0, leaf.z() * 8.0);
+    const double inside =
+        std::min((index - low).minCoeff(), (low + Vec3::Constant(kLeafSide - 1.0) - index).minCoeff());
+    radius = std::max(radius, inside * set.voxel + set.band() - 0.5 * std::sqrt(3.0) * set.voxel);
+  }
+  return std::max(0.0, radius - kFloats);
+}
+
 uint64_t state_hash(const LevelSet& set) {
   const size_t chunks = (set.map.size() + kPositionsPerTask - 1) / kPositionsPerTask;
   std::vector<uint64_t> parts(chunks, 0);

@@ -47,6 +47,7 @@ class SurfaceDexels {
   static SurfaceDexels load(const std::string& path, RayFieldPtr field);
 
   const RayField& field() const { return *field_; }
+  const RayFieldPtr& field_ptr() const { return field_; }
   /// Parametric designs only: the grid of the rays; ray iv * nu + iu.
   int nu() const { return static_cast<int>(field_->u_lines.size()); }
   int nv() const { return static_cast<int>(field_->v_lines.size()); }

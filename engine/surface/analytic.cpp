@@ -1,5 +1,6 @@
 #include "surface/analytic.h"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -39,8 +40,8 @@ Derivatives PlaneSurface::derivatives(double u, double v) const {
 }
 
 RevolvedSurface::RevolvedSurface(const Turn& turn, std::function<Meridian(double)> meridian,
-                                 MaterialSide side)
-    : turn_(turn), meridian_(std::move(meridian)), side_(side) {
+                                 const MeridianBounds& bounds, MaterialSide side)
+    : turn_(turn), meridian_(std::move(meridian)), bounds_(bounds), side_(side) {
   SWARF_CHECK(std::abs(turn.axis_W.norm() - 1.0) < 1e-9,
               "the axis of a surface of revolution is a unit vector");
   SWARF_CHECK(turn.to_rad > turn.from_rad, "a surface of revolution goes round positively");
@@ -71,6 +72,11 @@ Derivatives RevolvedSurface::derivatives(double u, double v) const {
           m.ddr * radial + m.ddz * axis};
 }
 
+BendBounds RevolvedSurface::bend_bounds(const Vec2&, const Vec2&) const {
+  const double rate = turn_.to_rad - turn_.from_rad;
+  return {bounds_.r * rate * rate, bounds_.dr * rate, bounds_.bend};
+}
+
 SurfacePtr cylinder_surface(const Turn& turn, double radius, double height, MaterialSide side) {
   return cone_surface(turn, radius, 0.0, height, side);
 }
@@ -85,7 +91,7 @@ SurfacePtr cone_surface(const Turn& turn, double base_radius, double half_angle_
       [=](double v) {
         return Meridian{base_radius - v * narrowing, -narrowing, 0.0, v * height, height, 0.0};
       },
-      side);
+      MeridianBounds{std::max(base_radius, base_radius - narrowing), std::abs(narrowing), 0.0}, side);
 }
 
 SurfacePtr sphere_surface(const Turn& turn, double radius, double polar_from_rad, double polar_to_rad,
@@ -101,7 +107,7 @@ SurfacePtr sphere_surface(const Turn& turn, double radius, double polar_from_rad
         return Meridian{sine,   cosine * rate, -sine * rate * rate,
                         cosine, -sine * rate,  -cosine * rate * rate};
       },
-      side);
+      MeridianBounds{radius, radius * std::abs(rate), radius * rate * rate}, side);
 }
 
 Meridian hyperboloid_meridian(const Hyperboloid& shape, double s) {
@@ -123,6 +129,23 @@ Meridian hyperboloid_meridian(const Hyperboloid& shape, double s) {
           s * c + r * k / m, c + r * d_k_m,     r * dd_k_m};
 }
 
+namespace {
+
+/// Over |s| <= reach, with rho0 >= d, |k| <= sin g, dk <= S/d, |ddk| <= 3 k dk / d and m >= c: term by term
+/// what hyperboloid_meridian adds up. `rate`: ds/dv.
+MeridianBounds hyperboloid_bounds(const Hyperboloid& shape, double reach, double rate) {
+  const double d = shape.distance, r = shape.cutter_radius;
+  const double c = std::cos(shape.skew_rad), S = 1.0 - c * c;
+  const double rho0 = std::sqrt(d * d + reach * reach * S);
+  const double k = std::min(std::sqrt(S), reach * S / d), dk = S / d, ddk = 3.0 * k * dk / d;
+  const double c3 = c * c * c, c5 = c3 * c * c;
+  const double d_1_m = k * dk / c3, dd_1_m = (dk * dk + k * ddk) / c3 + 3.0 * k * k * dk * dk / c5;
+  const double dd_k_m = c * c * (ddk / c3 + 3.0 * k * dk * dk / c5);
+  return {rho0 + r, (k + r * c * d_1_m) * rate, std::hypot(dk + r * c * dd_1_m, r * dd_k_m) * rate * rate};
+}
+
+}  // namespace
+
 SurfacePtr hyperboloid_surface(const Turn& turn, const Hyperboloid& shape, double z_low, double z_high) {
   SWARF_CHECK(shape.distance > shape.cutter_radius && shape.cutter_radius > 0.0 && z_low < z_high,
               "a hyperboloid needs a core and a height");
@@ -138,6 +161,7 @@ SurfacePtr hyperboloid_surface(const Turn& turn, const Hyperboloid& shape, doubl
         m.ddz *= rate * rate;
         return m;
       },
+      hyperboloid_bounds(shape, std::max(std::abs(from), std::abs(from + rate)), std::abs(rate)),
       MaterialSide::kConvex);
 }
 

@@ -18,6 +18,7 @@ class PlaneSurface final : public Surface {
   PlaneSurface(const Vec3& origin, const Vec3& along_u, const Vec3& along_v);
   Vec3 point(double u, double v) const override;
   Derivatives derivatives(double u, double v) const override;
+  BendBounds bend_bounds(const Vec2&, const Vec2&) const override { return {}; }
   int outward_sign() const override { return 1; }
 
  private:
@@ -28,6 +29,11 @@ class PlaneSurface final : public Surface {
 struct Meridian {
   double r = 0.0, dr = 0.0, ddr = 0.0;
   double z = 0.0, dz = 0.0, ddz = 0.0;
+};
+
+/// Upper bounds of |r|, |dr| and |(ddr, ddz)| over the whole meridian.
+struct MeridianBounds {
+  double r = 0.0, dr = 0.0, bend = 0.0;
 };
 
 /// Where a surface of revolution stands and how far round it goes.
@@ -41,15 +47,18 @@ struct Turn {
 /// above 0. X is the part of (1,0,0) square to the axis, or of (0,1,0) where the axis lies near (1,0,0).
 class RevolvedSurface final : public Surface {
  public:
-  RevolvedSurface(const Turn& turn, std::function<Meridian(double)> meridian, MaterialSide side);
+  RevolvedSurface(const Turn& turn, std::function<Meridian(double)> meridian, const MeridianBounds& bounds,
+                  MaterialSide side);
   Vec3 point(double u, double v) const override;
   Derivatives derivatives(double u, double v) const override;
+  BendBounds bend_bounds(const Vec2& low, const Vec2& high) const override;
   int outward_sign() const override { return side_ == MaterialSide::kConvex ? 1 : -1; }
 
  private:
   Turn turn_;
   Vec3 x_W_, y_W_;
   std::function<Meridian(double)> meridian_;
+  MeridianBounds bounds_;
   MaterialSide side_;
 };
 

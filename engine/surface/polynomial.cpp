@@ -1,5 +1,6 @@
 #include "surface/polynomial.h"
 
+#include <cmath>
 #include <utility>
 
 #include "base/check.h"
@@ -87,6 +88,29 @@ Derivatives PolynomialSurface::derivatives(double u, double v) const {
     across2.push(row.second, u);
   }
   return {along.value, along.first, across.value, along.second, across.first, across2.value};
+}
+
+BendBounds PolynomialSurface::bend_bounds(const Vec2& low, const Vec2& high) const {
+  const Vec2 centre = 0.5 * (low + high), half = 0.5 * (high - low);
+  BendBounds bounds;
+  // |S_uu| <= sum over the Taylor coefficients b_kl of S about the centre of |b_kl| k (k-1) hu^(k-2) hv^l.
+  for (int k = 0; k <= degree_u_; ++k) {
+    for (int l = 0; l <= degree_v_; ++l) {
+      Vec3 b = Vec3::Zero();
+      for (int i = k; i <= degree_u_; ++i) {
+        for (int j = l; j <= degree_v_; ++j) {
+          b += coefficients_[static_cast<size_t>(i) * (degree_v_ + 1) + j] * binomial(i, k) * binomial(j, l) *
+               std::pow(centre.x(), i - k) * std::pow(centre.y(), j - l);
+        }
+      }
+      const double size = b.norm();
+      const auto power = [](double h, int n) { return n == 0 ? 1.0 : std::pow(h, n); };
+      if (k >= 2) bounds.uu += size * k * (k - 1) * power(half.x(), k - 2) * power(half.y(), l);
+      if (k >= 1 && l >= 1) bounds.uv += size * k * l * power(half.x(), k - 1) * power(half.y(), l - 1);
+      if (l >= 2) bounds.vv += size * l * (l - 1) * power(half.x(), k) * power(half.y(), l - 2);
+    }
+  }
+  return bounds;
 }
 
 }  // namespace swarf::surface

@@ -17,6 +17,8 @@ class PolynomialSurface final : public Surface {
 
   Vec3 point(double u, double v) const override;
   Derivatives derivatives(double u, double v) const override;
+  /// From the Taylor polynomial about the rectangle's centre: exact for quadratic surfaces.
+  BendBounds bend_bounds(const Vec2& low, const Vec2& high) const override;
   int outward_sign() const override { return outward_sign_; }
 
   int degree_u() const { return degree_u_; }

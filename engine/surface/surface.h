@@ -12,6 +12,11 @@ struct Derivatives {
   Vec3 S, Su, Sv, Suu, Suv, Svv;
 };
 
+/// Upper bounds of |Suu|, |Suv| and |Svv| over a part of the parameters, mm.
+struct BendBounds {
+  double uu = 0.0, uv = 0.0, vv = 0.0;
+};
+
 /// Evaluation must allocate nothing: the interpolator calls it inside its cycle.
 /// Parameters a little outside [0,1] are legal where the surface has a natural continuation
 /// (polynomials do); passes overrun the edge of the part that way.
@@ -20,6 +25,9 @@ class Surface {
   virtual ~Surface() = default;
   virtual Vec3 point(double u, double v) const = 0;
   virtual Derivatives derivatives(double u, double v) const = 0;
+  /// Proven over the rectangle low <= (u, v) <= high, which lies in [0,1]^2: what the surface does between
+  /// two places is bounded by them, not sampled.
+  virtual BendBounds bend_bounds(const Vec2& low, const Vec2& high) const = 0;
   /// +1 when Su x Sv points out of the material, -1 when it points in (erratum E4).
   virtual int outward_sign() const = 0;
 };

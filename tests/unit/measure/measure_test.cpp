@@ -23,6 +23,10 @@ class Swapped final : public surface::Surface {
     const surface::Derivatives d = base_->derivatives(v, u);
     return {d.S, d.Sv, d.Su, d.Svv, d.Suv, d.Suu};
   }
+  surface::BendBounds bend_bounds(const Vec2& low, const Vec2& high) const override {
+    const surface::BendBounds b = base_->bend_bounds({low.y(), low.x()}, {high.y(), high.x()});
+    return {b.vv, b.uv, b.uu};
+  }
   int outward_sign() const override { return -base_->outward_sign(); }
 
  private:

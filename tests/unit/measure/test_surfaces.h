@@ -28,6 +28,9 @@ class Cylinder final : public surface::Surface {
     d.Svv = -angle_ * angle_ * radius_ * Vec3(0, s, c);
     return d;
   }
+  surface::BendBounds bend_bounds(const Vec2&, const Vec2&) const override {
+    return {0.0, 0.0, angle_ * angle_ * std::abs(radius_)};
+  }
   int outward_sign() const override { return radius_ > 0.0 ? 1 : -1; }
 
  private:
@@ -50,6 +53,10 @@ class Paraboloid final : public surface::Surface {
     d.Svv = {0, 0, -side * side * ky_};
     d.Suv = Vec3::Zero();
     return d;
+  }
+  surface::BendBounds bend_bounds(const Vec2&, const Vec2&) const override {
+    const double side2 = 4.0 * half_ * half_;
+    return {side2 * std::abs(kx_), 0.0, side2 * std::abs(ky_)};
   }
   int outward_sign() const override { return 1; }
 

@@ -1,0 +1,442 @@
+#include "measure/certificate.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "base/units.h"
+#include "measure/certified_regions.h"
+#include "measure/design_cell.h"
+#include "measure/height_bounds.h"
+#include "measure/sweep_index.h"
+#include "stock/ray_height.h"
+#include "stock/surface_dexels.h"
+
+namespace swarf::measure {
+namespace {
+
+/// A cell is closed when its bound is this near to what was measured: mm, and share.
+constexpr double kGap = 2e-5, kGapShare = 1e-3;
+/// Cells on the border of a gouge or of material left standing are divided down to this; mm.
+constexpr double kBorder = 0.01;
+/// No cell is divided below this; mm.
+constexpr double kSmallest = 1e-3;
+/// Cells in all, shared evenly by the roots, within these limits for one root.
+constexpr size_t kBudget = 20'000'000, kLeastBudget = 400, kMostBudget = 200'000;
+constexpr size_t kRoots = 10'000;
+constexpr double kLeastRoot = 1.0;  // mm
+/// Sweeps are first looked for up to this height over the design, mm; where more is left, up to the box's
+/// top.
+constexpr double kNearHeight = 1.0;
+
+struct Corner {
+  CellCorner at;
+  double top = 0.0;               ///< where the stock's box or another face ends the column, mm
+  double height = 0.0;            ///< that the sweeps leave standing, mm
+  uint32_t near = stock::kUncut;  ///< index into the root's sweeps
+};
+
+/// Everything of one root cell, worked on by one task.
+struct RootResult {
+  double gouge = 0.0, excess = 0.0;  ///< bounds, mm
+  Vec3 gouge_at = Vec3::Zero(), excess_at = Vec3::Zero();
+  double gouge_found = 0.0, excess_found = 0.0;  ///< mm
+  Vec3 gouge_found_at = Vec3::Zero(), excess_found_at = Vec3::Zero();
+  uint32_t gouge_block = stock::kUncut, excess_block = stock::kUncut;
+  std::vector<RegionPiece> gouges, excesses;
+  struct Open {
+    double depth, height, area;
+  };
+  std::vector<Open> open;
+  size_t cells = 0;
+};
+
+double leaves_box(const Box& box, const Vec3& point, const Vec3& direction) {
+  double enter = -kNever, leave = kNever;
+  for (int a = 0; a < 3; ++a) {
+    if (direction[a] == 0.0) {
+      if (point[a] < box.lower[a] || point[a] > box.upper[a]) return -kNever;
+      continue;
+    }
+    const double s0 = (box.lower[a] - point[a]) / direction[a], s1 = (box.upper[a] - point[a]) / direction[a];
+    enter = std::max(enter, std::min(s0, s1));
+    leave = std::min(leave, std::max(s0, s1));
+  }
+  constexpr double kOnFace = 1e-9;  // mm; designs often lie on the box
+  return enter <= leave && enter <= kOnFace ? leave : -kNever;
+}
+
+class RootProof {
+ public:
+  RootProof(const CertificateInput& input, const SweepIndex& index, const RootCell& root, size_t budget)
+      : input_(input), index_(index), root_(root), budget_(budget) {}
+
+  RootResult prove() {
+    for (const double reach : {kNearHeight, kNever}) {
+      result_ = {};
+      highest_seen_ = 0.0;
+      floors_.clear();
+      find_sweeps(reach);
+      gouge_goal_ = std::min(input_.gouge_known_mm, input_.gouge_limit_mm);
+      excess_goal_ = std::min(input_.excess_known_mm, input_.excess_limit_mm);
+      const auto& c = root_.cell.corners;
+      kept_.resize(near_.size());
+      for (uint32_t n = 0; n < kept_.size(); ++n) kept_[n] = n;
+      std::array<Corner, 3> corners;
+      for (size_t k = 0; k < 3; ++k) corners[k] = measured({c[k]}, 0, kept_.size(), {});
+      visit({root_.cell, corners, 0, kept_.size(), 0.0, kNever});
+      if (highest_seen_ < reach) break;
+    }
+    return std::move(result_);
+  }
+
+ private:
+  struct Cell {
+    DesignCell shape;
+    std::array<Corner, 3> corners;
+    size_t begin, end;     ///< of kept_: the sweeps that may matter
+    double dropped = 0.0;  ///< least height of those that do not
+    double air = kNever;   ///< above it the stock is air, as the grid tells for this cell or one around it
+  };
+  struct Bounds {
+    double low, high;
+  };
+
+  void find_sweeps(double reach) {
+    Box box{Vec3::Constant(kNever), Vec3::Constant(-kNever)};
+    const double margin = root_.cell.flatness_mm + root_.cell.radius() * 1e-3;
+    for (const CellCorner& corner : root_.cell.corners) {
+      const double top = std::min(reach, std::max(0.0, top_of(corner)));
+      for (const double s : {-stock::kSkin, top}) {
+        const double turn = std::min(2.0, root_.cell.turn) * std::abs(s) + margin;
+        box.lower = box.lower.cwiseMin(corner.point + s * corner.normal - Vec3::Constant(turn));
+        box.upper = box.upper.cwiseMax(corner.point + s * corner.normal + Vec3::Constant(turn));
+      }
+    }
+    std::vector<uint32_t> found;
+    index_.find(box, found);
+    near_.clear();
+    for (const uint32_t n : found) {
+      const stock::Sweep& sweep = input_.sweeps[n];
+      near_.push_back(
+          {stock::sweep_map(sweep), &input_.cutters[n], n, sweep.start.axis_W != sweep.end.axis_W});
+    }
+  }
+
+  double top_of(const CellCorner& corner) const {
+    return std::min(leaves_box(input_.stock.box(), corner.point, corner.normal),
+                    input_.ranges(corner.point, corner.normal));
+  }
+
+  /// How deep below a place a cut can count: to where another face is nearer, or out of the stock.
+  double own_depth(const CellCorner& corner, double depth) const {
+    if (depth <= 0.0) return depth;
+    depth = input_.field.own_depth(corner.point, corner.normal, depth);
+    const double through = leaves_box(input_.stock.box(), corner.point, -corner.normal);
+    return through > 0.0 ? std::min(depth, through) : depth;
+  }
+
+  /// Height at one corner, by the sweeps kept_[begin, end); `guesses` go first.
+  Corner measured(const CellCorner& at, size_t begin, size_t end, std::array<uint32_t, 2> guesses) {
+    Corner corner{at};
+    corner.top = top_of(at);
+    // Without stock at the place the design lacks material: as much as to the box.
+    corner.height = corner.top > -kNever ? corner.top : -distance_to_box(at.point);
+    const auto look_at = [&](uint32_t n) {
+      const double low = lowest(at, near_[n], corner.height);
+      if (low >= corner.height) return;
+      corner.height = low;
+      corner.near = n;
+    };
+    for (const uint32_t guess : guesses) {
+      if (guess < near_.size()) look_at(guess);
+    }
+    for (size_t i = begin; i < end; ++i) {
+      if (floors_.size() == kept_.size() && floors_[i] >= corner.height) continue;
+      look_at(kept_[i]);
+    }
+    if (corner.near != stock::kUncut) corner.height = -own_depth(at, -corner.height);
+    note(corner);
+    return corner;
+  }
+
+  double distance_to_box(const Vec3& p) const {
+    const Box& box = input_.stock.box();
+    return (p - p.cwiseMax(box.lower).cwiseMin(box.upper)).norm();
+  }
+
+  static double lowest(const CellCorner& at, const NearSweep& near, double highest) {
+    double least = kNever;
+    for (const cutter::ConvexPiece& piece : near.cutter->pieces) {
+      const stock::RayInterval cut = stock::ray_interval(at.point, at.normal, near.map, piece);
+      // A cut that leaves the design's skin standing belongs to another face.
+      if (cut.hit() && cut.high > cut.low && cut.high >= -stock::kSkin && cut.low < highest)
+        least = std::min(least, cut.low);
+    }
+    return least;
+  }
+
+  void note(const Corner& corner) {
+    highest_seen_ = std::max(highest_seen_, corner.height);
+    const uint32_t block = corner.near == stock::kUncut ? stock::kUncut : near_[corner.near].sweep;
+    if (root_.looks_down && -corner.height > result_.gouge_found) {
+      result_.gouge_found = -corner.height;
+      result_.gouge_found_at = corner.at.point;
+      result_.gouge_block = block;
+    }
+    if (root_.looks_up && corner.height > result_.excess_found) {
+      result_.excess_found = corner.height;
+      result_.excess_found_at = corner.at.point;
+      result_.excess_block = block;
+    }
+  }
+
+  double gouge_target() const {
+    const double found = std::max(result_.gouge_found, gouge_goal_);
+    return found + kGap + kGapShare * found;
+  }
+  double excess_target() const {
+    const double found = std::max(result_.excess_found, excess_goal_);
+    return found + kGap + kGapShare * found;
+  }
+
+  /// How deep the cell's columns count at most.
+  double deepest(const Cell& cell) const {
+    double depth = 0.0;
+    constexpr double kThrough = 1e4;  // mm: any part
+    for (const Corner& corner : cell.corners) depth = std::max(depth, own_depth(corner.at, kThrough));
+    return depth + cell.shape.radius();
+  }
+
+  /// Whether all columns lie in the box down to `depth`: there was material to begin with.
+  double lacking(const Cell& cell) const {
+    double least = 0.0;
+    for (const Corner& corner : cell.corners) {
+      const double top = leaves_box(input_.stock.box(), corner.at.point, corner.at.normal);
+      least = std::min(least, top > -kNever ? top : -distance_to_box(corner.at.point) - cell.shape.radius());
+    }
+    return least < 0.0 ? least - cell.shape.flatness_mm : -cell.shape.flatness_mm;
+  }
+
+  /// Least height over the cell; floors_ gets each sweep's.
+  double lower_bound(const Cell& cell) {
+    double low = std::min(cell.dropped, lacking(cell));
+    for (size_t i = cell.begin; i < cell.end; ++i) {
+      floors_[i] = least_height(cell.shape, near_[kept_[i]], stock::kSkin);
+      low = std::min(low, floors_[i]);
+    }
+    return low;
+  }
+
+  /// The height above which the grid knows air only, for the cell's columns.
+  double air_above(const Cell& cell, double top) const {
+    const double voxel = input_.stock.voxel_mm();
+    const Vec3 centre = cell.shape.centroid(), normal = cell.shape.mean_normal();
+    double slice = 0.0;  // of the columns at height s about the centre line, per mm of height
+    for (const Corner& corner : cell.corners) slice = std::max(slice, (corner.at.normal - normal).norm());
+    const double least_step = 0.1 * voxel;
+    double s = top;
+    while (s > 0.0) {
+      const double radius = input_.stock.air_radius_mm(centre + s * normal) - input_.stock_bound_mm;
+      const double aside = cell.shape.radius() + cell.shape.flatness_mm + s * (slice + cell.shape.turn);
+      if (!(radius > aside)) break;
+      const double step = std::sqrt(radius * radius - aside * aside);
+      if (step < least_step) break;
+      s -= step;
+    }
+    return std::max(s, 0.0);
+  }
+
+  double upper_bound(Cell& cell) {
+    double top = 0.0, range = 0.0;
+    for (const Corner& corner : cell.corners) {
+      top = std::max(top, std::max(0.0, corner.top));
+      range = std::max(range, input_.ranges(corner.at.point, corner.at.normal));
+    }
+    // Between the corners another face may begin a little later.
+    constexpr double kRangeSlope = 4.0;
+    if (range < kNever) top = std::max(top, range + kRangeSlope * cell.shape.radius());
+    top = std::min(top, cell.air);
+    double high = bound_by_sets(cell, top);
+    if (high > excess_target() && cell.shape.radius() < 2.0 * input_.stock.voxel_mm() && cell.air == kNever) {
+      cell.air = air_above(cell, top);
+      high = std::min(cell.air, bound_by_sets(cell, cell.air));
+    }
+    return std::min(high, top);
+  }
+
+  double bound_by_sets(const Cell& cell, double top) {
+    sets_.clear();
+    const Box& box = input_.stock.box();
+    for (int a = 0; a < 3; ++a) {
+      sets_.push_back(outside_from(cell.shape, Vec3::Unit(a), box.upper[a]));
+      sets_.push_back(outside_from(cell.shape, -Vec3::Unit(a), -box.lower[a]));
+    }
+    const CornerHeights from{cell.corners[0].height, cell.corners[1].height, cell.corners[2].height};
+    for (size_t k = 0; k < 3; ++k) {
+      const uint32_t n = cell.corners[k].near;
+      if (n == stock::kUncut || (k > 0 && n == cell.corners[0].near) || (k > 1 && n == cell.corners[1].near))
+        continue;
+      for (const cutter::ConvexPiece& piece : near_[n].cutter->pieces)
+        sets_.push_back(covered_from(cell.shape, near_[n], piece, from, top));
+    }
+    return highest_left(sets_);
+  }
+
+  void close(const Cell& cell, const Bounds& bounds) {
+    if (root_.looks_down && -bounds.low > result_.gouge) {
+      result_.gouge = -bounds.low;
+      result_.gouge_at = cell.shape.centroid();
+    }
+    if (root_.looks_up && bounds.high > result_.excess) {
+      result_.excess = bounds.high;
+      result_.excess_at = cell.shape.centroid();
+    }
+    CornerHeights heights;
+    for (size_t k = 0; k < 3; ++k) heights[k] = cell.corners[k].height;
+    const auto block = [&](size_t k) {
+      const uint32_t n = cell.corners[k].near;
+      return n == stock::kUncut ? n : near_[n].sweep;
+    };
+    const std::array<uint32_t, 3> blocks{block(0), block(1), block(2)};
+    if (root_.looks_down) {
+      add_piece(cell.shape, {-heights[0], -heights[1], -heights[2]}, blocks, input_.gouge_limit_mm,
+                result_.gouges);
+    }
+    if (root_.looks_up) add_piece(cell.shape, heights, blocks, input_.excess_limit_mm, result_.excesses);
+  }
+
+  /// Whether part of the cell may break a limit and part of it keep it.
+  bool on_border(const Bounds& bounds) const {
+    const bool gouge = root_.looks_down && -bounds.low > input_.gouge_limit_mm &&
+                       !(-bounds.high > input_.gouge_limit_mm) && result_.gouge_found > input_.gouge_limit_mm;
+    const bool excess = root_.looks_up && bounds.high > input_.excess_limit_mm &&
+                        !(bounds.low > input_.excess_limit_mm) &&
+                        result_.excess_found > input_.excess_limit_mm;
+    return gouge || excess;
+  }
+
+  void visit(Cell cell) {
+    ++result_.cells;
+    floors_.resize(kept_.size());
+    Bounds bounds{lower_bound(cell), 0.0};
+    if (bounds.low == -kNever) bounds.low = -deepest(cell);
+    bounds.high = upper_bound(cell);
+    const bool gouge_open = root_.looks_down && -bounds.low > gouge_target();
+    const bool excess_open = root_.looks_up && bounds.high > excess_target();
+    const double edge = cell.shape.longest_edge();
+    const bool divide =
+        ((gouge_open || excess_open) && edge > kSmallest) || (on_border(bounds) && edge > kBorder);
+    if (!divide || result_.cells > budget_) {
+      if (gouge_open || excess_open)
+        result_.open.push_back({-bounds.low, bounds.high, cell.shape.area_mm2()});
+      close(cell, bounds);
+      return;
+    }
+    divide_cell(cell, bounds);
+  }
+
+  /// Sweeps that may still be the lowest somewhere in the cell are kept for its parts.
+  void divide_cell(const Cell& cell, const Bounds& bounds) {
+    const size_t begin = kept_.size();
+    double dropped = cell.dropped;
+    // Above the highest corner a sweep can only matter for the upper bound, which needs no certain set.
+    double highest = -kNever;
+    for (const Corner& corner : cell.corners) highest = std::max(highest, corner.height);
+    const double slack = 0.05 * cell.shape.radius();
+    for (size_t i = cell.begin; i < cell.end; ++i) {
+      const bool deep = root_.looks_down && -floors_[i] > gouge_target();
+      const bool low = floors_[i] <= highest + slack && floors_[i] < bounds.high;
+      if (deep || low) {
+        kept_.push_back(kept_[i]);
+        floors_.push_back(floors_[i]);
+      } else {
+        dropped = std::min(dropped, floors_[i]);
+      }
+    }
+    const size_t end = kept_.size();
+    std::array<Corner, 3> middles;
+    for (size_t k = 0; k < 3; ++k) {
+      const Corner &a = cell.corners[k], &b = cell.corners[(k + 1) % 3];
+      middles[k] = measured(middle(a.at, b.at, root_.bounds), begin, end, {a.near, b.near});
+    }
+    const auto& c = cell.corners;
+    for (const std::array<Corner, 3>& part : {std::array<Corner, 3>{c[0], middles[0], middles[2]},
+                                              std::array<Corner, 3>{middles[0], c[1], middles[1]},
+                                              std::array<Corner, 3>{middles[2], middles[1], c[2]},
+                                              std::array<Corner, 3>{middles[0], middles[1], middles[2]}}) {
+      visit({make_cell({part[0].at, part[1].at, part[2].at}, root_.bounds), part, begin, end, dropped,
+             cell.air});
+      kept_.resize(end);
+      floors_.resize(end);
+    }
+    kept_.resize(begin);
+    floors_.resize(begin);
+  }
+
+  const CertificateInput& input_;
+  const SweepIndex& index_;
+  const RootCell& root_;
+  size_t budget_;
+  double gouge_goal_ = 0.0, excess_goal_ = 0.0, highest_seen_ = 0.0;
+  std::vector<NearSweep> near_;
+  std::vector<uint32_t> kept_;  ///< a stack: the sweeps of a cell lie above those of the cell around it
+  std::vector<double> floors_;  ///< least heights of kept_ over the cell last looked at
+  std::vector<CornerHeights> sets_;
+  RootResult result_;
+};
+
+void join(RootResult& part, Certificate& whole, std::vector<RegionPiece>& gouges,
+          std::vector<RegionPiece>& excesses) {
+  if (um_from_mm(part.gouge) > whole.gouge.um) whole.gouge = {um_from_mm(part.gouge), part.gouge_at};
+  if (um_from_mm(part.excess) > whole.excess.um) whole.excess = {um_from_mm(part.excess), part.excess_at};
+  if (um_from_mm(part.gouge_found) > whole.gouge_found_um) {
+    whole.gouge_found_um = um_from_mm(part.gouge_found);
+    whole.gouge_place = part.gouge_found_at;
+    whole.gouge_block = part.gouge_block;
+  }
+  if (um_from_mm(part.excess_found) > whole.excess_found_um) {
+    whole.excess_found_um = um_from_mm(part.excess_found);
+    whole.excess_place = part.excess_found_at;
+    whole.excess_block = part.excess_block;
+  }
+  gouges.insert(gouges.end(), part.gouges.begin(), part.gouges.end());
+  excesses.insert(excesses.end(), part.excesses.begin(), part.excesses.end());
+  whole.cells += part.cells;
+}
+
+}  // namespace
+
+Certificate certify(const CertificateInput& input) {
+  double area = 0.0;
+  for (const double part : input.field.areas_mm2) area += part;
+  const double size = std::max(kLeastRoot, std::sqrt(2.0 * area / kRoots));
+  const std::vector<RootCell> roots = root_cells(input.field, size);
+  const size_t budget = std::clamp(kBudget / std::max<size_t>(1, roots.size()), kLeastBudget, kMostBudget);
+  const SweepIndex index(input.sweeps, input.cutters);
+  std::vector<RootResult> parts(roots.size());
+  parallel_chunks(roots.size(), 1, [&](size_t begin, size_t) {
+    parts[begin] = RootProof(input, index, roots[begin], budget).prove();
+  });
+  Certificate whole;
+  std::vector<RegionPiece> gouges, excesses;
+  for (RootResult& part : parts) join(part, whole, gouges, excesses);
+  const double gouge_settled =
+      std::max(whole.gouge_found_um * kMicrometre * (1.0 + kGapShare) + kGap, input.gouge_limit_mm);
+  const double excess_settled =
+      std::max(whole.excess_found_um * kMicrometre * (1.0 + kGapShare) + kGap, input.excess_limit_mm);
+  for (const RootResult& part : parts) {
+    for (const RootResult::Open& open : part.open) {
+      if (open.depth <= gouge_settled && open.height <= excess_settled) continue;
+      whole.open_area_mm2 += open.area;
+      ++whole.open_cells;
+    }
+  }
+  whole.gouge.um += um_from_mm(input.sweep_bound_mm);
+  whole.excess.um += um_from_mm(input.sweep_bound_mm);
+  whole.gouges = join_pieces(gouges);
+  whole.excesses = join_pieces(excesses);
+  return whole;
+}
+
+}  // namespace swarf::measure

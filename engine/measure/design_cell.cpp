@@ -1,0 +1,185 @@
+#include "measure/design_cell.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace swarf::measure {
+namespace {
+
+constexpr size_t kLengthSamples = 8;
+
+CellCorner corner_on(const surface::Surface& surface, double u, double v) {
+  const surface::Derivatives d = surface.derivatives(u, v);
+  return {d.S, surface::outward_normal(surface, d), {u, v}};
+}
+
+/// n = N/|N|, N = Su x Sv: |dn| <= |dN| / |N|, |dN/du| <= |Suu||Sv| + |Su||Suv|; |Su|, |Sv| and |N| are
+/// bounded from the rectangle's centre. Infinite where N may vanish.
+PatchBounds bounds_over(const surface::SurfacePtr& surface, const Vec2& low, const Vec2& high) {
+  PatchBounds bounds{surface, surface->bend_bounds(low, high)};
+  const Vec2 centre = 0.5 * (low + high), half = 0.5 * (high - low);
+  const surface::Derivatives d = surface->derivatives(centre.x(), centre.y());
+  const surface::BendBounds& b = bounds.bends;
+  const double change_u = b.uu * half.x() + b.uv * half.y(), change_v = b.uv * half.x() + b.vv * half.y();
+  const double Su = d.Su.norm() + change_u, Sv = d.Sv.norm() + change_v;
+  const double N_u = b.uu * Sv + Su * b.uv, N_v = b.uv * Sv + Su * b.vv;
+  const double N = d.Su.cross(d.Sv).norm() - N_u * half.x() - N_v * half.y();
+  const double far = std::numeric_limits<double>::infinity();
+  bounds.turn_u = N > 0.0 ? N_u / N : N_u > 0.0 ? far : 0.0;
+  bounds.turn_v = N > 0.0 ? N_v / N : N_v > 0.0 ? far : 0.0;
+  return bounds;
+}
+
+/// Length of the longest of a few lines of one parameter: only the size of cells hangs on it.
+double length_along(const surface::Surface& surface, bool along_u) {
+  double longest = 0.0;
+  for (size_t i = 0; i <= kLengthSamples; ++i) {
+    double length = 0.0;
+    for (size_t k = 0; k <= kLengthSamples; ++k) {
+      const double fixed = static_cast<double>(i) / kLengthSamples,
+                   t = static_cast<double>(k) / kLengthSamples;
+      const surface::Derivatives d = along_u ? surface.derivatives(t, fixed) : surface.derivatives(fixed, t);
+      length += (along_u ? d.Su : d.Sv).norm() / (kLengthSamples + 1);
+    }
+    longest = std::max(longest, length);
+  }
+  return longest;
+}
+
+void add_surface(const surface::SurfacePtr& surface, double size_mm, std::vector<RootCell>& cells) {
+  const auto parts = [&](bool along_u) {
+    return std::max(1, static_cast<int>(std::ceil(length_along(*surface, along_u) / size_mm)));
+  };
+  const int nu = parts(true), nv = parts(false);
+  for (int j = 0; j < nv; ++j) {
+    for (int i = 0; i < nu; ++i) {
+      const double u0 = static_cast<double>(i) / nu, u1 = static_cast<double>(i + 1) / nu;
+      const double v0 = static_cast<double>(j) / nv, v1 = static_cast<double>(j + 1) / nv;
+      const PatchBounds bounds = bounds_over(surface, {u0, v0}, {u1, v1});
+      const CellCorner a = corner_on(*surface, u0, v0), b = corner_on(*surface, u1, v0),
+                       c = corner_on(*surface, u1, v1), d = corner_on(*surface, u0, v1);
+      cells.push_back({make_cell({a, b, c}, bounds), bounds});
+      cells.push_back({make_cell({a, c, d}, bounds), bounds});
+    }
+  }
+}
+
+void add_divided(const std::array<CellCorner, 3>& corners, double size_mm, std::vector<RootCell>& cells) {
+  const PatchBounds flat;
+  const DesignCell cell = make_cell(corners, flat);
+  if (cell.longest_edge() <= size_mm) {
+    cells.push_back({cell, flat});
+    return;
+  }
+  // The longest edge is halved: long thin facets keep their shape no worse.
+  int first = 0;
+  double longest = -1.0;
+  for (int k = 0; k < 3; ++k) {
+    const double length = (corners[k].point - corners[(k + 1) % 3].point).norm();
+    if (length > longest) {
+      longest = length;
+      first = k;
+    }
+  }
+  const CellCorner &a = corners[first], &b = corners[(first + 1) % 3], &c = corners[(first + 2) % 3];
+  const CellCorner m = middle(a, b, flat);
+  add_divided({a, m, c}, size_mm, cells);
+  add_divided({m, b, c}, size_mm, cells);
+}
+
+Vec3 turned_by(const Vec3& n, const Vec3& m, double share) {
+  const double angle = std::atan2(n.cross(m).norm(), n.dot(m));
+  return Eigen::AngleAxisd(share * angle, n.cross(m).normalized()) * n;
+}
+
+/// The columns between the two sides of a sharp edge, in steps of at most kFanStep. Outside a convex edge
+/// they answer for what stands there, inside a concave one for what is cut.
+void add_fan(const stock::RayField& field, const stock::SharpEdge& edge, double size_mm,
+             std::vector<RootCell>& cells) {
+  constexpr double kFanStep = 0.2;  // rad; the columns' directions between them are bounded, not sampled
+  const Vec3 &from = field.points[edge.left[0]], &to = field.points[edge.left[1]];
+  const auto normals = [&](int end) {
+    return std::pair(field.normals[edge.left[end]], field.normals[edge.right[end]]);
+  };
+  const auto [n0, m0] = normals(0);
+  const auto [n1, m1] = normals(1);
+  const bool convex = (to - from).dot(n0.cross(m0)) > 0.0;
+  const double angle =
+      std::max(std::atan2(n0.cross(m0).norm(), n0.dot(m0)), std::atan2(n1.cross(m1).norm(), n1.dot(m1)));
+  const int steps = std::max(1, static_cast<int>(std::ceil(angle / kFanStep)));
+  std::vector<RootCell> fan;
+  for (int i = 0; i < steps; ++i) {
+    const double low = static_cast<double>(i) / steps, high = static_cast<double>(i + 1) / steps;
+    const CellCorner a{from, turned_by(n0, m0, low)}, b{to, turned_by(n1, m1, low)},
+        c{to, turned_by(n1, m1, high)}, d{from, turned_by(n0, m0, high)};
+    add_divided({a, b, c}, size_mm, fan);
+    add_divided({a, c, d}, size_mm, fan);
+  }
+  for (RootCell& cell : fan) {
+    (convex ? cell.looks_down : cell.looks_up) = false;
+    cells.push_back(cell);
+  }
+}
+
+}  // namespace
+
+double DesignCell::radius() const {
+  const Vec3 c = centroid();
+  double r2 = 0.0;
+  for (const CellCorner& corner : corners) r2 = std::max(r2, (corner.point - c).squaredNorm());
+  return std::sqrt(r2);
+}
+
+double DesignCell::longest_edge() const {
+  double l2 = 0.0;
+  for (size_t k = 0; k < 3; ++k)
+    l2 = std::max(l2, (corners[k].point - corners[(k + 1) % 3].point).squaredNorm());
+  return std::sqrt(l2);
+}
+
+double DesignCell::area_mm2() const {
+  return 0.5 * (corners[1].point - corners[0].point).cross(corners[2].point - corners[0].point).norm();
+}
+
+DesignCell make_cell(const std::array<CellCorner, 3>& corners, const PatchBounds& bounds) {
+  DesignCell cell{corners};
+  for (size_t k = 0; k < 3; ++k) {
+    const CellCorner &a = corners[k], &b = corners[(k + 1) % 3];
+    if (bounds.surface != nullptr) {
+      const Vec2 d = (b.uv - a.uv).cwiseAbs();
+      const surface::BendBounds& m = bounds.bends;
+      cell.flatness_mm =
+          std::max(cell.flatness_mm, ((m.uu + m.uv) * d.x() * d.x() + (m.uv + m.vv) * d.y() * d.y()) / 6.0);
+      const double turn =
+          (d.x() > 0.0 ? bounds.turn_u * d.x() : 0.0) + (d.y() > 0.0 ? bounds.turn_v * d.y() : 0.0);
+      cell.turn = std::max(cell.turn, turn);
+    } else {
+      // |sum l_k n_k|^2 = 1 - sum over pairs l_j l_k |n_j - n_k|^2 >= 1 - max / 3.
+      const double third = (a.normal - b.normal).squaredNorm() / 3.0;
+      cell.turn = std::max(cell.turn, 1.0 - std::sqrt(std::max(0.0, 1.0 - third)));
+    }
+  }
+  return cell;
+}
+
+CellCorner middle(const CellCorner& a, const CellCorner& b, const PatchBounds& bounds) {
+  const Vec2 uv = 0.5 * (a.uv + b.uv);
+  if (bounds.surface != nullptr) return corner_on(*bounds.surface, uv.x(), uv.y());
+  return {0.5 * (a.point + b.point), (a.normal + b.normal).normalized(), uv};
+}
+
+std::vector<RootCell> root_cells(const stock::RayField& field, double size_mm) {
+  std::vector<RootCell> cells;
+  if (field.surface != nullptr) {
+    add_surface(field.surface, size_mm, cells);
+    return cells;
+  }
+  const auto corner = [&](uint32_t ray) { return CellCorner{field.points[ray], field.normals[ray]}; };
+  for (const auto& t : field.facets) add_divided({corner(t[0]), corner(t[1]), corner(t[2])}, size_mm, cells);
+  for (const stock::SharpEdge& e : field.sharp_edges) add_fan(field, e, size_mm, cells);
+  return cells;
+}
+
+}  // namespace swarf::measure

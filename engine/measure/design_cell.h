@@ -1,0 +1,65 @@
+// The design in cells: triangles whose columns along the normals tile what lies above and below it. Internal
+// to this folder.
+//
+// A cell has three corners (p_k, n_k): places of the design and the directions of their columns. The place at
+// barycentric l and height s stands at S(l) + s n(l). It lies within
+//   flatness + |s| turn    of    sum_k l_k (p_k + s n_k),
+// so whatever holds for a ball of that radius about the sum holds for the design (theory 8). For a surface
+// with |Suu| <= A, |Suv| <= B, |Svv| <= C Taylor's formula at the corners gives
+//   flatness = max over edges of ((A + B) du^2 + (B + C) dv^2) / 6
+// because sum l_k q(x_k - x) = sum over pairs l_j l_k q(x_j - x_k) <= max q / 3 for a quadratic form q.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "base/frames.h"
+#include "stock/ray_field.h"
+#include "surface/surface.h"
+
+namespace swarf::measure {
+
+struct CellCorner {
+  Vec3 point, normal;  ///< W, mm; unit, out of the material
+  Vec2 uv = Vec2::Zero();
+};
+
+/// What bounds the design between the corners of every cell of a patch.
+struct PatchBounds {
+  surface::SurfacePtr surface;        ///< null: flat facets with interpolated normals
+  surface::BendBounds bends;          ///< mm
+  double turn_u = 0.0, turn_v = 0.0;  ///< |dn/du|, |dn/dv| at most
+};
+
+struct DesignCell {
+  std::array<CellCorner, 3> corners;
+  double flatness_mm = 0.0, turn = 0.0;
+
+  Vec3 centroid() const { return (corners[0].point + corners[1].point + corners[2].point) / 3.0; }
+  Vec3 mean_normal() const {
+    return (corners[0].normal + corners[1].normal + corners[2].normal).normalized();
+  }
+  /// From the centroid to the farthest corner, mm.
+  double radius() const;
+  double longest_edge() const;
+  double area_mm2() const;
+};
+
+DesignCell make_cell(const std::array<CellCorner, 3>& corners, const PatchBounds& bounds);
+
+/// Half way between two corners of a cell.
+CellCorner middle(const CellCorner& a, const CellCorner& b, const PatchBounds& bounds);
+
+struct RootCell {
+  DesignCell cell;
+  PatchBounds bounds;
+  bool looks_up = true;    ///< answers for material above the design
+  bool looks_down = true;  ///< answers for cuts below it
+};
+
+/// Cells of about `size_mm` that cover the whole design of the field: parameter rectangles halved along a
+/// diagonal; facets divided. Sharp edges of a mesh get cells without area, whose normals fan out from one
+/// side to the other, so that no place near a closed mesh lies between two columns.
+std::vector<RootCell> root_cells(const stock::RayField& field, double size_mm);
+
+}  // namespace swarf::measure

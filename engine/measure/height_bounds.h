@@ -1,0 +1,54 @@
+// What sweeps leave standing over a cell of the design: proven bounds from both sides (theory 8). Internal to
+// this folder.
+//
+// From below. F, the implicit function of a convex piece, is convex: a tangent at the instant that brings the
+// cell nearest lies below F everywhere, and so does the plane of a face. Along a column the tangent is linear
+// in s, so the height below which the sweep cannot have cut is the root of a linear function at each corner.
+//
+// From above. The set that a convex piece covers while it moves without turning is convex; so is the piece
+// while it stands; so is the outside of each face of the stock's box. If such a set holds the columns of the
+// three corners from h_k up to a common height, it holds the hull of them, and over the cell the material
+// ends at or below sum_k l_k h_k. Of several sets the lowest counts at each place, so the cell's bound is
+//   max over l of min over the sets of sum_k l_k h_k,
+// a linear program in two variables: across a ridge it gives the ridge's height, whatever the cell's size.
+#pragma once
+
+#include <array>
+#include <limits>
+#include <vector>
+
+#include "measure/design_cell.h"
+#include "stock/sweep.h"
+#include "stock/sweep_map.h"
+
+namespace swarf::measure {
+
+inline constexpr double kNever = std::numeric_limits<double>::infinity();
+
+/// A sweep that comes near a cell.
+struct NearSweep {
+  stock::SweepMap map;
+  const stock::CutterSolid* cutter = nullptr;
+  uint32_t sweep = 0;
+  bool turns = false;
+};
+
+/// Height in mm below which the sweep cuts nothing of the cell's columns down to `depth_mm` (> 0) under the
+/// design; -infinity when that cannot be told.
+double least_height(const DesignCell& cell, const NearSweep& near, double depth_mm);
+
+/// Heights from which on a set without material covers the columns of the corners; kNever: it does not.
+using CornerHeights = std::array<double, 3>;
+
+/// What one piece of the sweep is known to cover. `from`: heights from which to look, below the answer;
+/// `top`: the columns are covered from the answer up to here.
+CornerHeights covered_from(const DesignCell& cell, const NearSweep& near, const cutter::ConvexPiece& piece,
+                           const CornerHeights& from, double top);
+
+/// The outside of one face of the box: normal . x >= offset.
+CornerHeights outside_from(const DesignCell& cell, const Vec3& normal, double offset);
+
+/// max over l of min over the sets; kNever without a set that covers every corner.
+double highest_left(const std::vector<CornerHeights>& sets);
+
+}  // namespace swarf::measure

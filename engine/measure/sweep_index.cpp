@@ -1,0 +1,102 @@
+#include "measure/sweep_index.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "base/parallel.h"
+#include "stock/sweep_map.h"
+
+namespace swarf::measure {
+namespace {
+
+constexpr size_t kBoxesPerTask = 4096;
+
+Box nothing() {
+  const double far = std::numeric_limits<double>::infinity();
+  return {Vec3::Constant(far), Vec3::Constant(-far)};
+}
+
+Box joined(const Box& a, const Box& b) {
+  return {a.lower.cwiseMin(b.lower), a.upper.cwiseMax(b.upper)};
+}
+
+bool meet(const Box& a, const Box& b) {
+  return (a.lower.array() <= b.upper.array()).all() && (b.lower.array() <= a.upper.array()).all();
+}
+
+/// Around the standing cutter: a cylinder from its lowest to its highest point.
+Box pose_box(const ToolPose& pose, double radius, double low, double high) {
+  const Vec3 a = pose.tip_W + low * pose.axis_W, b = pose.tip_W + high * pose.axis_W;
+  const Vec3 disc = radius * (Vec3::Ones() - pose.axis_W.cwiseAbs2()).cwiseMax(0.0).cwiseSqrt();
+  return {a.cwiseMin(b) - disc, a.cwiseMax(b) + disc};
+}
+
+}  // namespace
+
+Box sweep_box(const stock::Sweep& sweep, const stock::CutterSolid& cutter) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const cutter::ConvexPiece& piece : cutter.pieces) {
+    low = std::min(low, piece.low);
+    high = std::max(high, piece.high);
+  }
+  const double lever = std::hypot(cutter.radius, std::max(std::abs(low), std::abs(high)));
+  const Box box =
+      joined(pose_box(sweep.start, cutter.radius, low, high), pose_box(sweep.end, cutter.radius, low, high));
+  // Between its ends a turning cutter bulges: the points of the rigid motion by theta^2 lever / 8, and the
+  // sweep's own definition strays from the rigid motion by motion_bound.
+  const Vec3 turn = sweep.end.axis_W - sweep.start.axis_W;
+  constexpr double kRounding = 1e-6;  // mm
+  const double bulge =
+      0.25 * turn.squaredNorm() * lever + 2.0 * stock::motion_bound(sweep, lever) + kRounding;
+  return {box.lower - Vec3::Constant(bulge), box.upper + Vec3::Constant(bulge)};
+}
+
+SweepIndex::SweepIndex(std::span<const stock::Sweep> sweeps, const SweepCutters& cutters)
+    : sweeps_(sweeps), boxes_(sweeps.size()) {
+  parallel_chunks(sweeps.size(), kBoxesPerTask, [&](size_t begin, size_t end) {
+    for (size_t n = begin; n < end; ++n) boxes_[n] = sweep_box(sweeps[n], cutters[sweeps[n].block]);
+  });
+  size_t leaves = 1;
+  while (leaves * kLeafSweeps < sweeps.size()) leaves *= 2;
+  nodes_.assign(2 * leaves - 1, nothing());
+  build(0, 0, leaves * kLeafSweeps);
+}
+
+void SweepIndex::build(size_t node, size_t begin, size_t end) {
+  if (end - begin <= kLeafSweeps) {
+    for (size_t n = begin; n < std::min(end, boxes_.size()); ++n)
+      nodes_[node] = joined(nodes_[node], boxes_[n]);
+    return;
+  }
+  const size_t middle = begin + (end - begin) / 2;
+  build(2 * node + 1, begin, middle);
+  build(2 * node + 2, middle, end);
+  nodes_[node] = joined(nodes_[2 * node + 1], nodes_[2 * node + 2]);
+}
+
+void SweepIndex::find(const Box& box, std::vector<uint32_t>& found) const {
+  struct Open {
+    size_t node, begin, end;
+  };
+  std::array<Open, 128> open;
+  size_t count = 0;
+  size_t leaves = (nodes_.size() + 1) / 2;
+  open[count++] = {0, 0, leaves * kLeafSweeps};
+  while (count > 0) {
+    const Open at = open[--count];
+    if (!meet(nodes_[at.node], box)) continue;
+    if (at.end - at.begin <= kLeafSweeps) {
+      for (size_t n = at.begin; n < std::min(at.end, boxes_.size()); ++n) {
+        if (meet(boxes_[n], box)) found.push_back(static_cast<uint32_t>(n));
+      }
+      continue;
+    }
+    const size_t middle = at.begin + (at.end - at.begin) / 2;
+    open[count++] = {2 * at.node + 2, middle, at.end};
+    open[count++] = {2 * at.node + 1, at.begin, middle};
+  }
+}
+
+}  // namespace swarf::measure

@@ -1,0 +1,75 @@
+#include "sim/prove_part.h"
+
+#include <algorithm>
+
+#include "base/units.h"
+#include "measure/certificate.h"
+#include "sim/job_sweeps.h"
+#include "sim/simulation.h"
+#include "stock/free_ranges.h"
+
+namespace swarf::sim {
+namespace {
+
+void raise(std::optional<measure::Bound>& bound, const measure::Bound& by) {
+  if (!bound || by.um > bound->um) bound = by;
+}
+
+void take_over(const measure::Certificate& proof, measure::SurfaceMetrics& surface) {
+  raise(surface.gouge_bound, proof.gouge);
+  raise(surface.excess_bound, proof.excess);
+  if (proof.gouge_found_um > surface.gouge_max_um) {
+    surface.gouge_max_um = proof.gouge_found_um;
+    surface.gouge_block = proof.gouge_block;
+  }
+  if (proof.excess_found_um > surface.excess_max_um) {
+    surface.excess_max_um = proof.excess_found_um;
+    surface.excess_block = proof.excess_block;
+  }
+  surface.unmeasured_area_mm2 += proof.open_area_mm2;
+  surface.gouges.insert(surface.gouges.end(), proof.gouges.begin(), proof.gouges.end());
+  surface.excesses.insert(surface.excesses.end(), proof.excesses.begin(), proof.excesses.end());
+}
+
+/// The worst first, no more than are listed; their number.
+size_t keep_worst(std::vector<measure::Region>& regions) {
+  std::stable_sort(regions.begin(), regions.end(), [](const measure::Region& a, const measure::Region& b) {
+    return a.worst_um > b.worst_um;
+  });
+  const size_t count = regions.size();
+  if (count > measure::kListedRegions) regions.resize(measure::kListedRegions);
+  return count;
+}
+
+}  // namespace
+
+void prove_part(const Job& job, Progress& progress, Result& result) {
+  MeasuredPath& main = result.main;
+  if (main.dexels.empty()) return;
+  progress.begin("prove", static_cast<double>(main.dexels.size()), "surfaces");
+  std::vector<stock::RayFieldPtr> fields;
+  for (const stock::SurfaceDexels& dexels : main.dexels) fields.push_back(dexels.field_ptr());
+  const stock::FreeRange ranges(fields);
+  const std::vector<stock::CutterSolid> solids = tool_solids(job.scene);
+  const std::vector<int> tools = tool_of_blocks(main.rays);
+  const measure::SweepCutters cutters(solids, tools);
+  const AcceptLimits& accept = job.scene.accept;
+  measure::SurfaceMetrics& surface = main.surface;
+  surface.gouges.clear();
+  surface.excesses.clear();
+  for (size_t i = 0; i < fields.size(); ++i) {
+    take_over(measure::certify({*fields[i], ranges, main.rays.sweeps, cutters, main.rays.error_bound_mm,
+                                *result.stock, result.sweep_bound_mm, accept.gouge_band_um() * kMicrometre,
+                                accept.excess_max_um.value_or(accept.scallop_band_um()) * kMicrometre,
+                                surface.gouge_max_um * kMicrometre, surface.excess_max_um * kMicrometre}),
+              surface);
+    progress.advance(static_cast<double>(i + 1));
+  }
+  raise(surface.gouge_bound, {surface.gouge_max_um, surface.gouge_bound->place});
+  raise(surface.excess_bound, {surface.excess_max_um, surface.excess_bound->place});
+  surface.gouge_regions = keep_worst(surface.gouges);
+  surface.excess_regions = keep_worst(surface.excesses);
+  progress.end();
+}
+
+}  // namespace swarf::sim
