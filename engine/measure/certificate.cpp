@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 
 #include "base/parallel.h"
 #include "base/units.h"
@@ -16,7 +18,7 @@ namespace swarf::measure {
 namespace {
 
 /// A cell is closed when its bound is this near to what was measured: mm, and share.
-constexpr double kGap = 2e-5, kGapShare = 1e-3;
+constexpr double kGap = 4e-5, kGapShare = 2e-4, kLeastGap = 2e-6, kRoomShare = 0.9;
 /// Cells on the border of a gouge or of material left standing are divided down to this; mm.
 constexpr double kBorder = 0.01;
 /// No cell is divided below this; mm.
@@ -24,14 +26,17 @@ constexpr double kSmallest = 1e-3;
 /// Cells in all, shared evenly by the roots, within these limits for one root.
 constexpr size_t kBudget = 20'000'000, kLeastBudget = 400, kMostBudget = 200'000;
 constexpr size_t kRoots = 10'000;
-constexpr double kLeastRoot = 1.0;  // mm
+constexpr size_t kRootsPerBatch = 256;  // between two looks at the progress bar and Ctrl-C
+constexpr double kLeastRoot = 1.0;      // mm
 /// Sweeps are first looked for up to this height over the design, mm; where more is left, up to the box's
 /// top.
 constexpr double kNearHeight = 1.0;
 
 struct Corner {
   CellCorner at;
-  double top = 0.0;               ///< where the stock's box or another face ends the column, mm
+  double range = 0.0;             ///< where another face is as near, mm
+  double top = 0.0;               ///< there, or where the column leaves the stock's box, mm
+  double depth = 0.0;             ///< down to which a cut would count that leaves the skin standing, mm
   double height = 0.0;            ///< that the sweeps leave standing, mm
   uint32_t near = stock::kUncut;  ///< index into the root's sweeps
 };
@@ -72,7 +77,8 @@ class RootProof {
       : input_(input), index_(index), root_(root), budget_(budget) {}
 
   RootResult prove() {
-    for (const double reach : {kNearHeight, kNever}) {
+    const double near = 2.0 * std::min(input_.excess_known_mm, input_.excess_limit_mm) + kNearHeight;
+    for (const double reach : {near, kNever}) {
       result_ = {};
       highest_seen_ = 0.0;
       floors_.clear();
@@ -117,15 +123,39 @@ class RootProof {
     index_.find(box, found);
     near_.clear();
     for (const uint32_t n : found) {
+      if (passes_above(n, reach)) continue;
       const stock::Sweep& sweep = input_.sweeps[n];
       near_.push_back(
           {stock::sweep_map(sweep), &input_.cutters[n], n, sweep.start.axis_W != sweep.end.axis_W});
     }
   }
 
+  /// The sweep's lowest plane keeps above the root's columns up to a height: at both ends, and what lies
+  /// between is linear in time.
+  bool passes_above(uint32_t n, double height) const {
+    if (height == kNever) return false;
+    const stock::Sweep& sweep = input_.sweeps[n];
+    double low = kNever;
+    for (const cutter::ConvexPiece& piece : input_.cutters[n].pieces) low = std::min(low, piece.low);
+    for (const ToolPose* pose : {&sweep.start, &sweep.end}) {
+      for (const CellCorner& corner : root_.cell.corners) {
+        const double z = pose->axis_W.dot(corner.point - pose->tip_W) + root_.cell.flatness_mm;
+        const double rise = pose->axis_W.dot(corner.normal) + std::min(2.0, root_.cell.turn);
+        if (z + std::max(-stock::kSkin * rise, height * rise) + 1e-6 >= low) return false;
+      }
+    }
+    return true;
+  }
+
   double top_of(const CellCorner& corner) const {
-    return std::min(leaves_box(input_.stock.box(), corner.point, corner.normal),
-                    input_.ranges(corner.point, corner.normal));
+    return std::min(leaves_box(input_.stock.box(), corner.point, corner.normal), range_of(corner));
+  }
+
+  /// How high above a place material is its own: a mesh tells by its distance, patches by their rays.
+  double range_of(const CellCorner& corner) const {
+    if (input_.field.design == nullptr) return input_.ranges(corner.point, corner.normal);
+    const double through = leaves_box(input_.stock.box(), corner.point, corner.normal);
+    return through > 0.0 ? input_.field.own_depth(corner.point, -corner.normal, through) : kNever;
   }
 
   /// How deep below a place a cut can count: to where another face is nearer, or out of the stock.
@@ -139,7 +169,9 @@ class RootProof {
   /// Height at one corner, by the sweeps kept_[begin, end); `guesses` go first.
   Corner measured(const CellCorner& at, size_t begin, size_t end, std::array<uint32_t, 2> guesses) {
     Corner corner{at};
-    corner.top = top_of(at);
+    corner.range = range_of(at);
+    corner.depth = own_depth(at, stock::kSkin);
+    corner.top = std::min(leaves_box(input_.stock.box(), at.point, at.normal), corner.range);
     // Without stock at the place the design lacks material: as much as to the box.
     corner.height = corner.top > -kNever ? corner.top : -distance_to_box(at.point);
     const auto look_at = [&](uint32_t n) {
@@ -155,6 +187,10 @@ class RootProof {
       if (floors_.size() == kept_.size() && floors_[i] >= corner.height) continue;
       look_at(kept_[i]);
     }
+    // The kept sweeps prove bounds; what counts as found is measured against all of them.
+    if (root_.looks_up && corner.height > excess_target()) {
+      for (uint32_t n = 0; n < near_.size(); ++n) look_at(n);
+    }
     if (corner.near != stock::kUncut) corner.height = -own_depth(at, -corner.height);
     note(corner);
     return corner;
@@ -166,12 +202,14 @@ class RootProof {
   }
 
   static double lowest(const CellCorner& at, const NearSweep& near, double highest) {
+    if (stays_above(at, near, highest)) return kNever;
+    const double low = stock::ray_height(at.point, at.normal, near.map, *near.cutter);
+    if (low >= -stock::kSkin) return low;
     double least = kNever;
     for (const cutter::ConvexPiece& piece : near.cutter->pieces) {
       const stock::RayInterval cut = stock::ray_interval(at.point, at.normal, near.map, piece);
       // A cut that leaves the design's skin standing belongs to another face.
-      if (cut.hit() && cut.high > cut.low && cut.high >= -stock::kSkin && cut.low < highest)
-        least = std::min(least, cut.low);
+      if (cut.hit() && cut.high > cut.low && cut.high >= -stock::kSkin) least = std::min(least, cut.low);
     }
     return least;
   }
@@ -192,12 +230,16 @@ class RootProof {
   }
 
   double gouge_target() const {
-    const double found = std::max(result_.gouge_found, gouge_goal_);
-    return found + kGap + kGapShare * found;
+    return target(std::max(result_.gouge_found, gouge_goal_), input_.gouge_limit_mm);
   }
   double excess_target() const {
-    const double found = std::max(result_.excess_found, excess_goal_);
-    return found + kGap + kGapShare * found;
+    return target(std::max(result_.excess_found, excess_goal_), input_.excess_limit_mm);
+  }
+  /// The bound to reach where `found` was measured: closer to it where that decides a limit.
+  double target(double found, double limit) const {
+    const double room = limit - input_.sweep_bound_mm - found;
+    const double gap = kGap + kGapShare * found;
+    return found + (room > 0.0 ? std::clamp(kRoomShare * room, kLeastGap, gap) : gap);
   }
 
   /// How deep the cell's columns count at most.
@@ -221,8 +263,9 @@ class RootProof {
   /// Least height over the cell; floors_ gets each sweep's.
   double lower_bound(const Cell& cell) {
     double low = std::min(cell.dropped, lacking(cell));
+    const std::array<double, 3> depths{cell.corners[0].depth, cell.corners[1].depth, cell.corners[2].depth};
     for (size_t i = cell.begin; i < cell.end; ++i) {
-      floors_[i] = least_height(cell.shape, near_[kept_[i]], stock::kSkin);
+      floors_[i] = least_height(cell.shape, near_[kept_[i]], depths);
       low = std::min(low, floors_[i]);
     }
     return low;
@@ -248,21 +291,19 @@ class RootProof {
   }
 
   double upper_bound(Cell& cell) {
-    double top = 0.0, range = 0.0;
-    for (const Corner& corner : cell.corners) {
-      top = std::max(top, std::max(0.0, corner.top));
-      range = std::max(range, input_.ranges(corner.at.point, corner.at.normal));
-    }
-    // Between the corners another face may begin a little later.
-    constexpr double kRangeSlope = 4.0;
-    if (range < kNever) top = std::max(top, range + kRangeSlope * cell.shape.radius());
-    top = std::min(top, cell.air);
+    // Where the columns leave the box, and a little for what lies between the corners.
+    double leave = 0.0;
+    for (const Corner& corner : cell.corners)
+      leave = std::max(leave, leaves_box(input_.stock.box(), corner.at.point, corner.at.normal));
+    const double top = std::min(leave + cell.shape.radius(), cell.air);
     double high = bound_by_sets(cell, top);
-    if (high > excess_target() && cell.shape.radius() < 2.0 * input_.stock.voxel_mm() && cell.air == kNever) {
-      cell.air = air_above(cell, top);
-      high = std::min(cell.air, bound_by_sets(cell, cell.air));
+    if (high > excess_target() && cell.air == kNever && cell.shape.radius() < 2.0 * input_.stock.voxel_mm()) {
+      cell.air = air_above(cell, std::max(leave, 0.0));
+      high = std::min(cell.air, bound_by_sets(cell, std::min(top, cell.air)));
     }
-    return std::min(high, top);
+    double range = 0.0;
+    for (const Corner& corner : cell.corners) range = std::max(range, corner.range);
+    return std::min({high, top, range});
   }
 
   double bound_by_sets(const Cell& cell, double top) {
@@ -272,13 +313,15 @@ class RootProof {
       sets_.push_back(outside_from(cell.shape, Vec3::Unit(a), box.upper[a]));
       sets_.push_back(outside_from(cell.shape, -Vec3::Unit(a), -box.lower[a]));
     }
+    CornerHeights tops;
+    for (size_t k = 0; k < 3; ++k) tops[k] = std::min(top, cell.corners[k].range);
     const CornerHeights from{cell.corners[0].height, cell.corners[1].height, cell.corners[2].height};
     for (size_t k = 0; k < 3; ++k) {
       const uint32_t n = cell.corners[k].near;
       if (n == stock::kUncut || (k > 0 && n == cell.corners[0].near) || (k > 1 && n == cell.corners[1].near))
         continue;
       for (const cutter::ConvexPiece& piece : near_[n].cutter->pieces)
-        sets_.push_back(covered_from(cell.shape, near_[n], piece, from, top));
+        sets_.push_back(covered_from(cell.shape, near_[n], piece, from, tops));
     }
     return highest_left(sets_);
   }
@@ -415,9 +458,13 @@ Certificate certify(const CertificateInput& input) {
   const size_t budget = std::clamp(kBudget / std::max<size_t>(1, roots.size()), kLeastBudget, kMostBudget);
   const SweepIndex index(input.sweeps, input.cutters);
   std::vector<RootResult> parts(roots.size());
-  parallel_chunks(roots.size(), 1, [&](size_t begin, size_t) {
-    parts[begin] = RootProof(input, index, roots[begin], budget).prove();
-  });
+  for (size_t first = 0; first < roots.size() && !input.progress.stop_requested(); first += kRootsPerBatch) {
+    parallel_chunks(std::min(kRootsPerBatch, roots.size() - first), 1, [&](size_t begin, size_t) {
+      parts[first + begin] = RootProof(input, index, roots[first + begin], budget).prove();
+    });
+    input.progress.advance(input.progress_from +
+                           static_cast<double>(first) / static_cast<double>(roots.size()));
+  }
   Certificate whole;
   std::vector<RegionPiece> gouges, excesses;
   for (RootResult& part : parts) join(part, whole, gouges, excesses);
@@ -432,6 +479,9 @@ Certificate certify(const CertificateInput& input) {
       ++whole.open_cells;
     }
   }
+  if (getenv("SWARF_DBG"))
+    fprintf(stderr, "roots %zu cells %zu size %g budget %zu open %zu\n", roots.size(), whole.cells, size,
+            budget, whole.open_cells);
   whole.gouge.um += um_from_mm(input.sweep_bound_mm);
   whole.excess.um += um_from_mm(input.sweep_bound_mm);
   whole.gouges = join_pieces(gouges);

@@ -15,6 +15,7 @@
 #include <span>
 #include <vector>
 
+#include "base/progress.h"
 #include "measure/metrics.h"
 #include "measure/sweep_cutters.h"
 #include "stock/free_ranges.h"
@@ -35,6 +36,8 @@ struct CertificateInput {
   double gouge_limit_mm = 0.001;  ///< deeper places are listed
   double excess_limit_mm = 0.01;  ///< higher places are listed
   double gouge_known_mm = 0.0, excess_known_mm = 0.0;  ///< what the rays have found: where to begin
+  Progress& progress;                                  ///< advanced from progress_from by 1; may ask to stop
+  double progress_from = 0.0;
 };
 
 struct Certificate {

@@ -143,23 +143,37 @@ double DesignCell::area_mm2() const {
   return 0.5 * (corners[1].point - corners[0].point).cross(corners[2].point - corners[0].point).norm();
 }
 
+namespace {
+
+/// Greatest sum over pairs of l_j l_k q_jk for squared edges q in a metric: the squared radius of the least
+/// circle around the triangle.
+double least_circle2(double a, double b, double c) {
+  const double longest = std::max({a, b, c});
+  if (2.0 * longest >= a + b + c) return 0.25 * longest;
+  return a * b * c / (2.0 * (a * b + b * c + c * a) - a * a - b * b - c * c);
+}
+
+}  // namespace
+
 DesignCell make_cell(const std::array<CellCorner, 3>& corners, const PatchBounds& bounds) {
   DesignCell cell{corners};
+  std::array<double, 3> bend{}, lean{};
   for (size_t k = 0; k < 3; ++k) {
     const CellCorner &a = corners[k], &b = corners[(k + 1) % 3];
-    if (bounds.surface != nullptr) {
-      const Vec2 d = (b.uv - a.uv).cwiseAbs();
-      const surface::BendBounds& m = bounds.bends;
-      cell.flatness_mm =
-          std::max(cell.flatness_mm, ((m.uu + m.uv) * d.x() * d.x() + (m.uv + m.vv) * d.y() * d.y()) / 6.0);
-      const double turn =
-          (d.x() > 0.0 ? bounds.turn_u * d.x() : 0.0) + (d.y() > 0.0 ? bounds.turn_v * d.y() : 0.0);
-      cell.turn = std::max(cell.turn, turn);
-    } else {
-      // |sum l_k n_k|^2 = 1 - sum over pairs l_j l_k |n_j - n_k|^2 >= 1 - max / 3.
-      const double third = (a.normal - b.normal).squaredNorm() / 3.0;
-      cell.turn = std::max(cell.turn, 1.0 - std::sqrt(std::max(0.0, 1.0 - third)));
-    }
+    lean[k] = (a.normal - b.normal).squaredNorm();
+    if (bounds.surface == nullptr) continue;
+    const Vec2 d = (b.uv - a.uv).cwiseAbs();
+    const surface::BendBounds& m = bounds.bends;
+    bend[k] = (m.uu + m.uv) * d.x() * d.x() + (m.uv + m.vv) * d.y() * d.y();
+    const double turn =
+        (d.x() > 0.0 ? bounds.turn_u * d.x() : 0.0) + (d.y() > 0.0 ? bounds.turn_v * d.y() : 0.0);
+    cell.turn = std::max(cell.turn, turn);
+  }
+  if (bounds.surface != nullptr) {
+    cell.flatness_mm = 0.5 * least_circle2(bend[0], bend[1], bend[2]);
+  } else {
+    // |sum l_k n_k|^2 = 1 - sum over pairs l_j l_k |n_j - n_k|^2.
+    cell.turn = 1.0 - std::sqrt(std::max(0.0, 1.0 - least_circle2(lean[0], lean[1], lean[2])));
   }
   return cell;
 }

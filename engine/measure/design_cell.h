@@ -6,8 +6,10 @@
 //   flatness + |s| turn    of    sum_k l_k (p_k + s n_k),
 // so whatever holds for a ball of that radius about the sum holds for the design (theory 8). For a surface
 // with |Suu| <= A, |Suv| <= B, |Svv| <= C Taylor's formula at the corners gives
-//   flatness = max over edges of ((A + B) du^2 + (B + C) dv^2) / 6
-// because sum l_k q(x_k - x) = sum over pairs l_j l_k q(x_j - x_k) <= max q / 3 for a quadratic form q.
+//   flatness = 1/2 max over l of sum over pairs l_j l_k q_jk,   q = (A + B) du^2 + (B + C) dv^2 of the edge
+//   jk,
+// because sum l_k q(x_k - x) = sum over pairs l_j l_k q(x_j - x_k) for a quadratic form q; the maximum is the
+// squared radius of the least circle around the triangle in the metric q.
 #pragma once
 
 #include <array>

@@ -18,18 +18,19 @@ struct Tangents {
   std::array<Vec3, 2> slope;    ///< W
 };
 
-/// Height below which `tangents` stays above the cell's margin, as far down as -depth.
-double root_of(const DesignCell& cell, const Tangents& tangents, double depth_mm) {
+/// Height below which `tangents` stays above the cell's margin, as far down as the depths.
+double root_of(const DesignCell& cell, const Tangents& tangents, const std::array<double, 3>& depths_mm) {
   double least = kNever;
-  for (const CellCorner& corner : cell.corners) {
+  for (size_t k = 0; k < 3; ++k) {
+    const CellCorner& corner = cell.corners[k];
     for (int j = 0; j < 2; ++j) {
       // value + slope . (p + s n - at) - flatness - |s| turn, with its two branches of |s|.
       const double base = tangents.value[j] + tangents.slope[j].dot(corner.point - tangents.at) -
                           cell.flatness_mm - kRounding;
       const double rise = tangents.slope[j].dot(corner.normal);
-      if (base - depth_mm * (rise + cell.turn) < 0.0) return -kNever;
+      if (base + kTouch - depths_mm[k] * (rise + cell.turn) < 0.0) return -kNever;
       for (const double turn : {cell.turn, -cell.turn}) {
-        if (rise + turn < 0.0) least = std::min(least, -base / (rise + turn));
+        if (rise + turn < 0.0) least = std::min(least, std::max(-depths_mm[k], -base / (rise + turn)));
       }
     }
   }
@@ -54,19 +55,19 @@ Tangents motion_tangents(const cutter::ConvexPiece& piece, const NearSweep& near
 }
 
 double least_height(const DesignCell& cell, const NearSweep& near, const cutter::ConvexPiece& piece,
-                    double depth_mm) {
+                    const std::array<double, 3>& depths_mm) {
   const Vec3 centre = cell.centroid(), normal = cell.mean_normal();
   double best = -kNever;
   for (const cutter::Face& face : piece.faces) {
     if (face.normal.x() == 0.0)
-      best = std::max(best, root_of(cell, face_tangents(face, near, centre), depth_mm));
+      best = std::max(best, root_of(cell, face_tangents(face, near, centre), depths_mm));
   }
   // Where a face's plane already passes below the cell's middle, the tangent there can only be looser.
   if (best > 0.0 && best < kNever) return best;
-  best = std::max(best, root_of(cell, motion_tangents(piece, near, centre), depth_mm));
+  best = std::max(best, root_of(cell, motion_tangents(piece, near, centre), depths_mm));
   if (!piece.is_cylinder() || best == -kNever) {
     const Vec3 below = centre - cell.radius() * normal;
-    best = std::max(best, root_of(cell, motion_tangents(piece, near, below), depth_mm));
+    best = std::max(best, root_of(cell, motion_tangents(piece, near, below), depths_mm));
   }
   return best;
 }
@@ -94,15 +95,15 @@ Slope slope_on(const cutter::ConvexPiece& piece, const Line& line, double s) {
   return {support.value, sideways + support.normal.y() * line.N.z()};
 }
 
-/// Least s >= from with F <= -margin(s), margin = flatness + |s| turn: Newton's method on a convex function
-/// from the left, which cannot overshoot; kNever when F turns up first.
+/// Least s >= from with F <= kTouch - margin(s), margin = flatness + |s| turn: Newton's method on a convex
+/// function from the left, which cannot overshoot; kNever when F turns up first.
 double entry(const cutter::ConvexPiece& piece, const Line& line, double from, const DesignCell& cell) {
   constexpr int kMostSteps = 40;
   constexpr double kClose = 1e-9;  // mm
   double s = from;
   for (int step = 0; step < kMostSteps; ++step) {
     const Slope at = slope_on(piece, line, s);
-    const double excess = at.value + cell.flatness_mm + std::abs(s) * cell.turn + kRounding;
+    const double excess = at.value + cell.flatness_mm + std::abs(s) * cell.turn - kTouch;
     if (excess <= 0.0) return s;
     const double slope = at.along + (s < 0.0 ? -cell.turn : cell.turn);
     if (!(slope < 0.0)) return kNever;
@@ -113,17 +114,31 @@ double entry(const cutter::ConvexPiece& piece, const Line& line, double from, co
 
 }  // namespace
 
-double least_height(const DesignCell& cell, const NearSweep& near, double depth_mm) {
+double least_height(const DesignCell& cell, const NearSweep& near, const std::array<double, 3>& depths_mm) {
   double least = kNever;
   for (const cutter::ConvexPiece& piece : near.cutter->pieces) {
-    least = std::min(least, least_height(cell, near, piece, depth_mm));
+    least = std::min(least, least_height(cell, near, piece, depths_mm));
     if (least == -kNever) break;
   }
   return least;
 }
 
+bool stays_above(const CellCorner& corner, const NearSweep& near, double height_mm) {
+  const Vec3 at = corner.point + height_mm * corner.normal;
+  const Vec3 X0 = near.map.start(at), X1 = near.map.end(at);
+  const Vec3 N0 = near.map.R0t * corner.normal, N1 = near.map.R1t * corner.normal;
+  for (const cutter::ConvexPiece& piece : near.cutter->pieces) {
+    // Below the bottom's plane at both ends, on a column that leaves on the tool's side.
+    if (X0.z() < piece.low && X1.z() < piece.low && N0.z() >= 0.0 && N1.z() >= 0.0) continue;
+    const stock::Nearest nearest = stock::nearest_instant(piece, X0, X1 - X0);
+    const bool rises = nearest.normal.dot(N0) > 0.0 || nearest.normal.dot(N1) > 0.0;
+    if (nearest.floor <= 0.0 || rises) return false;
+  }
+  return true;
+}
+
 CornerHeights covered_from(const DesignCell& cell, const NearSweep& near, const cutter::ConvexPiece& piece,
-                           const CornerHeights& from, double top) {
+                           const CornerHeights& from, const CornerHeights& tops) {
   const auto instant = [&](const Vec3& at) {
     const Vec3 P = near.map.start(at);
     return stock::nearest_instant(piece, P, near.map.end(at) - P).t;
@@ -136,8 +151,8 @@ CornerHeights covered_from(const DesignCell& cell, const NearSweep& near, const 
     const CellCorner& corner = cell.corners[k];
     const double t = near.turns ? common : instant(corner.point + from[k] * corner.normal);
     const Line line = line_at(corner, near, t);
-    const double high = std::max(top, from[k]);
-    if (slope_on(piece, line, high).value > -(cell.flatness_mm + std::abs(high) * cell.turn + kRounding))
+    const double high = std::max(tops[k], from[k]);
+    if (slope_on(piece, line, high).value > kTouch - (cell.flatness_mm + std::abs(high) * cell.turn))
       return {kNever, kNever, kNever};
     heights[k] = entry(piece, line, from[k], cell);
     if (heights[k] == kNever) return heights;

@@ -33,17 +33,24 @@ struct NearSweep {
   bool turns = false;
 };
 
-/// Height in mm below which the sweep cuts nothing of the cell's columns down to `depth_mm` (> 0) under the
-/// design; -infinity when that cannot be told.
-double least_height(const DesignCell& cell, const NearSweep& near, double depth_mm);
+/// A cut or a rest thinner than this across the columns is not told from a touch: a flank that runs along a
+/// face of the design, a bottom that runs along its edge; mm.
+inline constexpr double kTouch = 1e-6;
+
+/// Height in mm below which the sweep cuts nothing of the cell's columns, each down to its own depth (>= 0)
+/// under the design; -infinity when that cannot be told.
+double least_height(const DesignCell& cell, const NearSweep& near, const std::array<double, 3>& depths_mm);
+
+/// True when the sweep certainly cuts the column of the place at `height_mm` or above only, or not at all.
+bool stays_above(const CellCorner& corner, const NearSweep& near, double height_mm);
 
 /// Heights from which on a set without material covers the columns of the corners; kNever: it does not.
 using CornerHeights = std::array<double, 3>;
 
 /// What one piece of the sweep is known to cover. `from`: heights from which to look, below the answer;
-/// `top`: the columns are covered from the answer up to here.
+/// `tops`: the columns are covered from the answer up to here.
 CornerHeights covered_from(const DesignCell& cell, const NearSweep& near, const cutter::ConvexPiece& piece,
-                           const CornerHeights& from, double top);
+                           const CornerHeights& from, const CornerHeights& tops);
 
 /// The outside of one face of the box: normal . x >= offset.
 CornerHeights outside_from(const DesignCell& cell, const Vec3& normal, double offset);

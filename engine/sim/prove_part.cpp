@@ -61,7 +61,8 @@ void prove_part(const Job& job, Progress& progress, Result& result) {
     take_over(measure::certify({*fields[i], ranges, main.rays.sweeps, cutters, main.rays.error_bound_mm,
                                 *result.stock, result.sweep_bound_mm, accept.gouge_band_um() * kMicrometre,
                                 accept.excess_max_um.value_or(accept.scallop_band_um()) * kMicrometre,
-                                surface.gouge_max_um * kMicrometre, surface.excess_max_um * kMicrometre}),
+                                surface.gouge_max_um * kMicrometre, surface.excess_max_um * kMicrometre,
+                                progress, static_cast<double>(i)}),
               surface);
     progress.advance(static_cast<double>(i + 1));
   }
