@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 
 #include "base/parallel.h"
 #include "base/units.h"
@@ -250,14 +248,17 @@ class RootProof {
     return depth + cell.shape.radius();
   }
 
-  /// Whether all columns lie in the box down to `depth`: there was material to begin with.
+  /// Height over the design, at most 0, up to which there was material to begin with over the whole cell.
   double lacking(const Cell& cell) const {
-    double least = 0.0;
+    const Box& box = input_.stock.box();
+    double inside = kNever, least = 0.0;
     for (const Corner& corner : cell.corners) {
-      const double top = leaves_box(input_.stock.box(), corner.at.point, corner.at.normal);
-      least = std::min(least, top > -kNever ? top : -distance_to_box(corner.at.point) - cell.shape.radius());
+      const Vec3& p = corner.at.point;
+      inside = std::min({inside, (p - box.lower).minCoeff(), (box.upper - p).minCoeff()});
+      const double top = leaves_box(box, p, corner.at.normal);
+      least = std::min(least, top > -kNever ? top : -distance_to_box(p) - cell.shape.radius());
     }
-    return least < 0.0 ? least - cell.shape.flatness_mm : -cell.shape.flatness_mm;
+    return inside >= cell.shape.flatness_mm ? 0.0 : least - cell.shape.flatness_mm;
   }
 
   /// Least height over the cell; floors_ gets each sweep's.
@@ -479,9 +480,6 @@ Certificate certify(const CertificateInput& input) {
       ++whole.open_cells;
     }
   }
-  if (getenv("SWARF_DBG"))
-    fprintf(stderr, "roots %zu cells %zu size %g budget %zu open %zu\n", roots.size(), whole.cells, size,
-            budget, whole.open_cells);
   whole.gouge.um += um_from_mm(input.sweep_bound_mm);
   whole.excess.um += um_from_mm(input.sweep_bound_mm);
   whole.gouges = join_pieces(gouges);
