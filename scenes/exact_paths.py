@@ -205,6 +205,30 @@ def gouges():
     path.write("exact_gouges")
 
 
+def between_rays():
+    """A sharp 60 degree cone engraves three lines into a finished plane; no measuring ray meets them."""
+    path = Path_("LINES OF A SHARP CONE BETWEEN THE RAYS: 150, 5 AND 1 UM DEEP", "CUTTER/8", (-12, 0, 30))
+    for depth, x, y, length in ((0.150, -8.0, 0.0, 16.0), (0.005, -5.0, 1.95, 3.0), (0.001, 4.0, -2.05, 0.05)):
+        path.rapid((x, y, 5))
+        path.note(f"line of {1000 * depth:g} um, {length:g} mm long")
+        path.to((x, y, -depth))
+        path.to((x + length, y, -depth))
+        path.to((x + length, y, 5))
+    path.write("exact_between_rays")
+
+
+def walls():
+    """Rows of a flat end D10, 10.1 mm apart: two walls .1 mm thick and as high as the stock stay."""
+    path = Path_("ROWS OF A FLAT END 10.1 MM APART", "CUTTER/10,0", (-30, -10.1, 30))
+    path.rapid((-30, -10.1, 10))
+    for n, y in enumerate((-10.1, 0.0, 10.1)):
+        ends = [(-30, y, 0), (30, y, 0)][:: 1 if n % 2 == 0 else -1]
+        path.to(ends[0])
+        path.to(ends[1])
+        path.to((ends[1][0], y, 10))
+    path.write("exact_walls")
+
+
 def flank_f1():
     """Oracle F1 of theory 5: the axis through C0 + 8 N0 and C1 + 8 N1 at nine rulings equal in u, eight blocks."""
     def axis_at(u):
@@ -302,6 +326,8 @@ if __name__ == "__main__":
     hyperboloid()
     cone()
     gouges()
+    between_rays()
+    walls()
     flank_f1()
     so_singularity()
     so_c_limit()

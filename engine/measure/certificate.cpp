@@ -19,10 +19,12 @@ namespace {
 constexpr double kGap = 4e-5, kGapShare = 2e-4, kLeastGap = 2e-6, kRoomShare = 0.9;
 /// Cells on the border of a gouge or of material left standing are divided down to this; mm.
 constexpr double kBorder = 0.01;
+/// In cells smaller than this the deepest place of the lowest sweep is measured too; mm.
+constexpr double kProbed = 0.1;
 /// No cell is divided below this; mm.
 constexpr double kSmallest = 1e-3;
 /// Cells in all, shared evenly by the roots, within these limits for one root.
-constexpr size_t kBudget = 20'000'000, kLeastBudget = 400, kMostBudget = 200'000;
+constexpr size_t kBudget = 20'000'000, kLeastBudget = 20'000, kMostBudget = 200'000;
 constexpr size_t kRoots = 10'000;
 constexpr size_t kRootsPerBatch = 256;  // between two looks at the progress bar and Ctrl-C
 constexpr double kLeastRoot = 1.0;      // mm
@@ -88,7 +90,7 @@ class RootProof {
       for (uint32_t n = 0; n < kept_.size(); ++n) kept_[n] = n;
       std::array<Corner, 3> corners;
       for (size_t k = 0; k < 3; ++k) corners[k] = measured({c[k]}, 0, kept_.size(), {});
-      visit({root_.cell, corners, 0, kept_.size(), 0.0, kNever});
+      visit({root_.cell, corners, 0, kept_.size(), kNever, kNever});
       if (highest_seen_ < reach) break;
     }
     return std::move(result_);
@@ -98,9 +100,14 @@ class RootProof {
   struct Cell {
     DesignCell shape;
     std::array<Corner, 3> corners;
-    size_t begin, end;     ///< of kept_: the sweeps that may matter
-    double dropped = 0.0;  ///< least height of those that do not
-    double air = kNever;   ///< above it the stock is air, as the grid tells for this cell or one around it
+    size_t begin, end;        ///< of kept_: the sweeps that may matter
+    double dropped = kNever;  ///< least height of those that do not
+    double air = kNever;      ///< above it the stock is air, as the grid tells for this cell or one around it
+  };
+  /// A place inside a cell that was measured besides its corners.
+  struct Probe {
+    Vec3 place;  ///< barycentric
+    Corner corner;
   };
   struct Bounds {
     double low, high;
@@ -133,8 +140,7 @@ class RootProof {
   bool passes_above(uint32_t n, double height) const {
     if (height == kNever) return false;
     const stock::Sweep& sweep = input_.sweeps[n];
-    double low = kNever;
-    for (const cutter::ConvexPiece& piece : input_.cutters[n].pieces) low = std::min(low, piece.low);
+    const double low = lowest_z(input_.cutters[n]);
     for (const ToolPose* pose : {&sweep.start, &sweep.end}) {
       for (const CellCorner& corner : root_.cell.corners) {
         const double z = pose->axis_W.dot(corner.point - pose->tip_W) + root_.cell.flatness_mm;
@@ -241,32 +247,40 @@ class RootProof {
   }
 
   /// How deep the cell's columns count at most.
-  double deepest(const Cell& cell) const {
+  double deepest(const Cell& cell) {
     double depth = 0.0;
     constexpr double kThrough = 1e4;  // mm: any part
     for (const Corner& corner : cell.corners) depth = std::max(depth, own_depth(corner.at, kThrough));
-    return depth + cell.shape.radius();
+    if (input_.field.design != nullptr) return depth;
+    DesignCell below = cell.shape;
+    for (CellCorner& corner : below.corners) corner.normal = -corner.normal;
+    sets_.clear();
+    add_box(below);
+    return std::min(std::max(depth, highest_left(sets_)), kThrough);
   }
 
-  /// Height over the design, at most 0, up to which there was material to begin with over the whole cell.
-  double lacking(const Cell& cell) const {
+  /// Height over the design up to which there was material to begin with over the whole cell; below 0 where
+  /// the design reaches out of the stock.
+  double stood_before(const Cell& cell) const {
     const Box& box = input_.stock.box();
-    double inside = kNever, least = 0.0;
+    double inside = kNever, least = kNever, top = kNever;
     for (const Corner& corner : cell.corners) {
       const Vec3& p = corner.at.point;
       inside = std::min({inside, (p - box.lower).minCoeff(), (box.upper - p).minCoeff()});
-      const double top = leaves_box(box, p, corner.at.normal);
-      least = std::min(least, top > -kNever ? top : -distance_to_box(p) - cell.shape.radius());
+      const double leave = leaves_box(box, p, corner.at.normal);
+      least = std::min(least, leave > -kNever ? leave : -distance_to_box(p) - cell.shape.radius());
+      top = std::min(top, corner.top);
     }
-    return inside >= cell.shape.flatness_mm ? 0.0 : least - cell.shape.flatness_mm;
+    if (inside < cell.shape.flatness_mm) return std::min(0.0, least) - cell.shape.flatness_mm;
+    return std::max(0.0, top - cell.shape.flatness_mm - top * std::min(1.0, cell.shape.turn));
   }
 
   /// Least height over the cell; floors_ gets each sweep's.
   double lower_bound(const Cell& cell) {
-    double low = std::min(cell.dropped, lacking(cell));
+    double low = std::min(cell.dropped, stood_before(cell));
     const std::array<double, 3> depths{cell.corners[0].depth, cell.corners[1].depth, cell.corners[2].depth};
     for (size_t i = cell.begin; i < cell.end; ++i) {
-      floors_[i] = least_height(cell.shape, near_[kept_[i]], depths);
+      floors_[i] = least_height(cell.shape, near_[kept_[i]], depths, -gouge_target());
       low = std::min(low, floors_[i]);
     }
     return low;
@@ -307,13 +321,17 @@ class RootProof {
     return std::min({high, top, range});
   }
 
-  double bound_by_sets(const Cell& cell, double top) {
-    sets_.clear();
+  void add_box(const DesignCell& cell) {
     const Box& box = input_.stock.box();
     for (int a = 0; a < 3; ++a) {
-      sets_.push_back(outside_from(cell.shape, Vec3::Unit(a), box.upper[a]));
-      sets_.push_back(outside_from(cell.shape, -Vec3::Unit(a), -box.lower[a]));
+      sets_.push_back(outside_from(cell, Vec3::Unit(a), box.upper[a]));
+      sets_.push_back(outside_from(cell, -Vec3::Unit(a), -box.lower[a]));
     }
+  }
+
+  double bound_by_sets(const Cell& cell, double top) {
+    sets_.clear();
+    add_box(cell.shape);
     CornerHeights tops;
     for (size_t k = 0; k < 3; ++k) tops[k] = std::min(top, cell.corners[k].range);
     const CornerHeights from{cell.corners[0].height, cell.corners[1].height, cell.corners[2].height};
@@ -327,7 +345,7 @@ class RootProof {
     return highest_left(sets_);
   }
 
-  void close(const Cell& cell, const Bounds& bounds) {
+  void close(const Cell& cell, const Bounds& bounds, const std::optional<Probe>& probed) {
     if (root_.looks_down && -bounds.low > result_.gouge) {
       result_.gouge = -bounds.low;
       result_.gouge_at = cell.shape.centroid();
@@ -336,18 +354,27 @@ class RootProof {
       result_.excess = bounds.high;
       result_.excess_at = cell.shape.centroid();
     }
-    CornerHeights heights;
-    for (size_t k = 0; k < 3; ++k) heights[k] = cell.corners[k].height;
-    const auto block = [&](size_t k) {
-      const uint32_t n = cell.corners[k].near;
-      return n == stock::kUncut ? n : near_[n].sweep;
-    };
-    const std::array<uint32_t, 3> blocks{block(0), block(1), block(2)};
-    if (root_.looks_down) {
-      add_piece(cell.shape, {-heights[0], -heights[1], -heights[2]}, blocks, input_.gouge_limit_mm,
-                result_.gouges);
+    if (!probed) {
+      add_pieces(cell.shape, cell.corners);
+      return;
     }
-    if (root_.looks_up) add_piece(cell.shape, heights, blocks, input_.excess_limit_mm, result_.excesses);
+    for (size_t k = 0; k < 3; ++k) {
+      std::array<Corner, 3> corners = cell.corners;
+      corners[k] = probed->corner;
+      add_pieces(make_cell({corners[0].at, corners[1].at, corners[2].at}, root_.bounds), corners);
+    }
+  }
+
+  void add_pieces(const DesignCell& shape, const std::array<Corner, 3>& corners) {
+    std::array<double, 3> heights{}, depths{};
+    std::array<uint32_t, 3> blocks{};
+    for (size_t k = 0; k < 3; ++k) {
+      heights[k] = corners[k].height;
+      depths[k] = -heights[k];
+      blocks[k] = corners[k].near == stock::kUncut ? stock::kUncut : near_[corners[k].near].sweep;
+    }
+    if (root_.looks_down) add_piece(shape, depths, blocks, input_.gouge_limit_mm, result_.gouges);
+    if (root_.looks_up) add_piece(shape, heights, blocks, input_.excess_limit_mm, result_.excesses);
   }
 
   /// Whether part of the cell may break a limit and part of it keep it.
@@ -360,21 +387,48 @@ class RootProof {
     return gouge || excess;
   }
 
+  /// Whether the cell lies in a gouge of whose volume it tells too little.
+  bool is_coarse(const Bounds& bounds) const {
+    constexpr double kVolumeShare = 0.1;
+    return root_.looks_down && -bounds.low > input_.gouge_limit_mm &&
+           result_.gouge_found > input_.gouge_limit_mm &&
+           bounds.high - bounds.low > kVolumeShare * result_.gouge_found;
+  }
+
+  /// Measures where the sweep that bounds the cell lowest should cut deepest.
+  std::optional<Probe> probe(const Cell& cell) {
+    if (cell.begin == cell.end) return std::nullopt;
+    const auto first = floors_.begin() + static_cast<std::ptrdiff_t>(cell.begin);
+    const auto lowest = std::min_element(first, floors_.begin() + static_cast<std::ptrdiff_t>(cell.end));
+    const uint32_t n = kept_[static_cast<size_t>(lowest - floors_.begin())];
+    const std::optional<Vec3> place = deepest_place(cell.shape, near_[n]);
+    if (!place) return std::nullopt;
+    const CellCorner at = place_in(cell.shape, *place, root_.bounds);
+    return Probe{*place, measured(at, cell.begin, cell.end, {n, n})};
+  }
+
   void visit(Cell cell) {
     ++result_.cells;
     floors_.resize(kept_.size());
     Bounds bounds{lower_bound(cell), 0.0};
     if (bounds.low == -kNever) bounds.low = -deepest(cell);
     bounds.high = upper_bound(cell);
+    const double edge = cell.shape.longest_edge();
+    std::optional<Probe> probed;
+    if (root_.looks_down && edge < kProbed && -bounds.low > std::min(gouge_target(), input_.gouge_limit_mm))
+      probed = probe(cell);
     const bool gouge_open = root_.looks_down && -bounds.low > gouge_target();
     const bool excess_open = root_.looks_up && bounds.high > excess_target();
-    const double edge = cell.shape.longest_edge();
-    const bool divide =
-        ((gouge_open || excess_open) && edge > kSmallest) || (on_border(bounds) && edge > kBorder);
+    const bool seen = std::any_of(cell.corners.begin(), cell.corners.end(), [&](const Corner& corner) {
+      return -corner.height > input_.gouge_limit_mm || corner.height > input_.excess_limit_mm;
+    });
+    const bool divide = ((gouge_open || excess_open) && edge > kSmallest) ||
+                        (on_border(bounds) && edge > (seen ? kBorder : kSmallest)) ||
+                        (is_coarse(bounds) && edge > 2.0 * kBorder);
     if (!divide || result_.cells > budget_) {
       if (gouge_open || excess_open)
         result_.open.push_back({-bounds.low, bounds.high, cell.shape.area_mm2()});
-      close(cell, bounds);
+      close(cell, bounds, probed);
       return;
     }
     divide_cell(cell, bounds);
@@ -480,8 +534,9 @@ Certificate certify(const CertificateInput& input) {
       ++whole.open_cells;
     }
   }
-  whole.gouge.um += um_from_mm(input.sweep_bound_mm);
-  whole.excess.um += um_from_mm(input.sweep_bound_mm);
+  // What was measured may lie kTouch beyond what is told from a touch.
+  whole.gouge.um = std::max(whole.gouge.um, whole.gouge_found_um) + um_from_mm(input.sweep_bound_mm);
+  whole.excess.um = std::max(whole.excess.um, whole.excess_found_um) + um_from_mm(input.sweep_bound_mm);
   whole.gouges = join_pieces(gouges);
   whole.excesses = join_pieces(excesses);
   return whole;

@@ -184,6 +184,19 @@ CellCorner middle(const CellCorner& a, const CellCorner& b, const PatchBounds& b
   return {0.5 * (a.point + b.point), (a.normal + b.normal).normalized(), uv};
 }
 
+CellCorner place_in(const DesignCell& cell, const Vec3& l, const PatchBounds& bounds) {
+  CellCorner place{Vec3::Zero(), Vec3::Zero()};
+  for (size_t k = 0; k < 3; ++k) {
+    const auto row = static_cast<Eigen::Index>(k);
+    place.point += l[row] * cell.corners[k].point;
+    place.normal += l[row] * cell.corners[k].normal;
+    place.uv += l[row] * cell.corners[k].uv;
+  }
+  if (bounds.surface != nullptr) return corner_on(*bounds.surface, place.uv.x(), place.uv.y());
+  place.normal.normalize();
+  return place;
+}
+
 std::vector<RootCell> root_cells(const stock::RayField& field, double size_mm) {
   std::vector<RootCell> cells;
   if (field.surface != nullptr) {

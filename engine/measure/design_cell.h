@@ -52,6 +52,9 @@ DesignCell make_cell(const std::array<CellCorner, 3>& corners, const PatchBounds
 /// Half way between two corners of a cell.
 CellCorner middle(const CellCorner& a, const CellCorner& b, const PatchBounds& bounds);
 
+/// The place of a cell with these barycentric coordinates.
+CellCorner place_in(const DesignCell& cell, const Vec3& barycentric, const PatchBounds& bounds);
+
 struct RootCell {
   DesignCell cell;
   PatchBounds bounds;

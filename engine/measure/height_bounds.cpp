@@ -54,22 +54,90 @@ Tangents motion_tangents(const cutter::ConvexPiece& piece, const NearSweep& near
           {near.map.R0t.transpose() * nearest.normal, near.map.R1t.transpose() * nearest.normal}};
 }
 
+struct Support {
+  double value = kNever;
+  Vec2 point = Vec2::Zero();  ///< (rho, z)
+};
+
+/// max over the piece of direction . (rho, z) and where, by the dual: any two half planes that hold the piece
+/// and whose normals have the direction between them bound it, and the least such bound is exact.
+Support support_along(const cutter::ConvexPiece& piece, const Vec2& direction) {
+  std::array<cutter::Face, 32> holds;
+  size_t count = 0;
+  const auto add = [&](const Vec2& normal, double offset) {
+    if (count < holds.size()) holds[count++] = {normal, offset};
+  };
+  const auto cross = [](const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); };
+  add({-1.0, 0.0}, 0.0);  // rho >= 0
+  add({1.0, 0.0}, piece.radius);
+  add({0.0, -1.0}, -piece.low);
+  add({0.0, 1.0}, piece.high);
+  for (const cutter::Face& face : piece.faces) add(face.normal, face.offset);
+  for (const cutter::Round& round : piece.rounds) {
+    const Vec2 toward = direction.normalized();
+    for (const Vec2& normal : {round.from, round.to}) add(normal, normal.dot(round.centre) + round.radius);
+    if (cross(round.from, toward) >= 0.0 && cross(toward, round.to) >= 0.0)
+      return {direction.dot(round.centre) + round.radius * direction.norm(),
+              round.centre + round.radius * toward};
+  }
+  Support least;
+  for (size_t i = 0; i < count; ++i) {
+    for (size_t j = 0; j < i; ++j) {
+      const Vec2 &a = holds[i].normal, &b = holds[j].normal;
+      const double det = cross(a, b);
+      if (std::abs(det) < 1e-12) continue;
+      const double l = cross(direction, b) / det, m = cross(a, direction) / det;
+      const double value = l * holds[i].offset + m * holds[j].offset;
+      if (l < 0.0 || m < 0.0 || value >= least.value) continue;
+      least = {value, Vec2(holds[i].offset * b.y() - holds[j].offset * a.y(),
+                           holds[j].offset * a.x() - holds[i].offset * b.x()) /
+                          det};
+    }
+  }
+  return least;
+}
+
+/// The plane of outward direction `down` (tool frame) that the piece touches and does not pass.
+Tangents touching_plane(const cutter::ConvexPiece& piece, const NearSweep& near, const Vec3& at,
+                        const Vec3& down) {
+  const double most = support_along(piece, {down.head<2>().norm(), down.z()}).value;
+  return {at,
+          {down.dot(near.map.start(at)) - most, down.dot(near.map.end(at)) - most},
+          {near.map.R0t.transpose() * down, near.map.R1t.transpose() * down}};
+}
+
+/// `down` with its sideways part turned to where the place stands about the cutter's axis: the plane that
+/// touches the rim there, as square to the cell as it can be.
+std::optional<Vec3> toward_rim(const NearSweep& near, const Vec3& at, const Vec3& down) {
+  const Vec3 X = 0.5 * (near.map.start(at) + near.map.end(at));
+  const double rho = X.head<2>().norm();
+  if (!(rho > 0.0)) return std::nullopt;
+  const Vec2 radial = X.head<2>() / rho;
+  const double sideways = std::max(0.0, radial.dot(down.head<2>()));
+  const Vec3 turned(sideways * radial.x(), sideways * radial.y(), down.z());
+  return turned.norm() > 0.0 ? std::optional<Vec3>(turned.normalized()) : std::nullopt;
+}
+
 double least_height(const DesignCell& cell, const NearSweep& near, const cutter::ConvexPiece& piece,
-                    const std::array<double, 3>& depths_mm) {
+                    const std::array<double, 3>& depths_mm, double enough) {
   const Vec3 centre = cell.centroid(), normal = cell.mean_normal();
   double best = -kNever;
   for (const cutter::Face& face : piece.faces) {
     if (face.normal.x() == 0.0)
       best = std::max(best, root_of(cell, face_tangents(face, near, centre), depths_mm));
   }
-  // Where a face's plane already passes below the cell's middle, the tangent there can only be looser.
   if (best > 0.0 && best < kNever) return best;
   best = std::max(best, root_of(cell, motion_tangents(piece, near, centre), depths_mm));
-  if (!piece.is_cylinder() || best == -kNever) {
-    const Vec3 below = centre - cell.radius() * normal;
-    best = std::max(best, root_of(cell, motion_tangents(piece, near, below), depths_mm));
-  }
-  return best;
+  if (best > enough) return best;
+  // A rim has no tangent of its own: there its lowest point counts, and the point that is nearest.
+  const Vec3 down = -(near.map.R0t * normal);
+  best = std::max(best, root_of(cell, touching_plane(piece, near, centre, down), depths_mm));
+  if (best > enough) return best;
+  if (const auto rim = toward_rim(near, centre, down))
+    best = std::max(best, root_of(cell, touching_plane(piece, near, centre, *rim), depths_mm));
+  if (best > enough) return best;
+  const Vec3 below = centre - cell.radius() * normal;
+  return std::max(best, root_of(cell, motion_tangents(piece, near, below), depths_mm));
 }
 
 struct Line {
@@ -95,15 +163,16 @@ Slope slope_on(const cutter::ConvexPiece& piece, const Line& line, double s) {
   return {support.value, sideways + support.normal.y() * line.N.z()};
 }
 
-/// Least s >= from with F <= kTouch - margin(s), margin = flatness + |s| turn: Newton's method on a convex
-/// function from the left, which cannot overshoot; kNever when F turns up first.
-double entry(const cutter::ConvexPiece& piece, const Line& line, double from, const DesignCell& cell) {
+/// Least s >= from with F <= kTouch - margin(s), margin = aside + flatness + |s| turn: Newton's method on a
+/// convex function from the left, which cannot overshoot; kNever when F turns up first.
+double entry(const cutter::ConvexPiece& piece, const Line& line, double from, const DesignCell& cell,
+             double aside) {
   constexpr int kMostSteps = 40;
   constexpr double kClose = 1e-9;  // mm
   double s = from;
   for (int step = 0; step < kMostSteps; ++step) {
     const Slope at = slope_on(piece, line, s);
-    const double excess = at.value + cell.flatness_mm + std::abs(s) * cell.turn - kTouch;
+    const double excess = at.value + aside + cell.flatness_mm + std::abs(s) * cell.turn - kTouch;
     if (excess <= 0.0) return s;
     const double slope = at.along + (s < 0.0 ? -cell.turn : cell.turn);
     if (!(slope < 0.0)) return kNever;
@@ -112,15 +181,72 @@ double entry(const cutter::ConvexPiece& piece, const Line& line, double from, co
   return kNever;
 }
 
+/// The greatest |n_k - mean of the corners' normals|.
+double lean_of(const DesignCell& cell) {
+  const Vec3 mean = (cell.corners[0].normal + cell.corners[1].normal + cell.corners[2].normal) / 3.0;
+  double lean = 0.0;
+  for (const CellCorner& corner : cell.corners) lean = std::max(lean, (corner.normal - mean).norm());
+  return lean;
+}
+
+double spread_of(const CornerHeights& heights) {
+  return *std::max_element(heights.begin(), heights.end()) -
+         *std::min_element(heights.begin(), heights.end());
+}
+
+/// Where the piece covers three lines, `aside` mm within its surface.
+CornerHeights covered_lines(const DesignCell& cell, const cutter::ConvexPiece& piece,
+                            const std::array<Line, 3>& lines, const CornerHeights& from,
+                            const CornerHeights& tops, double aside) {
+  CornerHeights heights{kNever, kNever, kNever};
+  for (size_t k = 0; k < 3; ++k) {
+    const double high = std::max(tops[k], from[k]);
+    const double margin = aside + cell.flatness_mm + std::abs(high) * cell.turn;
+    if (slope_on(piece, lines[k], high).value > kTouch - margin) return {kNever, kNever, kNever};
+    heights[k] = entry(piece, lines[k], from[k], cell, aside);
+    if (heights[k] == kNever) return {kNever, kNever, kNever};
+  }
+  return heights;
+}
+
 }  // namespace
 
-double least_height(const DesignCell& cell, const NearSweep& near, const std::array<double, 3>& depths_mm) {
+double least_height(const DesignCell& cell, const NearSweep& near, const std::array<double, 3>& depths_mm,
+                    double enough) {
   double least = kNever;
   for (const cutter::ConvexPiece& piece : near.cutter->pieces) {
-    least = std::min(least, least_height(cell, near, piece, depths_mm));
+    least = std::min(least, least_height(cell, near, piece, depths_mm, enough));
     if (least == -kNever) break;
   }
   return least;
+}
+
+std::optional<Vec3> deepest_place(const DesignCell& cell, const NearSweep& near) {
+  const Vec3 centre = cell.centroid(), down = -(near.map.R0t * cell.mean_normal());
+  const double aside = down.head<2>().norm();
+  double lowest = kNever;
+  Vec3 place = centre;
+  for (const cutter::ConvexPiece& piece : near.cutter->pieces) {
+    const Vec3 P = near.map.start(centre), D = near.map.end(centre) - P;
+    const stock::Nearest nearest = stock::nearest_instant(piece, P, D);
+    if (nearest.value >= lowest) continue;
+    lowest = nearest.value;
+    const Support support = support_along(piece, {aside, down.z()});
+    // A little within the rim, where the place's column is sure to meet the piece.
+    constexpr double kWithin = 1e-5;  // mm
+    const double rho = std::max(0.0, support.point.x() - kWithin);
+    const Vec2 sideways = aside > 0.0 ? Vec2(rho / aside * down.head<2>()) : Vec2(Vec2::Zero());
+    const Vec3 offset = Vec3(sideways.x(), sideways.y(), support.point.y()) - (P + nearest.t * D);
+    place = centre + near.map.R0t.transpose() * offset;
+  }
+  // Barycentric coordinates of the place, seen along the cell's normal.
+  const Vec3 &a = cell.corners[0].point, ab = cell.corners[1].point - a, ac = cell.corners[2].point - a;
+  const Vec3 n = ab.cross(ac), at = place - a;
+  const double area2 = n.squaredNorm();
+  if (!(area2 > 0.0)) return std::nullopt;
+  const Vec3 l(1.0 - at.cross(ac).dot(n) / area2 - ab.cross(at).dot(n) / area2, at.cross(ac).dot(n) / area2,
+               ab.cross(at).dot(n) / area2);
+  return l.minCoeff() > 0.0 ? std::optional(l) : std::nullopt;
 }
 
 bool stays_above(const CellCorner& corner, const NearSweep& near, double height_mm) {
@@ -146,30 +272,37 @@ CornerHeights covered_from(const DesignCell& cell, const NearSweep& near, const 
   const double mean = (from[0] + from[1] + from[2]) / 3.0;
   // A turning cutter's sweep need not be convex: all corners then are looked at in one instant.
   const double common = near.turns ? instant(cell.centroid() + mean * cell.mean_normal()) : 0.0;
-  CornerHeights heights{kNever, kNever, kNever};
+  std::array<Line, 3> lines;
   for (size_t k = 0; k < 3; ++k) {
     const CellCorner& corner = cell.corners[k];
-    const double t = near.turns ? common : instant(corner.point + from[k] * corner.normal);
-    const Line line = line_at(corner, near, t);
-    const double high = std::max(tops[k], from[k]);
-    if (slope_on(piece, line, high).value > kTouch - (cell.flatness_mm + std::abs(high) * cell.turn))
-      return {kNever, kNever, kNever};
-    heights[k] = entry(piece, line, from[k], cell);
-    if (heights[k] == kNever) return heights;
+    lines[k] = line_at(corner, near, near.turns ? common : instant(corner.point + from[k] * corner.normal));
   }
-  return heights;
+  const CornerHeights heights = covered_lines(cell, piece, lines, from, tops, 0.0);
+  if (heights[0] == kNever) return heights;
+  // The place at l and s >= sum l_k h_k is reached from the corners' own heights s + h_k - sum l_j h_j, which
+  // lie aside of it by |sum l_k (h_k - sum l_j h_j)(n_k - mean n)| <= spread lean: that much margin more.
+  constexpr double kSafety = 1.5, kNothing = 1e-10;  // mm
+  const double lean = lean_of(cell), aside = kSafety * spread_of(heights) * lean;
+  if (aside <= kNothing) return heights;
+  const CornerHeights within = covered_lines(cell, piece, lines, heights, tops, aside);
+  return within[0] < kNever && spread_of(within) * lean <= aside ? within
+                                                                 : CornerHeights{kNever, kNever, kNever};
 }
 
 CornerHeights outside_from(const DesignCell& cell, const Vec3& normal, double offset) {
   CornerHeights heights{kNever, kNever, kNever};
+  double least_rise = kNever;
   for (size_t k = 0; k < 3; ++k) {
     const CellCorner& corner = cell.corners[k];
     const double rise = normal.dot(corner.normal) - cell.turn;
-    const double lacking = offset + cell.flatness_mm + kRounding - normal.dot(corner.point);
+    const double lacking = offset + cell.flatness_mm - kTouch - normal.dot(corner.point);
     if (!(rise > 0.0)) return {kNever, kNever, kNever};
     // Below the design the margin grows the other way: the bound is taken at the design then.
     heights[k] = std::max(0.0, lacking / rise);
+    least_rise = std::min(least_rise, rise);
   }
+  const double aside = spread_of(heights) * lean_of(cell);  // as in covered_from
+  for (double& height : heights) height += aside / least_rise;
   return heights;
 }
 

@@ -15,6 +15,7 @@
 
 #include <array>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "measure/design_cell.h"
@@ -38,8 +39,14 @@ struct NearSweep {
 inline constexpr double kTouch = 1e-6;
 
 /// Height in mm below which the sweep cuts nothing of the cell's columns, each down to its own depth (>= 0)
-/// under the design; -infinity when that cannot be told.
-double least_height(const DesignCell& cell, const NearSweep& near, const std::array<double, 3>& depths_mm);
+/// under the design; -infinity when that cannot be told. A bound above `enough` is not made any closer.
+double least_height(const DesignCell& cell, const NearSweep& near, const std::array<double, 3>& depths_mm,
+                    double enough);
+
+/// Where over the cell the sweep cuts deepest, as a place (barycentric) to be measured: the piece's lowest
+/// point at the instant that brings the cell's middle nearest. Only a good guess; nothing when it lies beside
+/// the cell.
+std::optional<Vec3> deepest_place(const DesignCell& cell, const NearSweep& near);
 
 /// True when the sweep certainly cuts the column of the place at `height_mm` or above only, or not at all.
 bool stays_above(const CellCorner& corner, const NearSweep& near, double height_mm);

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "base/parallel.h"
 #include "base/units.h"
+#include "measure/sweep_index.h"
+#include "stock/ray_height.h"
 
 namespace swarf::measure {
 namespace {
@@ -18,7 +19,33 @@ struct Context {
   std::span<const stock::Sweep> sweeps;
   const PassRule& rule;
   const SweepCutters& cutters;
+  const SweepIndex& index;
+  double highest_mm;  ///< heights beyond this are "not under the cutter"
 };
+
+/// The lowest height that any sweep leaves at a foot, if it lies below `height_mm`.
+struct Lowest {
+  double height_mm;
+  uint32_t sweep;
+};
+Lowest lowest_of_all(const Context& context, const stock::Foot& foot, double height_mm) {
+  Lowest lowest{height_mm, stock::kUncut};
+  const Vec3 top = foot.point + height_mm * foot.normal, bottom = foot.point - stock::kSkin * foot.normal;
+  std::vector<uint32_t> found;
+  context.index.find({top.cwiseMin(bottom), top.cwiseMax(bottom)}, found);
+  for (const uint32_t n : found) {
+    const stock::Sweep& sweep = context.sweeps[n];
+    const stock::CutterSolid& cutter = context.cutters[n];
+    // The plane under the tip keeps above the place at both ends, on a column that leaves on the tool's side.
+    const auto under = [&](const ToolPose& pose) {
+      return pose.axis_W.dot(foot.normal) >= 0.0 && pose.axis_W.dot(top - pose.tip_W) < lowest_z(cutter);
+    };
+    if (under(sweep.start) && under(sweep.end)) continue;
+    const double low = stock::ray_height(foot.point, foot.normal, sweep, cutter);
+    if (low < lowest.height_mm && low >= -stock::kSkin) lowest = {low, n};
+  }
+  return lowest;
+}
 
 /// The heights that two passes leave at one foot.
 class TwoPasses {
@@ -44,7 +71,8 @@ class TwoPasses {
 
 /// Root of the difference between two rays: regula falsi with the stagnant end halved (Illinois), bisection
 /// where the passes end under the rim and the difference jumps.
-double crossing(TwoPasses& passes, const stock::RayField& field, uint32_t a, uint32_t b) {
+double crossing(TwoPasses& passes, const stock::RayField& field, uint32_t a, uint32_t b, double low,
+                double high) {
   constexpr int kMostSteps = 60;
   constexpr double kEqualHeights = 1e-10;  // mm
   constexpr double kNarrow = 1e-12;        // share of the way between the rays
@@ -52,12 +80,11 @@ double crossing(TwoPasses& passes, const stock::RayField& field, uint32_t a, uin
     const stock::Foot foot = field.between(a, b, t);
     return passes.difference(foot.point, foot.normal);
   };
-  double low = 0.0, high = 1.0;
   double f_low = difference(low), f_high = difference(high);
-  if (!(f_low < 0.0)) return 0.0;
-  if (!(f_high > 0.0)) return 1.0;
+  if (!(f_low < 0.0)) return low;
+  if (!(f_high > 0.0)) return high;
   int stagnant = 0;
-  double t = 0.5;
+  double t = 0.5 * (low + high);
   for (int step = 0; step < kMostSteps && high - low > kNarrow; ++step) {
     const bool jump = std::max(-f_low, f_high) > 0.5 * kHigh;
     t = jump ? 0.5 * (low + high) : (low * f_high - high * f_low) / (f_high - f_low);
@@ -86,33 +113,53 @@ bool crosses_squarely(TwoPasses& passes, const stock::Foot& foot, const Vec3& ed
   return change(along) >= kTie * change(aside);
 }
 
-std::optional<Ridge> ridge_on_edge(const Context& context, uint32_t first, uint32_t second) {
-  const uint32_t a = context.dexels.blocks()[first], b = context.dexels.blocks()[second];
-  if (a == b || a == stock::kUncut || b == stock::kUncut) return std::nullopt;
-  if (!context.rule.is_pass(a) || !context.rule.is_pass(b) || context.rule.same(a, b)) return std::nullopt;
+/// The way between two rays that one sweep owns at its start and another at its end.
+struct Stretch {
+  uint32_t first, second;  ///< rays
+  double from, to;         ///< of the way between them
+  uint32_t a, b;           ///< sweeps
+};
+
+/// Appends the ridges of a stretch. Where a third pass lies lower than the two at their crossing there is no
+/// ridge of theirs: each of them has one with the third.
+void add_ridges(const Context& context, const Stretch& way, int depth, std::vector<Ridge>& ridges) {
+  constexpr int kMostPasses = 12;  // halvings of an edge: more passes than 2^12 between two rays are one wall
+  constexpr double kLower = 1e-9;  // mm
+  if (way.a == way.b || way.a == stock::kUncut || way.b == stock::kUncut) return;
+  if (!context.rule.is_pass(way.a) || !context.rule.is_pass(way.b) || context.rule.same(way.a, way.b)) return;
   const stock::RayField& field = context.dexels.field();
-  TwoPasses passes(context, a, b);
-  const stock::Foot foot = field.between(first, second, crossing(passes, field, first, second));
+  TwoPasses passes(context, way.a, way.b);
+  const double t = crossing(passes, field, way.first, way.second, way.from, way.to);
+  const stock::Foot foot = field.between(way.first, way.second, t);
   passes.difference(foot.point, foot.normal);
+  const double height = passes.lower_height();
+  const Lowest third = lowest_of_all(context, foot, std::min(height, context.highest_mm));
+  if (third.sweep != stock::kUncut && third.height_mm < height - kLower && depth < kMostPasses) {
+    add_ridges(context, {way.first, way.second, way.from, t, way.a, third.sweep}, depth + 1, ridges);
+    add_ridges(context, {way.first, way.second, t, way.to, third.sweep, way.b}, depth + 1, ridges);
+    return;
+  }
   // Between two faces both passes may end short of the edge: nothing stands there that a pass has left.
-  if (passes.lower_height() > 0.5 * kHigh) return std::nullopt;
-  const Ridge ridge{foot.u,           foot.v,           um_from_mm(passes.lower_height()),
-                    passes.block_a(), passes.block_b(), foot.point};
-  const bool squarely = crosses_squarely(passes, foot, field.points[second] - field.points[first]);
-  return squarely ? std::optional(ridge) : std::nullopt;
+  if (height > 0.5 * kHigh) return;
+  if (!crosses_squarely(passes, foot, field.points[way.second] - field.points[way.first])) return;
+  ridges.push_back({foot.u, foot.v, um_from_mm(height), passes.block_a(), passes.block_b(), foot.point});
 }
 
 }  // namespace
 
 std::vector<Ridge> find_ridges(const stock::SurfaceDexels& dexels, std::span<const stock::Sweep> sweeps,
                                const PassRule& rule, const SweepCutters& cutters) {
-  const Context context{dexels, sweeps, rule, cutters};
+  const SweepIndex index(sweeps, cutters);
+  double highest = 0.0;
+  for (const double height : dexels.heights_mm()) highest = std::max(highest, height);
+  const Context context{dexels, sweeps, rule, cutters, index, 2.0 * highest + dexels.field().pitch_mm};
   const auto& edges = dexels.field().edges;
   std::vector<std::vector<Ridge>> parts((edges.size() + kEdgesPerTask - 1) / kEdgesPerTask);
   parallel_chunks(edges.size(), kEdgesPerTask, [&](size_t begin, size_t end) {
     for (size_t n = begin; n < end; ++n) {
-      const auto ridge = ridge_on_edge(context, edges[n][0], edges[n][1]);
-      if (ridge) parts[begin / kEdgesPerTask].push_back(*ridge);
+      const auto [a, b] = edges[n];
+      add_ridges(context, {a, b, 0.0, 1.0, dexels.blocks()[a], dexels.blocks()[b]}, 0,
+                 parts[begin / kEdgesPerTask]);
     }
   });
   std::vector<Ridge> ridges;

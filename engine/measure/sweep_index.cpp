@@ -35,12 +35,16 @@ Box pose_box(const ToolPose& pose, double radius, double low, double high) {
 
 }  // namespace
 
+double lowest_z(const stock::CutterSolid& cutter) {
+  double low = std::numeric_limits<double>::infinity();
+  for (const cutter::ConvexPiece& piece : cutter.pieces) low = std::min(low, piece.low);
+  return low;
+}
+
 Box sweep_box(const stock::Sweep& sweep, const stock::CutterSolid& cutter) {
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const cutter::ConvexPiece& piece : cutter.pieces) {
-    low = std::min(low, piece.low);
-    high = std::max(high, piece.high);
-  }
+  const double low = lowest_z(cutter);
+  double high = low;
+  for (const cutter::ConvexPiece& piece : cutter.pieces) high = std::max(high, piece.high);
   const double lever = std::hypot(cutter.radius, std::max(std::abs(low), std::abs(high)));
   const Box box =
       joined(pose_box(sweep.start, cutter.radius, low, high), pose_box(sweep.end, cutter.radius, low, high));

@@ -30,6 +30,9 @@ class SweepIndex {
   std::vector<Box> nodes_;
 };
 
+/// Least z of the cutter's flutes in its own frame, mm.
+double lowest_z(const stock::CutterSolid& cutter);
+
 /// A box around all that the cutter passes on a sweep, mm.
 Box sweep_box(const stock::Sweep& sweep, const stock::CutterSolid& cutter);
 

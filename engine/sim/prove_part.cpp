@@ -15,17 +15,18 @@ void raise(std::optional<measure::Bound>& bound, const measure::Bound& by) {
   if (!bound || by.um > bound->um) bound = by;
 }
 
+/// What rays found beyond a proven bound was no cut of that depth: a leaning ray of a mesh that ran along it.
+void settle(double& value_um, uint32_t& block, double found_um, uint32_t found_block,
+            const measure::Bound& bound) {
+  if (value_um > bound.um) value_um = 0.0;
+  if (found_um <= value_um) return;
+  value_um = found_um;
+  block = found_block;
+}
+
 void take_over(const measure::Certificate& proof, measure::SurfaceMetrics& surface) {
   raise(surface.gouge_bound, proof.gouge);
   raise(surface.excess_bound, proof.excess);
-  if (proof.gouge_found_um > surface.gouge_max_um) {
-    surface.gouge_max_um = proof.gouge_found_um;
-    surface.gouge_block = proof.gouge_block;
-  }
-  if (proof.excess_found_um > surface.excess_max_um) {
-    surface.excess_max_um = proof.excess_found_um;
-    surface.excess_block = proof.excess_block;
-  }
   surface.unmeasured_area_mm2 += proof.open_area_mm2;
   surface.gouges.insert(surface.gouges.end(), proof.gouges.begin(), proof.gouges.end());
   surface.excesses.insert(surface.excesses.end(), proof.excesses.begin(), proof.excesses.end());
@@ -57,17 +58,34 @@ void prove_part(const Job& job, Progress& progress, Result& result) {
   measure::SurfaceMetrics& surface = main.surface;
   surface.gouges.clear();
   surface.excesses.clear();
-  for (size_t i = 0; i < fields.size(); ++i) {
-    take_over(measure::certify({*fields[i], ranges, main.rays.sweeps, cutters, main.rays.error_bound_mm,
-                                *result.stock, result.sweep_bound_mm, accept.gouge_band_um() * kMicrometre,
-                                accept.excess_max_um.value_or(accept.scallop_band_um()) * kMicrometre,
-                                surface.gouge_max_um * kMicrometre, surface.excess_max_um * kMicrometre,
-                                progress, static_cast<double>(i)}),
-              surface);
-    progress.advance(static_cast<double>(i + 1));
+  measure::Certificate worst;
+  for (size_t i = 0; i < fields.size() && !progress.stop_requested(); ++i) {
+    const measure::Certificate proof =
+        measure::certify({*fields[i], ranges, main.rays.sweeps, cutters, main.rays.error_bound_mm,
+                          *result.stock, result.sweep_bound_mm, accept.gouge_band_um() * kMicrometre,
+                          accept.excess_max_um.value_or(accept.scallop_band_um()) * kMicrometre,
+                          surface.gouge_max_um * kMicrometre, surface.excess_max_um * kMicrometre, progress,
+                          static_cast<double>(i)});
+    take_over(proof, surface);
+    if (proof.gouge_found_um > worst.gouge_found_um) {
+      worst.gouge_found_um = proof.gouge_found_um;
+      worst.gouge_block = proof.gouge_block;
+    }
+    if (proof.excess_found_um > worst.excess_found_um) {
+      worst.excess_found_um = proof.excess_found_um;
+      worst.excess_block = proof.excess_block;
+    }
   }
-  raise(surface.gouge_bound, {surface.gouge_max_um, surface.gouge_bound->place});
-  raise(surface.excess_bound, {surface.excess_max_um, surface.excess_bound->place});
+  if (progress.stop_requested()) {
+    // Half a proof is none.
+    surface.gouge_bound.reset();
+    surface.excess_bound.reset();
+  } else {
+    settle(surface.gouge_max_um, surface.gouge_block, worst.gouge_found_um, worst.gouge_block,
+           *surface.gouge_bound);
+    settle(surface.excess_max_um, surface.excess_block, worst.excess_found_um, worst.excess_block,
+           *surface.excess_bound);
+  }
   surface.gouge_regions = keep_worst(surface.gouges);
   surface.excess_regions = keep_worst(surface.excesses);
   progress.end();

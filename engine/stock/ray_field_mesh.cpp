@@ -264,8 +264,18 @@ double RayField::own_depth(const Vec3& point, const Vec3& normal, double depth_m
   constexpr double kLean = 0.85;       // cos(30 deg), and a little for rounding
   constexpr double kFloatMesh = 2e-5;  // mm: vertices are floats
   constexpr int kHalvings = 40;
+  // On a flat face the column follows the facet's own normal, and the distance is the depth.
+  constexpr double kFlat = 1.0 - 1e-4;
+  const auto& facet = design->mesh.triangles[design->distance.nearest(point).triangle];
+  const auto vertex = [&](size_t k) {
+    const auto& p = design->mesh.positions[facet[k]];
+    return Vec3(p[0], p[1], p[2]);
+  };
+  const Vec3 across = (vertex(1) - vertex(0)).cross(vertex(2) - vertex(0));
+  const bool flat = std::abs(across.dot(normal)) >= (1.0 - 1e-9) * across.norm();
+  const double least = flat ? kFlat : kLean;
   const auto is_own = [&](double s) {
-    return design->distance.nearest(point - s * normal).distance_mm >= kLean * s - kFloatMesh;
+    return design->distance.nearest(point - s * normal).distance_mm >= least * s - kFloatMesh;
   };
   if (is_own(depth_mm)) return depth_mm;
   double low = 0.0, high = depth_mm;

@@ -1,0 +1,285 @@
+#include "measure/certificate.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "base/parallel.h"
+#include "base/rng.h"
+#include "base/units.h"
+#include "cutter/cutter.h"
+#include "dome_cut.h"
+#include "measure/measure.h"
+#include "surface/analytic.h"
+#include "test_surfaces.h"
+
+namespace swarf::measure {
+namespace {
+
+/// A design with what cut it.
+struct Job {
+  stock::RayFieldPtr field;
+  Box box;
+  stock::CutterSolid cutter;
+  std::vector<stock::Sweep> sweeps;
+  double gouge_limit_mm = 2e-4, excess_limit_mm = 1.0;
+};
+
+void move(Job& job, const Vec3& from, const Vec3& to, const Vec3& axis = Vec3::UnitZ()) {
+  job.sweeps.push_back({{from, axis}, {to, axis}, static_cast<uint32_t>(job.sweeps.size())});
+}
+
+Certificate prove(const Job& job, double voxel_mm = 0.5) {
+  stock::Stock stock(job.box, voxel_mm);
+  stock.cut(job.sweeps, job.cutter);
+  const stock::FreeRange ranges({&job.field, 1});
+  const SweepCutters cutters(job.cutter);
+  stock::SurfaceDexels dexels(job.field, job.box, {});
+  dexels.cut(job.sweeps, job.cutter);
+  double known = 0.0;
+  for (const double height : dexels.heights_mm()) known = std::max(known, height);
+  Progress progress;
+  return certify({*job.field, ranges, job.sweeps, cutters, 0.0, stock, 0.0, job.gouge_limit_mm,
+                  job.excess_limit_mm, 0.0, known, progress});
+}
+
+surface::SurfacePtr plane(double length, double width) {
+  return std::make_shared<surface::PlaneSurface>(Vec3(-0.5 * length, -0.5 * width, 0), Vec3(length, 0, 0),
+                                                 Vec3(0, width, 0));
+}
+
+/// A closed box from -half to half, its top at z = 0, `deep` mm high.
+TriMesh block(double half_x, double half_y, double deep) {
+  TriMesh mesh;
+  for (const float z : {static_cast<float>(-deep), 0.0F}) {
+    for (const double y : {-half_y, half_y}) {
+      for (const double x : {-half_x, half_x})
+        mesh.positions.push_back({static_cast<float>(x), static_cast<float>(y), z});
+    }
+  }
+  mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                    {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+  return mesh;
+}
+
+/// The top of a shaft of radius R along x, highest at z = 0.
+surface::SurfacePtr shaft(double R) {
+  surface::Turn turn;
+  turn.base_W = {-5, 0, -R};
+  turn.axis_W = Vec3::UnitX();
+  turn.from_rad = 0.5 * kPi - 3.0 / R;
+  turn.to_rad = 0.5 * kPi + 3.0 / R;
+  return surface::cylinder_surface(turn, R, 10.0, surface::MaterialSide::kConvex);
+}
+
+/// z = -(x^2 + y^2) / 2R over 10 x 10 mm.
+surface::SurfacePtr cap(double R) {
+  return std::make_shared<Paraboloid>(1.0 / R, 1.0 / R, 5.0);
+}
+
+stock::CutterSolid chamfer(double point_angle_deg, double radius) {
+  stock::CutterSolid cutter(radius, 25.0);
+  cutter::ConvexPiece piece;
+  const double half = 0.5 * rad_from_deg(point_angle_deg);
+  piece.faces = {{{std::cos(half), -std::sin(half)}, 0.0}, {{1.0, 0.0}, radius}, {{0.0, 1.0}, 25.0}};
+  piece.radius = radius;
+  piece.low = 0.0;
+  piece.high = 25.0;
+  cutter.pieces = {piece};
+  return cutter;
+}
+
+void rows(Job& job, double half_x, double from_y, double to_y, double step, double z = 0.0) {
+  int sign = 1;
+  for (double y = from_y; y <= to_y + 1e-9; y += step, sign = -sign)
+    move(job, {-sign * half_x, y, z}, {sign * half_x, y, z});
+}
+
+// The case: a sharp cone of 60 deg .15 mm into a plane, along a line that no ray meets.
+TEST(Certificate, SharpLineBetweenRaysHasItsDepthAtAnyPitch) {
+  for (const double pitch : {0.07, 0.2, 0.5, 2.0}) {
+    Job job{stock::rays_on_surface(plane(18, 9), pitch), {{-10, -5, -5}, {10, 5, 0}}, chamfer(60, 4), {}};
+    move(job, {-8, 0.013, -0.15}, {8, 0.013, -0.15});
+    const Certificate proof = prove(job);
+    EXPECT_NEAR(proof.gouge_found_um, 150.0, 0.1) << pitch;
+    EXPECT_GE(proof.gouge.um, 150.0 - 1e-6) << pitch;
+    EXPECT_LE(proof.gouge.um, 150.0 + 0.1) << pitch;
+    ASSERT_EQ(proof.gouges.size(), 1U) << pitch;
+    // A groove 2 x .15 tan 30 wide; the area counts what is deeper than the limit.
+    const double width = 2.0 * (0.15 - job.gouge_limit_mm) * std::tan(kPi / 6.0);
+    EXPECT_NEAR(proof.gouges[0].area_mm2, 16.0 * width, 0.03 * 16.0 * width) << pitch;
+    EXPECT_NEAR(proof.gouges[0].volume_mm3, 16.0 * 0.15 * 0.15 * std::tan(kPi / 6.0), 0.01) << pitch;
+    EXPECT_EQ(proof.open_cells, 0U);
+  }
+}
+
+// A flat D10 whose rows are 10.1 (10.01) apart leaves walls .1 (.01) thick as high as the stock.
+TEST(Certificate, WallsBetweenPassesAreFound) {
+  for (const double thick : {0.1, 0.01}) {
+    for (const double pitch : {0.3, 1.0}) {
+      Job job{stock::rays_on_surface(plane(20, 18), pitch), {{-20, -10, -5}, {20, 10, 3}}, {5.0, 25.0}, {}};
+      job.excess_limit_mm = 0.01;
+      rows(job, 30, -10 - thick, 10 + 2 * thick, 10 + thick);
+      const Certificate proof = prove(job);
+      EXPECT_NEAR(proof.excess_found_um, 3000.0, 1.0) << thick << ' ' << pitch;
+      EXPECT_GE(proof.excess.um, 3000.0 - 1e-6);
+      ASSERT_EQ(proof.excesses.size(), 2U) << thick << ' ' << pitch;
+      EXPECT_NEAR(proof.excesses[0].area_mm2, 20.0 * thick, 20.0 * (0.1 * thick + 0.01));
+    }
+  }
+}
+
+TEST(Certificate, IslandBetweenFourPlunges) {
+  // Four quarters of the plane are cut away; a cross .05 mm wide stays.
+  Job job{stock::rays_on_surface(plane(16, 16), 0.5), {{-9, -9, -5}, {9, 9, 2}}, {5.0, 25.0}, {}};
+  job.excess_limit_mm = 0.01;
+  for (const double x : {-1.0, 1.0}) {
+    for (const double y : {-5.025, 5.025}) {
+      move(job, {x > 0 ? 5.025 : -20.0, y, 0}, {x > 0 ? 20.0 : -5.025, y, 0});
+    }
+  }
+  const Certificate proof = prove(job);
+  EXPECT_NEAR(proof.excess_found_um, 2000.0, 1.0);
+}
+
+// theory 8: ball D10, rows 1 mm apart in X and in Y: the corner of four ridges.
+TEST(Certificate, CrossingRidges) {
+  Job job{stock::rays_on_surface(plane(8, 6), 0.37), {{-8, -8, -3}, {8, 8, 1}}, ball(5.0, 25.0), {}};
+  job.excess_limit_mm = 0.0251;
+  rows(job, 12, -8, 8, 1.0);
+  for (double x = -8; x <= 8; x += 1.0) move(job, {x, -12, 0}, {x, 12, 0});
+  const Certificate proof = prove(job, 0.2);
+  // The planes of both directions leave the same ridges: their crossing is as high as either.
+  EXPECT_NEAR(proof.excess_found_um, 25.0628, 0.05);
+  EXPECT_LE(proof.excess.um, 25.0628 + 0.06);
+  EXPECT_GE(proof.excess.um, 25.0628);
+  EXPECT_LE(proof.gouge.um, 0.05);
+}
+
+TEST(Certificate, NothingWasCut) {
+  Job job{stock::rays_on_surface(plane(8, 6), 1.0), {{-5, -4, -3}, {5, 4, 1}}, ball(2.0, 25.0), {}};
+  job.excess_limit_mm = 0.01;
+  const Certificate proof = prove(job);
+  EXPECT_NEAR(proof.excess.um, 1000.0, 1.0);
+  ASSERT_EQ(proof.excesses.size(), 1U);
+  EXPECT_NEAR(proof.excesses[0].area_mm2, 48.0, 1e-6);
+  EXPECT_NEAR(proof.excesses[0].volume_mm3, 48.0, 1e-3);
+  EXPECT_DOUBLE_EQ(proof.gouge.um, 0.0);
+}
+
+struct Planted {
+  std::string about;
+  Job job;
+  double depth_um;
+  uint32_t block;
+};
+
+/// A gouge of known depth: a move of `length` that comes `depth` below the design at its deepest.
+Planted plant(Rng& rng) {
+  const double depth = std::exp(rng.uniform(std::log(0.25e-3), std::log(20e-3)));
+  const double length = std::exp(rng.uniform(std::log(0.02), std::log(3.0)));
+  const double radius = std::exp(rng.uniform(std::log(0.5), std::log(5.0)));
+  const double pitch = rng.uniform(0.1, 0.8);
+  const int tool = static_cast<int>(rng.uniform(0, 3)), design = static_cast<int>(rng.uniform(0, 4));
+  const double x = rng.uniform(-3, 3), y = rng.uniform(-2, 2);
+  Planted planted;
+  Job& job = planted.job;
+  job.box = {{-6, -5, -4}, {6, 5, 0}};
+  job.gouge_limit_mm = 0.5 * depth;
+  job.cutter = tool == 0   ? ball(radius, 30.0)
+               : tool == 1 ? stock::CutterSolid(radius, 30.0)
+                           : chamfer(60, radius);
+  // A flat end leans along its way; its lowest point is the rim, `behind` the tip.
+  const double lean = tool == 1 ? rng.uniform(0.02, 0.3) : 0.0;
+  const Vec3 axis(std::sin(lean), 0, std::cos(lean));
+  const Vec3 rim = tool == 1 ? Vec3(radius * std::cos(lean), 0, -radius * std::sin(lean)) : Vec3(0, 0, 0);
+  if (design == 0) job.field = stock::rays_on_surface(plane(10, 8), pitch);
+  if (design == 1) job.field = stock::rays_on_mesh(block(6, 5, 4), pitch);
+  if (design >= 2) {
+    // The top of a shaft along x; the top of a dome, where the move must be short.
+    const double R = design == 2 ? rng.uniform(10, 60) : rng.uniform(40, 60);
+    job.field = stock::rays_on_surface(design == 2 ? shaft(R) : cap(R), pitch);
+  }
+  const double y_at = design >= 2 ? 0.0 : y;
+  // On the dome the move turns about its top and is deepest in its middle.
+  const double x_at = design == 3 ? -0.5 * length : x;
+  const Vec3 from = Vec3(x_at, y_at, -depth) - rim, to = from + Vec3(length, 0, 0);
+  move(job, from + Vec3(0, 0, 3), from + Vec3(0, 0, 1), axis);
+  move(job, from, to, axis);
+  planted.block = 1;
+  planted.depth_um = um_from_mm(depth);
+  planted.about = fmt::format("tool {} design {} depth {} um length {} radius {} pitch {} x {} y {} lean {}",
+                              tool, design, planted.depth_um, length, radius, pitch, x, y_at, lean);
+  return planted;
+}
+
+TEST(Certificate, PlantedGougesAreFoundBetweenTheRays) {
+  const char* count = std::getenv("SWARF_PLANTED_GOUGES");
+  Rng rng(8);
+  for (int n = 0; n < (count != nullptr ? std::atoi(count) : 60); ++n) {
+    const Planted planted = plant(rng);
+    const Certificate proof = prove(planted.job);
+    const std::string where = fmt::format("case {}: {}", n, planted.about);
+    EXPECT_NEAR(proof.gouge_found_um, planted.depth_um, 0.05 + 5e-4 * planted.depth_um) << where;
+    EXPECT_GE(proof.gouge.um, planted.depth_um - 1e-6) << where;
+    EXPECT_LE(proof.gouge.um, planted.depth_um + 0.1 + 1e-3 * planted.depth_um)
+        << where
+        << fmt::format("\n  loosest about ({}, {}, {}), {} open cells of {}, {:.4g} mm2",
+                       proof.gouge.place.x(), proof.gouge.place.y(), proof.gouge.place.z(), proof.open_cells,
+                       proof.cells, proof.open_area_mm2);
+    EXPECT_EQ(proof.gouges.size(), 1U) << where;
+    ASSERT_FALSE(proof.gouges.empty());
+    EXPECT_EQ(proof.gouges[0].block, planted.block) << where;
+    EXPECT_GT(proof.gouges[0].area_mm2, 0.0) << where;
+    EXPECT_GT(proof.gouges[0].volume_mm3, 0.0) << where;
+  }
+}
+
+/// Rays far denser than the cells find nothing beyond the bounds, and the bounds are close.
+TEST(Certificate, DenseRaysOfTheDomeStayWithinTheBounds) {
+  const surface::SurfacePtr surface = dome();
+  const Passes passes = dome_passes(*surface, true, 30, 0.01, 0.06);
+  Job job{stock::rays_on_surface(surface, 1.0), kDomeBox, kCutter, passes.sweeps, 1e-3, 0.05};
+  const Certificate proof = prove(job, 1.0);
+  stock::SurfaceDexels dexels(stock::rays_on_surface(surface, 0.13), kDomeBox, {});
+  dexels.cut(job.sweeps, job.cutter);
+  double low = 0.0, high = 0.0;
+  for (const double height : dexels.heights_mm()) {
+    low = std::min(low, height);
+    high = std::max(high, height);
+  }
+  EXPECT_GE(proof.excess.um, um_from_mm(high));
+  EXPECT_LE(proof.excess.um, proof.excess_found_um * 1.001 + 0.06);
+  EXPECT_GE(proof.gouge.um, um_from_mm(-low));
+  EXPECT_LE(proof.gouge.um, proof.gouge_found_um * 1.001 + 0.06);
+  EXPECT_EQ(proof.open_cells, 0U);
+}
+
+TEST(Certificate, IsEqualForAnyNumberOfThreads) {
+  Rng rng(3);
+  const Planted planted = plant(rng);
+  set_thread_count(1);
+  const Certificate one = prove(planted.job);
+  set_thread_count(0);
+  const Certificate all = prove(planted.job);
+  EXPECT_EQ(one.gouge.um, all.gouge.um);
+  EXPECT_EQ(one.excess.um, all.excess.um);
+  EXPECT_EQ(one.cells, all.cells);
+  ASSERT_EQ(one.gouges.size(), all.gouges.size());
+  for (size_t i = 0; i < one.gouges.size(); ++i) EXPECT_EQ(one.gouges[i].area_mm2, all.gouges[i].area_mm2);
+}
+
+TEST(Certificate, DepthIsMaterialNotTravel) {
+  // A ball goes 25 mm down through a plate of 2 mm.
+  Job job{stock::rays_on_surface(plane(18, 9), 0.5), {{-10, -5, -2}, {10, 5, 0}}, ball(1.0, 40.0), {}};
+  move(job, {0, 0, 5}, {0, 0, -25});
+  const Certificate proof = prove(job);
+  EXPECT_NEAR(proof.gouge_found_um, 2000.0, 1e-6);
+  ASSERT_EQ(proof.gouges.size(), 1U);
+  EXPECT_NEAR(proof.gouges[0].area_mm2, kPi, 0.02);
+}
+
+}  // namespace
+}  // namespace swarf::measure
