@@ -16,15 +16,19 @@ namespace swarf::measure {
 namespace {
 
 /// A cell is closed when its bound is this near to what was measured: mm, and share.
-constexpr double kGap = 4e-5, kGapShare = 2e-4, kLeastGap = 2e-6, kRoomShare = 0.9;
+constexpr double kGap = 4e-5, kGapShare = 2e-4;
 /// Cells on the border of a gouge or of material left standing are divided down to this; mm.
 constexpr double kBorder = 0.01;
 /// In cells smaller than this the deepest place of the lowest sweep is measured too; mm.
 constexpr double kProbed = 0.1;
+/// Where another face is as near need not be known closer than this, of itself.
+constexpr double kShareOfRange = 1e-3;
 /// No cell is divided below this; mm.
 constexpr double kSmallest = 1e-3;
-/// Cells in all, shared evenly by the roots, within these limits for one root.
-constexpr size_t kBudget = 20'000'000, kLeastBudget = 20'000, kMostBudget = 200'000;
+/// Looks at a sweep over a cell, in all (a minute or two) and at least for each root.
+constexpr size_t kBudget = 100'000'000, kLeastBudget = 10'000;
+/// What is left of the budget is shared by the roots that are left, and one may take so many shares.
+constexpr size_t kShares = 32;
 constexpr size_t kRoots = 10'000;
 constexpr size_t kRootsPerBatch = 256;  // between two looks at the progress bar and Ctrl-C
 constexpr double kLeastRoot = 1.0;      // mm
@@ -53,7 +57,7 @@ struct RootResult {
     double depth, height, area;
   };
   std::vector<Open> open;
-  size_t cells = 0;
+  size_t cells = 0, work = 0;
 };
 
 double leaves_box(const Box& box, const Vec3& point, const Vec3& direction) {
@@ -159,13 +163,13 @@ class RootProof {
   double range_of(const CellCorner& corner) const {
     if (input_.field.design == nullptr) return input_.ranges(corner.point, corner.normal);
     const double through = leaves_box(input_.stock.box(), corner.point, corner.normal);
-    return through > 0.0 ? input_.field.own_depth(corner.point, -corner.normal, through) : kNever;
+    return through > 0.0 ? input_.field.own_depth(corner.point, -corner.normal, through, kShareOfRange) : kNever;
   }
 
   /// How deep below a place a cut can count: to where another face is nearer, or out of the stock.
-  double own_depth(const CellCorner& corner, double depth) const {
+  double own_depth(const CellCorner& corner, double depth, double share = 1e-9) const {
     if (depth <= 0.0) return depth;
-    depth = input_.field.own_depth(corner.point, corner.normal, depth);
+    depth = input_.field.own_depth(corner.point, corner.normal, depth, share);
     const double through = leaves_box(input_.stock.box(), corner.point, -corner.normal);
     return through > 0.0 ? std::min(depth, through) : depth;
   }
@@ -174,7 +178,7 @@ class RootProof {
   Corner measured(const CellCorner& at, size_t begin, size_t end, std::array<uint32_t, 2> guesses) {
     Corner corner{at};
     corner.range = range_of(at);
-    corner.depth = own_depth(at, stock::kSkin);
+    corner.depth = own_depth(at, stock::kSkin, kShareOfRange);
     corner.top = std::min(leaves_box(input_.stock.box(), at.point, at.normal), corner.range);
     // Without stock at the place the design lacks material: as much as to the box.
     corner.height = corner.top > -kNever ? corner.top : -distance_to_box(at.point);
@@ -189,6 +193,7 @@ class RootProof {
     }
     for (size_t i = begin; i < end; ++i) {
       if (floors_.size() == kept_.size() && floors_[i] >= corner.height) continue;
+      ++result_.work;
       look_at(kept_[i]);
     }
     // The kept sweeps prove bounds; what counts as found is measured against all of them.
@@ -239,11 +244,12 @@ class RootProof {
   double excess_target() const {
     return target(std::max(result_.excess_found, excess_goal_), input_.excess_limit_mm);
   }
-  /// The bound to reach where `found` was measured: closer to it where that decides a limit.
+  /// The bound to reach where `found` was measured: it need not be closer than decides a limit.
   double target(double found, double limit) const {
-    const double room = limit - input_.sweep_bound_mm - found;
-    const double gap = kGap + kGapShare * found;
-    return found + (room > 0.0 ? std::clamp(kRoomShare * room, kLeastGap, gap) : gap);
+    const double decided = limit - input_.sweep_bound_mm;
+    const double close = found + kGap + kGapShare * found;
+    if (found >= decided) return close;
+    return decided;
   }
 
   /// How deep the cell's columns count at most.
@@ -409,6 +415,7 @@ class RootProof {
 
   void visit(Cell cell) {
     ++result_.cells;
+    result_.work += 1 + cell.end - cell.begin;
     floors_.resize(kept_.size());
     Bounds bounds{lower_bound(cell), 0.0};
     if (bounds.low == -kNever) bounds.low = -deepest(cell);
@@ -425,7 +432,7 @@ class RootProof {
     const bool divide = ((gouge_open || excess_open) && edge > kSmallest) ||
                         (on_border(bounds) && edge > (seen ? kBorder : kSmallest)) ||
                         (is_coarse(bounds) && edge > 2.0 * kBorder);
-    if (!divide || result_.cells > budget_) {
+    if (!divide || result_.work > budget_) {
       if (gouge_open || excess_open)
         result_.open.push_back({-bounds.low, bounds.high, cell.shape.area_mm2()});
       close(cell, bounds, probed);
@@ -510,15 +517,20 @@ Certificate certify(const CertificateInput& input) {
   for (const double part : input.field.areas_mm2) area += part;
   const double size = std::max(kLeastRoot, std::sqrt(2.0 * area / kRoots));
   const std::vector<RootCell> roots = root_cells(input.field, size);
-  const size_t budget = std::clamp(kBudget / std::max<size_t>(1, roots.size()), kLeastBudget, kMostBudget);
   const SweepIndex index(input.sweeps, input.cutters);
   std::vector<RootResult> parts(roots.size());
+  size_t spent = 0;
   for (size_t first = 0; first < roots.size() && !input.progress.stop_requested(); first += kRootsPerBatch) {
-    parallel_chunks(std::min(kRootsPerBatch, roots.size() - first), 1, [&](size_t begin, size_t) {
+    // Known between batches only: the budget of a root does not depend on the number of threads.
+    const size_t left = kBudget > spent ? kBudget - spent : 0;
+    const size_t budget = std::max(kLeastBudget, kShares * left / (roots.size() - first));
+    const size_t count = std::min(kRootsPerBatch, roots.size() - first);
+    parallel_chunks(count, 1, [&](size_t begin, size_t) {
       parts[first + begin] = RootProof(input, index, roots[first + begin], budget).prove();
     });
+    for (size_t n = first; n < first + count; ++n) spent += parts[n].work;
     input.progress.advance(input.progress_from +
-                           static_cast<double>(first) / static_cast<double>(roots.size()));
+                           static_cast<double>(first + count) / static_cast<double>(roots.size()));
   }
   Certificate whole;
   std::vector<RegionPiece> gouges, excesses;

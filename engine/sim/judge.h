@@ -38,9 +38,6 @@ struct Check {
   std::string reason{};  ///< why it is not judged or not proven; what a result rests on
 };
 
-/// Check::reason of a limit that holds at every ray while nobody has looked between them.
-inline constexpr const char* kRaysOnly = "rays only, between the rays not proven";
-
 /// The list for a finished run; the same checks in the same order for every job.
 std::vector<Check> judge(const Job& job, const Result& result);
 
@@ -63,9 +60,5 @@ const char* outcome_name(Outcome outcome);
 
 /// The check of this name, or null.
 const Check* find_check(std::span<const Check> checks, const std::string& name);
-
-/// Whether a value that rays have found within its limit holds everywhere. THE ONE PLACE that says what a
-/// missing bound means: for now that the rays alone are believed, which the check's reason then says.
-bool proven(const std::optional<double>& bound, double limit);
 
 }  // namespace swarf::sim

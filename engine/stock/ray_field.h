@@ -73,7 +73,8 @@ struct RayField {
   /// for: down to where another face of the design is nearer (the medial ball inside the part). A tool that
   /// touches a wall's edge along the floor cuts the whole length of the wall's ray, but the depth of the
   /// gouge is the floor's. On a parametric surface, which bounds no body, all of it.
-  double own_depth(const Vec3& point, const Vec3& normal, double depth_mm) const;
+  /// `share`: how closely, of the result; found is the lower end.
+  double own_depth(const Vec3& point, const Vec3& normal, double depth_mm, double share = 1e-9) const;
 
   /// Meshes: the facets before their division, by the rays at their corners, and the sharp edges.
   std::vector<std::array<uint32_t, 3>> facets;

@@ -257,7 +257,7 @@ RayFieldPtr rays_on_mesh(const TriMesh& mesh, double pitch_mm, double crease_rad
   return field;
 }
 
-double RayField::own_depth(const Vec3& point, const Vec3& normal, double depth_mm) const {
+double RayField::own_depth(const Vec3& point, const Vec3& normal, double depth_mm, double share) const {
   if (design == nullptr || depth_mm <= 0.0) return depth_mm;
   // Interpolated normals lean up to the crease's angle from the facets: the distance then is that much
   // shorter.
@@ -279,7 +279,7 @@ double RayField::own_depth(const Vec3& point, const Vec3& normal, double depth_m
   };
   if (is_own(depth_mm)) return depth_mm;
   double low = 0.0, high = depth_mm;
-  for (int i = 0; i < kHalvings && high - low > 1e-9; ++i) {
+  for (int i = 0; i < kHalvings && high - low > std::max(1e-9, share * high); ++i) {
     const double middle = 0.5 * (low + high);
     (is_own(middle) ? low : high) = middle;
   }

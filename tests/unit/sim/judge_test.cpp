@@ -27,6 +27,7 @@ class Judge : public testing::Test {
     move.spindle_rpm = 8000.0;
     result_.main.path.elements.push_back({move, 0, {"path.cl", 0, 0}});
     result_.main.surface.gouge_max_um = 0.2;
+    result_.main.surface.gouge_bound = measure::Bound{0.25, {}};
     result_.cross_check = compared(3.0, 4.0, true);
   }
 
@@ -132,9 +133,11 @@ TEST_F(Judge, AGougeWithinItsLimitButABoundBeyondItIsNotProven) {
   EXPECT_EQ(judged("gouge").bound, 0.999);
 }
 
-TEST_F(Judge, RaysAloneAreSaidToBeRaysAlone) {
-  EXPECT_EQ(judged("gouge").reason, kRaysOnly);
-  EXPECT_NE(verdict_sentence(result_.checks).find("(gouge: rays only"), std::string::npos);
+TEST_F(Judge, RaysAloneProveNothing) {
+  result_.main.surface.gouge_bound.reset();
+  EXPECT_EQ(outcome("gouge"), Outcome::kNotProven);
+  EXPECT_FALSE(passes(result_));
+  EXPECT_NE(judged("gouge").reason.find("not proven below 1 um"), std::string::npos);
 }
 
 TEST_F(Judge, WithoutADesignNothingOfTheSurfaceIsJudged) {
