@@ -26,7 +26,7 @@ constexpr double kShareOfRange = 1e-3;
 /// No cell is divided below this; mm.
 constexpr double kSmallest = 1e-3;
 /// Looks at a sweep over a cell, in all (a minute or two) and at least for each root.
-constexpr size_t kBudget = 100'000'000, kLeastBudget = 10'000;
+constexpr size_t kBudget = 150'000'000, kLeastBudget = 10'000;
 /// What is left of the budget is shared by the roots that are left, and one may take so many shares.
 constexpr size_t kShares = 32;
 constexpr size_t kRoots = 10'000;
@@ -130,13 +130,27 @@ class RootProof {
     }
     std::vector<uint32_t> found;
     index_.find(box, found);
+    const Vec3 centre = 0.5 * (box.lower + box.upper);
+    const double around = 0.5 * (box.upper - box.lower).norm();
     near_.clear();
     for (const uint32_t n : found) {
-      if (passes_above(n, reach)) continue;
+      if (passes_above(n, reach) || passes_aside(n, centre, around)) continue;
       const stock::Sweep& sweep = input_.sweeps[n];
       near_.push_back(
           {stock::sweep_map(sweep), &input_.cutters[n], n, sweep.start.axis_W != sweep.end.axis_W});
     }
+  }
+
+  /// The cutter, a cylinder around it at most, keeps farther from a ball than it moves.
+  bool passes_aside(uint32_t n, const Vec3& centre, double radius) const {
+    const stock::Sweep& sweep = input_.sweeps[n];
+    const stock::CutterSolid& cutter = input_.cutters[n];
+    const Vec3 offset = centre - sweep.start.tip_W;
+    const double z = sweep.start.axis_W.dot(offset);
+    const double rho = std::sqrt(std::max(0.0, offset.squaredNorm() - z * z));
+    const double travel = (sweep.end.tip_W - sweep.start.tip_W).norm() +
+                          (sweep.end.axis_W - sweep.start.axis_W).norm() * offset.norm();
+    return std::max(rho - cutter.radius, z - cutter.height) > radius + travel + 1e-6;
   }
 
   /// The sweep's lowest plane keeps above the root's columns up to a height: at both ends, and what lies
@@ -163,7 +177,8 @@ class RootProof {
   double range_of(const CellCorner& corner) const {
     if (input_.field.design == nullptr) return input_.ranges(corner.point, corner.normal);
     const double through = leaves_box(input_.stock.box(), corner.point, corner.normal);
-    return through > 0.0 ? input_.field.own_depth(corner.point, -corner.normal, through, kShareOfRange) : kNever;
+    return through > 0.0 ? input_.field.own_depth(corner.point, -corner.normal, through, kShareOfRange)
+                         : kNever;
   }
 
   /// How deep below a place a cut can count: to where another face is nearer, or out of the stock.
@@ -193,7 +208,6 @@ class RootProof {
     }
     for (size_t i = begin; i < end; ++i) {
       if (floors_.size() == kept_.size() && floors_[i] >= corner.height) continue;
-      ++result_.work;
       look_at(kept_[i]);
     }
     // The kept sweeps prove bounds; what counts as found is measured against all of them.

@@ -46,7 +46,9 @@ size_t keep_worst(std::vector<measure::Region>& regions) {
 
 void prove_part(const Job& job, Progress& progress, Result& result) {
   MeasuredPath& main = result.main;
-  if (main.dexels.empty()) return;
+  const AcceptLimits& accept = job.scene.accept;
+  // Without a limit there is nothing to decide.
+  if (main.dexels.empty() || !(accept.gouge_max_um || accept.excess_max_um || accept.scallop_max_um)) return;
   progress.begin("prove", static_cast<double>(main.dexels.size()), "surfaces");
   std::vector<stock::RayFieldPtr> fields;
   for (const stock::SurfaceDexels& dexels : main.dexels) fields.push_back(dexels.field_ptr());
@@ -54,7 +56,6 @@ void prove_part(const Job& job, Progress& progress, Result& result) {
   const std::vector<stock::CutterSolid> solids = tool_solids(job.scene);
   const std::vector<int> tools = tool_of_blocks(main.rays);
   const measure::SweepCutters cutters(solids, tools);
-  const AcceptLimits& accept = job.scene.accept;
   measure::SurfaceMetrics& surface = main.surface;
   surface.gouges.clear();
   surface.excesses.clear();
