@@ -260,7 +260,7 @@ class RootProof {
   }
   /// The bound to reach where `found` was measured: it need not be closer than decides a limit.
   double target(double found, double limit) const {
-    const double decided = limit - input_.sweep_bound_mm;
+    const double decided = limit - input_.sweep_bound_mm - kTouch;
     const double close = found + kGap + kGapShare * found;
     if (found >= decided) return close;
     return decided;
@@ -561,8 +561,9 @@ Certificate certify(const CertificateInput& input) {
     }
   }
   // What was measured may lie kTouch beyond what is told from a touch.
-  whole.gouge.um = std::max(whole.gouge.um, whole.gouge_found_um) + um_from_mm(input.sweep_bound_mm);
-  whole.excess.um = std::max(whole.excess.um, whole.excess_found_um) + um_from_mm(input.sweep_bound_mm);
+  const double untold_um = um_from_mm(input.sweep_bound_mm + kTouch);
+  whole.gouge.um = std::max(whole.gouge.um, whole.gouge_found_um) + untold_um;
+  whole.excess.um = std::max(whole.excess.um, whole.excess_found_um) + untold_um;
   whole.gouges = join_pieces(gouges);
   whole.excesses = join_pieces(excesses);
   return whole;

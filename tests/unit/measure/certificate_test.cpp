@@ -147,7 +147,7 @@ TEST(Certificate, IslandBetweenFourPlunges) {
 // theory 8: ball D10, rows 1 mm apart in X and in Y: the corner of four ridges.
 TEST(Certificate, CrossingRidges) {
   Job job{stock::rays_on_surface(plane(8, 6), 0.37), {{-8, -8, -3}, {8, 8, 1}}, ball(5.0, 25.0), {}};
-  job.excess_limit_mm = 0.0251;
+  job.excess_limit_mm = 0.025;  // below what is left: the bound is then made close
   rows(job, 12, -8, 8, 1.0);
   for (double x = -8; x <= 8; x += 1.0) move(job, {x, -12, 0}, {x, 12, 0});
   const Certificate proof = prove(job, 0.2);
@@ -166,7 +166,7 @@ TEST(Certificate, NothingWasCut) {
   ASSERT_EQ(proof.excesses.size(), 1U);
   EXPECT_NEAR(proof.excesses[0].area_mm2, 48.0, 1e-6);
   EXPECT_NEAR(proof.excesses[0].volume_mm3, 48.0, 1e-3);
-  EXPECT_DOUBLE_EQ(proof.gouge.um, 0.0);
+  EXPECT_LE(proof.gouge.um, 0.001 + 1e-9);  // what is not told from a touch
 }
 
 struct Planted {
@@ -241,7 +241,7 @@ TEST(Certificate, PlantedGougesAreFoundBetweenTheRays) {
 TEST(Certificate, DenseRaysOfTheDomeStayWithinTheBounds) {
   const surface::SurfacePtr surface = dome();
   const Passes passes = dome_passes(*surface, true, 30, 0.01, 0.06);
-  Job job{stock::rays_on_surface(surface, 1.0), kDomeBox, kCutter, passes.sweeps, 1e-3, 0.05};
+  Job job{stock::rays_on_surface(surface, 1.0), kDomeBox, kCutter, passes.sweeps, 5e-5, 0.0235};
   const Certificate proof = prove(job, 1.0);
   stock::SurfaceDexels dexels(stock::rays_on_surface(surface, 0.13), kDomeBox, {});
   dexels.cut(job.sweeps, job.cutter);
