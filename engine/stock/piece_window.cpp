@@ -30,10 +30,12 @@ Window time_in_reach(const cutter::ConvexPiece& piece, const Vec3& P, const Vec3
 
 double cylinder_kernel_error_mm(const cutter::ConvexPiece& piece, double voxel_mm, double band_mm) {
   constexpr double kHalfSpacing = 6e-8, kPositionRoundings = 16.0, kSquareRoundings = 48.0;
-  const double L = piece.radius + band_mm + 2.0 * (leaf_radius(voxel_mm) + kReachSlack);
+  const double reach = band_mm + leaf_radius(voxel_mm) + kReachSlack;
+  const double L = kFarFactor * (piece.radius + reach) + leaf_radius(voxel_mm);
+  const double Z = kFarFactor * (piece.high + reach) + leaf_radius(voxel_mm);
   const double square = kSquareRoundings * kHalfSpacing * L * L;
   const double rho = std::max(piece.radius - band_mm, 0.5 * std::sqrt(square));
-  return kPositionRoundings * kHalfSpacing * L + 0.5 * square / rho;
+  return kPositionRoundings * kHalfSpacing * std::max(L, Z) + 0.5 * square / rho;
 }
 
 }  // namespace swarf::stock

@@ -30,9 +30,13 @@ Window time_in_reach(const cutter::ConvexPiece& piece, const Vec3& P, const Vec3
 /// From a leaf's centre to its farthest voxel, mm.
 double leaf_radius(double voxel_mm);
 
+/// A sweep of a plain cylinder is shortened where its ends lie farther away than this many times the reach.
+inline constexpr double kFarFactor = 2.0;
+
 /// Bound on the error of a voxel's distance to a plain cylinder's sweep, mm, for sweeps of any length. With L
-/// the greatest distance from the axis of a voxel in reach and u = 6e-8 half the spacing of floats at 1:
-///   16 u L             positions: start and change are rounded, then joined (11 roundings in x and in y)
+/// the greatest distance from the axis of a voxel that the kernel looks at, Z that along it and u = 6e-8 half
+/// the spacing of floats at 1:
+///   16 u max(L, Z)     positions: start and change are rounded, then joined (11 roundings in each direction)
 ///   48 u L^2 of rho^2  a t^2 + 2 b t + c with a <= 4 L^2, |b| <= 2 L^2, c <= L^2: 48 roundings of L^2, which
 ///                      is 48 u L^2 / (2 rho) of rho; rho is at least radius - band where the clamp leaves it
 double cylinder_kernel_error_mm(const cutter::ConvexPiece& piece, double voxel_mm, double band_mm);

@@ -61,6 +61,12 @@ void gather(const LevelSet& set, Batch& batch) {
 Window window_of(const LevelSet& set, const SweptPiece& swept, const Vec3& centre) {
   const Vec3 P = swept.map.start(centre), D = swept.map.end(centre) - P;
   const double reach = set.leaf_radius() + kReachSlack + set.band();
+  // Neighbouring leaves that see the whole sweep round alike: facets stay as flat as they were. Only a sweep
+  // that goes far beyond the cutter is shortened.
+  const double across = kFarFactor * (swept.piece->radius + reach);
+  const double along = kFarFactor * (swept.piece->high + reach);
+  const auto far = [&](const Vec3& X) { return X.head<2>().norm() > across || std::abs(X.z()) > along; };
+  if (!far(P) && !far(P + D)) return {};
   const Window window = time_in_reach(*swept.piece, P, D, reach);
   return window.empty() ? Window{} : window;
 }

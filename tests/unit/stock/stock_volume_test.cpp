@@ -113,7 +113,7 @@ TEST(StockRounding, LongMovesKeepInvariantEight) {
     EXPECT_EQ(stock.check(), "") << fmt::format(
         "voxel {:.17g} radius {:.17g} far {:.17g} x {:.17g} y {:.17g} depth {:.17g} lean {:.17g}", voxel,
         radius, far, x, y, depth, lean);
-    EXPECT_LT(stock.rounding_mm(), 2e-4);
+    EXPECT_LT(stock.rounding_mm(), 0.01 * voxel);
   }
 }
 
