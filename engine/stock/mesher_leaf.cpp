@@ -154,12 +154,20 @@ double height_on_edge(const QuadCorner& a, const QuadCorner& b, const QuadCorner
   return normal.dot(a.place) / normal.z();
 }
 
-/// Whether the diagonal 0-2 is to be taken. Beside sharp edges that one whose triangles agree with the
-/// sheets, or if neither is better the one that passes through the crossing of the grid edge; elsewhere the
-/// shorter.
+/// Whether a triangle of the quad runs the wrong way round its grid edge: the surface would be folded there.
+bool turns_back(const QuadCorner& a, const QuadCorner& b, const QuadCorner& c) {
+  return (b.place - a.place).cross(c.place - a.place).z() < 0.0;
+}
+
+/// Whether the diagonal 0-2 is to be taken: that one which leaves the quad without a fold. If both do, beside
+/// sharp edges that one whose triangles agree with the sheets, or if neither is better the one that passes
+/// through the crossing of the grid edge; elsewhere the shorter.
 bool first_diagonal(const std::array<QuadCorner, 4>& q, double crossing) {
   const bool shorter = (q[0].place - q[2].place).squaredNorm() <= (q[1].place - q[3].place).squaredNorm();
   if (std::none_of(q.begin(), q.end(), [](const QuadCorner& c) { return c.vertex->sharp; })) return shorter;
+  const bool first_folds = turns_back(q[0], q[1], q[2]) || turns_back(q[0], q[2], q[3]);
+  const bool second_folds = turns_back(q[1], q[2], q[3]) || turns_back(q[1], q[3], q[0]);
+  if (first_folds != second_folds) return second_folds;
   constexpr double kEqual = 1e-3;
   const double first = disagreement(q[0], q[1], q[2]) + disagreement(q[0], q[2], q[3]);
   const double second = disagreement(q[1], q[2], q[3]) + disagreement(q[1], q[3], q[0]);
