@@ -11,6 +11,7 @@
 #include <limits>
 #include <optional>
 
+#include "base/input_file.h"
 #include "base/units.h"
 #include "cli/nc_totals.h"
 #include "cli/terminal.h"
@@ -151,6 +152,7 @@ program::BuilderWords builder_words_of(const std::string& file, const std::vecto
 
 /// G10 L70 opens a surface: that is a program of surface blocks.
 bool has_surface_blocks(const std::string& file) {
+  refuse_special_file(file);
   std::ifstream stream(file, std::ios::binary);
   std::string head(size_t{1} << 16, '\0');
   stream.read(head.data(), static_cast<std::streamsize>(head.size()));

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/config.h"
+#include "base/input_file.h"
 
 namespace swarf::reports {
 namespace {
@@ -30,6 +31,7 @@ void keep_copy(const fs::path& from, const fs::path& to) {
 }
 
 std::string text_of(const fs::path& path) {
+  refuse_special_file(path.string());
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }

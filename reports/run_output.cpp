@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "base/input_file.h"
 #include "reports/kept_inputs.h"
 #include "reports/part_view.h"
 #include "reports/pending_folder.h"
@@ -177,6 +178,7 @@ std::vector<Diagnostic> write_run(PendingFolder& folder, const sim::Job& job, si
 
 sim::Job read_job(const std::string& folder, const std::vector<std::string>& overrides) {
   const fs::path root(folder);
+  refuse_special_file((root / "run.json").string());
   std::ifstream manifest(root / "run.json");
   if (!manifest) {
     throw InputError("not-a-run", {folder}, "there is no run.json: this is not the folder of a finished run",

@@ -1,4 +1,5 @@
 #include "base/config.h"
+#include "base/input_file.h"
 
 #include <fmt/format.h>
 #include <toml++/toml.h>
@@ -82,6 +83,7 @@ void apply_override(toml::table& root, const std::string& text, Diagnostics& dia
 }
 
 std::optional<std::string> read_file(const std::string& path, Diagnostics& diagnostics) {
+  refuse_special_file(path);
   // A folder opens like a file and cannot be read.
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) {

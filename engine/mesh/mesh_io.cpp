@@ -13,6 +13,7 @@
 
 #include "base/diagnostics.h"
 #include "base/hash.h"
+#include "base/input_file.h"
 #include "mesh/mesh_source.h"
 #include "mesh/obj_reader.h"
 #include "mesh/ply_reader.h"
@@ -151,6 +152,7 @@ TriMesh read_by_ending(const std::string& path) {
 }  // namespace
 
 TriMesh load_mesh(const std::string& path) {
+  refuse_special_file(path);
   if (!fs::is_regular_file(path)) {
     throw InputError("mesh-not-found", {path}, "the mesh file cannot be opened",
                      "check the path and its spelling");

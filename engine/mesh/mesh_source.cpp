@@ -9,6 +9,8 @@
 #include <fstream>
 #include <utility>
 
+#include "base/input_file.h"
+
 namespace swarf::mesh {
 namespace {
 
@@ -28,6 +30,7 @@ void refuse_mesh(const SourceLocation& where, const std::string& text, const std
 }
 
 std::string read_mesh_file(const std::string& path) {
+  refuse_special_file(path);
   std::error_code error;
   const uintmax_t size = fs::is_regular_file(path, error) ? fs::file_size(path, error) : 0;
   std::ifstream file(path, std::ios::binary);

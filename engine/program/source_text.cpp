@@ -8,6 +8,8 @@
 #include <fstream>
 #include <iterator>
 
+#include "base/input_file.h"
+
 namespace swarf::program {
 namespace {
 
@@ -97,6 +99,7 @@ std::vector<std::string_view> split_lines(std::string_view text) {
 }
 
 std::string read_file(const std::string& path) {
+  refuse_special_file(path);
   std::error_code problem;
   const auto status = std::filesystem::status(path, problem);
   if (status.type() == std::filesystem::file_type::not_found) {

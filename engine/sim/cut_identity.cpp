@@ -8,6 +8,7 @@
 #include <iterator>
 
 #include "base/hash.h"
+#include "base/input_file.h"
 #include "base/units.h"
 #include "cutter/profile.h"
 
@@ -30,6 +31,7 @@ void add(Hash& hash, const Vec3& v) {
 
 /// Name and content, so that a moved file is the same file.
 std::string file_text(const std::string& path) {
+  refuse_special_file(path);
   std::ifstream in(path, std::ios::binary);
   Hash hash;
   for (auto c = std::istreambuf_iterator<char>(in); c != std::istreambuf_iterator<char>(); ++c) {

@@ -11,6 +11,7 @@
 
 #include "base/diagnostics.h"
 #include "base/hash.h"
+#include "base/input_file.h"
 
 namespace swarf::sim {
 namespace {
@@ -118,6 +119,7 @@ bool read_line(std::string_view line, CutRecord& record, Stand& last) {
 }
 
 std::string read_file(const std::string& path) {
+  refuse_special_file(path);
   std::ifstream in(path, std::ios::binary);
   if (!in || fs::is_directory(path)) refuse("record-unreadable", {path}, "the record cannot be read");
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};

@@ -11,6 +11,7 @@
 #include <iterator>
 #include <vector>
 
+#include "base/input_file.h"
 #include "base/units.h"
 
 namespace swarf::sim {
@@ -138,6 +139,7 @@ void write_trajectory(const std::string& path, const motion::Trajectory& traject
 }
 
 motion::Trajectory read_trajectory(const std::string& path, const Job& job) {
+  refuse_special_file(path);
   std::ifstream file(path);
   std::string line;
   if (!file || !std::getline(file, line)) {

@@ -7,6 +7,7 @@
 
 #include "base/diagnostics.h"
 #include "base/hash.h"
+#include "base/input_file.h"
 #include "stock/surface_dexels.h"
 
 namespace swarf::stock {
@@ -95,6 +96,7 @@ Header read_header(std::istream& in, const std::string& path) {
 }
 
 Content read_content(const std::string& path) {
+  refuse_special_file(path);
   std::ifstream in(path, std::ios::binary);
   Content content{read_header(in, path), {}, {}, {}};
   content.heights.resize(content.header.rays);

@@ -15,6 +15,7 @@
 #include "base/check.h"
 #include "base/diagnostics.h"
 #include "base/hash.h"
+#include "base/input_file.h"
 #include "stock/leaf_kernel.h"
 #include "stock/stock_grid_internal.h"
 
@@ -49,6 +50,7 @@ uint64_t checksum(std::string_view bytes) {
 }
 
 std::string read_bytes(const std::string& path) {
+  refuse_special_file(path);
   std::ifstream in(path, std::ios::binary);
   std::ostringstream bytes;
   if (!in || fs::is_directory(path)) {

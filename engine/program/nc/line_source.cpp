@@ -6,6 +6,7 @@
 #include <cstring>
 #include <filesystem>
 
+#include "base/input_file.h"
 #include "program/source_text.h"
 
 namespace swarf::program::nc {
@@ -32,6 +33,7 @@ LineSource::LineSource(const std::string& path, Control& control) : LineSource(p
 }
 
 LineSource::LineSource(const std::string& path) : path_(path) {
+  refuse_special_file(path);
   std::error_code problem;
   const auto status = std::filesystem::status(path, problem);
   if (status.type() == std::filesystem::file_type::not_found) {
