@@ -8,6 +8,7 @@
 
 #include "mesh/mesh_crossing.h"
 #include "mesh/mesh_io.h"
+#include "mesh/mesh_nesting.h"
 #include "mesh/mesh_ops.h"
 #include "stock/ray_field.h"
 #include "stock/stock.h"
@@ -50,6 +51,8 @@ std::shared_ptr<const mesh::SignedDistance> checked_mesh(const TriMesh& mesh, co
                     name, crossings.pairs, crossings.place.x(), crossings.place.y(), crossings.place.z()),
         "unite the bodies in the CAD or repair program and export again: what lies inside is not clear");
   }
+  mesh::check_bodies(mesh, file, diagnostics, name);
+  diagnostics.throw_if_errors();
   return distance;
 }
 

@@ -10,6 +10,7 @@
 #include "cutter/profile.h"
 #include "mesh/mesh_check.h"
 #include "mesh/mesh_io.h"
+#include "mesh/mesh_nesting.h"
 #include "mesh/mesh_ops.h"
 #include "sim/memory.h"
 #include "sim/scene.h"
@@ -173,6 +174,7 @@ void load_design(Job& job, Diagnostics& diagnostics) {
   if (design.kind == DesignKind::kMesh) {
     auto mesh = std::make_shared<TriMesh>(mesh::load_mesh(design.mesh_file));
     mesh::check_design_mesh(*mesh, design.mesh_file, &job.scene.stock.box_W, diagnostics);
+    if (!diagnostics.has_errors()) mesh::check_bodies(*mesh, design.mesh_file, diagnostics, "design mesh");
     constexpr double kNoCreases = kPi;  // one normal for each vertex
     if (mesh->normals.empty()) mesh::compute_vertex_normals(*mesh, kNoCreases);
     job.design_mesh = std::move(mesh);

@@ -172,6 +172,12 @@ TEST_F(Compare, RefusesWhatCannotBeCompared) {
   TriMesh crossing = block({-20, -20, 0}, {5, 20, 10}), doubled = solid;
   swarf::test::append(crossing, block({-5, -10, 2}, {20, 10, 8}));
   swarf::test::append(doubled, solid);
+  // A face in another; a body in a body; a cavity where no body is.
+  TriMesh covered = solid, nested = solid, beside = solid, cavity = block({30, 0, 0}, {35, 5, 5});
+  swarf::test::append(covered, block({-5, -5, 5}, {5, 5, 10}));
+  swarf::test::append(nested, block({-5, -5, 3}, {5, 5, 7}));
+  for (auto& t : cavity.triangles) std::swap(t[1], t[2]);
+  swarf::test::append(beside, cavity);
   for (const auto& [bad, code] :
        std::vector<std::pair<TriMesh, const char*>>{{open, "mesh-open"},
                                                     {inverted, "mesh-inverted"},
@@ -179,7 +185,10 @@ TEST_F(Compare, RefusesWhatCannotBeCompared) {
                                                     {metres, "looks-like-metres"},
                                                     {far, "boxes-apart"},
                                                     {crossing, "mesh-self-crossing"},
-                                                    {doubled, "mesh-non-manifold"}}) {
+                                                    {doubled, "mesh-non-manifold"},
+                                                    {covered, "mesh-self-crossing"},
+                                                    {nested, "mesh-nested-bodies"},
+                                                    {beside, "mesh-nested-bodies"}}) {
     expect_refused(bad, solid, code);
     expect_refused(solid, bad, code);
   }
