@@ -31,8 +31,7 @@ struct Piece {
 };
 
 Piece piece_of(const DeviationSide& side, uint32_t triangle, const Corners& corners, const Piece& from) {
-  const double step = (centroid_of(corners) - centroid_of(from.corners)).norm();
-  return {corners, side.look(triangle, centroid_of(corners), std::abs(from.sample.distance) + step)};
+  return {corners, side.look(triangle, centroid_of(corners), &from.sample)};
 }
 
 /// What is proven of one cell.
@@ -42,7 +41,7 @@ struct CellProof {
   Pair value{0.0, 0.0};
   std::array<Vec3, 2> place{Vec3::Zero(), Vec3::Zero()};
   double error = 0.0;  ///< the greatest that was added
-  uint32_t samples = 0;
+  size_t samples = 0;
   bool whole = true;  ///< every piece meets the target or is tight
 };
 
@@ -187,76 +186,116 @@ Aim aim(const Pair& found, const ComparisonInput& input, bool second) {
   return aim;
 }
 
-std::vector<CellProof> prove_cells(const SampledSide& sampled, const std::vector<uint32_t>& cells,
-                                   const ComparisonInput& input, const Aim& aim, uint32_t work) {
+/// What is kept of many proofs: the sum of those that are whole, and the others one by one.
+struct ProofShare {
+  CellProof closed;
+  struct Open {
+    uint32_t cell;
+    CellProof proof;
+  };
+  std::vector<Open> open;
+  struct Worse {
+    uint32_t cell;
+    size_t kind;  ///< 0: excess, 1: gouge
+    double value;
+    Vec3 place;
+  };
+  std::vector<Worse> findings;  ///< places inside cells that are worse than what was known of them
+
+  void close(const CellProof& proof) {
+    closed.samples += proof.samples;
+    closed.error = std::max(closed.error, proof.error);
+    for (size_t k = 0; k < 2; ++k) {
+      if (proof.bound[k] <= closed.bound[k]) continue;
+      closed.bound[k] = proof.bound[k];
+      closed.bound_place[k] = proof.bound_place[k];
+    }
+  }
+  void take(ProofShare share) {
+    close(share.closed);
+    open.insert(open.end(), share.open.begin(), share.open.end());
+    findings.insert(findings.end(), share.findings.begin(), share.findings.end());
+  }
+};
+
+ProofShare prove_cells(const SampledSide& sampled, const std::vector<uint32_t>& cells,
+                       const ComparisonInput& input, const Aim& aim, uint32_t work) {
   const Prover prover(sampled, input, aim.target, aim.gap, work);
-  std::vector<CellProof> proofs(cells.size());
+  std::vector<ProofShare> shares((cells.size() + kChunk - 1) / kChunk);
   parallel_chunks(cells.size(), kChunk, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) proofs[i] = prover.prove(cells[i]);
+    ProofShare& mine = shares[begin / kChunk];
+    for (size_t i = begin; i < end; ++i) {
+      const CellProof proof = prover.prove(cells[i]);
+      for (size_t k = 0; k < 2; ++k) {
+        if (proof.value[k] > sampled.worst(cells[i], k == 1) + kWorse)
+          mine.findings.push_back({cells[i], k, proof.value[k], proof.place[k]});
+      }
+      if (proof.whole) {
+        mine.close(proof);
+      } else {
+        mine.open.push_back({cells[i], proof});
+      }
+    }
   });
-  return proofs;
+  ProofShare all;
+  for (ProofShare& share : shares) all.take(std::move(share));
+  return all;
 }
 
 class SideProof {
  public:
-  SideProof(SampledSide& sampled, const ComparisonInput& input) : sampled_(sampled), input_(input) {
-    for (uint32_t c = 0; c < sampled.cells.size(); ++c) {
-      if (sampled.cells.is_leaf(c) && sampled.samples[c].state == CellState::kMeasured) cells_.push_back(c);
-    }
-  }
+  SideProof(SampledSide& sampled, const ComparisonInput& input) : sampled_(sampled), input_(input) {}
+
   void first(const Pair& found) {
-    take(prove_cells(sampled_, cells_, input_, aim(found, input_, false), kFirstWork));
+    std::vector<uint32_t> cells;
+    for (uint32_t c = 0; c < sampled_.cells.size(); ++c) {
+      if (sampled_.cells.is_leaf(c) && sampled_.samples[c].state == CellState::kMeasured) cells.push_back(c);
+    }
+    share_ = prove_cells(sampled_, cells, input_, aim(found, input_, false), kFirstWork);
+    note_findings();
   }
   /// Cells that the first attempt left open, if their bound decides anything.
   void second(const Pair& found) {
     const Aim goal = aim(found, input_, true);
-    std::vector<uint32_t> open, places;
-    for (uint32_t i = 0; i < cells_.size(); ++i) {
-      const CellProof& proof = proofs_[i];
-      if (proof.whole || (proof.bound[0] <= goal.target[0] && proof.bound[1] <= goal.target[1])) continue;
-      open.push_back(cells_[i]);
-      places.push_back(i);
+    std::vector<uint32_t> cells;
+    for (const ProofShare::Open& open : share_.open) {
+      if (open.proof.bound[0] <= goal.target[0] && open.proof.bound[1] <= goal.target[1]) {
+        share_.close(open.proof);
+      } else {
+        cells.push_back(open.cell);
+      }
     }
-    if (open.empty()) return;
+    share_.open.clear();
+    if (cells.empty()) return;
     const auto work =
-        static_cast<uint32_t>(std::clamp<size_t>(kAllWork / open.size(), kFirstWork, kMostWork));
-    const std::vector<CellProof> again = prove_cells(sampled_, open, input_, goal, work);
-    for (size_t i = 0; i < open.size(); ++i) proofs_[places[i]] = again[i];
+        static_cast<uint32_t>(std::clamp<size_t>(kAllWork / cells.size(), kFirstWork, kMostWork));
+    share_.take(prove_cells(sampled_, cells, input_, goal, work));
     note_findings();
   }
-  void add_to(PartComparison& result) const {
+  void add_to(PartComparison& result) {
+    for (const ProofShare::Open& open : share_.open) share_.close(open.proof);
+    const CellProof& all = share_.closed;
     SideSummary& summary = sampled_.side.on_design() ? result.design : result.stock;
-    for (const CellProof& proof : proofs_) {
-      summary.proof_samples += proof.samples;
-      result.grid_error_um = std::max(result.grid_error_um, 1e3 * proof.error);
-      for (size_t k = 0; k < 2; ++k) {
-        DeviationExtreme& extreme = k == 0 ? result.excess : result.gouge;
-        if (1e3 * proof.bound[k] <= extreme.bound_um) continue;
-        extreme.bound_um = 1e3 * proof.bound[k];
-        extreme.bound_place = proof.bound_place[k];
-      }
+    summary.proof_samples += all.samples;
+    result.grid_error_um = std::max(result.grid_error_um, 1e3 * all.error);
+    for (size_t k = 0; k < 2; ++k) {
+      DeviationExtreme& extreme = k == 0 ? result.excess : result.gouge;
+      if (1e3 * all.bound[k] <= extreme.bound_um) continue;
+      extreme.bound_um = 1e3 * all.bound[k];
+      extreme.bound_place = all.bound_place[k];
     }
   }
 
  private:
-  void take(std::vector<CellProof> proofs) {
-    proofs_ = std::move(proofs);
-    note_findings();
-  }
   void note_findings() {
-    for (size_t i = 0; i < cells_.size(); ++i) {
-      for (size_t k = 0; k < 2; ++k) {
-        const CellProof& proof = proofs_[i];
-        if (proof.value[k] > sampled_.worst(cells_[i], k == 1) + kWorse)
-          sampled_.findings[k][cells_[i]] = {proof.value[k], proof.place[k]};
-      }
-    }
+    for (const ProofShare::Worse& worse : share_.findings)
+      sampled_.findings[worse.kind][worse.cell] = {worse.value, worse.place};
+    share_.findings.clear();
   }
 
   SampledSide& sampled_;
   const ComparisonInput& input_;
-  std::vector<uint32_t> cells_;
-  std::vector<CellProof> proofs_;
+  ProofShare share_;
 };
 
 }  // namespace
@@ -282,7 +321,7 @@ void prove_extremes(std::array<SampledSide*, 2> sides, const ComparisonInput& in
   const Pair found = extremes();
   result.excess.um = 1e3 * found[0];
   result.gouge.um = 1e3 * found[1];
-  for (const SideProof& proof : proofs) proof.add_to(result);
+  for (SideProof& proof : proofs) proof.add_to(result);
 }
 
 }  // namespace swarf::measure

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/parallel.h"
 
@@ -13,6 +14,8 @@ constexpr size_t kChunk = 512;
 constexpr double kBorderSlack = 1e-4;
 /// Cosine of normals that look the same way.
 constexpr double kFacing = 0.2;
+/// Normals that differ by more look another way: acos(kFacing) and a little for rounding, rad.
+constexpr double kAway = 1.3694384 + 1e-6;
 /// A point of the offset design that lies so much nearer to the design is not on its surface, mm.
 constexpr double kInsideOffset = 1e-5;
 /// Rounding of the guess that bounds a search.
@@ -22,10 +25,30 @@ constexpr double kClear = 2e-5;
 /// Distances below this are rounding of doubles, mm.
 constexpr double kRounding = 1e-11;
 
+double angle_between(const Vec3& a, const Vec3& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+/// A cone that holds the normals of all faces. If it is no wider than a half space, it also holds those of
+/// edges and vertices, which are sums of them.
+void bound_normals(const mesh::SignedDistance& patches, Vec3& axis, double& spread_rad) {
+  const auto count = static_cast<uint32_t>(patches.mesh().triangles.size());
+  Vec3 sum = Vec3::Zero();
+  for (uint32_t t = 0; t < count; ++t) sum += patches.face_normal(t);
+  if (sum.norm() == 0.0) return;
+  double widest = 0.0;
+  for (uint32_t t = 0; t < count; ++t) widest = std::max(widest, angle_between(sum, patches.face_normal(t)));
+  if (widest >= 0.5 * kPi) return;
+  axis = sum.normalized();
+  spread_rad = widest;
+}
+
 }  // namespace
 
 ComparisonScene::ComparisonScene(const ComparisonInput& comparison) : input(comparison) {
-  if (!input.open_design || input.edge <= 0.0) return;
+  if (!input.open_design) return;
+  bound_normals(*input.design, normal_axis, normal_spread_rad);
+  if (input.edge <= 0.0) return;
   border_mesh.positions = input.design->mesh().positions;
   const auto& across = input.design->across();
   for (uint32_t side = 0; side < across.size(); ++side) {
@@ -34,6 +57,10 @@ ComparisonScene::ComparisonScene(const ComparisonInput& comparison) : input(comp
     border_mesh.triangles.push_back({t[side % 3], t[(side + 1) % 3], t[(side + 1) % 3]});
   }
   border = std::make_unique<mesh::MeshDistance>(border_mesh);
+}
+
+bool ComparisonScene::faces_away(const Vec3& normal) const {
+  return angle_between(normal, normal_axis) - normal_spread_rad > kAway;
 }
 
 DeviationSide::DeviationSide(const ComparisonScene& scene, bool on_design)
@@ -80,8 +107,7 @@ DeviationSample DeviationSide::look_from_stock(uint32_t triangle, const Vec3& po
   return sample;
 }
 
-DeviationSample DeviationSide::look_from_design(uint32_t triangle, const Vec3& point, double within) const {
-  const Vec3 target = point + in_.allowance * in_.design->face_normal(triangle);
+DeviationSample DeviationSide::look_from_design(uint32_t triangle, const Vec3& target, double within) const {
   const mesh::SignedPoint seen = in_.stock->at(target, within);
   DeviationSample sample;
   sample.distance = seen.distance_mm;
@@ -89,7 +115,8 @@ DeviationSample DeviationSide::look_from_design(uint32_t triangle, const Vec3& p
   sample.foot = seen.foot;
   sample.raw = -seen.distance_mm;
   sample.error = stock_error(seen.triangle) + in_.design_error;
-  sample.edge = stock_edge(seen.triangle) || near_border(point);
+  sample.edge =
+      stock_edge(seen.triangle) || near_border(target - in_.allowance * in_.design->face_normal(triangle));
   if (in_.allowance > 0.0) {
     const double depth = in_.allowance - in_.design->at(target, in_.allowance).distance_mm;
     sample.inside = depth > kInsideOffset ? depth : 0.0;
@@ -97,10 +124,22 @@ DeviationSample DeviationSide::look_from_design(uint32_t triangle, const Vec3& p
   return sample;
 }
 
-DeviationSample DeviationSide::look(uint32_t triangle, const Vec3& point, double within) const {
-  const double guess = within * (1.0 + kGuessSlack) + kGuessSlack;
+DeviationSample DeviationSide::look(uint32_t triangle, const Vec3& point, const DeviationSample* near) const {
+  if (!on_design_ && in_.open_design && scene_.faces_away(in_.stock->face_normal(triangle))) {
+    DeviationSample away;
+    away.state = CellState::kBeyond;
+    return away;
+  }
+  const Vec3 target = on_design_ ? Vec3(point + in_.allowance * in_.design->face_normal(triangle)) : point;
+  double within = std::numeric_limits<double>::infinity();
+  if (near != nullptr) {
+    // The facet that a neighbour saw is hardly farther than the one to be found.
+    const auto corner = [&](size_t i) { return other().corner(near->facet, i); };
+    const Vec3 foot = mesh::closest_point_on_triangle(target, corner(0), corner(1), corner(2));
+    within = (foot - target).norm() * (1.0 + kGuessSlack) + kGuessSlack;
+  }
   DeviationSample sample =
-      on_design_ ? look_from_design(triangle, point, guess) : look_from_stock(triangle, point, guess);
+      on_design_ ? look_from_design(triangle, target, within) : look_from_stock(triangle, target, within);
   if (std::abs(sample.raw) < kRounding) sample.raw = 0.0;
   if (in_.reach && std::abs(sample.distance) > *in_.reach && sample.state == CellState::kMeasured)
     sample.state = CellState::kFar;
@@ -151,16 +190,11 @@ void SampledSide::sample() {
   }
   samples.resize(cells.size());
   parallel_chunks(cells.size(), kChunk, [&](size_t begin, size_t end) {
-    double last = std::numeric_limits<double>::infinity();
-    Vec3 last_place = Vec3::Zero();
+    const DeviationSample* last = nullptr;
     for (size_t i = begin; i < end; ++i) {
       if (!cells.is_leaf(i)) continue;
-      const Vec3 place = centroid_of(side.moved(cells[i].triangle, cells.corners(i)));
-      // Distances change no faster than the place: the neighbour's is a guess for this one.
-      samples[i] =
-          side.look(cells[i].triangle, centroid_of(cells.corners(i)), last + (place - last_place).norm());
-      last = std::abs(samples[i].distance);
-      last_place = place;
+      samples[i] = side.look(cells[i].triangle, centroid_of(cells.corners(i)), last);
+      if (samples[i].facet != DeviationSample::kUnseen) last = &samples[i];
     }
   });
 }

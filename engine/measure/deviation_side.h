@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "base/units.h"
 #include "measure/clear_column.h"
 #include "measure/part_comparison.h"
 
@@ -19,13 +20,14 @@ enum class CellState : uint8_t {
 /// The deviation at one point of a surface.
 struct DeviationSample {
   CellState state = CellState::kMeasured;
-  bool edge = false;      ///< at a rounded edge
-  double inside = 0.0;    ///< how far inside the offset design: its concave corners are no surface of it
-  double raw = 0.0;       ///< deviation, mm
-  double counted = 0.0;   ///< the same less what a rounded edge may be off
-  double error = 0.0;     ///< of grid and facets
-  double distance = 0.0;  ///< signed, to the other surface
-  uint32_t facet = 0;     ///< of the other surface
+  bool edge = false;         ///< at a rounded edge
+  double inside = 0.0;       ///< how far inside the offset design: its concave corners are no surface of it
+  double raw = 0.0;          ///< deviation, mm
+  double counted = 0.0;      ///< the same less what a rounded edge may be off
+  double error = 0.0;        ///< of grid and facets
+  double distance = 0.0;     ///< signed, to the other surface
+  uint32_t facet = kUnseen;  ///< of the other surface
+  static constexpr uint32_t kUnseen = 0xffffffffU;  ///< it faces away: nothing was looked for
   Vec3 foot = Vec3::Zero();
 };
 
@@ -39,6 +41,12 @@ struct ComparisonScene {
   /// The border of open patches as facets without area; null when there is none.
   TriMesh border_mesh;
   std::unique_ptr<mesh::MeshDistance> border;
+  /// All normals of open patches lie within this angle of the axis; pi when they point all round.
+  Vec3 normal_axis = Vec3::UnitZ();
+  double normal_spread_rad = kPi;
+
+  /// Whether a facet of the stock looks away from all of the patches, wherever its nearest point on them is.
+  bool faces_away(const Vec3& normal) const;
 };
 
 class DeviationSide {
@@ -50,8 +58,9 @@ class DeviationSide {
   bool on_design() const { return on_design_; }
   double pitch() const { return in_.pitch; }
 
-  /// At a point of own triangle `triangle`; `within`: an upper bound of |distance|, mm.
-  DeviationSample look(uint32_t triangle, const Vec3& point, double within) const;
+  /// At a point of own triangle `triangle`; `near`: a sample that was taken nearby, which shortens the
+  /// search.
+  DeviationSample look(uint32_t triangle, const Vec3& point, const DeviationSample* near) const;
   /// The triangle as it is measured: that of the design moved by the allowance.
   Corners moved(uint32_t triangle, const Corners& corners) const;
   /// Bounds of `raw` over all of a cell whose centroid's sample is given: low and high.
@@ -60,7 +69,7 @@ class DeviationSide {
 
  private:
   DeviationSample look_from_stock(uint32_t triangle, const Vec3& point, double within) const;
-  DeviationSample look_from_design(uint32_t triangle, const Vec3& point, double within) const;
+  DeviationSample look_from_design(uint32_t triangle, const Vec3& target, double within) const;
   void discount(DeviationSample& sample) const;
   double stock_error(uint32_t triangle) const;
   bool stock_edge(uint32_t triangle) const;

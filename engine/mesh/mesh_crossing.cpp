@@ -29,8 +29,19 @@ Number determinant(const std::array<std::array<Number, 3>, 3>& m) {
          m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
 }
 
+/// Without arithmetic: d is one of the others, or all lie in one plane across an axis. So it is for most
+/// neighbours, and of those a determinant would be known to vanish from the long numbers only.
+bool clearly_in_plane(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  if (d == a || d == b || d == c) return true;
+  for (int k = 0; k < 3; ++k) {
+    if (a[k] == d[k] && b[k] == d[k] && c[k] == d[k]) return true;
+  }
+  return false;
+}
+
 /// On which side of the plane (a, b, c) d lies: +1 above (counter-clockwise seen from there), 0 in it.
 int side(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  if (clearly_in_plane(a, b, c, d)) return 0;
   const Vec3 u = b - a, v = c - a, w = d - a;
   const double value = u.cross(v).dot(w);
   const double sum = std::abs(w[0]) * (std::abs(u[1] * v[2]) + std::abs(u[2] * v[1])) +
@@ -49,6 +60,9 @@ int side(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
 /// Turn of a, b, c in the plane without axis `drop`: exact.
 int turn(const Vec3& a, const Vec3& b, const Vec3& c, int drop) {
   const int x = (drop + 1) % 3, y = (drop + 2) % 3;
+  const double value = (b[x] - a[x]) * (c[y] - a[y]) - (b[y] - a[y]) * (c[x] - a[x]);
+  const double sum = std::abs((b[x] - a[x]) * (c[y] - a[y])) + std::abs((b[y] - a[y]) * (c[x] - a[x]));
+  if (std::abs(value) > kDeterminantRoundings * kEpsilon * sum) return value > 0.0 ? 1 : -1;
   const Wide abx = Wide(b[x]) - Wide(a[x]), aby = Wide(b[y]) - Wide(a[y]);
   const Wide acx = Wide(c[x]) - Wide(a[x]), acy = Wide(c[y]) - Wide(a[y]);
   return sign_of(abx * acy - aby * acx);

@@ -45,10 +45,11 @@ TriMesh with_wall(double height) {
   return towers({-20, -0.05, 0.05, 20}, {-20, -10, 10, 20}, 0.0,
                 [&](int i, int j) { return i == 1 && j == 1 ? 10.0 + height : 10.0; });
 }
-/// Facets a thousand times longer than wide.
+/// A strip of facets a thousand times longer than wide.
 TriMesh needles(double top) {
-  std::vector<double> x;
-  for (int i = 0; i <= 400; ++i) x.push_back(-20.0 + 0.1 * i);
+  std::vector<double> x{-20.0};
+  for (int i = 0; i <= 20; ++i) x.push_back(-0.4 + 0.04 * i);
+  x.push_back(20.0);
   return towers(x, {-20, 20}, 0.0, [&](int, int) { return top; });
 }
 
