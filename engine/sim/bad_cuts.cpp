@@ -39,8 +39,12 @@ stock::Sweep share(const stock::Sweep& sweep, double from_t, double to_t) {
 }  // namespace
 
 BadCutCheck::BadCutCheck(const Job& job, const toolpath::ToolPath& path, const motion::Trajectory& trajectory,
-                         const JobSweeps& sweeps, const SweepPlaces& places)
-    : trajectory_(trajectory), sweeps_(sweeps), places_(places), has_blocks_(job.scene.has_blocks()) {
+                         const JobSweeps& sweeps, const SweepPlaces& places, const EarlierCuts& earlier)
+    : trajectory_(trajectory),
+      sweeps_(sweeps),
+      places_(places),
+      earlier_(earlier),
+      has_blocks_(job.scene.has_blocks()) {
   for (const cutter::Cutter& tool : job.scene.tools) {
     flutes_.emplace_back(tool);
     parts_.emplace_back();
@@ -94,7 +98,9 @@ std::vector<size_t> BadCutCheck::look_ahead(const stock::ContactFinder& finder, 
         const stock::SweepMap map =
             stock::sweep_map(share(sweeps_.sweeps[begin + i], move.from_t, move.to_t));
         for (const stock::RevolvedPart& part : parts_[static_cast<size_t>(source(begin + i).tool)]) {
-          if (finder.gap(map, part, -finder.deep_mm()) < -finder.deep_mm()) meets[i] = 1;
+          if (finder.gap(map, part, -finder.deep_mm()) < -finder.deep_mm() ||
+              finder.may_be_shallow(map, part, 0.0))
+            meets[i] = 1;
         }
       }
     }
@@ -113,7 +119,10 @@ std::optional<stock::Contact> BadCutCheck::contact(const stock::ContactFinder& f
   const stock::OwnCut before{&flutes_[tool], stock::sweep_map(share(whole, 0.0, move.from_t)), false};
   std::optional<stock::Contact> found;
   for (const stock::RevolvedPart& part : parts_[tool]) {
-    const auto one = finder.contact(map, part, move.from_t > 0.0 ? &before : nullptr);
+    const stock::OwnCut* const own = move.from_t > 0.0 ? &before : nullptr;
+    auto one = finder.contact(map, part, own);
+    if (!one && finder.may_be_shallow(map, part, 0.0))
+      one = finder.shallow_contact(map, part, own, earlier_.before(sweep));
     if (!one) continue;
     if (!found) found = one;
     found->first_t = std::min(found->first_t, one->first_t);

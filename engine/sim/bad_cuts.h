@@ -7,19 +7,21 @@
 #include <string>
 #include <vector>
 
+#include "sim/earlier_cuts.h"
 #include "sim/scene.h"
 #include "sim/sweep_places.h"
 #include "stock/contact_finder.h"
 
 namespace swarf::sim {
 
-/// Material less than one voxel deep is not counted: the cuts before leave it. Rapids of surface jobs (their
-/// retracts and links) lie in sweeps that may hold a feed too; only the rapid's share of them is judged.
+/// Material that the grid does not show well is looked at by the sweeps before (EarlierCuts). Rapids of
+/// surface jobs (their retracts and links) lie in sweeps that may hold a feed too; only the rapid's share of
+/// them is judged.
 class BadCutCheck {
  public:
   /// All must outlive it.
   BadCutCheck(const Job& job, const toolpath::ToolPath& path, const motion::Trajectory& trajectory,
-              const JobSweeps& sweeps, const SweepPlaces& places);
+              const JobSweeps& sweeps, const SweepPlaces& places, const EarlierCuts& earlier);
 
   /// Those of sweeps [begin, end) whose bad moves are not clear of the stock as it stands now.
   std::vector<size_t> look_ahead(const stock::ContactFinder& finder, size_t begin, size_t end) const;
@@ -52,6 +54,7 @@ class BadCutCheck {
   const motion::Trajectory& trajectory_;
   const JobSweeps& sweeps_;
   const SweepPlaces& places_;
+  const EarlierCuts& earlier_;
   bool has_blocks_;
   std::vector<Element> elements_;                        ///< by ToolPath::elements
   std::vector<stock::CutterSolid> flutes_;               ///< by tool

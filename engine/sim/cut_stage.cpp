@@ -19,6 +19,7 @@ namespace {
 constexpr size_t kSweepsPerBatch = 2048;  // between two looks ahead at the whole tool
 constexpr size_t kSweepsPerStep = 512;    // between two looks at the progress bar and Ctrl-C
 constexpr size_t kSuspectsPerStep = 32;   // the same, where sweeps are judged one by one
+constexpr double kDeepestExact = 2.0;     // voxels: deeper, the level set itself tells
 constexpr size_t kChecks = 8;             // of the invariants on the way, evenly spread over the sweeps
 
 size_t next_multiple(size_t at, size_t step) {
@@ -37,8 +38,9 @@ class CutStage {
         solids_(tool_solids(job.scene)),
         identity_(cut_identity(job, merged_)),
         places_(merged_, result.main.path, result.main.motion.trajectory),
-        clearance_(job.scene.tools, merged_, places_, job.scene.stock.voxel_mm),
-        bad_cuts_(job, result.main.path, result.main.motion.trajectory, merged_, places_) {
+        earlier_(merged_, solids_, job.scene.stock.box_W, kDeepestExact * job.scene.stock.voxel_mm),
+        clearance_(job.scene.tools, merged_, places_, earlier_, job.scene.stock.voxel_mm),
+        bad_cuts_(job, result.main.path, result.main.motion.trajectory, merged_, places_, earlier_) {
     outcome_.state.clearance = clearance_.result();
     result_.sweep_bound_mm = merged_.error_bound_mm;
     result_.merged_sweeps = merged_.sweeps.size();
@@ -255,6 +257,7 @@ class CutStage {
   std::vector<stock::CutterSolid> solids_;  ///< by tool
   CutIdentity identity_;
   SweepPlaces places_;
+  EarlierCuts earlier_;
   std::optional<stock::ContactFinder> finder_;
   ToolClearanceCheck clearance_;
   BadCutCheck bad_cuts_;

@@ -146,14 +146,18 @@ Check spindle_check(const Job& job, const Result& result) {
 
 void add_tool_checks(const Job& job, const Result& result, std::vector<Check>& checks) {
   const AcceptLimits& accept = job.scene.accept;
-  const std::string rests_on = fmt::format(
-      "whole moves, each against the stock before it: found from {:.3f} mm on", result.clearance.sees_mm);
-  checks.push_back(counted("collisions", "Neck, shank or holder in the stock", result.clearance.events.size(),
-                           accept.collisions));
-  checks.back().reason = rests_on;
-  checks.push_back(counted("rapids_in_material", "Rapid moves that remove material",
-                           count_bad_cuts(result, true), accept.rapids_in_material));
-  checks.back().reason = rests_on;
+  const std::string covers = fmt::format("contacts of {:.3f} mm and more", result.clearance.sees_mm);
+  const auto add = [&](Check check) {
+    check.covers = covers;
+    check.what += " (" + covers + ")";
+    check.reason += check.reason.empty() ? "whole moves, each against the stock before it"
+                                         : "; whole moves, each against the stock before it";
+    checks.push_back(std::move(check));
+  };
+  add(counted("collisions", "Neck, shank or holder in the stock", result.clearance.events.size(),
+              accept.collisions));
+  add(counted("rapids_in_material", "Rapid moves that remove material", count_bad_cuts(result, true),
+              accept.rapids_in_material));
   checks.push_back(spindle_check(job, result));
 }
 

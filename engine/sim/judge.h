@@ -35,6 +35,7 @@ struct Check {
   std::optional<double> limit{}, value{};
   std::optional<double> bound{};  ///< proven: no place is worse than this (measure::Bound)
   Outcome outcome = Outcome::kNotJudged;
+  std::string covers{};  ///< of a check that sees only what is large enough: "contacts of 0.200 mm and more"
   std::string reason{};  ///< why it is not judged or not proven; what a result rests on
 };
 
@@ -50,7 +51,7 @@ const char* check_of(const motion::MotionFinding& fault);
 /// No check fails or is not proven. Of an empty list, a run that was not finished: false.
 bool passes(std::span<const Check> checks);
 
-/// "9 checks hold; not judged: gouge, excess (no design)".
+/// "9 checks hold (collisions: contacts of 0.200 mm and more); not judged: gouge, excess (no design)".
 std::string verdict_text(std::span<const Check> checks);
 /// The same after "PASS: " or "FINDINGS: ".
 std::string verdict_sentence(std::span<const Check> checks);

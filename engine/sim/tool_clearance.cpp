@@ -37,8 +37,8 @@ std::vector<ToolPart> tool_parts(const cutter::Cutter& cutter) {
 }
 
 ToolClearanceCheck::ToolClearanceCheck(std::span<const cutter::Cutter> tools, const JobSweeps& sweeps,
-                                       const SweepPlaces& places, double voxel_mm)
-    : sweeps_(sweeps), places_(places) {
+                                       const SweepPlaces& places, const EarlierCuts& earlier, double voxel_mm)
+    : sweeps_(sweeps), places_(places), earlier_(earlier) {
   for (const cutter::Cutter& tool : tools) {
     parts_.push_back(tool_parts(tool));
     flutes_.emplace_back(tool);
@@ -51,19 +51,23 @@ ToolClearanceCheck::ToolClearanceCheck(std::span<const cutter::Cutter> tools, co
 ToolClearanceCheck::Outlook ToolClearanceCheck::look_ahead(const stock::ContactFinder& finder, size_t begin,
                                                            size_t end) const {
   std::vector<double> gaps(end - begin);
+  std::vector<uint8_t> hinted(end - begin, 0);
   parallel_chunks(gaps.size(), kSweepsPerTask, [&](size_t from, size_t to) {
     double least = result_.band_mm;  // what is farther than a gap seen need not be known
     for (size_t i = from; i < to; ++i) {
       const stock::SweepMap map = stock::sweep_map(sweeps_.sweeps[begin + i]);
       gaps[i] = least;
-      for (const ToolPart& part : parts_[tool_of(begin + i)])
+      for (const ToolPart& part : parts_[tool_of(begin + i)]) {
         gaps[i] = std::min(gaps[i], finder.gap(map, part.body, gaps[i]));
+        // The gap is only known up to the least seen: the hint looks for itself.
+        if (hinted[i] == 0 && finder.may_be_shallow(map, part.body, 0.0)) hinted[i] = 1;
+      }
       if (gaps[i] > -finder.deep_mm()) least = gaps[i];
     }
   });
   Outlook outlook{{}, result_.band_mm};
   for (size_t i = 0; i < gaps.size(); ++i) {
-    if (gaps[i] < -finder.deep_mm()) {
+    if (gaps[i] < -finder.deep_mm() || hinted[i] != 0) {
       outlook.suspects.push_back(begin + i);
     } else {
       outlook.nearest_mm = std::min(outlook.nearest_mm, gaps[i]);
@@ -84,13 +88,24 @@ void ToolClearanceCheck::judge_before(const stock::ContactFinder& finder, size_t
   for (const ToolPart& part : parts_[tool]) {
     const double gap = finder.gap(map, part.body, result_.nearest_mm);
     if (gap >= -finder.deep_mm()) {
-      saw(gap);
+      if (!shallow(finder, sweep, part, gap)) saw(gap);
     } else if (const auto contact = finder.contact(map, part.body, &own)) {
       add(event_of(part.name, static_cast<int>(tool), *contact, places_, sweep));
-    } else {
+    } else if (!shallow(finder, sweep, part, gap)) {
       free_.push_back(&part.body);
     }
   }
+}
+
+bool ToolClearanceCheck::shallow(const stock::ContactFinder& finder, size_t sweep, const ToolPart& part,
+                                 double gap) {
+  const size_t tool = tool_of(sweep);
+  const stock::SweepMap map = stock::sweep_map(sweeps_.sweeps[sweep]);
+  if (!finder.may_be_shallow(map, part.body, gap)) return false;
+  const stock::OwnCut own{&flutes_[tool], map, true};
+  const auto contact = finder.shallow_contact(map, part.body, &own, earlier_.before(sweep));
+  if (contact) add(event_of(part.name, static_cast<int>(tool), *contact, places_, sweep));
+  return contact.has_value();
 }
 
 void ToolClearanceCheck::judge_after(const stock::ContactFinder& finder, size_t sweep) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cutter/cutter.h"
+#include "sim/earlier_cuts.h"
 #include "sim/sweep_places.h"
 #include "stock/contact_finder.h"
 
@@ -21,13 +22,13 @@ std::vector<ToolPart> tool_parts(const cutter::Cutter& cutter);
 
 /// Material only shrinks: what is clear of the stock before a batch of sweeps is clear throughout it. The
 /// others, the suspects, are judged one by one against the stock as it stands before their own sweep, less
-/// what their own flutes have taken until the part comes. Material less than a voxel deep is not counted: the
-/// cuts leave it at the flank.
+/// what their own flutes have taken until the part comes. Material that the grid does not show well is
+/// looked at by the sweeps before (EarlierCuts).
 class ToolClearanceCheck {
  public:
-  /// `places` and `sweeps` must outlive it.
+  /// `places`, `sweeps` and `earlier` must outlive it.
   ToolClearanceCheck(std::span<const cutter::Cutter> tools, const JobSweeps& sweeps,
-                     const SweepPlaces& places, double voxel_mm);
+                     const SweepPlaces& places, const EarlierCuts& earlier, double voxel_mm);
 
   /// Gaps of sweeps [begin, end), before any of them is cut.
   struct Outlook {
@@ -48,12 +49,15 @@ class ToolClearanceCheck {
 
  private:
   void add(const ContactEvent& event);
+  /// A contact that only the sweeps themselves show; true when there is one.
+  bool shallow(const stock::ContactFinder& finder, size_t sweep, const ToolPart& part, double gap);
   size_t tool_of(size_t sweep) const {
     return static_cast<size_t>(sweeps_.sources[sweeps_.sweeps[sweep].block].tool);
   }
 
   const JobSweeps& sweeps_;
   const SweepPlaces& places_;
+  const EarlierCuts& earlier_;
   std::vector<std::vector<ToolPart>> parts_;      ///< by tool
   std::vector<stock::CutterSolid> flutes_;        ///< by tool
   std::vector<const stock::RevolvedPart*> free_;  ///< parts of the suspect that its own flutes clear the way

@@ -45,6 +45,17 @@ std::string not_judged(std::span<const Check> checks) {
   return text;
 }
 
+/// "collisions, rapids in material: contacts of 0.200 mm and more"; of those that hold.
+std::string covered(std::span<const Check> checks) {
+  std::string list, covers;
+  for (const Check& check : checks) {
+    if (check.outcome != Outcome::kHolds || check.covers.empty()) continue;
+    list += (list.empty() ? "" : ", ") + spoken(check.name);
+    covers = check.covers;
+  }
+  return list.empty() ? list : fmt::format(" ({}: {})", list, covers);
+}
+
 }  // namespace
 
 bool passes(std::span<const Check> checks) {
@@ -64,7 +75,7 @@ std::string verdict_text(std::span<const Check> checks) {
   if (!fails.empty()) text += fails + (count(checks, Outcome::kFails) == 1 ? " fails; " : " fail; ");
   if (!open.empty()) text += open + " not proven; ";
   const size_t held = count(checks, Outcome::kHolds);
-  text += fmt::format("{} {}", held, held == 1 ? "check holds" : "checks hold");
+  text += fmt::format("{} {}", held, held == 1 ? "check holds" : "checks hold") + covered(checks);
   const std::string silent = not_judged(checks);
   return silent.empty() ? text : text + "; not judged: " + silent;
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "stock/contact_passage.h"
 #include "stock/leaf_kernel.h"
 #include "stock/stock_grid_internal.h"
 
@@ -13,7 +14,6 @@ namespace {
 constexpr double kHalfLeaf = 0.5 * (kLeafSide - 1);  // voxels, from the centre to the outer grid points
 constexpr double kBoundGap = 0.05;                   // voxels: bounds need not be sharper
 constexpr double kRounding = 1e-4;                   // voxels: of sums in single precision
-constexpr double kExactGap = 1e-3;                   // voxels: of distances of grid points
 
 /// Low to high, the lesser of two linear functions plus the values: a bit for each sum below `least`.
 uint32_t row_below(const float* values, float first, float first_step, float second, float second_step,
@@ -88,7 +88,8 @@ Vec3 ContactFinder::point_at(size_t leaf, int place) const {
   return Vec3(origin.x() + place / 64, origin.y() + place / 8 % 8, origin.z() + place % 8) * voxel_;
 }
 
-size_t ContactFinder::candidates(size_t leaf, const Bound& bound, double least, uint16_t* places) const {
+size_t ContactFinder::candidates(size_t leaf, const Bound& bound, double least, double reach_voxels,
+                                 uint16_t* places) const {
   const LevelSet& set = stock_.level_set();
   static constexpr int kRows = kLeafVoxels / kLeafSide;
   std::array<float, kLeafSide> solid;
@@ -96,7 +97,7 @@ size_t ContactFinder::candidates(size_t leaf, const Bound& bound, double least, 
   const bool is_leaf = set.map.states[leaf] == LeafState::kLeaf;
   const float* values = is_leaf ? set.map.leaves[leaf]->buffer().data() : solid.data();
   const auto below = static_cast<float>(least + kRounding * voxel_);
-  const auto reach = static_cast<float>(kReach * voxel_);
+  const auto reach = static_cast<float>(reach_voxels * voxel_);
   const Vec3 first_step = bound.slope[0] * voxel_, second_step = bound.slope[1] * voxel_;
   size_t count = 0;
   for (int row = 0; row < kRows; ++row) {
@@ -146,7 +147,7 @@ void ContactFinder::each_leaf(const SweepMap& map, const RevolvedPart& part, con
   }
 }
 
-double ContactFinder::gap(const SweepMap& map, const RevolvedPart& part, double above) const {
+double ContactFinder::gap(const SweepMap& map, const RevolvedPart& part, double above, double reach) const {
   const LevelSet& set = stock_.level_set();
   double best = above;
   each_leaf(map, part, best, [&](size_t leaf, const Bound& bound) {
@@ -157,7 +158,7 @@ double ContactFinder::gap(const SweepMap& map, const RevolvedPart& part, double 
                                               bound.at[1] - half * (bound.slope[1] + rise).lpNorm<1>());
     if (sum >= best + kRounding * voxel_) return true;
     uint16_t places[kLeafVoxels];
-    const size_t count = candidates(leaf, bound, best, places);
+    const size_t count = candidates(leaf, bound, best, reach, places);
     for (size_t n = 0; n < count; ++n) {
       const Vec3 point = point_at(leaf, places[n]);
       const Vec3 start = map.start(point);
@@ -169,6 +170,13 @@ double ContactFinder::gap(const SweepMap& map, const RevolvedPart& part, double 
     return true;
   });
   return best;
+}
+
+bool ContactFinder::may_be_shallow(const SweepMap& map, const RevolvedPart& part, double gap) const {
+  // The sum is 2-Lipschitz, and every point has a grid point within kReach voxels.
+  if (gap > 2.0 * kReach * voxel_) return false;
+  const double hint = -kHint * voxel_;
+  return this->gap(map, part, hint, kWide) < hint;
 }
 
 }  // namespace swarf::stock

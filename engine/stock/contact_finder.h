@@ -7,11 +7,16 @@
 //
 // x runs over the grid points in and at the material (phi < kReach voxels), where phi is known without
 // interpolation, and d over the whole motion, in closed form and convex (revolved_part.h): nothing is sampled
-// in time. What the grid may miss: a contact s deep shows as at least s minus 0.2 voxel at a flat face, a
-// straight edge or a corner of either side; kDeep voxels and more are a contact, so every such one of a voxel
-// and more is found, plates and ribs thinner than a voxel too. What is left is a needle of material that lies
-// between the grid points, which can hide up to 1.75 voxels more (the sum is 2-Lipschitz, the next grid point
-// is 0.87 voxels away).
+// in time. A contact s deep shows as at least s minus 0.2 voxel at a flat face, a straight edge or a corner
+// of either side; kDeep voxels and more are a contact.
+//
+// Ribs, plates and needles between the grid points, and shallow contacts, show less: any speck of material s
+// deep in a part that is some voxels thick shows as s minus 0.86 voxel at least on the grid points with phi <
+// kWide voxels (worst of a half-space or a right-angled rim in any place and direction). There phi, the
+// greatest of many distances, lies below the true one beside convex edges of the material, so that kHint
+// voxels are no more than a hint: shallow_contact() looks for a point that the sweeps themselves have left in
+// the material and that the part passes over. So every contact of a voxel and more is found, and most of
+// kLeastMm and more.
 #pragma once
 
 #include <array>
@@ -47,6 +52,10 @@ class ContactFinder {
   static constexpr double kDeep = 0.8;  // voxels
   /// Every point of the material has a grid point this near whose value is below it.
   static constexpr double kReach = 0.87;  // voxels, sqrt(3) / 2
+  /// Hints of shallow contacts: see above.
+  static constexpr double kHint = 0.1, kWide = 1.5;  // voxels
+  /// A contact shallower than this is none: the sweeps follow the motion no closer.
+  static constexpr double kLeastMm = 0.01;
 
   /// The stock must outlive it.
   explicit ContactFinder(const Stock& stock);
@@ -56,9 +65,19 @@ class ContactFinder {
 
   /// The least of `above` and the gap between part and material over the sweep, mm; once it is known to be a
   /// contact it looks no further, and the value is only known to be below -deep_mm().
-  double gap(const SweepMap& map, const RevolvedPart& part, double above) const;
+  /// `reach`: of the grid points looked at, voxels from the material.
+  double gap(const SweepMap& map, const RevolvedPart& part, double above, double reach = kReach) const;
   /// The contact, if there is one. `own`: what the flutes clear out of the part's way; may be null.
   std::optional<Contact> contact(const SweepMap& map, const RevolvedPart& part, const OwnCut* own) const;
+
+  /// Whether there may be a contact that is shallower or thinner than contact() tells; `gap`: of the same
+  /// sweep.
+  bool may_be_shallow(const SweepMap& map, const RevolvedPart& part, double gap) const;
+  /// Signed distance of a point to the material before the sweep, by the sweeps themselves; exact inside.
+  using Material = std::function<double(const Vec3& point_W)>;
+  /// Such a contact, at the one instant and place where it was found deepest.
+  std::optional<Contact> shallow_contact(const SweepMap& map, const RevolvedPart& part, const OwnCut* own,
+                                         const Material& material) const;
   /// A place that shows that the air is no farther than that: |place - point| + more.
   struct Witness {
     Vec3 place = Vec3::Zero();
@@ -71,6 +90,7 @@ class ContactFinder {
 
  private:
   friend class ContactSearch;
+  friend class ShallowSearch;
   struct Level {
     int size[3];
     std::vector<uint8_t> material;  ///< 1: some leaf position below it is not air
@@ -83,8 +103,9 @@ class ContactFinder {
     double least(double half) const;
   };
   Bound bound_at(const SweepMap& map, const RevolvedPart& part, const Vec3& centre, double enough) const;
-  /// Grid points of a leaf position that may bring the sum below `least`: their places in the leaf.
-  size_t candidates(size_t leaf, const Bound& bound, double least, uint16_t* places) const;
+  /// Grid points of a leaf position, no farther than `reach` voxels from the material, that may bring the sum
+  /// below `least`: their places in the leaf.
+  size_t candidates(size_t leaf, const Bound& bound, double least, double reach, uint16_t* places) const;
   /// Looks for a better witness at one leaf position.
   void look_for_air(size_t leaf, const Vec3& point_W, Witness& best, double& least) const;
   double value_at(size_t leaf, int place) const;
