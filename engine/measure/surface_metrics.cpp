@@ -29,7 +29,8 @@ void summarise_ridges(const std::vector<Ridge>& ridges, SurfaceMetrics& metrics)
     sum += ridge.height_um;
   }
   std::sort(heights.begin(), heights.end());
-  metrics.scallop_max_um = heights.back();
+  // Passes that cross below the design leave nothing standing there.
+  metrics.scallop_max_um = std::max(0.0, heights.back());
   metrics.scallop_mean_um = sum / static_cast<double>(heights.size());
   metrics.scallop_p05_um = percentile(heights, 0.05);
   metrics.scallop_p95_um = percentile(heights, 0.95);
@@ -85,6 +86,15 @@ void summarise_rays(const stock::SurfaceDexels& dexels, const Tops& tops, const 
   metrics.within_tolerance_pct = 100.0 * within / metrics.area_mm2;
 }
 
+/// Material between the rays: a ridge stands as high as it was refined to.
+void raise_excess(const std::vector<Ridge>& ridges, SurfaceMetrics& metrics) {
+  for (const Ridge& ridge : ridges) {
+    if (ridge.height_um <= metrics.excess_max_um) continue;
+    metrics.excess_max_um = ridge.height_um;
+    metrics.excess_block = ridge.block_a;
+  }
+}
+
 void merge(const SurfaceMetrics& part, SurfaceMetrics& whole, double& within) {
   whole.samples += part.samples;
   whole.area_mm2 += part.area_mm2;
@@ -133,6 +143,7 @@ SurfaceMetrics measure_surface(const stock::SurfaceDexels& dexels, std::span<con
   keep_worst(metrics.excesses);
   const std::vector<Ridge> found = find_ridges(dexels, sweeps, rule, cutters);
   summarise_ridges(found, metrics);
+  raise_excess(found, metrics);
   if (ridges != nullptr) ridges->insert(ridges->end(), found.begin(), found.end());
   return metrics;
 }
