@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 
@@ -111,6 +112,15 @@ ComparedDesign design_of_patches(const std::vector<surface::SurfacePtr>& surface
   }
 }
 
+/// Files of CAD programs, which the reader of programs would otherwise take for blocks.
+void refuse_cad(const std::string& file) {
+  const std::string ending = extension(file);
+  constexpr std::array kCad{".step", ".stp", ".igs", ".iges", ".3mf", ".sldprt", ".prt", ".x_t", ".brep"};
+  if (std::none_of(kCad.begin(), kCad.end(), [&](const char* cad) { return ending == cad; })) return;
+  throw InputError("cad-format", {file}, fmt::format("files of the kind '{}' are not read", ending),
+                   "export it from the CAD program as STL, PLY or OBJ, in mm");
+}
+
 [[noreturn]] void refuse_empty(const std::string& file) {
   throw InputError("no-design", {file}, "there is no design surface to compare with",
                    "name a scene with a [design], a program of surface blocks or a mesh");
@@ -119,6 +129,7 @@ ComparedDesign design_of_patches(const std::vector<surface::SurfacePtr>& surface
 }  // namespace
 
 ComparedStock load_stock(const std::string& file) {
+  refuse_cad(file);
   if (extension(file) == ".vdb") return stock_of_grid(file);
   ComparedStock compared;
   compared.mesh = checked_mesh(mesh::load_mesh(file), file, "stock mesh");
@@ -126,6 +137,7 @@ ComparedStock load_stock(const std::string& file) {
 }
 
 ComparedDesign load_design(const std::string& file, double pitch_mm) {
+  refuse_cad(file);
   const std::string kind = extension(file);
   if (kind == ".stl" || kind == ".ply" || kind == ".obj")
     return {checked_mesh(mesh::load_mesh(file), file, "design mesh"), false, 0.0, {}};

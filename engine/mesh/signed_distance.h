@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <unordered_map>
 #include <vector>
 
 #include "base/frames.h"
@@ -28,6 +29,8 @@ struct SignedPoint {
 /// corners' angles: with these (p - foot).normal has the sign of the distance for every closed mesh
 /// (Baerentzen & Aanaes, Signed distance computation using the angle weighted pseudonormal, 2005). On an open
 /// mesh the sign is that of the sheet's side.
+/// Facets without area have no normal. Where one lies in an edge, the faces on its two sides meet there all
+/// the same: a long side on one, several short ones on the other.
 class SignedDistance {
  public:
   /// Vertices with equal positions count as one; triangles without area are left out. The mesh must have one
@@ -46,16 +49,24 @@ class SignedDistance {
   /// The facet across each side (3 * triangle + place of the side's first corner), kBorder without one.
   const std::vector<uint32_t>& across() const { return across_; }
   static constexpr uint32_t kBorder = 0xffffffffU;
+  /// The same where facets without area lie between: the side of which facet is there depends on the place.
+  static constexpr uint32_t kSeam = 0xfffffffeU;
 
  private:
   Vec3 pseudo_normal(const NearestPoint& nearest, bool& border) const;
+  void join_sides(const TriMesh& welded, const std::vector<uint32_t>& number);
   void add_vertex_normals();
+  void add_seam_normals();
+  const Vec3& normal_across_seam(uint32_t side, const Vec3& point) const;
 
   TriMesh mesh_;
   std::unique_ptr<MeshDistance> tree_;
   std::vector<Vec3> face_normals_, vertex_normals_;
   std::vector<uint32_t> across_;
   std::vector<uint8_t> on_border_;  ///< per vertex
+  /// Sides of facets with area along facets without, by seam.
+  std::vector<std::vector<uint32_t>> seams_;
+  std::unordered_map<uint32_t, uint32_t> seam_of_;  ///< per side; looked up only: its order never shows
 };
 
 }  // namespace swarf::mesh

@@ -195,6 +195,19 @@ TEST_F(Compare, RefusesWhatCannotBeCompared) {
   }
 }
 
+TEST_F(Compare, RefusesFilesOfCadPrograms) {
+  const std::string solid = file("solid.stl", block({-20, -20, 0}, {20, 20, 10}));
+  for (const char* name : {"part.step", "part.STP", "part.igs"}) {
+    const std::string cad = (folder_ / name).string();
+    swarf::test::write_text(cad, "ISO-10303-21;\nHEADER;\nENDSEC;\nEND-ISO-10303-21;\n");
+    for (const std::string& pair : {cad + " " + solid, solid + " " + cad}) {
+      const auto result = swarf::test::run_swarf("compare " + pair);
+      EXPECT_EQ(result.exit_code, 2) << result.output;
+      EXPECT_NE(result.output.find("[cad-format]"), std::string::npos) << result.output;
+    }
+  }
+}
+
 TEST_F(Compare, WritesMapsThatShowTheWorstPlaces) {
   const std::string out = (folder_ / "out").string();
   measure(plate(10.0), plate(15.0), "-o " + out, 1);

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "base/rng.h"
+#include "base/units.h"
 #include "mesh/mesh_check.h"
 #include "mesh/mesh_crossing.h"
 #include "mesh/signed_distance.h"
@@ -14,6 +15,39 @@ namespace {
 double box_distance(const Vec3& p, const Vec3& half) {
   const Vec3 q = p.cwiseAbs() - half;
   return q.cwiseMax(Vec3::Zero()).norm() + std::min(0.0, q.maxCoeff());
+}
+
+/// A wedge of 20 degrees along y whose sharp edge its slope has in two; a facet without area closes it.
+TriMesh wedge(bool seam) {
+  const double height = 30.0 * std::tan(20.0 * kPi / 180.0);
+  const Vec3 a0(0, -20, 0), a1(0, 20, 0), e0(30, -20, 0), e1(30, 20, 0), t0(0, -20, height),
+      t1(0, 20, height), middle(30, 3, 0);
+  TriMesh mesh;
+  test::add_quad(mesh, a0, a1, e1, e0);
+  test::add_quad(mesh, a0, t0, t1, a1);
+  test::add_triangle(mesh, a0, e0, t0);
+  test::add_triangle(mesh, a1, t1, e1);
+  if (seam) {
+    test::add_triangle(mesh, e0, middle, t0);
+    test::add_triangle(mesh, middle, t1, t0);
+    test::add_triangle(mesh, middle, e1, t1);
+    test::add_triangle(mesh, e0, e1, middle);
+  } else {
+    test::add_quad(mesh, e0, e1, t1, t0);
+  }
+  return mesh;
+}
+
+TEST(SignedDistance, AFacetWithoutAreaInASharpEdgeDoesNotTurnTheSign) {
+  ASSERT_EQ(check_closed(wedge(true)), "");
+  const SignedDistance plain(wedge(false)), seamed(wedge(true));
+  Rng rng(11);
+  for (int i = 0; i < 4000; ++i) {
+    Vec3 p(30.0 + rng.uniform(-2, 3), rng.uniform(-21, 21), rng.uniform(-2, 2));
+    if (i % 4 == 0) p.y() = 3.0;  // the vertex within the long side is nearest
+    ASSERT_NEAR(seamed.at(p).distance_mm, plain.at(p).distance_mm, 1e-12)
+        << "seed 11, point " << p.transpose();
+  }
 }
 
 TEST(SignedDistance, OfABoxIsItsClosedFormEverywhere) {
