@@ -276,7 +276,7 @@ class RootProof {
     for (CellCorner& corner : below.corners) corner.normal = -corner.normal;
     sets_.clear();
     add_box(below);
-    return std::min(std::max(depth, highest_left(sets_)), kThrough);
+    return std::min(std::max(depth, highest_left(sets_).height), kThrough);
   }
 
   /// Height over the design up to which there was material to begin with over the whole cell; below 0 where
@@ -325,6 +325,16 @@ class RootProof {
     return std::max(s, 0.0);
   }
 
+  /// The grid tells nothing of a cell wider than its band, and no more of one much smaller than of the cell
+  /// around it.
+  bool asks_grid(const Cell& cell) const {
+    const double voxel = input_.stock.voxel_mm();
+    double highest = 0.0;
+    for (const Corner& corner : cell.corners) highest = std::max(highest, corner.height);
+    return cell.shape.radius() < 2.0 * voxel && cell.shape.radius() > voxel / 32.0 &&
+           cell.air > highest + 2.0 * voxel;
+  }
+
   double upper_bound(Cell& cell) {
     // Where the columns leave the box, and a little for what lies between the corners.
     double leave = 0.0;
@@ -332,8 +342,8 @@ class RootProof {
       leave = std::max(leave, leaves_box(input_.stock.box(), corner.at.point, corner.at.normal));
     const double top = std::min(leave + cell.shape.radius(), cell.air);
     double high = bound_by_sets(cell, top);
-    if (high > excess_target() && cell.air == kNever && cell.shape.radius() < 2.0 * input_.stock.voxel_mm()) {
-      cell.air = air_above(cell, std::max(leave, 0.0));
+    if (high > excess_target() && asks_grid(cell)) {
+      cell.air = std::min(cell.air, air_above(cell, std::max(leave, 0.0)));
       high = std::min(cell.air, bound_by_sets(cell, std::min(top, cell.air)));
     }
     double range = 0.0;
@@ -351,18 +361,46 @@ class RootProof {
 
   double bound_by_sets(const Cell& cell, double top) {
     sets_.clear();
+    owners_.clear();
     add_box(cell.shape);
     CornerHeights tops;
     for (size_t k = 0; k < 3; ++k) tops[k] = std::min(top, cell.corners[k].range);
-    const CornerHeights from{cell.corners[0].height, cell.corners[1].height, cell.corners[2].height};
-    for (size_t k = 0; k < 3; ++k) {
-      const uint32_t n = cell.corners[k].near;
-      if (n == stock::kUncut || (k > 0 && n == cell.corners[0].near) || (k > 1 && n == cell.corners[1].near))
-        continue;
-      for (const cutter::ConvexPiece& piece : near_[n].cutter->pieces)
-        sets_.push_back(covered_from(cell.shape, near_[n], piece, from, tops));
+    for (const Corner& corner : cell.corners) add_owner(cell, corner.near, tops);
+    HighestLeft left = highest_left(sets_);
+    // Where the bound is highest, the sweep that is lowest there may lower it.
+    constexpr size_t kMostOwners = 10;
+    while (left.height > excess_target() && left.height < kNever && owners_.size() < kMostOwners) {
+      if (!add_owner(cell, owner_at(cell, left), tops)) break;
+      const double before = left.height;
+      left = highest_left(sets_);
+      if (!(left.height < before)) break;
     }
-    return highest_left(sets_);
+    return left.height;
+  }
+
+  /// What the sweep covers joins the sets; false when it is among them.
+  bool add_owner(const Cell& cell, uint32_t n, const CornerHeights& tops) {
+    if (n == stock::kUncut || std::find(owners_.begin(), owners_.end(), n) != owners_.end()) return false;
+    owners_.push_back(n);
+    const CornerHeights from{cell.corners[0].height, cell.corners[1].height, cell.corners[2].height};
+    for (const cutter::ConvexPiece& piece : near_[n].cutter->pieces)
+      sets_.push_back(covered_from(cell.shape, near_[n], piece, from, tops));
+    return true;
+  }
+
+  /// The sweep that leaves least where the bound is highest; none when all leave more.
+  uint32_t owner_at(const Cell& cell, const HighestLeft& left) const {
+    const CellCorner at = place_in(cell.shape, left.place, root_.bounds);
+    double height = left.height;
+    uint32_t owner = stock::kUncut;
+    for (size_t i = cell.begin; i < cell.end; ++i) {
+      if (floors_[i] >= height) continue;
+      const double low = lowest(at, near_[kept_[i]], height);
+      if (low >= height) continue;
+      height = low;
+      owner = kept_[i];
+    }
+    return owner;
   }
 
   void close(const Cell& cell, const Bounds& bounds, const std::optional<Probe>& probed) {
@@ -375,22 +413,23 @@ class RootProof {
       result_.excess_at = cell.shape.centroid();
     }
     if (!probed) {
-      add_pieces(cell.shape, cell.corners);
+      add_pieces(cell.shape, cell.corners, bounds);
       return;
     }
     for (size_t k = 0; k < 3; ++k) {
       std::array<Corner, 3> corners = cell.corners;
       corners[k] = probed->corner;
-      add_pieces(make_cell({corners[0].at, corners[1].at, corners[2].at}, root_.bounds), corners);
+      add_pieces(make_cell({corners[0].at, corners[1].at, corners[2].at}, root_.bounds), corners, bounds);
     }
   }
 
-  void add_pieces(const DesignCell& shape, const std::array<Corner, 3>& corners) {
+  /// A corner beyond the cell's bounds is touched from the next cell, and no part of this one.
+  void add_pieces(const DesignCell& shape, const std::array<Corner, 3>& corners, const Bounds& bounds) {
     std::array<double, 3> heights{}, depths{};
     std::array<uint32_t, 3> blocks{};
     for (size_t k = 0; k < 3; ++k) {
-      heights[k] = corners[k].height;
-      depths[k] = -heights[k];
+      heights[k] = std::min(corners[k].height, bounds.high);
+      depths[k] = std::min(-corners[k].height, -bounds.low);
       blocks[k] = corners[k].near == stock::kUncut ? stock::kUncut : near_[corners[k].near].sweep;
     }
     if (root_.looks_down) add_piece(shape, depths, blocks, input_.gouge_limit_mm, result_.gouges);
@@ -502,6 +541,7 @@ class RootProof {
   std::vector<uint32_t> kept_;  ///< a stack: the sweeps of a cell lie above those of the cell around it
   std::vector<double> floors_;  ///< least heights of kept_ over the cell last looked at
   std::vector<CornerHeights> sets_;
+  std::vector<uint32_t> owners_;  ///< of sets_, index into near_
   RootResult result_;
 };
 

@@ -143,17 +143,13 @@ double DesignCell::area_mm2() const {
   return 0.5 * (corners[1].point - corners[0].point).cross(corners[2].point - corners[0].point).norm();
 }
 
-namespace {
-
-/// Greatest sum over pairs of l_j l_k q_jk for squared edges q in a metric: the squared radius of the least
-/// circle around the triangle.
-double least_circle2(double a, double b, double c) {
+double most_over_pairs(double q01, double q12, double q20) {
+  const double &a = q01, &b = q12, &c = q20;
   const double longest = std::max({a, b, c});
+  // On an edge, or where the gradient is the same toward all corners.
   if (2.0 * longest >= a + b + c) return 0.25 * longest;
   return a * b * c / (2.0 * (a * b + b * c + c * a) - a * a - b * b - c * c);
 }
-
-}  // namespace
 
 DesignCell make_cell(const std::array<CellCorner, 3>& corners, const PatchBounds& bounds) {
   DesignCell cell{corners};
@@ -170,10 +166,10 @@ DesignCell make_cell(const std::array<CellCorner, 3>& corners, const PatchBounds
     cell.turn = std::max(cell.turn, turn);
   }
   if (bounds.surface != nullptr) {
-    cell.flatness_mm = 0.5 * least_circle2(bend[0], bend[1], bend[2]);
+    cell.flatness_mm = 0.5 * most_over_pairs(bend[0], bend[1], bend[2]);
   } else {
     // |sum l_k n_k|^2 = 1 - sum over pairs l_j l_k |n_j - n_k|^2.
-    cell.turn = 1.0 - std::sqrt(std::max(0.0, 1.0 - least_circle2(lean[0], lean[1], lean[2])));
+    cell.turn = 1.0 - std::sqrt(std::max(0.0, 1.0 - most_over_pairs(lean[0], lean[1], lean[2])));
   }
   return cell;
 }

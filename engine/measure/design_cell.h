@@ -47,6 +47,9 @@ struct DesignCell {
   double area_mm2() const;
 };
 
+/// Greatest value over barycentric l of l_0 l_1 q01 + l_1 l_2 q12 + l_2 l_0 q20, all q >= 0.
+double most_over_pairs(double q01, double q12, double q20);
+
 DesignCell make_cell(const std::array<CellCorner, 3>& corners, const PatchBounds& bounds);
 
 /// Half way between two corners of a cell.

@@ -18,20 +18,27 @@ struct Tangents {
   std::array<Vec3, 2> slope;    ///< W
 };
 
+struct Root {
+  double height = -kNever;  ///< mm
+  size_t corner = 0;        ///< where it is that low
+};
+
 /// Height below which `tangents` stays above the cell's margin, as far down as the depths.
-double root_of(const DesignCell& cell, const Tangents& tangents, const std::array<double, 3>& depths_mm) {
-  double least = kNever;
+Root root_of(const DesignCell& cell, const Tangents& tangents, const std::array<double, 3>& depths_mm) {
+  Root least{kNever, 0};
   for (size_t k = 0; k < 3; ++k) {
     const CellCorner& corner = cell.corners[k];
     for (int j = 0; j < 2; ++j) {
-      // value + slope . (p + s n - at) - flatness - |s| turn, with its two branches of |s|.
+      // value + slope . (p + s n - at) - flatness - |s| turn: which branch of |s| holds the root, the sign
+      // at s = 0 tells.
       const double base = tangents.value[j] + tangents.slope[j].dot(corner.point - tangents.at) -
                           cell.flatness_mm - kRounding;
       const double rise = tangents.slope[j].dot(corner.normal);
-      if (base + kTouch - depths_mm[k] * (rise + cell.turn) < 0.0) return -kNever;
-      for (const double turn : {cell.turn, -cell.turn}) {
-        if (rise + turn < 0.0) least = std::min(least, std::max(-depths_mm[k], -base / (rise + turn)));
-      }
+      if (base + kTouch - depths_mm[k] * (rise + cell.turn) < 0.0) return {-kNever, k};
+      const double falls = base < 0.0 ? rise + cell.turn : rise - cell.turn;
+      if (!(falls < 0.0)) continue;
+      const double height = std::max(-depths_mm[k], -base / falls);
+      if (height < least.height) least = {height, k};
     }
   }
   return least;
@@ -48,7 +55,9 @@ Tangents face_tangents(const cutter::Face& face, const NearSweep& near, const Ve
 
 Tangents motion_tangents(const cutter::ConvexPiece& piece, const NearSweep& near, const Vec3& at) {
   const Vec3 P = near.map.start(at), D = near.map.end(at) - P;
-  const stock::Nearest nearest = stock::nearest_instant(piece, P, D);
+  // Any tangent bounds: the last digits of the instant are not worth their steps.
+  constexpr double kCloseEnough = 1e-7;  // mm
+  const stock::Nearest nearest = stock::nearest_instant(piece, P, D, 0.0, 1.0, kCloseEnough);
   return {at,
           {nearest.floor, nearest.floor},
           {near.map.R0t.transpose() * nearest.normal, near.map.R1t.transpose() * nearest.normal}};
@@ -118,26 +127,74 @@ std::optional<Vec3> toward_rim(const NearSweep& near, const Vec3& at, const Vec3
   return turned.norm() > 0.0 ? std::optional<Vec3>(turned.normalized()) : std::nullopt;
 }
 
+/// The tangents at the place of the cell that the piece comes nearest to: from the centroid toward the corner
+/// that looks lowest from there, as far as the distance falls.
+double height_by_motion(const DesignCell& cell, const NearSweep& near, const cutter::ConvexPiece& piece,
+                        const std::array<double, 3>& depths_mm, double enough) {
+  const Vec3 centre = cell.centroid();
+  const Tangents first = motion_tangents(piece, near, centre);
+  const Root from_centre = root_of(cell, first, depths_mm);
+  if (from_centre.height > enough || cell.flatness_mm > -enough) return from_centre.height;
+  const Vec3 way = cell.corners[from_centre.corner].point - centre;
+  const Tangents second = motion_tangents(piece, near, centre + way);
+  double best = std::max(from_centre.height, root_of(cell, second, depths_mm).height);
+  const double falls = first.slope[0].dot(way), rises = second.slope[0].dot(way);
+  if (best > enough || !(falls < 0.0 && rises > 0.0)) return best;
+  const double share = (second.value[0] - rises - first.value[0]) / (falls - rises);
+  if (!(share > 0.0 && share < 1.0)) return best;
+  const Tangents between = motion_tangents(piece, near, centre + share * way);
+  return std::max(best, root_of(cell, between, depths_mm).height);
+}
+
 double least_height(const DesignCell& cell, const NearSweep& near, const cutter::ConvexPiece& piece,
                     const std::array<double, 3>& depths_mm, double enough) {
   const Vec3 centre = cell.centroid(), normal = cell.mean_normal();
   double best = -kNever;
   for (const cutter::Face& face : piece.faces) {
     if (face.normal.x() == 0.0)
-      best = std::max(best, root_of(cell, face_tangents(face, near, centre), depths_mm));
+      best = std::max(best, root_of(cell, face_tangents(face, near, centre), depths_mm).height);
   }
-  if (best > 0.0 && best < kNever) return best;
-  best = std::max(best, root_of(cell, motion_tangents(piece, near, centre), depths_mm));
+  if (best > enough && best < kNever) return best;
+  best = std::max(best, height_by_motion(cell, near, piece, depths_mm, enough));
   if (best > enough) return best;
   // A rim has no tangent of its own: there its lowest point counts, and the point that is nearest.
   const Vec3 down = -(near.map.R0t * normal);
-  best = std::max(best, root_of(cell, touching_plane(piece, near, centre, down), depths_mm));
+  best = std::max(best, root_of(cell, touching_plane(piece, near, centre, down), depths_mm).height);
   if (best > enough) return best;
   if (const auto rim = toward_rim(near, centre, down))
-    best = std::max(best, root_of(cell, touching_plane(piece, near, centre, *rim), depths_mm));
+    best = std::max(best, root_of(cell, touching_plane(piece, near, centre, *rim), depths_mm).height);
   if (best > enough) return best;
   const Vec3 below = centre - cell.radius() * normal;
-  return std::max(best, root_of(cell, motion_tangents(piece, near, below), depths_mm));
+  return std::max(best, root_of(cell, motion_tangents(piece, near, below), depths_mm).height);
+}
+
+/// The part of the motion between two instants, as a sweep of its own.
+NearSweep slice_of(const NearSweep& near, double from, double to) {
+  NearSweep part = near;
+  const auto map_at = [&](double t, Mat3& R, Vec3& tip) {
+    R = (1.0 - t) * near.map.R0t + t * near.map.R1t;
+    const Vec3 tip_in_tool = (1.0 - t) * near.map.start(Vec3::Zero()) + t * near.map.end(Vec3::Zero());
+    tip = -R.inverse() * tip_in_tool;
+  };
+  map_at(from, part.map.R0t, part.map.tip0);
+  map_at(to, part.map.R1t, part.map.tip1);
+  return part;
+}
+
+/// As the cutter turns, one tangent loses up to turn * radius of the cell: the motion is halved until that is
+/// little, where more is asked for.
+double least_height_in_slices(const DesignCell& cell, const NearSweep& near, const cutter::ConvexPiece& piece,
+                              const std::array<double, 3>& depths_mm, double enough) {
+  constexpr double kLittle = 1e-5;  // mm
+  const double best = least_height(cell, near, piece, depths_mm, enough);
+  if (!near.turns || best > enough) return best;
+  const double lost = (near.map.R1t - near.map.R0t).norm() * cell.radius();
+  if (lost < kLittle || cell.flatness_mm > -enough || (best > -kNever && best + 2.0 * lost < enough))
+    return best;
+  const double first = least_height_in_slices(cell, slice_of(near, 0.0, 0.5), piece, depths_mm, enough);
+  if (first <= best) return best;
+  const double second = least_height_in_slices(cell, slice_of(near, 0.5, 1.0), piece, depths_mm, enough);
+  return std::max(best, std::min(first, second));
 }
 
 struct Line {
@@ -209,13 +266,53 @@ CornerHeights covered_lines(const DesignCell& cell, const cutter::ConvexPiece& p
   return heights;
 }
 
+using CornerInstants = std::array<double, 3>;
+
+/// When the piece is nearest to each corner's column at a height.
+CornerInstants instants_at(const DesignCell& cell, const NearSweep& near, const cutter::ConvexPiece& piece,
+                           const CornerHeights& heights) {
+  CornerInstants instants{};
+  for (size_t k = 0; k < 3; ++k) {
+    const Vec3 at = cell.corners[k].point + heights[k] * cell.corners[k].normal;
+    const Vec3 P = near.map.start(at);
+    instants[k] = stock::nearest_instant(piece, P, near.map.end(at) - P).t;
+  }
+  return instants;
+}
+
+std::array<Line, 3> lines_at(const DesignCell& cell, const NearSweep& near, const CornerInstants& instants) {
+  std::array<Line, 3> lines;
+  for (size_t k = 0; k < 3; ++k) lines[k] = line_at(cell.corners[k], near, instants[k]);
+  return lines;
+}
+
+/// A cutter that turns while it moves covers no convex set. The place at l is looked at in the instant
+/// t(l) = sum l_k t_k: there it stands aside of the mean of the corners, each in its own instant, by
+///   sum l_j (t(l) - t_j) D_j = sum over pairs l_j l_k (t_k - t_j)(D_j - D_k),    D the corner's motion.
+double twist_of(const DesignCell& cell, const NearSweep& near, const CornerInstants& instants,
+                const CornerHeights& from, const CornerHeights& tops, double spread) {
+  if (!near.turns) return 0.0;
+  const Mat3 turn = near.map.R1t - near.map.R0t;
+  double farthest = 0.0;
+  for (size_t k = 0; k < 3; ++k) farthest = std::max({farthest, std::abs(from[k]), std::abs(tops[k])});
+  std::array<double, 3> strays{};
+  for (size_t k = 0; k < 3; ++k) {
+    const size_t j = (k + 1) % 3;
+    const CellCorner &a = cell.corners[k], &b = cell.corners[j];
+    const double apart = (turn * (a.point - b.point)).norm() + spread * turn.norm() +
+                         farthest * (turn * (a.normal - b.normal)).norm();
+    strays[k] = std::abs(instants[k] - instants[j]) * apart;
+  }
+  return most_over_pairs(strays[0], strays[1], strays[2]);
+}
+
 }  // namespace
 
 double least_height(const DesignCell& cell, const NearSweep& near, const std::array<double, 3>& depths_mm,
                     double enough) {
   double least = kNever;
   for (const cutter::ConvexPiece& piece : near.cutter->pieces) {
-    least = std::min(least, least_height(cell, near, piece, depths_mm, enough));
+    least = std::min(least, least_height_in_slices(cell, near, piece, depths_mm, enough));
     if (least == -kNever) break;
   }
   return least;
@@ -265,28 +362,29 @@ bool stays_above(const CellCorner& corner, const NearSweep& near, double height_
 
 CornerHeights covered_from(const DesignCell& cell, const NearSweep& near, const cutter::ConvexPiece& piece,
                            const CornerHeights& from, const CornerHeights& tops) {
-  const auto instant = [&](const Vec3& at) {
-    const Vec3 P = near.map.start(at);
-    return stock::nearest_instant(piece, P, near.map.end(at) - P).t;
-  };
-  const double mean = (from[0] + from[1] + from[2]) / 3.0;
-  // A turning cutter's sweep need not be convex: all corners then are looked at in one instant.
-  const double common = near.turns ? instant(cell.centroid() + mean * cell.mean_normal()) : 0.0;
-  std::array<Line, 3> lines;
-  for (size_t k = 0; k < 3; ++k) {
-    const CellCorner& corner = cell.corners[k];
-    lines[k] = line_at(corner, near, near.turns ? common : instant(corner.point + from[k] * corner.normal));
-  }
-  const CornerHeights heights = covered_lines(cell, piece, lines, from, tops, 0.0);
+  constexpr double kSafety = 1.5, kNothing = 1e-10;  // mm
+  CornerInstants instants = instants_at(cell, near, piece, from);
+  CornerHeights heights = covered_lines(cell, piece, lines_at(cell, near, instants), from, tops, 0.0);
   if (heights[0] == kNever) return heights;
+  if (near.turns) {
+    // Higher up another instant is the nearest.
+    instants = instants_at(cell, near, piece, heights);
+    heights = covered_lines(cell, piece, lines_at(cell, near, instants), from, tops, 0.0);
+    if (heights[0] == kNever) return heights;
+  }
   // The place at l and s >= sum l_k h_k is reached from the corners' own heights s + h_k - sum l_j h_j, which
   // lie aside of it by |sum l_k (h_k - sum l_j h_j)(n_k - mean n)| <= spread lean: that much margin more.
-  constexpr double kSafety = 1.5, kNothing = 1e-10;  // mm
-  const double lean = lean_of(cell), aside = kSafety * spread_of(heights) * lean;
+  const double lean = lean_of(cell);
+  const auto strays = [&](double spread) {
+    return spread * lean + twist_of(cell, near, instants, from, tops, spread);
+  };
+  const double aside = kSafety * spread_of(heights) * lean +
+                       twist_of(cell, near, instants, from, tops, kSafety * spread_of(heights));
   if (aside <= kNothing) return heights;
-  const CornerHeights within = covered_lines(cell, piece, lines, heights, tops, aside);
-  return within[0] < kNever && spread_of(within) * lean <= aside ? within
-                                                                 : CornerHeights{kNever, kNever, kNever};
+  const CornerHeights within =
+      covered_lines(cell, piece, lines_at(cell, near, instants), heights, tops, aside);
+  return within[0] < kNever && strays(spread_of(within)) <= aside ? within
+                                                                  : CornerHeights{kNever, kNever, kNever};
 }
 
 CornerHeights outside_from(const DesignCell& cell, const Vec3& normal, double offset) {
@@ -306,13 +404,13 @@ CornerHeights outside_from(const DesignCell& cell, const Vec3& normal, double of
   return heights;
 }
 
-double highest_left(const std::vector<CornerHeights>& sets) {
+HighestLeft highest_left(const std::vector<CornerHeights>& sets) {
   std::vector<const CornerHeights*> whole;
   for (const CornerHeights& set : sets) {
     if (set[0] < kNever && set[1] < kNever && set[2] < kNever) whole.push_back(&set);
   }
-  if (whole.empty()) return kNever;
-  double highest = -kNever;
+  if (whole.empty()) return {};
+  HighestLeft highest{-kNever};
   // The maximum of a concave function that is linear in pieces stands at a corner of the pieces: a corner of
   // the cell, a place on an edge where two sets cross, or one inside where three do.
   const auto look_at = [&](const Vec3& l) {
@@ -320,7 +418,7 @@ double highest_left(const std::vector<CornerHeights>& sets) {
     double low = kNever;
     for (const CornerHeights* set : whole)
       low = std::min(low, l.x() * (*set)[0] + l.y() * (*set)[1] + l.z() * (*set)[2]);
-    highest = std::max(highest, low);
+    if (low > highest.height) highest = {low, l};
   };
   for (int k = 0; k < 3; ++k) look_at(Vec3::Unit(k));
   for (size_t a = 0; a < whole.size(); ++a) {

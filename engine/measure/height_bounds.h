@@ -62,7 +62,12 @@ CornerHeights covered_from(const DesignCell& cell, const NearSweep& near, const 
 /// The outside of one face of the box: normal . x >= offset.
 CornerHeights outside_from(const DesignCell& cell, const Vec3& normal, double offset);
 
+struct HighestLeft {
+  double height = kNever;                  ///< mm
+  Vec3 place = Vec3::Constant(1.0 / 3.0);  ///< barycentric: where
+};
+
 /// max over l of min over the sets; kNever without a set that covers every corner.
-double highest_left(const std::vector<CornerHeights>& sets);
+HighestLeft highest_left(const std::vector<CornerHeights>& sets);
 
 }  // namespace swarf::measure

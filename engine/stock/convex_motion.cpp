@@ -45,7 +45,7 @@ struct Bracket {
 }  // namespace
 
 Nearest nearest_instant(const cutter::ConvexPiece& piece, const Vec3& P, const Vec3& D, double t_low,
-                        double t_high) {
+                        double t_high, double gap_mm) {
   Bracket bracket{tangent(piece, P, D, t_low), {}};
   if (bracket.low.slope >= 0.0) return exactly(bracket.low);
   bracket.high = tangent(piece, P, D, t_high);
@@ -53,7 +53,7 @@ Nearest nearest_instant(const cutter::ConvexPiece& piece, const Vec3& P, const V
   double floor = bracket.low.value;
   for (int step = 0; step < kMostSteps; ++step) {
     floor = bracket.low.value + bracket.low.slope * bracket.crossing();
-    if (bracket.least().value - floor <= kNearestGap) break;
+    if (bracket.least().value - floor <= gap_mm) break;
     const double t = bracket.low.t + bracket.step_of(step % 3);
     if (!(t > bracket.low.t && t < bracket.high.t)) {
       if (step % 3 == 2) break;  // no double lies between the ends

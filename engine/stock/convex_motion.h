@@ -17,7 +17,7 @@ namespace swarf::stock {
 struct Nearest {
   double t = 0.0;
   double value = 0.0;  ///< F at t, mm: never below the minimum
-  double floor = 0.0;  ///< mm: never above the minimum; value - floor <= kNearestGap
+  double floor = 0.0;  ///< mm: never above the minimum; value - floor <= the gap asked for
   /// The mean of gradients whose slope along the motion is zero (or points out of the interval at its end),
   /// so F(X) >= floor + normal . (X - X(t)) for every X = X(t') + any offset. Not longer than 1; tool frame.
   Vec3 normal = Vec3::Zero();
@@ -26,8 +26,8 @@ struct Nearest {
 /// mm; about a hundred roundings of coordinates of 100 mm.
 inline constexpr double kNearestGap = 1e-12;
 
-/// Least F over t_low <= t <= t_high.
+/// Least F over t_low <= t <= t_high; value - floor <= gap_mm.
 Nearest nearest_instant(const cutter::ConvexPiece& piece, const Vec3& P, const Vec3& D, double t_low = 0.0,
-                        double t_high = 1.0);
+                        double t_high = 1.0, double gap_mm = kNearestGap);
 
 }  // namespace swarf::stock
