@@ -203,7 +203,7 @@ class RootProof {
       corner.height = low;
       corner.near = n;
     };
-    for (const uint32_t guess : guesses) {
+    for (const uint32_t guess : {guesses[0], guesses[1], between(guesses)}) {
       if (guess < near_.size()) look_at(guess);
     }
     for (size_t i = begin; i < end; ++i) {
@@ -217,6 +217,12 @@ class RootProof {
     if (corner.near != stock::kUncut) corner.height = -own_depth(at, -corner.height);
     note(corner);
     return corner;
+  }
+
+  /// Half way along the path between two sweeps: between their places it is the likeliest to be the lowest.
+  static uint32_t between(const std::array<uint32_t, 2>& sweeps) {
+    return sweeps[0] == stock::kUncut || sweeps[1] == stock::kUncut ? stock::kUncut
+                                                                    : sweeps[0] / 2 + sweeps[1] / 2;
   }
 
   double distance_to_box(const Vec3& p) const {
@@ -393,12 +399,19 @@ class RootProof {
     const CellCorner at = place_in(cell.shape, left.place, root_.bounds);
     double height = left.height;
     uint32_t owner = stock::kUncut;
-    for (size_t i = cell.begin; i < cell.end; ++i) {
-      if (floors_[i] >= height) continue;
-      const double low = lowest(at, near_[kept_[i]], height);
-      if (low >= height) continue;
+    const auto look_at = [&](uint32_t n) {
+      const double low = lowest(at, near_[n], height);
+      if (low >= height) return;
       height = low;
-      owner = kept_[i];
+      owner = n;
+    };
+    for (const uint32_t n : owners_) look_at(n);
+    for (size_t k = 0; k < 3; ++k) {
+      const uint32_t guess = between({cell.corners[k].near, cell.corners[(k + 1) % 3].near});
+      if (guess < near_.size()) look_at(guess);
+    }
+    for (size_t i = cell.begin; i < cell.end; ++i) {
+      if (floors_[i] < height) look_at(kept_[i]);
     }
     return owner;
   }

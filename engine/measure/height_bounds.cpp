@@ -10,6 +10,8 @@ namespace {
 
 /// mm: doubles of coordinates of some metres, a few operations each.
 constexpr double kRounding = 1e-10;
+/// Any tangent bounds: the last digits of the nearest instant are not worth their steps; mm.
+constexpr double kCloseEnough = 1e-7;
 
 /// A function of the work's points that lies below F over a whole sweep: the lesser of two linear ones.
 struct Tangents {
@@ -55,8 +57,6 @@ Tangents face_tangents(const cutter::Face& face, const NearSweep& near, const Ve
 
 Tangents motion_tangents(const cutter::ConvexPiece& piece, const NearSweep& near, const Vec3& at) {
   const Vec3 P = near.map.start(at), D = near.map.end(at) - P;
-  // Any tangent bounds: the last digits of the instant are not worth their steps.
-  constexpr double kCloseEnough = 1e-7;  // mm
   const stock::Nearest nearest = stock::nearest_instant(piece, P, D, 0.0, 1.0, kCloseEnough);
   return {at,
           {nearest.floor, nearest.floor},
@@ -353,7 +353,7 @@ bool stays_above(const CellCorner& corner, const NearSweep& near, double height_
   for (const cutter::ConvexPiece& piece : near.cutter->pieces) {
     // Below the bottom's plane at both ends, on a column that leaves on the tool's side.
     if (X0.z() < piece.low && X1.z() < piece.low && N0.z() >= 0.0 && N1.z() >= 0.0) continue;
-    const stock::Nearest nearest = stock::nearest_instant(piece, X0, X1 - X0);
+    const stock::Nearest nearest = stock::nearest_instant(piece, X0, X1 - X0, 0.0, 1.0, kCloseEnough);
     const bool rises = nearest.normal.dot(N0) > 0.0 || nearest.normal.dot(N1) > 0.0;
     if (nearest.floor <= 0.0 || rises) return false;
   }
