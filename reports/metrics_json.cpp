@@ -119,6 +119,7 @@ Json bound_json(const std::optional<measure::Bound>& bound) {
 Json surface_json(const measure::SurfaceMetrics& surface) {
   return {{"area_mm2", surface.area_mm2},
           {"scallop_max_um", surface.scallop_max_um},
+          {"scallop_bound_um", bound_json(surface.scallop_bound)},
           {"scallop_mean_um", surface.scallop_mean_um},
           {"scallop_p05_um", surface.scallop_p05_um},
           {"scallop_p95_um", surface.scallop_p95_um},

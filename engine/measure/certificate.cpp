@@ -47,14 +47,14 @@ struct Corner {
 
 /// Everything of one root cell, worked on by one task.
 struct RootResult {
-  double gouge = 0.0, excess = 0.0;  ///< bounds, mm
-  Vec3 gouge_at = Vec3::Zero(), excess_at = Vec3::Zero();
+  double gouge = 0.0, excess = 0.0, scallop = 0.0;  ///< bounds, mm
+  Vec3 gouge_at = Vec3::Zero(), excess_at = Vec3::Zero(), scallop_at = Vec3::Zero();
   double gouge_found = 0.0, excess_found = 0.0;  ///< mm
   Vec3 gouge_found_at = Vec3::Zero(), excess_found_at = Vec3::Zero();
   uint32_t gouge_block = stock::kUncut, excess_block = stock::kUncut;
   std::vector<RegionPiece> gouges, excesses;
   struct Open {
-    double depth, height, area;
+    double depth, height, skin, area;
   };
   std::vector<Open> open;
   size_t cells = 0, work = 0;
@@ -113,8 +113,9 @@ class RootProof {
     Vec3 place;  ///< barycentric
     Corner corner;
   };
+  /// Of what stands over the cell: the least height, the height of all, and of what stands on the design.
   struct Bounds {
-    double low, high;
+    double low, high, skin;
   };
 
   void find_sweeps(double reach) {
@@ -211,7 +212,7 @@ class RootProof {
       look_at(kept_[i]);
     }
     // The kept sweeps prove bounds; what counts as found is measured against all of them.
-    if (root_.looks_up && corner.height > excess_target()) {
+    if (root_.looks_up && corner.height > std::min(excess_target(), scallop_target())) {
       for (uint32_t n = 0; n < near_.size(); ++n) look_at(n);
     }
     if (corner.near != stock::kUncut) corner.height = -own_depth(at, -corner.height);
@@ -262,7 +263,13 @@ class RootProof {
     return target(std::max(result_.gouge_found, gouge_goal_), input_.gouge_limit_mm);
   }
   double excess_target() const {
-    return target(std::max(result_.excess_found, excess_goal_), input_.excess_limit_mm);
+    return input_.wants_excess ? target(std::max(result_.excess_found, excess_goal_), input_.excess_limit_mm)
+                               : kNever;
+  }
+  double scallop_target() const {
+    return input_.wants_scallop
+               ? target(std::max(result_.excess_found, excess_goal_), input_.scallop_limit_mm)
+               : kNever;
   }
   /// The bound to reach where `found` was measured: it need not be closer than decides a limit.
   double target(double found, double limit) const {
@@ -347,14 +354,27 @@ class RootProof {
     for (const Corner& corner : cell.corners)
       leave = std::max(leave, leaves_box(input_.stock.box(), corner.at.point, corner.at.normal));
     const double top = std::min(leave + cell.shape.radius(), cell.air);
-    double high = bound_by_sets(cell, top);
-    if (high > excess_target() && asks_grid(cell)) {
+    const double target = excess_target();
+    double high = bound_by_sets(cell, tops_of(cell, top), target);
+    if (high > target && asks_grid(cell)) {
       cell.air = std::min(cell.air, air_above(cell, std::max(leave, 0.0)));
-      high = std::min(cell.air, bound_by_sets(cell, std::min(top, cell.air)));
+      high = std::min(cell.air, bound_by_sets(cell, tops_of(cell, std::min(top, cell.air)), target));
     }
     double range = 0.0;
     for (const Corner& corner : cell.corners) range = std::max(range, corner.range);
     return std::min({high, top, range});
+  }
+
+  /// Of what stands on the design: whatever lies above its first air.
+  double skin_bound(const Cell& cell, double high) {
+    if (!(high > scallop_target())) return high;
+    return std::min(high, bound_by_sets(cell, kNoTop, scallop_target()));
+  }
+
+  static CornerHeights tops_of(const Cell& cell, double top) {
+    CornerHeights tops;
+    for (size_t k = 0; k < 3; ++k) tops[k] = std::min(top, cell.corners[k].range);
+    return tops;
   }
 
   void add_box(const DesignCell& cell) {
@@ -365,17 +385,16 @@ class RootProof {
     }
   }
 
-  double bound_by_sets(const Cell& cell, double top) {
+  /// No closer than `enough`.
+  double bound_by_sets(const Cell& cell, const CornerHeights& tops, double enough) {
     sets_.clear();
     owners_.clear();
     add_box(cell.shape);
-    CornerHeights tops;
-    for (size_t k = 0; k < 3; ++k) tops[k] = std::min(top, cell.corners[k].range);
     for (const Corner& corner : cell.corners) add_owner(cell, corner.near, tops);
     HighestLeft left = highest_left(sets_);
     // Where the bound is highest, the sweep that is lowest there may lower it.
     constexpr size_t kMostOwners = 10;
-    while (left.height > excess_target() && left.height < kNever && owners_.size() < kMostOwners) {
+    while (left.height > enough && left.height < kNever && owners_.size() < kMostOwners) {
       if (!add_owner(cell, owner_at(cell, left), tops)) break;
       const double before = left.height;
       left = highest_left(sets_);
@@ -425,6 +444,10 @@ class RootProof {
       result_.excess = bounds.high;
       result_.excess_at = cell.shape.centroid();
     }
+    if (root_.looks_up && bounds.skin > result_.scallop) {
+      result_.scallop = bounds.skin;
+      result_.scallop_at = cell.shape.centroid();
+    }
     if (!probed) {
       add_pieces(cell.shape, cell.corners, bounds);
       return;
@@ -453,7 +476,7 @@ class RootProof {
   bool on_border(const Bounds& bounds) const {
     const bool gouge = root_.looks_down && -bounds.low > input_.gouge_limit_mm &&
                        !(-bounds.high > input_.gouge_limit_mm) && result_.gouge_found > input_.gouge_limit_mm;
-    const bool excess = root_.looks_up && bounds.high > input_.excess_limit_mm &&
+    const bool excess = root_.looks_up && input_.wants_excess && bounds.high > input_.excess_limit_mm &&
                         !(bounds.low > input_.excess_limit_mm) &&
                         result_.excess_found > input_.excess_limit_mm;
     return gouge || excess;
@@ -483,15 +506,17 @@ class RootProof {
     ++result_.cells;
     result_.work += 1 + cell.end - cell.begin;
     floors_.resize(kept_.size());
-    Bounds bounds{lower_bound(cell), 0.0};
+    Bounds bounds{lower_bound(cell), 0.0, 0.0};
     if (bounds.low == -kNever) bounds.low = -deepest(cell);
     bounds.high = upper_bound(cell);
+    bounds.skin = skin_bound(cell, bounds.high);
     const double edge = cell.shape.longest_edge();
     std::optional<Probe> probed;
     if (root_.looks_down && edge < kProbed && -bounds.low > std::min(gouge_target(), input_.gouge_limit_mm))
       probed = probe(cell);
     const bool gouge_open = root_.looks_down && -bounds.low > gouge_target();
-    const bool excess_open = root_.looks_up && bounds.high > excess_target();
+    const bool excess_open =
+        root_.looks_up && (bounds.high > excess_target() || bounds.skin > scallop_target());
     const bool seen = std::any_of(cell.corners.begin(), cell.corners.end(), [&](const Corner& corner) {
       return -corner.height > input_.gouge_limit_mm || corner.height > input_.excess_limit_mm;
     });
@@ -500,7 +525,7 @@ class RootProof {
                         (is_coarse(bounds) && edge > 2.0 * kBorder);
     if (!divide || result_.work > budget_) {
       if (gouge_open || excess_open)
-        result_.open.push_back({-bounds.low, bounds.high, cell.shape.area_mm2()});
+        result_.open.push_back({-bounds.low, bounds.high, bounds.skin, cell.shape.area_mm2()});
       close(cell, bounds, probed);
       return;
     }
@@ -562,6 +587,8 @@ void join(RootResult& part, Certificate& whole, std::vector<RegionPiece>& gouges
           std::vector<RegionPiece>& excesses) {
   if (um_from_mm(part.gouge) > whole.gouge.um) whole.gouge = {um_from_mm(part.gouge), part.gouge_at};
   if (um_from_mm(part.excess) > whole.excess.um) whole.excess = {um_from_mm(part.excess), part.excess_at};
+  if (um_from_mm(part.scallop) > whole.scallop.um)
+    whole.scallop = {um_from_mm(part.scallop), part.scallop_at};
   if (um_from_mm(part.gouge_found) > whole.gouge_found_um) {
     whole.gouge_found_um = um_from_mm(part.gouge_found);
     whole.gouge_place = part.gouge_found_at;
@@ -602,13 +629,16 @@ Certificate certify(const CertificateInput& input) {
   Certificate whole;
   std::vector<RegionPiece> gouges, excesses;
   for (RootResult& part : parts) join(part, whole, gouges, excesses);
-  const double gouge_settled =
-      std::max(whole.gouge_found_um * kMicrometre * (1.0 + kGapShare) + kGap, input.gouge_limit_mm);
-  const double excess_settled =
-      std::max(whole.excess_found_um * kMicrometre * (1.0 + kGapShare) + kGap, input.excess_limit_mm);
+  const auto settled = [](bool wanted, double found_um, double limit_mm) {
+    return wanted ? std::max(found_um * kMicrometre * (1.0 + kGapShare) + kGap, limit_mm) : kNever;
+  };
+  const double gouge_settled = settled(true, whole.gouge_found_um, input.gouge_limit_mm);
+  const double excess_settled = settled(input.wants_excess, whole.excess_found_um, input.excess_limit_mm);
+  const double scallop_settled = settled(input.wants_scallop, whole.excess_found_um, input.scallop_limit_mm);
   for (const RootResult& part : parts) {
     for (const RootResult::Open& open : part.open) {
-      if (open.depth <= gouge_settled && open.height <= excess_settled) continue;
+      if (open.depth <= gouge_settled && open.height <= excess_settled && open.skin <= scallop_settled)
+        continue;
       whole.open_area_mm2 += open.area;
       ++whole.open_cells;
     }
@@ -617,6 +647,7 @@ Certificate certify(const CertificateInput& input) {
   const double untold_um = um_from_mm(input.sweep_bound_mm + kTouch);
   whole.gouge.um = std::max(whole.gouge.um, whole.gouge_found_um) + untold_um;
   whole.excess.um = std::max(whole.excess.um, whole.excess_found_um) + untold_um;
+  whole.scallop.um = std::max(whole.scallop.um, whole.excess_found_um) + untold_um;
   whole.gouges = join_pieces(gouges);
   whole.excesses = join_pieces(excesses);
   return whole;

@@ -35,6 +35,9 @@ struct CertificateInput {
   double stock_bound_mm = 0.0;    ///< how far the sweeps that cut it stray from the motion
   double gouge_limit_mm = 0.001;  ///< deeper places are listed
   double excess_limit_mm = 0.01;  ///< higher places are listed
+  /// Which of the bounds from above are to be made close; those that are not asked for stay as they come.
+  bool wants_excess = true, wants_scallop = false;
+  double scallop_limit_mm = 0.01;
   double gouge_known_mm = 0.0, excess_known_mm = 0.0;  ///< what the rays have found: where to begin
   Progress& progress;                                  ///< advanced from progress_from by 1; may ask to stop
   double progress_from = 0.0;
@@ -42,6 +45,7 @@ struct CertificateInput {
 
 struct Certificate {
   Bound gouge, excess;
+  Bound scallop;  ///< of what stands on the design itself, below the first air over it: never above excess
   /// Deepest cut and highest material that were measured, at a corner of some cell; um, >= 0.
   double gouge_found_um = 0.0, excess_found_um = 0.0;
   Vec3 gouge_place = Vec3::Zero(), excess_place = Vec3::Zero();

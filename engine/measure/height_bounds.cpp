@@ -259,7 +259,8 @@ CornerHeights covered_lines(const DesignCell& cell, const cutter::ConvexPiece& p
   for (size_t k = 0; k < 3; ++k) {
     const double high = std::max(tops[k], from[k]);
     const double margin = aside + cell.flatness_mm + std::abs(high) * cell.turn;
-    if (slope_on(piece, lines[k], high).value > kTouch - margin) return {kNever, kNever, kNever};
+    if (high > from[k] && slope_on(piece, lines[k], high).value > kTouch - margin)
+      return {kNever, kNever, kNever};
     heights[k] = entry(piece, lines[k], from[k], cell, aside);
     if (heights[k] == kNever) return {kNever, kNever, kNever};
   }
@@ -294,7 +295,7 @@ double twist_of(const DesignCell& cell, const NearSweep& near, const CornerInsta
   if (!near.turns) return 0.0;
   const Mat3 turn = near.map.R1t - near.map.R0t;
   double farthest = 0.0;
-  for (size_t k = 0; k < 3; ++k) farthest = std::max({farthest, std::abs(from[k]), std::abs(tops[k])});
+  for (size_t k = 0; k < 3; ++k) farthest = std::max({farthest, std::abs(from[k]), tops[k]});
   std::array<double, 3> strays{};
   for (size_t k = 0; k < 3; ++k) {
     const size_t j = (k + 1) % 3;

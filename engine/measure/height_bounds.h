@@ -55,7 +55,9 @@ bool stays_above(const CellCorner& corner, const NearSweep& near, double height_
 using CornerHeights = std::array<double, 3>;
 
 /// What one piece of the sweep is known to cover. `from`: heights from which to look, below the answer;
-/// `tops`: the columns are covered from the answer up to here.
+/// `tops`: the columns are covered from the answer up to here; with kNoTop at the answer, no matter what
+/// stands above.
+inline constexpr CornerHeights kNoTop{-kNever, -kNever, -kNever};
 CornerHeights covered_from(const DesignCell& cell, const NearSweep& near, const cutter::ConvexPiece& piece,
                            const CornerHeights& from, const CornerHeights& tops);
 

@@ -53,8 +53,9 @@ struct SurfaceMetrics {
   double excess_max_um = 0.0;  ///< highest material anywhere: uncut, or left above an undercut, included
   uint32_t excess_block = 0xffffffffu;
   double within_tolerance_pct = 0.0;  ///< share of the area between -gouge limit and +scallop limit
-  /// None: not proven (no design, or the proof was not asked for). Never below gouge_max_um, excess_max_um.
-  std::optional<Bound> gouge_bound, excess_bound;
+  /// None: not proven (no design, or the proof was not asked for). Never below gouge_max_um, excess_max_um,
+  /// scallop_max_um. The scallop's is of all that stands on the design below the first air over it.
+  std::optional<Bound> gouge_bound, excess_bound, scallop_bound;
   double unmeasured_area_mm2 = 0.0;  ///< of the design, that neither rays nor the proof have looked at
   size_t uncut_samples = 0;
   size_t overhung_samples = 0;                   ///< rays with material above a gap

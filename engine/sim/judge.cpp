@@ -98,9 +98,8 @@ void add_surface_checks(const Job& job, const Result& result, std::vector<Check>
   checks.push_back(measured("gouge", gouge, accept.gouge_max_um, surface.gouge_max_um, surface.gouge_bound));
   checks.push_back(
       measured("excess", excess, accept.excess_max_um, surface.excess_max_um, surface.excess_bound));
-  // Ridges are excess: what bounds the one bounds the other.
   checks.push_back(
-      measured("scallop", scallop, accept.scallop_max_um, surface.scallop_max_um, surface.excess_bound));
+      measured("scallop", scallop, accept.scallop_max_um, surface.scallop_max_um, surface.scallop_bound));
   checks.push_back(reached_check(job, surface));
 }
 

@@ -27,6 +27,7 @@ void settle(double& value_um, uint32_t& block, double found_um, uint32_t found_b
 void take_over(const measure::Certificate& proof, measure::SurfaceMetrics& surface) {
   raise(surface.gouge_bound, proof.gouge);
   raise(surface.excess_bound, proof.excess);
+  raise(surface.scallop_bound, proof.scallop);
   surface.unmeasured_area_mm2 += proof.open_area_mm2;
   surface.gouges.insert(surface.gouges.end(), proof.gouges.begin(), proof.gouges.end());
   surface.excesses.insert(surface.excesses.end(), proof.excesses.begin(), proof.excesses.end());
@@ -61,12 +62,23 @@ void prove_part(const Job& job, Progress& progress, Result& result) {
   surface.excesses.clear();
   measure::Certificate worst;
   for (size_t i = 0; i < fields.size() && !progress.stop_requested(); ++i) {
-    const measure::Certificate proof =
-        measure::certify({*fields[i], ranges, main.rays.sweeps, cutters, main.rays.error_bound_mm,
-                          *result.stock, result.sweep_bound_mm, accept.gouge_band_um() * kMicrometre,
-                          accept.excess_max_um.value_or(accept.scallop_band_um()) * kMicrometre,
-                          surface.gouge_max_um * kMicrometre, surface.excess_max_um * kMicrometre, progress,
-                          static_cast<double>(i)});
+    const measure::Certificate proof = measure::certify(
+        {.field = *fields[i],
+         .ranges = ranges,
+         .sweeps = main.rays.sweeps,
+         .cutters = cutters,
+         .sweep_bound_mm = main.rays.error_bound_mm,
+         .stock = *result.stock,
+         .stock_bound_mm = result.sweep_bound_mm,
+         .gouge_limit_mm = accept.gouge_band_um() * kMicrometre,
+         .excess_limit_mm = accept.excess_max_um.value_or(accept.scallop_band_um()) * kMicrometre,
+         .wants_excess = accept.excess_max_um.has_value(),
+         .wants_scallop = accept.scallop_max_um.has_value(),
+         .scallop_limit_mm = accept.scallop_band_um() * kMicrometre,
+         .gouge_known_mm = surface.gouge_max_um * kMicrometre,
+         .excess_known_mm = surface.excess_max_um * kMicrometre,
+         .progress = progress,
+         .progress_from = static_cast<double>(i)});
     take_over(proof, surface);
     if (proof.gouge_found_um > worst.gouge_found_um) {
       worst.gouge_found_um = proof.gouge_found_um;
@@ -81,6 +93,7 @@ void prove_part(const Job& job, Progress& progress, Result& result) {
     // Half a proof is none.
     surface.gouge_bound.reset();
     surface.excess_bound.reset();
+    surface.scallop_bound.reset();
   } else {
     settle(surface.gouge_max_um, surface.gouge_block, worst.gouge_found_um, worst.gouge_block,
            *surface.gouge_bound);

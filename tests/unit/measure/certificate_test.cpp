@@ -42,7 +42,7 @@ Certificate prove(const Job& job, double voxel_mm = 0.5) {
   for (const double height : dexels.heights_mm()) known = std::max(known, height);
   Progress progress;
   return certify({*job.field, ranges, job.sweeps, cutters, 0.0, stock, 0.0, job.gouge_limit_mm,
-                  job.excess_limit_mm, 0.0, known, progress});
+                  job.excess_limit_mm, true, true, job.excess_limit_mm, 0.0, known, progress});
 }
 
 surface::SurfacePtr plane(double length, double width) {
