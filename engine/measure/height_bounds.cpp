@@ -25,25 +25,49 @@ struct Root {
   size_t corner = 0;        ///< where it is that low
 };
 
-/// Height below which `tangents` stays above the cell's margin, as far down as the depths.
-Root root_of(const DesignCell& cell, const Tangents& tangents, const std::array<double, 3>& depths_mm) {
-  Root least{kNever, 0};
+/// A flat cell under a tangent that falls along its columns: the depth that may be cut is linear over the
+/// cell, as its own depth is bounded by linear functions, and the least of them counts at each place.
+std::optional<Root> root_of_flat(const DesignCell& cell, const Tangents& tangents, size_t end,
+                                 const ColumnDepths& depths) {
+  if (depths.own.empty()) return std::nullopt;
+  std::vector<CornerHeights> bounds = depths.own;
+  CornerHeights cut{};
   for (size_t k = 0; k < 3; ++k) {
     const CellCorner& corner = cell.corners[k];
-    for (int j = 0; j < 2; ++j) {
-      // value + slope . (p + s n - at) - flatness - |s| turn: which branch of |s| holds the root, the sign
-      // at s = 0 tells.
-      const double base = tangents.value[j] + tangents.slope[j].dot(corner.point - tangents.at) -
-                          cell.flatness_mm - kRounding;
-      const double rise = tangents.slope[j].dot(corner.normal);
-      if (base + kTouch - depths_mm[k] * (rise + cell.turn) < 0.0) return {-kNever, k};
-      const double falls = base < 0.0 ? rise + cell.turn : rise - cell.turn;
-      if (!(falls < 0.0)) continue;
-      const double height = std::max(-depths_mm[k], -base / falls);
-      if (height < least.height) least = {height, k};
-    }
+    const double base = tangents.value[end] + tangents.slope[end].dot(corner.point - tangents.at) - kRounding;
+    const double rise = tangents.slope[end].dot(corner.normal);
+    if (!(rise < 0.0)) return std::nullopt;
+    cut[k] = base / rise;
+  }
+  bounds.push_back(cut);
+  return Root{-highest_left(bounds).height,
+              static_cast<size_t>(std::max_element(cut.begin(), cut.end()) - cut.begin())};
+}
+
+/// Of one end of the motion.
+Root root_of(const DesignCell& cell, const Tangents& tangents, size_t end, const ColumnDepths& depths) {
+  if (const auto flat = root_of_flat(cell, tangents, end, depths)) return *flat;
+  Root least{kNever, 0};
+  for (size_t k = 0; k < 3; ++k) {
+    // value + slope . (p + s n - at) - flatness - |s| turn: which branch of |s| holds the root, the sign at
+    // s = 0 tells.
+    const CellCorner& corner = cell.corners[k];
+    const double base = tangents.value[end] + tangents.slope[end].dot(corner.point - tangents.at) -
+                        cell.flatness_mm - kRounding;
+    const double rise = tangents.slope[end].dot(corner.normal);
+    if (base + kTouch - depths.seen[k] * (rise + cell.turn) < 0.0) return {-kNever, k};
+    const double falls = base < 0.0 ? rise + cell.turn : rise - cell.turn;
+    if (!(falls < 0.0)) continue;
+    const double height = std::max(-depths.seen[k], -base / falls);
+    if (height < least.height) least = {height, k};
   }
   return least;
+}
+
+/// Height below which `tangents` stays above the cell's margin, as far down as the depths.
+Root root_of(const DesignCell& cell, const Tangents& tangents, const ColumnDepths& depths) {
+  const Root start = root_of(cell, tangents, 0, depths), end = root_of(cell, tangents, 1, depths);
+  return end.height < start.height ? end : start;
 }
 
 Tangents face_tangents(const cutter::Face& face, const NearSweep& near, const Vec3& at) {
@@ -115,13 +139,15 @@ Tangents touching_plane(const cutter::ConvexPiece& piece, const NearSweep& near,
           {near.map.R0t.transpose() * down, near.map.R1t.transpose() * down}};
 }
 
-/// `down` with its sideways part turned to where the place stands about the cutter's axis: the plane that
-/// touches the rim there, as square to the cell as it can be.
+/// `down` with its sideways part turned to where the place stands about the cutter's axis as the axis is
+/// nearest: the plane that touches the rim, or the flank, there, as square to the cell as it can be.
 std::optional<Vec3> toward_rim(const NearSweep& near, const Vec3& at, const Vec3& down) {
-  const Vec3 X = 0.5 * (near.map.start(at) + near.map.end(at));
-  const double rho = X.head<2>().norm();
+  const Vec2 P = near.map.start(at).head<2>(), D = near.map.end(at).head<2>() - P;
+  const double t = D.squaredNorm() > 0.0 ? std::clamp(-P.dot(D) / D.squaredNorm(), 0.0, 1.0) : 0.0;
+  const Vec2 X = P + t * D;
+  const double rho = X.norm();
   if (!(rho > 0.0)) return std::nullopt;
-  const Vec2 radial = X.head<2>() / rho;
+  const Vec2 radial = X / rho;
   const double sideways = std::max(0.0, radial.dot(down.head<2>()));
   const Vec3 turned(sideways * radial.x(), sideways * radial.y(), down.z());
   return turned.norm() > 0.0 ? std::optional<Vec3>(turned.normalized()) : std::nullopt;
@@ -130,42 +156,42 @@ std::optional<Vec3> toward_rim(const NearSweep& near, const Vec3& at, const Vec3
 /// The tangents at the place of the cell that the piece comes nearest to: from the centroid toward the corner
 /// that looks lowest from there, as far as the distance falls.
 double height_by_motion(const DesignCell& cell, const NearSweep& near, const cutter::ConvexPiece& piece,
-                        const std::array<double, 3>& depths_mm, double enough) {
+                        const ColumnDepths& depths, double enough) {
   const Vec3 centre = cell.centroid();
   const Tangents first = motion_tangents(piece, near, centre);
-  const Root from_centre = root_of(cell, first, depths_mm);
+  const Root from_centre = root_of(cell, first, depths);
   if (from_centre.height > enough || cell.flatness_mm > -enough) return from_centre.height;
   const Vec3 way = cell.corners[from_centre.corner].point - centre;
   const Tangents second = motion_tangents(piece, near, centre + way);
-  double best = std::max(from_centre.height, root_of(cell, second, depths_mm).height);
+  double best = std::max(from_centre.height, root_of(cell, second, depths).height);
   const double falls = first.slope[0].dot(way), rises = second.slope[0].dot(way);
   if (best > enough || !(falls < 0.0 && rises > 0.0)) return best;
   const double share = (second.value[0] - rises - first.value[0]) / (falls - rises);
   if (!(share > 0.0 && share < 1.0)) return best;
   const Tangents between = motion_tangents(piece, near, centre + share * way);
-  return std::max(best, root_of(cell, between, depths_mm).height);
+  return std::max(best, root_of(cell, between, depths).height);
 }
 
 double least_height(const DesignCell& cell, const NearSweep& near, const cutter::ConvexPiece& piece,
-                    const std::array<double, 3>& depths_mm, double enough) {
+                    const ColumnDepths& depths, double enough) {
   const Vec3 centre = cell.centroid(), normal = cell.mean_normal();
   double best = -kNever;
   for (const cutter::Face& face : piece.faces) {
     if (face.normal.x() == 0.0)
-      best = std::max(best, root_of(cell, face_tangents(face, near, centre), depths_mm).height);
+      best = std::max(best, root_of(cell, face_tangents(face, near, centre), depths).height);
   }
   if (best > enough && best < kNever) return best;
-  best = std::max(best, height_by_motion(cell, near, piece, depths_mm, enough));
+  best = std::max(best, height_by_motion(cell, near, piece, depths, enough));
   if (best > enough) return best;
   // A rim has no tangent of its own: there its lowest point counts, and the point that is nearest.
   const Vec3 down = -(near.map.R0t * normal);
-  best = std::max(best, root_of(cell, touching_plane(piece, near, centre, down), depths_mm).height);
+  best = std::max(best, root_of(cell, touching_plane(piece, near, centre, down), depths).height);
   if (best > enough) return best;
   if (const auto rim = toward_rim(near, centre, down))
-    best = std::max(best, root_of(cell, touching_plane(piece, near, centre, *rim), depths_mm).height);
+    best = std::max(best, root_of(cell, touching_plane(piece, near, centre, *rim), depths).height);
   if (best > enough) return best;
   const Vec3 below = centre - cell.radius() * normal;
-  return std::max(best, root_of(cell, motion_tangents(piece, near, below), depths_mm).height);
+  return std::max(best, root_of(cell, motion_tangents(piece, near, below), depths).height);
 }
 
 /// The part of the motion between two instants, as a sweep of its own.
@@ -184,16 +210,16 @@ NearSweep slice_of(const NearSweep& near, double from, double to) {
 /// As the cutter turns, one tangent loses up to turn * radius of the cell: the motion is halved until that is
 /// little, where more is asked for.
 double least_height_in_slices(const DesignCell& cell, const NearSweep& near, const cutter::ConvexPiece& piece,
-                              const std::array<double, 3>& depths_mm, double enough) {
+                              const ColumnDepths& depths, double enough) {
   constexpr double kLittle = 1e-5;  // mm
-  const double best = least_height(cell, near, piece, depths_mm, enough);
+  const double best = least_height(cell, near, piece, depths, enough);
   if (!near.turns || best > enough) return best;
   const double lost = (near.map.R1t - near.map.R0t).norm() * cell.radius();
   if (lost < kLittle || cell.flatness_mm > -enough || (best > -kNever && best + 2.0 * lost < enough))
     return best;
-  const double first = least_height_in_slices(cell, slice_of(near, 0.0, 0.5), piece, depths_mm, enough);
+  const double first = least_height_in_slices(cell, slice_of(near, 0.0, 0.5), piece, depths, enough);
   if (first <= best) return best;
-  const double second = least_height_in_slices(cell, slice_of(near, 0.5, 1.0), piece, depths_mm, enough);
+  const double second = least_height_in_slices(cell, slice_of(near, 0.5, 1.0), piece, depths, enough);
   return std::max(best, std::min(first, second));
 }
 
@@ -309,11 +335,11 @@ double twist_of(const DesignCell& cell, const NearSweep& near, const CornerInsta
 
 }  // namespace
 
-double least_height(const DesignCell& cell, const NearSweep& near, const std::array<double, 3>& depths_mm,
+double least_height(const DesignCell& cell, const NearSweep& near, const ColumnDepths& depths,
                     double enough) {
   double least = kNever;
   for (const cutter::ConvexPiece& piece : near.cutter->pieces) {
-    least = std::min(least, least_height_in_slices(cell, near, piece, depths_mm, enough));
+    least = std::min(least, least_height_in_slices(cell, near, piece, depths, enough));
     if (least == -kNever) break;
   }
   return least;

@@ -38,10 +38,20 @@ struct NearSweep {
 /// face of the design, a bottom that runs along its edge; mm.
 inline constexpr double kTouch = 1e-6;
 
-/// Height in mm below which the sweep cuts nothing of the cell's columns, each down to its own depth (>= 0)
-/// under the design; -infinity when that cannot be told. A bound above `enough` is not made any closer.
-double least_height(const DesignCell& cell, const NearSweep& near, const std::array<double, 3>& depths_mm,
-                    double enough);
+/// Heights, or depths, at the corners of a cell that stand for a linear function over it; mm.
+using CornerHeights = std::array<double, 3>;
+
+/// How deep under the design a cut of the cell's columns counts.
+struct ColumnDepths {
+  /// At each corner: down to there a cut is looked for; mm, >= 0.
+  CornerHeights seen{};
+  /// Of a flat cell: bounds of what is its own (RayField::own_depth) over all of it. May be empty.
+  std::vector<CornerHeights> own;
+};
+
+/// Height in mm below which the sweep cuts nothing of the cell's columns, each down to its own depth under
+/// the design; -infinity when that cannot be told. A bound above `enough` is not made any closer.
+double least_height(const DesignCell& cell, const NearSweep& near, const ColumnDepths& depths, double enough);
 
 /// Where over the cell the sweep cuts deepest, as a place (barycentric) to be measured: the piece's lowest
 /// point at the instant that brings the cell's middle nearest. Only a good guess; nothing when it lies beside
@@ -51,10 +61,8 @@ std::optional<Vec3> deepest_place(const DesignCell& cell, const NearSweep& near)
 /// True when the sweep certainly cuts the column of the place at `height_mm` or above only, or not at all.
 bool stays_above(const CellCorner& corner, const NearSweep& near, double height_mm);
 
-/// Heights from which on a set without material covers the columns of the corners; kNever: it does not.
-using CornerHeights = std::array<double, 3>;
-
-/// What one piece of the sweep is known to cover. `from`: heights from which to look, below the answer;
+/// What one piece of the sweep is known to cover: heights from which on the columns of the corners are free;
+/// kNever: it does not. `from`: heights from which to look, below the answer;
 /// `tops`: the columns are covered from the answer up to here; with kNoTop at the answer, no matter what
 /// stands above.
 inline constexpr CornerHeights kNoTop{-kNever, -kNever, -kNever};

@@ -12,10 +12,9 @@ namespace swarf::stock {
 namespace {
 
 constexpr size_t kTilesPerTask = 8;
-const double kSine = std::sin(kPi / 12.0);  ///< of the least angle under which a wall is seen
 /// Normals of a foot and of the wall that limits it differ by twice that angle; |n - m| then is at least
 /// this.
-const double kApart = 2.0 * kSine;
+const double kApart = 2.0 * kLeastWallSine;
 constexpr double kFarthest = std::numeric_limits<double>::infinity();
 
 /// Feet of one tile, or of a branch of tiles, with a box and a cone around them.
@@ -77,16 +76,16 @@ class DesignTree {
   }
 
   /// The range of one ray; `open` is working space.
-  double range(const Vec3& p, const Vec3& n, std::vector<uint32_t>& open) const {
-    double range = kFarthest;
+  FreeRange::Range range(const Vec3& p, const Vec3& n, std::vector<uint32_t>& open) const {
+    FreeRange::Range range{kFarthest, p};
     open.assign(1, 0);
     while (!open.empty()) {
       const uint32_t index = open.back();
       const Node& node = nodes_[index];
       open.pop_back();
-      if (alike(n, 0.0, node) || least_radius(p, n, node) >= range) continue;
+      if (alike(n, 0.0, node) || least_radius(p, n, node) >= range.mm) continue;
       if (node.right == 0) {
-        range = std::min(range, range_to(p, n, node));
+        limit_by(p, n, node, range);
         continue;
       }
       const bool right_first = least_radius(p, n, nodes_[node.right]) < least_radius(p, n, nodes_[index + 1]);
@@ -102,17 +101,17 @@ class DesignTree {
     return (node.normal - normal).norm() + node.spread + spread < kApart;
   }
 
-  double range_to(const Vec3& p, const Vec3& n, const Node& leaf) const {
+  void limit_by(const Vec3& p, const Vec3& n, const Node& leaf, FreeRange::Range& range) const {
     const RayField& field = *fields_[leaf.field];
     const RayTile& tile = field.tiles[leaf.tile];
-    double range = kFarthest;
     for (uint32_t i = tile.begin; i < tile.begin + tile.count; ++i) {
-      const Vec3 offset = field.points[field.order[i]] - p;
+      const Vec3& wall = field.points[field.order[i]];
+      const Vec3 offset = wall - p;
       const double along = n.dot(offset), distance2 = offset.squaredNorm();
-      if (along <= 0.0 || along * along <= kSine * kSine * distance2) continue;
-      range = std::min(range, distance2 / (2.0 * along));
+      if (along <= 0.0 || along * along <= kLeastWallSine * kLeastWallSine * distance2) continue;
+      const double radius = distance2 / (2.0 * along);
+      if (radius < range.mm) range = {radius, wall};
     }
-    return range;
   }
 
   /// False when no point of `node` lies above the tangent plane of any foot of the tile.
@@ -164,7 +163,7 @@ FreeRange::FreeRange(std::span<const RayFieldPtr> fields)
 FreeRange::~FreeRange() = default;
 FreeRange::FreeRange(FreeRange&&) noexcept = default;
 
-double FreeRange::operator()(const Vec3& point, const Vec3& normal) const {
+FreeRange::Range FreeRange::operator()(const Vec3& point, const Vec3& normal) const {
   std::vector<uint32_t> open;
   return tree_->range(point, normal, open);
 }
@@ -180,7 +179,7 @@ std::vector<double> free_ranges(std::span<const RayFieldPtr> fields, size_t whic
       if (!tree.has_walls(leaf_of(field, static_cast<uint32_t>(which), static_cast<uint32_t>(t)))) continue;
       for (uint32_t i = tile.begin; i < tile.begin + tile.count; ++i) {
         const uint32_t ray = field.order[i];
-        const double range = tree.range(field.points[ray], field.normals[ray], open);
+        const double range = tree.range(field.points[ray], field.normals[ray], open).mm;
         ranges[ray] = range < 0.5 * field.pitch_mm ? 0.0 : range;
       }
     }

@@ -9,6 +9,9 @@
 
 namespace swarf::stock {
 
+/// Points that a place sees under less than 15 degrees are no walls to it.
+inline constexpr double kLeastWallSine = 0.25881904510252074;
+
 /// Per ray of fields[which] the height up to which its foot is the nearest point of the whole design: the
 /// radius of the ball that touches the design at the foot from outside and holds none of it (the medial
 /// ball),
@@ -23,10 +26,15 @@ std::vector<double> free_ranges(std::span<const RayFieldPtr> fields, size_t whic
 /// about the pitch like that of the rays.
 class FreeRange {
  public:
+  struct Range {
+    double mm;  ///< +infinity: nothing limits it
+    Vec3 wall;  ///< the point of the design that does
+  };
+
   explicit FreeRange(std::span<const RayFieldPtr> fields);
   ~FreeRange();
   FreeRange(FreeRange&&) noexcept;
-  double operator()(const Vec3& point, const Vec3& normal) const;
+  Range operator()(const Vec3& point, const Vec3& normal) const;
 
  private:
   std::vector<RayFieldPtr> fields_;

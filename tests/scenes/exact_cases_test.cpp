@@ -62,14 +62,20 @@ TEST_F(HyperboloidRun, RendersExportsAndComparesFromItsFolder) {
 TEST(ExactCases, AGougeNamesTheBlockOfTheClFile) {
   // The design set 10 um outwards (a greater distance of the tool's axis): the tool cuts 10 um into it.
   const fs::path folder = swarf::test::fresh_folder("hyperboloid_gouge") / "run";
-  const auto run =
-      run_swarf("run " + kFolder + "scene.toml --no-render -o " + folder.string() +
-                " --set design.distance_mm=30.01 --set stock.voxel_mm=1 --set design.pitch_mm=2");
-  EXPECT_EQ(run.exit_code, 0) << run.output;
-  const json metrics = read_json(folder / "metrics.json");
-  ASSERT_FALSE(metrics.at("gouges").empty());
-  EXPECT_GE(metrics.at("gouges")[0].at("line").get<int>(), 42);
-  EXPECT_LE(metrics.at("gouges")[0].at("line").get<int>(), 65);
+  const auto run = run_swarf("run " + kFolder + "scene.toml --no-render -o " + folder.string() +
+                             " --set design.distance_mm=30.01 --set stock.voxel_mm=1 --set design.pitch_mm=2"
+                             " --set accept.gouge_max_um=9 --set 'design.z_mm=[-1,1]'");
+  EXPECT_EQ(run.exit_code, 1) << run.output;
+  bool named = false;
+  for (const json& finding : read_json(folder / "findings.json")) {
+    if (finding.at("code") != "gouge") continue;
+    named = true;
+    EXPECT_NE(finding.at("file").get<std::string>().find("path.cl"), std::string::npos);
+    EXPECT_GE(finding.at("line").get<int>(), 42);
+    EXPECT_LE(finding.at("line").get<int>(), 65);
+    EXPECT_GT(finding.at("t_s").get<double>(), 0.0);
+  }
+  EXPECT_TRUE(named) << run.output;
   EXPECT_NEAR(at_path(read_json(folder / "metrics.json"), "surface.gouge_max_um").get<double>(), 10.0, 0.1);
   fs::remove_all(folder.parent_path());
 }

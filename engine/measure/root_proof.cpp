@@ -1,0 +1,597 @@
+#include "measure/root_proof.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "measure/column_range.h"
+#include "measure/height_bounds.h"
+#include "mesh/mesh_distance.h"
+#include "stock/ray_height.h"
+
+namespace swarf::measure {
+namespace {
+
+/// Cells on the border of a gouge or of material left standing are divided down to this; mm.
+constexpr double kBorder = 0.01;
+/// In cells smaller than this the deepest place of the lowest sweep is measured too; mm.
+constexpr double kProbed = 0.1;
+/// Where another face is as near need not be known closer than this, of itself.
+constexpr double kShareOfRange = 1e-3;
+/// No cell is divided below this; mm.
+constexpr double kSmallest = 1e-3;
+/// Sweeps are first looked for up to this height over the design, mm; where more is left, up to the box's
+/// top.
+constexpr double kNearHeight = 1.0;
+
+struct Corner {
+  CellCorner at;
+  double range = 0.0;             ///< where another face is as near, mm
+  std::optional<Vec3> wall;       ///< a place of that face
+  std::optional<uint32_t> facet;  ///< of a mesh, that lies there
+  double top = 0.0;               ///< there, or where the column leaves the stock's box, mm
+  double depth = 0.0;             ///< down to which a cut would count that leaves the skin standing, mm
+  double height = 0.0;            ///< that the sweeps leave standing, mm
+  uint32_t near = stock::kUncut;  ///< index into the root's sweeps
+};
+
+class RootProof {
+ public:
+  RootProof(const CertificateInput& input, const SweepIndex& index, const RootCell& root, size_t budget)
+      : input_(input), index_(index), root_(root), budget_(budget) {}
+
+  RootResult prove() {
+    const double near = 2.0 * std::min(input_.excess_known_mm, input_.excess_limit_mm) + kNearHeight;
+    for (const double reach : {near, kNever}) {
+      result_ = {};
+      highest_seen_ = 0.0;
+      floors_.clear();
+      find_sweeps(reach);
+      gouge_goal_ = std::min(input_.gouge_known_mm, input_.gouge_limit_mm);
+      excess_goal_ = std::min(input_.excess_known_mm, input_.excess_limit_mm);
+      const auto& c = root_.cell.corners;
+      kept_.resize(near_.size());
+      for (uint32_t n = 0; n < kept_.size(); ++n) kept_[n] = n;
+      std::array<Corner, 3> corners;
+      for (size_t k = 0; k < 3; ++k) corners[k] = measured({c[k]}, 0, kept_.size(), {});
+      visit({root_.cell, corners, 0, kept_.size(), kNever, kNever});
+      if (highest_seen_ < reach) break;
+    }
+    return std::move(result_);
+  }
+
+ private:
+  struct Cell {
+    DesignCell shape;
+    std::array<Corner, 3> corners;
+    size_t begin, end;        ///< of kept_: the sweeps that may matter
+    double dropped = kNever;  ///< least height of those that do not
+    double air = kNever;      ///< above it the stock is air, as the grid tells for this cell or one around it
+  };
+  /// A place inside a cell that was measured besides its corners.
+  struct Probe {
+    Vec3 place;  ///< barycentric
+    Corner corner;
+  };
+  /// Of what stands over the cell: the least height, the height of all, and of what stands on the design.
+  struct Bounds {
+    double low, high, skin;
+  };
+
+  void find_sweeps(double reach) {
+    Box box{Vec3::Constant(kNever), Vec3::Constant(-kNever)};
+    const double margin = root_.cell.flatness_mm + root_.cell.radius() * 1e-3;
+    for (const CellCorner& corner : root_.cell.corners) {
+      const double top = std::min(reach, std::max(0.0, top_of(corner)));
+      for (const double s : {-stock::kSkin, top}) {
+        const double turn = std::min(2.0, root_.cell.turn) * std::abs(s) + margin;
+        box.lower = box.lower.cwiseMin(corner.point + s * corner.normal - Vec3::Constant(turn));
+        box.upper = box.upper.cwiseMax(corner.point + s * corner.normal + Vec3::Constant(turn));
+      }
+    }
+    std::vector<uint32_t> found;
+    index_.find(box, found);
+    const Vec3 centre = 0.5 * (box.lower + box.upper);
+    const double around = 0.5 * (box.upper - box.lower).norm();
+    near_.clear();
+    for (const uint32_t n : found) {
+      if (passes_above(n, reach) || passes_aside(n, centre, around)) continue;
+      const stock::Sweep& sweep = input_.sweeps[n];
+      near_.push_back(
+          {stock::sweep_map(sweep), &input_.cutters[n], n, sweep.start.axis_W != sweep.end.axis_W});
+    }
+  }
+
+  /// The cutter, a cylinder around it at most, keeps farther from a ball than it moves.
+  bool passes_aside(uint32_t n, const Vec3& centre, double radius) const {
+    const stock::Sweep& sweep = input_.sweeps[n];
+    const stock::CutterSolid& cutter = input_.cutters[n];
+    const Vec3 offset = centre - sweep.start.tip_W;
+    const double z = sweep.start.axis_W.dot(offset);
+    const double rho = std::sqrt(std::max(0.0, offset.squaredNorm() - z * z));
+    const double travel = (sweep.end.tip_W - sweep.start.tip_W).norm() +
+                          (sweep.end.axis_W - sweep.start.axis_W).norm() * offset.norm();
+    return std::max(rho - cutter.radius, z - cutter.height) > radius + travel + 1e-6;
+  }
+
+  /// The sweep's lowest plane keeps above the root's columns up to a height: at both ends, and what lies
+  /// between is linear in time.
+  bool passes_above(uint32_t n, double height) const {
+    if (height == kNever) return false;
+    const stock::Sweep& sweep = input_.sweeps[n];
+    const double low = lowest_z(input_.cutters[n]);
+    for (const ToolPose* pose : {&sweep.start, &sweep.end}) {
+      for (const CellCorner& corner : root_.cell.corners) {
+        const double z = pose->axis_W.dot(corner.point - pose->tip_W) + root_.cell.flatness_mm;
+        const double rise = pose->axis_W.dot(corner.normal) + std::min(2.0, root_.cell.turn);
+        if (z + std::max(-stock::kSkin * rise, height * rise) + 1e-6 >= low) return false;
+      }
+    }
+    return true;
+  }
+
+  double top_of(const CellCorner& corner) const {
+    return leaves_box(input_.stock.box(), corner.point, corner.normal);
+  }
+
+  /// How high above a place material is its own: a mesh tells by its distance, patches by their rays.
+  void take_range(Corner& corner) const {
+    const CellCorner& at = corner.at;
+    if (input_.field.design == nullptr) {
+      const stock::FreeRange::Range range = input_.ranges(at.point, at.normal);
+      corner.range = range.mm;
+      if (range.mm < kNever) corner.wall = range.wall;
+      return;
+    }
+    const double through = leaves_box(input_.stock.box(), at.point, at.normal);
+    corner.range = kNever;
+    if (!(through > 0.0)) return;
+    corner.range = input_.field.own_depth(at.point, -at.normal, through, kShareOfRange);
+    if (corner.range >= through) return;
+    const mesh::NearestPoint near =
+        input_.field.design->distance.nearest(beyond(at.point, at.normal, corner.range));
+    corner.wall = near.point;
+    corner.facet = near.triangle;
+  }
+
+  /// How deep below a place a cut can count: to where another face is nearer, or out of the stock.
+  double own_depth(const CellCorner& corner, double depth, double share = 1e-9) const {
+    if (depth <= 0.0) return depth;
+    depth = input_.field.own_depth(corner.point, corner.normal, depth, share);
+    const double through = leaves_box(input_.stock.box(), corner.point, -corner.normal);
+    return through > 0.0 ? std::min(depth, through) : depth;
+  }
+
+  /// Height at one corner, by the sweeps kept_[begin, end); `guesses` go first.
+  Corner measured(const CellCorner& at, size_t begin, size_t end, std::array<uint32_t, 2> guesses) {
+    Corner corner{at};
+    take_range(corner);
+    corner.depth = own_depth(at, stock::kSkin, kShareOfRange);
+    corner.top = std::min(leaves_box(input_.stock.box(), at.point, at.normal), corner.range);
+    // Without stock at the place the design lacks material: as much as to the box.
+    corner.height = corner.top > -kNever ? corner.top : -distance_to_box(at.point);
+    const auto look_at = [&](uint32_t n) {
+      const double low = lowest(at, near_[n], corner.height);
+      if (low >= corner.height) return;
+      corner.height = low;
+      corner.near = n;
+    };
+    for (const uint32_t guess : {guesses[0], guesses[1], between(guesses)}) {
+      if (guess < near_.size()) look_at(guess);
+    }
+    for (size_t i = begin; i < end; ++i) {
+      if (floors_.size() == kept_.size() && floors_[i] >= corner.height) continue;
+      look_at(kept_[i]);
+    }
+    // The kept sweeps prove bounds; what counts as found is measured against all of them.
+    if (root_.looks_up && corner.height > std::min(excess_target(), scallop_target())) {
+      for (uint32_t n = 0; n < near_.size(); ++n) look_at(n);
+    }
+    if (corner.near != stock::kUncut) corner.height = -own_depth(at, -corner.height);
+    note(corner);
+    return corner;
+  }
+
+  /// Half way along the path between two sweeps: between their places it is the likeliest to be the lowest.
+  static uint32_t between(const std::array<uint32_t, 2>& sweeps) {
+    return sweeps[0] == stock::kUncut || sweeps[1] == stock::kUncut ? stock::kUncut
+                                                                    : sweeps[0] / 2 + sweeps[1] / 2;
+  }
+
+  double distance_to_box(const Vec3& p) const {
+    const Box& box = input_.stock.box();
+    return (p - p.cwiseMax(box.lower).cwiseMin(box.upper)).norm();
+  }
+
+  static double lowest(const CellCorner& at, const NearSweep& near, double highest) {
+    if (stays_above(at, near, highest)) return kNever;
+    const double low = stock::ray_height(at.point, at.normal, near.map, *near.cutter);
+    if (low >= -stock::kSkin) return low;
+    double least = kNever;
+    for (const cutter::ConvexPiece& piece : near.cutter->pieces) {
+      const stock::RayInterval cut = stock::ray_interval(at.point, at.normal, near.map, piece);
+      // A cut that leaves the design's skin standing belongs to another face.
+      if (cut.hit() && cut.high > cut.low && cut.high >= -stock::kSkin) least = std::min(least, cut.low);
+    }
+    return least;
+  }
+
+  void note(const Corner& corner) {
+    highest_seen_ = std::max(highest_seen_, corner.height);
+    const uint32_t block = corner.near == stock::kUncut ? stock::kUncut : near_[corner.near].sweep;
+    if (root_.looks_down && -corner.height > result_.gouge_found) {
+      result_.gouge_found = -corner.height;
+      result_.gouge_found_at = corner.at.point;
+      result_.gouge_block = block;
+    }
+    if (root_.looks_up && corner.height > result_.excess_found) {
+      result_.excess_found = corner.height;
+      result_.excess_found_at = corner.at.point;
+      result_.excess_block = block;
+    }
+  }
+
+  double gouge_target() const {
+    return target(std::max(result_.gouge_found, gouge_goal_), input_.gouge_limit_mm);
+  }
+  double excess_target() const {
+    return input_.wants_excess ? target(std::max(result_.excess_found, excess_goal_), input_.excess_limit_mm)
+                               : kNever;
+  }
+  double scallop_target() const {
+    return input_.wants_scallop
+               ? target(std::max(result_.excess_found, excess_goal_), input_.scallop_limit_mm)
+               : kNever;
+  }
+  /// The bound to reach where `found` was measured: it need not be closer than decides a limit.
+  double target(double found, double limit) const {
+    const double decided = limit - input_.sweep_bound_mm - kTouch;
+    const double close = found + kGap + kGapShare * found;
+    if (found >= decided) return close;
+    return decided;
+  }
+
+  std::vector<CornerHeights> own_above(const Cell& cell) const {
+    std::vector<CornerHeights> bounds;
+    const CornerHeights ranges{cell.corners[0].range, cell.corners[1].range, cell.corners[2].range};
+    for (const Corner& corner : cell.corners) {
+      if (!corner.wall) continue;
+      const auto own = corner.facet && is_flat(cell.shape)
+                           ? own_to_facet(cell.shape, input_.field.design->mesh, *corner.facet, ranges, 1.0)
+                           : own_to_point(cell.shape, *corner.wall);
+      if (own) bounds.push_back(*own);
+    }
+    return bounds;
+  }
+
+  /// Of flat cells of a mesh.
+  std::vector<CornerHeights> own_below(const Cell& cell) const {
+    std::vector<CornerHeights> bounds;
+    if (input_.field.design == nullptr || !is_flat(cell.shape)) return bounds;
+    CornerHeights depths{};
+    for (size_t k = 0; k < 3; ++k) {
+      const CellCorner& at = cell.corners[k].at;
+      const double through = std::max(0.0, leaves_box(input_.stock.box(), at.point, -at.normal));
+      depths[k] = input_.field.own_depth(at.point, at.normal, through, kShareOfRange);
+    }
+    for (size_t k = 0; k < 3; ++k) {
+      const CellCorner& at = cell.corners[k].at;
+      const uint32_t facet =
+          input_.field.design->distance.nearest(beyond(at.point, -at.normal, depths[k])).triangle;
+      if (const auto own = own_to_facet(cell.shape, input_.field.design->mesh, facet, depths, -1.0))
+        bounds.push_back(*own);
+    }
+    return bounds;
+  }
+
+  /// How deep the cell's columns count at most.
+  double deepest(const Cell& cell, const std::vector<CornerHeights>& own) {
+    if (!own.empty()) return highest_left(own).height;
+    double depth = 0.0;
+    constexpr double kThrough = 1e4;  // mm: any part
+    for (const Corner& corner : cell.corners) depth = std::max(depth, own_depth(corner.at, kThrough));
+    if (input_.field.design != nullptr) return depth;
+    DesignCell below = cell.shape;
+    for (CellCorner& corner : below.corners) corner.normal = -corner.normal;
+    sets_.clear();
+    add_box(below);
+    return std::min(std::max(depth, highest_left(sets_).height), kThrough);
+  }
+
+  /// Height over the design up to which there was material to begin with over the whole cell; below 0 where
+  /// the design reaches out of the stock.
+  double stood_before(const Cell& cell) const {
+    const Box& box = input_.stock.box();
+    double inside = kNever, least = kNever, top = kNever;
+    for (const Corner& corner : cell.corners) {
+      const Vec3& p = corner.at.point;
+      inside = std::min({inside, (p - box.lower).minCoeff(), (box.upper - p).minCoeff()});
+      const double leave = leaves_box(box, p, corner.at.normal);
+      least = std::min(least, leave > -kNever ? leave : -distance_to_box(p) - cell.shape.radius());
+      top = std::min(top, corner.top);
+    }
+    if (inside < cell.shape.flatness_mm) return std::min(0.0, least) - cell.shape.flatness_mm;
+    return std::max(0.0, top - cell.shape.flatness_mm - top * std::min(1.0, cell.shape.turn));
+  }
+
+  /// Least height over the cell; floors_ gets each sweep's.
+  double lower_bound(const Cell& cell) {
+    ColumnDepths depths{{cell.corners[0].depth, cell.corners[1].depth, cell.corners[2].depth}, {}};
+    double low = lower_bound(cell, depths);
+    if (low >= -gouge_target() || !root_.looks_down) return low;
+    depths.own = own_below(cell);
+    if (!depths.own.empty()) low = lower_bound(cell, depths);
+    return low == -kNever ? -deepest(cell, depths.own) : low;
+  }
+
+  double lower_bound(const Cell& cell, const ColumnDepths& depths) {
+    double low = std::min(cell.dropped, stood_before(cell));
+    for (size_t i = cell.begin; i < cell.end; ++i) {
+      floors_[i] = least_height(cell.shape, near_[kept_[i]], depths, -gouge_target());
+      low = std::min(low, floors_[i]);
+    }
+    return low;
+  }
+
+  /// The grid tells nothing of a cell wider than its band, and no more of one much smaller than of the cell
+  /// around it.
+  bool asks_grid(const Cell& cell) const {
+    const double voxel = input_.stock.voxel_mm();
+    double highest = 0.0;
+    for (const Corner& corner : cell.corners) highest = std::max(highest, corner.height);
+    return cell.shape.radius() < 2.0 * voxel && (cell.air == kNever || cell.shape.radius() > voxel / 32.0) &&
+           cell.air > highest + 2.0 * voxel;
+  }
+
+  double upper_bound(Cell& cell) {
+    // Where the columns leave the box, and a little for what lies between the corners.
+    double leave = 0.0;
+    for (const Corner& corner : cell.corners)
+      leave = std::max(leave, leaves_box(input_.stock.box(), corner.at.point, corner.at.normal));
+    const double top = std::min(leave + cell.shape.radius(), cell.air);
+    const double target = excess_target();
+    const std::vector<CornerHeights> own = own_above(cell);
+    double high = bound_by_sets(cell, own, tops_of(own, top), target);
+    if (high > target && asks_grid(cell)) {
+      cell.air = std::min(cell.air,
+                          air_above(cell.shape, input_.stock, input_.stock_bound_mm, std::max(leave, 0.0)));
+      high = std::min(cell.air, bound_by_sets(cell, own, tops_of(own, std::min(top, cell.air)), target));
+    }
+    return std::min(high, top);
+  }
+
+  /// Of what stands on the design: whatever lies above its first air.
+  double skin_bound(const Cell& cell, double high) {
+    if (!(high > scallop_target())) return high;
+    return std::min(high, bound_by_sets(cell, own_above(cell), kNoTop, scallop_target()));
+  }
+
+  /// Up to where the columns must be covered: a linear function above the lesser of both.
+  static CornerHeights tops_of(const std::vector<CornerHeights>& own, double top) {
+    CornerHeights tops{top, top, top};
+    double least = top;
+    for (const CornerHeights& bound : own) {
+      const double most = *std::max_element(bound.begin(), bound.end());
+      if (most >= least) continue;
+      least = most;
+      tops = bound;
+    }
+    return tops;
+  }
+
+  void add_box(const DesignCell& cell) {
+    const Box& box = input_.stock.box();
+    for (int a = 0; a < 3; ++a) {
+      sets_.push_back(outside_from(cell, Vec3::Unit(a), box.upper[a]));
+      sets_.push_back(outside_from(cell, -Vec3::Unit(a), -box.lower[a]));
+    }
+  }
+
+  /// No closer than `enough`.
+  double bound_by_sets(const Cell& cell, const std::vector<CornerHeights>& own, const CornerHeights& tops,
+                       double enough) {
+    sets_.clear();
+    owners_.clear();
+    add_box(cell.shape);
+    sets_.insert(sets_.end(), own.begin(), own.end());
+    for (const Corner& corner : cell.corners) add_owner(cell, corner.near, tops);
+    HighestLeft left = highest_left(sets_);
+    // Where the bound is highest, the sweep that is lowest there may lower it.
+    constexpr size_t kMostOwners = 10;
+    while (left.height > enough && left.height < kNever && owners_.size() < kMostOwners) {
+      if (!add_owner(cell, owner_at(cell, left), tops)) break;
+      const double before = left.height;
+      left = highest_left(sets_);
+      if (!(left.height < before)) break;
+    }
+    return left.height;
+  }
+
+  /// What the sweep covers joins the sets; false when it is among them.
+  bool add_owner(const Cell& cell, uint32_t n, const CornerHeights& tops) {
+    if (n == stock::kUncut || std::find(owners_.begin(), owners_.end(), n) != owners_.end()) return false;
+    owners_.push_back(n);
+    const CornerHeights from{cell.corners[0].height, cell.corners[1].height, cell.corners[2].height};
+    for (const cutter::ConvexPiece& piece : near_[n].cutter->pieces)
+      sets_.push_back(covered_from(cell.shape, near_[n], piece, from, tops));
+    return true;
+  }
+
+  /// The sweep that leaves least where the bound is highest; none when all leave more.
+  uint32_t owner_at(const Cell& cell, const HighestLeft& left) const {
+    const CellCorner at = place_in(cell.shape, left.place, root_.bounds);
+    double height = left.height;
+    uint32_t owner = stock::kUncut;
+    const auto look_at = [&](uint32_t n) {
+      const double low = lowest(at, near_[n], height);
+      if (low >= height) return;
+      height = low;
+      owner = n;
+    };
+    for (const uint32_t n : owners_) look_at(n);
+    for (size_t k = 0; k < 3; ++k) {
+      const uint32_t guess = between({cell.corners[k].near, cell.corners[(k + 1) % 3].near});
+      if (guess < near_.size()) look_at(guess);
+    }
+    for (size_t i = cell.begin; i < cell.end; ++i) {
+      if (floors_[i] < height) look_at(kept_[i]);
+    }
+    return owner;
+  }
+
+  void close(const Cell& cell, const Bounds& bounds, const std::optional<Probe>& probed) {
+    if (root_.looks_down && -bounds.low > result_.gouge) {
+      result_.gouge = -bounds.low;
+      result_.gouge_at = cell.shape.centroid();
+    }
+    if (root_.looks_up && bounds.high > result_.excess) {
+      result_.excess = bounds.high;
+      result_.excess_at = cell.shape.centroid();
+    }
+    if (root_.looks_up && bounds.skin > result_.scallop) {
+      result_.scallop = bounds.skin;
+      result_.scallop_at = cell.shape.centroid();
+    }
+    if (!probed) {
+      add_pieces(cell.shape, cell.corners, bounds);
+      return;
+    }
+    for (size_t k = 0; k < 3; ++k) {
+      std::array<Corner, 3> corners = cell.corners;
+      corners[k] = probed->corner;
+      add_pieces(make_cell({corners[0].at, corners[1].at, corners[2].at}, root_.bounds), corners, bounds);
+    }
+  }
+
+  /// A corner beyond the cell's bounds is touched from the next cell, and no part of this one.
+  void add_pieces(const DesignCell& shape, const std::array<Corner, 3>& corners, const Bounds& bounds) {
+    std::array<double, 3> heights{}, depths{};
+    std::array<uint32_t, 3> blocks{};
+    for (size_t k = 0; k < 3; ++k) {
+      heights[k] = std::min(corners[k].height, bounds.high);
+      depths[k] = std::min(-corners[k].height, -bounds.low);
+      blocks[k] = corners[k].near == stock::kUncut ? stock::kUncut : near_[corners[k].near].sweep;
+    }
+    if (root_.looks_down) add_piece(shape, depths, blocks, input_.gouge_limit_mm, result_.gouges);
+    if (root_.looks_up) add_piece(shape, heights, blocks, input_.excess_limit_mm, result_.excesses);
+  }
+
+  /// Whether part of the cell may break a limit and part of it keep it.
+  bool on_border(const Bounds& bounds) const {
+    const bool gouge = root_.looks_down && -bounds.low > input_.gouge_limit_mm &&
+                       !(-bounds.high > input_.gouge_limit_mm) && result_.gouge_found > input_.gouge_limit_mm;
+    const bool excess = root_.looks_up && input_.wants_excess && bounds.high > input_.excess_limit_mm &&
+                        !(bounds.low > input_.excess_limit_mm) &&
+                        result_.excess_found > input_.excess_limit_mm;
+    return gouge || excess;
+  }
+
+  /// Whether the cell lies in a gouge of whose volume it tells too little.
+  bool is_coarse(const Bounds& bounds) const {
+    constexpr double kVolumeShare = 0.1;
+    return root_.looks_down && -bounds.low > input_.gouge_limit_mm &&
+           result_.gouge_found > input_.gouge_limit_mm &&
+           bounds.high - bounds.low > kVolumeShare * result_.gouge_found;
+  }
+
+  /// Measures where the sweep that bounds the cell lowest should cut deepest.
+  std::optional<Probe> probe(const Cell& cell) {
+    if (cell.begin == cell.end) return std::nullopt;
+    const auto first = floors_.begin() + static_cast<std::ptrdiff_t>(cell.begin);
+    const auto lowest = std::min_element(first, floors_.begin() + static_cast<std::ptrdiff_t>(cell.end));
+    const uint32_t n = kept_[static_cast<size_t>(lowest - floors_.begin())];
+    const std::optional<Vec3> place = deepest_place(cell.shape, near_[n]);
+    if (!place) return std::nullopt;
+    const CellCorner at = place_in(cell.shape, *place, root_.bounds);
+    return Probe{*place, measured(at, cell.begin, cell.end, {n, n})};
+  }
+
+  void visit(Cell cell) {
+    ++result_.cells;
+    result_.work += 1 + cell.end - cell.begin;
+    floors_.resize(kept_.size());
+    Bounds bounds{lower_bound(cell), 0.0, 0.0};
+    bounds.high = upper_bound(cell);
+    bounds.skin = skin_bound(cell, bounds.high);
+    const double edge = cell.shape.longest_edge();
+    std::optional<Probe> probed;
+    if (root_.looks_down && edge < kProbed && -bounds.low > std::min(gouge_target(), input_.gouge_limit_mm))
+      probed = probe(cell);
+    const bool gouge_open = root_.looks_down && -bounds.low > gouge_target();
+    const bool excess_open =
+        root_.looks_up && (bounds.high > excess_target() || bounds.skin > scallop_target());
+    const bool seen = std::any_of(cell.corners.begin(), cell.corners.end(), [&](const Corner& corner) {
+      return -corner.height > input_.gouge_limit_mm || corner.height > input_.excess_limit_mm;
+    });
+    const bool divide = ((gouge_open || excess_open) && edge > kSmallest) ||
+                        (on_border(bounds) && edge > (seen ? kBorder : kSmallest)) ||
+                        (is_coarse(bounds) && edge > 2.0 * kBorder);
+    if (!divide || result_.work > budget_) {
+      if (gouge_open || excess_open)
+        result_.open.push_back({-bounds.low, bounds.high, bounds.skin, cell.shape.area_mm2()});
+      close(cell, bounds, probed);
+      return;
+    }
+    divide_cell(cell, bounds);
+  }
+
+  /// Sweeps that may still be the lowest somewhere in the cell are kept for its parts.
+  void divide_cell(const Cell& cell, const Bounds& bounds) {
+    const size_t begin = kept_.size();
+    double dropped = cell.dropped;
+    // Above the highest corner a sweep can only matter for the upper bound, which needs no certain set.
+    double highest = -kNever;
+    for (const Corner& corner : cell.corners) highest = std::max(highest, corner.height);
+    const double slack = 0.05 * cell.shape.radius();
+    for (size_t i = cell.begin; i < cell.end; ++i) {
+      const bool deep = root_.looks_down && -floors_[i] > gouge_target();
+      const bool low = floors_[i] <= highest + slack && floors_[i] < bounds.high;
+      if (deep || low) {
+        kept_.push_back(kept_[i]);
+        floors_.push_back(floors_[i]);
+      } else {
+        dropped = std::min(dropped, floors_[i]);
+      }
+    }
+    const size_t end = kept_.size();
+    std::array<Corner, 3> middles;
+    for (size_t k = 0; k < 3; ++k) {
+      const Corner &a = cell.corners[k], &b = cell.corners[(k + 1) % 3];
+      middles[k] = measured(middle(a.at, b.at, root_.bounds), begin, end, {a.near, b.near});
+    }
+    const auto& c = cell.corners;
+    for (const std::array<Corner, 3>& part : {std::array<Corner, 3>{c[0], middles[0], middles[2]},
+                                              std::array<Corner, 3>{middles[0], c[1], middles[1]},
+                                              std::array<Corner, 3>{middles[2], middles[1], c[2]},
+                                              std::array<Corner, 3>{middles[0], middles[1], middles[2]}}) {
+      visit({make_cell({part[0].at, part[1].at, part[2].at}, root_.bounds), part, begin, end, dropped,
+             cell.air});
+      kept_.resize(end);
+      floors_.resize(end);
+    }
+    kept_.resize(begin);
+    floors_.resize(begin);
+  }
+
+  const CertificateInput& input_;
+  const SweepIndex& index_;
+  const RootCell& root_;
+  size_t budget_;
+  double gouge_goal_ = 0.0, excess_goal_ = 0.0, highest_seen_ = 0.0;
+  std::vector<NearSweep> near_;
+  std::vector<uint32_t> kept_;  ///< a stack: the sweeps of a cell lie above those of the cell around it
+  std::vector<double> floors_;  ///< least heights of kept_ over the cell last looked at
+  std::vector<CornerHeights> sets_;
+  std::vector<uint32_t> owners_;  ///< of sets_, index into near_
+  RootResult result_;
+};
+
+}  // namespace
+
+RootResult prove_root(const CertificateInput& input, const SweepIndex& index, const RootCell& root,
+                      size_t budget) {
+  return RootProof(input, index, root, budget).prove();
+}
+
+}  // namespace swarf::measure

@@ -1,0 +1,36 @@
+// The proof over one root cell of the design, by branch and bound (certificate.h). Internal to this folder.
+#pragma once
+
+#include <vector>
+
+#include "measure/certificate.h"
+#include "measure/certified_regions.h"
+#include "measure/design_cell.h"
+#include "measure/sweep_index.h"
+#include "stock/surface_dexels.h"
+
+namespace swarf::measure {
+
+/// A cell is closed when its bound is this near to what was measured: mm, and share.
+inline constexpr double kGap = 4e-5, kGapShare = 2e-4;
+
+/// Everything of one root cell, worked on by one task.
+struct RootResult {
+  double gouge = 0.0, excess = 0.0, scallop = 0.0;  ///< bounds, mm
+  Vec3 gouge_at = Vec3::Zero(), excess_at = Vec3::Zero(), scallop_at = Vec3::Zero();
+  double gouge_found = 0.0, excess_found = 0.0;  ///< mm
+  Vec3 gouge_found_at = Vec3::Zero(), excess_found_at = Vec3::Zero();
+  uint32_t gouge_block = stock::kUncut, excess_block = stock::kUncut;
+  std::vector<RegionPiece> gouges, excesses;
+  struct Open {
+    double depth, height, skin, area;
+  };
+  std::vector<Open> open;
+  size_t cells = 0, work = 0;
+};
+
+/// `budget`: looks at a sweep over a cell. Cells that it does not suffice for stay open.
+RootResult prove_root(const CertificateInput& input, const SweepIndex& index, const RootCell& root,
+                      size_t budget);
+
+}  // namespace swarf::measure
