@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <tuple>
 #include <utility>
 
 namespace swarf::measure {
@@ -94,11 +96,12 @@ Vec3 turned_by(const Vec3& n, const Vec3& m, double share) {
   return Eigen::AngleAxisd(share * angle, n.cross(m).normalized()) * n;
 }
 
+constexpr double kFanStep = 0.2;  // rad; the columns' directions between them are bounded, not sampled
+
 /// The columns between the two sides of a sharp edge, in steps of at most kFanStep. Outside a convex edge
 /// they answer for what stands there, inside a concave one for what is cut.
 void add_fan(const stock::RayField& field, const stock::SharpEdge& edge, double size_mm,
              std::vector<RootCell>& cells) {
-  constexpr double kFanStep = 0.2;  // rad; the columns' directions between them are bounded, not sampled
   const Vec3 &from = field.points[edge.left[0]], &to = field.points[edge.left[1]];
   const auto normals = [&](int end) {
     return std::pair(field.normals[edge.left[end]], field.normals[edge.right[end]]);
@@ -121,6 +124,101 @@ void add_fan(const stock::RayField& field, const stock::SharpEdge& edge, double 
     (convex ? cell.looks_down : cell.looks_up) = false;
     cells.push_back(cell);
   }
+}
+
+/// Where sharp edges of a mesh meet: the directions of the edges, and the sum of the facets' normals beside
+/// them.
+struct SharpVertex {
+  std::vector<Vec3> edges;
+  Vec3 outward = Vec3::Zero();
+};
+
+struct ByCoordinates {
+  bool operator()(const Vec3& a, const Vec3& b) const {
+    return std::tuple(a.x(), a.y(), a.z()) < std::tuple(b.x(), b.y(), b.z());
+  }
+};
+
+/// The directions that point away from all edges: their extreme ones, in order around the mean. Fewer than
+/// three: no direction is nearest to the vertex itself.
+std::vector<Vec3> away_from(const std::vector<Vec3>& edges) {
+  constexpr double kSame = 1e-6;  // rad; vertices are floats
+  std::vector<Vec3> rays;
+  for (size_t i = 0; i < edges.size(); ++i) {
+    for (size_t j = 0; j < i; ++j) {
+      for (const double side : {1.0, -1.0}) {
+        const Vec3 ray = (side * edges[i].cross(edges[j])).normalized();
+        const auto is_away = [&](const Vec3& edge) { return ray.dot(edge) <= kSame; };
+        const auto is_same = [&](const Vec3& other) { return (other - ray).norm() < kSame; };
+        if (ray.norm() > 0.5 && std::all_of(edges.begin(), edges.end(), is_away) &&
+            std::none_of(rays.begin(), rays.end(), is_same))
+          rays.push_back(ray);
+      }
+    }
+  }
+  if (rays.size() < 3) return {};
+  Vec3 mean = Vec3::Zero();
+  for (const Vec3& ray : rays) mean += ray;
+  const Vec3 x = (rays[0] - rays[0].dot(mean) / mean.squaredNorm() * mean).normalized();
+  const Vec3 y = mean.normalized().cross(x);
+  std::sort(rays.begin(), rays.end(), [&](const Vec3& a, const Vec3& b) {
+    return std::atan2(a.dot(y), a.dot(x)) < std::atan2(b.dot(y), b.dot(x));
+  });
+  return rays;
+}
+
+/// Columns of one vertex between three directions, divided until they turn by no more than kFanStep.
+void add_spread(const Vec3& vertex, const std::array<Vec3, 3>& normals, std::vector<RootCell>& fan) {
+  size_t widest = 0;
+  double most = 0.0;
+  for (size_t k = 0; k < 3; ++k) {
+    const double angle = (normals[k] - normals[(k + 1) % 3]).norm();
+    if (angle > most) {
+      most = angle;
+      widest = k;
+    }
+  }
+  if (most <= kFanStep) {
+    const PatchBounds flat;
+    fan.push_back(
+        {make_cell({CellCorner{vertex, normals[0]}, {vertex, normals[1]}, {vertex, normals[2]}}, flat),
+         flat});
+    return;
+  }
+  const Vec3 &a = normals[widest], &b = normals[(widest + 1) % 3], &c = normals[(widest + 2) % 3];
+  const Vec3 m = (a + b).normalized();
+  add_spread(vertex, {a, m, c}, fan);
+  add_spread(vertex, {m, b, c}, fan);
+}
+
+/// Outside a corner where sharp edges meet the columns answer for what stands there, inside one for what is
+/// cut.
+void add_vertex_fan(const Vec3& vertex, const SharpVertex& sharp, std::vector<RootCell>& cells) {
+  const std::vector<Vec3> rays = away_from(sharp.edges);
+  if (rays.empty()) return;
+  Vec3 mean = Vec3::Zero();
+  for (const Vec3& ray : rays) mean += ray;
+  const bool outside = mean.dot(sharp.outward) > 0.0;
+  std::vector<RootCell> fan;
+  for (size_t i = 0; i < rays.size(); ++i)
+    add_spread(vertex, {mean.normalized(), rays[i], rays[(i + 1) % rays.size()]}, fan);
+  for (RootCell& cell : fan) {
+    (outside ? cell.looks_down : cell.looks_up) = false;
+    cells.push_back(cell);
+  }
+}
+
+void add_vertex_fans(const stock::RayField& field, std::vector<RootCell>& cells) {
+  std::map<Vec3, SharpVertex, ByCoordinates> vertices;
+  for (const stock::SharpEdge& edge : field.sharp_edges) {
+    for (const int end : {0, 1}) {
+      SharpVertex& vertex = vertices[field.points[edge.left[end]]];
+      const Vec3 way = field.points[edge.left[1 - end]] - field.points[edge.left[end]];
+      vertex.edges.push_back(way.normalized());
+      vertex.outward += field.normals[edge.left[end]] + field.normals[edge.right[end]];
+    }
+  }
+  for (const auto& [place, vertex] : vertices) add_vertex_fan(place, vertex, cells);
 }
 
 }  // namespace
@@ -202,6 +300,7 @@ std::vector<RootCell> root_cells(const stock::RayField& field, double size_mm) {
   const auto corner = [&](uint32_t ray) { return CellCorner{field.points[ray], field.normals[ray]}; };
   for (const auto& t : field.facets) add_divided({corner(t[0]), corner(t[1]), corner(t[2])}, size_mm, cells);
   for (const stock::SharpEdge& e : field.sharp_edges) add_fan(field, e, size_mm, cells);
+  add_vertex_fans(field, cells);
   return cells;
 }
 

@@ -158,6 +158,25 @@ TEST(Certificate, CrossingRidges) {
   EXPECT_LE(proof.gouge.um, 0.05);
 }
 
+/// All around a block is cut away but what lies outside of all three faces of one corner.
+TEST(Certificate, WhatStandsOutsideACornerOfAMeshIsFound) {
+  Job job{stock::rays_on_mesh(block(6, 5, 4), 1.0), {{-7, -6, -4}, {7, 6, 1}}, {5.0, 25.0}, {}};
+  job.excess_limit_mm = 0.01;
+  const Vec3 x = Vec3::UnitX(), y = Vec3::UnitY(), z = Vec3::UnitZ();
+  move(job, {6, 0, -20}, {6, 0, 20}, x);    // beside x = 6 where y <= 5
+  move(job, {6, -20, -5}, {6, 20, -5}, x);  // and where z <= 0
+  move(job, {-20, 5, -5}, {20, 5, -5}, y);  // beside y = 5 where z <= 0
+  move(job, {1, -20, 0}, {1, 20, 0}, z);    // over z = 0 where x <= 6
+  move(job, {-3, -20, 0}, {-3, 20, 0}, z);
+  move(job, {-6, -20, -4}, {-6, 20, -4}, -x);
+  move(job, {-20, -5, -4}, {20, -5, -4}, -y);
+  const Certificate proof = prove(job);
+  EXPECT_GE(proof.excess.um, 1000.0 * std::sqrt(3.0));
+  EXPECT_LE(proof.excess.um, 1000.0 * std::sqrt(3.0) * 1.03);
+  EXPECT_GE(proof.excess_found_um, 1000.0 * std::sqrt(3.0) * 0.97);
+  EXPECT_LE(proof.gouge.um, 0.1);
+}
+
 TEST(Certificate, NothingWasCut) {
   Job job{stock::rays_on_surface(plane(8, 6), 1.0), {{-5, -4, -3}, {5, 4, 1}}, ball(2.0, 25.0), {}};
   job.excess_limit_mm = 0.01;
