@@ -14,7 +14,9 @@ namespace {
 /// Looks at a sweep over a cell, in all (a minute or two) and at least for each root.
 constexpr size_t kBudget = 150'000'000, kLeastBudget = 10'000;
 /// What is left of the budget is shared by the roots that are left, and one may take so many shares.
-constexpr size_t kShares = 512;
+constexpr size_t kShares = 64;
+/// So much is spent on roots that break a limit before each of them gets only the lesser one.
+constexpr size_t kBrokenBudget = 20'000'000, kBrokenRoot = 30'000;
 constexpr size_t kRoots = 10'000;
 constexpr size_t kRootsPerBatch = 256;  // between two looks at the progress bar and Ctrl-C
 constexpr double kLeastRoot = 1.0;      // mm
@@ -49,16 +51,20 @@ Certificate certify(const CertificateInput& input) {
   const std::vector<RootCell> roots = root_cells(input.field, size);
   const SweepIndex index(input.sweeps, input.cutters);
   std::vector<RootResult> parts(roots.size());
-  size_t spent = 0;
+  size_t spent = 0, broken = 0;
   for (size_t first = 0; first < roots.size() && !input.progress.stop_requested(); first += kRootsPerBatch) {
     // Known between batches only: the budget of a root does not depend on the number of threads.
     const size_t left = kBudget > spent ? kBudget - spent : 0;
-    const size_t budget = std::max(kLeastBudget, kShares * left / (roots.size() - first));
+    const size_t share = std::max(kLeastBudget, kShares * left / (roots.size() - first));
+    const Budget budget{share, broken > kBrokenBudget ? std::min(share, kBrokenRoot) : share};
     const size_t count = std::min(kRootsPerBatch, roots.size() - first);
     parallel_chunks(count, 1, [&](size_t begin, size_t) {
       parts[first + begin] = prove_root(input, index, roots[first + begin], budget);
     });
-    for (size_t n = first; n < first + count; ++n) spent += parts[n].work;
+    for (size_t n = first; n < first + count; ++n) {
+      spent += parts[n].work;
+      if (parts[n].broken) broken += parts[n].work;
+    }
     input.progress.advance(input.progress_from +
                            static_cast<double>(first + count) / static_cast<double>(roots.size()));
   }

@@ -38,7 +38,8 @@ struct Corner {
 
 class RootProof {
  public:
-  RootProof(const CertificateInput& input, const SweepIndex& index, const RootCell& root, size_t budget)
+  RootProof(const CertificateInput& input, const SweepIndex& index, const RootCell& root,
+            const Budget& budget)
       : input_(input), index_(index), root_(root), budget_(budget) {}
 
   RootResult prove() {
@@ -96,23 +97,12 @@ class RootProof {
     const double around = 0.5 * (box.upper - box.lower).norm();
     near_.clear();
     for (const uint32_t n : found) {
-      if (passes_above(n, reach) || passes_aside(n, centre, around)) continue;
+      if (passes_above(n, reach) || passes_aside(input_.sweeps[n], input_.cutters[n], centre, around))
+        continue;
       const stock::Sweep& sweep = input_.sweeps[n];
       near_.push_back(
           {stock::sweep_map(sweep), &input_.cutters[n], n, sweep.start.axis_W != sweep.end.axis_W});
     }
-  }
-
-  /// The cutter, a cylinder around it at most, keeps farther from a ball than it moves.
-  bool passes_aside(uint32_t n, const Vec3& centre, double radius) const {
-    const stock::Sweep& sweep = input_.sweeps[n];
-    const stock::CutterSolid& cutter = input_.cutters[n];
-    const Vec3 offset = centre - sweep.start.tip_W;
-    const double z = sweep.start.axis_W.dot(offset);
-    const double rho = std::sqrt(std::max(0.0, offset.squaredNorm() - z * z));
-    const double travel = (sweep.end.tip_W - sweep.start.tip_W).norm() +
-                          (sweep.end.axis_W - sweep.start.axis_W).norm() * offset.norm();
-    return std::max(rho - cutter.radius, z - cutter.height) > radius + travel + 1e-6;
   }
 
   /// The sweep's lowest plane keeps above the root's columns up to a height: at both ends, and what lies
@@ -204,15 +194,18 @@ class RootProof {
     return (p - p.cwiseMax(box.lower).cwiseMin(box.upper)).norm();
   }
 
-  static double lowest(const CellCorner& at, const NearSweep& near, double highest) {
+  double lowest(const CellCorner& at, const NearSweep& near, double highest) const {
     if (stays_above(at, near, highest)) return kNever;
     const double low = stock::ray_height(at.point, at.normal, near.map, *near.cutter);
-    if (low >= -stock::kSkin) return low;
+    // Columns that fan out from an edge or a corner are touched there by all that ends in its faces.
+    const bool fans = root_.cell.area_mm2() == 0.0;
+    if (low >= -stock::kSkin && !fans) return low;
     double least = kNever;
     for (const cutter::ConvexPiece& piece : near.cutter->pieces) {
       const stock::RayInterval cut = stock::ray_interval(at.point, at.normal, near.map, piece);
       // A cut that leaves the design's skin standing belongs to another face.
-      if (cut.hit() && cut.high > cut.low && cut.high >= -stock::kSkin) least = std::min(least, cut.low);
+      if (cut.hit() && cut.high > cut.low + (fans ? kTouch : 0.0) && cut.high >= -stock::kSkin)
+        least = std::min(least, cut.low);
     }
     return least;
   }
@@ -495,6 +488,12 @@ class RootProof {
            bounds.high - bounds.low > kVolumeShare * result_.gouge_found;
   }
 
+  bool breaks_limit() {
+    result_.broken = (root_.looks_down && result_.gouge_found > input_.gouge_limit_mm) ||
+                     (root_.looks_up && result_.excess_found > input_.excess_limit_mm);
+    return result_.broken;
+  }
+
   /// Measures where the sweep that bounds the cell lowest should cut deepest.
   std::optional<Probe> probe(const Cell& cell) {
     if (cell.begin == cell.end) return std::nullopt;
@@ -509,7 +508,9 @@ class RootProof {
 
   void visit(Cell cell) {
     ++result_.cells;
-    result_.work += 1 + cell.end - cell.begin;
+    // A cell of a mesh asks for distances, which cost as much as many sweeps.
+    constexpr size_t kCellOfMesh = 64, kCell = 4;
+    result_.work += (input_.field.design != nullptr ? kCellOfMesh : kCell) + cell.end - cell.begin;
     floors_.resize(kept_.size());
     Bounds bounds{lower_bound(cell), 0.0, 0.0};
     bounds.high = upper_bound(cell);
@@ -527,7 +528,7 @@ class RootProof {
     const bool divide = ((gouge_open || excess_open) && edge > kSmallest) ||
                         (on_border(bounds) && edge > (seen ? kBorder : kSmallest)) ||
                         (is_coarse(bounds) && edge > 2.0 * kBorder);
-    if (!divide || result_.work > budget_) {
+    if (!divide || result_.work > (breaks_limit() ? budget_.broken : budget_.all)) {
       if (gouge_open || excess_open)
         result_.open.push_back({-bounds.low, bounds.high, bounds.skin, cell.shape.area_mm2()});
       close(cell, bounds, probed);
@@ -577,7 +578,7 @@ class RootProof {
   const CertificateInput& input_;
   const SweepIndex& index_;
   const RootCell& root_;
-  size_t budget_;
+  Budget budget_;
   double gouge_goal_ = 0.0, excess_goal_ = 0.0, highest_seen_ = 0.0;
   std::vector<NearSweep> near_;
   std::vector<uint32_t> kept_;  ///< a stack: the sweeps of a cell lie above those of the cell around it
@@ -590,7 +591,7 @@ class RootProof {
 }  // namespace
 
 RootResult prove_root(const CertificateInput& input, const SweepIndex& index, const RootCell& root,
-                      size_t budget) {
+                      const Budget& budget) {
   return RootProof(input, index, root, budget).prove();
 }
 

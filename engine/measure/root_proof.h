@@ -27,10 +27,17 @@ struct RootResult {
   };
   std::vector<Open> open;
   size_t cells = 0, work = 0;
+  bool broken = false;  ///< a place beyond a limit was found
 };
 
-/// `budget`: looks at a sweep over a cell. Cells that it does not suffice for stay open.
+/// Looks at a sweep over a cell: in all, and once a limit is broken, when nothing is left to prove but how
+/// deep, how high and how wide.
+struct Budget {
+  size_t all, broken;
+};
+
+/// Cells that the budget does not suffice for stay open.
 RootResult prove_root(const CertificateInput& input, const SweepIndex& index, const RootCell& root,
-                      size_t budget);
+                      const Budget& budget);
 
 }  // namespace swarf::measure

@@ -103,4 +103,14 @@ void SweepIndex::find(const Box& box, std::vector<uint32_t>& found) const {
   }
 }
 
+bool passes_aside(const stock::Sweep& sweep, const stock::CutterSolid& cutter, const Vec3& centre,
+                  double radius_mm) {
+  const Vec3 offset = centre - sweep.start.tip_W;
+  const double z = sweep.start.axis_W.dot(offset);
+  const double rho = std::sqrt(std::max(0.0, offset.squaredNorm() - z * z));
+  const double travel = (sweep.end.tip_W - sweep.start.tip_W).norm() +
+                        (sweep.end.axis_W - sweep.start.axis_W).norm() * offset.norm();
+  return std::max(rho - cutter.radius, z - cutter.height) > radius_mm + travel + 1e-6;
+}
+
 }  // namespace swarf::measure

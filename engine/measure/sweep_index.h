@@ -36,4 +36,8 @@ double lowest_z(const stock::CutterSolid& cutter);
 /// A box around all that the cutter passes on a sweep, mm.
 Box sweep_box(const stock::Sweep& sweep, const stock::CutterSolid& cutter);
 
+/// The cutter, a cylinder around it at most, keeps farther from a ball than it moves.
+bool passes_aside(const stock::Sweep& sweep, const stock::CutterSolid& cutter, const Vec3& centre,
+                  double radius_mm);
+
 }  // namespace swarf::measure

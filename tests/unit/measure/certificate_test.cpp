@@ -161,7 +161,7 @@ TEST(Certificate, CrossingRidges) {
 /// All around a block is cut away but what lies outside of all three faces of one corner.
 TEST(Certificate, WhatStandsOutsideACornerOfAMeshIsFound) {
   Job job{stock::rays_on_mesh(block(6, 5, 4), 1.0), {{-7, -6, -4}, {7, 6, 1}}, {5.0, 25.0}, {}};
-  job.excess_limit_mm = 0.01;
+  job.excess_limit_mm = 1.6;
   const Vec3 x = Vec3::UnitX(), y = Vec3::UnitY(), z = Vec3::UnitZ();
   move(job, {6, 0, -20}, {6, 0, 20}, x);    // beside x = 6 where y <= 5
   move(job, {6, -20, -5}, {6, 20, -5}, x);  // and where z <= 0
