@@ -16,7 +16,7 @@ constexpr size_t kBudget = 150'000'000, kLeastBudget = 10'000;
 /// What is left of the budget is shared by the roots that are left, and one may take so many shares.
 constexpr size_t kShares = 64;
 /// So much is spent on roots that break a limit before each of them gets only the lesser one.
-constexpr size_t kBrokenBudget = 20'000'000, kBrokenRoot = 30'000;
+constexpr size_t kBrokenBudget = 10'000'000, kBrokenRoot = 1'500;
 constexpr size_t kRoots = 10'000;
 constexpr size_t kRootsPerBatch = 256;  // between two looks at the progress bar and Ctrl-C
 constexpr double kLeastRoot = 1.0;      // mm

@@ -126,11 +126,9 @@ void add_fan(const stock::RayField& field, const stock::SharpEdge& edge, double 
   }
 }
 
-/// Where sharp edges of a mesh meet: the directions of the edges, and the sum of the facets' normals beside
-/// them.
+/// Where sharp edges of a mesh meet: the directions of the edges, and the facets' normals beside them.
 struct SharpVertex {
-  std::vector<Vec3> edges;
-  Vec3 outward = Vec3::Zero();
+  std::vector<Vec3> edges, normals;
 };
 
 struct ByCoordinates {
@@ -192,13 +190,16 @@ void add_spread(const Vec3& vertex, const std::array<Vec3, 3>& normals, std::vec
 }
 
 /// Outside a corner where sharp edges meet the columns answer for what stands there, inside one for what is
-/// cut.
+/// cut. Corners that are neither (a saddle) have no columns of their own.
 void add_vertex_fan(const Vec3& vertex, const SharpVertex& sharp, std::vector<RootCell>& cells) {
   const std::vector<Vec3> rays = away_from(sharp.edges);
   if (rays.empty()) return;
   Vec3 mean = Vec3::Zero();
   for (const Vec3& ray : rays) mean += ray;
-  const bool outside = mean.dot(sharp.outward) > 0.0;
+  const auto faces_it = [&](const Vec3& normal) { return mean.dot(normal) > 0.0; };
+  const bool outside = std::all_of(sharp.normals.begin(), sharp.normals.end(), faces_it);
+  // Where walls within the part meet its surface, nothing tells the outside.
+  if (!outside && std::any_of(sharp.normals.begin(), sharp.normals.end(), faces_it)) return;
   std::vector<RootCell> fan;
   for (size_t i = 0; i < rays.size(); ++i)
     add_spread(vertex, {mean.normalized(), rays[i], rays[(i + 1) % rays.size()]}, fan);
@@ -215,7 +216,8 @@ void add_vertex_fans(const stock::RayField& field, std::vector<RootCell>& cells)
       SharpVertex& vertex = vertices[field.points[edge.left[end]]];
       const Vec3 way = field.points[edge.left[1 - end]] - field.points[edge.left[end]];
       vertex.edges.push_back(way.normalized());
-      vertex.outward += field.normals[edge.left[end]] + field.normals[edge.right[end]];
+      vertex.normals.push_back(field.normals[edge.left[end]]);
+      vertex.normals.push_back(field.normals[edge.right[end]]);
     }
   }
   for (const auto& [place, vertex] : vertices) add_vertex_fan(place, vertex, cells);
