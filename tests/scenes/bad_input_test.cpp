@@ -70,7 +70,7 @@ const char* const kPlainFlutes = "diameter_mm = 10\ncorner_radius_mm = 0\nflute_
 std::vector<BadInput> bad_inputs() {
   return {
       {"misspelt_key", "scene.toml", "voxel_mm = 0.2", "voxle_mm = 0.2", "unknown-key", "scene.toml:18:"},
-      {"misspelt_table", "scene.toml", "[interpolator]", "[interpolater]", "unknown-key", "scene.toml:27:"},
+      {"misspelt_table", "scene.toml", "[interpolator]", "[interpolater]", "unknown-key", "scene.toml:28:"},
       {"unknown_planner", "scene.toml", "\"constant_scallop\"", "\"constant_scalop\"", "unknown-choice",
        "scene.toml:24:"},
       {"number_nan", "scene.toml", "voxel_mm = 0.2", "voxel_mm = nan", "out-of-range", "scene.toml:18:"},
