@@ -23,7 +23,7 @@ constexpr double kShareOfRange = 1e-3;
 constexpr double kSmallest = 1e-3;
 /// Sweeps are first looked for up to this height over the design, mm; where more is left, up to the box's
 /// top.
-constexpr double kNearHeight = 1.0;
+constexpr double kNearHeight = 0.05;
 
 struct Corner {
   CellCorner at;
@@ -396,7 +396,9 @@ class RootProof {
       if (!add_owner(cell, owner_at(cell, left), tops)) break;
       const double before = left.height;
       left = highest_left(sets_);
-      if (!(left.height < before)) break;
+      // Where it falls slowly, smaller cells do better.
+      constexpr double kWorthwhile = 0.2;
+      if (!(before - left.height > kWorthwhile * (before - enough))) break;
     }
     return left.height;
   }
