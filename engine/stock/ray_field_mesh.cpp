@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <unordered_map>
 
@@ -277,8 +278,14 @@ double RayField::own_depth(const Vec3& point, const Vec3& normal, double depth_m
   const auto is_own = [&](double s) {
     return design->distance.nearest(point - s * normal).distance_mm >= least * s - kFloatMesh;
   };
-  if (is_own(depth_mm)) return depth_mm;
-  double low = 0.0, high = depth_mm;
+  // Far beyond the part the distance is nearly the depth again: what is not own on the way ends it.
+  constexpr double kThinnest = 0.1;  // mm
+  double low = 0.0, high = std::numeric_limits<double>::infinity();
+  for (double s = depth_mm;; s *= 0.5) {
+    if (!is_own(s)) high = s;
+    if (s <= kThinnest) break;
+  }
+  if (high > depth_mm) return depth_mm;
   for (int i = 0; i < kHalvings && high - low > std::max(1e-9, share * high); ++i) {
     const double middle = 0.5 * (low + high);
     (is_own(middle) ? low : high) = middle;

@@ -177,6 +177,14 @@ TEST(Certificate, WhatStandsOutsideACornerOfAMeshIsFound) {
   EXPECT_LE(proof.gouge.um, 0.1);
 }
 
+// A column from the rim of a plate runs along its side face: none of it is its own, however far the cut goes
+// on beyond the plate.
+TEST(Certificate, DepthAlongASideFaceIsNotOwn) {
+  const stock::RayFieldPtr field = stock::rays_on_mesh(block(6, 5, 2), 1.0);
+  for (const double depth : {0.5, 2.0, 35.0, 1e4})
+    EXPECT_LT(field->own_depth({6, 0.3, -2}, {0, 0, -1}, depth), 1e-4) << depth;
+}
+
 TEST(Certificate, NothingWasCut) {
   Job job{stock::rays_on_surface(plane(8, 6), 1.0), {{-5, -4, -3}, {5, 4, 1}}, ball(2.0, 25.0), {}};
   job.excess_limit_mm = 0.01;
