@@ -476,8 +476,8 @@ class RootProof {
   bool on_border(const Bounds& bounds) const {
     const bool gouge = root_.looks_down && -bounds.low > input_.gouge_limit_mm &&
                        !(-bounds.high > input_.gouge_limit_mm) && result_.gouge_found > input_.gouge_limit_mm;
-    const bool excess = root_.looks_up && input_.wants_excess && bounds.high > input_.excess_limit_mm &&
-                        !(bounds.low > input_.excess_limit_mm) &&
+    const bool excess = root_.looks_up && (input_.wants_excess || input_.wants_scallop) &&
+                        bounds.high > input_.excess_limit_mm && !(bounds.low > input_.excess_limit_mm) &&
                         result_.excess_found > input_.excess_limit_mm;
     return gouge || excess;
   }
