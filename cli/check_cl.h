@@ -4,7 +4,7 @@
 #include <string>
 
 #include "cli/checked.h"
-#include "program/cl_program.h"
+#include "program/cl/program.h"
 
 namespace swarf::cli {
 

@@ -11,6 +11,7 @@
 #include "cli/commands.h"
 #include "cli/terminal.h"
 #include "kinematics/round_trip.h"
+#include "program/dialects.h"
 #include "reports/metrics_json.h"
 #include "sim/simulation.h"
 
@@ -220,7 +221,7 @@ void add_check(CLI::App& app, int& exit_code) {
   command->add_option("files", options->files, "files to check")->required();
   command->add_option("--machine", options->nc.machine, "machine.toml that NC programs are read for");
   command->add_option("--dialect", options->nc.dialect,
-                      "linuxcnc, fanuc, siemens or heidenhain; recognised when left out");
+                      program::dialect_list(" or ") + "; recognised when left out");
   command->add_option("--tools", options->nc.tools,
                       "tool table of NC programs: .toml with [[tool]], or LinuxCNC's .tbl");
   command->add_option(

@@ -16,6 +16,7 @@
 #include "cli/nc_totals.h"
 #include "cli/terminal.h"
 #include "machine/machine_scene.h"
+#include "program/dialects.h"
 #include "program/nc_program.h"
 #include "sim/tool_table.h"
 
@@ -24,9 +25,6 @@ namespace {
 
 using kinematics::AxisKind;
 using kinematics::AxisValues;
-
-constexpr std::array kDialects{program::Dialect::kLinuxCnc, program::Dialect::kFanuc,
-                               program::Dialect::kSiemens, program::Dialect::kHeidenhain};
 
 /// Three axes that go anywhere, for programs without rotary words.
 kinematics::MachineModel plain_machine() {
@@ -105,11 +103,9 @@ std::string places_text(const program::ControlSetup& setup, const NcTotals& tota
 
 std::optional<program::Dialect> chosen(const std::string& file, const std::string& name) {
   if (name.empty()) return std::nullopt;
-  for (const program::Dialect dialect : kDialects) {
-    if (name == program::dialect_name(dialect)) return dialect;
-  }
+  if (const auto dialect = program::dialect_of(name)) return dialect;
   throw InputError("unknown-dialect", {file, 0, 0}, fmt::format("'{}' is no dialect", name),
-                   "choose linuxcnc, fanuc, siemens or heidenhain");
+                   "choose " + program::dialect_list(" or "));
 }
 
 /// Reads "m430=identity" and its like.
@@ -240,8 +236,7 @@ std::string extension_of(const std::string& file) {
 
 bool is_nc_program(const std::string& file, const NcCheckOptions& options) {
   const std::string extension = extension_of(file);
-  constexpr std::array kOwn{".ngc", ".mpf", ".spf", ".h", ".tap", ".eia"};
-  if (std::find(kOwn.begin(), kOwn.end(), extension) != kOwn.end()) return true;
+  if (program::is_dialect_ending(extension)) return true;
   if (extension == ".toml" || extension.starts_with(".cl") || extension == ".apt") return false;
   return !options.machine.empty() || !options.dialect.empty() || !options.tools.empty() ||
          !has_surface_blocks(file);

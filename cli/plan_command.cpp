@@ -4,7 +4,7 @@
 
 #include "cli/commands.h"
 #include "cli/terminal.h"
-#include "program/cl_writer.h"
+#include "program/cl/writer.h"
 #include "reports/pending_folder.h"
 #include "sim/simulation.h"
 

@@ -15,7 +15,7 @@
 #include "base/frames.h"
 #include "kinematics/machine_model.h"
 #include "program/block_law.h"
-#include "program/cl_program.h"
+#include "program/cl/program.h"
 
 namespace swarf::program {
 

@@ -7,6 +7,7 @@
 
 #include "base/config.h"
 #include "base/units.h"
+#include "program/dialects.h"
 #include "sim/scene.h"
 #include "sim/tool_table.h"
 
@@ -232,10 +233,7 @@ void read_program(ConfigTable& root, Scene& scene) {
   if (first == nullptr) root.text("program");  // reports that it is missing
   if (scene.kind != ProgramKind::kNc) return;
   if (root.has("dialect")) {
-    const std::vector<std::string> names{"linuxcnc", "fanuc", "siemens", "heidenhain"};  // order of Dialect
-    const std::string word = root.choice("dialect", names);
-    scene.dialect =
-        static_cast<program::Dialect>(std::find(names.begin(), names.end(), word) - names.begin());
+    scene.dialect = program::dialect_of(root.choice("dialect", program::dialect_names()));
   }
   // Of another dialect the key stays unread, and is reported as unknown.
   if (scene.dialect.value_or(program::Dialect::kLinuxCnc) == program::Dialect::kLinuxCnc &&

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/diagnostics.h"
-#include "program/program.h"
+#include "program/surface_blocks/program.h"
 #include "toolpath/pass_family.h"
 
 namespace swarf::toolpath {

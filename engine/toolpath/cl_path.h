@@ -4,7 +4,7 @@
 #include <span>
 
 #include "base/diagnostics.h"
-#include "program/cl_program.h"
+#include "program/cl/program.h"
 #include "toolpath/tool_path.h"
 
 namespace swarf::toolpath {

@@ -13,8 +13,8 @@
 #include "cutter/cutter.h"
 #include "kinematics/machine_model.h"
 #include "program/block_law.h"
-#include "program/cl_program.h"
-#include "program/program.h"
+#include "program/cl/program.h"
+#include "program/surface_blocks/program.h"
 #include "surface/surface.h"
 
 namespace swarf::toolpath {

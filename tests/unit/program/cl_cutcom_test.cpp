@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "base/rng.h"
-#include "program/cl_writer.h"
+#include "program/cl/writer.h"
 #include "unit/program/cl_support.h"
 
 namespace swarf::program {

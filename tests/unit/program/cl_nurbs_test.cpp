@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "program/cl_nurbs.h"
-#include "program/cl_program.h"
+#include "program/cl/nurbs.h"
+#include "program/cl/program.h"
 #include "unit/program/support.h"
 
 namespace swarf::program {

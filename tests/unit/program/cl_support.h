@@ -1,7 +1,7 @@
 // What the tests of CL data share.
 #pragma once
 
-#include "program/cl_program.h"
+#include "program/cl/program.h"
 #include "unit/program/support.h"
 
 namespace swarf::program {

@@ -1,4 +1,4 @@
-#include "program/cl_writer.h"
+#include "program/cl/writer.h"
 
 #include <algorithm>
 

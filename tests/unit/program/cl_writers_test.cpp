@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "program/cl_cycle.h"
-#include "program/cl_writer.h"
+#include "program/cl/cycle.h"
+#include "program/cl/writer.h"
 #include "unit/program/cl_support.h"
 
 namespace swarf::program {

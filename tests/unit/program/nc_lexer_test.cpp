@@ -1,4 +1,4 @@
-#include "program/nc_lexer.h"
+#include "program/surface_blocks/lexer.h"
 
 #include <fmt/format.h>
 

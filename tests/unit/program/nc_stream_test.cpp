@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
-#include "program/cl_program.h"
+#include "program/cl/program.h"
 #include "support/counted_new.h"
 #include "support/program_run.h"
 #include "unit/program/nc_support.h"

@@ -95,7 +95,7 @@ NcRun run_siemens(const std::string& text, const ControlSetup& setup) {
 
 /// CYCLE800, turns Z Y X: B reaches +-100 degrees, and _DIR chooses its sign.
 TEST(NcTiltedPlane, SiemensSwivelGrid) {
-  const ControlSetup setup = siemens::setup_of(siemens::spinner());
+  const ControlSetup setup = nc::siemens::setup_of(nc::siemens::spinner());
   for (int first = 0; first < kSteps; ++first) {
     for (int second = 0; second < kSteps; ++second) {
       const int direction = (first + second) % 2 == 0 ? 1 : -1;
@@ -121,7 +121,7 @@ TEST(NcTiltedPlane, SiemensSwivelGrid) {
 /// ROT and a tool vector along its Z under TRAORI: what lies outside the travel is a finding of the run, the
 /// interpreter keeps the orientation.
 TEST(NcTiltedPlane, SiemensRotGrid) {
-  const ControlSetup setup = siemens::setup_of(siemens::spinner());
+  const ControlSetup setup = nc::siemens::setup_of(nc::siemens::spinner());
   for (int first = 0; first < kSteps; ++first) {
     for (int second = 0; second < kSteps; ++second) {
       const double i = kStepDeg * first, j = kStepDeg * second;

@@ -1,10 +1,10 @@
 // Formulas, variables and the flow of Siemens 840D programs against values worked out by hand.
 #include <cmath>
 
-#include "program/nc/siemens_expression.h"
+#include "program/siemens/expression.h"
 #include "unit/program/siemens_support.h"
 
-namespace swarf::program::siemens {
+namespace swarf::program::nc::siemens {
 namespace {
 
 Value value_of(const std::string& formula) {
@@ -131,4 +131,4 @@ TEST(SiemensFlow, SubprogramsHaveTheirOwnVariablesAndHandValuesBack) {
 }
 
 }  // namespace
-}  // namespace swarf::program::siemens
+}  // namespace swarf::program::nc::siemens

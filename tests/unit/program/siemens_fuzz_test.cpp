@@ -5,7 +5,7 @@
 #include "unit/program/mutate.h"
 #include "unit/program/siemens_support.h"
 
-namespace swarf::program::siemens {
+namespace swarf::program::nc::siemens {
 namespace {
 
 const char* const kProgram =
@@ -68,4 +68,4 @@ TEST(SiemensFuzz, MutatedProgramsAreRefusedOrRun) {
 }
 
 }  // namespace
-}  // namespace swarf::program::siemens
+}  // namespace swarf::program::nc::siemens

@@ -6,7 +6,7 @@
 #include "base/rng.h"
 #include "unit/program/siemens_support.h"
 
-namespace swarf::program::siemens {
+namespace swarf::program::nc::siemens {
 namespace {
 
 Mat3 turn(const Vec3& axis, double deg) {
@@ -337,4 +337,4 @@ TEST(SiemensCutter, GoesBesideTheContour) {
 }
 
 }  // namespace
-}  // namespace swarf::program::siemens
+}  // namespace swarf::program::nc::siemens

@@ -6,7 +6,7 @@
 #include "base/rng.h"
 #include "unit/program/siemens_support.h"
 
-namespace swarf::program::siemens {
+namespace swarf::program::nc::siemens {
 namespace {
 
 /// The feed moves of a program; each test positions with G0.
@@ -277,4 +277,4 @@ TEST(SiemensPoly, RandomPolynomialsOfEveryDegree) {
 }
 
 }  // namespace
-}  // namespace swarf::program::siemens
+}  // namespace swarf::program::nc::siemens

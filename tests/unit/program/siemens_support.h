@@ -9,10 +9,11 @@
 #include <vector>
 
 #include "base/units.h"
-#include "program/nc/dialect.h"
+#include "program/control/control.h"
+#include "program/siemens/dialect.h"
 #include "unit/program/support.h"
 
-namespace swarf::program::siemens {
+namespace swarf::program::nc::siemens {
 
 /// The machine of the shop's programs: X Y Z in the head, B and C under the work (the numbers of
 /// assets/machines/spinner_u5_620/machine.toml).
@@ -76,7 +77,7 @@ struct Ran : NcSink {
 inline void run_file(const std::string& path, const ControlSetup& setup, Ran& ran) {
   try {
     nc::Control control(setup, ran, ran.diagnostics, ran.summary);
-    nc::kSiemensReader.run(path, control);
+    nc::siemens::run(path, control);
   } catch (const InputError& error) {
     ran.diagnostics.append(error.diagnostics);
   }
@@ -117,4 +118,4 @@ inline std::vector<std::string> errors_of(const Diagnostics& diagnostics) {
   return found;
 }
 
-}  // namespace swarf::program::siemens
+}  // namespace swarf::program::nc::siemens

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "program/program.h"
 #include "program/source_text.h"
+#include "program/surface_blocks/program.h"
 
 namespace swarf::program {
 

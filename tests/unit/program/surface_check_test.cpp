@@ -1,4 +1,4 @@
-#include "program/surface_check.h"
+#include "program/surface_blocks/check.h"
 
 #include <gtest/gtest.h>
 

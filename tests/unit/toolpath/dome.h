@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "program/program.h"
+#include "program/surface_blocks/program.h"
 #include "surface/polynomial.h"
 #include "toolpath/tool_path.h"
 

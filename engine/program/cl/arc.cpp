@@ -1,0 +1,215 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/units.h"
+#include "program/cl/arc_angle.h"
+#include "program/cl/interpreter.h"
+
+namespace swarf::program {
+
+void ClInterpreter::circle(const ClStatement& s) {
+  const char* form = "CIRCLE/cx,cy,cz,i,j,k,r (unit vector)";
+  // NX appends tolerances, the tool's diameter and corner radius, and TIMES with the turns of a helix.
+  size_t count = s.arguments.size();
+  std::optional<double> turns;
+  if (count >= 2 && s.arguments[count - 2].text == "TIMES" && s.arguments[count - 1].number) {
+    turns = s.arguments[count - 1].value;
+    count -= 2;
+  }
+  if (count < 7) {
+    fault("wrong-arguments", s, fmt::format("CIRCLE has {} arguments", s.arguments.size()),
+          fmt::format("write {}", form));
+    return;
+  }
+  for (size_t i = 0; i < count; ++i) {
+    if (s.arguments[i].number) continue;
+    fault("wrong-arguments", s.arguments[i],
+          fmt::format("CIRCLE takes numbers, '{}' is none", s.arguments[i].text),
+          fmt::format("write {}", form));
+    return;
+  }
+  Vec3 axis;
+  if (!unit_vector(s, 3, "circle's axis", axis)) return;
+  const double radius = mm(s.arguments[6].value);
+  if (radius <= kArcTolerance) {
+    fault("out-of-range", s.arguments[6], fmt::format("the circle's radius is {:g} mm", radius),
+          fmt::format("it must be above {:g} mm", kArcTolerance));
+    return;
+  }
+  if (turns && !(*turns > 0.0 && *turns <= 10000.0)) {
+    fault("out-of-range", s.arguments.back(), fmt::format("the helix has {:g} turns", *turns),
+          "write TIMES,n with n above 0");
+    return;
+  }
+  if (cycle_) {
+    fault("bad-arc", s, "an arc stands inside a cycle", "write CYCLE/OFF before it");
+    return;
+  }
+  const Vec3 axis_W = X_WC_.linear() * axis, centre_W = X_WC_ * point_at(s, 0);
+  std::optional<double> sense = circle_sense();
+  if (direction_W_ && positioned_) {
+    sense = sense_along(s, centre_W, axis_W);
+    direction_W_.reset();
+    if (!sense) return;
+  }
+  if (!sense) {
+    fault(
+        "circle-sense", s,
+        "CIRCLE runs clockwise about its vector with NX and counter-clockwise with Creo, and this file does "
+        "not show who wrote it",
+        "write cl_circle = \"clockwise\" or \"counter_clockwise\" in the scene (swarf check --circle), or "
+        "INDIRV before it");
+    return;
+  }
+  circle_ = Circle{centre_W, *sense * axis_W, radius, turns};
+}
+
+/// ISO 4343: counter-clockwise about its vector, round an angle that stands with it.
+void ClInterpreter::move_arc(const ClStatement& s) {
+  const bool form = s.arguments.size() == 9 && s.arguments[7].text == "ANGLE" &&
+                    std::all_of(s.arguments.begin(), s.arguments.end(),
+                                [&](const ClArgument& one) { return one.number || &one == &s.arguments[7]; });
+  if (!form) {
+    fault("wrong-arguments", s, "MOVARC takes a centre, a vector, a radius and an angle",
+          "write MOVARC/cx,cy,cz,i,j,k,r,ANGLE,a (a in degrees)");
+    return;
+  }
+  Vec3 axis;
+  if (!unit_vector(s, 3, "arc's axis", axis)) return;
+  const double radius = mm(s.arguments[6].value), degrees = s.arguments[8].value;
+  if (radius <= kArcTolerance || !(degrees > 0.0 && degrees <= 3.6e6)) {
+    fault("out-of-range", s,
+          fmt::format("the arc has a radius of {:g} mm and goes round {:g} deg", radius, degrees),
+          fmt::format("both are above zero, the radius above {:g} mm", kArcTolerance));
+    return;
+  }
+  if (cycle_) {
+    fault("bad-arc", s, "an arc stands inside a cycle", "write CYCLE/OFF before it");
+    return;
+  }
+  circle_ = Circle{X_WC_ * point_at(s, 0), X_WC_.linear() * axis, radius, degrees / 360.0};
+}
+
+void ClInterpreter::go_round(const ClStatement& s) {
+  const char* form = "the points of the arc as x,y,z, or as x,y,z,i,j,k under MULTAX/ON; the last is its end";
+  if (!all_numbers(s, form)) return;
+  const size_t count = s.arguments.size();
+  const auto value = [&](size_t i) { return s.arguments[i].value; };
+  const bool one =
+      count == 6 && std::abs(Vec3(value(3), value(4), value(5)).norm() - 1.0) <= kAxisLengthTolerance;
+  const size_t step = multi_axis_ || one ? 6 : 3;
+  if (count % step != 0) {
+    fault("wrong-arguments", s, fmt::format("GOTO has {} numbers", count), fmt::format("write {}", form));
+    return;
+  }
+  std::vector<Vec3> points;
+  ToolPose to{pose_.tip_W, axis_W_};
+  for (size_t i = 0; i < count; i += step) {
+    points.push_back(X_WC_ * point_at(s, i));
+    if (step == 6 && !unit_vector(s, i + 3, "tool axis", to.axis_W)) return;
+  }
+  if (step == 6) to.axis_W = X_WC_.linear() * to.axis_W;
+  to.tip_W = points.back();
+  if (positioned_ && !passes(s, points)) return;
+  move_to(s, to);
+}
+
+bool ClInterpreter::passes(const ClStatement& s, const std::vector<Vec3>& points) {
+  double before = 0.0;
+  for (const Vec3& point : points) {
+    const Vec3 arm = point - circle_->centre_W;
+    const double radius = flat_in(arm, circle_->normal_W).norm();
+    const double angle = swept_angle(pose_.tip_W - circle_->centre_W, arm, circle_->normal_W);
+    if (std::abs(radius - circle_->radius) <= kArcTolerance && angle > before) {
+      before = angle;
+      continue;
+    }
+    fault("bad-arc", s,
+          fmt::format("({:.4f}, {:.4f}, {:.4f}) is not the next point of the arc: it lies {:.4f} mm from the "
+                      "circle, {:.3f} deg round it, the point before {:.3f} deg",
+                      point.x(), point.y(), point.z(), std::abs(radius - circle_->radius),
+                      deg_from_rad(angle), deg_from_rad(before)),
+          "give the points in their order, and CIRCLE with its sense");
+    return false;
+  }
+  return true;
+}
+
+bool ClInterpreter::continues_arc(const ClStatement& s, const Vec3& to) {
+  const std::optional<Circle> arc = std::exchange(rounded_, std::nullopt);
+  if (circle_ || !arc || rapid_) return false;
+  const Vec3 arm = to - arc->centre_W, before = pose_.tip_W - arc->centre_W;
+  const bool on_circle = std::abs(flat_in(arm, arc->normal_W).norm() - arc->radius) <= kArcTolerance &&
+                         std::abs((arm - before).dot(arc->normal_W)) <= kArcTolerance;
+  constexpr double kAlmostHalf = 0.99 * kPi;  // what closes a half circle is its diameter
+  if (!on_circle || swept_angle(before, arm, arc->normal_W) > kAlmostHalf) return false;
+  fault("bad-arc", s,
+        "this point lies on the arc that has just ended: Creo may list it as a further point of the arc, or "
+        "mean a straight line",
+        "give the points of an arc in one GOTO behind its CIRCLE, or output one point for each arc");
+  return true;
+}
+
+bool ClInterpreter::arc_fits(const ClStatement& s, const Vec3& from, const Vec3& to) {
+  if (rapid_) {
+    fault("bad-arc", s, "an arc stands in a rapid move", "take the RAPID away: an arc needs a feed");
+    return false;
+  }
+  double least_height = kArcTolerance + 1.0;
+  for (const Vec3& tip : {from, to}) {
+    const Vec3 arm = tip - circle_->centre_W;
+    const double radius = flat_in(arm, circle_->normal_W).norm();
+    least_height = std::min(least_height, std::abs(arm.dot(circle_->normal_W)));
+    if (std::abs(radius - circle_->radius) <= kArcTolerance) continue;
+    fault("bad-arc", s,
+          fmt::format("({:.4f}, {:.4f}, {:.4f}) does not lie on the circle of radius {:.4f} mm: its "
+                      "distance from the axis is {:.4f} mm",
+                      tip.x(), tip.y(), tip.z(), circle_->radius, radius),
+          fmt::format("both ends must lie on the circle within {:g} mm", kArcTolerance));
+    return false;
+  }
+  if (least_height <= kArcTolerance) return true;
+  fault("bad-arc", s, "neither end of the arc lies in the plane of its circle",
+        fmt::format("one must, within {:g} mm; the other one may lie beside it where the arc is a helix",
+                    kArcTolerance));
+  return false;
+}
+
+void ClInterpreter::add_arc(const ClStatement& s, const ToolPose& to) {
+  const Circle circle = *circle_;
+  const ToolPose from = pose_;
+  if (!arc_fits(s, from.tip_W, to.tip_W)) {
+    pose_ = to;
+    return;
+  }
+  const Vec3& n = circle.normal_W;
+  const double last = swept_angle(from.tip_W - circle.centre_W, to.tip_W - circle.centre_W, n);
+  const double whole = circle.turns ? 2.0 * kPi * *circle.turns : last;
+  const double further = std::round((whole - last) / (2.0 * kPi));
+  if (further < 0.0 || std::abs(whole - last - 2.0 * kPi * further) * circle.radius > kArcTolerance) {
+    fault("bad-arc", s,
+          fmt::format("TIMES says {:g} turns, and the end lies {:.3f} deg round the circle", *circle.turns,
+                      deg_from_rad(last)),
+          "both must agree: write TIMES with the turns and their fraction");
+    return;
+  }
+  const double rise = (to.tip_W - from.tip_W).dot(n), total = last + 2.0 * kPi * further;
+  // A helix has its centre at the height where each of its turns begins.
+  const bool helix = std::abs(rise) > kArcTolerance;
+  const auto arc_from = [&](const Vec3& tip) {
+    const Vec3 up = helix ? Vec3((tip - circle.centre_W).dot(n) * n) : Vec3(Vec3::Zero());
+    return ClArc{circle.centre_W + up, n};
+  };
+  for (int i = 1; i <= static_cast<int>(further); ++i) {
+    const double share = 2.0 * kPi * i / total;
+    const Vec3 axis = (from.axis_W + share * (to.axis_W - from.axis_W)).normalized();
+    send(s, {from.tip_W + share * rise * n, axis}, arc_from(pose_.tip_W), feed_mm_s_, 0.0);
+  }
+  send(s, to, arc_from(pose_.tip_W), feed_mm_s_, 0.0);
+  if (program_.writer == ClWriter::kCreo) rounded_ = circle;
+}
+
+}  // namespace swarf::program

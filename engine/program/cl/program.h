@@ -1,0 +1,146 @@
+// What a CL file says: the moves of the cutter in the work frame, each from where the one before ended.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/diagnostics.h"
+#include "base/frames.h"
+
+namespace swarf::program {
+
+/// The tip goes round `centre_W` counter-clockwise about `normal_W`; it stays an arc until it is cut. Where
+/// its ends lie at different heights along the normal it is a helix of at most one turn.
+struct ClArc {
+  Vec3 centre_W = Vec3::Zero();
+  Vec3 normal_W = Vec3::UnitZ();  ///< unit
+};
+
+/// One motion statement.
+struct ClMove {
+  ToolPose from, to;         ///< W
+  std::optional<ClArc> arc;  ///< none: a straight move
+  double feed_mm_s = 0.0;    ///< 0: rapid (FEDRAT is mm/min in the text)
+  double dwell_s = 0.0;      ///< the tool stands this long before the move (DELAY, cycles)
+  double spindle_rpm = 0.0;  ///< 0 while the spindle stands; below 0 counter-clockwise (CCLW)
+  int tool = -1;             ///< index into ClProgram::tools; -1: none was loaded
+  int line = 0, column = 0;
+};
+
+/// A tool as the program calls it: LOADTL/3, LOAD/TOOL,3 or TOOL PATH/...,TOOL,MILL-20MM.
+struct ClTool {
+  int number = 0;    ///< 0: called by its name
+  std::string name;  ///< empty: called by its number
+  SourceLocation where;
+};
+
+/// CUTTER or TLDATA as written, to be held against the scene's cutter.
+struct ClCutter {
+  std::vector<double> parameters;  ///< d, r, e, f, alpha, beta, h as far as given; mm, degrees
+  int tool = -1;  ///< index into ClProgram::tools, of the tool that the next motion is made with
+  SourceLocation where;
+};
+
+/// Text that is kept but does nothing: PARTNO, PPRINT, INSERT, COOLNT, PAINT, ...
+struct ClNote {
+  std::string word, text;
+  int line = 0;
+};
+
+/// Who wrote a CL file, where it bears a sure mark; it settles what words mean that systems use differently.
+enum class ClWriter {
+  kUnknown,
+  kSwarf,      ///< $$ SWARF CL DATA
+  kNx,         ///< TOOL PATH/ or TLDATA/
+  kCreo,       ///< $$* Pro/CLfile, or data in comments: $$-> CSYS
+  kCatia,      ///< $$*CATIA0, $$ CATIA APT VERSION
+  kMastercam,  ///< $$Machine Group-
+  kCamWorks,   ///< CAMWorks or SOLIDWORKS CAM in a comment or PPRINT before the first motion
+  kMakino,     ///< PPRINT/APTCL-SPEC,MAKINO-FF
+};
+/// "NX" and so on.
+const char* writer_name(ClWriter writer);
+
+/// What the points between CUTCOM/LEFT or RIGHT and CUTCOM/OFF are.
+enum class ClPoints {
+  kCentre,   ///< "centre": of the cutter; the control's register holds its wear, which is taken as 0
+  kContour,  ///< "contour": of the part; the control moves the cutter its radius aside
+};
+
+/// Radius of a tool that the scene knows.
+struct ClToolRadius {
+  int number = 0;
+  std::string name;
+  double radius_mm = 0.0;
+};
+
+/// What a CL file leaves open and its user knows.
+struct ClOptions {
+  std::optional<ClPoints> cutcom;
+  /// CIRCLE runs clockwise about its vector (true), or counter-clockwise. None: as its writer does.
+  std::optional<bool> circle_clockwise;
+  std::vector<ClToolRadius> tools;  ///< for "contour", of tools without CUTTER or TLDATA
+};
+
+struct ClProgram {
+  std::string file;
+  ClWriter writer = ClWriter::kUnknown;
+  std::string writer_reason;         ///< "TOOL PATH on line 3"; empty: no mark
+  std::vector<std::string> remarks;  ///< what was taken as given, for the report
+  ToolPose start;                    ///< the first complete position: nothing is assumed before it
+  int start_line = 0;                ///< 0: the program has none
+  std::vector<ClMove> moves;         ///< stays empty in stream_cl()
+  std::vector<ClTool> tools;         ///< each once, in the order of their first call
+  std::vector<ClCutter> cutters;
+  std::vector<ClNote> notes;  ///< stays empty in stream_cl()
+  int statements = 0;         ///< comments not counted
+  long motions = 0;           ///< moves that came
+};
+
+/// Takes moves and notes as they are read.
+class ClSink {
+ public:
+  virtual ~ClSink() = default;
+  virtual void move(const ClMove& move) = 0;
+  virtual void note(ClNote note) = 0;
+};
+
+/// Lengths of tool axes may differ from 1 by this much (rounded output of CAM systems); they are normalised.
+inline constexpr double kAxisLengthTolerance = 1e-4;
+/// The ends of an arc may miss its circle by this much, mm.
+inline constexpr double kArcTolerance = 5e-3;
+
+/// Parses CL data as NX (.cls), Creo (.ncl), CATIA (.aptsource), SolidWorks CAM (.clt) and others write it;
+/// README.md lists the words that are read, noted and refused, and what each writer means by them. Problems
+/// go to `diagnostics` with line and column:
+///   "unknown-word", "unsupported-word", "bad-statement", "bad-number", "wrong-arguments", "axis-not-unit",
+///   "missing-axis", "no-position", "missing-feed", "missing-spindle", "bad-arc", "circle-sense",
+///   "bad-cycle", "bad-nurbs", "no-nurbs", "bad-system", "cutcom-meaning", "compensation-*",
+///   "word-after-end", "from-not-first", "no-motion", "no-home", "out-of-range", "writer-contradiction"
+/// Rules:
+///   - The tool axis is (0,0,1) until one is given; a GOTO of three numbers keeps it. After MULTAX/ON one has
+///     to be given, MULTAX/OFF turns it back to (0,0,1). TLAXIS gives one for what follows.
+///   - RAPID holds for one move.
+///   - CIRCLE/cx,cy,cz,i,j,k,r makes the next GOTO an arc about (i,j,k). NX means clockwise, as seen against
+///     the vector (its help says so, and so run all 676 arcs of the programs in assets/programs/stepnode, of
+///     NX and of Makino's system); Creo means counter-clockwise (its right-hand rule). From another writer
+///     INDIRV or ClOptions must tell, else "circle-sense". An arc that ends where it starts is a whole
+///     circle; one that ends at another height is a helix.
+///   - TLON,GOFWD/(CIRCLE/..),ON,(LINE/..) of CATIA starts along INDIRV and ends at the line's second point.
+///   - MSYS and CSYS give origin, X and Y axis of the system that the positions after it are in; the work
+///     frame W is the one without any. $$*CATIA0 gives a machining axis system: W is the file's first.
+///   - ORIGIN/x,y,z is subtracted from positions, TRANS/x,y,z added (ISO 4343).
+///   - After CYCLE/... each GOTO is a hole, until CYCLE/OFF (cycle.h).
+ClProgram parse_cl(const std::string& text, const std::string& file, Diagnostics& diagnostics,
+                   const ClOptions& options = {});
+
+/// Reads the file (refusing what is empty or not text) and parses it. Throws InputError.
+ClProgram load_cl(const std::string& path, Diagnostics* warnings = nullptr, const ClOptions& options = {});
+
+/// The same, line by line into `sink`: memory does not grow with the file. Problems go to `diagnostics`;
+/// moves that came before an error have reached the sink.
+ClProgram stream_cl(const std::string& path, ClSink& sink, Diagnostics& diagnostics,
+                    const ClOptions& options = {});
+
+}  // namespace swarf::program

@@ -1,0 +1,188 @@
+// From segments to complete moves: axis values, poses, law, time.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/units.h"
+#include "program/control/control.h"
+
+namespace swarf::program::nc {
+namespace {
+
+constexpr double kTurn = 2.0 * kPi;
+/// Shorter ways are rounding of coordinates (mm); a segment without way and without dwell is none.
+constexpr double kNoWay = 1e-10;
+
+/// Way of the rotary axes as F counts it: degrees, unless radii are set.
+double turn_way(const std::array<double, 3>& from, const std::array<double, 3>& to,
+                const std::array<double, 3>& radii_mm) {
+  double sum = 0.0;
+  for (size_t i = 0; i < 3; ++i) {
+    const double weight = radii_mm[i] / kDegreePerMm;
+    sum += weight * weight * (to[i] - from[i]) * (to[i] - from[i]);
+  }
+  return deg_from_rad(std::sqrt(sum));
+}
+
+double arc_way(const Segment& arc, double angle) {
+  const Vec3 a = arc.from - arc.centre;
+  const double radius = (a - a.dot(arc.normal) * arc.normal).norm();
+  const double height = (arc.to - arc.from).dot(arc.normal);
+  return std::hypot(radius * angle, height);
+}
+
+}  // namespace
+
+void Control::set_time(const Segment& segment, double way, double turn, double share, NcMove& move) const {
+  if (segment.motion == Motion::kRapid) return;
+  if (segment.feed_mode == FeedMode::kInverseTime) {
+    move.duration_s = share * 60.0 / segment.feed;
+    return;
+  }
+  const bool per_minute = segment.feed_mode == FeedMode::kPerMinute;
+  const double rate = per_minute ? 1.0 : std::abs(segment.spindle_rpm);
+  const double mm_s = segment.feed * segment.feed_unit_mm * rate / 60.0, deg_s = segment.feed * rate / 60.0;
+  const bool tip_alone = tcp_ != Tcp::kOff || turn == 0.0;
+  if (way > kNoWay && (tip_alone || feed_rule_ == FeedRule::kLinearFirst)) {
+    move.duration_s = way / mm_s;
+    if (tip_alone) move.feed_mm_s = mm_s;
+  } else if (way > kNoWay) {
+    move.duration_s = std::hypot(way, turn) / mm_s;
+  } else {
+    move.duration_s = turn / deg_s;
+  }
+}
+
+void Control::place_arc(const Segment& segment, NcMove& move) {
+  const std::array<double, 3>& rotary = segment.rotary_to;
+  if (space_.coordinates() == Coordinates::kWork) {
+    const Pose X_WP = space_.X_WP();
+    ClArc arc{X_WP * segment.centre, X_WP.linear() * segment.normal};
+    // The true tip stands off the compensated one along the axis when both lengths differ.
+    const Vec3 linear = space_.linear_of(move.q_to);
+    const LinearMap real = space_.real(rotary);
+    const LinearMap& assumed = space_.compensated(rotary);
+    arc.centre_W += (real.base_W + real.columns_W * linear) - (assumed.base_W + assumed.columns_W * linear);
+    move.arc = arc;
+    return;
+  }
+  if (!axes_rigid_) {
+    fail("arc-axes", segment.place.column,
+         "X Y Z of this machine are not perpendicular in the work: an arc of them is no circle",
+         "program the arc with TCP on");
+  }
+  const LinearMap& map = space_.real(rotary);
+  const Vec3 centre = space_.linear_from_program(segment.centre, rotary);
+  const Vec3 normal = space_.frame().linear() * segment.normal;
+  const double mirror = map.columns_W.determinant() < 0.0 ? -1.0 : 1.0;
+  move.arc = ClArc{map.base_W + map.columns_W * centre, mirror * (map.columns_W * normal).normalized()};
+}
+
+void Control::emit(const Segment& segment) {
+  if (!segment.is_arc()) {
+    emit_piece(segment, segment.to, segment.rotary_to, 1.0, 0.0);
+    return;
+  }
+  const double last = swept(segment);
+  const double whole = last + kTurn * segment.further_turns;
+  Segment piece = segment;
+  piece.exact_stop = false;  // whole turns go on
+  const double rise = (segment.to - segment.from).dot(segment.normal);
+  for (int i = 0; i < segment.further_turns; ++i) {
+    const double share = kTurn / whole;
+    piece.to = piece.from + share * rise * segment.normal;
+    for (size_t k = 0; k < 3; ++k) {
+      piece.rotary_to[k] = piece.rotary_from[k] + share * (segment.rotary_to[k] - segment.rotary_from[k]);
+    }
+    emit_piece(piece, piece.to, piece.rotary_to, share, kTurn);
+    piece.from = piece.to;
+    piece.rotary_from = piece.rotary_to;
+    piece.dwell_s = 0.0;
+  }
+  piece.to = segment.to;
+  piece.rotary_to = segment.rotary_to;
+  piece.exact_stop = segment.exact_stop;
+  emit_piece(piece, piece.to, piece.rotary_to, last / whole, last);
+}
+
+void Control::emit_piece(const Segment& segment, const Vec3& p_to, const std::array<double, 3>& rotary_to,
+                         double share, double angle) {
+  NcMove move;
+  const Vec3 linear = segment.machine ? p_to : space_.linear_from_program(p_to, rotary_to);
+  move.q_to = space_.axis_values(linear, rotary_to);
+  if (!move.q_to.allFinite()) {
+    fail("out-of-range", segment.place.column, "a coordinate of this block is not a finite number",
+         "write numbers that a machine can reach");
+  }
+  const bool arc = angle > 0.0;
+  const bool stands = !arc && (move.q_to - q_).cwiseAbs().maxCoeff() <= kNoWay;
+  if (stands && segment.dwell_s == 0.0) return;
+  const double turn = segment.turns_rotaries ? turn_way(segment.rotary_from, rotary_to, feed_radii_mm_) : 0.0;
+  move.law = segment.machine      ? segment.law
+             : tcp_ == Tcp::kOff  ? BlockLaw::kJoint
+             : tcp_ == Tcp::kAxes ? BlockLaw::kTcpAxes
+                                  : BlockLaw::kTcp;
+  if (turn > 0.0 && move.law != BlockLaw::kJoint && space_.length() != 0.0 && setup_.machine.gauge_M &&
+      active_tool() != nullptr && std::abs(active_tool()->length_mm - space_.length()) > 1e-9) {
+    fail("tcp-length", segment.place.column,
+         fmt::format("TCP turns about a tip {:.4f} mm from the gauge line, but the tool is {:.4f} mm long",
+                     space_.length(), active_tool()->length_mm),
+         "compensate the length of the tool in the spindle");
+  }
+  const LinearMap& map = space_.real(rotary_to);
+  move.from = pose_;
+  move.to = {map.base_W + map.columns_W * linear, map.axis_W};
+  if (arc) {
+    place_arc(segment, move);
+    if (move.law == BlockLaw::kJoint) move.law = BlockLaw::kTcpAxes;  // standing rotaries: the same motion
+  }
+  if (!stands)
+    set_time(segment, arc ? arc_way(segment, angle) : (p_to - segment.from).norm(), turn, share, move);
+  send(segment, move);
+}
+
+void Control::send(const Segment& segment, NcMove& move) {
+  move.q_from = q_;
+  move.rapid = segment.motion == Motion::kRapid;
+  move.dwell_s = segment.dwell_s;
+  move.exact_stop = segment.exact_stop;
+  move.corner_tolerance_mm = segment.corner_tolerance_mm;
+  move.spindle_rpm = segment.spindle_rpm;
+  move.tool = tool_;
+  move.file = segment.place.file;
+  move.line = segment.place.line;
+  move.column = segment.place.column;
+  if (!move.rapid && tool_ >= 0) {
+    auto& used = summary_.tools_used;
+    if (used.empty() || (used.back() != tool_ && std::find(used.begin(), used.end(), tool_) == used.end()))
+      used.push_back(tool_);
+    if (!length_on_ && setup_.machine.gauge_M && active_tool()->length_mm > 0.0) {
+      warn_once(
+          "length-not-compensated", segment.place.column,
+          fmt::format("the tool length compensation is off: programmed coordinates are those of the gauge "
+                      "line, the tip stands {:.4f} mm further",
+                      active_tool()->length_mm),
+          fmt::format("switch it on before the cut ({}), unless the program means it so", words_.length_on));
+    }
+  }
+  if (++summary_.moves > setup_.moves_max) {
+    fail("too-many-moves", segment.place.column,
+         fmt::format("more than {} moves: the program seems to loop for ever here", setup_.moves_max),
+         "correct the loop, or raise the limit");
+  }
+  jumps_ = 0;
+  q_ = move.q_to;
+  pose_ = move.to;
+  if (!sink_.move(move)) throw ProgramStopped();
+}
+
+void Control::jump() {
+  constexpr long kJumpsWithoutMove = 1'000'000;
+  if (++jumps_ <= kJumpsWithoutMove) return;
+  fail("endless-loop", 0,
+       fmt::format("{} jumps and calls without any move: the program never ends here", jumps_),
+       "correct the condition of the loop");
+}
+
+}  // namespace swarf::program::nc

@@ -1,0 +1,197 @@
+// Variables of custom macro B: local, common and system ones.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "base/units.h"
+#include "program/fanuc/reader.h"
+
+namespace swarf::program::nc::fanuc {
+namespace {
+
+constexpr long kLocals = 33;
+constexpr long kFirstCommon = 100;
+
+}  // namespace
+
+void Fanuc::assignment() {
+  const size_t place = reader_.at();
+  std::string name;
+  const long number = reader_.parameter_number(name);
+  reader_.skip_space();
+  if (reader_.peek() != '=')
+    control_.fail("bad-parameter", reader_.column(), "'=' is missing after the variable", "write #1=2.5");
+  reader_.skip();
+  assign(number, reader_.open_formula(), place);
+}
+
+/// The call whose #1 to #33 hold here.
+size_t Fanuc::locals() const {
+  size_t level = calls_.size() - 1;
+  while (level > 0 && !calls_[level].own_locals) --level;
+  return level;
+}
+
+/// The comment behind #3000=1 and #3006=1, which the control shows: ": text".
+std::string Fanuc::comment_behind() const {
+  const std::string_view rest = reader_.line().substr(reader_.at());
+  const size_t open = rest.find('('), close = rest.find(')');
+  if (open == std::string_view::npos || close == std::string_view::npos || close < open) return "";
+  return ": " + std::string(rest.substr(open + 1, close - open - 1));
+}
+
+void Fanuc::assign(long number, double value, size_t place) {
+  const int at = reader_.column_of(place);
+  const bool vacates = std::isnan(value);  // #1=#0
+  if (number >= 1 && number <= kLocals) {
+    Call& here = calls_[locals()];
+    const uint64_t bit = uint64_t{1} << number;
+    here.locals[static_cast<size_t>(number)] = value;
+    here.assigned = vacates ? here.assigned & ~bit : here.assigned | bit;
+  } else if (number >= kFirstCommon && number <= kLastCommon) {
+    commons_[static_cast<size_t>(number)] = value;
+    common_set_[static_cast<size_t>(number)] = !vacates;
+  } else if (vacates) {
+    control_.fail("undefined-parameter", at, fmt::format("#{} is given a vacant variable", number),
+                  "assign the variable before it is read");
+  } else if (number == 3000) {
+    control_.fail("program-alarm", at,
+                  fmt::format("the program raises its alarm {:g} here{}", value, comment_behind()),
+                  "find out why the program stops itself");
+  } else if (number == 3006) {
+    control_.note("#3006", fmt::format("stop {:g}{}", value, comment_behind()));
+  } else if (number == 3003) {
+    control_.without_effect("#3003 (single block off)");
+  } else if (number == 3004 && value >= 0.0 && value < 4.0) {
+    control_.without_effect("#3004 (feed hold and override off)");
+  } else {
+    control_.fail("bad-parameter", at, fmt::format("#{} cannot be assigned", number),
+                  "programs may set #1 to #33 and #100 to #999; offsets with G10");
+  }
+}
+
+double Fanuc::read(long number, size_t place) {
+  if (number >= 1 && number <= kLocals) {
+    const Call& here = calls_[locals()];
+    if ((here.assigned >> number & 1u) != 0) return here.locals[static_cast<size_t>(number)];
+  } else if (number >= kFirstCommon && number <= kLastCommon && common_set_[static_cast<size_t>(number)]) {
+    return commons_[static_cast<size_t>(number)];
+  } else if (number > kLastCommon) {
+    return system_variable(number, place);
+  }
+  control_.fail("undefined-parameter", reader_.column_of(place),
+                fmt::format("#{} is vacant: nothing assigned it", number), "assign it before it is read");
+}
+
+bool Fanuc::vacant(long number) const {
+  if (number >= 1 && number <= kLocals) return (calls_[locals()].assigned >> number & 1u) == 0;
+  if (number >= kFirstCommon && number <= kLastCommon) return !common_set_[static_cast<size_t>(number)];
+  return number == 0;
+}
+
+double Fanuc::read_named(std::string_view name, size_t place) {
+  control_.fail("bad-parameter", reader_.column_of(place),
+                fmt::format("#<{}>: this dialect has no named variables", name), "write #100");
+}
+
+bool Fanuc::exists(std::string_view /*name*/) {
+  return false;
+}
+
+/// G code that holds in a group of the manual's table (#4001 to #4022), as far as programs can change it
+/// here.
+std::optional<double> Fanuc::modal_code(long group) const {
+  switch (group) {
+    case 1:
+      return motion_ / 10.0;
+    case 2:
+      return 17.0 + static_cast<int>(control_.plane());
+    case 3:
+      return incremental_ ? 91.0 : 90.0;
+    case 5:
+      return control_.feed_mode() == FeedMode::kInverseTime ? 93.0
+             : control_.feed_mode() == FeedMode::kPerMinute ? 94.0
+                                                            : 95.0;
+    case 6:
+      return control_.inches() ? 20.0 : 21.0;
+    case 7:
+      return control_.compensation() == Compensation::kOff    ? 40.0
+             : control_.compensation() == Compensation::kLeft ? 41.0
+                                                              : 42.0;
+    case 8:
+      return length_code_ / 10.0;
+    case 9:
+      return cycle_ / 10.0;
+    case 10:
+      return retract_to_r_ ? 99.0 : 98.0;
+    case 11:
+      return scaled_ ? 51.0 : 50.0;
+    case 12:
+      return calls_.back().modals > 0 ? 66.0 : 67.0;
+    case 13:
+      return 97.0;
+    case 14:
+      return control_.work_offset() > 100 ? 54.1 : 53.0 + control_.work_offset();
+    case 16:
+      return turn_code_ / 10.0;
+    case 17:
+      return polar_.on ? 16.0 : 15.0;
+    case 22:
+      return mirrored_ ? 51.1 : 50.1;
+    default:
+      return std::nullopt;
+  }
+}
+
+double Fanuc::system_variable(long number, size_t place) {
+  const auto in_words = [&](double value, long word) {
+    return word < 3 ? value / control_.mm(1.0) : deg_from_rad(value);
+  };
+  const auto programmed = [&](long word) {
+    const double value = control_.position()[static_cast<size_t>(word)];
+    if (!std::isfinite(value))
+      control_.fail("start-unknown", reader_.column_of(place),
+                    fmt::format("#{} asks for a position that is not known yet", number),
+                    "give the start position in the scene");
+    return in_words(value, word);
+  };
+  const auto offset = [&](long from, int first) {
+    const long word = (number - from) % 20;
+    const int axis = control_.axis_of(static_cast<AxisWord>(word));
+    const int of = first + static_cast<int>((number - from) / 20);
+    return axis < 0 ? 0.0 : in_words(control_.offset_origin(of)[axis], word);
+  };
+  const auto is_offset = [&](long from, long count) {
+    return number >= from && number < from + 20 * count && (number - from) % 20 < kAxisWords;
+  };
+  if (number >= 5001 && number <= 5006) return programmed(number - 5001);
+  if (number >= 5041 && number <= 5046) return programmed(number - 5041);
+  if (number >= 5021 && number <= 5026) {
+    const long word = number - 5021;
+    const int axis = control_.axis_of(static_cast<AxisWord>(word));
+    return axis < 0 ? 0.0 : in_words(control_.axis_values()[axis], word);
+  }
+  if (is_offset(5221, 6)) return offset(5221, 1);
+  if (is_offset(7001, 48)) return offset(7001, 101);
+  if (is_offset(14001, 300)) return offset(14001, 101);
+  if (number >= 4001 && number <= 4022) {
+    if (const std::optional<double> code = modal_code(number - 4000)) return *code;
+  }
+  for (size_t slot = 0; slot < 4; ++slot) {
+    // #10001: wear of lengths, #11001: lengths, #12001: wear of radii, #13001: radii.
+    const long first = 10000 + 1000 * static_cast<long>(slot % 2 == 1 ? slot - 1 : slot + 1);
+    if (number > first && number < first + 1000)
+      return tool_offset(static_cast<int>(number - first), slot, reader_.column_of(place)) / control_.mm(1.0);
+  }
+  if (number == 4107) return d_number_;
+  if (number == 4109) return control_.feed();
+  if (number == 4111) return h_number_;
+  if (number == 4119) return control_.speed_rpm();
+  if (number == 4120) return control_.selected_number();
+  if (number == 4130) return control_.work_offset() > 100 ? control_.work_offset() - 100 : 0.0;
+  control_.fail("undefined-parameter", reader_.column_of(place),
+                fmt::format("#{} is no variable that can be read here", number),
+                "read #4001 to #4130 (modal codes), #5001 to #5046 (positions) or #5221 to #5326 (offsets)");
+}
+
+}  // namespace swarf::program::nc::fanuc

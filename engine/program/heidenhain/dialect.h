@@ -1,0 +1,14 @@
+// The row of Heidenhain in the table of dialects (program/dialects.h).
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "program/dialects.h"
+
+namespace swarf::program::nc::heidenhain {
+
+Evidence evidence(std::string_view head, std::string_view extension);
+void run(const std::string& path, Control& control);
+
+}  // namespace swarf::program::nc::heidenhain

@@ -1,0 +1,153 @@
+// Tools and blanks of Heidenhain programs.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "program/heidenhain/executor.h"
+
+namespace swarf::program::nc::heidenhain {
+
+/// TOOL CALL 5 Z S3000 F500 DL+0.1 DR+0.05 DR2+0.02; without a number: a new speed or feed alone.
+void Executor::tool_call(BlockReader& reader) {
+  reader.done();
+  const size_t at = reader.offset();
+  const bool text = reader.peek() == '"' || reader.letters() == "QS";
+  const bool named = text || reader.value_follows();
+  std::string name;
+  long number = 0;
+  if (text) {
+    name = reader.text_value();
+  } else if (named) {
+    number = reader.whole_value(0, 65535);
+  }
+  std::optional<nc::Plane> plane;
+  Amount speed, feed, length, radius, corner;
+  while (!reader.done()) {
+    const size_t start = reader.offset();
+    const std::string word(reader.take_letters());
+    if (word == "X" || word == "Y" || word == "Z") {
+      if (plane) reader.fail("word-twice", start, "the tool axis stands twice", "keep one of them");
+      plane = word == "Z" ? nc::Plane::kXY : word == "Y" ? nc::Plane::kZX : nc::Plane::kYZ;
+      continue;
+    }
+    const bool second =
+        word == "DR" && reader.peek() == '2' && (reader.peek_after(1) == '+' || reader.peek_after(1) == '-');
+    if (second) reader.skip();
+    Amount* into = word == "S" ? &speed : word == "F" ? &feed : word == "DL" ? &length : nullptr;
+    if (word == "DR") into = second ? &corner : &radius;
+    if (into == nullptr) {
+      refuse_word(reader, start, word.empty() ? std::string(1, reader.peek()) : word);
+    }
+    if (into->given)
+      reader.fail("word-twice", start, fmt::format("{} stands twice", word), "keep one of them");
+    *into = {reader.value(), start, true, false};
+  }
+  if (speed && !(speed.value >= 0.0))
+    reader.fail("out-of-range", speed.offset, "S is below zero", "the direction is M3 or M4");
+  if (feed && !(feed.value > 0.0))
+    reader.fail("bad-feed", feed.offset, fmt::format("F {:g} is not a feed", feed.value), "F500");
+  if (!named && (length || radius || corner) && control_.active_tool() == nullptr)
+    reader.fail("missing-word", at, "TOOL CALL changes a tool, and none is in the spindle", "TOOL CALL 5 Z");
+  if (named) {
+    const int column = reader.column(at);
+    const int index = text          ? control_.find_tool(name, column)
+                      : number == 0 ? -1
+                                    : control_.find_tool(static_cast<int>(number), column);
+    control_.select_tool(index, static_cast<int>(number));
+    control_.change_tool();
+    tangent_.reset();
+  }
+  if (plane) control_.set_plane(*plane);
+  if (named || length || radius || corner) {
+    const NcTool* tool = control_.active_tool();
+    const double own = tool == nullptr ? 0.0 : tool->length_mm;
+    control_.set_length_compensation(own + control_.mm(length.value), tool != nullptr);
+    delta_radius_ = control_.mm(radius.value);
+    delta_corner_ = control_.mm(corner.value);
+    parameters_.set_q(108,
+                      tool == nullptr ? 0.0 : (0.5 * tool->diameter_mm + delta_radius_) / control_.mm(1.0));
+    parameters_.set_q(114, own / control_.mm(1.0));
+    if (named) tool_feed_ = 0.0;
+  }
+  if (speed) control_.set_speed(speed.value);
+  if (feed) tool_feed_ = feed_ = feed.value;
+}
+
+/// TOOL DEF 5 makes a tool ready. TOOL DEF 5 L+50 R+5 describes it: the table has to say the same, or there
+/// is no table.
+void Executor::tool_ready(BlockReader& reader) {
+  reader.done();
+  const size_t at = reader.offset();
+  const bool text = reader.peek() == '"' || reader.letters() == "QS";
+  const std::string name = text ? reader.text_value() : std::string();
+  const long number = text ? 0 : reader.whole_value(0, 65535);
+  Amount length, radius;
+  while (!reader.done()) {
+    const size_t start = reader.offset();
+    const std::string word(reader.take_letters());
+    Amount* into = word == "L" ? &length : word == "R" ? &radius : nullptr;
+    if (into == nullptr) refuse_word(reader, start, word.empty() ? std::string(1, reader.peek()) : word);
+    if (into->given)
+      reader.fail("word-twice", start, fmt::format("{} stands twice", word), "keep one of them");
+    *into = {reader.value(), start, true, false};
+  }
+  int index = -1;
+  if (text) {
+    index = control_.find_tool(name, reader.column(at));
+  } else if (number != 0) {
+    index = control_.find_tool(static_cast<int>(number), reader.column(at));
+  }
+  if (!length && !radius) {
+    control_.without_effect("TOOL DEF");
+    return;
+  }
+  if (index < 0) {
+    defined_radius_[static_cast<int>(number)] = control_.mm(radius.value);
+    return;
+  }
+  const NcTool& tool = control_.tool_at(index);
+  const bool other_length = length && std::abs(control_.mm(length.value) - tool.length_mm) > 1e-6;
+  const bool other_radius = radius && std::abs(control_.mm(radius.value) - 0.5 * tool.diameter_mm) > 1e-6;
+  if (other_length || other_radius)
+    reader.fail(
+        "words-conflict", at,
+        fmt::format("the program says L {:g} and R {:g} mm of this tool, the tool table L {:g} and R {:g} mm",
+                    control_.mm(length.value), control_.mm(radius.value), tool.length_mm,
+                    0.5 * tool.diameter_mm),
+        "correct one of them, or write TOOL DEF with the number alone");
+}
+
+/// The blank is the scene's; what the program says of it is kept as a note.
+void Executor::blank_form(BlockReader& reader) {
+  reader.done();
+  const size_t start = reader.offset();
+  if (!reader.take("FORM"))
+    reader.fail("missing-word", start, "BLK without FORM", "BLK FORM 0.1 Z X+0 Y+0 Z-20");
+  const size_t at = (reader.done(), reader.offset());
+  const std::string text(reader.rest());
+  reader.move_to(at);
+  if (reader.value_follows()) {
+    const double number = reader.value();
+    if (number != 0.1 && number != 0.2)
+      reader.fail("out-of-range", at, "BLK FORM is 0.1 or 0.2", "BLK FORM 0.1 Z X+0 Y+0 Z-20");
+    const bool lower = number == 0.1;
+    bool axis = false;
+    for (const char* letter : {"X", "Y", "Z"}) {
+      const size_t here = reader.offset();
+      if (axis || !lower || !reader.take(letter)) continue;
+      axis = !reader.value_follows();
+      if (!axis) reader.move_to(here);
+    }
+    const MotionWords words = read_motion_words(reader, kAxesAllowed);
+    if (words.any_rotary() || !words.axes[0] || !words.axes[1] || !words.axes[2])
+      reader.fail("missing-word", at, "a corner of the blank has X, Y and Z", "BLK FORM 0.2 X+100 Y+100 Z+0");
+  } else if (!reader.take("CYLINDER") && !reader.take("ROTATION") && !reader.take("FILE")) {
+    reader.fail("unknown-word", at, "this kind of blank is not known",
+                "BLK FORM 0.1, BLK FORM 0.2, CYLINDER");
+  } else {
+    reader.rest();
+  }
+  control_.note("BLK FORM", text);
+}
+
+}  // namespace swarf::program::nc::heidenhain

@@ -1,0 +1,50 @@
+// What the readers of letter blocks (LinuxCNC, Fanuc) share: their files, the words of the block being read,
+// and the checks that every dialect of ISO words makes of them.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "program/letters/letter_block.h"
+#include "program/letters/line_source.h"
+
+namespace swarf::program::nc {
+
+class LetterDialect : public Parameters {
+ protected:
+  LetterDialect(const std::string& path, Control& control, const FormulaSyntax& formula)
+      : control_(control), path_(path), reader_(formula, *this, control) {}
+
+  /// The file, opened once.
+  LineSource& open(const std::string& path);
+  /// Counts a line that is about to be executed and gives errors its place.
+  void at_line(const LineSource& source);
+  /// True for a line with '%', which must stand alone; the second one ends the program. So does one that
+  /// blocks stand before, unless they come `in_pairs`: then it is a fault.
+  bool percent(std::string_view line, bool in_pairs);
+  /// Warns of a main program that ends with its file: it may have been cut off.
+  void warn_of_missing_end(const char* ends);
+  /// Fails when the block has the letter where it means nothing.
+  void check_letter(char letter, bool allowed, const char* used_with);
+  /// Fails when the block lacks the letter.
+  void need(char letter, const char* with);
+  /// Fails for F that is not above zero, or S below it.
+  void check_feed_and_speed();
+
+  int column(char letter) const { return reader_.column_of(block_.place(letter)); }
+  int g_column(int group) const { return reader_.column_of(block_.g_places[static_cast<size_t>(group)]); }
+
+  Control& control_;
+  std::string path_, kept_line_;
+  FormulaReader reader_;
+  LetterBlock block_;
+  std::vector<std::unique_ptr<LineSource>> sources_;
+  bool ended_ = false;
+
+ private:
+  bool percent_seen_ = false;
+};
+
+}  // namespace swarf::program::nc

@@ -1,0 +1,98 @@
+// Position patterns of Siemens 840D: where the cycle of MCALL drills.
+//
+//   HOLES1(SPCA,SPCO,STA1,FDIS,DBH,NUM)            a row: SPC + (FDIS + n DBH) (cos STA1, sin STA1)
+//   HOLES2(CPA,CPO,RAD,STA1,INDA,NUM)              a circle: CP + RAD at STA1 + n INDA (0: 360 / NUM)
+//   CYCLE801(SPCA,SPCO,STA,DIS1,DIS2,NUM1,NUM2)    a grid: SPC + n DIS1 along STA + m DIS2 across it
+//
+// A row begins at the end that is nearer to the tool, a grid at the nearest corner.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "program/siemens/executor.h"
+#include "program/siemens/functions.h"
+
+namespace swarf::program::nc::siemens {
+
+namespace {
+
+constexpr int kPlacesMax = 10'000;
+
+int count_of(const CycleCall& call, size_t index, const LineRef& line) {
+  const int count = whole_argument(call, index, line, std::nullopt);
+  if (count >= 1 && count <= kPlacesMax) return count;
+  refuse(line, call.offsets[index], "out-of-range", fmt::format("{} places are no pattern", count),
+         fmt::format("1 to {} places", kPlacesMax));
+}
+
+}  // namespace
+
+/// The places of a pattern in their order, mm along the first and second axis of the plane.
+std::vector<Vec2> Executor::places(const CycleCall& call) {
+  const auto length = [&](size_t n) { return control_.mm(argument(call, n, *line_, std::nullopt)); };
+  const auto along = [&](double deg, double way) {
+    const std::vector<Value> angle = {Value::real(deg)};
+    return Vec2(way * call_function("COS", angle, *line_, 0).number,
+                way * call_function("SIN", angle, *line_, 0).number);
+  };
+  const nc::PlaneAxes plane = nc::axes_of(control_.plane());
+  const Vec3 now = control_.position_xyz().cwiseQuotient(shape_);
+  const Vec2 here(now[plane.first], now[plane.second]), reference(length(0), length(1));
+  const auto nearer = [&](const Vec2& a, const Vec2& b) { return (a - here).norm() < (b - here).norm(); };
+  std::vector<Vec2> all;
+  if (call.name == "HOLES1") {
+    const double angle = argument(call, 2, *line_, 0.0), first = length(3), step = length(4);
+    const int count = count_of(call, 5, *line_);
+    only_zero(call, 6, call.arguments.size());
+    for (int n = 0; n < count; ++n) all.push_back(reference + along(angle, first + n * step));
+    if (nearer(all.back(), all.front())) std::reverse(all.begin(), all.end());
+  } else if (call.name == "HOLES2") {
+    const double radius = length(2), start = argument(call, 3, *line_, 0.0);
+    const int count = count_of(call, 5, *line_);
+    const double step = argument(call, 4, *line_, 0.0);
+    only_zero(call, 6, call.arguments.size());
+    for (int n = 0; n < count; ++n)
+      all.push_back(reference + along(start + (step == 0.0 ? 360.0 * n / count : n * step), radius));
+  } else {
+    const double angle = argument(call, 2, *line_, 0.0);
+    const Vec2 one = along(angle, length(3)), other = along(angle + 90.0, length(4));
+    const int columns = count_of(call, 5, *line_), rows = count_of(call, 6, *line_);
+    only_zero(call, 7, call.arguments.size());
+    if (columns > kPlacesMax / rows) {
+      fail("out-of-range", call.offsets[6], fmt::format("{} times {} places are no pattern", columns, rows),
+           fmt::format("1 to {} places", kPlacesMax));
+    }
+    const auto place = [&](int column, int row) { return Vec2(reference + column * one + row * other); };
+    const bool from_right = nearer(place(columns - 1, 0), place(0, 0));
+    const bool from_top =
+        nearer(place(from_right ? columns - 1 : 0, rows - 1), place(from_right ? columns - 1 : 0, 0));
+    for (int m = 0; m < rows; ++m) {
+      for (int n = 0; n < columns; ++n) {
+        const bool back = from_right != (m % 2 == 1);
+        all.push_back(place(back ? columns - 1 - n : n, from_top ? rows - 1 - m : m));
+      }
+    }
+  }
+  return all;
+}
+
+/// Rapid to each place, where the cycle of MCALL works.
+void Executor::pattern(const CycleCall& call) {
+  if (!control_.started()) {
+    fail("start-unknown", call.offset, "a pattern starts, and the position is not known yet",
+         "position all axes before it");
+  }
+  const nc::PlaneAxes plane = nc::axes_of(control_.plane());
+  for (const Vec2& place : places(call)) {
+    nc::Target target;
+    target.column = column(call.offset);
+    target.set(plane.first, place.x() * shape_[plane.first], false);
+    target.set(plane.second, place.y() * shape_[plane.second], false);
+    control_.line(nc::Motion::kRapid, target);
+    if (modal_cycle_) drill(drilling(*modal_cycle_), *modal_cycle_);
+  }
+  last_.valid = false;
+  pattern_done_ = true;
+}
+
+}  // namespace swarf::program::nc::siemens
