@@ -1,11 +1,14 @@
 // From segments to complete moves: axis values, poses, law, time.
+#include "program/control/emit.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/units.h"
-#include "program/control/control.h"
+#include "program/control/curve.h"
+#include "program/control/tools.h"
 
 namespace swarf::program::nc {
 namespace {
@@ -32,9 +35,8 @@ double arc_way(const Segment& arc, double angle) {
   return std::hypot(radius * angle, height);
 }
 
-}  // namespace
-
-void Control::set_time(const Segment& segment, double way, double turn, double share, NcMove& move) const {
+void set_time(const ModalState& modal, const Offsets& offsets, const Segment& segment, double way,
+              double turn, double share, NcMove& move) {
   if (segment.motion == Motion::kRapid) return;
   if (segment.feed_mode == FeedMode::kInverseTime) {
     move.duration_s = share * 60.0 / segment.feed;
@@ -43,8 +45,8 @@ void Control::set_time(const Segment& segment, double way, double turn, double s
   const bool per_minute = segment.feed_mode == FeedMode::kPerMinute;
   const double rate = per_minute ? 1.0 : std::abs(segment.spindle_rpm);
   const double mm_s = segment.feed * segment.feed_unit_mm * rate / 60.0, deg_s = segment.feed * rate / 60.0;
-  const bool tip_alone = tcp_ != Tcp::kOff || turn == 0.0;
-  if (way > kNoWay && (tip_alone || feed_rule_ == FeedRule::kLinearFirst)) {
+  const bool tip_alone = offsets.tcp != Tcp::kOff || turn == 0.0;
+  if (way > kNoWay && (tip_alone || modal.feed_rule == FeedRule::kLinearFirst)) {
     move.duration_s = way / mm_s;
     if (tip_alone) move.feed_mm_s = mm_s;
   } else if (way > kNoWay) {
@@ -54,34 +56,115 @@ void Control::set_time(const Segment& segment, double way, double turn, double s
   }
 }
 
-void Control::place_arc(const Segment& segment, NcMove& move) {
+void place_arc(Report& report, WorkSpace& space, Offsets& offsets, const Segment& segment, NcMove& move) {
   const std::array<double, 3>& rotary = segment.rotary_to;
-  if (space_.coordinates() == Coordinates::kWork) {
-    const Pose X_WP = space_.X_WP();
+  if (space.coordinates() == Coordinates::kWork) {
+    const Pose X_WP = space.X_WP();
     ClArc arc{X_WP * segment.centre, X_WP.linear() * segment.normal};
     // The true tip stands off the compensated one along the axis when both lengths differ.
-    const Vec3 linear = space_.linear_of(move.q_to);
-    const LinearMap real = space_.real(rotary);
-    const LinearMap& assumed = space_.compensated(rotary);
+    const Vec3 linear = space.linear_of(move.q_to);
+    const LinearMap real = space.real(rotary);
+    const LinearMap& assumed = space.compensated(rotary);
     arc.centre_W += (real.base_W + real.columns_W * linear) - (assumed.base_W + assumed.columns_W * linear);
     move.arc = arc;
     return;
   }
-  if (!axes_rigid_) {
-    fail("arc-axes", segment.place.column,
-         "X Y Z of this machine are not perpendicular in the work: an arc of them is no circle",
-         "program the arc with TCP on");
+  if (!offsets.axes_rigid) {
+    report.fail("arc-axes", segment.place.column,
+                "X Y Z of this machine are not perpendicular in the work: an arc of them is no circle",
+                "program the arc with TCP on");
   }
-  const LinearMap& map = space_.real(rotary);
-  const Vec3 centre = space_.linear_from_program(segment.centre, rotary);
-  const Vec3 normal = space_.frame().linear() * segment.normal;
+  const LinearMap& map = space.real(rotary);
+  const Vec3 centre = space.linear_from_program(segment.centre, rotary);
+  const Vec3 normal = space.frame().linear() * segment.normal;
   const double mirror = map.columns_W.determinant() < 0.0 ? -1.0 : 1.0;
   move.arc = ClArc{map.base_W + map.columns_W * centre, mirror * (map.columns_W * normal).normalized()};
 }
 
-void Control::emit(const Segment& segment) {
+void send(Control& control, const Segment& segment, NcMove& move) {
+  move.q_from = control.path.q;
+  move.rapid = segment.motion == Motion::kRapid;
+  move.dwell_s = segment.dwell_s;
+  move.exact_stop = segment.exact_stop;
+  move.corner_tolerance_mm = segment.corner_tolerance_mm;
+  move.spindle_rpm = segment.spindle_rpm;
+  move.tool = control.tools.active;
+  move.file = segment.place.file;
+  move.line = segment.place.line;
+  move.column = segment.place.column;
+  if (!move.rapid && control.tools.active >= 0) {
+    auto& used = control.report.summary.tools_used;
+    if (used.empty() || (used.back() != control.tools.active &&
+                         std::find(used.begin(), used.end(), control.tools.active) == used.end()))
+      used.push_back(control.tools.active);
+    if (!control.tools.length_on && control.setup.machine.gauge_M && active_tool(control)->length_mm > 0.0) {
+      control.report.warn_once(
+          "length-not-compensated", segment.place.column,
+          fmt::format("the tool length compensation is off: programmed coordinates are those of the gauge "
+                      "line, the tip stands {:.4f} mm further",
+                      active_tool(control)->length_mm),
+          fmt::format("switch it on before the cut ({}), unless the program means it so",
+                      control.report.words.length_on));
+    }
+  }
+  if (++control.report.summary.moves > control.setup.moves_max) {
+    control.report.fail(
+        "too-many-moves", segment.place.column,
+        fmt::format("more than {} moves: the program seems to loop for ever here", control.setup.moves_max),
+        "correct the loop, or raise the limit");
+  }
+  control.path.jumps = 0;
+  control.path.q = move.q_to;
+  control.path.pose = move.to;
+  if (!control.report.sink.move(move)) throw ProgramStopped();
+}
+
+void emit_piece(Control& control, const Segment& segment, const Vec3& p_to,
+                const std::array<double, 3>& rotary_to, double share, double angle) {
+  NcMove move;
+  const Vec3 linear = segment.machine ? p_to : control.space.linear_from_program(p_to, rotary_to);
+  move.q_to = control.space.axis_values(linear, rotary_to);
+  if (!move.q_to.allFinite()) {
+    control.report.fail("out-of-range", segment.place.column,
+                        "a coordinate of this block is not a finite number",
+                        "write numbers that a machine can reach");
+  }
+  const bool arc = angle > 0.0;
+  const bool stands = !arc && (move.q_to - control.path.q).cwiseAbs().maxCoeff() <= kNoWay;
+  if (stands && segment.dwell_s == 0.0) return;
+  const double turn =
+      segment.turns_rotaries ? turn_way(segment.rotary_from, rotary_to, control.modal.feed_radii_mm) : 0.0;
+  move.law = segment.machine                     ? segment.law
+             : control.offsets.tcp == Tcp::kOff  ? BlockLaw::kJoint
+             : control.offsets.tcp == Tcp::kAxes ? BlockLaw::kTcpAxes
+                                                 : BlockLaw::kTcp;
+  if (turn > 0.0 && move.law != BlockLaw::kJoint && control.space.length() != 0.0 &&
+      control.setup.machine.gauge_M && active_tool(control) != nullptr &&
+      std::abs(active_tool(control)->length_mm - control.space.length()) > 1e-9) {
+    control.report.fail(
+        "tcp-length", segment.place.column,
+        fmt::format("TCP turns about a tip {:.4f} mm from the gauge line, but the tool is {:.4f} mm long",
+                    control.space.length(), active_tool(control)->length_mm),
+        "compensate the length of the tool in the spindle");
+  }
+  const LinearMap& map = control.space.real(rotary_to);
+  move.from = control.path.pose;
+  move.to = {map.base_W + map.columns_W * linear, map.axis_W};
+  if (arc) {
+    place_arc(control.report, control.space, control.offsets, segment, move);
+    if (move.law == BlockLaw::kJoint) move.law = BlockLaw::kTcpAxes;  // standing rotaries: the same motion
+  }
+  if (!stands)
+    set_time(control.modal, control.offsets, segment,
+             arc ? arc_way(segment, angle) : (p_to - segment.from).norm(), turn, share, move);
+  send(control, segment, move);
+}
+
+}  // namespace
+
+void emit(Control& control, const Segment& segment) {
   if (!segment.is_arc()) {
-    emit_piece(segment, segment.to, segment.rotary_to, 1.0, 0.0);
+    emit_piece(control, segment, segment.to, segment.rotary_to, 1.0, 0.0);
     return;
   }
   const double last = swept(segment);
@@ -95,7 +178,7 @@ void Control::emit(const Segment& segment) {
     for (size_t k = 0; k < 3; ++k) {
       piece.rotary_to[k] = piece.rotary_from[k] + share * (segment.rotary_to[k] - segment.rotary_from[k]);
     }
-    emit_piece(piece, piece.to, piece.rotary_to, share, kTurn);
+    emit_piece(control, piece, piece.to, piece.rotary_to, share, kTurn);
     piece.from = piece.to;
     piece.rotary_from = piece.rotary_to;
     piece.dwell_s = 0.0;
@@ -103,86 +186,7 @@ void Control::emit(const Segment& segment) {
   piece.to = segment.to;
   piece.rotary_to = segment.rotary_to;
   piece.exact_stop = segment.exact_stop;
-  emit_piece(piece, piece.to, piece.rotary_to, last / whole, last);
-}
-
-void Control::emit_piece(const Segment& segment, const Vec3& p_to, const std::array<double, 3>& rotary_to,
-                         double share, double angle) {
-  NcMove move;
-  const Vec3 linear = segment.machine ? p_to : space_.linear_from_program(p_to, rotary_to);
-  move.q_to = space_.axis_values(linear, rotary_to);
-  if (!move.q_to.allFinite()) {
-    fail("out-of-range", segment.place.column, "a coordinate of this block is not a finite number",
-         "write numbers that a machine can reach");
-  }
-  const bool arc = angle > 0.0;
-  const bool stands = !arc && (move.q_to - q_).cwiseAbs().maxCoeff() <= kNoWay;
-  if (stands && segment.dwell_s == 0.0) return;
-  const double turn = segment.turns_rotaries ? turn_way(segment.rotary_from, rotary_to, feed_radii_mm_) : 0.0;
-  move.law = segment.machine      ? segment.law
-             : tcp_ == Tcp::kOff  ? BlockLaw::kJoint
-             : tcp_ == Tcp::kAxes ? BlockLaw::kTcpAxes
-                                  : BlockLaw::kTcp;
-  if (turn > 0.0 && move.law != BlockLaw::kJoint && space_.length() != 0.0 && setup_.machine.gauge_M &&
-      active_tool() != nullptr && std::abs(active_tool()->length_mm - space_.length()) > 1e-9) {
-    fail("tcp-length", segment.place.column,
-         fmt::format("TCP turns about a tip {:.4f} mm from the gauge line, but the tool is {:.4f} mm long",
-                     space_.length(), active_tool()->length_mm),
-         "compensate the length of the tool in the spindle");
-  }
-  const LinearMap& map = space_.real(rotary_to);
-  move.from = pose_;
-  move.to = {map.base_W + map.columns_W * linear, map.axis_W};
-  if (arc) {
-    place_arc(segment, move);
-    if (move.law == BlockLaw::kJoint) move.law = BlockLaw::kTcpAxes;  // standing rotaries: the same motion
-  }
-  if (!stands)
-    set_time(segment, arc ? arc_way(segment, angle) : (p_to - segment.from).norm(), turn, share, move);
-  send(segment, move);
-}
-
-void Control::send(const Segment& segment, NcMove& move) {
-  move.q_from = q_;
-  move.rapid = segment.motion == Motion::kRapid;
-  move.dwell_s = segment.dwell_s;
-  move.exact_stop = segment.exact_stop;
-  move.corner_tolerance_mm = segment.corner_tolerance_mm;
-  move.spindle_rpm = segment.spindle_rpm;
-  move.tool = tool_;
-  move.file = segment.place.file;
-  move.line = segment.place.line;
-  move.column = segment.place.column;
-  if (!move.rapid && tool_ >= 0) {
-    auto& used = summary_.tools_used;
-    if (used.empty() || (used.back() != tool_ && std::find(used.begin(), used.end(), tool_) == used.end()))
-      used.push_back(tool_);
-    if (!length_on_ && setup_.machine.gauge_M && active_tool()->length_mm > 0.0) {
-      warn_once(
-          "length-not-compensated", segment.place.column,
-          fmt::format("the tool length compensation is off: programmed coordinates are those of the gauge "
-                      "line, the tip stands {:.4f} mm further",
-                      active_tool()->length_mm),
-          fmt::format("switch it on before the cut ({}), unless the program means it so", words_.length_on));
-    }
-  }
-  if (++summary_.moves > setup_.moves_max) {
-    fail("too-many-moves", segment.place.column,
-         fmt::format("more than {} moves: the program seems to loop for ever here", setup_.moves_max),
-         "correct the loop, or raise the limit");
-  }
-  jumps_ = 0;
-  q_ = move.q_to;
-  pose_ = move.to;
-  if (!sink_.move(move)) throw ProgramStopped();
-}
-
-void Control::jump() {
-  constexpr long kJumpsWithoutMove = 1'000'000;
-  if (++jumps_ <= kJumpsWithoutMove) return;
-  fail("endless-loop", 0,
-       fmt::format("{} jumps and calls without any move: the program never ends here", jumps_),
-       "correct the condition of the loop");
+  emit_piece(control, piece, piece.to, piece.rotary_to, last / whole, last);
 }
 
 }  // namespace swarf::program::nc

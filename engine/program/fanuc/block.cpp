@@ -13,9 +13,9 @@ void Fanuc::check_words() {
   if (one_shot == 650 || g(kFanucMacro) == 660) return;  // every letter is an argument
   for (const char letter : {'U', 'V', 'W', 'E'}) {
     if (block_.has(letter))
-      control_.fail(letter == 'E' ? "unknown-word" : "axis-missing", column(letter),
-                    fmt::format("the machine {} has no axis {}", control_.machine().name, letter),
-                    "take the word out, or choose the machine that the program was posted for");
+      control_.report.fail(letter == 'E' ? "unknown-word" : "axis-missing", column(letter),
+                           fmt::format("the machine {} has no axis {}", control_.setup.machine.name, letter),
+                           "take the word out, or choose the machine that the program was posted for");
   }
   const int motion = g(kFanucMotion) >= 0 ? g(kFanucMotion) : motion_;
   const int cycle = g(kFanucCycle) >= 0 ? g(kFanucCycle) : g(kFanucMotion) >= 0 ? 800 : cycle_;
@@ -39,11 +39,11 @@ void Fanuc::check_words() {
   check_letter('D', g(kFanucRadius) > 400, "G41 and G42");
   check_letter('H', (g(kFanucLength) > 400 && g(kFanucLength) != 490) || one_shot == 536, "G43 and G53.6");
   if (g(kFanucCycle) > 800 && g(kFanucMotion) >= 0)
-    control_.fail("two-motion-words", g_column(kFanucMotion), "a motion and a cycle stand in one block",
-                  "write them in two blocks");
+    control_.report.fail("two-motion-words", g_column(kFanucMotion),
+                         "a motion and a cycle stand in one block", "write them in two blocks");
   check_feed_and_speed();
   if (one_shot == 40 && !block_.has('P') && !block_.has('X'))
-    control_.fail("missing-word", g_column(kFanucOneShot), "G04 has no time", "add P (ms) or X (s)");
+    control_.report.fail("missing-word", g_column(kFanucOneShot), "G04 has no time", "add P (ms) or X (s)");
 }
 
 void Fanuc::apply() {
@@ -63,60 +63,60 @@ void Fanuc::apply() {
     turn(block_.g[kFanucTurn]);
     if (block_.g[kFanucTurn] != 690 || !axes_given) return;
     if (tilted)
-      control_.fail("unexpected-word", g_column(kFanucTurn), "a move stands with G69 of a tilted plane",
-                    "write G69 in a block of its own");
+      control_.report.fail("unexpected-word", g_column(kFanucTurn),
+                           "a move stands with G69 of a tilted plane", "write G69 in a block of its own");
   }
   if (block_.has_g(kFanucOneShot) && block_.g[kFanucOneShot] != 90 && block_.g[kFanucOneShot] != 530)
     return one_shot();
-  if (g(kFanucOneShot) == 90) control_.exact_stop_once();
+  if (g(kFanucOneShot) == 90) control_.modal.exact_stop_once = true;
   motion();
 }
 
 /// The manual lists F among the values whose unit G20 and G21 change, and not what becomes of the one that
 /// holds: it is forgotten, so that the next feed wants its own.
 void Fanuc::set_units(bool inches) {
-  if (inches != control_.inches()) control_.restore_feed(control_.feed_mode(), 0.0);
-  control_.set_inches(inches);
+  if (inches != control_.modal.inches()) nc::restore_feed(control_.modal, control_.modal.feed_mode, 0.0);
+  nc::set_inches(control_.modal, inches);
 }
 
 void Fanuc::apply_machine() {
   if (block_.has_g(kFanucUnits)) set_units(block_.g[kFanucUnits] == 200);
   if (block_.has_g(kFanucFeed)) {
     const int code = block_.g[kFanucFeed];
-    control_.set_feed_mode(code == 930   ? FeedMode::kInverseTime
-                           : code == 940 ? FeedMode::kPerMinute
-                                         : FeedMode::kPerRevolution);
+    nc::set_feed_mode(control_.modal, code == 930   ? FeedMode::kInverseTime
+                                      : code == 940 ? FeedMode::kPerMinute
+                                                    : FeedMode::kPerRevolution);
   }
-  if (block_.has('F')) control_.set_feed(block_.get('F'), column('F'));
-  if (block_.has('S')) control_.set_speed(block_.get('S'));
+  if (block_.has('F')) nc::set_feed(control_.report, control_.modal, block_.get('F'), column('F'));
+  if (block_.has('S')) control_.modal.speed_rpm = block_.get('S');
   if (block_.has('T')) {
     const int number = whole(block_, 'T', 0, 99999999, reader_, control_);
-    control_.select_tool(number == 0 ? -1 : control_.find_tool(number, column('T')), number);
+    nc::select_tool(control_.tools, number == 0 ? -1 : nc::find_tool(control_, number, column('T')), number);
   }
-  if (block_.has_m(60)) control_.change_tool();
+  if (block_.has_m(60)) nc::change_tool(control_);
   for (int i = 0; i < block_.m_count; ++i) {
     const int code = block_.m[static_cast<size_t>(i)];
-    if (code == 30 || code == 40 || code == 50) control_.set_spindle(code == 30 ? 1 : code == 40 ? -1 : 0);
+    if (code == 30 || code == 40 || code == 50) control_.modal.spindle = code == 30 ? 1 : code == 40 ? -1 : 0;
   }
 }
 
 void Fanuc::apply_modes() {
   if (block_.g_given == 0) return;
   if (block_.has_g(kFanucPlane))
-    control_.set_plane(block_.g[kFanucPlane] == 170   ? Plane::kXY
-                       : block_.g[kFanucPlane] == 180 ? Plane::kZX
-                                                      : Plane::kYZ);
+    nc::set_plane(control_, block_.g[kFanucPlane] == 170   ? Plane::kXY
+                            : block_.g[kFanucPlane] == 180 ? Plane::kZX
+                                                           : Plane::kYZ);
   if (block_.has_g(kFanucDistance)) incremental_ = block_.g[kFanucDistance] == 910;
   if (block_.has_g(kFanucRetract)) retract_to_r_ = block_.g[kFanucRetract] == 990;
   if (block_.has_g(kFanucPath))
-    control_.set_exact_stop(block_.g[kFanucPath] == 610 || block_.g[kFanucPath] == 611);
+    control_.modal.exact_stop = block_.g[kFanucPath] == 610 || block_.g[kFanucPath] == 611;
   if (block_.has_g(kFanucRadius)) apply_radius();
   if (block_.has_g(kFanucOffset)) {
     const int code = block_.g[kFanucOffset];
     refuse_mapped(g_column(kFanucOffset), "the work offset changes", false);
     if (code == 541) need('P', "G54.1");
-    control_.set_work_offset(code == 541 ? 100 + whole(block_, 'P', 1, 300, reader_, control_)
-                                         : (code - 530) / 10);
+    nc::set_work_offset(
+        control_, code == 541 ? 100 + whole(block_, 'P', 1, 300, reader_, control_) : (code - 530) / 10);
     update_space();
   }
   if (block_.has_g(kFanucLength)) apply_length();
@@ -124,13 +124,14 @@ void Fanuc::apply_modes() {
 
 void Fanuc::apply_radius() {
   const int code = block_.g[kFanucRadius], at = g_column(kFanucRadius);
-  if (code == 400) return control_.set_compensation(Compensation::kOff, 0.0, at);
-  if (!block_.has('D') && control_.active_tool() == nullptr)
-    control_.fail("compensation-no-tool", at, "cutter compensation has no D word and no tool",
-                  "add D with the tool's number");
-  const double radius = block_.has('D') ? tool_value('D', false) : 0.5 * control_.active_tool()->diameter_mm;
+  if (code == 400) return nc::set_compensation(control_, Compensation::kOff, 0.0, at);
+  if (!block_.has('D') && nc::active_tool(control_) == nullptr)
+    control_.report.fail("compensation-no-tool", at, "cutter compensation has no D word and no tool",
+                         "add D with the tool's number");
+  const double radius =
+      block_.has('D') ? tool_value('D', false) : 0.5 * nc::active_tool(control_)->diameter_mm;
   const bool left = (code == 410) != (mapped() && reversed());
-  control_.set_compensation(left ? Compensation::kLeft : Compensation::kRight, radius, at);
+  nc::set_compensation(control_, left ? Compensation::kLeft : Compensation::kRight, radius, at);
 }
 
 void Fanuc::apply_length() {
@@ -139,15 +140,15 @@ void Fanuc::apply_length() {
   length_code_ = code;
   if (code == 490) {
     tcp_ = Tcp::kOff;
-    control_.set_length_compensation(0.0, false);
+    nc::set_length_compensation(control_, 0.0, false);
     return update_space();
   }
-  if (!block_.has('H') && control_.active_tool() == nullptr && !control_.setup().tools.empty())
-    control_.fail("missing-word", g_column(kFanucLength), "the length compensation has no H word and no tool",
-                  "add H with the tool's number");
-  const NcTool* tool = control_.active_tool();
+  if (!block_.has('H') && nc::active_tool(control_) == nullptr && !control_.setup.tools.empty())
+    control_.report.fail("missing-word", g_column(kFanucLength),
+                         "the length compensation has no H word and no tool", "add H with the tool's number");
+  const NcTool* tool = nc::active_tool(control_);
   const double length = block_.has('H') ? tool_value('H', true) : tool != nullptr ? tool->length_mm : 0.0;
-  control_.set_length_compensation(code == 440 ? -length : length, true);
+  nc::set_length_compensation(control_, code == 440 ? -length : length, true);
   tcp_ = code == 434 ? Tcp::kAxes : code == 435 ? Tcp::kVector : Tcp::kOff;
   update_space();
 }
@@ -155,10 +156,10 @@ void Fanuc::apply_length() {
 /// TCP, tilted plane and shifts as the control understands them: the frame of G68 or G68.2 stands in the work
 /// offset with its shifts (30i: G52 and G92 move the workpiece coordinate system).
 void Fanuc::update_space() {
-  control_.set_shift(shift_ + local_);
-  control_.set_tcp(tcp_);
-  if (tcp_ == Tcp::kOff && turned_.on && turned_.in_work) control_.set_coordinates(Coordinates::kWork);
-  control_.set_frame(turned_.on ? turned_.frame : Pose::Identity());
+  nc::set_shift(control_, shift_ + local_);
+  nc::set_tcp(control_, tcp_);
+  if (tcp_ == Tcp::kOff && turned_.on && turned_.in_work) nc::set_coordinates(control_, Coordinates::kWork);
+  nc::set_frame(control_, turned_.on ? turned_.frame : Pose::Identity());
 }
 
 }  // namespace swarf::program::nc::fanuc

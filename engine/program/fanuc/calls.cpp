@@ -55,7 +55,7 @@ const Fanuc::Known* Fanuc::find_program(int number, bool external) {
   }
   for (const std::string& name :
        {fmt::format("O{:04}", number), fmt::format("O{}", number), fmt::format("{}", number)}) {
-    const std::string file = find_subprogram(path_, control_.setup(), name,
+    const std::string file = find_subprogram(path_, control_.setup, name,
                                              {"", ".nc", ".NC", ".tap", ".TAP", ".cnc", ".txt", ".TXT"});
     if (file.empty()) continue;
     if (const Known* there = scan(open(file), number)) return there;
@@ -67,22 +67,23 @@ void Fanuc::call(int number, long times, int column, const Call* macro, bool ext
   if (times == 0) return;
   const Known* program = find_program(number, external);
   if (program == nullptr)
-    control_.fail("unknown-subprogram", column,
-                  external ? fmt::format("O{:04} is called from another device, and no file O{:04} with the "
-                                         "line O{:04} stands beside the program",
-                                         number, number, number)
-                           : fmt::format("O{:04} is called, and it is neither in this file nor in one named "
-                                         "O{:04} with the line O{:04}",
-                                         number, number, number),
-                  "add the subprogram, or give the folder of its file");
+    control_.report.fail(
+        "unknown-subprogram", column,
+        external ? fmt::format("O{:04} is called from another device, and no file O{:04} with the "
+                               "line O{:04} stands beside the program",
+                               number, number, number)
+                 : fmt::format("O{:04} is called, and it is neither in this file nor in one named "
+                               "O{:04} with the line O{:04}",
+                               number, number, number),
+        "add the subprogram, or give the folder of its file");
   const auto macros = static_cast<size_t>(
       std::count_if(calls_.begin(), calls_.end(), [](const Call& one) { return one.own_locals; }));
   if (calls_.size() > kCallsMax || (macro != nullptr && macros > kMacrosMax))
-    control_.fail(
+    control_.report.fail(
         "recursion-limit", column,
         fmt::format("more than {} subprograms or {} macros call each other here", kCallsMax, kMacrosMax),
         "end the recursion with a condition");
-  control_.jump();
+  nc::jump(control_);
   Call next;
   if (macro != nullptr)
     next = *macro;
@@ -100,7 +101,7 @@ void Fanuc::leave(int column) {
   Call& here = calls_.back();
   if (here.left > 0) {
     --here.left;
-    control_.jump();
+    nc::jump(control_);
     here.source->seek(here.top);
     return;
   }
@@ -142,17 +143,17 @@ void Fanuc::read_arguments(int g_group, Call& macro) {
   for (size_t i = 0; i < count; ++i) {
     const Word& word = words[i];
     if (word.place < block_.g_places[static_cast<size_t>(g_group)])
-      control_.fail("unexpected-word", reader_.column_of(word.place),
-                    fmt::format("the argument {} stands before G65 or G66", word.letter),
-                    "write G65 P and L first, then the arguments");
+      control_.report.fail("unexpected-word", reader_.column_of(word.place),
+                           fmt::format("the argument {} stands before G65 or G66", word.letter),
+                           "write G65 P and L first, then the arguments");
     int variable = kArgumentOf[static_cast<size_t>(word.letter - 'A')];
     if (word.letter >= 'I' && word.letter <= 'K') {
       if (word.letter - 'I' <= last) ++set;
       last = word.letter - 'I';
       if (set >= kArgumentSets)
-        control_.fail("word-twice", reader_.column_of(word.place),
-                      fmt::format("more than {} sets of I J K as arguments", kArgumentSets),
-                      "pass the others in variables from #100");
+        control_.report.fail("word-twice", reader_.column_of(word.place),
+                             fmt::format("more than {} sets of I J K as arguments", kArgumentSets),
+                             "pass the others in variables from #100");
       variable += 3 * set;
     }
     macro.locals[static_cast<size_t>(variable)] = word.value;
@@ -163,8 +164,8 @@ void Fanuc::read_arguments(int g_group, Call& macro) {
 /// G65 and G66 stand alone with their arguments.
 Fanuc::Call Fanuc::macro_call(int g_group, const char* word) {
   if (block_.g_given != 1u << g_group || block_.free_g > 0 || block_.m_count > 0)
-    control_.fail("modal-conflict", g_column(g_group), fmt::format("another code stands with {}", word),
-                  "write it in a block of its own");
+    control_.report.fail("modal-conflict", g_column(g_group),
+                         fmt::format("another code stands with {}", word), "write it in a block of its own");
   need('P', word);
   Call macro;
   macro.own_locals = true;
@@ -185,8 +186,8 @@ void Fanuc::set_modal_macro() {
   const bool inside =
       std::any_of(calls_.begin(), calls_.end(), [](const Call& one) { return one.modal >= 0; });
   if (inside)
-    control_.fail("unsupported-word", at, "G66 and G67 stand in a macro that G66 calls",
-                  "set and cancel modal macros outside of them");
+    control_.report.fail("unsupported-word", at, "G66 and G67 stand in a macro that G66 calls",
+                         "set and cancel modal macros outside of them");
   if (block_.g[kFanucMacro] == 670) {
     if (!modals_.empty()) modals_.pop_back();
   } else {
@@ -203,9 +204,9 @@ void Fanuc::call_modal_macro() {
   const int at = reader_.column_of(block_.first);
   const int ends[] = {20, 300, 980, 990, 1980};
   if (std::any_of(std::begin(ends), std::end(ends), [&](int code) { return block_.has_m(code); }))
-    control_.fail("modal-conflict", at,
-                  "a move that calls the macro of G66 stands with a call or an end of the program",
-                  "write them in two blocks");
+    control_.report.fail("modal-conflict", at,
+                         "a move that calls the macro of G66 stands with a call or an end of the program",
+                         "write them in two blocks");
   Call macro;
   macro.modals = calls_.back().modals - 1;
   macro.modal = static_cast<int>(macro.modals);
@@ -227,7 +228,7 @@ void Fanuc::call_subprogram(int column, bool external) {
   const int number = counted ? p % 10000 : p;
   if (counted && times > 0 && find_program(number, external) == nullptr &&
       find_program(p, external) != nullptr)
-    control_.fail(
+    control_.report.fail(
         "unknown-subprogram", this->column('P'),
         fmt::format("P{} without L calls O{:04} {} times, and there is only O{}", p, number, times, p),
         fmt::format("write P{} L1", p));
@@ -252,8 +253,9 @@ bool Fanuc::apply_calls() {
       go_to(whole(block_, 'P', 1, 99999999, reader_, control_), at);
       return true;
     }
-    control_.warn_once("main-program-repeats", at, "M99 repeats the main program for ever; it was run once",
-                       "end it with M30 where that is meant");
+    control_.report.warn_once("main-program-repeats", at,
+                              "M99 repeats the main program for ever; it was run once",
+                              "end it with M30 where that is meant");
     return false;
   }
   return true;

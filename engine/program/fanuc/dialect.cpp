@@ -23,7 +23,7 @@ Fanuc::Fanuc(const std::string& path, Control& control)
   main.source = &open(path);
   main.own_locals = true;
   calls_.push_back(std::move(main));
-  control_.set_feed_rule(FeedRule::kAllAxes);
+  control_.modal.feed_rule = FeedRule::kAllAxes;
 }
 
 void Fanuc::run() {
@@ -31,12 +31,13 @@ void Fanuc::run() {
   while (!ended_) {
     if (!source().next(line)) {
       if (calls_.size() > 1)
-        control_.fail("unclosed-subprogram", 0, "the subprogram does not end in its file", "end it with M99");
+        control_.report.fail("unclosed-subprogram", 0, "the subprogram does not end in its file",
+                             "end it with M99");
       if (!calls_.back().loops.empty())
-        control_.fail("unclosed-loop", 0,
-                      fmt::format("DO{} has no END{}", calls_.back().loops.back().first,
-                                  calls_.back().loops.back().first),
-                      "add the END of the loop");
+        control_.report.fail("unclosed-loop", 0,
+                             fmt::format("DO{} has no END{}", calls_.back().loops.back().first,
+                                         calls_.back().loops.back().first),
+                             "add the END of the loop");
       warn_of_missing_end("M02, M30, M99 or %");
       break;
     }
@@ -44,18 +45,18 @@ void Fanuc::run() {
     if (!percent(line, false))
       ended_ = !execute();
     else if (ended_ && calls_.size() > 1)
-      control_.fail("unclosed-subprogram", 0, "the file ends within a subprogram", "end it with M99");
+      control_.report.fail("unclosed-subprogram", 0, "the file ends within a subprogram", "end it with M99");
   }
   if (nurbs_) {
     const Place where = nurbs_->where;
-    control_.at(where.file, where.line, where.column);
-    control_.fail("bad-nurbs", 0,
-                  "this NURBS does not end: it needs as many knots after the points as its order",
-                  "add blocks with K alone");
+    control_.report.at(where.file, where.line, where.column);
+    control_.report.fail("bad-nurbs", 0,
+                         "this NURBS does not end: it needs as many knots after the points as its order",
+                         "add blocks with K alone");
   }
   block_.clear();
   expect_plane_block();
-  control_.finish();
+  nc::finish(control_);
 }
 
 /// ":1234" (ISO code) and "<NAME>" at the head of a program.
@@ -70,16 +71,16 @@ bool Fanuc::program_head() {
   } else {
     const size_t end = line.find('>', from);
     if (end == std::string_view::npos)
-      control_.fail("unexpected-character", reader_.column_of(from), "this program name does not end",
-                    "close it with '>'");
-    control_.note("program", line.substr(from + 1, end - from - 1));
+      control_.report.fail("unexpected-character", reader_.column_of(from), "this program name does not end",
+                           "close it with '>'");
+    control_.report.note("program", line.substr(from + 1, end - from - 1));
     reader_.move_to(end + 1);
   }
   std::string_view message;
   skip_comments(kFanucSyntax, reader_, control_, message);
   if (!reader_.done())
-    control_.fail("unexpected-character", reader_.column(), "words follow the name of the program",
-                  "write one block per line");
+    control_.report.fail("unexpected-character", reader_.column(), "words follow the name of the program",
+                         "write one block per line");
   return true;
 }
 
@@ -90,10 +91,10 @@ void Fanuc::state_number_rule() {
     const double value = block_.has(letter) ? block_.get(letter) : 0.0;
     if (value == 0.0 || value != std::trunc(value) || !without_point(letter)) continue;
     number_rule_stated_ = true;
-    control_.summary().dialect_reason += fmt::format(
+    control_.report.summary.dialect_reason += fmt::format(
         "; {}{:g} in line {} has no decimal point: such numbers are {} and degrees (calculator "
         "type, parameter 3401)",
-        letter, value, source().line_number(), control_.inches() ? "inches" : "millimetres");
+        letter, value, source().line_number(), control_.modal.inches() ? "inches" : "millimetres");
     return;
   }
 }
@@ -109,16 +110,17 @@ bool Fanuc::without_point(char letter) const {
 bool Fanuc::execute() {
   if (program_head()) return true;
   if (statement()) {
-    ++control_.summary().blocks;
+    ++control_.report.summary.blocks;
     return true;
   }
   block_.clear();
   read_words(kFanucSyntax, reader_, control_, block_, 0);
-  if (!block_.message.empty()) control_.note("MSG", block_.message);
-  if (block_.skip_mark) control_.without_effect(kSkipMark);
+  if (!block_.message.empty()) control_.report.note("MSG", block_.message);
+  if (block_.skip_mark) control_.report.without_effect(kSkipMark);
   if (block_.empty()) return true;
-  ++control_.summary().blocks;
-  control_.at(source().file(), static_cast<int>(source().line_number()), reader_.column_of(block_.first));
+  ++control_.report.summary.blocks;
+  control_.report.at(source().file(), static_cast<int>(source().line_number()),
+                     reader_.column_of(block_.first));
   if (nurbs_ && add_to_nurbs()) return true;
   expect_plane_block();
   if (!number_rule_stated_) state_number_rule();
@@ -156,12 +158,12 @@ bool Fanuc::statement() {
     reader_.move_to(from);
     return false;
   }
-  if (marked) control_.without_effect(kSkipMark);
+  if (marked) control_.report.without_effect(kSkipMark);
   std::string_view message;
   skip_comments(kFanucSyntax, reader_, control_, message);
   if (!reader_.done())
-    control_.fail("unexpected-character", reader_.column(), "words follow a macro statement",
-                  "write one statement per block");
+    control_.report.fail("unexpected-character", reader_.column(), "words follow a macro statement",
+                         "write one statement per block");
   return true;
 }
 

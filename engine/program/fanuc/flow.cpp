@@ -16,8 +16,8 @@ long Fanuc::label_value() {
   const size_t place = reader_.at();
   const double label = reader_.value();
   if (std::isnan(label))
-    control_.fail("undefined-parameter", reader_.column_of(place), "GOTO goes to a vacant variable",
-                  "assign it before it is read");
+    control_.report.fail("undefined-parameter", reader_.column_of(place), "GOTO goes to a vacant variable",
+                         "assign it before it is read");
   return std::lround(std::clamp(label, -1e9, 1e9));
 }
 
@@ -25,8 +25,8 @@ int Fanuc::loop_number() {
   const size_t place = reader_.at();
   const double number = reader_.value();
   if (number != 1.0 && number != 2.0 && number != 3.0)
-    control_.fail("out-of-range", reader_.column_of(place),
-                  fmt::format("loops have the numbers 1 to 3, not {:g}", number), "write DO1 to DO3");
+    control_.report.fail("out-of-range", reader_.column_of(place),
+                         fmt::format("loops have the numbers 1 to 3, not {:g}", number), "write DO1 to DO3");
   return static_cast<int>(number);
 }
 
@@ -46,15 +46,15 @@ bool Fanuc::macro_word() {
     } else if (reader_.take("THEN")) {
       reader_.skip_space();
       if (reader_.peek() != '#')
-        control_.fail("bad-statement", reader_.column(), "THEN wants an assignment",
-                      "write IF [#1 GT 2] THEN #3=4");
+        control_.report.fail("bad-statement", reader_.column(), "THEN wants an assignment",
+                             "write IF [#1 GT 2] THEN #3=4");
       if (holds)
         assignment();
       else
         reader_.move_to(reader_.line().size());
     } else {
-      control_.fail("bad-statement", reader_.column(), "GOTO or THEN is missing after the condition",
-                    "write IF [#1 GT 2] GOTO 10");
+      control_.report.fail("bad-statement", reader_.column(), "GOTO or THEN is missing after the condition",
+                           "write IF [#1 GT 2] GOTO 10");
     }
     return true;
   }
@@ -65,8 +65,8 @@ bool Fanuc::macro_word() {
       holds = condition() != 0.0;
       reader_.skip_space();
       if (!reader_.take("DO"))
-        control_.fail("bad-statement", reader_.column(), "DO is missing after the condition",
-                      "write WHILE [#1 GT 2] DO1");
+        control_.report.fail("bad-statement", reader_.column(), "DO is missing after the condition",
+                             "write WHILE [#1 GT 2] DO1");
     }
     const int number = loop_number();
     std::erase_if(loops, [&](const auto& one) { return one.first == number; });
@@ -80,25 +80,26 @@ bool Fanuc::macro_word() {
   if (!reader_.take("END")) return false;
   const int number = loop_number();
   if (loops.empty() || loops.back().first != number)
-    control_.fail("bad-statement", reader_.column_of(place),
-                  fmt::format("END{} ends no loop that is open here", number),
-                  "close the innermost DO first");
-  control_.jump();
+    control_.report.fail("bad-statement", reader_.column_of(place),
+                         fmt::format("END{} ends no loop that is open here", number),
+                         "close the innermost DO first");
+  nc::jump(control_);
   source().seek(loops.back().second);
   reader_.begin({});
   return true;
 }
 
 void Fanuc::skip_to_end(int loop) {
-  const Place from = control_.place();
+  const Place from = control_.report.place;
   std::string_view line;
   while (source().next(line)) {
-    ++control_.summary().lines;
-    control_.at(source().file(), static_cast<int>(source().line_number()), 1);
+    ++control_.report.summary.lines;
+    control_.report.at(source().file(), static_cast<int>(source().line_number()), 1);
     if (ends_loop(line, loop)) return;
   }
-  control_.at(from.file, from.line, from.column);
-  control_.fail("unclosed-loop", 0, fmt::format("DO{} has no END{}", loop, loop), "add the END of the loop");
+  control_.report.at(from.file, from.line, from.column);
+  control_.report.fail("unclosed-loop", 0, fmt::format("DO{} has no END{}", loop, loop),
+                       "add the END of the loop");
 }
 
 /// "END1", with a block number before it or not.
@@ -135,7 +136,7 @@ bool Fanuc::labelled(std::string_view line, long label) {
 }
 
 void Fanuc::go_to(long label, int column) {
-  control_.jump();
+  nc::jump(control_);
   const LineSource::Mark here = source().mark();
   LineSource::Mark begin = calls_.size() > 1 ? calls_.back().top : LineSource::Mark{};
   std::string_view line;
@@ -151,8 +152,8 @@ void Fanuc::go_to(long label, int column) {
       return;
     }
   }
-  control_.fail("unknown-label", column, fmt::format("GOTO {}: there is no block N{}", label, label),
-                "add the block number");
+  control_.report.fail("unknown-label", column, fmt::format("GOTO {}: there is no block N{}", label, label),
+                       "add the block number");
 }
 
 }  // namespace swarf::program::nc::fanuc

@@ -20,7 +20,8 @@ void Fanuc::assignment() {
   const long number = reader_.parameter_number(name);
   reader_.skip_space();
   if (reader_.peek() != '=')
-    control_.fail("bad-parameter", reader_.column(), "'=' is missing after the variable", "write #1=2.5");
+    control_.report.fail("bad-parameter", reader_.column(), "'=' is missing after the variable",
+                         "write #1=2.5");
   reader_.skip();
   assign(number, reader_.open_formula(), place);
 }
@@ -52,21 +53,21 @@ void Fanuc::assign(long number, double value, size_t place) {
     commons_[static_cast<size_t>(number)] = value;
     common_set_[static_cast<size_t>(number)] = !vacates;
   } else if (vacates) {
-    control_.fail("undefined-parameter", at, fmt::format("#{} is given a vacant variable", number),
-                  "assign the variable before it is read");
+    control_.report.fail("undefined-parameter", at, fmt::format("#{} is given a vacant variable", number),
+                         "assign the variable before it is read");
   } else if (number == 3000) {
-    control_.fail("program-alarm", at,
-                  fmt::format("the program raises its alarm {:g} here{}", value, comment_behind()),
-                  "find out why the program stops itself");
+    control_.report.fail("program-alarm", at,
+                         fmt::format("the program raises its alarm {:g} here{}", value, comment_behind()),
+                         "find out why the program stops itself");
   } else if (number == 3006) {
-    control_.note("#3006", fmt::format("stop {:g}{}", value, comment_behind()));
+    control_.report.note("#3006", fmt::format("stop {:g}{}", value, comment_behind()));
   } else if (number == 3003) {
-    control_.without_effect("#3003 (single block off)");
+    control_.report.without_effect("#3003 (single block off)");
   } else if (number == 3004 && value >= 0.0 && value < 4.0) {
-    control_.without_effect("#3004 (feed hold and override off)");
+    control_.report.without_effect("#3004 (feed hold and override off)");
   } else {
-    control_.fail("bad-parameter", at, fmt::format("#{} cannot be assigned", number),
-                  "programs may set #1 to #33 and #100 to #999; offsets with G10");
+    control_.report.fail("bad-parameter", at, fmt::format("#{} cannot be assigned", number),
+                         "programs may set #1 to #33 and #100 to #999; offsets with G10");
   }
 }
 
@@ -79,8 +80,9 @@ double Fanuc::read(long number, size_t place) {
   } else if (number > kLastCommon) {
     return system_variable(number, place);
   }
-  control_.fail("undefined-parameter", reader_.column_of(place),
-                fmt::format("#{} is vacant: nothing assigned it", number), "assign it before it is read");
+  control_.report.fail("undefined-parameter", reader_.column_of(place),
+                       fmt::format("#{} is vacant: nothing assigned it", number),
+                       "assign it before it is read");
 }
 
 bool Fanuc::vacant(long number) const {
@@ -90,8 +92,8 @@ bool Fanuc::vacant(long number) const {
 }
 
 double Fanuc::read_named(std::string_view name, size_t place) {
-  control_.fail("bad-parameter", reader_.column_of(place),
-                fmt::format("#<{}>: this dialect has no named variables", name), "write #100");
+  control_.report.fail("bad-parameter", reader_.column_of(place),
+                       fmt::format("#<{}>: this dialect has no named variables", name), "write #100");
 }
 
 bool Fanuc::exists(std::string_view /*name*/) {
@@ -105,18 +107,18 @@ std::optional<double> Fanuc::modal_code(long group) const {
     case 1:
       return motion_ / 10.0;
     case 2:
-      return 17.0 + static_cast<int>(control_.plane());
+      return 17.0 + static_cast<int>(control_.modal.plane);
     case 3:
       return incremental_ ? 91.0 : 90.0;
     case 5:
-      return control_.feed_mode() == FeedMode::kInverseTime ? 93.0
-             : control_.feed_mode() == FeedMode::kPerMinute ? 94.0
-                                                            : 95.0;
+      return control_.modal.feed_mode == FeedMode::kInverseTime ? 93.0
+             : control_.modal.feed_mode == FeedMode::kPerMinute ? 94.0
+                                                                : 95.0;
     case 6:
-      return control_.inches() ? 20.0 : 21.0;
+      return control_.modal.inches() ? 20.0 : 21.0;
     case 7:
-      return control_.compensation() == Compensation::kOff    ? 40.0
-             : control_.compensation() == Compensation::kLeft ? 41.0
+      return control_.contour.side() == Compensation::kOff    ? 40.0
+             : control_.contour.side() == Compensation::kLeft ? 41.0
                                                               : 42.0;
     case 8:
       return length_code_ / 10.0;
@@ -131,7 +133,7 @@ std::optional<double> Fanuc::modal_code(long group) const {
     case 13:
       return 97.0;
     case 14:
-      return control_.work_offset() > 100 ? 54.1 : 53.0 + control_.work_offset();
+      return control_.offsets.active > 100 ? 54.1 : 53.0 + control_.offsets.active;
     case 16:
       return turn_code_ / 10.0;
     case 17:
@@ -145,21 +147,21 @@ std::optional<double> Fanuc::modal_code(long group) const {
 
 double Fanuc::system_variable(long number, size_t place) {
   const auto in_words = [&](double value, long word) {
-    return word < 3 ? value / control_.mm(1.0) : deg_from_rad(value);
+    return word < 3 ? value / control_.modal.mm(1.0) : deg_from_rad(value);
   };
   const auto programmed = [&](long word) {
-    const double value = control_.position()[static_cast<size_t>(word)];
+    const double value = nc::position(control_)[static_cast<size_t>(word)];
     if (!std::isfinite(value))
-      control_.fail("start-unknown", reader_.column_of(place),
-                    fmt::format("#{} asks for a position that is not known yet", number),
-                    "give the start position in the scene");
+      control_.report.fail("start-unknown", reader_.column_of(place),
+                           fmt::format("#{} asks for a position that is not known yet", number),
+                           "give the start position in the scene");
     return in_words(value, word);
   };
   const auto offset = [&](long from, int first) {
     const long word = (number - from) % 20;
-    const int axis = control_.axis_of(static_cast<AxisWord>(word));
+    const int axis = control_.space.axis_of(static_cast<AxisWord>(word));
     const int of = first + static_cast<int>((number - from) / 20);
-    return axis < 0 ? 0.0 : in_words(control_.offset_origin(of)[axis], word);
+    return axis < 0 ? 0.0 : in_words(nc::offset_origin(control_.space, control_.offsets, of)[axis], word);
   };
   const auto is_offset = [&](long from, long count) {
     return number >= from && number < from + 20 * count && (number - from) % 20 < kAxisWords;
@@ -168,8 +170,8 @@ double Fanuc::system_variable(long number, size_t place) {
   if (number >= 5041 && number <= 5046) return programmed(number - 5041);
   if (number >= 5021 && number <= 5026) {
     const long word = number - 5021;
-    const int axis = control_.axis_of(static_cast<AxisWord>(word));
-    return axis < 0 ? 0.0 : in_words(control_.axis_values()[axis], word);
+    const int axis = control_.space.axis_of(static_cast<AxisWord>(word));
+    return axis < 0 ? 0.0 : in_words(control_.path.q[axis], word);
   }
   if (is_offset(5221, 6)) return offset(5221, 1);
   if (is_offset(7001, 48)) return offset(7001, 101);
@@ -181,17 +183,19 @@ double Fanuc::system_variable(long number, size_t place) {
     // #10001: wear of lengths, #11001: lengths, #12001: wear of radii, #13001: radii.
     const long first = 10000 + 1000 * static_cast<long>(slot % 2 == 1 ? slot - 1 : slot + 1);
     if (number > first && number < first + 1000)
-      return tool_offset(static_cast<int>(number - first), slot, reader_.column_of(place)) / control_.mm(1.0);
+      return tool_offset(static_cast<int>(number - first), slot, reader_.column_of(place)) /
+             control_.modal.mm(1.0);
   }
   if (number == 4107) return d_number_;
-  if (number == 4109) return control_.feed();
+  if (number == 4109) return control_.modal.feed;
   if (number == 4111) return h_number_;
-  if (number == 4119) return control_.speed_rpm();
-  if (number == 4120) return control_.selected_number();
-  if (number == 4130) return control_.work_offset() > 100 ? control_.work_offset() - 100 : 0.0;
-  control_.fail("undefined-parameter", reader_.column_of(place),
-                fmt::format("#{} is no variable that can be read here", number),
-                "read #4001 to #4130 (modal codes), #5001 to #5046 (positions) or #5221 to #5326 (offsets)");
+  if (number == 4119) return control_.modal.speed_rpm;
+  if (number == 4120) return control_.tools.selected_number;
+  if (number == 4130) return control_.offsets.active > 100 ? control_.offsets.active - 100 : 0.0;
+  control_.report.fail(
+      "undefined-parameter", reader_.column_of(place),
+      fmt::format("#{} is no variable that can be read here", number),
+      "read #4001 to #4130 (modal codes), #5001 to #5046 (positions) or #5221 to #5326 (offsets)");
 }
 
 }  // namespace swarf::program::nc::fanuc

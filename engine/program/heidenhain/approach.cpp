@@ -71,15 +71,15 @@ std::optional<Vec3> start_direction(const nc::PlaneAxes& axes, Motion motion, co
 void Executor::straight(Motion motion, double feed, const Vec3& to) {
   if (motion == Motion::kFeed && feed > 0.0) set_feed(feed, false);
   nc::Target target;
-  target.column = control_.place().column;
+  target.column = control_.report.place.column;
   for (int i = 0; i < 3; ++i) target.set(i, to[i], false);
-  control_.line(motion, target);
+  nc::line(control_, motion, target);
 }
 
 void Executor::round(Motion motion, double feed, const Vec3& to, const Vec3& centre, bool counter_clockwise) {
-  if ((to - control_.position_xyz()).norm() <= kNoWay) return;
+  if ((to - nc::position_xyz(control_)).norm() <= kNoWay) return;
   if (motion == Motion::kRapid)
-    control_.fail("unexpected-word", 0, "an arc is not moved at FMAX", "write F with a value");
+    control_.report.fail("unexpected-word", 0, "an arc is not moved at FMAX", "write F with a value");
   circle_move(feed, to, centre, counter_clockwise, 0);
 }
 
@@ -87,13 +87,13 @@ void Executor::circle_move(double feed, const Vec3& to, const Vec3& centre, bool
                            int further_turns) {
   if (feed > 0.0) set_feed(feed, false);
   nc::Target target;
-  target.column = control_.place().column;
+  target.column = control_.report.place.column;
   for (int i = 0; i < 3; ++i) target.set(i, to[i], false);
   nc::ArcWords arc;
   arc.centre = centre;
   arc.further_turns = further_turns;
   arc.column = target.column;
-  control_.arc(counter_clockwise ? Motion::kCounterClockwise : Motion::kClockwise, target, arc);
+  nc::arc(control_, counter_clockwise ? Motion::kCounterClockwise : Motion::kClockwise, target, arc);
 }
 
 /// LEN, CCA and R, as the kind wants them.
@@ -131,21 +131,21 @@ void Executor::approach(BlockReader& reader, size_t start) {
   const MotionWords words = read_motion_words(
       reader, kAxesAllowed | kRadiusAllowed | kApproachAllowed | kAlways | (by_pole ? kPolarAllowed : 0u));
   check_approach(reader, kind, words, start);
-  if (control_.compensation() != Compensation::kOff)
+  if (control_.contour.side() != Compensation::kOff)
     reader.fail("compensation-active", start, "APPR while RL or RR is already on",
                 "write DEP or R0 before it");
-  const nc::PlaneAxes axes = nc::axes_of(control_.plane());
+  const nc::PlaneAxes axes = nc::axes_of(control_.modal.plane);
   Approach next;
   next.kind = kind;
-  next.place = control_.place();
+  next.place = control_.report.place;
   next.side = side_of(words.compensation.value_or(Compensation::kOff));
   if (next.side == Compensation::kOff && kind != "LT")
     reader.fail("missing-word", start,
                 fmt::format("APPR {} needs RL or RR: they say to which side it turns", kind),
                 "write RL or RR");
   const double scale = plane_scale(reader, start);
-  next.length = scale * control_.mm(words.length.value);
-  next.radius = scale * control_.mm(words.radius.value);
+  next.length = scale * control_.modal.mm(words.length.value);
+  next.radius = scale * control_.modal.mm(words.radius.value);
   next.angle = rad_from_deg(words.angle.value);
   next.entry = last_rapid_ ? Motion::kRapid : Motion::kFeed;
   next.entry_feed = feed_;
@@ -159,7 +159,7 @@ void Executor::approach(BlockReader& reader, size_t start) {
     target.set(axes.second, end[axes.second], false);
   }
   next.contour = end_of(target);
-  if (!control_.started() || !next.contour.allFinite())
+  if (!control_.path.started || !next.contour.allFinite())
     reader.fail("start-unknown", start, "APPR starts, and the position is not known yet",
                 "position all axes before it");
   if (next.side != Compensation::kOff) next.cutter = cutter_radius(reader);
@@ -171,15 +171,16 @@ void Executor::approach(BlockReader& reader, size_t start) {
 void Executor::close_approach(const Element& first) {
   const Approach here = *approach_;
   approach_.reset();
-  const nc::Place place = control_.place();
-  control_.at(here.place.file, here.place.line, here.place.column);
-  const nc::PlaneAxes axes = nc::axes_of(control_.plane());
+  const nc::Place place = control_.report.place;
+  control_.report.at(here.place.file, here.place.line, here.place.column);
+  const nc::PlaneAxes axes = nc::axes_of(control_.modal.plane);
   const auto t = start_direction(axes, first.motion, first.arc, first.from, first.to);
   if (!t)
-    control_.fail("bad-approach", 0, "the first piece of contour behind APPR has no way in the working plane",
-                  "write a piece of contour in the plane right behind APPR");
+    control_.report.fail("bad-approach", 0,
+                         "the first piece of contour behind APPR has no way in the working plane",
+                         "write a piece of contour in the plane right behind APPR");
   const bool on = here.side != Compensation::kOff;
-  const Vec3 n = across(axes, *t, here.side), start = control_.position_xyz();
+  const Vec3 n = across(axes, *t, here.side), start = nc::position_xyz(control_);
   const double radius = here.cutter;
   const Vec3 A = here.contour + radius * n, centre = A + here.radius * n;
   const bool counter_clockwise = (here.side == Compensation::kLeft) == (here.radius > 0.0);
@@ -190,7 +191,7 @@ void Executor::close_approach(const Element& first) {
   } else if (here.kind == "LCT") {
     const auto found = touch(axes, start, centre, here.radius, counter_clockwise, true);
     if (!found)
-      control_.fail(
+      control_.report.fail(
           "bad-approach", 0,
           fmt::format("the tool stands {:.4f} mm from the centre of the arc of radius {:.4f} mm: no "
                       "straight line from there touches it",
@@ -207,8 +208,8 @@ void Executor::close_approach(const Element& first) {
   } else {
     round(here.motion, here.feed, A, centre, counter_clockwise);
   }
-  if (on) control_.enter_compensation(here.side, radius, here.contour);
-  control_.at(place.file, place.line, place.column);
+  if (on) nc::enter_compensation(control_, here.side, radius, here.contour);
+  control_.report.at(place.file, place.line, place.column);
 }
 
 /// DEP LT LEN12 F100, DEP LN LEN12, DEP CT CCA90 R8, DEP LCT X+10 Y+12 R8, DEP PLCT PR+20 PA+0 R8.
@@ -221,14 +222,14 @@ void Executor::depart(BlockReader& reader, size_t start) {
   const MotionWords words = read_motion_words(reader, kAxesAllowed | kRadiusAllowed | kApproachAllowed |
                                                           kAlways | (written == "PLCT" ? kPolarAllowed : 0u));
   check_approach(reader, kind, words, start);
-  const nc::PlaneAxes axes = nc::axes_of(control_.plane());
+  const nc::PlaneAxes axes = nc::axes_of(control_.modal.plane);
   const auto in_plane = [&](int i) { return words.axes[static_cast<size_t>(i)].given; };
   if (kind != "LCT" && (in_plane(axes.first) || in_plane(axes.second)))
     reader.fail("unexpected-word", start, fmt::format("DEP {} has no end of its own in the plane", kind),
                 "take the coordinates out");
   if (words.compensation.value_or(Compensation::kOff) != Compensation::kOff)
     reader.fail("words-conflict", start, "DEP ends RL and RR", "take it out");
-  const Compensation side = control_.compensation();
+  const Compensation side = control_.contour.side();
   if (side == Compensation::kOff && kind != "LT")
     reader.fail("missing-word", start,
                 fmt::format("DEP {} needs RL or RR before it: they say to which side it turns", kind),
@@ -236,7 +237,8 @@ void Executor::depart(BlockReader& reader, size_t start) {
   if (!tangent_)
     reader.fail("bad-approach", start, "DEP follows no piece of contour", "write it behind L, C, CR or CP");
   const double scale = plane_scale(reader, start);
-  const double length = scale * control_.mm(words.length.value), R = scale * control_.mm(words.radius.value);
+  const double length = scale * control_.modal.mm(words.length.value),
+               R = scale * control_.modal.mm(words.radius.value);
   const Vec3 t = *tangent_, n = across(axes, t, side), programmed = present();
   Motion motion = Motion::kFeed;
   const double feed = feed_of(reader, words, motion);
@@ -244,9 +246,9 @@ void Executor::depart(BlockReader& reader, size_t start) {
   Vec3 N = end_of(target);
   if (written == "PLCT") N = polar_end(reader, words, start);
   functions_before(reader, words);
-  control_.set_compensation(Compensation::kOff, 0.0, 0);
-  control_.flush();
-  const Vec3 E = control_.position_xyz(), centre = E + R * n;
+  nc::set_compensation(control_, Compensation::kOff, 0.0, 0);
+  nc::flush(control_);
+  const Vec3 E = nc::position_xyz(control_), centre = E + R * n;
   const bool counter_clockwise = (side == Compensation::kLeft) == (R > 0.0);
   if (kind == "LT" || kind == "LN") {
     straight(motion, feed, kind == "LT" ? Vec3(E + length * t) : Vec3(E + length * n));
@@ -271,7 +273,7 @@ void Executor::depart(BlockReader& reader, size_t start) {
     straight(motion, feed, end);
   }
   if (in_plane(axes.normal)) {
-    Vec3 end = control_.position_xyz();
+    Vec3 end = nc::position_xyz(control_);
     const auto normal = static_cast<size_t>(axes.normal);
     end[axes.normal] = target.is_incremental(axes.normal) ? programmed[axes.normal] + target.value[normal]
                                                           : target.value[normal];

@@ -30,19 +30,19 @@ Vec3 polar(const nc::PlaneAxes& axes, double radius, double angle_deg) {
 int Executor::sense(BlockReader& reader, const MotionWords& words, size_t start) {
   if (words.sense == 0)
     reader.fail("missing-word", start, "the arc has no DR", "DR+ turns counter-clockwise, DR- clockwise");
-  const nc::PlaneAxes axes = nc::axes_of(control_.plane());
+  const nc::PlaneAxes axes = nc::axes_of(control_.modal.plane);
   plane_scale(reader, start);
   return stretch_.turns_over(axes.first, axes.second) ? -words.sense : words.sense;
 }
 
 /// The way from the pole to a point at this radius and angle, as it lies in the control's frame.
 Vec3 Executor::from_pole(double radius_mm, double angle_deg) const {
-  return stretch_.factor.cwiseProduct(polar(nc::axes_of(control_.plane()), radius_mm, angle_deg));
+  return stretch_.factor.cwiseProduct(polar(nc::axes_of(control_.modal.plane), radius_mm, angle_deg));
 }
 
 /// Arcs move in the working plane.
 void Executor::only_plane(BlockReader& reader, const MotionWords& words) {
-  const nc::PlaneAxes axes = nc::axes_of(control_.plane());
+  const nc::PlaneAxes axes = nc::axes_of(control_.modal.plane);
   for (int i = 0; i < 3; ++i) {
     const Amount& word = words.axes[static_cast<size_t>(i)];
     if (!word || i != axes.normal) continue;
@@ -54,14 +54,15 @@ void Executor::only_plane(BlockReader& reader, const MotionWords& words) {
 
 /// Where PR and PA, which are modal, lead about the pole CC.
 Vec3 Executor::polar_end(BlockReader& reader, const MotionWords& words, size_t start) {
-  const nc::PlaneAxes axes = nc::axes_of(control_.plane());
+  const nc::PlaneAxes axes = nc::axes_of(control_.modal.plane);
   if (words.any_rotary() || words.axes[static_cast<size_t>(axes.first)] ||
       words.axes[static_cast<size_t>(axes.second)])
     reader.fail("unexpected-word", start, "a polar end is given by PR, PA and the height alone",
                 "LP PR+20 PA+30 Z-5");
   const Vec3 about = centre(reader, start);
-  for (const auto& [word, kept, factor] : {std::tuple{&words.polar_radius, &polar_radius_, control_.mm(1.0)},
-                                           std::tuple{&words.polar_angle, &polar_angle_, 1.0}}) {
+  for (const auto& [word, kept, factor] :
+       {std::tuple{&words.polar_radius, &polar_radius_, control_.modal.mm(1.0)},
+        std::tuple{&words.polar_angle, &polar_angle_, 1.0}}) {
     if (!*word) continue;
     if (word->incremental && !kept->given)
       reader.fail("missing-word", word->offset, "an incremental polar word follows no absolute one",
@@ -76,7 +77,7 @@ Vec3 Executor::polar_end(BlockReader& reader, const MotionWords& words, size_t s
 /// LP PR+20 IPA+30: about the pole CC.
 void Executor::polar_line(BlockReader& reader, size_t start) {
   const MotionWords words = read_motion_words(reader, kAxesAllowed | kPolarAllowed | kAlways);
-  const nc::PlaneAxes axes = nc::axes_of(control_.plane());
+  const nc::PlaneAxes axes = nc::axes_of(control_.modal.plane);
   const Vec3 end = polar_end(reader, words, start);
   Element element;
   element.offset = start;
@@ -90,7 +91,7 @@ void Executor::polar_line(BlockReader& reader, size_t start) {
 void Executor::pole(BlockReader& reader) {
   const size_t start = reader.offset();
   const MotionWords words = read_motion_words(reader, kAxesAllowed);
-  const nc::PlaneAxes axes = nc::axes_of(control_.plane());
+  const nc::PlaneAxes axes = nc::axes_of(control_.modal.plane);
   if (words.any_rotary() || words.axes[static_cast<size_t>(axes.normal)])
     reader.fail("unexpected-word", start, "a pole lies in the working plane", "CC X+10 Y+20");
   const Vec3 here = present();
@@ -99,9 +100,9 @@ void Executor::pole(BlockReader& reader) {
   for (const int i : {axes.first, axes.second}) {
     const Amount& word = words.axes[static_cast<size_t>(i)];
     if (word && !word.incremental) {
-      at[i] = stretch_.along(i, control_.mm(word.value), false);
+      at[i] = stretch_.along(i, control_.modal.mm(word.value), false);
     } else if (word || none) {
-      at[i] = here[i] + (word ? stretch_.along(i, control_.mm(word.value), true) : 0.0);
+      at[i] = here[i] + (word ? stretch_.along(i, control_.modal.mm(word.value), true) : 0.0);
     } else if (centre_) {
       at[i] = (*centre_)[i];
     } else {
@@ -129,7 +130,7 @@ void Executor::circle(BlockReader& reader, size_t start) {
   element.target = target_of(reader, words);
   if (!words.any_linear()) reader.fail("missing-word", start, "C has no end", "C X+10 Y+20 DR+");
   element.arc.centre = centre(reader, start);
-  element.arc.column = control_.place().column;
+  element.arc.column = control_.report.place.column;
   element.arc.radius_tolerance_mm = kRadiusTolerance;
   move(reader, words, element);
 }
@@ -145,12 +146,12 @@ void Executor::circle_by_radius(BlockReader& reader, size_t start) {
   const int turn = sense(reader, words, start);
   element.motion = turn > 0 ? Motion::kCounterClockwise : Motion::kClockwise;
   element.target = target_of(reader, words);
-  element.arc.column = control_.place().column;
-  const nc::PlaneAxes axes = nc::axes_of(control_.plane());
+  element.arc.column = control_.report.place.column;
+  const nc::PlaneAxes axes = nc::axes_of(control_.modal.plane);
   const Vec3 from = present();
   Vec3 chord = end_of(element.target) - from;
   chord[axes.normal] = 0.0;
-  const double radius = plane_scale(reader, start) * control_.mm(words.radius.value),
+  const double radius = plane_scale(reader, start) * control_.modal.mm(words.radius.value),
                half = 0.5 * chord.norm();
   if (!chord.allFinite())
     reader.fail("start-unknown", start, "this arc starts at a position that is not known yet",
@@ -175,7 +176,7 @@ void Executor::circle_tangential(BlockReader& reader, size_t start) {
   Element element;
   element.offset = start;
   element.target = target_of(reader, words);
-  const nc::PlaneAxes axes = nc::axes_of(control_.plane());
+  const nc::PlaneAxes axes = nc::axes_of(control_.modal.plane);
   if (!tangent_ || held_)
     reader.fail("missing-tangent", start,
                 held_ ? "CT cannot follow a corner" : "CT follows no piece of contour",
@@ -192,14 +193,14 @@ void Executor::circle_tangential(BlockReader& reader, size_t start) {
   const double radius = chord.squaredNorm() / (2.0 * off);
   element.motion = radius > 0.0 ? Motion::kCounterClockwise : Motion::kClockwise;
   element.arc.centre = from + radius * left;
-  element.arc.column = control_.place().column;
+  element.arc.column = control_.report.place.column;
   move(reader, words, element);
 }
 
 /// CP PA+90 DR+, CP IPA-720 IZ-10 DR-: about the pole, IPA may be many turns.
 void Executor::polar_circle(BlockReader& reader, size_t start) {
   const MotionWords words = read_motion_words(reader, kAxesAllowed | kPolarAllowed | kSenseAllowed | kAlways);
-  const nc::PlaneAxes axes = nc::axes_of(control_.plane());
+  const nc::PlaneAxes axes = nc::axes_of(control_.modal.plane);
   if (words.any_rotary() || words.polar_radius || words.axes[static_cast<size_t>(axes.first)] ||
       words.axes[static_cast<size_t>(axes.second)])
     reader.fail("unexpected-word", start, "CP takes PA, DR and the height alone", "CP IPA+360 IZ+5 DR+");
@@ -234,7 +235,7 @@ void Executor::polar_circle(BlockReader& reader, size_t start) {
   element.target.set(axes.first, end[axes.first], false);
   element.target.set(axes.second, end[axes.second], false);
   element.arc.centre = about;
-  element.arc.column = control_.place().column;
+  element.arc.column = control_.report.place.column;
   move(reader, words, element);
   polar_angle_ = {end_deg, start, true, false};
 }

@@ -20,9 +20,9 @@ constexpr double kTurnsMax = 10000.0;
 
 /// Q214: 1 -X, 2 -Y, 3 +X, 4 +Y of the working plane.
 void Executor::free_edge(int direction, double way, double feed) {
-  const nc::PlaneAxes axes = nc::axes_of(control_.plane());
+  const nc::PlaneAxes axes = nc::axes_of(control_.modal.plane);
   const int axis = direction % 2 == 1 ? axes.first : axes.second;
-  Vec3 to = control_.position_xyz();
+  Vec3 to = nc::position_xyz(control_);
   to[axis] += (direction <= 2 ? -way : way) * (stretch_.factor[axis] < 0.0 ? -1.0 : 1.0);
   straight(feed == kRapidFeed ? Motion::kRapid : Motion::kFeed, feed, to);
 }
@@ -30,7 +30,7 @@ void Executor::free_edge(int direction, double way, double feed) {
 int Executor::disengaging_direction(int least) const {
   const double direction = q(214);
   if (direction != std::floor(direction) || direction < least || direction > 4.0)
-    control_.fail(
+    control_.report.fail(
         "out-of-range", 0,
         fmt::format("the disengaging direction Q214 of cycle {} is {:g}", cycle_->number, direction),
         fmt::format("{} to 4: 1 is -X, 2 is -Y, 3 is +X, 4 is +Y", least));
@@ -41,20 +41,20 @@ int Executor::disengaging_direction(int least) const {
 void Executor::bore() {
   const int direction = disengaging_direction(0);
   const double start = surface() + length(200), out = q(208) > 0.0 ? q(208) : q(206);
-  const Vec3 centre = control_.position_xyz();
-  const int spindle = control_.spindle();
+  const Vec3 centre = nc::position_xyz(control_);
+  const int spindle = control_.modal.spindle;
   go(Motion::kRapid, start, 0.0);
   go(Motion::kFeed, surface() + length(201), q(206));
-  if (q(211) > 0.0) control_.dwell(q(211));
-  control_.set_spindle(0);
+  if (q(211) > 0.0) nc::dwell(control_.report, control_.modal, q(211));
+  control_.modal.spindle = 0;
   if (direction != 0) free_edge(direction, kFreeMm, out);
   go(out == kRapidFeed ? Motion::kRapid : Motion::kFeed, start, out);
   if (q(204) > q(200)) go(Motion::kRapid, surface() + length(204), 0.0);
   Vec3 back = centre;
-  const int normal = nc::axes_of(control_.plane()).normal;
-  back[normal] = control_.position_xyz()[normal];
+  const int normal = nc::axes_of(control_.modal.plane).normal;
+  back[normal] = nc::position_xyz(control_)[normal];
   straight(Motion::kRapid, 0.0, back);
-  control_.set_spindle(spindle);
+  control_.modal.spindle = spindle;
 }
 
 /// 204: the oriented edge beside the centre down through the bore, then on its axis up into the lower edge of
@@ -63,45 +63,45 @@ void Executor::back_bore() {
   const int direction = disengaging_direction(1);
   for (const int above_zero : {249, 250, 251, 253, 254}) {
     if (!(q(above_zero) > 0.0))
-      control_.fail("bad-cycle", 0, fmt::format("Q{} of cycle 204 is not above zero", above_zero),
-                    "the counterbore is made upwards, from below the material");
+      control_.report.fail("bad-cycle", 0, fmt::format("Q{} of cycle 204 is not above zero", above_zero),
+                           "the counterbore is made upwards, from below the material");
   }
   const double start = surface() + length(200), lower = surface() - length(250) - length(252);
   const double below = lower - length(200), in_feed = q(253);
   const Motion in = in_feed == kRapidFeed ? Motion::kRapid : Motion::kFeed;
-  const int spindle = control_.spindle();
+  const int spindle = control_.modal.spindle;
   go(Motion::kRapid, start, 0.0);
-  control_.set_spindle(0);
+  control_.modal.spindle = 0;
   free_edge(direction, length(251), in_feed);
   go(in, below, in_feed);
   free_edge(direction, -length(251), in_feed);
-  control_.set_spindle(spindle);
+  control_.modal.spindle = spindle;
   go(Motion::kFeed, lower + length(249), q(254));
-  if (q(255) > 0.0) control_.dwell(q(255));
+  if (q(255) > 0.0) nc::dwell(control_.report, control_.modal, q(255));
   go(in, below, in_feed);
-  control_.set_spindle(0);
+  control_.modal.spindle = 0;
   free_edge(direction, length(251), in_feed);
   go(Motion::kRapid, start, 0.0);
   if (q(204) > q(200)) go(Motion::kRapid, surface() + length(204), 0.0);
   free_edge(direction, -length(251), kRapidFeed);
-  control_.set_spindle(spindle);
+  control_.modal.spindle = spindle;
 }
 
 /// 208: half a circle from the centre to the wall, a helix of Q334 a turn down to the depth, a whole circle
 /// there, back to the centre and out. Where on the wall the helix starts does not change the bore.
 void Executor::mill_bore() {
-  const NcTool* tool = control_.active_tool();
+  const NcTool* tool = nc::active_tool(control_);
   if (tool == nullptr)
-    control_.fail("compensation-no-tool", 0, "cycle 208 without a tool of the table in the spindle",
-                  "TOOL CALL 5 Z");
+    control_.report.fail("compensation-no-tool", 0, "cycle 208 without a tool of the table in the spindle",
+                         "TOOL CALL 5 Z");
   const double cutter = 0.5 * tool->diameter_mm + delta_radius_, radius = 0.5 * length(335) - cutter;
   if (radius < -1e-9)
-    control_.fail(
+    control_.report.fail(
         "bad-cycle", 0,
         fmt::format("the bore of {:g} mm is narrower than the tool of {:g} mm", length(335), 2.0 * cutter),
         "take a smaller tool");
   if (q(342) == 0.0 && length(335) > 4.0 * cutter + 1e-9)
-    control_.fail(
+    control_.report.fail(
         "unsupported-word", 0,
         fmt::format("the bore of {:g} mm is wider than twice the tool of {:g} mm: controls mill it in "
                     "passes that Q370 sets",
@@ -110,14 +110,14 @@ void Executor::mill_bore() {
   const double start = surface() + length(200), bottom = surface() + length(201),
                turns = (start - bottom) / length(334);
   if (!(q(334) > 0.0 && turns <= kTurnsMax))
-    control_.fail("bad-cycle", 0, fmt::format("the depth per helix Q334 is {:g}", q(334)), "Q334=1");
-  const nc::PlaneAxes axes = nc::axes_of(control_.plane());
+    control_.report.fail("bad-cycle", 0, fmt::format("the depth per helix Q334 is {:g}", q(334)), "Q334=1");
+  const nc::PlaneAxes axes = nc::axes_of(control_.modal.plane);
   if (stretch_.turns_over(axes.first, axes.second))
-    control_.fail("unsupported-word", 0, "cycle 208 while one axis is mirrored is not supported",
-                  "end cycle 8 before the call");
+    control_.report.fail("unsupported-word", 0, "cycle 208 while one axis is mirrored is not supported",
+                         "end cycle 8 before the call");
   go(Motion::kRapid, start, 0.0);
   const bool left = q(351) >= 0.0;  // climb milling with M3
-  const Vec3 centre = control_.position_xyz();
+  const Vec3 centre = nc::position_xyz(control_);
   if (radius > 1e-9) {
     const Vec3 wall = centre + radius * Vec3::Unit(axes.first);
     circle_move(q(206), wall, 0.5 * (centre + wall), left, 0);

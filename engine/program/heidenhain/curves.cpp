@@ -95,7 +95,7 @@ std::array<Cubic, nc::kAxisWords> cubics(BlockReader& reader, const MotionWords&
                                          const SplineWords& spline, const Target& end, size_t start) {
   nc::Control& control = reader.control();
   if (!end.any()) reader.fail("missing-word", start, "SPL has no end", "SPL X+10 K3X+0 K2X+0 K1X-10");
-  if (!control.started())
+  if (!control.path.started)
     reader.fail("start-unknown", start, "a spline starts, and the position is not known yet",
                 "position all axes before it");
   std::array<Cubic, nc::kAxisWords> all;
@@ -108,12 +108,12 @@ std::array<Cubic, nc::kAxisWords> cubics(BlockReader& reader, const MotionWords&
       reader.fail("missing-word", start,
                   fmt::format("SPL needs {0}, K3{0}, K2{0} and K1{0} together", letter),
                   fmt::format("SPL {0}+10 K3{0}+0 K2{0}+0 K1{0}-10", letter));
-    const double unit = i < 3 ? control.mm(1.0) : rad_from_deg(1.0);
+    const double unit = i < 3 ? control.modal.mm(1.0) : rad_from_deg(1.0);
     all[i] = {end.value[i], unit * k[0].value, unit * k[1].value, unit * k[2].value};
     const double from = value_of(*all[i], 1.0);
     if (!std::isfinite(from) || (i >= 3 && pieces_of(*all[i]) > kPiecesMax))
       reader.fail("out-of-range", k[0].offset, "this spline bends beyond any machine", "correct its numbers");
-    const double off = from - control.position()[i];
+    const double off = from - nc::position(control)[i];
     if (std::abs(off) > (i < 3 ? kStartToleranceMm : kStartToleranceRad))
       reader.fail("bad-spline", k[0].offset,
                   fmt::format("the spline starts {:.6f} {} off the position before it in {}",
@@ -130,7 +130,7 @@ std::array<Cubic, nc::kAxisWords> cubics(BlockReader& reader, const MotionWords&
 /// tip = point + R2 N + (R - R2) N' - R2 T, where N' is the unit part of N across the tool axis T.
 Vec3 Executor::surface_offset(BlockReader& reader, const MotionWords& words, const Vec3& axis, size_t start) {
   const Vec3 normal = unit_vector(reader, words.normal, "N");
-  const NcTool* tool = control_.active_tool();
+  const NcTool* tool = nc::active_tool(control_);
   if (path_is_contour_ && tool == nullptr)
     reader.fail("compensation-no-tool", start,
                 "the path is the contour, and no tool of the table is in the spindle", "TOOL CALL 5 Z");
@@ -164,7 +164,7 @@ void Executor::surface_line(BlockReader& reader, size_t start) {
   Element element;
   element.offset = start;
   element.target = target_of(reader, words);
-  Vec3 axis = control_.tool_axis_P();
+  Vec3 axis = nc::tool_axis_P(control_);
   if (any(words.tool)) {
     if (words.any_rotary())
       reader.fail("words-conflict", start, "LN has rotary words and a tool vector", "write one of them");
@@ -196,7 +196,7 @@ void Executor::spline(BlockReader& reader, size_t start) {
       reader, kAxesAllowed | kCoefficientsAllowed | kFeedAllowed | kFunctionsAllowed, &spline);
   no_open_corner(reader, start);
   need_true_size(reader, start, "SPL");
-  if (control_.compensation() != nc::Compensation::kOff)
+  if (control_.contour.side() != nc::Compensation::kOff)
     reader.fail("unsupported-word", start, "SPL while RL or RR is active is not supported",
                 "write R0 before it");
   if (words.any_rotary() && (spatial_ || (tilted_ && !tcpm_)))
@@ -209,9 +209,10 @@ void Executor::spline(BlockReader& reader, size_t start) {
                 "write F with a value");
   functions_before(reader, words);
   if (words.any_rotary()) turn_by(nc::Tcp::kAxes);
-  const CubicCurve curve(cubics(reader, words, spline, target_of(reader, words), start), control_.position());
+  const CubicCurve curve(cubics(reader, words, spline, target_of(reader, words), start),
+                         nc::position(control_));
   if (feed > 0.0) set_feed(feed, !words.any_linear());
-  control_.curve(curve, kChordToleranceMm);
+  nc::curve(control_, curve, kChordToleranceMm);
   tangent_.reset();
   finish_motion(reader, words);
 }

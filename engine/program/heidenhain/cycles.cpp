@@ -67,7 +67,8 @@ void Executor::cycle_definition(BlockReader& reader) {
   for (const CycleParameters& one : parameter_cycles()) {
     if (one.number == number.number) return parameter_cycle(reader, number.number, offset);
   }
-  if (control_.take_builder_word(fmt::format("CYCL DEF {}", number.number))) return builders_cycle(reader);
+  if (control_.report.take_builder_word(fmt::format("CYCL DEF {}", number.number)))
+    return builders_cycle(reader);
   if (known_cycle(number.number))
     reader.fail("unsupported-word", offset,
                 fmt::format("cycle {} is known, but not supported here", number.number),
@@ -109,7 +110,7 @@ void Executor::old_cycle(BlockReader& reader, CycleNumber number, size_t offset)
       reader.expect_end();
       if (!(seconds >= 0.0 && seconds <= 30000.0))
         reader.fail("out-of-range", at, fmt::format("{:g} s is no dwell", seconds), "0 to 30000 s");
-      return control_.dwell(seconds);
+      return nc::dwell(control_.report, control_.modal, seconds);
     }
     case 8:
       return mirror_image(reader);
@@ -120,7 +121,7 @@ void Executor::old_cycle(BlockReader& reader, CycleNumber number, size_t offset)
     case 26:
       return axis_scaling(reader);
     case 13:  // the spindle turns to an angle
-      control_.without_effect("CYCL DEF 13");
+      control_.report.without_effect("CYCL DEF 13");
       reader.rest();
       return;
     case 19:
@@ -219,8 +220,8 @@ void Executor::tilt_cycle(BlockReader& reader) {
 /// 32.1 T0.05, 32.2 HSC-MODE:1 TA0.5; 32.1 alone: the control's own tolerance.
 void Executor::tolerance(BlockReader& reader, int part) {
   if (part > 1) {
-    control_.without_effect("CYCL DEF 32.2");
-    control_.note("CYCL DEF 32.2", reader.rest());
+    control_.report.without_effect("CYCL DEF 32.2");
+    control_.report.note("CYCL DEF 32.2", reader.rest());
     return;
   }
   double width = 0.0;
@@ -231,7 +232,7 @@ void Executor::tolerance(BlockReader& reader, int part) {
     if (!(width > 0.0)) reader.fail("out-of-range", start, "the tolerance is not above zero", "T0.05");
     reader.expect_end();
   }
-  control_.set_corner_tolerance(control_.mm(width));
+  control_.modal.corner_tolerance_mm = control_.modal.mm(width);
 }
 
 /// Cycle 247: the work offset with this number. The control ends shift, mirror image, rotation and scaling
@@ -239,7 +240,7 @@ void Executor::tolerance(BlockReader& reader, int part) {
 void Executor::preset(BlockReader& reader, const Cycle& cycle) {
   const double number = cycle.q.at(339);
   const bool given = number >= 1.0 && number == std::floor(number) && number < 1e6 &&
-                     (number == 1.0 || control_.setup().work_offsets.count(static_cast<int>(number)) > 0);
+                     (number == 1.0 || control_.setup.work_offsets.count(static_cast<int>(number)) > 0);
   if (!given)
     reader.fail("unknown-offset", cycle.offset, fmt::format("there is no preset {:g}", number),
                 "give the work offset with this number in the scene");
@@ -247,7 +248,7 @@ void Executor::preset(BlockReader& reader, const Cycle& cycle) {
     reader.fail("unsupported-word", cycle.offset,
                 "a preset while the working plane is tilted is not supported",
                 "write PLANE RESET STAY before it");
-  control_.set_work_offset(static_cast<int>(number));
+  nc::set_work_offset(control_, static_cast<int>(number));
   outer_ = Level();
   update_frame();
 }
@@ -272,7 +273,7 @@ void Executor::cycle_call(BlockReader& reader, size_t start) {
     Element element;
     element.offset = start;
     element.target = target_of(reader, words);
-    element.place = control_.place();
+    element.place = control_.report.place;
     element.feed = feed_of(reader, words, element.motion);
     element.target.column = element.place.column;
     element.from = present();

@@ -23,38 +23,38 @@ double Executor::q(int number) const {
 
 /// A length of the cycle in mm: scaling (cycle 11) changes these too.
 double Executor::length(int number) const {
-  return control_.mm(q(number)) * level().scale;
+  return control_.modal.mm(q(number)) * level().scale;
 }
 
 double Executor::surface() const {
-  return stretch_.along(nc::axes_of(control_.plane()).normal, control_.mm(q(203)) + raised_, false);
+  return stretch_.along(nc::axes_of(control_.modal.plane).normal, control_.modal.mm(q(203)) + raised_, false);
 }
 
 void Executor::go(Motion motion, double height, double feed) {
   Target target;
-  target.column = control_.place().column;
-  target.set(nc::axes_of(control_.plane()).normal, height, false);
+  target.column = control_.report.place.column;
+  target.set(nc::axes_of(control_.modal.plane).normal, height, false);
   if (motion == Motion::kFeed) set_feed(feed, false);
-  control_.line(motion, target);
+  nc::line(control_, motion, target);
 }
 
 void Executor::run_cycle(BlockReader& reader, size_t offset) {
   if (!cycle_)
     reader.fail("no-cycle", offset, "no drilling cycle is defined before this call",
                 "write CYCL DEF before it");
-  if (!control_.started())
+  if (!control_.path.started)
     reader.fail("start-unknown", offset, "a cycle starts, and the position is not known yet",
                 "position all axes before it");
   const nc::Place place = reader.place_of(offset);
-  control_.at(place.file, place.line, place.column);
+  control_.report.at(place.file, place.line, place.column);
   // Cycles 1 and 2 start where the tool stands, at the set-up clearance.
   if (cycle_->number <= 2)
-    cycle_->q[203] =
-        control_.position_xyz()[nc::axes_of(control_.plane()).normal] / (control_.mm(1.0) * level().scale) -
-        q(200);
+    cycle_->q[203] = nc::position_xyz(control_)[nc::axes_of(control_.modal.plane).normal] /
+                         (control_.modal.mm(1.0) * level().scale) -
+                     q(200);
   for (const auto& [number, value] : cycle_->q) {
     if (number >= 200 && cycle_->number >= 200 && parameters_.find_q(number).value_or(value) != value)
-      control_.fail(
+      control_.report.fail(
           "bad-cycle", 0,
           fmt::format("Q{} is {:g} since CYCL DEF {} gave it {:g}: which one holds depends on the control",
                       number, *parameters_.find_q(number), cycle_->number, value),
@@ -91,29 +91,29 @@ void Executor::check_cycle() const {
   const int number = cycle_->number;
   for (const int part : {200, 201, 206}) {
     if (number > 2 || cycle_->q.count(part) > 0) continue;
-    control_.fail("missing-word", 0,
-                  fmt::format("cycle {} is called, and not all of its parts are given", number),
-                  "write SET UP, DEPTH and F");
+    control_.report.fail("missing-word", 0,
+                         fmt::format("cycle {} is called, and not all of its parts are given", number),
+                         "write SET UP, DEPTH and F");
   }
   for (const int least_zero : {200, 204, 205, 208, 210, 211, 212, 213, 252, 255, 256, 257, 258, 259, 342}) {
     if (q(least_zero) < 0.0)
-      control_.fail("bad-cycle", 0, fmt::format("Q{} of cycle {} is below zero", least_zero, number),
-                    fmt::format("Q{}=+0", least_zero));
+      control_.report.fail("bad-cycle", 0, fmt::format("Q{} of cycle {} is below zero", least_zero, number),
+                           fmt::format("Q{}=+0", least_zero));
   }
   if (level().scales_axes())
-    control_.fail("unsupported-word", 0, "a cycle while cycle 26 scales axes is not supported",
-                  "reset it before the call: CYCL DEF 26.1 X1 Y1");
+    control_.report.fail("unsupported-word", 0, "a cycle while cycle 26 scales axes is not supported",
+                         "reset it before the call: CYCL DEF 26.1 X1 Y1");
   if (level().scales() && (number == 2 || number == 206 || number == 207))
-    control_.fail("unsupported-word", 0, "tapping while cycle 11 scales is not supported",
-                  "reset it before the call: CYCL DEF 11.1 SCL1");
+    control_.report.fail("unsupported-word", 0, "tapping while cycle 11 scales is not supported",
+                         "reset it before the call: CYCL DEF 11.1 SCL1");
   if (number != 204 && q(201) == 0.0)
-    control_.fail("bad-cycle", 0, "the depth of the cycle is zero: it would do nothing", "Q201=-20");
+    control_.report.fail("bad-cycle", 0, "the depth of the cycle is zero: it would do nothing", "Q201=-20");
   if (q(201) > 0.0)
-    control_.fail("unsupported-word", 0, "drilling upwards (a depth above zero) is not supported",
-                  "give the depth with a minus sign");
+    control_.report.fail("unsupported-word", 0, "drilling upwards (a depth above zero) is not supported",
+                         "give the depth with a minus sign");
   if (number != 207 && number != 204 && !(q(206) > 0.0))
-    control_.fail("bad-feed", 0, fmt::format("the feed Q206 of cycle {} is {:g}", number, q(206)),
-                  "Q206=+150");
+    control_.report.fail("bad-feed", 0, fmt::format("the feed Q206 of cycle {} is {:g}", number, q(206)),
+                         "Q206=+150");
   check_values();
 }
 
@@ -121,7 +121,7 @@ void Executor::check_cycle() const {
 void Executor::check_values() const {
   const int number = cycle_->number;
   const auto refuse = [&](bool meant, std::string text, const char* fix) {
-    if (meant) control_.fail("unsupported-word", 0, std::move(text), fix);
+    if (meant) control_.report.fail("unsupported-word", 0, std::move(text), fix);
   };
   refuse(q(395) != 0.0 || q(379) != 0.0, "Q395 and Q379 other than 0 are not supported",
          "give the depth of the tip, from the surface");
@@ -151,28 +151,28 @@ void Executor::drill_once() {
   cycle.feed_out = true;
   cycle.reverse_at_bottom = cycle_->number != 201;
   if (cycle_->number == 207) {
-    cycle.pitch_mm = control_.mm(q(239));
+    cycle.pitch_mm = control_.modal.mm(q(239));
   } else {
     set_feed(q(206), false);
   }
-  control_.drill(cycle, Target());
+  nc::drill(control_, cycle, Target());
 }
 
 /// 241 in one stroke: in at the entry speed, down at the drilling speed, out at Q208.
 void Executor::drill_deep() {
   const double start = surface() + length(200), out = q(208) > 0.0 ? q(208) : q(206),
-               speed = control_.speed_rpm();
-  const int spindle = control_.spindle();
+               speed = control_.modal.speed_rpm;
+  const int spindle = control_.modal.spindle;
   go(Motion::kRapid, start, 0.0);
-  if (cycle_->q.count(426) > 0) control_.set_spindle(q(426) == 4.0 ? -1 : 1);
-  if (q(428) > 0.0) control_.set_speed(q(428));
+  if (cycle_->q.count(426) > 0) control_.modal.spindle = q(426) == 4.0 ? -1 : 1;
+  if (q(428) > 0.0) control_.modal.speed_rpm = q(428);
   go(Motion::kFeed, surface() + length(201), q(206));
-  if (q(211) > 0.0) control_.dwell(q(211));
-  if (q(427) > 0.0) control_.set_speed(q(427));
+  if (q(211) > 0.0) nc::dwell(control_.report, control_.modal, q(211));
+  if (q(427) > 0.0) control_.modal.speed_rpm = q(427);
   go(out == kRapidFeed ? Motion::kRapid : Motion::kFeed, start, out);
   if (q(204) > q(200)) go(Motion::kRapid, surface() + length(204), 0.0);
-  control_.set_speed(speed);
-  control_.set_spindle(spindle);
+  control_.modal.speed_rpm = speed;
+  control_.modal.spindle = spindle;
 }
 
 /// The way in which a pecking cycle leaves the hole: FMAX (200, 1, where no Q208 is given), or Q208, which
@@ -185,21 +185,22 @@ double Executor::feed_out() const {
 /// 200, 203, 205, 1: down in pecks. Q213 (203): chip breaks before a retreat out of the hole; Q257 (205): way
 /// between two chip breaks within a peck.
 void Executor::drill_pecking() {
-  const int normal = nc::axes_of(control_.plane()).normal;
+  const int normal = nc::axes_of(control_.modal.plane).normal;
   const double surface = this->surface(), clearance = length(200), depth = -length(201);
   const double start = surface + clearance, feed = q(206);
   const double out_feed = feed_out();
   const Motion out = out_feed == kRapidFeed ? Motion::kRapid : Motion::kFeed;
   double peck = cycle_->q.count(202) ? length(202) : depth;
   if (!(peck > 0.0) || depth / peck > kPecksMax)
-    control_.fail("bad-cycle", 0, fmt::format("the depth per peck is {:g} mm", peck), "Q202=5");
+    control_.report.fail("bad-cycle", 0, fmt::format("the depth per peck is {:g} mm", peck), "Q202=5");
   const double least = q(205) > 0.0 ? length(205) : peck;
   const double smaller = length(212);
   if (smaller > 0.0 && !(depth / least <= kPecksMax && q(205) > 0.0))
-    control_.fail("bad-cycle", 0, "Q212 makes pecks smaller, and Q205 gives no smallest one", "Q205=1");
+    control_.report.fail("bad-cycle", 0, "Q212 makes pecks smaller, and Q205 gives no smallest one",
+                         "Q205=1");
   const double chip = length(257);
   if (chip > 0.0 && depth / chip > kPecksMax)
-    control_.fail("bad-cycle", 0, fmt::format("chips break each {:g} mm", chip), "Q257=5");
+    control_.report.fail("bad-cycle", 0, fmt::format("chips break each {:g} mm", chip), "Q257=5");
   // Above the last depth after a retreat: the set-up clearance (200, 203), Q258 (205), its own rule (1).
   double above = clearance;
   if (cycle_->number == 205) above = length(258);
@@ -207,7 +208,7 @@ void Executor::drill_pecking() {
   const double back = q(256) > 0.0 ? length(256) : 0.2;
   const double breaks = q(213);
   double broken = 0.0;
-  if (control_.position_xyz()[normal] != start) go(Motion::kRapid, start, 0.0);
+  if (nc::position_xyz(control_)[normal] != start) go(Motion::kRapid, start, 0.0);
   double done = 0.0;
   for (;;) {
     const double next = std::min(depth, done + peck) > depth - 1e-9 ? depth : done + peck;
@@ -224,12 +225,12 @@ void Executor::drill_pecking() {
     } else {
       broken = 0.0;
       go(out, start, out_feed);
-      if (q(210) > 0.0) control_.dwell(q(210));
+      if (q(210) > 0.0) nc::dwell(control_.report, control_.modal, q(210));
       if (surface - done + above < start) go(Motion::kRapid, surface - done + above, 0.0);
     }
     peck = std::max(std::min(peck, least), peck - smaller);
   }
-  if (q(211) > 0.0) control_.dwell(q(211));
+  if (q(211) > 0.0) nc::dwell(control_.report, control_.modal, q(211));
   go(out, start, out_feed);
   if (q(204) > q(200)) go(Motion::kRapid, surface + length(204), 0.0);
 }

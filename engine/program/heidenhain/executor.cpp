@@ -5,10 +5,10 @@
 namespace swarf::program::nc::heidenhain {
 
 Executor::Executor(nc::Control& control) : control_(control), flow_(control, parameters_) {
-  control_.set_words(
-      {"R0", "L .. FMAX", "L with F", "CC", "M136, FU", "TOOL CALL 5 Z S1000, then M3", "TOOL CALL"});
-  control_.set_feed_rule(nc::FeedRule::kAllAxes);
-  control_.set_compensation_entry(nc::CompensationEntry::kAcrossNext);
+  control_.report.words = {
+      "R0", "L .. FMAX", "L with F", "CC", "M136, FU", "TOOL CALL 5 Z S1000, then M3", "TOOL CALL"};
+  control_.modal.feed_rule = nc::FeedRule::kAllAxes;
+  control_.contour.set_entry(nc::CompensationEntry::kAcrossNext);
 }
 
 void Executor::run(const std::string& path) {
@@ -17,14 +17,14 @@ void Executor::run(const std::string& path) {
     BlockReader reader(*text, control_, parameters_);
     block(reader);
   }
-  control_.finish();
+  nc::finish(control_);
 }
 
 void Executor::block(BlockReader& reader) {
   reader.done();
   const size_t start = reader.offset();
   const nc::Place place = reader.place_of(start);
-  control_.at(place.file, place.line, place.column);
+  control_.report.at(place.file, place.line, place.column);
   const std::string word(reader.letters());
   if (open_cycle_ != 0 && word != "CYCL") open_cycle_ = 0;
   if (!begun_ && word != "BEGIN") {
@@ -100,7 +100,7 @@ bool Executor::statement(BlockReader& reader, std::string_view word, size_t star
   } else if (word == "TRANS") {
     transform(reader, start);
   } else if (word == "STOP" || word == "M") {
-    if (word == "STOP") control_.without_effect("STOP");
+    if (word == "STOP") control_.report.without_effect("STOP");
     if (word == "M") reader.move_to(start);
     const MotionWords words = read_motion_words(reader, kFunctionsAllowed | kTcpAllowed);
     if (words.has_function(136) || words.has_function(137)) feed_ = 0.0;
@@ -119,12 +119,12 @@ void Executor::begin_program(BlockReader& reader, size_t start) {
   const bool inch = rest.ends_with(" INCH"), mm = rest.ends_with(" MM");
   if (!inch && !mm)
     reader.fail("missing-word", start, "BEGIN PGM says neither MM nor INCH", "BEGIN PGM NAME MM (or INCH)");
-  if (begun_ && control_.inches() != inch) {
+  if (begun_ && control_.modal.inches() != inch) {
     reader.fail("unsupported-word", start, "a called program has the other unit",
                 "write both programs in MM, or both in INCH");
   }
   begun_ = true;
-  control_.set_inches(inch);
+  nc::set_inches(control_.modal, inch);
   parameters_.set_q(113, inch ? 1.0 : 0.0);
 }
 
@@ -154,8 +154,8 @@ void Executor::function_number(BlockReader& reader, size_t start) {
                 "see what the program checks before this block");
   }
   if (number == 16 || number == 38) {
-    control_.without_effect(fmt::format("FN {}", number));
-    control_.note(fmt::format("FN {}", number), reader.rest());
+    control_.report.without_effect(fmt::format("FN {}", number));
+    control_.report.note(fmt::format("FN {}", number), reader.rest());
     return;
   }
   if (number >= 15 && number <= 38) {

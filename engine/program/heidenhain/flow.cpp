@@ -25,21 +25,21 @@ const BlockText* Flow::next() {
   if (ended_) return nullptr;
   Level& level = *levels_.back();
   if (!fetch(level)) {
-    control_.at(level.source->file(), static_cast<int>(level.source->line_number()), 1);
-    control_.fail("missing-end", 0, "the program ends without END PGM",
-                  "the file is cut off: transfer it again, or write END PGM");
+    control_.report.at(level.source->file(), static_cast<int>(level.source->line_number()), 1);
+    control_.report.fail("missing-end", 0, "the program ends without END PGM",
+                         "the file is cut off: transfer it again, or write END PGM");
   }
   std::swap(now_, level.ahead);
   level.ahead_valid = false;
   for (const auto& [line, text] : comments_) {
-    control_.at(now_.file, line, 1);
-    control_.note(";", text);
+    control_.report.at(now_.file, line, 1);
+    control_.report.note(";", text);
   }
   comments_.clear();
-  control_.at(now_.file, now_.line(), 1);
-  if (!now_.comment.empty()) control_.note(";", now_.comment);
-  ++control_.summary().blocks;
-  control_.summary().lines += static_cast<long>(now_.pieces.size()) + now_.skipped;
+  control_.report.at(now_.file, now_.line(), 1);
+  if (!now_.comment.empty()) control_.report.note(";", now_.comment);
+  ++control_.report.summary.blocks;
+  control_.report.summary.lines += static_cast<long>(now_.pieces.size()) + now_.skipped;
   return &now_;
 }
 
@@ -97,8 +97,8 @@ void Flow::go(BlockReader& reader, const std::string& name, size_t offset) {
         near.empty() ? "write the label, or correct the call" : fmt::format("did you mean LBL {}?", near));
   }
   const nc::Place place = reader.place_of(offset);
-  control_.at(place.file, place.line, place.column);
-  control_.jump();
+  control_.report.at(place.file, place.line, place.column);
+  nc::jump(control_);
   go(level, found->second);
 }
 
@@ -163,7 +163,7 @@ void Flow::call_program(BlockReader& reader, std::string name, size_t offset) {
   std::replace(name.begin(), name.end(), '\\', '/');
   if (name.starts_with("TNC:/")) name = name.substr(5);
   const std::string path =
-      nc::find_subprogram(levels_.back()->source->path(), control_.setup(), name, {"", ".h", ".H"});
+      nc::find_subprogram(levels_.back()->source->path(), control_.setup, name, {"", ".h", ".H"});
   if (path.empty() || name.empty()) {
     reader.fail("unknown-subprogram", offset, fmt::format("the program '{}' is not found", name),
                 "put it next to this program, or name its folder in the scene");
@@ -172,7 +172,7 @@ void Flow::call_program(BlockReader& reader, std::string name, size_t offset) {
     reader.fail("too-deep", offset, fmt::format("more than {} programs call each other", kLevelsMax),
                 "take the recursion out");
   }
-  control_.jump();
+  nc::jump(control_);
   open(path);
   levels_.back()->outer_local = parameters_.swap_local({});
 }

@@ -70,7 +70,7 @@ Stretch Level::stretch() const {
 void Executor::update_frame() {
   Pose tilted = Pose::Identity();
   tilted.linear() = tilt_;
-  control_.set_frame(outer_.rigid() * tilted * inner_.rigid());
+  nc::set_frame(control_, outer_.rigid() * tilted * inner_.rigid());
   stretch_ = level().stretch();
   tangent_.reset();
   centre_.reset();
@@ -101,7 +101,7 @@ void Executor::datum_shift(BlockReader& reader) {
       reader.fail("unsupported-word", word.offset, "datum shifts of rotary axes are not supported",
                   "put the angle into the preset");
     }
-    shift[i] = control_.mm(word.value) + (word.incremental ? shift[i] : 0.0);
+    shift[i] = control_.modal.mm(word.value) + (word.incremental ? shift[i] : 0.0);
   }
   need_order(reader, start,
              (level().turn_deg != 0.0 || level().stretches()) && shift != level().shift && !shift.isZero(0.0),
@@ -152,7 +152,7 @@ void Executor::mirror_image(BlockReader& reader) {
     if (axis == std::string::npos)
       refuse_word(reader, at, word.empty() ? std::string(1, reader.peek()) : word);
     const auto index = static_cast<int>(axis);
-    if (index >= 3 || index == nc::axes_of(control_.plane()).normal)
+    if (index >= 3 || index == nc::axes_of(control_.modal.plane).normal)
       reader.fail("unsupported-word", at, fmt::format("a mirror image of {} is not supported", word),
                   "the axes of the working plane are");
     if (mirror[index] < 0.0)
@@ -175,7 +175,7 @@ void Executor::rotation(BlockReader& reader) {
   if (!added && !reader.take("ROT")) refuse_word(reader, start, reader.take_letters());
   const double angle = reader.value() + (added ? level().turn_deg : 0.0);
   reader.expect_end();
-  if (control_.plane() != nc::Plane::kXY)
+  if (control_.modal.plane != nc::Plane::kXY)
     reader.fail("unsupported-word", start, "rotations are supported with the tool axis Z alone",
                 "TOOL CALL 5 Z");
   need_order(reader, start, angle != level().turn_deg && angle != 0.0 && level().scales_axes(), "a rotation");
@@ -228,7 +228,7 @@ void Executor::axis_scaling(BlockReader& reader) {
       reader.fail("word-twice", at, fmt::format("{} stands twice in this block", word), "keep one of them");
     seen = static_cast<uint8_t>(seen | (1u << index));
     if (middle) {
-      centre[index] = control_.mm(reader.value());
+      centre[index] = control_.modal.mm(reader.value());
     } else {
       changed.axis_scale[index] = scale_factor(reader);
     }
@@ -248,7 +248,7 @@ void Executor::axis_scaling(BlockReader& reader) {
 /// By how much lengths in the working plane grow: arcs, corners and cutter radii need one factor for both
 /// axes.
 double Executor::plane_scale(BlockReader& reader, size_t offset) {
-  const nc::PlaneAxes axes = nc::axes_of(control_.plane());
+  const nc::PlaneAxes axes = nc::axes_of(control_.modal.plane);
   const double first = std::abs(stretch_.factor[axes.first]), second = std::abs(stretch_.factor[axes.second]);
   if (first != second)
     reader.fail("bad-arc", offset,

@@ -45,11 +45,11 @@ void Executor::functions_before(BlockReader& reader, const MotionWords& words) {
     switch (word.number) {
       case 3:
       case 13:
-        control_.set_spindle(1);
+        control_.modal.spindle = 1;
         break;
       case 4:
       case 14:
-        control_.set_spindle(-1);
+        control_.modal.spindle = -1;
         break;
       case 94:
         reduce_display(word);
@@ -72,7 +72,8 @@ void Executor::functions_before(BlockReader& reader, const MotionWords& words) {
       case 136:
       case 137:
         per_revolution_ = word.number == 136;
-        control_.set_feed_mode(per_revolution_ ? nc::FeedMode::kPerRevolution : nc::FeedMode::kPerMinute);
+        nc::set_feed_mode(control_.modal,
+                          per_revolution_ ? nc::FeedMode::kPerRevolution : nc::FeedMode::kPerMinute);
         break;
       case 140:
         retract(reader, word, words);
@@ -80,17 +81,17 @@ void Executor::functions_before(BlockReader& reader, const MotionWords& words) {
       default:
         break;
     }
-    if (word.number == 13 || word.number == 14) control_.without_effect("M8");
+    if (word.number == 13 || word.number == 14) control_.report.without_effect("M8");
     if (!executed(word.number) && word.number != 13 && word.number != 14) {
-      control_.without_effect(fmt::format("M{}", word.number));
-      control_.note(fmt::format("M{}", word.number), "");
+      control_.report.without_effect(fmt::format("M{}", word.number));
+      control_.report.note(fmt::format("M{}", word.number), "");
     }
   }
 }
 
 void Executor::functions_after(BlockReader& reader, const std::vector<MWord>& words) {
   for (const MWord& word : words) {
-    if (word.number == 5 || word.number == 2 || word.number == 30) control_.set_spindle(0);
+    if (word.number == 5 || word.number == 2 || word.number == 30) control_.modal.spindle = 0;
     if (word.number == 129) set_tcpm(false, false, false, false);
     if (word.number == 115 || word.number == 145) compensate_heads(reader, word.offset, false);
     if (word.number == 89) modal_call_ = true;
@@ -104,21 +105,21 @@ void Executor::functions_after(BlockReader& reader, const std::vector<MWord>& wo
 
 /// M94: whole turns of rotary positions are forgotten; the axis itself stands.
 void Executor::reduce_display(const MWord& word) {
-  kinematics::AxisValues shift = control_.shift();
-  const auto position = control_.position();
+  kinematics::AxisValues shift = control_.space.shift();
+  const auto position = nc::position(control_);
   for (int slot = nc::kA; slot < nc::kAxisWords; ++slot) {
-    const int axis = control_.axis_of(static_cast<nc::AxisWord>(slot));
+    const int axis = control_.space.axis_of(static_cast<nc::AxisWord>(slot));
     const double value = position[static_cast<size_t>(slot)];
     const bool meant = word.axes == 0 || (word.axes >> slot & 1u) != 0;
     if (axis >= 0 && meant && std::isfinite(value)) shift[axis] += kTurn * std::floor(value / kTurn + 1e-12);
   }
-  control_.set_shift(shift);
+  nc::set_shift(control_, shift);
 }
 
 /// M140 MB50 at F of its block, or rapid.
 void Executor::retract(BlockReader& reader, const MWord& word, const MotionWords& words) {
   no_open_corner(reader, word.offset);
-  if (!control_.started()) {
+  if (!control_.path.started) {
     reader.fail("start-unknown", word.offset, "M140 retracts, and the position is not known yet",
                 "position all axes before it");
   }
@@ -128,20 +129,20 @@ void Executor::retract(BlockReader& reader, const MWord& word, const MotionWords
   if (word.max) return retract_by(std::nullopt, motion);
   if (!(word.amount.value > 0.0))
     reader.fail("out-of-range", word.amount.offset, "M140 MB retracts by a way above zero", "M140 MB50");
-  retract_by(control_.mm(word.amount.value), motion);
+  retract_by(control_.modal.mm(word.amount.value), motion);
 }
 
 /// Along the tool, by a way or up to the end of the first axis' travel.
 void Executor::retract_by(std::optional<double> way, Motion motion) {
-  control_.flush();
-  const kinematics::MachineModel& machine = control_.machine();
-  const kinematics::AxisValues& q = control_.axis_values();
+  nc::flush(control_);
+  const kinematics::MachineModel& machine = control_.setup.machine;
+  const kinematics::AxisValues& q = control_.path.q;
   const ToolPose here = kinematics::forward(machine, q);
   Vec3 direction = linear_columns_W(machine, q).inverse() * here.axis_W;
   direction = direction.unaryExpr([](double x) { return std::abs(x) < 1e-12 ? 0.0 : x; });
   double length = way.value_or(std::numeric_limits<double>::infinity());
   for (int i = 0; i < 3 && !way; ++i) {
-    const int index = control_.axis_of(static_cast<nc::AxisWord>(i));
+    const int index = control_.space.axis_of(static_cast<nc::AxisWord>(i));
     const kinematics::Axis& axis = machine.axes[static_cast<size_t>(index)];
     if (direction[i] != 0.0) {
       const double end = direction[i] > 0.0 ? axis.max : axis.min;
@@ -149,9 +150,9 @@ void Executor::retract_by(std::optional<double> way, Motion motion) {
     }
   }
   Target target;
-  target.column = control_.place().column;
+  target.column = control_.report.place.column;
   for (int i = 0; i < 3; ++i) target.set(i, length * direction[i], true);
-  control_.machine_line(motion, target);
+  nc::machine_line(control_, motion, target);
   tangent_.reset();
 }
 

@@ -20,7 +20,7 @@ constexpr double kTurn = 2.0 * kPi;
 
 Vec3 Executor::present() {
   if (approach_) return approach_->contour;
-  return held_ ? held_->to : control_.position_xyz();
+  return held_ ? held_->to : nc::position_xyz(control_);
 }
 
 Vec3 Executor::end_of(const Target& target) {
@@ -34,15 +34,17 @@ Vec3 Executor::end_of(const Target& target) {
 
 Target Executor::target_of(BlockReader& reader, const MotionWords& words, int words_taken) {
   Target target;
-  target.column = control_.place().column;
+  target.column = control_.report.place.column;
   const bool shortest = words.has_function(126) || (shortest_ && !words.has_function(127));
   for (int i = 0; i < words_taken; ++i) {
     const Amount& word = words.axes[static_cast<size_t>(i)];
     if (!word) continue;
     const auto axis = static_cast<nc::AxisWord>(i);
-    if (i >= 3 && control_.axis_of(axis) < 0) control_.require_axis(axis, reader.column(word.offset));
+    if (i >= 3 && control_.space.axis_of(axis) < 0)
+      nc::require_axis(control_, axis, reader.column(word.offset));
     target.set(
-        i, i < 3 ? stretch_.along(i, control_.mm(word.value), word.incremental) : rad_from_deg(word.value),
+        i,
+        i < 3 ? stretch_.along(i, control_.modal.mm(word.value), word.incremental) : rad_from_deg(word.value),
         word.incremental);
     if (i >= 3 && shortest) target.way[static_cast<size_t>(i) - 3] = nc::RotaryWay::kShortest;
   }
@@ -66,7 +68,7 @@ double Executor::feed_of(BlockReader& reader, const MotionWords& words, Motion& 
     feed_ = words.feed_value.value;
     const bool turns = words.feed == FeedWord::kPerRevolution || words.has_function(136) ||
                        (per_revolution_ && !words.has_function(137));
-    control_.set_feed_mode(turns ? nc::FeedMode::kPerRevolution : nc::FeedMode::kPerMinute);
+    nc::set_feed_mode(control_.modal, turns ? nc::FeedMode::kPerRevolution : nc::FeedMode::kPerMinute);
   } else if (words.has_function(136) || words.has_function(137)) {
     feed_ = 0.0;  // the old number means nothing in the other unit
   }
@@ -86,7 +88,7 @@ void Executor::move(BlockReader& reader, const MotionWords& words, Element& elem
     reader.fail("unexpected-word", words.feed_value.offset, "an arc is not moved at FMAX",
                 "write F with a value");
   }
-  element.place = control_.place();
+  element.place = control_.report.place;
   element.target.column = element.place.column;
   element.from = present();
   element.to = end_of(element.target);
@@ -98,8 +100,8 @@ void Executor::move(BlockReader& reader, const MotionWords& words, Element& elem
   functions_before(reader, words);
   if (words.compensation) {
     const nc::Compensation side = side_of(*words.compensation);
-    control_.set_compensation(side, side != nc::Compensation::kOff ? cutter_radius(reader) : 0.0,
-                              element.place.column);
+    nc::set_compensation(control_, side, side != nc::Compensation::kOff ? cutter_radius(reader) : 0.0,
+                         element.place.column);
   }
   const BlockText* next = flow_.following();
   if (next != nullptr && (next->text.starts_with("RND") || next->text.starts_with("CHF"))) {
@@ -115,14 +117,14 @@ void Executor::move(BlockReader& reader, const MotionWords& words, Element& elem
 
 /// RL and RR of the program; a mirror image has the cutter on the other side.
 nc::Compensation Executor::side_of(nc::Compensation written) const {
-  const nc::PlaneAxes axes = nc::axes_of(control_.plane());
+  const nc::PlaneAxes axes = nc::axes_of(control_.modal.plane);
   if (written == nc::Compensation::kOff || !stretch_.turns_over(axes.first, axes.second)) return written;
   return written == nc::Compensation::kLeft ? nc::Compensation::kRight : nc::Compensation::kLeft;
 }
 
 double Executor::cutter_radius(BlockReader& reader) {
-  const NcTool* tool = control_.active_tool();
-  const auto defined = defined_radius_.find(control_.tool_number());
+  const NcTool* tool = nc::active_tool(control_);
+  const auto defined = defined_radius_.find(control_.tools.active_number);
   if (tool == nullptr && defined != defined_radius_.end()) return defined->second + delta_radius_;
   if (tool == nullptr)
     reader.fail("compensation-no-tool", 0, "RL or RR without a tool of the table in the spindle",
@@ -147,20 +149,20 @@ void Executor::finish_motion(BlockReader& reader, const MotionWords& words) {
 }
 
 void Executor::emit(const Element& element) {
-  control_.at(element.place.file, element.place.line, element.place.column);
+  control_.report.at(element.place.file, element.place.line, element.place.column);
   if (element.motion != Motion::kRapid && element.feed > 0.0)
     set_feed(rotary_feed(element), (element.target.given & 7u) == 0 && !element.target.axis_P);
-  const nc::PlaneAxes axes = nc::axes_of(control_.plane());
+  const nc::PlaneAxes axes = nc::axes_of(control_.modal.plane);
   const bool arc = element.motion == Motion::kClockwise || element.motion == Motion::kCounterClockwise;
   if (arc) {
-    control_.arc(element.motion, element.target, element.arc);
+    nc::arc(control_, element.motion, element.target, element.arc);
     Vec3 out = element.to - *element.arc.centre;
     out[axes.normal] = 0.0;
     const double sign = element.motion == Motion::kCounterClockwise ? 1.0 : -1.0;
     tangent_ = sign * Vec3::Unit(axes.normal).cross(out).normalized();
     return;
   }
-  control_.line(element.motion, element.target);
+  nc::line(control_, element.motion, element.target);
   Vec3 way = element.to - element.from;
   way[axes.normal] = 0.0;
   tangent_.reset();
@@ -169,8 +171,9 @@ void Executor::emit(const Element& element) {
 
 /// F counts units or degrees a minute, in inch programs tenths of an inch.
 void Executor::set_feed(double feed, bool degrees) {
-  const bool tenths = control_.inches() && !degrees && control_.feed_mode() == nc::FeedMode::kPerMinute;
-  control_.set_feed(tenths ? 0.1 * feed : feed, 0);
+  const bool tenths =
+      control_.modal.inches() && !degrees && control_.modal.feed_mode == nc::FeedMode::kPerMinute;
+  nc::set_feed(control_.report, control_.modal, tenths ? 0.1 * feed : feed, 0);
 }
 
 void Executor::line(BlockReader& reader, size_t start) {
@@ -203,7 +206,7 @@ void Executor::line(BlockReader& reader, size_t start) {
       functions_before(reader, words);
       if (words.compensation && *words.compensation != nc::Compensation::kOff)
         reader.fail("words-conflict", start, "RL or RR with rotary axes in a tilted plane", "write R0");
-      if (words.compensation) control_.set_compensation(nc::Compensation::kOff, 0.0, 0);
+      if (words.compensation) nc::set_compensation(control_, nc::Compensation::kOff, 0.0, 0);
       if (motion == Motion::kFeed && feed > 0.0) set_feed(feed, true);
       rotary_move(motion, element.target);
       return finish_motion(reader, words);
@@ -230,7 +233,7 @@ void Executor::move_without_axes(BlockReader& reader, const MotionWords& words, 
   functions_before(reader, words);
   if (words.compensation && *words.compensation != nc::Compensation::kOff)
     reader.fail("missing-word", start, "RL and RR need a motion in their block", "L X+10 Y+0 RL");
-  if (words.compensation) control_.set_compensation(nc::Compensation::kOff, 0.0, 0);
+  if (words.compensation) nc::set_compensation(control_, nc::Compensation::kOff, 0.0, 0);
   finish_motion(reader, words);
 }
 
@@ -243,31 +246,31 @@ void Executor::machine_line(BlockReader& reader, const MotionWords& words, size_
   if (words.compensation) {
     if (*words.compensation != nc::Compensation::kOff)
       reader.fail("words-conflict", start, "RL or RR with M91", "write R0");
-    control_.set_compensation(nc::Compensation::kOff, 0.0, 0);
+    nc::set_compensation(control_, nc::Compensation::kOff, 0.0, 0);
   }
   const Target target = target_of(reader, words);
   if (!target.any()) reader.fail("missing-word", start, "M91 stands without an axis", "L Z-10 FMAX M91");
   if (motion == Motion::kFeed && feed > 0.0) set_feed(feed, !words.any_linear());
-  control_.machine_line(motion, target);
+  nc::machine_line(control_, motion, target);
   tangent_.reset();
   finish_motion(reader, words);
 }
 
 /// Rotary axes alone in a tilted plane: the linear axes stand.
 void Executor::rotary_move(Motion motion, const Target& target) {
-  kinematics::AxisValues q = control_.axis_values();
+  kinematics::AxisValues q = control_.path.q;
   for (int slot = 0; slot < 3; ++slot) {
     if (!target.has(slot + 3)) continue;
-    const int axis = control_.axis_of(static_cast<nc::AxisWord>(slot + 3));
+    const int axis = control_.space.axis_of(static_cast<nc::AxisWord>(slot + 3));
     const double value = target.value[static_cast<size_t>(slot) + 3];
     if (target.is_incremental(slot + 3)) {
       q[axis] += value;
       continue;
     }
-    const double goal = value + control_.space().rotary_zero(slot);
+    const double goal = value + control_.space.rotary_zero(slot);
     q[axis] = shortest_ ? q[axis] + std::remainder(goal - q[axis], kTurn) : goal;
   }
-  control_.turn_rotaries(motion, q, false);
+  nc::turn_rotaries(control_, motion, q, false);
   tangent_.reset();
 }
 

@@ -30,8 +30,8 @@ void Executor::corner(BlockReader& reader, bool round, size_t start) {
   if (round) reader.take("R");
   Corner corner;
   corner.round = round;
-  corner.size_mm = plane_scale(reader, at) * control_.mm(reader.value());
-  corner.place = control_.place();
+  corner.size_mm = plane_scale(reader, at) * control_.modal.mm(reader.value());
+  corner.place = control_.report.place;
   corner.feed = held_->feed;
   if (!(corner.size_mm > 0.0))
     reader.fail("out-of-range", at, "the size of a corner is above zero", "RND R5, CHF 2");
@@ -50,11 +50,11 @@ void Executor::close_corner(Element& next) {
   const Corner corner = *corner_;
   held_.reset();
   corner_.reset();
-  const nc::Place here = control_.place();
-  const nc::PlaneAxes axes = nc::axes_of(control_.plane());
-  control_.at(corner.place.file, corner.place.line, corner.place.column);
+  const nc::Place here = control_.report.place;
+  const nc::PlaneAxes axes = nc::axes_of(control_.modal.plane);
+  control_.report.at(corner.place.file, corner.place.line, corner.place.column);
   const auto refuse = [&](const std::string& why) {
-    control_.fail("bad-corner", 0, why, "make the corner smaller, or the pieces longer");
+    control_.report.fail("bad-corner", 0, why, "make the corner smaller, or the pieces longer");
   };
   const double rise = std::max(std::abs(before.to[axes.normal] - before.from[axes.normal]),
                                std::abs(next.to[axes.normal] - next.from[axes.normal]));
@@ -94,7 +94,7 @@ void Executor::close_corner(Element& next) {
   place(between, found->join);
   emit(between);
   next.from = between.to;
-  control_.at(here.file, here.line, here.column);
+  control_.report.at(here.file, here.line, here.column);
 }
 
 void Executor::no_open_corner(BlockReader& reader, size_t offset) {

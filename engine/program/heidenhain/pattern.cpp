@@ -127,7 +127,7 @@ void Executor::pattern_definition(BlockReader& reader, size_t start) {
                   "POS, ROW, PAT, FRAME, CIRC or PITCHCIRC");
     reader.whole_number(999);
     const Items items(reader, *kind, at);
-    const double unit = control_.mm(1.0), height = unit * items["Z"];
+    const double unit = control_.modal.mm(1.0), height = unit * items["Z"];
     const Vec2 first = unit * Vec2(items["X"], items["Y"]);
     if (name == "POS") {
       add_points(points, {first, height}, reader, at);
@@ -155,8 +155,8 @@ void Executor::pattern_definition(BlockReader& reader, size_t start) {
 
 /// To a point of the working plane, at the present height.
 void Executor::go_to_point(Motion motion, double feed, const Vec2& point) {
-  const nc::PlaneAxes axes = nc::axes_of(control_.plane());
-  Vec3 to = control_.position_xyz();
+  const nc::PlaneAxes axes = nc::axes_of(control_.modal.plane);
+  Vec3 to = nc::position_xyz(control_);
   to[axes.first] = stretch_.along(axes.first, point.x(), false);
   to[axes.second] = stretch_.along(axes.second, point.y(), false);
   straight(motion, feed, to);
@@ -171,17 +171,17 @@ void Executor::call_pattern(BlockReader& reader, Motion motion, double feed, siz
   if (!cycle_ || cycle_->number < 200)
     reader.fail("no-cycle", offset, "CYCL CALL PAT without a cycle from 200 on before it",
                 "write CYCL DEF before it");
-  if (!control_.started())
+  if (!control_.path.started)
     reader.fail("start-unknown", offset, "a cycle starts, and the position is not known yet",
                 "position all axes before it");
   const nc::Place place = reader.place_of(offset);
-  control_.at(place.file, place.line, place.column);
-  const int normal = nc::axes_of(control_.plane()).normal;
-  const double called_at = control_.position_xyz()[normal];
+  control_.report.at(place.file, place.line, place.column);
+  const int normal = nc::axes_of(control_.modal.plane).normal;
+  const double called_at = nc::position_xyz(control_)[normal];
   for (const PatternPoint& point : pattern_) {
     raised_ = point.height;
     const double height = std::max(called_at, surface() + length(204));
-    if (control_.position_xyz()[normal] != height) go(Motion::kRapid, height, 0.0);
+    if (nc::position_xyz(control_)[normal] != height) go(Motion::kRapid, height, 0.0);
     go_to_point(motion, feed, point.at);
     execute_cycle();
   }
@@ -206,7 +206,7 @@ void Executor::pattern_cycle(BlockReader& reader, const Cycle& pattern) {
         "no-cycle", pattern.offset,
         fmt::format("cycle {} repeats the cycle before it, and there is none from 200 on", pattern.number),
         "define the drilling cycle before it");
-  if (!control_.started())
+  if (!control_.path.started)
     reader.fail("start-unknown", pattern.offset, "a cycle starts, and the position is not known yet",
                 "position all axes before it");
   std::vector<PatternPoint> points;
@@ -215,19 +215,19 @@ void Executor::pattern_cycle(BlockReader& reader, const Cycle& pattern) {
       reader.fail("unsupported-word", pattern.offset,
                   "ways along the pitch circle (Q365=1) are not supported", "Q365=0");
     const int number = count(241);
-    const Vec2 centre(control_.mm(given(216)), control_.mm(given(217)));
+    const Vec2 centre(control_.modal.mm(given(216)), control_.modal.mm(given(217)));
     const double range = given(246) - given(245);
     // Without a step, the points share the angle out; a whole circle has no second point at its end.
     const bool whole = std::abs(std::remainder(range, 360.0)) < 1e-9;
     const double shared = number < 2 ? 0.0 : whole ? range / number : range / (number - 1);
     const double step = given(247) != 0.0 ? given(247) : shared;
     for (int i = 0; i < number; ++i)
-      add_points(points, {centre + polar(0.5 * control_.mm(given(244)), given(245) + i * step), 0.0}, reader,
-                 pattern.offset);
+      add_points(points, {centre + polar(0.5 * control_.modal.mm(given(244)), given(245) + i * step), 0.0},
+                 reader, pattern.offset);
   } else {
-    const Vec2 first(control_.mm(given(225)), control_.mm(given(226)));
-    const Vec2 column = polar(control_.mm(given(237)), given(224)),
-               line = polar(control_.mm(given(238)), given(224) + 90.0);
+    const Vec2 first(control_.modal.mm(given(225)), control_.modal.mm(given(226)));
+    const Vec2 column = polar(control_.modal.mm(given(237)), given(224)),
+               line = polar(control_.modal.mm(given(238)), given(224) + 90.0);
     add_rows(points, {first, column, line, count(242), count(243), 0.0, false}, reader, pattern.offset);
   }
   for (const int shared : {200, 203, 204}) {
@@ -235,7 +235,7 @@ void Executor::pattern_cycle(BlockReader& reader, const Cycle& pattern) {
     if (found != pattern.q.end()) cycle_->q[shared] = found->second;
   }
   const nc::Place place = reader.place_of(pattern.offset);
-  control_.at(place.file, place.line, place.column);
+  control_.report.at(place.file, place.line, place.column);
   const double second = q(204);
   go(Motion::kRapid, surface() + std::max(length(200), length(204)), 0.0);
   for (size_t i = 0; i < points.size(); ++i) {

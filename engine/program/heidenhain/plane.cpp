@@ -105,7 +105,7 @@ void Executor::plane(BlockReader& reader, size_t start) {
   if (compensates_heads_)
     reader.fail("unsupported-word", start, "PLANE while M114 or M144 is on is not supported",
                 "write M115 or M145 before it");
-  if (control_.plane() != nc::Plane::kXY)
+  if (control_.modal.plane != nc::Plane::kXY)
     reader.fail("unsupported-word", start, "PLANE is supported with the tool axis Z alone", "TOOL CALL 5 Z");
   if (kind == "AXIAL") return axial_plane(reader, start);
   const bool reset = kind == "RESET";
@@ -131,7 +131,7 @@ void Executor::axial_plane(BlockReader& reader, size_t start) {
     const size_t slot = letter.size() == 1 ? std::string_view("ABC").find(letter[0]) : std::string_view::npos;
     if (slot == std::string_view::npos) break;
     reader.take_letters();
-    control_.require_axis(static_cast<nc::AxisWord>(slot + 3), reader.column(at));
+    nc::require_axis(control_, static_cast<nc::AxisWord>(slot + 3), reader.column(at));
     if ((given >> slot & 1u) != 0)
       reader.fail("word-twice", at, fmt::format("{} stands twice in this block", word), "keep one of them");
     given = static_cast<uint8_t>(given | (1u << slot));
@@ -142,12 +142,12 @@ void Executor::axial_plane(BlockReader& reader, size_t start) {
     reader.fail("unsupported-word", start, "PLANE AXIAL while a rotation is active is not supported",
                 "end the rotation before it: CYCL DEF 10.1 ROT+0");
   const Positioning how = positioning(reader, start);
-  kinematics::AxisValues q = control_.axis_values();
+  kinematics::AxisValues q = control_.path.q;
   for (int slot = 0; slot < 3; ++slot) {
-    const int axis = control_.axis_of(static_cast<nc::AxisWord>(slot + 3));
+    const int axis = control_.space.axis_of(static_cast<nc::AxisWord>(slot + 3));
     if (axis < 0) continue;
-    q[axis] = rad_from_deg(deg[static_cast<size_t>(slot)]) + control_.space().rotary_zero(slot);
-    const kinematics::Axis& limits = control_.machine().axes[static_cast<size_t>(axis)];
+    q[axis] = rad_from_deg(deg[static_cast<size_t>(slot)]) + control_.space.rotary_zero(slot);
+    const kinematics::Axis& limits = control_.setup.machine.axes[static_cast<size_t>(axis)];
     if (q[axis] < limits.min - 1e-9 || q[axis] > limits.max + 1e-9)
       reader.fail(
           "unreachable-orientation", start,
@@ -158,10 +158,10 @@ void Executor::axial_plane(BlockReader& reader, size_t start) {
   axial_deg_ = deg;
   kinematics::AxisValues zero = q;
   for (int slot = 0; slot < 3; ++slot) {
-    const int axis = control_.axis_of(static_cast<nc::AxisWord>(slot + 3));
-    if (axis >= 0) zero[axis] = control_.space().rotary_zero(slot);
+    const int axis = control_.space.axis_of(static_cast<nc::AxisWord>(slot + 3));
+    if (axis >= 0) zero[axis] = control_.space.rotary_zero(slot);
   }
-  const kinematics::MachineModel& machine = control_.machine();
+  const kinematics::MachineModel& machine = control_.setup.machine;
   tilt(reader, tool_frame_W(machine, q) * tool_frame_W(machine, zero).transpose(), true, start);
   position_plane(reader, how, &q, start);
 }
@@ -183,9 +183,9 @@ void Executor::tilt(BlockReader& reader, const Mat3& rotation, bool on, size_t s
   tilt_ = rotation;
   tilted_ = on;
   update_frame();
-  control_.set_coordinates(on ? nc::Coordinates::kWork : nc::Coordinates::kAxes);
-  if (control_.started() && on && control_.machine().axes.size() > 3)
-    rotary_parameters(control_.tilt_solution(Vec3::UnitZ(), {}, control_.place().column));
+  nc::set_coordinates(control_, on ? nc::Coordinates::kWork : nc::Coordinates::kAxes);
+  if (control_.path.started && on && control_.setup.machine.axes.size() > 3)
+    rotary_parameters(nc::tilt_solution(control_, Vec3::UnitZ(), {}, control_.report.place.column));
 }
 
 }  // namespace swarf::program::nc::heidenhain

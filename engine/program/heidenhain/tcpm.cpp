@@ -11,18 +11,18 @@ namespace swarf::program::nc::heidenhain {
 void Executor::set_tcpm(bool on, bool by_vector, bool spatial, bool chosen) {
   if (!on && !tcpm_) return;
   if (on && compensates_heads_)
-    control_.fail("words-conflict", 0, "M128 or FUNCTION TCPM while M114 or M144 is on",
-                  "write M115 or M145 before it");
+    control_.report.fail("words-conflict", 0, "M128 or FUNCTION TCPM while M114 or M144 is on",
+                         "write M115 or M145 before it");
   tcpm_ = on;
   spatial_ = on && spatial;
   path_chosen_ = on && chosen;
-  control_.set_tcp(!on ? nc::Tcp::kOff : by_vector ? nc::Tcp::kVector : nc::Tcp::kAxes);
-  if (!on && tilted_) control_.set_coordinates(nc::Coordinates::kWork);
+  nc::set_tcp(control_, !on ? nc::Tcp::kOff : by_vector ? nc::Tcp::kVector : nc::Tcp::kAxes);
+  if (!on && tilted_) nc::set_coordinates(control_, nc::Coordinates::kWork);
 }
 
 /// How the next block turns the tool, unless PATHCTRL says it for all.
 void Executor::turn_by(nc::Tcp law) {
-  if (tcpm_ && !path_chosen_ && control_.tcp() != law) control_.set_tcp(law);
+  if (tcpm_ && !path_chosen_ && control_.offsets.tcp != law) nc::set_tcp(control_, law);
 }
 
 /// FUNCTION TCPM ..., FUNCTION RESET TCPM, FUNCTION PROG PATH ...
@@ -48,7 +48,7 @@ void Executor::function_word(BlockReader& reader, size_t start) {
   }
   if (reader.take("MODE")) {
     if (reader.take("MILL")) {
-      control_.without_effect("FUNCTION MODE MILL");
+      control_.report.without_effect("FUNCTION MODE MILL");
       return reader.expect_end();
     }
     reader.fail("unsupported-word", start, "FUNCTION MODE other than MILL is not supported",
@@ -103,7 +103,7 @@ void Executor::reference_point(BlockReader& reader, size_t at) {
   if (!known(first) || !dash || !known(second) || (first == "CENTER" && second == "TIP"))
     reader.fail("unknown-word", at, fmt::format("REFPNT {}-{} is no reference point", first, second),
                 "REFPNT TIP-TIP");
-  const NcTool* tool = control_.active_tool();
+  const NcTool* tool = nc::active_tool(control_);
   const double corner = tool == nullptr ? 0.0 : tool->corner_radius_mm + delta_corner_;
   if (second == "CENTER" && corner != 0.0)
     reader.fail("unsupported-word", at,
@@ -116,7 +116,7 @@ void Executor::reference_point(BlockReader& reader, size_t at) {
 /// there is that of the axes. The manual defines this for swivelling heads.
 void Executor::compensate_heads(BlockReader& reader, size_t offset, bool on) {
   if (on == compensates_heads_) return;
-  for (const kinematics::Axis& axis : control_.machine().axes) {
+  for (const kinematics::Axis& axis : control_.setup.machine.axes) {
     if (on && axis.kind == kinematics::AxisKind::kRotary && axis.side != kinematics::Side::kHead)
       reader.fail(
           "unsupported-word", offset,
@@ -127,27 +127,27 @@ void Executor::compensate_heads(BlockReader& reader, size_t offset, bool on) {
     reader.fail("words-conflict", offset, "M114 or M144 in a tilted plane, or with M128 on",
                 "use one of them");
   compensates_heads_ = on;
-  if (!tcpm_ && !tilted_) control_.set_coordinates(on ? nc::Coordinates::kWork : nc::Coordinates::kAxes);
+  if (!tcpm_ && !tilted_) nc::set_coordinates(control_, on ? nc::Coordinates::kWork : nc::Coordinates::kAxes);
 }
 
 /// The feed as the control counts it. With M116, F counts mm a minute on the circles that the tip describes
 /// on rotary tables; their radii are those at the start of the block.
 double Executor::rotary_feed(const Element& element) const {
   const bool turns = (element.target.given & 0x38u) != 0;
-  if (!rotary_feed_mm_ || !turns || tcpm_ || !control_.started() ||
-      control_.feed_mode() != nc::FeedMode::kPerMinute)
+  if (!rotary_feed_mm_ || !turns || tcpm_ || !control_.path.started ||
+      control_.modal.feed_mode != nc::FeedMode::kPerMinute)
     return element.feed;
   const kinematics::MachineModel machine =
-      kinematics::with_tool(control_.machine(), control_.length_compensation());
-  const kinematics::AxisValues& q = control_.axis_values();
+      kinematics::with_tool(control_.setup.machine, control_.space.length());
+  const kinematics::AxisValues& q = control_.path.q;
   const Vec3 tip_W = kinematics::forward(machine, q).tip_W;
   double degrees_squared = 0.0, way_squared = (element.to - element.from).squaredNorm();
   const double linear_squared = way_squared;
   for (int slot = 0; slot < 3; ++slot) {
-    const int axis = control_.axis_of(static_cast<nc::AxisWord>(slot + 3));
+    const int axis = control_.space.axis_of(static_cast<nc::AxisWord>(slot + 3));
     if (!element.target.has(slot + 3) || axis < 0) continue;
     const double value = element.target.value[static_cast<size_t>(slot) + 3];
-    const double now = q[axis] - control_.space().rotary_zero(slot);
+    const double now = q[axis] - control_.space.rotary_zero(slot);
     double turn = element.target.is_incremental(slot + 3) ? value : value - now;
     if (element.target.way[static_cast<size_t>(slot)] == nc::RotaryWay::kShortest)
       turn = std::remainder(turn, 2.0 * kPi);
@@ -159,10 +159,11 @@ double Executor::rotary_feed(const Element& element) const {
   }
   if (degrees_squared == 0.0) return element.feed;
   if (!(way_squared > 1e-18))
-    control_.fail("bad-feed", 0, "M116 counts the feed on a circle, and the tip stands on the rotary axis",
-                  "M117, and F in degrees a minute");
+    control_.report.fail("bad-feed", 0,
+                         "M116 counts the feed on a circle, and the tip stands on the rotary axis",
+                         "M117, and F in degrees a minute");
   // Degrees alone are counted without the unit of the program.
-  const double unit = linear_squared == 0.0 && control_.inches() ? 2.54 : 1.0;
+  const double unit = linear_squared == 0.0 && control_.modal.inches() ? 2.54 : 1.0;
   return unit * element.feed * std::sqrt((linear_squared + degrees_squared) / way_squared);
 }
 

@@ -97,9 +97,9 @@ bool read_block(nc::LineSource& source, nc::Control& control, BlockText& block,
     bool goes_on = append_line(line, static_cast<int>(source.line_number()), block);
     while (goes_on) {
       if (!source.next(line)) {
-        control.at(source.file(), block.pieces.back().line, 1);
-        control.fail("open-continuation", 0, "the file ends behind '~', which continues the block",
-                     "the file is cut off here: transfer it again, or take the '~' out");
+        control.report.at(source.file(), block.pieces.back().line, 1);
+        control.report.fail("open-continuation", 0, "the file ends behind '~', which continues the block",
+                            "the file is cut off here: transfer it again, or take the '~' out");
       }
       goes_on = append_line(line, static_cast<int>(source.line_number()), block);
     }
@@ -120,8 +120,8 @@ nc::Place BlockReader::place_of(size_t offset) const {
 
 void BlockReader::fail(const char* code, size_t offset, std::string text, std::string fix) const {
   const nc::Place place = place_of(offset);
-  control_.at(place.file, place.line, place.column);
-  control_.fail(code, place.column, std::move(text), std::move(fix));
+  control_.report.at(place.file, place.line, place.column);
+  control_.report.fail(code, place.column, std::move(text), std::move(fix));
 }
 
 bool BlockReader::done() {

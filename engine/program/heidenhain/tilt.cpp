@@ -31,7 +31,7 @@ Executor::Positioning Executor::positioning(BlockReader& reader, size_t start) {
       how.preference.choice = reader.take_char('-') ? nc::TiltPreference::Choice::kNegative
                                                     : nc::TiltPreference::Choice::kPositive;
     } else if (word == "DIST" || word == "ABST") {
-      how.distance = control_.mm(reader.value());
+      how.distance = control_.modal.mm(reader.value());
       how.distance_offset = at;
     } else if (word == "FMAX") {
       how.motion = Motion::kRapid;
@@ -47,7 +47,7 @@ Executor::Positioning Executor::positioning(BlockReader& reader, size_t start) {
         reader.fail("bad-feed", at, fmt::format("F {:g} is not a feed", how.feed), "F1000");
     } else if (word == "MB") {
       how.retracts = true;
-      if (!reader.take("MAX")) how.retraction = control_.mm(reader.value());
+      if (!reader.take("MAX")) how.retraction = control_.modal.mm(reader.value());
       if (how.retraction && !(*how.retraction >= 0.0))
         reader.fail("out-of-range", at, "MB retracts by a way of zero or more", "MB MAX, MB50");
     } else if ((word == "COORD" || word == "TABLE") && reader.take("ROT")) {
@@ -74,13 +74,13 @@ Executor::Positioning Executor::positioning(BlockReader& reader, size_t start) {
 void Executor::position_plane(BlockReader& reader, const Positioning& how, const kinematics::AxisValues* goal,
                               size_t start) {
   const bool turns = how.kind != "STAY";
-  if (control_.machine().axes.size() <= 3) {
+  if (control_.setup.machine.axes.size() <= 3) {
     if (!tilt_.isIdentity(1e-12))
       reader.fail("unreachable-orientation", start, "the machine has no rotary axes for a tilted plane",
                   "choose a five-axis machine");
     return;
   }
-  if (!control_.started()) {
+  if (!control_.path.started) {
     if (turns)
       reader.fail("start-unknown", start, "the rotary axes turn, and the position is not known yet",
                   "position all axes before it");
@@ -90,17 +90,17 @@ void Executor::position_plane(BlockReader& reader, const Positioning& how, const
     if (how.motion == Motion::kFeed) set_feed(how.feed, false);
     retract_by(how.retraction, how.motion);
   }
-  kinematics::AxisValues q =
-      goal != nullptr ? *goal
-                      : control_.tilt_solution(Vec3::UnitZ(), how.preference, control_.place().column);
+  kinematics::AxisValues q = goal != nullptr ? *goal
+                                             : nc::tilt_solution(control_, Vec3::UnitZ(), how.preference,
+                                                                 control_.report.place.column);
   for (int i = 0; i < 3; ++i) {
-    const int axis = control_.axis_of(static_cast<nc::AxisWord>(i));
-    q[axis] = control_.axis_values()[axis];
+    const int axis = control_.space.axis_of(static_cast<nc::AxisWord>(i));
+    q[axis] = control_.path.q[axis];
   }
   if (!tilted_) {  // PLANE RESET: all rotary axes go to zero
     for (int slot = 0; slot < 3; ++slot) {
-      const int axis = control_.axis_of(static_cast<nc::AxisWord>(slot + 3));
-      if (axis >= 0) q[axis] = control_.space().rotary_zero(slot);
+      const int axis = control_.space.axis_of(static_cast<nc::AxisWord>(slot + 3));
+      if (axis >= 0) q[axis] = control_.space.rotary_zero(slot);
     }
   }
   if (how.turns_table && tilted_ && rotary_is_free(q))
@@ -112,13 +112,13 @@ void Executor::position_plane(BlockReader& reader, const Positioning& how, const
   if (!turns) return;
   if (how.kind == "MOVE" && how.distance != 0.0) return turn_about(q, how);
   if (how.motion == Motion::kFeed) set_feed(how.feed, true);
-  control_.turn_rotaries(how.motion, q, how.kind == "MOVE");
+  nc::turn_rotaries(control_, how.motion, q, how.kind == "MOVE");
 }
 
 /// The rotary axis next to the work is parallel to the tool: COORD ROT leaves it where it is, TABLE ROT does
 /// not. Elsewhere both words mean the same.
 bool Executor::rotary_is_free(const kinematics::AxisValues& q) const {
-  const kinematics::MachineModel& machine = control_.machine();
+  const kinematics::MachineModel& machine = control_.setup.machine;
   kinematics::AxisValues turned_on = q;
   turned_on[kinematics::rotary_order(machine).front()] += 1.0;
   const Vec3 before = kinematics::forward(machine, q).axis_W;
@@ -129,13 +129,13 @@ bool Executor::rotary_is_free(const kinematics::AxisValues& q) const {
 /// it. Pieces of joint-linear moves, so short that the point strays from its place by less than 1 um.
 void Executor::turn_about(const kinematics::AxisValues& goal, const Positioning& how) {
   const kinematics::MachineModel machine =
-      kinematics::with_tool(control_.machine(), control_.length_compensation() + how.distance);
-  control_.flush();
-  const kinematics::AxisValues from = control_.axis_values();
+      kinematics::with_tool(control_.setup.machine, control_.space.length() + how.distance);
+  nc::flush(control_);
+  const kinematics::AxisValues from = control_.path.q;
   const Vec3 centre_W = kinematics::forward(machine, from).tip_W;
   double most = 0.0;
   for (int slot = nc::kA; slot < nc::kAxisWords; ++slot) {
-    const int axis = control_.axis_of(static_cast<nc::AxisWord>(slot));
+    const int axis = control_.space.axis_of(static_cast<nc::AxisWord>(slot));
     if (axis >= 0) most = std::max(most, std::abs(goal[axis] - from[axis]));
   }
   // Sag of a chord of the circle with radius r: r a^2 / 8; the linear axes are no further than this from any
@@ -148,12 +148,12 @@ void Executor::turn_about(const kinematics::AxisValues& goal, const Positioning&
     const Vec3 off = centre_W - kinematics::forward(machine, q).tip_W;
     const Vec3 linear = linear_columns_W(machine, q).inverse() * off;
     nc::Target target;
-    target.column = control_.place().column;
+    target.column = control_.report.place.column;
     for (int word = 0; word < nc::kAxisWords; ++word) {
-      const int axis = control_.axis_of(static_cast<nc::AxisWord>(word));
+      const int axis = control_.space.axis_of(static_cast<nc::AxisWord>(word));
       if (axis >= 0) target.set(word, q[axis] + (word < 3 ? linear[word] : 0.0), false);
     }
-    control_.machine_line(how.motion, target);
+    nc::machine_line(control_, how.motion, target);
   }
   tangent_.reset();
 }
@@ -161,9 +161,9 @@ void Executor::turn_about(const kinematics::AxisValues& goal, const Positioning&
 /// Q120, Q121, Q122: where A, B and C have to go, degrees.
 void Executor::rotary_parameters(const kinematics::AxisValues& values) {
   for (int slot = 0; slot < 3; ++slot) {
-    const int axis = control_.axis_of(static_cast<nc::AxisWord>(slot + 3));
+    const int axis = control_.space.axis_of(static_cast<nc::AxisWord>(slot + 3));
     if (axis >= 0)
-      parameters_.set_q(120 + slot, deg_from_rad(values[axis] - control_.space().rotary_zero(slot)));
+      parameters_.set_q(120 + slot, deg_from_rad(values[axis] - control_.space.rotary_zero(slot)));
   }
 }
 

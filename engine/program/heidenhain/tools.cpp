@@ -46,30 +46,30 @@ void Executor::tool_call(BlockReader& reader) {
     reader.fail("out-of-range", speed.offset, "S is below zero", "the direction is M3 or M4");
   if (feed && !(feed.value > 0.0))
     reader.fail("bad-feed", feed.offset, fmt::format("F {:g} is not a feed", feed.value), "F500");
-  if (!named && (length || radius || corner) && control_.active_tool() == nullptr)
+  if (!named && (length || radius || corner) && nc::active_tool(control_) == nullptr)
     reader.fail("missing-word", at, "TOOL CALL changes a tool, and none is in the spindle", "TOOL CALL 5 Z");
   if (named) {
     const int column = reader.column(at);
-    const int index = text          ? control_.find_tool(name, column)
+    const int index = text          ? nc::find_tool(control_, name, column)
                       : number == 0 ? -1
-                                    : control_.find_tool(static_cast<int>(number), column);
-    control_.select_tool(index, static_cast<int>(number));
-    control_.change_tool();
+                                    : nc::find_tool(control_, static_cast<int>(number), column);
+    nc::select_tool(control_.tools, index, static_cast<int>(number));
+    nc::change_tool(control_);
     tangent_.reset();
   }
-  if (plane) control_.set_plane(*plane);
+  if (plane) nc::set_plane(control_, *plane);
   if (named || length || radius || corner) {
-    const NcTool* tool = control_.active_tool();
+    const NcTool* tool = nc::active_tool(control_);
     const double own = tool == nullptr ? 0.0 : tool->length_mm;
-    control_.set_length_compensation(own + control_.mm(length.value), tool != nullptr);
-    delta_radius_ = control_.mm(radius.value);
-    delta_corner_ = control_.mm(corner.value);
-    parameters_.set_q(108,
-                      tool == nullptr ? 0.0 : (0.5 * tool->diameter_mm + delta_radius_) / control_.mm(1.0));
-    parameters_.set_q(114, own / control_.mm(1.0));
+    nc::set_length_compensation(control_, own + control_.modal.mm(length.value), tool != nullptr);
+    delta_radius_ = control_.modal.mm(radius.value);
+    delta_corner_ = control_.modal.mm(corner.value);
+    parameters_.set_q(
+        108, tool == nullptr ? 0.0 : (0.5 * tool->diameter_mm + delta_radius_) / control_.modal.mm(1.0));
+    parameters_.set_q(114, own / control_.modal.mm(1.0));
     if (named) tool_feed_ = 0.0;
   }
-  if (speed) control_.set_speed(speed.value);
+  if (speed) control_.modal.speed_rpm = speed.value;
   if (feed) tool_feed_ = feed_ = feed.value;
 }
 
@@ -93,26 +93,27 @@ void Executor::tool_ready(BlockReader& reader) {
   }
   int index = -1;
   if (text) {
-    index = control_.find_tool(name, reader.column(at));
+    index = nc::find_tool(control_, name, reader.column(at));
   } else if (number != 0) {
-    index = control_.find_tool(static_cast<int>(number), reader.column(at));
+    index = nc::find_tool(control_, static_cast<int>(number), reader.column(at));
   }
   if (!length && !radius) {
-    control_.without_effect("TOOL DEF");
+    control_.report.without_effect("TOOL DEF");
     return;
   }
   if (index < 0) {
-    defined_radius_[static_cast<int>(number)] = control_.mm(radius.value);
+    defined_radius_[static_cast<int>(number)] = control_.modal.mm(radius.value);
     return;
   }
-  const NcTool& tool = control_.tool_at(index);
-  const bool other_length = length && std::abs(control_.mm(length.value) - tool.length_mm) > 1e-6;
-  const bool other_radius = radius && std::abs(control_.mm(radius.value) - 0.5 * tool.diameter_mm) > 1e-6;
+  const NcTool& tool = control_.setup.tools[static_cast<size_t>(index)];
+  const bool other_length = length && std::abs(control_.modal.mm(length.value) - tool.length_mm) > 1e-6;
+  const bool other_radius =
+      radius && std::abs(control_.modal.mm(radius.value) - 0.5 * tool.diameter_mm) > 1e-6;
   if (other_length || other_radius)
     reader.fail(
         "words-conflict", at,
         fmt::format("the program says L {:g} and R {:g} mm of this tool, the tool table L {:g} and R {:g} mm",
-                    control_.mm(length.value), control_.mm(radius.value), tool.length_mm,
+                    control_.modal.mm(length.value), control_.modal.mm(radius.value), tool.length_mm,
                     0.5 * tool.diameter_mm),
         "correct one of them, or write TOOL DEF with the number alone");
 }
@@ -147,7 +148,7 @@ void Executor::blank_form(BlockReader& reader) {
   } else {
     reader.rest();
   }
-  control_.note("BLK FORM", text);
+  control_.report.note("BLK FORM", text);
 }
 
 }  // namespace swarf::program::nc::heidenhain

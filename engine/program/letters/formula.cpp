@@ -35,7 +35,7 @@ int FormulaReader::column_of(size_t at) const {
 }
 
 void FormulaReader::refuse(size_t at, const char* code, std::string text, std::string fix) const {
-  control_.fail(code, column_at(line_, at), std::move(text), std::move(fix));
+  control_.report.fail(code, column_at(line_, at), std::move(text), std::move(fix));
 }
 
 double FormulaReader::checked(std::optional<double> result, size_t at, const std::string& why) const {
@@ -202,8 +202,8 @@ double FormulaReader::with_vacant(Operator op, double left, double right, size_t
   const bool both = std::isnan(left) && std::isnan(right);
   if (op == Operator::kEqual) return both ? 1.0 : 0.0;
   if (op == Operator::kNotEqual) return both ? 0.0 : 1.0;
-  control_.warn_once("vacant-value", column_at(line_, from), "a vacant variable counts as zero here",
-                     "assign it before it is read");
+  control_.report.warn_once("vacant-value", column_at(line_, from), "a vacant variable counts as zero here",
+                            "assign it before it is read");
   std::string why;
   return checked(apply(op, std::isnan(left) ? 0.0 : left, std::isnan(right) ? 0.0 : right, why), from, why);
 }

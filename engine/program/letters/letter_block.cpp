@@ -19,11 +19,11 @@ void skip_parentheses(FormulaReader& reader, Control& control, std::string_view&
   const size_t from = reader.at();
   const size_t close = reader.line().find_first_of("()", from + 1);
   if (close == std::string_view::npos || reader.line()[close] == '(') {
-    control.fail("unclosed-comment", reader.column_of(from),
-                 close == std::string_view::npos
-                     ? "this comment is not closed on its line"
-                     : "a comment opens inside this comment; controls disagree on its end",
-                 "close it with ')'");
+    control.report.fail("unclosed-comment", reader.column_of(from),
+                        close == std::string_view::npos
+                            ? "this comment is not closed on its line"
+                            : "a comment opens inside this comment; controls disagree on its end",
+                        "close it with ')'");
   }
   reader.skip();
   reader.skip_space();
@@ -38,14 +38,14 @@ constexpr const char* kBuildersRemedy =
 
 /// True for an M that ControlSetup::builder_words names.
 bool is_builders(int tenths, const Code* code, int column, Control& control) {
-  if (control.setup().builder_words.empty() || tenths % 10 != 0) return false;
+  if (control.setup.builder_words.empty() || tenths % 10 != 0) return false;
   const std::string word = code_name('M', tenths);
   const bool own = code != nullptr && code->use != Code::Use::kUnsupported;
-  if (own && control.setup().builder_words.count(word) != 0)
-    control.fail("reserved-word", column,
-                 fmt::format("{} has its meaning in this dialect, and builder_words names it", word),
-                 "take it out of builder_words");
-  return !own && control.take_builder_word(word);
+  if (own && control.setup.builder_words.count(word) != 0)
+    control.report.fail("reserved-word", column,
+                        fmt::format("{} has its meaning in this dialect, and builder_words names it", word),
+                        "take it out of builder_words");
+  return !own && control.report.take_builder_word(word);
 }
 
 void add_code(char letter, const CodeTable& table, double number, size_t place, FormulaReader& reader,
@@ -57,21 +57,23 @@ void add_code(char letter, const CodeTable& table, double number, size_t place, 
                          : nullptr;
   if (letter == 'M' && is_builders(static_cast<int>(tenths), code, reader.column_of(place), control)) return;
   if (code == nullptr) {
-    control.fail("unknown-word", reader.column_of(place),
-                 fmt::format("{}{:g} is no code of this dialect", letter, number),
-                 letter == 'M' ? kBuildersRemedy
-                               : "correct the code, or choose the dialect that the program is written in");
+    control.report.fail("unknown-word", reader.column_of(place),
+                        fmt::format("{}{:g} is no code of this dialect", letter, number),
+                        letter == 'M'
+                            ? kBuildersRemedy
+                            : "correct the code, or choose the dialect that the program is written in");
   }
   check_use(*code, letter, reader.column_of(place), control);
   block.arguments = block.arguments || code->use == Code::Use::kArguments;
   if (letter == 'M') {
     if (block.m_count == kMCodesMax)
-      control.fail("modal-conflict", reader.column_of(place), "too many M codes in one block",
-                   "split the block");
+      control.report.fail("modal-conflict", reader.column_of(place), "too many M codes in one block",
+                          "split the block");
     if (code->group != kFree && (block.m_groups >> code->group & 1u) != 0)
-      control.fail("modal-conflict", reader.column_of(place),
-                   fmt::format("{} contradicts another M code of this block", code_name('M', code->tenths)),
-                   "write them in two blocks");
+      control.report.fail(
+          "modal-conflict", reader.column_of(place),
+          fmt::format("{} contradicts another M code of this block", code_name('M', code->tenths)),
+          "write them in two blocks");
     if (code->group != kFree) block.m_groups |= 1u << code->group;
     block.m[static_cast<size_t>(block.m_count)] = code->tenths;
     block.m_places[static_cast<size_t>(block.m_count++)] = static_cast<uint16_t>(place);
@@ -84,10 +86,10 @@ void add_code(char letter, const CodeTable& table, double number, size_t place, 
   const auto group = static_cast<size_t>(static_cast<unsigned char>(code->group));
   if (block.has_g(code->group)) {
     const bool motion = code->group == 1;
-    control.fail(motion ? "two-motion-words" : "modal-conflict", reader.column_of(place),
-                 fmt::format("{} and {} contradict each other in one block", code_name('G', block.g[group]),
-                             code_name('G', code->tenths)),
-                 "write them in two blocks");
+    control.report.fail(motion ? "two-motion-words" : "modal-conflict", reader.column_of(place),
+                        fmt::format("{} and {} contradict each other in one block",
+                                    code_name('G', block.g[group]), code_name('G', code->tenths)),
+                        "write them in two blocks");
   }
   block.g_given |= 1u << group;
   block.g[group] = code->tenths;
@@ -113,10 +115,11 @@ void check_use(const Code& code, char letter, int column, Control& control) {
   if (code.use == Code::Use::kRead || code.use == Code::Use::kArguments) return;
   const std::string name = code_name(letter, code.tenths);
   if (code.use == Code::Use::kUnsupported) {
-    control.fail("unsupported-word", column, fmt::format("{} ({}) is not supported", name, code.meaning),
-                 letter == 'M' ? kBuildersRemedy : "post the program without it");
+    control.report.fail("unsupported-word", column,
+                        fmt::format("{} ({}) is not supported", name, code.meaning),
+                        letter == 'M' ? kBuildersRemedy : "post the program without it");
   }
-  control.without_effect(fmt::format("{} ({})", name, code.meaning));
+  control.report.without_effect(fmt::format("{} ({})", name, code.meaning));
 }
 
 void skip_comments(const LetterSyntax& syntax, FormulaReader& reader, Control& control,
@@ -130,8 +133,8 @@ void skip_comments(const LetterSyntax& syntax, FormulaReader& reader, Control& c
           reader.line().find_first_not_of("; \t\r", reader.at()) == std::string_view::npos)
         reader.move_to(reader.line().size());
       else
-        control.fail("unexpected-character", reader.column(), "words follow the end of the block",
-                     "write one block per line");
+        control.report.fail("unexpected-character", reader.column(), "words follow the end of the block",
+                            "write one block per line");
     } else {
       return;
     }
@@ -154,7 +157,7 @@ void read_words(const LetterSyntax& syntax, FormulaReader& reader, Control& cont
         continue;
       }
       const bool number = letter >= '0' && letter <= '9';
-      control.fail(
+      control.report.fail(
           number || letter == '.' || letter == '-' || letter == '+' ? "bad-number" : "unexpected-character",
           reader.column(),
           number ? "this number has no letter before it" : "this character does not belong here",
@@ -162,24 +165,25 @@ void read_words(const LetterSyntax& syntax, FormulaReader& reader, Control& cont
                         : "a block has words (a letter and a number) and comments");
     }
     if (syntax.letters.find(letter) == std::string_view::npos) {
-      control.fail("unknown-word", reader.column(), fmt::format("{} is no word of this dialect", letter),
-                   "take it out, or choose the dialect that the program is written in");
+      control.report.fail("unknown-word", reader.column(),
+                          fmt::format("{} is no word of this dialect", letter),
+                          "take it out, or choose the dialect that the program is written in");
     }
     if (letter == 'N' && any && syntax.number_first)
-      control.fail("unexpected-word", reader.column(), "N stands behind other words",
-                   "write the block number first");
+      control.report.fail("unexpected-word", reader.column(), "N stands behind other words",
+                          "write the block number first");
     if (!any) block.first = place;
     any = true;
     reader.skip();
     const double value = reader.value();
     if (letter == 'N' && value < 0.0)
-      control.fail("out-of-range", reader.column_of(place), fmt::format("the block number {:g}", value),
-                   "number blocks from 0");
+      control.report.fail("out-of-range", reader.column_of(place),
+                          fmt::format("the block number {:g}", value), "number blocks from 0");
     if (letter == 'N') continue;
     if (std::isnan(value)) {
-      control.warn_once("vacant-word", reader.column_of(place),
-                        fmt::format("{} is left out: its variable is vacant", letter),
-                        "assign the variable where the word is meant");
+      control.report.warn_once("vacant-word", reader.column_of(place),
+                               fmt::format("{} is left out: its variable is vacant", letter),
+                               "assign the variable where the word is meant");
       continue;
     }
     if (letter == 'G' || (letter == 'M' && !block.arguments)) {
@@ -194,8 +198,8 @@ void read_words(const LetterSyntax& syntax, FormulaReader& reader, Control& cont
       continue;
     }
     if (block.has(letter)) {
-      control.fail("word-twice", reader.column_of(place),
-                   fmt::format("{} stands twice in this block", letter), "write it once");
+      control.report.fail("word-twice", reader.column_of(place),
+                          fmt::format("{} stands twice in this block", letter), "write it once");
     }
     const auto slot = static_cast<size_t>(letter - 'A');
     block.given |= 1u << slot;
@@ -215,7 +219,7 @@ Target target_of(const LetterBlock& block, bool incremental, const FormulaReader
     const char letter = kLetters[static_cast<size_t>(word)];
     if (!block.has(letter)) continue;
     const double value = block.get(letter);
-    target.set(word, word < 3 ? control.mm(value) : rad_from_deg(value), incremental);
+    target.set(word, word < 3 ? control.modal.mm(value) : rad_from_deg(value), incremental);
     first = std::min(first, block.place(letter));
   }
   target.column = static_cast<int>(first) + 1;
@@ -224,7 +228,7 @@ Target target_of(const LetterBlock& block, bool incremental, const FormulaReader
 
 std::optional<ArcWords> arc_words(const LetterBlock& block, const Target& target, bool absolute,
                                   const FormulaReader& reader, Control& control) {
-  const PlaneAxes axes = axes_of(control.plane());
+  const PlaneAxes axes = axes_of(control.modal.plane);
   const auto column = [&](char letter) { return reader.column_of(block.place(letter)); };
   ArcWords words;
   words.column = reader.column_of(block.first);
@@ -232,30 +236,32 @@ std::optional<ArcWords> arc_words(const LetterBlock& block, const Target& target
   const bool centre = block.has('I') || block.has('J') || block.has('K');
   if (!target.any() && !centre && !radius) return std::nullopt;  // only the mode
   if (radius && centre)
-    control.fail("bad-arc", column('R'), "the arc has a radius and a centre", "write either R or I J K");
+    control.report.fail("bad-arc", column('R'), "the arc has a radius and a centre",
+                        "write either R or I J K");
   if (!radius && !centre)
-    control.fail("bad-arc", words.column, "the arc has neither a centre nor a radius", "add I J K, or R");
+    control.report.fail("bad-arc", words.column, "the arc has neither a centre nor a radius",
+                        "add I J K, or R");
   const char normal_letter = "IJK"[axes.normal];
   if (block.has(normal_letter))
-    control.fail("bad-arc", column(normal_letter),
-                 fmt::format("{} lies across the plane of this arc", normal_letter),
-                 "take it out, or select the plane with G17 to G19");
+    control.report.fail("bad-arc", column(normal_letter),
+                        fmt::format("{} lies across the plane of this arc", normal_letter),
+                        "take it out, or select the plane with G17 to G19");
   if (radius) {
-    words.radius = control.mm(block.get('R'));
+    words.radius = control.modal.mm(block.get('R'));
     if (!target.has(axes.first) && !target.has(axes.second))
-      control.fail("bad-arc", column('R'), "an arc by radius needs an end in its plane",
-                   "add the end, or I J K");
+      control.report.fail("bad-arc", column('R'), "an arc by radius needs an end in its plane",
+                          "add the end, or I J K");
     return words;
   }
-  const Vec3 here = control.position_xyz();
+  const Vec3 here = nc::position_xyz(control);
   Vec3 point = here;
   for (const int i : {axes.first, axes.second}) {
     const char letter = "IJK"[i];
     if (absolute && !block.has(letter))
-      control.fail("missing-word", words.column,
-                   fmt::format("an absolute centre wants {} in each arc", letter),
-                   fmt::format("add {}", letter));
-    const double value = control.mm(block.get(letter, 0.0));
+      control.report.fail("missing-word", words.column,
+                          fmt::format("an absolute centre wants {} in each arc", letter),
+                          fmt::format("add {}", letter));
+    const double value = control.modal.mm(block.get(letter, 0.0));
     point[i] = absolute ? value : here[i] + value;
   }
   words.centre = point;
@@ -267,13 +273,13 @@ int whole(const LetterBlock& block, char letter, int low, int high, const Formul
   const double value = block.get(letter);
   const int column = reader.column_of(block.place(letter));
   if (std::abs(value - std::round(value)) > 1e-6) {
-    control.fail("not-whole-number", column, fmt::format("{} {:g} is not a whole number", letter, value),
-                 "write a whole number");
+    control.report.fail("not-whole-number", column,
+                        fmt::format("{} {:g} is not a whole number", letter, value), "write a whole number");
   }
   if (!(value >= low - 0.5 && value <= high + 0.5)) {
-    control.fail("out-of-range", column,
-                 fmt::format("{} {:g} lies outside {} to {}", letter, value, low, high),
-                 fmt::format("write a number from {} to {}", low, high));
+    control.report.fail("out-of-range", column,
+                        fmt::format("{} {:g} lies outside {} to {}", letter, value, low, high),
+                        fmt::format("write a number from {} to {}", low, high));
   }
   return static_cast<int>(std::lround(value));
 }

@@ -7,6 +7,12 @@
 #include <string_view>
 #include <vector>
 
+#include "program/control/control.h"
+#include "program/control/cycles.h"
+#include "program/control/offsets.h"
+#include "program/control/path.h"
+#include "program/control/tilt.h"
+#include "program/control/tools.h"
 #include "program/letters/letter_block.h"
 #include "program/letters/line_source.h"
 

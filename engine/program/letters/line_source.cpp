@@ -29,7 +29,7 @@ bool all_text(std::string_view line) {
 }  // namespace
 
 LineSource::LineSource(const std::string& path, Control& control) : LineSource(path) {
-  file_ = control.enter_file(path);
+  file_ = control.report.enter_file(path);
 }
 
 LineSource::LineSource(const std::string& path) : path_(path) {

@@ -31,9 +31,9 @@ bool LinuxCnc::uses_axis_words() const {
 void LinuxCnc::check_words() {
   for (const char letter : {'U', 'V', 'W'}) {
     if (block_.has(letter))
-      control_.fail("axis-missing", column(letter),
-                    fmt::format("the machine {} has no axis {}", control_.machine().name, letter),
-                    "take the word out, or choose the machine that the program was posted for");
+      control_.report.fail("axis-missing", column(letter),
+                           fmt::format("the machine {} has no axis {}", control_.setup.machine.name, letter),
+                           "take the word out, or choose the machine that the program was posted for");
   }
   if (nurbs_) return check_nurbs_words();
   check_letters();
@@ -82,26 +82,26 @@ void LinuxCnc::check_letters() {
 void LinuxCnc::check_axes_and_motion() {
   const bool uses = uses_axis_words();
   if (uses && block_.has_g(kMotionGroup) && block_.g[kMotionGroup] != 800)
-    control_.fail("modal-conflict", g_column(kMotionGroup),
-                  "two G codes of this block both want its axis words", "write them in two blocks");
+    control_.report.fail("modal-conflict", g_column(kMotionGroup),
+                         "two G codes of this block both want its axis words", "write them in two blocks");
   if (block_.has_g(kMachineGroup)) {
     const int motion = block_.has_g(kMotionGroup) ? block_.g[kMotionGroup] : motion_;
     if (motion != 0 && motion != 10)
-      control_.fail("modal-conflict", g_column(kMachineGroup), "G53 goes with G0 and G1 only",
-                    "write G53 G0");
+      control_.report.fail("modal-conflict", g_column(kMachineGroup), "G53 goes with G0 and G1 only",
+                           "write G53 G0");
     const bool incremental = block_.has_g(kDistanceGroup) ? block_.g[kDistanceGroup] == 910 : incremental_;
     if (incremental)
-      control_.fail("modal-conflict", g_column(kMachineGroup), "G53 wants a position, and G91 is active",
-                    "write G90 before it");
+      control_.report.fail("modal-conflict", g_column(kMachineGroup),
+                           "G53 wants a position, and G91 is active", "write G90 before it");
     if (!is_axis_given())
-      control_.fail("missing-word", g_column(kMachineGroup), "G53 has no axis words",
-                    "add the axes that move");
+      control_.report.fail("missing-word", g_column(kMachineGroup), "G53 has no axis words",
+                           "add the axes that move");
   }
   if (!is_axis_given() || uses) return;
   const int motion = block_.has_g(kMotionGroup) ? block_.g[kMotionGroup] : motion_;
   if (motion < 0 || motion == 800)
-    control_.fail("no-motion-mode", reader_.column_of(block_.first),
-                  "axis words stand here, and no motion (G0 to G3) is active", "write G0 or G1");
+    control_.report.fail("no-motion-mode", reader_.column_of(block_.first),
+                         "axis words stand here, and no motion (G0 to G3) is active", "write G0 or G1");
 }
 
 void LinuxCnc::apply() {
@@ -115,13 +115,14 @@ void LinuxCnc::apply() {
   constexpr uint32_t kModal = 1u << kPlaneGroup | 1u << kUnitsGroup | 1u << kRadiusGroup |
                               1u << kLengthGroup | 1u << kOffsetGroup | 1u << kPathGroup |
                               1u << kDistanceGroup | 1u << kArcDistanceGroup | 1u << kRetractGroup;
-  if (block_.has_g(kNonModal) && block_.g[kNonModal] == 40) control_.dwell(block_.get('P'));
+  if (block_.has_g(kNonModal) && block_.g[kNonModal] == 40)
+    nc::dwell(control_.report, control_.modal, block_.get('P'));
   if ((block_.g_given & kModal) != 0) {
     if (block_.has_g(kPlaneGroup))
-      control_.set_plane(block_.g[kPlaneGroup] == 170   ? Plane::kXY
-                         : block_.g[kPlaneGroup] == 180 ? Plane::kZX
-                                                        : Plane::kYZ);
-    if (block_.has_g(kUnitsGroup)) control_.set_inches(block_.g[kUnitsGroup] == 200);
+      nc::set_plane(control_, block_.g[kPlaneGroup] == 170   ? Plane::kXY
+                              : block_.g[kPlaneGroup] == 180 ? Plane::kZX
+                                                             : Plane::kYZ);
+    if (block_.has_g(kUnitsGroup)) nc::set_inches(control_.modal, block_.g[kUnitsGroup] == 200);
     apply_compensation();
     apply_length();
     apply_offsets();
@@ -143,30 +144,30 @@ void LinuxCnc::apply_feed_and_speed() {
     const FeedMode mode = code == 930   ? FeedMode::kInverseTime
                           : code == 940 ? FeedMode::kPerMinute
                                         : FeedMode::kPerRevolution;
-    control_.restore_feed(mode, 0.0);  // F is forgotten, also by the word that holds already
+    nc::restore_feed(control_.modal, mode, 0.0);  // F is forgotten, also by the word that holds already
   }
   if (block_.has('F')) {
-    control_.set_feed(block_.get('F'), column('F'));
+    nc::set_feed(control_.report, control_.modal, block_.get('F'), column('F'));
     warn_of_feed_units();
   }
-  if (block_.has('S')) control_.set_speed(block_.get('S'));
+  if (block_.has('S')) control_.modal.speed_rpm = block_.get('S');
 }
 
 /// LinuxCNC takes F before G20 and G21 of its block (order of execution).
 void LinuxCnc::warn_of_feed_units() {
-  if (!block_.has_g(kUnitsGroup) || control_.inches() == (block_.g[kUnitsGroup] == 200)) return;
-  if (control_.feed_mode() == FeedMode::kInverseTime) return;
-  control_.warn_once(
-      "feed-before-units", column('F'),
-      fmt::format("F{:g} counts in {}: LinuxCNC takes it before the {} of its block", block_.get('F'),
-                  control_.inches() ? "inches" : "millimetres", control_.inches() ? "G21" : "G20"),
-      "write F in a block after it");
+  if (!block_.has_g(kUnitsGroup) || control_.modal.inches() == (block_.g[kUnitsGroup] == 200)) return;
+  if (control_.modal.feed_mode == FeedMode::kInverseTime) return;
+  control_.report.warn_once("feed-before-units", column('F'),
+                            fmt::format("F{:g} counts in {}: LinuxCNC takes it before the {} of its block",
+                                        block_.get('F'), control_.modal.inches() ? "inches" : "millimetres",
+                                        control_.modal.inches() ? "G21" : "G20"),
+                            "write F in a block after it");
 }
 
 void LinuxCnc::apply_machine_functions() {
   constexpr std::pair<int, int> kSpindle[] = {{30, 1}, {40, -1}, {50, 0}};
   for (const auto& [code, sense] : kSpindle) {
-    if (block_.has_m(code)) control_.set_spindle(sense);
+    if (block_.has_m(code)) control_.modal.spindle = sense;
   }
   for (int i = 0; i < block_.m_count; ++i) {
     const int code = block_.m[static_cast<size_t>(i)];
@@ -182,16 +183,17 @@ void LinuxCnc::apply_machine_functions() {
 void LinuxCnc::apply_offsets() {
   if (!block_.has_g(kOffsetGroup)) return;
   const int code = block_.g[kOffsetGroup];
-  control_.set_work_offset(code <= 590 ? (code - 530) / 10 : code - 584);
+  nc::set_work_offset(control_, code <= 590 ? (code - 530) / 10 : code - 584);
   update_shift();
 }
 
 void LinuxCnc::apply_path_mode() {
   if (!block_.has_g(kPathGroup)) return;
   const int code = block_.g[kPathGroup];
-  control_.set_exact_stop(code != 640);
-  if (code == 640 && block_.has('Q')) control_.without_effect("G64 Q (merging of short blocks)");
-  control_.set_corner_tolerance(code == 640 && block_.has('P') ? control_.mm(block_.get('P')) : 0.0);
+  control_.modal.exact_stop = code != 640;
+  if (code == 640 && block_.has('Q')) control_.report.without_effect("G64 Q (merging of short blocks)");
+  control_.modal.corner_tolerance_mm =
+      code == 640 && block_.has('P') ? control_.modal.mm(block_.get('P')) : 0.0;
 }
 
 bool LinuxCnc::apply_end() {
@@ -207,11 +209,12 @@ bool LinuxCnc::apply_end() {
     if (code == 990 && calls_.size() > 1 && frame().numbered) {
       leave();
     } else if (code == 990 && calls_.size() > 1) {
-      control_.fail("bad-o-word", at, "M99 ends a subprogram that was called with O... call",
-                    "end it with endsub");
+      control_.report.fail("bad-o-word", at, "M99 ends a subprogram that was called with O... call",
+                           "end it with endsub");
     } else if (code == 990) {
-      control_.warn_once("main-program-repeats", at, "M99 repeats the main program for ever; it was run once",
-                         "end it with M2 where that is meant");
+      control_.report.warn_once("main-program-repeats", at,
+                                "M99 repeats the main program for ever; it was run once",
+                                "end it with M2 where that is meant");
       return false;
     }
   }

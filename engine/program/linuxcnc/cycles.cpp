@@ -28,48 +28,52 @@ void LinuxCnc::check_cycle(int tenths) const {
   const int at = reader_.column_of(block_.first), number = tenths / 10;
   constexpr uint32_t kPlaces = 7u << ('X' - 'A');
   if ((block_.given & kPlaces) == 0)
-    control_.fail("missing-word", at, fmt::format("G{} has no axis words", number),
-                  "add the place of the hole, or G80 to end the cycle");
+    control_.report.fail("missing-word", at, fmt::format("G{} has no axis words", number),
+                         "add the place of the hole, or G80 to end the cycle");
   for (const char letter : {'A', 'B', 'C'}) {
     if (block_.has(letter))
-      control_.fail("bad-cycle", column(letter), fmt::format("{} cannot turn during G{}", letter, number),
-                    "turn it in a block of its own");
+      control_.report.fail("bad-cycle", column(letter),
+                           fmt::format("{} cannot turn during G{}", letter, number),
+                           "turn it in a block of its own");
   }
-  if (!control_.started())
-    control_.fail("start-unknown", at, fmt::format("G{} starts, and the position is not known yet", number),
-                  "position all axes with G0 before the cycle");
-  if (control_.feed_mode() == FeedMode::kInverseTime)
-    control_.fail("bad-cycle", at, fmt::format("G{} cannot run under G93", number),
-                  "write G94 and a feed before it");
-  if (control_.compensation() != Compensation::kOff)
-    control_.fail("compensation-active", at,
-                  fmt::format("G{} while cutter radius compensation is on", number),
-                  "switch it off first: G40");
+  if (!control_.path.started)
+    control_.report.fail("start-unknown", at,
+                         fmt::format("G{} starts, and the position is not known yet", number),
+                         "position all axes with G0 before the cycle");
+  if (control_.modal.feed_mode == FeedMode::kInverseTime)
+    control_.report.fail("bad-cycle", at, fmt::format("G{} cannot run under G93", number),
+                         "write G94 and a feed before it");
+  if (control_.contour.side() != Compensation::kOff)
+    control_.report.fail("compensation-active", at,
+                         fmt::format("G{} while cutter radius compensation is on", number),
+                         "switch it off first: G40");
   if (pecks(tenths) && block_.has('P'))
-    control_.fail(
+    control_.report.fail(
         "unsupported-word", column('P'),
         fmt::format(
             "releases of LinuxCNC differ about P of G{}: newer ones take it as the clearance of a peck",
             number),
         "leave it out: the clearance is 0.254 mm");
   const bool boring = tenths == 860 || tenths == 870 || tenths == 880;
-  if ((boring || taps(tenths)) && control_.spindle() == 0)
-    control_.fail("spindle-stands", at, fmt::format("G{} wants a turning spindle", number),
-                  "start it before the cycle: S1000 M3");
-  if (taps(tenths) && control_.spindle() != (tenths == 840 ? 1 : -1))
-    control_.fail("bad-cycle", at,
-                  tenths == 840 ? "G84 taps right-hand threads, and the spindle turns counter-clockwise"
-                                : "G74 taps left-hand threads, and the spindle turns clockwise",
-                  tenths == 840 ? "write M3 before it" : "write M4 before it");
+  if ((boring || taps(tenths)) && control_.modal.spindle == 0)
+    control_.report.fail("spindle-stands", at, fmt::format("G{} wants a turning spindle", number),
+                         "start it before the cycle: S1000 M3");
+  if (taps(tenths) && control_.modal.spindle != (tenths == 840 ? 1 : -1))
+    control_.report.fail("bad-cycle", at,
+                         tenths == 840
+                             ? "G84 taps right-hand threads, and the spindle turns counter-clockwise"
+                             : "G74 taps left-hand threads, and the spindle turns clockwise",
+                         tenths == 840 ? "write M3 before it" : "write M4 before it");
 }
 
 /// R stays for all cycles, the other words while the same one goes on.
 void LinuxCnc::keep_cycle_words(bool same) {
   if (!same) cycle_ = StickyCycle{{}, cycle_.r, {}, {}, {}};
   const auto keep = [&](char letter, std::optional<double>& value) {
-    if (block_.has(letter)) value = letter == 'P' ? block_.get(letter) : control_.mm(block_.get(letter));
+    if (block_.has(letter))
+      value = letter == 'P' ? block_.get(letter) : control_.modal.mm(block_.get(letter));
   };
-  keep("XYZ"[axes_of(control_.plane()).normal], cycle_.depth);
+  keep("XYZ"[axes_of(control_.modal.plane).normal], cycle_.depth);
   keep('R', cycle_.r);
   keep('Q', cycle_.q);
   keep('P', cycle_.p);
@@ -78,48 +82,48 @@ void LinuxCnc::keep_cycle_words(bool same) {
 
 double LinuxCnc::cycle_word(const std::optional<double>& value, char letter) const {
   if (!value)
-    control_.fail("missing-word", reader_.column_of(block_.first),
-                  fmt::format("the cycle G{} needs the word {}", motion_ / 10, letter),
-                  fmt::format("add {}", letter));
+    control_.report.fail("missing-word", reader_.column_of(block_.first),
+                         fmt::format("the cycle G{} needs the word {}", motion_ / 10, letter),
+                         fmt::format("add {}", letter));
   return *value;
 }
 
 /// Above the hole at the height that LinuxCNC keeps: not below the present one or R, under G98 not below that
 /// before the series. It rises on the way there, and before it where R lies above the height of the series.
 void LinuxCnc::above_hole(const Target& hole, double r) {
-  const int normal = axes_of(control_.plane()).normal;
+  const int normal = axes_of(control_.modal.plane).normal;
   Target height;
   height.column = hole.column;
   height.set(normal, r, false);
-  if (cycle_start_ < r) control_.line(Motion::kRapid, height);
+  if (cycle_start_ < r) nc::line(control_, Motion::kRapid, height);
   Target above = hole;
-  const double now = control_.position_xyz()[normal];
+  const double now = nc::position_xyz(control_)[normal];
   above.set(normal, std::max({now, r, retract_to_r_ ? r : cycle_start_}), false);
-  control_.line(Motion::kRapid, above);
+  nc::line(control_, Motion::kRapid, above);
 }
 
 /// Under G91 R counts from the height before the series and the depth from R, in each block of it (measured
 /// on LinuxCNC 2.9).
 void LinuxCnc::cycle(int tenths) {
-  const PlaneAxes axes = axes_of(control_.plane());
+  const PlaneAxes axes = axes_of(control_.modal.plane);
   const int at = reader_.column_of(block_.first);
   const double depth = cycle_word(cycle_.depth, "XYZ"[axes.normal]), r = cycle_word(cycle_.r, 'R');
   DrillCycle cycle;
   cycle.approach = incremental_ ? cycle_start_ + r : r;
   cycle.bottom = incremental_ ? cycle.approach + depth : depth;
   if (cycle.bottom > cycle.approach)
-    control_.fail("bad-cycle", at,
-                  fmt::format("the bottom {:.4f} mm lies above the approach height {:.4f} mm", cycle.bottom,
-                              cycle.approach),
-                  "R must lie above the depth");
+    control_.report.fail("bad-cycle", at,
+                         fmt::format("the bottom {:.4f} mm lies above the approach height {:.4f} mm",
+                                     cycle.bottom, cycle.approach),
+                         "R must lie above the depth");
   cycle.retract = retract_to_r_ ? cycle.approach : std::max(cycle.approach, cycle_start_);
   if (pecks(tenths)) {
     cycle.peck = tenths == 730 ? DrillCycle::Peck::kChipBreak : DrillCycle::Peck::kFull;
     cycle.peck_mm = cycle_word(cycle_.q, 'Q');
     cycle.clearance_mm = kPeckClearanceMm;
     if (!(cycle.peck_mm > 0.0))
-      control_.fail("out-of-range", at, fmt::format("Q {:g} is no depth per peck", cycle.peck_mm),
-                    "write Q above zero");
+      control_.report.fail("out-of-range", at, fmt::format("Q {:g} is no depth per peck", cycle.peck_mm),
+                           "write Q above zero");
   }
   if (dwells(tenths)) cycle.dwell_s = cycle_word(cycle_.p, 'P');
   if (taps(tenths)) cycle.dwell_s = cycle_.p.value_or(0.0);
@@ -131,36 +135,36 @@ void LinuxCnc::cycle(int tenths) {
   const int times = block_.has('L') ? whole(block_, 'L', 1, 100000, reader_, control_) : 1;
   const Target hole = target_of(block_, incremental_, reader_, control_);
   if (!retract_known_)
-    control_.warn_once("retract-mode", at,
-                       "neither G98 nor G99 stands before this cycle: the tool goes back to R (G99), with "
-                       "which LinuxCNC starts unless the startup code of its INI file says otherwise",
-                       "write G98 or G99 before it");
+    control_.report.warn_once(
+        "retract-mode", at,
+        "neither G98 nor G99 stands before this cycle: the tool goes back to R (G99), with "
+        "which LinuxCNC starts unless the startup code of its INI file says otherwise",
+        "write G98 or G99 before it");
   if (tenths == 880)
-    control_.warn_once(
+    control_.report.warn_once(
         "cycle-of-rs274", at,
         "G88: RS274/NGC lets the operator retract by hand, LinuxCNC leaves it undefined; the tool is "
         "taken out straight",
         "write G86 or G89");
   Target here;
   here.column = hole.column;
-  const bool exact_stop = control_.exact_stop();
-  control_.set_exact_stop(true);  // cycles run in exact path mode, whatever G64 says
+  const Borrowed exact_stop(control_.modal.exact_stop);
+  control_.modal.exact_stop = true;  // cycles run in exact path mode, whatever G64 says
   for (int i = 0; i < times; ++i) {
     if (tenths == 870) {
       back_bore(cycle.approach, cycle.bottom, cycle.retract, hole);
     } else {
       above_hole(hole, cycle.approach);
-      control_.drill(cycle, here);
+      nc::drill(control_, cycle, here);
     }
   }
-  control_.set_exact_stop(exact_stop);
 }
 
 /// G87 as the RS274/NGC report of NIST (NISTIR 6556, 3.5.16.7) has it: in X Y, I and J are the way from the
 /// axis of the hole to the place where the tool passes it, K is the height of the counterbore, under G91
 /// above the bottom. The tool shifts at R, and feeds back down to the bottom before it leaves.
 void LinuxCnc::back_bore(double approach, double bottom, double retract, const Target& hole) {
-  const PlaneAxes axes = axes_of(control_.plane());
+  const PlaneAxes axes = axes_of(control_.modal.plane);
   const auto word = [&](int axis) { return cycle_word(cycle_.ijk[static_cast<size_t>(axis)], "IJK"[axis]); };
   DrillCycle bore;
   bore.bore = DrillCycle::Bore::kBack;
@@ -171,24 +175,24 @@ void LinuxCnc::back_bore(double approach, double bottom, double retract, const T
   bore.aside[axes.second] = word(axes.second);
   bore.feed_out = true;
   if (!(bottom < bore.bottom && bore.bottom <= approach))
-    control_.fail(
+    control_.report.fail(
         "bad-cycle", hole.column,
         fmt::format("back boring goes down to {:.4f} mm and bores up to {:.4f} mm, from an approach "
                     "height of {:.4f} mm",
                     bottom, bore.bottom, approach),
         "the height that it bores up to lies between the other two");
-  control_.warn_once("cycle-of-rs274", reader_.column_of(block_.first),
-                     "G87 bores from below as RS274/NGC has it; LinuxCNC itself leaves it undefined",
-                     "write the moves out");
+  control_.report.warn_once("cycle-of-rs274", reader_.column_of(block_.first),
+                            "G87 bores from below as RS274/NGC has it; LinuxCNC itself leaves it undefined",
+                            "write the moves out");
   Target above = hole, height;
   above.given = static_cast<uint8_t>(hole.given & ~(1u << axes.normal));
   height.set(axes.normal, approach, false);
-  if (control_.position_xyz()[axes.normal] < approach) control_.line(Motion::kRapid, height);
-  if (above.any()) control_.line(Motion::kRapid, above);
-  control_.line(Motion::kRapid, height);
+  if (nc::position_xyz(control_)[axes.normal] < approach) nc::line(control_, Motion::kRapid, height);
+  if (above.any()) nc::line(control_, Motion::kRapid, above);
+  nc::line(control_, Motion::kRapid, height);
   Target here;
   here.column = hole.column;
-  control_.drill(bore, here);
+  nc::drill(control_, bore, here);
 }
 
 }  // namespace swarf::program::nc::linuxcnc

@@ -20,10 +20,10 @@ LinuxCnc::LinuxCnc(const std::string& path, Control& control)
   Call main;
   main.source = &open(path);
   calls_.push_back(std::move(main));
-  control_.set_feed_rule(FeedRule::kLinearFirst);
-  control_.set_compensation_entry(CompensationEntry::kAlongEntry);
-  control_.set_compensation_smooth(kSmoothCornerRad);
-  if (control.setup().kinematics_switch.start == Kinematics::kTcp) control_.set_tcp(Tcp::kAxes);
+  control_.modal.feed_rule = FeedRule::kLinearFirst;
+  control_.contour.set_entry(CompensationEntry::kAlongEntry);
+  control_.contour.set_smooth(kSmoothCornerRad);
+  if (control.setup.kinematics_switch.start == Kinematics::kTcp) nc::set_tcp(control_, Tcp::kAxes);
 }
 
 void LinuxCnc::run() {
@@ -37,12 +37,12 @@ void LinuxCnc::run() {
     if (!percent(line, true)) ended_ = !execute();
   }
   if (nurbs_) fail_open_nurbs();
-  control_.finish();
+  nc::finish(control_);
 }
 
 bool LinuxCnc::execute() {
   if (at_o_word()) {
-    ++control_.summary().blocks;
+    ++control_.report.summary.blocks;
     flow();
     return true;
   }
@@ -54,11 +54,12 @@ bool LinuxCnc::execute() {
     read_assignment();
     read_words(kLinuxCncSyntax, reader_, control_, block_, '#');
   }
-  if (!block_.message.empty()) control_.note("MSG", message_text());
-  if (block_.skip_mark) control_.without_effect("/ (block delete is off: such blocks are executed)");
+  if (!block_.message.empty()) control_.report.note("MSG", message_text());
+  if (block_.skip_mark) control_.report.without_effect("/ (block delete is off: such blocks are executed)");
   if (!block_.empty()) {
-    ++control_.summary().blocks;
-    control_.at(source().file(), static_cast<int>(source().line_number()), reader_.column_of(block_.first));
+    ++control_.report.summary.blocks;
+    control_.report.at(source().file(), static_cast<int>(source().line_number()),
+                       reader_.column_of(block_.first));
     check_words();
   }
   assign();
@@ -73,24 +74,26 @@ void LinuxCnc::read_assignment() {
   const long number = reader_.parameter_number(name);
   reader_.skip_space();
   if (reader_.peek() != '=')
-    control_.fail("bad-parameter", reader_.column(), "'=' is missing after the parameter", "write #1=2.5");
+    control_.report.fail("bad-parameter", reader_.column(), "'=' is missing after the parameter",
+                         "write #1=2.5");
   reader_.skip();
   const double value = reader_.value();
   if (!name.empty()) {
     if (is_read_only(name))
-      control_.fail("read-only-parameter", reader_.column_of(from),
-                    fmt::format("#<{}> belongs to the control and cannot be assigned", name),
-                    "take another name");
+      control_.report.fail("read-only-parameter", reader_.column_of(from),
+                           fmt::format("#<{}> belongs to the control and cannot be assigned", name),
+                           "take another name");
     new_names_.emplace_back(std::move(name), value);
     return;
   }
   if (number < 1 || number >= kNumbers)
-    control_.fail("bad-parameter", reader_.column_of(from), fmt::format("#{} cannot be assigned", number),
-                  "parameters that programs may set have numbers from 1 to 5399");
+    control_.report.fail("bad-parameter", reader_.column_of(from),
+                         fmt::format("#{} cannot be assigned", number),
+                         "parameters that programs may set have numbers from 1 to 5399");
   if (number >= 5161)
-    control_.fail("unsupported-word", reader_.column_of(from),
-                  fmt::format("#{} belongs to the control (reference positions, offsets)", number),
-                  "set offsets with G10, G52 or G92");
+    control_.report.fail("unsupported-word", reader_.column_of(from),
+                         fmt::format("#{} belongs to the control (reference positions, offsets)", number),
+                         "set offsets with G10, G52 or G92");
   new_numbers_.emplace_back(number, value);
 }
 

@@ -63,7 +63,8 @@ LinuxCnc::OWord LinuxCnc::read_o_word() {
       if (c != ' ' && c != '\t') word.name += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
     }
     if (reader_.done() || word.name.empty())
-      control_.fail("bad-o-word", word.column, "the name of this O word does not end", "write O<name>");
+      control_.report.fail("bad-o-word", word.column, "the name of this O word does not end",
+                           "write O<name>");
     reader_.skip();
   } else {
     word.name = fmt::format("{}", std::lround(std::clamp(reader_.value(), -1e9, 1e9)));
@@ -77,7 +78,7 @@ LinuxCnc::OWord LinuxCnc::read_o_word() {
   std::string_view message;
   skip_comments(kLinuxCncSyntax, reader_, control_, message);
   if (!reader_.done())
-    control_.fail(
+    control_.report.fail(
         "unknown-o-word", reader_.column(), fmt::format("this is no keyword of an O word (O{})", word.name),
         "write sub, endsub, call, return, if, elseif, else, endif, while, endwhile, do, repeat, endrepeat, "
         "break or continue");
@@ -87,7 +88,7 @@ LinuxCnc::OWord LinuxCnc::read_o_word() {
 void LinuxCnc::end_of_o_word(const char* what) {
   std::string_view message;
   skip_comments(kLinuxCncSyntax, reader_, control_, message);
-  if (!reader_.done()) control_.fail("unexpected-character", reader_.column(), what, "take it out");
+  if (!reader_.done()) control_.report.fail("unexpected-character", reader_.column(), what, "take it out");
 }
 
 double LinuxCnc::condition() {
@@ -114,8 +115,8 @@ void LinuxCnc::flow() {
     case Keyword::kReturn:
     case Keyword::kEndSub:
       if (calls_.size() < 2)
-        control_.fail("bad-o-word", word.column, "this ends a subprogram, and none was called",
-                      "take it out");
+        control_.report.fail("bad-o-word", word.column, "this ends a subprogram, and none was called",
+                             "take it out");
       reader_.skip_space();
       value_returned_ = reader_.peek() == '[';
       returned_ = value_returned_ ? reader_.bracketed() : 0.0;
@@ -136,11 +137,11 @@ void LinuxCnc::flow() {
 
 LinuxCnc::OWord LinuxCnc::skip_to(const std::string& name, std::initializer_list<Keyword> ends,
                                   const char* missing) {
-  const Place from = control_.place();
+  const Place from = control_.report.place;
   std::string_view line;
   while (source().next(line)) {
-    ++control_.summary().lines;
-    control_.at(source().file(), static_cast<int>(source().line_number()), 1);
+    ++control_.report.summary.lines;
+    control_.report.at(source().file(), static_cast<int>(source().line_number()), 1);
     reader_.begin(line);
     reader_.skip_space();
     if (!at_o_word()) continue;
@@ -154,16 +155,17 @@ LinuxCnc::OWord LinuxCnc::skip_to(const std::string& name, std::initializer_list
     if (word.name != name) continue;
     if (std::find(ends.begin(), ends.end(), word.keyword) != ends.end()) return word;
   }
-  control_.at(from.file, from.line, from.column);
-  control_.fail("unclosed-o-word", 0, fmt::format("O{} has no {} in this file", name, missing),
-                fmt::format("add O{} {}", name, missing));
+  control_.report.at(from.file, from.line, from.column);
+  control_.report.fail("unclosed-o-word", 0, fmt::format("O{} has no {} in this file", name, missing),
+                       fmt::format("add O{} {}", name, missing));
 }
 
 LinuxCnc::Loop& LinuxCnc::top_loop(const OWord& word, Keyword kind) {
   auto& loops = frame().loops;
   if (loops.empty() || loops.back().name != word.name || loops.back().kind != kind)
-    control_.fail("bad-o-word", word.column, fmt::format("O{} ends nothing that is open here", word.name),
-                  "close the innermost O word first, with its own number");
+    control_.report.fail("bad-o-word", word.column,
+                         fmt::format("O{} ends nothing that is open here", word.name),
+                         "close the innermost O word first, with its own number");
   return loops.back();
 }
 
@@ -181,7 +183,7 @@ void LinuxCnc::step_if(const OWord& word) {
     loops.pop_back();
     return;
   }
-  loops.push_back({word.name, Keyword::kIf, {}, 0, control_.place().line});
+  loops.push_back({word.name, Keyword::kIf, {}, 0, control_.report.place.line});
   if (condition() != 0.0) return;
   for (;;) {
     const OWord next = skip_to(word.name, {Keyword::kElseIf, Keyword::kElse, Keyword::kEndIf}, "endif");
@@ -196,7 +198,7 @@ void LinuxCnc::step_if(const OWord& word) {
 void LinuxCnc::step_loop(const OWord& word) {
   auto& loops = frame().loops;
   const auto again = [&](const Loop& loop) {
-    control_.jump();
+    nc::jump(control_);
     source().seek(loop.top);
   };
   const bool ends_do = word.keyword == Keyword::kWhile && !loops.empty() && loops.back().name == word.name &&
@@ -209,13 +211,13 @@ void LinuxCnc::step_loop(const OWord& word) {
   LineSource::Mark next = source().mark();
   switch (word.keyword) {
     case Keyword::kDo:
-      loops.push_back({word.name, Keyword::kDo, next, 0, control_.place().line});
+      loops.push_back({word.name, Keyword::kDo, next, 0, control_.report.place.line});
       return;
     case Keyword::kWhile: {
       const bool inside =
           !loops.empty() && loops.back().name == word.name && loops.back().kind == Keyword::kWhile;
       if (!inside)
-        loops.push_back({word.name, Keyword::kWhile, source().line_mark(), 0, control_.place().line});
+        loops.push_back({word.name, Keyword::kWhile, source().line_mark(), 0, control_.report.place.line});
       if (condition() != 0.0) return;
       loops.pop_back();
       skip_to(word.name, {Keyword::kEndWhile}, "endwhile");
@@ -229,8 +231,8 @@ void LinuxCnc::step_loop(const OWord& word) {
         skip_to(word.name, {Keyword::kEndRepeat}, "endrepeat");
         return;
       }
-      loops.push_back(
-          {word.name, Keyword::kRepeat, next, std::lround(std::min(times, 1e12)) - 1, control_.place().line});
+      loops.push_back({word.name, Keyword::kRepeat, next, std::lround(std::min(times, 1e12)) - 1,
+                       control_.report.place.line});
       return;
     }
     case Keyword::kEndRepeat: {
@@ -248,11 +250,12 @@ void LinuxCnc::leave_loop(const OWord& word) {
   auto& loops = frame().loops;
   while (!loops.empty() && loops.back().name != word.name) loops.pop_back();
   if (loops.empty() || loops.back().kind == Keyword::kIf)
-    control_.fail("bad-o-word", word.column, fmt::format("O{} is no loop that is open here", word.name),
-                  "name the loop to leave");
+    control_.report.fail("bad-o-word", word.column,
+                         fmt::format("O{} is no loop that is open here", word.name),
+                         "name the loop to leave");
   const Loop loop = loops.back();
   if (word.keyword == Keyword::kContinue && loop.kind == Keyword::kWhile) {
-    control_.jump();
+    nc::jump(control_);
     return source().seek(loop.top);
   }
   const Keyword end = loop.kind == Keyword::kRepeat  ? Keyword::kEndRepeat
@@ -275,7 +278,7 @@ void LinuxCnc::define_sub(const OWord& word) {
 
 const LinuxCnc::Sub* LinuxCnc::scan(LineSource& in, const std::string& name, bool numbered) {
   const LineSource::Mark back = in.mark();
-  const Place here = control_.place();
+  const Place here = control_.report.place;
   const std::string_view line_here = reader_.line();
   const std::string kept(line_here);
   const size_t at_here = reader_.at();
@@ -291,14 +294,14 @@ const LinuxCnc::Sub* LinuxCnc::scan(LineSource& in, const std::string& name, boo
     reader_.skip_space();
     if (reader_.peek() == '#' || reader_.peek() == '[') continue;
     reader_.move_to(start);
-    control_.at(in.file(), static_cast<int>(in.line_number()), 1);
+    control_.report.at(in.file(), static_cast<int>(in.line_number()), 1);
     const OWord word = read_o_word();
     if (word.name != name || word.keyword != (numbered ? Keyword::kNone : Keyword::kSub)) continue;
     subs_.push_back({name, numbered, &in, in.mark()});
     found = &subs_.back();
   }
   in.seek(back);
-  control_.at(here.file, here.line, here.column);
+  control_.report.at(here.file, here.line, here.column);
   kept_line_ = kept;
   reader_.begin(kept_line_);
   reader_.move_to(at_here);
@@ -315,11 +318,11 @@ const LinuxCnc::Sub* LinuxCnc::find_sub(const std::string& name, bool numbered) 
   const Sub* here = scan(source(), name, numbered);
   if (here == nullptr && &source() != &main) here = scan(main, name, numbered);
   if (here != nullptr && !numbered)
-    control_.fail("unknown-subprogram", 0,
-                  fmt::format("O{} is called before its definition in line {}", name, here->body.line),
-                  "write the subprogram before its first call");
+    control_.report.fail("unknown-subprogram", 0,
+                         fmt::format("O{} is called before its definition in line {}", name, here->body.line),
+                         "write the subprogram before its first call");
   if (here != nullptr) return here;
-  const std::string file = find_subprogram(path_, control_.setup(), name, {".ngc", ".nc", ""});
+  const std::string file = find_subprogram(path_, control_.setup, name, {".ngc", ".nc", ""});
   return file.empty() ? nullptr : scan(open(file), name, numbered);
 }
 
@@ -329,28 +332,29 @@ void LinuxCnc::call_sub(const OWord& word) {
   size_t count = 0;
   for (reader_.skip_space(); reader_.peek() == '['; reader_.skip_space()) {
     if (++count > 30)
-      control_.fail("too-many-arguments", reader_.column(), "a call has at most 30 arguments", "pass fewer");
+      control_.report.fail("too-many-arguments", reader_.column(), "a call has at most 30 arguments",
+                           "pass fewer");
     call.arguments[count] = reader_.bracketed();
     call.assigned |= uint64_t{1} << count;
   }
   end_of_o_word("only arguments in [ ] follow a call");
   const Sub* sub = find_sub(word.name, false);
   if (sub == nullptr)
-    control_.fail("unknown-subprogram", word.column,
-                  fmt::format("O{} is called, and no such subprogram is in this file or in {}.ngc", word.name,
-                              word.name),
-                  "define it with O... sub, or give the folder of the file");
+    control_.report.fail("unknown-subprogram", word.column,
+                         fmt::format("O{} is called, and no such subprogram is in this file or in {}.ngc",
+                                     word.name, word.name),
+                         "define it with O... sub, or give the folder of the file");
   returned_ = 0.0;
   value_returned_ = false;
   enter(*sub, std::move(call));
 }
 
 void LinuxCnc::enter(const Sub& sub, Call call) {
-  control_.jump();
+  nc::jump(control_);
   if (calls_.size() > kCallsMax)
-    control_.fail("recursion-limit", 0,
-                  fmt::format("more than {} subprograms call each other here", kCallsMax),
-                  "end the recursion with a condition");
+    control_.report.fail("recursion-limit", 0,
+                         fmt::format("more than {} subprograms call each other here", kCallsMax),
+                         "end the recursion with a condition");
   call.back = source().mark();
   // The caller's source may be the same file: it returns by its mark.
   call.source = sub.source;
@@ -365,7 +369,7 @@ void LinuxCnc::leave() {
   call.restores = false;
   if (call.left > 0) {
     --call.left;
-    control_.jump();
+    nc::jump(control_);
     call.source->seek(call.top);
     return;
   }
@@ -384,11 +388,12 @@ void LinuxCnc::call_number(int number, long times, int column) {
   const std::string name = fmt::format("{}", number);
   const Sub* sub = find_sub(name, true);
   if (sub == nullptr)
-    control_.fail("unknown-subprogram", column,
-                  fmt::format("M98 calls O{}, and it is neither in this file nor in {}.ngc", number, number),
-                  "add the subprogram, or give the folder of its file");
+    control_.report.fail(
+        "unknown-subprogram", column,
+        fmt::format("M98 calls O{}, and it is neither in this file nor in {}.ngc", number, number),
+        "add the subprogram, or give the folder of its file");
   if (sub->source == &source() && sub->body.line <= source().line_number())
-    control_.fail(
+    control_.report.fail(
         "unknown-subprogram", column,
         fmt::format("O{} stands before this M98, in line {}: numbered subprograms follow their call", number,
                     sub->body.line),
@@ -406,17 +411,18 @@ void LinuxCnc::call_number(int number, long times, int column) {
 void LinuxCnc::end_of_flow() {
   if (!frame().loops.empty()) {
     const Loop& loop = frame().loops.back();
-    control_.at(source().file(), loop.line, 1);
-    control_.fail("unclosed-o-word", 0, fmt::format("O{} is not closed at the end of the file", loop.name),
-                  "add its end");
+    control_.report.at(source().file(), loop.line, 1);
+    control_.report.fail("unclosed-o-word", 0,
+                         fmt::format("O{} is not closed at the end of the file", loop.name), "add its end");
   }
   if (calls_.size() == 1) {
     warn_of_missing_end("M2, M30 or %");
     ended_ = true;
     return;
   }
-  control_.fail("unclosed-o-word", 0, fmt::format("subprogram O{} does not end in its file", frame().sub),
-                frame().numbered ? "end it with M99" : "end it with O... endsub");
+  control_.report.fail("unclosed-o-word", 0,
+                       fmt::format("subprogram O{} does not end in its file", frame().sub),
+                       frame().numbered ? "end it with M99" : "end it with O... endsub");
 }
 
 }  // namespace swarf::program::nc::linuxcnc

@@ -11,12 +11,12 @@ namespace swarf::program::nc::linuxcnc {
 /// Those that come with LinuxCNC select the machine's own kinematics, identity, and userk, whose template is
 /// identity until somebody fills it in.
 void LinuxCnc::switch_kinematics(int tenths, int column) {
-  const KinematicsSwitch& told = control_.setup().kinematics_switch;
+  const KinematicsSwitch& told = control_.setup.kinematics_switch;
   const int number = tenths / 10;
   std::optional<Kinematics> kinematics = tenths == 4280 ? told.m428 : tenths == 4290 ? told.m429 : told.m430;
   if (!kinematics) {
     if (tenths == 4300) {
-      control_.fail(
+      control_.report.fail(
           "unknown-kinematics", column, "M430 selects the user's kinematics, and nothing says what they are",
           "add kinematics_switch = { m430 = \"identity\" } (or \"tcp\") to the scene; on the command "
           "line: --kinematics m430=identity");
@@ -24,7 +24,7 @@ void LinuxCnc::switch_kinematics(int tenths, int column) {
     kinematics = tenths == 4280 ? Kinematics::kTcp : Kinematics::kIdentity;
     assume_kinematics(number, *kinematics, column);
   }
-  control_.set_tcp(kinematics == Kinematics::kTcp ? Tcp::kAxes : Tcp::kOff);
+  nc::set_tcp(control_, kinematics == Kinematics::kTcp ? Tcp::kAxes : Tcp::kOff);
 }
 
 /// A reading that the configuration could contradict is told, once for each code.
@@ -32,9 +32,10 @@ void LinuxCnc::assume_kinematics(int number, Kinematics kinematics, int column) 
   const auto index = static_cast<size_t>(number - 428);
   if (kinematics_told_[index]) return;
   kinematics_told_[index] = true;
-  const Place place = control_.place();
-  control_.diagnostics().note(
-      "kinematics-assumed", {control_.summary().files[static_cast<size_t>(place.file)], place.line, column},
+  const Place place = control_.report.place;
+  control_.report.diagnostics.note(
+      "kinematics-assumed",
+      {control_.report.summary.files[static_cast<size_t>(place.file)], place.line, column},
       fmt::format(
           "M{} is taken as {}, as on the machines that come with LinuxCNC; if this machine's INI file "
           "means something else, say so in the scene: kinematics_switch = {{ m{} = \"{}\" }}",
@@ -48,30 +49,30 @@ void LinuxCnc::read_input() {
   const bool digital = block_.has('P'), analog = block_.has('E');
   const int mode = block_.has('L') ? whole(block_, 'L', 0, 4, reader_, control_) : 0;
   if (digital == analog)
-    control_.fail(digital ? "modal-conflict" : "missing-word", reader_.column_of(block_.first),
-                  digital ? "M66 reads a digital input P or an analog one E, and both stand here"
-                          : "M66 does not say which input it reads",
-                  digital ? "write P or E" : "add P for a digital input, E for an analog one");
+    control_.report.fail(digital ? "modal-conflict" : "missing-word", reader_.column_of(block_.first),
+                         digital ? "M66 reads a digital input P or an analog one E, and both stand here"
+                                 : "M66 does not say which input it reads",
+                         digital ? "write P or E" : "add P for a digital input, E for an analog one");
   if (analog && mode != 0)
-    control_.fail("out-of-range", column('L'), "M66 cannot wait for an analog input", "write L0");
+    control_.report.fail("out-of-range", column('L'), "M66 cannot wait for an analog input", "write L0");
   if (mode != 0 && block_.has('Q') && !(block_.get('Q') > 0.0))
-    control_.fail("out-of-range", column('Q'),
-                  fmt::format("M66 L{} with a time limit of {:g} s", mode, block_.get('Q')),
-                  "write Q above zero, in seconds");
+    control_.report.fail("out-of-range", column('Q'),
+                         fmt::format("M66 L{} with a time limit of {:g} s", mode, block_.get('Q')),
+                         "write Q above zero, in seconds");
   input_read_ = true;
-  control_.without_effect(mode == 0 ? "M66 (an input is read; its value is not known here)"
-                                    : "M66 (waits for an input; how long is not known here)");
+  control_.report.without_effect(mode == 0 ? "M66 (an input is read; its value is not known here)"
+                                           : "M66 (waits for an input; how long is not known here)");
 }
 
 /// The remaps of LinuxCNC's own machines select their kinematics by analog output 3.
 void LinuxCnc::warn_of_output() {
   constexpr double kSwitchingOutput = 3.0;
-  const kinematics::MachineModel& machine = control_.machine();
+  const kinematics::MachineModel& machine = control_.setup.machine;
   const bool turns = std::any_of(machine.axes.begin(), machine.axes.end(), [](const kinematics::Axis& axis) {
     return axis.kind == kinematics::AxisKind::kRotary;
   });
   if (!turns || block_.get('E', 0.0) != kSwitchingOutput) return;
-  control_.warn_once(
+  control_.report.warn_once(
       "output-may-switch-kinematics", column('E'),
       "analog output 3 selects the kinematics on LinuxCNC's own five-axis machines; outputs have no "
       "effect here, the kinematics stay what they are",

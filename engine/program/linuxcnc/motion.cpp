@@ -23,7 +23,7 @@ void LinuxCnc::motion() {
     check_cycle(tenths);
     keep_cycle_words(same);
     // The height that G98 returns to is that before the first of several cycles, whichever they are.
-    if (!in_series) cycle_start_ = control_.position_xyz()[axes_of(control_.plane()).normal];
+    if (!in_series) cycle_start_ = nc::position_xyz(control_)[axes_of(control_.modal.plane).normal];
     return cycle(tenths);
   }
   if (uses_axis_words()) return;
@@ -34,9 +34,9 @@ void LinuxCnc::motion() {
   const Target target = target_of(block_, incremental_, reader_, control_);
   if (!target.any()) return;
   if (machine)
-    control_.machine_line(kind, target);
+    nc::machine_line(control_, kind, target);
   else
-    control_.line(kind, target);
+    nc::line(control_, kind, target);
 }
 
 void LinuxCnc::spline(int tenths) {
@@ -48,21 +48,21 @@ void LinuxCnc::spline(int tenths) {
 }
 
 void LinuxCnc::arc(int tenths) {
-  const PlaneAxes axes = axes_of(control_.plane());
+  const PlaneAxes axes = axes_of(control_.modal.plane);
   const Target target = target_of(block_, incremental_, reader_, control_);
   std::optional<ArcWords> words = arc_words(block_, target, arc_absolute_, reader_, control_);
   if (!words)
-    control_.fail("bad-arc", g_column(kMotionGroup), "the arc has neither an end nor a centre",
-                  "add X Y Z and I J K, or R");
+    control_.report.fail("bad-arc", g_column(kMotionGroup), "the arc has neither an end nor a centre",
+                         "add X Y Z and I J K, or R");
   if (block_.has('P')) words->further_turns = whole(block_, 'P', 1, 100000, reader_, control_) - 1;
   if (words->centre) {
-    const Vec3 out = *words->centre - control_.position_xyz();
+    const Vec3 out = *words->centre - nc::position_xyz(control_);
     // LinuxCNC's rule unless its INI file has another one: a thousandth of the radius, within these bounds.
-    const double least = control_.inches() ? 0.0508 * kSqrt2 : 0.02 * kSqrt2;
+    const double least = control_.modal.inches() ? 0.0508 * kSqrt2 : 0.02 * kSqrt2;
     words->radius_tolerance_mm =
         std::clamp(1e-3 * std::hypot(out[axes.first], out[axes.second]), least, 100.0 * least);
   }
-  control_.arc(tenths == 20 ? Motion::kClockwise : Motion::kCounterClockwise, target, *words);
+  nc::arc(control_, tenths == 20 ? Motion::kClockwise : Motion::kCounterClockwise, target, *words);
 }
 
 }  // namespace swarf::program::nc::linuxcnc

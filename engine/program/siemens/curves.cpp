@@ -51,15 +51,15 @@ void Executor::check_polynomial(const BlockWords& words) const {
          "write POLY in this block, without SUPA, G53 and G153");
   }
   if (motion_ == kG1) {
-    control_.warn_once("polynomial-not-active", column(polynomial->offset),
-                       "POLY is not active: the ends of polynomials are approached on straight lines",
-                       "write POLY in this block");
+    control_.report.warn_once("polynomial-not-active", column(polynomial->offset),
+                              "POLY is not active: the ends of polynomials are approached on straight lines",
+                              "write POLY in this block");
   }
 }
 
 /// What the block says of its axes, mm and rad.
 PolynomialBlock Executor::polynomial_block(const BlockWords& words, const Target& target) {
-  const std::array<double, nc::kAxisWords> here = control_.position();
+  const std::array<double, nc::kAxisWords> here = nc::position(control_);
   PolynomialBlock block;
   block.by_way = by_way_;
   if (words.interval) block.interval = words.interval.value;
@@ -74,7 +74,9 @@ PolynomialBlock Executor::polynomial_block(const BlockWords& words, const Target
     if (target.has(word)) axis.to = target.value[n] + (target.is_incremental(word) ? here[n] : 0.0);
     for (size_t k = 0; k < axis.a.size(); ++k) {
       const double a = words.polynomials[n].a[k];
-      axis.a[k] = !words.polynomials[n] ? 0.0 : rotary ? rad_from_deg(a) : control_.mm(a) * shape_[word];
+      axis.a[k] = !words.polynomials[n] ? 0.0
+                  : rotary              ? rad_from_deg(a)
+                                        : control_.modal.mm(a) * shape_[word];
     }
     if (!rotary) {
       block.linear[n] = axis;
@@ -85,7 +87,7 @@ PolynomialBlock Executor::polynomial_block(const BlockWords& words, const Target
              fmt::format("write PO[{}]=(...) with its end alone, or leave it out", nc::kAxisLetters[n]));
       }
     } else if (target.has(word)) {
-      control_.require_axis(static_cast<nc::AxisWord>(word), column(words.axes[n].offset));
+      nc::require_axis(control_, static_cast<nc::AxisWord>(word), column(words.axes[n].offset));
       if (target.way[n - 3] != nc::RotaryWay::kAsWritten) {
         fail("words-conflict", words.axes[n].offset,
              "DC, ACP and ACN in a block with polynomials are not supported", "write the angle itself");
@@ -99,20 +101,21 @@ PolynomialBlock Executor::polynomial_block(const BlockWords& words, const Target
 /// Tool vectors turn with ORIWKS and ORIVECT, rotary axes with ORIAXES and ORIMKS or without TRAORI.
 void Executor::polynomial_orientation(const BlockWords& words, const Target& target, PolynomialBlock& block) {
   if (target.axis_P) {
-    if (control_.tcp() != nc::Tcp::kVector) {
+    if (control_.offsets.tcp != nc::Tcp::kVector) {
       fail("unsupported-word", words.motion_offset,
            "a tool vector in a block with polynomials is supported with ORIWKS and ORIVECT",
            "write ORIVECT, or rotary axes");
     }
-    const Vec3 from = control_.tool_axis_P().normalized(), to = *target.axis_P;
+    const Vec3 from = nc::tool_axis_P(control_).normalized(), to = *target.axis_P;
     if (!(to.norm() > kSameAngle) || (from + to.normalized()).norm() < 1e-6) {
-      control_.fail("bad-vector", target.column, "the tool vector has no length, or it turns back on itself",
-                    "give vectors that are less than half a turn apart");
+      control_.report.fail("bad-vector", target.column,
+                           "the tool vector has no length, or it turns back on itself",
+                           "give vectors that are less than half a turn apart");
     }
     block.axis = {from, to.normalized()};
     return;
   }
-  if (control_.tcp() != nc::Tcp::kVector) return;
+  if (control_.offsets.tcp != nc::Tcp::kVector) return;
   for (size_t i = 0; i < 3; ++i) {
     std::optional<PolynomialAxis>& axis = block.rotary[i];
     if (!axis) continue;
@@ -128,11 +131,11 @@ void Executor::polynomial_orientation(const BlockWords& words, const Target& tar
 /// POLY with PO: the curve of the block.
 void Executor::polynomial(const BlockWords& words, const Target& target) {
   const size_t offset = first_polynomial(words)->offset;
-  if (control_.compensation() != nc::Compensation::kOff || control_.leading_out()) {
+  if (control_.contour.side() != nc::Compensation::kOff || control_.contour.leading_out()) {
     fail("unsupported-word", offset, "polynomials with cutter radius compensation are not supported",
          "write G40 and a straight move before it, and post the path of the cutter's centre");
   }
-  if (!control_.started()) {
+  if (!control_.path.started) {
     fail("start-unknown", offset, "a polynomial starts, and the position is not known yet",
          "position all axes before it");
   }
@@ -150,7 +153,7 @@ void Executor::polynomial(const BlockWords& words, const Target& target) {
     fail("bad-polynomial", words.divisor.offset, "the divisor PO[] becomes zero between 0 and PL",
          "correct its coefficients: 1 + d1 p + d2 p^2 ... stays above zero");
   }
-  control_.curve(curve, kChordToleranceMm);
+  nc::curve(control_, curve, kChordToleranceMm);
   last_.direction = curve.direction_at_end();
   last_.valid = last_.direction.norm() > 1e-9;
 }

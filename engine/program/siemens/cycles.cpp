@@ -55,7 +55,7 @@ void Executor::run_call(const CycleCall& call) {
     if (has_argument(call, 0) && argument(call, 0, *line_, 1.0) != 1.0) {
       fail("unsupported-word", call.offset, "another master spindle is not simulated", "SETMS(1)");
     }
-    control_.without_effect(call.name);
+    control_.report.without_effect(call.name);
   } else if (call.name.starts_with("CYCLE8")) {
     const DrillCycle cycle = drilling(call);
     drill(cycle, call);
@@ -65,15 +65,15 @@ void Executor::run_call(const CycleCall& call) {
     std::string text;
     for (const auto& one : call.arguments)
       text += (text.empty() ? "" : ", ") + (one ? as_text(*one) : std::string());
-    control_.without_effect(call.name);
-    control_.note(call.name, text);
+    control_.report.without_effect(call.name);
+    control_.report.note(call.name, text);
   }
 }
 
 /// CYCLE832(tolerance, machining type, ...): continuous path with this corner tolerance. CYCLE832() and type
 /// 0 go back to what held before.
 void Executor::high_speed(const CycleCall& call) {
-  const double tolerance = control_.mm(argument(call, 0, *line_, 0.0));
+  const double tolerance = control_.modal.mm(argument(call, 0, *line_, 0.0));
   const int type = whole_argument(call, 1, *line_, call.arguments.empty() ? 0.0 : 1.0);
   if (!(tolerance >= 0.0))
     fail("out-of-range", call.offsets[0], "the tolerance of CYCLE832 is below zero", "CYCLE832(0.02,1,1)");
@@ -126,7 +126,9 @@ void Executor::only_zero(const CycleCall& call, size_t first, size_t last) const
 void Executor::modes(const CycleCall& call, size_t first) const {
   only_zero(call, first, first);
   const int plane = whole_argument(call, first + 1, *line_, 0.0) % 10;
-  const int active = control_.plane() == nc::Plane::kXY ? 1 : control_.plane() == nc::Plane::kZX ? 2 : 3;
+  const int active = control_.modal.plane == nc::Plane::kXY   ? 1
+                     : control_.modal.plane == nc::Plane::kZX ? 2
+                                                              : 3;
   if (plane != 0 && plane != active) {
     fail("words-conflict", call.offsets[first + 1],
          fmt::format("_DMODE {} names another plane than the active one", plane),
@@ -150,8 +152,8 @@ void Executor::boring(const CycleCall& call, DrillCycle& cycle) const {
   cycle.stop_at_bottom = call.name == "CYCLE86";
   if (cycle.stop_at_bottom) {
     only_zero(call, 7, 9);  // lifting off
-    const int turns = whole_argument(call, 6, *line_, control_.spindle() < 0 ? 4.0 : 3.0);
-    if (turns != (control_.spindle() < 0 ? 4 : 3)) {
+    const int turns = whole_argument(call, 6, *line_, control_.modal.spindle < 0 ? 4.0 : 3.0);
+    if (turns != (control_.modal.spindle < 0 ? 4 : 3)) {
       fail("unsupported-word", call.offsets[6],
            "CYCLE86 that turns the spindle the other way is not supported",
            "write M3 or M4 before the cycle and the same SDIR, 3 or 4");
@@ -170,7 +172,7 @@ void Executor::boring(const CycleCall& call, DrillCycle& cycle) const {
 
 /// The cycle's heights along the plane's normal, and what it does at the bottom.
 DrillCycle Executor::drilling(const CycleCall& call) const {
-  if (shape_[nc::axes_of(control_.plane()).normal] != 1.0) {
+  if (shape_[nc::axes_of(control_.modal.plane).normal] != 1.0) {
     fail("unsupported-word", call.offset, "drilling cycles along a mirrored or scaled axis are not supported",
          "write the cycle outside of the frame, or its moves as blocks");
   }
@@ -179,9 +181,9 @@ DrillCycle Executor::drilling(const CycleCall& call) const {
   const double bottom = depth_of(call, reference);
   const double sign = bottom <= reference ? 1.0 : -1.0;
   DrillCycle cycle;
-  cycle.retract = control_.mm(argument(call, kRtp, *line_, std::nullopt));
-  cycle.approach = control_.mm(reference + sign * safety);
-  cycle.bottom = control_.mm(bottom);
+  cycle.retract = control_.modal.mm(argument(call, kRtp, *line_, std::nullopt));
+  cycle.approach = control_.modal.mm(reference + sign * safety);
+  cycle.bottom = control_.modal.mm(bottom);
   if (sign * (cycle.retract - cycle.approach) < 0.0) {
     fail("bad-cycle", call.offset,
          fmt::format("the retraction plane {:g} mm lies below the start of drilling {:g} mm", cycle.retract,
@@ -224,12 +226,12 @@ void Executor::pecking(const CycleCall& call, double reference, DrillCycle& cycl
   if (!(first > 0.0))
     fail("bad-cycle", call.offset, "the first depth of CYCLE83 is zero", "give FDPR above zero");
   cycle.peck = kind == 1 ? DrillCycle::Peck::kFull : DrillCycle::Peck::kChipBreak;
-  cycle.peck_mm = control_.mm(first);
+  cycle.peck_mm = control_.modal.mm(first);
   // The first depth counts from the reference plane, the cycle starts SDIS above it.
-  cycle.first_peck_mm = control_.mm(first + std::abs(argument(call, kSdis, *line_, 0.0)));
+  cycle.first_peck_mm = control_.modal.mm(first + std::abs(argument(call, kSdis, *line_, 0.0)));
   const double given = argument(call, kind == 1 ? 16 : 14, *line_, 0.0);  // _DIS1, _VRT
   if (!(given >= 0.0)) fail("out-of-range", call.offset, "_VRT and _DIS1 are distances", "give 0 or more");
-  cycle.clearance_mm = given > 0.0 ? control_.mm(given) : kind == 1 ? kAhead : kChipBreak;
+  cycle.clearance_mm = given > 0.0 ? control_.modal.mm(given) : kind == 1 ? kAhead : kChipBreak;
   const int axis = whole_argument(call, 12, *line_, 0.0);
   if (axis != 0 && axis != 3) {
     fail("unsupported-word", call.offsets[12],
@@ -238,9 +240,9 @@ void Executor::pecking(const CycleCall& call, double reference, DrillCycle& cycl
   only_zero(call, 15, 15);
   modes(call, 17);
   if (argument(call, 9, *line_, 0.0) != 0.0) {
-    control_.warn_once("dwell-left-out", column(call.offsets[9]),
-                       "the dwell of CYCLE83 above the hole (DTS) is not simulated",
-                       "times are that much shorter");
+    control_.report.warn_once("dwell-left-out", column(call.offsets[9]),
+                              "the dwell of CYCLE83 above the hole (DTS) is not simulated",
+                              "times are that much shorter");
   }
   cycle.dwell_s = argument(call, 8, *line_, 0.0);
 }
@@ -266,7 +268,7 @@ void Executor::tapping(const CycleCall& call, DrillCycle& cycle) const {
          "CYCLE84 along another axis than that of the plane is not supported", "_AXN 3, or left out");
   }
   only_zero(call, 13, call.arguments.size());
-  cycle.pitch_mm = control_.mm(std::abs(pitch));
+  cycle.pitch_mm = control_.modal.mm(std::abs(pitch));
   cycle.dwell_s = argument(call, 5, *line_, 0.0);
   cycle.reverse_at_bottom = true;
   cycle.feed_out = true;
@@ -277,17 +279,17 @@ void Executor::drill(const DrillCycle& cycle, const CycleCall& call) {
     const double speed = argument(call, 10, *line_, std::nullopt);
     if (!(speed > 0.0))
       fail("out-of-range", call.offsets[10], "the speed of tapping (SST) is not above zero", "SST is in rpm");
-    control_.set_speed(speed);
-    control_.set_spindle(argument(call, 8, *line_, std::nullopt) > 0.0 ? 1 : -1);
+    control_.modal.speed_rpm = speed;
+    control_.modal.spindle = argument(call, 8, *line_, std::nullopt) > 0.0 ? 1 : -1;
   }
-  control_.drill(cycle, nc::Target());
+  nc::drill(control_, cycle, nc::Target());
   last_.valid = false;
   if (call.name != "CYCLE84") return;
   const int after = whole_argument(call, 6, *line_, 5.0);
   if (after != 3 && after != 4 && after != 5) {
     fail("out-of-range", call.offsets[6], "SDAC is 3, 4 or 5: the spindle after the cycle", "5 stops it");
   }
-  control_.set_spindle(after == 3 ? 1 : after == 4 ? -1 : 0);
+  control_.modal.spindle = after == 3 ? 1 : after == 4 ? -1 : 0;
 }
 
 }  // namespace swarf::program::nc::siemens

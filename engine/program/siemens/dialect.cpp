@@ -61,16 +61,16 @@ Evidence evidence(std::string_view head, std::string_view extension) {
 
 void run(const std::string& path, Control& control) {
   Executor executor(control);
-  control.enter_file(path);
-  Flow flow(executor, control.setup().subprogram_folders);
+  control.report.enter_file(path);
+  Flow flow(executor, control.setup.subprogram_folders);
   flow.run(path);
   if (!flow.ended())
-    control.warn_once("missing-end", 0,
-                      "the program ends with its file, without M30, M17 or RET: it may be cut off",
-                      "transfer it again, or write its end");
-  control.finish();
-  control.summary().lines = flow.lines();
-  control.summary().blocks = flow.blocks();
+    control.report.warn_once("missing-end", 0,
+                             "the program ends with its file, without M30, M17 or RET: it may be cut off",
+                             "transfer it again, or write its end");
+  nc::finish(control);
+  control.report.summary.lines = flow.lines();
+  control.report.summary.blocks = flow.blocks();
 }
 
 }  // namespace swarf::program::nc::siemens

@@ -12,6 +12,11 @@
 #include <vector>
 
 #include "program/control/control.h"
+#include "program/control/cycles.h"
+#include "program/control/offsets.h"
+#include "program/control/path.h"
+#include "program/control/tilt.h"
+#include "program/control/tools.h"
 #include "program/siemens/block.h"
 #include "program/siemens/flow.h"
 

@@ -64,7 +64,7 @@ Pose pose_of(const Mat3& R, const Vec3& t) {
 }  // namespace
 
 void Executor::set_frame() {
-  control_.set_frame(swivelled_ * programmed_);
+  nc::set_frame(control_, swivelled_ * programmed_);
   last_.valid = false;
 }
 
@@ -74,7 +74,7 @@ Mat3 Executor::rotation_of(const BlockWords& words) const {
       fail("words-conflict", words.plane_turn.offset, "ROT takes RPL= or angles about X Y Z, not both",
            "ROT RPL=45");
     }
-    return rotation_about(nc::axes_of(control_.plane()).normal, words.plane_turn.value);
+    return rotation_about(nc::axes_of(control_.modal.plane).normal, words.plane_turn.value);
   }
   const auto angle = [&](size_t n) { return words.axes[n] ? words.axes[n].value : 0.0; };
   return rotation_about(2, angle(2)) * rotation_about(1, angle(1)) * rotation_about(0, angle(0));
@@ -120,7 +120,7 @@ void Executor::frame_words(const BlockWords& words) {
   if (shifts) {
     for (int n = 0; n < 3; ++n) {
       const Coordinate& word = words.axes[static_cast<size_t>(n)];
-      if (word) step.translation()[n] = control_.mm(word.value) * shape_[n];
+      if (word) step.translation()[n] = control_.modal.mm(word.value) * shape_[n];
     }
   } else {
     // Within a scaled and mirrored frame S = diag(shape) the turn R becomes S R S^-1, rigid if all scales
@@ -161,8 +161,8 @@ void Executor::transform_words(const BlockWords& words) {
   if (traori_) {
     choose_interpolation();
   } else {
-    control_.set_tcp(nc::Tcp::kOff);
-    if (swivel_on_) control_.set_coordinates(nc::Coordinates::kWork);
+    nc::set_tcp(control_, nc::Tcp::kOff);
+    if (swivel_on_) nc::set_coordinates(control_, nc::Coordinates::kWork);
   }
   last_.valid = false;
 }
@@ -173,13 +173,13 @@ void Executor::transform_words(const BlockWords& words) {
 void Executor::choose_interpolation() {
   const bool axes = interpolation_ ? interpolation_ == kOriAxes : reference_ == kOriMks;
   if (interpolation_ && reference_ && axes != (reference_ == kOriMks)) {
-    control_.warn_once(
+    control_.report.warn_once(
         "orientation-words", 0,
         axes ? "ORIWKS and ORIAXES are both given: ORIAXES says how orientations are interpolated"
              : "ORIMKS and ORIVECT are both given: ORIVECT says how orientations are interpolated",
         "on a machine whose MD21104 is 0, ORIWKS and ORIMKS say it: leave the other word out");
   }
-  control_.set_tcp(axes ? nc::Tcp::kAxes : nc::Tcp::kVector);
+  nc::set_tcp(control_, axes ? nc::Tcp::kAxes : nc::Tcp::kVector);
 }
 
 /// CYCLE800(): no swivelled plane; the programmable frame goes with it.
@@ -187,7 +187,7 @@ void Executor::swivel_off() {
   swivelled_ = programmed_ = Pose::Identity();
   shape_ = Vec3::Ones();
   set_frame();
-  if (swivel_on_ && !traori_) control_.set_coordinates(nc::Coordinates::kAxes);
+  if (swivel_on_ && !traori_) nc::set_coordinates(control_, nc::Coordinates::kAxes);
   swivel_on_ = false;
 }
 
@@ -222,7 +222,7 @@ Pose Executor::swivel_plane(const CycleCall& call) {
   const auto point = [&](size_t first) {
     Vec3 p;
     for (int n = 0; n < 3; ++n)
-      p[n] = control_.mm(argument(call, first + static_cast<size_t>(n), *line_, 0.0));
+      p[n] = control_.modal.mm(argument(call, first + static_cast<size_t>(n), *line_, 0.0));
     return p;
   };
   return pose_of(R, point(kX0)) * pose_of(Mat3::Identity(), point(kX1));
@@ -230,17 +230,17 @@ Pose Executor::swivel_plane(const CycleCall& call) {
 
 /// How far the linear axes can still go along the tool, mm.
 double Executor::travel_along_tool(const CycleCall& call) const {
-  const kinematics::MachineModel& machine = control_.machine();
-  const Vec3 here = control_.space().linear_of(control_.axis_values());
+  const kinematics::MachineModel& machine = control_.setup.machine;
+  const Vec3 here = control_.space.linear_of(control_.path.q);
   double distance = std::numeric_limits<double>::infinity();
   for (int n = 0; n < 3; ++n) {
     const double along = machine.tool_axis_M[n];
     if (std::abs(along) < 1e-12) continue;
     const kinematics::Axis& axis =
-        machine.axes[static_cast<size_t>(control_.axis_of(static_cast<nc::AxisWord>(n)))];
+        machine.axes[static_cast<size_t>(control_.space.axis_of(static_cast<nc::AxisWord>(n)))];
     distance = std::min(distance, ((along > 0.0 ? axis.max : axis.min) - here[n]) / along);
   }
-  if (std::isfinite(distance) && control_.started()) return std::max(0.0, distance);
+  if (std::isfinite(distance) && control_.path.started) return std::max(0.0, distance);
   fail("unsupported-word", call.offset,
        "_FR 4 goes to the end of travel, which this machine or the start does not say",
        "give the travel of the axes and the start, or _FR 5 with _FR_I");
@@ -258,24 +258,23 @@ void Executor::retract(const CycleCall& call, int how) {
   if (how == 4 || how == 5) {
     Target away;
     const double distance =
-        how == 4 ? travel_along_tool(call) : control_.mm(argument(call, kFrI, *line_, std::nullopt));
-    const Vec3 way = distance * control_.machine().tool_axis_M;
-    for (int n = 0; n < 3; ++n)
-      away.set(n, control_.space().linear_of(control_.axis_values())[n] + way[n], false);
-    control_.machine_line(Motion::kRapid, away);
+        how == 4 ? travel_along_tool(call) : control_.modal.mm(argument(call, kFrI, *line_, std::nullopt));
+    const Vec3 way = distance * control_.setup.machine.tool_axis_M;
+    for (int n = 0; n < 3; ++n) away.set(n, control_.space.linear_of(control_.path.q)[n] + way[n], false);
+    nc::machine_line(control_, Motion::kRapid, away);
     return;
   }
-  const kinematics::MachineModel& machine = control_.machine();
+  const kinematics::MachineModel& machine = control_.setup.machine;
   const auto go = [&](std::initializer_list<nc::AxisWord> words) {
     Target target;
     for (const nc::AxisWord word : words) {
-      const int axis = control_.require_axis(word, 0);
+      const int axis = nc::require_axis(control_, word, 0);
       target.set(
           word,
           machine.tool_change ? (*machine.tool_change)[axis] : machine.axes[static_cast<size_t>(axis)].home,
           false);
     }
-    control_.machine_line(Motion::kRapid, target);
+    nc::machine_line(control_, Motion::kRapid, target);
   };
   go({nc::kZ});
   if (how == 2) go({nc::kX, nc::kY});
@@ -326,10 +325,10 @@ void Executor::swivel(const CycleCall& call) {
     nc::TiltPreference preference;
     preference.choice =
         direction > 0 ? nc::TiltPreference::Choice::kPositive : nc::TiltPreference::Choice::kNegative;
-    const auto q = control_.tilt_solution(Vec3::UnitZ(), preference, column(call.offset));
-    control_.turn_rotaries(Motion::kRapid, q, false);
+    const auto q = nc::tilt_solution(control_, Vec3::UnitZ(), preference, column(call.offset));
+    nc::turn_rotaries(control_, Motion::kRapid, q, false);
   }
-  control_.set_coordinates(nc::Coordinates::kWork);
+  nc::set_coordinates(control_, nc::Coordinates::kWork);
   swivel_on_ = true;
 }
 

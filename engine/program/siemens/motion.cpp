@@ -30,8 +30,9 @@ Target Executor::target_of(const BlockWords& words, bool machine) const {
     const Coordinate& word = words.axes[n];
     if (!word) continue;
     const bool rotary = n >= 3;
-    const double value = rotary ? rad_from_deg(word.value)
-                                : control_.mm(word.value) * (machine ? 1.0 : shape_[static_cast<long>(n)]);
+    const double value = rotary
+                             ? rad_from_deg(word.value)
+                             : control_.modal.mm(word.value) * (machine ? 1.0 : shape_[static_cast<long>(n)]);
     const bool incremental = word.way == Way::kIncremental || (word.way == Way::kModal && incremental_);
     if (machine && incremental) {
       fail("words-conflict", word.offset, "machine coordinates are absolute, this word is incremental",
@@ -51,7 +52,7 @@ Target Executor::target_of(const BlockWords& words, bool machine) const {
 
 /// What the radius of an arc in the plane is multiplied by.
 double Executor::arc_scale(size_t offset) const {
-  const nc::PlaneAxes plane = nc::axes_of(control_.plane());
+  const nc::PlaneAxes plane = nc::axes_of(control_.modal.plane);
   const double one = std::abs(shape_[plane.first]), other = std::abs(shape_[plane.second]);
   if (one != other) {
     fail("bad-arc", offset, "the axes of the plane are scaled differently: an arc would be an ellipse",
@@ -62,7 +63,7 @@ double Executor::arc_scale(size_t offset) const {
 
 /// One of the plane's axes runs the other way: arcs turn the other way, the cutter goes on the other side.
 bool Executor::mirrored() const {
-  const nc::PlaneAxes plane = nc::axes_of(control_.plane());
+  const nc::PlaneAxes plane = nc::axes_of(control_.modal.plane);
   return shape_[plane.first] * shape_[plane.second] < 0.0;
 }
 
@@ -172,10 +173,11 @@ void Executor::motion_words(const BlockWords& words) {
   if (polar) polar_end(words, target);
   orientation(words, target);
   if (traori_ && target.rotary() && !reference_ && !interpolation_) {
-    control_.warn_once("orientation-assumed", target.column,
-                       "tool orientations change under TRAORI and the program says not how: ORIWKS (the "
-                       "great circle) is taken",
-                       "write ORIWKS, ORIAXES or ORIVECT");
+    control_.report.warn_once(
+        "orientation-assumed", target.column,
+        "tool orientations change under TRAORI and the program says not how: ORIWKS (the "
+        "great circle) is taken",
+        "write ORIWKS, ORIAXES or ORIVECT");
   }
   if (motion_ == kG0 || motion_ == kG1) {
     straight(motion_ == kG0 ? Motion::kRapid : Motion::kFeed, target);
@@ -196,9 +198,9 @@ void Executor::motion_words(const BlockWords& words) {
 }
 
 void Executor::straight(Motion motion, const Target& target) {
-  const Vec3 from = control_.position_xyz();
-  control_.line(motion, target);
-  const Vec3 way = control_.position_xyz() - from;
+  const Vec3 from = nc::position_xyz(control_);
+  nc::line(control_, motion, target);
+  const Vec3 way = nc::position_xyz(control_) - from;
   if (!(way.norm() > kSamePoint)) return;
   last_.direction = way.normalized();
   last_.valid = true;
@@ -217,10 +219,10 @@ Vec3 Executor::end_of(const Target& target, const Vec3& from) const {
 /// Passes the arc on. Ends that miss the circle by less than the control's tolerance move its centre onto
 /// the bisector of the chord, as the control does.
 void Executor::send_arc(Motion motion, const Target& target, ArcWords& arc, size_t offset) {
-  const Vec3 from = control_.position_xyz();
+  const Vec3 from = nc::position_xyz(control_);
   const Vec3 to = end_of(target, from);
   const Vec3 normal =
-      arc.normal ? arc.normal->normalized() : Vec3(Vec3::Unit(nc::axes_of(control_.plane()).normal));
+      arc.normal ? arc.normal->normalized() : Vec3(Vec3::Unit(nc::axes_of(control_.modal.plane).normal));
   const auto flat = [&](const Vec3& v) { return Vec3(v - v.dot(normal) * normal); };
   arc.column = column(offset);
   if (arc.centre) {
@@ -233,7 +235,7 @@ void Executor::send_arc(Motion motion, const Target& target, ArcWords& arc, size
       *arc.centre -= (*arc.centre - 0.5 * (from + to)).dot(along) * along;
     }
   }
-  control_.arc(motion, target, arc);
+  nc::arc(control_, motion, target, arc);
   const Vec3 centre = arc.centre ? *arc.centre : Vec3::Constant(std::nan(""));
   const Vec3 spoke = flat(to - centre);
   const double sense = motion == Motion::kClockwise ? -1.0 : 1.0;
@@ -245,8 +247,8 @@ void Executor::send_arc(Motion motion, const Target& target, ArcWords& arc, size
 void Executor::circle(const BlockWords& words, const Target& written) {
   Target target = written;
   const Motion motion = turned(motion_ == kG2 ? Motion::kClockwise : Motion::kCounterClockwise);
-  const nc::PlaneAxes plane = nc::axes_of(control_.plane());
-  const Vec3 from = control_.position_xyz();
+  const nc::PlaneAxes plane = nc::axes_of(control_.modal.plane);
+  const Vec3 from = nc::position_xyz(control_);
   ArcWords arc;
   bool centred = false;
   Vec3 centre = from;
@@ -258,7 +260,7 @@ void Executor::circle(const BlockWords& words, const Target& written) {
            "G17 has I J, G18 has I K, G19 has J K");
     }
     centred = true;
-    centre[n] = (word.way == Way::kAbsolute ? 0.0 : from[n]) + control_.mm(word.value) * shape_[n];
+    centre[n] = (word.way == Way::kAbsolute ? 0.0 : from[n]) + control_.modal.mm(word.value) * shape_[n];
   }
   if (!centred && !words.radius && !words.opening && (words.polar_angle || words.polar_radius)) {
     centred = true;  // the pole is the centre
@@ -270,8 +272,8 @@ void Executor::circle(const BlockWords& words, const Target& written) {
     fail("words-conflict", words.radius.offset, "the arc has a centre and a radius", "write I J K or CR=");
   }
   if (ways == 0 && !words.opening) {
-    control_.fail("bad-arc", target.column, "the arc has neither a centre nor a radius",
-                  "write I J K, CR= or AR=");
+    control_.report.fail("bad-arc", target.column, "the arc has neither a centre nor a radius",
+                         "write I J K, CR= or AR=");
   }
   if (words.turns) {
     const double turns = words.turns.value;
@@ -282,7 +284,7 @@ void Executor::circle(const BlockWords& words, const Target& written) {
   }
   if (centred) arc.centre = centre;
   const double scale = arc_scale(offset);
-  if (words.radius) arc.radius = control_.mm(words.radius.value) * scale;
+  if (words.radius) arc.radius = control_.modal.mm(words.radius.value) * scale;
   if (words.opening) opened(words, arc, target, from, motion);
   send_arc(motion, target, arc, words.opening ? words.opening.offset : offset);
   if (!arc.centre) last_.valid = false;
@@ -296,7 +298,7 @@ void Executor::opened(const BlockWords& words, ArcWords& arc, Target& target, co
     fail("bad-arc", words.opening.offset, "AR= is an angle between 0 and 360 degrees, and stands without CR=",
          "AR=90 with the end or the centre of the arc");
   }
-  const Vec3 normal = Vec3::Unit(nc::axes_of(control_.plane()).normal);
+  const Vec3 normal = Vec3::Unit(nc::axes_of(control_.modal.plane).normal);
   const auto flat = [&](const Vec3& v) { return Vec3(v - v.dot(normal) * normal); };
   const Vec3 to = end_of(target, from);
   const bool ends = flat(to - from).norm() > kSamePoint;
@@ -311,14 +313,14 @@ void Executor::opened(const BlockWords& words, ArcWords& arc, Target& target, co
   }
   const double sense = motion == Motion::kClockwise ? -angle : angle;
   const Vec3 end = *arc.centre + Eigen::AngleAxisd(sense, normal) * (from - *arc.centre);
-  const nc::PlaneAxes plane = nc::axes_of(control_.plane());
+  const nc::PlaneAxes plane = nc::axes_of(control_.modal.plane);
   target.set(plane.first, end[plane.first], false);
   target.set(plane.second, end[plane.second], false);
 }
 
 /// CIP: the circle through a point between, anywhere in space.
 void Executor::circle_through(const BlockWords& words, const Target& target) {
-  const Vec3 from = control_.position_xyz(), to = end_of(target, from);
+  const Vec3 from = nc::position_xyz(control_), to = end_of(target, from);
   Vec3 between = from;
   size_t offset = line_->text.find_first_not_of(" \t");
   bool given = false;
@@ -328,7 +330,7 @@ void Executor::circle_through(const BlockWords& words, const Target& target) {
     given = true;
     offset = word.offset;
     const bool incremental = word.way == Way::kIncremental || (word.way == Way::kModal && incremental_);
-    between[n] = (incremental ? from[n] : 0.0) + control_.mm(word.value) * shape_[n];
+    between[n] = (incremental ? from[n] : 0.0) + control_.modal.mm(word.value) * shape_[n];
   }
   if (shape_.cwiseAbs() != Vec3(Vec3::Constant(std::abs(shape_[0])))) arc_scale(offset);
   const Vec3 a = between - from, b = to - from, cross = a.cross(b);
@@ -352,9 +354,9 @@ void Executor::circle_tangential(const Target& target) {
     fail("bad-arc", offset, "CT goes on in the direction of the last move, and there is none",
          "write G1 before it, or G2 with a centre");
   }
-  const Vec3 normal = Vec3::Unit(nc::axes_of(control_.plane()).normal);
+  const Vec3 normal = Vec3::Unit(nc::axes_of(control_.modal.plane).normal);
   const auto flat = [&](const Vec3& v) { return Vec3(v - v.dot(normal) * normal); };
-  const Vec3 from = control_.position_xyz();
+  const Vec3 from = nc::position_xyz(control_);
   const Vec3 chord = flat(end_of(target, from) - from), along = flat(last_.direction);
   if (!(along.norm() > kParallel) || !(chord.norm() > kSamePoint)) {
     fail("bad-arc", offset, "CT has no direction or no way in the plane", "write the arc with its centre");
@@ -386,11 +388,11 @@ void Executor::machine_move(const BlockWords& words) {
   }
   Target target = target_of(words, true);
   orientation(words, target);
-  if (control_.length_compensated()) {
-    const int normal = nc::axes_of(control_.plane()).normal;
-    if (target.has(normal)) target.value[static_cast<size_t>(normal)] += control_.length_compensation();
+  if (control_.tools.length_on) {
+    const int normal = nc::axes_of(control_.modal.plane).normal;
+    if (target.has(normal)) target.value[static_cast<size_t>(normal)] += control_.space.length();
   }
-  control_.machine_line(motion_ == kG0 ? Motion::kRapid : Motion::kFeed, target);
+  nc::machine_line(control_, motion_ == kG0 ? Motion::kRapid : Motion::kFeed, target);
   last_.valid = false;
 }
 
@@ -405,16 +407,16 @@ void Executor::dwell(const BlockWords& words) {
   }
   const Amount& amount = words.feed ? words.feed : words.speed;
   if (!(amount.value >= 0.0)) fail("out-of-range", amount.offset, "a dwell below zero", "G4 F1.5");
-  const double rpm = control_.spindle() == 0 ? 0.0 : control_.speed_rpm();
+  const double rpm = control_.modal.spindle == 0 ? 0.0 : control_.modal.speed_rpm;
   if (words.speed && rpm <= 0.0) {
     fail("feed-without-spindle", amount.offset, "G4 S counts turns of the spindle, which stands", "G4 F1.5");
   }
-  control_.dwell(words.feed ? amount.value : amount.value * 60.0 / rpm);
+  nc::dwell(control_.report, control_.modal, words.feed ? amount.value : amount.value * 60.0 / rpm);
 }
 
 /// G74: the reference points (home); G75: the fixed point, which is where tools are changed.
 void Executor::approach_point(const BlockWords& words, int code) {
-  const kinematics::MachineModel& machine = control_.machine();
+  const kinematics::MachineModel& machine = control_.setup.machine;
   if (code == kG75 && !machine.tool_change) {
     fail("unsupported-word", words.motion_offset,
          "G75 goes to a fixed point, which the machine file does not give",
@@ -426,13 +428,14 @@ void Executor::approach_point(const BlockWords& words, int code) {
   for (size_t n = 0; n < words.axes.size(); ++n) {
     if (!words.axes[n]) continue;
     const int word = static_cast<int>(n);
-    const int axis = control_.require_axis(static_cast<nc::AxisWord>(word), column(words.axes[n].offset));
+    const int axis =
+        nc::require_axis(control_, static_cast<nc::AxisWord>(word), column(words.axes[n].offset));
     const double home = machine.axes[static_cast<size_t>(axis)].home;
     target.set(word, code == kG74 ? home : (*machine.tool_change)[axis], false);
   }
   if (!target.any())
     fail("missing-word", words.motion_offset, "G74 and G75 name their axes", "G74 X1=0 Y1=0 Z1=0");
-  control_.machine_line(Motion::kRapid, target);
+  nc::machine_line(control_, Motion::kRapid, target);
   last_.valid = false;
 }
 

@@ -29,14 +29,14 @@ int count_of(const CycleCall& call, size_t index, const LineRef& line) {
 
 /// The places of a pattern in their order, mm along the first and second axis of the plane.
 std::vector<Vec2> Executor::places(const CycleCall& call) {
-  const auto length = [&](size_t n) { return control_.mm(argument(call, n, *line_, std::nullopt)); };
+  const auto length = [&](size_t n) { return control_.modal.mm(argument(call, n, *line_, std::nullopt)); };
   const auto along = [&](double deg, double way) {
     const std::vector<Value> angle = {Value::real(deg)};
     return Vec2(way * call_function("COS", angle, *line_, 0).number,
                 way * call_function("SIN", angle, *line_, 0).number);
   };
-  const nc::PlaneAxes plane = nc::axes_of(control_.plane());
-  const Vec3 now = control_.position_xyz().cwiseQuotient(shape_);
+  const nc::PlaneAxes plane = nc::axes_of(control_.modal.plane);
+  const Vec3 now = nc::position_xyz(control_).cwiseQuotient(shape_);
   const Vec2 here(now[plane.first], now[plane.second]), reference(length(0), length(1));
   const auto nearer = [&](const Vec2& a, const Vec2& b) { return (a - here).norm() < (b - here).norm(); };
   std::vector<Vec2> all;
@@ -78,17 +78,17 @@ std::vector<Vec2> Executor::places(const CycleCall& call) {
 
 /// Rapid to each place, where the cycle of MCALL works.
 void Executor::pattern(const CycleCall& call) {
-  if (!control_.started()) {
+  if (!control_.path.started) {
     fail("start-unknown", call.offset, "a pattern starts, and the position is not known yet",
          "position all axes before it");
   }
-  const nc::PlaneAxes plane = nc::axes_of(control_.plane());
+  const nc::PlaneAxes plane = nc::axes_of(control_.modal.plane);
   for (const Vec2& place : places(call)) {
     nc::Target target;
     target.column = column(call.offset);
     target.set(plane.first, place.x() * shape_[plane.first], false);
     target.set(plane.second, place.y() * shape_[plane.second], false);
-    control_.line(nc::Motion::kRapid, target);
+    nc::line(control_, nc::Motion::kRapid, target);
     if (modal_cycle_) drill(drilling(*modal_cycle_), *modal_cycle_);
   }
   last_.valid = false;

@@ -16,7 +16,7 @@ using nc::Target;
 
 /// RP at the angle AP in the active plane, mm.
 Vec3 Executor::polar_way(double angle_deg, double radius_mm) const {
-  const nc::PlaneAxes plane = nc::axes_of(control_.plane());
+  const nc::PlaneAxes plane = nc::axes_of(control_.modal.plane);
   const std::vector<Value> angle = {Value::real(angle_deg)};
   Vec3 way = Vec3::Zero();
   way[plane.first] = radius_mm * call_function("COS", angle, *line_, 0).number;
@@ -29,19 +29,19 @@ double Executor::polar_radius(const Coordinate& word) const {
   if (word.way == Way::kIncremental || !(word.value >= 0.0)) {
     fail("out-of-range", word.offset, "RP is a distance from the pole, zero or more", "RP=20");
   }
-  return control_.mm(word.value);
+  return control_.modal.mm(word.value);
 }
 
 /// G110, G111, G112.
 void Executor::set_pole(const BlockWords& words, int code) {
-  const nc::PlaneAxes plane = nc::axes_of(control_.plane());
+  const nc::PlaneAxes plane = nc::axes_of(control_.modal.plane);
   Vec3 pole = code == kG112 ? pole_ : Vec3(Vec3::Zero());
   if (code == kG110) {
-    if (!control_.started()) {
+    if (!control_.path.started) {
       fail("start-unknown", words.motion_offset, "G110 counts from the last position, which is not known yet",
            "write G111 with the pole from the zero of the workpiece");
     }
-    pole = control_.position_xyz().cwiseQuotient(shape_);
+    pole = nc::position_xyz(control_).cwiseQuotient(shape_);
   }
   const bool polar = words.polar_angle || words.polar_radius;
   if (polar) {
@@ -60,7 +60,7 @@ void Executor::set_pole(const BlockWords& words, int code) {
       fail("words-conflict", word.offset, "a pole lies in the active plane, and its words take no AC and IC",
            "G17 has X Y, G18 has Z X, G19 has Y Z");
     }
-    pole[n] += control_.mm(word.value);
+    pole[n] += control_.modal.mm(word.value);
     given = true;
   }
   if (!given) fail("missing-word", words.motion_offset, "this block gives no pole", "G111 X10 Y20");
@@ -72,7 +72,7 @@ void Executor::set_pole(const BlockWords& words, int code) {
 void Executor::polar_end(const BlockWords& words, Target& target) {
   const Coordinate &angle = words.polar_angle, &radius = words.polar_radius;
   const size_t offset = angle ? angle.offset : radius.offset;
-  const nc::PlaneAxes plane = nc::axes_of(control_.plane());
+  const nc::PlaneAxes plane = nc::axes_of(control_.modal.plane);
   if (target.has(plane.first) || target.has(plane.second)) {
     fail("words-conflict", offset, "the end is given with AP= and RP= and with axes of the plane",
          "write AP= RP=, or the axes");

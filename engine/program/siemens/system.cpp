@@ -33,7 +33,7 @@ int Executor::system_axis(const SystemName& asked, size_t n) const {
   const bool plain = text.size() == 1 || (text.size() == 2 && text[1] == '1');
   const size_t word = plain ? std::string_view(nc::kAxisLetters).find(text[0]) : std::string_view::npos;
   if (word == std::string_view::npos) bad_index(asked, "name an axis: $AA_IW[X], $P_UIFR[1,X,TR]");
-  if (control_.axis_of(static_cast<nc::AxisWord>(word)) < 0) {
+  if (control_.space.axis_of(static_cast<nc::AxisWord>(word)) < 0) {
     refuse(asked.line, asked.offset, "axis-missing", fmt::format("the machine has no axis {}", text[0]),
            "choose the machine that the program was posted for");
   }
@@ -42,7 +42,7 @@ int Executor::system_axis(const SystemName& asked, size_t n) const {
 
 /// Lengths of system variables are those of the basic system, which a program in inches does not show.
 void Executor::check_metric(const SystemName& asked) const {
-  if (!control_.inches()) return;
+  if (!control_.modal.inches()) return;
   refuse(asked.line, asked.offset, "unsupported-word",
          fmt::format("{} in a program in inches is not supported", asked.name),
          "write G71 or G710 before it");
@@ -50,7 +50,8 @@ void Executor::check_metric(const SystemName& asked) const {
 
 kinematics::AxisValues Executor::offset_of(int number) const {
   const auto pending = pending_offsets_.find(number);
-  return pending == pending_offsets_.end() ? control_.offset_origin(number) : pending->second;
+  return pending == pending_offsets_.end() ? nc::offset_origin(control_.space, control_.offsets, number)
+                                           : pending->second;
 }
 
 /// $P_UIFR[1,X,TR] and $P_UIFR[1,X,RT]: number of the offset, 1 is G54.
@@ -84,10 +85,10 @@ Value Executor::read_system(const SystemName& asked) {
     bool shifts = false;
     const int number = offset_index(asked, shifts);
     const int word = system_axis(asked, 1);
-    const double value = offset_of(number)[control_.axis_of(static_cast<nc::AxisWord>(word))];
+    const double value = offset_of(number)[control_.space.axis_of(static_cast<nc::AxisWord>(word))];
     return !shifts ? Value::real(0.0) : word < 3 ? length(value) : Value::real(deg_from_rad(value));
   }
-  if (name == "$P_UIFRNUM") return Value::integer(control_.work_offset());
+  if (name == "$P_UIFRNUM") return Value::integer(control_.offsets.active);
   if (name == "$P_EP" || name == "$AA_IW" || name == "$AA_IM") return position_of(asked);
   return tool_data(asked);
 }
@@ -97,15 +98,15 @@ Value Executor::position_of(const SystemName& asked) {
   const int word = system_axis(asked, 0);
   const size_t n = static_cast<size_t>(word);
   if (asked.name != "$P_EP" &&
-      (control_.compensation() != nc::Compensation::kOff || control_.leading_out())) {
+      (control_.contour.side() != nc::Compensation::kOff || control_.contour.leading_out())) {
     refuse(asked.line, asked.offset, "unsupported-word",
            fmt::format("{} while the cutter radius is compensated is not supported", asked.name),
            "read $P_EP, or write G40 and a straight move before it");
   }
   const double value = asked.name == "$AA_IM"
-                           ? control_.axis_values()[control_.axis_of(static_cast<nc::AxisWord>(word))]
-                           : control_.position()[n] / (word < 3 ? shape_[word] : 1.0);
-  if (!std::isfinite(value) || !control_.started()) {
+                           ? control_.path.q[control_.space.axis_of(static_cast<nc::AxisWord>(word))]
+                           : nc::position(control_)[n] / (word < 3 ? shape_[word] : 1.0);
+  if (!std::isfinite(value) || !control_.path.started) {
     refuse(asked.line, asked.offset, "start-unknown",
            fmt::format("{} is read, and the position is not known yet", asked.name),
            "give the start position in the scene");
@@ -124,21 +125,21 @@ Value Executor::tool_data(const SystemName& asked) {
            fmt::format("the system variable {} is not simulated", name),
            "write its value, or assign it to a variable of the program");
   }
-  const NcTool* tool = control_.active_tool();
+  const NcTool* tool = nc::active_tool(control_);
   if (stored) {
     const std::optional<int> number = whole_index(asked.indices, 0), edge = whole_index(asked.indices, 1);
     if (!number || edge != 1 || asked.indices.size() != 2) bad_index(asked, "$TC_DP3[5,1]: the tool, edge 1");
-    const int index = control_.find_tool(*number, column_of(asked.line, asked.offset));
-    tool = index < 0 ? nullptr : &control_.tool_at(index);
+    const int index = nc::find_tool(control_, *number, column_of(asked.line, asked.offset));
+    tool = index < 0 ? nullptr : &control_.setup.tools[static_cast<size_t>(index)];
   }
   const bool by_name = name == "$P_TOOLNO" && tool != nullptr && tool->number == 0;
-  if (by_name || (tool == nullptr && (stored || control_.setup().tools.empty()))) {
+  if (by_name || (tool == nullptr && (stored || control_.setup.tools.empty()))) {
     refuse(asked.line, asked.offset, "unsupported-word",
            fmt::format("{} is read, and the tool table does not say it", name),
            "give a tool table with this tool and its number");
   }
   if (name == "$P_TOOLNO") return Value::integer(tool == nullptr ? 0 : tool->number);
-  const bool on = stored || (tool != nullptr && control_.length_compensated());
+  const bool on = stored || (tool != nullptr && control_.tools.length_on);
   if (name == "$P_TOOL") return Value::integer(on ? 1 : 0);
   check_metric(asked);
   if (name == "$P_TOOLR" || name == "$TC_DP6") return Value::real(on ? 0.5 * tool->diameter_mm : 0.0);
@@ -161,7 +162,7 @@ void Executor::write_system(const SystemName& asked, const Value& value) {
   if (asked.indices.size() == 1) {  // every axis: CTRANS names those that are not zero
     SystemName one = asked;
     for (int word = 0; word < nc::kAxisWords; ++word) {
-      if (control_.axis_of(static_cast<nc::AxisWord>(word)) < 0) continue;
+      if (control_.space.axis_of(static_cast<nc::AxisWord>(word)) < 0) continue;
       one.indices = {asked.indices[0], Value::string(std::string(1, nc::kAxisLetters[word])),
                      Value::string("TR")};
       write_system(one, value);
@@ -178,7 +179,7 @@ void Executor::write_system(const SystemName& asked, const Value& value) {
   }
   if (word < 3) check_metric(asked);
   kinematics::AxisValues origin = offset_of(number);
-  origin[control_.axis_of(static_cast<nc::AxisWord>(word))] = word < 3 ? amount : rad_from_deg(amount);
+  origin[control_.space.axis_of(static_cast<nc::AxisWord>(word))] = word < 3 ? amount : rad_from_deg(amount);
   pending_offsets_[number] = origin;
 }
 
@@ -186,10 +187,10 @@ void Executor::write_system(const SystemName& asked, const Value& value) {
 void Executor::use_offset(int number) {
   const auto pending = pending_offsets_.find(number);
   if (pending != pending_offsets_.end()) {
-    control_.set_offset_origin(number, pending->second);
+    nc::set_offset_origin(control_, number, pending->second);
     pending_offsets_.erase(pending);
   }
-  control_.set_work_offset(number);
+  nc::set_work_offset(control_, number);
 }
 
 }  // namespace swarf::program::nc::siemens

@@ -1,0 +1,112 @@
+#include "program/control/tools.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "program/control/offsets.h"
+#include "program/control/path.h"
+
+namespace swarf::program::nc {
+namespace {
+
+int not_found(Control& control, const std::string& asked, int column) {
+  if (control.setup.tools.empty()) {
+    control.report.warn_once(
+        "no-tool-table", column,
+        fmt::format("{} cannot be looked up, there is no tool table: tools have length 0 here", asked),
+        "give a tool table");
+    return -1;
+  }
+  std::string list;
+  for (const NcTool& tool : control.setup.tools) {
+    if (list.size() > 200) {
+      list += ", ...";
+      break;
+    }
+    if (!list.empty()) list += ", ";
+    if (tool.number != 0) list += fmt::format("T{}", tool.number);
+    if (!tool.name.empty()) list += fmt::format("{}\"{}\"", tool.number != 0 ? " " : "", tool.name);
+  }
+  control.report.fail("unknown-tool", column,
+                      fmt::format("{} is not in the tool table, which has {}", asked, list),
+                      "add the tool to the table, or correct the call");
+}
+
+}  // namespace
+
+int find_tool(Control& control, int number, int column) {
+  const auto found = std::find_if(control.setup.tools.begin(), control.setup.tools.end(),
+                                  [&](const NcTool& tool) { return tool.number == number; });
+  if (found != control.setup.tools.end()) return static_cast<int>(found - control.setup.tools.begin());
+  return not_found(control, fmt::format("T{}", number), column);
+}
+
+int find_tool(Control& control, const std::string& name, int column) {
+  const auto found = std::find_if(control.setup.tools.begin(), control.setup.tools.end(),
+                                  [&](const NcTool& tool) { return tool.name == name; });
+  if (found != control.setup.tools.end()) return static_cast<int>(found - control.setup.tools.begin());
+  return not_found(control, fmt::format("T=\"{}\"", name), column);
+}
+
+void select_tool(ToolState& tools, int index, int number) {
+  tools.selected = index;
+  tools.selected_number = number;
+}
+
+const NcTool* active_tool(const Control& control) {
+  return control.tools.active < 0 ? nullptr : &control.setup.tools[static_cast<size_t>(control.tools.active)];
+}
+
+void set_true_tool(Control& control) {
+  const NcTool* tool = active_tool(control);
+  control.space.set_true_length(tool == nullptr ? 0.0 : tool->length_mm);
+  if (!control.path.started) return;
+  const LinearMap& map = control.space.real(control.space.rotary_of(control.path.q));
+  control.path.pose = {map.base_W + map.columns_W * control.space.linear_of(control.path.q), map.axis_W};
+}
+
+void change_tool(Control& control) {
+  if (control.contour.side() != Compensation::kOff) {
+    control.report.fail("compensation-active", 0, "the tool changes while cutter radius compensation is on",
+                        fmt::format("switch it off first: {}", control.report.words.compensation_off));
+  }
+  flush(control);
+  control.modal.spindle = 0;
+  if (control.setup.machine.tool_change) {
+    if (control.path.started) {
+      Target target;
+      for (int word = 0; word < kAxisWords; ++word) {
+        if (control.space.axis_of(static_cast<AxisWord>(word)) >= 0)
+          target.set(word,
+                     (*control.setup.machine.tool_change)[control.space.axis_of(static_cast<AxisWord>(word))],
+                     false);
+      }
+      machine_line(control, Motion::kRapid, target);
+    } else {
+      control.path.q = *control.setup.machine.tool_change;
+      start_here(control,
+                 fmt::format("the machine's tool change position, at the first tool change in line {}",
+                             control.report.place.line));
+    }
+  }
+  control.tools.active = control.tools.selected;
+  control.tools.active_number = control.tools.selected_number;
+  set_true_tool(control);
+}
+
+void declare_tool(Control& control, int index, int number) {
+  flush(control);
+  control.tools.active = index;
+  control.tools.active_number = number;
+  set_true_tool(control);
+}
+
+void set_length_compensation(Control& control, double length_mm, bool on) {
+  moved_frame(control, "the tool length compensation");
+  control.tools.length_on = on;
+  control.space.set_length(on ? length_mm : 0.0);
+}
+
+}  // namespace swarf::program::nc
