@@ -30,8 +30,8 @@ void ContourOfControl::emit(const Segment& segment) {
   nc::emit(control_, segment);
 }
 
-Control::Control(const ControlSetup& setup, NcSink& sink, Diagnostics& diagnostics, NcSummary& summary)
-    : setup(setup), report(setup.builder_words, sink, diagnostics, summary), space(setup.machine) {
+Control::Control(const ControlSetup& given, NcSink& sink, Diagnostics& diagnostics, NcSummary& summary)
+    : setup(given), report(given.builder_words, sink, diagnostics, summary), space(given.machine) {
   const Mat3& columns = space.compensated({0.0, 0.0, 0.0}).columns_W;
   offsets.axes_rigid = (columns.transpose() * columns - Mat3::Identity()).cwiseAbs().maxCoeff() < 1e-9;
   for (int number = 1; number <= 9; ++number) offsets.origins[number] = space.gauge_zero();

@@ -84,7 +84,7 @@ class ContourOfControl final : public ContourHost {
 struct Control {
   /// All references must outlive the control. Throws InputError when the machine has no unique inverse, lacks
   /// one of X Y Z, or names an axis other than X Y Z A B C ("axis-names").
-  Control(const ControlSetup& setup, NcSink& sink, Diagnostics& diagnostics, NcSummary& summary);
+  Control(const ControlSetup& given, NcSink& sink, Diagnostics& diagnostics, NcSummary& summary);
   Control(const Control&) = delete;
   Control& operator=(const Control&) = delete;
 

@@ -17,8 +17,8 @@ struct ProgramStopped {};
 class Report {
  public:
   /// All references must outlive the report.
-  Report(const BuilderWords& builder_words, NcSink& sink, Diagnostics& diagnostics, NcSummary& summary)
-      : sink(sink), diagnostics(diagnostics), summary(summary), builder_words_(builder_words) {}
+  Report(const BuilderWords& builder_words, NcSink& moves, Diagnostics& told, NcSummary& read)
+      : sink(moves), diagnostics(told), summary(read), builder_words_(builder_words) {}
 
   /// Which block is being executed; every fault and move carries it. `file`: index into NcSummary::files.
   void at(int file, int line, int column) { place = {file, line, column}; }

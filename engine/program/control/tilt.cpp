@@ -24,8 +24,8 @@ kinematics::InverseSolutions tilt_branches(const Control& control, const Vec3& a
   return control.space.inverse().solve({tip_W, axis_W}, control.path.q);
 }
 
-void fail_tilt(const Control& control, const Vec3& axis_P, const TiltPreference& preference, int axis,
-               int column) {
+[[noreturn]] void fail_tilt(const Control& control, const Vec3& axis_P, const TiltPreference& preference,
+                            int axis, int column) {
   const kinematics::InverseSolutions found = tilt_branches(control, axis_P);
   const Vec3 axis_W = (control.space.frame().linear() * axis_P).normalized();
   if (found.count == 0) {

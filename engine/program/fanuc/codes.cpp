@@ -1,5 +1,5 @@
 // The words of the Fanuc dialect as data.
-#include "program/fanuc/reader.h"
+#include "program/fanuc/state.h"
 
 namespace swarf::program::nc::fanuc {
 namespace {

@@ -1,4 +1,4 @@
-#include "program/fanuc/reader.h"
+#include "program/fanuc/steps.h"
 
 #include <fmt/format.h>
 
@@ -13,158 +13,158 @@ namespace {
 
 constexpr const char* kSkipMark = "/ (block delete is off: such blocks are executed)";
 
-}  // namespace
-
-Fanuc::Fanuc(const std::string& path, Control& control)
-    : LetterDialect(path, control, kFanucFormula),
-      commons_(kLastCommon + 1, 0.0),
-      common_set_(kLastCommon + 1, false) {
-  Call main;
-  main.source = &open(path);
-  main.own_locals = true;
-  calls_.push_back(std::move(main));
-  control_.modal.feed_rule = FeedRule::kAllAxes;
-}
-
-void Fanuc::run() {
-  std::string_view line;
-  while (!ended_) {
-    if (!source().next(line)) {
-      if (calls_.size() > 1)
-        control_.report.fail("unclosed-subprogram", 0, "the subprogram does not end in its file",
-                             "end it with M99");
-      if (!calls_.back().loops.empty())
-        control_.report.fail("unclosed-loop", 0,
-                             fmt::format("DO{} has no END{}", calls_.back().loops.back().first,
-                                         calls_.back().loops.back().first),
-                             "add the END of the loop");
-      warn_of_missing_end("M02, M30, M99 or %");
-      break;
-    }
-    at_line(source());
-    if (!percent(line, false))
-      ended_ = !execute();
-    else if (ended_ && calls_.size() > 1)
-      control_.report.fail("unclosed-subprogram", 0, "the file ends within a subprogram", "end it with M99");
-  }
-  if (nurbs_) {
-    const Place where = nurbs_->where;
-    control_.report.at(where.file, where.line, where.column);
-    control_.report.fail("bad-nurbs", 0,
-                         "this NURBS does not end: it needs as many knots after the points as its order",
-                         "add blocks with K alone");
-  }
-  block_.clear();
-  expect_plane_block();
-  nc::finish(control_);
-}
-
 /// ":1234" (ISO code) and "<NAME>" at the head of a program.
-bool Fanuc::program_head() {
-  reader_.skip_space();
-  if (reader_.peek() != ':' && reader_.peek() != '<') return false;
-  const size_t from = reader_.at();
-  const std::string_view line = reader_.line();
+bool program_head(LetterDialect& letters) {
+  letters.reader.skip_space();
+  if (letters.reader.peek() != ':' && letters.reader.peek() != '<') return false;
+  const size_t from = letters.reader.at();
+  const std::string_view line = letters.reader.line();
   if (line[from] == ':') {
-    reader_.skip();
-    reader_.value();
+    letters.reader.skip();
+    letters.reader.value();
   } else {
     const size_t end = line.find('>', from);
     if (end == std::string_view::npos)
-      control_.report.fail("unexpected-character", reader_.column_of(from), "this program name does not end",
-                           "close it with '>'");
-    control_.report.note("program", line.substr(from + 1, end - from - 1));
-    reader_.move_to(end + 1);
+      letters.control.report.fail("unexpected-character", letters.reader.column_of(from),
+                                  "this program name does not end", "close it with '>'");
+    letters.control.report.note("program", line.substr(from + 1, end - from - 1));
+    letters.reader.move_to(end + 1);
   }
   std::string_view message;
-  skip_comments(kFanucSyntax, reader_, control_, message);
-  if (!reader_.done())
-    control_.report.fail("unexpected-character", reader_.column(), "words follow the name of the program",
-                         "write one block per line");
+  skip_comments(kFanucSyntax, letters.reader, letters.control, message);
+  if (!letters.reader.done())
+    letters.control.report.fail("unexpected-character", letters.reader.column(),
+                                "words follow the name of the program", "write one block per line");
+  return true;
+}
+
+/// A macro statement or an assignment; the reader stands behind it then.
+bool statement(Calls& calls, Variables& variables, LetterDialect& letters) {
+  const size_t from = letters.reader.at();
+  const bool marked = letters.reader.peek() == '/';
+  if (marked) {
+    letters.reader.skip();
+    if (letters.reader.peek() >= '1' && letters.reader.peek() <= '9') letters.reader.skip();
+  }
+  skip_block_number(letters);
+  if (letters.reader.peek() == '#') {
+    assignment(calls, variables, letters);
+  } else if (!macro_word(calls, variables, letters)) {
+    letters.reader.move_to(from);
+    return false;
+  }
+  if (marked) letters.control.report.without_effect(kSkipMark);
+  std::string_view message;
+  skip_comments(kFanucSyntax, letters.reader, letters.control, message);
+  if (!letters.reader.done())
+    letters.control.report.fail("unexpected-character", letters.reader.column(),
+                                "words follow a macro statement", "write one statement per block");
   return true;
 }
 
 /// Says once how numbers without a decimal point are read: parameter 3401 chooses millimetres (calculator
 /// type, as here) or increments of the control.
-void Fanuc::state_number_rule() {
+void state_number_rule(Calls& calls, Modes& modes, LetterDialect& letters) {
   for (const char letter : std::string_view("XYZABC")) {
-    const double value = block_.has(letter) ? block_.get(letter) : 0.0;
-    if (value == 0.0 || value != std::trunc(value) || !without_point(letter)) continue;
-    number_rule_stated_ = true;
-    control_.report.summary.dialect_reason += fmt::format(
+    const double value = letters.block.has(letter) ? letters.block.get(letter) : 0.0;
+    if (value == 0.0 || value != std::trunc(value) || !without_point(letters, letter)) continue;
+    modes.number_rule_stated = true;
+    letters.control.report.summary.dialect_reason += fmt::format(
         "; {}{:g} in line {} has no decimal point: such numbers are {} and degrees (calculator "
         "type, parameter 3401)",
-        letter, value, source().line_number(), control_.modal.inches() ? "inches" : "millimetres");
+        letter, value, source(calls).line_number(),
+        letters.control.modal.inches() ? "inches" : "millimetres");
     return;
   }
 }
 
+bool execute(Fanuc& fanuc) {
+  if (program_head(fanuc)) return true;
+  if (statement(fanuc.calls, fanuc.variables, fanuc)) {
+    ++fanuc.control.report.summary.blocks;
+    return true;
+  }
+  fanuc.block.clear();
+  read_words(kFanucSyntax, fanuc.reader, fanuc.control, fanuc.block, 0);
+  if (!fanuc.block.message.empty()) fanuc.control.report.note("MSG", fanuc.block.message);
+  if (fanuc.block.skip_mark) fanuc.control.report.without_effect(kSkipMark);
+  if (fanuc.block.empty()) return true;
+  ++fanuc.control.report.summary.blocks;
+  fanuc.control.report.at(source(fanuc.calls).file(), static_cast<int>(source(fanuc.calls).line_number()),
+                          fanuc.reader.column_of(fanuc.block.first));
+  if (fanuc.nurbs && add_to_nurbs(fanuc.modes, fanuc.nurbs, fanuc)) return true;
+  expect_plane_block(fanuc.planes, fanuc);
+  if (!fanuc.modes.number_rule_stated) state_number_rule(fanuc.calls, fanuc.modes, fanuc);
+  check_words(fanuc.modes, fanuc);
+  fanuc.modes.moved = false;
+  apply(fanuc);
+  if (fanuc.modes.moved && fanuc.calls.stack.back().modals > 0) {
+    call_modal_macro(fanuc.calls, fanuc);
+    return true;
+  }
+  return apply_calls(fanuc);
+}
+
+void run(Fanuc& fanuc) {
+  std::string_view line;
+  while (!fanuc.ended) {
+    if (!source(fanuc.calls).next(line)) {
+      if (fanuc.calls.stack.size() > 1)
+        fanuc.control.report.fail("unclosed-subprogram", 0, "the subprogram does not end in its file",
+                                  "end it with M99");
+      if (!fanuc.calls.stack.back().loops.empty())
+        fanuc.control.report.fail(
+            "unclosed-loop", 0,
+            fmt::format("DO{} has no END{}", fanuc.calls.stack.back().loops.back().first,
+                        fanuc.calls.stack.back().loops.back().first),
+            "add the END of the loop");
+      fanuc.warn_of_missing_end("M02, M30, M99 or %");
+      break;
+    }
+    fanuc.at_line(source(fanuc.calls));
+    if (!fanuc.percent(line, false))
+      fanuc.ended = !execute(fanuc);
+    else if (fanuc.ended && fanuc.calls.stack.size() > 1)
+      fanuc.control.report.fail("unclosed-subprogram", 0, "the file ends within a subprogram",
+                                "end it with M99");
+  }
+  if (fanuc.nurbs) {
+    const Place where = fanuc.nurbs->where;
+    fanuc.control.report.at(where.file, where.line, where.column);
+    fanuc.control.report.fail("bad-nurbs", 0,
+                              "this NURBS does not end: it needs as many knots after the points as its order",
+                              "add blocks with K alone");
+  }
+  fanuc.block.clear();
+  expect_plane_block(fanuc.planes, fanuc);
+  nc::finish(fanuc.control);
+}
+
+}  // namespace
+
+Fanuc::Fanuc(const std::string& file, Control& machine) : LetterDialect(file, machine, kFanucFormula) {
+  Call main;
+  main.source = &open(file);
+  main.own_locals = true;
+  calls.stack.push_back(std::move(main));
+  control.modal.feed_rule = FeedRule::kAllAxes;
+}
+
 /// The letter's number is digits alone.
-bool Fanuc::without_point(char letter) const {
-  std::string_view text = reader_.line().substr(block_.place(letter) + 1);
+bool without_point(const LetterDialect& letters, char letter) {
+  std::string_view text = letters.reader.line().substr(letters.block.place(letter) + 1);
   text.remove_prefix(std::min(text.find_first_not_of(" \t+-"), text.size()));
   const size_t end = text.find_first_not_of("0123456789");
   return end != 0 && (end == std::string_view::npos ? !text.empty() : text[end] != '.');
 }
 
-bool Fanuc::execute() {
-  if (program_head()) return true;
-  if (statement()) {
-    ++control_.report.summary.blocks;
-    return true;
-  }
-  block_.clear();
-  read_words(kFanucSyntax, reader_, control_, block_, 0);
-  if (!block_.message.empty()) control_.report.note("MSG", block_.message);
-  if (block_.skip_mark) control_.report.without_effect(kSkipMark);
-  if (block_.empty()) return true;
-  ++control_.report.summary.blocks;
-  control_.report.at(source().file(), static_cast<int>(source().line_number()),
-                     reader_.column_of(block_.first));
-  if (nurbs_ && add_to_nurbs()) return true;
-  expect_plane_block();
-  if (!number_rule_stated_) state_number_rule();
-  check_words();
-  moved_ = false;
-  apply();
-  if (moved_ && calls_.back().modals > 0) {
-    call_modal_macro();
-    return true;
-  }
-  return apply_calls();
-}
-
-void Fanuc::skip_block_number() {
-  reader_.skip_space();
-  if (reader_.peek_upper() != 'N') return;
-  reader_.skip();
-  reader_.skip_space();
-  while (reader_.peek() >= '0' && reader_.peek() <= '9') reader_.skip();
-  reader_.skip_space();
-}
-
-/// A macro statement or an assignment; the reader stands behind it then.
-bool Fanuc::statement() {
-  const size_t from = reader_.at();
-  const bool marked = reader_.peek() == '/';
-  if (marked) {
-    reader_.skip();
-    if (reader_.peek() >= '1' && reader_.peek() <= '9') reader_.skip();
-  }
-  skip_block_number();
-  if (reader_.peek() == '#') {
-    assignment();
-  } else if (!macro_word()) {
-    reader_.move_to(from);
-    return false;
-  }
-  if (marked) control_.report.without_effect(kSkipMark);
-  std::string_view message;
-  skip_comments(kFanucSyntax, reader_, control_, message);
-  if (!reader_.done())
-    control_.report.fail("unexpected-character", reader_.column(), "words follow a macro statement",
-                         "write one statement per block");
-  return true;
+void skip_block_number(LetterDialect& letters) {
+  letters.reader.skip_space();
+  if (letters.reader.peek_upper() != 'N') return;
+  letters.reader.skip();
+  letters.reader.skip_space();
+  while (letters.reader.peek() >= '0' && letters.reader.peek() <= '9') letters.reader.skip();
+  letters.reader.skip_space();
 }
 
 Evidence evidence(std::string_view head, std::string_view extension) {
@@ -202,7 +202,8 @@ Evidence evidence(std::string_view head, std::string_view extension) {
 }
 
 void run(const std::string& path, Control& control) {
-  Fanuc(path, control).run();
+  Fanuc fanuc(path, control);
+  run(fanuc);
 }
 
 }  // namespace swarf::program::nc::fanuc

@@ -19,11 +19,12 @@
 #include <cmath>
 
 #include "base/units.h"
-#include "program/heidenhain/executor.h"
+#include "program/heidenhain/steps.h"
 
 namespace swarf::program::nc::heidenhain {
 
 using nc::Compensation;
+
 using nc::Motion;
 
 namespace {
@@ -66,39 +67,16 @@ std::optional<Vec3> start_direction(const nc::PlaneAxes& axes, Motion motion, co
   return along.normalized();
 }
 
-}  // namespace
-
-void Executor::straight(Motion motion, double feed, const Vec3& to) {
-  if (motion == Motion::kFeed && feed > 0.0) set_feed(feed, false);
-  nc::Target target;
-  target.column = control_.report.place.column;
-  for (int i = 0; i < 3; ++i) target.set(i, to[i], false);
-  nc::line(control_, motion, target);
-}
-
-void Executor::round(Motion motion, double feed, const Vec3& to, const Vec3& centre, bool counter_clockwise) {
-  if ((to - nc::position_xyz(control_)).norm() <= kNoWay) return;
+void round(nc::Control& control, Motion motion, double feed, const Vec3& to, const Vec3& centre,
+           bool counter_clockwise) {
+  if ((to - nc::position_xyz(control)).norm() <= kNoWay) return;
   if (motion == Motion::kRapid)
-    control_.report.fail("unexpected-word", 0, "an arc is not moved at FMAX", "write F with a value");
-  circle_move(feed, to, centre, counter_clockwise, 0);
-}
-
-void Executor::circle_move(double feed, const Vec3& to, const Vec3& centre, bool counter_clockwise,
-                           int further_turns) {
-  if (feed > 0.0) set_feed(feed, false);
-  nc::Target target;
-  target.column = control_.report.place.column;
-  for (int i = 0; i < 3; ++i) target.set(i, to[i], false);
-  nc::ArcWords arc;
-  arc.centre = centre;
-  arc.further_turns = further_turns;
-  arc.column = target.column;
-  nc::arc(control_, counter_clockwise ? Motion::kCounterClockwise : Motion::kClockwise, target, arc);
+    control.report.fail("unexpected-word", 0, "an arc is not moved at FMAX", "write F with a value");
+  circle_move(control, feed, to, centre, counter_clockwise, 0);
 }
 
 /// LEN, CCA and R, as the kind wants them.
-void Executor::check_approach(BlockReader& reader, const std::string& kind, const MotionWords& words,
-                              size_t start) {
+void check_approach(BlockReader& reader, const std::string& kind, const MotionWords& words, size_t start) {
   const bool line = kind == "LT" || kind == "LN", arc = kind == "CT";
   const auto need = [&](const Amount& word, bool wanted, const char* name, const char* fix) {
     if (word && !wanted)
@@ -120,9 +98,32 @@ void Executor::check_approach(BlockReader& reader, const std::string& kind, cons
                 "turn them in a block before it");
 }
 
+}  // namespace
+
+void straight(nc::Control& control, Motion motion, double feed, const Vec3& to) {
+  if (motion == Motion::kFeed && feed > 0.0) set_feed(control, feed, false);
+  nc::Target target;
+  target.column = control.report.place.column;
+  for (int i = 0; i < 3; ++i) target.set(i, to[i], false);
+  nc::line(control, motion, target);
+}
+
+void circle_move(nc::Control& control, double feed, const Vec3& to, const Vec3& centre,
+                 bool counter_clockwise, int further_turns) {
+  if (feed > 0.0) set_feed(control, feed, false);
+  nc::Target target;
+  target.column = control.report.place.column;
+  for (int i = 0; i < 3; ++i) target.set(i, to[i], false);
+  nc::ArcWords arc;
+  arc.centre = centre;
+  arc.further_turns = further_turns;
+  arc.column = target.column;
+  nc::arc(control, counter_clockwise ? Motion::kCounterClockwise : Motion::kClockwise, target, arc);
+}
+
 /// APPR LT X+20 Y+20 Z-10 LEN15 RR F100; LN; CT .. CCA180 R10; LCT .. R10; with a P before: PR and PA.
-void Executor::approach(BlockReader& reader, size_t start) {
-  no_open_corner(reader, start);
+void approach(Executor& executor, BlockReader& reader, size_t start) {
+  no_open_corner(executor.path, reader, start);
   std::string kind(reader.take_letters());
   const bool by_pole = kind.starts_with('P');
   if (by_pole) kind.erase(0, 1);
@@ -131,56 +132,56 @@ void Executor::approach(BlockReader& reader, size_t start) {
   const MotionWords words = read_motion_words(
       reader, kAxesAllowed | kRadiusAllowed | kApproachAllowed | kAlways | (by_pole ? kPolarAllowed : 0u));
   check_approach(reader, kind, words, start);
-  if (control_.contour.side() != Compensation::kOff)
+  if (executor.control.contour.side() != Compensation::kOff)
     reader.fail("compensation-active", start, "APPR while RL or RR is already on",
                 "write DEP or R0 before it");
-  const nc::PlaneAxes axes = nc::axes_of(control_.modal.plane);
+  const nc::PlaneAxes axes = nc::axes_of(executor.control.modal.plane);
   Approach next;
   next.kind = kind;
-  next.place = control_.report.place;
-  next.side = side_of(words.compensation.value_or(Compensation::kOff));
+  next.place = executor.control.report.place;
+  next.side = side_of(executor.control, executor.frames, words.compensation.value_or(Compensation::kOff));
   if (next.side == Compensation::kOff && kind != "LT")
     reader.fail("missing-word", start,
                 fmt::format("APPR {} needs RL or RR: they say to which side it turns", kind),
                 "write RL or RR");
-  const double scale = plane_scale(reader, start);
-  next.length = scale * control_.modal.mm(words.length.value);
-  next.radius = scale * control_.modal.mm(words.radius.value);
+  const double scale = plane_scale(executor.control, executor.frames, reader, start);
+  next.length = scale * executor.control.modal.mm(words.length.value);
+  next.radius = scale * executor.control.modal.mm(words.radius.value);
   next.angle = rad_from_deg(words.angle.value);
-  next.entry = last_rapid_ ? Motion::kRapid : Motion::kFeed;
-  next.entry_feed = feed_;
-  next.feed = feed_of(reader, words, next.motion);
+  next.entry = executor.modes.last_rapid ? Motion::kRapid : Motion::kFeed;
+  next.entry_feed = executor.modes.feed;
+  next.feed = feed_of(executor.control, executor.modes, reader, words, next.motion);
   // LCT goes to its arc at the feed of its own block, the others at what held before.
   if (kind == "LCT") next.entry = next.motion, next.entry_feed = next.feed;
-  nc::Target target = target_of(reader, words);
+  nc::Target target = target_of(executor.control, executor.modes, executor.frames, reader, words);
   if (by_pole) {
-    const Vec3 end = polar_end(reader, words, start);
+    const Vec3 end = polar_end(executor.control, executor.path, executor.frames, reader, words, start);
     target.set(axes.first, end[axes.first], false);
     target.set(axes.second, end[axes.second], false);
   }
-  next.contour = end_of(target);
-  if (!control_.path.started || !next.contour.allFinite())
+  next.contour = end_of(executor.control, executor.path, target);
+  if (!executor.control.path.started || !next.contour.allFinite())
     reader.fail("start-unknown", start, "APPR starts, and the position is not known yet",
                 "position all axes before it");
-  if (next.side != Compensation::kOff) next.cutter = cutter_radius(reader);
-  functions_before(reader, words);
-  functions_after(reader, words.functions);
-  approach_ = next;
+  if (next.side != Compensation::kOff) next.cutter = cutter_radius(executor.control, executor.modes, reader);
+  functions_before(executor, reader, words);
+  functions_after(executor, reader, words.functions);
+  executor.path.approach = next;
 }
 
-void Executor::close_approach(const Element& first) {
-  const Approach here = *approach_;
-  approach_.reset();
-  const nc::Place place = control_.report.place;
-  control_.report.at(here.place.file, here.place.line, here.place.column);
-  const nc::PlaneAxes axes = nc::axes_of(control_.modal.plane);
+void close_approach(nc::Control& control, PathState& path, const Element& first) {
+  const Approach here = *path.approach;
+  path.approach.reset();
+  const nc::Place place = control.report.place;
+  control.report.at(here.place.file, here.place.line, here.place.column);
+  const nc::PlaneAxes axes = nc::axes_of(control.modal.plane);
   const auto t = start_direction(axes, first.motion, first.arc, first.from, first.to);
   if (!t)
-    control_.report.fail("bad-approach", 0,
-                         "the first piece of contour behind APPR has no way in the working plane",
-                         "write a piece of contour in the plane right behind APPR");
+    control.report.fail("bad-approach", 0,
+                        "the first piece of contour behind APPR has no way in the working plane",
+                        "write a piece of contour in the plane right behind APPR");
   const bool on = here.side != Compensation::kOff;
-  const Vec3 n = across(axes, *t, here.side), start = nc::position_xyz(control_);
+  const Vec3 n = across(axes, *t, here.side), start = nc::position_xyz(control);
   const double radius = here.cutter;
   const Vec3 A = here.contour + radius * n, centre = A + here.radius * n;
   const bool counter_clockwise = (here.side == Compensation::kLeft) == (here.radius > 0.0);
@@ -191,7 +192,7 @@ void Executor::close_approach(const Element& first) {
   } else if (here.kind == "LCT") {
     const auto found = touch(axes, start, centre, here.radius, counter_clockwise, true);
     if (!found)
-      control_.report.fail(
+      control.report.fail(
           "bad-approach", 0,
           fmt::format("the tool stands {:.4f} mm from the centre of the arc of radius {:.4f} mm: no "
                       "straight line from there touches it",
@@ -200,21 +201,21 @@ void Executor::close_approach(const Element& first) {
     H = *found;
   }
   H[axes.normal] = start[axes.normal];
-  straight(here.entry, here.entry_feed, H);
+  straight(control, here.entry, here.entry_feed, H);
   H[axes.normal] = A[axes.normal];
-  straight(here.entry, here.entry_feed, H);
+  straight(control, here.entry, here.entry_feed, H);
   if (here.kind == "LT" || here.kind == "LN") {
-    straight(here.motion, here.feed, A);
+    straight(control, here.motion, here.feed, A);
   } else {
-    round(here.motion, here.feed, A, centre, counter_clockwise);
+    round(control, here.motion, here.feed, A, centre, counter_clockwise);
   }
-  if (on) nc::enter_compensation(control_, here.side, radius, here.contour);
-  control_.report.at(place.file, place.line, place.column);
+  if (on) nc::enter_compensation(control, here.side, radius, here.contour);
+  control.report.at(place.file, place.line, place.column);
 }
 
 /// DEP LT LEN12 F100, DEP LN LEN12, DEP CT CCA90 R8, DEP LCT X+10 Y+12 R8, DEP PLCT PR+20 PA+0 R8.
-void Executor::depart(BlockReader& reader, size_t start) {
-  no_open_corner(reader, start);
+void depart(Executor& executor, BlockReader& reader, size_t start) {
+  no_open_corner(executor.path, reader, start);
   const std::string written(reader.take_letters());
   const std::string kind = written == "PLCT" ? "LCT" : written;
   if (kind != "LT" && kind != "LN" && kind != "CT" && kind != "LCT")
@@ -222,40 +223,42 @@ void Executor::depart(BlockReader& reader, size_t start) {
   const MotionWords words = read_motion_words(reader, kAxesAllowed | kRadiusAllowed | kApproachAllowed |
                                                           kAlways | (written == "PLCT" ? kPolarAllowed : 0u));
   check_approach(reader, kind, words, start);
-  const nc::PlaneAxes axes = nc::axes_of(control_.modal.plane);
+  const nc::PlaneAxes axes = nc::axes_of(executor.control.modal.plane);
   const auto in_plane = [&](int i) { return words.axes[static_cast<size_t>(i)].given; };
   if (kind != "LCT" && (in_plane(axes.first) || in_plane(axes.second)))
     reader.fail("unexpected-word", start, fmt::format("DEP {} has no end of its own in the plane", kind),
                 "take the coordinates out");
   if (words.compensation.value_or(Compensation::kOff) != Compensation::kOff)
     reader.fail("words-conflict", start, "DEP ends RL and RR", "take it out");
-  const Compensation side = control_.contour.side();
+  const Compensation side = executor.control.contour.side();
   if (side == Compensation::kOff && kind != "LT")
     reader.fail("missing-word", start,
                 fmt::format("DEP {} needs RL or RR before it: they say to which side it turns", kind),
                 "write RL or RR in the APPR block");
-  if (!tangent_)
+  if (!executor.path.tangent)
     reader.fail("bad-approach", start, "DEP follows no piece of contour", "write it behind L, C, CR or CP");
-  const double scale = plane_scale(reader, start);
-  const double length = scale * control_.modal.mm(words.length.value),
-               R = scale * control_.modal.mm(words.radius.value);
-  const Vec3 t = *tangent_, n = across(axes, t, side), programmed = present();
+  const double scale = plane_scale(executor.control, executor.frames, reader, start);
+  const double length = scale * executor.control.modal.mm(words.length.value),
+               R = scale * executor.control.modal.mm(words.radius.value);
+  const Vec3 t = *executor.path.tangent, n = across(axes, t, side),
+             programmed = present(executor.control, executor.path);
   Motion motion = Motion::kFeed;
-  const double feed = feed_of(reader, words, motion);
-  const nc::Target target = target_of(reader, words);
-  Vec3 N = end_of(target);
-  if (written == "PLCT") N = polar_end(reader, words, start);
-  functions_before(reader, words);
-  nc::set_compensation(control_, Compensation::kOff, 0.0, 0);
-  nc::flush(control_);
-  const Vec3 E = nc::position_xyz(control_), centre = E + R * n;
+  const double feed = feed_of(executor.control, executor.modes, reader, words, motion);
+  const nc::Target target = target_of(executor.control, executor.modes, executor.frames, reader, words);
+  Vec3 N = end_of(executor.control, executor.path, target);
+  if (written == "PLCT")
+    N = polar_end(executor.control, executor.path, executor.frames, reader, words, start);
+  functions_before(executor, reader, words);
+  nc::set_compensation(executor.control, Compensation::kOff, 0.0, 0);
+  nc::flush(executor.control);
+  const Vec3 E = nc::position_xyz(executor.control), centre = E + R * n;
   const bool counter_clockwise = (side == Compensation::kLeft) == (R > 0.0);
   if (kind == "LT" || kind == "LN") {
-    straight(motion, feed, kind == "LT" ? Vec3(E + length * t) : Vec3(E + length * n));
+    straight(executor.control, motion, feed, kind == "LT" ? Vec3(E + length * t) : Vec3(E + length * n));
   } else if (kind == "CT") {
     const double angle = rad_from_deg(words.angle.value);
     const Eigen::AngleAxisd on(counter_clockwise ? angle : -angle, Vec3::Unit(axes.normal));
-    round(motion, feed, centre + on * (E - centre), centre, counter_clockwise);
+    round(executor.control, motion, feed, centre + on * (E - centre), centre, counter_clockwise);
   } else {
     const auto found = touch(axes, N, centre, R, counter_clockwise, false);
     if (!found)
@@ -267,20 +270,20 @@ void Executor::depart(BlockReader& reader, size_t start) {
           "end further away, or make R smaller");
     Vec3 H = *found;
     H[axes.normal] = E[axes.normal];
-    round(motion, feed, H, centre, counter_clockwise);
+    round(executor.control, motion, feed, H, centre, counter_clockwise);
     Vec3 end = N;
     end[axes.normal] = E[axes.normal];
-    straight(motion, feed, end);
+    straight(executor.control, motion, feed, end);
   }
   if (in_plane(axes.normal)) {
-    Vec3 end = nc::position_xyz(control_);
+    Vec3 end = nc::position_xyz(executor.control);
     const auto normal = static_cast<size_t>(axes.normal);
     end[axes.normal] = target.is_incremental(axes.normal) ? programmed[axes.normal] + target.value[normal]
                                                           : target.value[normal];
-    straight(motion, feed, end);
+    straight(executor.control, motion, feed, end);
   }
-  tangent_.reset();
-  finish_motion(reader, words);
+  executor.path.tangent.reset();
+  finish_motion(executor, reader, words);
 }
 
 }  // namespace swarf::program::nc::heidenhain

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/units.h"
-#include "program/heidenhain/executor.h"
+#include "program/heidenhain/steps.h"
 #include "program/letters/arithmetic.h"
 
 namespace swarf::program::nc::heidenhain {
@@ -25,24 +25,23 @@ Vec3 polar(const nc::PlaneAxes& axes, double radius, double angle_deg) {
   return p;
 }
 
-}  // namespace
-
-int Executor::sense(BlockReader& reader, const MotionWords& words, size_t start) {
+/// +1 counter-clockwise, -1 clockwise in the control's frame.
+int sense(nc::Control& control, Frames& frames, BlockReader& reader, const MotionWords& words, size_t start) {
   if (words.sense == 0)
     reader.fail("missing-word", start, "the arc has no DR", "DR+ turns counter-clockwise, DR- clockwise");
-  const nc::PlaneAxes axes = nc::axes_of(control_.modal.plane);
-  plane_scale(reader, start);
-  return stretch_.turns_over(axes.first, axes.second) ? -words.sense : words.sense;
+  const nc::PlaneAxes axes = nc::axes_of(control.modal.plane);
+  plane_scale(control, frames, reader, start);
+  return frames.stretch.turns_over(axes.first, axes.second) ? -words.sense : words.sense;
 }
 
 /// The way from the pole to a point at this radius and angle, as it lies in the control's frame.
-Vec3 Executor::from_pole(double radius_mm, double angle_deg) const {
-  return stretch_.factor.cwiseProduct(polar(nc::axes_of(control_.modal.plane), radius_mm, angle_deg));
+Vec3 from_pole(nc::Control& control, const Frames& frames, double radius_mm, double angle_deg) {
+  return frames.stretch.factor.cwiseProduct(polar(nc::axes_of(control.modal.plane), radius_mm, angle_deg));
 }
 
 /// Arcs move in the working plane.
-void Executor::only_plane(BlockReader& reader, const MotionWords& words) {
-  const nc::PlaneAxes axes = nc::axes_of(control_.modal.plane);
+void only_plane(nc::Control& control, BlockReader& reader, const MotionWords& words) {
+  const nc::PlaneAxes axes = nc::axes_of(control.modal.plane);
   for (int i = 0; i < 3; ++i) {
     const Amount& word = words.axes[static_cast<size_t>(i)];
     if (!word || i != axes.normal) continue;
@@ -52,59 +51,67 @@ void Executor::only_plane(BlockReader& reader, const MotionWords& words) {
   }
 }
 
+const Vec3& centre(PathState& path, BlockReader& reader, size_t offset) {
+  if (!path.centre) reader.fail("missing-centre", offset, "there is no CC before this block", "CC X+10 Y+20");
+  return *path.centre;
+}
+
+}  // namespace
+
 /// Where PR and PA, which are modal, lead about the pole CC.
-Vec3 Executor::polar_end(BlockReader& reader, const MotionWords& words, size_t start) {
-  const nc::PlaneAxes axes = nc::axes_of(control_.modal.plane);
+Vec3 polar_end(nc::Control& control, PathState& path, Frames& frames, BlockReader& reader,
+               const MotionWords& words, size_t start) {
+  const nc::PlaneAxes axes = nc::axes_of(control.modal.plane);
   if (words.any_rotary() || words.axes[static_cast<size_t>(axes.first)] ||
       words.axes[static_cast<size_t>(axes.second)])
     reader.fail("unexpected-word", start, "a polar end is given by PR, PA and the height alone",
                 "LP PR+20 PA+30 Z-5");
-  const Vec3 about = centre(reader, start);
+  const Vec3 about = centre(path, reader, start);
   for (const auto& [word, kept, factor] :
-       {std::tuple{&words.polar_radius, &polar_radius_, control_.modal.mm(1.0)},
-        std::tuple{&words.polar_angle, &polar_angle_, 1.0}}) {
+       {std::tuple{&words.polar_radius, &path.polar_radius, control.modal.mm(1.0)},
+        std::tuple{&words.polar_angle, &path.polar_angle, 1.0}}) {
     if (!*word) continue;
     if (word->incremental && !kept->given)
       reader.fail("missing-word", word->offset, "an incremental polar word follows no absolute one",
                   "write PR and PA first");
     *kept = {(word->incremental ? kept->value : 0.0) + factor * word->value, word->offset, true, false};
   }
-  if (!polar_radius_ || !polar_angle_)
+  if (!path.polar_radius || !path.polar_angle)
     reader.fail("missing-word", start, "a polar end needs PR and PA", "LP PR+20 PA+30");
-  return about + from_pole(polar_radius_.value, polar_angle_.value);
+  return about + from_pole(control, frames, path.polar_radius.value, path.polar_angle.value);
 }
 
 /// LP PR+20 IPA+30: about the pole CC.
-void Executor::polar_line(BlockReader& reader, size_t start) {
+void polar_line(Executor& executor, BlockReader& reader, size_t start) {
   const MotionWords words = read_motion_words(reader, kAxesAllowed | kPolarAllowed | kAlways);
-  const nc::PlaneAxes axes = nc::axes_of(control_.modal.plane);
-  const Vec3 end = polar_end(reader, words, start);
+  const nc::PlaneAxes axes = nc::axes_of(executor.control.modal.plane);
+  const Vec3 end = polar_end(executor.control, executor.path, executor.frames, reader, words, start);
   Element element;
   element.offset = start;
-  element.target = target_of(reader, words);
+  element.target = target_of(executor.control, executor.modes, executor.frames, reader, words);
   element.target.set(axes.first, end[axes.first], false);
   element.target.set(axes.second, end[axes.second], false);
-  move(reader, words, element);
+  move(executor, reader, words, element);
 }
 
 /// CC X+10 Y+20, CC IX+5, or CC alone: the last position.
-void Executor::pole(BlockReader& reader) {
+void pole(nc::Control& control, PathState& path, Frames& frames, BlockReader& reader) {
   const size_t start = reader.offset();
   const MotionWords words = read_motion_words(reader, kAxesAllowed);
-  const nc::PlaneAxes axes = nc::axes_of(control_.modal.plane);
+  const nc::PlaneAxes axes = nc::axes_of(control.modal.plane);
   if (words.any_rotary() || words.axes[static_cast<size_t>(axes.normal)])
     reader.fail("unexpected-word", start, "a pole lies in the working plane", "CC X+10 Y+20");
-  const Vec3 here = present();
+  const Vec3 here = present(control, path);
   const bool none = !words.any_linear();
   Vec3 at = Vec3::Zero();
   for (const int i : {axes.first, axes.second}) {
     const Amount& word = words.axes[static_cast<size_t>(i)];
     if (word && !word.incremental) {
-      at[i] = stretch_.along(i, control_.modal.mm(word.value), false);
+      at[i] = frames.stretch.along(i, control.modal.mm(word.value), false);
     } else if (word || none) {
-      at[i] = here[i] + (word ? stretch_.along(i, control_.modal.mm(word.value), true) : 0.0);
-    } else if (centre_) {
-      at[i] = (*centre_)[i];
+      at[i] = here[i] + (word ? frames.stretch.along(i, control.modal.mm(word.value), true) : 0.0);
+    } else if (path.centre) {
+      at[i] = (*path.centre)[i];
     } else {
       reader.fail("missing-word", start, "this pole needs both coordinates: there was none before",
                   "CC X+10 Y+20");
@@ -113,45 +120,43 @@ void Executor::pole(BlockReader& reader) {
   if (!at.allFinite())
     reader.fail("start-unknown", start, "the pole counts from a position that is not known yet",
                 "position all axes before it");
-  centre_ = at;
+  path.centre = at;
 }
 
-const Vec3& Executor::centre(BlockReader& reader, size_t offset) {
-  if (!centre_) reader.fail("missing-centre", offset, "there is no CC before this block", "CC X+10 Y+20");
-  return *centre_;
-}
-
-void Executor::circle(BlockReader& reader, size_t start) {
+void circle(Executor& executor, BlockReader& reader, size_t start) {
   const MotionWords words = read_motion_words(reader, kAxesAllowed | kSenseAllowed | kAlways);
-  only_plane(reader, words);
+  only_plane(executor.control, reader, words);
   Element element;
   element.offset = start;
-  element.motion = sense(reader, words, start) > 0 ? Motion::kCounterClockwise : Motion::kClockwise;
-  element.target = target_of(reader, words);
+  element.motion = sense(executor.control, executor.frames, reader, words, start) > 0
+                       ? Motion::kCounterClockwise
+                       : Motion::kClockwise;
+  element.target = target_of(executor.control, executor.modes, executor.frames, reader, words);
   if (!words.any_linear()) reader.fail("missing-word", start, "C has no end", "C X+10 Y+20 DR+");
-  element.arc.centre = centre(reader, start);
-  element.arc.column = control_.report.place.column;
+  element.arc.centre = centre(executor.path, reader, start);
+  element.arc.column = executor.control.report.place.column;
   element.arc.radius_tolerance_mm = kRadiusTolerance;
-  move(reader, words, element);
+  move(executor, reader, words, element);
 }
 
 /// CR X Y R DR: R above 0 takes the arc below 180 degrees.
-void Executor::circle_by_radius(BlockReader& reader, size_t start) {
+void circle_by_radius(Executor& executor, BlockReader& reader, size_t start) {
   const MotionWords words =
       read_motion_words(reader, kAxesAllowed | kSenseAllowed | kRadiusAllowed | kAlways);
-  only_plane(reader, words);
+  only_plane(executor.control, reader, words);
   if (!words.radius) reader.fail("missing-word", start, "CR has no R", "CR X+10 Y+20 R+15 DR+");
   Element element;
   element.offset = start;
-  const int turn = sense(reader, words, start);
+  const int turn = sense(executor.control, executor.frames, reader, words, start);
   element.motion = turn > 0 ? Motion::kCounterClockwise : Motion::kClockwise;
-  element.target = target_of(reader, words);
-  element.arc.column = control_.report.place.column;
-  const nc::PlaneAxes axes = nc::axes_of(control_.modal.plane);
-  const Vec3 from = present();
-  Vec3 chord = end_of(element.target) - from;
+  element.target = target_of(executor.control, executor.modes, executor.frames, reader, words);
+  element.arc.column = executor.control.report.place.column;
+  const nc::PlaneAxes axes = nc::axes_of(executor.control.modal.plane);
+  const Vec3 from = present(executor.control, executor.path);
+  Vec3 chord = end_of(executor.control, executor.path, element.target) - from;
   chord[axes.normal] = 0.0;
-  const double radius = plane_scale(reader, start) * control_.modal.mm(words.radius.value),
+  const double radius = plane_scale(executor.control, executor.frames, reader, start) *
+                        executor.control.modal.mm(words.radius.value),
                half = 0.5 * chord.norm();
   if (!chord.allFinite())
     reader.fail("start-unknown", start, "this arc starts at a position that is not known yet",
@@ -166,26 +171,26 @@ void Executor::circle_by_radius(BlockReader& reader, size_t start) {
   const double side = (turn > 0) == (radius > 0.0) ? 1.0 : -1.0;
   element.arc.centre = from + 0.5 * chord + side * height * Vec3::Unit(axes.normal).cross(chord.normalized());
   element.arc.radius_tolerance_mm = kRadiusTolerance;
-  move(reader, words, element);
+  move(executor, reader, words, element);
 }
 
 /// CT X Y: touches the piece before it.
-void Executor::circle_tangential(BlockReader& reader, size_t start) {
+void circle_tangential(Executor& executor, BlockReader& reader, size_t start) {
   const MotionWords words = read_motion_words(reader, kAxesAllowed | kAlways);
-  only_plane(reader, words);
+  only_plane(executor.control, reader, words);
   Element element;
   element.offset = start;
-  element.target = target_of(reader, words);
-  const nc::PlaneAxes axes = nc::axes_of(control_.modal.plane);
-  if (!tangent_ || held_)
+  element.target = target_of(executor.control, executor.modes, executor.frames, reader, words);
+  const nc::PlaneAxes axes = nc::axes_of(executor.control.modal.plane);
+  if (!executor.path.tangent || executor.path.held)
     reader.fail("missing-tangent", start,
-                held_ ? "CT cannot follow a corner" : "CT follows no piece of contour",
+                executor.path.held ? "CT cannot follow a corner" : "CT follows no piece of contour",
                 "write a straight piece or an arc before it");
-  plane_scale(reader, start);
-  const Vec3 from = present();
-  Vec3 chord = end_of(element.target) - from;
+  plane_scale(executor.control, executor.frames, reader, start);
+  const Vec3 from = present(executor.control, executor.path);
+  Vec3 chord = end_of(executor.control, executor.path, element.target) - from;
   chord[axes.normal] = 0.0;
-  const Vec3 left = Vec3::Unit(axes.normal).cross(*tangent_);
+  const Vec3 left = Vec3::Unit(axes.normal).cross(*executor.path.tangent);
   const double off = chord.dot(left);
   if (!(std::abs(off) > 1e-9 * chord.norm()))
     reader.fail("bad-arc", start, "the end of CT lies straight ahead or where it starts: there is no arc",
@@ -193,32 +198,32 @@ void Executor::circle_tangential(BlockReader& reader, size_t start) {
   const double radius = chord.squaredNorm() / (2.0 * off);
   element.motion = radius > 0.0 ? Motion::kCounterClockwise : Motion::kClockwise;
   element.arc.centre = from + radius * left;
-  element.arc.column = control_.report.place.column;
-  move(reader, words, element);
+  element.arc.column = executor.control.report.place.column;
+  move(executor, reader, words, element);
 }
 
 /// CP PA+90 DR+, CP IPA-720 IZ-10 DR-: about the pole, IPA may be many turns.
-void Executor::polar_circle(BlockReader& reader, size_t start) {
+void polar_circle(Executor& executor, BlockReader& reader, size_t start) {
   const MotionWords words = read_motion_words(reader, kAxesAllowed | kPolarAllowed | kSenseAllowed | kAlways);
-  const nc::PlaneAxes axes = nc::axes_of(control_.modal.plane);
+  const nc::PlaneAxes axes = nc::axes_of(executor.control.modal.plane);
   if (words.any_rotary() || words.polar_radius || words.axes[static_cast<size_t>(axes.first)] ||
       words.axes[static_cast<size_t>(axes.second)])
     reader.fail("unexpected-word", start, "CP takes PA, DR and the height alone", "CP IPA+360 IZ+5 DR+");
   if (!words.polar_angle) reader.fail("missing-word", start, "CP has no PA", "CP PA+90 DR+");
-  const int turn = sense(reader, words, start);
-  const Vec3 about = centre(reader, start);
+  const int turn = sense(executor.control, executor.frames, reader, words, start);
+  const Vec3 about = centre(executor.path, reader, start);
   Element element;
   element.offset = start;
   element.motion = turn > 0 ? Motion::kCounterClockwise : Motion::kClockwise;
-  element.target = target_of(reader, words);
-  Vec3 out = present() - about;
+  element.target = target_of(executor.control, executor.modes, executor.frames, reader, words);
+  Vec3 out = present(executor.control, executor.path) - about;
   out[axes.normal] = 0.0;
   if (!out.allFinite())
     reader.fail("start-unknown", start, "this arc starts at a position that is not known yet",
                 "position all axes before it");
   const double angle = words.polar_angle.value;
   double end_deg = angle;
-  const Vec3 written = out.cwiseQuotient(stretch_.factor);
+  const Vec3 written = out.cwiseQuotient(executor.frames.stretch.factor);
   if (words.polar_angle.incremental) {
     if (angle == 0.0 || (angle > 0.0) != (words.sense > 0))
       reader.fail("words-conflict", words.polar_angle.offset, "IPA and DR turn to different sides",
@@ -231,13 +236,14 @@ void Executor::polar_circle(BlockReader& reader, size_t start) {
     element.arc.further_turns = static_cast<int>(turns) - 1;
   }
   const bool whole = words.polar_angle.incremental && std::remainder(angle, 360.0) == 0.0;
-  const Vec3 end = about + (whole ? out : from_pole(written.norm(), end_deg));
+  const Vec3 end =
+      about + (whole ? out : from_pole(executor.control, executor.frames, written.norm(), end_deg));
   element.target.set(axes.first, end[axes.first], false);
   element.target.set(axes.second, end[axes.second], false);
   element.arc.centre = about;
-  element.arc.column = control_.report.place.column;
-  move(reader, words, element);
-  polar_angle_ = {end_deg, start, true, false};
+  element.arc.column = executor.control.report.place.column;
+  move(executor, reader, words, element);
+  executor.path.polar_angle = {end_deg, start, true, false};
 }
 
 }  // namespace swarf::program::nc::heidenhain

@@ -5,11 +5,12 @@
 #include <cmath>
 
 #include "base/units.h"
-#include "program/heidenhain/executor.h"
+#include "program/heidenhain/steps.h"
 
 namespace swarf::program::nc::heidenhain {
 
 using nc::Motion;
+
 using nc::Target;
 
 namespace {
@@ -123,19 +124,18 @@ std::array<Cubic, nc::kAxisWords> cubics(BlockReader& reader, const MotionWords&
   return all;
 }
 
-}  // namespace
-
 /// By how much the tip stands off the programmed point: the point counts from the tip by R and R2 along the
 /// surface normal N, by their deltas alone unless FUNCTION PROG PATH IS CONTOUR:
 /// tip = point + R2 N + (R - R2) N' - R2 T, where N' is the unit part of N across the tool axis T.
-Vec3 Executor::surface_offset(BlockReader& reader, const MotionWords& words, const Vec3& axis, size_t start) {
+Vec3 surface_offset(nc::Control& control, Modes& modes, Orientation& orientation, BlockReader& reader,
+                    const MotionWords& words, const Vec3& axis, size_t start) {
   const Vec3 normal = unit_vector(reader, words.normal, "N");
-  const NcTool* tool = nc::active_tool(control_);
-  if (path_is_contour_ && tool == nullptr)
+  const NcTool* tool = nc::active_tool(control);
+  if (orientation.path_is_contour && tool == nullptr)
     reader.fail("compensation-no-tool", start,
                 "the path is the contour, and no tool of the table is in the spindle", "TOOL CALL 5 Z");
-  const double radius = (path_is_contour_ ? 0.5 * tool->diameter_mm : 0.0) + delta_radius_;
-  const double corner = (path_is_contour_ ? tool->corner_radius_mm : 0.0) + delta_corner_;
+  const double radius = (orientation.path_is_contour ? 0.5 * tool->diameter_mm : 0.0) + modes.delta_radius;
+  const double corner = (orientation.path_is_contour ? tool->corner_radius_mm : 0.0) + modes.delta_corner;
   const Vec3 across = normal - normal.dot(axis) * axis;
   Vec3 off = corner * (normal - axis);
   if (across.norm() > 1e-9) off += (radius - corner) * across.normalized();
@@ -152,69 +152,75 @@ Vec3 Executor::surface_offset(BlockReader& reader, const MotionWords& words, con
   return off;
 }
 
+}  // namespace
+
 /// LN X Y Z NX NY NZ TX TY TZ.
-void Executor::surface_line(BlockReader& reader, size_t start) {
+void surface_line(Executor& executor, BlockReader& reader, size_t start) {
   const MotionWords words = read_motion_words(reader, kAxesAllowed | kVectorsAllowed | kAlways | kTcpAllowed);
-  no_open_corner(reader, start);
+  no_open_corner(executor.path, reader, start);
   if (words.compensation && *words.compensation != nc::Compensation::kOff)
     reader.fail("unsupported-word", start, "RL and RR in LN (peripheral milling) are not supported",
                 "write R0");
-  need_true_size(reader, start, "LN");
-  if (words.has_function(128)) set_tcpm(true, false, false, false);
+  need_true_size(executor.frames, reader, start, "LN");
+  if (words.has_function(128)) set_tcpm(executor.control, executor.orientation, true, false, false, false);
   Element element;
   element.offset = start;
-  element.target = target_of(reader, words);
-  Vec3 axis = nc::tool_axis_P(control_);
+  element.target = target_of(executor.control, executor.modes, executor.frames, reader, words);
+  Vec3 axis = nc::tool_axis_P(executor.control);
   if (any(words.tool)) {
     if (words.any_rotary())
       reader.fail("words-conflict", start, "LN has rotary words and a tool vector", "write one of them");
     axis = unit_vector(reader, words.tool, "T");
-    if (!tcpm_)
+    if (!executor.orientation.tcpm)
       reader.fail("vector-without-tcp", words.tool[0].offset, "a tool vector without M128 or FUNCTION TCPM",
                   "write M128 before it");
-    turn_by(nc::Tcp::kVector);
+    turn_by(executor.control, executor.orientation, nc::Tcp::kVector);
     element.target.axis_P = axis;
   } else if (words.any_rotary()) {
-    if (!tcpm_ || spatial_)
+    if (!executor.orientation.tcpm || executor.orientation.spatial)
       reader.fail("unsupported-word", start, "rotary words in LN are supported with M128 alone",
                   "write the tool vector TX TY TZ");
-    turn_by(nc::Tcp::kAxes);
+    turn_by(executor.control, executor.orientation, nc::Tcp::kAxes);
   }
   if (any(words.normal)) {
-    const Vec3 off = surface_offset(reader, words, axis, start);
+    const Vec3 off =
+        surface_offset(executor.control, executor.modes, executor.orientation, reader, words, axis, start);
     for (int i = 0; i < 3; ++i) element.target.value[static_cast<size_t>(i)] += off[i];
   }
   if (!element.target.any())
     reader.fail("missing-word", start, "LN has no end", "LN X+1 Y+2 Z+3 TX+0 TY+0 TZ+1");
-  move(reader, words, element);
+  move(executor, reader, words, element);
 }
 
 /// SPL X Y .. K3X K2X K1X ..: each axis along K3 t^3 + K2 t^2 + K1 t + end, t from 1 to 0.
-void Executor::spline(BlockReader& reader, size_t start) {
+void spline(Executor& executor, BlockReader& reader, size_t start) {
   SplineWords spline;
   const MotionWords words = read_motion_words(
       reader, kAxesAllowed | kCoefficientsAllowed | kFeedAllowed | kFunctionsAllowed, &spline);
-  no_open_corner(reader, start);
-  need_true_size(reader, start, "SPL");
-  if (control_.contour.side() != nc::Compensation::kOff)
+  no_open_corner(executor.path, reader, start);
+  need_true_size(executor.frames, reader, start, "SPL");
+  if (executor.control.contour.side() != nc::Compensation::kOff)
     reader.fail("unsupported-word", start, "SPL while RL or RR is active is not supported",
                 "write R0 before it");
-  if (words.any_rotary() && (spatial_ || (tilted_ && !tcpm_)))
+  if (words.any_rotary() &&
+      (executor.orientation.spatial || (executor.orientation.tilted && !executor.orientation.tcpm)))
     reader.fail("unsupported-word", start, "rotary words of SPL are not supported here",
                 "use FUNCTION TCPM AXIS POS, without a tilted plane");
   Motion motion = Motion::kFeed;
-  const double feed = feed_of(reader, words, motion);
+  const double feed = feed_of(executor.control, executor.modes, reader, words, motion);
   if (motion == Motion::kRapid)
     reader.fail("unexpected-word", words.feed_value.offset, "SPL is not moved at FMAX",
                 "write F with a value");
-  functions_before(reader, words);
-  if (words.any_rotary()) turn_by(nc::Tcp::kAxes);
-  const CubicCurve curve(cubics(reader, words, spline, target_of(reader, words), start),
-                         nc::position(control_));
-  if (feed > 0.0) set_feed(feed, !words.any_linear());
-  nc::curve(control_, curve, kChordToleranceMm);
-  tangent_.reset();
-  finish_motion(reader, words);
+  functions_before(executor, reader, words);
+  if (words.any_rotary()) turn_by(executor.control, executor.orientation, nc::Tcp::kAxes);
+  const CubicCurve curve(
+      cubics(reader, words, spline,
+             target_of(executor.control, executor.modes, executor.frames, reader, words), start),
+      nc::position(executor.control));
+  if (feed > 0.0) set_feed(executor.control, feed, !words.any_linear());
+  nc::curve(executor.control, curve, kChordToleranceMm);
+  executor.path.tangent.reset();
+  finish_motion(executor, reader, words);
 }
 
 }  // namespace swarf::program::nc::heidenhain

@@ -5,10 +5,9 @@
 #include <cmath>
 
 #include "base/units.h"
-#include "program/heidenhain/executor.h"
+#include "program/heidenhain/steps.h"
 
 namespace swarf::program::nc::heidenhain {
-
 namespace {
 
 struct CycleParameters {
@@ -46,96 +45,54 @@ bool known_cycle(int number) {
          std::find(std::begin(kOld), std::end(kOld), number) != std::end(kOld);
 }
 
-}  // namespace
-
-void Executor::cycle_definition(BlockReader& reader) {
-  reader.done();
-  const size_t offset = reader.offset();
-  CycleNumber number;
-  number.number = static_cast<int>(reader.whole_number_before_point(9999));
-  if (reader.peek() == '.') {
-    reader.skip();
-    number.part = static_cast<int>(reader.whole_number(99));
-  }
-  const int old[] = {1, 2, 7, 8, 9, 10, 11, 13, 19, 26, 32};
-  const bool is_old = std::find(std::begin(old), std::end(old), number.number) != std::end(old);
-  if (is_old) {
-    if (number.part < 0)
-      reader.fail("missing-word", offset, "this cycle is written in parts", "CYCL DEF 7.0, CYCL DEF 7.1");
-    return old_cycle(reader, number, offset);
-  }
-  for (const CycleParameters& one : parameter_cycles()) {
-    if (one.number == number.number) return parameter_cycle(reader, number.number, offset);
-  }
-  if (control_.report.take_builder_word(fmt::format("CYCL DEF {}", number.number)))
-    return builders_cycle(reader);
-  if (known_cycle(number.number))
-    reader.fail("unsupported-word", offset,
-                fmt::format("cycle {} is known, but not supported here", number.number),
-                "1, 2, 7 to 11, 13, 19, 26, 32, 200 to 208, 220, 221, 240, 241 and 247 are");
-  reader.fail("unknown-word", offset, fmt::format("there is no cycle {}", number.number),
-              "CYCL DEF 200; a cycle of the machine's builder that moves nothing is named in builder_words");
-}
-
 /// Its Q parameters have their values from then on, as those of every cycle.
-void Executor::builders_cycle(BlockReader& reader) {
+void builders_cycle(Parameters& parameters, BlockReader& reader) {
   while (!reader.done() && !reader.parameter_follows()) reader.skip();
   while (!reader.done()) {
     const Parameters::Name name = Parameters::name(reader);
     if (!reader.take_char('=')) reader.fail("missing-word", reader.offset(), "'=' is missing here", "Q200=2");
-    parameters_.set(name, reader.value());
+    parameters.set(name, reader.value());
   }
 }
 
-void Executor::old_cycle(BlockReader& reader, CycleNumber number, size_t offset) {
-  if (number.part == 0) {
-    reader.rest();  // the cycle's name, in the language of the control
-    open_cycle_ = number.number;
-    if (number.number <= 2) cycle_ = Cycle{number.number, {}, offset};
+/// 19.1 A+0 B+45 C+0: spatial angles; without words, no tilted plane.
+void tilt_cycle(Executor& executor, BlockReader& reader) {
+  reader.done();
+  const size_t start = reader.offset();
+  if (reader.block().text.find("ABST") != std::string::npos ||
+      reader.block().text.find("SET UP") != std::string::npos)
+    reader.fail("unsupported-word", start, "whether cycle 19 turns the axes itself depends on the machine",
+                "PLANE SPATIAL SPA+0 SPB+45 SPC+0 MOVE DIST50 F2000");
+  const MotionWords words = read_motion_words(reader, kAxesAllowed | kFeedAllowed);
+  const bool added = words.axes[3].incremental || words.axes[4].incremental || words.axes[5].incremental;
+  if (words.any_linear() || words.feed != FeedWord::kNone || added)
+    reader.fail("unsupported-word", start, "cycle 19 is supported with absolute A, B and C alone",
+                "CYCL DEF 19.1 A+0 B+45 C+0");
+  const Mat3 R = spatial_rotation(words.axes[3].value, words.axes[4].value, words.axes[5].value);
+  tilt(executor, reader, R, words.any_rotary() && !R.isIdentity(0.0), start);
+}
+
+/// 32.1 T0.05, 32.2 HSC-MODE:1 TA0.5; 32.1 alone: the control's own tolerance.
+void tolerance(nc::Control& control, BlockReader& reader, int part) {
+  if (part > 1) {
+    control.report.without_effect("CYCL DEF 32.2");
+    control.report.note("CYCL DEF 32.2", reader.rest());
     return;
   }
-  if (open_cycle_ != number.number)
-    reader.fail("bad-cycle", offset,
-                fmt::format("part {}.{} follows no {}.0", number.number, number.part, number.number),
-                "write the parts of a cycle one after the other");
-  switch (number.number) {
-    case 7:
-      return datum_shift(reader);
-    case 9: {
-      if (!reader.value_follows()) reader.take_letters();
-      if (reader.take_char('.')) reader.take_letters();
-      reader.done();
-      const size_t at = reader.offset();
-      const double seconds = reader.value();
-      reader.expect_end();
-      if (!(seconds >= 0.0 && seconds <= 30000.0))
-        reader.fail("out-of-range", at, fmt::format("{:g} s is no dwell", seconds), "0 to 30000 s");
-      return nc::dwell(control_.report, control_.modal, seconds);
-    }
-    case 8:
-      return mirror_image(reader);
-    case 10:
-      return rotation(reader);
-    case 11:
-      return scaling(reader);
-    case 26:
-      return axis_scaling(reader);
-    case 13:  // the spindle turns to an angle
-      control_.report.without_effect("CYCL DEF 13");
-      reader.rest();
-      return;
-    case 19:
-      return tilt_cycle(reader);
-    case 32:
-      return tolerance(reader, number.part);
-    default:
-      return old_drilling(reader, number);
+  double width = 0.0;
+  if (!reader.done()) {
+    const size_t start = reader.offset();
+    if (!reader.take("T")) refuse_word(reader, start, reader.take_letters());
+    width = reader.value();
+    if (!(width > 0.0)) reader.fail("out-of-range", start, "the tolerance is not above zero", "T0.05");
+    reader.expect_end();
   }
+  control.modal.corner_tolerance_mm = control.modal.mm(width);
 }
 
 /// Cycles 1 and 2: SET UP, DEPTH, PECKG, DWELL, F, or as German controls write them: ABST, TIEFE, ZUSTLG,
 /// V.ZEIT; kept under the numbers of cycle 200.
-void Executor::old_drilling(BlockReader& reader, CycleNumber number) {
+void old_drilling(Drilling& drilling, BlockReader& reader, CycleNumber number) {
   reader.done();
   const size_t start = reader.offset();
   const std::string word(reader.take_letters());
@@ -149,12 +106,77 @@ void Executor::old_drilling(BlockReader& reader, CycleNumber number) {
   if (key == 0) refuse_word(reader, start, word);
   const double value = reader.value();
   reader.expect_end();
-  if (!cycle_->q.emplace(key, value).second)
+  if (!drilling.cycle->q.emplace(key, value).second)
     reader.fail("word-twice", start, fmt::format("{} stands twice in this cycle", word), "keep one of them");
 }
 
+void old_cycle(Executor& executor, BlockReader& reader, CycleNumber number, size_t offset) {
+  if (number.part == 0) {
+    reader.rest();  // the cycle's name, in the language of the control
+    executor.drilling.open_cycle = number.number;
+    if (number.number <= 2) executor.drilling.cycle = Cycle{number.number, {}, offset};
+    return;
+  }
+  if (executor.drilling.open_cycle != number.number)
+    reader.fail("bad-cycle", offset,
+                fmt::format("part {}.{} follows no {}.0", number.number, number.part, number.number),
+                "write the parts of a cycle one after the other");
+  switch (number.number) {
+    case 7:
+      return datum_shift(executor, reader);
+    case 9: {
+      if (!reader.value_follows()) reader.take_letters();
+      if (reader.take_char('.')) reader.take_letters();
+      reader.done();
+      const size_t at = reader.offset();
+      const double seconds = reader.value();
+      reader.expect_end();
+      if (!(seconds >= 0.0 && seconds <= 30000.0))
+        reader.fail("out-of-range", at, fmt::format("{:g} s is no dwell", seconds), "0 to 30000 s");
+      return nc::dwell(executor.control.report, executor.control.modal, seconds);
+    }
+    case 8:
+      return mirror_image(executor, reader);
+    case 10:
+      return rotation(executor, reader);
+    case 11:
+      return scaling(executor, reader);
+    case 26:
+      return axis_scaling(executor, reader);
+    case 13:  // the spindle turns to an angle
+      executor.control.report.without_effect("CYCL DEF 13");
+      reader.rest();
+      return;
+    case 19:
+      return tilt_cycle(executor, reader);
+    case 32:
+      return tolerance(executor.control, reader, number.part);
+    default:
+      return old_drilling(executor.drilling, reader, number);
+  }
+}
+
+/// Cycle 247: the work offset with this number. The control ends shift, mirror image, rotation and scaling
+/// with it.
+void preset(Executor& executor, BlockReader& reader, const Cycle& cycle) {
+  const double number = cycle.q.at(339);
+  const bool given =
+      number >= 1.0 && number == std::floor(number) && number < 1e6 &&
+      (number == 1.0 || executor.control.setup.work_offsets.count(static_cast<int>(number)) > 0);
+  if (!given)
+    reader.fail("unknown-offset", cycle.offset, fmt::format("there is no preset {:g}", number),
+                "give the work offset with this number in the scene");
+  if (executor.orientation.tilted)
+    reader.fail("unsupported-word", cycle.offset,
+                "a preset while the working plane is tilted is not supported",
+                "write PLANE RESET STAY before it");
+  nc::set_work_offset(executor.control, static_cast<int>(number));
+  executor.frames.outer = Level();
+  update_frame(executor);
+}
+
 /// CYCL DEF 200 NAME Q200=2 Q201=-20 ...; the values hold as Q parameters too.
-void Executor::parameter_cycle(BlockReader& reader, int number, size_t offset) {
+void parameter_cycle(Executor& executor, BlockReader& reader, int number, size_t offset) {
   const auto& all = parameter_cycles();
   const auto& meant =
       *std::find_if(all.begin(), all.end(), [&](const CycleParameters& one) { return one.number == number; });
@@ -179,7 +201,7 @@ void Executor::parameter_cycle(BlockReader& reader, int number, size_t offset) {
       if (name.number != 208 && name.number != 253)
         reader.fail("unexpected-word", at, "FMAX is no value of this parameter", "write a number");
     } else if (reader.take("FAUTO") || reader.take("AUTO")) {
-      value = tool_feed_;
+      value = executor.modes.tool_feed;
     } else {
       value = reader.value();
     }
@@ -187,84 +209,62 @@ void Executor::parameter_cycle(BlockReader& reader, int number, size_t offset) {
       reader.fail("word-twice", start,
                   fmt::format("{} stands twice in this cycle", Parameters::text_of(name)),
                   "keep one of them");
-    parameters_.set_q(name.number, value);
+    executor.parameters.set_q(name.number, value);
   }
   for (const int needed : meant.needed) {
     if (cycle.q.count(needed) == 0)
       reader.fail("missing-word", offset, fmt::format("cycle {} needs Q{}", number, needed),
                   fmt::format("Q{}=...", needed));
   }
-  if (number == 247) return preset(reader, cycle);
-  if (number == 220 || number == 221) return pattern_cycle(reader, cycle);
-  cycle_ = cycle;
-  modal_call_ = false;
+  if (number == 247) return preset(executor, reader, cycle);
+  if (number == 220 || number == 221) return pattern_cycle(executor, reader, cycle);
+  executor.drilling.cycle = cycle;
+  executor.drilling.modal_call = false;
 }
 
-/// 19.1 A+0 B+45 C+0: spatial angles; without words, no tilted plane.
-void Executor::tilt_cycle(BlockReader& reader) {
+}  // namespace
+
+void cycle_definition(Executor& executor, BlockReader& reader) {
   reader.done();
-  const size_t start = reader.offset();
-  if (reader.block().text.find("ABST") != std::string::npos ||
-      reader.block().text.find("SET UP") != std::string::npos)
-    reader.fail("unsupported-word", start, "whether cycle 19 turns the axes itself depends on the machine",
-                "PLANE SPATIAL SPA+0 SPB+45 SPC+0 MOVE DIST50 F2000");
-  const MotionWords words = read_motion_words(reader, kAxesAllowed | kFeedAllowed);
-  const bool added = words.axes[3].incremental || words.axes[4].incremental || words.axes[5].incremental;
-  if (words.any_linear() || words.feed != FeedWord::kNone || added)
-    reader.fail("unsupported-word", start, "cycle 19 is supported with absolute A, B and C alone",
-                "CYCL DEF 19.1 A+0 B+45 C+0");
-  const Mat3 R = spatial_rotation(words.axes[3].value, words.axes[4].value, words.axes[5].value);
-  tilt(reader, R, words.any_rotary() && !R.isIdentity(0.0), start);
-}
-
-/// 32.1 T0.05, 32.2 HSC-MODE:1 TA0.5; 32.1 alone: the control's own tolerance.
-void Executor::tolerance(BlockReader& reader, int part) {
-  if (part > 1) {
-    control_.report.without_effect("CYCL DEF 32.2");
-    control_.report.note("CYCL DEF 32.2", reader.rest());
-    return;
+  const size_t offset = reader.offset();
+  CycleNumber number;
+  number.number = static_cast<int>(reader.whole_number_before_point(9999));
+  if (reader.peek() == '.') {
+    reader.skip();
+    number.part = static_cast<int>(reader.whole_number(99));
   }
-  double width = 0.0;
-  if (!reader.done()) {
-    const size_t start = reader.offset();
-    if (!reader.take("T")) refuse_word(reader, start, reader.take_letters());
-    width = reader.value();
-    if (!(width > 0.0)) reader.fail("out-of-range", start, "the tolerance is not above zero", "T0.05");
-    reader.expect_end();
+  const int old[] = {1, 2, 7, 8, 9, 10, 11, 13, 19, 26, 32};
+  const bool is_old = std::find(std::begin(old), std::end(old), number.number) != std::end(old);
+  if (is_old) {
+    if (number.part < 0)
+      reader.fail("missing-word", offset, "this cycle is written in parts", "CYCL DEF 7.0, CYCL DEF 7.1");
+    return old_cycle(executor, reader, number, offset);
   }
-  control_.modal.corner_tolerance_mm = control_.modal.mm(width);
-}
-
-/// Cycle 247: the work offset with this number. The control ends shift, mirror image, rotation and scaling
-/// with it.
-void Executor::preset(BlockReader& reader, const Cycle& cycle) {
-  const double number = cycle.q.at(339);
-  const bool given = number >= 1.0 && number == std::floor(number) && number < 1e6 &&
-                     (number == 1.0 || control_.setup.work_offsets.count(static_cast<int>(number)) > 0);
-  if (!given)
-    reader.fail("unknown-offset", cycle.offset, fmt::format("there is no preset {:g}", number),
-                "give the work offset with this number in the scene");
-  if (tilted_)
-    reader.fail("unsupported-word", cycle.offset,
-                "a preset while the working plane is tilted is not supported",
-                "write PLANE RESET STAY before it");
-  nc::set_work_offset(control_, static_cast<int>(number));
-  outer_ = Level();
-  update_frame();
+  for (const CycleParameters& one : parameter_cycles()) {
+    if (one.number == number.number) return parameter_cycle(executor, reader, number.number, offset);
+  }
+  if (executor.control.report.take_builder_word(fmt::format("CYCL DEF {}", number.number)))
+    return builders_cycle(executor.parameters, reader);
+  if (known_cycle(number.number))
+    reader.fail("unsupported-word", offset,
+                fmt::format("cycle {} is known, but not supported here", number.number),
+                "1, 2, 7 to 11, 13, 19, 26, 32, 200 to 208, 220, 221, 240, 241 and 247 are");
+  reader.fail("unknown-word", offset, fmt::format("there is no cycle {}", number.number),
+              "CYCL DEF 200; a cycle of the machine's builder that moves nothing is named in builder_words");
 }
 
 /// CYCL CALL M3, CYCL CALL POS X+10 Y+20 Z+0 FMAX, CYCL CALL PAT FMAX.
-void Executor::cycle_call(BlockReader& reader, size_t start) {
+void cycle_call(Executor& executor, BlockReader& reader, size_t start) {
   const bool pattern = reader.take("PAT"), at_position = !pattern && reader.take("POS");
   const unsigned feeds = pattern || at_position ? unsigned{kFeedAllowed} : 0u;
   const MotionWords words =
       read_motion_words(reader, kFunctionsAllowed | feeds | (at_position ? unsigned{kAxesAllowed} : 0u));
-  functions_before(reader, words);
+  functions_before(executor, reader, words);
   if (pattern) {
     nc::Motion motion = nc::Motion::kFeed;
-    const double feed = feed_of(reader, words, motion);
-    call_pattern(reader, motion, feed, start);
-    return functions_after(reader, words.functions);
+    const double feed = feed_of(executor.control, executor.modes, reader, words, motion);
+    call_pattern(executor, reader, motion, feed, start);
+    return functions_after(executor, reader, words.functions);
   }
   if (at_position) {
     if (words.any_rotary() || words.axes[2])
@@ -272,16 +272,16 @@ void Executor::cycle_call(BlockReader& reader, size_t start) {
                   "the height is the cycle's Q203");
     Element element;
     element.offset = start;
-    element.target = target_of(reader, words);
-    element.place = control_.report.place;
-    element.feed = feed_of(reader, words, element.motion);
+    element.target = target_of(executor.control, executor.modes, executor.frames, reader, words);
+    element.place = executor.control.report.place;
+    element.feed = feed_of(executor.control, executor.modes, reader, words, element.motion);
     element.target.column = element.place.column;
-    element.from = present();
-    element.to = end_of(element.target);
-    if (element.target.any()) emit(element);
+    element.from = present(executor.control, executor.path);
+    element.to = end_of(executor.control, executor.path, element.target);
+    if (element.target.any()) emit(executor, element);
   }
-  run_cycle(reader, start);
-  functions_after(reader, words.functions);
+  run_cycle(executor, reader, start);
+  functions_after(executor, reader, words.functions);
 }
 
 }  // namespace swarf::program::nc::heidenhain

@@ -1,8 +1,7 @@
-// How Heidenhain conversational programs are recognised and run.
+// How Heidenhain conversational programs are recognised.
 #include <fmt/format.h>
 
 #include "program/heidenhain/dialect.h"
-#include "program/heidenhain/executor.h"
 
 namespace swarf::program::nc::heidenhain {
 namespace {
@@ -29,10 +28,6 @@ Evidence evidence(std::string_view head, std::string_view extension) {
   }
   if (extension == ".h") return {1, "the ending .h"};
   return {};
-}
-
-void run(const std::string& path, Control& control) {
-  Executor(control).run(path);
 }
 
 }  // namespace swarf::program::nc::heidenhain

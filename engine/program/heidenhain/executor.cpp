@@ -1,148 +1,43 @@
-#include "program/heidenhain/executor.h"
+#include "program/heidenhain/dialect.h"
+#include "program/heidenhain/steps.h"
 
 #include <fmt/format.h>
 
 namespace swarf::program::nc::heidenhain {
+namespace {
 
-Executor::Executor(nc::Control& control) : control_(control), flow_(control, parameters_) {
-  control_.report.words = {
-      "R0", "L .. FMAX", "L with F", "CC", "M136, FU", "TOOL CALL 5 Z S1000, then M3", "TOOL CALL"};
-  control_.modal.feed_rule = nc::FeedRule::kAllAxes;
-  control_.contour.set_entry(nc::CompensationEntry::kAcrossNext);
+void assignment(Parameters& parameters, BlockReader& reader) {
+  const Parameters::Name name = Parameters::name(reader);
+  if (!reader.take_char('=')) {
+    reader.done();
+    reader.fail("missing-word", reader.offset(), "'=' is missing here", "Q1 = Q2 + 10");
+  }
+  parameters.assign(reader, name);
 }
 
-void Executor::run(const std::string& path) {
-  flow_.open(path);
-  while (const BlockText* text = flow_.next()) {
-    BlockReader reader(*text, control_, parameters_);
-    block(reader);
-  }
-  nc::finish(control_);
-}
-
-void Executor::block(BlockReader& reader) {
-  reader.done();
-  const size_t start = reader.offset();
-  const nc::Place place = reader.place_of(start);
-  control_.report.at(place.file, place.line, place.column);
-  const std::string word(reader.letters());
-  if (open_cycle_ != 0 && word != "CYCL") open_cycle_ = 0;
-  if (!begun_ && word != "BEGIN") {
-    reader.fail("missing-begin", start, "the program does not start with BEGIN PGM",
-                "BEGIN PGM NAME MM (or INCH)");
-  }
-  struct MotionBlock {
-    std::string_view word;
-    void (Executor::*execute)(BlockReader&, size_t);
-  };
-  static constexpr MotionBlock kMotions[] = {{"L", &Executor::line},
-                                             {"LN", &Executor::surface_line},
-                                             {"LP", &Executor::polar_line},
-                                             {"C", &Executor::circle},
-                                             {"CR", &Executor::circle_by_radius},
-                                             {"CT", &Executor::circle_tangential},
-                                             {"CP", &Executor::polar_circle},
-                                             {"SPL", &Executor::spline},
-                                             {"APPR", &Executor::approach},
-                                             {"DEP", &Executor::depart}};
-  for (const MotionBlock& one : kMotions) {
-    if (one.word != word) continue;
-    reader.take_letters();
-    return (this->*one.execute)(reader, start);
-  }
-  if (word == "RND" || word == "CHF") {
-    reader.take_letters();
-    return corner(reader, word == "RND", start);
-  }
-  if (word != "CC") no_open_corner(reader, start);
-  if (word == "Q" || word == "QL" || word == "QR" || word == "QS") return assignment(reader);
-  if (flow_.statement(reader)) return;
-  reader.take_letters();
-  if (!statement(reader, word, start))
-    refuse_word(reader, start, word.empty() ? std::string(1, reader.peek()) : word);
-}
-
-bool Executor::statement(BlockReader& reader, std::string_view word, size_t start) {
-  if (word == "CC") {
-    pole(reader);
-  } else if (word == "BEGIN") {
-    begin_program(reader, start);
-  } else if (word == "END") {
-    if (!reader.take("PGM")) reader.fail("missing-word", start, "END without PGM", "END PGM NAME MM");
-    reader.rest();
-    flow_.end_of_program(reader);
-  } else if (word == "FN") {
-    function_number(reader, start);
-  } else if (word == "TOOL") {
-    if (reader.take("CALL")) {
-      tool_call(reader);
-    } else if (reader.take("DEF")) {
-      tool_ready(reader);
-    } else {
-      reader.fail("missing-word", start, "TOOL without CALL or DEF", "TOOL CALL 5 Z S3000");
-    }
-  } else if (word == "BLK") {
-    blank_form(reader);
-  } else if (word == "CYCL") {
-    if (reader.take("DEF")) {
-      cycle_definition(reader);
-    } else if (reader.take("CALL")) {
-      cycle_call(reader, start);
-    } else {
-      reader.fail("missing-word", start, "CYCL without DEF or CALL", "CYCL DEF 200, CYCL CALL");
-    }
-  } else if (word == "PATTERN") {
-    pattern_definition(reader, start);
-  } else if (word == "PLANE") {
-    plane(reader, start);
-  } else if (word == "FUNCTION") {
-    function_word(reader, start);
-  } else if (word == "TRANS") {
-    transform(reader, start);
-  } else if (word == "STOP" || word == "M") {
-    if (word == "STOP") control_.report.without_effect("STOP");
-    if (word == "M") reader.move_to(start);
-    const MotionWords words = read_motion_words(reader, kFunctionsAllowed | kTcpAllowed);
-    if (words.has_function(136) || words.has_function(137)) feed_ = 0.0;
-    functions_before(reader, words);
-    finish_motion(reader, words);
-  } else {
-    return false;
-  }
-  return true;
-}
-
-void Executor::begin_program(BlockReader& reader, size_t start) {
+void begin_program(nc::Control& control, Parameters& parameters, Modes& modes, BlockReader& reader,
+                   size_t start) {
   if (!reader.take("PGM"))
     reader.fail("missing-word", start, "BEGIN without PGM", "BEGIN PGM NAME MM (or INCH)");
   const std::string_view rest = reader.rest();
   const bool inch = rest.ends_with(" INCH"), mm = rest.ends_with(" MM");
   if (!inch && !mm)
     reader.fail("missing-word", start, "BEGIN PGM says neither MM nor INCH", "BEGIN PGM NAME MM (or INCH)");
-  if (begun_ && control_.modal.inches() != inch) {
+  if (modes.begun && control.modal.inches() != inch) {
     reader.fail("unsupported-word", start, "a called program has the other unit",
                 "write both programs in MM, or both in INCH");
   }
-  begun_ = true;
-  nc::set_inches(control_.modal, inch);
-  parameters_.set_q(113, inch ? 1.0 : 0.0);
+  modes.begun = true;
+  nc::set_inches(control.modal, inch);
+  parameters.set_q(113, inch ? 1.0 : 0.0);
 }
 
-void Executor::assignment(BlockReader& reader) {
-  const Parameters::Name name = Parameters::name(reader);
-  if (!reader.take_char('=')) {
-    reader.done();
-    reader.fail("missing-word", reader.offset(), "'=' is missing here", "Q1 = Q2 + 10");
-  }
-  parameters_.assign(reader, name);
-}
-
-void Executor::function_number(BlockReader& reader, size_t start) {
+void function_number(nc::Control& control, Flow& flow, BlockReader& reader, size_t start) {
   const long number = reader.whole_number(99);
   if (!reader.take_char(':'))
     reader.fail("missing-word", reader.offset(), "':' is missing here", "FN 0: Q1 = +10");
   if (number <= 8 || number == 13) return basic_function(reader, static_cast<int>(number));
-  if (number <= 12) return flow_.conditional(reader, static_cast<int>(number));
+  if (number <= 12) return flow.conditional(reader, static_cast<int>(number));
   if (number == 14) {
     reader.take("ERROR");
     reader.take_char('=');
@@ -154,8 +49,8 @@ void Executor::function_number(BlockReader& reader, size_t start) {
                 "see what the program checks before this block");
   }
   if (number == 16 || number == 38) {
-    control_.report.without_effect(fmt::format("FN {}", number));
-    control_.report.note(fmt::format("FN {}", number), reader.rest());
+    control.report.without_effect(fmt::format("FN {}", number));
+    control.report.note(fmt::format("FN {}", number), reader.rest());
     return;
   }
   if (number >= 15 && number <= 38) {
@@ -163,6 +58,113 @@ void Executor::function_number(BlockReader& reader, size_t start) {
                 "FN 0 to FN 14, FN 16 and FN 38 are");
   }
   reader.fail("unknown-word", start, fmt::format("there is no FN {}", number), "FN 0 to FN 38");
+}
+
+bool statement(Executor& executor, BlockReader& reader, std::string_view word, size_t start) {
+  if (word == "CC") {
+    pole(executor.control, executor.path, executor.frames, reader);
+  } else if (word == "BEGIN") {
+    begin_program(executor.control, executor.parameters, executor.modes, reader, start);
+  } else if (word == "END") {
+    if (!reader.take("PGM")) reader.fail("missing-word", start, "END without PGM", "END PGM NAME MM");
+    reader.rest();
+    executor.flow.end_of_program(reader);
+  } else if (word == "FN") {
+    function_number(executor.control, executor.flow, reader, start);
+  } else if (word == "TOOL") {
+    if (reader.take("CALL")) {
+      tool_call(executor, reader);
+    } else if (reader.take("DEF")) {
+      tool_ready(executor.control, executor.modes, reader);
+    } else {
+      reader.fail("missing-word", start, "TOOL without CALL or DEF", "TOOL CALL 5 Z S3000");
+    }
+  } else if (word == "BLK") {
+    blank_form(executor.control, reader);
+  } else if (word == "CYCL") {
+    if (reader.take("DEF")) {
+      cycle_definition(executor, reader);
+    } else if (reader.take("CALL")) {
+      cycle_call(executor, reader, start);
+    } else {
+      reader.fail("missing-word", start, "CYCL without DEF or CALL", "CYCL DEF 200, CYCL CALL");
+    }
+  } else if (word == "PATTERN") {
+    pattern_definition(executor.control, executor.drilling, reader, start);
+  } else if (word == "PLANE") {
+    plane(executor, reader, start);
+  } else if (word == "FUNCTION") {
+    function_word(executor.control, executor.modes, executor.orientation, reader, start);
+  } else if (word == "TRANS") {
+    transform(executor, reader, start);
+  } else if (word == "STOP" || word == "M") {
+    if (word == "STOP") executor.control.report.without_effect("STOP");
+    if (word == "M") reader.move_to(start);
+    const MotionWords words = read_motion_words(reader, kFunctionsAllowed | kTcpAllowed);
+    if (words.has_function(136) || words.has_function(137)) executor.modes.feed = 0.0;
+    functions_before(executor, reader, words);
+    finish_motion(executor, reader, words);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+void block(Executor& executor, BlockReader& reader) {
+  reader.done();
+  const size_t start = reader.offset();
+  const nc::Place place = reader.place_of(start);
+  executor.control.report.at(place.file, place.line, place.column);
+  const std::string word(reader.letters());
+  if (executor.drilling.open_cycle != 0 && word != "CYCL") executor.drilling.open_cycle = 0;
+  if (!executor.modes.begun && word != "BEGIN") {
+    reader.fail("missing-begin", start, "the program does not start with BEGIN PGM",
+                "BEGIN PGM NAME MM (or INCH)");
+  }
+  struct MotionBlock {
+    std::string_view word;
+    void (*execute)(Executor&, BlockReader&, size_t);
+  };
+  static constexpr MotionBlock kMotions[] = {
+      {"L", line},          {"LN", surface_line},     {"LP", polar_line},
+      {"C", circle},        {"CR", circle_by_radius}, {"CT", circle_tangential},
+      {"CP", polar_circle}, {"SPL", spline},          {"APPR", approach},
+      {"DEP", depart}};
+  for (const MotionBlock& one : kMotions) {
+    if (one.word != word) continue;
+    reader.take_letters();
+    return one.execute(executor, reader, start);
+  }
+  if (word == "RND" || word == "CHF") {
+    reader.take_letters();
+    return corner(executor.control, executor.path, executor.frames, reader, word == "RND", start);
+  }
+  if (word != "CC") no_open_corner(executor.path, reader, start);
+  if (word == "Q" || word == "QL" || word == "QR" || word == "QS")
+    return assignment(executor.parameters, reader);
+  if (executor.flow.statement(reader)) return;
+  reader.take_letters();
+  if (!statement(executor, reader, word, start))
+    refuse_word(reader, start, word.empty() ? std::string(1, reader.peek()) : word);
+}
+
+}  // namespace
+
+Executor::Executor(nc::Control& machine) : control(machine), flow(machine, parameters) {
+  control.report.words = {
+      "R0", "L .. FMAX", "L with F", "CC", "M136, FU", "TOOL CALL 5 Z S1000, then M3", "TOOL CALL"};
+  control.modal.feed_rule = nc::FeedRule::kAllAxes;
+  control.contour.set_entry(nc::CompensationEntry::kAcrossNext);
+}
+
+void run(const std::string& path, nc::Control& control) {
+  Executor executor(control);
+  executor.flow.open(path);
+  while (const BlockText* text = executor.flow.next()) {
+    BlockReader reader(*text, executor.control, executor.parameters);
+    block(executor, reader);
+  }
+  nc::finish(executor.control);
 }
 
 }  // namespace swarf::program::nc::heidenhain

@@ -3,15 +3,32 @@
 
 #include <fmt/format.h>
 
-#include "program/heidenhain/executor.h"
+#include "program/heidenhain/steps.h"
 #include "program/letters/arithmetic.h"
 
 namespace swarf::program::nc::heidenhain {
-
 namespace {
 
 /// Large against rounding: directions are differences of points this far apart.
 constexpr double kProbe = 1024.0;
+
+/// The order in which the control combines transformations is the one in which it lists them; where a program
+/// defines them in another order, the result depends on the control, and is not guessed.
+void need_order(BlockReader& reader, size_t start, bool later_active, const char* what) {
+  if (!later_active) return;
+  reader.fail("unsupported-word", start, fmt::format("{} while a later transformation is active", what),
+              "define them in this order: shift, mirror image, rotation, scaling");
+}
+
+double scale_factor(BlockReader& reader) {
+  reader.done();
+  const size_t at = reader.offset();
+  const double factor = reader.value();
+  if (!(factor >= 1e-6 && factor <= 99.999999))
+    reader.fail("out-of-range", at, fmt::format("{:g} is no scaling factor", factor),
+                "0.000001 to 99.999999");
+  return factor;
+}
 
 }  // namespace
 
@@ -67,32 +84,24 @@ Stretch Level::stretch() const {
   return {mirror.cwiseProduct(scales), mirror.cwiseProduct((Vec3::Ones() - scales).cwiseProduct(centre))};
 }
 
-void Executor::update_frame() {
+void update_frame(Executor& executor) {
   Pose tilted = Pose::Identity();
-  tilted.linear() = tilt_;
-  nc::set_frame(control_, outer_.rigid() * tilted * inner_.rigid());
-  stretch_ = level().stretch();
-  tangent_.reset();
-  centre_.reset();
-}
-
-/// The order in which the control combines transformations is the one in which it lists them; where a program
-/// defines them in another order, the result depends on the control, and is not guessed.
-void Executor::need_order(BlockReader& reader, size_t start, bool later_active, const char* what) {
-  if (!later_active) return;
-  reader.fail("unsupported-word", start, fmt::format("{} while a later transformation is active", what),
-              "define them in this order: shift, mirror image, rotation, scaling");
+  tilted.linear() = executor.orientation.tilt;
+  nc::set_frame(executor.control, executor.frames.outer.rigid() * tilted * executor.frames.inner.rigid());
+  executor.frames.stretch = level(executor.orientation, executor.frames).stretch();
+  executor.path.tangent.reset();
+  executor.path.centre.reset();
 }
 
 /// 7.1 X+10, 7.2 IY-5 ...: in the tilted plane when one is tilted.
-void Executor::datum_shift(BlockReader& reader) {
+void datum_shift(Executor& executor, BlockReader& reader) {
   reader.done();
   if (reader.peek() == '#' || reader.letters() == "D")
     reader.fail("unsupported-word", reader.offset(), "datum tables are not supported",
                 "write the shift as X Y Z");
   const size_t start = reader.offset();
   const MotionWords words = read_motion_words(reader, kAxesAllowed);
-  Vec3 shift = level().shift;
+  Vec3 shift = level(executor.orientation, executor.frames).shift;
   for (int i = 0; i < nc::kAxisWords; ++i) {
     const Amount& word = words.axes[static_cast<size_t>(i)];
     if (!word) continue;
@@ -101,17 +110,19 @@ void Executor::datum_shift(BlockReader& reader) {
       reader.fail("unsupported-word", word.offset, "datum shifts of rotary axes are not supported",
                   "put the angle into the preset");
     }
-    shift[i] = control_.modal.mm(word.value) + (word.incremental ? shift[i] : 0.0);
+    shift[i] = executor.control.modal.mm(word.value) + (word.incremental ? shift[i] : 0.0);
   }
   need_order(reader, start,
-             (level().turn_deg != 0.0 || level().stretches()) && shift != level().shift && !shift.isZero(0.0),
+             (level(executor.orientation, executor.frames).turn_deg != 0.0 ||
+              level(executor.orientation, executor.frames).stretches()) &&
+                 shift != level(executor.orientation, executor.frames).shift && !shift.isZero(0.0),
              "a datum shift");
-  level().shift = shift;
-  update_frame();
+  level(executor.orientation, executor.frames).shift = shift;
+  update_frame(executor);
 }
 
 /// TRANS DATUM AXIS X+10, TRANS MIRROR AXIS X, TRANS ROTATION ROT+30, TRANS SCALE SCL1.5; each with RESET.
-void Executor::transform(BlockReader& reader, size_t start) {
+void transform(Executor& executor, BlockReader& reader, size_t start) {
   const std::string kind(reader.take_letters());
   const bool reset = reader.take("RESET");
   if (reset) reader.expect_end();
@@ -120,27 +131,27 @@ void Executor::transform(BlockReader& reader, size_t start) {
     reader.fail("unsupported-word", start,
                 fmt::format("of TRANS {}, only AXIS and RESET are supported", kind),
                 fmt::format("TRANS {} AXIS X{}", kind, datum ? "+10" : ""));
-  if (datum && !reset) return datum_shift(reader);
-  if (mirror && !reset) return mirror_image(reader);
-  if (kind == "ROTATION" && !reset) return rotation(reader);
-  if (kind == "SCALE" && !reset) return scaling(reader);
+  if (datum && !reset) return datum_shift(executor, reader);
+  if (mirror && !reset) return mirror_image(executor, reader);
+  if (kind == "ROTATION" && !reset) return rotation(executor, reader);
+  if (kind == "SCALE" && !reset) return scaling(executor, reader);
   if (datum) {
-    level().shift = Vec3::Zero();
+    level(executor.orientation, executor.frames).shift = Vec3::Zero();
   } else if (mirror) {
-    level().mirror = Vec3::Ones();
+    level(executor.orientation, executor.frames).mirror = Vec3::Ones();
   } else if (kind == "ROTATION") {
-    level().turn_deg = 0.0;
+    level(executor.orientation, executor.frames).turn_deg = 0.0;
   } else if (kind == "SCALE") {
-    level().scale = 1.0;
+    level(executor.orientation, executor.frames).scale = 1.0;
   } else {
     reader.fail("unsupported-word", start, "of TRANS, only DATUM, MIRROR, ROTATION and SCALE are supported",
                 "TRANS DATUM AXIS X+10");
   }
-  update_frame();
+  update_frame(executor);
 }
 
 /// 8.1 X Y: the axes that are mirrored at the datum; none: as programmed again.
-void Executor::mirror_image(BlockReader& reader) {
+void mirror_image(Executor& executor, BlockReader& reader) {
   reader.done();
   const size_t start = reader.offset();
   Vec3 mirror = Vec3::Ones();
@@ -152,7 +163,7 @@ void Executor::mirror_image(BlockReader& reader) {
     if (axis == std::string::npos)
       refuse_word(reader, at, word.empty() ? std::string(1, reader.peek()) : word);
     const auto index = static_cast<int>(axis);
-    if (index >= 3 || index == nc::axes_of(control_.modal.plane).normal)
+    if (index >= 3 || index == nc::axes_of(executor.control.modal.plane).normal)
       reader.fail("unsupported-word", at, fmt::format("a mirror image of {} is not supported", word),
                   "the axes of the working plane are");
     if (mirror[index] < 0.0)
@@ -160,57 +171,51 @@ void Executor::mirror_image(BlockReader& reader) {
     mirror[index] = -1.0;
   }
   need_order(reader, start,
-             mirror != level().mirror && mirror != Vec3::Ones() &&
-                 (level().turn_deg != 0.0 || level().scales_axes()),
+             mirror != level(executor.orientation, executor.frames).mirror && mirror != Vec3::Ones() &&
+                 (level(executor.orientation, executor.frames).turn_deg != 0.0 ||
+                  level(executor.orientation, executor.frames).scales_axes()),
              "a mirror image");
-  level().mirror = mirror;
-  update_frame();
+  level(executor.orientation, executor.frames).mirror = mirror;
+  update_frame(executor);
 }
 
 /// 10.1 ROT+30, 10.1 IROT+15: about the datum, in the working plane XY.
-void Executor::rotation(BlockReader& reader) {
+void rotation(Executor& executor, BlockReader& reader) {
   reader.done();
   const size_t start = reader.offset();
   const bool added = reader.take("IROT");
   if (!added && !reader.take("ROT")) refuse_word(reader, start, reader.take_letters());
-  const double angle = reader.value() + (added ? level().turn_deg : 0.0);
+  const double angle = reader.value() + (added ? level(executor.orientation, executor.frames).turn_deg : 0.0);
   reader.expect_end();
-  if (control_.modal.plane != nc::Plane::kXY)
+  if (executor.control.modal.plane != nc::Plane::kXY)
     reader.fail("unsupported-word", start, "rotations are supported with the tool axis Z alone",
                 "TOOL CALL 5 Z");
-  need_order(reader, start, angle != level().turn_deg && angle != 0.0 && level().scales_axes(), "a rotation");
-  level().turn_deg = angle;
-  update_frame();
-}
-
-double Executor::scale_factor(BlockReader& reader) {
-  reader.done();
-  const size_t at = reader.offset();
-  const double factor = reader.value();
-  if (!(factor >= 1e-6 && factor <= 99.999999))
-    reader.fail("out-of-range", at, fmt::format("{:g} is no scaling factor", factor),
-                "0.000001 to 99.999999");
-  return factor;
+  need_order(reader, start,
+             angle != level(executor.orientation, executor.frames).turn_deg && angle != 0.0 &&
+                 level(executor.orientation, executor.frames).scales_axes(),
+             "a rotation");
+  level(executor.orientation, executor.frames).turn_deg = angle;
+  update_frame(executor);
 }
 
 /// 11.1 SCL0.995: all three axes, about the datum, and the lengths of cycles.
-void Executor::scaling(BlockReader& reader) {
+void scaling(Executor& executor, BlockReader& reader) {
   reader.done();
   const size_t start = reader.offset();
   if (!reader.take("SCL")) refuse_word(reader, start, reader.take_letters());
   const double factor = scale_factor(reader);
   reader.expect_end();
-  if (factor != 1.0 && level().scales_axes())
+  if (factor != 1.0 && level(executor.orientation, executor.frames).scales_axes())
     reader.fail("unsupported-word", start, "cycles 11 and 26 are active together", "use one of them");
-  level().scale = factor;
-  update_frame();
+  level(executor.orientation, executor.frames).scale = factor;
+  update_frame(executor);
 }
 
 /// 26.1 X1.4 Y0.6 CCX+15 CCY+20: each axis by a factor of its own, about a centre.
-void Executor::axis_scaling(BlockReader& reader) {
+void axis_scaling(Executor& executor, BlockReader& reader) {
   reader.done();
   const size_t start = reader.offset();
-  Level changed = level();
+  Level changed = level(executor.orientation, executor.frames);
   Vec3 centre = Vec3::Zero();
   uint8_t given = 0, centred = 0;
   while (!reader.done()) {
@@ -228,28 +233,30 @@ void Executor::axis_scaling(BlockReader& reader) {
       reader.fail("word-twice", at, fmt::format("{} stands twice in this block", word), "keep one of them");
     seen = static_cast<uint8_t>(seen | (1u << index));
     if (middle) {
-      centre[index] = control_.modal.mm(reader.value());
+      centre[index] = executor.control.modal.mm(reader.value());
     } else {
       changed.axis_scale[index] = scale_factor(reader);
     }
   }
   if (given == 0) reader.fail("missing-word", start, "cycle 26 scales no axis", "CYCL DEF 26.1 X1.4 Y0.6");
   changed.centre = centre;
-  if (changed.scales_axes() && level().scales_axes() && centre != level().centre)
+  if (changed.scales_axes() && level(executor.orientation, executor.frames).scales_axes() &&
+      centre != level(executor.orientation, executor.frames).centre)
     reader.fail("unsupported-word", start, "cycle 26 moves its centre while it is active",
                 "reset it first: CYCL DEF 26.1 X1 Y1");
-  if (changed.scales_axes() && level().scales())
+  if (changed.scales_axes() && level(executor.orientation, executor.frames).scales())
     reader.fail("unsupported-word", start, "cycles 11 and 26 are active together", "use one of them");
   if (!changed.scales_axes()) changed.centre = Vec3::Zero();
-  level() = changed;
-  update_frame();
+  level(executor.orientation, executor.frames) = changed;
+  update_frame(executor);
 }
 
 /// By how much lengths in the working plane grow: arcs, corners and cutter radii need one factor for both
 /// axes.
-double Executor::plane_scale(BlockReader& reader, size_t offset) {
-  const nc::PlaneAxes axes = nc::axes_of(control_.modal.plane);
-  const double first = std::abs(stretch_.factor[axes.first]), second = std::abs(stretch_.factor[axes.second]);
+double plane_scale(nc::Control& control, Frames& frames, BlockReader& reader, size_t offset) {
+  const nc::PlaneAxes axes = nc::axes_of(control.modal.plane);
+  const double first = std::abs(frames.stretch.factor[axes.first]),
+               second = std::abs(frames.stretch.factor[axes.second]);
   if (first != second)
     reader.fail("bad-arc", offset,
                 fmt::format("cycle 26 scales {} by {:g} and {} by {:g}: arcs and corners would be none",
@@ -259,8 +266,8 @@ double Executor::plane_scale(BlockReader& reader, size_t offset) {
 }
 
 /// Words that are not scaled or mirrored here.
-void Executor::need_true_size(BlockReader& reader, size_t offset, const char* what) {
-  if (stretch_.none()) return;
+void need_true_size(Frames& frames, BlockReader& reader, size_t offset, const char* what) {
+  if (frames.stretch.none()) return;
   reader.fail("unsupported-word", offset,
               fmt::format("{} while a mirror image or a scaling is active is not supported", what),
               "end cycles 8, 11 and 26 before it");

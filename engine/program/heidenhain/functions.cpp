@@ -6,11 +6,12 @@
 #include <limits>
 
 #include "base/units.h"
-#include "program/heidenhain/executor.h"
+#include "program/heidenhain/steps.h"
 
 namespace swarf::program::nc::heidenhain {
 
 using nc::Motion;
+
 using nc::Target;
 
 namespace {
@@ -31,9 +32,39 @@ bool executed(int number) {
   return std::find(std::begin(kExecuted), std::end(kExecuted), number) != std::end(kExecuted);
 }
 
+/// M94: whole turns of rotary positions are forgotten; the axis itself stands.
+void reduce_display(nc::Control& control, const MWord& word) {
+  kinematics::AxisValues shift = control.space.shift();
+  const auto position = nc::position(control);
+  for (int slot = nc::kA; slot < nc::kAxisWords; ++slot) {
+    const int axis = control.space.axis_of(static_cast<nc::AxisWord>(slot));
+    const double value = position[static_cast<size_t>(slot)];
+    const bool meant = word.axes == 0 || (word.axes >> slot & 1u) != 0;
+    if (axis >= 0 && meant && std::isfinite(value)) shift[axis] += kTurn * std::floor(value / kTurn + 1e-12);
+  }
+  nc::set_shift(control, shift);
+}
+
+/// M140 MB50 at F of its block, or rapid.
+void retract(nc::Control& control, PathState& path, BlockReader& reader, const MWord& word,
+             const MotionWords& words) {
+  no_open_corner(path, reader, word.offset);
+  if (!control.path.started) {
+    reader.fail("start-unknown", word.offset, "M140 retracts, and the position is not known yet",
+                "position all axes before it");
+  }
+  const bool at_feed = words.feed == FeedWord::kValue && words.feed_value.value > 0.0;
+  const Motion motion = at_feed ? Motion::kFeed : Motion::kRapid;
+  if (at_feed) set_feed(control, words.feed_value.value, false);
+  if (word.max) return retract_by(control, path, std::nullopt, motion);
+  if (!(word.amount.value > 0.0))
+    reader.fail("out-of-range", word.amount.offset, "M140 MB retracts by a way above zero", "M140 MB50");
+  retract_by(control, path, control.modal.mm(word.amount.value), motion);
+}
+
 }  // namespace
 
-void Executor::functions_before(BlockReader& reader, const MotionWords& words) {
+void functions_before(Executor& executor, BlockReader& reader, const MotionWords& words) {
   for (const MWord& word : words.functions) {
     if (unsupported(word.number) || (word.number >= 200 && word.number <= 204)) {
       reader.fail("unsupported-word", word.offset,
@@ -45,104 +76,76 @@ void Executor::functions_before(BlockReader& reader, const MotionWords& words) {
     switch (word.number) {
       case 3:
       case 13:
-        control_.modal.spindle = 1;
+        executor.control.modal.spindle = 1;
         break;
       case 4:
       case 14:
-        control_.modal.spindle = -1;
+        executor.control.modal.spindle = -1;
         break;
       case 94:
-        reduce_display(word);
+        reduce_display(executor.control, word);
         break;
       case 114:
       case 144:
-        compensate_heads(reader, word.offset, true);
+        compensate_heads(executor.control, executor.orientation, reader, word.offset, true);
         break;
       case 116:
       case 117:
-        rotary_feed_mm_ = word.number == 116;
+        executor.modes.rotary_feed_mm = word.number == 116;
         break;
       case 126:
       case 127:
-        shortest_ = word.number == 126;
+        executor.modes.shortest = word.number == 126;
         break;
       case 128:
-        set_tcpm(true, false, false, false);
+        set_tcpm(executor.control, executor.orientation, true, false, false, false);
         break;
       case 136:
       case 137:
-        per_revolution_ = word.number == 136;
-        nc::set_feed_mode(control_.modal,
-                          per_revolution_ ? nc::FeedMode::kPerRevolution : nc::FeedMode::kPerMinute);
+        executor.modes.per_revolution = word.number == 136;
+        nc::set_feed_mode(executor.control.modal, executor.modes.per_revolution ? nc::FeedMode::kPerRevolution
+                                                                                : nc::FeedMode::kPerMinute);
         break;
       case 140:
-        retract(reader, word, words);
+        retract(executor.control, executor.path, reader, word, words);
         break;
       default:
         break;
     }
-    if (word.number == 13 || word.number == 14) control_.report.without_effect("M8");
+    if (word.number == 13 || word.number == 14) executor.control.report.without_effect("M8");
     if (!executed(word.number) && word.number != 13 && word.number != 14) {
-      control_.report.without_effect(fmt::format("M{}", word.number));
-      control_.report.note(fmt::format("M{}", word.number), "");
+      executor.control.report.without_effect(fmt::format("M{}", word.number));
+      executor.control.report.note(fmt::format("M{}", word.number), "");
     }
   }
 }
 
-void Executor::functions_after(BlockReader& reader, const std::vector<MWord>& words) {
+void functions_after(Executor& executor, BlockReader& reader, const std::vector<MWord>& words) {
   for (const MWord& word : words) {
-    if (word.number == 5 || word.number == 2 || word.number == 30) control_.modal.spindle = 0;
-    if (word.number == 129) set_tcpm(false, false, false, false);
-    if (word.number == 115 || word.number == 145) compensate_heads(reader, word.offset, false);
-    if (word.number == 89) modal_call_ = true;
+    if (word.number == 5 || word.number == 2 || word.number == 30) executor.control.modal.spindle = 0;
+    if (word.number == 129) set_tcpm(executor.control, executor.orientation, false, false, false, false);
+    if (word.number == 115 || word.number == 145)
+      compensate_heads(executor.control, executor.orientation, reader, word.offset, false);
+    if (word.number == 89) executor.drilling.modal_call = true;
     if (word.number == 99) {
-      run_cycle(reader, word.offset);
-      modal_call_ = false;
+      run_cycle(executor, reader, word.offset);
+      executor.drilling.modal_call = false;
     }
-    if (word.number == 2 || word.number == 30) flow_.stop(reader, word.offset);
+    if (word.number == 2 || word.number == 30) executor.flow.stop(reader, word.offset);
   }
-}
-
-/// M94: whole turns of rotary positions are forgotten; the axis itself stands.
-void Executor::reduce_display(const MWord& word) {
-  kinematics::AxisValues shift = control_.space.shift();
-  const auto position = nc::position(control_);
-  for (int slot = nc::kA; slot < nc::kAxisWords; ++slot) {
-    const int axis = control_.space.axis_of(static_cast<nc::AxisWord>(slot));
-    const double value = position[static_cast<size_t>(slot)];
-    const bool meant = word.axes == 0 || (word.axes >> slot & 1u) != 0;
-    if (axis >= 0 && meant && std::isfinite(value)) shift[axis] += kTurn * std::floor(value / kTurn + 1e-12);
-  }
-  nc::set_shift(control_, shift);
-}
-
-/// M140 MB50 at F of its block, or rapid.
-void Executor::retract(BlockReader& reader, const MWord& word, const MotionWords& words) {
-  no_open_corner(reader, word.offset);
-  if (!control_.path.started) {
-    reader.fail("start-unknown", word.offset, "M140 retracts, and the position is not known yet",
-                "position all axes before it");
-  }
-  const bool at_feed = words.feed == FeedWord::kValue && words.feed_value.value > 0.0;
-  const Motion motion = at_feed ? Motion::kFeed : Motion::kRapid;
-  if (at_feed) set_feed(words.feed_value.value, false);
-  if (word.max) return retract_by(std::nullopt, motion);
-  if (!(word.amount.value > 0.0))
-    reader.fail("out-of-range", word.amount.offset, "M140 MB retracts by a way above zero", "M140 MB50");
-  retract_by(control_.modal.mm(word.amount.value), motion);
 }
 
 /// Along the tool, by a way or up to the end of the first axis' travel.
-void Executor::retract_by(std::optional<double> way, Motion motion) {
-  nc::flush(control_);
-  const kinematics::MachineModel& machine = control_.setup.machine;
-  const kinematics::AxisValues& q = control_.path.q;
+void retract_by(nc::Control& control, PathState& path, std::optional<double> way, Motion motion) {
+  nc::flush(control);
+  const kinematics::MachineModel& machine = control.setup.machine;
+  const kinematics::AxisValues& q = control.path.q;
   const ToolPose here = kinematics::forward(machine, q);
   Vec3 direction = linear_columns_W(machine, q).inverse() * here.axis_W;
   direction = direction.unaryExpr([](double x) { return std::abs(x) < 1e-12 ? 0.0 : x; });
   double length = way.value_or(std::numeric_limits<double>::infinity());
   for (int i = 0; i < 3 && !way; ++i) {
-    const int index = control_.space.axis_of(static_cast<nc::AxisWord>(i));
+    const int index = control.space.axis_of(static_cast<nc::AxisWord>(i));
     const kinematics::Axis& axis = machine.axes[static_cast<size_t>(index)];
     if (direction[i] != 0.0) {
       const double end = direction[i] > 0.0 ? axis.max : axis.min;
@@ -150,10 +153,10 @@ void Executor::retract_by(std::optional<double> way, Motion motion) {
     }
   }
   Target target;
-  target.column = control_.report.place.column;
+  target.column = control.report.place.column;
   for (int i = 0; i < 3; ++i) target.set(i, length * direction[i], true);
-  nc::machine_line(control_, motion, target);
-  tangent_.reset();
+  nc::machine_line(control, motion, target);
+  path.tangent.reset();
 }
 
 }  // namespace swarf::program::nc::heidenhain

@@ -1,7 +1,7 @@
 // RND and CHF: a piece of contour waits until the one behind the corner is known.
 #include <fmt/format.h>
 
-#include "program/heidenhain/executor.h"
+#include "program/heidenhain/steps.h"
 
 namespace swarf::program::nc::heidenhain {
 
@@ -21,8 +21,9 @@ FlatPiece flat(const nc::PlaneAxes& axes, Motion motion, const nc::ArcWords& arc
 }  // namespace
 
 /// RND R5 F100, CHF 2: between the block before and the one behind it.
-void Executor::corner(BlockReader& reader, bool round, size_t start) {
-  if (!held_ || corner_)
+void corner(nc::Control& control, PathState& path, Frames& frames, BlockReader& reader, bool round,
+            size_t start) {
+  if (!path.held || path.corner)
     reader.fail("bad-corner", start, "a corner follows no piece of contour",
                 "write it between two motion blocks");
   reader.done();
@@ -30,9 +31,9 @@ void Executor::corner(BlockReader& reader, bool round, size_t start) {
   if (round) reader.take("R");
   Corner corner;
   corner.round = round;
-  corner.size_mm = plane_scale(reader, at) * control_.modal.mm(reader.value());
-  corner.place = control_.report.place;
-  corner.feed = held_->feed;
+  corner.size_mm = plane_scale(control, frames, reader, at) * control.modal.mm(reader.value());
+  corner.place = control.report.place;
+  corner.feed = path.held->feed;
   if (!(corner.size_mm > 0.0))
     reader.fail("out-of-range", at, "the size of a corner is above zero", "RND R5, CHF 2");
   const MotionWords words = read_motion_words(reader, kFeedAllowed);
@@ -42,19 +43,19 @@ void Executor::corner(BlockReader& reader, bool round, size_t start) {
   if (words.feed_value && !(words.feed_value.value > 0.0))
     reader.fail("bad-feed", words.feed_value.offset, "F is not above zero", "F100");
   if (words.feed_value) corner.feed = words.feed_value.value;
-  corner_ = corner;
+  path.corner = corner;
 }
 
-void Executor::close_corner(Element& next) {
-  const Element before = *held_;
-  const Corner corner = *corner_;
-  held_.reset();
-  corner_.reset();
-  const nc::Place here = control_.report.place;
-  const nc::PlaneAxes axes = nc::axes_of(control_.modal.plane);
-  control_.report.at(corner.place.file, corner.place.line, corner.place.column);
+void close_corner(Executor& executor, Element& next) {
+  const Element before = *executor.path.held;
+  const Corner corner = *executor.path.corner;
+  executor.path.held.reset();
+  executor.path.corner.reset();
+  const nc::Place here = executor.control.report.place;
+  const nc::PlaneAxes axes = nc::axes_of(executor.control.modal.plane);
+  executor.control.report.at(corner.place.file, corner.place.line, corner.place.column);
   const auto refuse = [&](const std::string& why) {
-    control_.report.fail("bad-corner", 0, why, "make the corner smaller, or the pieces longer");
+    executor.control.report.fail("bad-corner", 0, why, "make the corner smaller, or the pieces longer");
   };
   const double rise = std::max(std::abs(before.to[axes.normal] - before.from[axes.normal]),
                                std::abs(next.to[axes.normal] - next.from[axes.normal]));
@@ -77,7 +78,7 @@ void Executor::close_corner(Element& next) {
   };
   Element shortened = before;
   place(shortened, found->leave);
-  emit(shortened);
+  emit(executor, shortened);
   Element between;
   between.place = corner.place;
   between.feed = corner.feed;
@@ -92,16 +93,16 @@ void Executor::close_corner(Element& next) {
     between.arc.centre = centre;
   }
   place(between, found->join);
-  emit(between);
+  emit(executor, between);
   next.from = between.to;
-  control_.report.at(here.file, here.line, here.column);
+  executor.control.report.at(here.file, here.line, here.column);
 }
 
-void Executor::no_open_corner(BlockReader& reader, size_t offset) {
-  if (approach_)
+void no_open_corner(PathState& path, BlockReader& reader, size_t offset) {
+  if (path.approach)
     reader.fail("bad-approach", offset, "APPR before this block has no piece of contour behind it",
                 "write L, LP, C, CR or CP in the working plane right behind APPR");
-  if (!held_) return;
+  if (!path.held) return;
   reader.fail("bad-corner", offset, "the corner before this block has no piece of contour behind it",
               "write L, C, CR or CP right behind RND and CHF");
 }

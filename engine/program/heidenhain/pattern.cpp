@@ -6,7 +6,7 @@
 #include <map>
 
 #include "base/units.h"
-#include "program/heidenhain/executor.h"
+#include "program/heidenhain/steps.h"
 #include "program/letters/arithmetic.h"
 
 namespace swarf::program::nc::heidenhain {
@@ -87,10 +87,8 @@ class Items {
   std::map<std::string, double> values_;
 };
 
-}  // namespace
-
-void Executor::add_points(std::vector<PatternPoint>& points, const PatternPoint& point, BlockReader& reader,
-                          size_t start) {
+void add_points(std::vector<PatternPoint>& points, const PatternPoint& point, BlockReader& reader,
+                size_t start) {
   if (points.size() >= kPointsMax)
     reader.fail("out-of-range", start, fmt::format("this pattern has more than {} points", kPointsMax),
                 "correct the numbers of points");
@@ -98,8 +96,7 @@ void Executor::add_points(std::vector<PatternPoint>& points, const PatternPoint&
 }
 
 /// Rows of points from `first`, the second one backwards and so on.
-void Executor::add_rows(std::vector<PatternPoint>& points, const Rows& rows, BlockReader& reader,
-                        size_t start) {
+void add_rows(std::vector<PatternPoint>& points, const Rows& rows, BlockReader& reader, size_t start) {
   for (int j = 0; j < rows.lines; ++j) {
     for (int n = 0; n < rows.columns; ++n) {
       const int i = j % 2 == 0 ? n : rows.columns - 1 - n;
@@ -111,8 +108,19 @@ void Executor::add_rows(std::vector<PatternPoint>& points, const Rows& rows, Blo
   }
 }
 
+/// To a point of the working plane, at the present height.
+void go_to_point(nc::Control& control, Frames& frames, Motion motion, double feed, const Vec2& point) {
+  const nc::PlaneAxes axes = nc::axes_of(control.modal.plane);
+  Vec3 to = nc::position_xyz(control);
+  to[axes.first] = frames.stretch.along(axes.first, point.x(), false);
+  to[axes.second] = frames.stretch.along(axes.second, point.y(), false);
+  straight(control, motion, feed, to);
+}
+
+}  // namespace
+
 /// PATTERN DEF POS1 (X+25 Y+33.5 Z+0) ~ ROW1 (..) ~ PAT1 (..) ~ FRAME1 (..) ~ CIRC1 (..) ~ PITCHCIRC1 (..)
-void Executor::pattern_definition(BlockReader& reader, size_t start) {
+void pattern_definition(nc::Control& control, Drilling& drilling, BlockReader& reader, size_t start) {
   if (!reader.take("DEF"))
     reader.fail("missing-word", start, "PATTERN without DEF", "PATTERN DEF POS1 (X+25 Y+33 Z+0)");
   std::vector<PatternPoint> points;
@@ -127,7 +135,7 @@ void Executor::pattern_definition(BlockReader& reader, size_t start) {
                   "POS, ROW, PAT, FRAME, CIRC or PITCHCIRC");
     reader.whole_number(999);
     const Items items(reader, *kind, at);
-    const double unit = control_.modal.mm(1.0), height = unit * items["Z"];
+    const double unit = control.modal.mm(1.0), height = unit * items["Z"];
     const Vec2 first = unit * Vec2(items["X"], items["Y"]);
     if (name == "POS") {
       add_points(points, {first, height}, reader, at);
@@ -150,46 +158,40 @@ void Executor::pattern_definition(BlockReader& reader, size_t start) {
   }
   if (points.empty())
     reader.fail("missing-word", start, "PATTERN DEF has no points", "PATTERN DEF POS1 (X+25 Y+33.5 Z+0)");
-  pattern_ = points;
-}
-
-/// To a point of the working plane, at the present height.
-void Executor::go_to_point(Motion motion, double feed, const Vec2& point) {
-  const nc::PlaneAxes axes = nc::axes_of(control_.modal.plane);
-  Vec3 to = nc::position_xyz(control_);
-  to[axes.first] = stretch_.along(axes.first, point.x(), false);
-  to[axes.second] = stretch_.along(axes.second, point.y(), false);
-  straight(motion, feed, to);
+  drilling.pattern = points;
 }
 
 /// CYCL CALL PAT FMAX: the cycle at each point; between them at the height of the call or the second set-up
 /// clearance, whichever is higher.
-void Executor::call_pattern(BlockReader& reader, Motion motion, double feed, size_t offset) {
-  if (pattern_.empty())
+void call_pattern(Executor& executor, BlockReader& reader, Motion motion, double feed, size_t offset) {
+  if (executor.drilling.pattern.empty())
     reader.fail("no-pattern", offset, "no PATTERN DEF stands before CYCL CALL PAT",
                 "PATTERN DEF POS1 (X+25 Y+33.5 Z+0)");
-  if (!cycle_ || cycle_->number < 200)
+  if (!executor.drilling.cycle || executor.drilling.cycle->number < 200)
     reader.fail("no-cycle", offset, "CYCL CALL PAT without a cycle from 200 on before it",
                 "write CYCL DEF before it");
-  if (!control_.path.started)
+  if (!executor.control.path.started)
     reader.fail("start-unknown", offset, "a cycle starts, and the position is not known yet",
                 "position all axes before it");
   const nc::Place place = reader.place_of(offset);
-  control_.report.at(place.file, place.line, place.column);
-  const int normal = nc::axes_of(control_.modal.plane).normal;
-  const double called_at = nc::position_xyz(control_)[normal];
-  for (const PatternPoint& point : pattern_) {
-    raised_ = point.height;
-    const double height = std::max(called_at, surface() + length(204));
-    if (nc::position_xyz(control_)[normal] != height) go(Motion::kRapid, height, 0.0);
-    go_to_point(motion, feed, point.at);
-    execute_cycle();
+  executor.control.report.at(place.file, place.line, place.column);
+  const int normal = nc::axes_of(executor.control.modal.plane).normal;
+  const double called_at = nc::position_xyz(executor.control)[normal];
+  for (const PatternPoint& point : executor.drilling.pattern) {
+    executor.drilling.raised = point.height;
+    const double height =
+        std::max(called_at,
+                 cycle_surface(executor.control, executor.drilling, executor.frames) + length(executor, 204));
+    if (nc::position_xyz(executor.control)[normal] != height)
+      go(executor.control, Motion::kRapid, height, 0.0);
+    go_to_point(executor.control, executor.frames, motion, feed, point.at);
+    execute_cycle(executor);
   }
-  raised_ = 0.0;
+  executor.drilling.raised = 0.0;
 }
 
 /// 220, 221: the last cycle at each point, when they are defined. Their Q200, Q203 and Q204 hold for it.
-void Executor::pattern_cycle(BlockReader& reader, const Cycle& pattern) {
+void pattern_cycle(Executor& executor, BlockReader& reader, const Cycle& pattern) {
   const auto given = [&](int number) {
     const auto found = pattern.q.find(number);
     return found == pattern.q.end() ? 0.0 : found->second;
@@ -201,12 +203,12 @@ void Executor::pattern_cycle(BlockReader& reader, const Cycle& pattern) {
                   fmt::format("a whole number from 1 to {}", kPointsMax));
     return static_cast<int>(value);
   };
-  if (!cycle_ || cycle_->number < 200)
+  if (!executor.drilling.cycle || executor.drilling.cycle->number < 200)
     reader.fail(
         "no-cycle", pattern.offset,
         fmt::format("cycle {} repeats the cycle before it, and there is none from 200 on", pattern.number),
         "define the drilling cycle before it");
-  if (!control_.path.started)
+  if (!executor.control.path.started)
     reader.fail("start-unknown", pattern.offset, "a cycle starts, and the position is not known yet",
                 "position all axes before it");
   std::vector<PatternPoint> points;
@@ -215,37 +217,41 @@ void Executor::pattern_cycle(BlockReader& reader, const Cycle& pattern) {
       reader.fail("unsupported-word", pattern.offset,
                   "ways along the pitch circle (Q365=1) are not supported", "Q365=0");
     const int number = count(241);
-    const Vec2 centre(control_.modal.mm(given(216)), control_.modal.mm(given(217)));
+    const Vec2 centre(executor.control.modal.mm(given(216)), executor.control.modal.mm(given(217)));
     const double range = given(246) - given(245);
     // Without a step, the points share the angle out; a whole circle has no second point at its end.
     const bool whole = std::abs(std::remainder(range, 360.0)) < 1e-9;
     const double shared = number < 2 ? 0.0 : whole ? range / number : range / (number - 1);
     const double step = given(247) != 0.0 ? given(247) : shared;
     for (int i = 0; i < number; ++i)
-      add_points(points, {centre + polar(0.5 * control_.modal.mm(given(244)), given(245) + i * step), 0.0},
+      add_points(points,
+                 {centre + polar(0.5 * executor.control.modal.mm(given(244)), given(245) + i * step), 0.0},
                  reader, pattern.offset);
   } else {
-    const Vec2 first(control_.modal.mm(given(225)), control_.modal.mm(given(226)));
-    const Vec2 column = polar(control_.modal.mm(given(237)), given(224)),
-               line = polar(control_.modal.mm(given(238)), given(224) + 90.0);
+    const Vec2 first(executor.control.modal.mm(given(225)), executor.control.modal.mm(given(226)));
+    const Vec2 column = polar(executor.control.modal.mm(given(237)), given(224)),
+               line = polar(executor.control.modal.mm(given(238)), given(224) + 90.0);
     add_rows(points, {first, column, line, count(242), count(243), 0.0, false}, reader, pattern.offset);
   }
   for (const int shared : {200, 203, 204}) {
     const auto found = pattern.q.find(shared);
-    if (found != pattern.q.end()) cycle_->q[shared] = found->second;
+    if (found != pattern.q.end()) executor.drilling.cycle->q[shared] = found->second;
   }
   const nc::Place place = reader.place_of(pattern.offset);
-  control_.report.at(place.file, place.line, place.column);
-  const double second = q(204);
-  go(Motion::kRapid, surface() + std::max(length(200), length(204)), 0.0);
+  executor.control.report.at(place.file, place.line, place.column);
+  const double second = q(executor.drilling, 204);
+  go(executor.control, Motion::kRapid,
+     cycle_surface(executor.control, executor.drilling, executor.frames) +
+         std::max(length(executor, 200), length(executor, 204)),
+     0.0);
   for (size_t i = 0; i < points.size(); ++i) {
-    go_to_point(Motion::kRapid, 0.0, points[i].at);
+    go_to_point(executor.control, executor.frames, Motion::kRapid, 0.0, points[i].at);
     // Q301 = 0: between the points at the set-up clearance alone.
     const bool low = given(301) == 0.0 && i + 1 < points.size();
-    cycle_->q[204] = low ? 0.0 : second;
-    execute_cycle();
+    executor.drilling.cycle->q[204] = low ? 0.0 : second;
+    execute_cycle(executor);
   }
-  cycle_->q[204] = second;
+  executor.drilling.cycle->q[204] = second;
 }
 
 }  // namespace swarf::program::nc::heidenhain

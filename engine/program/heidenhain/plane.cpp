@@ -4,10 +4,9 @@
 #include <cmath>
 
 #include "base/units.h"
-#include "program/heidenhain/executor.h"
+#include "program/heidenhain/steps.h"
 
 namespace swarf::program::nc::heidenhain {
-
 namespace {
 
 /// The words of a PLANE by name, each once.
@@ -59,9 +58,7 @@ Mat3 axes_from(BlockReader& reader, const Vec3& along_x, const Vec3& normal, siz
   return R;
 }
 
-}  // namespace
-
-Mat3 Executor::plane_rotation(BlockReader& reader, const std::string& kind, size_t start) {
+Mat3 plane_rotation(Orientation& orientation, BlockReader& reader, const std::string& kind, size_t start) {
   if (kind == "SPATIAL") {
     const Named words(reader, {"SPA", "SPB", "SPC"}, start);
     return spatial_rotation(words["SPA"], words["SPB"], words["SPC"]);
@@ -88,7 +85,7 @@ Mat3 Executor::plane_rotation(BlockReader& reader, const std::string& kind, size
     if (words.count() != 1)
       reader.fail("missing-word", start, "PLANE RELATIV has one angle", "PLANE RELATIV SPB+30");
     const char axis = words.has("SPA") ? 'A' : words.has("SPB") ? 'B' : 'C';
-    return tilt_ * turned(axis - 'A', words[fmt::format("SP{}", axis)]);
+    return orientation.tilt * turned(axis - 'A', words[fmt::format("SP{}", axis)]);
   }
   if (kind == "PROJECTED")
     reader.fail("unsupported-word", start, "PLANE PROJECTED is known, but not supported here",
@@ -97,30 +94,10 @@ Mat3 Executor::plane_rotation(BlockReader& reader, const std::string& kind, size
               "SPATIAL, EULER, VECTOR, POINTS, RELATIV, AXIAL or RESET");
 }
 
-void Executor::plane(BlockReader& reader, size_t start) {
-  const std::string kind(reader.take_letters());
-  if (tcpm_)
-    reader.fail("unsupported-word", start, "PLANE while M128 or FUNCTION TCPM is on is not supported",
-                "write M129 before it");
-  if (compensates_heads_)
-    reader.fail("unsupported-word", start, "PLANE while M114 or M144 is on is not supported",
-                "write M115 or M145 before it");
-  if (control_.modal.plane != nc::Plane::kXY)
-    reader.fail("unsupported-word", start, "PLANE is supported with the tool axis Z alone", "TOOL CALL 5 Z");
-  if (kind == "AXIAL") return axial_plane(reader, start);
-  const bool reset = kind == "RESET";
-  const Mat3 R = reset ? Mat3(Mat3::Identity()) : plane_rotation(reader, kind, start);
-  // Everything behind the angles is checked before the plane changes.
-  const Positioning how = positioning(reader, start);
-  axial_deg_ = {};
-  tilt(reader, R, !reset, start);
-  position_plane(reader, how, nullptr, start);
-}
-
 /// PLANE AXIAL B-45, PLANE AXIAL IC+90: the values of the rotary axes themselves, which are modal. The plane
 /// is the one in which the tool's own frame then stands. SEQ has no meaning here.
-void Executor::axial_plane(BlockReader& reader, size_t start) {
-  std::array<double, 3> deg = axial_deg_;
+void axial_plane(Executor& executor, BlockReader& reader, size_t start) {
+  std::array<double, 3> deg = executor.orientation.axial_deg;
   uint8_t given = 0;
   for (;;) {
     reader.done();
@@ -131,23 +108,23 @@ void Executor::axial_plane(BlockReader& reader, size_t start) {
     const size_t slot = letter.size() == 1 ? std::string_view("ABC").find(letter[0]) : std::string_view::npos;
     if (slot == std::string_view::npos) break;
     reader.take_letters();
-    nc::require_axis(control_, static_cast<nc::AxisWord>(slot + 3), reader.column(at));
+    nc::require_axis(executor.control, static_cast<nc::AxisWord>(slot + 3), reader.column(at));
     if ((given >> slot & 1u) != 0)
       reader.fail("word-twice", at, fmt::format("{} stands twice in this block", word), "keep one of them");
     given = static_cast<uint8_t>(given | (1u << slot));
     deg[slot] = reader.value() + (added ? deg[slot] : 0.0);
   }
   if (given == 0) reader.fail("missing-word", start, "PLANE AXIAL has no axis", "PLANE AXIAL B-45 TURN FMAX");
-  if (outer_.turn_deg != 0.0)
+  if (executor.frames.outer.turn_deg != 0.0)
     reader.fail("unsupported-word", start, "PLANE AXIAL while a rotation is active is not supported",
                 "end the rotation before it: CYCL DEF 10.1 ROT+0");
-  const Positioning how = positioning(reader, start);
-  kinematics::AxisValues q = control_.path.q;
+  const Positioning how = positioning(executor.control, executor.modes, reader, start);
+  kinematics::AxisValues q = executor.control.path.q;
   for (int slot = 0; slot < 3; ++slot) {
-    const int axis = control_.space.axis_of(static_cast<nc::AxisWord>(slot + 3));
+    const int axis = executor.control.space.axis_of(static_cast<nc::AxisWord>(slot + 3));
     if (axis < 0) continue;
-    q[axis] = rad_from_deg(deg[static_cast<size_t>(slot)]) + control_.space.rotary_zero(slot);
-    const kinematics::Axis& limits = control_.setup.machine.axes[static_cast<size_t>(axis)];
+    q[axis] = rad_from_deg(deg[static_cast<size_t>(slot)]) + executor.control.space.rotary_zero(slot);
+    const kinematics::Axis& limits = executor.control.setup.machine.axes[static_cast<size_t>(axis)];
     if (q[axis] < limits.min - 1e-9 || q[axis] > limits.max + 1e-9)
       reader.fail(
           "unreachable-orientation", start,
@@ -155,37 +132,61 @@ void Executor::axial_plane(BlockReader& reader, size_t start) {
                       limits.name, deg_from_rad(q[axis]), deg_from_rad(limits.min), deg_from_rad(limits.max)),
           "change the angle");
   }
-  axial_deg_ = deg;
+  executor.orientation.axial_deg = deg;
   kinematics::AxisValues zero = q;
   for (int slot = 0; slot < 3; ++slot) {
-    const int axis = control_.space.axis_of(static_cast<nc::AxisWord>(slot + 3));
-    if (axis >= 0) zero[axis] = control_.space.rotary_zero(slot);
+    const int axis = executor.control.space.axis_of(static_cast<nc::AxisWord>(slot + 3));
+    if (axis >= 0) zero[axis] = executor.control.space.rotary_zero(slot);
   }
-  const kinematics::MachineModel& machine = control_.setup.machine;
-  tilt(reader, tool_frame_W(machine, q) * tool_frame_W(machine, zero).transpose(), true, start);
-  position_plane(reader, how, &q, start);
+  const kinematics::MachineModel& machine = executor.control.setup.machine;
+  tilt(executor, reader, tool_frame_W(machine, q) * tool_frame_W(machine, zero).transpose(), true, start);
+  position_plane(executor, reader, how, &q, start);
 }
 
-void Executor::tilt(BlockReader& reader, const Mat3& rotation, bool on, size_t start) {
-  if (!inner_.none())
+}  // namespace
+
+void plane(Executor& executor, BlockReader& reader, size_t start) {
+  const std::string kind(reader.take_letters());
+  if (executor.orientation.tcpm)
+    reader.fail("unsupported-word", start, "PLANE while M128 or FUNCTION TCPM is on is not supported",
+                "write M129 before it");
+  if (executor.orientation.compensates_heads)
+    reader.fail("unsupported-word", start, "PLANE while M114 or M144 is on is not supported",
+                "write M115 or M145 before it");
+  if (executor.control.modal.plane != nc::Plane::kXY)
+    reader.fail("unsupported-word", start, "PLANE is supported with the tool axis Z alone", "TOOL CALL 5 Z");
+  if (kind == "AXIAL") return axial_plane(executor, reader, start);
+  const bool reset = kind == "RESET";
+  const Mat3 R = reset ? Mat3(Mat3::Identity()) : plane_rotation(executor.orientation, reader, kind, start);
+  // Everything behind the angles is checked before the plane changes.
+  const Positioning how = positioning(executor.control, executor.modes, reader, start);
+  executor.orientation.axial_deg = {};
+  tilt(executor, reader, R, !reset, start);
+  position_plane(executor, reader, how, nullptr, start);
+}
+
+void tilt(Executor& executor, BlockReader& reader, const Mat3& rotation, bool on, size_t start) {
+  if (!executor.frames.inner.none())
     reader.fail("words-conflict", start, "a transformation within the tilted plane is still active",
                 "reset it (CYCL DEF 7, 8, 10, 11, 26) before the plane changes");
-  if (on && outer_.stretches())
+  if (on && executor.frames.outer.stretches())
     reader.fail("unsupported-word", start,
                 "tilting while a mirror image or a scaling is active is not supported",
                 "tilt first, then mirror or scale within the plane");
-  if (tcpm_)
+  if (executor.orientation.tcpm)
     reader.fail("unsupported-word", start, "tilting while M128 or FUNCTION TCPM is on is not supported",
                 "write M129 before it");
-  if (compensates_heads_)
+  if (executor.orientation.compensates_heads)
     reader.fail("unsupported-word", start, "tilting while M114 or M144 is on is not supported",
                 "write M115 or M145 before it");
-  tilt_ = rotation;
-  tilted_ = on;
-  update_frame();
-  nc::set_coordinates(control_, on ? nc::Coordinates::kWork : nc::Coordinates::kAxes);
-  if (control_.path.started && on && control_.setup.machine.axes.size() > 3)
-    rotary_parameters(nc::tilt_solution(control_, Vec3::UnitZ(), {}, control_.report.place.column));
+  executor.orientation.tilt = rotation;
+  executor.orientation.tilted = on;
+  update_frame(executor);
+  nc::set_coordinates(executor.control, on ? nc::Coordinates::kWork : nc::Coordinates::kAxes);
+  if (executor.control.path.started && on && executor.control.setup.machine.axes.size() > 3)
+    rotary_parameters(
+        executor.control, executor.parameters,
+        nc::tilt_solution(executor.control, Vec3::UnitZ(), {}, executor.control.report.place.column));
 }
 
 }  // namespace swarf::program::nc::heidenhain

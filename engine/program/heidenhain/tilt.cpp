@@ -6,16 +6,64 @@
 
 #include "base/units.h"
 #include "kinematics/model_check.h"
-#include "program/heidenhain/executor.h"
+#include "program/heidenhain/steps.h"
 
 namespace swarf::program::nc::heidenhain {
 
 using nc::Motion;
 
+namespace {
+
+/// The rotary axis next to the work is parallel to the tool: COORD ROT leaves it where it is, TABLE ROT does
+/// not. Elsewhere both words mean the same.
+bool rotary_is_free(nc::Control& control, const kinematics::AxisValues& q) {
+  const kinematics::MachineModel& machine = control.setup.machine;
+  kinematics::AxisValues turned_on = q;
+  turned_on[kinematics::rotary_order(machine).front()] += 1.0;
+  const Vec3 before = kinematics::forward(machine, q).axis_W;
+  return (kinematics::forward(machine, turned_on).axis_W - before).norm() < 1e-9;
+}
+
+/// MOVE DIST50: the point that lies this far ahead of the tip stands, on the part, while the tool turns about
+/// it. Pieces of joint-linear moves, so short that the point strays from its place by less than 1 um.
+void turn_about(nc::Control& control, PathState& path, const kinematics::AxisValues& goal,
+                const Positioning& how) {
+  const kinematics::MachineModel machine =
+      kinematics::with_tool(control.setup.machine, control.space.length() + how.distance);
+  nc::flush(control);
+  const kinematics::AxisValues from = control.path.q;
+  const Vec3 centre_W = kinematics::forward(machine, from).tip_W;
+  double most = 0.0;
+  for (int slot = nc::kA; slot < nc::kAxisWords; ++slot) {
+    const int axis = control.space.axis_of(static_cast<nc::AxisWord>(slot));
+    if (axis >= 0) most = std::max(most, std::abs(goal[axis] - from[axis]));
+  }
+  // Sag of a chord of the circle with radius r: r a^2 / 8; the linear axes are no further than this from any
+  // axis.
+  constexpr double kSagMm = 1e-3, kRadiusMm = 2000.0;
+  const int pieces = std::max(1, static_cast<int>(std::ceil(most / std::sqrt(8.0 * kSagMm / kRadiusMm))));
+  if (how.motion == Motion::kFeed) set_feed(control, how.feed, false);
+  for (int n = 1; n <= pieces; ++n) {
+    kinematics::AxisValues q = from + static_cast<double>(n) / pieces * (goal - from);
+    const Vec3 off = centre_W - kinematics::forward(machine, q).tip_W;
+    const Vec3 linear = linear_columns_W(machine, q).inverse() * off;
+    nc::Target target;
+    target.column = control.report.place.column;
+    for (int word = 0; word < nc::kAxisWords; ++word) {
+      const int axis = control.space.axis_of(static_cast<nc::AxisWord>(word));
+      if (axis >= 0) target.set(word, q[axis] + (word < 3 ? linear[word] : 0.0), false);
+    }
+    nc::machine_line(control, how.motion, target);
+  }
+  path.tangent.reset();
+}
+
+}  // namespace
+
 /// MOVE, TURN or STAY with DIST, F, SEQ.
-Executor::Positioning Executor::positioning(BlockReader& reader, size_t start) {
+Positioning positioning(nc::Control& control, Modes& modes, BlockReader& reader, size_t start) {
   Positioning how;
-  how.feed = feed_;
+  how.feed = modes.feed;
   while (!reader.done()) {
     const size_t at = reader.offset();
     const std::string word(reader.take_letters());
@@ -31,13 +79,13 @@ Executor::Positioning Executor::positioning(BlockReader& reader, size_t start) {
       how.preference.choice = reader.take_char('-') ? nc::TiltPreference::Choice::kNegative
                                                     : nc::TiltPreference::Choice::kPositive;
     } else if (word == "DIST" || word == "ABST") {
-      how.distance = control_.modal.mm(reader.value());
+      how.distance = control.modal.mm(reader.value());
       how.distance_offset = at;
     } else if (word == "FMAX") {
       how.motion = Motion::kRapid;
     } else if (word == "F" || word == "FAUTO") {
       if (word == "FAUTO" || reader.take("AUTO")) {
-        how.feed = tool_feed_;
+        how.feed = modes.tool_feed;
       } else if (reader.take("MAX")) {
         how.motion = Motion::kRapid;
       } else {
@@ -47,7 +95,7 @@ Executor::Positioning Executor::positioning(BlockReader& reader, size_t start) {
         reader.fail("bad-feed", at, fmt::format("F {:g} is not a feed", how.feed), "F1000");
     } else if (word == "MB") {
       how.retracts = true;
-      if (!reader.take("MAX")) how.retraction = control_.modal.mm(reader.value());
+      if (!reader.take("MAX")) how.retraction = control.modal.mm(reader.value());
       if (how.retraction && !(*how.retraction >= 0.0))
         reader.fail("out-of-range", at, "MB retracts by a way of zero or more", "MB MAX, MB50");
     } else if ((word == "COORD" || word == "TABLE") && reader.take("ROT")) {
@@ -71,99 +119,56 @@ Executor::Positioning Executor::positioning(BlockReader& reader, size_t start) {
 }
 
 /// Turns the rotary axes into the plane, to `goal` where the program gives their values.
-void Executor::position_plane(BlockReader& reader, const Positioning& how, const kinematics::AxisValues* goal,
-                              size_t start) {
+void position_plane(Executor& executor, BlockReader& reader, const Positioning& how,
+                    const kinematics::AxisValues* goal, size_t start) {
   const bool turns = how.kind != "STAY";
-  if (control_.setup.machine.axes.size() <= 3) {
-    if (!tilt_.isIdentity(1e-12))
+  if (executor.control.setup.machine.axes.size() <= 3) {
+    if (!executor.orientation.tilt.isIdentity(1e-12))
       reader.fail("unreachable-orientation", start, "the machine has no rotary axes for a tilted plane",
                   "choose a five-axis machine");
     return;
   }
-  if (!control_.path.started) {
+  if (!executor.control.path.started) {
     if (turns)
       reader.fail("start-unknown", start, "the rotary axes turn, and the position is not known yet",
                   "position all axes before it");
     return;
   }
   if (turns && how.retracts) {
-    if (how.motion == Motion::kFeed) set_feed(how.feed, false);
-    retract_by(how.retraction, how.motion);
+    if (how.motion == Motion::kFeed) set_feed(executor.control, how.feed, false);
+    retract_by(executor.control, executor.path, how.retraction, how.motion);
   }
-  kinematics::AxisValues q = goal != nullptr ? *goal
-                                             : nc::tilt_solution(control_, Vec3::UnitZ(), how.preference,
-                                                                 control_.report.place.column);
+  kinematics::AxisValues q = goal != nullptr
+                                 ? *goal
+                                 : nc::tilt_solution(executor.control, Vec3::UnitZ(), how.preference,
+                                                     executor.control.report.place.column);
   for (int i = 0; i < 3; ++i) {
-    const int axis = control_.space.axis_of(static_cast<nc::AxisWord>(i));
-    q[axis] = control_.path.q[axis];
+    const int axis = executor.control.space.axis_of(static_cast<nc::AxisWord>(i));
+    q[axis] = executor.control.path.q[axis];
   }
-  if (!tilted_) {  // PLANE RESET: all rotary axes go to zero
+  if (!executor.orientation.tilted) {  // PLANE RESET: all rotary axes go to zero
     for (int slot = 0; slot < 3; ++slot) {
-      const int axis = control_.space.axis_of(static_cast<nc::AxisWord>(slot + 3));
-      if (axis >= 0) q[axis] = control_.space.rotary_zero(slot);
+      const int axis = executor.control.space.axis_of(static_cast<nc::AxisWord>(slot + 3));
+      if (axis >= 0) q[axis] = executor.control.space.rotary_zero(slot);
     }
   }
-  if (how.turns_table && tilted_ && rotary_is_free(q))
+  if (how.turns_table && executor.orientation.tilted && rotary_is_free(executor.control, q))
     reader.fail("unsupported-word", start,
                 "TABLE ROT is not supported where a rotary axis turns about the tool: it would turn by the "
                 "plane's angle",
                 "COORD ROT, or turn the axis before it");
-  rotary_parameters(q);
+  rotary_parameters(executor.control, executor.parameters, q);
   if (!turns) return;
-  if (how.kind == "MOVE" && how.distance != 0.0) return turn_about(q, how);
-  if (how.motion == Motion::kFeed) set_feed(how.feed, true);
-  nc::turn_rotaries(control_, how.motion, q, how.kind == "MOVE");
-}
-
-/// The rotary axis next to the work is parallel to the tool: COORD ROT leaves it where it is, TABLE ROT does
-/// not. Elsewhere both words mean the same.
-bool Executor::rotary_is_free(const kinematics::AxisValues& q) const {
-  const kinematics::MachineModel& machine = control_.setup.machine;
-  kinematics::AxisValues turned_on = q;
-  turned_on[kinematics::rotary_order(machine).front()] += 1.0;
-  const Vec3 before = kinematics::forward(machine, q).axis_W;
-  return (kinematics::forward(machine, turned_on).axis_W - before).norm() < 1e-9;
-}
-
-/// MOVE DIST50: the point that lies this far ahead of the tip stands, on the part, while the tool turns about
-/// it. Pieces of joint-linear moves, so short that the point strays from its place by less than 1 um.
-void Executor::turn_about(const kinematics::AxisValues& goal, const Positioning& how) {
-  const kinematics::MachineModel machine =
-      kinematics::with_tool(control_.setup.machine, control_.space.length() + how.distance);
-  nc::flush(control_);
-  const kinematics::AxisValues from = control_.path.q;
-  const Vec3 centre_W = kinematics::forward(machine, from).tip_W;
-  double most = 0.0;
-  for (int slot = nc::kA; slot < nc::kAxisWords; ++slot) {
-    const int axis = control_.space.axis_of(static_cast<nc::AxisWord>(slot));
-    if (axis >= 0) most = std::max(most, std::abs(goal[axis] - from[axis]));
-  }
-  // Sag of a chord of the circle with radius r: r a^2 / 8; the linear axes are no further than this from any
-  // axis.
-  constexpr double kSagMm = 1e-3, kRadiusMm = 2000.0;
-  const int pieces = std::max(1, static_cast<int>(std::ceil(most / std::sqrt(8.0 * kSagMm / kRadiusMm))));
-  if (how.motion == Motion::kFeed) set_feed(how.feed, false);
-  for (int n = 1; n <= pieces; ++n) {
-    kinematics::AxisValues q = from + static_cast<double>(n) / pieces * (goal - from);
-    const Vec3 off = centre_W - kinematics::forward(machine, q).tip_W;
-    const Vec3 linear = linear_columns_W(machine, q).inverse() * off;
-    nc::Target target;
-    target.column = control_.report.place.column;
-    for (int word = 0; word < nc::kAxisWords; ++word) {
-      const int axis = control_.space.axis_of(static_cast<nc::AxisWord>(word));
-      if (axis >= 0) target.set(word, q[axis] + (word < 3 ? linear[word] : 0.0), false);
-    }
-    nc::machine_line(control_, how.motion, target);
-  }
-  tangent_.reset();
+  if (how.kind == "MOVE" && how.distance != 0.0) return turn_about(executor.control, executor.path, q, how);
+  if (how.motion == Motion::kFeed) set_feed(executor.control, how.feed, true);
+  nc::turn_rotaries(executor.control, how.motion, q, how.kind == "MOVE");
 }
 
 /// Q120, Q121, Q122: where A, B and C have to go, degrees.
-void Executor::rotary_parameters(const kinematics::AxisValues& values) {
+void rotary_parameters(nc::Control& control, Parameters& parameters, const kinematics::AxisValues& values) {
   for (int slot = 0; slot < 3; ++slot) {
-    const int axis = control_.space.axis_of(static_cast<nc::AxisWord>(slot + 3));
-    if (axis >= 0)
-      parameters_.set_q(120 + slot, deg_from_rad(values[axis] - control_.space.rotary_zero(slot)));
+    const int axis = control.space.axis_of(static_cast<nc::AxisWord>(slot + 3));
+    if (axis >= 0) parameters.set_q(120 + slot, deg_from_rad(values[axis] - control.space.rotary_zero(slot)));
   }
 }
 

@@ -3,12 +3,11 @@
 
 #include <cmath>
 
-#include "program/heidenhain/executor.h"
+#include "program/heidenhain/steps.h"
 
 namespace swarf::program::nc::heidenhain {
-
 /// TOOL CALL 5 Z S3000 F500 DL+0.1 DR+0.05 DR2+0.02; without a number: a new speed or feed alone.
-void Executor::tool_call(BlockReader& reader) {
+void tool_call(Executor& executor, BlockReader& reader) {
   reader.done();
   const size_t at = reader.offset();
   const bool text = reader.peek() == '"' || reader.letters() == "QS";
@@ -46,36 +45,38 @@ void Executor::tool_call(BlockReader& reader) {
     reader.fail("out-of-range", speed.offset, "S is below zero", "the direction is M3 or M4");
   if (feed && !(feed.value > 0.0))
     reader.fail("bad-feed", feed.offset, fmt::format("F {:g} is not a feed", feed.value), "F500");
-  if (!named && (length || radius || corner) && nc::active_tool(control_) == nullptr)
+  if (!named && (length || radius || corner) && nc::active_tool(executor.control) == nullptr)
     reader.fail("missing-word", at, "TOOL CALL changes a tool, and none is in the spindle", "TOOL CALL 5 Z");
   if (named) {
     const int column = reader.column(at);
-    const int index = text          ? nc::find_tool(control_, name, column)
+    const int index = text          ? nc::find_tool(executor.control, name, column)
                       : number == 0 ? -1
-                                    : nc::find_tool(control_, static_cast<int>(number), column);
-    nc::select_tool(control_.tools, index, static_cast<int>(number));
-    nc::change_tool(control_);
-    tangent_.reset();
+                                    : nc::find_tool(executor.control, static_cast<int>(number), column);
+    nc::select_tool(executor.control.tools, index, static_cast<int>(number));
+    nc::change_tool(executor.control);
+    executor.path.tangent.reset();
   }
-  if (plane) nc::set_plane(control_, *plane);
+  if (plane) nc::set_plane(executor.control, *plane);
   if (named || length || radius || corner) {
-    const NcTool* tool = nc::active_tool(control_);
+    const NcTool* tool = nc::active_tool(executor.control);
     const double own = tool == nullptr ? 0.0 : tool->length_mm;
-    nc::set_length_compensation(control_, own + control_.modal.mm(length.value), tool != nullptr);
-    delta_radius_ = control_.modal.mm(radius.value);
-    delta_corner_ = control_.modal.mm(corner.value);
-    parameters_.set_q(
-        108, tool == nullptr ? 0.0 : (0.5 * tool->diameter_mm + delta_radius_) / control_.modal.mm(1.0));
-    parameters_.set_q(114, own / control_.modal.mm(1.0));
-    if (named) tool_feed_ = 0.0;
+    nc::set_length_compensation(executor.control, own + executor.control.modal.mm(length.value),
+                                tool != nullptr);
+    executor.modes.delta_radius = executor.control.modal.mm(radius.value);
+    executor.modes.delta_corner = executor.control.modal.mm(corner.value);
+    executor.parameters.set_q(108, tool == nullptr ? 0.0
+                                                   : (0.5 * tool->diameter_mm + executor.modes.delta_radius) /
+                                                         executor.control.modal.mm(1.0));
+    executor.parameters.set_q(114, own / executor.control.modal.mm(1.0));
+    if (named) executor.modes.tool_feed = 0.0;
   }
-  if (speed) control_.modal.speed_rpm = speed.value;
-  if (feed) tool_feed_ = feed_ = feed.value;
+  if (speed) executor.control.modal.speed_rpm = speed.value;
+  if (feed) executor.modes.tool_feed = executor.modes.feed = feed.value;
 }
 
 /// TOOL DEF 5 makes a tool ready. TOOL DEF 5 L+50 R+5 describes it: the table has to say the same, or there
 /// is no table.
-void Executor::tool_ready(BlockReader& reader) {
+void tool_ready(nc::Control& control, Modes& modes, BlockReader& reader) {
   reader.done();
   const size_t at = reader.offset();
   const bool text = reader.peek() == '"' || reader.letters() == "QS";
@@ -93,33 +94,33 @@ void Executor::tool_ready(BlockReader& reader) {
   }
   int index = -1;
   if (text) {
-    index = nc::find_tool(control_, name, reader.column(at));
+    index = nc::find_tool(control, name, reader.column(at));
   } else if (number != 0) {
-    index = nc::find_tool(control_, static_cast<int>(number), reader.column(at));
+    index = nc::find_tool(control, static_cast<int>(number), reader.column(at));
   }
   if (!length && !radius) {
-    control_.report.without_effect("TOOL DEF");
+    control.report.without_effect("TOOL DEF");
     return;
   }
   if (index < 0) {
-    defined_radius_[static_cast<int>(number)] = control_.modal.mm(radius.value);
+    modes.defined_radius[static_cast<int>(number)] = control.modal.mm(radius.value);
     return;
   }
-  const NcTool& tool = control_.setup.tools[static_cast<size_t>(index)];
-  const bool other_length = length && std::abs(control_.modal.mm(length.value) - tool.length_mm) > 1e-6;
+  const NcTool& tool = control.setup.tools[static_cast<size_t>(index)];
+  const bool other_length = length && std::abs(control.modal.mm(length.value) - tool.length_mm) > 1e-6;
   const bool other_radius =
-      radius && std::abs(control_.modal.mm(radius.value) - 0.5 * tool.diameter_mm) > 1e-6;
+      radius && std::abs(control.modal.mm(radius.value) - 0.5 * tool.diameter_mm) > 1e-6;
   if (other_length || other_radius)
     reader.fail(
         "words-conflict", at,
         fmt::format("the program says L {:g} and R {:g} mm of this tool, the tool table L {:g} and R {:g} mm",
-                    control_.modal.mm(length.value), control_.modal.mm(radius.value), tool.length_mm,
+                    control.modal.mm(length.value), control.modal.mm(radius.value), tool.length_mm,
                     0.5 * tool.diameter_mm),
         "correct one of them, or write TOOL DEF with the number alone");
 }
 
 /// The blank is the scene's; what the program says of it is kept as a note.
-void Executor::blank_form(BlockReader& reader) {
+void blank_form(nc::Control& control, BlockReader& reader) {
   reader.done();
   const size_t start = reader.offset();
   if (!reader.take("FORM"))
@@ -148,7 +149,7 @@ void Executor::blank_form(BlockReader& reader) {
   } else {
     reader.rest();
   }
-  control_.report.note("BLK FORM", text);
+  control.report.note("BLK FORM", text);
 }
 
 }  // namespace swarf::program::nc::heidenhain

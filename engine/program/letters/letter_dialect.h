@@ -18,13 +18,13 @@
 
 namespace swarf::program::nc {
 
-class LetterDialect : public Parameters {
- protected:
-  LetterDialect(const std::string& path, Control& control, const FormulaSyntax& formula)
-      : control_(control), path_(path), reader_(formula, *this, control) {}
+/// The state that the dialects of letters begin with; each adds its own.
+struct LetterDialect : Parameters {
+  LetterDialect(const std::string& file, Control& machine, const FormulaSyntax& formula)
+      : control(machine), path(file), reader(formula, *this, machine) {}
 
   /// The file, opened once.
-  LineSource& open(const std::string& path);
+  LineSource& open(const std::string& file);
   /// Counts a line that is about to be executed and gives errors its place.
   void at_line(const LineSource& source);
   /// True for a line with '%', which must stand alone; the second one ends the program. So does one that
@@ -39,18 +39,15 @@ class LetterDialect : public Parameters {
   /// Fails for F that is not above zero, or S below it.
   void check_feed_and_speed();
 
-  int column(char letter) const { return reader_.column_of(block_.place(letter)); }
-  int g_column(int group) const { return reader_.column_of(block_.g_places[static_cast<size_t>(group)]); }
+  int column(char letter) const { return reader.column_of(block.place(letter)); }
+  int g_column(int group) const { return reader.column_of(block.g_places[static_cast<size_t>(group)]); }
 
-  Control& control_;
-  std::string path_, kept_line_;
-  FormulaReader reader_;
-  LetterBlock block_;
-  std::vector<std::unique_ptr<LineSource>> sources_;
-  bool ended_ = false;
-
- private:
-  bool percent_seen_ = false;
+  Control& control;
+  std::string path, kept_line;
+  FormulaReader reader;
+  LetterBlock block;
+  std::vector<std::unique_ptr<LineSource>> sources;
+  bool ended = false, percent_seen = false;
 };
 
 }  // namespace swarf::program::nc

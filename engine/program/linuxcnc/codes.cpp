@@ -1,7 +1,7 @@
 // The words of RS274/NGC as data: codes with their modal groups, functions, operators.
 #include <array>
 
-#include "program/linuxcnc/reader.h"
+#include "program/linuxcnc/state.h"
 
 namespace swarf::program::nc::linuxcnc {
 namespace {

@@ -1,4 +1,4 @@
-#include "program/linuxcnc/reader.h"
+#include "program/linuxcnc/steps.h"
 
 #include <fmt/format.h>
 
@@ -13,102 +13,48 @@ namespace {
 /// may cut radius (1 - cos 0.05 rad) too deep there (measured on LinuxCNC 2.9).
 constexpr double kSmoothCornerRad = 0.05;
 
-}  // namespace
-
-LinuxCnc::LinuxCnc(const std::string& path, Control& control)
-    : LetterDialect(path, control, kLinuxCncFormula), numbers_(kNumbers, 0.0), number_set_(kNumbers, false) {
-  Call main;
-  main.source = &open(path);
-  calls_.push_back(std::move(main));
-  control_.modal.feed_rule = FeedRule::kLinearFirst;
-  control_.contour.set_entry(CompensationEntry::kAlongEntry);
-  control_.contour.set_smooth(kSmoothCornerRad);
-  if (control.setup.kinematics_switch.start == Kinematics::kTcp) nc::set_tcp(control_, Tcp::kAxes);
-}
-
-void LinuxCnc::run() {
-  std::string_view line;
-  while (!ended_) {
-    if (!source().next(line)) {
-      end_of_flow();
-      continue;
-    }
-    at_line(source());
-    if (!percent(line, true)) ended_ = !execute();
-  }
-  if (nurbs_) fail_open_nurbs();
-  nc::finish(control_);
-}
-
-bool LinuxCnc::execute() {
-  if (at_o_word()) {
-    ++control_.report.summary.blocks;
-    flow();
-    return true;
-  }
-  block_.clear();
-  new_numbers_.clear();
-  new_names_.clear();
-  read_words(kLinuxCncSyntax, reader_, control_, block_, '#');
-  while (reader_.peek() == '#') {
-    read_assignment();
-    read_words(kLinuxCncSyntax, reader_, control_, block_, '#');
-  }
-  if (!block_.message.empty()) control_.report.note("MSG", message_text());
-  if (block_.skip_mark) control_.report.without_effect("/ (block delete is off: such blocks are executed)");
-  if (!block_.empty()) {
-    ++control_.report.summary.blocks;
-    control_.report.at(source().file(), static_cast<int>(source().line_number()),
-                       reader_.column_of(block_.first));
-    check_words();
-  }
-  assign();
-  if (block_.empty()) return true;
-  apply();
-  return apply_end();
-}
-
-void LinuxCnc::read_assignment() {
-  const size_t from = reader_.at();
+void read_assignment(LinuxCnc& linuxcnc) {
+  const size_t from = linuxcnc.reader.at();
   std::string name;
-  const long number = reader_.parameter_number(name);
-  reader_.skip_space();
-  if (reader_.peek() != '=')
-    control_.report.fail("bad-parameter", reader_.column(), "'=' is missing after the parameter",
-                         "write #1=2.5");
-  reader_.skip();
-  const double value = reader_.value();
+  const long number = linuxcnc.reader.parameter_number(name);
+  linuxcnc.reader.skip_space();
+  if (linuxcnc.reader.peek() != '=')
+    linuxcnc.control.report.fail("bad-parameter", linuxcnc.reader.column(),
+                                 "'=' is missing after the parameter", "write #1=2.5");
+  linuxcnc.reader.skip();
+  const double value = linuxcnc.reader.value();
   if (!name.empty()) {
-    if (is_read_only(name))
-      control_.report.fail("read-only-parameter", reader_.column_of(from),
-                           fmt::format("#<{}> belongs to the control and cannot be assigned", name),
-                           "take another name");
-    new_names_.emplace_back(std::move(name), value);
+    if (is_read_only(linuxcnc, name))
+      linuxcnc.control.report.fail("read-only-parameter", linuxcnc.reader.column_of(from),
+                                   fmt::format("#<{}> belongs to the control and cannot be assigned", name),
+                                   "take another name");
+    linuxcnc.parameters.new_names.emplace_back(std::move(name), value);
     return;
   }
   if (number < 1 || number >= kNumbers)
-    control_.report.fail("bad-parameter", reader_.column_of(from),
-                         fmt::format("#{} cannot be assigned", number),
-                         "parameters that programs may set have numbers from 1 to 5399");
+    linuxcnc.control.report.fail("bad-parameter", linuxcnc.reader.column_of(from),
+                                 fmt::format("#{} cannot be assigned", number),
+                                 "parameters that programs may set have numbers from 1 to 5399");
   if (number >= 5161)
-    control_.report.fail("unsupported-word", reader_.column_of(from),
-                         fmt::format("#{} belongs to the control (reference positions, offsets)", number),
-                         "set offsets with G10, G52 or G92");
-  new_numbers_.emplace_back(number, value);
+    linuxcnc.control.report.fail(
+        "unsupported-word", linuxcnc.reader.column_of(from),
+        fmt::format("#{} belongs to the control (reference positions, offsets)", number),
+        "set offsets with G10, G52 or G92");
+  linuxcnc.parameters.new_numbers.emplace_back(number, value);
 }
 
-void LinuxCnc::assign() {
-  for (const auto& [number, value] : new_numbers_) {
+void assign(Calls& calls, NumbersAndNames& parameters) {
+  for (const auto& [number, value] : parameters.new_numbers) {
     if (number <= kArguments) {
-      frame().arguments[static_cast<size_t>(number)] = value;
-      frame().assigned |= uint64_t{1} << number;
+      frame(calls).arguments[static_cast<size_t>(number)] = value;
+      frame(calls).assigned |= uint64_t{1} << number;
     } else {
-      numbers_[static_cast<size_t>(number)] = value;
-      number_set_[static_cast<size_t>(number)] = true;
+      parameters.numbers[static_cast<size_t>(number)] = value;
+      parameters.number_set[static_cast<size_t>(number)] = true;
     }
   }
-  for (auto& [name, value] : new_names_) {
-    auto& list = name[0] == '_' ? globals_ : frame().named;
+  for (auto& [name, value] : parameters.new_names) {
+    auto& list = name[0] == '_' ? parameters.globals : frame(calls).named;
     const auto found =
         std::find_if(list.begin(), list.end(), [&n = name](const Named& one) { return one.name == n; });
     if (found != list.end())
@@ -116,6 +62,65 @@ void LinuxCnc::assign() {
     else
       list.push_back({name, value});
   }
+}
+
+bool execute(LinuxCnc& linuxcnc) {
+  if (at_o_word(linuxcnc)) {
+    ++linuxcnc.control.report.summary.blocks;
+    flow(linuxcnc);
+    return true;
+  }
+  linuxcnc.block.clear();
+  linuxcnc.parameters.new_numbers.clear();
+  linuxcnc.parameters.new_names.clear();
+  read_words(kLinuxCncSyntax, linuxcnc.reader, linuxcnc.control, linuxcnc.block, '#');
+  while (linuxcnc.reader.peek() == '#') {
+    read_assignment(linuxcnc);
+    read_words(kLinuxCncSyntax, linuxcnc.reader, linuxcnc.control, linuxcnc.block, '#');
+  }
+  if (!linuxcnc.block.message.empty()) linuxcnc.control.report.note("MSG", message_text(linuxcnc));
+  if (linuxcnc.block.skip_mark)
+    linuxcnc.control.report.without_effect("/ (block delete is off: such blocks are executed)");
+  if (!linuxcnc.block.empty()) {
+    ++linuxcnc.control.report.summary.blocks;
+    linuxcnc.control.report.at(source(linuxcnc.calls).file(),
+                               static_cast<int>(source(linuxcnc.calls).line_number()),
+                               linuxcnc.reader.column_of(linuxcnc.block.first));
+    check_words(linuxcnc.modes, linuxcnc.curves, linuxcnc);
+  }
+  assign(linuxcnc.calls, linuxcnc.parameters);
+  if (linuxcnc.block.empty()) return true;
+  apply(linuxcnc);
+  return apply_end(linuxcnc);
+}
+
+void run(LinuxCnc& linuxcnc) {
+  std::string_view line;
+  while (!linuxcnc.ended) {
+    if (!source(linuxcnc.calls).next(line)) {
+      end_of_flow(linuxcnc.calls, linuxcnc);
+      continue;
+    }
+    linuxcnc.at_line(source(linuxcnc.calls));
+    if (!linuxcnc.percent(line, true)) linuxcnc.ended = !execute(linuxcnc);
+  }
+  if (linuxcnc.curves.nurbs) fail_open_nurbs(linuxcnc.curves, linuxcnc);
+  nc::finish(linuxcnc.control);
+}
+
+}  // namespace
+
+LinuxCnc::LinuxCnc(const std::string& file, Control& machine)
+    : LetterDialect(file, machine, kLinuxCncFormula) {
+  parameters.numbers.assign(kNumbers, 0.0);
+  parameters.number_set.assign(kNumbers, false);
+  Call main;
+  main.source = &open(file);
+  calls.stack.push_back(std::move(main));
+  control.modal.feed_rule = FeedRule::kLinearFirst;
+  control.contour.set_entry(CompensationEntry::kAlongEntry);
+  control.contour.set_smooth(kSmoothCornerRad);
+  if (control.setup.kinematics_switch.start == Kinematics::kTcp) nc::set_tcp(control, Tcp::kAxes);
 }
 
 /// Words that no other dialect here has: O-words with keywords, named parameters, G10 L2 P, kinematics
@@ -151,7 +156,8 @@ Evidence evidence(std::string_view head, std::string_view extension) {
 }
 
 void run(const std::string& path, Control& control) {
-  LinuxCnc(path, control).run();
+  LinuxCnc linuxcnc(path, control);
+  run(linuxcnc);
 }
 
 }  // namespace swarf::program::nc::linuxcnc

@@ -3,39 +3,20 @@
 
 #include <algorithm>
 
-#include "program/linuxcnc/reader.h"
+#include "program/linuxcnc/steps.h"
 
 namespace swarf::program::nc::linuxcnc {
-
-/// "Switchable kinematics" of the LinuxCNC documentation: M428, M429, M430 are remaps of the configuration.
-/// Those that come with LinuxCNC select the machine's own kinematics, identity, and userk, whose template is
-/// identity until somebody fills it in.
-void LinuxCnc::switch_kinematics(int tenths, int column) {
-  const KinematicsSwitch& told = control_.setup.kinematics_switch;
-  const int number = tenths / 10;
-  std::optional<Kinematics> kinematics = tenths == 4280 ? told.m428 : tenths == 4290 ? told.m429 : told.m430;
-  if (!kinematics) {
-    if (tenths == 4300) {
-      control_.report.fail(
-          "unknown-kinematics", column, "M430 selects the user's kinematics, and nothing says what they are",
-          "add kinematics_switch = { m430 = \"identity\" } (or \"tcp\") to the scene; on the command "
-          "line: --kinematics m430=identity");
-    }
-    kinematics = tenths == 4280 ? Kinematics::kTcp : Kinematics::kIdentity;
-    assume_kinematics(number, *kinematics, column);
-  }
-  nc::set_tcp(control_, kinematics == Kinematics::kTcp ? Tcp::kAxes : Tcp::kOff);
-}
+namespace {
 
 /// A reading that the configuration could contradict is told, once for each code.
-void LinuxCnc::assume_kinematics(int number, Kinematics kinematics, int column) {
+void assume_kinematics(Modes& modes, LetterDialect& letters, int number, Kinematics kinematics, int column) {
   const auto index = static_cast<size_t>(number - 428);
-  if (kinematics_told_[index]) return;
-  kinematics_told_[index] = true;
-  const Place place = control_.report.place;
-  control_.report.diagnostics.note(
+  if (modes.kinematics_told[index]) return;
+  modes.kinematics_told[index] = true;
+  const Place place = letters.control.report.place;
+  letters.control.report.diagnostics.note(
       "kinematics-assumed",
-      {control_.report.summary.files[static_cast<size_t>(place.file)], place.line, column},
+      {letters.control.report.summary.files[static_cast<size_t>(place.file)], place.line, column},
       fmt::format(
           "M{} is taken as {}, as on the machines that come with LinuxCNC; if this machine's INI file "
           "means something else, say so in the scene: kinematics_switch = {{ m{} = \"{}\" }}",
@@ -43,37 +24,63 @@ void LinuxCnc::assume_kinematics(int number, Kinematics kinematics, int column) 
           kinematics == Kinematics::kTcp ? "identity" : "tcp"));
 }
 
+}  // namespace
+
+/// "Switchable kinematics" of the LinuxCNC documentation: M428, M429, M430 are remaps of the configuration.
+/// Those that come with LinuxCNC select the machine's own kinematics, identity, and userk, whose template is
+/// identity until somebody fills it in.
+void switch_kinematics(Modes& modes, LetterDialect& letters, int tenths, int column) {
+  const KinematicsSwitch& told = letters.control.setup.kinematics_switch;
+  const int number = tenths / 10;
+  std::optional<Kinematics> kinematics = tenths == 4280 ? told.m428 : tenths == 4290 ? told.m429 : told.m430;
+  if (!kinematics) {
+    if (tenths == 4300) {
+      letters.control.report.fail(
+          "unknown-kinematics", column, "M430 selects the user's kinematics, and nothing says what they are",
+          "add kinematics_switch = { m430 = \"identity\" } (or \"tcp\") to the scene; on the command "
+          "line: --kinematics m430=identity");
+    }
+    kinematics = tenths == 4280 ? Kinematics::kTcp : Kinematics::kIdentity;
+    assume_kinematics(modes, letters, number, *kinematics, column);
+  }
+  nc::set_tcp(letters.control, kinematics == Kinematics::kTcp ? Tcp::kAxes : Tcp::kOff);
+}
+
 /// M66: what it reads and how long it waits is not in the program. Its path is: the program goes on behind it
 /// in any case, and only a program that reads #5399 is stopped there.
-void LinuxCnc::read_input() {
-  const bool digital = block_.has('P'), analog = block_.has('E');
-  const int mode = block_.has('L') ? whole(block_, 'L', 0, 4, reader_, control_) : 0;
+void read_input(Modes& modes, LetterDialect& letters) {
+  const bool digital = letters.block.has('P'), analog = letters.block.has('E');
+  const int mode =
+      letters.block.has('L') ? whole(letters.block, 'L', 0, 4, letters.reader, letters.control) : 0;
   if (digital == analog)
-    control_.report.fail(digital ? "modal-conflict" : "missing-word", reader_.column_of(block_.first),
-                         digital ? "M66 reads a digital input P or an analog one E, and both stand here"
-                                 : "M66 does not say which input it reads",
-                         digital ? "write P or E" : "add P for a digital input, E for an analog one");
+    letters.control.report.fail(
+        digital ? "modal-conflict" : "missing-word", letters.reader.column_of(letters.block.first),
+        digital ? "M66 reads a digital input P or an analog one E, and both stand here"
+                : "M66 does not say which input it reads",
+        digital ? "write P or E" : "add P for a digital input, E for an analog one");
   if (analog && mode != 0)
-    control_.report.fail("out-of-range", column('L'), "M66 cannot wait for an analog input", "write L0");
-  if (mode != 0 && block_.has('Q') && !(block_.get('Q') > 0.0))
-    control_.report.fail("out-of-range", column('Q'),
-                         fmt::format("M66 L{} with a time limit of {:g} s", mode, block_.get('Q')),
-                         "write Q above zero, in seconds");
-  input_read_ = true;
-  control_.report.without_effect(mode == 0 ? "M66 (an input is read; its value is not known here)"
-                                           : "M66 (waits for an input; how long is not known here)");
+    letters.control.report.fail("out-of-range", letters.column('L'), "M66 cannot wait for an analog input",
+                                "write L0");
+  if (mode != 0 && letters.block.has('Q') && !(letters.block.get('Q') > 0.0))
+    letters.control.report.fail(
+        "out-of-range", letters.column('Q'),
+        fmt::format("M66 L{} with a time limit of {:g} s", mode, letters.block.get('Q')),
+        "write Q above zero, in seconds");
+  modes.input_read = true;
+  letters.control.report.without_effect(mode == 0 ? "M66 (an input is read; its value is not known here)"
+                                                  : "M66 (waits for an input; how long is not known here)");
 }
 
 /// The remaps of LinuxCNC's own machines select their kinematics by analog output 3.
-void LinuxCnc::warn_of_output() {
+void warn_of_output(LetterDialect& letters) {
   constexpr double kSwitchingOutput = 3.0;
-  const kinematics::MachineModel& machine = control_.setup.machine;
+  const kinematics::MachineModel& machine = letters.control.setup.machine;
   const bool turns = std::any_of(machine.axes.begin(), machine.axes.end(), [](const kinematics::Axis& axis) {
     return axis.kind == kinematics::AxisKind::kRotary;
   });
-  if (!turns || block_.get('E', 0.0) != kSwitchingOutput) return;
-  control_.report.warn_once(
-      "output-may-switch-kinematics", column('E'),
+  if (!turns || letters.block.get('E', 0.0) != kSwitchingOutput) return;
+  letters.control.report.warn_once(
+      "output-may-switch-kinematics", letters.column('E'),
       "analog output 3 selects the kinematics on LinuxCNC's own five-axis machines; outputs have no "
       "effect here, the kinematics stay what they are",
       "write M428, M429 or M430 where the kinematics change");

@@ -4,36 +4,142 @@
 #include <cmath>
 
 #include "base/units.h"
-#include "program/linuxcnc/reader.h"
+#include "program/linuxcnc/steps.h"
 
 namespace swarf::program::nc::linuxcnc {
 
 using kinematics::AxisValues;
 
-void LinuxCnc::non_modal() {
-  switch (block_.g[kNonModal]) {
+namespace {
+
+void set_data(Zero& zero, LetterDialect& letters) {
+  letters.need('L', "G10");
+  const int kind = whole(letters.block, 'L', 0, 20, letters.reader, letters.control);
+  if (kind == 1 || kind == 10 || kind == 11) {
+    letters.need('P', "G10");
+    return set_tool_data(zero, letters, kind);
+  }
+  if (kind != 2 && kind != 20)
+    letters.control.report.fail("unsupported-word", letters.column('L'),
+                                fmt::format("G10 L{} is not read", kind),
+                                "G10 L1, L10 and L11 write tool data, L2 and L20 offsets");
+  letters.need('P', "G10");
+  for (const char letter : {'I', 'J', 'Q'}) letters.check_letter(letter, false, "G10 L1");
+  int number = whole(letters.block, 'P', 0, 9, letters.reader, letters.control);
+  if (number == 0) number = letters.control.offsets.active;
+  const Target words = target_of(letters.block, false, letters.reader, letters.control);
+  AxisValues origin = nc::offset_origin(letters.control.space, letters.control.offsets, number);
+  const std::array<double, kAxisWords> here = nc::position(letters.control);
+  if (letters.block.has('R')) {
+    if (kind != 2)
+      letters.control.report.fail("unexpected-word", letters.column('R'),
+                                  "R turns an offset with G10 L2 only", "write G10 L2");
+    zero.offset_turn[static_cast<size_t>(number)] = rad_from_deg(letters.block.get('R'));
+  }
+  const double turn = zero.offset_turn[static_cast<size_t>(number)];
+  if (kind == 20 && turn != 0.0)
+    letters.control.report.fail("unsupported-word", letters.column('L'),
+                                "G10 L20 into an offset that is turned (R) is not supported",
+                                "write the offset with G10 L2");
+  for (int word = 0; word < kAxisWords; ++word) {
+    if (!words.has(word)) continue;
+    const int axis = nc::require_axis(letters.control, static_cast<AxisWord>(word), words.column);
+    const double value = words.value[static_cast<size_t>(word)];
+    if (kind == 2) {  // G91 has no effect on it
+      origin[axis] = value;
+      continue;
+    }
+    if (!std::isfinite(here[static_cast<size_t>(word)]))
+      letters.control.report.fail("start-unknown", words.column,
+                                  "G10 L20 needs the position, which is not known yet",
+                                  "give the start position in the scene");
+    // In the offset that is active: so that the present position reads `value`.
+    origin[axis] = nc::offset_origin(letters.control.space, letters.control.offsets,
+                                     letters.control.offsets.active)[axis] +
+                   here[static_cast<size_t>(word)] - value;
+  }
+  nc::set_offset_origin(letters.control, number, origin);
+  update_shift(zero, letters);
+}
+
+/// G28.1, G30.1: the place where the machine stands is the one that G28, G30 go to.
+void set_reference(Zero& zero, LetterDialect& letters, int tenths) {
+  if (!letters.control.path.started)
+    letters.control.report.fail("start-unknown", letters.g_column(kNonModal),
+                                "the position to keep is not known yet",
+                                "give the start position in the scene");
+  nc::flush(letters.control);
+  zero.references[tenths == 281 ? 0 : 1] = letters.control.path.q;
+}
+
+void reference(LinuxCnc& linuxcnc, int tenths) {
+  const std::optional<AxisValues> goal = reference_position(linuxcnc.zero, linuxcnc, tenths == 300);
+  if (!goal)
+    linuxcnc.control.report.fail("no-reference", linuxcnc.g_column(kNonModal),
+                                 "G30 goes to the tool change position, and the machine has none",
+                                 "add tool_change to the machine file, write G30.1 before it, or write G28");
+  const Target words =
+      target_of(linuxcnc.block, linuxcnc.modes.incremental, linuxcnc.reader, linuxcnc.control);
+  linuxcnc.curves.spline_tangent.reset();
+  if (words.any()) nc::line(linuxcnc.control, Motion::kRapid, words);
+  Target home;
+  home.column = linuxcnc.g_column(kNonModal);
+  for (int word = 0; word < kAxisWords; ++word) {
+    const int axis = linuxcnc.control.space.axis_of(static_cast<AxisWord>(word));
+    if (axis < 0 || (words.any() && !words.has(word))) continue;
+    home.set(word, (*goal)[axis], false);
+  }
+  nc::machine_line(linuxcnc.control, Motion::kRapid, home);
+}
+
+/// G92: the present position reads as written. G52: the shift is as written. Axes without a word keep theirs.
+void shift_to_words(Zero& zero, LetterDialect& letters, bool position) {
+  const Target words = target_of(letters.block, false, letters.reader, letters.control);
+  if (!words.any())
+    letters.control.report.fail("missing-word", letters.g_column(kNonModal), "this shift has no axis words",
+                                "add the axes that it shifts");
+  const std::array<double, kAxisWords> here = nc::position(letters.control);
+  if (!zero.shift_on) zero.shift = AxisValues::Zero();
+  for (int word = 0; word < kAxisWords; ++word) {
+    if (!words.has(word)) continue;
+    const int axis = nc::require_axis(letters.control, static_cast<AxisWord>(word), words.column);
+    const double value = words.value[static_cast<size_t>(word)], now = here[static_cast<size_t>(word)];
+    if (position && !std::isfinite(now))
+      letters.control.report.fail("start-unknown", words.column,
+                                  "G92 needs the position, which is not known yet",
+                                  "give the start position in the scene");
+    zero.shift[axis] = position ? zero.shift[axis] + now - value : value;
+  }
+  zero.shift_on = true;
+  update_shift(zero, letters);
+}
+
+}  // namespace
+
+void non_modal(LinuxCnc& linuxcnc) {
+  switch (linuxcnc.block.g[kNonModal]) {
     case 100:
-      return set_data();
+      return set_data(linuxcnc.zero, linuxcnc);
     case 280:
     case 300:
-      return reference(block_.g[kNonModal]);
+      return reference(linuxcnc, linuxcnc.block.g[kNonModal]);
     case 281:
     case 301:
-      return set_reference(block_.g[kNonModal]);
+      return set_reference(linuxcnc.zero, linuxcnc, linuxcnc.block.g[kNonModal]);
     case 520:
-      return shift_to_words(false);
+      return shift_to_words(linuxcnc.zero, linuxcnc, false);
     case 920:
-      return shift_to_words(true);
+      return shift_to_words(linuxcnc.zero, linuxcnc, true);
     case 921:
-      shift_ = AxisValues::Zero();
-      shift_on_ = false;
-      return update_shift();
+      linuxcnc.zero.shift = AxisValues::Zero();
+      linuxcnc.zero.shift_on = false;
+      return update_shift(linuxcnc.zero, linuxcnc);
     case 922:
-      shift_on_ = false;
-      return update_shift();
+      linuxcnc.zero.shift_on = false;
+      return update_shift(linuxcnc.zero, linuxcnc);
     case 923:
-      shift_on_ = true;
-      return update_shift();
+      linuxcnc.zero.shift_on = true;
+      return update_shift(linuxcnc.zero, linuxcnc);
     default:
       return;  // G4 has been done
   }
@@ -41,129 +147,32 @@ void LinuxCnc::non_modal() {
 
 /// The rotation of the offset stands inside the G92 shift: p turns, the shift does not (RS274/NGC: the shift
 /// is added before the turn).
-void LinuxCnc::update_shift() {
-  const AxisValues on = shift_on_ ? shift_ : AxisValues(AxisValues::Zero());
-  const int offset = control_.offsets.active;
-  const double turn = offset < 10 ? offset_turn_[static_cast<size_t>(offset)] : 0.0;
+void update_shift(Zero& zero, LetterDialect& letters) {
+  const AxisValues on = zero.shift_on ? zero.shift : AxisValues(AxisValues::Zero());
+  const int offset = letters.control.offsets.active;
+  const double turn = offset < 10 ? zero.offset_turn[static_cast<size_t>(offset)] : 0.0;
   Pose frame = Pose::Identity();
   if (turn != 0.0) frame.linear() = Eigen::AngleAxisd(turn, Vec3::UnitZ()).toRotationMatrix();
   AxisValues rotary = on;
   Vec3 linear = Vec3::Zero();
   for (int i = 0; i < 3; ++i) {
-    const int axis = control_.space.axis_of(static_cast<AxisWord>(i));
+    const int axis = letters.control.space.axis_of(static_cast<AxisWord>(i));
     linear[i] = on[axis];
     rotary[axis] = 0.0;
   }
   frame.translation() = frame.linear() * linear;
-  nc::set_shift(control_, rotary);
-  nc::set_frame(control_, frame);
-}
-
-void LinuxCnc::set_data() {
-  need('L', "G10");
-  const int kind = whole(block_, 'L', 0, 20, reader_, control_);
-  if (kind == 1 || kind == 10 || kind == 11) {
-    need('P', "G10");
-    return set_tool_data(kind);
-  }
-  if (kind != 2 && kind != 20)
-    control_.report.fail("unsupported-word", column('L'), fmt::format("G10 L{} is not read", kind),
-                         "G10 L1, L10 and L11 write tool data, L2 and L20 offsets");
-  need('P', "G10");
-  for (const char letter : {'I', 'J', 'Q'}) check_letter(letter, false, "G10 L1");
-  int number = whole(block_, 'P', 0, 9, reader_, control_);
-  if (number == 0) number = control_.offsets.active;
-  const Target words = target_of(block_, false, reader_, control_);
-  AxisValues origin = nc::offset_origin(control_.space, control_.offsets, number);
-  const std::array<double, kAxisWords> here = nc::position(control_);
-  if (block_.has('R')) {
-    if (kind != 2)
-      control_.report.fail("unexpected-word", column('R'), "R turns an offset with G10 L2 only",
-                           "write G10 L2");
-    offset_turn_[static_cast<size_t>(number)] = rad_from_deg(block_.get('R'));
-  }
-  const double turn = offset_turn_[static_cast<size_t>(number)];
-  if (kind == 20 && turn != 0.0)
-    control_.report.fail("unsupported-word", column('L'),
-                         "G10 L20 into an offset that is turned (R) is not supported",
-                         "write the offset with G10 L2");
-  for (int word = 0; word < kAxisWords; ++word) {
-    if (!words.has(word)) continue;
-    const int axis = nc::require_axis(control_, static_cast<AxisWord>(word), words.column);
-    const double value = words.value[static_cast<size_t>(word)];
-    if (kind == 2) {  // G91 has no effect on it
-      origin[axis] = value;
-      continue;
-    }
-    if (!std::isfinite(here[static_cast<size_t>(word)]))
-      control_.report.fail("start-unknown", words.column,
-                           "G10 L20 needs the position, which is not known yet",
-                           "give the start position in the scene");
-    // In the offset that is active: so that the present position reads `value`.
-    origin[axis] = nc::offset_origin(control_.space, control_.offsets, control_.offsets.active)[axis] +
-                   here[static_cast<size_t>(word)] - value;
-  }
-  nc::set_offset_origin(control_, number, origin);
-  update_shift();
-}
-
-/// G28.1, G30.1: the place where the machine stands is the one that G28, G30 go to.
-void LinuxCnc::set_reference(int tenths) {
-  if (!control_.path.started)
-    control_.report.fail("start-unknown", g_column(kNonModal), "the position to keep is not known yet",
-                         "give the start position in the scene");
-  nc::flush(control_);
-  references_[tenths == 281 ? 0 : 1] = control_.path.q;
+  nc::set_shift(letters.control, rotary);
+  nc::set_frame(letters.control, frame);
 }
 
 /// Where G28 (home, or kept by G28.1) and G30 (where tools are changed, or kept by G30.1) go.
-std::optional<AxisValues> LinuxCnc::reference_position(bool second) const {
-  if (references_[second ? 1 : 0]) return references_[second ? 1 : 0];
-  const kinematics::MachineModel& machine = control_.setup.machine;
+std::optional<AxisValues> reference_position(const Zero& zero, const LetterDialect& letters, bool second) {
+  if (zero.references[second ? 1 : 0]) return zero.references[second ? 1 : 0];
+  const kinematics::MachineModel& machine = letters.control.setup.machine;
   if (second) return machine.tool_change;
   AxisValues home = AxisValues::Zero();
   for (size_t i = 0; i < machine.axes.size(); ++i) home[static_cast<long>(i)] = machine.axes[i].home;
   return home;
-}
-
-void LinuxCnc::reference(int tenths) {
-  const std::optional<AxisValues> goal = reference_position(tenths == 300);
-  if (!goal)
-    control_.report.fail("no-reference", g_column(kNonModal),
-                         "G30 goes to the tool change position, and the machine has none",
-                         "add tool_change to the machine file, write G30.1 before it, or write G28");
-  const Target words = target_of(block_, incremental_, reader_, control_);
-  spline_tangent_.reset();
-  if (words.any()) nc::line(control_, Motion::kRapid, words);
-  Target home;
-  home.column = g_column(kNonModal);
-  for (int word = 0; word < kAxisWords; ++word) {
-    const int axis = control_.space.axis_of(static_cast<AxisWord>(word));
-    if (axis < 0 || (words.any() && !words.has(word))) continue;
-    home.set(word, (*goal)[axis], false);
-  }
-  nc::machine_line(control_, Motion::kRapid, home);
-}
-
-/// G92: the present position reads as written. G52: the shift is as written. Axes without a word keep theirs.
-void LinuxCnc::shift_to_words(bool position) {
-  const Target words = target_of(block_, false, reader_, control_);
-  if (!words.any())
-    control_.report.fail("missing-word", g_column(kNonModal), "this shift has no axis words",
-                         "add the axes that it shifts");
-  const std::array<double, kAxisWords> here = nc::position(control_);
-  if (!shift_on_) shift_ = AxisValues::Zero();
-  for (int word = 0; word < kAxisWords; ++word) {
-    if (!words.has(word)) continue;
-    const int axis = nc::require_axis(control_, static_cast<AxisWord>(word), words.column);
-    const double value = words.value[static_cast<size_t>(word)], now = here[static_cast<size_t>(word)];
-    if (position && !std::isfinite(now))
-      control_.report.fail("start-unknown", words.column, "G92 needs the position, which is not known yet",
-                           "give the start position in the scene");
-    shift_[axis] = position ? shift_[axis] + now - value : value;
-  }
-  shift_on_ = true;
-  update_shift();
 }
 
 }  // namespace swarf::program::nc::linuxcnc

@@ -3,153 +3,163 @@
 
 #include <cmath>
 
-#include "program/linuxcnc/reader.h"
+#include "program/linuxcnc/steps.h"
 
 namespace swarf::program::nc::linuxcnc {
+namespace {
 
-int LinuxCnc::tool_word(char letter) {
-  return whole(block_, letter, 0, 99999999, reader_, control_);
-}
-
-void LinuxCnc::apply_tool() {
-  if (block_.has('T')) {
-    const int number = tool_word('T');
-    nc::select_tool(control_.tools, number == 0 ? -1 : nc::find_tool(control_, number, column('T')), number);
-    tool_called_ = true;
-  }
-  if (block_.has_m(610)) declare_tool();
-  if (!block_.has_m(60)) return;
-  spline_tangent_.reset();
-  nc::change_tool(control_);
+int tool_word(LetterDialect& letters, char letter) {
+  return whole(letters.block, letter, 0, 99999999, letters.reader, letters.control);
 }
 
 /// M61 Q gives the tool in the spindle its number; no tool moves. What a program has put there is known.
-void LinuxCnc::declare_tool() {
-  need('Q', "M61");
-  const int number = tool_word('Q');
-  if (number == control_.tools.active_number) return;
-  if (control_.tools.active_number != 0)
-    control_.report.fail(
-        "tool-not-changed", column('Q'),
+void declare_tool(LetterDialect& letters) {
+  letters.need('Q', "M61");
+  const int number = tool_word(letters, 'Q');
+  if (number == letters.control.tools.active_number) return;
+  if (letters.control.tools.active_number != 0)
+    letters.control.report.fail(
+        "tool-not-changed", letters.column('Q'),
         fmt::format("M61 Q{} renames the tool in the spindle, where this program has put T{}", number,
-                    control_.tools.active_number),
+                    letters.control.tools.active_number),
         number == 0 ? "write T0 M6 to empty the spindle" : fmt::format("write T{} M6 to change it", number));
-  nc::declare_tool(control_, nc::find_tool(control_, number, column('Q')), number);
+  nc::declare_tool(letters.control, nc::find_tool(letters.control, number, letters.column('Q')), number);
+}
+
+double length_of(Zero& zero, LetterDialect& letters, int number, int column) {
+  const int wanted = number == 0 ? letters.control.tools.active_number : number;
+  const auto written = zero.tool_data.find(wanted);
+  if (written != zero.tool_data.end() && written->second.length_mm) return *written->second.length_mm;
+  if (number == 0)
+    return nc::active_tool(letters.control) == nullptr ? 0.0 : nc::active_tool(letters.control)->length_mm;
+  const int index = nc::find_tool(letters.control, number, column);
+  return index < 0 ? 0.0 : letters.control.setup.tools[static_cast<size_t>(index)].length_mm;
+}
+
+double touched_length(const Zero& zero, const LetterDialect& letters, int kind, double value) {
+  if (!letters.control.path.started)
+    letters.control.report.fail("start-unknown", letters.column('Z'),
+                                "G10 measures the tool where it stands, which is not known yet",
+                                "give the start position in the scene");
+  if (letters.control.space.coordinates() != Coordinates::kAxes)
+    letters.control.report.fail("tcp-active", letters.column('Z'),
+                                "G10 L10 and L11 measure along Z of the machine, and TCP is on",
+                                "switch it off first: M429");
+  const double here = nc::position_xyz(letters.control).z(), length = letters.control.space.length();
+  if (kind == 10) return length + here - value;
+  constexpr int kFixture = 9;  // G59.3
+  const int z = letters.control.space.axis_of(kZ);
+  const double origin =
+      nc::offset_origin(letters.control.space, letters.control.offsets, letters.control.offsets.active)[z] +
+      (zero.shift_on ? zero.shift[z] : 0.0);
+  return length + here + origin -
+         nc::offset_origin(letters.control.space, letters.control.offsets, kFixture)[z] - value;
+}
+
+}  // namespace
+
+void apply_tool(Modes& modes, Curves& curves, LetterDialect& letters) {
+  if (letters.block.has('T')) {
+    const int number = tool_word(letters, 'T');
+    nc::select_tool(letters.control.tools,
+                    number == 0 ? -1 : nc::find_tool(letters.control, number, letters.column('T')), number);
+    modes.tool_called = true;
+  }
+  if (letters.block.has_m(610)) declare_tool(letters);
+  if (!letters.block.has_m(60)) return;
+  curves.spline_tangent.reset();
+  nc::change_tool(letters.control);
 }
 
 /// Number 0: the tool in the spindle, as machines without a random changer have it (D0, H0).
-std::optional<double> LinuxCnc::diameter_of(int number, int column) {
-  const int wanted = number == 0 ? control_.tools.active_number : number;
-  const auto written = tool_data_.find(wanted);
-  if (written != tool_data_.end() && written->second.diameter_mm) return written->second.diameter_mm;
-  const NcTool* tool = nc::active_tool(control_);
+std::optional<double> diameter_of(Zero& zero, LetterDialect& letters, int number, int column) {
+  const int wanted = number == 0 ? letters.control.tools.active_number : number;
+  const auto written = zero.tool_data.find(wanted);
+  if (written != zero.tool_data.end() && written->second.diameter_mm) return written->second.diameter_mm;
+  const NcTool* tool = nc::active_tool(letters.control);
   if (number != 0) {
-    const int index = nc::find_tool(control_, number, column);
-    tool = index < 0 ? nullptr : &control_.setup.tools[static_cast<size_t>(index)];
+    const int index = nc::find_tool(letters.control, number, column);
+    tool = index < 0 ? nullptr : &letters.control.setup.tools[static_cast<size_t>(index)];
   }
   return tool == nullptr ? std::nullopt : std::optional(tool->diameter_mm);
 }
 
-double LinuxCnc::length_of(int number, int column) {
-  const int wanted = number == 0 ? control_.tools.active_number : number;
-  const auto written = tool_data_.find(wanted);
-  if (written != tool_data_.end() && written->second.length_mm) return *written->second.length_mm;
-  if (number == 0) return nc::active_tool(control_) == nullptr ? 0.0 : nc::active_tool(control_)->length_mm;
-  const int index = nc::find_tool(control_, number, column);
-  return index < 0 ? 0.0 : control_.setup.tools[static_cast<size_t>(index)].length_mm;
-}
-
-void LinuxCnc::apply_compensation() {
-  if (!block_.has_g(kRadiusGroup)) return;
-  const int code = block_.g[kRadiusGroup];
-  const int at = g_column(kRadiusGroup);
-  radius_code_ = code;
-  if (code == 400) return nc::set_compensation(control_, Compensation::kOff, 0.0, at);
-  if (control_.modal.plane == Plane::kYZ)
-    control_.report.fail("compensation-plane", at,
-                         "LinuxCNC compensates the cutter's radius in G17 and G18 only",
-                         "write the path of the cutter's centre");
+void apply_compensation(Modes& modes, Zero& zero, LetterDialect& letters) {
+  if (!letters.block.has_g(kRadiusGroup)) return;
+  const int code = letters.block.g[kRadiusGroup];
+  const int at = letters.g_column(kRadiusGroup);
+  modes.radius_code = code;
+  if (code == 400) return nc::set_compensation(letters.control, Compensation::kOff, 0.0, at);
+  if (letters.control.modal.plane == Plane::kYZ)
+    letters.control.report.fail("compensation-plane", at,
+                                "LinuxCNC compensates the cutter's radius in G17 and G18 only",
+                                "write the path of the cutter's centre");
   if (code == 411 || code == 421) {
-    need('D', "G41.1");
-    diameter_mm_ = control_.modal.mm(block_.get('D'));
+    letters.need('D', "G41.1");
+    modes.diameter_mm = letters.control.modal.mm(letters.block.get('D'));
   } else {
-    const bool named = block_.has('D');
-    const std::optional<double> diameter = diameter_of(named ? tool_word('D') : 0, named ? column('D') : at);
+    const bool named = letters.block.has('D');
+    const std::optional<double> diameter =
+        diameter_of(zero, letters, named ? tool_word(letters, 'D') : 0, named ? letters.column('D') : at);
     if (!diameter)
-      control_.report.fail("compensation-no-tool", at,
-                           "cutter compensation has no tool to take its radius from",
-                           "load a tool that the table knows, or write G41.1 D");
-    diameter_mm_ = *diameter;
+      letters.control.report.fail("compensation-no-tool", at,
+                                  "cutter compensation has no tool to take its radius from",
+                                  "load a tool that the table knows, or write G41.1 D");
+    modes.diameter_mm = *diameter;
   }
   const bool left = code == 410 || code == 411;
-  nc::set_compensation(control_, left == (diameter_mm_ >= 0.0) ? Compensation::kLeft : Compensation::kRight,
-                       0.5 * std::abs(diameter_mm_), at);
+  nc::set_compensation(letters.control,
+                       left == (modes.diameter_mm >= 0.0) ? Compensation::kLeft : Compensation::kRight,
+                       0.5 * std::abs(modes.diameter_mm), at);
 }
 
-void LinuxCnc::apply_length() {
-  if (!block_.has_g(kLengthGroup)) return;
-  const int code = block_.g[kLengthGroup];
-  if (code == 490) return nc::set_length_compensation(control_, 0.0, false);
-  const bool by_axes = code == 431 || (code == 432 && !block_.has('H'));
+void apply_length(Zero& zero, LetterDialect& letters) {
+  if (!letters.block.has_g(kLengthGroup)) return;
+  const int code = letters.block.g[kLengthGroup];
+  if (code == 490) return nc::set_length_compensation(letters.control, 0.0, false);
+  const bool by_axes = code == 431 || (code == 432 && !letters.block.has('H'));
   double length = 0.0;
-  if (code == 432 && by_axes && !is_axis_given()) need('H', "G43.2");
+  if (code == 432 && by_axes && !is_axis_given(letters)) letters.need('H', "G43.2");
   if (by_axes) {
-    if ((block_.given & kAxisBits) != 1u << ('Z' - 'A'))
-      control_.report.fail("unsupported-word", g_column(kLengthGroup),
-                           "G43.1 and G43.2 are read with Z alone (a length along the tool), or G43.2 with H",
-                           "write Z");
-    length = control_.modal.mm(block_.get('Z'));
+    if ((letters.block.given & kAxisBits) != 1u << ('Z' - 'A'))
+      letters.control.report.fail(
+          "unsupported-word", letters.g_column(kLengthGroup),
+          "G43.1 and G43.2 are read with Z alone (a length along the tool), or G43.2 with H", "write Z");
+    length = letters.control.modal.mm(letters.block.get('Z'));
   } else {
-    length = length_of(block_.has('H') ? tool_word('H') : 0,
-                       block_.has('H') ? column('H') : g_column(kLengthGroup));
+    length = length_of(zero, letters, letters.block.has('H') ? tool_word(letters, 'H') : 0,
+                       letters.block.has('H') ? letters.column('H') : letters.g_column(kLengthGroup));
   }
-  if (code == 432) length += control_.space.length();
-  nc::set_length_compensation(control_, length, true);
+  if (code == 432) length += letters.control.space.length();
+  nc::set_length_compensation(letters.control, length, true);
 }
 
 /// G10 L1: the words are the values. L10, L11: the length with which the present position would read as
 /// written, in the offsets that hold, or in G59.3 without G52 and G92. Only a later G43 or G41 reads them.
-void LinuxCnc::set_tool_data(int kind) {
-  const int number = tool_word('P');
-  if (control_.contour.side() != Compensation::kOff)
-    control_.report.fail("compensation-active", column('L'),
-                         "the tool table changes while cutter radius compensation is on",
-                         "switch it off first: G40");
+void set_tool_data(Zero& zero, LetterDialect& letters, int kind) {
+  const int number = tool_word(letters, 'P');
+  if (letters.control.contour.side() != Compensation::kOff)
+    letters.control.report.fail("compensation-active", letters.column('L'),
+                                "the tool table changes while cutter radius compensation is on",
+                                "switch it off first: G40");
   if (number == 0)
-    control_.report.fail("out-of-range", column('P'), "P0 is no tool of the table",
-                         "write the number of the tool");
-  nc::find_tool(control_, number, column('P'));
+    letters.control.report.fail("out-of-range", letters.column('P'), "P0 is no tool of the table",
+                                "write the number of the tool");
+  nc::find_tool(letters.control, number, letters.column('P'));
   for (const char letter : {'X', 'Y', 'A', 'B', 'C'}) {
-    if (block_.has(letter))
-      control_.report.fail("unsupported-word", column(letter),
-                           fmt::format("a tool offset along {}: tools have a length along Z here", letter),
-                           "write Z and R alone");
+    if (letters.block.has(letter))
+      letters.control.report.fail(
+          "unsupported-word", letters.column(letter),
+          fmt::format("a tool offset along {}: tools have a length along Z here", letter),
+          "write Z and R alone");
   }
-  if (block_.has('I') || block_.has('J') || block_.has('Q'))
-    control_.report.without_effect("G10 I J Q (angles and orientation of turning tools)");
-  ToolData& data = tool_data_[number];
-  if (block_.has('R')) data.diameter_mm = 2.0 * control_.modal.mm(block_.get('R'));
-  if (!block_.has('Z')) return;
-  const double value = control_.modal.mm(block_.get('Z'));
-  data.length_mm = kind == 1 ? value : touched_length(kind, value);
-}
-
-double LinuxCnc::touched_length(int kind, double value) const {
-  if (!control_.path.started)
-    control_.report.fail("start-unknown", column('Z'),
-                         "G10 measures the tool where it stands, which is not known yet",
-                         "give the start position in the scene");
-  if (control_.space.coordinates() != Coordinates::kAxes)
-    control_.report.fail("tcp-active", column('Z'),
-                         "G10 L10 and L11 measure along Z of the machine, and TCP is on",
-                         "switch it off first: M429");
-  const double here = nc::position_xyz(control_).z(), length = control_.space.length();
-  if (kind == 10) return length + here - value;
-  constexpr int kFixture = 9;  // G59.3
-  const int z = control_.space.axis_of(kZ);
-  const double zero = nc::offset_origin(control_.space, control_.offsets, control_.offsets.active)[z] +
-                      (shift_on_ ? shift_[z] : 0.0);
-  return length + here + zero - nc::offset_origin(control_.space, control_.offsets, kFixture)[z] - value;
+  if (letters.block.has('I') || letters.block.has('J') || letters.block.has('Q'))
+    letters.control.report.without_effect("G10 I J Q (angles and orientation of turning tools)");
+  ToolData& data = zero.tool_data[number];
+  if (letters.block.has('R')) data.diameter_mm = 2.0 * letters.control.modal.mm(letters.block.get('R'));
+  if (!letters.block.has('Z')) return;
+  const double value = letters.control.modal.mm(letters.block.get('Z'));
+  data.length_mm = kind == 1 ? value : touched_length(zero, letters, kind, value);
 }
 
 }  // namespace swarf::program::nc::linuxcnc

@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include "program/siemens/dialect.h"
-#include "program/siemens/executor.h"
+#include "program/siemens/steps.h"
 
 namespace swarf::program::nc::siemens {
 namespace {
