@@ -1,29 +1,14 @@
 #include <fmt/format.h>
 
-#include <array>
 #include <cmath>
-#include <string_view>
 #include <utility>
 
-#include "program/cl/interpreter.h"
+#include "program/cl/steps.h"
 
-namespace swarf::program {
+namespace swarf::program::cldata {
 namespace {
 
 constexpr const char* kForm = "write CUTCOM/LEFT, RIGHT, ON or OFF, a register and XYPLAN, YZPLAN or ZXPLAN";
-
-/// The remedies of control/contour.cpp in words of CL data.
-struct Remedy {
-  std::string_view code;
-  const char* fix;
-};
-constexpr std::array kRemedies{
-    Remedy{"compensation-active", "write CUTCOM/OFF and a straight GOTO in the plane before it"},
-    Remedy{"compensation-plane", "write CUTCOM/OFF before it, or give the arc's plane with CUTCOM"},
-    Remedy{"compensation-entry",
-           "put CUTCOM before a straight GOTO in the plane that is longer than the radius"},
-    Remedy{"compensation-exit", "put CUTCOM/OFF before a straight GOTO in the plane"},
-    Remedy{"compensation-rapid", "write CUTCOM/OFF before rapid moves, or take the RAPID away"}};
 
 bool is_plane(const std::string& word, nc::Plane& plane) {
   if (word == "XYPLAN") plane = nc::Plane::kXY;
@@ -32,48 +17,85 @@ bool is_plane(const std::string& word, nc::Plane& plane) {
   return word == "XYPLAN" || word == "YZPLAN" || word == "ZXPLAN";
 }
 
-}  // namespace
-
-void ClCompensation::fail(const char* code, int column, std::string text, std::string fix) const {
-  for (const Remedy& remedy : kRemedies) {
-    if (remedy.code == code) fix = remedy.fix;
-  }
-  throw InputError(code, {file_, place_.line, column > 0 ? column : place_.column}, std::move(text),
-                   std::move(fix));
-}
-
-bool ClInterpreter::read_cutcom(const ClStatement& s, nc::Compensation& side, nc::Plane& plane) {
+bool read_cutcom(Reporter& reporter, ClCutcom& compensation, const ClStatement& s, nc::Compensation& side,
+                 nc::Plane& plane) {
   bool given = false;
   for (const ClArgument& argument : s.arguments) {
     const std::string& word = argument.text;
     if (argument.number || is_plane(word, plane)) continue;  // a number names the control's register
     const bool known = word == "LEFT" || word == "RIGHT" || word == "ON" || word == "OFF";
     if (!known || given) {
-      fault("unsupported-word", argument, fmt::format("CUTCOM with '{}' is not followed", word), kForm);
+      fault(reporter, "unsupported-word", argument, fmt::format("CUTCOM with '{}' is not followed", word),
+            kForm);
       return false;
     }
     given = true;
     side = word == "LEFT"    ? nc::Compensation::kLeft
            : word == "RIGHT" ? nc::Compensation::kRight
-           : word == "ON"    ? last_side_
+           : word == "ON"    ? compensation.last_side
                              : nc::Compensation::kOff;
-    if (word == "ON" && last_side_ == nc::Compensation::kOff) {
-      fault("wrong-arguments", argument, "CUTCOM/ON, and no LEFT or RIGHT stands before it", kForm);
+    if (word == "ON" && compensation.last_side == nc::Compensation::kOff) {
+      fault(reporter, "wrong-arguments", argument, "CUTCOM/ON, and no LEFT or RIGHT stands before it", kForm);
       return false;
     }
   }
-  if (!given) fault("wrong-arguments", s, "CUTCOM says neither LEFT, RIGHT, ON nor OFF", kForm);
+  if (!given) fault(reporter, "wrong-arguments", s, "CUTCOM says neither LEFT, RIGHT, ON nor OFF", kForm);
   return given;
 }
 
-void ClInterpreter::cutter_compensation(const ClStatement& s) {
+void start_contour(ClState& cl, const ClStatement& s, nc::Compensation side, nc::Plane plane) {
+  if (cl.compensation.contour && cl.compensation.contour->side() == side &&
+      cl.compensation.contour->plane() == plane)
+    return;
+  if (cl.compensation.contour) {
+    fault(cl.reporter, "compensation-active", s, "CUTCOM changes its side or plane while it is on",
+          "write CUTCOM/OFF and a straight GOTO in the plane before it");
+    return;
+  }
+  const std::optional<double> radius = cutter_radius(cl.options, cl.program, cl.tool);
+  if (!radius || !cl.path.positioned || cl.drilling.cycle) {
+    fault(cl.reporter, !radius ? "compensation-no-tool" : "compensation-entry", s,
+          !radius              ? "CUTCOM, and neither CUTTER nor the scene gives the cutter's diameter"
+          : cl.path.positioned ? "CUTCOM stands inside of a cycle"
+                               : "CUTCOM, and no position has been given",
+          !radius              ? "write CUTTER/10 before it, or describe the tool in the scene"
+          : cl.path.positioned ? "write CYCLE/OFF before it"
+                               : "give FROM or GOTO first");
+    return;
+  }
+  remark(cl.program,
+         fmt::format("CUTCOM: points are the part's contour; a cutter of radius {:g} mm goes beside it, its "
+                     "lead-in ends across the start of the contour",
+                     *radius));
+  cl.compensation.contour =
+      std::make_unique<ClCompensation>(cl.program.file, plane, [&cl](const nc::Segment& segment) {
+        ClMove move;
+        move.from = {cl.systems.X_WC * segment.from, cl.path.axis_W};
+        move.to = {cl.systems.X_WC * segment.to, cl.path.axis_W};
+        if (segment.is_arc())
+          move.arc = ClArc{cl.systems.X_WC * segment.centre, cl.systems.X_WC.linear() * segment.normal};
+        move.feed_mm_s = segment.motion == nc::Motion::kRapid ? 0.0 : segment.feed;
+        move.dwell_s = segment.dwell_s;
+        move.spindle_rpm = segment.spindle_rpm;
+        move.tool = cl.tool.active;
+        move.line = segment.place.line;
+        move.column = segment.place.column;
+        emit(cl.sink, cl.program, move);
+      });
+  cl.compensation.contour->at(0, s.line, s.column);
+  cl.compensation.contour->start(side, *radius);
+}
+
+}  // namespace
+
+void cutter_compensation(ClState& cl, const ClStatement& s) {
   nc::Compensation side = nc::Compensation::kOff;
-  nc::Plane plane = last_plane_;
-  if (!read_cutcom(s, side, plane)) return;
+  nc::Plane plane = cl.compensation.last_plane;
+  if (!read_cutcom(cl.reporter, cl.compensation, s, side, plane)) return;
   const bool on = side != nc::Compensation::kOff;
-  const std::optional<ClPoints> points = options_.cutcom ? options_.cutcom : file_cutcom_;
+  const std::optional<ClPoints> points = cl.options.cutcom ? cl.options.cutcom : cl.compensation.file_cutcom;
   if (on && !points) {
-    fault("cutcom-meaning", s,
+    fault(cl.reporter, "cutcom-meaning", s,
           "CUTCOM is on, and nothing says what its points are: the cutter's centre or the part's contour",
           "write cutcom = \"centre\" (points of the cutter's centre, the control's register holds its wear: "
           "taken as 0) or cutcom = \"contour\" (points of the part, the cutter goes its radius aside) in the "
@@ -81,80 +103,43 @@ void ClInterpreter::cutter_compensation(const ClStatement& s) {
     return;
   }
   if (on) {
-    last_side_ = side;
-    last_plane_ = plane;
+    cl.compensation.last_side = side;
+    cl.compensation.last_plane = plane;
   }
-  if (on && *points == ClPoints::kContour) return start_contour(s, side, plane);
-  if (!on && compensation_) {
-    compensation_->at(0, s.line, s.column);
-    compensation_->stop();
-    if (compensation_->done()) compensation_.reset();
+  if (on && *points == ClPoints::kContour) return start_contour(cl, s, side, plane);
+  if (!on && cl.compensation.contour) {
+    cl.compensation.contour->at(0, s.line, s.column);
+    cl.compensation.contour->stop();
+    if (cl.compensation.contour->done()) cl.compensation.contour.reset();
     return;
   }
   if (!on && points != ClPoints::kCentre) return;
   if (on)
     remark(
+        cl.program,
         "CUTCOM: points are the cutter's centre as they are; the wear offset of the control is taken as 0");
-  note(s);
+  note(cl, s);
 }
 
-void ClInterpreter::start_contour(const ClStatement& s, nc::Compensation side, nc::Plane plane) {
-  if (compensation_ && compensation_->side() == side && compensation_->plane() == plane) return;
-  if (compensation_) {
-    fault("compensation-active", s, "CUTCOM changes its side or plane while it is on",
-          "write CUTCOM/OFF and a straight GOTO in the plane before it");
-    return;
-  }
-  const std::optional<double> radius = cutter_radius();
-  if (!radius || !positioned_ || cycle_) {
-    fault(!radius ? "compensation-no-tool" : "compensation-entry", s,
-          !radius       ? "CUTCOM, and neither CUTTER nor the scene gives the cutter's diameter"
-          : positioned_ ? "CUTCOM stands inside of a cycle"
-                        : "CUTCOM, and no position has been given",
-          !radius       ? "write CUTTER/10 before it, or describe the tool in the scene"
-          : positioned_ ? "write CYCLE/OFF before it"
-                        : "give FROM or GOTO first");
-    return;
-  }
-  remark(
-      fmt::format("CUTCOM: points are the part's contour; a cutter of radius {:g} mm goes beside it, its "
-                  "lead-in ends across the start of the contour",
-                  *radius));
-  compensation_ = std::make_unique<ClCompensation>(program_.file, plane, [this](const nc::Segment& segment) {
-    ClMove move;
-    move.from = {X_WC_ * segment.from, axis_W_};
-    move.to = {X_WC_ * segment.to, axis_W_};
-    if (segment.is_arc()) move.arc = ClArc{X_WC_ * segment.centre, X_WC_.linear() * segment.normal};
-    move.feed_mm_s = segment.motion == nc::Motion::kRapid ? 0.0 : segment.feed;
-    move.dwell_s = segment.dwell_s;
-    move.spindle_rpm = segment.spindle_rpm;
-    move.tool = tool_;
-    move.line = segment.place.line;
-    move.column = segment.place.column;
-    emit(move);
-  });
-  compensation_->at(0, s.line, s.column);
-  compensation_->start(side, *radius);
-}
-
-void ClInterpreter::compensate(const ClStatement& s, const ToolPose& to, const std::optional<ClArc>& arc,
-                               double feed_mm_s, double dwell_s) {
-  compensation_->at(0, s.line, s.column);
-  const Vec3 normal_W = X_WC_.linear().col(nc::axes_of(compensation_->plane()).normal);
+void compensate(ClState& cl, const ClStatement& s, const ToolPose& to, const std::optional<ClArc>& arc,
+                double feed_mm_s, double dwell_s) {
+  cl.compensation.contour->at(0, s.line, s.column);
+  const Vec3 normal_W = cl.systems.X_WC.linear().col(nc::axes_of(cl.compensation.contour->plane()).normal);
   constexpr double kStraight = 1e-7;  // rad
   if (to.axis_W.cross(normal_W).norm() > kStraight || to.axis_W.dot(normal_W) < 0.0 ||
-      pose_.axis_W.cross(normal_W).norm() > kStraight) {
-    compensation_->fail("compensation-plane", s.column,
-                        fmt::format("the tool axis ({:g}, {:g}, {:g}) does not stand on the plane of CUTCOM",
-                                    to.axis_W.x(), to.axis_W.y(), to.axis_W.z()),
-                        "");
+      cl.path.pose.axis_W.cross(normal_W).norm() > kStraight) {
+    cl.compensation.contour->fail(
+        "compensation-plane", s.column,
+        fmt::format("the tool axis ({:g}, {:g}, {:g}) does not stand on the plane of CUTCOM", to.axis_W.x(),
+                    to.axis_W.y(), to.axis_W.z()),
+        "");
   }
-  const Pose X_CW = X_WC_.inverse();
+  const Pose X_CW = cl.systems.X_WC.inverse();
   nc::Segment segment;
   segment.motion = feed_mm_s == 0.0 ? nc::Motion::kRapid
                    : arc            ? nc::Motion::kCounterClockwise
                                     : nc::Motion::kFeed;
-  segment.from = X_CW * pose_.tip_W;
+  segment.from = X_CW * cl.path.pose.tip_W;
   segment.to = X_CW * to.tip_W;
   if (arc) {
     segment.centre = X_CW * arc->centre_W;
@@ -162,17 +147,17 @@ void ClInterpreter::compensate(const ClStatement& s, const ToolPose& to, const s
   }
   segment.feed = feed_mm_s;
   segment.dwell_s = dwell_s;
-  segment.spindle_rpm = spindle_rpm_;
+  segment.spindle_rpm = cl.feed.spindle_rpm;
   segment.place = {0, s.line, s.column};
-  compensation_->add(segment);
-  if (compensation_->done()) compensation_.reset();
+  cl.compensation.contour->add(segment);
+  if (cl.compensation.contour->done()) cl.compensation.contour.reset();
 }
 
-bool ClInterpreter::not_compensated(const ClStatement& s) {
-  if (!compensation_) return true;
-  fault("compensation-active", s, fmt::format("{} stands where CUTCOM is on", s.word),
+bool not_compensated(Reporter& reporter, ClCutcom& compensation, const ClStatement& s) {
+  if (!compensation.contour) return true;
+  fault(reporter, "compensation-active", s, fmt::format("{} stands where CUTCOM is on", s.word),
         "write CUTCOM/OFF and a straight GOTO in the plane before it");
   return false;
 }
 
-}  // namespace swarf::program
+}  // namespace swarf::program::cldata

@@ -4,9 +4,9 @@
 #include <array>
 #include <utility>
 
-#include "program/cl/interpreter.h"
+#include "program/cl/steps.h"
 
-namespace swarf::program {
+namespace swarf::program::cldata {
 namespace {
 
 struct KindName {
@@ -28,98 +28,99 @@ bool is_feed(const std::string& word) {
   return std::find(kUnits.begin(), kUnits.end(), word) != kUnits.end();
 }
 
-}  // namespace
-
-bool ClInterpreter::read_retract(const ClStatement& s, size_t& at, ClCycle& cycle) {
+bool read_retract(Reporter& reporter, ClSystems& systems, const ClStatement& s, size_t& at, ClCycle& cycle) {
   const ClArgument& value = s.arguments[at + 1];
   const bool manual = at + 2 < s.arguments.size() && s.arguments[at + 2].text == "MANUAL";
   if (value.text == "AUTO") {
     // NX: back to where the tool stood before the cycle; the posts that NX ships make G98 of it.
     cycle.retract_to_start = true;
   } else if (!value.number) {
-    fault("wrong-arguments", value, fmt::format("{} is followed by '{}'", s.arguments[at].text, value.text),
-          kForm);
+    fault(reporter, "wrong-arguments", value,
+          fmt::format("{} is followed by '{}'", s.arguments[at].text, value.text), kForm);
     return false;
   } else if (s.arguments[at].text == "RETURN" && value.value == 0.0) {
-    fault("unsupported-word", value, "RETURN,0 goes back to a plane that only the operation knows",
+    fault(reporter, "unsupported-word", value, "RETURN,0 goes back to a plane that only the operation knows",
           "write RETURN with a distance above the hole");
     return false;
   } else {
-    cycle.retract_mm = mm(value.value);
+    cycle.retract_mm = systems.mm(value.value);
     cycle.retract_to_start = false;
   }
   at += manual ? 3 : 2;
   return true;
 }
 
-bool ClInterpreter::read_cycle_word(const ClStatement& s, size_t& at, ClCycle& cycle) {
+bool read_cycle_word(Reporter& reporter, ClSystems& systems, ClRates& feed, const ClStatement& s, size_t& at,
+                     ClCycle& cycle) {
   const ClArgument& key = s.arguments[at];
   const std::string& word = key.text;
   if (key.number || at + 1 == s.arguments.size()) {
-    fault("wrong-arguments", key, "CYCLE takes a word and a number by turns", kForm);
+    fault(reporter, "wrong-arguments", key, "CYCLE takes a word and a number by turns", kForm);
     return false;
   }
-  if (word == "RTRCTO" || word == "RETURN") return read_retract(s, at, cycle);
+  if (word == "RTRCTO" || word == "RETURN") return read_retract(reporter, systems, s, at, cycle);
   const ClArgument& value = s.arguments[at + 1];
   const bool known = is_feed(word) || word == "FEDTO" || word == "DEPTH" || word == "CLEAR" ||
                      word == "RAPTO" || word == "DWELL" || word == "STEP" || word == "INCR";
   if (!known) {
-    fault("unsupported-word", key, fmt::format("CYCLE with '{}' is not followed", word), kForm);
+    fault(reporter, "unsupported-word", key, fmt::format("CYCLE with '{}' is not followed", word), kForm);
     return false;
   }
   if (!value.number) {
-    fault("wrong-arguments", value, fmt::format("{} is followed by '{}'", word, value.text), kForm);
+    fault(reporter, "wrong-arguments", value, fmt::format("{} is followed by '{}'", word, value.text), kForm);
     return false;
   }
   at += 2;
   if (is_feed(word)) {
-    cycle.feed_mm_s = feed_of(value, word);
+    cycle.feed_mm_s = feed_of(reporter, systems, feed, value, word);
     return cycle.feed_mm_s > 0.0;
   }
   // FEDTO is a height over the point, DEPTH a way into the material.
-  if (word == "FEDTO") cycle.depth_mm = -mm(value.value);
-  if (word == "DEPTH") cycle.depth_mm = mm(value.value);
-  if (word == "CLEAR") cycle.arrive_mm = mm(value.value);
-  if (word == "RAPTO") cycle.clear_mm = mm(value.value);
+  if (word == "FEDTO") cycle.depth_mm = -systems.mm(value.value);
+  if (word == "DEPTH") cycle.depth_mm = systems.mm(value.value);
+  if (word == "CLEAR") cycle.arrive_mm = systems.mm(value.value);
+  if (word == "RAPTO") cycle.clear_mm = systems.mm(value.value);
   if (word == "DWELL") cycle.dwell_s = value.value;
-  if (word == "STEP" || word == "INCR") cycle.step_mm = mm(value.value);
+  if (word == "STEP" || word == "INCR") cycle.step_mm = systems.mm(value.value);
   return true;
 }
 
 /// CYCLE/kind,z,feed,unit,[t,]r[,i] of Creo (cycle_format fixed): depth, feed, threads per inch of TAP,
 /// clearance, step of DEEP.
-bool ClInterpreter::read_fixed_cycle(const ClStatement& s, ClCycle& cycle) {
+bool read_fixed_cycle(ClState& cl, const ClStatement& s, ClCycle& cycle) {
   const std::vector<ClArgument>& a = s.arguments;
   const bool tap = cycle.kind == ClCycleKind::kTap, deep = cycle.kind == ClCycleKind::kDeep;
   const bool form =
-      program_.writer == ClWriter::kCreo &&
+      cl.program.writer == ClWriter::kCreo &&
       fits(s, fmt::format("{} ## {} {}", a[0].text, a.size() > 3 ? a[3].text : "", tap || deep ? "##" : "#"));
   if (!form || !is_feed(a[3].text)) {
-    fault("wrong-arguments", s, "CYCLE takes a word and a number by turns", kForm);
+    fault(cl.reporter, "wrong-arguments", s, "CYCLE takes a word and a number by turns", kForm);
     return false;
   }
-  cycle.depth_mm = mm(a[1].value);
-  cycle.feed_mm_s = feed_of(a[2], a[3].text);
-  cycle.clear_mm = mm(a[tap ? 5 : 4].value);
-  if (deep) cycle.step_mm = mm(a[5].value);
+  cycle.depth_mm = cl.systems.mm(a[1].value);
+  cycle.feed_mm_s = feed_of(cl.reporter, cl.systems, cl.feed, a[2], a[3].text);
+  cycle.clear_mm = cl.systems.mm(a[tap ? 5 : 4].value);
+  if (deep) cycle.step_mm = cl.systems.mm(a[5].value);
   return cycle.feed_mm_s > 0.0;
 }
 
 /// The kind, or NX's DRILL with DEEP or BRKCHP behind it; ON: the words of the cycle before. `at`: of the
 /// first word after it.
-bool ClInterpreter::read_cycle_kind(const ClStatement& s, size_t& at, ClCycle& cycle) {
+bool read_cycle_kind(Reporter& reporter, ClDrilling& drilling, const ClStatement& s, size_t& at,
+                     ClCycle& cycle) {
   at = 1;
   const auto word = [&](size_t i) { return i < s.arguments.size() ? s.arguments[i].text : std::string(); };
   if (word(0) == "ON") {
-    if (cycle_words_) cycle = *cycle_words_;
-    if (!cycle_words_)
-      fault("bad-cycle", s, "CYCLE/ON changes the words of a cycle, and none stands before it", kForm);
-    return cycle_words_.has_value();
+    if (drilling.cycle_words) cycle = *drilling.cycle_words;
+    if (!drilling.cycle_words)
+      fault(reporter, "bad-cycle", s, "CYCLE/ON changes the words of a cycle, and none stands before it",
+            kForm);
+    return drilling.cycle_words.has_value();
   }
   const auto* kind = std::find_if(kKinds.begin(), kKinds.end(),
                                   [&](const KindName& known) { return word(0) == known.word; });
   if (kind == kKinds.end()) {
-    fault("unsupported-word", s, "this CYCLE is not followed", kForm);
+    fault(reporter, "unsupported-word", s, "this CYCLE is not followed", kForm);
     return false;
   }
   cycle.kind = kind->kind;
@@ -131,31 +132,8 @@ bool ClInterpreter::read_cycle_kind(const ClStatement& s, size_t& at, ClCycle& c
   return true;
 }
 
-bool ClInterpreter::read_cycle(const ClStatement& s, ClCycle& cycle) {
-  size_t at = 0;
-  if (!read_cycle_kind(s, at, cycle)) return false;
-  if (at < s.arguments.size() && s.arguments[at].number) {
-    if (!read_fixed_cycle(s, cycle)) return false;
-  } else {
-    while (at < s.arguments.size()) {
-      if (!read_cycle_word(s, at, cycle)) return false;
-    }
-  }
-  cycle_words_ = cycle;
-  const bool both = cycle.arrive_mm != kNotGiven && cycle.clear_mm != kNotGiven;
-  if (both && program_.writer != ClWriter::kCreo) {
-    fault("bad-cycle", s, "the cycle has CLEAR and RAPTO: Creo counts RAPTO from CLEAR, others from the hole",
-          "write one of them");
-    return false;
-  }
-  if (both) cycle.clear_mm = cycle.arrive_mm - cycle.clear_mm;  // Creo: further down in rapid
-  if (cycle.arrive_mm == kNotGiven) cycle.arrive_mm = std::max(0.0, cycle.clear_mm);
-  if (cycle.clear_mm == kNotGiven) cycle.clear_mm = cycle.arrive_mm;
-  if (cycle.retract_mm == kNotGiven) cycle.retract_mm = cycle.arrive_mm;
-  return cycle_fits(s, cycle);
-}
-
-bool ClInterpreter::cycle_fits(const ClStatement& s, const ClCycle& cycle) {
+/// False with a fault when the cycle contradicts itself.
+bool cycle_fits(Reporter& reporter, const ClStatement& s, const ClCycle& cycle) {
   const bool pecks = cycle.kind == ClCycleKind::kDeep || cycle.kind == ClCycleKind::kChipBreak;
   std::string what;
   if (!(cycle.depth_mm > 0.0)) what = fmt::format("its depth is {:g} mm", cycle.depth_mm);
@@ -169,8 +147,35 @@ bool ClInterpreter::cycle_fits(const ClStatement& s, const ClCycle& cycle) {
                        kPeckGap);
   if (!(cycle.feed_mm_s > 0.0)) what = "it has no feed, and no FEDRAT stands before it";
   if (what.empty()) return true;
-  fault("bad-cycle", s, "the cycle cannot be run: " + what, kForm);
+  fault(reporter, "bad-cycle", s, "the cycle cannot be run: " + what, kForm);
   return false;
 }
 
-}  // namespace swarf::program
+}  // namespace
+
+bool read_cycle(ClState& cl, const ClStatement& s, ClCycle& cycle) {
+  size_t at = 0;
+  if (!read_cycle_kind(cl.reporter, cl.drilling, s, at, cycle)) return false;
+  if (at < s.arguments.size() && s.arguments[at].number) {
+    if (!read_fixed_cycle(cl, s, cycle)) return false;
+  } else {
+    while (at < s.arguments.size()) {
+      if (!read_cycle_word(cl.reporter, cl.systems, cl.feed, s, at, cycle)) return false;
+    }
+  }
+  cl.drilling.cycle_words = cycle;
+  const bool both = cycle.arrive_mm != kNotGiven && cycle.clear_mm != kNotGiven;
+  if (both && cl.program.writer != ClWriter::kCreo) {
+    fault(cl.reporter, "bad-cycle", s,
+          "the cycle has CLEAR and RAPTO: Creo counts RAPTO from CLEAR, others from the hole",
+          "write one of them");
+    return false;
+  }
+  if (both) cycle.clear_mm = cycle.arrive_mm - cycle.clear_mm;  // Creo: further down in rapid
+  if (cycle.arrive_mm == kNotGiven) cycle.arrive_mm = std::max(0.0, cycle.clear_mm);
+  if (cycle.clear_mm == kNotGiven) cycle.clear_mm = cycle.arrive_mm;
+  if (cycle.retract_mm == kNotGiven) cycle.retract_mm = cycle.arrive_mm;
+  return cycle_fits(cl.reporter, s, cycle);
+}
+
+}  // namespace swarf::program::cldata

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "program/cl/interpreter.h"
+#include "program/cl/steps.h"
 #include "program/letters/line_source.h"
 #include "program/source_text.h"
 
@@ -54,13 +54,35 @@ class ClFile final : public ClLines {
 
 }  // namespace
 
+const char* writer_name(ClWriter writer) {
+  switch (writer) {
+    case ClWriter::kSwarf:
+      return "Swarf";
+    case ClWriter::kNx:
+      return "NX";
+    case ClWriter::kCreo:
+      return "Creo";
+    case ClWriter::kCatia:
+      return "CATIA";
+    case ClWriter::kMastercam:
+      return "Mastercam";
+    case ClWriter::kCamWorks:
+      return "SolidWorks CAM";
+    case ClWriter::kMakino:
+      return "Makino";
+    case ClWriter::kUnknown:
+      break;
+  }
+  return "unknown";
+}
+
 ClProgram parse_cl(const std::string& text, const std::string& file, Diagnostics& diagnostics,
                    const ClOptions& options) {
   Reporter reporter(diagnostics, file);
   if (!check_text(text, reporter, "give CL data, for example GOTO/10,20,30 on a line")) return {};
   ClText lines(text);
   Collector collector;
-  ClProgram program = ClInterpreter(file, options, collector, diagnostics).run(lines);
+  ClProgram program = cldata::run(file, options, collector, diagnostics, lines);
   collector.give(program);
   return program;
 }
@@ -68,7 +90,7 @@ ClProgram parse_cl(const std::string& text, const std::string& file, Diagnostics
 ClProgram stream_cl(const std::string& path, ClSink& sink, Diagnostics& diagnostics,
                     const ClOptions& options) {
   ClFile lines(path);
-  return ClInterpreter(path, options, sink, diagnostics).run(lines);
+  return cldata::run(path, options, sink, diagnostics, lines);
 }
 
 ClProgram load_cl(const std::string& path, Diagnostics* warnings, const ClOptions& options) {

@@ -6,9 +6,9 @@
 #include <string_view>
 
 #include "base/units.h"
-#include "program/cl/interpreter.h"
+#include "program/cl/steps.h"
 
-namespace swarf::program {
+namespace swarf::program::cldata {
 namespace {
 
 /// Elements of rotation matrices are written with five digits or more.
@@ -49,27 +49,32 @@ bool read_row(std::string_view text, double* row) {
   }
 }
 
-}  // namespace
-
-bool ClInterpreter::may_change_system(const ClStatement& s) {
-  if (!cycle_) return not_compensated(s);
-  fault("bad-cycle", s, "the coordinate system changes inside of a cycle", "write CYCLE/OFF before it");
+bool may_change_system(Reporter& reporter, ClDrilling& drilling, ClCutcom& compensation,
+                       const ClStatement& s) {
+  if (!drilling.cycle) return not_compensated(reporter, compensation, s);
+  fault(reporter, "bad-cycle", s, "the coordinate system changes inside of a cycle",
+        "write CYCLE/OFF before it");
   return false;
 }
 
-void ClInterpreter::set_system(const Pose& X_SC) {
-  X_SC_ = X_SC;
-  X_WC_ = X_SC;
-  X_WC_.translation() += translation_.value_or(Vec3::Zero()) - origin_;
+void set_system(ClSystems& systems, const Pose& X_SC) {
+  systems.X_SC = X_SC;
+  systems.X_WC = X_SC;
+  systems.X_WC.translation() += systems.translation.value_or(Vec3::Zero()) - systems.origin;
 }
 
-void ClInterpreter::system(const ClStatement& s) {
-  if (!may_change_system(s)) return;
-  if (!numbers(s, 9, 9, "MSYS/ox,oy,oz, xi,xj,xk, yi,yj,yk (origin, unit X axis, unit Y axis)")) return;
+}  // namespace
+
+void system(ClState& cl, const ClStatement& s) {
+  if (!may_change_system(cl.reporter, cl.drilling, cl.compensation, s)) return;
+  if (!numbers(cl.reporter, s, 9, 9, "MSYS/ox,oy,oz, xi,xj,xk, yi,yj,yk (origin, unit X axis, unit Y axis)"))
+    return;
   Vec3 x, y;
-  if (!unit_vector(s, 3, "X axis of the system", x) || !unit_vector(s, 6, "Y axis of the system", y)) return;
+  if (!unit_vector(cl.reporter, s, 3, "X axis of the system", x) ||
+      !unit_vector(cl.reporter, s, 6, "Y axis of the system", y))
+    return;
   if (std::abs(x.dot(y)) > kAxisLengthTolerance) {
-    fault("out-of-range", s.arguments[6],
+    fault(cl.reporter, "out-of-range", s.arguments[6],
           fmt::format("the axes of the system stand at {:.6g} deg to each other",
                       deg_from_rad(std::acos(std::clamp(x.dot(y), -1.0, 1.0)))),
           "give two axes at right angles");
@@ -79,86 +84,95 @@ void ClInterpreter::system(const ClStatement& s) {
   X_SC.linear().col(0) = x;
   X_SC.linear().col(2) = x.cross(y).normalized();
   X_SC.linear().col(1) = X_SC.linear().col(2).cross(x);
-  X_SC.translation() = point_at(s, 0);
-  set_system(X_SC);
+  X_SC.translation() = point_at(cl.systems, s, 0);
+  set_system(cl.systems, X_SC);
 }
 
 /// Three axes of the system and its origin, as the CAMplete output of Autodesk's systems has them.
-void ClInterpreter::matrix_system(const ClStatement& s) {
-  if (!may_change_system(s)) return;
-  if (!numbers(s, 12, 12, "MCS/xi,xj,xk, yi,yj,yk, zi,zj,zk, ox,oy,oz (unit axes, origin)")) return;
+void matrix_system(ClState& cl, const ClStatement& s) {
+  if (!may_change_system(cl.reporter, cl.drilling, cl.compensation, s)) return;
+  if (!numbers(cl.reporter, s, 12, 12, "MCS/xi,xj,xk, yi,yj,yk, zi,zj,zk, ox,oy,oz (unit axes, origin)"))
+    return;
   std::array<double, 12> rows{};
   for (size_t column = 0; column < 4; ++column) {
     for (size_t row = 0; row < 3; ++row) rows[4 * row + column] = s.arguments[3 * column + row].value;
   }
-  const std::optional<Pose> X_SC = pose_from_rows(rows, unit_mm_);
+  const std::optional<Pose> X_SC = pose_from_rows(rows, cl.systems.unit_mm);
   if (!X_SC) {
-    fault("bad-system", s, "MCS holds no rotation", "its axes must be unit vectors at right angles");
+    fault(cl.reporter, "bad-system", s, "MCS holds no rotation",
+          "its axes must be unit vectors at right angles");
     return;
   }
-  set_system(*X_SC);
+  set_system(cl.systems, *X_SC);
 }
 
-void ClInterpreter::creo_system(const ClStatement& s) {
-  if (!may_change_system(s)) return;
-  mark(ClWriter::kCreo, s.word, s);
-  if (!numbers(s, 12, 12, "$$-> CSYS / three rows of a rotation, each with its part of the origin")) return;
+void creo_system(ClState& cl, const ClStatement& s) {
+  if (!may_change_system(cl.reporter, cl.drilling, cl.compensation, s)) return;
+  mark(cl.reporter, cl.program, ClWriter::kCreo, s.word, s);
+  if (!numbers(cl.reporter, s, 12, 12,
+               "$$-> CSYS / three rows of a rotation, each with its part of the origin"))
+    return;
   std::array<double, 12> rows{};
   for (size_t i = 0; i < rows.size(); ++i) rows[i] = s.arguments[i].value;
-  if (!pose_from_rows(rows, unit_mm_)) {
-    fault("bad-system", s, "CSYS holds no rotation", "its columns must be unit vectors at right angles");
+  if (!pose_from_rows(rows, cl.systems.unit_mm)) {
+    fault(cl.reporter, "bad-system", s, "CSYS holds no rotation",
+          "its columns must be unit vectors at right angles");
     return;
   }
   constexpr double kSame = 1e-9;
-  const bool same = !creo_system_ || std::equal(rows.begin(), rows.end(), creo_system_->begin(),
-                                                [](double a, double b) { return std::abs(a - b) <= kSame; });
+  const bool same =
+      !cl.systems.creo_system || std::equal(rows.begin(), rows.end(), cl.systems.creo_system->begin(),
+                                            [](double a, double b) { return std::abs(a - b) <= kSame; });
   if (!same) {
-    fault("unsupported-word", s,
+    fault(cl.reporter, "unsupported-word", s,
           "the machine coordinate system of Creo changes inside of the file, and nothing documents which way "
           "its CSYS maps",
           "write one file for each machine coordinate system, or output the path of all operations in one");
     return;
   }
-  if (!creo_system_ && pose_from_rows(rows, 1.0)->matrix() != Pose::Identity().matrix())
-    remark("$$-> CSYS: positions are taken as written, in the machine coordinate system of Creo");
-  creo_system_ = rows;
+  if (!cl.systems.creo_system && pose_from_rows(rows, 1.0)->matrix() != Pose::Identity().matrix())
+    remark(cl.program, "$$-> CSYS: positions are taken as written, in the machine coordinate system of Creo");
+  cl.systems.creo_system = rows;
 }
 
-void ClInterpreter::catia_system(const ClStatement& s) {
+void catia_system(ClState& cl, const ClStatement& s) {
   // $$*CATIA0, the name of the system, then three rows of the matrix.
-  if (catia_lines_ == 4) {
-    --catia_lines_;
+  if (cl.systems.catia_lines == 4) {
+    --cl.systems.catia_lines;
     return;
   }
-  const auto row = static_cast<size_t>(3 - catia_lines_);
-  --catia_lines_;
-  if (!read_row(s.text, catia_.data() + 4 * row)) {
-    fault("bad-system", s, fmt::format("row {} of $$*CATIA0 has no four numbers", row + 1),
+  const auto row = static_cast<size_t>(3 - cl.systems.catia_lines);
+  --cl.systems.catia_lines;
+  if (!read_row(s.text, cl.systems.catia.data() + 4 * row)) {
+    fault(cl.reporter, "bad-system", s, fmt::format("row {} of $$*CATIA0 has no four numbers", row + 1),
           "give the name of the system, then three rows of four numbers, each behind $$");
-    catia_lines_ = 0;
+    cl.systems.catia_lines = 0;
     return;
   }
-  if (catia_lines_ > 0 || !may_change_system(s)) return;
-  const std::optional<Pose> X_part = pose_from_rows(catia_, unit_mm_);
+  if (cl.systems.catia_lines > 0 || !may_change_system(cl.reporter, cl.drilling, cl.compensation, s)) return;
+  const std::optional<Pose> X_part = pose_from_rows(cl.systems.catia, cl.systems.unit_mm);
   if (!X_part) {
-    fault("bad-system", s, "$$*CATIA0 holds no rotation", "its columns must be unit vectors at right angles");
+    fault(cl.reporter, "bad-system", s, "$$*CATIA0 holds no rotation",
+          "its columns must be unit vectors at right angles");
     return;
   }
-  if (!first_catia_) {
-    first_catia_ = X_part;
+  if (!cl.systems.first_catia) {
+    cl.systems.first_catia = X_part;
     if (X_part->matrix() != Pose::Identity().matrix())
-      remark("$$*CATIA0: positions are in its machining axis system, which is the work frame");
+      remark(cl.program, "$$*CATIA0: positions are in its machining axis system, which is the work frame");
     return;
   }
-  set_system(first_catia_->inverse() * *X_part);
-  if (!multi_axis_) axis_W_ = X_WC_.linear().col(2);
+  set_system(cl.systems, cl.systems.first_catia->inverse() * *X_part);
+  if (!cl.path.multi_axis) cl.path.axis_W = cl.systems.X_WC.linear().col(2);
 }
 
-void ClInterpreter::origin(const ClStatement& s) {
-  if (!may_change_system(s) || !numbers(s, 3, 3, "ORIGIN/x,y,z: the machine's zero in the part")) return;
-  const Vec3 given = point_at(s, 0);
-  if (program_.writer == ClWriter::kCatia && given != Vec3::Zero()) {
-    fault("unsupported-word", s,
+void origin(ClState& cl, const ClStatement& s) {
+  if (!may_change_system(cl.reporter, cl.drilling, cl.compensation, s) ||
+      !numbers(cl.reporter, s, 3, 3, "ORIGIN/x,y,z: the machine's zero in the part"))
+    return;
+  const Vec3 given = point_at(cl.systems, s, 0);
+  if (cl.program.writer == ClWriter::kCatia && given != Vec3::Zero()) {
+    fault(cl.reporter, "unsupported-word", s,
           "CATIA writes with ORIGIN where the axes of its program lie in the part, ISO 4343 where the "
           "machine's zero lies in the program",
           "take it out: $$*CATIA0 says where the axes lie, and setup.work_origin_mm of the scene where the "
@@ -166,35 +180,37 @@ void ClInterpreter::origin(const ClStatement& s) {
           "is clamped");
     return;
   }
-  origin_ = given;
-  set_system(X_SC_);
-  remark(fmt::format("ORIGIN: ({:g}, {:g}, {:g}) mm are subtracted from the positions behind it", given.x(),
-                     given.y(), given.z()));
+  cl.systems.origin = given;
+  set_system(cl.systems, cl.systems.X_SC);
+  remark(cl.program, fmt::format("ORIGIN: ({:g}, {:g}, {:g}) mm are subtracted from the positions behind it",
+                                 given.x(), given.y(), given.z()));
 }
 
-void ClInterpreter::translation(const ClStatement& s) {
-  if (!may_change_system(s) || !numbers(s, 3, 3, "TRANS/x,y,z")) return;
-  const Vec3 given = point_at(s, 0);
-  if (translation_ && *translation_ != given) {
-    fault("unsupported-word", s,
+void translation(ClState& cl, const ClStatement& s) {
+  if (!may_change_system(cl.reporter, cl.drilling, cl.compensation, s) ||
+      !numbers(cl.reporter, s, 3, 3, "TRANS/x,y,z"))
+    return;
+  const Vec3 given = point_at(cl.systems, s, 0);
+  if (cl.systems.translation && *cl.systems.translation != given) {
+    fault(cl.reporter, "unsupported-word", s,
           "TRANS stands for the second time: some post-processors add it to the first, some put it in its "
           "place",
           "write one TRANS in a file, or the positions with it");
     return;
   }
-  translation_ = given;
-  set_system(X_SC_);
-  remark(fmt::format("TRANS: ({:g}, {:g}, {:g}) mm are added to the positions behind it", given.x(),
-                     given.y(), given.z()));
+  cl.systems.translation = given;
+  set_system(cl.systems, cl.systems.X_SC);
+  remark(cl.program, fmt::format("TRANS: ({:g}, {:g}, {:g}) mm are added to the positions behind it",
+                                 given.x(), given.y(), given.z()));
 }
 
-void ClInterpreter::transformed_cut(const ClStatement& s) {
-  if (fits(s, "NOMORE")) return note(s);
+void transformed_cut(ClState& cl, const ClStatement& s) {
+  if (fits(s, "NOMORE")) return note(cl, s);
   fault(
-      "unsupported-word", s,
+      cl.reporter, "unsupported-word", s,
       "TRACUT gives a matrix, and whether the positions behind it have been turned by it already depends on "
       "the system that wrote the file",
       "write the file with the positions as they are cut, without TRACUT");
 }
 
-}  // namespace swarf::program
+}  // namespace swarf::program::cldata

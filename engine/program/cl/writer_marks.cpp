@@ -5,9 +5,9 @@
 #include <string_view>
 #include <utility>
 
-#include "program/cl/interpreter.h"
+#include "program/cl/steps.h"
 
-namespace swarf::program {
+namespace swarf::program::cldata {
 namespace {
 
 struct Mark {
@@ -35,45 +35,24 @@ std::string plain(std::string_view text) {
 
 }  // namespace
 
-const char* writer_name(ClWriter writer) {
-  switch (writer) {
-    case ClWriter::kSwarf:
-      return "Swarf";
-    case ClWriter::kNx:
-      return "NX";
-    case ClWriter::kCreo:
-      return "Creo";
-    case ClWriter::kCatia:
-      return "CATIA";
-    case ClWriter::kMastercam:
-      return "Mastercam";
-    case ClWriter::kCamWorks:
-      return "SolidWorks CAM";
-    case ClWriter::kMakino:
-      return "Makino";
-    case ClWriter::kUnknown:
-      break;
-  }
-  return "unknown";
-}
-
-void ClInterpreter::mark(ClWriter writer, const std::string& what, const ClStatement& s) {
+void mark(Reporter& reporter, ClProgram& program, ClWriter writer, const std::string& what,
+          const ClStatement& s) {
   // What Swarf writes has been read: its words mean what they say, whoever's they are.
-  if (program_.writer == writer || program_.writer == ClWriter::kSwarf) return;
-  if (program_.writer == ClWriter::kUnknown) {
-    program_.writer = writer;
-    program_.writer_reason = fmt::format("{} on line {}", what, s.line);
+  if (program.writer == writer || program.writer == ClWriter::kSwarf) return;
+  if (program.writer == ClWriter::kUnknown) {
+    program.writer = writer;
+    program.writer_reason = fmt::format("{} on line {}", what, s.line);
     return;
   }
-  fault("writer-contradiction", s,
+  fault(reporter, "writer-contradiction", s,
         fmt::format("{} is a mark of {}, and the file was taken for one of {} ({})", what,
-                    writer_name(writer), writer_name(program_.writer), program_.writer_reason),
+                    writer_name(writer), writer_name(program.writer), program.writer_reason),
         "give one file of one system: what CIRCLE and other words mean differs between them");
 }
 
-std::optional<double> ClInterpreter::circle_sense() const {
-  if (options_.circle_clockwise) return *options_.circle_clockwise ? -1.0 : 1.0;
-  switch (program_.writer) {
+std::optional<double> circle_sense(const ClOptions& options, const ClProgram& program) {
+  if (options.circle_clockwise) return *options.circle_clockwise ? -1.0 : 1.0;
+  switch (program.writer) {
     case ClWriter::kSwarf:
     case ClWriter::kNx:
     case ClWriter::kMakino:
@@ -89,37 +68,39 @@ std::optional<double> ClInterpreter::circle_sense() const {
   return std::nullopt;
 }
 
-void ClInterpreter::comment(const ClStatement& s) {
-  if (s.word == "$$->CSYS") return creo_system(s);
+void comment(ClState& cl, const ClStatement& s) {
+  if (s.word == "$$->CSYS") return creo_system(cl, s);
   if (s.word == "$$->CUTTER") {
-    mark(ClWriter::kCreo, "$$-> CUTTER", s);
-    return cutter(s);
+    mark(cl.reporter, cl.program, ClWriter::kCreo, "$$-> CUTTER", s);
+    return cutter(cl, s);
   }
   if (s.word != "$$") {
-    mark(ClWriter::kCreo, s.word, s);
+    mark(cl.reporter, cl.program, ClWriter::kCreo, s.word, s);
     // Creo says itself what its points are under CUTCOM.
     if (s.word == "$$->CUTCOM_GEOMETRY_TYPE" && s.text == "OUTPUT_ON_CENTER")
-      file_cutcom_ = ClPoints::kCentre;
+      cl.compensation.file_cutcom = ClPoints::kCentre;
     return;
   }
-  if (catia_lines_ > 0) return catia_system(s);
+  if (cl.systems.catia_lines > 0) return catia_system(cl, s);
   const std::string text = plain(s.text);
-  if (text.starts_with("*CATIA0")) catia_lines_ = 4;
+  if (text.starts_with("*CATIA0")) cl.systems.catia_lines = 4;
   for (const Mark& one : kMarks) {
     const bool found = one.begins ? text.starts_with(one.text) : text.find(one.text) != std::string::npos;
-    if (!found || (!one.begins && positioned_)) continue;
-    mark(one.writer, fmt::format("\"{}\"", one.text), s);
+    if (!found || (!one.begins && cl.path.positioned)) continue;
+    mark(cl.reporter, cl.program, one.writer, fmt::format("\"{}\"", one.text), s);
     return;
   }
 }
 
-void ClInterpreter::pprint(const ClStatement& s) {
-  const std::string text = positioned_ ? std::string() : plain(s.text);
-  if (text.starts_with("APTCL-SPEC,MAKINO")) mark(ClWriter::kMakino, "APTCL-SPEC,MAKINO", s);
+void pprint(ClState& cl, const ClStatement& s) {
+  const std::string text = cl.path.positioned ? std::string() : plain(s.text);
+  if (text.starts_with("APTCL-SPEC,MAKINO"))
+    mark(cl.reporter, cl.program, ClWriter::kMakino, "APTCL-SPEC,MAKINO", s);
   for (const std::string_view name : {"CAMWORKS", "SOLIDWORKS CAM"}) {
-    if (text.find(name) != std::string::npos) mark(ClWriter::kCamWorks, std::string(name), s);
+    if (text.find(name) != std::string::npos)
+      mark(cl.reporter, cl.program, ClWriter::kCamWorks, std::string(name), s);
   }
-  note(s);
+  note(cl, s);
 }
 
-}  // namespace swarf::program
+}  // namespace swarf::program::cldata
