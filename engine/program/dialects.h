@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "program/evidence.h"
 #include "program/nc_program.h"
 
 namespace swarf::program {
@@ -16,12 +17,6 @@ namespace swarf::program {
 namespace nc {
 struct Control;
 }
-
-/// What speaks for a dialect in a program's first lines.
-struct Evidence {
-  int score = 0;       ///< number of words that only this dialect has; 0: nothing speaks for it
-  std::string reason;  ///< the first such word, as written with its line: "G43.4 in line 12"
-};
 
 struct DialectRow {
   Dialect dialect;

@@ -13,6 +13,9 @@ sources | xargs clang-format --dry-run --Werror || { say "run clang-format -i on
 say "include directions and folders of heavy libraries"
 python3 tests/lint/includes.py || failed=1
 
+say "rooms inside modules, methods per class"
+python3 tests/lint/rooms.py || failed=1
+
 say "reference page of the machines"
 python3 assets/machines/reference_page.py --check || failed=1
 

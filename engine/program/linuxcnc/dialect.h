@@ -4,7 +4,11 @@
 #include <string>
 #include <string_view>
 
-#include "program/dialects.h"
+#include "program/evidence.h"
+
+namespace swarf::program::nc {
+struct Control;
+}
 
 namespace swarf::program::nc::linuxcnc {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "program/siemens/flow.h"
+#include "program/siemens/flow_steps.h"
 
 namespace swarf::program::nc::siemens {
 namespace {
@@ -28,61 +28,31 @@ std::string file_named(const std::string& folder, const std::string& name) {
   return found.empty() ? "" : found.front();
 }
 
-}  // namespace
-
-/// PROC was read when the program was called; the main program may have one without parameters.
-void Flow::on_proc(TokenReader& reader) {
-  if (current_ == top().entry) return;
-  if (levels_.size() == 1 && reader.peek().kind == TokenKind::kName && !reader.peek(1).symbol("(")) return;
-  refuse(reader.line(), 0, "bad-block", "PROC stands in the first block of a program that is called",
-         "the program that is run has no parameters");
-}
-
-void Flow::on_extern(TokenReader& reader) {
-  target_.note("EXTERN", std::string(reader.line().text), source().path(), current_ + 1);
-}
-
 /// The index in sources_ of the program with this name; -1: there is no such file.
-int Flow::loaded(const std::string& name) {
-  auto [entry, fresh] = found_.try_emplace(name);
+int loaded(Programs& programs, Counts& counts, const std::string& name) {
+  auto [entry, fresh] = programs.found.try_emplace(name);
   if (fresh) {
-    std::vector<std::string> folders = {fs::path(sources_[0]->path()).parent_path().string()};
-    folders.insert(folders.end(), folders_.begin(), folders_.end());
+    std::vector<std::string> folders = {fs::path(programs.sources[0]->path()).parent_path().string()};
+    folders.insert(folders.end(), programs.folders.begin(), programs.folders.end());
     for (size_t n = 0; n < folders.size() && entry->second.empty(); ++n) {
       entry->second = file_named(folders[n], name);
     }
   }
   const std::string& path = entry->second;
   if (path.empty()) return -1;
-  for (size_t n = 0; n < sources_.size(); ++n) {
-    if (sources_[n]->path() == path) return static_cast<int>(n);
+  for (size_t n = 0; n < programs.sources.size(); ++n) {
+    if (programs.sources[n]->path() == path) return static_cast<int>(n);
   }
-  sources_.push_back(std::make_unique<Source>(path));
-  lines_ += sources_.back()->lines();
-  return static_cast<int>(sources_.size()) - 1;
+  programs.sources.push_back(std::make_unique<Source>(path));
+  counts.lines += programs.sources.back()->lines();
+  return static_cast<int>(programs.sources.size()) - 1;
 }
 
-/// Calls the program whose name stands here: NAME, NAME(1,2), L100 P3. False: it is another word.
-bool Flow::subprogram_here(TokenReader& reader) {
-  const Token& token = reader.peek();
-  std::string name;
-  if (token.kind == TokenKind::kName && !reader.peek(1).symbol("=") && !reader.peek(1).symbol("[") &&
-      !target_.knows(token.name) && variables_.find(token.name) == nullptr) {
-    name = token.name;
-  }
-  if (token.kind == TokenKind::kAddress && token.letter == 'L' && token.whole) name = capitals(token.text);
-  if (name.empty()) return false;
-  if (target_.takes_builders(name, reader.line())) return true;  // with its arguments
-  reader.next();
-  call_here(reader, name, token.offset);
-  return true;
-}
-
-void Flow::call_here(TokenReader& reader, const std::string& name, size_t offset) {
-  const int file = loaded(name);
+void call_here(Flow& flow, TokenReader& reader, const std::string& name, size_t offset) {
+  const int file = loaded(flow.programs, flow.counts, name);
   if (file < 0) {
-    std::vector<std::string> known = target_.names();
-    for (const std::string& variable : variables_.names()) known.push_back(variable);
+    std::vector<std::string> known = flow.target.names();
+    for (const std::string& variable : flow.variables.names()) known.push_back(variable);
     const std::string near = nearest_name(name, known);
     refuse(
         reader.line(), offset, "unknown-word",
@@ -93,202 +63,11 @@ void Flow::call_here(TokenReader& reader, const std::string& name, size_t offset
                           "the machine's builder that moves nothing is named in builder_words",
                           name));
   }
-  call(file, &reader, {}, 1);
-}
-
-/// CALL "NAME", CALL NAME, EXTCALL("FOLDER/NAME.SPF").
-void Flow::on_call(TokenReader& reader) {
-  const size_t offset = reader.offset();
-  const Token& token = reader.peek();
-  const bool variable = token.kind == TokenKind::kName && variables_.find(token.name) != nullptr;
-  std::string name;
-  if (token.kind == TokenKind::kString || token.symbol("(") || variable) {
-    name = capitals(converted(evaluate(reader, variables_), Type::kString, reader.line(), offset).text);
-  } else if (token.kind == TokenKind::kName || token.kind == TokenKind::kAddress) {
-    name = capitals(reader.next().text);
-  }
-  // Folders belong to the control: files are looked for beside the program.
-  if (const size_t folder = name.find_last_of("/\\"); folder != std::string::npos) name.erase(0, folder + 1);
-  if (name.starts_with("_N_")) name.erase(0, 3);
-  for (const char* end : {".SPF", ".MPF", "_SPF", "_MPF"}) {
-    if (name.ends_with(end)) name.resize(name.size() - 4);
-  }
-  const int file = name.empty() ? -1 : loaded(name);
-  if (file < 0) {
-    refuse(reader.line(), offset, "unknown-subprogram", fmt::format("there is no program '{}'", name),
-           "put NAME.spf into the program's folder or one of subprogram_folders");
-  }
-  call(file, &reader, {}, 1);
-}
-
-/// MCALL NAME(...) calls after each block with a move; MCALL alone ends that. MCALL CYCLE81(...) belongs to
-/// the target.
-void Flow::on_mcall(TokenReader& reader) {
-  const Token& token = reader.peek();
-  if (reader.done() || target_.knows(token.name)) {
-    modal_ = {};
-    target_.block(reader, variables_);
-    return;
-  }
-  const std::string name = capitals(token.text);
-  const size_t offset = reader.offset();
-  reader.next();
-  const int file = loaded(name);
-  if (file < 0) {
-    refuse(reader.line(), offset, "unknown-subprogram", fmt::format("there is no program '{}'", name),
-           "put NAME.spf into the program's folder or one of subprogram_folders");
-  }
-  modal_ = {file, {}, levels_.size()};
-  if (reader.skip("(") && !reader.skip(")")) {
-    do {
-      modal_.arguments.push_back(evaluate(reader, variables_));
-    } while (reader.skip(","));
-    reader.expect(")", "the arguments");
-  }
-  finish_block(reader, "MCALL");
-}
-
-void Flow::call(int file, TokenReader* arguments, const std::vector<Value>& values, int times) {
-  const LineRef& from = running_;
-  if (static_cast<int>(std::count_if(levels_.begin(), levels_.end(),
-                                     [](const Level& l) { return !l.part; })) >= limits_.levels_max) {
-    refuse(from, from.text.find_first_not_of(" \t"), "too-deep",
-           fmt::format("the control has {} program levels", limits_.levels_max),
-           "check for a program that calls itself");
-  }
-  Level level;
-  level.file = file;
-  level.stop = sources_[static_cast<size_t>(file)]->lines();
-  level.again = times - 1;
-  level.scope = std::make_shared<Scope>();
-  bind(level, arguments, values);
-  if (arguments != nullptr) {
-    if (arguments->peek().kind == TokenKind::kAddress && arguments->peek().letter == 'P') {
-      const Token& count = arguments->next();
-      if (!count.whole || count.number < 1 || count.number > 9999) {
-        refuse(from, count.offset, "out-of-range", "a program is called 1 to 9999 times", "write P3");
-      }
-      level.again = static_cast<int>(count.number) - 1;
-    }
-    finish_block(*arguments, "the call");
-  }
-  levels_.push_back(std::move(level));
-  variables_.enter(*top().scope);
-}
-
-/// Declares the parameters of PROC in the new level and gives them the values of the call.
-void Flow::bind(Level& level, TokenReader* arguments, const std::vector<Value>& values) {
-  Source& called = *sources_[static_cast<size_t>(level.file)];
-  std::vector<Token> tokens;
-  int entry = -1;
-  for (int index = 0; index < called.lines() && entry < 0; ++index) {
-    if (called.line(index).text.starts_with('%')) continue;
-    lex(called.line(index), tokens);
-    const size_t first =
-        !tokens.empty() && tokens[0].kind == TokenKind::kAddress && tokens[0].letter == 'N' ? 1 : 0;
-    if (tokens.size() > first) entry = tokens[first].named("PROC") ? index : -2;
-  }
-  std::vector<Argument> given;
-  if (arguments != nullptr) {
-    given = read_arguments(*arguments);
-  } else {
-    for (const Value& value : values) given.push_back({value, {}, 0});
-  }
-  const LineRef& from = running_;
-  if (entry < 0) {
-    if (given.empty()) return;
-    refuse(from, given[0].offset, "wrong-arguments",
-           fmt::format("{} has no PROC and takes no arguments", called.path()),
-           "call it without parentheses");
-  }
-  level.entry = entry;
-  const LineRef head = called.line(entry);
-  TokenReader reader(head, tokens);
-  while (!reader.skip("PROC")) reader.next();
-  const std::vector<Parameter> parameters = read_parameters(reader);
-  if (given.size() > parameters.size()) {
-    refuse(
-        from, given.back().offset, "wrong-arguments",
-        fmt::format("{} takes {} argument(s), {} are given", called.path(), parameters.size(), given.size()),
-        "leave the others out");
-  }
-  variables_.enter(*level.scope);
-  for (size_t n = 0; n < parameters.size(); ++n) {
-    const Parameter& parameter = parameters[n];
-    Variable variable;
-    variable.type = parameter.type;
-    variable.text_max = 200;
-    Variable& made = variables_.declare(parameter.name, std::move(variable), head, 0);
-    const bool has = n < given.size() && given[n].value;
-    if (has) made.values[0] = converted(*given[n].value, parameter.type, from, given[n].offset);
-    if (!parameter.returned) continue;
-    if (!has || given[n].variable.empty()) {
-      variables_.enter(*top().scope);
-      refuse(from, n < given.size() ? given[n].offset : 0, "wrong-arguments",
-             fmt::format("{} is handed back (VAR) and needs a variable", parameter.name),
-             "write the name of a declared variable");
-    }
-    level.returned.push_back({parameter.name, given[n].variable});
-  }
-}
-
-/// REPEAT LABEL P=3, REPEAT FIRST LAST P=3, REPEATB LABEL P=3; REPEAT alone opens REPEAT ... UNTIL.
-void Flow::on_repeat(TokenReader& reader) {
-  const bool block = tokens_[reader.position() - 1].name == "REPEATB";
-  if (reader.done()) {
-    if (block)
-      refuse(reader.line(), reader.offset(), "bad-block", "REPEATB needs a label", "write REPEATB LABEL P=2");
-    source().partner(current_);
-    return;
-  }
-  const auto find = [&] {
-    const Token& label = reader.peek();
-    const size_t offset = reader.offset();
-    std::optional<int> index;
-    if (label.kind == TokenKind::kName) index = source().find_label(label.name, current_, -1);
-    if (!index) {
-      refuse(reader.line(), offset, "unknown-label",
-             fmt::format("there is no label {} before this block", label.text),
-             "a part that is repeated stands before REPEAT");
-    }
-    reader.next();
-    return *index;
-  };
-  Level part;
-  part.part = true;
-  part.file = top().file;
-  part.scope = top().scope;
-  part.first = find();
-  part.stop = block ? part.first + 1 : current_;
-  if (!block && reader.peek().kind == TokenKind::kName && reader.peek().name != "P") {
-    part.stop = find() + 1;
-  } else if (const auto end = source().find_label("ENDLABEL", part.first, 1);
-             !block && end && *end < current_) {
-    part.stop = *end;
-  }
-  int times = 1;
-  if (reader.skip("P")) {
-    reader.expect("=", "P");
-    const size_t offset = reader.offset();
-    const double count = evaluate_number(reader, variables_);
-    if (count != std::floor(count) || count < 0 || count > 9999) {
-      refuse(reader.line(), offset, "out-of-range", "a part is repeated 0 to 9999 times", "write P=3");
-    }
-    times = static_cast<int>(count);
-  }
-  finish_block(reader, "REPEAT");
-  if (times == 0) return;
-  if (levels_.size() >= kNestedMax) {
-    refuse(reader.line(), 0, "too-deep", "repeated parts are nested too deeply",
-           "a part that repeats itself never ends");
-  }
-  part.next = part.first;
-  part.again = times - 1;
-  levels_.push_back(std::move(part));
+  call(flow, file, &reader, {}, 1);
 }
 
 /// The values in the parentheses of a call; places that are left out have none.
-std::vector<Flow::Argument> Flow::read_arguments(TokenReader& reader) {
+std::vector<Argument> read_arguments(Variables& variables, TokenReader& reader) {
   std::vector<Argument> arguments;
   if (!reader.skip("(") || reader.skip(")")) return arguments;
   do {
@@ -296,9 +75,9 @@ std::vector<Flow::Argument> Flow::read_arguments(TokenReader& reader) {
     argument.offset = reader.offset();
     if (!reader.peek().symbol(",") && !reader.peek().symbol(")")) {
       const Token& name = reader.peek();
-      const bool variable = name.kind == TokenKind::kName && variables_.find(name.name) != nullptr;
+      const bool variable = name.kind == TokenKind::kName && variables.find(name.name) != nullptr;
       const size_t start = reader.position();
-      argument.value = evaluate(reader, variables_);
+      argument.value = evaluate(reader, variables);
       if (variable && reader.position() == start + 1) argument.variable = name.name;
     }
     arguments.push_back(std::move(argument));
@@ -308,7 +87,7 @@ std::vector<Flow::Argument> Flow::read_arguments(TokenReader& reader) {
 }
 
 /// NAME(REAL A, VAR INT B, STRING[10] C, REAL D=5) after PROC.
-std::vector<Flow::Parameter> Flow::read_parameters(TokenReader& reader) {
+std::vector<Parameter> read_parameters(Flow& flow, TokenReader& reader) {
   std::vector<Parameter> parameters;
   if (!reader.done()) reader.next();
   if (reader.skip("(") && !reader.skip(")")) {
@@ -316,7 +95,8 @@ std::vector<Flow::Parameter> Flow::read_parameters(TokenReader& reader) {
       Parameter parameter;
       parameter.returned = reader.skip("VAR");
       parameter.type = read_type(reader);
-      if (parameter.type == Type::kString && reader.peek().symbol("[")) evaluate_indices(reader, variables_);
+      if (parameter.type == Type::kString && reader.peek().symbol("["))
+        evaluate_indices(reader, flow.variables);
       const Token& name = reader.peek();
       if (name.kind != TokenKind::kName) {
         refuse(reader.line(), reader.offset(), "bad-block", "the name of a parameter is missing",
@@ -328,13 +108,235 @@ std::vector<Flow::Parameter> Flow::read_parameters(TokenReader& reader) {
     reader.expect(")", "the parameters");
   }
   for (const char* word : {"DISPLOF", "DISPLON", "SBLOF"}) {
-    if (reader.skip(word)) target_.note(word, "", source().path(), current_ + 1);
+    if (reader.skip(word)) flow.target.note(word, "", source(flow).path(), flow.line.current + 1);
   }
   if (!reader.done()) {
     refuse(reader.line(), reader.offset(), "unsupported-word",
            fmt::format("{} of PROC is not supported", reader.peek().text), "PROC NAME(REAL WIDTH) is");
   }
   return parameters;
+}
+
+/// Declares the parameters of PROC in the new level and gives them the values of the call.
+void bind(Flow& flow, Level& level, TokenReader* arguments, const std::vector<Value>& values) {
+  Source& called = *flow.programs.sources[static_cast<size_t>(level.file)];
+  std::vector<Token> tokens;
+  int entry = -1;
+  for (int index = 0; index < called.lines() && entry < 0; ++index) {
+    if (called.line(index).text.starts_with('%')) continue;
+    lex(called.line(index), tokens);
+    const size_t first =
+        !tokens.empty() && tokens[0].kind == TokenKind::kAddress && tokens[0].letter == 'N' ? 1 : 0;
+    if (tokens.size() > first) entry = tokens[first].named("PROC") ? index : -2;
+  }
+  std::vector<Argument> given;
+  if (arguments != nullptr) {
+    given = read_arguments(flow.variables, *arguments);
+  } else {
+    for (const Value& value : values) given.push_back({value, {}, 0});
+  }
+  const LineRef& from = flow.line.running;
+  if (entry < 0) {
+    if (given.empty()) return;
+    refuse(from, given[0].offset, "wrong-arguments",
+           fmt::format("{} has no PROC and takes no arguments", called.path()),
+           "call it without parentheses");
+  }
+  level.entry = entry;
+  const LineRef head = called.line(entry);
+  TokenReader reader(head, tokens);
+  while (!reader.skip("PROC")) reader.next();
+  const std::vector<Parameter> parameters = read_parameters(flow, reader);
+  if (given.size() > parameters.size()) {
+    refuse(
+        from, given.back().offset, "wrong-arguments",
+        fmt::format("{} takes {} argument(s), {} are given", called.path(), parameters.size(), given.size()),
+        "leave the others out");
+  }
+  flow.variables.enter(*level.scope);
+  for (size_t n = 0; n < parameters.size(); ++n) {
+    const Parameter& parameter = parameters[n];
+    Variable variable;
+    variable.type = parameter.type;
+    variable.text_max = 200;
+    Variable& made = flow.variables.declare(parameter.name, std::move(variable), head, 0);
+    const bool has = n < given.size() && given[n].value;
+    if (has) made.values[0] = converted(*given[n].value, parameter.type, from, given[n].offset);
+    if (!parameter.returned) continue;
+    if (!has || given[n].variable.empty()) {
+      flow.variables.enter(*top(flow).scope);
+      refuse(from, n < given.size() ? given[n].offset : 0, "wrong-arguments",
+             fmt::format("{} is handed back (VAR) and needs a variable", parameter.name),
+             "write the name of a declared variable");
+    }
+    level.returned.push_back({parameter.name, given[n].variable});
+  }
+}
+
+}  // namespace
+
+/// PROC was read when the program was called; the main program may have one without parameters.
+void on_proc(Flow& flow, TokenReader& reader) {
+  if (flow.line.current == top(flow).entry) return;
+  if (flow.levels.size() == 1 && reader.peek().kind == TokenKind::kName && !reader.peek(1).symbol("("))
+    return;
+  refuse(reader.line(), 0, "bad-block", "PROC stands in the first block of a program that is called",
+         "the program that is run has no parameters");
+}
+
+void on_extern(Flow& flow, TokenReader& reader) {
+  flow.target.note("EXTERN", std::string(reader.line().text), source(flow).path(), flow.line.current + 1);
+}
+
+/// Calls the program whose name stands here: NAME, NAME(1,2), L100 P3. False: it is another word.
+bool subprogram_here(Flow& flow, TokenReader& reader) {
+  const Token& token = reader.peek();
+  std::string name;
+  if (token.kind == TokenKind::kName && !reader.peek(1).symbol("=") && !reader.peek(1).symbol("[") &&
+      !flow.target.knows(token.name) && flow.variables.find(token.name) == nullptr) {
+    name = token.name;
+  }
+  if (token.kind == TokenKind::kAddress && token.letter == 'L' && token.whole) name = capitals(token.text);
+  if (name.empty()) return false;
+  if (flow.target.takes_builders(name, reader.line())) return true;  // with its arguments
+  reader.next();
+  call_here(flow, reader, name, token.offset);
+  return true;
+}
+
+/// CALL "NAME", CALL NAME, EXTCALL("FOLDER/NAME.SPF").
+void on_call(Flow& flow, TokenReader& reader) {
+  const size_t offset = reader.offset();
+  const Token& token = reader.peek();
+  const bool variable = token.kind == TokenKind::kName && flow.variables.find(token.name) != nullptr;
+  std::string name;
+  if (token.kind == TokenKind::kString || token.symbol("(") || variable) {
+    name = capitals(converted(evaluate(reader, flow.variables), Type::kString, reader.line(), offset).text);
+  } else if (token.kind == TokenKind::kName || token.kind == TokenKind::kAddress) {
+    name = capitals(reader.next().text);
+  }
+  // Folders belong to the control: files are looked for beside the program.
+  if (const size_t folder = name.find_last_of("/\\"); folder != std::string::npos) name.erase(0, folder + 1);
+  if (name.starts_with("_N_")) name.erase(0, 3);
+  for (const char* end : {".SPF", ".MPF", "_SPF", "_MPF"}) {
+    if (name.ends_with(end)) name.resize(name.size() - 4);
+  }
+  const int file = name.empty() ? -1 : loaded(flow.programs, flow.counts, name);
+  if (file < 0) {
+    refuse(reader.line(), offset, "unknown-subprogram", fmt::format("there is no program '{}'", name),
+           "put NAME.spf into the program's folder or one of subprogram_folders");
+  }
+  call(flow, file, &reader, {}, 1);
+}
+
+/// MCALL NAME(...) calls after each block with a move; MCALL alone ends that. MCALL CYCLE81(...) belongs to
+/// the target.
+void on_mcall(Flow& flow, TokenReader& reader) {
+  const Token& token = reader.peek();
+  if (reader.done() || flow.target.knows(token.name)) {
+    flow.modal = {};
+    flow.target.block(reader, flow.variables);
+    return;
+  }
+  const std::string name = capitals(token.text);
+  const size_t offset = reader.offset();
+  reader.next();
+  const int file = loaded(flow.programs, flow.counts, name);
+  if (file < 0) {
+    refuse(reader.line(), offset, "unknown-subprogram", fmt::format("there is no program '{}'", name),
+           "put NAME.spf into the program's folder or one of subprogram_folders");
+  }
+  flow.modal = {file, {}, flow.levels.size()};
+  if (reader.skip("(") && !reader.skip(")")) {
+    do {
+      flow.modal.arguments.push_back(evaluate(reader, flow.variables));
+    } while (reader.skip(","));
+    reader.expect(")", "the arguments");
+  }
+  finish_block(reader, "MCALL");
+}
+
+void call(Flow& flow, int file, TokenReader* arguments, const std::vector<Value>& values, int times) {
+  const LineRef& from = flow.line.running;
+  if (static_cast<int>(std::count_if(flow.levels.begin(), flow.levels.end(),
+                                     [](const Level& l) { return !l.part; })) >= flow.limits.levels_max) {
+    refuse(from, from.text.find_first_not_of(" \t"), "too-deep",
+           fmt::format("the control has {} program levels", flow.limits.levels_max),
+           "check for a program that calls itself");
+  }
+  Level level;
+  level.file = file;
+  level.stop = flow.programs.sources[static_cast<size_t>(file)]->lines();
+  level.again = times - 1;
+  level.scope = std::make_shared<Scope>();
+  bind(flow, level, arguments, values);
+  if (arguments != nullptr) {
+    if (arguments->peek().kind == TokenKind::kAddress && arguments->peek().letter == 'P') {
+      const Token& count = arguments->next();
+      if (!count.whole || count.number < 1 || count.number > 9999) {
+        refuse(from, count.offset, "out-of-range", "a program is called 1 to 9999 times", "write P3");
+      }
+      level.again = static_cast<int>(count.number) - 1;
+    }
+    finish_block(*arguments, "the call");
+  }
+  flow.levels.push_back(std::move(level));
+  flow.variables.enter(*top(flow).scope);
+}
+
+/// REPEAT LABEL P=3, REPEAT FIRST LAST P=3, REPEATB LABEL P=3; REPEAT alone opens REPEAT ... UNTIL.
+void on_repeat(Flow& flow, TokenReader& reader) {
+  const bool block = flow.line.tokens[reader.position() - 1].name == "REPEATB";
+  if (reader.done()) {
+    if (block)
+      refuse(reader.line(), reader.offset(), "bad-block", "REPEATB needs a label", "write REPEATB LABEL P=2");
+    source(flow).partner(flow.line.current);
+    return;
+  }
+  const auto find = [&] {
+    const Token& label = reader.peek();
+    const size_t offset = reader.offset();
+    std::optional<int> index;
+    if (label.kind == TokenKind::kName) index = source(flow).find_label(label.name, flow.line.current, -1);
+    if (!index) {
+      refuse(reader.line(), offset, "unknown-label",
+             fmt::format("there is no label {} before this block", label.text),
+             "a part that is repeated stands before REPEAT");
+    }
+    reader.next();
+    return *index;
+  };
+  Level part;
+  part.part = true;
+  part.file = top(flow).file;
+  part.scope = top(flow).scope;
+  part.first = find();
+  part.stop = block ? part.first + 1 : flow.line.current;
+  if (!block && reader.peek().kind == TokenKind::kName && reader.peek().name != "P") {
+    part.stop = find() + 1;
+  } else if (const auto end = source(flow).find_label("ENDLABEL", part.first, 1);
+             !block && end && *end < flow.line.current) {
+    part.stop = *end;
+  }
+  int times = 1;
+  if (reader.skip("P")) {
+    reader.expect("=", "P");
+    const size_t offset = reader.offset();
+    const double count = evaluate_number(reader, flow.variables);
+    if (count != std::floor(count) || count < 0 || count > 9999) {
+      refuse(reader.line(), offset, "out-of-range", "a part is repeated 0 to 9999 times", "write P=3");
+    }
+    times = static_cast<int>(count);
+  }
+  finish_block(reader, "REPEAT");
+  if (times == 0) return;
+  if (flow.levels.size() >= kNestedMax) {
+    refuse(reader.line(), 0, "too-deep", "repeated parts are nested too deeply",
+           "a part that repeats itself never ends");
+  }
+  part.next = part.first;
+  part.again = times - 1;
+  flow.levels.push_back(std::move(part));
 }
 
 }  // namespace swarf::program::nc::siemens

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "program/letters/arithmetic.h"
-#include "program/siemens/flow.h"
+#include "program/siemens/flow_steps.h"
 
 namespace swarf::program::nc::siemens {
 namespace {
@@ -79,6 +79,43 @@ void write_offset(TokenReader& reader, Variables& variables, const SystemName& a
   }
 }
 
+void declare(BlockTarget& target, Variables& variables, TokenReader& reader, Type type, size_t text_max) {
+  const size_t offset = reader.offset();
+  if (reader.peek().kind != TokenKind::kName) {
+    refuse(reader.line(), offset, "bad-block", "the name of a variable is missing",
+           "a name begins with two letters or '_'");
+  }
+  const std::string name = reader.next().name;
+  const auto& formulas = expression_words();
+  if (target.knows(name) || is_parameter(name) || handler_of(name) != nullptr || name[0] == '$' ||
+      std::find(formulas.begin(), formulas.end(), name) != formulas.end()) {
+    refuse(reader.line(), offset, "reserved-name", fmt::format("{} is a word of the language", name),
+           fmt::format("call the variable _{}", name));
+  }
+  Variable variable;
+  variable.type = type;
+  variable.text_max = text_max;
+  if (reader.peek().symbol("[")) {
+    for (const double size : evaluate_indices(reader, variables)) {
+      if (size != std::floor(size) || size < 1 || size > static_cast<double>(kArrayMax)) {
+        refuse(reader.line(), offset, "out-of-range", fmt::format("{:g} is not a size of an array", size),
+               fmt::format("sizes are whole numbers from 1 to {}", kArrayMax));
+      }
+      variable.sizes.push_back(static_cast<int>(size));
+    }
+  }
+  Variable& made = variables.declare(name, std::move(variable), reader.line(), offset);
+  if (!reader.skip("=")) return;
+  if (!made.sizes.empty()) {
+    read_list(reader, variables, made);
+    return;
+  }
+  const size_t at = reader.offset();
+  const Value value = evaluate(reader, variables);
+  check_length(made, value, reader.line(), at);
+  made.values[0] = converted(value, type, reader.line(), at);
+}
+
 }  // namespace
 
 Type read_type(TokenReader& reader) {
@@ -141,12 +178,12 @@ bool assign(TokenReader& reader, Variables& variables) {
   return true;
 }
 
-void Flow::on_def(TokenReader& reader) {
+void on_def(Flow& flow, TokenReader& reader) {
   const Type type = read_type(reader);
   size_t text_max = 0;
   if (type == Type::kString) {
     const size_t offset = reader.offset();
-    const double length = evaluate_indices(reader, variables_)[0];
+    const double length = evaluate_indices(reader, flow.variables)[0];
     if (length != std::floor(length) || length < 1 || length > 200) {
       refuse(reader.line(), offset, "out-of-range", "a STRING holds 1 to 200 characters",
              "DEF STRING[32] NAME");
@@ -154,46 +191,9 @@ void Flow::on_def(TokenReader& reader) {
     text_max = static_cast<size_t>(length);
   }
   do {
-    declare(reader, type, text_max);
+    declare(flow.target, flow.variables, reader, type, text_max);
   } while (reader.skip(","));
   finish_block(reader, "DEF");
-}
-
-void Flow::declare(TokenReader& reader, Type type, size_t text_max) {
-  const size_t offset = reader.offset();
-  if (reader.peek().kind != TokenKind::kName) {
-    refuse(reader.line(), offset, "bad-block", "the name of a variable is missing",
-           "a name begins with two letters or '_'");
-  }
-  const std::string name = reader.next().name;
-  const auto& formulas = expression_words();
-  if (target_.knows(name) || is_parameter(name) || handler_of(name) != nullptr || name[0] == '$' ||
-      std::find(formulas.begin(), formulas.end(), name) != formulas.end()) {
-    refuse(reader.line(), offset, "reserved-name", fmt::format("{} is a word of the language", name),
-           fmt::format("call the variable _{}", name));
-  }
-  Variable variable;
-  variable.type = type;
-  variable.text_max = text_max;
-  if (reader.peek().symbol("[")) {
-    for (const double size : evaluate_indices(reader, variables_)) {
-      if (size != std::floor(size) || size < 1 || size > static_cast<double>(kArrayMax)) {
-        refuse(reader.line(), offset, "out-of-range", fmt::format("{:g} is not a size of an array", size),
-               fmt::format("sizes are whole numbers from 1 to {}", kArrayMax));
-      }
-      variable.sizes.push_back(static_cast<int>(size));
-    }
-  }
-  Variable& made = variables_.declare(name, std::move(variable), reader.line(), offset);
-  if (!reader.skip("=")) return;
-  if (!made.sizes.empty()) {
-    read_list(reader, variables_, made);
-    return;
-  }
-  const size_t at = reader.offset();
-  const Value value = evaluate(reader, variables_);
-  check_length(made, value, reader.line(), at);
-  made.values[0] = converted(value, type, reader.line(), at);
 }
 
 }  // namespace swarf::program::nc::siemens

@@ -63,14 +63,14 @@ void run(const std::string& path, Control& control) {
   Executor executor(control);
   control.report.enter_file(path);
   Flow flow(executor, control.setup.subprogram_folders);
-  flow.run(path);
-  if (!flow.ended())
+  run(flow, path);
+  if (!flow.counts.ended)
     control.report.warn_once("missing-end", 0,
                              "the program ends with its file, without M30, M17 or RET: it may be cut off",
                              "transfer it again, or write its end");
   nc::finish(control);
-  control.report.summary.lines = flow.lines();
-  control.report.summary.blocks = flow.blocks();
+  control.report.summary.lines = flow.counts.lines;
+  control.report.summary.blocks = flow.counts.blocks;
 }
 
 }  // namespace swarf::program::nc::siemens
