@@ -21,9 +21,9 @@ void apply_machine(LetterDialect& letters) {
   if (letters.block.has_g(kFanucUnits)) set_units(letters, letters.block.g[kFanucUnits] == 200);
   if (letters.block.has_g(kFanucFeed)) {
     const int code = letters.block.g[kFanucFeed];
-    nc::set_feed_mode(letters.control.modal, code == 930   ? FeedMode::kInverseTime
-                                             : code == 940 ? FeedMode::kPerMinute
-                                                           : FeedMode::kPerRevolution);
+    nc::set_feed_mode(letters.control.modal, code == G::kInverseTime ? FeedMode::kInverseTime
+                                             : code == G::kPerMinute ? FeedMode::kPerMinute
+                                                                     : FeedMode::kPerRevolution);
   }
   if (letters.block.has('F'))
     nc::set_feed(letters.control.report, letters.control.modal, letters.block.get('F'), letters.column('F'));
@@ -36,29 +36,32 @@ void apply_machine(LetterDialect& letters) {
   if (letters.block.has_m(60)) nc::change_tool(letters.control);
   for (int i = 0; i < letters.block.m_count; ++i) {
     const int code = letters.block.m[static_cast<size_t>(i)];
-    if (code == 30 || code == 40 || code == 50)
-      letters.control.modal.spindle = code == 30 ? 1 : code == 40 ? -1 : 0;
+    if (code == M::kSpindleClockwise || code == M::kSpindleCounterClockwise || code == M::kSpindleStop)
+      letters.control.modal.spindle = code == M::kSpindleClockwise          ? 1
+                                      : code == M::kSpindleCounterClockwise ? -1
+                                                                            : 0;
   }
 }
 
 void apply_radius(Fanuc& fanuc) {
   const int code = fanuc.block.g[kFanucRadius], at = fanuc.g_column(kFanucRadius);
-  if (code == 400) return nc::set_compensation(fanuc.control, Compensation::kOff, 0.0, at);
+  if (code == G::kCompensationOff) return nc::set_compensation(fanuc.control, Compensation::kOff, 0.0, at);
   if (!fanuc.block.has('D') && nc::active_tool(fanuc.control) == nullptr)
     fanuc.control.report.fail("compensation-no-tool", at, "cutter compensation has no D word and no tool",
                               "add D with the tool's number");
   const double radius = fanuc.block.has('D') ? tool_value(fanuc.modes, fanuc.zero, fanuc, 'D', false)
                                              : 0.5 * nc::active_tool(fanuc.control)->diameter_mm;
-  const bool left = (code == 410) != (mapped(fanuc.mapping) && reversed(fanuc.mapping, fanuc));
+  const bool left =
+      (code == G::kCompensationLeft) != (mapped(fanuc.mapping) && reversed(fanuc.mapping, fanuc));
   nc::set_compensation(fanuc.control, left ? Compensation::kLeft : Compensation::kRight, radius, at);
 }
 
 void apply_length(Fanuc& fanuc) {
   const int code = fanuc.block.g[kFanucLength];
-  if (code >= 434 && code <= 435)
+  if (code >= G::kTcpRotaries && code <= G::kTcpVectors)
     refuse_mapped(fanuc.mapping, fanuc, fanuc.g_column(kFanucLength), "TCP is switched on", true);
   fanuc.modes.length_code = code;
-  if (code == 490) {
+  if (code == G::kLengthOff) {
     fanuc.modes.tcp = Tcp::kOff;
     nc::set_length_compensation(fanuc.control, 0.0, false);
     return update_space(fanuc);
@@ -72,29 +75,32 @@ void apply_length(Fanuc& fanuc) {
   const double length = fanuc.block.has('H') ? tool_value(fanuc.modes, fanuc.zero, fanuc, 'H', true)
                         : tool != nullptr    ? tool->length_mm
                                              : 0.0;
-  nc::set_length_compensation(fanuc.control, code == 440 ? -length : length, true);
-  fanuc.modes.tcp = code == 434 ? Tcp::kAxes : code == 435 ? Tcp::kVector : Tcp::kOff;
+  nc::set_length_compensation(fanuc.control, code == G::kLengthNegative ? -length : length, true);
+  fanuc.modes.tcp = code == G::kTcpRotaries ? Tcp::kAxes : code == G::kTcpVectors ? Tcp::kVector : Tcp::kOff;
   update_space(fanuc);
 }
 
 void apply_modes(Fanuc& fanuc) {
   if (fanuc.block.g_given == 0) return;
   if (fanuc.block.has_g(kFanucPlane))
-    nc::set_plane(fanuc.control, fanuc.block.g[kFanucPlane] == 170   ? Plane::kXY
-                                 : fanuc.block.g[kFanucPlane] == 180 ? Plane::kZX
-                                                                     : Plane::kYZ);
-  if (fanuc.block.has_g(kFanucDistance)) fanuc.modes.incremental = fanuc.block.g[kFanucDistance] == 910;
-  if (fanuc.block.has_g(kFanucRetract)) fanuc.modes.retract_to_r = fanuc.block.g[kFanucRetract] == 990;
+    nc::set_plane(fanuc.control, fanuc.block.g[kFanucPlane] == G::kPlaneXY   ? Plane::kXY
+                                 : fanuc.block.g[kFanucPlane] == G::kPlaneZX ? Plane::kZX
+                                                                             : Plane::kYZ);
+  if (fanuc.block.has_g(kFanucDistance))
+    fanuc.modes.incremental = fanuc.block.g[kFanucDistance] == G::kIncremental;
+  if (fanuc.block.has_g(kFanucRetract))
+    fanuc.modes.retract_to_r = fanuc.block.g[kFanucRetract] == G::kRetractToR;
   if (fanuc.block.has_g(kFanucPath))
-    fanuc.control.modal.exact_stop = fanuc.block.g[kFanucPath] == 610 || fanuc.block.g[kFanucPath] == 611;
+    fanuc.control.modal.exact_stop =
+        fanuc.block.g[kFanucPath] == G::kExactPath || fanuc.block.g[kFanucPath] == G::kExactStopPath;
   if (fanuc.block.has_g(kFanucRadius)) apply_radius(fanuc);
   if (fanuc.block.has_g(kFanucOffset)) {
     const int code = fanuc.block.g[kFanucOffset];
     refuse_mapped(fanuc.mapping, fanuc, fanuc.g_column(kFanucOffset), "the work offset changes", false);
-    if (code == 541) fanuc.need('P', "G54.1");
-    nc::set_work_offset(
-        fanuc.control,
-        code == 541 ? 100 + whole(fanuc.block, 'P', 1, 300, fanuc.reader, fanuc.control) : (code - 530) / 10);
+    if (code == G::kFurtherOffset) fanuc.need('P', "G54.1");
+    nc::set_work_offset(fanuc.control, code == G::kFurtherOffset ? 100 + whole(fanuc.block, 'P', 1, 300,
+                                                                               fanuc.reader, fanuc.control)
+                                                                 : (code - 530) / 10);
     update_space(fanuc);
   }
   if (fanuc.block.has_g(kFanucLength)) apply_length(fanuc);
@@ -104,7 +110,8 @@ void apply_modes(Fanuc& fanuc) {
 
 void check_words(Modes& modes, LetterDialect& letters) {
   const int one_shot = g(letters, kFanucOneShot);
-  if (one_shot == 650 || g(letters, kFanucMacro) == 660) return;  // every letter is an argument
+  if (one_shot == G::kMacroCall || g(letters, kFanucMacro) == G::kModalMacro)
+    return;  // every letter is an argument
   for (const char letter : {'U', 'V', 'W', 'E'}) {
     if (letters.block.has(letter))
       letters.control.report.fail(
@@ -116,43 +123,49 @@ void check_words(Modes& modes, LetterDialect& letters) {
   const int cycle = g(letters, kFanucCycle) >= 0    ? g(letters, kFanucCycle)
                     : g(letters, kFanucMotion) >= 0 ? 800
                                                     : modes.cycle;
-  const bool in_cycle = cycle != 800, arc = !in_cycle && (motion == 20 || motion == 30),
-             turn = (g(letters, kFanucTurn) >= 680 && g(letters, kFanucTurn) != 690) ||
-                    g(letters, kFanucScale) == 510;
-  const bool tilts = one_shot == 531 || one_shot == 536;
-  const bool vectors = (modes.tcp == Tcp::kVector || g(letters, kFanucLength) == 435) && !arc;
+  const bool in_cycle = cycle != G::kCycleOff,
+             arc = !in_cycle && (motion == G::kArcClockwise || motion == G::kArcCounterClockwise),
+             turn = (g(letters, kFanucTurn) >= G::kTurnOn && g(letters, kFanucTurn) != G::kTurnOff) ||
+                    g(letters, kFanucScale) == G::kScaleOn;
+  const bool tilts = one_shot == G::kTiltRotaries || one_shot == G::kTiltAboutTip;
+  const bool vectors = (modes.tcp == Tcp::kVector || g(letters, kFanucLength) == G::kTcpVectors) && !arc;
   const bool calls = letters.block.has_m(980) || letters.block.has_m(1980),
              ends = calls || letters.block.has_m(990);
-  const bool bore = cycle == 760 || cycle == 870;
+  const bool bore = cycle == G::kFineBore || cycle == G::kBackBore;
   for (const char letter : {'I', 'J', 'K'})
-    letters.check_letter(letter, arc || turn || vectors || motion == 62 || (letter == 'K' ? in_cycle : bore),
+    letters.check_letter(letter,
+                         arc || turn || vectors || motion == G::kNurbs || (letter == 'K' ? in_cycle : bore),
                          "G2, G3, G43.5, G51, G68.2");
-  letters.check_letter(
-      'R', arc || in_cycle || turn || tilts || motion == 62 || one_shot == 100 || letters.block.free_g > 0,
-      "arcs, cycles, G68 and G06.2");
+  letters.check_letter('R',
+                       arc || in_cycle || turn || tilts || motion == G::kNurbs || one_shot == G::kSetData ||
+                           letters.block.free_g > 0,
+                       "arcs, cycles, G68 and G06.2");
   letters.check_letter('Q', in_cycle || turn || letters.block.free_g > 0, "pecking cycles and G68.2");
   letters.check_letter('P',
-                       in_cycle || one_shot == 40 || one_shot == 100 || one_shot == 300 || motion == 62 ||
-                           ends || g(letters, kFanucOffset) == 541 || turn || tilts ||
+                       in_cycle || one_shot == G::kDwell || one_shot == G::kSetData ||
+                           one_shot == G::kToSecondReference || motion == G::kNurbs || ends ||
+                           g(letters, kFanucOffset) == G::kFurtherOffset || turn || tilts ||
                            letters.block.free_g > 0,
                        "G04, G10, M98 and cycles");
-  letters.check_letter('L', in_cycle || one_shot == 100 || calls, "G10, M98 and cycles");
-  letters.check_letter('D', g(letters, kFanucRadius) > 400, "G41 and G42");
-  letters.check_letter('H',
-                       (g(letters, kFanucLength) > 400 && g(letters, kFanucLength) != 490) || one_shot == 536,
-                       "G43 and G53.6");
-  if (g(letters, kFanucCycle) > 800 && g(letters, kFanucMotion) >= 0)
+  letters.check_letter('L', in_cycle || one_shot == G::kSetData || calls, "G10, M98 and cycles");
+  letters.check_letter('D', g(letters, kFanucRadius) > G::kCompensationOff, "G41 and G42");
+  letters.check_letter(
+      'H',
+      (g(letters, kFanucLength) >= G::kLengthOn && g(letters, kFanucLength) != G::kLengthOff) ||
+          one_shot == G::kTiltAboutTip,
+      "G43 and G53.6");
+  if (g(letters, kFanucCycle) > G::kCycleOff && g(letters, kFanucMotion) >= 0)
     letters.control.report.fail("two-motion-words", letters.g_column(kFanucMotion),
                                 "a motion and a cycle stand in one block", "write them in two blocks");
   letters.check_feed_and_speed();
-  if (one_shot == 40 && !letters.block.has('P') && !letters.block.has('X'))
+  if (one_shot == G::kDwell && !letters.block.has('P') && !letters.block.has('X'))
     letters.control.report.fail("missing-word", letters.g_column(kFanucOneShot), "G04 has no time",
                                 "add P (ms) or X (s)");
 }
 
 void apply(Fanuc& fanuc) {
-  if (g(fanuc, kFanucOneShot) == 650) return call_macro(fanuc.calls, fanuc);
-  if (g(fanuc, kFanucMacro) == 660) return set_modal_macro(fanuc.calls, fanuc);
+  if (g(fanuc, kFanucOneShot) == G::kMacroCall) return call_macro(fanuc.calls, fanuc);
+  if (g(fanuc, kFanucMacro) == G::kModalMacro) return set_modal_macro(fanuc.calls, fanuc);
   apply_machine(fanuc);
   apply_modes(fanuc);
   keep_motion_codes(fanuc.modes, fanuc.drilling, fanuc);
@@ -161,21 +174,21 @@ void apply(Fanuc& fanuc) {
   if (fanuc.block.has_g(kFanucScale)) scale(fanuc, fanuc.block.g[kFanucScale]);
   if (fanuc.block.has_g(kFanucMirror)) mirror(fanuc, fanuc.block.g[kFanucMirror]);
   const bool axes_given = (fanuc.block.given & kAxisBits) != 0;
-  if (g(fanuc, kFanucScale) == 510 || (fanuc.block.has_g(kFanucMirror) && axes_given))
+  if (g(fanuc, kFanucScale) == G::kScaleOn || (fanuc.block.has_g(kFanucMirror) && axes_given))
     return;  // words of the centre
   if (fanuc.block.has_g(kFanucTurn)) {
     const bool tilted = fanuc.planes.turned.in_work;
     turn(fanuc, fanuc.block.g[kFanucTurn]);
-    if (fanuc.block.g[kFanucTurn] != 690 || !axes_given) return;
+    if (fanuc.block.g[kFanucTurn] != G::kTurnOff || !axes_given) return;
     if (tilted)
       fanuc.control.report.fail("unexpected-word", fanuc.g_column(kFanucTurn),
                                 "a move stands with G69 of a tilted plane",
                                 "write G69 in a block of its own");
   }
-  if (fanuc.block.has_g(kFanucOneShot) && fanuc.block.g[kFanucOneShot] != 90 &&
-      fanuc.block.g[kFanucOneShot] != 530)
+  if (fanuc.block.has_g(kFanucOneShot) && fanuc.block.g[kFanucOneShot] != G::kExactStopOnce &&
+      fanuc.block.g[kFanucOneShot] != G::kMachineCoordinates)
     return one_shot(fanuc);
-  if (g(fanuc, kFanucOneShot) == 90) fanuc.control.modal.exact_stop_once = true;
+  if (g(fanuc, kFanucOneShot) == G::kExactStopOnce) fanuc.control.modal.exact_stop_once = true;
   motion(fanuc);
 }
 

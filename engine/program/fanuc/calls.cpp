@@ -211,7 +211,7 @@ void set_modal_macro(Calls& calls, LetterDialect& letters) {
   if (inside)
     letters.control.report.fail("unsupported-word", at, "G66 and G67 stand in a macro that G66 calls",
                                 "set and cancel modal macros outside of them");
-  if (letters.block.g[kFanucMacro] == 670) {
+  if (letters.block.g[kFanucMacro] == G::kModalMacroOff) {
     if (!calls.modal.empty()) calls.modal.pop_back();
   } else {
     const Call macro = macro_call(letters, kFanucMacro, "G66");
@@ -246,12 +246,12 @@ bool apply_calls(Fanuc& fanuc) {
   for (int i = 0; i < fanuc.block.m_count; ++i) {
     const int code = fanuc.block.m[static_cast<size_t>(i)];
     const int at = fanuc.reader.column_of(fanuc.block.m_places[static_cast<size_t>(i)]);
-    if (code == 20 || code == 300) return false;
-    if (code == 980 || code == 1980) {
-      call_subprogram(fanuc, at, code == 1980);
+    if (code == M::kEnd || code == M::kEndRewind) return false;
+    if (code == M::kCall || code == M::kCallFile) {
+      call_subprogram(fanuc, at, code == M::kCallFile);
       return true;
     }
-    if (code != 990) continue;
+    if (code != M::kReturn) continue;
     if (fanuc.calls.stack.size() > 1) {
       leave(fanuc.calls, fanuc, at);
       return true;

@@ -14,11 +14,11 @@ namespace {
 constexpr double kPeckClearanceMm = 0.5;
 
 bool pecks(int tenths) {
-  return tenths == 730 || tenths == 830;
+  return tenths == G::kDrillChipBreak || tenths == G::kDrillDeep;
 }
 /// G76 and G87 shift by Q (or I J) with the spindle oriented.
 bool bores(int tenths) {
-  return tenths == 760 || tenths == 870;
+  return tenths == G::kFineBore || tenths == G::kBackBore;
 }
 
 void keep_cycle_words(Modes& modes, Drilling& drilling, LetterDialect& letters, char depth_letter) {
@@ -59,7 +59,7 @@ void check_cycle_words(Modes& modes, Drilling& drilling, LetterDialect& letters,
     letters.control.report.fail("unsupported-word", letters.column(letters.block.has('I') ? 'I' : 'J'),
                                 "the shift by I J K is read in G17 only: K counts repeats",
                                 "write the shift as Q");
-  if (tenths == 870 && modes.retract_to_r)
+  if (tenths == G::kBackBore && modes.retract_to_r)
     letters.control.report.fail("modal-conflict", at, "G87 goes back to the initial level only",
                                 "write G98 before it");
 }
@@ -90,7 +90,7 @@ DrillCycle drill_cycle(Fanuc& fanuc, int tenths) {
                z = map.at(fanuc.drilling.words.z, fanuc.drilling.words.z_incremental);
   cycle.approach = fanuc.drilling.words.r_incremental ? fanuc.drilling.cycle_start + r : r;
   cycle.bottom = fanuc.drilling.words.z_incremental ? cycle.approach + z : z;
-  const bool back = tenths == 870;
+  const bool back = tenths == G::kBackBore;
   if (back ? cycle.bottom < cycle.approach : cycle.bottom > cycle.approach)
     fanuc.control.report.fail(
         "bad-cycle", fanuc.reader.column_of(fanuc.block.first),
@@ -100,20 +100,22 @@ DrillCycle drill_cycle(Fanuc& fanuc, int tenths) {
   cycle.retract = back                       ? fanuc.drilling.cycle_start
                   : fanuc.modes.retract_to_r ? cycle.approach
                                              : std::max(cycle.approach, fanuc.drilling.cycle_start);
-  cycle.peck = tenths == 730   ? DrillCycle::Peck::kChipBreak
-               : tenths == 830 ? DrillCycle::Peck::kFull
-                               : DrillCycle::Peck::kNone;
+  cycle.peck = tenths == G::kDrillChipBreak ? DrillCycle::Peck::kChipBreak
+               : tenths == G::kDrillDeep    ? DrillCycle::Peck::kFull
+                                            : DrillCycle::Peck::kNone;
   cycle.peck_mm = fanuc.drilling.words.q;
   cycle.clearance_mm = kPeckClearanceMm;
-  const bool taps = tenths == 840 || tenths == 740;
-  cycle.dwell_s =
-      taps || bores(tenths) || tenths == 820 || tenths == 880 || tenths == 890 ? fanuc.drilling.words.p : 0.0;
+  const bool taps = tenths == G::kTap || tenths == G::kTapLeft;
+  cycle.dwell_s = taps || bores(tenths) || tenths == G::kDrillDwell || tenths == G::kBoreManualOut ||
+                          tenths == G::kBoreDwellOut
+                      ? fanuc.drilling.words.p
+                      : 0.0;
   cycle.dwell_out_s = taps ? fanuc.drilling.words.p : 0.0;
-  cycle.feed_out = taps || tenths == 850 || tenths == 890;
-  cycle.stop_at_bottom = tenths == 860;
+  cycle.feed_out = taps || tenths == G::kBoreFeedOut || tenths == G::kBoreDwellOut;
+  cycle.stop_at_bottom = tenths == G::kBoreStopOut;
   cycle.reverse_at_bottom = taps;
   if (taps) cycle.dwell_out_s = fanuc.drilling.words.p;
-  cycle.manual_out = tenths == 880;
+  cycle.manual_out = tenths == G::kBoreManualOut;
   if (bores(tenths)) {
     cycle.bore = back ? DrillCycle::Bore::kBack : DrillCycle::Bore::kFine;
     cycle.aside = bore_shift(fanuc.drilling, fanuc);

@@ -67,7 +67,7 @@ void return_from_reference(Fanuc& fanuc) {
 /// G28, G30 (P2): through the point that the words give to the reference position. The point is kept for G29.
 void reference(Fanuc& fanuc) {
   const kinematics::MachineModel& machine = fanuc.control.setup.machine;
-  const bool second = fanuc.block.g[kFanucOneShot] == 300;
+  const bool second = fanuc.block.g[kFanucOneShot] == G::kToSecondReference;
   if (second && fanuc.block.has('P') && whole(fanuc.block, 'P', 2, 4, fanuc.reader, fanuc.control) != 2)
     fanuc.control.report.fail("unsupported-word", fanuc.column('P'),
                               "the third and fourth reference positions are not known",
@@ -104,8 +104,8 @@ void references(Fanuc& fanuc) {
   if (fanuc.calls.stack.back().modals > 0)
     fanuc.control.report.fail("modal-conflict", fanuc.g_column(kFanucOneShot),
                               "a reference point is approached while G66 is on", "write G67 before it");
-  if (code == 270) return check_reference(fanuc.modes, fanuc.mapping, fanuc);
-  if (code == 290) return return_from_reference(fanuc);
+  if (code == G::kCheckReference) return check_reference(fanuc.modes, fanuc.mapping, fanuc);
+  if (code == G::kFromReference) return return_from_reference(fanuc);
   reference(fanuc);
 }
 
@@ -125,29 +125,30 @@ void nurbs(Fanuc& fanuc) {
 
 void one_shot(Fanuc& fanuc) {
   const int code = fanuc.block.g[kFanucOneShot];
-  if (code != 40 && code != 100 && code != 110 && code != 90)
+  if (code != G::kDwell && code != G::kSetData && code != G::kEndSetData && code != G::kExactStopOnce)
     refuse_mapped(fanuc.mapping, fanuc, fanuc.g_column(kFanucOneShot),
-                  "coordinate systems, reference points and planes are used", code >= 270 && code <= 300);
+                  "coordinate systems, reference points and planes are used",
+                  code >= G::kCheckReference && code <= G::kToSecondReference);
   switch (fanuc.block.g[kFanucOneShot]) {
-    case 40:
+    case G::kDwell:
       return nc::dwell(fanuc.control.report, fanuc.control.modal,
                        fanuc.block.has('X') ? fanuc.block.get('X') : 1e-3 * fanuc.block.get('P'));
-    case 100:
+    case G::kSetData:
       return set_data(fanuc.modes, fanuc.zero, fanuc);
-    case 110:
+    case G::kEndSetData:
       return;
-    case 270:
-    case 280:
-    case 290:
-    case 300:
+    case G::kCheckReference:
+    case G::kToReference:
+    case G::kFromReference:
+    case G::kToSecondReference:
       return references(fanuc);
-    case 520:
+    case G::kLocalShift:
       return shift_to_words(fanuc, false);
-    case 920:
+    case G::kShift:
       return shift_to_words(fanuc, true);
-    case 531:
-    case 536:
-      return tilt_rotaries(fanuc, fanuc.block.g[kFanucOneShot] == 536);
+    case G::kTiltRotaries:
+    case G::kTiltAboutTip:
+      return tilt_rotaries(fanuc, fanuc.block.g[kFanucOneShot] == G::kTiltAboutTip);
     default:
       return motion(fanuc);
   }
@@ -162,23 +163,23 @@ void keep_motion_codes(Modes& modes, Drilling& drilling, LetterDialect& letters)
   }
   if (!letters.block.has_g(kFanucCycle)) return;
   const int code = letters.block.g[kFanucCycle];
-  if (code == 800) drilling.words = CycleWords();
-  if (code != 800 && modes.cycle == 800)
+  if (code == G::kCycleOff) drilling.words = CycleWords();
+  if (code != G::kCycleOff && modes.cycle == G::kCycleOff)
     drilling.cycle_start = nc::position_xyz(letters.control)[axes_of(letters.control.modal.plane).normal];
   modes.cycle = code;
 }
 
 void motion(Fanuc& fanuc) {
-  const bool machine = g(fanuc, kFanucOneShot) == 530;
-  if (fanuc.modes.cycle != 800 && machine)
+  const bool machine = g(fanuc, kFanucOneShot) == G::kMachineCoordinates;
+  if (fanuc.modes.cycle != G::kCycleOff && machine)
     fanuc.control.report.fail("modal-conflict", fanuc.g_column(kFanucOneShot),
                               "G53 stands while a canned cycle is on", "end the cycle first: G80");
-  if (fanuc.modes.cycle != 800) return cycle(fanuc, fanuc.modes.cycle);
-  if (fanuc.modes.motion == 62) return nurbs(fanuc);
+  if (fanuc.modes.cycle != G::kCycleOff) return cycle(fanuc, fanuc.modes.cycle);
+  if (fanuc.modes.motion == G::kNurbs) return nurbs(fanuc);
   if (machine) refuse_mapped(fanuc.mapping, fanuc, fanuc.g_column(kFanucOneShot), "G53 stands", false);
   Target target = machine ? target_of(fanuc.block, false, fanuc.reader, fanuc.control)
                           : words(fanuc.modes, fanuc.mapping, fanuc);
-  if (fanuc.modes.motion == 20 || fanuc.modes.motion == 30) {
+  if (fanuc.modes.motion == G::kArcClockwise || fanuc.modes.motion == G::kArcCounterClockwise) {
     if (machine)
       fanuc.control.report.fail("modal-conflict", fanuc.g_column(kFanucOneShot),
                                 "G53 goes with G00 and G01 only", "write G53 G00");
@@ -187,7 +188,7 @@ void motion(Fanuc& fanuc) {
     fanuc.modes.moved = true;
     map_arc(fanuc.mapping, fanuc, *arc);
     const bool clockwise =
-        (fanuc.modes.motion == 20) != (mapped(fanuc.mapping) && reversed(fanuc.mapping, fanuc));
+        (fanuc.modes.motion == G::kArcClockwise) != (mapped(fanuc.mapping) && reversed(fanuc.mapping, fanuc));
     nc::arc(fanuc.control, clockwise ? Motion::kClockwise : Motion::kCounterClockwise, target, *arc);
     return;
   }

@@ -241,16 +241,16 @@ void tilt_by_tool_axis(Fanuc& fanuc) {
 }  // namespace
 
 void turn(Fanuc& fanuc, int tenths) {
-  if (tenths >= 682 && tenths <= 684)
+  if (tenths >= G::kTiltedPlane && tenths <= G::kFurtherTiltedPlane)
     refuse_mapped(fanuc.mapping, fanuc, fanuc.g_column(kFanucTurn), "a plane is tilted", true);
   fanuc.modes.turn_code = tenths;
   switch (tenths) {
-    case 680:
+    case G::kTurnOn:
       return turn_in_plane(fanuc);
-    case 682:
-    case 684:
-      return tilt(fanuc, tenths == 684);
-    case 683:
+    case G::kTiltedPlane:
+    case G::kFurtherTiltedPlane:
+      return tilt(fanuc, tenths == G::kFurtherTiltedPlane);
+    case G::kPlaneByTool:
       return tilt_by_tool_axis(fanuc);
     default:
       fanuc.planes.turned = Turned();

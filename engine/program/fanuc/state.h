@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "program/fanuc/codes.h"
 #include "program/letters/letter_dialect.h"
 
 namespace swarf::program::nc::fanuc {
@@ -122,7 +123,7 @@ struct Variables {
 
 /// Modal codes in tenths, and what the words of the dialect keep.
 struct Modes {
-  int motion = 0, cycle = 800, length_code = 490, turn_code = 690;
+  int motion = 0, cycle = G::kCycleOff, length_code = G::kLengthOff, turn_code = G::kTurnOff;
   int d_number = 0, h_number = 0;  ///< D and H as written last
   bool number_rule_stated = false;
   bool moved = false;  ///< the block has a move

@@ -135,21 +135,21 @@ void refuse_mapped(Mapping& mapping, LetterDialect& letters, int column, const c
 /// G50.1 X Y Z ends the mirror images of these axes, G51.1 X Y Z mirrors at these coordinates.
 void mirror(Fanuc& fanuc, int tenths) {
   const int at = fanuc.g_column(kFanucMirror);
-  only_words(fanuc, "XYZ", tenths == 511 ? "G51.1" : "G50.1");
+  only_words(fanuc, "XYZ", tenths == G::kMirrorOn ? "G51.1" : "G50.1");
   const Target axes = target_of(fanuc.block, false, fanuc.reader, fanuc.control);
-  if (tenths == 501 && !fanuc.mapping.mirrored) return;
+  if (tenths == G::kMirrorOff && !fanuc.mapping.mirrored) return;
   if (!axes.any())
     fanuc.control.report.fail("missing-word", at, "the mirror image names no axis",
                               "write its axes: G51.1 X0, G50.1 X0");
   if (fanuc.mapping.scaled)
     fanuc.control.report.fail("modal-conflict", at, "a mirror image changes while scaling is on",
                               "write G51.1 before G51, and G50.1 after G50");
-  if (tenths == 511 && fanuc.modes.incremental)
+  if (tenths == G::kMirrorOn && fanuc.modes.incremental)
     fanuc.control.report.fail("unsupported-word", at, "G51.1 under G91", "write G90 before it");
   check_transform(fanuc.modes, fanuc.planes, fanuc, at);
   for (size_t i = 0; i < 3; ++i) {
     if (!axes.has(static_cast<int>(i))) continue;
-    fanuc.mapping.axis[i].mirrored = tenths == 511;
+    fanuc.mapping.axis[i].mirrored = tenths == G::kMirrorOn;
     fanuc.mapping.axis[i].mirror_at = axes.value[i];
   }
   fanuc.mapping.mirrored =
@@ -159,7 +159,7 @@ void mirror(Fanuc& fanuc, int tenths) {
 /// G51 X Y Z P or I J K about the centre, by default the present position; G50.
 void scale(Fanuc& fanuc, int tenths) {
   const int at = fanuc.g_column(kFanucScale);
-  if (tenths == 500) {
+  if (tenths == G::kScaleOff) {
     if (fanuc.mapping.scaled) check_transform(fanuc.modes, fanuc.planes, fanuc, at);
     for (AxisMap& axis : fanuc.mapping.axis) axis.scale = 1.0, axis.centre = 0.0;
     fanuc.mapping.scaled = false;
@@ -193,12 +193,12 @@ void scale(Fanuc& fanuc, int tenths) {
 
 void polar(Modes& modes, Mapping& mapping, LetterDialect& letters, int tenths) {
   const int at = letters.g_column(kFanucPolar);
-  if (tenths == 160 && modes.incremental)
+  if (tenths == G::kPolarOn && modes.incremental)
     letters.control.report.fail("unsupported-word", at,
                                 "G91 G16 counts radii from the present position, and is not read",
                                 "write G90 G16");
   mapping.polar = Polar();
-  mapping.polar.on = tenths == 160;
+  mapping.polar.on = tenths == G::kPolarOn;
 }
 
 }  // namespace swarf::program::nc::fanuc

@@ -10,10 +10,11 @@ namespace swarf::program::nc::linuxcnc {
 namespace {
 
 bool is_cycle(int tenths) {
-  return tenths == 730 || tenths == 740 || (tenths >= 810 && tenths <= 890);
+  return tenths == G::kDrillChipBreak || tenths == G::kTapLeft ||
+         (tenths >= G::kDrill && tenths <= G::kBoreDwellOut);
 }
 bool is_arc(int tenths) {
-  return tenths == 20 || tenths == 30;
+  return tenths == G::kArcClockwise || tenths == G::kArcCounterClockwise;
 }
 constexpr int kCubic = 50, kQuadratic = 51, kNurbs = 52;
 
@@ -35,20 +36,21 @@ void check_letters(Modes& modes, LetterDialect& letters) {
   const auto has_m = [&](std::initializer_list<int> codes) {
     return std::any_of(codes.begin(), codes.end(), [&](int code) { return letters.block.has_m(code); });
   };
-  const bool cycle = is_cycle(motion), arc = is_arc(motion), data = non_modal == 100;
-  const bool radius = letters.block.has_g(kRadiusGroup) && letters.block.g[kRadiusGroup] != 400;
-  const bool path = letters.block.has_g(kPathGroup) && letters.block.g[kPathGroup] == 640;
+  const bool cycle = is_cycle(motion), arc = is_arc(motion), data = non_modal == G::kSetData;
+  const bool radius =
+      letters.block.has_g(kRadiusGroup) && letters.block.g[kRadiusGroup] != G::kCompensationOff;
+  const bool path = letters.block.has_g(kPathGroup) && letters.block.g[kPathGroup] == G::kContinuousPath;
   const int length = letters.block.has_g(kLengthGroup) ? letters.block.g[kLengthGroup] : 0;
   letters.check_letter('D', radius, "G41 and G42");
   letters.check_letter('E', has_m({660, 670, 680}), "M66, M67 and M68");
-  letters.check_letter('H', length == 430 || length == 432, "G43 and G43.2");
+  letters.check_letter('H', length == G::kLengthOn || length == G::kLengthAdded, "G43 and G43.2");
   for (const char letter : {'I', 'J'})
     letters.check_letter(letter, arc || moves({kCubic, kQuadratic, 870}) || data,
                          "G2, G3, G5, G5.1, G87 and G10 L1");
-  letters.check_letter('K', arc || motion == 870, "G2, G3 and G87");
+  letters.check_letter('K', arc || motion == G::kBackBore, "G2, G3 and G87");
   letters.check_letter('R', cycle || arc || data || letters.block.has_m(190), "arcs, cycles, G10 L1 and L2");
   letters.check_letter('P',
-                       arc || data || non_modal == 40 || path ||
+                       arc || data || non_modal == G::kDwell || path ||
                            moves({kCubic, kNurbs, 730, 740, 820, 830, 840, 860, 880, 890}) ||
                            has_m({190, 500, 510, 520, 530, 620, 630, 640, 650, 660, 980}),
                        "G4, G5, G10, G64, arcs, cycles that dwell and M98");
@@ -60,17 +62,18 @@ void check_letters(Modes& modes, LetterDialect& letters) {
 
 void check_axes_and_motion(Modes& modes, LetterDialect& letters) {
   const bool uses = uses_axis_words(letters);
-  if (uses && letters.block.has_g(kMotionGroup) && letters.block.g[kMotionGroup] != 800)
+  if (uses && letters.block.has_g(kMotionGroup) && letters.block.g[kMotionGroup] != G::kCycleOff)
     letters.control.report.fail("modal-conflict", letters.g_column(kMotionGroup),
                                 "two G codes of this block both want its axis words",
                                 "write them in two blocks");
   if (letters.block.has_g(kMachineGroup)) {
     const int motion = letters.block.has_g(kMotionGroup) ? letters.block.g[kMotionGroup] : modes.motion;
-    if (motion != 0 && motion != 10)
+    if (motion != 0 && motion != G::kStraight)
       letters.control.report.fail("modal-conflict", letters.g_column(kMachineGroup),
                                   "G53 goes with G0 and G1 only", "write G53 G0");
-    const bool incremental =
-        letters.block.has_g(kDistanceGroup) ? letters.block.g[kDistanceGroup] == 910 : modes.incremental;
+    const bool incremental = letters.block.has_g(kDistanceGroup)
+                                 ? letters.block.g[kDistanceGroup] == G::kIncremental
+                                 : modes.incremental;
     if (incremental)
       letters.control.report.fail("modal-conflict", letters.g_column(kMachineGroup),
                                   "G53 wants a position, and G91 is active", "write G90 before it");
@@ -80,7 +83,7 @@ void check_axes_and_motion(Modes& modes, LetterDialect& letters) {
   }
   if (!is_axis_given(letters) || uses) return;
   const int motion = letters.block.has_g(kMotionGroup) ? letters.block.g[kMotionGroup] : modes.motion;
-  if (motion < 0 || motion == 800)
+  if (motion < 0 || motion == G::kCycleOff)
     letters.control.report.fail("no-motion-mode", letters.reader.column_of(letters.block.first),
                                 "axis words stand here, and no motion (G0 to G3) is active",
                                 "write G0 or G1");
@@ -89,7 +92,7 @@ void check_axes_and_motion(Modes& modes, LetterDialect& letters) {
 /// LinuxCNC takes F before G20 and G21 of its block (order of execution).
 void warn_of_feed_units(LetterDialect& letters) {
   if (!letters.block.has_g(kUnitsGroup) ||
-      letters.control.modal.inches() == (letters.block.g[kUnitsGroup] == 200))
+      letters.control.modal.inches() == (letters.block.g[kUnitsGroup] == G::kInches))
     return;
   if (letters.control.modal.feed_mode == FeedMode::kInverseTime) return;
   letters.control.report.warn_once(
@@ -103,9 +106,9 @@ void warn_of_feed_units(LetterDialect& letters) {
 void apply_feed_and_speed(LetterDialect& letters) {
   if (letters.block.has_g(kFeedGroup)) {
     const int code = letters.block.g[kFeedGroup];
-    const FeedMode mode = code == 930   ? FeedMode::kInverseTime
-                          : code == 940 ? FeedMode::kPerMinute
-                                        : FeedMode::kPerRevolution;
+    const FeedMode mode = code == G::kInverseTime ? FeedMode::kInverseTime
+                          : code == G::kPerMinute ? FeedMode::kPerMinute
+                                                  : FeedMode::kPerRevolution;
     nc::restore_feed(letters.control.modal, mode,
                      0.0);  // F is forgotten, also by the word that holds already
   }
@@ -124,8 +127,8 @@ void apply_machine_functions(LinuxCnc& linuxcnc) {
   for (int i = 0; i < linuxcnc.block.m_count; ++i) {
     const int code = linuxcnc.block.m[static_cast<size_t>(i)];
     const int at = linuxcnc.reader.column_of(linuxcnc.block.m_places[static_cast<size_t>(i)]);
-    if (code >= 700 && code <= 730) apply_saved_state(linuxcnc, code, at);
-    if (code >= 4280) switch_kinematics(linuxcnc.modes, linuxcnc, code, at);
+    if (code >= M::kSaveState && code <= M::kSaveAndRestoreState) apply_saved_state(linuxcnc, code, at);
+    if (code >= M::kFirstKinematics) switch_kinematics(linuxcnc.modes, linuxcnc, code, at);
   }
   if (linuxcnc.block.has_m(70)) linuxcnc.modes.mist = true;
   if (linuxcnc.block.has_m(80)) linuxcnc.modes.flood = true;
@@ -142,11 +145,12 @@ void apply_offsets(Zero& zero, LetterDialect& letters) {
 void apply_path_mode(LetterDialect& letters) {
   if (!letters.block.has_g(kPathGroup)) return;
   const int code = letters.block.g[kPathGroup];
-  letters.control.modal.exact_stop = code != 640;
-  if (code == 640 && letters.block.has('Q'))
+  letters.control.modal.exact_stop = code != G::kContinuousPath;
+  if (code == G::kContinuousPath && letters.block.has('Q'))
     letters.control.report.without_effect("G64 Q (merging of short blocks)");
-  letters.control.modal.corner_tolerance_mm =
-      code == 640 && letters.block.has('P') ? letters.control.modal.mm(letters.block.get('P')) : 0.0;
+  letters.control.modal.corner_tolerance_mm = code == G::kContinuousPath && letters.block.has('P')
+                                                  ? letters.control.modal.mm(letters.block.get('P'))
+                                                  : 0.0;
 }
 
 }  // namespace
@@ -154,10 +158,11 @@ void apply_path_mode(LetterDialect& letters) {
 bool uses_axis_words(const LetterDialect& letters) {
   if (!letters.block.has_g(kNonModal)) {
     const int length = letters.block.has_g(kLengthGroup) ? letters.block.g[kLengthGroup] : 0;
-    return length == 431 || (length == 432 && !letters.block.has('H'));
+    return length == G::kLengthBy || (length == G::kLengthAdded && !letters.block.has('H'));
   }
   const int code = letters.block.g[kNonModal];
-  return code == 100 || code == 280 || code == 300 || code == 520 || code == 920;
+  return code == G::kSetData || code == G::kToReference || code == G::kToSecondReference ||
+         code == G::kLocalShift || code == G::kShift;
 }
 
 void check_words(Modes& modes, Curves& curves, LetterDialect& letters) {
@@ -171,7 +176,7 @@ void check_words(Modes& modes, Curves& curves, LetterDialect& letters) {
   if (curves.nurbs) return check_nurbs_words(curves, letters);
   check_letters(modes, letters);
   check_axes_and_motion(modes, letters);
-  if (letters.block.has_g(kNonModal) && letters.block.g[kNonModal] == 40) letters.need('P', "G4");
+  if (letters.block.has_g(kNonModal) && letters.block.g[kNonModal] == G::kDwell) letters.need('P', "G4");
   letters.check_feed_and_speed();
 }
 
@@ -186,25 +191,25 @@ void apply(LinuxCnc& linuxcnc) {
   constexpr uint32_t kModal = 1u << kPlaneGroup | 1u << kUnitsGroup | 1u << kRadiusGroup |
                               1u << kLengthGroup | 1u << kOffsetGroup | 1u << kPathGroup |
                               1u << kDistanceGroup | 1u << kArcDistanceGroup | 1u << kRetractGroup;
-  if (linuxcnc.block.has_g(kNonModal) && linuxcnc.block.g[kNonModal] == 40)
+  if (linuxcnc.block.has_g(kNonModal) && linuxcnc.block.g[kNonModal] == G::kDwell)
     nc::dwell(linuxcnc.control.report, linuxcnc.control.modal, linuxcnc.block.get('P'));
   if ((linuxcnc.block.g_given & kModal) != 0) {
     if (linuxcnc.block.has_g(kPlaneGroup))
-      nc::set_plane(linuxcnc.control, linuxcnc.block.g[kPlaneGroup] == 170   ? Plane::kXY
-                                      : linuxcnc.block.g[kPlaneGroup] == 180 ? Plane::kZX
-                                                                             : Plane::kYZ);
+      nc::set_plane(linuxcnc.control, linuxcnc.block.g[kPlaneGroup] == G::kPlaneXY   ? Plane::kXY
+                                      : linuxcnc.block.g[kPlaneGroup] == G::kPlaneZX ? Plane::kZX
+                                                                                     : Plane::kYZ);
     if (linuxcnc.block.has_g(kUnitsGroup))
-      nc::set_inches(linuxcnc.control.modal, linuxcnc.block.g[kUnitsGroup] == 200);
+      nc::set_inches(linuxcnc.control.modal, linuxcnc.block.g[kUnitsGroup] == G::kInches);
     apply_compensation(linuxcnc.modes, linuxcnc.zero, linuxcnc);
     apply_length(linuxcnc.zero, linuxcnc);
     apply_offsets(linuxcnc.zero, linuxcnc);
     apply_path_mode(linuxcnc);
     if (linuxcnc.block.has_g(kDistanceGroup))
-      linuxcnc.modes.incremental = linuxcnc.block.g[kDistanceGroup] == 910;
+      linuxcnc.modes.incremental = linuxcnc.block.g[kDistanceGroup] == G::kIncremental;
     if (linuxcnc.block.has_g(kArcDistanceGroup))
-      linuxcnc.modes.arc_absolute = linuxcnc.block.g[kArcDistanceGroup] == 901;
+      linuxcnc.modes.arc_absolute = linuxcnc.block.g[kArcDistanceGroup] == G::kArcAbsolute;
     if (linuxcnc.block.has_g(kRetractGroup)) {
-      linuxcnc.modes.retract_to_r = linuxcnc.block.g[kRetractGroup] == 990;
+      linuxcnc.modes.retract_to_r = linuxcnc.block.g[kRetractGroup] == G::kRetractToR;
       linuxcnc.modes.retract_known = true;
     }
   }
@@ -217,8 +222,8 @@ bool apply_end(LinuxCnc& linuxcnc) {
   for (int i = 0; i < linuxcnc.block.m_count; ++i) {
     const int code = linuxcnc.block.m[static_cast<size_t>(i)];
     const int at = linuxcnc.reader.column_of(linuxcnc.block.m_places[static_cast<size_t>(i)]);
-    if (code == 20 || code == 300) return false;
-    if (code == 980) {
+    if (code == M::kEnd || code == M::kEndExchange) return false;
+    if (code == M::kCall) {
       linuxcnc.need('P', "M98");
       const long times = linuxcnc.block.has('L')
                              ? whole(linuxcnc.block, 'L', 0, 1'000'000, linuxcnc.reader, linuxcnc.control)
@@ -226,12 +231,12 @@ bool apply_end(LinuxCnc& linuxcnc) {
       call_number(linuxcnc.calls, linuxcnc,
                   whole(linuxcnc.block, 'P', 0, 99999999, linuxcnc.reader, linuxcnc.control), times, at);
     }
-    if (code == 990 && linuxcnc.calls.stack.size() > 1 && frame(linuxcnc.calls).numbered) {
+    if (code == M::kReturn && linuxcnc.calls.stack.size() > 1 && frame(linuxcnc.calls).numbered) {
       leave(linuxcnc);
-    } else if (code == 990 && linuxcnc.calls.stack.size() > 1) {
+    } else if (code == M::kReturn && linuxcnc.calls.stack.size() > 1) {
       linuxcnc.control.report.fail("bad-o-word", at, "M99 ends a subprogram that was called with O... call",
                                    "end it with endsub");
-    } else if (code == 990) {
+    } else if (code == M::kReturn) {
       linuxcnc.control.report.warn_once("main-program-repeats", at,
                                         "M99 repeats the main program for ever; it was run once",
                                         "end it with M2 where that is meant");

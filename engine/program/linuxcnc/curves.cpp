@@ -114,7 +114,7 @@ void check_nurbs_words(Curves& curves, LetterDialect& letters) {
   const int motion = letters.block.has_g(kMotionGroup) ? letters.block.g[kMotionGroup] : 52;
   const bool codes = (letters.block.g_given & ~(1u << kMotionGroup)) != 0 || letters.block.m_count > 0 ||
                      letters.block.free_g > 0;
-  if (codes || (motion != 52 && motion != 53) || (letters.block.given & ~kPoint) != 0)
+  if (codes || (motion != G::kNurbsPoint && motion != G::kNurbsEnd) || (letters.block.given & ~kPoint) != 0)
     letters.control.report.fail(
         "bad-nurbs", letters.reader.column_of(letters.block.first),
         fmt::format("the NURBS that begins in line {} is open: only points X Y P belong here",

@@ -12,13 +12,14 @@ namespace {
 constexpr double kPeckClearanceMm = 0.254;
 
 bool dwells(int tenths) {
-  return tenths == 820 || tenths == 860 || tenths == 880 || tenths == 890;
+  return tenths == G::kDrillDwell || tenths == G::kBoreStopOut || tenths == G::kBoreManualOut ||
+         tenths == G::kBoreDwellOut;
 }
 bool pecks(int tenths) {
-  return tenths == 730 || tenths == 830;
+  return tenths == G::kDrillChipBreak || tenths == G::kDrillDeep;
 }
 bool taps(int tenths) {
-  return tenths == 740 || tenths == 840;
+  return tenths == G::kTapLeft || tenths == G::kTap;
 }
 
 double cycle_word(const Modes& modes, const LetterDialect& letters, const std::optional<double>& value,
@@ -116,16 +117,16 @@ void check_cycle(const LetterDialect& letters, int tenths) {
             "releases of LinuxCNC differ about P of G{}: newer ones take it as the clearance of a peck",
             number),
         "leave it out: the clearance is 0.254 mm");
-  const bool boring = tenths == 860 || tenths == 870 || tenths == 880;
+  const bool boring = tenths == G::kBoreStopOut || tenths == G::kBackBore || tenths == G::kBoreManualOut;
   if ((boring || taps(tenths)) && letters.control.modal.spindle == 0)
     letters.control.report.fail("spindle-stands", at, fmt::format("G{} wants a turning spindle", number),
                                 "start it before the cycle: S1000 M3");
-  if (taps(tenths) && letters.control.modal.spindle != (tenths == 840 ? 1 : -1))
+  if (taps(tenths) && letters.control.modal.spindle != (tenths == G::kTap ? 1 : -1))
     letters.control.report.fail("bad-cycle", at,
-                                tenths == 840
+                                tenths == G::kTap
                                     ? "G84 taps right-hand threads, and the spindle turns counter-clockwise"
                                     : "G74 taps left-hand threads, and the spindle turns clockwise",
-                                tenths == 840 ? "write M3 before it" : "write M4 before it");
+                                tenths == G::kTap ? "write M3 before it" : "write M4 before it");
 }
 
 /// R stays for all cycles, the other words while the same one goes on.
@@ -159,7 +160,7 @@ void cycle(Modes& modes, Drilling& drilling, LetterDialect& letters, int tenths)
                                 "R must lie above the depth");
   cycle.retract = modes.retract_to_r ? cycle.approach : std::max(cycle.approach, drilling.cycle_start);
   if (pecks(tenths)) {
-    cycle.peck = tenths == 730 ? DrillCycle::Peck::kChipBreak : DrillCycle::Peck::kFull;
+    cycle.peck = tenths == G::kDrillChipBreak ? DrillCycle::Peck::kChipBreak : DrillCycle::Peck::kFull;
     cycle.peck_mm = cycle_word(modes, letters, drilling.words.q, 'Q');
     cycle.clearance_mm = kPeckClearanceMm;
     if (!(cycle.peck_mm > 0.0))
@@ -169,10 +170,10 @@ void cycle(Modes& modes, Drilling& drilling, LetterDialect& letters, int tenths)
   }
   if (dwells(tenths)) cycle.dwell_s = cycle_word(modes, letters, drilling.words.p, 'P');
   if (taps(tenths)) cycle.dwell_s = drilling.words.p.value_or(0.0);
-  cycle.feed_out = taps(tenths) || tenths == 850 || tenths == 890;
-  cycle.feed_to_retract = tenths != 850;  // G85 feeds to R and goes on in rapid
-  cycle.stop_at_bottom = tenths == 860;
-  cycle.manual_out = tenths == 880;
+  cycle.feed_out = taps(tenths) || tenths == G::kBoreFeedOut || tenths == G::kBoreDwellOut;
+  cycle.feed_to_retract = tenths != G::kBoreFeedOut;  // G85 feeds to R and goes on in rapid
+  cycle.stop_at_bottom = tenths == G::kBoreStopOut;
+  cycle.manual_out = tenths == G::kBoreManualOut;
   cycle.reverse_at_bottom = taps(tenths);
   const int times =
       letters.block.has('L') ? whole(letters.block, 'L', 1, 100000, letters.reader, letters.control) : 1;
@@ -183,7 +184,7 @@ void cycle(Modes& modes, Drilling& drilling, LetterDialect& letters, int tenths)
         "neither G98 nor G99 stands before this cycle: the tool goes back to R (G99), with "
         "which LinuxCNC starts unless the startup code of its INI file says otherwise",
         "write G98 or G99 before it");
-  if (tenths == 880)
+  if (tenths == G::kBoreManualOut)
     letters.control.report.warn_once(
         "cycle-of-rs274", at,
         "G88: RS274/NGC lets the operator retract by hand, LinuxCNC leaves it undefined; the tool is "
@@ -194,7 +195,7 @@ void cycle(Modes& modes, Drilling& drilling, LetterDialect& letters, int tenths)
   const Borrowed exact_stop(letters.control.modal.exact_stop);
   letters.control.modal.exact_stop = true;  // cycles run in exact path mode, whatever G64 says
   for (int i = 0; i < times; ++i) {
-    if (tenths == 870) {
+    if (tenths == G::kBackBore) {
       back_bore(modes, drilling, letters, cycle.approach, cycle.bottom, cycle.retract, hole);
     } else {
       above_hole(modes, drilling, letters, hole, cycle.approach);

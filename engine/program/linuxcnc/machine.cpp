@@ -32,15 +32,17 @@ void assume_kinematics(Modes& modes, LetterDialect& letters, int number, Kinemat
 void switch_kinematics(Modes& modes, LetterDialect& letters, int tenths, int column) {
   const KinematicsSwitch& told = letters.control.setup.kinematics_switch;
   const int number = tenths / 10;
-  std::optional<Kinematics> kinematics = tenths == 4280 ? told.m428 : tenths == 4290 ? told.m429 : told.m430;
+  std::optional<Kinematics> kinematics = tenths == M::kFirstKinematics    ? told.m428
+                                         : tenths == M::kSecondKinematics ? told.m429
+                                                                          : told.m430;
   if (!kinematics) {
-    if (tenths == 4300) {
+    if (tenths == M::kThirdKinematics) {
       letters.control.report.fail(
           "unknown-kinematics", column, "M430 selects the user's kinematics, and nothing says what they are",
           "add kinematics_switch = { m430 = \"identity\" } (or \"tcp\") to the scene; on the command "
           "line: --kinematics m430=identity");
     }
-    kinematics = tenths == 4280 ? Kinematics::kTcp : Kinematics::kIdentity;
+    kinematics = tenths == M::kFirstKinematics ? Kinematics::kTcp : Kinematics::kIdentity;
     assume_kinematics(modes, letters, number, *kinematics, column);
   }
   nc::set_tcp(letters.control, kinematics == Kinematics::kTcp ? Tcp::kAxes : Tcp::kOff);

@@ -10,9 +10,9 @@ namespace {
 constexpr double kSqrt2 = 1.4142135623730951;
 
 void spline(Modes& modes, Curves& curves, LetterDialect& letters, int tenths) {
-  if (tenths == 50) return cubic_spline(modes, curves, letters);
-  if (tenths == 51) return quadratic_spline(modes, letters);
-  if (tenths == 52) return nurbs_point(modes, curves, letters);
+  if (tenths == G::kCubicSpline) return cubic_spline(modes, curves, letters);
+  if (tenths == G::kQuadraticSpline) return quadratic_spline(modes, letters);
+  if (tenths == G::kNurbsPoint) return nurbs_point(modes, curves, letters);
   close_nurbs(curves, letters);
   modes.motion = -1;
 }
@@ -34,7 +34,8 @@ void arc(Modes& modes, LetterDialect& letters, int tenths) {
     words->radius_tolerance_mm =
         std::clamp(1e-3 * std::hypot(out[axes.first], out[axes.second]), least, 100.0 * least);
   }
-  nc::arc(letters.control, tenths == 20 ? Motion::kClockwise : Motion::kCounterClockwise, target, *words);
+  nc::arc(letters.control, tenths == G::kArcClockwise ? Motion::kClockwise : Motion::kCounterClockwise,
+          target, *words);
 }
 
 }  // namespace
@@ -42,13 +43,13 @@ void arc(Modes& modes, LetterDialect& letters, int tenths) {
 void motion(LinuxCnc& linuxcnc) {
   const bool written = linuxcnc.block.has_g(kMotionGroup);
   const int tenths = written ? linuxcnc.block.g[kMotionGroup] : linuxcnc.modes.motion;
-  const bool in_series = linuxcnc.modes.motion >= 730 && linuxcnc.modes.motion != 800,
+  const bool in_series = linuxcnc.modes.motion >= G::kDrillChipBreak && linuxcnc.modes.motion != G::kCycleOff,
              same = linuxcnc.modes.motion == tenths;
   linuxcnc.modes.motion = tenths;
-  if (tenths != 50) linuxcnc.curves.spline_tangent.reset();
-  if (tenths == 800 || tenths < 730) linuxcnc.drilling.words = StickyCycle();
-  if (tenths == 800) return;
-  if (tenths >= 730) {
+  if (tenths != G::kCubicSpline) linuxcnc.curves.spline_tangent.reset();
+  if (tenths == G::kCycleOff || tenths < G::kDrillChipBreak) linuxcnc.drilling.words = StickyCycle();
+  if (tenths == G::kCycleOff) return;
+  if (tenths >= G::kDrillChipBreak) {
     check_cycle(linuxcnc, tenths);
     keep_cycle_words(linuxcnc.drilling, linuxcnc, same);
     // The height that G98 returns to is that before the first of several cycles, whichever they are.
@@ -58,8 +59,9 @@ void motion(LinuxCnc& linuxcnc) {
     return cycle(linuxcnc.modes, linuxcnc.drilling, linuxcnc, tenths);
   }
   if (uses_axis_words(linuxcnc)) return;
-  if (tenths == 20 || tenths == 30) return arc(linuxcnc.modes, linuxcnc, tenths);
-  if (tenths >= 50) return spline(linuxcnc.modes, linuxcnc.curves, linuxcnc, tenths);
+  if (tenths == G::kArcClockwise || tenths == G::kArcCounterClockwise)
+    return arc(linuxcnc.modes, linuxcnc, tenths);
+  if (tenths >= G::kCubicSpline) return spline(linuxcnc.modes, linuxcnc.curves, linuxcnc, tenths);
   const Motion kind = tenths == 0 ? Motion::kRapid : Motion::kFeed;
   const bool machine = linuxcnc.block.has_g(kMachineGroup);
   const Target target =

@@ -69,11 +69,12 @@ void set_reference(Zero& zero, LetterDialect& letters, int tenths) {
                                 "the position to keep is not known yet",
                                 "give the start position in the scene");
   nc::flush(letters.control);
-  zero.references[tenths == 281 ? 0 : 1] = letters.control.path.q;
+  zero.references[tenths == G::kSetReference ? 0 : 1] = letters.control.path.q;
 }
 
 void reference(LinuxCnc& linuxcnc, int tenths) {
-  const std::optional<AxisValues> goal = reference_position(linuxcnc.zero, linuxcnc, tenths == 300);
+  const std::optional<AxisValues> goal =
+      reference_position(linuxcnc.zero, linuxcnc, tenths == G::kToSecondReference);
   if (!goal)
     linuxcnc.control.report.fail("no-reference", linuxcnc.g_column(kNonModal),
                                  "G30 goes to the tool change position, and the machine has none",
@@ -118,26 +119,26 @@ void shift_to_words(Zero& zero, LetterDialect& letters, bool position) {
 
 void non_modal(LinuxCnc& linuxcnc) {
   switch (linuxcnc.block.g[kNonModal]) {
-    case 100:
+    case G::kSetData:
       return set_data(linuxcnc.zero, linuxcnc);
-    case 280:
-    case 300:
+    case G::kToReference:
+    case G::kToSecondReference:
       return reference(linuxcnc, linuxcnc.block.g[kNonModal]);
-    case 281:
-    case 301:
+    case G::kSetReference:
+    case G::kSetSecondReference:
       return set_reference(linuxcnc.zero, linuxcnc, linuxcnc.block.g[kNonModal]);
-    case 520:
+    case G::kLocalShift:
       return shift_to_words(linuxcnc.zero, linuxcnc, false);
-    case 920:
+    case G::kShift:
       return shift_to_words(linuxcnc.zero, linuxcnc, true);
-    case 921:
+    case G::kShiftClear:
       linuxcnc.zero.shift = AxisValues::Zero();
       linuxcnc.zero.shift_on = false;
       return update_shift(linuxcnc.zero, linuxcnc);
-    case 922:
+    case G::kShiftOff:
       linuxcnc.zero.shift_on = false;
       return update_shift(linuxcnc.zero, linuxcnc);
-    case 923:
+    case G::kShiftRestore:
       linuxcnc.zero.shift_on = true;
       return update_shift(linuxcnc.zero, linuxcnc);
     default:

@@ -38,7 +38,7 @@ ModalState modal_state(const Modes& modes, const LetterDialect& letters) {
 /// forgets it, M72 brings it back.
 void apply_saved_state(LinuxCnc& linuxcnc, int tenths, int column) {
   Call& call = frame(linuxcnc.calls);
-  if (tenths == 720) {
+  if (tenths == M::kRestoreState) {
     if (!call.saved)
       linuxcnc.control.report.fail("nothing-saved", column,
                                    "M72 restores the modal state, and none was kept at this call level",
@@ -46,15 +46,15 @@ void apply_saved_state(LinuxCnc& linuxcnc, int tenths, int column) {
     return restore(linuxcnc.modes, linuxcnc.zero, linuxcnc, *call.saved, column);
   }
   call.saved.reset();
-  call.restores = tenths == 730;
-  if (tenths != 710) call.saved = modal_state(linuxcnc.modes, linuxcnc);
+  call.restores = tenths == M::kSaveAndRestoreState;
+  if (tenths != M::kForgetState) call.saved = modal_state(linuxcnc.modes, linuxcnc);
 }
 
 /// Nothing moves. G41 and G42 cannot come back without a lead-in, and the length of a tool that has been
 /// changed since is no state: both are refused.
 void restore(Modes& modes, Zero& zero, LetterDialect& letters, const ModalState& state, int column) {
   const bool same_cutter = modes.radius_code == state.radius_code && modes.diameter_mm == state.diameter_mm;
-  if (state.radius_code != 400 && !same_cutter)
+  if (state.radius_code != G::kCompensationOff && !same_cutter)
     letters.control.report.fail("unsupported-word", column,
                                 "restoring the state would switch cutter radius compensation on again",
                                 "write G40 before the state is kept");

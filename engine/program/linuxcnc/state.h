@@ -11,6 +11,7 @@
 
 #include "program/control/curve.h"
 #include "program/letters/letter_dialect.h"
+#include "program/linuxcnc/codes.h"
 
 namespace swarf::program::nc::linuxcnc {
 
@@ -54,7 +55,7 @@ struct ModalState {
   FeedMode feed_mode = FeedMode::kPerMinute;
   double feed = 0.0, speed_rpm = 0.0;
   int spindle = 0, work_offset = 1, tool_number = 0;
-  int radius_code = 400;
+  int radius_code = G::kCompensationOff;
   double diameter_mm = 0.0;  ///< of the cutter that is compensated
   double length_mm = 0.0;
   bool length_on = false, exact_stop = false, mist = false, flood = false;
@@ -154,7 +155,7 @@ struct Modes {
   bool incremental = false, arc_absolute = false;
   bool retract_to_r = true, retract_known = false;  ///< G99; a G98 or G99 was read
   bool tool_called = false, mist = false, flood = false, input_read = false;
-  int radius_code = 400;                  ///< G40, G41, G41.1, ...
+  int radius_code = G::kCompensationOff;  ///< G40, G41, G41.1, ...
   double diameter_mm = 0.0;               ///< of the cutter that G41 or G42 compensate
   std::array<bool, 3> kinematics_told{};  ///< M428, M429, M430: the default has been reported
 };

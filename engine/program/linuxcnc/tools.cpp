@@ -89,12 +89,12 @@ void apply_compensation(Modes& modes, Zero& zero, LetterDialect& letters) {
   const int code = letters.block.g[kRadiusGroup];
   const int at = letters.g_column(kRadiusGroup);
   modes.radius_code = code;
-  if (code == 400) return nc::set_compensation(letters.control, Compensation::kOff, 0.0, at);
+  if (code == G::kCompensationOff) return nc::set_compensation(letters.control, Compensation::kOff, 0.0, at);
   if (letters.control.modal.plane == Plane::kYZ)
     letters.control.report.fail("compensation-plane", at,
                                 "LinuxCNC compensates the cutter's radius in G17 and G18 only",
                                 "write the path of the cutter's centre");
-  if (code == 411 || code == 421) {
+  if (code == G::kCompensationLeftBy || code == G::kCompensationRightBy) {
     letters.need('D', "G41.1");
     modes.diameter_mm = letters.control.modal.mm(letters.block.get('D'));
   } else {
@@ -107,7 +107,7 @@ void apply_compensation(Modes& modes, Zero& zero, LetterDialect& letters) {
                                   "load a tool that the table knows, or write G41.1 D");
     modes.diameter_mm = *diameter;
   }
-  const bool left = code == 410 || code == 411;
+  const bool left = code == G::kCompensationLeft || code == G::kCompensationLeftBy;
   nc::set_compensation(letters.control,
                        left == (modes.diameter_mm >= 0.0) ? Compensation::kLeft : Compensation::kRight,
                        0.5 * std::abs(modes.diameter_mm), at);
@@ -116,10 +116,10 @@ void apply_compensation(Modes& modes, Zero& zero, LetterDialect& letters) {
 void apply_length(Zero& zero, LetterDialect& letters) {
   if (!letters.block.has_g(kLengthGroup)) return;
   const int code = letters.block.g[kLengthGroup];
-  if (code == 490) return nc::set_length_compensation(letters.control, 0.0, false);
-  const bool by_axes = code == 431 || (code == 432 && !letters.block.has('H'));
+  if (code == G::kLengthOff) return nc::set_length_compensation(letters.control, 0.0, false);
+  const bool by_axes = code == G::kLengthBy || (code == G::kLengthAdded && !letters.block.has('H'));
   double length = 0.0;
-  if (code == 432 && by_axes && !is_axis_given(letters)) letters.need('H', "G43.2");
+  if (code == G::kLengthAdded && by_axes && !is_axis_given(letters)) letters.need('H', "G43.2");
   if (by_axes) {
     if ((letters.block.given & kAxisBits) != 1u << ('Z' - 'A'))
       letters.control.report.fail(
@@ -130,7 +130,7 @@ void apply_length(Zero& zero, LetterDialect& letters) {
     length = length_of(zero, letters, letters.block.has('H') ? tool_word(letters, 'H') : 0,
                        letters.block.has('H') ? letters.column('H') : letters.g_column(kLengthGroup));
   }
-  if (code == 432) length += letters.control.space.length();
+  if (code == G::kLengthAdded) length += letters.control.space.length();
   nc::set_length_compensation(letters.control, length, true);
 }
 
