@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angles.h"
 #include "base/units.h"
 #include "cli/terminal.h"
 
 namespace swarf::cli {
 namespace {
 
-constexpr double kTurn = 2.0 * kPi;
 /// Ends closer than this are one point, mm: the arc is a whole circle.
 constexpr double kSamePoint = 1e-9;
 

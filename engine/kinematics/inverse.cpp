@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/angles.h"
 #include "base/diagnostics.h"
 #include "base/units.h"
 #include "kinematics/chain.h"
@@ -108,7 +109,6 @@ InverseKinematics::Target InverseKinematics::target(const Vec3& tip_W, const Vec
 }
 
 double InverseKinematics::unwound(int slot, double turn, const AxisValues& hint) const {
-  constexpr double kTurn = 2.0 * kPi;
   // Adding and taking away 1.5 * 2^52 leaves the nearest whole number, without a call and without a branch.
   constexpr double kWhole = 6755399441055744.0;
   const Axis& limits = machine_.axes[rotary_[slot]];

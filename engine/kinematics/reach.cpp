@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angles.h"
 #include "base/units.h"
 #include "kinematics/model_check.h"
 
@@ -13,11 +14,6 @@ namespace {
 
 /// Less than this is rounding of the angle itself, rad.
 constexpr double kAngleRounding = 1e-12;
-
-/// Without the digits that acos loses near 0 and pi.
-double angle_between(const Vec3& a, const Vec3& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
-}
 
 std::string vector_text(const Vec3& v) {
   return fmt::format("({:.4f}, {:.4f}, {:.4f})", v.x(), v.y(), v.z());

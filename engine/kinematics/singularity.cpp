@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/angles.h"
 #include "base/diagnostics.h"
 #include "base/units.h"
 #include "kinematics/joint_path.h"
@@ -16,10 +17,6 @@ namespace {
 constexpr double kPeakTolerance = 1e-9;
 /// Sine of the angle between two axes below which their great circle is not determined by them.
 constexpr double kSameAxis = 1e-12;
-
-double angle_between(const Vec3& a, const Vec3& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
-}
 
 MeasureAt length_of(const Vec3& gap, const Vec3& rate) {
   const double value = gap.norm();

@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 
+#include "base/angles.h"
 #include "base/check.h"
 #include "kinematics/joint_path.h"
 #include "kinematics/reach.h"
@@ -24,10 +25,6 @@ using toolpath::BlockLaw;
 using toolpath::BlockMove;
 
 constexpr int kPiecesMax = 10'000'000;
-double angle_between(const Vec3& a, const Vec3& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
-}
-
 /// An arc as polar coordinates about its axis; radius and height may differ a little between the ends.
 struct ArcShape {
   Vec3 centre, along, across, normal;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angles.h"
 #include "motion/jerk_profile.h"
 
 namespace swarf::motion {
@@ -32,10 +33,6 @@ SampleKind kind_of(toolpath::MoveKind kind) {
       return SampleKind::kRapid;
   }
   return SampleKind::kRapid;
-}
-
-double angle_between(const Vec3& a, const Vec3& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
 /// Jerk along the path that no axis exceeds its own with, as far as q(s) is straight.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angles.h"
 #include "base/units.h"
 #include "kinematics/reach.h"
 #include "kinematics/rotary_pair.h"
@@ -31,10 +32,6 @@ constexpr double kTravelTolerance = 1e-9;
 /// The sample stands where another tool begins: how the axes came there is not part of the program.
 bool tool_changes(const Trajectory& trajectory, size_t k) {
   return trajectory.samples[k].tool != trajectory.samples[k - 1].tool;
-}
-
-double angle_between(const Vec3& a, const Vec3& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
 /// Distance of a point from a path near it, whose tangent is the given one.

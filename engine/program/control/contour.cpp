@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/angles.h"
 #include "base/check.h"
 #include "base/units.h"
 #include "program/control/curve.h"
@@ -16,7 +17,6 @@ namespace {
 
 /// Shorter ways in the plane are none.
 constexpr double kNoWay = 1e-9;
-constexpr double kTurn = 2.0 * kPi;
 
 struct Crossings {
   std::array<Vec3, 2> point;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angles.h"
 #include "base/units.h"
 #include "program/control/curve.h"
 #include "program/control/tools.h"
@@ -13,7 +14,6 @@
 namespace swarf::program::nc {
 namespace {
 
-constexpr double kTurn = 2.0 * kPi;
 /// Shorter ways are rounding of coordinates (mm); a segment without way and without dwell is none.
 constexpr double kNoWay = 1e-10;
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angles.h"
 #include "base/units.h"
 #include "kinematics/reach.h"
 #include "program/control/cycles.h"
@@ -15,7 +16,6 @@
 namespace swarf::program::nc {
 namespace {
 
-constexpr double kTurn = 2.0 * kPi;
 constexpr uint8_t kLinearBits = 0x07;
 /// Rotary ways below this are rounding.
 constexpr double kNoTurn = 1e-12;

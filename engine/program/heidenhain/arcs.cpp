@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "base/angles.h"
 #include "base/units.h"
 #include "program/heidenhain/steps.h"
 #include "program/letters/arithmetic.h"
@@ -18,10 +19,9 @@ constexpr double kRadiusTolerance = 0.016;
 
 /// The point at an angle in degrees about the origin, in the plane; exact at multiples of 90 degrees.
 Vec3 polar(const nc::PlaneAxes& axes, double radius, double angle_deg) {
-  std::string why;
   Vec3 p = Vec3::Zero();
-  p[axes.first] = radius * *nc::apply(nc::Function::kCos, angle_deg, why);
-  p[axes.second] = radius * *nc::apply(nc::Function::kSin, angle_deg, why);
+  p[axes.first] = radius * cos_deg(angle_deg);
+  p[axes.second] = radius * sin_deg(angle_deg);
   return p;
 }
 

@@ -1,4 +1,5 @@
 #include "program/heidenhain/corner.h"
+#include "base/angles.h"
 
 #include <algorithm>
 #include <array>
@@ -97,7 +98,6 @@ bool on(const FlatPiece& piece, const Vec2& point) {
     const double along = (point - piece.from).dot(tangent(piece, piece.from));
     return along >= -kNoWay && along <= (piece.to - piece.from).norm() + kNoWay;
   }
-  constexpr double kTurn = 6.283185307179586;
   const auto angle = [&](const Vec2& p) {
     const Vec2 a = piece.from - piece.centre, b = p - piece.centre;
     const double turned = (piece.counter_clockwise ? 1.0 : -1.0) * std::atan2(cross(a, b), a.dot(b));

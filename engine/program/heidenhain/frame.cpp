@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "base/angles.h"
 #include "program/heidenhain/steps.h"
 #include "program/letters/arithmetic.h"
 
@@ -32,20 +33,8 @@ double scale_factor(BlockReader& reader) {
 
 }  // namespace
 
-Mat3 turned(int axis, double angle_deg) {
-  std::string why;
-  const double s = *nc::apply(nc::Function::kSin, angle_deg, why);
-  const double c = *nc::apply(nc::Function::kCos, angle_deg, why);
-  const int b = (axis + 1) % 3, d = (axis + 2) % 3;
-  Mat3 R = Mat3::Identity();
-  R(b, b) = R(d, d) = c;
-  R(d, b) = s;
-  R(b, d) = -s;
-  return R;
-}
-
 Mat3 spatial_rotation(double a_deg, double b_deg, double c_deg) {
-  return turned(2, c_deg) * turned(1, b_deg) * turned(0, a_deg);
+  return rotation_deg(2, c_deg) * rotation_deg(1, b_deg) * rotation_deg(0, a_deg);
 }
 
 Mat3 linear_columns_W(const kinematics::MachineModel& machine, const kinematics::AxisValues& q) {
@@ -74,7 +63,7 @@ Mat3 tool_frame_W(const kinematics::MachineModel& machine, const kinematics::Axi
 
 Pose Level::rigid() const {
   Pose X = Pose::Identity();
-  X.linear() = turned(2, mirror.x() * mirror.y() < 0.0 ? -turn_deg : turn_deg);
+  X.linear() = rotation_deg(2, mirror.x() * mirror.y() < 0.0 ? -turn_deg : turn_deg);
   X.translation() = shift;
   return X;
 }

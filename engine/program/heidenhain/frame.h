@@ -41,8 +41,6 @@ struct Level {
   Stretch stretch() const;
 };
 
-/// Rotation about X, Y or Z (0, 1, 2); exact at multiples of 90 degrees.
-Mat3 turned(int axis, double angle_deg);
 /// Spatial angles SPA SPB SPC in degrees: about the fixed X, then the fixed Y, then the fixed Z.
 Mat3 spatial_rotation(double a_deg, double b_deg, double c_deg);
 

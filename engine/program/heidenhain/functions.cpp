@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/angles.h"
 #include "base/units.h"
 #include "program/heidenhain/steps.h"
 
@@ -15,8 +16,6 @@ using nc::Motion;
 using nc::Target;
 
 namespace {
-
-constexpr double kTurn = 2.0 * kPi;
 
 /// M functions of the control whose effect on the path or its time is not executed here.
 constexpr int kUnsupported[] = {92, 97, 98, 103, 105, 106, 109, 110, 112, 124, 130, 138, 143, 150, 197};

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "base/angles.h"
 #include "base/units.h"
 #include "program/heidenhain/steps.h"
 
@@ -15,7 +16,6 @@ using nc::Target;
 namespace {
 
 constexpr unsigned kAlways = kFeedAllowed | kFunctionsAllowed | kCompensationAllowed;
-constexpr double kTurn = 2.0 * kPi;
 
 /// L R0 F100 M3: words without a motion.
 void move_without_axes(Executor& executor, BlockReader& reader, const MotionWords& words, Element& element,

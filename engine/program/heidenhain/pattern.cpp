@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "base/angles.h"
 #include "base/units.h"
 #include "program/heidenhain/steps.h"
 #include "program/letters/arithmetic.h"
@@ -19,9 +20,7 @@ constexpr int kPointsMax = 100'000;
 
 /// A way in the plane, mm; exact at multiples of 90 degrees.
 Vec2 polar(double radius, double angle_deg) {
-  std::string why;
-  return {radius * *nc::apply(nc::Function::kCos, angle_deg, why),
-          radius * *nc::apply(nc::Function::kSin, angle_deg, why)};
+  return {radius * cos_deg(angle_deg), radius * sin_deg(angle_deg)};
 }
 
 struct PatternKind {

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "base/angles.h"
 #include "base/units.h"
 #include "program/heidenhain/steps.h"
 
@@ -65,7 +66,8 @@ Mat3 plane_rotation(Orientation& orientation, BlockReader& reader, const std::st
   }
   if (kind == "EULER") {
     const Named words(reader, {"EULPR", "EULNU", "EULROT"}, start);
-    return turned(2, words["EULPR"]) * turned(0, words["EULNU"]) * turned(2, words["EULROT"]);
+    return rotation_deg(2, words["EULPR"]) * rotation_deg(0, words["EULNU"]) *
+           rotation_deg(2, words["EULROT"]);
   }
   if (kind == "VECTOR") {
     const Named words(reader, {"BX", "BY", "BZ", "NX", "NY", "NZ"}, start);
@@ -85,7 +87,7 @@ Mat3 plane_rotation(Orientation& orientation, BlockReader& reader, const std::st
     if (words.count() != 1)
       reader.fail("missing-word", start, "PLANE RELATIV has one angle", "PLANE RELATIV SPB+30");
     const char axis = words.has("SPA") ? 'A' : words.has("SPB") ? 'B' : 'C';
-    return orientation.tilt * turned(axis - 'A', words[fmt::format("SP{}", axis)]);
+    return orientation.tilt * rotation_deg(axis - 'A', words[fmt::format("SP{}", axis)]);
   }
   if (kind == "PROJECTED")
     reader.fail("unsupported-word", start, "PLANE PROJECTED is known, but not supported here",

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "base/angles.h"
 #include "base/units.h"
 
 namespace swarf::program::nc {
@@ -13,19 +14,6 @@ namespace {
 
 /// Values closer than this are equal for kNearlyEqual.
 constexpr double kNearby = 1e-6;
-
-/// Sine of degrees, exact at multiples of 90.
-double sine_deg(double deg) {
-  const double turn = std::fmod(deg, 360.0);
-  const double at = turn < 0.0 ? turn + 360.0 : turn;
-  if (at == 0.0 || at == 180.0) return 0.0;
-  if (at == 90.0) return 1.0;
-  if (at == 270.0) return -1.0;
-  return std::sin(rad_from_deg(deg));
-}
-double cosine_deg(double deg) {
-  return sine_deg(deg + 90.0);
-}
 
 std::optional<double> refuse(std::string& why, std::string text) {
   why = std::move(text);
@@ -70,7 +58,7 @@ std::optional<double> apply(Function function, double x, std::string& why) {
     case Function::kAtan:
       return deg_from_rad(std::atan(x));
     case Function::kCos:
-      return cosine_deg(x);
+      return cos_deg(x);
     case Function::kExp:
       return finite(std::exp(x), why);
     case Function::kFix:
@@ -89,13 +77,13 @@ std::optional<double> apply(Function function, double x, std::string& why) {
     case Function::kSign:
       return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : 0.0;
     case Function::kSin:
-      return sine_deg(x);
+      return sin_deg(x);
     case Function::kSqrt:
       if (!(x >= 0.0)) return refuse(why, fmt::format("the square root of {:g} does not exist", x));
       return std::sqrt(x);
     case Function::kTan:
-      if (cosine_deg(x) == 0.0) return refuse(why, fmt::format("tan of {:g} degrees does not exist", x));
-      return sine_deg(x) / cosine_deg(x);
+      if (cos_deg(x) == 0.0) return refuse(why, fmt::format("tan of {:g} degrees does not exist", x));
+      return sin_deg(x) / cos_deg(x);
   }
   return std::nullopt;
 }

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/angles.h"
 #include "base/units.h"
 #include "program/siemens/functions.h"
 #include "program/siemens/steps.h"
@@ -47,12 +48,7 @@ Mat3 rotation_about(int axis, double angle_deg) {
   const LineRef nowhere;
   const double s = call_function("SIN", {Value::real(angle_deg)}, nowhere, 0).number;
   const double c = call_function("COS", {Value::real(angle_deg)}, nowhere, 0).number;
-  const int b = (axis + 1) % 3, d = (axis + 2) % 3;
-  Mat3 R = Mat3::Identity();
-  R(b, b) = R(d, d) = c;
-  R(d, b) = s;
-  R(b, d) = -s;
-  return R;
+  return axis_rotation(axis, s, c);
 }
 
 Pose pose_of(const Mat3& R, const Vec3& t) {
