@@ -97,12 +97,12 @@ void old_drilling(Drilling& drilling, BlockReader& reader, CycleNumber number) {
   const size_t start = reader.offset();
   const std::string word(reader.take_letters());
   int key = 0;
-  if (word == "SET") reader.take("UP"), key = 200;
-  if (word == "ABST") key = 200;
-  if (word == "DEPTH" || word == "TIEFE") key = 201;
-  if ((word == "PECKG" || word == "ZUSTLG") && number.number == 1) key = 202;
-  if (word == "DWELL" || (word == "V" && reader.take_char('.') && reader.take("ZEIT"))) key = 211;
-  if (word == "F") key = 206;
+  if (word == "SET") reader.take("UP"), key = Q::kClearance;
+  if (word == "ABST") key = Q::kClearance;
+  if (word == "DEPTH" || word == "TIEFE") key = Q::kDepth;
+  if ((word == "PECKG" || word == "ZUSTLG") && number.number == 1) key = Q::kPeck;
+  if (word == "DWELL" || (word == "V" && reader.take_char('.') && reader.take("ZEIT"))) key = Q::kDwellBelow;
+  if (word == "F") key = Q::kFeed;
   if (key == 0) refuse_word(reader, start, word);
   const double value = reader.value();
   reader.expect_end();
@@ -159,7 +159,7 @@ void old_cycle(Executor& executor, BlockReader& reader, CycleNumber number, size
 /// Cycle 247: the work offset with this number. The control ends shift, mirror image, rotation and scaling
 /// with it.
 void preset(Executor& executor, BlockReader& reader, const Cycle& cycle) {
-  const double number = cycle.q.at(339);
+  const double number = cycle.q.at(Q::kPreset);
   const bool given =
       number >= 1.0 && number == std::floor(number) && number < 1e6 &&
       (number == 1.0 || executor.control.setup.work_offsets.count(static_cast<int>(number)) > 0);

@@ -23,22 +23,24 @@ void check_values(nc::Control& control, const Drilling& drilling) {
   const auto refuse = [&](bool meant, std::string text, const char* fix) {
     if (meant) control.report.fail("unsupported-word", 0, std::move(text), fix);
   };
-  refuse(q(drilling, 395) != 0.0 || q(drilling, 379) != 0.0, "Q395 and Q379 other than 0 are not supported",
-         "give the depth of the tip, from the surface");
-  refuse(q(drilling, 258) != q(drilling, 259), "Q258 and Q259 that differ are not supported",
-         "give both the same value");
-  refuse(number == 201 && q(drilling, 208) != 0.0 && q(drilling, 208) != q(drilling, 206),
-         "reaming with a feed of its own on the way out is not supported", "give Q208=0");
-  refuse(number == 207 && !(q(drilling, 239) > 0.0),
-         fmt::format("the pitch Q239 is {:g}: left-hand threads are not supported", q(drilling, 239)),
+  refuse(q(drilling, Q::kDepthReference) != 0.0 || q(drilling, Q::kStartPoint) != 0.0,
+         "Q395 and Q379 other than 0 are not supported", "give the depth of the tip, from the surface");
+  refuse(q(drilling, Q::kStopAboveFirst) != q(drilling, Q::kStopAboveLast),
+         "Q258 and Q259 that differ are not supported", "give both the same value");
+  refuse(
+      number == 201 && q(drilling, Q::kFeedOut) != 0.0 && q(drilling, Q::kFeedOut) != q(drilling, Q::kFeed),
+      "reaming with a feed of its own on the way out is not supported", "give Q208=0");
+  refuse(number == 207 && !(q(drilling, Q::kPitch) > 0.0),
+         fmt::format("the pitch Q239 is {:g}: left-hand threads are not supported", q(drilling, Q::kPitch)),
          "give a pitch above zero");
-  refuse(number == 240 && (q(drilling, 343) != 0.0 || q(drilling, 342) != 0.0),
+  refuse(number == 240 && (q(drilling, Q::kByDiameter) != 0.0 || q(drilling, Q::kRoughDiameter) != 0.0),
          "centring by diameter needs the point angle of the tool, which the tool table here does not have",
          "give the depth: Q343=+0, Q201, and Q342=+0");
-  const bool pecks = q(drilling, 202) > 0.0 &&
-                     q(drilling, 202)<-q(drilling, 201), part = drilling.cycle->q.count(401)> 0 &&
-                     q(drilling, 401) != 100.0;
-  refuse(number == 241 && (q(drilling, 435) != 0.0 || pecks || part),
+  const bool pecks =
+      q(drilling, Q::kPeck) > 0.0 &&
+      q(drilling, Q::kPeck)<-q(drilling, Q::kDepth), part = drilling.cycle->q.count(Q::kFeedFactor)> 0 &&
+      q(drilling, Q::kFeedFactor) != 100.0;
+  refuse(number == 241 && (q(drilling, Q::kDwellDepth) != 0.0 || pecks || part),
          "cycle 241 is supported in one stroke, without dwell depth and without a feed factor",
          "give Q435=+0, Q401=+100 and Q202=+0");
 }
@@ -46,13 +48,16 @@ void check_values(nc::Control& control, const Drilling& drilling) {
 /// What no cycle can do, or is not done here.
 void check_cycle(const Executor& executor) {
   const int number = executor.drilling.cycle->number;
-  for (const int part : {200, 201, 206}) {
+  for (const int part : {Q::kClearance, Q::kDepth, Q::kFeed}) {
     if (number > 2 || executor.drilling.cycle->q.count(part) > 0) continue;
     executor.control.report.fail(
         "missing-word", 0, fmt::format("cycle {} is called, and not all of its parts are given", number),
         "write SET UP, DEPTH and F");
   }
-  for (const int least_zero : {200, 204, 205, 208, 210, 211, 212, 213, 252, 255, 256, 257, 258, 259, 342}) {
+  for (const int least_zero :
+       {Q::kClearance, Q::kSecondClearance, Q::kPeckMin, Q::kFeedOut, Q::kDwellAbove, Q::kDwellBelow,
+        Q::kPeckLess, Q::kBreaks, Q::kEdgeHeight, Q::kDwellCounterbore, Q::kChipBreakBack, Q::kChipBreakDepth,
+        Q::kStopAboveFirst, Q::kStopAboveLast, Q::kRoughDiameter}) {
     if (q(executor.drilling, least_zero) < 0.0)
       executor.control.report.fail("bad-cycle", 0,
                                    fmt::format("Q{} of cycle {} is below zero", least_zero, number),
@@ -65,16 +70,17 @@ void check_cycle(const Executor& executor) {
       (number == 2 || number == 206 || number == 207))
     executor.control.report.fail("unsupported-word", 0, "tapping while cycle 11 scales is not supported",
                                  "reset it before the call: CYCL DEF 11.1 SCL1");
-  if (number != 204 && q(executor.drilling, 201) == 0.0)
+  if (number != 204 && q(executor.drilling, Q::kDepth) == 0.0)
     executor.control.report.fail("bad-cycle", 0, "the depth of the cycle is zero: it would do nothing",
                                  "Q201=-20");
-  if (q(executor.drilling, 201) > 0.0)
+  if (q(executor.drilling, Q::kDepth) > 0.0)
     executor.control.report.fail("unsupported-word", 0,
                                  "drilling upwards (a depth above zero) is not supported",
                                  "give the depth with a minus sign");
-  if (number != 207 && number != 204 && !(q(executor.drilling, 206) > 0.0))
+  if (number != 207 && number != 204 && !(q(executor.drilling, Q::kFeed) > 0.0))
     executor.control.report.fail(
-        "bad-feed", 0, fmt::format("the feed Q206 of cycle {} is {:g}", number, q(executor.drilling, 206)),
+        "bad-feed", 0,
+        fmt::format("the feed Q206 of cycle {} is {:g}", number, q(executor.drilling, Q::kFeed)),
         "Q206=+150");
   check_values(executor.control, executor.drilling);
 }
@@ -83,16 +89,16 @@ void check_cycle(const Executor& executor) {
 void drill_once(Executor& executor) {
   nc::DrillCycle cycle;
   const double surface = cycle_surface(executor.control, executor.drilling, executor.frames);
-  cycle.approach = surface + length(executor, 200);
-  cycle.bottom = surface + length(executor, 201);
-  cycle.retract = surface + std::max(length(executor, 200), length(executor, 204));
-  cycle.dwell_s = q(executor.drilling, 211);
+  cycle.approach = surface + length(executor, Q::kClearance);
+  cycle.bottom = surface + length(executor, Q::kDepth);
+  cycle.retract = surface + std::max(length(executor, Q::kClearance), length(executor, Q::kSecondClearance));
+  cycle.dwell_s = q(executor.drilling, Q::kDwellBelow);
   cycle.feed_out = true;
   cycle.reverse_at_bottom = executor.drilling.cycle->number != 201;
   if (executor.drilling.cycle->number == 207) {
-    cycle.pitch_mm = executor.control.modal.mm(q(executor.drilling, 239));
+    cycle.pitch_mm = executor.control.modal.mm(q(executor.drilling, Q::kPitch));
   } else {
-    set_feed(executor.control, q(executor.drilling, 206), false);
+    set_feed(executor.control, q(executor.drilling, Q::kFeed), false);
   }
   nc::drill(executor.control, cycle, Target());
 }
@@ -100,24 +106,29 @@ void drill_once(Executor& executor) {
 /// 241 in one stroke: in at the entry speed, down at the drilling speed, out at Q208.
 void drill_deep(Executor& executor) {
   const double start = cycle_surface(executor.control, executor.drilling, executor.frames) +
-                       length(executor, 200),
-               out = q(executor.drilling, 208) > 0.0 ? q(executor.drilling, 208) : q(executor.drilling, 206),
+                       length(executor, Q::kClearance),
+               out = q(executor.drilling, Q::kFeedOut) > 0.0 ? q(executor.drilling, Q::kFeedOut)
+                                                             : q(executor.drilling, Q::kFeed),
                speed = executor.control.modal.speed_rpm;
   const int spindle = executor.control.modal.spindle;
   go(executor.control, Motion::kRapid, start, 0.0);
-  if (executor.drilling.cycle->q.count(426) > 0)
-    executor.control.modal.spindle = q(executor.drilling, 426) == 4.0 ? -1 : 1;
-  if (q(executor.drilling, 428) > 0.0) executor.control.modal.speed_rpm = q(executor.drilling, 428);
+  if (executor.drilling.cycle->q.count(Q::kEntrySense) > 0)
+    executor.control.modal.spindle = q(executor.drilling, Q::kEntrySense) == 4.0 ? -1 : 1;
+  if (q(executor.drilling, Q::kDrillingSpeed) > 0.0)
+    executor.control.modal.speed_rpm = q(executor.drilling, Q::kDrillingSpeed);
   go(executor.control, Motion::kFeed,
-     cycle_surface(executor.control, executor.drilling, executor.frames) + length(executor, 201),
-     q(executor.drilling, 206));
-  if (q(executor.drilling, 211) > 0.0)
-    nc::dwell(executor.control.report, executor.control.modal, q(executor.drilling, 211));
-  if (q(executor.drilling, 427) > 0.0) executor.control.modal.speed_rpm = q(executor.drilling, 427);
+     cycle_surface(executor.control, executor.drilling, executor.frames) + length(executor, Q::kDepth),
+     q(executor.drilling, Q::kFeed));
+  if (q(executor.drilling, Q::kDwellBelow) > 0.0)
+    nc::dwell(executor.control.report, executor.control.modal, q(executor.drilling, Q::kDwellBelow));
+  if (q(executor.drilling, Q::kEntrySpeed) > 0.0)
+    executor.control.modal.speed_rpm = q(executor.drilling, Q::kEntrySpeed);
   go(executor.control, out == kRapidFeed ? Motion::kRapid : Motion::kFeed, start, out);
-  if (q(executor.drilling, 204) > q(executor.drilling, 200))
+  if (q(executor.drilling, Q::kSecondClearance) > q(executor.drilling, Q::kClearance))
     go(executor.control, Motion::kRapid,
-       cycle_surface(executor.control, executor.drilling, executor.frames) + length(executor, 204), 0.0);
+       cycle_surface(executor.control, executor.drilling, executor.frames) +
+           length(executor, Q::kSecondClearance),
+       0.0);
   executor.control.modal.speed_rpm = speed;
   executor.control.modal.spindle = spindle;
 }
@@ -125,8 +136,8 @@ void drill_deep(Executor& executor) {
 /// The way in which a pecking cycle leaves the hole: FMAX (200, 1, where no Q208 is given), or Q208, which
 /// counts as Q206 when it is 0.
 double feed_out(const Drilling& drilling) {
-  if (drilling.cycle->q.count(208) == 0) return kRapidFeed;
-  return q(drilling, 208) == 0.0 ? q(drilling, 206) : q(drilling, 208);
+  if (drilling.cycle->q.count(Q::kFeedOut) == 0) return kRapidFeed;
+  return q(drilling, Q::kFeedOut) == 0.0 ? q(drilling, Q::kFeed) : q(drilling, Q::kFeedOut);
 }
 
 /// 200, 203, 205, 1: down in pecks. Q213 (203): chip breaks before a retreat out of the hole; Q257 (205): way
@@ -134,28 +145,29 @@ double feed_out(const Drilling& drilling) {
 void drill_pecking(Executor& executor) {
   const int normal = nc::axes_of(executor.control.modal.plane).normal;
   const double surface = cycle_surface(executor.control, executor.drilling, executor.frames),
-               clearance = length(executor, 200), depth = -length(executor, 201);
-  const double start = surface + clearance, feed = q(executor.drilling, 206);
+               clearance = length(executor, Q::kClearance), depth = -length(executor, Q::kDepth);
+  const double start = surface + clearance, feed = q(executor.drilling, Q::kFeed);
   const double out_feed = feed_out(executor.drilling);
   const Motion out = out_feed == kRapidFeed ? Motion::kRapid : Motion::kFeed;
-  double peck = executor.drilling.cycle->q.count(202) ? length(executor, 202) : depth;
+  double peck = executor.drilling.cycle->q.count(Q::kPeck) ? length(executor, Q::kPeck) : depth;
   if (!(peck > 0.0) || depth / peck > kPecksMax)
     executor.control.report.fail("bad-cycle", 0, fmt::format("the depth per peck is {:g} mm", peck),
                                  "Q202=5");
-  const double least = q(executor.drilling, 205) > 0.0 ? length(executor, 205) : peck;
-  const double smaller = length(executor, 212);
-  if (smaller > 0.0 && !(depth / least <= kPecksMax && q(executor.drilling, 205) > 0.0))
+  const double least = q(executor.drilling, Q::kPeckMin) > 0.0 ? length(executor, Q::kPeckMin) : peck;
+  const double smaller = length(executor, Q::kPeckLess);
+  if (smaller > 0.0 && !(depth / least <= kPecksMax && q(executor.drilling, Q::kPeckMin) > 0.0))
     executor.control.report.fail("bad-cycle", 0, "Q212 makes pecks smaller, and Q205 gives no smallest one",
                                  "Q205=1");
-  const double chip = length(executor, 257);
+  const double chip = length(executor, Q::kChipBreakDepth);
   if (chip > 0.0 && depth / chip > kPecksMax)
     executor.control.report.fail("bad-cycle", 0, fmt::format("chips break each {:g} mm", chip), "Q257=5");
   // Above the last depth after a retreat: the set-up clearance (200, 203), Q258 (205), its own rule (1).
   double above = clearance;
-  if (executor.drilling.cycle->number == 205) above = length(executor, 258);
+  if (executor.drilling.cycle->number == 205) above = length(executor, Q::kStopAboveFirst);
   if (executor.drilling.cycle->number == 1) above = depth <= 30.0 ? 0.6 : std::min(7.0, depth / 50.0);
-  const double back = q(executor.drilling, 256) > 0.0 ? length(executor, 256) : 0.2;
-  const double breaks = q(executor.drilling, 213);
+  const double back =
+      q(executor.drilling, Q::kChipBreakBack) > 0.0 ? length(executor, Q::kChipBreakBack) : 0.2;
+  const double breaks = q(executor.drilling, Q::kBreaks);
   double broken = 0.0;
   if (nc::position_xyz(executor.control)[normal] != start) go(executor.control, Motion::kRapid, start, 0.0);
   double done = 0.0;
@@ -174,17 +186,17 @@ void drill_pecking(Executor& executor) {
     } else {
       broken = 0.0;
       go(executor.control, out, start, out_feed);
-      if (q(executor.drilling, 210) > 0.0)
-        nc::dwell(executor.control.report, executor.control.modal, q(executor.drilling, 210));
+      if (q(executor.drilling, Q::kDwellAbove) > 0.0)
+        nc::dwell(executor.control.report, executor.control.modal, q(executor.drilling, Q::kDwellAbove));
       if (surface - done + above < start) go(executor.control, Motion::kRapid, surface - done + above, 0.0);
     }
     peck = std::max(std::min(peck, least), peck - smaller);
   }
-  if (q(executor.drilling, 211) > 0.0)
-    nc::dwell(executor.control.report, executor.control.modal, q(executor.drilling, 211));
+  if (q(executor.drilling, Q::kDwellBelow) > 0.0)
+    nc::dwell(executor.control.report, executor.control.modal, q(executor.drilling, Q::kDwellBelow));
   go(executor.control, out, start, out_feed);
-  if (q(executor.drilling, 204) > q(executor.drilling, 200))
-    go(executor.control, Motion::kRapid, surface + length(executor, 204), 0.0);
+  if (q(executor.drilling, Q::kSecondClearance) > q(executor.drilling, Q::kClearance))
+    go(executor.control, Motion::kRapid, surface + length(executor, Q::kSecondClearance), 0.0);
 }
 
 }  // namespace
@@ -202,7 +214,7 @@ double length(const Executor& executor, int number) {
 
 double cycle_surface(nc::Control& control, const Drilling& drilling, const Frames& frames) {
   return frames.stretch.along(nc::axes_of(control.modal.plane).normal,
-                              control.modal.mm(q(drilling, 203)) + drilling.raised, false);
+                              control.modal.mm(q(drilling, Q::kSurface)) + drilling.raised, false);
 }
 
 void go(nc::Control& control, Motion motion, double height, double feed) {
@@ -224,10 +236,10 @@ void run_cycle(Executor& executor, BlockReader& reader, size_t offset) {
   executor.control.report.at(place.file, place.line, place.column);
   // Cycles 1 and 2 start where the tool stands, at the set-up clearance.
   if (executor.drilling.cycle->number <= 2)
-    executor.drilling.cycle->q[203] =
+    executor.drilling.cycle->q[Q::kSurface] =
         nc::position_xyz(executor.control)[nc::axes_of(executor.control.modal.plane).normal] /
             (executor.control.modal.mm(1.0) * level(executor.orientation, executor.frames).scale) -
-        q(executor.drilling, 200);
+        q(executor.drilling, Q::kClearance);
   for (const auto& [number, value] : executor.drilling.cycle->q) {
     if (number >= 200 && executor.drilling.cycle->number >= 200 &&
         executor.parameters.find_q(number).value_or(value) != value)

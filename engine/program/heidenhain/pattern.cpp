@@ -179,8 +179,8 @@ void call_pattern(Executor& executor, BlockReader& reader, Motion motion, double
   for (const PatternPoint& point : executor.drilling.pattern) {
     executor.drilling.raised = point.height;
     const double height =
-        std::max(called_at,
-                 cycle_surface(executor.control, executor.drilling, executor.frames) + length(executor, 204));
+        std::max(called_at, cycle_surface(executor.control, executor.drilling, executor.frames) +
+                                length(executor, Q::kSecondClearance));
     if (nc::position_xyz(executor.control)[normal] != height)
       go(executor.control, Motion::kRapid, height, 0.0);
     go_to_point(executor.control, executor.frames, motion, feed, point.at);
@@ -238,19 +238,19 @@ void pattern_cycle(Executor& executor, BlockReader& reader, const Cycle& pattern
   }
   const nc::Place place = reader.place_of(pattern.offset);
   executor.control.report.at(place.file, place.line, place.column);
-  const double second = q(executor.drilling, 204);
+  const double second = q(executor.drilling, Q::kSecondClearance);
   go(executor.control, Motion::kRapid,
      cycle_surface(executor.control, executor.drilling, executor.frames) +
-         std::max(length(executor, 200), length(executor, 204)),
+         std::max(length(executor, Q::kClearance), length(executor, Q::kSecondClearance)),
      0.0);
   for (size_t i = 0; i < points.size(); ++i) {
     go_to_point(executor.control, executor.frames, Motion::kRapid, 0.0, points[i].at);
     // Q301 = 0: between the points at the set-up clearance alone.
     const bool low = given(301) == 0.0 && i + 1 < points.size();
-    executor.drilling.cycle->q[204] = low ? 0.0 : second;
+    executor.drilling.cycle->q[Q::kSecondClearance] = low ? 0.0 : second;
     execute_cycle(executor);
   }
-  executor.drilling.cycle->q[204] = second;
+  executor.drilling.cycle->q[Q::kSecondClearance] = second;
 }
 
 }  // namespace swarf::program::nc::heidenhain

@@ -21,6 +21,7 @@
 #include "program/control/path.h"
 #include "program/control/tilt.h"
 #include "program/control/tools.h"
+#include "program/heidenhain/codes.h"
 #include "program/heidenhain/corner.h"
 #include "program/heidenhain/flow.h"
 #include "program/heidenhain/frame.h"
