@@ -376,6 +376,65 @@ void approach_point(Executor& executor, const BlockWords& words, int code) {
   executor.path.last.valid = false;
 }
 
+/// Words of motions in a block in which nothing moves.
+void refuse_arc_words_at_rest(const BlockPlace& place, const BlockWords& words) {
+  if (const Coefficients* divisor = first_polynomial(words)) {
+    fail(place, "unexpected-word", divisor->offset, "PO[] stands without polynomials of axes",
+         "PO[X]=(0,-10) PO[Y]=(10) PO[]=(2,1)");
+  }
+  for (const Amount* word : {&words.radius, &words.opening, &words.turns}) {
+    if (*word)
+      fail(place, "unexpected-word", word->offset, "this word belongs to an arc, and nothing moves here",
+           "write the end of the arc");
+  }
+}
+
+/// Words of arcs in a straight move.
+void refuse_arc_words(const BlockPlace& place, const BlockWords& words) {
+  for (const Coordinate* word : {&words.centre[0], &words.centre[1], &words.centre[2], &words.between[0],
+                                 &words.between[1], &words.between[2]}) {
+    if (*word)
+      fail(place, "unexpected-word", word->offset, "the centre of an arc stands in a straight move",
+           "write G2 or G3 in this block");
+  }
+  for (const Amount* word : {&words.radius, &words.opening, &words.turns}) {
+    if (*word)
+      fail(place, "unexpected-word", word->offset, "this word belongs to an arc, and the move is straight",
+           "write G2 or G3 in this block");
+  }
+}
+
+/// The motion that holds, to the target.
+void move_by(Executor& executor, const BlockWords& words, const Target& target) {
+  if (executor.modes.motion == kG0 || executor.modes.motion == kG1) {
+    straight(executor.control, executor.path, executor.modes.motion == kG0 ? Motion::kRapid : Motion::kFeed,
+             target);
+  } else if (executor.modes.motion == kPoly) {
+    if (first_polynomial(words) != nullptr) {
+      polynomial(executor, words, target);
+    } else {
+      straight(executor.control, executor.path, Motion::kFeed, target);
+    }
+  } else if (executor.modes.motion == kCip) {
+    circle_through(executor, words, target);
+  } else if (executor.modes.motion == kCt) {
+    circle_tangential(executor, target);
+  } else {
+    circle(executor, words, target);
+  }
+}
+
+/// G4, G74, G75, G110 to G112.
+void other_words(Executor& executor, const BlockWords& words, int code) {
+  if (code == kG4) {
+    dwell(executor.control, executor.place, words);
+  } else if (code == kG110 || code == kG111 || code == kG112) {
+    set_pole(executor, words, code);
+  } else {
+    approach_point(executor, words, code);
+  }
+}
+
 }  // namespace
 
 /// One of the plane's axes runs the other way: arcs turn the other way, the cutter goes on the other side.
@@ -395,47 +454,21 @@ void motion_words(Executor& executor, const BlockWords& words) {
          "AP= and RP= stand in a block of machine coordinates", "write the axes");
   }
   if (other) {
-    if (*other == kG4) {
-      dwell(executor.control, executor.place, words);
-    } else if (*other == kG110 || *other == kG111 || *other == kG112) {
-      set_pole(executor, words, *other);
-    } else {
-      approach_point(executor, words, *other);
-    }
+    other_words(executor, words, *other);
     return;
   }
   const bool arc =
       executor.modes.motion != kG0 && executor.modes.motion != kG1 && executor.modes.motion != kPoly;
   check_polynomial(executor.control, executor.place, executor.modes, words);
   if (!words.moves()) {
-    if (const Coefficients* divisor = first_polynomial(words)) {
-      fail(executor.place, "unexpected-word", divisor->offset, "PO[] stands without polynomials of axes",
-           "PO[X]=(0,-10) PO[Y]=(10) PO[]=(2,1)");
-    }
-    for (const Amount* word : {&words.radius, &words.opening, &words.turns}) {
-      if (*word)
-        fail(executor.place, "unexpected-word", word->offset,
-             "this word belongs to an arc, and nothing moves here", "write the end of the arc");
-    }
+    refuse_arc_words_at_rest(executor.place, words);
     return;
   }
   if (words.code(Group::kSuppress)) {
     machine_move(executor, words);
     return;
   }
-  if (!arc) {
-    for (const Coordinate* word : {&words.centre[0], &words.centre[1], &words.centre[2], &words.between[0],
-                                   &words.between[1], &words.between[2]}) {
-      if (*word)
-        fail(executor.place, "unexpected-word", word->offset,
-             "the centre of an arc stands in a straight move", "write G2 or G3 in this block");
-    }
-    for (const Amount* word : {&words.radius, &words.opening, &words.turns}) {
-      if (*word)
-        fail(executor.place, "unexpected-word", word->offset,
-             "this word belongs to an arc, and the move is straight", "write G2 or G3 in this block");
-    }
-  }
+  if (!arc) refuse_arc_words(executor.place, words);
   Target target = target_of(executor, words, false);
   if (polar) polar_end(executor, words, target);
   orientation(executor.place, executor.frames, words, target);
@@ -447,22 +480,7 @@ void motion_words(Executor& executor, const BlockWords& words) {
         "great circle) is taken",
         "write ORIWKS, ORIAXES or ORIVECT");
   }
-  if (executor.modes.motion == kG0 || executor.modes.motion == kG1) {
-    straight(executor.control, executor.path, executor.modes.motion == kG0 ? Motion::kRapid : Motion::kFeed,
-             target);
-  } else if (executor.modes.motion == kPoly) {
-    if (first_polynomial(words) != nullptr) {
-      polynomial(executor, words, target);
-    } else {
-      straight(executor.control, executor.path, Motion::kFeed, target);
-    }
-  } else if (executor.modes.motion == kCip) {
-    circle_through(executor, words, target);
-  } else if (executor.modes.motion == kCt) {
-    circle_tangential(executor, target);
-  } else {
-    circle(executor, words, target);
-  }
+  move_by(executor, words, target);
   if (executor.calls.modal_cycle)
     drill(executor.control, executor.place, executor.path,
           drilling(executor.control, executor.place, executor.frames, *executor.calls.modal_cycle),
