@@ -17,7 +17,10 @@
 
 #include "cutter/cutter.h"
 #include "kinematics/machine_model.h"
-#include "motion/interpolator.h"
+#include "motion/options.h"
+#include "motion/result.h"
+#include "motion/tool_sample.h"
+#include "toolpath/tool_path.h"
 
 namespace swarf::motion {
 

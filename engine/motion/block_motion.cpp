@@ -141,7 +141,7 @@ MotionBounds joint_bounds(const BlockMotion& motion) {
 
 }  // namespace
 
-std::vector<BlockMotion> block_motions(const toolpath::ToolPath& path,
+std::vector<BlockMotion> block_motions(std::span<const toolpath::Element> elements,
                                        std::span<const MachineModel> by_tool) {
   const std::vector<kinematics::InverseKinematics> inverses(by_tool.begin(), by_tool.end());
   const std::vector<kinematics::Axis>& axes = by_tool.front().axes;
@@ -149,8 +149,8 @@ std::vector<BlockMotion> block_motions(const toolpath::ToolPath& path,
   for (size_t i = 0; i < axes.size(); ++i) q[static_cast<Eigen::Index>(i)] = axes[i].home;
   int tool_before = -1;
   std::vector<BlockMotion> motions;
-  motions.reserve(path.elements.size());
-  for (const toolpath::Element& element : path.elements) {
+  motions.reserve(elements.size());
+  for (const toolpath::Element& element : elements) {
     const auto& block = std::get<BlockMove>(element.what);
     const size_t index = by_tool.size() == 1 ? 0 : static_cast<size_t>(block.tool);
     const MachineModel& machine = by_tool[index];

@@ -36,16 +36,16 @@ struct BlockMotion {
   kinematics::AxisValues q_to = kinematics::AxisValues::Zero();
 };
 
-/// The motions of a path's blocks, in its order (it must hold nothing else). Axis values follow by
+/// The motions of blocks, in their order (there must be nothing else). Axis values follow by
 /// continuity: the branch nearest to the values before, the first nearest to home; but a block that leaves
 /// the pole starts with the outer axis where it then needs it (pole_turn.h). Throws InputError
 /// "unreachable" for a position under the joint law that the machine has no axis values for.
 /// `by_tool`: the machine with each tool in its spindle (BlockMove::tool), or one for whatever tool.
-std::vector<BlockMotion> block_motions(const toolpath::ToolPath& path,
+std::vector<BlockMotion> block_motions(std::span<const toolpath::Element> elements,
                                        std::span<const kinematics::MachineModel> by_tool);
 inline std::vector<BlockMotion> block_motions(const toolpath::ToolPath& path,
                                               const kinematics::MachineModel& machine) {
-  return block_motions(path, std::span(&machine, 1));
+  return block_motions(path.elements, std::span(&machine, 1));
 }
 
 /// Pose at s in [0,1]: exactly the block's poses at both ends.

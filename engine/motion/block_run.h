@@ -7,27 +7,71 @@
 // evenly within a block, so its feed holds on average.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "motion/look_ahead.h"
 #include "motion/run_path.h"
+#include "motion/tool_sample.h"
 
 namespace swarf::motion {
 
 /// First block after `first` that does not belong to its run.
 size_t run_end(std::span<const BlockMotion> motions, size_t first);
 
-/// A run with its time law.
-struct PlannedRun {
-  size_t first = 0;                      ///< index of its first block
-  std::span<const BlockMotion> motions;  ///< of the whole path
-  RunPath path;
-  std::vector<PlacedPhase> phases;  ///< empty when it goes nowhere
-  double duration_s = 0.0;
+/// Where a stretch of a run begins: enough to plan it again, and all after it.
+struct RunPlace {
+  size_t first = 0, end = 0;  ///< blocks of the run, counted from the start of the path
+  PathPlace path;
+  PlanStart plan;
+  /// The rest of the stretch before, where no plan starts here (CellPlan); mostly none.
+  std::shared_ptr<const CellPlan> kept;
 };
-PlannedRun plan_run(std::span<const BlockMotion> motions, size_t first, size_t end,
-                    const kinematics::InverseKinematics& inverse, const MotionOptions& options);
+
+/// A run, or a stretch of it between two places that are passed without acceleration, with its time law.
+struct PlannedRun {
+  RunPlace place;
+  std::span<const BlockMotion> motions;  ///< of the whole path
+  const RunPath* path = nullptr;         ///< from the stretch on, and farther; the planner's
+  std::vector<PlacedPhase> phases;       ///< empty when it goes nowhere
+  size_t cells = 0;                      ///< of the stretch
+  bool last = true;                      ///< the run ends with it
+};
+
+/// Sum of all durations, s.
+double duration(const std::vector<PlacedPhase>& phases);
+
+/// How many cells of a run are planned at once, and how many of these, the last ones, only serve to see what
+/// comes: a control looks no farther either. What lies more than `seen_ahead` cells behind a place may not
+/// change the speed there, which only matters for runs with more than `planned` cells.
+struct LookAheadReach {
+  size_t planned = 16384, seen_ahead = 4096;
+};
+
+/// Plans a run stretch by stretch, from any place on, in bounded memory.
+class RunPlanner {
+ public:
+  /// Motions, inverse and options must outlive it.
+  RunPlanner(std::span<const BlockMotion> motions, const RunPlace& start,
+             const kinematics::InverseKinematics& inverse, const MotionOptions& options,
+             const LookAheadReach& reach = {});
+  RunPlanner(const RunPlanner&) = delete;
+  RunPlanner& operator=(const RunPlanner&) = delete;
+  /// The next stretch, at first that of the start; not to be called after the last one.
+  const PlannedRun& next();
+
+ private:
+  void move_on();
+  /// A plan from here on, of which the phases up to `end` stand whatever follows.
+  CellPlan plan(EvenPlace& end);
+
+  LookAheadReach reach_;
+  RunPathBuilder builder_;
+  PlannedRun stretch_;
+  EvenPlace end_;  ///< of the stretch
+  CellPlan rest_;  ///< of the last plan, behind the stretch
+};
 
 /// A sample and where it comes from.
 struct BlockTick {
@@ -36,25 +80,34 @@ struct BlockTick {
   bool followed = true;  ///< false: the machine does not follow the block, q has to be found by continuity
 };
 
+/// Where the sampler of a run stands between two stretches.
+struct RunClock {
+  size_t tick = 0;         ///< cycles since the start of the run
+  double time = 0.0;       ///< of the next cycle, from the start of the stretch, s
+  double planned_s = 0.0;  ///< duration of all stretches before
+  PathPoint before;
+  Vec3 tip_before = Vec3::Zero();
+};
+
 /// The ticks of a run one by one: cycles of `period_s` from its start at rest; the last one ends on its end.
 /// Allocates nothing.
 class RunSampler {
  public:
-  RunSampler(const PlannedRun& run, double period_s);
-  size_t ticks() const { return ticks_; }
-  /// False after the last tick.
+  explicit RunSampler(double period_s, const RunClock& clock = {}) : period_(period_s), clock_(clock) {}
+  /// Goes on in this stretch; it must outlive the calls of next().
+  void enter(const PlannedRun& stretch);
+  /// False when the next tick lies behind the stretch.
   bool next(BlockTick& tick);
+  const RunClock& clock() const { return clock_; }
 
  private:
   void fill(size_t cell, double offset, BlockTick& tick);
 
-  const PlannedRun& run_;
+  const PlannedRun* run_ = nullptr;
   double period_;
-  size_t ticks_ = 0, tick_ = 0;
+  RunClock clock_;
+  size_t ticks_ = 0;  ///< of the whole run; known in its last stretch
   size_t phase_ = 0;
-  double time_ = 0.0;  ///< since the start of the phase
-  PathPoint before_;
-  Vec3 tip_before_ = Vec3::Zero();
 };
 
 }  // namespace swarf::motion

@@ -54,11 +54,12 @@ Turn greatest_turn(const BlockMotion& motion) {
 /// Findings of one code: lists the first, counts all.
 class List {
  public:
-  List(const toolpath::ToolPath& path, std::string code) : path_(path), code_(std::move(code)) {}
+  List(std::span<const toolpath::Element> elements, std::string code)
+      : elements_(elements), code_(std::move(code)) {}
   void add(size_t element, std::string text) {
     if (++count_ <= kListed) {
-      findings_.push_back({code_, std::move(text), static_cast<int>(element), 0.0,
-                           path_.elements[element].where, Severity::kWarning});
+      findings_.push_back({code_, std::move(text), static_cast<int>(element), 0.0, elements_[element].where,
+                           Severity::kWarning});
     }
   }
   void move_to(std::vector<MotionFinding>& all) {
@@ -68,7 +69,7 @@ class List {
   }
 
  private:
-  const toolpath::ToolPath& path_;
+  std::span<const toolpath::Element> elements_;
   std::string code_;
   int count_ = 0;
   std::vector<MotionFinding> findings_;
@@ -107,10 +108,10 @@ OtherMode other_mode(std::span<const BlockMotion> motions) {
   return worst;
 }
 
-std::vector<MotionFinding> find_fast_turns(const toolpath::ToolPath& path,
+std::vector<MotionFinding> find_fast_turns(std::span<const toolpath::Element> elements,
                                            std::span<const BlockMotion> motions,
                                            const MotionOptions& options) {
-  List fast(path, "fast-rotary"), swings(path, "swing");
+  List fast(elements, "fast-rotary"), swings(elements, "swing");
   for (size_t i = 0; i < motions.size(); ++i) {
     const Turn turn = greatest_turn(motions[i]);
     if (turn.axis < 0) continue;

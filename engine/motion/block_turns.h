@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "motion/block_motion.h"
-#include "motion/interpolator.h"
+#include "motion/options.h"
+#include "motion/result.h"
+#include "toolpath/tool_path.h"
 
 namespace swarf::motion {
 
@@ -24,7 +26,7 @@ OtherMode other_mode(std::span<const BlockMotion> motions);
 /// Warnings "fast-rotary" (rotary distance per tip distance beyond the threshold, feed blocks) and "swing"
 /// (one rotary axis turns far within a block, and which way): the first kListed of each with their blocks,
 /// then how many there are. Their times are left to the caller.
-std::vector<MotionFinding> find_fast_turns(const toolpath::ToolPath& path,
+std::vector<MotionFinding> find_fast_turns(std::span<const toolpath::Element> elements,
                                            std::span<const BlockMotion> motions,
                                            const MotionOptions& options);
 inline constexpr int kListed = 20;

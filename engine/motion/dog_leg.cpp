@@ -68,7 +68,7 @@ void append_legs(const toolpath::Element& element, const BlockMotion& motion,
 toolpath::ToolPath with_dog_legs(toolpath::ToolPath path, std::span<const MachineModel> by_tool) {
   const bool dog_leg = by_tool.front().rapid == kinematics::RapidMotion::kDogLeg;
   if (!dog_leg || !toolpath::holds_blocks(path)) return path;
-  const std::vector<BlockMotion> motions = block_motions(path, by_tool);
+  const std::vector<BlockMotion> motions = block_motions(path.elements, by_tool);
   std::vector<toolpath::Element> elements;
   for (size_t i = 0; i < motions.size(); ++i) {
     const BlockMove& block = *motions[i].block;

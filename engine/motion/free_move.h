@@ -4,8 +4,10 @@
 #include <vector>
 
 #include "kinematics/machine_model.h"
-#include "motion/interpolator.h"
+#include "motion/options.h"
 #include "motion/speed_clamps.h"
+#include "motion/tool_sample.h"
+#include "toolpath/tool_path.h"
 
 namespace swarf::motion {
 

@@ -64,8 +64,8 @@ struct Key {
 
 class Planner {
  public:
-  Planner(const std::vector<PathCell>& cells, const AxisLimits& limits)
-      : cells_(cells), limits_(limits), forced_(cells.size() + 1, kNone) {
+  Planner(const std::vector<PathCell>& cells, const AxisLimits& limits, const PlanStart& start)
+      : cells_(cells), limits_(limits), start_(start), forced_(cells.size() + 1, kNone) {
     for (const PathCell& cell : cells) {
       SWARF_CHECK(cell.length > 0.0 && cell.speed > 0.0 && std::isfinite(cell.speed),
                   "a cell has a length and a speed");
@@ -74,13 +74,14 @@ class Planner {
     }
   }
 
-  std::vector<PlacedPhase> plan() {
+  std::optional<CellPlan> plan() {
     for (round_ = 0; round_ < kRoundsMax; ++round_) {
       choose_keys();
-      if (place_phases()) return std::move(phases_);
+      if (too_fast_) return std::nullopt;
+      if (place_phases()) return std::move(plan_);
     }
-    SWARF_CHECK(false, "no plan keeps the speeds of the cells");
-    return {};
+    SWARF_CHECK(too_fast_, "no plan keeps the speeds of the cells");
+    return std::nullopt;
   }
 
  private:
@@ -93,11 +94,11 @@ class Planner {
 
   void choose_keys() {
     const size_t n = cells_.size();
-    keys_.assign(1, {0, 0, 0.0, true, {}});
+    keys_.assign(1, {0, 0, start_.speed, true, {}});
     pending_ = {};
     used_.assign(n, 0.0);
     for (size_t i = 0; i < n; ++i) {
-      const double left = i > 0 ? top(i - 1) : kNone, right = i + 1 < n ? top(i + 1) : kNone;
+      const double left = i > 0 ? top(i - 1) : start_.top_before, right = i + 1 < n ? top(i + 1) : kNone;
       const bool corner = cells_[i].corner;
       const bool least = !corner && top(i) <= left && top(i) <= right;
       if (i > 0) add_node(i, least || is_least(i - 1) ? std::min(left, top(i)) : kNone);
@@ -112,7 +113,8 @@ class Planner {
 
   bool is_least(size_t i) const {
     if (cells_[i].corner) return false;
-    return (i == 0 || top(i) <= top(i - 1)) && (i + 1 == cells_.size() || top(i) <= top(i + 1));
+    const double left = i > 0 ? top(i - 1) : start_.top_before;
+    return top(i) <= left && (i + 1 == cells_.size() || top(i) <= top(i + 1));
   }
 
   /// The node before cell i as a key: because it bounds a cell of least speed, or because it must be one.
@@ -142,6 +144,10 @@ class Planner {
           return;
         }
         key.speed = reachable_speed(last.speed, gap.length, key.speed, gap.limits);
+        break;
+      }
+      if (keys_.size() == 1) {
+        too_fast_ = true;
         break;
       }
       Key slower = last;
@@ -180,14 +186,16 @@ class Planner {
 
   /// False when a cell was passed too fast: it has become forced.
   bool place_phases() {
-    phases_.clear();
+    plan_ = {};
     bool holds = true;
     for (size_t k = 1; k < keys_.size(); ++k) {
       const Key &a = keys_[k - 1], &b = keys_[k];
       if (b.before.length > 0.0) holds = place_hop(a, b) && holds;
-      if (b.begin == b.end) continue;
-      const PathCell& cell = cells_[b.begin];
-      phases_.push_back({{cell.length / b.speed, b.speed, 0.0, 0.0}, b.begin, 0.0});
+      if (b.begin != b.end) {
+        const PathCell& cell = cells_[b.begin];
+        plan_.phases.push_back({{cell.length / b.speed, b.speed, 0.0, 0.0}, b.begin, 0.0});
+      }
+      plan_.places.push_back({b.end, b.speed, plan_.phases.size()});
     }
     return holds;
   }
@@ -199,7 +207,7 @@ class Planner {
     const double peak = append_hop(a.speed, b.speed, b.before.length, fastest, b.before.limits, hop_);
     double offset = 0.0;
     for (const Phase& phase : hop_) {
-      phases_.push_back({phase, a.end, offset});
+      plan_.phases.push_back({phase, a.end, offset});
       offset += phase.way(phase.duration);
     }
     return holds_in(a, b, peak);
@@ -231,7 +239,10 @@ class Planner {
     if (cell > a.end || a.speed > most) force(cell, most);
     if (cell + 1 < b.begin || b.speed > most) force(cell + 1, most);
   }
-  void force(size_t node, double speed) { forced_[node] = std::min(forced_[node], speed); }
+  void force(size_t node, double speed) {
+    if (node == 0) too_fast_ = true;
+    forced_[node] = std::min(forced_[node], speed);
+  }
 
   /// Greatest speed of the hop between two places: it rises to its peak and falls.
   double greatest_speed(double from, double to) const {
@@ -261,6 +272,7 @@ class Planner {
 
   const std::vector<PathCell>& cells_;
   const AxisLimits& limits_;
+  PlanStart start_;
   std::vector<RampLimits> own_;  ///< what each cell leaves at its own speed
   std::vector<double> forced_;   ///< by node: the speed that it must not exceed
   std::vector<double> used_;     ///< by cell of a gap: the speed that its limits hold for
@@ -268,7 +280,8 @@ class Planner {
   int round_ = 0;
   Gap pending_;
   std::vector<Phase> hop_;
-  std::vector<PlacedPhase> phases_;
+  CellPlan plan_;
+  bool too_fast_ = false;  ///< at the start
 };
 
 }  // namespace
@@ -301,14 +314,9 @@ void limit_speed(const AxisLimits& limits, PathCell& cell) {
   }
 }
 
-std::vector<PlacedPhase> plan_run(const std::vector<PathCell>& cells, const AxisLimits& limits) {
-  return Planner(cells, limits).plan();
-}
-
-double duration(const std::vector<PlacedPhase>& phases) {
-  double time = 0.0;
-  for (const PlacedPhase& placed : phases) time += placed.phase.duration;
-  return time;
+std::optional<CellPlan> plan_cells(const std::vector<PathCell>& cells, const AxisLimits& limits,
+                                   const PlanStart& start) {
+  return Planner(cells, limits, start).plan();
 }
 
 }  // namespace swarf::motion

@@ -16,6 +16,8 @@
 // is the mean of the n-th derivative under a B-spline.
 #pragma once
 
+#include <limits>
+#include <optional>
 #include <vector>
 
 #include "kinematics/machine_model.h"
@@ -55,10 +57,28 @@ struct PlacedPhase {
   double offset = 0.0;  ///< mm; may lie beyond the cell's end
 };
 
-/// The time law over all cells, from rest to rest.
-std::vector<PlacedPhase> plan_run(const std::vector<PathCell>& cells, const AxisLimits& limits);
+/// How the first cell is entered.
+struct PlanStart {
+  double speed = 0.0;  ///< without acceleration
+  /// PathCell::speed of the cell before; infinite where there is none.
+  double top_before = std::numeric_limits<double>::infinity();
+};
 
-/// Sum of all durations, s.
-double duration(const std::vector<PlacedPhase>& phases);
+/// A place that is passed without acceleration: a plan may be cut in two there.
+struct EvenPlace {
+  size_t cell = 0;  ///< the place is the start of this cell, or the end of the last
+  double speed = 0.0;
+  size_t phases = 0;  ///< that come before it
+};
+
+struct CellPlan {
+  std::vector<PlacedPhase> phases;
+  std::vector<EvenPlace> places;  ///< by cell; the last one is the end, at rest
+};
+
+/// The time law over all cells, from their start to rest. None when no law starts as fast as that: only
+/// where the start is not one of a plan that has seen these cells.
+std::optional<CellPlan> plan_cells(const std::vector<PathCell>& cells, const AxisLimits& limits,
+                                   const PlanStart& start = {});
 
 }  // namespace swarf::motion

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <utility>
 
 #include "base/angles.h"
 #include "base/units.h"
@@ -29,48 +31,42 @@ constexpr double kTopFeedShare = 0.999;
 /// A fine excess of travel counts as rounding, mm or rad.
 constexpr double kTravelTolerance = 1e-9;
 
-/// The sample stands where another tool begins: how the axes came there is not part of the program.
-bool tool_changes(const Trajectory& trajectory, size_t k) {
-  return trajectory.samples[k].tool != trajectory.samples[k - 1].tool;
-}
-
 /// Distance of a point from a path near it, whose tangent is the given one.
 double distance_across(const Vec3& gap, const Vec3& along) {
   const double square = along.squaredNorm();
   return square > 0.0 ? (gap - gap.dot(along) / square * along).norm() : gap.norm();
 }
 
-/// What is measured of one tick, from the sample before it to its own.
-class TickMeter {
+}  // namespace
+
+/// What is measured of one cycle, from the one before it to its own.
+class MotionMeter::TickMeter {
  public:
-  TickMeter(const Trajectory& trajectory, const toolpath::ToolPath& path, std::span<const BlockMotion> blocks,
-            const MachineModel& machine, const kinematics::InverseKinematics& inverse, double radius,
-            MotionStatistics& statistics)
-      : trajectory_(trajectory),
-        path_(path),
-        blocks_(blocks),
-        machine_(machine),
-        inverse_(inverse),
-        radius_(radius),
+  TickMeter(const Cycles& cycles, MotionStatistics& statistics)
+      : elements_(cycles.elements()),
+        blocks_(cycles.motions()),
+        machine_(cycles.machines().front()),
+        inverse_(cycles.inverse(0)),
+        radius_(cycles.cutter().radius()),
+        period_(cycles.period_s()),
         out_(statistics) {}
 
-  void measure(size_t k) {
-    const ToolSample& sample = trajectory_.samples[k];
+  void measure(const Cycle* last, const Cycle& now) {
+    const ToolSample& sample = now.sample;
     const MachineModel& machine =
         blocks_.empty() ? machine_ : *blocks_[static_cast<size_t>(sample.element)].machine;
-    const ToolPose back = kinematics::forward(machine, trajectory_.axes[k]);
+    const ToolPose back = kinematics::forward(machine, now.q);
     out_.fk_ik_error_max_mm = std::max(out_.fk_ik_error_max_mm, (back.tip_W - sample.pose.tip_W).norm());
     const double pole = inverse_.pole_distance(sample.pose.axis_W);
     if (pole < kinematics::kPoleTolerance) ++out_.singular_ticks;
-    const auto& what = path_.elements[static_cast<size_t>(sample.element)].what;
-    const ToolPose middle =
-        k > 0 ? kinematics::forward(machine, 0.5 * (trajectory_.axes[k - 1] + trajectory_.axes[k])) : back;
     if (sample.kind == SampleKind::kCutting && pole < out_.pole_distance_min_rad) {
       out_.pole_distance_min_rad = pole;
       out_.pole_element = sample.element;
     }
-    if (k == 0) return;
-    const ToolSample& before = trajectory_.samples[k - 1];
+    if (last == nullptr) return;
+    const ToolPose middle = kinematics::forward(machine, 0.5 * (last->q + now.q));
+    const ToolSample& before = last->sample;
+    const auto& what = elements_[static_cast<size_t>(sample.element)].what;
     if (const auto* pass = std::get_if<SurfacePass>(&what)) {
       measure_contact(*pass, before, sample, middle);
     } else if (const auto* move = std::get_if<FreeMove>(&what)) {
@@ -86,7 +82,7 @@ class TickMeter {
   void measure_contact(const SurfacePass& pass, const ToolSample& before, const ToolSample& sample,
                        const ToolPose& middle) {
     const Vec3 chord = sample.contact_W - before.contact_W;
-    const double period = trajectory_.period_s;
+    const double period = period_;
     const double length = chord.norm();
     out_.path_length_mm += length;
     out_.feed_error_max_rel = std::max(
@@ -117,7 +113,7 @@ class TickMeter {
     const double tip_error = distance_across(middle.tip_W - exact.tip_W, chord);
     out_.tip_error_max_mm = std::max(out_.tip_error_max_mm, tip_error);
     if (!cutting) return;
-    const double period = trajectory_.period_s;
+    const double period = period_;
     out_.feed_error_max_rel =
         std::max(out_.feed_error_max_rel,
                  std::abs(chord.norm() - sample.feed_mm_s * period) / (programmed_feed(block) * period));
@@ -142,49 +138,57 @@ class TickMeter {
     return before.kind == SampleKind::kCutting ? curve_parameter(pass, before.u, before.v) : pass.t_start;
   }
 
-  const Trajectory& trajectory_;
-  const toolpath::ToolPath& path_;
+  std::span<const toolpath::Element> elements_;
   std::span<const BlockMotion> blocks_;
   const MachineModel& machine_;
   const kinematics::InverseKinematics& inverse_;
-  double radius_;
+  double radius_, period_;
   MotionStatistics& out_;
 };
 
-std::vector<AxisStatistics> measure_axes(const Trajectory& trajectory, const MachineModel& machine) {
-  std::vector<AxisStatistics> all;
-  const std::vector<AxisValues>& q = trajectory.axes;
-  for (size_t i = 0; i < machine.axes.size(); ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    AxisStatistics axis;
-    axis.name = machine.axes[i].name;
-    axis.min = axis.max = q.front()[row];
-    double speed = 0.0, acceleration = 0.0;
-    for (size_t k = 1; k < q.size(); ++k) {
-      axis.min = std::min(axis.min, q[k][row]);
-      axis.max = std::max(axis.max, q[k][row]);
-      if (tool_changes(trajectory, k)) {
-        speed = 0.0;
-        continue;
-      }
-      const double change = q[k][row] - q[k - 1][row];
-      axis.travel += std::abs(change);
-      const double before = speed;
-      speed = change / trajectory.period_s;
-      axis.speed_max = std::max(axis.speed_max, std::abs(speed));
-      const double acceleration_before = acceleration;
-      acceleration = (speed - before) / trajectory.period_s;
-      axis.acceleration_max = std::max(axis.acceleration_max, std::abs(acceleration));
-      axis.jerk_max =
-          std::max(axis.jerk_max, std::abs(acceleration - acceleration_before) / trajectory.period_s);
-      const bool rapid = trajectory.samples[k].kind == SampleKind::kRapid;
-      if (std::abs(speed) >= kAtLimit * speed_limit(machine.axes[i], rapid))
-        axis.time_at_speed_limit_s += trajectory.period_s;
-    }
-    all.push_back(axis);
+/// Differences of one axis.
+class MotionMeter::AxisMeter {
+ public:
+  AxisMeter(const kinematics::Axis& axis, Eigen::Index row, double period_s)
+      : axis_(axis), row_(row), period_(period_s) {
+    out_.name = axis.name;
   }
-  return all;
-}
+
+  void measure(const Cycle* last, const Cycle& now) {
+    const double q = now.q[row_];
+    if (last == nullptr) {
+      out_.min = out_.max = q;
+      return;
+    }
+    out_.min = std::min(out_.min, q);
+    out_.max = std::max(out_.max, q);
+    if (now.sample.tool != last->sample.tool) {
+      speed_ = 0.0;
+      return;
+    }
+    const double change = q - last->q[row_];
+    out_.travel += std::abs(change);
+    const double before = speed_;
+    speed_ = change / period_;
+    out_.speed_max = std::max(out_.speed_max, std::abs(speed_));
+    const double acceleration_before = acceleration_;
+    acceleration_ = (speed_ - before) / period_;
+    out_.acceleration_max = std::max(out_.acceleration_max, std::abs(acceleration_));
+    out_.jerk_max = std::max(out_.jerk_max, std::abs(acceleration_ - acceleration_before) / period_);
+    const bool rapid = now.sample.kind == SampleKind::kRapid;
+    if (std::abs(speed_) >= kAtLimit * speed_limit(axis_, rapid)) out_.time_at_speed_limit_s += period_;
+  }
+  const AxisStatistics& result() const { return out_; }
+
+ private:
+  const kinematics::Axis& axis_;
+  Eigen::Index row_;
+  double period_;
+  double speed_ = 0.0, acceleration_ = 0.0;
+  AxisStatistics out_;
+};
+
+namespace {
 
 bool is_rapid_element(const toolpath::Element& element) {
   if (const auto* move = std::get_if<FreeMove>(&element.what)) return move->feed_mm_s == 0.0;
@@ -192,58 +196,15 @@ bool is_rapid_element(const toolpath::Element& element) {
   return block != nullptr && is_rapid(*block);
 }
 
-CycleTime measure_cycle(const Trajectory& trajectory, const toolpath::ToolPath& path) {
-  CycleTime cycle;
-  for (size_t k = 1; k < trajectory.samples.size(); ++k) {
-    if (tool_changes(trajectory, k)) continue;
-    const ToolSample& sample = trajectory.samples[k];
-    const toolpath::Element& element = path.elements[static_cast<size_t>(sample.element)];
-    const auto* block = std::get_if<BlockMove>(&element.what);
-    // A block's dwell stands at its start; all its other ticks are further on.
-    const bool dwells = block != nullptr && block->dwell_s > 0.0 && sample.u == 0.0;
-    (dwells                      ? cycle.dwell_s
-     : is_rapid_element(element) ? cycle.rapid_s
-                                 : cycle.feed_s) += trajectory.period_s;
-    const size_t tool = block != nullptr ? static_cast<size_t>(block->tool) : 0;
-    if (cycle.by_tool_s.size() <= tool) cycle.by_tool_s.resize(tool + 1, 0.0);
-    cycle.by_tool_s[tool] += trajectory.period_s;
-  }
-  return cycle;
-}
-
-/// First sample of the element after the one at `begin`.
-size_t element_end(const Trajectory& trajectory, size_t begin) {
-  size_t end = begin + 1;
-  while (end < trajectory.samples.size() &&
-         trajectory.samples[end].element == trajectory.samples[begin].element)
-    ++end;
-  return end;
-}
-
-/// Least feed of samples [begin, end) between the first and the last that have their top feed.
-double least_feed(const Trajectory& trajectory, size_t begin, size_t end) {
-  double top = 0.0;
-  for (size_t k = begin; k < end; ++k) top = std::max(top, trajectory.samples[k].feed_mm_s);
-  const auto at_top = [&](size_t k) { return trajectory.samples[k].feed_mm_s >= kTopFeedShare * top; };
-  size_t first = begin, last = end - 1;
-  while (!at_top(first)) ++first;
-  while (!at_top(last)) --last;
-  double least = top;
-  for (size_t k = first; k <= last; ++k) least = std::min(least, trajectory.samples[k].feed_mm_s);
-  return least;
-}
-
-double feed_min(const Trajectory& trajectory) {
-  double least = -1.0;
-  for (size_t begin = 0; begin < trajectory.samples.size();) {
-    const size_t end = element_end(trajectory, begin);
-    if (trajectory.samples[begin].kind == SampleKind::kCutting) {
-      const double feed = least_feed(trajectory, begin, end);
-      least = least < 0.0 ? feed : std::min(least, feed);
-    }
-    begin = end;
-  }
-  return std::max(0.0, least);
+/// Least of the feeds of one element between the first and the last that have its top feed.
+double least_feed(std::span<const double> feeds) {
+  const double top = *std::max_element(feeds.begin(), feeds.end());
+  const auto at_top = [&](double feed) { return feed >= kTopFeedShare * top; };
+  size_t first = 0, last = feeds.size() - 1;
+  while (!at_top(feeds[first])) ++first;
+  while (!at_top(feeds[last])) --last;
+  return *std::min_element(feeds.begin() + static_cast<ptrdiff_t>(first),
+                           feeds.begin() + static_cast<ptrdiff_t>(last) + 1);
 }
 
 std::string element_name(const toolpath::Element& element) {
@@ -262,16 +223,7 @@ std::string element_name(const toolpath::Element& element) {
   return "a move";
 }
 
-/// The worst excess of one kind on one axis within one element.
-struct Worst {
-  double excess = 0.0, value = 0.0, limit = 0.0;
-  size_t sample = 0;
-  void see(double e, double v, double l, size_t k) {
-    if (e > excess) *this = {e, v, l, k};
-  }
-};
-
-std::string travel_text(const kinematics::Axis& axis, const Worst& worst, const std::string& where) {
+std::string travel_text(const kinematics::Axis& axis, const AxisExcess& worst, const std::string& where) {
   const bool rotary = axis.kind == AxisKind::kRotary;
   const double scale = rotary ? deg_from_rad(1.0) : 1.0;
   const char* unit = rotary ? "deg" : "mm";
@@ -281,70 +233,132 @@ std::string travel_text(const kinematics::Axis& axis, const Worst& worst, const 
       scale * axis.max, unit);
 }
 
-std::string speed_text(const kinematics::Axis& axis, const Worst& worst, const std::string& where) {
+std::string speed_text(const kinematics::Axis& axis, const AxisExcess& worst, const std::string& where) {
   const bool rotary = axis.kind == AxisKind::kRotary;
   const double scale = rotary ? deg_from_rad(1.0) : 1.0;
   return fmt::format("axis {} would have to move at {:.3f} {} in {}, its limit is {:.3f}", axis.name,
                      scale * worst.value, rotary ? "deg/s" : "mm/s", where, scale * worst.limit);
 }
 
-void find_in_element(const Trajectory& trajectory, size_t begin, size_t end, const toolpath::Element& element,
-                     const MachineModel& machine, std::vector<MotionFinding>& findings) {
-  const int index = trajectory.samples[begin].element;
-  const auto* block = std::get_if<BlockMove>(&element.what);
-  const bool rapid = block != nullptr && is_rapid(*block);
-  for (size_t i = 0; i < machine.axes.size(); ++i) {
-    const kinematics::Axis& axis = machine.axes[i];
-    const auto row = static_cast<Eigen::Index>(i);
-    const double most = speed_limit(axis, rapid);
-    Worst travel, speed;
-    for (size_t k = begin; k < end; ++k) {
-      const double q = trajectory.axes[k][row];
-      const double beyond = std::abs(kinematics::travel_excess(axis, q));
-      if (beyond > kTravelTolerance) travel.see(beyond, q, q < axis.min ? axis.min : axis.max, k);
-      if (k == 0 || tool_changes(trajectory, k)) continue;
-      const double v = std::abs(q - trajectory.axes[k - 1][row]) / trajectory.period_s;
-      if (v > most * (1.0 + kAxisSpeedTolerance)) speed.see(v - most, v, most, k);
-    }
-    const std::string where = element_name(element);
-    if (travel.excess > 0.0)
-      findings.push_back({"travel", travel_text(axis, travel, where), index,
-                          trajectory.samples[travel.sample].t_s, element.where});
-    if (speed.excess > 0.0)
-      findings.push_back({"axis-speed", speed_text(axis, speed, where), index,
-                          trajectory.samples[speed.sample].t_s, element.where});
-  }
-}
-
 }  // namespace
 
-MotionStatistics measure_motion(const Trajectory& trajectory, const toolpath::ToolPath& path,
-                                std::span<const BlockMotion> blocks, const MachineModel& machine,
-                                const kinematics::InverseKinematics& inverse, const cutter::Cutter& cutter) {
-  MotionStatistics statistics;
-  statistics.pole_distance_min_rad = kPi;
-  if (trajectory.samples.empty()) return statistics;
-  statistics.ticks = trajectory.samples.size() - 1;
-  statistics.time_s = trajectory.samples.back().t_s;
-  TickMeter meter(trajectory, path, blocks, machine, inverse, cutter.radius(), statistics);
-  for (size_t k = 0; k < trajectory.samples.size(); ++k) meter.measure(k);
-  statistics.feed_min_mm_s = feed_min(trajectory);
-  statistics.axes = measure_axes(trajectory, machine);
-  statistics.cycle = measure_cycle(trajectory, path);
-  statistics.other_mode = other_mode(blocks);
-  return statistics;
+MotionMeter::MotionMeter(const Cycles& cycles, MotionResult& result)
+    : cycles_(cycles),
+      machine_(cycles.machines().front()),
+      out_(result),
+      ticks_(std::make_unique<TickMeter>(cycles, result.statistics)),
+      excess_(machine_.axes.size()) {
+  out_.statistics.pole_distance_min_rad = kPi;
+  for (size_t i = 0; i < machine_.axes.size(); ++i)
+    axes_.emplace_back(machine_.axes[i], static_cast<Eigen::Index>(i), cycles.period_s());
 }
 
-std::vector<MotionFinding> find_axis_faults(const Trajectory& trajectory, const toolpath::ToolPath& path,
-                                            const MachineModel& machine) {
-  std::vector<MotionFinding> findings;
-  for (size_t begin = 0; begin < trajectory.samples.size();) {
-    const size_t end = element_end(trajectory, begin);
-    const auto index = static_cast<size_t>(trajectory.samples[begin].element);
-    find_in_element(trajectory, begin, end, path.elements[index], machine, findings);
-    begin = end;
+MotionMeter::~MotionMeter() = default;
+
+void MotionMeter::add(std::span<const Cycle> window) {
+  for (const Cycle& now : window) {
+    if (last_ && last_->sample.element != now.sample.element) end_element();
+    const Cycle* last = last_ ? &*last_ : nullptr;
+    ticks_->measure(last, now);
+    for (AxisMeter& axis : axes_) axis.measure(last, now);
+    see_time(now);
+    see_reach(now);
+    see_excess(now);
+    if (now.sample.kind == SampleKind::kCutting) feeds_.push_back(now.sample.feed_mm_s);
+    if (now.cost_ns >= 0.0F && costs_ns_.size() < kCostsMost) costs_ns_.push_back(now.cost_ns);
+    last_ = now;
+    ++out_.statistics.ticks;
   }
-  return findings;
+}
+
+/// Time by what it is spent on. A block's dwell stands at its start; all its other cycles are further on.
+void MotionMeter::see_time(const Cycle& now) {
+  if (!last_ || last_->sample.tool != now.sample.tool) return;
+  CycleTime& cycle = out_.statistics.cycle;
+  const toolpath::Element& element = cycles_.elements()[static_cast<size_t>(now.sample.element)];
+  const auto* block = std::get_if<BlockMove>(&element.what);
+  const bool dwells = block != nullptr && block->dwell_s > 0.0 && now.sample.u == 0.0;
+  (dwells ? cycle.dwell_s : is_rapid_element(element) ? cycle.rapid_s : cycle.feed_s) += cycles_.period_s();
+  const size_t tool = block != nullptr ? static_cast<size_t>(block->tool) : 0;
+  if (cycle.by_tool_s.size() <= tool) cycle.by_tool_s.resize(tool + 1, 0.0);
+  cycle.by_tool_s[tool] += cycles_.period_s();
+}
+
+void MotionMeter::see_reach(const Cycle& now) {
+  if (now.reached) return;
+  if (outside_reach_++ == 0) first_outside_ = now.sample;
+}
+
+void MotionMeter::see_excess(const Cycle& now) {
+  const auto* block =
+      cycles_.motions().empty() ? nullptr : cycles_.motions()[static_cast<size_t>(now.sample.element)].block;
+  const bool rapid = block != nullptr && is_rapid(*block);
+  for (size_t i = 0; i < excess_.size(); ++i) {
+    const kinematics::Axis& axis = machine_.axes[i];
+    const double q = now.q[static_cast<Eigen::Index>(i)];
+    const double beyond = std::abs(kinematics::travel_excess(axis, q));
+    if (beyond > kTravelTolerance)
+      excess_[i].travel.see(beyond, q, q < axis.min ? axis.min : axis.max, now.sample.t_s);
+    if (!last_ || last_->sample.tool != now.sample.tool) continue;
+    const double most = speed_limit(axis, rapid);
+    const double v = std::abs(q - last_->q[static_cast<Eigen::Index>(i)]) / cycles_.period_s();
+    if (v > most * (1.0 + kAxisSpeedTolerance)) excess_[i].speed.see(v - most, v, most, now.sample.t_s);
+  }
+}
+
+void MotionMeter::end_element() {
+  const int index = last_->sample.element;
+  const toolpath::Element& element = cycles_.elements()[static_cast<size_t>(index)];
+  if (outside_reach_ > 0) {
+    const kinematics::UnreachableText why = kinematics::unreachable_text(machine_, first_outside_.pose);
+    out_.findings.push_back(
+        {"unreachable",
+         fmt::format("its axes stood still for {} cycles, from the first pose out of reach: {}; {}",
+                     outside_reach_, why.text, why.fix),
+         index, first_outside_.t_s, element.where});
+    outside_reach_ = 0;
+  }
+  for (size_t i = 0; i < excess_.size(); ++i) {
+    const kinematics::Axis& axis = machine_.axes[i];
+    AxisFault& found = excess_[i];
+    if (found.travel.excess > 0.0)
+      faults_.push_back({"travel", travel_text(axis, found.travel, element_name(element)), index,
+                         found.travel.t_s, element.where});
+    if (found.speed.excess > 0.0)
+      faults_.push_back({"axis-speed", speed_text(axis, found.speed, element_name(element)), index,
+                         found.speed.t_s, element.where});
+    found = {};
+  }
+  if (feeds_.empty()) return;
+  const double feed = least_feed(feeds_);
+  feed_min_ = feed_min_ < 0.0 ? feed : std::min(feed_min_, feed);
+  feeds_.clear();
+}
+
+void MotionMeter::rank_costs() {
+  if (costs_ns_.empty()) return;
+  const auto rank = [&](double share) {
+    const auto at =
+        costs_ns_.begin() + static_cast<ptrdiff_t>(share * static_cast<double>(costs_ns_.size() - 1));
+    std::nth_element(costs_ns_.begin(), at, costs_ns_.end());
+    return static_cast<double>(*at);
+  };
+  out_.statistics.tick_ns_median = rank(0.5);
+  out_.statistics.tick_ns_p999 = rank(0.999);
+}
+
+void MotionMeter::finish() {
+  MotionStatistics& statistics = out_.statistics;
+  if (last_) {
+    end_element();
+    --statistics.ticks;  // the first cycle is where the motion starts
+    statistics.time_s = last_->sample.t_s;
+    statistics.feed_min_mm_s = std::max(0.0, feed_min_);
+    for (const AxisMeter& axis : axes_) statistics.axes.push_back(axis.result());
+    statistics.other_mode = other_mode(cycles_.motions());
+    rank_costs();
+  }
+  std::move(faults_.begin(), faults_.end(), std::back_inserter(out_.findings));
 }
 
 }  // namespace swarf::motion

@@ -85,158 +85,6 @@ PathCell blend_cell(const Blend& blend) {
   return cell;
 }
 
-/// Puts the pieces of a run together, corner by corner.
-class Builder {
- public:
-  Builder(std::span<const BlockMotion> motions, const kinematics::InverseKinematics& inverse,
-          const MotionOptions& options)
-      : motions_(motions), options_(options), machine_(*motions.front().machine) {
-    path_.curves.reserve(motions.size());
-    rapid_ = is_rapid(*motions.front().block);
-    const double speed = reference_speed();
-    for (const BlockMotion& motion : motions) path_.curves.emplace_back(motion, inverse, speed);
-    limits_ = axis_limits(machine_, rapid_);
-  }
-
-  RunPath build() {
-    double from = 0.0;
-    std::optional<size_t> before;
-    for (size_t i = 0; i < motions_.size(); ++i) {
-      if (path_.curves[i].length() < kLengthMin) continue;
-      if (before) from = add_corner(*before, i, from);
-      before = i;
-    }
-    if (before) add_block_piece(*before, from, path_.curves[*before].length());
-    return std::move(path_);
-  }
-
- private:
-  /// The greatest feed; of rapids, and where durations alone are given, the fastest linear axis.
-  double reference_speed() const {
-    double feed = 0.0, axis = 0.0;
-    for (const BlockMotion& motion : motions_) feed = std::max(feed, motion.block->feed_mm_s);
-    if (feed > 0.0 && !rapid_) return feed;
-    for (const kinematics::Axis& own : machine_.axes)
-      if (own.kind == kinematics::AxisKind::kLinear) axis = std::max(axis, own.speed_max);
-    return axis;
-  }
-
-  void add_cells(size_t piece, size_t first) {
-    double offset = 0.0;
-    for (size_t i = first; i < path_.cells.size(); ++i) {
-      PathCell& cell = path_.cells[i];
-      limit_speed(limits_, cell);
-      if (!std::isfinite(cell.speed)) {
-        cell.speed = kRapidUnfollowed;
-        cell.tip = {options_.path_acceleration_max, options_.path_jerk_max};
-      }
-      path_.piece_of_cell.push_back(piece);
-      path_.offset_of_cell.push_back(offset);
-      offset += cell.length;
-    }
-  }
-
-  BlockCurve::TipLimits tip_limits(size_t i) const {
-    constexpr double kNone = std::numeric_limits<double>::infinity();
-    const BlockMove& block = *motions_[i].block;
-    const RampLimits path = rapid_ ? RampLimits{kNone, kNone}
-                                   : RampLimits{options_.path_acceleration_max, options_.path_jerk_max};
-    return {block.feed_mm_s, block.duration_s, path};
-  }
-
-  void add_block_piece(size_t i, double from, double to) {
-    if (!(to - from > kLengthMin)) return;
-    const size_t first = path_.cells.size();
-    path_.curves[i].append_cells(from, to, tip_limits(i), path_.cells);
-    path_.pieces.push_back({i, from, to - from, -1});
-    add_cells(path_.pieces.size() - 1, first);
-  }
-
-  /// The piece of block a up to its corner with block b, and the corner. Returns where b's own piece starts.
-  double add_corner(size_t a, size_t b, double from) {
-    const BlockCurve &in = path_.curves[a], &out = path_.curves[b];
-    if (!in.followed() || !out.followed()) {
-      add_block_piece(a, from, in.length());
-      path_.cells.back().stop = true;
-      return 0.0;
-    }
-    if (in.even() && out.even()) {
-      const AxisValues change = in.jet(in.length()).first - out.jet(0.0).first;
-      if (change.cwiseAbs().maxCoeff() < kStraight) {
-        add_block_piece(a, from, in.length());
-        return 0.0;
-      }
-    }
-    const Blend blend = fit(a, b);
-    const double d = blend.before;
-    add_block_piece(a, from, in.length() - d);
-    const size_t first = path_.cells.size();
-    PathCell cell = blend_cell(blend);
-    limit_tip(a, b, cell);
-    path_.cells.push_back(cell);
-    path_.blends.push_back(blend);
-    path_.pieces.push_back({a, in.length() - d, blend.length, static_cast<int>(path_.blends.size()) - 1});
-    add_cells(path_.pieces.size() - 1, first);
-    return d;
-  }
-
-  /// Feed and path limits of both blocks beside the corner.
-  void limit_tip(size_t a, size_t b, PathCell& cell) const {
-    std::vector<PathCell> sides;
-    const double d = 0.5 * cell.length;
-    const BlockCurve& in = path_.curves[a];
-    in.append_cells(in.length() - d, in.length(), tip_limits(a), sides);
-    path_.curves[b].append_cells(0.0, d, tip_limits(b), sides);
-    cell.speed = cell.tip.acceleration = cell.tip.jerk = std::numeric_limits<double>::infinity();
-    for (const PathCell& side : sides) {
-      cell.speed = std::min(cell.speed, side.speed);
-      cell.tip.acceleration = std::min(cell.tip.acceleration, side.tip.acceleration);
-      cell.tip.jerk = std::min(cell.tip.jerk, side.tip.jerk);
-    }
-  }
-
-  /// The longest corner within the tolerance: its deviation grows with its length, at least about linearly.
-  Blend fit(size_t a, size_t b) const {
-    const BlockCurve &in = path_.curves[a], &out = path_.curves[b];
-    const double tolerance = corner_tolerance(*motions_[a].block, options_);
-    double d = kCornerShare * std::min(in.length(), out.length());
-    for (int i = 0; i < kFits; ++i) {
-      Blend blend = blend_between(in.jet(in.length() - d), out.jet(d), d, d);
-      blend.deviation = deviation(a, b, blend);
-      if (blend.deviation <= tolerance) return blend;
-      d *= std::min(0.98, 0.999 * tolerance / blend.deviation);
-    }
-    SWARF_CHECK(false, "a corner becomes as sharp as it must");
-    return {};
-  }
-
-  /// Greatest distance of the tip from the programmed one at the same s.
-  double deviation(size_t a, size_t b, const Blend& blend) const {
-    constexpr int kPlaces = 16;
-    std::array<double, kPlaces + 1> distance{};
-    for (int i = 1; i < kPlaces; ++i) {
-      const double s = blend.length * i / kPlaces;
-      const BlockCurve& in = path_.curves[a];
-      const ToolPose programmed = s < blend.before
-                                      ? pose_at(motions_[a], in.share(in.length() - blend.before + s))
-                                      : pose_at(motions_[b], path_.curves[b].share(s - blend.before));
-      const ToolPose rounded = kinematics::forward(machine_, blend.q(s));
-      distance[static_cast<size_t>(i)] = (rounded.tip_W - programmed.tip_W).norm();
-    }
-    // Between the places: the top of the parabola through the greatest and those beside it.
-    const auto top = std::max_element(distance.begin() + 1, distance.end() - 1);
-    const double before = *(top - 1), after = *(top + 1), bend = 2.0 * *top - before - after;
-    return bend > 0.0 ? *top + std::pow(before - after, 2) / (8.0 * bend) : *top;
-  }
-
-  std::span<const BlockMotion> motions_;
-  const MotionOptions& options_;
-  const MachineModel& machine_;
-  AxisLimits limits_;
-  bool rapid_ = false;
-  RunPath path_;
-};
-
 }  // namespace
 
 AxisValues Blend::q(double s) const {
@@ -250,18 +98,211 @@ double corner_tolerance(const BlockMove& block, const MotionOptions& options) {
   return block.corner_tolerance_mm > 0.0 ? block.corner_tolerance_mm : options.corner_tolerance_mm;
 }
 
-RunPath run_path(std::span<const BlockMotion> motions, const kinematics::InverseKinematics& inverse,
-                 const MotionOptions& options) {
-  return Builder(motions, inverse, options).build();
+RunPathBuilder::RunPathBuilder(std::span<const BlockMotion> motions,
+                               const kinematics::InverseKinematics& inverse, const MotionOptions& options,
+                               const PathPlace& start)
+    : motions_(motions),
+      inverse_(inverse),
+      options_(options),
+      machine_(*motions.front().machine),
+      rapid_(is_rapid(*motions.front().block)),
+      at_(start) {
+  limits_ = axis_limits(machine_, rapid_);
+  reference_mm_s_ = reference_speed();
+  path_.first = start.before.value_or(start.next);
+  at_.skip = 0;
+  extend(start.skip);
+  drop(start.skip);
 }
 
+void RunPathBuilder::extend(size_t cells) {
+  while (!done_ && path_.cells.size() < cells) {
+    if (at_.next < motions_.size()) {
+      look_at(at_.next);
+    } else {
+      if (at_.before) add_block_piece(*at_.before, at_.from, curve(*at_.before).length());
+      done_ = true;
+    }
+  }
+}
+
+PathPlace RunPathBuilder::place(size_t cell) const {
+  const size_t piece = path_.piece_of_cell[cell];
+  const auto first = std::lower_bound(path_.piece_of_cell.begin(), path_.piece_of_cell.end(), piece);
+  PathPlace place = place_of_piece_[piece];
+  place.skip += cell - static_cast<size_t>(first - path_.piece_of_cell.begin());
+  return place;
+}
+
+void RunPathBuilder::drop(size_t cells) {
+  if (cells == 0) return;
+  const bool all = cells >= path_.cells.size();
+  const size_t pieces = all ? path_.pieces.size() : path_.piece_of_cell[cells];
+  // A piece that is cut in two begins later from now on.
+  if (!all) place_of_piece_[pieces] = place(cells);
+  const auto blends = static_cast<size_t>(std::count_if(path_.pieces.begin(),
+                                                        path_.pieces.begin() + static_cast<ptrdiff_t>(pieces),
+                                                        [](const Piece& piece) { return piece.blend >= 0; }));
+  const size_t block = all ? at_.before.value_or(path_.first) : path_.pieces[pieces].block;
+  const auto erase = [](auto& list, size_t count) {
+    list.erase(list.begin(), list.begin() + static_cast<ptrdiff_t>(count));
+  };
+  erase(path_.cells, cells);
+  erase(path_.piece_of_cell, cells);
+  erase(path_.offset_of_cell, cells);
+  erase(path_.pieces, pieces);
+  erase(place_of_piece_, pieces);
+  erase(path_.blends, blends);
+  erase(path_.curves, block - path_.first);
+  path_.first = block;
+  for (size_t& piece : path_.piece_of_cell) piece -= pieces;
+  for (Piece& piece : path_.pieces)
+    if (piece.blend >= 0) piece.blend -= static_cast<int>(blends);
+}
+
+/// The greatest feed; of rapids, and where durations alone are given, the fastest linear axis.
+double RunPathBuilder::reference_speed() const {
+  double feed = 0.0, axis = 0.0;
+  for (const BlockMotion& motion : motions_) feed = std::max(feed, motion.block->feed_mm_s);
+  if (feed > 0.0 && !rapid_) return feed;
+  for (const kinematics::Axis& own : machine_.axes)
+    if (own.kind == kinematics::AxisKind::kLinear) axis = std::max(axis, own.speed_max);
+  return axis;
+}
+
+const BlockCurve& RunPathBuilder::curve(size_t block) {
+  while (path_.first + path_.curves.size() <= block)
+    path_.curves.emplace_back(motions_[path_.first + path_.curves.size()], inverse_, reference_mm_s_);
+  return path_.curve(block);
+}
+
+void RunPathBuilder::look_at(size_t block) {
+  if (curve(block).length() < kLengthMin) {
+    ++at_.next;
+    return;
+  }
+  const double from = at_.before ? add_corner(*at_.before, block) : 0.0;
+  at_ = {block, block + 1, from, 0};
+}
+
+void RunPathBuilder::add_cells(size_t first) {
+  double offset = 0.0;
+  PathPlace start = at_;
+  for (size_t i = first; i < path_.cells.size(); ++i) {
+    PathCell& cell = path_.cells[i];
+    limit_speed(limits_, cell);
+    if (!std::isfinite(cell.speed)) {
+      cell.speed = kRapidUnfollowed;
+      cell.tip = {options_.path_acceleration_max, options_.path_jerk_max};
+    }
+    path_.piece_of_cell.push_back(path_.pieces.size() - 1);
+    path_.offset_of_cell.push_back(offset);
+    offset += cell.length;
+    ++at_.skip;
+  }
+  place_of_piece_.push_back(start);
+}
+
+BlockCurve::TipLimits RunPathBuilder::tip_limits(size_t block) const {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  const BlockMove& move = *motions_[block].block;
+  const RampLimits path =
+      rapid_ ? RampLimits{kNone, kNone} : RampLimits{options_.path_acceleration_max, options_.path_jerk_max};
+  return {move.feed_mm_s, move.duration_s, path};
+}
+
+void RunPathBuilder::add_block_piece(size_t block, double from, double to) {
+  if (!(to - from > kLengthMin)) return;
+  const size_t first = path_.cells.size();
+  path_.curve(block).append_cells(from, to, tip_limits(block), path_.cells);
+  path_.pieces.push_back({block, from, to - from, -1});
+  add_cells(first);
+}
+
+/// The piece of block a up to its corner with block b, and the corner. Returns where b's own piece starts.
+double RunPathBuilder::add_corner(size_t a, size_t b) {
+  const BlockCurve &out = curve(b), &in = curve(a);  // b first: it may move the others
+  const double from = at_.from;
+  if (!in.followed() || !out.followed()) {
+    add_block_piece(a, from, in.length());
+    path_.cells.back().stop = true;
+    return 0.0;
+  }
+  if (in.even() && out.even()) {
+    const AxisValues change = in.jet(in.length()).first - out.jet(0.0).first;
+    if (change.cwiseAbs().maxCoeff() < kStraight) {
+      add_block_piece(a, from, in.length());
+      return 0.0;
+    }
+  }
+  const Blend blend = fit(a, b);
+  const double d = blend.before;
+  add_block_piece(a, from, in.length() - d);
+  const size_t first = path_.cells.size();
+  PathCell cell = blend_cell(blend);
+  limit_tip(a, b, cell);
+  path_.cells.push_back(cell);
+  path_.blends.push_back(blend);
+  path_.pieces.push_back({a, in.length() - d, blend.length, static_cast<int>(path_.blends.size()) - 1});
+  add_cells(first);
+  return d;
+}
+
+/// Feed and path limits of both blocks beside the corner.
+void RunPathBuilder::limit_tip(size_t a, size_t b, PathCell& cell) const {
+  std::vector<PathCell> sides;
+  const double d = 0.5 * cell.length;
+  const BlockCurve& in = path_.curve(a);
+  in.append_cells(in.length() - d, in.length(), tip_limits(a), sides);
+  path_.curve(b).append_cells(0.0, d, tip_limits(b), sides);
+  cell.speed = cell.tip.acceleration = cell.tip.jerk = std::numeric_limits<double>::infinity();
+  for (const PathCell& side : sides) {
+    cell.speed = std::min(cell.speed, side.speed);
+    cell.tip.acceleration = std::min(cell.tip.acceleration, side.tip.acceleration);
+    cell.tip.jerk = std::min(cell.tip.jerk, side.tip.jerk);
+  }
+}
+
+/// The longest corner within the tolerance: its deviation grows with its length, at least about linearly.
+Blend RunPathBuilder::fit(size_t a, size_t b) const {
+  const BlockCurve &in = path_.curve(a), &out = path_.curve(b);
+  const double tolerance = corner_tolerance(*motions_[a].block, options_);
+  double d = kCornerShare * std::min(in.length(), out.length());
+  for (int i = 0; i < kFits; ++i) {
+    Blend blend = blend_between(in.jet(in.length() - d), out.jet(d), d, d);
+    blend.deviation = deviation(a, b, blend);
+    if (blend.deviation <= tolerance) return blend;
+    d *= std::min(0.98, 0.999 * tolerance / blend.deviation);
+  }
+  SWARF_CHECK(false, "a corner becomes as sharp as it must");
+  return {};
+}
+
+/// Greatest distance of the tip from the programmed one at the same s.
+double RunPathBuilder::deviation(size_t a, size_t b, const Blend& blend) const {
+  constexpr int kPlaces = 16;
+  const BlockCurve &in = path_.curve(a), &out = path_.curve(b);
+  std::array<double, kPlaces + 1> distance{};
+  for (int i = 1; i < kPlaces; ++i) {
+    const double s = blend.length * i / kPlaces;
+    const ToolPose programmed = s < blend.before
+                                    ? pose_at(motions_[a], in.share(in.length() - blend.before + s))
+                                    : pose_at(motions_[b], out.share(s - blend.before));
+    const ToolPose rounded = kinematics::forward(machine_, blend.q(s));
+    distance[static_cast<size_t>(i)] = (rounded.tip_W - programmed.tip_W).norm();
+  }
+  // Between the places: the top of the parabola through the greatest and those beside it.
+  const auto top = std::max_element(distance.begin() + 1, distance.end() - 1);
+  const double before = *(top - 1), after = *(top + 1), bend = 2.0 * *top - before - after;
+  return bend > 0.0 ? *top + std::pow(before - after, 2) / (8.0 * bend) : *top;
+}
 PathPoint point_at(const RunPath& path, size_t cell, double offset) {
   const Piece& piece = path.pieces[path.piece_of_cell[cell]];
   const double s = path.offset_of_cell[cell] + offset;
   PathPoint point;
   point.block = piece.block;
   if (piece.blend < 0) {
-    const BlockCurve& curve = path.curves[piece.block];
+    const BlockCurve& curve = path.curve(piece.block);
     point.share = curve.share(piece.from + s);
     point.q = curve.q(piece.from + s);
     return point;
@@ -270,11 +311,11 @@ PathPoint point_at(const RunPath& path, size_t cell, double offset) {
   point.rounded = true;
   point.q = blend.q(s);
   if (s <= blend.before) {
-    point.share = path.curves[piece.block].share(piece.from + s);
+    point.share = path.curve(piece.block).share(piece.from + s);
   } else {
     do ++point.block;
-    while (path.curves[point.block].length() < kLengthMin);
-    point.share = path.curves[point.block].share(s - blend.before);
+    while (path.curve(point.block).length() < kLengthMin);
+    point.share = path.curve(point.block).share(s - blend.before);
   }
   return point;
 }

@@ -15,7 +15,8 @@
 #include <vector>
 
 #include "motion/block_curve.h"
-#include "motion/interpolator.h"
+#include "motion/options.h"
+#include "toolpath/tool_path.h"
 
 namespace swarf::motion {
 
@@ -39,21 +40,70 @@ struct Piece {
   int blend = -1;  ///< index into RunPath::blends
 };
 
+/// Of a run, or of a stretch of it. Blocks are counted from the start of the run.
 struct RunPath {
-  std::vector<BlockCurve> curves;  ///< one per block of the run; those that go nowhere have length 0
+  size_t first = 0;                ///< block of curves.front()
+  std::vector<BlockCurve> curves;  ///< one per block; those that go nowhere have length 0
   std::vector<Blend> blends;
   std::vector<Piece> pieces;
   std::vector<PathCell> cells;
   std::vector<size_t> piece_of_cell;
   std::vector<double> offset_of_cell;  ///< s from the start of its piece
+  const BlockCurve& curve(size_t block) const { return curves[block - first]; }
 };
 
 /// Greatest deviation that the corner at the end of a block may have, mm.
 double corner_tolerance(const toolpath::BlockMove& block, const MotionOptions& options);
 
-/// `motions`: the blocks of one run. Where the machine does not follow a block, it stops at both ends of it.
-RunPath run_path(std::span<const BlockMotion> motions, const kinematics::InverseKinematics& inverse,
-                 const MotionOptions& options);
+/// The start of a cell: from here a run's path can be made again.
+struct PathPlace {
+  std::optional<size_t> before;  ///< block whose piece and corner are next; none at the start of the run
+  size_t next = 0;               ///< first block behind it that has not been looked at
+  double from = 0.0;             ///< s of `before` where its own piece starts
+  size_t skip = 0;               ///< cells between there and the place
+};
+
+/// The path of one run, made cell by cell from any place on.
+class RunPathBuilder {
+ public:
+  /// `motions`: the blocks of one run; they, inverse and options must outlive it. Where the machine does not
+  /// follow a block, it stops at both ends of it.
+  RunPathBuilder(std::span<const BlockMotion> motions, const kinematics::InverseKinematics& inverse,
+                 const MotionOptions& options, const PathPlace& start = {});
+
+  /// Goes on until there are so many cells or the run is over.
+  void extend(size_t cells);
+  bool at_end() const { return done_; }
+  const RunPath& path() const { return path_; }
+  const AxisLimits& limits() const { return limits_; }
+  /// The start of one of the path's cells.
+  PathPlace place(size_t cell) const;
+  /// Forgets the first cells.
+  void drop(size_t cells);
+
+ private:
+  double reference_speed() const;
+  void look_at(size_t block);
+  const BlockCurve& curve(size_t block);
+  BlockCurve::TipLimits tip_limits(size_t block) const;
+  void add_cells(size_t first);
+  void add_block_piece(size_t block, double from, double to);
+  double add_corner(size_t a, size_t b);
+  void limit_tip(size_t a, size_t b, PathCell& cell) const;
+  Blend fit(size_t a, size_t b) const;
+  double deviation(size_t a, size_t b, const Blend& blend) const;
+
+  std::span<const BlockMotion> motions_;
+  const kinematics::InverseKinematics& inverse_;
+  const MotionOptions& options_;
+  const kinematics::MachineModel& machine_;
+  AxisLimits limits_;
+  bool rapid_ = false, done_ = false;
+  double reference_mm_s_ = 0.0;
+  PathPlace at_;  ///< skip: cells of this corner so far
+  RunPath path_;
+  std::vector<PathPlace> place_of_piece_;  ///< of its first cell
+};
 
 /// Block, share of it and axis values at a place.
 struct PathPoint {

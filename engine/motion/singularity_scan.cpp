@@ -115,7 +115,7 @@ std::optional<SingularityScan> scan_singularity(const toolpath::ToolPath& path,
   scan.tolerance_mm = tolerance_mm;
   scan.outer_axis = machine.axes[static_cast<size_t>(poles.outer)].name;
   scan.inner_axis = machine.axes[static_cast<size_t>(poles.inner)].name;
-  const std::vector<BlockMotion> motions = block_motions(path, by_tool);
+  const std::vector<BlockMotion> motions = block_motions(path.elements, by_tool);
   const std::vector<int> elements = feed_blocks(motions, scan);
   scan.blocks = static_cast<int>(elements.size());
   if (elements.empty()) return std::nullopt;

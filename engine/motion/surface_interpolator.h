@@ -17,8 +17,8 @@
 
 #include "cutter/cutter.h"
 #include "kinematics/machine_model.h"
-#include "motion/interpolator.h"
 #include "motion/jerk_profile.h"
+#include "motion/options.h"
 #include "motion/speed_clamps.h"
 #include "toolpath/tool_path.h"
 

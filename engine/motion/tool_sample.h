@@ -24,6 +24,14 @@ struct ToolSample {
   bool rounded = false;  ///< in the rounded corner between two blocks: the pose leaves their path a little
 };
 
+/// One cycle of a program.
+struct Cycle {
+  ToolSample sample;
+  kinematics::AxisValues q = kinematics::AxisValues::Zero();
+  bool reached = true;    ///< false: out of reach, the axes stand still
+  float cost_ns = -1.0F;  ///< of its interpolation and inverse, real-time modes only; else below 0
+};
+
 /// Samples and axis positions of a whole program, same length.
 struct Trajectory {
   double period_s = 1e-3;

@@ -38,7 +38,12 @@ void BM_Plan(benchmark::State& state) {
       const std::vector<BlockMotion> motions = block_motions(path, machine);
       for (size_t first = 0; first < motions.size();) {
         const size_t end = run_end(motions, first);
-        benchmark::DoNotOptimize(plan_run(motions, first, end, inverse, options).duration_s);
+        RunPlace run;
+        run.first = first;
+        run.end = end;
+        RunPlanner planner(motions, run, inverse, options);
+        while (!planner.next().last) {
+        }
         first = end;
       }
     }
@@ -54,8 +59,8 @@ void BM_PlanAndSample(benchmark::State& state) {
   for (auto _ : state) {
     for (const toolpath::ToolPath& path : paths) {
       Progress silent;
-      const MotionResult result = interpolate(path, machine, cutter::Cutter{}, MotionOptions{}, silent);
-      cycles += static_cast<double>(result.statistics.ticks);
+      Cycles made(path.elements, std::span(&machine, 1), cutter::Cutter{}, MotionOptions{});
+      cycles += static_cast<double>(interpolate(made, silent).statistics.ticks);
     }
   }
   report(state, cycles);

@@ -8,6 +8,7 @@
 #include "base/units.h"
 #include "motion/jerk_profile.h"
 #include "motion/motion_check.h"
+#include "unit/motion/interpolated.h"
 #include "toolpath/cl_path.h"
 #include "unit/motion/dome.h"
 
@@ -16,7 +17,7 @@ namespace {
 
 using toolpath::BlockLaw;
 
-MotionResult run(const std::string& text, BlockLaw law) {
+Interpolated run(const std::string& text, BlockLaw law) {
   Diagnostics diagnostics;
   const program::ClProgram program = program::parse_cl(text, "test.cl", diagnostics);
   const toolpath::ToolPath path = toolpath::cl_path(program, law, diagnostics);
@@ -25,7 +26,7 @@ MotionResult run(const std::string& text, BlockLaw law) {
   return interpolate(path, paper_machine(), cutter::Cutter{}, MotionOptions{}, silent);
 }
 
-double longest_tick(const MotionResult& result, SampleKind kind) {
+double longest_tick(const Interpolated& result, SampleKind kind) {
   double longest = 0.0;
   for (size_t k = 1; k < result.trajectory.samples.size(); ++k) {
     const ToolSample& sample = result.trajectory.samples[k];
@@ -36,7 +37,7 @@ double longest_tick(const MotionResult& result, SampleKind kind) {
 }
 
 TEST(BlockRun, KeepsItsFeedAlongItsBlocksAndItsToleranceAtCorners) {
-  const MotionResult result =
+  const Interpolated result =
       run("FEDRAT/3000\nGOTO/0,0,30\nGOTO/30,0,30\nGOTO/30,20,30\nGOTO/30,40,30\nGOTO/30,40,25\n",
           BlockLaw::kTcp);
   const Trajectory& trajectory = result.trajectory;
@@ -67,7 +68,7 @@ TEST(BlockRun, KeepsItsFeedAlongItsBlocksAndItsToleranceAtCorners) {
 
 TEST(BlockRun, StartsFromRestAfterARapidAndRapidsObeyTheMachine) {
   for (const BlockLaw law : {BlockLaw::kTcp, BlockLaw::kJoint}) {
-    const MotionResult result =
+    const Interpolated result =
         run("MULTAX/ON\nFROM/0,0,60,0,0,1\nRAPID\nGOTO/40,10,30,0,0.173648178,0.984807753\nFEDRAT/600\n"
             "GOTO/45,10,30\nFEDRAT/1200\nGOTO/50,10,30,0,0.190808995,0.981627183\n",
             law);
@@ -82,7 +83,7 @@ TEST(BlockRun, StartsFromRestAfterARapidAndRapidsObeyTheMachine) {
 }
 
 TEST(BlockRun, JointBlocksMoveEveryAxisEvenly) {
-  const MotionResult result =
+  const Interpolated result =
       run("MULTAX/ON\nFEDRAT/1200\nGOTO/20,0,0,0,0.342020143,0.939692621\n"
           "GOTO/10,17,0,-0.296198133,0.171010072,0.939692621\n",
           BlockLaw::kJoint);
@@ -96,7 +97,7 @@ TEST(BlockRun, JointBlocksMoveEveryAxisEvenly) {
 
 TEST(BlockRun, ABlockThatOnlyTurnsTakesTheTimeOfItsAxis) {
   // 30 degrees of the tilt axis at 120 deg/s, whatever the feed says.
-  const MotionResult result =
+  const Interpolated result =
       run("MULTAX/ON\nFEDRAT/60000\nGOTO/0,0,0,0,0.5,0.866025404\nGOTO/0,0,0,0,0.866025404,0.5\n",
           BlockLaw::kTcp);
   EXPECT_GT(result.statistics.time_s, 0.25);

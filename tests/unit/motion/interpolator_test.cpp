@@ -1,5 +1,5 @@
 // Whole paths: passes, free moves, findings, modes against each other.
-#include "motion/interpolator.h"
+#include "unit/motion/interpolated.h"
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ namespace {
 
 const cutter::Cutter kCutter;
 
-MotionResult run(const toolpath::ToolPath& path, const MotionOptions& options = {},
+Interpolated run(const toolpath::ToolPath& path, const MotionOptions& options = {},
                  const kinematics::MachineModel& machine = paper_machine()) {
   Progress silent;
   return interpolate(path, machine, kCutter, options, silent);
@@ -33,14 +33,14 @@ toolpath::ToolPath dome_path(double feed = 50.0) {
   return path_of(passes, kCutter.radius());
 }
 
-void expect_clean(const MotionResult& result, const kinematics::MachineModel& machine) {
+void expect_clean(const Interpolated& result, const kinematics::MachineModel& machine) {
   EXPECT_EQ(check_motion(result.trajectory, machine), "");
   for (const MotionFinding& finding : result.findings) ADD_FAILURE() << finding.code << ": " << finding.text;
 }
 
 TEST(Interpolate, DomePathIsCleanAndKeepsAllAxisLimits) {
   const kinematics::MachineModel machine = paper_machine();
-  const MotionResult result = run(dome_path());
+  const Interpolated result = run(dome_path());
   expect_clean(result, machine);
   const MotionStatistics& is = result.statistics;
   EXPECT_LT(is.feed_error_max_rel, 1e-9);
@@ -67,7 +67,7 @@ TEST(Interpolate, DomePathIsCleanAndKeepsAllAxisLimits) {
 }
 
 TEST(Interpolate, StartsAndStopsAtRestAtEveryElement) {
-  const MotionResult result = run(dome_path());
+  const Interpolated result = run(dome_path());
   const auto& samples = result.trajectory.samples;
   for (size_t k = 1; k + 1 < samples.size(); ++k) {
     if (samples[k].element == samples[k + 1].element) continue;
@@ -100,7 +100,7 @@ TEST(Interpolate, LeanedPassesAreClean) {
 
 TEST(Interpolate, PassThroughThePoleChangesTheBranchInsteadOfTurning) {
   // v = .5 meets the pole exactly at u = .5: the tilt goes through zero, the rotary stands still.
-  const MotionResult result = run(path_of({iso_pass(dome(), 0.5, 50.0)}, kCutter.radius()));
+  const Interpolated result = run(path_of({iso_pass(dome(), 0.5, 50.0)}, kCutter.radius()));
   expect_clean(result, paper_machine());
   double low = 1e9, high = -1e9;
   for (size_t k = 0; k < result.trajectory.samples.size(); ++k) {
@@ -123,7 +123,7 @@ TEST(Interpolate, RandomNearPolePassesKeepTheAxisSpeeds) {
     pass.t_end = rng.uniform(0.55, 1.0);
     MotionOptions options;
     if (i % 2 == 1) options.mode = Mode::kTaylor1;
-    const MotionResult result = run(path_of({pass}, kCutter.radius()), options);
+    const Interpolated result = run(path_of({pass}, kCutter.radius()), options);
     SCOPED_TRACE(testing::Message() << (i % 2 == 1 ? "taylor1" : "surface") << ": v 0.5 + " << distance
                                     << " / 80, t " << pass.t_start << " .. " << pass.t_end << ", feed "
                                     << pass.feed_mm_s);
@@ -141,7 +141,7 @@ TEST(Interpolate, LeavingThePoleAtOnceIsAFindingAndTakesNoEternity) {
   const ToolPose aside{Vec3(0, 0, 50), Vec3(0.5, 0, std::sqrt(0.75))};
   path.elements.push_back({toolpath::FreeMove{toolpath::MoveKind::kRapid, pole, aside, 0.0}, 0,
                            SourceLocation{"test.nc", 11, 1}});
-  const MotionResult result = run(path);
+  const Interpolated result = run(path);
   EXPECT_LT(result.statistics.time_s, 10.0);
   ASSERT_FALSE(result.findings.empty());
   EXPECT_EQ(result.findings.front().code, "axis-speed");
@@ -152,7 +152,7 @@ TEST(Interpolate, TravelBeyondALimitIsAFindingWithAmountAndUnit) {
   const toolpath::ToolPath path = path_of({iso_pass(dome(), 0.3, 50.0)}, kCutter.radius());
   const double reached = run(path).statistics.axes[2].max;
   machine.axes[2].max = std::floor(reached) - 1.0;
-  const MotionResult result = run(path, {}, machine);
+  const Interpolated result = run(path, {}, machine);
   const auto finding = std::find_if(result.findings.begin(), result.findings.end(),
                                     [](const MotionFinding& one) { return one.code == "travel"; });
   ASSERT_NE(finding, result.findings.end());
@@ -167,7 +167,7 @@ TEST(Interpolate, UnreachablePosesAreAFinding) {
   kinematics::MachineModel machine = paper_machine();
   machine.axes.pop_back();
   machine.table_chain = {3};
-  const MotionResult result = run(path_of({iso_pass(dome(), 0.3, 50.0)}, kCutter.radius()), {}, machine);
+  const Interpolated result = run(path_of({iso_pass(dome(), 0.3, 50.0)}, kCutter.radius()), {}, machine);
   const auto finding = std::find_if(result.findings.begin(), result.findings.end(),
                                     [](const MotionFinding& one) { return one.code == "unreachable"; });
   ASSERT_NE(finding, result.findings.end());
@@ -198,7 +198,7 @@ TEST(Interpolate, StopsBetweenElementsWhenAsked) {
     void advance(double now) override { done = now; }
     bool stop_requested() const override { return done >= 3.0; }
   } impatient;
-  const MotionResult result = interpolate(dome_path(), paper_machine(), kCutter, {}, impatient);
+  const Interpolated result = interpolate(dome_path(), paper_machine(), kCutter, {}, impatient);
   EXPECT_EQ(result.trajectory.samples.back().element, 2);
   EXPECT_EQ(check_motion(result.trajectory, paper_machine()), "");
 }
@@ -211,7 +211,7 @@ TEST(Offline, SegmentsKeepTheChordToleranceAndUseIt) {
   EXPECT_EQ(segment_pass(back).size() - 1, 55u);
 }
 
-MotionResult offline(OfflineOrientation orientation, bool look_ahead) {
+Interpolated offline(OfflineOrientation orientation, bool look_ahead) {
   MotionOptions options;
   options.mode = Mode::kOffline;
   options.orientation = orientation;
@@ -221,7 +221,7 @@ MotionResult offline(OfflineOrientation orientation, bool look_ahead) {
 
 TEST(Offline, ErrorsOfTheThreeOrientations) {
   const auto error = [](OfflineOrientation orientation) {
-    const MotionResult result = offline(orientation, false);
+    const Interpolated result = offline(orientation, false);
     expect_clean(result, paper_machine());
     EXPECT_LE(result.statistics.chord_error_max_mm, 1.001e-3);
     EXPECT_GT(result.statistics.chord_error_max_mm, 0.9e-3);
@@ -241,7 +241,7 @@ TEST(Offline, StoppingCostsTimeAndLookAheadWinsItBack) {
   MotionOptions surface;
   const double real_time =
       run(path_of({iso_pass(dome(), 0.3, 50.0)}, kCutter.radius()), surface).statistics.time_s;
-  const MotionResult look_ahead = offline(OfflineOrientation::kLinearAlongChord, true);
+  const Interpolated look_ahead = offline(OfflineOrientation::kLinearAlongChord, true);
   expect_clean(look_ahead, paper_machine());
   const double stops = offline(OfflineOrientation::kLinearAlongChord, false).statistics.time_s;
   EXPECT_GT(stops, 2.0 * real_time);

@@ -21,7 +21,7 @@ TEST(LookAhead, NoAxisLimitIsExceededInRandomPrograms) {
     Rng rng(seed);
     const toolpath::ToolPath path = random_program(machine, rng, 200);
     Progress silent;
-    const MotionResult result = interpolate(path, machine, cutter::Cutter{}, MotionOptions{}, silent);
+    const Interpolated result = interpolate(path, machine, cutter::Cutter{}, MotionOptions{}, silent);
     const Excess excess = axis_excess(result.trajectory, machine);
     worst = std::max(worst, excess.relative);
     deviation = std::max(deviation, result.statistics.corner_deviation_max_mm);

@@ -47,14 +47,14 @@ BlockMove& block_of(toolpath::ToolPath& path, size_t i) {
   return std::get<BlockMove>(path.elements[i].what);
 }
 
-MotionResult run(const toolpath::ToolPath& path, const MachineModel& machine,
+Interpolated run(const toolpath::ToolPath& path, const MachineModel& machine,
                  const MotionOptions& options = {}) {
   Progress silent;
   return interpolate(path, machine, cutter::Cutter{}, options, silent);
 }
 
 /// Speed of the tip in the middle of the corner after an element, mm/s.
-double speed_at_corner(const MotionResult& result, int element) {
+double speed_at_corner(const Interpolated& result, int element) {
   const auto& samples = result.trajectory.samples;
   for (size_t k = 1; k < samples.size(); ++k) {
     if (samples[k].element > element)
@@ -71,14 +71,14 @@ TEST(LookAhead, ExactStopComesToRestAndALargerToleranceIsFaster) {
   toolpath::ToolPath path = path_through(machine, kCorner, BlockLaw::kTcp, 50.0);
   const double by_default = speed_at_corner(run(path, machine), 0);
   block_of(path, 0).corner_tolerance_mm = 0.2;
-  const MotionResult wide = run(path, machine);
+  const Interpolated wide = run(path, machine);
   EXPECT_GT(by_default, 2.0);
   EXPECT_GT(speed_at_corner(wide, 0), 2.0 * by_default);
   EXPECT_GT(wide.statistics.corner_deviation_max_mm, 0.15);
   EXPECT_LE(wide.statistics.corner_deviation_max_mm, 0.2);
   EXPECT_GE(wide.statistics.corner_element, 0);
   block_of(path, 0).exact_stop = true;
-  const MotionResult stopped = run(path, machine);
+  const Interpolated stopped = run(path, machine);
   EXPECT_LT(speed_at_corner(stopped, 0), 0.1);
   EXPECT_EQ(stopped.statistics.corner_deviation_max_mm, 0.0);
 }
@@ -88,7 +88,7 @@ TEST(LookAhead, ReversalInPlaceIsRounded) {
   const toolpath::ToolPath path =
       path_through(machine, {values(0, 0, 0, 0.3, 0), values(20, 0, 0, 0.3, 0), values(0, 0, 0, 0.3, 0)},
                    BlockLaw::kTcp, 50.0);
-  const MotionResult result = run(path, machine);
+  const Interpolated result = run(path, machine);
   EXPECT_LE(axis_excess(result.trajectory, machine).relative, 1e-9);
   EXPECT_LE(result.statistics.corner_deviation_max_mm, 0.01);
 }
@@ -99,7 +99,7 @@ TEST(LookAhead, DwellsAndTimesByKindAndTool) {
   block_of(path, 1).dwell_s = 0.25;
   block_of(path, 1).tool = 2;
   block_of(path, 0).feed_mm_s = 0.0;
-  const MotionResult result = run(path, machine);
+  const Interpolated result = run(path, machine);
   const CycleTime& cycle = result.statistics.cycle;
   EXPECT_NEAR(cycle.dwell_s, 0.25, 1e-9);
   // The cycle in which the tool changes is of no kind.
@@ -120,7 +120,7 @@ TEST(LookAhead, DurationOfABlockReplacesItsFeed) {
   toolpath::ToolPath path =
       path_through(machine, {values(0, 0, 0, 0.3, 0), values(100, 0, 0, 0.3, 0)}, BlockLaw::kTcp, 500.0);
   block_of(path, 0).duration_s = 5.0;
-  const MotionResult result = run(path, machine);
+  const Interpolated result = run(path, machine);
   EXPECT_NEAR(result.statistics.time_s, RestToRest(100, 20, 2000, 5e4).duration(), 2e-3);
 }
 
@@ -129,7 +129,7 @@ TEST(LookAhead, TurnsOfTheProgramAreFollowed) {
   const MachineModel machine = paper_machine();
   for (const BlockLaw law : {BlockLaw::kJoint, BlockLaw::kTcpAxes}) {
     const AxisValues from = values(10, 20, 30, 0.4, 0.1), to = values(12, 20, 30, 0.5, 0.1 + 5.0 * kPi);
-    const MotionResult result = run(path_through(machine, {from, to}, law, 20.0), machine);
+    const Interpolated result = run(path_through(machine, {from, to}, law, 20.0), machine);
     EXPECT_EQ(check_motion(result.trajectory, machine), "") << law_name(law);
     EXPECT_LT((result.trajectory.axes.front() - from).norm(), 1e-12);
     EXPECT_LT((result.trajectory.axes.back() - to).norm(), 1e-9);
@@ -144,7 +144,7 @@ TEST(LookAhead, TurnsOfTheProgramAreFollowed) {
 TEST(LookAhead, WarningsHaveTheTimeOfTheirBlock) {
   const MachineModel machine = paper_machine();
   const AxisValues from = values(0, 0, 0, 0.4, 0.1), there = values(100, 0, 0, 0.4, 0.1);
-  const MotionResult result = run(
+  const Interpolated result = run(
       path_through(machine, {from, there, values(100, 0, 0, 0.4, 0.1 + 1.5 * kPi)}, BlockLaw::kJoint, 20.0),
       machine);
   ASSERT_FALSE(result.findings.empty());
@@ -157,7 +157,7 @@ TEST(LookAhead, WarningsHaveTheTimeOfTheirBlock) {
 TEST(LookAhead, TheBranchIsThatOfTheProgramEvenOutOfTravel) {
   MachineModel machine = paper_machine();
   machine.axes[3].max = 0.2;  // the program tilts further; the other branch would be within travel
-  const MotionResult result =
+  const Interpolated result =
       run(path_through(machine, {values(10, 20, 30, 0.4, 0.1), values(12, 20, 30, 0.5, 0.2)}, BlockLaw::kTcp,
                        20.0),
           machine);
@@ -173,7 +173,7 @@ TEST(LookAhead, WholeCircleHoldsItsFeedAndReturns) {
       path_through(machine, {values(0, 0, 0, 0.3, 0), values(0, 0, 0, 0.3, 0)}, BlockLaw::kTcp, 40.0);
   BlockMove& block = block_of(path, 0);
   block.arc = program::ClArc{block.from.tip_W + Vec3(25, 0, 0), Vec3::UnitZ()};
-  const MotionResult result = run(path, machine);
+  const Interpolated result = run(path, machine);
   EXPECT_EQ(check_motion(result.trajectory, machine), "");
   EXPECT_NEAR(result.statistics.path_length_mm, 50 * kPi, 1e-4);
   EXPECT_NEAR(result.statistics.time_s, RestToRest(50 * kPi, 40, 2000, 5e4).duration(), 0.02);
@@ -198,7 +198,7 @@ TEST(DogLeg, EachAxisArrivesByItself) {
   EXPECT_EQ(first.dwell_s, 0.1);
   EXPECT_EQ(second.dwell_s, 0.0);
   EXPECT_TRUE(second.exact_stop);
-  const MotionResult result = run(legs, machine);
+  const Interpolated result = run(legs, machine);
   EXPECT_LE(axis_excess(result.trajectory, machine).relative, 1e-9);
   EXPECT_GT(result.statistics.cycle.rapid_s, 0.4) << "40 mm of Y at 100 mm/s";
   EXPECT_LT(result.statistics.cycle.rapid_s, 0.6);

@@ -8,8 +8,8 @@
 #include <string>
 
 #include "base/rng.h"
-#include "motion/interpolator.h"
 #include "unit/motion/dome.h"
+#include "unit/motion/interpolated.h"
 
 namespace swarf::motion {
 

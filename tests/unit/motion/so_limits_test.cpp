@@ -73,7 +73,7 @@ TEST(SoLimits, TimeAtTheLimitOfCIsTheIntegralOfItsTurn) {
   options.path_acceleration_max = 1e8;
   options.path_jerk_max = 1e13;
   Progress silent;
-  const MotionResult result =
+  const Interpolated result =
       interpolate(table_2(BlockLaw::kTcp, 1000.0), machine, cutter::Cutter{}, options, silent);
   const double bound = swing() / machine.axes[4].speed_max;
   const double at_limit = result.statistics.axes[4].time_at_speed_limit_s;
@@ -97,7 +97,7 @@ TEST(SoLimits, WithItsRampsTheTimeIsThatOfCAlone) {
   options.path_acceleration_max = 1e8;
   options.path_jerk_max = 1e13;
   Progress silent;
-  const MotionResult result =
+  const Interpolated result =
       interpolate(table_2(BlockLaw::kTcp, 1000.0), machine, cutter::Cutter{}, options, silent);
   const double bound =
       swing() / c.speed_max + c.speed_max / c.acceleration_max + c.acceleration_max / c.jerk_max;
@@ -124,14 +124,14 @@ TEST(SoLimits, FastRotaryMovesAndSwingsAreNamedWithTheirBlocks) {
   const toolpath::ToolPath path = table_2(BlockLaw::kTcp, 5.0);
   const std::vector<BlockMotion> motions = block_motions(path, machine);
   MotionOptions options;
-  std::vector<MotionFinding> findings = find_fast_turns(path, motions, options);
+  std::vector<MotionFinding> findings = find_fast_turns(path.elements, motions, options);
   ASSERT_EQ(findings.size(), 1U);
   EXPECT_EQ(findings[0].code, "fast-rotary");
   EXPECT_EQ(findings[0].severity, Severity::kWarning);
   EXPECT_NE(findings[0].text.find("24.4 deg/mm"), std::string::npos) << findings[0].text;
   EXPECT_EQ(findings[0].where.line, 1);
   options.swing_rad = rad_from_deg(20.0);
-  findings = find_fast_turns(path, motions, options);
+  findings = find_fast_turns(path.elements, motions, options);
   ASSERT_EQ(findings.size(), 2U);
   EXPECT_EQ(findings[1].code, "swing");
   EXPECT_NE(findings[1].text.find("-27."), std::string::npos) << findings[1].text;
