@@ -29,8 +29,10 @@ int export_run(const ExportOptions& options) {
   }
   for (const std::string& file : {options.gltf, options.machine_gltf, options.stl, options.ply, options.vdb})
     reports::check_output_file(file);
+  TerminalProgress progress;
   const reports::StoredRun stored = reports::read_run(options.folder);
-  const reports::FinishedRun run{stored.job, stored.trajectory, stored.stock, stored.dexels};
+  const sim::MeasuredPath path = sim::move_tool(stored.job, progress);
+  const reports::FinishedRun run{stored.job, *path.cycles, stored.stock, stored.dexels};
   if (!options.gltf.empty() || !options.machine_gltf.empty()) {
     const reports::DisplayMesh light =
         reports::display_mesh(run, stored.stock.mesh(), options.error_um * kMicrometre);

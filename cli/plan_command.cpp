@@ -33,14 +33,16 @@ void add_move(program::ClProgram& program, const ToolPose& to, double feed_mm_s)
 
 /// The path as CL data: one GOTO for each control cycle in contact, for both ends of a free move.
 program::ClProgram cl_program(const sim::Job& job, const toolpath::ToolPath& path,
-                              const motion::Trajectory& trajectory) {
+                              const motion::Cycles& cycles) {
   const cutter::Cutter& c = job.scene.tools.front();
   program::ClProgram program;
   program.notes.push_back({"PARTNO", job.scene.name, 0});
   program.tools.push_back({c.number, {}, {}});
   program.cutters.push_back({{c.diameter_mm, c.corner_radius_mm}, 0, {}});
   int element = -1;
-  for (const motion::ToolSample& sample : trajectory.samples) {
+  motion::CycleReader reader(cycles);
+  for (size_t k = 0; k < cycles.size(); ++k) {
+    const motion::ToolSample& sample = reader.at(k).sample;
     const toolpath::Element& entry = path.elements[static_cast<size_t>(sample.element)];
     const auto* move = std::get_if<toolpath::FreeMove>(&entry.what);
     if (sample.element != element && move != nullptr) add_move(program, move->to, move->feed_mm_s);
@@ -62,9 +64,9 @@ std::string planned_text(const sim::Job& job, toolpath::ToolPath& path) {
                      fmt::format("run it: swarf run {}", job.scene.file));
   }
   TerminalProgress progress;
-  const motion::MotionResult motion = motion::interpolate(
-      path, sim::machines_by_tool(job), job.scene.tools.front(), job.scene.motion, progress);
-  return program::write_cl(cl_program(job, path, motion.trajectory));
+  motion::Cycles cycles(path.elements, sim::machines_by_tool(job), job.scene.tools.front(), job.scene.motion);
+  cycles.walk([](std::span<const motion::Cycle>) {}, progress);
+  return program::write_cl(cl_program(job, path, cycles));
 }
 
 int plan(const PlanCommand& options) {

@@ -29,6 +29,7 @@ int render(const RenderOptions& options) {
   const reports::StillKind kind = reports::still_kind(options.kind);
   if (!options.camera.empty()) reports::camera_direction(options.camera);
   for (const std::string& file : {options.movie, options.still}) reports::check_output_file(file);
+  TerminalProgress progress;
   reports::StoredRun stored = reports::read_run(options.folder);
   if (options.size.size() == 2) {
     stored.job.scene.stills.size = {options.size[0], options.size[1]};
@@ -36,8 +37,8 @@ int render(const RenderOptions& options) {
   }
   if (options.samples > 0) stored.job.scene.stills.samples = options.samples;
   if (options.seconds > 0.0) stored.job.scene.movie.seconds = options.seconds;
-  const reports::FinishedRun run{stored.job, stored.trajectory, stored.stock, stored.dexels};
-  TerminalProgress progress;
+  const sim::MeasuredPath path = sim::move_tool(stored.job, progress);
+  const reports::FinishedRun run{stored.job, *path.cycles, stored.stock, stored.dexels};
   if (!options.still.empty()) {
     const std::string otherwise = kind == reports::StillKind::kMachine ? "machine" : "iso";
     reports::make_still(run, reports::shown_part(run, stored.stock.mesh()), kind,

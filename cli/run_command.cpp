@@ -21,11 +21,11 @@ namespace {
 struct RunOptions {
   std::string scene, output;
   std::vector<std::string> overrides;
-  std::string from, save_after;
+  std::string from, save_after, trajectory;
   int threads = 0;
   size_t record_every = 256;
   double max_memory_mb = 0.0;
-  bool no_render = false, json = false, record = false, check = false;
+  bool no_render = false, report = false, json = false, record = false, check = false;
 };
 
 void print_finding(const sim::Finding& finding) {
@@ -56,8 +56,10 @@ void print_outcome(const sim::Job& job, const sim::Result& result, const std::st
   fmt::print("\n{}\n", job.scene.title);
   print_table(reports::summary_lines(job, result));
   print_findings(result.findings);
-  fmt::print("  {}\n  report: {}\n", sim::verdict_sentence(result.checks),
-             (std::filesystem::path(folder) / "report.html").string());
+  const std::filesystem::path page = std::filesystem::path(folder) / "report.html";
+  const bool has_page = std::filesystem::exists(page);
+  fmt::print("  {}\n  {}: {}\n", sim::verdict_sentence(result.checks), has_page ? "report" : "results",
+             has_page ? page.string() : folder);
 }
 
 /// The command that was given, with every option that is not at its default.
@@ -79,6 +81,8 @@ std::vector<std::string> command_words(const RunOptions& options) {
   add(options.max_memory_mb > 0.0, "--max-memory", fmt::format("{}", options.max_memory_mb));
   add(options.threads > 0, "--threads", fmt::format("{}", options.threads));
   flag(options.no_render, "--no-render");
+  flag(options.report, "--report");
+  add(!options.trajectory.empty(), "--trajectory", options.trajectory);
   flag(options.json, "--json");
   add(!options.output.empty(), "-o", options.output);
   return words;
@@ -114,6 +118,7 @@ sim::CutOptions cut_options(const RunOptions& options, const reports::PendingFol
   cut.record_every = options.record_every;
   cut.check_voxels = options.check;
   cut.render = !options.no_render;
+  cut.cycles = !options.trajectory.empty();
   cut.overrides = options.overrides;
   return cut;
 }
@@ -129,8 +134,8 @@ int run(const RunOptions& options) {
   const std::string folder = options.output.empty() ? "out/" + job.scene.name : options.output;
   reports::check_output_folder(folder, reports::kRunMark, least_bytes(job.scene));
   reports::PendingFolder pending(folder);
-  const reports::OutputOptions output{!options.no_render, options.overrides,
-                                      shell_text(command_words(options))};
+  const reports::OutputOptions output{!options.no_render, !options.no_render || options.report,
+                                      options.overrides, shell_text(command_words(options))};
   reports::begin_run(pending, job, output);
   TerminalProgress progress;
   sim::Result result = sim::simulate(job, cut_options(options, pending), progress);
@@ -196,7 +201,13 @@ void add_run(CLI::App& app, int& exit_code) {
                    "threads to use (default: all cores); results do not depend on it")
       ->check(CLI::Range(1, 4096));
   add_stock_options(*command, *options);
-  command->add_flag("--no-render", options->no_render, "no movie and no stills");
+  command->add_flag("--no-render", options->no_render,
+                    "no movie, no stills, no page and no glTF: numbers, findings, stock and blocks.csv");
+  command->add_flag("--report", options->report, "with --no-render: page and glTF all the same");
+  command
+      ->add_option("--trajectory", options->trajectory,
+                   "write each control cycle too: csv (about 200 bytes a cycle, 700 MB for an hour)")
+      ->check(CLI::IsMember({"csv"}));
   command->add_flag("--json", options->json, "print metrics.json instead of the table");
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }

@@ -52,20 +52,15 @@ std::pair<TriMesh, TriMesh> split_by_measure(const TriMesh& mesh) {
   return {sub_mesh(mesh, measured, true), sub_mesh(mesh, rest, false)};
 }
 
-/// Evenly spaced samples of the program.
-std::vector<size_t> animation_samples(const FinishedRun& run) {
-  const size_t last = run.trajectory.samples.size() - 1;
-  const size_t count = std::min<size_t>(last, static_cast<size_t>(kAnimationSeconds) * kPosesPerSecond);
-  std::vector<size_t> samples;
-  for (size_t i = 0; i <= count; ++i) samples.push_back(count == 0 ? 0 : last * i / count);
-  samples.erase(std::unique(samples.begin(), samples.end()), samples.end());
-  return samples;
+/// Cycles spread evenly over the program.
+std::vector<motion::Cycle> animation_cycles(const FinishedRun& run) {
+  return run.cycles.spread(static_cast<size_t>(kAnimationSeconds) * kPosesPerSecond + 1);
 }
 
 }  // namespace
 
 double animation_scale(const FinishedRun& run) {
-  return std::max(1.0, run.trajectory.samples.back().t_s / kAnimationSeconds);
+  return std::max(1.0, run.cycles.time_s() / kAnimationSeconds);
 }
 
 void write_part_glb(const FinishedRun& run, const DisplayMesh& part, const std::string& path) {
@@ -96,7 +91,6 @@ void write_machine_glb(const FinishedRun& run, const DisplayMesh& part, const st
   TriMesh shown = mesh::decimate(part.mesh, kMachinePartError, nullptr);
   shown.deviation_um.clear();
   mesh::split_creases(shown, kCreaseRad);  // decimate() has joined them
-  const std::vector<size_t> samples = animation_samples(run);
   const double scale = animation_scale(run);
   std::vector<double> times;
   std::vector<std::vector<Pose>> link_poses(run.job.machine.links.size());
@@ -104,14 +98,14 @@ void write_machine_glb(const FinishedRun& run, const DisplayMesh& part, const st
   std::vector<std::vector<Pose>> tool_poses(tools);
   std::vector<std::vector<uint8_t>> tool_shown(tools);
   std::vector<Pose> work_poses;
-  for (const size_t i : samples) {
-    const kinematics::AxisValues& q = run.trajectory.axes[i];
-    times.push_back(run.trajectory.samples[i].t_s / scale);
+  for (const motion::Cycle& cycle : animation_cycles(run)) {
+    const kinematics::AxisValues& q = cycle.q;
+    times.push_back(cycle.sample.t_s / scale);
     const std::vector<Pose> poses = machine::link_poses(run.job.machine, q);
     for (size_t link = 0; link < poses.size(); ++link) link_poses[link].push_back(poses[link]);
     for (size_t tool = 0; tool < tools; ++tool) {
       tool_poses[tool].push_back(view.tool_pose(q, tool));
-      tool_shown[tool].push_back(run.tool_at(i) == tool ? 1 : 0);
+      tool_shown[tool].push_back(static_cast<size_t>(cycle.sample.tool) == tool ? 1 : 0);
     }
     work_poses.push_back(view.work_pose(q));
   }

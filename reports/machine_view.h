@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "kinematics/machine_model.h"
+#include "motion/cycles.h"
 #include "render/draw_list.h"
 #include "sim/scene.h"
 #include "stock/stock.h"
@@ -14,12 +15,9 @@ namespace swarf::reports {
 /// What pictures are made of: a run in memory, or one read back from its folder. Borrowed.
 struct FinishedRun {
   const sim::Job& job;
-  const motion::Trajectory& trajectory;
+  const motion::Cycles& cycles;
   const stock::Stock& stock;
   const std::vector<stock::SurfaceDexels>& dexels;
-
-  /// In the spindle at this sample: index into Scene::tools.
-  size_t tool_at(size_t sample) const { return static_cast<size_t>(trajectory.samples[sample].tool); }
 };
 
 /// Meshes of cutters and holders, made once from the scene's tools. `tool`: index into Scene::tools.

@@ -303,7 +303,7 @@ Json singularity_json(const toolpath::ToolPath& path, const motion::SingularityS
 
 /// Tools of the scene with the time that each stood in the spindle.
 Json tools_json(const sim::Job& job, const sim::Result& result) {
-  const std::vector<double> times = time_by_tool(job, result.main.motion.trajectory);
+  const std::vector<double> times = time_by_tool(job, result);
   Json list = Json::array();
   for (size_t i = 0; i < times.size(); ++i) {
     const cutter::Cutter& tool = job.scene.tools[i];

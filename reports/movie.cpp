@@ -20,18 +20,18 @@ namespace {
 class MovieStock {
  public:
   explicit MovieStock(const FinishedRun& run)
-      : run_(run),
-        stock_(run.job.scene.stock.box_W, run.job.scene.movie.voxel_mm),
-        sweeps_(sim::merged_sweeps(run.trajectory, run.job.scene).sweeps),
+      : stock_(run.job.scene.stock.box_W, run.job.scene.movie.voxel_mm),
+        all_(sim::stock_sweeps(run.job, run.cycles)),
         solids_(sim::tool_solids(run.job.scene)) {}
 
-  /// Cuts everything up to and including this sample and meshes what is left. Runs beside the drawing of the
+  /// Cuts everything up to and including this cycle and meshes what is left. Runs beside the drawing of the
   /// frame before: the software renderer's vertex work leaves the second processor idle.
-  TriMesh at_sample(size_t sample) {
+  TriMesh at_cycle(const motion::Cycle& cycle) {
     size_t end = done_;
-    while (end < sweeps_.size() && sweeps_[end].block <= sample) ++end;
+    while (end < all_.sweeps.size() && sim::is_done(all_.sources[all_.sweeps[end].block], cycle)) ++end;
     sim::for_each_tool(
-        std::span(sweeps_).subspan(done_, end - done_), [&](uint32_t at) { return run_.tool_at(at); },
+        std::span(all_.sweeps).subspan(done_, end - done_),
+        [&](uint32_t block) { return all_.sources[block].tool; },
         [&](size_t tool, std::span<const stock::Sweep> part) { stock_.cut(part, solids_[tool]); });
     done_ = end;
     TriMesh mesh = mesher_.mesh();
@@ -40,30 +40,38 @@ class MovieStock {
   }
 
  private:
-  const FinishedRun& run_;
   stock::Stock stock_;
   stock::StockMesher mesher_{stock_};
-  std::vector<stock::Sweep> sweeps_;
+  sim::JobSweeps all_;
   std::vector<stock::CutterSolid> solids_;  ///< by tool
   size_t done_ = 0;
 };
 
-std::vector<std::string> caption(const FinishedRun& run, size_t i) {
-  const motion::ToolSample& sample = run.trajectory.samples[i];
+std::vector<std::string> caption(const FinishedRun& run, const motion::Cycle& cycle) {
+  const motion::ToolSample& sample = cycle.sample;
   std::string axes;
   for (size_t a = 0; a < run.job.machine.model.axes.size(); ++a) {
     const kinematics::Axis& axis = run.job.machine.model.axes[a];
-    const double q = run.trajectory.axes[i][static_cast<Eigen::Index>(a)];
+    const double q = cycle.q[static_cast<Eigen::Index>(a)];
     const bool rotary = axis.kind == kinematics::AxisKind::kRotary;
     axes += fmt::format("{}{} {:8.2f}{}", axes.empty() ? "" : "   ", axis.name, rotary ? deg_from_rad(q) : q,
                         rotary ? "°" : "");
   }
   const std::vector<cutter::Cutter>& tools = run.job.scene.tools;
   const std::string tool =
-      tools.size() > 1 ? fmt::format("   {}", cutter::call_name(tools[run.tool_at(i)])) : "";
+      tools.size() > 1 ? fmt::format("   {}", cutter::call_name(tools[static_cast<size_t>(sample.tool)]))
+                       : "";
   return {
       fmt::format("t {:6.2f} s   F {:5.0f} mm/min{}", sample.t_s, mm_min_from_mm_s(sample.feed_mm_s), tool),
       axes};
+}
+
+/// One cycle for each frame; the last frame alone shows the end.
+std::vector<motion::Cycle> shown_cycles(const FinishedRun& run, int frames) {
+  if (frames == 1) return {motion::CycleReader(run.cycles).at(run.cycles.size() - 1)};
+  std::vector<motion::Cycle> cycles = run.cycles.spread(static_cast<size_t>(frames));
+  cycles.resize(static_cast<size_t>(frames), cycles.back());
+  return cycles;
 }
 
 double median(std::vector<double> values) {
@@ -83,27 +91,24 @@ RenderStatistics make_movie(const FinishedRun& run, const std::string& path, con
   render::RasterRenderer renderer(settings.size[0], settings.size[1], settings.samples);
   render::MovieWriter movie(path, settings.size[0], settings.size[1], settings.fps);
   const int frames = std::max(1, static_cast<int>(settings.seconds * settings.fps));
-  const size_t last = run.trajectory.samples.size() - 1;
+  const std::vector<motion::Cycle> shown = shown_cycles(run, frames);
   render::DrawList list;
   list.camera = machine_camera(run, camera_name, settings.size);
   std::vector<double> times;
-  const auto sample_of = [&](int frame) {
-    return frames == 1 ? last : last * static_cast<size_t>(frame) / static_cast<size_t>(frames - 1);
-  };
   const auto mesh_for = [&](int frame) {
     return std::async(std::launch::async,
-                      [&stock, sample = sample_of(frame)] { return stock.at_sample(sample); });
+                      [&stock, &cycle = shown[static_cast<size_t>(frame)]] { return stock.at_cycle(cycle); });
   };
   progress.begin("movie", frames, "frames");
   std::future<TriMesh> next = mesh_for(0);
   for (int frame = 0; frame < frames && !progress.stop_requested(); ++frame) {
     const auto start = std::chrono::steady_clock::now();
-    const size_t sample = sample_of(frame);
+    const motion::Cycle& cycle = shown[static_cast<size_t>(frame)];
     const TriMesh mesh = next.get();
     if (frame + 1 < frames) next = mesh_for(frame + 1);
-    list.items = view.items(run.trajectory.axes[sample], run.tool_at(sample), &mesh);
+    list.items = view.items(cycle.q, static_cast<size_t>(cycle.sample.tool), &mesh);
     render::Image image = renderer.draw(list);
-    render::draw_caption(image, caption(run, sample));
+    render::draw_caption(image, caption(run, cycle));
     movie.add(image);
     times.push_back(1e3 * std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
     progress.advance(frame + 1);

@@ -54,7 +54,7 @@ FactGroup nc_facts(const sim::Job& job, const sim::Result& result) {
 std::vector<std::pair<std::string, std::string>> nc_lines(const sim::Job& job, const sim::Result& result) {
   const toolpath::NcReading& nc = *result.main.nc;
   std::string tools;
-  const std::vector<double> times = time_by_tool(job, result.main.motion.trajectory);
+  const std::vector<double> times = time_by_tool(job, result);
   for (size_t i = 0; i < times.size(); ++i) {
     if (times[i] == 0.0) continue;
     tools += fmt::format("{}{} {:.1f} s", tools.empty() ? "" : ", ", cutter::call_name(job.scene.tools[i]),

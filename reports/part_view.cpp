@@ -24,7 +24,19 @@ Vec3 as_vec3(const std::array<float, 3>& a) {
   return {a[0], a[1], a[2]};
 }
 
+/// The tool's axis in each cycle of a surface job. The blocks of CL and NC jobs are sweeps, not cycles, and
+/// mostly cut with the flank.
+std::vector<Vec3> axes_of(const FinishedRun& run) {
+  std::vector<Vec3> axes;
+  if (run.job.scene.has_blocks()) return axes;
+  axes.reserve(run.cycles.size());
+  motion::CycleReader reader(run.cycles);
+  for (size_t k = 0; k < run.cycles.size(); ++k) axes.push_back(reader.at(k).sample.pose.axis_W);
+  return axes;
+}
+
 void take_measures(const FinishedRun& run, const stock::SurfaceDexels& dexels, TriMesh& mesh) {
+  const std::vector<Vec3> axes = axes_of(run);
   const measure::SeenSurface seen(dexels, kReachVoxels * run.stock.voxel_mm());
   parallel_chunks(mesh.positions.size(), 4096, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
@@ -35,10 +47,9 @@ void take_measures(const FinishedRun& run, const stock::SurfaceDexels& dexels, T
       if (!(std::abs(deviation) < std::abs(mesh.deviation_um[i]))) mesh.deviation_um[i] = deviation;
       const measure::Foot& foot = here->foot;
       const uint32_t block = measure::block_at(dexels, foot.u, foot.v);
-      // The blocks of CL and NC jobs are sweeps, not cycles, and mostly cut with the flank.
-      if (!here->on_face || block == stock::kUncut || run.job.scene.has_blocks()) continue;
+      if (!here->on_face || block == stock::kUncut || axes.empty()) continue;
       // The bottom of a flat end left this facet, so the tool's axis is its exact normal.
-      const Vec3& axis = run.trajectory.samples[block].pose.axis_W;
+      const Vec3& axis = axes[block];
       if (axis.dot(foot.normal) < kFaceCosine) continue;
       mesh.normals[i] = {static_cast<float>(axis.x()), static_cast<float>(axis.y()),
                          static_cast<float>(axis.z())};
@@ -88,7 +99,11 @@ render::DeviationScale deviation_scale(const sim::Job& job) {
 std::vector<render::DrawLine> fan_lines(const FinishedRun& run) {
   render::FanInput fan;
   int element = -1;
-  for (const motion::ToolSample& sample : run.trajectory.samples) {
+  // All cycles of a short program, enough of a long one.
+  const bool all = run.cycles.kept().size() == run.cycles.size();
+  for (const motion::Cycle& cycle :
+       run.cycles.spread(all ? run.cycles.size() : 2 * motion::Cycles::kSpreadLeast)) {
+    const motion::ToolSample& sample = cycle.sample;
     if (sample.kind != motion::SampleKind::kCutting) continue;
     if (sample.element != element) {
       element = sample.element;

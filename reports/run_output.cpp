@@ -17,7 +17,6 @@
 #include "reports/report_writer.h"
 #include "reports/run_report.h"
 #include "sim/design_rays.h"
-#include "sim/recorder.h"
 
 namespace swarf::reports {
 namespace {
@@ -87,11 +86,9 @@ void write_pictures(const PendingFolder& folder, const FinishedRun& run, const T
 /// What pictures and measures can be made from again, the most precious first.
 void write_state(const PendingFolder& folder, const sim::Job& job, const sim::Result& result,
                  Progress& progress) {
-  progress.begin("write results", 3, "files");
+  progress.begin("write results", 2, "files");
   result.stock->save(folder.file("stock.vdb"), result.cut.metadata);
   progress.advance(1);
-  sim::write_trajectory(folder.file("trajectory.csv"), result.main.motion.trajectory, result.main.path, job);
-  progress.advance(2);
   for (size_t i = 0; i < result.main.dexels.size(); ++i) {
     result.main.dexels[i].save(folder.file(fmt::format("surface_{}.rays", i)));
   }
@@ -154,23 +151,25 @@ std::vector<Diagnostic> write_run(PendingFolder& folder, const sim::Job& job, si
     folder.move_into_place();
     return {};
   }
-  const FinishedRun run{job, result.main.motion.trajectory, *result.stock, result.main.dexels};
+  const FinishedRun run{job, *result.main.cycles, *result.stock, result.main.dexels};
   RunFiles files;
   RenderStatistics statistics;
-  const TriMesh closed = run.stock.mesh();
-  attempts.run([&] { write_glb(folder, run, closed, progress, files); });
+  const TriMesh closed = options.report || options.render ? run.stock.mesh() : TriMesh{};
+  if (options.report) attempts.run([&] { write_glb(folder, run, closed, progress, files); });
   attempts.run([&] {
     if (options.render) write_pictures(folder, run, shown_part(run, closed), progress, files, statistics);
   });
   result.stopped = progress.stop_requested();
-  progress.begin("report", 1, "files");
-  attempts.run([&] {
-    ReportData data = report_data(job, result, files, options.render);
-    data.reproduce = {options.command};
-    write_report(folder.file("report.html"), data);
-  });
+  if (options.report) {
+    progress.begin("report", 1, "files");
+    attempts.run([&] {
+      ReportData data = report_data(job, result, files, options.render);
+      data.reproduce = {options.command};
+      write_report(folder.file("report.html"), data);
+    });
+    progress.end();
+  }
   attempts.run([&] { write_text(folder.file("metrics.json"), metrics_json(job, result, statistics)); });
-  progress.end();
   folder.move_into_place();
   attempts.rethrow();
   return attempts.failures;
@@ -202,8 +201,8 @@ sim::Job read_job(const std::string& folder, const std::vector<std::string>& ove
 StoredRun read_run(const std::string& folder) {
   const fs::path root(folder);
   sim::Job job = read_job(folder, {});
-  motion::Trajectory trajectory = sim::read_trajectory((root / "trajectory.csv").string(), job);
-  StoredRun run{std::move(job), std::move(trajectory), stock::Stock::load((root / "stock.vdb").string()), {}};
+  stock::Stock stock = stock::Stock::load((root / "stock.vdb").string());
+  StoredRun run{std::move(job), std::move(stock), {}};
   const std::vector<stock::RayFieldPtr> fields = sim::design_rays(run.job);
   for (size_t i = 0; i < fields.size(); ++i) {
     const fs::path rays = root / fmt::format("surface_{}.rays", i);

@@ -13,6 +13,7 @@ namespace swarf::reports {
 
 struct OutputOptions {
   bool render = true;                  ///< false: no movie, no stills
+  bool report = true;                  ///< false: no page, no glTF
   std::vector<std::string> overrides;  ///< the --set of this run, kept with it
   std::string command;                 ///< as it was given, ready for a shell
 };
@@ -24,7 +25,7 @@ inline constexpr const char* kRunMark = "run.json";
 void begin_run(const PendingFolder& folder, const sim::Job& job, const OutputOptions& options);
 
 /// Writes everything into `folder` beside what the run has saved there already, and moves it into place: an
-/// earlier result is replaced whole; it stays until then. Stock, trajectory, rays and numbers come first:
+/// earlier result is replaced whole; it stays until then. Stock, rays and numbers come first:
 /// when one of them cannot be written, InputError says why, and what could be is kept beside the target. What
 /// goes wrong with pictures and page is returned; the rest is there.
 std::vector<Diagnostic> write_run(PendingFolder& folder, const sim::Job& job, sim::Result& result,
@@ -34,10 +35,9 @@ std::vector<Diagnostic> write_run(PendingFolder& folder, const sim::Job& job, si
 /// Throws InputError "not-a-run" and as load_job does.
 sim::Job read_job(const std::string& folder, const std::vector<std::string>& overrides);
 
-/// A run read back from its folder: no simulation.
+/// A run read back from its folder: nothing is cut or measured again.
 struct StoredRun {
   sim::Job job;
-  motion::Trajectory trajectory;
   stock::Stock stock;
   std::vector<stock::SurfaceDexels> dexels;
 };

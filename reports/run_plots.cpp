@@ -15,7 +15,14 @@ constexpr int kHistogramBins = 60;
 
 using kinematics::AxisKind;
 
-Plot feed_plot(const motion::Trajectory& trajectory) {
+std::vector<std::array<double, 2>> scaled(const std::vector<Vec2>& points, double scale) {
+  std::vector<std::array<double, 2>> out;
+  out.reserve(points.size());
+  for (const Vec2& point : points) out.push_back({point.x(), scale * point.y()});
+  return out;
+}
+
+Plot feed_plot(const motion::TimeEnvelope& envelope) {
   Plot plot;
   plot.title = "Feed of the contact point";
   plot.caption = "Falls where an axis would exceed its speed, above all near the pole of the rotary table.";
@@ -24,23 +31,12 @@ Plot feed_plot(const motion::Trajectory& trajectory) {
   plot.y_label = "feed";
   plot.y_unit = "mm/s";
   plot.y_from_zero = true;
-  Series series{"in contact", {}};
-  bool gap = false;
-  for (const motion::ToolSample& s : trajectory.samples) {
-    if (s.kind == motion::SampleKind::kCutting) {
-      series.points.push_back({s.t_s, s.feed_mm_s});
-      gap = false;
-    } else if (!gap) {
-      series.points.push_back({s.t_s, std::nan("")});
-      gap = true;
-    }
-  }
-  plot.series.push_back(std::move(series));
+  plot.series.push_back({"in contact", scaled(envelope.feed(), 1.0)});
   return plot;
 }
 
-/// One plot for the axes of one kind: positions, or speeds by central difference.
-Plot axis_plot(const sim::Job& job, const motion::Trajectory& trajectory, AxisKind kind, bool speed) {
+/// One plot for the axes of one kind: positions, or speeds.
+Plot axis_plot(const sim::Job& job, const motion::TimeEnvelope& envelope, AxisKind kind, bool speed) {
   const bool rotary = kind == AxisKind::kRotary;
   Plot plot;
   plot.title = fmt::format("{} of the {} axes", speed ? "Speeds" : "Positions", rotary ? "rotary" : "linear");
@@ -51,14 +47,8 @@ Plot axis_plot(const sim::Job& job, const motion::Trajectory& trajectory, AxisKi
   for (size_t a = 0; a < job.machine.model.axes.size(); ++a) {
     const kinematics::Axis& axis = job.machine.model.axes[a];
     if (axis.kind != kind) continue;
-    Series series{axis.name, {}};
-    const auto row = static_cast<Eigen::Index>(a);
-    for (size_t i = 1; i < trajectory.axes.size(); ++i) {
-      const double position = trajectory.axes[i][row];
-      const double value = speed ? (position - trajectory.axes[i - 1][row]) / trajectory.period_s : position;
-      series.points.push_back({trajectory.samples[i].t_s, rotary ? deg_from_rad(value) : value});
-    }
-    plot.series.push_back(std::move(series));
+    const double scale = rotary ? deg_from_rad(1.0) : 1.0;
+    plot.series.push_back({axis.name, scaled(speed ? envelope.speed(a) : envelope.position(a), scale)});
     if (speed && rotary) plot.limits.push_back({deg_from_rad(axis.speed_max), axis.name + " limit", false});
   }
   return plot;
@@ -128,11 +118,11 @@ Plot fig6_plot() {
 }  // namespace
 
 std::vector<Plot> run_plots(const sim::Job& job, const sim::Result& result) {
-  const motion::Trajectory& trajectory = result.main.motion.trajectory;
-  std::vector<Plot> plots{feed_plot(trajectory), axis_plot(job, trajectory, AxisKind::kLinear, false),
-                          axis_plot(job, trajectory, AxisKind::kRotary, false),
-                          axis_plot(job, trajectory, AxisKind::kLinear, true),
-                          axis_plot(job, trajectory, AxisKind::kRotary, true)};
+  const motion::TimeEnvelope& envelope = result.main.envelope;
+  std::vector<Plot> plots{feed_plot(envelope), axis_plot(job, envelope, AxisKind::kLinear, false),
+                          axis_plot(job, envelope, AxisKind::kRotary, false),
+                          axis_plot(job, envelope, AxisKind::kLinear, true),
+                          axis_plot(job, envelope, AxisKind::kRotary, true)};
   if (!result.main.ridges.empty() || !job.scene.has_blocks()) plots.push_back(scallop_plot(result));
   if (!result.main.dexels.empty()) plots.push_back(height_plot(job, result));
   if (!job.scene.has_blocks()) plots.push_back(fig6_plot());

@@ -253,7 +253,7 @@ std::vector<FactGroup> facts_of(const sim::Job& job, const sim::Result& result, 
   const motion::MotionStatistics& motion = result.main.motion.statistics;
   const stock::CutStatistics& cut = result.stock->statistics();
   const Vec3 size = job.scene.stock.box_W.size();
-  const motion::ToolSample& first = result.main.motion.trajectory.samples.front();
+  const motion::ToolSample first = motion::CycleReader(*result.main.cycles).at(0).sample;
   const auto name_of = [](const std::string& path) { return path.substr(path.find_last_of('/') + 1); };
   return {{"Job",
            {{"Program", name_of(job.scene.program_file)},

@@ -66,24 +66,26 @@ render::ColourBar lettered_bar(const render::DeviationScale& scale) {
   return bar;
 }
 
-/// The sample in contact nearest to the middle of the program's time.
-size_t middle_sample(const motion::Trajectory& trajectory) {
-  const size_t middle = trajectory.samples.size() / 2;
-  for (size_t i = middle; i < trajectory.samples.size(); ++i) {
-    if (trajectory.samples[i].kind == motion::SampleKind::kCutting) return i;
+/// The first cycle in contact from the middle of the program's time on.
+motion::Cycle middle_cycle(const motion::Cycles& cycles) {
+  const size_t middle = cycles.size() / 2;
+  motion::CycleReader reader(cycles);
+  for (size_t k = middle; k < cycles.size(); ++k) {
+    if (reader.at(k).sample.kind == motion::SampleKind::kCutting) return reader.at(k);
   }
-  return middle;
+  return reader.at(middle);
 }
 
 /// The stock as it stands at the middle of the program, at the movie's voxel size.
-TriMesh half_cut_stock(const FinishedRun& run, size_t sample) {
+TriMesh half_cut_stock(const FinishedRun& run, const motion::Cycle& cycle) {
   stock::Stock stock(run.job.scene.stock.box_W, run.job.scene.movie.voxel_mm);
-  const std::vector<stock::Sweep> sweeps = sim::merged_sweeps(run.trajectory, run.job.scene).sweeps;
-  const auto end =
-      std::find_if(sweeps.begin(), sweeps.end(), [&](const stock::Sweep& s) { return s.block > sample; });
+  const sim::JobSweeps all = sim::stock_sweeps(run.job, run.cycles);
+  const auto end = std::find_if(all.sweeps.begin(), all.sweeps.end(), [&](const stock::Sweep& sweep) {
+    return !sim::is_done(all.sources[sweep.block], cycle);
+  });
   const std::vector<stock::CutterSolid> solids = sim::tool_solids(run.job.scene);
   sim::for_each_tool(
-      std::span(sweeps.begin(), end), [&](uint32_t at) { return run.tool_at(at); },
+      std::span(all.sweeps.begin(), end), [&](uint32_t block) { return all.sources[block].tool; },
       [&](size_t tool, std::span<const stock::Sweep> part) { stock.cut(part, solids[tool]); });
   TriMesh mesh = stock.mesh();
   mesh::split_creases(mesh, kCreaseRad);
@@ -114,9 +116,9 @@ render::Camera machine_camera(const FinishedRun& run, const std::string& name,
   const MachineView view(run.job);
   const Box& box = run.job.scene.stock.box_W;
   Box seen{Vec3::Constant(1e9), Vec3::Constant(-1e9)};
-  const size_t step = std::max<size_t>(1, run.trajectory.axes.size() / 50);
-  for (size_t i = 0; i < run.trajectory.axes.size(); i += step) {
-    const Vec3 centre = view.work_pose(run.trajectory.axes[i]) * box.centre();
+  constexpr size_t kPlaces = 50;
+  for (const motion::Cycle& cycle : run.cycles.spread(kPlaces)) {
+    const Vec3 centre = view.work_pose(cycle.q) * box.centre();
     seen.lower = seen.lower.cwiseMin(centre);
     seen.upper = seen.upper.cwiseMax(centre);
   }
@@ -175,9 +177,9 @@ void make_still(const FinishedRun& run, const TriMesh& part, StillKind kind, con
   TriMesh half_cut;
   render::DrawList list;
   if (kind == StillKind::kMachine) {
-    const size_t sample = middle_sample(run.trajectory);
-    half_cut = half_cut_stock(run, sample);
-    list.items = view.items(run.trajectory.axes[sample], run.tool_at(sample), &half_cut);
+    const motion::Cycle cycle = middle_cycle(run.cycles);
+    half_cut = half_cut_stock(run, cycle);
+    list.items = view.items(cycle.q, static_cast<size_t>(cycle.sample.tool), &half_cut);
     list.camera = machine_camera(run, camera, run.job.scene.stills.size);
   } else {
     list.camera = render::look_at_box(mesh::bounds(part), -camera_direction(camera), kFieldOfView,

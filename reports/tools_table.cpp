@@ -4,12 +4,9 @@
 
 namespace swarf::reports {
 
-std::vector<double> time_by_tool(const sim::Job& job, const motion::Trajectory& trajectory) {
-  std::vector<double> times(job.scene.tools.size(), 0.0);
-  for (size_t i = 1; i < trajectory.samples.size(); ++i) {
-    times[static_cast<size_t>(trajectory.samples[i].tool)] +=
-        trajectory.samples[i].t_s - trajectory.samples[i - 1].t_s;
-  }
+std::vector<double> time_by_tool(const sim::Job& job, const sim::Result& result) {
+  std::vector<double> times = result.main.motion.statistics.cycle.by_tool_s;
+  times.resize(job.scene.tools.size(), 0.0);
   return times;
 }
 
@@ -17,7 +14,7 @@ Table tools_table(const sim::Job& job, const sim::Result& result) {
   Table table;
   table.title = "Tools";
   table.columns = {{"Tool"}, {"Cutter"}, {"Gauge line to tip", "mm", true}, {"Time", "s", true}};
-  const std::vector<double> times = time_by_tool(job, result.main.motion.trajectory);
+  const std::vector<double> times = time_by_tool(job, result);
   for (size_t i = 0; i < times.size(); ++i) {
     const cutter::Cutter& tool = job.scene.tools[i];
     table.rows.push_back({cutter::call_name(tool), cutter::describe(tool),

@@ -9,7 +9,7 @@
 namespace swarf::reports {
 
 /// Time in the spindle of each of Scene::tools, s.
-std::vector<double> time_by_tool(const sim::Job& job, const motion::Trajectory& trajectory);
+std::vector<double> time_by_tool(const sim::Job& job, const sim::Result& result);
 
 /// One row for each tool of the scene.
 Table tools_table(const sim::Job& job, const sim::Result& result);

@@ -256,12 +256,12 @@ void CycleStream::record(const ToolSample& sample) {
 }
 
 void CycleStream::record(ToolSample sample, const Branch& branch, float cost_ns) {
-  sample.t_s = static_cast<double>(cycle_++) * source_.options->period_s;
+  sample.t_s = static_cast<double>(cycle_) * source_.options->period_s;
   sample.element = sample_element_;
   sample.tool = static_cast<int16_t>(tool_);
   const bool reached = branch.outcome != InverseOutcome::kUnreachable;
   if (reached) q_ = branch.q;
-  before_ = {sample, q_, reached, cost_ns};
+  before_ = {cycle_++, sample, q_, reached, cost_ns};
   window_->push_back(before_);
 }
 

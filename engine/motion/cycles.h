@@ -1,5 +1,5 @@
-// The cycles of one program by number and by place. None is kept: each is made anew, equal to the last bit,
-// from the nearest of a few places that the first pass has left.
+// The cycles of one program by number and by place. Those of the first minutes are kept; the others are made
+// anew, equal to the last bit, from the nearest of a few places that the first pass has left.
 //
 //   first pass   |----x--------x------x---------x----|     x: CyclePlace, at the start of an element or of a
 //   CycleReader            [window]                            stretch of a run, about kPlaceApart cycles
@@ -15,12 +15,18 @@
 
 namespace swarf::motion {
 
+/// What a long program may take.
+struct CycleLimits {
+  LookAheadReach reach;
+  size_t kept = size_t{1} << 18U;  ///< cycles, 53 MB: four minutes at 1 ms
+};
+
 class Cycles {
  public:
   /// Solves the blocks' axis values (block_motions()); no cycle is made yet. `elements` must outlive this, in
   /// place. Throws InputError ("bad-options", "unreachable").
   Cycles(std::span<const toolpath::Element> elements, std::span<const kinematics::MachineModel> by_tool,
-         const cutter::Cutter& cutter, const MotionOptions& options, const LookAheadReach& reach = {});
+         const cutter::Cutter& cutter, const MotionOptions& options, const CycleLimits& limits = {});
   Cycles(Cycles&&) = default;
   Cycles& operator=(Cycles&&) = default;
 
@@ -28,6 +34,8 @@ class Cycles {
   void walk(const std::function<void(std::span<const Cycle>)>& visit, Progress& progress);
   /// Cycles that the first pass has visited.
   size_t size() const { return size_; }
+  /// The user has stopped it: there would be more.
+  bool stopped() const { return stopped_; }
   double time_s() const { return size_ > 0 ? static_cast<double>(size_ - 1) * options_.period_s : 0.0; }
   double period_s() const { return options_.period_s; }
 
@@ -40,19 +48,32 @@ class Cycles {
   const cutter::Cutter& cutter() const { return cutter_; }
   const MotionOptions& options() const { return options_; }
   CycleSource source() const;
+  /// The first ones.
+  std::span<const Cycle> kept() const { return kept_; }
+  /// So many cycles from the first to the last, spread evenly; those of long programs lie up to a
+  /// kSpreadLeast-th of it away from there. Fewer where the program has fewer.
+  std::vector<Cycle> spread(size_t count) const;
+  static constexpr size_t kSpreadLeast = 2048;
   /// By cycle; the first stands before the first cycle.
   const std::vector<CyclePlace>& places() const { return places_; }
 
  private:
+  void keep(const Cycle& cycle);
+
   std::span<const toolpath::Element> elements_;
   std::vector<kinematics::MachineModel> by_tool_;
   std::vector<kinematics::InverseKinematics> inverses_;
   std::vector<BlockMotion> motions_;
   cutter::Cutter cutter_;
   MotionOptions options_;
-  LookAheadReach reach_;
+  CycleLimits limits_;
+  std::vector<Cycle> kept_;
+  std::vector<Cycle> sparse_;  ///< every sparse_step_-th; kSpreadLeast to twice as many in long programs
+  uint64_t sparse_step_ = 1;
+  Cycle last_;
   std::vector<CyclePlace> places_;
   size_t size_ = 0;
+  bool stopped_ = false;
 };
 
 /// Looks cycles up, best in their order; holds one window of them. Cycles must outlive it and have been
@@ -62,7 +83,8 @@ class CycleReader {
   explicit CycleReader(const Cycles& cycles) : cycles_(&cycles) {}
   /// k below Cycles::size(). Valid until the next call.
   const Cycle& at(size_t k);
-  /// The first cycle that has come to this share of an element or is past it; the last one if none has.
+  /// Of a path of blocks: the first cycle that has come to this share of an element or is past it; the last
+  /// one if none has.
   size_t reaching(int element, double share);
 
  private:

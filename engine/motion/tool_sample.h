@@ -26,6 +26,7 @@ struct ToolSample {
 
 /// One cycle of a program.
 struct Cycle {
+  uint64_t number = 0;  ///< from 0
   ToolSample sample;
   kinematics::AxisValues q = kinematics::AxisValues::Zero();
   bool reached = true;    ///< false: out of reach, the axes stand still

@@ -38,11 +38,11 @@ stock::Sweep share(const stock::Sweep& sweep, double from_t, double to_t) {
 
 }  // namespace
 
-BadCutCheck::BadCutCheck(const Job& job, const toolpath::ToolPath& path, const motion::Trajectory& trajectory,
-                         const JobSweeps& sweeps, const SweepPlaces& places, const EarlierCuts& earlier)
-    : trajectory_(trajectory),
-      sweeps_(sweeps),
+BadCutCheck::BadCutCheck(const Job& job, const motion::Cycles& cycles, const JobSweeps& sweeps,
+                         const SweepPlaces& places, const EarlierCuts& earlier)
+    : sweeps_(sweeps),
       places_(places),
+      ahead_(sweeps, cycles),
       earlier_(earlier),
       has_blocks_(job.scene.has_blocks()) {
   for (const cutter::Cutter& tool : job.scene.tools) {
@@ -51,7 +51,7 @@ BadCutCheck::BadCutCheck(const Job& job, const toolpath::ToolPath& path, const m
     for (const cutter::ConvexPiece& piece : flutes_.back().pieces) parts_.back().emplace_back(piece);
   }
   int row = 0;
-  for (const toolpath::Element& element : path.elements) {
+  for (const toolpath::Element& element : cycles.elements()) {
     Element entry{kind_of(element, job.scene.tools), 0};
     const bool same = !elements_.empty() && elements_.back().kind == entry.kind;
     entry.row = same && entry.kind != BadCutKind::kRapid ? row : ++row;
@@ -59,18 +59,18 @@ BadCutCheck::BadCutCheck(const Job& job, const toolpath::ToolPath& path, const m
   }
 }
 
-std::vector<BadCutCheck::Move> BadCutCheck::moves(size_t sweep) const {
+std::vector<BadCutCheck::Move> BadCutCheck::moves(size_t sweep, const SweepPlaces& places) const {
   if (has_blocks_) {
     const Element& element = elements_[static_cast<size_t>(source(sweep).element)];
     if (!element.kind) return {};
     return {{0.0, 1.0, *element.kind, element.row}};
   }
   std::vector<Move> moves;
-  const SweepPlaces::Samples range = places_.samples(sweep);
+  const SweepPlaces::Range range = places.cycles(sweep);
   double from_t = 0.0;
   for (size_t k = range.first + 1; k <= range.last; ++k) {
-    const double to_t = k == range.last ? 1.0 : places_.progress(sweep, k);
-    const Element& element = elements_[static_cast<size_t>(trajectory_.samples[k].element)];
+    const double to_t = k == range.last ? 1.0 : places.progress(sweep, k);
+    const Element& element = elements_[static_cast<size_t>(places.cycle(k).sample.element)];
     if (element.kind && !moves.empty() && moves.back().to_t == from_t) {
       moves.back().to_t = to_t;
     } else if (element.kind) {
@@ -90,10 +90,12 @@ bool BadCutCheck::wanted(const Move& move) const {
 
 std::vector<size_t> BadCutCheck::look_ahead(const stock::ContactFinder& finder, size_t begin,
                                             size_t end) const {
+  std::vector<std::vector<Move>> moves_of;  // reading cycles is for one thread
+  for (size_t sweep = begin; sweep < end; ++sweep) moves_of.push_back(moves(sweep, ahead_));
   std::vector<uint8_t> meets(end - begin, 0);
   parallel_chunks(meets.size(), kSweepsPerTask, [&](size_t from, size_t to) {
     for (size_t i = from; i < to; ++i) {
-      for (const Move& move : moves(begin + i)) {
+      for (const Move& move : moves_of[i]) {
         if (meets[i] != 0 || !wanted(move)) continue;
         const stock::SweepMap map =
             stock::sweep_map(share(sweeps_.sweeps[begin + i], move.from_t, move.to_t));
@@ -139,7 +141,7 @@ std::optional<stock::Contact> BadCutCheck::contact(const stock::ContactFinder& f
 }
 
 void BadCutCheck::judge(const stock::ContactFinder& finder, size_t sweep) {
-  for (const Move& move : moves(sweep)) {
+  for (const Move& move : moves(sweep, places_)) {
     if (!wanted(move)) continue;
     const std::optional<stock::Contact> contact = this->contact(finder, sweep, move);
     if (contact) add({move.kind, event_of("flutes", source(sweep).tool, *contact, places_, sweep)}, move.row);

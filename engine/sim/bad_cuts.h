@@ -20,8 +20,8 @@ namespace swarf::sim {
 class BadCutCheck {
  public:
   /// All must outlive it.
-  BadCutCheck(const Job& job, const toolpath::ToolPath& path, const motion::Trajectory& trajectory,
-              const JobSweeps& sweeps, const SweepPlaces& places, const EarlierCuts& earlier);
+  BadCutCheck(const Job& job, const motion::Cycles& cycles, const JobSweeps& sweeps,
+              const SweepPlaces& places, const EarlierCuts& earlier);
 
   /// Those of sweeps [begin, end) whose bad moves are not clear of the stock as it stands now.
   std::vector<size_t> look_ahead(const stock::ContactFinder& finder, size_t begin, size_t end) const;
@@ -43,7 +43,7 @@ class BadCutCheck {
     BadCutKind kind = BadCutKind::kRapid;
     int row = 0;
   };
-  std::vector<Move> moves(size_t sweep) const;
+  std::vector<Move> moves(size_t sweep, const SweepPlaces& places) const;
   bool wanted(const Move& move) const;
   std::optional<stock::Contact> contact(const stock::ContactFinder& finder, size_t sweep,
                                         const Move& move) const;
@@ -51,9 +51,9 @@ class BadCutCheck {
   int last_of_row(int row) const;
   const SweepSource& source(size_t sweep) const { return sweeps_.sources[sweeps_.sweeps[sweep].block]; }
 
-  const motion::Trajectory& trajectory_;
   const JobSweeps& sweeps_;
   const SweepPlaces& places_;
+  SweepPlaces ahead_;  ///< reads the cycles of the batch that comes
   const EarlierCuts& earlier_;
   bool has_blocks_;
   std::vector<Element> elements_;                        ///< by ToolPath::elements

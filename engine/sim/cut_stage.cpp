@@ -34,13 +34,13 @@ class CutStage {
         progress_(progress),
         result_(result),
         outcome_(result.cut),
-        merged_(stock_sweeps(job, result.main.path, result.main.motion.trajectory)),
+        merged_(stock_sweeps(job, *result.main.cycles)),
         solids_(tool_solids(job.scene)),
         identity_(cut_identity(job, merged_)),
-        places_(merged_, result.main.path, result.main.motion.trajectory),
+        places_(merged_, *result.main.cycles),
         earlier_(merged_, solids_, job.scene.stock.box_W, kDeepestExact * job.scene.stock.voxel_mm),
         clearance_(job.scene.tools, merged_, places_, earlier_, job.scene.stock.voxel_mm),
-        bad_cuts_(job, result.main.path, result.main.motion.trajectory, merged_, places_, earlier_) {
+        bad_cuts_(job, *result.main.cycles, merged_, places_, earlier_) {
     outcome_.state.clearance = clearance_.result();
     result_.sweep_bound_mm = merged_.error_bound_mm;
     result_.merged_sweeps = merged_.sweeps.size();
@@ -67,8 +67,7 @@ class CutStage {
 
   void find_saves() {
     for (const ProgramPlace& place : options_.save_after) {
-      const size_t after =
-          sweeps_until(place, merged_, result_.main.motion.trajectory, result_.main.path, job_.scene.tools);
+      const size_t after = sweeps_until(place, merged_, *result_.main.cycles, job_.scene.tools);
       saves_.push_back({after, &place});
     }
     std::stable_sort(saves_.begin(), saves_.end(),
@@ -195,8 +194,7 @@ class CutStage {
     return state;
   }
   CutPlace place(size_t sweep) const {
-    return place_of(merged_.sweeps[sweep], merged_.sources, result_.main.motion.trajectory,
-                    result_.main.path);
+    return place_of(merged_.sweeps[sweep], merged_.sources, result_.main.path.elements, reader_);
   }
 
   void save_due() {
@@ -257,6 +255,7 @@ class CutStage {
   std::vector<stock::CutterSolid> solids_;  ///< by tool
   CutIdentity identity_;
   SweepPlaces places_;
+  mutable motion::CycleReader reader_{*result_.main.cycles};
   EarlierCuts earlier_;
   std::optional<stock::ContactFinder> finder_;
   ToolClearanceCheck clearance_;

@@ -18,12 +18,14 @@ struct Result;
 struct CutOptions {
   std::string resume_file;               ///< go on from this stock; empty: from the box
   std::vector<ProgramPlace> save_after;  ///< a stock file for each
-  std::string save_folder;               ///< for save_after and for the record; exists
-  bool record = false;                   ///< keep the sweeps and hashes of the stock (CutStage::kRecordFile)
-  size_t record_every = 256;             ///< sweeps between two hashes
-  bool check_voxels = false;             ///< costly invariants on the way too; twice the stock's memory
-  bool render = true;                    ///< pictures follow: their memory counts
-  std::vector<std::string> overrides;    ///< of the scene, for the record
+  /// For save_after, the record and the tables of the motion (recorder.h), which need it; exists.
+  std::string save_folder;
+  bool cycles = false;                 ///< write each control cycle too (CycleTable)
+  bool record = false;                 ///< keep the sweeps and hashes of the stock (CutStage::kRecordFile)
+  size_t record_every = 256;           ///< sweeps between two hashes
+  bool check_voxels = false;           ///< costly invariants on the way too; twice the stock's memory
+  bool render = true;                  ///< pictures follow: their memory counts
+  std::vector<std::string> overrides;  ///< of the scene, for the record
 };
 
 inline constexpr const char* kRecordFile = "run.record";

@@ -5,6 +5,7 @@
 namespace swarf::sim {
 namespace {
 
+using motion::Cycle;
 using motion::ToolSample;
 using toolpath::BlockMove;
 
@@ -23,10 +24,8 @@ constexpr double kDivideShare = 0.2, kJoinShare = 0.5;
 /// Collects the poses that the tool passes in a row of cycles of one kind, then the sweeps between them.
 class CycleSweeper {
  public:
-  CycleSweeper(const Job& job, const toolpath::ToolPath& path, const motion::Trajectory& trajectory,
-               double tolerance_mm, bool join)
-      : path_(path),
-        trajectory_(trajectory),
+  CycleSweeper(const Job& job, const motion::Cycles& cycles, double tolerance_mm, bool join)
+      : cycles_(cycles),
         machines_(machines_by_tool(job)),
         divide_mm_(join ? kDivideShare * tolerance_mm : tolerance_mm),
         join_mm_(join ? kJoinShare * tolerance_mm : 0.0) {
@@ -34,11 +33,16 @@ class CycleSweeper {
   }
 
   JobSweeps sweeps() {
-    const std::vector<ToolSample>& samples = trajectory_.samples;
-    for (size_t i = 1; i < samples.size(); ++i) {
-      const bool changed = samples[i].tool != samples[i - 1].tool;
-      if (changed || !same_kind(samples[i], samples[i - 1])) close_row();
-      if (!changed) add_cycle(i);
+    motion::CycleReader reader(cycles_);
+    Cycle before;
+    for (size_t i = 0; i < cycles_.size(); ++i) {
+      const Cycle& now = reader.at(i);
+      if (i > 0) {
+        const bool changed = now.sample.tool != before.sample.tool;
+        if (changed || !same_kind(now.sample, before.sample)) close_row();
+        if (!changed) add_cycle(i, before, now);
+      }
+      before = now;
     }
     close_row();
     return std::move(out_);
@@ -53,75 +57,72 @@ class CycleSweeper {
            first->spindle_rpm == second->spindle_rpm;
   }
   const BlockMove* block_of(const ToolSample& sample) const {
-    return std::get_if<BlockMove>(&path_.elements[static_cast<size_t>(sample.element)].what);
+    return std::get_if<BlockMove>(&cycles_.elements()[static_cast<size_t>(sample.element)].what);
   }
 
-  void add_cycle(size_t i) {
-    const ToolPose& from = trajectory_.samples[i - 1].pose;
-    const ToolPose& to = trajectory_.samples[i].pose;
+  void add_cycle(size_t i, const Cycle& before, const Cycle& now) {
+    const ToolPose& from = before.sample.pose;
+    const ToolPose& to = now.sample.pose;
     if (from.tip_W == to.tip_W && from.axis_W == to.axis_W) return;
-    if (row_.empty()) push(from, i);
-    divide(i);
-    push(to, i);
+    SweepSource source{now.sample.element, now.sample.tool, now.sample.u, i};
+    if (row_.empty()) push(from, source);
+    divide(before, now, source);
+    push(to, source);
   }
-  /// Poses inside the cycle that ends with sample i, where the axes turn too much for one sweep.
-  void divide(size_t i) {
-    const auto tool = static_cast<size_t>(trajectory_.samples[i].tool);
-    const kinematics::AxisValues& q_from = trajectory_.axes[i - 1];
-    const kinematics::AxisValues change = trajectory_.axes[i] - q_from;
+  /// Poses inside the cycle, where the axes turn too much for one sweep.
+  void divide(const Cycle& before, const Cycle& now, const SweepSource& source) {
+    const auto tool = static_cast<size_t>(now.sample.tool);
+    const kinematics::AxisValues change = now.q - before.q;
     const double error =
-        stray(trajectory_.samples[i - 1].pose, kinematics::forward(machines_[tool], q_from + 0.5 * change),
-              trajectory_.samples[i].pose, levers_mm_[tool]);
+        stray(before.sample.pose, kinematics::forward(machines_[tool], before.q + 0.5 * change),
+              now.sample.pose, levers_mm_[tool]);
     const double pieces = std::max(1.0, std::ceil(std::sqrt(error / divide_mm_)));
     for (double k = 1.0; k < pieces; k += 1.0)
-      push(kinematics::forward(machines_[tool], q_from + k / pieces * change), i);
+      push(kinematics::forward(machines_[tool], before.q + k / pieces * change), source);
     divided_mm_ = std::max(divided_mm_, error / (pieces * pieces));
   }
-  void push(const ToolPose& pose, size_t sample) {
+  void push(const ToolPose& pose, const SweepSource& source) {
     row_.push_back(pose);
-    sample_of_.push_back(static_cast<uint32_t>(sample));
+    source_of_.push_back(source);
   }
 
   void close_row() {
     if (row_.size() > 1) add_row();
     row_.clear();
-    sample_of_.clear();
+    source_of_.clear();
   }
   void add_row() {
     if (join_mm_ <= 0.0) {
-      for (size_t k = 1; k < row_.size(); ++k) add(row_[k - 1], row_[k], sample_of_[k]);
+      for (size_t k = 1; k < row_.size(); ++k) add(row_[k - 1], row_[k], source_of_[k]);
     } else {
       const std::vector<uint8_t> breaks(row_.size(), 0);
-      const auto tool = static_cast<size_t>(trajectory_.samples[sample_of_.back()].tool);
+      const auto tool = static_cast<size_t>(source_of_.back().tool);
       const stock::MergedSweeps merged = stock::merge_sweeps(row_, breaks, levers_mm_[tool], join_mm_);
-      for (const stock::Sweep& sweep : merged.sweeps) add(sweep.start, sweep.end, sample_of_[sweep.block]);
+      for (const stock::Sweep& sweep : merged.sweeps) add(sweep.start, sweep.end, source_of_[sweep.block]);
       joined_mm_ = std::max(joined_mm_, merged.error_bound_mm);
     }
     out_.error_bound_mm = joined_mm_ + divided_mm_;
   }
-  void add(const ToolPose& start, const ToolPose& end, uint32_t sample) {
+  void add(const ToolPose& start, const ToolPose& end, const SweepSource& source) {
     out_.sweeps.push_back({start, end, static_cast<uint32_t>(out_.sources.size())});
-    const ToolSample& at = trajectory_.samples[sample];
-    out_.sources.push_back({at.element, sample, at.tool});
+    out_.sources.push_back(source);
   }
 
-  const toolpath::ToolPath& path_;
-  const motion::Trajectory& trajectory_;
+  const motion::Cycles& cycles_;
   std::vector<kinematics::MachineModel> machines_;  ///< by tool
   std::vector<double> levers_mm_;                   ///< by tool
   double divide_mm_;
   double join_mm_;  ///< 0: nothing is joined
   std::vector<ToolPose> row_;
-  std::vector<uint32_t> sample_of_;  ///< by pose of the row: the cycle that ends at or behind it
+  std::vector<SweepSource> source_of_;  ///< by pose of the row: the cycle that ends at or behind it
   double joined_mm_ = 0.0, divided_mm_ = 0.0;
   JobSweeps out_;
 };
 
 }  // namespace
 
-JobSweeps driven_sweeps(const Job& job, const toolpath::ToolPath& path, const motion::Trajectory& trajectory,
-                        double tolerance_mm, bool join) {
-  return CycleSweeper(job, path, trajectory, tolerance_mm, join).sweeps();
+JobSweeps driven_sweeps(const Job& job, const motion::Cycles& cycles, double tolerance_mm, bool join) {
+  return CycleSweeper(job, cycles, tolerance_mm, join).sweeps();
 }
 
 }  // namespace swarf::sim

@@ -11,7 +11,6 @@ namespace swarf::sim {
 /// has a block of its own and one kind of motion: rapids are never joined with feeds, nor cuts of another
 /// spindle speed. `join`: neighbouring cycles become one sweep where the tolerance allows it (for the level
 /// set).
-JobSweeps driven_sweeps(const Job& job, const toolpath::ToolPath& path, const motion::Trajectory& trajectory,
-                        double tolerance_mm, bool join);
+JobSweeps driven_sweeps(const Job& job, const motion::Cycles& cycles, double tolerance_mm, bool join);
 
 }  // namespace swarf::sim

@@ -15,7 +15,8 @@ namespace {
 
 class Collector {
  public:
-  Collector(const Job& job, const Result& result) : job_(job), result_(result) {}
+  Collector(const Job& job, const Result& result)
+      : job_(job), result_(result), reader_(*result.main.cycles) {}
 
   /// What follows breaks this check: an error unless [accept] allows so much of it.
   void begin(const char* check_name) {
@@ -42,7 +43,7 @@ class Collector {
     const SweepSource& source = sources[block];
     add(std::move(code), std::move(text), std::move(fix),
         result_.main.path.elements[static_cast<size_t>(source.element)].where,
-        result_.main.motion.trajectory.samples[source.sample].t_s);
+        reader_.at(cycle_of(source, reader_)).sample.t_s);
   }
   /// At the block in which the tool first touches.
   void at_event(std::string code, std::string text, std::string fix, const ContactEvent& event) {
@@ -70,6 +71,7 @@ class Collector {
   const Check* check_ = nullptr;
   const Job& job_;
   const Result& result_;
+  motion::CycleReader reader_;
 };
 
 std::string place(const measure::Region& region) {

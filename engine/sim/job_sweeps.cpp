@@ -12,41 +12,32 @@ namespace {
 
 using toolpath::BlockMove;
 
-/// Sources of a surface job: blocks are samples.
-std::vector<SweepSource> sources_of_samples(const motion::Trajectory& trajectory) {
-  std::vector<SweepSource> sources(trajectory.samples.size());
-  for (size_t i = 0; i < sources.size(); ++i)
-    sources[i] = {trajectory.samples[i].element, static_cast<uint32_t>(i), trajectory.samples[i].tool};
+/// Sources of a surface job: blocks are cycles.
+std::vector<SweepSource> sources_of_cycles(const motion::Cycles& cycles) {
+  std::vector<SweepSource> sources(cycles.size());
+  motion::CycleReader reader(cycles);
+  for (size_t k = 0; k < sources.size(); ++k) {
+    const motion::ToolSample& sample = reader.at(k).sample;
+    sources[k] = {sample.element, sample.tool, sample.u, k};
+  }
   return sources;
 }
 
-/// Finds the cycle in which the tool comes to a place of a block. Places must be asked for in order.
-class SampleFinder {
- public:
-  explicit SampleFinder(const motion::Trajectory& trajectory) : samples_(trajectory.samples) {}
-  uint32_t at(int element, double s) {
-    const auto short_of = [&](const motion::ToolSample& sample) {
-      return sample.element < element || (sample.element == element && sample.u < s);
-    };
-    while (next_ + 1 < samples_.size() && short_of(samples_[next_])) ++next_;
-    return static_cast<uint32_t>(next_);
-  }
-
- private:
-  const std::vector<motion::ToolSample>& samples_;
-  size_t next_ = 0;
-};
+/// All cycles of a surface job, merged.
+JobSweeps merged_cycles(const Job& job, const motion::Cycles& cycles, double tolerance_mm) {
+  std::vector<ToolPose> poses;
+  poses.reserve(cycles.size());
+  motion::CycleReader reader(cycles);
+  for (size_t k = 0; k < cycles.size(); ++k) poses.push_back(reader.at(k).sample.pose);
+  stock::MergedSweeps merged = merged_sweeps(poses, job.scene, tolerance_mm);
+  return {std::move(merged.sweeps), sources_of_cycles(cycles), merged.error_bound_mm};
+}
 
 /// Collects the sweeps of a CL job, each with a block of its own.
 class BlockSweeper {
  public:
-  BlockSweeper(const Job& job, const toolpath::ToolPath& path, const motion::Trajectory& trajectory,
-               double tolerance_mm)
-      : path_(path),
-        machines_(machines_by_tool(job)),
-        motions_(motion::block_motions(path, machines_)),
-        finder_(trajectory),
-        tolerance_mm_(tolerance_mm) {
+  BlockSweeper(const Job& job, const motion::Cycles& cycles, double tolerance_mm)
+      : elements_(cycles.elements()), motions_(cycles.motions()), tolerance_mm_(tolerance_mm) {
     for (const cutter::Cutter& tool : job.scene.tools) levers_mm_.push_back(lever_of(tool));
   }
 
@@ -100,12 +91,12 @@ class BlockSweeper {
   void add(const ToolPose& start, const ToolPose& end, size_t element, double s) {
     out_.sweeps.push_back({start, end, static_cast<uint32_t>(out_.sources.size())});
     const int index = static_cast<int>(element);
-    out_.sources.push_back({index, finder_.at(index, s), motions_[element].block->tool});
+    out_.sources.push_back({index, motions_[element].block->tool, s, std::nullopt});
   }
 
   void add_block(size_t i) {
     const std::vector<ToolPose> poses =
-        motion::subdivide(motions_[i], lever(i), tolerance_mm_, path_.elements[i].where);
+        motion::subdivide(motions_[i], lever(i), tolerance_mm_, elements_[i].where);
     const size_t pieces = poses.size() - 1;
     for (size_t k = 0; k < pieces; ++k)
       add(poses[k], poses[k + 1], i, static_cast<double>(k + 1) / static_cast<double>(pieces));
@@ -125,10 +116,8 @@ class BlockSweeper {
 
   double lever(size_t i) const { return levers_mm_[static_cast<size_t>(motions_[i].block->tool)]; }
 
-  const toolpath::ToolPath& path_;
-  std::vector<kinematics::MachineModel> machines_;  ///< by tool
-  std::vector<motion::BlockMotion> motions_;
-  SampleFinder finder_;
+  std::span<const toolpath::Element> elements_;
+  std::span<const motion::BlockMotion> motions_;
   std::vector<double> levers_mm_;  ///< by tool
   double tolerance_mm_;
   JobSweeps out_;
@@ -140,37 +129,43 @@ double lever_of(const cutter::Cutter& cutter) {
   return std::hypot(cutter::greatest_radius(cutter::outline(cutter)), cutter.flute_length_mm);
 }
 
-std::vector<stock::Sweep> cycle_sweeps(const motion::Trajectory& trajectory,
-                                       const kinematics::MachineModel& machine) {
-  const size_t count = trajectory.samples.size();
+bool is_done(const SweepSource& source, const motion::Cycle& cycle) {
+  if (source.cycle) return *source.cycle <= cycle.number;
+  const motion::ToolSample& sample = cycle.sample;
+  return sample.element > source.element || (sample.element == source.element && sample.u >= source.share);
+}
+
+size_t cycle_of(const SweepSource& source, motion::CycleReader& reader) {
+  return source.cycle ? *source.cycle : reader.reaching(source.element, source.share);
+}
+
+std::vector<stock::Sweep> cycle_sweeps(const motion::Cycles& cycles) {
+  const size_t count = cycles.size();
   std::vector<stock::Sweep> sweeps(count);
   if (count == 0) return sweeps;
-  // The nodes lie half way between the samples, where the joint-linear motion of the axes strays most from
+  // The nodes lie half way between the cycles, where the joint-linear motion of the axes strays most from
   // the path.
-  ToolPose node = trajectory.samples.front().pose;
+  motion::CycleReader reader(cycles);
+  motion::Cycle now = reader.at(0);
+  ToolPose node = now.sample.pose;
   for (size_t i = 0; i < count; ++i) {
-    const ToolPose next =
-        i + 1 < count ? kinematics::forward(machine, 0.5 * (trajectory.axes[i] + trajectory.axes[i + 1]))
-                      : trajectory.samples[i].pose;
+    ToolPose next = now.sample.pose;
+    if (i + 1 < count) {
+      const motion::Cycle& after = reader.at(i + 1);
+      next = kinematics::forward(cycles.machines().front(), 0.5 * (now.q + after.q));
+      now = after;
+    }
     sweeps[i] = {node, next, static_cast<uint32_t>(i)};
     node = next;
   }
   return sweeps;
 }
 
-stock::MergedSweeps merged_sweeps(const motion::Trajectory& trajectory, const Scene& scene) {
-  std::vector<ToolPose> poses;
-  std::vector<uint8_t> breaks;
-  poses.reserve(trajectory.samples.size());
-  breaks.reserve(trajectory.samples.size());
-  for (const motion::ToolSample& sample : trajectory.samples) {
-    const bool changed = !poses.empty() && trajectory.samples[poses.size() - 1].tool != sample.tool;
-    poses.push_back(sample.pose);
-    breaks.push_back(changed ? 1 : 0);
-  }
+stock::MergedSweeps merged_sweeps(std::span<const ToolPose> poses, const Scene& scene, double tolerance_mm) {
   double lever = 0.0;
   for (const cutter::Cutter& tool : scene.tools) lever = std::max(lever, lever_of(tool));
-  return stock::merge_sweeps(poses, breaks, lever, scene.stock.sweep_tolerance_mm);
+  const std::vector<uint8_t> breaks(poses.size(), 0);
+  return stock::merge_sweeps(poses, breaks, lever, tolerance_mm);
 }
 
 std::vector<stock::CutterSolid> tool_solids(const Scene& scene) {
@@ -184,19 +179,18 @@ std::vector<int> tool_of_blocks(const JobSweeps& sweeps) {
   return tools;
 }
 
-JobSweeps stock_sweeps(const Job& job, const toolpath::ToolPath& path, const motion::Trajectory& trajectory) {
-  const double tolerance = job.scene.stock.sweep_tolerance_mm;
-  if (job.scene.cuts_cycles()) return driven_sweeps(job, path, trajectory, tolerance, true);
-  if (job.scene.has_blocks()) return BlockSweeper(job, path, trajectory, tolerance).straight_blocks_merged();
-  stock::MergedSweeps merged = merged_sweeps(trajectory, job.scene);
-  return {std::move(merged.sweeps), sources_of_samples(trajectory), merged.error_bound_mm};
+JobSweeps stock_sweeps(const Job& job, const motion::Cycles& cycles, std::optional<double> tolerance_mm) {
+  const double tolerance = tolerance_mm.value_or(job.scene.stock.sweep_tolerance_mm);
+  if (job.scene.cuts_cycles()) return driven_sweeps(job, cycles, tolerance, true);
+  if (job.scene.has_blocks()) return BlockSweeper(job, cycles, tolerance).straight_blocks_merged();
+  return merged_cycles(job, cycles, tolerance);
 }
 
-JobSweeps ray_sweeps(const Job& job, const toolpath::ToolPath& path, const motion::Trajectory& trajectory) {
+JobSweeps ray_sweeps(const Job& job, const motion::Cycles& cycles) {
   const double tolerance = job.scene.design.sweep_tolerance_mm;
-  if (job.scene.cuts_cycles()) return driven_sweeps(job, path, trajectory, tolerance, false);
-  if (job.scene.has_blocks()) return BlockSweeper(job, path, trajectory, tolerance).each_block();
-  return {cycle_sweeps(trajectory, job.machine.model), sources_of_samples(trajectory), 0.0};
+  if (job.scene.cuts_cycles()) return driven_sweeps(job, cycles, tolerance, false);
+  if (job.scene.has_blocks()) return BlockSweeper(job, cycles, tolerance).each_block();
+  return {cycle_sweeps(cycles), sources_of_cycles(cycles), 0.0};
 }
 
 std::vector<int> pass_of_blocks(const JobSweeps& sweeps, const toolpath::ToolPath& path) {

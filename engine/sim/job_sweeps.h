@@ -6,10 +6,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
-#include "motion/interpolator.h"
+#include "motion/cycles.h"
 #include "sim/scene.h"
 #include "stock/sweep.h"
 #include "toolpath/tool_path.h"
@@ -18,10 +19,18 @@ namespace swarf::sim {
 
 /// Where a sweep comes from.
 struct SweepSource {
-  int element = 0;      ///< index into ToolPath::elements
-  uint32_t sample = 0;  ///< cycle in which the tool comes to the sweep's end
-  int tool = 0;         ///< index into Scene::tools
+  int element = 0;     ///< index into ToolPath::elements
+  int tool = 0;        ///< index into Scene::tools
+  double share = 1.0;  ///< of the element, where the sweep ends
+  /// Cycle in which the tool comes to the sweep's end; none: the one that reaches element and share.
+  std::optional<uint64_t> cycle;
 };
+
+/// The tool has come to the sweep's end in this cycle.
+bool is_done(const SweepSource& source, const motion::Cycle& cycle);
+
+/// Cycle in which the tool comes to the sweep's end.
+size_t cycle_of(const SweepSource& source, motion::CycleReader& reader);
 
 struct JobSweeps {
   std::vector<stock::Sweep> sweeps;
@@ -35,12 +44,11 @@ struct JobSweeps {
 /// one after. The axes move linearly inside a cycle, and half way is where the tool then strays most from the
 /// path: with these poses as nodes the chord of a cycle is cut as deep as the machine cuts it, and the
 /// samples stay on the path.
-std::vector<stock::Sweep> cycle_sweeps(const motion::Trajectory& trajectory,
-                                       const kinematics::MachineModel& machine);
+std::vector<stock::Sweep> cycle_sweeps(const motion::Cycles& cycles);
 
-/// Ticks merged within the scene's tolerance, whatever the job: for pictures. Nothing is swept where the tool
-/// changes; the tool of a sweep is that of its last sample, Sweep::block.
-stock::MergedSweeps merged_sweeps(const motion::Trajectory& trajectory, const Scene& scene);
+/// Poses that follow each other, merged within the tolerance for every tool of the scene; Sweep::block is the
+/// index of the pose at its end.
+stock::MergedSweeps merged_sweeps(std::span<const ToolPose> poses, const Scene& scene, double tolerance_mm);
 
 /// The flutes of each tool of the scene.
 std::vector<stock::CutterSolid> tool_solids(const Scene& scene);
@@ -58,12 +66,12 @@ void for_each_tool(std::span<const stock::Sweep> sweeps, const ToolOf& tool_of, 
 /// Distance from the tip to the farthest point of the flutes, mm.
 double lever_of(const cutter::Cutter& cutter);
 
-/// For the level set, within stock.sweep_tolerance. Blocks: collinear ones of one feed that keep their axis
-/// are merged.
-JobSweeps stock_sweeps(const Job& job, const toolpath::ToolPath& path, const motion::Trajectory& trajectory);
+/// For the level set, within stock.sweep_tolerance or the given one, mm. Blocks: collinear ones of one feed
+/// that keep their axis are merged.
+JobSweeps stock_sweeps(const Job& job, const motion::Cycles& cycles, std::optional<double> tolerance_mm = {});
 
 /// For the measuring rays; each sweep has a block of its own. Blocks: within design.sweep_tolerance.
-JobSweeps ray_sweeps(const Job& job, const toolpath::ToolPath& path, const motion::Trajectory& trajectory);
+JobSweeps ray_sweeps(const Job& job, const motion::Cycles& cycles);
 
 /// Tool of each block in `sources`.
 std::vector<int> tool_of_blocks(const JobSweeps& sweeps);

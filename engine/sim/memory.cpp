@@ -24,9 +24,10 @@ constexpr double kShareOfFreeMemory = 0.8;
 constexpr double kBase = 66.0 * kMegabyte;     // code, libraries, tables of the program, thread pools
 constexpr double kMovie = 270.0 * kMegabyte;   // Mesa, Embree and the encoder, with pictures of 1280 x 720
 constexpr double kStills = 120.0 * kMegabyte;  // Embree alone
-constexpr double kRow = 200.0;                 // one line of trajectory.csv
-constexpr double kRowCopies = 2.5;             // the text while its buffer grows by half
-constexpr double kRay = 83.0;                  // point, normal, height, block; its share of a tile
+constexpr double kSweep = sizeof(stock::Sweep) + sizeof(SweepSource);
+constexpr double kCutting =
+    sizeof(stock::Sweep) + sizeof(ToolPose) + 24.0;  // EarlierCuts, a row to be merged
+constexpr double kRay = 83.0;                        // point, normal, height, block; its share of a tile
 // Each triangle of the mesh, half a vertex with it, from the mesher's points to the decimated copy.
 constexpr double kTriangle = 105.0;
 // A tick of a path that is only compared: its sample, axes and sweep, and what vectors that grow hold beside.
@@ -47,20 +48,20 @@ double available_memory_mb() {
 /// Counts of a stock while and after it is cut.
 struct SurfaceCounts {
   double leaves_most = 0.0, triangles = 0.0;
+  double sweeps = 0.0;  ///< of the preview: never more, with its greater tolerance, than of the stock
 };
 
 constexpr double kCoarser = 4.0;
 constexpr size_t kPieces = 32;  // looks at the number of leaves
 
-SurfaceCounts preview(const Job& job, const motion::Trajectory& trajectory) {
+SurfaceCounts preview(const Job& job, const motion::Cycles& cycles) {
   const StockSettings& settings = job.scene.stock;
   // Three voxels to the thinnest cutter's radius still show every groove.
   double thinnest = std::numeric_limits<double>::infinity();
   for (const cutter::Cutter& tool : job.scene.tools) thinnest = std::min(thinnest, tool.radius());
   const double voxel = std::max(settings.voxel_mm, std::min(kCoarser * settings.voxel_mm, thinnest / 3.0));
-  Scene coarse = job.scene;
-  coarse.stock.sweep_tolerance_mm = voxel / 8.0;
-  const std::vector<stock::Sweep> sweeps = merged_sweeps(trajectory, coarse).sweeps;
+  const JobSweeps coarse = stock_sweeps(job, cycles, voxel / 8.0);
+  const std::vector<stock::Sweep>& sweeps = coarse.sweeps;
   stock::Stock stock(settings.box_W, voxel);
   const std::vector<stock::CutterSolid> solids = tool_solids(job.scene);
   double most = static_cast<double>(stock.leaves());
@@ -68,12 +69,13 @@ SurfaceCounts preview(const Job& job, const motion::Trajectory& trajectory) {
   for (size_t i = 0; i < sweeps.size(); i += piece) {
     for_each_tool(
         std::span(sweeps).subspan(i, std::min(piece, sweeps.size() - i)),
-        [&](uint32_t sample) { return trajectory.samples[sample].tool; },
+        [&](uint32_t block) { return coarse.sources[block].tool; },
         [&](size_t tool, std::span<const stock::Sweep> part) { stock.cut(part, solids[tool]); });
     most = std::max(most, static_cast<double>(stock.leaves()));
   }
   const double finer = std::pow(voxel / settings.voxel_mm, 2);
-  return {most * finer, static_cast<double>(stock.mesh().triangles.size()) * finer};
+  return {most * finer, static_cast<double>(stock.mesh().triangles.size()) * finer,
+          static_cast<double>(sweeps.size())};
 }
 
 /// Rays of the design. Surfaces: counted eight times as coarse, where the chord may stray 64 times as far.
@@ -95,11 +97,15 @@ double ray_count(const Job& job) {
 /// sagitta of a few ticks of the main path gives the length of a segment within the chord tolerance there.
 double longest_comparison(const Job& job, const MeasuredPath& path) {
   constexpr size_t kReach = 10;
-  const auto& samples = path.motion.trajectory.samples;
+  motion::CycleReader reader(*path.cycles);
   const motion::MotionOptions& options = job.scene.motion;
   double seconds = 0.0;
-  for (size_t i = 2 * kReach; i < samples.size(); i += kReach) {
-    const motion::ToolSample &a = samples[i - 2 * kReach], &b = samples[i - kReach], &c = samples[i];
+  motion::ToolSample a, b, c;
+  for (size_t i = 0; i < path.cycles->size(); i += kReach) {
+    a = b;
+    b = c;
+    c = reader.at(i).sample;
+    if (i < 2 * kReach) continue;
     const auto* pass =
         std::get_if<toolpath::SurfacePass>(&path.path.elements[static_cast<size_t>(b.element)].what);
     const double chord = (c.contact_W - a.contact_W).norm();
@@ -135,25 +141,27 @@ double memory_limit_mb(const Scene& scene) {
 }
 
 MemoryPrediction predict_memory(const Job& job, const MeasuredPath& path, bool render, int stocks) {
-  const motion::Trajectory& trajectory = path.motion.trajectory;
-  const SurfaceCounts counts = preview(job, trajectory);
+  const SurfaceCounts counts = preview(job, *path.cycles);
   const StockSettings& settings = job.scene.stock;
   const double stock =
       static_cast<double>(stock::Stock::memory_for(settings.box_W, settings.voxel_mm, counts.leaves_most));
-  const auto ticks = static_cast<double>(trajectory.samples.size());
-  const double sample = sizeof(motion::ToolSample) + sizeof(kinematics::AxisValues) + sizeof(stock::Sweep);
+  const auto ticks = static_cast<double>(path.cycles->size());
+  const bool by_block = job.scene.has_blocks() && !job.scene.cuts_cycles();
+  const double sweeps = by_block ? counts.sweeps : ticks;
   const double rays = ray_count(job) * kRay;
-  const double held = kBase + ticks * sample + rays;
+  const double held = kBase + rays + sweeps * kSweep +
+                      static_cast<double>(path.cycles->kept().size() * sizeof(motion::Cycle)) +
+                      static_cast<double>(path.path.elements.size() *
+                                          (sizeof(toolpath::Element) + sizeof(motion::BlockMotion)));
   // The stages that hold most; each ends before the next begins.
-  const double cutting = held - rays + stocks * stock + ticks * sizeof(ToolPose);
+  const double cutting = held - rays + stocks * stock + sweeps * kCutting;
   const double compared = std::max(ticks, longest_comparison(job, path));
   const double comparing = job.scene.compare_planners && !job.scene.has_blocks()
                                ? held + stock + compared * kComparedTick + rays
                                : 0.0;
-  const double writing = held + stock + ticks * kRow * kRowCopies;
   const double pictures = !render ? 0.0 : job.scene.movie.seconds > 0.0 ? kMovie : kStills;
   const double meshing = held + stock + counts.triangles * kTriangle + pictures;
-  return {stocks * stock / kMegabyte, std::max({cutting, comparing, writing, meshing}) / kMegabyte,
+  return {stocks * stock / kMegabyte, std::max({cutting, comparing, meshing}) / kMegabyte,
           (stock + counts.triangles * kTriangle) / kMegabyte, memory_limit_mb(job.scene)};
 }
 

@@ -65,23 +65,24 @@ std::vector<ProgramPlace> parse_places(const std::string& list) {
 }
 
 CutPlace place_of(const stock::Sweep& sweep, std::span<const SweepSource> sources,
-                  const motion::Trajectory& trajectory, const toolpath::ToolPath& path) {
+                  std::span<const toolpath::Element> elements, motion::CycleReader& reader) {
   const SweepSource& source = sources[sweep.block];
-  return {sweep.block, path.elements.at(static_cast<size_t>(source.element)).where.line,
-          trajectory.samples.at(source.sample).t_s};
+  return {sweep.block, elements[static_cast<size_t>(source.element)].where.line,
+          reader.at(cycle_of(source, reader)).sample.t_s};
 }
 
-size_t sweeps_until(const ProgramPlace& place, const JobSweeps& sweeps, const motion::Trajectory& trajectory,
-                    const toolpath::ToolPath& path, const std::vector<cutter::Cutter>& tools) {
+size_t sweeps_until(const ProgramPlace& place, const JobSweeps& sweeps, const motion::Cycles& cycles,
+                    const std::vector<cutter::Cutter>& tools) {
   if (place.tool_number > 0 || !place.tool_name.empty()) return sweeps_until_tool(place, sweeps, tools);
+  motion::CycleReader reader(cycles);
   size_t count = 0;
   int nearest = 0;
   for (size_t n = 0; n < sweeps.sweeps.size(); ++n) {
-    const CutPlace at = place_of(sweeps.sweeps[n], sweeps.sources, trajectory, path);
+    const CutPlace at = place_of(sweeps.sweeps[n], sweeps.sources, cycles.elements(), reader);
     if (place.line > 0 ? at.line == place.line : at.t_s <= place.t_s) count = n + 1;
     if (std::abs(at.line - place.line) < std::abs(nearest - place.line)) nearest = at.line;
   }
-  const double last_s = trajectory.samples.empty() ? 0.0 : trajectory.samples.back().t_s;
+  const double last_s = cycles.time_s();
   if (place.line > 0 && count == 0) {
     throw InputError("place-unknown", {place.text},
                      fmt::format("line {} of the program moves nothing", place.line),

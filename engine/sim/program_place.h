@@ -13,7 +13,7 @@
 
 namespace swarf::sim {
 
-/// "13": after the last motion of program line 13, the line that findings and trajectory.csv name.
+/// "13": after the last motion of program line 13, the line that findings and blocks.csv name.
 /// "12.5s": program time, after the last motion that is complete then.
 /// "T5", "T=DRILL_8": after the last motion of that tool.
 struct ProgramPlace {
@@ -36,11 +36,11 @@ struct CutPlace {
 
 /// The line of the block that the sweep comes from, and when the tool comes to the sweep's end.
 CutPlace place_of(const stock::Sweep& sweep, std::span<const SweepSource> sources,
-                  const motion::Trajectory& trajectory, const toolpath::ToolPath& path);
+                  std::span<const toolpath::Element> elements, motion::CycleReader& reader);
 
 /// Number of sweeps up to and including the place. Throws InputError "place-unknown" for a line without
 /// motion (naming the nearest with), for a time outside the program and for a tool that never moves.
-size_t sweeps_until(const ProgramPlace& place, const JobSweeps& sweeps, const motion::Trajectory& trajectory,
-                    const toolpath::ToolPath& path, const std::vector<cutter::Cutter>& tools);
+size_t sweeps_until(const ProgramPlace& place, const JobSweeps& sweeps, const motion::Cycles& cycles,
+                    const std::vector<cutter::Cutter>& tools);
 
 }  // namespace swarf::sim

@@ -2,16 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
-#include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <iterator>
-#include <vector>
 
-#include "base/input_file.h"
+#include "base/diagnostics.h"
 #include "base/units.h"
 
 namespace swarf::sim {
@@ -22,151 +18,141 @@ using kinematics::AxisKind;
 constexpr std::array<const char*, 4> kKindNames{"cut", "approach", "retract",
                                                 "rapid"};  // order of SampleKind
 
-std::string header(const kinematics::MachineModel& machine) {
-  std::string line = "t_s,block,x_mm,y_mm,z_mm,i,j,k,feed_mm_min";
-  for (const kinematics::Axis& axis : machine.axes) {
-    line += fmt::format(",{}_{}", axis.name, axis.kind == AxisKind::kRotary ? "deg" : "mm");
-  }
-  return line + ",contact_x_mm,contact_y_mm,contact_z_mm,u,v,element,kind,tool";
+const char* kind_name(motion::SampleKind kind) {
+  return kKindNames[static_cast<size_t>(kind)];
+}
+
+std::string axis_columns(const kinematics::MachineModel& machine) {
+  std::string columns;
+  for (const kinematics::Axis& axis : machine.axes)
+    columns += fmt::format(",{}_{}", axis.name, axis.kind == AxisKind::kRotary ? "deg" : "mm");
+  return columns;
 }
 
 std::string tool_field(const cutter::Cutter& tool) {
   return tool.number > 0 ? fmt::format("{}", tool.number) : tool.name;
 }
 
-double shown(const kinematics::Axis& axis, double q) {
-  return axis.kind == AxisKind::kRotary ? deg_from_rad(q) : q;
+using Out = std::back_insert_iterator<fmt::memory_buffer>;
+
+void append_pose(Out out, const ToolPose& pose) {
+  fmt::format_to(out, "{:.7f},{:.7f},{:.7f},{:.10f},{:.10f},{:.10f}", pose.tip_W.x(), pose.tip_W.y(),
+                 pose.tip_W.z(), pose.axis_W.x(), pose.axis_W.y(), pose.axis_W.z());
 }
 
-void append_row(fmt::memory_buffer& out, const motion::ToolSample& s, const kinematics::AxisValues& q,
-                const Job& job, int line) {
-  const kinematics::MachineModel& machine = job.machine.model;
-  auto it = std::back_inserter(out);
-  const Vec3& p = s.pose.tip_W;
-  const Vec3& a = s.pose.axis_W;
-  fmt::format_to(it, "{:.6f},{},{:.7f},{:.7f},{:.7f},{:.10f},{:.10f},{:.10f},{:.4f}", s.t_s, line, p.x(),
-                 p.y(), p.z(), a.x(), a.y(), a.z(), mm_min_from_mm_s(s.feed_mm_s));
+void append_axes(Out out, const kinematics::AxisValues& q, const kinematics::MachineModel& machine) {
   for (size_t i = 0; i < machine.axes.size(); ++i) {
-    fmt::format_to(it, ",{:.7f}", shown(machine.axes[i], q[static_cast<Eigen::Index>(i)]));
-  }
-  fmt::format_to(it, ",{:.7f},{:.7f},{:.7f},{:.9f},{:.9f},{},{},{}\n", s.contact_W.x(), s.contact_W.y(),
-                 s.contact_W.z(), s.u, s.v, s.element, kKindNames[static_cast<size_t>(s.kind)],
-                 tool_field(job.scene.tools[static_cast<size_t>(s.tool)]));
-}
-
-/// The fields of one line; text fields are kept as they are.
-std::vector<std::string_view> split(std::string_view line) {
-  std::vector<std::string_view> fields;
-  while (true) {
-    const auto comma = line.find(',');
-    fields.push_back(line.substr(0, comma));
-    if (comma == std::string_view::npos) return fields;
-    line.remove_prefix(comma + 1);
+    const double value = q[static_cast<Eigen::Index>(i)];
+    fmt::format_to(out, ",{:.7f}", machine.axes[i].kind == AxisKind::kRotary ? deg_from_rad(value) : value);
   }
 }
 
-bool parse(std::string_view field, double& value) {
-  const auto [end, failure] = std::from_chars(field.data(), field.data() + field.size(), value);
-  constexpr double kBeyondAnyRun = 1e9;  // of times, places, angles and numbers of elements
-  return failure == std::errc() && end == field.data() + field.size() && std::abs(value) <= kBeyondAnyRun;
+InputError unwritable(const std::string& path) {
+  return {"cannot-write",
+          {path},
+          "the table cannot be written",
+          "check that the folder may be written and has space"};
 }
 
-bool parse_kind(std::string_view field, motion::SampleKind& kind) {
-  for (size_t i = 0; i < kKindNames.size(); ++i) {
-    if (field != kKindNames[i]) continue;
-    kind = static_cast<motion::SampleKind>(i);
-    return true;
-  }
-  return false;
+std::ofstream open_table(const std::string& path, const std::string& header) {
+  std::ofstream file(path, std::ios::binary);
+  file << header << '\n';
+  if (!file.flush()) throw unwritable(path);
+  return file;
 }
 
-bool parse_tool(std::string_view field, const std::vector<cutter::Cutter>& tools, int16_t& tool) {
-  for (size_t i = 0; i < tools.size(); ++i) {
-    if (field != tool_field(tools[i])) continue;
-    tool = static_cast<int16_t>(i);
-    return true;
-  }
-  return false;
+void put(std::ofstream& file, const fmt::memory_buffer& text) {
+  file.write(text.data(), static_cast<std::streamsize>(text.size()));
 }
 
-bool parse_row(std::string_view line, const Job& job, motion::ToolSample& s, kinematics::AxisValues& q) {
-  const kinematics::MachineModel& machine = job.machine.model;
-  const std::vector<std::string_view> fields = split(line);
-  const size_t axes = machine.axes.size();
-  if (fields.size() != 9 + axes + 8) return false;
-  std::vector<double> x(fields.size() - 2);
-  for (size_t i = 0; i < x.size(); ++i) {
-    if (!parse(fields[i], x[i])) return false;
-  }
-  s.t_s = x[0];
-  s.pose = {{x[2], x[3], x[4]}, Vec3(x[5], x[6], x[7]).normalized()};
-  s.feed_mm_s = mm_s_from_mm_min(x[8]);
-  for (size_t i = 0; i < axes; ++i) {
-    const double value = x[9 + i];
-    q[static_cast<Eigen::Index>(i)] = machine.axes[i].kind == AxisKind::kRotary ? rad_from_deg(value) : value;
-  }
-  const double* rest = x.data() + 9 + axes;
-  s.contact_W = {rest[0], rest[1], rest[2]};
-  s.u = rest[3];
-  s.v = rest[4];
-  s.element = static_cast<int>(rest[5]);
-  return parse_kind(fields[x.size()], s.kind) && parse_tool(fields.back(), job.scene.tools, s.tool);
+void close_table(std::ofstream& file, const std::string& path) {
+  file.close();
+  if (!file) throw unwritable(path);
 }
 
 }  // namespace
 
-void write_trajectory(const std::string& path, const motion::Trajectory& trajectory,
-                      const toolpath::ToolPath& tool_path, const Job& job) {
-  fmt::memory_buffer out;
-  fmt::format_to(std::back_inserter(out), "{}\n", header(job.machine.model));
-  for (size_t i = 0; i < trajectory.samples.size(); ++i) {
-    const motion::ToolSample& sample = trajectory.samples[i];
-    append_row(out, sample, trajectory.axes[i], job,
-               tool_path.elements[static_cast<size_t>(sample.element)].where.line);
+BlockTable::BlockTable(const std::string& path, const Job& job, const motion::Cycles& cycles)
+    : path_(path),
+      job_(job),
+      cycles_(cycles),
+      file_(open_table(path, "line,t_s,x_mm,y_mm,z_mm,i,j,k" + axis_columns(job.machine.model) +
+                                 ",feed_mm_min,kind,tool")) {}
+
+void BlockTable::add(std::span<const motion::Cycle> window) {
+  for (const motion::Cycle& cycle : window) {
+    if (cycle.sample.element != element_) flush_to(cycle.sample.element, cycle.sample.t_s);
+    feed_mm_s_ = std::max(feed_mm_s_, cycle.sample.feed_mm_s);
+    last_ = cycle;
   }
-  const std::string temporary = path + ".part";
-  {
-    std::ofstream file(temporary, std::ios::binary);
-    file.write(out.data(), static_cast<std::streamsize>(out.size()));
-    if (!file.flush()) {
-      std::error_code ignored;
-      std::filesystem::remove(temporary, ignored);
-      throw InputError("cannot-write", {path}, "the trajectory cannot be written",
-                       "check that the folder may be written and has space");
-    }
-  }
-  std::filesystem::rename(temporary, path);
 }
 
-motion::Trajectory read_trajectory(const std::string& path, const Job& job) {
-  refuse_special_file(path);
-  std::ifstream file(path);
-  std::string line;
-  if (!file || !std::getline(file, line)) {
-    throw InputError("file-not-found", {path}, "the trajectory of the run cannot be read",
-                     "run the scene again");
+/// Rows of all elements before this one, which begins at t_s.
+void BlockTable::flush_to(int element, double t_s) {
+  for (; element_ < element; ++element_) {
+    write_row(element_, t_s);
+    feed_mm_s_ = -1.0;
   }
-  if (line != header(job.machine.model)) {
-    throw InputError("trajectory-mismatch", {path, 1, 1},
-                     "the columns do not belong to the machine of this run", "run the scene again");
+}
+
+void BlockTable::write_row(int element, double t_s) {
+  const toolpath::Element& entry = cycles_.elements()[static_cast<size_t>(element)];
+  fmt::memory_buffer text;
+  const Out out(text);
+  ToolPose pose = last_.sample.pose;
+  kinematics::AxisValues q = last_.q;
+  motion::SampleKind kind = last_.sample.kind;
+  auto tool = static_cast<size_t>(last_.sample.tool);
+  if (!cycles_.motions().empty()) {
+    const motion::BlockMotion& motion = cycles_.motions()[static_cast<size_t>(element)];
+    pose = motion.block->to;
+    q = motion.q_to;
+    kind = is_rapid(*motion.block) ? motion::SampleKind::kRapid : motion::SampleKind::kCutting;
+    tool = static_cast<size_t>(motion.block->tool);
   }
-  motion::Trajectory trajectory;
-  trajectory.period_s = job.scene.motion.period_s;
-  for (int number = 2; std::getline(file, line); ++number) {
-    motion::ToolSample sample;
-    kinematics::AxisValues q = kinematics::AxisValues::Zero();
-    const double before = trajectory.samples.empty() ? sample.t_s : trajectory.samples.back().t_s;
-    if (!parse_row(line, job, sample, q) || sample.t_s < before) {
-      throw InputError("trajectory-broken", {path, number, 1}, "this line is not a sample of a run",
-                       "run the scene again");
-    }
-    trajectory.samples.push_back(sample);
-    trajectory.axes.push_back(q);
+  fmt::format_to(out, "{},{:.6f},", entry.where.line, t_s);
+  append_pose(out, pose);
+  append_axes(out, q, job_.machine.model);
+  text.push_back(',');
+  if (feed_mm_s_ >= 0.0) fmt::format_to(out, "{:.4f}", mm_min_from_mm_s(feed_mm_s_));
+  fmt::format_to(out, ",{},{}\n", kind_name(kind), tool_field(job_.scene.tools[tool]));
+  put(file_, text);
+}
+
+void BlockTable::finish() {
+  const auto end = static_cast<int>(cycles_.elements().size());
+  // A run that was stopped has not come to the others.
+  const bool complete = cycles_.size() > 0 && !cycles_.stopped();
+  if (cycles_.size() > 0) flush_to(complete ? end : element_ + 1, last_.sample.t_s);
+  close_table(file_, path_);
+}
+
+CycleTable::CycleTable(const std::string& path, const Job& job, const motion::Cycles& cycles)
+    : path_(path),
+      job_(job),
+      cycles_(cycles),
+      file_(open_table(path, "t_s,block,x_mm,y_mm,z_mm,i,j,k,feed_mm_min" + axis_columns(job.machine.model) +
+                                 ",contact_x_mm,contact_y_mm,contact_z_mm,u,v,element,kind,tool")) {}
+
+void CycleTable::add(std::span<const motion::Cycle> window) {
+  fmt::memory_buffer text;
+  const Out out(text);
+  for (const motion::Cycle& cycle : window) {
+    const motion::ToolSample& s = cycle.sample;
+    const int line = cycles_.elements()[static_cast<size_t>(s.element)].where.line;
+    fmt::format_to(out, "{:.6f},{},", s.t_s, line);
+    append_pose(out, s.pose);
+    fmt::format_to(out, ",{:.4f}", mm_min_from_mm_s(s.feed_mm_s));
+    append_axes(out, cycle.q, job_.machine.model);
+    fmt::format_to(out, ",{:.7f},{:.7f},{:.7f},{:.9f},{:.9f},{},{},{}\n", s.contact_W.x(), s.contact_W.y(),
+                   s.contact_W.z(), s.u, s.v, s.element, kind_name(s.kind),
+                   tool_field(job_.scene.tools[static_cast<size_t>(s.tool)]));
   }
-  if (trajectory.samples.empty()) {
-    throw InputError("trajectory-broken", {path}, "the trajectory has no sample", "run the scene again");
-  }
-  return trajectory;
+  put(file_, text);
+}
+
+void CycleTable::finish() {
+  close_table(file_, path_);
 }
 
 }  // namespace swarf::sim

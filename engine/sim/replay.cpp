@@ -24,7 +24,7 @@ class Replay {
       : record_(record),
         progress_(progress),
         path_(move_tool(job, progress)),
-        merged_(stock_sweeps(job, path_.path, path_.motion.trajectory)),
+        merged_(stock_sweeps(job, *path_.cycles)),
         sweeps_(merged_.sweeps),
         solids_(tool_solids(job.scene)),
         stock_(job.scene.stock.box_W, job.scene.stock.voxel_mm) {
@@ -113,12 +113,13 @@ class Replay {
   }
 
   CutPlace place(size_t n) const {
-    return place_of(sweeps_[n], merged_.sources, path_.motion.trajectory, path_.path);
+    return place_of(sweeps_[n], merged_.sources, path_.path.elements, reader_);
   }
 
   const CutRecord& record_;
   Progress& progress_;
   MeasuredPath path_;
+  mutable motion::CycleReader reader_{*path_.cycles};
   JobSweeps merged_;
   const std::vector<stock::Sweep>& sweeps_;
   std::vector<stock::CutterSolid> solids_;  ///< by tool

@@ -10,10 +10,12 @@
 #include "base/units.h"
 #include "cutter/profile.h"
 #include "motion/dog_leg.h"
+#include "motion/interpolator.h"
 #include "sim/design_rays.h"
 #include "sim/findings.h"
 #include "sim/nc_job.h"
 #include "sim/prove_part.h"
+#include "sim/recorder.h"
 #include "toolpath/cl_path.h"
 
 namespace swarf::sim {
@@ -79,7 +81,7 @@ void measure_dexels(const Job& job, MeasuredPath& measured) {
 
 void cut_dexels(const Job& job, MeasuredPath& measured) {
   const auto start = std::chrono::steady_clock::now();
-  if (job.has_design()) measured.rays = ray_sweeps(job, measured.path, measured.motion.trajectory);
+  if (job.has_design()) measured.rays = ray_sweeps(job, *measured.cycles);
   measured.dexels = design_dexels(job);
   const std::vector<stock::CutterSolid> solids = tool_solids(job.scene);
   const auto tool_of = [&](uint32_t block) { return measured.rays.sources[block].tool; };
@@ -91,17 +93,52 @@ void cut_dexels(const Job& job, MeasuredPath& measured) {
   measured.dexel_seconds = seconds_since(start);
 }
 
+/// The tables that the options ask for.
+class Tables {
+ public:
+  Tables(const Job& job, const motion::Cycles& cycles, const CutOptions& options) {
+    if (options.save_folder.empty()) return;
+    blocks_.emplace(options.save_folder + "/" + kBlockTable, job, cycles);
+    if (options.cycles) cycles_.emplace(options.save_folder + "/" + kCycleTable, job, cycles);
+  }
+  void add(std::span<const motion::Cycle> window) {
+    if (blocks_) blocks_->add(window);
+    if (cycles_) cycles_->add(window);
+  }
+  void finish() {
+    if (blocks_) blocks_->finish();
+    if (cycles_) cycles_->finish();
+  }
+
+ private:
+  std::optional<BlockTable> blocks_;
+  std::optional<CycleTable> cycles_;
+};
+
+void interpolate(const Job& job, const motion::MotionOptions& options, const CutOptions& output,
+                 Progress& progress, MeasuredPath& measured) {
+  const auto start = std::chrono::steady_clock::now();
+  measured.cycles = std::make_unique<motion::Cycles>(measured.path.elements, machines_by_tool(job),
+                                                     job.scene.tools.front(), options);
+  Tables tables(job, *measured.cycles, output);
+  measured.envelope = {job.machine.model.axes.size(), options.period_s};
+  measured.motion =
+      motion::interpolate(*measured.cycles, progress, [&](std::span<const motion::Cycle> window) {
+        measured.envelope.add(window);
+        tables.add(window);
+      });
+  tables.finish();
+  measured.motion_seconds = seconds_since(start);
+}
+
 MeasuredPath plan_and_move(const Job& job, toolpath::Planner planner, const motion::MotionOptions& options,
                            Progress& progress) {
   MeasuredPath measured;
-  auto start = std::chrono::steady_clock::now();
+  const auto start = std::chrono::steady_clock::now();
   Diagnostics diagnostics;
   measured.path = plan_path(job, planner, diagnostics, nullptr);
   measured.plan_seconds = seconds_since(start);
-  start = std::chrono::steady_clock::now();
-  measured.motion =
-      motion::interpolate(measured.path, machines_by_tool(job), job.scene.tools.front(), options, progress);
-  measured.motion_seconds = seconds_since(start);
+  interpolate(job, options, {}, progress, measured);
   return measured;
 }
 
@@ -113,11 +150,13 @@ InputError path_misses_stock(const Job& job, const std::string& how) {
 }
 
 /// A path that stays a cutter's reach away from the stock is a wrong scene, not a clean run.
-void require_contact(const Job& job, const motion::Trajectory& trajectory) {
+void require_contact(const Job& job, const motion::Cycles& cycles) {
   const Box& box = job.scene.stock.box_W;
   const double reach = job.scene.tools.front().radius();
   double nearest = std::numeric_limits<double>::infinity();
-  for (const motion::ToolSample& sample : trajectory.samples) {
+  motion::CycleReader reader(cycles);
+  for (size_t k = 0; k < cycles.size(); ++k) {
+    const motion::ToolSample& sample = reader.at(k).sample;
     if (sample.kind != motion::SampleKind::kCutting) continue;
     const Vec3 inside = sample.contact_W.cwiseMax(box.lower).cwiseMin(box.upper);
     nearest = std::min(nearest, (sample.contact_W - inside).norm());
@@ -186,8 +225,7 @@ void compare_modes(const Job& job, Progress& progress, Result& result) {
       options.look_ahead = one.look_ahead;
       MeasuredPath other;
       other.path = result.main.path;
-      other.motion =
-          motion::interpolate(other.path, machines_by_tool(job), job.scene.tools.front(), options, silent);
+      interpolate(job, options, {}, silent, other);
       cut_dexels(job, other);
       measure_dexels(job, other);
       result.modes.push_back(row_of(one.name, other, false));
@@ -247,7 +285,7 @@ toolpath::ToolPath job_path(const Job& job, Diagnostics& diagnostics, toolpath::
   return plan_path(job, job.scene.toolpath.planner, diagnostics, reading);
 }
 
-MeasuredPath move_tool(const Job& job, Progress& progress) {
+MeasuredPath move_tool(const Job& job, Progress& progress, const CutOptions& options) {
   MeasuredPath measured;
   progress.begin("plan", 1, "paths");
   Diagnostics diagnostics;
@@ -256,15 +294,14 @@ MeasuredPath move_tool(const Job& job, Progress& progress) {
   if (job.scene.kind == ProgramKind::kNc) measured.nc = std::move(reading);
   measured.warnings = diagnostics.list();
   progress.end();
-  measured.motion = motion::interpolate(measured.path, machines_by_tool(job), job.scene.tools.front(),
-                                        job.scene.motion, progress);
-  if (!job.scene.has_blocks()) require_contact(job, measured.motion.trajectory);
+  interpolate(job, job.scene.motion, options, progress, measured);
+  if (!job.scene.has_blocks()) require_contact(job, *measured.cycles);
   return measured;
 }
 
 Result simulate(const Job& job, const CutOptions& options, Progress& progress) {
   Result result;
-  result.main = move_tool(job, progress);
+  result.main = move_tool(job, progress, options);
   result.memory = predict_memory(job, result.main, options.render, options.check_voxels ? 2 : 1);
   require_memory(job, result.memory);
   progress.note(fmt::format("memory: stock {:.0f} MB, whole run {:.0f} MB expected; limit {:.0f} MB",

@@ -11,8 +11,10 @@
 #include "measure/flank_error.h"
 #include "measure/measure.h"
 #include "measure/metrics.h"
-#include "motion/interpolator.h"
+#include "motion/cycles.h"
+#include "motion/result.h"
 #include "motion/singularity_scan.h"
+#include "motion/time_envelope.h"
 #include "sim/contact_event.h"
 #include "sim/cut_stage.h"
 #include "sim/job_sweeps.h"
@@ -41,7 +43,9 @@ struct Finding {
 /// One path, interpolated and measured on the surface dexels.
 struct MeasuredPath {
   toolpath::ToolPath path;
+  std::unique_ptr<motion::Cycles> cycles;  ///< of the path's elements
   motion::MotionResult motion;
+  motion::TimeEnvelope envelope{0, 1.0};     ///< of the cycles, for plots
   JobSweeps rays;                            ///< what cut the measuring rays; Sweep::block is its index
   std::vector<stock::SurfaceDexels> dexels;  ///< one per surface of Job::design, in its order
   std::optional<toolpath::NcReading> nc;     ///< of NC jobs
@@ -87,9 +91,9 @@ struct Result {
 /// receives what an NC program says besides its moves.
 toolpath::ToolPath job_path(const Job& job, Diagnostics& diagnostics, toolpath::NcReading* reading = nullptr);
 
-/// Plans and interpolates the job's program, nothing else. Throws InputError when the path cannot be planned
-/// or never meets the stock.
-MeasuredPath move_tool(const Job& job, Progress& progress);
+/// Plans and interpolates the job's program, nothing else; of the options, only those of the tables count.
+/// Throws InputError when the path cannot be planned or never meets the stock, or a table cannot be written.
+MeasuredPath move_tool(const Job& job, Progress& progress, const CutOptions& options = {});
 
 /// Runs everything. Throws InputError as move_tool and cut_stock do.
 Result simulate(const Job& job, const CutOptions& options, Progress& progress);

@@ -21,35 +21,36 @@ double SweepPlaces::progress(const stock::Sweep& sweep, const ToolPose& pose) co
          length2;
 }
 
-double SweepPlaces::progress(size_t sweep, size_t sample) const {
-  return progress(sweeps_.sweeps[sweep], trajectory_.samples[sample].pose);
+double SweepPlaces::progress(size_t sweep, size_t cycle) const {
+  return progress(sweeps_.sweeps[sweep], reader_.at(cycle).sample.pose);
 }
 
-SweepPlaces::Samples SweepPlaces::samples(size_t sweep) const {
-  return {sweep > 0 ? source(sweep - 1).sample : 0U, source(sweep).sample};
+SweepPlaces::Range SweepPlaces::cycles(size_t sweep) const {
+  if (cycles_.size() == 0) return {0, 0};
+  const size_t first = sweep > 0 ? cycle_of(source(sweep - 1), reader_) : 0U;
+  return {first, cycle_of(source(sweep), reader_)};
 }
 
 ContactPlace SweepPlaces::at(size_t sweep, double t) const {
   const SweepSource& last = source(sweep);
-  const Samples range = samples(sweep);
+  const Range range = cycles(sweep);
   const int first_element = sweep > 0 ? source(sweep - 1).element : 0;
   size_t low = range.first, high = range.last;  // progress(low) < t <= progress(high)
   while (low + 1 < high) {
     const size_t middle = (low + high) / 2;
     (progress(sweep, middle) < t - kSameT ? low : high) = middle;
   }
-  ContactPlace place{last.element, 0.0};
-  if (range.last < trajectory_.samples.size()) place.t_s = trajectory_.samples[range.last].t_s;
+  ContactPlace place{last.element, static_cast<double>(range.last) * cycles_.period_s()};
   if (range.first < range.last) {
     const double before = progress(sweep, low), after = progress(sweep, high);
     const double share = after > before ? std::clamp((t - before) / (after - before), 0.0, 1.0) : 1.0;
-    const double from_s = trajectory_.samples[low].t_s, to_s = trajectory_.samples[high].t_s;
-    place = {trajectory_.samples[high].element, from_s + share * (to_s - from_s)};
+    const double from_s = reader_.at(low).sample.t_s, to_s = reader_.at(high).sample.t_s;
+    place = {reader_.at(high).sample.element, from_s + share * (to_s - from_s)};
   }
   // A cycle may hold the ends of blocks.
   for (; place.element > first_element; --place.element) {
     const auto* block =
-        std::get_if<toolpath::BlockMove>(&path_.elements[static_cast<size_t>(place.element) - 1].what);
+        std::get_if<toolpath::BlockMove>(&cycles_.elements()[static_cast<size_t>(place.element) - 1].what);
     if (block == nullptr || block->tool != last.tool) break;
     if (progress(sweeps_.sweeps[sweep], block->to) < t - kSameT) break;
   }

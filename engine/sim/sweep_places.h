@@ -12,31 +12,32 @@ struct Contact;
 
 namespace swarf::sim {
 
-/// Where an instant of a sweep lies in the program: sweeps may join many blocks.
+/// Where an instant of a sweep lies in the program: sweeps may join many blocks. Not to be shared by threads.
 class SweepPlaces {
  public:
   /// All must outlive it.
-  SweepPlaces(const JobSweeps& sweeps, const toolpath::ToolPath& path, const motion::Trajectory& trajectory)
-      : sweeps_(sweeps), path_(path), trajectory_(trajectory) {}
+  SweepPlaces(const JobSweeps& sweeps, const motion::Cycles& cycles)
+      : sweeps_(sweeps), cycles_(cycles), reader_(cycles) {}
 
   /// `sweep`: index into JobSweeps::sweeps; t from 0 to 1 along it. The block is exact where blocks are
   /// merged, the time that of the control cycles.
   ContactPlace at(size_t sweep, double t) const;
   /// Cycles that end inside the sweep: after `first`, up to `last`.
-  struct Samples {
+  struct Range {
     size_t first, last;
   };
-  Samples samples(size_t sweep) const;
+  Range cycles(size_t sweep) const;
   /// How far along the sweep the tool stands in a cycle.
-  double progress(size_t sweep, size_t sample) const;
+  double progress(size_t sweep, size_t cycle) const;
+  const motion::Cycle& cycle(size_t k) const { return reader_.at(k); }
 
  private:
   double progress(const stock::Sweep& sweep, const ToolPose& pose) const;
   const SweepSource& source(size_t sweep) const { return sweeps_.sources[sweeps_.sweeps[sweep].block]; }
 
   const JobSweeps& sweeps_;
-  const toolpath::ToolPath& path_;
-  const motion::Trajectory& trajectory_;
+  const motion::Cycles& cycles_;
+  mutable motion::CycleReader reader_;
 };
 
 /// A contact of one sweep as an event of its own.

@@ -8,9 +8,9 @@
 #include "base/units.h"
 #include "motion/jerk_profile.h"
 #include "motion/motion_check.h"
-#include "unit/motion/interpolated.h"
 #include "toolpath/cl_path.h"
 #include "unit/motion/dome.h"
+#include "unit/motion/interpolated.h"
 
 namespace swarf::motion {
 namespace {

@@ -16,7 +16,7 @@ inline Interpolated interpolate(const toolpath::ToolPath& path,
                                 std::span<const kinematics::MachineModel> by_tool,
                                 const cutter::Cutter& cutter, const MotionOptions& options,
                                 Progress& progress, const LookAheadReach& reach = {}) {
-  Cycles cycles(path.elements, by_tool, cutter, options, reach);
+  Cycles cycles(path.elements, by_tool, cutter, options, {reach, 0});
   Interpolated result;
   static_cast<MotionResult&>(result) = interpolate(cycles, progress);
   result.trajectory = trajectory_of(cycles);
