@@ -5,7 +5,7 @@
 namespace swarf::reports {
 
 std::vector<double> time_by_tool(const sim::Job& job, const sim::Result& result) {
-  std::vector<double> times = result.main.motion.statistics.cycle.by_tool_s;
+  std::vector<double> times = result.main.motion.statistics.cycle.in_spindle_s;
   times.resize(job.scene.tools.size(), 0.0);
   return times;
 }

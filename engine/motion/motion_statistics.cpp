@@ -273,8 +273,12 @@ void MotionMeter::add(std::span<const Cycle> window) {
 
 /// Time by what it is spent on. A block's dwell stands at its start; all its other cycles are further on.
 void MotionMeter::see_time(const Cycle& now) {
-  if (!last_ || last_->sample.tool != now.sample.tool) return;
+  if (!last_) return;
   CycleTime& cycle = out_.statistics.cycle;
+  const auto in_spindle = static_cast<size_t>(now.sample.tool);
+  if (cycle.in_spindle_s.size() <= in_spindle) cycle.in_spindle_s.resize(in_spindle + 1, 0.0);
+  cycle.in_spindle_s[in_spindle] += now.sample.t_s - last_->sample.t_s;
+  if (last_->sample.tool != now.sample.tool) return;
   const toolpath::Element& element = cycles_.elements()[static_cast<size_t>(now.sample.element)];
   const auto* block = std::get_if<BlockMove>(&element.what);
   const bool dwells = block != nullptr && block->dwell_s > 0.0 && now.sample.u == 0.0;

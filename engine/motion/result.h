@@ -22,7 +22,8 @@ inline constexpr double kAtLimit = 0.99;
 /// Time of a program by what it is spent on, s.
 struct CycleTime {
   double feed_s = 0.0, rapid_s = 0.0, dwell_s = 0.0;
-  std::vector<double> by_tool_s;  ///< by BlockMove::tool, all of the above
+  std::vector<double> by_tool_s;     ///< by BlockMove::tool, all of the above
+  std::vector<double> in_spindle_s;  ///< by ToolSample::tool, with the cycle in which it is changed
 };
 
 /// How far the tip would be off, were the blocks driven in the other mode: under tcp and ends the axes

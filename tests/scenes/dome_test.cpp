@@ -69,7 +69,7 @@ TEST_F(DomeRun, LinKorenPlannerMeetsItsOwnTheory) {
 }
 
 TEST_F(DomeRun, LeavesEveryFile) {
-  for (const char* file : {"report.html", "metrics.json", "findings.json", "trajectory.csv", "movie.mp4",
+  for (const char* file : {"report.html", "metrics.json", "findings.json", "blocks.csv", "movie.mp4",
                            "still_part.png", "still_deviation.png", "still_fan.png", "still_machine.png",
                            "machine.glb", "part.glb", "stock.vdb"}) {
     EXPECT_TRUE(fs::exists(folder_ / file)) << file;

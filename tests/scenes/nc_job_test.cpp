@@ -44,7 +44,7 @@ class NcJob : public testing::Test {
             "[stock]\nbox_mm = [[0, -20, -20], [60, 20, 0]]\nvoxel_mm = 0.5\n[design]\nkind = \"none\"\n");
   }
   swarf::test::ProgramRun run() {
-    return run_swarf("run " + (root_ / "scene.toml").string() + " --no-render -o " +
+    return run_swarf("run " + (root_ / "scene.toml").string() + " --no-render --report -o " +
                      (root_ / "out").string());
   }
   json metrics() const { return json::parse(std::ifstream(root_ / "out" / "metrics.json")); }

@@ -159,7 +159,7 @@ TEST_F(ResultsKept, OutputPlacesAreTriedBeforeTheCut) {
   expect_refused(run_to("/proc"), "[output-in-the-way]");
   EXPECT_EQ(files_below(folder_), before);
   EXPECT_EQ(run_to("new/deep/folder/").exit_code, 0);
-  EXPECT_TRUE(fs::exists(job_ / "new/deep/folder/report.html"));
+  EXPECT_TRUE(fs::exists(job_ / "new/deep/folder/metrics.json"));
   EXPECT_EQ(run_to("new/deep/folder/").exit_code, 0);  // replaces itself
   EXPECT_EQ(files_below(job_ / "new").size(), files_below(job_ / "new/deep/folder").size());
   if (geteuid() != 0) {
@@ -181,22 +181,30 @@ TEST_F(ResultsKept, OutputFilesAreTriedBeforeTheWork) {
   expect_refused(swarf_there("plan scene.toml -o no/such/file.cl"), "No such file or directory");
 }
 
-TEST_F(ResultsKept, ADamagedTrajectoryIsRefused) {
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  for (size_t begin = 0; begin < text.size(); begin = text.find('\n', begin) + 1)
+    lines.push_back(text.substr(begin, text.find('\n', begin) - begin));
+  return lines;
+}
+
+TEST_F(ResultsKept, BlocksAreTabledAndCyclesWhereTheyAreAskedFor) {
   ASSERT_EQ(swarf_there("run scene.toml --no-render -o out").exit_code, 0);
-  const std::string sound = read_text(job_ / "out/trajectory.csv");
-  const size_t body = sound.find('\n') + 1, second = sound.find('\n', body) + 1;
-  for (const std::string& damaged :
-       {sound.substr(0, body), sound.substr(0, second) + "nan" + sound.substr(second + 8),
-        sound.substr(0, second) + "1e300" + sound.substr(second + 8),
-        sound + sound.substr(body, second - body)}) {
-    write_text(job_ / "out/trajectory.csv", damaged);
-    for (const char* command :
-         {"render out --still x.png --kind machine", "export out --machine-gltf x.glb"}) {
-      const auto run = swarf_there(command);
-      EXPECT_EQ(run.exit_code, 2) << run.output;
-      EXPECT_NE(run.output.find("[trajectory-broken]"), std::string::npos) << run.output;
-    }
-  }
+  const std::vector<std::string> blocks = lines_of(read_text(job_ / "out/blocks.csv"));
+  ASSERT_EQ(blocks.size(), 1U + 4U) << "a row for each of G0, G1, G1, G0";
+  EXPECT_EQ(blocks[0].find("line,t_s,x_mm,y_mm,z_mm,i,j,k,"), 0U);
+  for (size_t n = 1; n < blocks.size(); ++n)
+    EXPECT_EQ(blocks[n].find(std::to_string(n + 3) + ","), 0U) << blocks[n];
+  EXPECT_NE(blocks[3].find(",12.0000000,0.0000000,-1.0000000,"), std::string::npos) << blocks[3];
+  EXPECT_NE(blocks[3].find(",600.0000,cut,1"), std::string::npos) << blocks[3];
+  for (const char* file : {"out/trajectory.csv", "out/report.html", "out/part.glb"})
+    EXPECT_FALSE(fs::exists(job_ / file)) << file << ": nobody has asked for it";
+
+  ASSERT_EQ(swarf_there("run scene.toml --no-render --trajectory csv -o out").exit_code, 0);
+  const auto metrics = nlohmann::json::parse(read_text(job_ / "out/metrics.json"));
+  EXPECT_EQ(lines_of(read_text(job_ / "out/trajectory.csv")).size(),
+            metrics.at("motion").at("ticks").get<size_t>() + 2)
+      << "the head, and a row for the start and each cycle";
 }
 
 TEST_F(ResultsKept, FilesOfTheUserStayInAnEarlierResult) {
@@ -215,25 +223,37 @@ std::string limited_to(int kib) {
 }
 
 TEST_F(ResultsKept, AFullDiskIsNamedAndTakesNothingWithIt) {
-  ASSERT_EQ(swarf_there("run scene.toml --no-render -o out").exit_code, 0);
+  // Fine rays are the largest of what is needed, the page the largest of all.
+  std::string rays = scene("machine.toml");
+  replace(rays, "kind = \"none\"",
+          "kind = \"plane\"\norigin_mm = [-8, -2, -1]\nalong_u_mm = [16, 0, 0]\nalong_v_mm = [0, 4, 0]\n"
+          "pitch_mm = 0.02");
+  write_text(job_ / "scene.toml", rays);
+  const auto whole = swarf_there("run scene.toml --no-render --report -o out");
+  ASSERT_LE(whole.exit_code, 1) << whole.output;
   const std::string report = read_text(job_ / "out/report.html");
   const auto kib = [&](const char* name) {
     return static_cast<int>(fs::file_size(job_ / "out" / name) / 1024);
   };
-  // The trajectory is the largest of what is needed, the page the largest of all.
-  ASSERT_GT(kib("trajectory.csv"), kib("stock.vdb") + 8);
-  ASSERT_GT(kib("report.html"), kib("trajectory.csv") + 8);
+  ASSERT_GT(kib("stock.vdb"), kib("blocks.csv") + 8);
+  ASSERT_GT(kib("surface_0.rays"), kib("stock.vdb") + 8);
+  ASSERT_GT(kib("report.html"), kib("surface_0.rays") + 8);
 
-  const auto no_trajectory =
-      swarf_there("run scene.toml --no-render -o out", limited_to(kib("stock.vdb") + 4));
-  EXPECT_EQ(no_trajectory.exit_code, 2) << no_trajectory.output;
-  EXPECT_NE(no_trajectory.output.find("trajectory.csv: error:"), std::string::npos) << no_trajectory.output;
-  EXPECT_NE(no_trajectory.output.find("out.incomplete: note:"), std::string::npos) << no_trajectory.output;
+  const auto no_rays = swarf_there("run scene.toml --no-render -o out", limited_to(kib("stock.vdb") + 4));
+  EXPECT_EQ(no_rays.exit_code, 2) << no_rays.output;
+  EXPECT_NE(no_rays.output.find("surface_0.rays: error:"), std::string::npos) << no_rays.output;
+  EXPECT_NE(no_rays.output.find("out.incomplete: note:"), std::string::npos) << no_rays.output;
   EXPECT_EQ(read_text(job_ / "out/report.html"), report);
   EXPECT_EQ(read_text(job_ / "out.incomplete/stock.vdb"), read_text(job_ / "out/stock.vdb"));
 
+  const auto no_cycles =
+      swarf_there("run scene.toml --no-render --trajectory csv -o out", limited_to(kib("stock.vdb") + 4));
+  EXPECT_EQ(no_cycles.exit_code, 2) << no_cycles.output;
+  EXPECT_NE(no_cycles.output.find("trajectory.csv: error:"), std::string::npos) << no_cycles.output;
+  EXPECT_EQ(read_text(job_ / "out/report.html"), report);
+
   const auto no_page =
-      swarf_there("run scene.toml --no-render -o other", limited_to(kib("trajectory.csv") + 4));
+      swarf_there("run scene.toml --no-render --report -o other", limited_to(kib("surface_0.rays") + 4));
   EXPECT_EQ(no_page.exit_code, 2) << no_page.output;
   EXPECT_NE(no_page.output.find("report.html: error:"), std::string::npos) << no_page.output;
   EXPECT_EQ(read_text(job_ / "other/stock.vdb"), read_text(job_ / "out/stock.vdb"));
@@ -245,21 +265,23 @@ TEST_F(ResultsKept, AFullDiskIsNamedAndTakesNothingWithIt) {
 TEST_F(ResultsKept, TheStockIsEqualByteForByte) {
   ASSERT_EQ(swarf_there("run scene.toml --no-render --threads 1 --save-stock-after 5 -o a").exit_code, 0);
   ASSERT_EQ(swarf_there("run scene.toml --no-render --threads 2 --save-stock-after 5 -o b").exit_code, 0);
-  for (const char* file : {"stock.vdb", "stock_after_line_5.vdb", "trajectory.csv"})
+  for (const char* file : {"stock.vdb", "stock_after_line_5.vdb", "blocks.csv"})
     EXPECT_EQ(read_text(job_ / "a" / file), read_text(job_ / "b" / file)) << file;
 }
 
 TEST_F(ResultsKept, TheCommandIsPrintedAsItWasGiven) {
   fs::rename(job_ / "scene.toml", job_ / "a scene's.toml");
   const auto run = swarf_there(
-      "run \"a scene's.toml\" --set stock.voxel_mm=0.6 --set 'title=two words & <more>' --no-render -o out");
+      "run \"a scene's.toml\" --set stock.voxel_mm=0.6 --set 'title=two words & <more>' --no-render --report "
+      "-o "
+      "out");
   ASSERT_EQ(run.exit_code, 0) << run.output;
   const std::string command = nlohmann::json::parse(read_text(job_ / "out/run.json")).at("command");
   EXPECT_EQ(command,
             "swarf run 'a scene'\\''s.toml' --set stock.voxel_mm=0.6 --set 'title=two words & <more>' "
-            "--no-render -o out");
+            "--no-render --report -o out");
   EXPECT_NE(read_text(job_ / "out/report.html")
-                .find("--set &#39;title=two words &amp; &lt;more&gt;&#39; --no-render -o out"),
+                .find("--set &#39;title=two words &amp; &lt;more&gt;&#39; --no-render --report -o out"),
             std::string::npos);
   // What is printed runs, and makes the same stock.
   const std::string stock = read_text(job_ / "out/stock.vdb");
@@ -324,7 +346,7 @@ TEST_F(ResultsKept, AnInterruptAtAnyMomentLeavesWholeResults) {
     if (!fs::exists(job_ / "out")) continue;  // before there was anything to keep
     for (const std::string& file : files_below(job_ / "out"))
       EXPECT_EQ(file.find(".part"), std::string::npos) << file;
-    EXPECT_TRUE(fs::exists(job_ / "out/trajectory.csv"));
+    EXPECT_TRUE(fs::exists(job_ / "out/blocks.csv"));
     const auto resumed =
         swarf_there("run scene.toml --no-render --set stock.voxel_mm=0.25 --from out/stock.vdb -o again");
     EXPECT_EQ(resumed.exit_code, 0) << resumed.output;

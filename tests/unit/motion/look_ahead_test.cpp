@@ -206,7 +206,7 @@ TEST(DogLeg, EachAxisArrivesByItself) {
   EXPECT_EQ(with_dog_legs(path, std::span(&machine, 1)).elements.size(), 1U);
 }
 
-TEST(LookAhead, TooLongAProgramIsRefusedBeforeItTakesMemory) {
+TEST(LookAhead, TooLongAProgramIsRefusedBeforeItTakesTime) {
   const MachineModel machine = paper_machine();
   toolpath::ToolPath path = path_through(machine, kCorner, BlockLaw::kJoint, 50.0);
   block_of(path, 1).dwell_s = 1e9;
@@ -217,10 +217,10 @@ TEST(LookAhead, TooLongAProgramIsRefusedBeforeItTakesMemory) {
     EXPECT_EQ(error.diagnostics.list().front().code, "too-many-cycles");
     EXPECT_EQ(error.diagnostics.list().front().where.line, 2);
   }
-  // 1200 mm at .05 mm/s: more than six hours.
+  // 1200 mm at .2 um/s: 1667 hours.
   const toolpath::ToolPath slow =
       path_through(machine, {values(0, 0, 0, 0.3, 0), values(400, 0, 0, 0.3, 0), values(-400, 0, 0, 0.3, 0)},
-                   BlockLaw::kJoint, 0.05);
+                   BlockLaw::kJoint, 2e-4);
   EXPECT_THROW(run(slow, machine), InputError);
 }
 

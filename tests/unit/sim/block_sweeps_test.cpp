@@ -84,7 +84,8 @@ Job job_of(const std::string& text) {
 
 struct Swept {
   toolpath::ToolPath path;
-  motion::MotionResult motion;
+  std::unique_ptr<motion::Cycles> cycles;
+  motion::Trajectory trajectory;
 };
 
 Swept sweep_through(const Job& job) {
@@ -92,8 +93,10 @@ Swept sweep_through(const Job& job) {
   Diagnostics diagnostics;
   Progress silent;
   swept.path = job_path(job, diagnostics);
-  swept.motion = motion::interpolate(swept.path, machines_by_tool(job), job.scene.tools.front(),
-                                     job.scene.motion, silent);
+  swept.cycles = std::make_unique<motion::Cycles>(swept.path.elements, machines_by_tool(job),
+                                                  job.scene.tools.front(), job.scene.motion);
+  motion::interpolate(*swept.cycles, silent);
+  swept.trajectory = motion::trajectory_of(*swept.cycles);
   return swept;
 }
 
@@ -103,12 +106,12 @@ TEST(JobSweeps, CollinearBlocksAreOneSweepOfTheLevelSetAndManyOfTheRays) {
   text += "GOTO/100,250,0\n";
   const Job job = job_of(text);
   const Swept swept = sweep_through(job);
-  const JobSweeps stock = stock_sweeps(job, swept.path, swept.motion.trajectory);
+  const JobSweeps stock = stock_sweeps(job, *swept.cycles);
   ASSERT_EQ(stock.sweeps.size(), 2U);
   EXPECT_EQ(stock.sources[stock.sweeps[0].block].element, 99);
   EXPECT_EQ(stock.sources[stock.sweeps[1].block].element, 100);
   EXPECT_LT(stock.error_bound_mm, 1e-9);
-  const JobSweeps rays = ray_sweeps(job, swept.path, swept.motion.trajectory);
+  const JobSweeps rays = ray_sweeps(job, *swept.cycles);
   EXPECT_EQ(rays.sweeps.size(), 101U);
 }
 
@@ -117,9 +120,9 @@ TEST(JobSweeps, FollowEachOtherAndNameTheirElementAndCycle) {
       "MULTAX/ON\nFEDRAT/1200\nGOTO/20,0,0,0,0.342020143,0.939692621\n"
       "GOTO/10,17,0,-0.296198133,0.171010072,0.939692621\nRAPID\nGOTO/10,17,40\n");
   const Swept swept = sweep_through(job);
-  const motion::Trajectory& trajectory = swept.motion.trajectory;
-  for (const JobSweeps& sweeps :
-       {stock_sweeps(job, swept.path, trajectory), ray_sweeps(job, swept.path, trajectory)}) {
+  const motion::Trajectory& trajectory = swept.trajectory;
+  motion::CycleReader reader(*swept.cycles);
+  for (const JobSweeps& sweeps : {stock_sweeps(job, *swept.cycles), ray_sweeps(job, *swept.cycles)}) {
     ASSERT_GT(sweeps.sweeps.size(), 3U);
     EXPECT_LE(sweeps.error_bound_mm, job.scene.stock.sweep_tolerance_mm);
     for (size_t i = 0; i < sweeps.sweeps.size(); ++i) {
@@ -129,7 +132,7 @@ TEST(JobSweeps, FollowEachOtherAndNameTheirElementAndCycle) {
       }
       const SweepSource& source = sweeps.sources[i];
       // The tool is where the sweep ends, as near as a cycle takes it.
-      const ToolPose& at = trajectory.samples[source.sample].pose;
+      const ToolPose& at = trajectory.samples[cycle_of(source, reader)].pose;
       EXPECT_LT((at.tip_W - sweeps.sweeps[i].end.tip_W).norm(), 0.3) << "sweep " << i;
     }
     const std::vector<int> passes = pass_of_blocks(sweeps, swept.path);
@@ -150,7 +153,7 @@ double farthest_from_sweeps(const Job& job, const motion::Trajectory& trajectory
   const std::vector<kinematics::MachineModel> machines = machines_by_tool(job);
   double worst = 0.0;
   for (const stock::Sweep& sweep : sweeps.sweeps) {
-    const uint32_t cycle = sweeps.sources[sweep.block].sample;
+    const uint64_t cycle = *sweeps.sources[sweep.block].cycle;
     for (int k = 0; k <= 16; ++k) {
       const kinematics::AxisValues q =
           trajectory.axes[cycle - 1] + k / 16.0 * (trajectory.axes[cycle] - trajectory.axes[cycle - 1]);
@@ -159,7 +162,7 @@ double farthest_from_sweeps(const Job& job, const motion::Trajectory& trajectory
         const Vec3 at = pose.tip_W + height * pose.axis_W;
         double nearest = 1e9;
         for (const stock::Sweep& part : sweeps.sweeps) {
-          if (sweeps.sources[part.block].sample != cycle) continue;
+          if (*sweeps.sources[part.block].cycle != cycle) continue;
           const Vec3 a = part.start.tip_W + height * part.start.axis_W;
           nearest = std::min(nearest, distance_to_way(a, part.end.tip_W + height * part.end.axis_W, at));
         }
@@ -179,11 +182,11 @@ TEST(DrivenSweeps, StayWithinTheToleranceOfTheAxesMotion) {
   job.scene.stock.cut_by = CutBy::kCycles;
   job.scene.motion.period_s = 0.01;
   const Swept swept = sweep_through(job);
-  const JobSweeps rays = ray_sweeps(job, swept.path, swept.motion.trajectory);
+  const JobSweeps rays = ray_sweeps(job, *swept.cycles);
   EXPECT_LE(rays.error_bound_mm, job.scene.design.sweep_tolerance_mm);
-  EXPECT_GT(rays.sweeps.size(), 2 * swept.motion.trajectory.samples.size()) << "turning cycles are divided";
-  EXPECT_LT(farthest_from_sweeps(job, swept.motion.trajectory, rays), job.scene.design.sweep_tolerance_mm);
-  const JobSweeps level_set = stock_sweeps(job, swept.path, swept.motion.trajectory);
+  EXPECT_GT(rays.sweeps.size(), 2 * swept.trajectory.samples.size()) << "turning cycles are divided";
+  EXPECT_LT(farthest_from_sweeps(job, swept.trajectory, rays), job.scene.design.sweep_tolerance_mm);
+  const JobSweeps level_set = stock_sweeps(job, *swept.cycles);
   EXPECT_LE(level_set.error_bound_mm, job.scene.stock.sweep_tolerance_mm);
   EXPECT_LT(level_set.sweeps.size(), rays.sweeps.size()) << "joined";
 }
@@ -193,8 +196,7 @@ TEST(DrivenSweeps, FollowTheRoundedCornerAndKeepRapidsApart) {
       job_of("FEDRAT/3000\nGOTO/0,0,0\nGOTO/20,0,0\nGOTO/20,20,0\nRAPID\nGOTO/20,20,50\nGOTO/20,30,0\n");
   job.scene.stock.cut_by = CutBy::kCycles;
   const Swept swept = sweep_through(job);
-  for (const JobSweeps& sweeps : {stock_sweeps(job, swept.path, swept.motion.trajectory),
-                                  ray_sweeps(job, swept.path, swept.motion.trajectory)}) {
+  for (const JobSweeps& sweeps : {stock_sweeps(job, *swept.cycles), ray_sweeps(job, *swept.cycles)}) {
     double nearest = 1.0;
     for (size_t i = 0; i < sweeps.sweeps.size(); ++i) {
       const stock::Sweep& sweep = sweeps.sweeps[i];

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "../motion/dome.h"
+#include "motion/interpolator.h"
 #include "sim/simulation.h"
 
 namespace swarf::sim {
@@ -20,8 +21,6 @@ struct ContactRun {
     job.scene.stock.box_W = box;
     job.scene.stock.voxel_mm = voxel_mm;
     job.machine.model = motion::paper_machine();
-    // One cycle, at the start: places in the program come from the blocks alone.
-    result.main.motion.trajectory.samples.resize(1);
   }
   toolpath::BlockMove& turn(const ToolPose& to, double feed_mm_s = 20.0) {
     std::vector<toolpath::Element>& elements = result.main.path.elements;
@@ -39,6 +38,10 @@ struct ContactRun {
   void start(const ToolPose& pose) { end_ = pose; }
   const ToolClearance& cut() {
     Progress silent;
+    const std::vector<kinematics::MachineModel> machines = machines_by_tool(job);
+    result.main.cycles = std::make_unique<motion::Cycles>(result.main.path.elements, machines,
+                                                          job.scene.tools.front(), job.scene.motion);
+    result.main.motion = motion::interpolate(*result.main.cycles, silent);
     cut_stock(job, options, silent, result);
     return result.clearance;
   }

@@ -15,13 +15,10 @@ TEST(Lever, TheRimOfAFlatDiscCounts) {
   scene.stock.sweep_tolerance_mm = 1e-3;
   // Three poses of a turn about the tip; the one in the middle is off by `stray`, rad.
   for (const double stray : {1e-5, 3e-5, 1e-4, 2e-4}) {
-    motion::Trajectory trajectory;
-    for (const double angle : {0.0, 0.01 + stray, 0.02}) {
-      motion::ToolSample sample;
-      sample.pose = {Vec3::Zero(), Vec3(std::sin(angle), 0.0, std::cos(angle))};
-      trajectory.samples.push_back(sample);
-    }
-    const stock::MergedSweeps merged = merged_sweeps(trajectory, scene);
+    std::vector<ToolPose> poses;
+    for (const double angle : {0.0, 0.01 + stray, 0.02})
+      poses.push_back({Vec3::Zero(), Vec3(std::sin(angle), 0.0, std::cos(angle))});
+    const stock::MergedSweeps merged = merged_sweeps(poses, scene, scene.stock.sweep_tolerance_mm);
     EXPECT_TRUE(merged.sweeps.size() == 2 || merged.error_bound_mm >= 25.0 * stray)
         << stray << ": " << merged.sweeps.size() << " sweeps, bound " << merged.error_bound_mm;
     EXPECT_LE(merged.error_bound_mm, scene.stock.sweep_tolerance_mm);

