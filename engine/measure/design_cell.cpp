@@ -100,11 +100,11 @@ constexpr double kFanStep = 0.2;  // rad; the columns' directions between them a
 
 /// The columns between the two sides of a sharp edge, in steps of at most kFanStep. Outside a convex edge
 /// they answer for what stands there, inside a concave one for what is cut.
-void add_fan(const stock::RayField& field, const stock::SharpEdge& edge, double size_mm,
+void add_fan(const stock::FacetSheets& sheets, const stock::SharpEdge& edge, double size_mm,
              std::vector<RootCell>& cells) {
-  const Vec3 &from = field.points[edge.left[0]], &to = field.points[edge.left[1]];
+  const Vec3 &from = sheets.points[edge.left[0]], &to = sheets.points[edge.left[1]];
   const auto normals = [&](int end) {
-    return std::pair(field.normals[edge.left[end]], field.normals[edge.right[end]]);
+    return std::pair(sheets.normals[edge.left[end]], sheets.normals[edge.right[end]]);
   };
   const auto [n0, m0] = normals(0);
   const auto [n1, m1] = normals(1);
@@ -209,15 +209,15 @@ void add_vertex_fan(const Vec3& vertex, const SharpVertex& sharp, std::vector<Ro
   }
 }
 
-void add_vertex_fans(const stock::RayField& field, std::vector<RootCell>& cells) {
+void add_vertex_fans(const stock::FacetSheets& sheets, std::vector<RootCell>& cells) {
   std::map<Vec3, SharpVertex, ByCoordinates> vertices;
-  for (const stock::SharpEdge& edge : field.sharp_edges) {
+  for (const stock::SharpEdge& edge : sheets.sharp_edges) {
     for (const int end : {0, 1}) {
-      SharpVertex& vertex = vertices[field.points[edge.left[end]]];
-      const Vec3 way = field.points[edge.left[1 - end]] - field.points[edge.left[end]];
+      SharpVertex& vertex = vertices[sheets.points[edge.left[end]]];
+      const Vec3 way = sheets.points[edge.left[1 - end]] - sheets.points[edge.left[end]];
       vertex.edges.push_back(way.normalized());
-      vertex.normals.push_back(field.normals[edge.left[end]]);
-      vertex.normals.push_back(field.normals[edge.right[end]]);
+      vertex.normals.push_back(sheets.normals[edge.left[end]]);
+      vertex.normals.push_back(sheets.normals[edge.right[end]]);
     }
   }
   for (const auto& [place, vertex] : vertices) add_vertex_fan(place, vertex, cells);
@@ -299,10 +299,11 @@ std::vector<RootCell> root_cells(const stock::RayField& field, double size_mm) {
     add_surface(field.surface, size_mm, cells);
     return cells;
   }
-  const auto corner = [&](uint32_t ray) { return CellCorner{field.points[ray], field.normals[ray]}; };
-  for (const auto& t : field.facets) add_divided({corner(t[0]), corner(t[1]), corner(t[2])}, size_mm, cells);
-  for (const stock::SharpEdge& e : field.sharp_edges) add_fan(field, e, size_mm, cells);
-  add_vertex_fans(field, cells);
+  const stock::FacetSheets& sheets = *field.sheets;
+  const auto corner = [&](uint32_t n) { return CellCorner{sheets.points[n], sheets.normals[n]}; };
+  for (const auto& t : sheets.facets) add_divided({corner(t[0]), corner(t[1]), corner(t[2])}, size_mm, cells);
+  for (const stock::SharpEdge& e : sheets.sharp_edges) add_fan(sheets, e, size_mm, cells);
+  add_vertex_fans(sheets, cells);
   return cells;
 }
 

@@ -96,7 +96,13 @@ double crossing(TwoPasses& passes, const stock::RayField& field, uint32_t a, uin
     if (stagnant == side && !jump) (side < 0 ? f_high : f_low) *= 0.5;
     stagnant = side;
   }
-  return t;
+  if (std::max(-f_low, f_high) <= 0.5 * kHigh) return t;
+  // One pass ends here: what stands at its end is what the other one leaves beside it.
+  const auto left_at = [&](double place) {
+    difference(place);
+    return passes.lower_height() < 0.5 * kHigh ? passes.lower_height() : -kHigh;
+  };
+  return left_at(low) > left_at(high) ? low : high;
 }
 
 /// Whether the ridge runs more across the edge than along it: the change of the difference along the edge

@@ -79,12 +79,17 @@ SurfaceCounts preview(const Job& job, const motion::Cycles& cycles) {
 }
 
 /// Rays of the design. Surfaces: counted eight times as coarse, where the chord may stray 64 times as far.
-/// Meshes: counted as they will be made, because facets smaller than the pitch are not divided.
+/// Meshes: counted as they will be made, because the turns and borders of the facets ask for rays too; the
+/// denser walls beside them hold no material.
 double ray_count(const Job& job) {
   constexpr double kCoarse = 8.0, kChord = 0.005;
   const double pitch = job.scene.design.pitch_mm;
-  double rays =
-      job.design_mesh ? static_cast<double>(stock::rays_on_mesh(*job.design_mesh, pitch)->size()) : 0.0;
+  constexpr double kWall = 0.75;  // of a ray: point, normal, facet, its share of a tile
+  double rays = 0.0;
+  if (job.design_mesh) {
+    const stock::RayFieldPtr field = stock::rays_on_mesh(*job.design_mesh, pitch);
+    rays = static_cast<double>(field->size()) + kWall * static_cast<double>(field->walls->size());
+  }
   for (const surface::SurfacePtr& surface : job.design) {
     const auto grid = stock::rays_on_surface(surface, kCoarse * pitch, kCoarse * kCoarse * kChord);
     rays += kCoarse * static_cast<double>(grid->u_lines.size() - 1) * kCoarse *

@@ -26,6 +26,10 @@ struct Node {
   uint32_t right;        ///< of a branch: its second child; the first one follows it. 0: a leaf
 };
 
+const RayField& walls_of(const RayField& field) {
+  return field.walls ? *field.walls : field;
+}
+
 Node leaf_of(const RayField& field, uint32_t which, uint32_t tile) {
   const RayTile& t = field.tiles[tile];
   const Vec3& first = field.points[field.order[t.begin]];
@@ -54,7 +58,8 @@ class DesignTree {
   explicit DesignTree(std::span<const RayFieldPtr> fields) : fields_(fields) {
     std::vector<Node> leaves;
     for (uint32_t f = 0; f < fields.size(); ++f) {
-      for (uint32_t t = 0; t < fields[f]->tiles.size(); ++t) leaves.push_back(leaf_of(*fields[f], f, t));
+      const RayField& walls = walls_of(*fields[f]);
+      for (uint32_t t = 0; t < walls.tiles.size(); ++t) leaves.push_back(leaf_of(walls, f, t));
     }
     nodes_.reserve(2 * leaves.size());
     build(leaves, 0, leaves.size());
@@ -102,7 +107,7 @@ class DesignTree {
   }
 
   void limit_by(const Vec3& p, const Vec3& n, const Node& leaf, FreeRange::Range& range) const {
-    const RayField& field = *fields_[leaf.field];
+    const RayField& field = walls_of(*fields_[leaf.field]);
     const RayTile& tile = field.tiles[leaf.tile];
     for (uint32_t i = tile.begin; i < tile.begin + tile.count; ++i) {
       const Vec3& wall = field.points[field.order[i]];

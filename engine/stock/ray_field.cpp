@@ -20,29 +20,17 @@ Vec2 parameters_along(const surface::Derivatives& d, const Vec3& tangent) {
   return {(G * a - F * b) / det, (E * b - F * a) / det};
 }
 
-/// Where the line `point` + s `along` meets one triangle of the field, with the normal in between.
-std::optional<Foot> foot_on_triangle(const RayField& field, uint32_t triangle, const Vec3& point,
-                                     const Vec3& along) {
-  constexpr double kOnEdge = 1e-9;  // share of the triangle: a line through an edge meets one of its sides
-  const auto& t = field.triangles[triangle];
-  const Vec3 &a = field.points[t[0]], ab = field.points[t[1]] - a, ac = field.points[t[2]] - a;
-  const Vec3 h = along.cross(ac);
-  const double det = ab.dot(h);
-  if (!(std::abs(det) > std::numeric_limits<double>::min())) return std::nullopt;
-  const Vec3 offset = point - a;
-  const double wb = offset.dot(h) / det, wc = along.dot(offset.cross(ab)) / det;
-  if (!(wb >= -kOnEdge && wc >= -kOnEdge && wb + wc <= 1.0 + kOnEdge)) return std::nullopt;
-  const Vec3 normal =
-      (1.0 - wb - wc) * field.normals[t[0]] + wb * field.normals[t[1]] + wc * field.normals[t[2]];
-  return Foot{a + wb * ab + wc * ac, normal.normalized()};
-}
-
 }  // namespace
 
 Foot RayField::between(uint32_t a, uint32_t b, double t) const {
   if (surface == nullptr) {
-    return {points[a] + t * (points[b] - points[a]),
-            (normals[a] + t * (normals[b] - normals[a])).normalized()};
+    constexpr double kReach = 1.2;  // of the way between the rays: the facets bend aside
+    const Vec3 foot = points[a] + t * (points[b] - points[a]);
+    const Vec3 along = normals[a] + t * (normals[b] - normals[a]);
+    const double radius = kReach * (points[b] - points[a]).norm();
+    const auto met = sheets->meet(facet_of[a], points[a], radius, foot, along);
+    const FacetPlace place = met ? *met : sheets->nearest(facet_of[a], points[a], radius, foot);
+    return {place.point, place.normal};
   }
   const size_t nu = u_lines.size();
   const double ua = u_lines[a % nu], va = v_lines[a / nu];
@@ -58,21 +46,47 @@ std::optional<Foot> RayField::displaced(uint32_t ray, const Vec3& tangent_mm) co
     if (at.minCoeff() < 0.0 || at.maxCoeff() > 1.0) return std::nullopt;
     return foot_on_surface(*surface, at.x(), at.y());
   }
-  const Vec3 start = points[ray] + tangent_mm;
-  std::optional<Foot> nearest;
-  double least = std::numeric_limits<double>::infinity();
-  const auto look_at = [&](uint32_t triangle) {
-    const auto foot = foot_on_triangle(*this, triangle, start, normals[ray]);
-    if (!foot || (foot->point - start).squaredNorm() >= least) return;
-    least = (foot->point - start).squaredNorm();
-    nearest = foot;
+  // Facets that bend away from the tangent plane are met farther out; of the displacement and of the pitch.
+  constexpr double kOut = 1.5, kLeast = 0.1;
+  const double radius = kOut * tangent_mm.norm() + kLeast * pitch_mm;
+  const auto met = sheets->meet(facet_of[ray], points[ray], radius, points[ray] + tangent_mm, normals[ray]);
+  if (!met) return std::nullopt;
+  return Foot{met->point, met->normal};
+}
+
+double RayField::own_depth(const Vec3& point, const Vec3& normal, double depth_mm, double share) const {
+  if (design == nullptr || depth_mm <= 0.0) return depth_mm;
+  // Interpolated normals lean up to the crease's angle from the facets: the distance then is that much
+  // shorter.
+  constexpr double kLean = 0.85;       // cos(30 deg), and a little for rounding
+  constexpr double kFloatMesh = 2e-5;  // mm: vertices are floats
+  constexpr int kHalvings = 40;
+  // On a flat face the column follows the facet's own normal, and the distance is the depth.
+  constexpr double kFlat = 1.0 - 1e-4;
+  const auto& facet = design->mesh.triangles[design->distance.nearest(point).triangle];
+  const auto vertex = [&](size_t k) {
+    const auto& p = design->mesh.positions[facet[k]];
+    return Vec3(p[0], p[1], p[2]);
   };
-  for (uint32_t i = star_begin[ray]; i < star_begin[ray + 1]; ++i) {
-    for (const uint32_t corner : triangles[star[i]]) {
-      for (uint32_t k = star_begin[corner]; k < star_begin[corner + 1]; ++k) look_at(star[k]);
-    }
+  const Vec3 across = (vertex(1) - vertex(0)).cross(vertex(2) - vertex(0));
+  const bool flat = std::abs(across.dot(normal)) >= (1.0 - 1e-9) * across.norm();
+  const double least = flat ? kFlat : kLean;
+  const auto is_own = [&](double s) {
+    return design->distance.nearest(point - s * normal).distance_mm >= least * s - kFloatMesh;
+  };
+  // Far beyond the part the distance is nearly the depth again: what is not own on the way ends it.
+  constexpr double kThinnest = 0.1;  // mm
+  double low = 0.0, high = std::numeric_limits<double>::infinity();
+  for (double s = depth_mm;; s *= 0.5) {
+    if (!is_own(s)) high = s;
+    if (s <= kThinnest) break;
   }
-  return nearest;
+  if (high > depth_mm) return depth_mm;
+  for (int i = 0; i < kHalvings && high - low > std::max(1e-9, share * high); ++i) {
+    const double middle = 0.5 * (low + high);
+    (is_own(middle) ? low : high) = middle;
+  }
+  return low;
 }
 
 void add_tile(RayField& field, uint32_t begin) {

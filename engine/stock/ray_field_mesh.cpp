@@ -5,200 +5,274 @@
 #include <unordered_map>
 
 #include "base/check.h"
-#include "mesh/mesh_check.h"
+#include "base/parallel.h"
 #include "stock/dexel_kernel.h"
 #include "stock/ray_field.h"
 
 namespace swarf::stock {
 namespace {
 
-using Triangle = std::array<uint32_t, 3>;
+// Of the pitch, see rays_on_mesh: how near two rays may stand, how far apart places are offered.
+constexpr double kApart = 0.8, kFill = 1.0 / 3.0;
+/// Walls are this much denser than rays, along each of two directions.
+constexpr double kWallShare = 0.5;
+constexpr size_t kRaysPerTask = 1024;
 
-/// A triangle's side from its lower to its higher vertex.
-struct Side {
-  uint32_t low, high, corner;  ///< corner = 3 * triangle + place of its first vertex
-  bool operator<(const Side& other) const {
-    return std::tie(low, high, corner) < std::tie(other.low, other.high, other.corner);
-  }
-};
-
-std::vector<Side> sides_of(const std::vector<Triangle>& triangles) {
-  std::vector<Side> sides;
-  sides.reserve(3 * triangles.size());
-  for (uint32_t c = 0; c < 3 * triangles.size(); ++c) {
-    const Triangle& t = triangles[c / 3];
-    const uint32_t a = t[c % 3], b = t[(c + 1) % 3];
-    sides.push_back({std::min(a, b), std::max(a, b), c});
-  }
-  std::sort(sides.begin(), sides.end());
-  return sides;
-}
-
-uint32_t next_corner(uint32_t corner) {
-  return corner % 3 == 2 ? corner - 2 : corner + 1;
-}
-
-/// Corners that share a ray, as a forest whose roots are the least corners.
-class CornerSets {
+/// Rays by the cube they stand in, whose side is twice the reach: eight cubes hold all within it.
+class RaysByPlace {
  public:
-  explicit CornerSets(size_t corners) : parent_(corners) { std::iota(parent_.begin(), parent_.end(), 0U); }
-  uint32_t root(uint32_t c) {
-    while (parent_[c] != c) c = parent_[c] = parent_[parent_[c]];
-    return c;
+  RaysByPlace(const RayField& field, double reach_mm) : field_(field), side_(2.0 * reach_mm) {}
+
+  void add(uint32_t ray) {
+    const Vec3 cube = (field_.points[ray] / side_).array().floor();
+    const auto [head, is_new] = first_.try_emplace(key(cube), ray);
+    next_.push_back(is_new ? kNone : head->second);
+    head->second = ray;
   }
-  void join(uint32_t a, uint32_t b) {
-    const uint32_t ra = root(a), rb = root(b);
-    parent_[std::max(ra, rb)] = std::min(ra, rb);
+  /// Rays in the cubes around a point.
+  template <typename Visit>
+  void each_near(const Vec3& point, const Visit& visit) const {
+    const Vec3 low = (point / side_ - Vec3::Constant(0.5)).array().floor();
+    for (int code = 0; code < 8; ++code) {
+      const auto head = first_.find(key(low + Vec3(code >> 2, code >> 1 & 1, code & 1)));
+      if (head == first_.end()) continue;
+      for (uint32_t ray = head->second; ray != kNone; ray = next_[ray]) visit(ray);
+    }
   }
 
  private:
-  std::vector<uint32_t> parent_;
+  static constexpr uint32_t kNone = 0xffffffffU;
+  static uint64_t key(const Vec3& cube) {
+    constexpr uint64_t kMask = (uint64_t{1} << 21U) - 1;
+    const auto part = [&](double x) { return static_cast<uint64_t>(static_cast<int64_t>(x)) & kMask; };
+    return part(cube.x()) << 42U | part(cube.y()) << 21U | part(cube.z());
+  }
+
+  const RayField& field_;
+  double side_;
+  std::unordered_map<uint64_t, uint32_t> first_;  // looked up only: its order never shows
+  std::vector<uint32_t> next_;
 };
 
-/// Facets with their unit normals; those without area are left out.
-struct Facets {
-  std::vector<Triangle> triangles;
-  std::vector<Vec3> normals;
-};
-
-Facets facets_with_area(const std::vector<Triangle>& triangles, const std::vector<Vec3>& points) {
-  Facets facets;
-  for (const Triangle& t : triangles) {
-    const Vec3 cross = (points[t[1]] - points[t[0]]).cross(points[t[2]] - points[t[0]]);
-    const double length = cross.norm();
-    if (!(length > 0.0)) continue;
-    facets.triangles.push_back(t);
-    facets.normals.emplace_back(cross / length);
-  }
-  return facets;
+/// A place t of the way along a side: in the plane z = c where the side is, to the last digit.
+FacetPlace place_on_side(const FacetSheets& sheets, uint32_t facet, size_t side, double t) {
+  const uint32_t from = sheets.facets[facet][side], to = sheets.facets[facet][(side + 1) % 3];
+  if (t == 1.0) return {sheets.points[to], sheets.normals[to], facet};
+  const Vec3 normal = sheets.normals[from] + t * (sheets.normals[to] - sheets.normals[from]);
+  return {sheets.points[from] + t * (sheets.points[to] - sheets.points[from]), normal.normalized(), facet};
 }
 
-/// Joins the corners on both sides of every smooth edge. An edge of other than two facets is sharp.
-CornerSets smooth_corners(const Facets& facets, double crease_rad) {
-  CornerSets sets(3 * facets.triangles.size());
-  const std::vector<Side> sides = sides_of(facets.triangles);
-  const double least_cosine = std::cos(crease_rad);
-  for (size_t i = 0; i < sides.size();) {
-    size_t end = i + 1;
-    while (end < sides.size() && sides[end].low == sides[i].low && sides[end].high == sides[i].high) ++end;
-    const uint32_t a = sides[i].corner, b = sides[end - 1].corner;
-    if (end - i == 2 && facets.normals[a / 3].dot(facets.normals[b / 3]) >= least_cosine) {
-      const bool same = facets.triangles[a / 3][a % 3] == facets.triangles[b / 3][b % 3];
-      sets.join(a, same ? b : next_corner(b));
-      sets.join(next_corner(a), same ? next_corner(b) : b);
+/// Places offered to a field, which takes those that no ray of the sheet is near to.
+class Placement {
+ public:
+  Placement(RayField& field, double crease_rad)
+      : field_(field),
+        sheets_(*field.sheets),
+        near_(field, kFarthestRay * field.pitch_mm),
+        least_cosine_(std::cos(crease_rad)) {}
+
+  void fill() {
+    offer_border_corners();
+    for (uint32_t f = 0; f < sheets_.facets.size(); ++f) {
+      for (size_t k = 0; k < 3; ++k) {
+        if (sheets_.neighbours[f][k] == FacetSheets::kNone) offer_side(f, k, field_.pitch_mm);
+      }
     }
-    i = end;
-  }
-  return sets;
-}
-
-/// The edges between two facets whose corners did not join.
-std::vector<SharpEdge> sharp_edges(const Facets& facets, double crease_rad, const RayField& field) {
-  std::vector<SharpEdge> edges;
-  const std::vector<Side> sides = sides_of(facets.triangles);
-  const double least_cosine = std::cos(crease_rad);
-  const auto ray = [&](uint32_t corner) { return field.triangles[corner / 3][corner % 3]; };
-  for (size_t i = 0; i + 1 < sides.size(); ++i) {
-    const uint32_t a = sides[i].corner, b = sides[i + 1].corner;
-    if (sides[i].low != sides[i + 1].low || sides[i].high != sides[i + 1].high) continue;
-    if (facets.normals[a / 3].dot(facets.normals[b / 3]) >= least_cosine) continue;
-    const bool same = facets.triangles[a / 3][a % 3] == facets.triangles[b / 3][b % 3];
-    edges.push_back(
-        {{ray(a), ray(next_corner(a))}, {ray(same ? b : next_corner(b)), ray(same ? next_corner(b) : b)}});
-  }
-  return edges;
-}
-
-double corner_angle(const Triangle& t, size_t place, const std::vector<Vec3>& points) {
-  const Vec3& apex = points[t[place]];
-  const Vec3 a = points[t[(place + 1) % 3]] - apex, b = points[t[(place + 2) % 3]] - apex;
-  return std::atan2(a.cross(b).norm(), a.dot(b));
-}
-
-/// One ray per set of corners, its normal the mean of their facets weighted by the corners' angles.
-void place_rays(const Facets& facets, const std::vector<Vec3>& points, double crease_rad, RayField& field) {
-  CornerSets sets = smooth_corners(facets, crease_rad);
-  std::vector<uint32_t> ray_of(3 * facets.triangles.size());
-  field.triangles.resize(facets.triangles.size());
-  for (uint32_t c = 0; c < ray_of.size(); ++c) {
-    const Triangle& t = facets.triangles[c / 3];
-    if (sets.root(c) == c) {
-      ray_of[c] = static_cast<uint32_t>(field.points.size());
-      field.points.push_back(points[t[c % 3]]);
-      field.normals.emplace_back(Vec3::Zero());
+    for (uint32_t f = 0; f < sheets_.facets.size(); ++f) offer_inside(f, field_.pitch_mm);
+    for (uint32_t f = 0; f < sheets_.facets.size(); ++f) {
+      for (size_t k = 0; k < 3; ++k) offer_side(f, k, kFill * field_.pitch_mm);
+      offer_inside(f, kFill * field_.pitch_mm);
     }
-    const uint32_t ray = ray_of[c] = ray_of[sets.root(c)];
-    field.normals[ray] += corner_angle(t, c % 3, points) * facets.normals[c / 3];
-    field.triangles[c / 3][c % 3] = ray;
   }
-  for (Vec3& normal : field.normals) normal.normalize();
-}
+  const RaysByPlace& near() const { return near_; }
 
-/// Halves every edge that is longer than the pitch; true when there was one. Both triangles of an edge find
-/// the same middle, so the division has no gaps.
-bool divide_long_edges(RayField& field) {
-  std::unordered_map<uint64_t, uint32_t> middles;  // looked up only: its order never shows
-  const double longest2 = field.pitch_mm * field.pitch_mm;
-  const auto middle = [&](uint32_t a, uint32_t b) {
-    const uint64_t key = uint64_t{std::min(a, b)} << 32U | std::max(a, b);
-    const auto [found, is_new] = middles.try_emplace(key, static_cast<uint32_t>(field.points.size()));
-    if (is_new) {
-      field.points.emplace_back(0.5 * (field.points[a] + field.points[b]));
-      field.normals.emplace_back((field.normals[a] + field.normals[b]).normalized());
-    }
-    return found->second;
-  };
-  std::vector<Triangle> divided;
-  divided.reserve(2 * field.triangles.size());
-  for (Triangle t : field.triangles) {
-    const auto is_long = [&](int i) {
-      return (field.points[t[i]] - field.points[t[(i + 1) % 3]]).squaredNorm() > longest2;
+ private:
+  void offer(const FacetPlace& place) {
+    const double apart2 = std::pow(kApart * field_.pitch_mm, 2);
+    bool covered = false;
+    near_.each_near(place.point, [&](uint32_t ray) {
+      covered = covered || ((field_.points[ray] - place.point).squaredNorm() < apart2 &&
+                            sheets_.sheet[field_.facet_of[ray]] == sheets_.sheet[place.facet] &&
+                            field_.normals[ray].dot(place.normal) >= least_cosine_);
+    });
+    if (covered) return;
+    field_.points.push_back(place.point);
+    field_.normals.push_back(place.normal);
+    field_.facet_of.push_back(place.facet);
+    near_.add(static_cast<uint32_t>(field_.points.size() - 1));
+  }
+
+  /// Corners of a sheet where its border turns.
+  void offer_border_corners() {
+    constexpr double kStraight = 0.5;  // |sum of the ways out|: 29 degrees
+    std::vector<Vec3> ways(sheets_.points.size(), Vec3::Zero());
+    std::vector<int> count(sheets_.points.size(), 0);
+    const auto each_border = [&](const auto& visit) {
+      for (uint32_t f = 0; f < sheets_.facets.size(); ++f) {
+        for (size_t k = 0; k < 3; ++k) {
+          if (sheets_.neighbours[f][k] == FacetSheets::kNone) visit(f, k);
+        }
+      }
     };
-    const int marks = int{is_long(0)} + int{is_long(1)} + int{is_long(2)};
-    if (marks == 0) {
-      divided.push_back(t);
-      continue;
-    }
-    // Turn the triangle so that side 0 is long, and with two long sides the short one comes last.
-    while (!is_long(0) || (marks == 2 && is_long(2))) t = {t[1], t[2], t[0]};
-    const uint32_t m0 = middle(t[0], t[1]);
-    if (marks == 1) {
-      divided.insert(divided.end(), {{t[0], m0, t[2]}, {m0, t[1], t[2]}});
-      continue;
-    }
-    const uint32_t m1 = middle(t[1], t[2]);
-    divided.push_back({m0, t[1], m1});
-    if (marks == 2) {
-      divided.insert(divided.end(), {{t[0], m0, m1}, {t[0], m1, t[2]}});
-    } else {
-      const uint32_t m2 = middle(t[2], t[0]);
-      divided.insert(divided.end(), {{t[0], m0, m2}, {m0, m1, m2}, {m2, m1, t[2]}});
+    each_border([&](uint32_t f, size_t k) {
+      const uint32_t a = sheets_.facets[f][k], b = sheets_.facets[f][(k + 1) % 3];
+      const Vec3 way = (sheets_.points[b] - sheets_.points[a]).normalized();
+      ways[a] += way;
+      ways[b] -= way;
+      ++count[a];
+      ++count[b];
+    });
+    each_border([&](uint32_t f, size_t k) {
+      const uint32_t a = sheets_.facets[f][k];
+      if (count[a] == 2 && ways[a].norm() < kStraight) return;
+      offer(place_on_side(sheets_, f, k, 0.0));
+    });
+  }
+
+  void offer_side(uint32_t facet, size_t k, double step) {
+    const double length = (sheets_.corner(facet, (k + 1) % 3) - sheets_.corner(facet, k)).norm();
+    const int parts = std::max(1, static_cast<int>(std::ceil(length / step)));
+    for (int i = 0; i <= parts; ++i) offer(place_on_side(sheets_, facet, k, static_cast<double>(i) / parts));
+  }
+
+  /// The points of a square grid in the facet's plane, whose origin is that of W: facets of one plane share
+  /// it.
+  void offer_inside(uint32_t facet, double step) {
+    const Vec3 a = sheets_.corner(facet, 0), ab = sheets_.corner(facet, 1) - a,
+               ac = sheets_.corner(facet, 2) - a;
+    const Vec3 normal = ab.cross(ac).normalized();
+    int least = 0;
+    normal.cwiseAbs().minCoeff(&least);
+    const Vec3 e1 = normal.cross(Vec3::Unit(least)).normalized(), e2 = normal.cross(e1);
+    const auto flat = [&](const Vec3& p) { return Vec2(p.dot(e1) / step, p.dot(e2) / step); };
+    const Vec2 A = flat(a), B = flat(ab), C = flat(ac);
+    const double det = B.x() * C.y() - B.y() * C.x();
+    const std::array<Vec2, 3> corners{A, A + B, A + C};
+    const auto [low, high] = std::minmax({corners[0].y(), corners[1].y(), corners[2].y()});
+    for (double row = std::ceil(low); row <= high; row += 1.0) {
+      const auto [first, last] = along_row(corners, row);
+      for (double column = std::ceil(first); column <= last; column += 1.0) {
+        const Vec2 p = Vec2(column, row) - A;
+        const double wb = (p.x() * C.y() - p.y() * C.x()) / det, wc = (B.x() * p.y() - B.y() * p.x()) / det;
+        if (wb < 0.0 || wc < 0.0 || wb + wc > 1.0) continue;
+        offer(sheets_.place(facet, {1.0 - wb - wc, wb, wc}));
+      }
     }
   }
-  field.triangles = std::move(divided);
-  return !middles.empty();
+
+  /// From where to where a triangle lies on a row.
+  static std::pair<double, double> along_row(const std::array<Vec2, 3>& corners, double row) {
+    double first = std::numeric_limits<double>::infinity(), last = -first;
+    for (size_t k = 0; k < 3; ++k) {
+      const Vec2 &p = corners[k], &q = corners[(k + 1) % 3];
+      if ((p.y() < row) == (q.y() < row)) continue;
+      const double x = p.x() + (row - p.y()) / (q.y() - p.y()) * (q.x() - p.x());
+      first = std::min(first, x);
+      last = std::max(last, x);
+    }
+    return {first, last};
+  }
+
+  RayField& field_;
+  const FacetSheets& sheets_;
+  RaysByPlace near_;
+  double least_cosine_;
+};
+
+/// The rays of each facet: rays[begin[f] .. begin[f + 1]).
+struct RaysOfFacets {
+  std::vector<uint32_t> begin, rays;
+};
+
+RaysOfFacets rays_of_facets(const RayField& field) {
+  RaysOfFacets lists;
+  lists.begin.assign(field.sheets->facets.size() + 1, 0);
+  for (const uint32_t facet : field.facet_of) ++lists.begin[facet + 1];
+  std::partial_sum(lists.begin.begin(), lists.begin.end(), lists.begin.begin());
+  lists.rays.resize(field.size());
+  std::vector<uint32_t> next(lists.begin.begin(), lists.begin.end() - 1);
+  for (uint32_t ray = 0; ray < field.size(); ++ray) lists.rays[next[field.facet_of[ray]]++] = ray;
+  return lists;
 }
 
-void connect_rays(RayField& field) {
-  for (const Side& side : sides_of(field.triangles)) {
-    if (field.edges.empty() || field.edges.back() != std::array{side.low, side.high}) {
-      field.edges.push_back({side.low, side.high});
-    }
-  }
+/// The nearest ray of the facet's sheet.
+uint32_t ray_nearest(const RayField& field, const RaysByPlace& near, const FacetPlace& place) {
+  uint32_t nearest = 0;
+  double least = std::numeric_limits<double>::infinity();
+  near.each_near(place.point, [&](uint32_t ray) {
+    const double distance2 = (field.points[ray] - place.point).squaredNorm();
+    if (distance2 > least || field.sheets->sheet[field.facet_of[ray]] != field.sheets->sheet[place.facet])
+      return;
+    if (field.normals[ray].dot(place.normal) <= 0.0) return;  // the other side of a thin smooth part
+    if (distance2 == least && ray > nearest) return;
+    least = distance2;
+    nearest = ray;
+  });
+  return nearest;
+}
+
+/// Each facet's area in equal shares to the rays on it and to the nearest ones of places spread over it
+/// evenly (the R2 sequence of the plastic number): the sum is the design's area.
+void share_areas(RayField& field, const RaysByPlace& near, const RaysOfFacets& lists) {
+  const FacetSheets& sheets = *field.sheets;
   field.areas_mm2.assign(field.size(), 0.0);
-  field.star_begin.assign(field.size() + 1, 0);
-  for (const Triangle& t : field.triangles) {
-    const Vec3& a = field.points[t[0]];
-    const double area = 0.5 * (field.points[t[1]] - a).cross(field.points[t[2]] - a).norm();
-    for (const uint32_t ray : t) {
-      field.areas_mm2[ray] += area / 3.0;
-      ++field.star_begin[ray + 1];
+  const auto fraction = [](double x) { return x - std::floor(x); };
+  for (uint32_t f = 0; f < sheets.facets.size(); ++f) {
+    const Vec3 ab = sheets.corner(f, 1) - sheets.corner(f, 0), ac = sheets.corner(f, 2) - sheets.corner(f, 0);
+    const double area = 0.5 * ab.cross(ac).norm(),
+                 longest = std::max({ab.norm(), ac.norm(), (ac - ab).norm()});
+    const double step = kFill * field.pitch_mm;
+    const auto places = static_cast<size_t>(std::ceil(std::max(area / (step * step), longest / step)));
+    const double share = area / static_cast<double>(places + lists.begin[f + 1] - lists.begin[f]);
+    for (uint32_t i = lists.begin[f]; i < lists.begin[f + 1]; ++i) field.areas_mm2[lists.rays[i]] += share;
+    for (size_t i = 0; i < places; ++i) {
+      double u = fraction(0.5 + 0.7548776662466927 * static_cast<double>(i));
+      double v = fraction(0.5 + 0.5698402909980532 * static_cast<double>(i));
+      if (u + v > 1.0) {
+        u = 1.0 - u;
+        v = 1.0 - v;
+      }
+      field.areas_mm2[ray_nearest(field, near, sheets.place(f, {1.0 - u - v, u, v}))] += share;
     }
   }
-  std::partial_sum(field.star_begin.begin(), field.star_begin.end(), field.star_begin.begin());
-  field.star.resize(3 * field.triangles.size());
-  std::vector<uint32_t> next(field.star_begin.begin(), field.star_begin.end() - 1);
-  for (uint32_t c = 0; c < field.star.size(); ++c) field.star[next[field.triangles[c / 3][c % 3]]++] = c / 3;
+}
+
+/// Rays that no third one stands between.
+void find_neighbours(const RayField& field, const RaysOfFacets& lists, uint32_t ray,
+                     std::vector<uint32_t>& around, std::vector<std::array<uint32_t, 2>>& edges) {
+  constexpr double kBetween = 1.0 + 1e-6;  // the corners of a square stand between those of its diagonal
+  const double reach = 2.0 * kFarthestRay * field.pitch_mm;
+  const Vec3& foot = field.points[ray];
+  around.clear();
+  field.sheets->each_near(field.facet_of[ray], foot, reach, [&](uint32_t facet) {
+    for (uint32_t i = lists.begin[facet]; i < lists.begin[facet + 1]; ++i) {
+      const uint32_t other = lists.rays[i];
+      if (other != ray && (field.points[other] - foot).norm() <= reach &&
+          field.normals[other].dot(field.normals[ray]) > 0.0)
+        around.push_back(other);
+    }
+    return false;
+  });
+  std::sort(around.begin(), around.end());
+  for (const uint32_t other : around) {
+    if (other < ray) continue;
+    const Vec3 middle = 0.5 * (foot + field.points[other]);
+    const double radius2 = 0.25 * kBetween * (foot - field.points[other]).squaredNorm();
+    const bool between = std::any_of(around.begin(), around.end(), [&](uint32_t third) {
+      return third != other && (field.points[third] - middle).squaredNorm() <= radius2;
+    });
+    if (!between) edges.push_back({ray, other});
+  }
+}
+
+void connect_rays(RayField& field, const RaysOfFacets& lists) {
+  std::vector<std::vector<std::array<uint32_t, 2>>> parts((field.size() + kRaysPerTask - 1) / kRaysPerTask);
+  parallel_chunks(field.size(), kRaysPerTask, [&](size_t begin, size_t end) {
+    std::vector<uint32_t> around;
+    for (size_t ray = begin; ray < end; ++ray)
+      find_neighbours(field, lists, static_cast<uint32_t>(ray), around, parts[begin / kRaysPerTask]);
+  });
+  for (const auto& part : parts) field.edges.insert(field.edges.end(), part.begin(), part.end());
 }
 
 /// Halves order[begin, end) at the median of its widest extent in place and direction until a tile holds it.
@@ -236,61 +310,37 @@ void group_rays(RayField& field, uint32_t begin, uint32_t end, std::vector<uint3
   group_rays(field, middle, end, sorted);
 }
 
+void group_all(RayField& field) {
+  std::vector<uint32_t> sorted(field.size());
+  std::iota(sorted.begin(), sorted.end(), 0U);
+  group_rays(field, 0, static_cast<uint32_t>(sorted.size()), sorted);
+}
+
+RayFieldPtr walls_on(const std::shared_ptr<const FacetSheets>& sheets, double pitch_mm, double crease_rad) {
+  auto walls = std::make_shared<RayField>();
+  walls->pitch_mm = kWallShare * pitch_mm;
+  walls->sheets = sheets;
+  Placement(*walls, crease_rad).fill();
+  group_all(*walls);
+  return walls;
+}
+
 }  // namespace
 
 RayFieldPtr rays_on_mesh(const TriMesh& mesh, double pitch_mm, double crease_rad) {
   SWARF_CHECK(pitch_mm > 0.0, "rays need a pitch");
-  const mesh::WeldedMesh welded = mesh::weld(mesh);
-  const Facets facets = facets_with_area(welded.triangles, welded.points);
-  SWARF_CHECK(!facets.triangles.empty(), "a design mesh needs facets with area");
   auto field = std::make_shared<RayField>();
   field->pitch_mm = pitch_mm;
   field->design = std::make_shared<DesignMesh>(mesh);
-  place_rays(facets, welded.points, crease_rad, *field);
-  field->facets = field->triangles;
-  field->sharp_edges = sharp_edges(facets, crease_rad, *field);
-  while (divide_long_edges(*field)) {
-  }
-  connect_rays(*field);
-  std::vector<uint32_t> sorted(field->size());
-  std::iota(sorted.begin(), sorted.end(), 0U);
-  group_rays(*field, 0, static_cast<uint32_t>(sorted.size()), sorted);
+  field->sheets = std::make_shared<FacetSheets>(facet_sheets(mesh, crease_rad));
+  Placement placement(*field, crease_rad);
+  placement.fill();
+  const RaysOfFacets lists = rays_of_facets(*field);
+  share_areas(*field, placement.near(), lists);
+  connect_rays(*field, lists);
+  group_all(*field);
+  field->walls = walls_on(field->sheets, pitch_mm, crease_rad);
   return field;
-}
-
-double RayField::own_depth(const Vec3& point, const Vec3& normal, double depth_mm, double share) const {
-  if (design == nullptr || depth_mm <= 0.0) return depth_mm;
-  // Interpolated normals lean up to the crease's angle from the facets: the distance then is that much
-  // shorter.
-  constexpr double kLean = 0.85;       // cos(30 deg), and a little for rounding
-  constexpr double kFloatMesh = 2e-5;  // mm: vertices are floats
-  constexpr int kHalvings = 40;
-  // On a flat face the column follows the facet's own normal, and the distance is the depth.
-  constexpr double kFlat = 1.0 - 1e-4;
-  const auto& facet = design->mesh.triangles[design->distance.nearest(point).triangle];
-  const auto vertex = [&](size_t k) {
-    const auto& p = design->mesh.positions[facet[k]];
-    return Vec3(p[0], p[1], p[2]);
-  };
-  const Vec3 across = (vertex(1) - vertex(0)).cross(vertex(2) - vertex(0));
-  const bool flat = std::abs(across.dot(normal)) >= (1.0 - 1e-9) * across.norm();
-  const double least = flat ? kFlat : kLean;
-  const auto is_own = [&](double s) {
-    return design->distance.nearest(point - s * normal).distance_mm >= least * s - kFloatMesh;
-  };
-  // Far beyond the part the distance is nearly the depth again: what is not own on the way ends it.
-  constexpr double kThinnest = 0.1;  // mm
-  double low = 0.0, high = std::numeric_limits<double>::infinity();
-  for (double s = depth_mm;; s *= 0.5) {
-    if (!is_own(s)) high = s;
-    if (s <= kThinnest) break;
-  }
-  if (high > depth_mm) return depth_mm;
-  for (int i = 0; i < kHalvings && high - low > std::max(1e-9, share * high); ++i) {
-    const double middle = 0.5 * (low + high);
-    (is_own(middle) ? low : high) = middle;
-  }
-  return low;
 }
 
 }  // namespace swarf::stock
