@@ -174,8 +174,10 @@ FacetPlace FacetSheets::place(uint32_t facet, const Vec3& l) const {
   const auto& t = facets[facet];
   const Vec3 normal = l.x() * normals[t[0]] + l.y() * normals[t[1]] + l.z() * normals[t[2]];
   // In differences: where the facet lies in a plane z = c, so does the place, to the last digit.
-  const Vec3& a = points[t[0]];
-  return {a + l.y() * (points[t[1]] - a) + l.z() * (points[t[2]] - a), normal.normalized(), facet};
+  const Vec3 &a = points[t[0]], &b = points[t[1]], &c = points[t[2]];
+  const Vec3 low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
+  const Vec3 point = a + l.y() * (b - a) + l.z() * (c - a);
+  return {point.cwiseMax(low).cwiseMin(high), normal.normalized(), facet};
 }
 
 bool FacetSheets::side_near(uint32_t facet, size_t side, const Vec3& centre, double radius_mm) const {

@@ -14,6 +14,8 @@ namespace {
 
 // Of the pitch, see rays_on_mesh: how near two rays may stand, how far apart places are offered.
 constexpr double kApart = 0.8, kFill = 1.0 / 3.0;
+/// A ray on the border of a sheet answers for no depth: inside the sheet rays stand as near to it as this.
+constexpr double kInside = 0.3;
 /// Walls are this much denser than rays, along each of two directions.
 constexpr double kWallShare = 0.5;
 constexpr size_t kRaysPerTask = 1024;
@@ -78,6 +80,7 @@ class Placement {
         if (sheets_.neighbours[f][k] == FacetSheets::kNone) offer_side(f, k, field_.pitch_mm);
       }
     }
+    borders_ = field_.size();
     for (uint32_t f = 0; f < sheets_.facets.size(); ++f) offer_inside(f, field_.pitch_mm);
     for (uint32_t f = 0; f < sheets_.facets.size(); ++f) {
       for (size_t k = 0; k < 3; ++k) offer_side(f, k, kFill * field_.pitch_mm);
@@ -87,11 +90,13 @@ class Placement {
   const RaysByPlace& near() const { return near_; }
 
  private:
-  void offer(const FacetPlace& place) {
-    const double apart2 = std::pow(kApart * field_.pitch_mm, 2);
+  void offer(const FacetPlace& place, bool on_border = false) {
+    const double apart2 = std::pow(kApart * field_.pitch_mm, 2),
+                 inside2 = std::pow(kInside * field_.pitch_mm, 2);
     bool covered = false;
     near_.each_near(place.point, [&](uint32_t ray) {
-      covered = covered || ((field_.points[ray] - place.point).squaredNorm() < apart2 &&
+      covered = covered || ((field_.points[ray] - place.point).squaredNorm() <
+                                (on_border || ray >= borders_ ? apart2 : inside2) &&
                             sheets_.sheet[field_.facet_of[ray]] == sheets_.sheet[place.facet] &&
                             field_.normals[ray].dot(place.normal) >= least_cosine_);
     });
@@ -125,14 +130,16 @@ class Placement {
     each_border([&](uint32_t f, size_t k) {
       const uint32_t a = sheets_.facets[f][k];
       if (count[a] == 2 && ways[a].norm() < kStraight) return;
-      offer(place_on_side(sheets_, f, k, 0.0));
+      offer(place_on_side(sheets_, f, k, 0.0), true);
     });
   }
 
   void offer_side(uint32_t facet, size_t k, double step) {
+    const bool on_border = sheets_.neighbours[facet][k] == FacetSheets::kNone;
     const double length = (sheets_.corner(facet, (k + 1) % 3) - sheets_.corner(facet, k)).norm();
     const int parts = std::max(1, static_cast<int>(std::ceil(length / step)));
-    for (int i = 0; i <= parts; ++i) offer(place_on_side(sheets_, facet, k, static_cast<double>(i) / parts));
+    for (int i = 0; i <= parts; ++i)
+      offer(place_on_side(sheets_, facet, k, static_cast<double>(i) / parts), on_border);
   }
 
   /// The points of a square grid in the facet's plane, whose origin is that of W: facets of one plane share
@@ -177,6 +184,7 @@ class Placement {
   const FacetSheets& sheets_;
   RaysByPlace near_;
   double least_cosine_;
+  size_t borders_ = 0;  ///< rays before this one stand on borders
 };
 
 /// The rays of each facet: rays[begin[f] .. begin[f + 1]).
