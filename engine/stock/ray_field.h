@@ -97,7 +97,10 @@ inline constexpr double kFarthestRay = 1.2;
 /// (facets that hang together by smooth edges) is flat they stand on a square grid of `pitch_mm`, elsewhere
 /// they are picked greedily: corners of a sheet first, then its borders, its inside, and last what is left.
 /// - Two rays of a sheet are at least 0.8 pitches apart unless their normals turn by more than the crease
-///   angle, so that fillets keep theirs: at most 1.8 rays per square of the pitch, about one on average.
+///   angle, so that fillets keep theirs, or one is on the border of the sheet: about one ray per square of
+///   the pitch.
+/// - A ray on a border answers for no depth (RayField::own_depth), so that one within may stand as near to it
+///   as 0.3 pitches: the middle of a thin wall keeps its ray.
 /// - Places 1/3 pitch apart on every facet and side are offered, and refused only if a ray stands within 0.8
 ///   pitches: no place is farther from a ray of its sheet than kFarthestRay (0.8 + 0.24 to the border of a
 ///   facet + 1/6 along it).
