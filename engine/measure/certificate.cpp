@@ -1,6 +1,7 @@
 #include "measure/certificate.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "base/parallel.h"
@@ -18,8 +19,10 @@ constexpr size_t kShares = 64;
 /// So much is spent on roots that break a limit before each of them gets only the lesser one.
 constexpr size_t kBrokenBudget = 10'000'000, kBrokenRoot = 1'500;
 constexpr size_t kRoots = 10'000;
-constexpr size_t kRootsPerBatch = 256;  // between two looks at the progress bar and Ctrl-C
+constexpr size_t kRootsPerBatch = 256;  // share one budget
 constexpr double kLeastRoot = 1.0;      // mm
+/// Between two steps of the progress bar, about; s.
+constexpr double kStep = 0.2;
 
 void join(RootResult& part, Certificate& whole, std::vector<RegionPiece>& gouges,
           std::vector<RegionPiece>& excesses) {
@@ -42,6 +45,31 @@ void join(RootResult& part, Certificate& whole, std::vector<RegionPiece>& gouges
   whole.cells += part.cells;
 }
 
+/// Works on a batch in slices of about kStep; how many roots that is hangs on the machine, no result does.
+class Slices {
+ public:
+  explicit Slices(const CertificateInput& input) : input_(input) {}
+
+  /// Calls prove(n) for first <= n < end.
+  template <typename Prove>
+  void run(size_t first, size_t end, size_t all, const Prove& prove) {
+    while (first < end && !input_.progress.stop_requested()) {
+      const auto begun = std::chrono::steady_clock::now();
+      const size_t count = std::min(slice_, end - first);
+      parallel_chunks(count, 1, [&](size_t begin, size_t) { prove(first + begin); });
+      first += count;
+      input_.progress.advance(input_.progress_from + static_cast<double>(first) / static_cast<double>(all));
+      const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+      if (took < 0.5 * kStep) slice_ = std::min(2 * slice_, kRootsPerBatch);
+      if (took > kStep) slice_ = std::max(slice_ / 2, size_t{1});
+    }
+  }
+
+ private:
+  const CertificateInput& input_;
+  size_t slice_ = 32;
+};
+
 }  // namespace
 
 Certificate certify(const CertificateInput& input) {
@@ -52,21 +80,19 @@ Certificate certify(const CertificateInput& input) {
   const SweepIndex index(input.sweeps, input.cutters);
   std::vector<RootResult> parts(roots.size());
   size_t spent = 0, broken = 0;
+  Slices slices(input);
   for (size_t first = 0; first < roots.size() && !input.progress.stop_requested(); first += kRootsPerBatch) {
     // Known between batches only: the budget of a root does not depend on the number of threads.
     const size_t left = kBudget > spent ? kBudget - spent : 0;
     const size_t share = std::max(kLeastBudget, kShares * left / (roots.size() - first));
     const Budget budget{share, broken > kBrokenBudget ? std::min(share, kBrokenRoot) : share};
-    const size_t count = std::min(kRootsPerBatch, roots.size() - first);
-    parallel_chunks(count, 1, [&](size_t begin, size_t) {
-      parts[first + begin] = prove_root(input, index, roots[first + begin], budget);
-    });
-    for (size_t n = first; n < first + count; ++n) {
+    const size_t end = std::min(first + kRootsPerBatch, roots.size());
+    slices.run(first, end, roots.size(),
+               [&](size_t n) { parts[n] = prove_root(input, index, roots[n], budget); });
+    for (size_t n = first; n < end; ++n) {
       spent += parts[n].work;
       if (parts[n].broken) broken += parts[n].work;
     }
-    input.progress.advance(input.progress_from +
-                           static_cast<double>(first + count) / static_cast<double>(roots.size()));
   }
   Certificate whole;
   std::vector<RegionPiece> gouges, excesses;

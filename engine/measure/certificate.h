@@ -39,7 +39,9 @@ struct CertificateInput {
   bool wants_excess = true, wants_scallop = false;
   double scallop_limit_mm = 0.01;
   double gouge_known_mm = 0.0, excess_known_mm = 0.0;  ///< what the rays have found: where to begin
-  Progress& progress;                                  ///< advanced from progress_from by 1; may ask to stop
+  /// Advanced from progress_from by 1; may ask to stop, and is asked for it from any thread. What is returned
+  /// then proves nothing.
+  Progress& progress;
   double progress_from = 0.0;
 };
 

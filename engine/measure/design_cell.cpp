@@ -24,9 +24,10 @@ PatchBounds bounds_over(const surface::SurfacePtr& surface, const Vec2& low, con
   const Vec2 centre = 0.5 * (low + high), half = 0.5 * (high - low);
   const surface::Derivatives d = surface->derivatives(centre.x(), centre.y());
   const surface::BendBounds& b = bounds.bends;
-  const double change_u = b.uu * half.x() + b.uv * half.y(), change_v = b.uv * half.x() + b.vv * half.y();
+  const double uu = b.uu.most(), uv = b.uv.most(), vv = b.vv.most();
+  const double change_u = uu * half.x() + uv * half.y(), change_v = uv * half.x() + vv * half.y();
   const double Su = d.Su.norm() + change_u, Sv = d.Sv.norm() + change_v;
-  const double N_u = b.uu * Sv + Su * b.uv, N_v = b.uv * Sv + Su * b.vv;
+  const double N_u = uu * Sv + Su * uv, N_v = uv * Sv + Su * vv;
   const double N = d.Su.cross(d.Sv).norm() - N_u * half.x() - N_v * half.y();
   const double far = std::numeric_limits<double>::infinity();
   bounds.turn_u = N > 0.0 ? N_u / N : N_u > 0.0 ? far : 0.0;
@@ -243,6 +244,11 @@ double DesignCell::area_mm2() const {
   return 0.5 * (corners[1].point - corners[0].point).cross(corners[2].point - corners[0].point).norm();
 }
 
+CellCorner DesignCell::side(size_t k) const {
+  const CellCorner &a = corners[k], &b = corners[(k + 1) % 3];
+  return {0.5 * (a.point + b.point) - 0.25 * bends[k], 0.5 * (a.normal + b.normal)};
+}
+
 double most_over_pairs(double q01, double q12, double q20) {
   const double &a = q01, &b = q12, &c = q20;
   const double longest = std::max({a, b, c});
@@ -253,20 +259,23 @@ double most_over_pairs(double q01, double q12, double q20) {
 
 DesignCell make_cell(const std::array<CellCorner, 3>& corners, const PatchBounds& bounds) {
   DesignCell cell{corners};
-  std::array<double, 3> bend{}, lean{};
+  std::array<double, 3> bend{}, stray{}, lean{};
   for (size_t k = 0; k < 3; ++k) {
     const CellCorner &a = corners[k], &b = corners[(k + 1) % 3];
     lean[k] = (a.normal - b.normal).squaredNorm();
     if (bounds.surface == nullptr) continue;
-    const Vec2 d = (b.uv - a.uv).cwiseAbs();
+    const Vec2 d = b.uv - a.uv;
+    const double du = std::abs(d.x()), dv = std::abs(d.y());
     const surface::BendBounds& m = bounds.bends;
-    bend[k] = (m.uu + m.uv) * d.x() * d.x() + (m.uv + m.vv) * d.y() * d.y();
-    const double turn =
-        (d.x() > 0.0 ? bounds.turn_u * d.x() : 0.0) + (d.y() > 0.0 ? bounds.turn_v * d.y() : 0.0);
+    cell.bends[k] = d.x() * d.x() * m.uu.mean + 2.0 * d.x() * d.y() * m.uv.mean + d.y() * d.y() * m.vv.mean;
+    bend[k] = cell.bends[k].norm();
+    stray[k] = (m.uu.stray + m.uv.stray) * du * du + (m.uv.stray + m.vv.stray) * dv * dv;
+    const double turn = (du > 0.0 ? bounds.turn_u * du : 0.0) + (dv > 0.0 ? bounds.turn_v * dv : 0.0);
     cell.turn = std::max(cell.turn, turn);
   }
   if (bounds.surface != nullptr) {
-    cell.flatness_mm = 0.5 * most_over_pairs(bend[0], bend[1], bend[2]);
+    cell.stray_mm = 0.5 * most_over_pairs(stray[0], stray[1], stray[2]);
+    cell.flatness_mm = cell.stray_mm + 0.5 * most_over_pairs(bend[0], bend[1], bend[2]);
   } else {
     // |sum l_k n_k|^2 = 1 - sum over pairs l_j l_k |n_j - n_k|^2.
     cell.turn = 1.0 - std::sqrt(std::max(0.0, 1.0 - most_over_pairs(lean[0], lean[1], lean[2])));

@@ -5,11 +5,16 @@
 // barycentric l and height s stands at S(l) + s n(l). It lies within
 //   flatness + |s| turn    of    sum_k l_k (p_k + s n_k),
 // so whatever holds for a ball of that radius about the sum holds for the design (theory 8). For a surface
-// with |Suu| <= A, |Suv| <= B, |Svv| <= C Taylor's formula at the corners gives
-//   flatness = 1/2 max over l of sum over pairs l_j l_k q_jk,   q = (A + B) du^2 + (B + C) dv^2 of the edge
+// whose Suu, Suv, Svv stay within a, b, c of a mean second derivative M, Taylor's formula at the corners
+// gives
+//   S(l) = sum l_k p_k - 1/2 sum over pairs l_j l_k M(x_j - x_k) + e,
+//   |e| <= stray = 1/2 max over l of sum over pairs l_j l_k q_jk,   q = (a + b) du^2 + (b + c) dv^2 of edge
 //   jk,
-// because sum l_k q(x_k - x) = sum over pairs l_j l_k q(x_j - x_k) for a quadratic form q; the maximum is the
-// squared radius of the least circle around the triangle in the metric q.
+// because sum l_k q(x_k - x) = sum over pairs l_j l_k q(x_j - x_k) for a quadratic form q; that maximum is
+// the squared radius of the least circle around the triangle in the metric q. Flatness is the same with |M| +
+// q. So the cell is a quadratic patch but for the stray: it lies in the hull of its corners and of three
+// places beside the middles of its sides (Bezier), where the columns' directions are the means of the
+// corners'.
 #pragma once
 
 #include <array>
@@ -36,11 +41,16 @@ struct PatchBounds {
 struct DesignCell {
   std::array<CellCorner, 3> corners;
   double flatness_mm = 0.0, turn = 0.0;
+  double stray_mm = 0.0;                                                ///< <= flatness_mm
+  std::array<Vec3, 3> bends{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};  ///< M of the side from corner k, mm
 
+  bool is_curved() const { return flatness_mm > stray_mm; }
   Vec3 centroid() const { return (corners[0].point + corners[1].point + corners[2].point) / 3.0; }
   Vec3 mean_normal() const {
     return (corners[0].normal + corners[1].normal + corners[2].normal).normalized();
   }
+  /// The middle control point of the side from corner k to the next; its normal is not of length 1.
+  CellCorner side(size_t k) const;
   /// From the centroid to the farthest corner, mm.
   double radius() const;
   double longest_edge() const;

@@ -44,9 +44,49 @@ std::optional<Root> root_of_flat(const DesignCell& cell, const Tangents& tangent
               static_cast<size_t>(std::max_element(cut.begin(), cut.end()) - cut.begin())};
 }
 
-/// Of one end of the motion.
-Root root_of(const DesignCell& cell, const Tangents& tangents, size_t end, const ColumnDepths& depths) {
-  if (const auto flat = root_of_flat(cell, tangents, end, depths)) return *flat;
+/// Least value over barycentric l of sum_k l_k at_k - 1/2 sum over pairs l_j l_k bend_jk, bend_k of the side
+/// from corner k: at a corner, on a side or, where the function is convex, inside.
+double least_of_quadratic(const CornerHeights& at, const CornerHeights& bend) {
+  double least = std::min({at[0], at[1], at[2]});
+  for (size_t k = 0; k < 3; ++k) {
+    const double step = at[(k + 1) % 3] - at[k];
+    if (!(bend[k] > 2.0 * std::abs(step))) continue;
+    const double t = 0.5 - step / bend[k];
+    least = std::min(least, at[k] - 0.5 * bend[k] * t * t);
+  }
+  // g(x, y) = at_0 + p x + q y + 1/2 (bend_0 x^2 + 2 h x y + bend_2 y^2), x = l_1, y = l_2.
+  const double p = at[1] - at[0] - 0.5 * bend[0], q = at[2] - at[0] - 0.5 * bend[2];
+  const double h = 0.5 * (bend[0] + bend[2] - bend[1]);
+  const double det = bend[0] * bend[2] - h * h;
+  if (!(bend[0] > 0.0 && det > 0.0)) return least;
+  const double x = (h * q - bend[2] * p) / det, y = (h * p - bend[0] * q) / det;
+  if (x > 0.0 && y > 0.0 && x + y < 1.0) least = std::min(least, at[0] + 0.5 * (p * x + q * y));
+  return least;
+}
+
+/// A curved cell under a tangent that falls along its columns: the tangent is quadratic over the cell. The
+/// height at which it may first be cut; nothing where that lies deeper than is looked for.
+std::optional<double> root_of_curved(const DesignCell& cell, const Tangents& tangents, size_t end,
+                                     const ColumnDepths& depths) {
+  CornerHeights base{}, bend{};
+  double steepest = 0.0, flattest = kNever;
+  for (size_t k = 0; k < 3; ++k) {
+    const CellCorner& corner = cell.corners[k];
+    base[k] = tangents.value[end] + tangents.slope[end].dot(corner.point - tangents.at);
+    bend[k] = tangents.slope[end].dot(cell.bends[k]);
+    const double falls = -tangents.slope[end].dot(corner.normal);
+    steepest = std::max(steepest, falls + cell.turn);
+    flattest = std::min(flattest, falls - cell.turn);
+  }
+  if (!(flattest > 0.0)) return std::nullopt;
+  const double least = least_of_quadratic(base, bend) - cell.stray_mm - kRounding;
+  const double height = least / (least < 0.0 ? flattest : steepest);
+  if (-height > *std::min_element(depths.seen.begin(), depths.seen.end())) return std::nullopt;
+  return height;
+}
+
+/// Of one end of the motion, as if the cell lay anywhere within its flatness.
+Root root_of_thick(const DesignCell& cell, const Tangents& tangents, size_t end, const ColumnDepths& depths) {
   Root least{kNever, 0};
   for (size_t k = 0; k < 3; ++k) {
     // value + slope . (p + s n - at) - flatness - |s| turn: which branch of |s| holds the root, the sign at
@@ -61,6 +101,16 @@ Root root_of(const DesignCell& cell, const Tangents& tangents, size_t end, const
     const double height = std::max(-depths.seen[k], -base / falls);
     if (height < least.height) least = {height, k};
   }
+  return least;
+}
+
+/// Of one end of the motion.
+Root root_of(const DesignCell& cell, const Tangents& tangents, size_t end, const ColumnDepths& depths) {
+  if (const auto flat = root_of_flat(cell, tangents, end, depths)) return *flat;
+  Root least = root_of_thick(cell, tangents, end, depths);
+  if (cell.flatness_mm == 0.0) return least;
+  if (const auto curved = root_of_curved(cell, tangents, end, depths))
+    least.height = std::max(least.height, *curved);
   return least;
 }
 
@@ -153,21 +203,29 @@ std::optional<Vec3> toward_rim(const NearSweep& near, const Vec3& at, const Vec3
   return turned.norm() > 0.0 ? std::optional<Vec3>(turned.normalized()) : std::nullopt;
 }
 
+/// How the way from the chord's centroid to a corner bends off at its two ends: -1/2 sum over pairs l_j l_k
+/// M_jk by the share of the way, l = (1 - share) / 3 at the other corners.
+std::array<Vec3, 2> bend_toward(const DesignCell& cell, size_t corner) {
+  const Vec3 beside = cell.bends[corner] + cell.bends[(corner + 2) % 3],
+             across = cell.bends[(corner + 1) % 3];
+  return {(2.0 * across - beside) / 18.0, beside / 6.0};
+}
+
 /// The tangents at the place of the cell that the piece comes nearest to: from the centroid toward the corner
-/// that looks lowest from there, as far as the distance falls.
+/// that looks lowest from there, to where the distance stops falling, as its slopes at both ends tell.
 double height_by_motion(const DesignCell& cell, const NearSweep& near, const cutter::ConvexPiece& piece,
                         const ColumnDepths& depths, double enough) {
   const Vec3 centre = cell.centroid();
   const Tangents first = motion_tangents(piece, near, centre);
   const Root from_centre = root_of(cell, first, depths);
-  if (from_centre.height > enough || cell.flatness_mm > -enough) return from_centre.height;
+  if (from_centre.height > enough || cell.stray_mm > -enough) return from_centre.height;
   const Vec3 way = cell.corners[from_centre.corner].point - centre;
   const Tangents second = motion_tangents(piece, near, centre + way);
   double best = std::max(from_centre.height, root_of(cell, second, depths).height);
-  const double falls = first.slope[0].dot(way), rises = second.slope[0].dot(way);
+  const std::array<Vec3, 2> bend = bend_toward(cell, from_centre.corner);
+  const double falls = first.slope[0].dot(way + bend[0]), rises = second.slope[0].dot(way + bend[1]);
   if (best > enough || !(falls < 0.0 && rises > 0.0)) return best;
-  const double share = (second.value[0] - rises - first.value[0]) / (falls - rises);
-  if (!(share > 0.0 && share < 1.0)) return best;
+  const double share = falls / (falls - rises);
   const Tangents between = motion_tangents(piece, near, centre + share * way);
   return std::max(best, root_of(cell, between, depths).height);
 }
@@ -215,7 +273,7 @@ double least_height_in_slices(const DesignCell& cell, const NearSweep& near, con
   const double best = least_height(cell, near, piece, depths, enough);
   if (!near.turns || best > enough) return best;
   const double lost = (near.map.R1t - near.map.R0t).norm() * cell.radius();
-  if (lost < kLittle || cell.flatness_mm > -enough || (best > -kNever && best + 2.0 * lost < enough))
+  if (lost < kLittle || cell.stray_mm > -enough || (best > -kNever && best + 2.0 * lost < enough))
     return best;
   const double first = least_height_in_slices(cell, slice_of(near, 0.0, 0.5), piece, depths, enough);
   if (first <= best) return best;
@@ -246,7 +304,7 @@ Slope slope_on(const cutter::ConvexPiece& piece, const Line& line, double s) {
   return {support.value, sideways + support.normal.y() * line.N.z()};
 }
 
-/// Least s >= from with F <= kTouch - margin(s), margin = aside + flatness + |s| turn: Newton's method on a
+/// Least s >= from with F <= kTouch - margin(s), margin = aside + stray + |s| turn: Newton's method on a
 /// convex function from the left, which cannot overshoot; kNever when F turns up first.
 double entry(const cutter::ConvexPiece& piece, const Line& line, double from, const DesignCell& cell,
              double aside) {
@@ -255,7 +313,7 @@ double entry(const cutter::ConvexPiece& piece, const Line& line, double from, co
   double s = from;
   for (int step = 0; step < kMostSteps; ++step) {
     const Slope at = slope_on(piece, line, s);
-    const double excess = at.value + aside + cell.flatness_mm + std::abs(s) * cell.turn - kTouch;
+    const double excess = at.value + aside + cell.stray_mm + std::abs(s) * cell.turn - kTouch;
     if (excess <= 0.0) return s;
     const double slope = at.along + (s < 0.0 ? -cell.turn : cell.turn);
     if (!(slope < 0.0)) return kNever;
@@ -277,20 +335,58 @@ double spread_of(const CornerHeights& heights) {
          *std::min_element(heights.begin(), heights.end());
 }
 
-/// Where the piece covers three lines, `aside` mm within its surface.
-CornerHeights covered_lines(const DesignCell& cell, const cutter::ConvexPiece& piece,
-                            const std::array<Line, 3>& lines, const CornerHeights& from,
-                            const CornerHeights& tops, double aside) {
+/// Where the piece covers a line up to `top`, looked for from `from` up, `aside` mm within its surface.
+double covered_line(const DesignCell& cell, const cutter::ConvexPiece& piece, const Line& line, double from,
+                    double top, double aside) {
+  const double high = std::max(top, from);
+  const double margin = aside + cell.stray_mm + std::abs(high) * cell.turn;
+  if (high > from && slope_on(piece, line, high).value > kTouch - margin) return kNever;
+  return entry(piece, line, from, cell, aside);
+}
+
+/// Heights from which on a cell is covered; how far those of its control columns lie apart at most, and those
+/// of its sides above the mean of their corners'.
+struct Cover {
   CornerHeights heights{kNever, kNever, kNever};
+  double spread = 0.0, sides = 0.0;
+  bool is_whole() const { return heights[0] < kNever; }
+};
+
+/// The control columns of the sides, each in the mean of its corners' instants: where one is covered later
+/// than the mean of its corners by c, the cell is by 2 l_j l_k c.
+bool cover_sides(const DesignCell& cell, const cutter::ConvexPiece& piece, const std::array<Line, 3>& sides,
+                 const CornerHeights& tops, double aside, Cover& cover) {
+  std::array<double, 3> later{};
   for (size_t k = 0; k < 3; ++k) {
-    const double high = std::max(tops[k], from[k]);
-    const double margin = aside + cell.flatness_mm + std::abs(high) * cell.turn;
-    if (high > from[k] && slope_on(piece, lines[k], high).value > kTouch - margin)
-      return {kNever, kNever, kNever};
-    heights[k] = entry(piece, lines[k], from[k], cell, aside);
-    if (heights[k] == kNever) return {kNever, kNever, kNever};
+    const size_t j = (k + 1) % 3;
+    const double mean = 0.5 * (cover.heights[k] + cover.heights[j]);
+    const double height = covered_line(cell, piece, sides[k], mean, 0.5 * (tops[k] + tops[j]), aside);
+    if (height == kNever) return false;
+    later[k] = height - mean;
+    cover.sides = std::max(cover.sides, later[k]);
   }
-  return heights;
+  const double raised = 2.0 * most_over_pairs(later[0], later[1], later[2]);
+  for (double& height : cover.heights) height += raised;
+  return true;
+}
+
+/// The lines of the corners, and of the sides of a curved cell.
+struct Lines {
+  std::array<Line, 3> corners, sides;
+};
+
+Cover covered_lines(const DesignCell& cell, const cutter::ConvexPiece& piece, const Lines& lines,
+                    const CornerHeights& from, const CornerHeights& tops, double aside) {
+  Cover cover;
+  CornerHeights heights{};
+  for (size_t k = 0; k < 3; ++k) {
+    heights[k] = covered_line(cell, piece, lines.corners[k], from[k], tops[k], aside);
+    if (heights[k] == kNever) return {};
+  }
+  cover.heights = heights;
+  if (cell.is_curved() && !cover_sides(cell, piece, lines.sides, tops, aside, cover)) return {};
+  cover.spread = spread_of(heights) + cover.sides;
+  return cover;
 }
 
 using CornerInstants = std::array<double, 3>;
@@ -307,17 +403,22 @@ CornerInstants instants_at(const DesignCell& cell, const NearSweep& near, const 
   return instants;
 }
 
-std::array<Line, 3> lines_at(const DesignCell& cell, const NearSweep& near, const CornerInstants& instants) {
-  std::array<Line, 3> lines;
-  for (size_t k = 0; k < 3; ++k) lines[k] = line_at(cell.corners[k], near, instants[k]);
+Lines lines_at(const DesignCell& cell, const NearSweep& near, const CornerInstants& instants) {
+  Lines lines;
+  for (size_t k = 0; k < 3; ++k) lines.corners[k] = line_at(cell.corners[k], near, instants[k]);
+  if (!cell.is_curved()) return lines;
+  for (size_t k = 0; k < 3; ++k)
+    lines.sides[k] = line_at(cell.side(k), near, 0.5 * (instants[k] + instants[(k + 1) % 3]));
   return lines;
 }
 
 /// A cutter that turns while it moves covers no convex set. The place at l is looked at in the instant
 /// t(l) = sum l_k t_k: there it stands aside of the mean of the corners, each in its own instant, by
 ///   sum l_j (t(l) - t_j) D_j = sum over pairs l_j l_k (t_k - t_j)(D_j - D_k),    D the corner's motion.
+/// The control columns of the sides, were they the means of their corners', would stand half as far aside;
+/// by what they bend and by what they are covered later (`sides`) another motion of theirs comes on top.
 double twist_of(const DesignCell& cell, const NearSweep& near, const CornerInstants& instants,
-                const CornerHeights& from, const CornerHeights& tops, double spread) {
+                const CornerHeights& from, const CornerHeights& tops, double spread, double sides) {
   if (!near.turns) return 0.0;
   const Mat3 turn = near.map.R1t - near.map.R0t;
   double farthest = 0.0;
@@ -330,7 +431,10 @@ double twist_of(const DesignCell& cell, const NearSweep& near, const CornerInsta
                          farthest * (turn * (a.normal - b.normal)).norm();
     strays[k] = std::abs(instants[k] - instants[j]) * apart;
   }
-  return most_over_pairs(strays[0], strays[1], strays[2]);
+  double bend = 0.0;
+  for (const Vec3& side : cell.bends) bend = std::max(bend, 0.25 * side.norm());
+  return most_over_pairs(strays[0], strays[1], strays[2]) +
+         spread_of(instants) * turn.norm() * (bend + sides);
 }
 
 }  // namespace
@@ -389,29 +493,28 @@ bool stays_above(const CellCorner& corner, const NearSweep& near, double height_
 
 CornerHeights covered_from(const DesignCell& cell, const NearSweep& near, const cutter::ConvexPiece& piece,
                            const CornerHeights& from, const CornerHeights& tops) {
-  constexpr double kSafety = 1.5, kNothing = 1e-10;  // mm
+  constexpr double kSafety = 1.5, kNothing = 1e-10, kSlack = 1e-7;  // mm
   CornerInstants instants = instants_at(cell, near, piece, from);
-  CornerHeights heights = covered_lines(cell, piece, lines_at(cell, near, instants), from, tops, 0.0);
-  if (heights[0] == kNever) return heights;
+  Cover cover = covered_lines(cell, piece, lines_at(cell, near, instants), from, tops, 0.0);
+  if (!cover.is_whole()) return cover.heights;
   if (near.turns) {
     // Higher up another instant is the nearest.
-    instants = instants_at(cell, near, piece, heights);
-    heights = covered_lines(cell, piece, lines_at(cell, near, instants), from, tops, 0.0);
-    if (heights[0] == kNever) return heights;
+    instants = instants_at(cell, near, piece, cover.heights);
+    cover = covered_lines(cell, piece, lines_at(cell, near, instants), from, tops, 0.0);
+    if (!cover.is_whole()) return cover.heights;
   }
   // The place at l and s >= sum l_k h_k is reached from the corners' own heights s + h_k - sum l_j h_j, which
   // lie aside of it by |sum l_k (h_k - sum l_j h_j)(n_k - mean n)| <= spread lean: that much margin more.
   const double lean = lean_of(cell);
-  const auto strays = [&](double spread) {
-    return spread * lean + twist_of(cell, near, instants, from, tops, spread);
+  const auto strays = [&](double spread, double sides) {
+    return spread * lean + twist_of(cell, near, instants, from, tops, spread, sides);
   };
-  const double aside = kSafety * spread_of(heights) * lean +
-                       twist_of(cell, near, instants, from, tops, kSafety * spread_of(heights));
-  if (aside <= kNothing) return heights;
-  const CornerHeights within =
-      covered_lines(cell, piece, lines_at(cell, near, instants), heights, tops, aside);
-  return within[0] < kNever && strays(spread_of(within)) <= aside ? within
-                                                                  : CornerHeights{kNever, kNever, kNever};
+  const double aside = strays(kSafety * cover.spread, kSafety * cover.sides + kSlack);
+  if (aside <= kNothing) return cover.heights;
+  const Cover within = covered_lines(cell, piece, lines_at(cell, near, instants), cover.heights, tops, aside);
+  return within.is_whole() && strays(within.spread, within.sides) <= aside
+             ? within.heights
+             : CornerHeights{kNever, kNever, kNever};
 }
 
 CornerHeights outside_from(const DesignCell& cell, const Vec3& normal, double offset) {

@@ -297,14 +297,18 @@ class RootProof {
   double stood_before(const Cell& cell) const {
     const Box& box = input_.stock.box();
     double inside = kNever, least = kNever, top = kNever;
+    const auto look_at = [&](const Vec3& p) {
+      inside = std::min({inside, (p - box.lower).minCoeff(), (box.upper - p).minCoeff()});
+    };
+    for (size_t k = 0; k < 3 && cell.shape.is_curved(); ++k) look_at(cell.shape.side(k).point);
     for (const Corner& corner : cell.corners) {
       const Vec3& p = corner.at.point;
-      inside = std::min({inside, (p - box.lower).minCoeff(), (box.upper - p).minCoeff()});
+      look_at(p);
       const double leave = leaves_box(box, p, corner.at.normal);
       least = std::min(least, leave > -kNever ? leave : -distance_to_box(p) - cell.shape.radius());
       top = std::min(top, corner.top);
     }
-    if (inside < cell.shape.flatness_mm) return std::min(0.0, least) - cell.shape.flatness_mm;
+    if (inside < cell.shape.stray_mm) return std::min(0.0, least) - cell.shape.flatness_mm;
     return std::max(0.0, top - cell.shape.flatness_mm - top * std::min(1.0, cell.shape.turn));
   }
 
@@ -490,6 +494,13 @@ class RootProof {
            bounds.high - bounds.low > kVolumeShare * result_.gouge_found;
   }
 
+  /// One root may take long where the design has few.
+  bool is_stopped() {
+    constexpr size_t kCells = 256;  // between two looks
+    if (result_.cells % kCells == 0) stopped_ = stopped_ || input_.progress.stop_requested();
+    return stopped_;
+  }
+
   bool breaks_limit() {
     result_.broken = (root_.looks_down && result_.gouge_found > input_.gouge_limit_mm) ||
                      (root_.looks_up && result_.excess_found > input_.excess_limit_mm);
@@ -530,7 +541,7 @@ class RootProof {
     const bool divide = ((gouge_open || excess_open) && edge > kSmallest) ||
                         (on_border(bounds) && edge > (seen ? kBorder : kSmallest)) ||
                         (is_coarse(bounds) && edge > 2.0 * kBorder);
-    if (!divide || result_.work > (breaks_limit() ? budget_.broken : budget_.all)) {
+    if (!divide || result_.work > (breaks_limit() ? budget_.broken : budget_.all) || is_stopped()) {
       if (gouge_open || excess_open)
         result_.open.push_back({-bounds.low, bounds.high, bounds.skin, cell.shape.area_mm2()});
       close(cell, bounds, probed);
@@ -587,6 +598,7 @@ class RootProof {
   std::vector<double> floors_;  ///< least heights of kept_ over the cell last looked at
   std::vector<CornerHeights> sets_;
   std::vector<uint32_t> owners_;  ///< of sets_, index into near_
+  bool stopped_ = false;
   RootResult result_;
 };
 

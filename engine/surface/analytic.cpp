@@ -72,9 +72,14 @@ Derivatives RevolvedSurface::derivatives(double u, double v) const {
           m.ddr * radial + m.ddz * axis};
 }
 
-BendBounds RevolvedSurface::bend_bounds(const Vec2&, const Vec2&) const {
-  const double rate = turn_.to_rad - turn_.from_rad;
-  return {bounds_.r * rate * rate, bounds_.dr * rate, bounds_.bend};
+BendBounds RevolvedSurface::bend_bounds(const Vec2& low, const Vec2& high) const {
+  const Vec2 centre = 0.5 * (low + high), half = 0.5 * (high - low);
+  const Derivatives d = derivatives(centre.x(), centre.y());
+  const double rate = turn_.to_rad - turn_.from_rad, turn = rate * half.x();
+  // Suu and Suv turn with the radius and grow by what the meridian moves; of Svv only the size is known.
+  return {{d.Suu, rate * rate * bounds_.dr * half.y() + d.Suu.norm() * turn},
+          {d.Suv, rate * bounds_.bend * half.y() + d.Suv.norm() * turn},
+          {Vec3::Zero(), bounds_.bend}};
 }
 
 SurfacePtr cylinder_surface(const Turn& turn, double radius, double height, MaterialSide side) {

@@ -93,7 +93,8 @@ Derivatives PolynomialSurface::derivatives(double u, double v) const {
 BendBounds PolynomialSurface::bend_bounds(const Vec2& low, const Vec2& high) const {
   const Vec2 centre = 0.5 * (low + high), half = 0.5 * (high - low);
   BendBounds bounds;
-  // |S_uu| <= sum over the Taylor coefficients b_kl of S about the centre of |b_kl| k (k-1) hu^(k-2) hv^l.
+  // S_uu = sum over the Taylor coefficients b_kl of S about the centre of b_kl k (k-1) du^(k-2) dv^l: the
+  // constant term is the mean, the others are no greater than at the rectangle's corner.
   for (int k = 0; k <= degree_u_; ++k) {
     for (int l = 0; l <= degree_v_; ++l) {
       Vec3 b = Vec3::Zero();
@@ -103,11 +104,16 @@ BendBounds PolynomialSurface::bend_bounds(const Vec2& low, const Vec2& high) con
                std::pow(centre.x(), i - k) * std::pow(centre.y(), j - l);
         }
       }
-      const double size = b.norm();
-      const auto power = [](double h, int n) { return n == 0 ? 1.0 : std::pow(h, n); };
-      if (k >= 2) bounds.uu += size * k * (k - 1) * power(half.x(), k - 2) * power(half.y(), l);
-      if (k >= 1 && l >= 1) bounds.uv += size * k * l * power(half.x(), k - 1) * power(half.y(), l - 1);
-      if (l >= 2) bounds.vv += size * l * (l - 1) * power(half.x(), k) * power(half.y(), l - 2);
+      const auto add = [&](surface::Bend& bend, int factor, int power_u, int power_v) {
+        if (power_u == 0 && power_v == 0) {
+          bend.mean = factor * b;
+        } else {
+          bend.stray += factor * b.norm() * std::pow(half.x(), power_u) * std::pow(half.y(), power_v);
+        }
+      };
+      if (k >= 2) add(bounds.uu, k * (k - 1), k - 2, l);
+      if (k >= 1 && l >= 1) add(bounds.uv, k * l, k - 1, l - 1);
+      if (l >= 2) add(bounds.vv, l * (l - 1), k, l - 2);
     }
   }
   return bounds;

@@ -12,9 +12,15 @@ struct Derivatives {
   Vec3 S, Su, Sv, Suu, Suv, Svv;
 };
 
-/// Upper bounds of |Suu|, |Suv| and |Svv| over a part of the parameters, mm.
+/// A second derivative over a part of the parameters: it stays within `stray` of `mean`; mm.
+struct Bend {
+  Vec3 mean = Vec3::Zero();
+  double stray = 0.0;
+  double most() const { return mean.norm() + stray; }
+};
+/// Of Suu, Suv and Svv.
 struct BendBounds {
-  double uu = 0.0, uv = 0.0, vv = 0.0;
+  Bend uu, uv, vv;
 };
 
 /// Evaluation must allocate nothing: the interpolator calls it inside its cycle.

@@ -29,7 +29,7 @@ class Cylinder final : public surface::Surface {
     return d;
   }
   surface::BendBounds bend_bounds(const Vec2&, const Vec2&) const override {
-    return {0.0, 0.0, angle_ * angle_ * std::abs(radius_)};
+    return {{}, {}, {Vec3::Zero(), angle_ * angle_ * std::abs(radius_)}};
   }
   int outward_sign() const override { return radius_ > 0.0 ? 1 : -1; }
 
@@ -56,7 +56,7 @@ class Paraboloid final : public surface::Surface {
   }
   surface::BendBounds bend_bounds(const Vec2&, const Vec2&) const override {
     const double side2 = 4.0 * half_ * half_;
-    return {side2 * std::abs(kx_), 0.0, side2 * std::abs(ky_)};
+    return {{Vec3(0.0, 0.0, -side2 * kx_), 0.0}, {}, {Vec3(0.0, 0.0, -side2 * ky_), 0.0}};
   }
   int outward_sign() const override { return 1; }
 
