@@ -344,26 +344,28 @@ double covered_line(const DesignCell& cell, const cutter::ConvexPiece& piece, co
   return entry(piece, line, from, cell, aside);
 }
 
-/// Heights from which on a cell is covered; how far those of its control columns lie apart at most, and those
-/// of its sides above the mean of their corners'.
-struct Cover {
-  CornerHeights heights{kNever, kNever, kNever};
+/// How far the heights of the control columns lie apart at most, and those of the sides off the mean of their
+/// corners'.
+struct Cover : Covered {
   double spread = 0.0, sides = 0.0;
   bool is_whole() const { return heights[0] < kNever; }
 };
 
 /// The control columns of the sides, each in the mean of its corners' instants: where one is covered later
-/// than the mean of its corners by c, the cell is by 2 l_j l_k c.
+/// than the mean of its corners by c, the cell is by 2 l_j l_k c. Where the design bulges, earlier: by no
+/// more than it does.
 bool cover_sides(const DesignCell& cell, const cutter::ConvexPiece& piece, const std::array<Line, 3>& sides,
                  const CornerHeights& tops, double aside, Cover& cover) {
   std::array<double, 3> later{};
   for (size_t k = 0; k < 3; ++k) {
     const size_t j = (k + 1) % 3;
     const double mean = 0.5 * (cover.heights[k] + cover.heights[j]);
-    const double height = covered_line(cell, piece, sides[k], mean, 0.5 * (tops[k] + tops[j]), aside);
+    const double bulge = std::max(0.0, -0.25 * cell.bends[k].dot(cell.mean_normal()));
+    const double height = covered_line(cell, piece, sides[k], mean - bulge, 0.5 * (tops[k] + tops[j]), aside);
     if (height == kNever) return false;
-    later[k] = height - mean;
-    cover.sides = std::max(cover.sides, later[k]);
+    later[k] = std::max(0.0, height - mean);
+    cover.sags[k] = std::max(0.0, mean - height);
+    cover.sides = std::max(cover.sides, std::abs(height - mean));
   }
   const double raised = 2.0 * most_over_pairs(later[0], later[1], later[2]);
   for (double& height : cover.heights) height += raised;
@@ -437,6 +439,14 @@ double twist_of(const DesignCell& cell, const NearSweep& near, const CornerInsta
          spread_of(instants) * turn.norm() * (bend + sides);
 }
 
+/// No greater, and the squares of the sides of a triangle: then their sum over pairs is concave.
+CornerHeights as_squares(CornerHeights sags) {
+  const size_t most = static_cast<size_t>(std::max_element(sags.begin(), sags.end()) - sags.begin());
+  const double others = std::sqrt(sags[(most + 1) % 3]) + std::sqrt(sags[(most + 2) % 3]);
+  sags[most] = std::min(sags[most], others * others);
+  return sags;
+}
+
 }  // namespace
 
 double least_height(const DesignCell& cell, const NearSweep& near, const ColumnDepths& depths,
@@ -491,17 +501,17 @@ bool stays_above(const CellCorner& corner, const NearSweep& near, double height_
   return true;
 }
 
-CornerHeights covered_from(const DesignCell& cell, const NearSweep& near, const cutter::ConvexPiece& piece,
-                           const CornerHeights& from, const CornerHeights& tops) {
+Covered covered_from(const DesignCell& cell, const NearSweep& near, const cutter::ConvexPiece& piece,
+                     const CornerHeights& from, const CornerHeights& tops) {
   constexpr double kSafety = 1.5, kNothing = 1e-10, kSlack = 1e-7;  // mm
   CornerInstants instants = instants_at(cell, near, piece, from);
   Cover cover = covered_lines(cell, piece, lines_at(cell, near, instants), from, tops, 0.0);
-  if (!cover.is_whole()) return cover.heights;
+  if (!cover.is_whole()) return {};
   if (near.turns) {
     // Higher up another instant is the nearest.
     instants = instants_at(cell, near, piece, cover.heights);
     cover = covered_lines(cell, piece, lines_at(cell, near, instants), from, tops, 0.0);
-    if (!cover.is_whole()) return cover.heights;
+    if (!cover.is_whole()) return {};
   }
   // The place at l and s >= sum l_k h_k is reached from the corners' own heights s + h_k - sum l_j h_j, which
   // lie aside of it by |sum l_k (h_k - sum l_j h_j)(n_k - mean n)| <= spread lean: that much margin more.
@@ -510,11 +520,10 @@ CornerHeights covered_from(const DesignCell& cell, const NearSweep& near, const 
     return spread * lean + twist_of(cell, near, instants, from, tops, spread, sides);
   };
   const double aside = strays(kSafety * cover.spread, kSafety * cover.sides + kSlack);
-  if (aside <= kNothing) return cover.heights;
+  if (aside <= kNothing) return cover;
   const Cover within = covered_lines(cell, piece, lines_at(cell, near, instants), cover.heights, tops, aside);
-  return within.is_whole() && strays(within.spread, within.sides) <= aside
-             ? within.heights
-             : CornerHeights{kNever, kNever, kNever};
+  if (!within.is_whole() || strays(within.spread, within.sides) > aside) return {};
+  return within;
 }
 
 CornerHeights outside_from(const DesignCell& cell, const Vec3& normal, double offset) {
@@ -534,20 +543,22 @@ CornerHeights outside_from(const DesignCell& cell, const Vec3& normal, double of
   return heights;
 }
 
-HighestLeft highest_left(const std::vector<CornerHeights>& sets) {
+HighestLeft highest_left(const std::vector<CornerHeights>& sets, CornerHeights sags) {
   std::vector<const CornerHeights*> whole;
   for (const CornerHeights& set : sets) {
     if (set[0] < kNever && set[1] < kNever && set[2] < kNever) whole.push_back(&set);
   }
   if (whole.empty()) return {};
   HighestLeft highest{-kNever};
-  // The maximum of a concave function that is linear in pieces stands at a corner of the pieces: a corner of
-  // the cell, a place on an edge where two sets cross, or one inside where three do.
+  sags = as_squares(sags);
+  // The maximum of a function that is linear, or convex, in pieces stands at a corner of the pieces: a corner
+  // of the cell, a place on an edge where two sets cross, or one inside where three do.
   const auto look_at = [&](const Vec3& l) {
     if (l.minCoeff() < -1e-12) return;
     double low = kNever;
     for (const CornerHeights* set : whole)
       low = std::min(low, l.x() * (*set)[0] + l.y() * (*set)[1] + l.z() * (*set)[2]);
+    low -= 2.0 * (l.x() * l.y() * sags[0] + l.y() * l.z() * sags[1] + l.z() * l.x() * sags[2]);
     if (low > highest.height) highest = {low, l};
   };
   for (int k = 0; k < 3; ++k) look_at(Vec3::Unit(k));

@@ -66,8 +66,15 @@ bool stays_above(const CellCorner& corner, const NearSweep& near, double height_
 /// `tops`: the columns are covered from the answer up to here; with kNoTop at the answer, no matter what
 /// stands above.
 inline constexpr CornerHeights kNoTop{-kNever, -kNever, -kNever};
-CornerHeights covered_from(const DesignCell& cell, const NearSweep& near, const cutter::ConvexPiece& piece,
-                           const CornerHeights& from, const CornerHeights& tops);
+/// Over the cell: sum_k l_k heights_k - 2 sum over pairs l_j l_k sags_jk, the sags of the sides from corner
+/// k.
+struct Covered {
+  CornerHeights heights{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
+                        std::numeric_limits<double>::infinity()};
+  CornerHeights sags{};
+};
+Covered covered_from(const DesignCell& cell, const NearSweep& near, const cutter::ConvexPiece& piece,
+                     const CornerHeights& from, const CornerHeights& tops);
 
 /// The outside of one face of the box: normal . x >= offset.
 CornerHeights outside_from(const DesignCell& cell, const Vec3& normal, double offset);
@@ -77,7 +84,8 @@ struct HighestLeft {
   Vec3 place = Vec3::Constant(1.0 / 3.0);  ///< barycentric: where
 };
 
-/// max over l of min over the sets; kNever without a set that covers every corner.
-HighestLeft highest_left(const std::vector<CornerHeights>& sets);
+/// max over l of min over the sets, which all sag by that much between the corners (as Covered tells); kNever
+/// without a set that covers every corner.
+HighestLeft highest_left(const std::vector<CornerHeights>& sets, CornerHeights sags = {});
 
 }  // namespace swarf::measure

@@ -390,16 +390,20 @@ class RootProof {
                        double enough) {
     sets_.clear();
     owners_.clear();
+    covered_.clear();
+    sags_ = {kNever, kNever, kNever};
     add_box(cell.shape);
     sets_.insert(sets_.end(), own.begin(), own.end());
     for (const Corner& corner : cell.corners) add_owner(cell, corner.near, tops);
-    HighestLeft left = highest_left(sets_);
+    HighestLeft left = left_by_sets();
     // Where the bound is highest, the sweep that is lowest there may lower it.
     constexpr size_t kMostOwners = 10;
     while (left.height > enough && left.height < kNever && owners_.size() < kMostOwners) {
       if (!add_owner(cell, owner_at(cell, left), tops)) break;
       const double before = left.height;
-      left = highest_left(sets_);
+      const HighestLeft next = left_by_sets();
+      if (!(next.height < before)) break;
+      left = next;
       // Where it falls slowly, smaller cells do better.
       constexpr double kWorthwhile = 0.2;
       if (!(before - left.height > kWorthwhile * (before - enough))) break;
@@ -407,13 +411,26 @@ class RootProof {
     return left.height;
   }
 
+  /// Of all sets, or of the sweeps alone, which all sag where the design bulges.
+  HighestLeft left_by_sets() const {
+    const HighestLeft all = highest_left(sets_);
+    if (covered_.empty()) return all;
+    const HighestLeft sagging = highest_left(covered_, sags_);
+    return sagging.height < all.height ? sagging : all;
+  }
+
   /// What the sweep covers joins the sets; false when it is among them.
   bool add_owner(const Cell& cell, uint32_t n, const CornerHeights& tops) {
     if (n == stock::kUncut || std::find(owners_.begin(), owners_.end(), n) != owners_.end()) return false;
     owners_.push_back(n);
     const CornerHeights from{cell.corners[0].height, cell.corners[1].height, cell.corners[2].height};
-    for (const cutter::ConvexPiece& piece : near_[n].cutter->pieces)
-      sets_.push_back(covered_from(cell.shape, near_[n], piece, from, tops));
+    for (const cutter::ConvexPiece& piece : near_[n].cutter->pieces) {
+      const Covered covered = covered_from(cell.shape, near_[n], piece, from, tops);
+      sets_.push_back(covered.heights);
+      if (!cell.shape.is_curved() || covered.heights[0] == kNever) continue;
+      covered_.push_back(covered.heights);
+      for (size_t k = 0; k < 3; ++k) sags_[k] = std::min(sags_[k], covered.sags[k]);
+    }
     return true;
   }
 
@@ -597,7 +614,9 @@ class RootProof {
   std::vector<uint32_t> kept_;  ///< a stack: the sweeps of a cell lie above those of the cell around it
   std::vector<double> floors_;  ///< least heights of kept_ over the cell last looked at
   std::vector<CornerHeights> sets_;
-  std::vector<uint32_t> owners_;  ///< of sets_, index into near_
+  std::vector<CornerHeights> covered_;  ///< of sets_, by sweeps over a curved cell
+  CornerHeights sags_{};                ///< of all of covered_
+  std::vector<uint32_t> owners_;        ///< of sets_, index into near_
   bool stopped_ = false;
   RootResult result_;
 };
