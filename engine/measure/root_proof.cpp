@@ -4,9 +4,11 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <span>
 
 #include "measure/column_range.h"
 #include "measure/height_bounds.h"
+#include "measure/rest_bound.h"
 #include "mesh/mesh_distance.h"
 #include "stock/ray_height.h"
 
@@ -24,17 +26,6 @@ constexpr double kSmallest = 1e-3;
 /// Sweeps are first looked for up to this height over the design, mm; where more is left, up to the box's
 /// top.
 constexpr double kNearHeight = 0.05;
-
-struct Corner {
-  CellCorner at;
-  double range = 0.0;             ///< where another face is as near, mm
-  std::optional<Vec3> wall;       ///< a place of that face
-  std::optional<uint32_t> facet;  ///< of a mesh, that lies there
-  double top = 0.0;               ///< there, or where the column leaves the stock's box, mm
-  double depth = 0.0;             ///< down to which a cut would count that leaves the skin standing, mm
-  double height = 0.0;            ///< that the sweeps leave standing, mm
-  uint32_t near = stock::kUncut;  ///< index into the root's sweeps
-};
 
 class RootProof {
  public:
@@ -63,13 +54,6 @@ class RootProof {
   }
 
  private:
-  struct Cell {
-    DesignCell shape;
-    std::array<Corner, 3> corners;
-    size_t begin, end;        ///< of kept_: the sweeps that may matter
-    double dropped = kNever;  ///< least height of those that do not
-    double air = kNever;      ///< above it the stock is air, as the grid tells for this cell or one around it
-  };
   /// A place inside a cell that was measured besides its corners.
   struct Probe {
     Vec3 place;  ///< barycentric
@@ -162,7 +146,7 @@ class RootProof {
     // Without stock at the place the design lacks material: as much as to the box.
     corner.height = corner.top > -kNever ? corner.top : -distance_to_box(at.point);
     const auto look_at = [&](uint32_t n) {
-      const double low = lowest(at, near_[n], corner.height);
+      const double low = lowest_cut(at, near_[n], corner.height, root_.cell.area_mm2() == 0.0);
       if (low >= corner.height) return;
       corner.height = low;
       corner.near = n;
@@ -183,31 +167,9 @@ class RootProof {
     return corner;
   }
 
-  /// Half way along the path between two sweeps: between their places it is the likeliest to be the lowest.
-  static uint32_t between(const std::array<uint32_t, 2>& sweeps) {
-    return sweeps[0] == stock::kUncut || sweeps[1] == stock::kUncut ? stock::kUncut
-                                                                    : sweeps[0] / 2 + sweeps[1] / 2;
-  }
-
   double distance_to_box(const Vec3& p) const {
     const Box& box = input_.stock.box();
     return (p - p.cwiseMax(box.lower).cwiseMin(box.upper)).norm();
-  }
-
-  double lowest(const CellCorner& at, const NearSweep& near, double highest) const {
-    if (stays_above(at, near, highest)) return kNever;
-    const double low = stock::ray_height(at.point, at.normal, near.map, *near.cutter);
-    // Columns that fan out from an edge or a corner are touched there by all that ends in its faces.
-    const bool fans = root_.cell.area_mm2() == 0.0;
-    if (low >= -stock::kSkin && !fans) return low;
-    double least = kNever;
-    for (const cutter::ConvexPiece& piece : near.cutter->pieces) {
-      const stock::RayInterval cut = stock::ray_interval(at.point, at.normal, near.map, piece);
-      // A cut that leaves the design's skin standing belongs to another face.
-      if (cut.hit() && cut.high > cut.low + (fans ? kTouch : 0.0) && cut.high >= -stock::kSkin)
-        least = std::min(least, cut.low);
-    }
-    return least;
   }
 
   void note(const Corner& corner) {
@@ -245,19 +207,6 @@ class RootProof {
     return decided;
   }
 
-  std::vector<CornerHeights> own_above(const Cell& cell) const {
-    std::vector<CornerHeights> bounds;
-    const CornerHeights ranges{cell.corners[0].range, cell.corners[1].range, cell.corners[2].range};
-    for (const Corner& corner : cell.corners) {
-      if (!corner.wall) continue;
-      const auto own = corner.facet && is_flat(cell.shape)
-                           ? own_to_facet(cell.shape, input_.field.design->mesh, *corner.facet, ranges, 1.0)
-                           : own_to_point(cell.shape, *corner.wall);
-      if (own) bounds.push_back(*own);
-    }
-    return bounds;
-  }
-
   /// Of flat cells of a mesh.
   std::vector<CornerHeights> own_below(const Cell& cell) const {
     std::vector<CornerHeights> bounds;
@@ -288,7 +237,7 @@ class RootProof {
     DesignCell below = cell.shape;
     for (CellCorner& corner : below.corners) corner.normal = -corner.normal;
     sets_.clear();
-    add_box(below);
+    add_box(input_.stock.box(), below, sets_);
     return std::min(std::max(depth, highest_left(sets_).height), kThrough);
   }
 
@@ -348,112 +297,27 @@ class RootProof {
       leave = std::max(leave, leaves_box(input_.stock.box(), corner.at.point, corner.at.normal));
     const double top = std::min(leave + cell.shape.radius(), cell.air);
     const double target = excess_target();
-    const std::vector<CornerHeights> own = own_above(cell);
-    double high = bound_by_sets(cell, own, tops_of(own, top), target);
+    const std::vector<CornerHeights> own = rest_.own_above(cell);
+    double high = left(cell, own, tops_of(own, top), target);
     if (high > target && asks_grid(cell)) {
       cell.air = std::min(cell.air,
                           air_above(cell.shape, input_.stock, input_.stock_bound_mm, std::max(leave, 0.0)));
-      high = std::min(cell.air, bound_by_sets(cell, own, tops_of(own, std::min(top, cell.air)), target));
+      high = std::min(cell.air, left(cell, own, tops_of(own, std::min(top, cell.air)), target));
     }
     return std::min(high, top);
+  }
+
+  double left(const Cell& cell, const std::vector<CornerHeights>& own, const CornerHeights& tops,
+              double enough) {
+    const size_t count = cell.end - cell.begin;
+    return rest_.left(cell, own, tops, enough, std::span(kept_).subspan(cell.begin, count),
+                      std::span(floors_).subspan(cell.begin, count));
   }
 
   /// Of what stands on the design: whatever lies above its first air.
   double skin_bound(const Cell& cell, double high) {
     if (!(high > scallop_target())) return high;
-    return std::min(high, bound_by_sets(cell, own_above(cell), kNoTop, scallop_target()));
-  }
-
-  /// Up to where the columns must be covered: a linear function above the lesser of both.
-  static CornerHeights tops_of(const std::vector<CornerHeights>& own, double top) {
-    CornerHeights tops{top, top, top};
-    double least = top;
-    for (const CornerHeights& bound : own) {
-      const double most = *std::max_element(bound.begin(), bound.end());
-      if (most >= least) continue;
-      least = most;
-      tops = bound;
-    }
-    return tops;
-  }
-
-  void add_box(const DesignCell& cell) {
-    const Box& box = input_.stock.box();
-    for (int a = 0; a < 3; ++a) {
-      sets_.push_back(outside_from(cell, Vec3::Unit(a), box.upper[a]));
-      sets_.push_back(outside_from(cell, -Vec3::Unit(a), -box.lower[a]));
-    }
-  }
-
-  /// No closer than `enough`.
-  double bound_by_sets(const Cell& cell, const std::vector<CornerHeights>& own, const CornerHeights& tops,
-                       double enough) {
-    sets_.clear();
-    owners_.clear();
-    covered_.clear();
-    sags_ = {kNever, kNever, kNever};
-    add_box(cell.shape);
-    sets_.insert(sets_.end(), own.begin(), own.end());
-    for (const Corner& corner : cell.corners) add_owner(cell, corner.near, tops);
-    HighestLeft left = left_by_sets();
-    // Where the bound is highest, the sweep that is lowest there may lower it.
-    constexpr size_t kMostOwners = 10;
-    while (left.height > enough && left.height < kNever && owners_.size() < kMostOwners) {
-      if (!add_owner(cell, owner_at(cell, left), tops)) break;
-      const double before = left.height;
-      const HighestLeft next = left_by_sets();
-      if (!(next.height < before)) break;
-      left = next;
-      // Where it falls slowly, smaller cells do better.
-      constexpr double kWorthwhile = 0.2;
-      if (!(before - left.height > kWorthwhile * (before - enough))) break;
-    }
-    return left.height;
-  }
-
-  /// Of all sets, or of the sweeps alone, which all sag where the design bulges.
-  HighestLeft left_by_sets() const {
-    const HighestLeft all = highest_left(sets_);
-    if (covered_.empty()) return all;
-    const HighestLeft sagging = highest_left(covered_, sags_);
-    return sagging.height < all.height ? sagging : all;
-  }
-
-  /// What the sweep covers joins the sets; false when it is among them.
-  bool add_owner(const Cell& cell, uint32_t n, const CornerHeights& tops) {
-    if (n == stock::kUncut || std::find(owners_.begin(), owners_.end(), n) != owners_.end()) return false;
-    owners_.push_back(n);
-    const CornerHeights from{cell.corners[0].height, cell.corners[1].height, cell.corners[2].height};
-    for (const cutter::ConvexPiece& piece : near_[n].cutter->pieces) {
-      const Covered covered = covered_from(cell.shape, near_[n], piece, from, tops);
-      sets_.push_back(covered.heights);
-      if (!cell.shape.is_curved() || covered.heights[0] == kNever) continue;
-      covered_.push_back(covered.heights);
-      for (size_t k = 0; k < 3; ++k) sags_[k] = std::min(sags_[k], covered.sags[k]);
-    }
-    return true;
-  }
-
-  /// The sweep that leaves least where the bound is highest; none when all leave more.
-  uint32_t owner_at(const Cell& cell, const HighestLeft& left) const {
-    const CellCorner at = place_in(cell.shape, left.place, root_.bounds);
-    double height = left.height;
-    uint32_t owner = stock::kUncut;
-    const auto look_at = [&](uint32_t n) {
-      const double low = lowest(at, near_[n], height);
-      if (low >= height) return;
-      height = low;
-      owner = n;
-    };
-    for (const uint32_t n : owners_) look_at(n);
-    for (size_t k = 0; k < 3; ++k) {
-      const uint32_t guess = between({cell.corners[k].near, cell.corners[(k + 1) % 3].near});
-      if (guess < near_.size()) look_at(guess);
-    }
-    for (size_t i = cell.begin; i < cell.end; ++i) {
-      if (floors_[i] < height) look_at(kept_[i]);
-    }
-    return owner;
+    return std::min(high, left(cell, rest_.own_above(cell), kNoTop, scallop_target()));
   }
 
   void close(const Cell& cell, const Bounds& bounds, const std::optional<Probe>& probed) {
@@ -614,9 +478,7 @@ class RootProof {
   std::vector<uint32_t> kept_;  ///< a stack: the sweeps of a cell lie above those of the cell around it
   std::vector<double> floors_;  ///< least heights of kept_ over the cell last looked at
   std::vector<CornerHeights> sets_;
-  std::vector<CornerHeights> covered_;  ///< of sets_, by sweeps over a curved cell
-  CornerHeights sags_{};                ///< of all of covered_
-  std::vector<uint32_t> owners_;        ///< of sets_, index into near_
+  RestBound rest_{input_, root_, near_};
   bool stopped_ = false;
   RootResult result_;
 };
