@@ -5,7 +5,8 @@
 
 namespace swarf {
 
-/// Receives progress; every call comes from the thread that runs the stage. The base class is silent.
+/// Receives progress; every call but stop_requested() comes from the thread that runs the stage. The base
+/// class is silent.
 class Progress {
  public:
   virtual ~Progress() = default;
@@ -19,7 +20,7 @@ class Progress {
   virtual void note(std::string_view text);
   /// The stage is over.
   virtual void end();
-  /// True once the user has asked to stop; long loops look at it between units of work.
+  /// True once the user has asked to stop; long loops look at it between units of work, from any thread.
   virtual bool stop_requested() const { return false; }
 };
 

@@ -62,6 +62,14 @@ struct Key {
   Gap before;         ///< from the key before
 };
 
+/// A hop that keeps the speeds of its cells, with all that it was made from besides Planner::used_.
+struct Hop {
+  size_t begin = 0, end = 0;  ///< cells
+  double from = 0.0, to = 0.0, length = 0.0;
+  RampLimits limits;
+  size_t first_phase = 0, phases = 0;
+};
+
 class Planner {
  public:
   Planner(const std::vector<PathCell>& cells, const AxisLimits& limits, const PlanStart& start)
@@ -96,6 +104,7 @@ class Planner {
     const size_t n = cells_.size();
     keys_.assign(1, {0, 0, start_.speed, true, {}});
     pending_ = {};
+    used_before_.swap(used_);
     used_.assign(n, 0.0);
     for (size_t i = 0; i < n; ++i) {
       const double left = i > 0 ? top(i - 1) : start_.top_before, right = i + 1 < n ? top(i + 1) : kNone;
@@ -186,11 +195,15 @@ class Planner {
 
   /// False when a cell was passed too fast: it has become forced.
   bool place_phases() {
+    phases_before_.swap(plan_.phases);
+    hops_before_.swap(hops_);
     plan_ = {};
+    hops_.clear();
+    next_before_ = 0;
     bool holds = true;
     for (size_t k = 1; k < keys_.size(); ++k) {
       const Key &a = keys_[k - 1], &b = keys_[k];
-      if (b.before.length > 0.0) holds = place_hop(a, b) && holds;
+      if (b.before.length > 0.0) holds = (place_again(a, b) || place_hop(a, b)) && holds;
       if (b.begin != b.end) {
         const PathCell& cell = cells_[b.begin];
         plan_.phases.push_back({{cell.length / b.speed, b.speed, 0.0, 0.0}, b.begin, 0.0});
@@ -200,17 +213,43 @@ class Planner {
     return holds;
   }
 
+  /// What the round before has placed here stands when all that it was made from is the same; false when
+  /// something is not.
+  bool place_again(const Key& a, const Key& b) {
+    while (next_before_ < hops_before_.size() && hops_before_[next_before_].begin < a.end) ++next_before_;
+    if (next_before_ == hops_before_.size()) return false;
+    Hop hop = hops_before_[next_before_];
+    const RampLimits &now = b.before.limits, &then = hop.limits;
+    if (hop.begin != a.end || hop.end != b.begin || hop.from != a.speed || hop.to != b.speed ||
+        hop.length != b.before.length || now.acceleration != then.acceleration || now.jerk != then.jerk)
+      return false;
+    const auto range = [&](const auto& list, size_t from) {
+      return list.begin() + static_cast<std::ptrdiff_t>(from);
+    };
+    if (!std::equal(range(used_, hop.begin), range(used_, hop.end), range(used_before_, hop.begin)))
+      return false;
+    const size_t first = plan_.phases.size();
+    plan_.phases.insert(plan_.phases.end(), range(phases_before_, hop.first_phase),
+                        range(phases_before_, hop.first_phase + hop.phases));
+    hop.first_phase = first;
+    hops_.push_back(hop);
+    return true;
+  }
+
   bool place_hop(const Key& a, const Key& b) {
     double fastest = 0.0;
     for (size_t i = a.end; i < b.begin; ++i) fastest = std::max(fastest, used_[i]);
     hop_.clear();
     const double peak = append_hop(a.speed, b.speed, b.before.length, fastest, b.before.limits, hop_);
     double offset = 0.0;
+    const size_t first = plan_.phases.size();
     for (const Phase& phase : hop_) {
       plan_.phases.push_back({phase, a.end, offset});
       offset += phase.way(phase.duration);
     }
-    return holds_in(a, b, peak);
+    if (!holds_in(a, b, peak)) return false;
+    hops_.push_back({a.end, b.begin, a.speed, b.speed, b.before.length, b.before.limits, first, hop_.size()});
+    return true;
   }
 
   /// Looks for the slowest cell of the hop that is passed too fast and makes its ends keys; after many rounds
@@ -280,6 +319,11 @@ class Planner {
   int round_ = 0;
   Gap pending_;
   std::vector<Phase> hop_;
+  // Of this round and of the one before it:
+  std::vector<Hop> hops_, hops_before_;
+  std::vector<PlacedPhase> phases_before_;
+  std::vector<double> used_before_;
+  size_t next_before_ = 0;  ///< of hops_before_, while phases are placed
   CellPlan plan_;
   bool too_fast_ = false;  ///< at the start
 };
