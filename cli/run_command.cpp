@@ -117,7 +117,7 @@ sim::CutOptions cut_options(const RunOptions& options, const reports::PendingFol
   cut.record = options.record;
   cut.record_every = options.record_every;
   cut.check_voxels = options.check;
-  cut.render = !options.no_render;
+  cut.outputs = {!options.no_render, !options.no_render || options.report};
   cut.cycles = !options.trajectory.empty();
   cut.overrides = options.overrides;
   return cut;

@@ -6,6 +6,7 @@
 
 #include "base/progress.h"
 #include "sim/in_process_stock.h"
+#include "sim/memory.h"
 #include "sim/program_place.h"
 #include "sim/scene.h"
 

@@ -27,6 +27,7 @@ constexpr double kStills = 120.0 * kMegabyte;  // Embree alone
 constexpr double kSweep = sizeof(stock::Sweep) + sizeof(SweepSource);
 constexpr double kCutting =
     sizeof(stock::Sweep) + sizeof(ToolPose) + 24.0;  // EarlierCuts, a row to be merged
+constexpr double kMeasuredRay = 78.0;                // while it is measured: neighbours, ridges, feet
 constexpr double kRay = 83.0;                        // point, normal, height, block; its share of a tile
 // Each triangle of the mesh, half a vertex with it, from the mesher's points to the decimated copy.
 constexpr double kTriangle = 105.0;
@@ -48,7 +49,6 @@ double available_memory_mb() {
 /// Counts of a stock while and after it is cut.
 struct SurfaceCounts {
   double leaves_most = 0.0, triangles = 0.0;
-  double sweeps = 0.0;  ///< of the preview: never more, with its greater tolerance, than of the stock
 };
 
 constexpr double kCoarser = 4.0;
@@ -74,8 +74,7 @@ SurfaceCounts preview(const Job& job, const motion::Cycles& cycles) {
     most = std::max(most, static_cast<double>(stock.leaves()));
   }
   const double finer = std::pow(voxel / settings.voxel_mm, 2);
-  return {most * finer, static_cast<double>(stock.mesh().triangles.size()) * finer,
-          static_cast<double>(sweeps.size())};
+  return {most * finer, static_cast<double>(stock.mesh().triangles.size()) * finer};
 }
 
 /// Rays of the design. Surfaces: counted eight times as coarse, where the chord may stray 64 times as far.
@@ -145,14 +144,15 @@ double memory_limit_mb(const Scene& scene) {
                                          : kShareOfFreeMemory * available_memory_mb();
 }
 
-MemoryPrediction predict_memory(const Job& job, const MeasuredPath& path, bool render, int stocks) {
+MemoryPrediction predict_memory(const Job& job, const MeasuredPath& path, const Outputs& outputs,
+                                int stocks) {
   const SurfaceCounts counts = preview(job, *path.cycles);
   const StockSettings& settings = job.scene.stock;
   const double stock =
       static_cast<double>(stock::Stock::memory_for(settings.box_W, settings.voxel_mm, counts.leaves_most));
   const auto ticks = static_cast<double>(path.cycles->size());
   const bool by_block = job.scene.has_blocks() && !job.scene.cuts_cycles();
-  const double sweeps = by_block ? counts.sweeps : ticks;
+  const double sweeps = by_block ? static_cast<double>(path.path.elements.size()) : ticks;
   const double rays = ray_count(job) * kRay;
   const double held = kBase + rays + sweeps * kSweep +
                       static_cast<double>(path.cycles->kept().size() * sizeof(motion::Cycle)) +
@@ -164,10 +164,13 @@ MemoryPrediction predict_memory(const Job& job, const MeasuredPath& path, bool r
   const double comparing = job.scene.compare_planners && !job.scene.has_blocks()
                                ? held + stock + compared * kComparedTick + rays
                                : 0.0;
-  const double pictures = !render ? 0.0 : job.scene.movie.seconds > 0.0 ? kMovie : kStills;
-  const double meshing = held + stock + counts.triangles * kTriangle + pictures;
-  return {stocks * stock / kMegabyte, std::max({cutting, comparing, meshing}) / kMegabyte,
-          (stock + counts.triangles * kTriangle) / kMegabyte, memory_limit_mb(job.scene)};
+  const double measuring =
+      job.has_design() ? held + stock + ray_count(job) * kMeasuredRay + sweeps * (kSweep + kCutting) : 0.0;
+  const double pictures = !outputs.pictures ? 0.0 : job.scene.movie.seconds > 0.0 ? kMovie : kStills;
+  const double mesh = outputs.page || outputs.pictures ? counts.triangles * kTriangle : 0.0;
+  const double meshing = held + stock + mesh + pictures;
+  return {stocks * stock / kMegabyte, std::max({cutting, measuring, comparing, meshing}) / kMegabyte,
+          (stock + mesh) / kMegabyte, memory_limit_mb(job.scene)};
 }
 
 void require_memory(const Job& job, const MemoryPrediction& prediction) {

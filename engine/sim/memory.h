@@ -18,11 +18,17 @@ struct MemoryPrediction {
 /// stock.max_memory_mb of the scene, else 80 % of the memory that is free now.
 double memory_limit_mb(const Scene& scene);
 
+/// What follows the cut and the measuring.
+struct Outputs {
+  bool pictures = true;  ///< stills and a movie
+  bool page = true;      ///< with glTF
+};
+
 /// Cuts the path into a stock of voxels up to four times as large, with sweeps merged as coarsely, and counts
 /// leaves and triangles: both grow with the square of the voxel sizes' ratio. The rest follows from the sizes
 /// of what the run holds at the same time; memory.cpp states each constant with what it stands for.
-/// `render`: stills and a movie follow. `stocks`: copies of the level set held at once (2 with --check).
-MemoryPrediction predict_memory(const Job& job, const MeasuredPath& path, bool render, int stocks);
+/// `stocks`: copies of the level set held at once (2 with --check).
+MemoryPrediction predict_memory(const Job& job, const MeasuredPath& path, const Outputs& outputs, int stocks);
 
 /// Throws InputError "out-of-memory" with a voxel size that fits when the prediction exceeds its limit.
 void require_memory(const Job& job, const MemoryPrediction& prediction);

@@ -302,7 +302,7 @@ MeasuredPath move_tool(const Job& job, Progress& progress, const CutOptions& opt
 Result simulate(const Job& job, const CutOptions& options, Progress& progress) {
   Result result;
   result.main = move_tool(job, progress, options);
-  result.memory = predict_memory(job, result.main, options.render, options.check_voxels ? 2 : 1);
+  result.memory = predict_memory(job, result.main, options.outputs, options.check_voxels ? 2 : 1);
   require_memory(job, result.memory);
   progress.note(fmt::format("memory: stock {:.0f} MB, whole run {:.0f} MB expected; limit {:.0f} MB",
                             result.memory.stock_mb, result.memory.peak_mb, result.memory.limit_mb));
