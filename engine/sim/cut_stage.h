@@ -25,7 +25,7 @@ struct CutOptions {
   bool record = false;                 ///< keep the sweeps and hashes of the stock (CutStage::kRecordFile)
   size_t record_every = 256;           ///< sweeps between two hashes
   bool check_voxels = false;           ///< costly invariants on the way too; twice the stock's memory
-  bool render = true;                  ///< pictures follow: their memory counts
+  Outputs outputs;                     ///< what follows: its memory counts
   std::vector<std::string> overrides;  ///< of the scene, for the record
 };
 
