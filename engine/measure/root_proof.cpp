@@ -27,6 +27,10 @@ constexpr double kSmallest = 1e-3;
 /// top.
 constexpr double kNearHeight = 0.05;
 
+double distance_to(const Box& box, const Vec3& p) {
+  return (p - p.cwiseMax(box.lower).cwiseMin(box.upper)).norm();
+}
+
 class RootProof {
  public:
   RootProof(const CertificateInput& input, const SweepIndex& index, const RootCell& root,
@@ -144,7 +148,7 @@ class RootProof {
     corner.depth = own_depth(at, stock::kSkin, kShareOfRange);
     corner.top = std::min(leaves_box(input_.stock.box(), at.point, at.normal), corner.range);
     // Without stock at the place the design lacks material: as much as to the box.
-    corner.height = corner.top > -kNever ? corner.top : -distance_to_box(at.point);
+    corner.height = corner.top > -kNever ? corner.top : -distance_to(input_.stock.box(), at.point);
     const auto look_at = [&](uint32_t n) {
       const double low = lowest_cut(at, near_[n], corner.height, root_.cell.area_mm2() == 0.0);
       if (low >= corner.height) return;
@@ -165,11 +169,6 @@ class RootProof {
     if (corner.near != stock::kUncut) corner.height = -own_depth(at, -corner.height);
     note(corner);
     return corner;
-  }
-
-  double distance_to_box(const Vec3& p) const {
-    const Box& box = input_.stock.box();
-    return (p - p.cwiseMax(box.lower).cwiseMin(box.upper)).norm();
   }
 
   void note(const Corner& corner) {
@@ -254,7 +253,7 @@ class RootProof {
       const Vec3& p = corner.at.point;
       look_at(p);
       const double leave = leaves_box(box, p, corner.at.normal);
-      least = std::min(least, leave > -kNever ? leave : -distance_to_box(p) - cell.shape.radius());
+      least = std::min(least, leave > -kNever ? leave : -distance_to(box, p) - cell.shape.radius());
       top = std::min(top, corner.top);
     }
     if (inside < cell.shape.stray_mm) return std::min(0.0, least) - cell.shape.flatness_mm;

@@ -24,6 +24,7 @@ constexpr double kShareOfFreeMemory = 0.8;
 constexpr double kBase = 66.0 * kMegabyte;     // code, libraries, tables of the program, thread pools
 constexpr double kMovie = 270.0 * kMegabyte;   // Mesa, Embree and the encoder, with pictures of 1280 x 720
 constexpr double kStills = 120.0 * kMegabyte;  // Embree alone
+constexpr double kSeen = 0.95;  // of the stock: its leaves as contacts and invariants look at them
 constexpr double kSweep = sizeof(stock::Sweep) + sizeof(SweepSource);
 constexpr double kCutting =
     sizeof(stock::Sweep) + sizeof(ToolPose) + 24.0;  // EarlierCuts, a row to be merged
@@ -159,7 +160,7 @@ MemoryPrediction predict_memory(const Job& job, const MeasuredPath& path, const 
                       static_cast<double>(path.path.elements.size() *
                                           (sizeof(toolpath::Element) + sizeof(motion::BlockMotion)));
   // The stages that hold most; each ends before the next begins.
-  const double cutting = held - rays + stocks * stock + sweeps * kCutting;
+  const double cutting = held - rays + (stocks + kSeen) * stock + sweeps * kCutting;
   const double compared = std::max(ticks, longest_comparison(job, path));
   const double comparing = job.scene.compare_planners && !job.scene.has_blocks()
                                ? held + stock + compared * kComparedTick + rays
