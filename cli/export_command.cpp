@@ -31,7 +31,10 @@ int export_run(const ExportOptions& options) {
     reports::check_output_file(file);
   TerminalProgress progress;
   const reports::StoredRun stored = reports::read_run(options.folder);
-  const sim::MeasuredPath path = sim::move_tool(stored.job, progress);
+  const bool coloured = !options.gltf.empty() || !options.ply.empty();
+  const bool moves =
+      !options.gltf.empty() || !options.machine_gltf.empty() || (coloured && !stored.job.scene.has_blocks());
+  const sim::MeasuredPath path = reports::motion_of(stored, options.folder, moves, progress);
   const reports::FinishedRun run{stored.job, *path.cycles, stored.stock, stored.dexels};
   if (!options.gltf.empty() || !options.machine_gltf.empty()) {
     const reports::DisplayMesh light =

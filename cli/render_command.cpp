@@ -37,7 +37,10 @@ int render(const RenderOptions& options) {
   }
   if (options.samples > 0) stored.job.scene.stills.samples = options.samples;
   if (options.seconds > 0.0) stored.job.scene.movie.seconds = options.seconds;
-  const sim::MeasuredPath path = sim::move_tool(stored.job, progress);
+  // The part's normals come from the cycles of surface jobs.
+  const bool moves = !options.movie.empty() || !stored.job.scene.has_blocks() ||
+                     kind == reports::StillKind::kMachine || kind == reports::StillKind::kFan;
+  const sim::MeasuredPath path = reports::motion_of(stored, options.folder, moves, progress);
   const reports::FinishedRun run{stored.job, *path.cycles, stored.stock, stored.dexels};
   if (!options.still.empty()) {
     const std::string otherwise = kind == reports::StillKind::kMachine ? "machine" : "iso";

@@ -212,4 +212,27 @@ StoredRun read_run(const std::string& folder) {
   return run;
 }
 
+sim::MeasuredPath motion_of(const StoredRun& run, const std::string& folder, bool needed,
+                            Progress& progress) {
+  if (!needed) {
+    sim::MeasuredPath none;
+    none.cycles =
+        std::make_unique<motion::Cycles>(std::span<const toolpath::Element>{}, sim::machines_by_tool(run.job),
+                                         run.job.scene.tools.front(), run.job.scene.motion);
+    return none;
+  }
+  sim::MeasuredPath path = sim::move_tool(run.job, progress);
+  std::ifstream file(fs::path(folder) / "metrics.json");
+  const auto metrics = file ? nlohmann::json::parse(file, nullptr, false) : nlohmann::json();
+  const nlohmann::json::json_pointer ticks("/motion/ticks");
+  if (!metrics.is_object() || !metrics.contains(ticks) || !metrics.at(ticks).is_number_unsigned() ||
+      metrics.at(ticks) == path.motion.statistics.ticks)
+    return path;
+  throw InputError("run-differs", {folder},
+                   fmt::format("the inputs kept here give a motion of {} cycles, the run had {}: they were "
+                               "changed, or this is another version of swarf",
+                               path.motion.statistics.ticks, metrics.at(ticks).get<uint64_t>()),
+                   "run the scene again");
+}
+
 }  // namespace swarf::reports

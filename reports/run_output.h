@@ -43,4 +43,8 @@ struct StoredRun {
 };
 StoredRun read_run(const std::string& folder);
 
+/// The run's motion, made again from its kept inputs; without any cycle when it is not `needed`. Throws
+/// InputError "run-differs" when it is not the motion that the run's metrics.json tells of.
+sim::MeasuredPath motion_of(const StoredRun& run, const std::string& folder, bool needed, Progress& progress);
+
 }  // namespace swarf::reports

@@ -109,7 +109,7 @@ void CycleStream::begin_run() {
   // Another tool's tip stands elsewhere.
   const bool joins = element_ == 0 || motions[element_ - 1].block->tool == block.tool;
   const bool starts = cycle_ == 0 || !joins;
-  Run run;
+  RunUnderWay run;
   run.first = element_;
   run.end = run_end(motions, element_);
   run.kind = is_rapid(block) ? SampleKind::kRapid : SampleKind::kCutting;
@@ -135,7 +135,7 @@ void CycleStream::begin_run() {
 /// First the dwell of the run's first block, then the turn of the rotary axes while the tool stands, then its
 /// stretches.
 void CycleStream::run_on() {
-  Run& run = *run_;
+  RunUnderWay& run = *run_;
   const ToolPose& from = source_.motions[run.first].block->from;
   if (run.standing < run.dwell_ticks) {
     record(standing(from, run.kind), {q_, InverseOutcome::kOk});
@@ -162,7 +162,7 @@ void CycleStream::run_on() {
 }
 
 void CycleStream::enter_stretch() {
-  Run& run = *run_;
+  RunUnderWay& run = *run_;
   if (!run.planner) {
     RunPlace start;
     start.first = run.first;

@@ -51,6 +51,17 @@ struct CyclePlace {
   RunClock clock;
 };
 
+/// What is under way of a run: the dwell of its first block, a turn at rest, its stretches.
+struct RunUnderWay {
+  size_t first = 0, end = 0;
+  SampleKind kind = SampleKind::kCutting;
+  double dwell_ticks = 0.0, turn_ticks = 0.0, standing = 0.0;  ///< cycles
+  std::optional<PoleTurn> turn;
+  std::unique_ptr<RunPlanner> planner;
+  std::optional<RunSampler> sampler;
+  const PlannedRun* stretch = nullptr;  ///< the planner's
+};
+
 class CycleStream {
  public:
   /// The source's spans must outlive it.
@@ -66,17 +77,6 @@ class CycleStream {
   const CyclePlace& place() const { return place_; }
 
  private:
-  /// What is under way of a run: the dwell of its first block, a turn at rest, its stretches.
-  struct Run {
-    size_t first = 0, end = 0;
-    SampleKind kind = SampleKind::kCutting;
-    double dwell_ticks = 0.0, turn_ticks = 0.0, standing = 0.0;  ///< cycles
-    std::optional<PoleTurn> turn;
-    std::unique_ptr<RunPlanner> planner;
-    std::optional<RunSampler> sampler;
-    const PlannedRun* stretch = nullptr;  ///< the planner's
-  };
-
   bool go_on();
   void begin_run();
   void run_on();
@@ -103,7 +103,7 @@ class CycleStream {
   kinematics::AxisValues q_;
   int sample_element_ = 0;  ///< of the cycle that comes
   // At most one of these is under way.
-  std::optional<Run> run_;
+  std::optional<RunUnderWay> run_;
   std::optional<SurfaceInterpolator> pass_;
   std::vector<ToolSample> samples_;
   size_t samples_done_ = 0;

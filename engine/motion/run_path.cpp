@@ -12,7 +12,6 @@ namespace swarf::motion {
 namespace {
 
 using kinematics::AxisValues;
-using kinematics::MachineModel;
 using toolpath::BlockMove;
 
 /// Blocks shorter than this go nowhere, mm.

@@ -10,6 +10,7 @@
 //  rounds their corners within the tolerance.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <vector>
@@ -27,7 +28,7 @@ struct Blend {
   double length = 0.0;     ///< 2 d
   double before = 0.0;     ///< d: share of it that belongs to the block before the corner
   double deviation = 0.0;  ///< of the tip, mm
-  kinematics::AxisValues coefficient[6];
+  std::array<kinematics::AxisValues, 6> coefficient;
   kinematics::AxisValues turn;  ///< change of slope times length
   kinematics::AxisValues q(double s) const;
 };

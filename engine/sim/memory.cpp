@@ -78,6 +78,23 @@ SurfaceCounts preview(const Job& job, const motion::Cycles& cycles) {
   return {most * finer, static_cast<double>(stock.mesh().triangles.size()) * finer};
 }
 
+/// Leaves of a stock that is cut everywhere; needs no path.
+SurfaceCounts all_leaves(const StockSettings& settings) {
+  constexpr double kLeaf = 8.0;  // voxels
+  return {((settings.box_W.size() / (kLeaf * settings.voxel_mm)).array() + 1.0).prod(), 0.0};
+}
+
+/// A long program is not cut twice to learn what does not matter: a stock that fits whatever is cut.
+bool fits_anyhow(const Job& job, const MeasuredPath& path, const Outputs& outputs) {
+  constexpr size_t kLong = 50'000;  // elements: the preview would take seconds
+  constexpr double kLittle = 0.2;   // of the limit
+  if (path.path.elements.size() < kLong || outputs.page || outputs.pictures) return false;
+  const StockSettings& settings = job.scene.stock;
+  const size_t most =
+      stock::Stock::memory_for(settings.box_W, settings.voxel_mm, all_leaves(settings).leaves_most);
+  return static_cast<double>(most) / kMegabyte < kLittle * memory_limit_mb(job.scene);
+}
+
 /// Rays of the design. Surfaces: counted eight times as coarse, where the chord may stray 64 times as far.
 /// Meshes: counted as they will be made, because the turns and borders of the facets ask for rays too; the
 /// denser walls beside them hold no material.
@@ -147,8 +164,9 @@ double memory_limit_mb(const Scene& scene) {
 
 MemoryPrediction predict_memory(const Job& job, const MeasuredPath& path, const Outputs& outputs,
                                 int stocks) {
-  const SurfaceCounts counts = preview(job, *path.cycles);
   const StockSettings& settings = job.scene.stock;
+  const SurfaceCounts counts =
+      fits_anyhow(job, path, outputs) ? all_leaves(settings) : preview(job, *path.cycles);
   const double stock =
       static_cast<double>(stock::Stock::memory_for(settings.box_W, settings.voxel_mm, counts.leaves_most));
   const auto ticks = static_cast<double>(path.cycles->size());

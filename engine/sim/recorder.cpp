@@ -120,10 +120,9 @@ void BlockTable::write_row(int element, double t_s) {
 }
 
 void BlockTable::finish() {
-  const auto end = static_cast<int>(cycles_.elements().size());
-  // A run that was stopped has not come to the others.
-  const bool complete = cycles_.size() > 0 && !cycles_.stopped();
-  if (cycles_.size() > 0) flush_to(complete ? end : element_ + 1, last_.sample.t_s);
+  // A run that was stopped has not come to the end of the element under way.
+  if (cycles_.size() > 0 && !cycles_.stopped())
+    flush_to(static_cast<int>(cycles_.elements().size()), last_.sample.t_s);
   close_table(file_, path_);
 }
 

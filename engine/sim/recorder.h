@@ -13,7 +13,8 @@ namespace swarf::sim {
 
 /// blocks.csv: one row for each element of the path, in its order:
 ///   line,t_s,x_mm,y_mm,z_mm,i,j,k,<axis>_mm|_deg...,feed_mm_min,kind,tool
-/// `line` is that of the program; t_s when the tool comes to the element's end, to a cycle; pose and axes are
+/// `line` is that of the program; t_s when the tool comes to the element's end, to a cycle, so that it never
+/// falls and several short blocks may share it; pose and axes are
 /// those of its programmed end; `feed_mm_min` is the greatest commanded feed that it reaches, empty where it
 /// is over within a cycle.
 class BlockTable {

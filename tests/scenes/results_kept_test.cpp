@@ -207,6 +207,22 @@ TEST_F(ResultsKept, BlocksAreTabledAndCyclesWhereTheyAreAskedFor) {
       << "the head, and a row for the start and each cycle";
 }
 
+TEST_F(ResultsKept, AMotionThatIsNotTheRunsIsRefused) {
+  ASSERT_EQ(swarf_there("run scene.toml --no-render -o out").exit_code, 0);
+  ASSERT_EQ(swarf_there("export out --machine-gltf a.glb").exit_code, 0);
+  std::string program = read_text(job_ / "out/input/program/slot.ngc");
+  replace(program, "X12", "X9");
+  write_text(job_ / "out/input/program/slot.ngc", program);
+  for (const char* command : {"export out --machine-gltf x.glb", "render out --kind machine --still x.png"}) {
+    const auto run = swarf_there(command);
+    EXPECT_EQ(run.exit_code, 2) << run.output;
+    EXPECT_NE(run.output.find("[run-differs]"), std::string::npos) << run.output;
+    EXPECT_FALSE(fs::exists(job_ / "x.glb"));
+  }
+  // What needs no motion is made all the same.
+  EXPECT_EQ(swarf_there("export out --stl part.stl").exit_code, 0);
+}
+
 TEST_F(ResultsKept, FilesOfTheUserStayInAnEarlierResult) {
   ASSERT_EQ(swarf_there("run scene.toml --no-render -o out").exit_code, 0);
   write_text(job_ / "out/notes.txt", "good edge on the left");
