@@ -179,10 +179,9 @@ MemoryPrediction predict_memory(const Job& job, const MeasuredPath& path, const 
                                           (sizeof(toolpath::Element) + sizeof(motion::BlockMotion)));
   // The stages that hold most; each ends before the next begins.
   const double cutting = held - rays + (stocks + kSeen) * stock + sweeps * kCutting;
-  const double compared = std::max(ticks, longest_comparison(job, path));
-  const double comparing = job.scene.compare_planners && !job.scene.has_blocks()
-                               ? held + stock + compared * kComparedTick + rays
-                               : 0.0;
+  double comparing = 0.0;
+  if (job.scene.compare_planners && !job.scene.has_blocks())
+    comparing = held + stock + std::max(ticks, longest_comparison(job, path)) * kComparedTick + rays;
   const double measuring =
       job.has_design() ? held + stock + ray_count(job) * kMeasuredRay + sweeps * (kSweep + kCutting) : 0.0;
   const double pictures = !outputs.pictures ? 0.0 : job.scene.movie.seconds > 0.0 ? kMovie : kStills;
