@@ -67,7 +67,7 @@ constexpr Attack kAttacks[] = {
     {"sound/stock.vdb", "compare sound/stock.vdb design.obj"},
     {"sound/stock.vdb", "run scene.toml --no-render --from sound/stock.vdb -o out"},
     {"sound/run.json", "render sound --still picture.png"},
-    {"sound/input/slot.ngc", "render sound --still picture.png --kind fan"},
+    {"sound/input/program/slot.ngc", "render sound --still picture.png --kind fan"},
     {"sound/surface_0.rays", "render sound --still picture.png --kind deviation"},
     {"sound/run.record", "replay sound/run.record"},
 };
