@@ -18,7 +18,7 @@
 #include "machine/machine_scene.h"
 #include "program/dialects.h"
 #include "program/nc_program.h"
-#include "sim/tool_table.h"
+#include "sim/job/tool_table.h"
 
 namespace swarf::cli {
 namespace {

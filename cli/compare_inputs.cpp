@@ -11,7 +11,7 @@
 #include "mesh/mesh_io.h"
 #include "mesh/mesh_nesting.h"
 #include "mesh/mesh_ops.h"
-#include "stock/ray_field.h"
+#include "stock/rays/ray_field.h"
 #include "stock/stock.h"
 
 namespace swarf::cli {

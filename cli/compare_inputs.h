@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "mesh/signed_distance.h"
-#include "sim/scene.h"
+#include "sim/job/scene.h"
 
 namespace swarf::cli {
 

@@ -7,7 +7,7 @@
 
 #include "cli/compare_inputs.h"
 #include "measure/part_comparison.h"
-#include "sim/judge.h"
+#include "sim/judge/judge.h"
 
 namespace swarf::cli {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "reports/report_data.h"
-#include "sim/judge.h"
+#include "sim/judge/judge.h"
 
 namespace swarf::reports {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "reports/report_data.h"
-#include "sim/scene.h"
+#include "sim/job/scene.h"
 
 namespace swarf::reports {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "reports/pending_folder.h"
-#include "sim/scene.h"
+#include "sim/job/scene.h"
 
 namespace swarf::reports {
 

@@ -4,11 +4,11 @@
 #include <vector>
 
 #include "kinematics/machine_model.h"
-#include "motion/cycles.h"
+#include "motion/cycles/cycles.h"
 #include "render/draw_list.h"
-#include "sim/scene.h"
+#include "sim/job/scene.h"
+#include "stock/rays/surface_dexels.h"
 #include "stock/stock.h"
-#include "stock/surface_dexels.h"
 
 namespace swarf::reports {
 

@@ -11,7 +11,7 @@
 #include "render/raster/raster_renderer.h"
 #include "reports/part_view.h"
 #include "reports/pictures.h"
-#include "stock/stock_mesher.h"
+#include "stock/mesher/stock_mesher.h"
 
 namespace swarf::reports {
 namespace {

@@ -16,7 +16,7 @@
 #include "reports/pictures.h"
 #include "reports/report_writer.h"
 #include "reports/run_report.h"
-#include "sim/design_rays.h"
+#include "sim/run/design_rays.h"
 
 namespace swarf::reports {
 namespace {

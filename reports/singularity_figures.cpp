@@ -9,7 +9,7 @@
 
 #include "base/units.h"
 #include "kinematics/singularity_model.h"
-#include "motion/free_move.h"
+#include "motion/speed/free_move.h"
 #include "reports/html.h"
 #include "reports/svg_plot.h"
 

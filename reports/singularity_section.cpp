@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/units.h"
-#include "motion/linearise.h"
+#include "motion/blocks/linearise.h"
 #include "reports/singularity_figures.h"
 
 namespace swarf::reports {

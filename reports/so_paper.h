@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "kinematics/machine_model.h"
-#include "motion/singularity_scan.h"
+#include "motion/judged/singularity_scan.h"
 #include "reports/report_data.h"
 
 namespace swarf::reports {

@@ -18,10 +18,10 @@
 #include "base/progress.h"
 #include "measure/metrics.h"
 #include "measure/sweep_cutters.h"
-#include "stock/free_ranges.h"
-#include "stock/ray_field.h"
+#include "stock/rays/free_ranges.h"
+#include "stock/rays/ray_field.h"
 #include "stock/stock.h"
-#include "stock/sweep.h"
+#include "stock/sweep/sweep.h"
 
 namespace swarf::measure {
 

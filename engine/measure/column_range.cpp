@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "mesh/mesh_distance.h"
-#include "stock/free_ranges.h"
+#include "stock/rays/free_ranges.h"
 
 namespace swarf::measure {
 

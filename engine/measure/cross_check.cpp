@@ -8,8 +8,8 @@
 #include "base/units.h"
 #include "measure/measure.h"
 #include "measure/near_sweeps.h"
-#include "stock/convex_contact.h"
-#include "stock/sweep_map.h"
+#include "stock/contact/convex_contact.h"
+#include "stock/sweep/sweep_map.h"
 
 namespace swarf::measure {
 namespace {

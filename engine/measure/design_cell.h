@@ -21,7 +21,7 @@
 #include <vector>
 
 #include "base/frames.h"
-#include "stock/ray_field.h"
+#include "stock/rays/ray_field.h"
 #include "surface/surface.h"
 
 namespace swarf::measure {

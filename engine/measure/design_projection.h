@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/frames.h"
-#include "stock/surface_dexels.h"
+#include "stock/rays/surface_dexels.h"
 
 namespace swarf::measure {
 

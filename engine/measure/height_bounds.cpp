@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "stock/convex_motion.h"
+#include "stock/sweep/convex_motion.h"
 
 namespace swarf::measure {
 namespace {

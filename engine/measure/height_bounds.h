@@ -19,8 +19,8 @@
 #include <vector>
 
 #include "measure/design_cell.h"
-#include "stock/sweep.h"
-#include "stock/sweep_map.h"
+#include "stock/sweep/sweep.h"
+#include "stock/sweep/sweep_map.h"
 
 namespace swarf::measure {
 

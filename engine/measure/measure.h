@@ -7,9 +7,9 @@
 
 #include "measure/metrics.h"
 #include "measure/sweep_cutters.h"
+#include "stock/rays/surface_dexels.h"
 #include "stock/stock.h"
-#include "stock/surface_dexels.h"
-#include "stock/sweep.h"
+#include "stock/sweep/sweep.h"
 
 namespace swarf::measure {
 

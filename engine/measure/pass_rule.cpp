@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "stock/surface_dexels.h"
+#include "stock/rays/surface_dexels.h"
 
 namespace swarf::measure {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "measure/sweep_cutters.h"
-#include "stock/sweep.h"
+#include "stock/sweep/sweep.h"
 
 namespace swarf::measure {
 

@@ -8,7 +8,7 @@
 
 #include "measure/metrics.h"
 #include "measure/pass_rule.h"
-#include "stock/surface_dexels.h"
+#include "stock/rays/surface_dexels.h"
 
 namespace swarf::measure {
 

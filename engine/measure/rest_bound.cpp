@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "measure/column_range.h"
-#include "stock/ray_height.h"
+#include "stock/rays/ray_height.h"
 
 namespace swarf::measure {
 

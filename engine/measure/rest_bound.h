@@ -11,7 +11,7 @@
 #include "measure/design_cell.h"
 #include "measure/height_bounds.h"
 #include "measure/sweep_index.h"
-#include "stock/surface_dexels.h"
+#include "stock/rays/surface_dexels.h"
 
 namespace swarf::measure {
 

@@ -6,7 +6,7 @@
 #include "base/parallel.h"
 #include "base/units.h"
 #include "measure/sweep_index.h"
-#include "stock/ray_height.h"
+#include "stock/rays/ray_height.h"
 
 namespace swarf::measure {
 namespace {

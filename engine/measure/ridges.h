@@ -14,8 +14,8 @@
 
 #include "measure/metrics.h"
 #include "measure/pass_rule.h"
-#include "stock/surface_dexels.h"
-#include "stock/sweep.h"
+#include "stock/rays/surface_dexels.h"
+#include "stock/sweep/sweep.h"
 
 namespace swarf::measure {
 

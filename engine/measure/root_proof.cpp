@@ -10,7 +10,7 @@
 #include "measure/height_bounds.h"
 #include "measure/rest_bound.h"
 #include "mesh/mesh_distance.h"
-#include "stock/ray_height.h"
+#include "stock/rays/ray_height.h"
 
 namespace swarf::measure {
 namespace {

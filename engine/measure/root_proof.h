@@ -7,7 +7,7 @@
 #include "measure/certified_regions.h"
 #include "measure/design_cell.h"
 #include "measure/sweep_index.h"
-#include "stock/surface_dexels.h"
+#include "stock/rays/surface_dexels.h"
 
 namespace swarf::measure {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "measure/design_projection.h"
-#include "stock/surface_dexels.h"
+#include "stock/rays/surface_dexels.h"
 
 namespace swarf::measure {
 

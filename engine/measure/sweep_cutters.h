@@ -5,7 +5,7 @@
 #include <span>
 
 #include "base/check.h"
-#include "stock/sweep.h"
+#include "stock/sweep/sweep.h"
 
 namespace swarf::measure {
 

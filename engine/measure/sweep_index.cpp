@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "base/parallel.h"
-#include "stock/sweep_map.h"
+#include "stock/sweep/sweep_map.h"
 
 namespace swarf::measure {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "base/frames.h"
 #include "measure/sweep_cutters.h"
-#include "stock/sweep.h"
+#include "stock/sweep/sweep.h"
 
 namespace swarf::measure {
 

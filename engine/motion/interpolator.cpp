@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
-#include "motion/block_turns.h"
-#include "motion/motion_statistics.h"
+#include "motion/blocks/block_turns.h"
+#include "motion/judged/motion_statistics.h"
 
 namespace swarf::motion {
 namespace {

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "base/progress.h"
-#include "motion/cycles.h"
+#include "motion/cycles/cycles.h"
 #include "motion/result.h"
 
 namespace swarf::motion {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "base/progress.h"
-#include "sim/cut_record.h"
-#include "sim/scene.h"
+#include "sim/job/scene.h"
+#include "sim/run/cut_record.h"
 
 namespace swarf::sim {
 

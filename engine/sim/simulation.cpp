@@ -9,13 +9,13 @@
 
 #include "base/units.h"
 #include "cutter/profile.h"
-#include "motion/dog_leg.h"
+#include "motion/blocks/dog_leg.h"
 #include "motion/interpolator.h"
-#include "sim/design_rays.h"
-#include "sim/findings.h"
-#include "sim/nc_job.h"
-#include "sim/prove_part.h"
-#include "sim/recorder.h"
+#include "sim/job/nc_job.h"
+#include "sim/judge/findings.h"
+#include "sim/run/design_rays.h"
+#include "sim/run/prove_part.h"
+#include "sim/run/recorder.h"
 #include "toolpath/cl_path.h"
 
 namespace swarf::sim {

@@ -9,7 +9,7 @@
 
 #include "base/frames.h"
 #include "mesh/tri_mesh.h"
-#include "stock/sweep.h"
+#include "stock/sweep/sweep.h"
 
 namespace swarf::stock {
 

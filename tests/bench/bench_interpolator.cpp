@@ -8,7 +8,7 @@
 #include <chrono>
 #include <vector>
 
-#include "motion/surface_interpolator.h"
+#include "motion/passes/surface_interpolator.h"
 #include "tests/unit/motion/dome.h"
 
 namespace swarf::motion {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "motion/block_run.h"
+#include "motion/blocks/block_run.h"
 #include "unit/motion/random_program.h"
 
 namespace swarf::motion {

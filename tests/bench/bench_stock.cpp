@@ -10,9 +10,9 @@
 
 #include "base/parallel.h"
 #include "measure/measure.h"
+#include "stock/rays/surface_dexels.h"
 #include "stock/stock.h"
-#include "stock/surface_dexels.h"
-#include "stock/sweep_map.h"
+#include "stock/sweep/sweep_map.h"
 #include "surface/polynomial.h"
 
 namespace swarf {

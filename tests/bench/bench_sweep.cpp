@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "base/rng.h"
-#include "stock/convex_leaf.h"
-#include "stock/leaf_kernel.h"
-#include "stock/ray_height.h"
-#include "stock/sweep_distance.h"
+#include "stock/level_set/convex_leaf.h"
+#include "stock/level_set/leaf_kernel.h"
+#include "stock/rays/ray_height.h"
+#include "stock/sweep/sweep_distance.h"
 #include "unit/stock/cutter_shapes.h"
 
 namespace swarf::stock {

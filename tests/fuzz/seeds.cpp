@@ -16,9 +16,9 @@
 #include "mesh/mesh_io.h"
 #include "mesh/mesh_ops.h"
 #include "mesh/mesh_source.h"
-#include "sim/scene.h"
-#include "sim/tool_table.h"
-#include "stock/ray_field.h"
+#include "sim/job/scene.h"
+#include "sim/job/tool_table.h"
+#include "stock/rays/ray_field.h"
 #include "stock/stock.h"
 #include "support/program_run.h"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/cut_record.h"
+#include "sim/run/cut_record.h"
 #include "support/json_path.h"
 #include "support/program_run.h"
 

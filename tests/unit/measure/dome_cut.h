@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
+#include "stock/rays/surface_dexels.h"
 #include "stock/stock.h"
-#include "stock/surface_dexels.h"
 #include "surface/polynomial.h"
 
 namespace swarf::measure {

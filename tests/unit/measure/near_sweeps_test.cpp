@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "stock/convex_contact.h"
+#include "stock/contact/convex_contact.h"
 #include "unit/stock/stock_test_support.h"
 
 namespace swarf::measure {

@@ -6,7 +6,7 @@
 
 #include <memory>
 
-#include "stock/surface_dexels.h"
+#include "stock/rays/surface_dexels.h"
 #include "surface/analytic.h"
 
 namespace swarf::measure {

@@ -1,5 +1,5 @@
 // The motion of CL blocks. The bound of its sweeps is held against dense sampling in tests/unit/sim.
-#include "motion/block_motion.h"
+#include "motion/blocks/block_motion.h"
 
 #include <gtest/gtest.h>
 

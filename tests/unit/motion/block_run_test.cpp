@@ -1,13 +1,13 @@
 // Time along CL blocks: feed, start and stop, rapids, and what is measured of it.
-#include "motion/block_run.h"
+#include "motion/blocks/block_run.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "base/units.h"
-#include "motion/jerk_profile.h"
-#include "motion/motion_check.h"
+#include "motion/judged/motion_check.h"
+#include "motion/speed/jerk_profile.h"
 #include "toolpath/cl_path.h"
 #include "unit/motion/dome.h"
 #include "unit/motion/interpolated.h"

@@ -1,5 +1,5 @@
 // Circles given as lines, and how far linear axes lead from them (theory 2, the tilted cone).
-#include "motion/circle_error.h"
+#include "motion/judged/circle_error.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 
 #include <cstring>
 
-#include "motion/motion_check.h"
+#include "motion/judged/motion_check.h"
 #include "unit/motion/random_program.h"
 
 namespace swarf::motion {

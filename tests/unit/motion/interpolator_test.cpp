@@ -9,9 +9,9 @@
 #include "base/hash.h"
 #include "base/rng.h"
 #include "dome.h"
-#include "motion/block_interpolator.h"
-#include "motion/free_move.h"
-#include "motion/motion_check.h"
+#include "motion/blocks/block_interpolator.h"
+#include "motion/judged/motion_check.h"
+#include "motion/speed/free_move.h"
 
 namespace swarf::motion {
 namespace {

@@ -1,5 +1,5 @@
 // Profiles keep their limits, exactly and tick by tick.
-#include "motion/jerk_profile.h"
+#include "motion/speed/jerk_profile.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 // same rounded path, under the same limits of axes, tip and feed, none of them split into shares.
 #include <gtest/gtest.h>
 
-#include "motion/jerk_profile.h"
+#include "motion/speed/jerk_profile.h"
 #include "unit/motion/random_program.h"
 #include "unit/motion/time_optimum.h"
 

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <cstdlib>
 
-#include "motion/motion_check.h"
+#include "motion/judged/motion_check.h"
 #include "unit/motion/random_program.h"
 
 namespace swarf::motion {

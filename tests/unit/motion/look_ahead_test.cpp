@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "base/units.h"
-#include "motion/block_run.h"
-#include "motion/dog_leg.h"
-#include "motion/jerk_profile.h"
-#include "motion/motion_check.h"
+#include "motion/blocks/block_run.h"
+#include "motion/blocks/dog_leg.h"
+#include "motion/judged/motion_check.h"
+#include "motion/speed/jerk_profile.h"
 #include "unit/motion/random_program.h"
 
 namespace swarf::motion {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "base/rng.h"
-#include "motion/block_motion.h"
+#include "motion/blocks/block_motion.h"
 #include "unit/motion/dome.h"
 
 namespace swarf::motion {

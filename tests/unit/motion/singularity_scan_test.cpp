@@ -1,11 +1,11 @@
 // Linearisation of the block of So et al. and the scan of a path (theory 2).
-#include "motion/singularity_scan.h"
+#include "motion/judged/singularity_scan.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "motion/linearise.h"
+#include "motion/blocks/linearise.h"
 #include "unit/kinematics/singular_blocks.h"
 
 namespace swarf::motion {

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "motion/block_run.h"
-#include "motion/block_turns.h"
-#include "motion/motion_check.h"
+#include "motion/blocks/block_run.h"
+#include "motion/blocks/block_turns.h"
+#include "motion/judged/motion_check.h"
 #include "unit/motion/random_program.h"
 
 namespace swarf::motion {

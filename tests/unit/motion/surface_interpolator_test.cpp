@@ -1,5 +1,5 @@
 // The real-time core against theory 1.3 and DOME.
-#include "motion/surface_interpolator.h"
+#include "motion/passes/surface_interpolator.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 
 #include "base/rng.h"
 #include "dome.h"
-#include "motion/pass_geometry.h"
+#include "motion/passes/pass_geometry.h"
 
 namespace {
 std::atomic<size_t> allocations{0};

@@ -1,4 +1,4 @@
-#include "motion/time_envelope.h"
+#include "motion/cycles/time_envelope.h"
 
 #include <gtest/gtest.h>
 

@@ -17,7 +17,7 @@
 #include <cmath>
 #include <vector>
 
-#include "motion/block_run.h"
+#include "motion/blocks/block_run.h"
 
 namespace swarf::motion {
 

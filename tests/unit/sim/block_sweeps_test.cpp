@@ -7,7 +7,7 @@
 
 #include "base/units.h"
 #include "sim/simulation.h"
-#include "stock/sweep_map.h"
+#include "stock/sweep/sweep_map.h"
 #include "unit/motion/random_block.h"
 
 namespace swarf::motion {

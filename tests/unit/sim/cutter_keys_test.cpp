@@ -1,5 +1,5 @@
 // [cutter] of a scene: each shape's keys, the defaults, and that no key of another shape slips through.
-#include "sim/cutter_keys.h"
+#include "sim/job/cutter_keys.h"
 
 #include <gtest/gtest.h>
 

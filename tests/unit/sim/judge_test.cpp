@@ -1,5 +1,5 @@
 // The one judge: what counts, what is loosened only in writing, and what is never green.
-#include "sim/judge.h"
+#include "sim/judge/judge.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <memory>
 
-#include "sim/findings.h"
+#include "sim/judge/findings.h"
 #include "sim/simulation.h"
 
 namespace swarf::sim {

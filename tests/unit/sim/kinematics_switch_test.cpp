@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "sim/scene.h"
+#include "sim/job/scene.h"
 #include "support/program_run.h"
 
 namespace swarf::sim {

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "sim/job_sweeps.h"
+#include "sim/run/job_sweeps.h"
 
 namespace swarf::sim {
 namespace {

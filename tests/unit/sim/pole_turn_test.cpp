@@ -1,5 +1,5 @@
 // A block that leaves the pole: the table turns at rest first, within the limits of every axis.
-#include "motion/pole_turn.h"
+#include "motion/blocks/pole_turn.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include "base/rng.h"
 #include "base/units.h"
 #include "motion/interpolator.h"
-#include "motion/motion_check.h"
+#include "motion/judged/motion_check.h"
 #include "sim/simulation.h"
 #include "support/program_run.h"
 

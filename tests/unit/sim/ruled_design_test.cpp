@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "measure/flank_error.h"
-#include "sim/design_keys.h"
+#include "sim/job/design_keys.h"
 #include "support/program_run.h"
 
 namespace swarf::sim {

@@ -6,8 +6,8 @@
 #include <numeric>
 
 #include "base/units.h"
-#include "sim/design_keys.h"
-#include "stock/ray_field.h"
+#include "sim/job/design_keys.h"
+#include "stock/rays/ray_field.h"
 #include "support/program_run.h"
 
 namespace swarf::sim {

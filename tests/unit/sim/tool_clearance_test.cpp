@@ -1,5 +1,5 @@
 // Which part of a tool meets the stock: neck, shank and holder by their own shapes, in a block 30 mm high.
-#include "sim/tool_clearance.h"
+#include "sim/run/tool_clearance.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/tool_table.h"
+#include "sim/job/tool_table.h"
 #include "support/program_run.h"
 
 namespace swarf::sim {

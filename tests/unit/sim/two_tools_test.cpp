@@ -5,8 +5,8 @@
 
 #include "contact_run.h"
 #include "motion/interpolator.h"
-#include "sim/bad_cuts.h"
-#include "sim/job_sweeps.h"
+#include "sim/run/bad_cuts.h"
+#include "sim/run/job_sweeps.h"
 #include "sim/simulation.h"
 
 namespace swarf::sim {

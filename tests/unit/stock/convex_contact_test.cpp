@@ -1,5 +1,5 @@
 // The signed distance to the sweep of any cutter, against dense scans and exact answers.
-#include "stock/convex_contact.h"
+#include "stock/contact/convex_contact.h"
 
 #include <gtest/gtest.h>
 

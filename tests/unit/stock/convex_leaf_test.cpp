@@ -1,5 +1,5 @@
 // The leaf kernel for any cutter against the double-precision contact, and its instruction sets bit by bit.
-#include "stock/convex_leaf.h"
+#include "stock/level_set/convex_leaf.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <cstring>
 
 #include "cutter_shapes.h"
-#include "stock/convex_contact.h"
-#include "stock/leaf_kernel.h"
+#include "stock/contact/convex_contact.h"
+#include "stock/level_set/leaf_kernel.h"
 #include "stock_test_support.h"
 
 namespace swarf::stock {

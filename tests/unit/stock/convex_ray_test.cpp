@@ -4,9 +4,9 @@
 #include <limits>
 
 #include "cutter_shapes.h"
-#include "stock/convex_contact.h"
-#include "stock/ray_height.h"
-#include "stock/surface_dexels.h"
+#include "stock/contact/convex_contact.h"
+#include "stock/rays/ray_height.h"
+#include "stock/rays/surface_dexels.h"
 #include "stock_test_support.h"
 
 namespace swarf::stock {

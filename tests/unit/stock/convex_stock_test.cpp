@@ -5,9 +5,9 @@
 
 #include "cutter_shapes.h"
 #include "dome.h"
-#include "stock/convex_contact.h"
+#include "stock/contact/convex_contact.h"
+#include "stock/rays/surface_dexels.h"
 #include "stock/stock.h"
-#include "stock/surface_dexels.h"
 #include "stock_test_support.h"
 
 namespace swarf::stock {

@@ -11,7 +11,7 @@
 
 #include "base/rng.h"
 #include "base/units.h"
-#include "stock/sweep.h"
+#include "stock/sweep/sweep.h"
 
 namespace swarf::stock {
 

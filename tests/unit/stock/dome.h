@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "stock/sweep.h"
+#include "stock/sweep/sweep.h"
 #include "surface/polynomial.h"
 
 namespace swarf::stock {

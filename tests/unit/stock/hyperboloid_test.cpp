@@ -7,8 +7,8 @@
 
 #include "base/units.h"
 #include "cutter_shapes.h"
+#include "stock/rays/surface_dexels.h"
 #include "stock/stock.h"
-#include "stock/surface_dexels.h"
 #include "stock_test_support.h"
 
 namespace swarf::stock {

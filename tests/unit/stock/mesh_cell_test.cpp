@@ -1,5 +1,5 @@
 // The 256 cells: loops, and agreement between neighbours.
-#include "stock/mesher_cell.h"
+#include "stock/mesher/mesher_cell.h"
 
 #include <gtest/gtest.h>
 

@@ -5,8 +5,8 @@
 #include "base/units.h"
 #include "mesh/mesh_ops.h"
 #include "mesh_test_support.h"
+#include "stock/mesher/stock_mesher.h"
 #include "stock/stock.h"
-#include "stock/stock_mesher.h"
 #include "stock_test_support.h"
 
 namespace swarf::stock {

@@ -6,8 +6,8 @@
 
 #include "base/parallel.h"
 #include "cutter_shapes.h"
-#include "stock/lane_run.h"
-#include "stock/leaf_kernel.h"
+#include "stock/level_set/lane_run.h"
+#include "stock/level_set/leaf_kernel.h"
 #include "stock/stock.h"
 #include "stock_test_support.h"
 

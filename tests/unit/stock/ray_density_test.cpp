@@ -10,7 +10,7 @@
 #include <string>
 
 #include "base/rng.h"
-#include "stock/ray_field.h"
+#include "stock/rays/ray_field.h"
 
 namespace swarf::stock {
 namespace {

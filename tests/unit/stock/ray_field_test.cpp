@@ -1,5 +1,5 @@
 // Rays on designs of any kind, how far they answer for material, and material in several intervals.
-#include "stock/ray_field.h"
+#include "stock/rays/ray_field.h"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +10,9 @@
 
 #include "base/rng.h"
 #include "dome.h"
-#include "stock/free_ranges.h"
-#include "stock/ray_material.h"
-#include "stock/surface_dexels.h"
+#include "stock/rays/free_ranges.h"
+#include "stock/rays/ray_material.h"
+#include "stock/rays/surface_dexels.h"
 
 namespace swarf::stock {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <limits>
 
-#include "stock/ray_height.h"
-#include "stock/surface_dexels.h"
+#include "stock/rays/ray_height.h"
+#include "stock/rays/surface_dexels.h"
 #include "stock_test_support.h"
 
 namespace swarf::stock {

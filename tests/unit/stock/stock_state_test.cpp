@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "base/parallel.h"
-#include "stock/leaf_kernel.h"
-#include "stock/stock_grid_internal.h"
+#include "stock/level_set/leaf_kernel.h"
+#include "stock/level_set/stock_grid_internal.h"
 #include "stock_test_support.h"
 
 namespace swarf::stock {
@@ -145,8 +145,8 @@ std::vector<Sweep> mixed_path() {
 }
 
 /// The state of a fixed mixed cut, equal in every build type, for any threads and any split into calls.
-/// Change it only together with kCutAlgorithm (sim/cut_identity.h) and for a reason that CHANGELOG.md names:
-/// stocks saved before can then no longer be cut on.
+/// Change it only together with kCutAlgorithm (sim/run/cut_identity.h) and for a reason that CHANGELOG.md
+/// names: stocks saved before can then no longer be cut on.
 constexpr uint64_t kMixedCutHash = 0x0515bb0a0a0c1d36;
 
 TEST(StockHash, OfAMixedCutIsAConstant) {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "base/rng.h"
-#include "stock/sweep.h"
-#include "stock/sweep_map.h"
+#include "stock/sweep/sweep.h"
+#include "stock/sweep/sweep_map.h"
 
 namespace swarf::stock {
 

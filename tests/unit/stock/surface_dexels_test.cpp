@@ -1,4 +1,4 @@
-#include "stock/surface_dexels.h"
+#include "stock/rays/surface_dexels.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include "base/diagnostics.h"
 #include "base/parallel.h"
 #include "dome.h"
-#include "stock/ray_height.h"
+#include "stock/rays/ray_height.h"
 #include "stock_test_support.h"
 
 namespace swarf::stock {

@@ -2,8 +2,8 @@
 
 #include <cstring>
 
-#include "stock/leaf_kernel.h"
-#include "stock/sweep_distance.h"
+#include "stock/level_set/leaf_kernel.h"
+#include "stock/sweep/sweep_distance.h"
 #include "stock_test_support.h"
 
 namespace swarf::stock {

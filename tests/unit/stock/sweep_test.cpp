@@ -1,8 +1,8 @@
-#include "stock/sweep.h"
+#include "stock/sweep/sweep.h"
 
 #include <gtest/gtest.h>
 
-#include "stock/sweep_distance.h"
+#include "stock/sweep/sweep_distance.h"
 #include "stock_test_support.h"
 
 namespace swarf::stock {

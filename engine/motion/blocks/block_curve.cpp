@@ -1,0 +1,347 @@
+#include "motion/blocks/block_curve.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/units.h"
+
+namespace swarf::motion {
+namespace {
+
+using kinematics::AxisKind;
+using kinematics::AxisValues;
+using kinematics::Branch;
+using kinematics::InverseOutcome;
+using kinematics::MachineModel;
+using toolpath::BlockLaw;
+using toolpath::BlockMove;
+
+/// Rotary values that differ by less do not turn, rad.
+constexpr double kTurnMin = 1e-13;
+/// Blocks that turn are stretched where the axes' way per share is this much greater than elsewhere.
+constexpr double kUneven = 1.05;
+/// Nodes of a curved block: at least, per radian that its axes and its arc turn, at most.
+constexpr double kNodesMin = 12.0, kNodesPerRadian = 120.0, kNodesMax = 4096.0;
+constexpr size_t kCellsMax = 96;
+/// Differences at the nodes miss what lies between them by less than this share.
+constexpr double kBetweenNodes = 1.1;
+constexpr double kWholeTurn = 2.0 * kPi;
+/// A rotary that turns by more than this from node to node jumps, rad.
+constexpr double kJump = 0.5;
+/// The end of a block must meet its given axis values, mm.
+constexpr double kJoin = 1e-6;
+/// Share of the step between two nodes over which the slope there is found by differences.
+constexpr double kReach = 0.02;
+/// Order of the norm that stands for the slowest of tip and axes: see limited_way().
+constexpr int kNormOrder = 6;
+/// Chords that the tip's way under the joint law is summed from: within 1e-3 of the way for half a turn.
+constexpr int kWayChords = 32;
+
+bool turns(const BlockMotion& motion) {
+  for (size_t i = 0; i < motion.machine->axes.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    if (motion.machine->axes[i].kind == AxisKind::kRotary &&
+        std::abs(motion.q_to[row] - motion.q_from[row]) > kTurnMin)
+      return true;
+  }
+  return false;
+}
+
+/// Sum of the turns of the rotary axes between two sets of values, rad.
+double turn_between(const MachineModel& machine, const AxisValues& a, const AxisValues& b) {
+  double turn = 0.0;
+  for (size_t i = 0; i < machine.axes.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    if (machine.axes[i].kind == AxisKind::kRotary) turn += std::abs(b[row] - a[row]);
+  }
+  return turn;
+}
+
+/// The solution nearest to the values before by the turns of the rotary axes: within a block the branch is
+/// the program's, and travel limits are reported, not dodged.
+Branch continued(const kinematics::InverseKinematics& inverse, const MachineModel& machine,
+                 const ToolPose& pose, const AxisValues& before) {
+  const kinematics::InverseSolutions solutions = inverse.solve(pose, before);
+  Branch nearest;
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < solutions.count; ++i) {
+    Branch branch = solutions.branch[i];
+    for (size_t k = 0; k < machine.axes.size(); ++k) {
+      const auto row = static_cast<Eigen::Index>(k);
+      if (machine.axes[k].kind == AxisKind::kRotary)
+        branch.q[row] += kWholeTurn * std::nearbyint((before[row] - branch.q[row]) / kWholeTurn);
+    }
+    const double turn = turn_between(machine, before, branch.q);
+    if (turn >= least) continue;
+    least = turn;
+    nearest = branch;
+  }
+  return nearest;
+}
+
+}  // namespace
+
+double axis_way(const MachineModel& machine, const AxisValues& from, const AxisValues& to) {
+  double square = 0.0;
+  for (size_t i = 0; i < machine.axes.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    const double arm = machine.axes[i].kind == AxisKind::kRotary ? kTurnArm : 1.0;
+    square += std::pow(arm * (to[row] - from[row]), 2);
+  }
+  return std::sqrt(square);
+}
+
+double way_of_tip(const BlockMotion& motion) {
+  if (motion.block->law != BlockLaw::kJoint || !turns(motion)) {
+    if (motion.block->law != BlockLaw::kJoint) return toolpath::tip_way(*motion.block);
+    return (motion.block->to.tip_W - motion.block->from.tip_W).norm();
+  }
+  double way = 0.0;
+  Vec3 before = motion.block->from.tip_W;
+  for (int i = 1; i <= kWayChords; ++i) {
+    const Vec3 tip = pose_at(motion, static_cast<double>(i) / kWayChords).tip_W;
+    way += (tip - before).norm();
+    before = tip;
+  }
+  return way;
+}
+
+BlockCurve::BlockCurve(const BlockMotion& motion, const kinematics::InverseKinematics& inverse,
+                       double speed_mm_s)
+    : motion_(&motion), inverse_(&inverse), speed_(speed_mm_s) {
+  const BlockMove& block = *motion.block;
+  tip_way_ = way_of_tip(motion);
+  even_ =
+      block.law == BlockLaw::kJoint || (!block.arc && block.from.axis_W == block.to.axis_W && !turns(motion));
+  if (even_) {
+    length_ = limited_way(motion.q_to - motion.q_from, 1.0);
+    return;
+  }
+  follow();
+}
+
+AxisValues BlockCurve::solve(double x, const AxisValues& hint) const {
+  const ToolPose pose = pose_at(*motion_, x);
+  if (motion_->block->law == BlockLaw::kTcpAxes) {
+    const AxisValues own = motion_->q_from + x * (motion_->q_to - motion_->q_from);
+    const Branch branch = continued(*inverse_, *motion_->machine, pose, own);
+    return branch.outcome == InverseOutcome::kUnreachable ? hint : branch.q;
+  }
+  const Branch branch = continued(*inverse_, *motion_->machine, pose, hint);
+  return branch.outcome == InverseOutcome::kUnreachable ? hint : branch.q;
+}
+
+double BlockCurve::limited_way(const AxisValues& change, double share) const {
+  const MachineModel& machine = *motion_->machine;
+  double ways[kinematics::kMaxAxes + 1] = {share * tip_way_};
+  double most = ways[0];
+  for (size_t i = 0; i < machine.axes.size(); ++i) {
+    ways[i + 1] = std::abs(change[static_cast<Eigen::Index>(i)]) * speed_ / machine.axes[i].speed_max;
+    most = std::max(most, ways[i + 1]);
+  }
+  if (most == 0.0) return 0.0;
+  double sum = 0.0;
+  for (const double way : ways) sum += std::pow(way / most, kNormOrder);
+  return most * std::pow(sum, 1.0 / kNormOrder);
+}
+
+void BlockCurve::follow() {
+  const double way = std::max(toolpath::tip_way(*motion_->block), 1.0);
+  const PathShape shape{[&](double x) { return pose_at(*motion_, x); },
+                        [&](double from, double to) { return way * (to - from); },
+                        [&](const ToolPose& pose, const AxisValues& before) {
+                          return continued(*inverse_, *motion_->machine, pose, before);
+                        }};
+  std::vector<PathNode> nodes{{0.0, 0.0, motion_->q_from, false, true}};
+  if (motion_->block->law == BlockLaw::kTcpAxes) {
+    for (int i = 1; i <= 16; ++i)
+      nodes.push_back({i / 16.0, way * i / 16.0, solve(i / 16.0, nodes.back().q), false, true});
+  } else {
+    append_nodes(shape, *inverse_, *motion_->machine, 1.0, way / 8.0 * (1.0 + 1e-9), nodes);
+  }
+  length_ = 0.0;
+  double fastest = 0.0, slowest = std::numeric_limits<double>::infinity();
+  for (size_t i = 0; i + 1 < nodes.size(); ++i) {
+    followed_ = followed_ && nodes[i + 1].reached;
+    const double own = limited_way(nodes[i + 1].q - nodes[i].q, nodes[i + 1].x - nodes[i].x);
+    const double rate = own / (nodes[i + 1].x - nodes[i].x);
+    length_ += own;
+    fastest = std::max(fastest, rate);
+    slowest = std::min(slowest, rate);
+  }
+  jump_mm_ = axis_way(*motion_->machine, nodes.back().q, motion_->q_to);
+  if (jump_mm_ > kJoin) followed_ = false;
+  if (followed_) jump_mm_ = 0.0;
+  if (!followed_) length_ = std::max(length_, toolpath::tip_way(*motion_->block));
+  if (followed_ && turns(*motion_) && fastest > kUneven * slowest) stretch(nodes);
+  sample();
+}
+
+void BlockCurve::stretch(const std::vector<PathNode>& nodes) {
+  const double turn = turn_between(*motion_->machine, nodes.front().q, nodes.back().q);
+  const auto steps = static_cast<size_t>(std::clamp(4.0 * kNodesPerRadian * turn, 48.0, kNodesMax));
+  const double h = length_ / static_cast<double>(steps);
+  size_t near = 0;
+  // dx/ds at x, from the axis values a little to both sides.
+  const auto slope = [&](double x) {
+    x = std::clamp(x, 0.0, 1.0);
+    while (near + 2 < nodes.size() && nodes[near + 1].x <= x) ++near;
+    while (near > 0 && nodes[near].x > x) --near;
+    // The slope at x of the parabola through three places, of which x is the middle except at the ends.
+    const double reach = kReach * (nodes[near + 1].x - nodes[near].x);
+    const double middle = std::clamp(x, reach, 1.0 - reach);
+    const AxisValues low = solve(middle - reach, nodes[near].q), high = solve(middle + reach, nodes[near].q);
+    AxisValues change = 0.5 * (high - low);
+    if (x != middle) change += (x - middle) / reach * (high + low - 2.0 * solve(middle, nodes[near].q));
+    return reach / limited_way(change, reach);
+  };
+  std::vector<double> x(steps + 1, 0.0);
+  for (size_t i = 0; i < steps; ++i) {
+    const double k1 = slope(x[i]), k2 = slope(x[i] + 0.5 * h * k1);
+    const double k3 = slope(x[i] + 0.5 * h * k2), k4 = slope(x[i] + h * k3);
+    x[i + 1] = x[i] + h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+  }
+  const double whole = x.back();
+  for (double& value : x) value /= whole;
+  share_ = CubicSpline(0.0, h, std::move(x));
+  share_step_ = h;
+  stretched_ = true;
+}
+
+void BlockCurve::sample() {
+  double turn = turn_between(*motion_->machine, motion_->q_from, motion_->q_to);
+  if (motion_->block->arc) turn += toolpath::arc_angle(*motion_->block);
+  const auto steps = static_cast<size_t>(std::clamp(kNodesPerRadian * turn, kNodesMin, kNodesMax));
+  nodes_.reserve(steps + 1);
+  nodes_.push_back(motion_->q_from);
+  for (size_t i = 1; i <= steps; ++i) {
+    const double s = length_ * static_cast<double>(i) / static_cast<double>(steps);
+    nodes_.push_back(solve(share(s), nodes_.back()));
+  }
+}
+
+double BlockCurve::share(double s) const {
+  if (s <= 0.0) return 0.0;
+  if (s >= length_) return 1.0;
+  return stretched_ ? std::clamp(share_.at(s).w, 0.0, 1.0) : s / length_;
+}
+
+AxisValues BlockCurve::q(double s) const {
+  const double x = share(s);
+  if (x == 0.0) return motion_->q_from;
+  if (even_)
+    return x == 1.0 ? motion_->q_to : AxisValues(motion_->q_from + x * (motion_->q_to - motion_->q_from));
+  if (x == 1.0 && followed_) return motion_->q_to;
+  const double at = s / length_ * static_cast<double>(nodes_.size() - 1);
+  const auto near = std::min(nodes_.size() - 1, static_cast<size_t>(std::max(0.0, at + 0.5)));
+  return solve(x, nodes_[near]);
+}
+
+BlockCurve::Jet BlockCurve::jet(double s) const {
+  const AxisValues value = q(s);
+  if (even_) {
+    const AxisValues slope = (motion_->q_to - motion_->q_from) / length_;
+    return {value, slope, AxisValues::Zero()};
+  }
+  // Central differences of the sixth order, as wide as the block's ends and its bends allow.
+  const double bend = length_ / static_cast<double>(nodes_.size() - 1);
+  const double h = std::min({s / 3.0, (length_ - s) / 3.0, 0.7 * bend});
+  AxisValues even[3], odd[3];
+  for (int i = 0; i < 3; ++i) {
+    const AxisValues low = q(s - (i + 1) * h), high = q(s + (i + 1) * h);
+    odd[i] = high - low;
+    even[i] = (high - value) + (low - value);
+  }
+  return {value, (45.0 * odd[0] - 9.0 * odd[1] + odd[2]) / (60.0 * h),
+          (270.0 * even[0] - 27.0 * even[1] + 2.0 * even[2]) / (180.0 * h * h)};
+}
+
+PathCell BlockCurve::bounds_between(size_t from, size_t to) const {
+  const size_t last = nodes_.size() - 1;
+  const double h = length_ / static_cast<double>(last);
+  PathCell cell;
+  cell.first = cell.second = cell.third = AxisValues::Zero();
+  const auto jump = [&](size_t i) {
+    return turn_between(*motion_->machine, nodes_[i], nodes_[i + 1]) > kJump;
+  };
+  // Third differences of all steps that touch the cell and of one step beside it.
+  for (size_t i = from > 3 ? from - 3 : 0; i + 3 <= last && i <= to; ++i) {
+    if (jump(i) || jump(i + 1) || jump(i + 2)) continue;
+    cell.third = cell.third.cwiseMax(
+        (nodes_[i + 3] - 3.0 * nodes_[i + 2] + 3.0 * nodes_[i + 1] - nodes_[i]).cwiseAbs());
+  }
+  cell.third *= kBetweenNodes / (h * h * h);
+  for (size_t i = std::max<size_t>(1, from); i <= std::min(last - 1, to); ++i) {
+    if (jump(i - 1) || jump(i)) continue;
+    cell.first = cell.first.cwiseMax(0.5 * (nodes_[i + 1] - nodes_[i - 1]).cwiseAbs());
+    cell.second = cell.second.cwiseMax((nodes_[i + 1] - 2.0 * nodes_[i] + nodes_[i - 1]).cwiseAbs());
+  }
+  bool ends = false;
+  AxisValues edge = AxisValues::Zero();
+  for (size_t i = from; i < std::min(last, to); ++i) {
+    const bool at_end = i == 0 || i + 1 == last || jump(i - 1) || jump(i + 1);
+    if (!at_end || jump(i)) continue;
+    ends = true;
+    edge = edge.cwiseMax((nodes_[i + 1] - nodes_[i]).cwiseAbs());
+  }
+  if (stretched_) cell.third += bends_of_share(from, to) * cell.first;
+  // At a node a central difference misses the slope by h^2/6 of the third derivative, between nodes the slope
+  // rises above them by h^2/8 of it; at an end the mean of the last step misses it by half its bend.
+  cell.second = cell.second / (h * h) + (ends ? 1.0 : 0.5) * h * cell.third;
+  cell.first = cell.first / h + 0.3 * h * h * cell.third;
+  if (ends) cell.first = cell.first.cwiseMax(edge / h + 0.5 * h * cell.second);
+  return cell;
+}
+
+double BlockCurve::bends_of_share(size_t from, size_t to) const {
+  const double step = share_step_, h = length_ / static_cast<double>(nodes_.size() - 1);
+  const auto first =
+      static_cast<size_t>(std::max(1.0, std::floor(static_cast<double>(from) * h / step) - 1.0));
+  const auto end = std::min(static_cast<double>(to) * h / step + 2.0, length_ / step - 0.5);
+  double greatest = 0.0;
+  for (size_t k = first; static_cast<double>(k) < end; ++k) {
+    const double s = static_cast<double>(k) * step;
+    const CubicSpline::Value at = share_.at(s);
+    const double kink = (share_.at(s + step).ddw - 2.0 * at.ddw + share_.at(s - step).ddw) / step;
+    greatest = std::max(greatest, std::abs(kink) / at.dw);
+  }
+  return greatest;
+}
+
+void BlockCurve::append_cells(double from, double to, const TipLimits& tip,
+                              std::vector<PathCell>& cells) const {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  if (!(to > from)) return;
+  const auto limit_tip = [&](PathCell& cell, double share_of_block) {
+    // Millimetres of the tip per mm of s.
+    const double ratio = tip_way_ * share_of_block / cell.length;
+    cell.speed = tip.feed_mm_s > 0.0 ? tip.feed_mm_s / ratio : kNone;
+    if (tip.duration_s > 0.0) cell.speed = cell.length / (share_of_block * tip.duration_s);
+    cell.tip = {tip.path.acceleration / ratio, tip.path.jerk / ratio};
+  };
+  if (even_) {
+    PathCell cell;
+    cell.first = (motion_->q_to - motion_->q_from).cwiseAbs() / length_;
+    cell.second = cell.third = AxisValues::Zero();
+    cell.length = to - from;
+    limit_tip(cell, cell.length / length_);
+    cells.push_back(cell);
+    return;
+  }
+  const double last = static_cast<double>(nodes_.size() - 1);
+  const double group = std::max(1.0, std::ceil(last / static_cast<double>(kCellsMax)));
+  const double step = length_ / last * std::max(group, last <= kNodesMin ? last / 2.0 : 1.0);
+  const auto count = static_cast<size_t>(std::max(1.0, std::ceil((to - from) / step * (1.0 - 1e-9))));
+  for (size_t i = 0; i < count; ++i) {
+    const double a = from + (to - from) * static_cast<double>(i) / static_cast<double>(count);
+    const double b = from + (to - from) * static_cast<double>(i + 1) / static_cast<double>(count);
+    PathCell cell = bounds_between(static_cast<size_t>(a / length_ * last),
+                                   static_cast<size_t>(std::ceil(b / length_ * last)));
+    cell.length = b - a;
+    limit_tip(cell, share(b) - share(a));
+    cells.push_back(cell);
+  }
+}
+
+}  // namespace swarf::motion

@@ -1,0 +1,86 @@
+// One block as a curve of axis values q(s), s in mm: what look-ahead plans along.
+//
+// s measures what takes time: the way of the tip, or that of an axis counted by its speed limit, whichever is
+// longer (limited_way()). So |q'| stays bounded near a pole, where s follows the axis that turns, and one
+// speed along s suits blocks that follow each other.
+//  1. Axes that move evenly (joint law; straight blocks that do not turn): s is an even share of the block.
+//  2. Other blocks: the inverse gives q at shares x of the block by continuity. Near a pole x(s) is a spline
+//     through the solution of dx/ds = 1/|dq/dx|: what limits the speed moves evenly along s, and its bend
+//     does not take from its acceleration. q is always that of the exact pose at x(s), however well the
+//     spline is met.
+#pragma once
+
+#include <vector>
+
+#include "base/cubic_spline.h"
+#include "motion/blocks/block_motion.h"
+#include "motion/speed/look_ahead.h"
+#include "motion/speed/speed_clamps.h"
+
+namespace swarf::motion {
+
+/// Jumps of rotary axes count as long as this arm would swing, mm.
+inline constexpr double kTurnArm = 100.0;
+
+/// Way between two sets of axis values, mm.
+double axis_way(const kinematics::MachineModel& machine, const kinematics::AxisValues& from,
+                const kinematics::AxisValues& to);
+
+/// Way of the tip over the block, mm.
+double way_of_tip(const BlockMotion& motion);
+
+class BlockCurve {
+ public:
+  /// Motion and inverse must outlive it. `speed_mm_s`: reference for the axes' lengths, one for all blocks of
+  /// a run, about the speed of its tip.
+  BlockCurve(const BlockMotion& motion, const kinematics::InverseKinematics& inverse, double speed_mm_s);
+
+  double length() const { return length_; }
+  double tip_way() const { return tip_way_; }  ///< mm
+  bool even() const { return even_; }          ///< q(s) is a straight line
+  /// False where the machine does not follow: out of reach, or a jump at the pole or to the program's values.
+  bool followed() const { return followed_; }
+  /// The axis values at the block's end miss those of the program by this much, mm; 0 when followed.
+  double jump_mm() const { return jump_mm_; }
+  /// Share of the block at s.
+  double share(double s) const;
+  kinematics::AxisValues q(double s) const;
+  /// q and its first two derivatives by s.
+  struct Jet {
+    kinematics::AxisValues value, first, second;
+  };
+  Jet jet(double s) const;
+  /// Appends the cells of [from, to] with bounds of the derivatives; speed and tip limits are those of the
+  /// tip under `feed` (0: none) and the path limits.
+  struct TipLimits {
+    double feed_mm_s = 0.0;   ///< 0: none
+    double duration_s = 0.0;  ///< 0: none
+    RampLimits path;          ///< of the tip
+  };
+  void append_cells(double from, double to, const TipLimits& tip, std::vector<PathCell>& cells) const;
+
+ private:
+  kinematics::AxisValues solve(double x, const kinematics::AxisValues& hint) const;
+  /// Length of a change of axis values over a share of the block: the tip counts 1 per mm, an axis as far as
+  /// the tip would go at the reference speed while the axis needs its speed limit. Close to the greatest of
+  /// all, smoothly.
+  double limited_way(const kinematics::AxisValues& change, double share) const;
+  void follow();
+  void stretch(const std::vector<PathNode>& nodes);
+  void sample();
+  PathCell bounds_between(size_t from, size_t to) const;
+  /// Greatest jump of x''' at the spline's knots near these nodes, over x'.
+  double bends_of_share(size_t from, size_t to) const;
+
+  const BlockMotion* motion_;
+  const kinematics::InverseKinematics* inverse_;
+  double speed_ = 0.0;
+  double length_ = 0.0, tip_way_ = 0.0;
+  bool even_ = false, followed_ = true, stretched_ = false;
+  double jump_mm_ = 0.0;
+  CubicSpline share_;                          ///< x(s), when stretched
+  double share_step_ = 0.0;                    ///< between its knots
+  std::vector<kinematics::AxisValues> nodes_;  ///< q at even steps of s, when not even
+};
+
+}  // namespace swarf::motion

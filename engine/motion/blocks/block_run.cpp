@@ -1,0 +1,160 @@
+#include "motion/blocks/block_run.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "motion/blocks/pole_turn.h"
+
+namespace swarf::motion {
+namespace {
+
+using toolpath::BlockLaw;
+using toolpath::BlockMove;
+
+bool stops_between(const BlockMove& before, const BlockMove& after) {
+  if (before.exact_stop || after.dwell_s > 0.0 || before.tool != after.tool) return true;
+  if (is_rapid(before) != is_rapid(after)) return true;
+  return is_rapid(before) && !(before.corner_tolerance_mm > 0.0);
+}
+
+}  // namespace
+
+size_t run_end(std::span<const BlockMotion> motions, size_t first) {
+  size_t end = first + 1;
+  while (end < motions.size() && !stops_between(*motions[end - 1].block, *motions[end].block) &&
+         !turns_at_rest(motions[end - 1], motions[end]))
+    ++end;
+  return end;
+}
+
+double duration(const std::vector<PlacedPhase>& phases) {
+  double time = 0.0;
+  for (const PlacedPhase& placed : phases) time += placed.phase.duration;
+  return time;
+}
+
+RunPlanner::RunPlanner(std::span<const BlockMotion> motions, const RunPlace& start,
+                       const kinematics::InverseKinematics& inverse, const MotionOptions& options,
+                       const LookAheadReach& reach)
+    : reach_(reach),
+      builder_(motions.subspan(start.first, start.end - start.first), inverse, options, start.path) {
+  stretch_.place = start;
+  stretch_.motions = motions;
+  stretch_.path = &builder_.path();
+}
+
+const PlannedRun& RunPlanner::next() {
+  move_on();
+  EvenPlace end;
+  CellPlan plan = this->plan(end);
+  stretch_.cells = end.cell;
+  stretch_.last = builder_.at_end() && end.cell == builder_.path().cells.size();
+  stretch_.phases.assign(plan.phases.begin(), plan.phases.begin() + static_cast<ptrdiff_t>(end.phases));
+  rest_ = {};
+  for (size_t i = end.phases; i < plan.phases.size(); ++i) {
+    rest_.phases.push_back(plan.phases[i]);
+    rest_.phases.back().cell -= end.cell;
+  }
+  for (const EvenPlace& place : plan.places) {
+    if (place.phases > end.phases)
+      rest_.places.push_back({place.cell - end.cell, place.speed, place.phases - end.phases});
+  }
+  end_ = end;
+  return stretch_;
+}
+
+/// Behind the stretch, if there is one already.
+void RunPlanner::move_on() {
+  if (stretch_.cells == 0) return;
+  const PlanStart start{end_.speed, builder_.path().cells[stretch_.cells - 1].speed};
+  builder_.drop(stretch_.cells);
+  stretch_.place.path = builder_.place(0);
+  stretch_.place.plan = start;
+  stretch_.place.kept = nullptr;
+}
+
+CellPlan RunPlanner::plan(EvenPlace& end) {
+  for (size_t cells = reach_.planned;; cells *= 2) {
+    builder_.extend(cells);
+    const std::vector<PathCell>& path = builder_.path().cells;
+    if (path.empty()) return {};
+    std::optional<CellPlan> plan;
+    if (!stretch_.place.kept) plan = plan_cells(path, builder_.limits(), stretch_.place.plan);
+    if (!plan) {
+      if (!stretch_.place.kept) stretch_.place.kept = std::make_shared<const CellPlan>(rest_);
+      end = stretch_.place.kept->places.back();
+      builder_.extend(end.cell + 1);  // does the run go on behind it?
+      return *stretch_.place.kept;
+    }
+    end = plan->places.back();
+    if (builder_.at_end()) return std::move(*plan);
+    const size_t settled = path.size() - std::min(path.size(), reach_.seen_ahead);
+    for (const EvenPlace& place : plan->places) {
+      if (place.cell > 0 && place.cell <= settled) end = place;
+    }
+    if (end.cell <= settled) return std::move(*plan);
+  }
+}
+
+void RunSampler::enter(const PlannedRun& stretch) {
+  run_ = &stretch;
+  phase_ = 0;
+  if (stretch.phases.empty()) return;
+  if (clock_.tick == 0 && clock_.planned_s == 0.0) {
+    clock_.time = period_;
+    clock_.before = point_at(*stretch.path, 0, 0.0);
+    clock_.tip_before = stretch.motions[stretch.place.first + clock_.before.block].block->from.tip_W;
+  }
+  for (const PlacedPhase& placed : stretch.phases) clock_.planned_s += placed.phase.duration;
+  if (stretch.last) ticks_ = static_cast<size_t>(std::max(1.0, std::ceil(clock_.planned_s / period_)));
+}
+
+bool RunSampler::next(BlockTick& tick) {
+  if (run_->last && clock_.tick == ticks_) return false;
+  // Times stay small, so that rounding does not show in the differences of the positions.
+  while (phase_ < run_->phases.size() && clock_.time >= run_->phases[phase_].phase.duration)
+    clock_.time -= run_->phases[phase_++].phase.duration;
+  if (!run_->last && phase_ == run_->phases.size()) return false;
+  ++clock_.tick;
+  const std::vector<PathCell>& cells = run_->path->cells;
+  if (phase_ == run_->phases.size() || (run_->last && clock_.tick == ticks_)) {
+    fill(cells.size() - 1, cells.back().length, tick);
+  } else {
+    const PlacedPhase& placed = run_->phases[phase_];
+    size_t cell = placed.cell;
+    double offset = placed.offset + placed.phase.way(clock_.time);
+    while (cell + 1 < cells.size() && offset > cells[cell].length) offset -= cells[cell++].length;
+    fill(cell, std::clamp(offset, 0.0, cells[cell].length), tick);
+  }
+  clock_.time += period_;
+  return true;
+}
+
+void RunSampler::fill(size_t cell, double offset, BlockTick& tick) {
+  const PathPoint at = point_at(*run_->path, cell, offset);
+  const size_t index = run_->place.first + at.block;
+  const BlockMotion& motion = run_->motions[index];
+  const BlockCurve& curve = run_->path->curve(at.block);
+  const bool rapid = is_rapid(*motion.block);
+  tick.q = at.q;
+  tick.followed = curve.followed();
+  ToolSample& sample = tick.sample;
+  sample = {};
+  sample.pose = at.rounded || (motion.block->law == BlockLaw::kJoint && at.share < 1.0)
+                    ? kinematics::forward(*motion.machine, at.q)
+                    : pose_at(motion, at.share);
+  sample.contact_W = sample.pose.tip_W;
+  sample.u = at.share;
+  sample.element = static_cast<int>(index);
+  sample.kind = rapid ? SampleKind::kRapid : SampleKind::kCutting;
+  sample.rounded = at.rounded;
+  PathPoint& before = clock_.before;
+  const bool along = !rapid && !at.rounded && !before.rounded && before.block == at.block;
+  const double way =
+      along ? (at.share - before.share) * curve.tip_way() : (sample.pose.tip_W - clock_.tip_before).norm();
+  sample.feed_mm_s = way / period_;
+  before = at;
+  clock_.tip_before = sample.pose.tip_W;
+}
+
+}  // namespace swarf::motion

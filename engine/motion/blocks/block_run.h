@@ -1,0 +1,113 @@
+// Time along the blocks of a program: one tool pose per control cycle.
+//
+// Feed blocks that follow each other are a run, whatever their feeds: it ends where a block asks for an exact
+// stop, the next one dwells or has another tool, or a rapid comes. A rapid is a run of its own; so are the
+// legs of a dog-leg (dog_leg.h) together. A run is one smooth curve of axis values (run_path.h), planned
+// ahead from rest to rest under feed, path and axis limits (look_ahead.h). Under the joint law the axes move
+// evenly within a block, so its feed holds on average.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "motion/blocks/run_path.h"
+#include "motion/speed/look_ahead.h"
+#include "motion/tool_sample.h"
+
+namespace swarf::motion {
+
+/// First block after `first` that does not belong to its run.
+size_t run_end(std::span<const BlockMotion> motions, size_t first);
+
+/// Where a stretch of a run begins: enough to plan it again, and all after it.
+struct RunPlace {
+  size_t first = 0, end = 0;  ///< blocks of the run, counted from the start of the path
+  PathPlace path;
+  PlanStart plan;
+  /// The rest of the stretch before, where no plan starts here (CellPlan); mostly none.
+  std::shared_ptr<const CellPlan> kept;
+};
+
+/// A run, or a stretch of it between two places that are passed without acceleration, with its time law.
+struct PlannedRun {
+  RunPlace place;
+  std::span<const BlockMotion> motions;  ///< of the whole path
+  const RunPath* path = nullptr;         ///< from the stretch on, and farther; the planner's
+  std::vector<PlacedPhase> phases;       ///< empty when it goes nowhere
+  size_t cells = 0;                      ///< of the stretch
+  bool last = true;                      ///< the run ends with it
+};
+
+/// Sum of all durations, s.
+double duration(const std::vector<PlacedPhase>& phases);
+
+/// How many cells of a run are planned at once, and how many of these, the last ones, only serve to see what
+/// comes: a control looks no farther either. What lies more than `seen_ahead` cells behind a place may not
+/// change the speed there, which only matters for runs with more than `planned` cells.
+struct LookAheadReach {
+  size_t planned = size_t{1} << 17U, seen_ahead = size_t{1} << 15U;
+};
+
+/// Plans a run stretch by stretch, from any place on, in bounded memory.
+class RunPlanner {
+ public:
+  /// Motions, inverse and options must outlive it.
+  RunPlanner(std::span<const BlockMotion> motions, const RunPlace& start,
+             const kinematics::InverseKinematics& inverse, const MotionOptions& options,
+             const LookAheadReach& reach = {});
+  RunPlanner(const RunPlanner&) = delete;
+  RunPlanner& operator=(const RunPlanner&) = delete;
+  /// The next stretch, at first that of the start; not to be called after the last one.
+  const PlannedRun& next();
+
+ private:
+  void move_on();
+  /// A plan from here on, of which the phases up to `end` stand whatever follows.
+  CellPlan plan(EvenPlace& end);
+
+  LookAheadReach reach_;
+  RunPathBuilder builder_;
+  PlannedRun stretch_;
+  EvenPlace end_;  ///< of the stretch
+  CellPlan rest_;  ///< of the last plan, behind the stretch
+};
+
+/// A sample and where it comes from.
+struct BlockTick {
+  ToolSample sample;  ///< u: share of the block, 0 to 1; element: index into the motions; t_s is left out
+  kinematics::AxisValues q = kinematics::AxisValues::Zero();
+  bool followed = true;  ///< false: the machine does not follow the block, q has to be found by continuity
+};
+
+/// Where the sampler of a run stands between two stretches.
+struct RunClock {
+  size_t tick = 0;         ///< cycles since the start of the run
+  double time = 0.0;       ///< of the next cycle, from the start of the stretch, s
+  double planned_s = 0.0;  ///< duration of all stretches before
+  PathPoint before;
+  Vec3 tip_before = Vec3::Zero();
+};
+
+/// The ticks of a run one by one: cycles of `period_s` from its start at rest; the last one ends on its end.
+/// Allocates nothing.
+class RunSampler {
+ public:
+  explicit RunSampler(double period_s, const RunClock& clock = {}) : period_(period_s), clock_(clock) {}
+  /// Goes on in this stretch; it must outlive the calls of next().
+  void enter(const PlannedRun& stretch);
+  /// False when the next tick lies behind the stretch.
+  bool next(BlockTick& tick);
+  const RunClock& clock() const { return clock_; }
+
+ private:
+  void fill(size_t cell, double offset, BlockTick& tick);
+
+  const PlannedRun* run_ = nullptr;
+  double period_;
+  RunClock clock_;
+  size_t ticks_ = 0;  ///< of the whole run; known in its last stretch
+  size_t phase_ = 0;
+};
+
+}  // namespace swarf::motion

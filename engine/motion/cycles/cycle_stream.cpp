@@ -1,0 +1,290 @@
+#include "motion/cycles/cycle_stream.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "base/check.h"
+#include "base/units.h"
+#include "kinematics/rotary_pair.h"
+#include "motion/blocks/block_interpolator.h"
+#include "motion/passes/pass_geometry.h"
+#include "motion/speed/free_move.h"
+
+namespace swarf::motion {
+namespace {
+
+using kinematics::Branch;
+using kinematics::InverseOutcome;
+using toolpath::BlockMove;
+using toolpath::FreeMove;
+using toolpath::SurfacePass;
+using Clock = std::chrono::steady_clock;
+
+/// Cycles of one off-line pass or free move, which are made at once.
+constexpr double kListedMax = 2e7;
+/// Elements must follow each other without a gap, mm and (per unit axis) rad.
+constexpr double kJoinTolerance = 1e-6;
+
+/// Whole cycles that a time takes; a hair too long does not count as one more.
+double whole_cycles(double seconds, double period_s) {
+  return std::ceil(seconds / period_s * (1.0 - 1e-12));
+}
+
+/// A standing tool.
+ToolSample standing(const ToolPose& pose, SampleKind kind) {
+  ToolSample sample;
+  sample.pose = pose;
+  sample.contact_W = pose.tip_W;
+  sample.kind = kind;
+  return sample;
+}
+
+}  // namespace
+
+CycleStream::CycleStream(const CycleSource& source, const CyclePlace& from)
+    : source_(source),
+      place_(from),
+      cycle_(from.cycle),
+      element_(from.element),
+      tool_(from.tool),
+      before_(from.before),
+      q_(from.before.q) {
+  if (cycle_ == 0) {
+    const std::vector<kinematics::Axis>& axes = source_.by_tool.front().axes;
+    q_ = kinematics::AxisValues::Zero();
+    for (size_t i = 0; i < axes.size(); ++i) q_[static_cast<Eigen::Index>(i)] = axes[i].home;
+  }
+  if (!from.run) return;
+  run_.emplace();
+  run_->first = from.run->first;
+  run_->end = from.run->end;
+  run_->planner =
+      std::make_unique<RunPlanner>(source_.motions, *from.run, inverse(), *source_.options, source_.reach);
+  run_->sampler.emplace(source_.options->period_s, from.clock);
+}
+
+bool CycleStream::next(std::vector<Cycle>& window) {
+  window.clear();
+  window_ = &window;
+  while (window.size() < kWindow && go_on()) {
+  }
+  window_ = nullptr;
+  return !window.empty();
+}
+
+/// Records a cycle or several, or begins what comes next; false when nothing does.
+bool CycleStream::go_on() {
+  if (run_) {
+    run_on();
+  } else if (pass_) {
+    pass_on();
+  } else if (samples_done_ < samples_.size()) {
+    samples_on();
+  } else if (element_ == source_.elements.size()) {
+    return false;
+  } else if (!source_.motions.empty()) {
+    begin_run();
+  } else {
+    begin_element();
+  }
+  return true;
+}
+
+void CycleStream::mark_place() {
+  place_ = {cycle_, element_, tool_, before_, std::nullopt, {}};
+  place_.before.q = q_;
+  if (!run_) return;
+  place_.run = run_->stretch->place;
+  place_.clock = run_->sampler->clock();
+}
+
+void CycleStream::begin_run() {
+  mark_place();
+  const std::span<const BlockMotion> motions = source_.motions;
+  const BlockMotion& motion = motions[element_];
+  const BlockMove& block = *motion.block;
+  tool_ = block.tool;
+  // Another tool's tip stands elsewhere.
+  const bool joins = element_ == 0 || motions[element_ - 1].block->tool == block.tool;
+  const bool starts = cycle_ == 0 || !joins;
+  RunUnderWay run;
+  run.first = element_;
+  run.end = run_end(motions, element_);
+  run.kind = is_rapid(block) ? SampleKind::kRapid : SampleKind::kCutting;
+  sample_element_ = static_cast<int>(element_);
+  if (starts) {
+    record(standing(block.from, run.kind));
+    if (block.axes) window_->back().q = q_ = block.axes->from;
+    if (!block.axes && inverse().pole_distance(block.from.axis_W) < kinematics::kPoleTolerance)
+      window_->back().q = q_ = motion.q_from;
+  } else {
+    require_join(block.from);
+  }
+  check_time(block.dwell_s, "dwells");
+  run.dwell_ticks = whole_cycles(block.dwell_s, source_.options->period_s);
+  if (!starts && turns_at_rest(motions[element_ - 1], motion)) {
+    run.turn.emplace(inverse(), *motion.machine, block.from, q_, motion.q_from);
+    check_time(run.turn->duration_s(), "turns at the pole");
+    run.turn_ticks = whole_cycles(run.turn->duration_s(), source_.options->period_s);
+  }
+  run_.emplace(std::move(run));
+}
+
+/// First the dwell of the run's first block, then the turn of the rotary axes while the tool stands, then its
+/// stretches.
+void CycleStream::run_on() {
+  RunUnderWay& run = *run_;
+  const ToolPose& from = source_.motions[run.first].block->from;
+  if (run.standing < run.dwell_ticks) {
+    record(standing(from, run.kind), {q_, InverseOutcome::kOk});
+    run.standing += 1.0;
+  } else if (run.standing < run.dwell_ticks + run.turn_ticks) {
+    run.standing += 1.0;
+    const double t = (run.standing - run.dwell_ticks) * source_.options->period_s;
+    record(standing(from, run.kind), {run.turn->at(t), InverseOutcome::kOk});
+  } else if (run.stretch == nullptr) {
+    enter_stretch();
+  } else if (BlockTick tick; run.sampler->next(tick)) {
+    sample_element_ = tick.sample.element;
+    if (tick.followed) {
+      record(tick.sample, {tick.q, InverseOutcome::kOk});
+    } else {
+      record(tick.sample);
+    }
+  } else if (!run.stretch->last) {
+    run.stretch = nullptr;
+  } else {
+    element_ = run.end;
+    run_.reset();
+  }
+}
+
+void CycleStream::enter_stretch() {
+  RunUnderWay& run = *run_;
+  if (!run.planner) {
+    RunPlace start;
+    start.first = run.first;
+    start.end = run.end;
+    run.planner =
+        std::make_unique<RunPlanner>(source_.motions, start, inverse(), *source_.options, source_.reach);
+    run.sampler.emplace(source_.options->period_s);
+  }
+  run.stretch = &run.planner->next();
+  mark_place();
+  run.sampler->enter(*run.stretch);
+  check_time(duration(run.stretch->phases), "moves");
+}
+
+void CycleStream::begin_element() {
+  mark_place();
+  sample_element_ = static_cast<int>(element_);
+  const auto& what = source_.elements[element_].what;
+  if (const auto* move = std::get_if<FreeMove>(&what)) {
+    if (move->feed_mm_s > 0.0)
+      check_time((move->to.tip_W - move->from.tip_W).norm() / move->feed_mm_s, "moves", kListedMax);
+    start_at(standing(move->from, SampleKind::kRapid));
+    samples_ = sample_free_move(*move, source_.by_tool.front(), inverse(), *source_.options, q_);
+  } else {
+    begin_pass(std::get<SurfacePass>(what));
+  }
+  samples_done_ = 0;
+  ++element_;
+}
+
+void CycleStream::begin_pass(const SurfacePass& pass) {
+  const bool offline = source_.options->mode == Mode::kOffline;
+  check_time(pass_length(pass, pass.t_start, pass.t_end) / pass.feed_mm_s, "moves",
+             offline ? kListedMax : kHoursMax * 3600.0 / source_.options->period_s);
+  const toolpath::CurvePoint start = curve_at(*pass.surface, pass.curve, pass.t_start);
+  ToolSample first =
+      standing(contact_pose(pass, pass.t_start, source_.cutter->radius()), SampleKind::kCutting);
+  first.contact_W = start.C;
+  first.u = start.u;
+  first.v = start.v;
+  start_at(first);
+  samples_.clear();
+  if (offline) {
+    samples_ =
+        sample_offline_pass(pass, *source_.cutter, source_.by_tool.front(), inverse(), *source_.options, q_);
+    return;
+  }
+  pass_.emplace(source_.by_tool.front(), inverse(), *source_.cutter, *source_.options);
+  pass_->begin(pass, q_);
+}
+
+void CycleStream::pass_on() {
+  StepOutput out;
+  const auto begin = Clock::now();
+  pass_->step({}, out);
+  const Branch branch = inverse().solve_nearest(out.pose, q_);
+  const auto end = Clock::now();
+  ToolSample sample;
+  sample.pose = out.pose;
+  sample.contact_W = out.contact_W;
+  sample.u = out.u;
+  sample.v = out.v;
+  sample.feed_mm_s = out.feed_mm_s;
+  sample.kind = SampleKind::kCutting;
+  record(sample, branch, static_cast<float>(std::chrono::duration<double, std::nano>(end - begin).count()));
+  if (out.finished) pass_.reset();
+}
+
+void CycleStream::samples_on() {
+  record(samples_[samples_done_++]);
+}
+
+/// Records the very first pose; others must be where the element before ended.
+void CycleStream::start_at(const ToolSample& first) {
+  if (cycle_ == 0) {
+    record(first);
+  } else {
+    require_join(first.pose);
+  }
+}
+
+void CycleStream::require_join(const ToolPose& pose) const {
+  const ToolPose& before = before_.sample.pose;
+  SWARF_CHECK((before.tip_W - pose.tip_W).norm() <= kJoinTolerance &&
+                  (before.axis_W - pose.axis_W).norm() <= kJoinTolerance,
+              fmt::format("element {} does not start where the one before ends", element_));
+}
+
+void CycleStream::record(const ToolSample& sample) {
+  record(sample, inverse().solve_nearest(sample.pose, q_));
+}
+
+void CycleStream::record(ToolSample sample, const Branch& branch, float cost_ns) {
+  sample.t_s = static_cast<double>(cycle_) * source_.options->period_s;
+  sample.element = sample_element_;
+  sample.tool = static_cast<int16_t>(tool_);
+  const bool reached = branch.outcome != InverseOutcome::kUnreachable;
+  if (reached) q_ = branch.q;
+  before_ = {cycle_++, sample, q_, reached, cost_ns};
+  window_->push_back(before_);
+}
+
+/// Refuses what nobody means: a program of months, by a feed that is wrong by a power of ten.
+void CycleStream::check_time(double seconds, const char* what, double cycles_max) const {
+  const double period = source_.options->period_s;
+  const double hours = (static_cast<double>(cycle_) * period + seconds) / 3600.0;
+  const SourceLocation& where = source_.elements[static_cast<size_t>(sample_element_)].where;
+  if (hours > kHoursMax) {
+    throw InputError(
+        "too-many-cycles", where,
+        fmt::format("the program {} for {:.3g} h up to here, more than {:g} h", what, hours, kHoursMax),
+        "mend the feed or the dwell of this block");
+  }
+  if (seconds / period <= cycles_max) return;
+  throw InputError("too-many-cycles", where,
+                   fmt::format("this pass or move takes {:.3g} cycles of {:g} ms, more than {:g}",
+                               seconds / period, period * 1e3, cycles_max),
+                   "raise its feed, or the period");
+}
+
+const kinematics::InverseKinematics& CycleStream::inverse() const {
+  return source_.inverses[source_.inverses.size() == 1 ? 0 : static_cast<size_t>(tool_)];
+}
+
+}  // namespace swarf::motion

@@ -1,0 +1,133 @@
+#include "motion/cycles/cycles.h"
+
+#include <algorithm>
+
+#include "base/check.h"
+#include "motion/blocks/block_motion.h"
+
+namespace swarf::motion {
+namespace {
+
+/// At least so many cycles lie between two places.
+constexpr uint64_t kPlaceApart = 50'000;
+
+bool short_of(const Cycle& cycle, int element, double share) {
+  return cycle.sample.element < element || (cycle.sample.element == element && cycle.sample.u < share);
+}
+
+void throw_if_invalid(const MotionOptions& options) {
+  Diagnostics diagnostics;
+  for (const std::string& problem : validate(options)) diagnostics.error("bad-options", {}, problem, "");
+  diagnostics.throw_if_errors();
+}
+
+bool holds_blocks(std::span<const toolpath::Element> elements) {
+  return !elements.empty() && std::holds_alternative<toolpath::BlockMove>(elements.front().what);
+}
+
+}  // namespace
+
+Cycles::Cycles(std::span<const toolpath::Element> elements, std::span<const kinematics::MachineModel> by_tool,
+               const cutter::Cutter& cutter, const MotionOptions& options, const CycleLimits& limits)
+    : elements_(elements),
+      by_tool_(by_tool.begin(), by_tool.end()),
+      inverses_(by_tool.begin(), by_tool.end()),
+      cutter_(cutter),
+      options_(options),
+      limits_(limits) {
+  throw_if_invalid(options);
+  if (holds_blocks(elements_)) motions_ = block_motions(elements_, by_tool_);
+}
+
+CycleSource Cycles::source() const {
+  return {elements_, motions_, by_tool_, inverses_, &cutter_, &options_, limits_.reach};
+}
+
+void Cycles::walk(const std::function<void(std::span<const Cycle>)>& visit, Progress& progress) {
+  SWARF_CHECK(size_ == 0, "the first pass is made once");
+  progress.begin("interpolate", static_cast<double>(elements_.size()), "elements");
+  CycleStream stream(source());
+  places_.push_back(stream.place());
+  std::vector<Cycle> window;
+  while (!progress.stop_requested() && stream.next(window)) {
+    visit(window);
+    for (const Cycle& cycle : window) keep(cycle);
+    size_ += window.size();
+    if (stream.place().cycle >= places_.back().cycle + kPlaceApart) places_.push_back(stream.place());
+    progress.advance(static_cast<double>(window.back().sample.element));
+  }
+  stopped_ = progress.stop_requested();
+  progress.end();
+}
+
+void Cycles::keep(const Cycle& cycle) {
+  if (kept_.size() < limits_.kept) kept_.push_back(cycle);
+  last_ = cycle;
+  if (cycle.number % sparse_step_ != 0) return;
+  sparse_.push_back(cycle);
+  if (sparse_.size() < 2 * kSpreadLeast) return;
+  for (size_t i = 1; 2 * i < sparse_.size(); ++i) sparse_[i] = sparse_[2 * i];
+  sparse_.resize(kSpreadLeast);
+  sparse_step_ *= 2;
+}
+
+std::vector<Cycle> Cycles::spread(size_t count) const {
+  std::vector<Cycle> spread;
+  for (size_t i = 0; i < std::min(count, size_); ++i) {
+    const size_t k = count == 1 ? 0 : (size_ - 1) * i / (std::min(count, size_) - 1);
+    spread.push_back(k < kept_.size() ? kept_[k]
+                     : k + 1 == size_ ? last_
+                                      : sparse_[std::min(k / sparse_step_, sparse_.size() - 1)]);
+  }
+  return spread;
+}
+
+const Cycle& CycleReader::at(size_t k) {
+  SWARF_CHECK(k < cycles_->size(), "a cycle of the program");
+  if (k < cycles_->kept().size()) return cycles_->kept()[k];
+  if (holds(k)) return window_[k - first_];
+  const std::vector<CyclePlace>& places = cycles_->places();
+  const auto after =
+      std::upper_bound(places.begin(), places.end(), k,
+                       [](size_t sought, const CyclePlace& place) { return sought < place.cycle; });
+  const CyclePlace& nearest = *(after - 1);
+  const size_t next = first_ + window_.size();
+  if (!stream_ || k < next || nearest.cycle > next) start_from(nearest);
+  while (!holds(k)) move_on();
+  return window_[k - first_];
+}
+
+size_t CycleReader::reaching(int element, double share) {
+  const auto is_short = [&](const Cycle& cycle) { return short_of(cycle, element, share); };
+  const std::span<const Cycle> kept = cycles_->kept();
+  if (!kept.empty() && !is_short(kept.back()))
+    return static_cast<size_t>(std::partition_point(kept.begin(), kept.end(), is_short) - kept.begin());
+  const std::vector<CyclePlace>& places = cycles_->places();
+  const auto after = std::partition_point(places.begin() + 1, places.end(),
+                                          [&](const CyclePlace& place) { return is_short(place.before); });
+  // All cycles before these are short of the place.
+  size_t k = std::max<size_t>((after - 1)->cycle, kept.size());
+  if (!window_.empty() && first_ > k && is_short(window_.front())) k = first_;
+  while (k < cycles_->size()) {
+    at(k);
+    const auto from = window_.begin() + static_cast<ptrdiff_t>(k - first_);
+    const auto found = std::partition_point(from, window_.end(), is_short);
+    if (found != window_.end()) return first_ + static_cast<size_t>(found - window_.begin());
+    k = first_ + window_.size();
+  }
+  return cycles_->size() - 1;
+}
+
+void CycleReader::move_on() {
+  first_ += window_.size();
+  const bool more = stream_->next(window_);
+  SWARF_CHECK(more, "the program has as many cycles as its first pass");
+}
+
+void CycleReader::start_from(const CyclePlace& place) {
+  stream_ = std::make_unique<CycleStream>(cycles_->source(), place);
+  window_.clear();
+  first_ = place.cycle;
+}
+
+}  // namespace swarf::motion

@@ -1,0 +1,71 @@
+#include "motion/speed/s_curve.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace swarf::motion {
+namespace {
+
+/// Halvings of an interval of speeds: to the last bit of double.
+constexpr int kHalvings = 60;
+
+/// Greatest x in [low, high] that holds; low must.
+template <typename Holds>
+double greatest(double low, double high, const Holds& holds) {
+  if (holds(high)) return high;
+  for (int i = 0; i < kHalvings; ++i) {
+    const double middle = 0.5 * (low + high);
+    if (!(middle > low && middle < high)) break;
+    (holds(middle) ? low : high) = middle;
+  }
+  return low;
+}
+
+/// The three phases of a change of speed.
+void append_ramp(double from, double to, const RampLimits& limits, std::vector<Phase>& phases) {
+  const double change = std::abs(to - from);
+  if (change == 0.0) return;
+  const double sign = to > from ? 1.0 : -1.0;
+  const double rise = std::min(limits.acceleration / limits.jerk, std::sqrt(change / limits.jerk));
+  const double hold = std::max(0.0, change / (limits.jerk * rise) - rise);
+  const double a = sign * limits.jerk * rise, j = sign * limits.jerk;
+  const double knee = 0.5 * j * rise * rise;
+  phases.push_back({rise, from, 0.0, j});
+  if (hold > 0.0) phases.push_back({hold, from + knee, a, 0.0});
+  phases.push_back({rise, to - knee, a, -j});
+}
+
+}  // namespace
+
+double ramp_time(double from, double to, const RampLimits& limits) {
+  const double change = std::abs(to - from);
+  if (change == 0.0) return 0.0;
+  const double rise = limits.acceleration / limits.jerk;
+  if (change <= limits.acceleration * rise) return 2.0 * std::sqrt(change / limits.jerk);
+  return change / limits.acceleration + rise;
+}
+
+double ramp_length(double from, double to, const RampLimits& limits) {
+  return 0.5 * (from + to) * ramp_time(from, to, limits);
+}
+
+double reachable_speed(double from, double length, double most, const RampLimits& limits) {
+  if (most <= from) return from;
+  return greatest(from, most, [&](double v) { return ramp_length(from, v, limits) <= length; });
+}
+
+double append_hop(double v0, double v1, double length, double top, const RampLimits& limits,
+                  std::vector<Phase>& phases) {
+  const auto both = [&](double peak) {
+    return ramp_length(v0, peak, limits) + ramp_length(peak, v1, limits);
+  };
+  const double least = std::max(v0, v1);
+  const double peak = top > least ? greatest(least, top, [&](double v) { return both(v) <= length; }) : least;
+  const double cruise = length - both(peak);
+  append_ramp(v0, peak, limits, phases);
+  if (cruise > 0.0 && peak > 0.0) phases.push_back({cruise / peak, peak, 0.0, 0.0});
+  append_ramp(peak, v1, limits, phases);
+  return peak;
+}
+
+}  // namespace swarf::motion

@@ -1,0 +1,182 @@
+#include "sim/job/design_keys.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "base/units.h"
+#include "surface/analytic.h"
+#include "surface/polynomial.h"
+
+namespace swarf::sim {
+namespace {
+
+constexpr Range kBelowRightAngle{-89.0, 89.0, false};
+
+Vec3 read_vector(ConfigTable& table, const std::string& key,
+                 const std::optional<std::vector<double>>& fallback = {}) {
+  const std::vector<double> v = table.numbers(key, 3, fallback);
+  return v.size() == 3 ? Vec3(v[0], v[1], v[2]) : Vec3::Zero();
+}
+
+/// Two rising numbers strictly inside (low, high) where asked for; {0, 1} after a complaint.
+std::array<double, 2> read_interval(ConfigTable& table, const std::string& key, double low, double high,
+                                    const std::optional<std::vector<double>>& fallback = {}) {
+  const std::vector<double> v = table.numbers(key, 2, fallback);
+  if (v.size() == 2 && v[0] < v[1] && v[0] >= low && v[1] <= high) return {v[0], v[1]};
+  if (v.size() == 2) {
+    table.error("out-of-range", key, fmt::format("'{}' is [{:g}, {:g}]", key, v[0], v[1]),
+                fmt::format("write two rising numbers from {:g} to {:g}", low, high));
+  }
+  return {0.0, 1.0};
+}
+
+surface::MaterialSide read_side(ConfigTable& table) {
+  const bool convex = table.choice("side", {"convex", "concave"}) != "concave";
+  return convex ? surface::MaterialSide::kConvex : surface::MaterialSide::kConcave;
+}
+
+surface::Turn read_turn(ConfigTable& table, const std::string& base_key) {
+  surface::Turn turn;
+  turn.base_W = read_vector(table, base_key);
+  const Vec3 axis = read_vector(table, "axis", std::vector<double>{0.0, 0.0, 1.0});
+  if (axis.norm() > 0.0) {
+    turn.axis_W = axis.normalized();
+  } else {
+    table.error("out-of-range", "axis", "'axis' has no direction", "write for example [0, 0, 1]");
+  }
+  const auto angle = read_interval(table, "angle_deg", -360.0, 360.0, std::vector<double>{0.0, 360.0});
+  turn.from_rad = rad_from_deg(angle[0]);
+  turn.to_rad = rad_from_deg(angle[1]);
+  return turn;
+}
+
+surface::SurfacePtr read_plane(ConfigTable& table) {
+  const Vec3 origin = read_vector(table, "origin_mm");
+  const Vec3 along_u = read_vector(table, "along_u_mm"), along_v = read_vector(table, "along_v_mm");
+  if (along_u.cross(along_v).norm() <= 1e-9 * along_u.norm() * along_v.norm()) {
+    table.error("out-of-range", "along_u_mm", "'along_u_mm' and 'along_v_mm' span no plane",
+                "give two edges of the face; their cross product points out of the material");
+    return nullptr;
+  }
+  return std::make_shared<surface::PlaneSurface>(origin, along_u, along_v);
+}
+
+surface::SurfacePtr read_cone(ConfigTable& table, bool cylinder) {
+  const surface::Turn turn = read_turn(table, "base_mm");
+  const surface::MaterialSide side = read_side(table);
+  const double radius = table.number(cylinder ? "radius_mm" : "base_radius_mm", kAboveZero);
+  const double height = table.number("height_mm", kAboveZero);
+  const double angle = cylinder ? 0.0 : rad_from_deg(table.number("half_angle_deg", kBelowRightAngle));
+  if (radius <= 0.0 || height <= 0.0) return nullptr;
+  if (radius - height * std::tan(angle) <= 0.0) {
+    table.error("out-of-range", "height_mm", "the cone ends in its apex before this height",
+                fmt::format("height_mm must be below {:.6g}", radius / std::tan(angle)));
+    return nullptr;
+  }
+  return surface::cone_surface(turn, radius, angle, height, side);
+}
+
+surface::SurfacePtr read_sphere(ConfigTable& table) {
+  const surface::Turn turn = read_turn(table, "centre_mm");
+  const surface::MaterialSide side = read_side(table);
+  const double radius = table.number("radius_mm", kAboveZero);
+  auto polar = read_interval(table, "polar_deg", 0.0, 180.0);
+  if (radius <= 0.0) return nullptr;
+  // At a pole itself a normal cannot be taken from the parameters. Its nearest line of rays stands this far
+  // from it: on a sphere of a metre that leaves out a cap of 2 um.
+  constexpr double kNearestPole = 1e-4;  // deg
+  for (double& angle : polar) angle = std::clamp(angle, kNearestPole, 180.0 - kNearestPole);
+  return surface::sphere_surface(turn, radius, rad_from_deg(polar[0]), rad_from_deg(polar[1]), side);
+}
+
+surface::SurfacePtr read_hyperboloid(ConfigTable& table) {
+  const surface::Turn turn = read_turn(table, "base_mm");
+  surface::Hyperboloid shape;
+  shape.distance = table.number("distance_mm", kAboveZero);
+  shape.skew_rad = rad_from_deg(table.number("skew_deg", kBelowRightAngle));
+  shape.cutter_radius = table.number("cutter_radius_mm", kAboveZero);
+  const auto z = read_interval(table, "z_mm", -1e6, 1e6);
+  if (shape.distance <= 0.0 || shape.cutter_radius <= 0.0 || !(z[0] < z[1])) return nullptr;  // said above
+  if (shape.distance <= shape.cutter_radius) {
+    table.error("out-of-range", "distance_mm", "the cutter reaches the axis: no core is left",
+                "distance_mm must be above cutter_radius_mm");
+    return nullptr;
+  }
+  return surface::hyperboloid_surface(turn, shape, z[0], z[1]);
+}
+
+/// A place of S where Su x Sv vanishes, on a grid that holds both guide curves.
+bool has_normals(const surface::Surface& S) {
+  constexpr int kNodes = 64;
+  for (int i = 0; i <= kNodes; ++i) {
+    for (const double v : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+      const surface::Derivatives d = S.derivatives(static_cast<double>(i) / kNodes, v);
+      if (d.Su.cross(d.Sv).norm() <= 1e-9 * d.Su.norm() * d.Sv.norm()) return false;
+    }
+  }
+  return true;
+}
+
+/// S(u,v) = (1-v) C0(u) + v C1(u), C0 and C1 polynomials in u.
+surface::SurfacePtr read_ruled(ConfigTable& table) {
+  std::vector<Vec3> c0 = table.points("guide0_mm"), c1 = table.points("guide1_mm");
+  const bool out = table.choice("outward", {"u_cross_v", "v_cross_u"}) != "v_cross_u";
+  if (c0.empty() || c1.empty()) return nullptr;
+  const size_t count = std::max(c0.size(), c1.size());
+  c0.resize(count, Vec3::Zero());
+  c1.resize(count, Vec3::Zero());
+  std::vector<Vec3> coefficients;
+  for (size_t i = 0; i < count; ++i) {
+    coefficients.push_back(c0[i]);
+    coefficients.emplace_back(c1[i] - c0[i]);
+  }
+  auto ruled = std::make_shared<surface::PolynomialSurface>(static_cast<int>(count) - 1, 1,
+                                                            std::move(coefficients), out ? 1 : -1);
+  if (has_normals(*ruled)) return ruled;
+  table.error("out-of-range", "guide1_mm", "the ruled surface has a place without a normal",
+              "the guide curves must not stand still, meet, or run along their rulings");
+  return nullptr;
+}
+
+surface::SurfacePtr read_analytic(ConfigTable& table, const std::string& kind) {
+  if (kind == "plane") return read_plane(table);
+  if (kind == "sphere") return read_sphere(table);
+  if (kind == "hyperboloid") return read_hyperboloid(table);
+  if (kind == "ruled") return read_ruled(table);
+  return read_cone(table, kind == "cylinder");
+}
+
+}  // namespace
+
+DesignSettings read_design(ConfigTable table, bool cl) {
+  DesignSettings design;
+  design.pitch_mm = table.number("pitch_mm", kAboveZero, design.pitch_mm);
+  if (!cl) return design;
+  design.name = table.choice(
+      "kind", {"none", "surface", "plane", "cylinder", "cone", "sphere", "hyperboloid", "ruled", "mesh"});
+  if (design.name == "none" || design.name.empty()) {
+    design.kind = DesignKind::kNone;
+    return design;
+  }
+  design.sweep_tolerance_mm =
+      table.number("sweep_tolerance_um", kAboveZero, um_from_mm(design.sweep_tolerance_mm)) * kMicrometre;
+  if (design.name == "mesh") {
+    design.kind = DesignKind::kMesh;
+    design.mesh_file = table.text("mesh");
+    return design;
+  }
+  if (design.name == "surface") {
+    design.kind = DesignKind::kSurface;
+    design.surface_file = table.text("surface");
+    return design;
+  }
+  design.kind = DesignKind::kAnalytic;
+  design.surface = read_analytic(table, design.name);
+  return design;
+}
+
+}  // namespace swarf::sim

@@ -1,0 +1,260 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "base/units.h"
+#include "cutter/profile.h"
+#include "mesh/mesh_check.h"
+#include "mesh/mesh_io.h"
+#include "mesh/mesh_nesting.h"
+#include "mesh/mesh_ops.h"
+#include "sim/job/memory_limit.h"
+#include "sim/job/scene.h"
+#include "sim/job/tool_table.h"
+#include "stock/stock.h"
+
+namespace swarf::sim {
+namespace {
+
+constexpr double kMegabyte = 1024.0 * 1024.0;
+
+/// Upwards to two digits.
+double two_digits(double value) {
+  const double digit = std::pow(10.0, std::floor(std::log10(value)) - 1.0);
+  return std::ceil(value / digit) * digit;
+}
+
+/// The smallest voxel, to two digits, whose estimate fits.
+double voxel_that_fits(const Box& box, double voxel, double limit_mb) {
+  constexpr double kFinest = 1e-6;  // of the box: no memory holds more
+  const double longest = box.size().maxCoeff();
+  double fitting = std::max(voxel, kFinest * longest);
+  while (fitting<longest&& static_cast<double>(stock::Stock::memory_estimate(box, fitting)) / kMegabyte>
+             limit_mb)
+    fitting *= 1.05;
+  return two_digits(fitting);
+}
+
+/// What a box of voxels alone needs is known without a path: a wrong digit is refused at once.
+void check_voxels(const Scene& scene, const char* key, double voxel, Diagnostics& diagnostics) {
+  const double limit = memory_limit_mb(scene);
+  const double need =
+      static_cast<double>(stock::Stock::memory_estimate(scene.stock.box_W, voxel)) / kMegabyte;
+  // Before the path is known only the block can be counted; what lies between is for require_memory.
+  constexpr double kBeyondDoubt = 2.0, kShareOfBlock = 1.0 / 6.0;
+  if (need <= kBeyondDoubt * limit) return;
+  diagnostics.error(
+      "out-of-memory", {scene.file},
+      fmt::format("{} = {:g} needs about {:.0f} MB, {:.0f} MB may be used", key, voxel, need, limit),
+      fmt::format("voxel_mm = {:g} fits; or raise --max-memory",
+                  voxel_that_fits(scene.stock.box_W, voxel, kShareOfBlock * limit)));
+}
+
+double triangle_area(const Vec3& a, const Vec3& b, const Vec3& c) {
+  return 0.5 * (b - a).cross(c - a).norm();
+}
+
+/// mm2; of surfaces from below, by chords.
+double design_area(const Job& job) {
+  constexpr int kParts = 16;
+  double area = 0.0;
+  if (job.design_mesh) {
+    const auto corner = [&](uint32_t v) {
+      const auto& p = job.design_mesh->positions[v];
+      return Vec3(p[0], p[1], p[2]);
+    };
+    for (const auto& t : job.design_mesh->triangles)
+      area += triangle_area(corner(t[0]), corner(t[1]), corner(t[2]));
+  }
+  for (const surface::SurfacePtr& surface : job.design) {
+    const auto at = [&](int i, int k) { return surface->point(double(i) / kParts, double(k) / kParts); };
+    for (int i = 0; i < kParts * kParts; ++i) {
+      const int u = i / kParts, v = i % kParts;
+      area += triangle_area(at(u, v), at(u + 1, v), at(u, v + 1)) +
+              triangle_area(at(u + 1, v), at(u + 1, v + 1), at(u, v + 1));
+    }
+  }
+  return area;
+}
+
+/// One measuring ray stands for a square of the pitch at the most: a wrong digit is refused before any is
+/// made.
+void check_rays(const Job& job, Diagnostics& diagnostics) {
+  constexpr double kRayBytes = 80.0;
+  const double limit = memory_limit_mb(job.scene), area = design_area(job), pitch = job.scene.design.pitch_mm;
+  const double need = kRayBytes * area / pitch / pitch / kMegabyte;
+  if (need <= limit) return;
+  diagnostics.error(
+      "out-of-memory", {job.scene.file},
+      fmt::format(
+          "design.pitch_mm = {:g} needs about {:.0f} MB for the measuring rays of {:.0f} mm2, {:.0f} MB "
+          "may be used",
+          pitch, need, area, limit),
+      fmt::format("pitch_mm = {:g} fits",
+                  two_digits(std::sqrt(4.0 * kRayBytes * area / (limit * kMegabyte)))));
+}
+
+void check_memory(const Job& job, Diagnostics& diagnostics) {
+  check_voxels(job.scene, "stock.voxel_mm", job.scene.stock.voxel_mm, diagnostics);
+  if (job.scene.movie.seconds > 0.0)
+    check_voxels(job.scene, "movie.voxel_mm", job.scene.movie.voxel_mm, diagnostics);
+  check_rays(job, diagnostics);
+}
+
+void check_tools(const Job& job, Diagnostics& diagnostics) {
+  const cutter::Cutter& ours = job.scene.tools.front();
+  for (const program::Operation& operation : job.program.operations) {
+    if (operation.tool == ours.number) continue;
+    diagnostics.error("unknown-tool", operation.where,
+                      fmt::format("the block uses T{}, the scene describes {} only", operation.tool,
+                                  cutter::call_name(ours)),
+                      fmt::format("call T{} or set cutter.number = {}", ours.number, operation.tool));
+    return;
+  }
+}
+
+/// One parameter of CUTTER against the scene's cutter; what is not given contradicts nothing.
+void check_parameter(const program::ClCutter& cutter, size_t index, const char* name, double ours,
+                     const char* key, Diagnostics& diagnostics) {
+  constexpr double kSame = 1e-3;  // CAM systems write three or four digits
+  if (index >= cutter.parameters.size() || std::abs(cutter.parameters[index] - ours) <= kSame) return;
+  diagnostics.error(
+      "cutter-contradiction", cutter.where,
+      fmt::format("CUTTER says {} = {:g}, the scene has {:g}", name, cutter.parameters[index], ours),
+      fmt::format("set {} in the scene, or mend the CL file", key));
+}
+
+/// CUTTER of a CL file against the scene's cutter.
+void check_cl_cutter(const program::ClCutter& cutter, const cutter::Cutter& ours, Diagnostics& diagnostics) {
+  const std::optional<cutter::AptForm> form = cutter::apt_form(ours);
+  check_parameter(cutter, 0, "d (mm)", form ? form->d : ours.diameter_mm, "cutter.diameter_mm", diagnostics);
+  if (!form) return;  // seven parameters cannot say what the others are
+  check_parameter(cutter, 1, "r (mm)", form->r, "cutter.corner_radius_mm", diagnostics);
+  check_parameter(cutter, 4, "alpha (deg)", deg_from_rad(form->alpha), "the shape", diagnostics);
+  check_parameter(cutter, 5, "beta (deg)", deg_from_rad(form->beta), "the shape", diagnostics);
+}
+
+/// The tools that a CL file loads, and its CUTTERs, against the scene's tools.
+void check_cl_tools(const Job& job, Diagnostics& diagnostics) {
+  const std::vector<int> tools = cl_tools(job);
+  const std::string ours = list_tools(job.scene.tools);
+  for (size_t i = 0; i < tools.size(); ++i) {
+    if (tools[i] >= 0) continue;
+    const program::ClTool& tool = job.cl->tools[i];
+    const std::string called = tool.number != 0 ? fmt::format("tool {}", tool.number) : "tool " + tool.name;
+    diagnostics.error("unknown-tool", tool.where,
+                      fmt::format("the program loads {}, the scene describes {} only", called, ours),
+                      "load one of them, or describe it in the scene: [[tool]], cutter.number");
+  }
+  for (const program::ClMove& move : job.cl->moves) {
+    if (move.tool >= 0 || job.scene.tools.size() == 1) continue;
+    diagnostics.error("tool-not-loaded", {job.cl->file, move.line, move.column},
+                      fmt::format("no tool is loaded for this move, the scene describes {}", ours),
+                      "write LOADTL before it");
+    break;
+  }
+  for (const program::ClCutter& cutter : job.cl->cutters) {
+    if (cutter.tool < 0 && job.scene.tools.size() > 1) continue;  // nobody can say whose it is
+    const int index = cutter.tool < 0 ? 0 : tools[static_cast<size_t>(cutter.tool)];
+    if (index >= 0) check_cl_cutter(cutter, job.scene.tools[static_cast<size_t>(index)], diagnostics);
+  }
+}
+
+/// What the part is measured against.
+void load_design(Job& job, Diagnostics& diagnostics) {
+  const DesignSettings& design = job.scene.design;
+  std::vector<program::SurfaceDefinition> defined = job.program.surfaces;
+  if (design.kind == DesignKind::kSurface) defined = program::load_surfaces(design.surface_file);
+  for (const program::SurfaceDefinition& definition : defined) job.design.push_back(definition.surface);
+  if (design.kind == DesignKind::kAnalytic) job.design.push_back(design.surface);
+  if (design.kind == DesignKind::kMesh) {
+    auto mesh = std::make_shared<TriMesh>(mesh::load_mesh(design.mesh_file));
+    mesh::check_design_mesh(*mesh, design.mesh_file, &job.scene.stock.box_W, diagnostics);
+    if (!diagnostics.has_errors()) mesh::check_bodies(*mesh, design.mesh_file, diagnostics, "design mesh");
+    constexpr double kNoCreases = kPi;  // one normal for each vertex
+    if (mesh->normals.empty()) mesh::compute_vertex_normals(*mesh, kNoCreases);
+    job.design_mesh = std::move(mesh);
+  }
+}
+
+/// G06.3 and G06.4 put the centre of a flat end's face on the surface; no other shape has been derived.
+void check_planner_cutter(const Job& job, Diagnostics& diagnostics) {
+  if (job.program.operations.empty() || job.scene.tools.front().shape == cutter::Shape::kFlat) return;
+  diagnostics.error(
+      "planner-needs-flat-end", job.program.operations.front().where,
+      fmt::format("surface blocks are planned for flat ends only, {} is {}",
+                  cutter::call_name(job.scene.tools.front()), cutter::describe(job.scene.tools.front())),
+      "set cutter.shape = \"flat\", or run a program that brings its own tool positions");
+}
+
+template <typename Load>
+void collect(Diagnostics& diagnostics, Load load) {
+  try {
+    load();
+  } catch (const InputError& error) {
+    diagnostics.append(error.diagnostics);
+  }
+}
+
+}  // namespace
+
+std::vector<int> cl_tools(const Job& job) {
+  const std::vector<cutter::Cutter>& ours = job.scene.tools;
+  std::vector<int> tools;
+  for (const program::ClTool& tool : job.cl->tools) {
+    // A tool that is called by its name is the scene's only one while neither has another.
+    const bool only =
+        tool.number == 0 && job.cl->tools.size() == 1 && ours.size() == 1 && ours[0].name.empty();
+    tools.push_back(only ? 0 : tool_index(ours, tool.number, tool.name));
+  }
+  return tools;
+}
+
+std::vector<kinematics::MachineModel> machines_by_tool(const Job& job) {
+  std::vector<kinematics::MachineModel> machines;
+  for (const cutter::Cutter& tool : job.scene.tools) {
+    machines.push_back(kinematics::with_tool(job.machine.model, cutter::gauge_length(tool)));
+  }
+  return machines;
+}
+
+Job load_job(const std::string& path, const std::vector<std::string>& overrides) {
+  Diagnostics diagnostics;
+  Job job;
+  job.scene = load_scene(path, overrides, diagnostics);
+  diagnostics.throw_if_errors();
+  // A user mends all files at once: what is wrong with one does not hide what is wrong with the other.
+  collect(diagnostics, [&] {
+    job.machine = machine::load_machine(job.scene.machine_file);
+    Pose& X_MW = job.machine.model.X_MW;
+    if (job.scene.setup.work_origin_mm) X_MW.translation() = *job.scene.setup.work_origin_mm;
+    X_MW.linear() = Eigen::AngleAxisd(job.scene.setup.work_rotation_rad, Vec3::UnitZ()).toRotationMatrix();
+  });
+  Diagnostics warnings;
+  collect(diagnostics, [&] {
+    if (job.scene.kind == ProgramKind::kCl) {
+      job.cl = program::load_cl(job.scene.program_file, &warnings, job.scene.cl_options);
+    } else if (job.scene.kind == ProgramKind::kSurfaceBlocks) {
+      job.program = program::load_program(job.scene.program_file, &warnings);
+    }
+  });
+  collect(diagnostics, [&] { load_design(job, diagnostics); });
+  diagnostics.throw_if_errors();
+  diagnostics.append(warnings);
+  if (job.cl) {
+    check_cl_tools(job, diagnostics);
+  } else if (job.scene.kind == ProgramKind::kSurfaceBlocks) {
+    check_tools(job, diagnostics);
+    check_planner_cutter(job, diagnostics);
+  }
+  check_memory(job, diagnostics);
+  diagnostics.throw_if_errors();
+  job.warnings = diagnostics.list();
+  return job;
+}
+
+}  // namespace swarf::sim

@@ -1,0 +1,137 @@
+// The scene: one job as the user describes it in scene.toml, checked and with every default filled in.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/diagnostics.h"
+#include "base/frames.h"
+#include "cutter/cutter.h"
+#include "machine/machine_scene.h"
+#include "mesh/tri_mesh.h"
+#include "motion/interpolator.h"
+#include "program/cl/program.h"
+#include "program/nc_program.h"
+#include "program/surface_blocks/program.h"
+#include "sim/job/design_keys.h"
+#include "sim/job/setup_keys.h"
+#include "toolpath/tool_path.h"
+
+namespace swarf::sim {
+
+/// What cuts stock and measuring rays in a job of blocks.
+enum class CutBy {
+  kBlocks,  ///< the motions that the program asks for
+  kCycles,  ///< the control's cycles: with rounded corners, chords and dog-legs
+};
+
+struct StockSettings {
+  Box box_W;                         ///< mm
+  double voxel_mm = 0.2;             ///< smaller: finer solid, memory grows with the square
+  double sweep_tolerance_mm = 1e-3;  ///< ticks are merged into sweeps that stay this close to them
+  CutBy cut_by = CutBy::kBlocks;
+  double max_memory_mb = 0.0;  ///< 0: 80 % of the memory that is free when the run starts
+};
+
+/// Limits of the surface that are not given do not count; scenes of surface blocks have 10.5 and 1 by
+/// default. The counts hold for every job: above 0 only where the scene writes so.
+struct AcceptLimits {
+  std::optional<double> scallop_max_um;
+  std::optional<double> gouge_max_um;
+  std::optional<double> excess_max_um;  ///< material anywhere above the design, ridges included
+  int collisions = 0;                   ///< of neck, shank and holder with the stock
+  int rapids_in_material = 0;           ///< rapid moves that remove material
+  int spindle_wrong = 0;                ///< cuts with the spindle stopped or turning the wrong way
+  int travel = 0;                       ///< moves beyond the travel of an axis, or out of the machine's reach
+  int axis_speed = 0;                   ///< moves faster than an axis
+
+  /// Band of the share within tolerance and of the colour scale where the scene gives no limit, um.
+  double scallop_band_um() const { return scallop_max_um.value_or(10.0); }
+  double gouge_band_um() const { return gouge_max_um.value_or(1.0); }
+};
+
+struct MovieSettings {
+  double seconds = 10.0;
+  std::array<int, 2> size{1280, 720};
+  int fps = 30;
+  int samples = 1;        ///< per pixel, 1 or 4: 4 smooths edges and takes twice as long
+  double voxel_mm = 0.8;  ///< of the stock that the movie shows; it is not measured
+};
+
+struct StillSettings {
+  std::array<int, 2> size{1280, 720};
+  int samples = 16;  ///< rays per pixel: more is smoother and slower
+};
+
+/// What the scene's program is.
+enum class ProgramKind {
+  kSurfaceBlocks,  ///< `program`: surfaces and areas; the tool path is planned
+  kCl,             ///< `cl`: CL data
+  kNc,             ///< `nc`: a part program as a control reads it
+};
+
+struct Scene {
+  std::string file;  ///< scene.toml
+  std::string name;  ///< of its folder
+  std::string title;
+  std::string machine_file;
+  std::string program_file;  ///< `program`, `cl` or `nc`
+  ProgramKind kind = ProgramKind::kSurfaceBlocks;
+  toolpath::BlockLaw block_law = toolpath::BlockLaw::kTcp;  ///< CL: interpolator.mode
+  program::ClOptions cl_options;            ///< CL: cutcom, cl_circle, and the radii of `tools`
+  double linearise_tolerance_mm = 0.01;     ///< of the pieces that blocks near the pole would need (joint)
+  std::optional<program::Dialect> dialect;  ///< NC; none: recognised from the text
+  program::KinematicsSwitch kinematics_switch;  ///< NC, LinuxCNC's M428 to M430
+  program::BuilderWords builder_words;          ///< NC
+  SetupSettings setup;
+  std::string tool_table_file;  ///< `tool_table`; "": none
+  /// What BlockMove::tool and ToolSample::tool count in. Surface blocks: one.
+  std::vector<cutter::Cutter> tools{cutter::Cutter{}};
+  StockSettings stock;
+  DesignSettings design;
+  toolpath::PlanOptions toolpath;
+  bool compare_planners = true;              ///< plan, interpolate and measure the other planners too
+  std::optional<double> chord_tolerance_mm;  ///< replaces the program's K
+  motion::MotionOptions motion;
+  AcceptLimits accept;
+  MovieSettings movie;
+  StillSettings stills;
+
+  /// The program brings its own blocks: CL data or an NC program.
+  bool has_blocks() const { return kind != ProgramKind::kSurfaceBlocks; }
+  bool cuts_cycles() const { return has_blocks() && stock.cut_by == CutBy::kCycles; }
+};
+
+/// Everything that a run needs, loaded and checked; nothing has been written yet.
+struct Job {
+  Scene scene;
+  machine::MachineScene machine;
+  program::Program program;              ///< of surface blocks; empty for other jobs
+  std::optional<program::ClProgram> cl;  ///< of CL jobs
+  std::vector<surface::SurfacePtr>
+      design;  ///< what the part is measured against; may be empty for jobs of blocks
+  std::shared_ptr<const TriMesh> design_mesh;  ///< or a closed mesh with normals; null without one
+
+  bool has_design() const { return !design.empty() || design_mesh != nullptr; }
+  std::vector<Diagnostic> warnings;
+};
+
+/// Reads scene.toml; `overrides` are "key=value" in TOML. Paths in it are relative to its folder.
+/// Problems go to `diagnostics`.
+Scene load_scene(const std::string& path, const std::vector<std::string>& overrides,
+                 Diagnostics& diagnostics);
+
+/// Scene::tools by ClProgram::tools; -1: the scene lacks it.
+std::vector<int> cl_tools(const Job& job);
+
+/// The machine with each tool of the scene in its spindle.
+std::vector<kinematics::MachineModel> machines_by_tool(const Job& job);
+
+/// Loads scene, machine, program and design and checks them against each other (tool numbers, CUTTER words,
+/// memory, chord tolerance). Throws InputError with everything that is wrong.
+Job load_job(const std::string& path, const std::vector<std::string>& overrides);
+
+}  // namespace swarf::sim

@@ -1,0 +1,301 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <utility>
+
+#include "base/config.h"
+#include "base/units.h"
+#include "program/dialects.h"
+#include "sim/job/scene.h"
+#include "sim/job/tool_table.h"
+
+namespace swarf::sim {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// As for meshes: a kilometre from the origin of the work, mm.
+constexpr double kFarthest = 1e6;
+
+/// A grid on which the block or a tool's cut has no extent shows nothing.
+void check_voxel(ConfigTable& table, const StockSettings& stock, const std::vector<cutter::Cutter>& tools) {
+  const double side = stock.box_W.size().minCoeff();
+  if (side > 0.0 && stock.voxel_mm > side) {
+    table.error("out-of-range", "voxel_mm",
+                fmt::format("'stock.voxel_mm' is {:g}, the block is {:g} mm thick", stock.voxel_mm, side),
+                fmt::format("write at most {:.2g}, a tenth of that", 0.1 * side));
+    return;
+  }
+  for (const cutter::Cutter& tool : tools) {
+    if (!(tool.diameter_mm > 0.0) || stock.voxel_mm <= tool.diameter_mm) continue;
+    table.error("out-of-range", "voxel_mm",
+                fmt::format("'stock.voxel_mm' is {:g}, {} has a diameter of {:g} mm", stock.voxel_mm,
+                            cutter::call_name(tool), tool.diameter_mm),
+                fmt::format("write at most {:.2g}, a tenth of that", 0.1 * tool.diameter_mm));
+    return;
+  }
+}
+
+/// Surface blocks are always cut by their cycles.
+StockSettings read_stock(ConfigTable table, const std::vector<cutter::Cutter>& tools, bool blocks) {
+  StockSettings stock;
+  stock.box_W = table.box("box_mm");
+  if (std::max(stock.box_W.lower.cwiseAbs().maxCoeff(), stock.box_W.upper.cwiseAbs().maxCoeff()) >
+      kFarthest) {
+    table.error("out-of-range", "box_mm", "the stock reaches too far from the origin of the work",
+                fmt::format("every number must be from {:g} to {:g} mm", -kFarthest, kFarthest));
+    stock.box_W = {Vec3::Zero(), Vec3::Ones()};
+  }
+  stock.voxel_mm = table.number("voxel_mm", kAboveZero);
+  check_voxel(table, stock, tools);
+  stock.sweep_tolerance_mm = table.number("sweep_tolerance_um", kAboveZero, 1.0) * kMicrometre;
+  if (blocks && table.choice("cut_by", {"blocks", "cycles"}, "blocks") == "cycles")
+    stock.cut_by = CutBy::kCycles;
+  stock.max_memory_mb = table.number("max_memory_mb", kZeroOrMore, 0.0);
+  return stock;
+}
+
+toolpath::Planner planner_from(const std::string& word) {
+  if (word == "lin_koren") return toolpath::Planner::kLinKoren;
+  if (word == "isoparametric") return toolpath::Planner::kIsoparametric;
+  return toolpath::Planner::kConstantScallop;
+}
+
+void read_toolpath(ConfigTable table, Scene& scene) {
+  toolpath::PlanOptions& options = scene.toolpath;
+  options.planner = planner_from(
+      table.choice("planner", {"constant_scallop", "lin_koren", "isoparametric"}, "constant_scallop"));
+  scene.compare_planners = table.boolean("compare", true);
+  options.safe_distance_mm = table.number("safe_distance_mm", kAboveZero, options.safe_distance_mm);
+  options.overrun_mm = table.number("overrun_mm", kZeroOrMore, options.overrun_mm);
+  options.rapid_clearance_mm = table.number("rapid_clearance_mm", kAboveZero, options.rapid_clearance_mm);
+}
+
+void read_period_and_limits(ConfigTable& table, motion::MotionOptions& options) {
+  options.period_s = table.number("period_ms", {0.01, 100.0}, options.period_s * 1e3) * 1e-3;
+  options.path_acceleration_max =
+      table.number("path_acceleration_max_mm_s2", kAboveZero, options.path_acceleration_max);
+  options.path_jerk_max = table.number("path_jerk_max_mm_s3", kAboveZero, options.path_jerk_max);
+}
+
+/// An NC program says itself what the tool does between two positions.
+void read_block_interpolator(ConfigTable table, Scene& scene) {
+  if (scene.kind == ProgramKind::kNc) return read_period_and_limits(table, scene.motion);
+  const std::string mode = table.choice("mode", {"tcp", "joint", "ends"}, "tcp");
+  scene.block_law = mode == "joint"  ? toolpath::BlockLaw::kJoint
+                    : mode == "ends" ? toolpath::BlockLaw::kEnds
+                                     : toolpath::BlockLaw::kTcp;
+  scene.linearise_tolerance_mm = table.number("linearise_tolerance_um", kAboveZero, 10.0) * kMicrometre;
+  read_period_and_limits(table, scene.motion);
+}
+
+void read_interpolator(ConfigTable table, Scene& scene) {
+  motion::MotionOptions& options = scene.motion;
+  const std::string mode = table.choice("mode", {"surface", "taylor1", "offline"}, "surface");
+  options.mode = mode == "taylor1"   ? motion::Mode::kTaylor1
+                 : mode == "offline" ? motion::Mode::kOffline
+                                     : motion::Mode::kSurface;
+  const std::string orientation = table.choice(
+      "offline_orientation", {"constant", "linear_in_u", "linear_along_chord"}, "linear_along_chord");
+  options.orientation = orientation == "constant"      ? motion::OfflineOrientation::kConstant
+                        : orientation == "linear_in_u" ? motion::OfflineOrientation::kLinearInU
+                                                       : motion::OfflineOrientation::kLinearAlongChord;
+  options.look_ahead = table.boolean("offline_look_ahead", options.look_ahead);
+  if (table.has("chord_tolerance_um")) {
+    scene.chord_tolerance_mm = table.number("chord_tolerance_um", kAboveZero, 1.0) * kMicrometre;
+  }
+  read_period_and_limits(table, options);
+}
+
+std::array<int, 2> read_size(ConfigTable& table) {
+  const std::vector<double> size = table.numbers("size", 2, std::vector<double>{1280, 720});
+  for (const double side : size) {
+    if (side < 64 || side > 7680 || static_cast<int>(side) % 2 != 0) {
+      table.error("out-of-range", "size", fmt::format("'size' has a side of {:g} pixels", side),
+                  "both sides must be even numbers from 64 to 7680");
+      return {1280, 720};
+    }
+  }
+  return {static_cast<int>(size[0]), static_cast<int>(size[1])};
+}
+
+void read_pictures(ConfigTable& root, Scene& scene) {
+  ConfigTable movie = root.table("movie");
+  scene.movie.seconds = movie.number("seconds", {0.0, 3600.0}, scene.movie.seconds);
+  scene.movie.size = read_size(movie);
+  scene.movie.fps = movie.integer("fps", 1, 120, scene.movie.fps);
+  scene.movie.voxel_mm = movie.number("voxel_mm", kAboveZero, scene.movie.voxel_mm);
+  scene.movie.samples = movie.integer("samples", 1, 4, scene.movie.samples);
+  if (scene.movie.samples != 1 && scene.movie.samples != 4) {
+    movie.error("out-of-range", "samples", fmt::format("'movie.samples' is {}", scene.movie.samples),
+                "write 1 or 4");
+  }
+  ConfigTable stills = root.table("stills");
+  scene.stills.size = read_size(stills);
+  scene.stills.samples = stills.integer("samples", 1, 4096, scene.stills.samples);
+}
+
+/// A name as every file of the results can hold it: what is not UTF-8 (folders of other systems) becomes '?'.
+std::string utf8_only(const std::string& name) {
+  std::string text;
+  for (size_t at = 0; at < name.size();) {
+    const auto byte = [&](size_t i) {
+      return at + i < name.size() ? static_cast<unsigned char>(name[at + i]) : 0U;
+    };
+    const size_t length = byte(0) < 0x80                      ? 1
+                          : byte(0) >= 0xc2 && byte(0) < 0xe0 ? 2
+                          : byte(0) >= 0xe0 && byte(0) < 0xf0 ? 3
+                                                              : 4;
+    bool good = byte(0) < 0x80 || (byte(0) >= 0xc2 && byte(0) < 0xf5);
+    for (size_t i = 1; i < length; ++i) good = good && (byte(i) & 0xc0U) == 0x80U;
+    // Forms that are too long, halves of surrogate pairs, and numbers beyond the last letter.
+    if (byte(0) == 0xe0 && byte(1) < 0xa0) good = false;
+    if (byte(0) == 0xed && byte(1) >= 0xa0) good = false;
+    if (byte(0) == 0xf0 && byte(1) < 0x90) good = false;
+    if (byte(0) == 0xf4 && byte(1) >= 0x90) good = false;
+    text += good ? name.substr(at, length) : "?";
+    at += good ? length : 1;
+  }
+  return text;
+}
+
+/// A path in the scene, made relative to the scene's folder.
+std::string beside(const std::string& scene_file, const std::string& path) {
+  if (path.empty() || fs::path(path).is_absolute()) return path;
+  return (fs::path(scene_file).parent_path() / path).lexically_normal().string();
+}
+
+/// Surfaces: scenes of surface blocks have defaults; where the program brings its blocks only the limits that
+/// are given count. What no tool and no axis may do counts everywhere.
+void read_accept(ConfigTable table, bool blocks, AcceptLimits& accept) {
+  if (!blocks || table.has("scallop_max_um")) {
+    accept.scallop_max_um = table.number("scallop_max_um", kAboveZero, 10.5);
+  }
+  if (table.has("excess_max_um")) accept.excess_max_um = table.number("excess_max_um", kAboveZero, 1.0);
+  if (!blocks || table.has("gouge_max_um"))
+    accept.gouge_max_um = table.number("gouge_max_um", kAboveZero, 1.0);
+  const auto count = [&](const char* key) { return table.integer(key, 0, 1000000, 0); };
+  accept.collisions = count("collisions");
+  accept.rapids_in_material = count("rapids_in_material");
+  accept.spindle_wrong = count("spindle_wrong");
+  accept.travel = count("travel");
+  accept.axis_speed = count("axis_speed");
+}
+
+/// What M428 to M430 mean, for LinuxCNC alone.
+program::KinematicsSwitch read_kinematics_switch(ConfigTable table) {
+  program::KinematicsSwitch kinematics;
+  const std::vector<std::string> names{"identity", "tcp"};  // order of Kinematics
+  const auto read = [&](const char* key, std::optional<program::Kinematics>& value) {
+    if (!table.has(key)) return;
+    value = table.choice(key, names) == names[1] ? program::Kinematics::kTcp : program::Kinematics::kIdentity;
+  };
+  read("start", kinematics.start);
+  read("m428", kinematics.m428);
+  read("m429", kinematics.m429);
+  read("m430", kinematics.m430);
+  return kinematics;
+}
+
+/// { M68 = "clamp C", "CYCL DEF 392" = "tuning" }.
+program::BuilderWords read_builder_words(ConfigTable table) {
+  program::BuilderWords words;
+  for (const std::string& key : table.keys()) {
+    const std::string word = program::builder_word(key);
+    if (!word.empty())
+      words[word] = table.text(key);
+    else
+      table.error("bad-key", key, fmt::format("'{}' is no word of a machine's builder", key),
+                  "write M68, \"CYCL DEF 392\" or the name of a program");
+  }
+  return words;
+}
+
+/// `program`, `cl` or `nc`, exactly one of them.
+void read_program(ConfigTable& root, Scene& scene) {
+  const std::array<std::pair<const char*, ProgramKind>, 3> kinds{
+      {{"cl", ProgramKind::kCl}, {"nc", ProgramKind::kNc}, {"program", ProgramKind::kSurfaceBlocks}}};
+  const char* first = nullptr;
+  for (const auto& [key, kind] : kinds) {
+    if (!root.has(key)) continue;
+    const std::string file = root.text(key);
+    if (first != nullptr) {
+      root.error("two-programs", first, fmt::format("the scene names a '{}' and a '{}' file", key, first),
+                 "keep one of program, cl and nc");
+      continue;
+    }
+    first = key;
+    scene.kind = kind;
+    scene.program_file = beside(scene.file, file);
+  }
+  if (first == nullptr) root.text("program");  // reports that it is missing
+  if (scene.kind != ProgramKind::kNc) return;
+  if (root.has("dialect")) {
+    scene.dialect = program::dialect_of(root.choice("dialect", program::dialect_names()));
+  }
+  // Of another dialect the key stays unread, and is reported as unknown.
+  if (scene.dialect.value_or(program::Dialect::kLinuxCnc) == program::Dialect::kLinuxCnc &&
+      root.has("kinematics_switch"))
+    scene.kinematics_switch = read_kinematics_switch(root.table("kinematics_switch"));
+  if (root.has("builder_words")) scene.builder_words = read_builder_words(root.table("builder_words"));
+}
+
+/// What a CL file leaves open.
+void read_cl_keys(ConfigTable& root, Scene& scene) {
+  if (scene.kind != ProgramKind::kCl) return;
+  program::ClOptions& options = scene.cl_options;
+  if (root.has("cutcom")) {
+    const bool centre = root.choice("cutcom", {"centre", "contour"}) == "centre";
+    options.cutcom = centre ? program::ClPoints::kCentre : program::ClPoints::kContour;
+  }
+  if (root.has("cl_circle"))
+    options.circle_clockwise = root.choice("cl_circle", {"clockwise", "counter_clockwise"}) == "clockwise";
+  for (const cutter::Cutter& tool : scene.tools)
+    options.tools.push_back({tool.number, tool.name, 0.5 * tool.diameter_mm});
+}
+
+/// Surface blocks are planned for one cutter.
+void read_scene_tools(ConfigTable& root, Scene& scene, Diagnostics& diagnostics) {
+  scene.tool_table_file = beside(scene.file, root.text("tool_table", ""));
+  scene.tools = read_tools(root, scene.tool_table_file, diagnostics);
+  if (scene.has_blocks() || scene.tools.size() == 1) return;
+  root.error("planner-needs-one-tool", "tool",
+             fmt::format("surface blocks are planned for one cutter, the scene has {}", scene.tools.size()),
+             "describe one, or run a program that brings its own tool positions");
+}
+
+}  // namespace
+
+Scene load_scene(const std::string& path, const std::vector<std::string>& overrides,
+                 Diagnostics& diagnostics) {
+  Scene scene;
+  scene.file = path;
+  scene.name = utf8_only(fs::absolute(path).parent_path().filename().string());
+  ConfigTable root = ConfigTable::load(path, overrides, diagnostics);
+  if (diagnostics.has_errors()) return scene;
+  scene.title = utf8_only(root.text("title", scene.name));
+  scene.machine_file = beside(path, root.text("machine"));
+  read_program(root, scene);
+  read_scene_tools(root, scene, diagnostics);
+  read_cl_keys(root, scene);
+  scene.setup = read_setup(root.table("setup"), scene.kind == ProgramKind::kNc);
+  scene.stock = read_stock(root.table("stock"), scene.tools, scene.has_blocks());
+  scene.design = read_design(root.table("design"), scene.has_blocks());
+  scene.design.surface_file = beside(path, scene.design.surface_file);
+  scene.design.mesh_file = beside(path, scene.design.mesh_file);
+  if (scene.has_blocks()) {
+    read_block_interpolator(root.table("interpolator"), scene);
+  } else {
+    read_toolpath(root.table("toolpath"), scene);
+    read_interpolator(root.table("interpolator"), scene);
+  }
+  read_accept(root.table("accept"), scene.has_blocks(), scene.accept);
+  read_pictures(root, scene);
+  root.finish();
+  scene.toolpath.stock_top_mm = scene.stock.box_W.upper.z();
+  return scene;
+}
+
+}  // namespace swarf::sim

@@ -1,0 +1,92 @@
+#include "sim/job/setup_keys.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "base/units.h"
+
+namespace swarf::sim {
+namespace {
+
+constexpr std::array<const char*, 9> kOffsets{"G54", "G55",   "G56",   "G57",  "G58",
+                                              "G59", "G59.1", "G59.2", "G59.3"};
+
+AxisSettings read_axes(ConfigTable table) {
+  AxisSettings settings;
+  for (const std::string& key : table.keys()) {
+    const std::string_view unit = std::string_view(key).substr(std::min<size_t>(1, key.size()));
+    const bool letter = !key.empty() && std::string_view("XYZABCUVW").find(key[0]) != std::string_view::npos;
+    const double value = table.number(key, {});
+    if (!letter || (unit != "_mm" && unit != "_deg")) {
+      table.error("bad-axis-key", key, fmt::format("'{}' is no axis with its unit", key),
+                  "write X_mm = 12.5, C_deg = 90");
+      continue;
+    }
+    const bool rotary = unit == "_deg";
+    settings.push_back({key.substr(0, 1), rotary, rotary ? rad_from_deg(value) : value, table.where(key)});
+  }
+  return settings;
+}
+
+}  // namespace
+
+SetupSettings read_setup(ConfigTable table, bool nc) {
+  SetupSettings setup;
+  if (table.has("work_origin_mm")) {
+    const std::vector<double> origin = table.numbers("work_origin_mm", 3);
+    if (origin.size() == 3) setup.work_origin_mm = Vec3(origin[0], origin[1], origin[2]);
+  }
+  setup.work_rotation_rad = rad_from_deg(table.number("work_rotation_deg", {-360.0, 360.0}, 0.0));
+  if (!nc) return setup;
+  if (table.has("start")) setup.start = read_axes(table.table("start"));
+  ConfigTable offsets = table.table("offsets");
+  for (const std::string& key : offsets.keys()) {
+    const auto* known = std::find(kOffsets.begin(), kOffsets.end(), key);
+    const AxisSettings axes = read_axes(offsets.table(key));
+    if (known == kOffsets.end()) {
+      offsets.error("unknown-offset", key, fmt::format("'{}' is no work offset", key),
+                    fmt::format("one of {}", fmt::join(kOffsets, ", ")));
+      continue;
+    }
+    setup.offsets[static_cast<int>(known - kOffsets.begin()) + 1] = axes;
+  }
+  return setup;
+}
+
+kinematics::AxisValues axis_values(const AxisSettings& settings, const kinematics::MachineModel& machine,
+                                   bool complete, Diagnostics& diagnostics) {
+  kinematics::AxisValues values = kinematics::AxisValues::Zero();
+  std::vector<bool> given(machine.axes.size(), false);
+  for (const AxisSetting& setting : settings) {
+    const auto axis = std::find_if(machine.axes.begin(), machine.axes.end(),
+                                   [&](const kinematics::Axis& a) { return a.name == setting.axis; });
+    if (axis == machine.axes.end()) {
+      diagnostics.error("unknown-axis", setting.where,
+                        fmt::format("the machine {} has no axis {}", machine.name, setting.axis),
+                        "name the axes of its machine.toml");
+      continue;
+    }
+    const bool rotary = axis->kind == kinematics::AxisKind::kRotary;
+    if (rotary != setting.rotary) {
+      diagnostics.error("wrong-unit", setting.where,
+                        fmt::format("axis {} is {}", setting.axis, rotary ? "rotary" : "linear"),
+                        fmt::format("write {}{}", setting.axis, rotary ? "_deg" : "_mm"));
+      continue;
+    }
+    const auto index = axis - machine.axes.begin();
+    given[static_cast<size_t>(index)] = true;
+    values[index] = setting.value;
+  }
+  for (size_t i = 0; complete && i < given.size(); ++i) {
+    if (given[i]) continue;
+    diagnostics.error("missing-axis", settings.empty() ? SourceLocation{} : settings.front().where,
+                      fmt::format("the start does not say where axis {} stands", machine.axes[i].name),
+                      "name every axis: no position is assumed");
+  }
+  return values;
+}
+
+}  // namespace swarf::sim

@@ -1,0 +1,271 @@
+#include "sim/job/tool_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <string_view>
+
+#include "program/source_text.h"
+#include "sim/job/cutter_keys.h"
+
+namespace swarf::sim {
+namespace {
+
+using cutter::Cutter;
+
+/// Lengths and diameters of two descriptions of one tool agree within this, mm.
+constexpr double kSame = 1e-3;
+
+struct Described {
+  Cutter cutter;
+  SourceLocation where;
+};
+
+/// The words of one line of a .tbl, by letter.
+class TblLine {
+ public:
+  TblLine(std::string_view text, SourceLocation where, Diagnostics& diagnostics)
+      : where_(std::move(where)), diagnostics_(diagnostics) {
+    const size_t semicolon = std::min(text.find(';'), text.size());
+    comment_ = text.substr(std::min(semicolon + 1, text.size()));
+    std::transform(comment_.begin(), comment_.end(), comment_.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    read_words(text.substr(0, semicolon));
+  }
+
+  bool good() const { return good_; }
+  bool empty() const { return words_.empty(); }
+
+  /// T, Z and D as a cutter; the rest must be zero.
+  Described tool() {
+    for (const char letter : {'T', 'Z', 'D'}) {
+      if (words_.count(letter) != 0) continue;
+      fail("missing-tool-word", fmt::format("the tool has no word {}", letter),
+           "T is its number, Z its length from the gauge line to the tip, D its diameter (mm)");
+    }
+    for (const char letter : {'X', 'Y', 'A', 'B', 'C', 'U', 'V', 'W'}) {
+      if (words_.count(letter) == 0 || words_[letter] == 0.0) continue;
+      fail("unsupported-tool-offset", fmt::format("the tool has an offset {}{:g}", letter, words_[letter]),
+           "only lengths along the tool axis (Z) are known");
+    }
+    Cutter c;
+    constexpr double kLargestNumber = 1e9;
+    const double number = words_['T'];
+    if (words_.count('T') != 0 &&
+        !(number >= 1.0 && number <= kLargestNumber && number == std::floor(number))) {
+      fail("bad-tool-line", fmt::format("T{:g} is no tool number", number), "a whole number above 0");
+    }
+    c.number = good_ ? static_cast<int>(number) : 1;
+    for (const char letter : {'Z', 'D'}) {
+      if (words_.count(letter) == 0 || words_[letter] > 0.0) continue;
+      fail("bad-tool-line", fmt::format("{} is {:g} mm", letter, words_[letter]), "give it above 0");
+    }
+    c.diameter_mm = words_['D'];
+    c.shape = comment_.find("ball") != std::string::npos ? cutter::Shape::kBall : cutter::Shape::kFlat;
+    if (c.shape == cutter::Shape::kBall) c.corner_radius_mm = c.radius();
+    c.shank_diameter_mm = c.diameter_mm;
+    c.gauge_length_mm = c.flute_length_mm = c.length_mm = words_['Z'];
+    c.holder = {{c.diameter_mm, c.diameter_mm, 1.0}};
+    return {c, where_};
+  }
+
+ private:
+  void read_words(std::string_view text) {
+    const char* at = text.data();
+    const char* const end = text.data() + text.size();
+    const auto skip = [&] {
+      while (at < end && std::isspace(static_cast<unsigned char>(*at)) != 0) ++at;
+    };
+    for (skip(); at < end && good_; skip()) {
+      where_.column = static_cast<int>(at - text.data()) + 1;
+      const char letter = static_cast<char>(std::toupper(static_cast<unsigned char>(*at)));
+      if (std::string_view("TPXYZABCUVWDIJQ").find(letter) == std::string_view::npos) {
+        fail("bad-tool-line", fmt::format("'{}' is no word of a tool table", *at),
+             "T, P, X, Y, Z, A, B, C, U, V, W, D, I, J, Q and a number each; a comment follows a semicolon");
+        return;
+      }
+      if (++at < end && *at == '+') ++at;
+      double value = 0.0;
+      const auto [next, failure] = std::from_chars(at, end, value);
+      if (failure != std::errc() || !std::isfinite(value)) {
+        fail("bad-tool-line", fmt::format("{} has no number", letter), "write it as Z81.5");
+        return;
+      }
+      if (!words_.emplace(letter, value).second) {
+        fail("bad-tool-line", fmt::format("{} stands twice in one line", letter), "one line for each tool");
+      }
+      at = next;
+    }
+    where_.column = 1;
+  }
+
+  void fail(const char* code, const std::string& text, const char* fix) {
+    good_ = false;
+    diagnostics_.error(code, where_, text, fix);
+  }
+
+  SourceLocation where_;
+  Diagnostics& diagnostics_;
+  std::string comment_;
+  std::map<char, double> words_;
+  bool good_ = true;
+};
+
+void warn_of_shape(const Described& tool, Diagnostics& diagnostics) {
+  const Cutter& c = tool.cutter;
+  diagnostics.warning(
+      "tool-shape-assumed", tool.where,
+      fmt::format("{} is taken as a {} end of D {:g} mm with flutes all of its {:g} mm: a .tbl says no more, "
+                  "and its shank and holder are not checked",
+                  cutter::call_name(c), cutter::shape_name(c.shape), c.diameter_mm, c.length_mm),
+      fmt::format("describe it: [[tool]] number = {}", c.number));
+}
+
+std::vector<Described> read_tbl_lines(const std::string& path, Diagnostics& diagnostics) {
+  const std::string text = program::read_file(path);
+  std::vector<Described> tools;
+  int number = 0;
+  for (const std::string_view line : program::split_lines(text)) {
+    TblLine words(line, {path, ++number, 1}, diagnostics);
+    if (!words.good() || words.empty()) continue;
+    Described tool = words.tool();
+    if (words.good()) tools.push_back(std::move(tool));
+  }
+  if (tools.empty() && !diagnostics.has_errors()) {
+    diagnostics.error("no-tools", {path}, "the tool table has no tool", "one line for each: T1 P1 Z81.5 D8");
+  }
+  return tools;
+}
+
+/// Names end up in CSV files and program texts.
+void check_name(const Described& tool, Diagnostics& diagnostics) {
+  const std::string& name = tool.cutter.name;
+  const bool good = std::all_of(name.begin(), name.end(), [](unsigned char c) {
+    return c >= ' ' && c != ',' && c != '"' && c != 0x7f;
+  });
+  if (tool.cutter.number == 0 && name.empty()) {
+    diagnostics.error("tool-unnamed", tool.where, "the tool has neither a number nor a name",
+                      "number = 1, or name = \"MILL_10\" as the program calls it");
+  } else if (!good || (!name.empty() && std::isdigit(static_cast<unsigned char>(name.front())) != 0 &&
+                       std::all_of(name.begin(), name.end(), ::isdigit))) {
+    diagnostics.error("bad-tool-name", tool.where, fmt::format("'{}' cannot be a tool's name", name),
+                      "letters, digits, blanks and signs but no comma or quotation mark, and not a number");
+  }
+}
+
+void check_twice(const std::vector<Described>& tools, Diagnostics& diagnostics) {
+  for (size_t i = 0; i < tools.size(); ++i) {
+    for (size_t k = 0; k < i; ++k) {
+      const Cutter &a = tools[i].cutter, &b = tools[k].cutter;
+      const bool number = a.number > 0 && a.number == b.number;
+      if (!number && (a.name.empty() || a.name != b.name)) continue;
+      diagnostics.error("tool-twice", tools[i].where,
+                        fmt::format("{} is described at {}:{} already", cutter::call_name(a),
+                                    tools[k].where.file, tools[k].where.line),
+                        "give each tool a number or a name of its own");
+    }
+  }
+}
+
+std::vector<Described> read_entries(ConfigTable& table) {
+  std::vector<Described> tools;
+  for (ConfigTable& entry : table.tables("tool")) tools.push_back({read_tool(entry), entry.where()});
+  return tools;
+}
+
+/// Adds the tools of a .tbl to those that TOML describes.
+void join_tbl(std::vector<Described>& tools, const std::vector<Described>& measured,
+              Diagnostics& diagnostics) {
+  check_twice(measured, diagnostics);
+  for (const Described& line : measured) {
+    const auto same = std::find_if(tools.begin(), tools.end(), [&](const Described& tool) {
+      return tool.cutter.number == line.cutter.number;
+    });
+    if (same == tools.end()) {
+      for (const cutter::Problem& problem : cutter::validate(line.cutter)) {
+        diagnostics.error("bad-tool-line", line.where, problem.text,
+                          "mend Z or D, or describe the tool: [[tool]] number and shape");
+      }
+      warn_of_shape(line, diagnostics);
+      tools.push_back(line);
+      continue;
+    }
+    Cutter& ours = same->cutter;
+    const double length = *line.cutter.gauge_length_mm;
+    const bool lengths = !ours.gauge_length_mm || std::abs(*ours.gauge_length_mm - length) <= kSame;
+    if (!lengths || std::abs(ours.diameter_mm - line.cutter.diameter_mm) > kSame) {
+      diagnostics.error("tool-contradiction", same->where,
+                        fmt::format("{} has D {:g} mm and length {:g} mm, {}:{} says D {:g} and Z {:g}",
+                                    cutter::call_name(ours), ours.diameter_mm, cutter::gauge_length(ours),
+                                    line.where.file, line.where.line, line.cutter.diameter_mm, length),
+                        "mend one of the two; gauge_length_mm may be left out here");
+    }
+    ours.gauge_length_mm = length;
+  }
+}
+
+/// Appends what a table file describes.
+void add_table(std::vector<Described>& tools, const std::string& table_file, Diagnostics& diagnostics) {
+  if (std::filesystem::path(table_file).extension() == ".tbl") {
+    join_tbl(tools, read_tbl_lines(table_file, diagnostics), diagnostics);
+    return;
+  }
+  ConfigTable table = ConfigTable::load(table_file, {}, diagnostics);
+  for (Described& tool : read_entries(table)) tools.push_back(std::move(tool));
+  table.finish();
+}
+
+/// Names and numbers checked.
+std::vector<Cutter> cutters_of(std::vector<Described>& tools, Diagnostics& diagnostics) {
+  for (const Described& tool : tools) check_name(tool, diagnostics);
+  check_twice(tools, diagnostics);
+  std::vector<Cutter> cutters;
+  for (Described& tool : tools) cutters.push_back(std::move(tool.cutter));
+  return cutters;
+}
+
+}  // namespace
+
+std::vector<Cutter> read_tools(ConfigTable& scene, const std::string& table_file, Diagnostics& diagnostics) {
+  if (!scene.has("tool") && table_file.empty()) return {read_cutter(scene.table("cutter"))};
+  if (scene.has("cutter")) {
+    scene.error("two-tool-sets", "cutter", "the scene has [cutter] beside [[tool]] or tool_table",
+                "describe every tool as [[tool]]");
+    read_cutter(scene.table("cutter"));
+  }
+  std::vector<Described> tools = read_entries(scene);
+  if (!table_file.empty()) add_table(tools, table_file, diagnostics);
+  if (tools.empty() && !diagnostics.has_errors()) {
+    scene.error("no-tools", "tool_table", "the scene has no tool", "describe at least one as [[tool]]");
+  }
+  return cutters_of(tools, diagnostics);
+}
+
+std::vector<Cutter> read_tool_table(const std::string& table_file, Diagnostics& diagnostics) {
+  std::vector<Described> tools;
+  add_table(tools, table_file, diagnostics);
+  if (tools.empty() && !diagnostics.has_errors()) {
+    diagnostics.error("no-tools", {table_file, 0, 0}, "the table has no tool", "describe at least one");
+  }
+  return cutters_of(tools, diagnostics);
+}
+
+int tool_index(const std::vector<Cutter>& tools, int number, const std::string& name) {
+  for (size_t i = 0; i < tools.size(); ++i) {
+    if (number > 0 ? tools[i].number == number : tools[i].name == name) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+std::string list_tools(const std::vector<Cutter>& tools) {
+  std::string list;
+  for (const Cutter& tool : tools) list += (list.empty() ? "" : ", ") + cutter::call_name(tool);
+  return list;
+}
+
+}  // namespace swarf::sim

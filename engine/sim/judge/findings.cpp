@@ -1,0 +1,262 @@
+#include "sim/judge/findings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <string_view>
+
+#include "base/check.h"
+#include "base/units.h"
+#include "program/source_text.h"
+
+namespace swarf::sim {
+namespace {
+
+class Collector {
+ public:
+  Collector(const Job& job, const Result& result)
+      : job_(job), result_(result), reader_(*result.main.cycles) {}
+
+  /// What follows breaks this check: an error unless [accept] allows so much of it.
+  void begin(const char* check_name) {
+    check_ = find_check(result_.checks, check_name);
+    SWARF_CHECK(check_ != nullptr, "a finding must belong to a check of the judge");
+  }
+  const Check& check() const { return *check_; }
+
+  void add(std::string code, std::string text, std::string fix, SourceLocation where, double t_s) {
+    findings_.push_back({std::move(code), breaks() ? Severity::kError : Severity::kWarning, std::move(text),
+                         std::move(fix), std::move(where), t_s, "", check_->name});
+  }
+  /// Breaks nothing.
+  void warn(const motion::MotionFinding& fault) {
+    findings_.push_back({fault.code, fault.severity, fault.text, "", fault.where, fault.t_s, "", ""});
+  }
+  /// At the block that a sweep comes from; at the program when no sweep is to blame.
+  void at_block(std::string code, std::string text, std::string fix, const std::vector<SweepSource>& sources,
+                uint32_t block) {
+    if (block >= sources.size()) {
+      add(std::move(code), std::move(text), std::move(fix), {job_.scene.program_file}, 0.0);
+      return;
+    }
+    const SweepSource& source = sources[block];
+    add(std::move(code), std::move(text), std::move(fix),
+        result_.main.path.elements[static_cast<size_t>(source.element)].where,
+        reader_.at(cycle_of(source, reader_)).sample.t_s);
+  }
+  /// At the block in which the tool first touches.
+  void at_event(std::string code, std::string text, std::string fix, const ContactEvent& event) {
+    add(std::move(code), std::move(text), std::move(fix),
+        result_.main.path.elements[static_cast<size_t>(event.first.element)].where, event.first.t_s);
+  }
+  /// The findings with the text of their blocks.
+  std::vector<Finding> take() {
+    std::map<std::string, std::string> texts;
+    for (Finding& finding : findings_) {
+      if (finding.where.line == 0 || finding.where.file == job_.scene.file) continue;
+      auto [text, is_new] = texts.try_emplace(finding.where.file);
+      if (is_new) text->second = program::read_file(finding.where.file);
+      const std::vector<std::string_view> lines = program::split_lines(text->second);
+      const auto index = static_cast<size_t>(finding.where.line) - 1;
+      if (index < lines.size()) finding.block = lines[index];
+    }
+    return std::move(findings_);
+  }
+
+ private:
+  bool breaks() const { return check_->outcome == Outcome::kFails || check_->outcome == Outcome::kNotProven; }
+
+  std::vector<Finding> findings_;
+  const Check* check_ = nullptr;
+  const Job& job_;
+  const Result& result_;
+  motion::CycleReader reader_;
+};
+
+std::string place(const measure::Region& region) {
+  return fmt::format("{:.3f} um over {:.2f} mm2 about ({:.3f}, {:.3f}, {:.3f}) mm", region.worst_um,
+                     region.area_mm2, region.place.x(), region.place.y(), region.place.z());
+}
+
+/// A limit that the measures meet and no proof does.
+void not_proven(const Job& job, Collector& collect) {
+  const Check& check = collect.check();
+  if (check.outcome != Outcome::kNotProven) return;
+  const std::string wider = check.bound ? fmt::format("allow {:.3f} um in [accept]", *check.bound)
+                                        : "take the limit out of [accept]";
+  collect.add(check.name + "-not-proven", fmt::format("{}: {}", check.subject, check.reason),
+              "a smaller design.pitch_mm gives the proof smaller cells to settle this; or " + wider,
+              {job.scene.program_file}, 0.0);
+}
+
+/// One finding for each listed region beyond its limit.
+void region_faults(const Job& job, const Result& result, Collector& collect) {
+  const measure::SurfaceMetrics& surface = result.main.surface;
+  const AcceptLimits& accept = job.scene.accept;
+  collect.begin("gouge");
+  const char* remedy = job.scene.has_blocks()
+                           ? "move the tool of this block away from the design"
+                           : "lower the feed F or the control period: the chord of one cycle cuts into a "
+                             "convex surface";
+  for (const measure::Region& region : surface.gouges) {
+    if (!accept.gouge_max_um || region.worst_um <= *accept.gouge_max_um) continue;
+    collect.at_block("gouge",
+                     fmt::format("a gouge, {}; [accept] allows {:g} um", place(region), *accept.gouge_max_um),
+                     remedy, result.main.rays.sources, region.block);
+  }
+  not_proven(job, collect);
+  collect.begin("excess");
+  for (const measure::Region& region : surface.excesses) {
+    if (!accept.excess_max_um || region.worst_um <= *accept.excess_max_um) continue;
+    collect.at_block("excess",
+                     fmt::format("material stands above the design, {}; [accept] allows {:g} um",
+                                 place(region), *accept.excess_max_um),
+                     "machine this place too, or start from a smaller stock", result.main.rays.sources,
+                     region.block);
+  }
+  not_proven(job, collect);
+}
+
+void surface_faults(const Job& job, const Result& result, Collector& collect) {
+  const measure::SurfaceMetrics& surface = result.main.surface;
+  const AcceptLimits& accept = job.scene.accept;
+  collect.begin("scallop");
+  if (collect.check().outcome == Outcome::kFails) {
+    uint32_t block = stock::kUncut;
+    double highest = -1.0;
+    for (const measure::Ridge& ridge : result.main.ridges) {
+      if (ridge.height_um > highest) {
+        highest = ridge.height_um;
+        block = ridge.block_a;
+      }
+    }
+    collect.at_block("scallop",
+                     fmt::format("the highest scallop is {:.3f} um, [accept] allows {:g} um",
+                                 surface.scallop_max_um, *accept.scallop_max_um),
+                     job.scene.has_blocks() ? "bring the passes closer together"
+                                            : "lower the scallop word E of the G06.3 block",
+                     result.main.rays.sources, block);
+  }
+  not_proven(job, collect);
+  region_faults(job, result, collect);
+  collect.begin("uncut");
+  if (collect.check().outcome == Outcome::kFails) {
+    collect.add("uncut",
+                fmt::format("{} of {} measuring points were never reached by the cutter",
+                            surface.uncut_samples, surface.samples),
+                "machine the whole surface, or measure only what the program machines",
+                {job.scene.program_file}, 0.0);
+  }
+}
+
+void motion_faults(const Result& result, Collector& collect) {
+  for (const motion::MotionFinding& fault : result.main.motion.findings) {
+    if (fault.severity != Severity::kError) {
+      collect.warn(fault);
+      continue;
+    }
+    collect.begin(check_of(fault));
+    collect.add(fault.code, fault.text, "", fault.where, fault.t_s);
+  }
+}
+
+/// "line 14" or "lines 14 to 20".
+std::string lines_of(const Result& result, const ContactEvent& event) {
+  const auto line = [&](int element) {
+    return result.main.path.elements[static_cast<size_t>(element)].where.line;
+  };
+  const int first = line(event.first.element), last = line(event.last_element);
+  return first == last ? fmt::format("line {}", first) : fmt::format("lines {} to {}", first, last);
+}
+
+/// How deep, where, when.
+std::string depth_text(const Result& result, const ContactEvent& event) {
+  const int line = result.main.path.elements[static_cast<size_t>(event.deepest.element)].where.line;
+  return fmt::format("{:.2f} mm deep at ({:.2f}, {:.2f}, {:.2f}) mm, line {}, {:.3f} s", event.depth_mm,
+                     event.deepest_W.x(), event.deepest_W.y(), event.deepest_W.z(), line, event.deepest.t_s);
+}
+
+std::string longer_tool(const cutter::Cutter& tool, const ContactEvent& event) {
+  if (event.part == "holder") {
+    return fmt::format("let {} stand out {:.1f} mm more (length_mm {:.1f}), or rough the stock first",
+                       cutter::call_name(tool), event.depth_mm, tool.length_mm + event.depth_mm);
+  }
+  return fmt::format(
+      "take a tool whose flutes, or a neck inside their radius, reach {:.1f} mm more, or rough "
+      "the stock first",
+      event.depth_mm);
+}
+
+/// The first of many, and how many more.
+constexpr size_t kListed = 50;
+std::string and_more(size_t listed, size_t all) {
+  return listed == kListed && all > kListed ? fmt::format("; {} more of these follow", all - kListed) : "";
+}
+
+void clearance_faults(const Job& job, const Result& result, Collector& collect) {
+  const std::vector<ContactEvent>& events = result.clearance.events;
+  collect.begin("collisions");
+  for (size_t i = 0; i < std::min(kListed, events.size()); ++i) {
+    const ContactEvent& event = events[i];
+    collect.at_event(event.part + "-in-stock",
+                     fmt::format("the {} stands in the stock, {}: {}{}", event.part, lines_of(result, event),
+                                 depth_text(result, event), and_more(i + 1, events.size())),
+                     longer_tool(job.scene.tools[static_cast<size_t>(event.tool)], event), event);
+  }
+}
+
+/// Moves that must not cut.
+void bad_cut_faults(const Result& result, Collector& collect) {
+  const std::vector<BadCut>& cuts = result.cut.state.bad_cuts;
+  for (size_t i = 0; i < std::min(kListed, cuts.size()); ++i) {
+    const BadCut& cut = cuts[i];
+    const bool rapid = cut.kind == BadCutKind::kRapid;
+    collect.begin(rapid ? "rapids_in_material" : "spindle_wrong");
+    const std::string text =
+        rapid ? "a rapid move removes material"
+              : fmt::format("the tool cuts with {}", cut.kind == BadCutKind::kSpindleStands
+                                                         ? "the spindle stopped"
+                                                         : "the spindle turning the wrong way");
+    collect.at_event(rapid ? "rapid-cut" : "spindle",
+                     fmt::format("{}, {}: {}{}", text, lines_of(result, cut.event),
+                                 depth_text(result, cut.event), and_more(i + 1, cuts.size())),
+                     rapid ? "move there with G1, or retract first" : "start the spindle before it: M3, S",
+                     cut.event);
+  }
+}
+
+void built_in_checks(const Job& job, const Result& result, Collector& collect) {
+  collect.begin("stock_invariants");
+  if (!result.cut.broken_invariant.empty()) {
+    collect.add("stock-invariant",
+                fmt::format("the level set broke its invariant {}", result.cut.broken_invariant),
+                "this is a fault of the program: please report it with the scene", {job.scene.file}, 0.0);
+  }
+  collect.begin("stock_and_rays");
+  if (result.cross_check && !result.cross_check->holds) {
+    collect.add("stock-and-rays-disagree",
+                fmt::format("level set and measuring rays differ by {:.1f} um, the bound is {:.1f} um",
+                            result.cross_check->max_um, result.cross_check->bound_um),
+                "this is a fault of the program: please report it with the scene", {job.scene.file}, 0.0);
+  }
+  collect.begin("round_trip");
+  if (collect.check().outcome == Outcome::kFails) {
+    collect.add("round-trip", collect.check().what,
+                "this is a fault of the program: please report it with the scene", {job.scene.file}, 0.0);
+  }
+}
+
+}  // namespace
+
+std::vector<Finding> find_faults(const Job& job, const Result& result) {
+  Collector collect(job, result);
+  surface_faults(job, result, collect);
+  motion_faults(result, collect);
+  clearance_faults(job, result, collect);
+  bad_cut_faults(result, collect);
+  built_in_checks(job, result, collect);
+  return collect.take();
+}
+
+}  // namespace swarf::sim

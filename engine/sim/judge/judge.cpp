@@ -1,0 +1,236 @@
+#include "sim/judge/judge.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+#include <variant>
+
+#include "base/units.h"
+#include "sim/run/result.h"
+
+namespace swarf::sim {
+namespace {
+
+using measure::SurfaceMetrics;
+
+constexpr const char* kMicrometres = "um";
+constexpr const char* kNoDesign = "no design";
+/// Forward kinematics of the inverse's solution must lead back to within this, mm.
+constexpr double kRoundTrip = 1e-9;
+
+Check not_judged(std::string name, std::string subject, std::string reason) {
+  Check check{std::move(name), std::move(subject)};
+  check.what = check.subject;
+  check.reason = std::move(reason);
+  return check;
+}
+
+/// So many of what may not happen; `allowed` of [accept].
+Check counted(std::string name, std::string subject, size_t count, int allowed) {
+  Check check{std::move(name), std::move(subject)};
+  check.limit = allowed;
+  check.value = static_cast<double>(count);
+  check.outcome = *check.value <= *check.limit ? Outcome::kHolds : Outcome::kFails;
+  check.what = fmt::format("{}: {}, at most {}", check.subject, count, allowed);
+  if (allowed > 0) check.reason = fmt::format("[accept] allows {}", allowed);
+  return check;
+}
+
+/// A measure of the finished part against its limit of [accept].
+Check measured(std::string name, std::string subject, std::optional<double> limit, double value,
+               const std::optional<measure::Bound>& bound) {
+  Check check{std::move(name), std::move(subject)};
+  check.unit = kMicrometres;
+  check.value = value;
+  if (bound) check.bound = bound->um;
+  check.what = fmt::format("{} {:.3f} um", check.subject, value);
+  if (check.bound) check.what += fmt::format(", proven below {:.3f} um", *check.bound);
+  if (!limit) {
+    check.reason = "no limit in [accept]";
+    return check;
+  }
+  check.limit = limit;
+  check.what += fmt::format(", at most {:g} um", *limit);
+  if (value > *limit) {
+    check.outcome = Outcome::kFails;
+  } else if (check.bound && *check.bound <= *limit) {
+    check.outcome = Outcome::kHolds;
+  } else {
+    check.outcome = Outcome::kNotProven;
+    check.reason =
+        !check.bound
+            ? fmt::format("not proven below {:g} um: the proof between the rays was not finished", *limit)
+            : fmt::format(
+                  "not proven below {:g} um: proven {:.3f} um at "
+                  "({:.3f}, {:.3f}, {:.3f}) mm",
+                  *limit, bound->um, bound->place.x(), bound->place.y(), bound->place.z());
+  }
+  return check;
+}
+
+/// A mesh has faces that the stock brings along: there only excess tells what is missing. A program of blocks
+/// may leave a part of the design to others, unless a scallop limit says that it machines it.
+Check reached_check(const Job& job, const SurfaceMetrics& surface) {
+  constexpr const char* name = "uncut";
+  constexpr const char* subject = "Measuring rays that no cut has reached";
+  if (job.design_mesh)
+    return not_judged(name, subject, "faces of a mesh may be the stock's own; accept.excess_max_um tells");
+  if (job.scene.has_blocks() && !job.scene.accept.scallop_max_um)
+    return not_judged(name, subject, "no scallop limit in [accept]");
+  return counted(name, subject, surface.uncut_samples, 0);
+}
+
+void add_surface_checks(const Job& job, const Result& result, std::vector<Check>& checks) {
+  constexpr const char* gouge = "Deepest gouge";
+  constexpr const char* excess = "Highest material";
+  constexpr const char* scallop = "Highest scallop";
+  if (!job.has_design()) {
+    checks.push_back(not_judged("gouge", gouge, kNoDesign));
+    checks.push_back(not_judged("excess", excess, kNoDesign));
+    checks.push_back(not_judged("scallop", scallop, kNoDesign));
+    checks.push_back(not_judged("uncut", "Measuring rays that no cut has reached", kNoDesign));
+    return;
+  }
+  const SurfaceMetrics& surface = result.main.surface;
+  const AcceptLimits& accept = job.scene.accept;
+  checks.push_back(measured("gouge", gouge, accept.gouge_max_um, surface.gouge_max_um, surface.gouge_bound));
+  checks.push_back(
+      measured("excess", excess, accept.excess_max_um, surface.excess_max_um, surface.excess_bound));
+  checks.push_back(
+      measured("scallop", scallop, accept.scallop_max_um, surface.scallop_max_um, surface.scallop_bound));
+  checks.push_back(reached_check(job, surface));
+}
+
+size_t count_bad_cuts(const Result& result, bool rapids) {
+  const std::vector<BadCut>& cuts = result.cut.state.bad_cuts;
+  return static_cast<size_t>(std::count_if(cuts.begin(), cuts.end(), [&](const BadCut& cut) {
+    return (cut.kind == BadCutKind::kRapid) == rapids;
+  }));
+}
+
+/// Feed moves, and those of them for which nobody says whether the spindle turns.
+struct SpindleWords {
+  size_t feeds = 0, silent = 0;
+};
+
+SpindleWords spindle_words(const toolpath::ToolPath& path) {
+  SpindleWords words;
+  for (const toolpath::Element& element : path.elements) {
+    const auto* block = std::get_if<toolpath::BlockMove>(&element.what);
+    if (block == nullptr || toolpath::is_rapid(*block)) continue;
+    ++words.feeds;
+    words.silent += block->spindle_rpm ? 0 : 1;
+  }
+  return words;
+}
+
+Check spindle_check(const Job& job, const Result& result) {
+  constexpr const char* name = "spindle_wrong";
+  constexpr const char* subject = "Cuts with the spindle stopped or turning the wrong way";
+  if (!job.scene.has_blocks()) return not_judged(name, subject, "surface blocks do not switch the spindle");
+  const SpindleWords words = spindle_words(result.main.path);
+  Check check = counted(name, subject, count_bad_cuts(result, false), job.scene.accept.spindle_wrong);
+  if (words.silent == 0 || check.outcome == Outcome::kFails) return check;
+  check.outcome = Outcome::kNotJudged;
+  check.what = subject;
+  check.reason = words.silent == words.feeds
+                     ? std::string("the program does not say when it turns")
+                     : fmt::format("the program does not say whether it turns in {} of {} feed moves",
+                                   words.silent, words.feeds);
+  if (words.silent == words.feeds) check.value.reset();
+  return check;
+}
+
+void add_tool_checks(const Job& job, const Result& result, std::vector<Check>& checks) {
+  const AcceptLimits& accept = job.scene.accept;
+  const std::string covers = fmt::format("contacts of {:.3f} mm and more", result.clearance.sees_mm);
+  const auto add = [&](Check check) {
+    check.covers = covers;
+    check.what += " (" + covers + ")";
+    check.reason += check.reason.empty() ? "whole moves, each against the stock before it"
+                                         : "; whole moves, each against the stock before it";
+    checks.push_back(std::move(check));
+  };
+  add(counted("collisions", "Neck, shank or holder in the stock", result.clearance.events.size(),
+              accept.collisions));
+  add(counted("rapids_in_material", "Rapid moves that remove material", count_bad_cuts(result, true),
+              accept.rapids_in_material));
+  checks.push_back(spindle_check(job, result));
+}
+
+size_t count_faults(const Result& result, std::string_view check) {
+  const std::vector<motion::MotionFinding>& all = result.main.motion.findings;
+  return static_cast<size_t>(std::count_if(all.begin(), all.end(), [&](const motion::MotionFinding& fault) {
+    return fault.severity == Severity::kError && check_of(fault) == check;
+  }));
+}
+
+Check invariants_check(const Result& result) {
+  Check check{"stock_invariants", "Invariants of the level set"};
+  const bool holds = result.cut.broken_invariant.empty();
+  check.outcome = holds ? Outcome::kHolds : Outcome::kFails;
+  check.what = holds ? fmt::format("{}: numbers 1 to 8 hold ({} checks of all, {} of 1 to 4 on the way)",
+                                   check.subject, result.cut.voxel_checks, result.cut.map_checks)
+                     : fmt::format("{}: broken, {}", check.subject, result.cut.broken_invariant);
+  return check;
+}
+
+Check rays_check(const Job& job, const Result& result) {
+  constexpr const char* name = "stock_and_rays";
+  constexpr const char* subject = "Level set against measuring rays";
+  if (!job.has_design()) return not_judged(name, subject, kNoDesign);
+  if (job.design_mesh)
+    return not_judged(name, subject, "the bound needs the curvature of a design surface, this is a mesh");
+  if (!result.cross_check) return not_judged(name, subject, "no ray could be compared");
+  const measure::CrossCheck& cross = *result.cross_check;
+  Check check{name, subject};
+  check.unit = kMicrometres;
+  check.limit = cross.bound_um;
+  check.value = cross.max_um;
+  check.outcome = cross.holds ? Outcome::kHolds : Outcome::kFails;
+  check.what = fmt::format("{}: differ by {:.2f} um, bound {:.2f} um ({} rays)", subject, cross.max_um,
+                           cross.bound_um, cross.samples);
+  if (cross.excluded > 0)
+    check.reason =
+        fmt::format("{} rays cannot be compared: uncut, at a wall or at a face of the block", cross.excluded);
+  return check;
+}
+
+}  // namespace
+
+const char* check_of(const motion::MotionFinding& fault) {
+  return fault.code == "axis-speed" ? "axis_speed" : "travel";
+}
+
+std::vector<Check> judge_motion(const Job& job, const Result& result) {
+  const AcceptLimits& accept = job.scene.accept;
+  std::vector<Check> checks;
+  checks.push_back(
+      counted("travel", "Moves beyond the travel of an axis", count_faults(result, "travel"), accept.travel));
+  checks.push_back(counted("axis_speed", "Moves faster than an axis", count_faults(result, "axis_speed"),
+                           accept.axis_speed));
+  Check trip{"round_trip", "Forward of inverse kinematics, every cycle"};
+  trip.unit = "mm";
+  trip.limit = kRoundTrip;
+  trip.value = result.main.motion.statistics.fk_ik_error_max_mm;
+  trip.outcome = *trip.value < *trip.limit ? Outcome::kHolds : Outcome::kFails;
+  trip.what = fmt::format("{}: {:.1e} mm, below {:.0e} mm", trip.subject, *trip.value, *trip.limit);
+  checks.push_back(std::move(trip));
+  return checks;
+}
+
+std::vector<Check> judge(const Job& job, const Result& result) {
+  std::vector<Check> checks;
+  add_surface_checks(job, result, checks);
+  add_tool_checks(job, result, checks);
+  for (Check& check : judge_motion(job, result)) checks.push_back(std::move(check));
+  checks.push_back(invariants_check(result));
+  checks.push_back(rays_check(job, result));
+  checks.push_back(not_judged("machine_parts", "Machine parts against each other",
+                              "collision of meshes is not part of this version"));
+  return checks;
+}
+
+}  // namespace swarf::sim

@@ -1,0 +1,36 @@
+// What determines a cut stock, part by part, so that a saved stock or a record knows what it belongs to, and
+// a difference can be named.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sim/job/scene.h"
+#include "sim/run/job_sweeps.h"
+
+namespace swarf::sim {
+
+/// Counts up whenever equal sweeps may leave other bits in the stock: saved stocks then belong to the past.
+inline constexpr int kCutAlgorithm = 2;
+
+struct IdentityPart {
+  std::string name;   ///< "stock.voxel_mm", "program", ...
+  std::string value;  ///< to be read and compared; files and long lists by their hash
+};
+using CutIdentity = std::vector<IdentityPart>;
+
+/// The last part, kMotionPart, is the hash of the sweeps themselves and of their tools: whatever else may
+/// differ shows there.
+CutIdentity cut_identity(const Job& job, const JobSweeps& sweeps);
+inline constexpr const char* kMotionPart = "tool motion";
+
+struct IdentityDifference {
+  std::string name, before, now;
+};
+/// Every part whose value differs or is missing. The motion is named only when nothing else explains it.
+std::vector<IdentityDifference> differences(const CutIdentity& before, const CutIdentity& now);
+
+/// Parts that must be equal for two cuts to be compared block by block: algorithm, box, voxel, tools.
+bool needed_to_compare(const std::string& part_name);
+
+}  // namespace swarf::sim

@@ -1,0 +1,284 @@
+#include "sim/run/cut_stage.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "sim/run/bad_cuts.h"
+#include "sim/run/cut_record.h"
+#include "sim/run/result.h"
+#include "sim/run/tool_clearance.h"
+
+namespace swarf::sim {
+namespace {
+
+constexpr size_t kSweepsPerBatch = 2048;  // between two looks ahead at the whole tool
+constexpr size_t kSweepsPerStep = 512;    // between two looks at the progress bar and Ctrl-C
+constexpr size_t kSuspectsPerStep = 32;   // the same, where sweeps are judged one by one
+constexpr double kDeepestExact = 2.0;     // voxels: deeper, the level set itself tells
+constexpr size_t kChecks = 8;             // of the invariants on the way, evenly spread over the sweeps
+
+size_t next_multiple(size_t at, size_t step) {
+  return (at / step + 1) * step;
+}
+
+class CutStage {
+ public:
+  CutStage(const Job& job, const CutOptions& options, Progress& progress, Result& result)
+      : job_(job),
+        options_(options),
+        progress_(progress),
+        result_(result),
+        outcome_(result.cut),
+        merged_(stock_sweeps(job, *result.main.cycles)),
+        solids_(tool_solids(job.scene)),
+        identity_(cut_identity(job, merged_)),
+        places_(merged_, *result.main.cycles),
+        earlier_(merged_, solids_, job.scene.stock.box_W, kDeepestExact * job.scene.stock.voxel_mm),
+        clearance_(job.scene.tools, merged_, places_, earlier_, job.scene.stock.voxel_mm),
+        bad_cuts_(job, *result.main.cycles, merged_, places_, earlier_) {
+    outcome_.state.clearance = clearance_.result();
+    result_.sweep_bound_mm = merged_.error_bound_mm;
+    result_.merged_sweeps = merged_.sweeps.size();
+  }
+
+  void run() {
+    find_saves();
+    make_stock();
+    progress_.begin("cut", static_cast<double>(merged_.sweeps.size()), "blocks");
+    progress_.start_at(static_cast<double>(at_));
+    save_due();
+    while (at_ < merged_.sweeps.size() && !progress_.stop_requested()) cut_on();
+    progress_.end();
+    check(CheckKind::kAtEnd);
+    finish();
+  }
+
+ private:
+  enum class CheckKind { kOnTheWay, kAtEnd };
+  struct Save {
+    size_t after;  ///< sweeps
+    const ProgramPlace* place;
+  };
+
+  void find_saves() {
+    for (const ProgramPlace& place : options_.save_after) {
+      const size_t after = sweeps_until(place, merged_, *result_.main.cycles, job_.scene.tools);
+      saves_.push_back({after, &place});
+    }
+    std::stable_sort(saves_.begin(), saves_.end(),
+                     [](const Save& a, const Save& b) { return a.after < b.after; });
+  }
+
+  void make_stock() {
+    const StockSettings& settings = job_.scene.stock;
+    result_.stock = std::make_unique<stock::Stock>(settings.box_W, settings.voxel_mm);
+    full_mm3_ = result_.stock->volume_mm3();
+    if (!options_.resume_file.empty()) {
+      result_.stock.reset();
+      result_.stock =
+          std::make_unique<stock::Stock>(load_in_process(options_.resume_file, identity_, outcome_.state));
+      at_ = outcome_.resumed_from = outcome_.state.sweeps;
+      clearance_.resume(outcome_.state.clearance);
+      bad_cuts_.resume(outcome_.state.bad_cuts);
+      for (const Save& save : saves_) {
+        if (save.after >= at_) continue;
+        throw InputError("place-before-resume", {save.place->text},
+                         fmt::format("the stock to go on from was cut up to line {}, {:.3f}s already",
+                                     outcome_.state.place.line, outcome_.state.place.t_s),
+                         "save after a later place, or run from the start");
+      }
+    }
+    finder_.emplace(*result_.stock);
+    if (options_.check_voxels) checked_ = result_.stock->clone();
+  }
+
+  /// Cuts up to the next place where something is due, and does it. The looks ahead follow the program's own
+  /// batches, so that they do not depend on where the run began or what it saves.
+  void cut_on() {
+    const size_t total = merged_.sweeps.size();
+    if (at_ >= batch().end) begin_batch();
+    const size_t checks_before = at_ * kChecks / total;
+    size_t end = std::min({batch().end, at_ + kSweepsPerStep, after_suspects(kSuspectsPerStep),
+                           ((checks_before + 1) * total + kChecks - 1) / kChecks, total});
+    if (options_.record) end = std::min(end, next_multiple(at_, options_.record_every));
+    if (next_save_ < saves_.size() && saves_[next_save_].after > at_) {
+      end = std::min(end, saves_[next_save_].after);
+    }
+    while (at_ < end) cut_to(std::min(end, next_suspect()));
+    if (at_ == batch().end) end_batch();
+    progress_.advance(static_cast<double>(at_));
+    if (checks_before != at_ * kChecks / total && at_ < total) check(CheckKind::kOnTheWay);
+    if (options_.record && (at_ % options_.record_every == 0 || at_ == total)) {
+      record_.states.push_back(result_.stock->hash());
+    }
+    save_due();
+  }
+
+  BatchState& batch() { return outcome_.state.batch; }
+
+  /// Which sweeps of the batch are clear of the stock as it stands now, and so of all that is left of it.
+  void begin_batch() {
+    const size_t end = std::min(next_multiple(at_, kSweepsPerBatch), merged_.sweeps.size());
+    finder_->refresh();
+    ToolClearanceCheck::Outlook outlook = clearance_.look_ahead(*finder_, at_, end);
+    batch() = {end, outlook.nearest_mm, std::move(outlook.suspects),
+               bad_cuts_.look_ahead(*finder_, at_, end)};
+  }
+  void end_batch() {
+    clearance_.saw(batch().nearest_mm);
+    outcome_.state.clearance = clearance_.result();
+    batch() = {};
+  }
+
+  /// The first suspect from at_ on; none: far away.
+  size_t next_suspect() {
+    size_t next = std::numeric_limits<size_t>::max();
+    for (const std::vector<size_t>* suspects : {&batch().suspects, &batch().bad_suspects}) {
+      const auto first = std::lower_bound(suspects->begin(), suspects->end(), at_);
+      if (first != suspects->end()) next = std::min(next, *first);
+    }
+    return next;
+  }
+  /// Behind so many suspects from at_ on.
+  size_t after_suspects(size_t count) {
+    size_t after = std::numeric_limits<size_t>::max();
+    for (const std::vector<size_t>* suspects : {&batch().suspects, &batch().bad_suspects}) {
+      const auto first = std::lower_bound(suspects->begin(), suspects->end(), at_);
+      if (static_cast<size_t>(suspects->end() - first) >= count)
+        after = std::min(after, *(first + static_cast<ptrdiff_t>(count) - 1) + 1);
+    }
+    return after;
+  }
+
+  /// Cuts sweeps up to `end`, where a suspect may stand: then that one is judged and cut too.
+  void cut_to(size_t end) {
+    if (end > at_) {
+      each_tool(at_, end, [&](size_t tool, std::span<const stock::Sweep> part) {
+        result_.stock->cut(part, solids_[tool]);
+      });
+      at_ = end;
+      return;
+    }
+    const auto is_in = [&](const std::vector<size_t>& suspects) {
+      return std::binary_search(suspects.begin(), suspects.end(), at_);
+    };
+    const bool tool_meets = is_in(batch().suspects);
+    if (tool_meets) clearance_.judge_before(*finder_, at_);
+    if (is_in(batch().bad_suspects)) bad_cuts_.judge(*finder_, at_);
+    const auto tool = static_cast<size_t>(merged_.sources[merged_.sweeps[at_].block].tool);
+    result_.stock->cut(std::span(merged_.sweeps).subspan(at_, 1), solids_[tool]);
+    if (tool_meets) clearance_.judge_after(*finder_, at_);
+    ++at_;
+  }
+
+  /// Sweeps [begin, end) as rows of one tool.
+  template <typename Visit>
+  void each_tool(size_t begin, size_t end, const Visit& visit) const {
+    for_each_tool(
+        std::span(merged_.sweeps).subspan(begin, end - begin),
+        [&](uint32_t block) { return merged_.sources[block].tool; }, visit);
+  }
+
+  CutState state() const {
+    CutState state = outcome_.state;
+    state.sweeps = at_;
+    state.clearance = clearance_.result();
+    state.clearance.checked_sweeps = at_;
+    state.bad_cuts = bad_cuts_.result();
+    if (at_ > 0) state.place = place(at_ - 1);
+    return state;
+  }
+  CutPlace place(size_t sweep) const {
+    return place_of(merged_.sweeps[sweep], merged_.sources, result_.main.path.elements, reader_);
+  }
+
+  void save_due() {
+    for (; next_save_ < saves_.size() && saves_[next_save_].after <= at_; ++next_save_) {
+      const std::string name = saved_stock_name(*saves_[next_save_].place);
+      result_.stock->save(options_.save_folder + "/" + name,
+                          cut_metadata(job_.scene.name, identity_, state()));
+      outcome_.saved.push_back(name);
+    }
+  }
+
+  /// The first broken invariant is kept; the run goes on and reports it.
+  void check(CheckKind kind) {
+    const bool voxels = options_.check_voxels || kind == CheckKind::kAtEnd;
+    std::string broken = result_.stock->check(voxels ? stock::CheckLevel::kVoxels : stock::CheckLevel::kMap);
+    ++(voxels ? outcome_.voxel_checks : outcome_.map_checks);
+    if (checked_) {
+      if (broken.empty()) broken = result_.stock->check_since(*checked_);
+      checked_ = result_.stock->clone();
+    }
+    if (broken.empty() || !outcome_.broken_invariant.empty()) return;
+    outcome_.broken_invariant = fmt::format("{} (after {} of {} sweeps, line {}, {:.3f}s)", broken, at_,
+                                            merged_.sweeps.size(), state().place.line, state().place.t_s);
+  }
+
+  void finish() {
+    outcome_.state = state();
+    outcome_.metadata = cut_metadata(job_.scene.name, identity_, outcome_.state);
+    result_.clearance = outcome_.state.clearance;
+    result_.volume_left_mm3 = result_.stock->volume_mm3();
+    result_.volume_removed_mm3 = full_mm3_ - result_.volume_left_mm3;
+    if (options_.record) write_states();
+    result_.cut_sources = std::move(merged_.sources);
+  }
+
+  void write_states() {
+    record_.scene = job_.scene.file;
+    record_.overrides = options_.overrides;
+    record_.identity = identity_;
+    record_.every = options_.record_every;
+    record_.program_sweeps = merged_.sweeps.size();
+    record_.sweeps.assign(merged_.sweeps.begin(), merged_.sweeps.begin() + static_cast<ptrdiff_t>(at_));
+    for (size_t n = 0; n < at_; ++n) {
+      record_.places.push_back(place(n));
+      record_.tools.push_back(merged_.sources[merged_.sweeps[n].block].tool);
+    }
+    // A stopped run ends between two hashes.
+    if (record_.states.size() * record_.every < at_) record_.states.push_back(result_.stock->hash());
+    write_record(options_.save_folder + "/" + kRecordFile, record_);
+  }
+
+  const Job& job_;
+  const CutOptions& options_;
+  Progress& progress_;
+  Result& result_;
+  CutOutcome& outcome_;
+  JobSweeps merged_;
+  std::vector<stock::CutterSolid> solids_;  ///< by tool
+  CutIdentity identity_;
+  SweepPlaces places_;
+  mutable motion::CycleReader reader_{*result_.main.cycles};
+  EarlierCuts earlier_;
+  std::optional<stock::ContactFinder> finder_;
+  ToolClearanceCheck clearance_;
+  BadCutCheck bad_cuts_;
+  std::vector<Save> saves_;
+  size_t next_save_ = 0, at_ = 0;
+  double full_mm3_ = 0.0;
+  std::optional<stock::Stock> checked_;  ///< the state at the last check
+  CutRecord record_;
+};
+
+}  // namespace
+
+std::string saved_stock_name(const ProgramPlace& place) {
+  std::string text = place.text;
+  for (char& c : text) {
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '.' && c != '-') c = '_';
+  }
+  return fmt::format("stock_after_{}{}.vdb", place.line > 0 ? "line_" : "", text);
+}
+
+void cut_stock(const Job& job, const CutOptions& options, Progress& progress, Result& result) {
+  CutStage(job, options, progress, result).run();
+}
+
+}  // namespace swarf::sim

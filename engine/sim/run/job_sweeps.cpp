@@ -1,0 +1,208 @@
+#include "sim/run/job_sweeps.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "cutter/profile.h"
+#include "motion/blocks/block_motion.h"
+#include "sim/run/driven_sweeps.h"
+
+namespace swarf::sim {
+namespace {
+
+using toolpath::BlockMove;
+
+/// Sources of a surface job: blocks are cycles.
+std::vector<SweepSource> sources_of_cycles(const motion::Cycles& cycles) {
+  std::vector<SweepSource> sources(cycles.size());
+  motion::CycleReader reader(cycles);
+  for (size_t k = 0; k < sources.size(); ++k) {
+    const motion::ToolSample& sample = reader.at(k).sample;
+    sources[k] = {sample.element, sample.tool, sample.u, k};
+  }
+  return sources;
+}
+
+/// All cycles of a surface job, merged.
+JobSweeps merged_cycles(const Job& job, const motion::Cycles& cycles, double tolerance_mm) {
+  std::vector<ToolPose> poses;
+  poses.reserve(cycles.size());
+  motion::CycleReader reader(cycles);
+  for (size_t k = 0; k < cycles.size(); ++k) poses.push_back(reader.at(k).sample.pose);
+  stock::MergedSweeps merged = merged_sweeps(poses, job.scene, tolerance_mm);
+  return {std::move(merged.sweeps), sources_of_cycles(cycles), merged.error_bound_mm};
+}
+
+/// Collects the sweeps of a CL job, each with a block of its own.
+class BlockSweeper {
+ public:
+  BlockSweeper(const Job& job, const motion::Cycles& cycles, double tolerance_mm)
+      : elements_(cycles.elements()), motions_(cycles.motions()), tolerance_mm_(tolerance_mm) {
+    for (const cutter::Cutter& tool : job.scene.tools) levers_mm_.push_back(lever_of(tool));
+  }
+
+  JobSweeps each_block() {
+    for (size_t i = 0; i < motions_.size(); ++i) add_block(i);
+    return std::move(out_);
+  }
+
+  JobSweeps straight_blocks_merged() {
+    for (size_t i = 0; i < motions_.size();) {
+      const size_t end = straight_end(i);
+      if (end > i + 1) {
+        add_straight(i, end);
+      } else {
+        add_block(i);
+      }
+      i = std::max(end, i + 1);
+    }
+    return std::move(out_);
+  }
+
+ private:
+  bool is_straight(size_t i) const {
+    const BlockMove& block = *motions_[i].block;
+    return !block.arc && block.from.axis_W == block.to.axis_W &&
+           (block.law != toolpath::BlockLaw::kJoint || turns_nothing(motions_[i]));
+  }
+  static bool turns_nothing(const motion::BlockMotion& motion) {
+    for (size_t i = 0; i < motion.machine->axes.size(); ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      if (motion.machine->axes[i].kind == kinematics::AxisKind::kRotary &&
+          motion.q_from[row] != motion.q_to[row])
+        return false;
+    }
+    return true;
+  }
+  /// First block from `first` on that does not join a row of straight blocks of one axis, feed,
+  /// spindle and tool.
+  size_t straight_end(size_t first) const {
+    size_t end = first;
+    const BlockMove& block = *motions_[first].block;
+    const auto joins = [&](const BlockMove& next) {
+      return next.feed_mm_s == block.feed_mm_s && next.from.axis_W == block.from.axis_W &&
+             next.tool == block.tool && is_rapid(next) == is_rapid(block) &&
+             next.spindle_rpm == block.spindle_rpm;
+    };
+    while (end < motions_.size() && is_straight(end) && joins(*motions_[end].block)) ++end;
+    return end;
+  }
+
+  void add(const ToolPose& start, const ToolPose& end, size_t element, double s) {
+    out_.sweeps.push_back({start, end, static_cast<uint32_t>(out_.sources.size())});
+    const int index = static_cast<int>(element);
+    out_.sources.push_back({index, motions_[element].block->tool, s, std::nullopt});
+  }
+
+  void add_block(size_t i) {
+    const std::vector<ToolPose> poses =
+        motion::subdivide(motions_[i], lever(i), tolerance_mm_, elements_[i].where);
+    const size_t pieces = poses.size() - 1;
+    for (size_t k = 0; k < pieces; ++k)
+      add(poses[k], poses[k + 1], i, static_cast<double>(k + 1) / static_cast<double>(pieces));
+    const double error =
+        motion::split_error(motion::motion_bounds(motions_[i]), static_cast<int>(pieces), lever(i));
+    out_.error_bound_mm = std::max(out_.error_bound_mm, error);
+  }
+
+  void add_straight(size_t first, size_t end) {
+    std::vector<ToolPose> poses{motions_[first].block->from};
+    for (size_t i = first; i < end; ++i) poses.push_back(motions_[i].block->to);
+    const std::vector<uint8_t> breaks(poses.size(), 0);
+    const stock::MergedSweeps merged = stock::merge_sweeps(poses, breaks, lever(first), tolerance_mm_);
+    for (const stock::Sweep& sweep : merged.sweeps) add(sweep.start, sweep.end, first + sweep.block - 1, 1.0);
+    out_.error_bound_mm = std::max(out_.error_bound_mm, merged.error_bound_mm);
+  }
+
+  double lever(size_t i) const { return levers_mm_[static_cast<size_t>(motions_[i].block->tool)]; }
+
+  std::span<const toolpath::Element> elements_;
+  std::span<const motion::BlockMotion> motions_;
+  std::vector<double> levers_mm_;  ///< by tool
+  double tolerance_mm_;
+  JobSweeps out_;
+};
+
+}  // namespace
+
+double lever_of(const cutter::Cutter& cutter) {
+  return std::hypot(cutter::greatest_radius(cutter::outline(cutter)), cutter.flute_length_mm);
+}
+
+bool is_done(const SweepSource& source, const motion::Cycle& cycle) {
+  if (source.cycle) return *source.cycle <= cycle.number;
+  const motion::ToolSample& sample = cycle.sample;
+  return sample.element > source.element || (sample.element == source.element && sample.u >= source.share);
+}
+
+size_t cycle_of(const SweepSource& source, motion::CycleReader& reader) {
+  return source.cycle ? *source.cycle : reader.reaching(source.element, source.share);
+}
+
+std::vector<stock::Sweep> cycle_sweeps(const motion::Cycles& cycles) {
+  const size_t count = cycles.size();
+  std::vector<stock::Sweep> sweeps(count);
+  if (count == 0) return sweeps;
+  // The nodes lie half way between the cycles, where the joint-linear motion of the axes strays most from
+  // the path.
+  motion::CycleReader reader(cycles);
+  motion::Cycle now = reader.at(0);
+  ToolPose node = now.sample.pose;
+  for (size_t i = 0; i < count; ++i) {
+    ToolPose next = now.sample.pose;
+    if (i + 1 < count) {
+      const motion::Cycle& after = reader.at(i + 1);
+      next = kinematics::forward(cycles.machines().front(), 0.5 * (now.q + after.q));
+      now = after;
+    }
+    sweeps[i] = {node, next, static_cast<uint32_t>(i)};
+    node = next;
+  }
+  return sweeps;
+}
+
+stock::MergedSweeps merged_sweeps(std::span<const ToolPose> poses, const Scene& scene, double tolerance_mm) {
+  double lever = 0.0;
+  for (const cutter::Cutter& tool : scene.tools) lever = std::max(lever, lever_of(tool));
+  const std::vector<uint8_t> breaks(poses.size(), 0);
+  return stock::merge_sweeps(poses, breaks, lever, tolerance_mm);
+}
+
+std::vector<stock::CutterSolid> tool_solids(const Scene& scene) {
+  return {scene.tools.begin(), scene.tools.end()};
+}
+
+std::vector<int> tool_of_blocks(const JobSweeps& sweeps) {
+  std::vector<int> tools;
+  tools.reserve(sweeps.sources.size());
+  for (const SweepSource& source : sweeps.sources) tools.push_back(source.tool);
+  return tools;
+}
+
+JobSweeps stock_sweeps(const Job& job, const motion::Cycles& cycles, std::optional<double> tolerance_mm) {
+  const double tolerance = tolerance_mm.value_or(job.scene.stock.sweep_tolerance_mm);
+  if (job.scene.cuts_cycles()) return driven_sweeps(job, cycles, tolerance, true);
+  if (job.scene.has_blocks()) return BlockSweeper(job, cycles, tolerance).straight_blocks_merged();
+  return merged_cycles(job, cycles, tolerance);
+}
+
+JobSweeps ray_sweeps(const Job& job, const motion::Cycles& cycles) {
+  const double tolerance = job.scene.design.sweep_tolerance_mm;
+  if (job.scene.cuts_cycles()) return driven_sweeps(job, cycles, tolerance, false);
+  if (job.scene.has_blocks()) return BlockSweeper(job, cycles, tolerance).each_block();
+  return {cycle_sweeps(cycles), sources_of_cycles(cycles), 0.0};
+}
+
+std::vector<int> pass_of_blocks(const JobSweeps& sweeps, const toolpath::ToolPath& path) {
+  std::vector<int> passes;
+  passes.reserve(sweeps.sources.size());
+  for (const SweepSource& source : sweeps.sources) {
+    const auto& what = path.elements[static_cast<size_t>(source.element)].what;
+    const auto* pass = std::get_if<toolpath::SurfacePass>(&what);
+    const auto* block = std::get_if<BlockMove>(&what);
+    passes.push_back(pass != nullptr ? pass->pass : block != nullptr ? block->pass : -1);
+  }
+  return passes;
+}
+
+}  // namespace swarf::sim

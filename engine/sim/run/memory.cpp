@@ -1,0 +1,186 @@
+#include "sim/run/memory.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <string>
+#include <variant>
+
+#include "motion/speed/jerk_profile.h"
+#include "sim/job/memory_limit.h"
+#include "sim/run/result.h"
+#include "stock/rays/ray_field.h"
+
+namespace swarf::sim {
+namespace {
+
+constexpr double kMegabyte = 1024.0 * 1024.0;
+
+// What a run holds besides the stock, in bytes; peaks measured with tests/scenes/memory_test.cpp's scenes.
+constexpr double kBase = 66.0 * kMegabyte;     // code, libraries, tables of the program, thread pools
+constexpr double kMovie = 270.0 * kMegabyte;   // Mesa, Embree and the encoder, with pictures of 1280 x 720
+constexpr double kStills = 120.0 * kMegabyte;  // Embree alone
+constexpr double kSeen = 0.95;  // of the stock: its leaves as contacts and invariants look at them
+constexpr double kSweep = sizeof(stock::Sweep) + sizeof(SweepSource);
+constexpr double kCutting =
+    sizeof(stock::Sweep) + sizeof(ToolPose) + 24.0;  // EarlierCuts, a row to be merged
+constexpr double kMeasuredRay = 78.0;                // while it is measured: neighbours, ridges, feet
+constexpr double kRay = 83.0;                        // point, normal, height, block; its share of a tile
+// Each triangle of the mesh, half a vertex with it, from the mesher's points to the decimated copy.
+constexpr double kTriangle = 105.0;
+// A tick of a path that is only compared: its sample, axes and sweep, and what vectors that grow hold beside.
+constexpr double kComparedTick = 530.0;
+
+/// Free memory of the machine in MB, as the kernel estimates it; infinity where it does not say.
+/// Counts of a stock while and after it is cut.
+struct SurfaceCounts {
+  double leaves_most = 0.0, triangles = 0.0;
+};
+
+constexpr double kCoarser = 4.0;
+constexpr size_t kPieces = 32;  // looks at the number of leaves
+
+SurfaceCounts preview(const Job& job, const motion::Cycles& cycles) {
+  const StockSettings& settings = job.scene.stock;
+  // Three voxels to the thinnest cutter's radius still show every groove.
+  double thinnest = std::numeric_limits<double>::infinity();
+  for (const cutter::Cutter& tool : job.scene.tools) thinnest = std::min(thinnest, tool.radius());
+  const double voxel = std::max(settings.voxel_mm, std::min(kCoarser * settings.voxel_mm, thinnest / 3.0));
+  const JobSweeps coarse = stock_sweeps(job, cycles, voxel / 8.0);
+  const std::vector<stock::Sweep>& sweeps = coarse.sweeps;
+  stock::Stock stock(settings.box_W, voxel);
+  const std::vector<stock::CutterSolid> solids = tool_solids(job.scene);
+  double most = static_cast<double>(stock.leaves());
+  const size_t piece = sweeps.size() / kPieces + 1;
+  for (size_t i = 0; i < sweeps.size(); i += piece) {
+    for_each_tool(
+        std::span(sweeps).subspan(i, std::min(piece, sweeps.size() - i)),
+        [&](uint32_t block) { return coarse.sources[block].tool; },
+        [&](size_t tool, std::span<const stock::Sweep> part) { stock.cut(part, solids[tool]); });
+    most = std::max(most, static_cast<double>(stock.leaves()));
+  }
+  const double finer = std::pow(voxel / settings.voxel_mm, 2);
+  return {most * finer, static_cast<double>(stock.mesh().triangles.size()) * finer};
+}
+
+/// Leaves of a stock that is cut everywhere; needs no path.
+SurfaceCounts all_leaves(const StockSettings& settings) {
+  constexpr double kLeaf = 8.0;  // voxels
+  return {((settings.box_W.size() / (kLeaf * settings.voxel_mm)).array() + 1.0).prod(), 0.0};
+}
+
+/// A long program is not cut twice to learn what does not matter: a stock that fits whatever is cut.
+bool fits_anyhow(const Job& job, const MeasuredPath& path, const Outputs& outputs) {
+  constexpr size_t kLong = 50'000;  // elements: the preview would take seconds
+  constexpr double kLittle = 0.2;   // of the limit
+  if (path.path.elements.size() < kLong || outputs.page || outputs.pictures) return false;
+  const StockSettings& settings = job.scene.stock;
+  const size_t most =
+      stock::Stock::memory_for(settings.box_W, settings.voxel_mm, all_leaves(settings).leaves_most);
+  return static_cast<double>(most) / kMegabyte < kLittle * memory_limit_mb(job.scene);
+}
+
+/// Rays of the design. Surfaces: counted eight times as coarse, where the chord may stray 64 times as far.
+/// Meshes: counted as they will be made, because the turns and borders of the facets ask for rays too; the
+/// denser walls beside them hold no material.
+double ray_count(const Job& job) {
+  constexpr double kCoarse = 8.0, kChord = 0.005;
+  const double pitch = job.scene.design.pitch_mm;
+  constexpr double kWall = 0.75;  // of a ray: point, normal, facet, its share of a tile
+  double rays = 0.0;
+  if (job.design_mesh) {
+    const stock::RayFieldPtr field = stock::rays_on_mesh(*job.design_mesh, pitch);
+    rays = static_cast<double>(field->size()) + kWall * static_cast<double>(field->walls->size());
+  }
+  for (const surface::SurfacePtr& surface : job.design) {
+    const auto grid = stock::rays_on_surface(surface, kCoarse * pitch, kCoarse * kCoarse * kChord);
+    rays += kCoarse * static_cast<double>(grid->u_lines.size() - 1) * kCoarse *
+            static_cast<double>(grid->v_lines.size() - 1);
+  }
+  return rays;
+}
+
+/// Ticks of the longest path of the comparisons: the off-line one that stops at the end of each segment. The
+/// sagitta of a few ticks of the main path gives the length of a segment within the chord tolerance there.
+double longest_comparison(const Job& job, const MeasuredPath& path) {
+  constexpr size_t kReach = 10;
+  motion::CycleReader reader(*path.cycles);
+  const motion::MotionOptions& options = job.scene.motion;
+  double seconds = 0.0;
+  motion::ToolSample a, b, c;
+  for (size_t i = 0; i < path.cycles->size(); i += kReach) {
+    a = b;
+    b = c;
+    c = reader.at(i).sample;
+    if (i < 2 * kReach) continue;
+    const auto* pass =
+        std::get_if<toolpath::SurfacePass>(&path.path.elements[static_cast<size_t>(b.element)].what);
+    const double chord = (c.contact_W - a.contact_W).norm();
+    const double sagitta = (b.contact_W - 0.5 * (a.contact_W + c.contact_W)).norm();
+    if (pass == nullptr || a.element != c.element || !(chord > 0.0)) {
+      seconds += kReach * options.period_s;
+      continue;
+    }
+    const double longest = chord * std::sqrt(pass->chord_tolerance_mm / std::max(sagitta, 1e-12));
+    const double length = std::min(longest, 1e3);
+    const motion::RestToRest segment(length, pass->feed_mm_s, options.path_acceleration_max,
+                                     options.path_jerk_max);
+    seconds += (c.contact_W - b.contact_W).norm() / length * segment.duration();
+  }
+  return seconds / options.period_s;
+}
+
+/// A voxel, to two digits, at which what grows with 1/voxel^2 fits beside the rest.
+double voxel_that_fits(const Job& job, const MemoryPrediction& prediction) {
+  constexpr double kMargin = 1.1;  // the prediction itself wavers with the voxel
+  const double rest = prediction.peak_mb - prediction.scaling_mb;
+  const double room = std::max(prediction.limit_mb - rest, 0.05 * prediction.scaling_mb);
+  const double fitting = kMargin * job.scene.stock.voxel_mm * std::sqrt(prediction.scaling_mb / room);
+  const double digit = std::pow(10.0, std::floor(std::log10(fitting)) - 1.0);
+  return std::ceil(fitting / digit) * digit;
+}
+
+}  // namespace
+
+MemoryPrediction predict_memory(const Job& job, const MeasuredPath& path, const Outputs& outputs,
+                                int stocks) {
+  const StockSettings& settings = job.scene.stock;
+  const SurfaceCounts counts =
+      fits_anyhow(job, path, outputs) ? all_leaves(settings) : preview(job, *path.cycles);
+  const double stock =
+      static_cast<double>(stock::Stock::memory_for(settings.box_W, settings.voxel_mm, counts.leaves_most));
+  const auto ticks = static_cast<double>(path.cycles->size());
+  const bool by_block = job.scene.has_blocks() && !job.scene.cuts_cycles();
+  const double sweeps = by_block ? static_cast<double>(path.path.elements.size()) : ticks;
+  const double rays = ray_count(job) * kRay;
+  const double held = kBase + rays + sweeps * kSweep +
+                      static_cast<double>(path.cycles->kept().size() * sizeof(motion::Cycle)) +
+                      static_cast<double>(path.path.elements.size() *
+                                          (sizeof(toolpath::Element) + sizeof(motion::BlockMotion)));
+  // The stages that hold most; each ends before the next begins.
+  const double cutting = held - rays + (stocks + kSeen) * stock + sweeps * kCutting;
+  double comparing = 0.0;
+  if (job.scene.compare_planners && !job.scene.has_blocks())
+    comparing = held + stock + std::max(ticks, longest_comparison(job, path)) * kComparedTick + rays;
+  const double measuring =
+      job.has_design() ? held + stock + ray_count(job) * kMeasuredRay + sweeps * (kSweep + kCutting) : 0.0;
+  const double pictures = !outputs.pictures ? 0.0 : job.scene.movie.seconds > 0.0 ? kMovie : kStills;
+  const double mesh = outputs.page || outputs.pictures ? counts.triangles * kTriangle : 0.0;
+  const double meshing = held + stock + mesh + pictures;
+  return {stocks * stock / kMegabyte, std::max({cutting, measuring, comparing, meshing}) / kMegabyte,
+          (stock + mesh) / kMegabyte, memory_limit_mb(job.scene)};
+}
+
+void require_memory(const Job& job, const MemoryPrediction& prediction) {
+  if (prediction.peak_mb <= prediction.limit_mb) return;
+  throw InputError(
+      "out-of-memory", {job.scene.file},
+      fmt::format("stock.voxel_mm = {:g} is expected to need {:.0f} MB, {:.0f} MB may be used",
+                  job.scene.stock.voxel_mm, prediction.peak_mb, prediction.limit_mb),
+      fmt::format("voxel_mm = {:g} fits; or raise --max-memory", voxel_that_fits(job, prediction)));
+}
+
+}  // namespace swarf::sim

@@ -1,0 +1,108 @@
+#include "sim/run/prove_part.h"
+
+#include <algorithm>
+
+#include "base/units.h"
+#include "measure/certificate.h"
+#include "sim/run/job_sweeps.h"
+#include "sim/run/result.h"
+#include "stock/rays/free_ranges.h"
+
+namespace swarf::sim {
+namespace {
+
+void raise(std::optional<measure::Bound>& bound, const measure::Bound& by) {
+  if (!bound || by.um > bound->um) bound = by;
+}
+
+/// What rays found beyond a proven bound was no cut of that depth: a leaning ray of a mesh that ran along it.
+void settle(double& value_um, uint32_t& block, double found_um, uint32_t found_block,
+            const measure::Bound& bound) {
+  if (value_um > bound.um) value_um = 0.0;
+  if (found_um <= value_um) return;
+  value_um = found_um;
+  block = found_block;
+}
+
+void take_over(const measure::Certificate& proof, measure::SurfaceMetrics& surface) {
+  raise(surface.gouge_bound, proof.gouge);
+  raise(surface.excess_bound, proof.excess);
+  raise(surface.scallop_bound, proof.scallop);
+  surface.unmeasured_area_mm2 += proof.open_area_mm2;
+  surface.gouges.insert(surface.gouges.end(), proof.gouges.begin(), proof.gouges.end());
+  surface.excesses.insert(surface.excesses.end(), proof.excesses.begin(), proof.excesses.end());
+}
+
+/// The worst first, no more than are listed; their number.
+size_t keep_worst(std::vector<measure::Region>& regions) {
+  std::stable_sort(regions.begin(), regions.end(), [](const measure::Region& a, const measure::Region& b) {
+    return a.worst_um > b.worst_um;
+  });
+  const size_t count = regions.size();
+  if (count > measure::kListedRegions) regions.resize(measure::kListedRegions);
+  return count;
+}
+
+}  // namespace
+
+void prove_part(const Job& job, Progress& progress, Result& result) {
+  MeasuredPath& main = result.main;
+  const AcceptLimits& accept = job.scene.accept;
+  // Without a limit there is nothing to decide.
+  if (main.dexels.empty() || !(accept.gouge_max_um || accept.excess_max_um || accept.scallop_max_um)) return;
+  progress.begin("prove", static_cast<double>(main.dexels.size()), "surfaces");
+  std::vector<stock::RayFieldPtr> fields;
+  for (const stock::SurfaceDexels& dexels : main.dexels) fields.push_back(dexels.field_ptr());
+  const stock::FreeRange ranges(fields);
+  const std::vector<stock::CutterSolid> solids = tool_solids(job.scene);
+  const std::vector<int> tools = tool_of_blocks(main.rays);
+  const measure::SweepCutters cutters(solids, tools);
+  measure::SurfaceMetrics& surface = main.surface;
+  surface.gouges.clear();
+  surface.excesses.clear();
+  measure::Certificate worst;
+  for (size_t i = 0; i < fields.size() && !progress.stop_requested(); ++i) {
+    const measure::Certificate proof = measure::certify(
+        {.field = *fields[i],
+         .ranges = ranges,
+         .sweeps = main.rays.sweeps,
+         .cutters = cutters,
+         .sweep_bound_mm = main.rays.error_bound_mm,
+         .stock = *result.stock,
+         .stock_bound_mm = result.sweep_bound_mm,
+         .gouge_limit_mm = accept.gouge_band_um() * kMicrometre,
+         .excess_limit_mm = accept.excess_max_um.value_or(accept.scallop_band_um()) * kMicrometre,
+         .wants_excess = accept.excess_max_um.has_value(),
+         .wants_scallop = accept.scallop_max_um.has_value(),
+         .scallop_limit_mm = accept.scallop_band_um() * kMicrometre,
+         .gouge_known_mm = surface.gouge_max_um * kMicrometre,
+         .excess_known_mm = surface.excess_max_um * kMicrometre,
+         .progress = progress,
+         .progress_from = static_cast<double>(i)});
+    take_over(proof, surface);
+    if (proof.gouge_found_um > worst.gouge_found_um) {
+      worst.gouge_found_um = proof.gouge_found_um;
+      worst.gouge_block = proof.gouge_block;
+    }
+    if (proof.excess_found_um > worst.excess_found_um) {
+      worst.excess_found_um = proof.excess_found_um;
+      worst.excess_block = proof.excess_block;
+    }
+  }
+  if (progress.stop_requested()) {
+    // Half a proof is none.
+    surface.gouge_bound.reset();
+    surface.excess_bound.reset();
+    surface.scallop_bound.reset();
+  } else {
+    settle(surface.gouge_max_um, surface.gouge_block, worst.gouge_found_um, worst.gouge_block,
+           *surface.gouge_bound);
+    settle(surface.excess_max_um, surface.excess_block, worst.excess_found_um, worst.excess_block,
+           *surface.excess_bound);
+  }
+  surface.gouge_regions = keep_worst(surface.gouges);
+  surface.excess_regions = keep_worst(surface.excesses);
+  progress.end();
+}
+
+}  // namespace swarf::sim

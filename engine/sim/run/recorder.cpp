@@ -1,0 +1,157 @@
+#include "sim/run/recorder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+
+#include "base/diagnostics.h"
+#include "base/units.h"
+
+namespace swarf::sim {
+namespace {
+
+using kinematics::AxisKind;
+
+constexpr std::array<const char*, 4> kKindNames{"cut", "approach", "retract",
+                                                "rapid"};  // order of SampleKind
+
+const char* kind_name(motion::SampleKind kind) {
+  return kKindNames[static_cast<size_t>(kind)];
+}
+
+std::string axis_columns(const kinematics::MachineModel& machine) {
+  std::string columns;
+  for (const kinematics::Axis& axis : machine.axes)
+    columns += fmt::format(",{}_{}", axis.name, axis.kind == AxisKind::kRotary ? "deg" : "mm");
+  return columns;
+}
+
+std::string tool_field(const cutter::Cutter& tool) {
+  return tool.number > 0 ? fmt::format("{}", tool.number) : tool.name;
+}
+
+using Out = std::back_insert_iterator<fmt::memory_buffer>;
+
+void append_pose(Out out, const ToolPose& pose) {
+  fmt::format_to(out, "{:.7f},{:.7f},{:.7f},{:.10f},{:.10f},{:.10f}", pose.tip_W.x(), pose.tip_W.y(),
+                 pose.tip_W.z(), pose.axis_W.x(), pose.axis_W.y(), pose.axis_W.z());
+}
+
+void append_axes(Out out, const kinematics::AxisValues& q, const kinematics::MachineModel& machine) {
+  for (size_t i = 0; i < machine.axes.size(); ++i) {
+    const double value = q[static_cast<Eigen::Index>(i)];
+    fmt::format_to(out, ",{:.7f}", machine.axes[i].kind == AxisKind::kRotary ? deg_from_rad(value) : value);
+  }
+}
+
+InputError unwritable(const std::string& path) {
+  return {"cannot-write",
+          {path},
+          "the table cannot be written",
+          "check that the folder may be written and has space"};
+}
+
+std::ofstream open_table(const std::string& path, const std::string& header) {
+  std::ofstream file(path, std::ios::binary);
+  file << header << '\n';
+  if (!file.flush()) throw unwritable(path);
+  return file;
+}
+
+void put(std::ofstream& file, const fmt::memory_buffer& text) {
+  file.write(text.data(), static_cast<std::streamsize>(text.size()));
+}
+
+void close_table(std::ofstream& file, const std::string& path) {
+  file.close();
+  if (!file) throw unwritable(path);
+}
+
+}  // namespace
+
+BlockTable::BlockTable(const std::string& path, const Job& job, const motion::Cycles& cycles)
+    : path_(path),
+      job_(job),
+      cycles_(cycles),
+      file_(open_table(path, "line,t_s,x_mm,y_mm,z_mm,i,j,k" + axis_columns(job.machine.model) +
+                                 ",feed_mm_min,kind,tool")) {}
+
+void BlockTable::add(std::span<const motion::Cycle> window) {
+  for (const motion::Cycle& cycle : window) {
+    if (cycle.sample.element != element_) flush_to(cycle.sample.element, cycle.sample.t_s);
+    feed_mm_s_ = std::max(feed_mm_s_, cycle.sample.feed_mm_s);
+    last_ = cycle;
+  }
+}
+
+/// Rows of all elements before this one, which begins at t_s.
+void BlockTable::flush_to(int element, double t_s) {
+  for (; element_ < element; ++element_) {
+    write_row(element_, t_s);
+    feed_mm_s_ = -1.0;
+  }
+}
+
+void BlockTable::write_row(int element, double t_s) {
+  const toolpath::Element& entry = cycles_.elements()[static_cast<size_t>(element)];
+  fmt::memory_buffer text;
+  const Out out(text);
+  ToolPose pose = last_.sample.pose;
+  kinematics::AxisValues q = last_.q;
+  motion::SampleKind kind = last_.sample.kind;
+  auto tool = static_cast<size_t>(last_.sample.tool);
+  if (!cycles_.motions().empty()) {
+    const motion::BlockMotion& motion = cycles_.motions()[static_cast<size_t>(element)];
+    pose = motion.block->to;
+    q = motion.q_to;
+    kind = is_rapid(*motion.block) ? motion::SampleKind::kRapid : motion::SampleKind::kCutting;
+    tool = static_cast<size_t>(motion.block->tool);
+  }
+  fmt::format_to(out, "{},{:.6f},", entry.where.line, t_s);
+  append_pose(out, pose);
+  append_axes(out, q, job_.machine.model);
+  text.push_back(',');
+  if (feed_mm_s_ >= 0.0) fmt::format_to(out, "{:.4f}", mm_min_from_mm_s(feed_mm_s_));
+  fmt::format_to(out, ",{},{}\n", kind_name(kind), tool_field(job_.scene.tools[tool]));
+  put(file_, text);
+}
+
+void BlockTable::finish() {
+  // A run that was stopped has not come to the end of the element under way.
+  if (cycles_.size() > 0 && !cycles_.stopped())
+    flush_to(static_cast<int>(cycles_.elements().size()), last_.sample.t_s);
+  close_table(file_, path_);
+}
+
+CycleTable::CycleTable(const std::string& path, const Job& job, const motion::Cycles& cycles)
+    : path_(path),
+      job_(job),
+      cycles_(cycles),
+      file_(open_table(path, "t_s,block,x_mm,y_mm,z_mm,i,j,k,feed_mm_min" + axis_columns(job.machine.model) +
+                                 ",contact_x_mm,contact_y_mm,contact_z_mm,u,v,element,kind,tool")) {}
+
+void CycleTable::add(std::span<const motion::Cycle> window) {
+  fmt::memory_buffer text;
+  const Out out(text);
+  for (const motion::Cycle& cycle : window) {
+    const motion::ToolSample& s = cycle.sample;
+    const int line = cycles_.elements()[static_cast<size_t>(s.element)].where.line;
+    fmt::format_to(out, "{:.6f},{},", s.t_s, line);
+    append_pose(out, s.pose);
+    fmt::format_to(out, ",{:.4f}", mm_min_from_mm_s(s.feed_mm_s));
+    append_axes(out, cycle.q, job_.machine.model);
+    fmt::format_to(out, ",{:.7f},{:.7f},{:.7f},{:.9f},{:.9f},{},{},{}\n", s.contact_W.x(), s.contact_W.y(),
+                   s.contact_W.z(), s.u, s.v, s.element, kind_name(s.kind),
+                   tool_field(job_.scene.tools[static_cast<size_t>(s.tool)]));
+  }
+  put(file_, text);
+}
+
+void CycleTable::finish() {
+  close_table(file_, path_);
+}
+
+}  // namespace swarf::sim

@@ -1,0 +1,260 @@
+#include "stock/level_set/lane_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "base/parallel.h"
+#include "stock/level_set/leaf_kernel.h"
+
+namespace swarf::stock {
+namespace {
+
+constexpr size_t kRunsPerTask = 1;
+
+/// From a leaf's centre to the farthest place where a distance matters.
+double reach_of(const LevelSet& set) {
+  return set.leaf_radius() + set.band();
+}
+
+std::vector<Neighbourhood::Plane> bottom_planes(const std::vector<ToolPose>& poses, double low,
+                                                double reach) {
+  // Flatter planes cut little off a vertical line, and the quotient grows coarse.
+  constexpr double kUpright = 0.1;
+  std::vector<Neighbourhood::Plane> planes;
+  for (const ToolPose& pose : poses) {
+    const Vec3& a = pose.axis_W;
+    if (a.z() < kUpright) return {};
+    const double x = -a.x() / a.z(), y = -a.y() / a.z();
+    const double z = pose.tip_W.dot(a) / a.z() - (reach - low) / a.z();
+    planes.push_back({z, x, y});
+  }
+  return planes;
+}
+
+/// Fills the rectangle around the piece at all poses, enlarged by `margin`.
+void set_rectangle(Neighbourhood& around, const std::vector<ToolPose>& poses,
+                   const cutter::ConvexPiece& piece, double margin) {
+  const Vec2 way = (poses.back().tip_W - poses.front().tip_W).head<2>();
+  if (way.norm() > 0.0) around.along = way.normalized();
+  const Vec2 across(-around.along.y(), around.along.x());
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  Vec2 low(kFar, kFar), high(-kFar, -kFar);
+  for (const ToolPose& pose : poses) {
+    for (const double z : {piece.low, piece.high}) {
+      const Vec2 p = (pose.tip_W + z * pose.axis_W).head<2>();
+      const Vec2 local(p.dot(around.along), p.dot(across));
+      low = low.cwiseMin(local);
+      high = high.cwiseMax(local);
+    }
+  }
+  const Vec2 centre = 0.5 * (low + high);
+  around.centre = centre.x() * around.along + centre.y() * across;
+  around.half_along = 0.5 * (high.x() - low.x()) + margin;
+  around.half_across = 0.5 * (high.y() - low.y()) + margin;
+}
+
+/// Around the poses and everything that moves straight between neighbours of them; `bow`: how far the motion
+/// strays from straight, mm.
+Neighbourhood neighbourhood(const std::vector<ToolPose>& poses, const cutter::ConvexPiece& piece,
+                            double reach, double bow) {
+  Vec3 tip = Vec3::Zero(), axis = Vec3::Zero();
+  for (const ToolPose& pose : poses) {
+    tip += pose.tip_W / static_cast<double>(poses.size());
+    axis += pose.axis_W / static_cast<double>(poses.size());
+  }
+  double stray = 0.0;
+  for (const ToolPose& pose : poses) {
+    const double turn = std::max(std::abs(piece.low), std::abs(piece.high)) * (pose.axis_W - axis).norm();
+    stray = std::max(stray, (pose.tip_W - tip).norm() + turn);
+  }
+  // F is a distance to planes: beyond an edge it reaches farther than a distance, at right angles by sqrt(2).
+  const double margin = piece.radius + std::sqrt(2.0) * (reach + bow);
+  Neighbourhood around;
+  set_rectangle(around, poses, piece, margin);
+  around.foot = tip + piece.low * axis;
+  around.axis = axis;
+  around.length = piece.high - piece.low;
+  around.radius = margin + stray;
+  around.bottoms = bottom_planes(poses, piece.low, reach + bow);
+  return around;
+}
+
+/// The part [low, high] of a vertical line that the run may reach; empty when low > high.
+struct Span {
+  double low = 0.0, high = -1.0;
+};
+Span vertical_span(const Neighbourhood& around, double x, double y) {
+  const Vec2 local = Vec2(x, y) - around.centre;
+  const double across = around.along.x() * local.y() - around.along.y() * local.x();
+  if (std::abs(local.dot(around.along)) > around.half_along || std::abs(across) > around.half_across)
+    return {};
+  const Vec2 offset = Vec2(x, y) - around.foot.head<2>();
+  const Vec2 lean = around.axis.head<2>();
+  const double lean2 = lean.squaredNorm(), radius2 = around.radius * around.radius;
+  double first = 0.0, last = around.length;  // along the axis, where it passes the line closely enough
+  constexpr double kUpright = 1e-12;
+  if (lean2 > kUpright) {
+    const double middle = offset.dot(lean) / lean2;
+    const double miss2 = (offset - middle * lean).squaredNorm();
+    if (miss2 > radius2) return {};
+    const double half = std::sqrt((radius2 - miss2) / lean2);
+    first = std::max(first, middle - half);
+    last = std::min(last, middle + half);
+    if (first > last) return {};
+  } else if (offset.norm() > around.radius + around.length * std::sqrt(kUpright)) {
+    return {};
+  }
+  const double z0 = around.foot.z() + first * around.axis.z(), z1 = around.foot.z() + last * around.axis.z();
+  Span span{std::min(z0, z1) - around.radius, std::max(z0, z1) + around.radius};
+  double bottom = around.bottoms.empty() ? span.low : span.high;
+  for (const Neighbourhood::Plane& plane : around.bottoms)
+    bottom = std::min(bottom, plane.z + plane.x * x + plane.y * y);
+  span.low = std::max(span.low, bottom);
+  return span;
+}
+
+/// Inclusive range of the leaf positions along axis `a` whose centres lie in [low, high] mm.
+std::pair<int, int> leaf_range(const LevelSet& set, int a, double low, double high) {
+  const double leaf_mm = kLeafSide * set.voxel, half = 0.5 * (kLeafSide - 1) * set.voxel;
+  const double first = std::ceil((low - half) / leaf_mm) - set.map.lower[a];
+  const double last = std::floor((high - half) / leaf_mm) - set.map.lower[a];
+  const double top = set.map.dimension[a] - 1;
+  return {static_cast<int>(std::clamp(first, 0.0, top + 1.0)), static_cast<int>(std::clamp(last, -1.0, top))};
+}
+
+/// First position in [k, end) that is not air, or `end`; eight states at a time, for most of a box is air.
+size_t skip_air(const LeafState* states, size_t k, size_t end) {
+  while (k < end) {
+    uint64_t eight = 0;
+    static_assert(sizeof(LeafState) == 1 && static_cast<int>(LeafState::kAir) == 0);
+    if (k + sizeof(eight) <= end) {
+      std::memcpy(&eight, states + k, sizeof(eight));
+      if (eight == 0) {
+        k += sizeof(eight);
+        continue;
+      }
+    }
+    if (states[k] != LeafState::kAir) return k;
+    ++k;
+  }
+  return end;
+}
+
+template <typename Visit>
+void visit_leaves(const LevelSet& set, const Neighbourhood& around, Visit visit) {
+  const Vec2 along = around.along.cwiseAbs();
+  const Vec2 half(along.x() * around.half_along + along.y() * around.half_across,
+                  along.y() * around.half_along + along.x() * around.half_across);
+  const auto [i_first, i_last] =
+      leaf_range(set, 0, around.centre.x() - half.x(), around.centre.x() + half.x());
+  const auto [j_first, j_last] =
+      leaf_range(set, 1, around.centre.y() - half.y(), around.centre.y() + half.y());
+  const double leaf_mm = kLeafSide * set.voxel;
+  for (int i = i_first; i <= i_last; ++i) {
+    for (int j = j_first; j <= j_last; ++j) {
+      const size_t column = set.map.index(i, j, 0);
+      const Vec3 foot = set.leaf_centre(column);
+      const Span span = vertical_span(around, foot.x(), foot.y());
+      if (span.low > span.high) continue;
+      const auto [k_first, k_last] = leaf_range(set, 2, span.low, span.high);
+      if (k_first > k_last) continue;
+      const LeafState* states = set.map.states.data() + column;
+      const auto last = static_cast<size_t>(k_last) + 1;
+      for (size_t k = static_cast<size_t>(k_first); (k = skip_air(states, k, last)) < last; ++k) {
+        visit(column + k, Vec3(foot.x(), foot.y(), foot.z() + static_cast<double>(k) * leaf_mm));
+      }
+    }
+  }
+}
+
+Neighbourhood neighbourhood(std::span<const SweptPiece> pieces, double reach) {
+  const cutter::ConvexPiece& piece = *pieces.front().piece;
+  const double lever = std::hypot(std::max(std::abs(piece.low), std::abs(piece.high)), piece.radius);
+  std::vector<ToolPose> poses;
+  double bow = 0.0;
+  for (const SweptPiece& swept : pieces) {
+    poses.push_back({swept.map.tip0, swept.map.R0t.row(2)});
+    poses.push_back({swept.map.tip1, swept.map.R1t.row(2)});
+    bow = std::max(bow, motion_bound(swept.map, lever));
+  }
+  return neighbourhood(poses, piece, reach, bow);
+}
+
+/// How many pieces from `first` on make one run: the same convex piece, and all within `spread` of each
+/// other.
+size_t run_length(const std::vector<SweptPiece>& pieces, size_t first, double spread) {
+  double travel = 0.0;
+  size_t count = 0;
+  while (first + count < pieces.size() && count < kLanes) {
+    const SweptPiece& next = pieces[first + count];
+    if (next.piece != pieces[first].piece) break;
+    const Vec3 jump =
+        count == 0 ? Vec3(Vec3::Zero()) : Vec3(next.map.tip0 - pieces[first + count - 1].map.tip1);
+    travel += jump.norm() + (next.map.tip1 - next.map.tip0).norm() +
+              next.piece->high * (next.map.R1t.row(2) - next.map.R0t.row(2)).norm();
+    if (count > 0 && travel > spread) break;
+    ++count;
+  }
+  return count;
+}
+
+}  // namespace
+
+void LaneRun::set_lane(size_t lane, const SweepMap& map) {
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      lanes.R0t[row][column].lane[lane] = static_cast<float>(map.R0t(row, column));
+      lanes.R1t[row][column].lane[lane] = static_cast<float>(map.R1t(row, column));
+    }
+    lanes.tip0[row].lane[lane] = static_cast<float>(map.tip0[row] - origin[row]);
+    lanes.tip1[row].lane[lane] = static_cast<float>(map.tip1[row] - origin[row]);
+  }
+}
+
+LaneQuery LaneRun::query(const LevelSet& set, const Vec3& centre, const LeafFloor& floor) const {
+  const Eigen::Vector3f at = (centre - origin).cast<float>();
+  return {{at.x(), at.y(), at.z()},
+          floor.value,
+          {floor.slope[0], floor.slope[1], floor.slope[2]},
+          static_cast<float>(0.5 * (kLeafSide - 1) * set.voxel),
+          static_cast<float>(reach_of(set))};
+}
+
+std::vector<LaneRun> make_runs(const LevelSet& set, const std::vector<SweptPiece>& pieces) {
+  std::vector<LaneRun> runs;
+  for (size_t first = 0; first < pieces.size(); first += runs.back().count) {
+    const double spread = 2.0 * pieces[first].piece->radius + 4.0 * kLeafSide * set.voxel;
+    LaneRun& run = runs.emplace_back();
+    run.first = first;
+    run.count = run_length(pieces, first, spread);
+  }
+  parallel_chunks(runs.size(), kRunsPerTask, [&](size_t begin, size_t end) {
+    for (size_t r = begin; r < end; ++r) {
+      LaneRun& run = runs[r];
+      const auto own = std::span(pieces).subspan(run.first, run.count);
+      run.origin = own.front().map.tip0;
+      run.piece = lane_piece(*own.front().piece);
+      for (size_t lane = 0; lane < kLanes; ++lane) run.set_lane(lane, own[std::min(lane, run.count - 1)].map);
+      run.around = neighbourhood(own, reach_of(set));
+    }
+  });
+  return runs;
+}
+
+void gather_leaves(const LevelSet& set, const LaneRun& run, size_t index, std::vector<LeafPair>& pairs) {
+  static const LaneKernel kernel = lane_kernel_variants().front().kernel;
+  LaneAnswer answer;
+  visit_leaves(set, run.around, [&](size_t leaf, const Vec3& centre) {
+    kernel(run.lanes, run.piece, run.query(set, centre, set.map.floors[leaf]), answer);
+    const LeafPair position = static_cast<LeafPair>(leaf) << 32 | index;
+    if ((answer.swallows & run.all()) != 0) {
+      pairs.push_back(position);
+    } else if ((answer.open & run.all()) != 0) {
+      pairs.push_back(position | kReaches);
+    }
+  });
+}
+
+}  // namespace swarf::stock

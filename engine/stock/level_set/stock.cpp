@@ -1,0 +1,117 @@
+#include "stock/stock.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/check.h"
+#include "stock/level_set/leaf_kernel.h"
+#include "stock/level_set/stock_grid_internal.h"
+
+namespace swarf::stock {
+
+namespace {
+
+/// Of LeafMap, for each leaf position.
+constexpr size_t kMapBytes =
+    sizeof(LeafState) + sizeof(LeafNode*) + sizeof(LeafFloor) + sizeof(decltype(LeafMap::cuts)::value_type);
+
+}  // namespace
+
+struct Stock::Impl {
+  LevelSet level_set;
+};
+
+Stock::Stock(const Box& box_W, double voxel_mm) {
+  SWARF_CHECK(voxel_mm > 0.0 && box_W.size().minCoeff() > 0.0, "a stock needs a voxel size and a volume");
+  impl_ = std::make_unique<Impl>(Impl{make_box(box_W, voxel_mm)});
+}
+Stock::Stock(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Stock::~Stock() = default;
+Stock::Stock(Stock&&) noexcept = default;
+Stock& Stock::operator=(Stock&&) noexcept = default;
+
+void Stock::cut(std::span<const Sweep> sweeps, const CutterSolid& cutter) {
+  cut_level_set(impl_->level_set, sweeps, cutter);
+}
+
+double Stock::voxel_mm() const {
+  return impl_->level_set.voxel;
+}
+const Box& Stock::box() const {
+  return impl_->level_set.box;
+}
+double Stock::volume_mm3() const {
+  return volume(impl_->level_set);
+}
+VolumeRange Stock::volume_between(double slack_mm) const {
+  return stock::volume_between(impl_->level_set, slack_mm);
+}
+double Stock::rounding_mm() const {
+  return impl_->level_set.rounding_mm;
+}
+double Stock::distance_mm(const Vec3& point_W) const {
+  return trilinear(impl_->level_set, point_W);
+}
+const LevelSet& Stock::level_set() const {
+  return impl_->level_set;
+}
+uint64_t Stock::hash() const {
+  return state_hash(impl_->level_set);
+}
+size_t Stock::memory_bytes() const {
+  return impl_->level_set.grid->memUsage() + impl_->level_set.map.size() * kMapBytes;
+}
+const CutStatistics& Stock::statistics() const {
+  return impl_->level_set.statistics;
+}
+std::string Stock::check(CheckLevel level) const {
+  return broken_invariant(impl_->level_set, level);
+}
+std::string Stock::check_since(const Stock& earlier) const {
+  return gained_material(impl_->level_set, earlier.impl_->level_set);
+}
+Stock Stock::clone() const {
+  return Stock(std::make_unique<Impl>(Impl{deep_copy(impl_->level_set)}));
+}
+
+void Stock::save(const std::string& path, const StockMetadata& metadata) const {
+  write_level_set(impl_->level_set, path, metadata);
+}
+Stock Stock::load(const std::string& path, StockMetadata* metadata) {
+  StockMetadata found;
+  Stock stock(std::make_unique<Impl>(Impl{read_level_set(path, found)}));
+  if (metadata != nullptr) *metadata = std::move(found);
+  return stock;
+}
+
+double Stock::air_radius_mm(const Vec3& point_W) const {
+  return air_radius(impl_->level_set, point_W);
+}
+
+size_t Stock::leaves() const {
+  return impl_->level_set.grid->tree().leafCount();
+}
+
+size_t Stock::memory_for(const Box& box_W, double voxel_mm, double leaves) {
+  constexpr double kLeafBytes = 2200.0;             // 512 floats, mask, node; measured 2168 per leaf
+  constexpr double kTransient = sizeof(LeafNode*);  // per position while the box is made
+  constexpr double kPositionBytes = kMapBytes + kTransient;
+  const double positions = (box_W.size() / (kLeafSide * voxel_mm) + Vec3::Constant(2.0)).prod();
+  constexpr double kEverything = 1e18;  // what is more has no number of bytes
+  return static_cast<size_t>(std::min(leaves * kLeafBytes + positions * kPositionBytes, kEverything));
+}
+
+size_t Stock::memory_estimate(const Box& box_W, double voxel_mm) {
+  // A surface element is met by leaves of (8 voxel)^2 face area; the band is 6 voxels thick, so a leaf
+  // position along the surface's normal is touched with probability (8 + 6) / 8.
+  constexpr double kLayers = (kLeafSide + 2.0 * kBandVoxels) / kLeafSide;
+  const Vec3 d = box_W.size();
+  const double area = 2.0 * (d.x() * d.y() + d.y() * d.z() + d.z() * d.x());
+  const double leaf_mm = kLeafSide * voxel_mm;
+  // Edges and corners are met by more leaves than their share of the faces, and the tree has inner nodes.
+  constexpr double kRest = 1.3;
+  return static_cast<size_t>(
+      kRest * static_cast<double>(memory_for(box_W, voxel_mm, kLayers * area / (leaf_mm * leaf_mm))));
+}
+
+}  // namespace swarf::stock

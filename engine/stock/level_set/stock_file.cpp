@@ -1,0 +1,272 @@
+// Stock files: an OpenVDB file that other programs can open, with sixteen bytes after its end that they
+// ignore: a mark and a checksum of everything before. A file that is cut off or damaged is recognised by them
+// before any of it is interpreted.
+#include <fmt/format.h>
+#include <openvdb/io/Stream.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+#include "base/check.h"
+#include "base/diagnostics.h"
+#include "base/hash.h"
+#include "base/input_file.h"
+#include "stock/level_set/leaf_kernel.h"
+#include "stock/level_set/stock_grid_internal.h"
+
+namespace swarf::stock {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr char kMark[] = "SWARFVDB";
+constexpr size_t kMarkBytes = 8;
+constexpr size_t kTrailerBytes = kMarkBytes + sizeof(uint64_t);
+constexpr char kFormatKey[] = "swarf_stock_format";
+constexpr char kFormat[] = "1";
+constexpr char kBoxLowerKey[] = "swarf_box_lower_mm";
+constexpr char kBoxUpperKey[] = "swarf_box_upper_mm";
+constexpr char kRoundingKey[] = "swarf_rounding_mm";
+
+uint64_t checksum(std::string_view bytes) {
+  Hash hash;
+  hash.add(static_cast<uint64_t>(bytes.size()));
+  for (size_t at = 0; at < bytes.size(); at += sizeof(uint64_t)) {
+    uint64_t word = 0;
+    std::memcpy(&word, bytes.data() + at, std::min(sizeof(word), bytes.size() - at));
+    hash.add(word);
+  }
+  return hash.value();
+}
+
+[[noreturn]] void refuse(const std::string& code, const std::string& path, const std::string& text,
+                         const std::string& fix) {
+  throw InputError(code, {path, 0, 0}, text, fix);
+}
+
+std::string read_bytes(const std::string& path) {
+  refuse_special_file(path);
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream bytes;
+  if (!in || fs::is_directory(path)) {
+    refuse("stock-file-unreadable", path, "the stock file cannot be read",
+           "name a file written by swarf run");
+  }
+  bytes << in.rdbuf();
+  return std::move(bytes).str();
+}
+
+/// Refuses a file without swarf's trailer and says what it is. OpenVDB does not get to read it: its reader
+/// trusts lengths that a damaged file may hold. The texts looked for stand uncompressed in an OpenVDB file.
+[[noreturn]] void refuse_unmarked(const std::string& path, const std::string& bytes) {
+  const auto holds = [&](std::string_view text) { return bytes.find(text) != std::string::npos; };
+  constexpr std::string_view kOpenVdbMagic{" BDV\0\0\0\0", 8};
+  const size_t begun = std::min(bytes.size(), kOpenVdbMagic.size());
+  if (bytes.compare(0, begun, kOpenVdbMagic.substr(0, begun)) != 0) {
+    refuse("stock-file-foreign", path, "this is not an OpenVDB file",
+           "name a stock.vdb written by swarf run");
+  }
+  // The grid's transform ("UniformScaleMap", "AffineMap", ...) follows all of its metadata.
+  if (holds(kFormatKey) || !holds("Map")) {
+    refuse("stock-file-incomplete", path,
+           fmt::format("the file of {} bytes does not end as swarf ends its stock files", bytes.size()),
+           "it was cut off, or another program saved it again: run the scene again to write it");
+  }
+  if (!holds("level set")) {
+    refuse(
+        "stock-not-level-set", path,
+        holds("fog volume") ? "the file holds a fog volume, not a level set" : "the file holds no level set",
+        "name a stock.vdb written by swarf run");
+  }
+  refuse("stock-file-foreign", path, "the level set was written by another program: its box is not known",
+         "name a stock.vdb written by swarf run");
+}
+
+/// The OpenVDB part of a file whose trailer is whole.
+std::string verified_bytes(const std::string& path) {
+  std::string bytes = read_bytes(path);
+  if (bytes.empty()) {
+    refuse("stock-file-empty", path, "the stock file is empty", "run the scene again to write it");
+  }
+  const bool marked = bytes.size() > kTrailerBytes &&
+                      bytes.compare(bytes.size() - kTrailerBytes, kMarkBytes, kMark, kMarkBytes) == 0;
+  if (!marked) refuse_unmarked(path, bytes);
+  uint64_t expected = 0;
+  std::memcpy(&expected, bytes.data() + bytes.size() - sizeof(expected), sizeof(expected));
+  bytes.resize(bytes.size() - kTrailerBytes);
+  if (checksum(bytes) != expected) {
+    refuse("stock-file-damaged", path, "the checksum of the stock file does not match its content",
+           "run the scene again to write it");
+  }
+  return bytes;
+}
+
+openvdb::FloatGrid::Ptr parse_grid(const std::string& path, const std::string& bytes) {
+  empty_grid(1.0);  // registers the grid types
+  openvdb::GridPtrVecPtr grids;
+  try {
+    std::istringstream in(bytes);
+    openvdb::io::Stream stream(in, /*delayLoad=*/false);
+    grids = stream.getGrids();
+    if (!in) throw std::runtime_error("it ends before its grid does");
+  } catch (const std::exception& error) {  // OpenVDB's own, and those of the memory that it asks for
+    refuse("stock-file-damaged", path, fmt::format("OpenVDB cannot read the file: {}", error.what()),
+           "run the scene again to write it");
+  }
+  const auto grid = grids && grids->size() == 1 ? openvdb::gridPtrCast<openvdb::FloatGrid>(grids->front())
+                                                : openvdb::FloatGrid::Ptr();
+  if (!grid || grid->getGridClass() != openvdb::GRID_LEVEL_SET ||
+      !grid->getMetadata<openvdb::Vec3DMetadata>(kBoxLowerKey) ||
+      !grid->getMetadata<openvdb::Vec3DMetadata>(kBoxUpperKey)) {
+    refuse("stock-not-level-set", path, "the file holds no single level set with a stock box",
+           "use a stock.vdb written by swarf run");
+  }
+  return grid;
+}
+
+Vec3 metadata_vector(const openvdb::FloatGrid& grid, const char* key) {
+  const openvdb::Vec3d v = grid.metaValue<openvdb::Vec3d>(key);
+  return {v.x(), v.y(), v.z()};
+}
+
+/// Files written before the rounding was kept: what kernels that did not shorten long sweeps rounded, eight
+/// times half the spacing of floats at the length of the stock or of a retract from it.
+double rounding_of(const LevelSet& set) {
+  if (set.grid->getMetadata<openvdb::DoubleMetadata>(kRoundingKey))
+    return set.grid->metaValue<double>(kRoundingKey);
+  constexpr double kRoundings = 8.0, kHalfSpacing = 6e-8, kLeastLength = 50.0;
+  return kRoundings * kHalfSpacing * std::max(kLeastLength, set.box.size().norm());
+}
+
+/// Fills the map from the tree's leaves and tile signs.
+void attach_map(LevelSet& set) {
+  set.map = empty_map(set.box, set.voxel);
+  size_t found = 0;
+  for (size_t n = 0; n < set.map.size(); ++n) {
+    const openvdb::Coord origin = set.map.origin(n);
+    set.map.leaves[n] = set.grid->tree().probeLeaf(origin);
+    const bool solid = set.grid->tree().getValue(origin) < 0.0F;
+    set.map.states[n] = set.map.leaves[n] ? LeafState::kLeaf : solid ? LeafState::kSolid : LeafState::kAir;
+    found += set.map.leaves[n] ? 1 : 0;
+  }
+  SWARF_CHECK(found == set.grid->tree().leafCount(), "a level set has leaves outside its box");
+}
+
+void add_metadata(openvdb::FloatGrid& grid, const LevelSet& set, const StockMetadata& metadata) {
+  for (const auto& [key, text] : metadata) grid.insertMeta(key, openvdb::StringMetadata(text));
+  const auto vector = [](const Vec3& v) { return openvdb::Vec3DMetadata({v.x(), v.y(), v.z()}); };
+  grid.insertMeta(kFormatKey, openvdb::StringMetadata(kFormat));
+  grid.insertMeta(kBoxLowerKey, vector(set.box.lower));
+  grid.insertMeta(kBoxUpperKey, vector(set.box.upper));
+  grid.insertMeta(kRoundingKey, openvdb::DoubleMetadata(set.rounding_mm));
+}
+
+/// OpenVDB names each file it writes by a random UUID. Ours is made from the content, so that equal stocks
+/// are equal files; it stands behind magic number, three version numbers and a flag.
+constexpr size_t kUuidAt = 8 + 3 * 4 + 1, kUuidLetters = 36;
+
+void name_by_content(std::string& bytes) {
+  SWARF_CHECK(
+      bytes.size() > kUuidAt + kUuidLetters && bytes[kUuidAt + 8] == '-' && bytes[kUuidAt + 23] == '-',
+      "OpenVDB has changed where the UUID of a file stands");
+  bytes.replace(kUuidAt, kUuidLetters, kUuidLetters, '0');
+  const uint64_t first = checksum(bytes);
+  Hash second;
+  second.add(first);
+  const std::string digits = fmt::format("{:016x}{:016x}", first, second.value());
+  // Version 8 of RFC 9562 is the writer's own.
+  const std::string uuid = fmt::format("{}-{}-8{}-8{}-{}", digits.substr(0, 8), digits.substr(8, 4),
+                                       digits.substr(13, 3), digits.substr(17, 3), digits.substr(20, 12));
+  bytes.replace(kUuidAt, kUuidLetters, uuid);
+}
+
+/// Names the file by its content and ends it with mark and checksum. It is read back first: OpenVDB does not
+/// say when a full disk has taken its end.
+void finish_file(const std::string& path) {
+  std::string bytes = read_bytes(path);
+  parse_grid(path, bytes);
+  name_by_content(bytes);
+  const uint64_t sum = checksum(bytes);
+  std::fstream out(path, std::ios::binary | std::ios::in | std::ios::out);
+  out.seekp(kUuidAt);
+  out.write(bytes.data() + kUuidAt, kUuidLetters);
+  out.seekp(0, std::ios::end);
+  out.write(kMark, kMarkBytes);
+  out.write(reinterpret_cast<const char*>(&sum), sizeof(sum));
+  out.flush();
+  if (!out)
+    refuse("stock-file-unwritable", path, "the end of the stock file cannot be written", "free space");
+}
+
+/// Equal stocks are equal files: -0 equals 0, and which of the two stands depends on the order of the cuts.
+void drop_minus_zero(const LevelSet& set) {
+  for (LeafNode* leaf : set.map.leaves) {
+    if (leaf == nullptr) continue;
+    float* values = leaf->buffer().data();
+    for (int n = 0; n < kLeafVoxels; ++n) values[n] += 0.0F;
+  }
+}
+
+}  // namespace
+
+void write_level_set(const LevelSet& set, const std::string& path, const StockMetadata& metadata) {
+  drop_minus_zero(set);
+  const std::string temporary = path + ".part";
+  openvdb::FloatGrid::Ptr grid = set.grid->copy();  // shares the tree, owns its metadata
+  add_metadata(*grid, set, metadata);
+  try {
+    openvdb::io::File file(temporary);
+    file.write(openvdb::GridPtrVec{grid});
+    file.close();
+    finish_file(temporary);
+    fs::rename(temporary, path);
+  } catch (const openvdb::Exception& error) {
+    std::error_code ignored;
+    fs::remove(temporary, ignored);
+    refuse("stock-file-unwritable", path, fmt::format("the stock file cannot be written: {}", error.what()),
+           "check that the folder exists, may be written and has space");
+  } catch (const InputError&) {  // it came back incomplete
+    std::error_code ignored;
+    fs::remove(temporary, ignored);
+    refuse("stock-file-unwritable", path, "the stock file cannot be written to its end",
+           "check that the folder may be written and has space");
+  } catch (const fs::filesystem_error& error) {
+    std::error_code ignored;
+    fs::remove(temporary, ignored);
+    refuse("stock-file-unwritable", path, fmt::format("the stock file cannot be renamed: {}", error.what()),
+           "check that the folder may be written");
+  }
+}
+
+LevelSet read_level_set(const std::string& path, StockMetadata& metadata) {
+  LevelSet set;
+  set.grid = parse_grid(path, verified_bytes(path));
+  for (auto meta = set.grid->beginMeta(); meta != set.grid->endMeta(); ++meta) {
+    if (meta->second->typeName() == openvdb::StringMetadata::staticTypeName()) {
+      metadata[meta->first] = meta->second->str();
+    }
+  }
+  set.voxel = set.grid->voxelSize().x();
+  set.box = {metadata_vector(*set.grid, kBoxLowerKey), metadata_vector(*set.grid, kBoxUpperKey)};
+  set.rounding_mm = rounding_of(set);
+  attach_map(set);
+  return set;
+}
+
+LevelSet deep_copy(const LevelSet& original) {
+  LevelSet set;
+  set.box = original.box;
+  set.voxel = original.voxel;
+  set.grid = original.grid->deepCopy();
+  set.statistics = original.statistics;
+  set.rounding_mm = original.rounding_mm;
+  attach_map(set);
+  return set;
+}
+
+}  // namespace swarf::stock

@@ -1,0 +1,158 @@
+#include <openvdb/tools/SignedFloodFill.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "base/parallel.h"
+#include "stock/level_set/leaf_kernel.h"
+#include "stock/level_set/stock_grid_internal.h"
+
+namespace openvdb {
+OPENVDB_USE_VERSION_NAMESPACE
+namespace OPENVDB_VERSION_NAME {
+template class Grid<FloatTree>;
+namespace tree {
+template class Tree<FloatTree::RootNodeType>;
+}
+}  // namespace OPENVDB_VERSION_NAME
+}  // namespace openvdb
+
+namespace swarf::stock {
+namespace {
+
+constexpr size_t kLeavesPerTask = 512;
+
+/// Euclidean signed distance to the box.
+double box_distance(const Box& box, const Vec3& point) {
+  const Vec3 q = (point - box.centre()).cwiseAbs() - 0.5 * box.size();
+  return q.cwiseMax(0.0).norm() + std::min(q.maxCoeff(), 0.0);
+}
+
+void fill_leaf(LeafNode& leaf, const Box& box, double voxel, float band) {
+  float* values = leaf.buffer().data();
+  const Vec3 centre = box.centre(), half = 0.5 * box.size();
+  double q[3][kLeafSide];  // distance beyond the box's faces, by axis
+  for (int a = 0; a < 3; ++a) {
+    for (int i = 0; i < kLeafSide; ++i) {
+      q[a][i] = std::abs((leaf.origin()[a] + i) * voxel - centre[a]) - half[a];
+    }
+  }
+  for (int n = 0; n < kLeafVoxels; ++n) {
+    const double x = q[0][n / 64], y = q[1][n / 8 % 8], z = q[2][n % 8];
+    const double inside = std::min(std::max({x, y, z}), 0.0);
+    const double ox = std::max(x, 0.0), oy = std::max(y, 0.0), oz = std::max(z, 0.0);
+    const double distance = std::sqrt(ox * ox + oy * oy + oz * oz) + inside;
+    values[n] = std::clamp(static_cast<float>(distance), -band, band);
+  }
+}
+
+/// The state of one leaf position of a fresh box; a leaf is handed over in `made`.
+LeafState box_leaf(const LevelSet& set, size_t index, std::unique_ptr<LeafNode>& made) {
+  const double centre = box_distance(set.box, set.leaf_centre(index));
+  const double reach = set.leaf_radius() + set.band();
+  if (std::abs(centre) > reach) return centre < 0.0 ? LeafState::kSolid : LeafState::kAir;
+  made = std::make_unique<LeafNode>(set.map.origin(index), 0.0F, false);
+  fill_leaf(*made, set.box, set.voxel, set.band());
+  const LeafState state = settle_leaf(*made, set.band());
+  if (state != LeafState::kLeaf) made.reset();
+  return state;
+}
+
+int leaf_floor(double voxels) {
+  return static_cast<int>(std::floor(voxels / kLeafSide));
+}
+
+}  // namespace
+
+openvdb::Coord LeafMap::origin(size_t index) const {
+  const auto k = static_cast<int>(index % dimension.z());
+  const auto j = static_cast<int>(index / dimension.z() % dimension.y());
+  const auto i = static_cast<int>(index / dimension.z() / dimension.y());
+  return {(lower.x() + i) * kLeafSide, (lower.y() + j) * kLeafSide, (lower.z() + k) * kLeafSide};
+}
+
+Vec3 LevelSet::leaf_centre(size_t index) const {
+  const openvdb::Coord origin = map.origin(index);
+  const double half = 0.5 * (kLeafSide - 1);
+  return Vec3(origin.x() + half, origin.y() + half, origin.z() + half) * voxel;
+}
+
+double LevelSet::leaf_radius() const {
+  return std::sqrt(3.0) * 0.5 * (kLeafSide - 1) * voxel;
+}
+
+float LevelSet::value(const openvdb::Coord& ijk) const {
+  const int i = (ijk.x() >> 3) - map.lower.x(), j = (ijk.y() >> 3) - map.lower.y(),
+            k = (ijk.z() >> 3) - map.lower.z();
+  const bool known =
+      i >= 0 && j >= 0 && k >= 0 && i < map.dimension.x() && j < map.dimension.y() && k < map.dimension.z();
+  if (!known) return band();
+  const size_t index = map.index(i, j, k);
+  if (map.states[index] != LeafState::kLeaf) {
+    return map.states[index] == LeafState::kSolid ? -band() : band();
+  }
+  return map.leaves[index]->getValue(LeafNode::coordToOffset(ijk));
+}
+
+LeafMap empty_map(const Box& box, double voxel) {
+  LeafMap map;
+  const double margin = kBandVoxels + 1.0;  // beyond the band all is air
+  openvdb::Coord upper;
+  for (int a = 0; a < 3; ++a) {
+    map.lower[a] = leaf_floor(box.lower[a] / voxel - margin);
+    upper[a] = leaf_floor(box.upper[a] / voxel + margin);
+    map.dimension[a] = upper[a] - map.lower[a] + 1;
+  }
+  const size_t count = static_cast<size_t>(map.dimension.x()) * map.dimension.y() * map.dimension.z();
+  map.states.assign(count, LeafState::kAir);
+  map.leaves.assign(count, nullptr);
+  map.floors.assign(count, {static_cast<float>(-kBandVoxels * voxel), {}});
+  map.cuts.assign(count, 0);
+  return map;
+}
+
+openvdb::FloatGrid::Ptr empty_grid(double voxel) {
+  static const bool initialised = (openvdb::initialize(), true);
+  static_cast<void>(initialised);
+  auto grid = openvdb::FloatGrid::create(static_cast<float>(kBandVoxels * voxel));
+  grid->setTransform(openvdb::math::Transform::createLinearTransform(voxel));
+  grid->setGridClass(openvdb::GRID_LEVEL_SET);
+  grid->setName("stock");
+  return grid;
+}
+
+LeafState settle_leaf(LeafNode& leaf, float band) {
+  static const LeafSummary summary = leaf_kernel_variants().front().summary;
+  uint64_t active[kLeafVoxels / 64];
+  const LeafRange range = summary(leaf.buffer().data(), band, active);
+  for (int word = 0; word < kLeafVoxels / 64; ++word) {
+    leaf.getValueMask().getWord<openvdb::Index64>(word) = active[word];
+  }
+  return range.least >= band       ? LeafState::kAir
+         : range.greatest <= -band ? LeafState::kSolid
+                                   : LeafState::kLeaf;
+}
+
+LevelSet make_box(const Box& box, double voxel) {
+  LevelSet set;
+  set.box = box;
+  set.voxel = voxel;
+  set.grid = empty_grid(voxel);
+  set.map = empty_map(box, voxel);
+  std::vector<std::unique_ptr<LeafNode>> made(set.map.size());
+  parallel_chunks(set.map.size(), kLeavesPerTask, [&](size_t begin, size_t end) {
+    for (size_t n = begin; n < end; ++n) set.map.states[n] = box_leaf(set, n, made[n]);
+  });
+  for (size_t n = 0; n < made.size(); ++n) {
+    if (!made[n]) continue;
+    set.map.leaves[n] = made[n].get();
+    set.grid->tree().addLeaf(made[n].release());
+  }
+  // Leaves have their signs already; the tiles between them get theirs here.
+  constexpr openvdb::Index kTilesOnly = 1;
+  openvdb::tools::signedFloodFill(set.grid->tree(), true, 1, kTilesOnly);
+  return set;
+}
+
+}  // namespace swarf::stock

@@ -1,0 +1,181 @@
+// Between which volumes the material lies, from the level set alone.
+//
+// The value at a grid point is the distance d of a 1-Lipschitz function whose zero set is the surface, so the
+// ball of radius |d| about the point is all material (d < 0) or all air (d > 0). A cell, the cube of one
+// voxel about its grid point, with |d| above its half diagonal is settled by its own ball. Every other one is
+// divided into kRods x kRods rods along the axis of its steepest change; each ball about a grid point nearby
+// settles the stretch of a rod that lies in it at the rod's farthest edge. What is left unsettled may be
+// either.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "base/parallel.h"
+#include "stock/level_set/leaf_kernel.h"
+#include "stock/level_set/stock_grid_internal.h"
+
+namespace swarf::stock {
+namespace {
+
+constexpr size_t kPositionsPerTask = 16;
+
+constexpr int kRods = 3;             // along each side of a cell
+constexpr int kAcross = 1;           // grid points on each side of a cell whose balls are looked at, across
+constexpr int kAlong = kBandVoxels;  // and along the rods: the farthest ball in the band
+constexpr int kRim = 3, kSide = kLeafSide + 2 * kRim;
+static_assert(kRim >= kAlong && kRim >= kAcross);
+
+/// Values of a leaf and of what surrounds it, in voxels; strides x, y, z.
+struct Surroundings {
+  std::array<float, kSide * kSide * kSide> values;
+  static constexpr std::array<int, 3> kStride{kSide * kSide, kSide, 1};
+
+  Surroundings(const LevelSet& set, const openvdb::Coord& origin) {
+    const auto scale = static_cast<float>(1.0 / set.voxel);
+    size_t n = 0;
+    for (int i = -kRim; i < kLeafSide + kRim; ++i)
+      for (int j = -kRim; j < kLeafSide + kRim; ++j)
+        for (int k = -kRim; k < kLeafSide + kRim; ++k)
+          values[n++] = scale * set.value(origin.offsetBy(i, j, k));
+  }
+};
+
+/// Square of the distance across, in voxels, from the line of a grid point to the farthest edge of a rod.
+struct Across {
+  // [rod a][rod b][point a + kAcross][point b + kAcross]
+  float square[kRods][kRods][2 * kAcross + 1][2 * kAcross + 1];
+  Across() {
+    const auto reach = [](int rod, int point) {
+      const double middle = (rod + 0.5) / kRods - 0.5;
+      return std::abs(middle - (point - kAcross)) + 0.5 / kRods;
+    };
+    for (int a = 0; a < kRods; ++a)
+      for (int b = 0; b < kRods; ++b)
+        for (int p = 0; p <= 2 * kAcross; ++p)
+          for (int q = 0; q <= 2 * kAcross; ++q)
+            square[a][b][p][q] = static_cast<float>(reach(a, p) * reach(a, p) + reach(b, q) * reach(b, q));
+  }
+};
+
+/// A grid point whose ball may settle something: its square of |d| and where it stands.
+struct BallPoint {
+  float square;
+  int a, b;     ///< indices into Across
+  float along;  ///< from the cell's grid point
+};
+
+/// Share of a cell that is settled as material or as air.
+struct Settled {
+  double solid = 0.0, air = 0.0;
+};
+
+/// Stretches of a rod from -1/2 to 1/2 that balls settle: those that hold one of its ends.
+class Stretch {
+ public:
+  void add(float low, float high) {
+    if (low <= -0.5F) up_to_ = std::max(up_to_, high);
+    if (high >= 0.5F) from_ = std::min(from_, low);
+  }
+  double length() const {
+    const double below = std::max(0.0F, up_to_ + 0.5F), above = std::max(0.0F, 0.5F - from_);
+    return std::min(1.0, below + above);
+  }
+
+ private:
+  float up_to_ = -0.5F, from_ = 0.5F;
+};
+
+class Cell {
+ public:
+  Cell(const Surroundings& around, int at, float slack) {
+    const float* here = around.values.data() + at;
+    int axis = 0;
+    float steepest = -1.0F;
+    for (int n = 0; n < 3; ++n) {
+      const int stride = Surroundings::kStride.at(static_cast<size_t>(n));
+      const float change = std::abs(here[stride] - here[-stride]);
+      if (change > steepest) steepest = change, axis = n;
+    }
+    const auto stride = [&](int n) { return Surroundings::kStride.at(static_cast<size_t>((axis + n) % 3)); };
+    for (int a = 0; a <= 2 * kAcross; ++a)
+      for (int b = 0; b <= 2 * kAcross; ++b)
+        for (int k = -kAlong; k <= kAlong; ++k) {
+          const float value = here[k * stride(0) + (a - kAcross) * stride(1) + (b - kAcross) * stride(2)];
+          const float radius = std::abs(value) - slack;
+          if (radius <= 1.0F) continue;  // nearer ones settle what farther ones do
+          (value < 0.0F ? solid_ : air_).push_back({radius * radius, a, b, static_cast<float>(k)});
+        }
+  }
+
+  Settled settled() const { return {share(solid_), share(air_)}; }
+
+ private:
+  static double share(const std::vector<BallPoint>& balls) {
+    static const Across across;
+    double sum = 0.0;
+    for (int a = 0; a < kRods; ++a) {
+      for (int b = 0; b < kRods; ++b) {
+        Stretch stretch;
+        for (const BallPoint& ball : balls) {
+          const float square = ball.square - across.square[a][b][ball.a][ball.b];
+          if (square <= 0.0F) continue;
+          const float half = std::sqrt(square);
+          stretch.add(ball.along - half, ball.along + half);
+        }
+        sum += stretch.length();
+      }
+    }
+    return sum / (kRods * kRods);
+  }
+
+  std::vector<BallPoint> solid_, air_;
+};
+
+/// Of one leaf, in voxels: least volume and greatest.
+VolumeRange leaf_range(const LevelSet& set, size_t position, float slack) {
+  const Surroundings around(set, set.map.origin(position));
+  const float half_diagonal = 0.5F * std::sqrt(3.0F) + slack;
+  VolumeRange range;
+  for (int v = 0; v < kLeafVoxels; ++v) {
+    const int at = (v / 64 + kRim) * Surroundings::kStride[0] +
+                   (v / 8 % 8 + kRim) * Surroundings::kStride[1] + (v % 8 + kRim);
+    const float value = around.values.at(static_cast<size_t>(at));
+    if (std::abs(value) >= half_diagonal) {
+      range.least += value < 0.0F ? 1.0 : 0.0;
+      range.greatest += value < 0.0F ? 1.0 : 0.0;
+      continue;
+    }
+    const Settled settled = Cell(around, at, slack).settled();
+    range.least += settled.solid;
+    range.greatest += 1.0 - settled.air;
+  }
+  return range;
+}
+
+}  // namespace
+
+VolumeRange volume_between(const LevelSet& set, double slack_mm) {
+  // The conversion to voxels rounds once more.
+  constexpr double kRounding = 1e-6;
+  const auto slack = static_cast<float>((slack_mm + set.rounding_mm) / set.voxel + kRounding);
+  std::vector<VolumeRange> parts(set.map.size());
+  parallel_chunks(parts.size(), kPositionsPerTask, [&](size_t begin, size_t end) {
+    for (size_t n = begin; n < end; ++n) {
+      if (set.map.states[n] == LeafState::kLeaf) {
+        parts[n] = leaf_range(set, n, slack);
+      } else if (set.map.states[n] == LeafState::kSolid) {
+        parts[n] = {kLeafVoxels, kLeafVoxels};
+      }
+    }
+  });
+  VolumeRange whole;
+  for (const VolumeRange& part : parts) {
+    whole.least += part.least;
+    whole.greatest += part.greatest;
+  }
+  const double voxel3 = std::pow(set.voxel, 3);
+  return {whole.least * voxel3, whole.greatest * voxel3};
+}
+
+}  // namespace swarf::stock

@@ -1,0 +1,244 @@
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "base/check.h"
+#include "base/parallel.h"
+#include "stock/level_set/stock_grid_internal.h"
+#include "stock/mesher/mesher_leaf.h"
+#include "stock/mesher/stock_mesher.h"
+
+namespace swarf::stock {
+namespace {
+
+constexpr size_t kLeavesPerTask = 32;
+constexpr int kSide = 8;
+
+/// A leaf position and those around it.
+struct Place {
+  int i, j, k;
+};
+
+Place place_of(const LeafMap& map, size_t n) {
+  const auto plane = static_cast<size_t>(map.dimension.y()) * map.dimension.z();
+  return {static_cast<int>(n / plane), static_cast<int>(n % plane / map.dimension.z()),
+          static_cast<int>(n % map.dimension.z())};
+}
+
+bool known(const LeafMap& map, const Place& p) {
+  return p.i >= 0 && p.j >= 0 && p.k >= 0 && p.i < map.dimension.x() && p.j < map.dimension.y() &&
+         p.k < map.dimension.z();
+}
+
+/// The values of one leaf position: an array, or one value for all of it.
+struct LeafView {
+  const float* values = nullptr;
+  float constant = 0.0F;
+};
+
+LeafView leaf_view(const LevelSet& set, const Place& p) {
+  if (!known(set.map, p)) return {nullptr, set.band()};
+  const size_t n = set.map.index(p.i, p.j, p.k);
+  if (set.map.states[n] == LeafState::kLeaf) return {set.map.leaves[n]->buffer().data(), 0.0F};
+  return {nullptr, set.map.states[n] == LeafState::kSolid ? -set.band() : set.band()};
+}
+
+void gather_values(const LevelSet& set, size_t n, ValueBlock& block) {
+  const Place p = place_of(set.map, n);
+  std::array<LeafView, 27> views;
+  for (int v = 0; v < 27; ++v)
+    views[v] = leaf_view(set, {p.i + v / 9 - 1, p.j + v / 3 % 3 - 1, p.k + v % 3 - 1});
+  const auto scale = static_cast<float>(1.0 / set.voxel);
+  float* out = block.values.data();
+  for (int i = -1; i <= kSide + 1; ++i) {
+    for (int j = -1; j <= kSide + 1; ++j) {
+      // (x + 8) / 8 is 0, 1, 2 in the leaf before, here and after.
+      const LeafView* row = &views[(i + kSide) / kSide * 9 + (j + kSide) / kSide * 3];
+      const int offset = (i & 7) * 64 + (j & 7) * kSide;
+      const auto copy = [&](const LeafView& view, int first, int count) {
+        for (int k = 0; k < count; ++k) {
+          *out++ = scale * (view.values != nullptr ? view.values[offset + first + k] : view.constant);
+        }
+      };
+      copy(row[0], kSide - 1, 1);
+      copy(row[1], 0, kSide);
+      copy(row[2], 0, 2);
+    }
+  }
+}
+
+/// Sets `marks` at every position whose offset from `n` lies in [low, high] along each axis.
+void mark_around(const LeafMap& map, size_t n, int low, int high, std::vector<uint8_t>& marks) {
+  const Place p = place_of(map, n);
+  for (int i = low; i <= high; ++i) {
+    for (int j = low; j <= high; ++j) {
+      for (int k = low; k <= high; ++k) {
+        const Place q{p.i + i, p.j + j, p.k + k};
+        if (known(map, q)) marks[map.index(q.i, q.j, q.k)] = 1;
+      }
+    }
+  }
+}
+
+std::vector<size_t> marked(const std::vector<uint8_t>& marks) {
+  std::vector<size_t> places;
+  for (size_t n = 0; n < marks.size(); ++n) {
+    if (marks[n] != 0) places.push_back(n);
+  }
+  return places;
+}
+
+}  // namespace
+
+struct StockMesher::Impl {
+  const LevelSet& set;
+  std::vector<std::unique_ptr<LeafMesh>> leaves;
+  std::vector<uint32_t> seen;  ///< LeafMap::cuts at the last call; empty before the first
+  size_t meshed = 0;
+
+  explicit Impl(const LevelSet& level_set) : set(level_set), leaves(level_set.map.size()) {}
+
+  std::vector<uint8_t> changed_places();
+  void place(size_t n);
+  void join(size_t n);
+  void update();
+  TriMesh assemble() const;
+  std::array<const LeafMesh*, 8> around(size_t n) const;
+  Vec3 origin_W(size_t n) const {
+    const openvdb::Coord first = set.map.origin(n);
+    return set.voxel * Vec3(first.x(), first.y(), first.z());
+  }
+};
+
+/// Positions whose vertices depend on values that have changed.
+std::vector<uint8_t> StockMesher::Impl::changed_places() {
+  if (seen.empty()) {
+    seen = set.map.cuts;
+    return std::vector<uint8_t>(set.map.size(), 1);
+  }
+  std::vector<uint8_t> changed(set.map.size(), 0);
+  for (size_t n = 0; n < seen.size(); ++n) {
+    if (seen[n] != set.map.cuts[n]) mark_around(set.map, n, -1, 1, changed);
+  }
+  seen = set.map.cuts;
+  return changed;
+}
+
+void StockMesher::Impl::place(size_t n) {
+  bool passed = false;
+  if (set.map.states[n] == LeafState::kLeaf) {
+    ValueBlock block;
+    gather_values(set, n, block);
+    if (!leaves[n]) leaves[n] = std::make_unique<LeafMesh>();
+    passed = place_vertices(block, origin_W(n), set.voxel, *leaves[n]);
+  }
+  if (!passed) leaves[n].reset();
+}
+
+std::array<const LeafMesh*, 8> StockMesher::Impl::around(size_t n) const {
+  const Place p = place_of(set.map, n);
+  std::array<const LeafMesh*, 8> meshes{};
+  for (int v = 0; v < 8; ++v) {
+    const Place q{p.i - (v >> 2), p.j - (v >> 1 & 1), p.k - (v & 1)};
+    if (known(set.map, q)) meshes[v] = leaves[set.map.index(q.i, q.j, q.k)].get();
+  }
+  return meshes;
+}
+
+void StockMesher::Impl::join(size_t n) {
+  if (leaves[n]) join_vertices(around(n), origin_W(n), set.voxel, *leaves[n]);
+}
+
+void StockMesher::Impl::update() {
+  const std::vector<size_t> changed = marked(changed_places());
+  meshed = static_cast<size_t>(std::count_if(
+      changed.begin(), changed.end(), [&](size_t n) { return set.map.states[n] == LeafState::kLeaf; }));
+  parallel_chunks(changed.size(), kLeavesPerTask, [&](size_t begin, size_t end) {
+    for (size_t c = begin; c < end; ++c) place(changed[c]);
+  });
+  // A leaf's triangles use vertices of the leaves before it.
+  std::vector<uint8_t> joined(set.map.size(), 0);
+  for (const size_t n : changed) {
+    if (changed.size() == joined.size())
+      joined[n] = 1;
+    else
+      mark_around(set.map, n, 0, 1, joined);
+  }
+  const std::vector<size_t> places = marked(joined);
+  parallel_chunks(places.size(), kLeavesPerTask, [&](size_t begin, size_t end) {
+    for (size_t c = begin; c < end; ++c) join(places[c]);
+  });
+}
+
+TriMesh StockMesher::Impl::assemble() const {
+  std::vector<size_t> places;
+  std::vector<uint32_t> first_vertex(leaves.size(), 0);
+  std::vector<size_t> first_triangle(leaves.size(), 0);
+  size_t vertices = 0, triangles = 0;
+  for (size_t n = 0; n < leaves.size(); ++n) {
+    if (!leaves[n]) continue;
+    places.push_back(n);
+    first_vertex[n] = static_cast<uint32_t>(vertices);
+    first_triangle[n] = triangles;
+    vertices += leaves[n]->vertices.size();
+    triangles += leaves[n]->triangles.size();
+  }
+  SWARF_CHECK(vertices < 0xffffffffU, "more vertices than 32 bits can number");
+  TriMesh mesh;
+  mesh.positions.resize(vertices);
+  mesh.normals.resize(vertices);
+  mesh.triangles.resize(triangles);
+  parallel_chunks(places.size(), kLeavesPerTask, [&](size_t begin, size_t end) {
+    for (size_t c = begin; c < end; ++c) {
+      const size_t n = places[c];
+      const LeafMesh& leaf = *leaves[n];
+      for (size_t v = 0; v < leaf.vertices.size(); ++v) {
+        mesh.positions[first_vertex[n] + v] = leaf.vertices[v].position;
+        mesh.normals[first_vertex[n] + v] = leaf.vertices[v].normal;
+      }
+      const Place p = place_of(set.map, n);
+      std::array<uint32_t, 8> base{};
+      for (int v = 0; v < 8; ++v) {
+        const Place q{p.i - (v >> 2), p.j - (v >> 1 & 1), p.k - (v & 1)};
+        if (known(set.map, q)) base[v] = first_vertex[set.map.index(q.i, q.j, q.k)];
+      }
+      for (size_t t = 0; t < leaf.triangles.size(); ++t) {
+        auto& triangle = mesh.triangles[first_triangle[n] + t];
+        for (int corner = 0; corner < 3; ++corner) {
+          const VertexRef ref = leaf.triangles[t][corner];
+          triangle[corner] = base[ref >> 16] + (ref & 0xffffU);
+        }
+      }
+    }
+  });
+  return mesh;
+}
+
+StockMesher::StockMesher(const Stock& stock) : impl_(std::make_unique<Impl>(stock.level_set())) {}
+StockMesher::~StockMesher() = default;
+StockMesher::StockMesher(StockMesher&&) noexcept = default;
+
+TriMesh StockMesher::mesh() {
+  impl_->update();
+  return impl_->assemble();
+}
+size_t StockMesher::leaves_meshed() const {
+  return impl_->meshed;
+}
+size_t StockMesher::memory_bytes() const {
+  size_t bytes = impl_->leaves.size() * (sizeof(impl_->leaves[0]) + sizeof(impl_->seen[0]));
+  for (const auto& leaf : impl_->leaves) {
+    if (!leaf) continue;
+    bytes += sizeof(LeafMesh) + leaf->vertices.capacity() * sizeof(leaf->vertices[0]) +
+             leaf->edges.capacity() * sizeof(leaf->edges[0]) +
+             leaf->triangles.capacity() * sizeof(leaf->triangles[0]);
+  }
+  return bytes;
+}
+
+TriMesh Stock::mesh() const {
+  return StockMesher(*this).mesh();
+}
+
+}  // namespace swarf::stock

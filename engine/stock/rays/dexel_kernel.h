@@ -1,0 +1,39 @@
+// The hot loop of the surface dexels: 64 rays against the bottom plane of one sweep.
+//
+// For a ray that leaves the part on the tool's side (normal . axis > 0) no point of the cutter lies below the
+// bottom plane, so the plane bounds the height from below; s(t) on the plane is a ratio of linear functions,
+// hence monotone, and its least value lies at an end of the motion. Where the ray meets the disc itself at
+// both ends the bound is the answer. All other rays that the bound does not rule out are left to ray_height.
+#pragma once
+
+#include <span>
+
+#include "stock/sweep/sweep_map.h"
+
+namespace swarf::stock {
+
+inline constexpr int kTileRays = 64;
+
+/// Rays of one tile, by component.
+struct TileRays {
+  alignas(64) double px[kTileRays], py[kTileRays], pz[kTileRays];  ///< feet, W, mm
+  alignas(64) double nx[kTileRays], ny[kTileRays], nz[kTileRays];  ///< unit normals
+};
+
+struct TileHeights {
+  alignas(64) double exact[kTileRays];  ///< the sweep's height, or kNoHeight when the disc's rim is near
+  alignas(64) double bound[kTileRays];  ///< no point of the sweep on this ray lies lower
+};
+/// Finite on purpose: the kernel is compiled without infinities.
+inline constexpr double kNoHeight = 1e300;
+
+using DexelKernel = void (*)(const TileRays& rays, const SweepMap& map, double radius, TileHeights& out);
+
+struct DexelKernelVariant {
+  const char* instruction_set;
+  DexelKernel kernel;
+};
+/// The variants this processor can run, fastest first; all give the same bits.
+std::span<const DexelKernelVariant> dexel_kernel_variants();
+
+}  // namespace swarf::stock

@@ -1,0 +1,229 @@
+#include "stock/rays/dexel_tiles.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/parallel.h"
+#include "stock/rays/dexel_kernel.h"
+#include "stock/rays/ray_cut.h"
+#include "stock/rays/surface_dexels.h"
+
+namespace swarf::stock {
+namespace {
+
+constexpr size_t kSweepsPerRun = 32;
+constexpr size_t kMapsPerTask = 1024;
+
+/// A tile's rays and their material by component; places beyond the tile's last ray repeat it and are not
+/// stored.
+struct Workspace {
+  TileRays rays;
+  TileHeights found;
+  StandingMaterial standing[kTileRays];
+  double tops[kTileRays];  ///< greatest s with material
+  size_t index[kTileRays];
+};
+
+double top_of_ray(double height, const std::vector<MaterialAbove>& above, uint32_t n) {
+  if (above.empty()) return height;
+  const auto intervals = above_ray(above, n);
+  return intervals.empty() ? height : intervals.back().high;
+}
+
+/// One tile while sweeps are taken out of it. Material that stands on the design and material above gaps have
+/// bounds of their own: a cutter that finishes below an overhang meets the first only.
+class TileCut {
+ public:
+  TileCut(const Material& material, size_t tile, const SweepChain& chain)
+      : material_(material), above_(material.above[tile]), chain_(chain), tile_(material.field.tiles[tile]) {
+    double highest = -std::numeric_limits<double>::infinity();
+    for (uint32_t n = 0; n < tile_.count; ++n) highest = std::max(highest, material.heights[ray(n)]);
+    set_bounds(highest);
+  }
+  ~TileCut() {
+    if (loaded_) store();
+  }
+  TileCut(const TileCut&) = delete;
+  TileCut& operator=(const TileCut&) = delete;
+
+  bool misses(const SweepRun& run) const {
+    return run_misses(run, ball_, chain_.cutter) &&
+           (extent_above_.empty() || run_misses(run, ball_above_, chain_.cutter));
+  }
+
+  void cut_by(const SweepRun& run) {
+    for (size_t n = run.begin; n < run.end; ++n) cut_by(n);
+  }
+
+  /// The run whose tip passes nearest to the tile's middle, among those that may meet it; runs.size() when
+  /// none.
+  size_t nearest_run() const {
+    const Vec3 middle = tile_.origin + tile_.frame.transpose() * (0.5 * (tile_.low + tile_.high));
+    size_t nearest = chain_.runs.size();
+    double least = std::numeric_limits<double>::infinity();
+    for (size_t n = 0; n < chain_.runs.size(); ++n) {
+      const double distance2 = (chain_.runs[n].tip - middle).squaredNorm();
+      if (distance2 >= least || misses(chain_.runs[n])) continue;
+      least = distance2;
+      nearest = n;
+    }
+    return nearest;
+  }
+
+  uint64_t pairs() const { return pairs_; }
+
+ private:
+  size_t ray(uint32_t n) const { return material_.field.order[tile_.begin + std::min(n, tile_.count - 1)]; }
+
+  void set_bounds(double highest) {
+    highest_ = highest;
+    ball_ = ball_around(tile_, {-kSkin, std::max(highest, 0.0)});
+    extent_above_ = {};
+    for (const MaterialAbove& m : above_) {
+      extent_above_.low = std::min(extent_above_.low, m.low);
+      extent_above_.high = std::max(extent_above_.high, m.high);
+    }
+    if (!extent_above_.empty()) ball_above_ = ball_around(tile_, extent_above_);
+  }
+
+  void load() {
+    for (uint32_t n = 0; n < kTileRays; ++n) {
+      const size_t i = ray(n);
+      const Vec3 &point = material_.field.points[i], &normal = material_.field.normals[i];
+      w_.index[n] = i;
+      w_.rays.px[n] = point.x();
+      w_.rays.py[n] = point.y();
+      w_.rays.pz[n] = point.z();
+      w_.rays.nx[n] = normal.x();
+      w_.rays.ny[n] = normal.y();
+      w_.rays.nz[n] = normal.z();
+      w_.standing[n] = {material_.heights[i], material_.blocks[i]};
+      w_.tops[n] = top_of_ray(material_.heights[i], above_, n);
+    }
+    loaded_ = true;
+  }
+
+  void store() {
+    for (uint32_t n = 0; n < tile_.count; ++n) {
+      material_.heights[w_.index[n]] = w_.standing[n].height;
+      material_.blocks[w_.index[n]] = w_.standing[n].block;
+    }
+  }
+
+  void cut_by(size_t sweep) {
+    const SweepMap& map = chain_.maps[sweep];
+    const CutterSolid& cutter = chain_.cutter;
+    const bool above = !extent_above_.empty() && !sweep_misses(map, ball_above_, cutter) &&
+                       !beyond_top(tile_, map, extent_above_, cutter.height);
+    if (!above && (sweep_misses(map, ball_, cutter) || plane_above(tile_, map, highest_))) return;
+    if (!above && !chain_.cylinder && pieces_above(tile_, map, cutter, highest_)) return;
+    if (!loaded_) load();
+    pairs_ += kTileRays;
+    static const DexelKernel kernel = dexel_kernel_variants().front().kernel;
+    kernel(w_.rays, map, cutter.radius, w_.found);
+    bool changed = false;
+    for (uint32_t n = 0; n < tile_.count; ++n) {
+      const double limit = above ? w_.tops[n] : w_.standing[n].height;
+      if (w_.found.bound[n] <= limit + kBoundSlack) changed |= cut_ray(n, sweep, limit);
+    }
+    if (!changed) return;
+    double highest = w_.standing[0].height;
+    for (uint32_t n = 1; n < tile_.count; ++n) highest = std::max(highest, w_.standing[n].height);
+    set_bounds(highest);
+  }
+
+  /// `limit`: no material of this ray above it can be met.
+  bool cut_ray(uint32_t n, size_t sweep, double limit) {
+    const RayPassage passage{material_.field.points[w_.index[n]], material_.field.normals[w_.index[n]],
+                             chain_.maps[sweep]};
+    const CutterSolid& cutter = chain_.cutter;
+    bool changed = false;
+    if (w_.found.exact[n] != kNoHeight && chain_.cylinder) {
+      const double low = w_.found.exact[n];
+      if (low > limit || (low > w_.standing[n].height && misses_above(n, passage))) return false;
+      return remove(cut_from(low, passage, cutter.pieces.front(), limit), sweep, n);
+    }
+    for (const cutter::ConvexPiece& piece : cutter.pieces) {
+      const RayInterval interval = cut_of_piece(passage, piece, limit);
+      if (interval.hit()) changed |= remove(interval, sweep, n);
+    }
+    return changed;
+  }
+
+  bool misses_above(uint32_t n, const RayPassage& passage) const {
+    const auto intervals = above_ray(above_, n);
+    if (intervals.empty()) return true;
+    return beyond_cutter(passage, chain_.cutter, {intervals.front().low, intervals.back().high});
+  }
+
+  bool remove(const RayInterval& interval, size_t sweep, uint32_t n) {
+    if (interval.low < -kSkin && interval.high < 0.0) return false;  // a cut of another face of the part
+    StandingMaterial& standing = w_.standing[n];
+    const RayCut cut{interval.low, interval.high, chain_.sweeps[sweep].block};
+    if (above_.empty() && cut.high >= standing.height) return lower(cut, n);
+    if (!remove_material(cut, n, standing, above_)) return false;
+    w_.tops[n] = top_of_ray(standing.height, above_, n);
+    return true;
+  }
+
+  /// The usual case of remove_material: nothing stays above the cut.
+  bool lower(const RayCut& cut, uint32_t n) {
+    StandingMaterial& standing = w_.standing[n];
+    if (!(cut.high > cut.low) || cut.low > standing.height) return false;
+    if (cut.low == standing.height && cut.block >= standing.block) return false;
+    standing = {cut.low, cut.block};
+    w_.tops[n] = cut.low;
+    return true;
+  }
+
+  const Material& material_;
+  std::vector<MaterialAbove>& above_;
+  const SweepChain& chain_;
+  const RayTile& tile_;
+  double highest_ = 0.0;  ///< of what stands on the design
+  Ball ball_{};           ///< around that, shrinks with the material
+  Extent extent_above_;
+  Ball ball_above_{};
+  Workspace w_;
+  bool loaded_ = false;
+  uint64_t pairs_ = 0;
+};
+
+SweepRun make_run(const SweepChain& chain, size_t begin, size_t end) {
+  const Sweep& middle = chain.sweeps[begin + (end - begin) / 2];
+  SweepRun run{begin, end, chain.maps[begin + (end - begin) / 2].R0t, middle.start.tip_W, 0.0, 0.0};
+  for (size_t n = begin; n < end; ++n) {
+    for (const ToolPose* pose : {&chain.sweeps[n].start, &chain.sweeps[n].end}) {
+      run.tip_spread = std::max(run.tip_spread, (pose->tip_W - middle.start.tip_W).norm());
+      run.axis_spread = std::max(run.axis_spread, (pose->axis_W - middle.start.axis_W).norm());
+    }
+  }
+  return run;
+}
+
+}  // namespace
+
+SweepChain make_chain(std::span<const Sweep> sweeps, const CutterSolid& cutter) {
+  SweepChain chain{sweeps, cutter, std::vector<SweepMap>(sweeps.size()), {}, cutter.is_cylinder()};
+  parallel_chunks(sweeps.size(), kMapsPerTask, [&](size_t begin, size_t end) {
+    for (size_t n = begin; n < end; ++n) chain.maps[n] = sweep_map(sweeps[n]);
+  });
+  for (size_t n = 0; n < sweeps.size(); n += kSweepsPerRun) {
+    chain.runs.push_back(make_run(chain, n, std::min(n + kSweepsPerRun, sweeps.size())));
+  }
+  return chain;
+}
+
+uint64_t cut_tile(const Material& material, size_t tile, const SweepChain& chain) {
+  TileCut cut(material, tile, chain);
+  const size_t first = cut.nearest_run();
+  if (first == chain.runs.size()) return 0;
+  cut.cut_by(chain.runs[first]);
+  for (size_t n = 0; n < chain.runs.size(); ++n) {
+    if (n != first && !cut.misses(chain.runs[n])) cut.cut_by(chain.runs[n]);
+  }
+  return cut.pairs();
+}
+
+}  // namespace swarf::stock

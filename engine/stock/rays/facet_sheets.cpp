@@ -1,0 +1,233 @@
+#include "stock/rays/facet_sheets.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <tuple>
+
+#include "base/check.h"
+#include "mesh/mesh_check.h"
+#include "mesh/mesh_distance.h"
+
+namespace swarf::stock {
+namespace {
+
+using Triangle = std::array<uint32_t, 3>;
+
+/// A triangle's side from its lower to its higher vertex.
+struct Side {
+  uint32_t low, high, corner;  ///< corner = 3 * triangle + place of its first vertex
+  bool operator<(const Side& other) const {
+    return std::tie(low, high, corner) < std::tie(other.low, other.high, other.corner);
+  }
+};
+
+std::vector<Side> sides_of(const std::vector<Triangle>& triangles) {
+  std::vector<Side> sides;
+  sides.reserve(3 * triangles.size());
+  for (uint32_t c = 0; c < 3 * triangles.size(); ++c) {
+    const Triangle& t = triangles[c / 3];
+    const uint32_t a = t[c % 3], b = t[(c + 1) % 3];
+    sides.push_back({std::min(a, b), std::max(a, b), c});
+  }
+  std::sort(sides.begin(), sides.end());
+  return sides;
+}
+
+uint32_t next_corner(uint32_t corner) {
+  return corner % 3 == 2 ? corner - 2 : corner + 1;
+}
+
+/// Corners or facets that hang together, as a forest whose roots are the least.
+class Sets {
+ public:
+  explicit Sets(size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0U); }
+  uint32_t root(uint32_t c) {
+    while (parent_[c] != c) c = parent_[c] = parent_[parent_[c]];
+    return c;
+  }
+  void join(uint32_t a, uint32_t b) {
+    const uint32_t ra = root(a), rb = root(b);
+    parent_[std::max(ra, rb)] = std::min(ra, rb);
+  }
+
+ private:
+  std::vector<uint32_t> parent_;
+};
+
+/// Facets with their unit normals; those without area are left out.
+struct Facets {
+  std::vector<Triangle> triangles;
+  std::vector<Vec3> normals;
+};
+
+Facets facets_with_area(const std::vector<Triangle>& triangles, const std::vector<Vec3>& points) {
+  Facets facets;
+  for (const Triangle& t : triangles) {
+    const Vec3 cross = (points[t[1]] - points[t[0]]).cross(points[t[2]] - points[t[0]]);
+    const double length = cross.norm();
+    if (!(length > 0.0)) continue;
+    facets.triangles.push_back(t);
+    facets.normals.emplace_back(cross / length);
+  }
+  return facets;
+}
+
+/// Joins the corners on both sides of every smooth edge. An edge of other than two facets is sharp.
+Sets smooth_corners(const Facets& facets, double crease_rad) {
+  Sets sets(3 * facets.triangles.size());
+  const std::vector<Side> sides = sides_of(facets.triangles);
+  const double least_cosine = std::cos(crease_rad);
+  for (size_t i = 0; i < sides.size();) {
+    size_t end = i + 1;
+    while (end < sides.size() && sides[end].low == sides[i].low && sides[end].high == sides[i].high) ++end;
+    const uint32_t a = sides[i].corner, b = sides[end - 1].corner;
+    if (end - i == 2 && facets.normals[a / 3].dot(facets.normals[b / 3]) >= least_cosine) {
+      const bool same = facets.triangles[a / 3][a % 3] == facets.triangles[b / 3][b % 3];
+      sets.join(a, same ? b : next_corner(b));
+      sets.join(next_corner(a), same ? next_corner(b) : b);
+    }
+    i = end;
+  }
+  return sets;
+}
+
+double corner_angle(const Triangle& t, size_t place, const std::vector<Vec3>& points) {
+  const Vec3& apex = points[t[place]];
+  const Vec3 a = points[t[(place + 1) % 3]] - apex, b = points[t[(place + 2) % 3]] - apex;
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+/// One corner per set, its normal the mean of their facets weighted by the angles there.
+void place_corners(const Facets& facets, const std::vector<Vec3>& points, double crease_rad,
+                   FacetSheets& sheets) {
+  Sets sets = smooth_corners(facets, crease_rad);
+  std::vector<uint32_t> number(3 * facets.triangles.size());
+  sheets.facets.resize(facets.triangles.size());
+  for (uint32_t c = 0; c < number.size(); ++c) {
+    const Triangle& t = facets.triangles[c / 3];
+    if (sets.root(c) == c) {
+      number[c] = static_cast<uint32_t>(sheets.points.size());
+      sheets.points.push_back(points[t[c % 3]]);
+      sheets.normals.emplace_back(Vec3::Zero());
+    }
+    const uint32_t corner = number[c] = number[sets.root(c)];
+    sheets.normals[corner] += corner_angle(t, c % 3, points) * facets.normals[c / 3];
+    sheets.facets[c / 3][c % 3] = corner;
+  }
+  for (Vec3& normal : sheets.normals) normal.normalize();
+}
+
+/// Two facets that follow each other in the list of sides: an edge that is sharp between them, or smooth.
+void join_sides(const Facets& facets, double crease_rad, FacetSheets& sheets) {
+  const std::vector<Side> sides = sides_of(facets.triangles);
+  const double least_cosine = std::cos(crease_rad);
+  const auto corner = [&](uint32_t c) { return sheets.facets[c / 3][c % 3]; };
+  const auto same_edge = [&](size_t i, size_t j) {
+    return j < sides.size() && sides[i].low == sides[j].low && sides[i].high == sides[j].high;
+  };
+  sheets.neighbours.assign(facets.triangles.size(),
+                           {FacetSheets::kNone, FacetSheets::kNone, FacetSheets::kNone});
+  for (size_t i = 0; i + 1 < sides.size(); ++i) {
+    if (!same_edge(i, i + 1)) continue;
+    const uint32_t a = sides[i].corner, b = sides[i + 1].corner;
+    const bool two = !same_edge(i, i + 2) && (i == 0 || !same_edge(i, i - 1));
+    if (facets.normals[a / 3].dot(facets.normals[b / 3]) >= least_cosine) {
+      if (!two) continue;
+      sheets.neighbours[a / 3][a % 3] = b / 3;
+      sheets.neighbours[b / 3][b % 3] = a / 3;
+      continue;
+    }
+    const bool same = facets.triangles[a / 3][a % 3] == facets.triangles[b / 3][b % 3];
+    sheets.sharp_edges.push_back({{corner(a), corner(next_corner(a))},
+                                  {corner(same ? b : next_corner(b)), corner(same ? next_corner(b) : b)}});
+  }
+}
+
+void number_sheets(FacetSheets& sheets) {
+  Sets sets(sheets.facets.size());
+  for (uint32_t f = 0; f < sheets.facets.size(); ++f) {
+    for (const uint32_t next : sheets.neighbours[f]) {
+      if (next != FacetSheets::kNone) sets.join(f, next);
+    }
+  }
+  for (uint32_t f = 0; f < sheets.facets.size(); ++f) sheets.sheet.push_back(sets.root(f));
+}
+
+double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const Vec3 ab = b - a;
+  const double t = std::clamp((p - a).dot(ab) / std::max(ab.squaredNorm(), 1e-300), 0.0, 1.0);
+  return (p - a - t * ab).norm();
+}
+
+/// Barycentric coordinates of a point in the plane of the facet (a, b, c).
+Vec3 barycentric_of(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 across = (b - a).cross(c - a);
+  const double wb = (p - a).cross(c - a).dot(across), wc = (b - a).cross(p - a).dot(across);
+  return Vec3(across.squaredNorm() - wb - wc, wb, wc) / across.squaredNorm();
+}
+
+}  // namespace
+
+FacetPlace FacetSheets::place(uint32_t facet, const Vec3& l) const {
+  const auto& t = facets[facet];
+  const Vec3 normal = l.x() * normals[t[0]] + l.y() * normals[t[1]] + l.z() * normals[t[2]];
+  // In differences: where the facet lies in a plane z = c, so does the place, to the last digit.
+  const Vec3 &a = points[t[0]], &b = points[t[1]], &c = points[t[2]];
+  const Vec3 low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
+  const Vec3 point = a + l.y() * (b - a) + l.z() * (c - a);
+  return {point.cwiseMax(low).cwiseMin(high), normal.normalized(), facet};
+}
+
+bool FacetSheets::side_near(uint32_t facet, size_t side, const Vec3& centre, double radius_mm) const {
+  return distance_to_segment(centre, corner(facet, side), corner(facet, (side + 1) % 3)) <= radius_mm;
+}
+
+std::optional<FacetPlace> FacetSheets::meet(uint32_t facet, const Vec3& centre, double radius_mm,
+                                            const Vec3& point, const Vec3& along) const {
+  constexpr double kOnEdge = 1e-9;  // share of the facet: a line through an edge meets one of its sides
+  std::optional<FacetPlace> met;
+  each_near(facet, centre, radius_mm, [&](uint32_t f) {
+    const Vec3 &a = corner(f, 0), ab = corner(f, 1) - a, ac = corner(f, 2) - a;
+    const Vec3 h = along.cross(ac);
+    const double det = ab.dot(h);
+    if (!(std::abs(det) > std::numeric_limits<double>::min())) return false;
+    const Vec3 offset = point - a;
+    const double wb = offset.dot(h) / det, wc = along.dot(offset.cross(ab)) / det;
+    if (!(wb >= -kOnEdge && wc >= -kOnEdge && wb + wc <= 1.0 + kOnEdge)) return false;
+    met = place(f, {1.0 - wb - wc, wb, wc});
+    return true;
+  });
+  return met;
+}
+
+FacetPlace FacetSheets::nearest(uint32_t facet, const Vec3& centre, double radius_mm,
+                                const Vec3& point) const {
+  double least = std::numeric_limits<double>::infinity();
+  Vec3 best = Vec3::Zero();
+  uint32_t on = facet;
+  each_near(facet, centre, radius_mm, [&](uint32_t f) {
+    const Vec3 near = mesh::closest_point_on_triangle(point, corner(f, 0), corner(f, 1), corner(f, 2));
+    const double distance2 = (near - point).squaredNorm();
+    if (distance2 >= least) return false;
+    least = distance2;
+    best = near;
+    on = f;
+    return false;
+  });
+  return place(on, barycentric_of(best, corner(on, 0), corner(on, 1), corner(on, 2)));
+}
+
+FacetSheets facet_sheets(const TriMesh& mesh, double crease_rad) {
+  const mesh::WeldedMesh welded = mesh::weld(mesh);
+  const Facets facets = facets_with_area(welded.triangles, welded.points);
+  SWARF_CHECK(!facets.triangles.empty(), "a design mesh needs facets with area");
+  FacetSheets sheets;
+  place_corners(facets, welded.points, crease_rad, sheets);
+  join_sides(facets, crease_rad, sheets);
+  number_sheets(sheets);
+  return sheets;
+}
+
+}  // namespace swarf::stock

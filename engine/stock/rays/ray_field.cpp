@@ -1,0 +1,120 @@
+#include "stock/rays/ray_field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace swarf::stock {
+namespace {
+
+Foot foot_on_surface(const surface::Surface& surface, double u, double v) {
+  const surface::Derivatives d = surface.derivatives(u, v);
+  return {d.S, surface::outward_normal(surface, d), u, v};
+}
+
+/// (u,v) of a ray displaced by a tangent vector: the normal equations of Su du + Sv dv = tangent.
+Vec2 parameters_along(const surface::Derivatives& d, const Vec3& tangent) {
+  const double E = d.Su.squaredNorm(), F = d.Su.dot(d.Sv), G = d.Sv.squaredNorm();
+  const double a = d.Su.dot(tangent), b = d.Sv.dot(tangent);
+  const double det = E * G - F * F;
+  return {(G * a - F * b) / det, (E * b - F * a) / det};
+}
+
+}  // namespace
+
+Foot RayField::between(uint32_t a, uint32_t b, double t) const {
+  if (surface == nullptr) {
+    constexpr double kReach = 1.2;  // of the way between the rays: the facets bend aside
+    const Vec3 foot = points[a] + t * (points[b] - points[a]);
+    const Vec3 along = normals[a] + t * (normals[b] - normals[a]);
+    const double radius = kReach * (points[b] - points[a]).norm();
+    const auto met = sheets->meet(facet_of[a], points[a], radius, foot, along);
+    const FacetPlace place = met ? *met : sheets->nearest(facet_of[a], points[a], radius, foot);
+    return {place.point, place.normal};
+  }
+  const size_t nu = u_lines.size();
+  const double ua = u_lines[a % nu], va = v_lines[a / nu];
+  return foot_on_surface(*surface, ua + t * (u_lines[b % nu] - ua), va + t * (v_lines[b / nu] - va));
+}
+
+std::optional<Foot> RayField::displaced(uint32_t ray, const Vec3& tangent_mm) const {
+  if (surface != nullptr) {
+    const size_t nu = u_lines.size();
+    const double u = u_lines[ray % nu], v = v_lines[ray / nu];
+    const Vec2 step = parameters_along(surface->derivatives(u, v), tangent_mm);
+    const Vec2 at = Vec2(u, v) + step;
+    if (at.minCoeff() < 0.0 || at.maxCoeff() > 1.0) return std::nullopt;
+    return foot_on_surface(*surface, at.x(), at.y());
+  }
+  // Facets that bend away from the tangent plane are met farther out; of the displacement and of the pitch.
+  constexpr double kOut = 1.5, kLeast = 0.1;
+  const double radius = kOut * tangent_mm.norm() + kLeast * pitch_mm;
+  const auto met = sheets->meet(facet_of[ray], points[ray], radius, points[ray] + tangent_mm, normals[ray]);
+  if (!met) return std::nullopt;
+  return Foot{met->point, met->normal};
+}
+
+double RayField::own_depth(const Vec3& point, const Vec3& normal, double depth_mm, double share) const {
+  if (design == nullptr || depth_mm <= 0.0) return depth_mm;
+  // Interpolated normals lean up to the crease's angle from the facets: the distance then is that much
+  // shorter.
+  constexpr double kLean = 0.85;       // cos(30 deg), and a little for rounding
+  constexpr double kFloatMesh = 2e-5;  // mm: vertices are floats
+  constexpr int kHalvings = 40;
+  // On a flat face the column follows the facet's own normal, and the distance is the depth.
+  constexpr double kFlat = 1.0 - 1e-4;
+  const auto& facet = design->mesh.triangles[design->distance.nearest(point).triangle];
+  const auto vertex = [&](size_t k) {
+    const auto& p = design->mesh.positions[facet[k]];
+    return Vec3(p[0], p[1], p[2]);
+  };
+  const Vec3 across = (vertex(1) - vertex(0)).cross(vertex(2) - vertex(0));
+  const bool flat = std::abs(across.dot(normal)) >= (1.0 - 1e-9) * across.norm();
+  const double least = flat ? kFlat : kLean;
+  const auto is_own = [&](double s) {
+    return design->distance.nearest(point - s * normal).distance_mm >= least * s - kFloatMesh;
+  };
+  // Far beyond the part the distance is nearly the depth again: what is not own on the way ends it.
+  constexpr double kThinnest = 0.1;  // mm
+  double low = 0.0, high = std::numeric_limits<double>::infinity();
+  for (double s = depth_mm;; s *= 0.5) {
+    if (!is_own(s)) high = s;
+    if (s <= kThinnest) break;
+  }
+  if (high > depth_mm) return depth_mm;
+  for (int i = 0; i < kHalvings && high - low > std::max(1e-9, share * high); ++i) {
+    const double middle = 0.5 * (low + high);
+    (is_own(middle) ? low : high) = middle;
+  }
+  return low;
+}
+
+void add_tile(RayField& field, uint32_t begin) {
+  RayTile tile{begin, static_cast<uint32_t>(field.order.size()) - begin};
+  const auto ray = [&](uint32_t n) { return field.order[begin + n]; };
+  Vec3 mean = Vec3::Zero();
+  for (uint32_t n = 0; n < tile.count; ++n) mean += field.normals[ray(n)];
+  const double length = mean.norm();
+  if (length > 0.0) {
+    mean /= length;
+  } else {
+    mean =
+        field.normals[ray(0)];  // normals that cancel: any axis serves, the spread says how little it tells
+  }
+  int least = 0;
+  mean.cwiseAbs().minCoeff(&least);
+  const Vec3 e1 = mean.cross(Vec3::Unit(least)).normalized();
+  tile.origin = field.points[ray(0)];
+  tile.frame.row(0) = e1;
+  tile.frame.row(1) = mean.cross(e1);
+  tile.frame.row(2) = mean;
+  for (uint32_t n = 0; n < tile.count; ++n) {
+    const Vec3 local = tile.frame * (field.points[ray(n)] - tile.origin);
+    tile.low = tile.low.cwiseMin(local);
+    tile.high = tile.high.cwiseMax(local);
+    tile.normal_spread = std::max(tile.normal_spread, (field.normals[ray(n)] - mean).norm());
+  }
+  field.tiles.push_back(tile);
+}
+
+}  // namespace swarf::stock

@@ -1,0 +1,85 @@
+#include "stock/rays/surface_dexels.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "base/check.h"
+#include "base/parallel.h"
+#include "stock/rays/dexel_tiles.h"
+#include "stock/rays/free_ranges.h"
+
+namespace swarf::stock {
+namespace {
+
+constexpr size_t kTilesPerTask = 4;
+
+/// Height at which the ray leaves the box for good. A design point outside the box lacks material: the height
+/// is that of the box below it, or minus the distance to the box when the ray misses it.
+double height_of_box(const Box& box, const Vec3& point, const Vec3& normal) {
+  double enter = -std::numeric_limits<double>::infinity(), leave = std::numeric_limits<double>::infinity();
+  for (int a = 0; a < 3; ++a) {
+    if (normal[a] == 0.0) {
+      if (point[a] < box.lower[a] || point[a] > box.upper[a])
+        leave = -std::numeric_limits<double>::infinity();
+      continue;
+    }
+    const double s0 = (box.lower[a] - point[a]) / normal[a], s1 = (box.upper[a] - point[a]) / normal[a];
+    enter = std::max(enter, std::min(s0, s1));
+    leave = std::min(leave, std::max(s0, s1));
+  }
+  constexpr double kOnFace =
+      1e-9;  // mm; design edges often lie on the box, and rounding must not move them out
+  const bool hit = enter <= leave && enter <= kOnFace;
+  return hit ? leave : -(point - point.cwiseMax(box.lower).cwiseMin(box.upper)).norm();
+}
+
+}  // namespace
+
+SurfaceDexels::SurfaceDexels(RayFieldPtr field)
+    : field_(std::move(field)),
+      heights_(field_->size(), 0.0),
+      blocks_(field_->size(), kUncut),
+      above_(field_->tiles.size()) {}
+
+SurfaceDexels::SurfaceDexels(RayFieldPtr field, const Box& stock_box, std::span<const double> ranges_mm)
+    : SurfaceDexels(std::move(field)) {
+  SWARF_CHECK(ranges_mm.empty() || ranges_mm.size() == heights_.size(), "one range per ray");
+  for (size_t n = 0; n < heights_.size(); ++n) {
+    heights_[n] = height_of_box(stock_box, field_->points[n], field_->normals[n]);
+    if (!ranges_mm.empty()) heights_[n] = std::min(heights_[n], ranges_mm[n]);
+  }
+}
+
+SurfaceDexels::SurfaceDexels(const surface::SurfacePtr& surface, double pitch_mm, const Box& stock_box)
+    : SurfaceDexels(rays_on_surface(surface, pitch_mm), stock_box, {}) {
+  const std::vector<double> ranges = free_ranges({&field_, 1}, 0);
+  for (size_t n = 0; n < heights_.size(); ++n) heights_[n] = std::min(heights_[n], ranges[n]);
+}
+
+void SurfaceDexels::limit_depths() {
+  constexpr size_t kRaysPerTask = 1024;
+  parallel_chunks(heights_.size(), kRaysPerTask, [&](size_t begin, size_t end) {
+    for (size_t n = begin; n < end; ++n)
+      heights_[n] = -field_->own_depth(field_->points[n], field_->normals[n], -heights_[n]);
+  });
+}
+
+void SurfaceDexels::cut(std::span<const Sweep> sweeps, const CutterSolid& cutter) {
+  const SweepChain chain = make_chain(sweeps, cutter);
+  const size_t tiles = field_->tiles.size();
+  std::vector<uint64_t> updates((tiles + kTilesPerTask - 1) / kTilesPerTask, 0);
+  const Material material{*field_, heights_, blocks_, above_};
+  parallel_chunks(tiles, kTilesPerTask, [&](size_t begin, size_t end) {
+    for (size_t n = begin; n < end; ++n) updates[begin / kTilesPerTask] += cut_tile(material, n, chain);
+  });
+  for (const uint64_t count : updates) ray_updates_ += count;
+}
+
+void SurfaceDexels::each_above(const std::function<void(uint32_t, const MaterialAbove&)>& visit) const {
+  for (size_t tile = 0; tile < above_.size(); ++tile) {
+    for (const MaterialAbove& m : above_[tile]) visit(field_->order[field_->tiles[tile].begin + m.ray], m);
+  }
+}
+
+}  // namespace swarf::stock
