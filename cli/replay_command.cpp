@@ -33,7 +33,7 @@ void require_unchanged(const ReplayOptions& options, const sim::CutRecord& recor
   diagnostics.throw_if_errors();
 }
 
-std::string place_text(const sim::CutPlace& place) {
+std::string cut_place_text(const sim::CutPlace& place) {
   return fmt::format("line {}, t = {:.4f} s, block {}", place.line, place.t_s, place.block);
 }
 
@@ -57,10 +57,10 @@ void print_result(const sim::CutRecord& record, const sim::ReplayResult& result)
         "    record with --record-every 1 to find the sweep\n",
         d.first + 1, d.last + 1);
   }
-  fmt::print("    recorded: {}\n    now:      {}\n", place_text(d.recorded), place_text(d.now));
+  fmt::print("    recorded: {}\n    now:      {}\n", cut_place_text(d.recorded), cut_place_text(d.now));
 }
 
-nlohmann::ordered_json place_json(const sim::CutPlace& place) {
+nlohmann::ordered_json cut_place_json(const sim::CutPlace& place) {
   return {{"line", place.line}, {"t_s", place.t_s}, {"block", place.block}};
 }
 
@@ -81,8 +81,8 @@ std::string json_text(const sim::ReplayResult& result) {
     json["difference"] = {{"exact", d.exact},
                           {"first_sweep", d.first + 1},
                           {"last_sweep", d.last + 1},
-                          {"recorded", place_json(d.recorded)},
-                          {"now", place_json(d.now)}};
+                          {"recorded", cut_place_json(d.recorded)},
+                          {"now", cut_place_json(d.now)}};
   }
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }

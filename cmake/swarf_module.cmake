@@ -8,11 +8,25 @@ function(swarf_module name)
   if(sources)
     add_library(swarf_${name} STATIC ${sources})
     target_link_libraries(swarf_${name} PUBLIC ${ARG_DEPENDS} swarf_settings PRIVATE ${ARG_LIBRARIES})
+    swarf_unity(swarf_${name})
   else()
     add_library(swarf_${name} INTERFACE)
     target_link_libraries(swarf_${name} INTERFACE ${ARG_DEPENDS} swarf_settings)
   endif()
   add_library(swarf::${name} ALIAS swarf_${name})
+endfunction()
+
+# swarf_unity(<target> [<files>]): several .cpp of the target are compiled as one, so that the headers they share
+# (Eigen, OpenVDB, JSON, GoogleTest: most of the time of a build) are read once for all of them. Files with flags of
+# their own stay alone. Names in anonymous namespaces are therefore unique within a target.
+function(swarf_unity target)
+  if(SWARF_UNITY)
+    set(files 8)
+    if(ARGC GREATER 1)
+      set(files ${ARGV1})
+    endif()
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${files})
+  endif()
 endfunction()
 
 # Flags that every file shares.

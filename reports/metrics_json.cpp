@@ -16,7 +16,7 @@ namespace swarf::reports {
 namespace {
 
 /// Names of folders and texts of programs need not be UTF-8: what is not shows as U+FFFD.
-std::string text_of(const nlohmann::ordered_json& json) {
+std::string json_text(const nlohmann::ordered_json& json) {
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
@@ -401,7 +401,7 @@ std::string metrics_json(const sim::Job& job, const sim::Result& result, const R
   if (result.main.nc) json["program"] = nc_json(job, *result.main.nc);
   if (result.flank) json["flank"] = flank_json(*result.flank);
   if (result.singularity) json["singularity"] = singularity_json(result.main.path, *result.singularity);
-  return text_of(json);
+  return json_text(json);
 }
 
 std::string findings_json(const sim::Result& result) {
@@ -420,7 +420,7 @@ std::string findings_json(const sim::Result& result) {
                       {"t_s", finding.t_s}});
     }
   }
-  return text_of(list);
+  return json_text(list);
 }
 
 }  // namespace swarf::reports

@@ -7,7 +7,7 @@
 namespace swarf::reports {
 namespace {
 
-std::string line_of(const sim::Result& result, int element) {
+std::string line_text(const sim::Result& result, int element) {
   return fmt::format("line {}", result.main.path.elements[static_cast<size_t>(element)].where.line);
 }
 
@@ -17,8 +17,8 @@ void add_blocks(const sim::Job& job, const sim::Result& result, FactGroup& group
   std::string corners =
       fmt::format("rounded within the tolerance of their blocks, else {:g} mm", o.corner_tolerance_mm);
   if (m.corner_element >= 0)
-    corners +=
-        fmt::format("; at most {:.4f} mm, {}", m.corner_deviation_max_mm, line_of(result, m.corner_element));
+    corners += fmt::format("; at most {:.4f} mm, {}", m.corner_deviation_max_mm,
+                           line_text(result, m.corner_element));
   group.facts.push_back(
       {"Corners",
        corners + (job.scene.cuts_cycles() ? "; the stock is cut by the control's cycles, so it shows them"
@@ -29,7 +29,8 @@ void add_blocks(const sim::Job& job, const sim::Result& result, FactGroup& group
            ? "none: no block turns a rotary axis"
            : fmt::format(
                  "{:.4f} mm between axes linear (joint) and tip straight (tcp), {} at {:.3f} of the block",
-                 m.other_mode.tip_error_max_mm, line_of(result, m.other_mode.element), m.other_mode.share)});
+                 m.other_mode.tip_error_max_mm, line_text(result, m.other_mode.element),
+                 m.other_mode.share)});
   group.facts.push_back(
       {"Reported as fast rotary",
        fmt::format("feed blocks above {:g} deg per mm of the tip; swings above {:g} deg in a block",

@@ -1,16 +1,12 @@
 #include "cutter/convex_piece.h"
 
+#include "base/plane_vectors.h"
+
 #include <algorithm>
 #include <limits>
 
 namespace swarf::cutter {
-namespace {
-
-double cross(const Vec2& a, const Vec2& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
-
-}  // namespace
+namespace {}  // namespace
 
 Support support(const Round& round, const Vec2& p) {
   const Vec2 d = p - round.centre;

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "base/check.h"
+#include "base/plane_vectors.h"
 #include "base/units.h"
 #include "cutter/profile.h"
 
@@ -18,14 +19,6 @@ constexpr double kReflexRad = 1e-9;       // a smaller turn into the material is
 constexpr double kTouch = 1e-9;           // mm; lengths below are rounding
 constexpr double kRoundRad = 0.75 * kPi;  // a Round turns through less than half a turn
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-double cross(const Vec2& a, const Vec2& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
-
-Vec2 left(const Vec2& v) {
-  return {-v.y(), v.x()};
-}
 
 int chord_count(const OutlineElement& arc) {
   const double step = 2.0 * std::acos(std::max(0.0, 1.0 - kChordTolerance / std::abs(arc.radius)));

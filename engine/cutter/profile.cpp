@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/check.h"
+#include "base/plane_vectors.h"
 #include "base/units.h"
 #include "cutter/profile_check.h"
 
@@ -12,10 +13,6 @@ namespace swarf::cutter {
 namespace {
 
 constexpr double kShortest = 1e-9;  // mm
-
-Vec2 left(const Vec2& v) {
-  return {-v.y(), v.x()};
-}
 
 /// Unit direction of travel at a point of the element.
 Vec2 tangent(const OutlineElement& element, const Vec2& at) {

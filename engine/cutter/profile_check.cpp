@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "base/plane_vectors.h"
 #include "cutter/profile.h"
 
 namespace swarf::cutter {
@@ -13,11 +14,7 @@ namespace {
 
 constexpr double kDip = 1e-5;  // mm
 constexpr double kNoWidthRad = 0.01;
-constexpr double kShortest = 1e-9;  // mm
-
-double cross(const Vec2& a, const Vec2& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
+constexpr double kShortestPiece = 1e-9;  // mm
 
 std::string at(const Vec2& p) {
   return fmt::format("[{:g}, {:g}] mm", p.x(), p.y());
@@ -36,7 +33,7 @@ std::vector<std::string> point_problems(const std::vector<ProfilePoint>& profile
       problems.push_back(fmt::format("corner {} of the profile, {}, lies beyond the axis", i + 1, at(p)));
     } else if (p.y() < 0.0) {
       problems.push_back(fmt::format("corner {} of the profile, {}, lies below the tip", i + 1, at(p)));
-    } else if (p.x() < kShortest && i > 0 && i + 1 < profile.size()) {
+    } else if (p.x() < kShortestPiece && i > 0 && i + 1 < profile.size()) {
       problems.push_back(
           fmt::format("corner {} of the profile, {}, lies on the axis before the end", i + 1, at(p)));
     }
@@ -58,10 +55,10 @@ std::vector<std::string> element_problems(const std::vector<ProfilePoint>& profi
   std::vector<std::string> problems;
   for (size_t i = 1; i < profile.size(); ++i) {
     const double chord = (profile[i].to - profile[i - 1].to).norm(), radius = profile[i].radius_mm;
-    if (chord < kShortest) {
+    if (chord < kShortestPiece) {
       problems.push_back(
           fmt::format("corners {} and {} of the profile are the same, {}", i, i + 1, at(profile[i].to)));
-    } else if (radius != 0.0 && 2.0 * std::abs(radius) < chord - kShortest) {
+    } else if (radius != 0.0 && 2.0 * std::abs(radius) < chord - kShortestPiece) {
       problems.push_back(
           fmt::format("the arc to corner {} of the profile, {}, has radius_mm {:g}, but the corners "
                       "are {:g} mm apart",
@@ -75,7 +72,7 @@ std::vector<std::string> element_problems(const std::vector<ProfilePoint>& profi
 bool reaches_axis(const OutlineElement& arc) {
   const double level = arc.centre.y();
   return arc.radius < 0.0 && arc.from.y() < level && level < arc.to.y() &&
-         arc.centre.x() + arc.radius < kShortest;
+         arc.centre.x() + arc.radius < kShortestPiece;
 }
 
 std::vector<OutlineElement> elements_of(const std::vector<ProfilePoint>& profile) {
@@ -155,9 +152,9 @@ std::vector<std::string> profile_problems(const std::vector<ProfilePoint>& profi
                     dip(elements[i]), i + 1, i + 2));
   }
   const OutlineElement& end = elements.back();
-  if (problems.empty() && end.to.y() < kShortest) {
+  if (problems.empty() && end.to.y() < kShortestPiece) {
     problems.emplace_back("the profile has no height");
-  } else if (problems.empty() && end.from.y() > end.to.y() - kShortest && end.from.x() < end.to.x()) {
+  } else if (problems.empty() && end.from.y() > end.to.y() - kShortestPiece && end.from.x() < end.to.x()) {
     problems.push_back(fmt::format(
         "the profile ends with a level step outwards, at {}: a disc without thickness", at(end.to)));
   }

@@ -12,7 +12,7 @@ namespace {
 
 /// By how much a direction may lie outside the reach and still count as rounding, rad; the forward check has
 /// the last word.
-constexpr double kReachTolerance = 1e-12;
+constexpr double kPairReachTolerance = 1e-12;
 
 }  // namespace
 
@@ -49,7 +49,7 @@ int RotaryPair::solve(const Vec3& w, TurnPair out[2]) const {
     const double from_pole = rho_squared / (1.0 + std::abs(c1));
     p += d_per_s_ * (upper ? from_pole : -from_pole);
   }
-  if (!(std::abs(p) <= rho + kReachTolerance)) return 0;
+  if (!(std::abs(p) <= rho + kPairReachTolerance)) return 0;
   const double r = p == 0.0 ? rho : std::sqrt(std::max(0.0, (rho - p) * (rho + p)));
   const double across = (c1 - d_ * c2_) * per_s_;
   double angle[2];  // of w, the tilt

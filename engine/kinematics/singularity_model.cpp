@@ -12,7 +12,7 @@ namespace swarf::kinematics {
 namespace {
 
 /// To which the greatest deviation is proven, mm.
-constexpr double kPeakTolerance = 1e-9;
+constexpr double kModelPeakTolerance = 1e-9;
 
 Vec3 turned(const Vec3& e, double angle, const Vec3& v) {
   return rotate(e, std::sin(angle), std::cos(angle), v);
@@ -104,7 +104,7 @@ Peak SingularityModel::greatest_deviation() const {
   const auto across_e = [&](const Vec3& v) { return (v - v.dot(e_) * e_).norm(); };
   const double arm = std::max(across_e(m0_), across_e(m0_ + dm_));
   const double bend = du_ * du_ * arm + 2.0 * std::abs(du_) * across_e(dm_);
-  Peak peak = greatest(measure, bend, kPeakTolerance);
+  Peak peak = greatest(measure, bend, kModelPeakTolerance);
   const double beyond_projection = peak.proven - peak.value;
   peak.value = deviation(peak.u);
   peak.proven = peak.value + beyond_projection;

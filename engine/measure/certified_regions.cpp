@@ -6,6 +6,7 @@
 #include <numeric>
 #include <unordered_map>
 
+#include "base/disjoint_sets.h"
 #include "base/units.h"
 #include "measure/regions.h"
 
@@ -30,22 +31,6 @@ Above above_limit(std::array<double, 3> v, double limit) {
   return {1.0 - below, (whole - below * part) / (1.0 - below)};
 }
 
-class Sets {
- public:
-  explicit Sets(size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0U); }
-  uint32_t root(uint32_t n) {
-    while (parent_[n] != n) n = parent_[n] = parent_[parent_[n]];
-    return n;
-  }
-  void join(uint32_t a, uint32_t b) {
-    const uint32_t ra = root(a), rb = root(b);
-    parent_[std::max(ra, rb)] = std::min(ra, rb);
-  }
-
- private:
-  std::vector<uint32_t> parent_;
-};
-
 /// Pieces of one size class (radius below 2^level) by the cube of that size they lie in.
 struct SizeClass {
   double side = 0.0;
@@ -60,7 +45,8 @@ uint64_t cube_key(const Vec3& p, double side, int dx, int dy, int dz) {
   return part(p.x(), dx) << 42U | part(p.y(), dy) << 21U | part(p.z(), dz);
 }
 
-void join_near(const std::vector<RegionPiece>& pieces, uint32_t n, const SizeClass& others, Sets& sets) {
+void join_near(const std::vector<RegionPiece>& pieces, uint32_t n, const SizeClass& others,
+               DisjointSets& sets) {
   constexpr double kTouch = 1e-6;  // mm
   for (int code = 0; code < 27; ++code) {
     const uint64_t key =
@@ -87,7 +73,7 @@ void add_piece(const DesignCell& cell, const std::array<double, 3>& values_mm,
 }
 
 std::vector<Region> join_pieces(const std::vector<RegionPiece>& pieces) {
-  Sets sets(pieces.size());
+  DisjointSets sets(pieces.size());
   std::map<int, SizeClass> classes;
   const auto level = [&](const RegionPiece& piece) {
     int exponent = 0;

@@ -155,7 +155,7 @@ void bound_by(double depth, bool outside, DistanceRange& range) {
 }
 
 /// Nearest points of two segments (Ericson, Real-Time Collision Detection, 5.1.9).
-double segment_distance(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s) {
+double edge_distance(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s) {
   const Vec3 d1 = q - p, d2 = s - r, w = p - r;
   const double a = d1.squaredNorm(), e = d2.squaredNorm(), f = d2.dot(w), c = d1.dot(w), b = d1.dot(d2);
   const double denominator = a * e - b * b;
@@ -199,8 +199,8 @@ double least_distance(const Corners& triangle, const mesh::SignedDistance& targe
     least = std::min({least, corner_distance(triangle, facet), corner_distance(facet, triangle)});
     for (size_t i = 0; i < 3; ++i) {
       for (size_t j = 0; j < 3; ++j) {
-        least = std::min(least,
-                         segment_distance(triangle[i], triangle[(i + 1) % 3], facet[j], facet[(j + 1) % 3]));
+        least =
+            std::min(least, edge_distance(triangle[i], triangle[(i + 1) % 3], facet[j], facet[(j + 1) % 3]));
       }
     }
   });

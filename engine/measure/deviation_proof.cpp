@@ -8,7 +8,7 @@
 namespace swarf::measure {
 namespace {
 
-constexpr size_t kChunk = 64;
+constexpr size_t kCellsPerTask = 64;
 /// Samples that each cell may cost at first, and all the cells of a side that are left may cost together.
 constexpr uint32_t kFirstWork = 16;
 constexpr uint32_t kMostWork = 1U << 16U;
@@ -221,9 +221,9 @@ struct ProofShare {
 ProofShare prove_cells(const SampledSide& sampled, const std::vector<uint32_t>& cells,
                        const ComparisonInput& input, const Aim& aim, uint32_t work) {
   const Prover prover(sampled, input, aim.target, aim.gap, work);
-  std::vector<ProofShare> shares((cells.size() + kChunk - 1) / kChunk);
-  parallel_chunks(cells.size(), kChunk, [&](size_t begin, size_t end) {
-    ProofShare& mine = shares[begin / kChunk];
+  std::vector<ProofShare> shares((cells.size() + kCellsPerTask - 1) / kCellsPerTask);
+  parallel_chunks(cells.size(), kCellsPerTask, [&](size_t begin, size_t end) {
+    ProofShare& mine = shares[begin / kCellsPerTask];
     for (size_t i = begin; i < end; ++i) {
       const CellProof proof = prover.prove(cells[i]);
       for (size_t k = 0; k < 2; ++k) {

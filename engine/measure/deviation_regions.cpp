@@ -4,24 +4,10 @@
 
 #include "measure/deviation_side.h"
 
+#include "base/disjoint_sets.h"
+
 namespace swarf::measure {
 namespace {
-
-class Sets {
- public:
-  explicit Sets(size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0U); }
-  uint32_t root(uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(uint32_t a, uint32_t b) {
-    const uint32_t ra = root(a), rb = root(b);
-    parent_[std::max(ra, rb)] = std::min(ra, rb);
-  }
-
- private:
-  std::vector<uint32_t> parent_;
-};
 
 /// The violating cells of one sign on both sides, numbered through.
 struct Violators {
@@ -50,7 +36,7 @@ Violators find_violators(const std::array<SampledSide*, 2>& sides, bool gouge, d
 }
 
 void join_neighbours(const SampledSide& side, const std::vector<uint32_t>& cells,
-                     const std::vector<uint32_t>& number_of, Sets& sets) {
+                     const std::vector<uint32_t>& number_of, DisjointSets& sets) {
   std::vector<uint32_t> first(side.cells.points().size(), kNoDeviationRegion);
   for (const uint32_t cell : cells) {
     side.cells.each_point(cell, [&](uint32_t point) {
@@ -62,7 +48,7 @@ void join_neighbours(const SampledSide& side, const std::vector<uint32_t>& cells
 
 void join_across(const SampledSide& side, const SampledSide& other, const std::vector<uint32_t>& cells,
                  const std::vector<uint32_t>& number_of, const std::vector<uint32_t>& other_numbers,
-                 Sets& sets) {
+                 DisjointSets& sets) {
   for (const uint32_t cell : cells) {
     const DeviationSample& sample = side.samples[cell];
     const uint32_t opposite = other_numbers[other.cells.leaf_at(sample.facet, sample.foot)];
@@ -72,7 +58,7 @@ void join_across(const SampledSide& side, const SampledSide& other, const std::v
 
 void add_regions(const std::array<SampledSide*, 2>& sides, bool gouge, double limit, RegionMap& map) {
   const Violators violators = find_violators(sides, gouge, limit);
-  Sets sets(violators.size());
+  DisjointSets sets(violators.size());
   for (size_t s = 0; s < 2; ++s) {
     join_neighbours(*sides[s], violators.cells[s], violators.number_of[s], sets);
     join_across(*sides[s], *sides[1 - s], violators.cells[s], violators.number_of[s],

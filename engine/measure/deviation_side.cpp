@@ -9,7 +9,7 @@
 namespace swarf::measure {
 namespace {
 
-constexpr size_t kChunk = 512;
+constexpr size_t kFacetsPerTask = 512;
 /// Points above the border of a patch that lie no farther beside it than this still see the patch; mm.
 constexpr double kBorderSlack = 1e-4;
 /// Cosine of normals that look the same way.
@@ -23,7 +23,7 @@ constexpr double kGuessSlack = 1e-9;
 /// What a column leaves open at its rim, mm.
 constexpr double kClear = 2e-5;
 /// Distances below this are rounding of doubles, mm.
-constexpr double kRounding = 1e-11;
+constexpr double kSideRounding = 1e-11;
 
 double angle_between(const Vec3& a, const Vec3& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
@@ -140,7 +140,7 @@ DeviationSample DeviationSide::look(uint32_t triangle, const Vec3& point, const 
   }
   DeviationSample sample =
       on_design_ ? look_from_design(triangle, target, within) : look_from_stock(triangle, target, within);
-  if (std::abs(sample.raw) < kRounding) sample.raw = 0.0;
+  if (std::abs(sample.raw) < kSideRounding) sample.raw = 0.0;
   if (in_.reach && std::abs(sample.distance) > *in_.reach && sample.state == CellState::kMeasured)
     sample.state = CellState::kFar;
   discount(sample);
@@ -189,7 +189,7 @@ void SampledSide::sample() {
     if (radius_of(cells.corners(i)) > side.pitch()) cells.halve(static_cast<uint32_t>(i));
   }
   samples.resize(cells.size());
-  parallel_chunks(cells.size(), kChunk, [&](size_t begin, size_t end) {
+  parallel_chunks(cells.size(), kFacetsPerTask, [&](size_t begin, size_t end) {
     const DeviationSample* last = nullptr;
     for (size_t i = begin; i < end; ++i) {
       if (!cells.is_leaf(i)) continue;

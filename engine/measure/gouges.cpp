@@ -16,7 +16,7 @@ constexpr double kFirstStep = 0.5, kLastStep = 1e-3;
 /// The search stays this near to its ray; of the pitch.
 constexpr double kReach = 1.5;
 
-struct Context {
+struct GougeContext {
   const stock::SurfaceDexels& dexels;
   std::span<const stock::Sweep> sweeps;
   const PassRule& rule;
@@ -26,7 +26,7 @@ struct Context {
 /// Depths around one ray; x is the foot's displacement in the ray's tangent plane.
 class Surroundings {
  public:
-  Surroundings(const Context& context, uint32_t ray)
+  Surroundings(const GougeContext& context, uint32_t ray)
       : field_(context.dexels.field()),
         ray_(ray),
         height_(context.sweeps, context.rule, context.cutters, context.dexels.blocks()[ray]) {
@@ -57,7 +57,7 @@ class Surroundings {
 };
 
 /// Depth that a parabola through the ray and its surroundings promises, mm.
-double forecast(const Context& context, uint32_t ray) {
+double forecast(const GougeContext& context, uint32_t ray) {
   const double step = 0.25 * context.dexels.field().pitch_mm;
   Surroundings around(context, ray);
   const double middle = -context.dexels.heights_mm()[ray];
@@ -77,7 +77,7 @@ double forecast(const Context& context, uint32_t ray) {
   return promised;
 }
 
-Region refined(const Context& context, uint32_t ray) {
+Region refined(const GougeContext& context, uint32_t ray) {
   const stock::RayField& field = context.dexels.field();
   Surroundings around(context, ray);
   Region best;
@@ -108,7 +108,7 @@ Region refined(const Context& context, uint32_t ray) {
 }
 
 /// The lowest ray that each piece of the path owns.
-std::vector<uint32_t> lowest_of_pieces(const Context& context) {
+std::vector<uint32_t> lowest_of_pieces(const GougeContext& context) {
   constexpr uint32_t kNone = 0xffffffffU;
   const auto& heights = context.dexels.heights_mm();
   const double pitch = context.dexels.field().pitch_mm;
@@ -125,7 +125,7 @@ std::vector<uint32_t> lowest_of_pieces(const Context& context) {
 }
 
 /// The rays around which the deepest gouges are to be expected.
-std::vector<uint32_t> promising_rays(const Context& context) {
+std::vector<uint32_t> promising_rays(const GougeContext& context) {
   const std::vector<uint32_t> lowest = lowest_of_pieces(context);
   std::vector<std::pair<double, uint32_t>> forecasts(lowest.size());
   parallel_chunks(lowest.size(), kPiecesPerTask, [&](size_t begin, size_t end) {
@@ -161,7 +161,7 @@ void add_gouge(const Region& found, uint32_t region_of_ray, double pitch_mm, std
 std::vector<Region> find_gouges(const stock::SurfaceDexels& dexels, std::span<const stock::Sweep> sweeps,
                                 const PassRule& rule, const SweepCutters& cutters, double limit_mm,
                                 Region* deepest) {
-  const Context context{dexels, sweeps, rule, cutters};
+  const GougeContext context{dexels, sweeps, rule, cutters};
   std::vector<double> depths;
   for (const double height : dexels.heights_mm()) depths.push_back(-height);
   std::vector<uint32_t> region_of;

@@ -13,7 +13,7 @@ constexpr size_t kRunsPerTask = 64;
 /// Of half the turn of a sweep: no sweep turns by more than 120 degrees.
 constexpr double kLeastCosine = 0.5;
 
-double distance_to(const Box& box, const Vec3& point) {
+double distance_to_box(const Box& box, const Vec3& point) {
   return (point - point.cwiseMax(box.lower).cwiseMin(box.upper)).norm();
 }
 
@@ -52,7 +52,7 @@ std::vector<uint32_t> NearSweeps::around(const Vec3& point_W, double distance_mm
   const double reach = distance_mm / kLeastCosine;
   std::vector<uint32_t> near;
   for (size_t run = 0; run < runs_.size(); ++run) {
-    if (distance_to(runs_[run], point_W) > reach) continue;
+    if (distance_to_box(runs_[run], point_W) > reach) continue;
     for (size_t n = run * kRun; n < std::min(sweeps_.size(), (run + 1) * kRun); ++n) {
       const Capsule c = capsule(static_cast<uint32_t>(n));
       const double length2 = c.way.squaredNorm();

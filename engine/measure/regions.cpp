@@ -4,29 +4,11 @@
 #include <numeric>
 #include <utility>
 
+#include "base/disjoint_sets.h"
 #include "base/units.h"
 
 namespace swarf::measure {
-namespace {
-
-/// A forest over rays; roots are the least rays of their trees.
-class RaySets {
- public:
-  explicit RaySets(size_t rays) : parent_(rays) { std::iota(parent_.begin(), parent_.end(), 0U); }
-  uint32_t root(uint32_t n) {
-    while (parent_[n] != n) n = parent_[n] = parent_[parent_[n]];
-    return n;
-  }
-  void join(uint32_t a, uint32_t b) {
-    const uint32_t ra = root(a), rb = root(b);
-    parent_[std::max(ra, rb)] = std::min(ra, rb);
-  }
-
- private:
-  std::vector<uint32_t> parent_;
-};
-
-}  // namespace
+namespace {}  // namespace
 
 bool larger(const Region& a, const Region& b) {
   return a.worst_um != b.worst_um ? a.worst_um > b.worst_um : a.ray < b.ray;
@@ -35,7 +17,7 @@ bool larger(const Region& a, const Region& b) {
 std::vector<Region> find_regions(const stock::RayField& field, std::span<const double> values_mm,
                                  std::span<const uint32_t> blocks, double limit_mm,
                                  std::vector<uint32_t>* region_of) {
-  RaySets sets(field.size());
+  DisjointSets sets(field.size());
   for (const auto& [a, b] : field.edges) {
     if (values_mm[a] > limit_mm && values_mm[b] > limit_mm) sets.join(a, b);
   }

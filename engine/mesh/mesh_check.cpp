@@ -112,7 +112,7 @@ double volume_of(const WeldedMesh& mesh) {
   return six_volumes / 6.0;
 }
 
-bool holds(const Box& outer, const Box& inner) {
+bool box_holds(const Box& outer, const Box& inner) {
   const double slack = kFitSlack * outer.size().norm();
   return (inner.lower - outer.lower).minCoeff() >= -slack && (outer.upper - inner.upper).minCoeff() >= -slack;
 }
@@ -121,15 +121,15 @@ void check_size(const Box& design, const Box& stock, const SourceLocation& where
   const double share = design.size().norm() / stock.size().norm();
   const std::string numbers =
       fmt::format("the design measures {} and the stock {}", text(design.size()), text(stock.size()));
-  if (share < kTinyShare && holds(stock, {kInch * design.lower, kInch * design.upper})) {
+  if (share < kTinyShare && box_holds(stock, {kInch * design.lower, kInch * design.upper})) {
     diagnostics.error(
         "mesh-in-inches", where,
         fmt::format("the design mesh is probably in inches: {} mm; 25.4 times larger it fits", numbers),
         "export it in mm");
     return;
   }
-  if (holds(stock, design)) return;
-  if (share > kHugeShare && holds(stock, {design.lower / kInch, design.upper / kInch})) {
+  if (box_holds(stock, design)) return;
+  if (share > kHugeShare && box_holds(stock, {design.lower / kInch, design.upper / kInch})) {
     diagnostics.error(
         "mesh-scaled-by-25", where,
         fmt::format("the design mesh is probably scaled twice: {} mm; 25.4 times smaller it fits", numbers),
@@ -179,7 +179,8 @@ uint64_t hash_of(const std::array<float, 3>& p) {
 
 std::vector<uint32_t> position_numbers(const std::vector<std::array<float, 3>>& positions) {
   constexpr uint32_t kFree = 0xffffffffU;
-  // Open addressing with linear probing, at most half full: a slot holds the first vertex of its position.
+  // Open addressing with linear probing, at most half full: a slot box_holds the first vertex of its
+  // position.
   std::vector<uint32_t> slots(std::bit_ceil(2 * positions.size() + 1), kFree);
   std::vector<uint32_t> numbers(positions.size());
   uint32_t distinct = 0;

@@ -10,7 +10,7 @@
 namespace swarf::mesh {
 namespace {
 
-using Corners = std::array<Vec3, 3>;
+using FacetCorners = std::array<Vec3, 3>;
 __extension__ using Wide = __float128;  // 113 bits: products of three differences of floats fit
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
@@ -69,10 +69,10 @@ int turn(const Vec3& a, const Vec3& b, const Vec3& c, int drop) {
 }
 
 /// Facets in one plane: no side of either has the other beyond it.
-bool overlap_in_plane(const Corners& s, const Corners& t) {
+bool overlap_in_plane(const FacetCorners& s, const FacetCorners& t) {
   int drop = 0;
   (s[1] - s[0]).cross(s[2] - s[0]).cwiseAbs().maxCoeff(&drop);
-  const auto separated = [&](const Corners& a, const Corners& b) {
+  const auto separated = [&](const FacetCorners& a, const FacetCorners& b) {
     const int own = turn(a[0], a[1], a[2], drop);
     for (size_t i = 0; i < 3; ++i) {
       const auto beyond = [&](const Vec3& p) { return turn(a[i], a[(i + 1) % 3], p, drop) * own <= 0; };
@@ -84,12 +84,12 @@ bool overlap_in_plane(const Corners& s, const Corners& t) {
 }
 
 /// The line p-q runs through (a, b, c), border included; p and q lie on its two sides.
-bool runs_through(const Vec3& p, const Vec3& q, const Corners& t) {
+bool runs_through(const Vec3& p, const Vec3& q, const FacetCorners& t) {
   const int s0 = side(p, q, t[0], t[1]), s1 = side(p, q, t[1], t[2]), s2 = side(p, q, t[2], t[0]);
   return (s0 >= 0 && s1 >= 0 && s2 >= 0) || (s0 <= 0 && s1 <= 0 && s2 <= 0);
 }
 
-bool edges_cross(const Corners& s, const std::array<int, 3>& sides, const Corners& t) {
+bool edges_cross(const FacetCorners& s, const std::array<int, 3>& sides, const FacetCorners& t) {
   for (size_t i = 0; i < 3; ++i) {
     const size_t j = (i + 1) % 3;
     if (sides[i] * sides[j] < 0 && runs_through(s[i], s[j], t)) return true;
@@ -97,12 +97,12 @@ bool edges_cross(const Corners& s, const std::array<int, 3>& sides, const Corner
   return false;
 }
 
-std::array<int, 3> sides_of(const Corners& s, const Corners& plane) {
+std::array<int, 3> sides_of(const FacetCorners& s, const FacetCorners& plane) {
   return {side(plane[0], plane[1], plane[2], s[0]), side(plane[0], plane[1], plane[2], s[1]),
           side(plane[0], plane[1], plane[2], s[2])};
 }
 
-bool cross(const Corners& s, const Corners& t) {
+bool facets_cross(const FacetCorners& s, const FacetCorners& t) {
   const std::array<int, 3> of_s = sides_of(s, t);
   if (of_s == std::array{0, 0, 0}) return overlap_in_plane(s, t);
   if (of_s == std::array{1, 1, 1} || of_s == std::array{-1, -1, -1}) return false;
@@ -121,7 +121,7 @@ double grid_of(const TriMesh& mesh) {
 
 struct Span {
   Vec3 low, high;
-  explicit Span(const Corners& t)
+  explicit Span(const FacetCorners& t)
       : low(t[0].cwiseMin(t[1]).cwiseMin(t[2])), high(t[0].cwiseMax(t[1]).cwiseMax(t[2])) {}
   bool meets(const Span& other) const {
     return (low.array() <= other.high.array()).all() && (other.low.array() <= high.array()).all();
@@ -140,7 +140,7 @@ Crossings find_crossings(const SignedDistance& mesh) {
   std::vector<Crossings> parts((count + kChunk - 1) / kChunk);
   const double grid = grid_of(mesh.mesh());
   const auto corners = [&](uint32_t t) {
-    Corners rounded{mesh.corner(t, 0), mesh.corner(t, 1), mesh.corner(t, 2)};
+    FacetCorners rounded{mesh.corner(t, 0), mesh.corner(t, 1), mesh.corner(t, 2)};
     for (Vec3& p : rounded) p = grid * (p / grid).array().round().matrix();
     return rounded;
   };
@@ -148,14 +148,14 @@ Crossings find_crossings(const SignedDistance& mesh) {
     Crossings& mine = parts[begin / kChunk];
     std::vector<uint32_t> met;
     for (auto t = static_cast<uint32_t>(begin); t < end; ++t) {
-      const Corners own = corners(t);
+      const FacetCorners own = corners(t);
       const Span span(own);
       const Vec3 centre = 0.5 * (span.low + span.high);
       met.clear();
       mesh.tree().each_near(centre, 0.5 * (span.high - span.low).norm(), [&](uint32_t other) {
         if (other <= t) return;
-        const Corners theirs = corners(other);
-        if (span.meets(Span(theirs)) && cross(own, theirs)) met.push_back(other);
+        const FacetCorners theirs = corners(other);
+        if (span.meets(Span(theirs)) && facets_cross(own, theirs)) met.push_back(other);
       });
       if (met.empty()) continue;
       if (mine.pairs == 0) {

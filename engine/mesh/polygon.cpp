@@ -14,7 +14,7 @@ struct Point2 {
 
 /// Twice the signed area of a, b, c; exact enough here: the coordinates are floats, so that differences are
 /// exact in double to a relative 2^-52.
-double cross(const Point2& a, const Point2& b, const Point2& c) {
+double turn_of(const Point2& a, const Point2& b, const Point2& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
@@ -24,7 +24,7 @@ bool same(const Point2& a, const Point2& b) {
 
 /// Inside or on the border of a counter-clockwise triangle.
 bool covers(const Point2& a, const Point2& b, const Point2& c, const Point2& p) {
-  return cross(a, b, p) >= 0.0 && cross(b, c, p) >= 0.0 && cross(c, a, p) >= 0.0;
+  return turn_of(a, b, p) >= 0.0 && turn_of(b, c, p) >= 0.0 && turn_of(c, a, p) >= 0.0;
 }
 
 Vec3 newell_normal(std::span<const uint32_t> corners, const std::vector<std::array<float, 3>>& positions) {
@@ -74,7 +74,7 @@ class EarCutter {
         ++at;
       }
     }
-    if (cross(points_[left_[0]], points_[left_[1]], points_[left_[2]]) < 0.0) return {};
+    if (turn_of(points_[left_[0]], points_[left_[1]], points_[left_[2]]) < 0.0) return {};
     ears.push_back({left_[0], left_[1], left_[2]});
     return ears;
   }
@@ -84,12 +84,12 @@ class EarCutter {
   uint32_t after(size_t at) const { return left_[(at + 1) % left_.size()]; }
 
   bool is_reflex(size_t at) const {
-    return cross(points_[before(at)], points_[left_[at]], points_[after(at)]) <= 0.0;
+    return turn_of(points_[before(at)], points_[left_[at]], points_[after(at)]) <= 0.0;
   }
 
   bool is_ear(size_t at) const {
     const Point2 &a = points_[before(at)], &b = points_[left_[at]], &c = points_[after(at)];
-    if (!(cross(a, b, c) > 0.0)) return false;
+    if (!(turn_of(a, b, c) > 0.0)) return false;
     for (size_t i = 0; i < left_.size(); ++i) {
       const Point2& p = points_[left_[i]];
       // A bridge to a hole passes the same place twice.

@@ -55,7 +55,7 @@ double segment_distance(const Vec3& p, const Vec3& a, const Vec3& b) {
   return (a + std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0) * along - p).norm();
 }
 
-double corner_angle(const Vec3& apex, const Vec3& a, const Vec3& b) {
+double angle_at(const Vec3& apex, const Vec3& a, const Vec3& b) {
   return std::atan2((a - apex).cross(b - apex).norm(), (a - apex).dot(b - apex));
 }
 
@@ -166,7 +166,7 @@ void SignedDistance::add_vertex_normals() {
     for (size_t i = 0; i < 3; ++i) {
       const uint32_t v = mesh_.triangles[t][i];
       vertex_normals_[v] +=
-          corner_angle(corner(t, i), corner(t, (i + 1) % 3), corner(t, (i + 2) % 3)) * face_normals_[t];
+          angle_at(corner(t, i), corner(t, (i + 1) % 3), corner(t, (i + 2) % 3)) * face_normals_[t];
       if (across_[3 * size_t{t} + i] != kBorder) continue;
       on_border_[v] = on_border_[mesh_.triangles[t][(i + 1) % 3]] = 1;
     }

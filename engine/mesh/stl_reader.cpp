@@ -21,9 +21,9 @@ constexpr size_t kHeader = 84, kFacet = 50, kFacetNormal = 12;
 constexpr size_t kFacetsPerRead = 1U << 16U;
 constexpr size_t kLookedAt = 512;  // bytes that tell text from binary
 
-using Corners = std::vector<std::array<float, 3>>;  // three by three
+using StlCorners = std::vector<std::array<float, 3>>;  // three by three
 
-TriMesh merged(const Corners& corners) {
+TriMesh merged(const StlCorners& corners) {
   const std::vector<uint32_t> numbers = position_numbers(corners);
   TriMesh mesh;
   mesh.triangles.reserve(corners.size() / 3);
@@ -52,8 +52,8 @@ uintmax_t binary_bytes(uint32_t facets) {
   refuse_mesh({path}, fmt::format("byte {}: {}", byte, coordinate_fault(what, position[axis])));
 }
 
-Corners read_facets(const std::string& path, std::ifstream& file, uint32_t facets) {
-  Corners corners(size_t{3} * facets);
+StlCorners read_facets(const std::string& path, std::ifstream& file, uint32_t facets) {
+  StlCorners corners(size_t{3} * facets);
   std::vector<char> buffer(kFacet * std::min<size_t>(facets, kFacetsPerRead));
   for (size_t begin = 0; begin < facets; begin += kFacetsPerRead) {
     const size_t count = std::min<size_t>(kFacetsPerRead, facets - begin);
@@ -83,7 +83,7 @@ void expect(MeshText& text, std::string_view expected) {
 }
 
 /// What follows the word `facet`.
-void read_text_facet(MeshText& text, Corners& corners) {
+void read_text_facet(MeshText& text, StlCorners& corners) {
   text.skip_line();  // its normal follows from the corners
   expect(text, "outer");
   expect(text, "loop");
@@ -97,9 +97,9 @@ void read_text_facet(MeshText& text, Corners& corners) {
 }
 
 /// One or more solids, one after the other.
-Corners read_text(const std::string& path, const std::string& bytes) {
+StlCorners read_text(const std::string& path, const std::string& bytes) {
   MeshText text(path, bytes);
-  Corners corners;
+  StlCorners corners;
   expect(text, "solid");
   for (;;) {
     text.skip_line();  // the name

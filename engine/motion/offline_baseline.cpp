@@ -46,7 +46,7 @@ double bisect(const std::function<double(double)>& f, double a, double b) {
 
 /// Greatest distance of the curve from the chord u0-u1: where the tangent is parallel to the chord. The curve
 /// is convex on [0,1], so there is one such u and cross(chord, tangent) changes its sign there.
-double chord_error(double u0, double u1) {
+double circle_chord_error(double u0, double u1) {
   const Vec2 chord = (point(u1) - point(u0)).normalized();
   const double u = bisect([&](double x) { return cross(chord, tangent(x)); }, u0, u1);
   return std::abs(cross(chord, point(u) - point(u0)));
@@ -90,10 +90,10 @@ std::vector<double> greedy(double tolerance, int most) {
   std::vector<double> ends{0.0};
   while (ends.back() < 1.0 && static_cast<int>(ends.size()) <= most) {
     const double start = ends.back();
-    if (chord_error(start, 1.0) <= tolerance) {
+    if (circle_chord_error(start, 1.0) <= tolerance) {
       ends.push_back(1.0);
     } else {
-      ends.push_back(bisect([&](double u) { return chord_error(start, u) - tolerance; },
+      ends.push_back(bisect([&](double u) { return circle_chord_error(start, u) - tolerance; },
                             std::nextafter(start, 1.0), 1.0));
     }
   }
@@ -153,7 +153,7 @@ Fig6Row measure(std::string name, const std::vector<double>& ends) {
     const auto greatest = [&](Interpolation how) {
       return maximum([&](double u) { return orientation_error_deg(how, u0, u1, u); }, u0, u1);
     };
-    row.chord_error_um = std::max(row.chord_error_um, um_from_mm(chord_error(u0, u1)));
+    row.chord_error_um = std::max(row.chord_error_um, um_from_mm(circle_chord_error(u0, u1)));
     row.linear_u_deg = std::max(row.linear_u_deg, greatest(Interpolation::kLinearInU));
     row.linear_chord_deg = std::max(row.linear_chord_deg, greatest(Interpolation::kLinearAlongChord));
     row.constant_deg = std::max(row.constant_deg, greatest(Interpolation::kConstant));

@@ -7,7 +7,7 @@ namespace {
 
 using program::NcMove;
 
-bool stands_still(const NcMove& move) {
+bool nc_stands_still(const NcMove& move) {
   return !move.arc && move.q_from == move.q_to && move.from.tip_W == move.to.tip_W &&
          move.from.axis_W == move.to.axis_W;
 }
@@ -39,7 +39,7 @@ bool NcPathSink::move(const NcMove& move) {
     return true;
   }
   dwell_s_ += move.dwell_s;
-  if (stands_still(move)) return true;
+  if (nc_stands_still(move)) return true;
   if (move.rapid) {
     ++result_.reading.rapids;
   } else {

@@ -43,7 +43,7 @@ double tent(float xi) {
   return xi < 0.5F ? std::sqrt(2.0 * xi) - 1.0 : 1.0 - std::sqrt(2.0 - 2.0 * xi);
 }
 
-Vec3f to_eigen(const Rgb& c) {
+Vec3f vector_of(const Rgb& c) {
   return {c[0], c[1], c[2]};
 }
 
@@ -68,7 +68,7 @@ struct Shot {
                    py = (y + 0.5 + tent(xi.y())) / options.height;
       const auto down = std::clamp(static_cast<float>(py), 0.0F, 1.0F);
       const Vec3f backdrop =
-          (1.0F - down) * to_eigen(options.backdrop_top) + down * to_eigen(options.backdrop_bottom);
+          (1.0F - down) * vector_of(options.backdrop_top) + down * vector_of(options.backdrop_bottom);
       const Vec3f light = tracer.radiance(lens.eye.cast<float>(), lens.ray(2.0 * px - 1.0, 1.0 - 2.0 * py),
                                           backdrop, sampler);
       sum += light.cwiseMin(kFirefly);

@@ -7,7 +7,7 @@
 namespace swarf::render {
 namespace {
 
-constexpr auto kPiF = static_cast<float>(kPi);
+constexpr auto kPiSingle = static_cast<float>(kPi);
 /// Share of a line's colour that glows by itself, so that lines stay legible in shadow.
 constexpr float kLineGlow = 0.7F;
 /// What a metal met by a secondary ray mirrors, relative to the surroundings in that direction.
@@ -81,7 +81,7 @@ Vec3f Tracer::key_light(const Hit& hit, const Reflection& reflection, const Eige
   if (in.z() <= 0.0F || !key_visible(hit, to_key)) return Vec3f::Zero();
   const float share = studio_.key_pdf() / (studio_.key_pdf() + reflection.specular_pdf(out, in));
   const Vec3f scatter =
-      (in.z() / kPiF) * reflection.diffuse + share * reflection.specular_times_cosine(out, in);
+      (in.z() / kPiSingle) * reflection.diffuse + share * reflection.specular_times_cosine(out, in);
   return (studio_.key_radiance() / studio_.key_pdf()) * scatter;
 }
 

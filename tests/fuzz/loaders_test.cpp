@@ -11,6 +11,7 @@
 
 #include "base/diagnostics.h"
 #include "fuzz/mutation.h"
+#include "fuzz/sandbox.h"
 #include "fuzz/seeds.h"
 #include "support/program_run.h"
 
@@ -18,11 +19,6 @@ namespace swarf::test {
 namespace {
 
 namespace fs = std::filesystem;
-
-uint64_t from_environment(const char* name, uint64_t otherwise) {
-  const char* text = std::getenv(name);
-  return text == nullptr ? otherwise : std::strtoull(text, nullptr, 10);
-}
 
 /// The damaged file of a case, written where what it names can be found.
 fs::path write_case(const FuzzKind& kind, uint64_t seed, uint64_t number) {

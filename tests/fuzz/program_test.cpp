@@ -10,17 +10,13 @@
 #include <map>
 
 #include "fuzz/mutation.h"
+#include "fuzz/sandbox.h"
 #include "support/program_run.h"
 
 namespace swarf::test {
 namespace {
 
 namespace fs = std::filesystem;
-
-uint64_t from_environment(const char* name, uint64_t otherwise) {
-  const char* text = std::getenv(name);
-  return text == nullptr ? otherwise : std::strtoull(text, nullptr, 10);
-}
 
 /// A box of twelve facets.
 std::string box_obj() {
@@ -74,9 +70,9 @@ constexpr Attack kAttacks[] = {
 
 /// The sanitizers need terabytes of address space that they never fill.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-const std::string kMemory;
+const std::string kMemoryLimit;
 #else
-const std::string kMemory = "ulimit -v 4194304; ";
+const std::string kMemoryLimit = "ulimit -v 4194304; ";
 #endif
 
 class FuzzProgram : public testing::Test {
@@ -93,8 +89,8 @@ class FuzzProgram : public testing::Test {
 
   ProgramRun run_limited(const std::string& arguments) const {
     fs::remove_all(job_ / "out");
-    return run_command("cd " + job_.string() + "; ulimit -c 0; ulimit -t 20; " + kMemory + SWARF_PROGRAM +
-                       " " + arguments);
+    return run_command("cd " + job_.string() + "; ulimit -c 0; ulimit -t 20; " + kMemoryLimit +
+                       SWARF_PROGRAM + " " + arguments);
   }
 
   fs::path job_ = fresh_folder("fuzz_program");

@@ -9,6 +9,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <new>
 #include <stdexcept>
@@ -76,6 +77,11 @@ std::string wait_for(pid_t child, const Shared& shared, std::chrono::seconds tim
 }
 
 }  // namespace
+
+uint64_t from_environment(const char* name, uint64_t otherwise) {
+  const char* text = std::getenv(name);
+  return text == nullptr ? otherwise : std::strtoull(text, nullptr, 10);
+}
 
 std::vector<SandboxFailure> run_in_sandbox(uint64_t begin, uint64_t end,
                                            const std::function<CaseResult(uint64_t)>& run_case,

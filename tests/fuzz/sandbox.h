@@ -9,6 +9,9 @@
 
 namespace swarf::test {
 
+/// The number that a variable of the environment gives.
+uint64_t from_environment(const char* name, uint64_t otherwise);
+
 struct SandboxFailure {
   uint64_t number = 0;  ///< of the case
   std::string what;     ///< "signal 11", "no end after 10 s", or what the case said

@@ -16,6 +16,9 @@ python3 tests/lint/includes.py || failed=1
 say "rooms inside modules, methods per class"
 python3 tests/lint/rooms.py || failed=1
 
+say "names that files compiled as one must not share"
+python3 tests/lint/unity.py || failed=1
+
 say "reference page of the machines"
 python3 assets/machines/reference_page.py --check || failed=1
 

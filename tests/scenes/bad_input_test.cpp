@@ -8,6 +8,7 @@
 
 #include "support/program_run.h"
 
+namespace bad_input_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -174,3 +175,5 @@ TEST(CommandLine, TeachesAndRefuses) {
 }
 
 }  // namespace
+
+}  // namespace bad_input_test

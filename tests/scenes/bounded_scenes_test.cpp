@@ -12,6 +12,7 @@
 #include "support/json_path.h"
 #include "support/program_run.h"
 
+namespace bounded_scenes_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -52,3 +53,5 @@ INSTANTIATE_TEST_SUITE_P(Scenes, BoundedScene, testing::ValuesIn(bounded_scenes(
                          [](const auto& info) { return info.param; });
 
 }  // namespace
+
+}  // namespace bounded_scenes_test

@@ -9,6 +9,7 @@
 #include "support/program_run.h"
 #include "support/solids.h"
 
+namespace compare_test {
 namespace {
 
 using nlohmann::json;
@@ -218,3 +219,5 @@ TEST_F(Compare, WritesMapsThatShowTheWorstPlaces) {
 }
 
 }  // namespace
+
+}  // namespace compare_test

@@ -10,6 +10,7 @@
 #include "support/json_path.h"
 #include "support/program_run.h"
 
+namespace dome_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -129,3 +130,5 @@ TEST(DomeThreads, HashIsTheSameForAnyNumber) {
 }
 
 }  // namespace
+
+}  // namespace dome_test

@@ -9,6 +9,7 @@
 #include "support/json_path.h"
 #include "support/program_run.h"
 
+namespace exact_cases_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -118,3 +119,5 @@ TEST(ExactCases, ContradictionsOfSceneAndClFileAreErrors) {
 }
 
 }  // namespace
+
+}  // namespace exact_cases_test

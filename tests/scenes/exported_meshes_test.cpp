@@ -6,6 +6,7 @@
 
 #include "support/program_run.h"
 
+namespace exported_meshes_test {
 namespace {
 
 using swarf::test::run_swarf;
@@ -27,3 +28,5 @@ TEST(ExportedMeshes, CanBeCompared) {
 }
 
 }  // namespace
+
+}  // namespace exported_meshes_test

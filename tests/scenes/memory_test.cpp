@@ -9,6 +9,7 @@
 #include "support/json_path.h"
 #include "support/program_run.h"
 
+namespace memory_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -81,3 +82,5 @@ TEST(MemoryLimit, IsRefusedWithAVoxelThatFits) {
 }
 
 }  // namespace
+
+}  // namespace memory_test

@@ -9,6 +9,7 @@
 #include "support/json_path.h"
 #include "support/program_run.h"
 
+namespace nc_job_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -169,3 +170,5 @@ TEST_F(NcJob, WithTheSpindleOffItCutsNothingUnnoticed) {
 }
 
 }  // namespace
+
+}  // namespace nc_job_test

@@ -11,6 +11,7 @@
 
 #include "support/program_run.h"
 
+namespace pitch_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -83,3 +84,5 @@ INSTANTIATE_TEST_SUITE_P(Scenes, AnyPitch,
                          [](const auto& info) { return info.param; });
 
 }  // namespace
+
+}  // namespace pitch_test

@@ -10,6 +10,7 @@
 #include "support/json_path.h"
 #include "support/program_run.h"
 
+namespace replay_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -160,3 +161,5 @@ TEST_F(ReplayRun, BrokenRecordsAreRefused) {
 }
 
 }  // namespace
+
+}  // namespace replay_test

@@ -13,6 +13,7 @@
 
 #include "support/program_run.h"
 
+namespace results_kept_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -371,3 +372,5 @@ TEST_F(ResultsKept, AnInterruptAtAnyMomentLeavesWholeResults) {
 }
 
 }  // namespace
+
+}  // namespace results_kept_test

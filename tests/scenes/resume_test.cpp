@@ -14,6 +14,7 @@
 #include "support/json_path.h"
 #include "support/program_run.h"
 
+namespace resume_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -203,3 +204,5 @@ TEST_F(Resume, CtrlCSavesTheStockOfThatMoment) {
 }
 
 }  // namespace
+
+}  // namespace resume_test

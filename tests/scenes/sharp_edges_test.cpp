@@ -9,6 +9,7 @@
 #include "mesh/mesh_io.h"
 #include "support/program_run.h"
 
+namespace sharp_edges_test {
 namespace {
 
 using swarf::Vec3;
@@ -50,3 +51,5 @@ TEST(SharpEdges, OfASlotLieWithinTenMicrometresOfTheTruth) {
 }
 
 }  // namespace
+
+}  // namespace sharp_edges_test

@@ -12,6 +12,7 @@
 #include "support/program_run.h"
 #include "support/solids.h"
 
+namespace special_files_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -88,3 +89,5 @@ TEST_F(SpecialFiles, AFolderIsRefusedAsWell) {
 }
 
 }  // namespace
+
+}  // namespace special_files_test

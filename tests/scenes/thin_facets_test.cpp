@@ -14,6 +14,7 @@
 
 #include "support/program_run.h"
 
+namespace thin_facets_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -112,3 +113,5 @@ TEST(ThinFacets, AHoleDrilledAsideGougesByTheSameAtAnyPitch) {
 }
 
 }  // namespace
+
+}  // namespace thin_facets_test

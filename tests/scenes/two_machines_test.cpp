@@ -8,6 +8,7 @@
 #include "support/json_path.h"
 #include "support/program_run.h"
 
+namespace two_machines_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -98,3 +99,5 @@ TEST_F(TwoMachines, OtherRaysAreRefused) {
 }
 
 }  // namespace
+
+}  // namespace two_machines_test

@@ -10,6 +10,7 @@
 #include "support/json_path.h"
 #include "support/program_run.h"
 
+namespace two_tools_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -187,3 +188,5 @@ TEST_F(TwoTools, SurfaceBlocksTakeOneTool) {
 }
 
 }  // namespace
+
+}  // namespace two_tools_test

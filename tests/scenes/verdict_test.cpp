@@ -12,6 +12,7 @@
 #include "support/json_path.h"
 #include "support/program_run.h"
 
+namespace verdict_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -179,3 +180,5 @@ TEST(Verdict, AFolderOrAFullDiskIsAWrongInputNotAFaultOfTheProgram) {
 }
 
 }  // namespace
+
+}  // namespace verdict_test

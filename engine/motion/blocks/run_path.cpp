@@ -15,7 +15,7 @@ using kinematics::AxisValues;
 using toolpath::BlockMove;
 
 /// Blocks shorter than this go nowhere, mm.
-constexpr double kLengthMin = 1e-9;
+constexpr double kRunLengthMin = 1e-9;
 /// Share of a block that each of its corners may take.
 constexpr double kCornerShare = 0.5;
 /// Slopes that differ by less are one straight line.
@@ -49,7 +49,7 @@ Blend blend_between(const BlockCurve::Jet& a, const BlockCurve::Jet& b, double b
 }
 
 /// Greatest |p| on [0,1].
-double greatest(std::span<const double> p) {
+double greatest_of(std::span<const double> p) {
   const auto value = [&](double x) {
     double sum = 0.0;
     for (size_t k = p.size(); k-- > 0;) sum = sum * x + p[k];
@@ -77,9 +77,9 @@ PathCell blend_cell(const Blend& blend) {
     for (size_t k = 1; k <= 4; ++k) d2[k - 1] = static_cast<double>(k) * d1[k];
     for (size_t k = 1; k <= 3; ++k) d3[k - 1] = static_cast<double>(k) * d2[k];
     const double slope = blend.coefficient[1][i], turn = blend.turn[i];
-    cell.first[i] = (std::max(std::abs(slope), std::abs(slope + turn)) + greatest(d1)) / l;
-    cell.second[i] = (2.0 * std::abs(turn) + greatest(d2)) / (l * l);
-    cell.third[i] = (4.0 * std::abs(turn) + greatest(d3)) / (l * l * l);
+    cell.first[i] = (std::max(std::abs(slope), std::abs(slope + turn)) + greatest_of(d1)) / l;
+    cell.second[i] = (2.0 * std::abs(turn) + greatest_of(d2)) / (l * l);
+    cell.third[i] = (4.0 * std::abs(turn) + greatest_of(d3)) / (l * l * l);
   }
   return cell;
 }
@@ -159,7 +159,7 @@ void RunPathBuilder::drop(size_t cells) {
     if (piece.blend >= 0) piece.blend -= static_cast<int>(blends);
 }
 
-/// The greatest feed; of rapids, and where durations alone are given, the fastest linear axis.
+/// The greatest_of feed; of rapids, and where durations alone are given, the fastest linear axis.
 double RunPathBuilder::reference_speed() const {
   double feed = 0.0, axis = 0.0;
   for (const BlockMotion& motion : motions_) feed = std::max(feed, motion.block->feed_mm_s);
@@ -176,7 +176,7 @@ const BlockCurve& RunPathBuilder::curve(size_t block) {
 }
 
 void RunPathBuilder::look_at(size_t block) {
-  if (curve(block).length() < kLengthMin) {
+  if (curve(block).length() < kRunLengthMin) {
     ++at_.next;
     return;
   }
@@ -211,7 +211,7 @@ BlockCurve::TipLimits RunPathBuilder::tip_limits(size_t block) const {
 }
 
 void RunPathBuilder::add_block_piece(size_t block, double from, double to) {
-  if (!(to - from > kLengthMin)) return;
+  if (!(to - from > kRunLengthMin)) return;
   const size_t first = path_.cells.size();
   path_.curve(block).append_cells(from, to, tip_limits(block), path_.cells);
   path_.pieces.push_back({block, from, to - from, -1});
@@ -290,7 +290,7 @@ double RunPathBuilder::deviation(size_t a, size_t b, const Blend& blend) const {
     const ToolPose rounded = kinematics::forward(machine_, blend.q(s));
     distance[static_cast<size_t>(i)] = (rounded.tip_W - programmed.tip_W).norm();
   }
-  // Between the places: the top of the parabola through the greatest and those beside it.
+  // Between the places: the top of the parabola through the greatest_of and those beside it.
   const auto top = std::max_element(distance.begin() + 1, distance.end() - 1);
   const double before = *(top - 1), after = *(top + 1), bend = 2.0 * *top - before - after;
   return bend > 0.0 ? *top + std::pow(before - after, 2) / (8.0 * bend) : *top;
@@ -313,7 +313,7 @@ PathPoint point_at(const RunPath& path, size_t cell, double offset) {
     point.share = path.curve(piece.block).share(piece.from + s);
   } else {
     do ++point.block;
-    while (path.curve(point.block).length() < kLengthMin);
+    while (path.curve(point.block).length() < kRunLengthMin);
     point.share = path.curve(point.block).share(s - blend.before);
   }
   return point;

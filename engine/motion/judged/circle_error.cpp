@@ -13,7 +13,7 @@ namespace {
 constexpr double kOnCircle = 1e-3;
 constexpr size_t kBlocksMin = 8;
 /// The distance is sampled at this many places of a block; its greatest is then refined between neighbours.
-constexpr int kNodes = 32;
+constexpr int kCircleNodes = 32;
 
 struct Circle {
   Vec3 centre, normal;
@@ -88,15 +88,15 @@ void look_along(const BlockMotion& motion, const Circle& circle, int element, Ci
   };
   int best = 0;
   double greatest = 0.0;
-  for (int i = 0; i <= kNodes; ++i) {
-    const double here = at(static_cast<double>(i) / kNodes);
+  for (int i = 0; i <= kCircleNodes; ++i) {
+    const double here = at(static_cast<double>(i) / kCircleNodes);
     if (here > greatest) {
       greatest = here;
       best = i;
     }
   }
   constexpr double kGolden = 0.6180339887498949;
-  double low = std::max(0.0, (best - 1.0) / kNodes), high = std::min(1.0, (best + 1.0) / kNodes);
+  double low = std::max(0.0, (best - 1.0) / kCircleNodes), high = std::min(1.0, (best + 1.0) / kCircleNodes);
   while (high - low > 1e-9) {
     const double left = high - kGolden * (high - low), right = low + kGolden * (high - low);
     (at(left) < at(right) ? low : high) = at(left) < at(right) ? left : right;

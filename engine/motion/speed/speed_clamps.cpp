@@ -23,9 +23,9 @@ constexpr double kSpacingMin = 1e-6;
 /// A rotary that turns by more than this between the closest nodes jumps, rad: it happens at the pole itself,
 /// where the turn takes place in no distance. No feed is slow enough for it; the trajectory's check reports
 /// it.
-constexpr double kJump = 0.5;
+constexpr double kClampJump = 0.5;
 /// Share of an axis' acceleration granted to the curvature of q(s); the rest is for changes of feed.
-constexpr double kCurvatureShare = 0.5;
+constexpr double kClampCurvatureShare = 0.5;
 /// Share of an axis' limits that is planned with: the grid sees rates averaged over its cells.
 constexpr double kAxisUse = 0.99;
 
@@ -43,7 +43,7 @@ bool is_coarse(const ToolPose& a, const ToolPose& b, const AxisValues& qa, const
 bool jumps(const AxisValues& qa, const AxisValues& qb, const MachineModel& machine) {
   for (size_t i = 0; i < machine.axes.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
-    if (machine.axes[i].kind == AxisKind::kRotary && std::abs(qb[row] - qa[row]) > kJump) return true;
+    if (machine.axes[i].kind == AxisKind::kRotary && std::abs(qb[row] - qa[row]) > kClampJump) return true;
   }
   return false;
 }
@@ -123,9 +123,9 @@ void clamp_by_axes(const std::vector<PathNode>& nodes, const MachineModel& machi
       const double acceleration = kAxisUse * axis.acceleration_max;
       // Division by zero gives infinity: an axis at rest limits nothing.
       limits.speed[cell] = std::min({limits.speed[cell], kAxisUse * axis.speed_max / slope[row],
-                                     std::sqrt(kCurvatureShare * acceleration / curve[row])});
+                                     std::sqrt(kClampCurvatureShare * acceleration / curve[row])});
       limits.acceleration[cell] =
-          std::min(limits.acceleration[cell], (1.0 - kCurvatureShare) * acceleration / slope[row]);
+          std::min(limits.acceleration[cell], (1.0 - kClampCurvatureShare) * acceleration / slope[row]);
     }
   }
 }

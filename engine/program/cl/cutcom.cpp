@@ -8,7 +8,8 @@
 namespace swarf::program::cldata {
 namespace {
 
-constexpr const char* kForm = "write CUTCOM/LEFT, RIGHT, ON or OFF, a register and XYPLAN, YZPLAN or ZXPLAN";
+constexpr const char* kCutcomForm =
+    "write CUTCOM/LEFT, RIGHT, ON or OFF, a register and XYPLAN, YZPLAN or ZXPLAN";
 
 bool is_plane(const std::string& word, nc::Plane& plane) {
   if (word == "XYPLAN") plane = nc::Plane::kXY;
@@ -26,7 +27,7 @@ bool read_cutcom(Reporter& reporter, ClCutcom& compensation, const ClStatement& 
     const bool known = word == "LEFT" || word == "RIGHT" || word == "ON" || word == "OFF";
     if (!known || given) {
       fault(reporter, "unsupported-word", argument, fmt::format("CUTCOM with '{}' is not followed", word),
-            kForm);
+            kCutcomForm);
       return false;
     }
     given = true;
@@ -35,11 +36,13 @@ bool read_cutcom(Reporter& reporter, ClCutcom& compensation, const ClStatement& 
            : word == "ON"    ? compensation.last_side
                              : nc::Compensation::kOff;
     if (word == "ON" && compensation.last_side == nc::Compensation::kOff) {
-      fault(reporter, "wrong-arguments", argument, "CUTCOM/ON, and no LEFT or RIGHT stands before it", kForm);
+      fault(reporter, "wrong-arguments", argument, "CUTCOM/ON, and no LEFT or RIGHT stands before it",
+            kCutcomForm);
       return false;
     }
   }
-  if (!given) fault(reporter, "wrong-arguments", s, "CUTCOM says neither LEFT, RIGHT, ON nor OFF", kForm);
+  if (!given)
+    fault(reporter, "wrong-arguments", s, "CUTCOM says neither LEFT, RIGHT, ON nor OFF", kCutcomForm);
   return given;
 }
 

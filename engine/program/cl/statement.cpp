@@ -11,7 +11,7 @@ namespace swarf::program {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r";
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+constexpr std::string_view kMark = "\xEF\xBB\xBF";
 constexpr size_t kNone = std::string_view::npos;
 
 bool is_letter(char c) {
@@ -61,7 +61,7 @@ std::string shown(const ClArgument& argument) {
 }
 
 ClText::ClText(std::string_view text) : rest_(text) {
-  if (rest_.starts_with(kByteOrderMark)) rest_.remove_prefix(kByteOrderMark.size());
+  if (rest_.starts_with(kMark)) rest_.remove_prefix(kMark.size());
 }
 
 bool ClText::next(std::string_view& line) {

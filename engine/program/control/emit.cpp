@@ -15,7 +15,7 @@ namespace swarf::program::nc {
 namespace {
 
 /// Shorter ways are rounding of coordinates (mm); a segment without way and without dwell is none.
-constexpr double kNoWay = 1e-10;
+constexpr double kAxesNoWay = 1e-10;
 
 /// Way of the rotary axes as F counts it: degrees, unless radii are set.
 double turn_way(const std::array<double, 3>& from, const std::array<double, 3>& to,
@@ -46,10 +46,10 @@ void set_time(const ModalState& modal, const Offsets& offsets, const Segment& se
   const double rate = per_minute ? 1.0 : std::abs(segment.spindle_rpm);
   const double mm_s = segment.feed * segment.feed_unit_mm * rate / 60.0, deg_s = segment.feed * rate / 60.0;
   const bool tip_alone = offsets.tcp != Tcp::kOff || turn == 0.0;
-  if (way > kNoWay && (tip_alone || modal.feed_rule == FeedRule::kLinearFirst)) {
+  if (way > kAxesNoWay && (tip_alone || modal.feed_rule == FeedRule::kLinearFirst)) {
     move.duration_s = way / mm_s;
     if (tip_alone) move.feed_mm_s = mm_s;
-  } else if (way > kNoWay) {
+  } else if (way > kAxesNoWay) {
     move.duration_s = std::hypot(way, turn) / mm_s;
   } else {
     move.duration_s = turn / deg_s;
@@ -130,7 +130,7 @@ void emit_piece(Control& control, const Segment& segment, const Vec3& p_to,
                         "write numbers that a machine can reach");
   }
   const bool arc = angle > 0.0;
-  const bool stands = !arc && (move.q_to - control.path.q).cwiseAbs().maxCoeff() <= kNoWay;
+  const bool stands = !arc && (move.q_to - control.path.q).cwiseAbs().maxCoeff() <= kAxesNoWay;
   if (stands && segment.dwell_s == 0.0) return;
   const double turn =
       segment.turns_rotaries ? turn_way(segment.rotary_from, rotary_to, control.modal.feed_radii_mm) : 0.0;

@@ -29,7 +29,6 @@ using nc::Motion;
 
 namespace {
 
-constexpr unsigned kAlways = kFeedAllowed | kFunctionsAllowed | kCompensationAllowed;
 constexpr double kNoWay = 1e-9;
 
 /// Across t, to the side on which the cutter goes.

@@ -14,7 +14,6 @@ using nc::Motion;
 
 namespace {
 
-constexpr unsigned kAlways = kFeedAllowed | kFunctionsAllowed | kCompensationAllowed;
 constexpr double kRadiusTolerance = 0.016;
 
 /// The point at an angle in degrees about the origin, in the plane; exact at multiples of 90 degrees.

@@ -8,7 +8,7 @@
 namespace swarf::program::nc::heidenhain {
 namespace {
 
-constexpr double kNoWay = 1e-9;
+constexpr double kNoCornerWay = 1e-9;
 
 double cross(const Vec2& a, const Vec2& b) {
   return a.x() * b.y() - a.y() * b.x();
@@ -56,7 +56,7 @@ Points meet(const Locus& a, const Locus& b) {
   if (a.circle && !b.circle) return meet(b, a);
   if (!a.circle && !b.circle) {
     const double turn = cross(a.direction, b.direction);
-    if (std::abs(turn) < kNoWay) return points;
+    if (std::abs(turn) < kNoCornerWay) return points;
     points.at[0] = a.point + cross(b.point - a.point, b.direction) / turn * a.direction;
     points.count = 1;
     return points;
@@ -70,7 +70,7 @@ Points meet(const Locus& a, const Locus& b) {
   } else {
     const Vec2 between = b.point - a.point;
     const double distance = between.norm();
-    if (distance < kNoWay) return points;
+    if (distance < kNoCornerWay) return points;
     const double x = 0.5 * (distance + (a.radius * a.radius - b.radius * b.radius) / distance);
     foot = a.point + x / distance * between;
     along = left(between) / distance;
@@ -83,7 +83,7 @@ Points meet(const Locus& a, const Locus& b) {
   return points;
 }
 
-Vec2 touch(const FlatPiece& piece, const Vec2& centre) {
+Vec2 touch_of_piece(const FlatPiece& piece, const Vec2& centre) {
   if (piece.is_arc) {
     const Vec2 out = centre - piece.centre;
     return piece.centre + (piece.from - piece.centre).norm() * out.normalized();
@@ -96,15 +96,15 @@ Vec2 touch(const FlatPiece& piece, const Vec2& centre) {
 bool on(const FlatPiece& piece, const Vec2& point) {
   if (!piece.is_arc) {
     const double along = (point - piece.from).dot(tangent(piece, piece.from));
-    return along >= -kNoWay && along <= (piece.to - piece.from).norm() + kNoWay;
+    return along >= -kNoCornerWay && along <= (piece.to - piece.from).norm() + kNoCornerWay;
   }
   const auto angle = [&](const Vec2& p) {
     const Vec2 a = piece.from - piece.centre, b = p - piece.centre;
     const double turned = (piece.counter_clockwise ? 1.0 : -1.0) * std::atan2(cross(a, b), a.dot(b));
-    return turned < -kNoWay ? turned + kTurn : turned;
+    return turned < -kNoCornerWay ? turned + kTurn : turned;
   };
-  const double whole = (piece.to - piece.from).norm() < kNoWay ? kTurn : angle(piece.to);
-  return angle(point) <= whole + kNoWay;
+  const double whole = (piece.to - piece.from).norm() < kNoCornerWay ? kTurn : angle(piece.to);
+  return angle(point) <= whole + kNoCornerWay;
 }
 
 }  // namespace
@@ -112,7 +112,7 @@ bool on(const FlatPiece& piece, const Vec2& point) {
 std::optional<FlatCorner> round_corner(const FlatPiece& before, const FlatPiece& after, double radius,
                                        std::string& why) {
   const double turn = cross(tangent(before, before.to), tangent(after, after.from));
-  if (std::abs(turn) < kNoWay) {
+  if (std::abs(turn) < kNoCornerWay) {
     why = "the contour does not turn here";
     return std::nullopt;
   }
@@ -121,7 +121,8 @@ std::optional<FlatCorner> round_corner(const FlatPiece& before, const FlatPiece&
   std::optional<FlatCorner> best;
   for (int i = 0; i < found.count; ++i) {
     const Vec2& centre = found.at[static_cast<size_t>(i)];
-    const FlatCorner corner{touch(before, centre), touch(after, centre), centre, side > 0.0};
+    const FlatCorner corner{touch_of_piece(before, centre), touch_of_piece(after, centre), centre,
+                            side > 0.0};
     if (!on(before, corner.leave) || !on(after, corner.join)) continue;
     const Vec2 at = before.to;
     if (!best || (corner.leave - at).norm() < (best->leave - at).norm()) best = corner;
@@ -136,8 +137,8 @@ std::optional<FlatCorner> cut_corner(const FlatPiece& before, const FlatPiece& a
     why = "a chamfer needs straight pieces before and after it";
     return std::nullopt;
   }
-  if (length > (before.to - before.from).norm() + kNoWay ||
-      length > (after.to - after.from).norm() + kNoWay) {
+  if (length > (before.to - before.from).norm() + kNoCornerWay ||
+      length > (after.to - after.from).norm() + kNoCornerWay) {
     why = "the pieces before and after it are too short";
     return std::nullopt;
   }

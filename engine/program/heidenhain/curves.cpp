@@ -15,8 +15,6 @@ using nc::Target;
 
 namespace {
 
-constexpr unsigned kAlways = kFeedAllowed | kFunctionsAllowed | kCompensationAllowed;
-
 Vec3 unit_vector(BlockReader& reader, const std::array<Amount, 3>& words, const char* name) {
   const auto first = std::find_if(words.begin(), words.end(), [](const Amount& word) { return word.given; });
   Vec3 v;

@@ -15,8 +15,6 @@ using nc::Target;
 
 namespace {
 
-constexpr unsigned kAlways = kFeedAllowed | kFunctionsAllowed | kCompensationAllowed;
-
 /// L R0 F100 M3: words without a motion.
 void move_without_axes(Executor& executor, BlockReader& reader, const MotionWords& words, Element& element,
                        size_t start) {

@@ -9,8 +9,8 @@ using nc::Motion;
 
 namespace {
 
-FlatPiece flat(const nc::PlaneAxes& axes, Motion motion, const nc::ArcWords& arc, const Vec3& from,
-               const Vec3& to) {
+FlatPiece flat_piece(const nc::PlaneAxes& axes, Motion motion, const nc::ArcWords& arc, const Vec3& from,
+                     const Vec3& to) {
   const auto in_plane = [&](const Vec3& v) { return Vec2(v[axes.first], v[axes.second]); };
   FlatPiece piece{in_plane(from), in_plane(to), false, Vec2::Zero(), motion == Motion::kCounterClockwise};
   piece.is_arc = arc.centre.has_value();
@@ -61,8 +61,8 @@ void close_corner(Executor& executor, Element& next) {
                                std::abs(next.to[axes.normal] - next.from[axes.normal]));
   if (rise > 1e-9 || before.target.rotary() || next.target.rotary())
     refuse("the pieces before and after a corner lie in the working plane");
-  const FlatPiece first = flat(axes, before.motion, before.arc, before.from, before.to);
-  const FlatPiece second = flat(axes, next.motion, next.arc, next.from, next.to);
+  const FlatPiece first = flat_piece(axes, before.motion, before.arc, before.from, before.to);
+  const FlatPiece second = flat_piece(axes, next.motion, next.arc, next.from, next.to);
   if ((!first.is_arc && (first.to - first.from).norm() < 1e-9) ||
       (!second.is_arc && (second.to - second.from).norm() < 1e-9))
     refuse("a piece beside the corner has no length in the working plane");

@@ -19,7 +19,7 @@ namespace {
 constexpr int kPointsMax = 100'000;
 
 /// A way in the plane, mm; exact at multiples of 90 degrees.
-Vec2 polar(double radius, double angle_deg) {
+Vec2 polar_step(double radius, double angle_deg) {
   return {radius * cos_deg(angle_deg), radius * sin_deg(angle_deg)};
 }
 
@@ -139,18 +139,18 @@ void pattern_definition(nc::Control& control, Drilling& drilling, BlockReader& r
     if (name == "POS") {
       add_points(points, {first, height}, reader, at);
     } else if (name == "ROW") {
-      const Vec2 step = polar(unit * items["D"], items["ROT"]);
+      const Vec2 step = polar_step(unit * items["D"], items["ROT"]);
       add_rows(points, {first, step, Vec2::Zero(), items.count("NUM"), 1, height, false}, reader, at);
     } else if (name == "PAT" || name == "FRAME") {
-      const Vec2 x = polar(unit * items["DX"], items["ROT"] + items["ROTX"]);
-      const Vec2 y = polar(unit * items["DY"], items["ROT"] + items["ROTY"] + 90.0);
+      const Vec2 x = polar_step(unit * items["DX"], items["ROT"] + items["ROTX"]);
+      const Vec2 y = polar_step(unit * items["DY"], items["ROT"] + items["ROTY"] + 90.0);
       add_rows(points, {first, x, y, items.count("NUMX"), items.count("NUMY"), height, name == "FRAME"},
                reader, at);
     } else {
       const int number = items.count("NUM");
       const double step = name == "CIRC" ? 360.0 / number : items["STEP"];
       for (int i = 0; i < number; ++i) {
-        const Vec2 out = polar(0.5 * unit * items["D"], items["START"] + i * step);
+        const Vec2 out = polar_step(0.5 * unit * items["D"], items["START"] + i * step);
         add_points(points, {first + out, height}, reader, at);
       }
     }
@@ -223,13 +223,14 @@ void pattern_cycle(Executor& executor, BlockReader& reader, const Cycle& pattern
     const double shared = number < 2 ? 0.0 : whole ? range / number : range / (number - 1);
     const double step = given(247) != 0.0 ? given(247) : shared;
     for (int i = 0; i < number; ++i)
-      add_points(points,
-                 {centre + polar(0.5 * executor.control.modal.mm(given(244)), given(245) + i * step), 0.0},
-                 reader, pattern.offset);
+      add_points(
+          points,
+          {centre + polar_step(0.5 * executor.control.modal.mm(given(244)), given(245) + i * step), 0.0},
+          reader, pattern.offset);
   } else {
     const Vec2 first(executor.control.modal.mm(given(225)), executor.control.modal.mm(given(226)));
-    const Vec2 column = polar(executor.control.modal.mm(given(237)), given(224)),
-               line = polar(executor.control.modal.mm(given(238)), given(224) + 90.0);
+    const Vec2 column = polar_step(executor.control.modal.mm(given(237)), given(224)),
+               line = polar_step(executor.control.modal.mm(given(238)), given(224) + 90.0);
     add_rows(points, {first, column, line, count(242), count(243), 0.0, false}, reader, pattern.offset);
   }
   for (const int shared : {200, 203, 204}) {

@@ -66,6 +66,9 @@ enum WordSet : unsigned {
   kApproachAllowed = 2048,      ///< LEN, CCA
   kCoefficientsAllowed = 1024,  ///< K3X ..: `spline` takes them
 };
+/// What every motion may have.
+inline constexpr unsigned kAlways = kFeedAllowed | kFunctionsAllowed | kCompensationAllowed;
+
 /// Reads to the end of the block. "unknown-word", "unexpected-word", "word-twice", "unsupported-word".
 MotionWords read_motion_words(BlockReader& reader, unsigned allowed, SplineWords* spline = nullptr);
 /// "unknown-word" with the nearest known one, "unsupported-word" for one that the control knows.

@@ -16,6 +16,17 @@
 
 namespace swarf::program::nc::siemens {
 
+// Of ASCII; in_name: what a name may hold behind its first letter.
+inline bool is_letter(char c) {
+  return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
+}
+inline bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+inline bool in_name(char c) {
+  return is_letter(c) || is_digit(c) || c == '_';
+}
+
 /// A line of the program, for messages.
 struct LineRef {
   const std::string* file = nullptr;

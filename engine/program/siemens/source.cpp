@@ -5,15 +5,10 @@
 #include <algorithm>
 #include <array>
 
+#include "program/siemens/lexer.h"
+
 namespace swarf::program::nc::siemens {
 namespace {
-
-bool is_digit(char c) {
-  return c >= '0' && c <= '9';
-}
-bool in_name(char c) {
-  return is_digit(c) || c == '_' || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
-}
 
 /// What stands before the words of a block: /2 N100 LABEL:
 struct Head {

@@ -11,7 +11,7 @@
 namespace swarf::program {
 namespace {
 
-bool is_letter(char c) {
+bool is_word_letter(char c) {
   return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
 }
 bool is_digit(char c) {
@@ -80,7 +80,7 @@ class LineLexer {
       while (!cursor_.done()) cursor_.skip();
     } else if (c == '(') {
       comment();
-    } else if (is_letter(c) && !block_.percent) {
+    } else if (is_word_letter(c) && !block_.percent) {
       word();
     } else if (is_digit(c) || is_sign(c) || c == '.') {
       number_without_letter();
@@ -161,7 +161,7 @@ class LineLexer {
     const size_t start = cursor_.position();
     size_t length = 0;
     std::string run;
-    while (is_letter(cursor_.peek(length))) run += upper(cursor_.peek(length++));
+    while (is_word_letter(cursor_.peek(length))) run += upper(cursor_.peek(length++));
     if (run == "NAN" || run == "INF" || run == "INFINITY") {
       cursor_.skip(length);
       return refuse(word, fmt::format("'{}' is not a number that a machine can use", cursor_.since(start)),

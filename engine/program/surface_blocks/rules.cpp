@@ -107,7 +107,7 @@ std::string range_of(const WordRule& rule) {
   return fmt::format("{}from {:g} to {:.10g}{}", whole, rule.low, rule.high, rule.unit);
 }
 
-bool in_range(const WordRule& rule, double value) {
+bool keeps_range(const WordRule& rule, double value) {
   // The outward sign has no middle.
   if (rule.letter == 'D') return value == 1.0 || value == -1.0;
   return value <= rule.high && (rule.above_low ? value > rule.low : value >= rule.low);
@@ -118,7 +118,7 @@ void check_value(CheckedBlock& block, const Word& word, const WordRule& rule, Re
   if (rule.whole && word.value != std::floor(word.value)) {
     reporter.error("not-whole-number", block.line, word.column,
                    fmt::format("{}: the {} must be a whole number", word.text, rule.meaning), fix);
-  } else if (!in_range(rule, word.value)) {
+  } else if (!keeps_range(rule, word.value)) {
     const std::string range = rule.letter == 'D' ? "+1 or -1" : range_of(rule);
     reporter.error("out-of-range", block.line, word.column,
                    fmt::format("{}: the {} must be {}", word.text, rule.meaning, range), fix);

@@ -20,7 +20,7 @@
 namespace swarf::sim {
 namespace {
 
-constexpr double kMegabyte = 1024.0 * 1024.0;
+constexpr double kBytesPerMb = 1024.0 * 1024.0;
 
 /// Upwards to two digits.
 double two_digits(double value) {
@@ -29,11 +29,11 @@ double two_digits(double value) {
 }
 
 /// The smallest voxel, to two digits, whose estimate fits.
-double voxel_that_fits(const Box& box, double voxel, double limit_mb) {
+double voxel_of_box_that_fits(const Box& box, double voxel, double limit_mb) {
   constexpr double kFinest = 1e-6;  // of the box: no memory holds more
   const double longest = box.size().maxCoeff();
   double fitting = std::max(voxel, kFinest * longest);
-  while (fitting<longest&& static_cast<double>(stock::Stock::memory_estimate(box, fitting)) / kMegabyte>
+  while (fitting<longest&& static_cast<double>(stock::Stock::memory_estimate(box, fitting)) / kBytesPerMb>
              limit_mb)
     fitting *= 1.05;
   return two_digits(fitting);
@@ -43,7 +43,7 @@ double voxel_that_fits(const Box& box, double voxel, double limit_mb) {
 void check_voxels(const Scene& scene, const char* key, double voxel, Diagnostics& diagnostics) {
   const double limit = memory_limit_mb(scene);
   const double need =
-      static_cast<double>(stock::Stock::memory_estimate(scene.stock.box_W, voxel)) / kMegabyte;
+      static_cast<double>(stock::Stock::memory_estimate(scene.stock.box_W, voxel)) / kBytesPerMb;
   // Before the path is known only the block can be counted; what lies between is for require_memory.
   constexpr double kBeyondDoubt = 2.0, kShareOfBlock = 1.0 / 6.0;
   if (need <= kBeyondDoubt * limit) return;
@@ -51,7 +51,7 @@ void check_voxels(const Scene& scene, const char* key, double voxel, Diagnostics
       "out-of-memory", {scene.file},
       fmt::format("{} = {:g} needs about {:.0f} MB, {:.0f} MB may be used", key, voxel, need, limit),
       fmt::format("voxel_mm = {:g} fits; or raise --max-memory",
-                  voxel_that_fits(scene.stock.box_W, voxel, kShareOfBlock * limit)));
+                  voxel_of_box_that_fits(scene.stock.box_W, voxel, kShareOfBlock * limit)));
 }
 
 double triangle_area(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -86,7 +86,7 @@ double design_area(const Job& job) {
 void check_rays(const Job& job, Diagnostics& diagnostics) {
   constexpr double kRayBytes = 80.0;
   const double limit = memory_limit_mb(job.scene), area = design_area(job), pitch = job.scene.design.pitch_mm;
-  const double need = kRayBytes * area / pitch / pitch / kMegabyte;
+  const double need = kRayBytes * area / pitch / pitch / kBytesPerMb;
   if (need <= limit) return;
   diagnostics.error(
       "out-of-memory", {job.scene.file},
@@ -95,7 +95,7 @@ void check_rays(const Job& job, Diagnostics& diagnostics) {
           "may be used",
           pitch, need, area, limit),
       fmt::format("pitch_mm = {:g} fits",
-                  two_digits(std::sqrt(4.0 * kRayBytes * area / (limit * kMegabyte)))));
+                  two_digits(std::sqrt(4.0 * kRayBytes * area / (limit * kBytesPerMb)))));
 }
 
 void check_memory(const Job& job, Diagnostics& diagnostics) {

@@ -9,6 +9,7 @@
 #include "base/check.h"
 #include "base/units.h"
 #include "program/source_text.h"
+#include "sim/judge/judge.h"
 
 namespace swarf::sim {
 namespace {

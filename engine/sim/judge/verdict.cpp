@@ -28,7 +28,7 @@ std::string names(std::span<const Check> checks, Outcome outcome) {
 }
 
 /// "gouge, excess (no design), spindle (the program does not say when it turns)".
-std::string not_judged(std::span<const Check> checks) {
+std::string what_is_not_judged(std::span<const Check> checks) {
   std::vector<std::pair<std::string, std::string>> by_reason;  // reason, names
   for (const Check& check : checks) {
     if (check.outcome != Outcome::kNotJudged) continue;
@@ -70,7 +70,7 @@ std::string verdict_text(std::span<const Check> checks) {
   if (!open.empty()) text += open + " not proven; ";
   const size_t held = count(checks, Outcome::kHolds);
   text += fmt::format("{} {}", held, held == 1 ? "check holds" : "checks hold") + covered(checks);
-  const std::string silent = not_judged(checks);
+  const std::string silent = what_is_not_judged(checks);
   return silent.empty() ? text : text + "; not judged: " + silent;
 }
 

@@ -36,7 +36,7 @@ std::string checksum(std::string_view text) {
   return hash.text();
 }
 
-void append_pose(fmt::memory_buffer& out, const ToolPose& pose) {
+void append_recorded_pose(fmt::memory_buffer& out, const ToolPose& pose) {
   const Vec3 &p = pose.tip_W, &a = pose.axis_W;
   fmt::format_to(std::back_inserter(out), " {} {} {} {} {} {}\n", p.x(), p.y(), p.z(), a.x(), a.y(), a.z());
 }
@@ -161,10 +161,10 @@ void write_record(const std::string& path, const CutRecord& record) {
     if (record.tools[n] != last.tool) fmt::format_to(to, "tool {}\n", last.tool = record.tools[n]);
     if (!same(sweep.start, last.pose)) {
       fmt::format_to(to, "jump");
-      append_pose(out, sweep.start);
+      append_recorded_pose(out, sweep.start);
     }
     fmt::format_to(to, "sweep {} {} {}", place.block, place.line, place.t_s);
-    append_pose(out, sweep.end);
+    append_recorded_pose(out, sweep.end);
     last.pose = sweep.end;
     if ((n + 1) % record.every == 0 || n + 1 == record.sweeps.size()) {
       fmt::format_to(to, "state {:016x}\n", record.states.at(states++));

@@ -10,7 +10,7 @@ namespace swarf::sim {
 namespace {
 
 constexpr double kBandVoxels = 3.0;  // half width of the level set
-constexpr size_t kSweepsPerTask = 16;
+constexpr size_t kClearedPerTask = 16;
 
 /// The sweeps follow the motion within a bound as far up as the flutes reach; a turn takes the tool's far end
 /// away from it in the ratio of the levers.
@@ -52,7 +52,7 @@ ToolClearanceCheck::Outlook ToolClearanceCheck::look_ahead(const stock::ContactF
                                                            size_t end) const {
   std::vector<double> gaps(end - begin);
   std::vector<uint8_t> hinted(end - begin, 0);
-  parallel_chunks(gaps.size(), kSweepsPerTask, [&](size_t from, size_t to) {
+  parallel_chunks(gaps.size(), kClearedPerTask, [&](size_t from, size_t to) {
     double least = result_.band_mm;  // what is farther than a gap seen need not be known
     for (size_t i = from; i < to; ++i) {
       const stock::SweepMap map = stock::sweep_map(sweeps_.sweeps[begin + i]);

@@ -11,7 +11,7 @@
 namespace swarf::stock {
 namespace {
 
-constexpr size_t kRunsPerTask = 1;
+constexpr size_t kLanesPerTask = 1;
 
 /// From a leaf's centre to the farthest place where a distance matters.
 double reach_of(const LevelSet& set) {
@@ -230,7 +230,7 @@ std::vector<LaneRun> make_runs(const LevelSet& set, const std::vector<SweptPiece
     run.first = first;
     run.count = run_length(pieces, first, spread);
   }
-  parallel_chunks(runs.size(), kRunsPerTask, [&](size_t begin, size_t end) {
+  parallel_chunks(runs.size(), kLanesPerTask, [&](size_t begin, size_t end) {
     for (size_t r = begin; r < end; ++r) {
       LaneRun& run = runs[r];
       const auto own = std::span(pieces).subspan(run.first, run.count);

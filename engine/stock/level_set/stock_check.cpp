@@ -13,14 +13,14 @@
 namespace swarf::stock {
 namespace {
 
-constexpr size_t kPositionsPerTask = 1024;
+constexpr size_t kCheckedPerTask = 1024;
 
 /// The first fault in order of position, whatever the threads: fault(n) is "" where all is well.
 template <typename Fault>
 std::string first_fault(size_t positions, const Fault& fault) {
-  std::vector<std::string> faults((positions + kPositionsPerTask - 1) / kPositionsPerTask);
-  parallel_chunks(positions, kPositionsPerTask, [&](size_t begin, size_t end) {
-    std::string& found = faults[begin / kPositionsPerTask];
+  std::vector<std::string> faults((positions + kCheckedPerTask - 1) / kCheckedPerTask);
+  parallel_chunks(positions, kCheckedPerTask, [&](size_t begin, size_t end) {
+    std::string& found = faults[begin / kCheckedPerTask];
     for (size_t n = begin; n < end && found.empty(); ++n) found = fault(n);
   });
   for (std::string& found : faults) {

@@ -44,8 +44,8 @@ uint64_t checksum(std::string_view bytes) {
   return hash.value();
 }
 
-[[noreturn]] void refuse(const std::string& code, const std::string& path, const std::string& text,
-                         const std::string& fix) {
+[[noreturn]] void refuse_stock(const std::string& code, const std::string& path, const std::string& text,
+                               const std::string& fix) {
   throw InputError(code, {path, 0, 0}, text, fix);
 }
 
@@ -54,8 +54,8 @@ std::string read_bytes(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   std::ostringstream bytes;
   if (!in || fs::is_directory(path)) {
-    refuse("stock-file-unreadable", path, "the stock file cannot be read",
-           "name a file written by swarf run");
+    refuse_stock("stock-file-unreadable", path, "the stock file cannot be read",
+                 "name a file written by swarf run");
   }
   bytes << in.rdbuf();
   return std::move(bytes).str();
@@ -68,30 +68,31 @@ std::string read_bytes(const std::string& path) {
   constexpr std::string_view kOpenVdbMagic{" BDV\0\0\0\0", 8};
   const size_t begun = std::min(bytes.size(), kOpenVdbMagic.size());
   if (bytes.compare(0, begun, kOpenVdbMagic.substr(0, begun)) != 0) {
-    refuse("stock-file-foreign", path, "this is not an OpenVDB file",
-           "name a stock.vdb written by swarf run");
+    refuse_stock("stock-file-foreign", path, "this is not an OpenVDB file",
+                 "name a stock.vdb written by swarf run");
   }
   // The grid's transform ("UniformScaleMap", "AffineMap", ...) follows all of its metadata.
   if (holds(kFormatKey) || !holds("Map")) {
-    refuse("stock-file-incomplete", path,
-           fmt::format("the file of {} bytes does not end as swarf ends its stock files", bytes.size()),
-           "it was cut off, or another program saved it again: run the scene again to write it");
+    refuse_stock("stock-file-incomplete", path,
+                 fmt::format("the file of {} bytes does not end as swarf ends its stock files", bytes.size()),
+                 "it was cut off, or another program saved it again: run the scene again to write it");
   }
   if (!holds("level set")) {
-    refuse(
+    refuse_stock(
         "stock-not-level-set", path,
         holds("fog volume") ? "the file holds a fog volume, not a level set" : "the file holds no level set",
         "name a stock.vdb written by swarf run");
   }
-  refuse("stock-file-foreign", path, "the level set was written by another program: its box is not known",
-         "name a stock.vdb written by swarf run");
+  refuse_stock("stock-file-foreign", path,
+               "the level set was written by another program: its box is not known",
+               "name a stock.vdb written by swarf run");
 }
 
 /// The OpenVDB part of a file whose trailer is whole.
 std::string verified_bytes(const std::string& path) {
   std::string bytes = read_bytes(path);
   if (bytes.empty()) {
-    refuse("stock-file-empty", path, "the stock file is empty", "run the scene again to write it");
+    refuse_stock("stock-file-empty", path, "the stock file is empty", "run the scene again to write it");
   }
   const bool marked = bytes.size() > kTrailerBytes &&
                       bytes.compare(bytes.size() - kTrailerBytes, kMarkBytes, kMark, kMarkBytes) == 0;
@@ -100,8 +101,8 @@ std::string verified_bytes(const std::string& path) {
   std::memcpy(&expected, bytes.data() + bytes.size() - sizeof(expected), sizeof(expected));
   bytes.resize(bytes.size() - kTrailerBytes);
   if (checksum(bytes) != expected) {
-    refuse("stock-file-damaged", path, "the checksum of the stock file does not match its content",
-           "run the scene again to write it");
+    refuse_stock("stock-file-damaged", path, "the checksum of the stock file does not match its content",
+                 "run the scene again to write it");
   }
   return bytes;
 }
@@ -115,16 +116,16 @@ openvdb::FloatGrid::Ptr parse_grid(const std::string& path, const std::string& b
     grids = stream.getGrids();
     if (!in) throw std::runtime_error("it ends before its grid does");
   } catch (const std::exception& error) {  // OpenVDB's own, and those of the memory that it asks for
-    refuse("stock-file-damaged", path, fmt::format("OpenVDB cannot read the file: {}", error.what()),
-           "run the scene again to write it");
+    refuse_stock("stock-file-damaged", path, fmt::format("OpenVDB cannot read the file: {}", error.what()),
+                 "run the scene again to write it");
   }
   const auto grid = grids && grids->size() == 1 ? openvdb::gridPtrCast<openvdb::FloatGrid>(grids->front())
                                                 : openvdb::FloatGrid::Ptr();
   if (!grid || grid->getGridClass() != openvdb::GRID_LEVEL_SET ||
       !grid->getMetadata<openvdb::Vec3DMetadata>(kBoxLowerKey) ||
       !grid->getMetadata<openvdb::Vec3DMetadata>(kBoxUpperKey)) {
-    refuse("stock-not-level-set", path, "the file holds no single level set with a stock box",
-           "use a stock.vdb written by swarf run");
+    refuse_stock("stock-not-level-set", path, "the file holds no single level set with a stock box",
+                 "use a stock.vdb written by swarf run");
   }
   return grid;
 }
@@ -136,7 +137,7 @@ Vec3 metadata_vector(const openvdb::FloatGrid& grid, const char* key) {
 
 /// Files written before the rounding was kept: what kernels that did not shorten long sweeps rounded, eight
 /// times half the spacing of floats at the length of the stock or of a retract from it.
-double rounding_of(const LevelSet& set) {
+double rounding_read(const LevelSet& set) {
   if (set.grid->getMetadata<openvdb::DoubleMetadata>(kRoundingKey))
     return set.grid->metaValue<double>(kRoundingKey);
   constexpr double kRoundings = 8.0, kHalfSpacing = 6e-8, kLeastLength = 50.0;
@@ -200,7 +201,7 @@ void finish_file(const std::string& path) {
   out.write(reinterpret_cast<const char*>(&sum), sizeof(sum));
   out.flush();
   if (!out)
-    refuse("stock-file-unwritable", path, "the end of the stock file cannot be written", "free space");
+    refuse_stock("stock-file-unwritable", path, "the end of the stock file cannot be written", "free space");
 }
 
 /// Equal stocks are equal files: -0 equals 0, and which of the two stands depends on the order of the cuts.
@@ -228,18 +229,20 @@ void write_level_set(const LevelSet& set, const std::string& path, const StockMe
   } catch (const openvdb::Exception& error) {
     std::error_code ignored;
     fs::remove(temporary, ignored);
-    refuse("stock-file-unwritable", path, fmt::format("the stock file cannot be written: {}", error.what()),
-           "check that the folder exists, may be written and has space");
+    refuse_stock("stock-file-unwritable", path,
+                 fmt::format("the stock file cannot be written: {}", error.what()),
+                 "check that the folder exists, may be written and has space");
   } catch (const InputError&) {  // it came back incomplete
     std::error_code ignored;
     fs::remove(temporary, ignored);
-    refuse("stock-file-unwritable", path, "the stock file cannot be written to its end",
-           "check that the folder may be written and has space");
+    refuse_stock("stock-file-unwritable", path, "the stock file cannot be written to its end",
+                 "check that the folder may be written and has space");
   } catch (const fs::filesystem_error& error) {
     std::error_code ignored;
     fs::remove(temporary, ignored);
-    refuse("stock-file-unwritable", path, fmt::format("the stock file cannot be renamed: {}", error.what()),
-           "check that the folder may be written");
+    refuse_stock("stock-file-unwritable", path,
+                 fmt::format("the stock file cannot be renamed: {}", error.what()),
+                 "check that the folder may be written");
   }
 }
 
@@ -253,7 +256,7 @@ LevelSet read_level_set(const std::string& path, StockMetadata& metadata) {
   }
   set.voxel = set.grid->voxelSize().x();
   set.box = {metadata_vector(*set.grid, kBoxLowerKey), metadata_vector(*set.grid, kBoxUpperKey)};
-  set.rounding_mm = rounding_of(set);
+  set.rounding_mm = rounding_read(set);
   attach_map(set);
   return set;
 }

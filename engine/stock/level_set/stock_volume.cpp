@@ -18,7 +18,7 @@
 namespace swarf::stock {
 namespace {
 
-constexpr size_t kPositionsPerTask = 16;
+constexpr size_t kCountedPerTask = 16;
 
 constexpr int kRods = 3;             // along each side of a cell
 constexpr int kAcross = 1;           // grid points on each side of a cell whose balls are looked at, across
@@ -133,7 +133,7 @@ class Cell {
 };
 
 /// Of one leaf, in voxels: least volume and greatest.
-VolumeRange leaf_range(const LevelSet& set, size_t position, float slack) {
+VolumeRange leaf_volume_range(const LevelSet& set, size_t position, float slack) {
   const Surroundings around(set, set.map.origin(position));
   const float half_diagonal = 0.5F * std::sqrt(3.0F) + slack;
   VolumeRange range;
@@ -160,10 +160,10 @@ VolumeRange volume_between(const LevelSet& set, double slack_mm) {
   constexpr double kRounding = 1e-6;
   const auto slack = static_cast<float>((slack_mm + set.rounding_mm) / set.voxel + kRounding);
   std::vector<VolumeRange> parts(set.map.size());
-  parallel_chunks(parts.size(), kPositionsPerTask, [&](size_t begin, size_t end) {
+  parallel_chunks(parts.size(), kCountedPerTask, [&](size_t begin, size_t end) {
     for (size_t n = begin; n < end; ++n) {
       if (set.map.states[n] == LeafState::kLeaf) {
-        parts[n] = leaf_range(set, n, slack);
+        parts[n] = leaf_volume_range(set, n, slack);
       } else if (set.map.states[n] == LeafState::kSolid) {
         parts[n] = {kLeafVoxels, kLeafVoxels};
       }

@@ -12,8 +12,8 @@
 namespace swarf::stock {
 namespace {
 
-constexpr size_t kLeavesPerTask = 32;
-constexpr int kSide = 8;
+constexpr size_t kMeshedPerTask = 32;
+constexpr int kBlockSide = 8;
 
 /// A leaf position and those around it.
 struct Place {
@@ -51,18 +51,18 @@ void gather_values(const LevelSet& set, size_t n, ValueBlock& block) {
     views[v] = leaf_view(set, {p.i + v / 9 - 1, p.j + v / 3 % 3 - 1, p.k + v % 3 - 1});
   const auto scale = static_cast<float>(1.0 / set.voxel);
   float* out = block.values.data();
-  for (int i = -1; i <= kSide + 1; ++i) {
-    for (int j = -1; j <= kSide + 1; ++j) {
+  for (int i = -1; i <= kBlockSide + 1; ++i) {
+    for (int j = -1; j <= kBlockSide + 1; ++j) {
       // (x + 8) / 8 is 0, 1, 2 in the leaf before, here and after.
-      const LeafView* row = &views[(i + kSide) / kSide * 9 + (j + kSide) / kSide * 3];
-      const int offset = (i & 7) * 64 + (j & 7) * kSide;
+      const LeafView* row = &views[(i + kBlockSide) / kBlockSide * 9 + (j + kBlockSide) / kBlockSide * 3];
+      const int offset = (i & 7) * 64 + (j & 7) * kBlockSide;
       const auto copy = [&](const LeafView& view, int first, int count) {
         for (int k = 0; k < count; ++k) {
           *out++ = scale * (view.values != nullptr ? view.values[offset + first + k] : view.constant);
         }
       };
-      copy(row[0], kSide - 1, 1);
-      copy(row[1], 0, kSide);
+      copy(row[0], kBlockSide - 1, 1);
+      copy(row[1], 0, kBlockSide);
       copy(row[2], 0, 2);
     }
   }
@@ -154,7 +154,7 @@ void StockMesher::Impl::update() {
   const std::vector<size_t> changed = marked(changed_places());
   meshed = static_cast<size_t>(std::count_if(
       changed.begin(), changed.end(), [&](size_t n) { return set.map.states[n] == LeafState::kLeaf; }));
-  parallel_chunks(changed.size(), kLeavesPerTask, [&](size_t begin, size_t end) {
+  parallel_chunks(changed.size(), kMeshedPerTask, [&](size_t begin, size_t end) {
     for (size_t c = begin; c < end; ++c) place(changed[c]);
   });
   // A leaf's triangles use vertices of the leaves before it.
@@ -166,7 +166,7 @@ void StockMesher::Impl::update() {
       mark_around(set.map, n, 0, 1, joined);
   }
   const std::vector<size_t> places = marked(joined);
-  parallel_chunks(places.size(), kLeavesPerTask, [&](size_t begin, size_t end) {
+  parallel_chunks(places.size(), kMeshedPerTask, [&](size_t begin, size_t end) {
     for (size_t c = begin; c < end; ++c) join(places[c]);
   });
 }
@@ -189,7 +189,7 @@ TriMesh StockMesher::Impl::assemble() const {
   mesh.positions.resize(vertices);
   mesh.normals.resize(vertices);
   mesh.triangles.resize(triangles);
-  parallel_chunks(places.size(), kLeavesPerTask, [&](size_t begin, size_t end) {
+  parallel_chunks(places.size(), kMeshedPerTask, [&](size_t begin, size_t end) {
     for (size_t c = begin; c < end; ++c) {
       const size_t n = places[c];
       const LeafMesh& leaf = *leaves[n];

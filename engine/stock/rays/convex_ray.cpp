@@ -10,17 +10,17 @@
 namespace swarf::stock {
 namespace {
 
-constexpr double kMiss = std::numeric_limits<double>::infinity();
+constexpr double kRayMiss = std::numeric_limits<double>::infinity();
 /// Distance (mm) at which the sweep counts as met: a few times what nearest_instant leaves open.
 constexpr double kMet = 5e-12;
 /// Newton squares the error; only a ray that grazes the sweep takes more steps, halving the error each time.
 constexpr int kStepsBeforeSplit = 8;
-constexpr int kMostSteps = 100;
+constexpr int kMostRaySteps = 100;
 /// Parts shorter than this share of the motion are not split: their slopes agree to a millionth.
 constexpr double kShortestPart = 1e-6;
 
 /// X(t, s) = P + t D + s (N + t E).
-struct Passage {
+struct SlabPassage {
   const cutter::ConvexPiece& piece;
   Vec3 P, D, N, E;
 
@@ -32,7 +32,7 @@ struct Passage {
 
 /// A height below all that the piece can reach. It lies in a ball about a point c of its axis; with b the
 /// mean direction of the ray, b . (X - c) >= -radius, and b . N(t) lies between cos(theta / 2) and 1.
-double below_all(const Passage& passage) {
+double below_all(const SlabPassage& passage) {
   const cutter::ConvexPiece& piece = passage.piece;
   const Vec3 c(0.0, 0.0, 0.5 * (piece.low + piece.high));
   const double radius = std::hypot(piece.radius, 0.5 * (piece.high - piece.low));
@@ -45,16 +45,16 @@ double below_all(const Passage& passage) {
 }
 
 /// Lowest s in [s, highest) that the part [t0, t1] of the motion covers.
-double lowest_in_part(const Passage& passage, double t0, double t1, double s, double highest) {
+double lowest_in_part(const SlabPassage& passage, double t0, double t1, double s, double highest) {
   const bool splittable = !passage.E.isZero(0.0) && t1 - t0 > kShortestPart;
-  for (int step = 0; step < (splittable ? kStepsBeforeSplit : kMostSteps); ++step) {
+  for (int step = 0; step < (splittable ? kStepsBeforeSplit : kMostRaySteps); ++step) {
     const Nearest nearest = passage.nearest(s, t0, t1);
     if (nearest.value <= kMet) return s;
     const double slope =
         std::min(nearest.normal.dot(passage.normal_at(t0)), nearest.normal.dot(passage.normal_at(t1)));
-    if (slope >= 0.0) return kMiss;
+    if (slope >= 0.0) return kRayMiss;
     const double next = s - nearest.floor / slope;
-    if (next >= highest) return kMiss;
+    if (next >= highest) return kRayMiss;
     if (next == s) return s;
     s = next;
   }
@@ -70,8 +70,8 @@ double lowest_in_sweep(const cutter::ConvexPiece& piece, const Vec3& point, cons
                        const SweepMap& map, double highest) {
   const Vec3 P = map.start(point), N = map.R0t * direction;
   const bool translation = map.R0t == map.R1t;
-  const Passage passage{piece, P, map.end(point) - P, N,
-                        translation ? Vec3(Vec3::Zero()) : Vec3(map.R1t * direction - N)};
+  const SlabPassage passage{piece, P, map.end(point) - P, N,
+                           translation ? Vec3(Vec3::Zero()) : Vec3(map.R1t * direction - N)};
   return lowest_in_part(passage, 0.0, 1.0, below_all(passage), highest);
 }
 

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "base/check.h"
+#include "base/disjoint_sets.h"
 #include "mesh/mesh_check.h"
 #include "mesh/mesh_distance.h"
 
@@ -39,23 +40,6 @@ uint32_t next_corner(uint32_t corner) {
   return corner % 3 == 2 ? corner - 2 : corner + 1;
 }
 
-/// Corners or facets that hang together, as a forest whose roots are the least.
-class Sets {
- public:
-  explicit Sets(size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0U); }
-  uint32_t root(uint32_t c) {
-    while (parent_[c] != c) c = parent_[c] = parent_[parent_[c]];
-    return c;
-  }
-  void join(uint32_t a, uint32_t b) {
-    const uint32_t ra = root(a), rb = root(b);
-    parent_[std::max(ra, rb)] = std::min(ra, rb);
-  }
-
- private:
-  std::vector<uint32_t> parent_;
-};
-
 /// Facets with their unit normals; those without area are left out.
 struct Facets {
   std::vector<Triangle> triangles;
@@ -75,8 +59,8 @@ Facets facets_with_area(const std::vector<Triangle>& triangles, const std::vecto
 }
 
 /// Joins the corners on both sides of every smooth edge. An edge of other than two facets is sharp.
-Sets smooth_corners(const Facets& facets, double crease_rad) {
-  Sets sets(3 * facets.triangles.size());
+DisjointSets smooth_corners(const Facets& facets, double crease_rad) {
+  DisjointSets sets(3 * facets.triangles.size());
   const std::vector<Side> sides = sides_of(facets.triangles);
   const double least_cosine = std::cos(crease_rad);
   for (size_t i = 0; i < sides.size();) {
@@ -102,7 +86,7 @@ double corner_angle(const Triangle& t, size_t place, const std::vector<Vec3>& po
 /// One corner per set, its normal the mean of their facets weighted by the angles there.
 void place_corners(const Facets& facets, const std::vector<Vec3>& points, double crease_rad,
                    FacetSheets& sheets) {
-  Sets sets = smooth_corners(facets, crease_rad);
+  DisjointSets sets = smooth_corners(facets, crease_rad);
   std::vector<uint32_t> number(3 * facets.triangles.size());
   sheets.facets.resize(facets.triangles.size());
   for (uint32_t c = 0; c < number.size(); ++c) {
@@ -146,7 +130,7 @@ void join_sides(const Facets& facets, double crease_rad, FacetSheets& sheets) {
 }
 
 void number_sheets(FacetSheets& sheets) {
-  Sets sets(sheets.facets.size());
+  DisjointSets sets(sheets.facets.size());
   for (uint32_t f = 0; f < sheets.facets.size(); ++f) {
     for (const uint32_t next : sheets.neighbours[f]) {
       if (next != FacetSheets::kNone) sets.join(f, next);

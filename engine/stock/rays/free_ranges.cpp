@@ -11,11 +11,11 @@
 namespace swarf::stock {
 namespace {
 
-constexpr size_t kTilesPerTask = 8;
+constexpr size_t kRangesPerTask = 8;
 /// Normals of a foot and of the wall that limits it differ by twice that angle; |n - m| then is at least
 /// this.
-const double kApart = 2.0 * kLeastWallSine;
-constexpr double kFarthest = std::numeric_limits<double>::infinity();
+const double kConesApart = 2.0 * kLeastWallSine;
+constexpr double kNoEnd = std::numeric_limits<double>::infinity();
 
 /// Feet of one tile, or of a branch of tiles, with a box and a cone around them.
 struct Node {
@@ -46,7 +46,7 @@ Node leaf_of(const RayField& field, uint32_t which, uint32_t tile) {
 double least_radius(const Vec3& p, const Vec3& n, const Node& box) {
   const Vec3 least = box.low - p, greatest = box.high - p;
   const double along = n.cwiseProduct(least).cwiseMax(n.cwiseProduct(greatest)).sum();
-  if (along <= 0.0) return kFarthest;
+  if (along <= 0.0) return kNoEnd;
   const double near2 = least.cwiseMax(-greatest).cwiseMax(0.0).squaredNorm();
   return near2 / (2.0 * along);
 }
@@ -82,7 +82,7 @@ class DesignTree {
 
   /// The range of one ray; `open` is working space.
   FreeRange::Range range(const Vec3& p, const Vec3& n, std::vector<uint32_t>& open) const {
-    FreeRange::Range range{kFarthest, p};
+    FreeRange::Range range{kNoEnd, p};
     open.assign(1, 0);
     while (!open.empty()) {
       const uint32_t index = open.back();
@@ -101,9 +101,9 @@ class DesignTree {
   }
 
  private:
-  /// Two cones of normals, all of them closer than kApart: no ball touches both.
+  /// Two cones of normals, all of them closer than kConesApart: no ball touches both.
   static bool alike(const Vec3& normal, double spread, const Node& node) {
-    return (node.normal - normal).norm() + node.spread + spread < kApart;
+    return (node.normal - normal).norm() + node.spread + spread < kConesApart;
   }
 
   void limit_by(const Vec3& p, const Vec3& n, const Node& leaf, FreeRange::Range& range) const {
@@ -176,8 +176,8 @@ FreeRange::Range FreeRange::operator()(const Vec3& point, const Vec3& normal) co
 std::vector<double> free_ranges(std::span<const RayFieldPtr> fields, size_t which) {
   const RayField& field = *fields[which];
   const DesignTree tree(fields);
-  std::vector<double> ranges(field.size(), kFarthest);
-  parallel_chunks(field.tiles.size(), kTilesPerTask, [&](size_t begin, size_t end) {
+  std::vector<double> ranges(field.size(), kNoEnd);
+  parallel_chunks(field.tiles.size(), kRangesPerTask, [&](size_t begin, size_t end) {
     std::vector<uint32_t> open;
     for (size_t t = begin; t < end; ++t) {
       const RayTile& tile = field.tiles[t];

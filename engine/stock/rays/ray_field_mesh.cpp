@@ -13,7 +13,7 @@ namespace swarf::stock {
 namespace {
 
 // Of the pitch, see rays_on_mesh: how near two rays may stand, how far apart places are offered.
-constexpr double kApart = 0.8, kFill = 1.0 / 3.0;
+constexpr double kRaysApart = 0.8, kFill = 1.0 / 3.0;
 /// A ray on the border of a sheet answers for no depth: inside the sheet rays stand as near to it as this.
 constexpr double kInside = 0.3;
 /// Walls are this much denser than rays, along each of two directions.
@@ -91,7 +91,7 @@ class Placement {
 
  private:
   void offer(const FacetPlace& place, bool on_border = false) {
-    const double apart2 = std::pow(kApart * field_.pitch_mm, 2),
+    const double apart2 = std::pow(kRaysApart * field_.pitch_mm, 2),
                  inside2 = std::pow(kInside * field_.pitch_mm, 2);
     bool covered = false;
     near_.each_near(place.point, [&](uint32_t ray) {

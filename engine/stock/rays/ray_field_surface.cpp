@@ -92,7 +92,7 @@ void place_rays(RayField& field) {
   });
 }
 
-void connect_rays(RayField& field) {
+void connect_grid(RayField& field) {
   const auto nu = static_cast<uint32_t>(field.u_lines.size()),
              nv = static_cast<uint32_t>(field.v_lines.size());
   field.edges.reserve(size_t{2} * nu * nv);
@@ -111,7 +111,7 @@ void connect_rays(RayField& field) {
   }
 }
 
-void group_rays(RayField& field) {
+void group_grid(RayField& field) {
   const auto nu = static_cast<uint32_t>(field.u_lines.size()),
              nv = static_cast<uint32_t>(field.v_lines.size());
   field.order.reserve(field.size());
@@ -137,8 +137,8 @@ RayFieldPtr rays_on_surface(const surface::SurfacePtr& surface, double pitch_mm,
   field->u_lines = lines_along(*surface, true, pitch_mm, chord_mm);
   field->v_lines = lines_along(*surface, false, pitch_mm, chord_mm);
   place_rays(*field);
-  connect_rays(*field);
-  group_rays(*field);
+  connect_grid(*field);
+  group_grid(*field);
   return field;
 }
 

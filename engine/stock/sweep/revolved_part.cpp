@@ -57,18 +57,18 @@ std::vector<Vec2> corners_of(const cutter::ConvexPiece& piece) {
   return corners;
 }
 
-/// One tangent of the distance along the motion.
-struct Tangent {
+/// One part_tangent of the distance along the motion.
+struct PartTangent {
   double t = 0.0, value = 0.0, slope = 0.0;
   Vec3 normal;
 };
 
-Tangent tangent(const RevolvedPart& part, const Vec3& P, const Vec3& D, double t) {
+PartTangent part_tangent(const RevolvedPart& part, const Vec3& P, const Vec3& D, double t) {
   const RevolvedPart::Place place = part.at(P + t * D);
   return {t, place.value, place.normal.dot(D), place.normal};
 }
 
-RevolvedPart::Nearest exactly(const Tangent& at, const Vec3& P, const Vec3& D) {
+RevolvedPart::Nearest exactly_at(const PartTangent& at, const Vec3& P, const Vec3& D) {
   return {at.t, at.value, at.value, at.normal, P + at.t * D};
 }
 
@@ -123,10 +123,10 @@ RevolvedPart::Place RevolvedPart::at(const Vec3& X) const {
 
 RevolvedPart::Nearest RevolvedPart::nearest(const Vec3& P, const Vec3& D, double gap, double enough) const {
   constexpr int kMostSteps = 60;
-  Tangent low = tangent(*this, P, D, 0.0);
-  if (low.slope >= 0.0) return exactly(low, P, D);
-  Tangent high = tangent(*this, P, D, 1.0);
-  if (high.slope <= 0.0) return exactly(high, P, D);
+  PartTangent low = part_tangent(*this, P, D, 0.0);
+  if (low.slope >= 0.0) return exactly_at(low, P, D);
+  PartTangent high = part_tangent(*this, P, D, 1.0);
+  if (high.slope <= 0.0) return exactly_at(high, P, D);
   double crossing = 0.0, floor = low.value;
   for (int step = 0; step < kMostSteps; ++step) {
     const double width = high.t - low.t, change = high.slope - low.slope;
@@ -137,11 +137,11 @@ RevolvedPart::Nearest RevolvedPart::nearest(const Vec3& P, const Vec3& D, double
     const double secant = low.t - low.slope / change * width;
     const double t = step % 3 == 0 ? crossing : step % 3 == 1 ? secant : low.t + 0.5 * width;
     if (!(t > low.t && t < high.t)) continue;
-    const Tangent next = tangent(*this, P, D, t);
-    if (next.slope == 0.0) return exactly(next, P, D);
+    const PartTangent next = part_tangent(*this, P, D, t);
+    if (next.slope == 0.0) return exactly_at(next, P, D);
     (next.slope < 0.0 ? low : high) = next;
   }
-  const Tangent& least = low.value <= high.value ? low : high;
+  const PartTangent& least = low.value <= high.value ? low : high;
   const Vec3 normal = (high.slope * low.normal - low.slope * high.normal) / (high.slope - low.slope);
   return {least.t, least.value, std::min(floor, least.value), normal, P + crossing * D};
 }

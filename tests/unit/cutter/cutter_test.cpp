@@ -7,7 +7,7 @@
 
 #include "shapes.h"
 
-namespace swarf::cutter {
+namespace swarf::cutter::cutter_test {
 namespace {
 
 using namespace test;
@@ -286,4 +286,4 @@ TEST(Cutter, DescriptionsNameWhatTheShapeIs) {
 }
 
 }  // namespace
-}  // namespace swarf::cutter
+}  // namespace swarf::cutter::cutter_test

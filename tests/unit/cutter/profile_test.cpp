@@ -5,7 +5,7 @@
 
 #include "shapes.h"
 
-namespace swarf::cutter {
+namespace swarf::cutter::profile_test {
 namespace {
 
 using namespace test;
@@ -205,4 +205,4 @@ TEST(Outline, SamplesStayWithinTheTolerance) {
 }
 
 }  // namespace
-}  // namespace swarf::cutter
+}  // namespace swarf::cutter::profile_test

@@ -5,7 +5,7 @@
 #include "kinematics/singularity_model.h"
 #include "unit/kinematics/singular_blocks.h"
 
-namespace swarf::kinematics {
+namespace swarf::kinematics::singularity_oracle_test {
 namespace {
 
 constexpr double kDigit = 0.5e-6;  // theory 2 gives six decimals
@@ -199,4 +199,4 @@ TEST(TiltedCone, ThroughThePoleItDoesNotConverge) {
 }
 
 }  // namespace
-}  // namespace swarf::kinematics
+}  // namespace swarf::kinematics::singularity_oracle_test

@@ -8,7 +8,7 @@
 #include "kinematics/singularity_model.h"
 #include "unit/kinematics/singular_blocks.h"
 
-namespace swarf::kinematics {
+namespace swarf::kinematics::singularity_property_test {
 namespace {
 
 constexpr int kSamples = 400;
@@ -262,4 +262,4 @@ TEST(SingularityDegenerate, ConeOfTheSpeedLimit) {
 }
 
 }  // namespace
-}  // namespace swarf::kinematics
+}  // namespace swarf::kinematics::singularity_property_test

@@ -10,7 +10,7 @@
 #include "kinematics/round_trip.h"
 #include "shipped_machines.h"
 
-namespace swarf::machine {
+namespace swarf::machine::shipped_kinematics_test {
 namespace {
 
 using kinematics::Axis;
@@ -155,4 +155,4 @@ INSTANTIATE_TEST_SUITE_P(Machines, Shipped, testing::ValuesIn(shipped_machines()
                          [](const auto& instance) { return instance.param; });
 
 }  // namespace
-}  // namespace swarf::machine
+}  // namespace swarf::machine::shipped_kinematics_test

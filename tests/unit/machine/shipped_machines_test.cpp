@@ -5,7 +5,7 @@
 #include "base/units.h"
 #include "shipped_machines.h"
 
-namespace swarf::machine {
+namespace swarf::machine::shipped_machines_test {
 namespace {
 
 using kinematics::AxisValues;
@@ -100,4 +100,4 @@ TEST(RapidMoves, AreReadWithTheirSpeeds) {
 }
 
 }  // namespace
-}  // namespace swarf::machine
+}  // namespace swarf::machine::shipped_machines_test

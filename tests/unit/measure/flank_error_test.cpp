@@ -14,7 +14,7 @@
 #include "surface/analytic.h"
 #include "surface/polynomial.h"
 
-namespace swarf::measure {
+namespace swarf::measure::flank_error_test {
 namespace {
 
 using surface::PolynomialSurface;
@@ -189,4 +189,4 @@ TEST(AxisPatch, PointsAndEdgesOfNoLength) {
 }
 
 }  // namespace
-}  // namespace swarf::measure
+}  // namespace swarf::measure::flank_error_test

@@ -11,7 +11,7 @@
 #include "dome_cut.h"
 #include "test_surfaces.h"
 
-namespace swarf::measure {
+namespace swarf::measure::measure_test {
 namespace {
 
 /// Swaps the parameters of a surface: ridges then run along v.
@@ -316,4 +316,4 @@ TEST(CrossCheck, DomeLevelSetAgreesWithItsDexelsAndWithTheVolume) {
 }
 
 }  // namespace
-}  // namespace swarf::measure
+}  // namespace swarf::measure::measure_test

@@ -5,7 +5,7 @@
 #include "measure/measure.h"
 #include "test_surfaces.h"
 
-namespace swarf::measure {
+namespace swarf::measure::scallop_theory_test {
 namespace {
 
 const MeasureLimits kLimits{1.0, 1e-4};
@@ -161,4 +161,4 @@ TEST(ScallopTheory, MeshesOfTheSameShapes) {
 }
 
 }  // namespace
-}  // namespace swarf::measure
+}  // namespace swarf::measure::scallop_theory_test

@@ -12,7 +12,7 @@
 
 #include "mesh/mesh_io.h"
 
-namespace swarf::mesh {
+namespace swarf::mesh::mesh_check_test {
 namespace {
 
 /// A box from the origin, two facets per face, turned outward.
@@ -136,4 +136,4 @@ TEST(MeshCheck, ALargeBinaryStlIsReadWhole) {
 }
 
 }  // namespace
-}  // namespace swarf::mesh
+}  // namespace swarf::mesh::mesh_check_test

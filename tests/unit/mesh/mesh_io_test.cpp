@@ -11,7 +11,7 @@
 #include "base/diagnostics.h"
 #include "base/rng.h"
 
-namespace swarf::mesh {
+namespace swarf::mesh::mesh_io_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -199,4 +199,4 @@ TEST(CheckClosed, TakesSplitVerticesAsOneAndIgnoresCollapsedTriangles) {
 }
 
 }  // namespace
-}  // namespace swarf::mesh
+}  // namespace swarf::mesh::mesh_io_test

@@ -12,7 +12,7 @@
 #include "mesh/mesh_distance.h"
 #include "mesh/mesh_ops.h"
 
-namespace swarf::mesh {
+namespace swarf::mesh::mesh_ops_decimate {
 namespace {
 
 /// Sphere of radius r as a closed grid of latitudes and longitudes, with the vertex number as its deviation.
@@ -185,4 +185,4 @@ TEST(Decimate, SheetsThatTouchAlongAnEdgeGetVerticesOfTheirOwn) {
 }
 
 }  // namespace
-}  // namespace swarf::mesh
+}  // namespace swarf::mesh::mesh_ops_decimate

@@ -8,7 +8,7 @@
 #include "base/units.h"
 #include "unit/motion/random_block.h"
 
-namespace swarf::motion {
+namespace swarf::motion::block_motion_test {
 namespace {
 
 using kinematics::AxisValues;
@@ -154,4 +154,4 @@ TEST(BlockMotions, JointLawRefusesWhatTheMachineCannotReach) {
 }
 
 }  // namespace
-}  // namespace swarf::motion
+}  // namespace swarf::motion::block_motion_test

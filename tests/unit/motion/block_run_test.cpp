@@ -12,7 +12,7 @@
 #include "unit/motion/dome.h"
 #include "unit/motion/interpolated.h"
 
-namespace swarf::motion {
+namespace swarf::motion::block_run_test {
 namespace {
 
 using toolpath::BlockLaw;
@@ -104,4 +104,4 @@ TEST(BlockRun, ABlockThatOnlyTurnsTakesTheTimeOfItsAxis) {
 }
 
 }  // namespace
-}  // namespace swarf::motion
+}  // namespace swarf::motion::block_run_test

@@ -9,7 +9,7 @@
 #include "base/rng.h"
 #include "unit/kinematics/singular_blocks.h"
 
-namespace swarf::motion {
+namespace swarf::motion::circle_error_test {
 namespace {
 
 using toolpath::BlockLaw;
@@ -110,4 +110,4 @@ TEST(CircleError, TheLongestOfSeveral) {
 }
 
 }  // namespace
-}  // namespace swarf::motion
+}  // namespace swarf::motion::circle_error_test

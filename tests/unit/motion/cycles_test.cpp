@@ -7,7 +7,7 @@
 #include "motion/judged/motion_check.h"
 #include "unit/motion/random_program.h"
 
-namespace swarf::motion {
+namespace swarf::motion::cycles_test {
 namespace {
 
 const cutter::Cutter kCutter;
@@ -146,4 +146,4 @@ TEST(Cycles, AProgramOfMonthsIsRefusedWithItsBlock) {
 }
 
 }  // namespace
-}  // namespace swarf::motion
+}  // namespace swarf::motion::cycles_test

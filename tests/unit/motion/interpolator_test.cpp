@@ -13,7 +13,7 @@
 #include "motion/judged/motion_check.h"
 #include "motion/speed/free_move.h"
 
-namespace swarf::motion {
+namespace swarf::motion::interpolator_test {
 namespace {
 
 const cutter::Cutter kCutter;
@@ -316,4 +316,4 @@ TEST(CheckMotion, NamesTheBrokenInvariant) {
 }
 
 }  // namespace
-}  // namespace swarf::motion
+}  // namespace swarf::motion::interpolator_test

@@ -6,7 +6,7 @@
 #include "unit/motion/random_program.h"
 #include "unit/motion/time_optimum.h"
 
-namespace swarf::motion {
+namespace swarf::motion::look_ahead_optimum_test {
 namespace {
 
 using kinematics::AxisValues;
@@ -89,4 +89,4 @@ TEST(LookAhead, TimeIsWithinThreePercentOfTheOptimum) {
 }
 
 }  // namespace
-}  // namespace swarf::motion
+}  // namespace swarf::motion::look_ahead_optimum_test

@@ -10,7 +10,7 @@
 #include "motion/speed/jerk_profile.h"
 #include "unit/motion/random_program.h"
 
-namespace swarf::motion {
+namespace swarf::motion::look_ahead_test {
 namespace {
 
 using kinematics::AxisValues;
@@ -263,4 +263,4 @@ TEST(LookAhead, TcpAxesBoundsHoldTheDerivatives) {
 }
 
 }  // namespace
-}  // namespace swarf::motion
+}  // namespace swarf::motion::look_ahead_test

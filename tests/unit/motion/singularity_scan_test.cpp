@@ -8,7 +8,7 @@
 #include "motion/blocks/linearise.h"
 #include "unit/kinematics/singular_blocks.h"
 
-namespace swarf::motion {
+namespace swarf::motion::singularity_scan_test {
 namespace {
 
 using kinematics::BlockEnds;
@@ -198,4 +198,4 @@ TEST(SingularityScan, TheWorstAreTheWorstOfAll) {
 }
 
 }  // namespace
-}  // namespace swarf::motion
+}  // namespace swarf::motion::singularity_scan_test

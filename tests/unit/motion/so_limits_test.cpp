@@ -8,7 +8,7 @@
 #include "motion/judged/motion_check.h"
 #include "unit/motion/random_program.h"
 
-namespace swarf::motion {
+namespace swarf::motion::so_limits_test {
 namespace {
 
 using toolpath::BlockLaw;
@@ -138,4 +138,4 @@ TEST(SoLimits, FastRotaryMovesAndSwingsAreNamedWithTheirBlocks) {
 }
 
 }  // namespace
-}  // namespace swarf::motion
+}  // namespace swarf::motion::so_limits_test

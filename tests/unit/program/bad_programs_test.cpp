@@ -4,7 +4,7 @@
 
 #include "unit/program/support.h"
 
-namespace swarf::program {
+namespace swarf::program::bad_programs_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -70,4 +70,4 @@ INSTANTIATE_TEST_SUITE_P(Files, GoodProgram, testing::ValuesIn(names_in("tests/d
                          name_of_case);
 
 }  // namespace
-}  // namespace swarf::program
+}  // namespace swarf::program::bad_programs_test

@@ -5,7 +5,7 @@
 
 #include "unit/program/cl_support.h"
 
-namespace swarf::program {
+namespace swarf::program::cl_bad_files_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -45,4 +45,4 @@ INSTANTIATE_TEST_SUITE_P(Files, BadClFile, testing::ValuesIn(bad_files()),
                          [](const auto& one) { return fs::path(one.param).stem().string(); });
 
 }  // namespace
-}  // namespace swarf::program
+}  // namespace swarf::program::cl_bad_files_test

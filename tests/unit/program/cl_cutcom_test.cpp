@@ -7,7 +7,7 @@
 #include "program/cl/writer.h"
 #include "unit/program/cl_support.h"
 
-namespace swarf::program {
+namespace swarf::program::cl_cutcom_test {
 namespace {
 
 ClOptions with(ClPoints points) {
@@ -175,4 +175,4 @@ TEST(ClCutcom, ConvexContoursAreRoundedAtTheRadius) {
 }
 
 }  // namespace
-}  // namespace swarf::program
+}  // namespace swarf::program::cl_cutcom_test

@@ -7,7 +7,7 @@
 #include "program/cl/program.h"
 #include "unit/program/support.h"
 
-namespace swarf::program {
+namespace swarf::program::cl_nurbs_test {
 namespace {
 
 const char* const kStart = "MULTAX/ON\nFEDRAT/600,MMPM\nFROM/0,0,0,0,0,1\n";
@@ -129,4 +129,4 @@ TEST(ClNurbs, ACurveWithoutAnEndIsRefused) {
 }
 
 }  // namespace
-}  // namespace swarf::program
+}  // namespace swarf::program::cl_nurbs_test

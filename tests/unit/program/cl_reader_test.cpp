@@ -3,7 +3,7 @@
 #include "base/rng.h"
 #include "unit/program/cl_support.h"
 
-namespace swarf::program {
+namespace swarf::program::cl_reader_test {
 namespace {
 
 TEST(ClReader, MovesFromTheFirstCompletePosition) {
@@ -325,4 +325,4 @@ TEST(ClReader, AHundredThousandBlocks) {
 }
 
 }  // namespace
-}  // namespace swarf::program
+}  // namespace swarf::program::cl_reader_test

@@ -5,7 +5,7 @@
 #include "base/rng.h"
 #include "unit/program/cl_support.h"
 
-namespace swarf::program {
+namespace swarf::program::cl_writer_test {
 namespace {
 
 void expect_same_tool(const ClProgram& a, int in_a, const ClProgram& b, int in_b) {
@@ -141,4 +141,4 @@ INSTANTIATE_TEST_SUITE_P(
                     RealProgram{"Plane_1.cldata", 205, 29, 323, "45", {0, 0, 50}}));
 
 }  // namespace
-}  // namespace swarf::program
+}  // namespace swarf::program::cl_writer_test

@@ -3,7 +3,7 @@
 
 #include "unit/program/heidenhain_support.h"
 
-namespace swarf::program {
+namespace swarf::program::heidenhain_axes_test {
 namespace {
 
 Mat3 about(int axis, double deg) {
@@ -159,4 +159,4 @@ TEST(HeidenhainAxes, ReferencePointsOfRoundToolsAreRefused) {
 }
 
 }  // namespace
-}  // namespace swarf::program
+}  // namespace swarf::program::heidenhain_axes_test

@@ -6,7 +6,7 @@
 #include "program/source_text.h"
 #include "unit/program/heidenhain_support.h"
 
-namespace swarf::program {
+namespace swarf::program::heidenhain_bad_programs_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -78,4 +78,4 @@ TEST(BadHeidenhainProgram, TheNearestWordIsProposed) {
 }
 
 }  // namespace
-}  // namespace swarf::program
+}  // namespace swarf::program::heidenhain_bad_programs_test

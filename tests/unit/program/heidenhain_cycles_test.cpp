@@ -1,7 +1,7 @@
 // Drilling cycles of Heidenhain programs: the sequence of depths, feeds and dwells.
 #include "unit/program/heidenhain_support.h"
 
-namespace swarf::program {
+namespace swarf::program::heidenhain_cycles_test {
 namespace {
 
 const char* const kAbove = "TOOL CALL 1 Z S1000 F200\nL X+0 Y+0 Z+50 R0 FMAX M3\n";
@@ -118,4 +118,4 @@ TEST(HeidenhainCycles, DwellOfCycleNine) {
 }
 
 }  // namespace
-}  // namespace swarf::program
+}  // namespace swarf::program::heidenhain_cycles_test

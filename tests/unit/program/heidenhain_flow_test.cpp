@@ -1,7 +1,7 @@
 // Q parameters, formulas, labels, repeats, jumps and called programs of Heidenhain programs.
 #include "unit/program/heidenhain_support.h"
 
-namespace swarf::program {
+namespace swarf::program::heidenhain_flow_test {
 namespace {
 
 /// The value of a formula: it becomes a coordinate.
@@ -110,4 +110,4 @@ TEST(HeidenhainFlow, EndlessLoopsAndRecursionEnd) {
 }
 
 }  // namespace
-}  // namespace swarf::program
+}  // namespace swarf::program::heidenhain_flow_test

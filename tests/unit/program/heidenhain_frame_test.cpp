@@ -4,7 +4,7 @@
 #include "base/rng.h"
 #include "unit/program/heidenhain_support.h"
 
-namespace swarf::program {
+namespace swarf::program::heidenhain_frame_test {
 namespace {
 
 Mat3 about_z(double deg) {
@@ -123,4 +123,4 @@ TEST(HeidenhainFrame, ScaledCyclesInATiltedPlane) {
 }
 
 }  // namespace
-}  // namespace swarf::program
+}  // namespace swarf::program::heidenhain_frame_test

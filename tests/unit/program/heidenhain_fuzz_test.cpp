@@ -5,7 +5,7 @@
 #include "unit/program/heidenhain_support.h"
 #include "unit/program/mutate.h"
 
-namespace swarf::program {
+namespace swarf::program::heidenhain_fuzz_test {
 namespace {
 
 const char* const kProgram =
@@ -91,4 +91,4 @@ TEST(HeidenhainFuzz, MutatedProgramsAreRefusedOrRun) {
 }
 
 }  // namespace
-}  // namespace swarf::program
+}  // namespace swarf::program::heidenhain_fuzz_test

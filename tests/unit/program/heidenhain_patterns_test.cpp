@@ -3,7 +3,7 @@
 
 #include "unit/program/heidenhain_support.h"
 
-namespace swarf::program {
+namespace swarf::program::heidenhain_patterns_test {
 namespace {
 
 const char* const kAbove = "TOOL CALL 7 Z S1000 F200\nL X+0 Y+0 Z+50 R0 FMAX M3\n";
@@ -193,4 +193,4 @@ TEST(HeidenhainPatterns, CentringAndDeepHoles) {
 }
 
 }  // namespace
-}  // namespace swarf::program
+}  // namespace swarf::program::heidenhain_patterns_test

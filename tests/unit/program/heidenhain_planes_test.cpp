@@ -4,7 +4,7 @@
 #include "base/rng.h"
 #include "unit/program/heidenhain_support.h"
 
-namespace swarf::program {
+namespace swarf::program::heidenhain_planes_test {
 namespace {
 
 Mat3 about(int axis, double deg) {
@@ -264,4 +264,4 @@ TEST(HeidenhainTcpm, ShortestWaysAndReducedDisplays) {
 }
 
 }  // namespace
-}  // namespace swarf::program
+}  // namespace swarf::program::heidenhain_planes_test

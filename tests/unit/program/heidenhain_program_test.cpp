@@ -1,7 +1,7 @@
 // A whole program: a dome with the tool along its normals and four holes square to its flanks.
 #include "unit/program/heidenhain_support.h"
 
-namespace swarf::program {
+namespace swarf::program::heidenhain_program_test {
 namespace {
 
 const char* const kProgram = "tests/data/programs/nc/heidenhain/good/dome_and_holes.h";
@@ -37,4 +37,4 @@ TEST(HeidenhainProgram, DomeAndHoles) {
 }
 
 }  // namespace
-}  // namespace swarf::program
+}  // namespace swarf::program::heidenhain_program_test

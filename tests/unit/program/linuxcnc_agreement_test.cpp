@@ -5,7 +5,7 @@
 
 #include "unit/program/nc_support.h"
 
-namespace swarf::program {
+namespace swarf::program::linuxcnc_agreement_test {
 namespace {
 
 /// rs274 prints four decimals; an end is a sum of up to five such numbers, turned by an angle with four.
@@ -118,4 +118,4 @@ INSTANTIATE_TEST_SUITE_P(Golden, LinuxCncAgreement, testing::ValuesIn(programs()
                          [](const auto& one) { return std::filesystem::path(one.param).stem().string(); });
 
 }  // namespace
-}  // namespace swarf::program
+}  // namespace swarf::program::linuxcnc_agreement_test

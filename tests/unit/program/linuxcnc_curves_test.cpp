@@ -7,7 +7,7 @@
 #include "base/rng.h"
 #include "unit/program/nc_support.h"
 
-namespace swarf::program {
+namespace swarf::program::linuxcnc_curves_test {
 namespace {
 
 using Plane2 = std::function<Vec3(double)>;
@@ -164,4 +164,4 @@ TEST(LinuxCncCurves, RandomCubics) {
 }
 
 }  // namespace
-}  // namespace swarf::program
+}  // namespace swarf::program::linuxcnc_curves_test

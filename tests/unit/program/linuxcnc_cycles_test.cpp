@@ -1,7 +1,7 @@
 // Canned cycles of LinuxCNC, move by move.
 #include "unit/program/nc_support.h"
 
-namespace swarf::program {
+namespace swarf::program::linuxcnc_cycles_test {
 namespace {
 
 struct Step {
@@ -127,4 +127,4 @@ TEST(LinuxCncCycles, ManualBoringIsToldAndGoesStraightOut) {
 }
 
 }  // namespace
-}  // namespace swarf::program
+}  // namespace swarf::program::linuxcnc_cycles_test

@@ -3,7 +3,7 @@
 
 #include "unit/program/nc_support.h"
 
-namespace swarf::program {
+namespace swarf::program::linuxcnc_state_test {
 namespace {
 
 TEST(LinuxCncTools, TheProgramWritesTheToolTable) {
@@ -189,4 +189,4 @@ TEST(LinuxCncParameters, MessagesShowValues) {
 }
 
 }  // namespace
-}  // namespace swarf::program
+}  // namespace swarf::program::linuxcnc_state_test

@@ -5,7 +5,7 @@
 #include "program/source_text.h"
 #include "unit/program/nc_support.h"
 
-namespace swarf::program {
+namespace swarf::program::nc_bad_programs_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -92,4 +92,4 @@ TEST(NcBadInput, DialectsAreRecognisedOrAskedFor) {
 }
 
 }  // namespace
-}  // namespace swarf::program
+}  // namespace swarf::program::nc_bad_programs_test

@@ -6,7 +6,7 @@
 #include "base/rng.h"
 #include "unit/program/nc_support.h"
 
-namespace swarf::program {
+namespace swarf::program::nc_dialects_agree_test {
 namespace {
 
 enum class Kind { kRapid, kLine, kArc, kDwell, kFiveAxis, kTurn, kHole };
@@ -384,4 +384,4 @@ TEST(NcDialects, AgreeUnderToolTipControl) {
 }
 
 }  // namespace
-}  // namespace swarf::program
+}  // namespace swarf::program::nc_dialects_agree_test

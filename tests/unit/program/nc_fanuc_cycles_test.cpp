@@ -6,7 +6,7 @@
 #include "base/rng.h"
 #include "unit/program/nc_support.h"
 
-namespace swarf::program {
+namespace swarf::program::nc_fanuc_cycles_test {
 namespace {
 
 NcRun fanuc(const std::string& text, const ControlSetup& setup = three_axis_setup()) {
@@ -150,4 +150,4 @@ TEST(NcFanucCycles, RandomBores) {
 }
 
 }  // namespace
-}  // namespace swarf::program
+}  // namespace swarf::program::nc_fanuc_cycles_test

@@ -4,7 +4,7 @@
 #include "base/rng.h"
 #include "unit/program/nc_support.h"
 
-namespace swarf::program {
+namespace swarf::program::nc_fanuc_macros_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -238,4 +238,4 @@ TEST(NcFanucMacros, RandomCalls) {
 }
 
 }  // namespace
-}  // namespace swarf::program
+}  // namespace swarf::program::nc_fanuc_macros_test

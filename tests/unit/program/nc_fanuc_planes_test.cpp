@@ -7,7 +7,7 @@
 
 #include "unit/program/nc_support.h"
 
-namespace swarf::program {
+namespace swarf::program::nc_fanuc_planes_test {
 namespace {
 
 constexpr int kSteps = 72;
@@ -219,4 +219,4 @@ TEST(NcFanucPlanes, TcpWithinAPlane) {
 }
 
 }  // namespace
-}  // namespace swarf::program
+}  // namespace swarf::program::nc_fanuc_planes_test

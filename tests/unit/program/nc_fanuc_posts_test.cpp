@@ -5,7 +5,7 @@
 
 #include "unit/program/nc_support.h"
 
-namespace swarf::program {
+namespace swarf::program::nc_fanuc_posts_test {
 namespace {
 
 NcRun fanuc(const std::string& text, const ControlSetup& setup = three_axis_setup()) {
@@ -136,4 +136,4 @@ TEST(NcFanucPosts, PocketInFourQuadrants) {
 }
 
 }  // namespace
-}  // namespace swarf::program
+}  // namespace swarf::program::nc_fanuc_posts_test

@@ -6,7 +6,7 @@
 #include "base/rng.h"
 #include "unit/program/nc_support.h"
 
-namespace swarf::program {
+namespace swarf::program::nc_fanuc_test {
 namespace {
 
 NcRun fanuc(const std::string& text, const ControlSetup& setup = three_axis_setup()) {
@@ -199,4 +199,4 @@ TEST(NcRoundTrip, StraightPrograms) {
 }
 
 }  // namespace
-}  // namespace swarf::program
+}  // namespace swarf::program::nc_fanuc_test

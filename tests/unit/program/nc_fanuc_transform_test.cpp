@@ -7,7 +7,7 @@
 #include "base/rng.h"
 #include "unit/program/nc_support.h"
 
-namespace swarf::program {
+namespace swarf::program::nc_fanuc_transform_test {
 namespace {
 
 NcRun fanuc(const std::string& text, const ControlSetup& setup = three_axis_setup()) {
@@ -168,4 +168,4 @@ TEST(NcFanucTransform, ThereAndBackOverTheReference) {
 }
 
 }  // namespace
-}  // namespace swarf::program
+}  // namespace swarf::program::nc_fanuc_transform_test

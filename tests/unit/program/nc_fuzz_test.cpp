@@ -11,7 +11,7 @@
 #include "unit/program/mutate.h"
 #include "unit/program/nc_support.h"
 
-namespace swarf::program {
+namespace swarf::program::nc_fuzz_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -162,4 +162,4 @@ TEST(NcFuzz, MutatedProgramsAreRefusedOrRun) {
 }
 
 }  // namespace
-}  // namespace swarf::program
+}  // namespace swarf::program::nc_fuzz_test

@@ -8,7 +8,7 @@
 #include "support/program_run.h"
 #include "unit/program/nc_support.h"
 
-namespace swarf::program {
+namespace swarf::program::nc_stream_test {
 namespace {
 
 struct Counter final : NcSink {
@@ -273,4 +273,4 @@ TEST(NcStream, JumpsGoToPlacesFarFromTheWindow) {
 }
 
 }  // namespace
-}  // namespace swarf::program
+}  // namespace swarf::program::nc_stream_test

@@ -8,7 +8,7 @@
 #include "unit/program/nc_support.h"
 #include "unit/program/siemens_support.h"
 
-namespace swarf::program {
+namespace swarf::program::nc_tilted_plane_test {
 namespace {
 
 constexpr int kSteps = 72;
@@ -147,4 +147,4 @@ TEST(NcTiltedPlane, AtThePoleTheFreeAxisStands) {
 }
 
 }  // namespace
-}  // namespace swarf::program
+}  // namespace swarf::program::nc_tilted_plane_test

@@ -7,7 +7,7 @@
 #include "surface/polynomial.h"
 #include "unit/program/support.h"
 
-namespace swarf::program {
+namespace swarf::program::property_test {
 namespace {
 
 using surface::PolynomialSurface;
@@ -160,4 +160,4 @@ TEST(DamagedProgram, RandomByteChangesGiveAnAnswer) {
 }
 
 }  // namespace
-}  // namespace swarf::program
+}  // namespace swarf::program::property_test

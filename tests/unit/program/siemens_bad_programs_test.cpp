@@ -4,7 +4,7 @@
 
 #include "unit/program/siemens_support.h"
 
-namespace swarf::program::nc::siemens {
+namespace swarf::program::nc::siemens::siemens_bad_programs_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -72,4 +72,4 @@ TEST(BadSiemensProgram, RecursionEndsAtTheLevelsOfTheControl) {
 }
 
 }  // namespace
-}  // namespace swarf::program::nc::siemens
+}  // namespace swarf::program::nc::siemens::siemens_bad_programs_test

@@ -6,7 +6,7 @@
 #include "base/rng.h"
 #include "unit/program/siemens_support.h"
 
-namespace swarf::program::nc::siemens {
+namespace swarf::program::nc::siemens::siemens_motion_test {
 namespace {
 
 Mat3 turn(const Vec3& axis, double deg) {
@@ -337,4 +337,4 @@ TEST(SiemensCutter, GoesBesideTheContour) {
 }
 
 }  // namespace
-}  // namespace swarf::program::nc::siemens
+}  // namespace swarf::program::nc::siemens::siemens_motion_test

@@ -6,7 +6,7 @@
 
 #include "unit/program/siemens_support.h"
 
-namespace swarf::program::nc::siemens {
+namespace swarf::program::nc::siemens::siemens_spinner_test {
 namespace {
 
 ControlSetup shop() {
@@ -136,4 +136,4 @@ TEST(SpinnerPrograms, PocketOnTheObliqueFaceByHand) {
 }
 
 }  // namespace
-}  // namespace swarf::program::nc::siemens
+}  // namespace swarf::program::nc::siemens::siemens_spinner_test

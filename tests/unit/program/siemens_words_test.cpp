@@ -7,7 +7,7 @@
 #include "base/rng.h"
 #include "unit/program/siemens_support.h"
 
-namespace swarf::program::nc::siemens {
+namespace swarf::program::nc::siemens::siemens_words_test {
 namespace {
 
 void expect_near(const Vec3& a, const Vec3& b, double tolerance, const std::string& what) {
@@ -344,4 +344,4 @@ TEST(SiemensWords, SettingsWithoutEffectAreListed) {
 }
 
 }  // namespace
-}  // namespace swarf::program::nc::siemens
+}  // namespace swarf::program::nc::siemens::siemens_words_test

@@ -6,7 +6,7 @@
 
 #include "base/rng.h"
 
-namespace swarf::program {
+namespace swarf::program::surface_check_test {
 namespace {
 
 using surface::PolynomialSurface;
@@ -91,4 +91,4 @@ TEST(BezierConversion, SeesAWrongControlPoint) {
 }
 
 }  // namespace
-}  // namespace swarf::program
+}  // namespace swarf::program::surface_check_test

@@ -11,7 +11,7 @@
 #include "render/figures/figure_mesh.h"
 #include "render/figures/tool_mesh.h"
 
-namespace swarf::render {
+namespace swarf::render::figures_mesh {
 namespace {
 
 using Key = std::array<float, 3>;
@@ -191,4 +191,4 @@ TEST(AxisFan, NeverMorePassesThanAskedForAndNothingFromNothing) {
 }
 
 }  // namespace
-}  // namespace swarf::render
+}  // namespace swarf::render::figures_mesh

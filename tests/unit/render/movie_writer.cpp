@@ -14,7 +14,7 @@ extern "C" {
 #include <libavformat/avformat.h>
 }
 
-namespace swarf::render {
+namespace swarf::render::movie_writer {
 namespace {
 
 constexpr int kWidth = 320, kHeight = 180, kFrames = 30;
@@ -142,4 +142,4 @@ TEST(MovieWriter, SaysWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace swarf::render
+}  // namespace swarf::render::movie_writer

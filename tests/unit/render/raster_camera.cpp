@@ -7,7 +7,7 @@
 #include "base/rng.h"
 #include "base/units.h"
 
-namespace swarf::render {
+namespace swarf::render::raster_camera {
 namespace {
 
 /// Largest |x| or |y| of the box's corners on the picture, whose border is 1.
@@ -52,4 +52,4 @@ TEST(Camera, DepthsMapToMinusOneAndOne) {
 }
 
 }  // namespace
-}  // namespace swarf::render
+}  // namespace swarf::render::raster_camera

@@ -8,7 +8,7 @@
 #include "raster_scene.h"
 #include "render/raster/raster_renderer.h"
 
-namespace swarf::render {
+namespace swarf::render::raster_machine {
 namespace {
 
 constexpr const char* kParts[] = {"bed",          "column",  "x_slide", "cradle",
@@ -90,4 +90,4 @@ TEST(MachineMeshes, FillAPictureWithContrast) {
 }
 
 }  // namespace
-}  // namespace swarf::render
+}  // namespace swarf::render::raster_machine

@@ -7,7 +7,7 @@
 #include "base/check.h"
 #include "raster_scene.h"
 
-namespace swarf::render {
+namespace swarf::render::raster_renderer {
 namespace {
 
 constexpr int kWidth = 320, kHeight = 200;
@@ -179,4 +179,4 @@ TEST(RasterRenderer, AnEmptyListIsABackdrop) {
 }
 
 }  // namespace
-}  // namespace swarf::render
+}  // namespace swarf::render::raster_renderer

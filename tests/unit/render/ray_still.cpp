@@ -43,13 +43,13 @@ Camera from_above() {
   return camera;
 }
 
-std::array<int, 3> pixel(const Image& image, int x, int y) {
+std::array<int, 3> rgb_at(const Image& image, int x, int y) {
   const uint8_t* p = &image.rgba[4 * (static_cast<size_t>(y) * image.width + x)];
   return {p[0], p[1], p[2]};
 }
 
 int brightness(const Image& image, int x, int y) {
-  const auto p = pixel(image, x, y);
+  const auto p = rgb_at(image, x, y);
   return p[0] + p[1] + p[2];
 }
 
@@ -71,8 +71,8 @@ TEST(Still, EmptyDrawingIsTheBackdrop) {
   const Image image = render_still(DrawList{}, options);
   ASSERT_EQ(image.rgba.size(), size_t{4} * 160 * 90);
   EXPECT_EQ(image.rgba[3], 255);
-  EXPECT_NEAR(pixel(image, 80, 0)[0], srgb8_from_linear(options.backdrop_top)[0], 3);
-  EXPECT_EQ(pixel(image, 3, 40), pixel(image, 150, 40));
+  EXPECT_NEAR(rgb_at(image, 80, 0)[0], srgb8_from_linear(options.backdrop_top)[0], 3);
+  EXPECT_EQ(rgb_at(image, 3, 40), rgb_at(image, 150, 40));
 }
 
 TEST(Still, SilhouetteFallsWhereTheCameraPutsIt) {
@@ -85,8 +85,8 @@ TEST(Still, SilhouetteFallsWhereTheCameraPutsIt) {
   const Image image = render_still(list, options);
   const double px_per_mm = 45.0 / (200 * std::tan(0.25));
   const int edge = static_cast<int>(std::lround(20 * px_per_mm));
-  EXPECT_GT(pixel(image, 80 + edge - 3, 45)[0], 2 * pixel(image, 80 + edge - 3, 45)[2]);
-  EXPECT_LT(pixel(image, 80 + edge + 3, 45)[0], 2 * pixel(image, 80 + edge + 3, 45)[2]);
+  EXPECT_GT(rgb_at(image, 80 + edge - 3, 45)[0], 2 * rgb_at(image, 80 + edge - 3, 45)[2]);
+  EXPECT_LT(rgb_at(image, 80 + edge + 3, 45)[0], 2 * rgb_at(image, 80 + edge + 3, 45)[2]);
 }
 
 TEST(Still, FloorTakesTheShadowOnTheSideAwayFromTheKeyLight) {
@@ -117,8 +117,8 @@ TEST(Still, DiffusePlateHasTheRadianceOfTheLightsFormula) {
   const double low = 255 * srgb_from_linear(static_cast<float>(diffuse));
   // The coat adds up to about 4 % of the light.
   const double high = 255 * srgb_from_linear(static_cast<float>(diffuse + 0.05));
-  EXPECT_GE(pixel(image, 80, 45)[1], low - 2);
-  EXPECT_LE(pixel(image, 80, 45)[1], high);
+  EXPECT_GE(rgb_at(image, 80, 45)[1], low - 2);
+  EXPECT_LE(rgb_at(image, 80, 45)[1], high);
 }
 
 TEST(Still, LinesAreAsWideAsTheySayAndHiddenBehindSolids) {
@@ -135,12 +135,12 @@ TEST(Still, LinesAreAsWideAsTheySayAndHiddenBehindSolids) {
   const Image image = render_still(list, options);
   double red_rows = 0;
   for (int y = 0; y < 90; ++y) {
-    const auto p = pixel(image, 80, y);
+    const auto p = rgb_at(image, 80, y);
     const Rgb linear = linear_from_srgb8(
         {static_cast<uint8_t>(p[0]), static_cast<uint8_t>(p[1]), static_cast<uint8_t>(p[2]), 255});
-    const Rgb beside = linear_from_srgb8({static_cast<uint8_t>(pixel(image, 80, 60)[0]),
-                                          static_cast<uint8_t>(pixel(image, 80, 60)[1]),
-                                          static_cast<uint8_t>(pixel(image, 80, 60)[2]), 255});
+    const Rgb beside = linear_from_srgb8({static_cast<uint8_t>(rgb_at(image, 80, 60)[0]),
+                                          static_cast<uint8_t>(rgb_at(image, 80, 60)[1]),
+                                          static_cast<uint8_t>(rgb_at(image, 80, 60)[2]), 255});
     if (y > 30 && y < 60) red_rows += 1 - linear[1] / beside[1];
   }
   EXPECT_NEAR(red_rows, 4.0, 0.1) << "covered rows of one visible line";

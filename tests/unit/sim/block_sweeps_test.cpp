@@ -10,7 +10,7 @@
 #include "stock/sweep/sweep_map.h"
 #include "unit/motion/random_block.h"
 
-namespace swarf::motion {
+namespace swarf::motion::block_sweeps_test {
 namespace {
 
 using toolpath::BlockLaw;
@@ -67,7 +67,7 @@ INSTANTIATE_TEST_SUITE_P(Laws, SplitError, testing::Values(BlockLaw::kTcp, Block
                          [](const auto& test) { return std::string(law_name(test.param)); });
 
 }  // namespace
-}  // namespace swarf::motion
+}  // namespace swarf::motion::block_sweeps_test
 
 namespace swarf::sim {
 namespace {

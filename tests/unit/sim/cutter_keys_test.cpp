@@ -7,7 +7,7 @@
 #include "cutter/profile.h"
 #include "support/program_run.h"
 
-namespace swarf::sim {
+namespace swarf::sim::cutter_keys_test {
 namespace {
 
 using cutter::Cutter;
@@ -131,4 +131,4 @@ TEST(CutterKeys, WhatIsWrongIsToldAtItsLine) {
 }
 
 }  // namespace
-}  // namespace swarf::sim
+}  // namespace swarf::sim::cutter_keys_test

@@ -13,7 +13,7 @@
 #include "sim/simulation.h"
 #include "support/program_run.h"
 
-namespace swarf::sim {
+namespace swarf::sim::pole_turn_test {
 namespace {
 
 /// Away from the pole in the direction `azimuth` by `tilt`, straight to (10, 4, 5), back, and away to the
@@ -85,4 +85,4 @@ TEST(PoleTurn, TakesTheTimeOfItsAxis) {
 }
 
 }  // namespace
-}  // namespace swarf::sim
+}  // namespace swarf::sim::pole_turn_test

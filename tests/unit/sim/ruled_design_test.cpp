@@ -5,7 +5,7 @@
 #include "sim/job/design_keys.h"
 #include "support/program_run.h"
 
-namespace swarf::sim {
+namespace swarf::sim::ruled_design_test {
 namespace {
 
 struct Read {
@@ -60,4 +60,4 @@ TEST(RuledDesign, WhatIsRefused) {
 }
 
 }  // namespace
-}  // namespace swarf::sim
+}  // namespace swarf::sim::ruled_design_test

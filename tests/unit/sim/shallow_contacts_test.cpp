@@ -7,7 +7,7 @@
 #include "base/rng.h"
 #include "contact_run.h"
 
-namespace swarf::sim {
+namespace swarf::sim::shallow_contacts_test {
 namespace {
 
 constexpr double kVoxel = 0.2;  // mm
@@ -91,4 +91,4 @@ TEST_P(ThinWall, IsFoundAndItsTwinIsFree) {
 INSTANTIATE_TEST_SUITE_P(Seeds, ThinWall, testing::Range<uint64_t>(0, 40));
 
 }  // namespace
-}  // namespace swarf::sim
+}  // namespace swarf::sim::shallow_contacts_test

@@ -7,7 +7,7 @@
 
 #include "contact_run.h"
 
-namespace swarf::sim {
+namespace swarf::sim::tool_clearance_test {
 namespace {
 
 constexpr double kVoxel = 0.5;  // mm
@@ -203,4 +203,4 @@ TEST(ToolClearance, SurvivesAStockFile) {
 }
 
 }  // namespace
-}  // namespace swarf::sim
+}  // namespace swarf::sim::tool_clearance_test

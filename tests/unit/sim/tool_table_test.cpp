@@ -9,7 +9,7 @@
 #include "sim/job/tool_table.h"
 #include "support/program_run.h"
 
-namespace swarf::sim {
+namespace swarf::sim::tool_table_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -188,4 +188,4 @@ TEST_F(ToolTable, WhatIsWrongIsToldAtItsLine) {
 }
 
 }  // namespace
-}  // namespace swarf::sim
+}  // namespace swarf::sim::tool_table_test

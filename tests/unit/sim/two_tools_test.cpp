@@ -9,7 +9,7 @@
 #include "sim/run/job_sweeps.h"
 #include "sim/simulation.h"
 
-namespace swarf::sim {
+namespace swarf::sim::two_tools_test {
 namespace {
 
 constexpr double kLong = 130.0, kShort = 90.0;  // gauge lengths, mm
@@ -178,4 +178,4 @@ TEST(BadCuts, SurviveAStockFile) {
 }
 
 }  // namespace
-}  // namespace swarf::sim
+}  // namespace swarf::sim::two_tools_test

@@ -6,7 +6,7 @@
 #include "cutter_shapes.h"
 #include "stock_test_support.h"
 
-namespace swarf::stock {
+namespace swarf::stock::convex_contact_test {
 namespace {
 
 /// Least F over instants: a scan, then golden sections about its best place (F is convex along the motion).
@@ -138,4 +138,4 @@ TEST(SweptContact, UnionKnowsItsPiece) {
 }
 
 }  // namespace
-}  // namespace swarf::stock
+}  // namespace swarf::stock::convex_contact_test

@@ -11,7 +11,7 @@
 #include "stock/level_set/leaf_kernel.h"
 #include "stock_test_support.h"
 
-namespace swarf::stock {
+namespace swarf::stock::convex_leaf_test {
 namespace {
 
 constexpr double kVoxel = 0.1, kBand = 0.3;
@@ -176,4 +176,4 @@ TEST(ConvexLeaf, OnlyTheSlicesAskedForChange) {
 }
 
 }  // namespace
-}  // namespace swarf::stock
+}  // namespace swarf::stock::convex_leaf_test

@@ -9,7 +9,7 @@
 #include "stock/rays/surface_dexels.h"
 #include "stock_test_support.h"
 
-namespace swarf::stock {
+namespace swarf::stock::convex_ray_test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -192,4 +192,4 @@ TEST(ConvexRay, UndercutOfATSlotLeavesTheLowestEnd) {
 }
 
 }  // namespace
-}  // namespace swarf::stock
+}  // namespace swarf::stock::convex_ray_test

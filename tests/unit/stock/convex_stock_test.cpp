@@ -10,7 +10,7 @@
 #include "stock/stock.h"
 #include "stock_test_support.h"
 
-namespace swarf::stock {
+namespace swarf::stock::convex_stock_test {
 namespace {
 
 double removed(const Box& box, double voxel, const CutterSolid& cutter, const std::vector<Sweep>& sweeps) {
@@ -201,4 +201,4 @@ TEST(ConvexStock, HashDoesNotDependOnCallsForAnyCutter) {
 }
 
 }  // namespace
-}  // namespace swarf::stock
+}  // namespace swarf::stock::convex_stock_test

@@ -11,7 +11,7 @@
 #include "stock/stock.h"
 #include "stock_test_support.h"
 
-namespace swarf::stock {
+namespace swarf::stock::hyperboloid_test {
 namespace {
 
 constexpr double kDistance = 30.0, kSkew = 20.0, kRadius = 5.0, kTipAt = -20.0;
@@ -80,4 +80,4 @@ TEST(Hyperboloid, RaysMeetTheCoreWithinAFifthOfAMicrometre) {
 }
 
 }  // namespace
-}  // namespace swarf::stock
+}  // namespace swarf::stock::hyperboloid_test

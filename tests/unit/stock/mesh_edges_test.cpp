@@ -6,7 +6,7 @@
 #include "stock/stock.h"
 #include "stock_test_support.h"
 
-namespace swarf::stock {
+namespace swarf::stock::mesh_edges_test {
 namespace {
 
 constexpr double kVoxel = 0.1;
@@ -179,4 +179,4 @@ TEST(MeshEdges, EdgesAndCornersOfTheBox) {
 }
 
 }  // namespace
-}  // namespace swarf::stock
+}  // namespace swarf::stock::mesh_edges_test

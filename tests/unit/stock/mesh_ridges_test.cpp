@@ -11,7 +11,7 @@
 #include "mesh/tri_mesh.h"
 #include "stock/stock.h"
 
-namespace swarf::stock {
+namespace swarf::stock::mesh_ridges_test {
 namespace {
 
 constexpr double kVoxel = 0.1, kRadius = 50.0, kRidge = 0.010;
@@ -82,4 +82,4 @@ TEST(MeshRidges, AreNoFlatterThanOpenVdbMeshesThem) {
 }
 
 }  // namespace
-}  // namespace swarf::stock
+}  // namespace swarf::stock::mesh_ridges_test

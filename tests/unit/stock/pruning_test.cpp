@@ -11,7 +11,7 @@
 #include "stock/stock.h"
 #include "stock_test_support.h"
 
-namespace swarf::stock {
+namespace swarf::stock::pruning_test {
 namespace {
 
 /// Least F over the motion, by a scan of its instants refined around the best (F is convex along the motion).
@@ -195,4 +195,4 @@ TEST(Stock, BatchesAndThreadsLeaveTheSameBits) {
 }
 
 }  // namespace
-}  // namespace swarf::stock
+}  // namespace swarf::stock::pruning_test

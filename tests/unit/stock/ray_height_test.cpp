@@ -6,7 +6,7 @@
 #include "stock/rays/surface_dexels.h"
 #include "stock_test_support.h"
 
-namespace swarf::stock {
+namespace swarf::stock::ray_height_test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -139,4 +139,4 @@ TEST(RayHeight, BackEdgeOfALeaningFlatEnd) {
 }
 
 }  // namespace
-}  // namespace swarf::stock
+}  // namespace swarf::stock::ray_height_test

@@ -11,7 +11,7 @@
 #include "stock/level_set/stock_grid_internal.h"
 #include "stock_test_support.h"
 
-namespace swarf::stock {
+namespace swarf::stock::stock_state_test {
 namespace {
 
 const CutterSolid kCutter{2.0, 10.0};
@@ -166,4 +166,4 @@ TEST(StockHash, OfAMixedCutIsAConstant) {
 }
 
 }  // namespace
-}  // namespace swarf::stock
+}  // namespace swarf::stock::stock_state_test

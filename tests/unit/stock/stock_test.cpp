@@ -8,7 +8,7 @@
 #include "base/units.h"
 #include "stock_test_support.h"
 
-namespace swarf::stock {
+namespace swarf::stock::stock_test {
 namespace {
 
 const CutterSolid kCutter{5.0, 25.0};
@@ -255,4 +255,4 @@ TEST(Stock, MemoryEstimateCoversWhatIsUsed) {
 }
 
 }  // namespace
-}  // namespace swarf::stock
+}  // namespace swarf::stock::stock_test

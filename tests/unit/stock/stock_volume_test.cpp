@@ -11,7 +11,7 @@
 #include "base/units.h"
 #include "stock/stock.h"
 
-namespace swarf::stock {
+namespace swarf::stock::stock_volume_test {
 namespace {
 
 const Box kBlock{{-20.03, -15.07, -10.01}, {20.05, 15.02, 0.03}};
@@ -118,4 +118,4 @@ TEST(StockRounding, LongMovesKeepInvariantEight) {
 }
 
 }  // namespace
-}  // namespace swarf::stock
+}  // namespace swarf::stock::stock_volume_test

@@ -11,7 +11,7 @@
 #include "stock/rays/ray_height.h"
 #include "stock_test_support.h"
 
-namespace swarf::stock {
+namespace swarf::stock::surface_dexels_test {
 namespace {
 
 const CutterSolid kCutter{5.0, 25.0};
@@ -165,4 +165,4 @@ TEST_F(SurfaceDexelsFile, RoundTripAndDamage) {
 }
 
 }  // namespace
-}  // namespace swarf::stock
+}  // namespace swarf::stock::surface_dexels_test

@@ -6,7 +6,7 @@
 #include "stock/sweep/sweep_distance.h"
 #include "stock_test_support.h"
 
-namespace swarf::stock {
+namespace swarf::stock::sweep_distance_test {
 namespace {
 
 MovingPoint<double> moving(const SweepMap& map, const Vec3& x) {
@@ -143,4 +143,4 @@ TEST(LeafKernel, FloatsAgreeWithDoubles) {
 }
 
 }  // namespace
-}  // namespace swarf::stock
+}  // namespace swarf::stock::sweep_distance_test

@@ -8,7 +8,7 @@
 #include "base/units.h"
 #include "ridge.h"
 
-namespace swarf::toolpath {
+namespace swarf::toolpath::alarms_test {
 namespace {
 
 using program::StartBoundary;
@@ -210,4 +210,4 @@ TEST(Edges, WhereTheSurfaceDoesNotContinuePassesEndOnTheBoundary) {
 }
 
 }  // namespace
-}  // namespace swarf::toolpath
+}  // namespace swarf::toolpath::alarms_test

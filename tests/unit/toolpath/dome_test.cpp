@@ -6,7 +6,7 @@
 #include "ridge.h"
 #include "toolpath/area.h"
 
-namespace swarf::toolpath {
+namespace swarf::toolpath::dome_test {
 namespace {
 
 using program::StartBoundary;
@@ -204,4 +204,4 @@ TEST(Dome, CurveDerivativesMatchDifferences) {
 }
 
 }  // namespace
-}  // namespace swarf::toolpath
+}  // namespace swarf::toolpath::dome_test

@@ -7,7 +7,7 @@
 
 #include "dome.h"
 
-namespace swarf::toolpath {
+namespace swarf::toolpath::links_test {
 namespace {
 
 using program::StartBoundary;
@@ -133,4 +133,4 @@ TEST(Links, AStraightWayThroughTheDomeIsNotClear) {
 }
 
 }  // namespace
-}  // namespace swarf::toolpath
+}  // namespace swarf::toolpath::links_test

@@ -3,7 +3,7 @@
 
 #include "toolpath/nc_path.h"
 
-namespace swarf::toolpath {
+namespace swarf::toolpath::nc_path_test {
 namespace {
 
 using program::NcMove;
@@ -149,4 +149,4 @@ TEST(NcPath, AProgramWithoutMotionIsNoJob) {
 }
 
 }  // namespace
-}  // namespace swarf::toolpath
+}  // namespace swarf::toolpath::nc_path_test
