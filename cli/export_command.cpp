@@ -5,6 +5,7 @@
 #include "base/units.h"
 #include "cli/commands.h"
 #include "cli/terminal.h"
+#include "cli/window_options.h"
 #include "mesh/mesh_io.h"
 #include "mesh/mesh_ops.h"
 #include "render/figures/colour.h"
@@ -12,52 +13,88 @@
 #include "reports/pending_folder.h"
 #include "reports/pictures.h"
 #include "reports/run_output.h"
+#include "sim/run/recorder.h"
 
 namespace swarf::cli {
 namespace {
 
 struct ExportOptions {
-  std::string folder, gltf, machine_gltf, stl, ply, vdb;
+  std::string folder, gltf, machine_gltf, stl, ply, vdb, trajectory;
+  sim::WindowPlaces window;
   double error_um = 2.0;
+  bool needs_stock() const { return !(gltf + machine_gltf + stl + ply + vdb).empty(); }
 };
 
-int export_run(const ExportOptions& options) {
-  if (options.gltf.empty() && options.machine_gltf.empty() && options.stl.empty() && options.ply.empty() &&
-      options.vdb.empty()) {
+void check_options(const ExportOptions& options) {
+  if (!options.needs_stock() && options.trajectory.empty()) {
     throw InputError("nothing-to-do", {"swarf export"}, "no format was given",
                      "write for example: swarf export DIR --stl part.stl");
   }
-  for (const std::string& file : {options.gltf, options.machine_gltf, options.stl, options.ply, options.vdb})
-    reports::check_output_file(file);
-  TerminalProgress progress;
-  const reports::StoredRun stored = reports::read_run(options.folder);
-  const bool coloured = !options.gltf.empty() || !options.ply.empty();
-  const bool moves =
-      !options.gltf.empty() || !options.machine_gltf.empty() || (coloured && !stored.job.scene.has_blocks());
-  const sim::MeasuredPath path = reports::motion_of(stored, options.folder, moves, progress);
-  const reports::FinishedRun run{stored.job, *path.cycles, stored.stock, stored.dexels};
-  if (!options.gltf.empty() || !options.machine_gltf.empty()) {
-    const reports::DisplayMesh light =
-        reports::display_mesh(run, stored.stock.mesh(), options.error_um * kMicrometre);
-    if (!options.gltf.empty()) reports::write_part_glb(run, light, options.gltf);
-    if (!options.machine_gltf.empty()) reports::write_machine_glb(run, light, options.machine_gltf);
-    fmt::print("glTF: finished part decimated within {:.3f} um\n", um_from_mm(light.error_mm));
+  if (options.window.any() && (options.trajectory + options.machine_gltf + options.gltf).empty()) {
+    throw InputError("no-motion-asked", {"swarf export"},
+                     "--from and --to are for motions: the finished part has none",
+                     "write for example: swarf export DIR --trajectory part.csv --from 60 --to 62");
   }
+  for (const std::string& file :
+       {options.gltf, options.machine_gltf, options.stl, options.ply, options.vdb, options.trajectory})
+    reports::check_output_file(file);
+  if (!options.trajectory.empty()) sim::check_cycle_table_name(options.trajectory);
+}
+
+void write_trajectory(const ExportOptions& options, const sim::Job& job, const motion::Cycles& cycles) {
+  const sim::CycleWindow window = sim::window_of(options.window, cycles);
+  sim::write_cycle_window(options.trajectory, job, cycles, window);
+  fmt::print("{}: {} cycles from {:.3f} to {:.3f} s, {:g} ms each\n", options.trajectory, window.size(),
+             static_cast<double>(window.first) * cycles.period_s(),
+             static_cast<double>(window.end - 1) * cycles.period_s(), cycles.period_s() * 1e3);
+}
+
+void write_gltf(const ExportOptions& options, const reports::FinishedRun& run) {
+  const reports::DisplayMesh light =
+      reports::display_mesh(run, run.stock.mesh(), options.error_um * kMicrometre);
+  if (!options.gltf.empty()) reports::write_part_glb(run, light, options.gltf);
+  if (!options.machine_gltf.empty()) reports::write_machine_glb(run, light, options.machine_gltf);
+  fmt::print("glTF: finished part decimated within {:.3f} um\n", um_from_mm(light.error_mm));
+}
+
+void write_meshes(const ExportOptions& options, const reports::FinishedRun& run) {
   if (!options.stl.empty()) {
-    const TriMesh part = stored.stock.mesh();
+    const TriMesh part = run.stock.mesh();
     mesh::save_mesh(options.stl, part);
     fmt::print("{}: {} triangles, mm\n", options.stl, part.triangles.size());
   }
   if (!options.ply.empty()) {
     TriMesh coloured = reports::part_mesh(run);
-    render::colour_by_deviation(coloured, reports::deviation_scale(stored.job));
+    render::colour_by_deviation(coloured, reports::deviation_scale(run.job));
     mesh::save_mesh(options.ply, coloured);
     fmt::print("{}: {} triangles with deviation in um, mm\n", options.ply, coloured.triangles.size());
   }
   if (!options.vdb.empty()) {
-    stored.stock.save(options.vdb, {{"scene", stored.job.scene.name}, {"swarf", SWARF_VERSION}});
-    fmt::print("{}: level set, {:g} mm voxels\n", options.vdb, stored.stock.voxel_mm());
+    run.stock.save(options.vdb, {{"scene", run.job.scene.name}, {"swarf", SWARF_VERSION}});
+    fmt::print("{}: level set, {:g} mm voxels\n", options.vdb, run.stock.voxel_mm());
   }
+}
+
+int export_run(const ExportOptions& options) {
+  check_options(options);
+  TerminalProgress progress;
+  if (!options.needs_stock()) {  // reading the stock would take longer than the cycles
+    const sim::Job job = reports::read_job(options.folder, {});
+    write_trajectory(options, job, *reports::window_motion(job, options.folder, progress).cycles);
+    return kPass;
+  }
+  const reports::StoredRun stored = reports::read_run(options.folder);
+  const bool coloured = !options.gltf.empty() || !options.ply.empty();
+  const bool moves = !options.gltf.empty() || !options.machine_gltf.empty() || !options.trajectory.empty() ||
+                     (coloured && !stored.job.scene.has_blocks());
+  const sim::MeasuredPath path = options.window.any()
+                                     ? reports::window_motion(stored.job, options.folder, progress)
+                                     : reports::motion_of(stored, options.folder, moves, progress);
+  reports::FinishedRun run{stored.job, *path.cycles, stored.stock, stored.dexels};
+  if (options.window.any()) run.window = sim::window_of(options.window, *path.cycles);
+  if (!options.gltf.empty() || !options.machine_gltf.empty()) write_gltf(options, run);
+  write_meshes(options, run);
+  if (!options.trajectory.empty()) write_trajectory(options, stored.job, *path.cycles);
   return kPass;
 }
 
@@ -74,6 +111,9 @@ void add_export(CLI::App& app, int& exit_code) {
   command->add_option("--stl", options->stl, "finished part (.stl, mm)");
   command->add_option("--ply", options->ply, "finished part with deviation (.ply, mm)");
   command->add_option("--vdb", options->vdb, "finished stock as a level set (.vdb)");
+  command->add_option("--trajectory", options->trajectory,
+                      "each control cycle as a row of a table (.csv); exactly those of the run");
+  add_window_options(*command, options->window, "--trajectory, --machine-gltf and the fan of --gltf");
   command->add_option("--error-um", options->error_um, "largest error of the decimation for --gltf")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);

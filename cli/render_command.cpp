@@ -5,6 +5,7 @@
 #include "base/parallel.h"
 #include "cli/commands.h"
 #include "cli/terminal.h"
+#include "cli/window_options.h"
 #include "reports/part_view.h"
 #include "reports/pending_folder.h"
 #include "reports/pictures.h"
@@ -18,7 +19,17 @@ struct RenderOptions {
   std::vector<int> size;
   double seconds = -1.0;
   int samples = 0, threads = 0;
+  sim::WindowPlaces window;
 };
+
+/// Of the stills, only those of the machine and of the fan show a motion.
+void check_window(const RenderOptions& options, reports::StillKind kind) {
+  const bool still_moves = kind == reports::StillKind::kMachine || kind == reports::StillKind::kFan;
+  if (!options.window.any() || !options.movie.empty() || still_moves) return;
+  throw InputError("no-motion-asked", {"swarf render"},
+                   "--from and --to are for motions: the finished part has none",
+                   "add --movie, or --kind machine");
+}
 
 int render(const RenderOptions& options) {
   set_thread_count(options.threads);
@@ -27,6 +38,7 @@ int render(const RenderOptions& options) {
                      "write for example: swarf render DIR --still part.png");
   }
   const reports::StillKind kind = reports::still_kind(options.kind);
+  check_window(options, kind);
   if (!options.camera.empty()) reports::camera_direction(options.camera);
   for (const std::string& file : {options.movie, options.still}) reports::check_output_file(file);
   TerminalProgress progress;
@@ -40,8 +52,11 @@ int render(const RenderOptions& options) {
   // The part's normals come from the cycles of surface jobs.
   const bool moves = !options.movie.empty() || !stored.job.scene.has_blocks() ||
                      kind == reports::StillKind::kMachine || kind == reports::StillKind::kFan;
-  const sim::MeasuredPath path = reports::motion_of(stored, options.folder, moves, progress);
-  const reports::FinishedRun run{stored.job, *path.cycles, stored.stock, stored.dexels};
+  const sim::MeasuredPath path = options.window.any()
+                                     ? reports::window_motion(stored.job, options.folder, progress)
+                                     : reports::motion_of(stored, options.folder, moves, progress);
+  reports::FinishedRun run{stored.job, *path.cycles, stored.stock, stored.dexels};
+  if (options.window.any()) run.window = sim::window_of(options.window, *path.cycles);
   if (!options.still.empty()) {
     const std::string otherwise = kind == reports::StillKind::kMachine ? "machine" : "iso";
     reports::make_still(run, reports::shown_part(run, stored.stock.mesh()), kind,
@@ -74,6 +89,7 @@ void add_render(CLI::App& app, int& exit_code) {
       ->expected(2)
       ->check(CLI::Range(64, 7680));
   command->add_option("--seconds", options->seconds, "length of the movie, s")->check(CLI::PositiveNumber);
+  add_window_options(*command, options->window, "movie, machine and fan");
   command->add_option("--samples", options->samples, "rays per pixel of the still")
       ->check(CLI::Range(1, 4096));
   command->add_option("--threads", options->threads, "threads to use (default: all cores)")

@@ -54,13 +54,13 @@ std::pair<TriMesh, TriMesh> split_by_measure(const TriMesh& mesh) {
 
 /// Cycles spread evenly over the program.
 std::vector<motion::Cycle> animation_cycles(const FinishedRun& run) {
-  return run.cycles.spread(static_cast<size_t>(kAnimationSeconds) * kPosesPerSecond + 1);
+  return run.shown_cycles(static_cast<size_t>(kAnimationSeconds) * kPosesPerSecond + 1);
 }
 
 }  // namespace
 
 double animation_scale(const FinishedRun& run) {
-  return std::max(1.0, run.cycles.time_s() / kAnimationSeconds);
+  return std::max(1.0, run.shown_s() / kAnimationSeconds);
 }
 
 void write_part_glb(const FinishedRun& run, const DisplayMesh& part, const std::string& path) {
@@ -92,6 +92,7 @@ void write_machine_glb(const FinishedRun& run, const DisplayMesh& part, const st
   shown.deviation_um.clear();
   mesh::split_creases(shown, kCreaseRad);  // decimate() has joined them
   const double scale = animation_scale(run);
+  const double start_s = static_cast<double>(run.first_shown()) * run.cycles.period_s();
   std::vector<double> times;
   std::vector<std::vector<Pose>> link_poses(run.job.machine.links.size());
   const size_t tools = run.job.scene.tools.size();
@@ -100,7 +101,7 @@ void write_machine_glb(const FinishedRun& run, const DisplayMesh& part, const st
   std::vector<Pose> work_poses;
   for (const motion::Cycle& cycle : animation_cycles(run)) {
     const kinematics::AxisValues& q = cycle.q;
-    times.push_back(cycle.sample.t_s / scale);
+    times.push_back((cycle.sample.t_s - start_s) / scale);
     const std::vector<Pose> poses = machine::link_poses(run.job.machine, q);
     for (size_t link = 0; link < poses.size(); ++link) link_poses[link].push_back(poses[link]);
     for (size_t tool = 0; tool < tools; ++tool) {
@@ -127,7 +128,9 @@ void write_machine_glb(const FinishedRun& run, const DisplayMesh& part, const st
         {"holder" + name, &view.holder(tool), kHolderMaterial, cutter, {}, {view.holder_in_tool(tool)}, {}});
   }
   scene.nodes.push_back({"part", &shown, kStockMaterial, -1, times, work_poses, {}});
-  scene.extras = {{"scene", run.job.scene.name}, {"program_seconds_per_second", fmt::format("{:g}", scale)}};
+  scene.extras = {{"scene", run.job.scene.name},
+                  {"program_seconds_per_second", fmt::format("{:g}", scale)},
+                  {"program_seconds_at_start", fmt::format("{:g}", start_s)}};
   render::write_glb(path, scene);
 }
 

@@ -1,5 +1,7 @@
 #include "reports/machine_view.h"
 
+#include <algorithm>
+
 #include "cutter/profile.h"
 #include "cutter/tool_walls.h"
 #include "render/figures/figure_mesh.h"
@@ -57,6 +59,16 @@ TriMesh holder_figure(const cutter::Cutter& c) {
 }
 
 }  // namespace
+
+std::vector<motion::Cycle> FinishedRun::shown_cycles(size_t count) const {
+  if (!window) return cycles.spread(count);
+  const size_t many = std::min(count, window->size());
+  std::vector<motion::Cycle> shown;
+  motion::CycleReader reader(cycles);
+  for (size_t i = 0; i < many; ++i)
+    shown.push_back(reader.at(window->first + (many == 1 ? 0 : (window->size() - 1) * i / (many - 1))));
+  return shown;
+}
 
 MachineView::MachineView(const sim::Job& job) : job_(job) {
   const std::vector<kinematics::MachineModel> machines = sim::machines_by_tool(job);

@@ -1,12 +1,14 @@
 // The machine as things to draw: links, cutter, holder and stock at given axis positions.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "kinematics/machine_model.h"
 #include "motion/cycles/cycles.h"
 #include "render/draw_list.h"
 #include "sim/job/scene.h"
+#include "sim/run/cycle_window.h"
 #include "stock/rays/surface_dexels.h"
 #include "stock/stock.h"
 
@@ -18,6 +20,16 @@ struct FinishedRun {
   const motion::Cycles& cycles;
   const stock::Stock& stock;
   const std::vector<stock::SurfaceDexels>& dexels;
+  /// What of the motion is shown; none: all of it.
+  std::optional<sim::CycleWindow> window{};
+
+  /// Numbers of the first and the last cycle that are shown; there must be one.
+  size_t first_shown() const { return window ? window->first : 0; }
+  size_t last_shown() const { return (window ? window->end : cycles.size()) - 1; }
+  double shown_s() const { return static_cast<double>(last_shown() - first_shown()) * cycles.period_s(); }
+  /// So many of them, spread evenly, the first and the last among them; fewer where there are fewer. Of long
+  /// motions without a window as Cycles::spread().
+  std::vector<motion::Cycle> shown_cycles(size_t count) const;
 };
 
 /// Meshes of cutters and holders, made once from the scene's tools. `tool`: index into Scene::tools.

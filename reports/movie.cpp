@@ -68,8 +68,8 @@ std::vector<std::string> caption(const FinishedRun& run, const motion::Cycle& cy
 
 /// One cycle for each frame; the last frame alone shows the end.
 std::vector<motion::Cycle> shown_cycles(const FinishedRun& run, int frames) {
-  if (frames == 1) return {motion::CycleReader(run.cycles).at(run.cycles.size() - 1)};
-  std::vector<motion::Cycle> cycles = run.cycles.spread(static_cast<size_t>(frames));
+  if (frames == 1) return {motion::CycleReader(run.cycles).at(run.last_shown())};
+  std::vector<motion::Cycle> cycles = run.shown_cycles(static_cast<size_t>(frames));
   cycles.resize(static_cast<size_t>(frames), cycles.back());
   return cycles;
 }

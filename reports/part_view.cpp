@@ -100,9 +100,9 @@ std::vector<render::DrawLine> fan_lines(const FinishedRun& run) {
   render::FanInput fan;
   int element = -1;
   // All cycles of a short program, enough of a long one.
-  const bool all = run.cycles.kept().size() == run.cycles.size();
-  for (const motion::Cycle& cycle :
-       run.cycles.spread(all ? run.cycles.size() : 2 * motion::Cycles::kSpreadLeast)) {
+  const size_t shown = run.last_shown() - run.first_shown() + 1;
+  const bool all = shown <= motion::CycleLimits{}.kept;
+  for (const motion::Cycle& cycle : run.shown_cycles(all ? shown : 2 * motion::Cycles::kSpreadLeast)) {
     const motion::ToolSample& sample = cycle.sample;
     if (sample.kind != motion::SampleKind::kCutting) continue;
     if (sample.element != element) {

@@ -11,6 +11,7 @@
 
 #include "base/input_file.h"
 #include "reports/kept_inputs.h"
+#include "reports/kept_motion.h"
 #include "reports/part_view.h"
 #include "reports/pending_folder.h"
 #include "reports/pictures.h"
@@ -93,6 +94,7 @@ void write_state(const PendingFolder& folder, const sim::Job& job, const sim::Re
     result.main.dexels[i].save(folder.file(fmt::format("surface_{}.rays", i)));
   }
   if (result.main.nc) keep_called_programs(folder, job, result.main.nc->summary.files);
+  if (!result.main.cycles->stopped()) keep_motion(folder, *result.main.cycles);
   if (!result.stopped) {
     write_text(folder.file("metrics.json"), metrics_json(job, result, {}));
     write_text(folder.file("findings.json"), findings_json(result));
@@ -129,6 +131,20 @@ void write_glb(const PendingFolder& folder, const FinishedRun& run, const TriMes
   files.machine_glb = folder.file("machine.glb");
   files.animation_scale = animation_scale(run);
   progress.end();
+}
+
+/// All cycles again, which must be those of the run.
+sim::MeasuredPath whole_motion(const sim::Job& job, const std::string& folder, Progress& progress) {
+  const std::optional<KeptMotion> kept = read_motion(folder);
+  if (kept) require_inputs(*kept, folder);
+  sim::MeasuredPath path = sim::move_tool(job, progress);
+  if (!kept || path.cycles->stopped() || path.cycles->recalled().hash == kept->recall.hash) return path;
+  throw InputError(
+      "run-differs", {folder},
+      fmt::format("the inputs kept here give another motion than they gave swarf {}, of {} cycles "
+                  "where it had {}: this is swarf {}",
+                  kept->swarf, path.cycles->size(), kept->recall.cycles, SWARF_VERSION),
+      "run the scene again");
 }
 
 }  // namespace
@@ -221,18 +237,15 @@ sim::MeasuredPath motion_of(const StoredRun& run, const std::string& folder, boo
                                          run.job.scene.tools.front(), run.job.scene.motion);
     return none;
   }
-  sim::MeasuredPath path = sim::move_tool(run.job, progress);
-  std::ifstream file(fs::path(folder) / "metrics.json");
-  const auto metrics = file ? nlohmann::json::parse(file, nullptr, false) : nlohmann::json();
-  const nlohmann::json::json_pointer ticks("/motion/ticks");
-  if (!metrics.is_object() || !metrics.contains(ticks) || !metrics.at(ticks).is_number_unsigned() ||
-      metrics.at(ticks) == path.motion.statistics.ticks)
-    return path;
-  throw InputError("run-differs", {folder},
-                   fmt::format("the inputs kept here give a motion of {} cycles, the run had {}: they were "
-                               "changed, or this is another version of swarf",
-                               path.motion.statistics.ticks, metrics.at(ticks).get<uint64_t>()),
-                   "run the scene again");
+  return whole_motion(run.job, folder, progress);
+}
+
+sim::MeasuredPath window_motion(const sim::Job& job, const std::string& folder, Progress& progress) {
+  std::optional<KeptMotion> kept = read_motion(folder);
+  if (!kept) return whole_motion(job, folder, progress);
+  sim::MeasuredPath path = sim::plan_tool(job, progress);
+  recall_motion(*path.cycles, std::move(*kept), folder);
+  return path;
 }
 
 }  // namespace swarf::reports

@@ -44,7 +44,11 @@ struct StoredRun {
 StoredRun read_run(const std::string& folder);
 
 /// The run's motion, made again from its kept inputs; without any cycle when it is not `needed`. Throws
-/// InputError "run-differs" when it is not the motion that the run's metrics.json tells of.
+/// InputError "run-differs" when these were changed, or give another motion than the run's to the last bit.
 sim::MeasuredPath motion_of(const StoredRun& run, const std::string& folder, bool needed, Progress& progress);
+
+/// The same for readers of a few cycles: they are made when they are read (CycleReader), without those before
+/// them.
+sim::MeasuredPath window_motion(const sim::Job& job, const std::string& folder, Progress& progress);
 
 }  // namespace swarf::reports

@@ -66,11 +66,11 @@ render::ColourBar lettered_bar(const render::DeviationScale& scale) {
   return bar;
 }
 
-/// The first cycle in contact from the middle of the program's time on.
-motion::Cycle middle_cycle(const motion::Cycles& cycles) {
-  const size_t middle = cycles.size() / 2;
-  motion::CycleReader reader(cycles);
-  for (size_t k = middle; k < cycles.size(); ++k) {
+/// The first cycle in contact from the middle of the shown time on.
+motion::Cycle middle_cycle(const FinishedRun& run) {
+  const size_t middle = (run.first_shown() + run.last_shown() + 1) / 2;
+  motion::CycleReader reader(run.cycles);
+  for (size_t k = middle; k <= run.last_shown(); ++k) {
     if (reader.at(k).sample.kind == motion::SampleKind::kCutting) return reader.at(k);
   }
   return reader.at(middle);
@@ -117,7 +117,7 @@ render::Camera machine_camera(const FinishedRun& run, const std::string& name,
   const Box& box = run.job.scene.stock.box_W;
   Box seen{Vec3::Constant(1e9), Vec3::Constant(-1e9)};
   constexpr size_t kPlaces = 50;
-  for (const motion::Cycle& cycle : run.cycles.spread(kPlaces)) {
+  for (const motion::Cycle& cycle : run.shown_cycles(kPlaces)) {
     const Vec3 centre = view.work_pose(cycle.q) * box.centre();
     seen.lower = seen.lower.cwiseMin(centre);
     seen.upper = seen.upper.cwiseMax(centre);
@@ -177,7 +177,7 @@ void make_still(const FinishedRun& run, const TriMesh& part, StillKind kind, con
   TriMesh half_cut;
   render::DrawList list;
   if (kind == StillKind::kMachine) {
-    const motion::Cycle cycle = middle_cycle(run.cycles);
+    const motion::Cycle cycle = middle_cycle(run);
     half_cut = half_cut_stock(run, cycle);
     list.items = view.items(cycle.q, static_cast<size_t>(cycle.sample.tool), &half_cut);
     list.camera = machine_camera(run, camera, run.job.scene.stills.size);

@@ -99,7 +99,7 @@ class Tables {
   Tables(const Job& job, const motion::Cycles& cycles, const CutOptions& options) {
     if (options.save_folder.empty()) return;
     blocks_.emplace(options.save_folder + "/" + kBlockTable, job, cycles);
-    if (options.cycles) cycles_.emplace(options.save_folder + "/" + kCycleTable, job, cycles);
+    if (options.cycles) cycles_ = open_cycle_table(options.save_folder + "/" + kCycleTable, job, cycles);
   }
   void add(std::span<const motion::Cycle> window) {
     if (blocks_) blocks_->add(window);
@@ -112,14 +112,18 @@ class Tables {
 
  private:
   std::optional<BlockTable> blocks_;
-  std::optional<CycleTable> cycles_;
+  std::unique_ptr<CycleTable> cycles_;
 };
+
+void prepare_cycles(const Job& job, const motion::MotionOptions& options, MeasuredPath& measured) {
+  measured.cycles = std::make_unique<motion::Cycles>(measured.path.elements, machines_by_tool(job),
+                                                     job.scene.tools.front(), options);
+}
 
 void interpolate(const Job& job, const motion::MotionOptions& options, const CutOptions& output,
                  Progress& progress, MeasuredPath& measured) {
   const auto start = std::chrono::steady_clock::now();
-  measured.cycles = std::make_unique<motion::Cycles>(measured.path.elements, machines_by_tool(job),
-                                                     job.scene.tools.front(), options);
+  prepare_cycles(job, options, measured);
   Tables tables(job, *measured.cycles, output);
   measured.envelope = {job.machine.model.axes.size(), options.period_s};
   measured.motion =
@@ -139,6 +143,19 @@ MeasuredPath plan_and_move(const Job& job, toolpath::Planner planner, const moti
   measured.path = plan_path(job, planner, diagnostics, nullptr);
   measured.plan_seconds = seconds_since(start);
   interpolate(job, options, {}, progress, measured);
+  return measured;
+}
+
+/// The path alone.
+MeasuredPath planned_path(const Job& job, Progress& progress) {
+  MeasuredPath measured;
+  progress.begin("plan", 1, "paths");
+  Diagnostics diagnostics;
+  toolpath::NcReading reading;
+  measured.path = job_path(job, diagnostics, &reading);
+  if (job.scene.kind == ProgramKind::kNc) measured.nc = std::move(reading);
+  measured.warnings = diagnostics.list();
+  progress.end();
   return measured;
 }
 
@@ -285,15 +302,14 @@ toolpath::ToolPath job_path(const Job& job, Diagnostics& diagnostics, toolpath::
   return plan_path(job, job.scene.toolpath.planner, diagnostics, reading);
 }
 
+MeasuredPath plan_tool(const Job& job, Progress& progress) {
+  MeasuredPath measured = planned_path(job, progress);
+  prepare_cycles(job, job.scene.motion, measured);
+  return measured;
+}
+
 MeasuredPath move_tool(const Job& job, Progress& progress, const CutOptions& options) {
-  MeasuredPath measured;
-  progress.begin("plan", 1, "paths");
-  Diagnostics diagnostics;
-  toolpath::NcReading reading;
-  measured.path = job_path(job, diagnostics, &reading);
-  if (job.scene.kind == ProgramKind::kNc) measured.nc = std::move(reading);
-  measured.warnings = diagnostics.list();
-  progress.end();
+  MeasuredPath measured = planned_path(job, progress);
   interpolate(job, job.scene.motion, options, progress, measured);
   if (!job.scene.has_blocks()) require_contact(job, *measured.cycles);
   return measured;

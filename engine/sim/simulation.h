@@ -21,6 +21,10 @@ toolpath::ToolPath job_path(const Job& job, Diagnostics& diagnostics, toolpath::
 /// Throws InputError when the path cannot be planned or never meets the stock, or a table cannot be written.
 MeasuredPath move_tool(const Job& job, Progress& progress, const CutOptions& options = {});
 
+/// Plans the job's program: its cycles can be walked or recalled (cycles.h), none is made. Throws InputError
+/// as move_tool does.
+MeasuredPath plan_tool(const Job& job, Progress& progress);
+
 /// Runs everything. Throws InputError as move_tool and cut_stock do.
 Result simulate(const Job& job, const CutOptions& options, Progress& progress);
 

@@ -109,11 +109,27 @@ void RunSampler::enter(const PlannedRun& stretch) {
   if (stretch.last) ticks_ = static_cast<size_t>(std::max(1.0, std::ceil(clock_.planned_s / period_)));
 }
 
-bool RunSampler::next(BlockTick& tick) {
-  if (run_->last && clock_.tick == ticks_) return false;
-  // Times stay small, so that rounding does not show in the differences of the positions.
+/// The phase of the next tick. Times stay small, so that rounding does not show in the differences of the
+/// positions.
+void RunSampler::enter_phase() {
   while (phase_ < run_->phases.size() && clock_.time >= run_->phases[phase_].phase.duration)
     clock_.time -= run_->phases[phase_++].phase.duration;
+}
+
+size_t RunSampler::skip(size_t ticks) {
+  size_t skipped = 0;
+  for (; skipped < ticks; ++skipped) {
+    enter_phase();
+    if (phase_ + 1 >= run_->phases.size() || (run_->last && clock_.tick + 2 >= ticks_)) break;
+    ++clock_.tick;
+    clock_.time += period_;
+  }
+  return skipped;
+}
+
+bool RunSampler::next(BlockTick& tick) {
+  if (run_->last && clock_.tick == ticks_) return false;
+  enter_phase();
   if (!run_->last && phase_ == run_->phases.size()) return false;
   ++clock_.tick;
   const std::vector<PathCell>& cells = run_->path->cells;

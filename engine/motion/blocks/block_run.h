@@ -98,9 +98,13 @@ class RunSampler {
   void enter(const PlannedRun& stretch);
   /// False when the next tick lies behind the stretch.
   bool next(BlockTick& tick);
+  /// Passes at most so many ticks without making them; returns how many. The last ones of the stretch are
+  /// left, and the first tick that is made next has no feed of its own.
+  size_t skip(size_t ticks);
   const RunClock& clock() const { return clock_; }
 
  private:
+  void enter_phase();
   void fill(size_t cell, double offset, BlockTick& tick);
 
   const PlannedRun* run_ = nullptr;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -72,6 +73,30 @@ bool CycleStream::next(std::vector<Cycle>& window) {
   }
   window_ = nullptr;
   return !window.empty();
+}
+
+/// The last cycle before the sought one is always made: the feed of a cycle is its way from there.
+void CycleStream::pass_to(uint64_t cycle) {
+  std::vector<Cycle> passed;
+  window_ = &passed;
+  bool more = true;
+  while (more && cycle_ < cycle) {
+    if (may_skip()) cycle_ += run_->sampler->skip(cycle - cycle_ - 1);
+    passed.clear();
+    more = go_on();
+  }
+  window_ = nullptr;
+}
+
+/// Where the machine cannot follow, the axes depend on all cycles before.
+bool CycleStream::may_skip() {
+  if (!run_ || run_->stretch == nullptr) return false;
+  if (!run_->followed) {
+    const std::vector<BlockCurve>& curves = run_->stretch->path->curves;
+    run_->followed =
+        std::all_of(curves.begin(), curves.end(), [](const BlockCurve& curve) { return curve.followed(); });
+  }
+  return *run_->followed;
 }
 
 /// Records a cycle or several, or begins what comes next; false when nothing does.
@@ -172,6 +197,7 @@ void CycleStream::enter_stretch() {
     run.sampler.emplace(source_.options->period_s);
   }
   run.stretch = &run.planner->next();
+  run.followed.reset();
   mark_place();
   run.sampler->enter(*run.stretch);
   check_time(duration(run.stretch->phases), "moves");

@@ -60,6 +60,7 @@ struct RunUnderWay {
   std::unique_ptr<RunPlanner> planner;
   std::optional<RunSampler> sampler;
   const PlannedRun* stretch = nullptr;  ///< the planner's
+  std::optional<bool> followed;         ///< the machine follows every block that the planner has looked at
 };
 
 class CycleStream {
@@ -70,6 +71,9 @@ class CycleStream {
   /// Replaces the window by the next cycles, at most kWindow. False, and none, behind the last. Throws
   /// InputError "too-many-cycles" for programs that take longer than kHoursMax.
   bool next(std::vector<Cycle>& window);
+  /// Goes on to this cycle, with which the next window then begins; those before it are only made where they
+  /// must be for that. Costs next to nothing inside a stretch.
+  void pass_to(uint64_t cycle);
   static constexpr size_t kWindow = 16384;
   static constexpr double kHoursMax = 1000.0;
 
@@ -78,6 +82,7 @@ class CycleStream {
 
  private:
   bool go_on();
+  bool may_skip();
   void begin_run();
   void run_on();
   void enter_stretch();

@@ -1,6 +1,9 @@
 #include "motion/cycles/cycles.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <utility>
 
 #include "base/check.h"
 #include "motion/blocks/block_motion.h"
@@ -10,6 +13,8 @@ namespace {
 
 /// At least so many cycles lie between two places.
 constexpr uint64_t kPlaceApart = 50'000;
+/// A reader that goes far holds so many cycles before the sought one, for those who go back a little.
+constexpr size_t kBefore = 1024;
 
 bool short_of(const Cycle& cycle, int element, double share) {
   return cycle.sample.element < element || (cycle.sample.element == element && cycle.sample.u < share);
@@ -43,6 +48,20 @@ CycleSource Cycles::source() const {
   return {elements_, motions_, by_tool_, inverses_, &cutter_, &options_, limits_.reach};
 }
 
+void Cycles::add_to(Hash& hash, const Cycle& cycle) {
+  for (const double q : cycle.q) hash.add(q);
+  hash.add(cycle.sample.feed_mm_s);
+  hash.add(static_cast<uint64_t>(cycle.sample.element));
+}
+
+void Cycles::recall(CycleRecall before) {
+  SWARF_CHECK(size_ == 0 && before.checks.size() == before.places.size(), "a motion is recalled once");
+  places_ = std::move(before.places);
+  checks_ = std::move(before.checks);
+  size_ = before.cycles;
+  recalled_ = true;
+}
+
 void Cycles::walk(const std::function<void(std::span<const Cycle>)>& visit, Progress& progress) {
   SWARF_CHECK(size_ == 0, "the first pass is made once");
   progress.begin("interpolate", static_cast<double>(elements_.size()), "elements");
@@ -52,15 +71,34 @@ void Cycles::walk(const std::function<void(std::span<const Cycle>)>& visit, Prog
   while (!progress.stop_requested() && stream.next(window)) {
     visit(window);
     for (const Cycle& cycle : window) keep(cycle);
+    check(window);
     size_ += window.size();
-    if (stream.place().cycle >= places_.back().cycle + kPlaceApart) places_.push_back(stream.place());
+    if (stream.place().cycle >= places_.back().cycle + kPlaceApart) {
+      places_.push_back(stream.place());
+      check(window);
+    }
     progress.advance(static_cast<double>(window.back().sample.element));
   }
   stopped_ = progress.stop_requested();
   progress.end();
 }
 
+/// Of the last place, whose first cycles may lie in this window.
+void Cycles::check(std::span<const Cycle> window) {
+  const uint64_t first = places_.back().cycle;
+  if (checks_.size() < places_.size()) {
+    place_hash_ = {};
+    checks_.push_back(place_hash_.value());
+  }
+  if (window.front().number >= first + kPlaceChecked) return;
+  for (const Cycle& cycle : window) {
+    if (cycle.number >= first && cycle.number < first + kPlaceChecked) add_to(place_hash_, cycle);
+  }
+  checks_.back() = place_hash_.value();
+}
+
 void Cycles::keep(const Cycle& cycle) {
+  add_to(hash_, cycle);
   if (kept_.size() < limits_.kept) kept_.push_back(cycle);
   last_ = cycle;
   if (cycle.number % sparse_step_ != 0) return;
@@ -90,9 +128,10 @@ const Cycle& CycleReader::at(size_t k) {
   const auto after =
       std::upper_bound(places.begin(), places.end(), k,
                        [](size_t sought, const CyclePlace& place) { return sought < place.cycle; });
-  const CyclePlace& nearest = *(after - 1);
   const size_t next = first_ + window_.size();
-  if (!stream_ || k < next || nearest.cycle > next) start_from(nearest);
+  if (!stream_ || k < next || (after - 1)->cycle > next)
+    start_from(static_cast<size_t>(after - 1 - places.begin()));
+  if (k >= first_ + window_.size() + CycleStream::kWindow) pass_to(k - kBefore);
   while (!holds(k)) move_on();
   return window_[k - first_];
 }
@@ -124,10 +163,27 @@ void CycleReader::move_on() {
   SWARF_CHECK(more, "the program has as many cycles as its first pass");
 }
 
-void CycleReader::start_from(const CyclePlace& place) {
-  stream_ = std::make_unique<CycleStream>(cycles_->source(), place);
+void CycleReader::start_from(size_t place) {
+  stream_ = std::make_unique<CycleStream>(cycles_->source(), cycles_->places()[place]);
   window_.clear();
-  first_ = place.cycle;
+  first_ = cycles_->places()[place].cycle;
+  if (cycles_->recalled_checks().empty()) return;
+  move_on();
+  Hash hash;
+  for (size_t i = 0; i < std::min<size_t>(kPlaceChecked, window_.size()); ++i)
+    Cycles::add_to(hash, window_[i]);
+  if (hash.value() == cycles_->recalled_checks()[place]) return;
+  throw InputError("run-differs", {"the kept motion"},
+                   fmt::format("from {:.3f} s on it is not the one that was run: its inputs were changed, or "
+                               "this is another version of swarf",
+                               window_.front().sample.t_s),
+                   "run the scene again");
+}
+
+void CycleReader::pass_to(size_t k) {
+  stream_->pass_to(k);
+  window_.clear();
+  first_ = k;
 }
 
 }  // namespace swarf::motion

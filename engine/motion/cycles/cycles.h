@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "base/hash.h"
 #include "base/progress.h"
 #include "motion/cycles/cycle_stream.h"
 
@@ -20,6 +21,16 @@ struct CycleLimits {
   LookAheadReach reach;
   size_t kept = size_t{1} << 18U;  ///< cycles, 53 MB: four minutes at 1 ms
 };
+
+/// What a first pass leaves to those that come after it.
+struct CycleRecall {
+  std::vector<CyclePlace> places;
+  /// By place: hash of the kPlaceChecked cycles that follow it, or of as many as there are.
+  std::vector<uint64_t> checks;
+  uint64_t cycles = 0;
+  uint64_t hash = 0;  ///< of all cycles
+};
+inline constexpr uint64_t kPlaceChecked = 64;
 
 class Cycles {
  public:
@@ -32,6 +43,11 @@ class Cycles {
 
   /// The first pass: visits all cycles in their order, until the user stops it. Not to be called twice.
   void walk(const std::function<void(std::span<const Cycle>)>& visit, Progress& progress);
+  /// Instead of walk(): what an earlier first pass over the same path has left. Nothing is kept then, and
+  /// spread() is not to be asked.
+  void recall(CycleRecall before);
+  /// For recall(), when all cycles have been visited.
+  CycleRecall recalled() const { return {places_, checks_, size_, hash_.value()}; }
   /// Cycles that the first pass has visited.
   size_t size() const { return size_; }
   /// The user has stopped it: there would be more.
@@ -56,9 +72,16 @@ class Cycles {
   static constexpr size_t kSpreadLeast = 2048;
   /// By cycle; the first stands before the first cycle.
   const std::vector<CyclePlace>& places() const { return places_; }
+  /// By place, of a recalled motion; else empty.
+  std::span<const uint64_t> recalled_checks() const {
+    return recalled_ ? std::span<const uint64_t>(checks_) : std::span<const uint64_t>();
+  }
+  /// Of one cycle, for CycleRecall.
+  static void add_to(Hash& hash, const Cycle& cycle);
 
  private:
   void keep(const Cycle& cycle);
+  void check(std::span<const Cycle> window);
 
   std::span<const toolpath::Element> elements_;
   std::vector<kinematics::MachineModel> by_tool_;
@@ -72,12 +95,15 @@ class Cycles {
   uint64_t sparse_step_ = 1;
   Cycle last_;
   std::vector<CyclePlace> places_;
+  std::vector<uint64_t> checks_;
+  Hash hash_, place_hash_;
   size_t size_ = 0;
-  bool stopped_ = false;
+  bool stopped_ = false, recalled_ = false;
 };
 
 /// Looks cycles up, best in their order; holds one window of them. Cycles must outlive it and have been
-/// walked. One reader for each thread.
+/// walked or recalled; throws InputError "run-differs" where those of a recalled motion are not what they
+/// were. One reader for each thread.
 class CycleReader {
  public:
   explicit CycleReader(const Cycles& cycles) : cycles_(&cycles) {}
@@ -90,7 +116,8 @@ class CycleReader {
  private:
   bool holds(size_t k) const { return k >= first_ && k < first_ + window_.size(); }
   void move_on();
-  void start_from(const CyclePlace& place);
+  void start_from(size_t place);
+  void pass_to(size_t k);
 
   const Cycles* cycles_;
   std::unique_ptr<CycleStream> stream_;

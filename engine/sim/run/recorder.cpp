@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <iterator>
+#include <system_error>
+#include <vector>
 
 #include "base/diagnostics.h"
 #include "base/units.h"
@@ -70,6 +73,20 @@ void close_table(std::ofstream& file, const std::string& path) {
   if (!file) throw unwritable(path);
 }
 
+/// trajectory.csv.
+class CycleCsv final : public CycleTable {
+ public:
+  CycleCsv(const std::string& path, const Job& job, const motion::Cycles& cycles);
+  void add(std::span<const motion::Cycle> window) override;
+  void finish() override { close_table(file_, path_); }
+
+ private:
+  std::string path_;
+  const Job& job_;
+  const motion::Cycles& cycles_;
+  std::ofstream file_;
+};
+
 }  // namespace
 
 BlockTable::BlockTable(const std::string& path, const Job& job, const motion::Cycles& cycles)
@@ -126,14 +143,14 @@ void BlockTable::finish() {
   close_table(file_, path_);
 }
 
-CycleTable::CycleTable(const std::string& path, const Job& job, const motion::Cycles& cycles)
+CycleCsv::CycleCsv(const std::string& path, const Job& job, const motion::Cycles& cycles)
     : path_(path),
       job_(job),
       cycles_(cycles),
       file_(open_table(path, "t_s,block,x_mm,y_mm,z_mm,i,j,k,feed_mm_min" + axis_columns(job.machine.model) +
                                  ",contact_x_mm,contact_y_mm,contact_z_mm,u,v,element,kind,tool")) {}
 
-void CycleTable::add(std::span<const motion::Cycle> window) {
+void CycleCsv::add(std::span<const motion::Cycle> window) {
   fmt::memory_buffer text;
   const Out out(text);
   for (const motion::Cycle& cycle : window) {
@@ -150,8 +167,42 @@ void CycleTable::add(std::span<const motion::Cycle> window) {
   put(file_, text);
 }
 
-void CycleTable::finish() {
-  close_table(file_, path_);
+void check_cycle_table_name(const std::string& path) {
+  if (path.ends_with(".csv")) return;
+  throw InputError("unknown-ending", {path}, "the ending of the file says no format of cycles",
+                   "name it .csv");
+}
+
+std::unique_ptr<CycleTable> open_cycle_table(const std::string& path, const Job& job,
+                                             const motion::Cycles& cycles) {
+  check_cycle_table_name(path);
+  return std::make_unique<CycleCsv>(path, job, cycles);
+}
+
+void write_cycle_window(const std::string& path, const Job& job, const motion::Cycles& cycles,
+                        const CycleWindow& window) {
+  const std::filesystem::path target(path);
+  // The ending says the format.
+  const std::filesystem::path partial =
+      target.parent_path() / (target.stem().string() + ".part" + target.extension().string());
+  std::error_code failed;
+  try {
+    const std::unique_ptr<CycleTable> table = open_cycle_table(partial.string(), job, cycles);
+    motion::CycleReader reader(cycles);
+    std::vector<motion::Cycle> rows;
+    for (size_t k = window.first; k < window.end; ++k) {
+      rows.push_back(reader.at(k));
+      if (rows.size() < motion::CycleStream::kWindow && k + 1 < window.end) continue;
+      table->add(rows);
+      rows.clear();
+    }
+    table->finish();
+  } catch (...) {
+    std::filesystem::remove(partial, failed);
+    throw;
+  }
+  std::filesystem::rename(partial, target, failed);
+  if (failed) throw unwritable(path);
 }
 
 }  // namespace swarf::sim

@@ -8,6 +8,7 @@
 
 #include "motion/cycles/cycles.h"
 #include "sim/job/scene.h"
+#include "sim/run/cycle_window.h"
 
 namespace swarf::sim {
 
@@ -38,22 +39,30 @@ class BlockTable {
   double feed_mm_s_ = -1.0;  ///< greatest of the element under way; below 0: it has no cycle yet
 };
 
-/// trajectory.csv: one row for each control cycle:
+/// One row for each control cycle; its columns in every format:
 ///   t_s,block,x_mm,y_mm,z_mm,i,j,k,feed_mm_min,<axis>_mm|_deg...,contact_x_mm,contact_y_mm,contact_z_mm,u,v,element,kind,tool
 /// `block` is the line of the program, `tool` the number of the tool in the spindle, or its name.
 class CycleTable {
  public:
-  /// As BlockTable.
-  CycleTable(const std::string& path, const Job& job, const motion::Cycles& cycles);
-  void add(std::span<const motion::Cycle> window);
-  void finish();
-
- private:
-  std::string path_;
-  const Job& job_;
-  const motion::Cycles& cycles_;
-  std::ofstream file_;
+  CycleTable() = default;
+  CycleTable(const CycleTable&) = delete;
+  CycleTable& operator=(const CycleTable&) = delete;
+  virtual ~CycleTable() = default;
+  virtual void add(std::span<const motion::Cycle> window) = 0;
+  /// Throws InputError "cannot-write".
+  virtual void finish() = 0;
 };
+
+/// By the ending of the file: .csv. Throws InputError "cannot-write", and "unknown-ending" for another one.
+/// References must outlive it.
+std::unique_ptr<CycleTable> open_cycle_table(const std::string& path, const Job& job,
+                                             const motion::Cycles& cycles);
+/// Throws InputError "unknown-ending" for a file that open_cycle_table() does not know.
+void check_cycle_table_name(const std::string& path);
+
+/// The rows of a window, in a new file at this place, replaced whole. Throws InputError as the above.
+void write_cycle_window(const std::string& path, const Job& job, const motion::Cycles& cycles,
+                        const CycleWindow& window);
 
 inline constexpr const char* kBlockTable = "blocks.csv";
 inline constexpr const char* kCycleTable = "trajectory.csv";

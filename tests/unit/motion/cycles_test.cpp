@@ -65,6 +65,16 @@ void expect_random_access(const Cycles& cycles, const std::vector<Cycle>& all, R
   }
 }
 
+/// Far steps pass over what lies between; near ones, back too, read on.
+void expect_far_steps(const Cycles& cycles, const std::vector<Cycle>& all, Rng& rng) {
+  CycleReader reader(cycles);
+  for (size_t k = 0; k < all.size();) {
+    for (const size_t n : {k, k > 5 ? k - 5 : 0, std::min(k + 3, all.size() - 1)})
+      ASSERT_TRUE(same(reader.at(n), all[n])) << "cycle " << n << " of " << all.size();
+    k += 1 + static_cast<size_t>(rng.uniform(0.0, 60'000.0));
+  }
+}
+
 TEST(Cycles, OfSurfacePassesAreMadeAnewFromAnyPlace) {
   Rng rng(7);
   const kinematics::MachineModel machine = paper_machine();
@@ -114,6 +124,58 @@ TEST(Cycles, RunsBeyondTheLookAheadKeepAllLimitsAndLoseLittleTime) {
   fmt::print("stretches of 100 cells that see 40 ahead: {} programs differ, the slowest by {:.4f} %\n",
              stretched, 100.0 * slower);
   EXPECT_LT(slower, 0.01);
+}
+
+/// Slow and long: each stretch has many windows of cycles, so that a reader passes over most of them.
+TEST(Cycles, AFarCycleIsFoundWithoutThoseBeforeIt) {
+  const kinematics::MachineModel machine = paper_machine();
+  for (uint64_t seed = 31; seed <= 36; ++seed) {
+    Rng rng(seed);
+    toolpath::ToolPath path = random_program(machine, rng, 300);
+    for (toolpath::Element& element : path.elements) {
+      auto& block = std::get<toolpath::BlockMove>(element.what);
+      if (!is_rapid(block)) block.feed_mm_s = 0.05;
+    }
+    const LookAheadReach reach = seed % 2 == 0 ? LookAheadReach{60, 20} : LookAheadReach{};
+    MotionOptions options;
+    options.period_s = 1e-2;
+    Cycles cycles(path.elements, std::span(&machine, 1), cutter::Cutter{}, options, {reach, 0});
+    SCOPED_TRACE(fmt::format("Rng rng({})", seed));
+    const Walked walked = walk(cycles);
+    EXPECT_GT(walked.all.size(), 2 * CycleStream::kWindow);
+    expect_far_steps(cycles, walked.all, rng);
+  }
+}
+
+TEST(Cycles, AMotionIsRecalledFromItsPlacesAndRefusedWhereItIsAnother) {
+  const kinematics::MachineModel machine = paper_machine();
+  int refused = 0;
+  for (uint64_t seed = 41; seed <= 44; ++seed) {
+    Rng rng(seed);
+    toolpath::ToolPath path = random_program(machine, rng, 400);
+    const CycleLimits limits{LookAheadReach{60, 20}, 0};
+    Cycles first(path.elements, std::span(&machine, 1), cutter::Cutter{}, MotionOptions{}, limits);
+    SCOPED_TRACE(fmt::format("Rng rng({})", seed));
+    const Walked walked = walk(first);
+    Cycles again(path.elements, std::span(&machine, 1), cutter::Cutter{}, MotionOptions{}, limits);
+    again.recall(first.recalled());
+    expect_random_access(again, walked.all, rng);
+
+    // Another law of speed: refused where the cycles behind the place show it.
+    MotionOptions other;
+    other.path_acceleration_max *= 0.5;
+    Cycles changed(path.elements, std::span(&machine, 1), cutter::Cutter{}, other, limits);
+    walk(changed);
+    const bool shows = changed.recalled().checks.front() != first.recalled().checks.front();
+    Cycles wrong(path.elements, std::span(&machine, 1), cutter::Cutter{}, other, limits);
+    wrong.recall(first.recalled());
+    CycleReader reader(wrong);
+    if (shows) {
+      EXPECT_THROW(reader.at(0), InputError);
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 0);
 }
 
 /// A dwell, a stop of the user, and an empty path.
