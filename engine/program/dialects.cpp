@@ -4,6 +4,7 @@
 #include <array>
 
 #include "program/fanuc/dialect.h"
+#include "program/haas/dialect.h"
 #include "program/heidenhain/dialect.h"
 #include "program/linuxcnc/dialect.h"
 #include "program/siemens/dialect.h"
@@ -24,6 +25,7 @@ constexpr std::array kDialects{
     DialectRow{Dialect::kSiemens, "siemens", kSiemensEndings, nc::siemens::evidence, nc::siemens::run},
     DialectRow{Dialect::kHeidenhain, "heidenhain", kHeidenhainEndings, nc::heidenhain::evidence,
                nc::heidenhain::run},
+    DialectRow{Dialect::kHaas, "haas", {}, nc::haas::evidence, nc::haas::run},
 };
 
 constexpr bool rows_follow_the_enum() {

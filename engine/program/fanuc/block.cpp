@@ -1,6 +1,7 @@
 // Third and fourth step: rules of a block's words, then modal words in the control's order.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/units.h"
@@ -97,23 +98,40 @@ void apply_modes(Fanuc& fanuc) {
   if (fanuc.block.has_g(kFanucOffset)) {
     const int code = fanuc.block.g[kFanucOffset];
     refuse_mapped(fanuc.mapping, fanuc, fanuc.g_column(kFanucOffset), "the work offset changes", false);
-    if (code == G::kFurtherOffset) fanuc.need('P', "G54.1");
-    nc::set_work_offset(fanuc.control, code == G::kFurtherOffset ? 100 + whole(fanuc.block, 'P', 1, 300,
-                                                                               fanuc.reader, fanuc.control)
-                                                                 : (code - 530) / 10);
+    const bool further = code == G::kFurtherOffset;
+    if (further) fanuc.need('P', fanuc.g_name(kFanucOffset).c_str());
+    nc::set_work_offset(fanuc.control, further ? 100 + whole(fanuc.block, 'P', 1, fanuc.rules.further_offsets,
+                                                             fanuc.reader, fanuc.control)
+                                               : work_offset_number(code));
     update_space(fanuc);
   }
   if (fanuc.block.has_g(kFanucLength)) apply_length(fanuc);
 }
 
+/// Letters that an own code of the dialect gives a meaning in this block.
+std::string_view own_letters(const Rules& rules, int one_shot) {
+  const auto own = std::find_if(rules.own_codes.begin(), rules.own_codes.end(),
+                                [&](const OwnCode& code) { return code.tenths == one_shot; });
+  return own == rules.own_codes.end() ? std::string_view() : own->letters;
+}
+
 }  // namespace
 
-void check_words(Modes& modes, LetterDialect& letters) {
+void check_words(Modes& modes, LetterDialect& letters, const Rules& rules) {
   const int one_shot = g(letters, kFanucOneShot);
   if (one_shot == G::kMacroCall || g(letters, kFanucMacro) == G::kModalMacro)
     return;  // every letter is an argument
+  const std::string_view own = own_letters(rules, one_shot);
+  const auto taken = [&](char letter) {
+    return own.find(letter) != std::string_view::npos ||
+           (letters.block.free_g > 0 && rules.free_letters.find(letter) != std::string_view::npos) ||
+           (letters.block.listed_m > 0 && rules.listed_letters.find(letter) != std::string_view::npos);
+  };
+  const auto check = [&](char letter, bool allowed, const char* used_with) {
+    letters.check_letter(letter, allowed || taken(letter), used_with);
+  };
   for (const char letter : {'U', 'V', 'W', 'E'}) {
-    if (letters.block.has(letter))
+    if (letters.block.has(letter) && !taken(letter))
       letters.control.report.fail(
           letter == 'E' ? "unknown-word" : "axis-missing", letters.column(letter),
           fmt::format("the machine {} has no axis {}", letters.control.setup.machine.name, letter),
@@ -129,31 +147,29 @@ void check_words(Modes& modes, LetterDialect& letters) {
                     g(letters, kFanucScale) == G::kScaleOn;
   const bool tilts = one_shot == G::kTiltRotaries || one_shot == G::kTiltAboutTip;
   const bool vectors = (modes.tcp == Tcp::kVector || g(letters, kFanucLength) == G::kTcpVectors) && !arc;
-  const bool calls = letters.block.has_m(980) || letters.block.has_m(1980),
-             ends = calls || letters.block.has_m(990);
+  const bool calls = letters.block.has_m(M::kCall) || letters.block.has_m(M::kCallFile) ||
+                     letters.block.has_m(M::kCallLocal),
+             ends = calls || letters.block.has_m(M::kReturn);
   const bool bore = cycle == G::kFineBore || cycle == G::kBackBore;
+  const auto repeats = [&](char letter) {
+    return in_cycle && rules.repeats.find(letter) != rules.repeats.npos;
+  };
   for (const char letter : {'I', 'J', 'K'})
-    letters.check_letter(letter,
-                         arc || turn || vectors || motion == G::kNurbs || (letter == 'K' ? in_cycle : bore),
-                         "G2, G3, G43.5, G51, G68.2");
-  letters.check_letter('R',
-                       arc || in_cycle || turn || tilts || motion == G::kNurbs || one_shot == G::kSetData ||
-                           letters.block.free_g > 0,
-                       "arcs, cycles, G68 and G06.2");
-  letters.check_letter('Q', in_cycle || turn || letters.block.free_g > 0, "pecking cycles and G68.2");
-  letters.check_letter('P',
-                       in_cycle || one_shot == G::kDwell || one_shot == G::kSetData ||
-                           one_shot == G::kToSecondReference || motion == G::kNurbs || ends ||
-                           g(letters, kFanucOffset) == G::kFurtherOffset || turn || tilts ||
-                           letters.block.free_g > 0,
-                       "G04, G10, M98 and cycles");
-  letters.check_letter('L', in_cycle || one_shot == G::kSetData || calls, "G10, M98 and cycles");
-  letters.check_letter('D', g(letters, kFanucRadius) > G::kCompensationOff, "G41 and G42");
-  letters.check_letter(
-      'H',
-      (g(letters, kFanucLength) >= G::kLengthOn && g(letters, kFanucLength) != G::kLengthOff) ||
-          one_shot == G::kTiltAboutTip,
-      "G43 and G53.6");
+    check(letter, arc || turn || vectors || motion == G::kNurbs || (letter == 'K' ? repeats('K') : bore),
+          "G2, G3, G43.5, G51, G68.2");
+  check('R', arc || in_cycle || turn || tilts || motion == G::kNurbs || one_shot == G::kSetData,
+        "arcs, cycles, G68 and G06.2");
+  check('Q', in_cycle || turn || (calls && rules.call_label == 'Q'), "pecking cycles and G68.2");
+  check('P',
+        in_cycle || one_shot == G::kDwell || one_shot == G::kSetData || one_shot == G::kToSecondReference ||
+            motion == G::kNurbs || ends || g(letters, kFanucOffset) == G::kFurtherOffset || turn || tilts,
+        "G04, G10, M98 and cycles");
+  check('L', repeats('L') || one_shot == G::kSetData || calls, "G10, M98 and cycles");
+  check('D', g(letters, kFanucRadius) > G::kCompensationOff, "G41 and G42");
+  check('H',
+        (g(letters, kFanucLength) >= G::kLengthOn && g(letters, kFanucLength) != G::kLengthOff) ||
+            one_shot == G::kTiltAboutTip,
+        "G43 and G53.6");
   if (g(letters, kFanucCycle) > G::kCycleOff && g(letters, kFanucMotion) >= 0)
     letters.control.report.fail("two-motion-words", letters.g_column(kFanucMotion),
                                 "a motion and a cycle stand in one block", "write them in two blocks");
@@ -164,7 +180,7 @@ void check_words(Modes& modes, LetterDialect& letters) {
 }
 
 void apply(Fanuc& fanuc) {
-  if (g(fanuc, kFanucOneShot) == G::kMacroCall) return call_macro(fanuc.calls, fanuc);
+  if (g(fanuc, kFanucOneShot) == G::kMacroCall) return call_macro(fanuc);
   if (g(fanuc, kFanucMacro) == G::kModalMacro) return set_modal_macro(fanuc.calls, fanuc);
   apply_machine(fanuc);
   apply_modes(fanuc);

@@ -10,8 +10,6 @@
 namespace swarf::program::nc::fanuc {
 namespace {
 
-/// Levels of the 30i: subprograms and macros together, and macros with variables of their own.
-constexpr size_t kCallsMax = 15, kMacrosMax = 5;
 constexpr int kArgumentSets = 10;
 
 /// Variables of arguments I: every letter but G L N O P; 0 for those. I J K count on by three in each set.
@@ -42,8 +40,14 @@ const Known* scan(Calls& calls, LetterDialect& letters, LineSource& in, int numb
   return found;
 }
 
+/// "O0012".
+std::string program_name(const Rules& rules, int number) {
+  return fmt::format("O{:0{}}", number, rules.program_digits);
+}
+
 /// `external`: M198, which does not look into the file of the program itself.
-const Known* find_program(Calls& calls, LetterDialect& letters, int number, bool external) {
+const Known* find_program(Calls& calls, LetterDialect& letters, const Rules& rules, int number,
+                          bool external) {
   LineSource* own = letters.sources.front().get();
   for (const Known& one : calls.known) {
     if (one.number == number && !(external && one.source == own)) return &one;
@@ -52,7 +56,7 @@ const Known* find_program(Calls& calls, LetterDialect& letters, int number, bool
     if (const Known* here = scan(calls, letters, *own, number)) return here;
   }
   for (const std::string& name :
-       {fmt::format("O{:04}", number), fmt::format("O{}", number), fmt::format("{}", number)}) {
+       {program_name(rules, number), fmt::format("O{}", number), fmt::format("{}", number)}) {
     const std::string file = find_subprogram(letters.path, letters.control.setup, name,
                                              {"", ".nc", ".NC", ".tap", ".TAP", ".cnc", ".txt", ".TXT"});
     if (file.empty()) continue;
@@ -61,39 +65,59 @@ const Known* find_program(Calls& calls, LetterDialect& letters, int number, bool
   return nullptr;
 }
 
-void call(Calls& calls, LetterDialect& letters, int number, long times, int column, const Call* macro,
-          bool external) {
-  if (times == 0) return;
-  const Known* program = find_program(calls, letters, number, external);
-  if (program == nullptr)
-    letters.control.report.fail(
-        "unknown-subprogram", column,
-        external ? fmt::format("O{:04} is called from another device, and no file O{:04} with the "
-                               "line O{:04} stands beside the program",
-                               number, number, number)
-                 : fmt::format("O{:04} is called, and it is neither in this file nor in one named "
-                               "O{:04} with the line O{:04}",
-                               number, number, number),
-        "add the subprogram, or give the folder of its file");
+/// The program goes on at `program`, which is called `times` times.
+void enter(Fanuc& fanuc, const Known& program, long times, int column, const Call* macro) {
+  Calls& calls = fanuc.calls;
   const auto macros = static_cast<size_t>(
       std::count_if(calls.stack.begin(), calls.stack.end(), [](const Call& one) { return one.own_locals; }));
-  if (calls.stack.size() > kCallsMax || (macro != nullptr && macros > kMacrosMax))
-    letters.control.report.fail(
-        "recursion-limit", column,
-        fmt::format("more than {} subprograms or {} macros call each other here", kCallsMax, kMacrosMax),
-        "end the recursion with a condition");
-  nc::jump(letters.control);
+  if (calls.stack.size() > fanuc.rules.calls_max || (macro != nullptr && macros > fanuc.rules.macros_max))
+    fanuc.control.report.fail("recursion-limit", column,
+                              fmt::format("more than {} subprograms or {} macros call each other here",
+                                          fanuc.rules.calls_max, fanuc.rules.macros_max),
+                              "end the recursion with a condition");
+  nc::jump(fanuc.control);
   Call next;
   if (macro != nullptr)
     next = *macro;
   else
     next.modals = calls.stack.back().modals;
   next.back = source(calls).mark();
-  next.source = program->source;
-  next.top = program->body;
+  next.source = program.source;
+  next.top = next.head = program.body;
   next.left = times - 1;
   next.source->seek(next.top);
   calls.stack.push_back(std::move(next));
+}
+
+void call(Fanuc& fanuc, int number, long times, int column, const Call* macro, bool external) {
+  if (times == 0) return;
+  const Known* program = find_program(fanuc.calls, fanuc, fanuc.rules, number, external);
+  if (program == nullptr) {
+    const std::string name = program_name(fanuc.rules, number);
+    fanuc.control.report.fail(
+        "unknown-subprogram", column,
+        external ? fmt::format("{0} is called from another device, and no file {0} with the line {0} stands "
+                               "beside the program",
+                               name)
+                 : fmt::format("{0} is called, and it is neither in this file nor in one named {0} with the "
+                               "line {0}",
+                               name),
+        "add the subprogram, or give the folder of its file");
+  }
+  enter(fanuc, *program, times, column, macro);
+}
+
+/// M97 P, and M98 with a block number: the subprogram begins at that block of `program`.
+void call_label(Fanuc& fanuc, const Known& program, char letter, long times, int column) {
+  if (times == 0) return;
+  const long label = whole(fanuc.block, letter, 1, 99999999, fanuc.reader, fanuc.control);
+  const std::optional<LineSource::Mark> begin = find_label(*program.source, program.body, label);
+  if (!begin)
+    fanuc.control.report.fail("unknown-label", column,
+                              fmt::format("{}{}: there is no block N{}", letter, label, label),
+                              "add the block number");
+  enter(fanuc, {program.number, program.source, *begin}, times, column, nullptr);
+  fanuc.calls.stack.back().head = program.body;
 }
 
 void leave(Calls& calls, LetterDialect& letters, int column) {
@@ -174,33 +198,39 @@ Call macro_call(LetterDialect& letters, int g_group, const char* word) {
   return macro;
 }
 
+long repeats_of(LetterDialect& letters) {
+  return letters.block.has('L') ? whole(letters.block, 'L', 0, 9999, letters.reader, letters.control) : 1;
+}
+
 /// P0030100 calls O0100 three times; with L, P is the number alone.
 void call_subprogram(Fanuc& fanuc, int column, bool external) {
   fanuc.need('P', external ? "M198" : "M98");
   const int p = whole(fanuc.block, 'P', 1, 99999999, fanuc.reader, fanuc.control);
-  const bool counted = p > 9999 && !fanuc.block.has('L');
-  const long times = counted                ? p / 10000
-                     : fanuc.block.has('L') ? whole(fanuc.block, 'L', 0, 9999, fanuc.reader, fanuc.control)
-                                            : 1;
+  const bool counted = fanuc.rules.counted_calls && p > 9999 && !fanuc.block.has('L');
+  const long times = counted ? p / 10000 : repeats_of(fanuc);
   const int number = counted ? p % 10000 : p;
-  if (counted && times > 0 && find_program(fanuc.calls, fanuc, number, external) == nullptr &&
-      find_program(fanuc.calls, fanuc, p, external) != nullptr)
+  const auto found = [&](int of) { return find_program(fanuc.calls, fanuc, fanuc.rules, of, external); };
+  if (counted && times > 0 && found(number) == nullptr && found(p) != nullptr)
     fanuc.control.report.fail(
         "unknown-subprogram", fanuc.column('P'),
         fmt::format("P{} without L calls O{:04} {} times, and there is only O{}", p, number, times, p),
         fmt::format("write P{} L1", p));
-  call(fanuc.calls, fanuc, number, times, column, nullptr, external);
+  const char label = fanuc.rules.call_label;
+  if (label != '\0' && fanuc.block.has(label)) {
+    const Known* program = found(number);
+    if (program != nullptr) return call_label(fanuc, *program, label, times, column);
+  }
+  call(fanuc, number, times, column, nullptr, external);
 }
 
 }  // namespace
 
-void call_macro(Calls& calls, LetterDialect& letters) {
-  Call macro = macro_call(letters, kFanucOneShot, "G65");
-  macro.modals = calls.stack.back().modals;
-  const long times =
-      letters.block.has('L') ? whole(letters.block, 'L', 0, 9999, letters.reader, letters.control) : 1;
-  call(calls, letters, whole(letters.block, 'P', 1, 99999999, letters.reader, letters.control), times,
-       letters.g_column(kFanucOneShot), &macro, false);
+void call_macro(Fanuc& fanuc) {
+  Call macro = macro_call(fanuc, kFanucOneShot, "G65");
+  macro.modals = fanuc.calls.stack.back().modals;
+  const long times = repeats_of(fanuc);
+  call(fanuc, whole(fanuc.block, 'P', 1, 99999999, fanuc.reader, fanuc.control), times,
+       fanuc.g_column(kFanucOneShot), &macro, false);
 }
 
 /// G66 and G67. Several G66 nest: the last one is called after the moves, the one before after its moves.
@@ -216,30 +246,29 @@ void set_modal_macro(Calls& calls, LetterDialect& letters) {
   } else {
     const Call macro = macro_call(letters, kFanucMacro, "G66");
     const int number = whole(letters.block, 'P', 1, 99999999, letters.reader, letters.control);
-    const long times =
-        letters.block.has('L') ? whole(letters.block, 'L', 0, 9999, letters.reader, letters.control) : 1;
+    const long times = repeats_of(letters);
     calls.modal.push_back({number, times, macro.locals, macro.assigned});
   }
   calls.stack.back().modals = calls.modal.size();
 }
 
 /// After a block with a move.
-void call_modal_macro(Calls& calls, LetterDialect& letters) {
-  const int at = letters.reader.column_of(letters.block.first);
-  const int ends[] = {20, 300, 980, 990, 1980};
-  if (std::any_of(std::begin(ends), std::end(ends), [&](int code) { return letters.block.has_m(code); }))
-    letters.control.report.fail(
+void call_modal_macro(Fanuc& fanuc) {
+  const int at = fanuc.reader.column_of(fanuc.block.first);
+  const int ends[] = {M::kEnd, M::kEndRewind, M::kCall, M::kReturn, M::kCallFile, M::kCallLocal};
+  if (std::any_of(std::begin(ends), std::end(ends), [&](int code) { return fanuc.block.has_m(code); }))
+    fanuc.control.report.fail(
         "modal-conflict", at,
         "a move that calls the macro of G66 stands with a call or an end of the program",
         "write them in two blocks");
   Call macro;
-  macro.modals = calls.stack.back().modals - 1;
+  macro.modals = fanuc.calls.stack.back().modals - 1;
   macro.modal = static_cast<int>(macro.modals);
-  const Modal& modal = calls.modal[macro.modals];
+  const Modal& modal = fanuc.calls.modal[macro.modals];
   macro.own_locals = true;
   macro.locals = modal.locals;
   macro.assigned = modal.assigned;
-  call(calls, letters, modal.number, modal.times, at, &macro, false);
+  call(fanuc, modal.number, modal.times, at, &macro, false);
 }
 
 bool apply_calls(Fanuc& fanuc) {
@@ -249,6 +278,11 @@ bool apply_calls(Fanuc& fanuc) {
     if (code == M::kEnd || code == M::kEndRewind) return false;
     if (code == M::kCall || code == M::kCallFile) {
       call_subprogram(fanuc, at, code == M::kCallFile);
+      return true;
+    }
+    if (code == M::kCallLocal) {
+      fanuc.need('P', "M97");
+      call_label(fanuc, {0, &source(fanuc.calls), fanuc.calls.stack.back().head}, 'P', repeats_of(fanuc), at);
       return true;
     }
     if (code != M::kReturn) continue;

@@ -159,9 +159,12 @@ constexpr OperatorWord kOperators[] = {
     {"LT", Operator::kLess, 2},     {"LE", Operator::kLessEqual, 2},
 };
 
+const LetterSyntax kSyntax{&kGTable, &kMTable, kFanucLetters, false, false};
+
 }  // namespace
 
-const LetterSyntax kFanucSyntax{&kGTable, &kMTable, "ABCDEFGHIJKLMNOPQRSTUVWXYZ", false, false};
+constinit const std::span<const Code> kFanucGCodes{kGCodes}, kFanucMCodes{kMCodes};
 const FormulaSyntax kFanucFormula{kFunctions, kOperators, false, true, true};
+const Rules kFanucRules{&kSyntax, &kFanucFormula};
 
 }  // namespace swarf::program::nc::fanuc

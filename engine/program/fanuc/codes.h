@@ -34,6 +34,13 @@ struct G : IsoG {
     kTurnOff = 690,             ///< G69
   };
 };
+/// The code that selects the n-th work offset: G54 is the first.
+constexpr int work_offset_code(int n) {
+  return 530 + 10 * n;
+}
+constexpr int work_offset_number(int code) {
+  return (code - 530) / 10;
+}
 
 struct M {
   enum : int {
@@ -42,6 +49,7 @@ struct M {
     kSpindleCounterClockwise = 40,  ///< M04
     kSpindleStop = 50,              ///< M05
     kEndRewind = 300,               ///< M30
+    kCallLocal = 970,               ///< M97, of derived dialects: a subprogram from a block number on
     kCall = 980,                    ///< M98
     kReturn = 990,                  ///< M99
     kCallFile = 1980,               ///< M198

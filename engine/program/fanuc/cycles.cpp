@@ -21,7 +21,10 @@ bool bores(int tenths) {
   return tenths == G::kFineBore || tenths == G::kBackBore;
 }
 
-void keep_cycle_words(Modes& modes, Drilling& drilling, LetterDialect& letters, char depth_letter) {
+void keep_cycle_words(Fanuc& fanuc, char depth_letter) {
+  Modes& modes = fanuc.modes;
+  Drilling& drilling = fanuc.drilling;
+  LetterDialect& letters = fanuc;
   const auto keep = [&](char letter, double& value, bool& has) {
     if (!letters.block.has(letter)) return;
     value = letters.control.modal.mm(letters.block.get(letter));
@@ -34,7 +37,7 @@ void keep_cycle_words(Modes& modes, Drilling& drilling, LetterDialect& letters, 
   if (letters.block.has('R')) drilling.words.r_incremental = modes.incremental;
   keep('I', drilling.words.i, drilling.words.has_i);
   keep('J', drilling.words.j, drilling.words.has_j);
-  if (letters.block.has('P')) drilling.words.p = 1e-3 * letters.block.get('P');
+  if (letters.block.has('P')) drilling.words.p = seconds_of_p(fanuc);
 }
 
 void check_cycle_words(Modes& modes, Drilling& drilling, LetterDialect& letters, int tenths,
@@ -127,18 +130,42 @@ DrillCycle drill_cycle(Fanuc& fanuc, int tenths) {
 
 void cycle(Fanuc& fanuc, int tenths) {
   const char depth_letter = "XYZ"[axes_of(fanuc.control.modal.plane).normal];
-  keep_cycle_words(fanuc.modes, fanuc.drilling, fanuc, depth_letter);
+  keep_cycle_words(fanuc, depth_letter);
   const Target hole = words(fanuc.modes, fanuc.mapping, fanuc);
   if (!hole.any() && !fanuc.block.has_g(kFanucCycle)) return;
   check_cycle_words(fanuc.modes, fanuc.drilling, fanuc, tenths, depth_letter);
   const DrillCycle cycle = drill_cycle(fanuc, tenths);
-  const char repeat = fanuc.block.has('K') ? 'K' : 'L';
-  const int times =
-      fanuc.block.has(repeat) ? whole(fanuc.block, repeat, 0, 9999, fanuc.reader, fanuc.control) : 1;
+  int times = 1;
+  for (const char repeat : fanuc.rules.repeats) {
+    if (!fanuc.block.has(repeat)) continue;
+    times = whole(fanuc.block, repeat, 0, 9999, fanuc.reader, fanuc.control);
+    break;
+  }
   fanuc.modes.moved = times > 0;
   // Each repeat reads its words again: an incremental polar angle goes on.
   for (int i = 0; i < times; ++i)
     nc::drill(fanuc.control, cycle, i == 0 ? hole : words(fanuc.modes, fanuc.mapping, fanuc));
+}
+
+void drill_holes(Fanuc& fanuc, std::span<const Vec2> holes) {
+  const int tenths = fanuc.modes.cycle;
+  const PlaneAxes axes = axes_of(fanuc.control.modal.plane);
+  if (tenths == G::kCycleOff)
+    fanuc.control.report.fail(
+        "modal-conflict", fanuc.g_column(kFanucOneShot),
+        fmt::format("{} drills {} times, and no cycle is on", fanuc.g_name(kFanucOneShot), holes.size()),
+        "write the cycle before it: G81 G98 Z-10. R2. F200. L0");
+  refuse_mapped(fanuc.mapping, fanuc, fanuc.g_column(kFanucOneShot), "a pattern of holes is drilled", true);
+  check_cycle_words(fanuc.modes, fanuc.drilling, fanuc, tenths, "XYZ"[axes.normal]);
+  const DrillCycle cycle = drill_cycle(fanuc, tenths);
+  fanuc.modes.moved = !holes.empty();
+  for (const Vec2& hole : holes) {
+    Target at;
+    at.column = fanuc.g_column(kFanucOneShot);
+    at.set(axes.first, hole.x(), false);
+    at.set(axes.second, hole.y(), false);
+    nc::drill(fanuc.control, cycle, at);
+  }
 }
 
 }  // namespace swarf::program::nc::fanuc

@@ -9,30 +9,34 @@ namespace swarf::program::nc::fanuc {
 namespace {
 
 /// Memory C: L10 length, L11 its wear, L12 radius, L13 its wear; G91 adds. They act with the next H or D.
-void set_tool_offset(Modes& modes, Zero& zero, LetterDialect& letters, int kind) {
+void set_tool_offset(Modes& modes, Zero& zero, LetterDialect& letters, const Rules& rules, int kind) {
   letters.need('P', "G10 with a tool offset");
   letters.need('R', "G10 with a tool offset");
   const int number = whole(letters.block, 'P', 1, 999, letters.reader, letters.control);
   const auto slot = static_cast<size_t>(kind - 10);
   const double before =
       modes.incremental ? tool_offset(zero, letters, number, slot, letters.column('P')) : 0.0;
+  const bool diameter = slot >= 2 && rules.offset_diameters;
   if (slot >= 2)
-    letters.control.report.warn_once(
-        "offset-as-radius", letters.column('R'),
-        "G10 L12 and L13 are read as radii, as machines are delivered (parameter 5004)",
-        "write half of it where the machine keeps diameters");
-  zero.offsets[number][slot] = before + letters.control.modal.mm(letters.block.get('R'));
+    letters.control.report.warn_once(diameter ? "offset-as-diameter" : "offset-as-radius",
+                                     letters.column('R'),
+                                     fmt::format("G10 L12 and L13 are read as {}, {}",
+                                                 diameter ? "diameters" : "radii", rules.offset_rule),
+                                     diameter ? "write twice of it where the machine keeps radii"
+                                              : "write half of it where the machine keeps diameters");
+  const double amount = letters.control.modal.mm(letters.block.get('R'));
+  zero.offsets[number][slot] = before + (diameter ? 0.5 * amount : amount);
 }
 
 }  // namespace
 
 using kinematics::AxisValues;
 
-void set_data(Modes& modes, Zero& zero, LetterDialect& letters) {
+void set_data(Modes& modes, Zero& zero, LetterDialect& letters, const Rules& rules) {
   letters.need('L', "G10");
   const int kind = whole(letters.block, 'L', 0, 100, letters.reader, letters.control);
   if (kind == 1 || (kind >= 10 && kind <= 13))
-    return set_tool_offset(modes, zero, letters, kind == 1 ? 11 : kind);
+    return set_tool_offset(modes, zero, letters, rules, kind == 1 ? 11 : kind);
   if (kind != 2 && kind != 20)
     letters.control.report.fail(
         "unsupported-word", letters.column('L'),
@@ -40,7 +44,8 @@ void set_data(Modes& modes, Zero& zero, LetterDialect& letters) {
                   : fmt::format("G10 L{} changes data of the control", kind),
         kind == 3 ? "call the tool itself" : "G10 L2 and L20 set work offsets, L10 to L13 tool offsets");
   letters.need('P', "G10");
-  const int p = whole(letters.block, 'P', 1, kind == 2 ? 6 : 300, letters.reader, letters.control);
+  const int p =
+      whole(letters.block, 'P', 1, kind == 2 ? 6 : rules.further_offsets, letters.reader, letters.control);
   const int number = kind == 2 ? p : 100 + p;
   only_words(letters, "XYZABCP", "G10 L2 and L20");
   const Target values = target_of(letters.block, false, letters.reader, letters.control);

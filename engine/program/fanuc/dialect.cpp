@@ -14,7 +14,7 @@ namespace {
 constexpr const char* kSkipMark = "/ (block delete is off: such blocks are executed)";
 
 /// ":1234" (ISO code) and "<NAME>" at the head of a program.
-bool program_head(LetterDialect& letters) {
+bool program_head(LetterDialect& letters, const LetterSyntax& syntax) {
   letters.reader.skip_space();
   if (letters.reader.peek() != ':' && letters.reader.peek() != '<') return false;
   const size_t from = letters.reader.at();
@@ -31,15 +31,26 @@ bool program_head(LetterDialect& letters) {
     letters.reader.move_to(end + 1);
   }
   std::string_view message;
-  skip_comments(kFanucSyntax, letters.reader, letters.control, message);
+  skip_comments(syntax, letters.reader, letters.control, message);
   if (!letters.reader.done())
     letters.control.report.fail("unexpected-character", letters.reader.column(),
                                 "words follow the name of the program", "write one block per line");
   return true;
 }
 
+/// A statement that prints, and moves nothing: it ends with its line.
+bool listed_statement(LetterDialect& letters, const Rules& rules) {
+  for (const std::string_view word : rules.listed_statements) {
+    if (!letters.reader.take(word)) continue;
+    letters.control.report.without_effect(word);
+    letters.reader.move_to(letters.reader.line().size());
+    return true;
+  }
+  return false;
+}
+
 /// A macro statement or an assignment; the reader stands behind it then.
-bool statement(Calls& calls, Variables& variables, LetterDialect& letters) {
+bool statement(Calls& calls, Variables& variables, LetterDialect& letters, const Rules& rules) {
   const size_t from = letters.reader.at();
   const bool marked = letters.reader.peek() == '/';
   if (marked) {
@@ -49,43 +60,48 @@ bool statement(Calls& calls, Variables& variables, LetterDialect& letters) {
   skip_block_number(letters);
   if (letters.reader.peek() == '#') {
     assignment(calls, variables, letters);
-  } else if (!macro_word(calls, variables, letters)) {
+  } else if (!macro_word(calls, variables, letters) && !listed_statement(letters, rules)) {
     letters.reader.move_to(from);
     return false;
   }
   if (marked) letters.control.report.without_effect(kSkipMark);
   std::string_view message;
-  skip_comments(kFanucSyntax, letters.reader, letters.control, message);
+  skip_comments(*rules.syntax, letters.reader, letters.control, message);
   if (!letters.reader.done())
     letters.control.report.fail("unexpected-character", letters.reader.column(),
                                 "words follow a macro statement", "write one statement per block");
   return true;
 }
 
-/// Says once how numbers without a decimal point are read: parameter 3401 chooses millimetres (calculator
-/// type, as here) or increments of the control.
-void state_number_rule(Calls& calls, Modes& modes, LetterDialect& letters) {
-  for (const char letter : std::string_view("XYZABC")) {
+/// Says once how numbers without a decimal point are read: the machine's setting chooses millimetres
+/// (calculator type, as here) or increments of the control.
+void state_number_rule(Calls& calls, Modes& modes, LetterDialect& letters, const Rules& rules) {
+  for (const char letter : rules.pointless_letters) {
     const double value = letters.block.has(letter) ? letters.block.get(letter) : 0.0;
     if (value == 0.0 || value != std::trunc(value) || !without_point(letters, letter)) continue;
     modes.number_rule_stated = true;
-    letters.control.report.summary.dialect_reason += fmt::format(
-        "; {}{:g} in line {} has no decimal point: such numbers are {} and degrees (calculator "
-        "type, parameter 3401)",
-        letter, value, source(calls).line_number(),
-        letters.control.modal.inches() ? "inches" : "millimetres");
+    const char* unit = letters.control.modal.inches() ? "inches" : "millimetres";
+    letters.control.report.summary.dialect_reason +=
+        fmt::format("; {}{:g} in line {} has no decimal point: such numbers are {} and degrees ({})", letter,
+                    value, source(calls).line_number(), unit, rules.point_rule);
+    if (rules.warn_of_pointless)
+      letters.control.report.warn_once(
+          "number-without-point", letters.column(letter),
+          fmt::format("{}{:g} has no decimal point: it is read as {} or degrees ({})", letter, value, unit,
+                      rules.point_rule),
+          fmt::format("write {}{:g}.", letter, value));
     return;
   }
 }
 
 bool execute(Fanuc& fanuc) {
-  if (program_head(fanuc)) return true;
-  if (statement(fanuc.calls, fanuc.variables, fanuc)) {
+  if (program_head(fanuc, *fanuc.rules.syntax)) return true;
+  if (statement(fanuc.calls, fanuc.variables, fanuc, fanuc.rules)) {
     ++fanuc.control.report.summary.blocks;
     return true;
   }
   fanuc.block.clear();
-  read_words(kFanucSyntax, fanuc.reader, fanuc.control, fanuc.block, 0);
+  read_words(*fanuc.rules.syntax, fanuc.reader, fanuc.control, fanuc.block, 0);
   if (!fanuc.block.message.empty()) fanuc.control.report.note("MSG", fanuc.block.message);
   if (fanuc.block.skip_mark) fanuc.control.report.without_effect(kSkipMark);
   if (fanuc.block.empty()) return true;
@@ -94,12 +110,12 @@ bool execute(Fanuc& fanuc) {
                           fanuc.reader.column_of(fanuc.block.first));
   if (fanuc.nurbs && add_to_nurbs(fanuc.modes, fanuc.nurbs, fanuc)) return true;
   expect_plane_block(fanuc.planes, fanuc);
-  if (!fanuc.modes.number_rule_stated) state_number_rule(fanuc.calls, fanuc.modes, fanuc);
-  check_words(fanuc.modes, fanuc);
+  if (!fanuc.modes.number_rule_stated) state_number_rule(fanuc.calls, fanuc.modes, fanuc, fanuc.rules);
+  check_words(fanuc.modes, fanuc, fanuc.rules);
   fanuc.modes.moved = false;
   apply(fanuc);
   if (fanuc.modes.moved && fanuc.calls.stack.back().modals > 0) {
-    call_modal_macro(fanuc.calls, fanuc);
+    call_modal_macro(fanuc);
     return true;
   }
   return apply_calls(fanuc);
@@ -142,7 +158,8 @@ void run(Fanuc& fanuc) {
 
 }  // namespace
 
-Fanuc::Fanuc(const std::string& file, Control& machine) : LetterDialect(file, machine, kFanucFormula) {
+Fanuc::Fanuc(const std::string& file, Control& machine, const Rules& own)
+    : LetterDialect(file, machine, *own.formula), rules(own) {
   Call main;
   main.source = &open(file);
   main.own_locals = true;
@@ -201,9 +218,41 @@ Evidence evidence(std::string_view head, std::string_view extension) {
   return found;
 }
 
-void run(const std::string& path, Control& control) {
-  Fanuc fanuc(path, control);
+Evidence derived_evidence(std::string_view head, std::string_view extension,
+                          std::span<const std::string_view> words, size_t program_digits) {
+  Evidence found;
+  long number = 0;
+  for (std::string_view rest = head; !rest.empty();
+       rest.remove_prefix(std::min(rest.find('\n') + 1, rest.size()))) {
+    ++number;
+    const std::string_view line = rest.substr(0, rest.find_first_of("\r\n(;"));
+    const auto add = [&](std::string_view what) {
+      if (found.score == 0) found.reason = fmt::format("{} in line {}", what, number);
+      found.score += 2;
+    };
+    for (const std::string_view word : words) {
+      const size_t at = line.find(word);
+      if (at == std::string_view::npos) continue;
+      const char next = at + word.size() < line.size() ? line[at + word.size()] : ' ';
+      if (next != '.' && std::isdigit(static_cast<unsigned char>(next)) == 0) add(word);
+    }
+    const std::string_view code = line.substr(0, line.find_last_not_of(" \t") + 1);
+    if (program_digits > 0 && code.size() == program_digits + 1 && code[0] == 'O' &&
+        code.find_first_not_of("0123456789", 1) == std::string_view::npos)
+      add(code);
+    if (rest.find('\n') == std::string_view::npos) break;
+  }
+  if (found.score > 0) found.score += evidence(head, extension).score;
+  return found;
+}
+
+void run_as(const Rules& rules, const std::string& path, Control& control) {
+  Fanuc fanuc(path, control, rules);
   run(fanuc);
+}
+
+void run(const std::string& path, Control& control) {
+  run_as(kFanucRules, path, control);
 }
 
 }  // namespace swarf::program::nc::fanuc

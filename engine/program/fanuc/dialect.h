@@ -1,6 +1,7 @@
 // The row of Fanuc in the table of dialects (program/dialects.h).
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -13,6 +14,10 @@ struct Control;
 namespace swarf::program::nc::fanuc {
 
 Evidence evidence(std::string_view head, std::string_view extension);
+/// Of a dialect derived from this one: `words` that only it has, O numbers of so many digits (0: none are its
+/// own). Where one stands, what speaks for Fanuc (G65, macro statements) speaks for it too.
+Evidence derived_evidence(std::string_view head, std::string_view extension,
+                          std::span<const std::string_view> words, size_t program_digits);
 void run(const std::string& path, Control& control);
 
 }  // namespace swarf::program::nc::fanuc

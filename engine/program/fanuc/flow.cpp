@@ -141,6 +141,18 @@ bool macro_word(Calls& calls, Variables& variables, LetterDialect& letters) {
   return true;
 }
 
+std::optional<LineSource::Mark> find_label(LineSource& in, const LineSource::Mark& from, long label) {
+  const LineSource::Mark back = in.mark();
+  in.seek(from);
+  std::optional<LineSource::Mark> found;
+  std::string_view line;
+  while (!found && in.next(line)) {
+    if (labelled(line, label)) found = in.line_mark();
+  }
+  in.seek(back);
+  return found;
+}
+
 void go_to(Calls& calls, LetterDialect& letters, long label, int column) {
   nc::jump(letters.control);
   const LineSource::Mark here = source(calls).mark();

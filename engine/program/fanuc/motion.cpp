@@ -64,6 +64,17 @@ void return_from_reference(Fanuc& fanuc) {
   nc::line(fanuc.control, Motion::kRapid, target);
 }
 
+/// G28 alone: all axes at once, wherever they stand.
+void all_home(Control& control, int column) {
+  Target home;
+  home.column = column;
+  for (int word = 0; word < kAxisWords; ++word) {
+    const int axis = control.space.axis_of(word);
+    if (axis >= 0) home.set(word, control.setup.machine.axes[static_cast<size_t>(axis)].home, false);
+  }
+  nc::machine_line(control, Motion::kRapid, home);
+}
+
 /// G28, G30 (P2): through the point that the words give to the reference position. The point is kept for G29.
 void reference(Fanuc& fanuc) {
   const kinematics::MachineModel& machine = fanuc.control.setup.machine;
@@ -77,6 +88,8 @@ void reference(Fanuc& fanuc) {
                               "G30 goes to the tool change position, and the machine has none",
                               "add tool_change to the machine file, or write G28");
   const Target through = words(fanuc.modes, fanuc.mapping, fanuc);
+  if (!through.any() && !second && fanuc.rules.reference_alone)
+    return all_home(fanuc.control, fanuc.g_column(kFanucOneShot));
   if (!through.any())
     fanuc.control.report.fail("missing-word", fanuc.g_column(kFanucOneShot), "G28 has no axis words",
                               "name the axes: G91 G28 Z0");
@@ -123,18 +136,23 @@ void nurbs(Fanuc& fanuc) {
 
 }  // namespace
 
+double seconds_of_p(const Fanuc& fanuc) {
+  const bool point = fanuc.rules.point_is_seconds && !without_point(fanuc, 'P');
+  return point ? fanuc.block.get('P') : 1e-3 * fanuc.block.get('P');
+}
+
 void one_shot(Fanuc& fanuc) {
   const int code = fanuc.block.g[kFanucOneShot];
   if (code != G::kDwell && code != G::kSetData && code != G::kEndSetData && code != G::kExactStopOnce)
     refuse_mapped(fanuc.mapping, fanuc, fanuc.g_column(kFanucOneShot),
                   "coordinate systems, reference points and planes are used",
                   code >= G::kCheckReference && code <= G::kToSecondReference);
-  switch (fanuc.block.g[kFanucOneShot]) {
+  switch (code) {
     case G::kDwell:
       return nc::dwell(fanuc.control.report, fanuc.control.modal,
-                       fanuc.block.has('X') ? fanuc.block.get('X') : 1e-3 * fanuc.block.get('P'));
+                       fanuc.block.has('X') ? fanuc.block.get('X') : seconds_of_p(fanuc));
     case G::kSetData:
-      return set_data(fanuc.modes, fanuc.zero, fanuc);
+      return set_data(fanuc.modes, fanuc.zero, fanuc, fanuc.rules);
     case G::kEndSetData:
       return;
     case G::kCheckReference:
@@ -150,6 +168,9 @@ void one_shot(Fanuc& fanuc) {
     case G::kTiltAboutTip:
       return tilt_rotaries(fanuc, fanuc.block.g[kFanucOneShot] == G::kTiltAboutTip);
     default:
+      for (const OwnCode& own : fanuc.rules.own_codes) {
+        if (own.tenths == code) return own.act(fanuc);
+      }
       return motion(fanuc);
   }
 }

@@ -138,12 +138,12 @@ void collect_plane(Fanuc& fanuc) {
 }
 
 /// P1: I J K turn about X Y Z of the workpiece coordinate system, which stand; Q says in which order.
-Mat3 roll_pitch_yaw(LetterDialect& letters) {
+Mat3 roll_pitch_yaw(LetterDialect& letters, const std::string& name) {
   const Vec3 angles = plane_words(letters, "IJK");
   const long turns = (angles.array() != 0.0).count();
   if (!letters.block.has('Q') && turns > 1)
     letters.control.report.fail("missing-word", 0,
-                                "G68.2 P1 with several angles needs Q, the order of its rotations",
+                                name + " with several angles needs Q, the order of its rotations",
                                 "write Q123 where X turns first, then Y, then Z");
   const int order =
       letters.block.has('Q') ? whole(letters.block, 'Q', 123, 321, letters.reader, letters.control) : 123;
@@ -169,7 +169,10 @@ void tilt(Fanuc& fanuc, bool incremental) {
   if (incremental && !(fanuc.planes.turned.on && fanuc.planes.turned.in_work))
     fanuc.control.report.fail("modal-conflict", at, "G68.4 tilts a tilted plane further, and none is on",
                               "write G68.2 before it");
-  const int form = fanuc.block.has('P') ? whole(fanuc.block, 'P', 0, 4, fanuc.reader, fanuc.control) : 0;
+  const bool named = fanuc.rules.plane_form < 0;  // the form is a word of the program
+  const int form = !named                 ? fanuc.rules.plane_form
+                   : fanuc.block.has('P') ? whole(fanuc.block, 'P', 0, 4, fanuc.reader, fanuc.control)
+                                          : 0;
   if (form == 2 || form == 3) {
     if (!fanuc.planes.open) {
       PlaneBlocks plane;
@@ -187,8 +190,9 @@ void tilt(Fanuc& fanuc, bool incremental) {
                about(fanuc.block.get('J', 0.0), Vec3::UnitX()) *
                about(fanuc.block.get('K', 0.0), Vec3::UnitZ());
   } else if (form == 1) {
-    only_words(fanuc, "XYZIJKPQ", "G68.2 P1");
-    rotation = roll_pitch_yaw(fanuc);
+    const std::string name = named ? "G68.2 P1" : fanuc.g_name(kFanucTurn);
+    only_words(fanuc, named ? "XYZIJKPQ" : "XYZIJKQ", name.c_str());
+    rotation = roll_pitch_yaw(fanuc, name);
   } else {
     fanuc.control.report.fail("unsupported-word", fanuc.column('P'),
                               "G68.2 P4 (projection angles) is not read",
@@ -238,9 +242,21 @@ void tilt_by_tool_axis(Fanuc& fanuc) {
   set_plane(fanuc, origin, rotation * about(fanuc.block.get('R', 0.0), Vec3::UnitZ()), false);
 }
 
+/// Where tilted planes have an end of their own, the codes of plane rotations do not touch them.
+bool of_other_kind(Fanuc& fanuc, int tenths) {
+  if (fanuc.rules.plane_off == G::kTurnOff || !fanuc.planes.turned.on) return false;
+  const bool tilted = fanuc.planes.turned.in_work;
+  if (tilted && tenths == G::kTurnOn)
+    fanuc.control.report.fail("modal-conflict", fanuc.g_column(kFanucTurn),
+                              "a rotation in the plane of a tilted plane is not read",
+                              "post the plane with its rotation");
+  return tenths == G::kTurnOff && tilted != (fanuc.block.g_written[kFanucTurn] == fanuc.rules.plane_off);
+}
+
 }  // namespace
 
 void turn(Fanuc& fanuc, int tenths) {
+  if (of_other_kind(fanuc, tenths)) return;
   if (tenths >= G::kTiltedPlane && tenths <= G::kFurtherTiltedPlane)
     refuse_mapped(fanuc.mapping, fanuc, fanuc.g_column(kFanucTurn), "a plane is tilted", true);
   fanuc.modes.turn_code = tenths;
@@ -287,12 +303,12 @@ void expect_plane_block(Planes& planes, LetterDialect& letters) {
 /// work. Of both solutions the one with the least rotary travel.
 void tilt_rotaries(Fanuc& fanuc, bool tip_stands) {
   const int at = fanuc.g_column(kFanucOneShot);
-  const char* name = tip_stands ? "G53.6" : "G53.1";
+  const std::string name = fanuc.g_name(kFanucOneShot);
   if (!fanuc.planes.turned.on || !fanuc.planes.turned.in_work)
     fanuc.control.report.fail("modal-conflict", at,
                               fmt::format("{} positions to a tilted plane, and none is on", name),
                               "write G68.2 before it");
-  only_words(fanuc, "PR", name);
+  only_words(fanuc, "PR", name.c_str());
   for (const char letter : {'P', 'R'}) {
     if (fanuc.block.has(letter) && fanuc.block.get(letter) != 0.0)
       fanuc.control.report.fail(

@@ -6,7 +6,9 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "program/fanuc/codes.h"
@@ -14,8 +16,49 @@
 
 namespace swarf::program::nc::fanuc {
 
-extern const LetterSyntax kFanucSyntax;
+struct Fanuc;
+
+/// A code of group 0 that a derived dialect adds.
+struct OwnCode {
+  int tenths;
+  std::string_view letters;  ///< that it gives a meaning; axis words need not stand here
+  void (*act)(Fanuc&);
+};
+
+/// What the controls of this family do each in its own way, as data: a derived dialect is its words (code
+/// tables made of those of the 30i and what differs) and its rules. The defaults are those of the 30i.
+struct Rules {
+  const LetterSyntax* syntax = nullptr;
+  const FormulaSyntax* formula = nullptr;
+  std::span<const OwnCode> own_codes = {};
+  std::string_view free_letters = "PQR";                  ///< that stand with codes without a group (G05 P)
+  std::string_view listed_letters = "";                   ///< that stand with M codes without effect
+  std::span<const std::string_view> listed_statements{};  ///< begin lines that print and move nothing (DPRNT)
+  std::string_view pointless_letters = "XYZABC";          ///< whose numbers a point gives another meaning
+  const char* point_rule = "calculator type, parameter 3401";  ///< why numbers without a point are read so
+  bool warn_of_pointless = false;         ///< a fault of the program where the machine is not set so
+  bool point_is_seconds = false;          ///< P of dwells: seconds with a decimal point, milliseconds without
+  std::string_view repeats = "KL";        ///< letters that repeat a cycle
+  int program_digits = 4;                 ///< of O numbers in the names of files
+  bool counted_calls = true;              ///< M98 P0030100 calls O0100 three times
+  char call_label = '\0';                 ///< M98 with this letter begins at that block of the program
+  size_t calls_max = 15, macros_max = 5;  ///< levels: subprograms and macros together, macros
+  bool reference_alone = false;           ///< G28 without words sends all axes home
+  int further_offsets = 300;              ///< G54.1 P, G10 L20 P
+  bool offset_diameters = false;          ///< G10 L12, L13 set diameters
+  const char* offset_rule = "as machines are delivered (parameter 5004)";
+  int plane_form = -1;          ///< P of G68.2 that always holds
+  int plane_off = G::kTurnOff;  ///< ends a tilted plane; another code than G69: G69 leaves it alone
+  bool mirror_at_zero = false;  ///< mirror images lie at the program's zero: their words are 0
+  /// A variable that means something else here; nothing: as on the 30i. `place` for faults.
+  std::optional<double> (*variable)(Fanuc&, long number, size_t place) = nullptr;
+};
+
+inline constexpr std::string_view kFanucLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZ";
+extern const Rules kFanucRules;
 extern const FormulaSyntax kFanucFormula;
+/// The codes of the 30i, for the tables of derived dialects.
+extern const std::span<const Code> kFanucGCodes, kFanucMCodes;
 
 enum FanucGroup {
   kFanucOneShot = 0,
@@ -45,6 +88,7 @@ using Locals = std::array<double, 34>;
 struct Call {
   LineSource* source = nullptr;
   LineSource::Mark back, top;
+  LineSource::Mark head;  ///< where its program begins; M97 calls a part of that
   long left = 0;
   bool own_locals = false;  ///< G65, G66: #1 to #33 of its own
   int modal = -1;           ///< index into modals_ of the macro that runs here; -1: none of them
@@ -160,12 +204,13 @@ inline constexpr long kLastCommon = 999;
 inline constexpr uint32_t kAxisBits = 7u | 7u << ('X' - 'A');
 
 struct Fanuc final : LetterDialect {
-  Fanuc(const std::string& file, Control& machine);
+  Fanuc(const std::string& file, Control& machine, const Rules& own);
   double read(long number, size_t place) override;
   double read_named(std::string_view name, size_t place) override;
   bool exists(std::string_view name) override;
   bool vacant(long number) const override;
 
+  const Rules& rules;
   Calls calls;
   Variables variables{std::vector<double>(kLastCommon + 1, 0.0), std::vector<bool>(kLastCommon + 1, false)};
   Modes modes;

@@ -149,6 +149,10 @@ void mirror(Fanuc& fanuc, int tenths) {
   check_transform(fanuc.modes, fanuc.planes, fanuc, at);
   for (size_t i = 0; i < 3; ++i) {
     if (!axes.has(static_cast<int>(i))) continue;
+    if (fanuc.rules.mirror_at_zero && axes.value[i] != 0.0)
+      fanuc.control.report.fail("unsupported-word", fanuc.column("XYZ"[i]),
+                                fanuc.g_name(kFanucMirror) + " mirrors at the program's zero",
+                                "write X0, Y0 or Z0 of the axes to mirror");
     fanuc.mapping.axis[i].mirrored = tenths == G::kMirrorOn;
     fanuc.mapping.axis[i].mirror_at = axes.value[i];
   }

@@ -60,6 +60,8 @@ void assign(Calls& calls, Variables& variables, LetterDialect& letters, long num
   }
 }
 
+}  // namespace
+
 /// G code that holds in a group of the manual's table (#4001 to #4022), as far as programs can change it
 /// here.
 std::optional<double> modal_code(const Fanuc& fanuc, long group) {
@@ -105,7 +107,12 @@ std::optional<double> modal_code(const Fanuc& fanuc, long group) {
   }
 }
 
+namespace {
+
 double system_variable(Fanuc& fanuc, long number, size_t place) {
+  if (fanuc.rules.variable != nullptr) {
+    if (const std::optional<double> own = fanuc.rules.variable(fanuc, number, place)) return *own;
+  }
   const auto in_words = [&](double value, long word) {
     return word < 3 ? value / fanuc.control.modal.mm(1.0) : deg_from_rad(value);
   };

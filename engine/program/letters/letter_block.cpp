@@ -9,12 +9,6 @@
 namespace swarf::program::nc {
 namespace {
 
-/// "43.4" from 434.
-std::string code_name(char letter, int tenths) {
-  return tenths % 10 == 0 ? fmt::format("{}{}", letter, tenths / 10)
-                          : fmt::format("{}{}.{}", letter, tenths / 10, tenths % 10);
-}
-
 void skip_parentheses(FormulaReader& reader, Control& control, std::string_view& message) {
   const size_t from = reader.at();
   const size_t close = reader.line().find_first_of("()", from + 1);
@@ -65,6 +59,7 @@ void add_code(char letter, const CodeTable& table, double number, size_t place, 
   }
   check_use(*code, letter, reader.column_of(place), control);
   block.arguments = block.arguments || code->use == Code::Use::kArguments;
+  const int acts = code->acts_as >= 0 ? code->acts_as : code->tenths;
   if (letter == 'M') {
     if (block.m_count == kMCodesMax)
       control.report.fail("modal-conflict", reader.column_of(place), "too many M codes in one block",
@@ -75,7 +70,8 @@ void add_code(char letter, const CodeTable& table, double number, size_t place, 
           fmt::format("{} contradicts another M code of this block", code_name('M', code->tenths)),
           "write them in two blocks");
     if (code->group != kFree) block.m_groups |= 1u << code->group;
-    block.m[static_cast<size_t>(block.m_count)] = code->tenths;
+    block.listed_m += code->use == Code::Use::kNoEffect;
+    block.m[static_cast<size_t>(block.m_count)] = acts;
     block.m_places[static_cast<size_t>(block.m_count++)] = static_cast<uint16_t>(place);
     return;
   }
@@ -88,20 +84,25 @@ void add_code(char letter, const CodeTable& table, double number, size_t place, 
     const bool motion = code->group == 1;
     control.report.fail(motion ? "two-motion-words" : "modal-conflict", reader.column_of(place),
                         fmt::format("{} and {} contradict each other in one block",
-                                    code_name('G', block.g[group]), code_name('G', code->tenths)),
+                                    code_name('G', block.g_written[group]), code_name('G', code->tenths)),
                         "write them in two blocks");
   }
   block.g_given |= 1u << group;
-  block.g[group] = code->tenths;
+  block.g[group] = acts;
+  block.g_written[group] = code->tenths;
   block.g_places[group] = static_cast<uint16_t>(place);
 }
 
 }  // namespace
 
-CodeTable::CodeTable(std::span<const Code> codes) : codes_(codes) {
-  index_.fill(-1);
-  for (size_t i = 0; i < codes.size(); ++i)
-    index_[static_cast<size_t>(codes[i].tenths)] = static_cast<int16_t>(i);
+std::string code_name(char letter, int tenths) {
+  return tenths % 10 == 0 ? fmt::format("{}{}", letter, tenths / 10)
+                          : fmt::format("{}{}.{}", letter, tenths / 10, tenths % 10);
+}
+
+void CodeTable::add(std::span<const Code> codes) {
+  for (const Code& code : codes)
+    codes_[static_cast<size_t>(code.tenths)] = code.use == Code::Use::kAbsent ? nullptr : &code;
 }
 
 bool LetterBlock::has_m(int tenths) const {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "program/letters/formula.h"
@@ -16,8 +17,11 @@ struct Code {
   int tenths;    ///< ten times its number: G43.4 is 434
   int8_t group;  ///< two codes of one group contradict each other; kFree: they never do
   /// kArguments: read; M behind it is a word, and I J K may stand several times (arguments of macros).
-  enum class Use : uint8_t { kRead, kNoEffect, kUnsupported, kArguments } use = Use::kRead;
+  /// kAbsent: takes a code of the dialect that this one is derived from out of its table.
+  enum class Use : uint8_t { kRead, kNoEffect, kUnsupported, kArguments, kAbsent } use = Use::kRead;
   const char* meaning = "";  ///< for messages about codes without effect or support
+  int acts_as =
+      -1;  ///< the code (in tenths) of the dialect that this one is derived from, which does the same
 };
 inline constexpr int8_t kFree = -1;
 inline constexpr int kGroups = 22;
@@ -40,17 +44,20 @@ constexpr bool fits_tables(std::span<const Code> codes) {
 /// G or M codes by their number in tenths, made once from the dialect's list.
 class CodeTable {
  public:
-  explicit CodeTable(std::span<const Code> codes);
+  explicit CodeTable(std::span<const Code> codes) { add(codes); }
+  /// The codes of the dialect that this one is derived from, and those that differ.
+  CodeTable(std::span<const Code> base, std::span<const Code> own) { add(base), add(own); }
   const Code* find(int tenths) const {
-    return tenths >= 0 && tenths < kCodeTenths && index_[static_cast<size_t>(tenths)] >= 0
-               ? &codes_[static_cast<size_t>(index_[static_cast<size_t>(tenths)])]
-               : nullptr;
+    return tenths >= 0 && tenths < kCodeTenths ? codes_[static_cast<size_t>(tenths)] : nullptr;
   }
 
  private:
-  std::span<const Code> codes_;
-  std::array<int16_t, kCodeTenths> index_{};
+  void add(std::span<const Code> codes);
+  std::array<const Code*, kCodeTenths> codes_{};
 };
+
+/// "G43.4" from 434.
+std::string code_name(char letter, int tenths);
 
 struct LetterSyntax {
   const CodeTable* g_codes;
@@ -66,13 +73,15 @@ struct LetterBlock {
   std::array<double, 26> values{};
   std::array<uint16_t, 26> places{};  ///< byte offset of the word in the line
   uint32_t g_given = 0;               ///< bit per group
-  std::array<int, kGroups> g{};       ///< tenths
+  std::array<int, kGroups> g{};       ///< tenths, as Code::acts_as has them
+  std::array<int, kGroups> g_written{};
   std::array<uint16_t, kGroups> g_places{};
   std::array<int, kMCodesMax> m{};  ///< tenths, in the order written
   std::array<uint16_t, kMCodesMax> m_places{};
   int m_count = 0;
   uint32_t m_groups = 0;
   int free_g = 0;    ///< number of G codes without a group
+  int listed_m = 0;  ///< number of M codes without effect
   size_t first = 0;  ///< byte offset of the first word
   struct Repeat {
     char letter;
@@ -87,7 +96,7 @@ struct LetterBlock {
 
   void clear() {
     given = g_given = m_groups = 0;
-    m_count = free_g = repeat_count = 0;
+    m_count = free_g = listed_m = repeat_count = 0;
     skip_mark = arguments = false;
     message = {};
   }

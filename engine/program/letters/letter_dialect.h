@@ -41,6 +41,8 @@ struct LetterDialect : Parameters {
 
   int column(char letter) const { return reader.column_of(block.place(letter)); }
   int g_column(int group) const { return reader.column_of(block.g_places[static_cast<size_t>(group)]); }
+  /// The code of a group as the program writes it: "G68.2".
+  std::string g_name(int group) const { return code_name('G', block.g_written[static_cast<size_t>(group)]); }
 
   Control& control;
   std::string path, kept_line;

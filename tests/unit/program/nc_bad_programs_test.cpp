@@ -2,6 +2,7 @@
 // (expect: code line:column). Names that begin with five_ run on the five-axis machine.
 #include <algorithm>
 
+#include "program/dialects.h"
 #include "program/source_text.h"
 #include "unit/program/nc_support.h"
 
@@ -12,7 +13,7 @@ namespace fs = std::filesystem;
 
 std::vector<std::string> bad_files() {
   std::vector<std::string> files;
-  for (const char* dialect : {"linuxcnc", "fanuc"}) {
+  for (const char* dialect : {"linuxcnc", "fanuc", "haas"}) {
     const fs::path folder = fs::path(SWARF_SOURCE_DIR) / "tests/data/programs/nc" / dialect / "bad";
     for (const auto& entry : fs::directory_iterator(folder)) files.push_back(entry.path().string());
   }
@@ -20,8 +21,15 @@ std::vector<std::string> bad_files() {
   return files;
 }
 
-Dialect dialect_of(const std::string& file) {
-  return file.find("/fanuc/") == std::string::npos ? Dialect::kLinuxCnc : Dialect::kFanuc;
+/// The folder names the dialect.
+std::string folder_of(const std::string& file) {
+  return fs::path(file).parent_path().parent_path().filename().string();
+}
+
+Dialect dialect_of_folder(const std::string& file) {
+  const auto found = dialect_of(folder_of(file));
+  EXPECT_TRUE(found.has_value()) << file;
+  return found.value_or(Dialect::kLinuxCnc);
 }
 
 ControlSetup setup_for(const std::string& file) {
@@ -38,7 +46,7 @@ TEST_P(NcBadProgram, IsRefusedWhereItStates) {
   const std::string head = "(expect: ";
   ASSERT_TRUE(text.starts_with(head));
   const std::string expected = text.substr(head.size(), text.find(')') - head.size());
-  const NcRun run = run_file(GetParam(), dialect_of(GetParam()), setup_for(GetParam()));
+  const NcRun run = run_file(GetParam(), dialect_of_folder(GetParam()), setup_for(GetParam()));
   EXPECT_EQ(run.first_error(), expected) << run.text();
   for (const Diagnostic& one : run.diagnostics.list()) {
     EXPECT_FALSE(one.text.empty());
@@ -50,8 +58,7 @@ TEST_P(NcBadProgram, IsRefusedWhereItStates) {
 }
 
 std::string name_of_case(const testing::TestParamInfo<std::string>& one) {
-  return (dialect_of(one.param) == Dialect::kFanuc ? "fanuc_" : "linuxcnc_") +
-         fs::path(one.param).stem().string();
+  return folder_of(one.param) + "_" + fs::path(one.param).stem().string();
 }
 
 INSTANTIATE_TEST_SUITE_P(Files, NcBadProgram, testing::ValuesIn(bad_files()), name_of_case);

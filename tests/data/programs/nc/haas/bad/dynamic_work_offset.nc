@@ -1,0 +1,3 @@
+(expect: unsupported-word 2:1)
+G254
+M30

@@ -1,0 +1,3 @@
+(expect: out-of-range 2:6)
+G154 P100
+M30
