@@ -7,6 +7,7 @@
 #include "program/haas/dialect.h"
 #include "program/heidenhain/dialect.h"
 #include "program/linuxcnc/dialect.h"
+#include "program/mazak/dialect.h"
 #include "program/siemens/dialect.h"
 
 namespace swarf::program {
@@ -26,6 +27,7 @@ constexpr std::array kDialects{
     DialectRow{Dialect::kHeidenhain, "heidenhain", kHeidenhainEndings, nc::heidenhain::evidence,
                nc::heidenhain::run},
     DialectRow{Dialect::kHaas, "haas", {}, nc::haas::evidence, nc::haas::run},
+    DialectRow{Dialect::kMazak, "mazak", {}, nc::mazak::evidence, nc::mazak::run},
 };
 
 constexpr bool rows_follow_the_enum() {

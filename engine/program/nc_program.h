@@ -64,7 +64,7 @@ class NcSink {
 };
 
 /// The dialects that are read.
-enum class Dialect { kLinuxCnc, kFanuc, kSiemens, kHeidenhain, kHaas };
+enum class Dialect { kLinuxCnc, kFanuc, kSiemens, kHeidenhain, kHaas, kMazak };
 /// "linuxcnc" and so on.
 const char* dialect_name(Dialect dialect);
 

@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 std::vector<std::string> bad_files() {
   std::vector<std::string> files;
-  for (const char* dialect : {"linuxcnc", "fanuc", "haas"}) {
+  for (const char* dialect : {"linuxcnc", "fanuc", "haas", "mazak"}) {
     const fs::path folder = fs::path(SWARF_SOURCE_DIR) / "tests/data/programs/nc" / dialect / "bad";
     for (const auto& entry : fs::directory_iterator(folder)) files.push_back(entry.path().string());
   }

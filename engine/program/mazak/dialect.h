@@ -1,0 +1,18 @@
+// The row of Mazak EIA/ISO in the table of dialects (program/dialects.h).
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "program/evidence.h"
+
+namespace swarf::program::nc {
+struct Control;
+}
+
+namespace swarf::program::nc::mazak {
+
+Evidence evidence(std::string_view head, std::string_view extension);
+void run(const std::string& path, Control& control);
+
+}  // namespace swarf::program::nc::mazak

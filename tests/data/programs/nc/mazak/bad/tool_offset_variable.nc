@@ -1,0 +1,3 @@
+(expect: undefined-parameter 2:4)
+#1=#10001
+M30
