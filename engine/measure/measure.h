@@ -41,7 +41,7 @@ std::vector<HistogramBin> height_histogram(const stock::SurfaceDexels& dexels, d
 
 /// The level set's distance at the material's surface as the rays see it: zero but for
 ///   sweep_bound                  what cut the level set and what cut the rays lie so far from one motion
-///   sqrt(3)/2 voxel slope        trilinear values cut a cusp of that slope low (toolchain 3.6)
+///   sqrt(3)/2 voxel slope        trilinear values cut a cusp of that slope low (theory 6)
 ///   3/8 voxel^2 curvature        chord of a curved surface
 ///   the rounding of floats
 /// Slopes and curvature are taken between rays. A sample beyond them is looked at again: the level set there

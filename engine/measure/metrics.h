@@ -10,7 +10,7 @@
 
 namespace swarf::measure {
 
-/// A cusp between two passes, refined between the rays (theory 6, toolchain 3.6).
+/// A cusp between two passes, refined between the rays (theory 6).
 struct Ridge {
   double u = 0.0, v = 0.0;
   double height_um = 0.0;

@@ -1,6 +1,6 @@
 // The hot loops of cutting: one sweep into one 8x8x8 leaf of the level set.
 //
-// leaf_kernel.cpp alone carries the flags that let the compiler vectorise it (toolchain 3.3), and holds the
+// leaf_kernel.cpp alone carries the flags that let the compiler vectorise it, and holds the
 // same loops compiled for several instruction sets. Without fused multiply-add all of them round alike, so
 // the result does not depend on the processor: unit tests compare the variants bit by bit.
 #pragma once

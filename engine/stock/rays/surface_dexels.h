@@ -1,5 +1,5 @@
 // Surface dexels: rays along the outward normals of a design, met analytically by the sweeps. They measure
-// scallops and gouges far below the voxel size (toolchain 3.6), on any design (ray_field.h).
+// scallops and gouges far below the voxel size (theory 6), on any design (ray_field.h).
 #pragma once
 
 #include <cstdint>

@@ -3,8 +3,8 @@
 // In the tool frame the point moves on P + t D, t in [0,1]. The cutter's implicit function along that line is
 //   F(t) = max(rho(t), -z(t), z(t) - height),   rho = |xy| - radius
 // and the sweep's is min over t. rho is convex and z linear, so the minimum of the largest of the three lies
-// at the minimum of one of them or at the crossing of two: a fixed list of candidates, no iteration
-// (toolchain 3.2). Exact zero level; outside an edge the max norm underestimates the Euclidean distance.
+// at the minimum of one of them or at the crossing of two: a fixed list of candidates, no iteration.
+// Exact zero level; outside an edge the max norm underestimates the Euclidean distance.
 #pragma once
 
 #include <cmath>
