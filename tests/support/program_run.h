@@ -11,6 +11,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "support/scratch.h"
+
 namespace swarf::test {
 
 struct ProgramRun {
@@ -38,7 +40,7 @@ inline ProgramRun run_swarf(const std::string& arguments) {
 
 /// An empty folder of this test's own, below the system's temporary folder.
 inline std::filesystem::path fresh_folder(const std::string& name) {
-  const auto folder = std::filesystem::temp_directory_path() / ("swarf_test_" + name);
+  const auto folder = scratch_folder() / name;
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
   return folder;

@@ -9,6 +9,7 @@
 #include "base/units.h"
 #include "machine/machine_scene.h"
 #include "mesh/mesh_io.h"
+#include "support/scratch.h"
 
 namespace swarf::machine {
 namespace {
@@ -77,7 +78,7 @@ TEST(BadMachineText, NamesTheLoopTheFixAndTheMesh) {
 /// Writes `bytes` to a file of this test and returns its name.
 std::string file_with(const std::string& bytes) {
   const std::string path =
-      (fs::temp_directory_path() / ("swarf_machine_" + std::to_string(std::hash<std::string>{}(bytes))))
+      (test::scratch_folder() / ("swarf_machine_" + std::to_string(std::hash<std::string>{}(bytes))))
           .string();
   std::ofstream(path, std::ios::binary) << bytes;
   return path;

@@ -11,6 +11,7 @@
 #include <fstream>
 
 #include "mesh/mesh_io.h"
+#include "support/scratch.h"
 
 namespace swarf::mesh::mesh_check_test {
 namespace {
@@ -118,7 +119,7 @@ TriMesh torus(uint32_t n) {
 TEST(MeshCheck, ALargeBinaryStlIsReadWhole) {
   const char* wanted = std::getenv("SWARF_STL_RING");
   const uint32_t n = wanted != nullptr ? static_cast<uint32_t>(std::atoi(wanted)) : 300;
-  const auto path = (std::filesystem::path(testing::TempDir()) / "swarf_ring.stl").string();
+  const auto path = (std::filesystem::path(test::scratch_text()) / "swarf_ring.stl").string();
   save_mesh(path, torus(n));
   const auto start = std::chrono::steady_clock::now();
   const TriMesh back = load_mesh(path);

@@ -10,6 +10,7 @@
 
 #include "base/diagnostics.h"
 #include "base/rng.h"
+#include "support/scratch.h"
 
 namespace swarf::mesh::mesh_io_test {
 namespace {
@@ -31,9 +32,8 @@ class MeshIo : public testing::Test {
   }
 
  private:
-  fs::path folder_ =
-      fs::temp_directory_path() /
-      (std::string("swarf_mesh_io_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+  fs::path folder_ = test::scratch_folder() / (std::string("swarf_mesh_io_") +
+                                               testing::UnitTest::GetInstance()->current_test_info()->name());
 };
 
 std::string bytes_of(const std::string& path) {
@@ -134,7 +134,7 @@ std::string refusal(const std::string& path) {
 
 TEST_F(MeshIo, RefusesWhatIsNoMesh) {
   EXPECT_EQ(refusal(file("none.stl")), "mesh-not-found");
-  EXPECT_EQ(refusal(fs::temp_directory_path().string()), "mesh-not-found");
+  EXPECT_EQ(refusal(test::scratch_folder().string()), "mesh-not-found");
   EXPECT_EQ(refusal(with_bytes("empty.stl", "")), "mesh-unreadable");
   EXPECT_EQ(refusal(with_bytes("text.ply", "hello")), "mesh-unreadable");
   EXPECT_EQ(refusal(with_bytes("mesh.xyz", "1 2 3\n")), "mesh-unreadable");

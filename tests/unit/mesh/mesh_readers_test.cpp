@@ -11,6 +11,7 @@
 #include "base/frames.h"
 #include "mesh/mesh_io.h"
 #include "mesh/polygon.h"
+#include "support/scratch.h"
 
 namespace swarf::mesh {
 namespace {
@@ -48,9 +49,8 @@ class MeshReaders : public testing::Test {
   }
 
  private:
-  fs::path folder_ =
-      fs::temp_directory_path() /
-      (std::string("swarf_mesh_readers_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+  fs::path folder_ = test::scratch_folder() / (std::string("swarf_mesh_readers_") +
+                                               testing::UnitTest::GetInstance()->current_test_info()->name());
 };
 
 template <typename T>

@@ -1,4 +1,5 @@
 // Q parameters, formulas, labels, repeats, jumps and called programs of Heidenhain programs.
+#include "support/scratch.h"
 #include "unit/program/heidenhain_support.h"
 
 namespace swarf::program::heidenhain_flow_test {
@@ -78,7 +79,7 @@ TEST(HeidenhainFlow, SubprogramsAndRepeats) {
 
 TEST(HeidenhainFlow, CalledProgramsHaveTheirOwnLabelsAndLocalParameters) {
   namespace fs = std::filesystem;
-  const fs::path folder = fs::temp_directory_path() / "swarf_heidenhain_calls";
+  const fs::path folder = test::scratch_folder() / "swarf_heidenhain_calls";
   fs::create_directories(folder);
   std::ofstream(folder / "SUB.H") << "BEGIN PGM SUB MM\nQL1 = 5\nLBL 1\nL IX+QL1 FMAX\nCALL LBL 1 REP 1\n"
                                      "Q1 = Q1 + 1\nEND PGM SUB MM\n";

@@ -2,6 +2,7 @@
 #include <fstream>
 
 #include "program/reporter.h"
+#include "support/scratch.h"
 #include "unit/program/support.h"
 
 namespace swarf::program {
@@ -110,7 +111,7 @@ TEST(LoadProgram, SaysWhyAFileCannotBeRead) {
 }
 
 TEST(LoadProgram, HandsOverWarnings) {
-  const std::string path = testing::TempDir() + "swarf_no_end.nc";
+  const std::string path = test::scratch_text() + "swarf_no_end.nc";
   std::ofstream(path) << "T1 M6\nS9 M3\n" << plane_blocks() << "G06.4 P1 V0 F60\n";
   Diagnostics warnings;
   EXPECT_EQ(load_program(path, &warnings).operations.size(), 1U);

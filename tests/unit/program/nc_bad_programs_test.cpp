@@ -4,6 +4,7 @@
 
 #include "program/dialects.h"
 #include "program/source_text.h"
+#include "support/scratch.h"
 #include "unit/program/nc_support.h"
 
 namespace swarf::program::nc_bad_programs_test {
@@ -73,7 +74,7 @@ TEST(NcBadInput, BinaryEmptyAndMissingFiles) {
 TEST(NcBadInput, DialectsAreRecognisedOrAskedFor) {
   const ControlSetup setup = three_axis_setup();
   const auto recognised = [&](const std::string& name, const std::string& text) {
-    const auto path = fs::temp_directory_path() / ("swarf_nc_dialect" + name);
+    const auto path = test::scratch_folder() / ("swarf_nc_dialect" + name);
     std::ofstream(path) << text;
     return run_file(path.string(), std::nullopt, setup);
   };
@@ -93,7 +94,7 @@ TEST(NcBadInput, DialectsAreRecognisedOrAskedFor) {
   EXPECT_EQ(recognised(".nc", std::string("G0 X1\nG0 \0 X2\n", 14)).first_error(), "not-text 2:4");
   EXPECT_EQ(recognised(".nc", "G0 X1\n" + std::string(100'000, 'X')).first_error(), "line-too-long 2:1");
   EXPECT_EQ(recognised(".nc", "").first_error(), "empty-file 0:0");
-  EXPECT_EQ(run_file(fs::temp_directory_path().string(), std::nullopt, setup).first_error(),
+  EXPECT_EQ(run_file(test::scratch_folder().string(), std::nullopt, setup).first_error(),
             "file-unreadable 0:0");
   EXPECT_EQ(recognised(".mpf", "G0 X1\nM30\n").summary.dialect_reason, "recognised by the ending .mpf");
 }

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "base/rng.h"
+#include "support/scratch.h"
 #include "unit/program/nc_support.h"
 
 namespace swarf::program::nc_fanuc_macros_test {
@@ -120,7 +121,7 @@ TEST(NcFanucMacros, ModalArgumentsAreSetOnce) {
 }
 
 TEST(NcFanucMacros, ExternalSubprogramsComeFromFiles) {
-  const fs::path folder = fs::temp_directory_path() / "swarf_nc_fanuc_external";
+  const fs::path folder = test::scratch_folder() / "swarf_nc_fanuc_external";
   fs::create_directories(folder);
   std::ofstream(folder / "O0040.nc") << "%\nO0040 (ON THE CARD)\nG91 G00 X5\nG90 M99\n%\n";
   ControlSetup setup = three_axis_setup();

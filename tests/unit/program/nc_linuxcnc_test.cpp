@@ -1,6 +1,7 @@
 // RS274/NGC programs with moves worked out by hand.
 #include <cmath>
 
+#include "support/scratch.h"
 #include "unit/program/nc_support.h"
 
 namespace swarf::program {
@@ -298,7 +299,7 @@ TEST(NcLinuxCnc, SinkStopsTheProgram) {
   const auto setup = three_axis_setup();
   NcRun run;
   run.sink.stop_after = 2;
-  const auto path = std::filesystem::temp_directory_path() / "swarf_nc_stop.ngc";
+  const auto path = test::scratch_folder() / "swarf_nc_stop.ngc";
   std::ofstream(path) << "G0 X1\nX2\nX3\nM2\n";
   run.summary = run_nc(path.string(), Dialect::kLinuxCnc, setup, run.sink, run.diagnostics);
   EXPECT_EQ(run.moves().size(), 2u);

@@ -6,6 +6,7 @@
 #include "program/cl/program.h"
 #include "support/counted_new.h"
 #include "support/program_run.h"
+#include "support/scratch.h"
 #include "unit/program/nc_support.h"
 
 namespace swarf::program::nc_stream_test {
@@ -93,7 +94,7 @@ TEST(NcStream, LinesAllocateNothing) {
     const auto allocated = [&](int rows) {
       std::string text = kind.head;
       for (int i = 0; i < rows; ++i) text += kind.row(i);
-      const auto path = std::filesystem::temp_directory_path() / "swarf_nc_stream.txt";
+      const auto path = test::scratch_folder() / "swarf_nc_stream.txt";
       std::ofstream(path) << text << kind.end;
       Counter counter;
       Diagnostics diagnostics;
@@ -123,7 +124,7 @@ struct ClCounter final : ClSink {
 };
 
 TEST(NcStream, ClLinesAllocateNothing) {
-  const auto path = (std::filesystem::temp_directory_path() / "swarf_cl_stream.cls").string();
+  const auto path = (test::scratch_folder() / "swarf_cl_stream.cls").string();
   const auto allocated = [&](int rows, bool arcs) {
     {
       std::ofstream file(path);

@@ -10,6 +10,7 @@
 
 #include "base/units.h"
 #include "program/nc_program.h"
+#include "support/scratch.h"
 #include "unit/kinematics/test_machines.h"
 
 namespace swarf::program {
@@ -94,7 +95,7 @@ inline NcRun run_text(const std::string& text, Dialect dialect, const ControlSet
   const testing::TestInfo* info = testing::UnitTest::GetInstance()->current_test_info();
   std::string name = std::string(info->test_suite_name()) + "_" + info->name();
   std::replace(name.begin(), name.end(), '/', '_');
-  const auto path = std::filesystem::temp_directory_path() / ("swarf_nc_" + name + ".ngc");
+  const auto path = test::scratch_folder() / ("swarf_nc_" + name + ".ngc");
   std::filesystem::remove(path);  // a new file: file systems flush one that is overwritten
   std::ofstream(path, std::ios::binary) << text;
   return run_file(path.string(), dialect, setup);

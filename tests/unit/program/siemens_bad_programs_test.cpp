@@ -2,6 +2,7 @@
 // error that it must give and no other.
 #include <algorithm>
 
+#include "support/scratch.h"
 #include "unit/program/siemens_support.h"
 
 namespace swarf::program::nc::siemens::siemens_bad_programs_test {
@@ -64,7 +65,7 @@ TEST(BadSiemensProgram, TheNearestNameIsProposed) {
 }
 
 TEST(BadSiemensProgram, RecursionEndsAtTheLevelsOfTheControl) {
-  const std::string sub = testing::TempDir() + "/SIEMENS_SELF.spf";
+  const std::string sub = test::scratch_text() + "/SIEMENS_SELF.spf";
   std::ofstream(sub) << "SIEMENS_SELF\nM17\n";
   const Ran ran = run_text("SIEMENS_SELF\nM30\n");
   std::remove(sub.c_str());

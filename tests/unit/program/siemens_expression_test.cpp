@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "program/siemens/expression.h"
+#include "support/scratch.h"
 #include "unit/program/siemens_support.h"
 
 namespace swarf::program::nc::siemens {
@@ -114,7 +115,7 @@ TEST(SiemensFlow, PartsAreRepeated) {
 }
 
 TEST(SiemensFlow, SubprogramsHaveTheirOwnVariablesAndHandValuesBack) {
-  const std::string folder = testing::TempDir();
+  const std::string folder = test::scratch_text();
   const auto file = [&](const std::string& name, const std::string& text) {
     std::ofstream(folder + "/" + name) << text;
   };

@@ -11,6 +11,7 @@
 #include "base/units.h"
 #include "program/control/control.h"
 #include "program/siemens/dialect.h"
+#include "support/scratch.h"
 #include "unit/program/support.h"
 
 namespace swarf::program::nc::siemens {
@@ -84,7 +85,7 @@ inline void run_file(const std::string& path, const ControlSetup& setup, Ran& ra
 }
 
 inline std::string written(const std::string& text, const std::string& name = "siemens_test.mpf") {
-  const std::string path = testing::TempDir() + "/" + std::to_string(getpid()) + "_" + name;
+  const std::string path = test::scratch_text() + "/" + std::to_string(getpid()) + "_" + name;
   std::ofstream(path, std::ios::binary) << text;
   return path;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/rng.h"
+#include "support/scratch.h"
 #include "unit/program/siemens_support.h"
 
 namespace swarf::program::nc::siemens::siemens_words_test {
@@ -235,14 +236,14 @@ TEST(SiemensSwivel, SolidAnglesTurnAboutZThenY) {
 }
 
 TEST(SiemensFlow, M30OfACalledProgramReturns) {
-  const std::string folder = testing::TempDir();
+  const std::string folder = test::scratch_text();
   std::ofstream(folder + "/SIEMENS_PART.mpf") << "G0 X5\nM30\n";
   expect_near(end_of("G0 X0 Y0 Z300\nSIEMENS_PART\nG0 Y7"), {5, 7, 300}, 1e-12, "back in the main program");
   std::remove((folder + "/SIEMENS_PART.mpf").c_str());
 }
 
 TEST(SiemensFlow, APatternDoesNotCallAProgramOnceForAll) {
-  const std::string file = testing::TempDir() + "/SIEMENS_HOLE.spf";
+  const std::string file = test::scratch_text() + "/SIEMENS_HOLE.spf";
   std::ofstream(file) << "G1 Z=IC(-5) F100\nG0 Z=IC(5)\nM17\n";
   const Ran ran = run_text("G0 X0 Y0 Z300\nMCALL SIEMENS_HOLE\nHOLES1(0,0,0,10,20,3)\nMCALL\nM30\n");
   std::remove(file.c_str());
@@ -250,7 +251,7 @@ TEST(SiemensFlow, APatternDoesNotCallAProgramOnceForAll) {
 }
 
 TEST(SiemensFlow, ExtcallFindsTheProgramBesideTheCaller) {
-  const std::string file = testing::TempDir() + "/SIEMENS_EXT.SPF";
+  const std::string file = test::scratch_text() + "/SIEMENS_EXT.SPF";
   std::ofstream(file) << "G0 X=IC(3)\nM17\n";
   expect_near(
       end_of("G0 X0 Y0 Z300\nEXTCALL(\"/_N_WKS_DIR/_N_A_WPD/SIEMENS_EXT.SPF\")\nEXTCALL \"SIEMENS_EXT\"\n"

@@ -16,12 +16,13 @@
 #include "render/figures/tool_mesh.h"
 #include "render/gltf/gltf_writer.h"
 #include "render/gltf/keyframes.h"
+#include "support/scratch.h"
 
 namespace swarf::render {
 namespace {
 
 std::filesystem::path scratch(const std::string& name) {
-  const auto folder = std::filesystem::temp_directory_path() / "swarf_gltf_test";
+  const auto folder = test::scratch_folder() / "swarf_gltf_test";
   std::filesystem::create_directories(folder);
   return folder / name;
 }

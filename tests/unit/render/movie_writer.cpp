@@ -8,6 +8,7 @@
 
 #include "base/check.h"
 #include "base/diagnostics.h"
+#include "support/scratch.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>
@@ -89,7 +90,7 @@ std::array<double, 3> bt709(double r, double g, double b) {
 }
 
 TEST(MovieWriter, EveryFrameComesBackWithItsColour) {
-  const std::string path = testing::TempDir() + "swarf_movie.mp4";
+  const std::string path = test::scratch_text() + "swarf_movie.mp4";
   write_movie(path);
   const Decoded movie = decode(path);
   EXPECT_EQ(movie.frames, kFrames);
@@ -106,7 +107,8 @@ TEST(MovieWriter, EveryFrameComesBackWithItsColour) {
 }
 
 TEST(MovieWriter, TheSameFramesGiveTheSameBytesWithTheIndexInFront) {
-  const std::string one = testing::TempDir() + "swarf_one.mp4", two = testing::TempDir() + "swarf_two.mp4";
+  const std::string one = test::scratch_text() + "swarf_one.mp4",
+                    two = test::scratch_text() + "swarf_two.mp4";
   write_movie(one);
   write_movie(two);
   const std::string first = bytes(one);
@@ -117,7 +119,7 @@ TEST(MovieWriter, TheSameFramesGiveTheSameBytesWithTheIndexInFront) {
 }
 
 TEST(MovieWriter, AnUnfinishedMovieLeavesNothing) {
-  const std::string path = testing::TempDir() + "swarf_unfinished.mp4";
+  const std::string path = test::scratch_text() + "swarf_unfinished.mp4";
   {
     MovieWriter movie(path, kWidth, kHeight, 30);
     movie.add(plain(1, 2, 3));
@@ -129,13 +131,13 @@ TEST(MovieWriter, AnUnfinishedMovieLeavesNothing) {
 
 TEST(MovieWriter, SaysWhatIsWrong) {
   try {
-    MovieWriter movie(testing::TempDir() + "no_such_folder/x.mp4", kWidth, kHeight, 30);
+    MovieWriter movie(test::scratch_text() + "no_such_folder/x.mp4", kWidth, kHeight, 30);
     FAIL() << "no error";
   } catch (const InputError& error) {
     EXPECT_EQ(error.diagnostics.list().at(0).code, "movie-write");
   }
-  EXPECT_THROW(MovieWriter(testing::TempDir() + "odd.mp4", 321, 180, 30), InternalError);
-  const std::string path = testing::TempDir() + "swarf_empty.mp4";
+  EXPECT_THROW(MovieWriter(test::scratch_text() + "odd.mp4", 321, 180, 30), InternalError);
+  const std::string path = test::scratch_text() + "swarf_empty.mp4";
   MovieWriter movie(path, kWidth, kHeight, 30);
   EXPECT_THROW(movie.finish(), InternalError);
   EXPECT_THROW(movie.add(Image{2, 2, std::vector<uint8_t>(16)}), InternalError);

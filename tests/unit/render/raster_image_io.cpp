@@ -7,11 +7,12 @@
 
 #include "base/diagnostics.h"
 #include "base/rng.h"
+#include "support/scratch.h"
 
 namespace swarf::render {
 namespace {
 
-const std::string kFolder = testing::TempDir();
+const std::string kFolder = test::scratch_text();
 
 TEST(ImageIo, APictureComesBackByteForByte) {
   Image image{37, 19, std::vector<uint8_t>(size_t{4} * 37 * 19)};

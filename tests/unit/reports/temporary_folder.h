@@ -1,18 +1,17 @@
 // A folder of its own for one test, removed afterwards.
 #pragma once
 
-#include <unistd.h>
-
 #include <filesystem>
 #include <fstream>
 #include <string>
+
+#include "support/scratch.h"
 
 namespace swarf::reports {
 
 class TemporaryFolder {
  public:
-  explicit TemporaryFolder(const std::string& name)
-      : path_(std::filesystem::temp_directory_path() / (name + "_" + std::to_string(getpid()))) {
+  explicit TemporaryFolder(const std::string& name) : path_(test::scratch_folder() / name) {
     std::filesystem::create_directories(path_);
   }
   ~TemporaryFolder() { std::filesystem::remove_all(path_); }

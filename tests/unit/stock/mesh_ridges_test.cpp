@@ -10,6 +10,7 @@
 
 #include "mesh/tri_mesh.h"
 #include "stock/stock.h"
+#include "support/scratch.h"
 
 namespace swarf::stock::mesh_ridges_test {
 namespace {
@@ -44,7 +45,7 @@ Heights our_heights(const Stock& stock) {
 }
 
 Heights openvdb_heights(const Stock& stock) {
-  const std::string path = testing::TempDir() + "mesh_ridges_test.vdb";
+  const std::string path = test::scratch_text() + "mesh_ridges_test.vdb";
   stock.save(path, {});
   openvdb::io::File file(path);
   file.open();

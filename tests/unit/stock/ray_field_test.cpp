@@ -13,6 +13,7 @@
 #include "stock/rays/free_ranges.h"
 #include "stock/rays/ray_material.h"
 #include "stock/rays/surface_dexels.h"
+#include "support/scratch.h"
 
 namespace swarf::stock {
 namespace {
@@ -255,7 +256,7 @@ TEST(SurfaceDexels, AnUndercutLeavesMaterialAboveTheGap) {
   });
   EXPECT_EQ(hanging, field->size());
   for (const double height : dexels.heights_mm()) EXPECT_EQ(height, 0.0);
-  const auto path = (std::filesystem::path(::testing::TempDir()) / "undercut.rays").string();
+  const auto path = (std::filesystem::path(test::scratch_text()) / "undercut.rays").string();
   dexels.save(path);
   SurfaceDexels loaded = SurfaceDexels::load(path, field);
   // What hangs is cut away later, by a second cutter and in the loaded copy too.

@@ -7,6 +7,7 @@
 #include "base/diagnostics.h"
 #include "stock/stock.h"
 #include "stock_test_support.h"
+#include "support/scratch.h"
 
 namespace swarf::stock {
 namespace {
@@ -16,7 +17,7 @@ namespace fs = std::filesystem;
 class StockFile : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder = fs::path(::testing::TempDir()) / "stock_file_test";
+    folder = fs::path(test::scratch_text()) / "stock_file_test";
     fs::remove_all(folder);
     fs::create_directories(folder);
     path = (folder / "stock.vdb").string();

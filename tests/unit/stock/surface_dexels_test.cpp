@@ -10,6 +10,7 @@
 #include "dome.h"
 #include "stock/rays/ray_height.h"
 #include "stock_test_support.h"
+#include "support/scratch.h"
 
 namespace swarf::stock::surface_dexels_test {
 namespace {
@@ -124,7 +125,7 @@ TEST(SurfaceDexels, ACutBehindTheSkinIsNotMet) {
 class SurfaceDexelsFile : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder = std::filesystem::path(::testing::TempDir()) / "surface_dexels_file";
+    folder = std::filesystem::path(test::scratch_text()) / "surface_dexels_file";
     std::filesystem::create_directories(folder);
     path = (folder / "surface.rays").string();
   }
