@@ -12,6 +12,7 @@
 SWARF_EMBED(swarf_style_sheet, SWARF_STYLE_SHEET);
 SWARF_EMBED(swarf_page_script, SWARF_PAGE_SCRIPT);
 SWARF_EMBED(swarf_viewer_script, SWARF_VIEWER_SCRIPT);
+SWARF_EMBED(swarf_viewer_licence, SWARF_VIEWER_LICENCE);
 
 namespace swarf::reports {
 
@@ -23,6 +24,9 @@ std::string_view page_script() {
 }
 std::string_view viewer_script() {
   return {swarf_viewer_script_begin, swarf_viewer_script_end};
+}
+std::string_view viewer_licence() {
+  return {swarf_viewer_licence_begin, swarf_viewer_licence_end};
 }
 
 }  // namespace swarf::reports

@@ -19,7 +19,7 @@ namespace swarf::reports {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
+using MotionJson = nlohmann::json;
 using motion::CyclePlace;
 
 void add_bytes(Hash& hash, const std::string& bytes) {
@@ -38,12 +38,12 @@ std::string bytes_of(const fs::path& path) {
 }
 
 template <typename Vector>
-Json list_of(const Vector& vector) {
-  return Json(std::vector<double>(vector.begin(), vector.end()));
+MotionJson list_of(const Vector& vector) {
+  return MotionJson(std::vector<double>(vector.begin(), vector.end()));
 }
 
 template <typename Vector>
-Vector vector_of(const Json& list) {
+Vector vector_of(const MotionJson& list) {
   Vector vector;
   const auto numbers = list.get<std::vector<double>>();
   if (numbers.size() != static_cast<size_t>(vector.size())) throw std::out_of_range("numbers of a vector");
@@ -51,7 +51,7 @@ Vector vector_of(const Json& list) {
   return vector;
 }
 
-Json json_of(const motion::Cycle& cycle) {
+MotionJson json_of(const motion::Cycle& cycle) {
   const motion::ToolSample& s = cycle.sample;
   return {{"number", cycle.number},
           {"t_s", s.t_s},
@@ -69,7 +69,7 @@ Json json_of(const motion::Cycle& cycle) {
           {"reached", cycle.reached}};
 }
 
-motion::Cycle cycle_of(const Json& json) {
+motion::Cycle cycle_of(const MotionJson& json) {
   motion::Cycle cycle;
   motion::ToolSample& s = cycle.sample;
   cycle.number = json.at("number");
@@ -89,27 +89,27 @@ motion::Cycle cycle_of(const Json& json) {
   return cycle;
 }
 
-Json json_of(const motion::RunPlace& run, const motion::RunClock& clock) {
-  Json json{{"first", run.first},
-            {"end", run.end},
-            {"next", run.path.next},
-            {"from", run.path.from},
-            {"skip", run.path.skip},
-            {"speed", run.plan.speed},
-            {"top_before", run.plan.top_before},
-            {"tick", clock.tick},
-            {"time", clock.time},
-            {"planned_s", clock.planned_s},
-            {"block", clock.before.block},
-            {"share", clock.before.share},
-            {"rounded", clock.before.rounded},
-            {"q", list_of(clock.before.q)},
-            {"tip", list_of(clock.tip_before)}};
+MotionJson json_of(const motion::RunPlace& run, const motion::RunClock& clock) {
+  MotionJson json{{"first", run.first},
+                  {"end", run.end},
+                  {"next", run.path.next},
+                  {"from", run.path.from},
+                  {"skip", run.path.skip},
+                  {"speed", run.plan.speed},
+                  {"top_before", run.plan.top_before},
+                  {"tick", clock.tick},
+                  {"time", clock.time},
+                  {"planned_s", clock.planned_s},
+                  {"block", clock.before.block},
+                  {"share", clock.before.share},
+                  {"rounded", clock.before.rounded},
+                  {"q", list_of(clock.before.q)},
+                  {"tip", list_of(clock.tip_before)}};
   if (run.path.before) json["before"] = *run.path.before;
   return json;
 }
 
-void read_run_place(const Json& json, CyclePlace& place) {
+void read_run_place(const MotionJson& json, CyclePlace& place) {
   motion::RunPlace& run = place.run.emplace();
   run.first = json.at("first");
   run.end = json.at("end");
@@ -130,17 +130,17 @@ void read_run_place(const Json& json, CyclePlace& place) {
   clock.tip_before = vector_of<Vec3>(json.at("tip"));
 }
 
-Json json_of(const CyclePlace& place, uint64_t check) {
-  Json json{{"cycle", place.cycle},
-            {"element", place.element},
-            {"tool", place.tool},
-            {"cycle_before", json_of(place.before)},
-            {"check", check}};
+MotionJson json_of(const CyclePlace& place, uint64_t check) {
+  MotionJson json{{"cycle", place.cycle},
+                  {"element", place.element},
+                  {"tool", place.tool},
+                  {"cycle_before", json_of(place.before)},
+                  {"check", check}};
   if (place.run) json["run"] = json_of(*place.run, place.clock);
   return json;
 }
 
-CyclePlace place_of(const Json& json) {
+CyclePlace kept_place_of(const MotionJson& json) {
   CyclePlace place;
   place.cycle = json.at("cycle");
   place.element = json.at("element");
@@ -150,14 +150,14 @@ CyclePlace place_of(const Json& json) {
   return place;
 }
 
-KeptMotion motion_from(const Json& json) {
+KeptMotion motion_from(const MotionJson& json) {
   KeptMotion motion;
   motion.swarf = json.at("swarf");
   motion.inputs = json.at("inputs");
   motion.recall.cycles = json.at("cycles");
   motion.recall.hash = json.at("hash");
-  for (const Json& place : json.at("places")) {
-    motion.recall.places.push_back(place_of(place));
+  for (const MotionJson& place : json.at("places")) {
+    motion.recall.places.push_back(kept_place_of(place));
     motion.recall.checks.push_back(place.at("check"));
   }
   return motion;
@@ -191,7 +191,7 @@ uint64_t inputs_hash(const std::string& folder) {
     add_bytes(hash, file.lexically_relative(input).generic_string());
     add_bytes(hash, bytes_of(file));
   }
-  const Json manifest = Json::parse(bytes_of(fs::path(folder) / "run.json"), nullptr, false);
+  const MotionJson manifest = MotionJson::parse(bytes_of(fs::path(folder) / "run.json"), nullptr, false);
   add_bytes(hash,
             manifest.is_object() && manifest.contains("overrides") ? manifest.at("overrides").dump() : "");
   return hash.value();
@@ -199,16 +199,16 @@ uint64_t inputs_hash(const std::string& folder) {
 
 void keep_motion(const PendingFolder& folder, const motion::Cycles& cycles) {
   const motion::CycleRecall recall = cycles.recalled();
-  Json json{{"swarf", SWARF_VERSION},
-            {"inputs", inputs_hash(folder.path())},
-            {"cycles", recall.cycles},
-            {"hash", recall.hash},
-            {"places", Json::array()}};
+  MotionJson json{{"swarf", SWARF_VERSION},
+                  {"inputs", inputs_hash(folder.path())},
+                  {"cycles", recall.cycles},
+                  {"hash", recall.hash},
+                  {"places", MotionJson::array()}};
   for (size_t i = 0; i < recall.places.size(); ++i) {
     const CyclePlace& place = recall.places[i];
     if (!place.run || !place.run->kept) json["places"].push_back(json_of(place, recall.checks[i]));
   }
-  const std::vector<uint8_t> bytes = Json::to_cbor(json);
+  const std::vector<uint8_t> bytes = MotionJson::to_cbor(json);
   std::string text(bytes.begin(), bytes.end());
   Hash hash;
   add_bytes(hash, text);
@@ -224,7 +224,7 @@ std::optional<KeptMotion> read_motion(const std::string& folder) {
   Hash hash;
   add_bytes(hash, rest);
   try {
-    if (hash.text() == sum) return motion_from(Json::from_cbor(rest));
+    if (hash.text() == sum) return motion_from(MotionJson::from_cbor(rest));
   } catch (const std::exception&) {
     // told below
   }

@@ -75,7 +75,10 @@ std::string render_report(const ReportData& data) {
     has_view = has_view || (section.id == "view" && !section.html.empty());
   }
   out += "</main><script>" + script_safe(page_script()) + "</script>";
-  if (has_view) out += "<script>" + script_safe(viewer_script()) + "</script>";
+  if (has_view) {
+    out += "<!-- three.js, in the script below:\n\n" + std::string(viewer_licence()) + "-->";
+    out += "<script>" + script_safe(viewer_script()) + "</script>";
+  }
   return out + "</body></html>\n";
 }
 

@@ -10,7 +10,7 @@ if ! command -v node >/dev/null || ! command -v npm >/dev/null; then
 fi
 if [ ! -d "$modules/node_modules/gltf-validator" ]; then
   mkdir -p "$modules"
-  cp "$here/package.json" "$modules/"
-  (cd "$modules" && npm install --no-save --no-package-lock --no-audit --no-fund --loglevel=error >&2)
+  cp "$here/package.json" "$here/package-lock.json" "$modules/"
+  (cd "$modules" && npm ci --ignore-scripts --no-audit --no-fund --loglevel=error >&2)
 fi
 SWARF_GLTF_MODULES="$modules" exec node "$here/validate.mjs" "$@"
