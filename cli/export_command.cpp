@@ -112,7 +112,7 @@ void add_export(CLI::App& app, int& exit_code) {
   command->add_option("--ply", options->ply, "finished part with deviation (.ply, mm)");
   command->add_option("--vdb", options->vdb, "finished stock as a level set (.vdb)");
   command->add_option("--trajectory", options->trajectory,
-                      "each control cycle as a row of a table (.csv); exactly those of the run");
+                      "each control cycle as a row of a table (.csv or .h5); exactly those of the run");
   add_window_options(*command, options->window, "--trajectory, --machine-gltf and the fan of --gltf");
   command->add_option("--error-um", options->error_um, "largest error of the decimation for --gltf")
       ->capture_default_str()

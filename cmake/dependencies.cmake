@@ -13,6 +13,7 @@ find_package(TinyGLTF CONFIG REQUIRED)
 find_package(PNG REQUIRED)
 find_package(embree 3 CONFIG REQUIRED)
 pkg_check_modules(LIBAV REQUIRED IMPORTED_TARGET libavcodec libavformat libswscale libavutil)
+pkg_check_modules(HDF5 REQUIRED IMPORTED_TARGET hdf5)
 pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo)
 pkg_check_modules(OSMESA REQUIRED osmesa)
 

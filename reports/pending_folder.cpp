@@ -40,10 +40,10 @@ fs::path clean(const std::string& target) {
 
 /// Names in a folder of results that swarf itself has given.
 bool is_ours(const std::string& name) {
-  constexpr std::array<std::string_view, 17> kNames{
-      "run.json",      "input",         "trajectory.csv", "blocks.csv",    "stock.vdb",    "part.glb",
-      "part.stl",      "machine.glb",   "movie.mp4",      "report.html",   "metrics.json", "run.record",
-      "findings.json", "deviation.ply", "deviation.png",  "deviation.glb", "motion.places"};
+  constexpr std::array<std::string_view, 18> kNames{
+      "run.json",      "input",         "trajectory.csv", "blocks.csv",    "stock.vdb",     "part.glb",
+      "part.stl",      "machine.glb",   "movie.mp4",      "report.html",   "metrics.json",  "run.record",
+      "findings.json", "deviation.ply", "deviation.png",  "deviation.glb", "motion.places", "trajectory.h5"};
   const auto is_between = [&](std::string_view start, std::string_view end) {
     return name.size() > start.size() + end.size() &&
            std::string_view(name).substr(0, start.size()) == start &&

@@ -99,7 +99,8 @@ class Tables {
   Tables(const Job& job, const motion::Cycles& cycles, const CutOptions& options) {
     if (options.save_folder.empty()) return;
     blocks_.emplace(options.save_folder + "/" + kBlockTable, job, cycles);
-    if (options.cycles) cycles_ = open_cycle_table(options.save_folder + "/" + kCycleTable, job, cycles);
+    if (const TrajectoryFormat format = job.scene.output.trajectory; format != TrajectoryFormat::kNone)
+      cycles_ = open_cycle_table(options.save_folder + "/" + cycle_table_name(format), job, cycles);
   }
   void add(std::span<const motion::Cycle> window) {
     if (blocks_) blocks_->add(window);

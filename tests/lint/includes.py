@@ -38,6 +38,7 @@ HEAVY = {
     "OSMesa": (r"GL/", ("render/raster/",)),
     "libav": (r"libav|libsw", ("render/movie/",)),
     "tinygltf": (r"tiny_gltf", ("render/gltf/",)),
+    "HDF5": (r"hdf5", ("engine/sim/run/",)),
     "Cairo": (r"cairo", ("render/lettering.cpp",)),
     "libpng": (r"png\.h", ("render/image_io.cpp",)),
 }

@@ -140,4 +140,74 @@ TEST_F(Window, OfChangedInputsIsRefused) {
   EXPECT_NE(broken.output.find("[not-a-run]"), std::string::npos) << broken.output;
 }
 
+/// Read by h5py, as users would: every column of trajectory.csv, its unit, and the same numbers to the
+/// decimals that the text has; names for kind and tool; chunks that are compressed.
+constexpr const char* kReadH5 = R"(
+import csv, sys, h5py, numpy
+h5, table, scale = sys.argv[1], sys.argv[2], {"mm": 0.5e-10, "deg": 0.5e-10, "s": 0.5e-6, "mm/min": 0.5e-4, "1": 0.5e-9}
+rows = list(csv.reader(open(table)))
+head, rows = rows[0], rows[1:]
+with h5py.File(h5, "r") as file:
+    assert set(file) == set(head), (set(file) ^ set(head))
+    for i, name in enumerate(head):
+        data, texts = file[name], [row[i] for row in rows]
+        assert data.shape == (len(rows),) and data.compression == "gzip" and data.shuffle and data.chunks, name
+        values, names = data[:], h5py.check_enum_dtype(data.dtype)
+        if names:
+            back = {value: text for text, value in names.items()}
+            assert [back[v] for v in values] == texts, name
+        elif values.dtype.kind == "i":
+            assert [str(v) for v in values] == texts, name
+        else:
+            unit = data.attrs["units"]
+            unit = unit.decode() if isinstance(unit, bytes) else unit
+            want = numpy.array(texts, dtype=float)
+            error = numpy.abs(values - want).max()
+            assert error <= scale[unit] + 4e-16 * numpy.abs(want).max(), (name, error)
+            ending = name.rsplit("_", 1)[-1]
+            assert unit == {"mm": "mm", "deg": "deg", "s": "s", "min": "mm/min"}.get(ending, "1"), (name, unit)
+    t = file["t_s"][:]
+    assert numpy.array_equal(t, numpy.arange(round(t[0] / file.attrs["period_s"]), round(t[0] / file.attrs["period_s"]) + len(t)) * file.attrs["period_s"])
+print("read", len(rows), "rows")
+)";
+
+TEST_F(Window, AsHdf5HasTheSameColumnsAndNumbers) {
+  write_text(folder() / "read.py", kReadH5);
+  const auto read = [&](const std::string& h5, const std::string& csv) {
+    const auto run = swarf::test::run_command("cd '" + folder().string() + "' && /usr/bin/python3 read.py " +
+                                              h5 + " " + csv);
+    EXPECT_EQ(run.exit_code, 0) << run.output;
+    EXPECT_NE(run.output.find("read "), std::string::npos) << run.output;
+  };
+  ASSERT_EQ(swarf_there("run scene.toml --no-render --set output.trajectory='\"h5\"' -o h5").exit_code, 0);
+  EXPECT_FALSE(fs::exists(folder() / "h5/trajectory.csv"));
+  read("h5/trajectory.h5", "out/trajectory.csv");
+  EXPECT_LT(4 * fs::file_size(folder() / "h5/trajectory.h5"), fs::file_size(folder() / "out/trajectory.csv"));
+  // The command line goes before the scene; equal runs give equal files.
+  ASSERT_EQ(
+      swarf_there("run scene.toml --no-render --set output.trajectory='\"h5\"' --trajectory none -o none")
+          .exit_code,
+      0);
+  EXPECT_FALSE(fs::exists(folder() / "none/trajectory.h5"));
+  for (const char* name : {"a.h5", "b.h5"})
+    ASSERT_EQ(swarf_there(std::string("export h5 --from 20 --to 60 --trajectory ") + name).exit_code, 0);
+  EXPECT_TRUE(read_text(folder() / "a.h5") == read_text(folder() / "b.h5"));
+  ASSERT_EQ(swarf_there("export out --from 20 --to 60 --trajectory a.csv").exit_code, 0);
+  read("a.h5", "a.csv");
+}
+
+TEST_F(Window, AFullDiskIsToldForHdf5Too) {
+  const auto run = swarf_there("export out --trajectory full.h5 >/dev/null");
+  ASSERT_EQ(run.exit_code, 0) << run.output;
+  const auto kib = fs::file_size(folder() / "full.h5") / 1024;
+  for (const auto limit : {kib / 3, kib - 8, uintmax_t{1}}) {
+    const auto full = swarf::test::run_command("cd '" + folder().string() + "' && trap '' XFSZ; ulimit -f " +
+                                               std::to_string(2 * limit) + "; " + std::string(SWARF_PROGRAM) +
+                                               " export out --trajectory x.h5");
+    EXPECT_EQ(full.exit_code, 2) << limit << " KiB: " << full.output;
+    EXPECT_NE(full.output.find("[cannot-write]"), std::string::npos) << full.output;
+    EXPECT_FALSE(fs::exists(folder() / "x.h5") || fs::exists(folder() / "x.part.h5")) << limit << " KiB";
+  }
+}
+
 }  // namespace

@@ -15,7 +15,7 @@ using kinematics::MachineModel;
 using toolpath::FreeMove;
 
 /// Turns count as long as this arm would swing, mm.
-constexpr double kTurnArm = 100.0;
+constexpr double kFreeTurnArm = 100.0;
 /// Moves shorter than this go nowhere, mm.
 constexpr double kLengthMin = 1e-9;
 /// A power of two, so that the middle of a symmetric move is a node.
@@ -85,7 +85,7 @@ ToolPose pose_between(const ToolPose& from, const ToolPose& to, double x) {
 }
 
 double move_length(const ToolPose& from, const ToolPose& to) {
-  return std::max((to.tip_W - from.tip_W).norm(), kTurnArm * angle_between(from.axis_W, to.axis_W));
+  return std::max((to.tip_W - from.tip_W).norm(), kFreeTurnArm * angle_between(from.axis_W, to.axis_W));
 }
 
 std::vector<ToolSample> sample_free_move(const FreeMove& move, const MachineModel& machine,

@@ -66,6 +66,14 @@ struct StillSettings {
   int samples = 16;  ///< rays per pixel: more is smoother and slower
 };
 
+/// Whether each control cycle is written, and how (sim/run/recorder.h).
+enum class TrajectoryFormat { kNone, kCsv, kH5 };
+
+/// What a run writes besides what it always does.
+struct OutputSettings {
+  TrajectoryFormat trajectory = TrajectoryFormat::kNone;
+};
+
 /// What the scene's program is.
 enum class ProgramKind {
   kSurfaceBlocks,  ///< `program`: surfaces and areas; the tool path is planned
@@ -99,6 +107,7 @@ struct Scene {
   AcceptLimits accept;
   MovieSettings movie;
   StillSettings stills;
+  OutputSettings output;
 
   /// The program brings its own blocks: CL data or an NC program.
   bool has_blocks() const { return kind != ProgramKind::kSurfaceBlocks; }

@@ -137,6 +137,13 @@ void read_pictures(ConfigTable& root, Scene& scene) {
   scene.stills.samples = stills.integer("samples", 1, 4096, scene.stills.samples);
 }
 
+OutputSettings read_output(ConfigTable table) {
+  OutputSettings output;
+  const std::string format = table.choice("trajectory", {"none", "csv", "h5"}, "none");
+  if (format != "none") output.trajectory = format == "csv" ? TrajectoryFormat::kCsv : TrajectoryFormat::kH5;
+  return output;
+}
+
 /// A name as every file of the results can hold it: what is not UTF-8 (folders of other systems) becomes '?'.
 std::string utf8_only(const std::string& name) {
   std::string text;
@@ -293,6 +300,7 @@ Scene load_scene(const std::string& path, const std::vector<std::string>& overri
   }
   read_accept(root.table("accept"), scene.has_blocks(), scene.accept);
   read_pictures(root, scene);
+  scene.output = read_output(root.table("output"));
   root.finish();
   scene.toolpath.stock_top_mm = scene.stock.box_W.upper.z();
   return scene;

@@ -21,7 +21,6 @@ struct CutOptions {
   std::vector<ProgramPlace> save_after;  ///< a stock file for each
   /// For save_after, the record and the tables of the motion (recorder.h), which need it; exists.
   std::string save_folder;
-  bool cycles = false;                 ///< write each control cycle too (CycleTable)
   bool record = false;                 ///< keep the sweeps and hashes of the stock (CutStage::kRecordFile)
   size_t record_every = 256;           ///< sweeps between two hashes
   bool check_voxels = false;           ///< costly invariants on the way too; twice the stock's memory

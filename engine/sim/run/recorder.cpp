@@ -12,6 +12,7 @@
 
 #include "base/diagnostics.h"
 #include "base/units.h"
+#include "sim/run/cycle_h5.h"
 
 namespace swarf::sim {
 namespace {
@@ -32,35 +33,30 @@ std::string axis_columns(const kinematics::MachineModel& machine) {
   return columns;
 }
 
-std::string tool_field(const cutter::Cutter& tool) {
-  return tool.number > 0 ? fmt::format("{}", tool.number) : tool.name;
-}
-
 using Out = std::back_insert_iterator<fmt::memory_buffer>;
 
-void append_pose(Out out, const ToolPose& pose) {
-  fmt::format_to(out, "{:.7f},{:.7f},{:.7f},{:.10f},{:.10f},{:.10f}", pose.tip_W.x(), pose.tip_W.y(),
-                 pose.tip_W.z(), pose.axis_W.x(), pose.axis_W.y(), pose.axis_W.z());
+/// Of lengths and degrees. Of cycles as many as their third differences need, see open_cycle_table().
+constexpr int kBlockDecimals = 7, kCycleDecimals = 10;
+
+void append_pose(Out out, const ToolPose& pose, int decimals) {
+  fmt::format_to(out, "{:.{}f},{:.{}f},{:.{}f},{:.10f},{:.10f},{:.10f}", pose.tip_W.x(), decimals,
+                 pose.tip_W.y(), decimals, pose.tip_W.z(), decimals, pose.axis_W.x(), pose.axis_W.y(),
+                 pose.axis_W.z());
 }
 
-void append_axes(Out out, const kinematics::AxisValues& q, const kinematics::MachineModel& machine) {
+void append_axes(Out out, const kinematics::AxisValues& q, const kinematics::MachineModel& machine,
+                 int decimals) {
   for (size_t i = 0; i < machine.axes.size(); ++i) {
     const double value = q[static_cast<Eigen::Index>(i)];
-    fmt::format_to(out, ",{:.7f}", machine.axes[i].kind == AxisKind::kRotary ? deg_from_rad(value) : value);
+    fmt::format_to(out, ",{:.{}f}", machine.axes[i].kind == AxisKind::kRotary ? deg_from_rad(value) : value,
+                   decimals);
   }
-}
-
-InputError unwritable(const std::string& path) {
-  return {"cannot-write",
-          {path},
-          "the table cannot be written",
-          "check that the folder may be written and has space"};
 }
 
 std::ofstream open_table(const std::string& path, const std::string& header) {
   std::ofstream file(path, std::ios::binary);
   file << header << '\n';
-  if (!file.flush()) throw unwritable(path);
+  if (!file.flush()) throw unwritable_table(path);
   return file;
 }
 
@@ -70,7 +66,7 @@ void put(std::ofstream& file, const fmt::memory_buffer& text) {
 
 void close_table(std::ofstream& file, const std::string& path) {
   file.close();
-  if (!file) throw unwritable(path);
+  if (!file) throw unwritable_table(path);
 }
 
 /// trajectory.csv.
@@ -88,6 +84,25 @@ class CycleCsv final : public CycleTable {
 };
 
 }  // namespace
+
+std::string tool_field(const cutter::Cutter& tool) {
+  return tool.number > 0 ? fmt::format("{}", tool.number) : tool.name;
+}
+
+std::vector<std::string> kind_names() {
+  return {kKindNames.begin(), kKindNames.end()};
+}
+
+InputError unwritable_table(const std::string& path) {
+  return {"cannot-write",
+          {path},
+          "the table cannot be written",
+          "check that the folder may be written and has space"};
+}
+
+std::string cycle_table_name(TrajectoryFormat format) {
+  return format == TrajectoryFormat::kH5 ? "trajectory.h5" : "trajectory.csv";
+}
 
 BlockTable::BlockTable(const std::string& path, const Job& job, const motion::Cycles& cycles)
     : path_(path),
@@ -128,8 +143,8 @@ void BlockTable::write_row(int element, double t_s) {
     tool = static_cast<size_t>(motion.block->tool);
   }
   fmt::format_to(out, "{},{:.6f},", entry.where.line, t_s);
-  append_pose(out, pose);
-  append_axes(out, q, job_.machine.model);
+  append_pose(out, pose, kBlockDecimals);
+  append_axes(out, q, job_.machine.model, kBlockDecimals);
   text.push_back(',');
   if (feed_mm_s_ >= 0.0) fmt::format_to(out, "{:.4f}", mm_min_from_mm_s(feed_mm_s_));
   fmt::format_to(out, ",{},{}\n", kind_name(kind), tool_field(job_.scene.tools[tool]));
@@ -157,10 +172,10 @@ void CycleCsv::add(std::span<const motion::Cycle> window) {
     const motion::ToolSample& s = cycle.sample;
     const int line = cycles_.elements()[static_cast<size_t>(s.element)].where.line;
     fmt::format_to(out, "{:.6f},{},", s.t_s, line);
-    append_pose(out, s.pose);
+    append_pose(out, s.pose, kCycleDecimals);
     fmt::format_to(out, ",{:.4f}", mm_min_from_mm_s(s.feed_mm_s));
-    append_axes(out, cycle.q, job_.machine.model);
-    fmt::format_to(out, ",{:.7f},{:.7f},{:.7f},{:.9f},{:.9f},{},{},{}\n", s.contact_W.x(), s.contact_W.y(),
+    append_axes(out, cycle.q, job_.machine.model, kCycleDecimals);
+    fmt::format_to(out, ",{:.10f},{:.10f},{:.10f},{:.9f},{:.9f},{},{},{}\n", s.contact_W.x(), s.contact_W.y(),
                    s.contact_W.z(), s.u, s.v, s.element, kind_name(s.kind),
                    tool_field(job_.scene.tools[static_cast<size_t>(s.tool)]));
   }
@@ -168,14 +183,15 @@ void CycleCsv::add(std::span<const motion::Cycle> window) {
 }
 
 void check_cycle_table_name(const std::string& path) {
-  if (path.ends_with(".csv")) return;
+  if (path.ends_with(".csv") || path.ends_with(".h5")) return;
   throw InputError("unknown-ending", {path}, "the ending of the file says no format of cycles",
-                   "name it .csv");
+                   "name it .csv or .h5");
 }
 
 std::unique_ptr<CycleTable> open_cycle_table(const std::string& path, const Job& job,
                                              const motion::Cycles& cycles) {
   check_cycle_table_name(path);
+  if (path.ends_with(".h5")) return open_cycle_h5(path, job, cycles);
   return std::make_unique<CycleCsv>(path, job, cycles);
 }
 
@@ -202,7 +218,7 @@ void write_cycle_window(const std::string& path, const Job& job, const motion::C
     throw;
   }
   std::filesystem::rename(partial, target, failed);
-  if (failed) throw unwritable(path);
+  if (failed) throw unwritable_table(path);
 }
 
 }  // namespace swarf::sim
