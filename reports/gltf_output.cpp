@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
 #include <utility>
 
 #include "base/units.h"
@@ -14,9 +16,10 @@
 namespace swarf::reports {
 namespace {
 
-constexpr double kAnimationSeconds =
-    30.0;  // the program is played in so long, or in its own time if that is shorter
-constexpr size_t kPosesPerSecond = 60;      // before thinning
+/// The program is played in at most so long, and about in its own time if that is shorter.
+constexpr double kAnimationSeconds = 30.0;
+/// A key's rotation as four floats, rad: each is off by at most 2^-25, the angle by twice their norm.
+constexpr double kQuaternionError = 4.0 / (1U << 25U);
 constexpr double kMachinePartError = 0.02;  // mm; the part in machine.glb is only looked at
 
 /// Copies of the vertices that the given triangles use.
@@ -52,15 +55,131 @@ std::pair<TriMesh, TriMesh> split_by_measure(const TriMesh& mesh) {
   return {sub_mesh(mesh, measured, true), sub_mesh(mesh, rest, false)};
 }
 
-/// Cycles spread evenly over the program.
-std::vector<motion::Cycle> animation_cycles(const FinishedRun& run) {
-  return run.shown_cycles(static_cast<size_t>(kAnimationSeconds) * kPosesPerSecond + 1);
+/// Seconds of the animation for each cycle: a power of two, so that the time of every key is a float exactly.
+double cycle_seconds(const FinishedRun& run) {
+  const double own = std::exp2(std::round(std::log2(run.cycles.period_s())));
+  const auto cycles = static_cast<double>(std::max<size_t>(run.last_shown() - run.first_shown(), 1));
+  return std::min(own, std::exp2(std::floor(std::log2(kAnimationSeconds / cycles))));
+}
+
+/// Of every cycle that is shown.
+motion::AxisKeys keys_of(const FinishedRun& run) {
+  motion::AxisKeys keys(run.job.machine.model.axes);
+  motion::CycleReader reader(run.cycles);
+  std::vector<motion::Cycle> window;
+  for (size_t k = run.first_shown(); k <= run.last_shown(); ++k) {
+    window.push_back(reader.at(k));
+    if (window.size() < motion::CycleStream::kWindow && k < run.last_shown()) continue;
+    keys.add(window);
+    window.clear();
+  }
+  keys.finish();
+  return keys;
+}
+
+/// The machine as a tree of nodes: an axis moves its own node alone, in straight lines between its keys.
+class MachineNodes {
+ public:
+  MachineNodes(const FinishedRun& run, const MachineView& view, const motion::AxisKeys& keys)
+      : run_(run), view_(view), keys_(keys), seconds_(cycle_seconds(run)) {
+    for (const machine::Link& link : run.job.machine.links) add_link(link);
+  }
+  void add_tools();
+  void add_part(const TriMesh& part);
+  std::vector<render::GltfNode> take() { return std::move(nodes_); }
+  /// How far each axis strays from the cycles between its keys.
+  void state_errors(std::map<std::string, std::string>& extras) const;
+
+ private:
+  void add_link(const machine::Link& link);
+  int add(render::GltfNode node) {
+    nodes_.push_back(std::move(node));
+    return static_cast<int>(nodes_.size()) - 1;
+  }
+  int moving_node(const machine::Link& link, int parent);
+
+  const FinishedRun& run_;
+  const MachineView& view_;
+  const motion::AxisKeys& keys_;
+  double seconds_;
+  std::vector<render::GltfNode> nodes_;
+  std::vector<int> of_link_;  ///< the node that carries the link's mesh and what hangs on it
+};
+
+Pose shifted(const Vec3& by) {
+  Pose pose = Pose::Identity();
+  pose.translation() = by;
+  return pose;
+}
+
+/// Carries what its axis moves; of a rotary axis it stands in the axis itself.
+int MachineNodes::moving_node(const machine::Link& link, int parent) {
+  const kinematics::Axis& axis = run_.job.machine.model.axes[static_cast<size_t>(link.axis)];
+  const bool rotary = axis.kind == kinematics::AxisKind::kRotary;
+  const Pose stand = rotary ? shifted(axis.origin_M) : Pose::Identity();
+  render::GltfNode node{link.name + " " + axis.name, nullptr, {}, parent, {}, {}};
+  for (const motion::AxisKey& key : keys_.axes()[static_cast<size_t>(link.axis)].keys()) {
+    node.times_s.push_back(static_cast<double>(key.cycle) * seconds_);
+    node.poses.push_back(stand.inverse() * kinematics::axis_motion(axis, key.q) * stand);
+    node.poses.back().translation() += stand.translation();
+  }
+  const int moving = add(std::move(node));
+  return rotary ? add({link.name + " frame", nullptr, {}, moving, {}, {stand.inverse()}}) : moving;
+}
+
+void MachineNodes::add_link(const machine::Link& link) {
+  int node = link.parent < 0 ? -1 : of_link_[static_cast<size_t>(link.parent)];
+  if (link.axis >= 0) node = moving_node(link, node);
+  of_link_.push_back(
+      link.mesh.triangles.empty()
+          ? node
+          : add({link.name, &link.mesh, {link.colour, link.metalness, link.roughness}, node, {}, {}}));
+}
+
+void MachineNodes::add_tools() {
+  const std::vector<cutter::Cutter>& tools = run_.job.scene.tools;
+  const int parent = of_link_[static_cast<size_t>(run_.job.machine.tool_link)];
+  for (size_t tool = 0; tool < tools.size(); ++tool) {
+    const std::string name = tools.size() > 1 ? fmt::format(" {}", cutter::call_name(tools[tool])) : "";
+    render::GltfNode cutter{"cutter" + name, &view_.cutter(tool), kToolMaterial, parent, {}, {}};
+    for (const motion::AxisKeys::ToolKey& key : keys_.tools()) {
+      cutter.times_s.push_back(static_cast<double>(key.cycle) * seconds_);
+      cutter.poses.push_back(view_.tool_pose(kinematics::AxisValues::Zero(), tool));
+      cutter.shown.push_back(static_cast<size_t>(key.tool) == tool ? 1 : 0);
+    }
+    const int node = add(std::move(cutter));
+    add({"holder" + name, &view_.holder(tool), kHolderMaterial, node, {}, {view_.holder_in_tool(tool)}});
+  }
+}
+
+void MachineNodes::add_part(const TriMesh& part) {
+  add({"part",
+       &part,
+       kStockMaterial,
+       of_link_[static_cast<size_t>(run_.job.machine.work_link)],
+       {},
+       {view_.work_pose(kinematics::AxisValues::Zero())}});
+}
+
+void MachineNodes::state_errors(std::map<std::string, std::string>& extras) const {
+  const std::vector<kinematics::Axis>& axes = run_.job.machine.model.axes;
+  for (size_t i = 0; i < axes.size(); ++i) {
+    const motion::KeyLine& line = keys_.axes()[i];
+    double farthest = 0.0;
+    for (const motion::AxisKey& key : line.keys()) farthest = std::max(farthest, std::abs(key.q));
+    // A slanted axis has three floats for one value.
+    const bool rotary = axes[i].kind == kinematics::AxisKind::kRotary;
+    const double error = line.error() + (rotary ? kQuaternionError : farthest * std::exp2(-23.0));
+    extras[fmt::format("key_error_max_{}_{}", axes[i].name, rotary ? "deg" : "mm")] =
+        fmt::format("{:.6f}", rotary ? deg_from_rad(error) : error);
+    extras[fmt::format("keys_{}", axes[i].name)] = fmt::format("{}", line.keys().size());
+  }
 }
 
 }  // namespace
 
 double animation_scale(const FinishedRun& run) {
-  return std::max(1.0, run.shown_s() / kAnimationSeconds);
+  return run.cycles.period_s() / cycle_seconds(run);
 }
 
 void write_part_glb(const FinishedRun& run, const DisplayMesh& part, const std::string& path) {
@@ -91,46 +210,18 @@ void write_machine_glb(const FinishedRun& run, const DisplayMesh& part, const st
   TriMesh shown = mesh::decimate(part.mesh, kMachinePartError, nullptr);
   shown.deviation_um.clear();
   mesh::split_creases(shown, kCreaseRad);  // decimate() has joined them
-  const double scale = animation_scale(run);
-  const double start_s = static_cast<double>(run.first_shown()) * run.cycles.period_s();
-  std::vector<double> times;
-  std::vector<std::vector<Pose>> link_poses(run.job.machine.links.size());
-  const size_t tools = run.job.scene.tools.size();
-  std::vector<std::vector<Pose>> tool_poses(tools);
-  std::vector<std::vector<uint8_t>> tool_shown(tools);
-  std::vector<Pose> work_poses;
-  for (const motion::Cycle& cycle : animation_cycles(run)) {
-    const kinematics::AxisValues& q = cycle.q;
-    times.push_back((cycle.sample.t_s - start_s) / scale);
-    const std::vector<Pose> poses = machine::link_poses(run.job.machine, q);
-    for (size_t link = 0; link < poses.size(); ++link) link_poses[link].push_back(poses[link]);
-    for (size_t tool = 0; tool < tools; ++tool) {
-      tool_poses[tool].push_back(view.tool_pose(q, tool));
-      tool_shown[tool].push_back(static_cast<size_t>(cycle.sample.tool) == tool ? 1 : 0);
-    }
-    work_poses.push_back(view.work_pose(q));
-  }
+  std::optional<motion::AxisKeys> own;
+  if (run.keys == nullptr || run.window) own = keys_of(run);
+  MachineNodes nodes(run, view, own ? *own : *run.keys);
+  nodes.add_tools();
+  nodes.add_part(shown);
   render::GltfScene scene;
-  for (size_t link = 0; link < link_poses.size(); ++link) {
-    const machine::Link& l = run.job.machine.links[link];
-    if (!l.mesh.triangles.empty()) {
-      scene.nodes.push_back(
-          {l.name, &l.mesh, {l.colour, l.metalness, l.roughness}, -1, times, link_poses[link], {}});
-    }
-  }
-  for (size_t tool = 0; tool < tools; ++tool) {
-    const std::string name =
-        tools > 1 ? fmt::format(" {}", cutter::call_name(run.job.scene.tools[tool])) : "";
-    scene.nodes.push_back(
-        {"cutter" + name, &view.cutter(tool), kToolMaterial, -1, times, tool_poses[tool], tool_shown[tool]});
-    const int cutter = static_cast<int>(scene.nodes.size()) - 1;
-    scene.nodes.push_back(
-        {"holder" + name, &view.holder(tool), kHolderMaterial, cutter, {}, {view.holder_in_tool(tool)}, {}});
-  }
-  scene.nodes.push_back({"part", &shown, kStockMaterial, -1, times, work_poses, {}});
   scene.extras = {{"scene", run.job.scene.name},
-                  {"program_seconds_per_second", fmt::format("{:g}", scale)},
-                  {"program_seconds_at_start", fmt::format("{:g}", start_s)}};
+                  {"program_seconds_per_second", fmt::format("{}", animation_scale(run))},
+                  {"program_seconds_at_start",
+                   fmt::format("{}", static_cast<double>(run.first_shown()) * run.cycles.period_s())}};
+  nodes.state_errors(scene.extras);
+  scene.nodes = nodes.take();
   render::write_glb(path, scene);
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "kinematics/machine_model.h"
+#include "motion/cycles/axis_keys.h"
 #include "motion/cycles/cycles.h"
 #include "render/draw_list.h"
 #include "sim/job/scene.h"
@@ -22,11 +23,12 @@ struct FinishedRun {
   const std::vector<stock::SurfaceDexels>& dexels;
   /// What of the motion is shown; none: all of it.
   std::optional<sim::CycleWindow> window{};
+  /// Of all cycles, finished; null: they are gathered where they are needed.
+  const motion::AxisKeys* keys = nullptr;
 
   /// Numbers of the first and the last cycle that are shown; there must be one.
   size_t first_shown() const { return window ? window->first : 0; }
   size_t last_shown() const { return (window ? window->end : cycles.size()) - 1; }
-  double shown_s() const { return static_cast<double>(last_shown() - first_shown()) * cycles.period_s(); }
   /// So many of them, spread evenly, the first and the last among them; fewer where there are fewer. Of long
   /// motions without a window as Cycles::spread().
   std::vector<motion::Cycle> shown_cycles(size_t count) const;

@@ -48,7 +48,9 @@ struct DisplayMesh {
 };
 DisplayMesh display_mesh(const FinishedRun& run, const TriMesh& closed, double max_error_mm);
 
-/// machine.glb: links, tool and finished part with the axes animated over the program.
+/// machine.glb: links, tool and finished part with the axes animated over what is shown of the program.
+/// Between its keys an axis moves in a straight line, which no cycle is farther from than asset.extras says
+/// for that axis (key_error_max_X_mm, ...).
 void write_machine_glb(const FinishedRun& run, const DisplayMesh& part, const std::string& path);
 
 /// part.glb: the finished part with deviation as colour and attribute, the tool-axis fan as lines.

@@ -167,7 +167,8 @@ std::vector<Diagnostic> write_run(PendingFolder& folder, const sim::Job& job, si
     folder.move_into_place();
     return {};
   }
-  const FinishedRun run{job, *result.main.cycles, *result.stock, result.main.dexels};
+  FinishedRun run{job, *result.main.cycles, *result.stock, result.main.dexels};
+  if (result.main.keys) run.keys = &*result.main.keys;
   RunFiles files;
   RenderStatistics statistics;
   const TriMesh closed = options.report || options.render ? run.stock.mesh() : TriMesh{};

@@ -126,12 +126,15 @@ void interpolate(const Job& job, const motion::MotionOptions& options, const Cut
   const auto start = std::chrono::steady_clock::now();
   prepare_cycles(job, options, measured);
   Tables tables(job, *measured.cycles, output);
+  if (output.outputs.page && !output.save_folder.empty()) measured.keys.emplace(job.machine.model.axes);
   measured.envelope = {job.machine.model.axes.size(), options.period_s};
   measured.motion =
       motion::interpolate(*measured.cycles, progress, [&](std::span<const motion::Cycle> window) {
         measured.envelope.add(window);
+        if (measured.keys) measured.keys->add(window);
         tables.add(window);
       });
+  if (measured.keys) measured.keys->finish();
   tables.finish();
   measured.motion_seconds = seconds_since(start);
 }

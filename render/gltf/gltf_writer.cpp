@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <tuple>
 
 #include "base/check.h"
@@ -10,7 +11,6 @@
 #include "base/units.h"
 #include "render/figures/colour.h"
 #include "render/gltf/gltf_buffer.h"
-#include "render/gltf/keyframes.h"
 
 namespace swarf::render {
 namespace {
@@ -20,6 +20,25 @@ constexpr double kMetresPerMm = 1e-3;
 constexpr double kStillMm = 1e-9, kStillRad = 1e-9;
 
 using Floats3 = std::vector<std::array<float, 3>>;
+
+std::vector<size_t> all_keys(const GltfNode& node) {
+  std::vector<size_t> keys(node.times_s.size());
+  std::iota(keys.begin(), keys.end(), size_t{0});
+  return keys;
+}
+
+/// Rotations of the poses as quaternions whose signs follow each other, so that a viewer turns the short way.
+std::vector<Eigen::Quaterniond> continuous_rotations(const std::vector<Pose>& poses) {
+  std::vector<Eigen::Quaterniond> rotations;
+  rotations.reserve(poses.size());
+  for (const Pose& pose : poses) {
+    Eigen::Quaterniond q(pose.linear());
+    q.normalize();
+    if (!rotations.empty() && rotations.back().dot(q) < 0.0) q.coeffs() = -q.coeffs();
+    rotations.push_back(q);
+  }
+  return rotations;
+}
 
 class Writer {
  public:
@@ -169,13 +188,12 @@ void Writer::add_translation(const GltfNode& node, int index) {
     return (p.translation() - node.poses.front().translation()).norm() > kStillMm;
   };
   if (std::none_of(node.poses.begin(), node.poses.end(), moves)) return;
-  const auto keys = translation_keys(node.times_s, node.poses, scene_.key_tolerance_mm);
   Floats3 values;
-  for (const size_t k : keys) {
-    const Eigen::Vector3f p = node.poses[k].translation().cast<float>();
+  for (const Pose& pose : node.poses) {
+    const Eigen::Vector3f p = pose.translation().cast<float>();
     values.push_back({p.x(), p.y(), p.z()});
   }
-  add_channel(index, "translation", key_times(node, keys), buffer_.floats<3>(values, false, 0));
+  add_channel(index, "translation", key_times(node, all_keys(node)), buffer_.floats<3>(values, false, 0));
 }
 
 void Writer::add_rotation(const GltfNode& node, int index) {
@@ -184,13 +202,12 @@ void Writer::add_rotation(const GltfNode& node, int index) {
     return q.angularDistance(rotations.front()) > kStillRad;
   };
   if (std::none_of(rotations.begin(), rotations.end(), turns)) return;
-  const auto keys = rotation_keys(node.times_s, rotations, scene_.key_tolerance_rad);
   std::vector<std::array<float, 4>> values;
-  for (const size_t k : keys) {
-    const Eigen::Vector4f q = rotations[k].coeffs().cast<float>();  // x, y, z, w as in glTF
+  for (const Eigen::Quaterniond& rotation : rotations) {
+    const Eigen::Vector4f q = rotation.coeffs().cast<float>();  // x, y, z, w as in glTF
     values.push_back({q[0], q[1], q[2], q[3]});
   }
-  add_channel(index, "rotation", key_times(node, keys), buffer_.floats<4>(values, false, 0));
+  add_channel(index, "rotation", key_times(node, all_keys(node)), buffer_.floats<4>(values, false, 0));
 }
 
 int Writer::key_times(const GltfNode& node, const std::vector<size_t>& keys) {

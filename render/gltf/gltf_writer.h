@@ -17,8 +17,8 @@ struct GltfNode {
   const TriMesh* mesh = nullptr;  ///< borrowed; null: a joint without a shape
   Material material;
   int parent = -1;              ///< index of an earlier node; -1: the scene
-  std::vector<double> times_s;  ///< strictly ascending; empty for a node that stands still
-  std::vector<Pose> poses;      ///< one for each time, or exactly one (empty: identity) without times
+  std::vector<double> times_s;  ///< of its keys, strictly ascending; empty for a node that stands still
+  std::vector<Pose> poses;      ///< one for each key, or exactly one (empty: identity) without keys
   /// One for each time: 0 hides the node and its children (a scale of zero, which holds until the next time).
   /// Empty: always shown.
   std::vector<uint8_t> shown{};
@@ -28,8 +28,6 @@ struct GltfScene {
   std::vector<GltfNode> nodes;
   std::vector<DrawLine> lines;
   std::map<std::string, std::string> extras;  ///< written to asset.extras
-  double key_tolerance_mm = 0.02;             ///< how far thinned translations may stray
-  double key_tolerance_rad = 2e-4;            ///< how far thinned rotations may stray
 };
 
 /// Writes one .glb. Scene units are mm with Z up; a root node turns them into glTF's metres with Y up.

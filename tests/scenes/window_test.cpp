@@ -14,14 +14,15 @@ namespace fs = std::filesystem;
 using swarf::test::read_text;
 using swarf::test::write_text;
 
-/// Twenty slow grooves of eight seconds each, with a rapid back: 190 000 cycles in forty runs of blocks.
+/// Twenty slow grooves of eight seconds each, with a rapid back: 190 000 cycles in forty runs of blocks. Then
+/// the rotary axes turn in the air.
 std::string grooves() {
   std::string text = "G21 G90 G54 G64 P0.01\nT1 M6\nS5000 M3\nG0 X-8 Y-3 Z5 A0 B0\n";
   for (int i = 0; i < 20; ++i) {
     const std::string y = std::to_string(-3.0 + 0.3 * i);
     text += "G0 X-8 Y" + y + " Z2\nG1 Z-0.5 F600\nX-3 F120\nX3 Z-0.7\nX8 Z-0.5\nG0 Z2\n";
   }
-  return text + "G0 Z50\nM2\n";
+  return text + "G0 Z50\nG0 A20 B-200\nG1 A-30 B150 F20\nM2\n";
 }
 
 class Window : public testing::Test {
@@ -194,6 +195,21 @@ TEST_F(Window, AsHdf5HasTheSameColumnsAndNumbers) {
   EXPECT_TRUE(read_text(folder() / "a.h5") == read_text(folder() / "b.h5"));
   ASSERT_EQ(swarf_there("export out --from 20 --to 60 --trajectory a.csv").exit_code, 0);
   read("a.h5", "a.csv");
+}
+
+/// A machine.glb of the whole program and one of a part of it, played against every cycle.
+TEST_F(Window, KeysOfTheAnimationStayWithinTheErrorThatItStates) {
+  for (const std::string part : {"", "--from 100 --to 140", "--from 175"}) {
+    for (const std::string output : {"--trajectory part.h5", "--machine-gltf part.glb"}) {
+      const auto run = swarf_there("export out " + output + " " + part);
+      ASSERT_EQ(run.exit_code, 0) << run.output;
+    }
+    const auto played =
+        swarf::test::run_command("cd '" + folder().string() + "' && /usr/bin/python3 '" +
+                                 SWARF_SOURCE_DIR "/tests/gltf/keys_within.py' part.glb part.h5");
+    EXPECT_EQ(played.exit_code, 0) << part << ": " << played.output;
+    EXPECT_NE(played.output.find("Z: "), std::string::npos) << played.output;
+  }
 }
 
 TEST_F(Window, AFullDiskIsToldForHdf5Too) {

@@ -9,6 +9,7 @@
 #include "measure/flank_error.h"
 #include "measure/measure.h"
 #include "measure/metrics.h"
+#include "motion/cycles/axis_keys.h"
 #include "motion/cycles/cycles.h"
 #include "motion/cycles/time_envelope.h"
 #include "motion/judged/singularity_scan.h"
@@ -30,7 +31,9 @@ struct MeasuredPath {
   toolpath::ToolPath path;
   std::unique_ptr<motion::Cycles> cycles;  ///< of the path's elements
   motion::MotionResult motion;
-  motion::TimeEnvelope envelope{0, 1.0};     ///< of the cycles, for plots
+  motion::TimeEnvelope envelope{0, 1.0};  ///< of the cycles, for plots
+  /// Of all cycles, for animations; none where nobody asks for them.
+  std::optional<motion::AxisKeys> keys;
   JobSweeps rays;                            ///< what cut the measuring rays; Sweep::block is its index
   std::vector<stock::SurfaceDexels> dexels;  ///< one per surface of Job::design, in its order
   std::optional<toolpath::NcReading> nc;     ///< of NC jobs
