@@ -190,7 +190,9 @@ int check(const CheckOptions& options) {
 
 const char* const kCheckFooter =
     R"(What is printed for an NC program: the dialect and why, lines and moves, the way of the tip in feed and rapid moves,
-times at the programmed feed, tools that cut, where it starts, extents of cut and axes, words without effect.
+times at the programmed feed, and with --machine the time and the travel of each axis as `swarf run` has them, to the
+same cycle (look-ahead with the interpolator's defaults; half a minute for a million blocks, --no-drive leaves it out);
+tools that cut, where it starts, extents of cut and axes, words without effect.
 Every fault is told with file:line:column and what to do; the program is read up to its first one.
 
 For CL data: writer and its mark, statements and moves, tools, start, extents, words without effect.
@@ -233,6 +235,10 @@ void add_check(CLI::App& app, int& exit_code) {
                    "DEF 392\", the name of "
                    "a program (840D); once for each")
       ->allow_extra_args(false);
+  bool& drive = options->nc.drive;
+  command->add_flag_callback(
+      "--no-drive", [&drive] { drive = false; },
+      "with --machine: no time and travel by look-ahead, only at the programmed feed");
   command->add_flag("--home", options->nc.at_home, "NC programs start at the machine's home");
   command
       ->add_option("--cutcom", options->cl.cutcom,

@@ -13,6 +13,7 @@
 
 #include "base/input_file.h"
 #include "base/units.h"
+#include "cli/nc_motion.h"
 #include "cli/nc_totals.h"
 #include "cli/terminal.h"
 #include "machine/machine_scene.h"
@@ -256,9 +257,13 @@ Checked check_nc(const std::string& file, const NcCheckOptions& options) {
   setup.builder_words = builder_words_of(file, options.builder_words);
   if (!options.tools.empty()) setup.tools = tools_of(options.tools, diagnostics);
   NcTotals totals(setup.machine);
+  NcMotionSink motion(setup, totals);
+  const bool drives = options.drive && !options.machine.empty();
+  program::NcSink& sink = drives ? static_cast<program::NcSink&>(motion) : totals;
   const program::NcSummary summary =
-      program::run_nc(file, chosen(file, options.dialect), setup, totals, diagnostics);
+      program::run_nc(file, chosen(file, options.dialect), setup, sink, diagnostics);
   diagnostics.throw_if_errors();
+  const std::optional<motion::MotionStatistics> driven = drives ? motion.drive(summary) : std::nullopt;
   std::string text = fmt::format(
       "NC program {}\n"
       "  dialect   {} ({})\n"
@@ -276,12 +281,14 @@ Checked check_nc(const std::string& file, const NcCheckOptions& options) {
       totals.feed_mm, totals.rapid_mm, time_text(totals), tools_text(setup, summary), setup.machine.name,
       summary.start.empty() ? "no motion" : summary.start);
   if (totals.feeds + totals.rapids > 0) text += places_text(setup, totals);
+  if (driven) text += motion_text(*driven, setup.machine);
   if (!totals.out_of_travel.empty()) text += "\n  finding   " + totals.out_of_travel;
   if (!summary.functions.empty()) {
     text += "\n  no effect on the geometry:";
     for (const std::string& word : summary.functions) text += " " + word + ";";
   }
   Checked checked{"nc", text, numbers_of(setup, summary, totals), diagnostics.list()};
+  checked.numbers["driven"] = driven ? motion_json(*driven, setup.machine) : nlohmann::ordered_json();
   if (!totals.out_of_travel.empty())
     checked.findings.push_back({"travel",
                                 Severity::kError,

@@ -10,11 +10,12 @@ namespace swarf::cli {
 
 /// What an NC program is checked with.
 struct NcCheckOptions {
-  std::string machine;                     ///< machine.toml; "": a plain XYZ machine without limits
-  std::string dialect;                     ///< "linuxcnc" ...; "": recognised
-  std::string tools;                       ///< tool table, .toml or .tbl; "": none, lengths are 0
-  bool at_home = false;                    ///< the program starts at the machine's home
-  std::vector<std::string> kinematics;     ///< "m430=identity" ...: what LinuxCNC's kinematics switches mean
+  std::string machine;                  ///< machine.toml; "": a plain XYZ machine without limits
+  std::string dialect;                  ///< "linuxcnc" ...; "": recognised
+  std::string tools;                    ///< tool table, .toml or .tbl; "": none, lengths are 0
+  bool drive = true;                    ///< with a machine: time and travel by look-ahead, as a run has them
+  bool at_home = false;                 ///< the program starts at the machine's home
+  std::vector<std::string> kinematics;  ///< "m430=identity" ...: what LinuxCNC's kinematics switches mean
   std::vector<std::string> builder_words;  ///< "M68", "M68=clamp C", "CYCL DEF 392", "LASERCHECK"
 };
 

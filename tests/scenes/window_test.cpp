@@ -22,7 +22,7 @@ std::string grooves() {
     const std::string y = std::to_string(-3.0 + 0.3 * i);
     text += "G0 X-8 Y" + y + " Z2\nG1 Z-0.5 F600\nX-3 F120\nX3 Z-0.7\nX8 Z-0.5\nG0 Z2\n";
   }
-  return text + "G0 Z50\nG0 A20 B-200\nG1 A-30 B150 F20\nM2\n";
+  return text + "G0 Z50\nG0 A20 B-200\nG1 A-30 B150 F2000\nM2\n";
 }
 
 class Window : public testing::Test {
@@ -199,7 +199,7 @@ TEST_F(Window, AsHdf5HasTheSameColumnsAndNumbers) {
 
 /// A machine.glb of the whole program and one of a part of it, played against every cycle.
 TEST_F(Window, KeysOfTheAnimationStayWithinTheErrorThatItStates) {
-  for (const std::string part : {"", "--from 100 --to 140", "--from 175"}) {
+  for (const std::string part : {"", "--from 100 --to 140", "--from 150"}) {
     for (const std::string output : {"--trajectory part.h5", "--machine-gltf part.glb"}) {
       const auto run = swarf_there("export out " + output + " " + part);
       ASSERT_EQ(run.exit_code, 0) << run.output;

@@ -29,7 +29,7 @@ class H5Handle {
  public:
   using Close = herr_t (*)(hid_t);
   H5Handle() = default;
-  H5Handle(hid_t id, Close close) : id_(id), close_(close) {}
+  H5Handle(hid_t id, Close closing) : id_(id), close_(closing) {}
   H5Handle(H5Handle&& other) noexcept
       : id_(std::exchange(other.id_, H5I_INVALID_HID)), close_(other.close_) {}
   H5Handle& operator=(H5Handle&& other) noexcept {
