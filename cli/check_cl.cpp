@@ -18,8 +18,8 @@ namespace {
 /// Adds up what passes.
 class Totals final : public program::ClSink {
  public:
-  void move(const program::ClMove& move) override {
-    const bool feeds = move.feed_mm_s > 0.0;
+  void move(const program::Move& move) override {
+    const bool feeds = !move.rapid;
     const double way = (move.to.tip_W - move.from.tip_W).norm();  // arcs are counted, their ways are not
     arcs_ += move.arc ? 1 : 0;
     (feeds ? feed_mm_ : rapid_mm_) += way;

@@ -23,9 +23,10 @@ void add_move(program::ClProgram& program, const ToolPose& to, double feed_mm_s)
     program.start_line = 1;
     return;
   }
-  program::ClMove move;
+  program::Move move;
   move.from = program.moves.empty() ? program.start : program.moves.back().to;
   move.to = to;
+  move.rapid = feed_mm_s == 0.0;
   move.feed_mm_s = feed_mm_s;
   move.tool = 0;
   program.moves.push_back(move);

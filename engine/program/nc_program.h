@@ -15,7 +15,7 @@
 #include "base/frames.h"
 #include "kinematics/machine_model.h"
 #include "program/block_law.h"
-#include "program/cl/program.h"
+#include "program/moves.h"
 
 namespace swarf::program {
 
@@ -28,25 +28,16 @@ struct NcTool {
   double corner_radius_mm = 0.0;  ///< for LN blocks that give the contact point
 };
 
-/// One block's motion.
-struct NcMove {
+/// One block's motion: what the machine adds to the move of its tool.
+struct NcMove : Move {
   kinematics::AxisValues q_from = kinematics::AxisValues::Zero();  ///< machine coordinates, mm, rad
   kinematics::AxisValues q_to = kinematics::AxisValues::Zero();
-  ToolPose from, to;  ///< of the active tool's tip in W; `from` is not the last `to` where the tool changed
   BlockLaw law = BlockLaw::kJoint;
-  std::optional<ClArc> arc;  ///< the tip's, in W
-  bool rapid = false;
   double duration_s = 0.0;  ///< of a feed move at its programmed feed (G93, G94, G95 alike); 0 for rapids
-  double feed_mm_s = 0.0;   ///< F as programmed, of the tip; 0 where the block is timed another way (G93,
-                            ///< turns without a tip way) and for rapids
-  double dwell_s = 0.0;     ///< the tool stands this long before the move (G4 and the dwells of cycles)
   bool exact_stop = false;  ///< G9, G60, G61: comes to rest at its end
   double corner_tolerance_mm = 0.0;  ///< G64 P, CYCLE832, TOLERANCE: the corner at its end may be rounded by
                                      ///< this much; 0: the control's own default
-  double spindle_rpm = 0.0;          ///< above 0 clockwise (M3), below 0 counter-clockwise (M4), 0 stopped
-  int tool = -1;                     ///< index into ControlSetup::tools; -1: none is in the spindle
   int file = 0;                      ///< index into NcSummary::files
-  int line = 0, column = 0;
 };
 
 /// A message, comment or machine function without effect on the geometry: kept for the report.

@@ -11,21 +11,21 @@
 namespace swarf::toolpath {
 namespace {
 
-using program::ClMove;
+using program::Move;
 
 /// Ends of an arc nearer than this are the same point: the arc is a whole circle, mm.
 constexpr double kWholeCircle = 1e-6;
 /// Cosine below which two axes count as opposite: within 0.008 degrees.
 constexpr double kReversed = -1.0 + 1e-8;
 
-bool stands_still(const ClMove& move) {
+bool stands_still(const Move& move) {
   return !move.arc && move.from.tip_W == move.to.tip_W && move.from.axis_W == move.to.axis_W;
 }
 
 /// Many CL files leave the spindle to the post-processor: only one that starts it says when it stands.
 bool tells_spindle(const program::ClProgram& program) {
   return std::any_of(program.moves.begin(), program.moves.end(),
-                     [](const ClMove& move) { return move.spindle_rpm != 0.0; });
+                     [](const Move& move) { return move.spindle_rpm != 0.0; });
 }
 
 /// At its feed, where that is not simply the way of the tip in the arc's plane; 0: it is no helix.
@@ -65,7 +65,7 @@ ToolPath cl_path(const program::ClProgram& program, BlockLaw law, Diagnostics& d
   path.elements.reserve(program.moves.size());
   PassCounter passes;
   const bool spindle_told = tells_spindle(program);
-  for (const ClMove& move : program.moves) {
+  for (const Move& move : program.moves) {
     if (stands_still(move)) continue;
     const SourceLocation where{program.file, move.line, move.column};
     if (move.arc && law != BlockLaw::kTcp) {
@@ -81,7 +81,7 @@ ToolPath cl_path(const program::ClProgram& program, BlockLaw law, Diagnostics& d
                         "give a position between them");
       return {};
     }
-    const bool rapid = move.feed_mm_s == 0.0;
+    const bool rapid = move.rapid;
     const BlockLaw own = rapid && law == BlockLaw::kEnds ? BlockLaw::kTcp : law;
     BlockMove block;
     block.from = move.from;

@@ -68,7 +68,7 @@ struct AxisSpan {
 /// One move of a CL or NC program.
 struct BlockMove {
   ToolPose from, to;
-  std::optional<program::ClArc> arc;  ///< the tip's; kTcp and kTcpAxes only
+  std::optional<program::Arc> arc;  ///< the tip's; kTcp and kTcpAxes only
   BlockLaw law = BlockLaw::kTcp;
   double feed_mm_s = 0.0;  ///< of the tip; 0 with duration_s 0: rapid, limited by the machine alone
   /// Above 0: how long the block takes at its programmed feed, where that is not simply that of the tip.

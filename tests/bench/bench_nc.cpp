@@ -9,6 +9,7 @@
 #include <string>
 
 #include "machine/machine_scene.h"
+#include "program/cl/program.h"
 #include "program/nc_program.h"
 
 namespace swarf::program {
@@ -206,7 +207,7 @@ BENCHMARK(heidenhain_formulas)->Unit(benchmark::kMillisecond);
 /// Adds up what it gets, so that nothing can be left out.
 class ClCounter final : public ClSink {
  public:
-  void move(const ClMove& move) override { way += (move.to.tip_W - move.from.tip_W).norm(); }
+  void move(const Move& move) override { way += (move.to.tip_W - move.from.tip_W).norm(); }
   void note(ClNote /*note*/) override {}
   double way = 0.0;
 };

@@ -211,7 +211,7 @@ void add_arc(ClState& cl, const ClStatement& s, const ToolPose& to) {
   const bool helix = std::abs(rise) > kArcTolerance;
   const auto arc_from = [&](const Vec3& tip) {
     const Vec3 up = helix ? Vec3((tip - circle.centre_W).dot(n) * n) : Vec3(Vec3::Zero());
-    return ClArc{circle.centre_W + up, n};
+    return Arc{circle.centre_W + up, n};
   };
   for (int i = 1; i <= static_cast<int>(further); ++i) {
     const double share = 2.0 * kPi * i / total;

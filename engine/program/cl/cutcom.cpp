@@ -72,12 +72,13 @@ void start_contour(ClState& cl, const ClStatement& s, nc::Compensation side, nc:
                      *radius));
   cl.compensation.contour =
       std::make_unique<ClCompensation>(cl.program.file, plane, [&cl](const nc::Segment& segment) {
-        ClMove move;
+        Move move;
         move.from = {cl.systems.X_WC * segment.from, cl.path.axis_W};
         move.to = {cl.systems.X_WC * segment.to, cl.path.axis_W};
         if (segment.is_arc())
-          move.arc = ClArc{cl.systems.X_WC * segment.centre, cl.systems.X_WC.linear() * segment.normal};
-        move.feed_mm_s = segment.motion == nc::Motion::kRapid ? 0.0 : segment.feed;
+          move.arc = Arc{cl.systems.X_WC * segment.centre, cl.systems.X_WC.linear() * segment.normal};
+        move.rapid = segment.motion == nc::Motion::kRapid;
+        move.feed_mm_s = move.rapid ? 0.0 : segment.feed;
         move.dwell_s = segment.dwell_s;
         move.spindle_rpm = segment.spindle_rpm;
         move.tool = cl.tool.active;
@@ -124,7 +125,7 @@ void cutter_compensation(ClState& cl, const ClStatement& s) {
   note(cl, s);
 }
 
-void compensate(ClState& cl, const ClStatement& s, const ToolPose& to, const std::optional<ClArc>& arc,
+void compensate(ClState& cl, const ClStatement& s, const ToolPose& to, const std::optional<Arc>& arc,
                 double feed_mm_s, double dwell_s) {
   cl.compensation.contour->at(0, s.line, s.column);
   const Vec3 normal_W = cl.systems.X_WC.linear().col(nc::axes_of(cl.compensation.contour->plane()).normal);

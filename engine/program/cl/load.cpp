@@ -12,7 +12,7 @@ namespace {
 /// Moves and notes into the program itself.
 class Collector final : public ClSink {
  public:
-  void move(const ClMove& move) override { moves_.push_back(move); }
+  void move(const Move& move) override { moves_.push_back(move); }
   void note(ClNote note) override { notes_.push_back(std::move(note)); }
   void give(ClProgram& program) {
     program.moves = std::move(moves_);
@@ -20,7 +20,7 @@ class Collector final : public ClSink {
   }
 
  private:
-  std::vector<ClMove> moves_;
+  std::vector<Move> moves_;
   std::vector<ClNote> notes_;
 };
 

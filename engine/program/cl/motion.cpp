@@ -157,7 +157,7 @@ void move_to(ClState& cl, const ClStatement& s, const ToolPose& to) {
   add_move(cl, s, to, cl.path.rapid ? 0.0 : cl.feed.feed_mm_s, 0.0);
 }
 
-void send(ClState& cl, const ClStatement& s, const ToolPose& to, const std::optional<ClArc>& arc,
+void send(ClState& cl, const ClStatement& s, const ToolPose& to, const std::optional<Arc>& arc,
           double feed_mm_s, double dwell_s) {
   const double dwell = dwell_s + std::exchange(cl.feed.dwell_s, 0.0);
   if (cl.tool.next_cutter >= 0)
@@ -165,10 +165,11 @@ void send(ClState& cl, const ClStatement& s, const ToolPose& to, const std::opti
   if (cl.compensation.contour) {
     compensate(cl, s, to, arc, feed_mm_s, dwell);
   } else {
-    ClMove move;
+    Move move;
     move.from = cl.path.pose;
     move.to = to;
     move.arc = arc;
+    move.rapid = feed_mm_s == 0.0;
     move.feed_mm_s = feed_mm_s;
     move.dwell_s = dwell;
     move.spindle_rpm = cl.feed.spindle_rpm;
@@ -181,7 +182,7 @@ void send(ClState& cl, const ClStatement& s, const ToolPose& to, const std::opti
   cl.path.axis_W = to.axis_W;
 }
 
-void emit(ClSink& sink, ClProgram& program, const ClMove& move) {
+void emit(ClSink& sink, ClProgram& program, const Move& move) {
   ++program.motions;
   sink.move(move);
 }

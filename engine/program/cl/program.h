@@ -7,26 +7,9 @@
 
 #include "base/diagnostics.h"
 #include "base/frames.h"
+#include "program/moves.h"
 
 namespace swarf::program {
-
-/// The tip goes round `centre_W` counter-clockwise about `normal_W`; it stays an arc until it is cut. Where
-/// its ends lie at different heights along the normal it is a helix of at most one turn.
-struct ClArc {
-  Vec3 centre_W = Vec3::Zero();
-  Vec3 normal_W = Vec3::UnitZ();  ///< unit
-};
-
-/// One motion statement.
-struct ClMove {
-  ToolPose from, to;         ///< W
-  std::optional<ClArc> arc;  ///< none: a straight move
-  double feed_mm_s = 0.0;    ///< 0: rapid (FEDRAT is mm/min in the text)
-  double dwell_s = 0.0;      ///< the tool stands this long before the move (DELAY, cycles)
-  double spindle_rpm = 0.0;  ///< 0 while the spindle stands; below 0 counter-clockwise (CCLW)
-  int tool = -1;             ///< index into ClProgram::tools; -1: none was loaded
-  int line = 0, column = 0;
-};
 
 /// A tool as the program calls it: LOADTL/3, LOAD/TOOL,3 or TOOL PATH/...,TOOL,MILL-20MM.
 struct ClTool {
@@ -90,7 +73,7 @@ struct ClProgram {
   std::vector<std::string> remarks;  ///< what was taken as given, for the report
   ToolPose start;                    ///< the first complete position: nothing is assumed before it
   int start_line = 0;                ///< 0: the program has none
-  std::vector<ClMove> moves;         ///< stays empty in stream_cl()
+  std::vector<Move> moves;           ///< stays empty in stream_cl()
   std::vector<ClTool> tools;         ///< each once, in the order of their first call
   std::vector<ClCutter> cutters;
   std::vector<ClNote> notes;  ///< stays empty in stream_cl()
@@ -102,14 +85,9 @@ struct ClProgram {
 class ClSink {
  public:
   virtual ~ClSink() = default;
-  virtual void move(const ClMove& move) = 0;
+  virtual void move(const Move& move) = 0;
   virtual void note(ClNote note) = 0;
 };
-
-/// Lengths of tool axes may differ from 1 by this much (rounded output of CAM systems); they are normalised.
-inline constexpr double kAxisLengthTolerance = 1e-4;
-/// The ends of an arc may miss its circle by this much, mm.
-inline constexpr double kArcTolerance = 5e-3;
 
 /// Parses CL data as NX (.cls), Creo (.ncl), CATIA (.aptsource), SolidWorks CAM (.clt) and others write it;
 /// README.md lists the words that are read, noted and refused, and what each writer means by them. Problems

@@ -36,9 +36,9 @@ void from(ClState& cl, const ClStatement& s);
 void start_at(ClProgram& program, ClPath& path, const ClStatement& s, const ToolPose& pose);
 void move_to(ClState& cl, const ClStatement& s, const ToolPose& to);
 /// One move as it leaves the reader, compensated where CUTCOM is on.
-void send(ClState& cl, const ClStatement& s, const ToolPose& to, const std::optional<ClArc>& arc,
+void send(ClState& cl, const ClStatement& s, const ToolPose& to, const std::optional<Arc>& arc,
           double feed_mm_s, double dwell_s);
-void emit(ClSink& sink, ClProgram& program, const ClMove& move);
+void emit(ClSink& sink, ClProgram& program, const Move& move);
 void rapid(ClState& cl, const ClStatement& s);
 void retract(ClState& cl, const ClStatement& s);
 void clearance_plane(ClState& cl, const ClStatement& s);
@@ -96,7 +96,7 @@ std::optional<double> cutter_radius(const ClOptions& options, const ClProgram& p
 
 // --- cutcom.cpp
 void cutter_compensation(ClState& cl, const ClStatement& s);
-void compensate(ClState& cl, const ClStatement& s, const ToolPose& to, const std::optional<ClArc>& arc,
+void compensate(ClState& cl, const ClStatement& s, const ToolPose& to, const std::optional<Arc>& arc,
                 double feed_mm_s, double dwell_s);
 /// False with a fault while the contour is compensated.
 bool not_compensated(Reporter& reporter, ClCutcom& compensation, const ClStatement& s);

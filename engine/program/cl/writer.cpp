@@ -23,7 +23,7 @@ class Writer {
     cutters_of(-1);
     if (!program_.moves.empty()) tool_of(program_.moves.front());
     if (program_.start_line > 0) go_to(program_.start);
-    for (const ClMove& move : program_.moves) {
+    for (const Move& move : program_.moves) {
       notes_until(move.line);
       add(move);
     }
@@ -59,7 +59,7 @@ class Writer {
     }
   }
 
-  void tool_of(const ClMove& move) {
+  void tool_of(const Move& move) {
     if (move.tool == tool_) return;
     tool_ = move.tool;
     const ClTool& tool = program_.tools[static_cast<size_t>(tool_)];
@@ -74,14 +74,14 @@ class Writer {
     }
   }
 
-  void rates_of(const ClMove& move) {
+  void rates_of(const Move& move) {
     if (move.spindle_rpm != spindle_rpm_) {
       spindle_rpm_ = move.spindle_rpm;
       line(spindle_rpm_ == 0.0 ? "SPINDL/OFF"
                                : fmt::format("SPINDL/RPM,{},{}", std::abs(spindle_rpm_),
                                              spindle_rpm_ > 0.0 ? "CLW" : "CCLW"));
     }
-    if (move.feed_mm_s == 0.0) {
+    if (move.rapid) {
       line("RAPID");
     } else if (move.feed_mm_s != feed_mm_s_) {
       feed_mm_s_ = move.feed_mm_s;
@@ -89,7 +89,7 @@ class Writer {
     }
   }
 
-  void add(const ClMove& move) {
+  void add(const Move& move) {
     tool_of(move);
     rates_of(move);
     if (move.dwell_s > 0.0) numbers("DELAY", move.dwell_s);

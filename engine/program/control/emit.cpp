@@ -60,7 +60,7 @@ void place_arc(Report& report, WorkSpace& space, Offsets& offsets, const Segment
   const std::array<double, 3>& rotary = segment.rotary_to;
   if (space.coordinates() == Coordinates::kWork) {
     const Pose X_WP = space.X_WP();
-    ClArc arc{X_WP * segment.centre, X_WP.linear() * segment.normal};
+    Arc arc{X_WP * segment.centre, X_WP.linear() * segment.normal};
     // The true tip stands off the compensated one along the axis when both lengths differ.
     const Vec3 linear = space.linear_of(move.q_to);
     const LinearMap real = space.real(rotary);
@@ -78,7 +78,7 @@ void place_arc(Report& report, WorkSpace& space, Offsets& offsets, const Segment
   const Vec3 centre = space.linear_from_program(segment.centre, rotary);
   const Vec3 normal = space.frame().linear() * segment.normal;
   const double mirror = map.columns_W.determinant() < 0.0 ? -1.0 : 1.0;
-  move.arc = ClArc{map.base_W + map.columns_W * centre, mirror * (map.columns_W * normal).normalized()};
+  move.arc = Arc{map.base_W + map.columns_W * centre, mirror * (map.columns_W * normal).normalized()};
 }
 
 void send(Control& control, const Segment& segment, NcMove& move) {

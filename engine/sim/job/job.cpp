@@ -150,7 +150,7 @@ void check_cl_tools(const Job& job, Diagnostics& diagnostics) {
                       fmt::format("the program loads {}, the scene describes {} only", called, ours),
                       "load one of them, or describe it in the scene: [[tool]], cutter.number");
   }
-  for (const program::ClMove& move : job.cl->moves) {
+  for (const program::Move& move : job.cl->moves) {
     if (move.tool >= 0 || job.scene.tools.size() == 1) continue;
     diagnostics.error("tool-not-loaded", {job.cl->file, move.line, move.column},
                       fmt::format("no tool is loaded for this move, the scene describes {}", ours),

@@ -79,7 +79,7 @@ TEST(BlockMotion, ArcsAreCutWithTheSagittaOfTheirPieces) {
   c.machine = paper_machine();
   c.block = {{{10, 0, 0}, Vec3::UnitZ()},
              {{-10, 0, 0}, Vec3::UnitZ()},
-             program::ClArc{},
+             program::Arc{},
              BlockLaw::kTcp,
              10,
              0,

@@ -172,7 +172,7 @@ TEST(LookAhead, WholeCircleHoldsItsFeedAndReturns) {
   toolpath::ToolPath path =
       path_through(machine, {values(0, 0, 0, 0.3, 0), values(0, 0, 0, 0.3, 0)}, BlockLaw::kTcp, 40.0);
   BlockMove& block = block_of(path, 0);
-  block.arc = program::ClArc{block.from.tip_W + Vec3(25, 0, 0), Vec3::UnitZ()};
+  block.arc = program::Arc{block.from.tip_W + Vec3(25, 0, 0), Vec3::UnitZ()};
   const Interpolated result = run(path, machine);
   EXPECT_EQ(check_motion(result.trajectory, machine), "");
   EXPECT_NEAR(result.statistics.path_length_mm, 50 * kPi, 1e-4);
@@ -238,7 +238,7 @@ TEST(LookAhead, TcpAxesBoundsHoldTheDerivatives) {
       BlockMove& block = block_of(path, 0);
       const Vec3 chord = block.to.tip_W - block.from.tip_W;
       const Vec3 normal = chord.unitOrthogonal();
-      block.arc = program::ClArc{block.from.tip_W + 0.5 * chord + normal.cross(chord), normal};
+      block.arc = program::Arc{block.from.tip_W + 0.5 * chord + normal.cross(chord), normal};
     }
     const std::vector<BlockMotion> motions = block_motions(path, machine);
     const MotionBounds bounds = motion_bounds(motions[0]);

@@ -71,7 +71,7 @@ inline RandomBlock random_block(Rng& rng, toolpath::BlockLaw law) {
   if (law == toolpath::BlockLaw::kTcp && rng.uniform() < 0.5) {
     const double angle = rng.uniform(0.1, 6.0), radius = rng.uniform(2, 30);
     const Vec3 normal = rng.direction(), arm = radius * normal.unitOrthogonal();
-    c.block.arc = program::ClArc{c.block.from.tip_W - arm, normal};
+    c.block.arc = program::Arc{c.block.from.tip_W - arm, normal};
     c.block.to.tip_W = c.block.arc->centre_W + std::cos(angle) * arm + std::sin(angle) * normal.cross(arm);
   }
   return c;

@@ -61,7 +61,7 @@ inline toolpath::ToolPath random_program(const kinematics::MachineModel& machine
       const Vec3 normal = chord.unitOrthogonal();
       const double offset = rng.uniform(0.3, 3.0) * chord.norm();
       block.arc =
-          program::ClArc{block.from.tip_W + 0.5 * chord + offset * normal.cross(chord).normalized(), normal};
+          program::Arc{block.from.tip_W + 0.5 * chord + offset * normal.cross(chord).normalized(), normal};
     }
     toolpath::Element& element = path.elements.emplace_back();
     element.what = block;

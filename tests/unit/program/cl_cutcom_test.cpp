@@ -161,7 +161,7 @@ TEST(ClCutcom, ConvexContoursAreRoundedAtTheRadius) {
     const ClProgram p = read_cl_clean(text, with(ClPoints::kContour));
     ASSERT_GE(p.moves.size(), static_cast<size_t>(sides));
     for (size_t i = 1; i + 1 < p.moves.size(); ++i) {
-      const ClMove& move = p.moves[i];
+      const Move& move = p.moves[i];
       for (const double share : {0.0, 0.3, 0.5, 0.8, 1.0}) {
         Vec3 tip = move.from.tip_W + share * (move.to.tip_W - move.from.tip_W);
         if (move.arc) tip = move.arc->centre_W + r * (tip - move.arc->centre_W).normalized();

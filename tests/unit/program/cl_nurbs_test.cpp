@@ -22,7 +22,7 @@ Vec3 bezier(const Vec3 (&p)[4], double u) {
   return v * v * v * p[0] + 3.0 * v * v * u * p[1] + 3.0 * v * u * u * p[2] + u * u * u * p[3];
 }
 
-double off_chord(const ClMove& move, const Vec3& p) {
+double off_chord(const Move& move, const Vec3& p) {
   const Vec3 way = move.to.tip_W - move.from.tip_W;
   const double s = std::clamp((p - move.from.tip_W).dot(way) / way.squaredNorm(), 0.0, 1.0);
   return (p - move.from.tip_W - s * way).norm();
@@ -36,12 +36,12 @@ TEST(ClNurbs, ThreeAxesFollowTheBezierCurve) {
   EXPECT_FALSE(diagnostics.has_errors()) << all_text(diagnostics);
   const Vec3 p[4] = {{0, 0, 0}, {10, 0, 0}, {20, 10, 0}, {30, 10, 0}};
   ASSERT_GT(program.moves.size(), 8U);
-  const std::vector<ClMove> chords(program.moves.begin(), program.moves.end() - 1);
+  const std::vector<Move> chords(program.moves.begin(), program.moves.end() - 1);
   EXPECT_EQ(chords.front().from.tip_W, p[0]);
   EXPECT_LT((chords.back().to.tip_W - p[3]).norm(), 1e-12);
   for (int i = 0; i <= 1000; ++i) {
     double nearest = 1e9;
-    for (const ClMove& chord : chords) nearest = std::min(nearest, off_chord(chord, bezier(p, i / 1000.0)));
+    for (const Move& chord : chords) nearest = std::min(nearest, off_chord(chord, bezier(p, i / 1000.0)));
     EXPECT_LE(nearest, kNurbsChordMm * 1.001) << i;
   }
   EXPECT_EQ(program.moves.back().from.tip_W, chords.back().to.tip_W);
@@ -60,7 +60,7 @@ TEST(ClNurbs, FiveAxesTurnTheToolWithTheUpperCurve) {
   const Vec3 low[4] = {{0, 0, 0}, {10, 0, 0}, {20, 10, 0}, {30, 10, 0}};
   const Vec3 high[4] = {{0, 0, 50}, {10, 10, 50}, {20, 30, 45}, {30, 40, 40}};
   EXPECT_LT((program.moves.back().to.axis_W - Vec3(0, 0.6, 0.8)).norm(), 1e-12);
-  for (const ClMove& move : program.moves) {
+  for (const Move& move : program.moves) {
     EXPECT_NEAR(move.to.axis_W.norm(), 1.0, 1e-14);
     // x of the lower curve is 30 u: so the place on both is known.
     const double u = move.to.tip_W.x() / 30.0;

@@ -109,7 +109,7 @@ TEST(ClReader, ToolsByNumberAndByName) {
 
 std::string heights(const ClProgram& p) {
   std::string text;
-  for (const ClMove& move : p.moves) {
+  for (const Move& move : p.moves) {
     text += move.feed_mm_s == 0.0 ? 'r' : 'f';
     text += std::to_string(move.to.tip_W.z()).substr(0, 5);
     text += ' ';
@@ -242,7 +242,7 @@ TEST(ClReader, RandomBytesNeverCrashIt) {
     Diagnostics diagnostics;
     const ClProgram p = parse_cl(text, "test.cl", diagnostics, as_nx());
     if (diagnostics.has_errors()) continue;
-    for (const ClMove& move : p.moves) {
+    for (const Move& move : p.moves) {
       ASSERT_TRUE(move.to.tip_W.allFinite()) << text;
       ASSERT_NEAR(move.to.axis_W.norm(), 1.0, 1e-12) << text;
     }

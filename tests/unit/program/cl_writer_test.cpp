@@ -26,7 +26,7 @@ void expect_round_trip(const ClProgram& p) {
   ASSERT_EQ(q.moves.size(), p.moves.size()) << text;
   EXPECT_EQ(q.start.tip_W, p.start.tip_W);
   for (size_t i = 0; i < p.moves.size(); ++i) {
-    const ClMove &a = p.moves[i], &b = q.moves[i];
+    const Move &a = p.moves[i], &b = q.moves[i];
     ASSERT_EQ(a.to.tip_W, b.to.tip_W) << "move " << i << " of\n" << text;
     ASSERT_LE((a.to.axis_W - b.to.axis_W).norm(), kAxisRounding) << "move " << i << " of\n" << text;
     ASSERT_EQ(a.arc.has_value(), b.arc.has_value());
@@ -126,7 +126,7 @@ TEST_P(RealCl, IsReadToItsLastWordAndWrittenAgain) {
   const ClProgram p = load_cl(project_file(std::string("assets/programs/stepnode/") + real.file));
   EXPECT_EQ(p.moves.size(), real.moves);
   const auto arcs =
-      std::count_if(p.moves.begin(), p.moves.end(), [](const ClMove& m) { return m.arc.has_value(); });
+      std::count_if(p.moves.begin(), p.moves.end(), [](const Move& m) { return m.arc.has_value(); });
   EXPECT_EQ(static_cast<size_t>(arcs), real.arcs);
   EXPECT_EQ(p.statements, real.statements);
   ASSERT_EQ(p.tools.size(), 1U);

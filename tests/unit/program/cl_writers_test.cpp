@@ -28,7 +28,7 @@ struct Expected {
 void expect_moves(const ClProgram& p, const std::vector<Expected>& expected) {
   ASSERT_EQ(p.moves.size(), expected.size()) << write_cl(p);
   for (size_t i = 0; i < expected.size(); ++i) {
-    const ClMove& move = p.moves[i];
+    const Move& move = p.moves[i];
     SCOPED_TRACE("move " + std::to_string(i) + ", line " + std::to_string(move.line));
     expect_tip(move.to.tip_W, expected[i].x, expected[i].y, expected[i].z);
     const char kind = move.feed_mm_s == 0.0          ? 'r'

@@ -114,7 +114,7 @@ TEST(NcStream, LinesAllocateNothing) {
 }
 
 struct ClCounter final : ClSink {
-  void move(const ClMove& move) override {
+  void move(const Move& move) override {
     ++moves;
     way += (move.to.tip_W - move.from.tip_W).norm();
   }

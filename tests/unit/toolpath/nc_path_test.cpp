@@ -87,7 +87,7 @@ TEST(NcPath, InverseTimeIsNoRapid) {
 
 TEST(NcPath, AnArcOfStandingRotariesKeepsItsShape) {
   NcMove cut = line({10, 0, 0}, {0, 10, 0}, 20.0, 7);
-  cut.arc = program::ClArc{Vec3::Zero(), Vec3::UnitZ()};
+  cut.arc = program::Arc{Vec3::Zero(), Vec3::UnitZ()};
   const Made made = make({cut});
   ASSERT_TRUE(block(made, 0).arc);
   EXPECT_EQ(block(made, 0).law, BlockLaw::kTcpAxes);
