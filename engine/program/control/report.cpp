@@ -19,9 +19,13 @@ std::string Report::file_name(const Place& where) const {
   return file < summary.files.size() ? summary.files[file] : std::string();
 }
 
+void Report::fail_at(const SourceLocation& where, std::string code, std::string text, std::string fix) {
+  throw InputError(std::move(code), where, std::move(text), std::move(fix));
+}
+
 void Report::fail(const char* code, int column, std::string text, std::string fix) const {
-  throw InputError(code, {file_name(place), place.line, column > 0 ? column : place.column}, std::move(text),
-                   std::move(fix));
+  fail_at({file_name(place), place.line, column > 0 ? column : place.column}, code, std::move(text),
+          std::move(fix));
 }
 
 void Report::warn_once(const char* code, int column, std::string text, std::string fix) {

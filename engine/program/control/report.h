@@ -29,6 +29,9 @@ class Report {
   /// A fault in the current block, thrown as InputError: run_nc reports it and stops the program there, as a
   /// control does. `column` 0: the column of at().
   [[noreturn]] void fail(const char* code, int column, std::string text, std::string fix) const;
+  /// The same at a place that a reader of texts knows: every fault of the readers is thrown here.
+  [[noreturn]] static void fail_at(const SourceLocation& where, std::string code, std::string text,
+                                   std::string fix);
   /// A warning that is given once per `code` and program.
   void warn_once(const char* code, int column, std::string text, std::string fix);
   /// True for a word of ControlSetup::builder_words, as builder_word() gives it: it is listed.

@@ -68,10 +68,9 @@ const Known* find_program(Calls& calls, LetterDialect& letters, const Rules& rul
 /// The program goes on at `program`, which is called `times` times.
 void enter(Fanuc& fanuc, const Known& program, long times, int column, const Call* macro) {
   Calls& calls = fanuc.calls;
-  const auto macros = static_cast<size_t>(
-      std::count_if(calls.stack.begin(), calls.stack.end(), [](const Call& one) { return one.own_locals; }));
-  if (calls.stack.size() > fanuc.rules.calls_max || (macro != nullptr && macros > fanuc.rules.macros_max))
-    fanuc.control.report.fail("recursion-limit", column,
+  const size_t macros = calls.stack.count([](const Call& one) { return one.own_locals; });
+  if (calls.stack.full(fanuc.rules.calls_max) || (macro != nullptr && macros > fanuc.rules.macros_max))
+    fanuc.control.report.fail(kRecursionLimit, column,
                               fmt::format("more than {} subprograms or {} macros call each other here",
                                           fanuc.rules.calls_max, fanuc.rules.macros_max),
                               "end the recursion with a condition");
@@ -80,13 +79,13 @@ void enter(Fanuc& fanuc, const Known& program, long times, int column, const Cal
   if (macro != nullptr)
     next = *macro;
   else
-    next.modals = calls.stack.back().modals;
+    next.modals = calls.stack.top().modals;
   next.back = source(calls).mark();
   next.source = program.source;
   next.top = next.head = program.body;
   next.left = times - 1;
   next.source->seek(next.top);
-  calls.stack.push_back(std::move(next));
+  calls.stack.enter(std::move(next));
 }
 
 void call(Fanuc& fanuc, int number, long times, int column, const Call* macro, bool external) {
@@ -117,11 +116,11 @@ void call_label(Fanuc& fanuc, const Known& program, char letter, long times, int
                               fmt::format("{}{}: there is no block N{}", letter, label, label),
                               "add the block number");
   enter(fanuc, {program.number, program.source, *begin}, times, column, nullptr);
-  fanuc.calls.stack.back().head = program.body;
+  fanuc.calls.stack.top().head = program.body;
 }
 
 void leave(Calls& calls, LetterDialect& letters, int column) {
-  Call& here = calls.stack.back();
+  Call& here = calls.stack.top();
   if (here.left > 0) {
     --here.left;
     nc::jump(letters.control);
@@ -135,9 +134,9 @@ void leave(Calls& calls, LetterDialect& letters, int column) {
     modal.locals = here.locals;
     modal.assigned = here.assigned;
   } else {
-    calls.stack[calls.stack.size() - 2].modals = here.modals;
+    calls.stack.caller().modals = here.modals;
   }
-  calls.stack.pop_back();
+  calls.stack.leave();
   source(calls).seek(back);
   if (letters.block.has('P'))
     go_to(calls, letters, whole(letters.block, 'P', 1, 99999999, letters.reader, letters.control), column);
@@ -227,7 +226,7 @@ void call_subprogram(Fanuc& fanuc, int column, bool external) {
 
 void call_macro(Fanuc& fanuc) {
   Call macro = macro_call(fanuc, kFanucOneShot, "G65");
-  macro.modals = fanuc.calls.stack.back().modals;
+  macro.modals = fanuc.calls.stack.top().modals;
   const long times = repeats_of(fanuc);
   call(fanuc, whole(fanuc.block, 'P', 1, 99999999, fanuc.reader, fanuc.control), times,
        fanuc.g_column(kFanucOneShot), &macro, false);
@@ -236,8 +235,7 @@ void call_macro(Fanuc& fanuc) {
 /// G66 and G67. Several G66 nest: the last one is called after the moves, the one before after its moves.
 void set_modal_macro(Calls& calls, LetterDialect& letters) {
   const int at = letters.g_column(kFanucMacro);
-  const bool inside =
-      std::any_of(calls.stack.begin(), calls.stack.end(), [](const Call& one) { return one.modal >= 0; });
+  const bool inside = calls.stack.count([](const Call& one) { return one.modal >= 0; }) > 0;
   if (inside)
     letters.control.report.fail("unsupported-word", at, "G66 and G67 stand in a macro that G66 calls",
                                 "set and cancel modal macros outside of them");
@@ -249,7 +247,7 @@ void set_modal_macro(Calls& calls, LetterDialect& letters) {
     const long times = repeats_of(letters);
     calls.modal.push_back({number, times, macro.locals, macro.assigned});
   }
-  calls.stack.back().modals = calls.modal.size();
+  calls.stack.top().modals = calls.modal.size();
 }
 
 /// After a block with a move.
@@ -262,7 +260,7 @@ void call_modal_macro(Fanuc& fanuc) {
         "a move that calls the macro of G66 stands with a call or an end of the program",
         "write them in two blocks");
   Call macro;
-  macro.modals = fanuc.calls.stack.back().modals - 1;
+  macro.modals = fanuc.calls.stack.top().modals - 1;
   macro.modal = static_cast<int>(macro.modals);
   const Modal& modal = fanuc.calls.modal[macro.modals];
   macro.own_locals = true;
@@ -282,11 +280,11 @@ bool apply_calls(Fanuc& fanuc) {
     }
     if (code == M::kCallLocal) {
       fanuc.need('P', "M97");
-      call_label(fanuc, {0, &source(fanuc.calls), fanuc.calls.stack.back().head}, 'P', repeats_of(fanuc), at);
+      call_label(fanuc, {0, &source(fanuc.calls), fanuc.calls.stack.top().head}, 'P', repeats_of(fanuc), at);
       return true;
     }
     if (code != M::kReturn) continue;
-    if (fanuc.calls.stack.size() > 1) {
+    if (fanuc.calls.stack.called()) {
       leave(fanuc.calls, fanuc, at);
       return true;
     }

@@ -84,13 +84,14 @@ Vec3 bore_shift(Drilling& drilling, LetterDialect& letters) {
 DrillCycle drill_cycle(Fanuc& fanuc, int tenths) {
   DrillCycle cycle;
   // Scaling moves R and Z; depths per peck and shifts stay as written.
-  const AxisMap& map = fanuc.mapping.axis[static_cast<size_t>(axes_of(fanuc.control.modal.plane).normal)];
-  if (map.mirrors())
+  const Stretch& map = fanuc.mapping.stretch;
+  const int normal = axes_of(fanuc.control.modal.plane).normal;
+  if (map.factor[normal] < 0.0)
     fanuc.control.report.fail("modal-conflict", fanuc.reader.column_of(fanuc.block.first),
                               "a cycle drills along a mirrored axis",
                               "end the mirror image of the drilling axis before it");
-  const double r = map.at(fanuc.drilling.words.r, fanuc.drilling.words.r_incremental),
-               z = map.at(fanuc.drilling.words.z, fanuc.drilling.words.z_incremental);
+  const double r = map.along(normal, fanuc.drilling.words.r, fanuc.drilling.words.r_incremental),
+               z = map.along(normal, fanuc.drilling.words.z, fanuc.drilling.words.z_incremental);
   cycle.approach = fanuc.drilling.words.r_incremental ? fanuc.drilling.cycle_start + r : r;
   cycle.bottom = fanuc.drilling.words.z_incremental ? cycle.approach + z : z;
   const bool back = tenths == G::kBackBore;

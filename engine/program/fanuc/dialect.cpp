@@ -114,7 +114,7 @@ bool execute(Fanuc& fanuc) {
   check_words(fanuc.modes, fanuc, fanuc.rules);
   fanuc.modes.moved = false;
   apply(fanuc);
-  if (fanuc.modes.moved && fanuc.calls.stack.back().modals > 0) {
+  if (fanuc.modes.moved && fanuc.calls.stack.top().modals > 0) {
     call_modal_macro(fanuc);
     return true;
   }
@@ -125,22 +125,21 @@ void run(Fanuc& fanuc) {
   std::string_view line;
   while (!fanuc.ended) {
     if (!source(fanuc.calls).next(line)) {
-      if (fanuc.calls.stack.size() > 1)
+      if (fanuc.calls.stack.called())
         fanuc.control.report.fail("unclosed-subprogram", 0, "the subprogram does not end in its file",
                                   "end it with M99");
-      if (!fanuc.calls.stack.back().loops.empty())
-        fanuc.control.report.fail(
-            "unclosed-loop", 0,
-            fmt::format("DO{} has no END{}", fanuc.calls.stack.back().loops.back().first,
-                        fanuc.calls.stack.back().loops.back().first),
-            "add the END of the loop");
+      if (!fanuc.calls.stack.top().loops.empty())
+        fanuc.control.report.fail("unclosed-loop", 0,
+                                  fmt::format("DO{} has no END{}", fanuc.calls.stack.top().loops.back().first,
+                                              fanuc.calls.stack.top().loops.back().first),
+                                  "add the END of the loop");
       fanuc.warn_of_missing_end("M02, M30, M99 or %");
       break;
     }
     fanuc.at_line(source(fanuc.calls));
     if (!fanuc.percent(line, false))
       fanuc.ended = !execute(fanuc);
-    else if (fanuc.ended && fanuc.calls.stack.size() > 1)
+    else if (fanuc.ended && fanuc.calls.stack.called())
       fanuc.control.report.fail("unclosed-subprogram", 0, "the file ends within a subprogram",
                                 "end it with M99");
   }
@@ -163,7 +162,7 @@ Fanuc::Fanuc(const std::string& file, Control& machine, const Rules& own)
   Call main;
   main.source = &open(file);
   main.own_locals = true;
-  calls.stack.push_back(std::move(main));
+  calls.stack.enter(std::move(main));
   control.modal.feed_rule = FeedRule::kAllAxes;
 }
 

@@ -57,7 +57,7 @@ void skip_to_end(Calls& calls, LetterDialect& letters, int loop) {
 
 /// Loops that a jump to the line behind `target` leaves: those that begin behind it or end before it.
 void leave_loops(Calls& calls, LetterDialect& letters, const LineSource::Mark& target) {
-  auto& loops = calls.stack.back().loops;
+  auto& loops = calls.stack.top().loops;
   std::erase_if(loops, [&](const auto& loop) {
     if (target.line <= loop.second.line) return true;
     source(calls).seek(loop.second);
@@ -83,7 +83,7 @@ bool labelled(std::string_view line, long label) {
 
 bool macro_word(Calls& calls, Variables& variables, LetterDialect& letters) {
   const size_t place = letters.reader.at();
-  auto& loops = calls.stack.back().loops;
+  auto& loops = calls.stack.top().loops;
   if (letters.reader.take("GOTO")) {
     go_to(calls, letters, label_value(letters), letters.reader.column_of(place));
     return true;
@@ -156,7 +156,7 @@ std::optional<LineSource::Mark> find_label(LineSource& in, const LineSource::Mar
 void go_to(Calls& calls, LetterDialect& letters, long label, int column) {
   nc::jump(letters.control);
   const LineSource::Mark here = source(calls).mark();
-  LineSource::Mark begin = calls.stack.size() > 1 ? calls.stack.back().top : LineSource::Mark{};
+  LineSource::Mark begin = calls.stack.called() ? calls.stack.top().top : LineSource::Mark{};
   std::string_view line;
   for (const bool ahead : {true, false}) {
     if (!ahead) source(calls).seek(begin);

@@ -114,7 +114,7 @@ void reference(Fanuc& fanuc) {
 
 void references(Fanuc& fanuc) {
   const int code = fanuc.block.g[kFanucOneShot];
-  if (fanuc.calls.stack.back().modals > 0)
+  if (fanuc.calls.stack.top().modals > 0)
     fanuc.control.report.fail("modal-conflict", fanuc.g_column(kFanucOneShot),
                               "a reference point is approached while G66 is on", "write G67 before it");
   if (code == G::kCheckReference) return check_reference(fanuc.modes, fanuc.mapping, fanuc);

@@ -43,7 +43,7 @@ void turn_in_plane(Fanuc& fanuc) {
   Vec3 centre = nc::position_xyz(fanuc.control);
   for (int i = 0; i < 3; ++i) {
     const auto slot = static_cast<size_t>(i);
-    if (at.has(i)) centre[i] = fanuc.mapping.axis[slot].at(at.value[slot], false);
+    if (at.has(i)) centre[i] = fanuc.mapping.stretch.along(i, at.value[slot], false);
   }
   centre[normal] = 0.0;
   if (!centre.allFinite())

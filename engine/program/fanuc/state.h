@@ -11,6 +11,8 @@
 #include <string_view>
 #include <vector>
 
+#include "program/control/call_stack.h"
+#include "program/control/stretch.h"
 #include "program/fanuc/codes.h"
 #include "program/letters/letter_dialect.h"
 
@@ -122,8 +124,6 @@ struct AxisMap {
   double mirror_at = 0.0, scale = 1.0, centre = 0.0;
   double factor() const;
   double shift() const;
-  bool mirrors() const { return factor() < 0.0; }
-  double at(double value, bool is_incremental) const;
 };
 /// G16; what the words gave last.
 struct Polar {
@@ -154,7 +154,7 @@ struct CycleWords {
 
 /// Programs that run, macros that wait, programs that were found.
 struct Calls {
-  std::vector<Call> stack;
+  CallStack<Call> stack;
   std::vector<Modal> modal;
   std::vector<Known> known;
 };
@@ -196,6 +196,7 @@ struct Zero {
 /// G50.1 G51.1, G50 G51, G15 G16.
 struct Mapping {
   std::array<AxisMap, 3> axis;
+  Stretch stretch;  ///< of the words, made of them
   bool mirrored = false, scaled = false;
   Polar polar;
 };
@@ -227,7 +228,7 @@ inline int g(const LetterDialect& letters, int group) {
 }
 /// The file that is being read.
 inline LineSource& source(Calls& calls) {
-  return *calls.stack.back().source;
+  return *calls.stack.top().source;
 }
 
 }  // namespace swarf::program::nc::fanuc

@@ -61,6 +61,13 @@ double magnification(LetterDialect& letters, char letter) {
   return value;
 }
 
+void update_stretch(Mapping& mapping) {
+  for (size_t i = 0; i < 3; ++i) {
+    mapping.stretch.factor[static_cast<long>(i)] = mapping.axis[i].factor();
+    mapping.stretch.offset[static_cast<long>(i)] = mapping.axis[i].shift();
+  }
+}
+
 }  // namespace
 
 double AxisMap::factor() const {
@@ -71,19 +78,13 @@ double AxisMap::shift() const {
   return (mirrored ? 2.0 * scale * mirror_at : 0.0) + (1.0 - scale) * centre;
 }
 
-double AxisMap::at(double value, bool is_incremental) const {
-  return is_incremental ? factor() * value : factor() * value + shift();
-}
-
 bool mapped(const Mapping& mapping) {
   return mapping.scaled || mapping.mirrored;
 }
 
 /// The plane's sense of rotation is reversed.
 bool reversed(const Mapping& mapping, const LetterDialect& letters) {
-  const PlaneAxes axes = axes_of(letters.control.modal.plane);
-  return mapping.axis[static_cast<size_t>(axes.first)].mirrors() !=
-         mapping.axis[static_cast<size_t>(axes.second)].mirrors();
+  return mapping.stretch.turns_over(axes_of(letters.control.modal.plane));
 }
 
 Target words(Modes& modes, Mapping& mapping, LetterDialect& letters) {
@@ -93,7 +94,7 @@ Target words(Modes& modes, Mapping& mapping, LetterDialect& letters) {
     for (int i = 0; i < 3; ++i) {
       if (target.has(i)) {
         double& value = target.value[static_cast<size_t>(i)];
-        value = mapping.axis[static_cast<size_t>(i)].at(value, target.is_incremental(i));
+        value = mapping.stretch.along(i, value, target.is_incremental(i));
       }
     }
   }
@@ -107,18 +108,18 @@ void map_arc(Mapping& mapping, LetterDialect& letters, ArcWords& arc) {
                                 "give its radius R");
   if (!mapped(mapping)) return;
   const PlaneAxes axes = axes_of(letters.control.modal.plane);
-  const double first = mapping.axis[static_cast<size_t>(axes.first)].factor(),
-               second = mapping.axis[static_cast<size_t>(axes.second)].factor();
-  if (std::abs(first) != std::abs(second))
+  const double first = mapping.stretch.factor[axes.first], second = mapping.stretch.factor[axes.second];
+  const std::optional<double> grown = mapping.stretch.in_plane(axes);
+  if (!grown)
     letters.control.report.fail(
         "bad-arc", arc.column,
         fmt::format("the arc is scaled by {:g} and {:g}: it would be no circle", first, second),
         "scale both axes of the plane alike");
-  arc.radius *= std::abs(first);
+  arc.radius *= *grown;
   if (!arc.centre) return;
   const Vec3 here = nc::position_xyz(letters.control);
   for (const int i : {axes.first, axes.second})
-    (*arc.centre)[i] = here[i] + mapping.axis[static_cast<size_t>(i)].factor() * ((*arc.centre)[i] - here[i]);
+    (*arc.centre)[i] = here[i] + mapping.stretch.along(i, (*arc.centre)[i] - here[i], true);
 }
 
 /// Fails while scaling, mirror images or polar coordinates are on.
@@ -158,6 +159,7 @@ void mirror(Fanuc& fanuc, int tenths) {
   }
   fanuc.mapping.mirrored =
       fanuc.mapping.axis[0].mirrored || fanuc.mapping.axis[1].mirrored || fanuc.mapping.axis[2].mirrored;
+  update_stretch(fanuc.mapping);
 }
 
 /// G51 X Y Z P or I J K about the centre, by default the present position; G50.
@@ -167,6 +169,7 @@ void scale(Fanuc& fanuc, int tenths) {
     if (fanuc.mapping.scaled) check_transform(fanuc.modes, fanuc.planes, fanuc, at);
     for (AxisMap& axis : fanuc.mapping.axis) axis.scale = 1.0, axis.centre = 0.0;
     fanuc.mapping.scaled = false;
+    update_stretch(fanuc.mapping);
     return;
   }
   only_words(fanuc, "XYZPIJK", "G51");
@@ -193,6 +196,7 @@ void scale(Fanuc& fanuc, int tenths) {
   }
   fanuc.mapping.axis = map;
   fanuc.mapping.scaled = true;
+  update_stretch(fanuc.mapping);
 }
 
 void polar(Modes& modes, Mapping& mapping, LetterDialect& letters, int tenths) {

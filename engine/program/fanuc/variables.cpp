@@ -91,7 +91,7 @@ std::optional<double> modal_code(const Fanuc& fanuc, long group) {
     case 11:
       return fanuc.mapping.scaled ? 51.0 : 50.0;
     case 12:
-      return fanuc.calls.stack.back().modals > 0 ? 66.0 : 67.0;
+      return fanuc.calls.stack.top().modals > 0 ? 66.0 : 67.0;
     case 13:
       return 97.0;
     case 14:

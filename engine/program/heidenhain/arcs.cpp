@@ -30,7 +30,7 @@ int sense(nc::Control& control, Frames& frames, BlockReader& reader, const Motio
     reader.fail("missing-word", start, "the arc has no DR", "DR+ turns counter-clockwise, DR- clockwise");
   const nc::PlaneAxes axes = nc::axes_of(control.modal.plane);
   plane_scale(control, frames, reader, start);
-  return frames.stretch.turns_over(axes.first, axes.second) ? -words.sense : words.sense;
+  return frames.stretch.turns_over(axes) ? -words.sense : words.sense;
 }
 
 /// The way from the pole to a point at this radius and angle, as it lies in the control's frame.

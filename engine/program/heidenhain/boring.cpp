@@ -140,7 +140,7 @@ void mill_bore(Executor& executor) {
         "bad-cycle", 0, fmt::format("the depth per helix Q334 is {:g}", q(executor.drilling, Q::kHelixDepth)),
         "Q334=1");
   const nc::PlaneAxes axes = nc::axes_of(executor.control.modal.plane);
-  if (executor.frames.stretch.turns_over(axes.first, axes.second))
+  if (executor.frames.stretch.turns_over(axes))
     executor.control.report.fail("unsupported-word", 0,
                                  "cycle 208 while one axis is mirrored is not supported",
                                  "end cycle 8 before the call");

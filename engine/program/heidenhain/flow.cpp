@@ -11,7 +11,7 @@ using nc::LineSource;
 void Flow::open(const std::string& path) {
   auto level = std::make_unique<Level>();
   level->source = std::make_unique<LineSource>(path, control_);
-  levels_.push_back(std::move(level));
+  levels_.enter(std::move(level));
 }
 
 bool Flow::fetch(Level& level) {
@@ -23,7 +23,7 @@ bool Flow::fetch(Level& level) {
 
 const BlockText* Flow::next() {
   if (ended_) return nullptr;
-  Level& level = *levels_.back();
+  Level& level = *levels_.top();
   if (!fetch(level)) {
     control_.report.at(level.source->file(), static_cast<int>(level.source->line_number()), 1);
     control_.report.fail("missing-end", 0, "the program ends without END PGM",
@@ -44,7 +44,7 @@ const BlockText* Flow::next() {
 }
 
 const BlockText* Flow::following() {
-  return fetch(*levels_.back()) ? &levels_.back()->ahead : nullptr;
+  return fetch(*levels_.top()) ? &levels_.top()->ahead : nullptr;
 }
 
 /// A number without leading zeros, or "name" with its quotes.
@@ -85,7 +85,7 @@ void Flow::go(Level& level, const LineSource::Mark& mark) {
 }
 
 void Flow::go(BlockReader& reader, const std::string& name, size_t offset) {
-  Level& level = *levels_.back();
+  Level& level = *levels_.top();
   read_labels(level);
   const auto found = level.labels.find(name);
   if (found == level.labels.end()) {
@@ -105,14 +105,13 @@ void Flow::go(BlockReader& reader, const std::string& name, size_t offset) {
 void Flow::set_label(BlockReader& reader) {
   const std::string name = label(reader);
   reader.expect_end();
-  Level& level = *levels_.back();
+  Level& level = *levels_.top();
   if (name != "0") {
     read_labels(level);
     return;
   }
   if (level.returns.empty()) return;
-  const LineSource::Mark back = level.returns.back();
-  level.returns.pop_back();
+  const LineSource::Mark back = level.returns.leave();
   go(level, back);
 }
 
@@ -123,7 +122,7 @@ void Flow::call_label(BlockReader& reader) {
   if (name == "0") {
     reader.fail("unknown-label", offset, "LBL 0 ends subprograms and cannot be called", "call another label");
   }
-  Level& level = *levels_.back();
+  Level& level = *levels_.top();
   const int line = reader.block().line();
   if (reader.take("REP")) {
     const long times = reader.whole_value(0, 65534);
@@ -141,13 +140,13 @@ void Flow::call_label(BlockReader& reader) {
   }
   reader.expect_end();
   if (level.returns.size() >= kLevelsMax) {
-    reader.fail("too-deep", offset, fmt::format("more than {} subprograms call each other", kLevelsMax),
+    reader.fail(kRecursionLimit, offset, fmt::format("more than {} subprograms call each other", kLevelsMax),
                 "end them with LBL 0, or take the recursion out");
   }
   fetch(level);
   const LineSource::Mark back = level.ahead_valid ? level.ahead.mark : level.source->mark();
   go(reader, name, offset);
-  level.returns.push_back(back);
+  level.returns.enter(back);
 }
 
 /// The name of a program, in quotes or not.
@@ -163,18 +162,18 @@ void Flow::call_program(BlockReader& reader, std::string name, size_t offset) {
   std::replace(name.begin(), name.end(), '\\', '/');
   if (name.starts_with("TNC:/")) name = name.substr(5);
   const std::string path =
-      nc::find_subprogram(levels_.back()->source->path(), control_.setup, name, {"", ".h", ".H"});
+      nc::find_subprogram(levels_.top()->source->path(), control_.setup, name, {"", ".h", ".H"});
   if (path.empty() || name.empty()) {
     reader.fail("unknown-subprogram", offset, fmt::format("the program '{}' is not found", name),
                 "put it next to this program, or name its folder in the scene");
   }
-  if (levels_.size() > kLevelsMax) {
-    reader.fail("too-deep", offset, fmt::format("more than {} programs call each other", kLevelsMax),
+  if (levels_.full(kLevelsMax)) {
+    reader.fail(kRecursionLimit, offset, fmt::format("more than {} programs call each other", kLevelsMax),
                 "take the recursion out");
   }
   nc::jump(control_);
   open(path);
-  levels_.back()->outer_local = parameters_.swap_local({});
+  levels_.top()->outer_local = parameters_.swap_local({});
 }
 
 bool Flow::statement(BlockReader& reader) {
@@ -235,20 +234,20 @@ void Flow::conditional(BlockReader& reader, int number) {
 }
 
 void Flow::end_of_program(BlockReader& reader) {
-  if (!levels_.back()->returns.empty()) {
+  if (!levels_.top()->returns.empty()) {
     reader.fail("missing-end", 0, "the program ends inside a subprogram: LBL 0 is missing",
                 "end the subprogram with LBL 0");
   }
-  if (levels_.size() == 1) {
+  if (!levels_.called()) {
     ended_ = true;
     return;
   }
-  parameters_.swap_local(std::move(levels_.back()->outer_local));
-  levels_.pop_back();
+  parameters_.swap_local(std::move(levels_.top()->outer_local));
+  levels_.leave();
 }
 
 void Flow::stop(BlockReader& reader, size_t offset) {
-  if (levels_.size() > 1) {
+  if (levels_.called()) {
     reader.fail("end-in-called-program", offset, "a called program ends with M2 or M30",
                 "called programs end with END PGM alone");
   }

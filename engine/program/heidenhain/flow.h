@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "program/control/call_stack.h"
 #include "program/heidenhain/parameters.h"
 #include "program/heidenhain/text.h"
 
@@ -42,8 +43,8 @@ class Flow {
     bool ahead_valid = false;
     std::map<std::string, nc::LineSource::Mark> labels;
     bool labels_read = false;
-    std::vector<nc::LineSource::Mark> returns;  ///< where LBL 0 goes back to
-    std::map<int, long> repeats;                ///< line of CALL LBL REP -> how often it still repeats
+    nc::CallStack<nc::LineSource::Mark> returns;  ///< where LBL 0 goes back to
+    std::map<int, long> repeats;                  ///< line of CALL LBL REP -> how often it still repeats
     std::map<int, double> outer_local;
   };
   bool fetch(Level& level);
@@ -58,7 +59,7 @@ class Flow {
 
   nc::Control& control_;
   Parameters& parameters_;
-  std::vector<std::unique_ptr<Level>> levels_;
+  nc::CallStack<std::unique_ptr<Level>> levels_;
   BlockText now_;
   std::vector<std::pair<int, std::string>> comments_;
   std::string selected_;  ///< by SEL PGM

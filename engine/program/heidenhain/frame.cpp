@@ -244,14 +244,14 @@ void axis_scaling(Executor& executor, BlockReader& reader) {
 /// axes.
 double plane_scale(nc::Control& control, Frames& frames, BlockReader& reader, size_t offset) {
   const nc::PlaneAxes axes = nc::axes_of(control.modal.plane);
-  const double first = std::abs(frames.stretch.factor[axes.first]),
-               second = std::abs(frames.stretch.factor[axes.second]);
-  if (first != second)
+  const std::optional<double> grown = frames.stretch.in_plane(axes);
+  if (!grown)
     reader.fail("bad-arc", offset,
                 fmt::format("cycle 26 scales {} by {:g} and {} by {:g}: arcs and corners would be none",
-                            nc::kAxisLetters[axes.first], first, nc::kAxisLetters[axes.second], second),
+                            nc::kAxisLetters[axes.first], std::abs(frames.stretch.factor[axes.first]),
+                            nc::kAxisLetters[axes.second], std::abs(frames.stretch.factor[axes.second])),
                 "give both axes of the working plane the same factor");
-  return first;
+  return *grown;
 }
 
 /// Words that are not scaled or mirrored here.

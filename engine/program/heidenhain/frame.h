@@ -8,20 +8,9 @@
 #pragma once
 
 #include "base/frames.h"
+#include "program/control/stretch.h"
 
 namespace swarf::program::nc::heidenhain {
-
-/// Coordinates of the control's frame from programmed ones, axis by axis: factor u + offset, mm.
-struct Stretch {
-  Vec3 factor = Vec3::Ones(), offset = Vec3::Zero();
-  bool none() const { return factor == Vec3::Ones() && offset.isZero(0.0); }
-  /// A coordinate, or a way along the axis (`incremental`).
-  double along(int axis, double value_mm, bool incremental) const {
-    return factor[axis] * value_mm + (incremental ? 0.0 : offset[axis]);
-  }
-  /// The mirror image of a turn in this plane turns the other way.
-  bool turns_over(int first, int second) const { return factor[first] * factor[second] < 0.0; }
-};
 
 /// What cycles 7, 8, 10, 11 and 26 (TRANS ..) leave, in mm and degrees.
 struct Level {

@@ -175,8 +175,7 @@ void move(Executor& executor, BlockReader& reader, const MotionWords& words, Ele
 /// RL and RR of the program; a mirror image has the cutter on the other side.
 nc::Compensation side_of(nc::Control& control, const Frames& frames, nc::Compensation written) {
   const nc::PlaneAxes axes = nc::axes_of(control.modal.plane);
-  if (written == nc::Compensation::kOff || !frames.stretch.turns_over(axes.first, axes.second))
-    return written;
+  if (written == nc::Compensation::kOff || !frames.stretch.turns_over(axes)) return written;
   return written == nc::Compensation::kLeft ? nc::Compensation::kRight : nc::Compensation::kLeft;
 }
 

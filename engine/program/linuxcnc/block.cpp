@@ -231,9 +231,9 @@ bool apply_end(LinuxCnc& linuxcnc) {
       call_number(linuxcnc.calls, linuxcnc,
                   whole(linuxcnc.block, 'P', 0, 99999999, linuxcnc.reader, linuxcnc.control), times, at);
     }
-    if (code == M::kReturn && linuxcnc.calls.stack.size() > 1 && frame(linuxcnc.calls).numbered) {
+    if (code == M::kReturn && linuxcnc.calls.stack.called() && frame(linuxcnc.calls).numbered) {
       leave(linuxcnc);
-    } else if (code == M::kReturn && linuxcnc.calls.stack.size() > 1) {
+    } else if (code == M::kReturn && linuxcnc.calls.stack.called()) {
       linuxcnc.control.report.fail("bad-o-word", at, "M99 ends a subprogram that was called with O... call",
                                    "end it with endsub");
     } else if (code == M::kReturn) {

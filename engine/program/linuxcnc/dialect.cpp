@@ -116,7 +116,7 @@ LinuxCnc::LinuxCnc(const std::string& file, Control& machine)
   parameters.number_set.assign(kNumbers, false);
   Call main;
   main.source = &open(file);
-  calls.stack.push_back(std::move(main));
+  calls.stack.enter(std::move(main));
   control.modal.feed_rule = FeedRule::kLinearFirst;
   control.contour.set_entry(CompensationEntry::kAlongEntry);
   control.contour.set_smooth(kSmoothCornerRad);

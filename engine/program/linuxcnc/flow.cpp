@@ -276,8 +276,8 @@ const Sub* find_sub(Calls& calls, LetterDialect& letters, const std::string& nam
 
 void enter(Calls& calls, LetterDialect& letters, const Sub& sub, Call call) {
   nc::jump(letters.control);
-  if (calls.stack.size() > kCallsMax)
-    letters.control.report.fail("recursion-limit", 0,
+  if (calls.stack.full(kCallsMax))
+    letters.control.report.fail(kRecursionLimit, 0,
                                 fmt::format("more than {} subprograms call each other here", kCallsMax),
                                 "end the recursion with a condition");
   call.back = source(calls).mark();
@@ -285,7 +285,7 @@ void enter(Calls& calls, LetterDialect& letters, const Sub& sub, Call call) {
   call.source = sub.source;
   call.top = sub.body;
   call.source->seek(sub.body);
-  calls.stack.push_back(std::move(call));
+  calls.stack.enter(std::move(call));
 }
 
 void call_sub(Calls& calls, NumbersAndNames& parameters, LetterDialect& letters, const OWord& word) {
@@ -348,7 +348,7 @@ void flow(LinuxCnc& linuxcnc) {
       return call_sub(linuxcnc.calls, linuxcnc.parameters, linuxcnc, word);
     case Keyword::kReturn:
     case Keyword::kEndSub:
-      if (linuxcnc.calls.stack.size() < 2)
+      if (!linuxcnc.calls.stack.called())
         linuxcnc.control.report.fail("bad-o-word", word.column, "this ends a subprogram, and none was called",
                                      "take it out");
       linuxcnc.reader.skip_space();
@@ -380,12 +380,12 @@ void leave(LinuxCnc& linuxcnc) {
     return;
   }
   if (call.numbered) {  // #1 to #30 are global there
-    Call& caller = linuxcnc.calls.stack[linuxcnc.calls.stack.size() - 2];
+    Call& caller = linuxcnc.calls.stack.caller();
     caller.arguments = call.arguments;
     caller.assigned = call.assigned;
   }
   const LineSource::Mark back = call.back;
-  linuxcnc.calls.stack.pop_back();
+  linuxcnc.calls.stack.leave();
   source(linuxcnc.calls).seek(back);
 }
 
@@ -422,7 +422,7 @@ void end_of_flow(Calls& calls, LetterDialect& letters) {
                                 fmt::format("O{} is not closed at the end of the file", loop.name),
                                 "add its end");
   }
-  if (calls.stack.size() == 1) {
+  if (!calls.stack.called()) {
     letters.warn_of_missing_end("M2, M30 or %");
     letters.ended = true;
     return;

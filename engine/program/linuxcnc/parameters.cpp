@@ -132,7 +132,7 @@ std::optional<double> predefined(LinuxCnc& linuxcnc, std::string_view name) {
       {"_retract_old_z", linuxcnc.modes.retract_to_r ? 0.0 : 1.0},
       {"_plane", 170.0 + 10.0 * static_cast<int>(linuxcnc.control.modal.plane)},
       {"_ccomp", linuxcnc.modes.radius_code},
-      {"_line", static_cast<double>(linuxcnc.calls.stack.back().source->line_number())},
+      {"_line", static_cast<double>(linuxcnc.calls.stack.top().source->line_number())},
       {"_motion_mode", linuxcnc.modes.motion},
       {"_call_level", static_cast<double>(linuxcnc.calls.stack.size() - 1)},
       {"_remap_level", 0.0},
@@ -161,7 +161,7 @@ std::optional<double> predefined(LinuxCnc& linuxcnc, std::string_view name) {
 double LinuxCnc::read(long number, size_t place) {
   if (number >= 1 && number <= kArguments) {
     // Arguments that a call does not give are zero; the main program has none.
-    if ((frame(calls).assigned >> number & 1u) != 0 || calls.stack.size() > 1)
+    if ((frame(calls).assigned >> number & 1u) != 0 || calls.stack.called())
       return frame(calls).arguments[static_cast<size_t>(number)];
   } else if (number == 5399 && modes.input_read) {
     control.report.fail(

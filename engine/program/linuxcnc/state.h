@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "program/control/call_stack.h"
 #include "program/control/curve.h"
 #include "program/letters/letter_dialect.h"
 #include "program/linuxcnc/codes.h"
@@ -131,7 +132,7 @@ struct Sub {
 
 /// O-words that run, and those that were found.
 struct Calls {
-  std::vector<Call> stack;
+  CallStack<Call> stack;
   std::vector<Sub> known;
 };
 
@@ -201,10 +202,10 @@ inline bool is_axis_given(const LetterDialect& letters) {
 }
 /// The call that runs, and the file that is being read.
 inline Call& frame(Calls& calls) {
-  return calls.stack.back();
+  return calls.stack.top();
 }
 inline LineSource& source(Calls& calls) {
-  return *calls.stack.back().source;
+  return *calls.stack.top().source;
 }
 
 }  // namespace swarf::program::nc::linuxcnc

@@ -178,8 +178,7 @@ void bind(Flow& flow, Level& level, TokenReader* arguments, const std::vector<Va
 /// PROC was read when the program was called; the main program may have one without parameters.
 void on_proc(Flow& flow, TokenReader& reader) {
   if (flow.line.current == top(flow).entry) return;
-  if (flow.levels.size() == 1 && reader.peek().kind == TokenKind::kName && !reader.peek(1).symbol("("))
-    return;
+  if (!flow.levels.called() && reader.peek().kind == TokenKind::kName && !reader.peek(1).symbol("(")) return;
   refuse(reader.line(), 0, "bad-block", "PROC stands in the first block of a program that is called",
          "the program that is run has no parameters");
 }
@@ -258,9 +257,9 @@ void on_mcall(Flow& flow, TokenReader& reader) {
 
 void call(Flow& flow, int file, TokenReader* arguments, const std::vector<Value>& values, int times) {
   const LineRef& from = flow.line.running;
-  if (static_cast<int>(std::count_if(flow.levels.begin(), flow.levels.end(),
-                                     [](const Level& l) { return !l.part; })) >= flow.limits.levels_max) {
-    refuse(from, from.text.find_first_not_of(" \t"), "too-deep",
+  const size_t programs = flow.levels.count([](const Level& level) { return !level.part; });
+  if (static_cast<int>(programs) >= flow.limits.levels_max) {
+    refuse(from, from.text.find_first_not_of(" \t"), kRecursionLimit,
            fmt::format("the control has {} program levels", flow.limits.levels_max),
            "check for a program that calls itself");
   }
@@ -280,7 +279,7 @@ void call(Flow& flow, int file, TokenReader* arguments, const std::vector<Value>
     }
     finish_block(*arguments, "the call");
   }
-  flow.levels.push_back(std::move(level));
+  flow.levels.enter(std::move(level));
   flow.variables.enter(*top(flow).scope);
 }
 
@@ -331,12 +330,12 @@ void on_repeat(Flow& flow, TokenReader& reader) {
   finish_block(reader, "REPEAT");
   if (times == 0) return;
   if (flow.levels.size() >= kNestedMax) {
-    refuse(reader.line(), 0, "too-deep", "repeated parts are nested too deeply",
+    refuse(reader.line(), 0, kRecursionLimit, "repeated parts are nested too deeply",
            "a part that repeats itself never ends");
   }
   part.next = part.first;
   part.again = times - 1;
-  flow.levels.push_back(std::move(part));
+  flow.levels.enter(std::move(part));
 }
 
 }  // namespace swarf::program::nc::siemens

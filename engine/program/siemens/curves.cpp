@@ -44,7 +44,7 @@ PolynomialBlock polynomial_block(Executor& executor, const BlockWords& words, co
       const double a = words.polynomials[n].a[k];
       axis.a[k] = !words.polynomials[n] ? 0.0
                   : rotary              ? rad_from_deg(a)
-                                        : executor.control.modal.mm(a) * executor.frames.shape[word];
+                                        : executor.control.modal.mm(a) * executor.frames.stretch.factor[word];
     }
     if (!rotary) {
       block.linear[n] = axis;

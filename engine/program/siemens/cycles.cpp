@@ -250,7 +250,7 @@ void only_zero(const BlockPlace& place, const CycleCall& call, size_t first, siz
 /// The cycle's heights along the plane's normal, and what it does at the bottom.
 DrillCycle drilling(nc::Control& control, const BlockPlace& place, const Frames& frames,
                     const CycleCall& call) {
-  if (frames.shape[nc::axes_of(control.modal.plane).normal] != 1.0) {
+  if (frames.stretch.factor[nc::axes_of(control.modal.plane).normal] != 1.0) {
     fail(place, "unsupported-word", call.offset,
          "drilling cycles along a mirrored or scaled axis are not supported",
          "write the cycle outside of the frame, or its moves as blocks");

@@ -16,11 +16,10 @@ bool leave_level(Flow& flow, bool to_caller) {
     top(flow).next = top(flow).first;
     return true;
   }
-  while (to_caller && top(flow).part) flow.levels.pop_back();
-  const Level left = std::move(flow.levels.back());
-  flow.levels.pop_back();
+  while (to_caller && top(flow).part) flow.levels.leave();
+  const Level left = flow.levels.leave();
   if (left.again > 0) {  // a subprogram with P that ended by M17
-    flow.levels.push_back(left);
+    flow.levels.enter(left);
     --top(flow).again;
     top(flow).next = top(flow).first;
     return true;
@@ -69,8 +68,7 @@ void words(Flow& flow, TokenReader& reader) {
   if (subprogram_here(flow, reader)) return;
   const long before = flow.target.moves();
   const Outcome outcome = flow.target.block(reader, flow.variables);
-  const auto programs =
-      std::count_if(flow.levels.begin(), flow.levels.end(), [](const Level& level) { return !level.part; });
+  const size_t programs = flow.levels.count([](const Level& level) { return !level.part; });
   const bool modal = flow.modal.file >= 0 && flow.levels.size() == flow.modal.depth;
   // In a main program that is called, M2 and M30 mean M17 (manual, subprograms).
   const bool ends = outcome == Outcome::kEnd && programs == 1;
@@ -116,7 +114,7 @@ bool condition(Variables& variables, TokenReader& reader) {
 
 /// Goes on with a line of the running program; jumps back are counted against endless loops.
 void jump(Flow& flow, int index, const LineRef& from) {
-  while (top(flow).part && (index < top(flow).first || index >= top(flow).stop)) flow.levels.pop_back();
+  while (top(flow).part && (index < top(flow).first || index >= top(flow).stop)) flow.levels.leave();
   top(flow).next = index;
   if (index > flow.line.current) return;
   if (flow.target.moves() != flow.counts.moves_seen) flow.counts.jumps = 0;
@@ -301,7 +299,7 @@ void run(Flow& flow, const std::string& path) {
   Level main;
   main.stop = flow.programs.sources[0]->lines();
   main.scope = std::make_shared<Scope>();
-  flow.levels.push_back(std::move(main));
+  flow.levels.enter(std::move(main));
   flow.variables.enter(*top(flow).scope);
   while (!flow.levels.empty() && !flow.counts.stopped) {
     if (top(flow).next >= top(flow).stop) {

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "program/control/call_stack.h"
 #include "program/siemens/expression.h"
 #include "program/siemens/source.h"
 
@@ -105,7 +106,7 @@ struct Flow {
   FlowLimits limits;
   Variables variables;
   Programs programs;
-  std::vector<Level> levels;
+  CallStack<Level> levels;
   ModalCall modal;
   RunningLine line;
   Counts counts;
@@ -113,15 +114,15 @@ struct Flow {
 
 /// The level that runs, and its file.
 inline Level& top(Flow& flow) {
-  return flow.levels.back();
+  return flow.levels.top();
 }
 inline Source& source(Flow& flow) {
   return *flow.programs.sources[static_cast<size_t>(top(flow).file)];
 }
 
 /// Runs a program and what it calls. Throws InputError for the first thing that is wrong:
-///   "unknown-word", "unknown-subprogram", "unknown-label", "endless-loop", "too-deep", "reserved-name",
-///   "wrong-arguments", "bad-block", and what Source, Variables and the formulas refuse.
+///   "unknown-word", "unknown-subprogram", "unknown-label", "endless-loop", "recursion-limit",
+///   "reserved-name", "wrong-arguments", "bad-block", and what Source, Variables and the formulas refuse.
 void run(Flow& flow, const std::string& path);
 
 /// Reads REAL, INT, BOOL or STRING; CHAR, AXIS, FRAME, CHAN and NCK are known and refused.

@@ -87,14 +87,14 @@ void scale_words(BlockPlace& place, Frames& frames, const BlockWords& words, boo
       fail(place, "out-of-range", word.offset, fmt::format("{:g} is no factor of SCALE", word.value),
            "SCALE X1.5 Y1.5");
     }
-    frames.shape[n] *= mirrors ? -1.0 : word.value;
+    frames.stretch.factor[n] *= mirrors ? -1.0 : word.value;
   }
 }
 
 /// CYCLE800(): no swivelled plane; the programmable frame goes with it.
 void swivel_off(nc::Control& control, Frames& frames, PathWords& path) {
   frames.swivelled = frames.programmed = Pose::Identity();
-  frames.shape = Vec3::Ones();
+  frames.stretch.factor = Vec3::Ones();
   set_frame(control, frames, path);
   if (frames.swivel_on && !frames.traori) nc::set_coordinates(control, nc::Coordinates::kAxes);
   frames.swivel_on = false;
@@ -218,7 +218,7 @@ void frame_words(Executor& executor, const BlockWords& words) {
            "ROT RPL=45");
     if (replaces) {
       executor.frames.programmed = Pose::Identity();
-      executor.frames.shape = Vec3::Ones();
+      executor.frames.stretch.factor = Vec3::Ones();
     }
     scale_words(executor.place, executor.frames, words, code == kMirror || code == kAMirror);
     set_frame(executor.control, executor.frames, executor.path);
@@ -231,22 +231,23 @@ void frame_words(Executor& executor, const BlockWords& words) {
   }
   if (replaces) {
     executor.frames.programmed = Pose::Identity();
-    executor.frames.shape = Vec3::Ones();
+    executor.frames.stretch.factor = Vec3::Ones();
   }
   Pose step = Pose::Identity();
   if (shifts) {
     for (int n = 0; n < 3; ++n) {
       const Coordinate& word = words.axes[static_cast<size_t>(n)];
-      if (word) step.translation()[n] = executor.control.modal.mm(word.value) * executor.frames.shape[n];
+      if (word)
+        step.translation()[n] = executor.control.modal.mm(word.value) * executor.frames.stretch.factor[n];
     }
   } else {
     // Within a scaled and mirrored frame S = diag(shape) the turn R becomes S R S^-1, rigid if all scales
     // agree.
-    if (executor.frames.shape.cwiseAbs() != Vec3(Vec3::Constant(std::abs(executor.frames.shape[0])))) {
+    if (!executor.frames.stretch.uniform()) {
       fail(executor.place, "unsupported-word", words.frame_offset,
            "a turn within axes that are scaled differently is not supported", "write AROT before ASCALE");
     }
-    const Mat3 signs = Mat3(executor.frames.shape.cwiseSign().asDiagonal());
+    const Mat3 signs = Mat3(executor.frames.stretch.factor.cwiseSign().asDiagonal());
     step.linear() = signs * rotation_of(executor.control, executor.place, words) * signs;
   }
   executor.frames.programmed = executor.frames.programmed * step;
@@ -315,7 +316,7 @@ void swivel(Executor& executor, const CycleCall& call) {
     fail(executor.place, "out-of-range", call.offsets[kDir],
          fmt::format("_DIR {} is not a direction", direction), "-1, 0 or 1");
   }
-  if (state % 10 == 1 && executor.frames.shape != Vec3(Vec3::Ones())) {
+  if (state % 10 == 1 && executor.frames.stretch.factor != Vec3(Vec3::Ones())) {
     fail(executor.place, "unsupported-word", call.offset,
          "a plane on top of a scaled or mirrored frame is not supported", "write TRANS before it");
   }
@@ -324,7 +325,7 @@ void swivel(Executor& executor, const CycleCall& call) {
   executor.frames.swivelled =
       state % 10 == 1 ? Pose(executor.frames.swivelled * executor.frames.programmed * plane) : plane;
   executor.frames.programmed = Pose::Identity();
-  executor.frames.shape = Vec3::Ones();
+  executor.frames.stretch.factor = Vec3::Ones();
   set_frame(executor.control, executor.frames, executor.path);
   if (direction != 0) {
     nc::TiltPreference preference;

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "program/control/report.h"
 #include "program/source_text.h"
 
 namespace swarf::program::nc::siemens {
@@ -199,8 +200,8 @@ int column_of(const LineRef& line, size_t offset) {
 }
 
 void refuse(const LineRef& line, size_t offset, std::string code, std::string text, std::string fix) {
-  throw InputError(std::move(code), {*line.file, line.line, column_of(line, offset)}, std::move(text),
-                   std::move(fix));
+  nc::Report::fail_at({*line.file, line.line, column_of(line, offset)}, std::move(code), std::move(text),
+                      std::move(fix));
 }
 
 std::string capitals(std::string_view text) {

@@ -33,7 +33,7 @@ Target target_of(const Executor& executor, const BlockWords& words, bool machine
     const bool rotary = n >= 3;
     const double value = rotary ? rad_from_deg(word.value)
                                 : executor.control.modal.mm(word.value) *
-                                      (machine ? 1.0 : executor.frames.shape[static_cast<long>(n)]);
+                                      (machine ? 1.0 : executor.frames.stretch.factor[static_cast<long>(n)]);
     const bool incremental =
         word.way == Way::kIncremental || (word.way == Way::kModal && executor.modes.incremental);
     if (machine && incremental) {
@@ -54,13 +54,12 @@ Target target_of(const Executor& executor, const BlockWords& words, bool machine
 
 /// What the radius of an arc in the plane is multiplied by.
 double arc_scale(nc::Control& control, const BlockPlace& place, const Frames& frames, size_t offset) {
-  const nc::PlaneAxes plane = nc::axes_of(control.modal.plane);
-  const double one = std::abs(frames.shape[plane.first]), other = std::abs(frames.shape[plane.second]);
-  if (one != other) {
+  const std::optional<double> grown = frames.stretch.in_plane(nc::axes_of(control.modal.plane));
+  if (!grown) {
     fail(place, "bad-arc", offset, "the axes of the plane are scaled differently: an arc would be an ellipse",
          "SCALE both axes of the plane alike");
   }
-  return one;
+  return *grown;
 }
 
 Motion turned(nc::Control& control, const Frames& frames, Motion motion) {
@@ -89,7 +88,7 @@ void orientation(BlockPlace& place, Frames& frames, const BlockWords& words, Tar
     fail(place, "words-conflict", given->offset, "the orientation is given in two ways in this block",
          "write rotary axes, or A3= B3= C3=, or A2= B2= C2=");
   }
-  if (frames.shape.cwiseAbs() != Vec3(Vec3::Constant(std::abs(frames.shape[0])))) {
+  if (!frames.stretch.uniform()) {
     fail(place, "unsupported-word", given->offset,
          "an orientation while the axes are scaled differently is not supported", "SCALE all axes alike");
   }
@@ -100,7 +99,7 @@ void orientation(BlockPlace& place, Frames& frames, const BlockWords& words, Tar
   }
   if (vector != nullptr) {
     const Vec3 axis(words.vector[0].value, words.vector[1].value, words.vector[2].value);
-    target.axis_P = axis.cwiseProduct(frames.shape);
+    target.axis_P = axis.cwiseProduct(frames.stretch.factor);
     return;
   }
   if (!frames.angles) {
@@ -114,7 +113,7 @@ void orientation(BlockPlace& place, Frames& frames, const BlockWords& words, Tar
                         ? Vec3(turn(a, Vec3::UnitZ()) * (turn(b, Vec3::UnitX()) * Vec3::UnitZ()))
                         : Vec3(turn(c, Vec3::UnitZ()) *
                                (turn(b, Vec3::UnitY()) * (turn(a, Vec3::UnitX()) * Vec3::UnitZ())));
-  target.axis_P = axis.cwiseProduct(frames.shape);
+  target.axis_P = axis.cwiseProduct(frames.stretch.factor);
 }
 
 void straight(nc::Control& control, PathWords& path, Motion motion, const Target& target) {
@@ -212,11 +211,11 @@ void circle(Executor& executor, const BlockWords& words, const Target& written) 
     }
     centred = true;
     centre[n] = (word.way == Way::kAbsolute ? 0.0 : from[n]) +
-                executor.control.modal.mm(word.value) * executor.frames.shape[n];
+                executor.control.modal.mm(word.value) * executor.frames.stretch.factor[n];
   }
   if (!centred && !words.radius && !words.opening && (words.polar_angle || words.polar_radius)) {
     centred = true;  // the pole is the centre
-    centre = executor.path.pole.cwiseProduct(executor.frames.shape);
+    centre = executor.path.pole.cwiseProduct(executor.frames.stretch.factor);
   }
   const int ways = (centred ? 1 : 0) + (words.radius ? 1 : 0);
   const size_t offset =
@@ -259,10 +258,10 @@ void circle_through(Executor& executor, const BlockWords& words, const Target& t
     offset = word.offset;
     const bool incremental =
         word.way == Way::kIncremental || (word.way == Way::kModal && executor.modes.incremental);
-    between[n] =
-        (incremental ? from[n] : 0.0) + executor.control.modal.mm(word.value) * executor.frames.shape[n];
+    between[n] = (incremental ? from[n] : 0.0) +
+                 executor.control.modal.mm(word.value) * executor.frames.stretch.factor[n];
   }
-  if (executor.frames.shape.cwiseAbs() != Vec3(Vec3::Constant(std::abs(executor.frames.shape[0]))))
+  if (!executor.frames.stretch.uniform())
     arc_scale(executor.control, executor.place, executor.frames, offset);
   const Vec3 a = between - from, b = to - from, cross = a.cross(b);
   if (!given || !(cross.norm() > kParallel * a.norm() * b.norm()) || !(cross.norm() > 0.0)) {
@@ -439,8 +438,7 @@ void other_words(Executor& executor, const BlockWords& words, int code) {
 
 /// One of the plane's axes runs the other way: arcs turn the other way, the cutter goes on the other side.
 bool mirrored(nc::Control& control, const Frames& frames) {
-  const nc::PlaneAxes plane = nc::axes_of(control.modal.plane);
-  return frames.shape[plane.first] * frames.shape[plane.second] < 0.0;
+  return frames.stretch.turns_over(nc::axes_of(control.modal.plane));
 }
 
 void motion_words(Executor& executor, const BlockWords& words) {

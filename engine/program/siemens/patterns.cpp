@@ -35,7 +35,7 @@ std::vector<Vec2> places(nc::Control& control, BlockPlace& place, Frames& frames
                 way * call_function("SIN", angle, *place.line, 0).number);
   };
   const nc::PlaneAxes plane = nc::axes_of(control.modal.plane);
-  const Vec3 now = nc::position_xyz(control).cwiseQuotient(frames.shape);
+  const Vec3 now = nc::position_xyz(control).cwiseQuotient(frames.stretch.factor);
   const Vec2 here(now[plane.first], now[plane.second]), reference(length(0), length(1));
   const auto nearer = [&](const Vec2& a, const Vec2& b) { return (a - here).norm() < (b - here).norm(); };
   std::vector<Vec2> all;
@@ -88,8 +88,8 @@ void pattern(Executor& executor, const CycleCall& call) {
   for (const Vec2& place : places(executor.control, executor.place, executor.frames, call)) {
     nc::Target target;
     target.column = column(executor.place, call.offset);
-    target.set(plane.first, place.x() * executor.frames.shape[plane.first], false);
-    target.set(plane.second, place.y() * executor.frames.shape[plane.second], false);
+    target.set(plane.first, place.x() * executor.frames.stretch.factor[plane.first], false);
+    target.set(plane.second, place.y() * executor.frames.stretch.factor[plane.second], false);
     nc::line(executor.control, nc::Motion::kRapid, target);
     if (executor.calls.modal_cycle)
       drill(executor.control, executor.place, executor.path,

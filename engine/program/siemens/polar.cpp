@@ -46,7 +46,7 @@ void set_pole(Executor& executor, const BlockWords& words, int code) {
            "G110 counts from the last position, which is not known yet",
            "write G111 with the pole from the zero of the workpiece");
     }
-    pole = nc::position_xyz(executor.control).cwiseQuotient(executor.frames.shape);
+    pole = nc::position_xyz(executor.control).cwiseQuotient(executor.frames.stretch.factor);
   }
   const bool polar = words.polar_angle || words.polar_radius;
   if (polar) {
@@ -105,7 +105,8 @@ void polar_end(Executor& executor, const BlockWords& words, Target& target) {
   }
   const Vec3 end = executor.path.pole + polar_way(executor.control, executor.place,
                                                   *executor.path.polar_angle, *executor.path.polar_radius);
-  for (const int n : {plane.first, plane.second}) target.set(n, end[n] * executor.frames.shape[n], false);
+  for (const int n : {plane.first, plane.second})
+    target.set(n, end[n] * executor.frames.stretch.factor[n], false);
   if (target.column == 0) target.column = column(executor.place, offset);
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "program/control/report.h"
 #include "program/siemens/lexer.h"
 
 namespace swarf::program::nc::siemens {
@@ -90,7 +91,7 @@ Source::Source(const std::string& path) : reader_(path) {
     if (lines_++ % kMarked == 0) marks_.push_back(here);
     blank = blank && line.find_first_not_of(" \t") == std::string_view::npos;
   }
-  if (blank) throw InputError("empty-file", {path, 0, 0}, "the program is empty", "give an NC program");
+  if (blank) nc::Report::fail_at({path, 0, 0}, "empty-file", "the program is empty", "give an NC program");
 }
 
 LineRef Source::line(int index) {

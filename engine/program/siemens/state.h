@@ -15,6 +15,7 @@
 #include "program/control/cycles.h"
 #include "program/control/offsets.h"
 #include "program/control/path.h"
+#include "program/control/stretch.h"
 #include "program/control/tilt.h"
 #include "program/control/tools.h"
 #include "program/siemens/block.h"
@@ -58,8 +59,8 @@ struct Modes {
 /// What moves the program's zero, and what orientations are counted in.
 struct Frames {
   Pose programmed = Pose::Identity();  ///< TRANS, ROT ...
-  Vec3 shape = Vec3::Ones();  ///< SCALE, MIRROR: the control's coordinates are these times the program's
-  Pose swivelled = Pose::Identity();  ///< CYCLE800
+  nc::Stretch stretch;                 ///< SCALE, MIRROR: of the words; no offsets
+  Pose swivelled = Pose::Identity();   ///< CYCLE800
   bool traori = false, swivel_on = false;
   std::optional<int> reference;                           ///< ORIWKS, ORIMKS
   std::optional<int> interpolation;                       ///< ORIVECT, ORIAXES: goes before ORIWKS and ORIMKS

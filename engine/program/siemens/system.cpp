@@ -80,7 +80,7 @@ Value position_of(nc::Control& control, Frames& frames, const SystemName& asked)
   }
   const double value = asked.name == "$AA_IM"
                            ? control.path.q[control.space.axis_of(static_cast<nc::AxisWord>(word))]
-                           : nc::position(control)[n] / (word < 3 ? frames.shape[word] : 1.0);
+                           : nc::position(control)[n] / (word < 3 ? frames.stretch.factor[word] : 1.0);
   if (!std::isfinite(value) || !control.path.started) {
     refuse(asked.line, asked.offset, "start-unknown",
            fmt::format("{} is read, and the position is not known yet", asked.name),

@@ -107,7 +107,7 @@ TEST(HeidenhainFlow, TextParametersNameToolsAndLabels) {
 
 TEST(HeidenhainFlow, EndlessLoopsAndRecursionEnd) {
   EXPECT_EQ(klartext("LBL 1\nFN 9: IF +0 EQU +0 GOTO LBL 1\n").first_error(), "endless-loop 3:29");
-  EXPECT_EQ(klartext("LBL 1\nCALL LBL 1\nLBL 0\n").first_error(), "too-deep 3:10");
+  EXPECT_EQ(klartext("LBL 1\nCALL LBL 1\nLBL 0\n").first_error(), "recursion-limit 3:10");
 }
 
 }  // namespace

@@ -69,7 +69,7 @@ TEST(BadSiemensProgram, RecursionEndsAtTheLevelsOfTheControl) {
   std::ofstream(sub) << "SIEMENS_SELF\nM17\n";
   const Ran ran = run_text("SIEMENS_SELF\nM30\n");
   std::remove(sub.c_str());
-  EXPECT_EQ(errors_of(ran.diagnostics), std::vector<std::string>{"too-deep 1:1"});
+  EXPECT_EQ(errors_of(ran.diagnostics), std::vector<std::string>{"recursion-limit 1:1"});
 }
 
 }  // namespace

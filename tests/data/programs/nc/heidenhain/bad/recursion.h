@@ -1,4 +1,4 @@
-; expect: too-deep 4:10
+; expect: recursion-limit 4:10
 BEGIN PGM T MM
 LBL 1
 CALL LBL 1
