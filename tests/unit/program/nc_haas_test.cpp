@@ -253,6 +253,29 @@ TEST(NcHaas, SharedProgramsMoveAsFanucReadsThem) {
   expect_twins(haas("%\nO01234\n" + job + "%\n"), fanuc_twin("%\nO1234\n" + job + "%\n"));
 }
 
+TEST(NcHaas, TheSameCutAsItsFanucTwin) {
+  // The job of scenes/nc_pocket, its pocket by G13 and its holes by G70 in a local subprogram, against arcs
+  // and points written out. Ends within the rounding of the angles: 1e-13 of 33.5 mm.
+  ControlSetup setup = three_axis_setup();
+  setup.tools = {{1, "MILL_10", 45.0, 10.0, 0.0}, {2, "DRILL_8", 90.0, 8.0, 0.0}};
+  const std::string folder = std::string(SWARF_SOURCE_DIR) + "/tests/data/programs/nc/";
+  const NcRun one = run_file(folder + "haas/good/pocket.nc", std::nullopt, setup),
+              other = run_file(folder + "fanuc/good/pocket.nc", std::nullopt, setup);
+  ASSERT_EQ(one.text() + other.text(), "");
+  EXPECT_EQ(one.summary.dialect, Dialect::kHaas);
+  EXPECT_EQ(other.summary.dialect, Dialect::kFanuc);
+  ASSERT_EQ(one.moves().size(), other.moves().size());
+  for (size_t i = 0; i < one.moves().size(); ++i) {
+    const NcMove &a = one.moves()[i], &b = other.moves()[i];
+    EXPECT_NEAR((a.to.tip_W - b.to.tip_W).norm(), 0.0, 1e-11) << "lines " << a.line << " and " << b.line;
+    EXPECT_EQ(a.rapid, b.rapid) << "lines " << a.line << " and " << b.line;
+    EXPECT_EQ(a.feed_mm_s, b.feed_mm_s) << "lines " << a.line << " and " << b.line;
+    EXPECT_EQ(a.tool, b.tool) << "lines " << a.line << " and " << b.line;
+    ASSERT_EQ(a.arc.has_value(), b.arc.has_value()) << "lines " << a.line << " and " << b.line;
+    if (a.arc) EXPECT_EQ(a.arc->centre_W, b.arc->centre_W) << "lines " << a.line << " and " << b.line;
+  }
+}
+
 TEST(NcHaas, IsRecognised) {
   const auto recognised = [](const std::string& text) {
     const auto path = std::filesystem::temp_directory_path() / "swarf_nc_haas_recognised.nc";
