@@ -191,7 +191,8 @@ int check(const CheckOptions& options) {
 const char* const kCheckFooter =
     R"(What is printed for an NC program: the dialect and why, lines and moves, the way of the tip in feed and rapid moves,
 times at the programmed feed, and with --machine the time and the travel of each axis as `swarf run` has them, to the
-same cycle (look-ahead with the interpolator's defaults; half a minute for a million blocks, --no-drive leaves it out);
+same cycle (look-ahead with the interpolator's defaults; half a minute and a gigabyte for a million
+moves, not for more than two million; --no-drive leaves it out);
 tools that cut, where it starts, extents of cut and axes, words without effect.
 Every fault is told with file:line:column and what to do; the program is read up to its first one.
 

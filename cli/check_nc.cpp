@@ -282,6 +282,9 @@ Checked check_nc(const std::string& file, const NcCheckOptions& options) {
       summary.start.empty() ? "no motion" : summary.start);
   if (totals.feeds + totals.rapids > 0) text += places_text(setup, totals);
   if (driven) text += motion_text(*driven, setup.machine);
+  if (drives && motion.too_many())
+    text += fmt::format("\n  driven    not: the program has more than {} moves; its run drives them",
+                        NcMotionSink::kMovesMost);
   if (!totals.out_of_travel.empty()) text += "\n  finding   " + totals.out_of_travel;
   if (!summary.functions.empty()) {
     text += "\n  no effect on the geometry:";

@@ -33,6 +33,8 @@ const char* unit_of(const kinematics::Axis& axis) {
 }  // namespace
 
 bool NcMotionSink::move(const program::NcMove& move) {
+  if (++moves_ == kMovesMost + 1) path_ = {};
+  if (too_many()) return next_.move(move);
   program::NcMove known = move;
   // Without a table every tool is the machine's own point.
   if (setup_.tools.empty()) known.tool = 0;
@@ -41,6 +43,7 @@ bool NcMotionSink::move(const program::NcMove& move) {
 }
 
 std::optional<motion::MotionStatistics> NcMotionSink::drive(const program::NcSummary& summary) {
+  if (too_many()) return std::nullopt;
   Diagnostics diagnostics;
   toolpath::ToolPath path = path_.finish(summary, diagnostics).path;
   if (diagnostics.has_errors() || path.elements.empty() || interrupted()) return std::nullopt;

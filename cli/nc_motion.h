@@ -13,7 +13,8 @@
 
 namespace swarf::cli {
 
-/// Hands every move on and keeps it, packed, for the motion.
+/// Hands every move on and keeps it for the motion, as long as there are no more than kMovesMost: each takes
+/// about a kilobyte.
 class NcMotionSink final : public program::NcSink {
  public:
   /// References must outlive it.
@@ -21,6 +22,9 @@ class NcMotionSink final : public program::NcSink {
   bool move(const program::NcMove& move) override;
   void note(const program::NcNote& note) override { next_.note(note); }
 
+  static constexpr long kMovesMost = 2'000'000;
+  /// They are not kept then, and not driven.
+  bool too_many() const { return moves_ > kMovesMost; }
   /// Drives the machine along the program with the interpolator's defaults (scenes/README.md:
   /// [interpolator]). None when nothing moves with a tool in the spindle, or Ctrl-C was pressed. Throws
   /// InputError as a run does.
@@ -30,6 +34,7 @@ class NcMotionSink final : public program::NcSink {
   const program::ControlSetup& setup_;
   program::NcSink& next_;
   toolpath::NcPathSink path_;
+  long moves_ = 0;
 };
 
 /// For people: one line for the time, one for each axis. Lines begin with a line break.
