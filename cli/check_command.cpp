@@ -204,9 +204,12 @@ a program that feeds before that needs --home, or a scene with `start`.
 Examples:
   swarf check part.ngc                                     three axes without limits
   swarf check part.mpf --machine assets/machines/spinner_u5_620/machine.toml --tools tools.toml --home
-  swarf check part.nc --dialect fanuc                      when nothing in the text shows the dialect
+  swarf check part.nc --dialect fanuc                      named: not recognised from the text
   swarf check scene.toml machine.toml path.cls             scenes, machines and CL data
   swarf check --json *.nc --dialect fanuc                  for a pipeline: every file's numbers and diagnostics
+
+Which dialect: words that only one has show it, comments do not. A text that shows none is read as the common core of
+ISO words (linuxcnc), and one that cannot be read in its dialect in the next best; both are said.
 
 A scene's path is planned and its axes are moved along it: moves out of travel or reach, or faster than an axis,
 are findings. An NC program alone is held to the travel of --machine; how fast its axes go takes a scene.
@@ -241,6 +244,13 @@ void add_check(CLI::App& app, int& exit_code) {
       "--no-drive", [&drive] { drive = false; },
       "with --machine: no time and travel by look-ahead, only at the programmed feed");
   command->add_flag("--home", options->nc.at_home, "NC programs start at the machine's home");
+  command
+      ->add_option("--units", options->nc.units,
+                   "unit of NC programs that have neither G20 nor G21; the machine's when left out")
+      ->check(CLI::IsMember({"mm", "inch"}));
+  command->add_option("--start-tool", options->nc.start_tool,
+                      "number of the tool that is in the spindle when an NC program starts");
+  command->add_flag("--t-changes-tool", options->nc.t_changes_tool, "T changes the tool at once, without M6");
   command
       ->add_option("--cutcom", options->cl.cutcom,
                    "points of CL data under CUTCOM: of the cutter's centre, or of the part's contour")

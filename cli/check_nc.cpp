@@ -158,14 +158,59 @@ bool has_surface_blocks(const std::string& file) {
   return head.find("G10L7") != std::string::npos || head.find("G06.3") != std::string::npos;
 }
 
-std::vector<program::NcTool> tools_of(const std::string& table, Diagnostics& told) {
+std::vector<program::NcTool> tools_of(const std::string& table, sim::IncompleteTools& incomplete,
+                                      Diagnostics& told) {
   Diagnostics diagnostics;
   std::vector<program::NcTool> tools;
-  for (const cutter::Cutter& one : sim::read_tool_table(table, diagnostics))
+  for (const cutter::Cutter& one : sim::read_tool_table(table, diagnostics, &incomplete))
     tools.push_back({one.number, one.name, cutter::gauge_length(one), one.diameter_mm, one.corner_radius_mm});
   diagnostics.throw_if_errors();
   told.append(diagnostics);
   return tools;
+}
+
+/// What is in the spindle before the first block: --start-tool, or the only tool of the table where the
+/// program cuts without calling any.
+void set_start_tool(const std::string& file, const NcCheckOptions& options, program::ControlSetup& setup) {
+  if (options.start_tool == 0) {
+    setup.start_tool_if_needed = setup.tools.size() == 1;
+    setup.start_tool = setup.start_tool_if_needed ? 0 : -1;
+    return;
+  }
+  const auto found = std::find_if(setup.tools.begin(), setup.tools.end(), [&](const program::NcTool& tool) {
+    return tool.number == options.start_tool;
+  });
+  if (found == setup.tools.end())
+    throw InputError("unknown-tool", {file, 0, 0},
+                     fmt::format("--start-tool {} is not in the tool table", options.start_tool),
+                     "name its number, and the table with --tools");
+  setup.start_tool = static_cast<int>(found - setup.tools.begin());
+}
+
+/// Machine, tools and what else stands in the control before the first block.
+program::ControlSetup setup_of(const std::string& file, const NcCheckOptions& options,
+                               Diagnostics& diagnostics) {
+  program::ControlSetup setup;
+  if (options.machine.empty()) {
+    setup.machine = plain_machine();
+  } else {
+    const machine::MachineScene scene = machine::load_machine(options.machine);
+    setup.machine = scene.model;
+    setup.unit_mm = scene.program_unit_mm;
+  }
+  if (!options.units.empty()) setup.unit_mm = options.units == "inch" ? 25.4 : 1.0;
+  if (options.at_home) {
+    AxisValues home = AxisValues::Zero();
+    for (size_t i = 0; i < setup.machine.axes.size(); ++i)
+      home[static_cast<long>(i)] = setup.machine.axes[i].home;
+    setup.start = home;
+  }
+  setup.kinematics_switch = kinematics_of(file, options.kinematics);
+  setup.builder_words = builder_words_of(file, options.builder_words);
+  if (!options.tools.empty()) setup.tools = tools_of(options.tools, setup.incomplete_tools, diagnostics);
+  set_start_tool(file, options, setup);
+  setup.t_changes_tool = options.t_changes_tool;
+  return setup;
 }
 
 nlohmann::ordered_json tools_json(const program::ControlSetup& setup, const program::NcSummary& summary) {
@@ -220,6 +265,7 @@ nlohmann::ordered_json numbers_of(const program::ControlSetup& setup, const prog
           {"tools", tools_json(setup, summary)},
           {"machine", setup.machine.name},
           {"start", summary.start},
+          {"start_tool", summary.start_tool.empty() ? Json() : Json(summary.start_tool)},
           {"cut_mm", totals.cut_W.isEmpty() ? Json() : box()},
           {"axes", moves ? axes_json(setup, totals) : Json()},
           {"out_of_travel", totals.out_of_travel.empty() ? Json() : Json(totals.out_of_travel)},
@@ -244,18 +290,8 @@ bool is_nc_program(const std::string& file, const NcCheckOptions& options) {
 }
 
 Checked check_nc(const std::string& file, const NcCheckOptions& options) {
-  program::ControlSetup setup;
   Diagnostics diagnostics;
-  setup.machine = options.machine.empty() ? plain_machine() : machine::load_machine(options.machine).model;
-  if (options.at_home) {
-    AxisValues home = AxisValues::Zero();
-    for (size_t i = 0; i < setup.machine.axes.size(); ++i)
-      home[static_cast<long>(i)] = setup.machine.axes[i].home;
-    setup.start = home;
-  }
-  setup.kinematics_switch = kinematics_of(file, options.kinematics);
-  setup.builder_words = builder_words_of(file, options.builder_words);
-  if (!options.tools.empty()) setup.tools = tools_of(options.tools, diagnostics);
+  const program::ControlSetup setup = setup_of(file, options, diagnostics);
   NcTotals totals(setup.machine);
   NcMotionSink motion(setup, totals);
   const bool drives = options.drive && !options.machine.empty();
@@ -280,6 +316,7 @@ Checked check_nc(const std::string& file, const NcCheckOptions& options) {
       counted(totals.feeds, "feed move"), counted(totals.arcs, "arc"), counted(totals.rapids, "rapid"),
       totals.feed_mm, totals.rapid_mm, time_text(totals), tools_text(setup, summary), setup.machine.name,
       summary.start.empty() ? "no motion" : summary.start);
+  if (!summary.start_tool.empty()) text += "\n            " + summary.start_tool;
   if (totals.feeds + totals.rapids > 0) text += places_text(setup, totals);
   if (driven) text += motion_text(*driven, setup.machine);
   if (drives && motion.too_many())

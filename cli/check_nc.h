@@ -15,6 +15,9 @@ struct NcCheckOptions {
   std::string tools;                    ///< tool table, .toml or .tbl; "": none, lengths are 0
   bool drive = true;                    ///< with a machine: time and travel by look-ahead, as a run has them
   bool at_home = false;                 ///< the program starts at the machine's home
+  std::string units;                    ///< "mm" or "inch" before G20 and G21; "": the machine's, or not said
+  int start_tool = 0;                   ///< number of the tool in the spindle; 0: not said
+  bool t_changes_tool = false;          ///< T changes the tool without M6
   std::vector<std::string> kinematics;  ///< "m430=identity" ...: what LinuxCNC's kinematics switches mean
   std::vector<std::string> builder_words;  ///< "M68", "M68=clamp C", "CYCL DEF 392", "LASERCHECK"
 };

@@ -329,6 +329,7 @@ Json nc_json(const sim::Job& job, const toolpath::NcReading& nc) {
           {"blocks", nc.summary.blocks},
           {"moves", nc.summary.moves},
           {"start", nc.summary.start},
+          {"start_tool", nc.summary.start_tool.empty() ? Json() : Json(nc.summary.start_tool)},
           {"feed_moves", laws},
           {"rapids", nc.rapids},
           {"rapid_motion", dog_leg ? "dog_leg" : "linear"},

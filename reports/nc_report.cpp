@@ -45,6 +45,7 @@ FactGroup nc_facts(const sim::Job& job, const sim::Result& result) {
            {"Dialect",
             fmt::format("{}: {}", program::dialect_name(nc.summary.dialect), nc.summary.dialect_reason)},
            {"Start", nc.summary.start},
+           {"Tool at the start", nc.summary.start_tool.empty() ? "none" : nc.summary.start_tool},
            {"Execution", execution_modes(nc)},
            {"Rapids", fmt::format("{}; {}", nc.rapids, rapid_kind(job))},
            {"Read", fmt::format("{} lines, {} blocks, {} moves", nc.summary.lines, nc.summary.blocks,

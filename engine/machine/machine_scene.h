@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,10 +24,11 @@ struct Link {
 
 struct MachineScene {
   kinematics::MachineModel model;
-  std::vector<Link> links;  ///< parents before children
-  int work_link = -1;       ///< the link that carries the work
-  int tool_link = -1;       ///< the link that carries the tool
-  std::string file;         ///< machine.toml it came from
+  std::vector<Link> links;                ///< parents before children
+  int work_link = -1;                     ///< the link that carries the work
+  int tool_link = -1;                     ///< the link that carries the tool
+  std::string file;                       ///< machine.toml it came from
+  std::optional<double> program_unit_mm;  ///< `units` that programs without G20 and G21 are in: 1 or 25.4
 };
 
 /// Reads machine.toml and its meshes. Throws InputError with every problem found: a cycle, a missing

@@ -22,8 +22,8 @@ struct DialectRow {
   Dialect dialect;
   const char* name;                           ///< as scenes and the command line write it
   std::span<const std::string_view> endings;  ///< files so named are NC programs; small letters, with the dot
-  /// `head`: the first 256 KiB of the file, `extension` with its dot, in small letters.
-  Evidence (*evidence)(std::string_view head, std::string_view extension);
+  /// What speaks for the dialect in the first 256 KiB of the file.
+  Evidence (*evidence)(const ProgramHead& head);
   /// Reads the program to its end. Throws InputError at the first faulty block; ProgramStopped from the sink.
   void (*run)(const std::string& path, nc::Control& control);
 };

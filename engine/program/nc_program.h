@@ -85,6 +85,9 @@ std::string builder_word(const std::string& written);
 struct ControlSetup {
   kinematics::MachineModel machine;  ///< with gauge_M, or with one fixed tip for every tool
   std::vector<NcTool> tools;
+  /// Tools by number that a table has and does not say enough of, each with its place and reason
+  /// ("unknown-tool" where one is called).
+  std::map<int, std::string> incomplete_tools;
   /// Work offsets by number (1: G54, 2: G55, ...), mm and rad, as differences from the machine position at
   /// which the tip stands on the work's origin with the rotary axes at zero. What is not given is zero.
   std::map<int, kinematics::AxisValues> work_offsets;
@@ -94,6 +97,17 @@ struct ControlSetup {
       subprogram_folders;              ///< where called programs are looked for besides the program's own
   KinematicsSwitch kinematics_switch;  ///< LinuxCNC only
   BuilderWords builder_words;
+  /// Length of the unit that holds before the program says its own (G20, G21), 1 or 25.4: the machine's
+  /// default. None: 1, and the warning "units-assumed" where a program without such a word moves.
+  std::optional<double> unit_mm;
+  /// The tool in the spindle before the program starts: index into `tools`; -1: the spindle is empty.
+  int start_tool = -1;
+  /// `start_tool` is a guess (the only tool there is): it holds only where the program cuts before it calls
+  /// one, and the warning "start-tool-assumed" says so.
+  bool start_tool_if_needed = false;
+  /// T changes the tool at once, without M6 (LinuxCNC, Fanuc; Siemens, where programs without M6 show it
+  /// too).
+  bool t_changes_tool = false;
   long moves_max = 50'000'000;  ///< endless loops end here, with the line that broke the limit
 };
 
@@ -104,13 +118,16 @@ struct NcSummary {
   std::vector<std::string> files;  ///< the program, then each file it called
   long lines = 0, blocks = 0, moves = 0;
   std::string start;                   ///< in words: where the program started and why there
+  std::string start_tool;              ///< in words: what was in the spindle then, and why; "": nothing
   std::vector<int> tools_used;         ///< indices into ControlSetup::tools, in order of their first cut
   std::vector<std::string> functions;  ///< words that were read and have no effect on the geometry (M8, MSG),
                                        ///< each once, for "what was not simulated"
 };
 
-/// Runs the program file. `dialect` none: recognised from the text, "unknown-dialect" when it is ambiguous.
-/// Problems go to `diagnostics` with file:line:column; moves that came before an error have reached the sink.
+/// Runs the program file. `dialect` none: recognised from the text, as its common core of ISO words where
+/// nothing shows it; the note "dialect-assumed" says so, and the warning "dialect-changed" where the first
+/// lines cannot be read in the dialect that the text speaks for. Problems go to `diagnostics` with
+/// file:line:column; moves that came before an error have reached the sink.
 NcSummary run_nc(const std::string& path, std::optional<Dialect> dialect, const ControlSetup& setup,
                  NcSink& sink, Diagnostics& diagnostics);
 

@@ -60,9 +60,12 @@ NcPath NcPathSink::finish(program::NcSummary summary, Diagnostics& diagnostics) 
   for (size_t i = 0; i < files_.size(); ++i) result_.path.elements[i].where.file = file(files_[i]);
   if (!toolless_.empty()) {
     const Place& first = toolless_.front();
-    diagnostics.error("no-tool-in-spindle", {file(first.file), first.line, first.column},
-                      "the axes move here with an empty spindle, between or as cuts",
-                      "call a tool (T and M6) before the first feed move, and keep one until the end");
+    diagnostics.error(
+        "no-tool-in-spindle", {file(first.file), first.line, first.column},
+        "the axes move here with an empty spindle, between or as cuts",
+        "call a tool (T and M6) before the first feed move and keep one until the end, or say which one "
+        "is in the spindle: start_tool in [setup] of the scene; t_changes_tool where T changes it "
+        "without M6");
   }
   if (result_.path.elements.empty() && !diagnostics.has_errors()) {
     diagnostics.error("no-motion", {file(0)}, "the program moves no tool",

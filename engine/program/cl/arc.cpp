@@ -72,7 +72,16 @@ void circle(ClState& cl, const ClStatement& s) {
     turns = s.arguments[count - 1].value;
     count -= 2;
   }
-  if (count < 7) {
+  // SolidWorks CAM leaves the radius out: the arc begins where the tool stands.
+  const bool by_start = count == 6 && s.arguments.size() == 6;
+  if (by_start && !cl.path.positioned) {
+    fault(cl.reporter, "no-position", s,
+          "CIRCLE without a radius begins where the tool stands, and no position "
+          "stands before it",
+          "give GOTO first");
+    return;
+  }
+  if (count < 7 && !by_start) {
     fault(cl.reporter, "wrong-arguments", s, fmt::format("CIRCLE has {} arguments", s.arguments.size()),
           fmt::format("write {}", form));
     return;
@@ -86,9 +95,12 @@ void circle(ClState& cl, const ClStatement& s) {
   }
   Vec3 axis;
   if (!unit_vector(cl.reporter, s, 3, "circle's axis", axis)) return;
-  const double radius = cl.systems.mm(s.arguments[6].value);
+  const Vec3 arm_W = cl.path.pose.tip_W - cl.systems.X_WC * point_at(cl.systems, s, 0);
+  const double radius =
+      by_start ? flat_in(arm_W, cl.systems.X_WC.linear() * axis).norm() : cl.systems.mm(s.arguments[6].value);
   if (radius <= kArcTolerance) {
-    fault(cl.reporter, "out-of-range", s.arguments[6], fmt::format("the circle's radius is {:g} mm", radius),
+    fault(cl.reporter, "out-of-range", by_start ? s.arguments[0] : s.arguments[6],
+          fmt::format("the circle's radius is {:g} mm", radius),
           fmt::format("it must be above {:g} mm", kArcTolerance));
     return;
   }

@@ -7,8 +7,9 @@ namespace {
 
 void peck(const ClCycle& cycle, std::vector<ClCycleStep>& steps) {
   const double back = cycle.kind == ClCycleKind::kDeep ? cycle.clear_mm + cycle.depth_mm : kPeckGap;
-  for (double depth = 0.0; depth < cycle.depth_mm;) {
-    const double next = std::min(cycle.depth_mm, depth + cycle.step_mm);
+  double step = cycle.first_step_mm > 0.0 ? cycle.first_step_mm : cycle.step_mm;
+  for (double depth = 0.0; depth < cycle.depth_mm; step = cycle.step_mm) {
+    const double next = std::min(cycle.depth_mm, depth + step);
     steps.push_back({-next, false, 0.0});
     if (next < cycle.depth_mm) {
       steps.push_back({std::min(cycle.clear_mm, back - next), true, 0.0});

@@ -22,6 +22,7 @@ struct ClCycle {
   double retract_mm = 0.0;        ///< above it, when the hole is done
   bool retract_to_start = false;  ///< RTRCTO,AUTO: to where the tool stood before the cycle, instead
   double step_mm = 0.0;           ///< of DEEP and BRKCHP
+  double first_step_mm = 0.0;     ///< of the first peck where it is another one; 0: step_mm
   double dwell_s = 0.0;           ///< on the ground
   double feed_mm_s = 0.0;
 };

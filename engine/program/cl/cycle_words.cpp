@@ -61,7 +61,8 @@ bool read_cycle_word(Reporter& reporter, ClSystems& systems, ClRates& feed, cons
   if (word == "RTRCTO" || word == "RETURN") return read_retract(reporter, systems, s, at, cycle);
   const ClArgument& value = s.arguments[at + 1];
   const bool known = is_feed(word) || word == "FEDTO" || word == "DEPTH" || word == "CLEAR" ||
-                     word == "RAPTO" || word == "DWELL" || word == "STEP" || word == "INCR";
+                     word == "RAPTO" || word == "DWELL" || word == "STEP" || word == "INCR" ||
+                     word == "STPECK" || word == "SUBPECK";
   if (!known) {
     fault(reporter, "unsupported-word", key, fmt::format("CYCLE with '{}' is not followed", word), kForm);
     return false;
@@ -81,7 +82,8 @@ bool read_cycle_word(Reporter& reporter, ClSystems& systems, ClRates& feed, cons
   if (word == "CLEAR") cycle.arrive_mm = systems.mm(value.value);
   if (word == "RAPTO") cycle.clear_mm = systems.mm(value.value);
   if (word == "DWELL") cycle.dwell_s = value.value;
-  if (word == "STEP" || word == "INCR") cycle.step_mm = systems.mm(value.value);
+  if (word == "STEP" || word == "INCR" || word == "SUBPECK") cycle.step_mm = systems.mm(value.value);
+  if (word == "STPECK") cycle.first_step_mm = systems.mm(value.value);
   return true;
 }
 
@@ -142,6 +144,9 @@ bool cycle_fits(Reporter& reporter, const ClStatement& s, const ClCycle& cycle) 
     what = fmt::format("it retracts to {:g} mm, below its clearance of {:g} mm", cycle.retract_mm,
                        cycle.clear_mm);
   if (cycle.dwell_s < 0.0) what = fmt::format("it dwells for {:g} s", cycle.dwell_s);
+  if (cycle.first_step_mm != 0.0 && !(cycle.first_step_mm > kPeckGap))
+    what = fmt::format("its first step is {:g} mm, and {:g} mm are left free above the ground",
+                       cycle.first_step_mm, kPeckGap);
   if (pecks && !(cycle.step_mm > kPeckGap))
     what = fmt::format("its step is {:g} mm, and {:g} mm are left free above the ground", cycle.step_mm,
                        kPeckGap);

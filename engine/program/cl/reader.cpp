@@ -89,7 +89,7 @@ std::span<const Word> words() {
                                     {"TPRINT", note},
                                     {"CUTCOM", cutter_compensation},
                                     {"MSYS", system},
-                                    {"CSYS", system},
+                                    {"CSYS", work_system},
                                     {"MCS", matrix_system},
                                     {"ORIGIN", origin},
                                     {"TRANS", translation},
@@ -97,9 +97,14 @@ std::span<const Word> words() {
                                     {"SET", set_mode},
                                     {"MODE", mode},
                                     {"UNITS", units},
+                                    {"UNIT", units},
+                                    {"TRNTYP", transformation},
+                                    {"SETUP", note},
                                     {"MACHIN", note},
                                     {"CSI_TOOL_PATH", note},
                                     {"CSI_SET_PATH_PARAM", note},
+                                    {"CSI_SET_FLUTE_LENGTH", note},
+                                    {"CSI_SET_EXTENSION_LENGTH", note},
                                     {"INDIRP", direction},
                                     {"PSIS", part_surface},
                                     {"AUTOPS", part_surface},
@@ -135,8 +140,9 @@ void refuse_word(Reporter& reporter, const ClStatement& statement) {
   for (const Word& entry : words()) known.emplace_back(entry.name);
   const std::string nearest = nearest_name(statement.word, known);
   fault(reporter, "unknown-word", statement, fmt::format("{} is not a word of CL data", statement.word),
-        nearest.empty() ? fmt::format("known are {}", fmt::join(known, ", "))
-                        : fmt::format("did you mean {}?", nearest));
+        nearest.empty()
+            ? "take it out where it moves nothing; engine/program/README.md lists the words that are read"
+            : fmt::format("did you mean {}?", nearest));
 }
 
 void take(ClState& cl, const ClStatement& statement) {

@@ -178,6 +178,9 @@ bool ClScanner::read_arguments(size_t at, bool goes_on, ClStatement& statement, 
                    fmt::format("write {}/ and then its arguments with commas between", statement.word));
     good = false;
   }
+  // SolidWorks CAM writes RAPID/ where others write RAPID.
+  const bool bare = good && !goes_on && statement.word == "RAPID";
+  if (bare && at != kNone && line_.find_first_not_of(kBlanks, at + 1) == kNone) return true;
   size_t begin = at == kNone ? line_.size() : at + 1;
   bool open = at != kNone;  // an argument is still to come
   for (;;) {

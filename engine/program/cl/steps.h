@@ -72,6 +72,10 @@ std::optional<double> sense_along(Reporter& reporter, ClPath& path, ClArcs& arcs
 
 // --- system.cpp
 void system(ClState& cl, const ClStatement& s);
+/// CSYS of nine numbers as MSYS, of twelve as SolidWorks CAM writes it.
+void work_system(ClState& cl, const ClStatement& s);
+/// TRNTYP of SolidWorks CAM.
+void transformation(ClState& cl, const ClStatement& s);
 void matrix_system(ClState& cl, const ClStatement& s);
 void creo_system(ClState& cl, const ClStatement& s);
 void catia_system(ClState& cl, const ClStatement& s);

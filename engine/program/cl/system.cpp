@@ -63,6 +63,37 @@ void set_system(ClSystems& systems, const Pose& X_SC) {
   systems.X_WC.translation() += systems.translation.value_or(Vec3::Zero()) - systems.origin;
 }
 
+/// A system of twelve numbers: the first is the one that positions are given in, another one is refused.
+void keep_one_system(ClState& cl, const ClStatement& s, const char* word, const char* writer) {
+  if (!may_change_system(cl.reporter, cl.drilling, cl.compensation, s)) return;
+  if (!numbers(cl.reporter, s, 12, 12, "CSYS/ three rows of a rotation, each with its part of the origin"))
+    return;
+  std::array<double, 12> rows{};
+  for (size_t i = 0; i < rows.size(); ++i) rows[i] = s.arguments[i].value;
+  if (!pose_from_rows(rows, cl.systems.unit_mm)) {
+    fault(cl.reporter, "bad-system", s, "CSYS holds no rotation",
+          "its columns must be unit vectors at right angles");
+    return;
+  }
+  constexpr double kSame = 1e-9;
+  const bool same =
+      !cl.systems.creo_system || std::equal(rows.begin(), rows.end(), cl.systems.creo_system->begin(),
+                                            [](double a, double b) { return std::abs(a - b) <= kSame; });
+  if (!same) {
+    fault(
+        cl.reporter, "unsupported-word", s,
+        fmt::format("the coordinate system of {} changes inside of the file, and nothing documents which way "
+                    "its {} maps",
+                    writer, word),
+        "write one file for each set-up or coordinate system, or output the path of all operations in one");
+    return;
+  }
+  if (!cl.systems.creo_system && pose_from_rows(rows, 1.0)->matrix() != Pose::Identity().matrix())
+    remark(cl.program,
+           fmt::format("{}: positions are taken as written, in the coordinate system of {}", word, writer));
+  cl.systems.creo_system = rows;
+}
+
 }  // namespace
 
 void system(ClState& cl, const ClStatement& s) {
@@ -106,33 +137,20 @@ void matrix_system(ClState& cl, const ClStatement& s) {
   set_system(cl.systems, *X_SC);
 }
 
+void work_system(ClState& cl, const ClStatement& s) {
+  if (s.arguments.size() != 12) return system(cl, s);
+  keep_one_system(cl, s, "CSYS", "SolidWorks CAM");
+}
+
+/// It names the kind of the system that follows; positions are those of that system in any case.
+void transformation(ClState& cl, const ClStatement& s) {
+  mark(cl.reporter, cl.program, ClWriter::kCamWorks, "TRNTYP", s);
+  note(cl, s);
+}
+
 void creo_system(ClState& cl, const ClStatement& s) {
-  if (!may_change_system(cl.reporter, cl.drilling, cl.compensation, s)) return;
   mark(cl.reporter, cl.program, ClWriter::kCreo, s.word, s);
-  if (!numbers(cl.reporter, s, 12, 12,
-               "$$-> CSYS / three rows of a rotation, each with its part of the origin"))
-    return;
-  std::array<double, 12> rows{};
-  for (size_t i = 0; i < rows.size(); ++i) rows[i] = s.arguments[i].value;
-  if (!pose_from_rows(rows, cl.systems.unit_mm)) {
-    fault(cl.reporter, "bad-system", s, "CSYS holds no rotation",
-          "its columns must be unit vectors at right angles");
-    return;
-  }
-  constexpr double kSame = 1e-9;
-  const bool same =
-      !cl.systems.creo_system || std::equal(rows.begin(), rows.end(), cl.systems.creo_system->begin(),
-                                            [](double a, double b) { return std::abs(a - b) <= kSame; });
-  if (!same) {
-    fault(cl.reporter, "unsupported-word", s,
-          "the machine coordinate system of Creo changes inside of the file, and nothing documents which way "
-          "its CSYS maps",
-          "write one file for each machine coordinate system, or output the path of all operations in one");
-    return;
-  }
-  if (!cl.systems.creo_system && pose_from_rows(rows, 1.0)->matrix() != Pose::Identity().matrix())
-    remark(cl.program, "$$-> CSYS: positions are taken as written, in the machine coordinate system of Creo");
-  cl.systems.creo_system = rows;
+  keep_one_system(cl, s, "$$-> CSYS", "Creo");
 }
 
 void catia_system(ClState& cl, const ClStatement& s) {

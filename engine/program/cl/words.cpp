@@ -127,6 +127,15 @@ void cycle(ClState& cl, const ClStatement& s) {
     cl.drilling.cycle.reset();
     return;
   }
+  // SolidWorks CAM prepares a cycle with INIT, and clears its registers with CLEAR.
+  const bool prepares =
+      s.arguments.size() == 1 && (s.arguments[0].text == "INIT" || s.arguments[0].text == "CLEAR");
+  if (prepares && !cl.drilling.cycle) return note(cl, s);
+  if (prepares) {
+    fault(cl.reporter, "bad-cycle", s, fmt::format("CYCLE/{} stands inside a cycle", s.arguments[0].text),
+          "write CYCLE/OFF before it");
+    return;
+  }
   if (!not_compensated(cl.reporter, cl.compensation, s)) return;
   ClCycle cycle;
   cycle.feed_mm_s = cl.feed.feed_mm_s;

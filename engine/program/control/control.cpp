@@ -8,6 +8,7 @@
 #include "base/units.h"
 #include "program/control/emit.h"
 #include "program/control/path.h"
+#include "program/control/tools.h"
 
 namespace swarf::program::nc {
 Plane ContourOfControl::plane() const {
@@ -39,6 +40,12 @@ Control::Control(const ControlSetup& given, NcSink& sink, Diagnostics& diagnosti
     offsets.origins[number] = space.gauge_zero() + difference;
   offsets.origins[0] = space.gauge_zero();
   space.set_origin(offsets.origins[1]);
+  if (setup.unit_mm) set_inches(modal, *setup.unit_mm != 1.0);
+  if (setup.start_tool >= 0) {
+    tools.active = tools.selected = setup.start_tool;
+    tools.active_number = tools.selected_number = active_tool(*this)->number;
+    set_true_tool(*this);
+  }
   if (setup.start) {
     path.q = *setup.start;
     start_here(*this, "given by the scene");
@@ -82,7 +89,7 @@ void finish(Control& control) {
     control.report.fail("no-start", 0,
                         fmt::format("the program never gives {} a position, and the scene gives no start",
                                     missing_axes(control.space, control.path)),
-                        "give the start position in the scene");
+                        "give the start position: start in [setup] of the scene, swarf check --home");
   }
   if (control.modal.pending_dwell_s > 0.0 && control.path.started) {
     Segment stand;
@@ -150,10 +157,12 @@ int require_axis(const Control& control, AxisWord word, int column) {
   std::string names;
   for (const kinematics::Axis& one : control.setup.machine.axes)
     names += (names.empty() ? "" : " ") + one.name;
-  control.report.fail("axis-missing", column,
-                      fmt::format("the machine {} has no axis {}, it has {}", control.setup.machine.name,
-                                  kAxisLetters[word], names),
-                      "take the word out, or choose the machine that the program was posted for");
+  control.report.fail(
+      "axis-missing", column,
+      fmt::format("the machine {} has no axis {}, it has {}", control.setup.machine.name, kAxisLetters[word],
+                  names),
+      "take the word out, or name the machine that the program was posted for: --machine, in a scene "
+      "`machine`");
 }
 
 }  // namespace swarf::program::nc

@@ -81,7 +81,20 @@ void place_arc(Report& report, WorkSpace& space, Offsets& offsets, const Segment
   move.arc = Arc{map.base_W + map.columns_W * centre, mirror * (map.columns_W * normal).normalized()};
 }
 
+/// The first way of a program that has not said its unit.
+void warn_of_unit(Control& control, int column) {
+  control.modal.unit_known = true;
+  control.report.warn_once("units-assumed", column,
+                           "the program moves here and has not said its unit (G20, G21), nor does the "
+                           "machine: lengths are taken as "
+                           "mm; if they are inches, everything is 25.4 times as large",
+                           "write G21 or G20 at its head, or say it: units = \"mm\" or \"inch\" in the "
+                           "machine's file or in [setup] "
+                           "of the scene, swarf check --units");
+}
+
 void send(Control& control, const Segment& segment, NcMove& move) {
+  if (!control.modal.unit_known && !segment.machine) warn_of_unit(control, segment.place.column);
   move.q_from = control.path.q;
   move.rapid = segment.motion == Motion::kRapid;
   move.dwell_s = segment.dwell_s;

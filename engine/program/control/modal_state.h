@@ -12,7 +12,8 @@ namespace swarf::program::nc {
 inline constexpr double kDegreePerMm = 57.29577951308232;
 
 struct ModalState {
-  double unit_mm = 1.0;  ///< 25.4 in inches
+  double unit_mm = 1.0;     ///< 25.4 in inches
+  bool unit_known = false;  ///< the program has said its unit, or the setup says the machine's
   Plane plane = Plane::kXY;
   FeedMode feed_mode = FeedMode::kPerMinute;
   FeedRule feed_rule = FeedRule::kLinearFirst;
@@ -49,6 +50,7 @@ class Borrowed {
 
 inline void set_inches(ModalState& modal, bool inches) {
   modal.unit_mm = inches ? 25.4 : 1.0;
+  modal.unit_known = true;
 }
 /// A new mode forgets F, as controls do; G93 wants F in each feed block ("missing-feed").
 void set_feed_mode(ModalState& modal, FeedMode mode);

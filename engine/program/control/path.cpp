@@ -165,7 +165,7 @@ bool ready(Control& control, Motion motion, const Target& target, bool machine) 
       control.report.fail(
           "start-unknown", target.column,
           fmt::format("{} is programmed incrementally, and where it stands is not known", kAxisLetters[word]),
-          "give the start position in the scene");
+          "give the start position: start in [setup] of the scene, swarf check --home");
     }
     const double value = target.value[static_cast<size_t>(word)];
     control.path.q[axis] = target.is_incremental(word) ? control.path.q[axis] + value
@@ -175,13 +175,12 @@ bool ready(Control& control, Motion motion, const Target& target, bool machine) 
   }
   if (target.axis_P || motion == Motion::kClockwise || motion == Motion::kCounterClockwise ||
       !learn_linear(control, target, machine)) {
-    control.report.fail(
-        "start-unknown", target.column,
-        fmt::format("this block needs the position before it, and {} is not known yet",
-                    missing_axes(control.space, control.path)),
-        fmt::format(
-            "give the start position in the scene, or position all axes with absolute {} blocks before it",
-            control.report.words.rapid));
+    control.report.fail("start-unknown", target.column,
+                        fmt::format("this block needs the position before it, and {} is not known yet",
+                                    missing_axes(control.space, control.path)),
+                        fmt::format("give the start position (start in [setup] of the scene, swarf check "
+                                    "--home), or position all axes with absolute {} blocks before it",
+                                    control.report.words.rapid));
   }
   const std::string missing = missing_axes(control.space, control.path);
   if (missing.empty()) {
@@ -190,11 +189,11 @@ bool ready(Control& control, Motion motion, const Target& target, bool machine) 
     return false;
   }
   if (motion == Motion::kFeed) {
-    control.report.fail(
-        "start-unknown", target.column,
-        fmt::format("this is a feed move, and {} has no position yet", missing),
-        fmt::format("give the start position in the scene, or position all axes with {} before it",
-                    control.report.words.rapid));
+    control.report.fail("start-unknown", target.column,
+                        fmt::format("this is a feed move, and {} has no position yet", missing),
+                        fmt::format("give the start position (start in [setup] of the scene, swarf check "
+                                    "--home), or position all axes with {} before it",
+                                    control.report.words.rapid));
   }
   return false;
 }

@@ -110,10 +110,10 @@ AxisValues tilt_solution(const Control& control, const Vec3& axis_P, const TiltP
 void turn_rotaries(Control& control, Motion motion, const AxisValues& q, bool tip_stands) {
   flush(control);
   if (!control.path.started) {
-    control.report.fail(
-        "start-unknown", 0, "the rotary axes turn, and the position is not known yet",
-        fmt::format("give the start position in the scene, or position all axes with {} before it",
-                    control.report.words.rapid));
+    control.report.fail("start-unknown", 0, "the rotary axes turn, and the position is not known yet",
+                        fmt::format("give the start position (start in [setup] of the scene, swarf check "
+                                    "--home), or position all axes with {} before it",
+                                    control.report.words.rapid));
   }
   const std::array<double, 3> rotary = control.space.rotary_of(q);
   Vec3 linear = control.space.linear_of(control.path.q);

@@ -12,31 +12,45 @@ namespace swarf::program::nc {
 namespace {
 
 int not_found(Control& control, const std::string& asked, int column) {
-  if (control.setup.tools.empty()) {
+  if (control.setup.tools.empty() && control.setup.incomplete_tools.empty()) {
     control.report.warn_once(
         "no-tool-table", column,
-        fmt::format("{} cannot be looked up, there is no tool table: tools have length 0 here", asked),
-        "give a tool table");
+        fmt::format("{} cannot be looked up, there is no tool table: tools have length and radius 0 here",
+                    asked),
+        "give one: [[tool]] or tool_table of the scene, swarf check --tools");
     return -1;
   }
+  constexpr size_t kNamesMax = 8;
+  const std::vector<NcTool>& tools = control.setup.tools;
   std::string list;
-  for (const NcTool& tool : control.setup.tools) {
-    if (list.size() > 200) {
-      list += ", ...";
-      break;
-    }
-    if (!list.empty()) list += ", ";
-    if (tool.number != 0) list += fmt::format("T{}", tool.number);
-    if (!tool.name.empty()) list += fmt::format("{}\"{}\"", tool.number != 0 ? " " : "", tool.name);
+  for (size_t i = 0; i < std::min(tools.size(), kNamesMax); ++i) {
+    if (i > 0) list += ", ";
+    if (tools[i].number != 0) list += fmt::format("T{}", tools[i].number);
+    if (!tools[i].name.empty())
+      list += fmt::format("{}\"{}\"", tools[i].number != 0 ? " " : "", tools[i].name);
   }
-  control.report.fail("unknown-tool", column,
-                      fmt::format("{} is not in the tool table, which has {}", asked, list),
-                      "add the tool to the table, or correct the call");
+  if (tools.size() > kNamesMax) list += fmt::format(" and {} more", tools.size() - kNamesMax);
+  control.report.fail(
+      "unknown-tool", column, fmt::format("{} is not in the tool table, which has {}", asked, list),
+      "add the tool to the table ([[tool]] or tool_table of the scene, swarf check --tools), or correct "
+      "the call");
 }
 
 }  // namespace
 
+bool no_tool_table(Control& control, int column) {
+  const bool none = control.setup.tools.empty() && control.setup.incomplete_tools.empty();
+  if (none) not_found(control, "the tool", column);
+  return none;
+}
+
 int find_tool(Control& control, int number, int column) {
+  const auto incomplete = control.setup.incomplete_tools.find(number);
+  if (incomplete != control.setup.incomplete_tools.end())
+    control.report.fail(
+        "unknown-tool", column,
+        fmt::format("T{} is in the tool table and cannot be used, {}", number, incomplete->second),
+        fmt::format("complete its line, or describe it: [[tool]] number = {}", number));
   const auto found = std::find_if(control.setup.tools.begin(), control.setup.tools.end(),
                                   [&](const NcTool& tool) { return tool.number == number; });
   if (found != control.setup.tools.end()) return static_cast<int>(found - control.setup.tools.begin());

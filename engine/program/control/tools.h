@@ -11,6 +11,9 @@ namespace swarf::program::nc {
 /// nothing can be looked up: returns -1 and warns once ("no-tool-table").
 int find_tool(Control& control, int number, int column);
 int find_tool(Control& control, const std::string& name, int column);
+/// True where there is no tool table: the radius of every cutter is 0 then, as its length, and the warning
+/// "no-tool-table" says so.
+bool no_tool_table(Control& control, int column);
 /// What stands ready (T); change_tool() puts it into the spindle. -1 with `number` 0 empties the spindle.
 void select_tool(ToolState& tools, int index, int number);
 /// M6: moves to MachineModel::tool_change where the machine has one (rapid, all axes), stops the spindle.

@@ -34,7 +34,8 @@ void apply_machine(LetterDialect& letters) {
     nc::select_tool(letters.control.tools,
                     number == 0 ? -1 : nc::find_tool(letters.control, number, letters.column('T')), number);
   }
-  if (letters.block.has_m(60)) nc::change_tool(letters.control);
+  if (letters.block.has_m(60) || (letters.control.setup.t_changes_tool && letters.block.has('T')))
+    nc::change_tool(letters.control);
   for (int i = 0; i < letters.block.m_count; ++i) {
     const int code = letters.block.m[static_cast<size_t>(i)];
     if (code == M::kSpindleClockwise || code == M::kSpindleCounterClockwise || code == M::kSpindleStop)
@@ -47,11 +48,12 @@ void apply_machine(LetterDialect& letters) {
 void apply_radius(Fanuc& fanuc) {
   const int code = fanuc.block.g[kFanucRadius], at = fanuc.g_column(kFanucRadius);
   if (code == G::kCompensationOff) return nc::set_compensation(fanuc.control, Compensation::kOff, 0.0, at);
-  if (!fanuc.block.has('D') && nc::active_tool(fanuc.control) == nullptr)
+  const bool named = fanuc.block.has('D') || fanuc.modes.d_kept;
+  if (!named && nc::active_tool(fanuc.control) == nullptr)
     fanuc.control.report.fail("compensation-no-tool", at, "cutter compensation has no D word and no tool",
                               "add D with the tool's number");
-  const double radius = fanuc.block.has('D') ? tool_value(fanuc.modes, fanuc.zero, fanuc, 'D', false)
-                                             : 0.5 * nc::active_tool(fanuc.control)->diameter_mm;
+  const double radius = named ? tool_value(fanuc.modes, fanuc.zero, fanuc, 'D', false)
+                              : 0.5 * nc::active_tool(fanuc.control)->diameter_mm;
   const bool left =
       (code == G::kCompensationLeft) != (mapped(fanuc.mapping) && reversed(fanuc.mapping, fanuc));
   nc::set_compensation(fanuc.control, left ? Compensation::kLeft : Compensation::kRight, radius, at);
@@ -67,15 +69,15 @@ void apply_length(Fanuc& fanuc) {
     nc::set_length_compensation(fanuc.control, 0.0, false);
     return update_space(fanuc);
   }
-  if (!fanuc.block.has('H') && nc::active_tool(fanuc.control) == nullptr &&
-      !fanuc.control.setup.tools.empty())
+  const bool named = fanuc.block.has('H') || fanuc.modes.h_kept;
+  if (!named && nc::active_tool(fanuc.control) == nullptr && !fanuc.control.setup.tools.empty())
     fanuc.control.report.fail("missing-word", fanuc.g_column(kFanucLength),
                               "the length compensation has no H word and no tool",
                               "add H with the tool's number");
   const NcTool* tool = nc::active_tool(fanuc.control);
-  const double length = fanuc.block.has('H') ? tool_value(fanuc.modes, fanuc.zero, fanuc, 'H', true)
-                        : tool != nullptr    ? tool->length_mm
-                                             : 0.0;
+  const double length = named             ? tool_value(fanuc.modes, fanuc.zero, fanuc, 'H', true)
+                        : tool != nullptr ? tool->length_mm
+                                          : 0.0;
   nc::set_length_compensation(fanuc.control, code == G::kLengthNegative ? -length : length, true);
   fanuc.modes.tcp = code == G::kTcpRotaries ? Tcp::kAxes : code == G::kTcpVectors ? Tcp::kVector : Tcp::kOff;
   update_space(fanuc);
@@ -115,18 +117,46 @@ std::string_view own_letters(const Rules& rules, int one_shot) {
   return own == rules.own_codes.end() ? std::string_view() : own->letters;
 }
 
+/// Whether a code of this block gives the letter a meaning of its own.
+bool taken_by_code(const LetterDialect& letters, const Rules& rules, char letter) {
+  return own_letters(rules, g(letters, kFanucOneShot)).find(letter) != std::string_view::npos ||
+         (letters.block.free_g > 0 && rules.free_letters.find(letter) != std::string_view::npos) ||
+         (letters.block.listed_m > 0 && rules.listed_letters.find(letter) != std::string_view::npos);
+}
+
+/// H and D are modal: without G43 or G41 in the block they only name the offset that the next one takes.
+/// Where compensation is on, another number would change it at once, which is not read.
+void check_offset_numbers(const Modes& modes, LetterDialect& letters, const Rules& rules, bool h_of_tilt) {
+  const bool radius = g(letters, kFanucRadius) > G::kCompensationOff;
+  const bool d = letters.block.has('D') && !taken_by_code(letters, rules, 'D'),
+             h = letters.block.has('H') && !taken_by_code(letters, rules, 'H');
+  if (d && !radius && letters.control.contour.side() != Compensation::kOff)
+    letters.check_letter('D', false, "G41 and G42; while one is on, another radius is not read");
+  const int code = g(letters, kFanucLength);
+  const bool length = code >= G::kLengthOn && code != G::kLengthOff;
+  if (h && !length && code < 0 && !h_of_tilt && modes.length_code != G::kLengthOff)
+    letters.check_letter('H', false, "G43 and G53.6; while G43 is on, write it again with the new H");
+}
+
+/// D and H of a block that compensates nothing: kept for the next G41 and G43.
+void keep_offset_numbers(Modes& modes, LetterDialect& letters, const Rules& rules) {
+  if (letters.block.has('D') && !taken_by_code(letters, rules, 'D')) {
+    modes.d_number = whole(letters.block, 'D', 0, 99999999, letters.reader, letters.control);
+    modes.d_kept = g(letters, kFanucRadius) <= G::kCompensationOff;
+  }
+  if (letters.block.has('H') && !taken_by_code(letters, rules, 'H')) {
+    modes.h_number = whole(letters.block, 'H', 0, 99999999, letters.reader, letters.control);
+    modes.h_kept = g(letters, kFanucLength) < G::kLengthOn || g(letters, kFanucLength) == G::kLengthOff;
+  }
+}
+
 }  // namespace
 
 void check_words(Modes& modes, LetterDialect& letters, const Rules& rules) {
   const int one_shot = g(letters, kFanucOneShot);
   if (one_shot == G::kMacroCall || g(letters, kFanucMacro) == G::kModalMacro)
     return;  // every letter is an argument
-  const std::string_view own = own_letters(rules, one_shot);
-  const auto taken = [&](char letter) {
-    return own.find(letter) != std::string_view::npos ||
-           (letters.block.free_g > 0 && rules.free_letters.find(letter) != std::string_view::npos) ||
-           (letters.block.listed_m > 0 && rules.listed_letters.find(letter) != std::string_view::npos);
-  };
+  const auto taken = [&](char letter) { return taken_by_code(letters, rules, letter); };
   const auto check = [&](char letter, bool allowed, const char* used_with) {
     letters.check_letter(letter, allowed || taken(letter), used_with);
   };
@@ -165,11 +195,7 @@ void check_words(Modes& modes, LetterDialect& letters, const Rules& rules) {
             motion == G::kNurbs || ends || g(letters, kFanucOffset) == G::kFurtherOffset || turn || tilts,
         "G04, G10, M98 and cycles");
   check('L', repeats('L') || one_shot == G::kSetData || calls, "G10, M98 and cycles");
-  check('D', g(letters, kFanucRadius) > G::kCompensationOff, "G41 and G42");
-  check('H',
-        (g(letters, kFanucLength) >= G::kLengthOn && g(letters, kFanucLength) != G::kLengthOff) ||
-            one_shot == G::kTiltAboutTip,
-        "G43 and G53.6");
+  check_offset_numbers(modes, letters, rules, one_shot == G::kTiltAboutTip);
   if (g(letters, kFanucCycle) > G::kCycleOff && g(letters, kFanucMotion) >= 0)
     letters.control.report.fail("two-motion-words", letters.g_column(kFanucMotion),
                                 "a motion and a cycle stand in one block", "write them in two blocks");
@@ -183,6 +209,7 @@ void apply(Fanuc& fanuc) {
   if (g(fanuc, kFanucOneShot) == G::kMacroCall) return call_macro(fanuc);
   if (g(fanuc, kFanucMacro) == G::kModalMacro) return set_modal_macro(fanuc.calls, fanuc);
   apply_machine(fanuc);
+  if (fanuc.block.has('D') || fanuc.block.has('H')) keep_offset_numbers(fanuc.modes, fanuc, fanuc.rules);
   apply_modes(fanuc);
   keep_motion_codes(fanuc.modes, fanuc.drilling, fanuc);
   if (fanuc.block.has_g(kFanucMacro)) set_modal_macro(fanuc.calls, fanuc);

@@ -70,14 +70,15 @@ double tool_offset(Zero& zero, LetterDialect& letters, int number, size_t slot, 
   return slot == 0 ? tool.length_mm : 0.5 * tool.diameter_mm;
 }
 
-/// Length of H, radius of D, mm.
+/// Length of H, radius of D, mm: of the block, or as it was named before.
 double tool_value(Modes& modes, Zero& zero, LetterDialect& letters, char letter, bool length) {
-  const int number = whole(letters.block, letter, 0, 99999999, letters.reader, letters.control);
-  (length ? modes.h_number : modes.d_number) = number;
-  if (number == 0) return 0.0;
+  const bool here = letters.block.has(letter);
+  int& kept = length ? modes.h_number : modes.d_number;
+  if (here) kept = whole(letters.block, letter, 0, 99999999, letters.reader, letters.control);
+  if (kept == 0) return 0.0;
   const size_t slot = length ? 0 : 2;
-  return tool_offset(zero, letters, number, slot, letters.column(letter)) +
-         tool_offset(zero, letters, number, slot + 1, letters.column(letter));
+  const int column = here ? letters.column(letter) : letters.reader.column_of(letters.block.first);
+  return tool_offset(zero, letters, kept, slot, column) + tool_offset(zero, letters, kept, slot + 1, column);
 }
 
 /// G92: the present position reads as written. G52: the local shift is as written.
@@ -95,7 +96,7 @@ void shift_to_words(Fanuc& fanuc, bool position) {
     if (position && !std::isfinite(now))
       fanuc.control.report.fail("start-unknown", values.column,
                                 "G92 needs the position, which is not known yet",
-                                "give the start position in the scene");
+                                "give the start position: start in [setup] of the scene, swarf check --home");
     if (position)
       fanuc.zero.shift[axis] += now - value;
     else

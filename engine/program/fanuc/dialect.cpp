@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
 #include "program/fanuc/dialect.h"
@@ -92,6 +91,19 @@ void state_number_rule(Calls& calls, Modes& modes, LetterDialect& letters, const
           fmt::format("write {}{:g}.", letter, value));
     return;
   }
+}
+
+/// O and up to eight digits, alone on its line: the number of a program.
+bool is_program_number(std::string_view code) {
+  return code.size() >= 2 && code.size() <= 9 && (code[0] == 'O' || code[0] == ':') &&
+         code.find_first_not_of("0123456789", 1) == std::string_view::npos;
+}
+
+bool is_macro_statement(std::string_view code) {
+  const size_t first = code.starts_with('N') ? code.find_first_not_of(" \t0123456789", 1) : 0;
+  const std::string_view words = code.substr(std::min(first, code.size()));
+  return code.find("GOTO") != std::string_view::npos || words.starts_with("WHILE[") ||
+         words.starts_with("WHILE [") || words.starts_with("IF[") || words.starts_with("IF [");
 }
 
 bool execute(Fanuc& fanuc) {
@@ -183,65 +195,33 @@ void skip_block_number(LetterDialect& letters) {
   letters.reader.skip_space();
 }
 
-Evidence evidence(std::string_view head, std::string_view extension) {
-  (void)extension;
+Evidence evidence(const ProgramHead& head) {
   Evidence found;
-  long number = 0;
-  const auto add = [&](int score, std::string_view what) {
-    if (found.score == 0) found.reason = fmt::format("{} in line {}", what, number);
-    found.score += score;
-  };
-  while (!head.empty()) {
-    ++number;
-    const size_t end = std::min(head.find('\n'), head.size());
-    std::string line(head.substr(0, end));
-    head.remove_prefix(std::min(end + 1, head.size()));
-    std::transform(line.begin(), line.end(), line.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-    const std::string code = line.substr(0, line.find_first_of("(;"));
-    for (const char* word :
-         {"G43.4", "G43.5", "G53.1", "G68.2", "G06.2", "G6.2", "G05.1", "G5.1", "G65", "G54.1", "G05 P"}) {
-      if (code.find(word) != std::string::npos) add(2, word);
+  for (const HeadLine& line : head.lines) {
+    for (const char* word : {"G43.4", "G43.5", "G53.1", "G68.2", "G06.2", "G6.2", "G05.1", "G65", "G54.1"}) {
+      if (has_word(line.code, word)) found.add(2, word, line.number);
     }
-    if (code.find("GOTO") != std::string::npos || code.find("WHILE [") == 0 || code.find("WHILE[") == 0 ||
-        code.find("IF[") == 0 || code.find("IF [") == 0)
-      add(2, "a macro statement");
-    const size_t o = code.find_first_not_of(" \t");
-    const bool program_number =
-        o != std::string::npos && (code[o] == 'O' || code[o] == ':') && code.size() >= o + 5 &&
-        std::all_of(code.begin() + static_cast<long>(o) + 1, code.begin() + static_cast<long>(o) + 5,
-                    [](unsigned char c) { return std::isdigit(c) != 0; }) &&
-        code.find_first_not_of(" \t\r", o + 5) == std::string::npos;
-    if (program_number) add(2, code.substr(o, 5));
+    if (has_word(line.code, "G5.1") && line.code.find('Q') != std::string::npos)
+      found.add(2, "G5.1 Q", line.number);
+    if (line.code.find("G05 P") != std::string::npos) found.add(2, "G05 P", line.number);
+    if (is_macro_statement(line.code)) found.add(2, "a macro statement", line.number);
+    if (is_program_number(line.code)) found.add(2, line.code, line.number);
   }
   return found;
 }
 
-Evidence derived_evidence(std::string_view head, std::string_view extension,
-                          std::span<const std::string_view> words, size_t program_digits) {
+Evidence derived_evidence(const ProgramHead& head, std::span<const std::string_view> words,
+                          size_t program_digits) {
   Evidence found;
-  long number = 0;
-  for (std::string_view rest = head; !rest.empty();
-       rest.remove_prefix(std::min(rest.find('\n') + 1, rest.size()))) {
-    ++number;
-    const std::string_view line = rest.substr(0, rest.find_first_of("\r\n(;"));
-    const auto add = [&](std::string_view what) {
-      if (found.score == 0) found.reason = fmt::format("{} in line {}", what, number);
-      found.score += 2;
-    };
+  for (const HeadLine& line : head.lines) {
     for (const std::string_view word : words) {
-      const size_t at = line.find(word);
-      if (at == std::string_view::npos) continue;
-      const char next = at + word.size() < line.size() ? line[at + word.size()] : ' ';
-      if (next != '.' && std::isdigit(static_cast<unsigned char>(next)) == 0) add(word);
+      if (has_word(line.code, word)) found.add(2, word, line.number);
     }
-    const std::string_view code = line.substr(0, line.find_last_not_of(" \t") + 1);
-    if (program_digits > 0 && code.size() == program_digits + 1 && code[0] == 'O' &&
-        code.find_first_not_of("0123456789", 1) == std::string_view::npos)
-      add(code);
-    if (rest.find('\n') == std::string_view::npos) break;
+    if (program_digits > 0 && line.code.size() == program_digits + 1 && line.code[0] == 'O' &&
+        is_program_number(line.code))
+      found.add(2, line.code, line.number);
   }
-  if (found.score > 0) found.score += evidence(head, extension).score;
+  if (found.score > 0) found.score += evidence(head).score;
   return found;
 }
 

@@ -13,11 +13,11 @@ struct Control;
 
 namespace swarf::program::nc::fanuc {
 
-Evidence evidence(std::string_view head, std::string_view extension);
+Evidence evidence(const ProgramHead& head);
 /// Of a dialect derived from this one: `words` that only it has, O numbers of so many digits (0: none are its
 /// own). Where one stands, what speaks for Fanuc (G65, macro statements) speaks for it too.
-Evidence derived_evidence(std::string_view head, std::string_view extension,
-                          std::span<const std::string_view> words, size_t program_digits);
+Evidence derived_evidence(const ProgramHead& head, std::span<const std::string_view> words,
+                          size_t program_digits);
 void run(const std::string& path, Control& control);
 
 }  // namespace swarf::program::nc::fanuc

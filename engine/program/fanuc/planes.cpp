@@ -218,7 +218,7 @@ void tilt_by_tool_axis(Fanuc& fanuc) {
   if (!fanuc.control.path.started || !origin.allFinite())
     fanuc.control.report.fail("start-unknown", fanuc.g_column(kFanucTurn),
                               "G68.3 takes the tool axis as it stands, and the position is not known yet",
-                              "give the start position in the scene");
+                              "give the start position: start in [setup] of the scene, swarf check --home");
   const Vec3 z = nc::tool_axis_P(fanuc.control), vertical = nc::tool_axis_at_zero_P(fanuc.control.space);
   const Vec3 across = vertical.cross(z);
   const double angle = std::atan2(across.norm(), vertical.dot(z));

@@ -168,7 +168,8 @@ struct Variables {
 /// Modal codes in tenths, and what the words of the dialect keep.
 struct Modes {
   int motion = 0, cycle = G::kCycleOff, length_code = G::kLengthOff, turn_code = G::kTurnOff;
-  int d_number = 0, h_number = 0;  ///< D and H as written last
+  int d_number = 0, h_number = 0;       ///< D and H as written last
+  bool d_kept = false, h_kept = false;  ///< named beside no G41 or G43: the next one takes them
   bool number_rule_stated = false;
   bool moved = false;  ///< the block has a move
   bool incremental = false, retract_to_r = false;

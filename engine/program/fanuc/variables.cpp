@@ -121,7 +121,7 @@ double system_variable(Fanuc& fanuc, long number, size_t place) {
     if (!std::isfinite(value))
       fanuc.control.report.fail("start-unknown", fanuc.reader.column_of(place),
                                 fmt::format("#{} asks for a position that is not known yet", number),
-                                "give the start position in the scene");
+                                "give the start position: start in [setup] of the scene, swarf check --home");
     return in_words(value, word);
   };
   const auto offset = [&](long from, int first) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 
 #include "program/evidence.h"
 
@@ -12,7 +11,7 @@ struct Control;
 
 namespace swarf::program::nc::haas {
 
-Evidence evidence(std::string_view head, std::string_view extension);
+Evidence evidence(const ProgramHead& head);
 void run(const std::string& path, Control& control);
 
 }  // namespace swarf::program::nc::haas

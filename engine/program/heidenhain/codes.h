@@ -36,6 +36,7 @@ struct Q {
     kRoughDiameter = 342,     ///< of the bore that is there
     kByDiameter = 343,        ///< centring by diameter (1) or depth (0)
     kMillingSense = 351,      ///< +1 climb, -1 up-cut
+    kFeedPilot = 253,         ///< down to the lowered starting point
     kStartPoint = 379,        ///< lowered starting point
     kDepthReference = 395,    ///< depth of the tip (0) or of the full diameter
     kFeedFactor = 401,        ///< %

@@ -23,8 +23,12 @@ void check_values(nc::Control& control, const Drilling& drilling) {
   const auto refuse = [&](bool meant, std::string text, const char* fix) {
     if (meant) control.report.fail("unsupported-word", 0, std::move(text), fix);
   };
-  refuse(q(drilling, Q::kDepthReference) != 0.0 || q(drilling, Q::kStartPoint) != 0.0,
-         "Q395 and Q379 other than 0 are not supported", "give the depth of the tip, from the surface");
+  refuse(q(drilling, Q::kDepthReference) != 0.0,
+         "Q395 other than 0 counts the depth from the full diameter, which needs the point angle of the tool",
+         "give the depth of the tip: Q395=+0");
+  refuse(q(drilling, Q::kStartPoint) != 0.0 && number != 241, "Q379 other than 0 is not supported",
+         "give the depth from the surface: Q379=+0");
+  refuse(q(drilling, Q::kStartPoint) < 0.0, "the lowered starting point Q379 is below zero", "Q379=+20");
   refuse(q(drilling, Q::kStopAboveFirst) != q(drilling, Q::kStopAboveLast),
          "Q258 and Q259 that differ are not supported", "give both the same value");
   refuse(
@@ -103,6 +107,20 @@ void drill_once(Executor& executor) {
   nc::drill(executor.control, cycle, Target());
 }
 
+/// Q379 of 241: down the pilot hole at Q253 to where drilling begins, a fifth of Q379 above the lowered
+/// point, at most the set-up clearance.
+void enter_pilot_hole(Executor& executor) {
+  const double lowered = length(executor, Q::kStartPoint);
+  if (lowered == 0.0) return;
+  const double feed = q(executor.drilling, Q::kFeedPilot);
+  if (!(feed > 0.0))
+    executor.control.report.fail("missing-feed", 0, "Q379 enters a pilot hole, and Q253 gives no feed for it",
+                                 "Q253=750");
+  const double surface = cycle_surface(executor.control, executor.drilling, executor.frames),
+               above = std::min(0.2 * lowered, length(executor, Q::kClearance));
+  go(executor.control, feed == kRapidFeed ? Motion::kRapid : Motion::kFeed, surface - lowered + above, feed);
+}
+
 /// 241 in one stroke: in at the entry speed, down at the drilling speed, out at Q208.
 void drill_deep(Executor& executor) {
   const double start = cycle_surface(executor.control, executor.drilling, executor.frames) +
@@ -114,6 +132,9 @@ void drill_deep(Executor& executor) {
   go(executor.control, Motion::kRapid, start, 0.0);
   if (executor.drilling.cycle->q.count(Q::kEntrySense) > 0)
     executor.control.modal.spindle = q(executor.drilling, Q::kEntrySense) == 4.0 ? -1 : 1;
+  if (q(executor.drilling, Q::kEntrySpeed) > 0.0 && q(executor.drilling, Q::kStartPoint) > 0.0)
+    executor.control.modal.speed_rpm = q(executor.drilling, Q::kEntrySpeed);
+  enter_pilot_hole(executor);
   if (q(executor.drilling, Q::kDrillingSpeed) > 0.0)
     executor.control.modal.speed_rpm = q(executor.drilling, Q::kDrillingSpeed);
   go(executor.control, Motion::kFeed,

@@ -32,7 +32,72 @@ void begin_program(nc::Control& control, Parameters& parameters, Modes& modes, B
   parameters.set_q(113, inch ? 1.0 : 0.0);
 }
 
-void function_number(nc::Control& control, Flow& flow, BlockReader& reader, size_t start) {
+/// FN 17: SYSWRITE ID420 NR0 IDX0=Q1. What it changes stands in tables of the control.
+void write_system_data(nc::Control& control, BlockReader& reader, size_t start) {
+  const std::string what(reader.rest());
+  control.report.without_effect(fmt::format("FN 17: {} (data of the control)", what));
+  control.report.note("FN 17", what);
+  control.report.warn_once(
+      "system-data-written", reader.column(start),
+      fmt::format("FN 17: {} writes data of the control, which are not simulated: offsets "
+                  "and kinematics stay what they are",
+                  what),
+      "write them as TRANS DATUM, cycle 247 or M128 where they move the path");
+}
+
+/// FN 18: SYSREAD Q1 = ID50 NR4 IDX0. The value is the machine's: the parameter has none from here on, and a
+/// block that reads it is refused.
+void read_system_data(nc::Control& control, Parameters& parameters, BlockReader& reader, size_t start) {
+  reader.take("SYSREAD");
+  const Parameters::Name name = Parameters::name(reader);
+  if (!reader.take_char('='))
+    reader.fail("missing-word", reader.offset(), "'=' is missing here", "FN 18: SYSREAD Q1 = ID50 NR4 IDX0");
+  const std::string what(reader.rest());
+  parameters.forget(name);
+  control.report.without_effect(fmt::format("FN 18: {} (data of the control)", what));
+  control.report.note("FN 18", what);
+  control.report.warn_once(
+      "system-data-read", reader.column(start),
+      fmt::format("FN 18 reads {} of the control, which is not known here: {} has no value", what,
+                  Parameters::text_of(name)),
+      "assign the parameter where its value matters");
+}
+
+/// TCH PROBE 408 .. Q321=..: what it measures is not in the program. The cycle's own parameters hold; those
+/// of results have no value from here on.
+void probe(nc::Control& control, Parameters& parameters, BlockReader& reader, size_t start) {
+  reader.done();
+  const size_t at = reader.offset();
+  const long number = reader.whole_number_before_point(9999);
+  const std::string word = fmt::format("TCH PROBE {}", number);
+  control.report.without_effect(word);
+  control.report.warn_once("probing", reader.column(start),
+                           fmt::format("{} measures on the machine: its moves and what it sets (datum, tool "
+                                       "data, results in Q parameters) are not simulated",
+                                       word),
+                           "give the datum as it is after measuring in the scene, or post without probing");
+  constexpr int kFirstResult = 110, kLastResult = 199;
+  for (int result = kFirstResult; result <= kLastResult; ++result) {
+    if (result < 113 || result > 114) parameters.forget({'Q', result});  // Q113, Q114: unit, tool length
+  }
+  reader.move_to(at);
+  while (!reader.done() && !reader.parameter_follows()) reader.skip();
+  while (!reader.done()) {
+    const Parameters::Name name = Parameters::name(reader);
+    if (!reader.take_char('=')) {  // TCH PROBE 0.0 REF. PLANE Q5 X-: the result goes there
+      parameters.forget(name);
+      break;
+    }
+    if (name.kind == 'S')
+      reader.text_value();
+    else if (!reader.take("FMAX") && !reader.take("MAX") && !reader.take("FAUTO"))
+      parameters.set(name, reader.value());
+  }
+  reader.rest();
+}
+
+void function_number(nc::Control& control, Flow& flow, Parameters& parameters, BlockReader& reader,
+                     size_t start) {
   const long number = reader.whole_number(99);
   if (!reader.take_char(':'))
     reader.fail("missing-word", reader.offset(), "':' is missing here", "FN 0: Q1 = +10");
@@ -53,9 +118,11 @@ void function_number(nc::Control& control, Flow& flow, BlockReader& reader, size
     control.report.note(fmt::format("FN {}", number), reader.rest());
     return;
   }
+  if (number == 17) return write_system_data(control, reader, start);
+  if (number == 18) return read_system_data(control, parameters, reader, start);
   if (number >= 15 && number <= 38) {
     reader.fail("unsupported-word", start, fmt::format("FN {} is known, but not supported here", number),
-                "FN 0 to FN 14, FN 16 and FN 38 are");
+                "FN 0 to FN 14, FN 16 to FN 18 and FN 38 are");
   }
   reader.fail("unknown-word", start, fmt::format("there is no FN {}", number), "FN 0 to FN 38");
 }
@@ -70,7 +137,7 @@ bool statement(Executor& executor, BlockReader& reader, std::string_view word, s
     reader.rest();
     executor.flow.end_of_program(reader);
   } else if (word == "FN") {
-    function_number(executor.control, executor.flow, reader, start);
+    function_number(executor.control, executor.flow, executor.parameters, reader, start);
   } else if (word == "TOOL") {
     if (reader.take("CALL")) {
       tool_call(executor, reader);
@@ -89,6 +156,9 @@ bool statement(Executor& executor, BlockReader& reader, std::string_view word, s
     } else {
       reader.fail("missing-word", start, "CYCL without DEF or CALL", "CYCL DEF 200, CYCL CALL");
     }
+  } else if (word == "TCH") {
+    if (!reader.take("PROBE")) reader.fail("missing-word", start, "TCH without PROBE", "TCH PROBE 408");
+    probe(executor.control, executor.parameters, reader, start);
   } else if (word == "PATTERN") {
     pattern_definition(executor.control, executor.drilling, reader, start);
   } else if (word == "PLANE") {

@@ -44,10 +44,28 @@ void reduce_display(nc::Control& control, const MWord& word) {
   nc::set_shift(control, shift);
 }
 
+/// Whether the linear axes end somewhere.
+bool ends_of_travel_known(const nc::Control& control) {
+  for (int i = 0; i < 3; ++i) {
+    const int index = control.space.axis_of(static_cast<nc::AxisWord>(i));
+    const kinematics::Axis& axis = control.setup.machine.axes[static_cast<size_t>(index)];
+    if (std::isfinite(axis.min) && std::isfinite(axis.max)) return true;
+  }
+  return false;
+}
+
 /// M140 MB50 at F of its block, or rapid.
 void retract(nc::Control& control, PathState& path, BlockReader& reader, const MWord& word,
              const MotionWords& words) {
   no_open_corner(path, reader, word.offset);
+  if (word.max && !ends_of_travel_known(control)) {
+    control.report.without_effect("M140 MB MAX (the machine has no ends of travel)");
+    control.report.warn_once("no-end-of-travel", reader.column(word.offset),
+                             "M140 MB MAX retracts to the end of travel, and this machine has none: the tool "
+                             "stays where it is",
+                             "name the machine: --machine, in a scene `machine`");
+    return;
+  }
   if (!control.path.started) {
     reader.fail("start-unknown", word.offset, "M140 retracts, and the position is not known yet",
                 "position all axes before it");

@@ -183,6 +183,7 @@ double cutter_radius(nc::Control& control, Modes& modes, BlockReader& reader) {
   const NcTool* tool = nc::active_tool(control);
   const auto defined = modes.defined_radius.find(control.tools.active_number);
   if (tool == nullptr && defined != modes.defined_radius.end()) return defined->second + modes.delta_radius;
+  if (tool == nullptr && nc::no_tool_table(control, 0)) return modes.delta_radius;
   if (tool == nullptr)
     reader.fail("compensation-no-tool", 0, "RL or RR without a tool of the table in the spindle",
                 "TOOL CALL 5 Z");

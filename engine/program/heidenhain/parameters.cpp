@@ -162,6 +162,10 @@ std::optional<double> Parameters::find(const Name& name) const {
   return found->second;
 }
 
+void Parameters::forget(const Name& name) {
+  (name.kind == 'L' ? local_ : name.kind == 'R' ? kept_ : global_).erase(name.number);
+}
+
 double Parameters::read(BlockReader& reader) {
   reader.done();
   const size_t start = reader.offset();

@@ -29,6 +29,8 @@ class Parameters {
   std::optional<double> find(const Name& name) const;
   std::optional<double> find_q(int number) const { return find({'Q', number}); }
   void set(const Name& name, double value);
+  /// The parameter has no value any more.
+  void forget(const Name& name);
   void set_q(int number, double value) { set({'Q', number}, value); }
   /// Behind the '=': a formula, or a text for QS.
   void assign(BlockReader& reader, const Name& name);

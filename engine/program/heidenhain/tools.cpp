@@ -111,11 +111,13 @@ void tool_ready(nc::Control& control, Modes& modes, BlockReader& reader) {
   const bool other_radius =
       radius && std::abs(control.modal.mm(radius.value) - 0.5 * tool.diameter_mm) > 1e-6;
   if (other_length || other_radius)
-    reader.fail(
-        "words-conflict", at,
-        fmt::format("the program says L {:g} and R {:g} mm of this tool, the tool table L {:g} and R {:g} mm",
-                    control.modal.mm(length.value), control.modal.mm(radius.value), tool.length_mm,
-                    0.5 * tool.diameter_mm),
+    control.report.warn_once(
+        "tool-def-contradicts-table", reader.column(at),
+        fmt::format(
+            "the program says L {:g} and R {:g} mm of this tool, the tool table L {:g} and R {:g} mm: "
+            "the table holds, as on a control with a central tool file",
+            control.modal.mm(length.value), control.modal.mm(radius.value), tool.length_mm,
+            0.5 * tool.diameter_mm),
         "correct one of them, or write TOOL DEF with the number alone");
 }
 

@@ -27,10 +27,9 @@ const std::vector<std::string>& known_words() {
 /// Words of the control that are not executed here.
 const std::vector<std::string>& unsupported_words() {
   static const std::vector<std::string> words{
-      "U",    "V",       "W",     "IU",      "IV",   "IW",      "FZ",      "FL",
-      "FLT",  "FC",      "FCT",   "FPOL",    "CTP",  "TCH",     "CONTOUR", "POLARKIN",
-      "OPEN", "READ",    "WRITE", "DECLARE", "COMP", "SECTION", "OEM",     "PRESET",
-      "NC",   "FSELECT", "IF",    "WHILE",   "FOR",  "TABDATA", "ICC",     "TRY"};
+      "U",      "V",   "W",       "IU",       "IV",    "IW",   "FZ",      "FL",      "FLT",  "FC",      "FCT",
+      "FPOL",   "CTP", "CONTOUR", "POLARKIN", "OPEN",  "READ", "WRITE",   "DECLARE", "COMP", "SECTION", "OEM",
+      "PRESET", "NC",  "FSELECT", "IF",       "WHILE", "FOR",  "TABDATA", "ICC",     "TRY"};
   return words;
 }
 

@@ -5,11 +5,13 @@
 #include <cmath>
 
 #include "base/units.h"
+#include "program/letters/codes.h"
 
 namespace swarf::program::nc {
 namespace {
 
-void skip_parentheses(FormulaReader& reader, Control& control, std::string_view& message) {
+void skip_parentheses(const LetterSyntax& syntax, FormulaReader& reader, Control& control,
+                      std::string_view& message) {
   const size_t from = reader.at();
   const size_t close = reader.line().find_first_of("()", from + 1);
   if (close == std::string_view::npos || reader.line()[close] == '(') {
@@ -23,6 +25,11 @@ void skip_parentheses(FormulaReader& reader, Control& control, std::string_view&
   reader.skip_space();
   if (reader.take("MSG,") || reader.take("DEBUG,") || reader.take("PRINT,"))
     message = reader.line().substr(reader.at(), close - reader.at());
+  if (syntax.active_comments && reader.take("ABORT,"))
+    control.report.fail("program-error", reader.column_of(from),
+                        fmt::format("the program stops itself here: {}",
+                                    reader.line().substr(reader.at(), close - reader.at())),
+                        "see what the program checks before this block");
   reader.move_to(close + 1);
 }
 
@@ -40,6 +47,14 @@ bool is_builders(int tenths, const Code* code, int column, Control& control) {
                         fmt::format("{} has its meaning in this dialect, and builder_words names it", word),
                         "take it out of builder_words");
   return !own && control.report.take_builder_word(word);
+}
+
+/// G80 and one of G0 to G3, in either order.
+bool ends_cycle_beside_motion(int first, int second) {
+  const auto moves = [](int tenths) {
+    return tenths >= IsoG::kRapid && tenths <= IsoG::kArcCounterClockwise && tenths % 10 == 0;
+  };
+  return (first == IsoG::kCycleOff && moves(second)) || (second == IsoG::kCycleOff && moves(first));
 }
 
 void add_code(char letter, const CodeTable& table, double number, size_t place, FormulaReader& reader,
@@ -82,6 +97,17 @@ void add_code(char letter, const CodeTable& table, double number, size_t place, 
   const auto group = static_cast<size_t>(static_cast<unsigned char>(code->group));
   if (block.has_g(code->group)) {
     const bool motion = code->group == 1;
+    if (motion && ends_cycle_beside_motion(block.g[group], code->tenths)) {
+      control.report.warn_once(
+          "cycle-end-beside-motion", reader.column_of(place),
+          "G80 stands beside a motion: the cycle ends and the motion holds, as most controls "
+          "have it; LinuxCNC itself refuses two codes of one modal group",
+          "write G80 in a block before it");
+      if (code->tenths == IsoG::kCycleOff) return;
+      block.g[group] = block.g_written[group] = code->tenths;
+      block.g_places[group] = static_cast<uint16_t>(place);
+      return;
+    }
     control.report.fail(motion ? "two-motion-words" : "modal-conflict", reader.column_of(place),
                         fmt::format("{} and {} contradict each other in one block",
                                     code_name('G', block.g_written[group]), code_name('G', code->tenths)),
@@ -128,7 +154,7 @@ void skip_comments(const LetterSyntax& syntax, FormulaReader& reader, Control& c
   for (reader.skip_space(); !reader.done(); reader.skip_space()) {
     const char c = reader.peek();
     if (c == '(') {
-      skip_parentheses(reader, control, message);
+      skip_parentheses(syntax, reader, control, message);
     } else if (c == ';') {
       if (syntax.semicolon_comment ||
           reader.line().find_first_not_of("; \t\r", reader.at()) == std::string_view::npos)

@@ -62,9 +62,10 @@ std::string code_name(char letter, int tenths);
 struct LetterSyntax {
   const CodeTable* g_codes;
   const CodeTable* m_codes;
-  std::string_view letters;  ///< that are words
-  bool semicolon_comment;    ///< ';' starts a comment; else it ends the block
-  bool number_first;         ///< N stands at the head of its block or nowhere
+  std::string_view letters;      ///< that are words
+  bool semicolon_comment;        ///< ';' starts a comment; else it ends the block
+  bool number_first;             ///< N stands at the head of its block or nowhere
+  bool active_comments = false;  ///< (ABORT, text) stops the program
 };
 
 /// The words of one line.

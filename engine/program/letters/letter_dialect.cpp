@@ -26,9 +26,10 @@ bool LetterDialect::percent(std::string_view line, bool in_pairs) {
                         "put the words on a line of their own");
   const bool after_blocks = control.report.summary.blocks > 0;
   if (in_pairs && after_blocks && !percent_seen)
-    control.report.fail("unexpected-character", reader.column(),
-                        "'%' ends a program that does not begin with '%'",
-                        "write '%' in the first line too, or end with M2 or M30");
+    control.report.warn_once("percent-alone", reader.column(),
+                             "'%' ends the program here, which did not begin with one: LinuxCNC itself stops "
+                             "at it with an error",
+                             "write '%' in the first line too, or take this one out");
   ended = percent_seen || after_blocks;
   percent_seen = true;
   return true;

@@ -28,7 +28,7 @@ struct LetterDialect : Parameters {
   /// Counts a line that is about to be executed and gives errors its place.
   void at_line(const LineSource& source);
   /// True for a line with '%', which must stand alone; the second one ends the program. So does one that
-  /// blocks stand before, unless they come `in_pairs`: then it is a fault.
+  /// blocks stand before; where they come `in_pairs` a warning says so ("percent-alone").
   bool percent(std::string_view line, bool in_pairs);
   /// Warns of a main program that ends with its file: it may have been cut off.
   void warn_of_missing_end(const char* ends);

@@ -15,9 +15,25 @@ namespace {
 constexpr size_t kBuffer = size_t{1} << 18;
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
-/// Bytes that stand in no program text: control characters other than tab, form feed and the old end mark.
+/// False for bytes that stand in no program text: control characters other than tab and form feed.
 bool is_text(unsigned char byte) {
-  return (byte >= 0x20) | (byte == '\t') | (byte == '\f') | (byte == 0x1A);
+  return (byte >= 0x20) | (byte == '\t') | (byte == '\f');
+}
+
+/// Marks of a transfer (start and end of text, end of transmission, reader on and off, the old end of a
+/// file): controls pass over them.
+bool is_transfer_mark(char c) {
+  constexpr std::string_view kMarks("\x02\x03\x04\x11\x12\x13\x14\x1A", 8);
+  return kMarks.find(c) != std::string_view::npos;
+}
+
+/// The line without marks of a transfer at its ends. NUL belongs to them only where tapes and blocks of a
+/// disk are filled up with it: before the first line and behind the last one. Elsewhere something is lost.
+std::string_view without_marks(std::string_view line, bool first, bool last) {
+  const auto mark = [](char c, bool filled) { return is_transfer_mark(c) || (filled && c == '\0'); };
+  while (!line.empty() && mark(line.front(), first)) line.remove_prefix(1);
+  while (!line.empty() && mark(line.back(), last)) line.remove_suffix(1);
+  return line;
 }
 
 bool all_text(std::string_view line) {
@@ -101,7 +117,11 @@ bool LineSource::next(std::string_view& line) {
   const bool returned = at_ < end_ && buffer_[at_] == '\r';
   if (at_ < end_) ++at_;
   if (returned && at_ < end_ && buffer_[at_] == '\n') ++at_;
-  if (!all_text(line)) refuse_bytes(line);
+  if (!all_text(line)) {
+    const std::string_view whole = line;
+    line = without_marks(line, line_ == 1, last_ && at_ == end_);
+    if (!all_text(line)) refuse_bytes(whole);
+  }
   return true;
 }
 

@@ -26,8 +26,10 @@ class LineSource {
   /// The same, with its index in NcSummary::files.
   LineSource(const std::string& path, Control& control);
   /// The next line without its end (LF, CR LF or CR), valid until the next call; false at the end of the
-  /// file. Bytes that no text has (NUL and other control characters) are refused ("not-text"), as are lines
-  /// over kMaxLine ("line-too-long"); both throw InputError.
+  /// file. Marks of a transfer (ETX, XON, ..) at a line's ends are left out, as is NUL before the first line
+  /// and behind the last one; other bytes that no text has are refused ("not-text"), as are lines over
+  /// kMaxLine
+  /// ("line-too-long"); both throw InputError.
   bool next(std::string_view& line);
   long line_number() const { return line_; }  ///< of the line given last, 1-based
   int file() const { return file_; }          ///< index into NcSummary::files

@@ -52,9 +52,10 @@ void check_curve(const LetterDialect& letters, const char* name) {
                                 fmt::format("the reference does not say what F of G93 means for {}", name),
                                 "write G94 and a feed before it");
   if (!letters.control.path.started)
-    letters.control.report.fail(
-        "start-unknown", at, fmt::format("{} starts, and the position is not known yet", name),
-        "give the start position in the scene, or position all axes with G0 before it");
+    letters.control.report.fail("start-unknown", at,
+                                fmt::format("{} starts, and the position is not known yet", name),
+                                "give the start position (start in [setup] of the scene, swarf check "
+                                "--home), or position all axes with G0 before it");
 }
 
 Vec3 end_of_curve(Modes& modes, LetterDialect& letters) {

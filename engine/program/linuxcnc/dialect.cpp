@@ -31,6 +31,11 @@ void read_assignment(LinuxCnc& linuxcnc) {
     linuxcnc.parameters.new_names.emplace_back(std::move(name), value);
     return;
   }
+  if (number == kDebugOutput) {
+    linuxcnc.control.report.without_effect("#5599 (output of DEBUG comments)");
+    linuxcnc.parameters.debug_output = value;
+    return;
+  }
   if (number < 1 || number >= kNumbers)
     linuxcnc.control.report.fail("bad-parameter", linuxcnc.reader.column_of(from),
                                  fmt::format("#{} cannot be assigned", number),
@@ -78,7 +83,12 @@ bool execute(LinuxCnc& linuxcnc) {
     read_assignment(linuxcnc);
     read_words(kLinuxCncSyntax, linuxcnc.reader, linuxcnc.control, linuxcnc.block, '#');
   }
-  if (!linuxcnc.block.message.empty()) linuxcnc.control.report.note("MSG", message_text(linuxcnc));
+  if (!linuxcnc.block.message.empty()) {
+    linuxcnc.parameters.in_message = true;
+    const std::string text = message_text(linuxcnc);
+    linuxcnc.parameters.in_message = false;
+    linuxcnc.control.report.note("MSG", text);
+  }
   if (linuxcnc.block.skip_mark)
     linuxcnc.control.report.without_effect("/ (block delete is off: such blocks are executed)");
   if (!linuxcnc.block.empty()) {
@@ -125,33 +135,23 @@ LinuxCnc::LinuxCnc(const std::string& file, Control& machine)
 
 /// Words that no other dialect here has: O-words with keywords, named parameters, G10 L2 P, kinematics
 /// switches.
-Evidence evidence(std::string_view head, std::string_view extension) {
+Evidence evidence(const ProgramHead& head) {
   Evidence found;
-  const auto add = [&](int score, std::string reason) {
-    if (found.score == 0) found.reason = std::move(reason);
-    found.score += score;
-  };
-  long number = 0;
-  while (!head.empty()) {
-    ++number;
-    const size_t end = std::min(head.find('\n'), head.size());
-    std::string line(head.substr(0, end));
-    head.remove_prefix(std::min(end + 1, head.size()));
-    std::transform(line.begin(), line.end(), line.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-    const std::string code = line.substr(0, line.find_first_of("(;"));
-    const size_t o = code.find_first_not_of(" \t");
-    const bool o_word = o != std::string::npos && code[o] == 'O';
+  for (const HeadLine& line : head.lines) {
     for (const char* keyword : {" SUB", " CALL", " WHILE", " IF", " REPEAT", " DO", " ENDSUB"}) {
-      if (o_word && code.find(keyword) != std::string::npos)
-        add(3, fmt::format("an O word in line {}", number));
+      if (line.code.starts_with('O') && line.code.find(keyword) != std::string::npos)
+        found.add(3, "an O word", line.number);
     }
-    if (code.find("#<") != std::string::npos) add(3, fmt::format("a named parameter in line {}", number));
-    for (const char* word : {"G64 P", "G43.1", "G59.1", "G90.1", "G91.1", "M428", "M429", "M430", "G92.1"}) {
-      if (code.find(word) != std::string::npos) add(2, fmt::format("{} in line {}", word, number));
+    if (line.code.find("#<") != std::string::npos) found.add(3, "a named parameter", line.number);
+    if (line.code.find("G64 P") != std::string::npos) found.add(2, "G64 P", line.number);
+    for (const char* word : {"G43.1", "G59.1", "G90.1", "G91.1", "M428", "M429", "M430", "G92.1"}) {
+      if (has_word(line.code, word)) found.add(2, word, line.number);
     }
   }
-  if (extension == ".ngc") add(2, "the file's ending .ngc");
+  if (head.extension == ".ngc") {
+    if (found.score == 0) found.reason = "the file's ending .ngc";
+    found.score += 2;
+  }
   return found;
 }
 

@@ -99,6 +99,11 @@ OWord skip_to(Calls& calls, LetterDialect& letters, const std::string& name,
     letters.reader.move_to(start);
     if (computed) continue;
     const OWord word = read_o_word(letters);
+    if (word.keyword == Keyword::kSub && *ends.begin() == Keyword::kEndSub)
+      letters.control.report.fail(
+          "bad-o-word", word.column,
+          fmt::format("O{} sub stands inside of O{} sub: LinuxCNC nests no definitions", word.name, name),
+          fmt::format("end O{} with endsub before it", name));
     if (word.name != name) continue;
     if (std::find(ends.begin(), ends.end(), word.keyword) != ends.end()) return word;
   }
@@ -255,8 +260,8 @@ const Sub* scan(Calls& calls, LetterDialect& letters, LineSource& in, const std:
   return found;
 }
 
-/// O...sub must have been passed before its call, a numbered subprogram follows it; both may have a file of
-/// their own.
+/// O...sub may stand before or behind its call (LinuxCNC looks ahead for it), a numbered subprogram behind
+/// it; both may have a file of their own.
 const Sub* find_sub(Calls& calls, LetterDialect& letters, const std::string& name, bool numbered) {
   for (const Sub& sub : calls.known) {
     if (sub.name == name && sub.numbered == numbered) return &sub;
@@ -264,11 +269,6 @@ const Sub* find_sub(Calls& calls, LetterDialect& letters, const std::string& nam
   LineSource& main = *letters.sources.front();
   const Sub* here = scan(calls, letters, source(calls), name, numbered);
   if (here == nullptr && &source(calls) != &main) here = scan(calls, letters, main, name, numbered);
-  if (here != nullptr && !numbered)
-    letters.control.report.fail(
-        "unknown-subprogram", 0,
-        fmt::format("O{} is called before its definition in line {}", name, here->body.line),
-        "write the subprogram before its first call");
   if (here != nullptr) return here;
   const std::string file = find_subprogram(letters.path, letters.control.setup, name, {".ngc", ".nc", ""});
   return file.empty() ? nullptr : scan(calls, letters, letters.open(file), name, numbered);
@@ -292,7 +292,9 @@ void call_sub(Calls& calls, NumbersAndNames& parameters, LetterDialect& letters,
   Call call;
   call.sub = word.name;
   size_t count = 0;
-  for (letters.reader.skip_space(); letters.reader.peek() == '['; letters.reader.skip_space()) {
+  std::string_view message;
+  const auto to_argument = [&] { skip_comments(kLinuxCncSyntax, letters.reader, letters.control, message); };
+  for (to_argument(); letters.reader.peek() == '['; to_argument()) {
     if (++count > 30)
       letters.control.report.fail("too-many-arguments", letters.reader.column(),
                                   "a call has at most 30 arguments", "pass fewer");

@@ -50,9 +50,9 @@ void set_data(Zero& zero, LetterDialect& letters) {
       continue;
     }
     if (!std::isfinite(here[static_cast<size_t>(word)]))
-      letters.control.report.fail("start-unknown", words.column,
-                                  "G10 L20 needs the position, which is not known yet",
-                                  "give the start position in the scene");
+      letters.control.report.fail(
+          "start-unknown", words.column, "G10 L20 needs the position, which is not known yet",
+          "give the start position: start in [setup] of the scene, swarf check --home");
     // In the offset that is active: so that the present position reads `value`.
     origin[axis] = nc::offset_origin(letters.control.space, letters.control.offsets,
                                      letters.control.offsets.active)[axis] +
@@ -67,7 +67,7 @@ void set_reference(Zero& zero, LetterDialect& letters, int tenths) {
   if (!letters.control.path.started)
     letters.control.report.fail("start-unknown", letters.g_column(kNonModal),
                                 "the position to keep is not known yet",
-                                "give the start position in the scene");
+                                "give the start position: start in [setup] of the scene, swarf check --home");
   nc::flush(letters.control);
   zero.references[tenths == G::kSetReference ? 0 : 1] = letters.control.path.q;
 }
@@ -106,9 +106,9 @@ void shift_to_words(Zero& zero, LetterDialect& letters, bool position) {
     const int axis = nc::require_axis(letters.control, static_cast<AxisWord>(word), words.column);
     const double value = words.value[static_cast<size_t>(word)], now = here[static_cast<size_t>(word)];
     if (position && !std::isfinite(now))
-      letters.control.report.fail("start-unknown", words.column,
-                                  "G92 needs the position, which is not known yet",
-                                  "give the start position in the scene");
+      letters.control.report.fail(
+          "start-unknown", words.column, "G92 needs the position, which is not known yet",
+          "give the start position: start in [setup] of the scene, swarf check --home");
     zero.shift[axis] = position ? zero.shift[axis] + now - value : value;
   }
   zero.shift_on = true;

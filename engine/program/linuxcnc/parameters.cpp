@@ -56,7 +56,7 @@ double position_parameter(LetterDialect& letters, long number, size_t place) {
   if (!std::isfinite(value))
     letters.control.report.fail("start-unknown", letters.reader.column_of(place),
                                 fmt::format("#{} asks for a position that is not known yet", number),
-                                "give the start position in the scene");
+                                "give the start position: start in [setup] of the scene, swarf check --home");
   return word < 3 ? value / letters.control.modal.mm(1.0) : deg_from_rad(value);
 }
 
@@ -170,12 +170,20 @@ double LinuxCnc::read(long number, size_t place) {
         "check the branches one by one: assign the value that is to be checked to a parameter instead");
   } else if (number > kArguments && number < kNumbers && parameters.number_set[static_cast<size_t>(number)]) {
     return parameters.numbers[static_cast<size_t>(number)];
+  } else if (number == kDebugOutput) {
+    return parameters.debug_output;
   } else if (number >= 5161) {
     return system_parameter(zero, *this, number, place);
   }
-  control.report.fail("undefined-parameter", reader.column_of(place),
-                      fmt::format("#{} has no value: nothing assigned it", number),
-                      "assign it before it is read");
+  if (number < 1 || parameters.in_message)
+    control.report.fail("undefined-parameter", reader.column_of(place),
+                        fmt::format("#{} is no parameter", number), "parameters have numbers from 1");
+  control.report.warn_once("undefined-parameter", reader.column_of(place),
+                           fmt::format("#{} is read and nothing assigned it: LinuxCNC gives 0, or what its "
+                                       "parameter file holds",
+                                       number),
+                           "assign it before it is read");
+  return 0.0;
 }
 
 double LinuxCnc::read_named(std::string_view name, size_t place) {
@@ -188,7 +196,7 @@ double LinuxCnc::read_named(std::string_view name, size_t place) {
   if (axis_in(name, "_abs_") >= 0 && !control.path.started)
     control.report.fail("start-unknown", reader.column_of(place),
                         fmt::format("#<{}> asks for a position that is not known yet", name),
-                        "give the start position in the scene");
+                        "give the start position: start in [setup] of the scene, swarf check --home");
   if (const std::optional<double> value = predefined(*this, name)) return *value;
   if (of_machine(name))
     control.report.fail("machine-value", reader.column_of(place),

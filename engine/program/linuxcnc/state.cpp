@@ -12,6 +12,7 @@ ModalState modal_state(const Modes& modes, const LetterDialect& letters) {
   ModalState state;
   state.inches = letters.control.modal.inches();
   state.incremental = modes.incremental;
+  state.unit_known = letters.control.modal.unit_known;
   state.arc_absolute = modes.arc_absolute;
   state.retract_to_r = modes.retract_to_r;
   state.plane = letters.control.modal.plane;
@@ -71,6 +72,7 @@ void restore(Modes& modes, Zero& zero, LetterDialect& letters, const ModalState&
                     state.tool_number, letters.control.tools.active_number),
         "write G49 before the state is kept and G43 after it is restored");
   nc::set_inches(letters.control.modal, state.inches);
+  letters.control.modal.unit_known = state.unit_known;
   nc::set_plane(letters.control, state.plane);
   modes.incremental = state.incremental;
   modes.arc_absolute = state.arc_absolute;

@@ -51,7 +51,7 @@ struct StickyCycle {
 /// What M70 and M73 keep: the words that the reference lists for them, and no others (not the motion mode,
 /// the kinematics, G52, G92).
 struct ModalState {
-  bool inches = false, incremental = false, arc_absolute = false, retract_to_r = false;
+  bool unit_known = false, inches = false, incremental = false, arc_absolute = false, retract_to_r = false;
   Plane plane = Plane::kXY;
   FeedMode feed_mode = FeedMode::kPerMinute;
   double feed = 0.0, speed_rpm = 0.0;
@@ -138,6 +138,8 @@ struct Calls {
 
 /// Parameters up to #30 are arguments, from kNumbers on they belong to the control.
 inline constexpr long kNumbers = 5400, kArguments = 30;
+/// #5599: whether (DEBUG, ) speaks; on until a program says otherwise.
+inline constexpr long kDebugOutput = 5599;
 
 /// #numbers and #<names>.
 struct NumbersAndNames {
@@ -146,8 +148,9 @@ struct NumbersAndNames {
   std::vector<bool> number_set;
   std::vector<std::pair<long, double>> new_numbers;  ///< of this block: assigned when it is read
   std::vector<std::pair<std::string, double>> new_names;
-  double returned = 0.0;
+  double returned = 0.0, debug_output = 1.0;
   bool value_returned = false;
+  bool in_message = false;  ///< a value is wanted for a message: what nobody assigned has none there
 };
 
 /// Modal codes in tenths, and what words of the machine say.

@@ -40,7 +40,7 @@ double touched_length(const Zero& zero, const LetterDialect& letters, int kind, 
   if (!letters.control.path.started)
     letters.control.report.fail("start-unknown", letters.column('Z'),
                                 "G10 measures the tool where it stands, which is not known yet",
-                                "give the start position in the scene");
+                                "give the start position: start in [setup] of the scene, swarf check --home");
   if (letters.control.space.coordinates() != Coordinates::kAxes)
     letters.control.report.fail("tcp-active", letters.column('Z'),
                                 "G10 L10 and L11 measure along Z of the machine, and TCP is on",
@@ -66,7 +66,8 @@ void apply_tool(Modes& modes, Curves& curves, LetterDialect& letters) {
     modes.tool_called = true;
   }
   if (letters.block.has_m(610)) declare_tool(letters);
-  if (!letters.block.has_m(60)) return;
+  const bool by_t = letters.control.setup.t_changes_tool && letters.block.has('T');
+  if (!letters.block.has_m(60) && !by_t) return;
   curves.spline_tangent.reset();
   nc::change_tool(letters.control);
 }
@@ -76,6 +77,7 @@ std::optional<double> diameter_of(Zero& zero, LetterDialect& letters, int number
   const int wanted = number == 0 ? letters.control.tools.active_number : number;
   const auto written = zero.tool_data.find(wanted);
   if (written != zero.tool_data.end() && written->second.diameter_mm) return written->second.diameter_mm;
+  if (nc::no_tool_table(letters.control, column)) return 0.0;
   const NcTool* tool = nc::active_tool(letters.control);
   if (number != 0) {
     const int index = nc::find_tool(letters.control, number, column);

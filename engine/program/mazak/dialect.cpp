@@ -5,10 +5,10 @@
 
 namespace swarf::program::nc::mazak {
 
-Evidence evidence(std::string_view head, std::string_view extension) {
+Evidence evidence(const ProgramHead& head) {
   constexpr std::string_view kOnlyHere[] = {"G34.1", "G37.1", "G61.2", "G68.5", "G69.5",
                                             "G71.1", "G72.1", "G84.2", "G84.3", "G92.5"};
-  return fanuc::derived_evidence(head, extension, kOnlyHere, 0);
+  return fanuc::derived_evidence(head, kOnlyHere, 0);
 }
 
 void run(const std::string& path, Control& control) {

@@ -19,8 +19,10 @@ bool telling(const std::vector<Token>& tokens) {
     if (value && (token.name[0] == 'R' || token.name == "CR" || token.name == "TURN" || token.name == "A3"))
       return true;
     for (const char* word :
-         {"TRAORI", "TRAFOOF", "SUPA", "TRANS", "ATRANS", "ROT", "AROT", "GOTOF", "GOTOB", "DEF", "PROC",
-          "MCALL", "CIP", "STOPRE", "ORIWKS", "ORIAXES", "ORIVECT", "FNORM", "COMPCAD"}) {
+         {"TRAORI",  "TRAFOOF", "SUPA",   "TRANS",  "ATRANS", "ROT",      "AROT",   "GOTOF",   "GOTOB",
+          "DEF",     "PROC",    "MCALL",  "CIP",    "STOPRE", "ORIWKS",   "ORIMKS", "ORIAXES", "ORIVECT",
+          "FNORM",   "COMPCAD", "COMPON", "COMPOF", "BRISK",  "SOFT",     "FFWON",  "FFWOF",   "FGROUP",
+          "EXTCALL", "EXTERN",  "CFTCP",  "CUT2D",  "CUT2DF", "WORKPIECE"}) {
       if (token.name == word) return true;
     }
   }
@@ -29,32 +31,24 @@ bool telling(const std::vector<Token>& tokens) {
 
 }  // namespace
 
-Evidence evidence(std::string_view head, std::string_view extension) {
+Evidence evidence(const ProgramHead& head) {
   Evidence found;
-  if (extension == ".mpf" || extension == ".spf") {
-    found = {3, fmt::format("the ending {}", extension)};
-  }
+  if (head.extension == ".mpf" || head.extension == ".spf")
+    found = {3, fmt::format("the ending {}", head.extension)};
   std::vector<Token> tokens;
   const std::string none;
-  int number = 0;
-  while (!head.empty()) {
-    const size_t end = std::min(head.find_first_of("\r\n"), head.size());
-    const std::string_view text = head.substr(0, end);
-    head.remove_prefix(std::min(head.size(), end + (head.substr(end).starts_with("\r\n") ? 2 : 1)));
-    ++number;
-    if (text.empty()) continue;
-    bool tells = text.starts_with("%_N_");
-    if (!tells) {
+  for (const HeadLine& line : head.lines) {
+    // What a transfer writes over a file names the control, though it is a comment.
+    bool tells = line.text.starts_with("%_N_") || line.text.starts_with(";$PATH=/_N_");
+    if (!tells && !line.code.empty()) {
       try {
-        lex({&none, number, text}, tokens);
+        lex({&none, static_cast<int>(line.number), line.code}, tokens);
       } catch (const InputError&) {
         continue;  // another dialect's line, or a faulty one: it says nothing
       }
       tells = telling(tokens);
     }
-    if (!tells) continue;
-    ++found.score;
-    if (found.reason.empty()) found.reason = fmt::format("'{}' in line {}", text.substr(0, 40), number);
+    if (tells) found.add(1, fmt::format("'{}'", line.text.substr(0, 40)), line.number);
   }
   return found;
 }

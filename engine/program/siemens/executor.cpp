@@ -109,6 +109,13 @@ void set_cutting_edge(nc::Control& control, BlockPlace& place, PathWords& path, 
   path.last.valid = false;
 }
 
+/// M6, or T where it changes the tool at once: D1 of the new tool holds.
+void change_tool(nc::Control& control, BlockPlace& place, PathWords& path, size_t offset) {
+  nc::change_tool(control);
+  path.last.valid = false;
+  set_cutting_edge(control, place, path, 1, offset);
+}
+
 void tool_words(nc::Control& control, BlockPlace& place, PathWords& path, const BlockWords& words) {
   if (words.tool.given) {
     const int at = column(place, words.tool.offset);
@@ -117,12 +124,11 @@ void tool_words(nc::Control& control, BlockPlace& place, PathWords& path, const 
                       : words.tool.by_name ? nc::find_tool(control, words.tool.name, at)
                                            : nc::find_tool(control, words.tool.number, at);
     nc::select_tool(control.tools, index, words.tool.number);
+    if (control.setup.t_changes_tool) change_tool(control, place, path, words.tool.offset);
   }
   for (const Amount& function : words.functions) {
-    if (function.value != 6) continue;
-    nc::change_tool(control);
-    path.last.valid = false;
-    set_cutting_edge(control, place, path, 1, function.offset);
+    if (function.value == 6 && !(control.setup.t_changes_tool && words.tool.given))
+      change_tool(control, place, path, function.offset);
   }
   if (words.cutting_edge)
     set_cutting_edge(control, place, path, words.cutting_edge.value, words.cutting_edge.offset);
@@ -196,6 +202,7 @@ Executor::Executor(nc::Control& machine) : control(machine) {
   control.report.words.length_on = "D1";
   control.contour.set_entry(nc::CompensationEntry::kAcrossNext);
   control.modal.exact_stop = true;
+  if (control.modal.inches()) modes.units = kG700;
 }
 
 void fail(const BlockPlace& place, const char* code, size_t offset, std::string text, std::string fix) {
@@ -304,16 +311,17 @@ void cutter_words(Executor& executor, const BlockWords& words) {
   }
   check_contour_rules(executor.place, executor.modes, 0);
   const NcTool* tool = nc::active_tool(executor.control);
-  if (tool == nullptr || !executor.control.tools.length_on) {
+  const bool no_table = tool == nullptr && nc::no_tool_table(executor.control, 0);
+  if (!no_table && (tool == nullptr || !executor.control.tools.length_on)) {
     executor.control.report.fail("compensation-no-tool", 0,
                                  "cutter radius compensation has no tool: none is in the spindle, or D0",
                                  "load a tool of the table and write D1");
   }
-  const double radius = 0.5 * tool->diameter_mm + executor.modes.allowance_mm;
+  const double own = no_table ? 0.0 : 0.5 * tool->diameter_mm, radius = own + executor.modes.allowance_mm;
   if (!(radius >= 0.0)) {
     fail(executor.place, "out-of-range", words.allowance ? words.allowance.offset : 0,
          fmt::format("OFFN {:g} mm takes more than the radius {:g} mm of the cutter",
-                     executor.modes.allowance_mm, 0.5 * tool->diameter_mm),
+                     executor.modes.allowance_mm, own),
          "compensate on the other side");
   }
   const bool left = (*code == kG41) != mirrored(executor.control, executor.frames);

@@ -84,7 +84,7 @@ Value position_of(nc::Control& control, Frames& frames, const SystemName& asked)
   if (!std::isfinite(value) || !control.path.started) {
     refuse(asked.line, asked.offset, "start-unknown",
            fmt::format("{} is read, and the position is not known yet", asked.name),
-           "give the start position in the scene");
+           "give the start position: start in [setup] of the scene, swarf check --home");
   }
   if (word >= 3) return Value::real(deg_from_rad(value));
   check_metric(control, asked);

@@ -1,8 +1,11 @@
 #include "sim/job/nc_job.h"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "cutter/cutter.h"
+#include "sim/job/tool_table.h"
 
 namespace swarf::sim {
 namespace {
@@ -17,16 +20,35 @@ std::vector<program::NcTool> control_tools(const std::vector<cutter::Cutter>& to
   return table;
 }
 
+/// What [setup] says is in the spindle, or the only tool there is, where the program cuts without calling
+/// any.
+void set_start_tool(const Job& job, program::ControlSetup& setup, Diagnostics& diagnostics) {
+  const SetupSettings& settings = job.scene.setup;
+  if (settings.start_tool > 0 || !settings.start_tool_name.empty()) {
+    setup.start_tool = tool_index(job.scene.tools, settings.start_tool, settings.start_tool_name);
+    if (setup.start_tool < 0)
+      diagnostics.error("unknown-tool", settings.start_tool_where, "the start tool is not among the tools",
+                        fmt::format("the scene has {}", list_tools(job.scene.tools)));
+  } else if (setup.tools.size() == 1) {
+    setup.start_tool = 0;
+    setup.start_tool_if_needed = true;
+  }
+}
+
 program::ControlSetup control_setup(const Job& job, Diagnostics& diagnostics) {
   const SetupSettings& settings = job.scene.setup;
   program::ControlSetup setup;
   setup.machine = job.machine.model;
   setup.tools = control_tools(job.scene.tools);
+  setup.incomplete_tools = job.scene.incomplete_tools;
   for (const auto& [number, axes] : settings.offsets) {
     setup.work_offsets[number] = axis_values(axes, setup.machine, false, diagnostics);
   }
   setup.kinematics_switch = job.scene.kinematics_switch;
   setup.builder_words = job.scene.builder_words;
+  setup.unit_mm = settings.unit_mm ? settings.unit_mm : job.machine.program_unit_mm;
+  setup.t_changes_tool = settings.t_changes_tool;
+  set_start_tool(job, setup, diagnostics);
   if (settings.start) setup.start = axis_values(*settings.start, setup.machine, true, diagnostics);
   return setup;
 }

@@ -96,6 +96,8 @@ struct Scene {
   program::BuilderWords builder_words;          ///< NC
   SetupSettings setup;
   std::string tool_table_file;  ///< `tool_table`; "": none
+  std::map<int, std::string>
+      incomplete_tools;  ///< of the .tbl: number, place and reason; told where one is called
   /// What BlockMove::tool and ToolSample::tool count in. Surface blocks: one.
   std::vector<cutter::Cutter> tools{cutter::Cutter{}};
   StockSettings stock;

@@ -266,7 +266,8 @@ void read_cl_keys(ConfigTable& root, Scene& scene) {
 /// Surface blocks are planned for one cutter.
 void read_scene_tools(ConfigTable& root, Scene& scene, Diagnostics& diagnostics) {
   scene.tool_table_file = beside(scene.file, root.text("tool_table", ""));
-  scene.tools = read_tools(root, scene.tool_table_file, diagnostics);
+  scene.tools = read_tools(root, scene.tool_table_file, diagnostics,
+                           scene.kind == ProgramKind::kNc ? &scene.incomplete_tools : nullptr);
   if (scene.has_blocks() || scene.tools.size() == 1) return;
   root.error("planner-needs-one-tool", "tool",
              fmt::format("surface blocks are planned for one cutter, the scene has {}", scene.tools.size()),

@@ -31,6 +31,17 @@ AxisSettings read_axes(ConfigTable table) {
   return settings;
 }
 
+/// What stands in the control before the first block, besides positions.
+void read_control_keys(ConfigTable& table, SetupSettings& setup) {
+  if (table.has("units")) setup.unit_mm = table.choice("units", {"mm", "inch"}) == "inch" ? 25.4 : 1.0;
+  for (const char* key : {"start_tool", "start_tool_name"}) {
+    if (table.has(key)) setup.start_tool_where = table.where(key);
+  }
+  if (table.has("start_tool")) setup.start_tool = table.integer("start_tool", 1, 1'000'000'000);
+  setup.start_tool_name = table.text("start_tool_name", "");
+  setup.t_changes_tool = table.boolean("t_changes_tool", false);
+}
+
 }  // namespace
 
 SetupSettings read_setup(ConfigTable table, bool nc) {
@@ -42,6 +53,7 @@ SetupSettings read_setup(ConfigTable table, bool nc) {
   setup.work_rotation_rad = rad_from_deg(table.number("work_rotation_deg", {-360.0, 360.0}, 0.0));
   if (!nc) return setup;
   if (table.has("start")) setup.start = read_axes(table.table("start"));
+  read_control_keys(table, setup);
   ConfigTable offsets = table.table("offsets");
   for (const std::string& key : offsets.keys()) {
     const auto* known = std::find(kOffsets.begin(), kOffsets.end(), key);

@@ -27,10 +27,16 @@ struct SetupSettings {
   double work_rotation_rad = 0.0;       ///< of W about Z of M, through its origin: how the part is clamped
   std::map<int, AxisSettings> offsets;  ///< 1: G54, ..., 6: G59, 7: G59.1, 8: G59.2, 9: G59.3
   std::optional<AxisSettings> start;    ///< axis values where the program starts
+  std::optional<double> unit_mm;  ///< `units` of programs without G20 and G21, 1 or 25.4; none: the machine's
+  int start_tool = 0;             ///< number of the tool in the spindle; 0: not said
+  std::string start_tool_name;    ///< or its name; "": not said
+  SourceLocation start_tool_where;
+  bool t_changes_tool = false;  ///< T changes the tool without M6
 };
 
-/// Reads [setup]; offsets and start belong to NC programs only. "bad-axis-key" for keys that are not a letter
-/// with its unit, "unknown-offset" for what is not G54 to G59.3.
+/// Reads [setup]; offsets, start, units, start_tool and t_changes_tool belong to NC programs only.
+/// "bad-axis-key" for keys that are not a letter with its unit, "unknown-offset" for what is not G54 to
+/// G59.3.
 SetupSettings read_setup(ConfigTable table, bool nc);
 
 /// The settings as values of this machine; what is not named is zero. "unknown-axis" for an axis that it

@@ -29,8 +29,10 @@ struct Described {
 /// The words of one line of a .tbl, by letter.
 class TblLine {
  public:
-  TblLine(std::string_view text, SourceLocation where, Diagnostics& diagnostics)
-      : where_(std::move(where)), diagnostics_(diagnostics) {
+  /// `incomplete`: what a line lacks is kept there, to be told where the tool is called; null: it is an
+  /// error.
+  TblLine(std::string_view text, SourceLocation where, Diagnostics& diagnostics, IncompleteTools* incomplete)
+      : where_(std::move(where)), diagnostics_(diagnostics), incomplete_(incomplete) {
     const size_t semicolon = std::min(text.find(';'), text.size());
     comment_ = text.substr(std::min(semicolon + 1, text.size()));
     std::transform(comment_.begin(), comment_.end(), comment_.begin(),
@@ -41,30 +43,28 @@ class TblLine {
   bool good() const { return good_; }
   bool empty() const { return words_.empty(); }
 
+  /// T0 is no tool: the spindle is empty.
+  bool none() { return incomplete_ != nullptr && words_.count('T') != 0 && words_['T'] == 0.0; }
+
   /// T, Z and D as a cutter; the rest must be zero.
   Described tool() {
+    read_number();
     for (const char letter : {'T', 'Z', 'D'}) {
       if (words_.count(letter) != 0) continue;
-      fail("missing-tool-word", fmt::format("the tool has no word {}", letter),
+      lack("missing-tool-word", fmt::format("the tool has no word {}", letter),
            "T is its number, Z its length from the gauge line to the tip, D its diameter (mm)");
     }
     for (const char letter : {'X', 'Y', 'A', 'B', 'C', 'U', 'V', 'W'}) {
       if (words_.count(letter) == 0 || words_[letter] == 0.0) continue;
-      fail("unsupported-tool-offset", fmt::format("the tool has an offset {}{:g}", letter, words_[letter]),
+      lack("unsupported-tool-offset", fmt::format("the tool has an offset {}{:g}", letter, words_[letter]),
            "only lengths along the tool axis (Z) are known");
     }
-    Cutter c;
-    constexpr double kLargestNumber = 1e9;
-    const double number = words_['T'];
-    if (words_.count('T') != 0 &&
-        !(number >= 1.0 && number <= kLargestNumber && number == std::floor(number))) {
-      fail("bad-tool-line", fmt::format("T{:g} is no tool number", number), "a whole number above 0");
-    }
-    c.number = good_ ? static_cast<int>(number) : 1;
     for (const char letter : {'Z', 'D'}) {
       if (words_.count(letter) == 0 || words_[letter] > 0.0) continue;
-      fail("bad-tool-line", fmt::format("{} is {:g} mm", letter, words_[letter]), "give it above 0");
+      lack("bad-tool-line", fmt::format("{} is {:g} mm", letter, words_[letter]), "give it above 0");
     }
+    Cutter c;
+    c.number = number_ > 0 ? number_ : 1;
     c.diameter_mm = words_['D'];
     c.shape = comment_.find("ball") != std::string::npos ? cutter::Shape::kBall : cutter::Shape::kFlat;
     if (c.shape == cutter::Shape::kBall) c.corner_radius_mm = c.radius();
@@ -75,6 +75,16 @@ class TblLine {
   }
 
  private:
+  void read_number() {
+    if (words_.count('T') == 0) return;
+    constexpr double kLargestNumber = 1e9;
+    const double number = words_['T'];
+    if (number >= 1.0 && number <= kLargestNumber && number == std::floor(number))
+      number_ = static_cast<int>(number);
+    else
+      fail("bad-tool-line", fmt::format("T{:g} is no tool number", number), "a whole number above 0");
+  }
+
   void read_words(std::string_view text) {
     const char* at = text.data();
     const char* const end = text.data() + text.size();
@@ -109,10 +119,19 @@ class TblLine {
     diagnostics_.error(code, where_, text, fix);
   }
 
+  /// The line is one of a table, and its tool cannot be used.
+  void lack(const char* code, const std::string& text, const char* fix) {
+    if (incomplete_ == nullptr || number_ == 0) return fail(code, text, fix);
+    incomplete_->emplace(number_, fmt::format("{}:{}: {}", where_.file, where_.line, text));
+    good_ = false;
+  }
+
   SourceLocation where_;
   Diagnostics& diagnostics_;
+  IncompleteTools* incomplete_;
   std::string comment_;
   std::map<char, double> words_;
+  int number_ = 0;  ///< of T; 0: none that could be called
   bool good_ = true;
 };
 
@@ -126,17 +145,18 @@ void warn_of_shape(const Described& tool, Diagnostics& diagnostics) {
       fmt::format("describe it: [[tool]] number = {}", c.number));
 }
 
-std::vector<Described> read_tbl_lines(const std::string& path, Diagnostics& diagnostics) {
+std::vector<Described> read_tbl_lines(const std::string& path, Diagnostics& diagnostics,
+                                      IncompleteTools* incomplete) {
   const std::string text = program::read_file(path);
   std::vector<Described> tools;
   int number = 0;
   for (const std::string_view line : program::split_lines(text)) {
-    TblLine words(line, {path, ++number, 1}, diagnostics);
-    if (!words.good() || words.empty()) continue;
+    TblLine words(line, {path, ++number, 1}, diagnostics, incomplete);
+    if (!words.good() || words.empty() || words.none()) continue;
     Described tool = words.tool();
     if (words.good()) tools.push_back(std::move(tool));
   }
-  if (tools.empty() && !diagnostics.has_errors()) {
+  if (tools.empty() && !diagnostics.has_errors() && (incomplete == nullptr || incomplete->empty())) {
     diagnostics.error("no-tools", {path}, "the tool table has no tool", "one line for each: T1 P1 Z81.5 D8");
   }
   return tools;
@@ -179,15 +199,30 @@ std::vector<Described> read_entries(ConfigTable& table) {
 }
 
 /// Adds the tools of a .tbl to those that TOML describes.
-void join_tbl(std::vector<Described>& tools, const std::vector<Described>& measured,
-              Diagnostics& diagnostics) {
+void join_tbl(std::vector<Described>& tools, const std::vector<Described>& measured, Diagnostics& diagnostics,
+              IncompleteTools* incomplete) {
   check_twice(measured, diagnostics);
+  // A tool that a [[tool]] describes needs no line.
+  for (const Described& tool : tools) {
+    if (incomplete == nullptr || incomplete->count(tool.cutter.number) == 0) continue;
+    diagnostics.warning("tool-line-incomplete", tool.where,
+                        fmt::format("{} is taken as described here; its line in the table is left out, {}",
+                                    cutter::call_name(tool.cutter), incomplete->at(tool.cutter.number)),
+                        "complete the line, or take it out");
+    incomplete->erase(tool.cutter.number);
+  }
   for (const Described& line : measured) {
     const auto same = std::find_if(tools.begin(), tools.end(), [&](const Described& tool) {
       return tool.cutter.number == line.cutter.number;
     });
     if (same == tools.end()) {
-      for (const cutter::Problem& problem : cutter::validate(line.cutter)) {
+      const std::vector<cutter::Problem> problems = cutter::validate(line.cutter);
+      if (!problems.empty() && incomplete != nullptr) {
+        incomplete->emplace(line.cutter.number, fmt::format("{}:{}: {}", line.where.file, line.where.line,
+                                                            problems.front().text));
+        continue;
+      }
+      for (const cutter::Problem& problem : problems) {
         diagnostics.error("bad-tool-line", line.where, problem.text,
                           "mend Z or D, or describe the tool: [[tool]] number and shape");
       }
@@ -210,9 +245,10 @@ void join_tbl(std::vector<Described>& tools, const std::vector<Described>& measu
 }
 
 /// Appends what a table file describes.
-void add_table(std::vector<Described>& tools, const std::string& table_file, Diagnostics& diagnostics) {
+void add_table(std::vector<Described>& tools, const std::string& table_file, Diagnostics& diagnostics,
+               IncompleteTools* incomplete) {
   if (std::filesystem::path(table_file).extension() == ".tbl") {
-    join_tbl(tools, read_tbl_lines(table_file, diagnostics), diagnostics);
+    join_tbl(tools, read_tbl_lines(table_file, diagnostics, incomplete), diagnostics, incomplete);
     return;
   }
   ConfigTable table = ConfigTable::load(table_file, {}, diagnostics);
@@ -231,7 +267,8 @@ std::vector<Cutter> cutters_of(std::vector<Described>& tools, Diagnostics& diagn
 
 }  // namespace
 
-std::vector<Cutter> read_tools(ConfigTable& scene, const std::string& table_file, Diagnostics& diagnostics) {
+std::vector<Cutter> read_tools(ConfigTable& scene, const std::string& table_file, Diagnostics& diagnostics,
+                               IncompleteTools* incomplete) {
   if (!scene.has("tool") && table_file.empty()) return {read_cutter(scene.table("cutter"))};
   if (scene.has("cutter")) {
     scene.error("two-tool-sets", "cutter", "the scene has [cutter] beside [[tool]] or tool_table",
@@ -239,17 +276,18 @@ std::vector<Cutter> read_tools(ConfigTable& scene, const std::string& table_file
     read_cutter(scene.table("cutter"));
   }
   std::vector<Described> tools = read_entries(scene);
-  if (!table_file.empty()) add_table(tools, table_file, diagnostics);
+  if (!table_file.empty()) add_table(tools, table_file, diagnostics, incomplete);
   if (tools.empty() && !diagnostics.has_errors()) {
     scene.error("no-tools", "tool_table", "the scene has no tool", "describe at least one as [[tool]]");
   }
   return cutters_of(tools, diagnostics);
 }
 
-std::vector<Cutter> read_tool_table(const std::string& table_file, Diagnostics& diagnostics) {
+std::vector<Cutter> read_tool_table(const std::string& table_file, Diagnostics& diagnostics,
+                                    IncompleteTools* incomplete) {
   std::vector<Described> tools;
-  add_table(tools, table_file, diagnostics);
-  if (tools.empty() && !diagnostics.has_errors()) {
+  add_table(tools, table_file, diagnostics, incomplete);
+  if (tools.empty() && !diagnostics.has_errors() && (incomplete == nullptr || incomplete->empty())) {
     diagnostics.error("no-tools", {table_file, 0, 0}, "the table has no tool", "describe at least one");
   }
   return cutters_of(tools, diagnostics);

@@ -219,7 +219,7 @@ const BadProgram kBad[] = {
     {"after_end", "FEDRAT/9\nGOTO/0,0,0\nGOTO/1,0,0\nFINI\nGOTO/0,0,0\n", "word-after-end 5:1"},
     {"one_position", "GOTO/0,0,0\n", "no-motion 0:0"},
     {"no_position", "UNITS/MM\n", "no-motion 0:0"},
-    {"circle_short", "CIRCLE/0,0,0,0,0,1\n", "wrong-arguments 1:1"},
+    {"circle_short", "CIRCLE/0,0,0,0,1\n", "wrong-arguments 1:1"},
     {"circle_axis", "CIRCLE/0,0,0,0,0,2,10\n", "axis-not-unit 1:14"},
     {"circle_radius", "CIRCLE/0,0,0,0,0,1,0\n", "out-of-range 1:20"},
     {"arc_off_circle", "FEDRAT/9\nGOTO/10,0,0\nCIRCLE/0,0,0,0,0,1,10\nGOTO/0,11,0\n", "bad-arc 4:1",

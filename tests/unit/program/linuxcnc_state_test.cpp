@@ -172,9 +172,12 @@ TEST(LinuxCncParameters, BlanksStandWhereTheyMay) {
       "N10.5 o<a b> SUB\n#<x y> = [ 2 ** 3 ]\nG0 X [ #<xy> ] Y- [ atan [ 1 ] / [ 1 ] ] Z[exists [#<X Y>] + "
       "4]\n"
       "/ o<ab> endsub\nn 20 O<AB> call\nG0 X#[#<_metric>+0]\nM2\n#1=2\n");
-  EXPECT_EQ(run.first_error(), "undefined-parameter 6:5") << run.text();
-  ASSERT_EQ(run.moves().size(), 1u);
+  ASSERT_EQ(run.diagnostics.list().size(), 1u) << run.text();
+  EXPECT_EQ(run.diagnostics.list()[0].code, "undefined-parameter");
+  EXPECT_EQ(run.diagnostics.list()[0].where.line, 6);
+  ASSERT_EQ(run.moves().size(), 2u);
   expect_tip(run.moves()[0], 8, -45, 5);
+  expect_tip(run.moves()[1], 0, -45, 5);
 }
 
 TEST(LinuxCncParameters, MessagesShowValues) {

@@ -71,33 +71,5 @@ TEST(NcBadInput, BinaryEmptyAndMissingFiles) {
             "file-not-found 0:0");
 }
 
-TEST(NcBadInput, DialectsAreRecognisedOrAskedFor) {
-  const ControlSetup setup = three_axis_setup();
-  const auto recognised = [&](const std::string& name, const std::string& text) {
-    const auto path = test::scratch_folder() / ("swarf_nc_dialect" + name);
-    std::ofstream(path) << text;
-    return run_file(path.string(), std::nullopt, setup);
-  };
-  EXPECT_EQ(recognised(".nc", "G0 X1\nM2\n").first_error(), "unknown-dialect 0:0");
-  const NcRun linux_run = recognised(".nc", "o1 repeat [2]\nG0 X1\no1 endrepeat\nM2\n");
-  EXPECT_EQ(linux_run.text(), "");
-  EXPECT_EQ(linux_run.summary.dialect, Dialect::kLinuxCnc);
-  EXPECT_EQ(linux_run.summary.dialect_reason, "recognised by an O word in line 1");
-  const NcRun fanuc_run = recognised(".nc", "%\nO0123\nG05.1 Q1\nG0 X1\nM30\n%\n");
-  EXPECT_EQ(fanuc_run.text(), "");
-  EXPECT_EQ(fanuc_run.summary.dialect, Dialect::kFanuc);
-  const NcRun siemens_run = recognised(".nc", "DEF REAL _X=5\nG0 X=_X\nCYCLE832()\nM30\n");
-  EXPECT_EQ(siemens_run.text(), "");
-  EXPECT_EQ(siemens_run.summary.dialect, Dialect::kSiemens);
-  EXPECT_EQ(siemens_run.summary.dialect_reason, "recognised by 'DEF REAL _X=5' in line 1");
-  // What is no program shows no dialect: the place of the fault is said, not that the dialect is unknown.
-  EXPECT_EQ(recognised(".nc", std::string("G0 X1\nG0 \0 X2\n", 14)).first_error(), "not-text 2:4");
-  EXPECT_EQ(recognised(".nc", "G0 X1\n" + std::string(100'000, 'X')).first_error(), "line-too-long 2:1");
-  EXPECT_EQ(recognised(".nc", "").first_error(), "empty-file 0:0");
-  EXPECT_EQ(run_file(test::scratch_folder().string(), std::nullopt, setup).first_error(),
-            "file-unreadable 0:0");
-  EXPECT_EQ(recognised(".mpf", "G0 X1\nM30\n").summary.dialect_reason, "recognised by the ending .mpf");
-}
-
 }  // namespace
 }  // namespace swarf::program::nc_bad_programs_test

@@ -40,8 +40,9 @@ TEST(NcCheck, TellsPathTimeToolsAndExtents) {
 }
 
 TEST(NcCheck, TellsProgramsTheSameAsPeople) {
-  const test::ProgramRun run = check(
-      "part.ngc", "T3 M6 G43\nG0 X0 Y0 Z10\nG1 Z0 F600\nG3 X0 Y40 J20\nM8\nM2\n", "--json --home --tools ");
+  const test::ProgramRun run =
+      check("part.ngc", "G21 T3 M6 G43\nG0 X0 Y0 Z10\nG1 Z0 F600\nG3 X0 Y40 J20\nM8\nM2\n",
+            "--json --home --tools ");
   ASSERT_EQ(run.exit_code, 0) << run.output;
   const nlohmann::json all = nlohmann::json::parse(run.output);
   EXPECT_EQ(all["right"], true);
@@ -59,13 +60,14 @@ TEST(NcCheck, TellsProgramsTheSameAsPeople) {
 }
 
 TEST(NcCheck, TellsProgramsWhatIsWrong) {
-  const test::ProgramRun run = check("part.ngc", "G0 X0 Y0 Z10\nG1 X1\nM2\n", "--json --home");
+  const test::ProgramRun run = check("part.ngc", "G21 G0 X0 Y0 Z10\nG1 X1\nM2\n", "--json --home");
   EXPECT_EQ(run.exit_code, 2);
   const nlohmann::json all = nlohmann::json::parse(run.output);
   EXPECT_EQ(all["right"], false);
   const nlohmann::json& file = all["files"][0];
   EXPECT_TRUE(file["kind"].is_null());
-  ASSERT_EQ(file["diagnostics"].size(), 1u);
+  ASSERT_EQ(file["diagnostics"].size(), 2u);
+  EXPECT_EQ(file["diagnostics"][1]["code"], "dialect-taken");
   EXPECT_EQ(file["diagnostics"][0]["code"], "missing-feed");
   EXPECT_EQ(file["diagnostics"][0]["line"], 2);
   EXPECT_EQ(file["diagnostics"][0]["severity"], "error");

@@ -75,6 +75,7 @@ inline ControlSetup three_axis_setup() {
   setup.machine = three_axis_machine();
   setup.tools = {{1, "END8", 0.0, 8.0, 0.0}, {2, "END10", 50.0, 10.0, 0.0}, {7, "DRILL6", 80.0, 6.0, 0.0}};
   setup.start = AxisValues::Zero();
+  setup.unit_mm = 1.0;
   return setup;
 }
 

@@ -59,6 +59,7 @@ inline ControlSetup setup_of(kinematics::MachineModel machine) {
   kinematics::AxisValues start = kinematics::AxisValues::Zero();
   start << 0.0, 0.0, 400.0, 0.0, 0.0;
   setup.start = start;
+  setup.unit_mm = 1.0;
   return setup;
 }
 

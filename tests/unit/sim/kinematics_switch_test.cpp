@@ -1,4 +1,5 @@
-// The scene's keys for LinuxCNC's M428, M429 and M430, and for the words of the machine's builder.
+// The scene's keys for LinuxCNC's M428, M429 and M430, for the words of the machine's builder, and for what
+// stands in the control at the start.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -71,6 +72,24 @@ TEST(KinematicsSwitch, WrongWordsAreRefused) {
   EXPECT_NE(load("nc = \"p.ngc\"\ndialect = \"fanuc\"\nkinematics_switch = { m430 = \"tcp\" }\n")
                 .errors.find("kinematics_switch"),
             std::string::npos);
+}
+
+/// What stands in the control before the first block.
+TEST(StartKeys, AreReadFromSetup) {
+  const Loaded told =
+      load("nc = \"p.nc\"\n[setup]\nunits = \"inch\"\nstart_tool = 7\nt_changes_tool = true\n");
+  EXPECT_EQ(told.errors, "");
+  EXPECT_EQ(told.scene.setup.unit_mm, 25.4);
+  EXPECT_EQ(told.scene.setup.start_tool, 7);
+  EXPECT_TRUE(told.scene.setup.t_changes_tool);
+  EXPECT_EQ(load("nc = \"p.nc\"\n[setup]\nstart_tool_name = \"END8\"\n").scene.setup.start_tool_name, "END8");
+  const Loaded silent = load("nc = \"p.nc\"\n");
+  EXPECT_EQ(silent.errors, "");
+  EXPECT_FALSE(silent.scene.setup.unit_mm);
+  EXPECT_EQ(silent.scene.setup.start_tool, 0);
+  EXPECT_NE(load("nc = \"p.nc\"\n[setup]\nunits = \"feet\"\n").errors.find("unknown-choice"),
+            std::string::npos);
+  EXPECT_NE(load("nc = \"p.nc\"\n[setup]\nstart_tool = 0\n").errors.find("out-of-range"), std::string::npos);
 }
 
 }  // namespace

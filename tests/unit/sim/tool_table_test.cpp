@@ -129,6 +129,31 @@ TEST_F(ToolTable, TblGivesLengthAndDiameterAndSaysWhatItAssumes) {
   }
 }
 
+/// As LinuxCNC itself writes its tables.
+TEST_F(ToolTable, ATblMayHaveToolsThatCannotBeUsed) {
+  const std::string table = file("tools.tbl",
+                                 "T1 P1 Z80 D.125 ;a small one\n"
+                                 "T2 P2 D0.0625 Z-10.5\n"
+                                 "T3 P3 Z0 D3.175\n"
+                                 "T4 P4 Z40\n"
+                                 "T5 P5 D6\n"
+                                 "T6 P6 X0.5 Y0 Z40 D6\n"
+                                 "T7 P7 X0 Y0 Z+40.0 A0 B0 C0 U0 V0 W0 D+6.0 I0 J0 Q0 ;all words\n"
+                                 "T0 P0\n");
+  Diagnostics diagnostics;
+  IncompleteTools incomplete;
+  const std::vector<Cutter> tools = read_tool_table(table, diagnostics, &incomplete);
+  EXPECT_FALSE(diagnostics.has_errors()) << Read{{}, diagnostics.list()}.text();
+  ASSERT_EQ(tools.size(), 2U);
+  EXPECT_EQ(tools[0].number, 1);
+  EXPECT_DOUBLE_EQ(tools[0].diameter_mm, 0.125);
+  EXPECT_EQ(tools[1].number, 7);
+  ASSERT_EQ(incomplete.size(), 5U);
+  EXPECT_NE(incomplete[2].find("tools.tbl:2: Z is -10.5 mm"), std::string::npos) << incomplete[2];
+  EXPECT_NE(incomplete[4].find("no word D"), std::string::npos) << incomplete[4];
+  EXPECT_NE(incomplete[6].find("offset X0.5"), std::string::npos) << incomplete[6];
+}
+
 TEST_F(ToolTable, ATomlEntryDescribesAToolOfTheTblAndTakesItsLength) {
   const std::string table = file("tools.tbl", "T2 P2 Z131.75 D8\n");
   const Read all = read("tool_table = \"tools.tbl\"\n" + tool("number = 2", kDrill), table);

@@ -1,4 +1,5 @@
-; expect: unsupported-word 3:1
+; expect: undefined-parameter 4:5
 BEGIN PGM T MM
 FN 18: SYSREAD Q1 = ID20 NR1
+L X+Q1 FMAX
 END PGM T MM
