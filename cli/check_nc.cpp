@@ -173,7 +173,7 @@ std::vector<program::NcTool> tools_of(const std::string& table, sim::IncompleteT
 /// program cuts without calling any.
 void set_start_tool(const std::string& file, const NcCheckOptions& options, program::ControlSetup& setup) {
   if (options.start_tool == 0) {
-    setup.start_tool_if_needed = setup.tools.size() == 1;
+    setup.start_tool_if_needed = setup.tools.size() == 1 && setup.incomplete_tools.empty();
     setup.start_tool = setup.start_tool_if_needed ? 0 : -1;
     return;
   }
@@ -208,6 +208,11 @@ program::ControlSetup setup_of(const std::string& file, const NcCheckOptions& op
   setup.kinematics_switch = kinematics_of(file, options.kinematics);
   setup.builder_words = builder_words_of(file, options.builder_words);
   if (!options.tools.empty()) setup.tools = tools_of(options.tools, setup.incomplete_tools, diagnostics);
+  if (setup.unit_mm.value_or(1.0) != 1.0 && options.tools.ends_with(".tbl"))
+    diagnostics.warning(
+        "table-in-mm", {options.tools, 0, 0},
+        "the lengths and diameters of this table are read in mm, and programs are in inches here",
+        "give the tools as .toml with [[tool]] where the table counts in inches");
   set_start_tool(file, options, setup);
   setup.t_changes_tool = options.t_changes_tool;
   return setup;

@@ -29,7 +29,7 @@ void set_start_tool(const Job& job, program::ControlSetup& setup, Diagnostics& d
     if (setup.start_tool < 0)
       diagnostics.error("unknown-tool", settings.start_tool_where, "the start tool is not among the tools",
                         fmt::format("the scene has {}", list_tools(job.scene.tools)));
-  } else if (setup.tools.size() == 1) {
+  } else if (setup.tools.size() == 1 && setup.incomplete_tools.empty()) {
     setup.start_tool = 0;
     setup.start_tool_if_needed = true;
   }
@@ -48,6 +48,11 @@ program::ControlSetup control_setup(const Job& job, Diagnostics& diagnostics) {
   setup.builder_words = job.scene.builder_words;
   setup.unit_mm = settings.unit_mm ? settings.unit_mm : job.machine.program_unit_mm;
   setup.t_changes_tool = settings.t_changes_tool;
+  if (setup.unit_mm.value_or(1.0) != 1.0 && job.scene.tool_table_file.ends_with(".tbl"))
+    diagnostics.warning(
+        "table-in-mm", {job.scene.tool_table_file, 0, 0},
+        "the lengths and diameters of this table are read in mm, and programs are in inches here",
+        "describe the tools as [[tool]] where the table counts in inches");
   set_start_tool(job, setup, diagnostics);
   if (settings.start) setup.start = axis_values(*settings.start, setup.machine, true, diagnostics);
   return setup;
