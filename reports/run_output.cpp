@@ -233,9 +233,8 @@ sim::MeasuredPath motion_of(const StoredRun& run, const std::string& folder, boo
                             Progress& progress) {
   if (!needed) {
     sim::MeasuredPath none;
-    none.cycles =
-        std::make_unique<motion::Cycles>(std::span<const toolpath::Element>{}, sim::machines_by_tool(run.job),
-                                         run.job.scene.tools.front(), run.job.scene.motion);
+    none.cycles = std::make_unique<motion::Cycles>(toolpath::Elements{}, sim::machines_by_tool(run.job),
+                                                   run.job.scene.tools.front(), run.job.scene.motion);
     return none;
   }
   return whole_motion(run.job, folder, progress);

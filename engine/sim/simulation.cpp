@@ -35,11 +35,14 @@ toolpath::ToolPath plan_surfaces(const Job& job, toolpath::Planner planner, Diag
   toolpath::PlanOptions options = job.scene.toolpath;
   options.planner = planner;
   toolpath::ToolPath path = toolpath::plan(job.program, job.scene.tools.front(), options, diagnostics);
-  for (toolpath::Element& element : path.elements) {
-    auto* pass = std::get_if<toolpath::SurfacePass>(&element.what);
-    if (pass != nullptr && job.scene.chord_tolerance_mm)
+  if (!job.scene.chord_tolerance_mm) return path;
+  toolpath::Elements elements;
+  for (toolpath::Element element : path.elements) {
+    if (auto* pass = std::get_if<toolpath::SurfacePass>(&element.what))
       pass->chord_tolerance_mm = *job.scene.chord_tolerance_mm;
+    elements.push_back(std::move(element));
   }
+  path.elements = std::move(elements);
   return path;
 }
 
@@ -55,10 +58,8 @@ toolpath::ToolPath plan_path(const Job& job, toolpath::Planner planner, Diagnost
 
 double theory_scallop_um(const toolpath::ToolPath& path) {
   double highest = 0.0;
-  for (const toolpath::Element& element : path.elements) {
-    if (const auto* pass = std::get_if<toolpath::SurfacePass>(&element.what)) {
-      highest = std::max(highest, pass->scallop_theory_mm);
-    }
+  for (size_t i = 0; i < path.elements.size(); ++i) {
+    if (const auto* pass = path.elements.pass(i)) highest = std::max(highest, pass->scallop_theory_mm);
   }
   return um_from_mm(highest);
 }

@@ -11,6 +11,7 @@
 
 #include "motion/speed/jerk_profile.h"
 #include "sim/job/memory_limit.h"
+#include "sim/run/cut_sweeps.h"
 #include "sim/run/result.h"
 #include "stock/rays/ray_field.h"
 
@@ -49,16 +50,14 @@ SurfaceCounts preview(const Job& job, const motion::Cycles& cycles) {
   double thinnest = std::numeric_limits<double>::infinity();
   for (const cutter::Cutter& tool : job.scene.tools) thinnest = std::min(thinnest, tool.radius());
   const double voxel = std::max(settings.voxel_mm, std::min(kCoarser * settings.voxel_mm, thinnest / 3.0));
-  const JobSweeps coarse = stock_sweeps(job, cycles, voxel / 8.0);
-  const std::vector<stock::Sweep>& sweeps = coarse.sweeps;
+  const CutSweeps sweeps = cut_sweeps(job, cycles, voxel / 8.0);
   stock::Stock stock(settings.box_W, voxel);
   const std::vector<stock::CutterSolid> solids = tool_solids(job.scene);
   double most = static_cast<double>(stock.leaves());
   const size_t piece = sweeps.size() / kPieces + 1;
   for (size_t i = 0; i < sweeps.size(); i += piece) {
-    for_each_tool(
-        std::span(sweeps).subspan(i, std::min(piece, sweeps.size() - i)),
-        [&](uint32_t block) { return coarse.sources[block].tool; },
+    sweeps.for_each_tool(
+        i, std::min(i + piece, sweeps.size()),
         [&](size_t tool, std::span<const stock::Sweep> part) { stock.cut(part, solids[tool]); });
     most = std::max(most, static_cast<double>(stock.leaves()));
   }
@@ -116,8 +115,7 @@ double longest_comparison(const Job& job, const MeasuredPath& path) {
     b = c;
     c = reader.at(i).sample;
     if (i < 2 * kReach) continue;
-    const auto* pass =
-        std::get_if<toolpath::SurfacePass>(&path.path.elements[static_cast<size_t>(b.element)].what);
+    const auto* pass = path.path.elements.pass(static_cast<size_t>(b.element));
     const double chord = (c.contact_W - a.contact_W).norm();
     const double sagitta = (b.contact_W - 0.5 * (a.contact_W + c.contact_W)).norm();
     if (pass == nullptr || a.element != c.element || !(chord > 0.0)) {
@@ -158,8 +156,7 @@ MemoryPrediction predict_memory(const Job& job, const MeasuredPath& path, const 
   const double rays = ray_count(job) * kRay;
   const double held = kBase + rays + sweeps * kSweep +
                       static_cast<double>(path.cycles->kept().size() * sizeof(motion::Cycle)) +
-                      static_cast<double>(path.path.elements.size() *
-                                          (sizeof(toolpath::Element) + sizeof(motion::BlockMotion)));
+                      static_cast<double>(path.path.elements.bytes() + path.cycles->motions().bytes());
   // The stages that hold most; each ends before the next begins.
   const double cutting = held - rays + (stocks + kSeen) * stock + sweeps * kCutting;
   double comparing = 0.0;
