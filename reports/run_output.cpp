@@ -89,6 +89,7 @@ void write_state(const PendingFolder& folder, const sim::Job& job, const sim::Re
                  Progress& progress) {
   progress.begin("write results", 2, "files");
   result.stock->save(folder.file("stock.vdb"), result.cut.metadata);
+  fs::remove(folder.file(sim::kKeptStock));
   progress.advance(1);
   for (size_t i = 0; i < result.main.dexels.size(); ++i) {
     result.main.dexels[i].save(folder.file(fmt::format("surface_{}.rays", i)));

@@ -316,13 +316,18 @@ MeasuredPath plan_tool(const Job& job, Progress& progress) {
 MeasuredPath move_tool(const Job& job, Progress& progress, const CutOptions& options) {
   MeasuredPath measured = planned_path(job, progress);
   interpolate(job, job.scene.motion, options, progress, measured);
-  if (!job.scene.has_blocks()) require_contact(job, *measured.cycles);
+  if (!job.scene.has_blocks() && !measured.cycles->stopped()) require_contact(job, *measured.cycles);
   return measured;
 }
 
 Result simulate(const Job& job, const CutOptions& options, Progress& progress) {
   Result result;
   result.main = move_tool(job, progress, options);
+  if (result.main.cycles->stopped()) {
+    leave_uncut(job, options, result);
+    result.stopped = true;
+    return result;
+  }
   result.memory = predict_memory(job, result.main, options.outputs, options.check_voxels ? 2 : 1);
   require_memory(job, result.memory);
   progress.note(fmt::format("memory: stock {:.0f} MB, whole run {:.0f} MB expected; limit {:.0f} MB",

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <chrono>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -83,8 +84,12 @@ class CutStage {
       result_.stock =
           std::make_unique<stock::Stock>(load_in_process(options_.resume_file, identity_, outcome_.state));
       at_ = outcome_.resumed_from = outcome_.state.sweeps;
-      clearance_.resume(outcome_.state.clearance);
-      bad_cuts_.resume(outcome_.state.bad_cuts);
+      if (at_ > 0) {
+        clearance_.resume(outcome_.state.clearance);
+        bad_cuts_.resume(outcome_.state.bad_cuts);
+      } else {
+        outcome_.state.clearance = clearance_.result();
+      }
       for (const Save& save : saves_) {
         if (save.after >= at_) continue;
         throw InputError("place-before-resume", {save.place->text},
@@ -117,6 +122,7 @@ class CutStage {
       record_.states.push_back(result_.stock->hash());
     }
     save_due();
+    keep_due();
   }
 
   BatchState& batch() { return outcome_.state.batch; }
@@ -196,6 +202,18 @@ class CutStage {
     }
   }
 
+  void keep_due() {
+    const auto now = std::chrono::steady_clock::now();
+    if (options_.keep_every_s <= 0.0 || options_.save_folder.empty() ||
+        std::chrono::duration<double>(now - kept_at_).count() < options_.keep_every_s)
+      return;
+    const std::string path = options_.save_folder + "/" + kKeptStock;
+    result_.stock->save(path, cut_metadata(job_.scene.name, identity_, state()));
+    if (!is_kept_) progress_.note(fmt::format("the stock so far is kept in {}", path));
+    is_kept_ = true;
+    kept_at_ = std::chrono::steady_clock::now();
+  }
+
   /// The first broken invariant is kept; the run goes on and reports it.
   void check(CheckKind kind) {
     const bool voxels = options_.check_voxels || kind == CheckKind::kAtEnd;
@@ -253,6 +271,8 @@ class CutStage {
   size_t next_save_ = 0, at_ = 0;
   double full_mm3_ = 0.0;
   std::optional<stock::Stock> checked_;  ///< the state at the last check
+  std::chrono::steady_clock::time_point kept_at_ = std::chrono::steady_clock::now();
+  bool is_kept_ = false;
   CutRecord record_;
 };
 
@@ -268,6 +288,19 @@ std::string saved_stock_name(const ProgramPlace& place) {
 
 void cut_stock(const Job& job, const CutOptions& options, Progress& progress, Result& result) {
   CutStage(job, options, progress, result).run();
+}
+
+void leave_uncut(const Job& job, const CutOptions& options, Result& result) {
+  CutOutcome& outcome = result.cut;
+  if (options.resume_file.empty()) {
+    const StockSettings& settings = job.scene.stock;
+    result.stock = std::make_unique<stock::Stock>(settings.box_W, settings.voxel_mm);
+    outcome.metadata = cut_metadata(job.scene.name, cut_identity(job, {}), {});
+    return;
+  }
+  result.stock =
+      std::make_unique<stock::Stock>(load_unchecked(options.resume_file, outcome.metadata, outcome.state));
+  outcome.resumed_from = outcome.state.sweeps;
 }
 
 }  // namespace swarf::sim
