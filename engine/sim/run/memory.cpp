@@ -26,10 +26,13 @@ constexpr double kMovie = 270.0 * kMegabyte;   // Mesa, Embree and the encoder, 
 constexpr double kStills = 120.0 * kMegabyte;  // Embree alone
 constexpr double kSeen = 0.95;  // of the stock: its leaves as contacts and invariants look at them
 constexpr double kSweep = sizeof(stock::Sweep) + sizeof(SweepSource);
-constexpr double kCutting =
-    sizeof(stock::Sweep) + sizeof(ToolPose) + 24.0;  // EarlierCuts, a row to be merged
-constexpr double kMeasuredRay = 78.0;                // while it is measured: neighbours, ridges, feet
-constexpr double kRay = 83.0;                        // point, normal, height, block; its share of a tile
+constexpr double kCutting = sizeof(ToolPose) + 8.0;  // the poses of cycles to be merged; boxes of EarlierCuts
+// A sweep of blocks, made when it is asked for; its vector grows by halves, and its share of a box.
+constexpr double kSweepOfBlock = 1.5 * sizeof(SweepOfBlocks) + 1.5;
+// Look-ahead: a cell with its share of curve, corner and plan, of at most so many that are planned at once.
+constexpr double kPlannedCell = 600.0, kCellsOfBlock = 2.0;
+constexpr double kMeasuredRay = 78.0;  // while it is measured: neighbours, ridges, feet
+constexpr double kRay = 83.0;          // point, normal, height, block; its share of a tile
 // Each triangle of the mesh, half a vertex with it, from the mesher's points to the decimated copy.
 constexpr double kTriangle = 105.0;
 // A tick of a path that is only compared: its sample, axes and sweep, and what vectors that grow hold beside.
@@ -154,11 +157,14 @@ MemoryPrediction predict_memory(const Job& job, const MeasuredPath& path, const 
   const bool by_block = job.scene.has_blocks() && !job.scene.cuts_cycles();
   const double sweeps = by_block ? static_cast<double>(path.path.elements.size()) : ticks;
   const double rays = ray_count(job) * kRay;
-  const double held = kBase + rays + sweeps * kSweep +
+  const double own_sweeps = sweeps * (by_block ? kSweepOfBlock : kSweep);
+  const double planned = std::min(kCellsOfBlock * static_cast<double>(path.path.elements.size()),
+                                  static_cast<double>(motion::LookAheadReach{}.planned));
+  const double held = kBase + rays + own_sweeps + (job.scene.has_blocks() ? planned * kPlannedCell : 0.0) +
                       static_cast<double>(path.cycles->kept().size() * sizeof(motion::Cycle)) +
                       static_cast<double>(path.path.elements.bytes() + path.cycles->motions().bytes());
   // The stages that hold most; each ends before the next begins.
-  const double cutting = held - rays + (stocks + kSeen) * stock + sweeps * kCutting;
+  const double cutting = held - rays + (stocks + kSeen) * stock + (by_block ? 0.0 : sweeps * kCutting);
   double comparing = 0.0;
   if (job.scene.compare_planners && !job.scene.has_blocks())
     comparing = held + stock + std::max(ticks, longest_comparison(job, path)) * kComparedTick + rays;
