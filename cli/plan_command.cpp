@@ -44,11 +44,14 @@ program::ClProgram cl_program(const sim::Job& job, const toolpath::ToolPath& pat
   motion::CycleReader reader(cycles);
   for (size_t k = 0; k < cycles.size(); ++k) {
     const motion::ToolSample& sample = reader.at(k).sample;
-    const toolpath::Element& entry = path.elements[static_cast<size_t>(sample.element)];
-    const auto* move = std::get_if<toolpath::FreeMove>(&entry.what);
-    if (sample.element != element && move != nullptr) add_move(program, move->to, move->feed_mm_s);
-    if (move == nullptr && sample.kind == motion::SampleKind::kCutting)
-      add_move(program, sample.pose, std::get<toolpath::SurfacePass>(entry.what).feed_mm_s);
+    const auto index = static_cast<size_t>(sample.element);
+    const toolpath::SurfacePass* pass = path.elements.pass(index);
+    if (sample.element != element && pass == nullptr) {
+      const auto move = std::get<toolpath::FreeMove>(path.elements[index].what);
+      add_move(program, move.to, move.feed_mm_s);
+    }
+    if (pass != nullptr && sample.kind == motion::SampleKind::kCutting)
+      add_move(program, sample.pose, pass->feed_mm_s);
     element = sample.element;
   }
   return program;

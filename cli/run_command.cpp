@@ -1,6 +1,10 @@
 #include <fmt/format.h>
 
+#include <csignal>
+
 #include <algorithm>
+#include <cerrno>
+#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -24,7 +28,7 @@ struct RunOptions {
   std::string from, save_after, trajectory;
   int threads = 0;
   size_t record_every = 256;
-  double max_memory_mb = 0.0;
+  double max_memory_mb = 0.0, keep_every_s = 60.0;
   bool no_render = false, report = false, json = false, record = false, check = false;
 };
 
@@ -79,6 +83,8 @@ std::vector<std::string> command_words(const RunOptions& options) {
       fmt::format("{}", options.record_every));
   flag(options.check, "--check");
   add(options.max_memory_mb > 0.0, "--max-memory", fmt::format("{}", options.max_memory_mb));
+  add(options.keep_every_s != RunOptions{}.keep_every_s, "--keep-every",
+      fmt::format("{}", options.keep_every_s));
   add(options.threads > 0, "--threads", fmt::format("{}", options.threads));
   flag(options.no_render, "--no-render");
   flag(options.report, "--report");
@@ -95,11 +101,31 @@ void print_stopped(const RunOptions& options, const sim::Result& result, const s
   again.from = (std::filesystem::path(folder) / "stock.vdb").string();
   again.output = folder;
   again.record = false;  // a record starts with the program
+  const std::string cut =
+      result.merged_sweeps == 0
+          ? fmt::format("before the cut, {} blocks of an earlier run are cut", state.sweeps)
+          : fmt::format("{} of {} blocks are cut", state.sweeps, result.merged_sweeps);
   fmt::print(stderr,
-             "stopped: {} of {} blocks are cut, up to program line {}, {:.3f} s; what was finished is in {}\n"
+             "stopped: {}, up to program line {}, {:.3f} s; what was finished is in {}\n"
              "  go on with: {}\n",
-             state.sweeps, result.merged_sweeps, state.place.line, state.place.t_s, folder,
-             shell_text(command_words(again)));
+             cut, state.place.line, state.place.t_s, folder, shell_text(command_words(again)));
+}
+
+/// Runs of this folder that were killed leave what they have kept beside it.
+void tell_of_killed_runs(const std::string& folder) {
+  namespace fs = std::filesystem;
+  const fs::path target = fs::absolute(folder).lexically_normal();
+  const fs::path home = target.has_filename() ? target : target.parent_path();
+  const std::string mark = home.filename().string() + ".part";
+  std::error_code problem;
+  for (const fs::directory_entry& entry : fs::directory_iterator(home.parent_path(), problem)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(mark) || !fs::exists(entry.path() / sim::kKeptStock)) continue;
+    const int process = std::atoi(name.c_str() + mark.size());
+    if (process <= 0 || kill(process, 0) == 0 || errno != ESRCH) continue;
+    fmt::print(stderr, "note: a run of this folder was killed; --from {} goes on from what it had cut\n",
+               shell_text({(entry.path() / sim::kKeptStock).string()}));
+  }
 }
 
 /// Room that the results take at the least, bytes: the stock as a compressed grid.
@@ -117,6 +143,7 @@ sim::CutOptions cut_options(const RunOptions& options, const reports::PendingFol
   cut.record = options.record;
   cut.record_every = options.record_every;
   cut.check_voxels = options.check;
+  cut.keep_every_s = options.keep_every_s;
   cut.outputs = {!options.no_render, !options.no_render || options.report};
   cut.overrides = options.overrides;
   return cut;
@@ -134,6 +161,7 @@ int run(const RunOptions& options) {
   print_diagnostics(job.warnings);
   const std::string folder = options.output.empty() ? "out/" + job.scene.name : options.output;
   reports::check_output_folder(folder, reports::kRunMark, least_bytes(job.scene));
+  tell_of_killed_runs(folder);
   reports::PendingFolder pending(folder);
   const reports::OutputOptions output{!options.no_render, !options.no_render || options.report,
                                       options.overrides, shell_text(command_words(options))};
@@ -175,6 +203,14 @@ void add_stock_options(CLI::App& command, RunOptions& options) {
   command.add_option("--record-every", options.record_every, "sweeps between two hashes of --record")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000000));
+  command
+      .add_option(
+          "--keep-every", options.keep_every_s,
+          "keep the stock so far every so many seconds in <output>.part<process>/stock_so_far.vdb, to "
+          "go on from when the run is killed; 0: never")
+      ->type_name("SECONDS")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
   command.add_flag("--check", options.check,
                    "check the costly invariants of the stock on the way too, not only at the end");
   command

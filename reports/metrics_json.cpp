@@ -25,7 +25,7 @@ using Json = nlohmann::ordered_json;
 /// Line of the program that an element comes from; null for none.
 Json line_json(const sim::Result& result, int element) {
   if (element < 0) return nullptr;
-  return result.main.path.elements[static_cast<size_t>(element)].where.line;
+  return result.main.path.elements.line(static_cast<size_t>(element));
 }
 
 Json motion_json(const sim::Job& job, const sim::Result& result) {
@@ -98,7 +98,7 @@ Json regions_json(const sim::Result& result, const std::vector<measure::Region>&
   for (const measure::Region& region : regions) {
     int line = 0;
     if (region.block < sources.size()) {
-      line = result.main.path.elements[static_cast<size_t>(sources[region.block].element)].where.line;
+      line = result.main.path.elements.line(static_cast<size_t>(sources[region.block].element));
     }
     list.push_back({{"worst_um", region.worst_um},
                     {"area_mm2", region.area_mm2},
@@ -175,7 +175,7 @@ Json cross_check_json(const std::optional<measure::CrossCheck>& compared) {
 
 /// A row of blocks in contact: first and last line, first contact, deepest place.
 Json event_json(const toolpath::ToolPath& path, const sim::ContactEvent& event) {
-  const auto line = [&](int element) { return path.elements[static_cast<size_t>(element)].where.line; };
+  const auto line = [&](int element) { return path.elements.line(static_cast<size_t>(element)); };
   return {{"part", event.part},
           {"line", line(event.first.element)},
           {"last_line", line(event.last_element)},
@@ -253,7 +253,7 @@ Json count_or_null(const std::optional<int>& count) {
 }
 
 Json circle_json(const toolpath::ToolPath& path, const motion::CircleError& circle) {
-  const auto line = [&](int element) { return path.elements[static_cast<size_t>(element)].where.line; };
+  const auto line = [&](int element) { return path.elements.line(static_cast<size_t>(element)); };
   return {{"deviation_circle_max_mm", circle.value_mm},
           {"block_line", line(circle.element)},
           {"u_at_max", circle.u},
@@ -270,7 +270,7 @@ Json singularity_json(const toolpath::ToolPath& path, const motion::SingularityS
   const toolpath::Element& element = path.elements[static_cast<size_t>(worst.pole.element)];
   const toolpath::BlockLaw law = std::get<toolpath::BlockMove>(element.what).law;
   const kinematics::TrajectoryError& error = worst.error;
-  const int nearest_line = path.elements[static_cast<size_t>(scan.nearest.element)].where.line;
+  const int nearest_line = path.elements.line(static_cast<size_t>(scan.nearest.element));
   return {{"circle", scan.circle ? circle_json(path, *scan.circle) : Json(nullptr)},
           {"block_line", element.where.line},
           {"law", toolpath::law_name(law)},

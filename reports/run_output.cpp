@@ -89,6 +89,7 @@ void write_state(const PendingFolder& folder, const sim::Job& job, const sim::Re
                  Progress& progress) {
   progress.begin("write results", 2, "files");
   result.stock->save(folder.file("stock.vdb"), result.cut.metadata);
+  fs::remove(folder.file(sim::kKeptStock));
   progress.advance(1);
   for (size_t i = 0; i < result.main.dexels.size(); ++i) {
     result.main.dexels[i].save(folder.file(fmt::format("surface_{}.rays", i)));
@@ -233,9 +234,8 @@ sim::MeasuredPath motion_of(const StoredRun& run, const std::string& folder, boo
                             Progress& progress) {
   if (!needed) {
     sim::MeasuredPath none;
-    none.cycles =
-        std::make_unique<motion::Cycles>(std::span<const toolpath::Element>{}, sim::machines_by_tool(run.job),
-                                         run.job.scene.tools.front(), run.job.scene.motion);
+    none.cycles = std::make_unique<motion::Cycles>(toolpath::Elements{}, sim::machines_by_tool(run.job),
+                                                   run.job.scene.tools.front(), run.job.scene.motion);
     return none;
   }
   return whole_motion(run.job, folder, progress);

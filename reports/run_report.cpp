@@ -343,8 +343,7 @@ Lines surface_lines(const sim::Job& job, const sim::Result& result) {
 /// With the tool that is in the spindle where linear axes lead farthest from the path.
 kinematics::MachineModel machine_of_worst(const sim::Job& job, const sim::Result& result) {
   const auto element = static_cast<size_t>(result.singularity->worst.front().pole.element);
-  const auto& block = std::get<toolpath::BlockMove>(result.main.path.elements[element].what);
-  return sim::machines_by_tool(job)[static_cast<size_t>(block.tool)];
+  return sim::machines_by_tool(job)[static_cast<size_t>(result.main.path.elements.tool(element))];
 }
 
 }  // namespace

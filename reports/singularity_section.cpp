@@ -27,12 +27,11 @@ std::string pieces_text(const std::optional<int>& pieces) {
 }
 
 const char* law_of(const toolpath::ToolPath& path, const BlockSingularity& block) {
-  const auto& what = path.elements[static_cast<size_t>(block.pole.element)].what;
-  return toolpath::law_name(std::get<toolpath::BlockMove>(what).law);
+  return toolpath::law_name(path.elements.block(static_cast<size_t>(block.pole.element)).law);
 }
 
 int line_of(const toolpath::ToolPath& path, const BlockSingularity& block) {
-  return path.elements[static_cast<size_t>(block.pole.element)].where.line;
+  return path.elements.line(static_cast<size_t>(block.pole.element));
 }
 
 Table worst_table(const toolpath::ToolPath& path, const SingularityScan& scan) {
@@ -144,7 +143,7 @@ Table branch_table(const MachineModel& machine, const SingularityScan& scan, con
 }
 
 std::string circle_text(const toolpath::ToolPath& path, const motion::CircleError& circle) {
-  const auto line = [&](int element) { return path.elements[static_cast<size_t>(element)].where.line; };
+  const auto line = [&](int element) { return path.elements.line(static_cast<size_t>(element)); };
   return fmt::format(
       " Lines {} to {} are a circle of radius {:.4f} mm in {} blocks: linear axes lead the tip {:.6f} mm "
       "away "

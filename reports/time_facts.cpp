@@ -8,7 +8,7 @@ namespace swarf::reports {
 namespace {
 
 std::string line_text(const sim::Result& result, int element) {
-  return fmt::format("line {}", result.main.path.elements[static_cast<size_t>(element)].where.line);
+  return fmt::format("line {}", result.main.path.elements.line(static_cast<size_t>(element)));
 }
 
 void add_blocks(const sim::Job& job, const sim::Result& result, FactGroup& group) {

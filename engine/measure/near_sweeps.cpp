@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/parallel.h"
 
@@ -19,9 +20,8 @@ double distance_to_box(const Box& box, const Vec3& point) {
 
 }  // namespace
 
-NearSweeps::Capsule NearSweeps::capsule(uint32_t sweep) const {
-  const stock::Sweep& s = sweeps_[sweep];
-  const stock::CutterSolid& solid = cutters_[s.block];
+NearSweeps::Capsule NearSweeps::capsule(const stock::Sweep& s, size_t number) const {
+  const stock::CutterSolid& solid = cutter_of_(number);
   const double half = 0.5 * solid.height;
   const Vec3 from = s.start.tip_W + half * s.start.axis_W, to = s.end.tip_W + half * s.end.axis_W;
   // At t a point x stands in the tool's frame at M(x), the mean of two rigid maps (sweep_map.h). With c on
@@ -33,16 +33,33 @@ NearSweeps::Capsule NearSweeps::capsule(uint32_t sweep) const {
   return {from, to - from, radius};
 }
 
+std::vector<stock::Sweep> NearSweeps::run(size_t number) const {
+  return part_(number * kRun, std::min(count_, (number + 1) * kRun));
+}
+
 NearSweeps::NearSweeps(std::span<const stock::Sweep> sweeps, const SweepCutters& cutters)
-    : sweeps_(sweeps), cutters_(cutters), runs_((sweeps.size() + kRun - 1) / kRun) {
+    : NearSweeps(
+          sweeps.size(),
+          [sweeps](size_t begin, size_t end) {
+            return std::vector<stock::Sweep>(sweeps.begin() + static_cast<ptrdiff_t>(begin),
+                                             sweeps.begin() + static_cast<ptrdiff_t>(end));
+          },
+          [sweeps, &cutters](size_t n) -> const stock::CutterSolid& { return cutters[sweeps[n].block]; }) {}
+
+NearSweeps::NearSweeps(size_t count, Part part, CutterOf cutter_of)
+    : count_(count),
+      part_(std::move(part)),
+      cutter_of_(std::move(cutter_of)),
+      runs_((count + kRun - 1) / kRun) {
   parallel_chunks(runs_.size(), kRunsPerTask, [&](size_t begin, size_t end) {
-    for (size_t run = begin; run < end; ++run) {
-      Box& box = runs_[run];
-      for (size_t n = run * kRun; n < std::min(sweeps.size(), (run + 1) * kRun); ++n) {
-        const Capsule c = capsule(static_cast<uint32_t>(n));
+    for (size_t number = begin; number < end; ++number) {
+      Box& box = runs_[number];
+      const std::vector<stock::Sweep> sweeps = run(number);
+      for (size_t i = 0; i < sweeps.size(); ++i) {
+        const Capsule c = capsule(sweeps[i], number * kRun + i);
         const Vec3 to = c.from + c.way, reach = Vec3::Constant(c.radius);
         const Box own{c.from.cwiseMin(to) - reach, c.from.cwiseMax(to) + reach};
-        box = n == run * kRun ? own : Box{box.lower.cwiseMin(own.lower), box.upper.cwiseMax(own.upper)};
+        box = i == 0 ? own : Box{box.lower.cwiseMin(own.lower), box.upper.cwiseMax(own.upper)};
       }
     }
   });
@@ -51,10 +68,12 @@ NearSweeps::NearSweeps(std::span<const stock::Sweep> sweeps, const SweepCutters&
 std::vector<uint32_t> NearSweeps::around(const Vec3& point_W, double distance_mm) const {
   const double reach = distance_mm / kLeastCosine;
   std::vector<uint32_t> near;
-  for (size_t run = 0; run < runs_.size(); ++run) {
-    if (distance_to_box(runs_[run], point_W) > reach) continue;
-    for (size_t n = run * kRun; n < std::min(sweeps_.size(), (run + 1) * kRun); ++n) {
-      const Capsule c = capsule(static_cast<uint32_t>(n));
+  for (size_t number = 0; number < runs_.size(); ++number) {
+    if (distance_to_box(runs_[number], point_W) > reach) continue;
+    const std::vector<stock::Sweep> sweeps = run(number);
+    for (size_t i = 0; i < sweeps.size(); ++i) {
+      const size_t n = number * kRun + i;
+      const Capsule c = capsule(sweeps[i], n);
       const double length2 = c.way.squaredNorm();
       const double t = length2 > 0.0 ? std::clamp((point_W - c.from).dot(c.way) / length2, 0.0, 1.0) : 0.0;
       if ((point_W - c.from - t * c.way).norm() <= c.radius + reach) near.push_back(static_cast<uint32_t>(n));

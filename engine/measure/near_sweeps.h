@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -14,6 +15,11 @@ namespace swarf::measure {
 /// Borrows the sweeps.
 class NearSweeps {
  public:
+  /// Sweeps [begin, end) by their numbers, and the cutter of one.
+  using Part = std::function<std::vector<stock::Sweep>(size_t begin, size_t end)>;
+  using CutterOf = std::function<const stock::CutterSolid&(size_t sweep)>;
+  NearSweeps(size_t count, Part part, CutterOf cutter_of);
+  /// `cutters`: by Sweep::block.
   NearSweeps(std::span<const stock::Sweep> sweeps, const SweepCutters& cutters);
   /// Indices of all sweeps whose cutter may come within `distance_mm` of the point, in order; some of them
   /// stay farther away.
@@ -24,10 +30,12 @@ class NearSweeps {
     Vec3 from, way;  ///< of the middle of the flutes, W
     double radius;   ///< of a ball about it that holds them
   };
-  Capsule capsule(uint32_t sweep) const;
+  Capsule capsule(const stock::Sweep& sweep, size_t number) const;
+  std::vector<stock::Sweep> run(size_t number) const;
 
-  std::span<const stock::Sweep> sweeps_;
-  const SweepCutters& cutters_;
+  size_t count_;
+  Part part_;
+  CutterOf cutter_of_;
   std::vector<Box> runs_;  ///< around kRun consecutive sweeps each
 };
 

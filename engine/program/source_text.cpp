@@ -47,6 +47,22 @@ void report_not_text(std::string_view text, size_t at, int line, int column, Rep
                  "save the program as plain ASCII or UTF-8 text");
 }
 
+std::ifstream open_file(const std::string& path) {
+  refuse_special_file(path);
+  std::error_code problem;
+  const auto status = std::filesystem::status(path, problem);
+  if (status.type() == std::filesystem::file_type::not_found) {
+    throw InputError("file-not-found", {path, 0, 0}, "there is no such file",
+                     "check the path of the program");
+  }
+  std::ifstream stream(path, std::ios::binary);
+  if (status.type() != std::filesystem::file_type::regular || !stream) {
+    throw InputError("file-unreadable", {path, 0, 0}, "this is not a file that can be read",
+                     "give the path of a program file that you may read");
+  }
+  return stream;
+}
+
 }  // namespace
 
 int utf8_length(std::string_view text, size_t at) {
@@ -99,19 +115,33 @@ std::vector<std::string_view> split_lines(std::string_view text) {
 }
 
 std::string read_file(const std::string& path) {
-  refuse_special_file(path);
-  std::error_code problem;
-  const auto status = std::filesystem::status(path, problem);
-  if (status.type() == std::filesystem::file_type::not_found) {
-    throw InputError("file-not-found", {path, 0, 0}, "there is no such file",
-                     "check the path of the program");
-  }
-  std::ifstream stream(path, std::ios::binary);
-  if (status.type() != std::filesystem::file_type::regular || !stream) {
-    throw InputError("file-unreadable", {path, 0, 0}, "this is not a file that can be read",
-                     "give the path of a program file that you may read");
-  }
+  std::ifstream stream = open_file(path);
   return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+std::map<int, std::string> read_lines(const std::string& path, const std::set<int>& wanted) {
+  std::map<int, std::string> lines;
+  std::ifstream stream = open_file(path);
+  std::string text;
+  bool after_return = false;
+  int number = 1;
+  const auto end_line = [&] {
+    if (number == 1 && text.starts_with(kByteOrderMark)) text.erase(0, kByteOrderMark.size());
+    if (wanted.contains(number)) lines.emplace(number, text);
+    text.clear();
+    ++number;
+  };
+  for (std::istreambuf_iterator<char> at(stream), end; at != end && lines.size() < wanted.size(); ++at) {
+    const char c = *at;
+    if (c == '\r' || (c == '\n' && !after_return)) {
+      end_line();
+    } else if (c != '\n' && (number == 1 || wanted.contains(number))) {
+      text += c;
+    }
+    after_return = c == '\r';
+  }
+  if (!text.empty()) end_line();
+  return lines;
 }
 
 }  // namespace swarf::program

@@ -1,6 +1,8 @@
 // The text of a program before any word is read: is it text at all, and where do its lines end?
 #pragma once
 
+#include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,6 +22,10 @@ std::vector<std::string_view> split_lines(std::string_view text);
 /// Length of the UTF-8 sequence that starts at `at`, 1 to 4; 0 when the bytes there are not UTF-8
 /// (Unicode 15, table 3-7: no overlong forms, no surrogates, nothing above U+10FFFF).
 int utf8_length(std::string_view text, size_t at);
+
+/// The lines of these 1-based numbers as split_lines() has them, of those that the file has. Reads no farther
+/// than it must, in little memory. Throws InputError as read_file().
+std::map<int, std::string> read_lines(const std::string& path, const std::set<int>& wanted);
 
 /// The bytes of a regular file. Throws InputError: "file-not-found", "file-unreadable".
 std::string read_file(const std::string& path);

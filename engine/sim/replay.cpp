@@ -24,11 +24,10 @@ class Replay {
       : record_(record),
         progress_(progress),
         path_(move_tool(job, progress)),
-        merged_(stock_sweeps(job, *path_.cycles)),
-        sweeps_(merged_.sweeps),
+        sweeps_(cut_sweeps(job, *path_.cycles)),
         solids_(tool_solids(job.scene)),
         stock_(job.scene.stock.box_W, job.scene.stock.voxel_mm) {
-    result_.parts = differences(record.identity, cut_identity(job, merged_));
+    result_.parts = differences(record.identity, cut_identity(job, sweeps_));
   }
 
   ReplayResult run() {
@@ -57,22 +56,18 @@ class Replay {
     diagnostics.throw_if_errors();
   }
 
-  int tool_of(uint32_t block) const { return merged_.sources[block].tool; }
-
   /// The first sweep that differs, by its poses or its tool, or that one of them lacks.
   size_t first_other_motion() const {
     const size_t count = std::min(record_.sweeps.size(), sweeps_.size());
     size_t n = 0;
-    while (n < count && same_sweep(record_.sweeps[n], sweeps_[n]) &&
-           record_.tools[n] == tool_of(sweeps_[n].block))
-      ++n;
+    while (n < count && same_sweep(record_.sweeps[n], sweeps_[n]) && record_.tools[n] == sweeps_.tool(n)) ++n;
     return n;
   }
 
   void cut(size_t begin, size_t end) {
-    for_each_tool(
-        std::span(sweeps_).subspan(begin, end - begin), [&](uint32_t block) { return tool_of(block); },
-        [&](size_t tool, std::span<const stock::Sweep> part) { stock_.cut(part, solids_[tool]); });
+    sweeps_.for_each_tool(begin, end, [&](size_t tool, std::span<const stock::Sweep> part) {
+      stock_.cut(part, solids_[tool]);
+    });
     progress_.advance(static_cast<double>(end));
   }
 
@@ -112,16 +107,13 @@ class Replay {
     }
   }
 
-  CutPlace place(size_t n) const {
-    return place_of(sweeps_[n], merged_.sources, path_.path.elements, reader_);
-  }
+  CutPlace place(size_t n) const { return place_of(sweeps_, n, path_.path.elements, reader_); }
 
   const CutRecord& record_;
   Progress& progress_;
   MeasuredPath path_;
   mutable motion::CycleReader reader_{*path_.cycles};
-  JobSweeps merged_;
-  const std::vector<stock::Sweep>& sweeps_;
+  CutSweeps sweeps_;
   std::vector<stock::CutterSolid> solids_;  ///< by tool
   stock::Stock stock_;
   size_t length_ = 0;  ///< sweeps to compare: a stopped run only as far as it went

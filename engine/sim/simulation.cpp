@@ -35,11 +35,14 @@ toolpath::ToolPath plan_surfaces(const Job& job, toolpath::Planner planner, Diag
   toolpath::PlanOptions options = job.scene.toolpath;
   options.planner = planner;
   toolpath::ToolPath path = toolpath::plan(job.program, job.scene.tools.front(), options, diagnostics);
-  for (toolpath::Element& element : path.elements) {
-    auto* pass = std::get_if<toolpath::SurfacePass>(&element.what);
-    if (pass != nullptr && job.scene.chord_tolerance_mm)
+  if (!job.scene.chord_tolerance_mm) return path;
+  toolpath::Elements elements;
+  for (toolpath::Element element : path.elements) {
+    if (auto* pass = std::get_if<toolpath::SurfacePass>(&element.what))
       pass->chord_tolerance_mm = *job.scene.chord_tolerance_mm;
+    elements.push_back(std::move(element));
   }
+  path.elements = std::move(elements);
   return path;
 }
 
@@ -55,10 +58,8 @@ toolpath::ToolPath plan_path(const Job& job, toolpath::Planner planner, Diagnost
 
 double theory_scallop_um(const toolpath::ToolPath& path) {
   double highest = 0.0;
-  for (const toolpath::Element& element : path.elements) {
-    if (const auto* pass = std::get_if<toolpath::SurfacePass>(&element.what)) {
-      highest = std::max(highest, pass->scallop_theory_mm);
-    }
+  for (size_t i = 0; i < path.elements.size(); ++i) {
+    if (const auto* pass = path.elements.pass(i)) highest = std::max(highest, pass->scallop_theory_mm);
   }
   return um_from_mm(highest);
 }
@@ -315,13 +316,18 @@ MeasuredPath plan_tool(const Job& job, Progress& progress) {
 MeasuredPath move_tool(const Job& job, Progress& progress, const CutOptions& options) {
   MeasuredPath measured = planned_path(job, progress);
   interpolate(job, job.scene.motion, options, progress, measured);
-  if (!job.scene.has_blocks()) require_contact(job, *measured.cycles);
+  if (!job.scene.has_blocks() && !measured.cycles->stopped()) require_contact(job, *measured.cycles);
   return measured;
 }
 
 Result simulate(const Job& job, const CutOptions& options, Progress& progress) {
   Result result;
   result.main = move_tool(job, progress, options);
+  if (result.main.cycles->stopped()) {
+    leave_uncut(job, options, result);
+    result.stopped = true;
+    return result;
+  }
   result.memory = predict_memory(job, result.main, options.outputs, options.check_voxels ? 2 : 1);
   require_memory(job, result.memory);
   progress.note(fmt::format("memory: stock {:.0f} MB, whole run {:.0f} MB expected; limit {:.0f} MB",

@@ -39,7 +39,7 @@ double helix_time(const BlockMove& block) {
 }  // namespace
 
 bool holds_blocks(const ToolPath& path) {
-  return !path.elements.empty() && std::holds_alternative<BlockMove>(path.elements.front().what);
+  return path.elements.hold_blocks();
 }
 
 double arc_angle(const BlockMove& block) {
@@ -62,7 +62,6 @@ ToolPath cl_path(const program::ClProgram& program, BlockLaw law, Diagnostics& d
                  std::span<const int> tools) {
   ToolPath path;
   path.planner = "cl";
-  path.elements.reserve(program.moves.size());
   PassCounter passes;
   const bool spindle_told = tells_spindle(program);
   for (const Move& move : program.moves) {

@@ -1,5 +1,6 @@
 #include "toolpath/nc_path.h"
 
+#include <string>
 #include <utility>
 
 namespace swarf::toolpath {
@@ -49,15 +50,15 @@ bool NcPathSink::move(const NcMove& move) {
   block.dwell_s = std::exchange(dwell_s_, 0.0);
   block.pass = passes_.next(block);
   (is_rapid(block) ? result_.path.link_length_mm : result_.path.pass_length_mm) += tip_way(block);
-  files_.push_back(move.file);
-  result_.path.elements.push_back({std::move(block), 0, {"", move.line, move.column}});
+  // The file's number, until its name is known.
+  result_.path.elements.push_back({std::move(block), 0, {std::to_string(move.file), move.line, move.column}});
   return true;
 }
 
 NcPath NcPathSink::finish(program::NcSummary summary, Diagnostics& diagnostics) {
   result_.reading.summary = std::move(summary);
   const auto file = [&](int index) { return result_.reading.summary.files.at(static_cast<size_t>(index)); };
-  for (size_t i = 0; i < files_.size(); ++i) result_.path.elements[i].where.file = file(files_[i]);
+  result_.path.elements.rename_files([&](const std::string& number) { return file(std::stoi(number)); });
   if (!toolless_.empty()) {
     const Place& first = toolless_.front();
     diagnostics.error(

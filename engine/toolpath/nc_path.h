@@ -45,8 +45,7 @@ class NcPathSink final : public program::NcSink {
   };
   NcPath result_;
   PassCounter passes_;
-  std::vector<int> files_;  ///< of the elements
-  double dwell_s_ = 0.0;    ///< of moves that became no element
+  double dwell_s_ = 0.0;  ///< of moves that became no element
   std::vector<Place> toolless_;
 };
 

@@ -35,7 +35,7 @@ void BM_Plan(benchmark::State& state) {
   const MotionOptions options;
   for (auto _ : state) {
     for (const toolpath::ToolPath& path : paths) {
-      const std::vector<BlockMotion> motions = block_motions(path, machine);
+      const BlockMotions motions = block_motions(path, machine);
       for (size_t first = 0; first < motions.size();) {
         const size_t end = run_end(motions, first);
         RunPlace run;

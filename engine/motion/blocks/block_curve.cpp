@@ -93,12 +93,12 @@ double axis_way(const MachineModel& machine, const AxisValues& from, const AxisV
 }
 
 double way_of_tip(const BlockMotion& motion) {
-  if (motion.block->law != BlockLaw::kJoint || !turns(motion)) {
-    if (motion.block->law != BlockLaw::kJoint) return toolpath::tip_way(*motion.block);
-    return (motion.block->to.tip_W - motion.block->from.tip_W).norm();
+  if (motion.block.law != BlockLaw::kJoint || !turns(motion)) {
+    if (motion.block.law != BlockLaw::kJoint) return toolpath::tip_way(motion.block);
+    return (motion.block.to.tip_W - motion.block.from.tip_W).norm();
   }
   double way = 0.0;
-  Vec3 before = motion.block->from.tip_W;
+  Vec3 before = motion.block.from.tip_W;
   for (int i = 1; i <= kWayChords; ++i) {
     const Vec3 tip = pose_at(motion, static_cast<double>(i) / kWayChords).tip_W;
     way += (tip - before).norm();
@@ -109,8 +109,12 @@ double way_of_tip(const BlockMotion& motion) {
 
 BlockCurve::BlockCurve(const BlockMotion& motion, const kinematics::InverseKinematics& inverse,
                        double speed_mm_s)
-    : motion_(&motion), inverse_(&inverse), speed_(speed_mm_s) {
-  const BlockMove& block = *motion.block;
+    : q_from_(motion.q_from),
+      q_to_(motion.q_to),
+      machine_(motion.machine),
+      inverse_(&inverse),
+      speed_(speed_mm_s) {
+  const BlockMove& block = motion.block;
   tip_way_ = way_of_tip(motion);
   even_ =
       block.law == BlockLaw::kJoint || (!block.arc && block.from.axis_W == block.to.axis_W && !turns(motion));
@@ -118,22 +122,23 @@ BlockCurve::BlockCurve(const BlockMotion& motion, const kinematics::InverseKinem
     length_ = limited_way(motion.q_to - motion.q_from, 1.0);
     return;
   }
+  motion_ = std::make_shared<const BlockMotion>(motion);
   follow();
 }
 
 AxisValues BlockCurve::solve(double x, const AxisValues& hint) const {
   const ToolPose pose = pose_at(*motion_, x);
-  if (motion_->block->law == BlockLaw::kTcpAxes) {
-    const AxisValues own = motion_->q_from + x * (motion_->q_to - motion_->q_from);
-    const Branch branch = continued(*inverse_, *motion_->machine, pose, own);
+  if (motion_->block.law == BlockLaw::kTcpAxes) {
+    const AxisValues own = q_from_ + x * (q_to_ - q_from_);
+    const Branch branch = continued(*inverse_, *machine_, pose, own);
     return branch.outcome == InverseOutcome::kUnreachable ? hint : branch.q;
   }
-  const Branch branch = continued(*inverse_, *motion_->machine, pose, hint);
+  const Branch branch = continued(*inverse_, *machine_, pose, hint);
   return branch.outcome == InverseOutcome::kUnreachable ? hint : branch.q;
 }
 
 double BlockCurve::limited_way(const AxisValues& change, double share) const {
-  const MachineModel& machine = *motion_->machine;
+  const MachineModel& machine = *machine_;
   double ways[kinematics::kMaxAxes + 1] = {share * tip_way_};
   double most = ways[0];
   for (size_t i = 0; i < machine.axes.size(); ++i) {
@@ -147,18 +152,18 @@ double BlockCurve::limited_way(const AxisValues& change, double share) const {
 }
 
 void BlockCurve::follow() {
-  const double way = std::max(toolpath::tip_way(*motion_->block), 1.0);
+  const double way = std::max(toolpath::tip_way(motion_->block), 1.0);
   const PathShape shape{[&](double x) { return pose_at(*motion_, x); },
                         [&](double from, double to) { return way * (to - from); },
                         [&](const ToolPose& pose, const AxisValues& before) {
-                          return continued(*inverse_, *motion_->machine, pose, before);
+                          return continued(*inverse_, *machine_, pose, before);
                         }};
-  std::vector<PathNode> nodes{{0.0, 0.0, motion_->q_from, false, true}};
-  if (motion_->block->law == BlockLaw::kTcpAxes) {
+  std::vector<PathNode> nodes{{0.0, 0.0, q_from_, false, true}};
+  if (motion_->block.law == BlockLaw::kTcpAxes) {
     for (int i = 1; i <= 16; ++i)
       nodes.push_back({i / 16.0, way * i / 16.0, solve(i / 16.0, nodes.back().q), false, true});
   } else {
-    append_nodes(shape, *inverse_, *motion_->machine, 1.0, way / 8.0 * (1.0 + 1e-9), nodes);
+    append_nodes(shape, *inverse_, *machine_, 1.0, way / 8.0 * (1.0 + 1e-9), nodes);
   }
   length_ = 0.0;
   double fastest = 0.0, slowest = std::numeric_limits<double>::infinity();
@@ -170,16 +175,16 @@ void BlockCurve::follow() {
     fastest = std::max(fastest, rate);
     slowest = std::min(slowest, rate);
   }
-  jump_mm_ = axis_way(*motion_->machine, nodes.back().q, motion_->q_to);
+  jump_mm_ = axis_way(*machine_, nodes.back().q, q_to_);
   if (jump_mm_ > kJoin) followed_ = false;
   if (followed_) jump_mm_ = 0.0;
-  if (!followed_) length_ = std::max(length_, toolpath::tip_way(*motion_->block));
+  if (!followed_) length_ = std::max(length_, toolpath::tip_way(motion_->block));
   if (followed_ && turns(*motion_) && fastest > kUneven * slowest) stretch(nodes);
   sample();
 }
 
 void BlockCurve::stretch(const std::vector<PathNode>& nodes) {
-  const double turn = turn_between(*motion_->machine, nodes.front().q, nodes.back().q);
+  const double turn = turn_between(*machine_, nodes.front().q, nodes.back().q);
   const auto steps = static_cast<size_t>(std::clamp(4.0 * kNodesPerRadian * turn, 48.0, kNodesMax));
   const double h = length_ / static_cast<double>(steps);
   size_t near = 0;
@@ -210,11 +215,11 @@ void BlockCurve::stretch(const std::vector<PathNode>& nodes) {
 }
 
 void BlockCurve::sample() {
-  double turn = turn_between(*motion_->machine, motion_->q_from, motion_->q_to);
-  if (motion_->block->arc) turn += toolpath::arc_angle(*motion_->block);
+  double turn = turn_between(*machine_, q_from_, q_to_);
+  if (motion_->block.arc) turn += toolpath::arc_angle(motion_->block);
   const auto steps = static_cast<size_t>(std::clamp(kNodesPerRadian * turn, kNodesMin, kNodesMax));
   nodes_.reserve(steps + 1);
-  nodes_.push_back(motion_->q_from);
+  nodes_.push_back(q_from_);
   for (size_t i = 1; i <= steps; ++i) {
     const double s = length_ * static_cast<double>(i) / static_cast<double>(steps);
     nodes_.push_back(solve(share(s), nodes_.back()));
@@ -229,10 +234,9 @@ double BlockCurve::share(double s) const {
 
 AxisValues BlockCurve::q(double s) const {
   const double x = share(s);
-  if (x == 0.0) return motion_->q_from;
-  if (even_)
-    return x == 1.0 ? motion_->q_to : AxisValues(motion_->q_from + x * (motion_->q_to - motion_->q_from));
-  if (x == 1.0 && followed_) return motion_->q_to;
+  if (x == 0.0) return q_from_;
+  if (even_) return x == 1.0 ? q_to_ : AxisValues(q_from_ + x * (q_to_ - q_from_));
+  if (x == 1.0 && followed_) return q_to_;
   const double at = s / length_ * static_cast<double>(nodes_.size() - 1);
   const auto near = std::min(nodes_.size() - 1, static_cast<size_t>(std::max(0.0, at + 0.5)));
   return solve(x, nodes_[near]);
@@ -241,7 +245,7 @@ AxisValues BlockCurve::q(double s) const {
 BlockCurve::Jet BlockCurve::jet(double s) const {
   const AxisValues value = q(s);
   if (even_) {
-    const AxisValues slope = (motion_->q_to - motion_->q_from) / length_;
+    const AxisValues slope = (q_to_ - q_from_) / length_;
     return {value, slope, AxisValues::Zero()};
   }
   // Central differences of the sixth order, as wide as the block's ends and its bends allow.
@@ -262,9 +266,7 @@ PathCell BlockCurve::bounds_between(size_t from, size_t to) const {
   const double h = length_ / static_cast<double>(last);
   PathCell cell;
   cell.first = cell.second = cell.third = AxisValues::Zero();
-  const auto jump = [&](size_t i) {
-    return turn_between(*motion_->machine, nodes_[i], nodes_[i + 1]) > kJump;
-  };
+  const auto jump = [&](size_t i) { return turn_between(*machine_, nodes_[i], nodes_[i + 1]) > kJump; };
   // Third differences of all steps that touch the cell and of one step beside it.
   for (size_t i = from > 3 ? from - 3 : 0; i + 3 <= last && i <= to; ++i) {
     if (jump(i) || jump(i + 1) || jump(i + 2)) continue;
@@ -322,7 +324,7 @@ void BlockCurve::append_cells(double from, double to, const TipLimits& tip,
   };
   if (even_) {
     PathCell cell;
-    cell.first = (motion_->q_to - motion_->q_from).cwiseAbs() / length_;
+    cell.first = (q_to_ - q_from_).cwiseAbs() / length_;
     cell.second = cell.third = AxisValues::Zero();
     cell.length = to - from;
     limit_tip(cell, cell.length / length_);

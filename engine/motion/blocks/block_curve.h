@@ -10,6 +10,7 @@
 //     spline is met.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "base/cubic_spline.h"
@@ -31,8 +32,8 @@ double way_of_tip(const BlockMotion& motion);
 
 class BlockCurve {
  public:
-  /// Motion and inverse must outlive it. `speed_mm_s`: reference for the axes' lengths, one for all blocks of
-  /// a run, about the speed of its tip.
+  /// Machine and inverse must outlive it. `speed_mm_s`: reference for the axes' lengths, one for all blocks
+  /// of a run, about the speed of its tip.
   BlockCurve(const BlockMotion& motion, const kinematics::InverseKinematics& inverse, double speed_mm_s);
 
   double length() const { return length_; }
@@ -72,7 +73,9 @@ class BlockCurve {
   /// Greatest jump of x''' at the spline's knots near these nodes, over x'.
   double bends_of_share(size_t from, size_t to) const;
 
-  const BlockMotion* motion_;
+  kinematics::AxisValues q_from_, q_to_;  ///< of the block
+  const kinematics::MachineModel* machine_;
+  std::shared_ptr<const BlockMotion> motion_;  ///< when not even
   const kinematics::InverseKinematics* inverse_;
   double speed_ = 0.0;
   double length_ = 0.0, tip_way_ = 0.0;

@@ -10,17 +10,13 @@
 #include "base/angles.h"
 #include "base/check.h"
 #include "kinematics/joint_path.h"
-#include "kinematics/reach.h"
-#include "motion/blocks/pole_turn.h"
 #include "motion/speed/free_move.h"
 
 namespace swarf::motion {
 namespace {
 
-using kinematics::AxisValues;
 using kinematics::Jet;
 using kinematics::JointPath;
-using kinematics::MachineModel;
 using toolpath::BlockLaw;
 using toolpath::BlockMove;
 
@@ -87,8 +83,8 @@ MotionBounds ends_bounds(const BlockMove& block) {
 MotionBounds tcp_axes_bounds(const BlockMotion& motion) {
   const JointPath chain(*motion.machine, motion.q_from, motion.q_to);
   const double turn = chain.turn();
-  if (turn == 0.0) return tcp_bounds(*motion.block);
-  const BlockMove& block = *motion.block;
+  if (turn == 0.0) return tcp_bounds(motion.block);
+  const BlockMove& block = motion.block;
   const Mat3 to_M = motion.machine->X_MW.linear();
   const Vec3 way = block.to.tip_W - block.from.tip_W;
   std::optional<ArcShape> arc;
@@ -141,46 +137,8 @@ MotionBounds joint_bounds(const BlockMotion& motion) {
 
 }  // namespace
 
-std::vector<BlockMotion> block_motions(std::span<const toolpath::Element> elements,
-                                       std::span<const MachineModel> by_tool) {
-  const std::vector<kinematics::InverseKinematics> inverses(by_tool.begin(), by_tool.end());
-  const std::vector<kinematics::Axis>& axes = by_tool.front().axes;
-  AxisValues q = AxisValues::Zero();
-  for (size_t i = 0; i < axes.size(); ++i) q[static_cast<Eigen::Index>(i)] = axes[i].home;
-  int tool_before = -1;
-  std::vector<BlockMotion> motions;
-  motions.reserve(elements.size());
-  for (const toolpath::Element& element : elements) {
-    const auto& block = std::get<BlockMove>(element.what);
-    const size_t index = by_tool.size() == 1 ? 0 : static_cast<size_t>(block.tool);
-    const MachineModel& machine = by_tool[index];
-    const kinematics::InverseKinematics& inverse = inverses[index];
-    const bool tool_is_new = block.tool != tool_before;
-    tool_before = block.tool;
-    if (block.axes) {
-      q = block.axes->to;
-      motions.push_back({&block, &machine, block.axes->from, block.axes->to});
-      continue;
-    }
-    const auto solve = [&](const ToolPose& pose) {
-      const kinematics::Branch branch = inverse.solve_nearest(pose, q);
-      if (branch.outcome != kinematics::InverseOutcome::kUnreachable) {
-        q = branch.q;
-      } else if (block.law == BlockLaw::kJoint || block.law == BlockLaw::kTcpAxes) {
-        const kinematics::UnreachableText why = kinematics::unreachable_text(machine, pose);
-        throw InputError("unreachable", element.where, why.text, why.fix);
-      }
-    };
-    if (tool_is_new) solve(block.from);
-    const AxisValues from = q = leaving_pole(inverse, block, q);
-    solve(block.to);
-    motions.push_back({&block, &machine, from, q});
-  }
-  return motions;
-}
-
 ToolPose pose_at(const BlockMotion& motion, double s) {
-  const BlockMove& block = *motion.block;
+  const BlockMove& block = motion.block;
   if (s <= 0.0) return block.from;
   if (s >= 1.0) return block.to;
   switch (block.law) {
@@ -203,17 +161,17 @@ ToolPose pose_at(const BlockMotion& motion, double s) {
 }
 
 MotionBounds motion_bounds(const BlockMotion& motion) {
-  switch (motion.block->law) {
+  switch (motion.block.law) {
     case BlockLaw::kJoint:
       return joint_bounds(motion);
     case BlockLaw::kEnds:
-      return ends_bounds(*motion.block);
+      return ends_bounds(motion.block);
     case BlockLaw::kTcpAxes:
       return tcp_axes_bounds(motion);
     case BlockLaw::kTcp:
       break;
   }
-  return tcp_bounds(*motion.block);
+  return tcp_bounds(motion.block);
 }
 
 double split_error(const MotionBounds& bounds, int pieces, double lever_mm) {
@@ -230,8 +188,8 @@ double split_error(const MotionBounds& bounds, int pieces, double lever_mm) {
   return error + turn * std::tan(std::asin(sine)) * lever;
 }
 
-std::vector<ToolPose> subdivide(const BlockMotion& motion, double lever_mm, double tolerance_mm,
-                                const SourceLocation& where) {
+int pieces_within(const BlockMotion& motion, double lever_mm, double tolerance_mm,
+                  const std::function<SourceLocation()>& where) {
   SWARF_CHECK(lever_mm >= 0.0 && tolerance_mm > 0.0, "a lever and a tolerance");
   const MotionBounds bounds = motion_bounds(motion);
   // The error falls with the square of the number or faster: start where that puts it and close in.
@@ -241,13 +199,19 @@ std::vector<ToolPose> subdivide(const BlockMotion& motion, double lever_mm, doub
     // Slightly less than the square root asks for: the cubic parts fall faster.
     const double next = std::max(pieces + 1.0, std::floor(0.97 * growth * pieces));
     if (next > kPiecesMax) {
-      throw InputError("too-many-sweeps", where,
+      throw InputError("too-many-sweeps", where(),
                        fmt::format("a block of {:.3f} mm needs more than {} sweeps to stay within {:g} um",
                                    bounds.speed, kPiecesMax, tolerance_mm * 1e3),
                        "raise the tolerance of the sweeps, or give the block in shorter pieces");
     }
     pieces = static_cast<int>(next);
   }
+  return pieces;
+}
+
+std::vector<ToolPose> subdivide(const BlockMotion& motion, double lever_mm, double tolerance_mm,
+                                const SourceLocation& where) {
+  const int pieces = pieces_within(motion, lever_mm, tolerance_mm, [&] { return where; });
   std::vector<ToolPose> poses;
   poses.reserve(static_cast<size_t>(pieces) + 1);
   for (int i = 0; i <= pieces; ++i) poses.push_back(pose_at(motion, static_cast<double>(i) / pieces));

@@ -19,7 +19,7 @@
 // r and angle phi adds |p''| = r phi^2: an eighth of it is the sagitta's leading term.
 #pragma once
 
-#include <span>
+#include <functional>
 #include <vector>
 
 #include "kinematics/machine_model.h"
@@ -27,26 +27,14 @@
 
 namespace swarf::motion {
 
-/// One block with what its law needs. Block and machine must outlive it.
+/// One block with what its law needs. The machine must outlive it.
 struct BlockMotion {
-  const toolpath::BlockMove* block = nullptr;
+  toolpath::BlockMove block;
   const kinematics::MachineModel* machine = nullptr;
   /// Axis values at both ends; used by the joint and tcp_axes laws only.
   kinematics::AxisValues q_from = kinematics::AxisValues::Zero();
   kinematics::AxisValues q_to = kinematics::AxisValues::Zero();
 };
-
-/// The motions of blocks, in their order (there must be nothing else). Axis values follow by
-/// continuity: the branch nearest to the values before, the first nearest to home; but a block that leaves
-/// the pole starts with the outer axis where it then needs it (pole_turn.h). Throws InputError
-/// "unreachable" for a position under the joint law that the machine has no axis values for.
-/// `by_tool`: the machine with each tool in its spindle (BlockMove::tool), or one for whatever tool.
-std::vector<BlockMotion> block_motions(std::span<const toolpath::Element> elements,
-                                       std::span<const kinematics::MachineModel> by_tool);
-inline std::vector<BlockMotion> block_motions(const toolpath::ToolPath& path,
-                                              const kinematics::MachineModel& machine) {
-  return block_motions(path.elements, std::span(&machine, 1));
-}
 
 /// Pose at s in [0,1]: exactly the block's poses at both ends.
 ToolPose pose_at(const BlockMotion& motion, double s);
@@ -66,9 +54,13 @@ MotionBounds motion_bounds(const BlockMotion& motion);
 /// The bound above for `pieces` equal steps; infinity while a step turns the axis by more than a radian.
 double split_error(const MotionBounds& bounds, int pieces, double lever_mm);
 
+/// The least number of equal pieces for which split_error() stays within the tolerance, or a few more. Throws
+/// InputError "too-many-sweeps" at `where` when more than ten million would be needed.
+int pieces_within(const BlockMotion& motion, double lever_mm, double tolerance_mm,
+                  const std::function<SourceLocation()>& where);
+
 /// Poses at equal steps of s, both ends included, so close that every sweep between neighbours stays within
-/// the tolerance for the part of the tool within `lever_mm` of the tip. Throws InputError "too-many-sweeps"
-/// at `where` when more than ten million would be needed.
+/// the tolerance for the part of the tool within `lever_mm` of the tip (pieces_within()).
 std::vector<ToolPose> subdivide(const BlockMotion& motion, double lever_mm, double tolerance_mm,
                                 const SourceLocation& where = {});
 

@@ -19,11 +19,14 @@ bool stops_between(const BlockMove& before, const BlockMove& after) {
 
 }  // namespace
 
-size_t run_end(std::span<const BlockMotion> motions, size_t first) {
+size_t run_end(const BlockMotions& motions, size_t first) {
+  BlockMotion before = motions[first];
   size_t end = first + 1;
-  while (end < motions.size() && !stops_between(*motions[end - 1].block, *motions[end].block) &&
-         !turns_at_rest(motions[end - 1], motions[end]))
-    ++end;
+  for (; end < motions.size(); ++end) {
+    const BlockMotion motion = motions[end];
+    if (stops_between(before.block, motion.block) || turns_at_rest(before, motion)) break;
+    before = motion;
+  }
   return end;
 }
 
@@ -33,7 +36,7 @@ double duration(const std::vector<PlacedPhase>& phases) {
   return time;
 }
 
-RunPlanner::RunPlanner(std::span<const BlockMotion> motions, const RunPlace& start,
+RunPlanner::RunPlanner(const BlockMotions& motions, const RunPlace& start,
                        const kinematics::InverseKinematics& inverse, const MotionOptions& options,
                        const LookAheadReach& reach)
     : reach_(reach),
@@ -98,12 +101,13 @@ CellPlan RunPlanner::plan(EvenPlace& end) {
 
 void RunSampler::enter(const PlannedRun& stretch) {
   run_ = &stretch;
+  if (!motions_) motions_.emplace(stretch.motions);
   phase_ = 0;
   if (stretch.phases.empty()) return;
   if (clock_.tick == 0 && clock_.planned_s == 0.0) {
     clock_.time = period_;
     clock_.before = point_at(*stretch.path, 0, 0.0);
-    clock_.tip_before = stretch.motions[stretch.place.first + clock_.before.block].block->from.tip_W;
+    clock_.tip_before = motions_->at(stretch.place.first + clock_.before.block).block.from.tip_W;
   }
   for (const PlacedPhase& placed : stretch.phases) clock_.planned_s += placed.phase.duration;
   if (stretch.last) ticks_ = static_cast<size_t>(std::max(1.0, std::ceil(clock_.planned_s / period_)));
@@ -149,14 +153,14 @@ bool RunSampler::next(BlockTick& tick) {
 void RunSampler::fill(size_t cell, double offset, BlockTick& tick) {
   const PathPoint at = point_at(*run_->path, cell, offset);
   const size_t index = run_->place.first + at.block;
-  const BlockMotion& motion = run_->motions[index];
+  const BlockMotion& motion = motions_->at(index);
   const BlockCurve& curve = run_->path->curve(at.block);
-  const bool rapid = is_rapid(*motion.block);
+  const bool rapid = is_rapid(motion.block);
   tick.q = at.q;
   tick.followed = curve.followed();
   ToolSample& sample = tick.sample;
   sample = {};
-  sample.pose = at.rounded || (motion.block->law == BlockLaw::kJoint && at.share < 1.0)
+  sample.pose = at.rounded || (motion.block.law == BlockLaw::kJoint && at.share < 1.0)
                     ? kinematics::forward(*motion.machine, at.q)
                     : pose_at(motion, at.share);
   sample.contact_W = sample.pose.tip_W;

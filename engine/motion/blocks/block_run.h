@@ -8,7 +8,7 @@
 #pragma once
 
 #include <memory>
-#include <span>
+#include <optional>
 #include <vector>
 
 #include "motion/blocks/run_path.h"
@@ -18,7 +18,7 @@
 namespace swarf::motion {
 
 /// First block after `first` that does not belong to its run.
-size_t run_end(std::span<const BlockMotion> motions, size_t first);
+size_t run_end(const BlockMotions& motions, size_t first);
 
 /// Where a stretch of a run begins: enough to plan it again, and all after it.
 struct RunPlace {
@@ -32,11 +32,11 @@ struct RunPlace {
 /// A run, or a stretch of it between two places that are passed without acceleration, with its time law.
 struct PlannedRun {
   RunPlace place;
-  std::span<const BlockMotion> motions;  ///< of the whole path
-  const RunPath* path = nullptr;         ///< from the stretch on, and farther; the planner's
-  std::vector<PlacedPhase> phases;       ///< empty when it goes nowhere
-  size_t cells = 0;                      ///< of the stretch
-  bool last = true;                      ///< the run ends with it
+  BlockMotions motions;             ///< of the whole path
+  const RunPath* path = nullptr;    ///< from the stretch on, and farther; the planner's
+  std::vector<PlacedPhase> phases;  ///< empty when it goes nowhere
+  size_t cells = 0;                 ///< of the stretch
+  bool last = true;                 ///< the run ends with it
 };
 
 /// Sum of all durations, s.
@@ -52,10 +52,9 @@ struct LookAheadReach {
 /// Plans a run stretch by stretch, from any place on, in bounded memory.
 class RunPlanner {
  public:
-  /// Motions, inverse and options must outlive it.
-  RunPlanner(std::span<const BlockMotion> motions, const RunPlace& start,
-             const kinematics::InverseKinematics& inverse, const MotionOptions& options,
-             const LookAheadReach& reach = {});
+  /// Machines, inverse and options must outlive it.
+  RunPlanner(const BlockMotions& motions, const RunPlace& start, const kinematics::InverseKinematics& inverse,
+             const MotionOptions& options, const LookAheadReach& reach = {});
   RunPlanner(const RunPlanner&) = delete;
   RunPlanner& operator=(const RunPlanner&) = delete;
   /// The next stretch, at first that of the start; not to be called after the last one.
@@ -108,6 +107,7 @@ class RunSampler {
   void fill(size_t cell, double offset, BlockTick& tick);
 
   const PlannedRun* run_ = nullptr;
+  std::optional<MotionReader> motions_;  ///< of the whole path
   double period_;
   RunClock clock_;
   size_t ticks_ = 0;  ///< of the whole run; known in its last stretch

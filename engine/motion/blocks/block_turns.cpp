@@ -28,7 +28,7 @@ double segment_distance(const Vec3& point, const Vec3& from, const Vec3& to) {
 }
 
 double error_at(const BlockMotion& motion, double s) {
-  const BlockMove& block = *motion.block;
+  const BlockMove& block = motion.block;
   const Vec3 tip =
       kinematics::forward(*motion.machine, motion.q_from + s * (motion.q_to - motion.q_from)).tip_W;
   if (block.arc) return (tip - pose_at(motion, s).tip_W).norm();
@@ -54,11 +54,10 @@ Turn greatest_turn(const BlockMotion& motion) {
 /// Findings of one code: lists the first, counts all.
 class List {
  public:
-  List(std::span<const toolpath::Element> elements, std::string code)
-      : elements_(elements), code_(std::move(code)) {}
+  List(const toolpath::Elements& elements, std::string code) : elements_(elements), code_(std::move(code)) {}
   void add(size_t element, std::string text) {
     if (++count_ <= kListed) {
-      findings_.push_back({code_, std::move(text), static_cast<int>(element), 0.0, elements_[element].where,
+      findings_.push_back({code_, std::move(text), static_cast<int>(element), 0.0, elements_.where(element),
                            Severity::kWarning});
     }
   }
@@ -69,7 +68,7 @@ class List {
   }
 
  private:
-  std::span<const toolpath::Element> elements_;
+  const toolpath::Elements& elements_;
   std::string code_;
   int count_ = 0;
   std::vector<MotionFinding> findings_;
@@ -99,8 +98,9 @@ ModeError mode_error(const BlockMotion& motion) {
   return refined > best.mm ? ModeError{refined, share} : best;
 }
 
-OtherMode other_mode(std::span<const BlockMotion> motions) {
+OtherMode other_mode(const BlockMotions& motions) {
   OtherMode worst;
+  if (!motions.may_turn()) return worst;
   for (size_t i = 0; i < motions.size(); ++i) {
     const ModeError own = mode_error(motions[i]);
     if (own.mm > worst.tip_error_max_mm) worst = {own.mm, static_cast<int>(i), own.share};
@@ -108,18 +108,18 @@ OtherMode other_mode(std::span<const BlockMotion> motions) {
   return worst;
 }
 
-std::vector<MotionFinding> find_fast_turns(std::span<const toolpath::Element> elements,
-                                           std::span<const BlockMotion> motions,
+std::vector<MotionFinding> find_fast_turns(const toolpath::Elements& elements, const BlockMotions& motions,
                                            const MotionOptions& options) {
+  if (!motions.may_turn()) return {};
   List fast(elements, "fast-rotary"), swings(elements, "swing");
   for (size_t i = 0; i < motions.size(); ++i) {
-    const Turn turn = greatest_turn(motions[i]);
+    const BlockMotion motion = motions[i];
+    const Turn turn = greatest_turn(motion);
     if (turn.axis < 0) continue;
-    const std::string& name = motions[i].machine->axes[static_cast<size_t>(turn.axis)].name;
+    const std::string& name = motion.machine->axes[static_cast<size_t>(turn.axis)].name;
     const auto row = static_cast<Eigen::Index>(turn.axis);
-    const double way = toolpath::tip_way(*motions[i].block);
-    if (!is_rapid(*motions[i].block) && way > kWayMin &&
-        std::abs(turn.rad) > options.fast_rotary_rad_mm * way) {
+    const double way = toolpath::tip_way(motion.block);
+    if (!is_rapid(motion.block) && way > kWayMin && std::abs(turn.rad) > options.fast_rotary_rad_mm * way) {
       fast.add(i, fmt::format("axis {} turns {:.3f} deg while the tip goes {:.4f} mm: {:.1f} deg/mm, the "
                               "threshold is {:.1f}",
                               name, deg_from_rad(turn.rad), way, deg_from_rad(std::abs(turn.rad) / way),
@@ -128,8 +128,8 @@ std::vector<MotionFinding> find_fast_turns(std::span<const toolpath::Element> el
     if (std::abs(turn.rad) > options.swing_rad) {
       swings.add(i, fmt::format("axis {} swings {:+.3f} deg in one block, from {:.3f} to {:.3f} deg; the "
                                 "threshold is {:.1f} deg",
-                                name, deg_from_rad(turn.rad), deg_from_rad(motions[i].q_from[row]),
-                                deg_from_rad(motions[i].q_to[row]), deg_from_rad(options.swing_rad)));
+                                name, deg_from_rad(turn.rad), deg_from_rad(motion.q_from[row]),
+                                deg_from_rad(motion.q_to[row]), deg_from_rad(options.swing_rad)));
     }
   }
   std::vector<MotionFinding> findings;

@@ -1,10 +1,9 @@
 // What the rotary axes do over blocks: the tip error of the other mode, fast rotary moves, swings.
 #pragma once
 
-#include <span>
 #include <vector>
 
-#include "motion/blocks/block_motion.h"
+#include "motion/blocks/block_motions.h"
 #include "motion/options.h"
 #include "motion/result.h"
 #include "toolpath/tool_path.h"
@@ -21,13 +20,12 @@ struct ModeError {
 ModeError mode_error(const BlockMotion& motion);
 
 /// The greatest of all blocks.
-OtherMode other_mode(std::span<const BlockMotion> motions);
+OtherMode other_mode(const BlockMotions& motions);
 
 /// Warnings "fast-rotary" (rotary distance per tip distance beyond the threshold, feed blocks) and "swing"
 /// (one rotary axis turns far within a block, and which way): the first kListed of each with their blocks,
 /// then how many there are. Their times are left to the caller.
-std::vector<MotionFinding> find_fast_turns(std::span<const toolpath::Element> elements,
-                                           std::span<const BlockMotion> motions,
+std::vector<MotionFinding> find_fast_turns(const toolpath::Elements& elements, const BlockMotions& motions,
                                            const MotionOptions& options);
 inline constexpr int kListed = 20;
 

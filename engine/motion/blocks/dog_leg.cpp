@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "motion/blocks/block_motion.h"
+#include "motion/blocks/block_motions.h"
 #include "motion/blocks/block_run.h"
 
 namespace swarf::motion {
@@ -42,18 +42,17 @@ std::vector<AxisValues> stations(const BlockMotion& motion) {
   return values;
 }
 
-void append_legs(const toolpath::Element& element, const BlockMotion& motion,
-                 std::vector<toolpath::Element>& out) {
+void append_legs(const toolpath::Element& element, const BlockMotion& motion, toolpath::Elements& out) {
   const std::vector<AxisValues> values = stations(motion);
   AxisValues from = motion.q_from;
-  ToolPose pose = motion.block->from;
+  ToolPose pose = motion.block.from;
   for (size_t k = 0; k < values.size(); ++k) {
     const bool last = k + 1 == values.size();
-    BlockMove leg = *motion.block;
+    BlockMove leg = motion.block;
     leg.axes = toolpath::AxisSpan{from, values[k]};
     leg.from = pose;
-    leg.to = last ? motion.block->to : kinematics::forward(*motion.machine, values[k]);
-    leg.dwell_s = k == 0 ? motion.block->dwell_s : 0.0;
+    leg.to = last ? motion.block.to : kinematics::forward(*motion.machine, values[k]);
+    leg.dwell_s = k == 0 ? motion.block.dwell_s : 0.0;
     leg.exact_stop = last;
     leg.corner_tolerance_mm = kDogLegCorner;
     out.push_back({leg, element.operation, element.where});
@@ -68,10 +67,10 @@ void append_legs(const toolpath::Element& element, const BlockMotion& motion,
 toolpath::ToolPath with_dog_legs(toolpath::ToolPath path, std::span<const MachineModel> by_tool) {
   const bool dog_leg = by_tool.front().rapid == kinematics::RapidMotion::kDogLeg;
   if (!dog_leg || !toolpath::holds_blocks(path)) return path;
-  const std::vector<BlockMotion> motions = block_motions(path.elements, by_tool);
-  std::vector<toolpath::Element> elements;
+  const BlockMotions motions(path.elements, by_tool);
+  toolpath::Elements elements;
   for (size_t i = 0; i < motions.size(); ++i) {
-    const BlockMove& block = *motions[i].block;
+    const BlockMove block = motions.block(i);
     if (is_rapid(block) && block.law == BlockLaw::kJoint) {
       append_legs(path.elements[i], motions[i], elements);
     } else {

@@ -46,7 +46,7 @@ AxisValues leaving_pole(const kinematics::InverseKinematics& inverse, const tool
 
 bool turns_at_rest(const BlockMotion& before, const BlockMotion& motion) {
   // Where the program commands the axes itself it says how they come there.
-  if (before.block->tool != motion.block->tool || motion.block->axes) return false;
+  if (before.block.tool != motion.block.tool || motion.block.axes) return false;
   const auto& axes = motion.machine->axes;
   for (size_t i = 0; i < axes.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);

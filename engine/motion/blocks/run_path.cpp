@@ -97,14 +97,13 @@ double corner_tolerance(const BlockMove& block, const MotionOptions& options) {
   return block.corner_tolerance_mm > 0.0 ? block.corner_tolerance_mm : options.corner_tolerance_mm;
 }
 
-RunPathBuilder::RunPathBuilder(std::span<const BlockMotion> motions,
-                               const kinematics::InverseKinematics& inverse, const MotionOptions& options,
-                               const PathPlace& start)
+RunPathBuilder::RunPathBuilder(const BlockMotions& motions, const kinematics::InverseKinematics& inverse,
+                               const MotionOptions& options, const PathPlace& start)
     : motions_(motions),
       inverse_(inverse),
       options_(options),
-      machine_(*motions.front().machine),
-      rapid_(is_rapid(*motions.front().block)),
+      machine_(*motions[0].machine),
+      rapid_(is_rapid(motions.block(0))),
       at_(start) {
   limits_ = axis_limits(machine_, rapid_);
   reference_mm_s_ = reference_speed();
@@ -162,7 +161,7 @@ void RunPathBuilder::drop(size_t cells) {
 /// The greatest_of feed; of rapids, and where durations alone are given, the fastest linear axis.
 double RunPathBuilder::reference_speed() const {
   double feed = 0.0, axis = 0.0;
-  for (const BlockMotion& motion : motions_) feed = std::max(feed, motion.block->feed_mm_s);
+  for (size_t i = 0; i < motions_.size(); ++i) feed = std::max(feed, motions_.feed_mm_s(i));
   if (feed > 0.0 && !rapid_) return feed;
   for (const kinematics::Axis& own : machine_.axes)
     if (own.kind == kinematics::AxisKind::kLinear) axis = std::max(axis, own.speed_max);
@@ -204,7 +203,7 @@ void RunPathBuilder::add_cells(size_t first) {
 
 BlockCurve::TipLimits RunPathBuilder::tip_limits(size_t block) const {
   constexpr double kNone = std::numeric_limits<double>::infinity();
-  const BlockMove& move = *motions_[block].block;
+  const BlockMove move = motions_.block(block);
   const RampLimits path =
       rapid_ ? RampLimits{kNone, kNone} : RampLimits{options_.path_acceleration_max, options_.path_jerk_max};
   return {move.feed_mm_s, move.duration_s, path};
@@ -265,11 +264,12 @@ void RunPathBuilder::limit_tip(size_t a, size_t b, PathCell& cell) const {
 /// The longest corner within the tolerance: its deviation grows with its length, at least about linearly.
 Blend RunPathBuilder::fit(size_t a, size_t b) const {
   const BlockCurve &in = path_.curve(a), &out = path_.curve(b);
-  const double tolerance = corner_tolerance(*motions_[a].block, options_);
+  const Corner corner{in, out, motions_[a], motions_[b]};
+  const double tolerance = corner_tolerance(corner.in_motion.block, options_);
   double d = kCornerShare * std::min(in.length(), out.length());
   for (int i = 0; i < kFits; ++i) {
     Blend blend = blend_between(in.jet(in.length() - d), out.jet(d), d, d);
-    blend.deviation = deviation(a, b, blend);
+    blend.deviation = deviation(corner, blend);
     if (blend.deviation <= tolerance) return blend;
     d *= std::min(0.98, 0.999 * tolerance / blend.deviation);
   }
@@ -278,15 +278,15 @@ Blend RunPathBuilder::fit(size_t a, size_t b) const {
 }
 
 /// Greatest distance of the tip from the programmed one at the same s.
-double RunPathBuilder::deviation(size_t a, size_t b, const Blend& blend) const {
+double RunPathBuilder::deviation(const Corner& corner, const Blend& blend) const {
   constexpr int kPlaces = 16;
-  const BlockCurve &in = path_.curve(a), &out = path_.curve(b);
+  const BlockCurve &in = corner.in, &out = corner.out;
   std::array<double, kPlaces + 1> distance{};
   for (int i = 1; i < kPlaces; ++i) {
     const double s = blend.length * i / kPlaces;
     const ToolPose programmed = s < blend.before
-                                    ? pose_at(motions_[a], in.share(in.length() - blend.before + s))
-                                    : pose_at(motions_[b], out.share(s - blend.before));
+                                    ? pose_at(corner.in_motion, in.share(in.length() - blend.before + s))
+                                    : pose_at(corner.out_motion, out.share(s - blend.before));
     const ToolPose rounded = kinematics::forward(machine_, blend.q(s));
     distance[static_cast<size_t>(i)] = (rounded.tip_W - programmed.tip_W).norm();
   }

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "motion/blocks/block_curve.h"
+#include "motion/blocks/block_motions.h"
 #include "motion/options.h"
 #include "toolpath/tool_path.h"
 
@@ -67,9 +68,9 @@ struct PathPlace {
 /// The path of one run, made cell by cell from any place on.
 class RunPathBuilder {
  public:
-  /// `motions`: the blocks of one run; they, inverse and options must outlive it. Where the machine does not
-  /// follow a block, it stops at both ends of it.
-  RunPathBuilder(std::span<const BlockMotion> motions, const kinematics::InverseKinematics& inverse,
+  /// `motions`: the blocks of one run; machines, inverse and options must outlive it. Where the machine does
+  /// not follow a block, it stops at both ends of it.
+  RunPathBuilder(const BlockMotions& motions, const kinematics::InverseKinematics& inverse,
                  const MotionOptions& options, const PathPlace& start = {});
 
   /// Goes on until there are so many cells or the run is over.
@@ -92,9 +93,14 @@ class RunPathBuilder {
   double add_corner(size_t a, size_t b);
   void limit_tip(size_t a, size_t b, PathCell& cell) const;
   Blend fit(size_t a, size_t b) const;
-  double deviation(size_t a, size_t b, const Blend& blend) const;
+  /// Two blocks that meet in a corner.
+  struct Corner {
+    const BlockCurve &in, &out;
+    BlockMotion in_motion, out_motion;
+  };
+  double deviation(const Corner& corner, const Blend& blend) const;
 
-  std::span<const BlockMotion> motions_;
+  BlockMotions motions_;
   const kinematics::InverseKinematics& inverse_;
   const MotionOptions& options_;
   const kinematics::MachineModel& machine_;

@@ -127,15 +127,16 @@ void CycleStream::mark_place() {
 
 void CycleStream::begin_run() {
   mark_place();
-  const std::span<const BlockMotion> motions = source_.motions;
-  const BlockMotion& motion = motions[element_];
-  const BlockMove& block = *motion.block;
+  const BlockMotions& motions = source_.motions;
+  const BlockMotion motion = motions[element_];
+  const BlockMove& block = motion.block;
   tool_ = block.tool;
   // Another tool's tip stands elsewhere.
-  const bool joins = element_ == 0 || motions[element_ - 1].block->tool == block.tool;
+  const bool joins = element_ == 0 || motions.tool(element_ - 1) == block.tool;
   const bool starts = cycle_ == 0 || !joins;
   RunUnderWay run;
   run.first = element_;
+  run.from = block.from;
   run.end = run_end(motions, element_);
   run.kind = is_rapid(block) ? SampleKind::kRapid : SampleKind::kCutting;
   sample_element_ = static_cast<int>(element_);
@@ -161,14 +162,13 @@ void CycleStream::begin_run() {
 /// stretches.
 void CycleStream::run_on() {
   RunUnderWay& run = *run_;
-  const ToolPose& from = source_.motions[run.first].block->from;
   if (run.standing < run.dwell_ticks) {
-    record(standing(from, run.kind), {q_, InverseOutcome::kOk});
+    record(standing(run.from, run.kind), {q_, InverseOutcome::kOk});
     run.standing += 1.0;
   } else if (run.standing < run.dwell_ticks + run.turn_ticks) {
     run.standing += 1.0;
     const double t = (run.standing - run.dwell_ticks) * source_.options->period_s;
-    record(standing(from, run.kind), {run.turn->at(t), InverseOutcome::kOk});
+    record(standing(run.from, run.kind), {run.turn->at(t), InverseOutcome::kOk});
   } else if (run.stretch == nullptr) {
     enter_stretch();
   } else if (BlockTick tick; run.sampler->next(tick)) {
@@ -206,14 +206,14 @@ void CycleStream::enter_stretch() {
 void CycleStream::begin_element() {
   mark_place();
   sample_element_ = static_cast<int>(element_);
-  const auto& what = source_.elements[element_].what;
-  if (const auto* move = std::get_if<FreeMove>(&what)) {
+  const toolpath::Element element = source_.elements[element_];
+  if (const auto* move = std::get_if<FreeMove>(&element.what)) {
     if (move->feed_mm_s > 0.0)
       check_time((move->to.tip_W - move->from.tip_W).norm() / move->feed_mm_s, "moves", kListedMax);
     start_at(standing(move->from, SampleKind::kRapid));
     samples_ = sample_free_move(*move, source_.by_tool.front(), inverse(), *source_.options, q_);
   } else {
-    begin_pass(std::get<SurfacePass>(what));
+    begin_pass(std::get<SurfacePass>(element.what));
   }
   samples_done_ = 0;
   ++element_;
@@ -295,15 +295,15 @@ void CycleStream::record(ToolSample sample, const Branch& branch, float cost_ns)
 void CycleStream::check_time(double seconds, const char* what, double cycles_max) const {
   const double period = source_.options->period_s;
   const double hours = (static_cast<double>(cycle_) * period + seconds) / 3600.0;
-  const SourceLocation& where = source_.elements[static_cast<size_t>(sample_element_)].where;
+  const auto where = [&] { return source_.elements.where(static_cast<size_t>(sample_element_)); };
   if (hours > kHoursMax) {
     throw InputError(
-        "too-many-cycles", where,
+        "too-many-cycles", where(),
         fmt::format("the program {} for {:.3g} h up to here, more than {:g} h", what, hours, kHoursMax),
         "mend the feed or the dwell of this block");
   }
   if (seconds / period <= cycles_max) return;
-  throw InputError("too-many-cycles", where,
+  throw InputError("too-many-cycles", where(),
                    fmt::format("this pass or move takes {:.3g} cycles of {:g} ms, more than {:g}",
                                seconds / period, period * 1e3, cycles_max),
                    "raise its feed, or the period");

@@ -28,10 +28,10 @@
 
 namespace swarf::motion {
 
-/// What cycles are made from; borrowed.
+/// What cycles are made from; spans and pointers are borrowed.
 struct CycleSource {
-  std::span<const toolpath::Element> elements;
-  std::span<const BlockMotion> motions;  ///< of a path of blocks, else empty
+  toolpath::Elements elements;
+  BlockMotions motions;  ///< of a path of blocks, else empty
   /// The machine with each tool in its spindle (BlockMove::tool), or one for whatever tool.
   std::span<const kinematics::MachineModel> by_tool;
   std::span<const kinematics::InverseKinematics> inverses;  ///< of the same
@@ -54,6 +54,7 @@ struct CyclePlace {
 /// What is under way of a run: the dwell of its first block, a turn at rest, its stretches.
 struct RunUnderWay {
   size_t first = 0, end = 0;
+  ToolPose from;  ///< where it starts
   SampleKind kind = SampleKind::kCutting;
   double dwell_ticks = 0.0, turn_ticks = 0.0, standing = 0.0;  ///< cycles
   std::optional<PoleTurn> turn;

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "base/check.h"
-#include "motion/blocks/block_motion.h"
+#include "motion/blocks/block_motions.h"
 
 namespace swarf::motion {
 namespace {
@@ -26,13 +26,9 @@ void throw_if_invalid(const MotionOptions& options) {
   diagnostics.throw_if_errors();
 }
 
-bool holds_blocks(std::span<const toolpath::Element> elements) {
-  return !elements.empty() && std::holds_alternative<toolpath::BlockMove>(elements.front().what);
-}
-
 }  // namespace
 
-Cycles::Cycles(std::span<const toolpath::Element> elements, std::span<const kinematics::MachineModel> by_tool,
+Cycles::Cycles(const toolpath::Elements& elements, std::span<const kinematics::MachineModel> by_tool,
                const cutter::Cutter& cutter, const MotionOptions& options, const CycleLimits& limits)
     : elements_(elements),
       by_tool_(by_tool.begin(), by_tool.end()),
@@ -41,7 +37,7 @@ Cycles::Cycles(std::span<const toolpath::Element> elements, std::span<const kine
       options_(options),
       limits_(limits) {
   throw_if_invalid(options);
-  if (holds_blocks(elements_)) motions_ = block_motions(elements_, by_tool_);
+  if (elements_.hold_blocks()) motions_ = BlockMotions(elements_, by_tool_);
 }
 
 CycleSource Cycles::source() const {

@@ -34,9 +34,9 @@ inline constexpr uint64_t kPlaceChecked = 64;
 
 class Cycles {
  public:
-  /// Solves the blocks' axis values (block_motions()); no cycle is made yet. `elements` must outlive this, in
-  /// place. Throws InputError ("bad-options", "unreachable").
-  Cycles(std::span<const toolpath::Element> elements, std::span<const kinematics::MachineModel> by_tool,
+  /// Solves the blocks' axis values (block_motions()); no cycle is made yet. Throws InputError
+  /// ("bad-options", "unreachable").
+  Cycles(const toolpath::Elements& elements, std::span<const kinematics::MachineModel> by_tool,
          const cutter::Cutter& cutter, const MotionOptions& options, const CycleLimits& limits = {});
   Cycles(Cycles&&) = default;
   Cycles& operator=(Cycles&&) = default;
@@ -55,8 +55,9 @@ class Cycles {
   double time_s() const { return size_ > 0 ? static_cast<double>(size_ - 1) * options_.period_s : 0.0; }
   double period_s() const { return options_.period_s; }
 
-  const std::vector<BlockMotion>& motions() const { return motions_; }
-  std::span<const toolpath::Element> elements() const { return elements_; }
+  /// None but of blocks.
+  const BlockMotions& motions() const { return motions_; }
+  const toolpath::Elements& elements() const { return elements_; }
   std::span<const kinematics::MachineModel> machines() const { return by_tool_; }
   const kinematics::InverseKinematics& inverse(size_t tool) const {
     return inverses_[inverses_.size() == 1 ? 0 : tool];
@@ -83,10 +84,10 @@ class Cycles {
   void keep(const Cycle& cycle);
   void check(std::span<const Cycle> window);
 
-  std::span<const toolpath::Element> elements_;
+  toolpath::Elements elements_;
   std::vector<kinematics::MachineModel> by_tool_;
   std::vector<kinematics::InverseKinematics> inverses_;
-  std::vector<BlockMotion> motions_;
+  BlockMotions motions_;
   cutter::Cutter cutter_;
   MotionOptions options_;
   CycleLimits limits_;

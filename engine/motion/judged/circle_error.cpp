@@ -37,21 +37,21 @@ std::optional<Circle> circle_through(const Vec3& a, const Vec3& b, const Vec3& c
 /// The points of a run of blocks, each beginning where the last one ended.
 class Points {
  public:
-  Points(const std::vector<BlockMotion>& motions, std::span<const int> elements)
+  Points(const BlockMotions& motions, std::span<const int> elements)
       : motions_(motions), elements_(elements) {}
 
   size_t blocks() const { return elements_.size(); }
-  const BlockMotion& motion(size_t block) const { return motions_[static_cast<size_t>(elements_[block])]; }
+  BlockMotion motion(size_t block) const { return motions_[static_cast<size_t>(elements_[block])]; }
   /// Point `i` of a run that begins with block `first`.
-  const Vec3& at(size_t first, size_t i) const {
-    return i == 0 ? motion(first).block->from.tip_W : motion(first + i - 1).block->to.tip_W;
+  Vec3 at(size_t first, size_t i) const {
+    return i == 0 ? motion(first).block.from.tip_W : motion(first + i - 1).block.to.tip_W;
   }
   bool joined(size_t block) const {
     return elements_[block] == elements_[block - 1] + 1 && motion(block).machine == motion(block - 1).machine;
   }
 
  private:
-  const std::vector<BlockMotion>& motions_;
+  const BlockMotions& motions_;
   std::span<const int> elements_;
 };
 
@@ -110,8 +110,7 @@ void look_along(const BlockMotion& motion, const Circle& circle, int element, Ci
 
 }  // namespace
 
-std::optional<CircleError> circle_error(const std::vector<BlockMotion>& motions,
-                                        std::span<const int> elements) {
+std::optional<CircleError> circle_error(const BlockMotions& motions, std::span<const int> elements) {
   const Points points(motions, elements);
   size_t longest = 0, first = 0;
   for (size_t i = 0; i < points.blocks();) {

@@ -7,7 +7,7 @@
 #include <optional>
 #include <span>
 
-#include "motion/blocks/block_motion.h"
+#include "motion/blocks/block_motions.h"
 
 namespace swarf::motion {
 
@@ -24,7 +24,6 @@ struct CircleError {
 /// Of the motions `elements` (indices, ascending, feed blocks with axis values at both ends), the longest run
 /// of at least eight consecutive ones that turns by a quarter or more on one circle; the first of equally
 /// long ones. None: no such run.
-std::optional<CircleError> circle_error(const std::vector<BlockMotion>& motions,
-                                        std::span<const int> elements);
+std::optional<CircleError> circle_error(const BlockMotions& motions, std::span<const int> elements);
 
 }  // namespace swarf::motion

@@ -45,6 +45,7 @@ class MotionMeter::TickMeter {
   TickMeter(const Cycles& cycles, MotionStatistics& statistics)
       : elements_(cycles.elements()),
         blocks_(cycles.motions()),
+        motion_(cycles.motions()),
         machine_(cycles.machines().front()),
         inverse_(cycles.inverse(0)),
         radius_(cycles.cutter().radius()),
@@ -54,7 +55,7 @@ class MotionMeter::TickMeter {
   void measure(const Cycle* last, const Cycle& now) {
     const ToolSample& sample = now.sample;
     const MachineModel& machine =
-        blocks_.empty() ? machine_ : *blocks_[static_cast<size_t>(sample.element)].machine;
+        blocks_.empty() ? machine_ : *motion_.at(static_cast<size_t>(sample.element)).machine;
     const ToolPose back = kinematics::forward(machine, now.q);
     out_.fk_ik_error_max_mm = std::max(out_.fk_ik_error_max_mm, (back.tip_W - sample.pose.tip_W).norm());
     const double pole = inverse_.pole_distance(sample.pose.axis_W);
@@ -66,15 +67,15 @@ class MotionMeter::TickMeter {
     if (last == nullptr) return;
     const ToolPose middle = kinematics::forward(machine, 0.5 * (last->q + now.q));
     const ToolSample& before = last->sample;
-    const auto& what = elements_[static_cast<size_t>(sample.element)].what;
-    if (const auto* pass = std::get_if<SurfacePass>(&what)) {
+    const auto element = static_cast<size_t>(sample.element);
+    if (!blocks_.empty()) {
+      measure_block(motion_.at(element), before, sample, middle);
+    } else if (const auto* pass = elements_.pass(element)) {
       measure_contact(*pass, before, sample, middle);
-    } else if (const auto* move = std::get_if<FreeMove>(&what)) {
-      const double error =
-          distance_across(middle.tip_W - move->from.tip_W, move->to.tip_W - move->from.tip_W);
-      out_.tip_error_max_mm = std::max(out_.tip_error_max_mm, error);
     } else {
-      measure_block(std::get<BlockMove>(what), before, sample, middle);
+      const auto move = std::get<FreeMove>(elements_[element].what);
+      const double error = distance_across(middle.tip_W - move.from.tip_W, move.to.tip_W - move.from.tip_W);
+      out_.tip_error_max_mm = std::max(out_.tip_error_max_mm, error);
     }
   }
 
@@ -100,16 +101,17 @@ class MotionMeter::TickMeter {
     out_.tip_error_max_mm = std::max(out_.tip_error_max_mm, tip_error);
   }
 
-  void measure_block(const BlockMove& block, const ToolSample& before, const ToolSample& sample,
+  void measure_block(const BlockMotion& motion, const ToolSample& before, const ToolSample& sample,
                      const ToolPose& middle) {
+    const BlockMove& block = motion.block;
     const Vec3 chord = sample.pose.tip_W - before.pose.tip_W;
     const bool cutting = sample.kind == SampleKind::kCutting;
-    const BlockMove& last = *blocks_[static_cast<size_t>(before.element)].block;
-    if (last.tool != block.tool) return;  // another tool's tip: no way between them
+    if (blocks_.tool(static_cast<size_t>(before.element)) != block.tool)
+      return;  // another tool's tip: no way between them
     if (cutting) out_.path_length_mm += chord.norm();
-    if (sample.rounded && cutting) measure_corner(sample);
+    if (sample.rounded && cutting) measure_corner(motion, sample);
     if (before.element != sample.element || before.rounded || sample.rounded) return;
-    const ToolPose exact = pose_at(blocks_[static_cast<size_t>(sample.element)], 0.5 * (before.u + sample.u));
+    const ToolPose exact = pose_at(motion, 0.5 * (before.u + sample.u));
     const double tip_error = distance_across(middle.tip_W - exact.tip_W, chord);
     out_.tip_error_max_mm = std::max(out_.tip_error_max_mm, tip_error);
     if (!cutting) return;
@@ -121,8 +123,7 @@ class MotionMeter::TickMeter {
     out_.chord_error_max_mm = std::max(out_.chord_error_max_mm, distance_across(gap, chord));
   }
 
-  void measure_corner(const ToolSample& sample) {
-    const BlockMotion& motion = blocks_[static_cast<size_t>(sample.element)];
+  void measure_corner(const BlockMotion& motion, const ToolSample& sample) {
     const double deviation = (sample.pose.tip_W - pose_at(motion, sample.u).tip_W).norm();
     if (deviation <= out_.corner_deviation_max_mm) return;
     out_.corner_deviation_max_mm = deviation;
@@ -138,8 +139,9 @@ class MotionMeter::TickMeter {
     return before.kind == SampleKind::kCutting ? curve_parameter(pass, before.u, before.v) : pass.t_start;
   }
 
-  std::span<const toolpath::Element> elements_;
-  std::span<const BlockMotion> blocks_;
+  const toolpath::Elements& elements_;
+  const BlockMotions& blocks_;
+  MotionReader motion_;
   const MachineModel& machine_;
   const kinematics::InverseKinematics& inverse_;
   double radius_, period_;
@@ -279,7 +281,7 @@ void MotionMeter::see_time(const Cycle& now) {
   if (cycle.in_spindle_s.size() <= in_spindle) cycle.in_spindle_s.resize(in_spindle + 1, 0.0);
   cycle.in_spindle_s[in_spindle] += now.sample.t_s - last_->sample.t_s;
   if (last_->sample.tool != now.sample.tool) return;
-  const toolpath::Element& element = cycles_.elements()[static_cast<size_t>(now.sample.element)];
+  const toolpath::Element& element = element_of(now);
   const auto* block = std::get_if<BlockMove>(&element.what);
   const bool dwells = block != nullptr && block->dwell_s > 0.0 && now.sample.u == 0.0;
   (dwells ? cycle.dwell_s : is_rapid_element(element) ? cycle.rapid_s : cycle.feed_s) += cycles_.period_s();
@@ -288,14 +290,21 @@ void MotionMeter::see_time(const Cycle& now) {
   cycle.by_tool_s[tool] += cycles_.period_s();
 }
 
+/// The element under way.
+const toolpath::Element& MotionMeter::element_of(const Cycle& now) {
+  if (!element_ || element_number_ != now.sample.element)
+    element_ = cycles_.elements()[static_cast<size_t>(now.sample.element)];
+  element_number_ = now.sample.element;
+  return *element_;
+}
+
 void MotionMeter::see_reach(const Cycle& now) {
   if (now.reached) return;
   if (outside_reach_++ == 0) first_outside_ = now.sample;
 }
 
 void MotionMeter::see_excess(const Cycle& now) {
-  const auto* block =
-      cycles_.motions().empty() ? nullptr : cycles_.motions()[static_cast<size_t>(now.sample.element)].block;
+  const auto* block = std::get_if<BlockMove>(&element_of(now).what);
   const bool rapid = block != nullptr && is_rapid(*block);
   for (size_t i = 0; i < excess_.size(); ++i) {
     const kinematics::Axis& axis = machine_.axes[i];
@@ -312,7 +321,7 @@ void MotionMeter::see_excess(const Cycle& now) {
 
 void MotionMeter::end_element() {
   const int index = last_->sample.element;
-  const toolpath::Element& element = cycles_.elements()[static_cast<size_t>(index)];
+  const toolpath::Element& element = element_of(*last_);
   if (outside_reach_ > 0) {
     const kinematics::UnreachableText why = kinematics::unreachable_text(machine_, first_outside_.pose);
     out_.findings.push_back(

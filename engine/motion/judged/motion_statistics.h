@@ -43,6 +43,7 @@ class MotionMeter {
   /// Costs of the first cycles are ranked; of more, no one learns more.
   static constexpr size_t kCostsMost = size_t{1} << 22U;
 
+  const toolpath::Element& element_of(const Cycle& now);
   void see_time(const Cycle& now);
   void see_reach(const Cycle& now);
   void see_excess(const Cycle& now);
@@ -56,6 +57,8 @@ class MotionMeter {
   std::vector<AxisMeter> axes_;
   std::optional<Cycle> last_;
   // Of the element under way:
+  std::optional<toolpath::Element> element_;
+  int element_number_ = 0;
   std::vector<AxisFault> excess_;  ///< by axis
   std::vector<double> feeds_;      ///< in contact
   size_t outside_reach_ = 0;

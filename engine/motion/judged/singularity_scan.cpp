@@ -23,7 +23,7 @@ constexpr size_t kChunk = 256;
 constexpr double kSamePose = 1e-6;
 
 BlockEnds ends_of(const BlockMotion& motion) {
-  return {motion.block->from, motion.block->to, motion.q_from, motion.q_to};
+  return {motion.block.from, motion.block.to, motion.q_from, motion.q_to};
 }
 
 /// Under laws that do not need them block_motions leaves the values as they were where there are none.
@@ -42,7 +42,7 @@ double block_seconds(const BlockMove& block) {
 
 BlockPole pole_of(const BlockMotion& motion, int element, const Poles& poles) {
   const MachineModel& machine = *motion.machine;
-  const BlockMove& block = *motion.block;
+  const BlockMove& block = motion.block;
   const BlockEnds ends = ends_of(motion);
   BlockPole pole;
   pole.element = element;
@@ -61,15 +61,16 @@ BlockPole pole_of(const BlockMotion& motion, int element, const Poles& poles) {
 }
 
 /// Sorts the path's blocks into those that are looked at and those that are not.
-std::vector<int> feed_blocks(const std::vector<BlockMotion>& motions, SingularityScan& scan) {
+std::vector<int> feed_blocks(const BlockMotions& motions, SingularityScan& scan) {
   std::vector<int> elements;
   for (size_t i = 0; i < motions.size(); ++i) {
-    const BlockMove& block = *motions[i].block;
+    const BlockMotion motion = motions[i];
+    const BlockMove& block = motion.block;
     if (block.feed_mm_s == 0.0 && block.duration_s == 0.0) {
       ++scan.rapids;
     } else if (block.arc) {
       ++scan.arcs;
-    } else if (!reached(*motions[i].machine, ends_of(motions[i]))) {
+    } else if (!reached(*motion.machine, ends_of(motion))) {
       ++scan.unreachable;
     } else {
       elements.push_back(static_cast<int>(i));
@@ -79,8 +80,7 @@ std::vector<int> feed_blocks(const std::vector<BlockMotion>& motions, Singularit
 }
 
 /// Blocks in the order of their bounds are measured until the bound falls below the least that is kept.
-void find_worst(const std::vector<BlockMotion>& motions, const std::vector<BlockPole>& all,
-                SingularityScan& scan) {
+void find_worst(const BlockMotions& motions, const std::vector<BlockPole>& all, SingularityScan& scan) {
   std::vector<size_t> order(all.size());
   std::iota(order.begin(), order.end(), size_t{0});
   std::stable_sort(order.begin(), order.end(),
@@ -94,7 +94,7 @@ void find_worst(const std::vector<BlockMotion>& motions, const std::vector<Block
     if (full && all[i].bound_mm <= scan.worst.back().error.segment.value) break;
     BlockSingularity block;
     block.pole = all[i];
-    const BlockMotion& motion = motions[static_cast<size_t>(all[i].element)];
+    const BlockMotion motion = motions[static_cast<size_t>(all[i].element)];
     block.ends = ends_of(motion);
     block.error = kinematics::trajectory_error(*motion.machine, block.ends);
     scan.worst.insert(std::lower_bound(scan.worst.begin(), scan.worst.end(), block, worse), block);
@@ -115,7 +115,7 @@ std::optional<SingularityScan> scan_singularity(const toolpath::ToolPath& path,
   scan.tolerance_mm = tolerance_mm;
   scan.outer_axis = machine.axes[static_cast<size_t>(poles.outer)].name;
   scan.inner_axis = machine.axes[static_cast<size_t>(poles.inner)].name;
-  const std::vector<BlockMotion> motions = block_motions(path.elements, by_tool);
+  const BlockMotions motions(path.elements, by_tool);
   const std::vector<int> elements = feed_blocks(motions, scan);
   scan.blocks = static_cast<int>(elements.size());
   if (elements.empty()) return std::nullopt;

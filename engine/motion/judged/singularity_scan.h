@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "kinematics/singularity.h"
-#include "motion/blocks/block_motion.h"
+#include "motion/blocks/block_motions.h"
 #include "motion/judged/circle_error.h"
 #include "toolpath/tool_path.h"
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <map>
-#include <string_view>
+#include <set>
 
 #include "base/check.h"
 #include "base/units.h"
@@ -43,25 +43,26 @@ class Collector {
     }
     const SweepSource& source = sources[block];
     add(std::move(code), std::move(text), std::move(fix),
-        result_.main.path.elements[static_cast<size_t>(source.element)].where,
+        result_.main.path.elements.where(static_cast<size_t>(source.element)),
         reader_.at(cycle_of(source, reader_)).sample.t_s);
   }
   /// At the block in which the tool first touches.
   void at_event(std::string code, std::string text, std::string fix, const ContactEvent& event) {
     add(std::move(code), std::move(text), std::move(fix),
-        result_.main.path.elements[static_cast<size_t>(event.first.element)].where, event.first.t_s);
+        result_.main.path.elements.where(static_cast<size_t>(event.first.element)), event.first.t_s);
   }
   /// The findings with the text of their blocks.
   std::vector<Finding> take() {
-    std::map<std::string, std::string> texts;
-    for (Finding& finding : findings_) {
-      if (finding.where.line == 0 || finding.where.file == job_.scene.file) continue;
-      auto [text, is_new] = texts.try_emplace(finding.where.file);
-      if (is_new) text->second = program::read_file(finding.where.file);
-      const std::vector<std::string_view> lines = program::split_lines(text->second);
-      const auto index = static_cast<size_t>(finding.where.line) - 1;
-      if (index < lines.size()) finding.block = lines[index];
-    }
+    const auto names_line = [&](const Finding& finding) {
+      return finding.where.line > 0 && finding.where.file != job_.scene.file;
+    };
+    std::map<std::string, std::set<int>> wanted;
+    for (const Finding& finding : findings_)
+      if (names_line(finding)) wanted[finding.where.file].insert(finding.where.line);
+    std::map<std::string, std::map<int, std::string>> texts;
+    for (const auto& [file, lines] : wanted) texts[file] = program::read_lines(file, lines);
+    for (Finding& finding : findings_)
+      if (names_line(finding)) finding.block = texts[finding.where.file][finding.where.line];
     return std::move(findings_);
   }
 
@@ -164,16 +165,14 @@ void motion_faults(const Result& result, Collector& collect) {
 
 /// "line 14" or "lines 14 to 20".
 std::string lines_of(const Result& result, const ContactEvent& event) {
-  const auto line = [&](int element) {
-    return result.main.path.elements[static_cast<size_t>(element)].where.line;
-  };
+  const auto line = [&](int element) { return result.main.path.elements.line(static_cast<size_t>(element)); };
   const int first = line(event.first.element), last = line(event.last_element);
   return first == last ? fmt::format("line {}", first) : fmt::format("lines {} to {}", first, last);
 }
 
 /// How deep, where, when.
 std::string depth_text(const Result& result, const ContactEvent& event) {
-  const int line = result.main.path.elements[static_cast<size_t>(event.deepest.element)].where.line;
+  const int line = result.main.path.elements.line(static_cast<size_t>(event.deepest.element));
   return fmt::format("{:.2f} mm deep at ({:.2f}, {:.2f}, {:.2f}) mm, line {}, {:.3f} s", event.depth_mm,
                      event.deepest_W.x(), event.deepest_W.y(), event.deepest_W.z(), line, event.deepest.t_s);
 }

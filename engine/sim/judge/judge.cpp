@@ -117,11 +117,12 @@ struct SpindleWords {
 
 SpindleWords spindle_words(const toolpath::ToolPath& path) {
   SpindleWords words;
-  for (const toolpath::Element& element : path.elements) {
-    const auto* block = std::get_if<toolpath::BlockMove>(&element.what);
-    if (block == nullptr || toolpath::is_rapid(*block)) continue;
+  if (!path.elements.hold_blocks()) return words;
+  for (size_t i = 0; i < path.elements.size(); ++i) {
+    const toolpath::BlockMove block = path.elements.block(i);
+    if (toolpath::is_rapid(block)) continue;
     ++words.feeds;
-    words.silent += block->spindle_rpm ? 0 : 1;
+    words.silent += block.spindle_rpm ? 0 : 1;
   }
   return words;
 }

@@ -12,18 +12,21 @@ using toolpath::BlockMove;
 
 constexpr size_t kSweepsPerTask = 16;
 
-std::optional<BadCutKind> kind_of(const toolpath::Element& element,
-                                  const std::vector<cutter::Cutter>& tools) {
-  if (const auto* free = std::get_if<toolpath::FreeMove>(&element.what))
-    return free->feed_mm_s == 0.0 ? std::optional(BadCutKind::kRapid) : std::nullopt;
-  const auto* block = std::get_if<BlockMove>(&element.what);
-  if (block == nullptr) return std::nullopt;
-  if (toolpath::is_rapid(*block)) return BadCutKind::kRapid;
-  if (!block->spindle_rpm) return std::nullopt;
-  if (*block->spindle_rpm == 0.0) return BadCutKind::kSpindleStands;
-  const bool counter_clockwise = *block->spindle_rpm < 0.0;
-  const bool right = counter_clockwise == tools[static_cast<size_t>(block->tool)].left_hand;
+std::optional<BadCutKind> kind_of(const BlockMove& block, const std::vector<cutter::Cutter>& tools) {
+  if (toolpath::is_rapid(block)) return BadCutKind::kRapid;
+  if (!block.spindle_rpm) return std::nullopt;
+  if (*block.spindle_rpm == 0.0) return BadCutKind::kSpindleStands;
+  const bool counter_clockwise = *block.spindle_rpm < 0.0;
+  const bool right = counter_clockwise == tools[static_cast<size_t>(block.tool)].left_hand;
   return right ? std::nullopt : std::optional(BadCutKind::kSpindleReversed);
+}
+
+std::optional<BadCutKind> kind_of(const toolpath::Elements& elements, size_t i,
+                                  const std::vector<cutter::Cutter>& tools) {
+  if (elements.hold_blocks()) return kind_of(elements.block(i), tools);
+  const toolpath::Element element = elements[i];
+  const auto* free = std::get_if<toolpath::FreeMove>(&element.what);
+  return free != nullptr && free->feed_mm_s == 0.0 ? std::optional(BadCutKind::kRapid) : std::nullopt;
 }
 
 ToolPose pose_at(const stock::Sweep& sweep, double t) {
@@ -38,7 +41,7 @@ stock::Sweep share(const stock::Sweep& sweep, double from_t, double to_t) {
 
 }  // namespace
 
-BadCutCheck::BadCutCheck(const Job& job, const motion::Cycles& cycles, const JobSweeps& sweeps,
+BadCutCheck::BadCutCheck(const Job& job, const motion::Cycles& cycles, const CutSweeps& sweeps,
                          const SweepPlaces& places, const EarlierCuts& earlier)
     : sweeps_(sweeps),
       places_(places),
@@ -50,31 +53,37 @@ BadCutCheck::BadCutCheck(const Job& job, const motion::Cycles& cycles, const Job
     parts_.emplace_back();
     for (const cutter::ConvexPiece& piece : flutes_.back().pieces) parts_.back().emplace_back(piece);
   }
-  int row = 0;
-  for (const toolpath::Element& element : cycles.elements()) {
-    Element entry{kind_of(element, job.scene.tools), 0};
-    const bool same = !elements_.empty() && elements_.back().kind == entry.kind;
-    entry.row = same && entry.kind != BadCutKind::kRapid ? row : ++row;
-    elements_.push_back(entry);
+  const toolpath::Elements& elements = cycles.elements();
+  elements_ = static_cast<int>(elements.size());
+  for (int i = 0; i < elements_; ++i) {
+    const auto kind = kind_of(elements, static_cast<size_t>(i), job.scene.tools);
+    if (rows_.empty() || rows_.back().kind != kind) rows_.push_back({i, kind});
   }
+}
+
+size_t BadCutCheck::row_of(int element) const {
+  const auto after = std::upper_bound(rows_.begin(), rows_.end(), element,
+                                      [](int sought, const Row& row) { return sought < row.first; });
+  return static_cast<size_t>(after - rows_.begin()) - 1;
 }
 
 std::vector<BadCutCheck::Move> BadCutCheck::moves(size_t sweep, const SweepPlaces& places) const {
   if (has_blocks_) {
-    const Element& element = elements_[static_cast<size_t>(source(sweep).element)];
-    if (!element.kind) return {};
-    return {{0.0, 1.0, *element.kind, element.row}};
+    const size_t row = row_of(source(sweep).element);
+    if (!rows_[row].kind) return {};
+    return {{0.0, 1.0, *rows_[row].kind, row}};
   }
   std::vector<Move> moves;
   const SweepPlaces::Range range = places.cycles(sweep);
   double from_t = 0.0;
   for (size_t k = range.first + 1; k <= range.last; ++k) {
     const double to_t = k == range.last ? 1.0 : places.progress(sweep, k);
-    const Element& element = elements_[static_cast<size_t>(places.cycle(k).sample.element)];
-    if (element.kind && !moves.empty() && moves.back().to_t == from_t) {
+    const size_t row = row_of(places.cycle(k).sample.element);
+    const std::optional<BadCutKind>& kind = rows_[row].kind;
+    if (kind && !moves.empty() && moves.back().to_t == from_t) {
       moves.back().to_t = to_t;
-    } else if (element.kind) {
-      moves.push_back({from_t, to_t, *element.kind, element.row});
+    } else if (kind) {
+      moves.push_back({from_t, to_t, *kind, row});
     }
     from_t = to_t;
   }
@@ -83,9 +92,8 @@ std::vector<BadCutCheck::Move> BadCutCheck::moves(size_t sweep, const SweepPlace
 
 bool BadCutCheck::wanted(const Move& move) const {
   if (move.kind == BadCutKind::kRapid) return true;
-  return std::none_of(found_.begin(), found_.end(), [&](const BadCut& cut) {
-    return elements_[static_cast<size_t>(cut.event.first.element)].row == move.row;
-  });
+  return std::none_of(found_.begin(), found_.end(),
+                      [&](const BadCut& cut) { return row_of(cut.event.first.element) == move.row; });
 }
 
 std::vector<size_t> BadCutCheck::look_ahead(const stock::ContactFinder& finder, size_t begin,
@@ -97,8 +105,7 @@ std::vector<size_t> BadCutCheck::look_ahead(const stock::ContactFinder& finder, 
     for (size_t i = from; i < to; ++i) {
       for (const Move& move : moves_of[i]) {
         if (meets[i] != 0 || !wanted(move)) continue;
-        const stock::SweepMap map =
-            stock::sweep_map(share(sweeps_.sweeps[begin + i], move.from_t, move.to_t));
+        const stock::SweepMap map = stock::sweep_map(share(sweeps_[begin + i], move.from_t, move.to_t));
         for (const stock::RevolvedPart& part : parts_[static_cast<size_t>(source(begin + i).tool)]) {
           if (finder.gap(map, part, -finder.deep_mm()) < -finder.deep_mm() ||
               finder.may_be_shallow(map, part, 0.0))
@@ -115,7 +122,7 @@ std::vector<size_t> BadCutCheck::look_ahead(const stock::ContactFinder& finder, 
 
 std::optional<stock::Contact> BadCutCheck::contact(const stock::ContactFinder& finder, size_t sweep,
                                                    const Move& move) const {
-  const stock::Sweep& whole = sweeps_.sweeps[sweep];
+  const stock::Sweep whole = sweeps_[sweep];
   const auto tool = static_cast<size_t>(source(sweep).tool);
   const stock::SweepMap map = stock::sweep_map(share(whole, move.from_t, move.to_t));
   const stock::OwnCut before{&flutes_[tool], stock::sweep_map(share(whole, 0.0, move.from_t)), false};
@@ -148,13 +155,11 @@ void BadCutCheck::judge(const stock::ContactFinder& finder, size_t sweep) {
   }
 }
 
-int BadCutCheck::last_of_row(int row) const {
-  const auto after = std::upper_bound(elements_.begin(), elements_.end(), row,
-                                      [](int r, const Element& element) { return r < element.row; });
-  return static_cast<int>(after - elements_.begin()) - 1;
+int BadCutCheck::last_of_row(size_t row) const {
+  return (row + 1 < rows_.size() ? rows_[row + 1].first : elements_) - 1;
 }
 
-void BadCutCheck::add(BadCut cut, int row) {
+void BadCutCheck::add(BadCut cut, size_t row) {
   if (cut.kind != BadCutKind::kRapid) {
     cut.event.last_element = last_of_row(row);
   } else if (!found_.empty() && found_.back().kind == cut.kind && goes_on(found_.back().event, cut.event)) {

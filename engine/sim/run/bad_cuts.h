@@ -20,7 +20,7 @@ namespace swarf::sim {
 class BadCutCheck {
  public:
   /// All must outlive it.
-  BadCutCheck(const Job& job, const motion::Cycles& cycles, const JobSweeps& sweeps,
+  BadCutCheck(const Job& job, const motion::Cycles& cycles, const CutSweeps& sweeps,
               const SweepPlaces& places, const EarlierCuts& earlier);
 
   /// Those of sweeps [begin, end) whose bad moves are not clear of the stock as it stands now.
@@ -33,30 +33,33 @@ class BadCutCheck {
   void resume(const std::vector<BadCut>& earlier) { found_ = earlier; }
 
  private:
-  struct Element {
+  /// Elements of one kind that follow each other; every rapid is a row of its own.
+  struct Row {
+    int first = 0;  ///< element
     std::optional<BadCutKind> kind;
-    int row = 0;  ///< elements of one row have the same kind without another between them
   };
   /// A share of a sweep that must not cut.
   struct Move {
     double from_t = 0.0, to_t = 1.0;
     BadCutKind kind = BadCutKind::kRapid;
-    int row = 0;
+    size_t row = 0;
   };
   std::vector<Move> moves(size_t sweep, const SweepPlaces& places) const;
   bool wanted(const Move& move) const;
   std::optional<stock::Contact> contact(const stock::ContactFinder& finder, size_t sweep,
                                         const Move& move) const;
-  void add(BadCut cut, int row);
-  int last_of_row(int row) const;
-  const SweepSource& source(size_t sweep) const { return sweeps_.sources[sweeps_.sweeps[sweep].block]; }
+  void add(BadCut cut, size_t row);
+  size_t row_of(int element) const;
+  int last_of_row(size_t row) const;
+  SweepSource source(size_t sweep) const { return sweeps_.source(sweep); }
 
-  const JobSweeps& sweeps_;
+  const CutSweeps& sweeps_;
   const SweepPlaces& places_;
   SweepPlaces ahead_;  ///< reads the cycles of the batch that comes
   const EarlierCuts& earlier_;
   bool has_blocks_;
-  std::vector<Element> elements_;                        ///< by ToolPath::elements
+  std::vector<Row> rows_;                                ///< of ToolPath::elements
+  int elements_ = 0;                                     ///< how many they are
   std::vector<stock::CutterSolid> flutes_;               ///< by tool
   std::vector<std::vector<stock::RevolvedPart>> parts_;  ///< the same, by tool
   std::vector<BadCut> found_;

@@ -66,13 +66,14 @@ std::string tools_text(const std::vector<cutter::Cutter>& tools) {
 }
 
 /// Which tool makes which sweeps; nothing new with one tool.
-void add_tools(Hash& hash, const JobSweeps& sweeps) {
-  const auto tool_of = [&](uint32_t block) { return sweeps.sources[block].tool; };
-  for_each_tool(sweeps.sweeps, tool_of, [&](size_t tool, std::span<const stock::Sweep> part) {
-    if (part.size() == sweeps.sweeps.size()) return;
-    hash.add(uint64_t{tool});
-    hash.add(uint64_t{part.size()});
-  });
+void add_tools(Hash& hash, const CutSweeps& sweeps) {
+  for (size_t begin = 0, end = 0; begin < sweeps.size(); begin = end) {
+    const int tool = sweeps.tool(begin);
+    while (end < sweeps.size() && sweeps.tool(end) == tool) ++end;
+    if (end - begin == sweeps.size()) return;
+    hash.add(static_cast<uint64_t>(tool));
+    hash.add(uint64_t{end - begin});
+  }
 }
 
 std::string box_text(const Box& box) {
@@ -97,17 +98,20 @@ std::string toolpath_text(const Scene& scene) {
       scene.chord_tolerance_mm ? fmt::format("{} mm", *scene.chord_tolerance_mm) : "of the program");
 }
 
-std::string motion_text(const JobSweeps& merged) {
+std::string motion_text(const CutSweeps& sweeps) {
+  constexpr size_t kAtOnce = 4096;
   Hash hash;
-  for (const stock::Sweep& sweep : merged.sweeps) {
-    for (const ToolPose* pose : {&sweep.start, &sweep.end}) {
-      add(hash, pose->tip_W);
-      add(hash, pose->axis_W);
+  for (size_t begin = 0; begin < sweeps.size(); begin += kAtOnce) {
+    for (const stock::Sweep& sweep : sweeps.part(begin, std::min(sweeps.size(), begin + kAtOnce))) {
+      for (const ToolPose* pose : {&sweep.start, &sweep.end}) {
+        add(hash, pose->tip_W);
+        add(hash, pose->axis_W);
+      }
+      hash.add(uint64_t{sweep.block});
     }
-    hash.add(uint64_t{sweep.block});
   }
-  add_tools(hash, merged);
-  return fmt::format("{} sweeps {}", merged.sweeps.size(), hash.text());
+  add_tools(hash, sweeps);
+  return fmt::format("{} sweeps {}", sweeps.size(), hash.text());
 }
 
 std::string value_of(const CutIdentity& identity, const std::string& name) {
@@ -118,7 +122,7 @@ std::string value_of(const CutIdentity& identity, const std::string& name) {
 
 }  // namespace
 
-CutIdentity cut_identity(const Job& job, const JobSweeps& sweeps) {
+CutIdentity cut_identity(const Job& job, const CutSweeps& sweeps) {
   const Scene& scene = job.scene;
   return {{kAlgorithmPart, fmt::format("{}", kCutAlgorithm)},
           {kBoxPart, box_text(scene.stock.box_W)},

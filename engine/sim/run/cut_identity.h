@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "sim/job/scene.h"
-#include "sim/run/job_sweeps.h"
+#include "sim/run/cut_sweeps.h"
 
 namespace swarf::sim {
 
@@ -21,7 +21,7 @@ using CutIdentity = std::vector<IdentityPart>;
 
 /// The last part, kMotionPart, is the hash of the sweeps themselves and of their tools: whatever else may
 /// differ shows there.
-CutIdentity cut_identity(const Job& job, const JobSweeps& sweeps);
+CutIdentity cut_identity(const Job& job, const CutSweeps& sweeps);
 inline constexpr const char* kMotionPart = "tool motion";
 
 struct IdentityDifference {

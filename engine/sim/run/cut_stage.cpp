@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <chrono>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -34,25 +35,25 @@ class CutStage {
         progress_(progress),
         result_(result),
         outcome_(result.cut),
-        merged_(stock_sweeps(job, *result.main.cycles)),
+        sweeps_(cut_sweeps(job, *result.main.cycles)),
         solids_(tool_solids(job.scene)),
-        identity_(cut_identity(job, merged_)),
-        places_(merged_, *result.main.cycles),
-        earlier_(merged_, solids_, job.scene.stock.box_W, kDeepestExact * job.scene.stock.voxel_mm),
-        clearance_(job.scene.tools, merged_, places_, earlier_, job.scene.stock.voxel_mm),
-        bad_cuts_(job, *result.main.cycles, merged_, places_, earlier_) {
+        identity_(cut_identity(job, sweeps_)),
+        places_(sweeps_, *result.main.cycles),
+        earlier_(sweeps_, solids_, job.scene.stock.box_W, kDeepestExact * job.scene.stock.voxel_mm),
+        clearance_(job.scene.tools, sweeps_, places_, earlier_, job.scene.stock.voxel_mm),
+        bad_cuts_(job, *result.main.cycles, sweeps_, places_, earlier_) {
     outcome_.state.clearance = clearance_.result();
-    result_.sweep_bound_mm = merged_.error_bound_mm;
-    result_.merged_sweeps = merged_.sweeps.size();
+    result_.sweep_bound_mm = sweeps_.error_bound_mm;
+    result_.merged_sweeps = sweeps_.size();
   }
 
   void run() {
     find_saves();
     make_stock();
-    progress_.begin("cut", static_cast<double>(merged_.sweeps.size()), "blocks");
+    progress_.begin("cut", static_cast<double>(sweeps_.size()), "blocks");
     progress_.start_at(static_cast<double>(at_));
     save_due();
-    while (at_ < merged_.sweeps.size() && !progress_.stop_requested()) cut_on();
+    while (at_ < sweeps_.size() && !progress_.stop_requested()) cut_on();
     progress_.end();
     check(CheckKind::kAtEnd);
     finish();
@@ -67,7 +68,7 @@ class CutStage {
 
   void find_saves() {
     for (const ProgramPlace& place : options_.save_after) {
-      const size_t after = sweeps_until(place, merged_, *result_.main.cycles, job_.scene.tools);
+      const size_t after = sweeps_until(place, sweeps_, *result_.main.cycles, job_.scene.tools);
       saves_.push_back({after, &place});
     }
     std::stable_sort(saves_.begin(), saves_.end(),
@@ -83,8 +84,12 @@ class CutStage {
       result_.stock =
           std::make_unique<stock::Stock>(load_in_process(options_.resume_file, identity_, outcome_.state));
       at_ = outcome_.resumed_from = outcome_.state.sweeps;
-      clearance_.resume(outcome_.state.clearance);
-      bad_cuts_.resume(outcome_.state.bad_cuts);
+      if (at_ > 0) {
+        clearance_.resume(outcome_.state.clearance);
+        bad_cuts_.resume(outcome_.state.bad_cuts);
+      } else {
+        outcome_.state.clearance = clearance_.result();
+      }
       for (const Save& save : saves_) {
         if (save.after >= at_) continue;
         throw InputError("place-before-resume", {save.place->text},
@@ -100,7 +105,7 @@ class CutStage {
   /// Cuts up to the next place where something is due, and does it. The looks ahead follow the program's own
   /// batches, so that they do not depend on where the run began or what it saves.
   void cut_on() {
-    const size_t total = merged_.sweeps.size();
+    const size_t total = sweeps_.size();
     if (at_ >= batch().end) begin_batch();
     const size_t checks_before = at_ * kChecks / total;
     size_t end = std::min({batch().end, at_ + kSweepsPerStep, after_suspects(kSuspectsPerStep),
@@ -117,13 +122,14 @@ class CutStage {
       record_.states.push_back(result_.stock->hash());
     }
     save_due();
+    keep_due();
   }
 
   BatchState& batch() { return outcome_.state.batch; }
 
   /// Which sweeps of the batch are clear of the stock as it stands now, and so of all that is left of it.
   void begin_batch() {
-    const size_t end = std::min(next_multiple(at_, kSweepsPerBatch), merged_.sweeps.size());
+    const size_t end = std::min(next_multiple(at_, kSweepsPerBatch), sweeps_.size());
     finder_->refresh();
     ToolClearanceCheck::Outlook outlook = clearance_.look_ahead(*finder_, at_, end);
     batch() = {end, outlook.nearest_mm, std::move(outlook.suspects),
@@ -158,7 +164,7 @@ class CutStage {
   /// Cuts sweeps up to `end`, where a suspect may stand: then that one is judged and cut too.
   void cut_to(size_t end) {
     if (end > at_) {
-      each_tool(at_, end, [&](size_t tool, std::span<const stock::Sweep> part) {
+      sweeps_.for_each_tool(at_, end, [&](size_t tool, std::span<const stock::Sweep> part) {
         result_.stock->cut(part, solids_[tool]);
       });
       at_ = end;
@@ -170,18 +176,10 @@ class CutStage {
     const bool tool_meets = is_in(batch().suspects);
     if (tool_meets) clearance_.judge_before(*finder_, at_);
     if (is_in(batch().bad_suspects)) bad_cuts_.judge(*finder_, at_);
-    const auto tool = static_cast<size_t>(merged_.sources[merged_.sweeps[at_].block].tool);
-    result_.stock->cut(std::span(merged_.sweeps).subspan(at_, 1), solids_[tool]);
+    const stock::Sweep sweep = sweeps_[at_];
+    result_.stock->cut(std::span(&sweep, 1), solids_[static_cast<size_t>(sweeps_.tool(at_))]);
     if (tool_meets) clearance_.judge_after(*finder_, at_);
     ++at_;
-  }
-
-  /// Sweeps [begin, end) as rows of one tool.
-  template <typename Visit>
-  void each_tool(size_t begin, size_t end, const Visit& visit) const {
-    for_each_tool(
-        std::span(merged_.sweeps).subspan(begin, end - begin),
-        [&](uint32_t block) { return merged_.sources[block].tool; }, visit);
   }
 
   CutState state() const {
@@ -193,9 +191,7 @@ class CutStage {
     if (at_ > 0) state.place = place(at_ - 1);
     return state;
   }
-  CutPlace place(size_t sweep) const {
-    return place_of(merged_.sweeps[sweep], merged_.sources, result_.main.path.elements, reader_);
-  }
+  CutPlace place(size_t sweep) const { return place_of(sweeps_, sweep, result_.main.path.elements, reader_); }
 
   void save_due() {
     for (; next_save_ < saves_.size() && saves_[next_save_].after <= at_; ++next_save_) {
@@ -204,6 +200,18 @@ class CutStage {
                           cut_metadata(job_.scene.name, identity_, state()));
       outcome_.saved.push_back(name);
     }
+  }
+
+  void keep_due() {
+    const auto now = std::chrono::steady_clock::now();
+    if (options_.keep_every_s <= 0.0 || options_.save_folder.empty() ||
+        std::chrono::duration<double>(now - kept_at_).count() < options_.keep_every_s)
+      return;
+    const std::string path = options_.save_folder + "/" + kKeptStock;
+    result_.stock->save(path, cut_metadata(job_.scene.name, identity_, state()));
+    if (!is_kept_) progress_.note(fmt::format("the stock so far is kept in {}", path));
+    is_kept_ = true;
+    kept_at_ = std::chrono::steady_clock::now();
   }
 
   /// The first broken invariant is kept; the run goes on and reports it.
@@ -217,7 +225,7 @@ class CutStage {
     }
     if (broken.empty() || !outcome_.broken_invariant.empty()) return;
     outcome_.broken_invariant = fmt::format("{} (after {} of {} sweeps, line {}, {:.3f}s)", broken, at_,
-                                            merged_.sweeps.size(), state().place.line, state().place.t_s);
+                                            sweeps_.size(), state().place.line, state().place.t_s);
   }
 
   void finish() {
@@ -227,7 +235,6 @@ class CutStage {
     result_.volume_left_mm3 = result_.stock->volume_mm3();
     result_.volume_removed_mm3 = full_mm3_ - result_.volume_left_mm3;
     if (options_.record) write_states();
-    result_.cut_sources = std::move(merged_.sources);
   }
 
   void write_states() {
@@ -235,11 +242,11 @@ class CutStage {
     record_.overrides = options_.overrides;
     record_.identity = identity_;
     record_.every = options_.record_every;
-    record_.program_sweeps = merged_.sweeps.size();
-    record_.sweeps.assign(merged_.sweeps.begin(), merged_.sweeps.begin() + static_cast<ptrdiff_t>(at_));
+    record_.program_sweeps = sweeps_.size();
+    record_.sweeps = sweeps_.part(0, at_);
     for (size_t n = 0; n < at_; ++n) {
       record_.places.push_back(place(n));
-      record_.tools.push_back(merged_.sources[merged_.sweeps[n].block].tool);
+      record_.tools.push_back(sweeps_.tool(n));
     }
     // A stopped run ends between two hashes.
     if (record_.states.size() * record_.every < at_) record_.states.push_back(result_.stock->hash());
@@ -251,7 +258,7 @@ class CutStage {
   Progress& progress_;
   Result& result_;
   CutOutcome& outcome_;
-  JobSweeps merged_;
+  CutSweeps sweeps_;
   std::vector<stock::CutterSolid> solids_;  ///< by tool
   CutIdentity identity_;
   SweepPlaces places_;
@@ -264,6 +271,8 @@ class CutStage {
   size_t next_save_ = 0, at_ = 0;
   double full_mm3_ = 0.0;
   std::optional<stock::Stock> checked_;  ///< the state at the last check
+  std::chrono::steady_clock::time_point kept_at_ = std::chrono::steady_clock::now();
+  bool is_kept_ = false;
   CutRecord record_;
 };
 
@@ -279,6 +288,19 @@ std::string saved_stock_name(const ProgramPlace& place) {
 
 void cut_stock(const Job& job, const CutOptions& options, Progress& progress, Result& result) {
   CutStage(job, options, progress, result).run();
+}
+
+void leave_uncut(const Job& job, const CutOptions& options, Result& result) {
+  CutOutcome& outcome = result.cut;
+  if (options.resume_file.empty()) {
+    const StockSettings& settings = job.scene.stock;
+    result.stock = std::make_unique<stock::Stock>(settings.box_W, settings.voxel_mm);
+    outcome.metadata = cut_metadata(job.scene.name, cut_identity(job, {}), {});
+    return;
+  }
+  result.stock =
+      std::make_unique<stock::Stock>(load_unchecked(options.resume_file, outcome.metadata, outcome.state));
+  outcome.resumed_from = outcome.state.sweeps;
 }
 
 }  // namespace swarf::sim

@@ -21,14 +21,18 @@ struct CutOptions {
   std::vector<ProgramPlace> save_after;  ///< a stock file for each
   /// For save_after, the record and the tables of the motion (recorder.h), which need it; exists.
   std::string save_folder;
-  bool record = false;                 ///< keep the sweeps and hashes of the stock (CutStage::kRecordFile)
-  size_t record_every = 256;           ///< sweeps between two hashes
+  bool record = false;        ///< keep the sweeps and hashes of the stock (CutStage::kRecordFile)
+  size_t record_every = 256;  ///< sweeps between two hashes
+  /// Keep the stock so far in kKeptStock whenever so many seconds have passed, for a run that is killed; 0:
+  /// never.
+  double keep_every_s = 0.0;
   bool check_voxels = false;           ///< costly invariants on the way too; twice the stock's memory
   Outputs outputs;                     ///< what follows: its memory counts
   std::vector<std::string> overrides;  ///< of the scene, for the record
 };
 
 inline constexpr const char* kRecordFile = "run.record";
+inline constexpr const char* kKeptStock = "stock_so_far.vdb";
 
 /// What came of them.
 struct CutOutcome {
@@ -48,5 +52,9 @@ std::string saved_stock_name(const ProgramPlace& place);
 /// when the user asks. The stock does not depend on the options: resumed, saved, recorded and plain runs end
 /// with equal hashes. Throws InputError: "place-unknown", "place-before-resume", what load_in_process throws.
 void cut_stock(const Job& job, const CutOptions& options, Progress& progress, Result& result);
+
+/// For a run that was stopped before its motion was known: the stock as it was when the run began, to go on
+/// from. Throws InputError as load_unchecked().
+void leave_uncut(const Job& job, const CutOptions& options, Result& result);
 
 }  // namespace swarf::sim

@@ -112,7 +112,7 @@ std::vector<H5Column> columns_of(const Job& job, const motion::Cycles& cycles) {
   std::vector<H5Column> columns;
   const auto add = [&](H5Column column) { columns.push_back(std::move(column)); };
   const auto line = [&cycles](const Cycle& cycle) {
-    return cycles.elements()[static_cast<size_t>(cycle.sample.element)].where.line;
+    return cycles.elements().line(static_cast<size_t>(cycle.sample.element));
   };
   add({"t_s", "s", [](const Cycle& cycle) { return cycle.sample.t_s; }});
   add(whole_column("block", line));

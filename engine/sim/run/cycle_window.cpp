@@ -35,11 +35,11 @@ struct LineElements {
 };
 
 LineElements elements_of_line(int line, const char* option, const motion::Cycles& cycles) {
-  const std::span<const toolpath::Element> elements = cycles.elements();
+  const toolpath::Elements& elements = cycles.elements();
   std::optional<LineElements> found;
   int nearest = 0;
   for (size_t i = 0; i < elements.size(); ++i) {
-    const int here = elements[i].where.line;
+    const int here = elements.line(i);
     if (std::abs(here - line) < std::abs(nearest - line)) nearest = here;
     if (here != line) continue;
     if (!found) found = LineElements{i, i};

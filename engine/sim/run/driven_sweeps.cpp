@@ -51,13 +51,12 @@ class CycleSweeper {
  private:
   bool same_kind(const ToolSample& a, const ToolSample& b) const {
     if (a.element == b.element) return true;
-    const auto* first = block_of(a);
-    const auto* second = block_of(b);
-    return first != nullptr && second != nullptr && is_rapid(*first) == is_rapid(*second) &&
-           first->spindle_rpm == second->spindle_rpm;
+    if (!cycles_.elements().hold_blocks()) return false;
+    const BlockMove first = block_of(a), second = block_of(b);
+    return is_rapid(first) == is_rapid(second) && first.spindle_rpm == second.spindle_rpm;
   }
-  const BlockMove* block_of(const ToolSample& sample) const {
-    return std::get_if<BlockMove>(&cycles_.elements()[static_cast<size_t>(sample.element)].what);
+  BlockMove block_of(const ToolSample& sample) const {
+    return cycles_.elements().block(static_cast<size_t>(sample.element));
   }
 
   void add_cycle(size_t i, const Cycle& before, const Cycle& now) {

@@ -1,10 +1,10 @@
 // The material as the sweeps before a given one have left it, by the sweeps themselves: no grid.
 #pragma once
 
-#include <vector>
+#include <span>
 
 #include "measure/near_sweeps.h"
-#include "sim/run/job_sweeps.h"
+#include "sim/run/cut_sweeps.h"
 #include "stock/contact/contact_finder.h"
 
 namespace swarf::sim {
@@ -12,7 +12,7 @@ namespace swarf::sim {
 class EarlierCuts {
  public:
   /// `sweeps` and `solids` (by tool) must outlive it. Depths below `farthest_mm` are not told apart.
-  EarlierCuts(const JobSweeps& sweeps, std::span<const stock::CutterSolid> solids, const Box& box,
+  EarlierCuts(const CutSweeps& sweeps, std::span<const stock::CutterSolid> solids, const Box& box,
               double farthest_mm);
   EarlierCuts(const EarlierCuts&) = delete;
   EarlierCuts& operator=(const EarlierCuts&) = delete;
@@ -23,9 +23,8 @@ class EarlierCuts {
  private:
   double distance(const Vec3& point_W, size_t sweep) const;
 
-  std::vector<stock::Sweep> by_index_;  ///< with the index as their block
-  std::vector<int> tools_;              ///< by index
-  measure::SweepCutters cutters_;
+  const CutSweeps& sweeps_;
+  std::span<const stock::CutterSolid> solids_;  ///< by tool
   measure::NearSweeps near_;
   Box box_;
   double farthest_mm_;

@@ -86,21 +86,28 @@ stock::StockMetadata cut_metadata(const std::string& scene_name, const CutIdenti
   return metadata;
 }
 
-stock::Stock load_in_process(const std::string& path, const CutIdentity& identity, CutState& state) {
-  stock::StockMetadata metadata;
+stock::Stock load_unchecked(const std::string& path, stock::StockMetadata& metadata, CutState& state) {
   stock::Stock stock = stock::Stock::load(path, &metadata);
   if (!parse_state(metadata, state)) {
     throw InputError("stock-not-resumable", {path}, "the stock file does not say how far it was cut",
                      "name a stock that this version of swarf run has saved");
   }
+  return stock;
+}
+
+stock::Stock load_in_process(const std::string& path, const CutIdentity& identity, CutState& state) {
+  stock::StockMetadata metadata;
+  stock::Stock stock = load_unchecked(path, metadata, state);
   Diagnostics diagnostics;
   for (const IdentityDifference& part : differences(identity_in(metadata), identity)) {
+    if (state.sweeps == 0 && part.name == kMotionPart) continue;
     diagnostics.error("resume-scene-changed", {path},
                       fmt::format("the stock was cut with another {}: {}; the scene has {}", part.name,
                                   part.before, part.now),
                       "run the changed scene from the start, or take the change back");
   }
   diagnostics.throw_if_errors();
+  if (state.sweeps == 0) state = {};
   return stock;
 }
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "cutter/profile.h"
-#include "motion/blocks/block_motion.h"
+#include "sim/run/cut_sweeps.h"
 #include "sim/run/driven_sweeps.h"
 
 namespace swarf::sim {
@@ -33,7 +33,7 @@ JobSweeps merged_cycles(const Job& job, const motion::Cycles& cycles, double tol
   return {std::move(merged.sweeps), sources_of_cycles(cycles), merged.error_bound_mm};
 }
 
-/// Collects the sweeps of a CL job, each with a block of its own.
+/// Finds the sweeps of a job of blocks, each with a block of its own.
 class BlockSweeper {
  public:
   BlockSweeper(const Job& job, const motion::Cycles& cycles, double tolerance_mm)
@@ -41,12 +41,12 @@ class BlockSweeper {
     for (const cutter::Cutter& tool : job.scene.tools) levers_mm_.push_back(lever_of(tool));
   }
 
-  JobSweeps each_block() {
+  CutSweeps each_block() {
     for (size_t i = 0; i < motions_.size(); ++i) add_block(i);
-    return std::move(out_);
+    return {motions_, std::move(parts_), bound_mm_};
   }
 
-  JobSweeps straight_blocks_merged() {
+  CutSweeps straight_blocks_merged() {
     for (size_t i = 0; i < motions_.size();) {
       const size_t end = straight_end(i);
       if (end > i + 1) {
@@ -56,14 +56,14 @@ class BlockSweeper {
       }
       i = std::max(end, i + 1);
     }
-    return std::move(out_);
+    return {motions_, std::move(parts_), bound_mm_};
   }
 
  private:
-  bool is_straight(size_t i) const {
-    const BlockMove& block = *motions_[i].block;
+  static bool is_straight(const motion::BlockMotion& motion) {
+    const BlockMove& block = motion.block;
     return !block.arc && block.from.axis_W == block.to.axis_W &&
-           (block.law != toolpath::BlockLaw::kJoint || turns_nothing(motions_[i]));
+           (block.law != toolpath::BlockLaw::kJoint || turns_nothing(motion));
   }
   static bool turns_nothing(const motion::BlockMotion& motion) {
     for (size_t i = 0; i < motion.machine->axes.size(); ++i) {
@@ -78,49 +78,51 @@ class BlockSweeper {
   /// spindle and tool.
   size_t straight_end(size_t first) const {
     size_t end = first;
-    const BlockMove& block = *motions_[first].block;
+    const BlockMove block = motions_.block(first);
     const auto joins = [&](const BlockMove& next) {
       return next.feed_mm_s == block.feed_mm_s && next.from.axis_W == block.from.axis_W &&
              next.tool == block.tool && is_rapid(next) == is_rapid(block) &&
              next.spindle_rpm == block.spindle_rpm;
     };
-    while (end < motions_.size() && is_straight(end) && joins(*motions_[end].block)) ++end;
+    for (; end < motions_.size(); ++end) {
+      const motion::BlockMotion motion = motions_[end];
+      if (!is_straight(motion) || !joins(motion.block)) break;
+    }
     return end;
   }
 
-  void add(const ToolPose& start, const ToolPose& end, size_t element, double s) {
-    out_.sweeps.push_back({start, end, static_cast<uint32_t>(out_.sources.size())});
-    const int index = static_cast<int>(element);
-    out_.sources.push_back({index, motions_[element].block->tool, s, std::nullopt});
-  }
-
   void add_block(size_t i) {
-    const std::vector<ToolPose> poses =
-        motion::subdivide(motions_[i], lever(i), tolerance_mm_, elements_[i].where);
-    const size_t pieces = poses.size() - 1;
-    for (size_t k = 0; k < pieces; ++k)
-      add(poses[k], poses[k + 1], i, static_cast<double>(k + 1) / static_cast<double>(pieces));
-    const double error =
-        motion::split_error(motion::motion_bounds(motions_[i]), static_cast<int>(pieces), lever(i));
-    out_.error_bound_mm = std::max(out_.error_bound_mm, error);
+    const motion::BlockMotion motion = motions_[i];
+    const double lever = lever_of_tool(motion.block.tool);
+    const int pieces =
+        motion::pieces_within(motion, lever, tolerance_mm_, [&] { return elements_.where(i); });
+    for (int k = 0; k < pieces; ++k)
+      parts_.push_back(
+          {static_cast<uint32_t>(i), static_cast<uint32_t>(pieces), static_cast<uint32_t>(k), false});
+    bound_mm_ = std::max(bound_mm_, motion::split_error(motion::motion_bounds(motion), pieces, lever));
   }
 
+  /// Pose 0 of the row is where its first block starts, the others are where blocks end.
   void add_straight(size_t first, size_t end) {
-    std::vector<ToolPose> poses{motions_[first].block->from};
-    for (size_t i = first; i < end; ++i) poses.push_back(motions_[i].block->to);
-    const std::vector<uint8_t> breaks(poses.size(), 0);
-    const stock::MergedSweeps merged = stock::merge_sweeps(poses, breaks, lever(first), tolerance_mm_);
-    for (const stock::Sweep& sweep : merged.sweeps) add(sweep.start, sweep.end, first + sweep.block - 1, 1.0);
-    out_.error_bound_mm = std::max(out_.error_bound_mm, merged.error_bound_mm);
+    const auto pose = [&](size_t k) {
+      return k == 0 ? motions_.block(first).from : motions_.block_end(first + k - 1);
+    };
+    const stock::MergeBound bound =
+        stock::merge_chain(end - first + 1, pose, lever_of_tool(motions_.tool(first)), tolerance_mm_,
+                           [&](size_t from, size_t to) {
+                             parts_.push_back({static_cast<uint32_t>(first + to - 1), 0, 0, from > 0});
+                           });
+    bound_mm_ = std::max(bound_mm_, bound.chain_mm + bound.tick_mm);
   }
 
-  double lever(size_t i) const { return levers_mm_[static_cast<size_t>(motions_[i].block->tool)]; }
+  double lever_of_tool(int tool) const { return levers_mm_[static_cast<size_t>(tool)]; }
 
-  std::span<const toolpath::Element> elements_;
-  std::span<const motion::BlockMotion> motions_;
+  const toolpath::Elements& elements_;
+  const motion::BlockMotions& motions_;
   std::vector<double> levers_mm_;  ///< by tool
   double tolerance_mm_;
-  JobSweeps out_;
+  std::vector<SweepOfBlocks> parts_;
+  double bound_mm_ = 0.0;
 };
 
 }  // namespace
@@ -179,17 +181,21 @@ std::vector<int> tool_of_blocks(const JobSweeps& sweeps) {
   return tools;
 }
 
-JobSweeps stock_sweeps(const Job& job, const motion::Cycles& cycles, std::optional<double> tolerance_mm) {
+CutSweeps cut_sweeps(const Job& job, const motion::Cycles& cycles, std::optional<double> tolerance_mm) {
   const double tolerance = tolerance_mm.value_or(job.scene.stock.sweep_tolerance_mm);
-  if (job.scene.cuts_cycles()) return driven_sweeps(job, cycles, tolerance, true);
+  if (job.scene.cuts_cycles()) return CutSweeps(driven_sweeps(job, cycles, tolerance, true));
   if (job.scene.has_blocks()) return BlockSweeper(job, cycles, tolerance).straight_blocks_merged();
-  return merged_cycles(job, cycles, tolerance);
+  return CutSweeps(merged_cycles(job, cycles, tolerance));
+}
+
+JobSweeps stock_sweeps(const Job& job, const motion::Cycles& cycles, std::optional<double> tolerance_mm) {
+  return cut_sweeps(job, cycles, tolerance_mm).all();
 }
 
 JobSweeps ray_sweeps(const Job& job, const motion::Cycles& cycles) {
   const double tolerance = job.scene.design.sweep_tolerance_mm;
   if (job.scene.cuts_cycles()) return driven_sweeps(job, cycles, tolerance, false);
-  if (job.scene.has_blocks()) return BlockSweeper(job, cycles, tolerance).each_block();
+  if (job.scene.has_blocks()) return BlockSweeper(job, cycles, tolerance).each_block().all();
   return {cycle_sweeps(cycles), sources_of_cycles(cycles), 0.0};
 }
 
@@ -197,10 +203,11 @@ std::vector<int> pass_of_blocks(const JobSweeps& sweeps, const toolpath::ToolPat
   std::vector<int> passes;
   passes.reserve(sweeps.sources.size());
   for (const SweepSource& source : sweeps.sources) {
-    const auto& what = path.elements[static_cast<size_t>(source.element)].what;
-    const auto* pass = std::get_if<toolpath::SurfacePass>(&what);
-    const auto* block = std::get_if<BlockMove>(&what);
-    passes.push_back(pass != nullptr ? pass->pass : block != nullptr ? block->pass : -1);
+    const auto element = static_cast<size_t>(source.element);
+    const auto* pass = path.elements.pass(element);
+    passes.push_back(pass != nullptr               ? pass->pass
+                     : path.elements.hold_blocks() ? path.elements.block(element).pass
+                                                   : -1);
   }
   return passes;
 }

@@ -66,8 +66,7 @@ void for_each_tool(std::span<const stock::Sweep> sweeps, const ToolOf& tool_of, 
 /// Distance from the tip to the farthest point of the flutes, mm.
 double lever_of(const cutter::Cutter& cutter);
 
-/// For the level set, within stock.sweep_tolerance or the given one, mm. Blocks: collinear ones of one feed
-/// that keep their axis are merged.
+/// Those of cut_sweeps(), all held at once.
 JobSweeps stock_sweeps(const Job& job, const motion::Cycles& cycles, std::optional<double> tolerance_mm = {});
 
 /// For the measuring rays; each sweep has a block of its own. Blocks: within design.sweep_tolerance.

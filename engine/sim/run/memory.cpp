@@ -11,6 +11,7 @@
 
 #include "motion/speed/jerk_profile.h"
 #include "sim/job/memory_limit.h"
+#include "sim/run/cut_sweeps.h"
 #include "sim/run/result.h"
 #include "stock/rays/ray_field.h"
 
@@ -25,10 +26,13 @@ constexpr double kMovie = 270.0 * kMegabyte;   // Mesa, Embree and the encoder, 
 constexpr double kStills = 120.0 * kMegabyte;  // Embree alone
 constexpr double kSeen = 0.95;  // of the stock: its leaves as contacts and invariants look at them
 constexpr double kSweep = sizeof(stock::Sweep) + sizeof(SweepSource);
-constexpr double kCutting =
-    sizeof(stock::Sweep) + sizeof(ToolPose) + 24.0;  // EarlierCuts, a row to be merged
-constexpr double kMeasuredRay = 78.0;                // while it is measured: neighbours, ridges, feet
-constexpr double kRay = 83.0;                        // point, normal, height, block; its share of a tile
+constexpr double kCutting = sizeof(ToolPose) + 8.0;  // the poses of cycles to be merged; boxes of EarlierCuts
+// A sweep of blocks, made when it is asked for; its vector grows by halves, and its share of a box.
+constexpr double kSweepOfBlock = 1.5 * sizeof(SweepOfBlocks) + 1.5;
+// Look-ahead: a cell with its share of curve, corner and plan, of at most so many that are planned at once.
+constexpr double kPlannedCell = 600.0, kCellsOfBlock = 2.0;
+constexpr double kMeasuredRay = 78.0;  // while it is measured: neighbours, ridges, feet
+constexpr double kRay = 83.0;          // point, normal, height, block; its share of a tile
 // Each triangle of the mesh, half a vertex with it, from the mesher's points to the decimated copy.
 constexpr double kTriangle = 105.0;
 // A tick of a path that is only compared: its sample, axes and sweep, and what vectors that grow hold beside.
@@ -49,16 +53,14 @@ SurfaceCounts preview(const Job& job, const motion::Cycles& cycles) {
   double thinnest = std::numeric_limits<double>::infinity();
   for (const cutter::Cutter& tool : job.scene.tools) thinnest = std::min(thinnest, tool.radius());
   const double voxel = std::max(settings.voxel_mm, std::min(kCoarser * settings.voxel_mm, thinnest / 3.0));
-  const JobSweeps coarse = stock_sweeps(job, cycles, voxel / 8.0);
-  const std::vector<stock::Sweep>& sweeps = coarse.sweeps;
+  const CutSweeps sweeps = cut_sweeps(job, cycles, voxel / 8.0);
   stock::Stock stock(settings.box_W, voxel);
   const std::vector<stock::CutterSolid> solids = tool_solids(job.scene);
   double most = static_cast<double>(stock.leaves());
   const size_t piece = sweeps.size() / kPieces + 1;
   for (size_t i = 0; i < sweeps.size(); i += piece) {
-    for_each_tool(
-        std::span(sweeps).subspan(i, std::min(piece, sweeps.size() - i)),
-        [&](uint32_t block) { return coarse.sources[block].tool; },
+    sweeps.for_each_tool(
+        i, std::min(i + piece, sweeps.size()),
         [&](size_t tool, std::span<const stock::Sweep> part) { stock.cut(part, solids[tool]); });
     most = std::max(most, static_cast<double>(stock.leaves()));
   }
@@ -116,8 +118,7 @@ double longest_comparison(const Job& job, const MeasuredPath& path) {
     b = c;
     c = reader.at(i).sample;
     if (i < 2 * kReach) continue;
-    const auto* pass =
-        std::get_if<toolpath::SurfacePass>(&path.path.elements[static_cast<size_t>(b.element)].what);
+    const auto* pass = path.path.elements.pass(static_cast<size_t>(b.element));
     const double chord = (c.contact_W - a.contact_W).norm();
     const double sagitta = (b.contact_W - 0.5 * (a.contact_W + c.contact_W)).norm();
     if (pass == nullptr || a.element != c.element || !(chord > 0.0)) {
@@ -156,12 +157,14 @@ MemoryPrediction predict_memory(const Job& job, const MeasuredPath& path, const 
   const bool by_block = job.scene.has_blocks() && !job.scene.cuts_cycles();
   const double sweeps = by_block ? static_cast<double>(path.path.elements.size()) : ticks;
   const double rays = ray_count(job) * kRay;
-  const double held = kBase + rays + sweeps * kSweep +
+  const double own_sweeps = sweeps * (by_block ? kSweepOfBlock : kSweep);
+  const double planned = std::min(kCellsOfBlock * static_cast<double>(path.path.elements.size()),
+                                  static_cast<double>(motion::LookAheadReach{}.planned));
+  const double held = kBase + rays + own_sweeps + (job.scene.has_blocks() ? planned * kPlannedCell : 0.0) +
                       static_cast<double>(path.cycles->kept().size() * sizeof(motion::Cycle)) +
-                      static_cast<double>(path.path.elements.size() *
-                                          (sizeof(toolpath::Element) + sizeof(motion::BlockMotion)));
+                      static_cast<double>(path.path.elements.bytes() + path.cycles->motions().bytes());
   // The stages that hold most; each ends before the next begins.
-  const double cutting = held - rays + (stocks + kSeen) * stock + sweeps * kCutting;
+  const double cutting = held - rays + (stocks + kSeen) * stock + (by_block ? 0.0 : sweeps * kCutting);
   double comparing = 0.0;
   if (job.scene.compare_planners && !job.scene.has_blocks())
     comparing = held + stock + std::max(ticks, longest_comparison(job, path)) * kComparedTick + rays;

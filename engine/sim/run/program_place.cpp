@@ -39,12 +39,12 @@ ProgramPlace parse_place(const std::string& text) {
       "write a line of the program (13), a program time in seconds (12.5s) or a tool (T5, T=NAME)");
 }
 
-size_t sweeps_until_tool(const ProgramPlace& place, const JobSweeps& sweeps,
+size_t sweeps_until_tool(const ProgramPlace& place, const CutSweeps& sweeps,
                          const std::vector<cutter::Cutter>& tools) {
   const int tool = tool_index(tools, place.tool_number, place.tool_name);
   size_t count = 0;
-  for (size_t n = 0; n < sweeps.sweeps.size() && tool >= 0; ++n) {
-    if (sweeps.sources[sweeps.sweeps[n].block].tool == tool) count = n + 1;
+  for (size_t n = 0; n < sweeps.size() && tool >= 0; ++n) {
+    if (sweeps.tool(n) == tool) count = n + 1;
   }
   if (count > 0) return count;
   throw InputError("place-unknown", {place.text},
@@ -64,21 +64,21 @@ std::vector<ProgramPlace> parse_places(const std::string& list) {
   return places;
 }
 
-CutPlace place_of(const stock::Sweep& sweep, std::span<const SweepSource> sources,
-                  std::span<const toolpath::Element> elements, motion::CycleReader& reader) {
-  const SweepSource& source = sources[sweep.block];
-  return {sweep.block, elements[static_cast<size_t>(source.element)].where.line,
+CutPlace place_of(const CutSweeps& sweeps, size_t n, const toolpath::Elements& elements,
+                  motion::CycleReader& reader) {
+  const SweepSource source = sweeps.source(n);
+  return {sweeps.block(n), elements.line(static_cast<size_t>(source.element)),
           reader.at(cycle_of(source, reader)).sample.t_s};
 }
 
-size_t sweeps_until(const ProgramPlace& place, const JobSweeps& sweeps, const motion::Cycles& cycles,
+size_t sweeps_until(const ProgramPlace& place, const CutSweeps& sweeps, const motion::Cycles& cycles,
                     const std::vector<cutter::Cutter>& tools) {
   if (place.tool_number > 0 || !place.tool_name.empty()) return sweeps_until_tool(place, sweeps, tools);
   motion::CycleReader reader(cycles);
   size_t count = 0;
   int nearest = 0;
-  for (size_t n = 0; n < sweeps.sweeps.size(); ++n) {
-    const CutPlace at = place_of(sweeps.sweeps[n], sweeps.sources, cycles.elements(), reader);
+  for (size_t n = 0; n < sweeps.size(); ++n) {
+    const CutPlace at = place_of(sweeps, n, cycles.elements(), reader);
     if (place.line > 0 ? at.line == place.line : at.t_s <= place.t_s) count = n + 1;
     if (std::abs(at.line - place.line) < std::abs(nearest - place.line)) nearest = at.line;
   }

@@ -2,13 +2,11 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "motion/tool_sample.h"
-#include "sim/run/job_sweeps.h"
-#include "stock/sweep/sweep.h"
+#include "sim/run/cut_sweeps.h"
 #include "toolpath/tool_path.h"
 
 namespace swarf::sim {
@@ -34,13 +32,13 @@ struct CutPlace {
   double t_s = 0.0;    ///< at the sweep's end
 };
 
-/// The line of the block that the sweep comes from, and when the tool comes to the sweep's end.
-CutPlace place_of(const stock::Sweep& sweep, std::span<const SweepSource> sources,
-                  std::span<const toolpath::Element> elements, motion::CycleReader& reader);
+/// The line of the block that sweep `n` comes from, and when the tool comes to the sweep's end.
+CutPlace place_of(const CutSweeps& sweeps, size_t n, const toolpath::Elements& elements,
+                  motion::CycleReader& reader);
 
 /// Number of sweeps up to and including the place. Throws InputError "place-unknown" for a line without
 /// motion (naming the nearest with), for a time outside the program and for a tool that never moves.
-size_t sweeps_until(const ProgramPlace& place, const JobSweeps& sweeps, const motion::Cycles& cycles,
+size_t sweeps_until(const ProgramPlace& place, const CutSweeps& sweeps, const motion::Cycles& cycles,
                     const std::vector<cutter::Cutter>& tools);
 
 }  // namespace swarf::sim

@@ -128,7 +128,7 @@ void BlockTable::flush_to(int element, double t_s) {
 }
 
 void BlockTable::write_row(int element, double t_s) {
-  const toolpath::Element& entry = cycles_.elements()[static_cast<size_t>(element)];
+  const int line = cycles_.elements().line(static_cast<size_t>(element));
   fmt::memory_buffer text;
   const Out out(text);
   ToolPose pose = last_.sample.pose;
@@ -136,13 +136,13 @@ void BlockTable::write_row(int element, double t_s) {
   motion::SampleKind kind = last_.sample.kind;
   auto tool = static_cast<size_t>(last_.sample.tool);
   if (!cycles_.motions().empty()) {
-    const motion::BlockMotion& motion = cycles_.motions()[static_cast<size_t>(element)];
-    pose = motion.block->to;
+    const motion::BlockMotion motion = cycles_.motions()[static_cast<size_t>(element)];
+    pose = motion.block.to;
     q = motion.q_to;
-    kind = is_rapid(*motion.block) ? motion::SampleKind::kRapid : motion::SampleKind::kCutting;
-    tool = static_cast<size_t>(motion.block->tool);
+    kind = is_rapid(motion.block) ? motion::SampleKind::kRapid : motion::SampleKind::kCutting;
+    tool = static_cast<size_t>(motion.block.tool);
   }
-  fmt::format_to(out, "{},{:.6f},", entry.where.line, t_s);
+  fmt::format_to(out, "{},{:.6f},", line, t_s);
   append_pose(out, pose, kBlockDecimals);
   append_axes(out, q, job_.machine.model, kBlockDecimals);
   text.push_back(',');
@@ -170,7 +170,7 @@ void CycleCsv::add(std::span<const motion::Cycle> window) {
   const Out out(text);
   for (const motion::Cycle& cycle : window) {
     const motion::ToolSample& s = cycle.sample;
-    const int line = cycles_.elements()[static_cast<size_t>(s.element)].where.line;
+    const int line = cycles_.elements().line(static_cast<size_t>(s.element));
     fmt::format_to(out, "{:.6f},{},", s.t_s, line);
     append_pose(out, s.pose, kCycleDecimals);
     fmt::format_to(out, ",{:.4f}", mm_min_from_mm_s(s.feed_mm_s));

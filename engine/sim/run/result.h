@@ -58,9 +58,8 @@ struct Result {
   std::vector<ComparisonRow> planners;  ///< the scene's interpolator, every planner
   std::vector<ComparisonRow> modes;     ///< the scene's planner, the interpolators of the paper's comparison
   std::unique_ptr<stock::Stock> stock;
-  std::vector<SweepSource> cut_sources;  ///< of the sweeps that cut the level set, by Sweep::block
-  double sweep_bound_mm = 0.0;           ///< of the same sweeps
-  uint64_t merged_sweeps = 0;            ///< how many they are
+  double sweep_bound_mm = 0.0;                             ///< of the sweeps that cut the level set
+  uint64_t merged_sweeps = 0;                              ///< how many they are
   double volume_removed_mm3 = 0.0, volume_left_mm3 = 0.0;  ///< together the box
   double volume_error_bound_mm3 = 0.0;  ///< proven: neither is farther from the truth (stock_volume.cpp)
   std::optional<measure::CrossCheck> cross_check;  ///< none: no ray of a parametric design could be compared

@@ -22,7 +22,7 @@ double SweepPlaces::progress(const stock::Sweep& sweep, const ToolPose& pose) co
 }
 
 double SweepPlaces::progress(size_t sweep, size_t cycle) const {
-  return progress(sweeps_.sweeps[sweep], reader_.at(cycle).sample.pose);
+  return progress(sweeps_[sweep], reader_.at(cycle).sample.pose);
 }
 
 SweepPlaces::Range SweepPlaces::cycles(size_t sweep) const {
@@ -32,7 +32,7 @@ SweepPlaces::Range SweepPlaces::cycles(size_t sweep) const {
 }
 
 ContactPlace SweepPlaces::at(size_t sweep, double t) const {
-  const SweepSource& last = source(sweep);
+  const SweepSource last = source(sweep);
   const Range range = cycles(sweep);
   const int first_element = sweep > 0 ? source(sweep - 1).element : 0;
   size_t low = range.first, high = range.last;  // progress(low) < t <= progress(high)
@@ -49,10 +49,10 @@ ContactPlace SweepPlaces::at(size_t sweep, double t) const {
   }
   // A cycle may hold the ends of blocks.
   for (; place.element > first_element; --place.element) {
-    const auto* block =
-        std::get_if<toolpath::BlockMove>(&cycles_.elements()[static_cast<size_t>(place.element) - 1].what);
-    if (block == nullptr || block->tool != last.tool) break;
-    if (progress(sweeps_.sweeps[sweep], block->to) < t - kSameT) break;
+    const toolpath::Elements& elements = cycles_.elements();
+    const auto before = static_cast<size_t>(place.element) - 1;
+    if (!elements.hold_blocks() || elements.tool(before) != last.tool) break;
+    if (progress(sweeps_[sweep], elements.block_end(before)) < t - kSameT) break;
   }
   return place;
 }

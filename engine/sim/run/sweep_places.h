@@ -4,7 +4,7 @@
 #include <string>
 
 #include "sim/run/contact_event.h"
-#include "sim/run/job_sweeps.h"
+#include "sim/run/cut_sweeps.h"
 
 namespace swarf::stock {
 struct Contact;
@@ -16,10 +16,10 @@ namespace swarf::sim {
 class SweepPlaces {
  public:
   /// All must outlive it.
-  SweepPlaces(const JobSweeps& sweeps, const motion::Cycles& cycles)
+  SweepPlaces(const CutSweeps& sweeps, const motion::Cycles& cycles)
       : sweeps_(sweeps), cycles_(cycles), reader_(cycles) {}
 
-  /// `sweep`: index into JobSweeps::sweeps; t from 0 to 1 along it. The block is exact where blocks are
+  /// `sweep`: its number; t from 0 to 1 along it. The block is exact where blocks are
   /// merged, the time that of the control cycles.
   ContactPlace at(size_t sweep, double t) const;
   /// Cycles that end inside the sweep: after `first`, up to `last`.
@@ -33,9 +33,9 @@ class SweepPlaces {
 
  private:
   double progress(const stock::Sweep& sweep, const ToolPose& pose) const;
-  const SweepSource& source(size_t sweep) const { return sweeps_.sources[sweeps_.sweeps[sweep].block]; }
+  SweepSource source(size_t sweep) const { return sweeps_.source(sweep); }
 
-  const JobSweeps& sweeps_;
+  const CutSweeps& sweeps_;
   const motion::Cycles& cycles_;
   mutable motion::CycleReader reader_;
 };

@@ -14,7 +14,7 @@ constexpr size_t kClearedPerTask = 16;
 
 /// The sweeps follow the motion within a bound as far up as the flutes reach; a turn takes the tool's far end
 /// away from it in the ratio of the levers.
-double bound_at_far_end_mm(std::span<const cutter::Cutter> tools, const JobSweeps& sweeps) {
+double bound_at_far_end_mm(std::span<const cutter::Cutter> tools, const CutSweeps& sweeps) {
   double ratio = 1.0;
   for (const cutter::Cutter& tool : tools) {
     for (const cutter::ToolWall& wall : cutter::tool_walls(tool)) {
@@ -36,7 +36,7 @@ std::vector<ToolPart> tool_parts(const cutter::Cutter& cutter) {
   return parts;
 }
 
-ToolClearanceCheck::ToolClearanceCheck(std::span<const cutter::Cutter> tools, const JobSweeps& sweeps,
+ToolClearanceCheck::ToolClearanceCheck(std::span<const cutter::Cutter> tools, const CutSweeps& sweeps,
                                        const SweepPlaces& places, const EarlierCuts& earlier, double voxel_mm)
     : sweeps_(sweeps), places_(places), earlier_(earlier) {
   for (const cutter::Cutter& tool : tools) {
@@ -52,10 +52,11 @@ ToolClearanceCheck::Outlook ToolClearanceCheck::look_ahead(const stock::ContactF
                                                            size_t end) const {
   std::vector<double> gaps(end - begin);
   std::vector<uint8_t> hinted(end - begin, 0);
+  const std::vector<stock::Sweep> ahead = sweeps_.part(begin, end);
   parallel_chunks(gaps.size(), kClearedPerTask, [&](size_t from, size_t to) {
     double least = result_.band_mm;  // what is farther than a gap seen need not be known
     for (size_t i = from; i < to; ++i) {
-      const stock::SweepMap map = stock::sweep_map(sweeps_.sweeps[begin + i]);
+      const stock::SweepMap map = stock::sweep_map(ahead[i]);
       gaps[i] = least;
       for (const ToolPart& part : parts_[tool_of(begin + i)]) {
         gaps[i] = std::min(gaps[i], finder.gap(map, part.body, gaps[i]));
@@ -82,7 +83,7 @@ void ToolClearanceCheck::saw(double gap_mm) {
 
 void ToolClearanceCheck::judge_before(const stock::ContactFinder& finder, size_t sweep) {
   const size_t tool = tool_of(sweep);
-  const stock::SweepMap map = stock::sweep_map(sweeps_.sweeps[sweep]);
+  const stock::SweepMap map = stock::sweep_map(sweeps_[sweep]);
   const stock::OwnCut own{&flutes_[tool], map, true};
   free_.clear();
   for (const ToolPart& part : parts_[tool]) {
@@ -100,7 +101,7 @@ void ToolClearanceCheck::judge_before(const stock::ContactFinder& finder, size_t
 bool ToolClearanceCheck::shallow(const stock::ContactFinder& finder, size_t sweep, const ToolPart& part,
                                  double gap) {
   const size_t tool = tool_of(sweep);
-  const stock::SweepMap map = stock::sweep_map(sweeps_.sweeps[sweep]);
+  const stock::SweepMap map = stock::sweep_map(sweeps_[sweep]);
   if (!finder.may_be_shallow(map, part.body, gap)) return false;
   const stock::OwnCut own{&flutes_[tool], map, true};
   const auto contact = finder.shallow_contact(map, part.body, &own, earlier_.before(sweep));
@@ -109,7 +110,7 @@ bool ToolClearanceCheck::shallow(const stock::ContactFinder& finder, size_t swee
 }
 
 void ToolClearanceCheck::judge_after(const stock::ContactFinder& finder, size_t sweep) {
-  const stock::SweepMap map = stock::sweep_map(sweeps_.sweeps[sweep]);
+  const stock::SweepMap map = stock::sweep_map(sweeps_[sweep]);
   for (const stock::RevolvedPart* part : free_) saw(finder.gap(map, *part, result_.nearest_mm));
 }
 

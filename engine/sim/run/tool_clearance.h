@@ -27,7 +27,7 @@ std::vector<ToolPart> tool_parts(const cutter::Cutter& cutter);
 class ToolClearanceCheck {
  public:
   /// `places`, `sweeps` and `earlier` must outlive it.
-  ToolClearanceCheck(std::span<const cutter::Cutter> tools, const JobSweeps& sweeps,
+  ToolClearanceCheck(std::span<const cutter::Cutter> tools, const CutSweeps& sweeps,
                      const SweepPlaces& places, const EarlierCuts& earlier, double voxel_mm);
 
   /// Gaps of sweeps [begin, end), before any of them is cut.
@@ -51,11 +51,9 @@ class ToolClearanceCheck {
   void add(const ContactEvent& event);
   /// A contact that only the sweeps themselves show; true when there is one.
   bool shallow(const stock::ContactFinder& finder, size_t sweep, const ToolPart& part, double gap);
-  size_t tool_of(size_t sweep) const {
-    return static_cast<size_t>(sweeps_.sources[sweeps_.sweeps[sweep].block].tool);
-  }
+  size_t tool_of(size_t sweep) const { return static_cast<size_t>(sweeps_.tool(sweep)); }
 
-  const JobSweeps& sweeps_;
+  const CutSweeps& sweeps_;
   const SweepPlaces& places_;
   const EarlierCuts& earlier_;
   std::vector<std::vector<ToolPart>> parts_;      ///< by tool

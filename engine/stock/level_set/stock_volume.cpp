@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <vector>
 
 #include "base/parallel.h"
@@ -41,10 +42,14 @@ struct Surroundings {
   }
 };
 
+constexpr int kPoints = 2 * kAcross + 1;
+/// The rods of a cell side by side, filled up so that the loops over them are vectorised.
+constexpr int kLanes = 12;
+static_assert(kRods * kRods <= kLanes);
+
 /// Square of the distance across, in voxels, from the line of a grid point to the farthest edge of a rod.
 struct Across {
-  // [rod a][rod b][point a + kAcross][point b + kAcross]
-  float square[kRods][kRods][2 * kAcross + 1][2 * kAcross + 1];
+  alignas(16) float square[kPoints][kPoints][kLanes] = {};  // [point a + kAcross][point b + kAcross][rod]
   Across() {
     const auto reach = [](int rod, int point) {
       const double middle = (rod + 0.5) / kRods - 0.5;
@@ -52,11 +57,13 @@ struct Across {
     };
     for (int a = 0; a < kRods; ++a)
       for (int b = 0; b < kRods; ++b)
-        for (int p = 0; p <= 2 * kAcross; ++p)
-          for (int q = 0; q <= 2 * kAcross; ++q)
-            square[a][b][p][q] = static_cast<float>(reach(a, p) * reach(a, p) + reach(b, q) * reach(b, q));
+        for (int p = 0; p < kPoints; ++p)
+          for (int q = 0; q < kPoints; ++q)
+            square[p][q][a * kRods + b] =
+                static_cast<float>(reach(a, p) * reach(a, p) + reach(b, q) * reach(b, q));
   }
 };
+const Across kAcrossOfRods;
 
 /// A grid point whose ball may settle something: its square of |d| and where it stands.
 struct BallPoint {
@@ -70,20 +77,41 @@ struct Settled {
   double solid = 0.0, air = 0.0;
 };
 
-/// Stretches of a rod from -1/2 to 1/2 that balls settle: those that hold one of its ends.
-class Stretch {
+/// The balls of a cell that may settle something.
+class Balls {
  public:
-  void add(float low, float high) {
-    if (low <= -0.5F) up_to_ = std::max(up_to_, high);
-    if (high >= 0.5F) from_ = std::min(from_, low);
-  }
-  double length() const {
-    const double below = std::max(0.0F, up_to_ + 0.5F), above = std::max(0.0F, 0.5F - from_);
-    return std::min(1.0, below + above);
+  void add(const BallPoint& ball) { balls_[count_++] = ball; }
+
+  /// Share of the cell that they settle. Of each rod, from -1/2 to 1/2: the stretches at its ends, below
+  /// `up_to` and above `from`.
+  double share() const {
+    alignas(16) float up_to[kLanes], from[kLanes];
+    std::fill(std::begin(up_to), std::end(up_to), -0.5F);
+    std::fill(std::begin(from), std::end(from), 0.5F);
+    for (size_t n = 0; n < count_; ++n) {
+      const BallPoint& ball = balls_[n];
+      const float* across = kAcrossOfRods.square[ball.a][ball.b];
+      for (int rod = 0; rod < kLanes; ++rod) {
+        const float square = ball.square - across[rod];
+        const float half = std::sqrt(square > 0.0F ? square : 0.0F);
+        const float low = ball.along - half, high = ball.along + half;
+        const bool at_low = (square > 0.0F) & (low <= -0.5F) & (high > up_to[rod]);
+        const bool at_high = (square > 0.0F) & (high >= 0.5F) & (low < from[rod]);
+        up_to[rod] = at_low ? high : up_to[rod];
+        from[rod] = at_high ? low : from[rod];
+      }
+    }
+    double sum = 0.0;
+    for (int rod = 0; rod < kRods * kRods; ++rod) {
+      const double below = std::max(0.0F, up_to[rod] + 0.5F), above = std::max(0.0F, 0.5F - from[rod]);
+      sum += std::min(1.0, below + above);
+    }
+    return sum / (kRods * kRods);
   }
 
  private:
-  float up_to_ = -0.5F, from_ = 0.5F;
+  std::array<BallPoint, kPoints * kPoints*(2 * kAlong + 1)> balls_;
+  size_t count_ = 0;
 };
 
 class Cell {
@@ -98,38 +126,20 @@ class Cell {
       if (change > steepest) steepest = change, axis = n;
     }
     const auto stride = [&](int n) { return Surroundings::kStride.at(static_cast<size_t>((axis + n) % 3)); };
-    for (int a = 0; a <= 2 * kAcross; ++a)
-      for (int b = 0; b <= 2 * kAcross; ++b)
+    for (int a = 0; a < kPoints; ++a)
+      for (int b = 0; b < kPoints; ++b)
         for (int k = -kAlong; k <= kAlong; ++k) {
           const float value = here[k * stride(0) + (a - kAcross) * stride(1) + (b - kAcross) * stride(2)];
           const float radius = std::abs(value) - slack;
           if (radius <= 1.0F) continue;  // nearer ones settle what farther ones do
-          (value < 0.0F ? solid_ : air_).push_back({radius * radius, a, b, static_cast<float>(k)});
+          (value < 0.0F ? solid_ : air_).add({radius * radius, a, b, static_cast<float>(k)});
         }
   }
 
-  Settled settled() const { return {share(solid_), share(air_)}; }
+  Settled settled() const { return {solid_.share(), air_.share()}; }
 
  private:
-  static double share(const std::vector<BallPoint>& balls) {
-    static const Across across;
-    double sum = 0.0;
-    for (int a = 0; a < kRods; ++a) {
-      for (int b = 0; b < kRods; ++b) {
-        Stretch stretch;
-        for (const BallPoint& ball : balls) {
-          const float square = ball.square - across.square[a][b][ball.a][ball.b];
-          if (square <= 0.0F) continue;
-          const float half = std::sqrt(square);
-          stretch.add(ball.along - half, ball.along + half);
-        }
-        sum += stretch.length();
-      }
-    }
-    return sum / (kRods * kRods);
-  }
-
-  std::vector<BallPoint> solid_, air_;
+  Balls solid_, air_;
 };
 
 /// Of one leaf, in voxels: least volume and greatest.

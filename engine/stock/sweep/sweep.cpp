@@ -24,37 +24,79 @@ double deviation(const SweepMap& map, const ToolPose& pose, double lever_mm) {
   return (tip_start + t * tip_change).norm() + lever_mm * (axis_start + t * axis_change).norm();
 }
 
-/// Greatest deviation of the poses between `first` and `last`; stops at the first above the tolerance.
-double chain_deviation(std::span<const ToolPose> poses, size_t first, size_t last, double lever_mm,
-                       double tolerance_mm) {
-  const SweepMap map = sweep_map({poses[first], poses[last], 0});
-  double worst = 0.0;
-  for (size_t k = first + 1; k < last && worst <= tolerance_mm; ++k) {
-    worst = std::max(worst, deviation(map, poses[k], lever_mm));
-  }
-  return worst;
-}
+/// Merges one chain: of its poses, those from the start of the sweep under way on are held.
+class ChainMerger {
+ public:
+  ChainMerger(size_t count, const std::function<ToolPose(size_t)>& pose, double lever_mm, double tolerance_mm)
+      : count_(count), pose_(pose), lever_mm_(lever_mm), tolerance_mm_(tolerance_mm) {}
 
-/// The farthest pose up to `limit` that one sweep from `first` reaches within the tolerance: doubled until it
-/// fails, then bisected. Every accepted end has been checked against all the poses it skips.
-size_t reach(std::span<const ToolPose> poses, size_t first, size_t limit, double lever_mm,
-             double tolerance_mm) {
-  const auto fits = [&](size_t last) {
-    return chain_deviation(poses, first, last, lever_mm, tolerance_mm) <= tolerance_mm;
-  };
-  size_t good = first + 1;
-  size_t step = 1;
-  while (good < limit && fits(std::min(good + step, limit))) {
-    good = std::min(good + step, limit);
-    step *= 2;
+  MergeBound merge(const SweepVisitor& visit) {
+    for (size_t first = 0; first + 1 < count_;) {
+      const size_t last = reach(first);
+      bound_.chain_mm = std::max(bound_.chain_mm, chain_deviation(first, last));
+      visit(first, last);
+      first = last;
+      forget(first);
+    }
+    return bound_;
   }
-  size_t bad = std::min(good + step, limit + 1);
-  while (bad - good > 1) {
-    const size_t middle = good + (bad - good) / 2;
-    (fits(middle) ? good : bad) = middle;
+
+ private:
+  const ToolPose& at(size_t k) const { return held_[k - offset_]; }
+  void read_up_to(size_t k) {
+    while (offset_ + held_.size() <= k) {
+      held_.push_back(pose_(offset_ + held_.size()));
+      if (held_.size() > 1) {
+        const Sweep tick{held_[held_.size() - 2], held_.back(), 0};
+        bound_.tick_mm = std::max(bound_.tick_mm, motion_bound(tick, lever_mm_));
+      }
+    }
   }
-  return good;
-}
+  /// Poses before this one; they are moved out of the way now and then.
+  void forget(size_t first) {
+    constexpr size_t kForgotten = 1024;
+    if (first - offset_ < kForgotten) return;
+    held_.erase(held_.begin(), held_.begin() + static_cast<ptrdiff_t>(first - offset_));
+    offset_ = first;
+  }
+
+  /// Greatest deviation of the poses between `first` and `last`; stops at the first above the tolerance.
+  double chain_deviation(size_t first, size_t last) {
+    read_up_to(last);
+    const SweepMap map = sweep_map({at(first), at(last), 0});
+    double worst = 0.0;
+    for (size_t k = first + 1; k < last && worst <= tolerance_mm_; ++k)
+      worst = std::max(worst, deviation(map, at(k), lever_mm_));
+    return worst;
+  }
+
+  /// The farthest pose that one sweep from `first` reaches within the tolerance: doubled until it fails, then
+  /// bisected. Every accepted end has been checked against all the poses it skips.
+  size_t reach(size_t first) {
+    const auto fits = [&](size_t last) { return chain_deviation(first, last) <= tolerance_mm_; };
+    const size_t limit = count_ - 1;
+    size_t good = first + 1;
+    size_t step = 1;
+    read_up_to(good);
+    while (good < limit && fits(std::min(good + step, limit))) {
+      good = std::min(good + step, limit);
+      step *= 2;
+    }
+    size_t bad = std::min(good + step, limit + 1);
+    while (bad - good > 1) {
+      const size_t middle = good + (bad - good) / 2;
+      (fits(middle) ? good : bad) = middle;
+    }
+    return good;
+  }
+
+  size_t count_;
+  const std::function<ToolPose(size_t)>& pose_;
+  double lever_mm_, tolerance_mm_;
+  std::vector<ToolPose> held_;
+  size_t offset_ = 0;  ///< number of held_.front()
+  MergeBound bound_;
+};
 
 }  // namespace
 
@@ -68,31 +110,27 @@ CutterSolid::CutterSolid(const cutter::Cutter& cutter)
   for (const cutter::ConvexPiece& piece : pieces) radius = std::max(radius, piece.radius);
 }
 
+MergeBound merge_chain(size_t count, const std::function<ToolPose(size_t)>& pose, double lever_mm,
+                       double tolerance_mm, const SweepVisitor& visit) {
+  return ChainMerger(count, pose, lever_mm, tolerance_mm).merge(visit);
+}
+
 MergedSweeps merge_sweeps(std::span<const ToolPose> poses, std::span<const uint8_t> breaks, double lever_mm,
                           double tolerance_mm) {
   SWARF_CHECK(breaks.size() == poses.size(), "one break flag per pose");
   MergedSweeps merged;
-  double tick_bound = 0.0, chain_bound = 0.0;
-  for (size_t i = 1; i < poses.size(); ++i) {
-    if (!breaks[i]) {
-      tick_bound = std::max(tick_bound, motion_bound({poses[i - 1], poses[i], 0}, lever_mm));
-    }
+  MergeBound worst;
+  for (size_t first = 0, end = 1; first + 1 < poses.size(); first = end++) {
+    while (end < poses.size() && !breaks[end]) ++end;
+    const MergeBound bound = merge_chain(
+        end - first, [&](size_t k) { return poses[first + k]; }, lever_mm, tolerance_mm,
+        [&](size_t from, size_t to) {
+          const auto last = static_cast<uint32_t>(first + to);
+          merged.sweeps.push_back({poses[first + from], poses[last], last});
+        });
+    worst = {std::max(worst.chain_mm, bound.chain_mm), std::max(worst.tick_mm, bound.tick_mm)};
   }
-  for (size_t first = 0; first + 1 < poses.size();) {
-    if (breaks[first + 1]) {
-      ++first;
-      continue;
-    }
-    size_t limit = first + 1;
-    while (limit + 1 < poses.size() && !breaks[limit + 1]) ++limit;
-    while (first < limit) {
-      const size_t last = reach(poses, first, limit, lever_mm, tolerance_mm);
-      chain_bound = std::max(chain_bound, chain_deviation(poses, first, last, lever_mm, tolerance_mm));
-      merged.sweeps.push_back({poses[first], poses[last], static_cast<uint32_t>(last)});
-      first = last;
-    }
-  }
-  merged.error_bound_mm = chain_bound + tick_bound;
+  merged.error_bound_mm = worst.chain_mm + worst.tick_mm;
   return merged;
 }
 

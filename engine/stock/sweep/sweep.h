@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -42,5 +43,15 @@ struct MergedSweeps {
 /// to the farthest point of the cutter that can touch material.
 MergedSweeps merge_sweeps(std::span<const ToolPose> poses, std::span<const uint8_t> breaks, double lever_mm,
                           double tolerance_mm);
+
+/// What merged sweeps err by at most: where poses are left out, and between two poses; both add up.
+struct MergeBound {
+  double chain_mm = 0.0, tick_mm = 0.0;
+};
+/// A sweep from one pose to another, by their numbers.
+using SweepVisitor = std::function<void(size_t from, size_t to)>;
+/// The same for one chain of `count` poses, each asked for once and in order; those of one sweep are held.
+MergeBound merge_chain(size_t count, const std::function<ToolPose(size_t)>& pose, double lever_mm,
+                       double tolerance_mm, const SweepVisitor& visit);
 
 }  // namespace swarf::stock

@@ -1,5 +1,5 @@
 // The motion of CL blocks. The bound of its sweeps is held against dense sampling in tests/unit/sim.
-#include "motion/blocks/block_motion.h"
+#include "motion/blocks/block_motions.h"
 
 #include <gtest/gtest.h>
 
@@ -17,9 +17,7 @@ using toolpath::BlockLaw;
 using toolpath::BlockMove;
 
 void append(toolpath::ToolPath& path, const BlockMove& block, int line) {
-  toolpath::Element& element = path.elements.emplace_back();
-  element.what = block;
-  element.where = {"test.cl", line, 1};
+  path.elements.push_back({block, 0, {"test.cl", line, 1}});
 }
 
 TEST(BlockMotion, BoundsHoldTheDerivativesOfRandomJointBlocks) {
@@ -129,7 +127,7 @@ TEST(BlockMotions, FollowTheBranchNearestToTheValuesBefore) {
     block.feed_mm_s = 10;
     append(path, block, i + 1);
   }
-  const std::vector<BlockMotion> motions = block_motions(path, machine);
+  const BlockMotions motions = block_motions(path, machine);
   const AxisValues way = motions.back().q_to - motions.front().q_from;
   EXPECT_NEAR(way[4], -2 * kPi, 1e-9);
   EXPECT_LT(way.head<4>().norm(), 1e-7);

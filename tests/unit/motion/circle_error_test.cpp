@@ -35,7 +35,7 @@ toolpath::ToolPath path_of(const std::vector<ToolPose>& poses) {
     block.to = poses[i];
     block.law = BlockLaw::kJoint;
     block.feed_mm_s = 10.0;
-    path.elements.emplace_back().what = block;
+    path.elements.push_back({block, 0, {}});
   }
   return path;
 }
@@ -43,7 +43,7 @@ toolpath::ToolPath path_of(const std::vector<ToolPose>& poses) {
 std::optional<CircleError> error_of(const std::vector<ToolPose>& poses) {
   static const kinematics::MachineModel machine = kinematics::table_table_ac();
   const toolpath::ToolPath path = path_of(poses);
-  const std::vector<BlockMotion> motions = block_motions(path, machine);
+  const BlockMotions motions = block_motions(path, machine);
   std::vector<int> elements(motions.size());
   std::iota(elements.begin(), elements.end(), 0);
   return circle_error(motions, elements);

@@ -132,10 +132,12 @@ TEST(Cycles, AFarCycleIsFoundWithoutThoseBeforeIt) {
   for (uint64_t seed = 31; seed <= 36; ++seed) {
     Rng rng(seed);
     toolpath::ToolPath path = random_program(machine, rng, 300);
-    for (toolpath::Element& element : path.elements) {
+    std::vector<toolpath::Element> elements(path.elements.begin(), path.elements.end());
+    for (toolpath::Element& element : elements) {
       auto& block = std::get<toolpath::BlockMove>(element.what);
       if (!is_rapid(block)) block.feed_mm_s = 0.05;
     }
+    path.elements = toolpath::Elements(elements);
     const LookAheadReach reach = seed % 2 == 0 ? LookAheadReach{60, 20} : LookAheadReach{};
     MotionOptions options;
     options.period_s = 1e-2;
@@ -178,12 +180,20 @@ TEST(Cycles, AMotionIsRecalledFromItsPlacesAndRefusedWhereItIsAnother) {
   EXPECT_GT(refused, 0);
 }
 
+/// The second block dwells.
+toolpath::ToolPath with_dwell(toolpath::ToolPath path, double dwell_s) {
+  std::vector<toolpath::Element> elements(path.elements.begin(), path.elements.end());
+  std::get<toolpath::BlockMove>(elements[1].what).dwell_s = dwell_s;
+  elements[1].where = {"slow.nc", 7, 1};
+  path.elements = toolpath::Elements(elements);
+  return path;
+}
+
 /// A dwell, a stop of the user, and an empty path.
 TEST(Cycles, ADwellIsWalkedThroughInWindows) {
   const kinematics::MachineModel machine = paper_machine();
   Rng rng(5);
-  toolpath::ToolPath path = random_program(machine, rng, 3);
-  std::get<toolpath::BlockMove>(path.elements[1].what).dwell_s = 100.0;  // 100 000 cycles
+  const toolpath::ToolPath path = with_dwell(random_program(machine, rng, 3), 100.0);  // 100 000 cycles
   Cycles cycles(path.elements, std::span(&machine, 1), cutter::Cutter{}, MotionOptions{});
   const Walked walked = walk(cycles);
   EXPECT_NEAR(walked.result.statistics.cycle.dwell_s, 100.0, 0.01);
@@ -193,9 +203,7 @@ TEST(Cycles, ADwellIsWalkedThroughInWindows) {
 TEST(Cycles, AProgramOfMonthsIsRefusedWithItsBlock) {
   const kinematics::MachineModel machine = paper_machine();
   Rng rng(5);
-  toolpath::ToolPath path = random_program(machine, rng, 3);
-  std::get<toolpath::BlockMove>(path.elements[1].what).dwell_s = 1e9;
-  path.elements[1].where = {"slow.nc", 7, 1};
+  const toolpath::ToolPath path = with_dwell(random_program(machine, rng, 3), 1e9);
   Cycles cycles(path.elements, std::span(&machine, 1), cutter::Cutter{}, MotionOptions{});
   Progress silent;
   try {

@@ -67,9 +67,9 @@ TEST(LookAhead, TimeIsWithinThreePercentOfTheOptimum) {
       block.from = kinematics::forward(machine, one.stations[i]);
       block.to = kinematics::forward(machine, one.stations[i + 1]);
       block.feed_mm_s = one.feeds[i];
-      path.elements.emplace_back().what = block;
+      path.elements.push_back({block, 0, {}});
     }
-    const std::vector<BlockMotion> motions = block_motions(path, machine);
+    const BlockMotions motions = block_motions(path, machine);
     RunPlace start;
     start.end = motions.size();
     RunPlanner planner(motions, start, inverse, options);

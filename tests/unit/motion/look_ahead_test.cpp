@@ -1,6 +1,8 @@
 // Stops, dwells, corners, dog-legs, branches and cycle times along blocks.
 #include <gtest/gtest.h>
 
+#include <functional>
+
 #include <cmath>
 
 #include "base/units.h"
@@ -36,15 +38,16 @@ toolpath::ToolPath path_through(const MachineModel& machine, const std::vector<A
     block.axes = toolpath::AxisSpan{stations[i], stations[i + 1]};
     block.from = kinematics::forward(machine, stations[i]);
     block.to = kinematics::forward(machine, stations[i + 1]);
-    toolpath::Element& element = path.elements.emplace_back();
-    element.what = block;
-    element.where = {"test.nc", static_cast<int>(i) + 1, 1};
+    path.elements.push_back({block, 0, {"test.nc", static_cast<int>(i) + 1, 1}});
   }
   return path;
 }
 
-BlockMove& block_of(toolpath::ToolPath& path, size_t i) {
-  return std::get<BlockMove>(path.elements[i].what);
+/// Changes one block of a path.
+void edit(toolpath::ToolPath& path, size_t i, const std::function<void(BlockMove&)>& change) {
+  std::vector<toolpath::Element> elements(path.elements.begin(), path.elements.end());
+  change(std::get<BlockMove>(elements[i].what));
+  path.elements = toolpath::Elements(elements);
 }
 
 Interpolated run(const toolpath::ToolPath& path, const MachineModel& machine,
@@ -70,14 +73,14 @@ TEST(LookAhead, ExactStopComesToRestAndALargerToleranceIsFaster) {
   const MachineModel machine = paper_machine();
   toolpath::ToolPath path = path_through(machine, kCorner, BlockLaw::kTcp, 50.0);
   const double by_default = speed_at_corner(run(path, machine), 0);
-  block_of(path, 0).corner_tolerance_mm = 0.2;
+  edit(path, 0, [](BlockMove& block) { block.corner_tolerance_mm = 0.2; });
   const Interpolated wide = run(path, machine);
   EXPECT_GT(by_default, 2.0);
   EXPECT_GT(speed_at_corner(wide, 0), 2.0 * by_default);
   EXPECT_GT(wide.statistics.corner_deviation_max_mm, 0.15);
   EXPECT_LE(wide.statistics.corner_deviation_max_mm, 0.2);
   EXPECT_GE(wide.statistics.corner_element, 0);
-  block_of(path, 0).exact_stop = true;
+  edit(path, 0, [](BlockMove& block) { block.exact_stop = true; });
   const Interpolated stopped = run(path, machine);
   EXPECT_LT(speed_at_corner(stopped, 0), 0.1);
   EXPECT_EQ(stopped.statistics.corner_deviation_max_mm, 0.0);
@@ -96,9 +99,9 @@ TEST(LookAhead, ReversalInPlaceIsRounded) {
 TEST(LookAhead, DwellsAndTimesByKindAndTool) {
   const MachineModel machine = paper_machine();
   toolpath::ToolPath path = path_through(machine, kCorner, BlockLaw::kJoint, 50.0);
-  block_of(path, 1).dwell_s = 0.25;
-  block_of(path, 1).tool = 2;
-  block_of(path, 0).feed_mm_s = 0.0;
+  edit(path, 1, [](BlockMove& block) { block.dwell_s = 0.25; });
+  edit(path, 1, [](BlockMove& block) { block.tool = 2; });
+  edit(path, 0, [](BlockMove& block) { block.feed_mm_s = 0.0; });
   const Interpolated result = run(path, machine);
   const CycleTime& cycle = result.statistics.cycle;
   EXPECT_NEAR(cycle.dwell_s, 0.25, 1e-9);
@@ -119,7 +122,7 @@ TEST(LookAhead, DurationOfABlockReplacesItsFeed) {
   const MachineModel machine = paper_machine();
   toolpath::ToolPath path =
       path_through(machine, {values(0, 0, 0, 0.3, 0), values(100, 0, 0, 0.3, 0)}, BlockLaw::kTcp, 500.0);
-  block_of(path, 0).duration_s = 5.0;
+  edit(path, 0, [](BlockMove& block) { block.duration_s = 5.0; });
   const Interpolated result = run(path, machine);
   EXPECT_NEAR(result.statistics.time_s, RestToRest(100, 20, 2000, 5e4).duration(), 2e-3);
 }
@@ -171,8 +174,9 @@ TEST(LookAhead, WholeCircleHoldsItsFeedAndReturns) {
   const MachineModel machine = paper_machine();
   toolpath::ToolPath path =
       path_through(machine, {values(0, 0, 0, 0.3, 0), values(0, 0, 0, 0.3, 0)}, BlockLaw::kTcp, 40.0);
-  BlockMove& block = block_of(path, 0);
-  block.arc = program::Arc{block.from.tip_W + Vec3(25, 0, 0), Vec3::UnitZ()};
+  edit(path, 0, [](BlockMove& block) {
+    block.arc = program::Arc{block.from.tip_W + Vec3(25, 0, 0), Vec3::UnitZ()};
+  });
   const Interpolated result = run(path, machine);
   EXPECT_EQ(check_motion(result.trajectory, machine), "");
   EXPECT_NEAR(result.statistics.path_length_mm, 50 * kPi, 1e-4);
@@ -187,14 +191,14 @@ TEST(DogLeg, EachAxisArrivesByItself) {
   machine.axes[1].rapid_max = 100;
   toolpath::ToolPath path =
       path_through(machine, {values(0, 0, 0, 0.3, 0), values(30, 40, 0, 0.3, 0)}, BlockLaw::kJoint, 0.0);
-  block_of(path, 0).dwell_s = 0.1;
+  edit(path, 0, [](BlockMove& block) { block.dwell_s = 0.1; });
   const toolpath::ToolPath legs = with_dog_legs(path, std::span(&machine, 1));
   ASSERT_EQ(legs.elements.size(), 2U);
-  const auto& first = std::get<BlockMove>(legs.elements[0].what);
-  const auto& second = std::get<BlockMove>(legs.elements[1].what);
+  const BlockMove first = legs.elements.block(0);
+  const BlockMove second = legs.elements.block(1);
   EXPECT_LT((first.axes->to - values(30, 10, 0, 0.3, 0)).norm(), 1e-9) << "X arrives after 0.1 s";
   EXPECT_EQ(second.axes->from, first.axes->to);
-  EXPECT_EQ(second.to.tip_W, block_of(path, 0).to.tip_W);
+  EXPECT_EQ(second.to.tip_W, path.elements.block(0).to.tip_W);
   EXPECT_EQ(first.dwell_s, 0.1);
   EXPECT_EQ(second.dwell_s, 0.0);
   EXPECT_TRUE(second.exact_stop);
@@ -209,7 +213,7 @@ TEST(DogLeg, EachAxisArrivesByItself) {
 TEST(LookAhead, TooLongAProgramIsRefusedBeforeItTakesTime) {
   const MachineModel machine = paper_machine();
   toolpath::ToolPath path = path_through(machine, kCorner, BlockLaw::kJoint, 50.0);
-  block_of(path, 1).dwell_s = 1e9;
+  edit(path, 1, [](BlockMove& block) { block.dwell_s = 1e9; });
   try {
     run(path, machine);
     FAIL() << "no error";
@@ -235,12 +239,13 @@ TEST(LookAhead, TcpAxesBoundsHoldTheDerivatives) {
     for (int i = 0; i < 5; ++i) to[i] += i < 3 ? rng.uniform(-20, 20) : rng.uniform(-1.5, 1.5);
     toolpath::ToolPath path = path_through(machine, {from, to}, BlockLaw::kTcpAxes, 10.0);
     if (trial % 2 == 1) {
-      BlockMove& block = block_of(path, 0);
-      const Vec3 chord = block.to.tip_W - block.from.tip_W;
-      const Vec3 normal = chord.unitOrthogonal();
-      block.arc = program::Arc{block.from.tip_W + 0.5 * chord + normal.cross(chord), normal};
+      edit(path, 0, [](BlockMove& block) {
+        const Vec3 chord = block.to.tip_W - block.from.tip_W;
+        const Vec3 normal = chord.unitOrthogonal();
+        block.arc = program::Arc{block.from.tip_W + 0.5 * chord + normal.cross(chord), normal};
+      });
     }
-    const std::vector<BlockMotion> motions = block_motions(path, machine);
+    const BlockMotions motions = block_motions(path, machine);
     const MotionBounds bounds = motion_bounds(motions[0]);
     for (int k = 1; k < 40; ++k) {
       const double s = k / 40.0;

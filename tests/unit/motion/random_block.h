@@ -36,7 +36,7 @@ struct RandomBlock {
   kinematics::MachineModel machine;
   toolpath::BlockMove block;
   kinematics::AxisValues q_from = kinematics::AxisValues::Zero(), q_to = kinematics::AxisValues::Zero();
-  BlockMotion motion() const { return {&block, &machine, q_from, q_to}; }
+  BlockMotion motion() const { return {block, &machine, q_from, q_to}; }
   std::string text() const {
     const auto pose = [](const ToolPose& p) {
       return fmt::format("{{{{{}, {}, {}}}, {{{}, {}, {}}}}}", p.tip_W.x(), p.tip_W.y(), p.tip_W.z(),

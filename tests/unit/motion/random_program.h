@@ -63,9 +63,7 @@ inline toolpath::ToolPath random_program(const kinematics::MachineModel& machine
       block.arc =
           program::Arc{block.from.tip_W + 0.5 * chord + offset * normal.cross(chord).normalized(), normal};
     }
-    toolpath::Element& element = path.elements.emplace_back();
-    element.what = block;
-    element.where = {"random.cl", i + 1, 1};
+    path.elements.push_back({block, 0, {"random.cl", i + 1, 1}});
     q = next;
   }
   return path;

@@ -35,9 +35,7 @@ BlockMove move(const ToolPose& from, const ToolPose& to, BlockLaw law, double fe
 }
 
 void append(toolpath::ToolPath& path, const BlockMove& block) {
-  toolpath::Element& element = path.elements.emplace_back();
-  element.what = block;
-  element.where = {"test.cl", static_cast<int>(path.elements.size()), 1};
+  path.elements.push_back({block, 0, {"test.cl", static_cast<int>(path.elements.size()) + 1, 1}});
 }
 
 ToolPose above(ToolPose pose, double way) {
@@ -187,7 +185,7 @@ TEST(SingularityScan, TheWorstAreTheWorstOfAll) {
   std::vector<double> every;
   for (const BlockMotion& motion : block_motions(path, machine)) {
     every.push_back(kinematics::segment_deviation(
-                        machine, {motion.block->from, motion.block->to, motion.q_from, motion.q_to})
+                        machine, {motion.block.from, motion.block.to, motion.q_from, motion.q_to})
                         .value);
   }
   std::sort(every.rbegin(), every.rend());

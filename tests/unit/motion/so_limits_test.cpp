@@ -47,16 +47,14 @@ toolpath::ToolPath table_2(BlockLaw law, double feed_mm_s) {
   block.feed_mm_s = feed_mm_s;
   toolpath::ToolPath path;
   path.planner = "cl";
-  toolpath::Element& element = path.elements.emplace_back();
-  element.what = block;
-  element.where = {"so.cl", 1, 1};
+  path.elements.push_back({block, 0, {"so.cl", 1, 1}});
   return path;
 }
 
 /// Integral of |dC| over the block, rad, from the azimuth of the tool axis alone.
 double swing() {
   const toolpath::ToolPath path = table_2(BlockLaw::kTcp, 1.0);
-  const auto& block = std::get<BlockMove>(path.elements[0].what);
+  const BlockMove block = path.elements.block(0);
   const Vec3 &a = block.from.axis_W, &b = block.to.axis_W;
   return std::abs(std::atan2(a.x() * b.y() - a.y() * b.x(), a.x() * b.x() + a.y() * b.y()));
 }
@@ -122,7 +120,7 @@ TEST(SoLimits, TipErrorOfTheOtherModeIsThatOfTheory2) {
 TEST(SoLimits, FastRotaryMovesAndSwingsAreNamedWithTheirBlocks) {
   const kinematics::MachineModel machine = mikron();
   const toolpath::ToolPath path = table_2(BlockLaw::kTcp, 5.0);
-  const std::vector<BlockMotion> motions = block_motions(path, machine);
+  const BlockMotions motions = block_motions(path, machine);
   MotionOptions options;
   std::vector<MotionFinding> findings = find_fast_turns(path.elements, motions, options);
   ASSERT_EQ(findings.size(), 1U);

@@ -111,7 +111,7 @@ class TimeOptimum {
       }
     };
     const size_t block = run_.place.first + point_at(*run_.path, cell, offset).block;
-    double most = std::pow(run_.motions[block].block->feed_mm_s / place.tip, 2);
+    double most = std::pow(run_.motions.feed_mm_s(block) / place.tip, 2);
     add(0.0, 0.5, 0.0, options_.path_acceleration_max / place.tip, 0.0);
     add(0.0, 0.0, 0.5, 0.0, options_.path_jerk_max / place.tip);
     for (Eigen::Index i = 0; i < kinematics::kMaxAxes; ++i) {

@@ -56,7 +56,7 @@ TEST(ClSolidWorks, PecksOfAFirstAndOfFurtherDepths) {
                     "DEEP,FEDTO,-20.,STPECK,8.,SUBPECK,5.,MMPM,150.,RAPTO,2.,RTRCTO,20.\nGOTO/10.,10.,0.\n"
                     "CYCLE/OFF\nCYCLE/CLEAR\nRAPID/\nGOTO/0.,0.,20.\nFINI\n");
   std::vector<double> bottoms;
-  for (const ClMove& move : program.moves) {
+  for (const auto& move : program.moves) {
     if (move.feed_mm_s > 0.0) bottoms.push_back(move.to.tip_W.z());
   }
   EXPECT_EQ(bottoms, (std::vector<double>{-8.0, -13.0, -18.0, -20.0}));

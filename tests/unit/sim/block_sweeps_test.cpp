@@ -204,8 +204,8 @@ TEST(DrivenSweeps, FollowTheRoundedCornerAndKeepRapidsApart) {
       if (i > 0) {
         EXPECT_EQ(sweep.start.tip_W, sweeps.sweeps[i - 1].end.tip_W);
       }
-      const auto& block = std::get<toolpath::BlockMove>(
-          swept.path.elements[static_cast<size_t>(sweeps.sources[i].element)].what);
+      const toolpath::BlockMove block =
+          swept.path.elements.block(static_cast<size_t>(sweeps.sources[i].element));
       const bool lifts = sweep.end.tip_W.z() > sweep.start.tip_W.z() + 1e-3;
       EXPECT_TRUE(!lifts || is_rapid(block)) << "sweep " << i;
     }

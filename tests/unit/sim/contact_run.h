@@ -23,14 +23,13 @@ struct ContactRun {
     job.machine.model = motion::paper_machine();
   }
   toolpath::BlockMove& turn(const ToolPose& to, double feed_mm_s = 20.0) {
-    std::vector<toolpath::Element>& elements = result.main.path.elements;
     toolpath::BlockMove block;
     block.from = end_;
     block.to = end_ = to;
     block.feed_mm_s = feed_mm_s;
     block.spindle_rpm = 5000.0;
-    elements.push_back({block, 0, {"test.nc", static_cast<int>(elements.size()) + 1}});
-    return std::get<toolpath::BlockMove>(elements.back().what);
+    elements_.push_back({block, 0, {"test.nc", static_cast<int>(elements_.size()) + 1}});
+    return std::get<toolpath::BlockMove>(elements_.back().what);
   }
   toolpath::BlockMove& move(const Vec3& to, double feed_mm_s = 20.0) {
     return turn({to, end_.axis_W}, feed_mm_s);
@@ -38,6 +37,7 @@ struct ContactRun {
   void start(const ToolPose& pose) { end_ = pose; }
   const ToolClearance& cut() {
     Progress silent;
+    result.main.path.elements = toolpath::Elements(elements_);
     const std::vector<kinematics::MachineModel> machines = machines_by_tool(job);
     result.main.cycles = std::make_unique<motion::Cycles>(result.main.path.elements, machines,
                                                           job.scene.tools.front(), job.scene.motion);
@@ -48,6 +48,7 @@ struct ContactRun {
   const std::vector<BadCut>& bad_cuts() const { return result.cut.state.bad_cuts; }
 
  private:
+  std::vector<toolpath::Element> elements_;
   ToolPose end_{{0, 0, 60}, Vec3::UnitZ()};
 };
 

@@ -163,7 +163,9 @@ TEST_F(Judge, AMeshIsNotComparedWithTheLevelSetAndSaysSo) {
 }
 
 TEST_F(Judge, ASilentProgramIsNotCheckedForItsSpindle) {
-  std::get<toolpath::BlockMove>(result_.main.path.elements.front().what).spindle_rpm.reset();
+  toolpath::BlockMove block = result_.main.path.elements.block(0);
+  block.spindle_rpm.reset();
+  result_.main.path.elements = toolpath::Elements({{block, 0, {"path.cl", 0, 0}}});
   const Check check = judged("spindle_wrong");
   EXPECT_EQ(check.outcome, Outcome::kNotJudged);
   EXPECT_FALSE(check.value.has_value());

@@ -43,7 +43,8 @@ TEST(Links, EveryElementBeginsWhereTheOneBeforeEnds) {
         if (i > 0) {
           EXPECT_LT(gap(ends(path.elements[i - 1]).end, ends(path.elements[i]).start), 1e-9) << i;
         }
-        const auto* move = std::get_if<FreeMove>(&path.elements[i].what);
+        const Element element = path.elements[i];
+        const auto* move = std::get_if<FreeMove>(&element.what);
         if (move != nullptr) links += (move->to.tip_W - move->from.tip_W).norm();
       }
       EXPECT_NEAR(path.link_length_mm, links, 1e-9);
@@ -53,13 +54,13 @@ TEST(Links, EveryElementBeginsWhereTheOneBeforeEnds) {
 
 TEST(Links, BeginsAndEndsAtTheClearanceHeight) {
   const ToolPath path = planned(true);
-  const auto& first = std::get<FreeMove>(path.elements.front().what);
-  const auto& last = std::get<FreeMove>(path.elements.back().what);
+  const auto first = std::get<FreeMove>(path.elements.front().what);
+  const auto last = std::get<FreeMove>(path.elements.back().what);
   EXPECT_EQ(first.kind, MoveKind::kRapid);
   EXPECT_DOUBLE_EQ(first.from.tip_W.z(), 65.0);
   EXPECT_DOUBLE_EQ(last.to.tip_W.z(), 65.0);
   // The way through raw material, below the top of the stock at 45 mm, is made at approach feed.
-  const auto& approach = std::get<FreeMove>(path.elements[1].what);
+  const auto approach = std::get<FreeMove>(path.elements[1].what);
   EXPECT_EQ(approach.kind, MoveKind::kApproach);
   EXPECT_GE(approach.from.tip_W.z(), 45.0);
   EXPECT_DOUBLE_EQ(approach.feed_mm_s, 25.0);
@@ -105,7 +106,8 @@ TEST(Links, NoRapidTouchesThePart) {
     const ToolPath path = planned(zigzag);
     const surface::SurfacePtr dome = test::dome();
     for (size_t k = 0; k < path.elements.size(); k += zigzag ? 1 : 3) {
-      const auto* move = std::get_if<FreeMove>(&path.elements[k].what);
+      const Element element = path.elements[k];
+      const auto* move = std::get_if<FreeMove>(&element.what);
       if (move == nullptr || move->kind != MoveKind::kRapid) continue;
       const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(move->from.axis_W, move->to.axis_W);
       for (int i = 0; i <= 20; ++i) {

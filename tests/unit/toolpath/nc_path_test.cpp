@@ -44,8 +44,8 @@ Made make(const std::vector<NcMove>& moves) {
   return made;
 }
 
-const BlockMove& block(const Made& made, size_t i) {
-  return std::get<BlockMove>(made.nc.path.elements.at(i).what);
+BlockMove block(const Made& made, size_t i) {
+  return made.nc.path.elements.block(i);
 }
 
 TEST(NcPath, EveryMoveIsABlockWithItsPlaceAndAxisValues) {
@@ -66,7 +66,7 @@ TEST(NcPath, EveryMoveIsABlockWithItsPlaceAndAxisValues) {
   EXPECT_EQ(block(made, 1).corner_tolerance_mm, 0.02);
   ASSERT_TRUE(block(made, 1).axes);
   EXPECT_EQ(block(made, 1).axes->to, cut.q_to);
-  const SourceLocation& where = made.nc.path.elements[1].where;
+  const SourceLocation where = made.nc.path.elements.where(1);
   EXPECT_EQ(where.file, "sub.spf");
   EXPECT_EQ(where.line, 7);
   EXPECT_EQ(where.column, 5);
