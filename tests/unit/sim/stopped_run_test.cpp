@@ -49,12 +49,17 @@ TEST_P(StoppedRun, GoesOnFromEveryMoment) {
   const auto folder = test::fresh_folder(std::string("stopped_run_") + GetParam().scene);
   const std::string file = (folder / "stock.vdb").string();
   int uncut = 0, partly = 0;
-  // The first looks are those between the windows of the interpolation; of the others every sixth part.
-  for (int looks = 0; looks < whole.looks; looks += looks < 2 ? 1 : std::max(1, whole.looks / 6)) {
+  // The first looks are those between the windows of the interpolation; of the others every quarter.
+  for (int looks = 0; looks < whole.looks; looks += looks < 2 ? 1 : std::max(1, whole.looks / 4)) {
     SCOPED_TRACE(fmt::format("stopped at look {} of {}", looks, whole.looks));
     StopAfter stop(looks);
     const Result part = simulate(job, {}, stop);
-    ASSERT_TRUE(part.stopped);
+    // How often the proof looks depends on the threads: at its end a run may be over before it is asked.
+    if (!part.stopped) {
+      EXPECT_GT(10 * looks, 9 * whole.looks);
+      EXPECT_EQ(part.stock->hash(), expected.stock->hash());
+      break;
+    }
     part.stock->save(file, part.cut.metadata);
     ++(part.cut.state.sweeps == 0 ? uncut : partly);
     CutOptions options;
