@@ -71,7 +71,7 @@ double lowest_in_sweep(const cutter::ConvexPiece& piece, const Vec3& point, cons
   const Vec3 P = map.start(point), N = map.R0t * direction;
   const bool translation = map.R0t == map.R1t;
   const SlabPassage passage{piece, P, map.end(point) - P, N,
-                           translation ? Vec3(Vec3::Zero()) : Vec3(map.R1t * direction - N)};
+                            translation ? Vec3(Vec3::Zero()) : Vec3(map.R1t * direction - N)};
   return lowest_in_part(passage, 0.0, 1.0, below_all(passage), highest);
 }
 
