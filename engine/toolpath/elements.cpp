@@ -1,7 +1,8 @@
 #include "toolpath/elements.h"
 
 #include <algorithm>
-#include <cstring>
+#include <bit>
+#include <type_traits>
 #include <utility>
 
 #include "base/check.h"
@@ -15,13 +16,15 @@ constexpr size_t kKindsBack = 8;
 /// To the last bit: zeros of two signs differ.
 template <typename T>
 bool same_bits(const T& a, const T& b) {
-  return std::memcmp(&a, &b, sizeof(T)) == 0;
-}
-bool same_bits(const Vec3& a, const Vec3& b) {
-  return std::memcmp(a.data(), b.data(), 3 * sizeof(double)) == 0;
-}
-bool same_bits(const kinematics::AxisValues& a, const kinematics::AxisValues& b) {
-  return std::memcmp(a.data(), b.data(), kinematics::kMaxAxes * sizeof(double)) == 0;
+  if constexpr (std::is_floating_point_v<T>) {
+    static_assert(sizeof(T) == sizeof(uint64_t));
+    return std::bit_cast<uint64_t>(a) == std::bit_cast<uint64_t>(b);
+  } else if constexpr (std::is_integral_v<T> || std::is_enum_v<T>) {
+    return a == b;
+  } else {
+    return std::equal(a.data(), a.data() + a.size(), b.data(),
+                      [](double x, double y) { return same_bits(x, y); });
+  }
 }
 
 template <typename List>
