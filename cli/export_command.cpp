@@ -13,6 +13,7 @@
 #include "reports/pending_folder.h"
 #include "reports/pictures.h"
 #include "reports/run_output.h"
+#include "sim/run/measured_mesh.h"
 #include "sim/run/recorder.h"
 
 namespace swarf::cli {
@@ -86,7 +87,7 @@ int export_run(const ExportOptions& options) {
   const reports::StoredRun stored = reports::read_run(options.folder);
   const bool coloured = !options.gltf.empty() || !options.ply.empty();
   const bool moves = !options.gltf.empty() || !options.machine_gltf.empty() || !options.trajectory.empty() ||
-                     (coloured && !stored.job.scene.has_blocks());
+                     (coloured && sim::normals_need_cycles(stored.job));
   const sim::MeasuredPath path = options.window.any()
                                      ? reports::window_motion(stored.job, options.folder, progress)
                                      : reports::motion_of(stored, options.folder, moves, progress);

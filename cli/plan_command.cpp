@@ -60,10 +60,10 @@ program::ClProgram cl_program(const sim::Job& job, const toolpath::ToolPath& pat
 /// The text that -o takes: the scene's own path, or its CL file again, in mm, without cycles and systems.
 std::string planned_text(const sim::Job& job, toolpath::ToolPath& path) {
   Diagnostics diagnostics;
-  path = sim::job_path(job, diagnostics);
+  path = sim::job_path(job, diagnostics).path;
   print_diagnostics(diagnostics.list());
   if (job.cl) return program::write_cl(*job.cl);
-  if (job.scene.has_blocks()) {
+  if (path.elements.hold_blocks()) {
     throw InputError("nothing-to-plan", {job.scene.file}, "the scene's program is an NC program",
                      fmt::format("run it: swarf run {}", job.scene.file));
   }

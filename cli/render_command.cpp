@@ -10,6 +10,7 @@
 #include "reports/pending_folder.h"
 #include "reports/pictures.h"
 #include "reports/run_output.h"
+#include "sim/run/measured_mesh.h"
 
 namespace swarf::cli {
 namespace {
@@ -49,8 +50,7 @@ int render(const RenderOptions& options) {
   }
   if (options.samples > 0) stored.job.scene.stills.samples = options.samples;
   if (options.seconds > 0.0) stored.job.scene.movie.seconds = options.seconds;
-  // The part's normals come from the cycles of surface jobs.
-  const bool moves = !options.movie.empty() || !stored.job.scene.has_blocks() ||
+  const bool moves = !options.movie.empty() || sim::normals_need_cycles(stored.job) ||
                      kind == reports::StillKind::kMachine || kind == reports::StillKind::kFan;
   const sim::MeasuredPath path = options.window.any()
                                      ? reports::window_motion(stored.job, options.folder, progress)

@@ -17,8 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<const char*, 3> kProgramKeys{"program", "cl", "nc"};  // order of ProgramKind
-
 void keep_copy(const fs::path& from, const fs::path& to) {
   std::error_code error;
   fs::create_directories(to.parent_path(), error);
@@ -131,7 +129,7 @@ std::vector<std::string> keep_inputs(const PendingFolder& folder, const sim::Job
   keep_copy(scene.file, input / "scene.toml");
   const fs::path machine = keep_machine(input, scene.machine_file);
   all.push_back(fmt::format("machine={}", quoted(machine.string())));
-  keep(kProgramKeys.at(static_cast<size_t>(scene.kind)), scene.program_file,
+  keep(scene.program_key.c_str(), scene.program_file,
        fs::path(kProgramFolder) / plain_name(scene.program_file, "program"));
   keep("tool_table", scene.tool_table_file, beside(scene.tool_table_file, "tools"));
   if (scene.design.kind == sim::DesignKind::kSurface)

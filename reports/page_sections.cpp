@@ -324,7 +324,7 @@ std::string paper_section(const ReportData& data) {
                                 {"Erratum"},
                                 {"Why they differ"}},
                                "Paper against ours");
-  for (const PaperRow& row : data.paper) {
+  for (const papers::PaperRow& row : data.paper) {
     const bool agrees = row.erratum.empty() && row.why.empty();
     const std::string erratum = row.erratum.empty() ? "–" : element("span", "erratum", row.erratum);
     out += fmt::format(

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/diagnostics.h"
+#include "papers/paper_row.h"
 
 namespace swarf::reports {
 
@@ -67,17 +68,6 @@ struct Table {
   std::vector<std::vector<std::string>> rows;  ///< each as long as `columns`
   std::vector<std::string> notes{};            ///< below the table
   int highlighted_row = -1;                    ///< the one that this run used; -1: none
-};
-
-/// A printed figure of the paper beside ours.
-struct PaperRow {
-  std::string quantity;   ///< "Chord error, 52 segments"
-  std::string place;      ///< "Eq. (8), Fig. 6"
-  std::string paper;      ///< "1"
-  std::string ours;       ///< "1.0947"
-  std::string unit{};     ///< "µm"
-  std::string erratum{};  ///< "E6"; empty: they agree
-  std::string why{};      ///< what explains the difference
 };
 
 /// What was checked, and what was not, with the reason.
@@ -190,7 +180,7 @@ struct ReportData {
   std::vector<Plot> plots;
   std::vector<Table> tables;  ///< planner comparison, axes, Fig. 6, ...
   std::vector<Topic> topics{};
-  std::vector<PaperRow> paper;
+  std::vector<papers::PaperRow> paper;
   std::string paper_title;  ///< "Lin & Koren (1996)"
   std::vector<Check> checks;
   std::vector<std::string> reproduce;  ///< shell commands

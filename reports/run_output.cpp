@@ -63,7 +63,7 @@ void write_pictures(const PendingFolder& folder, const FinishedRun& run, const T
   std::vector<Picture> pictures{
       {StillKind::kMachine, "still_machine.png", "machine", "The machine near the middle of the program."},
       {StillKind::kPart, "still_part.png", "iso",
-       run.job.scene.has_blocks()
+       run.cycles.elements().hold_blocks()
            ? "The finished part."
            : "The finished part: strip lights break at each ridge, so every band is one pass."},
       {StillKind::kFan, "still_fan.png", "iso", "Paths and tool axes (Lin & Koren, Fig. 13)."}};

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/units.h"
-#include "motion/offline_baseline.h"
+#include "reports/fig6_table.h"
 
 namespace swarf::reports {
 namespace {
@@ -100,32 +100,18 @@ Plot height_plot(const sim::Job& job, const sim::Result& result) {
   return plot;
 }
 
-Plot fig6_plot() {
-  Plot plot;
-  plot.title = "Fig. 6: orientation error of off-line segments, curve of Eq. (8)";
-  plot.caption = "Orientation linear along the chord, which is what the paper's 0.017 deg belongs to (E5).";
-  plot.x_label = "curve parameter u";
-  plot.y_label = "orientation error";
-  plot.y_unit = "deg";
-  for (const motion::Fig6Row& row : motion::reproduce_fig6()) {
-    Series series{fmt::format("{}, {} segments", row.segmentation, row.segments), {}};
-    for (const Vec2& point : row.curve) series.points.push_back({point.x(), point.y()});
-    plot.series.push_back(std::move(series));
-  }
-  return plot;
-}
-
 }  // namespace
 
 std::vector<Plot> run_plots(const sim::Job& job, const sim::Result& result) {
   const motion::TimeEnvelope& envelope = result.main.envelope;
+  const bool planned = !result.main.path.elements.hold_blocks();
   std::vector<Plot> plots{feed_plot(envelope), axis_plot(job, envelope, AxisKind::kLinear, false),
                           axis_plot(job, envelope, AxisKind::kRotary, false),
                           axis_plot(job, envelope, AxisKind::kLinear, true),
                           axis_plot(job, envelope, AxisKind::kRotary, true)};
-  if (!result.main.ridges.empty() || !job.scene.has_blocks()) plots.push_back(scallop_plot(result));
+  if (!result.main.ridges.empty() || planned) plots.push_back(scallop_plot(result));
   if (!result.main.dexels.empty()) plots.push_back(height_plot(job, result));
-  if (!job.scene.has_blocks()) plots.push_back(fig6_plot());
+  if (planned) plots.push_back(fig6_plot());
   return plots;
 }
 

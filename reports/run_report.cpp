@@ -8,18 +8,19 @@
 #include "base/units.h"
 #include "cutter/cutting_pieces.h"
 #include "measure/measure.h"
-#include "motion/offline_baseline.h"
 #include "motion/speed/look_ahead.h"
+#include "papers/lin_koren.h"
+#include "papers/so_study.h"
+#include "papers/so_table2.h"
 #include "reports/check_rows.h"
 #include "reports/cl_report.h"
+#include "reports/fig6_table.h"
 #include "reports/flank_table.h"
 #include "reports/nc_report.h"
-#include "reports/paper_table.h"
 #include "reports/part_view.h"
 #include "reports/pictures.h"
 #include "reports/run_plots.h"
 #include "reports/singularity_section.h"
-#include "reports/so_paper.h"
 #include "reports/time_facts.h"
 #include "reports/tools_table.h"
 
@@ -36,6 +37,11 @@ std::string duration(double seconds) {
              : fmt::format("{} min {:02d} s", static_cast<int>(seconds) / 60, static_cast<int>(seconds) % 60);
 }
 
+/// The path is the program's own blocks, not planned passes.
+bool brings_blocks(const sim::Result& result) {
+  return result.main.path.elements.hold_blocks();
+}
+
 /// A measure of the surface, in the tone of the check that judged it; not judged is neutral, never green.
 KeyNumber judged_number(const sim::Result& result, const char* check_name, const char* label,
                         const std::string& hint) {
@@ -50,8 +56,8 @@ KeyNumber rays_number(const sim::Result& result) {
                        check.limit ? fmt::format("bound {:.2f} µm", *check.limit) : "");
 }
 
-/// The numbers of a CL job: its surface, when it has one, is measured for excess and gouge.
-std::vector<KeyNumber> cl_key_numbers(const sim::Result& result) {
+/// The numbers of a program of blocks: its surface, when it has one, is measured for excess and gouge.
+std::vector<KeyNumber> block_key_numbers(const sim::Result& result) {
   const measure::SurfaceMetrics& surface = result.main.surface;
   std::vector<KeyNumber> numbers{{"Machining time", duration(result.main.motion.statistics.time_s), "",
                                   fmt::format("{} blocks", result.main.path.elements.size())},
@@ -173,7 +179,7 @@ std::vector<Check> checks_of(const sim::Job& job, const sim::Result& result, boo
   std::vector<Check> checks = check_rows(result.checks);
   checks.push_back(
       {"Cutter load, spindle power, deflection", "", "the simulation is geometric", State::kNotChecked});
-  if (job.scene.has_blocks()) {
+  if (brings_blocks(result)) {
     checks.push_back({"Planners and interpolators compared", "",
                       "a program of blocks is one path: not applicable", State::kNotChecked});
   }
@@ -183,9 +189,9 @@ std::vector<Check> checks_of(const sim::Job& job, const sim::Result& result, boo
   return checks;
 }
 
-const char* law_in_words(const sim::Job& job) {
-  if (job.scene.kind == sim::ProgramKind::kNc) return "as the program's own words choose in each block";
-  if (!job.scene.has_blocks())
+const char* law_in_words(const sim::Job& job, const sim::Result& result) {
+  if (result.main.nc) return "as the program's own words choose in each block";
+  if (!brings_blocks(result))
     return "every cycle is one pose of the tool tip in the work frame; axes are linear inside a cycle";
   switch (job.scene.block_law) {
     case toolpath::BlockLaw::kTcp:
@@ -201,13 +207,13 @@ const char* law_in_words(const sim::Job& job) {
   return "";
 }
 
-/// What the control's cycles or the blocks themselves cut.
+/// Whether the blocks themselves cut, or the control's cycles.
 bool blocks_cut(const sim::Job& job) {
-  return job.scene.has_blocks() && !job.scene.cuts_cycles();
+  return job.scene.stock.cut_by == sim::CutBy::kBlocks;
 }
 
-std::string execution_of(const sim::Job& job) {
-  return fmt::format("{}; the stock is cut by {}", law_in_words(job),
+std::string execution_of(const sim::Job& job, const sim::Result& result) {
+  return fmt::format("{}; the stock is cut by {}", law_in_words(job, result),
                      blocks_cut(job) ? "the blocks themselves" : "what the axes do in the control's cycles");
 }
 
@@ -258,7 +264,7 @@ std::vector<FactGroup> facts_of(const sim::Job& job, const sim::Result& result, 
   return {{"Job",
            {{"Program", name_of(job.scene.program_file)},
             {"Planner", result.main.path.planner},
-            {"Execution", execution_of(job)},
+            {"Execution", execution_of(job, result)},
             {"Control period", fmt::format("{:g} ms", job.scene.motion.period_s * 1e3)},
             {"Start",
              fmt::format("tip at ({:.2f}, {:.2f}, {:.2f}) mm: {}", first.pose.tip_W.x(), first.pose.tip_W.y(),
@@ -324,7 +330,7 @@ Lines surface_lines(const sim::Job& job, const sim::Result& result) {
   const measure::SurfaceMetrics& s = result.main.surface;
   if (!job.has_design()) return {{"design", "none: the finished part is not measured"}};
   Lines lines;
-  if (job.scene.has_blocks()) {
+  if (brings_blocks(result)) {
     lines.emplace_back("design", job.scene.design.name);
     lines.emplace_back("excess", fmt::format("{:.3f} um highest material", s.excess_max_um));
     if (s.ridges > 0) lines.emplace_back("scallop", fmt::format("{:.3f} um highest", s.scallop_max_um));
@@ -340,12 +346,6 @@ Lines surface_lines(const sim::Job& job, const sim::Result& result) {
   return lines;
 }
 
-/// With the tool that is in the spindle where linear axes lead farthest from the path.
-kinematics::MachineModel machine_of_worst(const sim::Job& job, const sim::Result& result) {
-  const auto element = static_cast<size_t>(result.singularity->worst.front().pole.element);
-  return sim::machines_by_tool(job)[static_cast<size_t>(result.main.path.elements.tool(element))];
-}
-
 }  // namespace
 
 ReportData report_data(const sim::Job& job, const sim::Result& result, const RunFiles& files, bool rendered) {
@@ -355,7 +355,7 @@ ReportData report_data(const sim::Job& job, const sim::Result& result, const Run
       fmt::format("{} on {}", job.scene.program_file.substr(job.scene.program_file.find_last_of('/') + 1),
                   job.machine.model.name);
   data.verdict = verdict_of(result.checks);
-  data.key_numbers = job.scene.has_blocks() ? cl_key_numbers(result) : key_numbers(result);
+  data.key_numbers = brings_blocks(result) ? block_key_numbers(result) : key_numbers(result);
   data.findings = findings_of(result);
   if (!files.stills.empty()) {
     data.hero_png = files.stills.front().png_path;
@@ -369,7 +369,7 @@ ReportData report_data(const sim::Job& job, const sim::Result& result, const Run
   data.movie_caption =
       "The whole program, evenly sped up. The tool cuts the stock as it stands at that moment.";
   data.plots = run_plots(job, result);
-  if (job.scene.has_blocks()) {
+  if (brings_blocks(result)) {
     data.tables = {axis_table(job, result), axis_limit_table(job, result)};
     if (job.scene.tools.size() > 1) data.tables.insert(data.tables.begin(), tools_table(job, result));
     if (result.flank) data.tables.insert(data.tables.begin(), flank_table(*result.flank));
@@ -377,12 +377,15 @@ ReportData report_data(const sim::Job& job, const sim::Result& result, const Run
     data.tables = {planner_table(result), mode_table(result), axis_table(job, result),
                    axis_limit_table(job, result), fig6_table()};
     data.paper_title = "Lin & Koren: the paper's figures against ours";
-    data.paper = paper_rows(job, result);
+    data.paper = papers::lin_koren_rows(job, result);
   }
   if (result.singularity) {
-    const kinematics::MachineModel machine = machine_of_worst(job, result);
-    data.topics = {singularity_topic(machine, result.main.path, *result.singularity)};
-    data.paper = so_paper_rows(machine, *result.singularity);
+    const std::vector<kinematics::MachineModel> by_tool = sim::machines_by_tool(job);
+    const kinematics::MachineModel& machine =
+        papers::machine_of_worst(by_tool, result.main.path, *result.singularity);
+    const papers::BlockStudy study = papers::study_block(machine, result.singularity->worst.front());
+    data.topics = {singularity_topic(result.main.path, *result.singularity, study)};
+    data.paper = papers::so_paper_rows(machine, *result.singularity);
     if (!data.paper.empty()) data.paper_title = "So et al. (2008), Table 2 and section 5";
   }
   data.checks = checks_of(job, result, rendered);

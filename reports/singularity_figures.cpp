@@ -8,8 +8,6 @@
 #include <numeric>
 
 #include "base/units.h"
-#include "kinematics/singularity_model.h"
-#include "motion/speed/free_move.h"
 #include "reports/html.h"
 #include "reports/svg_plot.h"
 
@@ -17,25 +15,16 @@ namespace swarf::reports {
 namespace {
 
 using kinematics::BlockEnds;
-using kinematics::MachineModel;
 using motion::BlockSingularity;
 
-constexpr int kSamples = 400;
 /// Of a drawing, in its own units: half the page and all of it.
 constexpr double kHalfWidth = 540.0, kFullWidth = 1120.0;
 constexpr double kMargin = 46.0;
 
-ToolPose pose_of(const MachineModel& machine, const BlockEnds& ends, double u) {
-  return kinematics::forward(machine, ends.q_from + u * (ends.q_to - ends.q_from));
-}
-
 /// Two coordinates of a tip: along the programmed line and across it, in the plane that the outer axis turns.
 class LineView {
  public:
-  LineView(const MachineModel& machine, const BlockEnds& ends) : origin_(ends.from.tip_W) {
-    const kinematics::Poles poles = kinematics::find_poles(machine);
-    const Vec3 outer_W =
-        machine.X_MW.linear().transpose() * machine.axes[static_cast<size_t>(poles.outer)].direction_M;
+  LineView(const BlockEnds& ends, const Vec3& outer_W) : origin_(ends.from.tip_W) {
     const Vec3 way = ends.to.tip_W - ends.from.tip_W;
     const Vec3 in_plane = way - way.dot(outer_W) * outer_W;
     along_ =
@@ -150,21 +139,20 @@ Beside beside(const Vec2& point, const Vec2& middle) {
 
 }  // namespace
 
-Figure trajectory_figure(const MachineModel& machine, const BlockSingularity& block) {
+Figure trajectory_figure(const BlockSingularity& block, const papers::BlockStudy& study) {
   const BlockEnds& ends = block.ends;
-  const LineView view(machine, ends);
-  const kinematics::SingularityModel model(machine, ends);
+  const LineView view(ends, study.outer_W);
   std::vector<Vec2> real, analytic;
   Vec2 low = view(ends.from.tip_W).cwiseMin(view(ends.to.tip_W));
   Vec2 high = view(ends.from.tip_W).cwiseMax(view(ends.to.tip_W));
-  for (int i = 0; i <= kSamples; ++i) {
-    const double u = static_cast<double>(i) / kSamples;
-    real.push_back(view(pose_of(machine, ends, u).tip_W));
-    analytic.push_back(view(model.tip_W(u)));
+  for (size_t i = 0; i < study.tip_W.size(); ++i) {
+    real.push_back(view(study.tip_W[i]));
+    analytic.push_back(view(study.analytic_W[i]));
     low = low.cwiseMin(real.back());
     high = high.cwiseMax(real.back());
   }
-  const Vec2 centre = std::accumulate(real.begin(), real.end(), Vec2(Vec2::Zero())) / (kSamples + 1.0);
+  const Vec2 centre =
+      std::accumulate(real.begin(), real.end(), Vec2(Vec2::Zero())) / static_cast<double>(real.size());
   const double extent = (high - low).maxCoeff();
   low -= Vec2::Constant(0.06 * extent);
   high += Vec2(0.36, 0.12) * extent;  // the words stand above and to the right
@@ -175,22 +163,22 @@ Figure trajectory_figure(const MachineModel& machine, const BlockSingularity& bl
   canvas.path("series s0", real);
   canvas.path("dots", analytic);
 
-  const auto at = [&](double u) { return view(pose_of(machine, ends, u).tip_W); };
-  const Vec2 farthest = at(block.error.line.u);
+  const Vec2 farthest = view(study.farthest_line_W);
   const double side = farthest.y() < 0.0 ? -1.0 : 1.0;  // on which side of the line it bulges
   draw_measure(
       canvas, farthest, {farthest.x(), 0.0},
       fmt::format("{:.6f} mm from the line (u = {:.4f})", block.error.line.value, block.error.line.u),
       {0.0, side > 0.0 ? -12.0 : 20.0}, "end");
-  const Vec2 out = at(block.error.segment.u), way = p1 - p0;
+  const Vec2 out = view(study.farthest_segment_W), way = p1 - p0;
   const double share = way.norm() > 0.0 ? (out - p0).dot(way) / way.squaredNorm() : 0.0;
   draw_measure(canvas, out, p0 + std::clamp(share, 0.0, 1.0) * way,
                fmt::format("{:.6f} mm from the segment (u = {:.4f})", block.error.segment.value,
                            block.error.segment.u),
                {10.0, 5.0}, "start");
   for (const double u : {0.25, 0.5, 0.75}) {
-    const Beside place = beside(at(u), centre);
-    canvas.point("mark", at(u), fmt::format("u = {:g}", u), place.shift, place.anchor);
+    const Vec2 at = real[static_cast<size_t>(u * papers::BlockStudy::kParts)];
+    const Beside place = beside(at, centre);
+    canvas.point("mark", at, fmt::format("u = {:g}", u), place.shift, place.anchor);
   }
   canvas.point("point", p0, "P0", {0.0, side * 20.0}, "middle");
   canvas.point("point", p1, "P1", {0.0, side * 20.0}, "middle");
@@ -212,15 +200,8 @@ Figure trajectory_figure(const MachineModel& machine, const BlockSingularity& bl
   return figure;
 }
 
-Figure pole_figure(const MachineModel& machine, const BlockSingularity& block) {
-  const BlockEnds& ends = block.ends;
-  const kinematics::Poles poles = kinematics::find_poles(machine);
-  const Vec3& pole =
-      std::max_element(poles.at.begin(), poles.at.end(),
-                       [&](const kinematics::Pole& a, const kinematics::Pole& b) {
-                         return a.direction_W.dot(ends.from.axis_W) < b.direction_W.dot(ends.from.axis_W);
-                       })
-          ->direction_W;
+Figure pole_figure(const BlockSingularity& block, const papers::BlockStudy& study) {
+  const Vec3& pole = study.pole_W;
   const Vec3 seed = std::abs(pole.x()) < 0.9 ? Vec3::UnitX() : Vec3::UnitY();
   const Vec3 x = (seed - seed.dot(pole) * pole).normalized(), y = pole.cross(x);
   const auto polar = [&](const Vec3& axis_W) -> Vec2 {
@@ -230,10 +211,9 @@ Figure pole_figure(const MachineModel& machine, const BlockSingularity& block) {
   };
   std::vector<Vec2> joint, great_circle;
   double farthest = deg_from_rad(block.pole.cone_rad) < 20.0 ? deg_from_rad(block.pole.cone_rad) : 0.0;
-  for (int i = 0; i <= kSamples; ++i) {
-    const double u = static_cast<double>(i) / kSamples;
-    joint.push_back(polar(pose_of(machine, ends, u).axis_W));
-    great_circle.push_back(polar(motion::slerp(ends.from.axis_W, ends.to.axis_W, u)));
+  for (size_t i = 0; i < study.axis_W.size(); ++i) {
+    joint.push_back(polar(study.axis_W[i]));
+    great_circle.push_back(polar(study.tcp_axis_W[i]));
     farthest = std::max({farthest, joint.back().norm(), great_circle.back().norm()});
   }
   const Ticks rings = round_ticks(0.0, farthest, 4);
@@ -259,7 +239,7 @@ Figure pole_figure(const MachineModel& machine, const BlockSingularity& block) {
   canvas.path("turn", great_circle);
   canvas.path("series s0", joint);
   // The rings' numbers stand away from the path, on the far side of the pole.
-  const Vec2 middle = joint[kSamples / 2];
+  const Vec2 middle = joint[joint.size() / 2];
   const Vec2 away = middle.norm() > 0.0 ? Vec2(-middle.normalized()) : Vec2(Vec2::UnitX());
   for (const double ring : rings.values) {
     if (ring > 0.0) canvas.text(ring * away, tick_text(ring, rings.step) + "°", {0.0, 4.0}, "middle");

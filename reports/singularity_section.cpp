@@ -5,13 +5,11 @@
 #include <cmath>
 
 #include "base/units.h"
-#include "motion/blocks/linearise.h"
 #include "reports/singularity_figures.h"
 
 namespace swarf::reports {
 namespace {
 
-using kinematics::MachineModel;
 using motion::BlockSingularity;
 using motion::SingularityScan;
 
@@ -77,8 +75,7 @@ Table worst_table(const toolpath::ToolPath& path, const SingularityScan& scan) {
   return table;
 }
 
-Table pieces_table(const MachineModel& machine, const BlockSingularity& block, int line) {
-  const kinematics::InverseKinematics inverse(machine);
+Table pieces_table(const papers::BlockStudy& study, int line) {
   Table table;
   table.title = fmt::format("Line {} cut into pieces on its programmed line", line);
   table.intro =
@@ -86,25 +83,20 @@ Table pieces_table(const MachineModel& machine, const BlockSingularity& block, i
       "between them the axes are linear.";
   table.columns = {
       {"Equal pieces", "", true}, {"From their segments", "mm", true}, {"From their lines", "mm", true}};
-  for (int pieces = 1; pieces <= 32; pieces *= 2) {
-    const motion::PiecesError error = motion::equal_pieces_error(machine, inverse, block.ends, pieces);
-    table.rows.push_back({fmt::format("{}", pieces), fmt::format("{:.6f}", error.segment_mm),
-                          fmt::format("{:.6f}", error.line_mm)});
+  for (const papers::PiecesRow& row : study.pieces) {
+    table.rows.push_back({fmt::format("{}", row.pieces), fmt::format("{:.6f}", row.error.segment_mm),
+                          fmt::format("{:.6f}", row.error.line_mm)});
   }
   return table;
 }
 
-Table tolerance_table(const MachineModel& machine, const BlockSingularity& block, int line) {
-  const kinematics::InverseKinematics inverse(machine);
+Table tolerance_table(const papers::BlockStudy& study, int line) {
   Table table;
   table.title = fmt::format("Pieces that line {} needs", line);
   table.columns = {{"Tolerance", "mm", true}, {"Equal pieces", "", true}, {"Greedy", "", true}};
-  for (const double tolerance_mm : {0.1, 0.05, 0.02, 0.01, 0.005, 0.001}) {
-    const auto cuts = motion::greedy_cuts(machine, inverse, block.ends, tolerance_mm);
-    table.rows.push_back({fmt::format("{:g}", tolerance_mm),
-                          pieces_text(motion::equal_pieces(machine, inverse, block.ends, tolerance_mm)),
-                          cuts ? fmt::format("{}", cuts->size() - 1) : "none"});
-  }
+  for (const papers::ToleranceRow& row : study.tolerances)
+    table.rows.push_back(
+        {fmt::format("{:g}", row.tolerance_mm), pieces_text(row.equal), pieces_text(row.greedy)});
   table.notes = {
       "Greedy: each piece as long as the tolerance allows. None: no number helps, the block passes the pole "
       "itself."};
@@ -116,8 +108,7 @@ std::string branch_text(const kinematics::BranchChoice& choice) {
   return fmt::format("{} to {}", one(choice.other_from), one(choice.other_to));
 }
 
-Table branch_table(const MachineModel& machine, const SingularityScan& scan, const BlockSingularity& block,
-                   int line) {
+Table branch_table(const SingularityScan& scan, const papers::BlockStudy& study, int line) {
   Table table;
   table.title = fmt::format("Line {}: the other rotary solution and the other way round", line);
   table.columns = {{"Solution at its ends"},
@@ -127,17 +118,13 @@ Table branch_table(const MachineModel& machine, const SingularityScan& scan, con
                    {"From the segment", "mm", true},
                    {"From the line", "mm", true},
                    {"Travel"}};
-  const auto choices =
-      kinematics::branch_choices(machine, kinematics::InverseKinematics(machine), block.ends);
-  for (const kinematics::BranchChoice& choice : choices) {
-    const int beyond = choice.out_of_travel_axis;
-    table.rows.push_back(
-        {branch_text(choice), choice.long_way ? "long" : "short", degrees(choice.outer_swing_rad),
-         degrees(choice.inner_swing_rad), fmt::format("{:.6f}", choice.segment_mm),
-         fmt::format("{:.6f}", choice.line_mm),
-         beyond < 0 ? "inside" : machine.axes[static_cast<size_t>(beyond)].name + " leaves it"});
+  for (const auto& [choice, beyond] : study.branches) {
+    table.rows.push_back({branch_text(choice), choice.long_way ? "long" : "short",
+                          degrees(choice.outer_swing_rad), degrees(choice.inner_swing_rad),
+                          fmt::format("{:.6f}", choice.segment_mm), fmt::format("{:.6f}", choice.line_mm),
+                          beyond.empty() ? "inside" : beyond + " leaves it"});
   }
-  table.highlighted_row = choices.empty() ? -1 : 0;
+  table.highlighted_row = study.branches.empty() ? -1 : 0;
   table.notes = {"First: the solution as the block runs; its row is marked. All with linear axes."};
   return table;
 }
@@ -154,8 +141,8 @@ std::string circle_text(const toolpath::ToolPath& path, const motion::CircleErro
 
 }  // namespace
 
-Topic singularity_topic(const MachineModel& machine, const toolpath::ToolPath& path,
-                        const SingularityScan& scan) {
+Topic singularity_topic(const toolpath::ToolPath& path, const SingularityScan& scan,
+                        const papers::BlockStudy& study) {
   Topic topic;
   topic.id = "singularity";
   topic.name = "Singularity";
@@ -180,10 +167,10 @@ Topic singularity_topic(const MachineModel& machine, const toolpath::ToolPath& p
               "without TCP would do.");
   if (scan.circle) topic.intro += circle_text(path, *scan.circle);
   topic.tables = {worst_table(path, scan)};
-  topic.figures = {trajectory_figure(machine, worst), pole_figure(machine, worst)};
-  topic.tables.push_back(tolerance_table(machine, worst, line));
-  topic.tables.push_back(pieces_table(machine, worst, line));
-  topic.tables.push_back(branch_table(machine, scan, worst, line));
+  topic.figures = {trajectory_figure(worst, study), pole_figure(worst, study)};
+  topic.tables.push_back(tolerance_table(study, line));
+  topic.tables.push_back(pieces_table(study, line));
+  topic.tables.push_back(branch_table(scan, study, line));
   return topic;
 }
 

@@ -20,9 +20,9 @@ void add_blocks(const sim::Job& job, const sim::Result& result, FactGroup& group
     corners += fmt::format("; at most {:.4f} mm, {}", m.corner_deviation_max_mm,
                            line_text(result, m.corner_element));
   group.facts.push_back(
-      {"Corners",
-       corners + (job.scene.cuts_cycles() ? "; the stock is cut by the control's cycles, so it shows them"
-                                          : "; the stock is cut along the programmed blocks")});
+      {"Corners", corners + (job.scene.stock.cut_by == sim::CutBy::kCycles
+                                 ? "; the stock is cut by the control's cycles, so it shows them"
+                                 : "; the stock is cut along the programmed blocks")});
   group.facts.push_back(
       {"Tip error of the other mode",
        m.other_mode.element < 0

@@ -9,51 +9,17 @@
 
 #include "base/units.h"
 #include "cutter/profile.h"
-#include "motion/blocks/dog_leg.h"
 #include "motion/interpolator.h"
-#include "sim/job/nc_job.h"
 #include "sim/judge/findings.h"
 #include "sim/run/design_rays.h"
 #include "sim/run/prove_part.h"
 #include "sim/run/recorder.h"
-#include "toolpath/cl_path.h"
 
 namespace swarf::sim {
 namespace {
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-toolpath::ToolPath nc_path(const Job& job, Diagnostics& diagnostics, toolpath::NcReading* reading) {
-  toolpath::NcPath nc = read_nc_program(job, diagnostics);
-  if (reading != nullptr) *reading = std::move(nc.reading);
-  return std::move(nc.path);
-}
-
-toolpath::ToolPath plan_surfaces(const Job& job, toolpath::Planner planner, Diagnostics& diagnostics) {
-  toolpath::PlanOptions options = job.scene.toolpath;
-  options.planner = planner;
-  toolpath::ToolPath path = toolpath::plan(job.program, job.scene.tools.front(), options, diagnostics);
-  if (!job.scene.chord_tolerance_mm) return path;
-  toolpath::Elements elements;
-  for (toolpath::Element element : path.elements) {
-    if (auto* pass = std::get_if<toolpath::SurfacePass>(&element.what))
-      pass->chord_tolerance_mm = *job.scene.chord_tolerance_mm;
-    elements.push_back(std::move(element));
-  }
-  path.elements = std::move(elements);
-  return path;
-}
-
-toolpath::ToolPath plan_path(const Job& job, toolpath::Planner planner, Diagnostics& diagnostics,
-                             toolpath::NcReading* reading) {
-  toolpath::ToolPath path = job.scene.kind == ProgramKind::kNc ? nc_path(job, diagnostics, reading)
-                            : job.cl
-                                ? toolpath::cl_path(*job.cl, job.scene.block_law, diagnostics, cl_tools(job))
-                                : plan_surfaces(job, planner, diagnostics);
-  diagnostics.throw_if_errors();
-  return motion::with_dog_legs(std::move(path), machines_by_tool(job));
 }
 
 double theory_scallop_um(const toolpath::ToolPath& path) {
@@ -145,7 +111,7 @@ MeasuredPath plan_and_move(const Job& job, toolpath::Planner planner, const moti
   MeasuredPath measured;
   const auto start = std::chrono::steady_clock::now();
   Diagnostics diagnostics;
-  measured.path = plan_path(job, planner, diagnostics, nullptr);
+  measured.path = path_by(job, planner, diagnostics);
   measured.plan_seconds = seconds_since(start);
   interpolate(job, options, {}, progress, measured);
   return measured;
@@ -156,9 +122,9 @@ MeasuredPath planned_path(const Job& job, Progress& progress) {
   MeasuredPath measured;
   progress.begin("plan", 1, "paths");
   Diagnostics diagnostics;
-  toolpath::NcReading reading;
-  measured.path = job_path(job, diagnostics, &reading);
-  if (job.scene.kind == ProgramKind::kNc) measured.nc = std::move(reading);
+  JobPath found = job_path(job, diagnostics);
+  measured.path = std::move(found.path);
+  measured.nc = std::move(found.nc);
   measured.warnings = diagnostics.list();
   progress.end();
   return measured;
@@ -303,10 +269,6 @@ void measure_flank(const Job& job, Progress& progress, Result& result) {
 
 }  // namespace
 
-toolpath::ToolPath job_path(const Job& job, Diagnostics& diagnostics, toolpath::NcReading* reading) {
-  return plan_path(job, job.scene.toolpath.planner, diagnostics, reading);
-}
-
 MeasuredPath plan_tool(const Job& job, Progress& progress) {
   MeasuredPath measured = planned_path(job, progress);
   prepare_cycles(job, job.scene.motion, measured);
@@ -316,7 +278,9 @@ MeasuredPath plan_tool(const Job& job, Progress& progress) {
 MeasuredPath move_tool(const Job& job, Progress& progress, const CutOptions& options) {
   MeasuredPath measured = planned_path(job, progress);
   interpolate(job, job.scene.motion, options, progress, measured);
-  if (!job.scene.has_blocks() && !measured.cycles->stopped()) require_contact(job, *measured.cycles);
+  // Of blocks nobody knows the contact points before they cut.
+  if (!measured.path.elements.hold_blocks() && !measured.cycles->stopped())
+    require_contact(job, *measured.cycles);
   return measured;
 }
 
@@ -336,8 +300,8 @@ Result simulate(const Job& job, const CutOptions& options, Progress& progress) {
   measure_volume(job, result);
   result.stopped = progress.stop_requested();
   if (result.stopped) return result;
-  if (job.scene.has_blocks() && result.volume_removed_mm3 <= 0.0)
-    throw path_misses_stock(job, "nothing was cut");
+  const bool planned = !result.main.path.elements.hold_blocks();
+  if (!planned && result.volume_removed_mm3 <= 0.0) throw path_misses_stock(job, "nothing was cut");
   progress.begin("cut measuring rays", 1, "surfaces");
   cut_dexels(job, result.main);
   progress.end();
@@ -345,7 +309,7 @@ Result simulate(const Job& job, const CutOptions& options, Progress& progress) {
   prove_part(job, progress, result);
   measure_flank(job, progress, result);
   // A program of blocks is one path: there is nothing to compare it with.
-  if (!job.scene.has_blocks()) {
+  if (planned) {
     compare_planners(job, progress, result);
     compare_modes(job, progress, result);
   }

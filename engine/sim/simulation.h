@@ -3,19 +3,13 @@
 #pragma once
 
 #include "base/progress.h"
+#include "sim/job/job_path.h"
 #include "sim/job/scene.h"
 #include "sim/judge/judge.h"
 #include "sim/run/cut_stage.h"
 #include "sim/run/result.h"
-#include "toolpath/nc_path.h"
-#include "toolpath/tool_path.h"
 
 namespace swarf::sim {
-
-/// The scene's own path: planned on the surfaces, or the blocks of the CL or NC program. Throws InputError
-/// when it cannot be planned; what is only worth a warning goes to `diagnostics`. `reading`, if given,
-/// receives what an NC program says besides its moves.
-toolpath::ToolPath job_path(const Job& job, Diagnostics& diagnostics, toolpath::NcReading* reading = nullptr);
 
 /// Plans and interpolates the job's program, nothing else; of the options, only those of the tables count.
 /// Throws InputError when the path cannot be planned or never meets the stock, or a table cannot be written.

@@ -21,8 +21,9 @@ ALLOWED = {
     "stock": {"base", "mesh", "surface", "cutter"},
     "measure": {"base", "mesh", "surface", "cutter", "stock", "motion"},
 }
-ENGINE = set(ALLOWED) | {"sim"}
-ALLOWED["sim"] = ENGINE - {"sim"}
+ENGINE = set(ALLOWED) | {"sim", "papers"}
+ALLOWED["sim"] = ENGINE - {"sim", "papers"}
+ALLOWED["papers"] = ENGINE - {"papers"}
 ALLOWED["render"] = {"base", "mesh"}
 ALLOWED["reports"] = ENGINE | {"render"}
 ALLOWED["cli"] = ENGINE | {"render", "reports"}
@@ -41,6 +42,14 @@ HEAVY = {
     "HDF5": (r"hdf5", ("engine/sim/run/",)),
     "Cairo": (r"cairo", ("render/lettering.cpp",)),
     "libpng": (r"png\.h", ("render/image_io.cpp",)),
+}
+
+# Reports show numbers, they do not compute them: of the modules of geometry and motion they see these alone.
+SEEN_BY_REPORTS = {
+    "kinematics": ("machine_model.h",),
+    "measure": ("flank_error.h", "measure.h", "metrics.h"),
+    "motion": ("cycles/", "judged/singularity_scan.h", "offline_baseline.h", "options.h", "result.h", "speed/look_ahead.h"),
+    "toolpath": ("nc_path.h", "tool_path.h"),
 }
 
 # Headers that only the .cpp files beside them include: they may show the library.
@@ -67,6 +76,9 @@ def problems():
                 first = target.split("/")[0]
                 if '"' in line and first in ALLOWED and first != module and first not in ALLOWED[module]:
                     yield f"{place}:{number}: {module} must not include {target}"
+                if module == "reports" and first in SEEN_BY_REPORTS and '"' in line:
+                    if not target.removeprefix(first + "/").startswith(SEEN_BY_REPORTS[first]):
+                        yield f"{place}:{number}: reports must not compute: {target} belongs to engine"
                 for library, (pattern, homes) in HEAVY.items():
                     if re.match(pattern, target) and not (
                         any(place.startswith(home) for home in homes)

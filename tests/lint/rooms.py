@@ -5,6 +5,7 @@
      TOO_LARGE may keep what it has; the list only shrinks: it fails as well where a class has fewer methods now.
   2. Inside a module that ROOMS lists, an include leads to a room on the same floor or a lower one, and the number of
      arrows (pairs of rooms, one of which includes the other) stays within its limit.
+  3. Only engine/sim/job asks what kind of program a scene has (ProgramKind): elsewhere it is data.
 
 --report prints what was counted."""
 import collections
@@ -136,7 +137,20 @@ def includes(module):
             yield f"{module}/{own}", found.group(1), room_of(module, own), room_of(module, found.group(2))
 
 
+def asks_kind():
+    """Lines outside sim/job that ask a job's kind."""
+    for top in ("engine", "render", "reports", "cli"):
+        for path in sorted((ROOT / top).rglob("*")):
+            place = path.relative_to(ROOT).as_posix()
+            if path.suffix not in (".h", ".cpp") or place.startswith("engine/sim/job/"):
+                continue
+            for number, line in enumerate(path.read_text().splitlines(), 1):
+                if re.search(r"\bProgramKind\b|\bscene\.kind\b", line):
+                    yield f"{place}:{number}: asks what kind of program the scene has: only engine/sim/job does"
+
+
 def problems(report):
+    yield from asks_kind()
     sizes = dict(classes())
     for place, count in sorted(sizes.items(), key=lambda one: -one[1]):
         if report and count > 20:

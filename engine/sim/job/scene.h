@@ -22,10 +22,11 @@
 
 namespace swarf::sim {
 
-/// What cuts stock and measuring rays in a job of blocks.
+/// What cuts stock and measuring rays.
 enum class CutBy {
-  kBlocks,  ///< the motions that the program asks for
-  kCycles,  ///< the control's cycles: with rounded corners, chords and dog-legs
+  kBlocks,  ///< the motions that the program's blocks ask for
+  kCycles,  ///< the control's cycles of these blocks: with rounded corners, chords and dog-legs
+  kPasses,  ///< the poses that the interpolator makes on planned passes: there are no blocks
 };
 
 struct StockSettings {
@@ -74,7 +75,8 @@ struct OutputSettings {
   TrajectoryFormat trajectory = TrajectoryFormat::kNone;
 };
 
-/// What the scene's program is.
+/// What the scene's program is. Only sim/job asks (tests/lint/rooms.py); what follows from it is data:
+/// cut_by, Job::program and Job::cl, JobPath::nc, and whether a path holds blocks or passes.
 enum class ProgramKind {
   kSurfaceBlocks,  ///< `program`: surfaces and areas; the tool path is planned
   kCl,             ///< `cl`: CL data
@@ -86,7 +88,8 @@ struct Scene {
   std::string name;  ///< of its folder
   std::string title;
   std::string machine_file;
-  std::string program_file;  ///< `program`, `cl` or `nc`
+  std::string program_file;
+  std::string program_key = "program";  ///< that names it in scene.toml: program, cl or nc
   ProgramKind kind = ProgramKind::kSurfaceBlocks;
   toolpath::BlockLaw block_law = toolpath::BlockLaw::kTcp;  ///< CL: interpolator.mode
   program::ClOptions cl_options;            ///< CL: cutcom, cl_circle, and the radii of `tools`
@@ -110,10 +113,6 @@ struct Scene {
   MovieSettings movie;
   StillSettings stills;
   OutputSettings output;
-
-  /// The program brings its own blocks: CL data or an NC program.
-  bool has_blocks() const { return kind != ProgramKind::kSurfaceBlocks; }
-  bool cuts_cycles() const { return has_blocks() && stock.cut_by == CutBy::kCycles; }
 };
 
 /// Everything that a run needs, loaded and checked; nothing has been written yet.

@@ -38,7 +38,6 @@ void check_voxel(ConfigTable& table, const StockSettings& stock, const std::vect
   }
 }
 
-/// Surface blocks are always cut by their cycles.
 StockSettings read_stock(ConfigTable table, const std::vector<cutter::Cutter>& tools, bool blocks) {
   StockSettings stock;
   stock.box_W = table.box("box_mm");
@@ -51,7 +50,9 @@ StockSettings read_stock(ConfigTable table, const std::vector<cutter::Cutter>& t
   stock.voxel_mm = table.number("voxel_mm", kAboveZero);
   check_voxel(table, stock, tools);
   stock.sweep_tolerance_mm = table.number("sweep_tolerance_um", kAboveZero, 1.0) * kMicrometre;
-  if (blocks && table.choice("cut_by", {"blocks", "cycles"}, "blocks") == "cycles")
+  if (!blocks)
+    stock.cut_by = CutBy::kPasses;
+  else if (table.choice("cut_by", {"blocks", "cycles"}, "blocks") == "cycles")
     stock.cut_by = CutBy::kCycles;
   stock.max_memory_mb = table.number("max_memory_mb", kZeroOrMore, 0.0);
   return stock;
@@ -235,6 +236,7 @@ void read_program(ConfigTable& root, Scene& scene) {
     }
     first = key;
     scene.kind = kind;
+    scene.program_key = key;
     scene.program_file = beside(scene.file, file);
   }
   if (first == nullptr) root.text("program");  // reports that it is missing
@@ -268,7 +270,7 @@ void read_scene_tools(ConfigTable& root, Scene& scene, Diagnostics& diagnostics)
   scene.tool_table_file = beside(scene.file, root.text("tool_table", ""));
   scene.tools = read_tools(root, scene.tool_table_file, diagnostics,
                            scene.kind == ProgramKind::kNc ? &scene.incomplete_tools : nullptr);
-  if (scene.has_blocks() || scene.tools.size() == 1) return;
+  if (scene.kind != ProgramKind::kSurfaceBlocks || scene.tools.size() == 1) return;
   root.error("planner-needs-one-tool", "tool",
              fmt::format("surface blocks are planned for one cutter, the scene has {}", scene.tools.size()),
              "describe one, or run a program that brings its own tool positions");
@@ -289,17 +291,18 @@ Scene load_scene(const std::string& path, const std::vector<std::string>& overri
   read_scene_tools(root, scene, diagnostics);
   read_cl_keys(root, scene);
   scene.setup = read_setup(root.table("setup"), scene.kind == ProgramKind::kNc);
-  scene.stock = read_stock(root.table("stock"), scene.tools, scene.has_blocks());
-  scene.design = read_design(root.table("design"), scene.has_blocks());
+  const bool blocks = scene.kind != ProgramKind::kSurfaceBlocks;  // the program brings its own
+  scene.stock = read_stock(root.table("stock"), scene.tools, blocks);
+  scene.design = read_design(root.table("design"), blocks);
   scene.design.surface_file = beside(path, scene.design.surface_file);
   scene.design.mesh_file = beside(path, scene.design.mesh_file);
-  if (scene.has_blocks()) {
+  if (blocks) {
     read_block_interpolator(root.table("interpolator"), scene);
   } else {
     read_toolpath(root.table("toolpath"), scene);
     read_interpolator(root.table("interpolator"), scene);
   }
-  read_accept(root.table("accept"), scene.has_blocks(), scene.accept);
+  read_accept(root.table("accept"), blocks, scene.accept);
   read_pictures(root, scene);
   scene.output = read_output(root.table("output"));
   root.finish();

@@ -97,7 +97,7 @@ void region_faults(const Job& job, const Result& result, Collector& collect) {
   const measure::SurfaceMetrics& surface = result.main.surface;
   const AcceptLimits& accept = job.scene.accept;
   collect.begin("gouge");
-  const char* remedy = job.scene.has_blocks()
+  const char* remedy = result.main.path.elements.hold_blocks()
                            ? "move the tool of this block away from the design"
                            : "lower the feed F or the control period: the chord of one cycle cuts into a "
                              "convex surface";
@@ -136,8 +136,8 @@ void surface_faults(const Job& job, const Result& result, Collector& collect) {
     collect.at_block("scallop",
                      fmt::format("the highest scallop is {:.3f} um, [accept] allows {:g} um",
                                  surface.scallop_max_um, *accept.scallop_max_um),
-                     job.scene.has_blocks() ? "bring the passes closer together"
-                                            : "lower the scallop word E of the G06.3 block",
+                     result.main.path.elements.hold_blocks() ? "bring the passes closer together"
+                                                             : "lower the scallop word E of the G06.3 block",
                      result.main.rays.sources, block);
   }
   not_proven(job, collect);

@@ -72,14 +72,14 @@ Check measured(std::string name, std::string subject, std::optional<double> limi
 
 /// A mesh has faces that the stock brings along: there only excess tells what is missing. A program of blocks
 /// may leave a part of the design to others, unless a scallop limit says that it machines it.
-Check reached_check(const Job& job, const SurfaceMetrics& surface) {
+Check reached_check(const Job& job, const Result& result) {
   constexpr const char* name = "uncut";
   constexpr const char* subject = "Measuring rays that no cut has reached";
   if (job.design_mesh)
     return not_judged(name, subject, "faces of a mesh may be the stock's own; accept.excess_max_um tells");
-  if (job.scene.has_blocks() && !job.scene.accept.scallop_max_um)
+  if (result.main.path.elements.hold_blocks() && !job.scene.accept.scallop_max_um)
     return not_judged(name, subject, "no scallop limit in [accept]");
-  return counted(name, subject, surface.uncut_samples, 0);
+  return counted(name, subject, result.main.surface.uncut_samples, 0);
 }
 
 void add_surface_checks(const Job& job, const Result& result, std::vector<Check>& checks) {
@@ -100,7 +100,7 @@ void add_surface_checks(const Job& job, const Result& result, std::vector<Check>
       measured("excess", excess, accept.excess_max_um, surface.excess_max_um, surface.excess_bound));
   checks.push_back(
       measured("scallop", scallop, accept.scallop_max_um, surface.scallop_max_um, surface.scallop_bound));
-  checks.push_back(reached_check(job, surface));
+  checks.push_back(reached_check(job, result));
 }
 
 size_t count_bad_cuts(const Result& result, bool rapids) {
@@ -130,7 +130,8 @@ SpindleWords spindle_words(const toolpath::ToolPath& path) {
 Check spindle_check(const Job& job, const Result& result) {
   constexpr const char* name = "spindle_wrong";
   constexpr const char* subject = "Cuts with the spindle stopped or turning the wrong way";
-  if (!job.scene.has_blocks()) return not_judged(name, subject, "surface blocks do not switch the spindle");
+  if (!result.main.path.elements.hold_blocks())
+    return not_judged(name, subject, "surface blocks do not switch the spindle");
   const SpindleWords words = spindle_words(result.main.path);
   Check check = counted(name, subject, count_bad_cuts(result, false), job.scene.accept.spindle_wrong);
   if (words.silent == 0 || check.outcome == Outcome::kFails) return check;

@@ -47,7 +47,7 @@ BadCutCheck::BadCutCheck(const Job& job, const motion::Cycles& cycles, const Cut
       places_(places),
       ahead_(sweeps, cycles),
       earlier_(earlier),
-      has_blocks_(job.scene.has_blocks()) {
+      by_element_(cycles.elements().hold_blocks()) {
   for (const cutter::Cutter& tool : job.scene.tools) {
     flutes_.emplace_back(tool);
     parts_.emplace_back();
@@ -68,7 +68,7 @@ size_t BadCutCheck::row_of(int element) const {
 }
 
 std::vector<BadCutCheck::Move> BadCutCheck::moves(size_t sweep, const SweepPlaces& places) const {
-  if (has_blocks_) {
+  if (by_element_) {
     const size_t row = row_of(source(sweep).element);
     if (!rows_[row].kind) return {};
     return {{0.0, 1.0, *rows_[row].kind, row}};

@@ -57,10 +57,10 @@ class BadCutCheck {
   const SweepPlaces& places_;
   SweepPlaces ahead_;  ///< reads the cycles of the batch that comes
   const EarlierCuts& earlier_;
-  bool has_blocks_;
-  std::vector<Row> rows_;                                ///< of ToolPath::elements
-  int elements_ = 0;                                     ///< how many they are
-  std::vector<stock::CutterSolid> flutes_;               ///< by tool
+  bool by_element_;                         ///< a sweep belongs to one element: the elements are blocks
+  std::vector<Row> rows_;                   ///< of ToolPath::elements
+  int elements_ = 0;                        ///< how many they are
+  std::vector<stock::CutterSolid> flutes_;  ///< by tool
   std::vector<std::vector<stock::RevolvedPart>> parts_;  ///< the same, by tool
   std::vector<BadCut> found_;
 };

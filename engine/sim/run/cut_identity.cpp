@@ -87,7 +87,7 @@ std::string interpolator_text(const Scene& scene) {
       "mode {} law {} orientation {} look-ahead {} period {} s acceleration {} jerk {} corners {} mm{}",
       static_cast<int>(o.mode), static_cast<int>(scene.block_law), static_cast<int>(o.orientation),
       o.look_ahead, o.period_s, o.path_acceleration_max, o.path_jerk_max, o.corner_tolerance_mm,
-      scene.cuts_cycles() ? ", cut by cycles" : "");
+      scene.stock.cut_by == CutBy::kCycles ? ", cut by cycles" : "");
 }
 
 std::string toolpath_text(const Scene& scene) {

@@ -183,8 +183,14 @@ std::vector<int> tool_of_blocks(const JobSweeps& sweeps) {
 
 CutSweeps cut_sweeps(const Job& job, const motion::Cycles& cycles, std::optional<double> tolerance_mm) {
   const double tolerance = tolerance_mm.value_or(job.scene.stock.sweep_tolerance_mm);
-  if (job.scene.cuts_cycles()) return CutSweeps(driven_sweeps(job, cycles, tolerance, true));
-  if (job.scene.has_blocks()) return BlockSweeper(job, cycles, tolerance).straight_blocks_merged();
+  switch (job.scene.stock.cut_by) {
+    case CutBy::kBlocks:
+      return BlockSweeper(job, cycles, tolerance).straight_blocks_merged();
+    case CutBy::kCycles:
+      return CutSweeps(driven_sweeps(job, cycles, tolerance, true));
+    case CutBy::kPasses:
+      break;
+  }
   return CutSweeps(merged_cycles(job, cycles, tolerance));
 }
 
@@ -194,8 +200,14 @@ JobSweeps stock_sweeps(const Job& job, const motion::Cycles& cycles, std::option
 
 JobSweeps ray_sweeps(const Job& job, const motion::Cycles& cycles) {
   const double tolerance = job.scene.design.sweep_tolerance_mm;
-  if (job.scene.cuts_cycles()) return driven_sweeps(job, cycles, tolerance, false);
-  if (job.scene.has_blocks()) return BlockSweeper(job, cycles, tolerance).each_block().all();
+  switch (job.scene.stock.cut_by) {
+    case CutBy::kBlocks:
+      return BlockSweeper(job, cycles, tolerance).each_block().all();
+    case CutBy::kCycles:
+      return driven_sweeps(job, cycles, tolerance, false);
+    case CutBy::kPasses:
+      break;
+  }
   return {cycle_sweeps(cycles), sources_of_cycles(cycles), 0.0};
 }
 

@@ -2,7 +2,7 @@
 //
 //   surface job   level set: cycles merged within the tolerance     rays: one sweep per cycle
 //   block job     level set and rays: the blocks' own motions, divided within a tolerance of each,
-//                 or the cycles as the axes drive them (Scene::cuts_cycles)
+//                 or the cycles as the axes drive them (StockSettings::cut_by)
 #pragma once
 
 #include <cstdint>

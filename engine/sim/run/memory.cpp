@@ -154,19 +154,19 @@ MemoryPrediction predict_memory(const Job& job, const MeasuredPath& path, const 
   const double stock =
       static_cast<double>(stock::Stock::memory_for(settings.box_W, settings.voxel_mm, counts.leaves_most));
   const auto ticks = static_cast<double>(path.cycles->size());
-  const bool by_block = job.scene.has_blocks() && !job.scene.cuts_cycles();
+  const bool by_block = settings.cut_by == CutBy::kBlocks, planned_passes = settings.cut_by == CutBy::kPasses;
   const double sweeps = by_block ? static_cast<double>(path.path.elements.size()) : ticks;
   const double rays = ray_count(job) * kRay;
   const double own_sweeps = sweeps * (by_block ? kSweepOfBlock : kSweep);
   const double planned = std::min(kCellsOfBlock * static_cast<double>(path.path.elements.size()),
                                   static_cast<double>(motion::LookAheadReach{}.planned));
-  const double held = kBase + rays + own_sweeps + (job.scene.has_blocks() ? planned * kPlannedCell : 0.0) +
+  const double held = kBase + rays + own_sweeps + (planned_passes ? 0.0 : planned * kPlannedCell) +
                       static_cast<double>(path.cycles->kept().size() * sizeof(motion::Cycle)) +
                       static_cast<double>(path.path.elements.bytes() + path.cycles->motions().bytes());
   // The stages that hold most; each ends before the next begins.
   const double cutting = held - rays + (stocks + kSeen) * stock + (by_block ? 0.0 : sweeps * kCutting);
   double comparing = 0.0;
-  if (job.scene.compare_planners && !job.scene.has_blocks())
+  if (job.scene.compare_planners && planned_passes)
     comparing = held + stock + std::max(ticks, longest_comparison(job, path)) * kComparedTick + rays;
   const double measuring =
       job.has_design() ? held + stock + ray_count(job) * kMeasuredRay + sweeps * (kSweep + kCutting) : 0.0;

@@ -7,8 +7,9 @@
 #include <algorithm>
 #include <string>
 
+#include "papers/so_study.h"
+#include "papers/so_table2.h"
 #include "reports/page_sections.h"
-#include "reports/so_paper.h"
 #include "sim/simulation.h"
 
 namespace swarf::reports {
@@ -18,13 +19,13 @@ class SoSection : public testing::Test {
  protected:
   SoSection()
       : job_(sim::load_job(SWARF_SOURCE_DIR "/scenes/so_singularity/scene.toml", {})),
-        path_(sim::job_path(job_, diagnostics_)),
+        path_(sim::job_path(job_, diagnostics_).path),
         scan_(*motion::scan_singularity(path_, job_.machine.model, job_.scene.linearise_tolerance_mm)),
-        rows_(so_paper_rows(job_.machine.model, scan_)) {}
+        rows_(papers::so_paper_rows(job_.machine.model, scan_)) {}
 
-  const PaperRow& row(const std::string& quantity) const {
+  const papers::PaperRow& row(const std::string& quantity) const {
     const auto found = std::find_if(rows_.begin(), rows_.end(),
-                                    [&](const PaperRow& one) { return one.quantity == quantity; });
+                                    [&](const papers::PaperRow& one) { return one.quantity == quantity; });
     EXPECT_NE(found, rows_.end()) << quantity;
     return *found;
   }
@@ -36,11 +37,11 @@ class SoSection : public testing::Test {
   sim::Job job_;
   toolpath::ToolPath path_;
   motion::SingularityScan scan_;
-  std::vector<PaperRow> rows_;
+  std::vector<papers::PaperRow> rows_;
 };
 
 TEST_F(SoSection, TheRowsOfTheoryTwo) {
-  ASSERT_TRUE(runs_so_block(job_.machine.model, scan_));
+  ASSERT_TRUE(papers::runs_so_block(job_.machine.model, scan_));
   const double p0[] = {-90.959486, 7.310307, 227.634115, 1.066422, 148.968506};
   const double printed_p1[] = {-82.0656, -34.8175, 228.3975, 1.1793, 121.5477};
   for (int i = 0; i < 5; ++i) {
@@ -90,7 +91,8 @@ TEST_F(SoSection, ForwardOfThePrintedNcData) {
 }
 
 TEST_F(SoSection, TheTopicHasItsFiguresAndTables) {
-  const Topic topic = singularity_topic(job_.machine.model, path_, scan_);
+  const Topic topic =
+      singularity_topic(path_, scan_, papers::study_block(job_.machine.model, scan_.worst.front()));
   ASSERT_EQ(topic.figures.size(), 2u);
   ASSERT_EQ(topic.tables.size(), 4u);
   const Table& tolerances = topic.tables[1];
@@ -118,8 +120,8 @@ TEST_F(SoSection, TheTopicHasItsFiguresAndTables) {
 TEST_F(SoSection, OnlyTheBlockOfTheTableShowsTheTable) {
   motion::SingularityScan other = scan_;
   for (motion::BlockSingularity& block : other.worst) block.ends.to.tip_W.x() += 1e-3;
-  EXPECT_FALSE(runs_so_block(job_.machine.model, other));
-  EXPECT_TRUE(so_paper_rows(job_.machine.model, other).empty());
+  EXPECT_FALSE(papers::runs_so_block(job_.machine.model, other));
+  EXPECT_TRUE(papers::so_paper_rows(job_.machine.model, other).empty());
 }
 
 }  // namespace

@@ -92,7 +92,7 @@ Swept sweep_through(const Job& job) {
   Swept swept;
   Diagnostics diagnostics;
   Progress silent;
-  swept.path = job_path(job, diagnostics);
+  swept.path = job_path(job, diagnostics).path;
   swept.cycles = std::make_unique<motion::Cycles>(swept.path.elements, machines_by_tool(job),
                                                   job.scene.tools.front(), job.scene.motion);
   motion::interpolate(*swept.cycles, silent);

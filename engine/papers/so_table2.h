@@ -5,9 +5,9 @@
 
 #include "kinematics/machine_model.h"
 #include "motion/judged/singularity_scan.h"
-#include "reports/report_data.h"
+#include "papers/paper_row.h"
 
-namespace swarf::reports {
+namespace swarf::papers {
 
 /// True when the program holds the block of their Table 2 and the machine has the axes X Y Z A C.
 bool runs_so_block(const kinematics::MachineModel& machine, const motion::SingularityScan& scan);
@@ -16,4 +16,4 @@ bool runs_so_block(const kinematics::MachineModel& machine, const motion::Singul
 std::vector<PaperRow> so_paper_rows(const kinematics::MachineModel& machine,
                                     const motion::SingularityScan& scan);
 
-}  // namespace swarf::reports
+}  // namespace swarf::papers

@@ -1,4 +1,4 @@
-#include "reports/paper_table.h"
+#include "papers/lin_koren.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include "motion/offline_baseline.h"
 #include "toolpath/scallop_interval.h"
 
-namespace swarf::reports {
+namespace swarf::papers {
 namespace {
 
 /// Intervals of Eq. (2), which the planners use, at the paper's plain circle.
@@ -92,7 +92,7 @@ void scallop_rows(const sim::Result& result, std::vector<PaperRow>& rows) {
 
 }  // namespace
 
-std::vector<PaperRow> paper_rows(const sim::Job& job, const sim::Result& result) {
+std::vector<PaperRow> lin_koren_rows(const sim::Job& job, const sim::Result& result) {
   std::vector<PaperRow> rows;
   interval_rows(rows);
   scallop_rows(result, rows);
@@ -102,25 +102,4 @@ std::vector<PaperRow> paper_rows(const sim::Job& job, const sim::Result& result)
   return rows;
 }
 
-Table fig6_table() {
-  Table table;
-  table.title = "Fig. 6: the curve of Eq. (8) cut into line segments";
-  table.columns = {{"Segmentation"},
-                   {"Segments", "", true},
-                   {"Chord error", "µm", true},
-                   {"Linear in u (Eq. 7)", "deg", true},
-                   {"Linear along the chord", "deg", true},
-                   {"Constant", "deg", true}};
-  for (const motion::Fig6Row& row : motion::reproduce_fig6()) {
-    table.rows.push_back({row.segmentation, fmt::format("{}", row.segments),
-                          fmt::format("{:.4f}", row.chord_error_um), fmt::format("{:.6f}", row.linear_u_deg),
-                          fmt::format("{:.6f}", row.linear_chord_deg),
-                          fmt::format("{:.2f}", row.constant_deg)});
-  }
-  table.notes = {
-      "Columns three to five: largest orientation error inside a segment, by how the orientation is "
-      "interpolated."};
-  return table;
-}
-
-}  // namespace swarf::reports
+}  // namespace swarf::papers

@@ -1,4 +1,4 @@
-#include "reports/so_paper.h"
+#include "papers/so_table2.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include "base/units.h"
 #include "kinematics/singularity_model.h"
 
-namespace swarf::reports {
+namespace swarf::papers {
 namespace {
 
 using kinematics::AxisValues;
@@ -239,4 +239,4 @@ std::vector<PaperRow> so_paper_rows(const MachineModel& machine, const Singulari
   return Rows(machine, *so_block(scan)).all();
 }
 
-}  // namespace swarf::reports
+}  // namespace swarf::papers

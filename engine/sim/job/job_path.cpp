@@ -1,0 +1,58 @@
+#include "sim/job/job_path.h"
+
+#include <utility>
+
+#include "motion/blocks/dog_leg.h"
+#include "sim/job/nc_job.h"
+#include "toolpath/cl_path.h"
+
+namespace swarf::sim {
+namespace {
+
+toolpath::ToolPath plan_surfaces(const Job& job, toolpath::Planner planner, Diagnostics& diagnostics) {
+  toolpath::PlanOptions options = job.scene.toolpath;
+  options.planner = planner;
+  toolpath::ToolPath path = toolpath::plan(job.program, job.scene.tools.front(), options, diagnostics);
+  if (!job.scene.chord_tolerance_mm) return path;
+  toolpath::Elements elements;
+  for (toolpath::Element element : path.elements) {
+    if (auto* pass = std::get_if<toolpath::SurfacePass>(&element.what))
+      pass->chord_tolerance_mm = *job.scene.chord_tolerance_mm;
+    elements.push_back(std::move(element));
+  }
+  path.elements = std::move(elements);
+  return path;
+}
+
+JobPath path_of_program(const Job& job, toolpath::Planner planner, Diagnostics& diagnostics) {
+  switch (job.scene.kind) {
+    case ProgramKind::kNc: {
+      toolpath::NcPath nc = read_nc_program(job, diagnostics);
+      return {std::move(nc.path), std::move(nc.reading)};
+    }
+    case ProgramKind::kCl:
+      return {toolpath::cl_path(*job.cl, job.scene.block_law, diagnostics, cl_tools(job)), {}};
+    case ProgramKind::kSurfaceBlocks:
+      break;
+  }
+  return {plan_surfaces(job, planner, diagnostics), {}};
+}
+
+JobPath with_rapids(const Job& job, toolpath::Planner planner, Diagnostics& diagnostics) {
+  JobPath found = path_of_program(job, planner, diagnostics);
+  diagnostics.throw_if_errors();
+  found.path = motion::with_dog_legs(std::move(found.path), machines_by_tool(job));
+  return found;
+}
+
+}  // namespace
+
+JobPath job_path(const Job& job, Diagnostics& diagnostics) {
+  return with_rapids(job, job.scene.toolpath.planner, diagnostics);
+}
+
+toolpath::ToolPath path_by(const Job& job, toolpath::Planner planner, Diagnostics& diagnostics) {
+  return with_rapids(job, planner, diagnostics).path;
+}
+
+}  // namespace swarf::sim

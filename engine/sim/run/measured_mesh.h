@@ -1,0 +1,28 @@
+// The finished part's mesh with what the measuring rays, or the design's own mesh, say of each vertex.
+#pragma once
+
+#include <vector>
+
+#include "mesh/tri_mesh.h"
+#include "motion/cycles/cycles.h"
+#include "sim/job/scene.h"
+#include "stock/rays/surface_dexels.h"
+
+namespace swarf::sim {
+
+/// What a mesh is measured with. Borrowed.
+struct MeasuredPart {
+  const Job& job;
+  const motion::Cycles& cycles;  ///< may be empty unless normals_need_cycles(job)
+  const std::vector<stock::SurfaceDexels>& dexels;
+  double voxel_mm = 0.0;  ///< of the stock that the mesh comes from
+};
+
+/// Cusps of planned passes get their normals from the tool axis of each cycle.
+bool normals_need_cycles(const Job& job);
+
+/// Sets TriMesh::deviation_um (um; NaN where no ray has seen the vertex), and the normals of facets that the
+/// bottom of a flat end left on planned passes to the tool's axis. The mesh has normals.
+void measure_mesh(const MeasuredPart& part, TriMesh& mesh);
+
+}  // namespace swarf::sim
