@@ -11,6 +11,7 @@
 
 #include "base/units.h"
 #include "cli/terminal.h"
+#include "program/move_way.h"
 
 namespace swarf::cli {
 namespace {
@@ -20,23 +21,21 @@ class Totals final : public program::ClSink {
  public:
   void move(const program::Move& move) override {
     const bool feeds = !move.rapid;
-    const double way = (move.to.tip_W - move.from.tip_W).norm();  // arcs are counted, their ways are not
     arcs_ += move.arc ? 1 : 0;
-    (feeds ? feed_mm_ : rapid_mm_) += way;
+    (feeds ? feed_mm_ : rapid_mm_) += program::way_mm(move);
     (feeds ? feeds_ : rapids_) += 1;
-    if (feeds_ + rapids_ == 1) extent_ = {move.from.tip_W, move.from.tip_W};
-    extent_.lower = extent_.lower.cwiseMin(move.to.tip_W);
-    extent_.upper = extent_.upper.cwiseMax(move.to.tip_W);
+    extent_W_.extend(program::extent_W(move));
     turned_ |= move.to.axis_W.z() < 1.0 - 1e-9;
   }
   void note(program::ClNote note) override { ++notes_[note.word]; }
 
   std::string text() const {
     std::string text = fmt::format(
-        "\n  {} feed moves, {} of them arcs; {} rapids; {:.0f} mm and {:.0f} mm between their ends\n"
+        "\n  {} feed moves, {} of them arcs; {} rapids; {:.0f} mm and {:.0f} mm of way\n"
         "  tips from ({:.3f}, {:.3f}, {:.3f}) to ({:.3f}, {:.3f}, {:.3f}) mm, tool axis {}",
-        feeds_, arcs_, rapids_, feed_mm_, rapid_mm_, extent_.lower.x(), extent_.lower.y(), extent_.lower.z(),
-        extent_.upper.x(), extent_.upper.y(), extent_.upper.z(), turned_ ? "turns" : "stays (0, 0, 1)");
+        feeds_, arcs_, rapids_, feed_mm_, rapid_mm_, extent_W_.min().x(), extent_W_.min().y(),
+        extent_W_.min().z(), extent_W_.max().x(), extent_W_.max().y(), extent_W_.max().z(),
+        turned_ ? "turns" : "stays (0, 0, 1)");
     std::string kept;
     for (const auto& [word, count] : notes_)
       kept += fmt::format("{}{} ({})", kept.empty() ? "" : ", ", word, count);
@@ -46,7 +45,7 @@ class Totals final : public program::ClSink {
 
   /// The same, appended to `numbers`.
   void add_to(nlohmann::ordered_json& numbers) const {
-    const auto side = [&](int i) { return std::array{extent_.lower[i], extent_.upper[i]}; };
+    const auto side = [&](int i) { return std::array{extent_W_.min()[i], extent_W_.max()[i]}; };
     numbers["feed_moves"] = feeds_;
     numbers["arcs"] = arcs_;
     numbers["rapids"] = rapids_;
@@ -60,7 +59,7 @@ class Totals final : public program::ClSink {
  private:
   long feeds_ = 0, rapids_ = 0, arcs_ = 0;
   double feed_mm_ = 0.0, rapid_mm_ = 0.0;
-  Box extent_;
+  Eigen::AlignedBox3d extent_W_;  ///< of the tip, arcs with their bulge
   bool turned_ = false;
   std::map<std::string, long> notes_;
 };

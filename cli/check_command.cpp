@@ -9,6 +9,7 @@
 #include "cli/check_cl.h"
 #include "cli/check_nc.h"
 #include "cli/commands.h"
+#include "cli/pipeline_files.h"
 #include "cli/terminal.h"
 #include "kinematics/round_trip.h"
 #include "program/dialects.h"
@@ -61,7 +62,7 @@ Checked check_scene(const std::string& file) {
                                        {"link_mm", path.link_length_mm},
                                        {"time_s", moved.motion.statistics.time_s}};
   const std::string what =
-      job.scene.has_blocks()
+      path.elements.hold_blocks()
           ? fmt::format("{} blocks, {:.0f} mm of feed moves, {:.0f} mm of rapids", path.elements.size(),
                         path.pass_length_mm, path.link_length_mm)
           : fmt::format("{} passes, {:.0f} mm in contact", path.passes, path.pass_length_mm);
@@ -130,6 +131,7 @@ struct CheckOptions {
   ClCheckOptions cl;
   int poses = 10000;
   bool json = false;
+  PipelineFiles pipeline;
 };
 
 Checked check_file(const std::string& file, const CheckOptions& options) {
@@ -158,7 +160,7 @@ nlohmann::ordered_json object_of(const std::string& file, const std::optional<Ch
   return object;
 }
 
-int check(const CheckOptions& options) {
+int check(const CheckOptions& options, std::vector<reports::FileVerdict>& found) {
   nlohmann::ordered_json objects = nlohmann::ordered_json::array();
   int exit_code = kPass;
   for (const std::string& file : options.files) {
@@ -173,6 +175,7 @@ int check(const CheckOptions& options) {
       told = error.diagnostics.list();
       exit_code = kBadInput;
     }
+    found.push_back({file, told});
     if (options.json) {
       objects.push_back(object_of(file, checked, told));
       continue;
@@ -264,7 +267,12 @@ void add_check(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->footer(kCheckFooter);
   command->add_flag("--json", options->json, "print one JSON object instead of text");
-  command->callback([options, &exit_code] { exit_code = check(*options); });
+  add_pipeline_options(*command, options->pipeline);
+  command->callback([options, &exit_code] {
+    exit_code = with_pipeline_files(options->pipeline, "", [&](std::vector<reports::FileVerdict>& found) {
+      return check(*options, found);
+    });
+  });
 }
 
 }  // namespace swarf::cli

@@ -21,5 +21,7 @@ void add_plan(CLI::App& app, int& exit_code);
 void add_compare(CLI::App& app, int& exit_code);
 void add_render(CLI::App& app, int& exit_code);
 void add_export(CLI::App& app, int& exit_code);
+/// The manual page and completions of all commands that have been added before.
+void add_manual(CLI::App& app);
 
 }  // namespace swarf::cli

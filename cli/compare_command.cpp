@@ -94,11 +94,22 @@ void check_measured(const CompareOptions& options, const measure::PartComparison
                    "check that both are in the same frame and in mm, or raise --reach-mm");
 }
 
+/// Two closed meshes have no edge that a grid has rounded: the option would change nothing.
+void require_use_of_edge(const CompareOptions& options, const ComparedStock& stock,
+                         const ComparedDesign& design) {
+  if (!options.edge_mm || stock.voxel_mm > 0.0 || design.open) return;
+  throw InputError(
+      "unused-option", {options.stock},
+      "--edge-mm loosens edges that a grid has rounded, and here both are meshes as they are",
+      "leave it out, or compare the run's stock.vdb; --gouge-um and --excess-um loosen all places");
+}
+
 int compare_solids(const CompareOptions& options) {
   if (!options.output.empty()) reports::check_output_folder(options.output, reports::kCompareMark);
   const ComparedStock stock = load_stock(options.stock);
   const ComparedDesign design = load_design(options.design, kPatchPitch);
   check_boxes(stock, design, options.stock, options.design);
+  require_use_of_edge(options, stock, design);
   const measure::ComparisonInput input = comparison_of(options, stock, design);
   const measure::PartComparison result = measure::compare_parts(input);
   check_measured(options, result);

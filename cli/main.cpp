@@ -71,6 +71,7 @@ int main(int argc, char** argv) {
   swarf::cli::add_compare(app, exit_code);
   swarf::cli::add_render(app, exit_code);
   swarf::cli::add_export(app, exit_code);
+  swarf::cli::add_manual(app);
   swarf::cli::catch_interrupt();
   return guarded(app, argc, argv, exit_code);
 }

@@ -5,41 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/angles.h"
 #include "base/units.h"
 #include "cli/terminal.h"
+#include "program/move_way.h"
 
 namespace swarf::cli {
-namespace {
-
-/// Ends closer than this are one point, mm: the arc is a whole circle.
-constexpr double kSamePoint = 1e-9;
-
-/// Counter-clockwise about n from a to b, in [0, 2 pi).
-double angle_about(const Vec3& n, const Vec3& a, const Vec3& b) {
-  const double angle = std::atan2(a.cross(b).dot(n), a.dot(b));
-  return angle < 0.0 ? angle + kTurn : angle;
-}
-
-}  // namespace
-
-void NcTotals::add_arc(const program::NcMove& move) {
-  const Vec3& n = move.arc->normal_W;
-  const auto flat = [&](const Vec3& v) { return Vec3(v - v.dot(n) * n); };
-  const Vec3 a = flat(move.from.tip_W - move.arc->centre_W), b = flat(move.to.tip_W - move.arc->centre_W);
-  const double swept = (a - b).norm() <= kSamePoint ? kTurn : angle_about(n, a, b);
-  const double rise = (move.to.tip_W - move.from.tip_W).dot(n);
-  (move.rapid ? rapid_mm : feed_mm) += std::hypot(a.norm() * swept, rise);
-  // Where the arc is farthest along X, Y and Z, when it passes there.
-  const double radius = a.norm();
-  for (int k = 0; k < 6; ++k) {
-    const Vec3 way = flat((k < 3 ? 1.0 : -1.0) * Vec3::Unit(k % 3));
-    if (way.norm() < 1e-12) continue;
-    const Vec3 spoke = radius * way.normalized();
-    const double angle = angle_about(n, a, spoke);
-    if (angle < swept) cut_W.extend(Vec3(move.from.tip_W - a + spoke + angle / swept * rise * n));
-  }
-}
 
 void NcTotals::add_rapid(const program::NcMove& move) {
   double longest = 0.0;
@@ -78,17 +48,12 @@ bool NcTotals::move(const program::NcMove& move) {
   dwell_s += move.dwell_s;
   low = low.cwiseMin(move.q_to);
   high = high.cwiseMax(move.q_to);
-  if (move.arc) {
-    ++arcs;
-    add_arc(move);
-  } else {
-    (move.rapid ? rapid_mm : feed_mm) += (move.to.tip_W - move.from.tip_W).norm();
-  }
-  if (move.rapid) {
+  arcs += move.arc ? 1 : 0;
+  (move.rapid ? rapid_mm : feed_mm) += program::way_mm(move);
+  if (move.rapid)
     add_rapid(move);
-  } else {
-    cut_W.extend(move.from.tip_W).extend(move.to.tip_W);
-  }
+  else
+    cut_W.extend(program::extent_W(move));
   check_travel(move);
   return !interrupted();
 }

@@ -28,7 +28,6 @@ class NcTotals final : public program::NcSink {
   int out_of_travel_line = 0;
 
  private:
-  void add_arc(const program::NcMove& move);
   void add_rapid(const program::NcMove& move);
   void check_travel(const program::NcMove& move);
 

@@ -11,6 +11,7 @@
 
 #include "base/parallel.h"
 #include "cli/commands.h"
+#include "cli/pipeline_files.h"
 #include "cli/shell_text.h"
 #include "cli/terminal.h"
 #include "reports/metrics_json.h"
@@ -30,6 +31,7 @@ struct RunOptions {
   size_t record_every = 256;
   double max_memory_mb = 0.0, keep_every_s = 60.0;
   bool no_render = false, report = false, json = false, record = false, check = false;
+  PipelineFiles pipeline;
 };
 
 void print_finding(const sim::Finding& finding) {
@@ -90,6 +92,8 @@ std::vector<std::string> command_words(const RunOptions& options) {
   flag(options.report, "--report");
   add(!options.trajectory.empty(), "--trajectory", options.trajectory);
   flag(options.json, "--json");
+  add(!options.pipeline.sarif.empty(), "--sarif", options.pipeline.sarif);
+  add(!options.pipeline.junit.empty(), "--junit", options.pipeline.junit);
   add(!options.output.empty(), "-o", options.output);
   return words;
 }
@@ -149,7 +153,21 @@ sim::CutOptions cut_options(const RunOptions& options, const reports::PendingFol
   return cut;
 }
 
-int run(const RunOptions& options) {
+/// Warnings of the input, then what the run has found.
+reports::FileVerdict verdict_of(const sim::Job& job, const sim::Result& result,
+                                const std::vector<Diagnostic>& failures) {
+  reports::FileVerdict verdict{job.scene.file, job.warnings, result.checks};
+  const auto add = [&](const std::vector<Diagnostic>& more) {
+    verdict.told.insert(verdict.told.end(), more.begin(), more.end());
+  };
+  add(result.main.warnings);
+  for (const sim::Finding& f : result.findings)
+    verdict.told.push_back({f.code, f.severity, f.where, f.text, f.fix});
+  add(failures);
+  return verdict;
+}
+
+int run(const RunOptions& options, std::vector<reports::FileVerdict>& found) {
   set_thread_count(options.threads);
   std::vector<std::string> overrides = options.overrides;
   if (options.max_memory_mb > 0.0) {
@@ -171,6 +189,7 @@ int run(const RunOptions& options) {
   print_diagnostics(result.main.warnings);
   const std::vector<Diagnostic> failures = reports::write_run(pending, job, result, output, progress);
   print_diagnostics(failures);
+  found.push_back(verdict_of(job, result, failures));
   if (result.stopped) {
     print_stopped(options, result, folder);
     return kStopped;
@@ -249,7 +268,12 @@ void add_run(CLI::App& app, int& exit_code) {
           "mm/s^3 at 1 ms) or h5 (HDF5, compressed, numbers as they are)")
       ->check(CLI::IsMember({"csv", "h5", "none"}));
   command->add_flag("--json", options->json, "print metrics.json instead of the table");
-  command->callback([options, &exit_code] { exit_code = run(*options); });
+  add_pipeline_options(*command, options->pipeline);
+  command->callback([options, &exit_code] {
+    exit_code =
+        with_pipeline_files(options->pipeline, options->scene,
+                            [&](std::vector<reports::FileVerdict>& found) { return run(*options, found); });
+  });
 }
 
 }  // namespace swarf::cli

@@ -31,9 +31,13 @@ endfunction()
 
 # Flags that every file shares.
 add_library(swarf_settings INTERFACE)
-target_include_directories(swarf_settings INTERFACE "${PROJECT_SOURCE_DIR}/engine" "${PROJECT_SOURCE_DIR}")
+target_include_directories(swarf_settings INTERFACE
+  "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/engine>" "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>"
+  "$<INSTALL_INTERFACE:include/swarf>")
 target_link_libraries(swarf_settings INTERFACE Eigen3::Eigen fmt::fmt Threads::Threads)
 # -ffp-contract=off: with fused multiply-add, results would depend on the instruction set.
 # No -march here: Debian's libraries use Eigen with 16-byte alignment; only kernel files carry their own flags.
 target_compile_definitions(swarf_settings INTERFACE SWARF_VERSION="${PROJECT_VERSION}")
-target_compile_options(swarf_settings INTERFACE -Wall -Wextra -Wshadow -Wno-psabi -ffp-contract=off)
+target_compile_options(swarf_settings INTERFACE
+  "$<BUILD_INTERFACE:-Wall;-Wextra;-Wshadow>" -Wno-psabi -ffp-contract=off)
+target_compile_features(swarf_settings INTERFACE cxx_std_20)

@@ -22,6 +22,12 @@ python3 tests/lint/unity.py || failed=1
 say "theory and errata that comments name"
 python3 tests/lint/theory.py || failed=1
 
+say "options without a test"
+python3 tests/lint/options.py || failed=1
+
+say "tests that the README names"
+python3 tests/lint/readme.py || failed=1
+
 say "reference page of the machines"
 python3 assets/machines/reference_page.py --check || failed=1
 

@@ -1,0 +1,236 @@
+// Options of the command line that no other test runs: what each changes is seen from outside.
+// tests/lint/options.py holds that every option has a test.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <filesystem>
+#include <initializer_list>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "support/program_run.h"
+
+namespace options_test {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using swarf::test::fresh_folder;
+using swarf::test::ProgramRun;
+using swarf::test::run_swarf;
+
+const std::string kMachines = SWARF_SOURCE_DIR "/assets/machines/";
+
+std::string written(const fs::path& folder, const char* name, const std::string& text) {
+  swarf::test::write_text(folder / name, text);
+  return (folder / name).string();
+}
+
+bool says(const ProgramRun& run, const std::string& words) {
+  return run.output.find(words) != std::string::npos;
+}
+
+class Options : public testing::Test {
+ protected:
+  Options() : folder_(fresh_folder("options")) {}
+  ~Options() override { fs::remove_all(folder_); }
+  std::string file(const char* name, const std::string& text) const { return written(folder_, name, text); }
+
+  fs::path folder_;
+};
+
+TEST_F(Options, VersionIsPrinted) {
+  const ProgramRun run = run_swarf("--version");
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_EQ(run.output.find_first_of("0123456789"), 0u) << run.output;
+}
+
+TEST_F(Options, CheckTakesTheToolThatIsInTheSpindle) {
+  const std::string program = file("part.ngc", "G21 G90 G17\nS1000 M3\nG0 X0 Y0 Z0\nG1 X10 F100\nM2\n");
+  const std::string tools = file("tools.tbl", "T1 P1 D6 Z50\nT2 P2 D8 Z50\n");
+  const std::string check = "check " + program + " --tools " + tools;
+  EXPECT_FALSE(says(run_swarf(check), "T2 (D 8 mm"));
+  const ProgramRun with = run_swarf(check + " --start-tool 2");
+  EXPECT_EQ(with.exit_code, 0) << with.output;
+  EXPECT_TRUE(says(with, "T2 (D 8 mm")) << with.output;
+}
+
+TEST_F(Options, CheckTakesATThatChangesTheToolAtOnce) {
+  const std::string program = file("part.ngc", "G21 G90 G17\nT1\nS1000 M3\nG0 X0 Y0 Z0\nG1 X10 F100\nM2\n");
+  const std::string tools = file("tools.tbl", "T1 P1 D6 Z50\nT2 P2 D8 Z50\n");
+  const std::string check = "check " + program + " --tools " + tools;
+  EXPECT_FALSE(says(run_swarf(check), "T1 (D 6 mm"));
+  const ProgramRun with = run_swarf(check + " --t-changes-tool");
+  EXPECT_TRUE(says(with, "T1 (D 6 mm")) << with.output;
+}
+
+TEST_F(Options, CheckTakesTheUnitOfProgramsThatNameNone) {
+  const std::string program = file("part.ngc", "G90 G17\nS1000 M3\nG0 X0 Y0 Z0\nG1 X1 F10\nM2\n");
+  const ProgramRun inch = run_swarf("check " + program + " --units inch --json");
+  const ProgramRun mm = run_swarf("check " + program + " --units mm --json");
+  EXPECT_EQ(inch.exit_code, 0) << inch.output;
+  EXPECT_EQ(mm.exit_code, 0) << mm.output;
+  EXPECT_TRUE(says(inch, "25.4")) << inch.output;
+  EXPECT_FALSE(says(mm, "25.4")) << mm.output;
+}
+
+TEST_F(Options, CheckTakesABuildersWord) {
+  const std::string program = file("part.nc", "O0001\nG21 G90\nM168\nG0 X0 Y0 Z0\nG1 X10 F100\nM30\n%\n");
+  EXPECT_EQ(run_swarf("check " + program + " --dialect fanuc").exit_code, 2);
+  const ProgramRun with = run_swarf("check " + program + " --dialect fanuc --builder-word \"M168=clamp C\"");
+  EXPECT_EQ(with.exit_code, 0) << with.output;
+  EXPECT_TRUE(says(with, "clamp C")) << with.output;
+}
+
+TEST_F(Options, CheckTakesWhatSwitchesTheKinematics) {
+  const std::string program = file("part.ngc", "G21 G90\nM428\nG0 X0 Y0 Z0 A0 B0\nG1 X10 F100\nM2\n");
+  const std::string check = "check " + program + " --machine " + kMachines + "lin_koren_xyzab/machine.toml";
+  EXPECT_TRUE(says(run_swarf(check), "kinematics-assumed"));
+  const ProgramRun with = run_swarf(check + " --kinematics m428=identity");
+  EXPECT_FALSE(says(with, "kinematics-assumed")) << with.output;
+}
+
+TEST_F(Options, CheckTakesTheSenseOfACircle) {
+  const std::string program = file("part.cls",
+                                   "UNITS/MM\nLOADTL/1\nFEDRAT/100\nGOTO/10,0,0,0,0,1\n"
+                                   "CIRCLE/0,0,0,0,0,1,10\nGOTO/0,10,0,0,0,1\nFINI\n");
+  const auto length = [&](const std::string& circle) {
+    const ProgramRun run = run_swarf("check " + program + " " + circle + " --json");
+    EXPECT_EQ(run.exit_code, 0) << run.output;
+    return run.output;
+  };
+  EXPECT_NE(length("--circle clockwise"), length("--circle counter_clockwise"));
+}
+
+TEST_F(Options, CheckTriesSoManyPoses) {
+  const ProgramRun run = run_swarf("check --poses 1234 " + kMachines + "lin_koren_xyzab/machine.toml");
+  EXPECT_EQ(run.exit_code, 0) << run.output;
+  EXPECT_TRUE(says(run, "1234 random poses")) << run.output;
+}
+
+TEST_F(Options, CheckAndRunTellBuildServers) {
+  const std::string sarif = (folder_ / "out.sarif").string(), junit = (folder_ / "out.xml").string();
+  const std::string wrong = file("wrong.ngc", "G21 G90\nG1 X10 F100 Q%\nM2\n");
+  const auto files = " --sarif " + sarif + " --junit " + junit;
+  EXPECT_EQ(run_swarf("check " + wrong + files).exit_code, 2);
+  const json log = json::parse(swarf::test::read_text(sarif));
+  const json& place = log.at("runs").at(0).at("results").at(0).at("locations").at(0).at("physicalLocation");
+  EXPECT_EQ(place.at("region").at("startLine"), 2);
+  EXPECT_NE(swarf::test::read_text(junit).find("<failure"), std::string::npos);
+  const std::string scene = SWARF_SOURCE_DIR "/scenes/exact_gouges/scene.toml";
+  EXPECT_EQ(run_swarf("run " + scene + " --no-render -o " + (folder_ / "run").string() + files).exit_code, 1);
+  const json found = json::parse(swarf::test::read_text(sarif));
+  EXPECT_EQ(found.at("runs").at(0).at("invocations").at(0).at("exitCode"), 1);
+  EXPECT_NE(swarf::test::read_text(sarif).find("\"check/gouge\""), std::string::npos);
+  EXPECT_EQ(run_swarf("run no_such.toml" + files).exit_code, 2);
+  EXPECT_EQ(
+      json::parse(swarf::test::read_text(sarif)).at("runs").at(0).at("invocations").at(0).at("exitCode"), 2);
+  EXPECT_EQ(run_swarf("check " + wrong + " --sarif " + folder_.string()).exit_code, 2);
+}
+
+TEST_F(Options, TheManualHasEveryCommandAndOption) {
+  const ProgramRun man = run_swarf("manual man");
+  EXPECT_EQ(man.exit_code, 0);
+  EXPECT_EQ(man.output.rfind(".TH SWARF 1", 0), 0u);
+  const ProgramRun bash = run_swarf("manual bash");
+  for (const char* command : {"run", "check", "compare", "render", "export"}) {
+    EXPECT_TRUE(says(man, std::string(".SS swarf ") + command)) << command;
+    EXPECT_TRUE(says(bash, std::string("    ") + command + ") words=")) << command;
+  }
+  EXPECT_TRUE(says(bash, "--no-render"));
+  const ProgramRun completed = swarf::test::run_command(
+      "bash -c 'source <(" + std::string(SWARF_PROGRAM) +
+      " manual bash); COMP_WORDS=(swarf run --no-r); COMP_CWORD=2; _swarf; echo ${COMPREPLY[0]}'");
+  EXPECT_EQ(completed.output, "--no-render\n");
+  if (swarf::test::run_command("command -v mandoc || command -v groff").exit_code == 0) {
+    const ProgramRun read =
+        swarf::test::run_command(std::string(SWARF_PROGRAM) + " manual man | groff -man -Tascii -ww");
+    EXPECT_EQ(read.output.find("warning"), std::string::npos);
+  }
+}
+
+/// A prism over a convex polygon, counter-clockwise, as the facets of an ASCII STL.
+std::string prism(const std::vector<std::array<double, 2>>& base, double top) {
+  std::string text;
+  const auto facet = [&](std::initializer_list<std::array<double, 3>> corners) {
+    text += "facet normal 0 0 0\nouter loop\n";
+    for (const auto& p : corners) text += fmt::format("vertex {} {} {}\n", p[0], p[1], p[2]);
+    text += "endloop\nendfacet\n";
+  };
+  const auto at = [&](size_t i, double z) { return std::array<double, 3>{base[i][0], base[i][1], z}; };
+  for (size_t i = 0; i < base.size(); ++i) {
+    const size_t next = (i + 1) % base.size();
+    facet({at(i, 0), at(next, 0), at(next, top)});
+    facet({at(i, 0), at(next, top), at(i, top)});
+    if (i < 2) continue;
+    facet({at(0, 0), at(i, 0), at(i - 1, 0)});
+    facet({at(0, top), at(i - 1, top), at(i, top)});
+  }
+  return text;
+}
+
+std::string box(double x, double size, double top) {
+  return prism({{x, 0}, {x + size, 0}, {x + size, size}, {x, size}}, top);
+}
+
+std::string solid(const std::string& facets) {
+  return "solid s\n" + facets + "endsolid s\n";
+}
+
+TEST_F(Options, CompareMeasuresOnlyWhatLiesSoNear) {
+  const std::string design = file("design.stl", solid(box(0, 10, 5)));
+  const std::string stock = file("stock.stl", solid(box(0, 10, 5.05) + box(100, 10, 5)));
+  const std::string compare =
+      "compare " + stock + " " + design + " --pitch-mm 0.5 --gouge-um 100 --excess-um 100";
+  const ProgramRun all = run_swarf(compare);
+  EXPECT_EQ(all.exit_code, 1) << all.output;
+  const ProgramRun near = run_swarf(compare + " --reach-mm 1");
+  EXPECT_EQ(near.exit_code, 1) << near.output;  // what lies farther away is a finding with its area
+  EXPECT_NE(near.output, all.output);
+}
+
+/// A grid rounds the edges of a slot; what that may be is not put down to the cut.
+TEST_F(Options, CompareAllowsEdgesThatAGridHasRounded) {
+  const std::string run = (folder_ / "run").string();
+  const std::string scene = SWARF_SOURCE_DIR "/scenes/exact_scallop_mesh/";
+  ASSERT_NE(run_swarf("run " + scene + "scene.toml --no-render -o " + run).exit_code, 2);
+  const std::string compare = "compare " + run + "/stock.vdb " + scene + "scene.toml --json --edge-mm ";
+  EXPECT_NE(run_swarf(compare + "0").output, run_swarf(compare + "0.5").output);
+}
+
+/// Where both are meshes the option would change nothing: it is not taken as if it did.
+TEST_F(Options, CompareRefusesAnEdgeWhereNoGridHasRoundedAny) {
+  const std::string design = file("design.stl", solid(box(0, 10, 5)));
+  const ProgramRun run = run_swarf("compare " + design + " " + design + " --edge-mm 0.2");
+  EXPECT_EQ(run.exit_code, 2) << run.output;
+  EXPECT_TRUE(says(run, "unused-option")) << run.output;
+}
+
+TEST_F(Options, CompareWritesItsMapsToAFolder) {
+  const std::string design = file("design.stl", solid(box(0, 10, 5)));
+  const fs::path out = folder_ / "maps";
+  const ProgramRun run =
+      run_swarf("compare " + design + " " + design + " --pitch-mm 0.5 --output " + out.string());
+  EXPECT_EQ(run.exit_code, 0) << run.output;
+  EXPECT_FALSE(fs::is_empty(out));
+}
+
+TEST_F(Options, ExportDecimatesWithinTheErrorThatIsAsked) {
+  const std::string run = (folder_ / "run").string();
+  const std::string scene = SWARF_SOURCE_DIR "/scenes/exact_slot_flat/scene.toml";
+  ASSERT_NE(
+      run_swarf("run " + scene + " --no-render --output " + run + " --set stock.voxel_mm=0.5").exit_code, 2);
+  const auto size = [&](const char* error) {
+    const fs::path file = folder_ / (std::string("part_") + error + ".glb");
+    const ProgramRun made = run_swarf("export " + run + " --gltf " + file.string() + " --error-um " + error);
+    EXPECT_EQ(made.exit_code, 0) << made.output;
+    return fs::file_size(file);
+  };
+  EXPECT_LT(size("500"), size("0.01"));
+}
+
+}  // namespace
+
+}  // namespace options_test
