@@ -12,6 +12,7 @@
 #include "base/diagnostics.h"
 #include "cli/commands.h"
 #include "cli/terminal.h"
+#include "cli/version.h"
 
 namespace {
 
@@ -60,7 +61,14 @@ int main(int argc, char** argv) {
   CLI::App app{
       "Swarf: headless, visual 5-axis NC simulator. A surface program goes in; a measured, rendered report "
       "comes out."};
-  app.set_version_flag("--version", SWARF_VERSION);
+  app.set_version_flag("--version", swarf::cli::version_text());
+  app.fallthrough();  // -q and the like may stand behind the command
+  swarf::cli::Manner manner;
+  app.add_flag("-q,--quiet", manner.quiet, "say only errors, warnings, findings and the verdict");
+  app.add_flag("-v,--verbose", manner.verbose, "print every finding, not only the first five of each code");
+  app.add_flag_callback(
+      "--no-progress", [&manner] { manner.progress = false; }, "no lines about the work's progress");
+  app.parse_complete_callback([&manner] { swarf::cli::set_manner(manner); });
   app.require_subcommand(1);
   app.footer(kFooter);
   int exit_code = swarf::cli::kPass;

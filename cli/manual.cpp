@@ -72,6 +72,8 @@ std::string man_page(const CLI::App& app) {
       ".SH SYNOPSIS\n.B swarf\n\\fICOMMAND\\fR [\\fIARGUMENTS\\fR]\n.SH DESCRIPTION\n{}\n.SH COMMANDS\n",
       SWARF_VERSION, troff(app.get_description()));
   for (const CLI::App* command : shown_commands(app)) text += command_text(*command);
+  text += ".SH OPTIONS OF ALL COMMANDS\n";
+  for (const CLI::Option* option : long_options(app)) text += option_text(*option);
   return text + ".SH EXAMPLES AND EXIT STATUS\n" + as_it_stands(app.get_footer());
 }
 

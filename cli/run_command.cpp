@@ -36,13 +36,13 @@ struct RunOptions {
 
 void print_finding(const sim::Finding& finding) {
   fmt::print("  finding: {}\n",
-             format({finding.code, finding.severity, finding.where, finding.text, finding.fix}));
+             painted({finding.code, finding.severity, finding.where, finding.text, finding.fix}, stdout));
   if (!finding.block.empty()) fmt::print("    t = {:.3f} s: {}\n", finding.t_s, finding.block);
 }
 
 /// By code, in the order in which the codes first appear: the first of each, and how many more there are.
 void print_findings(const std::vector<sim::Finding>& findings) {
-  constexpr size_t kPrinted = 5;
+  const size_t printed = manner().verbose ? findings.size() : 5;
   std::vector<std::string> codes;
   std::map<std::string, std::vector<const sim::Finding*>> by_code;
   for (const sim::Finding& finding : findings) {
@@ -52,15 +52,17 @@ void print_findings(const std::vector<sim::Finding>& findings) {
   }
   for (const std::string& code : codes) {
     const std::vector<const sim::Finding*>& same = by_code[code];
-    for (size_t i = 0; i < std::min(kPrinted, same.size()); ++i) print_finding(*same[i]);
-    if (same.size() > kPrinted)
-      fmt::print("  and {} more of {} in findings.json\n", same.size() - kPrinted, code);
+    for (size_t i = 0; i < std::min(printed, same.size()); ++i) print_finding(*same[i]);
+    if (same.size() > printed)
+      fmt::print("  and {} more of {} in findings.json\n", same.size() - printed, code);
   }
 }
 
 void print_outcome(const sim::Job& job, const sim::Result& result, const std::string& folder) {
-  fmt::print("\n{}\n", job.scene.title);
-  print_table(reports::summary_lines(job, result));
+  if (!manner().quiet) {
+    fmt::print("\n{}\n", job.scene.title);
+    print_table(reports::summary_lines(job, result));
+  }
   print_findings(result.findings);
   const std::filesystem::path page = std::filesystem::path(folder) / "report.html";
   const bool has_page = std::filesystem::exists(page);

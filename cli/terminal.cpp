@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <csignal>
+#include <cstdlib>
 
 namespace swarf::cli {
 namespace {
@@ -27,7 +28,43 @@ bool is_terminal() {
   return answer;
 }
 
+Manner& the_manner() {
+  static Manner manner;
+  return manner;
+}
+
+bool silent() {
+  return the_manner().quiet || !the_manner().progress;
+}
+
+/// NO_COLOR: https://no-color.org
+bool takes_colour(std::FILE* where) {
+  const char* refused = std::getenv("NO_COLOR");
+  return isatty(fileno(where)) != 0 && (refused == nullptr || *refused == '\0');
+}
+
 }  // namespace
+
+void set_manner(const Manner& manner) {
+  the_manner() = manner;
+}
+
+const Manner& manner() {
+  return the_manner();
+}
+
+std::string painted(const Diagnostic& diagnostic, std::FILE* where) {
+  std::string text = format(diagnostic);
+  if (!takes_colour(where)) return text;
+  const bool error = diagnostic.severity == Severity::kError;
+  const std::string word = error                                       ? " error: "
+                           : diagnostic.severity == Severity::kWarning ? " warning: "
+                                                                       : " note: ";
+  const size_t at = text.find(word);
+  if (at != std::string::npos)
+    text.replace(at, word.size(), fmt::format("\033[1;{}m{}\033[0m", error ? 31 : 33, word));
+  return text;
+}
 
 void catch_interrupt() {
   std::signal(SIGINT, on_interrupt);
@@ -45,10 +82,11 @@ void TerminalProgress::begin(std::string_view stage, double total, std::string_v
   first_ = 0.0;
   start_ = Clock::now();
   drawn_ = start_;
-  if (is_terminal()) draw(0.0);
+  if (is_terminal() && !silent()) draw(0.0);
 }
 
 void TerminalProgress::advance(double done) {
+  if (silent()) return;
   const Clock::time_point now = Clock::now();
   if (is_terminal() ? now - drawn_ < kRedraw : now - drawn_ < kPlainLine) return;
   drawn_ = now;
@@ -75,10 +113,12 @@ void TerminalProgress::draw(double done) {
 }
 
 void TerminalProgress::note(std::string_view text) {
+  if (manner().quiet) return;
   fmt::print(stderr, "{}\n", text);
 }
 
 void TerminalProgress::end() {
+  if (silent()) return;
   const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
   fmt::print(stderr, "{}{:<22} {:6.2f} s{}\n", is_terminal() ? "\r\033[K" : "", stage_, elapsed,
              interrupted() ? "  (stopped)" : "");
@@ -91,7 +131,7 @@ void print_table(const std::vector<std::pair<std::string, std::string>>& rows) {
 }
 
 void print_diagnostics(const std::vector<Diagnostic>& diagnostics) {
-  for (const Diagnostic& diagnostic : diagnostics) fmt::print(stderr, "{}\n", format(diagnostic));
+  for (const Diagnostic& diagnostic : diagnostics) fmt::print(stderr, "{}\n", painted(diagnostic, stderr));
 }
 
 }  // namespace swarf::cli

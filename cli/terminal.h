@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdio>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,6 +15,18 @@ namespace swarf::cli {
 /// Ctrl-C asks the running command to stop and keep what is finished; a second one ends the program at once.
 void catch_interrupt();
 bool interrupted();
+
+/// How much is said, for all commands.
+struct Manner {
+  bool quiet = false;    ///< errors, warnings, findings and the verdict alone
+  bool verbose = false;  ///< every finding, not only the first of each code
+  bool progress = true;  ///< stages of long work; not with quiet
+};
+void set_manner(const Manner& manner);
+const Manner& manner();
+
+/// A diagnostic as `format` writes it; on a terminal with its severity in colour, unless NO_COLOR is set.
+std::string painted(const Diagnostic& diagnostic, std::FILE* where);
 
 /// On a terminal one line per stage, redrawn with a bar and the time left; otherwise plain lines.
 /// Everything goes to stderr, so that stdout stays free for --json.
