@@ -11,7 +11,7 @@
 #include <limits>
 #include <optional>
 
-#include "base/input_file.h"
+#include "base/file.h"
 #include "base/units.h"
 #include "cli/nc_motion.h"
 #include "cli/nc_totals.h"

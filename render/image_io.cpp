@@ -2,10 +2,9 @@
 
 #include <png.h>
 
-#include <filesystem>
-
 #include "base/check.h"
 #include "base/diagnostics.h"
+#include "base/file.h"
 
 namespace swarf::render {
 namespace {
@@ -24,17 +23,11 @@ png_image header(const Image& image) {
 
 void save_png(const Image& image, const std::string& path) {
   SWARF_CHECK(image.rgba.size() == size_t{4} * image.width * image.height, "pixels do not fill the picture");
-  const std::string temporary = path + ".part";
+  NewFile file(path, {"image-write", "the picture cannot be written"});
   png_image png = header(image);
-  const bool written =
-      png_image_write_to_file(&png, temporary.c_str(), 0, image.rgba.data(), 0, nullptr) != 0;
-  std::error_code failed;
-  if (written) std::filesystem::rename(temporary, path, failed);
-  if (written && !failed) return;
-  const std::string reason = written ? failed.message() : png.message;
-  std::filesystem::remove(temporary, failed);
-  throw InputError("image-write", {path}, "the picture cannot be written: " + reason,
-                   "give a folder that exists, may be written and has room");
+  if (png_image_write_to_file(&png, file.temporary().c_str(), 0, image.rgba.data(), 0, nullptr) == 0)
+    file.refuse(png.message);
+  file.move_into_place();
 }
 
 Image load_png(const std::string& path) {

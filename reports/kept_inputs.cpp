@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "base/config.h"
-#include "base/input_file.h"
+#include "base/file.h"
 
 namespace swarf::reports {
 namespace {

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "base/check.h"
+#include "base/file.h"
 #include "base/hash.h"
-#include "base/input_file.h"
 
 namespace swarf::reports {
 namespace {

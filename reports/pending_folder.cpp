@@ -10,11 +10,11 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
 #include <string_view>
 #include <system_error>
 
 #include "base/diagnostics.h"
+#include "base/file.h"
 
 namespace swarf::reports {
 namespace {
@@ -180,18 +180,7 @@ void check_output_file(const std::string& path) {
 }
 
 void write_text(const std::string& path, const std::string& text) {
-  const std::string temporary = path + ".part";
-  errno = 0;
-  std::ofstream file(temporary, std::ios::binary);
-  file << text;
-  file.close();
-  const int reason = file ? 0 : errno;
-  std::error_code error;
-  if (file) fs::rename(temporary, path, error);
-  if (file && !error) return;
-  const std::string said = error ? error.message() : reason != 0 ? std::strerror(reason) : "writing failed";
-  fs::remove(temporary, error);
-  refuse_write(path, said);
+  replace_file(path, text, {"cannot-write", "this cannot be written"});
 }
 
 }  // namespace swarf::reports

@@ -2,11 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
-#include <fstream>
 #include <string_view>
-#include <system_error>
 
+#include "base/file.h"
 #include "reports/embedded.h"
 #include "reports/html.h"
 #include "reports/page_sections.h"
@@ -39,13 +37,6 @@ std::string navigation(const std::vector<NamedSection>& sections) {
     if (!section.html.empty()) out += fmt::format(R"(<a href="#{}">{}</a>)", section.id, section.name);
   }
   return out + "</div></nav>";
-}
-
-InputError unwritable(const std::string& path, const std::string& reason) {
-  return {"output-unwritable",
-          {path},
-          "the report cannot be written: " + reason,
-          "choose a folder that exists, is writable and has room"};
 }
 
 }  // namespace
@@ -83,21 +74,7 @@ std::string render_report(const ReportData& data) {
 }
 
 void write_report(const std::string& path, const ReportData& data) {
-  const std::string page = render_report(data);
-  const std::string temporary = path + ".partial";
-  std::ofstream file(temporary, std::ios::binary | std::ios::trunc);
-  file << page;
-  file.close();
-  std::error_code error;
-  if (!file) {
-    std::filesystem::remove(temporary, error);
-    throw unwritable(path, "writing " + temporary + " failed");
-  }
-  std::filesystem::rename(temporary, path, error);
-  if (error) {
-    std::filesystem::remove(temporary, error);
-    throw unwritable(path, "renaming " + temporary + " failed");
-  }
+  replace_file(path, render_report(data), {"output-unwritable", "the report cannot be written"});
 }
 
 }  // namespace swarf::reports

@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "base/input_file.h"
+#include "base/file.h"
 #include "reports/kept_inputs.h"
 #include "reports/kept_motion.h"
 #include "reports/part_view.h"

@@ -1,5 +1,5 @@
 #include "base/config.h"
-#include "base/input_file.h"
+#include "base/file.h"
 
 #include <fmt/format.h>
 #include <toml++/toml.h>

@@ -6,14 +6,13 @@
 #include <bit>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <new>
 #include <unordered_map>
 
 #include "base/diagnostics.h"
+#include "base/file.h"
 #include "base/hash.h"
-#include "base/input_file.h"
 #include "mesh/mesh_source.h"
 #include "mesh/obj_reader.h"
 #include "mesh/ply_reader.h"
@@ -173,18 +172,8 @@ void save_mesh(const std::string& path, const TriMesh& mesh) {
     throw InputError("mesh-format", {path}, fmt::format("meshes are not written as '{}'", ending),
                      "name the file .stl or .ply");
   }
-  const std::string bytes = ending == ".stl" ? stl_bytes(mesh) : ply_bytes(mesh);
-  const std::string temporary = path + ".part";
-  std::ofstream file(temporary, std::ios::binary);
-  file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  file.close();
-  std::error_code failure;
-  if (file) fs::rename(temporary, path, failure);
-  if (!file || failure) {
-    fs::remove(temporary, failure);
-    throw InputError("cannot-write", {path}, "the file cannot be written",
-                     "check that its folder exists and may be written");
-  }
+  replace_file(path, ending == ".stl" ? stl_bytes(mesh) : ply_bytes(mesh),
+               {"cannot-write", "the mesh cannot be written"});
 }
 
 }  // namespace swarf::mesh

@@ -9,7 +9,7 @@
 #include <fstream>
 #include <utility>
 
-#include "base/input_file.h"
+#include "base/file.h"
 
 namespace swarf::mesh {
 namespace {

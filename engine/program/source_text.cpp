@@ -8,7 +8,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "base/input_file.h"
+#include "base/file.h"
 
 namespace swarf::program {
 namespace {

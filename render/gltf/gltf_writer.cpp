@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "base/check.h"
-#include "base/diagnostics.h"
+#include "base/file.h"
 #include "base/units.h"
 #include "render/figures/colour.h"
 #include "render/gltf/gltf_buffer.h"
@@ -301,18 +301,11 @@ tinygltf::Model Writer::build() {
 
 void write_glb(const std::filesystem::path& path, const GltfScene& scene) {
   tinygltf::Model model = Writer(scene).build();
-  std::filesystem::path partial = path;
-  partial += ".part";
+  NewFile file(path.string(), {"cannot-write-file", "the glTF file cannot be written"});
   tinygltf::TinyGLTF gltf;
-  std::error_code failed;
-  const bool written = gltf.WriteGltfSceneToFile(&model, partial.string(), false, true, false, true);
-  if (written) std::filesystem::rename(partial, path, failed);
-  if (!written || failed) {
-    std::error_code ignored;
-    std::filesystem::remove(partial, ignored);
-    throw InputError("cannot-write-file", {path.string()}, "the glTF file cannot be written",
-                     "check that the folder exists, may be written to and has space left");
-  }
+  if (!gltf.WriteGltfSceneToFile(&model, file.temporary(), false, true, false, true))
+    file.refuse("not all of it reaches the disk");
+  file.move_into_place();
 }
 
 }  // namespace swarf::render

@@ -1,10 +1,10 @@
 #include "render/movie/movie_writer.h"
 
 #include <array>
-#include <filesystem>
 
 #include "base/check.h"
 #include "base/diagnostics.h"
+#include "base/file.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>
@@ -43,7 +43,8 @@ std::string reason_of(int error) {
 }  // namespace
 
 struct MovieWriter::Impl {
-  std::string path, temporary;
+  std::string path;
+  NewFile file;
   std::unique_ptr<AVFormatContext, FreeFormat> format;
   std::unique_ptr<AVCodecContext, FreeByAddress<avcodec_free_context>> codec;
   std::unique_ptr<AVFrame, FreeByAddress<av_frame_free>> frame;
@@ -53,8 +54,7 @@ struct MovieWriter::Impl {
   int64_t frames = 0;
   bool finished = false;
 
-  Impl(std::string file, int width, int height, int fps);
-  ~Impl();
+  Impl(std::string movie, int width, int height, int fps);
   void open_codec(int width, int height, int fps);
   void open_file();
   void prepare_frame(int width, int height);
@@ -64,35 +64,23 @@ struct MovieWriter::Impl {
 };
 
 void MovieWriter::Impl::require(int result, const char* what) const {
-  if (result >= 0) return;
-  throw InputError("movie-write", {path}, std::string(what) + ": " + reason_of(result),
-                   "give a folder that exists, may be written and has room");
+  if (result < 0) file.refuse(std::string(what) + ": " + reason_of(result));
 }
 
-MovieWriter::Impl::Impl(std::string file, int width, int height, int fps)
-    : path(std::move(file)), temporary(path + ".part"), packet(av_packet_alloc()) {
+MovieWriter::Impl::Impl(std::string movie, int width, int height, int fps)
+    : path(std::move(movie)),
+      file(path, {"movie-write", "the movie cannot be written"}),
+      packet(av_packet_alloc()) {
   av_log_set_level(AV_LOG_QUIET);  // libav talks on stderr; what goes wrong comes back as codes
   SWARF_CHECK(width > 0 && height > 0 && width % 2 == 0 && height % 2 == 0, "4:2:0 needs even sizes");
   SWARF_CHECK(fps > 0, "a movie needs frames per second");
   AVFormatContext* made = nullptr;
-  require(avformat_alloc_output_context2(&made, nullptr, "mp4", temporary.c_str()), "no mp4 container");
+  require(avformat_alloc_output_context2(&made, nullptr, "mp4", file.temporary().c_str()),
+          "no mp4 container");
   format.reset(made);
   open_codec(width, height, fps);
   prepare_frame(width, height);
-  try {
-    open_file();
-  } catch (...) {  // a constructor that throws gets no destructor: take the half file away here
-    std::error_code ignored;
-    std::filesystem::remove(temporary, ignored);
-    throw;
-  }
-}
-
-MovieWriter::Impl::~Impl() {
-  if (finished) return;
-  format.reset();
-  std::error_code ignored;
-  std::filesystem::remove(temporary, ignored);
+  open_file();
 }
 
 void MovieWriter::Impl::open_codec(int width, int height, int fps) {
@@ -127,7 +115,7 @@ void MovieWriter::Impl::open_file() {
   stream->avg_frame_rate = codec->framerate;
   require(avcodec_parameters_from_context(stream->codecpar, codec.get()), "stream parameters");
   format->flags |= AVFMT_FLAG_BITEXACT;
-  require(avio_open(&format->pb, temporary.c_str(), AVIO_FLAG_WRITE), "the movie cannot be made");
+  require(avio_open(&format->pb, file.temporary().c_str(), AVIO_FLAG_WRITE), "the movie cannot be made");
   AVDictionary* options = nullptr;
   av_dict_set(&options, "movflags", "+faststart", 0);
   const int written = avformat_write_header(format.get(), &options);
@@ -186,9 +174,7 @@ void MovieWriter::finish() {
   impl.encode(nullptr);
   impl.require(av_write_trailer(impl.format.get()), "the movie cannot be completed");
   impl.require(avio_closep(&impl.format->pb), "the movie cannot be completed");
-  std::error_code failed;
-  std::filesystem::rename(impl.temporary, impl.path, failed);
-  if (failed) impl.require(AVERROR(failed.value()), "the movie cannot get its name");
+  impl.file.move_into_place();
   impl.finished = true;
 }
 

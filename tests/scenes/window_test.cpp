@@ -107,8 +107,8 @@ TEST_F(Window, OfAMotionAndOfTheProgramOnly) {
     const auto run = swarf_there(arguments);
     EXPECT_EQ(run.exit_code, 2) << arguments << ": " << run.output;
     EXPECT_NE(run.output.find(code), std::string::npos) << arguments << ": " << run.output;
-    for (const char* file : {"x.csv", "x.part.csv", "x.stl", "x.png"})
-      EXPECT_FALSE(fs::exists(folder() / file)) << arguments;
+    for (const auto& entry : fs::directory_iterator(folder()))
+      EXPECT_NE(entry.path().filename().string()[0], 'x') << arguments << ": " << entry.path();
   };
   refused("export out --trajectory x.csv --from 1e6", "[place-unknown]");
   refused("export out --trajectory x.csv --from 10 --to 9", "[place-unknown]");
@@ -222,7 +222,8 @@ TEST_F(Window, AFullDiskIsToldForHdf5Too) {
                                                " export out --trajectory x.h5");
     EXPECT_EQ(full.exit_code, 2) << limit << " KiB: " << full.output;
     EXPECT_NE(full.output.find("[cannot-write]"), std::string::npos) << full.output;
-    EXPECT_FALSE(fs::exists(folder() / "x.h5") || fs::exists(folder() / "x.part.h5")) << limit << " KiB";
+    for (const auto& entry : fs::directory_iterator(folder()))
+      EXPECT_NE(entry.path().filename().string()[0], 'x') << limit << " KiB: " << entry.path();
   }
 }
 

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <filesystem>
 
-#include "base/input_file.h"
+#include "base/file.h"
 #include "program/source_text.h"
 
 namespace swarf::program::nc {

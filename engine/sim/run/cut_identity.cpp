@@ -4,11 +4,9 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
+#include "base/file.h"
 #include "base/hash.h"
-#include "base/input_file.h"
 #include "base/units.h"
 #include "cutter/profile.h"
 
@@ -31,12 +29,9 @@ void add(Hash& hash, const Vec3& v) {
 
 /// Name and content, so that a moved file is the same file.
 std::string file_text(const std::string& path) {
-  refuse_special_file(path);
-  std::ifstream in(path, std::ios::binary);
   Hash hash;
-  for (auto c = std::istreambuf_iterator<char>(in); c != std::istreambuf_iterator<char>(); ++c) {
-    hash.add(static_cast<uint64_t>(static_cast<unsigned char>(*c)));
-  }
+  for (const char c : read_all(path, {"file-unreadable", "a file of the job cannot be read"}))
+    hash.add(static_cast<uint64_t>(static_cast<unsigned char>(c)));
   return fmt::format("{} {}", std::filesystem::path(path).filename().string(), hash.text());
 }
 

@@ -4,36 +4,21 @@
 
 #include <charconv>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <sstream>
 
 #include "base/diagnostics.h"
-#include "base/hash.h"
-#include "base/input_file.h"
+#include "base/file.h"
 
 namespace swarf::sim {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr std::string_view kFirstLine = "swarf-record 1\n";
 constexpr std::string_view kLastLine = "\nend ";
 
-[[noreturn]] void refuse(const std::string& code, const SourceLocation& where, const std::string& text) {
-  throw InputError(code, where, text, "record the run again with swarf run --record");
-}
+constexpr const char* kRecordAgain = "record the run again with swarf run --record";
 
-std::string checksum(std::string_view text) {
-  Hash hash;
-  hash.add(static_cast<uint64_t>(text.size()));
-  for (size_t at = 0; at < text.size(); at += sizeof(uint64_t)) {
-    uint64_t word = 0;
-    std::memcpy(&word, text.data() + at, std::min(sizeof(word), text.size() - at));
-    hash.add(word);
-  }
-  return hash.text();
+[[noreturn]] void refuse(const std::string& code, const SourceLocation& where, const std::string& text) {
+  throw InputError(code, where, text, kRecordAgain);
 }
 
 void append_recorded_pose(fmt::memory_buffer& out, const ToolPose& pose) {
@@ -118,16 +103,9 @@ bool read_line(std::string_view line, CutRecord& record, Stand& last) {
   return good && words.at_end();
 }
 
-std::string read_file(const std::string& path) {
-  refuse_special_file(path);
-  std::ifstream in(path, std::ios::binary);
-  if (!in || fs::is_directory(path)) refuse("record-unreadable", {path}, "the record cannot be read");
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-}
-
 /// The lines before the last one, whose checksum agrees with them.
 std::string verified_text(const std::string& path) {
-  std::string text = read_file(path);
+  std::string text = read_all(path, {"record-unreadable", "the record cannot be read", kRecordAgain});
   if (text.compare(0, kFirstLine.size(), kFirstLine) != 0) {
     refuse("record-foreign", {path, 1, 1}, "this is not the record of a run (swarf-record 1)");
   }
@@ -137,7 +115,7 @@ std::string verified_text(const std::string& path) {
   }
   const std::string last = text.substr(end + kLastLine.size());
   text.resize(end + 1);
-  if (last.substr(last.find(' ') + 1) != checksum(text) + "\n") {
+  if (last.substr(last.find(' ') + 1) != fmt::format("{:016x}\n", checksum(text))) {
     refuse("record-damaged", {path}, "the checksum of the record does not match its content");
   }
   return text;
@@ -170,18 +148,9 @@ void write_record(const std::string& path, const CutRecord& record) {
       fmt::format_to(to, "state {:016x}\n", record.states.at(states++));
     }
   }
-  const std::string sum = checksum({out.data(), out.size()});
-  fmt::format_to(to, "end {} {}\n", record.sweeps.size(), sum);
-  const std::string temporary = path + ".part";
-  std::ofstream file(temporary, std::ios::binary | std::ios::trunc);
-  file.write(out.data(), static_cast<std::streamsize>(out.size()));
-  file.close();
-  std::error_code error;
-  if (file) fs::rename(temporary, path, error);
-  if (!file || error) {
-    throw InputError("record-unwritable", {path}, "the record cannot be written",
-                     "check that the folder exists, may be written and has space");
-  }
+  const uint64_t sum = checksum({out.data(), out.size()});
+  fmt::format_to(to, "end {} {:016x}\n", record.sweeps.size(), sum);
+  replace_file(path, {out.data(), out.size()}, {"record-unwritable", "the record cannot be written"});
 }
 
 CutRecord read_record(const std::string& path) {

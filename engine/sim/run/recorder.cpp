@@ -5,12 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <iterator>
-#include <system_error>
 #include <vector>
 
 #include "base/diagnostics.h"
+#include "base/file.h"
 #include "base/units.h"
 #include "sim/run/cycle_h5.h"
 
@@ -197,28 +196,18 @@ std::unique_ptr<CycleTable> open_cycle_table(const std::string& path, const Job&
 
 void write_cycle_window(const std::string& path, const Job& job, const motion::Cycles& cycles,
                         const CycleWindow& window) {
-  const std::filesystem::path target(path);
-  // The ending says the format.
-  const std::filesystem::path partial =
-      target.parent_path() / (target.stem().string() + ".part" + target.extension().string());
-  std::error_code failed;
-  try {
-    const std::unique_ptr<CycleTable> table = open_cycle_table(partial.string(), job, cycles);
-    motion::CycleReader reader(cycles);
-    std::vector<motion::Cycle> rows;
-    for (size_t k = window.first; k < window.end; ++k) {
-      rows.push_back(reader.at(k));
-      if (rows.size() < motion::CycleStream::kWindow && k + 1 < window.end) continue;
-      table->add(rows);
-      rows.clear();
-    }
-    table->finish();
-  } catch (...) {
-    std::filesystem::remove(partial, failed);
-    throw;
+  NewFile file(path, {"cannot-write", "the table cannot be written"});
+  const std::unique_ptr<CycleTable> table = open_cycle_table(file.temporary(), job, cycles);
+  motion::CycleReader reader(cycles);
+  std::vector<motion::Cycle> rows;
+  for (size_t k = window.first; k < window.end; ++k) {
+    rows.push_back(reader.at(k));
+    if (rows.size() < motion::CycleStream::kWindow && k + 1 < window.end) continue;
+    table->add(rows);
+    rows.clear();
   }
-  std::filesystem::rename(partial, target, failed);
-  if (failed) throw unwritable_table(path);
+  table->finish();
+  file.move_into_place();
 }
 
 }  // namespace swarf::sim

@@ -5,24 +5,19 @@
 #include <openvdb/io/Stream.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <stdexcept>
 
 #include "base/check.h"
 #include "base/diagnostics.h"
+#include "base/file.h"
 #include "base/hash.h"
-#include "base/input_file.h"
 #include "stock/level_set/leaf_kernel.h"
 #include "stock/level_set/stock_grid_internal.h"
 
 namespace swarf::stock {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr char kMark[] = "SWARFVDB";
 constexpr size_t kMarkBytes = 8;
@@ -33,32 +28,14 @@ constexpr char kBoxLowerKey[] = "swarf_box_lower_mm";
 constexpr char kBoxUpperKey[] = "swarf_box_upper_mm";
 constexpr char kRoundingKey[] = "swarf_rounding_mm";
 
-uint64_t checksum(std::string_view bytes) {
-  Hash hash;
-  hash.add(static_cast<uint64_t>(bytes.size()));
-  for (size_t at = 0; at < bytes.size(); at += sizeof(uint64_t)) {
-    uint64_t word = 0;
-    std::memcpy(&word, bytes.data() + at, std::min(sizeof(word), bytes.size() - at));
-    hash.add(word);
-  }
-  return hash.value();
-}
-
 [[noreturn]] void refuse_stock(const std::string& code, const std::string& path, const std::string& text,
                                const std::string& fix) {
   throw InputError(code, {path, 0, 0}, text, fix);
 }
 
 std::string read_bytes(const std::string& path) {
-  refuse_special_file(path);
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream bytes;
-  if (!in || fs::is_directory(path)) {
-    refuse_stock("stock-file-unreadable", path, "the stock file cannot be read",
-                 "name a file written by swarf run");
-  }
-  bytes << in.rdbuf();
-  return std::move(bytes).str();
+  return read_all(
+      path, {"stock-file-unreadable", "the stock file cannot be read", "name a file written by swarf run"});
 }
 
 /// Refuses a file without swarf's trailer and says what it is. OpenVDB does not get to read it: its reader
@@ -217,33 +194,20 @@ void drop_minus_zero(const LevelSet& set) {
 
 void write_level_set(const LevelSet& set, const std::string& path, const StockMetadata& metadata) {
   drop_minus_zero(set);
-  const std::string temporary = path + ".part";
   openvdb::FloatGrid::Ptr grid = set.grid->copy();  // shares the tree, owns its metadata
   add_metadata(*grid, set, metadata);
+  NewFile file(path, {"stock-file-unwritable", "the stock file cannot be written"});
   try {
-    openvdb::io::File file(temporary);
-    file.write(openvdb::GridPtrVec{grid});
-    file.close();
-    finish_file(temporary);
-    fs::rename(temporary, path);
+    openvdb::io::File vdb(file.temporary());
+    vdb.write(openvdb::GridPtrVec{grid});
+    vdb.close();
+    finish_file(file.temporary());
   } catch (const openvdb::Exception& error) {
-    std::error_code ignored;
-    fs::remove(temporary, ignored);
-    refuse_stock("stock-file-unwritable", path,
-                 fmt::format("the stock file cannot be written: {}", error.what()),
-                 "check that the folder exists, may be written and has space");
+    file.refuse(error.what());
   } catch (const InputError&) {  // it came back incomplete
-    std::error_code ignored;
-    fs::remove(temporary, ignored);
-    refuse_stock("stock-file-unwritable", path, "the stock file cannot be written to its end",
-                 "check that the folder may be written and has space");
-  } catch (const fs::filesystem_error& error) {
-    std::error_code ignored;
-    fs::remove(temporary, ignored);
-    refuse_stock("stock-file-unwritable", path,
-                 fmt::format("the stock file cannot be renamed: {}", error.what()),
-                 "check that the folder may be written");
+    file.refuse("its end is missing on the disk");
   }
+  file.move_into_place();
 }
 
 LevelSet read_level_set(const std::string& path, StockMetadata& metadata) {

@@ -3,11 +3,12 @@
 
 #include <filesystem>
 #include <fstream>
+#include <string_view>
 #include <utility>
 
 #include "base/diagnostics.h"
+#include "base/file.h"
 #include "base/hash.h"
-#include "base/input_file.h"
 #include "stock/rays/surface_dexels.h"
 
 namespace swarf::stock {
@@ -65,8 +66,8 @@ struct Content {
 };
 
 template <class T>
-void put(std::ostream& out, const T* data, size_t count) {
-  out.write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(count * sizeof(T)));
+std::string_view bytes_of(const T* data, size_t count) {
+  return {reinterpret_cast<const char*>(data), count * sizeof(T)};
 }
 template <class T>
 void get(std::istream& in, T* data, size_t count) {
@@ -141,20 +142,13 @@ void SurfaceDexels::save(const std::string& path) const {
   }
   content.header.above = content.above.size();
   const uint64_t sum = content.checksum();
-  const std::string temporary = path + ".part";
-  std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
-  put(out, &content.header, 1);
-  put(out, content.heights.data(), content.heights.size());
-  put(out, content.blocks.data(), content.blocks.size());
-  put(out, content.above.data(), content.above.size());
-  put(out, &sum, 1);
-  out.close();
-  std::error_code error;
-  if (out) fs::rename(temporary, path, error);
-  if (!out || error) {
-    throw InputError("rays-file-unwritable", {path, 0, 0}, "the file of surface rays cannot be written",
-                     "check that the folder exists, may be written and has space");
-  }
+  NewFile file(path, {"rays-file-unwritable", "the file of surface rays cannot be written"});
+  file.write(bytes_of(&content.header, 1));
+  file.write(bytes_of(content.heights.data(), content.heights.size()));
+  file.write(bytes_of(content.blocks.data(), content.blocks.size()));
+  file.write(bytes_of(content.above.data(), content.above.size()));
+  file.write(bytes_of(&sum, 1));
+  file.move_into_place();
 }
 
 SurfaceDexels SurfaceDexels::load(const std::string& path, const surface::SurfacePtr& surface) {

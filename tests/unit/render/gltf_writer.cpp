@@ -14,6 +14,7 @@
 #include "render/figures/figure_mesh.h"
 #include "render/figures/tool_mesh.h"
 #include "render/gltf/gltf_writer.h"
+#include "support/full_disk.h"
 #include "support/scratch.h"
 
 namespace swarf::render {
@@ -109,7 +110,11 @@ TEST(GltfWriter, TreeUnitsAndMetadataComeBack) {
   EXPECT_EQ(model.nodes[2].name, "part");
   EXPECT_EQ(model.nodes[2].translation, (std::vector<double>{0, 0, 10}));
   EXPECT_EQ(model.asset.extras.Get("program").Get<std::string>(), "dome.nc");
-  EXPECT_FALSE(std::filesystem::exists(path.string() + ".part"));
+  {
+    const test::FullDisk disk(std::filesystem::file_size(path) / 2);
+    EXPECT_THROW(write_glb(path, sample.scene), InputError);
+  }
+  EXPECT_EQ(read(path).nodes.size(), 5U) << "the old file stays";
 }
 
 TEST(GltfWriter, VertexDataComesBack) {

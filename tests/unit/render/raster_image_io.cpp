@@ -7,6 +7,7 @@
 
 #include "base/diagnostics.h"
 #include "base/rng.h"
+#include "support/full_disk.h"
 #include "support/scratch.h"
 
 namespace swarf::render {
@@ -24,7 +25,11 @@ TEST(ImageIo, APictureComesBackByteForByte) {
   EXPECT_EQ(back.width, 37);
   EXPECT_EQ(back.height, 19);
   EXPECT_EQ(back.rgba, image.rgba);
-  EXPECT_FALSE(std::filesystem::exists(path + ".part"));
+  {
+    const test::FullDisk disk(100);
+    EXPECT_THROW(save_png(image, path), InputError);
+  }
+  EXPECT_EQ(load_png(path).rgba, image.rgba) << "the old picture stays";
   std::filesystem::remove(path);
 }
 

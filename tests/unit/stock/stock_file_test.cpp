@@ -7,6 +7,7 @@
 #include "base/diagnostics.h"
 #include "stock/stock.h"
 #include "stock_test_support.h"
+#include "support/full_disk.h"
 #include "support/scratch.h"
 
 namespace swarf::stock {
@@ -59,7 +60,7 @@ TEST_F(StockFile, RoundTripIsBitIdenticalAndCutsOn) {
   loaded.cut(more, CutterSolid{2.0, 10.0});
   EXPECT_EQ(loaded.hash(), stock.hash());
   EXPECT_EQ(loaded.volume_mm3(), stock.volume_mm3());
-  EXPECT_FALSE(fs::exists(path + ".part"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1);
 }
 
 TEST_F(StockFile, EqualStocksAreEqualFiles) {
@@ -182,9 +183,13 @@ TEST_F(StockFile, FailedSaveSaysSoAndKeepsTheOldFile) {
   const Stock stock = small_stock();
   EXPECT_THROW(stock.save((folder / "missing" / "stock.vdb").string(), {}), InputError);
   stock.save(path, {});
-  fs::create_directory(path + ".part");  // the temporary name is taken
-  EXPECT_THROW(stock.save(path, {}), InputError);
+  const uintmax_t size = fs::file_size(path);
+  for (const uintmax_t room : {uintmax_t{0}, size / 2, size - 1}) {
+    const test::FullDisk disk(room);
+    EXPECT_THROW(stock.save(path, {}), InputError) << room << " of " << size << " bytes";
+  }
   EXPECT_EQ(Stock::load(path).hash(), stock.hash());
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1);
 }
 
 }  // namespace
