@@ -7,6 +7,8 @@
 #include <tuple>
 #include <utility>
 
+#include "base/angles.h"
+
 namespace swarf::measure {
 namespace {
 
@@ -93,7 +95,7 @@ void add_divided(const std::array<CellCorner, 3>& corners, double size_mm, std::
 }
 
 Vec3 turned_by(const Vec3& n, const Vec3& m, double share) {
-  const double angle = std::atan2(n.cross(m).norm(), n.dot(m));
+  const double angle = angle_between(n, m);
   return Eigen::AngleAxisd(share * angle, n.cross(m).normalized()) * n;
 }
 
@@ -110,8 +112,7 @@ void add_fan(const stock::FacetSheets& sheets, const stock::SharpEdge& edge, dou
   const auto [n0, m0] = normals(0);
   const auto [n1, m1] = normals(1);
   const bool convex = (to - from).dot(n0.cross(m0)) > 0.0;
-  const double angle =
-      std::max(std::atan2(n0.cross(m0).norm(), n0.dot(m0)), std::atan2(n1.cross(m1).norm(), n1.dot(m1)));
+  const double angle = std::max(angle_between(n0, m0), angle_between(n1, m1));
   const int steps = std::max(1, static_cast<int>(std::ceil(angle / kFanStep)));
   std::vector<RootCell> fan;
   for (int i = 0; i < steps; ++i) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/angles.h"
 #include "base/parallel.h"
 
 namespace swarf::measure {
@@ -24,10 +25,6 @@ constexpr double kGuessSlack = 1e-9;
 constexpr double kClear = 2e-5;
 /// Distances below this are rounding of doubles, mm.
 constexpr double kSideRounding = 1e-11;
-
-double angle_between(const Vec3& a, const Vec3& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
-}
 
 /// A cone that holds the normals of all faces. If it is no wider than a half space, it also holds those of
 /// edges and vertices, which are sums of them.

@@ -5,6 +5,7 @@
 #include <map>
 #include <span>
 
+#include "base/angles.h"
 #include "base/check.h"
 #include "base/parallel.h"
 
@@ -39,7 +40,7 @@ double corner_angle(const TriMesh& mesh, uint32_t corner) {
   const auto& t = mesh.triangles[corner / 3];
   const Vec3 apex = position(mesh, t[corner % 3]);
   const Vec3 a = position(mesh, t[(corner + 1) % 3]) - apex, b = position(mesh, t[(corner + 2) % 3]) - apex;
-  return std::atan2(a.cross(b).norm(), a.dot(b));
+  return angle_between(a, b);
 }
 
 /// Corners (3 * triangle + place) around each vertex, ascending, in compressed rows.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/angles.h"
 #include "base/check.h"
 #include "base/units.h"
 #include "mesh/mesh_check.h"
@@ -56,7 +57,7 @@ double segment_distance(const Vec3& p, const Vec3& a, const Vec3& b) {
 }
 
 double angle_at(const Vec3& apex, const Vec3& a, const Vec3& b) {
-  return std::atan2((a - apex).cross(b - apex).norm(), (a - apex).dot(b - apex));
+  return angle_between(a - apex, b - apex);
 }
 
 }  // namespace

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "base/tool_axis.h"
 #include "kinematics/singularity_model.h"
-#include "motion/speed/free_move.h"
 
 namespace swarf::papers {
 namespace {
@@ -27,7 +27,7 @@ void trace(const MachineModel& machine, const motion::BlockSingularity& block, B
     study.tip_W.push_back(pose.tip_W);
     study.axis_W.push_back(pose.axis_W);
     study.analytic_W.push_back(model.tip_W(u));
-    study.tcp_axis_W.push_back(motion::slerp(ends.from.axis_W, ends.to.axis_W, u));
+    study.tcp_axis_W.push_back(slerp(ends.from.axis_W, ends.to.axis_W, u));
   }
   study.farthest_line_W = pose_at(machine, ends, block.error.line.u).tip_W;
   study.farthest_segment_W = pose_at(machine, ends, block.error.segment.u).tip_W;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angles.h"
+#include "base/tool_axis.h"
 #include "toolpath/surface_curve.h"
 
 namespace swarf::toolpath {
@@ -16,14 +18,6 @@ constexpr double kClearanceShare = 0.5;
 
 ToolPose lifted(const ToolPose& pose, double distance) {
   return {pose.tip_W + distance * pose.axis_W, pose.axis_W};
-}
-
-/// Axis on the great circle from a to b at share x.
-Vec3 slerp(const Vec3& a, const Vec3& b, double x) {
-  const double angle = std::atan2(a.cross(b).norm(), a.dot(b));
-  // Nearly parallel axes: the chord is the arc.
-  if (angle < 1e-9) return (a + x * (b - a)).normalized();
-  return (std::sin((1.0 - x) * angle) * a + std::sin(x * angle) * b) / std::sin(angle);
 }
 
 /// Distance from a point to the solid cylinder that stands on the tip.
@@ -140,14 +134,11 @@ Obstacle obstacle_of(const surface::Surface& surface, double spacing_mm) {
 bool move_is_clear(const ToolPose& from, const ToolPose& to, const Obstacle& obstacle,
                    const cutter::Cutter& cutter, double clearance) {
   // A step moves no point of the cutter by more than a quarter of the radius.
-  const double turn = std::atan2(from.axis_W.cross(to.axis_W).norm(), from.axis_W.dot(to.axis_W));
+  const double turn = angle_between(from.axis_W, to.axis_W);
   const double travel = (to.tip_W - from.tip_W).norm() + turn * (cutter.length_mm + cutter.radius());
   const int steps = std::max(1, static_cast<int>(std::ceil(4.0 * travel / cutter.radius())));
   std::vector<ToolPose> poses(steps + 1);
-  for (int i = 0; i <= steps; ++i) {
-    const double x = static_cast<double>(i) / steps;
-    poses[i] = {from.tip_W + x * (to.tip_W - from.tip_W), slerp(from.axis_W, to.axis_W, x)};
-  }
+  for (int i = 0; i <= steps; ++i) poses[i] = pose_between(from, to, static_cast<double>(i) / steps);
   for (const Vec3& point : obstacle.points) {
     for (int i = 0; i <= steps;) {
       const double distance =

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/angles.h"
+#include "base/tool_axis.h"
 #include "motion/passes/pass_geometry.h"
 #include "motion/speed/free_move.h"
 #include "motion/speed/jerk_profile.h"
@@ -130,7 +132,7 @@ void append_block_nodes(const SurfacePass& pass, const Block& block, const Machi
 double corner_speed(const Block& before, const Block& after, double acceleration, double tolerance) {
   const Vec3 in = (before.contact_b - before.contact_a) / before.length;
   const Vec3 out = (after.contact_b - after.contact_a) / after.length;
-  const double quarter = 0.25 * std::atan2(in.cross(out).norm(), in.dot(out));
+  const double quarter = 0.25 * angle_between(in, out);
   const double sagitta = 2.0 * std::sin(quarter) * std::sin(quarter);  // 1 - cos(theta/2)
   return std::sqrt(acceleration * tolerance * std::max(0.0, 1.0 - sagitta) / sagitta);
 }

@@ -9,8 +9,8 @@
 
 #include "base/angles.h"
 #include "base/check.h"
+#include "base/tool_axis.h"
 #include "kinematics/joint_path.h"
-#include "motion/speed/free_move.h"
 
 namespace swarf::motion {
 namespace {

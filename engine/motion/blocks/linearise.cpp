@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "base/check.h"
-#include "motion/speed/free_move.h"
+#include "base/tool_axis.h"
 
 namespace swarf::motion {
 namespace {

@@ -5,8 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include "base/angles.h"
+#include "base/tool_axis.h"
 #include "kinematics/rotary_pair.h"
-#include "motion/speed/free_move.h"
 #include "motion/speed/jerk_profile.h"
 
 namespace swarf::motion {
@@ -33,8 +34,7 @@ AxisValues leaving_pole(const kinematics::InverseKinematics& inverse, const tool
                         const AxisValues& before) {
   const bool by_pose = block.law == toolpath::BlockLaw::kTcp || block.law == toolpath::BlockLaw::kEnds;
   if (!by_pose || inverse.pole_distance(block.from.axis_W) >= kinematics::kPoleTolerance) return before;
-  const double tilt =
-      std::atan2(block.from.axis_W.cross(block.to.axis_W).norm(), block.from.axis_W.dot(block.to.axis_W));
+  const double tilt = angle_between(block.from.axis_W, block.to.axis_W);
   if (!(tilt > kAhead)) return before;
   const Branch ahead = inverse.solve_nearest(
       {block.from.tip_W, slerp(block.from.axis_W, block.to.axis_W, kAhead / tilt)}, before);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/angles.h"
 #include "base/parallel.h"
 #include "kinematics/singularity_model.h"
 #include "motion/blocks/linearise.h"
@@ -49,8 +50,7 @@ BlockPole pole_of(const BlockMotion& motion, int element, const Poles& poles) {
   const bool on_arc = block.law == BlockLaw::kTcp || block.law == BlockLaw::kEnds;
   pole.pole_distance_rad = on_arc ? kinematics::pole_distance_on_arc(poles, ends.from.axis_W, ends.to.axis_W)
                                   : kinematics::pole_distance_of_axes(machine, poles, ends);
-  const double turn =
-      std::atan2(ends.from.axis_W.cross(ends.to.axis_W).norm(), ends.from.axis_W.dot(ends.to.axis_W));
+  const double turn = angle_between(ends.from.axis_W, ends.to.axis_W);
   const double seconds = block_seconds(block);
   const double speed = machine.axes[static_cast<size_t>(poles.outer)].speed_max;
   if (turn > 0.0 && seconds > 0.0) pole.cone_rad = kinematics::singular_cone(turn, seconds, speed);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/angles.h"
+#include "base/tool_axis.h"
 #include "motion/speed/jerk_profile.h"
 
 namespace swarf::motion {
@@ -66,23 +67,6 @@ Profile plan_move(const FreeMove& move, double length, const MachineModel& machi
 }
 
 }  // namespace
-
-Vec3 slerp(const Vec3& a, const Vec3& b, double x) {
-  const double angle = angle_between(a, b);
-  Vec3 normal = a.cross(b);
-  if (normal.squaredNorm() == 0.0) {
-    if (a.dot(b) > 0.0) return a;
-    Eigen::Index least = 0;
-    a.cwiseAbs().minCoeff(&least);
-    normal = a.cross(Vec3::Unit(least));
-  }
-  const Vec3 across = normal.cross(a).normalized();
-  return std::cos(x * angle) * a + std::sin(x * angle) * across;
-}
-
-ToolPose pose_between(const ToolPose& from, const ToolPose& to, double x) {
-  return {from.tip_W + x * (to.tip_W - from.tip_W), slerp(from.axis_W, to.axis_W, x)};
-}
 
 double move_length(const ToolPose& from, const ToolPose& to) {
   return std::max((to.tip_W - from.tip_W).norm(), kFreeTurnArm * angle_between(from.axis_W, to.axis_W));

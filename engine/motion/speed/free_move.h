@@ -11,13 +11,6 @@
 
 namespace swarf::motion {
 
-/// Axis on the great circle from a to b at fraction x; both are unit vectors. Opposite axes turn about the
-/// coordinate direction that is least along a.
-Vec3 slerp(const Vec3& a, const Vec3& b, double x);
-
-/// Pose at fraction x of a move.
-ToolPose pose_between(const ToolPose& from, const ToolPose& to, double x);
-
 /// Length that a move is planned with, mm: the way of the tip, or the turn of the axis on an arm of 100 mm
 /// where that is longer, so that a move that only turns has a length too.
 double move_length(const ToolPose& from, const ToolPose& to);

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "base/angles.h"
 #include "base/check.h"
 #include "base/disjoint_sets.h"
 #include "mesh/mesh_check.h"
@@ -80,7 +81,7 @@ DisjointSets smooth_corners(const Facets& facets, double crease_rad) {
 double corner_angle(const Triangle& t, size_t place, const std::vector<Vec3>& points) {
   const Vec3& apex = points[t[place]];
   const Vec3 a = points[t[(place + 1) % 3]] - apex, b = points[t[(place + 2) % 3]] - apex;
-  return std::atan2(a.cross(b).norm(), a.dot(b));
+  return angle_between(a, b);
 }
 
 /// One corner per set, its normal the mean of their facets weighted by the angles there.

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "base/angles.h"
+
 namespace swarf::stock {
 namespace {
 
@@ -52,7 +54,7 @@ SweepMap sweep_map(const Sweep& sweep) {
 
 double motion_bound(const SweepMap& map, double lever_mm) {
   const Vec3 axis0 = map.R0t.row(2), axis1 = map.R1t.row(2);
-  const double theta = std::atan2(axis0.cross(axis1).norm(), axis0.dot(axis1));
+  const double theta = angle_between(axis0, axis1);
   const double travel = (map.tip1 - map.tip0).norm();
   return theta * (theta * lever_mm + 2.0 * travel) / 8.0;
 }

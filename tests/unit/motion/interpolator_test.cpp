@@ -249,20 +249,6 @@ TEST(Offline, StoppingCostsTimeAndLookAheadWinsItBack) {
   EXPECT_LT(std::abs(look_ahead.statistics.time_s - real_time), 0.25 * real_time);
 }
 
-TEST(Slerp, StaysOnTheGreatCircle) {
-  Rng rng(3);
-  for (int i = 0; i < 200; ++i) {
-    const Vec3 a = rng.direction(), b = i % 10 == 0 ? Vec3(-a) : rng.direction();
-    const double x = rng.uniform();
-    const Vec3 c = slerp(a, b, x);
-    EXPECT_NEAR(c.norm(), 1.0, 1e-15);
-    const double angle = std::atan2(a.cross(b).norm(), a.dot(b));
-    EXPECT_NEAR(std::atan2(a.cross(c).norm(), a.dot(c)), x * angle, 1e-12);
-    EXPECT_LT((slerp(a, b, 1.0) - b).norm(), 1e-12);
-  }
-  EXPECT_EQ(slerp(Vec3::UnitX(), Vec3::UnitX(), 0.3), Vec3(Vec3::UnitX()));
-}
-
 TEST(FreeMove, RapidsUseTheAxesAndKeepTheirJerk) {
   const kinematics::MachineModel machine = paper_machine();
   const kinematics::InverseKinematics inverse(machine);
