@@ -1,6 +1,9 @@
 #include "base/roots.h"
 
 #include <algorithm>
+#include <boost/math/tools/toms748_solve.hpp>
+#include <cstdint>
+#include <limits>
 
 #include "base/check.h"
 
@@ -14,6 +17,15 @@ double horner(std::span<const double> c, double t) {
 }
 
 }  // namespace
+
+double bracketed_root(const std::function<double(double)>& f, double a, double b, double at_a, double at_b) {
+  using boost::math::tools::eps_tolerance;
+  constexpr int kBits = std::numeric_limits<double>::digits;
+  std::uintmax_t steps = 200;
+  const auto [low, high] = boost::math::tools::toms748_solve([&f](double t) { return f(t); }, a, b, at_a,
+                                                             at_b, eps_tolerance<double>(kBits), steps);
+  return 0.5 * (low + high);
+}
 
 UnitRoots unit_roots(std::span<const double> coefficients) {
   SWARF_CHECK(coefficients.size() <= kRootDegreeMax + 1, "degree of a polynomial whose roots are sought");

@@ -2,34 +2,14 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <span>
 
 namespace swarf {
 
-/// The place between a and b where a continuous function changes its sign, to the last bits; at_a and at_b
-/// are its values there, of different sign. False position with Illinois' halving, bisection at least every
-/// third step.
-template <typename F>
-double bracketed_root(const F& f, double a, double b, double at_a, double at_b) {
-  for (int step = 0; step < 200; ++step) {
-    const double middle = 0.5 * (a + b);
-    if (middle <= a || middle >= b) break;
-    double t = step % 3 == 2 ? middle : b - at_b * ((b - a) / (at_b - at_a));
-    if (!(t > a && t < b)) t = middle;
-    const double value = f(t);
-    if (value == 0.0) return t;
-    if ((value > 0.0) == (at_b > 0.0)) {
-      b = t;
-      at_b = value;
-      at_a *= 0.5;
-    } else {
-      a = t;
-      at_a = value;
-      at_b *= 0.5;
-    }
-  }
-  return 0.5 * (a + b);
-}
+/// The place between a and b, a < b, where a continuous function changes its sign, to the last bits; at_a and
+/// at_b are its values there, of different sign. Alefeld, Potra and Shi's algorithm 748.
+double bracketed_root(const std::function<double(double)>& f, double a, double b, double at_a, double at_b);
 
 inline constexpr int kRootDegreeMax = 6;
 

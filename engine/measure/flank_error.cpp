@@ -6,7 +6,9 @@
 #include <functional>
 #include <limits>
 
+#include "base/angles.h"
 #include "base/check.h"
+#include "base/minima.h"
 #include "base/parallel.h"
 #include "measure/axis_patch.h"
 
@@ -29,46 +31,6 @@ struct AxisLine {
 AxisLine axis_at(const Surface& surface, double radius, double u) {
   const surface::Derivatives d0 = surface.derivatives(u, 0.0), d1 = surface.derivatives(u, 1.0);
   return {d0.S + radius * outward_normal(surface, d0), d1.S + radius * outward_normal(surface, d1)};
-}
-
-/// Least value of f between a and b, which holds one minimum: golden section down to the last useful digit.
-struct LineMinimum {
-  double at, value;
-};
-template <typename F>
-LineMinimum golden_section(double a, double b, const F& f) {
-  constexpr double kGolden = 0.6180339887498949;
-  double low = b - kGolden * (b - a), high = a + kGolden * (b - a);
-  double at_low = f(low), at_high = f(high);
-  for (int step = 0; step < 60 && high - low > 1e-12; ++step) {
-    if (at_low <= at_high) {
-      b = high;
-      high = low;
-      at_high = at_low;
-      at_low = f(low = b - kGolden * (b - a));
-    } else {
-      a = low;
-      low = high;
-      at_low = at_high;
-      at_high = f(high = a + kGolden * (b - a));
-    }
-  }
-  return at_low <= at_high ? LineMinimum{low, at_low} : LineMinimum{high, at_high};
-}
-
-/// The least of f over [0,1]: at a node or by golden section beside the least node.
-template <typename F>
-LineMinimum least_over_unit(int intervals, const F& f) {
-  LineMinimum best{0.0, f(0.0)};
-  for (int i = 1; i <= intervals; ++i) {
-    const double u = static_cast<double>(i) / intervals;
-    const double value = f(u);
-    if (value < best.value) best = {u, value};
-  }
-  const double reach = 1.0 / intervals;
-  const LineMinimum refined =
-      golden_section(std::max(0.0, best.at - reach), std::min(1.0, best.at + reach), f);
-  return refined.value < best.value ? refined : best;
 }
 
 /// The axis patches of n blocks.
@@ -122,7 +84,7 @@ class CurveAxes {
       const double low = std::max(0.0, (static_cast<double>(i) - 1.0) / kAxisNodes);
       const double high = std::min(1.0, (static_cast<double>(i) + 1.0) / kAxisNodes);
       const auto at = [&](double t) { return to(x, axis_at(surface_, radius_, t)); };
-      least = std::min(least, golden_section(low, high, at).value);
+      least = std::min(least, least_between(at, low, high).value);
     }
     return least;
   }
@@ -219,7 +181,7 @@ bool is_ruled(const Surface& surface) {
 double ruling_twist(const Surface& surface, double u) {
   const Vec3 N0 = outward_normal(surface, surface.derivatives(u, 0.0));
   const Vec3 N1 = outward_normal(surface, surface.derivatives(u, 1.0));
-  return std::atan2(N0.cross(N1).norm(), N0.dot(N1));
+  return angle_between(N0, N1);
 }
 
 double standing_error(const Surface& surface, double radius_mm, double u) {
@@ -240,12 +202,13 @@ FlankError flank_error(const Surface& surface, double radius_mm) {
   SWARF_CHECK(is_ruled(surface) && radius_mm > 0.0, "flank error of a surface linear in v and a real cutter");
   FlankError result;
   result.cutter_radius_mm = radius_mm;
-  const LineMinimum twist = least_over_unit(kGridU, [&](double u) { return -ruling_twist(surface, u); });
-  result.psi_max_rad = -twist.value;
+  const Minimum twist =
+      greatest_sampled([&](double u) { return ruling_twist(surface, u); }, 0.0, 1.0, kGridU);
+  result.psi_max_rad = twist.value;
   result.psi_max_u = twist.at;
   result.twist_bound_mm = radius_mm * (1.0 - std::cos(0.5 * result.psi_max_rad));
-  const LineMinimum standing =
-      least_over_unit(kGridU, [&](double u) { return standing_error(surface, radius_mm, u); });
+  const Minimum standing =
+      least_sampled([&](double u) { return standing_error(surface, radius_mm, u); }, 0.0, 1.0, kGridU);
   result.standing_error_mm = standing.value;
   result.standing_u = standing.at;
   result.continuous = continuous_envelope_error(surface, radius_mm);

@@ -5,6 +5,10 @@
 #include <functional>
 #include <utility>
 
+#include "base/minima.h"
+#include "base/plane_vectors.h"
+#include "base/quadrature.h"
+#include "base/roots.h"
 #include "base/units.h"
 
 namespace swarf::motion {
@@ -26,29 +30,20 @@ Vec2 normal(double u) {
   return {t.y(), -t.x()};
 }
 
-double cross(const Vec2& a, const Vec2& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
-
 double angle_between_deg(const Vec2& a, const Vec2& b) {
   return deg_from_rad(std::abs(std::atan2(cross(a, b), a.dot(b))));
 }
 
-/// Root of an increasing or decreasing f between a and b by halving, to the last bit.
-double bisect(const std::function<double(double)>& f, double a, double b) {
-  const bool rising = f(b) > f(a);
-  for (;;) {
-    const double middle = 0.5 * (a + b);
-    if (middle <= a || middle >= b) return middle;
-    ((f(middle) < 0.0) == rising ? a : b) = middle;
-  }
+/// Root of an increasing or decreasing f between a and b.
+double root(const std::function<double(double)>& f, double a, double b) {
+  return bracketed_root(f, a, b, f(a), f(b));
 }
 
 /// Greatest distance of the curve from the chord u0-u1: where the tangent is parallel to the chord. The curve
 /// is convex on [0,1], so there is one such u and cross(chord, tangent) changes its sign there.
 double circle_chord_error(double u0, double u1) {
   const Vec2 chord = (point(u1) - point(u0)).normalized();
-  const double u = bisect([&](double x) { return cross(chord, tangent(x)); }, u0, u1);
+  const double u = root([&](double x) { return cross(chord, tangent(x)); }, u0, u1);
   return std::abs(cross(chord, point(u) - point(u0)));
 }
 
@@ -64,27 +59,6 @@ double orientation_error_deg(Interpolation how, double u0, double u1, double u) 
   return angle_between_deg(normal(u0) + fraction * (normal(u1) - normal(u0)), normal(u));
 }
 
-/// Greatest value of f on [a,b]: the best of evenly spread samples, then golden section between its
-/// neighbours.
-double maximum(const std::function<double(double)>& f, double a, double b) {
-  constexpr int kSamples = 32;
-  constexpr int kGoldenSteps = 40;
-  const double step = (b - a) / kSamples;
-  int best = 0;
-  for (int i = 1; i <= kSamples; ++i) {
-    if (f(a + i * step) > f(a + best * step)) best = i;
-  }
-  double low = std::max(a, a + (best - 1) * step);
-  double high = std::min(b, a + (best + 1) * step);
-  const double ratio = 0.5 * (std::sqrt(5.0) - 1.0);
-  for (int i = 0; i < kGoldenSteps; ++i) {
-    const double left = high - ratio * (high - low);
-    const double right = low + ratio * (high - low);
-    (f(left) > f(right) ? high : low) = f(left) > f(right) ? right : left;
-  }
-  return std::max(f(0.5 * (low + high)), f(a + best * step));
-}
-
 /// Ends of the longest segments that keep the tolerance, from u = 0; stops at 1 or after `most` segments.
 std::vector<double> greedy(double tolerance, int most) {
   std::vector<double> ends{0.0};
@@ -93,8 +67,9 @@ std::vector<double> greedy(double tolerance, int most) {
     if (circle_chord_error(start, 1.0) <= tolerance) {
       ends.push_back(1.0);
     } else {
-      ends.push_back(bisect([&](double u) { return circle_chord_error(start, u) - tolerance; },
-                            std::nextafter(start, 1.0), 1.0));
+      constexpr double kNoError = 1e-6;  // so short a chord misses the curve by far less than a picometre
+      ends.push_back(
+          root([&](double u) { return circle_chord_error(start, u) - tolerance; }, start + kNoError, 1.0));
     }
   }
   return ends;
@@ -123,26 +98,23 @@ std::vector<double> equal_chord_error(int segments) {
   return ends;
 }
 
-/// Composite Simpson on a fine grid: |C'| is smooth, error below 1e-13 mm.
 double arc_length(double u) {
-  constexpr int kIntervals = 400;
-  const double h = u / kIntervals;
-  double sum = tangent(0.0).norm() + tangent(u).norm();
-  for (int i = 1; i < kIntervals; ++i) sum += (i % 2 == 1 ? 4.0 : 2.0) * tangent(i * h).norm();
-  return sum * h / 3.0;
+  constexpr double kRelative = 1e-14;
+  return adaptive_integral([](double x) { return tangent(x).norm(); }, 0.0, u, kRelative);
 }
 
 std::vector<double> equal_arc(int segments) {
   const double total = arc_length(1.0);
   std::vector<double> ends{0.0};
   for (int i = 1; i < segments; ++i) {
-    ends.push_back(bisect([&](double u) { return arc_length(u) - total * i / segments; }, 0.0, 1.0));
+    ends.push_back(root([&](double u) { return arc_length(u) - total * i / segments; }, 0.0, 1.0));
   }
   ends.push_back(1.0);
   return ends;
 }
 
 Fig6Row measure(std::string name, const std::vector<double>& ends) {
+  constexpr int kSamples = 32;
   constexpr int kPlotPoints = 8;  // per segment: enough for its arch to look round
   Fig6Row row;
   row.segmentation = std::move(name);
@@ -151,7 +123,9 @@ Fig6Row measure(std::string name, const std::vector<double>& ends) {
     const double u0 = ends[i];
     const double u1 = ends[i + 1];
     const auto greatest = [&](Interpolation how) {
-      return maximum([&](double u) { return orientation_error_deg(how, u0, u1, u); }, u0, u1);
+      return greatest_sampled([&](double u) { return orientation_error_deg(how, u0, u1, u); }, u0, u1,
+                              kSamples)
+          .value;
     };
     row.chord_error_um = std::max(row.chord_error_um, um_from_mm(circle_chord_error(u0, u1)));
     row.linear_u_deg = std::max(row.linear_u_deg, greatest(Interpolation::kLinearInU));

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
+
+#include "base/minima.h"
 
 namespace swarf::toolpath {
 namespace {
@@ -28,32 +29,6 @@ double foot_on_pass(const PassSurface& surface, const CubicSpline& w, const Vec3
     if (std::abs(step) * g.dp.norm() < kDone) break;
   }
   return t;
-}
-
-/// Largest value of f over 0..1 on samples, sharpened by golden section around the best one.
-double argmin_sampled(const std::function<double(double)>& f) {
-  int best = 0;
-  double least = std::numeric_limits<double>::infinity();
-  for (int i = 0; i <= kSamples; ++i) {
-    const double value = f(static_cast<double>(i) / kSamples);
-    if (value < least) {
-      least = value;
-      best = i;
-    }
-  }
-  double low = std::max(0, best - 1) / static_cast<double>(kSamples);
-  double high = std::min(kSamples, best + 1) / static_cast<double>(kSamples);
-  const double ratio = 0.5 * (std::sqrt(5.0) - 1.0);
-  for (int i = 0; i < 40; ++i) {
-    const double left = high - ratio * (high - low);
-    const double right = low + ratio * (high - low);
-    if (f(left) < f(right)) {
-      high = right;
-    } else {
-      low = left;
-    }
-  }
-  return 0.5 * (low + high);
 }
 
 double scallop_of(const Area& area, const surface::Shape& shape, const Vec2& feed, double chord) {
@@ -166,8 +141,8 @@ MinimumInterval minimum_interval(const Area& area, const CubicSpline& w, Interva
     const PassFrame frame = pass_frame(surface, w, t);
     return interval_at(area, frame.shape, frame.unit_feed, rule).usable();
   };
-  const double t = argmin_sampled(chord);
-  return {chord(t), t};
+  const Minimum least = least_sampled(chord, 0.0, 1.0, kSamples);
+  return {least.value, least.at};
 }
 
 Strip measure_strip(const Area& area, const CubicSpline& previous, const CubicSpline& next, double t_low,

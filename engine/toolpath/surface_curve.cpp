@@ -3,11 +3,14 @@
 #include <array>
 #include <cmath>
 
+#include "base/quadrature.h"
+
 namespace swarf::toolpath {
 namespace {
 
-/// Pieces of the whole curve for its length: three-point Gauss leaves about 1e-12 mm on polynomial patches.
-constexpr double kLengthPieces = 128.0;
+/// Pieces of the whole curve for its length; what their integrals leave out is rounding on polynomial
+/// patches.
+constexpr double kLengthPieces = 64.0;
 
 }  // namespace
 
@@ -59,16 +62,11 @@ Vec3 curve_point(const surface::Surface& surface, const SurfaceCurve& curve, dou
 
 double curve_length(const surface::Surface& surface, const SurfaceCurve& curve, double from, double to) {
   const int pieces = std::max(1, static_cast<int>(std::ceil(std::abs(to - from) * kLengthPieces)));
-  const double half = 0.5 * (to - from) / pieces;
-  const double node = std::sqrt(0.6);
+  const double piece = (to - from) / pieces;
+  const auto speed = [&](double t) { return curve_at(surface, curve, t).dC.norm(); };
   double sum = 0.0;
-  for (int i = 0; i < pieces; ++i) {
-    const double middle = from + half * (2 * i + 1);
-    sum += 5.0 * curve_at(surface, curve, middle - half * node).dC.norm() +
-           8.0 * curve_at(surface, curve, middle).dC.norm() +
-           5.0 * curve_at(surface, curve, middle + half * node).dC.norm();
-  }
-  return sum / 9.0 * std::abs(half);
+  for (int i = 0; i < pieces; ++i) sum += smooth_integral(speed, from + i * piece, from + (i + 1) * piece);
+  return std::abs(sum);
 }
 
 double travel_along(const surface::Surface& surface, const SurfaceCurve& curve, double t, double distance) {

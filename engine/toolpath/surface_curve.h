@@ -36,7 +36,7 @@ struct NormalJet {
 };
 NormalJet normal_along(const PassSurface& surface, const surface::Derivatives& d, double dw);
 
-/// Length of the curve between two parameters, mm (Gauss, three points on each of equal pieces).
+/// Length of the curve between two parameters, mm; what its quadrature leaves out is rounding.
 double curve_length(const surface::Surface& surface, const SurfaceCurve& curve, double t_from, double t_to);
 
 /// The parameter that lies `distance_mm` along the curve from t (negative: backwards).

@@ -33,6 +33,7 @@ HEAVY = {
     "OpenVDB": (r"openvdb/", ("engine/stock/",)),
     "OpenMesh": (r"OpenMesh/", ("engine/mesh/",)),
     "meshoptimizer": (r"meshoptimizer", ("engine/mesh/",)),
+    "Boost.Math": (r"boost/math", ("engine/base/",)),
     "toml++": (r"toml\+\+", ("engine/base/config.cpp",)),
     # One file each for what it is good at: nearest triangles of a mesh, and light.
     "Embree": (r"embree", ("engine/mesh/mesh_distance.cpp", "render/ray/")),

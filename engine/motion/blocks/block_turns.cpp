@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/minima.h"
 #include "motion/blocks/block_curve.h"
 #include "motion/blocks/block_run.h"
 
@@ -15,8 +16,6 @@ using kinematics::AxisKind;
 using toolpath::BlockMove;
 
 constexpr int kPlaces = 32;
-/// Steps of the golden section: the bracket shrinks to 1e-7 of a block.
-constexpr int kGoldenSteps = 28;
 /// Tips that move less have no direction, mm.
 constexpr double kWayMin = 1e-6;
 
@@ -78,24 +77,9 @@ class List {
 
 ModeError mode_error(const BlockMotion& motion) {
   if (greatest_turn(motion).axis < 0) return {};
-  ModeError best;
-  for (int i = 1; i < kPlaces; ++i) {
-    const double s = static_cast<double>(i) / kPlaces;
-    const double own = error_at(motion, s);
-    if (own > best.mm) best = {own, s};
-  }
-  constexpr double kGolden = 0.6180339887498949;
-  double low = std::max(0.0, best.share - 1.0 / kPlaces), high = std::min(1.0, best.share + 1.0 / kPlaces);
-  for (int i = 0; i < kGoldenSteps; ++i) {
-    const double a = high - kGolden * (high - low), b = low + kGolden * (high - low);
-    if (error_at(motion, a) > error_at(motion, b)) {
-      high = b;
-    } else {
-      low = a;
-    }
-  }
-  const double share = 0.5 * (low + high), refined = error_at(motion, share);
-  return refined > best.mm ? ModeError{refined, share} : best;
+  const Minimum greatest =
+      greatest_sampled([&](double share) { return error_at(motion, share); }, 0.0, 1.0, kPlaces);
+  return {greatest.value, greatest.at};
 }
 
 OtherMode other_mode(const BlockMotions& motions) {

@@ -14,8 +14,7 @@
 namespace swarf::motion {
 
 /// The block between the fractions s0 < s1 of its programmed line; the axis values continue `before`, those
-/// at s0.
-/// nullopt: the machine has no axis values there.
+/// at s0. nullopt: the machine has no axis values there.
 std::optional<kinematics::BlockEnds> piece_of(const kinematics::InverseKinematics& inverse,
                                               const kinematics::BlockEnds& block, double s0, double s1,
                                               const kinematics::AxisValues& before);
@@ -38,9 +37,8 @@ std::optional<int> equal_pieces(const kinematics::MachineModel& machine,
                                 const kinematics::BlockEnds& block, double tolerance_mm);
 
 /// Cuts from 0 to 1, each as far from the one before as the tolerance allows (to 1e-9 of the block, by
-/// bisection); the
-/// block alone: {0, 1}. nullopt: more than kLinearPiecesMax, or a step without an end (through the pole the
-/// outer axis jumps by half a turn).
+/// bisection); the block alone: {0, 1}. nullopt: more than kLinearPiecesMax, or a step without an end
+/// (through the pole the outer axis jumps by half a turn).
 std::optional<std::vector<double>> greedy_cuts(const kinematics::MachineModel& machine,
                                                const kinematics::InverseKinematics& inverse,
                                                const kinematics::BlockEnds& block, double tolerance_mm);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/minima.h"
 #include "base/units.h"
 
 namespace swarf::motion {
@@ -80,31 +81,15 @@ std::optional<Circle> circle_of(const Points& points, size_t first, size_t block
   return circle_through(points.at(first, 0), points.at(first, blocks / 3), points.at(first, 2 * blocks / 3));
 }
 
-/// Golden section around the best of the nodes.
 void look_along(const BlockMotion& motion, const Circle& circle, int element, CircleError& error) {
   const auto at = [&](double u) {
     const kinematics::AxisValues q = motion.q_from + u * (motion.q_to - motion.q_from);
     return circle.distance(kinematics::forward(*motion.machine, q).tip_W);
   };
-  int best = 0;
-  double greatest = 0.0;
-  for (int i = 0; i <= kCircleNodes; ++i) {
-    const double here = at(static_cast<double>(i) / kCircleNodes);
-    if (here > greatest) {
-      greatest = here;
-      best = i;
-    }
-  }
-  constexpr double kGolden = 0.6180339887498949;
-  double low = std::max(0.0, (best - 1.0) / kCircleNodes), high = std::min(1.0, (best + 1.0) / kCircleNodes);
-  while (high - low > 1e-9) {
-    const double left = high - kGolden * (high - low), right = low + kGolden * (high - low);
-    (at(left) < at(right) ? low : high) = at(left) < at(right) ? left : right;
-  }
-  const double u = 0.5 * (low + high), value = std::max(greatest, at(u));
-  if (value <= error.value_mm) return;
-  error.value_mm = value;
-  error.u = u;
+  const Minimum greatest = greatest_sampled(at, 0.0, 1.0, kCircleNodes);
+  if (greatest.value <= error.value_mm) return;
+  error.value_mm = greatest.value;
+  error.u = greatest.at;
   error.element = element;
 }
 

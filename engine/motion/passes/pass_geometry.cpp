@@ -29,7 +29,9 @@ ToolPose contact_pose(const SurfacePass& pass, double t, double radius) {
 }
 
 double pass_length(const SurfacePass& pass, double from, double to) {
-  // Gauss, five points: over a node spacing the error is below the last bit.
+  // Gauss, five points: over a node spacing the error is below the last bit. Not base/quadrature.h: this is
+  // asked once for each control cycle, and Boost's five weights, made at run time, are off by a last bit,
+  // which would move every cycle of a pass.
   constexpr double kNode[3] = {0.0, 0.53846931010568309, 0.90617984593866399};
   constexpr double kWeight[3] = {0.56888888888888889, 0.47862867049936647, 0.23692688505618909};
   const double middle = 0.5 * (from + to);

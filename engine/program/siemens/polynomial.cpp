@@ -3,18 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angles.h"
+#include "base/quadrature.h"
 #include "base/roots.h"
+#include "base/tool_axis.h"
 #include "base/units.h"
 
 namespace swarf::program::nc::siemens {
 namespace {
 
-/// Pieces of the table of ways; each is integrated by Gauss with five points.
+/// Pieces of the table of ways.
 constexpr int kPieces = 128;
-constexpr std::array<double, 5> kGaussPlace = {-0.906179845938664, -0.538469310105683, 0.0, 0.538469310105683,
-                                               0.906179845938664};
-constexpr std::array<double, 5> kGaussWeight = {0.236926885056189, 0.478628670499366, 0.568888888888889,
-                                                0.478628670499366, 0.236926885056189};
 const double kTurnToleranceRad = rad_from_deg(1e-3);
 constexpr int kHalvings = 20;
 /// Shorter curves have no way that anything could follow, mm.
@@ -92,7 +91,7 @@ PolynomialCurve::PolynomialCurve(const PolynomialBlock& block) : block_(block) {
   }
   if (block.axis) {
     const auto& [from, to] = *block.axis;
-    angle_ = std::atan2(from.cross(to).norm(), from.dot(to));
+    angle_ = angle_between(from, to);
     turns_ = true;
   }
   if (!turns_) return;
@@ -122,10 +121,7 @@ Vec3 PolynomialCurve::velocity(double u) const {
 }
 
 double PolynomialCurve::way_between(double u, double v) const {
-  double sum = 0.0;
-  for (size_t n = 0; n < kGaussPlace.size(); ++n)
-    sum += kGaussWeight[n] * velocity(0.5 * (u + v) + 0.5 * (v - u) * kGaussPlace[n]).norm();
-  return 0.5 * (v - u) * sum;
+  return smooth_integral([this](double x) { return velocity(x).norm(); }, u, v);
 }
 
 double PolynomialCurve::way(double u) const {
@@ -149,11 +145,7 @@ nc::CurvePoint PolynomialCurve::at(double u) const {
   }
   if (block_.axis) {
     const auto& [from, to] = *block_.axis;
-    const Vec3 across = to - to.dot(from) * from;
-    const double turned = angle_ * s;
-    point.axis = s == 1.0 || !(across.norm() > 0.0)
-                     ? to
-                     : Vec3(std::cos(turned) * from + std::sin(turned) * across.normalized());
+    point.axis = s == 1.0 ? to : slerp(from, to, s);
   }
   return point;
 }
