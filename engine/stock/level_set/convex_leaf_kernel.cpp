@@ -226,31 +226,19 @@ int cut_leaf_baseline(float* values, const ConvexLeaf& leaf, uint32_t slices) {
   return cut_leaf(values, leaf, slices);
 }
 
-#ifdef SWARF_KERNEL_VARIANTS
-__attribute__((target("arch=x86-64-v3"))) int cut_leaf_v3(float* values, const ConvexLeaf& leaf,
-                                                          uint32_t slices) {
+SWARF_X86_64_V3 int cut_leaf_v3(float* values, const ConvexLeaf& leaf, uint32_t slices) {
   return cut_leaf(values, leaf, slices);
 }
-__attribute__((target("arch=x86-64-v4"))) int cut_leaf_v4(float* values, const ConvexLeaf& leaf,
-                                                          uint32_t slices) {
-  return cut_leaf(values, leaf, slices);
-}
-#endif
 
-std::vector<ConvexKernelVariant> supported_variants() {
-  std::vector<ConvexKernelVariant> variants;
-#ifdef SWARF_KERNEL_VARIANTS
-  if (__builtin_cpu_supports("x86-64-v4")) variants.push_back({"x86-64-v4", cut_leaf_v4});
-  if (__builtin_cpu_supports("x86-64-v3")) variants.push_back({"x86-64-v3", cut_leaf_v3});
-#endif
-  variants.push_back({"baseline", cut_leaf_baseline});
-  return variants;
+SWARF_X86_64_V4 int cut_leaf_v4(float* values, const ConvexLeaf& leaf, uint32_t slices) {
+  return cut_leaf(values, leaf, slices);
 }
 
 }  // namespace
 
 std::span<const ConvexKernelVariant> convex_kernel_variants() {
-  static const std::vector<ConvexKernelVariant> variants = supported_variants();
+  static const std::vector<ConvexKernelVariant> variants = runnable<ConvexKernelVariant>(
+      {"x86-64-v4", cut_leaf_v4}, {"x86-64-v3", cut_leaf_v3}, {"baseline", cut_leaf_baseline});
   return variants;
 }
 

@@ -173,27 +173,14 @@ void judge_baseline(const Lanes& lanes, const LanePiece& piece, const LaneQuery&
   Judge<4>::all_lanes(lanes, piece, query, out);
 }
 
-#ifdef SWARF_KERNEL_VARIANTS
-__attribute__((target("arch=x86-64-v3"))) void judge_v3(const Lanes& lanes, const LanePiece& piece,
-                                                        const LaneQuery& query, LaneAnswer& out) {
+SWARF_X86_64_V3 void judge_v3(const Lanes& lanes, const LanePiece& piece, const LaneQuery& query,
+                              LaneAnswer& out) {
   Judge<8>::all_lanes(lanes, piece, query, out);
 }
-__attribute__((target("arch=x86-64-v4,prefer-vector-width=512"))) void judge_v4(const Lanes& lanes,
-                                                                                const LanePiece& piece,
-                                                                                const LaneQuery& query,
-                                                                                LaneAnswer& out) {
-  Judge<16>::all_lanes(lanes, piece, query, out);
-}
-#endif
 
-std::vector<LaneKernelVariant> supported_variants() {
-  std::vector<LaneKernelVariant> variants;
-#ifdef SWARF_KERNEL_VARIANTS
-  if (__builtin_cpu_supports("x86-64-v4")) variants.push_back({"x86-64-v4", judge_v4});
-  if (__builtin_cpu_supports("x86-64-v3")) variants.push_back({"x86-64-v3", judge_v3});
-#endif
-  variants.push_back({"baseline", judge_baseline});
-  return variants;
+SWARF_X86_64_V4_WIDE void judge_v4(const Lanes& lanes, const LanePiece& piece, const LaneQuery& query,
+                                   LaneAnswer& out) {
+  Judge<16>::all_lanes(lanes, piece, query, out);
 }
 
 }  // namespace
@@ -212,7 +199,8 @@ LanePiece lane_piece(const cutter::ConvexPiece& piece) {
 }
 
 std::span<const LaneKernelVariant> lane_kernel_variants() {
-  static const std::vector<LaneKernelVariant> variants = supported_variants();
+  static const std::vector<LaneKernelVariant> variants = runnable<LaneKernelVariant>(
+      {"x86-64-v4", judge_v4}, {"x86-64-v3", judge_v3}, {"baseline", judge_baseline});
   return variants;
 }
 

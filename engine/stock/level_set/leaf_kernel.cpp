@@ -131,7 +131,6 @@ SWARF_KERNEL_INLINE LeafRange summarise(const float* values, float band, uint64_
   return {least, greatest};
 }
 
-// Each variant is the same source under another instruction set; helpers are inlined into it.
 // NOLINTBEGIN(bugprone-macro-parentheses): an attribute cannot stand in parentheses
 #define SWARF_LEAF_VARIANT(name, attribute)                                                             \
   attribute void cut_leaf_##name(float* values, const LeafMotion& motion, uint32_t slices) {            \
@@ -148,32 +147,18 @@ SWARF_KERNEL_INLINE LeafRange summarise(const float* values, float band, uint64_
   }
 
 SWARF_LEAF_VARIANT(baseline, )
-#ifdef SWARF_KERNEL_VARIANTS
-SWARF_LEAF_VARIANT(v3, __attribute__((target("arch=x86-64-v3"))))
-SWARF_LEAF_VARIANT(v4, __attribute__((target("arch=x86-64-v4,prefer-vector-width=512"))))
-#endif
+SWARF_LEAF_VARIANT(v3, SWARF_X86_64_V3)
+SWARF_LEAF_VARIANT(v4, SWARF_X86_64_V4_WIDE)
 #undef SWARF_LEAF_VARIANT
 // NOLINTEND(bugprone-macro-parentheses)
-
-std::vector<LeafKernelVariant> supported_variants() {
-  std::vector<LeafKernelVariant> variants;
-#ifdef SWARF_KERNEL_VARIANTS
-  if (__builtin_cpu_supports("x86-64-v4")) {
-    variants.push_back({"x86-64-v4", cut_leaf_v4, test_bound_v4, fit_floor_v4, summarise_v4});
-  }
-  if (__builtin_cpu_supports("x86-64-v3")) {
-    variants.push_back({"x86-64-v3", cut_leaf_v3, test_bound_v3, fit_floor_v3, summarise_v3});
-  }
-#endif
-  variants.push_back(
-      {"baseline", cut_leaf_baseline, test_bound_baseline, fit_floor_baseline, summarise_baseline});
-  return variants;
-}
 
 }  // namespace
 
 std::span<const LeafKernelVariant> leaf_kernel_variants() {
-  static const std::vector<LeafKernelVariant> variants = supported_variants();
+  static const std::vector<LeafKernelVariant> variants = runnable<LeafKernelVariant>(
+      {"x86-64-v4", cut_leaf_v4, test_bound_v4, fit_floor_v4, summarise_v4},
+      {"x86-64-v3", cut_leaf_v3, test_bound_v3, fit_floor_v3, summarise_v3},
+      {"baseline", cut_leaf_baseline, test_bound_baseline, fit_floor_baseline, summarise_baseline});
   return variants;
 }
 

@@ -68,31 +68,21 @@ void tile_heights_baseline(const TileRays& rays, const SweepMap& map, double rad
   tile_heights(rays, map, radius, out);
 }
 
-#ifdef SWARF_KERNEL_VARIANTS
-__attribute__((target("arch=x86-64-v3"))) void tile_heights_v3(const TileRays& rays, const SweepMap& map,
-                                                               double radius, TileHeights& out) {
+SWARF_X86_64_V3 void tile_heights_v3(const TileRays& rays, const SweepMap& map, double radius,
+                                     TileHeights& out) {
   tile_heights(rays, map, radius, out);
 }
-__attribute__((target("arch=x86-64-v4"))) void tile_heights_v4(const TileRays& rays, const SweepMap& map,
-                                                               double radius, TileHeights& out) {
-  tile_heights(rays, map, radius, out);
-}
-#endif
 
-std::vector<DexelKernelVariant> supported_variants() {
-  std::vector<DexelKernelVariant> variants;
-#ifdef SWARF_KERNEL_VARIANTS
-  if (__builtin_cpu_supports("x86-64-v4")) variants.push_back({"x86-64-v4", tile_heights_v4});
-  if (__builtin_cpu_supports("x86-64-v3")) variants.push_back({"x86-64-v3", tile_heights_v3});
-#endif
-  variants.push_back({"baseline", tile_heights_baseline});
-  return variants;
+SWARF_X86_64_V4 void tile_heights_v4(const TileRays& rays, const SweepMap& map, double radius,
+                                     TileHeights& out) {
+  tile_heights(rays, map, radius, out);
 }
 
 }  // namespace
 
 std::span<const DexelKernelVariant> dexel_kernel_variants() {
-  static const std::vector<DexelKernelVariant> variants = supported_variants();
+  static const std::vector<DexelKernelVariant> variants = runnable<DexelKernelVariant>(
+      {"x86-64-v4", tile_heights_v4}, {"x86-64-v3", tile_heights_v3}, {"baseline", tile_heights_baseline});
   return variants;
 }
 

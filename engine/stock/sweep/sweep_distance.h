@@ -9,14 +9,9 @@
 
 #include <cmath>
 
+#include "stock/sweep/instruction_sets.h"
+
 namespace swarf::stock {
-
-#define SWARF_KERNEL_INLINE inline __attribute__((always_inline))
-
-// Variants for newer instruction sets, chosen at run time; clang knows their names from version 16 on.
-#if defined(__x86_64__) && !(defined(__clang_major__) && __clang_major__ < 16)
-#define SWARF_KERNEL_VARIANTS 1
-#endif
 
 /// Position in the tool frame at t = 0 and its change up to t = 1, mm.
 template <class T>

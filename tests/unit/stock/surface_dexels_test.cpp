@@ -2,12 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 
 #include "base/diagnostics.h"
 #include "base/parallel.h"
+#include "base/rng.h"
 #include "dome.h"
+#include "stock/rays/dexel_kernel.h"
 #include "stock/rays/ray_height.h"
 #include "stock_test_support.h"
 #include "support/scratch.h"
@@ -27,6 +30,45 @@ TEST(SurfaceDexels, GridHasThePitchAndStartsAtTheStock) {
     EXPECT_NEAR(std::min((kBox.upper - top).minCoeff(), (top - kBox.lower).minCoeff()), 0.0, 1e-9);
     EXPECT_EQ(dexels.blocks()[n], kUncut);
   }
+}
+
+/// Rays round about the tool's, some flatter than the kernel answers.
+TileRays random_rays(Rng& rng) {
+  TileRays rays;
+  for (int n = 0; n < kTileRays; ++n) {
+    const Vec3 foot(rng.uniform(-6.0, 6.0), rng.uniform(-6.0, 6.0), rng.uniform(-2.0, 1.0));
+    const Vec3 normal = (Vec3::UnitZ() + rng.uniform(0.0, 1.5) * rng.direction()).normalized();
+    rays.px[n] = foot.x(), rays.py[n] = foot.y(), rays.pz[n] = foot.z();
+    rays.nx[n] = normal.x(), rays.ny[n] = normal.y(), rays.nz[n] = normal.z();
+  }
+  return rays;
+}
+
+TEST(DexelKernel, EveryInstructionSetGivesTheSameBits) {
+  constexpr uint64_t kSeed = 29;
+  Rng rng(kSeed);
+  const auto variants = dexel_kernel_variants();
+  ASSERT_STREQ(variants.back().instruction_set, "baseline");
+  int exact = 0, open = 0;
+  for (int n = 0; n < 2000; ++n) {
+    const TileRays rays = random_rays(rng);
+    const auto pose = [&] {
+      return ToolPose{rng.direction(),
+                      (Vec3::UnitZ() + rng.uniform(0.0, 0.3) * rng.direction()).normalized()};
+    };
+    const SweepMap map = sweep_map({pose(), pose(), 0});
+    TileHeights reference;
+    variants.back().kernel(rays, map, kCutter.radius, reference);
+    for (const DexelKernelVariant& variant : variants) {
+      TileHeights heights;
+      variant.kernel(rays, map, kCutter.radius, heights);
+      ASSERT_EQ(std::memcmp(&heights, &reference, sizeof(heights)), 0)
+          << variant.instruction_set << " differs, seed " << kSeed << " case " << n;
+    }
+    for (const double height : reference.exact) ++(height == kNoHeight ? open : exact);
+  }
+  EXPECT_GT(exact, 20000);
+  EXPECT_GT(open, 20000);
 }
 
 TEST(SurfaceDexels, DesignOutsideTheStockIsMissingMaterial) {
