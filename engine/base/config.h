@@ -17,7 +17,7 @@ namespace swarf {
 
 /// Bounds of a number; the message states them with the unit that the key's name ends in.
 struct Range {
-  double low = -std::numeric_limits<double>::infinity();
+  double low = -std::numeric_limits<double>::infinity();  ///< in the unit of the key
   double high = std::numeric_limits<double>::infinity();
   bool low_open = false;  ///< the value must be above `low`, not equal to it
 };
@@ -32,19 +32,21 @@ class ConfigTable {
   static ConfigTable load(const std::string& path, const std::vector<std::string>& overrides,
                           Diagnostics& diagnostics);
 
-  bool has(const std::string& key) const;
+  bool has(const std::string& key) const;              ///< whether the key stands in this table
   SourceLocation where(const std::string& key) const;  ///< of the value, or of this table when it is absent
-  SourceLocation where() const;
-  std::vector<std::string> keys() const;
+  SourceLocation where() const;                        ///< of this table
+  std::vector<std::string> keys() const;               ///< all that stand in it, known or not
 
   /// With a default the key is optional; without one its absence is an error (and 0, "" or {} is returned).
   double number(const std::string& key, Range range, std::optional<double> fallback = {});
+  /// A whole number from `low` to `high`.
   int integer(const std::string& key, int low, int high, std::optional<int> fallback = {});
   bool boolean(const std::string& key, std::optional<bool> fallback = {});
   std::string text(const std::string& key, const std::optional<std::string>& fallback = {});
   /// One of the given words.
   std::string choice(const std::string& key, const std::vector<std::string>& words,
                      const std::optional<std::string>& fallback = {});
+  /// A list of exactly `count` finite numbers.
   std::vector<double> numbers(const std::string& key, size_t count,
                               const std::optional<std::vector<double>>& fallback = {});
   /// [[x,y,z], ...] of at least one row; empty after a complaint.
@@ -59,6 +61,7 @@ class ConfigTable {
   /// Reports every key of this table and of the sub-tables handed out that was never asked for.
   void finish();
 
+  /// Adds an error that the reader has found, at the key's place.
   void error(const std::string& code, const std::string& key, const std::string& text,
              const std::string& fix);
 

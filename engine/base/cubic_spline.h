@@ -21,7 +21,7 @@ class CubicSpline {
   /// The same value everywhere.
   static CubicSpline constant(double value);
 
-  Value at(double t) const;
+  Value at(double t) const;  ///< with both derivatives
   const std::vector<double>& values() const { return values_; }
 
  private:

@@ -14,10 +14,12 @@ class DisjointSets {
  public:
   explicit DisjointSets(size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0U); }
 
+  /// The number that stands for the set of n.
   uint32_t root(uint32_t n) {
     while (parent_[n] != n) n = parent_[n] = parent_[parent_[n]];
     return n;
   }
+  /// Makes one set of those of a and b.
   void join(uint32_t a, uint32_t b) {
     const uint32_t ra = root(a), rb = root(b);
     parent_[std::max(ra, rb)] = std::min(ra, rb);

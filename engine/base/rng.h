@@ -12,9 +12,9 @@ namespace swarf {
 
 class Rng {
  public:
-  explicit Rng(uint64_t seed) : state_(seed) {}
+  explicit Rng(uint64_t seed) : state_(seed) {}  // equal seeds give equal sequences
 
-  uint64_t next() {
+  uint64_t next() {  // 64 bits, evenly distributed
     uint64_t z = (state_ += 0x9e3779b97f4a7c15ULL);
     z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
     z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;

@@ -1,15 +1,15 @@
 // Sines, cosines and arc tangents of N numbers at once (N = 2 or 4), where N calls of the library would
 // follow each other. One code for every processor: the compiler makes vectors of what the target has.
 //
-//   x = n pi/2 + r, |r| <= pi/4   pi/2 in three parts, of 33 bits, 33 bits and the rest: n times one of the
-//   first two
-//                                 is exact for n below 2^20
+//   x = n pi/2 + r, |r| <= pi/4   pi/2 in three parts, of 33 bits, 33 bits and the rest: n times one of
+//                                 the first two is exact for n below 2^20
 //   sin r, cos r                  Taylor, to r^17 and r^16: the next terms are below 1e-19 and 3e-18
 //   atan t, |t| <= tan(pi/8)      t + t s P(s), s = t^2, P through 12 Chebyshev nodes: 1e-17. A larger
-//   quotient b/a
-//                                 is turned back by pi/4: (b - a)/(b + a)
+//                                 quotient b/a is turned back by pi/4: (b - a)/(b + a)
 //
-// tests/unit/kinematics/lanes_test.cpp states how close they come to the library.
+// tests/unit/kinematics/lanes_test.cpp states how close they come to the library. SLEEF 3.5 does the same: of
+// its sines and cosines 30 % have other last bits, of its arc tangents 26 %, so every result would move; it
+// takes 1.1 and 1.7 times as long for two numbers at once.
 #pragma once
 
 #include <cmath>

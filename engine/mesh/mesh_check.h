@@ -1,4 +1,8 @@
 // Whether a mesh can serve as a design: closed, turned outward, in mm, and every facet sound.
+//
+// Edges are counted after one sort. Half-edges (OpenMesh) would not do: they refuse the very edges that are
+// looked for, with three facets or turned ones, and take 2.7 times as long (1.2 million facets: 0.45 s for
+// 0.17).
 #pragma once
 
 #include <array>
@@ -31,22 +35,22 @@ std::vector<uint32_t> facets_across(const std::vector<std::array<uint32_t, 3>>& 
 double enclosed_volume(const TriMesh& mesh);
 
 /// Holds a mesh against what measuring needs; each fault is a diagnostic of file `path`:
-///   mesh-empty          error    no facet with area
-///   mesh-not-finite     error    NaN or infinite positions, how many
-///   mesh-zero-area      warning  facets without area, how many and where the first lies; not measured
-///   mesh-open           error    edges with a facet on one side only: how many, the first, the box around
-///   all mesh-non-manifold   error    edges shared by more than two facets mesh-turned-facets  error    edges
-///   that both neighbours run through in the same direction mesh-inverted       error    closed, but the
-///   enclosed volume is negative mesh-in-inches      error    25.4 times larger it would lie inside the
-///   stock; it fills < 1/15 of it now mesh-scaled-by-25   error    the other way round mesh-outside-stock
-///   error    it reaches beyond the stock: material that cannot be there
+///   mesh-empty          no facet with area
+///   mesh-not-finite     NaN or infinite positions, how many
+///   mesh-zero-area      a warning: facets without area, how many, where the first lies; not measured
+///   mesh-open           edges with a facet on one side only: how many, the first, the box around all
+///   mesh-non-manifold   edges shared by more than two facets
+///   mesh-turned-facets  edges that both neighbours run through in the same direction
+///   mesh-inverted       closed, but the enclosed volume is negative
+///   mesh-in-inches      25.4 times larger it would lie inside the stock; it fills < 1/15 of it now
+///   mesh-scaled-by-25   the other way round
+///   mesh-outside-stock  it reaches beyond the stock: material that cannot be there
 /// `stock_W` may be null when there is no stock to compare with. `name`: what the texts call the mesh.
 void check_design_mesh(const TriMesh& mesh, const std::string& path, const Box* stock_W,
                        Diagnostics& diagnostics, const std::string& name = "design mesh");
 
 /// "" when the mesh is closed and evenly oriented (each edge once in each direction); else the first reason
-/// why not. Vertices with equal positions count as one, and triangles that collapse by
-/// that do not count.
+/// why not. Vertices with equal positions count as one, and triangles that collapse by that do not count.
 std::string check_closed(const TriMesh& mesh);
 
 }  // namespace swarf::mesh

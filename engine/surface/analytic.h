@@ -22,7 +22,7 @@ class PlaneSurface final : public Surface {
   int outward_sign() const override { return 1; }
 
  private:
-  Vec3 origin_, along_u_, along_v_;
+  Vec3 origin_, along_u_, along_v_;  ///< W, mm
 };
 
 /// Radius and height of a meridian and their first two derivatives by its parameter v in [0,1].
@@ -56,8 +56,8 @@ class RevolvedSurface final : public Surface {
 
  private:
   Turn turn_;
-  Vec3 x_W_, y_W_;
-  std::function<Meridian(double)> meridian_;
+  Vec3 x_W_, y_W_;                            ///< square to the axis, right-handed with it
+  std::function<Meridian(double)> meridian_;  ///< by v in [0,1]
   MeridianBounds bounds_;
   MaterialSide side_;
 };
@@ -78,9 +78,9 @@ SurfacePtr sphere_surface(const Turn& turn, double radius, double polar_from_rad
 /// The core that a skew cylinder leaves when the table turns under it (theory 6): its axis passes through
 /// (distance, 0, 0) along (0, sin g, cos g) as seen from base_W, radius `cutter_radius`.
 struct Hyperboloid {
-  double distance = 30.0;
-  double skew_rad = 0.35;
-  double cutter_radius = 5.0;
+  double distance = 30.0;      ///< mm
+  double skew_rad = 0.35;      ///< between the cylinder's axis and the table's
+  double cutter_radius = 5.0;  ///< mm
 };
 /// Radius and height of the contact at s mm along the cylinder's axis, with derivatives by s.
 Meridian hyperboloid_meridian(const Hyperboloid& shape, double s);

@@ -7,6 +7,7 @@
 
 namespace swarf::surface {
 
+/// Over u, v in [0,1]; continues beyond by the same polynomial.
 class PolynomialSurface final : public Surface {
  public:
   /// `coefficients[i * (degree_v + 1) + j]` multiplies u^i v^j. Degrees >= 0; `outward_sign` is +1 or -1.
@@ -27,8 +28,8 @@ class PolynomialSurface final : public Surface {
 
  private:
   int degree_u_, degree_v_;
-  std::vector<Vec3> coefficients_;
-  int outward_sign_;
+  std::vector<Vec3> coefficients_;  ///< mm; of u^i v^j at i (degree_v + 1) + j
+  int outward_sign_;                ///< of S_u x S_v against the outward normal
 };
 
 }  // namespace swarf::surface

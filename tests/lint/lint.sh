@@ -19,6 +19,9 @@ python3 tests/lint/rooms.py || failed=1
 say "names that files compiled as one must not share"
 python3 tests/lint/unity.py || failed=1
 
+say "lengths of functions, comments of headers"
+python3 tests/lint/functions.py || failed=1
+
 say "theory and errata that comments name"
 python3 tests/lint/theory.py || failed=1
 
