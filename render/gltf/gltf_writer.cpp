@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <sstream>
 #include <tuple>
 
 #include "base/check.h"
@@ -301,11 +302,11 @@ tinygltf::Model Writer::build() {
 
 void write_glb(const std::filesystem::path& path, const GltfScene& scene) {
   tinygltf::Model model = Writer(scene).build();
-  NewFile file(path.string(), {"cannot-write-file", "the glTF file cannot be written"});
-  tinygltf::TinyGLTF gltf;
-  if (!gltf.WriteGltfSceneToFile(&model, file.temporary(), false, true, false, true))
-    file.refuse("not all of it reaches the disk");
-  file.move_into_place();
+  // Through memory: writing to a file, tinygltf does not say when a full disk has taken its end.
+  std::ostringstream bytes;
+  const bool written = tinygltf::TinyGLTF().WriteGltfSceneToStream(&model, bytes, false, true);
+  SWARF_CHECK(written, "tinygltf refuses a scene that we made");
+  replace_file(path.string(), bytes.str(), {"cannot-write-file", "the glTF file cannot be written"});
 }
 
 }  // namespace swarf::render
