@@ -7,6 +7,7 @@
 #include <OpenMesh/Tools/Decimater/ModNormalFlippingT.hh>
 #include <OpenMesh/Tools/Decimater/ModQuadricT.hh>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -30,8 +31,10 @@ constexpr double kMaxAspect = 20.0;
 constexpr double kMaxNormalTurnDeg = 20.0;
 /// A quadric's error is a mean over planes and the measured one a maximum: the first try asks for this share.
 constexpr double kFirstBudget = 0.3;
-constexpr double kNextBudget = 0.6;
-constexpr int kTries = 6;
+constexpr int kTries = 10;
+/// What a place may use of the budget after so many tries that were too coarse there; at last it stays as it
+/// is.
+constexpr std::array<double, 3> kShares{1.0, 0.3, 0.0};
 
 /// The mesh as one list of indices in which vertices at one position are one vertex (the first of them).
 Indices welded_indices(const TriMesh& mesh) {
@@ -43,13 +46,19 @@ Indices welded_indices(const TriMesh& mesh) {
   return welded;
 }
 
+/// By vertex: how many tries were too coarse there.
+using Failures = std::vector<uint8_t>;
+
 /// One round of meshoptimizer on the triangles whose numbers are listed; edges shared with others stay as
 /// they are.
 Indices simplify_cell(const TriMesh& mesh, const Indices& indices, std::span<const uint32_t> triangles,
-                      double error_mm) {
+                      double error_mm, const Failures& failures) {
   Indices vertices;
   for (const uint32_t t : triangles)
     vertices.insert(vertices.end(), &indices[size_t{3} * t], &indices[size_t{3} * t] + 3);
+  uint8_t most = 0;
+  for (const uint32_t v : vertices) most = std::max(most, failures[v]);
+  if (kShares[most] == 0.0) return vertices;
   Indices local = vertices;
   std::sort(vertices.begin(), vertices.end());
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
@@ -64,7 +73,8 @@ Indices simplify_cell(const TriMesh& mesh, const Indices& indices, std::span<con
   Indices out(local.size());
   out.resize(meshopt_simplify(out.data(), local.data(), local.size(), positions.front().data(),
                               positions.size(), sizeof(positions.front()), 0,
-                              static_cast<float>(error_mm / extent), meshopt_SimplifyLockBorder, nullptr));
+                              static_cast<float>(kShares[most] * error_mm / extent),
+                              meshopt_SimplifyLockBorder, nullptr));
   for (uint32_t& v : out) v = vertices[v];
   return out;
 }
@@ -102,7 +112,7 @@ Cells sort_into_cells(const TriMesh& mesh, const Indices& indices, double cell_m
 /// meshoptimizer sums its quadrics in float, relative to the extent of what it is given: below kFloatFloor of
 /// the extent its errors are noise. So it gets cells small enough for the error asked for, in two rounds with
 /// the second grid shifted by half a cell, so that the first round's locked borders are open in the second.
-Indices simplify(const TriMesh& mesh, Indices indices, double error_mm) {
+Indices simplify(const TriMesh& mesh, Indices indices, double error_mm, const Failures& failures) {
   constexpr double kFloatFloor = 2.5e-4;
   const double cell_mm = error_mm / kFloatFloor;
   for (const double shift_mm : {0.0, 0.5 * cell_mm}) {
@@ -110,8 +120,9 @@ Indices simplify(const TriMesh& mesh, Indices indices, double error_mm) {
     std::vector<Indices> parts(cells.starts.size() - 1);
     parallel_chunks(parts.size(), 1, [&](size_t i, size_t) {
       const std::span all(cells.triangles);
-      parts[i] = simplify_cell(mesh, indices,
-                               all.subspan(cells.starts[i], cells.starts[i + 1] - cells.starts[i]), error_mm);
+      parts[i] =
+          simplify_cell(mesh, indices, all.subspan(cells.starts[i], cells.starts[i + 1] - cells.starts[i]),
+                        error_mm, failures);
     });
     indices.clear();
     for (const Indices& part : parts) indices.insert(indices.end(), part.begin(), part.end());
@@ -226,8 +237,9 @@ double mean_area(const OmMesh& om) {
   return sum / static_cast<double>(om.n_faces());
 }
 
-/// OpenMesh's decimater within the error; a mesh it cannot represent stays as it is.
-void refine_with_openmesh(const TriMesh& mesh, double error_mm, Surface& surface) {
+/// OpenMesh's decimater within the error, but not where tries have failed; a mesh it cannot represent stays
+/// as it is.
+void refine_with_openmesh(const TriMesh& mesh, double error_mm, const Failures& failures, Surface& surface) {
   OmMesh om;
   OpenMesh::VPropHandleT<uint32_t> number;
   om.add_property(number);
@@ -241,7 +253,8 @@ void refine_with_openmesh(const TriMesh& mesh, double error_mm, Surface& surface
   omerr().enable();
   if (!manifold) return;
   // Quadrics of faces do not resist motion along an open border.
-  for (const auto v : om.vertices()) om.status(v).set_locked(om.is_boundary(v));
+  for (const auto v : om.vertices())
+    om.status(v).set_locked(om.is_boundary(v) || failures[surface.originals[om.property(number, v)]] > 0);
   om.update_face_normals();
   OpenMesh::Decimater::DecimaterT<OmMesh> decimater(om);
   OpenMesh::Decimater::ModQuadricT<OmMesh>::Handle quadric;
@@ -286,6 +299,16 @@ TriMesh gather(const TriMesh& mesh, const Surface& surface) {
   return out;
 }
 
+/// The greatest of the vertices' distances; those that are too far are counted.
+double count_failures(const std::vector<double>& distances_mm, double max_error_mm, Failures& failures) {
+  double greatest = 0.0;
+  for (size_t v = 0; v < distances_mm.size(); ++v) {
+    greatest = std::max(greatest, distances_mm[v]);
+    if (distances_mm[v] > max_error_mm && failures[v] + 1U < kShares.size()) ++failures[v];
+  }
+  return greatest;
+}
+
 }  // namespace
 
 TriMesh decimate(const TriMesh& mesh, double max_error_mm, double* reached_error) {
@@ -293,14 +316,16 @@ TriMesh decimate(const TriMesh& mesh, double max_error_mm, double* reached_error
   if (reached_error != nullptr) *reached_error = 0.0;
   if (mesh.triangles.empty()) return mesh;
   const Indices welded = welded_indices(mesh);
-  double budget = kFirstBudget * max_error_mm;
-  for (int attempt = 0; attempt < kTries; ++attempt, budget *= kNextBudget) {
-    Surface surface{simplify(mesh, welded, budget), Indices(mesh.positions.size())};
+  const double budget = kFirstBudget * max_error_mm;
+  Failures failures(mesh.positions.size(), 0);
+  for (int attempt = 0; attempt < kTries; ++attempt) {
+    Surface surface{simplify(mesh, welded, budget, failures), Indices(mesh.positions.size())};
     std::iota(surface.originals.begin(), surface.originals.end(), 0U);
     split_fans(surface);
-    if (surface.indices.size() / 3 <= kOpenMeshTriangles) refine_with_openmesh(mesh, budget, surface);
+    if (surface.indices.size() / 3 <= kOpenMeshTriangles)
+      refine_with_openmesh(mesh, budget, failures, surface);
     TriMesh candidate = gather(mesh, surface);
-    const double error = max_distance(mesh.positions, candidate);
+    const double error = count_failures(distances(mesh.positions, candidate), max_error_mm, failures);
     if (error > max_error_mm) continue;
     if (reached_error != nullptr) *reached_error = error;
     return candidate;

@@ -181,17 +181,15 @@ void MeshDistance::each_near(const Vec3& p, double radius_mm,
   rtcPointQuery(tree_->scene, &query, &context, call, const_cast<std::function<void(uint32_t)>*>(&visit));
 }
 
-double max_distance(std::span<const std::array<float, 3>> points, const TriMesh& mesh) {
+std::vector<double> distances(std::span<const std::array<float, 3>> points, const TriMesh& mesh) {
   constexpr size_t kChunk = 2048;
   const MeshDistance distance(mesh);
-  std::vector<double> worst((points.size() + kChunk - 1) / kChunk, 0.0);
+  std::vector<double> all(points.size());
   parallel_chunks(points.size(), kChunk, [&](size_t begin, size_t end) {
-    double& mine = worst[begin / kChunk];
-    for (size_t i = begin; i < end; ++i) {
-      mine = std::max(mine, distance.nearest({points[i][0], points[i][1], points[i][2]}).distance_mm);
-    }
+    for (size_t i = begin; i < end; ++i)
+      all[i] = distance.nearest({points[i][0], points[i][1], points[i][2]}).distance_mm;
   });
-  return worst.empty() ? 0.0 : *std::max_element(worst.begin(), worst.end());
+  return all;
 }
 
 }  // namespace swarf::mesh

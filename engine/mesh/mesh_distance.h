@@ -6,6 +6,7 @@
 #include <limits>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "base/frames.h"
 #include "mesh/tri_mesh.h"
@@ -52,7 +53,7 @@ class MeshDistance {
   std::unique_ptr<Tree> tree_;
 };
 
-/// The largest distance from any of the points to the mesh, mm; 0 for no points. Parallel.
-double max_distance(std::span<const std::array<float, 3>> points, const TriMesh& mesh);
+/// From each of the points to the mesh, mm. Parallel.
+std::vector<double> distances(std::span<const std::array<float, 3>> points, const TriMesh& mesh);
 
 }  // namespace swarf::mesh

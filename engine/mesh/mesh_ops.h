@@ -26,8 +26,9 @@ void split_creases(TriMesh& mesh, double crease_rad);
 ///
 /// meshoptimizer's quadric edge collapse does the bulk; when what is left is small, OpenMesh's decimater
 /// (quadrics, aspect ratio, normal flipping) goes on. The distance is then measured, independently of both,
-/// from every original vertex to the exact nearest point of the result; a result that fails is redone with a
-/// smaller budget, and if none passes the mesh is returned unchanged. `reached_error` (may be null) receives
+/// from every original vertex to the exact nearest point of the result; where it is too much the result is
+/// redone, around those vertices with a smaller budget and at last without any, and if no result passes the
+/// mesh is returned unchanged. `reached_error` (may be null) receives
 /// the measured distance, mm. Both methods keep a subset of the original vertices, so colours, deviations and
 /// normals are carried unchanged; of vertices that coincide in position the first one's are kept. A closed
 /// mesh stays closed, and becomes manifold: where sheets touch after their collapses, each has vertices of
