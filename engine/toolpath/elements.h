@@ -11,12 +11,12 @@
 
 #include <array>
 #include <cstdint>
-#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "base/index_iterator.h"
 #include "toolpath/element.h"
 
 namespace swarf::toolpath {
@@ -24,8 +24,6 @@ namespace swarf::toolpath {
 /// Copies share what they hold until one of them is added to.
 class Elements {
  public:
-  class Iterator;
-
   Elements() = default;
   explicit Elements(const std::vector<Element>& elements);
 
@@ -46,8 +44,8 @@ class Elements {
   Element operator[](size_t i) const;
   Element front() const { return (*this)[0]; }
   Element back() const { return (*this)[size() - 1]; }
-  Iterator begin() const;
-  Iterator end() const;
+  auto begin() const { return IndexIterator(*this, 0); }
+  auto end() const { return IndexIterator(*this, size()); }
   /// Null: this element is none. Valid until something is added.
   const SurfacePass* pass(size_t i) const;
 
@@ -138,39 +136,5 @@ class Elements {
 
   std::shared_ptr<Data> data_ = std::make_shared<Data>();
 };
-
-/// Gives the elements out one by one, made anew.
-class Elements::Iterator {
- public:
-  using iterator_category = std::input_iterator_tag;
-  using value_type = Element;
-  using difference_type = std::ptrdiff_t;
-  using pointer = void;
-  using reference = Element;
-
-  Iterator(const Elements& elements, size_t at) : elements_(&elements), at_(at) {}
-  Element operator*() const { return (*elements_)[at_]; }
-  Iterator& operator++() {
-    ++at_;
-    return *this;
-  }
-  Iterator operator++(int) {
-    const Iterator before = *this;
-    ++at_;
-    return before;
-  }
-  bool operator==(const Iterator& other) const { return at_ == other.at_; }
-
- private:
-  const Elements* elements_;
-  size_t at_;
-};
-
-inline Elements::Iterator Elements::begin() const {
-  return {*this, 0};
-}
-inline Elements::Iterator Elements::end() const {
-  return {*this, size()};
-}
 
 }  // namespace swarf::toolpath

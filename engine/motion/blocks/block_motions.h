@@ -2,12 +2,12 @@
 #pragma once
 
 #include <cstddef>
-#include <iterator>
 #include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "base/index_iterator.h"
 #include "motion/blocks/block_motion.h"
 
 namespace swarf::motion {
@@ -15,8 +15,6 @@ namespace swarf::motion {
 /// A row of blocks, of a path or a part of it. Machines must outlive it; copies share what they hold.
 class BlockMotions {
  public:
-  class Iterator;
-
   /// None.
   BlockMotions() = default;
   /// Of a path of blocks. Axis values that the blocks do not give follow by continuity: the branch nearest to
@@ -31,8 +29,8 @@ class BlockMotions {
   BlockMotion operator[](size_t i) const;
   BlockMotion front() const { return (*this)[0]; }
   BlockMotion back() const { return (*this)[count_ - 1]; }
-  Iterator begin() const;
-  Iterator end() const;
+  auto begin() const { return IndexIterator(*this, 0); }
+  auto end() const { return IndexIterator(*this, count_); }
   BlockMotions subspan(size_t first, size_t count) const;
 
   toolpath::BlockMove block(size_t i) const { return elements_.block(first_ + i); }
@@ -54,39 +52,6 @@ class BlockMotions {
 
 inline BlockMotions block_motions(const toolpath::ToolPath& path, const kinematics::MachineModel& machine) {
   return {path.elements, std::span(&machine, 1)};
-}
-
-class BlockMotions::Iterator {
- public:
-  using iterator_category = std::input_iterator_tag;
-  using value_type = BlockMotion;
-  using difference_type = std::ptrdiff_t;
-  using pointer = void;
-  using reference = BlockMotion;
-
-  Iterator(const BlockMotions& motions, size_t at) : motions_(&motions), at_(at) {}
-  BlockMotion operator*() const { return (*motions_)[at_]; }
-  Iterator& operator++() {
-    ++at_;
-    return *this;
-  }
-  Iterator operator++(int) {
-    const Iterator before = *this;
-    ++at_;
-    return before;
-  }
-  bool operator==(const Iterator& other) const { return at_ == other.at_; }
-
- private:
-  const BlockMotions* motions_;
-  size_t at_;
-};
-
-inline BlockMotions::Iterator BlockMotions::begin() const {
-  return {*this, 0};
-}
-inline BlockMotions::Iterator BlockMotions::end() const {
-  return {*this, count_};
 }
 
 /// Looks motions up, best in their order: the last one is kept.
