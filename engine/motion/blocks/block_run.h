@@ -46,7 +46,7 @@ double duration(const std::vector<PlacedPhase>& phases);
 /// comes: a control looks no farther either. What lies more than `seen_ahead` cells behind a place may not
 /// change the speed there, which only matters for runs with more than `planned` cells.
 struct LookAheadReach {
-  size_t planned = size_t{1} << 17U, seen_ahead = size_t{1} << 15U;
+  size_t planned = size_t{1} << 15U, seen_ahead = size_t{1} << 13U;
 };
 
 /// Plans a run stretch by stretch, from any place on, in bounded memory.
