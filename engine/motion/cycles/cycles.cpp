@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/check.h"
+#include "base/parallel.h"
 #include "motion/blocks/block_motions.h"
 
 namespace swarf::motion {
@@ -58,25 +59,37 @@ void Cycles::recall(CycleRecall before) {
   recalled_ = true;
 }
 
+/// The next window is made while the last one is visited.
 void Cycles::walk(const std::function<void(std::span<const Cycle>)>& visit, Progress& progress) {
   SWARF_CHECK(size_ == 0, "the first pass is made once");
   progress.begin("interpolate", static_cast<double>(elements_.size()), "elements");
   CycleStream stream(source());
   places_.push_back(stream.place());
-  std::vector<Cycle> window;
-  while (!progress.stop_requested() && stream.next(window)) {
-    visit(window);
-    for (const Cycle& cycle : window) keep(cycle);
-    check(window);
-    size_ += window.size();
-    if (stream.place().cycle >= places_.back().cycle + kPlaceApart) {
-      places_.push_back(stream.place());
-      check(window);
-    }
+  kept_.reserve(limits_.kept);  // pages that are not written cost nothing; growing would move all of them
+  std::vector<Cycle> window, ahead;
+  bool more = !progress.stop_requested() && stream.next(window);
+  while (more) {
+    const CyclePlace place = stream.place();
+    parallel_chunks(2, 1, [&](size_t i, size_t) {
+      if (i == 0) take(window, place, visit);
+      if (i == 1) more = !progress.stop_requested() && stream.next(ahead);
+    });
     progress.advance(static_cast<double>(window.back().sample.element));
+    window.swap(ahead);
   }
   stopped_ = progress.stop_requested();
   progress.end();
+}
+
+void Cycles::take(std::span<const Cycle> window, const CyclePlace& place,
+                  const std::function<void(std::span<const Cycle>)>& visit) {
+  visit(window);
+  for (const Cycle& cycle : window) keep(cycle);
+  check(window);
+  size_ += window.size();
+  if (place.cycle < places_.back().cycle + kPlaceApart) return;
+  places_.push_back(place);
+  check(window);
 }
 
 /// Of the last place, whose first cycles may lie in this window.

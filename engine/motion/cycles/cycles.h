@@ -41,7 +41,8 @@ class Cycles {
   Cycles(Cycles&&) = default;
   Cycles& operator=(Cycles&&) = default;
 
-  /// The first pass: visits all cycles in their order, until the user stops it. Not to be called twice.
+  /// The first pass: visits all cycles in their order, until the user stops it. Not to be called twice. The
+  /// visitor may be on another thread, one window at a time.
   void walk(const std::function<void(std::span<const Cycle>)>& visit, Progress& progress);
   /// Instead of walk(): what an earlier first pass over the same path has left. Nothing is kept then, and
   /// spread() is not to be asked.
@@ -81,6 +82,8 @@ class Cycles {
   static void add_to(Hash& hash, const Cycle& cycle);
 
  private:
+  void take(std::span<const Cycle> window, const CyclePlace& place,
+            const std::function<void(std::span<const Cycle>)>& visit);
   void keep(const Cycle& cycle);
   void check(std::span<const Cycle> window);
 
