@@ -47,7 +47,8 @@ struct SurfaceCounts {
 constexpr double kCoarser = 4.0;
 constexpr size_t kPieces = 32;  // looks at the number of leaves
 
-SurfaceCounts preview(const Job& job, const motion::Cycles& cycles) {
+/// `meshed`: the triangles are asked for.
+SurfaceCounts preview(const Job& job, const motion::Cycles& cycles, bool meshed) {
   const StockSettings& settings = job.scene.stock;
   // Three voxels to the thinnest cutter's radius still show every groove.
   double thinnest = std::numeric_limits<double>::infinity();
@@ -65,7 +66,7 @@ SurfaceCounts preview(const Job& job, const motion::Cycles& cycles) {
     most = std::max(most, static_cast<double>(stock.leaves()));
   }
   const double finer = std::pow(voxel / settings.voxel_mm, 2);
-  return {most * finer, static_cast<double>(stock.mesh().triangles.size()) * finer};
+  return {most * finer, meshed ? static_cast<double>(stock.mesh().triangles.size()) * finer : 0.0};
 }
 
 /// Leaves of a stock that is cut everywhere; needs no path.
@@ -149,8 +150,9 @@ double voxel_that_fits(const Job& job, const MemoryPrediction& prediction) {
 MemoryPrediction predict_memory(const Job& job, const MeasuredPath& path, const Outputs& outputs,
                                 int stocks) {
   const StockSettings& settings = job.scene.stock;
-  const SurfaceCounts counts =
-      fits_anyhow(job, path, outputs) ? all_leaves(settings) : preview(job, *path.cycles);
+  const SurfaceCounts counts = fits_anyhow(job, path, outputs)
+                                   ? all_leaves(settings)
+                                   : preview(job, *path.cycles, outputs.page || outputs.pictures);
   const double stock =
       static_cast<double>(stock::Stock::memory_for(settings.box_W, settings.voxel_mm, counts.leaves_most));
   const auto ticks = static_cast<double>(path.cycles->size());
