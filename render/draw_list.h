@@ -31,6 +31,7 @@ struct DrawLine {
   std::vector<Vec3> points;  ///< polyline in the drawing's frame
   Rgb colour{1.0F, 0.2F, 0.1F};
   float width_px = 1.5F;
+  std::string name = "lines";  ///< what it shows; lines of one name and colour are one object in files
 };
 
 /// Perspective camera; `up` need not be orthogonal to the view.

@@ -81,14 +81,16 @@ std::vector<DrawLine> axis_fan(const FanInput& input, const FanStyle& style) {
   for (const Pass& pass : chosen_passes(input, style.passes)) {
     const std::vector<double> length = arc_lengths(input, pass);
     const size_t path_points = 2 + static_cast<size_t>(length.back() / style.path_step_mm);
-    DrawLine path{{}, style.path_colour, style.path_width_px};
+    DrawLine path{{}, style.path_colour, style.path_width_px, "paths"};
     for (const size_t i : equal_steps(length, path_points))
       path.points.push_back(input.points[pass.begin + i]);
     lines.push_back(std::move(path));
     for (const size_t i : equal_steps(length, static_cast<size_t>(style.axes_per_pass))) {
       const Vec3& foot = input.points[pass.begin + i];
-      lines.push_back(
-          {{foot, foot + axis_length * input.axes[pass.begin + i]}, style.axis_colour, style.axis_width_px});
+      lines.push_back({{foot, foot + axis_length * input.axes[pass.begin + i]},
+                       style.axis_colour,
+                       style.axis_width_px,
+                       "axes"});
     }
   }
   return lines;

@@ -58,7 +58,12 @@ class Writer {
   void add_channel(int node, const std::string& path, int times, int values,
                    const char* interpolation = "LINEAR");
   int key_times(const GltfNode& node, const std::vector<size_t>& keys);
+  struct LineGroup {
+    Floats3 points;
+    std::vector<uint32_t> segments;
+  };
   void add_lines();
+  void add_line_group(const std::string& name, const Rgb& colour, const LineGroup& group);
   int unlit_material(const Rgb& colour);
 
   const GltfScene& scene_;
@@ -241,12 +246,13 @@ int Writer::unlit_material(const Rgb& colour) {
   return static_cast<int>(model_.materials.size()) - 1;
 }
 
-/// One primitive a colour: a fan has hundreds of lines, and each primitive costs a viewer a draw call.
+/// One node for each name and colour: a fan has hundreds of lines, and each primitive costs a viewer a draw
+/// call.
 void Writer::add_lines() {
-  std::map<Rgb, std::pair<Floats3, std::vector<uint32_t>>> groups;
+  std::map<std::pair<std::string, Rgb>, LineGroup> groups;
   for (const DrawLine& line : scene_.lines) {
     if (line.points.size() < 2) continue;
-    auto& [points, segments] = groups[line.colour];
+    auto& [points, segments] = groups[{line.name, line.colour}];
     for (size_t i = 0; i < line.points.size(); ++i) {
       const auto index = static_cast<uint32_t>(points.size());
       if (i > 0) segments.insert(segments.end(), {index - 1, index});
@@ -254,19 +260,20 @@ void Writer::add_lines() {
       points.push_back({p.x(), p.y(), p.z()});
     }
   }
-  if (groups.empty()) return;
+  for (const auto& [key, group] : groups) add_line_group(key.first, key.second, group);
+}
+
+void Writer::add_line_group(const std::string& name, const Rgb& colour, const LineGroup& group) {
+  tinygltf::Primitive primitive;
+  primitive.mode = TINYGLTF_MODE_LINE;
+  primitive.attributes["POSITION"] = buffer_.floats<3>(group.points, true, TINYGLTF_TARGET_ARRAY_BUFFER);
+  primitive.indices = buffer_.indices(group.segments, group.points.size());
+  primitive.material = unlit_material(colour);
   tinygltf::Mesh mesh;
-  mesh.name = "lines";
-  for (const auto& [colour, group] : groups) {
-    tinygltf::Primitive primitive;
-    primitive.mode = TINYGLTF_MODE_LINE;
-    primitive.attributes["POSITION"] = buffer_.floats<3>(group.first, true, TINYGLTF_TARGET_ARRAY_BUFFER);
-    primitive.indices = buffer_.indices(group.second, group.first.size());
-    primitive.material = unlit_material(colour);
-    mesh.primitives.push_back(std::move(primitive));
-  }
+  mesh.name = name;
+  mesh.primitives.push_back(std::move(primitive));
   tinygltf::Node node;
-  node.name = "lines";
+  node.name = name;
   node.mesh = static_cast<int>(model_.meshes.size());
   model_.meshes.push_back(std::move(mesh));
   model_.nodes.front().children.push_back(static_cast<int>(model_.nodes.size()));

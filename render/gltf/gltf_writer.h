@@ -32,9 +32,9 @@ struct GltfScene {
 
 /// Writes one .glb. Scene units are mm with Z up; a root node turns them into glTF's metres with Y up.
 /// Normals and colours are written where the mesh has them, colours as normalised 8-bit linear COLOR_0 (glTF
-/// demands linear), `deviation_um` as the float attribute _DEVIATION_UM. Lines of one colour share one unlit
-/// primitive of separate segments. Written to a temporary name and renamed; throws InputError when the path
-/// cannot be written.
+/// demands linear), `deviation_um` as the float attribute _DEVIATION_UM. Lines of one name and colour are
+/// one unlit node of separate segments. Written to a temporary name and renamed; throws InputError when the
+/// path cannot be written.
 void write_glb(const std::filesystem::path& path, const GltfScene& scene);
 
 }  // namespace swarf::render

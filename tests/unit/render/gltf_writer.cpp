@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <filesystem>
 #include <limits>
+#include <string>
+#include <tuple>
 
 #include "base/diagnostics.h"
 #include "base/rng.h"
@@ -40,7 +42,7 @@ const float* floats(const tinygltf::Model& model, int accessor) {
   return reinterpret_cast<const float*>(model.buffers[0].data.data() + view.byteOffset);
 }
 
-/// A table that slides and turns, a part on it with deviations, a holder, and three lines of two colours.
+/// A table that slides and turns, a part on it with deviations, a holder, and three lines of two names.
 struct Sample {
   TriMesh table = cylinder_mesh(60, 10, 1), part = cylinder_mesh(30, 20, 1), holder = holder_mesh(40, 50);
   GltfScene scene;
@@ -65,7 +67,7 @@ struct Sample {
     scene.nodes.push_back({"holder", &holder, {{0.3F, 0.3F, 0.3F}, 1.0F, 0.4F}, -1, {}, {}});
     scene.lines = {{{{0, 0, 0}, {10, 0, 0}, {10, 10, 5}}},
                    {{{0, 0, 1}, {5, 5, 5}}},
-                   {{{0, 0, 0}, {0, 0, 9}}, {0, 0, 1}}};
+                   {{{0, 0, 0}, {0, 0, 9}}, {0, 0, 1}, 1.5F, "axes"}};
     scene.extras = {{"program", "dome.nc"}};
   }
 };
@@ -100,12 +102,12 @@ TEST(GltfWriter, TreeUnitsAndMetadataComeBack) {
   const auto path = scratch("tree.glb");
   write_glb(path, sample.scene);
   const tinygltf::Model model = read(path);
-  ASSERT_EQ(model.nodes.size(), 5U);
+  ASSERT_EQ(model.nodes.size(), 6U);
   const tinygltf::Node& root = model.nodes[0];
   EXPECT_EQ(root.scale, std::vector<double>(3, 1e-3));
   const Eigen::Quaterniond q(root.rotation[3], root.rotation[0], root.rotation[1], root.rotation[2]);
   EXPECT_LT((q * Vec3::UnitZ() - Vec3::UnitY()).norm(), 1e-12) << "Z up becomes Y up";
-  EXPECT_EQ(root.children, (std::vector<int>{1, 3, 4}));
+  EXPECT_EQ(root.children, (std::vector<int>{1, 3, 4, 5}));
   EXPECT_EQ(model.nodes[1].children, std::vector<int>{2});
   EXPECT_EQ(model.nodes[2].name, "part");
   EXPECT_EQ(model.nodes[2].translation, (std::vector<double>{0, 0, 10}));
@@ -134,7 +136,12 @@ TEST(GltfWriter, VertexDataComesBack) {
   EXPECT_EQ(colour.componentType, TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE);
   EXPECT_EQ(model.accessors[part.indices].componentType, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT);
   EXPECT_EQ(model.accessors[part.attributes.at("POSITION")].maxValues[2], 20.0);
-  EXPECT_EQ(model.meshes[model.nodes[4].mesh].primitives.size(), 2U) << "one primitive for each line colour";
+  for (const auto& [node, name, segments] : {std::tuple{4, "axes", 1}, {5, "lines", 3}}) {
+    const tinygltf::Mesh& lines = model.meshes[model.nodes[node].mesh];
+    EXPECT_EQ(model.nodes[node].name, name) << "lines are told apart by what they show";
+    ASSERT_EQ(lines.primitives.size(), 1U) << name;
+    EXPECT_EQ(model.accessors[lines.primitives[0].indices].count, 2U * segments) << name;
+  }
 }
 
 TEST(GltfWriter, AnimationHasTheKeysAndTurnsTheShortWay) {
