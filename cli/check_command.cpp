@@ -71,6 +71,8 @@ Checked check_scene(const std::string& file) {
   checked.text = checked.findings.empty()
                      ? "scene is right: " + what + "; within travel, reach and speed of the axes"
                      : "scene reads well: " + what + "; the machine cannot do it";
+  checked.text += fmt::format("\n  driven    {:.3f} s with the scene's [interpolator]",
+                              checked.numbers.at("time_s").get<double>());
   return checked;
 }
 
@@ -194,8 +196,8 @@ int check(const CheckOptions& options, std::vector<reports::FileVerdict>& found)
 const char* const kCheckFooter =
     R"(What is printed for an NC program: the dialect and why, lines and moves, the way of the tip in feed and rapid moves,
 times at the programmed feed, and with --machine the time and the travel of each axis as `swarf run` has them, to the
-same cycle (look-ahead with the interpolator's defaults; half a minute and a gigabyte for a million
-moves, not for more than two million; --no-drive leaves it out);
+same cycle (look-ahead with the interpolator's defaults, which are printed; to have a scene's own settings, check
+the scene; half a minute and a quarter of a gigabyte for a million moves; --no-drive leaves it out);
 tools that cut, where it starts, extents of cut and axes, words without effect.
 Every fault is told with file:line:column and what to do; the program is read up to its first one.
 

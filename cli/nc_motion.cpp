@@ -30,6 +30,14 @@ const char* unit_of(const kinematics::Axis& axis) {
   return axis.kind == kinematics::AxisKind::kRotary ? "deg" : "mm";
 }
 
+/// Keys as in [interpolator] of a scene (scenes/README.md).
+nlohmann::ordered_json interpolator_json(const motion::MotionOptions& taken) {
+  return {{"period_ms", taken.period_s * 1e3},
+          {"path_acceleration_max_mm_s2", taken.path_acceleration_max},
+          {"path_jerk_max_mm_s3", taken.path_jerk_max},
+          {"corner_tolerance_um", um_from_mm(taken.corner_tolerance_mm)}};
+}
+
 }  // namespace
 
 bool NcMotionSink::move(const program::NcMove& move) {
@@ -63,6 +71,12 @@ std::string motion_text(const motion::MotionStatistics& motion, const kinematics
   std::string text = fmt::format(
       "\n  driven    {:.3f} s with look-ahead, {} cycles: feed {:.3f} s, rapid {:.3f} s, dwell {:.3f} s",
       motion.time_s, motion.ticks, time.feed_s, time.rapid_s, time.dwell_s);
+  const motion::MotionOptions taken;
+  text += fmt::format(
+      "\n            the interpolator's defaults: cycles of {:g} ms, along the path {:g} mm/s^2 and {:g} "
+      "mm/s^3, "
+      "corners within {:g} mm where the program gives no tolerance",
+      taken.period_s * 1e3, taken.path_acceleration_max, taken.path_jerk_max, taken.corner_tolerance_mm);
   for (size_t i = 0; i < motion.axes.size(); ++i) {
     const kinematics::Axis& axis = machine.axes[i];
     const motion::AxisStatistics& of = motion.axes[i];
@@ -80,6 +94,7 @@ nlohmann::ordered_json motion_json(const motion::MotionStatistics& motion,
                               {"feed_time_s", motion.cycle.feed_s},
                               {"rapid_time_s", motion.cycle.rapid_s},
                               {"dwell_time_s", motion.cycle.dwell_s},
+                              {"interpolator", interpolator_json({})},
                               {"axes", nlohmann::ordered_json::array()}};
   for (size_t i = 0; i < motion.axes.size(); ++i) {
     const kinematics::Axis& axis = machine.axes[i];

@@ -14,7 +14,7 @@
 namespace swarf::cli {
 
 /// Hands every move on and keeps it for the motion, as long as there are no more than kMovesMost: each takes
-/// about a kilobyte.
+/// about 60 bytes, five axes 100; look-ahead and cycles take what they take for a short program.
 class NcMotionSink final : public program::NcSink {
  public:
   /// References must outlive it.
@@ -22,7 +22,7 @@ class NcMotionSink final : public program::NcSink {
   bool move(const program::NcMove& move) override;
   void note(const program::NcNote& note) override { next_.note(note); }
 
-  static constexpr long kMovesMost = 2'000'000;
+  static constexpr long kMovesMost = 20'000'000;
   /// They are not kept then, and not driven.
   bool too_many() const { return moves_ > kMovesMost; }
   /// Drives the machine along the program with the interpolator's defaults (scenes/README.md:
@@ -37,10 +37,12 @@ class NcMotionSink final : public program::NcSink {
   long moves_ = 0;
 };
 
-/// For people: one line for the time, one for each axis. Lines begin with a line break.
+/// For people: one line for the time, one for what it rests on, one for each axis. Lines begin with a line
+/// break.
 std::string motion_text(const motion::MotionStatistics& motion, const kinematics::MachineModel& machine);
 
-/// time_s, feed_time_s, rapid_time_s, dwell_time_s, and by axis min, max, travel, speed_max with their units.
+/// time_s, feed_time_s, rapid_time_s, dwell_time_s, the interpolator's settings, and by axis min, max,
+/// travel, speed_max with their units.
 nlohmann::ordered_json motion_json(const motion::MotionStatistics& motion,
                                    const kinematics::MachineModel& machine);
 

@@ -84,6 +84,17 @@ TEST_P(CheckTime, IsThatOfTheRun) {
     EXPECT_EQ(driven.at("axes")[i].at("speed_max_" + unit + "_s"), axes[i].at("speed_max"));
   }
   EXPECT_EQ(checked(folder, "scene.toml").at("time_s"), metrics.at("motion").at("time_s"));
+  EXPECT_EQ(driven.at("interpolator").at("period_ms").get<double>(), 1.0) << "what it rests on is said";
+  // A scene's own settings are those of its run.
+  write_text(folder / "slow.toml", read_text(folder / "scene.toml") +
+                                       "[interpolator]\nperiod_ms = 4\npath_acceleration_max_mm_s2 = 500\n");
+  ASSERT_LE(swarf::test::run_command("cd '" + folder.string() + "' && " + std::string(SWARF_PROGRAM) +
+                                     " run slow.toml --no-render -o slow")
+                .exit_code,
+            1);
+  const auto slow = nlohmann::json::parse(read_text(folder / "slow/metrics.json"));
+  EXPECT_GT(slow.at("motion").at("time_s").get<double>(), driven.at("time_s").get<double>());
+  EXPECT_EQ(checked(folder, "slow.toml").at("time_s"), slow.at("motion").at("time_s"));
   // Nothing is told that was not driven.
   EXPECT_TRUE(checked(folder, std::string(program.file) + " --machine small.toml --no-drive --dialect " +
                                   program.dialect)
