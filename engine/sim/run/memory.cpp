@@ -38,14 +38,22 @@ constexpr double kTriangle = 105.0;
 // A tick of a path that is only compared: its sample, axes and sweep, and what vectors that grow hold beside.
 constexpr double kComparedTick = 530.0;
 
-/// Free memory of the machine in MB, as the kernel estimates it; infinity where it does not say.
 /// Counts of a stock while and after it is cut.
 struct SurfaceCounts {
   double leaves_most = 0.0, triangles = 0.0;
 };
 
 constexpr double kCoarser = 4.0;
-constexpr size_t kPieces = 32;  // looks at the number of leaves
+constexpr size_t kPieces = 32;           // looks at the number of leaves
+constexpr size_t kPreviewMost = 20'000;  // sweeps: of more, every n-th shows the same shape
+
+/// The sweeps of the preview: those of a long program overlap, so that not all are needed.
+std::vector<stock::Sweep> thinned(const CutSweeps& sweeps) {
+  std::vector<stock::Sweep> some;
+  const size_t step = sweeps.size() / kPreviewMost + 1;
+  for (size_t n = 0; n < sweeps.size(); n += step) some.push_back(sweeps[n]);
+  return some;
+}
 
 /// `meshed`: the triangles are asked for.
 SurfaceCounts preview(const Job& job, const motion::Cycles& cycles, bool meshed) {
@@ -55,35 +63,20 @@ SurfaceCounts preview(const Job& job, const motion::Cycles& cycles, bool meshed)
   for (const cutter::Cutter& tool : job.scene.tools) thinnest = std::min(thinnest, tool.radius());
   const double voxel = std::max(settings.voxel_mm, std::min(kCoarser * settings.voxel_mm, thinnest / 3.0));
   const CutSweeps sweeps = cut_sweeps(job, cycles, voxel / 8.0);
+  const std::vector<stock::Sweep> some = thinned(sweeps);
   stock::Stock stock(settings.box_W, voxel);
   const std::vector<stock::CutterSolid> solids = tool_solids(job.scene);
   double most = static_cast<double>(stock.leaves());
-  const size_t piece = sweeps.size() / kPieces + 1;
-  for (size_t i = 0; i < sweeps.size(); i += piece) {
-    sweeps.for_each_tool(
-        i, std::min(i + piece, sweeps.size()),
+  const size_t piece = some.size() / kPieces + 1;
+  for (size_t i = 0; i < some.size(); i += piece) {
+    for_each_tool(
+        std::span(some).subspan(i, std::min(piece, some.size() - i)),
+        [&](uint32_t block) { return sweeps.source_of(block).tool; },
         [&](size_t tool, std::span<const stock::Sweep> part) { stock.cut(part, solids[tool]); });
     most = std::max(most, static_cast<double>(stock.leaves()));
   }
   const double finer = std::pow(voxel / settings.voxel_mm, 2);
   return {most * finer, meshed ? static_cast<double>(stock.mesh().triangles.size()) * finer : 0.0};
-}
-
-/// Leaves of a stock that is cut everywhere; needs no path.
-SurfaceCounts all_leaves(const StockSettings& settings) {
-  constexpr double kLeaf = 8.0;  // voxels
-  return {((settings.box_W.size() / (kLeaf * settings.voxel_mm)).array() + 1.0).prod(), 0.0};
-}
-
-/// A long program is not cut twice to learn what does not matter: a stock that fits whatever is cut.
-bool fits_anyhow(const Job& job, const MeasuredPath& path, const Outputs& outputs) {
-  constexpr size_t kLong = 50'000;  // elements: the preview would take seconds
-  constexpr double kLittle = 0.2;   // of the limit
-  if (path.path.elements.size() < kLong || outputs.page || outputs.pictures) return false;
-  const StockSettings& settings = job.scene.stock;
-  const size_t most =
-      stock::Stock::memory_for(settings.box_W, settings.voxel_mm, all_leaves(settings).leaves_most);
-  return static_cast<double>(most) / kMegabyte < kLittle * memory_limit_mb(job.scene);
 }
 
 /// Rays of the design. Surfaces: counted eight times as coarse, where the chord may stray 64 times as far.
@@ -150,9 +143,7 @@ double voxel_that_fits(const Job& job, const MemoryPrediction& prediction) {
 MemoryPrediction predict_memory(const Job& job, const MeasuredPath& path, const Outputs& outputs,
                                 int stocks) {
   const StockSettings& settings = job.scene.stock;
-  const SurfaceCounts counts = fits_anyhow(job, path, outputs)
-                                   ? all_leaves(settings)
-                                   : preview(job, *path.cycles, outputs.page || outputs.pictures);
+  const SurfaceCounts counts = preview(job, *path.cycles, outputs.page || outputs.pictures);
   const double stock =
       static_cast<double>(stock::Stock::memory_for(settings.box_W, settings.voxel_mm, counts.leaves_most));
   const auto ticks = static_cast<double>(path.cycles->size());

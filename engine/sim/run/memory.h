@@ -24,7 +24,7 @@ struct Outputs {
 /// Cuts the path into a stock of voxels up to four times as large, with sweeps merged as coarsely, and counts
 /// leaves and triangles: both grow with the square of the voxel sizes' ratio. The rest follows from the sizes
 /// of what the run holds at the same time; memory.cpp states each constant with what it stands for.
-/// Long programs whose stock fits even if it were cut everywhere are counted so.
+/// Of long programs every n-th sweep is cut.
 /// `stocks`: copies of the level set held at once (2 with --check).
 MemoryPrediction predict_memory(const Job& job, const MeasuredPath& path, const Outputs& outputs, int stocks);
 
