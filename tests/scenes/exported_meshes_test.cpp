@@ -27,6 +27,24 @@ TEST(ExportedMeshes, CanBeCompared) {
   }
 }
 
+/// The page of a small part is light, and the error of the part in it, measured by its own decimation and
+/// said in the file, stays within its 2 um.
+TEST(ExportedMeshes, ThePageOfASmallPartIsLight) {
+  const auto folder = swarf::test::fresh_folder("light_page");
+  const auto run = run_swarf("run " SWARF_SOURCE_DIR "/scenes/nc_pocket/scene.toml --no-render --report -o " +
+                             (folder / "run").string());
+  ASSERT_LE(run.exit_code, 1) << run.output;
+  EXPECT_LT(std::filesystem::file_size(folder / "run/report.html"), 8'000'000U);
+  const std::string part = swarf::test::read_text(folder / "run/part.glb");
+  const std::string key = "\"decimation_error_um\":\"";
+  const size_t at = part.find(key);
+  ASSERT_NE(at, std::string::npos);
+  const double error_um = std::stod(part.substr(at + key.size(), 16));
+  EXPECT_GT(error_um, 0.0) << "the part is not as it was meshed";
+  EXPECT_LE(error_um, 2.0);
+  std::filesystem::remove_all(folder);
+}
+
 }  // namespace
 
 }  // namespace exported_meshes_test
