@@ -8,6 +8,7 @@
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -22,13 +23,30 @@ namespace fs = std::filesystem;
 using MotionJson = nlohmann::json;
 using motion::CyclePlace;
 
-void add_bytes(Hash& hash, const std::string& bytes) {
+/// By words of eight bytes; the last one is filled up with zeros.
+void add_words(Hash& hash, std::string_view bytes) {
   for (size_t i = 0; i < bytes.size(); i += sizeof(uint64_t)) {
     uint64_t word = 0;
     std::memcpy(&word, bytes.data() + i, std::min(sizeof word, bytes.size() - i));
     hash.add(word);
   }
+}
+
+void add_bytes(Hash& hash, const std::string& bytes) {
+  add_words(hash, bytes);
   hash.add(uint64_t{bytes.size()});
+}
+
+/// As add_bytes() of all that stands in the file, which may be long.
+void add_file(Hash& hash, const fs::path& path) {
+  static_assert(kFilePiece % sizeof(uint64_t) == 0, "words lie in one piece");
+  uint64_t size = 0;
+  read_in_pieces(path.string(), {"file-unreadable", "a kept input cannot be read"},
+                 [&](std::string_view piece) {
+                   add_words(hash, piece);
+                   size += piece.size();
+                 });
+  hash.add(size);
 }
 
 std::string bytes_of(const fs::path& path) {
@@ -189,7 +207,7 @@ uint64_t inputs_hash(const std::string& folder) {
   std::sort(files.begin(), files.end());
   for (const fs::path& file : files) {
     add_bytes(hash, file.lexically_relative(input).generic_string());
-    add_bytes(hash, bytes_of(file));
+    add_file(hash, file);
   }
   const MotionJson manifest = MotionJson::parse(bytes_of(fs::path(folder) / "run.json"), nullptr, false);
   add_bytes(hash,

@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -72,19 +71,24 @@ void refuse_special_file(const std::string& path) {
                    "name a file; what a pipe brings must be saved first");
 }
 
-std::string read_all(const std::string& path, const FileFault& fault) {
+void read_in_pieces(const std::string& path, const FileFault& fault,
+                    const std::function<void(std::string_view)>& visit) {
   refuse_special_file(path);
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) refuse_file(path, fault, "this is a folder");
   std::ifstream in(path, std::ios::binary);
   if (!in) refuse_file(path, fault, std::strerror(errno));
-  std::string bytes;
-  std::array<char, 1 << 16> block;
+  std::string piece(kFilePiece, '\0');
   while (in) {
-    in.read(block.data(), block.size());
-    bytes.append(block.data(), static_cast<size_t>(in.gcount()));
+    in.read(piece.data(), static_cast<std::streamsize>(piece.size()));
+    if (in.gcount() > 0) visit(std::string_view(piece).substr(0, static_cast<size_t>(in.gcount())));
   }
   if (in.bad()) refuse_file(path, fault, std::strerror(errno));
+}
+
+std::string read_all(const std::string& path, const FileFault& fault) {
+  std::string bytes;
+  read_in_pieces(path, fault, [&](std::string_view piece) { bytes.append(piece); });
   return bytes;
 }
 

@@ -1,7 +1,9 @@
 // Files as wholes: read at once, replaced at once or not at all.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -21,6 +23,12 @@ struct FileFault {
 
 /// The whole content. Throws InputError: "no-regular-file", or the fault with the system's reason.
 std::string read_all(const std::string& path, const FileFault& fault);
+
+/// The same in pieces of kFilePiece bytes, of which the last may be shorter, for files that are not held
+/// whole.
+void read_in_pieces(const std::string& path, const FileFault& fault,
+                    const std::function<void(std::string_view)>& visit);
+inline constexpr size_t kFilePiece = size_t{1} << 18U;
 
 /// Of the bytes of a file: their number, then words of eight, the last filled with zeros.
 uint64_t checksum(std::string_view bytes);

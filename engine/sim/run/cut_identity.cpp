@@ -30,8 +30,9 @@ void add(Hash& hash, const Vec3& v) {
 /// Name and content, so that a moved file is the same file.
 std::string file_text(const std::string& path) {
   Hash hash;
-  for (const char c : read_all(path, {"file-unreadable", "a file of the job cannot be read"}))
-    hash.add(static_cast<uint64_t>(static_cast<unsigned char>(c)));
+  read_in_pieces(path, {"file-unreadable", "a file of the job cannot be read"}, [&](std::string_view piece) {
+    for (const char c : piece) hash.add(uint64_t{static_cast<unsigned char>(c)});
+  });
   return fmt::format("{} {}", std::filesystem::path(path).filename().string(), hash.text());
 }
 
