@@ -122,6 +122,9 @@ void add_export(CLI::App& app, int& exit_code) {
   command->add_option("--error-um", options->error_um, "largest error of the decimation for --gltf")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
+  command->footer(R"(Examples:
+  swarf export out/dome --stl part.stl
+  swarf export out/dome --trajectory cycles.csv --from 12.5 --to 13)");
   command->callback([options, &exit_code] { exit_code = export_run(*options); });
 }
 

@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <ios>
 #include <new>
+#include <string>
+#include <vector>
 
 #include "base/check.h"
 #include "base/diagnostics.h"
@@ -17,6 +20,8 @@
 namespace {
 
 const char* const kFooter = R"(Examples:
+  swarf run part.nc --tool 6                                 any program, at once: the rest is assumed and said
+  swarf init part.nc --tool 6 -o job                         the scene of that, to be changed: job/scene.toml
   swarf run scenes/lin_koren_dome/scene.toml -o out/dome     simulate, measure, render, report
   swarf run scene.toml --set stock.voxel_mm=0.1 --no-render  one key changed, numbers only
   swarf run scene.toml --save-stock-after 13,12.5s           stocks after program line 13 and after 12.5 s
@@ -30,8 +35,23 @@ const char* const kFooter = R"(Examples:
 Exit codes: 0 no check of the verdict fails or is open; 1 findings (gouge, scallop, travel, ...); 2 the input is wrong;
 3 internal error; 130 stopped with Ctrl-C (what is finished is kept).)";
 
+/// "runn" is no command: the nearest one is named. Throws InputError.
+void check_command_word(const CLI::App& app, int argc, char** argv) {
+  const std::string word = argc > 1 ? argv[1] : "-";
+  if (word.starts_with('-')) return;
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  if (std::find(names.begin(), names.end(), word) != names.end()) return;
+  const std::string near = swarf::nearest_name(word, names);
+  throw swarf::InputError("unknown-command", {"swarf " + word}, "there is no such command",
+                          near.empty()
+                              ? fmt::format("one of {}; 'swarf --help' explains them", fmt::join(names, ", "))
+                              : fmt::format("did you mean 'swarf {}'?", near));
+}
+
 int guarded(CLI::App& app, int argc, char** argv, const int& exit_code) {
   try {
+    check_command_word(app, argc, argv);
     app.parse(argc, argv);
     return exit_code;
   } catch (const CLI::ParseError& error) {
@@ -59,8 +79,8 @@ int guarded(CLI::App& app, int argc, char** argv, const int& exit_code) {
 
 int main(int argc, char** argv) {
   CLI::App app{
-      "Swarf: headless, visual 5-axis NC simulator. A surface program goes in; a measured, rendered report "
-      "comes out."};
+      "Swarf: headless, visual 5-axis NC simulator. A program goes in; a measured, rendered report comes "
+      "out."};
   app.set_version_flag("--version", swarf::cli::version_text());
   app.fallthrough();  // -q and the like may stand behind the command
   swarf::cli::Manner manner;
@@ -73,6 +93,9 @@ int main(int argc, char** argv) {
   app.footer(kFooter);
   int exit_code = swarf::cli::kPass;
   swarf::cli::add_run(app, exit_code);
+  swarf::cli::add_init(app, exit_code);
+  swarf::cli::add_machines(app, exit_code);
+  swarf::cli::add_show(app, exit_code);
   swarf::cli::add_replay(app, exit_code);
   swarf::cli::add_check(app, exit_code);
   swarf::cli::add_plan(app, exit_code);

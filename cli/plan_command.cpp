@@ -100,6 +100,8 @@ void add_plan(CLI::App& app, int& exit_code) {
       ->type_name("KEY=VALUE")
       ->expected(1)
       ->take_all();
+  command->footer(R"(Example:
+  swarf plan scenes/lin_koren_dome/scene.toml -o dome.cl --set toolpath.planner=lin_koren)");
   command->callback([options, &exit_code] { exit_code = plan(*options); });
 }
 

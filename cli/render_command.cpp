@@ -94,6 +94,9 @@ void add_render(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(1, 4096));
   command->add_option("--threads", options->threads, "threads to use (default: all cores)")
       ->check(CLI::Range(1, 4096));
+  command->footer(R"(Examples:
+  swarf render out/dome --still part.png --kind part --camera left
+  swarf render out/dome --movie cut.mp4 --seconds 20 --from-line 40 --to-line 80)");
   command->callback([options, &exit_code] { exit_code = render(*options); });
 }
 

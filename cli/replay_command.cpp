@@ -146,6 +146,7 @@ void add_replay(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(1, 4096));
   command->add_flag("--json", options->json, "print JSON instead of the table");
   command->footer(
+      "Example:\n  swarf replay out/dome/run.record --scene scenes/lin_koren_dome/scene.toml\n\n"
       "Exit codes: 0 the stocks are equal after every block; 1 they differ; 2 the input is wrong.");
   command->callback([options, &exit_code] { exit_code = replay(*options); });
 }

@@ -11,6 +11,7 @@
 
 #include "base/parallel.h"
 #include "cli/commands.h"
+#include "cli/job_flags.h"
 #include "cli/pipeline_files.h"
 #include "cli/shell_text.h"
 #include "cli/terminal.h"
@@ -25,6 +26,7 @@ namespace {
 
 struct RunOptions {
   std::string scene, output;
+  JobWords job;
   std::vector<std::string> overrides;
   std::string from, save_after, trajectory;
   int threads = 0;
@@ -58,6 +60,22 @@ void print_findings(const std::vector<sim::Finding>& findings) {
   }
 }
 
+/// Before anything else, so that a long run of the wrong thing can be stopped. `aside`: stdout holds JSON.
+void print_assumptions(const sim::Assumptions& assumptions, bool aside) {
+  if (assumptions.empty()) return;
+  FILE* const out = aside ? stderr : stdout;
+  size_t width = 0;
+  for (const sim::Assumption& one : assumptions) width = std::max(width, one.what.size());
+  fmt::print(out, "assumed, for neither the program nor the scene says it:\n");
+  for (const sim::Assumption& one : assumptions) {
+    fmt::print(out, "  {:<{}}  {}\n", one.what, width, one.value);
+    if (!one.reason.empty()) fmt::print(out, "  {:<{}}    {}\n", "", width, one.reason);
+    fmt::print(out, "  {:<{}}    say it: {}\n", "", width, one.change);
+  }
+  fmt::print(out, "\n");
+  std::fflush(out);
+}
+
 void print_outcome(const sim::Job& job, const sim::Result& result, const std::string& folder) {
   if (!manner().quiet) {
     fmt::print("\n{}\n", job.scene.title);
@@ -79,6 +97,8 @@ std::vector<std::string> command_words(const RunOptions& options) {
   const auto flag = [&](bool given, const char* option) {
     if (given) words.emplace_back(option);
   };
+  const std::vector<std::string> job = given_words(options.job);
+  words.insert(words.end(), job.begin(), job.end());
   for (const std::string& set : options.overrides) add(true, "--set", set);
   add(!options.from.empty(), "--from", options.from);
   add(!options.save_after.empty(), "--save-stock-after", options.save_after);
@@ -177,7 +197,11 @@ int run(const RunOptions& options, std::vector<reports::FileVerdict>& found) {
   }
   if (!options.trajectory.empty())
     overrides.push_back(fmt::format("output.trajectory=\"{}\"", options.trajectory));
-  const sim::Job job = sim::load_job(options.scene, overrides);
+  const sim::Job job = load_job(options.scene, options.job, overrides);
+  if (options.record && !job.scene.text.empty())
+    throw InputError("needs-scene", {"--record"}, "a record is replayed from a scene, and there is none",
+                     "write one: swarf init " + shell_text({options.scene}) + " .., then run it");
+  print_assumptions(job.scene.assumptions, options.json);
   print_diagnostics(job.warnings);
   const std::string folder = options.output.empty() ? "out/" + job.scene.name : options.output;
   reports::check_output_folder(folder, reports::kRunMark, least_bytes(job.scene));
@@ -188,7 +212,6 @@ int run(const RunOptions& options, std::vector<reports::FileVerdict>& found) {
   reports::begin_run(pending, job, output);
   TerminalProgress progress;
   sim::Result result = sim::simulate(job, cut_options(options, pending), progress);
-  print_diagnostics(result.main.warnings);
   const std::vector<Diagnostic> failures = reports::write_run(pending, job, result, output, progress);
   print_diagnostics(failures);
   found.push_back(verdict_of(job, result, failures));
@@ -204,6 +227,17 @@ int run(const RunOptions& options, std::vector<reports::FileVerdict>& found) {
   if (!failures.empty()) return kBadInput;  // not everything that was asked for is there
   return sim::passes(result) ? kPass : kFindings;
 }
+
+constexpr const char* kRunFooter =
+    R"(Without a scene, everything that the flags leave open is taken by a rule: machine, block, voxel, clamping. The table at
+the top of the console, in report.html and in metrics.json (`assumptions`) says each value, its reason and what changes
+it. One picture and no movie: --set movie.seconds=10 adds it.
+
+Examples:
+  swarf run part.nc --tool 6                                 one flat end, block around the path, generic mill
+  swarf run part.nc --tools T1=10,T2=drill5 --stock 0,0,-20,80,60,0
+  swarf run part.mpf --machine spinner_u5_620 --tools tools.toml --design part.stl
+  swarf run scene.toml --set stock.voxel_mm=0.1 --no-render  a scene, one key changed, numbers only)";
 
 /// Options of the stock on its way.
 void add_stock_options(CLI::App& command, RunOptions& options) {
@@ -247,9 +281,12 @@ void add_stock_options(CLI::App& command, RunOptions& options) {
 void add_run(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<RunOptions>();
   CLI::App* command =
-      app.add_subcommand("run", "Simulate a scene: plan, interpolate, cut, measure, render, report");
-  command->add_option("scene", options->scene, "scene.toml")->required();
-  command->add_option("-o,--output", options->output, "folder for the results (default: out/<scene folder>)");
+      app.add_subcommand("run", "Simulate a scene or a program: move, cut, measure, render, report");
+  command->add_option("file", options->scene, "scene.toml, an NC program or CL data");
+  command->add_option("-o,--output", options->output,
+                      "folder for the results (default: out/<scene folder>, out/<program>)");
+  add_job_flags(*command, options->job);
+  command->footer(kRunFooter);
   command->add_option("--set", options->overrides, "replace a key of the scene: --set stock.voxel_mm=0.1")
       ->type_name("KEY=VALUE")
       ->expected(1)

@@ -11,6 +11,7 @@
 
 #include "base/config.h"
 #include "base/file.h"
+#include "sim/job/tool_library.h"
 
 namespace swarf::reports {
 namespace {
@@ -109,6 +110,15 @@ fs::path keep_machine(const fs::path& input, const std::string& machine_file) {
   return place;
 }
 
+/// What the run has found for the scene: another computer's memory gives another voxel.
+void add_what_was_open(const sim::StockSettings& stock, std::vector<std::string>& overrides) {
+  const Vec3 &low = stock.box_W.lower, &high = stock.box_W.upper;
+  if (stock.auto_box)
+    overrides.push_back(fmt::format("stock.box_mm=[[{}, {}, {}], [{}, {}, {}]]", low.x(), low.y(), low.z(),
+                                    high.x(), high.y(), high.z()));
+  if (stock.auto_voxel) overrides.push_back(fmt::format("stock.voxel_mm={}", stock.voxel_mm));
+}
+
 constexpr const char* kProgramFolder = "program";
 
 }  // namespace
@@ -126,12 +136,22 @@ std::vector<std::string> keep_inputs(const PendingFolder& folder, const sim::Job
     return fs::path(name + fs::path(file).extension().string());
   };
   const sim::Scene& scene = job.scene;
-  keep_copy(scene.file, input / "scene.toml");
+  if (scene.text.empty()) {
+    keep_copy(scene.file, input / "scene.toml");
+  } else {
+    fs::create_directories(input);
+    write_text((input / "scene.toml").string(), scene.text);
+  }
+  add_what_was_open(scene.stock, all);
   const fs::path machine = keep_machine(input, scene.machine_file);
   all.push_back(fmt::format("machine={}", quoted(machine.string())));
   keep(scene.program_key.c_str(), scene.program_file,
        fs::path(kProgramFolder) / plain_name(scene.program_file, "program"));
   keep("tool_table", scene.tool_table_file, beside(scene.tool_table_file, "tools"));
+  for (const auto& [name, file] : scene.tool_table_file.empty()
+                                      ? std::vector<std::pair<std::string, std::string>>{}
+                                      : sim::tool_library_parts(scene.tool_table_file))
+    keep_copy(file, input / fs::path(name).filename());
   if (scene.design.kind == sim::DesignKind::kSurface)
     keep("design.surface", scene.design.surface_file, beside(scene.design.surface_file, "design"));
   if (scene.design.kind == sim::DesignKind::kMesh)

@@ -28,6 +28,14 @@ Json line_json(const sim::Result& result, int element) {
   return result.main.path.elements.line(static_cast<size_t>(element));
 }
 
+Json assumptions_json(const sim::Assumptions& assumptions) {
+  Json list = Json::array();
+  for (const sim::Assumption& one : assumptions)
+    list.push_back(
+        {{"what", one.what}, {"value", one.value}, {"reason", one.reason}, {"change", one.change}});
+  return list;
+}
+
 Json motion_json(const sim::Job& job, const sim::Result& result) {
   const motion::MotionStatistics& motion = result.main.motion.statistics;
   return {{"ticks", motion.ticks},
@@ -379,6 +387,7 @@ std::string metrics_json(const sim::Job& job, const sim::Result& result, const R
             {"verdict_text", sim::verdict_sentence(result.checks)},
             {"checks", checks_json(result.checks)},
             {"not_judged", not_judged_json(result.checks)},
+            {"assumptions", assumptions_json(job.scene.assumptions)},
             {"motion", motion_json(job, result)},
             {"kinematics", kinematics_json(job, motion)},
             {"stock", stock_json(job, result)},

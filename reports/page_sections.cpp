@@ -289,6 +289,10 @@ std::string plots_section(const std::vector<Plot>& plots) {
   return section("plots", "Plots", out + "</div>");
 }
 
+std::string assumptions_section(const std::vector<Table>& tables) {
+  return tables.empty() ? "" : section("assumed", "Assumed", table_html(tables.front()));
+}
+
 std::string tables_section(const std::vector<Table>& tables) {
   if (tables.empty()) return "";
   std::string out;

@@ -15,6 +15,7 @@ std::string viewer_section(const Viewer3d& viewer);
 std::string movie_section(const ReportData& data);
 std::string stills_section(const std::vector<Still>& stills);
 std::string plots_section(const std::vector<Plot>& plots);
+std::string assumptions_section(const std::vector<Table>& tables);
 std::string tables_section(const std::vector<Table>& tables);
 std::string topic_section(const Topic& topic);
 std::string paper_section(const ReportData& data);

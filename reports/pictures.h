@@ -30,6 +30,7 @@ RenderStatistics make_movie(const FinishedRun& run, const std::string& path, con
 
 /// One picture of the part (shown_part) by ray tracing.
 enum class StillKind { kMachine, kPart, kDeviation, kFan };
+const std::string& still_name(StillKind kind);
 StillKind still_kind(const std::string& name);  ///< "machine", "part", "deviation", "fan"; throws InputError
 void make_still(const FinishedRun& run, const TriMesh& part, StillKind kind, const std::string& camera,
                 const std::string& path);

@@ -178,7 +178,8 @@ struct ReportData {
   std::string movie_caption;
   std::vector<Still> stills;
   std::vector<Plot> plots;
-  std::vector<Table> tables;  ///< planner comparison, axes, Fig. 6, ...
+  std::vector<Table> assumptions{};  ///< none or one: what was taken for what the scene leaves open
+  std::vector<Table> tables;         ///< planner comparison, axes, Fig. 6, ...
   std::vector<Topic> topics{};
   std::vector<papers::PaperRow> paper;
   std::string paper_title;  ///< "Lin & Koren (1996)"

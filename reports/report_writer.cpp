@@ -43,6 +43,7 @@ std::string navigation(const std::vector<NamedSection>& sections) {
 
 std::string render_report(const ReportData& data) {
   std::vector<NamedSection> sections = {
+      {"assumed", "Assumed", assumptions_section(data.assumptions)},
       {"overview", "Key numbers", overview_section(data)},
       {"findings", "Findings", findings_section(data.findings)},
       {"view", "3D view", viewer_section(data.viewer)},

@@ -71,6 +71,10 @@ void write_pictures(const PendingFolder& folder, const FinishedRun& run, const T
     pictures.insert(pictures.begin() + 2, {StillKind::kDeviation, "still_deviation.png", "iso",
                                            "Deviation from the design, from the measuring rays."});
   }
+  const std::vector<std::string>& kinds = run.job.scene.stills.kinds;
+  std::erase_if(pictures, [&](const Picture& picture) {
+    return std::find(kinds.begin(), kinds.end(), still_name(picture.kind)) == kinds.end();
+  });
   progress.begin("stills", static_cast<double>(pictures.size()), "pictures");
   for (const Picture& picture : pictures) {
     if (progress.stop_requested()) break;

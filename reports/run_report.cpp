@@ -346,6 +346,18 @@ Lines surface_lines(const sim::Job& job, const sim::Result& result) {
   return lines;
 }
 
+/// Empty where the scene says everything.
+std::vector<Table> assumption_tables(const sim::Job& job) {
+  if (job.scene.assumptions.empty()) return {};
+  Table table;
+  table.title = "What was assumed";
+  table.intro = "Neither the program nor the scene says it; the last column is where to say it.";
+  table.columns = {{"What"}, {"Taken"}, {"Why"}, {"Say it by"}};
+  for (const sim::Assumption& one : job.scene.assumptions)
+    table.rows.push_back({one.what, one.value, one.reason, one.change});
+  return {table};
+}
+
 }  // namespace
 
 ReportData report_data(const sim::Job& job, const sim::Result& result, const RunFiles& files, bool rendered) {
@@ -357,6 +369,7 @@ ReportData report_data(const sim::Job& job, const sim::Result& result, const Run
   data.verdict = verdict_of(result.checks);
   data.key_numbers = brings_blocks(result) ? block_key_numbers(result) : key_numbers(result);
   data.findings = findings_of(result);
+  data.assumptions = assumption_tables(job);
   if (!files.stills.empty()) {
     data.hero_png = files.stills.front().png_path;
     data.hero_caption = files.stills.front().caption;

@@ -128,13 +128,16 @@ render::Camera machine_camera(const FinishedRun& run, const std::string& name,
   return render::look_at_box(seen, -camera_direction(name), kFieldOfView, aspect(size));
 }
 
+const std::string& still_name(StillKind kind) {
+  return sim::kStillKinds.at(static_cast<size_t>(kind));
+}
+
 StillKind still_kind(const std::string& name) {
-  if (name == "machine") return StillKind::kMachine;
-  if (name == "part") return StillKind::kPart;
-  if (name == "deviation") return StillKind::kDeviation;
-  if (name == "fan") return StillKind::kFan;
+  const auto& names = sim::kStillKinds;
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found != names.end()) return static_cast<StillKind>(found - names.begin());
   throw InputError("unknown-still", {"--kind"}, fmt::format("there is no still '{}'", name),
-                   "one of machine, part, deviation, fan");
+                   fmt::format("one of {}", fmt::join(names, ", ")));
 }
 
 ColourBar deviation_colour_bar(const render::DeviationScale& scale) {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -117,16 +118,25 @@ ConfigTable::ConfigTable(std::shared_ptr<Node> node) : node_(std::move(node)) {}
 
 ConfigTable ConfigTable::load(const std::string& path, const std::vector<std::string>& overrides,
                               Diagnostics& diagnostics) {
-  auto node = std::make_shared<Node>();
-  node->file = path;
-  node->place = {path};
-  node->diagnostics = &diagnostics;
   const std::optional<std::string> text = read_file(path, diagnostics);
-  if (!text) return ConfigTable(std::move(node));
+  if (text) return parse(*text, path, overrides, diagnostics);
+  auto empty = std::make_shared<Node>();
+  empty->file = path;
+  empty->place = {path};
+  empty->diagnostics = &diagnostics;
+  return ConfigTable(std::move(empty));
+}
+
+ConfigTable ConfigTable::parse(const std::string& text, const std::string& name,
+                               const std::vector<std::string>& overrides, Diagnostics& diagnostics) {
+  auto node = std::make_shared<Node>();
+  node->file = name;
+  node->place = {name};
+  node->diagnostics = &diagnostics;
   try {
-    node->root = std::make_shared<toml::table>(toml::parse(*text, path));
+    node->root = std::make_shared<toml::table>(toml::parse(text, name));
   } catch (const toml::parse_error& failure) {
-    diagnostics.error("toml-syntax", location(path, failure.source()), std::string(failure.description()),
+    diagnostics.error("toml-syntax", location(name, failure.source()), std::string(failure.description()),
                       "mend the TOML syntax at this place");
     return ConfigTable(std::move(node));
   }
@@ -137,6 +147,11 @@ ConfigTable ConfigTable::load(const std::string& path, const std::vector<std::st
 
 bool ConfigTable::has(const std::string& key) const {
   return node_->find(key) != nullptr;
+}
+
+bool ConfigTable::is_text(const std::string& key) const {
+  const toml::node* value = node_->find(key);
+  return value != nullptr && value->is_string();
 }
 
 SourceLocation ConfigTable::where() const {
@@ -230,6 +245,22 @@ std::string ConfigTable::choice(const std::string& key, const std::vector<std::s
               fmt::format("it must be one of: {}", fmt::join(words, ", ")));
   }
   return fallback.value_or(words.front());
+}
+
+std::vector<std::string> ConfigTable::choices(const std::string& key, const std::vector<std::string>& words,
+                                              const std::vector<std::string>& fallback) {
+  const toml::node* value = node_->find(key);
+  if (value == nullptr) return fallback;
+  std::vector<std::string> found;
+  bool right = value->is_array();
+  for (size_t i = 0; right && i < value->as_array()->size(); ++i) {
+    found.push_back(value->as_array()->at(i).value_or(std::string()));
+    right = std::find(words.begin(), words.end(), found.back()) != words.end();
+  }
+  if (right) return found;
+  error("unknown-choice", key, fmt::format("'{}{}' must be an array of known words", node_->name, key),
+        fmt::format("write {} = [\"{}\"]", key, fmt::join(words, "\", \"")));
+  return fallback;
 }
 
 std::vector<double> ConfigTable::numbers(const std::string& key, size_t count,

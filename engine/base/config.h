@@ -32,7 +32,12 @@ class ConfigTable {
   static ConfigTable load(const std::string& path, const std::vector<std::string>& overrides,
                           Diagnostics& diagnostics);
 
+  /// The same of a text that stands in no file; messages call it `name`.
+  static ConfigTable parse(const std::string& text, const std::string& name,
+                           const std::vector<std::string>& overrides, Diagnostics& diagnostics);
+
   bool has(const std::string& key) const;              ///< whether the key stands in this table
+  bool is_text(const std::string& key) const;          ///< there, and in quotes
   SourceLocation where(const std::string& key) const;  ///< of the value, or of this table when it is absent
   SourceLocation where() const;                        ///< of this table
   std::vector<std::string> keys() const;               ///< all that stand in it, known or not
@@ -46,6 +51,9 @@ class ConfigTable {
   /// One of the given words.
   std::string choice(const std::string& key, const std::vector<std::string>& words,
                      const std::optional<std::string>& fallback = {});
+  /// An array of such words.
+  std::vector<std::string> choices(const std::string& key, const std::vector<std::string>& words,
+                                   const std::vector<std::string>& fallback);
   /// A list of exactly `count` finite numbers.
   std::vector<double> numbers(const std::string& key, size_t count,
                               const std::optional<std::vector<double>>& fallback = {});

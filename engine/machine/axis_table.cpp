@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include "base/units.h"
 
@@ -16,6 +18,19 @@ using kinematics::AxisKind;
 /// A direction in a file carries the digits that a person wrote; within this it is meant as a unit vector and
 /// is normalised.
 constexpr double kWrittenUnitTolerance = 1e-9;
+
+constexpr double kNotSaid = std::numeric_limits<double>::quiet_NaN();
+
+/// What machines of a size usually have; rotary in deg.
+struct MachineClass {
+  const char* name;
+  double travel_max_mm;  ///< of its longest linear axis
+  double acceleration, jerk, rotary_acceleration, rotary_jerk;
+};
+constexpr std::array<MachineClass, 3> kClasses{
+    {{"machining centre", 1000.0, 4000.0, 50000.0, 600.0, 12000.0},
+     {"large machining centre", 2500.0, 3000.0, 40000.0, 400.0, 8000.0},
+     {"gantry", std::numeric_limits<double>::infinity(), 1500.0, 20000.0, 200.0, 4000.0}}};
 
 const std::vector<std::string> kAxisLetters{"X", "Y", "Z", "A", "B", "C", "U", "V", "W"};
 
@@ -50,8 +65,9 @@ void read_limits(ConfigTable& table, Axis& axis) {
   axis.max = scale * table.number("max_" + unit, {});
   axis.speed_max = rotary ? scale * table.number("speed_max_deg_s", kAboveZero)
                           : mm_s_from_mm_min(table.number("speed_max_mm_min", kAboveZero));
-  axis.acceleration_max = scale * table.number("acceleration_max_" + unit + "_s2", kAboveZero);
-  axis.jerk_max = scale * table.number("jerk_max_" + unit + "_s3", kAboveZero);
+  // What is not given follows from the class of the whole machine: set_usual_dynamics().
+  axis.acceleration_max = scale * table.number("acceleration_max_" + unit + "_s2", kAboveZero, kNotSaid);
+  axis.jerk_max = scale * table.number("jerk_max_" + unit + "_s3", kAboveZero, kNotSaid);
   const std::string rapid = rotary ? "rapid_max_deg_s" : "rapid_max_mm_min";
   if (table.has(rapid)) {
     const double written = table.number(rapid, kAboveZero);
@@ -65,10 +81,11 @@ void read_limits(ConfigTable& table, Axis& axis) {
                             axis.max / scale, unit, axis.min / scale),
                 "min must lie below max");
   } else if (axis.home < axis.min || axis.home > axis.max) {
-    table.error("home-outside-travel", "home_" + unit,
-                fmt::format("home of axis {} is {:g} {}, outside its travel {:g} .. {:g}", axis.name,
-                            axis.home / scale, unit, axis.min / scale, axis.max / scale),
-                "put home inside the travel");
+    table.error(
+        "home-outside-travel", "home_" + unit,
+        fmt::format("home of axis {} is {:g} {}, outside its travel {:g} .. {:g}", axis.name,
+                    axis.home / scale, unit, axis.min / scale, axis.max / scale),
+        fmt::format("write home_{} = {:g}, or another place inside the travel", unit, axis.max / scale));
   }
 }
 
@@ -116,6 +133,29 @@ Axis read_axis(ConfigTable& table) {
   axis.reversed = table.boolean("reversed", false);
   read_limits(table, axis);
   return axis;
+}
+
+std::string set_usual_dynamics(std::vector<Axis>& axes) {
+  double travel = 0.0;
+  for (const Axis& axis : axes) {
+    if (!is_rotary(axis)) travel = std::max(travel, axis.max - axis.min);
+  }
+  const MachineClass& usual = *std::find_if(
+      kClasses.begin(), kClasses.end(), [&](const MachineClass& one) { return travel <= one.travel_max_mm; });
+  std::string text;
+  const auto fill = [&](const Axis& axis, double& value, double otherwise, const char* unit) {
+    if (!std::isnan(value)) return;
+    value = is_rotary(axis) ? rad_from_deg(otherwise) : otherwise;
+    text += fmt::format("{}{} {:g} {}/{}", text.empty() ? "" : ", ", axis.name, otherwise,
+                        is_rotary(axis) ? "deg" : "mm", unit);
+  };
+  for (Axis& axis : axes) {
+    const bool rotary = is_rotary(axis);
+    fill(axis, axis.acceleration_max, rotary ? usual.rotary_acceleration : usual.acceleration, "s2");
+    fill(axis, axis.jerk_max, rotary ? usual.rotary_jerk : usual.jerk, "s3");
+  }
+  if (text.empty()) return "";
+  return text + fmt::format(" (a {}: its longest travel is {:g} mm)", usual.name, travel);
 }
 
 void read_tool(ConfigTable& root, kinematics::MachineModel& machine) {

@@ -65,6 +65,7 @@ class MachineReader {
     root_.finish();
     if (!diagnostics_.has_errors()) resolve_links();
     if (!diagnostics_.has_errors()) make_chains();
+    if (!diagnostics_.has_errors()) scene_.assumed_dynamics = set_usual_dynamics(scene_.model.axes);
     if (!diagnostics_.has_errors()) check_kinematics();
     if (!diagnostics_.has_errors()) load_meshes();
     return std::move(scene_);

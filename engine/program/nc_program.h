@@ -105,10 +105,21 @@ struct ControlSetup {
   /// `start_tool` is a guess (the only tool there is): it holds only where the program cuts before it calls
   /// one, and the warning "start-tool-assumed" says so.
   bool start_tool_if_needed = false;
+  /// Positions are those of the tip, whatever the tool's length, as long as the program calls no length (G43
+  /// H, D1): the work offset was taken with the tool itself. Off: they are those of the gauge line, and the
+  /// warning "length-not-compensated" says so.
+  bool tip_without_length = false;
   /// T changes the tool at once, without M6 (LinuxCNC, Fanuc; Siemens, where programs without M6 show it
   /// too).
   bool t_changes_tool = false;
   long moves_max = 50'000'000;  ///< endless loops end here, with the line that broke the limit
+};
+
+/// A tool that was asked for without a tool table.
+struct AskedTool {
+  int number = 0;    ///< 0: by its name
+  std::string name;  ///< "": by its number
+  int line = 0;
 };
 
 /// What was read, for the report.
@@ -119,6 +130,8 @@ struct NcSummary {
   long lines = 0, blocks = 0, moves = 0;
   std::string start;                   ///< in words: where the program started and why there
   std::string start_tool;              ///< in words: what was in the spindle then, and why; "": nothing
+  std::vector<AskedTool> tools_asked;  ///< without a tool table: each once, in the program's order
+  bool tip_positions = false;          ///< ControlSetup::tip_without_length has mattered
   std::vector<int> tools_used;         ///< indices into ControlSetup::tools, in order of their first cut
   std::vector<std::string> functions;  ///< words that were read and have no effect on the geometry (M8, MSG),
                                        ///< each once, for "what was not simulated"

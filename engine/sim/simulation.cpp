@@ -14,6 +14,7 @@
 #include "sim/run/design_rays.h"
 #include "sim/run/prove_part.h"
 #include "sim/run/recorder.h"
+#include "toolpath/feed_way.h"
 
 namespace swarf::sim {
 namespace {
@@ -127,6 +128,8 @@ MeasuredPath planned_path(const Job& job, Progress& progress) {
   measured.nc = std::move(found.nc);
   measured.warnings = diagnostics.list();
   progress.end();
+  // What explains a path that misses the stock must not wait for the end of the run.
+  for (const Diagnostic& warning : measured.warnings) progress.note(format(warning));
   return measured;
 }
 
@@ -135,6 +138,44 @@ InputError path_misses_stock(const Job& job, const std::string& how) {
           {job.scene.file},
           fmt::format("the path never meets the stock: {}", how),
           "move stock.box_mm to where the path is (both are in the work frame, mm)"};
+}
+
+std::string sides(const Box& box) {
+  return fmt::format("X {:.3f} to {:.3f}, Y {:.3f} to {:.3f}, Z {:.3f} to {:.3f} mm", box.lower.x(),
+                     box.upper.x(), box.lower.y(), box.upper.y(), box.lower.z(), box.upper.z());
+}
+
+/// What would bring the path to the stock where they lie apart: middle to middle, in Z the path's highest
+/// place to the stock's upper face.
+Vec3 shift_to_stock(const Box& path, const Box& stock, double radius) {
+  Vec3 shift = Vec3::Zero();
+  for (int i = 0; i < 3; ++i) {
+    const double reach = i < 2 ? radius : 0.0;
+    if (path.lower[i] - reach < stock.upper[i] && path.upper[i] + reach > stock.lower[i]) continue;
+    shift[i] = i < 2 ? stock.centre()[i] - path.centre()[i] : stock.upper.z() - path.upper.z();
+  }
+  return shift;
+}
+
+/// Says where the feed moves are, and the offset that is missing.
+InputError blocks_miss_stock(const Job& job, const toolpath::Elements& elements) {
+  const toolpath::FeedWay way = toolpath::feed_way(elements);
+  const Box& stock = job.scene.stock.box_W;
+  if (way.feeds == 0) return path_misses_stock(job, "the program has no feed move");
+  double radius = 0.0;
+  for (const cutter::Cutter& tool : job.scene.tools) radius = std::max(radius, tool.radius());
+  const Vec3 shift = shift_to_stock(way.box_W, stock, radius);
+  const std::string how = fmt::format("nothing was cut; its feed moves take the tip over {}, the stock is {}",
+                                      sides(way.box_W), sides(stock));
+  if (shift.isZero()) return path_misses_stock(job, how);
+  return {
+      "path-misses-stock",
+      {job.scene.file},
+      "the path never meets the stock: " + how,
+      fmt::format("an offset of X {:.3f} Y {:.3f} Z {:.3f} mm brings the path there (setup.offsets of the "
+                  "work offset that is used, or the tool length that was not called); or stock.box_mm moves "
+                  "by X {:.3f} Y {:.3f} Z {:.3f}",
+                  shift.x(), shift.y(), shift.z(), -shift.x(), -shift.y(), -shift.z())};
 }
 
 /// A path that stays a cutter's reach away from the stock is a wrong scene, not a clean run.
@@ -301,7 +342,7 @@ Result simulate(const Job& job, const CutOptions& options, Progress& progress) {
   result.stopped = progress.stop_requested();
   if (result.stopped) return result;
   const bool planned = !result.main.path.elements.hold_blocks();
-  if (!planned && result.volume_removed_mm3 <= 0.0) throw path_misses_stock(job, "nothing was cut");
+  if (!planned && result.volume_removed_mm3 <= 0.0) throw blocks_miss_stock(job, result.main.path.elements);
   progress.begin("cut measuring rays", 1, "surfaces");
   cut_dexels(job, result.main);
   progress.end();

@@ -41,7 +41,8 @@ struct ToolState {
   int selected_number = 0;
   int active = -1;  ///< in the spindle
   int active_number = 0;
-  bool length_on = false;  ///< the compensated length holds (G43, D1)
+  bool length_on = false;      ///< the compensated length holds (G43, D1)
+  bool length_called = false;  ///< it has held once
 };
 
 /// Where programs count from. Number 0: none (G53, G500), the work zero itself; 1: G54.

@@ -93,6 +93,21 @@ void warn_of_unit(Control& control, int column) {
                            "of the scene, swarf check --units");
 }
 
+/// A cut without a called length.
+void tell_of_length(Control& control, int column) {
+  if (tip_is_reference(control)) {
+    control.report.summary.tip_positions = true;
+    return;
+  }
+  control.report.warn_once(
+      "length-not-compensated", column,
+      fmt::format("the tool length compensation is off: programmed coordinates are those of the gauge "
+                  "line, the tip stands {:.4f} mm further",
+                  active_tool(control)->length_mm),
+      fmt::format("switch it on before the cut ({}), unless the program means it so",
+                  control.report.words.length_on));
+}
+
 void send(Control& control, const Segment& segment, NcMove& move) {
   if (!control.modal.unit_known && !segment.machine) warn_of_unit(control, segment.place.column);
   move.q_from = control.path.q;
@@ -110,15 +125,8 @@ void send(Control& control, const Segment& segment, NcMove& move) {
     if (used.empty() || (used.back() != control.tools.active &&
                          std::find(used.begin(), used.end(), control.tools.active) == used.end()))
       used.push_back(control.tools.active);
-    if (!control.tools.length_on && control.setup.machine.gauge_M && active_tool(control)->length_mm > 0.0) {
-      control.report.warn_once(
-          "length-not-compensated", segment.place.column,
-          fmt::format("the tool length compensation is off: programmed coordinates are those of the gauge "
-                      "line, the tip stands {:.4f} mm further",
-                      active_tool(control)->length_mm),
-          fmt::format("switch it on before the cut ({}), unless the program means it so",
-                      control.report.words.length_on));
-    }
+    if (!control.tools.length_on && control.setup.machine.gauge_M && active_tool(control)->length_mm > 0.0)
+      tell_of_length(control, segment.place.column);
   }
   if (++control.report.summary.moves > control.setup.moves_max) {
     control.report.fail(

@@ -11,13 +11,33 @@
 namespace swarf::program::nc {
 namespace {
 
-int not_found(Control& control, const std::string& asked, int column) {
+void warn_of_no_table(Control& control, const std::string& asked, int column) {
+  control.report.warn_once(
+      "no-tool-table", column,
+      fmt::format("{} cannot be looked up, there is no tool table: tools have length and radius 0 here",
+                  asked),
+      "give one: [[tool]] or tool_table of the scene, swarf check --tools");
+}
+
+std::string spoken(const AskedTool& tool) {
+  return tool.number > 0 || tool.name.empty() ? fmt::format("T{}", tool.number)
+                                              : fmt::format("T=\"{}\"", tool.name);
+}
+
+void keep_asked(Control& control, AskedTool tool) {
+  std::vector<AskedTool>& all = control.report.summary.tools_asked;
+  const bool known = std::any_of(all.begin(), all.end(), [&](const AskedTool& one) {
+    return one.number == tool.number && one.name == tool.name;
+  });
+  tool.line = control.report.place.line;
+  if (!known) all.push_back(std::move(tool));
+}
+
+int not_found(Control& control, const AskedTool& tool, int column) {
+  const std::string asked = spoken(tool);
   if (control.setup.tools.empty() && control.setup.incomplete_tools.empty()) {
-    control.report.warn_once(
-        "no-tool-table", column,
-        fmt::format("{} cannot be looked up, there is no tool table: tools have length and radius 0 here",
-                    asked),
-        "give one: [[tool]] or tool_table of the scene, swarf check --tools");
+    keep_asked(control, tool);
+    warn_of_no_table(control, asked, column);
     return -1;
   }
   constexpr size_t kNamesMax = 8;
@@ -40,7 +60,7 @@ int not_found(Control& control, const std::string& asked, int column) {
 
 bool no_tool_table(Control& control, int column) {
   const bool none = control.setup.tools.empty() && control.setup.incomplete_tools.empty();
-  if (none) not_found(control, "the tool", column);
+  if (none) warn_of_no_table(control, "the tool", column);
   return none;
 }
 
@@ -54,14 +74,14 @@ int find_tool(Control& control, int number, int column) {
   const auto found = std::find_if(control.setup.tools.begin(), control.setup.tools.end(),
                                   [&](const NcTool& tool) { return tool.number == number; });
   if (found != control.setup.tools.end()) return static_cast<int>(found - control.setup.tools.begin());
-  return not_found(control, fmt::format("T{}", number), column);
+  return not_found(control, {number, ""}, column);
 }
 
 int find_tool(Control& control, const std::string& name, int column) {
   const auto found = std::find_if(control.setup.tools.begin(), control.setup.tools.end(),
                                   [&](const NcTool& tool) { return tool.name == name; });
   if (found != control.setup.tools.end()) return static_cast<int>(found - control.setup.tools.begin());
-  return not_found(control, fmt::format("T=\"{}\"", name), column);
+  return not_found(control, {0, name}, column);
 }
 
 void select_tool(ToolState& tools, int index, int number) {
@@ -73,9 +93,18 @@ const NcTool* active_tool(const Control& control) {
   return control.tools.active < 0 ? nullptr : &control.setup.tools[static_cast<size_t>(control.tools.active)];
 }
 
+bool tip_is_reference(const Control& control) {
+  return control.setup.tip_without_length && !control.tools.length_called;
+}
+
 void set_true_tool(Control& control) {
   const NcTool* tool = active_tool(control);
-  control.space.set_true_length(tool == nullptr ? 0.0 : tool->length_mm);
+  const double length = tool == nullptr ? 0.0 : tool->length_mm;
+  control.space.set_true_length(length);
+  if (tip_is_reference(control)) {
+    moved_frame(control, "the tool");
+    control.space.set_length(length);
+  }
   if (!control.path.started) return;
   const LinearMap& map = control.space.real(control.space.rotary_of(control.path.q));
   control.path.pose = {map.base_W + map.columns_W * control.space.linear_of(control.path.q), map.axis_W};
@@ -120,7 +149,10 @@ void declare_tool(Control& control, int index, int number) {
 void set_length_compensation(Control& control, double length_mm, bool on) {
   moved_frame(control, "the tool length compensation");
   control.tools.length_on = on;
-  control.space.set_length(on ? length_mm : 0.0);
+  control.tools.length_called = control.tools.length_called || on;
+  const NcTool* tool = active_tool(control);
+  const double without = tip_is_reference(control) && tool != nullptr ? tool->length_mm : 0.0;
+  control.space.set_length(on ? length_mm : without);
 }
 
 }  // namespace swarf::program::nc

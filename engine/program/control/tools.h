@@ -25,6 +25,8 @@ void declare_tool(Control& control, int index, int number);
 const NcTool* active_tool(const Control& control);
 /// Compensated length c; 0 with G49, D0. The tip itself always stands where the tool's true length puts it.
 void set_length_compensation(Control& control, double length_mm, bool on);
+/// True while positions are those of the tip for want of a length (ControlSetup::tip_without_length).
+bool tip_is_reference(const Control& control);
 /// Takes up the tool in the spindle: where its tip stands now.
 void set_true_tool(Control& control);
 

@@ -156,8 +156,11 @@ DesignSettings read_design(ConfigTable table, bool cl) {
   DesignSettings design;
   design.pitch_mm = table.number("pitch_mm", kAboveZero, design.pitch_mm);
   if (!cl) return design;
+  // A file says what it is for.
+  const char* const open = table.has("mesh") ? "mesh" : table.has("surface") ? "surface" : "none";
   design.name = table.choice(
-      "kind", {"none", "surface", "plane", "cylinder", "cone", "sphere", "hyperboloid", "ruled", "mesh"});
+      "kind", {"none", "surface", "plane", "cylinder", "cone", "sphere", "hyperboloid", "ruled", "mesh"},
+      open);
   if (design.name == "none" || design.name.empty()) {
     design.kind = DesignKind::kNone;
     return design;

@@ -28,8 +28,9 @@ struct DesignSettings {
   surface::SurfacePtr surface;  ///< kAnalytic
 };
 
-/// Reads [design]; `cl` tells which keys belong there. Problems go to the table's diagnostics; `surface_file`
-/// and `mesh_file` are left as written.
+/// Reads [design]; `cl` tells which keys belong there. Without `kind` it is the mesh or the surface whose
+/// file is named, else none. Problems go to the table's diagnostics; `surface_file` and `mesh_file` are left
+/// as written.
 DesignSettings read_design(ConfigTable table, bool cl);
 
 }  // namespace swarf::sim

@@ -13,6 +13,7 @@
 #include "mesh/mesh_nesting.h"
 #include "mesh/mesh_ops.h"
 #include "sim/job/memory_limit.h"
+#include "sim/job/open_job.h"
 #include "sim/job/scene.h"
 #include "sim/job/tool_table.h"
 #include "stock/stock.h"
@@ -173,7 +174,9 @@ void load_design(Job& job, Diagnostics& diagnostics) {
   if (design.kind == DesignKind::kAnalytic) job.design.push_back(design.surface);
   if (design.kind == DesignKind::kMesh) {
     auto mesh = std::make_shared<TriMesh>(mesh::load_mesh(design.mesh_file));
-    mesh::check_design_mesh(*mesh, design.mesh_file, &job.scene.stock.box_W, diagnostics);
+    // An automatic box holds the design.
+    const Box* box = job.scene.stock.auto_box ? nullptr : &job.scene.stock.box_W;
+    mesh::check_design_mesh(*mesh, design.mesh_file, box, diagnostics);
     if (!diagnostics.has_errors()) mesh::check_bodies(*mesh, design.mesh_file, diagnostics, "design mesh");
     constexpr double kNoCreases = kPi;  // one normal for each vertex
     if (mesh->normals.empty()) mesh::compute_vertex_normals(*mesh, kNoCreases);
@@ -222,11 +225,13 @@ std::vector<kinematics::MachineModel> machines_by_tool(const Job& job) {
   return machines;
 }
 
-Job load_job(const std::string& path, const std::vector<std::string>& overrides) {
-  Diagnostics diagnostics;
-  Job job;
-  job.scene = load_scene(path, overrides, diagnostics);
+namespace {
+
+/// Loads what the scene names.
+Job complete(Scene scene, Diagnostics diagnostics) {
   diagnostics.throw_if_errors();
+  Job job;
+  job.scene = std::move(scene);
   // A user mends all files at once: what is wrong with one does not hide what is wrong with the other.
   collect(diagnostics, [&] {
     job.machine = machine::load_machine(job.scene.machine_file);
@@ -234,6 +239,7 @@ Job load_job(const std::string& path, const std::vector<std::string>& overrides)
     if (job.scene.setup.work_origin_mm) X_MW.translation() = *job.scene.setup.work_origin_mm;
     X_MW.linear() = Eigen::AngleAxisd(job.scene.setup.work_rotation_rad, Vec3::UnitZ()).toRotationMatrix();
   });
+  if (!diagnostics.has_errors()) collect(diagnostics, [&] { bind_tools(job, diagnostics); });
   Diagnostics warnings;
   collect(diagnostics, [&] {
     if (job.scene.kind == ProgramKind::kCl) {
@@ -251,10 +257,27 @@ Job load_job(const std::string& path, const std::vector<std::string>& overrides)
     check_tools(job, diagnostics);
     check_planner_cutter(job, diagnostics);
   }
+  diagnostics.throw_if_errors();
+  fill_open(job, diagnostics);
+  diagnostics.throw_if_errors();
   check_memory(job, diagnostics);
   diagnostics.throw_if_errors();
   job.warnings = diagnostics.list();
   return job;
+}
+
+}  // namespace
+
+Job load_job(const std::string& path, const std::vector<std::string>& overrides) {
+  Diagnostics diagnostics;
+  Scene scene = load_scene(path, overrides, diagnostics);
+  return complete(std::move(scene), std::move(diagnostics));
+}
+
+Job load_job(const SceneText& text, const std::vector<std::string>& overrides) {
+  Diagnostics diagnostics;
+  Scene scene = load_scene(text, overrides, diagnostics);
+  return complete(std::move(scene), std::move(diagnostics));
 }
 
 }  // namespace swarf::sim

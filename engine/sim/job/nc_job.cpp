@@ -48,6 +48,7 @@ program::ControlSetup control_setup(const Job& job, Diagnostics& diagnostics) {
   setup.builder_words = job.scene.builder_words;
   setup.unit_mm = settings.unit_mm ? settings.unit_mm : job.machine.program_unit_mm;
   setup.t_changes_tool = settings.t_changes_tool;
+  setup.tip_without_length = settings.tip_without_length;
   if (setup.unit_mm.value_or(1.0) != 1.0 && job.scene.tool_table_file.ends_with(".tbl"))
     diagnostics.warning(
         "table-in-mm", {job.scene.tool_table_file, 0, 0},
@@ -58,7 +59,21 @@ program::ControlSetup control_setup(const Job& job, Diagnostics& diagnostics) {
   return setup;
 }
 
+class NoMoves final : public program::NcSink {
+ public:
+  bool move(const program::NcMove&) override { return true; }
+};
+
 }  // namespace
+
+std::vector<program::AskedTool> asked_of_nc(const Job& job, Diagnostics& diagnostics) {
+  program::ControlSetup setup = control_setup(job, diagnostics);
+  setup.tools.clear();
+  setup.start_tool = -1;
+  setup.start_tool_if_needed = false;
+  NoMoves sink;
+  return program::run_nc(job.scene.program_file, job.scene.dialect, setup, sink, diagnostics).tools_asked;
+}
 
 toolpath::NcPath read_nc_program(const Job& job, Diagnostics& diagnostics) {
   const program::ControlSetup setup = control_setup(job, diagnostics);

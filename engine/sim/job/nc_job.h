@@ -10,4 +10,7 @@ namespace swarf::sim {
 /// program; what is only worth a warning goes to `diagnostics`, and so do the errors of NcPathSink::finish.
 toolpath::NcPath read_nc_program(const Job& job, Diagnostics& diagnostics);
 
+/// The tools that the program asks for, as far as it can be read without any; problems go to `diagnostics`.
+std::vector<program::AskedTool> asked_of_nc(const Job& job, Diagnostics& diagnostics);
+
 }  // namespace swarf::sim

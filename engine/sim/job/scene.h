@@ -16,6 +16,7 @@
 #include "program/cl/program.h"
 #include "program/nc_program.h"
 #include "program/surface_blocks/program.h"
+#include "sim/job/assumption.h"
 #include "sim/job/design_keys.h"
 #include "sim/job/setup_keys.h"
 #include "toolpath/tool_path.h"
@@ -30,8 +31,11 @@ enum class CutBy {
 };
 
 struct StockSettings {
-  Box box_W;                         ///< mm
-  double voxel_mm = 0.2;             ///< smaller: finer solid, memory grows with the square
+  Box box_W;                ///< mm
+  bool auto_box = false;    ///< left open: the program's path gives it (open_job.h)
+  double voxel_mm = 0.2;    ///< smaller: finer solid, memory grows with the square
+  bool auto_voxel = false;  ///< left open: box and tools give it
+  SourceLocation voxel_where;
   double sweep_tolerance_mm = 1e-3;  ///< ticks are merged into sweeps that stay this close to them
   CutBy cut_by = CutBy::kBlocks;
   double max_memory_mb = 0.0;  ///< 0: 80 % of the memory that is free when the run starts
@@ -58,11 +62,17 @@ struct MovieSettings {
   double seconds = 10.0;
   std::array<int, 2> size{1280, 720};
   int fps = 30;
-  int samples = 1;        ///< per pixel, 1 or 4: 4 smooths edges and takes twice as long
-  double voxel_mm = 0.8;  ///< of the stock that the movie shows; it is not measured
+  int samples = 1;  ///< per pixel, 1 or 4: 4 smooths edges and takes twice as long
+  /// Of the stock that the movie shows; it is not measured. With an automatic stock.voxel_mm twice that.
+  double voxel_mm = 0.8;
+  bool auto_voxel = true;  ///< the scene does not say it
 };
 
+/// The stills that a run makes, by the names of `swarf render --kind`.
+inline const std::vector<std::string> kStillKinds{"machine", "part", "deviation", "fan"};
+
 struct StillSettings {
+  std::vector<std::string> kinds = kStillKinds;
   std::array<int, 2> size{1280, 720};
   int samples = 16;  ///< rays per pixel: more is smoother and slower
 };
@@ -85,9 +95,13 @@ enum class ProgramKind {
 
 struct Scene {
   std::string file;  ///< scene.toml
+  std::string text;  ///< of a scene that stands in no file (SceneText); else ""
   std::string name;  ///< of its folder
   std::string title;
   std::string machine_file;
+  bool machine_assumed = false;  ///< the scene names none
+  bool tools_in_words = false;   ///< `tools` (tool_words.h)
+  Assumptions assumptions;       ///< what it leaves open, and what is taken for it
   std::string program_file;
   std::string program_key = "program";  ///< that names it in scene.toml: program, cl or nc
   ProgramKind kind = ProgramKind::kSurfaceBlocks;
@@ -129,10 +143,16 @@ struct Job {
   std::vector<Diagnostic> warnings;
 };
 
+/// A scene that stands in no file; messages call it `name`, its paths are those of the current folder.
+struct SceneText {
+  std::string toml, name;
+};
+
 /// Reads scene.toml; `overrides` are "key=value" in TOML. Paths in it are relative to its folder.
 /// Problems go to `diagnostics`.
 Scene load_scene(const std::string& path, const std::vector<std::string>& overrides,
                  Diagnostics& diagnostics);
+Scene load_scene(const SceneText& text, const std::vector<std::string>& overrides, Diagnostics& diagnostics);
 
 /// Scene::tools by ClProgram::tools; -1: the scene lacks it.
 std::vector<int> cl_tools(const Job& job);
@@ -141,7 +161,9 @@ std::vector<int> cl_tools(const Job& job);
 std::vector<kinematics::MachineModel> machines_by_tool(const Job& job);
 
 /// Loads scene, machine, program and design and checks them against each other (tool numbers, CUTTER words,
-/// memory, chord tolerance). Throws InputError with everything that is wrong.
+/// memory, chord tolerance). What the scene leaves open is filled in (open_job.h). Throws InputError with
+/// everything that is wrong.
 Job load_job(const std::string& path, const std::vector<std::string>& overrides);
+Job load_job(const SceneText& text, const std::vector<std::string>& overrides);
 
 }  // namespace swarf::sim

@@ -7,7 +7,9 @@
 
 #include "base/config.h"
 #include "base/units.h"
+#include "machine/shipped.h"
 #include "program/dialects.h"
+#include "sim/job/open_job.h"
 #include "sim/job/scene.h"
 #include "sim/job/tool_table.h"
 
@@ -16,39 +18,32 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kGenericMachine = "mill_3axis";
+
 /// As for meshes: a kilometre from the origin of the work, mm.
 constexpr double kFarthest = 1e6;
 
-/// A grid on which the block or a tool's cut has no extent shows nothing.
-void check_voxel(ConfigTable& table, const StockSettings& stock, const std::vector<cutter::Cutter>& tools) {
-  const double side = stock.box_W.size().minCoeff();
-  if (side > 0.0 && stock.voxel_mm > side) {
-    table.error("out-of-range", "voxel_mm",
-                fmt::format("'stock.voxel_mm' is {:g}, the block is {:g} mm thick", stock.voxel_mm, side),
-                fmt::format("write at most {:.2g}, a tenth of that", 0.1 * side));
-    return;
-  }
-  for (const cutter::Cutter& tool : tools) {
-    if (!(tool.diameter_mm > 0.0) || stock.voxel_mm <= tool.diameter_mm) continue;
-    table.error("out-of-range", "voxel_mm",
-                fmt::format("'stock.voxel_mm' is {:g}, {} has a diameter of {:g} mm", stock.voxel_mm,
-                            cutter::call_name(tool), tool.diameter_mm),
-                fmt::format("write at most {:.2g}, a tenth of that", 0.1 * tool.diameter_mm));
-    return;
-  }
+/// False where the key is not there or says "auto".
+bool is_said(ConfigTable& table, const char* key) {
+  if (table.is_text(key)) return table.choice(key, {"auto"}) != "auto";
+  return table.has(key);
 }
 
-StockSettings read_stock(ConfigTable table, const std::vector<cutter::Cutter>& tools, bool blocks) {
+StockSettings read_stock(ConfigTable table, const std::vector<cutter::Cutter>& tools, bool blocks,
+                         Diagnostics& diagnostics) {
   StockSettings stock;
-  stock.box_W = table.box("box_mm");
+  stock.auto_box = blocks && !is_said(table, "box_mm");
+  stock.box_W = stock.auto_box ? Box{Vec3::Zero(), Vec3::Ones()} : table.box("box_mm");
   if (std::max(stock.box_W.lower.cwiseAbs().maxCoeff(), stock.box_W.upper.cwiseAbs().maxCoeff()) >
       kFarthest) {
     table.error("out-of-range", "box_mm", "the stock reaches too far from the origin of the work",
                 fmt::format("every number must be from {:g} to {:g} mm", -kFarthest, kFarthest));
     stock.box_W = {Vec3::Zero(), Vec3::Ones()};
   }
-  stock.voxel_mm = table.number("voxel_mm", kAboveZero);
-  check_voxel(table, stock, tools);
+  stock.auto_voxel = blocks && !is_said(table, "voxel_mm");
+  stock.voxel_where = table.where("voxel_mm");
+  if (!stock.auto_voxel) stock.voxel_mm = table.number("voxel_mm", kAboveZero);
+  if (!stock.auto_box && !stock.auto_voxel) check_voxel(stock, tools, diagnostics);
   stock.sweep_tolerance_mm = table.number("sweep_tolerance_um", kAboveZero, 1.0) * kMicrometre;
   if (!blocks)
     stock.cut_by = CutBy::kPasses;
@@ -127,6 +122,7 @@ void read_pictures(ConfigTable& root, Scene& scene) {
   scene.movie.seconds = movie.number("seconds", {0.0, 3600.0}, scene.movie.seconds);
   scene.movie.size = read_size(movie);
   scene.movie.fps = movie.integer("fps", 1, 120, scene.movie.fps);
+  scene.movie.auto_voxel = !movie.has("voxel_mm");
   scene.movie.voxel_mm = movie.number("voxel_mm", kAboveZero, scene.movie.voxel_mm);
   scene.movie.samples = movie.integer("samples", 1, 4, scene.movie.samples);
   if (scene.movie.samples != 1 && scene.movie.samples != 4) {
@@ -135,6 +131,7 @@ void read_pictures(ConfigTable& root, Scene& scene) {
   }
   ConfigTable stills = root.table("stills");
   scene.stills.size = read_size(stills);
+  scene.stills.kinds = stills.choices("kinds", kStillKinds, kStillKinds);
   scene.stills.samples = stills.integer("samples", 1, 4096, scene.stills.samples);
 }
 
@@ -270,29 +267,42 @@ void read_scene_tools(ConfigTable& root, Scene& scene, Diagnostics& diagnostics)
   scene.tool_table_file = beside(scene.file, root.text("tool_table", ""));
   scene.tools = read_tools(root, scene.tool_table_file, diagnostics,
                            scene.kind == ProgramKind::kNc ? &scene.incomplete_tools : nullptr);
+  scene.tools_in_words = root.has("tools");
   if (scene.kind != ProgramKind::kSurfaceBlocks || scene.tools.size() == 1) return;
   root.error("planner-needs-one-tool", "tool",
              fmt::format("surface blocks are planned for one cutter, the scene has {}", scene.tools.size()),
              "describe one, or run a program that brings its own tool positions");
 }
 
-}  // namespace
+/// A program of blocks without a machine is for the generic mill.
+void read_machine(ConfigTable& root, Scene& scene) {
+  scene.machine_assumed = scene.kind != ProgramKind::kSurfaceBlocks && !root.has("machine");
+  const std::string written = root.text(
+      "machine", scene.machine_assumed ? std::optional<std::string>(kGenericMachine) : std::nullopt);
+  if (written.empty()) return;
+  const std::string file = machine::machine_file(written);
+  if (!file.empty()) {
+    scene.machine_file = file == written ? beside(scene.file, written) : file;
+    return;
+  }
+  std::vector<std::string> names;
+  for (const machine::ShippedMachine& one : machine::shipped_machines()) names.push_back(one.name);
+  const std::string near = nearest_name(written, names);
+  root.error("unknown-machine", "machine", fmt::format("no machine is called '{}'", written),
+             (near.empty() ? "" : fmt::format("did you mean '{}'? ", near)) +
+                 "a machine.toml, or a name that 'swarf machines' lists");
+}
 
-Scene load_scene(const std::string& path, const std::vector<std::string>& overrides,
-                 Diagnostics& diagnostics) {
-  Scene scene;
-  scene.file = path;
-  scene.name = utf8_only(fs::absolute(path).parent_path().filename().string());
-  ConfigTable root = ConfigTable::load(path, overrides, diagnostics);
-  if (diagnostics.has_errors()) return scene;
+void read_scene(ConfigTable& root, Scene& scene, Diagnostics& diagnostics) {
+  const std::string& path = scene.file;
   scene.title = utf8_only(root.text("title", scene.name));
-  scene.machine_file = beside(path, root.text("machine"));
   read_program(root, scene);
+  read_machine(root, scene);
   read_scene_tools(root, scene, diagnostics);
   read_cl_keys(root, scene);
   scene.setup = read_setup(root.table("setup"), scene.kind == ProgramKind::kNc);
   const bool blocks = scene.kind != ProgramKind::kSurfaceBlocks;  // the program brings its own
-  scene.stock = read_stock(root.table("stock"), scene.tools, blocks);
+  scene.stock = read_stock(root.table("stock"), scene.tools, blocks, diagnostics);
   scene.design = read_design(root.table("design"), blocks);
   scene.design.surface_file = beside(path, scene.design.surface_file);
   scene.design.mesh_file = beside(path, scene.design.mesh_file);
@@ -307,7 +317,27 @@ Scene load_scene(const std::string& path, const std::vector<std::string>& overri
   scene.output = read_output(root.table("output"));
   root.finish();
   scene.toolpath.stock_top_mm = scene.stock.box_W.upper.z();
+}
+
+}  // namespace
+
+Scene load_scene(const std::string& path, const std::vector<std::string>& overrides,
+                 Diagnostics& diagnostics) {
+  Scene scene;
+  scene.file = path;
+  scene.name = utf8_only(fs::absolute(path).parent_path().filename().string());
+  ConfigTable root = ConfigTable::load(path, overrides, diagnostics);
+  if (!diagnostics.has_errors()) read_scene(root, scene, diagnostics);
   return scene;
 }
 
+Scene load_scene(const SceneText& text, const std::vector<std::string>& overrides, Diagnostics& diagnostics) {
+  Scene scene;
+  scene.file = text.name;
+  scene.text = text.toml;
+  ConfigTable root = ConfigTable::parse(text.toml, text.name, overrides, diagnostics);
+  if (!diagnostics.has_errors()) read_scene(root, scene, diagnostics);
+  scene.name = utf8_only(fs::path(scene.program_file).stem().string());
+  return scene;
+}
 }  // namespace swarf::sim

@@ -40,13 +40,16 @@ void read_control_keys(ConfigTable& table, SetupSettings& setup) {
   if (table.has("start_tool")) setup.start_tool = table.integer("start_tool", 1, 1'000'000'000);
   setup.start_tool_name = table.text("start_tool_name", "");
   setup.t_changes_tool = table.boolean("t_changes_tool", false);
+  setup.tip_without_length = table.choice("without_length", {"gauge_line", "tip"}, "gauge_line") == "tip";
 }
 
 }  // namespace
 
 SetupSettings read_setup(ConfigTable table, bool nc) {
   SetupSettings setup;
-  if (table.has("work_origin_mm")) {
+  if (table.is_text("work_origin_mm")) {
+    setup.on_table = table.choice("work_origin_mm", {"on_table"}) == "on_table";
+  } else if (table.has("work_origin_mm")) {
     const std::vector<double> origin = table.numbers("work_origin_mm", 3);
     if (origin.size() == 3) setup.work_origin_mm = Vec3(origin[0], origin[1], origin[2]);
   }

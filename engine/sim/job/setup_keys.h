@@ -24,6 +24,7 @@ using AxisSettings = std::vector<AxisSetting>;
 struct SetupSettings {
   /// Origin of W in M with all axes at zero; none: what the machine says.
   std::optional<Vec3> work_origin_mm;
+  bool on_table = false;                ///< "on_table": the origin follows from the stock (open_job.h)
   double work_rotation_rad = 0.0;       ///< of W about Z of M, through its origin: how the part is clamped
   std::map<int, AxisSettings> offsets;  ///< 1: G54, ..., 6: G59, 7: G59.1, 8: G59.2, 9: G59.3
   std::optional<AxisSettings> start;    ///< axis values where the program starts
@@ -31,7 +32,8 @@ struct SetupSettings {
   int start_tool = 0;             ///< number of the tool in the spindle; 0: not said
   std::string start_tool_name;    ///< or its name; "": not said
   SourceLocation start_tool_where;
-  bool t_changes_tool = false;  ///< T changes the tool without M6
+  bool t_changes_tool = false;      ///< T changes the tool without M6
+  bool tip_without_length = false;  ///< `without_length = "tip"`: of a program that calls no tool length
 };
 
 /// Reads [setup]; offsets, start, units, start_tool and t_changes_tool belong to NC programs only.

@@ -12,6 +12,8 @@
 
 #include "program/source_text.h"
 #include "sim/job/cutter_keys.h"
+#include "sim/job/tool_library.h"
+#include "sim/job/tool_words.h"
 
 namespace swarf::sim {
 namespace {
@@ -244,6 +246,25 @@ void join_tbl(std::vector<Described>& tools, const std::vector<Described>& measu
   }
 }
 
+/// Without `incomplete` a warning names each tool that cannot be used.
+void add_library(std::vector<Described>& tools, const std::string& file, Diagnostics& diagnostics,
+                 IncompleteTools* incomplete) {
+  IncompleteTools lacking;
+  try {
+    for (Cutter& tool : read_tool_library(file, lacking)) tools.push_back({std::move(tool), {file}});
+  } catch (const InputError& error) {
+    diagnostics.append(error.diagnostics);
+  }
+  for (const auto& [number, reason] : lacking) {
+    if (incomplete != nullptr) {
+      incomplete->emplace(number, reason);
+    } else {
+      diagnostics.warning("tool-left-out", {file}, fmt::format("T{} cannot be used, {}", number, reason),
+                          "complete it in the library, or describe it as [[tool]]");
+    }
+  }
+}
+
 /// Appends what a table file describes.
 void add_table(std::vector<Described>& tools, const std::string& table_file, Diagnostics& diagnostics,
                IncompleteTools* incomplete) {
@@ -251,6 +272,7 @@ void add_table(std::vector<Described>& tools, const std::string& table_file, Dia
     join_tbl(tools, read_tbl_lines(table_file, diagnostics, incomplete), diagnostics, incomplete);
     return;
   }
+  if (is_tool_library(table_file)) return add_library(tools, table_file, diagnostics, incomplete);
   ConfigTable table = ConfigTable::load(table_file, {}, diagnostics);
   for (Described& tool : read_entries(table)) tools.push_back(std::move(tool));
   table.finish();
@@ -265,11 +287,36 @@ std::vector<Cutter> cutters_of(std::vector<Described>& tools, Diagnostics& diagn
   return cutters;
 }
 
+/// The scene's `tools`.
+std::vector<Cutter> read_word_tools(ConfigTable& scene, const std::string& table_file,
+                                    Diagnostics& diagnostics) {
+  const SourceLocation where = scene.where("tools");
+  const std::string list = scene.text("tools");
+  if (scene.has("cutter") || scene.has("tool") || !table_file.empty())
+    scene.error("two-tool-sets", "tools", "the scene has `tools` beside [cutter], [[tool]] or tool_table",
+                "keep one of them");
+  std::vector<Described> tools;
+  for (Cutter& tool : read_tool_words(list, where, diagnostics)) tools.push_back({std::move(tool), where});
+  if (tools.empty()) return {Cutter{}};
+  if (tools.size() == 1 && tools[0].cutter.number == 0 && tools[0].cutter.name.empty())
+    return {std::move(tools[0].cutter)};
+  return cutters_of(tools, diagnostics);
+}
+
+Cutter read_only_cutter(ConfigTable& scene) {
+  if (scene.has("cutter")) return read_cutter(scene.table("cutter"));
+  scene.error("missing-key", "tools", "the scene has no tool",
+              "--tool 6 is a flat end of 6 mm, --tools T1=6,T2=ball4,T3=drill5 are several; in a scene "
+              "tools = \"T1=6,T2=ball4\", or each as [[tool]], one as [cutter], a file as tool_table");
+  return {};
+}
+
 }  // namespace
 
 std::vector<Cutter> read_tools(ConfigTable& scene, const std::string& table_file, Diagnostics& diagnostics,
                                IncompleteTools* incomplete) {
-  if (!scene.has("tool") && table_file.empty()) return {read_cutter(scene.table("cutter"))};
+  if (scene.has("tools")) return read_word_tools(scene, table_file, diagnostics);
+  if (!scene.has("tool") && table_file.empty()) return {read_only_cutter(scene)};
   if (scene.has("cutter")) {
     scene.error("two-tool-sets", "cutter", "the scene has [cutter] beside [[tool]] or tool_table",
                 "describe every tool as [[tool]]");
@@ -277,7 +324,7 @@ std::vector<Cutter> read_tools(ConfigTable& scene, const std::string& table_file
   }
   std::vector<Described> tools = read_entries(scene);
   if (!table_file.empty()) add_table(tools, table_file, diagnostics, incomplete);
-  if (tools.empty() && !diagnostics.has_errors()) {
+  if (tools.empty() && !diagnostics.has_errors() && (incomplete == nullptr || incomplete->empty())) {
     scene.error("no-tools", "tool_table", "the scene has no tool", "describe at least one as [[tool]]");
   }
   return cutters_of(tools, diagnostics);

@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "base/units.h"
+#include "sim/job/tool_words.h"
 #include "sim/run/result.h"
 
 namespace swarf::sim {
@@ -155,10 +156,27 @@ void add_tool_checks(const Job& job, const Result& result, std::vector<Check>& c
                                          : "; whole moves, each against the stock before it";
     checks.push_back(std::move(check));
   };
-  add(counted("collisions", "Neck, shank or holder in the stock", result.clearance.events.size(),
-              accept.collisions));
-  add(counted("rapids_in_material", "Rapid moves that remove material", count_bad_cuts(result, true),
-              accept.rapids_in_material));
+  const size_t rapids = count_bad_cuts(result, true);
+  // A block that was laid around the path reaches where a real one may not.
+  const auto assumed = [](size_t count) {
+    return fmt::format(
+        "the block is assumed around the path and {} meet it; --stock or stock.box_mm says the real one",
+        count);
+  };
+  constexpr const char* collisions = "Neck, shank or holder in the stock";
+  constexpr const char* rapid = "Rapid moves that remove material";
+  if (std::all_of(job.scene.tools.begin(), job.scene.tools.end(), is_bare)) {
+    checks.push_back(not_judged("collisions", collisions, "the tools have neither shank nor holder"));
+  } else if (job.scene.stock.auto_box && !result.clearance.events.empty()) {
+    checks.push_back(not_judged("collisions", collisions, assumed(result.clearance.events.size())));
+  } else {
+    add(counted("collisions", collisions, result.clearance.events.size(), accept.collisions));
+  }
+  if (job.scene.stock.auto_box && rapids > 0) {
+    checks.push_back(not_judged("rapids_in_material", rapid, assumed(rapids)));
+  } else {
+    add(counted("rapids_in_material", rapid, rapids, accept.rapids_in_material));
+  }
   checks.push_back(spindle_check(job, result));
 }
 

@@ -1,0 +1,167 @@
+#include "cli/job_flags.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <system_error>
+
+#include "cli/check_cl.h"
+#include "cli/check_nc.h"
+#include "program/dialects.h"
+#include "sim/job/open_job.h"
+
+namespace swarf::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kTakes =
+    "a scene (scene.toml), an NC program (.nc .ngc .tap .gcode .mpf .h .eia ..) or CL data (.cls .clt .ncl "
+    ".apt "
+    ".cldata); 'swarf init part.nc --tool 6' writes a scene";
+
+void require_file(const std::string& file) {
+  std::error_code problem;
+  if (file.empty())
+    throw InputError("file-not-found", {"swarf"}, "no file is named", fmt::format("name {}", kTakes));
+  if (fs::is_directory(file, problem))
+    throw InputError("file-not-found", {file}, "this is a folder",
+                     fs::exists(fs::path(file) / "scene.toml", problem)
+                         ? "name " + (fs::path(file) / "scene.toml").string()
+                         : fmt::format("name {}", kTakes));
+  if (!fs::exists(file, problem))
+    throw InputError("file-not-found", {file}, "there is no such file",
+                     fmt::format("check the path and its spelling; it takes {}", kTakes));
+}
+
+void set_tools(const JobWords& words, sim::JobFlags& flags) {
+  std::error_code problem;
+  flags.tools = words.tool;
+  if (words.tools.empty()) return;
+  if (fs::is_regular_file(words.tools, problem)) {
+    flags.tool_table = words.tools;
+  } else if (words.tools.find('=') != std::string::npos) {
+    flags.tools = words.tools;
+  } else {
+    throw InputError("bad-tool-list", {"--tools " + words.tools},
+                     "this is neither a file nor a list of tools",
+                     "write --tools T1=6,T2=ball4,T3=drill5, or name a tool table");
+  }
+}
+
+}  // namespace
+
+void add_job_flags(CLI::App& command, JobWords& words) {
+  const char* const group = "A program without a scene";
+  CLI::Option* tool =
+      command
+          .add_option("--tool", words.tool,
+                      "its only tool: 6 (flat end, D 6 mm), ball4, bull10r1, drill5, chamfer8a90, 0.25in")
+          ->type_name("WORD")
+          ->group(group);
+  command
+      .add_option("--tools", words.tools,
+                  "its tools: T1=6,T2=ball4,T3=drill5, or a tool table (.toml, .tbl of LinuxCNC, .json of "
+                  "Fusion, .fctl of FreeCAD)")
+      ->type_name("LIST|FILE")
+      ->excludes(tool)
+      ->group(group);
+  command
+      .add_option("--stock", words.stock,
+                  "block of material in the work frame, lower and upper corner; auto: around the path")
+      ->type_name("X0,Y0,Z0,X1,Y1,Z1")
+      ->group(group);
+  command
+      .add_option("--machine", words.machine,
+                  "a machine that 'swarf machines' lists, or machine.toml (default: mill_3axis)")
+      ->type_name("NAME|FILE")
+      ->group(group);
+  command
+      .add_option("--design", words.design,
+                  "what the part is measured against: closed mesh, mm (.stl .ply .obj)")
+      ->group(group);
+  command.add_option("--voxel", words.voxel_mm, "cells of the stock (default: by tool, block and memory)")
+      ->type_name("MM")
+      ->check(CLI::PositiveNumber)
+      ->group(group);
+  command
+      .add_option("--origin", words.origin,
+                  "where the work's origin stands in the machine (default: the stock on the table)")
+      ->type_name("X,Y,Z")
+      ->group(group);
+  command.add_option("--units", words.units, "unit of a program that has neither G20 nor G21")
+      ->check(CLI::IsMember({"mm", "inch"}))
+      ->group(group);
+  command
+      .add_option("--dialect", words.dialect, program::dialect_list(" or ") + "; recognised when left out")
+      ->check(CLI::IsMember(program::dialect_names()))
+      ->group(group);
+  command
+      .add_option("--start-tool", words.start_tool, "number of the tool that is in the spindle at the start")
+      ->check(CLI::PositiveNumber)
+      ->group(group);
+  command.add_flag("--t-changes-tool", words.t_changes_tool, "T changes the tool at once, without M6")
+      ->group(group);
+}
+
+std::vector<std::string> given_words(const JobWords& words) {
+  std::vector<std::string> given;
+  const auto add = [&](const char* flag, const std::string& value) {
+    if (!value.empty()) given.insert(given.end(), {flag, value});
+  };
+  add("--tool", words.tool);
+  add("--tools", words.tools);
+  add("--stock", words.stock);
+  add("--machine", words.machine);
+  add("--design", words.design);
+  add("--voxel", words.voxel_mm > 0.0 ? fmt::format("{}", words.voxel_mm) : "");
+  add("--origin", words.origin);
+  add("--units", words.units);
+  add("--dialect", words.dialect);
+  add("--start-tool", words.start_tool > 0 ? fmt::format("{}", words.start_tool) : "");
+  if (words.t_changes_tool) given.emplace_back("--t-changes-tool");
+  return given;
+}
+
+bool is_program_file(const std::string& file) {
+  return fs::path(file).extension() != ".toml";
+}
+
+sim::JobFlags job_flags(const std::string& program_file, const JobWords& words) {
+  sim::JobFlags flags;
+  flags.program_file = program_file;
+  if (is_cl_file(program_file)) {
+    flags.kind = sim::ProgramKind::kCl;
+  } else if (!is_nc_program(program_file, {})) {
+    throw InputError(
+        "needs-scene", {program_file}, "surface blocks (G10 L70) need a scene: they are planned for it",
+        "write scene.toml with program, machine, [cutter] and [stock]; scenes/lin_koren_dome has one");
+  }
+  set_tools(words, flags);
+  if (!words.stock.empty() && words.stock != "auto") flags.stock_W = sim::parse_stock(words.stock);
+  if (words.voxel_mm > 0.0) flags.voxel_mm = words.voxel_mm;
+  if (!words.origin.empty()) flags.origin_M = sim::parse_vector("--origin", words.origin);
+  flags.machine = words.machine;
+  flags.design = words.design;
+  flags.units = words.units;
+  flags.dialect = words.dialect;
+  flags.start_tool = words.start_tool;
+  flags.t_changes_tool = words.t_changes_tool;
+  return flags;
+}
+
+sim::Job load_job(const std::string& file, const JobWords& words, const std::vector<std::string>& overrides) {
+  require_file(file);
+  if (is_program_file(file)) {
+    const std::string text = sim::scene_text(job_flags(file, words));
+    return sim::load_job(sim::SceneText{text, "flags"}, overrides);
+  }
+  const std::vector<std::string> given = given_words(words);
+  if (!given.empty())
+    throw InputError("flags-and-scene", {file},
+                     fmt::format("{} stands beside a scene, which says it itself", given[0]),
+                     "write it into the scene, or replace a key: --set stock.voxel_mm=0.1");
+  return sim::load_job(file, overrides);
+}
+
+}  // namespace swarf::cli

@@ -1,0 +1,52 @@
+#include "machine/shipped.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <system_error>
+
+namespace swarf::machine {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Empty where no folder above the program holds machines.
+fs::path shipped_folder() {
+  std::error_code problem;
+  const fs::path program = fs::read_symlink("/proc/self/exe", problem);
+  constexpr std::array<const char*, 2> kPlaces{"share/swarf/machines", "assets/machines"};
+  for (fs::path at = program.parent_path(); !at.empty(); at = at.parent_path()) {
+    for (const char* place : kPlaces) {
+      if (fs::is_directory(at / place, problem)) return at / place;
+    }
+    if (at == at.parent_path()) break;
+  }
+  return {};
+}
+
+bool is_path(const std::string& written) {
+  return written.find('/') != std::string::npos || written.ends_with(".toml");
+}
+
+}  // namespace
+
+std::vector<ShippedMachine> shipped_machines() {
+  std::vector<ShippedMachine> machines;
+  std::error_code problem;
+  for (const fs::directory_entry& entry : fs::directory_iterator(shipped_folder(), problem)) {
+    const fs::path file = entry.path() / "machine.toml";
+    if (fs::exists(file, problem)) machines.push_back({entry.path().filename().string(), file.string()});
+  }
+  std::sort(machines.begin(), machines.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
+  return machines;
+}
+
+std::string machine_file(const std::string& written) {
+  if (is_path(written)) return written;
+  for (const ShippedMachine& machine : shipped_machines()) {
+    if (machine.name == written) return machine.file;
+  }
+  return "";
+}
+
+}  // namespace swarf::machine

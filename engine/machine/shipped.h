@@ -1,0 +1,22 @@
+// The machines that come with the program: folders with a machine.toml.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace swarf::machine {
+
+struct ShippedMachine {
+  std::string name;  ///< of its folder: "mill_3axis"
+  std::string file;  ///< its machine.toml
+};
+
+/// All of them by name: of share/swarf/machines or assets/machines in the nearest folder above the running
+/// program that has one. Empty where there is none.
+std::vector<ShippedMachine> shipped_machines();
+
+/// The file that a scene or a flag means: `written` itself where it is a path (it has a slash or ends in
+/// .toml), else the shipped machine of that name; "" where none is called so.
+std::string machine_file(const std::string& written);
+
+}  // namespace swarf::machine

@@ -1,0 +1,34 @@
+// What a scene leaves open and its program settles: whose tool the only one is, the block of stock, its
+// voxel, where it stands on the machine. Every value that was taken is a row of Scene::assumptions.
+//
+//   tools    one tool without a number is the only one that the program asks for
+//   box      the tip's way over all feed moves, the largest radius and 2 mm on every side; its top is Z 0
+//   where
+//            a path with an upright tool crosses it (the usual zero of a milled part), else the highest feed
+//            move; with a mesh as design the box holds it too
+//   voxel    a twentieth of the smallest tool; coarser where the faces would have more than 600 000 cells or
+//            half of the memory would not hold them; never above a quarter of the tool or of the block
+//   origin   "on_table": the middle of the stock's lower face 100 mm above the machine's own work origin, as
+//   a
+//            vice holds it
+#pragma once
+
+#include "base/diagnostics.h"
+#include "cutter/cutter.h"
+#include "sim/job/scene.h"
+
+namespace swarf::sim {
+
+/// A grid on which the block or a tool's cut has no extent shows nothing ("out-of-range").
+void check_voxel(const StockSettings& stock, const std::vector<cutter::Cutter>& tools,
+                 Diagnostics& diagnostics);
+
+/// Gives the tools of `tools = "6"` the number that the program calls, and says what a list lacks. NC and CL
+/// jobs whose program has not been loaded. "unknown-tool" names every tool that the program asks for.
+void bind_tools(Job& job, Diagnostics& diagnostics);
+
+/// Box, voxel and origin, where they are open, of a job whose machine, program and design are loaded.
+/// "machine-needed": a program of five axes and a scene without a machine; "nothing-to-cut": no feed move.
+void fill_open(Job& job, Diagnostics& diagnostics);
+
+}  // namespace swarf::sim
