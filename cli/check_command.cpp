@@ -55,6 +55,8 @@ Checked check_scene(const std::string& file) {
   sim::MeasuredPath moved = sim::move_tool(job, silent);
   const toolpath::ToolPath& path = moved.path;
   std::vector<Diagnostic> told = job.warnings;
+  for (const sim::Assumption& one : job.scene.assumptions)
+    told.push_back({"assumed", Severity::kNote, {file}, one.what + ": " + one.value, one.change});
   told.insert(told.end(), moved.warnings.begin(), moved.warnings.end());
   const nlohmann::ordered_json numbers{{"elements", path.elements.size()},
                                        {"passes", path.passes},
@@ -233,8 +235,9 @@ void add_check(CLI::App& app, int& exit_code) {
   command->add_option("--machine", options->nc.machine, "machine.toml that NC programs are read for");
   command->add_option("--dialect", options->nc.dialect,
                       program::dialect_list(" or ") + "; recognised when left out");
-  command->add_option("--tools", options->nc.tools,
-                      "tool table of NC programs: .toml with [[tool]], or LinuxCNC's .tbl");
+  command->add_option(
+      "--tools", options->nc.tools,
+      "tool table of NC programs: .toml with [[tool]], LinuxCNC's .tbl, Fusion's .json, FreeCAD's .fctl");
   command->add_option(
       "--kinematics", options->nc.kinematics,
       "what LinuxCNC's M428 M429 M430 select on this machine: m430=identity, m428=tcp, start=tcp, ...");

@@ -99,6 +99,22 @@ bool is_rotary(const Axis& axis) {
   return axis.kind == AxisKind::kRotary;
 }
 
+/// A line through each rotary axis, where its link carries it.
+DrawLines rotary_lines(const machine::MachineScene& machine, const AxisValues& q, double length) {
+  constexpr render::Rgb kAxisColour{0.55F, 0.05F, 0.60F};
+  const std::vector<Pose> poses = machine::link_poses(machine, q);
+  DrawLines lines;
+  for (const machine::Link& link : machine.links) {
+    if (link.axis < 0 || !is_rotary(machine.model.axes[static_cast<size_t>(link.axis)])) continue;
+    const Axis& axis = machine.model.axes[static_cast<size_t>(link.axis)];
+    const Pose carried = link.parent < 0 ? Pose::Identity() : poses[static_cast<size_t>(link.parent)];
+    const Vec3 reach = length * axis.direction_M;
+    lines.push_back(
+        {{carried * (axis.origin_M - reach), carried * (axis.origin_M + reach)}, kAxisColour, 3.0F});
+  }
+  return lines;
+}
+
 AxisValues at_zero(const kinematics::MachineModel& model) {
   AxisValues q = AxisValues::Zero();
   for (size_t i = 0; i < model.axes.size(); ++i) {
@@ -201,6 +217,7 @@ render::Image path_panel(const sim::Job& job, const toolpath::ToolPath& path) {
   const Box& box = job.scene.stock.box_W;
   const toolpath::FeedWay way = toolpath::feed_way(path.elements);
   Box seen{box.lower.cwiseMin(way.box_W.lower), box.upper.cwiseMax(way.box_W.upper)};
+  widen(seen, Vec3::Zero());
   // The lower face stands for the block, whose inside shall be seen.
   const TriMesh floor = box_mesh({box.lower - Vec3(0, 0, 0.01 * box.size().maxCoeff()),
                                   Vec3(box.upper.x(), box.upper.y(), box.lower.z())});
@@ -224,9 +241,13 @@ render::Image work_panel(const sim::Job& job, const toolpath::ToolPath& path) {
   const MachineView view(job);
   const TriMesh stock = box_mesh(job.scene.stock.box_W);
   std::vector<render::DrawItem> items = view.items(q, tool, &stock);
-  const Box seen = bounds_of(items);
-  return panel(std::move(items), axes_arrows(view.work_pose(q), 0.1 * seen.size().maxCoeff()), seen,
-               kMachineSide, {model.name, values_text(model, q)});
+  // The work and what is near it: the whole machine would leave the stock a few pixels.
+  const Pose X_MW = view.work_pose(q);
+  const Vec3 centre = X_MW * job.scene.stock.box_W.centre();
+  const double near = 1.1 * job.scene.stock.box_W.size().maxCoeff() + 60.0;
+  return panel(std::move(items), axes_arrows(X_MW, 0.3 * near),
+               {centre - Vec3::Constant(near), centre + Vec3::Constant(near)}, kMachineSide,
+               {model.name, values_text(model, q)});
 }
 
 }  // namespace
@@ -235,18 +256,25 @@ render::Image machine_overview(const machine::MachineScene& machine) {
   sim::Job job;
   job.machine = machine;
   const MachineView view(job);
-  std::vector<render::Image> panels;
-  Box seen = empty_box();
+  const bool bare = std::all_of(machine.links.begin(), machine.links.end(),
+                                [](const machine::Link& link) { return link.mesh.triangles.empty(); });
+  // A machine without meshes has nothing to be seen by but this plate under its work.
+  const TriMesh plate = box_mesh({Vec3(-100, -100, -20), Vec3(100, 100, 0)});
   const std::array<AxisValues, 2> places{at_zero(machine.model), turned(machine.model)};
+  Box seen = empty_box();
   for (const AxisValues& q : places) {
-    const Box one = bounds_of(view.items(q, 0, nullptr));
+    const Box one = bounds_of(view.items(q, 0, bare ? &plate : nullptr));
     widen(seen, one.lower);
     widen(seen, one.upper);
   }
-  for (const AxisValues& q : places)
-    panels.push_back(panel(view.items(q, 0, nullptr),
-                           axes_arrows(view.work_pose(q), 0.12 * seen.size().maxCoeff()), seen, kMachineSide,
+  const double length = seen.size().maxCoeff();
+  std::vector<render::Image> panels;
+  for (const AxisValues& q : places) {
+    DrawLines lines = axes_arrows(view.work_pose(q), 0.12 * length);
+    for (render::DrawLine& line : rotary_lines(machine, q, 0.3 * length)) lines.push_back(std::move(line));
+    panels.push_back(panel(view.items(q, 0, bare ? &plate : nullptr), std::move(lines), seen, kMachineSide,
                            {machine.model.name, values_text(machine.model, q)}));
+  }
   return joined(panels[0], panels[1]);
 }
 

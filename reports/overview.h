@@ -11,7 +11,8 @@ namespace swarf::reports {
 
 /// Two views of the machine: its axes at zero (in the middle of the travel where zero lies outside), then the
 /// rotary axes at +30 degrees; without rotary axes the linear ones moved by 30 % of their travel. The arrows
-/// stand on the work's origin: X red, Y green, Z blue.
+/// stand on the work's origin: X red, Y green, Z blue; a purple line is a rotary axis. A machine without
+/// meshes shows a plate under its work.
 render::Image machine_overview(const machine::MachineScene& machine);
 
 /// The path in the edges of the stock (feed moves orange, rapids blue), then the machine at the middle of the

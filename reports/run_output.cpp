@@ -26,6 +26,12 @@ namespace fs = std::filesystem;
 
 constexpr double kPartGlbError = 2e-3;  // mm; a fifth of a usual scallop, far below a pixel
 
+/// With an automatic voxel, where all is meant for a first look, a tenth of that.
+double part_error_mm(const sim::Job& job) {
+  const sim::StockSettings& stock = job.scene.stock;
+  return stock.auto_voxel ? std::max(0.1 * stock.voxel_mm, kPartGlbError) : kPartGlbError;
+}
+
 /// Runs the parts of the writing one after the other; what goes wrong in one does not take the others with
 /// it.
 class Attempts {
@@ -127,7 +133,7 @@ void write_state_or_keep(PendingFolder& folder, const sim::Job& job, const sim::
 void write_glb(const PendingFolder& folder, const FinishedRun& run, const TriMesh& closed, Progress& progress,
                RunFiles& files) {
   progress.begin("glTF", 2, "files");
-  const DisplayMesh light = display_mesh(run, closed, kPartGlbError);
+  const DisplayMesh light = display_mesh(run, closed, part_error_mm(run.job));
   files.part_error_mm = light.error_mm;
   write_part_glb(run, light, folder.file("part.glb"));
   files.part_glb = folder.file("part.glb");

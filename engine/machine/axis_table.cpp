@@ -142,18 +142,23 @@ std::string set_usual_dynamics(std::vector<Axis>& axes) {
   }
   const MachineClass& usual = *std::find_if(
       kClasses.begin(), kClasses.end(), [&](const MachineClass& one) { return travel <= one.travel_max_mm; });
-  std::string text;
+  std::vector<std::pair<std::string, std::string>> filled;  // value, axes
   const auto fill = [&](const Axis& axis, double& value, double otherwise, const char* unit) {
     if (!std::isnan(value)) return;
     value = is_rotary(axis) ? rad_from_deg(otherwise) : otherwise;
-    text += fmt::format("{}{} {:g} {}/{}", text.empty() ? "" : ", ", axis.name, otherwise,
-                        is_rotary(axis) ? "deg" : "mm", unit);
+    const std::string said = fmt::format("{:g} {}/{}", otherwise, is_rotary(axis) ? "deg" : "mm", unit);
+    auto row = std::find_if(filled.begin(), filled.end(), [&](const auto& one) { return one.first == said; });
+    if (row == filled.end()) row = filled.insert(filled.end(), {said, ""});
+    row->second += " " + axis.name;
   };
   for (Axis& axis : axes) {
     const bool rotary = is_rotary(axis);
     fill(axis, axis.acceleration_max, rotary ? usual.rotary_acceleration : usual.acceleration, "s2");
     fill(axis, axis.jerk_max, rotary ? usual.rotary_jerk : usual.jerk, "s3");
   }
+  std::string text;
+  for (const auto& [value, of] : filled)
+    text += fmt::format("{}{} of{}", text.empty() ? "" : ", ", value, of);
   if (text.empty()) return "";
   return text + fmt::format(" (a {}: its longest travel is {:g} mm)", usual.name, travel);
 }

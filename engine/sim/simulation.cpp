@@ -175,7 +175,7 @@ InputError blocks_miss_stock(const Job& job, const toolpath::Elements& elements)
       fmt::format("an offset of X {:.3f} Y {:.3f} Z {:.3f} mm brings the path there (setup.offsets of the "
                   "work offset that is used, or the tool length that was not called); or stock.box_mm moves "
                   "by X {:.3f} Y {:.3f} Z {:.3f}",
-                  shift.x(), shift.y(), shift.z(), -shift.x(), -shift.y(), -shift.z())};
+                  shift.x(), shift.y(), shift.z(), 0.0 - shift.x(), 0.0 - shift.y(), 0.0 - shift.z())};
 }
 
 /// A path that stays a cutter's reach away from the stock is a wrong scene, not a clean run.

@@ -24,6 +24,7 @@ namespace {
 constexpr double kMargin = 2.0;              // mm, of an automatic box
 constexpr double kClampHeight = 100.0;       // mm, of "on_table"
 constexpr double kFaceCells = 600e3;         // of an automatic voxel, over the faces of the box
+constexpr double kMostMb = 2048.0;           // of the uncut block of an automatic voxel
 constexpr double kShareOfTool = 1.0 / 20.0;  // of an automatic voxel
 
 void assume(Job& job, std::string what, std::string value, std::string reason, std::string change) {
@@ -188,21 +189,27 @@ void fill_box(Job& job, const toolpath::FeedWay& way) {
   const double beyond = largest_radius(job.scene.tools) + kMargin;
   const double sideways = way.upright ? kMargin : beyond;
   Box box{way.box_W.lower - Vec3(beyond, beyond, sideways), way.box_W.upper + Vec3(beyond, beyond, 0.0)};
-  const bool zero_is_top = way.upright && way.box_W.lower.z() < 0.0 && way.box_W.upper.z() > 0.0;
+  const bool zero_is_top = way.upright && way.box_W.lower.z() < 0.0;
   if (zero_is_top) box.upper.z() = 0.0;
+  // All at one depth: what lies above it was reached by rapids.
+  const bool flat = !zero_is_top && way.box_W.size().z() < kMargin;
+  if (flat) box.upper.z() += kMargin;
   std::string reason = fmt::format(
       "the feed moves' box, the largest tool's radius and {:g} mm around it, {:g} mm below; "
       "its top is {}",
-      kMargin, sideways, zero_is_top ? "Z 0, which the path crosses" : "the highest feed move");
+      kMargin, sideways,
+      zero_is_top ? "Z 0, below which it goes"
+      : flat      ? "2 mm above them"
+                  : "the highest of them");
   if (job.design_mesh) {
     const Box design = mesh::bounds(*job.design_mesh);
     box = {box.lower.cwiseMin(design.lower), box.upper.cwiseMax(design.upper)};
     reason += "; the design lies within it";
   }
   // To the next thousandth outwards: numbers that a person can read and write.
-  constexpr double kStep = 1e-3;
-  box.lower = (box.lower / kStep).array().floor() * kStep;
-  box.upper = (box.upper / kStep).array().ceil() * kStep;
+  constexpr double kStep = 1e-3, kRounding = 1e-6;
+  box.lower = ((box.lower / kStep).array() + kRounding).floor() * kStep;
+  box.upper = ((box.upper / kStep).array() - kRounding).ceil() * kStep;
   job.scene.stock.box_W = box;
   assume(job, "Stock", corners(box), reason, "--stock x0,y0,z0,x1,y1,z1; stock.box_mm");
 }
@@ -222,7 +229,7 @@ void fill_voxel(Job& job) {
   const double by_cells = std::sqrt(faces / kFaceCells);
   const double coarsest = 0.25 * std::min(diameter, size.minCoeff());
   double voxel = rounded_down(std::min(std::max(by_tool, by_cells), coarsest));
-  const double limit = 0.5 * memory_limit_mb(job.scene) * 1024.0 * 1024.0;
+  const double limit = std::min(kMostMb, 0.5 * memory_limit_mb(job.scene)) * 1024.0 * 1024.0;
   bool by_memory = false;
   while (static_cast<double>(stock::Stock::memory_estimate(stock.box_W, voxel)) > limit) {
     voxel *= 1.25;
@@ -231,7 +238,8 @@ void fill_voxel(Job& job) {
   stock.voxel_mm = voxel;
   if (job.scene.movie.auto_voxel) job.scene.movie.voxel_mm = std::max(2.0 * voxel, by_cells);
   const std::string reason =
-      by_memory ? std::string("half of the memory that is free holds no finer one")
+      by_memory
+          ? fmt::format("a finer one needs more than {:.0f} MB for the uncut block", limit / 1024.0 / 1024.0)
       : by_cells > by_tool
           ? fmt::format(
                 "{:g} cells over the faces of the block; a twentieth of the smallest tool would be {:.2g} mm",

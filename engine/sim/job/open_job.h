@@ -2,12 +2,13 @@
 // voxel, where it stands on the machine. Every value that was taken is a row of Scene::assumptions.
 //
 //   tools    one tool without a number is the only one that the program asks for
-//   box      the tip's way over all feed moves, the largest radius and 2 mm on every side; its top is Z 0
-//   where
-//            a path with an upright tool crosses it (the usual zero of a milled part), else the highest feed
-//            move; with a mesh as design the box holds it too
+//   box      the tip's way over all feed moves, the largest radius and 2 mm on every side, 2 mm below; its
+//   top is
+//            Z 0 where an upright tool goes below it (the usual zero of a milled part), else the highest feed
+//            move, 2 mm above it where all are at one height; with a mesh as design the box holds it too
 //   voxel    a twentieth of the smallest tool; coarser where the faces would have more than 600 000 cells or
-//            half of the memory would not hold them; never above a quarter of the tool or of the block
+//            2 GB or half of the free memory would not hold them; never above a quarter of the tool or of the
+//            block
 //   origin   "on_table": the middle of the stock's lower face 100 mm above the machine's own work origin, as
 //   a
 //            vice holds it

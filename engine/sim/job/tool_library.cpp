@@ -299,7 +299,8 @@ std::vector<Cutter> read_tool_library(const std::string& path, std::map<int, std
 std::vector<std::pair<std::string, std::string>> tool_library_parts(const std::string& path) {
   std::vector<std::pair<std::string, std::string>> parts;
   if (lower_case(fs::path(path).extension().string()) != ".fctl") return parts;
-  for (const json& tool : part_of(load_json(path), "tools")) {
+  const json library = load_json(path);
+  for (const json& tool : part_of(library, "tools")) {
     const std::string name = text_at(tool, "path");
     const std::string file = bit_file(path, name);
     if (!file.empty()) parts.emplace_back(name, file);

@@ -103,8 +103,9 @@ std::string pictures_text(const Job& job) {
     kinds += (kinds.empty() ? "" : ", ") + toml_string(kind);
   return fmt::format(
       "\n[movie]\nseconds = {}  # 10: a movie of ten seconds, which takes half a minute\nvoxel_mm = {}\n"
-      "\n[stills]\nkinds = [{}]  # machine, part, deviation, fan\nsamples = {}\n",
-      job.scene.movie.seconds, job.scene.movie.voxel_mm, kinds, job.scene.stills.samples);
+      "\n[stills]\nkinds = [{}]  # machine, part, deviation, fan\nsize = [{}, {}]\nsamples = {}\n",
+      job.scene.movie.seconds, job.scene.movie.voxel_mm, kinds, job.scene.stills.size[0],
+      job.scene.stills.size[1], job.scene.stills.samples);
 }
 
 }  // namespace

@@ -82,6 +82,14 @@ TEST(ToolLibrary, FreeCadReadsItsBits) {
   EXPECT_EQ(bit.tools[0].number, 1);
 }
 
+TEST(ToolLibrary, KnowsTheFilesThatItIsMadeOf) {
+  const auto parts = tool_library_parts(kFolder + "Library/shop.fctl");
+  ASSERT_EQ(parts.size(), 5U);  // gone.fctb is not there
+  EXPECT_EQ(parts[0].first, "mill_6.fctb");
+  EXPECT_TRUE(std::filesystem::is_regular_file(parts[0].second));
+  EXPECT_TRUE(tool_library_parts(kFolder + "fusion.json").empty());
+}
+
 std::string refusal(const std::string& name, const std::string& text) {
   const auto folder = test::fresh_folder("tool_library");
   test::write_text(folder / name, text);
