@@ -26,10 +26,10 @@ namespace fs = std::filesystem;
 
 constexpr double kPartGlbError = 2e-3;  // mm; a fifth of a usual scallop, far below a pixel
 
-/// With an automatic voxel, where all is meant for a first look, a tenth of that.
+/// With an automatic voxel, where all is meant for a first look, a quarter of that.
 double part_error_mm(const sim::Job& job) {
   const sim::StockSettings& stock = job.scene.stock;
-  return stock.auto_voxel ? std::max(0.1 * stock.voxel_mm, kPartGlbError) : kPartGlbError;
+  return stock.auto_voxel ? std::max(0.25 * stock.voxel_mm, kPartGlbError) : kPartGlbError;
 }
 
 /// Runs the parts of the writing one after the other; what goes wrong in one does not take the others with

@@ -47,7 +47,8 @@ class FlagsJob : public testing::Test {
   json metrics() const { return json::parse(std::ifstream(root_ / "out" / "metrics.json")); }
   double removed() const { return at_path(metrics(), "stock.volume_removed_mm3").get<double>(); }
   std::string assumed(const std::string& what) const {
-    for (const json& one : metrics().at("assumptions")) {
+    const json all = metrics();
+    for (const json& one : all.at("assumptions")) {
       if (one.at("what") == what) return one.at("value").get<std::string>();
     }
     return "";
@@ -282,7 +283,7 @@ TEST_F(FlagsJob, ALengthThatIsNotCalledIsToldBeforeThePathMisses) {
   EXPECT_NE(plunged.output.find("length-not-compensated"), std::string::npos) << plunged.output;
   const std::string high =
       write("high.toml", read_text(scene).replace(read_text(scene).find("[-10, -20, -20], [70, 20, 0]"), 28,
-                                                  "[-10, -20, 30], [70, 20, 50]"));
+                                                  "[-10, -20, -200], [70, 20, -150]"));
   const ProgramRun missed = run(high);
   EXPECT_EQ(missed.exit_code, 2) << missed.output;
   EXPECT_NE(missed.output.find("length-not-compensated"), std::string::npos) << missed.output;

@@ -78,7 +78,7 @@ std::string scene_text(const JobFlags& flags) {
   text += setup_text(flags) + stock_text(flags);
   if (!flags.design.empty()) text += "\n[design]\nmesh = " + toml_string(flags.design) + "\n";
   // A first look: one picture, in seconds.
-  text += "\n[movie]\nseconds = 0\n\n[stills]\nkinds = [\"part\"]\nsize = [960, 540]\nsamples = 8\n";
+  text += "\n[movie]\nseconds = 0\n\n[stills]\nkinds = [\"part\"]\nsize = [960, 540]\nsamples = 6\n";
   return text;
 }
 
