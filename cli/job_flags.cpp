@@ -131,7 +131,7 @@ sim::JobFlags job_flags(const std::string& program_file, const JobWords& words) 
   sim::JobFlags flags;
   flags.program_file = program_file;
   if (is_cl_file(program_file)) {
-    flags.kind = sim::ProgramKind::kCl;
+    flags.cl_data = true;
   } else if (!is_nc_program(program_file, {})) {
     throw InputError(
         "needs-scene", {program_file}, "surface blocks (G10 L70) need a scene: they are planned for it",

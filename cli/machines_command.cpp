@@ -41,8 +41,9 @@ std::string travel_of(const Axis& axis) {
 int list_machines() {
   const std::vector<machine::ShippedMachine> machines = machine::shipped_machines();
   if (machines.empty())
-    throw InputError("no-machines", {"swarf machines"}, "no folder of machines lies above the program",
-                     "keep assets/machines (or share/swarf/machines) above it, or name a machine.toml");
+    throw InputError(
+        "no-machines", {"swarf machines"}, "no folder of machines lies above the program",
+        "keep assets/machines (or share/swarf/assets/machines) above it, or name a machine.toml");
   for (const machine::ShippedMachine& one : machines) {
     const machine::MachineScene scene = machine::load_machine(one.file);
     fmt::print("{:<16} {} ({})\n", one.name, scene.model.name, kind_of(scene.model));

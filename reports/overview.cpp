@@ -14,7 +14,6 @@
 #include "render/lettering.h"
 #include "render/ray/still.h"
 #include "reports/machine_view.h"
-#include "toolpath/feed_way.h"
 
 namespace swarf::reports {
 namespace {
@@ -215,13 +214,16 @@ DrawLines way_lines(const toolpath::Elements& elements) {
 
 render::Image path_panel(const sim::Job& job, const toolpath::ToolPath& path) {
   const Box& box = job.scene.stock.box_W;
-  const toolpath::FeedWay way = toolpath::feed_way(path.elements);
-  Box seen{box.lower.cwiseMin(way.box_W.lower), box.upper.cwiseMax(way.box_W.upper)};
+  DrawLines lines = way_lines(path.elements);
+  Box seen = box;
   widen(seen, Vec3::Zero());
+  for (const render::DrawLine& line : lines) {
+    if (line.colour != kFeedColour) continue;  // rapids come from afar
+    for (const Vec3& point : line.points) widen(seen, point);
+  }
   // The lower face stands for the block, whose inside shall be seen.
   const TriMesh floor = box_mesh({box.lower - Vec3(0, 0, 0.01 * box.size().maxCoeff()),
                                   Vec3(box.upper.x(), box.upper.y(), box.lower.z())});
-  DrawLines lines = way_lines(path.elements);
   for (render::DrawLine& edge : box_edges(box)) lines.push_back(std::move(edge));
   for (render::DrawLine& arrow : axes_arrows(Pose::Identity(), 0.15 * box.size().maxCoeff()))
     lines.push_back(std::move(arrow));

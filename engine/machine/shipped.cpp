@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 fs::path shipped_folder() {
   std::error_code problem;
   const fs::path program = fs::read_symlink("/proc/self/exe", problem);
-  constexpr std::array<const char*, 2> kPlaces{"share/swarf/machines", "assets/machines"};
+  constexpr std::array<const char*, 2> kPlaces{"share/swarf/assets/machines", "assets/machines"};
   for (fs::path at = program.parent_path(); !at.empty(); at = at.parent_path()) {
     for (const char* place : kPlaces) {
       if (fs::is_directory(at / place, problem)) return at / place;

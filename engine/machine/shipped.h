@@ -11,8 +11,8 @@ struct ShippedMachine {
   std::string file;  ///< its machine.toml
 };
 
-/// All of them by name: of share/swarf/machines or assets/machines in the nearest folder above the running
-/// program that has one. Empty where there is none.
+/// All of them by name: of share/swarf/assets/machines or assets/machines in the nearest folder above the
+/// running program that has one. Empty where there is none.
 std::vector<ShippedMachine> shipped_machines();
 
 /// The file that a scene or a flag means: `written` itself where it is a path (it has a slash or ends in

@@ -95,12 +95,14 @@ TEST_F(FlagsJob, ThePageAndThePictureAreThereAndTheFolderStandsAlone) {
 }
 
 TEST_F(FlagsJob, WhatIsSaidIsNotAssumed) {
-  const ProgramRun done = run(write("part.nc", kGroove) +
-                              " --tools T1=10 --stock=-10,-20,-15,30,20,0 --voxel 0.4 --machine mill_3axis");
+  const ProgramRun done =
+      run(write("part.nc", kGroove) +
+          " --tools T1=10 --stock=-10,-20,-15,30,20,0 --voxel 0.4 --machine mill_3axis --origin=-10,0,150");
   ASSERT_EQ(done.exit_code, 0) << done.output;
   const double half = (30.0 * 10.0 + 0.125 * swarf::kPi * 100.0) * 4.0;
   EXPECT_NEAR(removed(), half, 2e-3 * half);
   EXPECT_TRUE(assumed("Machine").empty() && assumed("Stock").empty() && assumed("Voxel").empty());
+  EXPECT_TRUE(assumed("Clamping").empty());
   EXPECT_EQ(at_path(metrics(), "stock.voxel_mm"), 0.4);
 }
 

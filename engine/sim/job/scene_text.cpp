@@ -33,7 +33,7 @@ std::string triple(const Vec3& v) {
 std::string setup_text(const JobFlags& flags) {
   std::string text = "\n[setup]\n";
   text += fmt::format("work_origin_mm = {}\n", flags.origin_M ? triple(*flags.origin_M) : "\"on_table\"");
-  if (flags.kind != ProgramKind::kNc) return text;
+  if (flags.cl_data) return text;
   text += "without_length = \"tip\"\n";
   if (!flags.units.empty()) text += fmt::format("units = \"{}\"\n", flags.units);
   if (flags.start_tool > 0) text += fmt::format("start_tool = {}\n", flags.start_tool);
@@ -67,7 +67,7 @@ std::string toml_string(const std::string& text) {
 std::string scene_text(const JobFlags& flags) {
   const std::string name = std::filesystem::path(flags.program_file).filename().string();
   std::string text = "title = " + toml_string(name) + "\n";
-  text += (flags.kind == ProgramKind::kCl ? "cl = " : "nc = ") + toml_string(flags.program_file) + "\n";
+  text += (flags.cl_data ? "cl = " : "nc = ") + toml_string(flags.program_file) + "\n";
   const auto add = [&](const char* key, const std::string& value) {
     if (!value.empty()) text += fmt::format("{} = {}\n", key, toml_string(value));
   };

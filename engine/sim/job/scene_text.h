@@ -15,9 +15,9 @@ namespace swarf::sim {
 /// A job as flags say it. What is left out is left to the reader of scenes, which fills it in and says so.
 struct JobFlags {
   std::string program_file;
-  ProgramKind kind = ProgramKind::kNc;  ///< NC or CL
-  std::string machine;                  ///< name of a shipped one, or a file; "": the generic three-axis mill
-  std::string tools;                    ///< words (tool_words.h); "": `tool_table`
+  bool cl_data = false;  ///< else an NC program
+  std::string machine;   ///< name of a shipped one, or a file; "": the generic three-axis mill
+  std::string tools;     ///< words (tool_words.h); "": `tool_table`
   std::string tool_table;
   std::optional<Box> stock_W;  ///< mm; none: from the path
   std::optional<double> voxel_mm;
