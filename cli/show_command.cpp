@@ -34,7 +34,7 @@ render::Image picture(const std::string& file, const JobWords& words) {
   const sim::Job job = load_job(file, words, {});
   print_diagnostics(job.warnings);
   Diagnostics diagnostics;
-  const toolpath::ToolPath path = sim::job_path(job, diagnostics);
+  const toolpath::ToolPath path = sim::job_path(job, diagnostics).path;
   print_diagnostics(diagnostics.list());
   return reports::job_overview(job, path);
 }
