@@ -201,7 +201,7 @@ int run(const RunOptions& options, std::vector<reports::FileVerdict>& found) {
   if (options.record && !job.scene.text.empty())
     throw InputError("needs-scene", {"--record"}, "a record is replayed from a scene, and there is none",
                      "write one: swarf init " + shell_text({options.scene}) + " .., then run it");
-  print_assumptions(job.scene.assumptions, options.json);
+  if (!manner().quiet) print_assumptions(job.scene.assumptions, options.json);
   print_diagnostics(job.warnings);
   const std::string folder = options.output.empty() ? "out/" + job.scene.name : options.output;
   reports::check_output_folder(folder, reports::kRunMark, least_bytes(job.scene));
@@ -212,6 +212,7 @@ int run(const RunOptions& options, std::vector<reports::FileVerdict>& found) {
   reports::begin_run(pending, job, output);
   TerminalProgress progress;
   sim::Result result = sim::simulate(job, cut_options(options, pending), progress);
+  print_diagnostics(result.main.warnings);
   const std::vector<Diagnostic> failures = reports::write_run(pending, job, result, output, progress);
   print_diagnostics(failures);
   found.push_back(verdict_of(job, result, failures));

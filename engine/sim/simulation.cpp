@@ -128,8 +128,6 @@ MeasuredPath planned_path(const Job& job, Progress& progress) {
   measured.nc = std::move(found.nc);
   measured.warnings = diagnostics.list();
   progress.end();
-  // What explains a path that misses the stock must not wait for the end of the run.
-  for (const Diagnostic& warning : measured.warnings) progress.note(format(warning));
   return measured;
 }
 
@@ -176,6 +174,14 @@ InputError blocks_miss_stock(const Job& job, const toolpath::Elements& elements)
                   "work offset that is used, or the tool length that was not called); or stock.box_mm moves "
                   "by X {:.3f} Y {:.3f} Z {:.3f}",
                   shift.x(), shift.y(), shift.z(), 0.0 - shift.x(), 0.0 - shift.y(), 0.0 - shift.z())};
+}
+
+/// What the program was warned of may explain its fault.
+InputError with_warnings(const std::vector<Diagnostic>& warnings, const InputError& error) {
+  Diagnostics all;
+  for (const Diagnostic& one : warnings) all.warning(one.code, one.where, one.text, one.fix);
+  all.append(error.diagnostics);
+  return InputError(all);
 }
 
 /// A path that stays a cutter's reach away from the stock is a wrong scene, not a clean run.
@@ -342,7 +348,8 @@ Result simulate(const Job& job, const CutOptions& options, Progress& progress) {
   result.stopped = progress.stop_requested();
   if (result.stopped) return result;
   const bool planned = !result.main.path.elements.hold_blocks();
-  if (!planned && result.volume_removed_mm3 <= 0.0) throw blocks_miss_stock(job, result.main.path.elements);
+  if (!planned && result.volume_removed_mm3 <= 0.0)
+    throw with_warnings(result.main.warnings, blocks_miss_stock(job, result.main.path.elements));
   progress.begin("cut measuring rays", 1, "surfaces");
   cut_dexels(job, result.main);
   progress.end();
