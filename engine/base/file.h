@@ -28,6 +28,7 @@ std::string read_all(const std::string& path, const FileFault& fault);
 /// whole.
 void read_in_pieces(const std::string& path, const FileFault& fault,
                     const std::function<void(std::string_view)>& visit);
+/// Bytes; a multiple of eight, so that words lie in one piece.
 inline constexpr size_t kFilePiece = size_t{1} << 18U;
 
 /// Of the bytes of a file: their number, then words of eight, the last filled with zeros.

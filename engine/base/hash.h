@@ -8,12 +8,14 @@
 
 namespace swarf {
 
+/// Depends on the order of what is added, and on how it is cut into words.
 class Hash {
  public:
   void add(uint64_t word) {
     state_ = (state_ ^ word) * 0x100000001b3ULL;
     state_ ^= state_ >> 32;
   }
+  /// By its bits: 0 and -0 differ.
   void add(double value) { add(std::bit_cast<uint64_t>(value)); }
   void add(float value) { add(uint64_t{std::bit_cast<uint32_t>(value)}); }
   uint64_t value() const { return state_; }

@@ -22,6 +22,7 @@ class IndexIterator {
   using pointer = void;
   using reference = value_type;
 
+  /// At row[at]; the number of elements is the end.
   IndexIterator(const Row& row, size_t at) : row_(&row), at_(at) {}
   value_type operator*() const { return (*row_)[at_]; }
   IndexIterator& operator++() { return ++at_, *this; }

@@ -10,6 +10,7 @@
 
 namespace swarf {
 
+/// Not for secrets: whoever sees one number knows all that follow.
 class Rng {
  public:
   explicit Rng(uint64_t seed) : state_(seed) {}  // equal seeds give equal sequences
