@@ -1,10 +1,11 @@
-#include "cli/job_flags.h"
+#include "base/file.h"
 
 #include <fmt/format.h>
 
 #include <filesystem>
 #include <system_error>
 
+#include "base/file.h"
 #include "cli/check_cl.h"
 #include "cli/check_nc.h"
 #include "program/dialects.h"
@@ -152,6 +153,7 @@ sim::JobFlags job_flags(const std::string& program_file, const JobWords& words) 
 
 sim::Job load_job(const std::string& file, const JobWords& words, const std::vector<std::string>& overrides) {
   require_file(file);
+  refuse_special_file(file);
   if (is_program_file(file)) {
     const std::string text = sim::scene_text(job_flags(file, words));
     return sim::load_job(sim::SceneText{text, "flags"}, overrides);

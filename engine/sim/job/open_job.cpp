@@ -208,8 +208,9 @@ void fill_box(Job& job, const toolpath::FeedWay& way) {
   }
   // To the next thousandth outwards: numbers that a person can read and write.
   constexpr double kStep = 1e-3, kRounding = 1e-6;
-  box.lower = ((box.lower / kStep).array() + kRounding).floor() * kStep;
-  box.upper = ((box.upper / kStep).array() - kRounding).ceil() * kStep;
+  // + 0 turns a zero that was rounded from below into one without a sign.
+  box.lower = ((box.lower / kStep).array() + kRounding).floor() * kStep + 0.0;
+  box.upper = ((box.upper / kStep).array() - kRounding).ceil() * kStep + 0.0;
   job.scene.stock.box_W = box;
   assume(job, "Stock", corners(box), reason, "--stock x0,y0,z0,x1,y1,z1; stock.box_mm");
 }
