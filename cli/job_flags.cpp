@@ -1,4 +1,4 @@
-#include "base/file.h"
+#include "cli/job_flags.h"
 
 #include <fmt/format.h>
 
