@@ -27,13 +27,16 @@ void add(Hash& hash, const Vec3& v) {
   for (int a = 0; a < 3; ++a) hash.add(v[a]);
 }
 
-/// Name and content, so that a moved file is the same file.
+/// Name and content, so that a moved file is the same file. A job that was made in memory has none.
 std::string file_text(const std::string& path) {
+  std::error_code unreadable;
+  const std::string name = std::filesystem::path(path).filename().string();
+  if (!std::filesystem::exists(path, unreadable)) return name + " " + kAbsent;
   Hash hash;
   read_in_pieces(path, {"file-unreadable", "a file of the job cannot be read"}, [&](std::string_view piece) {
     for (const char c : piece) hash.add(uint64_t{static_cast<unsigned char>(c)});
   });
-  return fmt::format("{} {}", std::filesystem::path(path).filename().string(), hash.text());
+  return fmt::format("{} {}", name, hash.text());
 }
 
 /// Flutes as they are cut with; what stands above them, because it decides on contacts.
