@@ -175,7 +175,7 @@ Table axis_table(const sim::Job& job, const sim::Result& result) {
 }
 
 /// The judge's list, then what this program does not look at.
-std::vector<Check> checks_of(const sim::Job& job, const sim::Result& result, bool rendered) {
+std::vector<Check> checks_of(const sim::Result& result, bool rendered) {
   std::vector<Check> checks = check_rows(result.checks);
   checks.push_back(
       {"Cutter load, spindle power, deflection", "", "the simulation is geometric", State::kNotChecked});
@@ -401,7 +401,7 @@ ReportData report_data(const sim::Job& job, const sim::Result& result, const Run
     data.paper = papers::so_paper_rows(machine, *result.singularity);
     if (!data.paper.empty()) data.paper_title = "So et al. (2008), Table 2 and section 5";
   }
-  data.checks = checks_of(job, result, rendered);
+  data.checks = checks_of(result, rendered);
   data.facts = facts_of(job, result, files);
   data.facts.insert(data.facts.begin() + 1, time_facts(job, result));
   if (result.main.nc) {
