@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "reports/html.h"
 #include "reports/metrics_json.h"
 
 namespace swarf::reports {
@@ -80,31 +81,15 @@ Object result_of(const sim::Check& check, const std::string& input) {
           {"locations", Object::array({location_of({input})})}};
 }
 
-/// Text between tags and in attributes.
+/// Text between tags and in attributes: as in HTML, without the control characters that XML forbids; lines
+/// stay lines.
 std::string xml(const std::string& text) {
-  std::string out;
-  for (const char c : valid_utf8(text)) {
-    const bool control = static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t';
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      case '\n':
-        out += "&#10;";
-        break;
-      default:
-        out += control ? '?' : c;
-    }
+  std::string clean = valid_utf8(text);
+  for (char& c : clean) {
+    if (static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t') c = '?';
   }
+  std::string out;
+  for (const char c : escape(clean)) out += c == '\n' ? std::string("&#10;") : std::string(1, c);
   return out;
 }
 

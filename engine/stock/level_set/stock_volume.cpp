@@ -15,6 +15,7 @@
 #include "base/parallel.h"
 #include "stock/level_set/leaf_kernel.h"
 #include "stock/level_set/stock_grid_internal.h"
+#include "stock/sweep/instruction_sets.h"
 
 namespace swarf::stock {
 namespace {
@@ -185,8 +186,7 @@ class Cell {
 VolumeRange leaf_volume_range_any(const Surroundings& around, float slack) {
   return leaf_volume_range(around, slack);
 }
-__attribute__((target("arch=x86-64-v3"))) VolumeRange leaf_volume_range_v3(const Surroundings& around,
-                                                                           float slack) {
+SWARF_X86_64_V3 VolumeRange leaf_volume_range_v3(const Surroundings& around, float slack) {
   return leaf_volume_range(around, slack);
 }
 
@@ -197,7 +197,7 @@ VolumeRange volume_between(const LevelSet& set, double slack_mm) {
   constexpr double kRounding = 1e-6;
   const auto slack = static_cast<float>((slack_mm + set.rounding_mm) / set.voxel + kRounding);
   // Every instruction set rounds alike: no sum is contracted.
-  const auto range_of = __builtin_cpu_supports("x86-64-v3") ? leaf_volume_range_v3 : leaf_volume_range_any;
+  const auto range_of = runs_x86_64_v3() ? leaf_volume_range_v3 : leaf_volume_range_any;
   std::vector<VolumeRange> parts(set.map.size());
   parallel_chunks(parts.size(), kCountedPerTask, [&](size_t begin, size_t end) {
     for (size_t n = begin; n < end; ++n) {
