@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "base/angles.h"
 #include "mesh/mesh_crossing.h"
 #include "mesh/mesh_io.h"
 #include "mesh/mesh_nesting.h"
@@ -67,7 +68,7 @@ std::vector<double> turns_of(const TriMesh& mesh, const std::vector<uint32_t>& n
   for (const auto& t : mesh.triangles) {
     for (size_t i = 0; i < 3; ++i) {
       const Vec3 a = normal(t[i]), b = normal(t[(i + 1) % 3]);
-      const double turn = std::atan2(a.cross(b).norm(), a.dot(b));
+      const double turn = angle_between(a, b);
       for (const uint32_t v : {t[i], t[(i + 1) % 3]}) turns[numbers[v]] = std::max(turns[numbers[v]], turn);
     }
   }

@@ -20,6 +20,16 @@ constexpr const char* kPreset = "veryfast";
 constexpr const char* kQuality = "20";  // constant rate factor: no loss that shows at 1:1
 constexpr int kKeyFrameSeconds = 2;     // how far a player has to decode to jump
 
+std::string reason_of(int error) {
+  std::array<char, AV_ERROR_MAX_STRING_SIZE> text{};
+  av_strerror(error, text.data(), text.size());
+  return text.data();
+}
+
+}  // namespace
+
+/// What libav has made goes back to it.
+namespace libav {
 template <auto Free>
 struct FreeByAddress {
   template <class T>
@@ -33,22 +43,15 @@ struct FreeFormat {
     avformat_free_context(format);
   }
 };
-
-std::string reason_of(int error) {
-  std::array<char, AV_ERROR_MAX_STRING_SIZE> text{};
-  av_strerror(error, text.data(), text.size());
-  return text.data();
-}
-
-}  // namespace
+}  // namespace libav
 
 struct MovieWriter::Impl {
   std::string path;
   NewFile file;
-  std::unique_ptr<AVFormatContext, FreeFormat> format;
-  std::unique_ptr<AVCodecContext, FreeByAddress<avcodec_free_context>> codec;
-  std::unique_ptr<AVFrame, FreeByAddress<av_frame_free>> frame;
-  std::unique_ptr<AVPacket, FreeByAddress<av_packet_free>> packet;
+  std::unique_ptr<AVFormatContext, libav::FreeFormat> format;
+  std::unique_ptr<AVCodecContext, libav::FreeByAddress<avcodec_free_context>> codec;
+  std::unique_ptr<AVFrame, libav::FreeByAddress<av_frame_free>> frame;
+  std::unique_ptr<AVPacket, libav::FreeByAddress<av_packet_free>> packet;
   std::unique_ptr<SwsContext, decltype(&sws_freeContext)> scaler{nullptr, sws_freeContext};
   AVStream* stream = nullptr;
   int64_t frames = 0;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -49,8 +50,21 @@ TEST_P(BoundedScene, MeetsExpectedJson) {
   fs::remove_all(folder);
 }
 
+/// The volumes that two scenes expect, from the coordinates of their CL files alone. Wider rows than those of
+/// the figures, which take minutes.
+TEST(ScanLines, GiveTheVolumesThatScenesExpect) {
+  const auto volume = [](const std::string& words) {
+    const auto run = swarf::test::run_command("/usr/bin/python3 '" + (kScenes / "scan_lines.py").string() +
+                                              "' " SWARF_SOURCE_DIR "/assets/programs/stepnode/" + words);
+    EXPECT_EQ(run.exit_code, 0) << run.output;
+    return std::strtod(run.output.c_str(), nullptr);
+  };
+  EXPECT_NEAR(volume("coremill.cls 30 0,0,0,300,200,150 1"), 6522418.0, 2e-4 * 6522418.0);
+  EXPECT_NEAR(volume("Plane_1.cldata 10 0,-10,10,60,35,29 0.1"), 2591.1, 2e-4 * 2591.1);
+}
+
 INSTANTIATE_TEST_SUITE_P(Scenes, BoundedScene, testing::ValuesIn(bounded_scenes()),
-                         [](const auto& info) { return info.param; });
+                         [](const auto& one) { return one.param; });
 
 }  // namespace
 

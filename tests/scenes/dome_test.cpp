@@ -116,9 +116,9 @@ TEST(DomeThreads, HashIsTheSameForAnyNumber) {
   std::string hash;
   for (const char* threads : {"1", "2", "4"}) {
     const fs::path folder = swarf::test::fresh_folder("dome_threads") / "run";
-    const auto run = run_swarf(
-        "run " + kScene + " --no-render --set toolpath.compare=false --set stock.voxel_mm=0.5 --threads " +
-        threads + " -o " + folder.string());
+    const auto run =
+        run_swarf("run " + kScene + " --no-render --set toolpath.compare=false --set stock.voxel_mm=0.5 " +
+                  swarf::test::kSoonProven + "--threads " + threads + " -o " + folder.string());
     EXPECT_EQ(run.exit_code, 0) << run.output;
     const std::string found = at_path(read_json(folder / "metrics.json"), "stock.hash");
     if (!hash.empty()) {

@@ -18,11 +18,12 @@ using swarf::test::at_path;
 using swarf::test::run_swarf;
 
 const std::string kScene = SWARF_SOURCE_DIR "/scenes/lin_koren_dome/scene.toml";
-const std::string kAlone = " --set toolpath.compare=false ";
+const std::string kAlone = std::string(" --set toolpath.compare=false ") + swarf::test::kSoonProven;
 
 struct Setting {
   const char *name, *options;
   const char* scene = "lin_koren_dome";
+  const char* limits = swarf::test::kSoonProven;
 };
 void PrintTo(const Setting& setting, std::ostream* out) {
   *out << setting.name;
@@ -33,7 +34,7 @@ class MemoryTest : public testing::TestWithParam<Setting> {};
 TEST_P(MemoryTest, IsPredictedWithin15Percent) {
   const fs::path out = swarf::test::fresh_folder(std::string("memory_") + GetParam().name) / "run";
   const auto run = run_swarf("run " SWARF_SOURCE_DIR "/scenes/" + std::string(GetParam().scene) +
-                             "/scene.toml " + GetParam().options + " -o " + out.string());
+                             "/scene.toml " + GetParam().options + GetParam().limits + "-o " + out.string());
   ASSERT_LE(run.exit_code, 1) << run.output;
   const json metrics = json::parse(std::ifstream(out / "metrics.json"));
   const double predicted = at_path(metrics, "memory_predicted_mb"), peak = at_path(metrics, "memory_peak_mb");
@@ -54,7 +55,8 @@ INSTANTIATE_TEST_SUITE_P(
                             "--set design.pitch_mm=2 --set interpolator.period_ms=0.5"},
                     Setting{"rays",
                             "--no-render --set toolpath.compare=false --set stock.voxel_mm=1 "
-                            "--set design.pitch_mm=0.1"},
+                            "--set design.pitch_mm=0.1",
+                            "lin_koren_dome", " "},
                     Setting{"stock",
                             "--no-render --set toolpath.compare=false --set stock.voxel_mm=0.14 "
                             "--set design.pitch_mm=1"},

@@ -81,7 +81,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, AnyPitch,
                                          "exact_scallop_flat_lead", "exact_scallop_flat_oblique",
                                          "exact_scallop_mesh", "exact_slot_flat", "exact_slot_ball",
                                          "exact_rounded_corner", "exact_flank_f1"),
-                         [](const auto& info) { return info.param; });
+                         [](const auto& one) { return one.param; });
 
 }  // namespace
 

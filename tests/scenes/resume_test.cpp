@@ -25,7 +25,8 @@ using swarf::test::run_swarf;
 using swarf::test::write_text;
 
 const std::string kScene = SWARF_SOURCE_DIR "/scenes/lin_koren_dome/scene.toml";
-const std::string kQuick = " --no-render --set toolpath.compare=false --set design.pitch_mm=1 ";
+const std::string kQuick = std::string(" --no-render --set toolpath.compare=false --set design.pitch_mm=1 ") +
+                           swarf::test::kSoonProven;
 const std::string kCoarse = kQuick + "--set stock.voxel_mm=0.5 ";
 
 json metrics_of(const fs::path& folder) {

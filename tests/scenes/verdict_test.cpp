@@ -170,9 +170,10 @@ TEST(Verdict, AGridCoarserThanTheBlockOrTheToolIsRefused) {
 }
 
 TEST(Verdict, AFolderOrAFullDiskIsAWrongInputNotAFaultOfTheProgram) {
-  for (const std::string command :
-       {"run " + kScenes, "check " + kScenes, "compare " + kScenes + " " + kScenes,
-        "plan " + shipped("exact_slot_flat") + " -o /dev/full/path.cl"}) {
+  const std::vector<std::string> commands{"run " + kScenes, "check " + kScenes,
+                                          "compare " + kScenes + " " + kScenes,
+                                          "plan " + shipped("exact_slot_flat") + " -o /dev/full/path.cl"};
+  for (const std::string& command : commands) {
     const auto run = run_swarf(command);
     EXPECT_EQ(run.exit_code, 2) << command << "\n" << run.output;
     EXPECT_EQ(run.output.find("internal error"), std::string::npos) << command << "\n" << run.output;

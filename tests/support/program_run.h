@@ -38,6 +38,11 @@ inline ProgramRun run_swarf(const std::string& arguments) {
   return run_command(std::string(SWARF_PROGRAM) + " " + arguments);
 }
 
+/// Limits of a scene so wide that the proof of them is short: for tests of something else, as it is most of a
+/// run.
+inline constexpr const char* kSoonProven =
+    " --set accept.scallop_max_um=100 --set accept.excess_max_um=100 --set accept.gouge_max_um=100 ";
+
 /// An empty folder of this test's own, below the system's temporary folder.
 inline std::filesystem::path fresh_folder(const std::string& name) {
   const auto folder = scratch_folder() / name;

@@ -8,6 +8,7 @@
 
 #include "base/check.h"
 #include "base/diagnostics.h"
+#include "support/full_disk.h"
 #include "support/scratch.h"
 
 extern "C" {
@@ -141,6 +142,26 @@ TEST(MovieWriter, SaysWhatIsWrong) {
   MovieWriter movie(path, kWidth, kHeight, 30);
   EXPECT_THROW(movie.finish(), InternalError);
   EXPECT_THROW(movie.add(Image{2, 2, std::vector<uint8_t>(16)}), InternalError);
+}
+
+/// Wherever the disk is full: before the header, within the frames, at the index, where the index moves to
+/// the front.
+TEST(MovieFullDisk, LeavesTheEarlierMovie) {
+  const auto folder = test::scratch_folder() / "movie_full_disk";
+  std::filesystem::create_directories(folder);
+  const std::string path = (folder / "movie.mp4").string();
+  write_movie(path);
+  const std::string before = bytes(path);
+  for (const double share : {0.0, 0.1, 0.5, 0.9, 0.99}) {
+    SCOPED_TRACE(share);
+    const test::FullDisk disk(static_cast<rlim_t>(share * static_cast<double>(before.size())));
+    EXPECT_THROW(write_movie(path), InputError);
+    EXPECT_EQ(bytes(path), before);
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1);
+  }
+  write_movie(path);
+  EXPECT_EQ(bytes(path), before);
+  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

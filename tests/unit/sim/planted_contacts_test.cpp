@@ -260,12 +260,16 @@ TEST_P(PlantedContact, IsFoundAndItsTwinIsFree) {
   const ContactEvent& event = flutes ? bad[0].event : contacts[0];
   const char* const part = flutes ? "flutes" : plan.kind == Kind::kHolder ? "holder" : "shank";
   EXPECT_EQ(event.part, part) << pasted(plan);
-  if (plan.kind != Kind::kSwing) EXPECT_NEAR(fault.oracle.depth_mm, plan.depth, 0.02) << pasted(plan);
+  if (plan.kind != Kind::kSwing) {
+    EXPECT_NEAR(fault.oracle.depth_mm, plan.depth, 0.02) << pasted(plan);
+  }
   EXPECT_NEAR(event.depth_mm, fault.oracle.depth_mm, plan.voxel) << pasted(plan);
   const int line = fault.result.main.path.elements[static_cast<size_t>(event.first.element)].where.line;
   EXPECT_GE(line, fault.first_line) << pasted(plan);
   EXPECT_LE(line, fault.last_line) << pasted(plan);
-  if (flutes) EXPECT_EQ(bad[0].kind == BadCutKind::kRapid, plan.kind == Kind::kRapid);
+  if (flutes) {
+    EXPECT_EQ(bad[0].kind == BadCutKind::kRapid, plan.kind == Kind::kRapid);
+  }
 
   // Up along the lift until two voxels of air are left; where the part leans, that is more than its depth.
   Plan twin = plan;

@@ -47,12 +47,12 @@ struct Wall {
             3.0,
             seed % 2 == 0};
   }
-  /// `deep` < 0: that much above the wall.
-  ContactRun run(double deep) const {
+  /// `below_top` < 0: that much above the wall.
+  ContactRun run(double below_top) const {
     ContactRun run({flat_tool(4, 5, 60), flat_tool(4, 0.5, 60)}, {{-20, -20, -10}, {20, 20, top}}, kVoxel);
     const double middle = y + 2.0 + 0.5 * thickness, from_y[] = {y, y + 4.0 + thickness, middle};
     // The second tool's shank begins 0.5 mm above its tip; its flutes pass through the wall below.
-    const double z[] = {-slot_depth, -slot_depth, with_shank ? top - 0.5 - deep : top - deep};
+    const double z[] = {-slot_depth, -slot_depth, with_shank ? top - 0.5 - below_top : top - below_top};
     run.start({{-30, y, -slot_depth}, Vec3::UnitZ()});
     for (int n = 0; n < 3; ++n) {
       const int tool = with_shank && n == 2 ? 1 : 0;
