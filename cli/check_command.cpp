@@ -10,6 +10,7 @@
 #include "cli/check_nc.h"
 #include "cli/commands.h"
 #include "cli/pipeline_files.h"
+#include "cli/stdin_program.h"
 #include "cli/terminal.h"
 #include "kinematics/round_trip.h"
 #include "program/dialects.h"
@@ -164,21 +165,44 @@ nlohmann::ordered_json object_of(const std::string& file, const std::optional<Ch
   return object;
 }
 
+/// What was found of one file, and whether it could be read.
+struct FileCheck {
+  std::optional<Checked> checked;
+  std::vector<Diagnostic> told;
+};
+
+FileCheck check_readable(const std::string& file, const CheckOptions& options) {
+  FileCheck found;
+  try {
+    found.checked = check_file(file, options);
+    found.told = found.checked->findings;
+    found.told.insert(found.told.end(), found.checked->told.begin(), found.checked->told.end());
+  } catch (const InputError& error) {
+    found.told = error.diagnostics.list();
+  }
+  return found;
+}
+
+/// "-": an NC program from the standard input.
+FileCheck check_named(const std::string& name, const CheckOptions& options) {
+  if (name != "-") return check_readable(name, options);
+  try {
+    const StdinProgram program;
+    FileCheck found = check_readable(program.file(), options);
+    program.name_places(found.told);
+    return found;
+  } catch (const InputError& error) {
+    return {std::nullopt, error.diagnostics.list()};
+  }
+}
+
 int check(const CheckOptions& options, std::vector<reports::FileVerdict>& found) {
   nlohmann::ordered_json objects = nlohmann::ordered_json::array();
   int exit_code = kPass;
   for (const std::string& file : options.files) {
-    std::optional<Checked> checked;
-    std::vector<Diagnostic> told;
-    try {
-      checked = check_file(file, options);
-      told = checked->findings;
-      told.insert(told.end(), checked->told.begin(), checked->told.end());
-      if (!checked->findings.empty() && exit_code == kPass) exit_code = kFindings;
-    } catch (const InputError& error) {
-      told = error.diagnostics.list();
-      exit_code = kBadInput;
-    }
+    const auto [checked, told] = check_named(file, options);
+    if (!checked) exit_code = kBadInput;
+    if (checked && !checked->findings.empty() && exit_code == kPass) exit_code = kFindings;
     found.push_back({file, told});
     if (options.json) {
       objects.push_back(object_of(file, checked, told));
@@ -213,6 +237,7 @@ Examples:
   swarf check part.mpf --machine assets/machines/spinner_u5_620/machine.toml --tools tools.toml --home
   swarf check part.nc --dialect fanuc                      named: not recognised from the text
   swarf check scene.toml machine.toml path.cls             scenes, machines and CL data
+  post part.cls | swarf check - --dialect fanuc            a program through a pipe; what it calls lies in no folder
   swarf check --json *.nc --dialect fanuc                  for a pipeline: every file's numbers and diagnostics
 
 Which dialect: words that only one has show it, comments do not. A text that shows none is read as the common core of
@@ -231,7 +256,8 @@ void add_check(CLI::App& app, int& exit_code) {
       app.add_subcommand("check",
                          "Validate scenes and machines (.toml), programs (.nc, .ngc, .mpf, .h) and CL data "
                          "(.cls, .clt, .ncl, .apt, .cldata); move the axes of scenes, cut nothing");
-  command->add_option("files", options->files, "files to check")->required();
+  command->add_option("files", options->files, "files to check; -: an NC program from the standard input")
+      ->required();
   command->add_option("--machine", options->nc.machine, "machine.toml that NC programs are read for");
   command->add_option("--dialect", options->nc.dialect,
                       program::dialect_list(" or ") + "; recognised when left out");

@@ -24,6 +24,8 @@
 namespace swarf::cli {
 namespace {
 
+namespace fs = std::filesystem;
+
 struct RunOptions {
   std::string scene, output;
   JobWords job;
@@ -32,7 +34,7 @@ struct RunOptions {
   int threads = 0;
   size_t record_every = 256;
   double max_memory_mb = 0.0, keep_every_s = 60.0;
-  bool no_render = false, report = false, json = false, record = false, check = false;
+  bool no_render = false, report = false, json = false, record = false, check = false, open = false;
   PipelineFiles pipeline;
 };
 
@@ -114,6 +116,7 @@ std::vector<std::string> command_words(const RunOptions& options) {
   flag(options.report, "--report");
   add(!options.trajectory.empty(), "--trajectory", options.trajectory);
   flag(options.json, "--json");
+  flag(options.open, "--open");
   add(!options.pipeline.sarif.empty(), "--sarif", options.pipeline.sarif);
   add(!options.pipeline.junit.empty(), "--junit", options.pipeline.junit);
   add(!options.output.empty(), "-o", options.output);
@@ -139,7 +142,6 @@ void print_stopped(const RunOptions& options, const sim::Result& result, const s
 
 /// Runs of this folder that were killed leave what they have kept beside it.
 void tell_of_killed_runs(const std::string& folder) {
-  namespace fs = std::filesystem;
   const fs::path target = fs::absolute(folder).lexically_normal();
   const fs::path home = target.has_filename() ? target : target.parent_path();
   const std::string mark = home.filename().string() + ".part";
@@ -189,7 +191,24 @@ reports::FileVerdict verdict_of(const sim::Job& job, const sim::Result& result,
   return verdict;
 }
 
+/// Before any work. Throws InputError "no-opener" and "no-page".
+void require_opener(const RunOptions& options) {
+  if (options.no_render && !options.report)
+    throw InputError("no-page", {"--open"}, "--no-render makes no page that could be opened", "add --report");
+  if (std::system("command -v xdg-open >/dev/null 2>&1") != 0)
+    throw InputError("no-opener", {"--open"}, "there is no xdg-open here: nothing knows how to show a page",
+                     "install xdg-utils, or leave --open out and open report.html yourself");
+}
+
+/// Its own process: what shows the page may go on for hours.
+void open_page(const std::string& folder) {
+  const std::string page = fs::absolute(fs::path(folder) / "report.html").string();
+  if (std::system((shell_text({"xdg-open", page}) + " >/dev/null 2>&1 &").c_str()) != 0)
+    fmt::print(stderr, "note: xdg-open could not be started; the page is {}\n", page);
+}
+
 int run(const RunOptions& options, std::vector<reports::FileVerdict>& found) {
+  if (options.open) require_opener(options);
   set_thread_count(options.threads);
   std::vector<std::string> overrides = options.overrides;
   if (options.max_memory_mb > 0.0) {
@@ -225,6 +244,7 @@ int run(const RunOptions& options, std::vector<reports::FileVerdict>& found) {
   } else {
     print_outcome(job, result, folder);
   }
+  if (options.open) open_page(folder);
   if (!failures.empty()) return kBadInput;  // not everything that was asked for is there
   return sim::passes(result) ? kPass : kFindings;
 }
@@ -308,6 +328,7 @@ void add_run(CLI::App& app, int& exit_code) {
           "mm/s^3 at 1 ms) or h5 (HDF5, compressed, numbers as they are)")
       ->check(CLI::IsMember({"csv", "h5", "none"}));
   command->add_flag("--json", options->json, "print metrics.json instead of the table");
+  command->add_flag("--open", options->open, "show report.html when it is there (xdg-open)");
   add_pipeline_options(*command, options->pipeline);
   command->callback([options, &exit_code] {
     exit_code =

@@ -7,7 +7,7 @@ set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/swarf")
 
 # Scenes name their machines by relative paths, so that both stand as they do in the source tree.
 install(TARGETS swarf RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT program)
-install(DIRECTORY assets/machines assets/programs DESTINATION "${CMAKE_INSTALL_DATADIR}/swarf/assets" COMPONENT program
+install(DIRECTORY assets/machines assets/programs assets/schemas DESTINATION "${CMAKE_INSTALL_DATADIR}/swarf/assets" COMPONENT program
   PATTERN "*.py" EXCLUDE)
 install(DIRECTORY scenes DESTINATION "${CMAKE_INSTALL_DATADIR}/swarf" COMPONENT program PATTERN "*.py" EXCLUDE)
 install(FILES LICENSE README.md THIRD_PARTY.md CHANGELOG.md DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program)

@@ -36,8 +36,9 @@ target_include_directories(swarf_settings INTERFACE
   "$<INSTALL_INTERFACE:include/swarf>")
 target_link_libraries(swarf_settings INTERFACE Eigen3::Eigen fmt::fmt Threads::Threads)
 # -ffp-contract=off: with fused multiply-add, results would depend on the instruction set.
+# -fno-semantic-interposition: nobody replaces our functions at run time, so that position independent code costs nothing.
 # No -march here: Debian's libraries use Eigen with 16-byte alignment; only kernel files carry their own flags.
 target_compile_definitions(swarf_settings INTERFACE SWARF_VERSION="${PROJECT_VERSION}")
 target_compile_options(swarf_settings INTERFACE
-  "$<BUILD_INTERFACE:-Wall;-Wextra;-Wshadow>" -Wno-psabi -ffp-contract=off)
+  "$<BUILD_INTERFACE:-Wall;-Wextra;-Wshadow;-fno-semantic-interposition>" -Wno-psabi -ffp-contract=off)
 target_compile_features(swarf_settings INTERFACE cxx_std_20)

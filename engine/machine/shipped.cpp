@@ -1,5 +1,8 @@
 #include "machine/shipped.h"
 
+#include <dlfcn.h>
+#include <link.h>
+
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -10,10 +13,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// The file that holds this very code: the program, or the library that another program has loaded.
+fs::path own_file() {
+  Dl_info info{};
+  link_map* map = nullptr;
+  const bool known = dladdr1(reinterpret_cast<const void*>(&own_file), &info, reinterpret_cast<void**>(&map),
+                             RTLD_DL_LINKMAP) != 0;
+  std::error_code problem;
+  // The program itself has no name there.
+  if (known && map->l_name != nullptr && *map->l_name != '\0') return fs::canonical(map->l_name, problem);
+  return fs::read_symlink("/proc/self/exe", problem);
+}
+
 /// Empty where no folder above the program holds machines.
 fs::path shipped_folder() {
   std::error_code problem;
-  const fs::path program = fs::read_symlink("/proc/self/exe", problem);
+  const fs::path program = own_file();
   constexpr std::array<const char*, 2> kPlaces{"share/swarf/assets/machines", "assets/machines"};
   for (fs::path at = program.parent_path(); !at.empty(); at = at.parent_path()) {
     for (const char* place : kPlaces) {

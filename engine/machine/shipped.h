@@ -12,7 +12,7 @@ struct ShippedMachine {
 };
 
 /// All of them by name: of share/swarf/assets/machines or assets/machines in the nearest folder above the
-/// running program that has one. Empty where there is none.
+/// running program, or above the library with this code, that has one. Empty where there is none.
 std::vector<ShippedMachine> shipped_machines();
 
 /// The file that a scene or a flag means: `written` itself where it is a path (it has a slash or ends in

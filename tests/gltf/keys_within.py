@@ -40,7 +40,7 @@ for channel in model["animations"][0]["channels"]:
     unit = "deg" if path == "rotation" else "mm"
     keys, values = floats(sampler["input"])[:, 0], floats(sampler["output"])
     values = angle(values) if unit == "deg" else values[:, numpy.argmax(numpy.ptp(values, axis=0))]
-    played, cycles = numpy.interp(times, keys, values), table[f"{axis}_{unit}"][:]
+    played, cycles = numpy.interp(times, keys, values), table[f"axis_{axis}_{unit}"][:]
     # A table's axis moves its link the other way; an angle counts from anywhere.
     error = min(
         numpy.abs(sign * (played - played[0]) - (cycles - cycles[0])).max() for sign in (1, -1)
@@ -50,5 +50,5 @@ for channel in model["animations"][0]["channels"]:
     # Both are counted from the first key, whose value is a float.
     assert error <= stated + 1.2e-7 * abs(cycles[0]), axis
     moving.add(axis)
-expected = {name.split("_")[0] for name in table if name.split("_")[0] in "XYZABCUVW" and numpy.ptp(table[name][:]) > 1e-6}
+expected = {name.split("_")[1] for name in table if name.startswith("axis_") and numpy.ptp(table[name][:]) > 1e-6}
 assert moving == expected, (moving, expected)

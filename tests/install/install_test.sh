@@ -16,6 +16,14 @@ if grep -rlI "$source" moved --include=*.cmake --include=*.toml --include=*.h; t
   echo "files of the installation name the source folder"; exit 1
 fi
 
+if [ -d moved/lib/python3/dist-packages/swarf ]; then
+  PYTHONPATH=moved/lib/python3/dist-packages /usr/bin/python3 -B -c "
+import swarf
+result = swarf.run('$scene')
+print('python:', result.verdict_text)
+assert result.verdict == 'pass' and swarf.__file__.startswith('$work/moved/'), swarf.__file__"
+fi
+
 # The package: unpacked, since installing it needs rights that a test has not.
 cpack --config "$build/CPackConfig.cmake" -G DEB -B "$work/packages" >package.log 2>&1 || { cat package.log; exit 1; }
 dpkg-deb -f packages/*.deb Depends | tee depends

@@ -162,6 +162,49 @@ TEST_F(Options, CheckAndRunTellBuildServers) {
   EXPECT_EQ(run_swarf("check " + wrong + " --sarif " + folder_.string()).exit_code, 2);
 }
 
+TEST_F(Options, CheckReadsAProgramFromAPipe) {
+  const std::string right = file("right.ngc", "G21 G90\nG0 X0 Y0 Z5\nG1 Z-1 F100\nM2\n");
+  const std::string wrong = file("wrong.ngc", "G21 G90\nG0 X0 Y0 Z5\nG1 X10 F100 Q%\nM2\n");
+  const std::string check = std::string(" | TMPDIR=") + folder_.string() + " " + SWARF_PROGRAM + " check -";
+  const ProgramRun good = swarf::test::run_command("cat " + right + check + " --json");
+  EXPECT_EQ(good.exit_code, 0) << good.output;
+  const json from_file = json::parse(run_swarf("check " + right + " --json").output).at("files").at(0);
+  json from_pipe = json::parse(good.output).at("files").at(0);
+  EXPECT_EQ(from_pipe.at("file"), "-");
+  for (const char* key : {"lines", "feed_mm", "kind"}) EXPECT_EQ(from_pipe.at(key), from_file.at(key)) << key;
+  const ProgramRun bad = swarf::test::run_command("cat " + wrong + check + " --dialect linuxcnc");
+  EXPECT_EQ(bad.exit_code, 2);
+  EXPECT_TRUE(says(bad, "stdin:3:14: error: ")) << bad.output;
+  const ProgramRun nothing = swarf::test::run_command("true" + check);
+  EXPECT_EQ(nothing.exit_code, 2);
+  EXPECT_TRUE(says(nothing, "[empty-file]")) << nothing.output;
+  for (const auto& entry : fs::directory_iterator(folder_))
+    EXPECT_FALSE(entry.is_directory()) << "left behind: " << entry.path();
+}
+
+TEST_F(Options, ThePageIsShownWhereSomethingShowsIt) {
+  const std::string shown = (folder_ / "shown").string();
+  const std::string opener = file("xdg-open", "#!/bin/sh\necho \"$1\" > " + shown + "\n");
+  fs::permissions(opener, fs::perms::owner_all);
+  const std::string run = std::string(SWARF_PROGRAM) +
+                          " run " SWARF_SOURCE_DIR "/scenes/exact_shank/scene.toml --no-render -o '" +
+                          (folder_ / "a b").string() + "'";
+  const std::string path = "PATH=" + folder_.string() + ":/usr/bin:/bin ";
+  EXPECT_EQ(swarf::test::run_command(path + run + " --report --open").exit_code, 1);
+  for (int i = 0; i < 100 && !fs::exists(shown); ++i) swarf::test::run_command("sleep 0.05");
+  EXPECT_EQ(swarf::test::read_text(shown), (folder_ / "a b/report.html").string() + "\n");
+  const ProgramRun no_page = swarf::test::run_command(path + run + " --open");
+  EXPECT_EQ(no_page.exit_code, 2);
+  EXPECT_TRUE(says(no_page, "[no-page]")) << no_page.output;
+  // A folder with the shell and nothing else.
+  fs::create_directory(folder_ / "bin");
+  fs::create_symlink("/bin/sh", folder_ / "bin/sh");
+  const ProgramRun none =
+      swarf::test::run_command("PATH=" + (folder_ / "bin").string() + " " + run + " --report --open");
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_TRUE(says(none, "[no-opener]")) << none.output;
+}
+
 TEST_F(Options, TheManualHasEveryCommandAndOption) {
   const ProgramRun man = run_swarf("manual man");
   EXPECT_EQ(man.exit_code, 0);

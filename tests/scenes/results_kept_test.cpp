@@ -193,7 +193,7 @@ TEST_F(ResultsKept, BlocksAreTabledAndCyclesWhereTheyAreAskedFor) {
   ASSERT_EQ(swarf_there("run scene.toml --no-render -o out").exit_code, 0);
   const std::vector<std::string> blocks = lines_of(read_text(job_ / "out/blocks.csv"));
   ASSERT_EQ(blocks.size(), 1U + 3U) << "a row for each of G1, G1, G0; the first G0 is the start";
-  EXPECT_EQ(blocks[0].find("line,t_s,x_mm,y_mm,z_mm,i,j,k,"), 0U);
+  EXPECT_EQ(blocks[0].find("line,t_s,tip_x_mm,tip_y_mm,tip_z_mm,i,j,k,axis_X_mm,"), 0U);
   for (size_t n = 1; n < blocks.size(); ++n)
     EXPECT_EQ(blocks[n].find(std::to_string(n + 4) + ","), 0U) << blocks[n];
   EXPECT_NE(blocks[2].find(",12.0000000,0.0000000,-1.0000000,"), std::string::npos) << blocks[2];

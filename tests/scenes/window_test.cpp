@@ -148,6 +148,7 @@ import csv, sys, h5py, numpy
 h5, table, scale = sys.argv[1], sys.argv[2], {"mm": 0.5e-10, "deg": 0.5e-10, "s": 0.5e-6, "mm/min": 0.5e-4, "1": 0.5e-9}
 rows = list(csv.reader(open(table)))
 head, rows = rows[0], rows[1:]
+assert len({name.lower() for name in head}) == len(head), "names that differ by case alone: SQL and Excel take them for one"
 with h5py.File(h5, "r") as file:
     assert set(file) == set(head), (set(file) ^ set(head))
     for i, name in enumerate(head):

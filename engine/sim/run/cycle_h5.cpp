@@ -74,19 +74,21 @@ struct H5Column {
 
 std::vector<H5Column> pose_columns() {
   std::vector<H5Column> columns;
-  for (int i = 0; i < 3; ++i)
-    columns.push_back({fmt::format("{}_mm", "xyz"[i]), "mm",
-                       [i](const Cycle& cycle) { return cycle.sample.pose.tip_W[i]; }});
-  for (int i = 0; i < 3; ++i)
-    columns.push_back(
-        {fmt::format("{}", "ijk"[i]), "1", [i](const Cycle& cycle) { return cycle.sample.pose.axis_W[i]; }});
+  for (size_t i = 0; i < 3; ++i)
+    columns.push_back({kPoseColumns[i], "mm", [i](const Cycle& cycle) {
+                         return cycle.sample.pose.tip_W[static_cast<Eigen::Index>(i)];
+                       }});
+  for (size_t i = 0; i < 3; ++i)
+    columns.push_back({kPoseColumns[i + 3], "1", [i](const Cycle& cycle) {
+                         return cycle.sample.pose.axis_W[static_cast<Eigen::Index>(i)];
+                       }});
   return columns;
 }
 
-H5Column axis_column(const kinematics::Axis& axis, Eigen::Index index) {
-  if (axis.kind == kinematics::AxisKind::kRotary)
-    return {axis.name + "_deg", "deg", [index](const Cycle& cycle) { return deg_from_rad(cycle.q[index]); }};
-  return {axis.name + "_mm", "mm", [index](const Cycle& cycle) { return cycle.q[index]; }};
+H5Column column_of(const kinematics::Axis& axis, Eigen::Index index) {
+  const bool rotary = axis.kind == kinematics::AxisKind::kRotary;
+  return {axis_column(axis), rotary ? "deg" : "mm",
+          [axis, index](const Cycle& cycle) { return axis_column_value(axis, cycle.q[index]); }};
 }
 
 H5Column whole_column(const std::string& name, std::function<int32_t(const Cycle&)> value,
@@ -119,7 +121,7 @@ std::vector<H5Column> columns_of(const Job& job, const motion::Cycles& cycles) {
   for (H5Column& column : pose_columns()) add(std::move(column));
   add({"feed_mm_min", "mm/min", [](const Cycle& cycle) { return mm_min_from_mm_s(cycle.sample.feed_mm_s); }});
   const std::vector<kinematics::Axis>& axes = job.machine.model.axes;
-  for (size_t i = 0; i < axes.size(); ++i) add(axis_column(axes[i], static_cast<Eigen::Index>(i)));
+  for (size_t i = 0; i < axes.size(); ++i) add(column_of(axes[i], static_cast<Eigen::Index>(i)));
   for (int i = 0; i < 3; ++i)
     add({fmt::format("contact_{}_mm", "xyz"[i]), "mm",
          [i](const Cycle& cycle) { return cycle.sample.contact_W[i]; }});

@@ -1,10 +1,11 @@
 // The table of cycles as HDF5: one dataset for each column, named as in trajectory.csv.
 //
-//   /t_s       float64 [n]   units "s"
-//   /block     int32   [n]
-//   /x_mm ...  float64 [n]   units "mm", "deg", "mm/min" or "1"
-//   /kind      enum    [n]   cut, approach, retract, rapid
-//   /tool      enum    [n]   numbers or names of the tools
+//   /t_s            float64 [n]   units "s"
+//   /block          int32   [n]
+//   /tip_x_mm ...   float64 [n]   units "mm", "deg", "mm/min" or "1"
+//   /axis_X_mm ...  float64 [n]   the same
+//   /kind           enum    [n]   cut, approach, retract, rapid
+//   /tool           enum    [n]   numbers or names of the tools
 //
 // Numbers are the simulation's own doubles, nothing is rounded. Datasets are chunked (kChunk rows), shuffled
 // and deflated, and keep the order of their columns; the root tells period_s, scene and swarf. Equal runs

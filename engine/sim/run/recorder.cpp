@@ -16,8 +16,6 @@
 namespace swarf::sim {
 namespace {
 
-using kinematics::AxisKind;
-
 constexpr std::array<const char*, 4> kKindNames{"cut", "approach", "retract",
                                                 "rapid"};  // order of SampleKind
 
@@ -25,10 +23,13 @@ const char* kind_name(motion::SampleKind kind) {
   return kKindNames[static_cast<size_t>(kind)];
 }
 
-std::string axis_columns(const kinematics::MachineModel& machine) {
+std::string pose_header() {
+  return fmt::format("{}", fmt::join(kPoseColumns, ","));
+}
+
+std::string axis_header(const kinematics::MachineModel& machine) {
   std::string columns;
-  for (const kinematics::Axis& axis : machine.axes)
-    columns += fmt::format(",{}_{}", axis.name, axis.kind == AxisKind::kRotary ? "deg" : "mm");
+  for (const kinematics::Axis& axis : machine.axes) columns += fmt::format(",{}", axis_column(axis));
   return columns;
 }
 
@@ -47,8 +48,7 @@ void append_axes(Out out, const kinematics::AxisValues& q, const kinematics::Mac
                  int decimals) {
   for (size_t i = 0; i < machine.axes.size(); ++i) {
     const double value = q[static_cast<Eigen::Index>(i)];
-    fmt::format_to(out, ",{:.{}f}", machine.axes[i].kind == AxisKind::kRotary ? deg_from_rad(value) : value,
-                   decimals);
+    fmt::format_to(out, ",{:.{}f}", axis_column_value(machine.axes[i], value), decimals);
   }
 }
 
@@ -106,54 +106,24 @@ std::string cycle_table_name(TrajectoryFormat format) {
 BlockTable::BlockTable(const std::string& path, const Job& job, const motion::Cycles& cycles)
     : path_(path),
       job_(job),
-      cycles_(cycles),
-      file_(open_table(path, "line,t_s,x_mm,y_mm,z_mm,i,j,k" + axis_columns(job.machine.model) +
-                                 ",feed_mm_min,kind,tool")) {}
+      file_(open_table(
+          path, "line,t_s," + pose_header() + axis_header(job.machine.model) + ",feed_mm_min,kind,tool")),
+      rows_(cycles, [this](const BlockRow& row) { write(row); }) {}
 
-void BlockTable::add(std::span<const motion::Cycle> window) {
-  for (const motion::Cycle& cycle : window) {
-    if (cycle.sample.element != element_) flush_to(cycle.sample.element, cycle.sample.t_s);
-    feed_mm_s_ = std::max(feed_mm_s_, cycle.sample.feed_mm_s);
-    last_ = cycle;
-  }
-}
-
-/// Rows of all elements before this one, which begins at t_s.
-void BlockTable::flush_to(int element, double t_s) {
-  for (; element_ < element; ++element_) {
-    write_row(element_, t_s);
-    feed_mm_s_ = -1.0;
-  }
-}
-
-void BlockTable::write_row(int element, double t_s) {
-  const int line = cycles_.elements().line(static_cast<size_t>(element));
+void BlockTable::write(const BlockRow& row) {
   fmt::memory_buffer text;
   const Out out(text);
-  ToolPose pose = last_.sample.pose;
-  kinematics::AxisValues q = last_.q;
-  motion::SampleKind kind = last_.sample.kind;
-  auto tool = static_cast<size_t>(last_.sample.tool);
-  if (!cycles_.motions().empty()) {
-    const motion::BlockMotion motion = cycles_.motions()[static_cast<size_t>(element)];
-    pose = motion.block.to;
-    q = motion.q_to;
-    kind = is_rapid(motion.block) ? motion::SampleKind::kRapid : motion::SampleKind::kCutting;
-    tool = static_cast<size_t>(motion.block.tool);
-  }
-  fmt::format_to(out, "{},{:.6f},", line, t_s);
-  append_pose(out, pose, kBlockDecimals);
-  append_axes(out, q, job_.machine.model, kBlockDecimals);
+  fmt::format_to(out, "{},{:.6f},", row.line, row.t_s);
+  append_pose(out, row.pose, kBlockDecimals);
+  append_axes(out, row.q, job_.machine.model, kBlockDecimals);
   text.push_back(',');
-  if (feed_mm_s_ >= 0.0) fmt::format_to(out, "{:.4f}", mm_min_from_mm_s(feed_mm_s_));
-  fmt::format_to(out, ",{},{}\n", kind_name(kind), tool_field(job_.scene.tools[tool]));
+  if (row.feed_mm_s) fmt::format_to(out, "{:.4f}", mm_min_from_mm_s(*row.feed_mm_s));
+  fmt::format_to(out, ",{},{}\n", kind_name(row.kind), tool_field(job_.scene.tools[row.tool]));
   put(file_, text);
 }
 
 void BlockTable::finish() {
-  // A run that was stopped has not come to the end of the element under way.
-  if (cycles_.size() > 0 && !cycles_.stopped())
-    flush_to(static_cast<int>(cycles_.elements().size()), last_.sample.t_s);
+  rows_.finish();
   close_table(file_, path_);
 }
 
@@ -161,7 +131,7 @@ CycleCsv::CycleCsv(const std::string& path, const Job& job, const motion::Cycles
     : path_(path),
       job_(job),
       cycles_(cycles),
-      file_(open_table(path, "t_s,block,x_mm,y_mm,z_mm,i,j,k,feed_mm_min" + axis_columns(job.machine.model) +
+      file_(open_table(path, "t_s,block," + pose_header() + ",feed_mm_min" + axis_header(job.machine.model) +
                                  ",contact_x_mm,contact_y_mm,contact_z_mm,u,v,element,kind,tool")) {}
 
 void CycleCsv::add(std::span<const motion::Cycle> window) {

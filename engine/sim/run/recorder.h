@@ -10,12 +10,13 @@
 #include "base/diagnostics.h"
 #include "motion/cycles/cycles.h"
 #include "sim/job/scene.h"
+#include "sim/run/block_rows.h"
 #include "sim/run/cycle_window.h"
 
 namespace swarf::sim {
 
 /// blocks.csv: one row for each element of the path, in its order:
-///   line,t_s,x_mm,y_mm,z_mm,i,j,k,<axis>_mm|_deg...,feed_mm_min,kind,tool
+///   line,t_s,tip_x_mm,tip_y_mm,tip_z_mm,i,j,k,axis_<name>_mm|_deg...,feed_mm_min,kind,tool
 /// `line` is that of the program; t_s when the tool comes to the element's end, to a cycle, so that it never
 /// falls and several short blocks may share it; pose and axes are
 /// those of its programmed end; `feed_mm_min` is the greatest commanded feed that it reaches, empty where it
@@ -24,25 +25,21 @@ class BlockTable {
  public:
   /// Opens the file; throws InputError "cannot-write". References must outlive it.
   BlockTable(const std::string& path, const Job& job, const motion::Cycles& cycles);
-  void add(std::span<const motion::Cycle> window);
+  void add(std::span<const motion::Cycle> window) { rows_.add(window); }
   /// Throws InputError "cannot-write".
   void finish();
 
  private:
-  void flush_to(int element, double t_s);
-  void write_row(int element, double t_s);
+  void write(const BlockRow& row);
 
   std::string path_;
   const Job& job_;
-  const motion::Cycles& cycles_;
   std::ofstream file_;
-  motion::Cycle last_;
-  int element_ = 0;          ///< the next row
-  double feed_mm_s_ = -1.0;  ///< greatest of the element under way; below 0: it has no cycle yet
+  BlockRows rows_;
 };
 
 /// One row for each control cycle; its columns in every format:
-///   t_s,block,x_mm,y_mm,z_mm,i,j,k,feed_mm_min,<axis>_mm|_deg...,contact_x_mm,contact_y_mm,contact_z_mm,u,v,element,kind,tool
+///   t_s,block,tip_x_mm,tip_y_mm,tip_z_mm,i,j,k,feed_mm_min,axis_<name>_mm|_deg...,contact_x_mm,contact_y_mm,contact_z_mm,u,v,element,kind,tool
 /// `block` is the line of the program, `tool` the number of the tool in the spindle, or its name.
 class CycleTable {
  public:

@@ -1,0 +1,234 @@
+"""The JSON Schemas of assets/schemas against what the program reads and writes.
+
+SWARF_PROGRAM names the program, SWARF_SOURCE the folder of the sources."""
+import copy
+import json
+import os
+import pathlib
+import re
+import subprocess
+import tempfile
+import tomllib
+import unittest
+
+import jsonschema
+
+PROGRAM = os.environ["SWARF_PROGRAM"]
+SOURCE = pathlib.Path(os.environ["SWARF_SOURCE"])
+
+# No key is near it, so that the program lists the keys that it knows.
+NO_KEY = "qqqqqqqqqqqqqqqqqqqqqqqqqqqq"
+
+
+def schema(name):
+    return json.loads((SOURCE / "assets/schemas" / f"{name}.schema.json").read_text())
+
+
+def validator(name):
+    jsonschema.Draft202012Validator.check_schema(schema(name))
+    return jsonschema.Draft202012Validator(schema(name))
+
+
+def run(*words):
+    done = subprocess.run([PROGRAM, *map(str, words)], capture_output=True, text=True)
+    return done.returncode, done.stdout + done.stderr
+
+
+def known_keys(text, name="scene.toml"):
+    """By table ("" or "cutter.holder"): the keys that the program lists for the text's unknown one."""
+    with tempfile.TemporaryDirectory() as folder:
+        pathlib.Path(folder, "part.ngc").write_text("G21\n")
+        file = pathlib.Path(folder, name)
+        file.write_text(text)
+        said = run("check", file)[1]
+    known = {}
+    for place, keys in re.findall(rf"nothing is called '(.*){NO_KEY}'.*\n\s*fix: known here: (.*)", said):
+        known.setdefault(re.sub(r"\[\d+\]", "", place).rstrip("."), set()).update(keys.split(", "))
+    return known
+
+
+def schema_keys(node, root, path=""):
+    """The same of a schema: every table with fixed names."""
+    while "$ref" in node:
+        node = root["$defs"][node["$ref"].rsplit("/", 1)[-1]]
+    if node.get("type") == "array":
+        return schema_keys(node["items"], root, path)
+    if "properties" not in node:
+        return {}
+    found = {path: set(node["properties"])}
+    for name, child in node["properties"].items():
+        found.update(schema_keys(child, root, f"{path}.{name}".lstrip(".")))
+    return found
+
+
+def scene_texts():
+    """Scenes that together ask for every key: each kind of program, cutter and design, an unknown key in each table."""
+    tables = ["setup", "stock", "toolpath", "interpolator", "accept", "movie", "stills", "output"]
+    shapes = schema("scene")["$defs"]["tool"]["properties"]["shape"]["enum"]
+    designs = schema("scene")["properties"]["design"]["properties"]["kind"]["enum"]
+    no = f"{NO_KEY} = 0\n"
+    rest = "".join(f"[{table}]\n{no}" for table in tables)
+    for kind in ("program", "cl", "nc"):
+        switch = f"[kinematics_switch]\n{no}" if kind == "nc" else ""
+        yield f"{no}{kind} = 'part.ngc'\n{rest}[cutter]\n{no}{switch}"
+    for shape in shapes:
+        yield f"nc = 'part.ngc'\n[[tool]]\nshape = '{shape}'\n{no}"
+    yield f"nc = 'part.ngc'\n[[tool]]\nshape = 'profile'\n{no}[[tool.profile]]\n{no}[[tool.holder]]\n{no}"
+    for design in designs:
+        yield f"nc = 'part.ngc'\n[design]\nkind = '{design}'\n{no}"
+
+
+class Keys(unittest.TestCase):
+    """The schema's keys are those that the reader knows, so that it cannot go stale."""
+
+    maxDiff = None
+
+    def test_scene(self):
+        known = {}
+        for text in scene_texts():
+            for table, keys in known_keys(text).items():
+                known.setdefault(table, set()).update(keys)
+        expected = schema_keys(schema("scene"), schema("scene"))
+        self.assertEqual(known["cutter"] - {NO_KEY}, known["cutter"])
+        # [cutter] and [[tool]] are one description; the shapes were tried in [[tool]].
+        self.assertLessEqual(known.pop("cutter"), known["tool"])
+        for name in ("cutter", "cutter.profile", "cutter.holder"):
+            self.assertEqual(expected.pop(name), expected[name.replace("cutter", "tool")])
+        self.assertEqual(known, expected)
+
+    def test_machine(self):
+        no = f"{NO_KEY} = 0\n"
+        known = {}
+        for kind in ("linear", "rotary"):
+            text = (f"{no}[[axis]]\nname = 'A'\ntype = '{kind}'\n{no}"
+                    + "".join(f"{table}\n{no}" for table in ("[work]", "[tool]", "[[link]]")))
+            for table, keys in known_keys(text, "machine.toml").items():
+                known.setdefault(table, set()).update(keys)
+        self.assertEqual(known, schema_keys(schema("machine"), schema("machine")))
+
+
+class Shipped(unittest.TestCase):
+    def test_every_scene(self):
+        files = sorted((SOURCE / "scenes").glob("*/scene.toml"))
+        self.assertGreater(len(files), 20)
+        for file in files:
+            with self.subTest(file=file):
+                validator("scene").validate(tomllib.loads(file.read_text()))
+
+    def test_every_machine(self):
+        files = sorted((SOURCE / "assets/machines").glob("*/machine.toml"))
+        self.assertEqual(len(files), 8)
+        for file in files:
+            with self.subTest(file=file):
+                validator("machine").validate(tomllib.loads(file.read_text()))
+
+
+class Written(unittest.TestCase):
+    """metrics.json and findings.json of runs that fill each section."""
+
+    def check(self, name, *words, section=None):
+        with tempfile.TemporaryDirectory() as folder:
+            code, said = run("run", SOURCE / "scenes" / name / "scene.toml", "--no-render", "-q", "-o", f"{folder}/out", *words)
+            self.assertIn(code, (0, 1), said)
+            metrics, findings = (json.loads(pathlib.Path(folder, "out", file).read_text())
+                                 for file in ("metrics.json", "findings.json"))
+        validator("metrics").validate(metrics)
+        validator("findings").validate(findings)
+        if section:
+            self.assertTrue(metrics[section])
+        return metrics, findings
+
+    def test_a_design_with_gouges(self):
+        metrics, findings = self.check("exact_gouges", section="gouges")
+        self.assertEqual(len(findings), 3)
+        for wrong in ({"verdict": "good"}, {"stock": {}}, {"gouge_max": 1.0}, {"memory_peak_mb": "12"}):
+            self.assertFalse(validator("metrics").is_valid({**metrics, **wrong}), wrong)
+        for wrong in ({"severity": "bad"}, {"line": -1}, {"colour": "red"}):
+            self.assertFalse(validator("findings").is_valid([{**findings[0], **wrong}]), wrong)
+        self.assertFalse(validator("findings").is_valid(findings[0]))
+
+    def test_an_nc_program_without_a_design(self):
+        metrics, findings = self.check("nc_pocket", section="program")
+        self.assertIsNone(metrics["surface"]["gouge_max_um"])
+        self.assertEqual(findings, [])
+
+    def test_contacts(self):
+        metrics, _ = self.check("exact_shank", section="bad_cuts")
+        self.assertTrue(metrics["collisions"]["events"] and metrics["bad_cuts"]["events"])
+
+    def test_flank(self):
+        self.check("exact_flank_f1", section="flank")
+
+    def test_pole(self):
+        self.check("so_singularity", section="singularity")
+
+    def test_planned_passes(self):
+        coarse = ["stock.voxel_mm=1", "design.pitch_mm=1", "toolpath.compare=false", "accept.gouge_max_um=100",
+                  "accept.scallop_max_um=100"]
+        self.check("lin_koren_dome", *sum((["--set", key] for key in coarse), []), section="planners")
+
+
+class Refused(unittest.TestCase):
+    """What the schema refuses, the program refuses too."""
+
+    SCENE = {
+        "nc": "part.ngc",
+        "cutter": {"number": 1, "diameter_mm": 6, "flute_length_mm": 20, "length_mm": 50},
+        "stock": {"box_mm": [[0, 0, -5], [20, 20, 0]], "voxel_mm": 0.5},
+    }
+    WRONG = {
+        "a misspelt key": ("stock.voxle_mm", 0.5),
+        "a misspelt table": ("stok", {}),
+        "a text for a number": ("cutter.diameter_mm", "6"),
+        "a voxel of nothing": ("stock.voxel_mm", 0),
+        "a box of one corner": ("stock.box_mm", [[0, 0, 0]]),
+        "a shape that nobody knows": ("cutter.shape", "fish"),
+        "two programs": ("cl", "part.cls"),
+        "an axis without its unit": ("setup", {"start": {"X": 1}}),
+        "a picture of odd size": ("stills", {"size": [641, 480]}),
+        "a limit of -1": ("accept", {"collisions": -1}),
+    }
+
+    def test_scenes(self):
+        self.assertTrue(validator("scene").is_valid(self.SCENE))
+        for what, (key, value) in self.WRONG.items():
+            with self.subTest(what=what):
+                scene = copy.deepcopy(self.SCENE)
+                *tables, last = key.split(".")
+                table = scene
+                for name in tables:
+                    table = table[name]
+                table[last] = value
+                self.assertFalse(validator("scene").is_valid(scene))
+                self.assertEqual(self.program_says(scene), 2)
+        self.assertFalse(validator("scene").is_valid({"cutter": self.SCENE["cutter"]}))
+
+    def program_says(self, scene):
+        with tempfile.TemporaryDirectory() as folder:
+            pathlib.Path(folder, "part.ngc").write_text("G21 G90\nT1 M6\nS1000 M3\nG0 X0 Y0 Z5\nG1 Z-1 F100\nM2\n")
+            file = pathlib.Path(folder, "scene.toml")
+            # JSON and TOML write numbers, texts and lists alike.
+            tables = {k: v for k, v in scene.items() if isinstance(v, dict)}
+            lines = [f"{k} = {json.dumps(v)}" for k, v in scene.items() if k not in tables]
+            for name, table in tables.items():
+                lines += [f"{name}.{k} = {self.inline(v)}" for k, v in table.items()] or [f"[{name}]"]
+            file.write_text("\n".join(lines) + "\n")
+            return run("check", file)[0]
+
+    def inline(self, value):
+        if isinstance(value, dict):
+            return "{ " + ", ".join(f"{k} = {self.inline(v)}" for k, v in value.items()) + " }"
+        return json.dumps(value)
+
+    def test_machines(self):
+        right = tomllib.loads((SOURCE / "assets/machines/mill_3axis/machine.toml").read_text())
+        self.assertTrue(validator("machine").is_valid(right))
+        for key, value in {"axis": [], "rapid": "slow", "nmae": "mill", "work": {}, "link": [{}]}.items():
+            with self.subTest(key=key):
+                self.assertFalse(validator("machine").is_valid({**right, key: value}))
+        del right["axis"][0]["speed_max_mm_min"]
+        self.assertFalse(validator("machine").is_valid(right))
+
+
+if __name__ == "__main__":
+    unittest.main()
