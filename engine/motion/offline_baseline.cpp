@@ -103,7 +103,8 @@ double arc_length(double u) {
   constexpr int kPieces = 16;
   double sum = 0.0;
   for (int i = 0; i < kPieces; ++i) {
-    sum += smooth_integral([](double x) { return tangent(x).norm(); }, u * i / kPieces, u * (i + 1) / kPieces);
+    sum +=
+        smooth_integral([](double x) { return tangent(x).norm(); }, u * i / kPieces, u * (i + 1) / kPieces);
   }
   return sum;
 }
