@@ -3,6 +3,8 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <utility>
+
 #include "cli/python/arrays.h"
 #include "cli/python/python_progress.h"
 #include "cli/python/scene_run.h"
@@ -36,7 +38,7 @@ void raise(const swarf::InputError& error) {
 
 void translate(std::exception_ptr raised) {
   try {
-    if (raised) std::rethrow_exception(raised);
+    if (raised) std::rethrow_exception(std::move(raised));
   } catch (const swarf::InputError& error) {
     raise(error);
   }
@@ -45,9 +47,12 @@ void translate(std::exception_ptr raised) {
 std::unique_ptr<SceneRun> run(const RunRequest& request, const py::object& told) {
   swarf::cli::PythonProgress progress(told);
   std::unique_ptr<SceneRun> done;
-  {
+  try {
     const py::gil_scoped_release unlocked;
     done = swarf::cli::run_scene(request, progress);
+  } catch (...) {
+    progress.rethrow();  // what has stopped the run, before what came of it
+    throw;
   }
   progress.rethrow();
   return done;
