@@ -50,8 +50,10 @@ void find_motion_faults(const sim::Job& job, sim::MeasuredPath moved, Checked& c
 }
 
 /// Plans the path and moves the axes along it; cuts nothing.
-Checked check_scene(const std::string& file) {
-  const sim::Job job = sim::load_job(file, {});
+Checked check_scene(const std::string& file, const std::vector<std::string>& parameters) {
+  std::vector<std::string> overrides;
+  for (const std::string& one : parameters) overrides.push_back("parameters." + one);
+  const sim::Job job = sim::load_job(file, overrides);
   Progress silent;
   sim::MeasuredPath moved = sim::move_tool(job, silent);
   const toolpath::ToolPath& path = moved.path;
@@ -143,7 +145,7 @@ Checked check_file(const std::string& file, const CheckOptions& options) {
   if (is_cl_file(file)) return check_cl(file, cl_options(options.cl));
   if (is_nc_program(file, options.nc)) return check_nc(file, options.nc);
   if (std::filesystem::path(file).extension() != ".toml") return check_surface_blocks(file);
-  return is_scene(file) ? check_scene(file) : check_machine(file, options.poses);
+  return is_scene(file) ? check_scene(file, options.nc.parameters) : check_machine(file, options.poses);
 }
 
 /// One object for each file; one that cannot be read has no kind, and its errors among the diagnostics.
@@ -267,6 +269,12 @@ void add_check(CLI::App& app, int& exit_code) {
   command->add_option(
       "--kinematics", options->nc.kinematics,
       "what LinuxCNC's M428 M429 M430 select on this machine: m430=identity, m428=tcp, start=tcp, ...");
+  command
+      ->add_option("--set-parameter", options->nc.parameters,
+                   "a parameter's value before an NC program starts: 500=3.5 (#500), R1=2, Q5=1, NAME=3 (a "
+                   "GUD); once for each")
+      ->type_name("NAME=NUMBER")
+      ->allow_extra_args(false);
   command
       ->add_option("--builder-word", options->nc.builder_words,
                    "what the machine's builder added and what moves nothing: M68, \"M68=clamp C\", \"CYCL "

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -147,6 +148,23 @@ program::BuilderWords builder_words_of(const std::string& file, const std::vecto
   return words;
 }
 
+/// Reads "500=3.5" and "R1=2".
+program::Presets presets_of(const std::vector<std::string>& given) {
+  program::Presets presets;
+  for (const std::string& one : given) {
+    const size_t equals = std::min(one.find('='), one.size() - 1);
+    const char* const end = one.data() + one.size();
+    program::Preset preset{0.0, {"--set-parameter " + one}};
+    const auto [next, failure] = std::from_chars(one.data() + equals + 1, end, preset.value);
+    const std::string name = program::preset_name(one.substr(0, equals));
+    if (name.empty() || failure != std::errc() || next != end || !std::isfinite(preset.value))
+      throw InputError("bad-option", preset.where, "this is no parameter with its number",
+                       "write --set-parameter 500=3.5, R1=2 or Q5=1");
+    presets[name] = preset;
+  }
+  return presets;
+}
+
 /// G10 L70 opens a surface: that is a program of surface blocks.
 bool has_surface_blocks(const std::string& file) {
   refuse_special_file(file);
@@ -207,6 +225,7 @@ program::ControlSetup setup_of(const std::string& file, const NcCheckOptions& op
   }
   setup.kinematics_switch = kinematics_of(file, options.kinematics);
   setup.builder_words = builder_words_of(file, options.builder_words);
+  setup.presets = presets_of(options.parameters);
   if (!options.tools.empty()) setup.tools = tools_of(options.tools, setup.incomplete_tools, diagnostics);
   if (setup.unit_mm.value_or(1.0) != 1.0 && options.tools.ends_with(".tbl"))
     diagnostics.warning(

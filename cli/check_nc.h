@@ -19,6 +19,7 @@ struct NcCheckOptions {
   int start_tool = 0;                   ///< number of the tool in the spindle; 0: not said
   bool t_changes_tool = false;          ///< T changes the tool without M6
   std::vector<std::string> kinematics;  ///< "m430=identity" ...: what LinuxCNC's kinematics switches mean
+  std::vector<std::string> parameters;  ///< "500=3.5", "R1=2": values before the program starts
   std::vector<std::string> builder_words;  ///< "M68", "M68=clamp C", "CYCL DEF 392", "LASERCHECK"
 };
 

@@ -312,6 +312,19 @@ void add_run(CLI::App& app, int& exit_code) {
       ->type_name("KEY=VALUE")
       ->expected(1)
       ->take_all();
+  std::vector<std::string>& overrides = options->overrides;
+  command
+      ->add_option_function<std::vector<std::string>>(
+          "--set-parameter",
+          [&overrides](const std::vector<std::string>& given) {
+            for (const std::string& one : given) overrides.push_back("parameters." + one);
+          },
+          "a parameter's value before an NC program starts: 500=3.5 (#500), R1=2, Q5=1, NAME=3 (a GUD); "
+          "short "
+          "for --set parameters.500=3.5; once for each")
+      ->type_name("NAME=NUMBER")
+      ->expected(1)
+      ->take_all();
   command
       ->add_option("--threads", options->threads,
                    "threads to use (default: all cores); results do not depend on it")

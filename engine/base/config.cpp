@@ -14,6 +14,49 @@
 #include <utility>
 
 namespace swarf {
+namespace {
+
+constexpr double kInchMm = 25.4;
+
+/// A key that counts in mm, spelt in inches: box_mm is box_in, speed_max_mm_min is speed_max_in_min. "" for
+/// other keys.
+std::string inch_key(const std::string& key) {
+  const size_t at = key.rfind("_mm");
+  if (at == std::string::npos || (at + 3 < key.size() && key[at + 3] != '_')) return "";
+  return key.substr(0, at) + "_in" + key.substr(at + 3);
+}
+
+/// A value with the key that it stands under; null: absent.
+struct Written {
+  const toml::node* node = nullptr;
+  std::string key;
+  double unit = 1.0;  ///< of a number as written, in the unit of the key that was asked for
+
+  /// An array of finite numbers, and of nothing else.
+  std::optional<std::vector<double>> row(const toml::node* array) const {
+    if (array == nullptr || !array->is_array()) return {};
+    std::vector<double> numbers;
+    for (const toml::node& item : *array->as_array()) {
+      const std::optional<double> number = item.is_number() ? item.value<double>() : std::nullopt;
+      if (!number || !std::isfinite(*number)) return {};
+      numbers.push_back(unit * *number);
+    }
+    return numbers;
+  }
+  /// An array of rows of three; empty where it is anything else.
+  std::vector<Vec3> points() const {
+    std::vector<Vec3> found;
+    if (node == nullptr || !node->is_array()) return {};
+    for (const toml::node& item : *node->as_array()) {
+      const std::optional<std::vector<double>> numbers = row(&item);
+      if (!numbers || numbers->size() != 3) return {};
+      found.emplace_back((*numbers)[0], (*numbers)[1], (*numbers)[2]);
+    }
+    return found;
+  }
+};
+
+}  // namespace
 
 struct ConfigTable::Node {
   std::shared_ptr<toml::table> root;   ///< keeps `table` alive
@@ -25,16 +68,36 @@ struct ConfigTable::Node {
   std::set<std::string> known;
   std::vector<std::shared_ptr<Node>> children;
 
-  const toml::node* find(const std::string& key) {
-    known.insert(key);
-    return table == nullptr ? nullptr : table->get(key);
+  /// The value of this key, or of its spelling in inches.
+  Written written(const std::string& key) const {
+    if (table == nullptr) return {nullptr, key};
+    const toml::node* as_asked = table->get(key);
+    const std::string inches = inch_key(key);
+    if (as_asked != nullptr || inches.empty() || table->get(inches) == nullptr) return {as_asked, key};
+    return {table->get(inches), inches, kInchMm};
   }
+  Written find(const std::string& key) {
+    known.insert(key);
+    return written(key);
+  }
+  /// The known key that this one is in another unit; "": none.
+  std::string known_in_mm(const std::string& inches) const {
+    const auto is = [&](const std::string& one) { return inch_key(one) == inches; };
+    const auto found = std::find_if(known.begin(), known.end(), is);
+    return found == known.end() ? "" : *found;
+  }
+  /// Reports a key that nobody asked for, and one that stands in two units.
+  void judge(const toml::key& key) const;
 };
 
 namespace {
 
 SourceLocation location(const std::string& file, const toml::source_region& source) {
   return {file, static_cast<int>(source.begin.line), static_cast<int>(source.begin.column)};
+}
+
+Range in_unit(double unit, const Range& range) {
+  return {range.low / unit, range.high / unit, range.low_open};
 }
 
 std::string bounds_text(const Range& range) {
@@ -52,7 +115,16 @@ bool inside(double value, const Range& range) {
          !(range.low_open && value == range.low);
 }
 
-/// The last override of a key wins, whatever stood in the file.
+/// The spelling of a key in its other unit, mm or inches; "": it has none.
+std::string other_unit(const toml::table& table, const std::string& key) {
+  if (const std::string inches = inch_key(key); !inches.empty()) return inches;
+  for (const auto& [one, value] : table) {
+    if (inch_key(std::string(one.str())) == key) return std::string(one.str());
+  }
+  return "";
+}
+
+/// The last override of a key wins, whatever stood in the file, in mm or in inches.
 void apply_override(toml::table& root, const std::string& text, Diagnostics& diagnostics) {
   const auto equals = text.find('=');
   if (equals == std::string::npos || equals == 0) {
@@ -80,6 +152,7 @@ void apply_override(toml::table& root, const std::string& text, Diagnostics& dia
       return;
     }
   }
+  table->erase(other_unit(*table, path));
   table->insert_or_assign(path, *parsed.get("value"));
 }
 
@@ -114,6 +187,29 @@ std::optional<std::string> read_file(const std::string& path, Diagnostics& diagn
 
 }  // namespace
 
+void ConfigTable::Node::judge(const toml::key& key) const {
+  const std::string written(key.str());
+  if (known.count(written) > 0) return;
+  // The key itself is what is misspelt, so its place is shown, not its value's.
+  const toml::source_region& source = key.source();
+  const SourceLocation at = source.begin ? location(file, source) : SourceLocation{"--set " + name + written};
+  if (const std::string in_mm = known_in_mm(written); !in_mm.empty()) {
+    if (table->get(in_mm) != nullptr)
+      diagnostics->error("two-units", at,
+                         fmt::format("both '{}{}' and '{}{}' are given", name, in_mm, name, written),
+                         "keep one of them");
+    return;
+  }
+  std::vector<std::string> names(known.begin(), known.end());
+  const std::string listed = fmt::format("known here: {}", fmt::join(names, ", "));
+  for (const std::string& one : known) {
+    if (!inch_key(one).empty()) names.push_back(inch_key(one));
+  }
+  const std::string near = nearest_name(written, names);
+  diagnostics->error("unknown-key", at, fmt::format("nothing is called '{}{}'", name, written),
+                     near.empty() ? listed : fmt::format("did you mean '{}'?", near));
+}
+
 ConfigTable::ConfigTable(std::shared_ptr<Node> node) : node_(std::move(node)) {}
 
 ConfigTable ConfigTable::load(const std::string& path, const std::vector<std::string>& overrides,
@@ -146,11 +242,11 @@ ConfigTable ConfigTable::parse(const std::string& text, const std::string& name,
 }
 
 bool ConfigTable::has(const std::string& key) const {
-  return node_->find(key) != nullptr;
+  return node_->find(key).node != nullptr;
 }
 
 bool ConfigTable::is_text(const std::string& key) const {
-  const toml::node* value = node_->find(key);
+  const toml::node* value = node_->find(key).node;
   return value != nullptr && value->is_string();
 }
 
@@ -159,10 +255,10 @@ SourceLocation ConfigTable::where() const {
 }
 
 SourceLocation ConfigTable::where(const std::string& key) const {
-  const toml::node* value = node_->table == nullptr ? nullptr : node_->table->get(key);
-  if (value == nullptr) return node_->place;
-  if (!value->source().begin) return {"--set " + node_->name + key};
-  return location(node_->file, value->source());
+  const Written value = node_->written(key);
+  if (value.node == nullptr) return node_->place;
+  if (!value.node->source().begin) return {"--set " + node_->name + value.key};
+  return location(node_->file, value.node->source());
 }
 
 std::vector<std::string> ConfigTable::keys() const {
@@ -178,25 +274,26 @@ void ConfigTable::error(const std::string& code, const std::string& key, const s
 }
 
 double ConfigTable::number(const std::string& key, Range range, std::optional<double> fallback) {
-  const toml::node* value = node_->find(key);
-  if (value == nullptr) {
+  const Written value = node_->find(key);
+  if (value.node == nullptr) {
     if (!fallback)
       error("missing-key", key, fmt::format("'{}{}' is missing", node_->name, key),
             fmt::format("add {} = a number {}", key, bounds_text(range)));
     return fallback.value_or(0.0);
   }
-  const std::optional<double> found = value->value<double>();
-  if (!value->is_number() || !found) {
-    error("wrong-type", key, fmt::format("'{}{}' must be a number", node_->name, key),
-          fmt::format("write {} = a number {}", key, bounds_text(range)));
+  const std::string bounds = bounds_text(in_unit(value.unit, range));
+  const std::optional<double> found = value.node->value<double>();
+  if (!value.node->is_number() || !found) {
+    error("wrong-type", key, fmt::format("'{}{}' must be a number", node_->name, value.key),
+          fmt::format("write {} = a number {}", value.key, bounds));
     return fallback.value_or(0.0);
   }
-  if (!inside(*found, range)) {
-    error("out-of-range", key, fmt::format("'{}{}' is {:g}", node_->name, key, *found),
-          fmt::format("it must be {}", bounds_text(range)));
+  if (!inside(value.unit * *found, range)) {
+    error("out-of-range", key, fmt::format("'{}{}' is {:g}", node_->name, value.key, *found),
+          fmt::format("it must be {}", bounds));
     return fallback.value_or(0.0);
   }
-  return *found;
+  return value.unit * *found;
 }
 
 int ConfigTable::integer(const std::string& key, int low, int high, std::optional<int> fallback) {
@@ -210,7 +307,7 @@ int ConfigTable::integer(const std::string& key, int low, int high, std::optiona
 }
 
 bool ConfigTable::boolean(const std::string& key, std::optional<bool> fallback) {
-  const toml::node* value = node_->find(key);
+  const toml::node* value = node_->find(key).node;
   if (value != nullptr && value->is_boolean()) return *value->value<bool>();
   if (value != nullptr || !fallback) {
     error(value == nullptr ? "missing-key" : "wrong-type", key,
@@ -221,7 +318,7 @@ bool ConfigTable::boolean(const std::string& key, std::optional<bool> fallback) 
 }
 
 std::string ConfigTable::text(const std::string& key, const std::optional<std::string>& fallback) {
-  const toml::node* value = node_->find(key);
+  const toml::node* value = node_->find(key).node;
   if (value != nullptr && value->is_string()) return *value->value<std::string>();
   if (value != nullptr || !fallback) {
     error(value == nullptr ? "missing-key" : "wrong-type", key,
@@ -249,7 +346,7 @@ std::string ConfigTable::choice(const std::string& key, const std::vector<std::s
 
 std::vector<std::string> ConfigTable::choices(const std::string& key, const std::vector<std::string>& words,
                                               const std::vector<std::string>& fallback) {
-  const toml::node* value = node_->find(key);
+  const toml::node* value = node_->find(key).node;
   if (value == nullptr) return fallback;
   std::vector<std::string> found;
   bool right = value->is_array();
@@ -265,71 +362,41 @@ std::vector<std::string> ConfigTable::choices(const std::string& key, const std:
 
 std::vector<double> ConfigTable::numbers(const std::string& key, size_t count,
                                          const std::optional<std::vector<double>>& fallback) {
-  const toml::node* value = node_->find(key);
+  const Written value = node_->find(key);
   const std::vector<double> otherwise = fallback.value_or(std::vector<double>(count, 0.0));
-  if (value == nullptr && fallback) return otherwise;
-  std::vector<double> found;
-  if (value != nullptr && value->is_array()) {
-    for (const toml::node& item : *value->as_array()) {
-      const std::optional<double> number = item.is_number() ? item.value<double>() : std::nullopt;
-      if (number && std::isfinite(*number)) found.push_back(*number);
-    }
-  }
-  if (value == nullptr || !value->is_array() || found.size() != count || value->as_array()->size() != count) {
-    error(value == nullptr ? "missing-key" : "wrong-type", key,
-          fmt::format("'{}{}' must be an array of {} finite numbers", node_->name, key, count),
-          fmt::format("write {} = [{}]", key, count == 2 ? "a, b" : "a, b, c"));
-    return otherwise;
-  }
-  return found;
+  if (value.node == nullptr && fallback) return otherwise;
+  const std::optional<std::vector<double>> found = value.row(value.node);
+  if (found && found->size() == count) return *found;
+  error(value.node == nullptr ? "missing-key" : "wrong-type", key,
+        fmt::format("'{}{}' must be an array of {} finite numbers", node_->name, value.key, count),
+        fmt::format("write {} = [{}]", value.key, count == 2 ? "a, b" : "a, b, c"));
+  return otherwise;
 }
 
 std::vector<Vec3> ConfigTable::points(const std::string& key) {
-  const toml::node* value = node_->find(key);
-  std::vector<Vec3> found;
-  bool right = value != nullptr && value->is_array() && !value->as_array()->empty();
-  if (right) {
-    for (const toml::node& row : *value->as_array()) {
-      std::vector<double> numbers;
-      if (row.is_array()) {
-        for (const toml::node& item : *row.as_array()) {
-          const std::optional<double> number = item.is_number() ? item.value<double>() : std::nullopt;
-          if (number && std::isfinite(*number)) numbers.push_back(*number);
-        }
-      }
-      right = right && numbers.size() == 3 && row.as_array()->size() == 3;
-      if (right) found.emplace_back(numbers[0], numbers[1], numbers[2]);
-    }
-  }
-  if (right) return found;
-  error(value == nullptr ? "missing-key" : "wrong-type", key,
-        fmt::format("'{}{}' must be an array of rows of three finite numbers", node_->name, key),
-        fmt::format("write {} = [[x, y, z], [x, y, z]]", key));
+  const Written value = node_->find(key);
+  const std::vector<Vec3> found = value.points();
+  if (!found.empty()) return found;
+  error(value.node == nullptr ? "missing-key" : "wrong-type", key,
+        fmt::format("'{}{}' must be an array of rows of three finite numbers", node_->name, value.key),
+        fmt::format("write {} = [[x, y, z], [x, y, z]]", value.key));
   return {};
 }
 
 Box ConfigTable::box(const std::string& key) {
-  const toml::node* value = node_->find(key);
-  std::vector<double> found;
-  if (value != nullptr && value->is_array()) {
-    for (const toml::node& corner : *value->as_array()) {
-      if (!corner.is_array()) continue;
-      for (const toml::node& item : *corner.as_array()) {
-        const std::optional<double> number = item.is_number() ? item.value<double>() : std::nullopt;
-        if (number && std::isfinite(*number)) found.push_back(*number);
-      }
-    }
-  }
-  if (found.size() != 6) {
-    error(value == nullptr ? "missing-key" : "wrong-type", key,
-          fmt::format("'{}{}' must be two corners in mm", node_->name, key),
-          fmt::format("write {} = [[x0, y0, z0], [x1, y1, z1]]", key));
+  const Written value = node_->find(key);
+  const std::vector<Vec3> found = value.points();
+  if (found.size() != 2) {
+    error(value.node == nullptr ? "missing-key" : "wrong-type", key,
+          fmt::format("'{}{}' must be two corners in {}", node_->name, value.key,
+                      value.key == key ? "mm" : "inches"),
+          fmt::format("write {} = [[x0, y0, z0], [x1, y1, z1]]", value.key));
     return {Vec3::Zero(), Vec3::Ones()};
   }
-  const Box box{{found[0], found[1], found[2]}, {found[3], found[4], found[5]}};
+  const Box box{found[0], found[1]};
   if (!(box.size().minCoeff() > 0.0)) {
     error("out-of-range", key,
-          fmt::format("'{}{}' has size {:g} x {:g} x {:g} mm", node_->name, key, box.size().x(),
+          fmt::format("'{}{}' has size {:g} x {:g} x {:g} mm", node_->name, value.key, box.size().x(),
                       box.size().y(), box.size().z()),
           "the first corner must lie below the second in x, y and z");
     return {Vec3::Zero(), Vec3::Ones()};
@@ -344,7 +411,7 @@ ConfigTable ConfigTable::table(const std::string& key) {
   child->file = node_->file;
   child->diagnostics = node_->diagnostics;
   child->place = where(key);
-  const toml::node* value = node_->find(key);
+  const toml::node* value = node_->find(key).node;
   if (value != nullptr) {
     child->table = value->as_table();
     if (child->table == nullptr) {
@@ -358,7 +425,7 @@ ConfigTable ConfigTable::table(const std::string& key) {
 
 std::vector<ConfigTable> ConfigTable::tables(const std::string& key) {
   std::vector<ConfigTable> list;
-  const toml::node* value = node_->find(key);
+  const toml::node* value = node_->find(key).node;
   if (value == nullptr) return list;
   const toml::array* array = value->as_array();
   if (array == nullptr) {
@@ -387,20 +454,7 @@ std::vector<ConfigTable> ConfigTable::tables(const std::string& key) {
 
 void ConfigTable::finish() {
   if (node_->table != nullptr) {
-    const std::vector<std::string> known(node_->known.begin(), node_->known.end());
-    for (const auto& [key, value] : *node_->table) {
-      const std::string name(key.str());
-      if (node_->known.count(name) > 0) continue;
-      const std::string near = nearest_name(name, known);
-      // The key itself is what is misspelt, so its place is shown, not its value's.
-      const toml::source_region& source = key.source();
-      const SourceLocation place =
-          source.begin ? location(node_->file, source) : SourceLocation{"--set " + node_->name + name};
-      node_->diagnostics->error("unknown-key", place,
-                                fmt::format("nothing is called '{}{}'", node_->name, name),
-                                near.empty() ? fmt::format("known here: {}", fmt::join(known, ", "))
-                                             : fmt::format("did you mean '{}'?", near));
-    }
+    for (const auto& [key, value] : *node_->table) node_->judge(key);
   }
   for (const auto& child : node_->children) ConfigTable(child).finish();
 }

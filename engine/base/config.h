@@ -1,5 +1,7 @@
 // Typed reading of TOML files with a diagnostic for everything that is wrong: syntax, type, range, a missing
-// key, and every key that nobody asked for (with the nearest known one).
+// key, and every key that nobody asked for (with the nearest known one). A length whose key counts in mm may
+// stand there in inches: `_in` in the key's place of `_mm` (diameter_in, box_in, speed_max_in_min); asked for
+// and given is always mm. Both in one table are the error "two-units".
 #pragma once
 
 #include <array>

@@ -9,6 +9,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/diagnostics.h"
@@ -81,6 +82,17 @@ using BuilderWords = std::map<std::string, std::string>;
 /// A key of BuilderWords as it is looked up ("m068" is "M68"); empty when it is none of the three.
 std::string builder_word(const std::string& written);
 
+/// A parameter's value before the program starts.
+struct Preset {
+  double value = 0.0;
+  SourceLocation where;  ///< of the one who says so
+};
+/// By name as preset_name() gives it: "500" (#500 of Fanuc, Haas, Mazak, LinuxCNC), "_DEPTH" (#<_depth> of
+/// LinuxCNC, a GUD of the 840D), "R12" (840D), "Q5", "QL5", "QR5" (Heidenhain).
+using Presets = std::map<std::string, Preset>;
+/// The name of a preset: in capitals, without # and < >.
+std::string preset_name(std::string_view written);
+
 /// What stands in the control before the program starts.
 struct ControlSetup {
   kinematics::MachineModel machine;  ///< with gauge_M, or with one fixed tip for every tool
@@ -97,6 +109,7 @@ struct ControlSetup {
       subprogram_folders;              ///< where called programs are looked for besides the program's own
   KinematicsSwitch kinematics_switch;  ///< LinuxCNC only
   BuilderWords builder_words;
+  Presets presets;  ///< "bad-preset" for one that the dialect does not have
   /// Length of the unit that holds before the program says its own (G20, G21), 1 or 25.4: the machine's
   /// default. None: 1, and the warning "units-assumed" where a program without such a word moves.
   std::optional<double> unit_mm;

@@ -147,7 +147,7 @@ TEST_F(NcJob, RefusesASetupThatTheMachineLacks) {
   write(kSlot, kStart + "offsets = { G40 = { X_mm = 1 } }\n");
   expect_refused("unknown-offset", "scene.toml");
   write(kSlot, kStart + "offsets = { G54 = { Xmm = 1 } }\n");
-  expect_refused("bad-axis-key", "scene.toml");
+  expect_refused("unknown-key", "scene.toml");
 }
 
 TEST_F(NcJob, RefusesKeysOfOtherPrograms) {

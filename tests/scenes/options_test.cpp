@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <initializer_list>
 #include <nlohmann/json.hpp>
@@ -96,6 +97,49 @@ TEST_F(Options, CheckTakesATThatChangesTheToolAtOnce) {
   EXPECT_FALSE(says(run_swarf(check), "T1 (D 6 mm"));
   const ProgramRun with = run_swarf(check + " --t-changes-tool");
   EXPECT_TRUE(says(with, "T1 (D 6 mm")) << with.output;
+}
+
+/// A Z from a parameter that the program reads and does not set: check and run take it, a scene holds it.
+TEST_F(Options, ParametersHoldAValueBeforeTheProgramStarts) {
+  const std::string program = file(
+      "part.nc", "O0001\nG21 G90 G17\nT1 M6\nS1000 M3\nG0 X0. Y0. Z5.\nG1 Z-#500 F100.\nX10.\nG0 Z5.\nM30\n");
+  const ProgramRun without = run_swarf("check " + program);
+  EXPECT_TRUE(says(without, "vacant-word")) << without.output;
+  const ProgramRun with = run_swarf("check " + program + " --set-parameter '#500=3.5' --json");
+  EXPECT_EQ(with.exit_code, 0) << with.output;
+  EXPECT_TRUE(says(with, "-3.5")) << with.output;
+  EXPECT_FALSE(says(with, "vacant-word")) << with.output;
+  const ProgramRun wrong = run_swarf("check " + program + " --set-parameter 500=deep");
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_TRUE(says(wrong, "write --set-parameter 500=3.5")) << wrong.output;
+  const ProgramRun other = run_swarf("check " + program + " --set-parameter R1=2");
+  EXPECT_TRUE(says(other, "bad-preset")) << other.output;
+
+  // The slot of a flat end D 6: 10 x 6 and a circle, 3.5 and 2 deep.
+  const double area = 60.0 + 9.0 * std::acos(-1.0);
+  const auto removed = [&](const std::string& job) {
+    const fs::path out = folder_ / "out";
+    fs::remove_all(out);
+    const ProgramRun run = run_swarf("run " + job + " --no-render -o " + out.string());
+    EXPECT_EQ(run.exit_code, 0) << run.output;
+    return json::parse(swarf::test::read_text(out / "metrics.json"))["stock"]["volume_removed_mm3"]
+        .get<double>();
+  };
+  const std::string flags = " --tool 6 --stock=-5,-5,-6,15,5,0 --voxel 0.25";
+  EXPECT_NEAR(removed(program + flags + " --set-parameter 500=3.5"), 3.5 * area, 0.02 * 3.5 * area);
+
+  // The same in inches, as a scene with the parameter in it; the option goes before it.
+  const std::string scene = file("scene.toml",
+                                 "nc = \"part.nc\"\ntools = \"6\"\n[parameters]\n500 = 3.5\n[setup]\n"
+                                 "work_origin_mm = \"on_table\"\nwithout_length = \"tip\"\n[stock]\n"
+                                 "box_in = [[-0.2, -0.2, -0.25], [0.6, 0.2, 0]]\nvoxel_in = 0.01\n");
+  EXPECT_EQ(run_swarf("check " + scene).exit_code, 0);
+  EXPECT_NEAR(removed(scene), 3.5 * area, 0.02 * 3.5 * area);
+  EXPECT_NEAR(removed(scene + " --set-parameter 500=2"), 2.0 * area, 0.02 * 2.0 * area);
+  const ProgramRun both = run_swarf("check " + file("both.toml",
+                                                    "nc = \"part.nc\"\ntools = \"6\"\n[stock]\n"
+                                                    "voxel_mm = 0.25\nvoxel_in = 0.01\n"));
+  EXPECT_TRUE(says(both, "'stock.voxel_mm' and 'stock.voxel_in'")) << both.output;
 }
 
 TEST_F(Options, CheckTakesTheUnitOfProgramsThatNameNone) {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/units.h"
+#include "program/control/corner.h"
 #include "program/control/emit.h"
 #include "program/control/path.h"
 #include "program/control/tools.h"
@@ -58,6 +59,7 @@ void set_plane(Control& control, Plane plane) {
     control.report.fail("compensation-plane", 0, "the plane changes while cutter radius compensation is on",
                         fmt::format("switch it off first: {}", control.report.words.compensation_off));
   }
+  release_corner(control);
   control.modal.plane = plane;
 }
 
@@ -67,6 +69,7 @@ void set_compensation(Control& control, Compensation side, double radius_mm, int
                         fmt::format("{:g} mm is not a cutter radius", radius_mm),
                         "give the tool's diameter in the tool table");
   }
+  if (side != control.contour.side()) release_corner(control);
   control.contour.set_side(side, radius_mm, column);
 }
 
@@ -77,6 +80,7 @@ void enter_compensation(Control& control, Compensation side, double radius_mm, c
 }
 
 void flush(Control& control) {
+  release_corner(control);
   // Without the lead-out, the tool stands beside the programmed point.
   if (control.contour.leading_out()) control.path.position_valid = false;
   control.contour.flush();

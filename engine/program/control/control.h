@@ -24,6 +24,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <optional>
 
 #include "kinematics/machine_model.h"
 #include "program/control/contour.h"
@@ -66,6 +67,16 @@ struct PathState {
   Place first_motion;
 };
 
+/// A piece of contour that waits for the one behind its corner (corner.h).
+struct CornerState {
+  struct Held {
+    Segment piece;
+    CornerWords words;
+  };
+  std::optional<CornerWords> asked;  ///< by the block whose move comes
+  std::optional<Held> held;
+};
+
 struct Control;
 
 /// Gives the control's words to its cutter compensation, and takes what comes out of it.
@@ -96,6 +107,7 @@ struct Control {
   WorkSpace space;
   Offsets offsets;
   PathState path;
+  CornerState corners;
   ContourOfControl host{*this};
   Contour contour{host};
 };

@@ -19,13 +19,17 @@ void go(Control& control, Motion motion, int normal, double height) {
   line(control, motion, target);
 }
 
+double least_peck(const DrillCycle& cycle) {
+  return cycle.degression_mm > 0.0 ? std::min(cycle.peck_mm, cycle.degression_mm) : cycle.peck_mm;
+}
+
 void check_cycle(Report& report, PathState& path, const DrillCycle& cycle, const Target& hole) {
   if (!path.started) {
     report.fail("start-unknown", hole.column, "a cycle starts, and the position is not known yet",
                 fmt::format("position all axes with {} before the cycle", report.words.rapid));
   }
   if (cycle.peck != DrillCycle::Peck::kNone &&
-      !(std::abs(cycle.bottom - cycle.approach) <= kPecksMax * cycle.peck_mm)) {
+      !(std::abs(cycle.bottom - cycle.approach) <= kPecksMax * least_peck(cycle))) {
     report.fail("bad-cycle", hole.column, fmt::format("the depth per peck is {:g} mm", cycle.peck_mm),
                 "give a depth per peck above zero");
   }
@@ -98,13 +102,22 @@ void bore_back(Control& control, const DrillCycle& cycle, const Target& above) {
   leave_aside(control, cycle, normal);
 }
 
+/// Of the peck behind one of `before`, with `left` to drill, which is above zero.
+double next_peck(const DrillCycle& cycle, double before, double left) {
+  const double least = cycle.degression_mm;
+  if (!(least > 0.0)) return cycle.peck_mm;
+  const double peck = before - least;
+  if (peck > least) return peck;
+  return left > 2.0 * least + 1e-9 || left < least + 1e-9 ? least : 0.5 * left;
+}
+
 void peck_down(Control& control, const DrillCycle& cycle, int normal, double sign) {
   double depth = cycle.approach;
   const bool pecks = cycle.peck != DrillCycle::Peck::kNone;
   const bool fresh = control.modal.feed_fresh;
-  double peck = cycle.first_peck_mm > 0.0 ? cycle.first_peck_mm : cycle.peck_mm;
-  for (;; peck = cycle.peck_mm) {
-    const double next = depth - sign * peck;
+  double peck = cycle.peck_mm, way = cycle.first_peck_mm > 0.0 ? cycle.first_peck_mm : peck;
+  for (;; way = peck = next_peck(cycle, peck, sign * (depth - cycle.bottom))) {
+    const double next = depth - sign * way;
     const bool last = !pecks || sign * (next - cycle.bottom) <= 1e-9;
     control.modal.feed_fresh = fresh || cycle.pitch_mm > 0.0;
     go(control, Motion::kFeed, normal, last ? cycle.bottom : next);

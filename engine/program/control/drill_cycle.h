@@ -22,6 +22,9 @@ struct DrillCycle {
   Peck peck = Peck::kNone;
   double peck_mm = 0.0;        ///< depth per peck, above 0 with pecking
   double first_peck_mm = 0.0;  ///< depth of the first one below `approach`; 0: peck_mm
+  /// Each peck is smaller than the one before it by this much, down to this much; what is then left is
+  /// drilled in pecks of this size, the last two of them alike. 0: all pecks are peck_mm.
+  double degression_mm = 0.0;
   double clearance_mm =
       0.0;               ///< kFull: rapid back down to this above the last depth; kChipBreak: retreat by this
   double dwell_s = 0.0;  ///< at the bottom

@@ -9,6 +9,7 @@
 #include "base/angles.h"
 #include "base/units.h"
 #include "kinematics/reach.h"
+#include "program/control/corner.h"
 #include "program/control/cycles.h"
 #include "program/control/emit.h"
 #include "program/control/tools.h"
@@ -206,14 +207,6 @@ void arrive(ModalState& modal, PathState& path, const Goal& goal) {
   modal.feed_fresh = false;
 }
 
-void take(Control& control, Segment& segment) {
-  if (control.contour.side() == Compensation::kOff && !control.contour.leading_out()) {
-    emit(control, segment);
-  } else {
-    control.contour.add(segment);
-  }
-}
-
 void place_circle(const Report& report, const ModalState& modal, Motion motion, const ArcWords& words,
                   Segment& segment) {
   const Vec3 normal = words.normal ? words.normal->normalized() : Vec3::Unit(axes_of(modal.plane).normal);
@@ -338,7 +331,7 @@ void line(Control& control, Motion motion, const Target& target) {
   segment.rotary_from = control.space.rotary_of(control.path.q);
   segment.rotary_to = goal.rotary;
   segment.turns_rotaries = goal.turns;
-  take(control, segment);
+  take_piece(control, segment);
   arrive(control.modal, control.path, goal);
 }
 
@@ -384,7 +377,7 @@ void arc(Control& control, Motion motion, const Target& target, const ArcWords& 
   segment.turns_rotaries = goal.turns;
   segment.further_turns = words.further_turns;
   place_circle(control.report, control.modal, motion, words, segment);
-  take(control, segment);
+  take_piece(control, segment);
   arrive(control.modal, control.path, goal);
 }
 

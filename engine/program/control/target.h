@@ -112,6 +112,22 @@ struct TiltPreference {
   int axis = -1;  ///< AxisWord; -1: the rotary next to the tool side that tilts (the second of rotary_order)
 };
 
+/// What a block asks for at its end, between its piece of contour and the next one.
+struct CornerWords {
+  enum class Kind {
+    kRound,  ///< an arc that touches both pieces; size: its radius
+    kLegs,   ///< a straight cut; size: what it takes off each piece
+    kChord,  ///< a straight cut; size: its own length
+  };
+  Kind kind = Kind::kRound;
+  double size_mm = 0.0;
+  double feed = 0.0;          ///< as F is written; 0: that of a neighbour
+  bool feed_of_next = false;  ///< of the piece behind the corner, else of the one before it
+  bool modal = false;         ///< at each corner of the contour: elsewhere nothing is wrong
+  double smooth_rad = 1e-9;   ///< pieces that turn by no more have no corner
+  Place place;
+};
+
 /// One piece of programmed contour, before and after cutter compensation. Program coordinates.
 struct Segment {
   Motion motion = Motion::kRapid;

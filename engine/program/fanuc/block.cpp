@@ -150,10 +150,45 @@ void keep_offset_numbers(Modes& modes, LetterDialect& letters, const Rules& rule
   }
 }
 
+/// G254 of Haas is on: what turns a rotary axis, or the frame, ends it first.
+void refuse_rotaries(const LetterDialect& letters) {
+  for (const char letter : {'A', 'B', 'C'}) {
+    if (letters.block.has(letter))
+      letters.control.report.fail(
+          "modal-conflict", letters.column(letter),
+          "a rotary axis is programmed while G254 is on, which holds where they stand",
+          "write G255 before it");
+  }
+  const bool all_home =
+      g(letters, kFanucOneShot) == G::kToReference && (letters.block.given & kAxisBits) == 0;
+  if (all_home || letters.block.has_g(kFanucTurn) || g(letters, kFanucLength) == G::kTcpRotaries)
+    letters.control.report.fail("modal-conflict", letters.reader.column_of(letters.block.first),
+                                "G28 of all axes, rotations and TCPC do not go with G254",
+                                "write G255 before it");
+}
+
+/// ,R and ,C stand in a feed move of G01 to G03 with an end.
+void check_corner(const LetterDialect& letters, int motion, bool in_cycle) {
+  if (letters.block.corner.letter == 0) return;
+  const int one_shot = g(letters, kFanucOneShot);
+  const bool alone = (one_shot < 0 || one_shot == G::kExactStopOnce) && g(letters, kFanucMacro) < 0;
+  if (alone && !in_cycle && motion >= 10 && motion <= 30 && (letters.block.given & kAxisBits) != 0) return;
+  letters.control.report.fail("bad-corner", letters.reader.column_of(letters.block.corner.place),
+                              ",R and ,C stand in a block without a feed move",
+                              "write them in the G01, G02 or G03 block that leads to the corner");
+}
+
 }  // namespace
 
 void check_words(Modes& modes, LetterDialect& letters, const Rules& rules) {
   const int one_shot = g(letters, kFanucOneShot);
+  if (modes.rotaries_stand) refuse_rotaries(letters);
+  const int motion = g(letters, kFanucMotion) >= 0 ? g(letters, kFanucMotion) : modes.motion;
+  const int cycle = g(letters, kFanucCycle) >= 0    ? g(letters, kFanucCycle)
+                    : g(letters, kFanucMotion) >= 0 ? 800
+                                                    : modes.cycle;
+  const bool in_cycle = cycle != G::kCycleOff;
+  check_corner(letters, motion, in_cycle);
   if (one_shot == G::kMacroCall || g(letters, kFanucMacro) == G::kModalMacro)
     return;  // every letter is an argument
   const auto taken = [&](char letter) { return taken_by_code(letters, rules, letter); };
@@ -167,12 +202,7 @@ void check_words(Modes& modes, LetterDialect& letters, const Rules& rules) {
           fmt::format("the machine {} has no axis {}", letters.control.setup.machine.name, letter),
           "take the word out, or choose the machine that the program was posted for");
   }
-  const int motion = g(letters, kFanucMotion) >= 0 ? g(letters, kFanucMotion) : modes.motion;
-  const int cycle = g(letters, kFanucCycle) >= 0    ? g(letters, kFanucCycle)
-                    : g(letters, kFanucMotion) >= 0 ? 800
-                                                    : modes.cycle;
-  const bool in_cycle = cycle != G::kCycleOff,
-             arc = !in_cycle && (motion == G::kArcClockwise || motion == G::kArcCounterClockwise),
+  const bool arc = !in_cycle && (motion == G::kArcClockwise || motion == G::kArcCounterClockwise),
              turn = (g(letters, kFanucTurn) >= G::kTurnOn && g(letters, kFanucTurn) != G::kTurnOff) ||
                     g(letters, kFanucScale) == G::kScaleOn;
   const bool tilts = one_shot == G::kTiltRotaries || one_shot == G::kTiltAboutTip;

@@ -159,7 +159,7 @@ constexpr OperatorWord kOperators[] = {
     {"LT", Operator::kLess, 2},     {"LE", Operator::kLessEqual, 2},
 };
 
-const LetterSyntax kSyntax{&kGTable, &kMTable, kFanucLetters, false, false};
+const LetterSyntax kSyntax{&kGTable, &kMTable, kFanucLetters, false, false, false, false, true};
 
 }  // namespace
 

@@ -175,6 +175,7 @@ Fanuc::Fanuc(const std::string& file, Control& machine, const Rules& own)
   main.source = &open(file);
   main.own_locals = true;
   calls.stack.enter(std::move(main));
+  set_presets(machine.setup.presets, calls, variables);
   control.modal.feed_rule = FeedRule::kAllAxes;
 }
 

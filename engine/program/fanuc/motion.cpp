@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "base/units.h"
+#include "program/control/corner.h"
 #include "program/fanuc/steps.h"
 
 namespace swarf::program::nc::fanuc {
@@ -190,6 +191,27 @@ void keep_motion_codes(Modes& modes, Drilling& drilling, LetterDialect& letters)
   modes.cycle = code;
 }
 
+/// ,R and ,C: corners up to one degree are none.
+void ask_for_corner(Mapping& mapping, LetterDialect& letters) {
+  const LetterBlock::Corner& written = letters.block.corner;
+  if (written.letter == 0) return;
+  const int column = letters.reader.column_of(written.place);
+  if (!(written.value > 0.0))
+    letters.control.report.fail("out-of-range", column, "the size of a corner is not above zero",
+                                "write ,R2. or ,C1.");
+  ArcWords size;
+  size.radius = letters.control.modal.mm(written.value);
+  size.column = column;
+  map_arc(mapping, letters, size);
+  CornerWords words;
+  words.kind = written.letter == 'R' ? CornerWords::Kind::kRound : CornerWords::Kind::kLegs;
+  words.size_mm = size.radius;
+  words.smooth_rad = rad_from_deg(1.0);
+  words.place = letters.control.report.place;
+  words.place.column = column;
+  nc::ask_corner(letters.control, words);
+}
+
 void motion(Fanuc& fanuc) {
   const bool machine = g(fanuc, kFanucOneShot) == G::kMachineCoordinates;
   if (fanuc.modes.cycle != G::kCycleOff && machine)
@@ -210,6 +232,7 @@ void motion(Fanuc& fanuc) {
     map_arc(fanuc.mapping, fanuc, *arc);
     const bool clockwise =
         (fanuc.modes.motion == G::kArcClockwise) != (mapped(fanuc.mapping) && reversed(fanuc.mapping, fanuc));
+    ask_for_corner(fanuc.mapping, fanuc);
     nc::arc(fanuc.control, clockwise ? Motion::kClockwise : Motion::kCounterClockwise, target, *arc);
     return;
   }
@@ -220,6 +243,7 @@ void motion(Fanuc& fanuc) {
   }
   if (!target.any()) return;
   fanuc.modes.moved = true;
+  ask_for_corner(fanuc.mapping, fanuc);
   const Motion kind = fanuc.modes.motion == 0 ? Motion::kRapid : Motion::kFeed;
   if (machine)
     nc::machine_line(fanuc.control, kind, target);

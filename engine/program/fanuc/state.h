@@ -173,6 +173,7 @@ struct Modes {
   bool number_rule_stated = false;
   bool moved = false;  ///< the block has a move
   bool incremental = false, retract_to_r = false;
+  bool rotaries_stand = false;  ///< G254 of Haas: what holds is made for the rotary axes where they stand
   Tcp tcp = Tcp::kOff;
 };
 

@@ -20,6 +20,8 @@ void skip_block_number(LetterDialect& letters);
 
 // --- variables.cpp
 std::optional<double> modal_code(const Fanuc& fanuc, long group);
+/// #1 to #33 of the main program and #100 to #999 as ControlSetup::presets has them.
+void set_presets(const Presets& presets, Calls& calls, Variables& variables);
 void assignment(Calls& calls, Variables& variables, LetterDialect& letters);
 
 // --- flow.cpp

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/units.h"
+#include "program/control/presets.h"
 #include "program/fanuc/steps.h"
 
 namespace swarf::program::nc::fanuc {
@@ -168,6 +169,21 @@ double system_variable(Fanuc& fanuc, long number, size_t place) {
 }
 
 }  // namespace
+
+void set_presets(const Presets& presets, Calls& calls, Variables& variables) {
+  for (const auto& [name, preset] : presets) {
+    const long number = preset_number(name, "").value_or(0);
+    if (number >= 1 && number <= kLocals) {
+      calls.stack.top().locals[static_cast<size_t>(number)] = preset.value;
+      calls.stack.top().assigned |= uint64_t{1} << number;
+    } else if (number >= kFirstCommon && number <= kLastCommon) {
+      variables.common[static_cast<size_t>(number)] = preset.value;
+      variables.assigned[static_cast<size_t>(number)] = true;
+    } else {
+      refuse_preset(name, preset, "programs may set #1 to #33 and #100 to #999: 500 = 3.5");
+    }
+  }
+}
 
 void assignment(Calls& calls, Variables& variables, LetterDialect& letters) {
   const size_t place = letters.reader.at();

@@ -113,9 +113,8 @@ constexpr Code kGCodes[] = {
     {1670, 0, kUnsupported, "changes settings of the machine"},
     {1740, 0, kUnsupported, "rigid tapping across the spindle's axis"},
     {1840, 0, kUnsupported, "rigid tapping across the spindle's axis"},
-    {2540, 19, kUnsupported,
-     "dynamic work offset: post with TCPC (G234) or a feature coordinate system (G268)"},
-    {2550, 19, kNoEffect, "dynamic work offset off"},
+    {2540, 0},
+    {2550, 0},
     {2660, 0, kUnsupported, "rapid of visible axes at a percentage"},
 };
 
@@ -165,13 +164,15 @@ constexpr Code kMCodes[] = {
 static_assert(fits_tables(kGCodes) && fits_tables(kMCodes));
 const CodeTable kGTable{fanuc::kFanucGCodes, kGCodes};
 const CodeTable kMTable{fanuc::kFanucMCodes, kMCodes};
-const LetterSyntax kSyntax{&kGTable, &kMTable, fanuc::kFanucLetters, false, false};
+const LetterSyntax kSyntax{&kGTable, &kMTable, fanuc::kFanucLetters, false, false, false, false, true};
 
 constexpr fanuc::OwnCode kOwn[] = {
     {120, "IKQDL", [](Fanuc& haas) { fanuc::circular_pocket(haas, true); }},
     {130, "IKQDL", [](Fanuc& haas) { fanuc::circular_pocket(haas, false); }},
     {700, "IJL", bolt_circle},
     {710, "IJKL", bolt_arc},
+    {2540, "", dynamic_offset_on},
+    {2550, "", dynamic_offset_off},
 };
 constexpr std::string_view kListedStatements[] = {"DPRNT", "POPEN", "PCLOS", "BPRNT"};
 

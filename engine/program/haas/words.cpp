@@ -58,6 +58,31 @@ void bolt_arc(Fanuc& haas) {
   drill_on_circle(haas, true);
 }
 
+void dynamic_offset_on(Fanuc& haas) {
+  Control& control = haas.control;
+  if (haas.planes.turned.on || haas.modes.tcp != Tcp::kOff)
+    control.report.fail("modal-conflict", haas.g_column(fanuc::kFanucOneShot),
+                        "G254 stands while TCPC, a rotation or a feature coordinate system is on",
+                        "end it first: G49, G69, G269");
+  if (!control.path.started)
+    control.report.fail("start-unknown", haas.g_column(fanuc::kFanucOneShot),
+                        "G254 needs to know where the rotary axes stand", "position all axes before it");
+  nc::flush(control);
+  const Mat3 at_zero = control.space.compensated({0.0, 0.0, 0.0}).columns_W;
+  const Mat3 now = control.space.compensated(control.space.rotary_of(control.path.q)).columns_W;
+  haas.planes.turned.frame = Pose::Identity();
+  haas.planes.turned.frame.linear() = at_zero.inverse() * now;
+  haas.planes.turned.on = haas.planes.turned.in_work = haas.modes.rotaries_stand = true;
+  fanuc::update_space(haas);
+}
+
+void dynamic_offset_off(Fanuc& haas) {
+  if (!haas.modes.rotaries_stand) return;
+  haas.modes.rotaries_stand = false;
+  haas.planes.turned = {};
+  fanuc::update_space(haas);
+}
+
 std::optional<double> variable(Fanuc& haas, long number, size_t place) {
   const int column = haas.reader.column_of(place);
   if (number >= 2001 && number <= 2800) return tool_variable(haas, number, column);

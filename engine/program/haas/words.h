@@ -11,6 +11,10 @@ extern const fanuc::Rules kRules;
 void bolt_circle(fanuc::Fanuc& haas);
 /// G71: L holes on a circle of radius I, from J degrees on, K degrees apart.
 void bolt_arc(fanuc::Fanuc& haas);
+/// G254: programs count from the work offset's point where the standing rotary axes have carried it, along
+/// the machine's own X Y Z. Rotary words are refused until G255.
+void dynamic_offset_on(fanuc::Fanuc& haas);
+void dynamic_offset_off(fanuc::Fanuc& haas);
 /// Variables that are others than Fanuc's: tool offsets, modal groups, settings.
 std::optional<double> variable(fanuc::Fanuc& haas, long number, size_t place);
 

@@ -38,21 +38,60 @@ Vec3 from_pole(nc::Control& control, const Frames& frames, double radius_mm, dou
   return frames.stretch.factor.cwiseProduct(polar(nc::axes_of(control.modal.plane), radius_mm, angle_deg));
 }
 
+void refuse_height(BlockReader& reader, const MotionWords& words, int normal) {
+  const Amount& word = words.axes[static_cast<size_t>(normal)];
+  if (word)
+    reader.fail("unsupported-word", word.offset,
+                fmt::format("{} leaves the plane of this arc", nc::kAxisLetters[normal]),
+                "helices are programmed with CP and IPA");
+}
+
 /// Arcs move in the working plane.
 void only_plane(nc::Control& control, BlockReader& reader, const MotionWords& words) {
-  const nc::PlaneAxes axes = nc::axes_of(control.modal.plane);
-  for (int i = 0; i < 3; ++i) {
-    const Amount& word = words.axes[static_cast<size_t>(i)];
-    if (!word || i != axes.normal) continue;
-    reader.fail("unsupported-word", word.offset,
-                fmt::format("{} leaves the working plane of this arc", nc::kAxisLetters[i]),
-                "helices are programmed with CP and IPA");
-  }
+  refuse_height(reader, words, nc::axes_of(control.modal.plane).normal);
 }
 
 const Vec3& centre(PathState& path, BlockReader& reader, size_t offset) {
   if (!path.centre) reader.fail("missing-centre", offset, "there is no CC before this block", "CC X+10 Y+20");
+  if (path.centre_normal)
+    reader.fail("unsupported-word", offset, "the last CC lies across the working plane: only C goes about it",
+                "CC with both axes of the working plane");
   return *path.centre;
+}
+
+/// CC X+10 Z-5 with the tool axis Z: the axis that it leaves out, across the plane of its circle.
+int normal_of_pole(const nc::PlaneAxes& axes, const Frames& frames, BlockReader& reader,
+                   const MotionWords& words, size_t start) {
+  const bool first = static_cast<bool>(words.axes[static_cast<size_t>(axes.first)]);
+  const bool second = static_cast<bool>(words.axes[static_cast<size_t>(axes.second)]);
+  if (first == second)
+    reader.fail("unexpected-word", start, "a pole has two coordinates", "CC X+10 Y+20, or CC X+10 Z-5");
+  if (!frames.stretch.none())
+    reader.fail("unsupported-word", start,
+                "a circle across the working plane while mirror images or scalings are on is not supported",
+                "end them before it");
+  return first ? axes.second : axes.first;
+}
+
+/// C about a CC across the working plane; counter-clockwise seen against the axis that is left out.
+void circle_across(Executor& executor, BlockReader& reader, const MotionWords& words, size_t start) {
+  const int normal = *executor.path.centre_normal;
+  refuse_height(reader, words, normal);
+  if (executor.control.contour.side() != nc::Compensation::kOff ||
+      (words.compensation && *words.compensation != nc::Compensation::kOff))
+    reader.fail("compensation-plane", start, "RL or RR at a circle across the working plane", "write R0");
+  if (words.sense == 0)
+    reader.fail("missing-word", start, "the arc has no DR", "DR+ turns counter-clockwise, DR- clockwise");
+  Element element;
+  element.offset = start;
+  element.motion = words.sense > 0 ? Motion::kCounterClockwise : Motion::kClockwise;
+  element.target = target_of(executor.control, executor.modes, executor.frames, reader, words);
+  if (!words.any_linear()) reader.fail("missing-word", start, "C has no end", "C X+10 Z+20 DR+");
+  element.arc.centre = executor.path.centre;
+  element.arc.normal = Vec3::Unit(normal);
+  element.arc.column = executor.control.report.place.column;
+  element.arc.radius_tolerance_mm = kRadiusTolerance;
+  move(executor, reader, words, element);
 }
 
 }  // namespace
@@ -98,18 +137,19 @@ void pole(nc::Control& control, PathState& path, Frames& frames, BlockReader& re
   const size_t start = reader.offset();
   const MotionWords words = read_motion_words(reader, kAxesAllowed);
   const nc::PlaneAxes axes = nc::axes_of(control.modal.plane);
-  if (words.any_rotary() || words.axes[static_cast<size_t>(axes.normal)])
-    reader.fail("unexpected-word", start, "a pole lies in the working plane", "CC X+10 Y+20");
+  if (words.any_rotary()) reader.fail("unexpected-word", start, "a pole has no rotary axes", "CC X+10 Y+20");
+  const bool across = static_cast<bool>(words.axes[static_cast<size_t>(axes.normal)]);
+  const int normal = across ? normal_of_pole(axes, frames, reader, words, start) : axes.normal;
   const Vec3 here = present(control, path);
   const bool none = !words.any_linear();
   Vec3 at = Vec3::Zero();
-  for (const int i : {axes.first, axes.second}) {
+  for (const int i : {(normal + 1) % 3, (normal + 2) % 3}) {
     const Amount& word = words.axes[static_cast<size_t>(i)];
     if (word && !word.incremental) {
       at[i] = frames.stretch.along(i, control.modal.mm(word.value), false);
     } else if (word || none) {
       at[i] = here[i] + (word ? frames.stretch.along(i, control.modal.mm(word.value), true) : 0.0);
-    } else if (path.centre) {
+    } else if (path.centre && !path.centre_normal) {
       at[i] = (*path.centre)[i];
     } else {
       reader.fail("missing-word", start, "this pole needs both coordinates: there was none before",
@@ -120,10 +160,12 @@ void pole(nc::Control& control, PathState& path, Frames& frames, BlockReader& re
     reader.fail("start-unknown", start, "the pole counts from a position that is not known yet",
                 "position all axes before it");
   path.centre = at;
+  path.centre_normal = across ? std::optional(normal) : std::nullopt;
 }
 
 void circle(Executor& executor, BlockReader& reader, size_t start) {
   const MotionWords words = read_motion_words(reader, kAxesAllowed | kSenseAllowed | kAlways);
+  if (executor.path.centre_normal) return circle_across(executor, reader, words, start);
   only_plane(executor.control, reader, words);
   Element element;
   element.offset = start;

@@ -223,6 +223,7 @@ void block(Executor& executor, BlockReader& reader) {
 Executor::Executor(nc::Control& machine) : control(machine), flow(machine, parameters) {
   control.report.words = {
       "R0", "L .. FMAX", "L with F", "CC", "M136, FU", "TOOL CALL 5 Z S1000, then M3", "TOOL CALL"};
+  parameters.set_presets(machine.setup.presets);
   control.modal.feed_rule = nc::FeedRule::kAllAxes;
   control.contour.set_entry(nc::CompensationEntry::kAcrossNext);
 }

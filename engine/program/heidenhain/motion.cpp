@@ -215,6 +215,8 @@ void emit(Executor& executor, const Element& element) {
   const bool arc = element.motion == Motion::kClockwise || element.motion == Motion::kCounterClockwise;
   if (arc) {
     nc::arc(executor.control, element.motion, element.target, element.arc);
+    executor.path.tangent.reset();
+    if (element.arc.normal) return;
     Vec3 out = element.to - *element.arc.centre;
     out[axes.normal] = 0.0;
     const double sign = element.motion == Motion::kCounterClockwise ? 1.0 : -1.0;

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "base/units.h"
+#include "program/control/presets.h"
 #include "program/letters/arithmetic.h"
 
 namespace swarf::program::nc::heidenhain {
@@ -191,6 +192,16 @@ std::string Parameters::read_text(BlockReader& reader) {
 
 void Parameters::set(const Name& name, double value) {
   (name.kind == 'L' ? local_ : name.kind == 'R' ? kept_ : global_)[name.number] = value;
+}
+
+void Parameters::set_presets(const Presets& presets) {
+  for (const auto& [name, preset] : presets) {
+    const char kind = name.starts_with("QL") ? 'L' : name.starts_with("QR") ? 'R' : 'Q';
+    const std::optional<long> number = preset_number(name, kind == 'Q' ? "Q" : name.substr(0, 2));
+    if (!number || *number > kNumberMax)
+      refuse_preset(name, preset, "programs read Q0 to Q1999, QL and QR: Q5 = 2");
+    set({kind, static_cast<int>(*number)}, preset.value);
+  }
 }
 
 void Parameters::assign(BlockReader& reader, const Name& name) {

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "program/heidenhain/text.h"
+#include "program/nc_program.h"
 
 namespace swarf::program::nc::heidenhain {
 
@@ -29,6 +30,8 @@ class Parameters {
   std::optional<double> find(const Name& name) const;
   std::optional<double> find_q(int number) const { return find({'Q', number}); }
   void set(const Name& name, double value);
+  /// Q, QL of the main program, QR. Throws InputError "bad-preset".
+  void set_presets(const Presets& presets);
   /// The parameter has no value any more.
   void forget(const Name& name);
   void set_q(int number, double value) { set({'Q', number}, value); }

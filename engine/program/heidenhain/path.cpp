@@ -59,7 +59,7 @@ void close_corner(Executor& executor, Element& next) {
   };
   const double rise = std::max(std::abs(before.to[axes.normal] - before.from[axes.normal]),
                                std::abs(next.to[axes.normal] - next.from[axes.normal]));
-  if (rise > 1e-9 || before.target.rotary() || next.target.rotary())
+  if (rise > 1e-9 || before.arc.normal || next.arc.normal || before.target.rotary() || next.target.rotary())
     refuse("the pieces before and after a corner lie in the working plane");
   const FlatPiece first = flat_piece(axes, before.motion, before.arc, before.from, before.to);
   const FlatPiece second = flat_piece(axes, next.motion, next.arc, next.from, next.to);

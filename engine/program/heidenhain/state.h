@@ -17,12 +17,12 @@
 
 #include "program/control/control.h"
 #include "program/control/cycles.h"
+#include "program/control/flat_corner.h"
 #include "program/control/offsets.h"
 #include "program/control/path.h"
 #include "program/control/tilt.h"
 #include "program/control/tools.h"
 #include "program/heidenhain/codes.h"
-#include "program/heidenhain/corner.h"
 #include "program/heidenhain/flow.h"
 #include "program/heidenhain/frame.h"
 #include "program/heidenhain/words.h"
@@ -126,6 +126,7 @@ struct Orientation {
 /// What the next piece of contour counts from, and what waits for it.
 struct PathState {
   std::optional<Vec3> centre;
+  std::optional<int> centre_normal;  ///< CC X Z: the axis across the plane of the circle, no working plane
   Amount polar_radius, polar_angle;  ///< modal, mm and degrees
   std::optional<Vec3> tangent;       ///< at the end of the last element
   std::optional<Element> held;

@@ -119,6 +119,37 @@ void add_code(char letter, const CodeTable& table, double number, size_t place, 
   block.g_places[group] = static_cast<uint16_t>(place);
 }
 
+/// "@2.5" and "^90".
+void read_polar(LetterBlock::Polar& word, FormulaReader& reader, Control& control) {
+  const size_t place = reader.at();
+  if (word.given)
+    control.report.fail("word-twice", reader.column_of(place),
+                        fmt::format("{} stands twice in this block", reader.peek()), "write it once");
+  reader.skip();
+  word = {true, reader.value(), place};
+}
+
+/// ",R2." and ",C1.".
+void read_corner(FormulaReader& reader, Control& control, LetterBlock& block) {
+  const size_t place = reader.at();
+  reader.skip();
+  reader.skip_space();
+  const char letter = reader.peek_upper();
+  if (letter == 'A')
+    control.report.fail(
+        "unsupported-word", reader.column_of(place),
+        ",A (a line by its angle) is published for turning alone: from which axis a mill counts "
+        "it is not",
+        "write the end with both coordinates");
+  if (letter != 'R' && letter != 'C')
+    control.report.fail("unexpected-character", reader.column_of(place), "no corner stands behind this comma",
+                        "write ,R2. or ,C1.");
+  if (block.corner.letter != 0)
+    control.report.fail("word-twice", reader.column_of(place), "a block has one corner", "write ,R or ,C");
+  reader.skip();
+  block.corner = {letter, reader.value(), place};
+}
+
 }  // namespace
 
 std::string code_name(char letter, int tenths) {
@@ -176,6 +207,18 @@ void read_words(const LetterSyntax& syntax, FormulaReader& reader, Control& cont
     if (stop != 0 && reader.peek() == stop) return;
     const size_t place = reader.at();
     const char letter = reader.peek_upper();
+    if ((letter == '@' || letter == '^') && syntax.polar) {
+      if (!any) block.first = place;
+      read_polar(letter == '@' ? block.distance : block.angle, reader, control);
+      any = true;
+      continue;
+    }
+    if (letter == ',' && syntax.corners) {
+      if (!any) block.first = place;
+      read_corner(reader, control, block);
+      any = true;
+      continue;
+    }
     if (letter < 'A' || letter > 'Z') {
       if (letter == '/' && !any) {
         block.skip_mark = true;
@@ -228,10 +271,7 @@ void read_words(const LetterSyntax& syntax, FormulaReader& reader, Control& cont
       control.report.fail("word-twice", reader.column_of(place),
                           fmt::format("{} stands twice in this block", letter), "write it once");
     }
-    const auto slot = static_cast<size_t>(letter - 'A');
-    block.given |= 1u << slot;
-    block.values[slot] = value;
-    block.places[slot] = static_cast<uint16_t>(place);
+    block.set(letter, value, place);
   }
 }
 

@@ -66,6 +66,8 @@ struct LetterSyntax {
   bool semicolon_comment;        ///< ';' starts a comment; else it ends the block
   bool number_first;             ///< N stands at the head of its block or nowhere
   bool active_comments = false;  ///< (ABORT, text) stops the program
+  bool polar = false;            ///< @ (distance) and ^ (angle) are words
+  bool corners = false;          ///< ,R and ,C round and cut the corner behind their block
 };
 
 /// The words of one line.
@@ -92,6 +94,16 @@ struct LetterBlock {
   bool arguments = false;  ///< a code of Code::Use::kArguments stands in it
   std::array<Repeat, kRepeatsMax> repeats{};
   int repeat_count = 0;
+  struct Corner {
+    char letter = 0;  ///< R or C; 0: none
+    double value = 0.0;
+    size_t place = 0;
+  } corner;  ///< ,R and ,C
+  struct Polar {
+    bool given = false;
+    double value = 0.0;
+    size_t place = 0;
+  } distance, angle;         ///< @ and ^
   bool skip_mark = false;    ///< '/' before it
   std::string_view message;  ///< text of the last (MSG, ...) comment
 
@@ -99,7 +111,15 @@ struct LetterBlock {
     given = g_given = m_groups = 0;
     m_count = free_g = listed_m = repeat_count = 0;
     skip_mark = arguments = false;
+    corner.letter = 0;
+    distance.given = angle.given = false;
     message = {};
+  }
+  void set(char letter, double value, size_t place) {
+    const auto slot = static_cast<size_t>(letter - 'A');
+    given |= 1u << slot;
+    values[slot] = value;
+    places[slot] = static_cast<uint16_t>(place);
   }
   bool has(char letter) const { return (given >> (letter - 'A') & 1u) != 0; }
   double get(char letter) const { return values[static_cast<size_t>(letter - 'A')]; }
@@ -107,7 +127,10 @@ struct LetterBlock {
   size_t place(char letter) const { return places[static_cast<size_t>(letter - 'A')]; }
   bool has_g(int group) const { return (g_given >> group & 1u) != 0; }
   bool has_m(int tenths) const;
-  bool empty() const { return (given | g_given) == 0 && m_count == 0 && free_g == 0; }
+  bool empty() const {
+    return (given | g_given) == 0 && m_count == 0 && free_g == 0 && corner.letter == 0 && !distance.given &&
+           !angle.given;
+  }
 };
 
 /// Reads the words from where `reader` stands to the end of the line into `block`, which must be clear.

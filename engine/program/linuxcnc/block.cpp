@@ -2,8 +2,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "base/angles.h"
+#include "base/units.h"
 #include "program/linuxcnc/steps.h"
 
 namespace swarf::program::nc::linuxcnc {
@@ -154,6 +157,39 @@ void apply_path_mode(LetterDialect& letters) {
 }
 
 }  // namespace
+
+/// @ (distance from the zero point) and ^ (degrees from +X) become X and Y. What is left out, and what G91
+/// counts from, is that of the present position.
+void polar_words(LinuxCnc& linuxcnc) {
+  LetterBlock& block = linuxcnc.block;
+  if (!block.distance.given && !block.angle.given) return;
+  const size_t place = block.distance.given ? block.distance.place : block.angle.place;
+  const auto fail = [&](const char* code, const char* text, const char* fix) {
+    linuxcnc.control.report.fail(code, linuxcnc.reader.column_of(place), text, fix);
+  };
+  if (block.has('X') || block.has('Y'))
+    fail("words-conflict", "@ and ^ stand beside X or Y", "write G1 @10 ^30, or X and Y");
+  if (block.has_g(kOffsetGroup) || block.has_g(kUnitsGroup) || block.has_g(kNonModal))
+    fail("words-conflict", "@ and ^ stand beside a change of offset or unit", "write it in a block before");
+  const bool incremental =
+      block.has_g(kDistanceGroup) ? block.g[kDistanceGroup] == G::kIncremental : linuxcnc.modes.incremental;
+  const bool counts = incremental || !block.distance.given || !block.angle.given;
+  const Vec3 here =
+      counts ? Vec3(nc::position_xyz(linuxcnc.control) / linuxcnc.control.modal.mm(1.0)) : Vec3(Vec3::Zero());
+  const double now = std::hypot(here.x(), here.y());
+  if (!std::isfinite(now))
+    fail("start-unknown", "@ or ^ counts from a position that is not known yet",
+         "position X and Y before it");
+  if (counts && now < 1e-9 && (incremental || !block.angle.given))
+    fail("bad-polar", "the angle of the present position is none: it is the zero point",
+         "write @ and ^ under G90");
+  const double turned = deg_from_rad(std::atan2(here.y(), here.x()));
+  const double radius = block.distance.given ? block.distance.value + (incremental ? now : 0.0) : now;
+  const double angle = block.angle.given ? block.angle.value + (incremental ? turned : 0.0) : turned;
+  const double x = radius * cos_deg(angle), y = radius * sin_deg(angle);
+  block.set('X', incremental ? x - here.x() : x, place);
+  block.set('Y', incremental ? y - here.y() : y, place);
+}
 
 bool uses_axis_words(const LetterDialect& letters) {
   if (!letters.block.has_g(kNonModal)) {

@@ -174,7 +174,7 @@ constexpr OperatorWord kOperators[] = {
 
 }  // namespace
 
-const LetterSyntax kLinuxCncSyntax{&kGTable, &kMTable, "ABCDEFGHIJKLMNPQRSTUVWXYZ", true, true, true};
+const LetterSyntax kLinuxCncSyntax{&kGTable, &kMTable, "ABCDEFGHIJKLMNPQRSTUVWXYZ", true, true, true, true};
 const FormulaSyntax kLinuxCncFormula{kFunctions, kOperators, true, false, false};
 
 }  // namespace swarf::program::nc::linuxcnc

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 
+#include "program/control/presets.h"
 #include "program/linuxcnc/dialect.h"
 
 namespace swarf::program::nc::linuxcnc {
@@ -40,7 +42,7 @@ void read_assignment(LinuxCnc& linuxcnc) {
     linuxcnc.control.report.fail("bad-parameter", linuxcnc.reader.column_of(from),
                                  fmt::format("#{} cannot be assigned", number),
                                  "parameters that programs may set have numbers from 1 to 5399");
-  if (number >= 5161)
+  if (number >= kControlNumbers)
     linuxcnc.control.report.fail(
         "unsupported-word", linuxcnc.reader.column_of(from),
         fmt::format("#{} belongs to the control (reference positions, offsets)", number),
@@ -67,6 +69,23 @@ void assign(Calls& calls, NumbersAndNames& parameters) {
     else
       list.push_back({name, value});
   }
+}
+
+/// #1 to #5160, and the global names that a program may set.
+void set_presets(LinuxCnc& linuxcnc) {
+  for (const auto& [name, preset] : linuxcnc.control.setup.presets) {
+    const long number = preset_number(name, "").value_or(0);
+    std::string lower = name;
+    std::transform(lower.begin(), lower.end(), lower.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (number >= 1 && number < kControlNumbers)
+      linuxcnc.parameters.new_numbers.emplace_back(number, preset.value);
+    else if (name.starts_with('_') && !is_read_only(linuxcnc, lower))
+      linuxcnc.parameters.new_names.emplace_back(lower, preset.value);
+    else
+      refuse_preset(name, preset, "programs may set #1 to #5160 and names such as #<_depth>: 500 = 3.5");
+  }
+  assign(linuxcnc.calls, linuxcnc.parameters);
 }
 
 bool execute(LinuxCnc& linuxcnc) {
@@ -96,6 +115,7 @@ bool execute(LinuxCnc& linuxcnc) {
     linuxcnc.control.report.at(source(linuxcnc.calls).file(),
                                static_cast<int>(source(linuxcnc.calls).line_number()),
                                linuxcnc.reader.column_of(linuxcnc.block.first));
+    polar_words(linuxcnc);
     check_words(linuxcnc.modes, linuxcnc.curves, linuxcnc);
   }
   assign(linuxcnc.calls, linuxcnc.parameters);
@@ -130,6 +150,7 @@ LinuxCnc::LinuxCnc(const std::string& file, Control& machine)
   control.modal.feed_rule = FeedRule::kLinearFirst;
   control.contour.set_entry(CompensationEntry::kAlongEntry);
   control.contour.set_smooth(kSmoothCornerRad);
+  set_presets(*this);
   if (control.setup.kinematics_switch.start == Kinematics::kTcp) nc::set_tcp(control, Tcp::kAxes);
 }
 

@@ -12,6 +12,54 @@ using kinematics::AxisValues;
 
 namespace {
 
+Vec3 linear_of(const LetterDialect& letters, const AxisValues& values) {
+  Vec3 linear;
+  for (int i = 0; i < 3; ++i) linear[i] = values[letters.control.space.axis_of(i)];
+  return linear;
+}
+
+Mat3 turn_of(const Zero& zero, int offset) {
+  return Eigen::AngleAxisd(offset < 10 ? zero.offset_turn[static_cast<size_t>(offset)] : 0.0, Vec3::UnitZ())
+      .toRotationMatrix();
+}
+
+/// The origin of an offset in which the present position reads as the words say; what they leave out reads on
+/// as it did. The machine stands at O + R (reading + shift) in the active offset and in this one.
+AxisValues origin_that_reads(const Zero& zero, LetterDialect& letters, int number, const Target& words) {
+  const Offsets& offsets = letters.control.offsets;
+  AxisValues origin = nc::offset_origin(letters.control.space, offsets, number);
+  const AxisValues active = nc::offset_origin(letters.control.space, offsets, offsets.active);
+  const std::array<double, kAxisWords> here = nc::position(letters.control);
+  const Mat3 R_active = turn_of(zero, offsets.active), R = turn_of(zero, number);
+  const bool turned = !R_active.isIdentity(0.0) || !R.isIdentity(0.0);
+  const bool both = turned && (words.has(kX) || words.has(kY));
+  const auto set = [&](int word) { return words.has(word) || (both && word <= kY); };
+  for (int word = 0; word < kAxisWords; ++word) {
+    if (!set(word)) continue;
+    const int axis = nc::require_axis(letters.control, static_cast<AxisWord>(word), words.column);
+    const auto slot = static_cast<size_t>(word);
+    if (!std::isfinite(here[slot]))
+      letters.control.report.fail(
+          "start-unknown", words.column, "G10 L20 needs the position, which is not known yet",
+          "give the start position: start in [setup] of the scene, swarf check --home");
+    if (word >= kA) origin[axis] = active[axis] + here[slot] - words.value[slot];
+  }
+  Vec3 shift = zero.shift_on ? linear_of(letters, zero.shift) : Vec3(Vec3::Zero()), position;
+  for (int i = 0; i < 3; ++i) {
+    position[i] = std::isfinite(here[static_cast<size_t>(i)]) ? here[static_cast<size_t>(i)] : 0.0;
+  }
+  const Vec3 machine = linear_of(letters, active) + R_active * (position + shift);
+  Vec3 reading = R.transpose() * (machine - linear_of(letters, origin)) - shift;
+  for (int i = 0; i < 3; ++i) {
+    if (words.has(i)) reading[i] = words.value[static_cast<size_t>(i)];
+  }
+  const Vec3 linear = machine - R * (reading + shift);
+  for (int i = 0; i < 3; ++i) {
+    if (set(i)) origin[letters.control.space.axis_of(i)] = linear[i];
+  }
+  return origin;
+}
+
 void set_data(Zero& zero, LetterDialect& letters) {
   letters.need('L', "G10");
   const int kind = whole(letters.block, 'L', 0, 20, letters.reader, letters.control);
@@ -29,35 +77,18 @@ void set_data(Zero& zero, LetterDialect& letters) {
   if (number == 0) number = letters.control.offsets.active;
   const Target words = target_of(letters.block, false, letters.reader, letters.control);
   AxisValues origin = nc::offset_origin(letters.control.space, letters.control.offsets, number);
-  const std::array<double, kAxisWords> here = nc::position(letters.control);
   if (letters.block.has('R')) {
     if (kind != 2)
       letters.control.report.fail("unexpected-word", letters.column('R'),
                                   "R turns an offset with G10 L2 only", "write G10 L2");
     zero.offset_turn[static_cast<size_t>(number)] = rad_from_deg(letters.block.get('R'));
   }
-  const double turn = zero.offset_turn[static_cast<size_t>(number)];
-  if (kind == 20 && turn != 0.0)
-    letters.control.report.fail("unsupported-word", letters.column('L'),
-                                "G10 L20 into an offset that is turned (R) is not supported",
-                                "write the offset with G10 L2");
-  for (int word = 0; word < kAxisWords; ++word) {
+  for (int word = 0; kind == 2 && word < kAxisWords; ++word) {  // G91 has no effect on it
     if (!words.has(word)) continue;
     const int axis = nc::require_axis(letters.control, static_cast<AxisWord>(word), words.column);
-    const double value = words.value[static_cast<size_t>(word)];
-    if (kind == 2) {  // G91 has no effect on it
-      origin[axis] = value;
-      continue;
-    }
-    if (!std::isfinite(here[static_cast<size_t>(word)]))
-      letters.control.report.fail(
-          "start-unknown", words.column, "G10 L20 needs the position, which is not known yet",
-          "give the start position: start in [setup] of the scene, swarf check --home");
-    // In the offset that is active: so that the present position reads `value`.
-    origin[axis] = nc::offset_origin(letters.control.space, letters.control.offsets,
-                                     letters.control.offsets.active)[axis] +
-                   here[static_cast<size_t>(word)] - value;
+    origin[axis] = words.value[static_cast<size_t>(word)];
   }
+  if (kind == 20) origin = origin_that_reads(zero, letters, number, words);
   nc::set_offset_origin(letters.control, number, origin);
   update_shift(zero, letters);
 }

@@ -138,6 +138,7 @@ struct Calls {
 
 /// Parameters up to #30 are arguments, from kNumbers on they belong to the control.
 inline constexpr long kNumbers = 5400, kArguments = 30;
+inline constexpr long kControlNumbers = 5161;  ///< reference positions and offsets: G codes set them
 /// #5599: whether (DEBUG, ) speaks; on until a program says otherwise.
 inline constexpr long kDebugOutput = 5599;
 

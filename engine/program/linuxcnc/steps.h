@@ -22,6 +22,7 @@ std::string message_text(LetterDialect& letters);
 bool is_read_only(LinuxCnc& linuxcnc, std::string_view name);
 
 // --- block.cpp
+void polar_words(LinuxCnc& linuxcnc);
 void check_words(Modes& modes, Curves& curves, LetterDialect& letters);
 void apply(LinuxCnc& linuxcnc);
 bool apply_end(LinuxCnc& linuxcnc);

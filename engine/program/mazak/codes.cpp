@@ -72,7 +72,7 @@ constexpr Code kMCodes[] = {
 static_assert(fits_tables(kGCodes) && fits_tables(kMCodes));
 const CodeTable kGTable{fanuc::kFanucGCodes, kGCodes};
 const CodeTable kMTable{fanuc::kFanucMCodes, kMCodes};
-const LetterSyntax kSyntax{&kGTable, &kMTable, fanuc::kFanucLetters, false, false};
+const LetterSyntax kSyntax{&kGTable, &kMTable, fanuc::kFanucLetters, false, false, false, false, true};
 
 constexpr fanuc::OwnCode kOwn[] = {
     {341, "IJK", bolt_circle},

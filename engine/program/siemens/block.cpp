@@ -217,7 +217,7 @@ class BlockReader {
       return once(vector[static_cast<size_t>(name[0] - 'A')], number, token);
     }
     using Plain = std::pair<std::string_view, Amount BlockWords::*>;
-    static constexpr std::array<Plain, 11> kPlain = {{{"CR", &BlockWords::radius},
+    static constexpr std::array<Plain, 18> kPlain = {{{"CR", &BlockWords::radius},
                                                       {"AR", &BlockWords::opening},
                                                       {"TURN", &BlockWords::turns},
                                                       {"F", &BlockWords::feed},
@@ -227,7 +227,14 @@ class BlockReader {
                                                       {"RPL", &BlockWords::plane_turn},
                                                       {"CTOL", &BlockWords::contour},
                                                       {"PL", &BlockWords::interval},
-                                                      {"OFFN", &BlockWords::allowance}}};
+                                                      {"OFFN", &BlockWords::allowance},
+                                                      {"RND", &BlockWords::round},
+                                                      {"CHF", &BlockWords::chamfer},
+                                                      {"CHR", &BlockWords::chamfer_leg},
+                                                      {"RNDM", &BlockWords::round_all},
+                                                      {"FRC", &BlockWords::corner_feed},
+                                                      {"FRCM", &BlockWords::corner_feed_all},
+                                                      {"ANG", &BlockWords::angle}}};
     for (const auto& [word, member] : kPlain) {
       if (name == word) {
         once(words_.*member, number, token);

@@ -74,9 +74,11 @@ struct BlockWords {
   std::array<Coefficients, 6> polynomials;  ///< PO of X Y Z A B C; their ends stand in `axes`
   Coefficients divisor;                     ///< PO[]
   double divisor_end = 1.0;
-  Amount interval;                   ///< PL
-  Amount allowance;                  ///< OFFN
-  std::array<Amount, 3> feed_radii;  ///< FGREF of A B C
+  Amount interval;                                ///< PL
+  Amount allowance;                               ///< OFFN
+  Amount round, chamfer, chamfer_leg, round_all;  ///< RND CHF CHR RNDM
+  Amount corner_feed, corner_feed_all, angle;     ///< FRC FRCM ANG
+  std::array<Amount, 3> feed_radii;               ///< FGREF of A B C
   ToolCall tool;
   std::vector<Amount> functions;  ///< M
   std::vector<std::pair<Group, int>> codes;

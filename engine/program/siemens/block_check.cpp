@@ -21,7 +21,9 @@ size_t stray_offset(const BlockWords& words) {
   }
   look(words.polar_angle);
   look(words.polar_radius);
-  for (const Amount* word : {&words.radius, &words.opening, &words.turns}) look(*word);
+  for (const Amount* word : {&words.radius, &words.opening, &words.turns, &words.round, &words.chamfer,
+                             &words.chamfer_leg, &words.angle})
+    look(*word);
   for (const CycleCall& call : words.calls) first = std::min(first, call.offset);
   return first;
 }
@@ -73,8 +75,9 @@ void BlockWords::clear() {
   polar_angle = polar_radius = {};
   feed_radii = {};
   angles = vector = {};
-  for (Amount* amount : {&radius, &opening, &turns, &feed, &speed, &cutting_edge, &rounding, &plane_turn,
-                         &contour, &interval, &allowance})
+  for (Amount* amount :
+       {&radius, &opening, &turns, &feed, &speed, &cutting_edge, &rounding, &plane_turn, &contour, &interval,
+        &allowance, &round, &chamfer, &chamfer_leg, &round_all, &corner_feed, &corner_feed_all, &angle})
     *amount = {};
   polynomials = {};
   divisor = {};

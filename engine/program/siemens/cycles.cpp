@@ -109,6 +109,23 @@ void boring(nc::Control& control, const BlockPlace& place, const CycleCall& call
   }
 }
 
+/// The bottom cuts a peck short before two of DAM and less are left: the manual does not say whether the last
+/// two are shared out then too.
+void warn_of_last_peck(nc::Control& control, const BlockPlace& place, const CycleCall& call, double first,
+                       double left) {
+  const double degression = argument(call, 7, *place.line, 0.0);
+  double peck = first;
+  for (left -= peck; left > 0.0 && peck - degression > degression; left -= peck) peck -= degression;
+  const bool in_one = peck == first && left <= 0.0,
+             shared = left >= degression - 1e-9 || std::abs(left) < 1e-9;
+  if (in_one || shared) return;
+  control.report.warn_once(
+      "last-peck", column(place, call.offsets[7]),
+      "the last peck of CYCLE83 is cut short by the bottom before two of DAM are left, for "
+      "which the manual gives no rule: what is left is drilled at once",
+      "depth and shape of the hole do not depend on it");
+}
+
 /// CYCLE83(RTP,RFP,SDIS,DP,DPR,FDEP,FDPR,DAM,DTB,DTS,FRF,VARI)
 void pecking(nc::Control& control, const BlockPlace& place, const CycleCall& call, double reference,
              DrillCycle& cycle) {
@@ -118,10 +135,15 @@ void pecking(nc::Control& control, const BlockPlace& place, const CycleCall& cal
   }
   const double first = has_argument(call, 5) ? std::abs(reference - argument(call, 5, *place.line, 0.0))
                                              : std::abs(argument(call, 6, *place.line, 0.0));
-  if (argument(call, 7, *place.line, 0.0) != 0.0) {
+  const double degression = argument(call, 7, *place.line, 0.0);
+  if (degression < 0.0) {
     fail(place, "unsupported-word", call.offsets[7],
-         "CYCLE83 with depths that become smaller (DAM) is not supported", "give DAM as 0");
+         "CYCLE83 with depths that become smaller by a factor (DAM below 0) is not supported",
+         "give DAM in mm, 0 or more");
   }
+  cycle.degression_mm = control.modal.mm(degression);
+  if (degression > 0.0)
+    warn_of_last_peck(control, place, call, first, std::abs(depth_of(place, call, reference) - reference));
   const double share = argument(call, 10, *place.line, 1.0);
   if (share != 1.0) {
     fail(place, "unsupported-word", call.offsets[10],

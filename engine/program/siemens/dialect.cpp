@@ -1,6 +1,9 @@
 // How programs of Siemens 840D are recognised and run.
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "program/control/presets.h"
 #include "program/siemens/dialect.h"
 #include "program/siemens/steps.h"
 
@@ -27,6 +30,21 @@ bool telling(const std::vector<Token>& tokens) {
     }
   }
   return false;
+}
+
+/// R parameters, and variables that stand in the machine's data (GUD).
+void set_presets(const Presets& presets, const BlockTarget& target, Variables& variables) {
+  for (const auto& [name, preset] : presets) {
+    const std::optional<long> number = preset_number(name, "R");
+    const bool is_name = name.size() > 1 && !is_digit(name[0]) && !is_digit(name[1]) &&
+                         std::all_of(name.begin(), name.end(), in_name);
+    if (number && *number < kParametersMax)
+      variables.set_parameter(static_cast<double>(*number), Value::real(preset.value), {}, 0);
+    else if (is_name && !target.knows(name))
+      variables.set_global(name, preset.value);
+    else
+      refuse_preset(name, preset, "programs read R0 to R999 and global variables (GUD) of type REAL: R1 = 2");
+  }
 }
 
 }  // namespace
@@ -57,6 +75,7 @@ void run(const std::string& path, Control& control) {
   Executor executor(control);
   control.report.enter_file(path);
   Flow flow(executor, control.setup.subprogram_folders);
+  set_presets(control.setup.presets, executor, flow.variables);
   run(flow, path);
   if (!flow.counts.ended)
     control.report.warn_once("missing-end", 0,

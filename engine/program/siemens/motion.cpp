@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/units.h"
+#include "program/control/corner.h"
 #include "program/siemens/steps.h"
 
 namespace swarf::program::nc::siemens {
@@ -50,16 +51,6 @@ Target target_of(const Executor& executor, const BlockWords& words, bool machine
     }
   }
   return target;
-}
-
-/// What the radius of an arc in the plane is multiplied by.
-double arc_scale(nc::Control& control, const BlockPlace& place, const Frames& frames, size_t offset) {
-  const std::optional<double> grown = frames.stretch.in_plane(nc::axes_of(control.modal.plane));
-  if (!grown) {
-    fail(place, "bad-arc", offset, "the axes of the plane are scaled differently: an arc would be an ellipse",
-         "SCALE both axes of the plane alike");
-  }
-  return *grown;
 }
 
 Motion turned(nc::Control& control, const Frames& frames, Motion motion) {
@@ -123,16 +114,6 @@ void straight(nc::Control& control, PathWords& path, Motion motion, const Target
   if (!(way.norm() > kSamePoint)) return;
   path.last.direction = way.normalized();
   path.last.valid = true;
-}
-
-/// The programmed end of a motion from `from`.
-Vec3 end_of(const Target& target, const Vec3& from) {
-  Vec3 end = from;
-  for (int n = 0; n < 3; ++n) {
-    const double value = target.value[static_cast<size_t>(n)];
-    if (target.has(n)) end[n] = target.is_incremental(n) ? from[n] + value : value;
-  }
-  return end;
 }
 
 /// Passes the arc on. Ends that miss the circle by less than the control's tolerance move its centre onto
@@ -409,6 +390,7 @@ void move_by(Executor& executor, const BlockWords& words, const Target& target) 
     straight(executor.control, executor.path, executor.modes.motion == kG0 ? Motion::kRapid : Motion::kFeed,
              target);
   } else if (executor.modes.motion == kPoly) {
+    nc::release_corner(executor.control);  // corners lie between lines and arcs
     if (first_polynomial(words) != nullptr) {
       polynomial(executor, words, target);
     } else {
@@ -436,12 +418,31 @@ void other_words(Executor& executor, const BlockWords& words, int code) {
 
 }  // namespace
 
+double arc_scale(nc::Control& control, const BlockPlace& place, const Frames& frames, size_t offset) {
+  const std::optional<double> grown = frames.stretch.in_plane(nc::axes_of(control.modal.plane));
+  if (!grown) {
+    fail(place, "bad-arc", offset, "the axes of the plane are scaled differently: an arc would be an ellipse",
+         "SCALE both axes of the plane alike");
+  }
+  return *grown;
+}
+
+Vec3 end_of(const Target& target, const Vec3& from) {
+  Vec3 end = from;
+  for (int n = 0; n < 3; ++n) {
+    const double value = target.value[static_cast<size_t>(n)];
+    if (target.has(n)) end[n] = target.is_incremental(n) ? from[n] + value : value;
+  }
+  return end;
+}
+
 /// One of the plane's axes runs the other way: arcs turn the other way, the cutter goes on the other side.
 bool mirrored(nc::Control& control, const Frames& frames) {
   return frames.stretch.turns_over(nc::axes_of(control.modal.plane));
 }
 
 void motion_words(Executor& executor, const BlockWords& words) {
+  corner_modes(executor.control, executor.place, executor.modes, words);
   cutter_words(executor, words);
   const std::optional<int> other = words.code(Group::kNoMotion);
   const bool polar = words.polar_angle || words.polar_radius;
@@ -459,6 +460,9 @@ void motion_words(Executor& executor, const BlockWords& words) {
       executor.modes.motion != kG0 && executor.modes.motion != kG1 && executor.modes.motion != kPoly;
   check_polynomial(executor.control, executor.place, executor.modes, words);
   if (!words.moves()) {
+    if (words.angle)
+      fail(executor.place, "unexpected-word", words.angle.offset, "ANG= stands without an end of the line",
+           "write one coordinate of the plane: G1 X40 ANG=30");
     refuse_arc_words_at_rest(executor.place, words);
     return;
   }
@@ -469,6 +473,7 @@ void motion_words(Executor& executor, const BlockWords& words) {
   if (!arc) refuse_arc_words(executor.place, words);
   Target target = target_of(executor, words, false);
   if (polar) polar_end(executor, words, target);
+  angle_end(executor, words, target);
   orientation(executor.place, executor.frames, words, target);
   if (executor.frames.traori && target.rotary() && !executor.frames.reference &&
       !executor.frames.interpolation) {
@@ -478,6 +483,7 @@ void motion_words(Executor& executor, const BlockWords& words) {
         "great circle) is taken",
         "write ORIWKS, ORIAXES or ORIVECT");
   }
+  ask_for_corner(executor.control, executor.place, executor.modes, executor.frames, words);
   move_by(executor, words, target);
   if (executor.calls.modal_cycle)
     drill(executor.control, executor.place, executor.path,

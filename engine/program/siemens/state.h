@@ -49,6 +49,8 @@ struct Modes {
   int corner = kG60;
   double tolerance_mm = 0.0;     ///< of CYCLE832 or CTOL, for G642
   double rounding_mm = 0.0;      ///< ADIS, for G641
+  double round_all_mm = 0.0;     ///< RNDM; 0: off
+  double corner_feed = 0.0;      ///< FRCM, as written; 0: off
   std::optional<Corner> before;  ///< while CYCLE832 is on
   double allowance_mm = 0.0;     ///< OFFN
   std::string corner_rule = "G450", entry_rule = "NORM";

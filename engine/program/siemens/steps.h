@@ -19,6 +19,17 @@ void feed_group(Executor& executor, const CycleCall& call);
 void motion_words(Executor& executor, const BlockWords& words);
 bool mirrored(nc::Control& control, const Frames& frames);
 
+/// The programmed end of a motion from `from`.
+Vec3 end_of(const Target& target, const Vec3& from);
+/// What the radius of an arc in the plane is multiplied by.
+double arc_scale(nc::Control& control, const BlockPlace& place, const Frames& frames, size_t offset);
+
+// --- corners.cpp
+void corner_modes(nc::Control& control, BlockPlace& place, Modes& modes, const BlockWords& words);
+void ask_for_corner(nc::Control& control, const BlockPlace& place, const Modes& modes, const Frames& frames,
+                    const BlockWords& words);
+void angle_end(Executor& executor, const BlockWords& words, Target& target);
+
 // --- polar.cpp
 void set_pole(Executor& executor, const BlockWords& words, int code);
 void polar_end(Executor& executor, const BlockWords& words, Target& target);

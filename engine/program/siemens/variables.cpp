@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace swarf::program::nc::siemens {
 
@@ -38,8 +39,9 @@ Value converted(const Value& value, Type type, const LineRef& line, size_t offse
 }
 
 Variable* Variables::find(const std::string& name) {
-  const auto found = scope_->find(name);
-  return found == scope_->end() ? nullptr : &found->second;
+  if (const auto found = scope_->find(name); found != scope_->end()) return &found->second;
+  const auto global = globals_.find(name);
+  return global == globals_.end() ? nullptr : &global->second;
 }
 
 int Variables::parameter_index(double index, const LineRef& line, size_t offset) {
@@ -69,7 +71,9 @@ void Variables::set_parameter(double index, const Value& value, const LineRef& l
 
 std::vector<std::string> Variables::names() const {
   std::vector<std::string> names;
-  for (const auto& [name, variable] : *scope_) names.push_back(name);
+  for (const Scope* scope : {&std::as_const(*scope_), &globals_}) {
+    for (const auto& [name, variable] : *scope) names.push_back(name);
+  }
   return names;
 }
 
@@ -100,9 +104,9 @@ Value& Variables::element(const std::string& name, const std::vector<double>& in
 }
 
 Variable& Variables::declare(const std::string& name, Variable variable, const LineRef& line, size_t offset) {
-  if (const Variable* other = find(name)) {
+  if (const auto other = scope_->find(name); other != scope_->end()) {
     refuse(line, offset, "declared-twice",
-           fmt::format("{} was declared in line {} already", name, other->declared_line),
+           fmt::format("{} was declared in line {} already", name, other->second.declared_line),
            "keep one of the two declarations");
   }
   size_t count = 1;

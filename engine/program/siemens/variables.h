@@ -70,7 +70,10 @@ class Variables {
   SystemVariables* system() { return system_; }
   /// The scope of the running program; must outlive its use.
   void enter(Scope& scope) { scope_ = &scope; }
+  /// A variable of the running program, else a global one (GUD) that holds a value from before it.
   Variable* find(const std::string& name);
+  /// A GUD of type REAL. Programs may declare variables of its name, which hide it.
+  void set_global(const std::string& name, double value) { globals_[name].values = {Value::real(value)}; }
 
   /// Throws InputError "undefined-parameter" (R that nothing has set: the control would take what an earlier
   /// program left), "out-of-range" (index).
@@ -88,6 +91,7 @@ class Variables {
   static int parameter_index(double index, const LineRef& line, size_t offset);
 
   Scope* scope_ = nullptr;
+  Scope globals_;
   SystemVariables* system_ = nullptr;
   std::map<int, Value> parameters_;
 };

@@ -105,10 +105,10 @@ constexpr const char* kCycles[] = {"CYCLE81",  "CYCLE82",  "CYCLE83",  "CYCLE84"
                                    "CYCLE800", "CYCLE832", "CYCLE801", "HOLES1",  "HOLES2"};
 
 constexpr const char* kAddresses[] = {
-    "X",       "Y",   "Z",    "A",    "B",    "C",  "I",  "J",  "K",  "X1",   "Y1",   "Z1",
-    "A1",      "B1",  "C1",   "I1",   "J1",   "K1", "A2", "B2", "C2", "A3",   "B3",   "C3",
-    "CR",      "AR",  "F",    "S",    "T",    "D",  "H",  "M",  "G",  "P",    "TURN", "ADIS",
-    "ADISPOS", "RPL", "CTOL", "OTOL", "SPOS", "N",  "PL", "AP", "RP", "OFFN", "LIMS"};
+    "X",  "Y",  "Z",  "A",    "B",    "C",   "I",    "J",    "K",       "X1",  "Y1",   "Z1",   "A1",   "B1",
+    "C1", "I1", "J1", "K1",   "A2",   "B2",  "C2",   "A3",   "B3",      "C3",  "CR",   "AR",   "F",    "S",
+    "T",  "D",  "H",  "M",    "G",    "P",   "TURN", "ADIS", "ADISPOS", "RPL", "CTOL", "OTOL", "SPOS", "N",
+    "PL", "AP", "RP", "OFFN", "LIMS", "RND", "RNDM", "CHF",  "CHR",     "FRC", "FRCM", "ANG"};
 
 constexpr const char* kFlowWords[] = {
     "IF",      "ELSE",    "ENDIF",  "WHILE", "ENDWHILE", "FOR",     "ENDFOR",  "LOOP",  "ENDLOOP",
@@ -134,7 +134,6 @@ const std::vector<Refused>& refused_words() {
       {"write the blocks of the approach",
        {"G140", "G141", "G142", "G143", "G147", "G148", "G247", "G248", "G347", "G348", "G340", "G341",
         "DISR", "DISCL"}},
-      {"write the corner as blocks of its own", {"RND", "RNDM", "CHF", "CHR", "ANG"}},
       {"TRANS and AROT are supported",
        {"G58",      "G59",     "ROTS",   "AROTS",    "CROTS",    "TOFRAME", "TOFRAMEZ", "TOFRAMEX",
         "TOFRAMEY", "TOROT",   "TOROTX", "TOROTY",   "TOROTZ",   "PAROT",   "CTRANS",   "CROT",
@@ -149,16 +148,23 @@ const std::vector<Refused>& refused_words() {
        {"G96", "G961", "G962", "G971", "G972", "G973", "G25", "G26"}},
       {"outer corners are rounded (G450)",
        {"CUT3DC", "CUT3DF", "CUT3DFS", "CUT3DFF", "CUT3DCC", "CUT2DF", "G461", "G462"}},
-      {"the feed is given with F under G93, G94 or G95",
-       {"FRC", "FRCM", "FB", "FZ", "FPO", "FL", "OVR", "OVRA"}},
+      {"the feed is given with F under G93, G94 or G95", {"FB", "FZ", "FPO", "FL", "OVR", "OVRA"}},
       {"the machine file says how rapid moves run", {"RTLIOF"}},
       {"position rotary axes with G0", {"POS", "POSA", "SPOSA", "FA", "IPTRLOCK", "FXS", "FXST", "FXSW"}},
       {"the cycle has to be written as blocks",
-       {"CYCLE60",  "CYCLE61", "CYCLE62", "CYCLE63",  "CYCLE64",  "CYCLE70",  "CYCLE71",
-        "CYCLE72",  "CYCLE73", "CYCLE74", "CYCLE75",  "CYCLE76",  "CYCLE77",  "CYCLE78",
-        "CYCLE79",  "CYCLE87", "CYCLE88", "CYCLE89",  "CYCLE90",  "CYCLE840", "CYCLE802",
-        "CYCLE899", "CYCLE95", "CYCLE97", "CYCLE951", "CYCLE977", "CYCLE978", "CYCLE996",
-        "POCKET1",  "POCKET2", "POCKET3", "POCKET4",  "LONGHOLE", "SLOT1",    "SLOT2"}},
+       {"CYCLE60",  "CYCLE62", "CYCLE63", "CYCLE64",  "CYCLE70",  "CYCLE73",  "CYCLE74",  "CYCLE75",
+        "CYCLE78",  "CYCLE79", "CYCLE87", "CYCLE88",  "CYCLE89",  "CYCLE90",  "CYCLE840", "CYCLE802",
+        "CYCLE899", "CYCLE95", "CYCLE97", "CYCLE951", "CYCLE977", "CYCLE978", "CYCLE996"}},
+      {"where along the slot its radius RAD ends is given by a figure alone, not in the manual's words: "
+       "write its "
+       "moves as blocks",
+       {"LONGHOLE"}},
+      {"the order and the overlap of its passes are the control's own and not published: write its moves as "
+       "blocks",
+       {"POCKET1", "POCKET2", "POCKET3", "POCKET4", "SLOT1", "SLOT2", "CYCLE61", "CYCLE71"}},
+      {"how it leads onto its contour and off it is the control's own and not published: write its moves as "
+       "blocks",
+       {"CYCLE72", "CYCLE76", "CYCLE77"}},
       {"the program is run in the dialect of Siemens", {"G291"}},
       {"synchronised actions are not simulated", {"WHEN", "WHENEVER", "EVERY", "DO", "ID", "IDS", "CANCEL"}},
       {"axes U V W are not simulated", {"U", "V", "W", "Q"}},

@@ -46,6 +46,7 @@ program::ControlSetup control_setup(const Job& job, Diagnostics& diagnostics) {
   }
   setup.kinematics_switch = job.scene.kinematics_switch;
   setup.builder_words = job.scene.builder_words;
+  setup.presets = job.scene.presets;
   setup.unit_mm = settings.unit_mm ? settings.unit_mm : job.machine.program_unit_mm;
   setup.t_changes_tool = settings.t_changes_tool;
   setup.tip_without_length = settings.tip_without_length;

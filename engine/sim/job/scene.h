@@ -111,6 +111,7 @@ struct Scene {
   std::optional<program::Dialect> dialect;  ///< NC; none: recognised from the text
   program::KinematicsSwitch kinematics_switch;  ///< NC, LinuxCNC's M428 to M430
   program::BuilderWords builder_words;          ///< NC
+  program::Presets presets;                     ///< NC, `parameters`
   SetupSettings setup;
   std::string tool_table_file;  ///< `tool_table`; "": none
   std::map<int, std::string>

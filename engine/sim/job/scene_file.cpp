@@ -218,6 +218,14 @@ program::BuilderWords read_builder_words(ConfigTable table) {
   return words;
 }
 
+/// { 500 = 3.5, R1 = 2 }.
+program::Presets read_presets(ConfigTable table) {
+  program::Presets presets;
+  for (const std::string& key : table.keys())
+    presets[program::preset_name(key)] = {table.number(key, {}), table.where(key)};
+  return presets;
+}
+
 /// `program`, `cl` or `nc`, exactly one of them.
 void read_program(ConfigTable& root, Scene& scene) {
   const std::array<std::pair<const char*, ProgramKind>, 3> kinds{
@@ -245,6 +253,7 @@ void read_program(ConfigTable& root, Scene& scene) {
   if (scene.dialect.value_or(program::Dialect::kLinuxCnc) == program::Dialect::kLinuxCnc &&
       root.has("kinematics_switch"))
     scene.kinematics_switch = read_kinematics_switch(root.table("kinematics_switch"));
+  if (root.has("parameters")) scene.presets = read_presets(root.table("parameters"));
   if (root.has("builder_words")) scene.builder_words = read_builder_words(root.table("builder_words"));
 }
 

@@ -14,19 +14,17 @@ namespace {
 constexpr std::array<const char*, 9> kOffsets{"G54", "G55",   "G56",   "G57",  "G58",
                                               "G59", "G59.1", "G59.2", "G59.3"};
 
+/// The keys that are no axis with its unit, finish() reports.
 AxisSettings read_axes(ConfigTable table) {
   AxisSettings settings;
-  for (const std::string& key : table.keys()) {
-    const std::string_view unit = std::string_view(key).substr(std::min<size_t>(1, key.size()));
-    const bool letter = !key.empty() && std::string_view("XYZABCUVW").find(key[0]) != std::string_view::npos;
-    const double value = table.number(key, {});
-    if (!letter || (unit != "_mm" && unit != "_deg")) {
-      table.error("bad-axis-key", key, fmt::format("'{}' is no axis with its unit", key),
-                  "write X_mm = 12.5, C_deg = 90");
-      continue;
+  for (const char letter : std::string_view("XYZABCUVW")) {
+    for (const bool rotary : {false, true}) {
+      const std::string key = fmt::format("{}_{}", letter, rotary ? "deg" : "mm");
+      if (!table.has(key)) continue;
+      const double value = table.number(key, {});
+      settings.push_back(
+          {std::string(1, letter), rotary, rotary ? rad_from_deg(value) : value, table.where(key)});
     }
-    const bool rotary = unit == "_deg";
-    settings.push_back({key.substr(0, 1), rotary, rotary ? rad_from_deg(value) : value, table.where(key)});
   }
   return settings;
 }

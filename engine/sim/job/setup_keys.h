@@ -37,7 +37,7 @@ struct SetupSettings {
 };
 
 /// Reads [setup]; offsets, start, units, start_tool and t_changes_tool belong to NC programs only.
-/// "bad-axis-key" for keys that are not a letter with its unit, "unknown-offset" for what is not G54 to
+/// "unknown-offset" for what is not G54 to
 /// G59.3.
 SetupSettings read_setup(ConfigTable table, bool nc);
 

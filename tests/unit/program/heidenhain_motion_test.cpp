@@ -217,5 +217,37 @@ TEST(HeidenhainMotion, FeedPerRevolutionAndTolerance) {
   EXPECT_NEAR(run.moves()[1].duration_s, 10.0, 1e-9);
 }
 
+/// A whole circle of radius 20 about X25 Z25 at Y25 with the tool axis Z: the sense is counted about +Y, from
+/// Z to X.
+TEST(HeidenhainArcs, CircleAcrossTheWorkingPlane) {
+  const NcRun run = klartext_clean(
+      "TOOL CALL 1 Z S1000\nL X+45 Y+25 Z+25 R0 FMAX M3\nCC X+25 Z+25\nC X+45 Z+25 DR+ F200\nC X+25 Z+45 "
+      "DR-\n"
+      "L Z+60\nCC Y+25 Z+40\nC Y+5 Z+40 DR+\n");
+  const auto& moves = run.moves();
+  ASSERT_EQ(moves.size(), 5u);
+  ASSERT_TRUE(moves[1].arc && moves[2].arc && moves[4].arc);
+  EXPECT_LT((moves[1].arc->normal_W - Vec3::UnitY()).norm(), 1e-12);
+  EXPECT_LT((moves[1].arc->centre_W - Vec3(25, 25, 25)).norm(), 1e-9);
+  expect_tip(moves[1], 45, 25, 25);
+  EXPECT_LT((moves[2].arc->normal_W + Vec3::UnitY()).norm(), 1e-12);
+  expect_tip(moves[2], 25, 25, 45);
+  EXPECT_LT((moves[4].arc->normal_W - Vec3::UnitX()).norm(), 1e-12);
+  expect_tip(moves[4], 25, 5, 40);
+}
+
+TEST(HeidenhainArcs, WhatDoesNotGoWithACircleAcrossThePlaneIsRefused) {
+  const std::string head = "TOOL CALL 1 Z S1000\nL X+45 Y+25 Z+25 R0 FMAX M3\n";
+  EXPECT_EQ(klartext(head + "CC X+25 Y+1 Z+25\n").first_error(), "unexpected-word 4:3");
+  EXPECT_EQ(klartext(head + "CC Z+25\n").first_error(), "unexpected-word 4:3");
+  EXPECT_EQ(klartext(head + "CC X+25 Z+25\nC X+45 Y+3 Z+25 DR+ F200\n").first_error(),
+            "unsupported-word 5:8");
+  EXPECT_EQ(klartext(head + "CC X+25 Z+25\nLP PR+10 PA+0 F200\n").first_error(), "unsupported-word 5:1");
+  EXPECT_EQ(klartext(head + "CC X+25 Z+25\nC X+45 Z+25 DR+ RL F200\n").first_error(),
+            "compensation-plane 5:1");
+  EXPECT_EQ(klartext(head + "CYCL DEF 8.0 MIRROR IMAGE\nCYCL DEF 8.1 X\nCC X+25 Z+25\n").first_error(),
+            "unsupported-word 6:3");
+}
+
 }  // namespace
 }  // namespace swarf::program

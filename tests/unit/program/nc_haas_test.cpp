@@ -1,6 +1,7 @@
 // Haas NGC: what it has of its own, with exact ends; what it shares with Fanuc, move for move.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "unit/program/nc_support.h"
@@ -285,6 +286,50 @@ TEST(NcHaas, IsRecognised) {
   EXPECT_EQ(recognised("%\nO01234\nG00 X1.\nG187 P2\nWHILE [1 EQ 2] DO1\nEND1\nM30\n%\n").summary.dialect,
             Dialect::kHaas);
   EXPECT_EQ(recognised("%\nO1234\nG00 X1.\nG05.1 Q1\nM30\n%\n").summary.dialect, Dialect::kFanuc);
+}
+
+/// G254: zero is the work's origin where the standing axes have carried it, X Y Z are those of the machine.
+TEST(NcHaas, DynamicWorkOffsetFollowsTheStandingRotaries) {
+  const NcRun run =
+      haas("G00 X0 Y0 Z0 A0. C0.\nZ200.\nA30. C40.\nG254\nX0 Y0\nZ0\nX10.\nZ5.\nG255\nG53 G00 Z0\nM30\n",
+           five_axis_setup());
+  ASSERT_EQ(run.text(), "");
+  const auto& moves = run.moves();
+  ASSERT_GE(moves.size(), 6u);
+  const size_t zero = moves.size() - 4;  // Z0 of the dynamic offset
+  EXPECT_LT(moves[zero].to.tip_W.norm(), 1e-9) << "the work's origin, wherever the table has carried it";
+  const AxisValues by_x = moves[zero + 1].q_to - moves[zero].q_to,
+                   by_z = moves[zero + 2].q_to - moves[zero + 1].q_to;
+  const auto axis = [](const char* name) {
+    const auto axes = five_axis_setup().machine.axes;
+    return std::find_if(axes.begin(), axes.end(), [&](const auto& one) { return one.name == name; }) -
+           axes.begin();
+  };
+  EXPECT_NEAR(std::abs(by_x[axis("X")]), 10.0, 1e-9);
+  EXPECT_NEAR(by_x.cwiseAbs().sum(), 10.0, 1e-9);
+  EXPECT_NEAR(std::abs(by_z[axis("Z")]), 5.0, 1e-9);
+  EXPECT_NEAR(by_z.cwiseAbs().sum(), 5.0, 1e-9);
+  const Vec3 up = moves[zero + 2].to.tip_W - moves[zero + 1].to.tip_W;
+  EXPECT_LT((up - 5.0 * moves[zero].to.axis_W).norm(), 1e-9) << "Z lies along the tool";
+}
+
+TEST(NcHaas, DynamicWorkOffsetAtZeroIsTheWorkOffset) {
+  const std::string path = "G00 X1. Y2. Z3.\nG01 X5. F100.\nY7.\n";
+  const NcRun with = haas("G00 X0 Y0 Z0 A0. C0.\nG254\n" + path + "G255\nM30\n", five_axis_setup());
+  const NcRun without = haas("G00 X0 Y0 Z0 A0. C0.\n" + path + "M30\n", five_axis_setup());
+  ASSERT_EQ(with.text() + without.text(), "");
+  ASSERT_EQ(with.moves().size(), without.moves().size());
+  for (size_t i = 0; i < with.moves().size(); ++i)
+    EXPECT_LT((with.moves()[i].q_to - without.moves()[i].q_to).norm(), 1e-9);
+}
+
+TEST(NcHaas, WhatTurnsUnderDynamicWorkOffsetIsRefused) {
+  const std::string on = "G00 X0 Y0 Z0 A0. C30.\nG254\n";
+  EXPECT_EQ(haas(on + "A10.\nM30\n", five_axis_setup()).first_error(), "modal-conflict 3:1");
+  EXPECT_EQ(haas(on + "G28\nM30\n", five_axis_setup()).first_error(), "modal-conflict 3:1");
+  EXPECT_EQ(haas(on + "G234 H1\nM30\n", five_axis_setup()).first_error(), "modal-conflict 3:1");
+  EXPECT_EQ(haas(on + "G254\nM30\n", five_axis_setup()).first_error(), "modal-conflict 3:1");
+  EXPECT_EQ(haas(on + "G255\nA10.\nM30\n", five_axis_setup()).first_error(), "");
 }
 
 }  // namespace

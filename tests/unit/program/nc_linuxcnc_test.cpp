@@ -92,6 +92,71 @@ TEST(NcLinuxCnc, OffsetsShiftsAndTurns) {
   expect_tip(run.moves()[3], 10, 10, 0);
   expect_tip(run.moves()[4], 0, 10, 0);
   expect_tip(run.moves()[5], -3, 10, 0);
+  expect_tip(run.moves()[6], -2, 10, 0);
+}
+
+/// The machine stands at 30, 40. An offset turned by 90 degrees in which this reads 5, 7 lies at
+/// 30 + 7, 40 - 5; where X alone is set, Y reads on as it did.
+TEST(NcLinuxCnc, G10L20MakesTurnedOffsetsRead) {
+  const NcRun both = linuxcnc(
+      "G10 L2 P2 X0 Y0 R90\nG0 X30 Y40 Z0\nG10 L20 P2 X5 Y7\nG55 G0 X5 Y7\nG0 X6 Y7\nG0 X0 Y0\nM2\n");
+  ASSERT_EQ(both.text(), "");
+  ASSERT_EQ(both.moves().size(), 3u) << "where it stands is no move";
+  expect_tip(both.moves()[1], 30, 41, 0);
+  expect_tip(both.moves()[2], 37, 35, 0);
+  const NcRun one =
+      linuxcnc("G10 L2 P2 X0 Y0 R90\nG55 G0 X30 Y40 Z0\nG10 L20 P2 X5\nG0 X5 Y40\nG0 X0 Y0\nM2\n");
+  ASSERT_EQ(one.text(), "");
+  ASSERT_EQ(one.moves().size(), 2u);
+  expect_tip(one.moves()[0], -40, 30, 0);
+  expect_tip(one.moves()[1], 0, 25, 0);
+  const NcRun shifted =
+      linuxcnc("G10 L2 P1 R30\nG0 X30 Y40 Z0\nG92 X0\nG10 L20 P1 X1 Y2 Z3\nG0 X1 Y2 Z3\nM2\n");
+  ASSERT_EQ(shifted.text(), "");
+  EXPECT_EQ(shifted.moves().size(), 1u) << "it reads 1, 2, 3 where it stands";
+}
+
+TEST(NcLinuxCnc, PolarWordsCountFromTheZeroPoint) {
+  const NcRun run = linuxcnc(
+      "G10 L2 P1 X100\nG0 X0 Y0 Z5\nG1 @10 ^90 F100\n^180\n@20\nG91 ^90\n@5\nG90 G0 @[2*5] ^30 Z1\nG20 G0 @1 "
+      "^0\nM2\n");
+  EXPECT_EQ(run.first_error(), "words-conflict 9:8") << run.text();
+  ASSERT_EQ(run.moves().size(), 7u);
+  expect_tip(run.moves()[1], 100, 10, 5);
+  expect_tip(run.moves()[2], 90, 0, 5);
+  expect_tip(run.moves()[3], 80, 0, 5);
+  expect_tip(run.moves()[4], 100, -20, 5);
+  expect_tip(run.moves()[5], 100, -25, 5);
+  expect_tip(run.moves()[6], 100 + 10 * std::cos(rad_from_deg(30)), 5, 1);
+}
+
+TEST(NcLinuxCnc, PolarWordsInInchesAndInArcs) {
+  const NcRun run = linuxcnc("G20\nG0 @1 ^0 Z0\nG3 @1 ^90 I-1 J0 F10\nG0 ^180\nM2\n");
+  ASSERT_EQ(run.text(), "");
+  expect_tip(run.moves().at(1), 0, 25.4, 0);
+  expect_tip(run.moves().at(2), -25.4, 0, 0);
+}
+
+TEST(NcLinuxCnc, PolarWordsThatSayNothingAreRefused) {
+  EXPECT_EQ(linuxcnc("G21 G0 X0 Y0 Z0\nG1 @5 F100\nM2\n").first_error(), "bad-polar 2:4");
+  EXPECT_EQ(linuxcnc("G21 G0 X0 Y0 Z0\nG91 G1 @5 ^30 F100\nM2\n").first_error(), "bad-polar 2:8");
+  EXPECT_EQ(linuxcnc("G21 G1 @5 ^30 X4 F100\nM2\n").first_error(), "words-conflict 1:8");
+  EXPECT_EQ(linuxcnc("G21 G1 @5 @4 F100\nM2\n").first_error(), "word-twice 1:11");
+  EXPECT_EQ(run_text("G21 G1 @5 ^4 F100\nM30\n", Dialect::kFanuc, three_axis_setup()).first_error(),
+            "unexpected-character 1:8");
+}
+
+/// The ends of an arc may differ by 0.02 root 2 mm from one radius, or by a thousandth of it.
+TEST(NcLinuxCnc, ArcsEndWhereTheyAreWrittenWithinTheControlsTolerance) {
+  for (const char* end : {"X10.028 Y0", "X9.972 Y0"}) {
+    const NcRun run = linuxcnc(std::string("G21 G0 X-10 Y0 Z0\nG2 ") + end + " I10 J0 F100\nG1 Y-5\nM2\n");
+    ASSERT_EQ(run.text(), "") << end;
+    ASSERT_EQ(run.moves().size(), 3u);
+    EXPECT_NEAR(run.moves()[1].to.tip_W.x(), std::stod(end + 1), 1e-9);
+    EXPECT_NEAR(run.moves()[2].from.tip_W.x(), std::stod(end + 1), 1e-9);
+  }
+  EXPECT_EQ(linuxcnc("G21 G0 X-10 Y0 Z0\nG2 X10.029 Y0 I10 J0 F100\nM2\n").first_error(), "bad-arc 2:1");
+  EXPECT_EQ(linuxcnc("G21 G0 X-100 Y0 Z0\nG2 X100.099 Y0 I100 J0 F100\nM2\n").text(), "");
 }
 
 TEST(NcLinuxCnc, ReferencePositionsAreKept) {

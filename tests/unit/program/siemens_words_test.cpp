@@ -344,5 +344,34 @@ TEST(SiemensWords, SettingsWithoutEffectAreListed) {
   EXPECT_EQ(ran.moves.size(), 1U);
 }
 
+/// Ends of the feed moves down, as depths below the reference plane.
+std::vector<double> peck_depths(const Ran& ran) {
+  std::vector<double> depths;
+  for (const NcMove& move : ran.moves)
+    if (!move.rapid) depths.push_back(250.0 - move.to.tip_W.z());
+  return depths;
+}
+
+/// DAM 2 behind a first depth of 6: 6, then 4, then 2 as long as more than 4 are left, then two alike.
+TEST(SiemensDegression, PecksShrinkToDamAndTheLastTwoAreAlike) {
+  const auto depths = [](const char* depth) {
+    return peck_depths(
+        run_clean(fmt::format("F200\nG0 X0 Y0 Z300\nCYCLE83(290,250,2,{},,,6,2,0,0,1,0)\nM30\n", depth)));
+  };
+  EXPECT_EQ(depths("229"), (std::vector<double>{6, 10, 12, 14, 16, 18, 19.5, 21}));
+  EXPECT_EQ(depths("230"), (std::vector<double>{6, 10, 12, 14, 16, 18, 20}));
+  EXPECT_EQ(depths("238.5"), (std::vector<double>{6, 10, 11.5}));
+  EXPECT_EQ(depths("245"), (std::vector<double>{5}));
+}
+
+TEST(SiemensDegression, APeckThatTheBottomCutsShortIsTold) {
+  const Ran ran = run_text("F200\nG0 X0 Y0 Z300\nCYCLE83(290,250,2,231,,,5,0.5,0,0,1,1)\nM30\n");
+  EXPECT_EQ(peck_depths(ran), (std::vector<double>{5, 9.5, 13.5, 17, 19}));
+  ASSERT_EQ(ran.diagnostics.list().size(), 1u);
+  EXPECT_EQ(ran.diagnostics.list()[0].code, "last-peck");
+  const Ran exact = run_clean("F200\nG0 X0 Y0 Z300\nCYCLE83(290,250,2,230,,,5,0.5,0,0,1,1)\nM30\n");
+  EXPECT_EQ(exact.diagnostics.list().size(), 0u) << "5 + 4.5 + 4 + 3.5 + 3";
+}
+
 }  // namespace
 }  // namespace swarf::program::nc::siemens::siemens_words_test

@@ -1,11 +1,11 @@
-#include "program/heidenhain/corner.h"
+#include "program/control/flat_corner.h"
 #include "base/angles.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-namespace swarf::program::nc::heidenhain {
+namespace swarf::program::nc {
 namespace {
 
 constexpr double kNoCornerWay = 1e-9;
@@ -109,6 +109,11 @@ bool on(const FlatPiece& piece, const Vec2& point) {
 
 }  // namespace
 
+double turn_at_corner(const FlatPiece& before, const FlatPiece& after) {
+  const Vec2 in = tangent(before, before.to), out = tangent(after, after.from);
+  return std::atan2(cross(in, out), in.dot(out));
+}
+
 std::optional<FlatCorner> round_corner(const FlatPiece& before, const FlatPiece& after, double radius,
                                        std::string& why) {
   const double turn = cross(tangent(before, before.to), tangent(after, after.from));
@@ -148,4 +153,4 @@ std::optional<FlatCorner> cut_corner(const FlatPiece& before, const FlatPiece& a
   return corner;
 }
 
-}  // namespace swarf::program::nc::heidenhain
+}  // namespace swarf::program::nc

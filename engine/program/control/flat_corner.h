@@ -1,4 +1,4 @@
-// The corner between two pieces of contour: RND and CHF.
+// The corner between two pieces of contour: where what rounds or cuts it begins and ends.
 //
 //        \  join
 //         \____
@@ -11,7 +11,7 @@
 
 #include "base/frames.h"
 
-namespace swarf::program::nc::heidenhain {
+namespace swarf::program::nc {
 
 /// A straight piece or an arc, in the plane.
 struct FlatPiece {
@@ -27,6 +27,8 @@ struct FlatCorner {
   bool counter_clockwise = false;
 };
 
+/// By how much the way turns where the pieces meet, rad; to the left above 0.
+double turn_at_corner(const FlatPiece& before, const FlatPiece& after);
 /// The arc of radius r that touches both pieces, which meet at before.to = after.from. None and `why` where
 /// there is none: the pieces run on smoothly or turn back, or are too short.
 std::optional<FlatCorner> round_corner(const FlatPiece& before, const FlatPiece& after, double radius,
@@ -35,4 +37,4 @@ std::optional<FlatCorner> round_corner(const FlatPiece& before, const FlatPiece&
 std::optional<FlatCorner> cut_corner(const FlatPiece& before, const FlatPiece& after, double length,
                                      std::string& why);
 
-}  // namespace swarf::program::nc::heidenhain
+}  // namespace swarf::program::nc
