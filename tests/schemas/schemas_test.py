@@ -47,17 +47,30 @@ def known_keys(text, name="scene.toml"):
     return known
 
 
+def in_inches(key):
+    """speed_max_mm_min: speed_max_in_min; None for a key that is no length."""
+    found = re.fullmatch(r"(.*)_mm(_(?!.*_mm).*)?", key)
+    return f"{found[1]}_in{found[2] or ''}" if found else None
+
+
+def in_mm(names):
+    """Without the spellings in inches, which every length has and nothing else."""
+    twins = {in_inches(name) for name in names} - {None}
+    assert twins <= names, twins - names
+    return names - twins
+
+
 def schema_keys(node, root, path=""):
-    """The same of a schema: every table with fixed names."""
+    """The same of a schema: every table with fixed names, lengths in mm."""
     while "$ref" in node:
         node = root["$defs"][node["$ref"].rsplit("/", 1)[-1]]
     if node.get("type") == "array":
         return schema_keys(node["items"], root, path)
     if "properties" not in node:
         return {}
-    found = {path: set(node["properties"])}
-    for name, child in node["properties"].items():
-        found.update(schema_keys(child, root, f"{path}.{name}".lstrip(".")))
+    found = {path: in_mm(set(node["properties"]))}
+    for name in found[path]:
+        found.update(schema_keys(node["properties"][name], root, f"{path}.{name}".lstrip(".")))
     return found
 
 
@@ -202,6 +215,18 @@ class Refused(unittest.TestCase):
                 self.assertFalse(validator("scene").is_valid(scene))
                 self.assertEqual(self.program_says(scene), 2)
         self.assertFalse(validator("scene").is_valid({"cutter": self.SCENE["cutter"]}))
+
+    def test_inches(self):
+        scene = copy.deepcopy(self.SCENE)
+        scene["cutter"] = {"number": 1, "diameter_in": 0.25, "flute_length_in": 1, "length_mm": 50}
+        scene["stock"] = {"box_in": [[0, 0, -0.2], [1, 1, 0]], "voxel_mm": 0.5}
+        self.assertTrue(validator("scene").is_valid(scene))
+        self.assertNotEqual(self.program_says(scene), 2)
+        scene["cutter"]["length_in"] = 2
+        self.assertFalse(validator("scene").is_valid(scene))
+        self.assertEqual(self.program_says(scene), 2)
+        del scene["cutter"]["length_in"], scene["cutter"]["length_mm"]
+        self.assertFalse(validator("scene").is_valid(scene))
 
     def program_says(self, scene):
         with tempfile.TemporaryDirectory() as folder:
