@@ -18,7 +18,6 @@
 namespace swarf::reports {
 namespace {
 
-using kinematics::Axis;
 using kinematics::AxisKind;
 using kinematics::AxisValues;
 
@@ -94,7 +93,7 @@ render::Image panel(std::vector<render::DrawItem> items, DrawLines lines, const 
 
 const Vec3 kMachineSide(-0.75, -1.0, 0.55), kPartSide(0.55, -0.87, 0.64);
 
-bool is_rotary(const Axis& axis) {
+bool is_rotary(const kinematics::Axis& axis) {
   return axis.kind == AxisKind::kRotary;
 }
 
@@ -105,7 +104,7 @@ DrawLines rotary_lines(const machine::MachineScene& machine, const AxisValues& q
   DrawLines lines;
   for (const machine::Link& link : machine.links) {
     if (link.axis < 0 || !is_rotary(machine.model.axes[static_cast<size_t>(link.axis)])) continue;
-    const Axis& axis = machine.model.axes[static_cast<size_t>(link.axis)];
+    const kinematics::Axis& axis = machine.model.axes[static_cast<size_t>(link.axis)];
     const Pose carried = link.parent < 0 ? Pose::Identity() : poses[static_cast<size_t>(link.parent)];
     const Vec3 reach = length * axis.direction_M;
     lines.push_back(
@@ -117,7 +116,7 @@ DrawLines rotary_lines(const machine::MachineScene& machine, const AxisValues& q
 AxisValues at_zero(const kinematics::MachineModel& model) {
   AxisValues q = AxisValues::Zero();
   for (size_t i = 0; i < model.axes.size(); ++i) {
-    const Axis& axis = model.axes[i];
+    const kinematics::Axis& axis = model.axes[i];
     const bool inside = axis.min <= 0.0 && axis.max >= 0.0;
     if (!inside) q[static_cast<long>(i)] = 0.5 * (axis.min + axis.max);
   }
@@ -128,7 +127,7 @@ AxisValues turned(const kinematics::MachineModel& model) {
   AxisValues q = at_zero(model);
   const bool turns = std::any_of(model.axes.begin(), model.axes.end(), is_rotary);
   for (size_t i = 0; i < model.axes.size(); ++i) {
-    const Axis& axis = model.axes[i];
+    const kinematics::Axis& axis = model.axes[i];
     double& value = q[static_cast<long>(i)];
     if (is_rotary(axis)) value += rad_from_deg(kTurn);
     if (!turns) value += 0.3 * (axis.max - axis.min);

@@ -23,13 +23,4 @@ SweepContact swept_contact(const Vec3& point_W, const SweepMap& map, const Cutte
   return contact;
 }
 
-double cutter_distance(const Vec3& point_T, const CutterSolid& cutter) {
-  const double rho = point_T.head<2>().norm();
-  double least = std::numeric_limits<double>::infinity();
-  for (const cutter::ConvexPiece& piece : cutter.pieces) {
-    least = std::min(least, cutter::signed_distance(piece, rho, point_T.z()));
-  }
-  return least;
-}
-
 }  // namespace swarf::stock

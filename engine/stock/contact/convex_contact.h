@@ -21,7 +21,4 @@ struct SweepContact {
 
 SweepContact swept_contact(const Vec3& point_W, const SweepMap& map, const CutterSolid& cutter);
 
-/// F of the standing cutter for a point in the tool's frame, mm: the least over its pieces; 1-Lipschitz.
-double cutter_distance(const Vec3& point_T, const CutterSolid& cutter);
-
 }  // namespace swarf::stock

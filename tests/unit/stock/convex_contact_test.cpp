@@ -9,10 +9,20 @@
 namespace swarf::stock::convex_contact_test {
 namespace {
 
+/// F of the standing cutter for a point in the tool's frame, mm: the least over its pieces; 1-Lipschitz.
+double standing_distance(const Vec3& point_T, const CutterSolid& cutter) {
+  const double rho = point_T.head<2>().norm();
+  double least = std::numeric_limits<double>::infinity();
+  for (const cutter::ConvexPiece& piece : cutter.pieces) {
+    least = std::min(least, cutter::signed_distance(piece, rho, point_T.z()));
+  }
+  return least;
+}
+
 /// Least F over instants: a scan, then golden sections about its best place (F is convex along the motion).
 double scanned(const SweepMap& map, const Vec3& x, const CutterSolid& cutter) {
   const auto at = [&](double t) {
-    return cutter_distance((1.0 - t) * map.start(x) + t * map.end(x), cutter);
+    return standing_distance((1.0 - t) * map.start(x) + t * map.end(x), cutter);
   };
   double least = 1e300;
   for (const cutter::ConvexPiece& piece : cutter.pieces) {
@@ -21,7 +31,7 @@ double scanned(const SweepMap& map, const Vec3& x, const CutterSolid& cutter) {
     for (int i = 0; i < 130; ++i) {
       const double a = low + 0.382 * (high - low), b = low + 0.618 * (high - low);
       const auto value = [&](double t) {
-        return cutter_distance((1.0 - t) * map.start(x) + t * map.end(x), alone);
+        return standing_distance((1.0 - t) * map.start(x) + t * map.end(x), alone);
       };
       (value(a) <= value(b) ? high : low) = value(a) <= value(b) ? b : a;
       least = std::min({least, value(a), value(b)});
@@ -38,7 +48,7 @@ void compare(const CutterSolid& cutter, const Sweep& sweep, const Vec3& x, const
   ASSERT_NEAR(contact.distance_mm, scanned(map, x, cutter), 1e-9)
       << where << ": " << text(sweep) << " point " << text(x) << " of " << text(cutter.pieces[0]);
   const Vec3 X = (1.0 - contact.t) * map.start(x) + contact.t * map.end(x);
-  ASSERT_NEAR(cutter_distance(X, cutter), contact.distance_mm, 1e-12) << where;
+  ASSERT_NEAR(standing_distance(X, cutter), contact.distance_mm, 1e-12) << where;
 }
 
 Vec3 near_tool(Rng& rng, const Sweep& sweep, double reach) {
