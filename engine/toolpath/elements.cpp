@@ -128,11 +128,41 @@ void Elements::add_block(const Element& element, const BlockMove& block) {
   }
   Row row = row_of(block);
   row.count = {number_of(data, kind), element.where.line, element.where.column};
+  add_row(row);
+}
+
+void Elements::add_row(const Row& row) {
+  Data& data = *data_;
   if (data.open.capacity() == 0) data.open.reserve(kChunk);
   data.open.push_back(row);
   if (data.open.size() < kChunk) return;
   data.chunks.push_back(std::make_shared<const Chunk>(data.open));
   data.open.clear();
+}
+
+void Elements::append(const Elements& other, size_t begin, size_t end) {
+  if (begin == end) return;
+  SWARF_CHECK(other.hold_blocks() && end <= other.size(), "blocks of the other path");
+  push_back(other[begin]);  // its start may have to be said here
+  Data& data = own();
+  std::vector<int32_t> kinds(other.data_->kinds.size(), -1);  // numbers here of those there
+  for (size_t i = begin + 1; i < end; ++i) {
+    Row row = other.row(i);
+    const auto there = static_cast<size_t>(row.count[kKind]);
+    if (kinds[there] < 0) {
+      Kind kind = other.data_->kinds[there];
+      kind.file = number_of(data, other.data_->files[kind.file]);
+      kinds[there] = number_of(data, kind);
+    }
+    row.count[kKind] = kinds[there];
+    const Kind& kind = data.kinds[static_cast<size_t>(kinds[there])];
+    if (kind.has_arc) data.arcs.push_back({size(), entry_of(other.data_->arcs, i).arc});
+    if (kind.starts) {
+      const Start& start = entry_of(other.data_->starts, i);
+      data.starts.push_back({size(), start.pose, start.q});
+    }
+    add_row(row);
+  }
 }
 
 int32_t Elements::number_of(Data& data, const Kind& kind) {
@@ -221,10 +251,18 @@ ToolPose Elements::block_end(size_t i) const {
   return row(i).pose();
 }
 
-double Elements::feed_mm_s(size_t i) const {
+double Elements::number(size_t i, Number which) const {
   const size_t chunk = i / kChunk;
-  if (chunk == data_->chunks.size()) return data_->open[i % kChunk].number[kFeed];
-  return data_->chunks[chunk]->number[kFeed].at(i % kChunk);
+  if (chunk == data_->chunks.size()) return data_->open[i % kChunk].number[which];
+  return data_->chunks[chunk]->number[which].at(i % kChunk);
+}
+
+double Elements::feed_mm_s(size_t i) const {
+  return number(i, kFeed);
+}
+
+bool Elements::is_rapid(size_t i) const {
+  return number(i, kFeed) == 0.0 && number(i, kDuration) == 0.0;
 }
 
 int Elements::tool(size_t i) const {

@@ -29,6 +29,8 @@ class Elements {
 
   /// A path holds blocks or other elements, not both.
   void push_back(Element element);
+  /// Blocks [begin, end) of another path of blocks, as they are packed there: equal to pushing each of them.
+  void append(const Elements& other, size_t begin, size_t end);
   /// Replaces the names of the files that SourceLocation::file says; `name` of each different one.
   template <typename Name>
   void rename_files(const Name& name) {
@@ -56,6 +58,7 @@ class Elements {
   BlockMove block(size_t i) const;
   ToolPose block_end(size_t i) const;  ///< BlockMove::to
   double feed_mm_s(size_t i) const;
+  bool is_rapid(size_t i) const;  ///< is_rapid(block(i))
   int tool(size_t i) const;
   bool all_give_axes() const;  ///< BlockMove::axes
 
@@ -127,8 +130,10 @@ class Elements {
 
   Data& own();
   void add_block(const Element& element, const BlockMove& block);
+  void add_row(const Row& row);
   Row row(size_t i) const;
   int32_t count(size_t i, Count which) const;
+  double number(size_t i, Number which) const;
   const Kind& kind(size_t i) const { return data_->kinds[static_cast<size_t>(count(i, kKind))]; }
   static Row row_of(const BlockMove& block);
   static int32_t number_of(Data& data, const Kind& kind);

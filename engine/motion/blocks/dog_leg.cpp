@@ -69,14 +69,14 @@ toolpath::ToolPath with_dog_legs(toolpath::ToolPath path, std::span<const Machin
   if (!dog_leg || !toolpath::holds_blocks(path)) return path;
   const BlockMotions motions(path.elements, by_tool);
   toolpath::Elements elements;
+  size_t copied = 0;
   for (size_t i = 0; i < motions.size(); ++i) {
-    const BlockMove block = motions.block(i);
-    if (is_rapid(block) && block.law == BlockLaw::kJoint) {
-      append_legs(path.elements[i], motions[i], elements);
-    } else {
-      elements.push_back(path.elements[i]);
-    }
+    if (!path.elements.is_rapid(i) || motions.block(i).law != BlockLaw::kJoint) continue;
+    elements.append(path.elements, copied, i);
+    append_legs(path.elements[i], motions[i], elements);
+    copied = i + 1;
   }
+  elements.append(path.elements, copied, path.elements.size());
   path.elements = std::move(elements);
   return path;
 }

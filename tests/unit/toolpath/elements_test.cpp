@@ -117,6 +117,32 @@ TEST(Elements, OfACopyAreItsOwn) {
   EXPECT_EQ(one.where(1199).file, blocks[1199].where.file);
 }
 
+/// Parts of two paths in turn, single elements between them, with names of files that the new path has not.
+TEST(Elements, AppendedAreThoseOfTheOtherPath) {
+  for (uint64_t seed = 1; seed <= 12; ++seed) {
+    Rng rng(seed);
+    const std::vector<std::vector<Element>> blocks{random_blocks(rng, 3000), random_blocks(rng, 3000)};
+    std::vector<Elements> sources{Elements(blocks[0]), Elements(blocks[1])};
+    sources[1].rename_files([](const std::string& name) { return "P" + name; });
+    Elements joined;
+    std::vector<Element> wanted;
+    for (int part = 0; part < 30; ++part) {
+      const size_t from = rng.next() % 2, begin = rng.next() % 3000,
+                   end = begin + rng.next() % (3001 - begin);
+      joined.append(sources[from], begin, end);
+      for (size_t i = begin; i < end; ++i) wanted.push_back(sources[from][i]);
+      if (part % 3 != 0) continue;
+      joined.push_back(blocks[0][end % 3000]);
+      wanted.push_back(blocks[0][end % 3000]);
+    }
+    ASSERT_EQ(joined.size(), wanted.size());
+    for (size_t i = 0; i < wanted.size(); ++i) {
+      ASSERT_EQ(difference(joined[i], wanted[i]), "") << fmt::format("Rng rng({}); block {}", seed, i);
+      ASSERT_EQ(joined.is_rapid(i), is_rapid(std::get<BlockMove>(wanted[i].what)));
+    }
+  }
+}
+
 /// Three axes, one feed, as finishing programs are written: tip, axis values, duration, line, kind.
 TEST(Elements, OfALongProgramTakeLittleMemory) {
   Rng rng(30);
