@@ -41,5 +41,10 @@ inline Mat3 rotation_deg(int axis, double deg) {
 inline double angle_between(const Vec3& a, const Vec3& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
+/// From a to b about `axis`, both square to it, counter-clockwise seen from its tip: (-pi, pi]. The axis has
+/// length 1.
+inline double signed_angle(const Vec3& axis, const Vec3& a, const Vec3& b) {
+  return std::atan2(a.cross(b).dot(axis), a.dot(b));
+}
 
 }  // namespace swarf

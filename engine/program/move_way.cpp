@@ -12,7 +12,7 @@ constexpr double kSamePoint = 1e-9;
 
 /// Counter-clockwise about n from a to b, in [0, 2 pi).
 double angle_about(const Vec3& n, const Vec3& a, const Vec3& b) {
-  const double angle = std::atan2(a.cross(b).dot(n), a.dot(b));
+  const double angle = signed_angle(n, a, b);
   return angle < 0.0 ? angle + kTurn : angle;
 }
 

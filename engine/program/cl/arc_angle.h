@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "base/angles.h"
 #include "base/frames.h"
 #include "base/units.h"
 
@@ -20,7 +21,7 @@ inline Vec3 flat_in(const Vec3& v, const Vec3& normal) {
 inline double swept_angle(const Vec3& a, const Vec3& b, const Vec3& normal) {
   const Vec3 u = flat_in(a, normal), v = flat_in(b, normal);
   if ((v - u).norm() < kWholeCircle) return 2.0 * kPi;
-  const double angle = std::atan2(normal.dot(u.cross(v)), u.dot(v));
+  const double angle = signed_angle(normal, u, v);
   return angle > 0.0 ? angle : angle + 2.0 * kPi;
 }
 

@@ -216,8 +216,7 @@ void Contour::join(const Piece& next) {
     send_pending();
     return;
   }
-  const double turn = std::atan2(before.tangent_to.cross(next.tangent_from).dot(normal()),
-                                 before.tangent_to.dot(next.tangent_from));
+  const double turn = signed_angle(normal(), before.tangent_to, next.tangent_from);
   if (std::abs(turn) <= smooth_rad_) {
     send_pending();
     return;
@@ -294,7 +293,7 @@ void Contour::inner(const Piece& next) {
     }
     const Vec3 axis = segment.normal, a = flat(from - segment.centre);
     const auto angle = [&](const Vec3& v) {
-      const double turned = std::atan2(a.cross(v).dot(axis), a.dot(v));
+      const double turned = signed_angle(axis, a, v);
       return turned < -1e-12 ? turned + kTurn : turned;
     };
     const double whole = angle(flat(to - segment.centre));

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "base/angles.h"
 #include "base/units.h"
 
 namespace swarf::program::nc {
@@ -66,7 +67,7 @@ double swept(const Segment& arc) {
   const auto flat = [&](const Vec3& v) { return Vec3(v - v.dot(arc.normal) * arc.normal); };
   const Vec3 a = flat(arc.from - arc.centre), b = flat(arc.to - arc.centre);
   if ((a - b).norm() <= 1e-9) return 2.0 * kPi;
-  const double angle = std::atan2(a.cross(b).dot(arc.normal), a.dot(b));
+  const double angle = signed_angle(arc.normal, a, b);
   return angle > 0.0 ? angle : angle + 2.0 * kPi;
 }
 
