@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <charconv>
-#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -14,6 +12,7 @@
 
 #include "base/file.h"
 #include "base/units.h"
+#include "cli/job_flags.h"
 #include "cli/nc_motion.h"
 #include "cli/nc_totals.h"
 #include "cli/terminal.h"
@@ -146,23 +145,6 @@ program::BuilderWords builder_words_of(const std::string& file, const std::vecto
     words[word] = equals < one.size() ? one.substr(equals + 1) : "of the machine's builder";
   }
   return words;
-}
-
-/// Reads "500=3.5" and "R1=2".
-program::Presets presets_of(const std::vector<std::string>& given) {
-  program::Presets presets;
-  for (const std::string& one : given) {
-    const size_t equals = std::min(one.find('='), one.size() - 1);
-    const char* const end = one.data() + one.size();
-    program::Preset preset{0.0, {"--set-parameter " + one}};
-    const auto [next, failure] = std::from_chars(one.data() + equals + 1, end, preset.value);
-    const std::string name = program::preset_name(one.substr(0, equals));
-    if (name.empty() || failure != std::errc() || next != end || !std::isfinite(preset.value))
-      throw InputError("bad-option", preset.where, "this is no parameter with its number",
-                       "write --set-parameter 500=3.5, R1=2 or Q5=1");
-    presets[name] = preset;
-  }
-  return presets;
 }
 
 /// G10 L70 opens a surface: that is a program of surface blocks.

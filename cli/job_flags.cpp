@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <system_error>
 
@@ -149,6 +152,24 @@ sim::JobFlags job_flags(const std::string& program_file, const JobWords& words) 
   flags.start_tool = words.start_tool;
   flags.t_changes_tool = words.t_changes_tool;
   return flags;
+}
+
+program::Presets presets_of(const std::vector<std::string>& given) {
+  program::Presets presets;
+  for (const std::string& one : given) {
+    const size_t equals = std::min(one.find('='), one.size() - 1);
+    const char* const end = one.data() + one.size();
+    program::Preset preset{0.0, {"--set-parameter " + one}};
+    const auto [next, failure] = std::from_chars(one.data() + equals + 1, end, preset.value);
+    const std::string name = program::preset_name(one.substr(0, equals));
+    if (name.empty() || failure != std::errc() || next != end || !std::isfinite(preset.value))
+      throw InputError("bad-option", preset.where, "this is no parameter with its number",
+                       "write --set-parameter 500=3.5, R1=2 or Q5=1");
+    if (!presets.emplace(name, preset).second)
+      throw InputError("given-twice", preset.where, fmt::format("{} has a value already", name),
+                       "give it once");
+  }
+  return presets;
 }
 
 sim::Job load_job(const std::string& file, const JobWords& words, const std::vector<std::string>& overrides) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "program/nc_program.h"
 #include "sim/job/scene_text.h"
 
 namespace swarf::cli {
@@ -18,6 +19,9 @@ struct JobWords {
 };
 
 void add_job_flags(CLI::App& command, JobWords& words);
+
+/// Reads "500=3.5" and "R1=2". Throws InputError "bad-option" and "given-twice".
+program::Presets presets_of(const std::vector<std::string>& given);
 
 /// Those that were given, as a shell takes them: "--tool", "6".
 std::vector<std::string> given_words(const JobWords& words);

@@ -70,9 +70,21 @@ int guarded(CLI::App& app, int argc, char** argv, const int& exit_code) {
     fmt::print(stderr, "error: out of memory\n    fix: raise stock.voxel_mm or free memory\n");
     return swarf::cli::kInternalError;
   } catch (const std::exception& error) {
+    if (std::ferror(stdout) != 0) return swarf::cli::kBadInput;  // a full disk behind a pipe: main says so
     fmt::print(stderr, "internal error: {}\n    please report it with the scene\n", error.what());
     return swarf::cli::kInternalError;
   }
+}
+
+/// What was printed has to arrive: a pipeline reads it.
+int checked_output(int exit_code) {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return exit_code;
+  fmt::print(
+      stderr, "{}\n",
+      swarf::InputError("cannot-write", {"standard output"}, "not all that was printed could be written",
+                        "name a file or a pipe with space")
+          .what());
+  return std::max<int>(exit_code, swarf::cli::kBadInput);
 }
 
 }  // namespace
@@ -104,5 +116,5 @@ int main(int argc, char** argv) {
   swarf::cli::add_export(app, exit_code);
   swarf::cli::add_manual(app);
   swarf::cli::catch_interrupt();
-  return guarded(app, argc, argv, exit_code);
+  return checked_output(guarded(app, argc, argv, exit_code));
 }

@@ -9,7 +9,7 @@ namespace {
 void write_pipeline_files(const PipelineFiles& files, const std::vector<reports::FileVerdict>& found,
                           int exit_code) {
   if (!files.sarif.empty()) reports::write_text(files.sarif, reports::sarif_text(found, exit_code));
-  if (!files.junit.empty()) reports::write_text(files.junit, reports::junit_text(found));
+  if (!files.junit.empty()) reports::write_text(files.junit, reports::junit_text(found, exit_code));
 }
 
 }  // namespace
@@ -24,6 +24,8 @@ void add_pipeline_options(CLI::App& command, PipelineFiles& files) {
 int with_pipeline_files(const PipelineFiles& files, const std::string& input,
                         const std::function<int(std::vector<reports::FileVerdict>&)>& command) {
   for (const std::string& file : {files.sarif, files.junit}) reports::check_output_file(file);
+  // Of a command that is killed or fails they say so, not what an earlier one has found.
+  write_pipeline_files(files, {{input, {}}}, kInternalError);
   std::vector<reports::FileVerdict> found;
   try {
     const int exit_code = command(found);

@@ -177,10 +177,11 @@ sim::CutOptions cut_options(const RunOptions& options, const reports::PendingFol
   return cut;
 }
 
-/// Warnings of the input, then what the run has found.
-reports::FileVerdict verdict_of(const sim::Job& job, const sim::Result& result,
+/// Warnings of the input, then what the run has found. What stands in a scene that was made from flags is
+/// said of the program: pipelines look for the file.
+reports::FileVerdict verdict_of(const RunOptions& options, const sim::Job& job, const sim::Result& result,
                                 const std::vector<Diagnostic>& failures) {
-  reports::FileVerdict verdict{job.scene.file, job.warnings, result.checks};
+  reports::FileVerdict verdict{options.scene, job.warnings, result.checks};
   const auto add = [&](const std::vector<Diagnostic>& more) {
     verdict.told.insert(verdict.told.end(), more.begin(), more.end());
   };
@@ -188,6 +189,8 @@ reports::FileVerdict verdict_of(const sim::Job& job, const sim::Result& result,
   for (const sim::Finding& f : result.findings)
     verdict.told.push_back({f.code, f.severity, f.where, f.text, f.fix});
   add(failures);
+  for (Diagnostic& told : verdict.told)
+    if (!job.scene.text.empty() && told.where.file == job.scene.file) told.where = {options.scene, 0, 0};
   return verdict;
 }
 
@@ -234,7 +237,7 @@ int run(const RunOptions& options, std::vector<reports::FileVerdict>& found) {
   print_diagnostics(result.main.warnings);
   const std::vector<Diagnostic> failures = reports::write_run(pending, job, result, output, progress);
   print_diagnostics(failures);
-  found.push_back(verdict_of(job, result, failures));
+  found.push_back(verdict_of(options, job, result, failures));
   if (result.stopped) {
     print_stopped(options, result, folder);
     return kStopped;
@@ -317,7 +320,8 @@ void add_run(CLI::App& app, int& exit_code) {
       ->add_option_function<std::vector<std::string>>(
           "--set-parameter",
           [&overrides](const std::vector<std::string>& given) {
-            for (const std::string& one : given) overrides.push_back("parameters." + one);
+            for (const auto& [name, preset] : presets_of(given))
+              overrides.push_back(fmt::format("parameters.{}={}", name, preset.value));
           },
           "a parameter's value before an NC program starts: 500=3.5 (#500), R1=2, Q5=1, NAME=3 (a GUD); "
           "short "

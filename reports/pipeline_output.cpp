@@ -117,6 +117,14 @@ std::vector<TestCase> cases_of(const FileVerdict& verdict) {
   return cases;
 }
 
+/// What came of a command that has not done all its work.
+std::string unfinished_text(int exit_code) {
+  constexpr int kBadInput = 2, kStopped = 130;
+  if (exit_code == kStopped) return "stopped: nothing was judged";
+  if (exit_code == kBadInput) return "not everything that was asked for could be done";
+  return "swarf did not come to an end: killed, or an internal error";
+}
+
 size_t count_tag(const std::vector<TestCase>& cases, const char* tag) {
   return static_cast<size_t>(
       std::count_if(cases.begin(), cases.end(), [&](const TestCase& one) { return one.tag == tag; }));
@@ -148,13 +156,16 @@ std::string sarif_text(const std::vector<FileVerdict>& files, int exit_code) {
   return log.dump(2, ' ', false, Object::error_handler_t::replace) + "\n";
 }
 
-std::string junit_text(const std::vector<FileVerdict>& files) {
+std::string junit_text(const std::vector<FileVerdict>& files, int exit_code) {
   std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"swarf\">\n";
   for (const FileVerdict& verdict : files) {
-    const std::vector<TestCase> cases = cases_of(verdict);
-    text += fmt::format("  <testsuite name=\"{}\" tests=\"{}\" failures=\"{}\" skipped=\"{}\">\n",
-                        xml(verdict.file), cases.size(), count_tag(cases, "failure"),
-                        count_tag(cases, "skipped"));
+    std::vector<TestCase> cases = cases_of(verdict);
+    if (exit_code >= 2 && count_tag(cases, "failure") == 0)
+      cases.push_back({"run", "error", unfinished_text(exit_code)});
+    text +=
+        fmt::format("  <testsuite name=\"{}\" tests=\"{}\" failures=\"{}\" errors=\"{}\" skipped=\"{}\">\n",
+                    xml(verdict.file), cases.size(), count_tag(cases, "failure"), count_tag(cases, "error"),
+                    count_tag(cases, "skipped"));
     for (const TestCase& one : cases) {
       text += fmt::format("    <testcase classname=\"{}\" name=\"{}\"", xml(verdict.file), xml(one.name));
       text += one.tag.empty() ? "/>\n"

@@ -22,7 +22,8 @@ struct FileVerdict {
 std::string sarif_text(const std::vector<FileVerdict>& files, int exit_code);
 
 /// A test suite for each file: "input" holds what is wrong with it, then each check; not proven is a failure,
-/// not judged is skipped with its reason. Ends with a new line.
-std::string junit_text(const std::vector<FileVerdict>& files);
+/// not judged is skipped with its reason. A command that has not done its work (exit code 2 or more) without
+/// a failure that says why has an error instead. Ends with a new line.
+std::string junit_text(const std::vector<FileVerdict>& files, int exit_code);
 
 }  // namespace swarf::reports

@@ -50,7 +50,7 @@ double gauge_length(const Cutter& cutter) {
 }
 
 std::string call_name(const Cutter& cutter) {
-  if (cutter.number == 0) return cutter.name;
+  if (cutter.number == 0) return cutter.name.empty() ? "the tool" : cutter.name;
   return cutter.name.empty() ? fmt::format("T{}", cutter.number)
                              : fmt::format("T{} ({})", cutter.number, cutter.name);
 }

@@ -112,6 +112,13 @@ TEST_F(Options, ParametersHoldAValueBeforeTheProgramStarts) {
   const ProgramRun wrong = run_swarf("check " + program + " --set-parameter 500=deep");
   EXPECT_EQ(wrong.exit_code, 2);
   EXPECT_TRUE(says(wrong, "write --set-parameter 500=3.5")) << wrong.output;
+  for (const char* command : {"check ", "run "}) {
+    const ProgramRun twice = run_swarf(command + program + " --set-parameter 500=1 --set-parameter '#500=2'");
+    EXPECT_EQ(twice.exit_code, 2);
+    EXPECT_TRUE(says(twice, "given-twice")) << twice.output;
+    const ProgramRun hex = run_swarf(command + program + " --set-parameter 500=0x10");
+    EXPECT_TRUE(says(hex, "bad-option")) << hex.output;
+  }
   const ProgramRun other = run_swarf("check " + program + " --set-parameter R1=2");
   EXPECT_TRUE(says(other, "bad-preset")) << other.output;
 
@@ -184,6 +191,37 @@ TEST_F(Options, CheckTriesSoManyPoses) {
   const ProgramRun run = run_swarf("check --poses 1234 " + kMachines + "lin_koren_xyzab/machine.toml");
   EXPECT_EQ(run.exit_code, 0) << run.output;
   EXPECT_TRUE(says(run, "1234 random poses")) << run.output;
+}
+
+/// What is printed goes to a full disk: neither command may say that all is well.
+TEST_F(Options, OutputThatDoesNotArriveIsAFault) {
+  const std::string program =
+      file("part.ngc", "G21 G90 G17 G94\nT1 M6\nM3 S1000\nG0 X0 Y0 Z5\nG1 Z-1 F100\nX10\nM2\n");
+  const std::string run = "run " + program + " --tool 6 --stock=-5,-5,-6,15,5,0 --voxel 0.5 --no-render -o " +
+                          (folder_ / "out").string();
+  for (const std::string& words : {"check " + program + " --json", run, run + " --json"}) {
+    const ProgramRun full = run_swarf(words + " >/dev/full");
+    EXPECT_EQ(full.exit_code, 2) << words;
+    EXPECT_TRUE(says(full, "cannot-write")) << full.output;
+  }
+}
+
+/// JUnit of a run that is stopped, and what an earlier one has left of a run that never comes to its end.
+TEST_F(Options, PipelineFilesOfAnUnfinishedRunAreNotGreen) {
+  const std::string junit = (folder_ / "out.xml").string();
+  std::string lines = "G21 G90 G17 G94\nT1 M6\nM3 S1000\nG0 X0 Y0 Z5\nG1 Z-1 F100\n";
+  for (int i = 0; i < 40000; ++i) lines += i % 2 == 0 ? "X40\n" : "X0\n";
+  const std::string program = file("long.ngc", lines + "M2\n");
+  const std::string words = SWARF_PROGRAM " -q run " + program +
+                            " --tool 6 --stock=-5,-5,-6,45,5,0 --voxel 0.1 --no-render -o " +
+                            (folder_ / "out").string() + " --junit " + junit;
+  for (const std::string signal : {"INT", "KILL"}) {
+    fs::remove(junit);
+    const auto stopped = swarf::test::run_command("timeout -s " + signal + " 1 " + words);
+    EXPECT_NE(stopped.exit_code, 0);
+    const std::string text = swarf::test::read_text(junit);
+    EXPECT_NE(text.find("errors=\"1\""), std::string::npos) << signal << "\n" << text;
+  }
 }
 
 TEST_F(Options, CheckAndRunTellBuildServers) {

@@ -142,6 +142,10 @@ std::optional<FlatCorner> cut_corner(const FlatPiece& before, const FlatPiece& a
     why = "a chamfer needs straight pieces before and after it";
     return std::nullopt;
   }
+  if (std::abs(cross(tangent(before, before.to), tangent(after, after.from))) < kNoCornerWay) {
+    why = "the contour does not turn here, or goes back the way it came";
+    return std::nullopt;
+  }
   if (length > (before.to - before.from).norm() + kNoCornerWay ||
       length > (after.to - after.from).norm() + kNoCornerWay) {
     why = "the pieces before and after it are too short";

@@ -171,6 +171,13 @@ void polar_words(LinuxCnc& linuxcnc) {
     fail("words-conflict", "@ and ^ stand beside X or Y", "write G1 @10 ^30, or X and Y");
   if (block.has_g(kOffsetGroup) || block.has_g(kUnitsGroup) || block.has_g(kNonModal))
     fail("words-conflict", "@ and ^ stand beside a change of offset or unit", "write it in a block before");
+  if (block.has_g(kMachineGroup))
+    fail("words-conflict", "@ and ^ stand beside G53: they count from the zero point of the part",
+         "write X and Y behind G53");
+  const int own = block.has_g(kPlaneGroup) ? block.g[kPlaneGroup] : G::kPlaneXY;
+  if (linuxcnc.control.modal.plane != Plane::kXY || own != G::kPlaneXY)
+    fail("words-conflict", "@ and ^ lie in the plane XY, and G18 or G19 is in force",
+         "write G17 in a block before, or X, Y and Z");
   const bool incremental =
       block.has_g(kDistanceGroup) ? block.g[kDistanceGroup] == G::kIncremental : linuxcnc.modes.incremental;
   const bool counts = incremental || !block.distance.given || !block.angle.given;

@@ -58,15 +58,25 @@ TEST(Sarif, ListsEveryRuleOnce) {
 }
 
 TEST(Junit, CountsFailuresAndSkipped) {
-  const std::string text = junit_text(one_of_each());
-  EXPECT_NE(text.find("tests=\"5\" failures=\"3\" skipped=\"1\""), std::string::npos) << text;
+  const std::string text = junit_text(one_of_each(), 1);
+  EXPECT_NE(text.find("tests=\"5\" failures=\"3\" errors=\"0\" skipped=\"1\""), std::string::npos) << text;
   EXPECT_NE(text.find("<skipped message=\"Deepest gouge: no design\"/>"), std::string::npos) << text;
   EXPECT_NE(text.find("part.nc:21:8: error: a gouge of 3 um"), std::string::npos) << text;
 }
 
+TEST(Junit, OfWhatWasNotDoneIsNeverGreen) {
+  for (const int exit_code : {2, 3, 130}) {
+    const std::string text = junit_text({{"a.nc", {}}}, exit_code);
+    EXPECT_NE(text.find("tests=\"2\" failures=\"0\" errors=\"1\" skipped=\"0\""), std::string::npos) << text;
+    EXPECT_NE(text.find("name=\"run\"><error message="), std::string::npos) << text;
+  }
+  EXPECT_EQ(junit_text({{"a.nc", {}}}, 0).find("<error"), std::string::npos);
+  EXPECT_EQ(junit_text(one_of_each(), 2).find("<error"), std::string::npos) << "its failures say why";
+}
+
 TEST(Junit, AnyTextMakesAValidFile) {
   const std::string text =
-      junit_text({{"a<b>&\"c\".nc", {{"bad", Severity::kError, {"x", 1, 1}, "\xff\x01 <&>", "\n"}}}});
+      junit_text({{"a<b>&\"c\".nc", {{"bad", Severity::kError, {"x", 1, 1}, "\xff\x01 <&>", "\n"}}}}, 2);
   EXPECT_NE(text.find("a&lt;b&gt;&amp;&quot;c&quot;.nc"), std::string::npos) << text;
   EXPECT_EQ(text.find('\x01'), std::string::npos);
   EXPECT_EQ(text.find('\xff'), std::string::npos);
