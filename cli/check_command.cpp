@@ -260,7 +260,10 @@ void add_check(CLI::App& app, int& exit_code) {
                          "(.cls, .clt, .ncl, .apt, .cldata); move the axes of scenes, cut nothing");
   command->add_option("files", options->files, "files to check; -: an NC program from the standard input")
       ->required();
-  command->add_option("--machine", options->nc.machine, "machine.toml that NC programs are read for");
+  command
+      ->add_option("--machine", options->nc.machine,
+                   "what NC programs are read for: a machine that 'swarf machines' lists, or machine.toml")
+      ->type_name("NAME|FILE");
   command->add_option("--dialect", options->nc.dialect,
                       program::dialect_list(" or ") + "; recognised when left out");
   command->add_option(

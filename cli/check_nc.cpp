@@ -17,6 +17,7 @@
 #include "cli/nc_totals.h"
 #include "cli/terminal.h"
 #include "machine/machine_scene.h"
+#include "machine/shipped.h"
 #include "program/dialects.h"
 #include "program/nc_program.h"
 #include "sim/job/tool_table.h"
@@ -194,7 +195,11 @@ program::ControlSetup setup_of(const std::string& file, const NcCheckOptions& op
   if (options.machine.empty()) {
     setup.machine = plain_machine();
   } else {
-    const machine::MachineScene scene = machine::load_machine(options.machine);
+    const std::string named = machine::machine_file(options.machine);
+    if (named.empty())
+      throw InputError("unknown-machine", {"--machine " + options.machine}, "no machine is called so",
+                       "name a machine.toml, or one that 'swarf machines' lists");
+    const machine::MachineScene scene = machine::load_machine(named);
     setup.machine = scene.model;
     setup.unit_mm = scene.program_unit_mm;
   }

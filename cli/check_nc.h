@@ -10,7 +10,7 @@ namespace swarf::cli {
 
 /// What an NC program is checked with.
 struct NcCheckOptions {
-  std::string machine;                  ///< machine.toml; "": a plain XYZ machine without limits
+  std::string machine;                  ///< machine.toml or a shipped name; "": plain XYZ without limits
   std::string dialect;                  ///< "linuxcnc" ...; "": recognised
   std::string tools;                    ///< tool table, .toml or .tbl; "": none, lengths are 0
   bool drive = true;                    ///< with a machine: time and travel by look-ahead, as a run has them

@@ -65,21 +65,32 @@ NearSweeps::NearSweeps(size_t count, Part part, CutterOf cutter_of)
   });
 }
 
-std::vector<uint32_t> NearSweeps::around(const Vec3& point_W, double distance_mm) const {
-  const double reach = distance_mm / kLeastCosine;
-  std::vector<uint32_t> near;
-  for (size_t number = 0; number < runs_.size(); ++number) {
-    if (distance_to_box(runs_[number], point_W) > reach) continue;
+bool NearSweeps::Capsule::may_reach(const Vec3& point_W, double distance_mm) const {
+  const double length2 = way.squaredNorm();
+  const double t = length2 > 0.0 ? std::clamp((point_W - from).dot(way) / length2, 0.0, 1.0) : 0.0;
+  return (point_W - from - t * way).norm() <= radius + distance_mm / kLeastCosine;
+}
+
+std::vector<NearSweeps::Near> NearSweeps::near(const Vec3& point_W, double distance_mm, size_t end) const {
+  std::vector<Near> near;
+  const size_t runs = std::min(runs_.size(), (end + kRun - 1) / kRun);
+  for (size_t number = 0; number < runs; ++number) {
+    if (distance_to_box(runs_[number], point_W) > distance_mm / kLeastCosine) continue;
     const std::vector<stock::Sweep> sweeps = run(number);
-    for (size_t i = 0; i < sweeps.size(); ++i) {
+    for (size_t i = 0; i < sweeps.size() && number * kRun + i < end; ++i) {
       const size_t n = number * kRun + i;
-      const Capsule c = capsule(sweeps[i], n);
-      const double length2 = c.way.squaredNorm();
-      const double t = length2 > 0.0 ? std::clamp((point_W - c.from).dot(c.way) / length2, 0.0, 1.0) : 0.0;
-      if ((point_W - c.from - t * c.way).norm() <= c.radius + reach) near.push_back(static_cast<uint32_t>(n));
+      const Capsule capsule = this->capsule(sweeps[i], n);
+      if (capsule.may_reach(point_W, distance_mm))
+        near.push_back({static_cast<uint32_t>(n), sweeps[i], capsule});
     }
   }
   return near;
+}
+
+std::vector<uint32_t> NearSweeps::around(const Vec3& point_W, double distance_mm) const {
+  std::vector<uint32_t> numbers;
+  for (const Near& one : near(point_W, distance_mm, count_)) numbers.push_back(one.number);
+  return numbers;
 }
 
 }  // namespace swarf::measure

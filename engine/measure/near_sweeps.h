@@ -21,15 +21,24 @@ class NearSweeps {
   NearSweeps(size_t count, Part part, CutterOf cutter_of);
   /// `cutters`: by Sweep::block.
   NearSweeps(std::span<const stock::Sweep> sweeps, const SweepCutters& cutters);
-  /// Indices of all sweeps whose cutter may come within `distance_mm` of the point, in order; some of them
-  /// stay farther away.
-  std::vector<uint32_t> around(const Vec3& point_W, double distance_mm) const;
-
- private:
   struct Capsule {
     Vec3 from, way;  ///< of the middle of the flutes, W
     double radius;   ///< of a ball about it that holds them
+    /// False: the flutes stay farther than this away from the point.
+    bool may_reach(const Vec3& point_W, double distance_mm) const;
   };
+  struct Near {
+    uint32_t number;
+    stock::Sweep sweep;
+    Capsule capsule;
+  };
+  /// All of the first `end` sweeps whose cutter may come within `distance_mm` of the point, in order; some of
+  /// them stay farther away.
+  std::vector<Near> near(const Vec3& point_W, double distance_mm, size_t end) const;
+  /// The numbers of those of all sweeps.
+  std::vector<uint32_t> around(const Vec3& point_W, double distance_mm) const;
+
+ private:
   Capsule capsule(const stock::Sweep& sweep, size_t number) const;
   std::vector<stock::Sweep> run(size_t number) const;
 

@@ -175,6 +175,16 @@ TEST_F(Options, CheckTakesWhatSwitchesTheKinematics) {
   EXPECT_FALSE(says(with, "kinematics-assumed")) << with.output;
 }
 
+TEST_F(Options, CheckTakesAMachineByNameAsRunDoes) {
+  const std::string program = file("part.ngc", "G21 G90 G17\nG0 X0 Y0 Z0 A0 B0\nG1 X10 F100\nM2\n");
+  const ProgramRun named = run_swarf("check " + program + " --machine lin_koren_xyzab --json");
+  const ProgramRun by_file =
+      run_swarf("check " + program + " --machine " + kMachines + "lin_koren_xyzab/machine.toml --json");
+  EXPECT_EQ(named.exit_code, by_file.exit_code);
+  EXPECT_EQ(named.output, by_file.output);
+  EXPECT_TRUE(says(run_swarf("check " + program + " --machine lin_koren"), "unknown-machine"));
+}
+
 TEST_F(Options, CheckTakesTheSenseOfACircle) {
   const std::string program = file("part.cls",
                                    "UNITS/MM\nLOADTL/1\nFEDRAT/100\nGOTO/10,0,0,0,0,1\n"

@@ -1,6 +1,7 @@
 #include "sim/run/earlier_cuts.h"
 
 #include <algorithm>
+#include <memory>
 
 #include "stock/contact/convex_contact.h"
 
@@ -19,16 +20,26 @@ EarlierCuts::EarlierCuts(const CutSweeps& sweeps, std::span<const stock::CutterS
       farthest_mm_(farthest_mm) {}
 
 stock::ContactFinder::Material EarlierCuts::before(size_t sweep) const {
-  return [this, sweep](const Vec3& point_W) { return distance(point_W, sweep); };
+  return [this, sweep, about = std::make_shared<Surroundings>()](const Vec3& point_W) {
+    // Written so that a point that is not near the centre, and none at all, both ask anew.
+    if (!((point_W - about->centre).norm() <= farthest_mm_)) *about = surroundings(point_W, sweep);
+    return distance(point_W, about->cuts);
+  };
 }
 
-double EarlierCuts::distance(const Vec3& point_W, size_t sweep) const {
+EarlierCuts::Surroundings EarlierCuts::surroundings(const Vec3& point_W, size_t sweep) const {
+  Surroundings about{point_W, {}};
+  for (const auto& near : near_.near(point_W, 2.0 * farthest_mm_, sweep))
+    about.cuts.push_back({near.capsule, stock::sweep_map(near.sweep),
+                          &solids_[static_cast<size_t>(sweeps_.tool(near.number))]});
+  return about;
+}
+
+double EarlierCuts::distance(const Vec3& point_W, const std::vector<Cut>& cuts) const {
   double highest = -std::min((point_W - box_.lower).minCoeff(), (box_.upper - point_W).minCoeff());
-  for (const uint32_t n : near_.around(point_W, farthest_mm_)) {
-    if (n >= sweep) break;
-    const stock::SweepContact contact = stock::swept_contact(point_W, stock::sweep_map(sweeps_[n]),
-                                                             solids_[static_cast<size_t>(sweeps_.tool(n))]);
-    highest = std::max(highest, -contact.distance_mm);
+  for (const Cut& cut : cuts) {
+    if (!cut.capsule.may_reach(point_W, farthest_mm_)) continue;
+    highest = std::max(highest, -stock::swept_contact(point_W, cut.map, *cut.solid).distance_mm);
   }
   return highest;
 }

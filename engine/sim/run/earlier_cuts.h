@@ -1,11 +1,14 @@
 // The material as the sweeps before a given one have left it, by the sweeps themselves: no grid.
 #pragma once
 
+#include <limits>
 #include <span>
+#include <vector>
 
 #include "measure/near_sweeps.h"
 #include "sim/run/cut_sweeps.h"
 #include "stock/contact/contact_finder.h"
+#include "stock/sweep/sweep_map.h"
 
 namespace swarf::sim {
 
@@ -17,11 +20,23 @@ class EarlierCuts {
   EarlierCuts(const EarlierCuts&) = delete;
   EarlierCuts& operator=(const EarlierCuts&) = delete;
 
-  /// Before the sweep of this index; borrows this object.
+  /// Before the sweep of this index; borrows this object. For one thread: what is cut about a point is kept
+  /// for those near it that are asked for next.
   stock::ContactFinder::Material before(size_t sweep) const;
 
  private:
-  double distance(const Vec3& point_W, size_t sweep) const;
+  struct Cut {
+    measure::NearSweeps::Capsule capsule;
+    stock::SweepMap map;
+    const stock::CutterSolid* solid;
+  };
+  /// The cuts that matter within farthest_mm_ of a point.
+  struct Surroundings {
+    Vec3 centre = Vec3::Constant(std::numeric_limits<double>::infinity());
+    std::vector<Cut> cuts;
+  };
+  Surroundings surroundings(const Vec3& point_W, size_t sweep) const;
+  double distance(const Vec3& point_W, const std::vector<Cut>& cuts) const;
 
   const CutSweeps& sweeps_;
   std::span<const stock::CutterSolid> solids_;  ///< by tool
