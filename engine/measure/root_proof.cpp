@@ -143,7 +143,8 @@ class RootProof {
 
   /// Height at one corner, by the sweeps kept_[begin, end); `guesses` go first.
   Corner measured(const CellCorner& at, size_t begin, size_t end, std::array<uint32_t, 2> guesses) {
-    Corner corner{at};
+    Corner corner;
+    corner.at = at;
     take_range(corner);
     corner.depth = own_depth(at, stock::kSkin, kShareOfRange);
     corner.top = std::min(leaves_box(input_.stock.box(), at.point, at.normal), corner.range);

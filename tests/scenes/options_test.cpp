@@ -177,9 +177,9 @@ TEST_F(Options, CheckTakesWhatSwitchesTheKinematics) {
 
 TEST_F(Options, CheckTakesAMachineByNameAsRunDoes) {
   const std::string program = file("part.ngc", "G21 G90 G17\nG0 X0 Y0 Z0 A0 B0\nG1 X10 F100\nM2\n");
-  const ProgramRun named = run_swarf("check " + program + " --machine lin_koren_xyzab --json");
+  const ProgramRun named = run_swarf("check -q " + program + " --machine lin_koren_xyzab --json");
   const ProgramRun by_file =
-      run_swarf("check " + program + " --machine " + kMachines + "lin_koren_xyzab/machine.toml --json");
+      run_swarf("check -q " + program + " --machine " + kMachines + "lin_koren_xyzab/machine.toml --json");
   EXPECT_EQ(named.exit_code, by_file.exit_code);
   EXPECT_EQ(named.output, by_file.output);
   EXPECT_TRUE(says(run_swarf("check " + program + " --machine lin_koren"), "unknown-machine"));

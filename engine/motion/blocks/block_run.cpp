@@ -38,21 +38,31 @@ double duration(const std::vector<PlacedPhase>& phases) {
 
 RunPlanner::RunPlanner(const BlockMotions& motions, const RunPlace& start,
                        const kinematics::InverseKinematics& inverse, const MotionOptions& options,
-                       const LookAheadReach& reach)
+                       const LookAheadReach& reach, PlanAhead ahead)
     : reach_(reach),
-      builder_(motions.subspan(start.first, start.end - start.first), inverse, options, start.path) {
-  stretch_.place = start;
-  stretch_.motions = motions;
-  stretch_.path = &builder_.path();
-}
+      builder_(motions.subspan(start.first, start.end - start.first), inverse, options, start.path),
+      motions_(motions),
+      place_(start),
+      ahead_(ahead) {}
 
 const PlannedRun& RunPlanner::next() {
-  move_on();
+  stretch_ = coming_.valid() ? coming_.get() : make();
+  if (ahead_ == PlanAhead::kYes && !stretch_.last)
+    coming_ = std::async(std::launch::async, [this] { return make(); });
+  return stretch_;
+}
+
+PlannedRun RunPlanner::make() {
   EvenPlace end;
   CellPlan plan = this->plan(end);
-  stretch_.cells = end.cell;
-  stretch_.last = builder_.at_end() && end.cell == builder_.path().cells.size();
-  stretch_.phases.assign(plan.phases.begin(), plan.phases.begin() + static_cast<ptrdiff_t>(end.phases));
+  PlannedRun stretch;
+  stretch.place = place_;
+  stretch.motions = motions_;
+  stretch.cells = end.cell;
+  stretch.last = builder_.at_end() && end.cell == builder_.path().cells.size();
+  stretch.phases.assign(plan.phases.begin(), plan.phases.begin() + static_cast<ptrdiff_t>(end.phases));
+  stretch.path = builder_.take(end.cell);
+  if (stretch.last) return stretch;
   rest_ = {};
   for (size_t i = end.phases; i < plan.phases.size(); ++i) {
     rest_.phases.push_back(plan.phases[i]);
@@ -62,18 +72,10 @@ const PlannedRun& RunPlanner::next() {
     if (place.phases > end.phases)
       rest_.places.push_back({place.cell - end.cell, place.speed, place.phases - end.phases});
   }
-  end_ = end;
-  return stretch_;
-}
-
-/// Behind the stretch, if there is one already.
-void RunPlanner::move_on() {
-  if (stretch_.cells == 0) return;
-  const PlanStart start{end_.speed, builder_.path().cells[stretch_.cells - 1].speed};
-  builder_.drop(stretch_.cells);
-  stretch_.place.path = builder_.place(0);
-  stretch_.place.plan = start;
-  stretch_.place.kept = nullptr;
+  place_.path = builder_.place(0);
+  place_.plan = {end.speed, stretch.path.cells[end.cell - 1].speed};
+  place_.kept = nullptr;
+  return stretch;
 }
 
 CellPlan RunPlanner::plan(EvenPlace& end) {
@@ -82,12 +84,12 @@ CellPlan RunPlanner::plan(EvenPlace& end) {
     const std::vector<PathCell>& path = builder_.path().cells;
     if (path.empty()) return {};
     std::optional<CellPlan> plan;
-    if (!stretch_.place.kept) plan = plan_cells(path, builder_.limits(), stretch_.place.plan);
+    if (!place_.kept) plan = plan_cells(path, builder_.limits(), place_.plan);
     if (!plan) {
-      if (!stretch_.place.kept) stretch_.place.kept = std::make_shared<const CellPlan>(rest_);
-      end = stretch_.place.kept->places.back();
+      if (!place_.kept) place_.kept = std::make_shared<const CellPlan>(rest_);
+      end = place_.kept->places.back();
       builder_.extend(end.cell + 1);  // does the run go on behind it?
-      return *stretch_.place.kept;
+      return *place_.kept;
     }
     end = plan->places.back();
     if (builder_.at_end()) return std::move(*plan);
@@ -106,7 +108,7 @@ void RunSampler::enter(const PlannedRun& stretch) {
   if (stretch.phases.empty()) return;
   if (clock_.tick == 0 && clock_.planned_s == 0.0) {
     clock_.time = period_;
-    clock_.before = point_at(*stretch.path, 0, 0.0);
+    clock_.before = point_at(stretch.path, 0, 0.0);
     clock_.tip_before = motions_->at(stretch.place.first + clock_.before.block).block.from.tip_W;
   }
   for (const PlacedPhase& placed : stretch.phases) clock_.planned_s += placed.phase.duration;
@@ -136,7 +138,7 @@ bool RunSampler::next(BlockTick& tick) {
   enter_phase();
   if (!run_->last && phase_ == run_->phases.size()) return false;
   ++clock_.tick;
-  const std::vector<PathCell>& cells = run_->path->cells;
+  const std::vector<PathCell>& cells = run_->path.cells;
   if (phase_ == run_->phases.size() || (run_->last && clock_.tick == ticks_)) {
     fill(cells.size() - 1, cells.back().length, tick);
   } else {
@@ -151,10 +153,10 @@ bool RunSampler::next(BlockTick& tick) {
 }
 
 void RunSampler::fill(size_t cell, double offset, BlockTick& tick) {
-  const PathPoint at = point_at(*run_->path, cell, offset);
+  const PathPoint at = point_at(run_->path, cell, offset);
   const size_t index = run_->place.first + at.block;
   const BlockMotion& motion = motions_->at(index);
-  const BlockCurve& curve = run_->path->curve(at.block);
+  const BlockCurve& curve = run_->path.curve(at.block);
   const bool rapid = is_rapid(motion.block);
   tick.q = at.q;
   tick.followed = curve.followed();

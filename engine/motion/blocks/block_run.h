@@ -7,6 +7,7 @@
 // evenly within a block, so its feed holds on average.
 #pragma once
 
+#include <future>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -33,7 +34,7 @@ struct RunPlace {
 struct PlannedRun {
   RunPlace place;
   BlockMotions motions;             ///< of the whole path
-  const RunPath* path = nullptr;    ///< from the stretch on, and farther; the planner's
+  RunPath path;                     ///< from the stretch on, and farther
   std::vector<PlacedPhase> phases;  ///< empty when it goes nowhere
   size_t cells = 0;                 ///< of the stretch
   bool last = true;                 ///< the run ends with it
@@ -49,27 +50,35 @@ struct LookAheadReach {
   size_t planned = size_t{1} << 15U, seen_ahead = size_t{1} << 13U;
 };
 
+/// Whether the next stretch is planned on a thread of its own while one is in use.
+enum class PlanAhead { kNo, kYes };
+
 /// Plans a run stretch by stretch, from any place on, in bounded memory.
 class RunPlanner {
  public:
   /// Machines, inverse and options must outlive it.
   RunPlanner(const BlockMotions& motions, const RunPlace& start, const kinematics::InverseKinematics& inverse,
-             const MotionOptions& options, const LookAheadReach& reach = {});
+             const MotionOptions& options, const LookAheadReach& reach = {},
+             PlanAhead ahead = PlanAhead::kNo);
   RunPlanner(const RunPlanner&) = delete;
   RunPlanner& operator=(const RunPlanner&) = delete;
-  /// The next stretch, at first that of the start; not to be called after the last one.
+  /// The next stretch, at first that of the start; valid until the next call. Not to be called after the last
+  /// one.
   const PlannedRun& next();
 
  private:
-  void move_on();
+  PlannedRun make();
   /// A plan from here on, of which the phases up to `end` stand whatever follows.
   CellPlan plan(EvenPlace& end);
 
   LookAheadReach reach_;
   RunPathBuilder builder_;
-  PlannedRun stretch_;
-  EvenPlace end_;  ///< of the stretch
-  CellPlan rest_;  ///< of the last plan, behind the stretch
+  BlockMotions motions_;
+  RunPlace place_;  ///< of what is planned next
+  CellPlan rest_;   ///< of the last plan, behind its stretch
+  PlanAhead ahead_;
+  PlannedRun stretch_;              ///< handed out
+  std::future<PlannedRun> coming_;  ///< the last member: its thread ends before the others go
 };
 
 /// A sample and where it comes from.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "base/check.h"
 #include "base/roots.h"
@@ -110,7 +111,7 @@ RunPathBuilder::RunPathBuilder(const BlockMotions& motions, const kinematics::In
   path_.first = start.before.value_or(start.next);
   at_.skip = 0;
   extend(start.skip);
-  drop(start.skip);
+  take(start.skip);
 }
 
 void RunPathBuilder::extend(size_t cells) {
@@ -132,8 +133,7 @@ PathPlace RunPathBuilder::place(size_t cell) const {
   return place;
 }
 
-void RunPathBuilder::drop(size_t cells) {
-  if (cells == 0) return;
+RunPath RunPathBuilder::take(size_t cells) {
   const bool all = cells >= path_.cells.size();
   const size_t pieces = all ? path_.pieces.size() : path_.piece_of_cell[cells];
   // A piece that is cut in two begins later from now on.
@@ -141,21 +141,23 @@ void RunPathBuilder::drop(size_t cells) {
   const auto blends = static_cast<size_t>(std::count_if(path_.pieces.begin(),
                                                         path_.pieces.begin() + static_cast<ptrdiff_t>(pieces),
                                                         [](const Piece& piece) { return piece.blend >= 0; }));
-  const size_t block = all ? at_.before.value_or(path_.first) : path_.pieces[pieces].block;
-  const auto erase = [](auto& list, size_t count) {
-    list.erase(list.begin(), list.begin() + static_cast<ptrdiff_t>(count));
+  const auto behind = [](const auto& list, size_t count) {
+    return std::decay_t<decltype(list)>(list.begin() + static_cast<ptrdiff_t>(std::min(count, list.size())),
+                                        list.end());
   };
-  erase(path_.cells, cells);
-  erase(path_.piece_of_cell, cells);
-  erase(path_.offset_of_cell, cells);
-  erase(path_.pieces, pieces);
-  erase(place_of_piece_, pieces);
-  erase(path_.blends, blends);
-  erase(path_.curves, block - path_.first);
-  path_.first = block;
-  for (size_t& piece : path_.piece_of_cell) piece -= pieces;
-  for (Piece& piece : path_.pieces)
+  RunPath rest;
+  rest.first = all ? at_.before.value_or(path_.first) : path_.pieces[pieces].block;
+  rest.curves = behind(path_.curves, rest.first - path_.first);
+  rest.blends = behind(path_.blends, blends);
+  rest.pieces = behind(path_.pieces, pieces);
+  rest.cells = behind(path_.cells, cells);
+  rest.piece_of_cell = behind(path_.piece_of_cell, cells);
+  rest.offset_of_cell = behind(path_.offset_of_cell, cells);
+  place_of_piece_ = behind(place_of_piece_, pieces);
+  for (size_t& piece : rest.piece_of_cell) piece -= pieces;
+  for (Piece& piece : rest.pieces)
     if (piece.blend >= 0) piece.blend -= static_cast<int>(blends);
+  return std::exchange(path_, std::move(rest));
 }
 
 /// The greatest_of feed; of rapids, and where durations alone are given, the fastest linear axis.

@@ -80,8 +80,8 @@ class RunPathBuilder {
   const AxisLimits& limits() const { return limits_; }
   /// The start of one of the path's cells.
   PathPlace place(size_t cell) const;
-  /// Forgets the first cells.
-  void drop(size_t cells);
+  /// Hands over the path and goes on without its first cells.
+  RunPath take(size_t cells);
 
  private:
   double reference_speed() const;

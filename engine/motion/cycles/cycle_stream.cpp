@@ -61,8 +61,7 @@ CycleStream::CycleStream(const CycleSource& source, const CyclePlace& from)
   run_.emplace();
   run_->first = from.run->first;
   run_->end = from.run->end;
-  run_->planner =
-      std::make_unique<RunPlanner>(source_.motions, *from.run, inverse(), *source_.options, source_.reach);
+  run_->planner = planner(*from.run);
   run_->sampler.emplace(source_.options->period_s, from.clock);
 }
 
@@ -92,7 +91,7 @@ void CycleStream::pass_to(uint64_t cycle) {
 bool CycleStream::may_skip() {
   if (!run_ || run_->stretch == nullptr) return false;
   if (!run_->followed) {
-    const std::vector<BlockCurve>& curves = run_->stretch->path->curves;
+    const std::vector<BlockCurve>& curves = run_->stretch->path.curves;
     run_->followed =
         std::all_of(curves.begin(), curves.end(), [](const BlockCurve& curve) { return curve.followed(); });
   }
@@ -186,14 +185,18 @@ void CycleStream::run_on() {
   }
 }
 
+std::unique_ptr<RunPlanner> CycleStream::planner(const RunPlace& start) const {
+  return std::make_unique<RunPlanner>(source_.motions, start, inverse(), *source_.options, source_.reach,
+                                      source_.plan_ahead);
+}
+
 void CycleStream::enter_stretch() {
   RunUnderWay& run = *run_;
   if (!run.planner) {
     RunPlace start;
     start.first = run.first;
     start.end = run.end;
-    run.planner =
-        std::make_unique<RunPlanner>(source_.motions, start, inverse(), *source_.options, source_.reach);
+    run.planner = planner(start);
     run.sampler.emplace(source_.options->period_s);
   }
   run.stretch = &run.planner->next();

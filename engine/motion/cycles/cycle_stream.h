@@ -38,6 +38,7 @@ struct CycleSource {
   const cutter::Cutter* cutter = nullptr;                   ///< of surface passes
   const MotionOptions* options = nullptr;
   LookAheadReach reach;
+  PlanAhead plan_ahead = PlanAhead::kNo;
 };
 
 /// Where an element or a stretch of a run begins.
@@ -86,6 +87,7 @@ class CycleStream {
   bool may_skip();
   void begin_run();
   void run_on();
+  std::unique_ptr<RunPlanner> planner(const RunPlace& start) const;
   void enter_stretch();
   void begin_element();
   void begin_pass(const toolpath::SurfacePass& pass);

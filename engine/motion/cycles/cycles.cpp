@@ -59,11 +59,13 @@ void Cycles::recall(CycleRecall before) {
   recalled_ = true;
 }
 
-/// The next window is made while the last one is visited.
+/// The next window is made while the last one is visited, the next stretch planned while cycles are made.
 void Cycles::walk(const std::function<void(std::span<const Cycle>)>& visit, Progress& progress) {
   SWARF_CHECK(size_ == 0, "the first pass is made once");
   progress.begin("interpolate", static_cast<double>(elements_.size()), "elements");
-  CycleStream stream(source());
+  CycleSource source = this->source();
+  if (thread_count() > 1) source.plan_ahead = PlanAhead::kYes;
+  CycleStream stream(source);
   places_.push_back(stream.place());
   kept_.reserve(limits_.kept);  // pages that are not written cost nothing; growing would move all of them
   std::vector<Cycle> window, ahead;

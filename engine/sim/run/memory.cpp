@@ -9,6 +9,7 @@
 #include <string>
 #include <variant>
 
+#include "base/parallel.h"
 #include "motion/speed/jerk_profile.h"
 #include "sim/job/memory_limit.h"
 #include "sim/run/cut_sweeps.h"
@@ -29,7 +30,7 @@ constexpr double kSweep = sizeof(stock::Sweep) + sizeof(SweepSource);
 constexpr double kCutting = sizeof(ToolPose) + 8.0;  // the poses of cycles to be merged; boxes of EarlierCuts
 // A sweep of blocks, made when it is asked for; its vector grows by halves, and its share of a box.
 constexpr double kSweepOfBlock = 1.5 * sizeof(SweepOfBlocks) + 1.5;
-// Look-ahead: a cell with its share of curve, corner and plan, of at most so many that are planned at once.
+// Look-ahead: a cell with its share of curve, corner and plan, of at most so many that are held at once.
 constexpr double kPlannedCell = 600.0, kCellsOfBlock = 2.0;
 constexpr double kMeasuredRay = 78.0;  // while it is measured: neighbours, ridges, feet
 constexpr double kRay = 83.0;          // point, normal, height, block; its share of a tile
@@ -151,8 +152,10 @@ MemoryPrediction predict_memory(const Job& job, const MeasuredPath& path, const 
   const double sweeps = by_block ? static_cast<double>(path.path.elements.size()) : ticks;
   const double rays = ray_count(job) * kRay;
   const double own_sweeps = sweeps * (by_block ? kSweepOfBlock : kSweep);
+  // One stretch is in use while the next is planned (motion::PlanAhead).
+  const double stretches = thread_count() > 1 ? 2.0 : 1.0;
   const double planned = std::min(kCellsOfBlock * static_cast<double>(path.path.elements.size()),
-                                  static_cast<double>(motion::LookAheadReach{}.planned));
+                                  stretches * static_cast<double>(motion::LookAheadReach{}.planned));
   const double held = kBase + rays + own_sweeps + (planned_passes ? 0.0 : planned * kPlannedCell) +
                       static_cast<double>(path.cycles->kept().size() * sizeof(motion::Cycle)) +
                       static_cast<double>(path.path.elements.bytes() + path.cycles->motions().bytes());

@@ -2,12 +2,14 @@
 // ignore: a mark and a checksum of everything before. A file that is cut off or damaged is recognised by them
 // before any of it is interpreted.
 #include <fmt/format.h>
+#include <openvdb/io/Archive.h>
 #include <openvdb/io/Stream.h>
 
 #include <algorithm>
 #include <cstring>
-#include <fstream>
+#include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include "base/check.h"
 #include "base/diagnostics.h"
@@ -163,22 +165,25 @@ void name_by_content(std::string& bytes) {
   bytes.replace(kUuidAt, kUuidLetters, uuid);
 }
 
-/// Names the file by its content and ends it with mark and checksum. It is read back first: OpenVDB does not
-/// say when a full disk has taken its end.
-void finish_file(const std::string& path) {
-  std::string bytes = read_bytes(path);
-  parse_grid(path, bytes);
+/// What openvdb::io::File writes, in memory: it has to be named by its content, and a full disk is seen by
+/// our own writer, while OpenVDB's does not say that it has taken the end of a file.
+class MemoryArchive : public openvdb::io::Archive {
+ public:
+  std::string write_whole(const openvdb::FloatGrid::Ptr& grid) const {
+    std::ostringstream out(std::ios::binary);
+    write(out, openvdb::GridPtrVec{grid}, /*seekable=*/true);
+    return std::move(out).str();
+  }
+};
+
+/// Named by its content, with mark and checksum at the end.
+std::string file_bytes(const openvdb::FloatGrid::Ptr& grid) {
+  std::string bytes = MemoryArchive().write_whole(grid);
   name_by_content(bytes);
   const uint64_t sum = checksum(bytes);
-  std::fstream out(path, std::ios::binary | std::ios::in | std::ios::out);
-  out.seekp(kUuidAt);
-  out.write(bytes.data() + kUuidAt, kUuidLetters);
-  out.seekp(0, std::ios::end);
-  out.write(kMark, kMarkBytes);
-  out.write(reinterpret_cast<const char*>(&sum), sizeof(sum));
-  out.flush();
-  if (!out)
-    refuse_stock("stock-file-unwritable", path, "the end of the stock file cannot be written", "free space");
+  bytes.append(kMark, kMarkBytes);
+  bytes.append(reinterpret_cast<const char*>(&sum), sizeof(sum));
+  return bytes;
 }
 
 /// Equal stocks are equal files: -0 equals 0, and which of the two stands depends on the order of the cuts.
@@ -196,18 +201,7 @@ void write_level_set(const LevelSet& set, const std::string& path, const StockMe
   drop_minus_zero(set);
   openvdb::FloatGrid::Ptr grid = set.grid->copy();  // shares the tree, owns its metadata
   add_metadata(*grid, set, metadata);
-  NewFile file(path, {"stock-file-unwritable", "the stock file cannot be written"});
-  try {
-    openvdb::io::File vdb(file.temporary());
-    vdb.write(openvdb::GridPtrVec{grid});
-    vdb.close();
-    finish_file(file.temporary());
-  } catch (const openvdb::Exception& error) {
-    file.refuse(error.what());
-  } catch (const InputError&) {  // it came back incomplete
-    file.refuse("its end is missing on the disk");
-  }
-  file.move_into_place();
+  replace_file(path, file_bytes(grid), {"stock-file-unwritable", "the stock file cannot be written"});
 }
 
 LevelSet read_level_set(const std::string& path, StockMetadata& metadata) {

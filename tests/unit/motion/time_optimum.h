@@ -62,10 +62,10 @@ class TimeOptimum {
   void choose_nodes() {
     s_ = {0.0};
     double length = 0.0, from = 0.0;
-    for (const PathCell& cell : run_.path->cells) length += cell.length;
-    for (size_t c = 0; c < run_.path->cells.size(); ++c) {
-      const double own = run_.path->cells[c].length;
-      const double least = own / (run_.path->cells[c].corner ? 48.0 : 24.0), step = length / 200.0;
+    for (const PathCell& cell : run_.path.cells) length += cell.length;
+    for (size_t c = 0; c < run_.path.cells.size(); ++c) {
+      const double own = run_.path.cells[c].length;
+      const double least = own / (run_.path.cells[c].corner ? 48.0 : 24.0), step = length / 200.0;
       for (double s = 0.0; s < own;) {
         const double place = from + s;
         const double end = std::min(place, length - place);
@@ -86,19 +86,19 @@ class TimeOptimum {
   };
   /// By differences within the cell.
   Place place_at(size_t cell, double offset) const {
-    const double own = run_.path->cells[cell].length, h = std::min(0.01, own / 8.0);
+    const double own = run_.path.cells[cell].length, h = std::min(0.01, own / 8.0);
     offset = std::clamp(offset, 2.0 * h, own - 2.0 * h);
-    const auto q = [&](int i) { return point_at(*run_.path, cell, offset + i * h).q; };
+    const auto q = [&](int i) { return point_at(run_.path, cell, offset + i * h).q; };
     Place place;
     place.first = (8.0 * (q(1) - q(-1)) - (q(2) - q(-2))) / (12.0 * h);
     place.second = (q(1) - 2.0 * q(0) + q(-1)) / (h * h);
     place.third = (q(2) - 2.0 * q(1) + 2.0 * q(-1) - q(-2)) / (2.0 * h * h * h);
-    place.tip = options_.path_acceleration_max / run_.path->cells[cell].tip.acceleration;
+    place.tip = options_.path_acceleration_max / run_.path.cells[cell].tip.acceleration;
     return place;
   }
 
   void add_rows(size_t k, size_t cell) {
-    const double offset = cell == cell_of_[k] ? offset_[k] : run_.path->cells[cell].length;
+    const double offset = cell == cell_of_[k] ? offset_[k] : run_.path.cells[cell].length;
     const Place place = place_at(cell, offset);
     const double l = s_[k] - s_[k - 1], r = s_[k + 1] - s_[k];
     const double d1[3] = {-r / (l * (l + r)), (r - l) / (l * r), l / (r * (l + r))};
@@ -110,7 +110,7 @@ class TimeOptimum {
         rows_.push_back(row);
       }
     };
-    const size_t block = run_.place.first + point_at(*run_.path, cell, offset).block;
+    const size_t block = run_.place.first + point_at(run_.path, cell, offset).block;
     double most = std::pow(run_.motions.feed_mm_s(block) / place.tip, 2);
     add(0.0, 0.5, 0.0, options_.path_acceleration_max / place.tip, 0.0);
     add(0.0, 0.0, 0.5, 0.0, options_.path_jerk_max / place.tip);
@@ -125,7 +125,7 @@ class TimeOptimum {
   }
 
   double from_rest(double way, size_t cell) const {
-    const Place place = place_at(cell, cell == 0 ? 0.0 : run_.path->cells[cell].length);
+    const Place place = place_at(cell, cell == 0 ? 0.0 : run_.path.cells[cell].length);
     double jerk = options_.path_jerk_max / place.tip;
     for (Eigen::Index i = 0; i < kinematics::kMaxAxes; ++i)
       jerk = std::min(jerk, limits_.jerk[i] / std::abs(place.first[i]));
@@ -156,7 +156,7 @@ class TimeOptimum {
   /// A law so slow that it holds everything.
   void start() {
     const double length = s_.back();
-    for (double scale = run_.path->cells.front().speed;; scale *= 0.5) {
+    for (double scale = run_.path.cells.front().speed;; scale *= 0.5) {
       b_.clear();
       for (const double s : s_)
         b_.push_back(scale * scale *
