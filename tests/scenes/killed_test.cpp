@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 
 #include <chrono>
+#include <cstdio>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -133,7 +134,11 @@ class Killed : public testing::Test {
       fs::remove_all(out());
       const pid_t process = start_run("", 0.05);
       std::this_thread::sleep_for(std::chrono::duration<double>(after));
-      kept += stop_and_go_on(process, signal_number) ? 1 : 0;
+      const bool went_on = stop_and_go_on(process, signal_number);
+      kept += went_on ? 1 : 0;
+      fmt::print("{} of {}: signal {} after {:.2f} of {:.2f} s, {}\n", i + 1, count, signal_number, after,
+                 whole_s_, went_on ? "went on from a stock" : "from the start, or it was over");
+      std::fflush(stdout);  // a long series is watched while it runs
     }
     fmt::print("{} of {} runs went on from a stock, the others from the start or were over\n", kept, count);
   }
