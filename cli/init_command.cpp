@@ -21,6 +21,7 @@ namespace fs = std::filesystem;
 struct InitOptions {
   std::string program, folder = ".";
   JobWords job;
+  std::vector<std::string> overrides;
 };
 
 void refuse_existing(const fs::path& file) {
@@ -65,7 +66,7 @@ int init(InitOptions options) {
     if (options.job.tool.empty() && options.job.tools.empty()) options.job.tool = "6";
     if (options.job.stock.empty()) options.job.stock = "0,0,-10,60,60,0";
   }
-  const sim::Job job = load_job(options.program, options.job, {});
+  const sim::Job job = load_job(options.program, options.job, options.overrides);
   fs::create_directories(folder);
   const std::string text = sim::written_scene(job, folder, machine_key(options.job, folder));
   const std::string file = (folder / "scene.toml").lexically_normal().string();
@@ -85,6 +86,7 @@ void add_init(CLI::App& app, int& exit_code) {
                       "NC program or CL data (default: an example is written too)");
   command->add_option("-o,--output", options->folder, "folder for scene.toml")->capture_default_str();
   add_job_flags(*command, options->job);
+  add_parameter_flag(*command, options->overrides);
   command->footer(
       R"(A machine that is named by its name is copied into the folder, to be changed: machine/machine.toml with its meshes.
 

@@ -172,6 +172,21 @@ program::Presets presets_of(const std::vector<std::string>& given) {
   return presets;
 }
 
+void add_parameter_flag(CLI::App& command, std::vector<std::string>& overrides) {
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--set-parameter",
+          [&overrides](const std::vector<std::string>& given) {
+            for (const auto& [name, preset] : presets_of(given))
+              overrides.push_back(fmt::format("parameters.{}={}", name, preset.value));
+          },
+          "a parameter's value before an NC program starts: 500=3.5 (#500), R1=2, Q5=1, NAME=3 (a GUD); "
+          "[parameters] of a scene; once for each")
+      ->type_name("NAME=NUMBER")
+      ->expected(1)
+      ->take_all();
+}
+
 sim::Job load_job(const std::string& file, const JobWords& words, const std::vector<std::string>& overrides) {
   require_file(file);
   refuse_special_file(file);

@@ -20,6 +20,9 @@ struct JobWords {
 
 void add_job_flags(CLI::App& command, JobWords& words);
 
+/// --set-parameter, as overrides of the scene's [parameters].
+void add_parameter_flag(CLI::App& command, std::vector<std::string>& overrides);
+
 /// Reads "500=3.5" and "R1=2". Throws InputError "bad-option" and "given-twice".
 program::Presets presets_of(const std::vector<std::string>& given);
 

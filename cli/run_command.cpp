@@ -315,20 +315,7 @@ void add_run(CLI::App& app, int& exit_code) {
       ->type_name("KEY=VALUE")
       ->expected(1)
       ->take_all();
-  std::vector<std::string>& overrides = options->overrides;
-  command
-      ->add_option_function<std::vector<std::string>>(
-          "--set-parameter",
-          [&overrides](const std::vector<std::string>& given) {
-            for (const auto& [name, preset] : presets_of(given))
-              overrides.push_back(fmt::format("parameters.{}={}", name, preset.value));
-          },
-          "a parameter's value before an NC program starts: 500=3.5 (#500), R1=2, Q5=1, NAME=3 (a GUD); "
-          "short "
-          "for --set parameters.500=3.5; once for each")
-      ->type_name("NAME=NUMBER")
-      ->expected(1)
-      ->take_all();
+  add_parameter_flag(*command, options->overrides);
   command
       ->add_option("--threads", options->threads,
                    "threads to use (default: all cores); results do not depend on it")

@@ -18,6 +18,7 @@ namespace {
 struct ShowOptions {
   std::string file, output;
   JobWords job;
+  std::vector<std::string> overrides;
 };
 
 /// A machine lists axes.
@@ -28,10 +29,10 @@ bool is_machine(const std::string& file) {
   return table.has("axis");
 }
 
-render::Image picture(const std::string& file, const JobWords& words) {
+render::Image picture(const std::string& file, const ShowOptions& options) {
   if (!is_program_file(file) && is_machine(file))
     return reports::machine_overview(machine::load_machine(file));
-  const sim::Job job = load_job(file, words, {});
+  const sim::Job job = load_job(file, options.job, options.overrides);
   print_diagnostics(job.warnings);
   Diagnostics diagnostics;
   const toolpath::ToolPath path = sim::job_path(job, diagnostics).path;
@@ -44,7 +45,7 @@ int show(const ShowOptions& options) {
   // "mill_3axis" as run --machine takes it.
   const std::string shipped = machine::machine_file(options.file);
   const bool by_name = !shipped.empty() && shipped != options.file;
-  render::save_png(picture(by_name ? shipped : options.file, options.job), options.output);
+  render::save_png(picture(by_name ? shipped : options.file, options), options.output);
   fmt::print("{}\n", options.output);
   return kPass;
 }
@@ -61,6 +62,7 @@ void add_show(CLI::App& app, int& exit_code) {
       ->required();
   command->add_option("-o,--output", options->output, "PNG file to write")->required();
   add_job_flags(*command, options->job);
+  add_parameter_flag(*command, options->overrides);
   command->footer(
       R"(A machine: its axes at zero, then its rotary axes at +30 degrees, with the work's origin. A program or scene: the
 path in the stock, then the machine in the middle of it.

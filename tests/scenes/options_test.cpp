@@ -135,6 +135,14 @@ TEST_F(Options, ParametersHoldAValueBeforeTheProgramStarts) {
   const std::string flags = " --tool 6 --stock=-5,-5,-6,15,5,0 --voxel 0.25";
   EXPECT_NEAR(removed(program + flags + " --set-parameter 500=3.5"), 3.5 * area, 0.02 * 3.5 * area);
 
+  // `init` writes the value into its scene, which cuts as deep; `show` draws it.
+  const std::string job = (folder_ / "job").string();
+  ASSERT_EQ(run_swarf("init " + program + flags + " --set-parameter 500=3 -o " + job).exit_code, 0);
+  EXPECT_NEAR(removed(job + "/scene.toml"), 3.0 * area, 0.02 * 3.0 * area);
+  const std::string drawn =
+      "show " + program + flags + " --set-parameter 500=3 -o " + (folder_ / "path.png").string();
+  EXPECT_EQ(run_swarf(drawn).exit_code, 0);
+
   // The same in inches, as a scene with the parameter in it; the option goes before it.
   const std::string scene = file("scene.toml",
                                  "nc = \"part.nc\"\ntools = \"6\"\n[parameters]\n500 = 3.5\n[setup]\n"

@@ -11,10 +11,6 @@
 namespace swarf::program::nc::siemens {
 namespace {
 
-bool is_parameter(const std::string& name) {
-  return name.size() > 1 && name[0] == 'R' && name.find_first_not_of("0123456789", 1) == std::string::npos;
-}
-
 std::optional<Type> type_of(const std::string& word) {
   if (word == "REAL") return Type::kReal;
   if (word == "INT") return Type::kInt;

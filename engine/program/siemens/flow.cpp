@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "program/letters/arithmetic.h"
+
 namespace swarf::program::nc::siemens {
 namespace {
 
@@ -202,23 +204,57 @@ void on_back(Flow& flow, TokenReader& reader) {
   jump(flow, source(flow).partner(flow.line.current), reader.line());
 }
 
-/// FOR n = first TO last: true while the variable has not passed `last`.
-bool for_goes_on(Variables& variables, TokenReader& reader, const LineRef& head, bool first) {
+/// What FOR counts with: R7, or a declared variable of type INT or REAL.
+struct LoopCounter {
+  Variable* variable = nullptr;  ///< null: an R parameter
+  double parameter = 0.0;        ///< its number
+};
+
+LoopCounter read_counter(Variables& variables, TokenReader& reader, const LineRef& head) {
   const Token& name = reader.peek();
-  Variable* variable = name.kind == TokenKind::kName ? variables.find(name.name) : nullptr;
-  if (variable == nullptr || variable->type != Type::kInt || !variable->sizes.empty()) {
-    refuse(head, reader.offset(), "bad-block", "FOR counts with a declared INT variable",
-           "declare it: DEF INT N, then FOR N=1 TO 5");
+  LoopCounter counter;
+  if (name.kind == TokenKind::kName && is_parameter(name.name)) {
+    nc::read_number(std::string_view(name.name).substr(1), counter.parameter);
+  } else {
+    counter.variable = name.kind == TokenKind::kName ? variables.find(name.name) : nullptr;
+    const bool counts = counter.variable != nullptr && counter.variable->sizes.empty() &&
+                        (counter.variable->type == Type::kInt || counter.variable->type == Type::kReal);
+    if (!counts) {
+      refuse(head, reader.offset(), "bad-block", "FOR counts with an R parameter or a declared INT or REAL",
+             "FOR R1=1 TO 5, or declare it: DEF INT N, then FOR N=1 TO 5");
+    }
   }
   reader.next();
+  return counter;
+}
+
+/// A count is whole: the control rounds what a REAL is given.
+double set_counter(Variables& variables, const LoopCounter& counter, const Value& value,
+                   const LineRef& head) {
+  const Value whole = converted(value, Type::kInt, head, 0);
+  if (counter.variable == nullptr) {
+    variables.set_parameter(counter.parameter, whole, head, 0);
+  } else {
+    counter.variable->values[0] = converted(whole, counter.variable->type, head, 0);
+  }
+  return whole.number;
+}
+
+double counted(const Variables& variables, const LoopCounter& counter, const LineRef& head) {
+  return counter.variable == nullptr ? variables.parameter(counter.parameter, head, 0).number
+                                     : counter.variable->values[0].number;
+}
+
+/// FOR n = first TO last: true while the variable has not passed `last`.
+bool for_goes_on(Variables& variables, TokenReader& reader, const LineRef& head, bool first) {
+  const LoopCounter counter = read_counter(variables, reader, head);
   reader.expect("=", "the variable of FOR");
   const Value start = evaluate(reader, variables);
   reader.expect("TO", "the first value of FOR");
   const double last = evaluate_number(reader, variables);
   finish_block(reader, "FOR");
-  Value& value = variable->values[0];
-  value = converted(first ? start : Value::integer(value.number + 1.0), Type::kInt, head, 0);
-  return value.number <= last;
+  const Value value = first ? start : Value::real(counted(variables, counter, head) + 1.0);
+  return set_counter(variables, counter, value, head) <= last;
 }
 
 void on_for(Flow& flow, TokenReader& reader) {

@@ -38,6 +38,10 @@ Value converted(const Value& value, Type type, const LineRef& line, size_t offse
   return Value::integer(whole);
 }
 
+bool is_parameter(const std::string& name) {
+  return name.size() > 1 && name[0] == 'R' && name.find_first_not_of("0123456789", 1) == std::string::npos;
+}
+
 Variable* Variables::find(const std::string& name) {
   if (const auto found = scope_->find(name); found != scope_->end()) return &found->second;
   const auto global = globals_.find(name);

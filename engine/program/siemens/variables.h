@@ -63,6 +63,9 @@ class SystemVariables {
 };
 
 /// R parameters of the channel and the scope of the running program.
+/// R12.
+bool is_parameter(const std::string& name);
+
 class Variables {
  public:
   /// None: system variables are refused. Must outlive its use.

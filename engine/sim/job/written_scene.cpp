@@ -67,6 +67,14 @@ std::string head_text(const Job& job, const fs::path& folder, const std::string&
          "  # a name that 'swarf machines' lists, or a machine.toml\n";
 }
 
+std::string parameters_text(const Job& job) {
+  if (job.scene.presets.empty()) return "";
+  std::string text = "\n[parameters]  # values before the program starts\n";
+  for (const auto& [name, preset] : job.scene.presets)
+    text += fmt::format("{} = {}\n", toml_string(name), preset.value);
+  return text;
+}
+
 std::string commented_setup(const Job& job) {
   const SetupSettings& setup = job.scene.setup;
   const Vec3& origin = job.machine.model.X_MW.translation();
@@ -111,8 +119,8 @@ std::string pictures_text(const Job& job) {
 }  // namespace
 
 std::string written_scene(const Job& job, const fs::path& folder, const std::string& machine) {
-  return head_text(job, folder, machine) + commented_tools(job, folder) + commented_setup(job) +
-         commented_stock(job) + design_text(job, folder) + pictures_text(job);
+  return head_text(job, folder, machine) + commented_tools(job, folder) + parameters_text(job) +
+         commented_setup(job) + commented_stock(job) + design_text(job, folder) + pictures_text(job);
 }
 
 std::string example_program() {

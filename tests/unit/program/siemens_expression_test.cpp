@@ -91,6 +91,8 @@ TEST(SiemensFlow, ArraysAreFilledByListsAndByRep) {
 TEST(SiemensFlow, LoopsRunAsOftenAsTheySay) {
   EXPECT_EQ(xs("DEF INT _N\nG0\nFOR _N=2 TO 4\nX=_N\nENDFOR\nX=_N*10\nM30\n"), (Xs{2, 3, 4, 50}));
   EXPECT_EQ(xs("DEF INT _N\nG0\nFOR _N=2 TO 1\nX=_N\nENDFOR\nX9\nM30\n"), (Xs{9}));
+  EXPECT_EQ(xs("G0\nFOR R1=2 TO 4\nX=R1\nENDFOR\nX=R1*10\nM30\n"), (Xs{2, 3, 4, 50}));
+  EXPECT_EQ(xs("DEF REAL _N\nG0\nFOR _N=1.6 TO 3.9\nX=_N\n_N=_N+0.2\nENDFOR\nX=_N\nM30\n"), (Xs{2, 3, 4}));
   EXPECT_EQ(xs("R1=1\nG0\nWHILE R1<8\nX=R1\nR1=R1*2\nENDWHILE\nM30\n"), (Xs{1, 2, 4}));
   EXPECT_EQ(xs("R1=5\nG0\nREPEAT\nX=R1\nR1=R1+1\nUNTIL R1>6\nM30\n"), (Xs{5, 6}));
   EXPECT_EQ(xs("R1=1\nG0\nLOOP\nX=R1\nR1=R1+1\nIF R1==4 GOTOF OUT\nENDLOOP\nOUT: X0\nM30\n"),
