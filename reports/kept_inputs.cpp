@@ -11,6 +11,7 @@
 
 #include "base/config.h"
 #include "base/file.h"
+#include "sim/job/fixture_keys.h"
 #include "sim/job/tool_library.h"
 
 namespace swarf::reports {
@@ -156,6 +157,13 @@ std::vector<std::string> keep_inputs(const PendingFolder& folder, const sim::Job
     keep("design.surface", scene.design.surface_file, beside(scene.design.surface_file, "design"));
   if (scene.design.kind == sim::DesignKind::kMesh)
     keep("design.mesh", scene.design.mesh_file, beside(scene.design.mesh_file, "design"));
+  for (size_t i = 0; i < scene.fixtures.size(); ++i) {
+    machine::Fixture fixture = scene.fixtures[i];
+    const std::string* const file = sim::mesh_file_of(fixture);
+    if (file == nullptr) continue;
+    const std::string number = std::to_string(i);
+    keep(("fixture[" + number + "].mesh").c_str(), *file, beside(*file, ("fixture_" + number).c_str()));
+  }
   return all;
 }
 

@@ -5,6 +5,7 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -124,6 +125,24 @@ std::string other_unit(const toml::table& table, const std::string& key) {
   return "";
 }
 
+/// The table of that name, made where there is none; "tool[1]": the second [[tool]], which there must be.
+/// Null: no table.
+toml::table* table_to_set(toml::table& table, const std::string& name) {
+  const auto bracket = name.find('[');
+  if (bracket == std::string::npos) {
+    if (!table.contains(name)) table.insert(name, toml::table{});
+    return table.get(name)->as_table();
+  }
+  size_t index = 0;
+  const char* const end = name.data() + name.size();
+  const auto [next, failure] = std::from_chars(name.data() + bracket + 1, end, index);
+  const toml::node* const rows = table.get(name.substr(0, bracket));
+  const bool said =
+      failure == std::errc() && next + 1 == end && *next == ']' && rows != nullptr && rows->is_array();
+  toml::array* const array = said ? table.get(name.substr(0, bracket))->as_array() : nullptr;
+  return array == nullptr || index >= array->size() ? nullptr : array->get(index)->as_table();
+}
+
 /// The last override of a key wins, whatever stood in the file, in mm or in inches.
 void apply_override(toml::table& root, const std::string& text, Diagnostics& diagnostics) {
   const auto equals = text.find('=');
@@ -144,11 +163,11 @@ void apply_override(toml::table& root, const std::string& text, Diagnostics& dia
   for (auto dot = path.find('.'); dot != std::string::npos; dot = path.find('.')) {
     const std::string head = path.substr(0, dot);
     path = path.substr(dot + 1);
-    if (!table->contains(head)) table->insert(head, toml::table{});
-    table = table->get(head)->as_table();
+    table = table_to_set(*table, head);
     if (table == nullptr) {
-      diagnostics.error("bad-override", {"--set"}, fmt::format("'{}' in '{}' is not a table", head, text),
-                        "name a key inside a table of the scene");
+      diagnostics.error(
+          "bad-override", {"--set"}, fmt::format("'{}' in '{}' is not a table", head, text),
+          "name a key inside a table of the scene; of the second [[tool]]: tool[1].diameter_mm");
       return;
     }
   }

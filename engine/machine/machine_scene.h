@@ -20,6 +20,7 @@ struct Link {
   TriMesh mesh;     ///< may be empty
   std::array<float, 3> colour{0.7F, 0.7F, 0.7F};  ///< linear RGB 0..1
   float metalness = 0.0F, roughness = 0.6F;
+  bool fixture = false;  ///< holds the work; not the machine's own (fixture.h)
 };
 
 struct MachineScene {

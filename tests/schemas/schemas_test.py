@@ -87,6 +87,8 @@ def scene_texts():
     for shape in shapes:
         yield f"nc = 'part.ngc'\n[[tool]]\nshape = '{shape}'\n{no}"
     yield f"nc = 'part.ngc'\n[[tool]]\nshape = 'profile'\n{no}[[tool.profile]]\n{no}[[tool.holder]]\n{no}"
+    for kind in schema("scene")["properties"]["fixture"]["items"]["properties"]["kind"]["enum"]:
+        yield f"nc = 'part.ngc'\n[[fixture]]\nkind = '{kind}'\n{no}"
     for design in designs:
         yield f"nc = 'part.ngc'\n[design]\nkind = '{design}'\n{no}"
 

@@ -12,6 +12,7 @@
 #include "mesh/mesh_io.h"
 #include "mesh/mesh_nesting.h"
 #include "mesh/mesh_ops.h"
+#include "sim/job/fixture_keys.h"
 #include "sim/job/memory_limit.h"
 #include "sim/job/open_job.h"
 #include "sim/job/scene.h"
@@ -233,9 +234,11 @@ Job complete(Scene scene, Diagnostics diagnostics) {
   Job job;
   job.scene = std::move(scene);
   // A user mends all files at once: what is wrong with one does not hide what is wrong with the other.
+  Vec3 table_M = Vec3::Zero();
   collect(diagnostics, [&] {
     job.machine = machine::load_machine(job.scene.machine_file);
     Pose& X_MW = job.machine.model.X_MW;
+    table_M = X_MW.translation();
     if (job.scene.setup.work_origin_mm) X_MW.translation() = *job.scene.setup.work_origin_mm;
     X_MW.linear() = Eigen::AngleAxisd(job.scene.setup.work_rotation_rad, Vec3::UnitZ()).toRotationMatrix();
   });
@@ -259,6 +262,8 @@ Job complete(Scene scene, Diagnostics diagnostics) {
   }
   diagnostics.throw_if_errors();
   fill_open(job, diagnostics);
+  diagnostics.throw_if_errors();
+  collect(diagnostics, [&] { place_fixtures(job, table_M, diagnostics); });
   diagnostics.throw_if_errors();
   check_memory(job, diagnostics);
   diagnostics.throw_if_errors();

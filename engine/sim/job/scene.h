@@ -10,6 +10,7 @@
 #include "base/diagnostics.h"
 #include "base/frames.h"
 #include "cutter/cutter.h"
+#include "machine/fixture.h"
 #include "machine/machine_scene.h"
 #include "mesh/tri_mesh.h"
 #include "motion/interpolator.h"
@@ -119,6 +120,7 @@ struct Scene {
   /// What BlockMove::tool and ToolSample::tool count in. Surface blocks: one.
   std::vector<cutter::Cutter> tools{cutter::Cutter{}};
   StockSettings stock;
+  std::vector<machine::Fixture> fixtures;  ///< what holds it; links of Job::machine once it is loaded
   DesignSettings design;
   toolpath::PlanOptions toolpath;
   bool compare_planners = true;              ///< plan, interpolate and measure the other planners too

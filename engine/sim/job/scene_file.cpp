@@ -9,6 +9,7 @@
 #include "base/units.h"
 #include "machine/shipped.h"
 #include "program/dialects.h"
+#include "sim/job/fixture_keys.h"
 #include "sim/job/open_job.h"
 #include "sim/job/scene.h"
 #include "sim/job/tool_table.h"
@@ -312,6 +313,9 @@ void read_scene(ConfigTable& root, Scene& scene, Diagnostics& diagnostics) {
   scene.setup = read_setup(root.table("setup"), scene.kind == ProgramKind::kNc);
   const bool blocks = scene.kind != ProgramKind::kSurfaceBlocks;  // the program brings its own
   scene.stock = read_stock(root.table("stock"), scene.tools, blocks, diagnostics);
+  scene.fixtures = read_fixtures(root);
+  for (machine::Fixture& fixture : scene.fixtures)
+    if (std::string* const file = mesh_file_of(fixture)) *file = beside(path, *file);
   scene.design = read_design(root.table("design"), blocks);
   scene.design.surface_file = beside(path, scene.design.surface_file);
   scene.design.mesh_file = beside(path, scene.design.mesh_file);
