@@ -19,6 +19,7 @@ ALLOWED = {
     "motion": {"base", "surface", "cutter", "program", "toolpath", "kinematics"},
     "machine": {"base", "mesh", "kinematics"},
     "stock": {"base", "mesh", "surface", "cutter"},
+    "collision": {"base", "mesh", "cutter", "kinematics", "machine", "motion", "stock"},
     "measure": {"base", "mesh", "surface", "cutter", "stock", "motion"},
 }
 ENGINE = set(ALLOWED) | {"sim", "papers"}

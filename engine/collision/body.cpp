@@ -1,0 +1,215 @@
+#include "collision/body.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "base/disjoint_sets.h"
+#include "base/units.h"
+#include "mesh/mesh_check.h"
+
+namespace swarf::collision {
+namespace {
+
+struct Leaf {
+  Box box;
+  uint32_t primitive;
+};
+
+BodyNode node_of(const Box& box) {
+  BodyNode node;
+  node.centre = box.centre();
+  node.half = 0.5 * box.size();
+  // What the halving of the box may have rounded away.
+  node.half.array() += 4e-16 * (node.centre.cwiseAbs() + node.half).maxCoeff();
+  node.radius = node.half.norm();
+  return node;
+}
+
+Box box_of(std::span<const Leaf> leaves) {
+  Box box = leaves.front().box;
+  for (const Leaf& leaf : leaves) {
+    box.lower = box.lower.cwiseMin(leaf.box.lower);
+    box.upper = box.upper.cwiseMax(leaf.box.upper);
+  }
+  return box;
+}
+
+/// Halves the leaves at the middle of their centres along the longest side of their box.
+size_t halve_leaves(std::span<Leaf> leaves) {
+  Box centres{leaves.front().box.centre(), leaves.front().box.centre()};
+  for (const Leaf& leaf : leaves) {
+    centres.lower = centres.lower.cwiseMin(leaf.box.centre());
+    centres.upper = centres.upper.cwiseMax(leaf.box.centre());
+  }
+  int axis = 0;
+  centres.size().maxCoeff(&axis);
+  const size_t middle = leaves.size() / 2;
+  const auto before = [axis](const Leaf& a, const Leaf& b) {
+    const double one = a.box.lower[axis] + a.box.upper[axis], other = b.box.lower[axis] + b.box.upper[axis];
+    return one != other ? one < other : a.primitive < b.primitive;
+  };
+  std::nth_element(leaves.begin(), leaves.begin() + static_cast<ptrdiff_t>(middle), leaves.end(), before);
+  return middle;
+}
+
+void grow_tree(std::vector<BodyNode>& nodes, size_t at, std::span<Leaf> leaves) {
+  nodes[at] = node_of(box_of(leaves));
+  if (leaves.size() == 1) {
+    nodes[at].primitive = leaves.front().primitive;
+    return;
+  }
+  const size_t middle = halve_leaves(leaves), child = nodes.size();
+  nodes[at].child = static_cast<int32_t>(child);
+  nodes.resize(child + 2);
+  grow_tree(nodes, child, leaves.first(middle));
+  grow_tree(nodes, child + 1, leaves.subspan(middle));
+}
+
+void make_tree(Body& body) {
+  std::vector<Leaf> leaves;
+  for (const Triangle& triangle : body.triangles) {
+    leaves.push_back({bounds(triangle), static_cast<uint32_t>(leaves.size())});
+  }
+  for (const RevolvedSolid& solid : body.solids) {
+    leaves.push_back({bounds(solid), static_cast<uint32_t>(leaves.size())});
+  }
+  if (leaves.empty()) return;
+  body.nodes.reserve(2 * leaves.size());
+  body.nodes.resize(1);
+  grow_tree(body.nodes, 0, leaves);
+}
+
+Vec3 position(const TriMesh& mesh, uint32_t vertex) {
+  const auto& p = mesh.positions[vertex];
+  return {p[0], p[1], p[2]};
+}
+
+void check_body_mesh(const std::string& name, const TriMesh& mesh) {
+  for (const auto& triangle : mesh.triangles) {
+    for (const uint32_t vertex : triangle) {
+      if (vertex >= mesh.positions.size()) {
+        throw InputError(
+            "body-index", {},
+            fmt::format("{}: a triangle names vertex {} of {}", name, vertex, mesh.positions.size()),
+            "give a mesh whose triangles name vertices that are there");
+      }
+      if (!position(mesh, vertex).allFinite()) {
+        throw InputError("body-not-finite", {},
+                         fmt::format("{}: vertex {} is not a finite number", name, vertex),
+                         "give a mesh with finite positions in mm");
+      }
+    }
+  }
+}
+
+/// One corner of each part whose triangles hang together.
+std::vector<Vec3> points_of_shells(const TriMesh& mesh) {
+  const std::vector<uint32_t> number = mesh::position_numbers(mesh.positions);
+  DisjointSets sets(mesh.positions.size());
+  for (const auto& t : mesh.triangles) {
+    sets.join(number[t[0]], number[t[1]]);
+    sets.join(number[t[0]], number[t[2]]);
+  }
+  std::vector<Vec3> points;
+  std::vector<uint8_t> seen(mesh.positions.size(), 0);
+  for (const auto& t : mesh.triangles) {
+    uint8_t& known = seen[sets.root(number[t[0]])];
+    if (known == 0) points.push_back(position(mesh, t[0]));
+    known = 1;
+  }
+  return points;
+}
+
+bool in_solid(const RevolvedSolid& solid, const Vec3& point) {
+  const double z = (point - solid.foot).dot(solid.axis);
+  const double rho = (point - solid.foot - z * solid.axis).norm();
+  // The profile is the hull of its corners and of their feet on the axis; support in each direction of the
+  // half plane would do, a walk over the corners by height is exact for frustums in order of height.
+  for (size_t i = 0; i + 1 < solid.corners.size(); ++i) {
+    const Vec2 &low = solid.corners[i], &high = solid.corners[i + 1];
+    if (z < low.y() || z > high.y() || high.y() <= low.y()) continue;
+    const double share = (z - low.y()) / (high.y() - low.y());
+    if (rho <= low.x() + share * (high.x() - low.x())) return true;
+  }
+  return false;
+}
+
+/// The solid angle of the triangle from the point, over 4 pi.
+double winding(const Triangle& triangle, const Vec3& point) {
+  const Vec3 a = triangle[0] - point, b = triangle[1] - point, c = triangle[2] - point;
+  const double la = a.norm(), lb = b.norm(), lc = c.norm();
+  const double volume = a.dot(b.cross(c));
+  const double below = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
+  return volume == 0.0 && below == 0.0 ? 0.0 : std::atan2(volume, below) / (2.0 * kPi);
+}
+
+}  // namespace
+
+Body mesh_body(std::string name, BodyKind kind, int link, const TriMesh& mesh, const Pose& placed) {
+  check_body_mesh(name, mesh);
+  Body body;
+  body.name = std::move(name);
+  body.kind = kind;
+  body.link = link;
+  body.closed = !mesh.triangles.empty() && mesh::check_closed(mesh).empty();
+  const auto corner = [&](uint32_t vertex) -> Vec3 { return placed * position(mesh, vertex); };
+  for (const auto& t : mesh.triangles) body.triangles.push_back({corner(t[0]), corner(t[1]), corner(t[2])});
+  for (const Vec3& point : points_of_shells(mesh)) body.shells.push_back(placed * point);
+  make_tree(body);
+  return body;
+}
+
+Body solid_body(std::string name, BodyKind kind, int link, std::vector<RevolvedSolid> solids_M) {
+  Body body;
+  body.name = std::move(name);
+  body.kind = kind;
+  body.link = link;
+  body.closed = true;
+  body.solids = std::move(solids_M);
+  for (const RevolvedSolid& solid : body.solids) {
+    body.shells.push_back(solid.foot + solid.corners.front().y() * solid.axis);
+  }
+  make_tree(body);
+  return body;
+}
+
+std::vector<Body> link_bodies(const machine::MachineScene& scene) {
+  std::vector<Body> bodies;
+  for (size_t i = 0; i < scene.links.size(); ++i) {
+    const machine::Link& link = scene.links[i];
+    if (link.mesh.triangles.empty()) continue;
+    bodies.push_back(mesh_body(link.name, BodyKind::kLink, static_cast<int>(i), link.mesh));
+  }
+  return bodies;
+}
+
+Body work_body(const machine::MachineScene& scene, std::string name, BodyKind kind, const TriMesh& mesh_W) {
+  return mesh_body(std::move(name), kind, scene.work_link, mesh_W, scene.model.X_MW);
+}
+
+Body tool_body(const machine::MachineScene& scene, const kinematics::MachineModel& with_tool,
+               std::string name, std::span<const ToolFrustum> frustums) {
+  std::vector<RevolvedSolid> solids;
+  for (const ToolFrustum& part : frustums) {
+    solids.push_back(frustum(with_tool.tip_M, with_tool.tool_axis_M, part.low, part.high, part.low_radius,
+                             part.high_radius));
+  }
+  return solid_body(std::move(name), BodyKind::kToolPart, scene.tool_link, std::move(solids));
+}
+
+bool holds_point(const Body& body, const Vec3& point) {
+  for (const RevolvedSolid& solid : body.solids) {
+    if (in_solid(solid, point)) return true;
+  }
+  if (!body.closed || body.nodes.empty()) return false;
+  const BodyNode& root = body.nodes.front();
+  if (((point - root.centre).cwiseAbs() - root.half).maxCoeff() > 0.0) return false;
+  double turns = 0.0;
+  for (const Triangle& triangle : body.triangles) turns += winding(triangle, point);
+  return turns > 0.5;
+}
+
+}  // namespace swarf::collision

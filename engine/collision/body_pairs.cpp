@@ -1,0 +1,114 @@
+#include "collision/body_pairs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "collision/containment.h"
+
+namespace swarf::collision {
+namespace {
+
+using NamePairs = std::vector<std::pair<std::string, std::string>>;
+
+void check_allowed_names(const std::vector<Body>& bodies, const NamePairs& allowed) {
+  std::vector<std::string> names;
+  for (const Body& body : bodies) names.push_back(body.name);
+  Diagnostics found;
+  const auto check = [&](const std::string& name) {
+    if (std::find(names.begin(), names.end(), name) != names.end()) return;
+    const std::string nearest = nearest_name(name, names);
+    found.error("unknown-body", {}, fmt::format("there is no body \"{}\" that may touch another", name),
+                nearest.empty() ? "name a link, a fixture, the part, the stock or a part of the tool"
+                                : fmt::format("perhaps \"{}\" is meant", nearest));
+  };
+  for (const auto& [one, other] : allowed) {
+    check(one);
+    check(other);
+  }
+  found.throw_if_errors();
+}
+
+bool is_allowed(const NamePairs& allowed, const Body& a, const Body& b) {
+  return std::any_of(allowed.begin(), allowed.end(), [&](const auto& names) {
+    return (names.first == a.name && names.second == b.name) ||
+           (names.first == b.name && names.second == a.name);
+  });
+}
+
+bool rides_on(const machine::MachineScene& scene, int link, int carrier) {
+  while (link >= 0 && link != carrier) link = scene.links[static_cast<size_t>(link)].parent;
+  return link == carrier;
+}
+
+bool is_guided(const Encounter& pair) {
+  if (pair.a->kind != BodyKind::kLink || pair.b->kind != BodyKind::kLink) return false;
+  return pair.b_from_a.steps().size() == 1 && (rides_on(*pair.scene, pair.a->link, pair.b->link) ||
+                                               rides_on(*pair.scene, pair.b->link, pair.a->link));
+}
+
+bool touches_at(const Encounter& pair, const AxisValues& q, double touch_mm) {
+  AxisSegment still;
+  still.q0 = still.q1 = q;
+  ApproachQuery query;
+  query.limit = 2.0 * touch_mm;
+  query.tolerance = query.enough = touch_mm;
+  const Approach found = closest_approach(pair, still, query);
+  return (found.within && found.upper <= touch_mm) || one_holds_other(pair, q);
+}
+
+std::optional<PairReason> reason_to_leave_out(const Encounter& pair, const NamePairs& allowed,
+                                              double touch_mm) {
+  if (pair.b_from_a.rigid()) return PairReason::kRigid;
+  if (is_allowed(allowed, *pair.a, *pair.b)) return PairReason::kAllowed;
+  if (is_guided(pair)) return PairReason::kGuided;
+  const bool links = pair.a->kind == BodyKind::kLink && pair.b->kind == BodyKind::kLink;
+  if (links && touches_at(pair, home_of(*pair.scene), touch_mm)) return PairReason::kTouchesAtHome;
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::string text_of(PairReason reason) {
+  switch (reason) {
+    case PairReason::kRigid:
+      return "no axis lies between them";
+    case PairReason::kGuided:
+      return "one guides the other: a single axis lies between them";
+    case PairReason::kAllowed:
+      return "they may touch";
+    case PairReason::kTouchesAtHome:
+      return "their meshes overlap where the axes stand at home";
+  }
+  return "";
+}
+
+AxisValues home_of(const machine::MachineScene& scene) {
+  AxisValues home = AxisValues::Zero();
+  for (size_t i = 0; i < scene.model.axes.size(); ++i)
+    home[static_cast<Eigen::Index>(i)] = scene.model.axes[i].home;
+  return home;
+}
+
+PairChoice choose_pairs(const machine::MachineScene& scene, const std::vector<Body>& bodies,
+                        const NamePairs& allowed, double touch_mm, Diagnostics& diagnostics) {
+  check_allowed_names(bodies, allowed);
+  PairChoice choice;
+  for (size_t a = 0; a < bodies.size(); ++a) {
+    for (size_t b = a + 1; b < bodies.size(); ++b) {
+      const auto reason = reason_to_leave_out(encounter(scene, bodies[a], bodies[b]), allowed, touch_mm);
+      if (!reason) choice.watched.emplace_back(a, b);
+      if (reason) choice.left_out.push_back({a, b, *reason});
+      if (reason != PairReason::kTouchesAtHome) continue;
+      diagnostics.warning(
+          "links-touch-at-home", {scene.file, 0, 0},
+          fmt::format("the links {} and {} overlap at home, so that their contacts are not watched",
+                      bodies[a].name, bodies[b].name),
+          "draw their meshes apart, or list the pair as one that may touch");
+    }
+  }
+  return choice;
+}
+
+}  // namespace swarf::collision

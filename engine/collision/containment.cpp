@@ -1,0 +1,100 @@
+#include "collision/containment.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/units.h"
+
+namespace swarf::collision {
+namespace {
+
+bool holds_shell(const Body& outer, const Body& inner, const Pose& inner_in_outer) {
+  if (!outer.closed) return false;
+  for (const Vec3& point : inner.shells) {
+    if (holds_point(outer, inner_in_outer * point)) return true;
+  }
+  return false;
+}
+
+/// The triangles as a mesh.
+TriMesh mesh_of(const std::vector<Triangle>& triangles) {
+  TriMesh mesh;
+  for (const Triangle& triangle : triangles) {
+    const auto first = static_cast<uint32_t>(mesh.positions.size());
+    for (const Vec3& p : triangle) {
+      mesh.positions.push_back(
+          {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())});
+    }
+    mesh.triangles.push_back({first, first + 1, first + 2});
+  }
+  return mesh;
+}
+
+/// Depth in a convex profile: to the nearest of its sides, bottom and top. 0 outside.
+double depth_in_solid(const RevolvedSolid& solid, const Vec3& point) {
+  const double z = (point - solid.foot).dot(solid.axis);
+  const double rho = (point - solid.foot - z * solid.axis).norm();
+  double depth = std::min(z - solid.corners.front().y(), solid.corners.back().y() - z);
+  for (size_t i = 0; i + 1 < solid.corners.size(); ++i) {
+    const Vec2 along = solid.corners[i + 1] - solid.corners[i];
+    const Vec2 outward = Vec2(along.y(), -along.x()).normalized();
+    if (along.norm() > 0.0) depth = std::min(depth, outward.dot(solid.corners[i] - Vec2(rho, z)));
+  }
+  return std::max(0.0, depth);
+}
+
+template <class Visit>
+void each_corner(const Body& body, const Visit& visit) {
+  for (const Triangle& triangle : body.triangles) {
+    for (const Vec3& point : triangle) visit(point);
+  }
+  for (const RevolvedSolid& solid : body.solids) {
+    const Vec3 x = solid.axis.unitOrthogonal(), y = solid.axis.cross(x);
+    for (const Vec2& corner : solid.corners) {
+      for (int i = 0; i < 8; ++i) {
+        const double turn = 0.25 * kPi * i;
+        visit(solid.foot + corner.y() * solid.axis + corner.x() * (std::cos(turn) * x + std::sin(turn) * y));
+      }
+    }
+  }
+}
+
+}  // namespace
+
+bool one_holds_other(const Encounter& pair, const AxisValues& q) {
+  return holds_shell(*pair.a, *pair.b, pair.b_from_a.pose(q)) ||
+         holds_shell(*pair.b, *pair.a, pair.a_from_b.pose(q));
+}
+
+BodyDepth::BodyDepth(const Body& body) : body_(&body) {
+  const auto has_area = [](const Triangle& t) { return (t[1] - t[0]).cross(t[2] - t[0]).norm() > 0.0; };
+  if (!body.closed || std::none_of(body.triangles.begin(), body.triangles.end(), has_area)) return;
+  surface_ = std::make_unique<mesh::SignedDistance>(mesh_of(body.triangles));
+}
+
+double BodyDepth::depth(const Vec3& point) const {
+  if (body_->nodes.empty()) return 0.0;
+  const BodyNode& root = body_->nodes.front();
+  if (((point - root.centre).cwiseAbs() - root.half).maxCoeff() > 0.0) return 0.0;
+  double depth = 0.0;
+  for (const RevolvedSolid& solid : body_->solids) depth = std::max(depth, depth_in_solid(solid, point));
+  if (surface_ != nullptr) depth = std::max(depth, -surface_->at(point).distance_mm);
+  return depth;
+}
+
+Depth overlap_depth(const Encounter& pair, const BodyDepth& in_a, const BodyDepth& in_b,
+                    const AxisValues& q) {
+  Depth deepest;
+  const auto look = [&](const Body& corners_of, const BodyDepth& in, const Pose& carried, int link) {
+    each_corner(corners_of, [&](const Vec3& corner) {
+      const Vec3 point = carried * corner;
+      const double depth = in.depth(point);
+      if (depth > deepest.depth_mm) deepest = {depth, link_pose(*pair.scene, link, q) * point};
+    });
+  };
+  look(*pair.b, in_a, pair.b_from_a.pose(q), pair.a->link);
+  look(*pair.a, in_b, pair.a_from_b.pose(q), pair.b->link);
+  return deepest;
+}
+
+}  // namespace swarf::collision

@@ -1,0 +1,39 @@
+// One body wholly inside the other, and how deep bodies stand in each other.
+#pragma once
+
+#include <memory>
+
+#include "collision/closest_approach.h"
+#include "mesh/signed_distance.h"
+
+namespace swarf::collision {
+
+/// Whether at these axis values some connected part of one body starts inside the other, which must be closed
+/// (an open one holds nothing). Where the surfaces do not touch that part lies inside with all of it; and as
+/// long as they do not touch it stays there or outside, so one look tells about the whole of a free motion.
+bool one_holds_other(const Encounter& pair, const AxisValues& q);
+
+/// Distances to the surface of a body.
+class BodyDepth {
+ public:
+  explicit BodyDepth(const Body& body);
+  /// How deep a point of the home drawing lies in the body, mm; 0 outside, and always in an open mesh. In a
+  /// mesh whose shells overlap it is the depth in the one whose surface is nearest.
+  double depth(const Vec3& point) const;
+
+ private:
+  const Body* body_;
+  std::unique_ptr<mesh::SignedDistance> surface_;  ///< null: an open mesh, or none
+};
+
+struct Depth {
+  double depth_mm = 0.0;
+  Vec3 place_M = Vec3::Zero();
+};
+
+/// A measure of the overlap at these axis values: how deep the deepest corner of one body lies in the other.
+/// Corners are those of triangles, and eight points on each circle of a solid of revolution. It falls short
+/// of the overlap where edges cross and no corner lies inside, and is 0 then.
+Depth overlap_depth(const Encounter& pair, const BodyDepth& in_a, const BodyDepth& in_b, const AxisValues& q);
+
+}  // namespace swarf::collision

@@ -1,0 +1,194 @@
+#include "collision/pair_walk.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace swarf::collision {
+namespace {
+
+enum class Way : uint8_t { kFree, kTouches, kInside };
+
+constexpr size_t kDepthsMost = 8;  ///< places of a contact at which its depth is looked at
+
+/// From one pose of the stretch to another: the straight line, and how far the poses between lie off it at
+/// most, each held against the place of the line that stands for its share of the way.
+AxisSegment chord_of(PathStretch poses, size_t first, size_t last) {
+  AxisSegment chord;
+  chord.q0 = poses[first].q;
+  chord.q1 = poses[last].q;
+  for (size_t k = first + 1; k < last; ++k) {
+    const double share = static_cast<double>(k - first) / static_cast<double>(last - first);
+    chord.stray = chord.stray.cwiseMax((poses[k].q - chord.at(share)).cwiseAbs());
+  }
+  return chord;
+}
+
+PathPlace place_on(PathStretch poses, size_t way, double share) {
+  const PathPose& from = poses[way];
+  const PathPose& to = poses[std::min(way + 1, poses.size() - 1)];
+  return {from.cycle, share, from.time_s + share * (to.time_s - from.time_s), to.element};
+}
+
+class PairWalk {
+ public:
+  PairWalk(const Encounter& pair, PathStretch poses, const PathCheckOptions& options,
+           const PairHistory& before)
+      : pair_(pair),
+        poses_(poses),
+        options_(options),
+        hint_(before.hint),
+        ways_(std::max<size_t>(1, poses.size() - 1), Way::kFree) {
+    near_.lower = near_.upper = before.least;
+  }
+
+  void run() {
+    visit(0, poses_.size() - 1);
+    look_inside();
+  }
+  const NearMiss& near_miss() const { return near_; }
+  const std::vector<Way>& ways() const { return ways_; }
+
+ private:
+  /// Distances from here on do not matter, but for contacts.
+  double asked() const { return std::max(near_.upper, 2.0 * options_.touch_mm); }
+
+  Approach search(const AxisSegment& segment, double limit) const {
+    ApproachQuery query;
+    query.limit = limit;
+    query.tolerance = std::min(options_.tolerance_mm, limit - options_.touch_mm);
+    query.enough = options_.touch_mm;
+    query.hint = &hint_;
+    return closest_approach(pair_, segment, query);
+  }
+
+  void take_near(size_t way, const Approach& found) {
+    if (found.upper >= near_.upper) return;
+    near_ = {true,          near_.lower,   found.upper, place_on(poses_, way, found.t),
+             found.point_a, found.point_b, found.pair};
+  }
+
+  /// Ways from pose `first` to pose `last`.
+  void visit(size_t first, size_t last) {
+    const Approach found = search(chord_of(poses_, first, last), asked());
+    if (!found.within) {
+      near_.lower = std::min(near_.lower, found.lower);
+      return;
+    }
+    hint_ = found.pair;
+    if (last - first <= 1) return settle_way(first, found);
+    const size_t middle = (first + last) / 2;
+    const auto nearest =
+        first + static_cast<size_t>(std::lround(found.t * static_cast<double>(last - first)));
+    look_at_pose(nearest);
+    // The half that comes nearest first, for its distance is what the other is held against.
+    const bool late = nearest > middle;
+    late ? visit(middle, last) : visit(first, middle);
+    late ? visit(first, middle) : visit(middle, last);
+  }
+
+  /// The way from one cycle to the next, on which the axes go straight.
+  void settle_way(size_t way, const Approach& found) {
+    const Approach sure =
+        found.upper > options_.touch_mm && found.lower <= options_.touch_mm
+            ? search(chord_of(poses_, way, std::min(way + 1, poses_.size() - 1)), 2.0 * options_.touch_mm)
+            : found;
+    take_near(way, found);
+    if (sure.within) take_near(way, sure);
+    near_.lower = std::min(near_.lower, sure.within ? sure.lower : std::max(found.lower, sure.lower));
+    if (sure.within && sure.upper <= options_.touch_mm) ways_[way] = Way::kTouches;
+  }
+
+  /// A distance that is known to occur, from the two primitives that came nearest on the chord.
+  void look_at_pose(size_t at) {
+    if (near_.upper <= options_.touch_mm) return;
+    if (distance_at(pair_, poses_[at].q, hint_) >= near_.upper) return;
+    AxisSegment still;
+    still.q0 = still.q1 = poses_[at].q;
+    const Approach found = search(still, asked());
+    if (!found.within || found.upper >= near_.upper) return;
+    const bool last = at >= ways_.size();
+    take_near(last ? ways_.size() - 1 : at, found);
+    if (last) near_.place = place_on(poses_, ways_.size() - 1, 1.0);
+  }
+
+  /// Where the surfaces do not touch over some ways, one look says whether one body is inside the other.
+  void look_inside() {
+    for (size_t k = 0; k < ways_.size(); ++k) {
+      if (ways_[k] != Way::kFree || (k > 0 && ways_[k - 1] != Way::kTouches)) continue;
+      const AxisValues q = chord_of(poses_, k, std::min(k + 1, poses_.size() - 1)).at(0.5);
+      if (!one_holds_other(pair_, q)) continue;
+      for (size_t i = k; i < ways_.size() && ways_[i] == Way::kFree; ++i) ways_[i] = Way::kInside;
+    }
+  }
+
+  const Encounter& pair_;
+  PathStretch poses_;
+  const PathCheckOptions& options_;
+  PrimitivePair hint_;
+  NearMiss near_;
+  std::vector<Way> ways_;
+};
+
+/// Ways `first` to `last` (included), all of which touch.
+struct TouchingWays {
+  size_t first, last;
+};
+
+ContactEvent begin_contact(const Encounter& pair, PathStretch poses, size_t way, bool inside,
+                           const PathCheckOptions& options) {
+  ContactEvent event;
+  event.inside = inside;
+  event.first = event.free = place_on(poses, way, 0.0);
+  event.first_element = event.first.element;
+  if (inside) return event;
+  ContactQuery query;
+  query.touch = options.touch_mm;
+  const FirstContact found =
+      first_contact(pair, chord_of(poses, way, std::min(way + 1, poses.size() - 1)), query);
+  if (!found.touches) return event;  // by a rounding: the search over the way has found it at touch_mm itself
+  event.first = place_on(poses, way, found.t_touch);
+  event.free = place_on(poses, way, found.t_free);
+  event.point_a = found.point_a;
+  event.point_b = found.point_b;
+  return event;
+}
+
+void look_how_deep(const Encounter& pair, const BodyDepth& in_a, const BodyDepth& in_b, PathStretch poses,
+                   const TouchingWays& ways, ContactEvent& event) {
+  const size_t count = ways.last - ways.first + 2, step = (count + kDepthsMost - 1) / kDepthsMost;
+  for (size_t k = ways.first; k <= ways.last + 1 && k < poses.size(); k += step) {
+    const Depth found = overlap_depth(pair, in_a, in_b, poses[k].q);
+    if (found.depth_mm <= event.depth_mm) continue;
+    event.depth_mm = found.depth_mm;
+    event.deepest_M = found.place_M;
+    event.deepest_cycle = poses[k].cycle;
+  }
+}
+
+}  // namespace
+
+StretchFindings walk_stretch(const Encounter& pair, const BodyDepth& in_a, const BodyDepth& in_b,
+                             PathStretch poses, const PathCheckOptions& options, const PairHistory& before) {
+  PairWalk walk(pair, poses, options, before);
+  walk.run();
+  const std::vector<Way>& ways = walk.ways();
+  StretchFindings findings;
+  findings.near_miss = walk.near_miss();
+  for (size_t k = 0; k < ways.size(); ++k) {
+    if (ways[k] == Way::kFree) continue;
+    TouchingWays touching{k, k};
+    while (touching.last + 1 < ways.size() && ways[touching.last + 1] != Way::kFree) ++touching.last;
+    ContactEvent event = begin_contact(pair, poses, k, ways[k] == Way::kInside, options);
+    const PathPlace end = place_on(poses, touching.last, 1.0);
+    event.last_cycle = poses[std::min(touching.last + 1, poses.size() - 1)].cycle;
+    event.last_element = end.element;
+    look_how_deep(pair, in_a, in_b, poses, touching, event);
+    findings.contacts.push_back(event);
+    k = touching.last;
+  }
+  findings.starts_touching = ways.front() != Way::kFree;
+  findings.ends_touching = ways.back() != Way::kFree;
+  return findings;
+}
+
+}  // namespace swarf::collision
