@@ -209,6 +209,60 @@ Json collisions_json(const sim::Result& result) {
   return json;
 }
 
+Json contact_json(const toolpath::ToolPath& path, const std::string& a, const std::string& b,
+                  const collision::ContactEvent& event) {
+  const auto line = [&](int element) { return path.elements.line(static_cast<size_t>(element)); };
+  return {{"a", a},
+          {"b", b},
+          {"line", line(event.first_element)},
+          {"last_line", line(event.last_element)},
+          {"t_s", event.first.time_s},
+          {"depth_seen_mm", event.depth_mm},
+          {"place_machine_mm", {event.point_a.x(), event.point_a.y(), event.point_a.z()}}};
+}
+
+/// One pair of bodies: how near they come, null beyond what is looked for.
+Json pair_json(const toolpath::ToolPath& path, const sim::MachineContacts& contacts,
+               const collision::PairFindings& pair) {
+  const collision::NearMiss& near = pair.near_miss;
+  Json json{{"a", contacts.bodies[pair.a].name},
+            {"b", contacts.bodies[pair.b].name},
+            {"contacts", pair.contact_count}};
+  json["near_miss_mm"] = near.within ? Json(near.upper) : Json(nullptr);
+  json["near_miss_bound_mm"] = near.lower;
+  json["line"] =
+      near.within ? Json(path.elements.line(static_cast<size_t>(near.place.element))) : Json(nullptr);
+  json["t_s"] = near.within ? Json(near.place.time_s) : Json(nullptr);
+  return json;
+}
+
+Json machine_contacts_json(const sim::Result& result) {
+  if (!result.main.contacts) return nullptr;
+  const sim::MachineContacts& contacts = *result.main.contacts;
+  Json json{{"count", contacts.contacts(false)},
+            {"with_uncut_stock", contacts.contacts(true)},
+            {"near_miss_above_mm", contacts.near_miss_mm},
+            {"pairs", Json::array()},
+            {"left_out", Json::array()},
+            {"without_mesh", contacts.without_mesh},
+            {"events", Json::array()}};
+  const collision::PairFindings* const nearest = contacts.nearest();
+  json["near_miss_min_mm"] = nearest == nullptr ? Json(nullptr) : Json(nearest->near_miss.upper);
+  for (const collision::PairFindings& pair : contacts.findings.pairs) {
+    json["pairs"].push_back(pair_json(result.main.path, contacts, pair));
+    for (const collision::ContactEvent& event : pair.contacts)
+      json["events"].push_back(
+          contact_json(result.main.path, contacts.bodies[pair.a].name, contacts.bodies[pair.b].name, event));
+  }
+  for (const collision::LeftOutPair& pair : contacts.findings.left_out) {
+    if (pair.reason == collision::PairReason::kRigid) continue;
+    json["left_out"].push_back({{"a", contacts.bodies[pair.a].name},
+                                {"b", contacts.bodies[pair.b].name},
+                                {"reason", collision::text_of(pair.reason)}});
+  }
+  return json;
+}
+
 Json flank_json(const measure::FlankError& flank) {
   Json rows = Json::array();
   for (const measure::FlankRow& row : flank.rows) {
@@ -398,6 +452,7 @@ std::string metrics_json(const sim::Job& job, const sim::Result& result, const R
             {"planners", comparison_json(result.planners)},
             {"interpolators", comparison_json(result.modes)},
             {"collisions", collisions_json(result)},
+            {"machine_contacts", machine_contacts_json(result)},
             {"bad_cuts", bad_cuts_json(result)},
             {"tools", tools_json(job, result)},
             {"render", {{"frames", render.frames}, {"frame_ms_median", render.frame_ms_median}}},

@@ -430,6 +430,19 @@ std::string clearance_line(const sim::ToolClearance& clearance) {
                      deepest->part, deepest->depth_mm);
 }
 
+/// Contacts of machine, fixtures and tools, or how near they came.
+std::string machine_line(const sim::MachineContacts& contacts) {
+  const uint64_t all = contacts.contacts(false), with_stock = contacts.contacts(true);
+  std::string line = fmt::format("{} contacts among {} pairs of links, fixtures and tools", all,
+                                 contacts.findings.pairs.size());
+  if (with_stock > 0) line += fmt::format(", {} with the stock as it is before the first cut", with_stock);
+  const collision::PairFindings* const nearest = contacts.nearest();
+  if (nearest == nullptr)
+    return line + fmt::format("; none comes nearer than {:g} mm", contacts.near_miss_mm);
+  return line + fmt::format("; nearest: {} and {}, {:.3f} mm", contacts.bodies[nearest->a].name,
+                            contacts.bodies[nearest->b].name, nearest->near_miss.upper);
+}
+
 std::vector<std::pair<std::string, std::string>> summary_lines(const sim::Job& job,
                                                                const sim::Result& result) {
   Lines lines = result.main.nc ? nc_lines(job, result)
@@ -447,6 +460,7 @@ std::vector<std::pair<std::string, std::string>> summary_lines(const sim::Job& j
                   cut.seconds > 0 ? static_cast<double>(cut.sweeps) / cut.seconds : 0.0,
                   job.scene.stock.voxel_mm));
   lines.emplace_back("clearance", clearance_line(result.clearance));
+  if (result.main.contacts) lines.emplace_back("machine", machine_line(*result.main.contacts));
   return lines;
 }
 

@@ -89,20 +89,25 @@ void prepare_cycles(const Job& job, const motion::MotionOptions& options, Measur
                                                      job.scene.tools.front(), options);
 }
 
+/// `look_at_contacts`: of at links, fixtures and tools against each other too.
 void interpolate(const Job& job, const motion::MotionOptions& options, const CutOptions& output,
-                 Progress& progress, MeasuredPath& measured) {
+                 Progress& progress, MeasuredPath& measured, bool look_at_contacts = false) {
   const auto start = std::chrono::steady_clock::now();
   prepare_cycles(job, options, measured);
   Tables tables(job, *measured.cycles, output);
+  std::optional<MachineContactCheck> contacts;
+  if (look_at_contacts) contacts.emplace(job);
   if (output.outputs.page && !output.save_folder.empty()) measured.keys.emplace(job.machine.model.axes);
   measured.envelope = {job.machine.model.axes.size(), options.period_s};
   measured.motion =
       motion::interpolate(*measured.cycles, progress, [&](std::span<const motion::Cycle> window) {
         measured.envelope.add(window);
         if (measured.keys) measured.keys->add(window);
+        if (contacts) contacts->add(window);
         tables.add(window);
       });
   if (measured.keys) measured.keys->finish();
+  if (contacts) measured.contacts = contacts->finish();
   tables.finish();
   measured.motion_seconds = seconds_since(start);
 }
@@ -322,18 +327,27 @@ MeasuredPath plan_tool(const Job& job, Progress& progress) {
   return measured;
 }
 
-MeasuredPath move_tool(const Job& job, Progress& progress, const CutOptions& options) {
+namespace {
+
+MeasuredPath moved_tool(const Job& job, Progress& progress, const CutOptions& options,
+                        bool look_at_contacts) {
   MeasuredPath measured = planned_path(job, progress);
-  interpolate(job, job.scene.motion, options, progress, measured);
+  interpolate(job, job.scene.motion, options, progress, measured, look_at_contacts);
   // Of blocks nobody knows the contact points before they cut.
   if (!measured.path.elements.hold_blocks() && !measured.cycles->stopped())
     require_contact(job, *measured.cycles);
   return measured;
 }
 
+}  // namespace
+
+MeasuredPath move_tool(const Job& job, Progress& progress, const CutOptions& options) {
+  return moved_tool(job, progress, options, false);
+}
+
 Result simulate(const Job& job, const CutOptions& options, Progress& progress) {
   Result result;
-  result.main = move_tool(job, progress, options);
+  result.main = moved_tool(job, progress, options, true);
   if (result.main.cycles->stopped()) {
     leave_uncut(job, options, result);
     result.stopped = true;

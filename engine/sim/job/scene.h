@@ -51,6 +51,7 @@ struct AcceptLimits {
   int collisions = 0;                   ///< of neck, shank and holder with the stock
   int rapids_in_material = 0;           ///< rapid moves that remove material
   int spindle_wrong = 0;                ///< cuts with the spindle stopped or turning the wrong way
+  int machine_parts = 0;                ///< contacts of links, fixtures and tools with each other
   int travel = 0;                       ///< moves beyond the travel of an axis, or out of the machine's reach
   int axis_speed = 0;                   ///< moves faster than an axis
 

@@ -186,6 +186,7 @@ void read_accept(ConfigTable table, bool blocks, AcceptLimits& accept) {
   accept.collisions = count("collisions");
   accept.rapids_in_material = count("rapids_in_material");
   accept.spindle_wrong = count("spindle_wrong");
+  accept.machine_parts = count("machine_parts");
   accept.travel = count("travel");
   accept.axis_speed = count("axis_speed");
 }

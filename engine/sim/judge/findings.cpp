@@ -226,6 +226,55 @@ void bad_cut_faults(const Result& result, Collector& collect) {
   }
 }
 
+/// What Kruth et al. (Table 1) would change: A the clamping, B the tool's length, C the set-up, D the path.
+std::string remedy_of(const ContactBody& a, const ContactBody& b) {
+  using collision::BodyKind;
+  const auto has = [&](BodyKind kind) { return a.kind == kind || b.kind == kind; };
+  const bool flutes = a.name.starts_with("flutes") || b.name.starts_with("flutes");
+  if (has(BodyKind::kFixture) && has(BodyKind::kToolPart))
+    return flutes ? "set the work up in another way, or lead the path around the fixture"
+                  : "take a longer tool, or set the work up in another way";
+  if (has(BodyKind::kFixture))
+    return "clamp the work elsewhere (setup.work_origin_mm), or set it up in another way";
+  if (has(BodyKind::kStock)) return "clamp the work elsewhere (setup.work_origin_mm), or take a longer tool";
+  if (has(BodyKind::kToolPart)) return "clamp the work higher or elsewhere (setup.work_origin_mm)";
+  return "clamp the work elsewhere (setup.work_origin_mm), or take the other rotary solution";
+}
+
+std::string contact_text(const Result& result, const ContactBody& a, const ContactBody& b,
+                         const collision::ContactEvent& event) {
+  const auto line = [&](int element) { return result.main.path.elements.line(static_cast<size_t>(element)); };
+  const int first = line(event.first_element), last = line(event.last_element);
+  const std::string lines =
+      first == last ? fmt::format("line {}", first) : fmt::format("lines {} to {}", first, last);
+  const Vec3& p = event.point_a;
+  std::string text =
+      fmt::format("{} touches {}, {}: first at ({:.2f}, {:.2f}, {:.2f}) mm of the machine, {:.3f} s", a.name,
+                  b.name, lines, p.x(), p.y(), p.z(), event.first.time_s);
+  if (event.inside) text += "; one stands inside the other";
+  if (event.depth_mm > 0.0)
+    text += fmt::format("; {:.2f} mm deep at most where it was looked at", event.depth_mm);
+  if (b.kind == collision::BodyKind::kStock) text += "; of the stock as it is before the first cut";
+  return text;
+}
+
+void machine_faults(const Result& result, Collector& collect) {
+  if (!result.main.contacts) return;
+  const MachineContacts& contacts = *result.main.contacts;
+  collect.begin("machine_parts");
+  const uint64_t all = contacts.contacts(false) + contacts.contacts(true);
+  size_t listed = 0;
+  for (const collision::PairFindings& pair : contacts.findings.pairs) {
+    const ContactBody &a = contacts.bodies[pair.a], &b = contacts.bodies[pair.b];
+    for (const collision::ContactEvent& event : pair.contacts) {
+      if (listed == kListed) return;
+      collect.add("machine-contact", contact_text(result, a, b, event) + and_more(++listed, all),
+                  remedy_of(a, b), result.main.path.elements.where(static_cast<size_t>(event.first_element)),
+                  event.first.time_s);
+    }
+  }
+}
+
 void built_in_checks(const Job& job, const Result& result, Collector& collect) {
   collect.begin("stock_invariants");
   if (!result.cut.broken_invariant.empty()) {
@@ -255,6 +304,7 @@ std::vector<Finding> find_faults(const Job& job, const Result& result) {
   motion_faults(result, collect);
   clearance_faults(job, result, collect);
   bad_cut_faults(result, collect);
+  machine_faults(result, collect);
   built_in_checks(job, result, collect);
   return collect.take();
 }

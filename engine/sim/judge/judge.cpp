@@ -187,6 +187,38 @@ size_t count_faults(const Result& result, std::string_view check) {
   }));
 }
 
+/// What was left out, in words; "": nothing.
+std::string not_looked_at(const MachineContacts& contacts) {
+  std::vector<std::string> names;
+  for (const std::string& link : contacts.without_mesh) names.push_back(link + " (no mesh)");
+  for (const collision::LeftOutPair& pair : contacts.findings.left_out) {
+    if (pair.reason == collision::PairReason::kTouchesAtHome)
+      names.push_back(fmt::format("{} with {} (they overlap at home)", contacts.bodies[pair.a].name,
+                                  contacts.bodies[pair.b].name));
+  }
+  return names.empty() ? "" : fmt::format("; not looked at: {}", fmt::join(names, ", "));
+}
+
+Check machine_check(const Job& job, const Result& result) {
+  constexpr const char* name = "machine_parts";
+  constexpr const char* subject = "Contacts of machine, fixtures and tool";
+  if (!result.main.contacts || result.main.contacts->findings.pairs.empty())
+    return not_judged(name, subject, "the machine has no meshes: [[link]] mesh in machine.toml");
+  const MachineContacts& contacts = *result.main.contacts;
+  Check check = counted(name, subject, contacts.contacts(false), job.scene.accept.machine_parts);
+  const uint64_t with_stock = contacts.contacts(true);
+  if (with_stock > 0 && check.outcome == Outcome::kHolds) {
+    check.outcome = job.scene.stock.auto_box ? Outcome::kNotJudged : Outcome::kNotProven;
+    check.reason = fmt::format(
+        "{} contacts with the {} as it is before the first cut: what is left of it then is not "
+        "looked at; ",
+        with_stock, job.scene.stock.auto_box ? "block that is assumed" : "stock");
+  }
+  check.reason += fmt::format("{} pairs over the whole motion but for tool changes{}",
+                              contacts.findings.pairs.size(), not_looked_at(contacts));
+  return check;
+}
+
 Check invariants_check(const Result& result) {
   Check check{"stock_invariants", "Invariants of the level set"};
   const bool holds = result.cut.broken_invariant.empty();
@@ -248,8 +280,7 @@ std::vector<Check> judge(const Job& job, const Result& result) {
   for (Check& check : judge_motion(job, result)) checks.push_back(std::move(check));
   checks.push_back(invariants_check(result));
   checks.push_back(rays_check(job, result));
-  checks.push_back(not_judged("machine_parts", "Machine parts against each other",
-                              "collision of meshes is not part of this version"));
+  checks.push_back(machine_check(job, result));
   return checks;
 }
 

@@ -18,6 +18,7 @@
 #include "sim/run/contact_event.h"
 #include "sim/run/cut_stage.h"
 #include "sim/run/job_sweeps.h"
+#include "sim/run/machine_contacts.h"
 #include "sim/run/memory.h"
 #include "stock/rays/surface_dexels.h"
 #include "stock/stock.h"
@@ -34,6 +35,7 @@ struct MeasuredPath {
   motion::TimeEnvelope envelope{0, 1.0};  ///< of the cycles, for plots
   /// Of all cycles, for animations; none where nobody asks for them.
   std::optional<motion::AxisKeys> keys;
+  std::optional<MachineContacts> contacts;   ///< of the run's own motion; none: not looked at
   JobSweeps rays;                            ///< what cut the measuring rays; Sweep::block is its index
   std::vector<stock::SurfaceDexels> dexels;  ///< one per surface of Job::design, in its order
   std::optional<toolpath::NcReading> nc;     ///< of NC jobs

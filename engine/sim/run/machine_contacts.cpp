@@ -1,0 +1,107 @@
+#include "sim/run/machine_contacts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "cutter/profile.h"
+#include "cutter/tool_walls.h"
+#include "machine/plain_solids.h"
+
+namespace swarf::sim {
+namespace {
+
+using collision::Body;
+using collision::BodyKind;
+using collision::ToolFrustum;
+
+constexpr const char* kStock = "stock";
+
+/// By the part's name.
+std::map<std::string, std::vector<ToolFrustum>> parts_of(const cutter::Cutter& tool) {
+  std::map<std::string, std::vector<ToolFrustum>> parts;
+  const std::vector<Vec2> corners =
+      cutter::sample_outline(cutter::outline(tool), MachineContactCheck::kOutlineMm);
+  for (size_t i = 0; i + 1 < corners.size(); ++i) {
+    const Vec2 &low = corners[i], &high = corners[i + 1];
+    if (high.y() > low.y()) parts["flutes"].push_back({low.y(), high.y(), low.x(), high.x()});
+  }
+  for (const cutter::ToolWall& wall : cutter::tool_walls(tool))
+    parts[wall.part].push_back({wall.low, wall.high, wall.low_radius, wall.high_radius});
+  return parts;
+}
+
+void add_tools(const Job& job, std::vector<Body>& bodies) {
+  const std::vector<kinematics::MachineModel> machines = machines_by_tool(job);
+  for (size_t i = 0; i < machines.size(); ++i) {
+    const cutter::Cutter& tool = job.scene.tools[i];
+    const std::string of = machines.size() > 1 ? " of " + cutter::call_name(tool) : "";
+    for (const auto& [part, frustums] : parts_of(tool)) {
+      bodies.push_back(collision::tool_body(job.machine, machines[i], part + of, frustums));
+      bodies.back().tool = static_cast<int>(i);
+    }
+  }
+}
+
+std::vector<Body> bodies_of(const Job& job) {
+  std::vector<Body> bodies = collision::link_bodies(job.machine);
+  for (Body& body : bodies)
+    if (job.machine.links[static_cast<size_t>(body.link)].fixture) body.kind = BodyKind::kFixture;
+  add_tools(job, bodies);
+  TriMesh stock;
+  machine::add_box(stock, job.scene.stock.box_W);
+  bodies.push_back(collision::work_body(job.machine, kStock, BodyKind::kStock, stock));
+  return bodies;
+}
+
+/// Tools may cut the stock; whether its other parts meet it is judged against what is left of it
+/// (tool_clearance.h).
+collision::PathCheckOptions options_of(const std::vector<Body>& bodies) {
+  collision::PathCheckOptions options;
+  for (const Body& body : bodies)
+    if (body.kind == BodyKind::kToolPart) options.allowed.emplace_back(body.name, kStock);
+  return options;
+}
+
+}  // namespace
+
+bool MachineContacts::with_stock(const collision::PairFindings& pair) const {
+  return bodies[pair.a].kind == BodyKind::kStock || bodies[pair.b].kind == BodyKind::kStock;
+}
+
+uint64_t MachineContacts::contacts(bool with_stock) const {
+  uint64_t count = 0;
+  for (const collision::PairFindings& pair : findings.pairs)
+    if (this->with_stock(pair) == with_stock) count += pair.contact_count;
+  return count;
+}
+
+const collision::PairFindings* MachineContacts::nearest() const {
+  const collision::PairFindings* nearest = nullptr;
+  for (const collision::PairFindings& pair : findings.pairs) {
+    if (pair.near_miss.within && (nearest == nullptr || pair.near_miss.upper < nearest->near_miss.upper))
+      nearest = &pair;
+  }
+  return nearest;
+}
+
+MachineContactCheck::MachineContactCheck(const Job& job) {
+  std::vector<Body> bodies = bodies_of(job);
+  for (const Body& body : bodies) contacts_.bodies.push_back({body.name, body.kind});
+  for (const machine::Link& link : job.machine.links)
+    if (link.mesh.triangles.empty()) contacts_.without_mesh.push_back(link.name);
+  const collision::PathCheckOptions options = options_of(bodies);
+  contacts_.near_miss_mm = options.near_miss_mm;
+  Diagnostics diagnostics;
+  check_ = std::make_unique<collision::PathCheck>(job.machine, std::move(bodies), options, diagnostics);
+  contacts_.warnings = diagnostics.list();
+}
+
+MachineContacts MachineContactCheck::finish() {
+  contacts_.findings = check_->finish();
+  return std::move(contacts_);
+}
+
+}  // namespace swarf::sim

@@ -1,0 +1,167 @@
+// Contacts of links, fixtures and tools in the program as it is shipped: planted ones with their place, and
+// their free mirror images.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "support/program_run.h"
+
+namespace machine_contacts_test {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using swarf::test::fresh_folder;
+using swarf::test::ProgramRun;
+using swarf::test::run_swarf;
+
+/// A frame round the faces of a block of 80 x 60 x 20, whose upper face is Z 0, with a tool of D 6.
+const std::string kFrame =
+    "G21 G90 G17 G54\nT1 M6\nS5000 M3\nG43 H1\nG0 X0 Y0 Z50\nG1 Z-2 F500\nX60\nY40\nX0\nY0\nG0 Z50\nM2\n";
+
+class MachineContacts : public testing::Test {
+ protected:
+  MachineContacts() : folder_(fresh_folder("machine_contacts")) {}
+  ~MachineContacts() override { fs::remove_all(folder_); }
+
+  /// A run of `program` on `machine`, with what else the scene says.
+  ProgramRun run(const std::string& program, const std::string& more, const std::string& flags = "",
+                 const std::string& machine = "spinner_u5_620") {
+    swarf::test::write_text(folder_ / "part.nc", program);
+    swarf::test::write_text(folder_ / "scene.toml",
+                            fmt::format("nc = \"part.nc\"\ndialect = \"fanuc\"\nmachine = \"{}\"\n[stock]\n"
+                                        "box_mm = [[-10, -10, -20], [70, 50, 0]]\nvoxel_mm = 1\n{}",
+                                        machine, more));
+    fs::remove_all(out());
+    return run_swarf("run " + (folder_ / "scene.toml").string() + " --no-render -q -o " + out().string() +
+                     flags);
+  }
+  fs::path out() const { return folder_ / "out"; }
+  json metrics() const { return json::parse(swarf::test::read_text(out() / "metrics.json")); }
+  /// Outcome of the check.
+  std::string outcome() const {
+    const json all = metrics();
+    for (const json& check : all["checks"])
+      if (check["name"] == "machine_parts") return check["outcome"].get<std::string>();
+    return "missing";
+  }
+
+  fs::path folder_;
+};
+
+const std::string kOnTable =
+    "[setup]\nwork_origin_mm = \"on_table\"\n[[tool]]\nnumber = 1\ndiameter_mm = 6\n"
+    "flute_length_mm = 30\nlength_mm = 60\nholder_diameter_mm = 8\n";
+
+/// The straps' posts are hidden by their straps, which reach 10 mm over the upper face: the tool goes into
+/// each from the side, and first touches where its flank meets the strap's edge.
+TEST_F(MachineContacts, ClampsInTheWayAreFoundWhereTheyAreFirstTouched) {
+  const std::string clamps = "[[fixture]]\nkind = \"clamps\"\nsides = [\"x-\", \"x+\", \"y+\"]\n";
+  const ProgramRun met = run(kFrame, kOnTable + clamps);
+  EXPECT_EQ(met.exit_code, 1) << met.output;
+  EXPECT_NE(met.output.find("clamps touches flutes"), std::string::npos) << met.output;
+  const json contacts = metrics()["machine_contacts"];
+  ASSERT_EQ(contacts["count"], 3) << met.output;
+  EXPECT_EQ(outcome(), "fails");
+  EXPECT_EQ(contacts["near_miss_min_mm"].get<double>(), 0.0);
+
+  // W stands at (-30, -20, 120) of the machine: the middle of the block over the table, 100 mm above it.
+  const json& first = contacts["events"][0];
+  EXPECT_EQ(first["a"], "clamps");
+  EXPECT_EQ(first["b"], "flutes");
+  EXPECT_EQ(first["line"], 8);
+  EXPECT_EQ(first["last_line"], 8);
+  EXPECT_NEAR(first["place_machine_mm"][0].get<double>(), 60.0 - 30.0, 0.02);  // the strap's edge along Y
+  EXPECT_NEAR(first["place_machine_mm"][1].get<double>(), 10.0 - 20.0, 0.02);  // 20 mm wide about Y 20
+
+  // Straps stand over the face, the frame goes 2 mm into it: without them nothing is met.
+  const ProgramRun free = run(kFrame, kOnTable + "[[fixture]]\nkind = \"vice\"\ngrip_mm = 15\n");
+  EXPECT_EQ(free.exit_code, 0) << free.output;
+  EXPECT_EQ(outcome(), "holds");
+  EXPECT_EQ(metrics()["machine_contacts"]["count"], 0);
+
+  // As many as are allowed are warnings.
+  const ProgramRun allowed = run(kFrame, kOnTable + clamps + "[accept]\nmachine_parts = 3\n");
+  EXPECT_EQ(allowed.exit_code, 0) << allowed.output;
+  EXPECT_NE(allowed.output.find("warning: clamps touches flutes"), std::string::npos) << allowed.output;
+}
+
+/// A jaw 4 mm above the way of the holder's lower face and one 4 mm below it: the second is a near miss.
+TEST_F(MachineContacts, HowNearTheHolderCameToAPostIsToldToAMicrometre) {
+  // Holder D 8 from Z 58 above the work on (tip at -2, length 60), at X 60 as far as X 64; a post stands 4 mm
+  // beyond.
+  const auto post = [](double x) {
+    return fmt::format("[[fixture]]\nname = \"post\"\nbox_mm = [[{}, 0, 50], [{}, 40, 80]]\non = \"part\"\n",
+                       x, x + 5.0);
+  };
+  const ProgramRun free = run(kFrame, kOnTable + post(68.0));
+  EXPECT_EQ(free.exit_code, 0) << free.output;
+  EXPECT_NEAR(metrics()["machine_contacts"]["near_miss_min_mm"].get<double>(), 4.0, 5e-3);
+  const ProgramRun met = run(kFrame, kOnTable + post(63.9));
+  EXPECT_EQ(met.exit_code, 1) << met.output;
+  EXPECT_NE(met.output.find("post touches holder"), std::string::npos) << met.output;
+}
+
+/// A tool so short that the spindle's nose goes below the block's upper face: what is left of the block there
+/// is not looked at, and the verdict says so.
+TEST_F(MachineContacts, TheUncutStockInTheWayOfALinkIsNotProven) {
+  const std::string stubby =
+      "[setup]\nwork_origin_mm = \"on_table\"\n[[tool]]\nnumber = 1\ndiameter_mm = 6\nflute_length_mm = 1\n"
+      "length_mm = 1\nholder_diameter_mm = 6\nholder_length_mm = 1\ngauge_length_mm = 1\n";
+  const ProgramRun met = run(kFrame, stubby + "[accept]\ncollisions = 100\n");
+  EXPECT_EQ(met.exit_code, 1) << met.output;
+  EXPECT_EQ(outcome(), "not_proven");
+  EXPECT_GT(metrics()["machine_contacts"]["with_uncut_stock"].get<int>(), 0);
+  EXPECT_EQ(metrics()["machine_contacts"]["count"], 0);
+}
+
+/// What has no mesh cannot be looked at, and is no pass.
+TEST_F(MachineContacts, AMachineWithoutMeshesIsNotJudged) {
+  std::string machine;
+  for (const char* axis : {"X", "Y", "Z"}) {
+    machine += fmt::format(
+        "[[axis]]\nname = \"{}\"\ntype = \"linear\"\ndirection = [{}, {}, {}]\nmin_mm = -900\n"
+        "max_mm = 900\nspeed_max_mm_min = 20000\n",
+        axis, axis[0] == 'X' ? 1 : 0, axis[0] == 'Y' ? 1 : 0, axis[0] == 'Z' ? 1 : 0);
+  }
+  machine +=
+      "[work]\norigin_mm = [0, 0, 0]\n[tool]\ngauge_mm = [0, 0, 0]\naxis = [0, 0, 1]\n"
+      "[[link]]\nname = \"bed\"\nmount = \"work\"\n[[link]]\nname = \"x\"\nparent = \"bed\"\naxis = \"X\"\n"
+      "[[link]]\nname = \"y\"\nparent = \"x\"\naxis = \"Y\"\n"
+      "[[link]]\nname = \"head\"\nparent = \"y\"\naxis = \"Z\"\nmount = \"tool\"\n";
+  swarf::test::write_text(folder_ / "machine.toml", "name = \"bare\"\n" + machine);
+  const ProgramRun bare = run(kFrame, kOnTable, "", (folder_ / "machine.toml").string());
+  EXPECT_EQ(bare.exit_code, 0) << bare.output;
+  EXPECT_EQ(outcome(), "not_judged");
+
+  // A fixture alone is looked at, and the links that were not are named.
+  run(kFrame, kOnTable + "[[fixture]]\nkind = \"vice\"\n", "", (folder_ / "machine.toml").string());
+  EXPECT_EQ(outcome(), "holds");
+  EXPECT_NE(metrics().dump().find("not looked at: bed (no mesh)"), std::string::npos)
+      << metrics()["checks"].dump(1);
+}
+
+TEST_F(MachineContacts, FixturesThatCannotBeAreRefused) {
+  const auto refused = [&](const std::string& fixture, const std::string& words) {
+    const ProgramRun wrong = run(kFrame, kOnTable + "[[fixture]]\n" + fixture);
+    EXPECT_EQ(wrong.exit_code, 2) << wrong.output;
+    EXPECT_NE(wrong.output.find(words), std::string::npos) << fixture << wrong.output;
+  };
+  refused("kind = \"vice\"\nmesh = \"vice.stl\"\n", "nothing is called 'fixture[0].mesh'");
+  refused("kind = \"vise\"\n", "vice");
+  refused("mesh = \"none.stl\"\n", "none.stl");
+  refused("kind = \"chuck\"\n", "grip_diameter_mm");
+  refused("kind = \"vice\"\n[[fixture]]\nkind = \"vice\"\n", "two-fixtures");
+  swarf::test::write_text(
+      folder_ / "open.stl",
+      "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 9 0 0\nvertex 0 9 0\n"
+      "endloop\nendfacet\nendsolid s\n");
+  refused("mesh = \"open.stl\"\n", "mesh-open");
+}
+
+}  // namespace
+}  // namespace machine_contacts_test
