@@ -105,7 +105,7 @@ std::string LineTemplate::filled(const Line& line, size_t first, const PlaceValu
 void LineTemplate::fill(const PlaceValues& values, std::vector<std::string>& out) const {
   for (const Line& line : lines_) {
     std::string text = filled(line, 0, values);
-    if (!text.empty()) out.push_back(std::move(text));
+    if (!text.empty()) out.emplace_back(std::move(text));
   }
 }
 

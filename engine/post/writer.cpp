@@ -70,26 +70,41 @@ void Writer::motion(const LineTemplate& lines) {
   if (!lines_.empty()) motion_word_ = lines.first_word();
 }
 
-void Writer::comment(std::string_view text) {
+std::string Writer::fitting(std::string_view text) {
   std::string kept;
   for (const char one : text) {
     const bool fits = one >= ' ' && one <= '~' && format_.comment_without.find(one) == std::string::npos;
     if (fits && kept.size() < format_.comment_longest) kept += one;
   }
+  return kept;
+}
+
+void Writer::comment(std::string_view text) {
+  const std::string kept = fitting(text);
   if (kept.size() != text.size()) ++summary_.comments_changed;
   if (kept.empty() || format_.comment.empty()) return;
   values_.set(Place::kText, kept);
   put(format_.comment);
 }
 
+void Writer::set_coolant(const std::string& word) {
+  if (word == coolant_) return;
+  const bool was_on = !coolant_.empty() && coolant_ != format_.coolant_off;
+  if (!word.empty() && (was_on || word != format_.coolant_off)) {
+    end_cycle();
+    put_line(word);
+  }
+  coolant_ = word;
+}
+
 void Writer::coolant(const std::string& text) {
-  const std::string word = text == "OFF" ? format_.coolant_off : text == "MIST" ? format_.mist : format_.flood;
   if (text != "OFF" && text != "MIST" && text != "ON" && text != "FLOOD") {
     summary_.not_written.push_back("COOLNT/" + text);
     return;
   }
-  if (!word.empty() && word != coolant_) put_line(word);
-  coolant_ = word;
+  coolant_wanted_ = text == "OFF" ? format_.coolant_off : text == "MIST" ? format_.mist : format_.flood;
+  // It is switched on with the new tool over the work.
+  if (!change_comes_) set_coolant(coolant_wanted_);
 }
 
 void Writer::note(const program::ClNote& note) {
@@ -98,7 +113,6 @@ void Writer::note(const program::ClNote& note) {
     if (!word.empty()) put_line(word);
   };
   if (note.word == "COOLNT") {
-    end_cycle();
     coolant(note.text);
   } else if (note.word == "STOP") {
     stop(format_.stop);
@@ -199,7 +213,6 @@ void Writer::change_tool(const PlanStep& step) {
   }
   put(tool.number > 0 ? format_.change : format_.change_by_name);
   spindle_ = 0.0;
-  coolant_.clear();
 }
 
 void Writer::approach(const PlanStep& step) {
@@ -209,6 +222,7 @@ void Writer::approach(const PlanStep& step) {
   const char letter = kLetters[static_cast<size_t>(along_)];
   values_.set(Place::kHomeAlong, letter + written(format_.numbers.linear, retracted(setup_.machine)));
   put(format_.retract);
+  if (step.tool != tool_) set_coolant(format_.coolant_off);
   change_tool(step);
   spindle(step.spindle_rpm);
   forget_words();
@@ -224,6 +238,7 @@ void Writer::approach(const PlanStep& step) {
   put(format_.approach);
   put(format_.length_on);
   changed(words, true);
+  set_coolant(coolant_wanted_);
   set_tcp(step.tcp);
   if (!step.tcp) return;
   values_.set(Place::kAxes, changed(words_of(step.p, step.rotary), true));
@@ -298,7 +313,7 @@ void Writer::move(const PlanStep& step) {
 
 void Writer::head() {
   values_.set(Place::kProgram, names_.program);
-  values_.set(Place::kMachine, names_.machine);
+  values_.set(Place::kMachine, fitting(names_.machine));
   values_.set(Place::kSource, names_.source);
   put(format_.head);
 }
@@ -310,8 +325,9 @@ void Writer::stretch(const PlannedStretch& planned) {
       note(planned.notes[next].note);
   };
   for (size_t i = 0; i < planned.steps.size(); ++i) {
-    notes(i);
     const PlanStep& step = planned.steps[i];
+    change_comes_ = step.kind == StepKind::kApproach && step.tool != tool_;
+    notes(i);
     if (leads_to_hole(planned, i)) {
       const PlanStep& cycle = planned.steps[i + 1];
       if (merges_with(step, cycle, planned.holes[static_cast<size_t>(cycle.hole)])) {
@@ -327,6 +343,7 @@ void Writer::stretch(const PlannedStretch& planned) {
     else if (step.kind == StepKind::kHole) hole(step, planned.holes[static_cast<size_t>(step.hole)]);
     else move(step);
   }
+  change_comes_ = false;
   notes(planned.steps.size());
 }
 
@@ -339,7 +356,7 @@ void Writer::tail() {
   values_.set(Place::kHomeAlong, letter + written(format_.numbers.linear, retracted(setup_.machine)));
   put(format_.retract);
   spindle(0.0);
-  if (!coolant_.empty() && coolant_ != format_.coolant_off) put_line(format_.coolant_off);
+  set_coolant(format_.coolant_off);
   put(format_.tail);
 }
 

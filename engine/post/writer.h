@@ -48,6 +48,9 @@ class Writer {
   void comment(std::string_view text);
   void note(const program::ClNote& note);
   void coolant(const std::string& text);
+  void set_coolant(const std::string& word);
+  /// What a comment can hold of the text.
+  std::string fitting(std::string_view text);
   void approach(const PlanStep& step);
   void change_tool(const PlanStep& step);
   void spindle(double rpm);
@@ -89,7 +92,8 @@ class Writer {
   int plane_ = 0, tool_ = -2, block_ = 0;
   bool tcp_ = false, timed_ = false;
   double spindle_ = 0.0;
-  std::string coolant_;
+  std::string coolant_, coolant_wanted_;  ///< as it stands, and as the CL data has it
+  bool change_comes_ = false;             ///< the next step changes the tool
 };
 
 }  // namespace swarf::post

@@ -1,7 +1,9 @@
 // Drilling cycles, kept as cycles.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "base/units.h"
 #include "post/writer.h"
@@ -42,7 +44,10 @@ void Writer::hole_values(const PlanStep& step, const program::ClHole& hole) {
   linear(Place::kClear, surface + cycle.clear_mm);
   linear(Place::kRetract, step.p.z());
   linear(Place::kDepth, -cycle.depth_mm);
-  linear(Place::kClearance, cycle.clear_mm);
+  // Rounded apart, surface and clearance could add up to more than the height of the retract.
+  const double room = std::strtod(values_.of(Place::kRetract).c_str(), nullptr) -
+                      std::strtod(values_.of(Place::kSurface).c_str(), nullptr);
+  linear(Place::kClearance, std::min(cycle.clear_mm, room));
   linear(Place::kSecondClearance, cycle.retract_mm);
   linear(Place::kStep, cycle.step_mm > 0.0 ? cycle.step_mm : cycle.depth_mm);
   linear(Place::kStepFirst, surface - (cycle.first_step_mm > 0.0 ? cycle.first_step_mm : cycle.step_mm));

@@ -12,6 +12,7 @@
 #include "base/units.h"
 #include "kinematics/machine_model.h"
 #include "machine/machine_scene.h"
+#include "kinematics/singularity.h"
 #include "post/post.h"
 #include "post/shipped.h"
 #include "program/nc_program.h"
@@ -24,6 +25,12 @@ inline std::string assets(const std::string& file) {
 }
 inline kinematics::MachineModel shipped_machine(const std::string& name) {
   return machine::load_machine(assets("machines/" + name + "/machine.toml")).model;
+}
+/// With the work high enough for a tool of 80 mm.
+inline kinematics::MachineModel placed_machine(const std::string& name) {
+  kinematics::MachineModel machine = shipped_machine(name);
+  if (machine.gauge_M) machine.X_MW.translation().z() += 100.0;
+  return machine;
 }
 inline PostFormat shipped_post(const std::string& name) {
   return load_post(assets("posts/" + name + ".toml"));
@@ -38,11 +45,49 @@ class NcMoves final : public program::NcSink {
   std::vector<program::NcMove> moves;
 };
 
+/// The moves of the CL data as they have to be found: of a hole, however it is pecked, arrival, bottom and
+/// end.
+class ExpectedMoves final : public program::ClSink {
+ public:
+  void move(const program::Move& one) override {
+    if (inner_ == 0) moves.push_back(one);
+    if (inner_ > 0 && --inner_ == 0) end_hole(one);
+  }
+  void note(program::ClNote /*note*/) override {}
+  void hole(const program::ClHole& hole) override {
+    hole_ = hole;
+    const auto steps = static_cast<int>(program::cycle_steps(hole.cycle).size());
+    arrives_ = hole.moves > steps;
+    inner_ = steps + (arrives_ ? 1 : 0);
+  }
+  std::vector<program::Move> moves;
+
+ private:
+  void end_hole(const program::Move& last) {
+    const auto at = [&](double height) { return ToolPose{hole_.at.tip_W + height * hole_.at.axis_W, hole_.at.axis_W}; };
+    program::Move part = last;
+    part.rapid = true;
+    part.to = at(hole_.cycle.arrive_mm);
+    if (arrives_) moves.push_back(part);
+    part.rapid = false;
+    part.from = at(std::max(hole_.cycle.arrive_mm, hole_.cycle.retract_mm));
+    part.to = at(-hole_.cycle.depth_mm);
+    moves.push_back(part);
+    part.rapid = true;
+    part.to = last.to;
+    moves.push_back(part);
+  }
+  program::ClHole hole_;
+  int inner_ = 0;
+  bool arrives_ = false;
+};
+
 /// A program written and read back.
 struct Posted {
   std::string text, faults, cl_file, nc_file;
   PostResult result;
   program::ClProgram cl;
+  std::vector<program::Move> expected;  ///< positions of the CL data
   std::vector<program::NcMove> moves;  ///< as our interpreter reads them
   std::vector<Diagnostic> read;        ///< what it said
   kinematics::MachineModel machine;    ///< with the first tool
@@ -91,7 +136,9 @@ inline Posted run_post(const std::string& cl, const kinematics::MachineModel& ma
     std::filesystem::remove(posted.cl_file);
     return posted;
   }
-  posted.cl = program::parse_cl(cl, posted.cl_file, diagnostics, options.cl);
+  ExpectedMoves expected;
+  posted.cl = program::stream_cl(posted.cl_file, expected, diagnostics, options.cl);
+  posted.expected = std::move(expected.moves);
   posted.nc_file = scratch_file(".nc");
   std::ofstream(posted.nc_file, std::ios::binary) << posted.text;
   program::ControlSetup setup;

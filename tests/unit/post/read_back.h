@@ -78,14 +78,16 @@ inline Vec3 tip_at(const Posted& posted, const program::NcMove& move, double sha
 inline std::string compare(const Posted& posted) {
   const bool tcp = posted.result.tcp;
   std::vector<const program::Move*> from_cl;
-  for (const program::Move& move : posted.cl.moves) from_cl.push_back(&move);
+  for (const program::Move& move : posted.expected) from_cl.push_back(&move);
   size_t at = 0;
   while (at < posted.moves.size() && !reaches(posted, posted.moves[at], posted.cl.start, tcp)) ++at;
   // The start itself may be a place without a move: the control is put there by the first complete position.
   if (at == posted.moves.size()) return "the start is not reached";
   for (size_t i = 0; i < from_cl.size(); ++i) {
     const program::Move& move = *from_cl[i];
-    size_t to = at;
+    // A whole circle ends where it starts, and is a move all the same.
+    const bool circle = move.arc && (move.to.tip_W - move.from.tip_W).norm() < 1e-9;
+    size_t to = at + (circle ? 1 : 0);
     while (to < posted.moves.size() && !reaches(posted, posted.moves[to], move.to, tcp)) ++to;
     if (to == posted.moves.size())
       return fmt::format("CL line {}: ({:.4f}, {:.4f}, {:.4f}) axis ({:.6f}, {:.6f}, {:.6f}) is not reached after "

@@ -17,10 +17,9 @@ const char* const kThreeAxes =
 
 Posted posted(const std::string& cl, const std::string& machine, const std::string& name, bool tcp) {
   PostOptions options;
-  const kinematics::MachineModel model = shipped_machine(machine);
+  const kinematics::MachineModel placed = placed_machine(machine);
   options.tcp = tcp;
   options.tools = {{1, "MILL10", 80.0}};
-  kinematics::MachineModel placed = model;
   return run_post(cl, placed, shipped_post(name), options);
 }
 
