@@ -338,7 +338,7 @@ void Planner::without_tcp(size_t first, Plan& plan) const {
   for (size_t i = first; i < steps.size(); ++i) {
     PlanStep& step = steps[i];
     const bool leads = step.kind == StepKind::kApproach || (step.kind == StepKind::kRapid && !step.turns);
-    if (!step.tcp || !leads || (i == first && step.kind != StepKind::kApproach)) continue;
+    if (!step.tcp || !leads) continue;
     step.tcp = false;
     step.p = program_point(step.pose, step.q, false);
   }
@@ -377,7 +377,8 @@ Planner::Plan Planner::plan_from(const Entry& begin, const Start& start, bool ap
     const size_t arrival = plan.stretch.steps.size();
     if (i == hole->first && arrivals > 0) add_move(moves_[i], plan);
     if (!plan.fault) add_hole(*hole, plan);
-    without_tcp(arrival == 0 ? 0 : arrival - 1, plan);
+    const bool approached = arrival > 0 && plan.stretch.steps[arrival - 1].kind == StepKind::kApproach;
+    without_tcp(approached ? arrival - 1 : arrival, plan);
     for (++i; i < end; ++i) steps_before.push_back(plan.stretch.steps.size());
     i = end;
   }

@@ -38,8 +38,10 @@ inline DigitBound digit_bound(const Posted& posted, const program::NcMove& move,
   return bound;
 }
 
-inline bool reaches(const Posted& posted, const program::NcMove& move, const ToolPose& pose, bool tcp) {
-  const DigitBound bound = digit_bound(posted, move, tcp);
+/// Cycles and what leads to them are without TCP in every program.
+inline bool reaches(const Posted& posted, const program::NcMove& move, const ToolPose& pose) {
+  const DigitBound bound =
+      digit_bound(posted, move, posted.result.tcp && move.law != program::BlockLaw::kJoint);
   return (move.to.tip_W - pose.tip_W).norm() <= bound.tip_mm &&
          angle_between(move.to.axis_W, pose.axis_W) <= bound.axis_rad;
 }
@@ -80,15 +82,17 @@ inline std::string compare(const Posted& posted) {
   std::vector<const program::Move*> from_cl;
   for (const program::Move& move : posted.expected) from_cl.push_back(&move);
   size_t at = 0;
-  while (at < posted.moves.size() && !reaches(posted, posted.moves[at], posted.cl.start, tcp)) ++at;
+  while (at < posted.moves.size() && !reaches(posted, posted.moves[at], posted.cl.start)) ++at;
   // The start itself may be a place without a move: the control is put there by the first complete position.
   if (at == posted.moves.size()) return "the start is not reached";
+  // With TCP the approach comes there twice: by the axes, then by the tip.
+  while (at + 1 < posted.moves.size() && posted.moves[at + 1].rapid && reaches(posted, posted.moves[at + 1], posted.cl.start)) ++at;
   for (size_t i = 0; i < from_cl.size(); ++i) {
     const program::Move& move = *from_cl[i];
     // A whole circle ends where it starts, and is a move all the same.
     const bool circle = move.arc && (move.to.tip_W - move.from.tip_W).norm() < 1e-9;
     size_t to = at + (circle ? 1 : 0);
-    while (to < posted.moves.size() && !reaches(posted, posted.moves[to], move.to, tcp)) ++to;
+    while (to < posted.moves.size() && !reaches(posted, posted.moves[to], move.to)) ++to;
     if (to == posted.moves.size())
       return fmt::format("CL line {}: ({:.4f}, {:.4f}, {:.4f}) axis ({:.6f}, {:.6f}, {:.6f}) is not reached after "
                          "line {}",
