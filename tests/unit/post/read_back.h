@@ -85,8 +85,11 @@ inline std::string compare(const Posted& posted) {
   while (at < posted.moves.size() && !reaches(posted, posted.moves[at], posted.cl.start)) ++at;
   // The start itself may be a place without a move: the control is put there by the first complete position.
   if (at == posted.moves.size()) return "the start is not reached";
-  // With TCP the approach comes there twice: by the axes, then by the tip.
-  while (at + 1 < posted.moves.size() && posted.moves[at + 1].rapid && reaches(posted, posted.moves[at + 1], posted.cl.start)) ++at;
+  // With TCP an approach comes there twice: by the axes, then by the tip.
+  const auto stay = [&](const ToolPose& pose) {
+    while (at + 1 < posted.moves.size() && posted.moves[at + 1].rapid && reaches(posted, posted.moves[at + 1], pose)) ++at;
+  };
+  stay(posted.cl.start);
   for (size_t i = 0; i < from_cl.size(); ++i) {
     const program::Move& move = *from_cl[i];
     // A whole circle ends where it starts, and is a move all the same.
@@ -108,6 +111,7 @@ inline std::string compare(const Posted& posted) {
       }
     }
     at = to;
+    stay(move.to);
   }
   return "";
 }
