@@ -88,6 +88,9 @@ void Planner::note(program::ClNote note) {
 
 void Planner::finish() {
   plan_stretch();
+  PlannedStretch rest;
+  rest.notes = std::move(notes_);
+  if (!rest.notes.empty()) sink_(rest);
 }
 
 void Planner::use_tool(int tool) {
@@ -108,18 +111,17 @@ void Planner::tell(const FollowFault& fault, int line) {
 }
 
 void Planner::plan_stretch() {
-  if (moves_.empty() && notes_.empty()) return;
-  if (!moves_.empty()) {
-    plan_moves();
-  } else {
-    Plan plan;
-    plan.q = q_;
-    plan.stretch.notes = notes_;
-    sink_(plan.stretch);
-  }
+  if (moves_.empty()) return;
+  // What stands behind the last move belongs to the next one.
+  const auto behind = std::find_if(notes_.begin(), notes_.end(),
+                                   [&](const PlacedNote& one) { return one.before == moves_.size(); });
+  std::vector<PlacedNote> kept(std::make_move_iterator(behind), std::make_move_iterator(notes_.end()));
+  notes_.erase(behind, notes_.end());
+  plan_moves();
   moves_.clear();
   holes_.clear();
-  notes_.clear();
+  for (PlacedNote& one : kept) one.before = 0;
+  notes_ = std::move(kept);
 }
 
 void Planner::plan_moves() {

@@ -24,6 +24,21 @@ bool is_comment(const std::string& word) {
   return std::find(kWords.begin(), kWords.end(), word) != kWords.end();
 }
 
+/// What F says: `inverse`: inverse times are on.
+double feed_value(const PostFormat& format, const PlanStep& step, bool inverse) {
+  const double minutes = std::max(step.duration_s, 1e-9) / 60.0;
+  if (step.timed && inverse) return 1.0 / minutes;
+  if (step.timed) {
+    const double way = format.feed_counts == FeedCounts::kAllAxes || step.way_mm < 1e-9
+                           ? std::hypot(step.way_mm, step.turn_deg)
+                           : step.way_mm;
+    return way / minutes;
+  }
+  // With TCP the tip's feed means nothing while the tip stands.
+  const bool rests = step.tcp && step.turns && step.tip_mm < 1e-9;
+  return rests ? step.turn_deg / minutes : mm_min_from_mm_s(step.feed_mm_s);
+}
+
 }  // namespace
 
 Writer::Writer(const PostFormat& format, const PlannerSetup& setup, const ProgramNames& names, Out out,
@@ -70,7 +85,7 @@ void Writer::motion(const LineTemplate& lines) {
   if (!lines_.empty()) motion_word_ = lines.first_word();
 }
 
-std::string Writer::fitting(std::string_view text) {
+std::string Writer::fitting(std::string_view text) const {
   std::string kept;
   for (const char one : text) {
     const bool fits = one >= ' ' && one <= '~' && format_.comment_without.find(one) == std::string::npos;
@@ -245,22 +260,8 @@ void Writer::approach(const PlanStep& step) {
   motion(format_.motion.rapid);
 }
 
-double Writer::feed_value(const PlanStep& step) const {
-  const double minutes = std::max(step.duration_s, 1e-9) / 60.0;
-  if (step.timed && timed_) return 1.0 / minutes;
-  if (step.timed) {
-    const double way = format_.feed_counts == FeedCounts::kAllAxes || step.way_mm < 1e-9
-                           ? std::hypot(step.way_mm, step.turn_deg)
-                           : step.way_mm;
-    return way / minutes;
-  }
-  // With TCP the tip's feed means nothing while the tip stands.
-  const bool rests = step.tcp && step.turns && step.tip_mm < 1e-9;
-  return rests ? step.turn_deg / minutes : mm_min_from_mm_s(step.feed_mm_s);
-}
-
 void Writer::feed_word(const PlanStep& step) {
-  const double value = feed_value(step);
+  const double value = feed_value(format_, step, timed_);
   const std::string text = "F" + written(timed_ ? format_.numbers.inverse_time : format_.numbers.feed, value);
   if (std::strtod(text.c_str() + 1, nullptr) == 0.0) {
     diagnostics_.error("feed-below-digits", {names_.source, step.line, 0},

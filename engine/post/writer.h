@@ -50,7 +50,7 @@ class Writer {
   void coolant(const std::string& text);
   void set_coolant(const std::string& word);
   /// What a comment can hold of the text.
-  std::string fitting(std::string_view text);
+  std::string fitting(std::string_view text) const;
   void approach(const PlanStep& step);
   void change_tool(const PlanStep& step);
   void spindle(double rpm);
@@ -61,11 +61,8 @@ class Writer {
   void move(const PlanStep& step);
   void arc_words(const PlanStep& step);
   void feed_word(const PlanStep& step);
-  double feed_value(const PlanStep& step) const;
   void motion(const LineTemplate& lines);
   void hole(const PlanStep& step, const program::ClHole& hole);
-  const LineTemplate& cycle_lines(const program::ClHole& hole) const;
-  void hole_values(const PlanStep& step, const program::ClHole& hole);
   bool merges_with(const PlanStep& arrival, const PlanStep& step, const program::ClHole& hole);
   std::string definition(const PlanStep& step, const program::ClHole& hole);
   void end_cycle();

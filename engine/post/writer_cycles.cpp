@@ -14,10 +14,7 @@ namespace {
 /// Heights that are nearer are the same, mm.
 constexpr double kSameHeight = 1e-6;
 
-}  // namespace
-
-const LineTemplate& Writer::cycle_lines(const program::ClHole& hole) const {
-  const CycleWords& words = format_.cycle;
+const LineTemplate& cycle_lines(const CycleWords& words, const program::ClHole& hole) {
   const bool dwells = hole.cycle.dwell_s > 0.0;
   switch (hole.cycle.kind) {
     case program::ClCycleKind::kDeep:
@@ -35,9 +32,9 @@ const LineTemplate& Writer::cycle_lines(const program::ClHole& hole) const {
   return dwells ? words.drill_dwell : words.drill;
 }
 
-void Writer::hole_values(const PlanStep& step, const program::ClHole& hole) {
+void set_heights(const PostFormat& format, const PlanStep& step, const program::ClHole& hole, PlaceValues& values) {
   const program::ClCycle& cycle = hole.cycle;
-  const auto linear = [&](Place place, double value) { values_.set(place, written(format_.numbers.linear, value)); };
+  const auto linear = [&](Place place, double value) { values.set(place, written(format.numbers.linear, value)); };
   const double surface = step.p.z() - cycle.retract_mm;
   linear(Place::kSurface, surface);
   linear(Place::kBottom, surface - cycle.depth_mm);
@@ -45,31 +42,40 @@ void Writer::hole_values(const PlanStep& step, const program::ClHole& hole) {
   linear(Place::kRetract, step.p.z());
   linear(Place::kDepth, -cycle.depth_mm);
   // Rounded apart, surface and clearance could add up to more than the height of the retract.
-  const double room = std::strtod(values_.of(Place::kRetract).c_str(), nullptr) -
-                      std::strtod(values_.of(Place::kSurface).c_str(), nullptr);
+  const double room = std::strtod(values.of(Place::kRetract).c_str(), nullptr) -
+                      std::strtod(values.of(Place::kSurface).c_str(), nullptr);
   linear(Place::kClearance, std::min(cycle.clear_mm, room));
   linear(Place::kSecondClearance, cycle.retract_mm);
   linear(Place::kStep, cycle.step_mm > 0.0 ? cycle.step_mm : cycle.depth_mm);
   linear(Place::kStepFirst, surface - (cycle.first_step_mm > 0.0 ? cycle.first_step_mm : cycle.step_mm));
-  const bool to_start = std::abs(cycle.retract_mm - cycle.arrive_mm) < kSameHeight;
-  values_.set(Place::kReturn, to_start ? format_.cycle.return_start : format_.cycle.return_clear);
-  const double dwell = cycle.dwell_s * (format_.cycle.dwell_in_ms ? 1e3 : 1.0);
-  NumberFormat time = format_.numbers.time;
-  if (format_.cycle.dwell_in_ms) time.decimals = 0, time.point = false;
-  values_.set(Place::kDwell, written(time, dwell));
-  values_.set(Place::kFeed, written(format_.numbers.feed, mm_min_from_mm_s(cycle.feed_mm_s)));
-  if (step.spindle_rpm != 0.0)
-    linear(Place::kPitch, mm_min_from_mm_s(cycle.feed_mm_s) / std::abs(step.spindle_rpm));
-  values_.set(Place::kS, written(format_.numbers.speed, std::abs(step.spindle_rpm)));
 }
+
+/// Returns, times, feed, pitch and speed.
+void set_rates(const PostFormat& format, const PlanStep& step, const program::ClHole& hole, PlaceValues& values) {
+  const program::ClCycle& cycle = hole.cycle;
+  const bool to_start = std::abs(cycle.retract_mm - cycle.arrive_mm) < kSameHeight;
+  values.set(Place::kReturn, to_start ? format.cycle.return_start : format.cycle.return_clear);
+  const double dwell = cycle.dwell_s * (format.cycle.dwell_in_ms ? 1e3 : 1.0);
+  NumberFormat time = format.numbers.time;
+  if (format.cycle.dwell_in_ms) time.decimals = 0, time.point = false;
+  values.set(Place::kDwell, written(time, dwell));
+  values.set(Place::kFeed, written(format.numbers.feed, mm_min_from_mm_s(cycle.feed_mm_s)));
+  if (step.spindle_rpm != 0.0)
+    values.set(Place::kPitch, written(format.numbers.linear,
+                                      mm_min_from_mm_s(cycle.feed_mm_s) / std::abs(step.spindle_rpm)));
+  values.set(Place::kS, written(format.numbers.speed, std::abs(step.spindle_rpm)));
+}
+
+}  // namespace
 
 /// The lines of the cycle without where the hole is.
 std::string Writer::definition(const PlanStep& step, const program::ClHole& hole) {
-  hole_values(step, hole);
+  set_heights(format_, step, hole, values_);
+  set_rates(format_, step, hole, values_);
   values_.set(Place::kAxes, "");
   values_.set(Place::kF, "F" + values_.of(Place::kFeed));
   lines_.clear();
-  cycle_lines(hole).fill(values_, lines_);
+  cycle_lines(format_.cycle, hole).fill(values_, lines_);
   std::string text;
   for (const std::string& one : lines_) text += one + "\n";
   return text;
@@ -106,7 +112,7 @@ void Writer::hole(const PlanStep& step, const program::ClHole& hole) {
   const double height = hole.cycle.retract_mm;
   const bool to_clear = std::abs(height - hole.cycle.clear_mm) < kSameHeight,
              to_start = std::abs(height - hole.cycle.arrive_mm) < kSameHeight;
-  const bool returns = cycle_lines(hole).uses(Place::kReturn);
+  const bool returns = cycle_lines(format_.cycle, hole).uses(Place::kReturn);
   if (returns && !to_clear && !to_start) {
     end_cycle();
     values_.set(Place::kAxes, changed(words_of(step.p, step.rotary), true));
