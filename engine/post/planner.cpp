@@ -66,7 +66,8 @@ Planner::Planner(const PlannerSetup& setup, std::string file, StretchSink sink, 
 void Planner::move(const program::Move& move) {
   const bool changes_tool = move.tool != cl_tool_;
   const bool opens = move.rapid && last_rapid_ && in_hole_ == 0;
-  if (changes_tool || opens) plan_stretch();
+  const bool enough = moves_.size() >= kMovesAhead && in_hole_ == 0;
+  if (changes_tool || opens || enough) plan_stretch();
   if (changes_tool) use_tool(move.tool);
   if (next_hole_) {
     in_hole_ = next_hole_->moves;

@@ -10,7 +10,8 @@
 //     the machine's tool axis, the rotary axes turn, and it comes down again.
 //  3. When none can, the fault of the first one is told, with its CL line.
 //
-//  A stretch is held whole; memory grows with the longest one, not with the file.
+//  A stretch is held whole, about a kilobyte for each move, but no more than kMovesAhead moves of it: the
+//  rest goes on from where they end, so memory does not grow with the file.
 #pragma once
 
 #include <functional>
@@ -65,6 +66,9 @@ struct PlannerSetup {
 int axis_along_tool(const kinematics::MachineModel& machine);
 /// Where that axis stands when the tool is out of the way: where tools are changed, or at home.
 double retracted(const kinematics::MachineModel& machine);
+
+/// Moves that the start of a stretch is chosen by.
+inline constexpr size_t kMovesAhead = 50'000;
 
 /// Takes the planned stretches in their order.
 using StretchSink = std::function<void(const PlannedStretch&)>;
