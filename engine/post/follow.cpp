@@ -35,6 +35,7 @@ struct Cutting {
   double radius_mm = 0.0;  ///< of an arc; 0: straight
   double angle = 0.0;      ///< of the arc
   double spread_mm = 0.0;  ///< by which its ends differ in radius
+  PoleSide side = PoleSide::kContinuous;
   FollowFault fault;
 };
 
@@ -241,12 +242,25 @@ void set_arc(Cutting& cutting) {
   cutting.angle = toolpath::arc_angle(block);
 }
 
+/// The other solution beside the pole: the outer axis half a turn away, to the side that its travel has.
+AxisValues other_side(const Follower& follower, const ToolPose& pose, const AxisValues& start) {
+  const auto outer = static_cast<long>(follower.poles.outer);
+  const kinematics::Axis& axis = follower.machine.axes[static_cast<size_t>(outer)];
+  AxisValues hint = start;
+  hint[outer] += start[outer] + kPi <= axis.max ? kPi : -kPi;
+  const Branch branch = follower.inverse.solve_nearest(pose, hint);
+  return branch.outcome == InverseOutcome::kUnreachable ? start : branch.q;
+}
+
 /// One part of the move, between places where the axis may pass the pole.
 bool follow_part(Cutting& cutting, From& from, double to) {
   toolpath::BlockMove part;
   part.from = from.pose;
   part.to = snapped(cutting.follower, motion::pose_at(cutting.motion, to));
-  const AxisValues start = motion::leaving_pole(cutting.follower.inverse, part, from.q);
+  AxisValues start = motion::leaving_pole(cutting.follower.inverse, part, from.q);
+  const bool leaves = cutting.follower.inverse.pole_distance(from.pose.axis_W) <= kinematics::kPoleTolerance &&
+                      angle_between(part.from.axis_W, part.to.axis_W) > cutting.follower.rules.snap_rad;
+  if (leaves && cutting.side == PoleSide::kOther) start = other_side(cutting.follower, from.pose, start);
   return turn_at_rest(cutting, from, start) && cut(cutting, from, to);
 }
 
@@ -288,12 +302,12 @@ FollowFault fault_of(const Follower& follower, const Branch& branch, const ToolP
           "clamp the work elsewhere (--work-origin), or tilt the tool less"};
 }
 
-FollowFault follow(const Follower& follower, const program::Move& move, AxisValues& q,
+FollowFault follow(const Follower& follower, const program::Move& move, PoleSide side, AxisValues& q,
                    std::vector<Waypoint>& places) {
   const motion::BlockMotion motion = motion_of(follower, move);
   const size_t before = places.size();
   std::vector<Waypoint> made;
-  Cutting cutting{follower, motion, made, 0.0, 0.0, 0.0, 0.0, {}};
+  Cutting cutting{follower, motion, made, 0.0, 0.0, 0.0, 0.0, side, {}};
   const Branch end = follower.inverse.solve_nearest(motion.block.to, q);
   if (end.outcome == InverseOutcome::kUnreachable) return fault_of(follower, end, motion.block.to);
   const double digits = rounding_mm(follower, follower.rules.tcp, q, end.q);

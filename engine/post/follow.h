@@ -66,10 +66,16 @@ inline constexpr double kTurned = 1e-9;
 /// More in one piece is a jump, rad.
 inline constexpr double kPieceTurn = 3.3;
 
+/// On which side a pole is left.
+enum class PoleSide {
+  kContinuous,  ///< on the one that the axes go on to, where the travel has it: nothing turns
+  kOther,       ///< the outer axis turns by half a turn at rest, and the inner one goes back
+};
+
 /// Appends the places after the start of the move, the last at its end. `q`: axis values at its start; in the
 /// end those of the last place. Nothing is appended with a fault.
-FollowFault follow(const Follower& follower, const program::Move& move, kinematics::AxisValues& q,
-                   std::vector<Waypoint>& places);
+FollowFault follow(const Follower& follower, const program::Move& move, PoleSide side,
+                   kinematics::AxisValues& q, std::vector<Waypoint>& places);
 
 /// Greatest of |change| of a rotary axis, rad.
 double greatest_turn(const kinematics::MachineModel& machine, const kinematics::AxisValues& from,

@@ -216,11 +216,14 @@ Planner::Plan Planner::best_plan() const {
     tried = true;
     return good;
   };
-  for (const Start& start : starts) {
-    if (start.continuous && better(plan_from(begin, start, false))) return first;
-    // A feed leaves no room to lift the tool.
-    const bool may_lift = begin.approach || begin.first == 1;
-    if (may_lift && better(plan_from(begin, start, true))) return first;
+  // A feed leaves no room to lift the tool.
+  const bool may_lift = begin.approach || begin.first == 1;
+  for (const PoleSide side : {PoleSide::kContinuous, PoleSide::kOther}) {
+    if (side == PoleSide::kOther && follower_->poles.at.empty()) break;
+    for (const Start& start : starts) {
+      if (start.continuous && better(plan_from(begin, start, false, side))) return first;
+      if (may_lift && better(plan_from(begin, start, true, side))) return first;
+    }
   }
   if (!tried) {
     const kinematics::Branch at = follower_->inverse.solve_nearest(begin.pose, q_);

@@ -8,7 +8,8 @@
 //  2. The first candidate whose whole stretch can be driven is taken (Kruth et al.: switch where it costs
 //     nothing). Where it is the continuous one the rapid is driven as it is; else the tool is retracted along
 //     the machine's tool axis, the rotary axes turn, and it comes down again.
-//  3. When none can, the fault of the first one is told, with its CL line.
+//  3. The same with the other side of each pole that is passed (PoleSide), on machines that have one.
+//  4. When none can, the fault of the first one is told, with its CL line.
 //
 //  A stretch is held whole, about a kilobyte for each move, but no more than kMovesAhead moves of it: the
 //  rest goes on from where they end, so memory does not grow with the file.
@@ -94,6 +95,7 @@ class Planner final : public program::ClSink {
   };
   struct Plan {
     PlannedStretch stretch;
+    PoleSide side = PoleSide::kContinuous;
     kinematics::AxisValues q;
     std::optional<FollowFault> fault;
     int fault_line = 0;
@@ -111,7 +113,7 @@ class Planner final : public program::ClSink {
   std::vector<Start> candidates(const Entry& entry) const;
   Entry entry() const;
   kinematics::AxisValues turned_for_tilt(const ToolPose& pose, const kinematics::AxisValues& q) const;
-  Plan plan_from(const Entry& entry, const Start& start, bool approach) const;
+  Plan plan_from(const Entry& entry, const Start& start, bool approach, PoleSide side) const;
   Plan best_plan() const;
   bool add_move(const program::Move& move, Plan& plan) const;
   bool add_arc(const program::Move& move, Plan& plan) const;

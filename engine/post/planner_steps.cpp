@@ -146,7 +146,7 @@ bool Planner::add_move(const program::Move& move, Plan& plan) const {
   if (plan.fault) return false;
   std::vector<Waypoint> places;
   AxisValues q = plan.q;
-  const FollowFault fault = follow(*follower_, move, q, places);
+  const FollowFault fault = follow(*follower_, move, plan.side, q, places);
   if (!fault.code.empty()) {
     plan.fault = fault;
     plan.fault_line = move.line;
@@ -344,8 +344,9 @@ void Planner::without_tcp(size_t first, Plan& plan) const {
   }
 }
 
-Planner::Plan Planner::plan_from(const Entry& begin, const Start& start, bool approach) const {
+Planner::Plan Planner::plan_from(const Entry& begin, const Start& start, bool approach, PoleSide side) const {
   Plan plan;
+  plan.side = side;
   plan.q = q_;
   plan.summary = summary_;
   std::vector<size_t> steps_before;  // by move
