@@ -33,7 +33,8 @@ post::PostFormat format_of(const PostCommand& given) {
   if (!given.post.empty() && !given.dialect.empty())
     throw InputError("two-posts", {"--post " + given.post}, "--post and --dialect both name the words",
                      "give one of them");
-  const std::string name = given.post.empty() ? (given.dialect.empty() ? "fanuc" : given.dialect) : given.post;
+  const std::string name =
+      given.post.empty() ? (given.dialect.empty() ? "fanuc" : given.dialect) : given.post;
   const std::string file = post::post_file(name);
   if (file.empty())
     throw InputError("unknown-post", {"--dialect " + name}, "no post is called so",
@@ -59,7 +60,8 @@ machine::MachineScene machine_of(const PostCommand& given) {
 post::PostOptions options_of(const PostCommand& given, Diagnostics& told) {
   post::PostOptions options;
   if (given.tcp && given.no_tcp)
-    throw InputError("tcp-twice", {"swarf post"}, "--tcp and --no-tcp contradict each other", "give one of them");
+    throw InputError("tcp-twice", {"swarf post"}, "--tcp and --no-tcp contradict each other",
+                     "give one of them");
   if (given.tcp || given.no_tcp) options.tcp = given.tcp;
   options.tip_mm = given.tolerance_um * kMicrometre;
   options.axis_rad = rad_from_deg(given.axis_tolerance_deg);
@@ -81,7 +83,8 @@ post::PostOptions options_of(const PostCommand& given, Diagnostics& told) {
 /// "2 min 05 s".
 std::string spoken_time(double seconds) {
   const auto whole = static_cast<long>(seconds + 0.5);
-  return whole < 60 ? fmt::format("{:.1f} s", seconds) : fmt::format("{} min {:02} s", whole / 60, whole % 60);
+  return whole < 60 ? fmt::format("{:.1f} s", seconds)
+                    : fmt::format("{} min {:02} s", whole / 60, whole % 60);
 }
 
 std::vector<std::pair<std::string, std::string>> table_of(const post::PostFormat& format,
@@ -89,10 +92,11 @@ std::vector<std::pair<std::string, std::string>> table_of(const post::PostFormat
                                                           const post::PostResult& result) {
   const post::PlanSummary& plan = result.plan;
   std::vector<std::pair<std::string, std::string>> rows{
-      {"written", fmt::format("{} for {}, {}", format.name, machine.name, result.tcp ? "with TCP" : "without TCP")},
+      {"written",
+       fmt::format("{} for {}, {}", format.name, machine.name, result.tcp ? "with TCP" : "without TCP")},
       {"blocks", fmt::format("{} lines for {} positions of the CL data", result.written.blocks, plan.points)},
-      {"moves", fmt::format("{}, of them {} arcs, {} cycles, {} approaches, {} turns at rest", plan.steps, plan.arcs,
-                            plan.holes, plan.approaches, plan.pole_turns)},
+      {"moves", fmt::format("{}, of them {} arcs, {} cycles, {} approaches, {} turns at rest", plan.steps,
+                            plan.arcs, plan.holes, plan.approaches, plan.pole_turns)},
       {"time", fmt::format("{}: feed {}, rapid {}, dwell {}; accelerations and tool changes not counted",
                            spoken_time(plan.feed_s + plan.rapid_s + plan.dwell_s), spoken_time(plan.feed_s),
                            spoken_time(plan.rapid_s), spoken_time(plan.dwell_s))}};
@@ -102,23 +106,25 @@ std::vector<std::pair<std::string, std::string>> table_of(const post::PostFormat
     const auto row = static_cast<long>(i);
     const auto shown = [&](double value) { return rotary ? deg_from_rad(value) : value; };
     rows.emplace_back(fmt::format("axis {}", axis.name),
-                      fmt::format("{:.3f} to {:.3f} {}, {:.3f} in all", shown(plan.low[row]), shown(plan.high[row]),
-                                  rotary ? "deg" : "mm", shown(plan.travel[row])));
+                      fmt::format("{:.3f} to {:.3f} {}, {:.3f} in all", shown(plan.low[row]),
+                                  shown(plan.high[row]), rotary ? "deg" : "mm", shown(plan.travel[row])));
   }
-  rows.emplace_back("tip", fmt::format("at most {:.3f} um from the CL data ({:.3f} um of it the written digits), "
-                                       "proven{}; line {}",
-                                       um_from_mm(plan.deviation_mm), um_from_mm(plan.digits_mm),
-                                       result.tcp ? "; the control keeps it on its line"
-                                                  : fmt::format("; tolerance {:g} um", um_from_mm(result.rules.tip_mm)),
-                                       plan.deviation_line));
+  rows.emplace_back(
+      "tip", fmt::format("at most {:.3f} um from the CL data ({:.3f} um of it the written digits), "
+                         "proven{}; line {}",
+                         um_from_mm(plan.deviation_mm), um_from_mm(plan.digits_mm),
+                         result.tcp ? "; the control keeps it on its line"
+                                    : fmt::format("; tolerance {:g} um", um_from_mm(result.rules.tip_mm)),
+                         plan.deviation_line));
   if (plan.slowed > 0)
     rows.emplace_back("slowed", fmt::format("{} blocks, by the speed of an axis", plan.slowed));
   std::string words;
   for (const std::string& one : result.written.not_written) words += (words.empty() ? "" : " ") + one;
   if (!words.empty()) rows.emplace_back("not written", words);
   if (result.written.comments_changed > 0)
-    rows.emplace_back("comments", fmt::format("{} lost characters that the control does not take, or their end",
-                                              result.written.comments_changed));
+    rows.emplace_back("comments",
+                      fmt::format("{} lost characters that the control does not take, or their end",
+                                  result.written.comments_changed));
   return rows;
 }
 
@@ -176,8 +182,10 @@ int run_post(const PostCommand& given) {
   constexpr size_t kPiece = size_t{1} << 16U;
   std::string pending;
   const auto flush = [&] {
-    if (to_stdout) std::fwrite(pending.data(), 1, pending.size(), stdout);
-    else file->write(pending);
+    if (to_stdout)
+      std::fwrite(pending.data(), 1, pending.size(), stdout);
+    else
+      file->write(pending);
     pending.clear();
   };
   TerminalProgress progress;
@@ -234,23 +242,24 @@ Exit codes: 0 written; 2 the CL data cannot be driven so, or cannot be read: not
 
 void add_post(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<PostCommand>();
-  CLI::App* command = app.add_subcommand("post", "Write CL data as an NC program for a machine and its control");
+  CLI::App* command =
+      app.add_subcommand("post", "Write CL data as an NC program for a machine and its control");
   command->add_option("file", options->file, "CL data (.cls, .clt, .ncl, .apt, .cldata)")->required();
-  command
-      ->add_option("--machine", options->machine,
-                   "a machine that 'swarf machines' lists, or machine.toml")
+  command->add_option("--machine", options->machine, "a machine that 'swarf machines' lists, or machine.toml")
       ->type_name("NAME|FILE")
       ->required();
   command->add_option("--dialect", options->dialect,
                       "the control's words: " + post::shipped_list() + " (fanuc when left out)");
   command->add_option("--post", options->post, "words of your own: a file as those in assets/posts")
       ->type_name("FILE");
-  command->add_flag("--tcp", options->tcp, "the control keeps the tip on its line; as the dialect has it when left out");
+  command->add_flag("--tcp", options->tcp,
+                    "the control keeps the tip on its line; as the dialect has it when left out");
   command->add_flag("--no-tcp", options->no_tcp, "axis values: any control of these axes can drive them");
   command
-      ->add_option("--tolerance-um", options->tolerance_um,
-                   "how far the tip may leave the CL data without TCP, written digits included; and the chords of "
-                   "arcs that the control cannot go")
+      ->add_option(
+          "--tolerance-um", options->tolerance_um,
+          "how far the tip may leave the CL data without TCP, written digits included; and the chords of "
+          "arcs that the control cannot go")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   command
@@ -262,8 +271,9 @@ void add_post(CLI::App& app, int& exit_code) {
       "--tools", options->tools,
       "tool table with the lengths: .toml with [[tool]], LinuxCNC's .tbl, Fusion's .json, FreeCAD's .fctl");
   command
-      ->add_option("--work-origin", options->work_origin,
-                   "where the work's zero stands in the machine, mm; as the machine's file has it when left out")
+      ->add_option(
+          "--work-origin", options->work_origin,
+          "where the work's zero stands in the machine, mm; as the machine's file has it when left out")
       ->expected(3)
       ->type_name("X Y Z");
   command->add_option("--work-rotation-deg", options->work_rotation_deg, "the work turned about Z")

@@ -62,8 +62,8 @@ double sagitta(const Cutting& cutting, double share) {
 }
 
 /// With TCP the rotary axes run evenly and the linear ones follow: from the straight way of their values they
-/// stray as far as the tip would without TCP, at most trajectory_error_bound() (the columns of the linear axes
-/// are orthonormal). True when they may leave the travel in between.
+/// stray as far as the tip would without TCP, at most trajectory_error_bound() (the columns of the linear
+/// axes are orthonormal). True when they may leave the travel in between.
 bool may_leave_travel(const kinematics::MachineModel& machine, const AxisValues& from, const AxisValues& to,
                       double stray_mm) {
   constexpr double kUnseen = 1e-3;  // mm
@@ -128,9 +128,10 @@ FollowFault jump_fault(const Follower& follower, const AxisValues& from, const A
   const kinematics::Axis& axis = follower.machine.axes[worst];
   const auto row = static_cast<long>(worst);
   return {"axis-jump",
-          fmt::format("axis {} would have to jump from {} to {} here: its travel of {} to {} does not let it go on",
-                      axis.name, shown(axis, from[row]), shown(axis, to[row]), shown(axis, axis.min),
-                      shown(axis, axis.max)),
+          fmt::format(
+              "axis {} would have to jump from {} to {} here: its travel of {} to {} does not let it go on",
+              axis.name, shown(axis, from[row]), shown(axis, to[row]), shown(axis, axis.min),
+              shown(axis, axis.max)),
           "lift the tool before it with two RAPID moves (the axes unwind there), or clamp the work turned"};
 }
 
@@ -138,8 +139,8 @@ bool cut(Cutting& cutting, From& from, double to);
 
 bool cut_again(Cutting& cutting, From& from, double to, double error_share) {
   const double way = to - from.share;
-  const int pieces = std::clamp(static_cast<int>(std::ceil(std::sqrt(std::min(error_share, 1e4)))), 2,
-                                kPiecesAtOnce);
+  const int pieces =
+      std::clamp(static_cast<int>(std::ceil(std::sqrt(std::min(error_share, 1e4)))), 2, kPiecesAtOnce);
   const double start = from.share;
   for (int i = 1; i <= pieces; ++i) {
     if (!cut(cutting, from, i == pieces ? to : start + way * i / pieces)) return false;
@@ -193,7 +194,8 @@ bool turn_at_rest(Cutting& cutting, From& from, const AxisValues& to) {
       if (!cutting.fault.code.empty()) return false;
       double bound = 0.0;
       if (!follower.rules.tcp)
-        bound = kinematics::segment_deviation(follower.machine, {from.pose, from.pose, before, branch.q}).proven;
+        bound =
+            kinematics::segment_deviation(follower.machine, {from.pose, from.pose, before, branch.q}).proven;
       within = bound <= cutting.tip_mm;
       made.push_back({from.pose, branch.q, from.share, bound, true});
       before = branch.q;
@@ -258,8 +260,9 @@ bool follow_part(Cutting& cutting, From& from, double to) {
   part.from = from.pose;
   part.to = snapped(cutting.follower, motion::pose_at(cutting.motion, to));
   AxisValues start = motion::leaving_pole(cutting.follower.inverse, part, from.q);
-  const bool leaves = cutting.follower.inverse.pole_distance(from.pose.axis_W) <= kinematics::kPoleTolerance &&
-                      angle_between(part.from.axis_W, part.to.axis_W) > cutting.follower.rules.snap_rad;
+  const bool leaves =
+      cutting.follower.inverse.pole_distance(from.pose.axis_W) <= kinematics::kPoleTolerance &&
+      angle_between(part.from.axis_W, part.to.axis_W) > cutting.follower.rules.snap_rad;
   if (leaves && cutting.side == PoleSide::kOther) start = other_side(cutting.follower, from.pose, start);
   return turn_at_rest(cutting, from, start) && cut(cutting, from, to);
 }
@@ -283,7 +286,8 @@ double greatest_turn(const kinematics::MachineModel& machine, const AxisValues& 
   double greatest = 0.0;
   for (size_t i = 0; i < machine.axes.size(); ++i) {
     const auto row = static_cast<long>(i);
-    if (machine.axes[i].kind == AxisKind::kRotary) greatest = std::max(greatest, std::abs(to[row] - from[row]));
+    if (machine.axes[i].kind == AxisKind::kRotary)
+      greatest = std::max(greatest, std::abs(to[row] - from[row]));
   }
   return greatest;
 }
@@ -296,10 +300,11 @@ FollowFault fault_of(const Follower& follower, const Branch& branch, const ToolP
   if (branch.outcome != InverseOutcome::kOutOfTravel) return {};
   const auto at = static_cast<size_t>(branch.out_of_travel_axis);
   const kinematics::Axis& axis = follower.machine.axes[at];
-  return {"travel",
-          fmt::format("axis {} would go to {}; its travel is {} to {}", axis.name,
-                      shown(axis, branch.q[static_cast<long>(at)]), shown(axis, axis.min), shown(axis, axis.max)),
-          "clamp the work elsewhere (--work-origin), or tilt the tool less"};
+  return {
+      "travel",
+      fmt::format("axis {} would go to {}; its travel is {} to {}", axis.name,
+                  shown(axis, branch.q[static_cast<long>(at)]), shown(axis, axis.min), shown(axis, axis.max)),
+      "clamp the work elsewhere (--work-origin), or tilt the tool less"};
 }
 
 FollowFault follow(const Follower& follower, const program::Move& move, PoleSide side, AxisValues& q,
@@ -322,8 +327,7 @@ FollowFault follow(const Follower& follower, const program::Move& move, PoleSide
   set_arc(cutting);
   From from{0.0, motion.block.from, q};
   const double pole = share_of_pole(follower, move);
-  const bool followed =
-      (pole < 0.0 || follow_part(cutting, from, pole)) && follow_part(cutting, from, 1.0);
+  const bool followed = (pole < 0.0 || follow_part(cutting, from, pole)) && follow_part(cutting, from, 1.0);
   if (!followed) return cutting.fault;
   places.insert(places.begin() + static_cast<long>(before), made.begin(), made.end());
   q = from.q;

@@ -9,7 +9,8 @@
 //  2. A move through the pole is cut there; the outer axis turns at rest where the far side wants another
 //     value, in pieces in which the tip stays where it is.
 //  3. Each part is cut in equal pieces, and these again, until every piece is within the tolerances. Bounds:
-//     tip    no TCP: kinematics::segment_deviation, proven (or the cheap bound of theory 2 above it), plus the
+//     tip    no TCP: kinematics::segment_deviation, proven (or the cheap bound of theory 2 above it), plus
+//     the
 //            sagitta of an arc's chord, plus what the written digits may turn the tip aside (rounding.h)
 //     axis   |da| <= turn^2 / 8 from the chord, or TrajectoryError::orientation_rad, which is proven
 //  Known limit: a piece that turns an axis by more than kPieceTurn is a jump and none is made of it.

@@ -6,11 +6,12 @@ namespace swarf::post {
 namespace {
 
 constexpr std::array<const char*, kPlaces> kNames{
-    "axes",    "rotaries", "across",    "along",            "home_along", "centre",     "centre_point",
-    "F",       "S",        "T",         "name",             "text",       "seconds",    "number",
-    "machine", "source",   "program",   "bottom",           "clear",      "surface",    "retract",
-    "return",  "depth",    "clearance", "second_clearance", "step",       "step_first", "dwell",
-    "feed",    "pitch"};
+    "axes",    "rotaries",     "across",  "along",     "home_along",
+    "centre",  "centre_point", "F",       "S",         "T",
+    "name",    "text",         "seconds", "number",    "machine",
+    "source",  "program",      "bottom",  "clear",     "surface",
+    "retract", "return",       "depth",   "clearance", "second_clearance",
+    "step",    "step_first",   "dwell",   "feed",      "pitch"};
 
 /// Where the piece that starts at `from` ends: at the next space outside of quotes.
 size_t piece_end(std::string_view line, size_t from) {
@@ -36,8 +37,8 @@ bool LineTemplate::read_piece(std::string_view text, std::span<const Place> allo
     if (open == text.size()) return true;
     const size_t close = text.find('}', open);
     const std::string name(text.substr(open + 1, close == text.npos ? close : close - open - 1));
-    const auto found =
-        std::find_if(allowed.begin(), allowed.end(), [&](Place one) { return name == kNames.at(size_t(one)); });
+    const auto found = std::find_if(allowed.begin(), allowed.end(),
+                                    [&](Place one) { return name == kNames.at(size_t(one)); });
     if (close == text.npos || found == allowed.end()) {
       bad = close == text.npos ? "{" + name : name;
       return false;

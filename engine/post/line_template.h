@@ -15,12 +15,36 @@ namespace swarf::post {
 
 /// What can stand between { and }. README.md says what each is and where it may stand.
 enum class Place {
-  kAxes, kRotaries, kAcross, kAlong, kHomeAlong,  // axis words
-  kCentre, kCentrePoint,
-  kF, kS, kT, kName, kText, kSeconds, kNumber,
-  kMachine, kSource, kProgram,
-  kBottom, kClear, kSurface, kRetract, kReturn,  // heights of a cycle
-  kDepth, kClearance, kSecondClearance, kStep, kStepFirst, kDwell, kFeed, kPitch,
+  kAxes,
+  kRotaries,
+  kAcross,
+  kAlong,
+  kHomeAlong,  // axis words
+  kCentre,
+  kCentrePoint,
+  kF,
+  kS,
+  kT,
+  kName,
+  kText,
+  kSeconds,
+  kNumber,
+  kMachine,
+  kSource,
+  kProgram,
+  kBottom,
+  kClear,
+  kSurface,
+  kRetract,
+  kReturn,  // heights of a cycle
+  kDepth,
+  kClearance,
+  kSecondClearance,
+  kStep,
+  kStepFirst,
+  kDwell,
+  kFeed,
+  kPitch,
   kCount
 };
 inline constexpr size_t kPlaces = static_cast<size_t>(Place::kCount);
@@ -44,7 +68,8 @@ class LineTemplate {
  public:
   /// No line.
   LineTemplate() = default;
-  /// `bad` receives the first { } that is none of `allowed`, or the text of a { without }; empty: it is right.
+  /// `bad` receives the first { } that is none of `allowed`, or the text of a { without }; empty: it is
+  /// right.
   LineTemplate(std::string_view text, std::span<const Place> allowed, std::string& bad);
 
   bool empty() const { return lines_.empty(); }

@@ -22,16 +22,17 @@ enum class StepKind {
 struct PlanStep {
   StepKind kind = StepKind::kRapid;
   kinematics::AxisValues q = kinematics::AxisValues::Zero();
-  ToolPose pose;                    ///< W
-  Vec3 p = Vec3::Zero();            ///< program X Y Z, mm: of the tip with TCP, else of the axes
-  Vec3 axes_p = Vec3::Zero();       ///< kApproach: the same without TCP
-  std::array<double, 3> rotary{};   ///< A B C, rad; 0 for those that the machine lacks
-  Vec3 centre = Vec3::Zero();       ///< kArc: program coordinates
-  int plane = 0;                    ///< kArc: 0 XY, 1 ZX, 2 YZ
-  bool clockwise = false;           ///< kArc: seen against the plane's normal
-  double feed_mm_s = 0.0;           ///< of the tip as programmed; 0: rapid
-  double tip_mm = 0.0;              ///< way of the tip
-  double way_mm = 0.0, turn_deg = 0.0;  ///< of the linear axes (kArc: of the tip), of the rotary axes together
+  ToolPose pose;                   ///< W
+  Vec3 p = Vec3::Zero();           ///< program X Y Z, mm: of the tip with TCP, else of the axes
+  Vec3 axes_p = Vec3::Zero();      ///< kApproach: the same without TCP
+  std::array<double, 3> rotary{};  ///< A B C, rad; 0 for those that the machine lacks
+  Vec3 centre = Vec3::Zero();      ///< kArc: program coordinates
+  int plane = 0;                   ///< kArc: 0 XY, 1 ZX, 2 YZ
+  bool clockwise = false;          ///< kArc: seen against the plane's normal
+  double feed_mm_s = 0.0;          ///< of the tip as programmed; 0: rapid
+  double tip_mm = 0.0;             ///< way of the tip
+  double way_mm = 0.0,
+         turn_deg = 0.0;            ///< of the linear axes (kArc: of the tip), of the rotary axes together
   double duration_s = 0.0;          ///< at that feed, or at the axes' speed limits where they are slower
   double dwell_s = 0.0;             ///< before it
   double spindle_rpm = 0.0;         ///< below 0: counter-clockwise
@@ -60,8 +61,8 @@ struct PlannedStretch {
 /// What all of it comes to.
 struct PlanSummary {
   long points = 0, steps = 0, arcs = 0, holes = 0, approaches = 0;
-  long pole_turns = 0;    ///< steps that turn the rotary axes at rest
-  long slowed = 0;        ///< steps that an axis does not let run at their feed
+  long pole_turns = 0;                                ///< steps that turn the rotary axes at rest
+  long slowed = 0;                                    ///< steps that an axis does not let run at their feed
   double feed_s = 0.0, rapid_s = 0.0, dwell_s = 0.0;  ///< without accelerations and tool changes
   kinematics::AxisValues travel = kinematics::AxisValues::Zero();
   kinematics::AxisValues low = kinematics::AxisValues::Constant(1e300);

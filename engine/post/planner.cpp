@@ -46,10 +46,11 @@ int axis_along_tool(const kinematics::MachineModel& machine) {
     if (axis.kind == AxisKind::kLinear && axis.direction_M.cross(machine.tool_axis_M).norm() < 1e-9)
       return static_cast<int>(i);
   }
-  throw InputError("approach-axis", {machine.name},
-                   "no linear axis of the machine runs along the tool when all axes are at zero: it cannot be "
-                   "retracted for a tool change",
-                   "write the program for a machine whose spindle stands along X, Y or Z at zero");
+  throw InputError(
+      "approach-axis", {machine.name},
+      "no linear axis of the machine runs along the tool when all axes are at zero: it cannot be "
+      "retracted for a tool change",
+      "write the program for a machine whose spindle stands along X, Y or Z at zero");
 }
 
 double retracted(const kinematics::MachineModel& machine) {
@@ -171,9 +172,8 @@ std::vector<Start> Planner::candidates(const Entry& entry) const {
   const kinematics::MachineModel& machine = follower_->machine;
   std::vector<Start> all;
   const auto add = [&](const AxisValues& q) {
-    const bool known = std::any_of(all.begin(), all.end(), [&](const Start& one) {
-      return rotary_way(machine, one.q, q) < kTurned;
-    });
+    const bool known = std::any_of(all.begin(), all.end(),
+                                   [&](const Start& one) { return rotary_way(machine, one.q, q) < kTurned; });
     if (!known && in_travel(machine, q)) all.push_back({q, false});
   };
   const kinematics::Branch nearest = follower_->inverse.solve_nearest(entry.pose, q_);

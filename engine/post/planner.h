@@ -39,8 +39,8 @@ struct PostTool {
 struct PostAbilities {
   std::array<bool, 3> planes{};  ///< arcs in XY, ZX, YZ
   bool helix = true, tcp_arcs = true;
-  bool drill = false, drill_dwell = false, deep = false, chip_break = false, bore = false,
-       bore_dwell = false, tap = false;
+  bool drill = false, drill_dwell = false, deep = false, chip_break = false, bore = false, bore_dwell = false,
+       tap = false;
   double arc_digit_mm = 1e-3;  ///< last digit of a linear word
 };
 
@@ -51,7 +51,8 @@ struct Start {
 };
 /// Puts the candidates of a stretch in the order in which they are tried, or takes some out. Later rules
 /// (collisions, dynamic programming over stretches) stand here. The moves are those of the stretch.
-using BranchChoice = std::function<void(std::span<const program::Move> stretch, std::vector<Start>& candidates)>;
+using BranchChoice =
+    std::function<void(std::span<const program::Move> stretch, std::vector<Start>& candidates)>;
 
 struct PlannerSetup {
   kinematics::MachineModel machine;
@@ -141,7 +142,7 @@ class Planner final : public program::ClSink {
   std::vector<program::Move> moves_;
   std::vector<HoleSpan> holes_;
   std::vector<PlacedNote> notes_;
-  int in_hole_ = 0;              ///< moves of a hole that are still to come
+  int in_hole_ = 0;  ///< moves of a hole that are still to come
   bool last_rapid_ = false;
 
   int cl_tool_ = -2, tool_ = -1;

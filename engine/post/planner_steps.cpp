@@ -96,9 +96,8 @@ void Planner::add_step(PlanStep step, double way_mm, Plan& plan) const {
     }
     step.turn_deg = deg_from_rad(std::sqrt(squares));
   }
-  step.way_mm = step.kind == StepKind::kArc
-                    ? way_mm
-                    : (space_->linear_of(step.q) - space_->linear_of(plan.q)).norm();
+  step.way_mm =
+      step.kind == StepKind::kArc ? way_mm : (space_->linear_of(step.q) - space_->linear_of(plan.q)).norm();
   const double digits = rounding_mm(*follower_, step.tcp, plan.q, step.q);
   step.deviation_mm += digits;
   summary.digits_mm = std::max(summary.digits_mm, digits);
@@ -285,7 +284,8 @@ bool Planner::keeps_cycle(const HoleSpan& span, const AxisValues& q) const {
   const ToolPose at = snapped(*follower_, hole.at);
   const Branch low = follower_->inverse.solve_nearest(at, q);
   const Branch high = follower_->inverse.solve_nearest({at.tip_W + at.axis_W, at.axis_W}, low.q);
-  if (low.outcome == InverseOutcome::kUnreachable || high.outcome == InverseOutcome::kUnreachable) return false;
+  if (low.outcome == InverseOutcome::kUnreachable || high.outcome == InverseOutcome::kUnreachable)
+    return false;
   const Vec3 way = program_point(at, high.q, false) - program_point(at, low.q, false);
   return (way - Vec3::UnitZ()).norm() < kExact;
 }
@@ -367,7 +367,8 @@ Planner::Plan Planner::plan_from(const Entry& begin, const Start& start, bool ap
       continue;
     }
     const size_t end = hole->first + static_cast<size_t>(hole->hole.moves);
-    const size_t arrivals = static_cast<size_t>(hole->hole.moves) - program::cycle_steps(hole->hole.cycle).size();
+    const size_t arrivals =
+        static_cast<size_t>(hole->hole.moves) - program::cycle_steps(hole->hole.cycle).size();
     if (!keeps_cycle(*hole, approach && i <= begin.first ? start.q : plan.q)) {
       for (; i < end && !plan.fault; ++i) {
         if (i >= steps_before.size()) steps_before.push_back(plan.stretch.steps.size());
@@ -384,7 +385,8 @@ Planner::Plan Planner::plan_from(const Entry& begin, const Start& start, bool ap
     i = end;
   }
   for (const PlacedNote& note : notes_) {
-    const size_t before = note.before < steps_before.size() ? steps_before[note.before] : plan.stretch.steps.size();
+    const size_t before =
+        note.before < steps_before.size() ? steps_before[note.before] : plan.stretch.steps.size();
     plan.stretch.notes.push_back({before, note.note});
   }
   return plan;
@@ -392,9 +394,9 @@ Planner::Plan Planner::plan_from(const Entry& begin, const Start& start, bool ap
 
 void Planner::time_stretch(Plan& plan) const {
   if (setup_.rules.tcp) return;
-  const bool turns = std::any_of(plan.stretch.steps.begin(), plan.stretch.steps.end(), [](const PlanStep& one) {
-    return one.kind == StepKind::kFeed && one.turns;
-  });
+  const bool turns =
+      std::any_of(plan.stretch.steps.begin(), plan.stretch.steps.end(),
+                  [](const PlanStep& one) { return one.kind == StepKind::kFeed && one.turns; });
   for (PlanStep& step : plan.stretch.steps)
     step.timed = turns && (step.kind == StepKind::kFeed || step.kind == StepKind::kArc);
 }

@@ -85,10 +85,11 @@ void check_lengths(const kinematics::MachineModel& machine, const std::string& f
                                  "length, which nobody has given",
                                  machine.name),
                      "give the tool table: --tools tools.toml");
-  diagnostics.warning("length-assumed", {file},
-                      "without a tool table the tools count as 0 mm long: the words of the program do not depend "
-                      "on it, but the travel of the axes has been judged with the tip at the gauge line",
-                      "give the tool table: --tools tools.toml");
+  diagnostics.warning(
+      "length-assumed", {file},
+      "without a tool table the tools count as 0 mm long: the words of the program do not depend "
+      "on it, but the travel of the axes has been judged with the tip at the gauge line",
+      "give the tool table: --tools tools.toml");
 }
 
 FollowRules rules_of(const PostFormat& format, const PostOptions& options, bool tcp) {
@@ -130,11 +131,12 @@ bool wants_tcp(const kinematics::MachineModel& machine, const PostFormat& format
 void warn_of_rapids(const kinematics::MachineModel& machine, const std::string& file, long rapids,
                     Diagnostics& diagnostics) {
   if (machine.rapid != kinematics::RapidMotion::kDogLeg || rapids == 0) return;
-  diagnostics.warning("rapid-dog-leg", {file},
-                      fmt::format("{} does not drive rapids on straight lines: its {} rapids leave the way of the "
-                                  "CL data by more than the tolerance",
-                                  machine.name, rapids),
-                      "see where they go with swarf run");
+  diagnostics.warning(
+      "rapid-dog-leg", {file},
+      fmt::format("{} does not drive rapids on straight lines: its {} rapids leave the way of the "
+                  "CL data by more than the tolerance",
+                  machine.name, rapids),
+      "see where they go with swarf run");
 }
 
 }  // namespace
@@ -179,7 +181,8 @@ PostResult post(const std::string& cl_file, const kinematics::MachineModel& mach
   setup.choice = options.choice;
   const ProgramNames names{program_name(cl_file), machine.name, cl_file};
   Writer writer(format, setup, names, out, diagnostics);
-  Planner planner(setup, cl_file, [&](const PlannedStretch& planned) { writer.stretch(planned); }, diagnostics);
+  Planner planner(
+      setup, cl_file, [&](const PlannedStretch& planned) { writer.stretch(planned); }, diagnostics);
   planner.tool_of = [&](int tool) { return tool < 0 ? -1 : bound[static_cast<size_t>(tool)]; };
   progress.begin("writing the program", static_cast<double>(program.motions), "moves");
   writer.head();

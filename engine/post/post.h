@@ -16,11 +16,11 @@
 namespace swarf::post {
 
 struct PostOptions {
-  std::optional<bool> tcp;       ///< none: as the format says, off on machines without two rotary axes
-  double tip_mm = 0.01;          ///< of the tip from the CL data, written digits included; without TCP
+  std::optional<bool> tcp;              ///< none: as the format says, off on machines without two rotary axes
+  double tip_mm = 0.01;                 ///< of the tip from the CL data, written digits included; without TCP
   double axis_rad = 0.1 * kPi / 180.0;  ///< of the tool axis from its great circle
   program::ClOptions cl;
-  std::vector<PostTool> tools;   ///< the table; empty: lengths are not known
+  std::vector<PostTool> tools;  ///< the table; empty: lengths are not known
   BranchChoice choice;
 };
 
@@ -28,7 +28,7 @@ struct PostResult {
   PlanSummary plan;
   WriterSummary written;
   bool tcp = false;
-  FollowRules rules;             ///< as they were kept to
+  FollowRules rules;  ///< as they were kept to
 };
 
 /// What a format can do, for the planner.

@@ -11,10 +11,10 @@ namespace {
 using P = Place;
 
 const std::vector<Place> kNone{}, kNumbered{P::kNumber}, kCommented{P::kText},
-    kHead{P::kMachine, P::kSource, P::kProgram}, kTool{P::kT, P::kName, P::kS}, kRetractTo{P::kHomeAlong, P::kT},
-    kApproach{P::kRotaries, P::kAcross, P::kAlong, P::kT}, kSpindle{P::kS, P::kT}, kDwells{P::kSeconds},
-    kRapid{P::kAxes}, kLine{P::kAxes, P::kF}, kArc{P::kAxes, P::kF, P::kCentre, P::kCentrePoint},
-    kTcp{P::kT, P::kAxes}, kNext{P::kAxes, P::kAcross},
+    kHead{P::kMachine, P::kSource, P::kProgram}, kTool{P::kT, P::kName, P::kS},
+    kRetractTo{P::kHomeAlong, P::kT}, kApproach{P::kRotaries, P::kAcross, P::kAlong, P::kT},
+    kSpindle{P::kS, P::kT}, kDwells{P::kSeconds}, kRapid{P::kAxes}, kLine{P::kAxes, P::kF},
+    kArc{P::kAxes, P::kF, P::kCentre, P::kCentrePoint}, kTcp{P::kT, P::kAxes}, kNext{P::kAxes, P::kAcross},
     kCycle{P::kAxes,  P::kF,         P::kBottom,          P::kClear, P::kSurface,   P::kRetract, P::kReturn,
            P::kDepth, P::kClearance, P::kSecondClearance, P::kStep,  P::kStepFirst, P::kDwell,   P::kFeed,
            P::kPitch, P::kS};
@@ -33,9 +33,9 @@ LineTemplate lines(ConfigTable& table, const std::string& key, const std::vector
   std::vector<std::string> names;
   for (const Place one : places) names.emplace_back(place_names()[static_cast<size_t>(one)]);
   const std::string near = nearest_name(bad, names);
-  table.error("unknown-place", key, fmt::format("{} has no place {{{}}}", key, bad),
-              (near.empty() ? "" : fmt::format("did you mean {{{}}}? ", near)) + "it may hold " +
-                  listed(places));
+  table.error(
+      "unknown-place", key, fmt::format("{} has no place {{{}}}", key, bad),
+      (near.empty() ? "" : fmt::format("did you mean {{{}}}? ", near)) + "it may hold " + listed(places));
   return {};
 }
 
@@ -150,7 +150,8 @@ PostFormat load_post(const std::string& file) {
   post.file = file;
   post.name = table.text("name");
   const std::string dialect = table.text("dialect");
-  if (const auto found = program::dialect_of(dialect)) post.dialect = *found;
+  if (const auto found = program::dialect_of(dialect))
+    post.dialect = *found;
   else if (!dialect.empty())
     table.error("unknown-dialect", "dialect", fmt::format("'{}' is no dialect", dialect),
                 "choose " + program::dialect_list(" or "));

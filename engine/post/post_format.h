@@ -21,9 +21,9 @@ enum class FeedCounts {
 };
 
 struct NumberFormats {
-  NumberFormat linear, rotary;       ///< mm, degrees
-  NumberFormat feed, inverse_time;   ///< mm/min, 1/min
-  NumberFormat speed, time;          ///< 1/min, s
+  NumberFormat linear, rotary;      ///< mm, degrees
+  NumberFormat feed, inverse_time;  ///< mm/min, 1/min
+  NumberFormat speed, time;         ///< 1/min, s
 };
 
 struct MotionWords {

@@ -10,8 +10,8 @@ namespace swarf::post {
 std::vector<std::string> shipped_posts();
 /// "fanuc, haas, heidenhain, linuxcnc, mazak, siemens".
 std::string shipped_list();
-/// The file that a flag means: `written` itself where it is a path (it has a slash or ends in .toml), else the
-/// shipped post of that name; "" where none is called so.
+/// The file that a flag means: `written` itself where it is a path (it has a slash or ends in .toml), else
+/// the shipped post of that name; "" where none is called so.
 std::string post_file(const std::string& written);
 
 }  // namespace swarf::post

@@ -78,9 +78,12 @@ void Writer::put(const LineTemplate& lines) {
 
 void Writer::motion(const LineTemplate& lines) {
   lines_.clear();
-  const bool holds = format_.motion.modal && !lines.first_word().empty() && lines.first_word() == motion_word_;
-  if (holds) lines.fill_without_first(values_, lines_);
-  else lines.fill(values_, lines_);
+  const bool holds =
+      format_.motion.modal && !lines.first_word().empty() && lines.first_word() == motion_word_;
+  if (holds)
+    lines.fill_without_first(values_, lines_);
+  else
+    lines.fill(values_, lines_);
   for (const std::string& one : lines_) put_line(one);
   if (!lines_.empty()) motion_word_ = lines.first_word();
 }
@@ -222,9 +225,10 @@ void Writer::change_tool(const PlanStep& step) {
   values_.set(Place::kS, written(format_.numbers.speed, std::abs(step.spindle_rpm)));
   put(format_.length_off);
   if (tool.number <= 0 && format_.change_by_name.empty()) {
-    diagnostics_.error("tool-number", {names_.source, step.line, 0},
-                       fmt::format("tool {} has no number, and {} calls tools by number", tool.name, format_.name),
-                       "give it one: LOADTL/1 in the CL data, or a number in --tools");
+    diagnostics_.error(
+        "tool-number", {names_.source, step.line, 0},
+        fmt::format("tool {} has no number, and {} calls tools by number", tool.name, format_.name),
+        "give it one: LOADTL/1 in the CL data, or a number in --tools");
   }
   put(tool.number > 0 ? format_.change : format_.change_by_name);
   spindle_ = 0.0;
@@ -280,8 +284,8 @@ void Writer::arc_words(const PlanStep& step) {
     const double value = step.centre[static_cast<long>(i)];
     centre += fmt::format("{}{}{}", centre.empty() ? "" : " ", "IJK"[i],
                           written(format_.numbers.linear, value - p_[static_cast<long>(i)]));
-    point += fmt::format("{}{}{}", point.empty() ? "" : " ", kLetters[i],
-                         written(format_.numbers.linear, value));
+    point +=
+        fmt::format("{}{}{}", point.empty() ? "" : " ", kLetters[i], written(format_.numbers.linear, value));
     words_.at(i).clear();  // both coordinates of the end are written
   }
   values_.set(Place::kCentre, centre);
@@ -308,8 +312,9 @@ void Writer::move(const PlanStep& step) {
   values_.set(Place::kAxes, changed(words_of(step.p, step.rotary), false));
   if (values_.of(Place::kAxes).empty()) return;
   feed_word(step);
-  motion(!arc ? format_.motion.line : step.clockwise ? format_.motion.clockwise
-                                                     : format_.motion.counter_clockwise);
+  motion(!arc             ? format_.motion.line
+         : step.clockwise ? format_.motion.clockwise
+                          : format_.motion.counter_clockwise);
 }
 
 void Writer::head() {
@@ -340,9 +345,12 @@ void Writer::stretch(const PlannedStretch& planned) {
         continue;
       }
     }
-    if (step.kind == StepKind::kApproach) approach(step);
-    else if (step.kind == StepKind::kHole) hole(step, planned.holes[static_cast<size_t>(step.hole)]);
-    else move(step);
+    if (step.kind == StepKind::kApproach)
+      approach(step);
+    else if (step.kind == StepKind::kHole)
+      hole(step, planned.holes[static_cast<size_t>(step.hole)]);
+    else
+      move(step);
   }
   change_comes_ = false;
   notes(planned.steps.size());

@@ -1,8 +1,9 @@
 // The plan as text, in the words of a PostFormat.
 //
-//  Order of the blocks, the same for all: head; for each approach end of cycle, TCP off, retract, tool change,
-//  spindle, rotary axes, across, length and down, TCP on; then the moves; tail. Axis words are written where
-//  their text changes, F where it changes (in inverse time always), and all anew where their meaning does.
+//  Order of the blocks, the same for all: head; for each approach end of cycle, TCP off, retract, tool
+//  change, spindle, rotary axes, across, length and down, TCP on; then the moves; tail. Axis words are
+//  written where their text changes, F where it changes (in inverse time always), and all anew where their
+//  meaning does.
 #pragma once
 
 #include <array>

@@ -32,9 +32,12 @@ const LineTemplate& cycle_lines(const CycleWords& words, const program::ClHole& 
   return dwells ? words.drill_dwell : words.drill;
 }
 
-void set_heights(const PostFormat& format, const PlanStep& step, const program::ClHole& hole, PlaceValues& values) {
+void set_heights(const PostFormat& format, const PlanStep& step, const program::ClHole& hole,
+                 PlaceValues& values) {
   const program::ClCycle& cycle = hole.cycle;
-  const auto linear = [&](Place place, double value) { values.set(place, written(format.numbers.linear, value)); };
+  const auto linear = [&](Place place, double value) {
+    values.set(place, written(format.numbers.linear, value));
+  };
   const double surface = step.p.z() - cycle.retract_mm;
   linear(Place::kSurface, surface);
   linear(Place::kBottom, surface - cycle.depth_mm);
@@ -51,7 +54,8 @@ void set_heights(const PostFormat& format, const PlanStep& step, const program::
 }
 
 /// Returns, times, feed, pitch and speed.
-void set_rates(const PostFormat& format, const PlanStep& step, const program::ClHole& hole, PlaceValues& values) {
+void set_rates(const PostFormat& format, const PlanStep& step, const program::ClHole& hole,
+               PlaceValues& values) {
   const program::ClCycle& cycle = hole.cycle;
   const bool to_start = std::abs(cycle.retract_mm - cycle.arrive_mm) < kSameHeight;
   values.set(Place::kReturn, to_start ? format.cycle.return_start : format.cycle.return_clear);
@@ -82,7 +86,8 @@ std::string Writer::definition(const PlanStep& step, const program::ClHole& hole
 }
 
 bool Writer::merges_with(const PlanStep& arrival, const PlanStep& step, const program::ClHole& hole) {
-  if (cycle_.empty() || format_.cycle.next.empty() || arrival.tcp || tcp_ || arrival.dwell_s > 0.0) return false;
+  if (cycle_.empty() || format_.cycle.next.empty() || arrival.tcp || tcp_ || arrival.dwell_s > 0.0)
+    return false;
   if (step.spindle_rpm != spindle_ || definition(step, hole) != cycle_) return false;
   const Words there = words_of(arrival.p, arrival.rotary);
   for (size_t i = 2; i < 6; ++i) {

@@ -9,19 +9,24 @@
 namespace swarf::post::property_test {
 namespace {
 
-constexpr const char* kMachines[] = {"mill_3axis",    "fork_head",     "head_table_bc", "lin_koren_xyzab",
-                                     "maho_600c",     "mikron_ucp710", "nutating_head", "spinner_u5_620"};
+constexpr const char* kMachines[] = {"mill_3axis", "fork_head",     "head_table_bc", "lin_koren_xyzab",
+                                     "maho_600c",  "mikron_ucp710", "nutating_head", "spinner_u5_620"};
 constexpr const char* kPosts[] = {"fanuc", "siemens", "heidenhain", "linuxcnc", "haas", "mazak"};
 
 /// Writes CL data statement by statement, near the middle of what the machine reaches.
 class RandomPath {
  public:
   RandomPath(const kinematics::MachineModel& machine, uint64_t seed)
-      : machine_(kinematics::with_tool(machine, 80.0)), inverse_(machine_), poles_(kinematics::find_poles(machine_)), rng_(seed) {
+      : machine_(kinematics::with_tool(machine, 80.0)),
+        inverse_(machine_),
+        poles_(kinematics::find_poles(machine_)),
+        rng_(seed) {
     for (size_t i = 0; i < machine_.axes.size(); ++i) {
       const kinematics::Axis& axis = machine_.axes[i];
-      low_[static_cast<long>(i)] = axis.kind == kinematics::AxisKind::kRotary ? std::max(axis.min, -1.0) : 0.0;
-      high_[static_cast<long>(i)] = axis.kind == kinematics::AxisKind::kRotary ? std::min(axis.max, 1.0) : 0.0;
+      low_[static_cast<long>(i)] =
+          axis.kind == kinematics::AxisKind::kRotary ? std::max(axis.min, -1.0) : 0.0;
+      high_[static_cast<long>(i)] =
+          axis.kind == kinematics::AxisKind::kRotary ? std::min(axis.max, 1.0) : 0.0;
     }
   }
 
@@ -54,8 +59,8 @@ class RandomPath {
     return poles_.at.front().direction_W;
   }
   std::string pose() const {
-    return fmt::format("{:.4f},{:.4f},{:.4f},{:.9f},{:.9f},{:.9f}", tip_.x(), tip_.y(), tip_.z(), axis_.x(), axis_.y(),
-                       axis_.z());
+    return fmt::format("{:.4f},{:.4f},{:.4f},{:.9f},{:.9f},{:.9f}", tip_.x(), tip_.y(), tip_.z(), axis_.x(),
+                       axis_.y(), axis_.z());
   }
   void go() { out_ += "GOTO/" + pose() + "\n"; }
   void piece() {
@@ -110,7 +115,9 @@ class RandomPath {
     if (poles_.at.empty()) return lines();
     const Vec3 p = pole();
     const Vec3 aside = p.cross(rng_.direction()).normalized() * rng_.uniform(0.02, 0.2);
-    const Vec3 off = rng_.next() % 2 == 0 ? Vec3(Vec3::Zero()) : Vec3(p.cross(aside).normalized() * std::pow(10.0, rng_.uniform(-8, -1)));
+    const Vec3 off = rng_.next() % 2 == 0
+                         ? Vec3(Vec3::Zero())
+                         : Vec3(p.cross(aside).normalized() * std::pow(10.0, rng_.uniform(-8, -1)));
     for (const double side : {1.0, -1.0}) {
       const Vec3 to = (p + side * aside + off).normalized();
       if (angle_between(axis_, to) > 0.8) return;
@@ -123,14 +130,15 @@ class RandomPath {
   void arcs() {
     for (int i = 0; i < 3; ++i) {
       const uint64_t which = rng_.next() % 4;
-      const Vec3 normal = which == 3 ? axis_ : Vec3(Vec3::Unit(static_cast<int>(which)) * (rng_.next() % 2 == 0 ? 1 : -1));
+      const Vec3 normal =
+          which == 3 ? axis_ : Vec3(Vec3::Unit(static_cast<int>(which)) * (rng_.next() % 2 == 0 ? 1 : -1));
       Vec3 radius = normal.cross(rng_.direction()).normalized() * std::pow(10.0, rng_.uniform(-2.0, 1.2));
       const Vec3 centre = tip_ - radius;
       const double angle = rng_.next() % 5 == 0 ? kTurn : rng_.uniform(0.001, 6.28);
       const double rise = rng_.next() % 3 == 0 ? rng_.uniform(-3, 3) : 0.0;
       // CIRCLE of Swarf's own data runs clockwise about its vector.
-      out_ += fmt::format("CIRCLE/{:.6f},{:.6f},{:.6f},{:.9f},{:.9f},{:.9f},{:.6f}\n", centre.x(), centre.y(), centre.z(),
-                          -normal.x(), -normal.y(), -normal.z(), radius.norm());
+      out_ += fmt::format("CIRCLE/{:.6f},{:.6f},{:.6f},{:.9f},{:.9f},{:.9f},{:.6f}\n", centre.x(), centre.y(),
+                          centre.z(), -normal.x(), -normal.y(), -normal.z(), radius.norm());
       if (angle < kTurn) radius = std::cos(angle) * radius + std::sin(angle) * normal.cross(radius);
       tip_ = centre + radius + (angle < kTurn ? rise : 0.0) * normal;
       go();
@@ -140,7 +148,8 @@ class RandomPath {
     constexpr const char* kKinds[] = {"DRILL", "DEEP", "BRKCHP", "BORE", "TAP", "FACE"};
     const uint64_t kind = rng_.next() % 6;
     out_ += fmt::format("CYCLE/{},DEPTH,{:.1f},CLEAR,2{}{},MMPM,{:.0f}\n", kKinds[kind], rng_.uniform(3, 12),
-                        kind == 1 || kind == 2 ? ",STEP,2.5" : "", kind == 5 ? ",DWELL,0.4" : "", rng_.uniform(80, 400));
+                        kind == 1 || kind == 2 ? ",STEP,2.5" : "", kind == 5 ? ",DWELL,0.4" : "",
+                        rng_.uniform(80, 400));
     for (int i = 0; i < 3; ++i) {
       const double z = tip_.z();
       tip_ = random_tip();
@@ -164,7 +173,9 @@ TEST(PostProperty, ReadBackWithinHalfADigit) {
   const char* wished = std::getenv("SWARF_POST_SEED");
   const char* many = std::getenv("SWARF_POST_SEEDS");
   const uint64_t first = wished != nullptr ? std::strtoull(wished, nullptr, 10) : 1,
-                 count = many != nullptr ? std::strtoull(many, nullptr, 10) : wished != nullptr ? 1 : 6;
+                 count = many != nullptr     ? std::strtoull(many, nullptr, 10)
+                         : wished != nullptr ? 1
+                                             : 6;
   long done = 0, refused = 0;
   for (const char* name : kMachines) {
     const kinematics::MachineModel machine = placed_machine(name);

@@ -21,12 +21,14 @@ const char* const kPart =
 fs::path ready(const std::string& name) {
   const fs::path folder = swarf::test::fresh_folder("post_" + name);
   write_text(folder / "part.cls", kPart);
-  write_text(folder / "tools.toml", "[[tool]]\nnumber = 1\ndiameter_mm = 4\nflute_length_mm = 10\nlength_mm = 40\n");
+  write_text(folder / "tools.toml",
+             "[[tool]]\nnumber = 1\ndiameter_mm = 4\nflute_length_mm = 10\nlength_mm = 40\n");
   return folder;
 }
 
 swarf::test::ProgramRun run_in(const fs::path& folder, const std::string& words) {
-  return swarf::test::run_command("cd '" + folder.string() + "' && " + std::string(SWARF_PROGRAM) + " " + words);
+  return swarf::test::run_command("cd '" + folder.string() + "' && " + std::string(SWARF_PROGRAM) + " " +
+                                  words);
 }
 
 TEST(PostCommand, WritesWhatCheckReadsOnTheMachine) {
@@ -34,12 +36,14 @@ TEST(PostCommand, WritesWhatCheckReadsOnTheMachine) {
   for (const std::string dialect : {"fanuc", "siemens", "heidenhain", "linuxcnc", "haas", "mazak"}) {
     for (const std::string tcp : {"--tcp", "--no-tcp"}) {
       SCOPED_TRACE(dialect + " " + tcp);
-      const auto posted = run_in(folder, "post part.cls --machine head_table_bc --dialect " + dialect + " " + tcp +
-                                             " --tools tools.toml --work-origin 0 0 150 -o part.nc");
+      const auto posted = run_in(folder, "post part.cls --machine head_table_bc --dialect " + dialect + " " +
+                                             tcp + " --tools tools.toml --work-origin 0 0 150 -o part.nc");
       ASSERT_EQ(posted.exit_code, 0) << posted.output;
       EXPECT_NE(posted.output.find("axis B"), std::string::npos) << posted.output;
-      EXPECT_NE(posted.output.find(tcp == "--tcp" ? "with TCP" : "tolerance 10 um"), std::string::npos) << posted.output;
-      const auto checked = run_in(folder, "check part.nc --machine head_table_bc --tools tools.toml --no-drive --dialect " + dialect);
+      EXPECT_NE(posted.output.find(tcp == "--tcp" ? "with TCP" : "tolerance 10 um"), std::string::npos)
+          << posted.output;
+      const auto checked = run_in(
+          folder, "check part.nc --machine head_table_bc --tools tools.toml --no-drive --dialect " + dialect);
       EXPECT_NE(checked.output.find("NC program"), std::string::npos) << checked.output;
       EXPECT_NE(checked.exit_code, 2) << checked.output << read_text(folder / "part.nc");
     }
@@ -49,8 +53,11 @@ TEST(PostCommand, WritesWhatCheckReadsOnTheMachine) {
 TEST(PostCommand, ToleranceGivesBlocksAndJsonNumbers) {
   const fs::path folder = ready("json");
   const auto posted = [&](const std::string& words) {
-    const auto run = run_in(folder, "post part.cls --machine maho_600c --no-tcp --dialect linuxcnc --tools tools.toml "
-                                    "--work-origin 0 0 200 --json -o part.ngc 2>/dev/null " + words);
+    const auto run =
+        run_in(folder,
+               "post part.cls --machine maho_600c --no-tcp --dialect linuxcnc --tools tools.toml "
+               "--work-origin 0 0 200 --json -o part.ngc 2>/dev/null " +
+                   words);
     EXPECT_EQ(run.exit_code, 0) << run.output;
     return nlohmann::json::parse(run.output, nullptr, false);
   };
@@ -107,7 +114,9 @@ TEST(PostCommand, WhatItRefusesAndThatNothingIsWritten) {
   refused("--machine mill_3axis --work-origin 0 0 300", "unreachable");
   refused("--machine maho_600c --no-tcp --tolerance-um 0.01 --work-origin 0 0 200", "tolerance-below-digits");
   write_text(folder / "part.cls", std::string(kPart) + "CUTCOM/LEFT\n");
-  EXPECT_EQ(run_in(folder, "post part.cls --machine maho_600c -o part.nc --cutcom centre --circle clockwise").exit_code, 2);
+  EXPECT_EQ(run_in(folder, "post part.cls --machine maho_600c -o part.nc --cutcom centre --circle clockwise")
+                .exit_code,
+            2);
 }
 
 }  // namespace

@@ -36,8 +36,8 @@ TEST(LinuxCnc, ReadsThreeAxes) {
   std::filesystem::create_directories(folder);
   // Where the machine stands G53 sends it is not known to rs274 alone: its positions count from G54.
   std::ofstream(folder / "part.ngc") << run.text;
-  const std::string command = "python3 " + std::string(SWARF_SOURCE_DIR) + "/tests/golden/linuxcnc/record.py " + program +
-                              " " + folder.string();
+  const std::string command = "python3 " + std::string(SWARF_SOURCE_DIR) +
+                              "/tests/golden/linuxcnc/record.py " + program + " " + folder.string();
   ASSERT_EQ(std::system(command.c_str()), 0);
   std::ifstream moves(folder / "part.moves");
   std::vector<Vec3> theirs;

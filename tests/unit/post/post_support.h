@@ -11,8 +11,8 @@
 
 #include "base/units.h"
 #include "kinematics/machine_model.h"
-#include "machine/machine_scene.h"
 #include "kinematics/singularity.h"
+#include "machine/machine_scene.h"
 #include "post/post.h"
 #include "post/shipped.h"
 #include "program/nc_program.h"
@@ -64,7 +64,9 @@ class ExpectedMoves final : public program::ClSink {
 
  private:
   void end_hole(const program::Move& last) {
-    const auto at = [&](double height) { return ToolPose{hole_.at.tip_W + height * hole_.at.axis_W, hole_.at.axis_W}; };
+    const auto at = [&](double height) {
+      return ToolPose{hole_.at.tip_W + height * hole_.at.axis_W, hole_.at.axis_W};
+    };
     program::Move part = last;
     part.rapid = true;
     part.to = at(hole_.cycle.arrive_mm);
@@ -88,9 +90,9 @@ struct Posted {
   PostResult result;
   program::ClProgram cl;
   std::vector<program::Move> expected;  ///< positions of the CL data
-  std::vector<program::NcMove> moves;  ///< as our interpreter reads them
-  std::vector<Diagnostic> read;        ///< what it said
-  kinematics::MachineModel machine;    ///< with the first tool
+  std::vector<program::NcMove> moves;   ///< as our interpreter reads them
+  std::vector<Diagnostic> read;         ///< what it said
+  kinematics::MachineModel machine;     ///< with the first tool
 
   /// The line of the program that has the words, without its number; "" when none.
   std::string line_with(const std::string& words) const {
@@ -119,8 +121,8 @@ inline std::vector<PostTool> two_tools() {
 }
 
 /// Writes the CL data for the machine, and reads the program where it came to one.
-inline Posted run_post(const std::string& cl, const kinematics::MachineModel& machine, const PostFormat& format,
-                       PostOptions options = {}) {
+inline Posted run_post(const std::string& cl, const kinematics::MachineModel& machine,
+                       const PostFormat& format, PostOptions options = {}) {
   Posted posted;
   posted.cl_file = scratch_file(".cls");
   std::ofstream(posted.cl_file, std::ios::binary) << cl;
@@ -129,8 +131,9 @@ inline Posted run_post(const std::string& cl, const kinematics::MachineModel& ma
   Diagnostics diagnostics;
   Progress silent;
   try {
-    posted.result = post(posted.cl_file, machine, format, options,
-                         [&](std::string_view text) { posted.text += text; }, silent, diagnostics);
+    posted.result = post(
+        posted.cl_file, machine, format, options, [&](std::string_view text) { posted.text += text; }, silent,
+        diagnostics);
   } catch (const InputError& error) {
     for (const Diagnostic& one : error.diagnostics.list()) posted.faults += swarf::format(one) + "\n";
     std::filesystem::remove(posted.cl_file);
@@ -144,7 +147,8 @@ inline Posted run_post(const std::string& cl, const kinematics::MachineModel& ma
   program::ControlSetup setup;
   setup.machine = machine;
   setup.unit_mm = 1.0;
-  for (const PostTool& tool : options.tools) setup.tools.push_back({tool.number, tool.name, tool.length_mm, 10.0, 0.0});
+  for (const PostTool& tool : options.tools)
+    setup.tools.push_back({tool.number, tool.name, tool.length_mm, 10.0, 0.0});
   NcMoves sink;
   Diagnostics read;
   program::run_nc(posted.nc_file, format.dialect, setup, sink, read);

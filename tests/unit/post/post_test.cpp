@@ -53,16 +53,17 @@ TEST(Templates, LeaveOutWhatIsEmpty) {
 
 TEST(PostFile, TellsEveryFaultWithItsPlace) {
   const std::string file = scratch_file(".toml");
-  std::ofstream(file) << "name = \"x\"\ndialect = \"fanuk\"\n[motion]\nrapid = \"G0 {axes}\"\nline = \"G1 {F}\"\n"
-                         "[tool]\nchnage = \"T{T}\"\nchange = \"T{TT} M6\"\n[numbers]\nlinear = { decimals = 12 }\n";
+  std::ofstream(file)
+      << "name = \"x\"\ndialect = \"fanuk\"\n[motion]\nrapid = \"G0 {axes}\"\nline = \"G1 {F}\"\n"
+         "[tool]\nchnage = \"T{T}\"\nchange = \"T{TT} M6\"\n[numbers]\nlinear = { decimals = 12 }\n";
   try {
     load_post(file);
     FAIL();
   } catch (const InputError& error) {
     std::string text;
     for (const Diagnostic& one : error.diagnostics.list()) text += swarf::format(one) + "\n";
-    for (const char* part : {":2:", "[unknown-dialect]", ":5:", "[missing-place]", ":7:", "did you mean 'change'",
-                             ":8:", "[unknown-place]", ":10:"})
+    for (const char* part : {":2:", "[unknown-dialect]", ":5:", "[missing-place]",
+                             ":7:", "did you mean 'change'", ":8:", "[unknown-place]", ":10:"})
       EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
   }
 }
@@ -87,8 +88,8 @@ TEST(Feed, TheTipHasItsFeedWithoutTcp) {
 }
 
 TEST(Feed, IsSlowedWhereAnAxisCannotFollow) {
-  const std::string cl = kHead +
-                         "FROM/0,0,60,0.05,0,0.998749218\nFEDRAT/3000,MMPM\nGOTO/1,0,60,-0.05,0.001,0.998748718\nFINI\n";
+  const std::string cl =
+      kHead + "FROM/0,0,60,0.05,0,0.998749218\nFEDRAT/3000,MMPM\nGOTO/1,0,60,-0.05,0.001,0.998748718\nFINI\n";
   const Posted run = run_post(cl, placed_machine("maho_600c"), shipped_post("linuxcnc"), without_tcp());
   ASSERT_EQ(run.faults + reading_faults(run), "");
   EXPECT_GT(run.result.plan.slowed, 0);
@@ -96,7 +97,8 @@ TEST(Feed, IsSlowedWhereAnAxisCannotFollow) {
     if (move.rapid) continue;
     for (size_t i = 0; i < run.machine.axes.size(); ++i) {
       const auto row = static_cast<long>(i);
-      EXPECT_LE(std::abs(move.q_to[row] - move.q_from[row]), run.machine.axes[i].speed_max * move.duration_s * 1.02 + 1e-4);
+      EXPECT_LE(std::abs(move.q_to[row] - move.q_from[row]),
+                run.machine.axes[i].speed_max * move.duration_s * 1.02 + 1e-4);
     }
   }
 }
@@ -104,8 +106,8 @@ TEST(Feed, IsSlowedWhereAnAxisCannotFollow) {
 /// Straight through the pole: the continuous solution where the machine tilts to both sides, a turn at rest
 /// where it does not.
 TEST(Pole, IsPassedAndTheTipStays) {
-  const std::string cl = kHead +
-                         "FROM/0,0,60,0.3,0,0.953939201\nFEDRAT/600,MMPM\nGOTO/20,0,60,-0.3,0,0.953939201\nFINI\n";
+  const std::string cl =
+      kHead + "FROM/0,0,60,0.3,0,0.953939201\nFEDRAT/600,MMPM\nGOTO/20,0,60,-0.3,0,0.953939201\nFINI\n";
   for (const bool tcp : {false, true}) {
     const PostOptions options = tcp ? with_tcp() : without_tcp();
     const Posted both = run_post(cl, placed_machine("head_table_bc"), shipped_post("fanuc"), options);
@@ -113,7 +115,8 @@ TEST(Pole, IsPassedAndTheTipStays) {
     EXPECT_EQ(both.result.plan.pole_turns, 0);
     kinematics::MachineModel one_side = placed_machine("head_table_bc");
     for (kinematics::Axis& axis : one_side.axes) {
-      if (axis.name == "B") axis.min = -0.001;
+      // A little to the other side is what the continuous way fails by.
+      if (axis.name == "B") axis.min = tcp ? 0.0 : -0.001;
     }
     const Posted turned = run_post(cl, one_side, shipped_post("fanuc"), options);
     ASSERT_EQ(turned.faults + reading_faults(turned) + compare(turned), "") << turned.text;
@@ -127,7 +130,8 @@ TEST(Pole, NoiseDoesNotTurnTheTable) {
   std::string cl = kHead + "FROM/0,0,60,0,0,1\nFEDRAT/600,MMPM\n";
   for (int i = 1; i < 20; ++i)
     cl += fmt::format("GOTO/{},0,60,{:.9f},{:.9f},1\n", i, 1e-7 * std::cos(i), 1e-7 * std::sin(i));
-  const Posted run = run_post(cl + "FINI\n", placed_machine("maho_600c"), shipped_post("linuxcnc"), without_tcp());
+  const Posted run =
+      run_post(cl + "FINI\n", placed_machine("maho_600c"), shipped_post("linuxcnc"), without_tcp());
   ASSERT_EQ(run.faults + reading_faults(run) + compare(run), "");
   EXPECT_EQ(run.result.plan.travel[4], 0.0);
   EXPECT_EQ(run.result.plan.steps, 20);
@@ -140,8 +144,9 @@ TEST(Branches, TheStartLeavesRoomForTheTurns) {
     std::string cl = kHead;
     for (int i = 0; i <= 200; ++i) {
       const double a = turns * kTurn * i / 200;
-      cl += fmt::format("{}/{:.4f},{:.4f},50,{:.9f},{:.9f},{:.9f}\n", i == 0 ? "FROM" : "GOTO", 20 * std::cos(a),
-                        20 * std::sin(a), -0.3 * std::cos(a), -0.3 * std::sin(a), std::sqrt(1 - 0.09));
+      cl += fmt::format("{}/{:.4f},{:.4f},50,{:.9f},{:.9f},{:.9f}\n", i == 0 ? "FROM" : "GOTO",
+                        20 * std::cos(a), 20 * std::sin(a), -0.3 * std::cos(a), -0.3 * std::sin(a),
+                        std::sqrt(1 - 0.09));
       if (i == 0) cl += "FEDRAT/1000,MMPM\n";
     }
     return cl + "FINI\n";
@@ -158,7 +163,8 @@ TEST(Branches, TheStartLeavesRoomForTheTurns) {
 
 /// The order of candidates is the caller's.
 TEST(Branches, ChoiceIsAHook) {
-  const std::string cl = kHead + "FROM/0,0,60,0.3,0,0.953939201\nFEDRAT/600,MMPM\nGOTO/20,0,60,0.3,0,0.953939201\nFINI\n";
+  const std::string cl =
+      kHead + "FROM/0,0,60,0.3,0,0.953939201\nFEDRAT/600,MMPM\nGOTO/20,0,60,0.3,0,0.953939201\nFINI\n";
   PostOptions options = without_tcp();
   const Posted plain = run_post(cl, placed_machine("head_table_bc"), shipped_post("fanuc"), options);
   size_t offered = 0;
@@ -172,14 +178,16 @@ TEST(Branches, ChoiceIsAHook) {
   EXPECT_GT(offered, 1u);
   EXPECT_NE(plain.text, other.text);
   options.choice = [](std::span<const program::Move>, std::vector<Start>& starts) { starts.clear(); };
-  EXPECT_NE(run_post(cl, placed_machine("head_table_bc"), shipped_post("fanuc"), options).faults.find("[no-start]"),
-            std::string::npos);
+  EXPECT_NE(
+      run_post(cl, placed_machine("head_table_bc"), shipped_post("fanuc"), options).faults.find("[no-start]"),
+      std::string::npos);
 }
 
-const std::string kHoles = kHead +
-                           "FROM/0,0,80,0,0,1\nRAPID\nGOTO/0,0,60,0,0,1\nCYCLE/DRILL,DEPTH,5,CLEAR,2,MMPM,120\n"
-                           "GOTO/10,0,40,0,0,1\nGOTO/20,0,40,0,0,1\nGOTO/20,10,41,0,0,1\nCYCLE/OFF\nRAPID\n"
-                           "GOTO/20,10,80,0,0,1\nFINI\n";
+const std::string kHoles =
+    kHead +
+    "FROM/0,0,80,0,0,1\nRAPID\nGOTO/0,0,60,0,0,1\nCYCLE/DRILL,DEPTH,5,CLEAR,2,MMPM,120\n"
+    "GOTO/10,0,40,0,0,1\nGOTO/20,0,40,0,0,1\nGOTO/20,10,41,0,0,1\nCYCLE/OFF\nRAPID\n"
+    "GOTO/20,10,80,0,0,1\nFINI\n";
 
 TEST(Cycles, StayCycles) {
   const auto text = [](const char* post) {
@@ -212,16 +220,17 @@ TEST(Cycles, AreMovesWhereTheHeadIsTilted) {
 }
 
 TEST(Words, ToolsCoolantDwellsAndNotes) {
-  const std::string cl = kHead +
-                         "COOLNT/ON\nFROM/0,0,80\nFEDRAT/200,MMPM\nGOTO/10,0,80\nDELAY/1.5\nGOTO/20,0,80\nPPRINT SECOND "
-                         "(TOOL)\nLOADTL/2\nSPINDL/RPM,800,CCLW\nCOOLNT/MIST\nRAPID\nGOTO/0,0,70\nSTOP\nGOTO/5,0,70\n"
-                         "OPSTOP\nINSERT M77\nAUXFUN/88\nFINI\n";
+  const std::string cl =
+      kHead +
+      "COOLNT/ON\nFROM/0,0,80\nFEDRAT/200,MMPM\nGOTO/10,0,80\nDELAY/1.5\nGOTO/20,0,80\nPPRINT SECOND "
+      "(TOOL)\nLOADTL/2\nSPINDL/RPM,800,CCLW\nCOOLNT/MIST\nRAPID\nGOTO/0,0,70\nSTOP\nGOTO/5,0,70\n"
+      "OPSTOP\nINSERT M77\nAUXFUN/88\nFINI\n";
   std::string plain = cl;
   plain.replace(plain.find("MULTAX/ON\n"), 10, "");
   const Posted run = run_post(plain, placed_machine("mill_3axis"), shipped_post("fanuc"), without_tcp());
   ASSERT_EQ(run.faults, "");
-  for (const char* part : {"T1 M6\nS3000 M3\n", "G43 Z80. H1\nM8\n", "G4 X1.5\n", "(SECOND TOOL)", "M9\nG49\nT2 M6\nS800 M4\n",
-                           "G43 Z70. H2\nM7\n", "M0\n", "M1\n", "M77\n"})
+  for (const char* part : {"T1 M6\nS3000 M3\n", "G43 Z80. H1\nM8\n", "G4 X1.5\n", "(SECOND TOOL)",
+                           "M9\nG49\nT2 M6\nS800 M4\n", "G43 Z70. H2\nM7\n", "M0\n", "M1\n", "M77\n"})
     EXPECT_NE(run.text.find(part), std::string::npos) << part << "\n" << run.text;
   EXPECT_EQ(run.result.written.not_written, std::vector<std::string>{"AUXFUN"});
   EXPECT_EQ(run.result.written.comments_changed, 1);
@@ -229,7 +238,8 @@ TEST(Words, ToolsCoolantDwellsAndNotes) {
 
 TEST(Refused, ToolsFeedsAndPlaces) {
   const auto code = [](const std::string& cl, const char* machine, const char* post, PostOptions options) {
-    const std::string faults = run_post(kHead + cl + "FINI\n", placed_machine(machine), shipped_post(post), options).faults;
+    const std::string faults =
+        run_post(kHead + cl + "FINI\n", placed_machine(machine), shipped_post(post), options).faults;
     const size_t from = faults.find(" [");
     return from == std::string::npos ? faults : faults.substr(from + 2, faults.find(']', from) - from - 2);
   };
@@ -240,12 +250,15 @@ TEST(Refused, ToolsFeedsAndPlaces) {
   by_name.tools = {{0, "MILL10", 80.0}, {1, "", 80.0}};
   EXPECT_EQ(code("TOOL PATH/A,TOOL,MILL10\n" + way, "mill_3axis", "fanuc", by_name), "tool-number");
   EXPECT_EQ(code("TOOL PATH/A,TOOL,MILL10\n" + way, "mill_3axis", "siemens", by_name), "");
-  EXPECT_EQ(code("FROM/0,0,60,0,0,1\nFEDRAT/0.01,MMPM\nGOTO/9,0,60,0,0,1\n", "mill_3axis", "fanuc", without_tcp()),
-            "feed-below-digits");
-  EXPECT_EQ(code("FROM/0,0,60,0,0,1\nFEDRAT/600,MMPM\nGOTO/9000,0,60,0,0,1\n", "mill_3axis", "fanuc", without_tcp()),
+  EXPECT_EQ(
+      code("FROM/0,0,60,0,0,1\nFEDRAT/0.01,MMPM\nGOTO/9,0,60,0,0,1\n", "mill_3axis", "fanuc", without_tcp()),
+      "feed-below-digits");
+  EXPECT_EQ(code("FROM/0,0,60,0,0,1\nFEDRAT/600,MMPM\nGOTO/9000,0,60,0,0,1\n", "mill_3axis", "fanuc",
+                 without_tcp()),
             "travel");
-  EXPECT_EQ(code("FROM/0,0,60,0,0,1\nFEDRAT/600,MMPM\nGOTO/9,0,60,1,0,0\n", "mill_3axis", "fanuc", without_tcp()),
-            "unreachable");
+  EXPECT_EQ(
+      code("FROM/0,0,60,0,0,1\nFEDRAT/600,MMPM\nGOTO/9,0,60,1,0,0\n", "mill_3axis", "fanuc", without_tcp()),
+      "unreachable");
   PostOptions fine = without_tcp();
   fine.tip_mm = 1e-6;
   EXPECT_EQ(code(way, "mill_3axis", "fanuc", fine), "tolerance-below-digits");
@@ -255,9 +268,10 @@ TEST(Refused, ToolsFeedsAndPlaces) {
 TEST(Refused, ABulgeOutOfTravel) {
   const kinematics::MachineModel machine = placed_machine("mill_3axis");
   const double far = machine.axes[0].max - machine.X_MW.translation().x();
-  const std::string cl = kHead + fmt::format("FROM/{0},0,60,0,0,1\nFEDRAT/600,MMPM\nCIRCLE/{0},10,60,0,0,-1,10\n"
-                                             "GOTO/{0},20,60,0,0,1\nFINI\n",
-                                             far - 5.0);
+  const std::string cl = kHead + fmt::format(
+                                     "FROM/{0},0,60,0,0,1\nFEDRAT/600,MMPM\nCIRCLE/{0},10,60,0,0,-1,10\n"
+                                     "GOTO/{0},20,60,0,0,1\nFINI\n",
+                                     far - 5.0);
   const Posted run = run_post(cl, machine, shipped_post("fanuc"), without_tcp());
   EXPECT_NE(run.faults.find("axis X would go to"), std::string::npos) << run.faults << run.text;
 }
@@ -265,8 +279,10 @@ TEST(Refused, ABulgeOutOfTravel) {
 TEST(Streams, LongStretchesGoOnWhereTheyAreCut) {
   std::string cl = kHead + "FROM/0,0,60,0,0,1\nFEDRAT/600,MMPM\n";
   const int moves = static_cast<int>(kMovesAhead) + 100;
-  for (int i = 1; i <= moves; ++i) cl += fmt::format("GOTO/{:.3f},{:.3f},60,0,0,1\n", i % 97 * 0.1, i % 89 * 0.1);
-  const Posted run = run_post(cl + "FINI\n", placed_machine("mill_3axis"), shipped_post("linuxcnc"), without_tcp());
+  for (int i = 1; i <= moves; ++i)
+    cl += fmt::format("GOTO/{:.3f},{:.3f},60,0,0,1\n", i % 97 * 0.1, i % 89 * 0.1);
+  const Posted run =
+      run_post(cl + "FINI\n", placed_machine("mill_3axis"), shipped_post("linuxcnc"), without_tcp());
   ASSERT_EQ(run.faults + reading_faults(run), "");
   EXPECT_EQ(run.result.plan.points, moves + 1);
   EXPECT_EQ(run.result.plan.approaches, 1);

@@ -30,9 +30,10 @@ inline DigitBound digit_bound(const Posted& posted, const program::NcMove& move,
     high[static_cast<long>(i)] += half;
     if (rotary) bound.axis_rad += half;
     if (!tcp)
-      bound.tip_mm += 0.5 * 1.001 *
-                      (kinematics::forward(posted.machine, high).tip_W - kinematics::forward(posted.machine, low).tip_W)
-                          .norm();
+      bound.tip_mm +=
+          0.5 * 1.001 *
+          (kinematics::forward(posted.machine, high).tip_W - kinematics::forward(posted.machine, low).tip_W)
+              .norm();
   }
   bound.axis_rad += rules.snap_rad;
   return bound;
@@ -50,7 +51,9 @@ inline bool reaches(const Posted& posted, const program::NcMove& move, const Too
 inline double distance_from(const program::Move& move, const Vec3& tip) {
   const Vec3 way = move.to.tip_W - move.from.tip_W;
   if (!move.arc) {
-    const double share = way.squaredNorm() > 0.0 ? std::clamp((tip - move.from.tip_W).dot(way) / way.squaredNorm(), 0.0, 1.0) : 0.0;
+    const double share = way.squaredNorm() > 0.0
+                             ? std::clamp((tip - move.from.tip_W).dot(way) / way.squaredNorm(), 0.0, 1.0)
+                             : 0.0;
     return (tip - move.from.tip_W - share * way).norm();
   }
   const Vec3 n = move.arc->normal_W, r = move.from.tip_W - move.arc->centre_W, d = tip - move.arc->centre_W;
@@ -63,7 +66,8 @@ inline double distance_from(const program::Move& move, const Vec3& tip) {
 /// The tip at a share of a move as the control drives it.
 inline Vec3 tip_at(const Posted& posted, const program::NcMove& move, double share) {
   if (move.arc) {
-    const Vec3 n = move.arc->normal_W, r = move.from.tip_W - move.arc->centre_W, e = move.to.tip_W - move.arc->centre_W;
+    const Vec3 n = move.arc->normal_W, r = move.from.tip_W - move.arc->centre_W,
+               e = move.to.tip_W - move.arc->centre_W;
     const Vec3 flat = r - r.dot(n) * n, end = e - e.dot(n) * n;
     double sweep = signed_angle(n, flat, end);
     if (sweep <= 1e-12) sweep += kTurn;
@@ -87,7 +91,9 @@ inline std::string compare(const Posted& posted) {
   if (at == posted.moves.size()) return "the start is not reached";
   // With TCP an approach comes there twice: by the axes, then by the tip.
   const auto stay = [&](const ToolPose& pose) {
-    while (at + 1 < posted.moves.size() && posted.moves[at + 1].rapid && reaches(posted, posted.moves[at + 1], pose)) ++at;
+    while (at + 1 < posted.moves.size() && posted.moves[at + 1].rapid &&
+           reaches(posted, posted.moves[at + 1], pose))
+      ++at;
   };
   stay(posted.cl.start);
   for (size_t i = 0; i < from_cl.size(); ++i) {
@@ -97,10 +103,11 @@ inline std::string compare(const Posted& posted) {
     size_t to = at + (circle ? 1 : 0);
     while (to < posted.moves.size() && !reaches(posted, posted.moves[to], move.to)) ++to;
     if (to == posted.moves.size())
-      return fmt::format("CL line {}: ({:.4f}, {:.4f}, {:.4f}) axis ({:.6f}, {:.6f}, {:.6f}) is not reached after "
-                         "line {}",
-                         move.line, move.to.tip_W.x(), move.to.tip_W.y(), move.to.tip_W.z(), move.to.axis_W.x(),
-                         move.to.axis_W.y(), move.to.axis_W.z(), posted.moves[at].line);
+      return fmt::format(
+          "CL line {}: ({:.4f}, {:.4f}, {:.4f}) axis ({:.6f}, {:.6f}, {:.6f}) is not reached after "
+          "line {}",
+          move.line, move.to.tip_W.x(), move.to.tip_W.y(), move.to.tip_W.z(), move.to.axis_W.x(),
+          move.to.axis_W.y(), move.to.axis_W.z(), posted.moves[at].line);
     for (size_t k = at + 1; k <= to && !move.rapid; ++k) {
       for (int part = 0; part <= 8; ++part) {
         const double off = distance_from(move, tip_at(posted, posted.moves[k], part / 8.0));

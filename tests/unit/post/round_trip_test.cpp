@@ -6,8 +6,8 @@ namespace swarf::post::round_trip_test {
 namespace {
 
 const char* const kPosts[] = {"fanuc", "siemens", "heidenhain", "linuxcnc", "haas", "mazak"};
-const char* const kMachines[] = {"mill_3axis",    "fork_head",     "head_table_bc", "lin_koren_xyzab",
-                                 "maho_600c",     "mikron_ucp710", "nutating_head", "spinner_u5_620"};
+const char* const kMachines[] = {"mill_3axis", "fork_head",     "head_table_bc", "lin_koren_xyzab",
+                                 "maho_600c",  "mikron_ucp710", "nutating_head", "spinner_u5_620"};
 
 const char* const kThreeAxes =
     "$$ SWARF CL DATA\nPARTNO PLATE (A)\nLOADTL/1\nSPINDL/RPM,3000,CLW\nCOOLNT/ON\nFROM/0,0,120\nRAPID\n"
