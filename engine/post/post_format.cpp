@@ -39,7 +39,7 @@ LineTemplate lines(ConfigTable& table, const std::string& key, const std::vector
   return {};
 }
 
-NumberFormat number_format(ConfigTable numbers, const std::string& key, int decimals) {
+NumberFormat number_format(ConfigTable& numbers, const std::string& key, int decimals) {
   ConfigTable table = numbers.table(key);
   NumberFormat format;
   format.decimals = table.integer("decimals", 0, 9, decimals);

@@ -37,8 +37,10 @@ class Writer {
   Writer(const PostFormat& format, const PlannerSetup& setup, const ProgramNames& names, Out out,
          Diagnostics& diagnostics);
 
+  /// To be called once before and after the stretches.
   void head();
   void stretch(const PlannedStretch& planned);
+  /// Retracts, stops spindle and coolant.
   void tail();
   const WriterSummary& summary() const { return summary_; }
 
