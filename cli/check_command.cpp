@@ -13,6 +13,7 @@
 #include "cli/stdin_program.h"
 #include "cli/terminal.h"
 #include "kinematics/round_trip.h"
+#include "post/post_format.h"
 #include "program/dialects.h"
 #include "reports/metrics_json.h"
 #include "sim/simulation.h"
@@ -20,12 +21,27 @@
 namespace swarf::cli {
 namespace {
 
-/// A scene names a program, a machine lists axes.
-bool is_scene(const std::string& file) {
+enum class TomlKind { kScene, kMachine, kPost };
+
+/// A post has words for motion, a scene names a program, a machine lists axes.
+TomlKind toml_kind(const std::string& file) {
   Diagnostics diagnostics;
   const ConfigTable table = ConfigTable::load(file, {}, diagnostics);
   diagnostics.throw_if_errors();
-  return table.has("program") || table.has("cl") || table.has("nc") || !table.has("axis");
+  if (table.has("dialect") && table.has("motion")) return TomlKind::kPost;
+  const bool scene = table.has("program") || table.has("cl") || table.has("nc") || !table.has("axis");
+  return scene ? TomlKind::kScene : TomlKind::kMachine;
+}
+
+Checked check_post(const std::string& file) {
+  const post::PostFormat format = post::load_post(file);
+  return {
+      "post",
+      fmt::format("post is right: {}, read back as {}; {}", format.name,
+                  program::dialect_name(format.dialect),
+                  format.has_tcp() ? "with words for TCP" : "without TCP"),
+      {{"name", format.name}, {"dialect", program::dialect_name(format.dialect)}, {"tcp", format.has_tcp()}},
+      {}};
 }
 
 /// What the machine cannot do, beyond what [accept] allows: the judge's own checks of the motion.
@@ -145,7 +161,10 @@ Checked check_file(const std::string& file, const CheckOptions& options) {
   if (is_cl_file(file)) return check_cl(file, cl_options(options.cl));
   if (is_nc_program(file, options.nc)) return check_nc(file, options.nc);
   if (std::filesystem::path(file).extension() != ".toml") return check_surface_blocks(file);
-  return is_scene(file) ? check_scene(file, options.nc.parameters) : check_machine(file, options.poses);
+  const TomlKind kind = toml_kind(file);
+  if (kind == TomlKind::kPost) return check_post(file);
+  return kind == TomlKind::kScene ? check_scene(file, options.nc.parameters)
+                                  : check_machine(file, options.poses);
 }
 
 /// One object for each file; one that cannot be read has no kind, and its errors among the diagnostics.
@@ -254,10 +273,10 @@ Exit codes: 0 all are right; 1 at least one asks for what its machine cannot do;
 
 void add_check(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<CheckOptions>();
-  CLI::App* command =
-      app.add_subcommand("check",
-                         "Validate scenes and machines (.toml), programs (.nc, .ngc, .mpf, .h) and CL data "
-                         "(.cls, .clt, .ncl, .apt, .cldata); move the axes of scenes, cut nothing");
+  CLI::App* command = app.add_subcommand(
+      "check",
+      "Validate scenes, machines and posts (.toml), programs (.nc, .ngc, .mpf, .h) and CL data "
+      "(.cls, .clt, .ncl, .apt, .cldata); move the axes of scenes, cut nothing");
   command->add_option("files", options->files, "files to check; -: an NC program from the standard input")
       ->required();
   command

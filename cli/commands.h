@@ -21,6 +21,7 @@ void add_show(CLI::App& app, int& exit_code);
 void add_replay(CLI::App& app, int& exit_code);
 void add_check(CLI::App& app, int& exit_code);
 void add_plan(CLI::App& app, int& exit_code);
+void add_post(CLI::App& app, int& exit_code);
 void add_compare(CLI::App& app, int& exit_code);
 void add_render(CLI::App& app, int& exit_code);
 void add_export(CLI::App& app, int& exit_code);

@@ -111,6 +111,7 @@ int main(int argc, char** argv) {
   swarf::cli::add_replay(app, exit_code);
   swarf::cli::add_check(app, exit_code);
   swarf::cli::add_plan(app, exit_code);
+  swarf::cli::add_post(app, exit_code);
   swarf::cli::add_compare(app, exit_code);
   swarf::cli::add_render(app, exit_code);
   swarf::cli::add_export(app, exit_code);

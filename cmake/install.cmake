@@ -7,7 +7,7 @@ set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/swarf")
 
 # Scenes name their machines by relative paths, so that both stand as they do in the source tree.
 install(TARGETS swarf RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT program)
-install(DIRECTORY assets/machines assets/programs assets/schemas DESTINATION "${CMAKE_INSTALL_DATADIR}/swarf/assets" COMPONENT program
+install(DIRECTORY assets/machines assets/posts assets/programs assets/schemas DESTINATION "${CMAKE_INSTALL_DATADIR}/swarf/assets" COMPONENT program
   PATTERN "*.py" EXCLUDE)
 install(DIRECTORY scenes DESTINATION "${CMAKE_INSTALL_DATADIR}/swarf" COMPONENT program PATTERN "*.py" EXCLUDE)
 install(FILES LICENSE README.md THIRD_PARTY.md CHANGELOG.md DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program)
@@ -22,7 +22,7 @@ install(FILES "${PROJECT_BINARY_DIR}/manual.man" DESTINATION "${CMAKE_INSTALL_MA
 install(FILES "${PROJECT_BINARY_DIR}/manual.bash"
   DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions" RENAME swarf COMPONENT program)
 
-foreach(module base mesh surface cutter kinematics program toolpath motion machine stock collision measure sim papers render
+foreach(module base mesh surface cutter kinematics program toolpath motion machine post stock collision measure sim papers render
                reports)
   set_target_properties(swarf_${module} PROPERTIES EXPORT_NAME ${module})
   list(APPEND libraries swarf_${module})

@@ -26,7 +26,7 @@ fs::path own_file() {
 }
 
 /// Empty where no folder above the program holds machines.
-fs::path shipped_folder() {
+fs::path find_folder() {
   std::error_code problem;
   const fs::path program = own_file();
   constexpr std::array<const char*, 2> kPlaces{"share/swarf/assets/machines", "assets/machines"};
@@ -45,10 +45,14 @@ bool is_path(const std::string& written) {
 
 }  // namespace
 
+std::string shipped_folder() {
+  return find_folder().string();
+}
+
 std::vector<ShippedMachine> shipped_machines() {
   std::vector<ShippedMachine> machines;
   std::error_code problem;
-  for (const fs::directory_entry& entry : fs::directory_iterator(shipped_folder(), problem)) {
+  for (const fs::directory_entry& entry : fs::directory_iterator(find_folder(), problem)) {
     const fs::path file = entry.path() / "machine.toml";
     if (fs::exists(file, problem)) machines.push_back({entry.path().filename().string(), file.string()});
   }

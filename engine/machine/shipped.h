@@ -11,8 +11,11 @@ struct ShippedMachine {
   std::string file;  ///< its machine.toml
 };
 
-/// All of them by name: of share/swarf/assets/machines or assets/machines in the nearest folder above the
-/// running program, or above the library with this code, that has one. Empty where there is none.
+/// share/swarf/assets/machines or assets/machines in the nearest folder above the running program, or above
+/// the library with this code, that has one; "" where there is none.
+std::string shipped_folder();
+
+/// All machines of that folder by name.
 std::vector<ShippedMachine> shipped_machines();
 
 /// The file that a scene or a flag means: `written` itself where it is a path (it has a slash or ends in

@@ -18,12 +18,13 @@ ALLOWED = {
     "toolpath": {"base", "surface", "cutter", "program", "kinematics"},
     "motion": {"base", "surface", "cutter", "program", "toolpath", "kinematics"},
     "machine": {"base", "mesh", "kinematics"},
+    "post": {"base", "program", "toolpath", "motion", "kinematics", "machine"},
     "stock": {"base", "mesh", "surface", "cutter"},
     "collision": {"base", "mesh", "cutter", "kinematics", "machine", "motion", "stock"},
     "measure": {"base", "mesh", "surface", "cutter", "stock", "motion"},
 }
 ENGINE = set(ALLOWED) | {"sim", "papers"}
-ALLOWED["sim"] = ENGINE - {"sim", "papers"}
+ALLOWED["sim"] = ENGINE - {"sim", "papers", "post"}
 ALLOWED["papers"] = ENGINE - {"papers"}
 ALLOWED["render"] = {"base", "mesh"}
 ALLOWED["reports"] = ENGINE | {"render"}

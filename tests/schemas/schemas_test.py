@@ -121,6 +121,14 @@ class Keys(unittest.TestCase):
                 known.setdefault(table, set()).update(keys)
         self.assertEqual(known, schema_keys(schema("machine"), schema("machine")))
 
+    def test_post(self):
+        no = f"{NO_KEY} = 0\n"
+        tables = ["numbers", "blocks", "comment", "program", "tool", "spindle", "coolant", "words", "motion", "feed",
+                  "tcp", "cycle"]
+        numbers = [f"numbers.{name}" for name in ("linear", "rotary", "feed", "inverse_time", "speed", "time")]
+        text = f"{no}name = 'x'\ndialect = 'fanuc'\n" + "".join(f"[{table}]\n{no}" for table in tables + numbers)
+        self.assertEqual(known_keys(text, "post.toml"), schema_keys(schema("post"), schema("post")))
+
 
 class Shipped(unittest.TestCase):
     def test_every_scene(self):
@@ -136,6 +144,15 @@ class Shipped(unittest.TestCase):
         for file in files:
             with self.subTest(file=file):
                 validator("machine").validate(tomllib.loads(file.read_text()))
+
+    def test_every_post(self):
+        files = sorted((SOURCE / "assets/posts").glob("*.toml"))
+        self.assertEqual(len(files), 6)
+        for file in files:
+            with self.subTest(file=file):
+                post = tomllib.loads(file.read_text())
+                validator("post").validate(post)
+                self.assertFalse(validator("post").is_valid({**post, "moton": {}}))
 
 
 class Written(unittest.TestCase):

@@ -13,28 +13,34 @@ void add_move(ClState& cl, const ClStatement& s, const ToolPose& to, double feed
   send(cl, s, to, std::nullopt, feed_mm_s, dwell_s);
 }
 
+/// Resolves RTRCTO,AUTO; false with a fault where the tool stood too low for it.
+bool set_retract(ClState& cl, const ClStatement& s, const ToolPose& hole, ClCycle& cycle) {
+  if (!cycle.retract_to_start) return true;
+  cycle.retract_mm = (cl.drilling.cycle_start_W - hole.tip_W).dot(hole.axis_W);
+  if (cycle.retract_mm >= cycle.arrive_mm) return true;
+  fault(cl.reporter, "bad-cycle", s,
+        fmt::format("RTRCTO,AUTO goes back to where the tool stood before the cycle, {:g} mm above this "
+                    "hole: below its clearance of {:g} mm",
+                    cycle.retract_mm, cycle.arrive_mm),
+        "write RTRCTO with a distance");
+  return false;
+}
+
 void drill(ClState& cl, const ClStatement& s, const ToolPose& hole) {
   const auto at = [&](double height) { return ToolPose{hole.tip_W + height * hole.axis_W, hole.axis_W}; };
   const ToolPose above = at(cl.drilling.cycle->arrive_mm);
   ClCycle cycle = *cl.drilling.cycle;
-  if (!cl.path.positioned) {
+  const bool arrives = cl.path.positioned;
+  if (!arrives) {
     start_at(cl.program, cl.path, s, above);
     cl.drilling.cycle_start_W = above.tip_W;
-  } else {
-    add_move(cl, s, above, 0.0, 0.0);
   }
-  if (cycle.retract_to_start) {
-    cycle.retract_mm = (cl.drilling.cycle_start_W - hole.tip_W).dot(hole.axis_W);
-    if (cycle.retract_mm < cycle.arrive_mm) {
-      fault(cl.reporter, "bad-cycle", s,
-            fmt::format("RTRCTO,AUTO goes back to where the tool stood before the cycle, {:g} mm above this "
-                        "hole: below its clearance of {:g} mm",
-                        cycle.retract_mm, cycle.arrive_mm),
-            "write RTRCTO with a distance");
-      return;
-    }
-  }
-  for (const ClCycleStep& step : cycle_steps(cycle))
+  if (!set_retract(cl, s, hole, cycle)) return;
+  const std::vector<ClCycleStep> steps = cycle_steps(cycle);
+  if (!cl.compensation.contour)
+    cl.sink.hole({hole, cycle, static_cast<int>(steps.size()) + (arrives ? 1 : 0), s.line});
+  if (arrives) add_move(cl, s, above, 0.0, 0.0);
+  for (const ClCycleStep& step : steps)
     add_move(cl, s, at(step.height_mm), step.rapid ? 0.0 : cycle.feed_mm_s, step.dwell_s);
 }
 

@@ -7,6 +7,7 @@
 
 #include "base/diagnostics.h"
 #include "base/frames.h"
+#include "program/cl/cycle.h"
 #include "program/moves.h"
 
 namespace swarf::program {
@@ -81,11 +82,21 @@ struct ClProgram {
   long motions = 0;           ///< moves that came
 };
 
+/// A hole of a drilling cycle, whole: what a post-processor that keeps cycles writes instead of its moves.
+struct ClHole {
+  ToolPose at;    ///< of GOTO: the depth counts from here, against the axis
+  ClCycle cycle;  ///< its retract_mm is the height that the tool goes to at last, RTRCTO,AUTO too
+  int moves = 0;  ///< so many come next: the hole in single steps, its arrival first
+  int line = 0;
+};
+
 /// Takes moves and notes as they are read.
 class ClSink {
  public:
   virtual ~ClSink() = default;
   virtual void move(const Move& move) = 0;
+  /// Comes before the moves of each hole, but not while a contour is compensated.
+  virtual void hole(const ClHole& /*hole*/) {}
   virtual void note(ClNote note) = 0;
 };
 

@@ -285,7 +285,9 @@ DrillCycle drilling(nc::Control& control, const BlockPlace& place, const Frames&
   cycle.retract = control.modal.mm(argument(call, kRtp, *place.line, std::nullopt));
   cycle.approach = control.modal.mm(reference + sign * safety);
   cycle.bottom = control.modal.mm(bottom);
-  if (sign * (cycle.retract - cycle.approach) < 0.0) {
+  // RTP of RFP + SDIS is right, whatever the last bit of the sum.
+  constexpr double kSumRounding = 1e-9;
+  if (sign * (cycle.retract - cycle.approach) < -kSumRounding) {
     fail(place, "bad-cycle", call.offset,
          fmt::format("the retraction plane {:g} mm lies below the start of drilling {:g} mm", cycle.retract,
                      cycle.approach),

@@ -1,0 +1,295 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "base/file.h"
+#include "base/units.h"
+#include "cli/commands.h"
+#include "cli/terminal.h"
+#include "machine/machine_scene.h"
+#include "machine/shipped.h"
+#include "post/post.h"
+#include "post/shipped.h"
+#include "sim/job/tool_table.h"
+
+namespace swarf::cli {
+namespace {
+
+using kinematics::AxisKind;
+
+constexpr FileFault kProgramFault{"program-unwritable", "the program cannot be written"};
+
+struct PostCommand {
+  std::string file, machine, post, dialect, tools, output, cutcom, circle;
+  std::vector<double> work_origin;
+  double work_rotation_deg = 0.0, tolerance_um = 10.0, axis_tolerance_deg = 0.1;
+  bool tcp = false, no_tcp = false, json = false;
+};
+
+post::PostFormat format_of(const PostCommand& given) {
+  if (!given.post.empty() && !given.dialect.empty())
+    throw InputError("two-posts", {"--post " + given.post}, "--post and --dialect both name the words",
+                     "give one of them");
+  const std::string name =
+      given.post.empty() ? (given.dialect.empty() ? "fanuc" : given.dialect) : given.post;
+  const std::string file = post::post_file(name);
+  if (file.empty())
+    throw InputError("unknown-post", {"--dialect " + name}, "no post is called so",
+                     "choose " + post::shipped_list() + ", or give your own with --post my.toml");
+  return post::load_post(file);
+}
+
+machine::MachineScene machine_of(const PostCommand& given) {
+  const std::string file = machine::machine_file(given.machine);
+  if (file.empty())
+    throw InputError("unknown-machine", {"--machine " + given.machine}, "no machine is called so",
+                     "name a machine.toml, or one that 'swarf machines' lists");
+  machine::MachineScene scene = machine::load_machine(file);
+  Pose& X_MW = scene.model.X_MW;
+  if (!given.work_origin.empty())
+    X_MW.translation() = Vec3(given.work_origin[0], given.work_origin[1], given.work_origin[2]);
+  if (given.work_rotation_deg != 0.0)
+    X_MW.linear() =
+        Eigen::AngleAxisd(rad_from_deg(given.work_rotation_deg), Vec3::UnitZ()).toRotationMatrix();
+  return scene;
+}
+
+post::PostOptions options_of(const PostCommand& given, Diagnostics& told) {
+  post::PostOptions options;
+  if (given.tcp && given.no_tcp)
+    throw InputError("tcp-twice", {"swarf post"}, "--tcp and --no-tcp contradict each other",
+                     "give one of them");
+  if (given.tcp || given.no_tcp) options.tcp = given.tcp;
+  options.tip_mm = given.tolerance_um * kMicrometre;
+  options.axis_rad = rad_from_deg(given.axis_tolerance_deg);
+  if (!given.cutcom.empty())
+    options.cl.cutcom = given.cutcom == "centre" ? program::ClPoints::kCentre : program::ClPoints::kContour;
+  if (!given.circle.empty()) options.cl.circle_clockwise = given.circle == "clockwise";
+  if (given.tools.empty()) return options;
+  Diagnostics diagnostics;
+  sim::IncompleteTools incomplete;
+  for (const cutter::Cutter& one : sim::read_tool_table(given.tools, diagnostics, &incomplete)) {
+    options.tools.push_back({one.number, one.name, cutter::gauge_length(one)});
+    options.cl.tools.push_back({one.number, one.name, 0.5 * one.diameter_mm});
+  }
+  diagnostics.throw_if_errors();
+  told.append(diagnostics);
+  return options;
+}
+
+/// "2 min 05 s".
+std::string spoken_time(double seconds) {
+  const auto whole = static_cast<long>(seconds + 0.5);
+  return whole < 60 ? fmt::format("{:.1f} s", seconds)
+                    : fmt::format("{} min {:02} s", whole / 60, whole % 60);
+}
+
+std::vector<std::pair<std::string, std::string>> table_of(const post::PostFormat& format,
+                                                          const kinematics::MachineModel& machine,
+                                                          const post::PostResult& result) {
+  const post::PlanSummary& plan = result.plan;
+  std::vector<std::pair<std::string, std::string>> rows{
+      {"written",
+       fmt::format("{} for {}, {}", format.name, machine.name, result.tcp ? "with TCP" : "without TCP")},
+      {"blocks", fmt::format("{} lines for {} positions of the CL data", result.written.blocks, plan.points)},
+      {"moves", fmt::format("{}, of them {} arcs, {} cycles, {} approaches, {} turns at rest", plan.steps,
+                            plan.arcs, plan.holes, plan.approaches, plan.pole_turns)},
+      {"time", fmt::format("{}: feed {}, rapid {}, dwell {}; accelerations and tool changes not counted",
+                           spoken_time(plan.feed_s + plan.rapid_s + plan.dwell_s), spoken_time(plan.feed_s),
+                           spoken_time(plan.rapid_s), spoken_time(plan.dwell_s))}};
+  for (size_t i = 0; i < machine.axes.size() && plan.points > 0; ++i) {
+    const kinematics::Axis& axis = machine.axes[i];
+    const bool rotary = axis.kind == AxisKind::kRotary;
+    const auto row = static_cast<long>(i);
+    const auto shown = [&](double value) { return rotary ? deg_from_rad(value) : value; };
+    rows.emplace_back(fmt::format("axis {}", axis.name),
+                      fmt::format("{:.3f} to {:.3f} {}, {:.3f} in all", shown(plan.low[row]),
+                                  shown(plan.high[row]), rotary ? "deg" : "mm", shown(plan.travel[row])));
+  }
+  rows.emplace_back(
+      "tip", fmt::format("at most {:.3f} um from the CL data ({:.3f} um of it the written digits), "
+                         "proven{}; line {}",
+                         um_from_mm(plan.deviation_mm), um_from_mm(plan.digits_mm),
+                         result.tcp ? "; the control keeps it on its line"
+                                    : fmt::format("; tolerance {:g} um", um_from_mm(result.rules.tip_mm)),
+                         plan.deviation_line));
+  if (plan.slowed > 0)
+    rows.emplace_back("slowed", fmt::format("{} blocks, by the speed of an axis", plan.slowed));
+  std::string words;
+  for (const std::string& one : result.written.not_written) words += (words.empty() ? "" : " ") + one;
+  if (!words.empty()) rows.emplace_back("not written", words);
+  if (result.written.comments_changed > 0)
+    rows.emplace_back("comments",
+                      fmt::format("{} lost characters that the control does not take, or their end",
+                                  result.written.comments_changed));
+  return rows;
+}
+
+nlohmann::ordered_json json_of(const PostCommand& given, const post::PostFormat& format,
+                               const kinematics::MachineModel& machine, const post::PostResult& result) {
+  const post::PlanSummary& plan = result.plan;
+  nlohmann::ordered_json json{{"schema", 1},
+                              {"swarf", SWARF_VERSION},
+                              {"file", given.file},
+                              {"program", given.output},
+                              {"post", format.name},
+                              {"dialect", program::dialect_name(format.dialect)},
+                              {"machine", machine.name},
+                              {"tcp", result.tcp},
+                              {"lines", result.written.blocks},
+                              {"points", plan.points},
+                              {"moves", plan.steps},
+                              {"arcs", plan.arcs},
+                              {"cycles", plan.holes},
+                              {"approaches", plan.approaches},
+                              {"turns_at_rest", plan.pole_turns},
+                              {"slowed", plan.slowed},
+                              {"feed_s", plan.feed_s},
+                              {"rapid_s", plan.rapid_s},
+                              {"dwell_s", plan.dwell_s},
+                              {"tip_deviation_um", um_from_mm(plan.deviation_mm)},
+                              {"tip_digits_um", um_from_mm(plan.digits_mm)},
+                              {"tolerance_um", um_from_mm(result.rules.tip_mm)},
+                              {"not_written", result.written.not_written},
+                              {"axes", nlohmann::ordered_json::array()}};
+  for (size_t i = 0; i < machine.axes.size() && plan.points > 0; ++i) {
+    const bool rotary = machine.axes[i].kind == AxisKind::kRotary;
+    const auto row = static_cast<long>(i);
+    const auto shown = [&](double value) { return rotary ? deg_from_rad(value) : value; };
+    const std::string unit = rotary ? "deg" : "mm";
+    json["axes"].push_back({{"name", machine.axes[i].name},
+                            {"min_" + unit, shown(plan.low[row])},
+                            {"max_" + unit, shown(plan.high[row])},
+                            {"travel_" + unit, shown(plan.travel[row])}});
+  }
+  return json;
+}
+
+int run_post(const PostCommand& given) {
+  Diagnostics told;
+  const post::PostFormat format = format_of(given);
+  const machine::MachineScene scene = machine_of(given);
+  const post::PostOptions options = options_of(given, told);
+  const bool to_stdout = given.output == "-";
+  if (to_stdout && given.json)
+    throw InputError("two-outputs", {"swarf post"}, "--json and -o - both want the standard output",
+                     "name a file: -o part.nc");
+  std::optional<NewFile> file;
+  if (!to_stdout) file.emplace(given.output, kProgramFault);
+  constexpr size_t kPiece = size_t{1} << 16U;
+  std::string pending;
+  const auto flush = [&] {
+    if (to_stdout)
+      std::fwrite(pending.data(), 1, pending.size(), stdout);
+    else
+      file->write(pending);
+    pending.clear();
+  };
+  TerminalProgress progress;
+  const post::PostResult result = post::post(
+      given.file, scene.model, format, options,
+      [&](std::string_view text) {
+        pending += text;
+        if (pending.size() >= kPiece) flush();
+      },
+      progress, told);
+  if (interrupted()) return kStopped;
+  flush();
+  if (file) file->move_into_place();
+  if (given.json) {
+    fmt::print("{}\n", json_of(given, format, scene.model, result)
+                           .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+    return kPass;
+  }
+  print_diagnostics(told.list());
+  if (to_stdout || manner().quiet) return kPass;
+  fmt::print("{}\n", given.output);
+  print_table(table_of(format, scene.model, result));
+  return kPass;
+}
+
+const char* const kPostFooter =
+    R"(What comes out: the CL data as the axes of this machine, in the words of its control. The tip stays within
+--tolerance-um of the CL data's lines and arcs; the bound counts the digits that are written, and is proven.
+
+With TCP (G43.4, TRAORI, M128) the program holds tips and rotary axes, and the control keeps the tip on its line;
+blocks are added where the tool axis would stray by more than --axis-tolerance-deg. Without TCP it holds axis values:
+blocks are added until the tip stays within the tolerance, and feeds of blocks that turn are inverse times (G93;
+Heidenhain: an F of their own), so that the tip has its feed, or the slowest axis its speed limit.
+LinuxCNC has TCP only where its INI file switches kinematics by M428 and M429: --tcp writes them.
+
+Where the tool is out of the way (the start, a tool change, a RAPID behind a RAPID) another solution of the rotary
+axes, or another turn, is taken if the moves that follow need it; the tool is then retracted along the machine's Z.
+Elsewhere an axis that reaches the end of its travel is an error with its line.
+
+Drilling cycles (CYCLE/DRILL ..) stay cycles where the control drills along its own Z: G81, CYCLE81, CYCL DEF 200.
+
+X Y Z count from the work's origin: G54 has to hold it, with rotary axes at zero.
+
+Examples:
+  swarf post part.cls --machine spinner_u5_620 --dialect siemens --tools tools.toml -o part.mpf
+  swarf post part.cls --machine maho_600c --dialect heidenhain --no-tcp --tolerance-um 5 -o part.h
+  swarf post part.cls --machine mill_3axis --post my_shop.toml -o part.nc        your own words
+  swarf post part.cls --machine mikron_ucp710 -o - | less
+
+To check what was written: swarf check part.mpf --machine spinner_u5_620 --tools tools.toml --dialect siemens
+Exit codes: 0 written; 2 the CL data cannot be driven so, or cannot be read: nothing is written.)";
+
+}  // namespace
+
+void add_post(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<PostCommand>();
+  CLI::App* command =
+      app.add_subcommand("post", "Write CL data as an NC program for a machine and its control");
+  command->add_option("file", options->file, "CL data (.cls, .clt, .ncl, .apt, .cldata)")->required();
+  command->add_option("--machine", options->machine, "a machine that 'swarf machines' lists, or machine.toml")
+      ->type_name("NAME|FILE")
+      ->required();
+  command->add_option("--dialect", options->dialect,
+                      "the control's words: " + post::shipped_list() + " (fanuc when left out)");
+  command->add_option("--post", options->post, "words of your own: a file as those in assets/posts")
+      ->type_name("FILE");
+  command->add_flag("--tcp", options->tcp,
+                    "the control keeps the tip on its line; as the dialect has it when left out");
+  command->add_flag("--no-tcp", options->no_tcp, "axis values: any control of these axes can drive them");
+  command
+      ->add_option(
+          "--tolerance-um", options->tolerance_um,
+          "how far the tip may leave the CL data without TCP, written digits included; and the chords of "
+          "arcs that the control cannot go")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command
+      ->add_option("--axis-tolerance-deg", options->axis_tolerance_deg,
+                   "how far the tool axis may leave the great circle between two positions")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command->add_option(
+      "--tools", options->tools,
+      "tool table with the lengths: .toml with [[tool]], LinuxCNC's .tbl, Fusion's .json, FreeCAD's .fctl");
+  command
+      ->add_option(
+          "--work-origin", options->work_origin,
+          "where the work's zero stands in the machine, mm; as the machine's file has it when left out")
+      ->expected(3)
+      ->type_name("X Y Z");
+  command->add_option("--work-rotation-deg", options->work_rotation_deg, "the work turned about Z")
+      ->capture_default_str();
+  command
+      ->add_option("--cutcom", options->cutcom,
+                   "points of CL data under CUTCOM: of the cutter's centre, or of the part's contour")
+      ->check(CLI::IsMember({"centre", "contour"}));
+  command
+      ->add_option("--circle", options->circle,
+                   "how CIRCLE of CL data runs about its vector; as its writer does when left out")
+      ->check(CLI::IsMember({"clockwise", "counter_clockwise"}));
+  command->add_option("-o,--output", options->output, "the program; -: the standard output")->required();
+  command->add_flag("--json", options->json, "print one JSON object instead of text");
+  command->footer(kPostFooter);
+  command->callback([options, &exit_code] { exit_code = run_post(*options); });
+}
+
+}  // namespace swarf::cli

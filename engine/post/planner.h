@@ -1,0 +1,156 @@
+// From CL data to axis values: which solution of the inverse, where the axes unwind, how many blocks.
+//
+//  The CL moves are planned by stretches, which begin where the tool is out of the way: at the start, where
+//  the tool changes, and at the end of a rapid that follows a rapid (the first one has lifted the tool).
+//
+//  1. Candidates: both solutions of the inverse at the stretch's first pose, each also a turn to either side.
+//     The order is BranchChoice's: as it stands, by rotary travel from where the axes are.
+//  2. The first candidate whose whole stretch can be driven is taken (Kruth et al.: switch where it costs
+//     nothing). Where it is the continuous one the rapid is driven as it is; else the tool is retracted along
+//     the machine's tool axis, the rotary axes turn, and it comes down again.
+//  3. The same with the other side of each pole that is passed (PoleSide), on machines that have one.
+//  4. When none can, the fault of the first one is told, with its CL line.
+//
+//  A stretch is held whole, about a kilobyte for each move, but no more than kMovesAhead moves of it: the
+//  rest goes on from where they end, so memory does not grow with the file.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/diagnostics.h"
+#include "post/follow.h"
+#include "post/plan.h"
+#include "program/control/work_space.h"
+
+namespace swarf::post {
+
+/// A tool with what the plan needs of it.
+struct PostTool {
+  int number = 0;
+  std::string name;
+  double length_mm = 0.0;  ///< gauge line to tip
+};
+
+/// What a dialect can do, from PostFormat.
+struct PostAbilities {
+  std::array<bool, 3> planes{};  ///< arcs in XY, ZX, YZ
+  bool helix = true, tcp_arcs = true;
+  bool drill = false, drill_dwell = false, deep = false, chip_break = false, bore = false, bore_dwell = false,
+       tap = false;
+  double arc_digit_mm = 1e-3;  ///< last digit of a linear word
+};
+
+/// A candidate for the start of a stretch.
+struct Start {
+  kinematics::AxisValues q;
+  bool continuous = false;  ///< the rapid goes there without a turn more than its poses ask for
+};
+/// Puts the candidates of a stretch in the order in which they are tried, or takes some out. Later rules
+/// (collisions, dynamic programming over stretches) stand here. The moves are those of the stretch.
+using BranchChoice =
+    std::function<void(std::span<const program::Move> stretch, std::vector<Start>& candidates)>;
+
+struct PlannerSetup {
+  kinematics::MachineModel machine;
+  std::vector<PostTool> tools;  ///< by the program's own order of calls grows; index -1: the spindle is empty
+  FollowRules rules;
+  PostAbilities abilities;
+  BranchChoice choice;  ///< none: as the candidates stand
+  size_t faults_most = 20;
+};
+
+/// The linear axis that runs along the tool with all axes at zero: the way out before a tool is changed.
+/// Throws InputError "approach-axis" where the machine has none.
+int axis_along_tool(const kinematics::MachineModel& machine);
+/// Where that axis stands when the tool is out of the way: where tools are changed, or at home.
+double retracted(const kinematics::MachineModel& machine);
+
+/// Moves that the start of a stretch is chosen by.
+inline constexpr size_t kMovesAhead = 50'000;
+
+/// Takes the planned stretches in their order.
+using StretchSink = std::function<void(const PlannedStretch&)>;
+
+class Planner final : public program::ClSink {
+ public:
+  /// `tool_of`: index into setup.tools for an index into ClProgram::tools. All must outlive it.
+  Planner(const PlannerSetup& setup, std::string file, StretchSink sink, Diagnostics& diagnostics);
+
+  void move(const program::Move& move) override;
+  void hole(const program::ClHole& hole) override;
+  void note(program::ClNote note) override;
+  /// The last stretch.
+  void finish();
+  /// What a tool index of the CL data means; called when a move has a new one.
+  std::function<int(int cl_tool)> tool_of;
+  const PlanSummary& summary() const { return summary_; }
+
+ private:
+  struct HoleSpan {
+    size_t first = 0;
+    program::ClHole hole;
+  };
+  struct Plan {
+    PlannedStretch stretch;
+    PoleSide side = PoleSide::kContinuous;
+    kinematics::AxisValues q;
+    std::optional<FollowFault> fault;
+    int fault_line = 0;
+    PlanSummary summary;
+  };
+  /// Where the stretch is entered, and the first move that is still to be driven from there.
+  struct Entry {
+    ToolPose pose;
+    size_t first = 0;
+    bool approach = false;
+  };
+  void plan_stretch();
+  void plan_moves();
+  void tell(const FollowFault& fault, int line);
+  std::vector<Start> candidates(const Entry& entry) const;
+  Entry entry() const;
+  kinematics::AxisValues turned_for_tilt(const ToolPose& pose, const kinematics::AxisValues& q) const;
+  Plan plan_from(const Entry& entry, const Start& start, bool approach, PoleSide side) const;
+  Plan best_plan() const;
+  bool add_move(const program::Move& move, Plan& plan) const;
+  bool add_arc(const program::Move& move, Plan& plan) const;
+  bool add_hole(const HoleSpan& span, Plan& plan) const;
+  bool keeps_cycle(const HoleSpan& span, const kinematics::AxisValues& q) const;
+  bool has_word_for(const program::ClHole& hole, double spindle_rpm) const;
+  void add_approach(const program::Move& move, const ToolPose& pose, const kinematics::AxisValues& q,
+                    Plan& plan) const;
+  PlanStep step_at(const program::Move& move, const ToolPose& pose, const kinematics::AxisValues& q,
+                   StepKind kind, bool tcp) const;
+  void add_step(PlanStep step, double way_mm, Plan& plan) const;
+  void without_tcp(size_t first, Plan& plan) const;
+  void time_stretch(Plan& plan) const;
+  void deliver(Plan plan);
+  void use_tool(int tool);
+  Vec3 program_point(const ToolPose& pose, const kinematics::AxisValues& q, bool tcp) const;
+
+  const PlannerSetup& setup_;
+  std::string file_;
+  StretchSink sink_;
+  Diagnostics& diagnostics_;
+  PlanSummary summary_;
+  size_t faults_ = 0;
+
+  std::vector<program::Move> moves_;
+  std::vector<HoleSpan> holes_;
+  std::vector<PlacedNote> notes_;
+  int in_hole_ = 0;  ///< moves of a hole that are still to come
+  bool last_rapid_ = false;
+
+  int cl_tool_ = -2, tool_ = -1;
+  std::optional<Follower> follower_;
+  mutable std::optional<program::nc::WorkSpace> space_;
+  std::optional<program::ClHole> next_hole_;
+  bool started_ = false, approach_next_ = true, tool_changed_ = false;
+  kinematics::AxisValues q_ = kinematics::AxisValues::Zero();
+};
+
+}  // namespace swarf::post
