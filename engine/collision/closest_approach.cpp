@@ -84,7 +84,8 @@ class ApproachSearch {
   /// Where the axes stray, no division brings the bounds together: as soon as the stray alone may take a
   /// distance below the limit, that is the answer.
   void meet_strayed(const Triple& triple, const LeafDistance& found) {
-    if (found.upper - found.stray >= query_.limit - query_.tolerance) return divide_time(triple);
+    const bool stray_decides = found.upper - found.stray < query_.limit - query_.tolerance;
+    if (!stray_decides && found.sagitta > 0.1 * query_.tolerance) return divide_time(triple);
     stopped_ = answer_.within = true;
     best_ = found;
     answer_.pair = space_.pair_of(triple);

@@ -75,7 +75,7 @@ class PairWalk {
     const size_t ways = last - first;
     const Approach found =
         search(chord_of(poses_, first, last), asked(), ways <= 1 ? UINT64_MAX : kLeastBudget + 4 * ways);
-    if (!found.within && !found.given_up) {
+    if (!found.within && !found.given_up && found.lower > options_.touch_mm) {
       near_.lower = std::min(near_.lower, found.lower);
       return;
     }
@@ -90,16 +90,21 @@ class PairWalk {
     late ? visit(first, middle) : visit(middle, last);
   }
 
-  /// The way from one cycle to the next, on which the axes go straight.
+  /// The way from one cycle to the next, on which the axes go straight. What is not proven to be free counts
+  /// as contact.
   void settle_way(size_t way, const Approach& found) {
-    const Approach sure =
-        found.upper > options_.touch_mm && found.lower <= options_.touch_mm
-            ? search(chord_of(poses_, way, std::min(way + 1, poses_.size() - 1)), 2.0 * options_.touch_mm)
-            : found;
-    take_near(way, found);
-    if (sure.within) take_near(way, sure);
-    near_.lower = std::min(near_.lower, sure.within ? sure.lower : std::max(found.lower, sure.lower));
-    if (sure.within && sure.upper <= options_.touch_mm) ways_[way] = Way::kTouches;
+    if (found.within) take_near(way, found);
+    double lower = found.lower;
+    bool touches = found.within && found.upper <= options_.touch_mm;
+    if (!touches && lower <= options_.touch_mm) {
+      const size_t to = std::min(way + 1, poses_.size() - 1);
+      const Approach sure = search(chord_of(poses_, way, to), 2.0 * options_.touch_mm);
+      if (sure.within) take_near(way, sure);
+      lower = sure.within ? sure.lower : std::max(lower, sure.lower);
+      touches = (sure.within && sure.upper <= options_.touch_mm) || lower <= 0.0;
+    }
+    near_.lower = std::min(near_.lower, lower);
+    if (touches) ways_[way] = Way::kTouches;
   }
 
   /// A distance that is known to occur, from the two primitives that came nearest on the chord.

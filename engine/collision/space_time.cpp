@@ -127,6 +127,7 @@ LeafDistance SpaceTime::leaf_distance(uint32_t still, uint32_t moving, int32_t a
   LeafDistance leaf;
   leaf.lower = found.lower;
   leaf.stray = bounds_.slack(found.normal, 0.0);
+  leaf.sagitta = bounds_.slack(during.square) - bounds_.slack(0.0);
   leaf.t = during.t0 + found.t * (during.t1 - during.t0);
   leaf.home_still = found.home_a;
   leaf.home_moving = found.home_b;

@@ -30,6 +30,7 @@ struct Triple {
 struct LeafDistance {
   double lower = 0.0, upper = 0.0;  ///< mm; the upper one at t, of the straight line of axis values
   double stray = 0.0;               ///< mm that was taken off the lower one because the axes stray
+  double sagitta = 0.0;             ///< mm, at most taken off it because the motion is not straight
   double t = 0.0;
   Vec3 home_still = Vec3::Zero(), home_moving = Vec3::Zero();
 };
