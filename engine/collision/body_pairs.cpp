@@ -37,15 +37,19 @@ bool is_allowed(const NamePairs& allowed, const Body& a, const Body& b) {
   });
 }
 
-bool rides_on(const machine::MachineScene& scene, int link, int carrier) {
-  while (link >= 0 && link != carrier) link = scene.links[static_cast<size_t>(link)].parent;
-  return link == carrier;
+/// The link on which another one is guided: its parent, or the first carrier that has a mesh.
+int guide_of(const machine::MachineScene& scene, int link) {
+  int guide = scene.links[static_cast<size_t>(link)].parent;
+  while (guide >= 0 && scene.links[static_cast<size_t>(guide)].mesh.triangles.empty()) {
+    guide = scene.links[static_cast<size_t>(guide)].parent;
+  }
+  return guide;
 }
 
 bool is_guided(const Encounter& pair) {
-  if (pair.a->kind != BodyKind::kLink || pair.b->kind != BodyKind::kLink) return false;
-  return pair.b_from_a.steps().size() == 1 && (rides_on(*pair.scene, pair.a->link, pair.b->link) ||
-                                               rides_on(*pair.scene, pair.b->link, pair.a->link));
+  const int a = pair.a->link, b = pair.b->link;
+  if (pair.a->kind != BodyKind::kLink || pair.b->kind != BodyKind::kLink || a < 0 || b < 0) return false;
+  return guide_of(*pair.scene, a) == b || guide_of(*pair.scene, b) == a;
 }
 
 bool touches_at(const Encounter& pair, const AxisValues& q, double touch_mm) {
@@ -75,7 +79,7 @@ std::string text_of(PairReason reason) {
     case PairReason::kRigid:
       return "no axis lies between them";
     case PairReason::kGuided:
-      return "one guides the other: a single axis lies between them";
+      return "one guides the other: it is its parent";
     case PairReason::kAllowed:
       return "they may touch";
     case PairReason::kTouchesAtHome:

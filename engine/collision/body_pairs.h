@@ -12,7 +12,7 @@ namespace swarf::collision {
 
 enum class PairReason {
   kRigid,          ///< no axis lies between them
-  kGuided,         ///< one link guides the other: a single axis lies between them
+  kGuided,         ///< one link guides the other: it is its parent, or the next one that has a mesh
   kAllowed,        ///< the user's list, or the caller's: flutes and the material
   kTouchesAtHome,  ///< two links that overlap where the axes stand at home: their meshes are drawn so
 };

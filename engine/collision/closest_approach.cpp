@@ -22,18 +22,24 @@ class ApproachSearch {
   ApproachSearch(const Encounter& pair, const AxisSegment& segment, const ApproachQuery& query)
       : space_(pair, segment),
         query_(query),
-        nearest_(query.limit + space_.motion().stray),
-        proven_(nearest_) {}
+        nearest_(query.limit),
+        proven_(query.limit),
+        strays_(!segment.stray.isZero(0.0)) {}
 
   Approach run() {
     open_.push_back(space_.root());
     if (query_.hint != nullptr) look_at_hint();
-    while (!open_.empty() && nearest_ > query_.enough) {
+    while (!open_.empty() && nearest_ > query_.enough && !stopped_) {
       std::pop_heap(open_.begin(), open_.end(), FarthestFirst{});
       const Triple triple = open_.back();
       open_.pop_back();
       if (!is_open(triple.lower)) {
         settle(triple.lower);  // and all that are left are farther
+        break;
+      }
+      if (spent_++ >= query_.budget) {
+        settle(triple.lower);
+        answer_.given_up = true;
         break;
       }
       space_.is_leaf_pair(triple) ? meet(triple) : divide(triple);
@@ -70,14 +76,32 @@ class ApproachSearch {
     const LeafDistance found = space_.leaf_distance(triple, nearest_ - query_.tolerance);
     triple.lower = std::max(triple.lower, found.lower);
     if (!is_open(triple.lower)) return settle(triple.lower);
+    if (strays_) return meet_strayed(triple, found);
     take(found, space_.pair_of(triple));
-    if (!is_open(triple.lower) || space_.travel(triple.span) <= kLeastTravel) return settle(triple.lower);
+    is_open(triple.lower) ? divide_time(triple) : settle(triple.lower);
+  }
+
+  /// Where the axes stray, no division brings the bounds together: as soon as the stray alone may take a
+  /// distance below the limit, that is the answer.
+  void meet_strayed(const Triple& triple, const LeafDistance& found) {
+    const bool stray_decides = found.upper - found.stray < query_.limit - query_.tolerance;
+    if (!stray_decides && found.sagitta > 0.1 * query_.tolerance) return divide_time(triple);
+    stopped_ = answer_.within = true;
+    best_ = found;
+    answer_.pair = space_.pair_of(triple);
+    nearest_ = found.upper;
+    settle(triple.lower);
+  }
+
+  void divide_time(const Triple& triple) {
+    if (space_.travel(triple.span) <= kLeastTravel) return settle(triple.lower);
     parts_.clear();
     space_.split_time(triple, parts_);
     for (const Triple& part : parts_) push(part);
   }
 
   void look_at_hint() {
+    if (strays_) return;
     const bool a_moves = space_.a_moves();
     const uint32_t still = a_moves ? query_.hint->b : query_.hint->a;
     const uint32_t moving = a_moves ? query_.hint->a : query_.hint->b;
@@ -86,7 +110,7 @@ class ApproachSearch {
 
   Approach answer() {
     for (const Triple& triple : open_) settle(triple.lower);
-    answer_.lower = std::max(0.0, std::min(proven_, nearest_) - space_.motion().stray);
+    answer_.lower = std::min(proven_, nearest_);
     if (!answer_.within) return answer_;
     answer_.upper = nearest_;
     answer_.t = best_.t;
@@ -98,6 +122,8 @@ class ApproachSearch {
   ApproachQuery query_;
   double nearest_;  ///< least upper bound so far, or the limit
   double proven_;   ///< nothing that has been settled comes nearer
+  bool strays_, stopped_ = false;
+  uint64_t spent_ = 0;  ///< triples that were split
   LeafDistance best_;
   Approach answer_;
   std::vector<Triple> open_, parts_;

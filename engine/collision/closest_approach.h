@@ -36,18 +36,20 @@ struct PrimitivePair {
 };
 
 struct ApproachQuery {
-  /// mm; what is farther is not looked for. Where the axes stray it is meant of the lower bound.
-  double limit = std::numeric_limits<double>::infinity();
-  double tolerance = 1e-3;  ///< mm between the bounds of the answer, above 0
+  double limit = std::numeric_limits<double>::infinity();  ///< mm; what is farther is not looked for
+  double tolerance = 1e-3;                                 ///< mm between the bounds of the answer, above 0
   /// Look no further once a distance of this or less is found, mm; the bounds are then wider.
   double enough = -1.0;
+  /// Triples that are split at most; beyond, the search is given up.
+  uint64_t budget = std::numeric_limits<uint64_t>::max();
   /// A pair that was nearest a while ago: the answer does not depend on it but for which of equals is told.
   const PrimitivePair* hint = nullptr;
 };
 
 /// Least distance over a segment.
 struct Approach {
-  bool within = false;  ///< below the limit; else only `lower` means something
+  bool within = false;    ///< below the limit; else only `lower` means something
+  bool given_up = false;  ///< the budget was spent: `lower` holds, but may lie far below
   double lower = std::numeric_limits<double>::infinity();  ///< mm; proven, also where nothing is within
   double upper = std::numeric_limits<double>::infinity();  ///< mm; of the two points at t
   double t = 0.0;                                          ///< share of the segment
@@ -58,7 +60,9 @@ struct Approach {
 /// The distance at one place of the axes of two given primitives: an upper bound of that of the bodies, mm.
 double distance_at(const Encounter& pair, const AxisValues& q, const PrimitivePair& primitives);
 
-/// `segment.stray` is taken off the lower bound; the upper one is that of the straight line of axis values.
+/// Where the axes stray (AxisSegment::stray), the lower bound is that of all places they may be at; nothing
+/// within the limit is proven as ever, but the search ends at the first place that may be nearer than the
+/// limit, and `upper` is the distance there on the straight line.
 /// Surfaces alone: a body wholly inside the other has the distance of their surfaces (containment.h).
 Approach closest_approach(const Encounter& pair, const AxisSegment& segment, const ApproachQuery& query = {});
 

@@ -147,9 +147,8 @@ bool repeats(const Simplex& simplex, const Vertex& vertex) {
   return false;
 }
 
-ConvexDistance answer_of(const Simplex& simplex, double lower, double upper) {
+ConvexDistance answer_of(const Simplex& simplex, double upper) {
   ConvexDistance answer;
-  answer.lower = std::min(lower, upper);
   answer.upper = upper;
   for (int i = 0; i < simplex.size; ++i) {
     const Vertex& vertex = simplex.at[i];
@@ -159,6 +158,22 @@ ConvexDistance answer_of(const Simplex& simplex, double lower, double upper) {
   }
   return answer;
 }
+
+/// The best of the support planes so far.
+struct LowerBound {
+  double plain = 0.0, less_slack = 0.0;
+  Vec3 normal = Vec3::Zero();
+  void see(const Vec3& v, double length, const Vertex& support, const MotionSlack& motion) {
+    const double bound = v.dot(support.w) / length;
+    if (bound <= plain) return;
+    plain = bound;
+    const Vec3 n = v / length;
+    const double less = bound - motion.along(n);
+    if (less <= less_slack) return;
+    less_slack = less;
+    normal = n;
+  }
+};
 
 }  // namespace
 
@@ -186,16 +201,18 @@ ConvexView view_of(const Body& body, uint32_t primitive, const Pose& first, cons
   return view;
 }
 
-ConvexDistance convex_distance(const ConvexView& a, const ConvexView& b, double enough) {
+ConvexDistance convex_distance(const ConvexView& a, const ConvexView& b, double enough,
+                               const MotionSlack& slack) {
   Simplex simplex;
   simplex.at[0] = difference(a, b, Vec3(0.5, 0.6, 0.7));
   simplex.size = 1;
   Vec3 v = simplex.at[0].w;
-  double lower = 0.0, length = v.norm();
+  LowerBound lower;
+  double length = v.norm();
   for (int step = 0; step < kIterations && length > 0.0; ++step) {
     const Vertex next = difference(a, b, -v);
-    lower = std::max(lower, v.dot(next.w) / length);
-    if (lower > enough || length - lower <= kConvexGap || repeats(simplex, next)) break;
+    lower.see(v, length, next, slack);
+    if (lower.less_slack > enough || length - lower.plain <= kConvexGap || repeats(simplex, next)) break;
     Simplex larger = simplex;
     larger.at[larger.size++] = next;
     const Nearest nearest = nearest_of(larger);
@@ -206,7 +223,10 @@ ConvexDistance convex_distance(const ConvexView& a, const ConvexView& b, double 
     v = nearest.v;
     length = shorter;
   }
-  return answer_of(simplex, lower, length);
+  ConvexDistance answer = answer_of(simplex, length);
+  answer.lower = std::min(lower.less_slack, length);
+  answer.normal = lower.normal;
+  return answer;
 }
 
 }  // namespace swarf::collision

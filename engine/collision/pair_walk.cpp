@@ -8,7 +8,8 @@ namespace {
 
 enum class Way : uint8_t { kFree, kTouches, kInside };
 
-constexpr size_t kDepthsMost = 8;  ///< places of a contact at which its depth is looked at
+constexpr uint64_t kLeastBudget = 64;  ///< triples that a search over several ways may split
+constexpr size_t kDepthsMost = 8;      ///< places of a contact at which its depth is looked at
 
 /// From one pose of the stretch to another: the straight line, and how far the poses between lie off it at
 /// most, each held against the place of the line that stands for its share of the way.
@@ -52,12 +53,13 @@ class PairWalk {
   /// Distances from here on do not matter, but for contacts.
   double asked() const { return std::max(near_.upper, 2.0 * options_.touch_mm); }
 
-  Approach search(const AxisSegment& segment, double limit) const {
+  Approach search(const AxisSegment& segment, double limit, uint64_t budget = UINT64_MAX) const {
     ApproachQuery query;
     query.limit = limit;
     query.tolerance = std::min(options_.tolerance_mm, limit - options_.touch_mm);
     query.enough = options_.touch_mm;
     query.hint = &hint_;
+    query.budget = budget;
     return closest_approach(pair_, segment, query);
   }
 
@@ -67,35 +69,42 @@ class PairWalk {
              found.point_a, found.point_b, found.pair};
   }
 
-  /// Ways from pose `first` to pose `last`.
+  /// Ways from pose `first` to pose `last`. A search over several is given up when it takes longer than those
+  /// over each of them would.
   void visit(size_t first, size_t last) {
-    const Approach found = search(chord_of(poses_, first, last), asked());
-    if (!found.within) {
+    const size_t ways = last - first;
+    const Approach found =
+        search(chord_of(poses_, first, last), asked(), ways <= 1 ? UINT64_MAX : kLeastBudget + 4 * ways);
+    if (!found.within && !found.given_up && found.lower > options_.touch_mm) {
       near_.lower = std::min(near_.lower, found.lower);
       return;
     }
-    hint_ = found.pair;
-    if (last - first <= 1) return settle_way(first, found);
+    if (found.within) hint_ = found.pair;
+    if (ways <= 1) return settle_way(first, found);
     const size_t middle = (first + last) / 2;
-    const auto nearest =
-        first + static_cast<size_t>(std::lround(found.t * static_cast<double>(last - first)));
-    look_at_pose(nearest);
+    const auto nearest = first + static_cast<size_t>(std::lround(found.t * static_cast<double>(ways)));
+    if (found.within) look_at_pose(nearest);
     // The half that comes nearest first, for its distance is what the other is held against.
     const bool late = nearest > middle;
     late ? visit(middle, last) : visit(first, middle);
     late ? visit(first, middle) : visit(middle, last);
   }
 
-  /// The way from one cycle to the next, on which the axes go straight.
+  /// The way from one cycle to the next, on which the axes go straight. What is not proven to be free counts
+  /// as contact.
   void settle_way(size_t way, const Approach& found) {
-    const Approach sure =
-        found.upper > options_.touch_mm && found.lower <= options_.touch_mm
-            ? search(chord_of(poses_, way, std::min(way + 1, poses_.size() - 1)), 2.0 * options_.touch_mm)
-            : found;
-    take_near(way, found);
-    if (sure.within) take_near(way, sure);
-    near_.lower = std::min(near_.lower, sure.within ? sure.lower : std::max(found.lower, sure.lower));
-    if (sure.within && sure.upper <= options_.touch_mm) ways_[way] = Way::kTouches;
+    if (found.within) take_near(way, found);
+    double lower = found.lower;
+    bool touches = found.within && found.upper <= options_.touch_mm;
+    if (!touches && lower <= options_.touch_mm) {
+      const size_t to = std::min(way + 1, poses_.size() - 1);
+      const Approach sure = search(chord_of(poses_, way, to), 2.0 * options_.touch_mm);
+      if (sure.within) take_near(way, sure);
+      lower = sure.within ? sure.lower : std::max(lower, sure.lower);
+      touches = (sure.within && sure.upper <= options_.touch_mm) || lower <= 0.0;
+    }
+    near_.lower = std::min(near_.lower, lower);
+    if (touches) ways_[way] = Way::kTouches;
   }
 
   /// A distance that is known to occur, from the two primitives that came nearest on the chord.

@@ -61,6 +61,8 @@ void join_events(ContactEvent& event, const ContactEvent& later) {
   event.deepest_cycle = later.deepest_cycle;
 }
 
+}  // namespace
+
 /// A pair and what has been found of it so far.
 struct WatchedPair {
   Encounter encounter;
@@ -69,6 +71,8 @@ struct WatchedPair {
   bool touching = false;   ///< at the end of what has been seen
   uint64_t end_cycle = 0;  ///< number of the last pose that has been seen
 };
+
+namespace {
 
 void merge_stretch(WatchedPair& pair, const StretchFindings& found, PathStretch poses) {
   const bool follows = pair.touching && found.starts_touching && pair.end_cycle == poses.front().cycle;

@@ -49,6 +49,28 @@ Pose RelativeMotion::pose(const AxisValues& q) const {
   return pose;
 }
 
+double StepBound::share(const Vec3& n) const {
+  const double along = std::abs(n.dot(axis));
+  // What rounding hides near a right angle.
+  const double reach = rotary ? std::sqrt(std::max(0.0, 1.0 - along * along)) + 2e-8 : along;
+  return std::min(1.0, reach + wobble);
+}
+
+double MotionBounds::slack(double square) const {
+  double sum = 0.0;
+  for (const StepBound& step : steps) sum += step.acceleration * square + step.stray;
+  return sum;
+}
+
+double MotionBounds::slack(const Vec3& n, double square) const {
+  double sum = 0.0;
+  for (const StepBound& step : steps) {
+    const double most = step.acceleration * square + step.stray;
+    if (most > 0.0) sum += most * step.share(n);
+  }
+  return sum;
+}
+
 MotionBounds RelativeMotion::bounds(const AxisSegment& segment, const Vec3& centre, double radius) const {
   MotionBounds sum;
   Vec3 at = centre;
@@ -58,13 +80,19 @@ MotionBounds RelativeMotion::bounds(const AxisSegment& segment, const Vec3& cent
     const kinematics::Axis& axis = scene_->model.axes[static_cast<size_t>(step.axis)];
     const double rate = std::abs(segment.q1[step.axis] - segment.q0[step.axis]);
     const double stray = segment.stray[step.axis];
-    const bool rotary = axis.kind == kinematics::AxisKind::kRotary;
-    const double lever = rotary ? distance_to_axis(axis, at) + radius + spread : 1.0;
-    if (rotary) sum.acceleration += rate * rate * lever + 2.0 * rate * sum.speed;
+    StepBound bound{axis.kind == kinematics::AxisKind::kRotary, axis.direction_M, 0.0, 0.0, 0.0};
+    const double lever = bound.rotary ? distance_to_axis(axis, at) + radius + spread : 1.0;
+    if (bound.rotary) bound.acceleration = rate * rate * lever + 2.0 * rate * sum.speed;
+    bound.stray = stray * lever;
     sum.speed += rate * lever;
-    sum.stray += stray * lever;
     spread += (0.5 * rate + stray) * lever;
-    at = kinematics::axis_motion(axis, step.back ? -middle[step.axis] : middle[step.axis]) * at;
+    const Pose moved = kinematics::axis_motion(axis, step.back ? -middle[step.axis] : middle[step.axis]);
+    at = moved * at;
+    for (StepBound& before : sum.steps) {
+      before.axis = moved.linear() * before.axis;
+      if (bound.rotary) before.wobble += 0.5 * rate + stray;
+    }
+    sum.steps.push_back(bound);
   }
   return sum;
 }

@@ -5,9 +5,13 @@
 //
 // Every bound holds for all points of the moving body and all instants. With levers r_i (how far a point may
 // come from rotary axis i, mm), speeds w_i = |q1_i - q0_i| per unit of t, and steps in order:
-//   |p'|   <=  speed  =  sum of w_i r_i (rotary) and w_i (linear)
-//   |p''|  <=  sum over rotary i of  w_i^2 r_i + 2 w_i (speed of the steps before i)
-// so that p(t) strays from the straight line between p(t0) and p(t1) by no more than |p''| (t1 - t0)^2 / 8.
+//   |p'|   <=  sum of speed_i  with  speed_i = w_i r_i (rotary) or w_i (linear)
+//   p''    =   sum of a_i  over rotary i,  |a_i| <= w_i^2 r_i + 2 w_i (speed of the steps before i),  and
+//   each
+//              a_i is perpendicular to axis i
+// so that p(t) strays from the straight line between p(t0) and p(t1) by no more than (t1 - t0)^2 / 8 times
+// the sum of |a_i| sin(n, axis i) in the direction n: a table that turns under a parallel face does not come
+// nearer to it, whatever its radius.
 #pragma once
 
 #include <vector>
@@ -35,10 +39,24 @@ struct RelativeStep {
 /// Axes between two links, in the order in which they move a point of link b as seen from link a. -1: floor.
 std::vector<RelativeStep> steps_between(const machine::MachineScene& scene, int link_a, int link_b);
 
-struct MotionBounds {
-  double speed = 0.0;         ///< mm per unit of t
+/// What one axis contributes, as seen from the other body.
+struct StepBound {
+  bool rotary = false;
+  Vec3 axis = Vec3::UnitX();  ///< unit; its direction in the middle of the segment
+  double wobble = 0.0;        ///< rad by which the steps behind it may turn that direction
   double acceleration = 0.0;  ///< mm per unit of t squared
-  double stray = 0.0;         ///< mm by which AxisSegment::stray may displace a point
+  double stray = 0.0;         ///< mm by which AxisSegment::stray of this axis may displace a point
+  /// Share of a displacement by this axis that may lie along the unit vector n.
+  double share(const Vec3& n) const;
+};
+
+struct MotionBounds {
+  double speed = 0.0;  ///< mm per unit of t
+  std::vector<StepBound> steps;
+  /// Least upper bounds of acceleration and stray in any direction, and of what lies along the unit vector n,
+  /// the first times `square` (of a span of t, over 8).
+  double slack(double square) const;
+  double slack(const Vec3& n, double square) const;
 };
 
 class RelativeMotion {

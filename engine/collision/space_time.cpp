@@ -13,16 +13,12 @@ MotionBounds motion_bounds(const RelativeMotion& motion, const Body& body, const
   return motion.bounds(segment, root.centre, root.radius);
 }
 
-double slack_of(const MotionBounds& bounds) {
-  return bounds.acceleration / 8.0 + bounds.stray;
-}
-
-/// Distance of a box about the origin's `still` from the least box that holds two others.
+/// Distance of a box from the least box that holds two others, which `slack` makes larger on every side.
 double box_gap(const Vec3& still, const Vec3& still_half, const Vec3& c0, const Vec3& e0, const Vec3& c1,
-               const Vec3& e1) {
+               const Vec3& e1, const Vec3& slack) {
   const Vec3 low = (c0 - e0).cwiseMin(c1 - e1), high = (c0 + e0).cwiseMax(c1 + e1);
   const Vec3 below = low - (still + still_half), above = (still - still_half) - high;
-  return below.cwiseMax(above).cwiseMax(0.0).norm();
+  return (below.cwiseMax(above) - slack).cwiseMax(0.0).norm();
 }
 
 }  // namespace
@@ -31,7 +27,7 @@ SpaceTime::SpaceTime(const Encounter& pair, const AxisSegment& segment) : pair_(
   SWARF_CHECK(!pair.a->nodes.empty() && !pair.b->nodes.empty(), "an empty body is near nothing");
   const MotionBounds of_b = motion_bounds(pair.b_from_a, *pair.b, segment);
   const MotionBounds of_a = motion_bounds(pair.a_from_b, *pair.a, segment);
-  const bool a_moves = slack_of(of_a) < slack_of(of_b);
+  const bool a_moves = of_a.slack(0.125) < of_b.slack(0.125);
   still_ = a_moves ? pair.b : pair.a;
   moving_ = a_moves ? pair.a : pair.b;
   motion_ = a_moves ? &pair.a_from_b : &pair.b_from_a;
@@ -57,7 +53,11 @@ Span SpaceTime::make_span(double t0, double t1, const Pose& first, const Pose& l
   span.turned_last = last.linear().cwiseAbs();
   span.aligned = first.linear() == Mat3::Identity();
   if (!span.aligned) span.turned_between = (first.linear().transpose() * last.linear()).cwiseAbs();
-  span.sagitta = bounds_.acceleration * (t1 - t0) * (t1 - t0) / 8.0;
+  span.square = (t1 - t0) * (t1 - t0) / 8.0;
+  for (int k = 0; k < 3; ++k) {
+    span.slack[k] = bounds_.slack(Vec3::Unit(k), span.square);
+    if (!span.aligned) span.slack_turned[k] = bounds_.slack(Vec3(first.linear().col(k)), span.square);
+  }
   return span;
 }
 
@@ -82,13 +82,13 @@ double SpaceTime::bound(int32_t still, int32_t moving, const Span& span) const {
   const BodyNode& b = moving_->nodes[static_cast<size_t>(moving)];
   const Vec3 c0 = span.first * b.centre, c1 = span.last * b.centre;
   const Vec3 e0 = span.turned_first * b.half;
-  double gap = box_gap(a.centre, a.half, c0, e0, c1, span.turned_last * b.half);
+  double gap = box_gap(a.centre, a.half, c0, e0, c1, span.turned_last * b.half, span.slack);
   if (!span.aligned) {
     const auto back = span.first.linear().transpose();
     gap = std::max(gap, box_gap(back * a.centre, span.turned_first.transpose() * a.half, back * c0, b.half,
-                                back * c1, span.turned_between * b.half));
+                                back * c1, span.turned_between * b.half, span.slack_turned));
   }
-  return std::max(0.0, gap - span.sagitta);
+  return gap;
 }
 
 void SpaceTime::add_part(int32_t still, int32_t moving, int32_t at, double least,
@@ -108,7 +108,7 @@ void SpaceTime::split(const Triple& triple, std::vector<Triple>& parts) {
   const BodyNode& a = still_->nodes[static_cast<size_t>(triple.still)];
   const BodyNode& b = moving_->nodes[static_cast<size_t>(triple.moving)];
   const Span& during = span(triple.span);
-  const double way = (during.last * b.centre - during.first * b.centre).norm() + during.sagitta;
+  const double way = (during.last * b.centre - during.first * b.centre).norm() + bounds_.slack(during.square);
   const bool divides = during.t1 > during.t0;
   if (divides && way > a.radius + b.radius) return split_time(triple, parts);
   const bool first = b.child < 0 || (a.child >= 0 && a.radius >= b.radius);
@@ -121,11 +121,13 @@ void SpaceTime::split(const Triple& triple, std::vector<Triple>& parts) {
 LeafDistance SpaceTime::leaf_distance(uint32_t still, uint32_t moving, int32_t at, double enough) const {
   const Span& during = span(at);
   const bool divides = during.t1 > during.t0;
-  const ConvexDistance found = convex_distance(
-      view_of(*still_, still), view_of(*moving_, moving, during.first, divides ? &during.last : nullptr),
-      enough + during.sagitta);
+  const ConvexView other = view_of(*moving_, moving, during.first, divides ? &during.last : nullptr);
+  const ConvexDistance found =
+      convex_distance(view_of(*still_, still), other, enough, {&bounds_, during.square});
   LeafDistance leaf;
-  leaf.lower = std::max(0.0, found.lower - during.sagitta);
+  leaf.lower = found.lower;
+  leaf.stray = bounds_.slack(found.normal, 0.0);
+  leaf.sagitta = bounds_.slack(during.square) - bounds_.slack(0.0);
   leaf.t = during.t0 + found.t * (during.t1 - during.t0);
   leaf.home_still = found.home_a;
   leaf.home_moving = found.home_b;

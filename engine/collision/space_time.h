@@ -14,8 +14,10 @@ struct Span {
   Pose first = Pose::Identity(), last = Pose::Identity();  ///< moving body's home drawing -> the still one's
   Mat3 turned_first, turned_last, turned_between;          ///< absolute values of the rotations
   bool aligned = false;                                    ///< `first` does not turn
-  double sagitta = 0.0;                                    ///< mm
-  int32_t child = -1;                                      ///< index of its first half; the other follows
+  double square = 0.0;                                     ///< (t1 - t0)^2 / 8
+  /// What the motion may take off a gap along the still body's axes, and along the moving one's at t0, mm.
+  Vec3 slack = Vec3::Zero(), slack_turned = Vec3::Zero();
+  int32_t child = -1;  ///< index of its first half; the other follows
 };
 
 /// A box of each body over a span.
@@ -26,7 +28,9 @@ struct Triple {
 
 /// Two primitives over a span.
 struct LeafDistance {
-  double lower = 0.0, upper = 0.0;  ///< mm; the upper one at t
+  double lower = 0.0, upper = 0.0;  ///< mm; the upper one at t, of the straight line of axis values
+  double stray = 0.0;               ///< mm that was taken off the lower one because the axes stray
+  double sagitta = 0.0;             ///< mm, at most taken off it because the motion is not straight
   double t = 0.0;
   Vec3 home_still = Vec3::Zero(), home_moving = Vec3::Zero();
 };

@@ -52,11 +52,16 @@ TEST(RelativeMotion, BoundsHoldForEveryPoint) {
     const auto at = [&](double s) -> Vec3 { return motion.pose(segment.at(s)) * point; };
     EXPECT_LE((at(t + h) - at(t)).norm() / h, bounds.speed * (1 + 1e-3) + 1e-9) << i;
     const double sagitta = ((1.0 - t) * at(0.0) + t * at(1.0) - at(t)).norm();
-    EXPECT_LE(sagitta, bounds.acceleration / 8.0 + 1e-12) << i;
-    if (bounds.acceleration > 0.0) tightest = std::max(tightest, sagitta / (bounds.acceleration / 8.0));
+    EXPECT_LE(sagitta, bounds.slack(0.125) - bounds.slack(0.0) + 1e-12) << i;
+    const double most = bounds.slack(0.125) - bounds.slack(0.0);
+    if (most > 0.0) tightest = std::max(tightest, sagitta / most);
     AxisValues off = segment.at(t);
     for (int k = 0; k < 5; ++k) off[k] += segment.stray[k] * rng.uniform(-1.0, 1.0);
-    EXPECT_LE((motion.pose(off) * point - at(t)).norm(), bounds.stray * (1 + 1e-9) + 1e-9) << i;
+    EXPECT_LE((motion.pose(off) * point - at(t)).norm(), bounds.slack(0.0) * (1 + 1e-9) + 1e-9) << i;
+    // Both together, along any direction.
+    const Vec3 n = i % 2 == 0 ? rng.direction() : Vec3(Vec3::Unit(i / 2 % 3));
+    const Vec3 whole = motion.pose(off) * point - ((1.0 - t) * at(0.0) + t * at(1.0));
+    EXPECT_LE(std::abs(n.dot(whole)), bounds.slack(n, 0.125) * (1 + 1e-9) + 1e-9) << i;
   }
   EXPECT_GT(tightest, 0.8);
 }
@@ -134,10 +139,14 @@ TEST(ClosestApproach, StrayIsTakenOffTheBound) {
   const Body work = work_box({-10, -10, -10}, {10, 10, 0}), head = head_box({-5, -5, 3}, {5, 5, 9});
   AxisSegment segment = way(axes(-2), axes(2));
   segment.stray = axes(0, 0, 0.5, 0, 0.1);
-  const Approach found = closest_approach(encounter(scene, work, head), segment);
-  EXPECT_NEAR(found.upper, 3.0, 1e-6);
-  EXPECT_LE(found.lower, 2.5);      // Z strays by 0.5
-  EXPECT_GE(found.lower, 2.5 - 3);  // and C by 0.1 rad, at a lever of less than 30
+  // Z strays by 0.5; C turns in the plane of the gap, which does not change it.
+  ApproachQuery query;
+  query.limit = 2.5;
+  EXPECT_FALSE(closest_approach(encounter(scene, work, head), segment, query).within);
+  EXPECT_GE(closest_approach(encounter(scene, work, head), segment, query).lower, 2.499);
+  query.limit = 2.502;
+  EXPECT_TRUE(closest_approach(encounter(scene, work, head), segment, query).within);
+  EXPECT_LE(closest_approach(encounter(scene, work, head), segment, query).lower, 2.501);
 }
 
 TEST(ClosestApproach, LimitAndNothing) {

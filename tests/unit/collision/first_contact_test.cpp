@@ -160,7 +160,9 @@ void expect_answer(const Planted& one, const std::string& label) {
     const Encounter pair =
         swapped ? encounter(scene, one.moving, one.still) : encounter(scene, one.still, one.moving);
     const FirstContact found = first_contact(pair, one.segment);
-    const Approach least = closest_approach(pair, one.segment, {INFINITY, 1e-4, -1.0, nullptr});
+    ApproachQuery fine;
+    fine.tolerance = 1e-4;
+    const Approach least = closest_approach(pair, one.segment, fine);
     const bool touches = one.contact_t <= 1.0;
     ASSERT_EQ(found.touches, touches) << label << one.text;
     ASSERT_EQ(least.lower <= 1e-4, touches) << label << one.text;

@@ -1,0 +1,56 @@
+// The stock against bodies of the machine: first the raw one, then what has been left of it.
+//
+// Material only shrinks: what is clear of the raw stock is clear for ever, so that only the ways on which a
+// body comes to the raw stock are suspect. Those are held against the material as it stands at their moment,
+// as a mesh (StockMesher says how near it lies: 0.13 voxel; walls thinner than a voxel may be missing where
+// they contain no grid point, which is what the answer leaves open).
+#pragma once
+
+#include "collision/containment.h"
+#include "stock/stock.h"
+
+namespace swarf::collision {
+
+enum class StockOutcome {
+  kClearOfRaw,  ///< proven, whatever has been cut
+  kClear,       ///< farther than a voxel from the material as the level set holds it
+  kOpen,        ///< within a voxel of it, or in it without a corner that deep: not clear
+  kContact,     ///< deeper than a voxel in it
+};
+
+struct StockAnswer {
+  StockOutcome outcome = StockOutcome::kClearOfRaw;
+  /// Least distance over the segment, mm, of the raw stock or of the mesh of the material; the upper one is
+  /// infinite beyond a voxel and the limit.
+  double lower = 0.0, upper = 0.0;
+  double voxel_mm = 0.0;        ///< what the bounds may be off beyond the raw stock
+  double t = 0.0;               ///< share of the segment where it comes nearest
+  Vec3 point_M = Vec3::Zero();  ///< on the body, there
+  double depth_mm = 0.0;        ///< overlap_depth() at nine instants of the segment, of a suspect
+};
+
+class StockBody {
+ public:
+  /// The raw stock in W: a block or a closed mesh. `scene` must outlive it.
+  StockBody(const machine::MachineScene& scene, const Box& raw_W);
+  StockBody(const machine::MachineScene& scene, const TriMesh& raw_W);
+
+  /// For PathCheck: its contacts are the suspects.
+  const Body& raw() const { return raw_; }
+  /// The material as it stands; to be called after cutting, before suspects behind it are asked for.
+  void refresh(const stock::Stock& stock);
+  /// Of the last refresh(); the raw stock before the first.
+  const Body& as_cut() const { return voxel_mm_ > 0.0 ? as_cut_ : raw_; }
+  /// A body over a segment on which nothing is cut. Before the first refresh() suspects are held against the
+  /// raw stock, without a voxel.
+  StockAnswer over(const Body& body, const AxisSegment& segment) const;
+
+ private:
+  StockAnswer suspect(const Body& body, const AxisSegment& segment) const;
+
+  const machine::MachineScene* scene_;
+  Body raw_, as_cut_;
+  double voxel_mm_ = 0.0;
+};
+
+}  // namespace swarf::collision
