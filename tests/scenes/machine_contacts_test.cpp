@@ -161,6 +161,27 @@ TEST_F(MachineContacts, FixturesThatCannotBeAreRefused) {
       "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 9 0 0\nvertex 0 9 0\n"
       "endloop\nendfacet\nendsolid s\n");
   refused("mesh = \"open.stl\"\n", "mesh-open");
+  refused("box_mm = [[60, 10, -25], [80, 20, -10]]\non = \"part\"\n",
+          "'box' stands 10.000 mm inside the stock");
+}
+
+/// Nothing holds the block: said; a vice: not said; a fixture in the air: a warning.
+TEST_F(MachineContacts, WhatHoldsTheStockIsToldOrThatNothingDoes) {
+  const auto holding = [&]() -> std::string {
+    const json all = metrics();
+    for (const json& one : all["assumptions"])
+      if (one["what"] == "Holding") return one["value"];
+    return "";
+  };
+  const ProgramRun none = run(kFrame, kOnTable);
+  EXPECT_EQ(none.exit_code, 0) << none.output;
+  EXPECT_EQ(holding(), "nothing touches the stock; 100.000 mm to what is nearest");
+  run(kFrame, kOnTable + "[[fixture]]\nkind = \"vice\"\n");
+  EXPECT_EQ(holding(), "");
+  const ProgramRun air = run(kFrame, kOnTable + "[[fixture]]\nbox_mm = [[200, 0, 50], [210, 10, 60]]\n");
+  EXPECT_EQ(air.exit_code, 0) << air.output;
+  EXPECT_NE(air.output.find("fixture-floats"), std::string::npos) << air.output;
+  EXPECT_NE(holding(), "");
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "mesh/mesh_io.h"
 #include "mesh/mesh_nesting.h"
 #include "mesh/mesh_ops.h"
+#include "sim/job/clamping_check.h"
 #include "sim/job/fixture_keys.h"
 #include "sim/job/memory_limit.h"
 #include "sim/job/open_job.h"
@@ -263,7 +264,10 @@ Job complete(Scene scene, Diagnostics diagnostics) {
   diagnostics.throw_if_errors();
   fill_open(job, diagnostics);
   diagnostics.throw_if_errors();
-  collect(diagnostics, [&] { place_fixtures(job, table_M, diagnostics); });
+  collect(diagnostics, [&] {
+    place_fixtures(job, table_M, diagnostics);
+    check_clamping(job, diagnostics);
+  });
   diagnostics.throw_if_errors();
   check_memory(job, diagnostics);
   diagnostics.throw_if_errors();

@@ -1,0 +1,117 @@
+#include "sim/job/clamping_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include "collision/containment.h"
+#include "machine/plain_solids.h"
+
+namespace swarf::sim {
+namespace {
+
+using collision::Body;
+using collision::BodyKind;
+
+/// What rides on the table: the links that nothing moves against it, fixtures, the stock last.
+std::vector<Body> bodies_on_table(const Job& job) {
+  std::vector<Body> bodies;
+  for (Body& body : collision::link_bodies(job.machine)) {
+    if (!collision::RelativeMotion(job.machine, job.machine.work_link, body.link).rigid()) continue;
+    if (job.machine.links[static_cast<size_t>(body.link)].fixture) body.kind = BodyKind::kFixture;
+    bodies.push_back(std::move(body));
+  }
+  TriMesh stock;
+  machine::add_box(stock, job.scene.stock.box_W);
+  bodies.push_back(collision::work_body(job.machine, "the stock", BodyKind::kStock, stock));
+  return bodies;
+}
+
+/// How far apart two of them stand; 0 where they touch or overlap.
+double gap(const Job& job, const Body& a, const Body& b) {
+  const collision::Encounter pair = collision::encounter(job.machine, a, b);
+  const collision::AxisSegment still;
+  const collision::Approach found = collision::closest_approach(pair, still);
+  return collision::one_holds_other(pair, still.q0) ? 0.0 : found.upper;
+}
+
+double overlap(const Job& job, const Body& a, const Body& b) {
+  const collision::Encounter pair = collision::encounter(job.machine, a, b);
+  const collision::BodyDepth in_a(a), in_b(b);
+  return collision::overlap_depth(pair, in_a, in_b, kinematics::AxisValues::Zero()).depth_mm;
+}
+
+SourceLocation where_of(const Job& job, const Body& fixture) {
+  for (const machine::Fixture& one : job.scene.fixtures)
+    if (one.name == fixture.name) return one.where;
+  return {job.scene.file};
+}
+
+void check_inside(const Job& job, const Body& fixture, const Body& stock, Diagnostics& diagnostics) {
+  const double depth = overlap(job, fixture, stock);
+  if (depth <= kInsideMm) return;
+  diagnostics.error("fixture-in-part", where_of(job, fixture),
+                    fmt::format("'{}' stands {:.3f} mm inside the stock", fixture.name, depth),
+                    "move it, or the work: fixture.position_mm, setup.work_origin_mm");
+}
+
+/// Reached from the table over what touches each other.
+std::vector<bool> standing(const Job& job, const std::vector<Body>& bodies) {
+  std::vector<bool> stands;
+  for (const Body& body : bodies) stands.push_back(body.kind == BodyKind::kLink);
+  std::vector<bool> known = stands;
+  for (bool more = true; more;) {
+    more = false;
+    for (size_t i = 0; i < bodies.size(); ++i) {
+      for (size_t k = 0; k < bodies.size() && !stands[i]; ++k)
+        stands[i] = stands[k] && gap(job, bodies[i], bodies[k]) <= kTouchesMm;
+      more = more || (stands[i] && !known[i]);
+      known[i] = stands[i];
+    }
+  }
+  return stands;
+}
+
+void tell_holding(Job& job, const std::vector<Body>& bodies, const std::vector<bool>& stands) {
+  const Body& stock = bodies.back();
+  const auto tell = [&](std::string value, std::string reason, std::string change) {
+    job.scene.assumptions.push_back({"Holding", std::move(value), std::move(reason), std::move(change)});
+  };
+  for (const Body& body : bodies) {
+    const double depth = body.kind == BodyKind::kLink ? overlap(job, body, stock) : 0.0;
+    if (depth > kInsideMm)
+      tell(fmt::format("the stock stands {:.3f} mm inside '{}'", depth, body.name),
+           "the work is clamped too low", "setup.work_origin_mm");
+  }
+  if (stands.back()) return;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (size_t i = 0; i + 1 < bodies.size(); ++i)
+    if (stands[i]) nearest = std::min(nearest, gap(job, bodies[i], stock));
+  tell(fmt::format("nothing touches the stock; {:.3f} mm to what is nearest", nearest),
+       "no fixture is described that holds it, and none is looked at",
+       "[[fixture]] kind = \"vice\", \"clamps\", \"chuck\" or a mesh");
+}
+
+}  // namespace
+
+void check_clamping(Job& job, Diagnostics& diagnostics) {
+  const std::vector<Body> bodies = bodies_on_table(job);
+  const bool table =
+      std::any_of(bodies.begin(), bodies.end(), [](const Body& b) { return b.kind == BodyKind::kLink; });
+  for (const Body& body : bodies)
+    if (body.kind == BodyKind::kFixture) check_inside(job, body, bodies.back(), diagnostics);
+  if (!table || diagnostics.has_errors()) return;
+  const std::vector<bool> stands = standing(job, bodies);
+  for (size_t i = 0; i + 1 < bodies.size(); ++i) {
+    if (stands[i]) continue;
+    diagnostics.warning(
+        "fixture-floats", where_of(job, bodies[i]),
+        fmt::format("'{}' touches neither the table nor anything that stands on it", bodies[i].name),
+        "move it: fixture.position_mm; a vice, clamps and a chuck stand on the table by themselves");
+  }
+  tell_holding(job, bodies, stands);
+}
+
+}  // namespace swarf::sim

@@ -1,0 +1,20 @@
+// Whether what holds the work holds it: no fixture inside the stock, none in the air, no stock that nothing
+// holds.
+#pragma once
+
+#include "base/diagnostics.h"
+#include "sim/job/scene.h"
+
+namespace swarf::sim {
+
+/// Of a job whose fixtures hang on its machine. Diagnostics: "fixture-in-part", an error where a corner of
+/// one lies more than kInsideMm inside the other; "fixture-floats", a warning where a fixture touches neither
+/// the table nor what stands on it. A stock that nothing touches is a row of Scene::assumptions: it stands in
+/// the air.
+void check_clamping(Job& job, Diagnostics& diagnostics);
+
+inline constexpr double kInsideMm = 0.01;
+inline constexpr double kTouchesMm =
+    0.1;  ///< what is no farther apart counts as touching: drawn tables have chamfers
+
+}  // namespace swarf::sim
