@@ -68,6 +68,42 @@ TEST(PostFile, TellsEveryFaultWithItsPlace) {
   }
 }
 
+TEST(PostFile, HasToBringEveryAxisToTheWork) {
+  const auto faults = [](const std::string& more) {
+    const std::string file = scratch_file(".toml");
+    std::ofstream(file)
+        << "name = \"x\"\ndialect = \"fanuc\"\n[motion]\nrapid = \"G0 {axes}\"\nline = \"G1 {axes} {F}\"\n" +
+               more;
+    try {
+      load_post(file);
+    } catch (const InputError& error) {
+      return error.diagnostics.list().size();
+    }
+    return size_t{0};
+  };
+  const std::string tool = "[tool]\napproach = \"G0 {rotaries} {across}\"\nlength_on = \"G0 {along}\"\n";
+  EXPECT_EQ(faults(tool), 0u);
+  EXPECT_EQ(faults(""), 3u);
+  EXPECT_EQ(faults("[tool]\napproach = \"G0 {rotaries} {across}\"\n"), 1u);
+  EXPECT_EQ(faults(tool + "[feed]\ninverse_time = \"G93\"\n"), 1u);
+  EXPECT_EQ(faults(tool + "[tcp]\non = \"M128\"\n"), 1u);
+}
+
+/// What a post has no words for is told.
+TEST(Words, ThatAreMissingAreListed) {
+  PostFormat bare = shipped_post("fanuc");
+  bare.dwell = bare.clockwise = LineTemplate();
+  bare.flood.clear();
+  const Posted run =
+      run_post(kHead +
+                   "COOLNT/ON\nFROM/0,0,80,0,0,1\nFEDRAT/200,MMPM\nGOTO/10,0,80,0,0,1\nDELAY/1\n"
+                   "GOTO/20,0,80,0,0,1\nFINI\n",
+               placed_machine("mill_3axis"), bare, without_tcp());
+  std::vector<std::string> words = run.result.written.not_written;
+  std::sort(words.begin(), words.end());
+  EXPECT_EQ(words, (std::vector<std::string>{"COOLNT/ON", "DELAY", "SPINDL"})) << run.text;
+}
+
 /// The sum of what our interpreter takes for the feeds is the way over the feed, or what the axes allow.
 TEST(Feed, TheTipHasItsFeedWithoutTcp) {
   const std::string cl = kHead +
@@ -259,6 +295,15 @@ TEST(Refused, ToolsFeedsAndPlaces) {
   EXPECT_EQ(
       code("FROM/0,0,60,0,0,1\nFEDRAT/600,MMPM\nGOTO/9,0,60,1,0,0\n", "mill_3axis", "fanuc", without_tcp()),
       "unreachable");
+  const std::string no_tool = run_post("$$ SWARF CL DATA\n" + way + "FINI\n", placed_machine("mill_3axis"),
+                                       shipped_post("fanuc"), without_tcp())
+                                  .faults;
+  EXPECT_NE(no_tool.find("[tool-not-loaded]"), std::string::npos) << no_tool;
+  kinematics::MachineModel odd = placed_machine("maho_600c");
+  odd.axes[0].name = "U";
+  const std::string named =
+      run_post(kHead + way + "FINI\n", odd, shipped_post("fanuc"), without_tcp()).faults;
+  EXPECT_NE(named.find("[axis-names]"), std::string::npos) << named;
   PostOptions fine = without_tcp();
   fine.tip_mm = 1e-6;
   EXPECT_EQ(code(way, "mill_3axis", "fanuc", fine), "tolerance-below-digits");
