@@ -321,6 +321,32 @@ TEST(Refused, ABulgeOutOfTravel) {
   EXPECT_NE(run.faults.find("axis X would go to"), std::string::npos) << run.faults << run.text;
 }
 
+/// With TCP the linear axes bulge while the table turns under a standing tip: ends in travel are not enough.
+TEST(Refused, ABulgeOutOfTravelWithTcp) {
+  kinematics::MachineModel machine = placed_machine("head_table_bc");
+  const Vec3 low(0.3 * std::cos(0.5), -0.3 * std::sin(0.5), std::sqrt(1.0 - 0.09));
+  const std::string cl = kHead + fmt::format(
+                                     "FROM/100,0,60,{:.9f},{:.9f},{:.9f}\nFEDRAT/600,MMPM\n"
+                                     "GOTO/100,0,60,{:.9f},{:.9f},{:.9f}\nFINI\n",
+                                     low.x(), low.y(), low.z(), low.x(), -low.y(), low.z());
+  PostOptions options = with_tcp();
+  options.axis_rad = 1.0;
+  // The other solution would bulge to the other side, where there is room.
+  options.choice = [](std::span<const program::Move>, std::vector<Start>& starts) {
+    std::erase_if(starts, [](const Start& one) { return one.q[3] < 0.0; });
+  };
+  const Posted free = run_post(cl, machine, shipped_post("fanuc"), options);
+  ASSERT_EQ(free.faults + reading_faults(free) + compare(free), "");
+  EXPECT_EQ(free.result.plan.steps, 2);
+  const double end = free.moves.back().q_to[0];
+  for (const double room : {3.0, 20.0}) {
+    machine.axes[0].max = end + room;
+    const Posted run = run_post(cl, machine, shipped_post("fanuc"), options);
+    EXPECT_EQ(run.faults.find("axis X would go to") != std::string::npos, room < 10.0)
+        << end << run.faults << run.text;
+  }
+}
+
 TEST(Streams, LongStretchesGoOnWhereTheyAreCut) {
   std::string cl = kHead + "FROM/0,0,60,0,0,1\nFEDRAT/600,MMPM\n";
   const int moves = static_cast<int>(kMovesAhead) + 100;
