@@ -236,7 +236,7 @@ Examples:
   swarf post part.cls --machine mikron_ucp710 -o - | less
 
 To check what was written: swarf check part.mpf --machine spinner_u5_620 --tools tools.toml --dialect siemens
-Exit codes: 0 written; 2 the CL data cannot be driven so, or cannot be read: nothing is written.)";
+Exit codes: 0 written; 2 the CL data cannot be driven so, or cannot be read: no file is written or changed.)";
 
 }  // namespace
 
@@ -286,7 +286,11 @@ void add_post(CLI::App& app, int& exit_code) {
       ->add_option("--circle", options->circle,
                    "how CIRCLE of CL data runs about its vector; as its writer does when left out")
       ->check(CLI::IsMember({"clockwise", "counter_clockwise"}));
-  command->add_option("-o,--output", options->output, "the program; -: the standard output")->required();
+  command
+      ->add_option(
+          "-o,--output", options->output,
+          "the program; -: the standard output, where a long program may end early: exit code 2 says so")
+      ->required();
   command->add_flag("--json", options->json, "print one JSON object instead of text");
   command->footer(kPostFooter);
   command->callback([options, &exit_code] { exit_code = run_post(*options); });

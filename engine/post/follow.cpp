@@ -135,6 +135,23 @@ FollowFault jump_fault(const Follower& follower, const AxisValues& from, const A
           "lift the tool before it with two RAPID moves (the axes unwind there), or clamp the work turned"};
 }
 
+/// Why there is no way on from `from`: the solution that goes on may be out of travel, and another one, which
+/// would be a jump, be the one that the inverse gives.
+FollowFault no_way_on(const Follower& follower, const ToolPose& pose, const AxisValues& from,
+                      const AxisValues& given) {
+  const kinematics::InverseSolutions both = follower.inverse.solve(pose, from);
+  const Branch* nearest = nullptr;
+  for (int i = 0; i < both.count; ++i) {
+    const Branch& one = both.branch[i];
+    if (nearest == nullptr ||
+        turn_of(follower.machine, from, one.q) < turn_of(follower.machine, from, nearest->q))
+      nearest = &one;
+  }
+  if (nearest != nullptr && nearest->outcome == InverseOutcome::kOutOfTravel)
+    return fault_of(follower, *nearest, pose);
+  return jump_fault(follower, from, given);
+}
+
 bool cut(Cutting& cutting, From& from, double to);
 
 bool cut_again(Cutting& cutting, From& from, double to, double error_share) {
@@ -165,7 +182,7 @@ bool cut(Cutting& cutting, From& from, double to) {
   }
   if (to - from.share < kShortest || cutting.places.size() >= kPlacesMost) {
     cutting.fault = fault_of(follower, branch, pose);
-    if (cutting.fault.code.empty()) cutting.fault = jump_fault(follower, from.q, branch.q);
+    if (cutting.fault.code.empty()) cutting.fault = no_way_on(follower, pose, from.q, branch.q);
     return false;
   }
   return cut_again(cutting, from, to, error.share);

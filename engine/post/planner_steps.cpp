@@ -8,6 +8,7 @@
 #include "base/units.h"
 #include "post/planner.h"
 #include "post/rounding.h"
+#include "program/move_way.h"
 #include "toolpath/element.h"
 
 namespace swarf::post {
@@ -38,14 +39,6 @@ double axis_time(const kinematics::MachineModel& machine, const AxisValues& from
     if (speed > 0.0) longest = std::max(longest, std::abs(to[row] - from[row]) / speed);
   }
   return longest;
-}
-
-double way_of(const program::Move& move) {
-  toolpath::BlockMove block;
-  block.from = move.from;
-  block.to = move.to;
-  block.arc = move.arc;
-  return toolpath::tip_way(block);
 }
 
 void add_travel(const AxisValues& from, const AxisValues& to, PlanSummary& summary) {
@@ -151,7 +144,7 @@ bool Planner::add_move(const program::Move& move, Plan& plan) const {
     plan.fault_line = move.line;
     return false;
   }
-  const double way = way_of(move);
+  const double way = program::way_mm(move);
   double share = 0.0;
   const bool lifted = plan.stretch.steps.empty() || plan.stretch.steps.back().kind == StepKind::kRapid ||
                       plan.stretch.steps.back().kind == StepKind::kApproach;
@@ -253,7 +246,7 @@ bool Planner::add_arc(const program::Move& move, Plan& plan) const {
     step.p[k] = plan.stretch.steps.back().p[k];
   // Start, end and centre are rounded each.
   step.deviation_mm = 2.0 * rounding_mm(*follower_, tcp, plan.q, end.q);
-  add_step(std::move(step), way_of(move), plan);
+  add_step(std::move(step), program::way_mm(move), plan);
   return true;
 }
 
@@ -315,7 +308,7 @@ bool Planner::add_hole(const HoleSpan& span, Plan& plan) const {
     const AxisValues from = follower_->inverse.solve_nearest(move.from, plan.q).q;
     const AxisValues to = follower_->inverse.solve_nearest(move.to, plan.q).q;
     const double seconds =
-        move.rapid ? axis_time(follower_->machine, from, to, true) : way_of(move) / move.feed_mm_s;
+        move.rapid ? axis_time(follower_->machine, from, to, true) : program::way_mm(move) / move.feed_mm_s;
     (move.rapid ? plan.summary.rapid_s : plan.summary.feed_s) += seconds;
     plan.summary.dwell_s += move.dwell_s;
     step.duration_s += seconds + move.dwell_s;
@@ -385,8 +378,10 @@ Planner::Plan Planner::plan_from(const Entry& begin, const Start& start, bool ap
     i = end;
   }
   for (const PlacedNote& note : notes_) {
-    const size_t before =
-        note.before < steps_before.size() ? steps_before[note.before] : plan.stretch.steps.size();
+    // What stands before the first move stands before its approach.
+    const size_t before = note.before == 0                    ? 0
+                          : note.before < steps_before.size() ? steps_before[note.before]
+                                                              : plan.stretch.steps.size();
     plan.stretch.notes.push_back({before, note.note});
   }
   return plan;

@@ -163,6 +163,7 @@ PostResult post(const std::string& cl_file, const kinematics::MachineModel& mach
                 Diagnostics& diagnostics) {
   PostResult result;
   result.tcp = wants_tcp(machine, format, options, diagnostics);
+  const program::nc::WorkSpace words(machine);  // refuses axes that have no word
   const bool table = !options.tools.empty();
   check_lengths(machine, cl_file, result.tcp, table, diagnostics);
   progress.begin("reading the CL data", 1.0, "file");

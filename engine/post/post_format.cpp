@@ -142,6 +142,29 @@ void read_cycles(ConfigTable cycle, CycleWords& to) {
 
 }  // namespace
 
+/// What would leave an axis where it is, or a mode on.
+void check_whole(ConfigTable& table, const PostFormat& post) {
+  const auto demand = [&](bool right, const char* key, const std::string& text, const char* fix) {
+    if (!right) table.error("incomplete-post", key, text, fix);
+  };
+  for (const Place place : {Place::kRotaries, Place::kAcross, Place::kAlong}) {
+    demand(post.approach.uses(place) || post.length_on.uses(place), "tool",
+           fmt::format("neither approach nor length_on has {{{}}}: these axes would not be sent to the work",
+                       place_names()[static_cast<size_t>(place)]),
+           "write approach = \"G0 {rotaries}\\nG0 {across}\" and length_on = \"G43 {along} H{T}\"");
+  }
+  demand(post.inverse_time.empty() || !post.per_minute.empty(), "feed",
+         "inverse_time has a word, and nothing ends it", "write per_minute = \"G94\"");
+  demand(post.tcp_on.empty() == post.tcp_off.empty(), "tcp", "on and off belong together",
+         "write both, or neither");
+  for (const LineTemplate* arc : {&post.motion.clockwise, &post.motion.counter_clockwise}) {
+    const bool whole =
+        arc->uses(Place::kAxes) && (arc->uses(Place::kCentre) || arc->uses(Place::kCentrePoint));
+    demand(arc->empty() || whole, "motion", "an arc does not say its end and its centre",
+           "write {axes} and {centre}, or {centre_point}");
+  }
+}
+
 PostFormat load_post(const std::string& file) {
   Diagnostics diagnostics;
   ConfigTable table = ConfigTable::load(file, {}, diagnostics);
@@ -166,6 +189,7 @@ PostFormat load_post(const std::string& file) {
   read_motion(table.table("motion"), post.motion);
   read_feed_and_tcp(table, post);
   read_cycles(table.table("cycle"), post.cycle);
+  check_whole(table, post);
   table.finish();
   diagnostics.throw_if_errors();
   return post;

@@ -68,7 +68,7 @@ struct PostFormat {
 };
 
 /// Reads the file. Throws InputError with every fault: what ConfigTable finds, "unknown-place" for a { } that
-/// a key does not have, "unknown-dialect".
+/// a key does not have, "missing-place", "unknown-dialect", "incomplete-post".
 PostFormat load_post(const std::string& file);
 
 }  // namespace swarf::post

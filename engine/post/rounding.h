@@ -12,8 +12,8 @@
 
 namespace swarf::post {
 
-/// Bound over a block between two sets of axis values, mm; `tcp`: the words are the tip's there. Holds for the
-/// ends alone, too.
+/// Bound over a block between two sets of axis values, mm; `tcp`: the words are the tip's there. Holds for
+/// the ends alone, too.
 double rounding_mm(const Follower& follower, bool tcp, const kinematics::AxisValues& from,
                    const kinematics::AxisValues& to);
 /// Of the tool axis, rad: half a digit of each rotary axis.

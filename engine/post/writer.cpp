@@ -105,6 +105,11 @@ void Writer::comment(std::string_view text) {
   put(format_.comment);
 }
 
+void Writer::not_written(const std::string& word) {
+  std::vector<std::string>& words = summary_.not_written;
+  if (std::find(words.begin(), words.end(), word) == words.end()) words.push_back(word);
+}
+
 void Writer::set_coolant(const std::string& word) {
   if (word == coolant_) return;
   const bool was_on = !coolant_.empty() && coolant_ != format_.coolant_off;
@@ -117,9 +122,11 @@ void Writer::set_coolant(const std::string& word) {
 
 void Writer::coolant(const std::string& text) {
   if (text != "OFF" && text != "MIST" && text != "ON" && text != "FLOOD") {
-    summary_.not_written.push_back("COOLNT/" + text);
+    not_written("COOLNT/" + text);
     return;
   }
+  if ((text == "OFF" ? format_.coolant_off : text == "MIST" ? format_.mist : format_.flood).empty())
+    not_written("COOLNT/" + text);
   coolant_wanted_ = text == "OFF" ? format_.coolant_off : text == "MIST" ? format_.mist : format_.flood;
   // It is switched on with the new tool over the work.
   if (!change_comes_) set_coolant(coolant_wanted_);
@@ -128,7 +135,8 @@ void Writer::coolant(const std::string& text) {
 void Writer::note(const program::ClNote& note) {
   const auto stop = [&](const std::string& word) {
     end_cycle();
-    if (!word.empty()) put_line(word);
+    if (word.empty()) return not_written(note.word);
+    put_line(word);
   };
   if (note.word == "COOLNT") {
     coolant(note.text);
@@ -145,9 +153,8 @@ void Writer::note(const program::ClNote& note) {
     forget_words();
   } else if (is_comment(note.word)) {
     comment(note.text);
-  } else if (std::find(summary_.not_written.begin(), summary_.not_written.end(), note.word) ==
-             summary_.not_written.end()) {
-    summary_.not_written.push_back(note.word);
+  } else {
+    not_written(note.word);
   }
 }
 
@@ -204,13 +211,18 @@ void Writer::spindle(double rpm) {
   if (rpm == spindle_) return;
   end_cycle();
   values_.set(Place::kS, written(format_.numbers.speed, std::abs(rpm)));
-  put(rpm == 0.0 ? format_.spindle_stop : rpm > 0.0 ? format_.clockwise : format_.counter_clockwise);
+  const LineTemplate& lines = rpm == 0.0  ? format_.spindle_stop
+                              : rpm > 0.0 ? format_.clockwise
+                                          : format_.counter_clockwise;
+  if (lines.empty()) not_written("SPINDL");
+  put(lines);
   spindle_ = rpm;
 }
 
 void Writer::dwell(double seconds) {
   if (seconds <= 0.0) return;
   end_cycle();
+  if (format_.dwell.empty()) not_written("DELAY");
   values_.set(Place::kSeconds, written(format_.numbers.time, seconds));
   put(format_.dwell);
 }
@@ -218,7 +230,12 @@ void Writer::dwell(double seconds) {
 void Writer::change_tool(const PlanStep& step) {
   if (step.tool == tool_) return;
   tool_ = step.tool;
-  if (step.tool < 0) return;
+  if (step.tool < 0) {
+    diagnostics_.error("tool-not-loaded", {names_.source, step.line, 0},
+                       "the CL data moves without a tool: the program could not call its length",
+                       "write LOADTL/1 before it");
+    return;
+  }
   const PostTool& tool = setup_.tools[static_cast<size_t>(step.tool)];
   values_.set(Place::kT, tool.number > 0 ? std::to_string(tool.number) : "");
   values_.set(Place::kName, tool.name);

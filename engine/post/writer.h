@@ -49,6 +49,8 @@ class Writer {
   void put(const LineTemplate& lines);
   void put_line(std::string_view text);
   void comment(std::string_view text);
+  /// A word of the CL data that the format has nothing for.
+  void not_written(const std::string& word);
   void note(const program::ClNote& note);
   void coolant(const std::string& text);
   void set_coolant(const std::string& word);

@@ -169,6 +169,18 @@ class RandomPath {
   std::string out_;
 };
 
+/// Without TCP and cycles our interpreter needs as long for the feeds as the plan does: inverse times, and
+/// what stands for them, say the feed of the tip.
+std::string feed_fault(const Posted& run) {
+  if (run.result.tcp || run.result.plan.holes > 0) return "";
+  double seconds = 0.0;
+  for (const program::NcMove& move : run.moves) seconds += move.rapid ? 0.0 : move.duration_s;
+  const double planned = run.result.plan.feed_s;
+  return std::abs(seconds - planned) <= 5e-3 * planned + 0.02
+             ? ""
+             : fmt::format("feeds take {:.4f} s, planned {:.4f} s", seconds, planned);
+}
+
 TEST(PostProperty, ReadBackWithinHalfADigit) {
   const char* wished = std::getenv("SWARF_POST_SEED");
   const char* many = std::getenv("SWARF_POST_SEEDS");
@@ -196,7 +208,7 @@ TEST(PostProperty, ReadBackWithinHalfADigit) {
             ASSERT_TRUE(expected) << name << " " << post << "\n" << run.faults << cl;
             continue;
           }
-          const std::string wrong = reading_faults(run) + compare(run);
+          const std::string wrong = reading_faults(run) + compare(run) + feed_fault(run);
           ASSERT_EQ(wrong, "") << name << " " << post << " tcp " << tcp << " SWARF_POST_SEED=" << seed << "\n"
                                << cl << "\n"
                                << run.text;

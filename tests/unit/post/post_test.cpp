@@ -68,6 +68,42 @@ TEST(PostFile, TellsEveryFaultWithItsPlace) {
   }
 }
 
+TEST(PostFile, HasToBringEveryAxisToTheWork) {
+  const auto faults = [](const std::string& more) {
+    const std::string file = scratch_file(".toml");
+    std::ofstream(file)
+        << "name = \"x\"\ndialect = \"fanuc\"\n[motion]\nrapid = \"G0 {axes}\"\nline = \"G1 {axes} {F}\"\n" +
+               more;
+    try {
+      load_post(file);
+    } catch (const InputError& error) {
+      return error.diagnostics.list().size();
+    }
+    return size_t{0};
+  };
+  const std::string tool = "[tool]\napproach = \"G0 {rotaries} {across}\"\nlength_on = \"G0 {along}\"\n";
+  EXPECT_EQ(faults(tool), 0u);
+  EXPECT_EQ(faults(""), 3u);
+  EXPECT_EQ(faults("[tool]\napproach = \"G0 {rotaries} {across}\"\n"), 1u);
+  EXPECT_EQ(faults(tool + "[feed]\ninverse_time = \"G93\"\n"), 1u);
+  EXPECT_EQ(faults(tool + "[tcp]\non = \"M128\"\n"), 1u);
+}
+
+/// What a post has no words for is told.
+TEST(Words, ThatAreMissingAreListed) {
+  PostFormat bare = shipped_post("fanuc");
+  bare.dwell = bare.clockwise = LineTemplate();
+  bare.flood.clear();
+  const Posted run =
+      run_post(kHead +
+                   "COOLNT/ON\nFROM/0,0,80,0,0,1\nFEDRAT/200,MMPM\nGOTO/10,0,80,0,0,1\nDELAY/1\n"
+                   "GOTO/20,0,80,0,0,1\nFINI\n",
+               placed_machine("mill_3axis"), bare, without_tcp());
+  std::vector<std::string> words = run.result.written.not_written;
+  std::sort(words.begin(), words.end());
+  EXPECT_EQ(words, (std::vector<std::string>{"COOLNT/ON", "DELAY", "SPINDL"})) << run.text;
+}
+
 /// The sum of what our interpreter takes for the feeds is the way over the feed, or what the axes allow.
 TEST(Feed, TheTipHasItsFeedWithoutTcp) {
   const std::string cl = kHead +
@@ -259,6 +295,15 @@ TEST(Refused, ToolsFeedsAndPlaces) {
   EXPECT_EQ(
       code("FROM/0,0,60,0,0,1\nFEDRAT/600,MMPM\nGOTO/9,0,60,1,0,0\n", "mill_3axis", "fanuc", without_tcp()),
       "unreachable");
+  const std::string no_tool = run_post("$$ SWARF CL DATA\n" + way + "FINI\n", placed_machine("mill_3axis"),
+                                       shipped_post("fanuc"), without_tcp())
+                                  .faults;
+  EXPECT_NE(no_tool.find("[tool-not-loaded]"), std::string::npos) << no_tool;
+  kinematics::MachineModel odd = placed_machine("maho_600c");
+  odd.axes[0].name = "U";
+  const std::string named =
+      run_post(kHead + way + "FINI\n", odd, shipped_post("fanuc"), without_tcp()).faults;
+  EXPECT_NE(named.find("[axis-names]"), std::string::npos) << named;
   PostOptions fine = without_tcp();
   fine.tip_mm = 1e-6;
   EXPECT_EQ(code(way, "mill_3axis", "fanuc", fine), "tolerance-below-digits");
@@ -274,6 +319,32 @@ TEST(Refused, ABulgeOutOfTravel) {
                                      far - 5.0);
   const Posted run = run_post(cl, machine, shipped_post("fanuc"), without_tcp());
   EXPECT_NE(run.faults.find("axis X would go to"), std::string::npos) << run.faults << run.text;
+}
+
+/// With TCP the linear axes bulge while the table turns under a standing tip: ends in travel are not enough.
+TEST(Refused, ABulgeOutOfTravelWithTcp) {
+  kinematics::MachineModel machine = placed_machine("head_table_bc");
+  const Vec3 low(0.3 * std::cos(0.5), -0.3 * std::sin(0.5), std::sqrt(1.0 - 0.09));
+  const std::string cl = kHead + fmt::format(
+                                     "FROM/100,0,60,{:.9f},{:.9f},{:.9f}\nFEDRAT/600,MMPM\n"
+                                     "GOTO/100,0,60,{:.9f},{:.9f},{:.9f}\nFINI\n",
+                                     low.x(), low.y(), low.z(), low.x(), -low.y(), low.z());
+  PostOptions options = with_tcp();
+  options.axis_rad = 1.0;
+  // The other solution would bulge to the other side, where there is room.
+  options.choice = [](std::span<const program::Move>, std::vector<Start>& starts) {
+    std::erase_if(starts, [](const Start& one) { return one.q[3] < 0.0; });
+  };
+  const Posted free = run_post(cl, machine, shipped_post("fanuc"), options);
+  ASSERT_EQ(free.faults + reading_faults(free) + compare(free), "");
+  EXPECT_EQ(free.result.plan.steps, 2);
+  const double end = free.moves.back().q_to[0];
+  for (const double room : {3.0, 20.0}) {
+    machine.axes[0].max = end + room;
+    const Posted run = run_post(cl, machine, shipped_post("fanuc"), options);
+    EXPECT_EQ(run.faults.find("axis X would go to") != std::string::npos, room < 10.0)
+        << end << run.faults << run.text;
+  }
 }
 
 TEST(Streams, LongStretchesGoOnWhereTheyAreCut) {

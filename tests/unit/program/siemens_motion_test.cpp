@@ -298,6 +298,8 @@ TEST(SiemensDrilling, DrillsAtEachPositionUntilMcallEnds) {
 }
 
 TEST(SiemensDrilling, PecksAndTaps) {
+  // 6.7525 + 2 is a last bit above 8.7525.
+  run_clean("F200\nG0 X0 Y0 Z300\nCYCLE81(8.7525,6.7525,2,-4.3475)\nM30\n");
   const Ran pecks = run_clean("F200\nG0 X0 Y0 Z300\nCYCLE83(290,250,2,230,,,8,0,0,0,1,1)\nM30\n");
   std::vector<double> depths;
   for (const NcMove& move : pecks.moves) {
