@@ -59,7 +59,11 @@ TEST(RelativeMotion, BoundsHoldForEveryPoint) {
     for (int k = 0; k < 5; ++k) off[k] += segment.stray[k] * rng.uniform(-1.0, 1.0);
     EXPECT_LE((motion.pose(off) * point - at(t)).norm(), bounds.slack(0.0) * (1 + 1e-9) + 1e-9) << i;
     // Both together, along any direction.
-    const Vec3 n = i % 2 == 0 ? rng.direction() : Vec3(Vec3::Unit(i / 2 % 3));
+    Vec3 n = rng.direction();
+    if (i % 3 == 1) n = Vec3::Unit(i / 3 % 3);
+    // Where only the wobble of that axis is left.
+    if (i % 3 == 2 && !bounds.steps.empty())
+      n = bounds.steps[static_cast<size_t>(i) / 3 % bounds.steps.size()].axis;
     const Vec3 whole = motion.pose(off) * point - ((1.0 - t) * at(0.0) + t * at(1.0));
     EXPECT_LE(std::abs(n.dot(whole)), bounds.slack(n, 0.125) * (1 + 1e-9) + 1e-9) << i;
   }
