@@ -105,6 +105,24 @@ void check_body_mesh(const std::string& name, const TriMesh& mesh) {
   }
 }
 
+void check_solid(const std::string& name, const RevolvedSolid& solid) {
+  const auto refuse = [&](const std::string& why) {
+    throw InputError(
+        "body-bad-profile", {}, fmt::format("{}: {}", name, why),
+        "give corners (radius, height) in mm from the lowest to the highest, around a unit axis");
+  };
+  if (solid.corners.empty()) refuse("a solid of revolution without corners");
+  if (!solid.foot.allFinite() || !(std::abs(solid.axis.norm() - 1.0) <= 1e-9)) {
+    refuse("its foot or axis is not finite, or the axis not of length 1");
+  }
+  double height = -INFINITY;
+  for (const Vec2& corner : solid.corners) {
+    const bool good = corner.allFinite() && corner.x() >= 0.0 && corner.y() >= height;
+    if (!good) refuse(fmt::format("corner ({}, {}) of a solid of revolution", corner.x(), corner.y()));
+    height = corner.y();
+  }
+}
+
 /// One corner of each part whose triangles hang together.
 std::vector<Vec3> points_of_shells(const TriMesh& mesh) {
   const std::vector<uint32_t> number = mesh::position_numbers(mesh.positions);
@@ -163,6 +181,7 @@ Body mesh_body(std::string name, BodyKind kind, int link, const TriMesh& mesh, c
 }
 
 Body solid_body(std::string name, BodyKind kind, int link, std::vector<RevolvedSolid> solids_M) {
+  for (const RevolvedSolid& solid : solids_M) check_solid(name, solid);
   Body body;
   body.name = std::move(name);
   body.kind = kind;

@@ -44,7 +44,8 @@ struct Body {
 /// NaN and infinite positions and "body-index" for triangles of vertices that are not there.
 Body mesh_body(std::string name, BodyKind kind, int link, const TriMesh& mesh,
                const Pose& placed = Pose::Identity());
-/// The same from convex solids of revolution, a part of a tool: shank, neck, holder.
+/// The same from convex solids of revolution, a part of a tool: shank, neck, holder. Throws InputError
+/// "body-bad-profile".
 Body solid_body(std::string name, BodyKind kind, int link, std::vector<RevolvedSolid> solids_M);
 
 /// The links of the machine that have a mesh.

@@ -3,6 +3,22 @@
 #include <cmath>
 
 namespace swarf::collision {
+namespace {
+
+constexpr double kLeastAcross = 1e-12;
+
+/// What a direction has across the axis, of length 1, and how much of it; 0 where it is no more than
+/// rounding. Taken off twice, for the first time leaves the rounding of the direction along the axis.
+double split_across(const Vec3& direction, const Vec3& axis, double along, Vec3& across) {
+  across = direction - along * axis;
+  across -= across.dot(axis) * axis;
+  const double radial = across.norm();
+  if (radial <= kLeastAcross * direction.norm()) return 0.0;
+  across /= radial;
+  return radial;
+}
+
+}  // namespace
 
 RevolvedSolid frustum(const Vec3& foot, const Vec3& axis, double low, double high, double low_radius,
                       double high_radius) {
@@ -11,8 +27,8 @@ RevolvedSolid frustum(const Vec3& foot, const Vec3& axis, double low, double hig
 
 Vec3 support(const RevolvedSolid& solid, const Vec3& direction) {
   const double along = direction.dot(solid.axis);
-  const Vec3 across = direction - along * solid.axis;
-  const double radial = across.norm();
+  Vec3 across;
+  const double radial = split_across(direction, solid.axis, along, across);
   const Vec2* best = &solid.corners.front();
   double most = best->x() * radial + best->y() * along;
   for (const Vec2& corner : solid.corners) {
@@ -23,7 +39,7 @@ Vec3 support(const RevolvedSolid& solid, const Vec3& direction) {
     }
   }
   Vec3 point = solid.foot + best->y() * solid.axis;
-  if (radial > 0.0) point += (best->x() / radial) * across;
+  if (radial > 0.0) point += best->x() * across;
   return point;
 }
 

@@ -8,6 +8,7 @@ namespace {
 
 enum class Way : uint8_t { kFree, kTouches, kInside };
 
+constexpr size_t kFirstWays = 64;
 constexpr uint64_t kLeastBudget = 64;  ///< triples that a search over several ways may split
 constexpr size_t kDepthsMost = 8;      ///< places of a contact at which its depth is looked at
 
@@ -43,7 +44,13 @@ class PairWalk {
   }
 
   void run() {
-    visit(0, poses_.size() - 1);
+    // Ways at once: twice as many after those that one search has cleared, else half as many.
+    size_t at_once = kFirstWays;
+    const size_t last = poses_.size() - 1;
+    for (size_t first = 0, to = 0; first == 0 || first < last; first = std::max<size_t>(to, 1)) {
+      to = std::min(first + at_once, last);
+      at_once = visit(first, to) ? 2 * at_once : std::max<size_t>(1, at_once / 2);
+    }
     look_inside();
   }
   const NearMiss& near_miss() const { return near_; }
@@ -70,17 +77,20 @@ class PairWalk {
   }
 
   /// Ways from pose `first` to pose `last`. A search over several is given up when it takes longer than those
-  /// over each of them would.
-  void visit(size_t first, size_t last) {
+  /// over each of them would. True: one search has cleared all of them.
+  bool visit(size_t first, size_t last) {
     const size_t ways = last - first;
     const Approach found =
         search(chord_of(poses_, first, last), asked(), ways <= 1 ? UINT64_MAX : kLeastBudget + 4 * ways);
     if (!found.within && !found.given_up && found.lower > options_.touch_mm) {
       near_.lower = std::min(near_.lower, found.lower);
-      return;
+      return true;
     }
     if (found.within) hint_ = found.pair;
-    if (ways <= 1) return settle_way(first, found);
+    if (ways <= 1) {
+      settle_way(first, found);
+      return false;
+    }
     const size_t middle = (first + last) / 2;
     const auto nearest = first + static_cast<size_t>(std::lround(found.t * static_cast<double>(ways)));
     if (found.within) look_at_pose(nearest);
@@ -88,6 +98,7 @@ class PairWalk {
     const bool late = nearest > middle;
     late ? visit(middle, last) : visit(first, middle);
     late ? visit(first, middle) : visit(middle, last);
+    return false;
   }
 
   /// The way from one cycle to the next, on which the axes go straight. What is not proven to be free counts

@@ -25,6 +25,8 @@ double box_gap(const Vec3& still, const Vec3& still_half, const Vec3& c0, const 
 
 SpaceTime::SpaceTime(const Encounter& pair, const AxisSegment& segment) : pair_(pair), segment_(segment) {
   SWARF_CHECK(!pair.a->nodes.empty() && !pair.b->nodes.empty(), "an empty body is near nothing");
+  SWARF_CHECK(segment.q0.allFinite() && segment.q1.allFinite() && segment.stray.allFinite(),
+              "axis values are numbers");
   const MotionBounds of_b = motion_bounds(pair.b_from_a, *pair.b, segment);
   const MotionBounds of_a = motion_bounds(pair.a_from_b, *pair.a, segment);
   const bool a_moves = of_a.slack(0.125) < of_b.slack(0.125);

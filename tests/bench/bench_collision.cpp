@@ -129,7 +129,7 @@ void BM_DistanceAtRest(benchmark::State& state) {
   }
 }
 
-BENCHMARK(BM_PathCheck)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(BM_PathCheck)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 BENCHMARK(BM_DistanceAtRest)->Arg(10)->Arg(0);
 
 }  // namespace

@@ -59,11 +59,35 @@ TEST(RelativeMotion, BoundsHoldForEveryPoint) {
     for (int k = 0; k < 5; ++k) off[k] += segment.stray[k] * rng.uniform(-1.0, 1.0);
     EXPECT_LE((motion.pose(off) * point - at(t)).norm(), bounds.slack(0.0) * (1 + 1e-9) + 1e-9) << i;
     // Both together, along any direction.
-    const Vec3 n = i % 2 == 0 ? rng.direction() : Vec3(Vec3::Unit(i / 2 % 3));
+    Vec3 n = rng.direction();
+    if (i % 3 == 1) n = Vec3::Unit(i / 3 % 3);
+    // Where only the wobble of that axis is left.
+    if (i % 3 == 2 && !bounds.steps.empty())
+      n = bounds.steps[static_cast<size_t>(i) / 3 % bounds.steps.size()].axis;
     const Vec3 whole = motion.pose(off) * point - ((1.0 - t) * at(0.0) + t * at(1.0));
     EXPECT_LE(std::abs(n.dot(whole)), bounds.slack(n, 0.125) * (1 + 1e-9) + 1e-9) << i;
   }
   EXPECT_GT(tightest, 0.8);
+}
+
+/// A short span at either end of a way on which the table turns often while its axis tilts: what the tilt
+/// lets come of the turns along the axis counts.
+TEST(RelativeMotion, BoundsHoldOnSpansOfWaysWithManyTurns) {
+  const machine::MachineScene scene = toy_machine();
+  const RelativeMotion motion(scene, kColumn, kTable);
+  Rng rng(6);
+  for (int i = 0; i < 2000; ++i) {
+    const double tilt = rng.uniform(-1, 1), tilted = tilt + rng.uniform(-0.1, 0.1);
+    const AxisSegment segment = way(axes(0, 0, 0, tilt), axes(0, 0, 0, tilted, rng.uniform(-80, 80)));
+    const Vec3 centre = 50.0 * rng.direction();
+    const MotionBounds bounds = motion.bounds(segment, centre, 1.0);
+    const double length = std::pow(10.0, rng.uniform(-4.0, -1.0)), from = i % 2 == 0 ? 0.0 : 1.0 - length;
+    const auto at = [&](double s) -> Vec3 { return motion.pose(segment.at(from + s * length)) * centre; };
+    const Vec3 off = at(0.5) - 0.5 * (at(0.0) + at(1.0));
+    for (const StepBound& step : bounds.steps) {
+      EXPECT_LE(std::abs(step.axis.dot(off)), bounds.slack(step.axis, length * length / 8.0) + 1e-12) << i;
+    }
+  }
 }
 
 /// Between the bounds lies the least of many poses, and at t both witness points are that far apart.

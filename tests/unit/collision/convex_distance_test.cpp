@@ -72,6 +72,59 @@ TEST(ConvexDistance, TwoCylindersWithCrossedAxes) {
   EXPECT_NEAR(between(one, other).upper, 3.0, 1e-6);
 }
 
+/// From a point the distance is that in the half plane through it, exact.
+TEST(ConvexDistance, PointsAgreeWithTheProfile) {
+  Rng rng(10);
+  for (int i = 0; i < 20000; ++i) {
+    const RevolvedSolid solid = frustum(10.0 * rng.direction(), rng.direction(), rng.uniform(-5.0, 0.0),
+                                        rng.uniform(0.01, 5.0), rng.uniform(0.0, 4.0), rng.uniform(0.0, 4.0));
+    const Vec3 p = rng.uniform(0.0, 40.0) * rng.direction();
+    const double z = (p - solid.foot).dot(solid.axis), rho = (p - solid.foot - z * solid.axis).norm();
+    const auto to_side = [&](const Vec2& from, const Vec2& to) {
+      const double share =
+          std::clamp((Vec2(rho, z) - from).dot(to - from) / (to - from).squaredNorm(), 0.0, 1.0);
+      return (Vec2(rho, z) - from - share * (to - from)).norm();
+    };
+    const Vec2 low = solid.corners[0], high = solid.corners[1];
+    double truth =
+        std::min({to_side(low, high), to_side(Vec2(0, low.y()), low), to_side(Vec2(0, high.y()), high)});
+    const double wide = low.x() + (z - low.y()) / (high.y() - low.y()) * (high.x() - low.x());
+    if (z >= low.y() && z <= high.y() && rho <= wide) truth = 0.0;
+    const Body one = body_of_solid(solid), point = triangle_body({p, p, p});
+    for (const ConvexDistance& found : {between(one, point), between(point, one)}) {
+      EXPECT_LE(found.lower, truth + 1e-9) << i;
+      EXPECT_NEAR(found.upper, truth, 1e-6) << i;
+      EXPECT_LE(found.upper - found.lower, 1e-6) << i;
+    }
+  }
+}
+
+/// Slim cones, discs, cylinders of any size against triangles and each other: the bounds meet, and the points
+/// lie in their solids.
+TEST(ConvexDistance, BoundsMeetForSolidsOfAnyShape) {
+  Rng rng(9);
+  const auto random_solid = [&rng]() {
+    const double size = std::pow(10.0, rng.uniform(-2.0, 2.0)), low = rng.uniform(-1.0, 1.0);
+    const double high = low + std::pow(10.0, rng.uniform(-3.0, 1.0));
+    return frustum(60.0 * rng.uniform() * rng.direction(), rng.direction(), size * low, size * high,
+                   size * std::max(0.0, rng.uniform(-0.5, 1.0)), size * rng.uniform());
+  };
+  double widest = 0.0;
+  for (int i = 0; i < 20000; ++i) {
+    const Body a = body_of_solid(random_solid());
+    const Body b = i % 2 == 0 ? body_of_solid(random_solid()) : triangle_body(random_triangle(rng));
+    const ConvexDistance found = between(a, b), other = between(b, a);
+    widest = std::max(widest, found.upper - found.lower);
+    EXPECT_LE(found.upper - found.lower, 1e-5) << i;
+    EXPECT_NEAR(found.upper, other.upper, 2e-5) << i;
+    EXPECT_NEAR((found.home_a - found.home_b).norm(), found.upper, 1e-9) << i;
+    EXPECT_LE(std::abs((found.home_a - a.nodes[0].centre).dot(Vec3::UnitX())), a.nodes[0].half.x() + 1e-9)
+        << i;
+  }
+  RecordProperty("widest_mm", std::to_string(widest));
+  EXPECT_LE(widest, 1e-5) << widest;
+}
+
 TEST(ConvexDistance, HullOfTwoPosesTellsTheInstant) {
   // A point flies past a corner: nearest at a quarter of its way.
   const Body still = triangle_body({Vec3(0, 0, 0), Vec3(0, 0, -1), Vec3(0, -1, -1)});

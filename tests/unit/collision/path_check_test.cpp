@@ -336,5 +336,18 @@ TEST(MeshBody, RefusesWhatIsNoMesh) {
   EXPECT_THROW(mesh_body("box", BodyKind::kPart, 0, mesh), InputError);
 }
 
+TEST(SolidBody, RefusesWhatIsNoProfile) {
+  const auto body_of = [](const RevolvedSolid& solid) {
+    return solid_body("tool", BodyKind::kToolPart, 0, {solid});
+  };
+  const RevolvedSolid good = frustum(Vec3::Zero(), Vec3::UnitZ(), 0, 5, 2, 3);
+  EXPECT_EQ(body_of(good).nodes.size(), 1U);
+  EXPECT_THROW(body_of(frustum(Vec3::Zero(), Vec3::UnitZ(), 5, 0, 2, 3)), InputError);
+  EXPECT_THROW(body_of(frustum(Vec3::Zero(), Vec3::UnitZ(), 0, 5, -2, 3)), InputError);
+  EXPECT_THROW(body_of(frustum(Vec3::Zero(), Vec3(0, 0, 2), 0, 5, 2, 3)), InputError);
+  EXPECT_THROW(body_of(frustum(Vec3::Zero(), Vec3::UnitZ(), 0, NAN, 2, 3)), InputError);
+  EXPECT_THROW(body_of({}), InputError);
+}
+
 }  // namespace
 }  // namespace swarf::collision
