@@ -71,8 +71,10 @@ void add_job_flags(CLI::App& command, JobWords& words) {
       ->excludes(tool)
       ->group(group);
   command
-      .add_option("--stock", words.stock,
-                  "block of material in the work frame, lower and upper corner; auto: around the path")
+      .add_option(
+          "--stock", words.stock,
+          "raw stock in the work frame: lower and upper corner of a block; cyl,D,L or tube,D,d,L from the "
+          "origin down; a closed mesh in mm (casting.stl); auto: a block around the path")
       ->type_name("X0,Y0,Z0,X1,Y1,Z1")
       ->group(group);
   command
@@ -142,7 +144,7 @@ sim::JobFlags job_flags(const std::string& program_file, const JobWords& words) 
         "write scene.toml with program, machine, [cutter] and [stock]; scenes/lin_koren_dome has one");
   }
   set_tools(words, flags);
-  if (!words.stock.empty() && words.stock != "auto") flags.stock_W = sim::parse_stock(words.stock);
+  if (!words.stock.empty() && words.stock != "auto") sim::take_stock(words.stock, flags);
   if (words.voxel_mm > 0.0) flags.voxel_mm = words.voxel_mm;
   if (!words.origin.empty()) flags.origin_M = sim::parse_vector("--origin", words.origin);
   flags.machine = words.machine;

@@ -33,7 +33,7 @@ std::vector<std::string> given_words(const JobWords& words);
 bool is_program_file(const std::string& file);
 
 /// The job of a program file. Throws InputError: "bad-tool-list" for --tools that is neither a file nor
-/// words, "needs-scene" for a program of surface blocks, and as parse_stock does.
+/// words, "needs-scene" for a program of surface blocks, and as take_stock does.
 sim::JobFlags job_flags(const std::string& program_file, const JobWords& words);
 
 /// The scene of a job: the file itself, or the text that flags and program mean. Throws InputError

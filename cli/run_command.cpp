@@ -160,7 +160,7 @@ void tell_of_killed_runs(const std::string& folder) {
 double least_bytes(const sim::Scene& scene) {
   constexpr double kShareOnDisk = 0.05;  // of the memory of an uncut block; a cut one takes more
   return kShareOnDisk *
-         static_cast<double>(stock::Stock::memory_estimate(scene.stock.box_W, scene.stock.voxel_mm));
+         static_cast<double>(stock::Stock::memory_estimate(scene.stock.body_W(), scene.stock.voxel_mm));
 }
 
 sim::CutOptions cut_options(const RunOptions& options, const reports::PendingFolder& folder) {

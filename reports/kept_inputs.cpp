@@ -153,6 +153,8 @@ std::vector<std::string> keep_inputs(const PendingFolder& folder, const sim::Job
                                       ? std::vector<std::pair<std::string, std::string>>{}
                                       : sim::tool_library_parts(scene.tool_table_file))
     keep_copy(file, input / fs::path(name).filename());
+  const sim::RawSettings& raw = scene.stock.raw;
+  if (!raw.file.empty()) keep(("stock." + raw.key).c_str(), raw.file, beside(raw.file, "stock"));
   if (scene.design.kind == sim::DesignKind::kSurface)
     keep("design.surface", scene.design.surface_file, beside(scene.design.surface_file, "design"));
   if (scene.design.kind == sim::DesignKind::kMesh)

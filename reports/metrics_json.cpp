@@ -84,7 +84,7 @@ Json kinematics_json(const sim::Job& job, const motion::MotionStatistics& motion
           {"axes", axes}};
 }
 
-Json stock_json(const sim::Job& job, const sim::Result& result) {
+Json cut_stock_json(const sim::Job& job, const sim::Result& result) {
   const stock::CutStatistics& cut = result.stock->statistics();
   return {{"voxel_mm", job.scene.stock.voxel_mm},
           {"blocks", cut.sweeps},
@@ -97,6 +97,21 @@ Json stock_json(const sim::Job& job, const sim::Result& result) {
           {"volume_left_mm3", result.volume_left_mm3},
           {"volume_error_bound_mm3", result.volume_error_bound_mm3},
           {"hash", fmt::format("{:016x}", result.stock->hash())}};
+}
+
+/// What was there before any cut, where it is no box.
+Json raw_json(const stock::RawShape& raw) {
+  const Box& box = raw.box();
+  const auto corner = [](const Vec3& p) { return Json{p.x(), p.y(), p.z()}; };
+  return {{"shape", raw.text()},
+          {"volume_mm3", raw.volume_mm3()},
+          {"box_mm", {corner(box.lower), corner(box.upper)}}};
+}
+
+Json stock_json(const sim::Job& job, const sim::Result& result) {
+  Json json = cut_stock_json(job, result);
+  if (job.scene.stock.shape) json["raw"] = raw_json(*job.scene.stock.shape);
+  return json;
 }
 
 /// The worst regions with the line of the program that cut them; 0 where no block did.

@@ -14,6 +14,7 @@
 #include "render/lettering.h"
 #include "render/ray/still.h"
 #include "reports/machine_view.h"
+#include "stock/stock.h"
 
 namespace swarf::reports {
 namespace {
@@ -232,6 +233,14 @@ render::Image path_panel(const sim::Job& job, const toolpath::ToolPath& path) {
                                              size.x(), size.y(), size.z())});
 }
 
+/// The raw stock, no finer than a picture shows it.
+TriMesh raw_mesh(const sim::StockSettings& stock) {
+  constexpr double kCells = 150.0;  // along its longest side
+  if (!stock.shape) return box_mesh(stock.box_W);
+  const double voxel = std::max(stock.voxel_mm, stock.box_W.size().maxCoeff() / kCells);
+  return stock::Stock(*stock.shape, voxel).mesh();
+}
+
 /// The machine in the middle of the path.
 render::Image work_panel(const sim::Job& job, const toolpath::ToolPath& path) {
   const toolpath::BlockMove block = path.elements.block(path.elements.size() / 2);
@@ -240,7 +249,7 @@ render::Image work_panel(const sim::Job& job, const toolpath::ToolPath& path) {
   const kinematics::InverseKinematics inverse(sim::machines_by_tool(job)[tool]);
   const AxisValues q = block.axes ? block.axes->to : inverse.solve_nearest(block.to, at_zero(model)).q;
   const MachineView view(job);
-  const TriMesh stock = box_mesh(job.scene.stock.box_W);
+  const TriMesh stock = raw_mesh(job.scene.stock);
   std::vector<render::DrawItem> items = view.items(q, tool, &stock);
   // The work and what is near it: the whole machine would leave the stock a few pixels.
   const Pose X_MW = view.work_pose(q);

@@ -255,10 +255,18 @@ FactGroup tool_facts(const sim::Job& job) {
   return group;
 }
 
+/// What was there before any cut.
+Fact raw_fact(const sim::StockSettings& stock) {
+  const Vec3 size = stock.box_W.size();
+  const std::string box = fmt::format("{:g} x {:g} x {:g} mm", size.x(), size.y(), size.z());
+  if (!stock.shape) return {"Box", box};
+  return {"Raw stock",
+          fmt::format("{}; {:.6g} mm³ in a box of {}", stock.shape->text(), stock.shape->volume_mm3(), box)};
+}
+
 std::vector<FactGroup> facts_of(const sim::Job& job, const sim::Result& result, const RunFiles& files) {
   const motion::MotionStatistics& motion = result.main.motion.statistics;
   const stock::CutStatistics& cut = result.stock->statistics();
-  const Vec3 size = job.scene.stock.box_W.size();
   const motion::ToolSample first = motion::CycleReader(*result.main.cycles).at(0).sample;
   const auto name_of = [](const std::string& path) { return path.substr(path.find_last_of('/') + 1); };
   return {{"Job",
@@ -275,7 +283,7 @@ std::vector<FactGroup> facts_of(const sim::Job& job, const sim::Result& result, 
                                            um_from_mm(motion.tip_error_max_mm))}}},
           tool_facts(job),
           {"Stock",
-           {{"Box", fmt::format("{:g} x {:g} x {:g} mm", size.x(), size.y(), size.z())},
+           {raw_fact(job.scene.stock),
             {"Voxel", fmt::format("{:g} mm", job.scene.stock.voxel_mm)},
             {"Sweeps", sweeps_fact(job, result)},
             {"Cut", fmt::format("{} sweeps, {} voxel updates", cut.sweeps, cut.voxel_updates)},

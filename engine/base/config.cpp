@@ -44,14 +44,15 @@ struct Written {
     }
     return numbers;
   }
-  /// An array of rows of three; empty where it is anything else.
-  std::vector<Vec3> points() const {
-    std::vector<Vec3> found;
+  /// An array of rows of as many numbers as a Point has; empty where it is anything else.
+  template <typename Point>
+  std::vector<Point> points() const {
+    std::vector<Point> found;
     if (node == nullptr || !node->is_array()) return {};
     for (const toml::node& item : *node->as_array()) {
       const std::optional<std::vector<double>> numbers = row(&item);
-      if (!numbers || numbers->size() != 3) return {};
-      found.emplace_back((*numbers)[0], (*numbers)[1], (*numbers)[2]);
+      if (!numbers || numbers->size() != static_cast<size_t>(Point::RowsAtCompileTime)) return {};
+      found.emplace_back(Eigen::Map<const Point>(numbers->data()));
     }
     return found;
   }
@@ -394,7 +395,7 @@ std::vector<double> ConfigTable::numbers(const std::string& key, size_t count,
 
 std::vector<Vec3> ConfigTable::points(const std::string& key) {
   const Written value = node_->find(key);
-  const std::vector<Vec3> found = value.points();
+  const std::vector<Vec3> found = value.points<Vec3>();
   if (!found.empty()) return found;
   error(value.node == nullptr ? "missing-key" : "wrong-type", key,
         fmt::format("'{}{}' must be an array of rows of three finite numbers", node_->name, value.key),
@@ -402,9 +403,19 @@ std::vector<Vec3> ConfigTable::points(const std::string& key) {
   return {};
 }
 
+std::vector<Vec2> ConfigTable::flat_points(const std::string& key) {
+  const Written value = node_->find(key);
+  const std::vector<Vec2> found = value.points<Vec2>();
+  if (!found.empty()) return found;
+  error(value.node == nullptr ? "missing-key" : "wrong-type", key,
+        fmt::format("'{}{}' must be an array of rows of two finite numbers", node_->name, value.key),
+        fmt::format("write {} = [[x, y], [x, y]]", value.key));
+  return {};
+}
+
 Box ConfigTable::box(const std::string& key) {
   const Written value = node_->find(key);
-  const std::vector<Vec3> found = value.points();
+  const std::vector<Vec3> found = value.points<Vec3>();
   if (found.size() != 2) {
     error(value.node == nullptr ? "missing-key" : "wrong-type", key,
           fmt::format("'{}{}' must be two corners in {}", node_->name, value.key,

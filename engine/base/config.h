@@ -61,6 +61,8 @@ class ConfigTable {
                               const std::optional<std::vector<double>>& fallback = {});
   /// [[x,y,z], ...] of at least one row; empty after a complaint.
   std::vector<Vec3> points(const std::string& key);
+  /// The same of [[x,y], ...].
+  std::vector<Vec2> flat_points(const std::string& key);
   /// [[x,y,z],[x,y,z]] with lower < upper in each direction.
   Box box(const std::string& key);
 

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <utility>
 
-#include "machine/plain_solids.h"
+#include "mesh/plain_solids.h"
 
 namespace swarf::machine {
 namespace {
@@ -45,7 +45,7 @@ bool has_room(const Place& place, const Fixture& fixture, Diagnostics& diagnosti
 /// A box from intervals along the jaws' way, across and up.
 void add_jaw(TriMesh& mesh, bool along_y, const Vec3& lower, const Vec3& upper) {
   const auto turned = [&](const Vec3& p) { return along_y ? Vec3(p.y(), p.x(), p.z()) : p; };
-  add_box(mesh, {turned(lower), turned(upper)});
+  mesh::add_box(mesh, {turned(lower), turned(upper)});
 }
 
 TriMesh vice(const Vice& shape, const Place& place) {
@@ -78,7 +78,7 @@ void add_strap(TriMesh& mesh, const Place& place, const std::string& side, doubl
     box.upper[across] = middle + half;
     box.lower.z() = bottom;
     box.upper.z() = height;
-    add_box(mesh, box);
+    mesh::add_box(mesh, box);
   };
   piece(-reach, kStrapBehindMm, 0.5 * kStrapWidthMm, top, top + kStrapHeightMm);
   piece(0.6 * kStrapBehindMm, kStrapBehindMm, 0.4 * kStrapWidthMm, low, top);
@@ -90,7 +90,7 @@ TriMesh clamps(const Clamps& shape, const Place& place) {
   plate.lower.z() = place.table;
   plate.upper.z() = place.stock.lower.z();
   TriMesh mesh;
-  add_box(mesh, plate);
+  mesh::add_box(mesh, plate);
   for (const std::string& side : shape.sides) add_strap(mesh, place, side, shape.reach_mm);
   return mesh;
 }
@@ -120,14 +120,15 @@ TriMesh chuck(const Chuck& shape, const Place& place, double grip) {
   const Vec3 centre = place.stock.centre();
   const double face = place.stock.lower.z();
   TriMesh mesh;
-  add_cylinder(mesh, place.foot(centre.x(), centre.y()), 0.5 * shape.diameter_mm, place.bed());
+  mesh::add_tube(mesh, place.foot(centre.x(), centre.y()), Vec3::UnitZ(), 0.5 * shape.diameter_mm, 0.0,
+                 place.bed());
   for (int jaw = 0; jaw < 3; ++jaw) {
     TriMesh box;
-    add_box(box, {{0.5 * grip, -0.5 * kChuckJawMm, face},
-                  {0.5 * shape.diameter_mm, 0.5 * kChuckJawMm, face + shape.grip_mm}});
+    mesh::add_box(box, {{0.5 * grip, -0.5 * kChuckJawMm, face},
+                        {0.5 * shape.diameter_mm, 0.5 * kChuckJawMm, face + shape.grip_mm}});
     Pose turned(Eigen::AngleAxisd(2.0 * std::numbers::pi / 3.0 * jaw, Vec3::UnitZ()));
     turned.translation() = Vec3(centre.x(), centre.y(), 0.0);
-    append(mesh, moved(std::move(box), turned));
+    mesh::append(mesh, mesh::moved(std::move(box), turned));
   }
   return mesh;
 }
@@ -137,8 +138,8 @@ TriMesh tombstone(const Tombstone& shape) {
       wide(kTombstoneFootMm, kTombstoneFootMm, 0.0);
   const Vec3 up(0.0, 0.0, shape.foot_mm);
   TriMesh mesh;
-  add_box(mesh, {-half - wide, half + wide + up});
-  add_box(mesh, {up - half, half + Vec3(0.0, 0.0, shape.size_mm.z())});
+  mesh::add_box(mesh, {-half - wide, half + wide + up});
+  mesh::add_box(mesh, {up - half, half + Vec3(0.0, 0.0, shape.size_mm.z())});
   return mesh;
 }
 
@@ -163,17 +164,18 @@ struct Overloaded : Calls... {
 TriMesh fixture_mesh(const Fixture& fixture, const HeldWork& work, Diagnostics& diagnostics) {
   const Place place = place_of(work);
   const auto follows_stock = [&](auto make) {
-    return has_room(place, fixture, diagnostics) ? moved(make(), work.X_MW) : TriMesh{};
+    return has_room(place, fixture, diagnostics) ? mesh::moved(make(), work.X_MW) : TriMesh{};
   };
   return std::visit(
-      Overloaded{[&](const FixtureSolid& shape) { return moved(shape.mesh, standing(fixture, work)); },
-                 [&](const Tombstone& shape) { return moved(tombstone(shape), standing(fixture, work)); },
-                 [&](const Vice& shape) { return follows_stock([&] { return vice(shape, place); }); },
-                 [&](const Clamps& shape) { return follows_stock([&] { return clamps(shape, place); }); },
-                 [&](const Chuck& shape) {
-                   const double grip = gripped_diameter(shape, place, fixture, diagnostics);
-                   return grip == 0.0 ? TriMesh{} : follows_stock([&] { return chuck(shape, place, grip); });
-                 }},
+      Overloaded{
+          [&](const FixtureSolid& shape) { return mesh::moved(shape.mesh, standing(fixture, work)); },
+          [&](const Tombstone& shape) { return mesh::moved(tombstone(shape), standing(fixture, work)); },
+          [&](const Vice& shape) { return follows_stock([&] { return vice(shape, place); }); },
+          [&](const Clamps& shape) { return follows_stock([&] { return clamps(shape, place); }); },
+          [&](const Chuck& shape) {
+            const double grip = gripped_diameter(shape, place, fixture, diagnostics);
+            return grip == 0.0 ? TriMesh{} : follows_stock([&] { return chuck(shape, place, grip); });
+          }},
       fixture.shape);
 }
 

@@ -80,7 +80,9 @@ std::optional<Local> look_around(const Grid& grid, int iu, int iv) {
   return local;
 }
 
-bool near_face(const Box& box, const Vec3& point, double distance) {
+bool near_face(const stock::RawShape& raw, const Vec3& point, double distance) {
+  if (!raw.is_box()) return std::abs(raw.distance_mm(point)) < distance;
+  const Box& box = raw.box();
   return std::min((point - box.lower).cwiseAbs().minCoeff(), (box.upper - point).cwiseAbs().minCoeff()) <
          distance;
 }
@@ -93,7 +95,7 @@ Sample compare(const Grid& grid, const stock::Stock& stock, int iu, int iv, doub
   const Vec3 point = grid.surface_point(n);
   const auto local = look_around(grid, iu, iv);
   Sample sample;
-  if (!local || near_face(stock.box(), point, kFaceVoxels * voxel)) return sample;
+  if (!local || near_face(stock.raw(), point, kFaceVoxels * voxel)) return sample;
   const double slope = std::hypot(local->slope_u, local->slope_v);
   if (slope > kWall) return sample;
   sample.used = true;
@@ -137,8 +139,10 @@ class ExactLevel {
     const stock::CutterSolid* solid;
   };
   double value(const std::vector<Swept>& sweeps, const Vec3& point) const {
-    const Box& box = stock_.box();
-    double highest = -std::min((point - box.lower).minCoeff(), (box.upper - point).minCoeff());
+    const stock::RawShape& raw = stock_.raw();
+    const Box& box = raw.box();
+    double highest = raw.is_box() ? -std::min((point - box.lower).minCoeff(), (box.upper - point).minCoeff())
+                                  : raw.distance_mm(point);
     for (const Swept& one : sweeps)
       highest = std::max(highest, -stock::swept_contact(point, one.map, *one.solid).distance_mm);
     return highest;

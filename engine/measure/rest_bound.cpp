@@ -66,6 +66,7 @@ double RestBound::left(const Cell& cell, const std::vector<CornerHeights>& own, 
   covered_.clear();
   sags_ = {kNever, kNever, kNever};
   add_box(input_.stock.box(), cell.shape, sets_);
+  if (cell.raw_outside) sets_.push_back(*cell.raw_outside);
   sets_.insert(sets_.end(), own.begin(), own.end());
   for (const Corner& corner : cell.corners) add_owner(cell, corner.near, tops);
   HighestLeft left = left_by_sets();

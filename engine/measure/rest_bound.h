@@ -33,6 +33,8 @@ struct Cell {
   size_t begin, end;        ///< of kept_: the sweeps that may matter
   double dropped = kNever;  ///< least height of those that do not
   double air = kNever;      ///< above it the stock is air, as the grid tells for this cell or one around it
+  /// Heights from which on there is no raw stock over the cell, where that is no box (raw_cell.h).
+  std::optional<CornerHeights> raw_outside = {};
 };
 
 /// Lowest end of what the sweep cuts of the column, not above `highest`; infinite where it cuts none. `fans`:

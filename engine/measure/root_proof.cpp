@@ -5,9 +5,11 @@
 #include <cmath>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "measure/column_range.h"
 #include "measure/height_bounds.h"
+#include "measure/raw_cell.h"
 #include "measure/rest_bound.h"
 #include "mesh/mesh_distance.h"
 #include "stock/rays/ray_height.h"
@@ -29,6 +31,37 @@ constexpr double kNearHeight = 0.05;
 
 double distance_to(const Box& box, const Vec3& p) {
   return (p - p.cwiseMax(box.lower).cwiseMin(box.upper)).norm();
+}
+
+/// Where a line leaves the raw stock for good; as leaves_box.
+double leaves_raw(const stock::RawShape& raw, const Vec3& point, const Vec3& way) {
+  if (raw.is_box()) return leaves_box(raw.box(), point, way);
+  const std::vector<stock::RawInterval> material = raw.along(point, way);
+  return material.empty() ? -kNever : material.back().high;
+}
+
+/// What stands at a place before any cut.
+void take_raw(const stock::RawShape& raw, Corner& corner) {
+  const CellCorner& at = corner.at;
+  if (raw.is_box()) {
+    corner.top = std::min(leaves_box(raw.box(), at.point, at.normal), corner.range);
+    // Without stock at the place the design lacks material: as much as to the box.
+    corner.height = corner.top > -kNever ? corner.top : -distance_to(raw.box(), at.point);
+  } else {
+    corner.height = std::min(stock::raw_column(raw, at.point, at.normal).height_mm, corner.range);
+    corner.top = corner.height;
+  }
+}
+
+/// Height above which no raw stock is the cell's own, from `top` down; notes how far down the columns are
+/// free of it.
+double look_at_raw(const stock::RawShape& raw, const std::vector<CornerHeights>& own, double top,
+                   Cell& cell) {
+  for (const CornerHeights& heights : own)
+    top = std::min(top, *std::max_element(heights.begin(), heights.end()));
+  top = raw_air_above(cell.shape, raw, std::max(top, 0.0));
+  cell.raw_outside = raw_outside(cell.shape, raw, top);
+  return top;
 }
 
 class RootProof {
@@ -137,7 +170,7 @@ class RootProof {
   double own_depth(const CellCorner& corner, double depth, double share = 1e-9) const {
     if (depth <= 0.0) return depth;
     depth = input_.field.own_depth(corner.point, corner.normal, depth, share);
-    const double through = leaves_box(input_.stock.box(), corner.point, -corner.normal);
+    const double through = leaves_raw(raw_, corner.point, -corner.normal);
     return through > 0.0 ? std::min(depth, through) : depth;
   }
 
@@ -147,9 +180,7 @@ class RootProof {
     corner.at = at;
     take_range(corner);
     corner.depth = own_depth(at, stock::kSkin, kShareOfRange);
-    corner.top = std::min(leaves_box(input_.stock.box(), at.point, at.normal), corner.range);
-    // Without stock at the place the design lacks material: as much as to the box.
-    corner.height = corner.top > -kNever ? corner.top : -distance_to(input_.stock.box(), at.point);
+    take_raw(raw_, corner);
     const auto look_at = [&](uint32_t n) {
       const double low = lowest_cut(at, near_[n], corner.height, root_.cell.area_mm2() == 0.0);
       if (low >= corner.height) return;
@@ -244,7 +275,8 @@ class RootProof {
   /// Height over the design up to which there was material to begin with over the whole cell; below 0 where
   /// the design reaches out of the stock.
   double stood_before(const Cell& cell) const {
-    const Box& box = input_.stock.box();
+    if (!raw_.is_box()) return raw_stood(cell.shape, raw_);
+    const Box& box = raw_.box();
     double inside = kNever, least = kNever, top = kNever;
     const auto look_at = [&](const Vec3& p) {
       inside = std::min({inside, (p - box.lower).minCoeff(), (box.upper - p).minCoeff()});
@@ -295,9 +327,10 @@ class RootProof {
     double leave = 0.0;
     for (const Corner& corner : cell.corners)
       leave = std::max(leave, leaves_box(input_.stock.box(), corner.at.point, corner.at.normal));
-    const double top = std::min(leave + cell.shape.radius(), cell.air);
+    double top = std::min(leave + cell.shape.radius(), cell.air);
     const double target = excess_target();
     const std::vector<CornerHeights> own = rest_.own_above(cell);
+    if (!raw_.is_box()) top = look_at_raw(raw_, own, top, cell);
     double high = left(cell, own, tops_of(own, top), target);
     if (high > target && asks_grid(cell)) {
       cell.air = std::min(cell.air,
@@ -470,6 +503,7 @@ class RootProof {
   }
 
   const CertificateInput& input_;
+  const stock::RawShape& raw_{input_.stock.raw()};
   const SweepIndex& index_;
   const RootCell& root_;
   Budget budget_;

@@ -26,7 +26,7 @@ class Replay {
         path_(move_tool(job, progress)),
         sweeps_(cut_sweeps(job, *path_.cycles)),
         solids_(tool_solids(job.scene)),
-        stock_(job.scene.stock.box_W, job.scene.stock.voxel_mm) {
+        stock_(job.scene.stock.body_W(), job.scene.stock.voxel_mm) {
     result_.parts = differences(record.identity, cut_identity(job, sweeps_));
   }
 

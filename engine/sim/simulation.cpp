@@ -140,7 +140,8 @@ InputError path_misses_stock(const Job& job, const std::string& how) {
   return {"path-misses-stock",
           {job.scene.file},
           fmt::format("the path never meets the stock: {}", how),
-          "move stock.box_mm to where the path is (both are in the work frame, mm)"};
+          fmt::format("move stock.{} to where the path is (both are in the work frame, mm)",
+                      job.scene.stock.raw.key)};
 }
 
 std::string sides(const Box& box) {
@@ -176,9 +177,10 @@ InputError blocks_miss_stock(const Job& job, const toolpath::Elements& elements)
       {job.scene.file},
       "the path never meets the stock: " + how,
       fmt::format("an offset of X {:.3f} Y {:.3f} Z {:.3f} mm brings the path there (setup.offsets of the "
-                  "work offset that is used, or the tool length that was not called); or stock.box_mm moves "
+                  "work offset that is used, or the tool length that was not called); or stock.{} moves "
                   "by X {:.3f} Y {:.3f} Z {:.3f}",
-                  shift.x(), shift.y(), shift.z(), 0.0 - shift.x(), 0.0 - shift.y(), 0.0 - shift.z())};
+                  shift.x(), shift.y(), shift.z(), job.scene.stock.raw.key, 0.0 - shift.x(), 0.0 - shift.y(),
+                  0.0 - shift.z())};
 }
 
 /// What the program was warned of may explain its fault.
@@ -191,18 +193,18 @@ InputError with_warnings(const std::vector<Diagnostic>& warnings, const InputErr
 
 /// A path that stays a cutter's reach away from the stock is a wrong scene, not a clean run.
 void require_contact(const Job& job, const motion::Cycles& cycles) {
-  const Box& box = job.scene.stock.box_W;
+  const stock::RawShape raw = job.scene.stock.body_W();
   const double reach = job.scene.tools.front().radius();
   double nearest = std::numeric_limits<double>::infinity();
   motion::CycleReader reader(cycles);
   for (size_t k = 0; k < cycles.size(); ++k) {
     const motion::ToolSample& sample = reader.at(k).sample;
     if (sample.kind != motion::SampleKind::kCutting) continue;
-    const Vec3 inside = sample.contact_W.cwiseMax(box.lower).cwiseMin(box.upper);
-    nearest = std::min(nearest, (sample.contact_W - inside).norm());
+    nearest = std::min(nearest, std::max(0.0, raw.distance_mm(sample.contact_W)));
   }
   if (nearest <= reach) return;
-  throw path_misses_stock(job, fmt::format("it stays {:.1f} mm away from stock.box_mm", nearest));
+  throw path_misses_stock(
+      job, fmt::format("it stays {:.1f} mm away from stock.{}", nearest, job.scene.stock.raw.key));
 }
 
 ComparisonRow row_of(const std::string& name, const MeasuredPath& measured, bool used) {
@@ -275,11 +277,10 @@ void compare_modes(const Job& job, Progress& progress, Result& result) {
   progress.end();
 }
 
-/// Removed and left add up to the box. The level set rounds the edges of the uncut box too, so what was
-/// removed is the difference of two of its volumes, and what is left the rest of the exact box.
+/// Removed and left add up to the raw stock. The level set rounds its edges too while it is uncut, so what
+/// was removed is the difference of two volumes, and what is left the rest of the exact body.
 void measure_volume(const Job& job, Result& result) {
-  const double box = job.scene.stock.box_W.size().prod();
-  result.volume_left_mm3 = box - result.volume_removed_mm3;
+  result.volume_left_mm3 = job.scene.stock.body_W().volume_mm3() - result.volume_removed_mm3;
   const stock::VolumeRange range = result.stock->volume_between(result.sweep_bound_mm);
   result.volume_error_bound_mm3 =
       std::max(range.greatest - result.volume_left_mm3, result.volume_left_mm3 - range.least);

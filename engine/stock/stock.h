@@ -9,6 +9,7 @@
 
 #include "base/frames.h"
 #include "mesh/tri_mesh.h"
+#include "stock/raw/raw_shape.h"
 #include "stock/sweep/sweep.h"
 
 namespace swarf::stock {
@@ -40,6 +41,9 @@ class Stock {
  public:
   /// A box of material. Throws std::bad_alloc never: ask memory_estimate first.
   Stock(const Box& box_W, double voxel_mm);
+  /// Any raw stock; a box gives the same bits as above. Parallel, the same for any number of threads.
+  /// Material thinner than a voxel is lost where it holds no grid point (RawShape::thinnest_wall).
+  Stock(const RawShape& raw, double voxel_mm);
   ~Stock();
   Stock(Stock&&) noexcept;
   Stock& operator=(Stock&&) noexcept;
@@ -48,7 +52,10 @@ class Stock {
   void cut(std::span<const Sweep> sweeps, const CutterSolid& cutter);
 
   double voxel_mm() const;
-  const Box& box() const;
+  const Box& box() const;  ///< of the raw stock
+  /// What was there before any cut. Of a stock that was read from a file without its shape only a box is
+  /// known: asked for another one it is our own fault.
+  const RawShape& raw() const;
   /// Material left: every cell by the fraction that its level set fills (exact for planes, even oblique ones;
   /// an edge of length l is off by up to l voxel^2 / 12, with opposite signs for convex and concave ones).
   double volume_mm3() const;
@@ -94,7 +101,9 @@ class Stock {
   /// "stock-file-empty", "stock-file-foreign", "stock-not-level-set", "stock-file-incomplete",
   /// "stock-file-damaged". `metadata`, if given, receives every text of the grid: what save() was given and
   /// OpenVDB's own.
-  static Stock load(const std::string& path, StockMetadata* metadata = nullptr);
+  /// `raw`: what it was before its cuts, for raw(); null: the box, if the file says so.
+  static Stock load(const std::string& path, StockMetadata* metadata = nullptr,
+                    const RawShape* raw = nullptr);
 
   size_t leaves() const;  ///< blocks of 8x8x8 voxels along the surface
 
@@ -102,6 +111,7 @@ class Stock {
   static size_t memory_for(const Box& box_W, double voxel_mm, double leaves);
   /// Bytes of the uncut box, by its area: the least that a run needs.
   static size_t memory_estimate(const Box& box_W, double voxel_mm);
+  static size_t memory_estimate(const RawShape& raw, double voxel_mm);
 
  private:
   friend class ContactFinder;

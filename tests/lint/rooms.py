@@ -38,8 +38,8 @@ ROOMS = {
         [{"ground"}, {"speed"}, {"passes"}, {"blocks"}, {"cycles"}, {"judged"}, {"entry"}],
     ),
     "engine/stock": (
-        10,
-        [{"sweep"}, {"ground"}, {"level_set"}, {"contact", "rays", "mesher"}],
+        11,
+        [{"sweep", "raw"}, {"ground"}, {"level_set"}, {"contact", "rays", "mesher"}],
     ),
     "engine/sim": (
         10,

@@ -89,6 +89,9 @@ def scene_texts():
     yield f"nc = 'part.ngc'\n[[tool]]\nshape = 'profile'\n{no}[[tool.profile]]\n{no}[[tool.holder]]\n{no}"
     for kind in schema("scene")["properties"]["fixture"]["items"]["properties"]["kind"]["enum"]:
         yield f"nc = 'part.ngc'\n[[fixture]]\nkind = '{kind}'\n{no}"
+    for raw in ("cylinder = {{ {0} }}", "tube = {{ {0} }}", "outline = {{ {0} }}", "mesh = 'a.stl'",
+                "from_run = 'out'\nfrom_run_pose = {{ {0} }}"):
+        yield f"nc = 'part.ngc'\n[stock]\n{raw.format(no.strip())}\n{no}"
     for design in designs:
         yield f"nc = 'part.ngc'\n[design]\nkind = '{design}'\n{no}"
 
@@ -188,6 +191,10 @@ class Written(unittest.TestCase):
         metrics, _ = self.check("exact_shank", section="bad_cuts")
         self.assertTrue(metrics["collisions"]["events"] and metrics["bad_cuts"]["events"])
 
+    def test_a_casting(self):
+        metrics, _ = self.check("stock_casting", section="stock")
+        self.assertEqual(set(metrics["stock"]["raw"]), {"shape", "volume_mm3", "box_mm"})
+
     def test_flank(self):
         self.check("exact_flank_f1", section="flank")
 
@@ -214,6 +221,9 @@ class Refused(unittest.TestCase):
         "a text for a number": ("cutter.diameter_mm", "6"),
         "a voxel of nothing": ("stock.voxel_mm", 0),
         "a box of one corner": ("stock.box_mm", [[0, 0, 0]]),
+        "two raw stocks": ("stock", {"mesh": "a.stl", "cylinder": {"diameter_mm": 20, "length_mm": 10}}),
+        "a bar without its length": ("stock", {"cylinder": {"diameter_mm": 20}}),
+        "an outline of two corners": ("stock", {"outline": {"points_mm": [[0, 0], [1, 1]], "z_mm": [0, 1]}}),
         "a shape that nobody knows": ("cutter.shape", "fish"),
         "two programs": ("cl", "part.cls"),
         "an axis without its unit": ("setup", {"start": {"X": 1}}),

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "collision/containment.h"
-#include "machine/plain_solids.h"
 
 namespace swarf::sim {
 namespace {
@@ -23,9 +22,8 @@ std::vector<Body> bodies_on_table(const Job& job) {
     if (job.machine.links[static_cast<size_t>(body.link)].fixture) body.kind = BodyKind::kFixture;
     bodies.push_back(std::move(body));
   }
-  TriMesh stock;
-  machine::add_box(stock, job.scene.stock.box_W);
-  bodies.push_back(collision::work_body(job.machine, "the stock", BodyKind::kStock, stock));
+  bodies.push_back(collision::work_body(job.machine, "the stock", BodyKind::kStock,
+                                        job.scene.stock.body_W().mesh_around()));
   return bodies;
 }
 

@@ -7,10 +7,10 @@
 #include <utility>
 
 #include "base/units.h"
-#include "machine/plain_solids.h"
 #include "mesh/mesh_check.h"
 #include "mesh/mesh_io.h"
 #include "mesh/mesh_ops.h"
+#include "mesh/plain_solids.h"
 #include "sim/job/scene.h"
 
 namespace swarf::sim {
@@ -40,7 +40,7 @@ machine::FixtureSolid read_solid(ConfigTable& table, bool mesh) {
   machine::FixtureSolid shape;
   if (!mesh) {
     const Box box = table.box("box_mm");
-    if (box.size().minCoeff() > 0.0) machine::add_box(shape.mesh, box);
+    if (box.size().minCoeff() > 0.0) mesh::add_box(shape.mesh, box);
     return shape;
   }
   shape.mesh_file = table.text("mesh");

@@ -24,6 +24,8 @@ namespace swarf::sim {
 namespace {
 
 constexpr double kBytesPerMb = 1024.0 * 1024.0;
+/// As for boxes and meshes: a kilometre from the origin of the work, mm.
+constexpr double kFarthestStock = 1e6;
 
 /// Upwards to two digits.
 double two_digits(double value) {
@@ -32,11 +34,11 @@ double two_digits(double value) {
 }
 
 /// The smallest voxel, to two digits, whose estimate fits.
-double voxel_of_box_that_fits(const Box& box, double voxel, double limit_mb) {
+double voxel_of_raw_that_fits(const stock::RawShape& raw, double voxel, double limit_mb) {
   constexpr double kFinest = 1e-6;  // of the box: no memory holds more
-  const double longest = box.size().maxCoeff();
+  const double longest = raw.box().size().maxCoeff();
   double fitting = std::max(voxel, kFinest * longest);
-  while (fitting<longest&& static_cast<double>(stock::Stock::memory_estimate(box, fitting)) / kBytesPerMb>
+  while (fitting<longest&& static_cast<double>(stock::Stock::memory_estimate(raw, fitting)) / kBytesPerMb>
              limit_mb)
     fitting *= 1.05;
   return two_digits(fitting);
@@ -46,7 +48,7 @@ double voxel_of_box_that_fits(const Box& box, double voxel, double limit_mb) {
 void check_voxels(const Scene& scene, const char* key, double voxel, Diagnostics& diagnostics) {
   const double limit = memory_limit_mb(scene);
   const double need =
-      static_cast<double>(stock::Stock::memory_estimate(scene.stock.box_W, voxel)) / kBytesPerMb;
+      static_cast<double>(stock::Stock::memory_estimate(scene.stock.body_W(), voxel)) / kBytesPerMb;
   // Before the path is known only the block can be counted; what lies between is for require_memory.
   constexpr double kBeyondDoubt = 2.0, kShareOfBlock = 1.0 / 6.0;
   if (need <= kBeyondDoubt * limit) return;
@@ -54,7 +56,7 @@ void check_voxels(const Scene& scene, const char* key, double voxel, Diagnostics
       "out-of-memory", {scene.file},
       fmt::format("{} = {:g} needs about {:.0f} MB, {:.0f} MB may be used", key, voxel, need, limit),
       fmt::format("voxel_mm = {:g} fits; or raise --max-memory",
-                  voxel_of_box_that_fits(scene.stock.box_W, voxel, kShareOfBlock * limit)));
+                  voxel_of_raw_that_fits(scene.stock.body_W(), voxel, kShareOfBlock * limit)));
 }
 
 double triangle_area(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -167,6 +169,41 @@ void check_cl_tools(const Job& job, Diagnostics& diagnostics) {
   }
 }
 
+/// The body of the raw stock; a box has been read with the scene.
+void load_stock(Job& job, Diagnostics& diagnostics) {
+  StockSettings& stock = job.scene.stock;
+  if (stock.raw.kind == RawKind::kBox) return;
+  double tool_mm = 0.0;
+  for (const cutter::Cutter& tool : job.scene.tools) tool_mm = std::max(tool_mm, tool.diameter_mm);
+  stock.shape = load_raw(stock.raw, tool_mm, diagnostics);
+  if (!stock.shape) return;
+  stock.box_W = stock.shape->box();
+  job.scene.toolpath.stock_top_mm = stock.box_W.upper.z();
+  if (stock.box_W.lower.cwiseAbs().cwiseMax(stock.box_W.upper.cwiseAbs()).maxCoeff() > kFarthestStock) {
+    diagnostics.error("out-of-range", stock.raw.where,
+                      "the stock reaches too far from the origin of the work",
+                      fmt::format("every place of it must be within {:g} mm", kFarthestStock));
+  }
+  if (!stock.auto_voxel && !diagnostics.has_errors()) check_voxel(stock, job.scene.tools, diagnostics);
+}
+
+/// Walls that the level set cannot hold are told.
+void check_walls(const Job& job, Diagnostics& diagnostics) {
+  const StockSettings& stock = job.scene.stock;
+  if (!stock.shape) return;
+  const stock::ThinnestWall wall = stock.shape->thinnest_wall(stock.voxel_mm);
+  if (wall.mm >= stock.voxel_mm) return;
+  const Vec3& p = wall.place_W;
+  diagnostics.warning(
+      "stock-wall-thin", stock.raw.where,
+      fmt::format(
+          "the raw stock has a wall of {:.3g} mm at ({:.3f}, {:.3f}, {:.3f}) mm, thinner than a voxel "
+          "of {:g} mm: the level set loses it in parts (looked for from places {:.3g} mm apart)",
+          wall.mm, p.x(), p.y(), p.z(), stock.voxel_mm, wall.step_mm),
+      fmt::format("stock.voxel_mm = {:.2g} holds it; measuring rays and proofs know the wall as it is",
+                  wall.mm));
+}
+
 /// What the part is measured against.
 void load_design(Job& job, Diagnostics& diagnostics) {
   const DesignSettings& design = job.scene.design;
@@ -176,8 +213,10 @@ void load_design(Job& job, Diagnostics& diagnostics) {
   if (design.kind == DesignKind::kAnalytic) job.design.push_back(design.surface);
   if (design.kind == DesignKind::kMesh) {
     auto mesh = std::make_shared<TriMesh>(mesh::load_mesh(design.mesh_file));
-    // An automatic box holds the design.
-    const Box* box = job.scene.stock.auto_box ? nullptr : &job.scene.stock.box_W;
+    // An automatic box holds the design; of a raw stock that is itself at fault nothing is known.
+    const StockSettings& stock = job.scene.stock;
+    const bool open = stock.auto_box || (stock.raw.kind != RawKind::kBox && !stock.shape);
+    const Box* box = open ? nullptr : &stock.box_W;
     mesh::check_design_mesh(*mesh, design.mesh_file, box, diagnostics);
     if (!diagnostics.has_errors()) mesh::check_bodies(*mesh, design.mesh_file, diagnostics, "design mesh");
     constexpr double kNoCreases = kPi;  // one normal for each vertex
@@ -252,6 +291,7 @@ Job complete(Scene scene, Diagnostics diagnostics) {
       job.program = program::load_program(job.scene.program_file, &warnings);
     }
   });
+  collect(diagnostics, [&] { load_stock(job, diagnostics); });
   collect(diagnostics, [&] { load_design(job, diagnostics); });
   diagnostics.throw_if_errors();
   diagnostics.append(warnings);
@@ -270,6 +310,8 @@ Job complete(Scene scene, Diagnostics diagnostics) {
   });
   diagnostics.throw_if_errors();
   check_memory(job, diagnostics);
+  diagnostics.throw_if_errors();
+  check_walls(job, diagnostics);
   diagnostics.throw_if_errors();
   job.warnings = diagnostics.list();
   return job;

@@ -226,13 +226,13 @@ void fill_voxel(Job& job) {
   double diameter = std::numeric_limits<double>::infinity();
   for (const cutter::Cutter& tool : job.scene.tools) diameter = std::min(diameter, tool.diameter_mm);
   const double by_tool = kShareOfTool * diameter;
-  const double faces = 2.0 * (size.x() * size.y() + size.y() * size.z() + size.z() * size.x());
+  const double faces = stock.body_W().area_mm2();
   const double by_cells = std::sqrt(faces / kFaceCells);
   const double coarsest = 0.25 * std::min(diameter, size.minCoeff());
   double voxel = rounded_down(std::min(std::max(by_tool, by_cells), coarsest));
   const double limit = std::min(kMostMb, 0.5 * memory_limit_mb(job.scene)) * 1024.0 * 1024.0;
   bool by_memory = false;
-  while (static_cast<double>(stock::Stock::memory_estimate(stock.box_W, voxel)) > limit) {
+  while (static_cast<double>(stock::Stock::memory_estimate(stock.body_W(), voxel)) > limit) {
     voxel *= 1.25;
     by_memory = true;
   }

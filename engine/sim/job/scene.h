@@ -20,6 +20,7 @@
 #include "sim/job/assumption.h"
 #include "sim/job/design_keys.h"
 #include "sim/job/setup_keys.h"
+#include "sim/job/stock_keys.h"
 #include "toolpath/tool_path.h"
 
 namespace swarf::sim {
@@ -32,14 +33,18 @@ enum class CutBy {
 };
 
 struct StockSettings {
-  Box box_W;                ///< mm
-  bool auto_box = false;    ///< left open: the program's path gives it (open_job.h)
-  double voxel_mm = 0.2;    ///< smaller: finer solid, memory grows with the square
-  bool auto_voxel = false;  ///< left open: box and tools give it
+  Box box_W;  ///< mm; around the raw stock
+  RawSettings raw;
+  std::optional<stock::RawShape> shape;  ///< what raw means, once it is loaded; none: the box
+  bool auto_box = false;                 ///< left open: the program's path gives it (open_job.h)
+  double voxel_mm = 0.2;                 ///< smaller: finer solid, memory grows with the square
+  bool auto_voxel = false;               ///< left open: box and tools give it
   SourceLocation voxel_where;
   double sweep_tolerance_mm = 1e-3;  ///< ticks are merged into sweeps that stay this close to them
   CutBy cut_by = CutBy::kBlocks;
   double max_memory_mb = 0.0;  ///< 0: 80 % of the memory that is free when the run starts
+
+  stock::RawShape body_W() const { return shape ? *shape : stock::RawShape::of_box(box_W); }
 };
 
 /// Limits of the surface that are not given do not count; scenes of surface blocks have 10.5 and 1 by

@@ -33,8 +33,11 @@ bool is_said(ConfigTable& table, const char* key) {
 StockSettings read_stock(ConfigTable table, const std::vector<cutter::Cutter>& tools, bool blocks,
                          Diagnostics& diagnostics) {
   StockSettings stock;
-  stock.auto_box = blocks && !is_said(table, "box_mm");
-  stock.box_W = stock.auto_box ? Box{Vec3::Zero(), Vec3::Ones()} : table.box("box_mm");
+  stock.raw = read_raw(table);
+  const bool box = stock.raw.kind == RawKind::kBox;
+  stock.auto_box = box && blocks && !is_said(table, "box_mm");
+  // Any other shape is loaded with the job: a file may lie behind it.
+  stock.box_W = stock.auto_box || !box ? Box{Vec3::Zero(), Vec3::Ones()} : table.box("box_mm");
   if (std::max(stock.box_W.lower.cwiseAbs().maxCoeff(), stock.box_W.upper.cwiseAbs().maxCoeff()) >
       kFarthest) {
     table.error("out-of-range", "box_mm", "the stock reaches too far from the origin of the work",
@@ -44,7 +47,7 @@ StockSettings read_stock(ConfigTable table, const std::vector<cutter::Cutter>& t
   stock.auto_voxel = blocks && !is_said(table, "voxel_mm");
   stock.voxel_where = table.where("voxel_mm");
   if (!stock.auto_voxel) stock.voxel_mm = table.number("voxel_mm", kAboveZero);
-  if (!stock.auto_box && !stock.auto_voxel) check_voxel(stock, tools, diagnostics);
+  if (box && !stock.auto_box && !stock.auto_voxel) check_voxel(stock, tools, diagnostics);
   stock.sweep_tolerance_mm = table.number("sweep_tolerance_um", kAboveZero, 1.0) * kMicrometre;
   if (!blocks)
     stock.cut_by = CutBy::kPasses;
@@ -317,6 +320,9 @@ void read_scene(ConfigTable& root, Scene& scene, Diagnostics& diagnostics) {
   scene.fixtures = read_fixtures(root);
   for (machine::Fixture& fixture : scene.fixtures)
     if (std::string* const file = mesh_file_of(fixture)) *file = beside(path, *file);
+  scene.stock.raw.file = beside(path, scene.stock.raw.file);
+  if (scene.stock.raw.kind == RawKind::kRun && fs::path(scene.stock.raw.file).extension() != ".vdb")
+    scene.stock.raw.file = (fs::path(scene.stock.raw.file) / "stock.vdb").string();
   scene.design = read_design(root.table("design"), blocks);
   scene.design.surface_file = beside(path, scene.design.surface_file);
   scene.design.mesh_file = beside(path, scene.design.mesh_file);

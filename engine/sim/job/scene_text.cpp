@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <string_view>
@@ -43,9 +44,12 @@ std::string setup_text(const JobFlags& flags) {
 
 std::string stock_text(const JobFlags& flags) {
   std::string text = "\n[stock]\n";
-  text += flags.stock_W
-              ? fmt::format("box_mm = [{}, {}]\n", triple(flags.stock_W->lower), triple(flags.stock_W->upper))
-              : "box_mm = \"auto\"\n";
+  if (!flags.stock_keys.empty())
+    text += flags.stock_keys;
+  else
+    text += flags.stock_W ? fmt::format("box_mm = [{}, {}]\n", triple(flags.stock_W->lower),
+                                        triple(flags.stock_W->upper))
+                          : "box_mm = \"auto\"\n";
   return text + (flags.voxel_mm ? fmt::format("voxel_mm = {}\n", *flags.voxel_mm) : "voxel_mm = \"auto\"\n");
 }
 
@@ -98,6 +102,34 @@ Box parse_stock(const std::string& text) {
         "bad-stock", {"--stock " + text}, "the second corner lies below the first",
         fmt::format("--stock {},{},{},{},{},{}", low.x(), low.y(), low.z(), high.x(), high.y(), high.z()));
   return {low, high};
+}
+
+void take_stock(const std::string& text, JobFlags& flags) {
+  std::string ending = std::filesystem::path(text).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (ending == ".stl" || ending == ".ply" || ending == ".obj") {
+    flags.stock_keys = "mesh = " + toml_string(text) + "\n";
+    return;
+  }
+  const size_t comma = std::min(text.find(','), text.size());
+  const std::string word = text.substr(0, comma);
+  if (word != "cyl" && word != "tube") {
+    flags.stock_W = parse_stock(text);
+    return;
+  }
+  const size_t count = word == "tube" ? 3 : 2;
+  const auto n = comma < text.size() ? numbers_of(std::string_view(text).substr(comma + 1)) : std::nullopt;
+  if (!n || n->size() != count)
+    throw InputError("bad-stock", {"--stock " + text},
+                     fmt::format("'{}' is not followed by {} numbers", word, count),
+                     word == "tube" ? "--stock tube,60,30,40: outer and inner diameter, length, mm"
+                                    : "--stock cyl,60,40: diameter and length, mm");
+  const double length = n->back();
+  flags.stock_keys =
+      fmt::format("{} = {{ diameter_mm = {}, {}length_mm = {}, base_mm = [0, 0, {}] }}\n",
+                  word == "tube" ? "tube" : "cylinder", n->front(),
+                  count == 3 ? fmt::format("inner_diameter_mm = {}, ", (*n)[1]) : "", length, -length);
 }
 
 Vec3 parse_vector(const std::string& flag, const std::string& text) {

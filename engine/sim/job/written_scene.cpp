@@ -90,12 +90,24 @@ std::string commented_setup(const Job& job) {
   return text;
 }
 
-std::string commented_stock(const Job& job) {
+std::string raw_text(const StockSettings& stock, const fs::path& folder) {
+  if (stock.raw.kind == RawKind::kMesh) return "mesh = " + seen_from(folder, stock.raw.file) + "\n";
+  if (stock.raw.kind == RawKind::kTube) {
+    const stock::RawTube& tube = stock.raw.tube;
+    const std::string inner =
+        tube.inner_radius_mm > 0.0 ? fmt::format("inner_diameter_mm = {}, ", 2.0 * tube.inner_radius_mm) : "";
+    return fmt::format("{} = {{ diameter_mm = {}, {}length_mm = {}, base_mm = {}, axis = {} }}\n",
+                       stock.raw.key, 2.0 * tube.radius_mm, inner, tube.length_mm,
+                       commented_vector(tube.base_W), commented_vector(tube.axis_W));
+  }
+  return fmt::format("box_mm = [{}, {}]\n", commented_vector(stock.box_W.lower),
+                     commented_vector(stock.box_W.upper));
+}
+
+std::string commented_stock(const Job& job, const fs::path& folder) {
   const StockSettings& stock = job.scene.stock;
-  return "\n[stock]\n" + reason_of(job, "Stock") +
-         fmt::format("box_mm = [{}, {}]\n", commented_vector(stock.box_W.lower),
-                     commented_vector(stock.box_W.upper)) +
-         reason_of(job, "Voxel") + fmt::format("voxel_mm = {}\n", stock.voxel_mm);
+  return "\n[stock]\n" + reason_of(job, "Stock") + raw_text(stock, folder) + reason_of(job, "Voxel") +
+         fmt::format("voxel_mm = {}\n", stock.voxel_mm);
 }
 
 std::string design_text(const Job& job, const fs::path& folder) {
@@ -120,7 +132,7 @@ std::string pictures_text(const Job& job) {
 
 std::string written_scene(const Job& job, const fs::path& folder, const std::string& machine) {
   return head_text(job, folder, machine) + commented_tools(job, folder) + parameters_text(job) +
-         commented_setup(job) + commented_stock(job) + design_text(job, folder) + pictures_text(job);
+         commented_setup(job) + commented_stock(job, folder) + design_text(job, folder) + pictures_text(job);
 }
 
 std::string example_program() {

@@ -15,6 +15,7 @@ namespace {
 
 constexpr const char* kAlgorithmPart = "cut algorithm";
 constexpr const char* kBoxPart = "stock.box_mm";
+constexpr const char* kShapePart = "raw stock";
 constexpr const char* kVoxelPart = "stock.voxel_mm";
 constexpr const char* kCutterPart = "cutter";
 constexpr const char* kAbsent = "(absent)";
@@ -124,7 +125,8 @@ std::string value_of(const CutIdentity& identity, const std::string& name) {
 CutIdentity cut_identity(const Job& job, const CutSweeps& sweeps) {
   const Scene& scene = job.scene;
   return {{kAlgorithmPart, fmt::format("{}", kCutAlgorithm)},
-          {kBoxPart, box_text(scene.stock.box_W)},
+          scene.stock.shape ? IdentityPart{kShapePart, scene.stock.shape->text()}
+                            : IdentityPart{kBoxPart, box_text(scene.stock.box_W)},
           {kVoxelPart, fmt::format("{}", scene.stock.voxel_mm)},
           {"stock.sweep_tolerance_um", fmt::format("{:g}", um_from_mm(scene.stock.sweep_tolerance_mm))},
           {kCutterPart, tools_text(scene.tools)},
@@ -146,8 +148,8 @@ std::vector<IdentityDifference> differences(const CutIdentity& before, const Cut
 }
 
 bool needed_to_compare(const std::string& part_name) {
-  return part_name == kAlgorithmPart || part_name == kBoxPart || part_name == kVoxelPart ||
-         part_name == kCutterPart;
+  return part_name == kAlgorithmPart || part_name == kBoxPart || part_name == kShapePart ||
+         part_name == kVoxelPart || part_name == kCutterPart;
 }
 
 }  // namespace swarf::sim

@@ -39,7 +39,7 @@ class CutStage {
         solids_(tool_solids(job.scene)),
         identity_(cut_identity(job, sweeps_)),
         places_(sweeps_, *result.main.cycles),
-        earlier_(sweeps_, solids_, job.scene.stock.box_W, kDeepestExact * job.scene.stock.voxel_mm),
+        earlier_(sweeps_, solids_, job.scene.stock.body_W(), kDeepestExact * job.scene.stock.voxel_mm),
         clearance_(job.scene.tools, sweeps_, places_, earlier_, job.scene.stock.voxel_mm),
         bad_cuts_(job, *result.main.cycles, sweeps_, places_, earlier_) {
     outcome_.state.clearance = clearance_.result();
@@ -77,12 +77,12 @@ class CutStage {
 
   void make_stock() {
     const StockSettings& settings = job_.scene.stock;
-    result_.stock = std::make_unique<stock::Stock>(settings.box_W, settings.voxel_mm);
+    result_.stock = std::make_unique<stock::Stock>(settings.body_W(), settings.voxel_mm);
     full_mm3_ = result_.stock->volume_mm3();
     if (!options_.resume_file.empty()) {
       result_.stock.reset();
-      result_.stock =
-          std::make_unique<stock::Stock>(load_in_process(options_.resume_file, identity_, outcome_.state));
+      result_.stock = std::make_unique<stock::Stock>(
+          load_in_process(options_.resume_file, identity_, settings.body_W(), outcome_.state));
       at_ = outcome_.resumed_from = outcome_.state.sweeps;
       if (at_ > 0) {
         clearance_.resume(outcome_.state.clearance);
@@ -294,7 +294,7 @@ void leave_uncut(const Job& job, const CutOptions& options, Result& result) {
   CutOutcome& outcome = result.cut;
   if (options.resume_file.empty()) {
     const StockSettings& settings = job.scene.stock;
-    result.stock = std::make_unique<stock::Stock>(settings.box_W, settings.voxel_mm);
+    result.stock = std::make_unique<stock::Stock>(settings.body_W(), settings.voxel_mm);
     outcome.metadata = cut_metadata(job.scene.name, cut_identity(job, {}), {});
     return;
   }

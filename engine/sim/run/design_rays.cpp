@@ -17,7 +17,7 @@ std::vector<stock::SurfaceDexels> design_dexels(const Job& job) {
   const std::vector<stock::RayFieldPtr> fields = design_rays(job);
   std::vector<stock::SurfaceDexels> dexels;
   for (size_t i = 0; i < fields.size(); ++i) {
-    dexels.emplace_back(fields[i], job.scene.stock.box_W, stock::free_ranges(fields, i));
+    dexels.emplace_back(fields[i], job.scene.stock.body_W(), stock::free_ranges(fields, i));
   }
   return dexels;
 }

@@ -7,8 +7,8 @@
 
 namespace swarf::sim {
 
-EarlierCuts::EarlierCuts(const CutSweeps& sweeps, std::span<const stock::CutterSolid> solids, const Box& box,
-                         double farthest_mm)
+EarlierCuts::EarlierCuts(const CutSweeps& sweeps, std::span<const stock::CutterSolid> solids,
+                         const stock::RawShape& raw, double farthest_mm)
     : sweeps_(sweeps),
       solids_(solids),
       near_(
@@ -16,7 +16,7 @@ EarlierCuts::EarlierCuts(const CutSweeps& sweeps, std::span<const stock::CutterS
           [&sweeps, solids](size_t n) -> const stock::CutterSolid& {
             return solids[static_cast<size_t>(sweeps.tool(n))];
           }),
-      box_(box),
+      raw_(raw),
       farthest_mm_(farthest_mm) {}
 
 stock::ContactFinder::Material EarlierCuts::before(size_t sweep) const {
@@ -36,7 +36,10 @@ EarlierCuts::Surroundings EarlierCuts::surroundings(const Vec3& point_W, size_t 
 }
 
 double EarlierCuts::distance(const Vec3& point_W, const std::vector<Cut>& cuts) const {
-  double highest = -std::min((point_W - box_.lower).minCoeff(), (box_.upper - point_W).minCoeff());
+  const Box& box = raw_.box();
+  double highest = raw_.is_box()
+                       ? -std::min((point_W - box.lower).minCoeff(), (box.upper - point_W).minCoeff())
+                       : raw_.distance_mm(point_W);
   for (const Cut& cut : cuts) {
     if (!cut.capsule.may_reach(point_W, farthest_mm_)) continue;
     highest = std::max(highest, -stock::swept_contact(point_W, cut.map, *cut.solid).distance_mm);

@@ -15,7 +15,7 @@ namespace swarf::sim {
 class EarlierCuts {
  public:
   /// `sweeps` and `solids` (by tool) must outlive it. Depths below `farthest_mm` are not told apart.
-  EarlierCuts(const CutSweeps& sweeps, std::span<const stock::CutterSolid> solids, const Box& box,
+  EarlierCuts(const CutSweeps& sweeps, std::span<const stock::CutterSolid> solids, const stock::RawShape& raw,
               double farthest_mm);
   EarlierCuts(const EarlierCuts&) = delete;
   EarlierCuts& operator=(const EarlierCuts&) = delete;
@@ -41,7 +41,7 @@ class EarlierCuts {
   const CutSweeps& sweeps_;
   std::span<const stock::CutterSolid> solids_;  ///< by tool
   measure::NearSweeps near_;
-  Box box_;
+  stock::RawShape raw_;
   double farthest_mm_;
 };
 

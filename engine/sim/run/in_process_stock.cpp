@@ -86,8 +86,9 @@ stock::StockMetadata cut_metadata(const std::string& scene_name, const CutIdenti
   return metadata;
 }
 
-stock::Stock load_unchecked(const std::string& path, stock::StockMetadata& metadata, CutState& state) {
-  stock::Stock stock = stock::Stock::load(path, &metadata);
+stock::Stock load_unchecked(const std::string& path, stock::StockMetadata& metadata, CutState& state,
+                            const stock::RawShape* raw) {
+  stock::Stock stock = stock::Stock::load(path, &metadata, raw);
   if (!parse_state(metadata, state)) {
     throw InputError("stock-not-resumable", {path}, "the stock file does not say how far it was cut",
                      "name a stock that this version of swarf run has saved");
@@ -95,9 +96,10 @@ stock::Stock load_unchecked(const std::string& path, stock::StockMetadata& metad
   return stock;
 }
 
-stock::Stock load_in_process(const std::string& path, const CutIdentity& identity, CutState& state) {
+stock::Stock load_in_process(const std::string& path, const CutIdentity& identity, const stock::RawShape& raw,
+                             CutState& state) {
   stock::StockMetadata metadata;
-  stock::Stock stock = load_unchecked(path, metadata, state);
+  stock::Stock stock = load_unchecked(path, metadata, state, &raw);
   Diagnostics diagnostics;
   for (const IdentityDifference& part : differences(identity_in(metadata), identity)) {
     if (state.sweeps == 0 && part.name == kMotionPart) continue;

@@ -36,11 +36,13 @@ stock::StockMetadata cut_metadata(const std::string& scene_name, const CutIdenti
 /// Reads a stock and checks that it was cut by this very job; one that is not cut yet may be cut by any
 /// motion of it, for the run may have been stopped before the whole motion was known. Throws InputError: what
 /// Stock::load throws, "stock-not-resumable" for a stock without these texts, "resume-scene-changed" once for
-/// each part of the identity that differs.
-stock::Stock load_in_process(const std::string& path, const CutIdentity& identity, CutState& state);
+/// each part of the identity that differs. `raw`: the job's raw stock, which the identity names.
+stock::Stock load_in_process(const std::string& path, const CutIdentity& identity, const stock::RawShape& raw,
+                             CutState& state);
 
 /// Reads a stock and its texts as they are, to be saved again. Throws as Stock::load and
 /// "stock-not-resumable".
-stock::Stock load_unchecked(const std::string& path, stock::StockMetadata& metadata, CutState& state);
+stock::Stock load_unchecked(const std::string& path, stock::StockMetadata& metadata, CutState& state,
+                            const stock::RawShape* raw = nullptr);
 
 }  // namespace swarf::sim

@@ -8,7 +8,6 @@
 
 #include "cutter/profile.h"
 #include "cutter/tool_walls.h"
-#include "machine/plain_solids.h"
 
 namespace swarf::sim {
 namespace {
@@ -50,9 +49,8 @@ std::vector<Body> bodies_of(const Job& job) {
   for (Body& body : bodies)
     if (job.machine.links[static_cast<size_t>(body.link)].fixture) body.kind = BodyKind::kFixture;
   add_tools(job, bodies);
-  TriMesh stock;
-  machine::add_box(stock, job.scene.stock.box_W);
-  bodies.push_back(collision::work_body(job.machine, kStock, BodyKind::kStock, stock));
+  bodies.push_back(
+      collision::work_body(job.machine, kStock, BodyKind::kStock, job.scene.stock.body_W().mesh_around()));
   return bodies;
 }
 

@@ -65,7 +65,7 @@ SurfaceCounts preview(const Job& job, const motion::Cycles& cycles, bool meshed)
   const double voxel = std::max(settings.voxel_mm, std::min(kCoarser * settings.voxel_mm, thinnest / 3.0));
   const CutSweeps sweeps = cut_sweeps(job, cycles, voxel / 8.0);
   const std::vector<stock::Sweep> some = thinned(sweeps);
-  stock::Stock stock(settings.box_W, voxel);
+  stock::Stock stock(settings.body_W(), voxel);
   const std::vector<stock::CutterSolid> solids = tool_solids(job.scene);
   double most = static_cast<double>(stock.leaves());
   const size_t piece = some.size() / kPieces + 1;
@@ -156,7 +156,8 @@ MemoryPrediction predict_memory(const Job& job, const MeasuredPath& path, const 
   const double stretches = thread_count() > 1 ? 2.0 : 1.0;
   const double planned = std::min(kCellsOfBlock * static_cast<double>(path.path.elements.size()),
                                   stretches * static_cast<double>(motion::LookAheadReach{}.planned));
-  const double held = kBase + rays + own_sweeps + (planned_passes ? 0.0 : planned * kPlannedCell) +
+  const double held = kBase + static_cast<double>(settings.body_W().memory_bytes()) + rays + own_sweeps +
+                      (planned_passes ? 0.0 : planned * kPlannedCell) +
                       static_cast<double>(path.cycles->kept().size() * sizeof(motion::Cycle)) +
                       static_cast<double>(path.path.elements.bytes() + path.cycles->motions().bytes());
   // The stages that hold most; each ends before the next begins.

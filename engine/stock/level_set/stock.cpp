@@ -25,6 +25,10 @@ Stock::Stock(const Box& box_W, double voxel_mm) {
   SWARF_CHECK(voxel_mm > 0.0 && box_W.size().minCoeff() > 0.0, "a stock needs a voxel size and a volume");
   impl_ = std::make_unique<Impl>(Impl{make_box(box_W, voxel_mm)});
 }
+Stock::Stock(const RawShape& raw, double voxel_mm) {
+  SWARF_CHECK(voxel_mm > 0.0 && raw.box().size().minCoeff() > 0.0, "a stock needs a voxel size and a volume");
+  impl_ = std::make_unique<Impl>(Impl{make_raw(raw, voxel_mm)});
+}
 Stock::Stock(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Stock::~Stock() = default;
 Stock::Stock(Stock&&) noexcept = default;
@@ -39,6 +43,10 @@ double Stock::voxel_mm() const {
 }
 const Box& Stock::box() const {
   return impl_->level_set.box;
+}
+const RawShape& Stock::raw() const {
+  SWARF_CHECK(impl_->level_set.raw.has_value(), "the raw stock of a file without its shape is not known");
+  return *impl_->level_set.raw;
 }
 double Stock::volume_mm3() const {
   return volume(impl_->level_set);
@@ -77,9 +85,10 @@ Stock Stock::clone() const {
 void Stock::save(const std::string& path, const StockMetadata& metadata) const {
   write_level_set(impl_->level_set, path, metadata);
 }
-Stock Stock::load(const std::string& path, StockMetadata* metadata) {
+Stock Stock::load(const std::string& path, StockMetadata* metadata, const RawShape* raw) {
   StockMetadata found;
   Stock stock(std::make_unique<Impl>(Impl{read_level_set(path, found)}));
+  if (raw != nullptr) stock.impl_->level_set.raw = *raw;
   if (metadata != nullptr) *metadata = std::move(found);
   return stock;
 }
@@ -102,16 +111,18 @@ size_t Stock::memory_for(const Box& box_W, double voxel_mm, double leaves) {
 }
 
 size_t Stock::memory_estimate(const Box& box_W, double voxel_mm) {
+  return memory_estimate(RawShape::of_box(box_W), voxel_mm);
+}
+
+size_t Stock::memory_estimate(const RawShape& raw, double voxel_mm) {
   // A surface element is met by leaves of (8 voxel)^2 face area; the band is 6 voxels thick, so a leaf
   // position along the surface's normal is touched with probability (8 + 6) / 8.
   constexpr double kLayers = (kLeafSide + 2.0 * kBandVoxels) / kLeafSide;
-  const Vec3 d = box_W.size();
-  const double area = 2.0 * (d.x() * d.y() + d.y() * d.z() + d.z() * d.x());
   const double leaf_mm = kLeafSide * voxel_mm;
   // Edges and corners are met by more leaves than their share of the faces, and the tree has inner nodes.
   constexpr double kRest = 1.3;
-  return static_cast<size_t>(
-      kRest * static_cast<double>(memory_for(box_W, voxel_mm, kLayers * area / (leaf_mm * leaf_mm))));
+  const double leaves = kLayers * raw.area_mm2() / (leaf_mm * leaf_mm);
+  return static_cast<size_t>(kRest * static_cast<double>(memory_for(raw.box(), voxel_mm, leaves)));
 }
 
 }  // namespace swarf::stock

@@ -29,6 +29,7 @@ constexpr char kFormat[] = "1";
 constexpr char kBoxLowerKey[] = "swarf_box_lower_mm";
 constexpr char kBoxUpperKey[] = "swarf_box_upper_mm";
 constexpr char kRoundingKey[] = "swarf_rounding_mm";
+constexpr char kRawKey[] = "swarf_raw_stock";  // of other shapes than a box
 
 [[noreturn]] void refuse_stock(const std::string& code, const std::string& path, const std::string& text,
                                const std::string& fix) {
@@ -144,6 +145,8 @@ void add_metadata(openvdb::FloatGrid& grid, const LevelSet& set, const StockMeta
   grid.insertMeta(kBoxLowerKey, vector(set.box.lower));
   grid.insertMeta(kBoxUpperKey, vector(set.box.upper));
   grid.insertMeta(kRoundingKey, openvdb::DoubleMetadata(set.rounding_mm));
+  if (!set.raw || !set.raw->is_box())
+    grid.insertMeta(kRawKey, openvdb::StringMetadata(set.raw ? set.raw->text() : "of a file"));
 }
 
 /// OpenVDB names each file it writes by a random UUID. Ours is made from the content, so that equal stocks
@@ -214,6 +217,7 @@ LevelSet read_level_set(const std::string& path, StockMetadata& metadata) {
   }
   set.voxel = set.grid->voxelSize().x();
   set.box = {metadata_vector(*set.grid, kBoxLowerKey), metadata_vector(*set.grid, kBoxUpperKey)};
+  if (!set.grid->getMetadata<openvdb::StringMetadata>(kRawKey)) set.raw = RawShape::of_box(set.box);
   set.rounding_mm = rounding_read(set);
   attach_map(set);
   return set;
@@ -222,6 +226,7 @@ LevelSet read_level_set(const std::string& path, StockMetadata& metadata) {
 LevelSet deep_copy(const LevelSet& original) {
   LevelSet set;
   set.box = original.box;
+  set.raw = original.raw;
   set.voxel = original.voxel;
   set.grid = original.grid->deepCopy();
   set.statistics = original.statistics;

@@ -134,16 +134,7 @@ LeafState settle_leaf(LeafNode& leaf, float band) {
                                    : LeafState::kLeaf;
 }
 
-LevelSet make_box(const Box& box, double voxel) {
-  LevelSet set;
-  set.box = box;
-  set.voxel = voxel;
-  set.grid = empty_grid(voxel);
-  set.map = empty_map(box, voxel);
-  std::vector<std::unique_ptr<LeafNode>> made(set.map.size());
-  parallel_chunks(set.map.size(), kLeavesPerTask, [&](size_t begin, size_t end) {
-    for (size_t n = begin; n < end; ++n) set.map.states[n] = box_leaf(set, n, made[n]);
-  });
+void take_leaves(LevelSet& set, std::vector<std::unique_ptr<LeafNode>>& made) {
   for (size_t n = 0; n < made.size(); ++n) {
     if (!made[n]) continue;
     set.map.leaves[n] = made[n].get();
@@ -152,6 +143,20 @@ LevelSet make_box(const Box& box, double voxel) {
   // Leaves have their signs already; the tiles between them get theirs here.
   constexpr openvdb::Index kTilesOnly = 1;
   openvdb::tools::signedFloodFill(set.grid->tree(), true, 1, kTilesOnly);
+}
+
+LevelSet make_box(const Box& box, double voxel) {
+  LevelSet set;
+  set.box = box;
+  set.raw = RawShape::of_box(box);
+  set.voxel = voxel;
+  set.grid = empty_grid(voxel);
+  set.map = empty_map(box, voxel);
+  std::vector<std::unique_ptr<LeafNode>> made(set.map.size());
+  parallel_chunks(set.map.size(), kLeavesPerTask, [&](size_t begin, size_t end) {
+    for (size_t n = begin; n < end; ++n) set.map.states[n] = box_leaf(set, n, made[n]);
+  });
+  take_leaves(set, made);
   return set;
 }
 

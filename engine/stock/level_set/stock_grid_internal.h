@@ -9,6 +9,7 @@
 #include <openvdb/openvdb.h>
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "base/frames.h"
@@ -62,8 +63,9 @@ struct LeafMap {
 };
 
 struct LevelSet {
-  Box box;
+  Box box;  ///< of the raw stock
   double voxel = 0.0;
+  std::optional<RawShape> raw;  ///< none: read from a file without its shape
   openvdb::FloatGrid::Ptr grid;
   LeafMap map;
   CutStatistics statistics;
@@ -82,6 +84,11 @@ struct LevelSet {
 LeafMap empty_map(const Box& box, double voxel);
 openvdb::FloatGrid::Ptr empty_grid(double voxel);
 LevelSet make_box(const Box& box, double voxel);
+/// Any raw stock (raw_grid.cpp).
+LevelSet make_raw(const RawShape& raw, double voxel);
+/// Takes over the leaves of a fresh stock whose map knows its states, and gives the rest of the tree its
+/// signs.
+void take_leaves(LevelSet& set, std::vector<std::unique_ptr<LeafNode>>& made);
 
 /// What a leaf's values amount to; sets the leaf's mask of active voxels (those inside the band) when it
 /// stays.

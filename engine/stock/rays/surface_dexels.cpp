@@ -51,6 +51,31 @@ SurfaceDexels::SurfaceDexels(RayFieldPtr field, const Box& stock_box, std::span<
   }
 }
 
+SurfaceDexels::SurfaceDexels(RayFieldPtr field, const RawShape& raw, std::span<const double> ranges_mm)
+    : SurfaceDexels(std::move(field)) {
+  if (raw.is_box()) {
+    *this = SurfaceDexels(field_, raw.box(), ranges_mm);
+    return;
+  }
+  SWARF_CHECK(ranges_mm.empty() || ranges_mm.size() == heights_.size(), "one range per ray");
+  parallel_chunks(field_->tiles.size(), kTilesPerTask, [&](size_t begin, size_t end) {
+    for (size_t tile = begin; tile < end; ++tile) fill_tile(tile, raw, ranges_mm);
+  });
+}
+
+void SurfaceDexels::fill_tile(size_t tile, const RawShape& raw, std::span<const double> ranges_mm) {
+  const RayTile& rays = field_->tiles[tile];
+  for (uint32_t n = 0; n < rays.count; ++n) {
+    const size_t ray = field_->order[rays.begin + n];
+    const double range = ranges_mm.empty() ? std::numeric_limits<double>::infinity() : ranges_mm[ray];
+    const RawColumn column = raw_column(raw, field_->points[ray], field_->normals[ray]);
+    heights_[ray] = std::min(column.height_mm, range);
+    for (const RawInterval& one : column.above) {
+      if (one.low < range) above_[tile].push_back({n, kUncut, kUncut, one.low, std::min(one.high, range)});
+    }
+  }
+}
+
 SurfaceDexels::SurfaceDexels(const surface::SurfacePtr& surface, double pitch_mm, const Box& stock_box)
     : SurfaceDexels(rays_on_surface(surface, pitch_mm), stock_box, {}) {
   const std::vector<double> ranges = free_ranges({&field_, 1}, 0);

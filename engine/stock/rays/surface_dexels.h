@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/frames.h"
+#include "stock/raw/raw_shape.h"
 #include "stock/rays/ray_field.h"
 #include "stock/rays/ray_material.h"
 #include "stock/sweep/sweep.h"
@@ -29,6 +30,9 @@ class SurfaceDexels {
   /// the design point lies outside it; and never beyond the ray's entry in `ranges_mm` (free_ranges.h),
   /// unless that is empty.
   SurfaceDexels(RayFieldPtr field, const Box& stock_box, std::span<const double> ranges_mm);
+  /// The same for any raw stock: what stands on the design is the material that the ray begins in, and what
+  /// it meets further up are intervals above gaps, all up to the ray's range.
+  SurfaceDexels(RayFieldPtr field, const RawShape& raw, std::span<const double> ranges_mm);
   /// A surface that stands alone: rays_on_surface, with its own free_ranges.
   SurfaceDexels(const surface::SurfacePtr& surface, double pitch_mm, const Box& stock_box);
 
@@ -69,6 +73,7 @@ class SurfaceDexels {
  private:
   /// Rays whose material is still to be set.
   explicit SurfaceDexels(RayFieldPtr field);
+  void fill_tile(size_t tile, const RawShape& raw, std::span<const double> ranges_mm);
 
   RayFieldPtr field_;
   std::vector<double> heights_;

@@ -7,9 +7,9 @@
 #include <numbers>
 
 #include "base/units.h"
-#include "machine/plain_solids.h"
 #include "mesh/mesh_check.h"
 #include "mesh/mesh_ops.h"
+#include "mesh/plain_solids.h"
 
 namespace swarf::machine {
 namespace {
@@ -32,7 +32,7 @@ TriMesh made(const Fixture& fixture, const HeldWork& held = work()) {
 
 /// As seen from the work.
 Box bounds_W(const TriMesh& mesh, const HeldWork& held = work()) {
-  return mesh::bounds(moved(mesh, held.X_MW.inverse()));
+  return mesh::bounds(mesh::moved(mesh, held.X_MW.inverse()));
 }
 
 void expect_box(const Box& box, const Vec3& lower, const Vec3& upper) {
@@ -82,7 +82,7 @@ TEST(Fixture, AChuckClosesOnARoundStock) {
 
 TEST(Fixture, SolidsStandInTheFrameThatIsSaid) {
   Fixture fixture{"stop", FixtureSolid{}};
-  add_box(std::get<FixtureSolid>(fixture.shape).mesh, {{0.0, 0.0, 0.0}, {10.0, 20.0, 30.0}});
+  mesh::add_box(std::get<FixtureSolid>(fixture.shape).mesh, {{0.0, 0.0, 0.0}, {10.0, 20.0, 30.0}});
   fixture.position_mm = Vec3(1.0, 2.0, 3.0);
   fixture.rotation_rad = Vec3(0.0, 0.0, rad_from_deg(90.0));
   expect_box(mesh::bounds(made(fixture)), {-16.0, -2.0, 103.0}, {4.0, 8.0, 133.0});
