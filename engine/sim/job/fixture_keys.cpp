@@ -21,14 +21,14 @@ constexpr std::array<std::pair<const char*, double>, 3> kMeshUnits{
 constexpr double kSmallestMm = 2.0,
                  kLargestMm = 5000.0;  // of a fixture: beyond it the unit is likely another
 
-Vec3 read_vector(ConfigTable& table, const char* key, const Vec3& fallback) {
+Vec3 read_triple(ConfigTable& table, const char* key, const Vec3& fallback) {
   const std::vector<double> read =
       table.numbers(key, 3, std::vector<double>{fallback.x(), fallback.y(), fallback.z()});
   return read.size() == 3 ? Vec3(read[0], read[1], read[2]) : fallback;
 }
 
 /// Without `kind` the solid's own key tells; keys that are not asked for are unknown.
-std::string kind_of(ConfigTable& table) {
+std::string fixture_kind(ConfigTable& table) {
   if (!table.has("kind")) {
     if (table.has("mesh")) return "mesh";
     if (table.has("box_mm")) return "box";
@@ -79,7 +79,7 @@ machine::Chuck read_chuck(ConfigTable& table) {
 
 machine::Tombstone read_tombstone(ConfigTable& table) {
   machine::Tombstone shape;
-  shape.size_mm = read_vector(table, "size_mm", shape.size_mm);
+  shape.size_mm = read_triple(table, "size_mm", shape.size_mm);
   shape.foot_mm = table.number("foot_mm", {1.0, 500.0}, shape.foot_mm);
   if (shape.size_mm.minCoeff() <= 0.0 || shape.size_mm.z() <= shape.foot_mm)
     table.error("bad-fixture", "size_mm", "a tombstone has three lengths above 0 and is higher than its foot",
@@ -90,15 +90,15 @@ machine::Tombstone read_tombstone(ConfigTable& table) {
 /// Where a shape stands that does not follow the stock.
 void read_place(ConfigTable& table, machine::Fixture& fixture) {
   fixture.on_part = table.choice("on", {"table", "part"}, "table") == "part";
-  fixture.position_mm = read_vector(table, "position_mm", Vec3::Zero());
-  const Vec3 turns = read_vector(table, "rotation_deg", Vec3::Zero());
+  fixture.position_mm = read_triple(table, "position_mm", Vec3::Zero());
+  const Vec3 turns = read_triple(table, "rotation_deg", Vec3::Zero());
   for (int i = 0; i < 3; ++i) fixture.rotation_rad[i] = rad_from_deg(turns[i]);
 }
 
 machine::Fixture read_fixture(ConfigTable table) {
   machine::Fixture fixture;
   fixture.where = table.where();
-  const std::string kind = kind_of(table);
+  const std::string kind = fixture_kind(table);
   fixture.name = table.text("name", kind);
   if (kind == "vice") {
     fixture.shape = read_vice(table);
@@ -113,7 +113,7 @@ machine::Fixture read_fixture(ConfigTable table) {
       fixture.shape = read_solid(table, kind == "mesh");
     read_place(table, fixture);
   }
-  const Vec3 colour = read_vector(table, "colour", Vec3(0.35, 0.37, 0.40));
+  const Vec3 colour = read_triple(table, "colour", Vec3(0.35, 0.37, 0.40));
   if (colour.minCoeff() < 0.0 || colour.maxCoeff() > 1.0)
     table.error("out-of-range", "colour", "each of red, green and blue (linear) must be from 0 to 1",
                 "colour = [0.35, 0.37, 0.4]");

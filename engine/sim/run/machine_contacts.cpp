@@ -32,7 +32,7 @@ std::map<std::string, std::vector<ToolFrustum>> parts_of(const cutter::Cutter& t
   return parts;
 }
 
-void add_tools(const Job& job, std::vector<Body>& bodies) {
+void add_tool_bodies(const Job& job, std::vector<Body>& bodies) {
   const std::vector<kinematics::MachineModel> machines = machines_by_tool(job);
   for (size_t i = 0; i < machines.size(); ++i) {
     const cutter::Cutter& tool = job.scene.tools[i];
@@ -48,7 +48,7 @@ std::vector<Body> bodies_of(const Job& job) {
   std::vector<Body> bodies = collision::link_bodies(job.machine);
   for (Body& body : bodies)
     if (job.machine.links[static_cast<size_t>(body.link)].fixture) body.kind = BodyKind::kFixture;
-  add_tools(job, bodies);
+  add_tool_bodies(job, bodies);
   bodies.push_back(
       collision::work_body(job.machine, kStock, BodyKind::kStock, job.scene.stock.body_W().mesh_around()));
   return bodies;
