@@ -28,6 +28,10 @@ const char* const kCross =
     "G21 G17 G90 G94 G54\nT1 M6\nS8000 M3\nG0 X-30 Y0\nZ2\nG1 Z-5 F2000\nX30\nG0 Z10\nX0 Y-30\nG1 Z-5\nY30\n"
     "G0 Z20\nM5\nM2\n";
 
+/// Its first slot alone.
+const char* const kSlot =
+    "G21 G17 G90 G94 G54\nT1 M6\nS8000 M3\nG0 X-30 Y0\nZ2\nG1 Z-5 F2000\nX30\nG0 Z20\nM5\nM2\n";
+
 /// A folder with a scene whose [stock] holds `stock`, and cross.ngc.
 fs::path scene_with(const std::string& name, const std::string& stock) {
   const fs::path folder = swarf::test::fresh_folder("raw_" + name);
@@ -86,19 +90,21 @@ TEST(RawStockScene, CylinderAndTubeHaveTheirVolumesInClosedForm) {
 
 TEST(RawStockScene, TheSecondClampingBeginsWithWhatTheFirstHasLeft) {
   const fs::path first = scene_with("first", "box_mm = [[-20, -20, -15], [20, 20, 0]]");
+  write_text(first / "cross.ngc", kSlot);
   ASSERT_EQ(run_in(first).exit_code, 0);
   const double left = number(metrics_of(first), "stock.volume_left_mm3");
   // Turned over about X, its lower face becomes the upper one.
   const fs::path second = scene_with(
       "second", "from_run = \"" + (first / "out").string() +
                     "\"\nfrom_run_pose = { position_mm = [0, 0, -15], rotation_deg = [180, 0, 0] }");
+  write_text(second / "cross.ngc", kSlot);
   const auto run = run_in(second);
   ASSERT_EQ(run.exit_code, 0) << run.output;
   const json metrics = metrics_of(second);
   EXPECT_NEAR(number(metrics, "stock.raw.volume_mm3"), left, 1e-3 * left);
-  // The same cross once more, from the other side.
-  const double cross = 5.0 * (2.0 * 40.0 * 6.0 - 36.0);
-  EXPECT_NEAR(number(metrics, "stock.volume_removed_mm3"), cross, 3e-3 * cross);
+  // The same slot once more, from the other side.
+  const double slot = 5.0 * 40.0 * 6.0;
+  EXPECT_NEAR(number(metrics, "stock.volume_removed_mm3"), slot, 3e-3 * slot);
   EXPECT_NE(at_path(metrics, "stock.raw.shape")
                 .get<std::string>()
                 .find(at_path(metrics_of(first), "stock.hash").get<std::string>()),
@@ -118,12 +124,12 @@ TEST(RawStockScene, AResumedAndAReplayedRunEndAsThePlainOne) {
   EXPECT_EQ(replayed.exit_code, 0) << replayed.output;
   const auto resumed =
       run_swarf("run " + (folder / "scene.toml").string() + " --no-render -q -o " +
-                (folder / "again").string() + " --resume " + (out / "stock_after_line_7.vdb").string());
+                (folder / "again").string() + " --from " + (out / "stock_after_line_7.vdb").string());
   EXPECT_EQ(resumed.exit_code, 0) << resumed.output;
   const json again = json::parse(std::ifstream(folder / "again/metrics.json"));
   EXPECT_EQ(at_path(plain, "stock.hash"), at_path(again, "stock.hash"));
   const auto other = run_swarf("run " + (folder / "scene.toml").string() + " --no-render -q -o " +
-                               (folder / "other").string() + " --set stock.cylinder.length_mm=16 --resume " +
+                               (folder / "other").string() + " --set stock.cylinder.length_mm=16 --from " +
                                (out / "stock_after_line_7.vdb").string());
   EXPECT_EQ(other.exit_code, 2);
   EXPECT_NE(other.output.find("another raw stock"), std::string::npos) << other.output;

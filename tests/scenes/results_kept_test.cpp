@@ -49,7 +49,7 @@ class ResultsKept : public testing::Test {
            "\"\nnc = \"slot.ngc\"\ndialect = \"linuxcnc\"\n"
            "[cutter]\nnumber = 1\ndiameter_mm = 4\nflute_length_mm = 10\nlength_mm = 40\n"
            "[stock]\nbox_mm = [[-8, -4, -3], [8, 4, 0]]\nvoxel_mm = 0.5\n"
-           "[design]\nkind = \"none\"\n"
+           "[design]\nkind = \"none\"\n[accept]\nmachine_parts = 100\n"  // its links are mere tetrahedra
            "[movie]\nseconds = 0\n[stills]\nsize = [64, 64]\nsamples = 1\n";
   }
 

@@ -31,24 +31,18 @@ TriMesh moved(TriMesh mesh, double unit_mm, const Pose& X_WF) {
   return mesh;
 }
 
-/// Closed, turned outward, its bodies apart. `crosses`: where it runs through itself.
-bool is_sound(const TriMesh& mesh, const std::string& file, Severity crosses, Diagnostics& diagnostics) {
+/// Closed, turned outward, its bodies apart. `remedy`: of one that runs through itself.
+bool is_sound(const TriMesh& mesh, const std::string& file, const char* remedy, Diagnostics& diagnostics) {
   mesh::check_design_mesh(mesh, file, nullptr, diagnostics, kMeshName);
   if (diagnostics.has_errors()) return false;
   const mesh::Crossings found = mesh::find_crossings(mesh::SignedDistance(mesh));
-  if (found.pairs > 0) {
-    const std::string text = fmt::format(
-        "the {} crosses itself: {} pairs of facets run through or over each other, the first at "
-        "({:.3f}, {:.3f}, {:.3f}) mm",
-        kMeshName, found.pairs, found.place.x(), found.place.y(), found.place.z());
-    if (crosses == Severity::kError)
-      diagnostics.error("mesh-self-crossing", {file}, text,
-                        "unite the bodies in the CAD or repair program and export again: what lies inside is "
-                        "not clear");
-    else
-      diagnostics.warning("mesh-self-crossing", {file}, text,
-                          "within a voxel of the earlier run the material there is not sure");
-  }
+  if (found.pairs > 0)
+    diagnostics.error(
+        "mesh-self-crossing", {file},
+        fmt::format("the {} crosses itself: {} pairs of facets run through or over each other, the first at "
+                    "({:.3f}, {:.3f}, {:.3f}) mm: what lies inside is not clear",
+                    kMeshName, found.pairs, found.place.x(), found.place.y(), found.place.z()),
+        remedy);
   if (!diagnostics.has_errors()) mesh::check_bodies(mesh, file, diagnostics, kMeshName);
   return !diagnostics.has_errors();
 }
@@ -70,7 +64,9 @@ void suspect_unit(const RawSettings& raw, const Box& box, double tool_mm, Diagno
 std::optional<stock::RawShape> load_raw_mesh(const RawSettings& raw, double tool_mm,
                                              Diagnostics& diagnostics) {
   const TriMesh mesh = moved(mesh::load_mesh(raw.file), raw.unit_mm, raw.X_WF);
-  if (!is_sound(mesh, raw.file, Severity::kError, diagnostics)) return {};
+  if (!is_sound(mesh, raw.file, "unite the bodies in the CAD or repair program and export again",
+                diagnostics))
+    return {};
   suspect_unit(raw, mesh::bounds(mesh), tool_mm, diagnostics);
   return stock::RawShape::of_mesh(mesh, fs::path(raw.file).filename().string());
 }
@@ -84,7 +80,10 @@ std::optional<stock::RawShape> load_run(const RawSettings& raw, Diagnostics& dia
                       "name the run that made the part");
     return {};
   }
-  if (!is_sound(mesh, raw.file, Severity::kWarning, diagnostics)) return {};
+  if (!is_sound(mesh, raw.file,
+                "run the earlier clamping with another stock.voxel_mm: its surface is drawn anew",
+                diagnostics))
+    return {};
   return stock::RawShape::of_mesh(
       mesh, fmt::format("{} {:016x}", fs::path(raw.file).filename().string(), before.hash()));
 }

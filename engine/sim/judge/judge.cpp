@@ -207,7 +207,8 @@ Check machine_check(const Job& job, const Result& result) {
   const MachineContacts& contacts = *result.main.contacts;
   Check check = counted(name, subject, contacts.contacts(false), job.scene.accept.machine_parts);
   const uint64_t with_stock = contacts.contacts(true);
-  if (with_stock > 0 && check.outcome == Outcome::kHolds) {
+  const uint64_t allowed = static_cast<uint64_t>(job.scene.accept.machine_parts);
+  if (contacts.contacts(false) + with_stock > allowed && check.outcome == Outcome::kHolds) {
     check.outcome = job.scene.stock.auto_box ? Outcome::kNotJudged : Outcome::kNotProven;
     check.reason = fmt::format(
         "{} contacts with the {} as it is before the first cut: what is left of it then is not "
