@@ -3,6 +3,7 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <atomic>
@@ -74,6 +75,10 @@ void parallel_chunks(size_t n, size_t chunk, const std::function<void(size_t, si
     order.chunk_ends();
   });
   order.returned();
+}
+
+void isolated(const std::function<void()>& work) {
+  tbb::this_task_arena::isolate(work);
 }
 
 }  // namespace swarf

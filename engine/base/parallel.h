@@ -14,4 +14,8 @@ int thread_count();
 /// Chunk borders depend on n and chunk only, never on the number of threads.
 void parallel_chunks(size_t n, size_t chunk, const std::function<void(size_t begin, size_t end)>& body);
 
+/// Runs the work on this thread. While it waits for parallel parts of it, the thread takes up nothing else:
+/// for what is made once, behind a lock that such other work might wait for.
+void isolated(const std::function<void()>& work);
+
 }  // namespace swarf

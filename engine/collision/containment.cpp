@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 
+#include "base/parallel.h"
 #include "base/units.h"
 
 namespace swarf::collision {
@@ -66,11 +68,22 @@ bool one_holds_other(const Encounter& pair, const AxisValues& q) {
          holds_shell(*pair.b, *pair.a, pair.a_from_b.pose(q));
 }
 
-BodyDepth::BodyDepth(const Body& body) : body_(&body) {
+struct BodyDepth::Surface {
+  std::once_flag once;
+  std::unique_ptr<mesh::SignedDistance> distance;  ///< null: an open mesh, or none
+};
+
+namespace {
+
+std::unique_ptr<mesh::SignedDistance> surface_of(const Body& body) {
   const auto has_area = [](const Triangle& t) { return (t[1] - t[0]).cross(t[2] - t[0]).norm() > 0.0; };
-  if (!body.closed || std::none_of(body.triangles.begin(), body.triangles.end(), has_area)) return;
-  surface_ = std::make_unique<mesh::SignedDistance>(mesh_of(body.triangles));
+  if (!body.closed || std::none_of(body.triangles.begin(), body.triangles.end(), has_area)) return nullptr;
+  return std::make_unique<mesh::SignedDistance>(mesh_of(body.triangles));
 }
+
+}  // namespace
+
+BodyDepth::BodyDepth(const Body& body) : body_(&body), surface_(std::make_shared<Surface>()) {}
 
 double BodyDepth::depth(const Vec3& point) const {
   if (body_->nodes.empty()) return 0.0;
@@ -78,7 +91,9 @@ double BodyDepth::depth(const Vec3& point) const {
   if (((point - root.centre).cwiseAbs() - root.half).maxCoeff() > 0.0) return 0.0;
   double depth = 0.0;
   for (const RevolvedSolid& solid : body_->solids) depth = std::max(depth, depth_in_solid(solid, point));
-  if (surface_ != nullptr) depth = std::max(depth, -surface_->at(point).distance_mm);
+  // Isolated: while its tree is built in parallel, this thread takes up no other pair that would wait for it.
+  std::call_once(surface_->once, [&] { isolated([&] { surface_->distance = surface_of(*body_); }); });
+  if (surface_->distance != nullptr) depth = std::max(depth, -surface_->distance->at(point).distance_mm);
   return depth;
 }
 

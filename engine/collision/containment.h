@@ -23,7 +23,9 @@ class BodyDepth {
 
  private:
   const Body* body_;
-  std::unique_ptr<mesh::SignedDistance> surface_;  ///< null: an open mesh, or none
+  /// Made when it is first asked for: most bodies never touch another, and it takes most of their memory.
+  struct Surface;
+  std::shared_ptr<Surface> surface_;
 };
 
 struct Depth {

@@ -36,6 +36,7 @@ double gap(const Job& job, const Body& a, const Body& b) {
 }
 
 double overlap(const Job& job, const Body& a, const Body& b) {
+  if (gap(job, a, b) > 0.0) return 0.0;
   const collision::Encounter pair = collision::encounter(job.machine, a, b);
   const collision::BodyDepth in_a(a), in_b(b);
   return collision::overlap_depth(pair, in_a, in_b, kinematics::AxisValues::Zero()).depth_mm;
