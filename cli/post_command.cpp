@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -82,7 +83,7 @@ post::PostOptions options_of(const PostCommand& given, Diagnostics& told) {
 
 /// "2 min 05 s".
 std::string spoken_time(double seconds) {
-  const auto whole = static_cast<long>(seconds + 0.5);
+  const long whole = std::lround(seconds);
   return whole < 60 ? fmt::format("{:.1f} s", seconds)
                     : fmt::format("{} min {:02} s", whole / 60, whole % 60);
 }

@@ -86,7 +86,7 @@ std::optional<Vec3> place_between(const RawBall& ball, const std::vector<stock::
                                   const Vec3& guess, double side, double& margin) {
   Vec3 mean = Vec3::Zero();
   for (const stock::RawFace& face : faces) mean += face.normal;
-  for (Vec3 way : {mean, guess}) {
+  for (const Vec3& way : {mean, guess}) {
     if (!(way.norm() > 0.0)) continue;
     const Vec3 place = ball.centre + side * 0.5 * ball.radius * way.normalized();
     margin = kNever;
