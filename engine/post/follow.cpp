@@ -46,15 +46,6 @@ struct From {
   AxisValues q;
 };
 
-double turn_of(const kinematics::MachineModel& machine, const AxisValues& from, const AxisValues& to) {
-  double sum = 0.0;
-  for (size_t i = 0; i < machine.axes.size(); ++i) {
-    const auto row = static_cast<long>(i);
-    if (machine.axes[i].kind == AxisKind::kRotary) sum += std::abs(to[row] - from[row]);
-  }
-  return sum;
-}
-
 double sagitta(const Cutting& cutting, double share) {
   if (cutting.radius_mm == 0.0) return 0.0;
   const double half = std::min(0.5 * cutting.angle * share, kPi);
@@ -87,7 +78,7 @@ PieceError error_of(const Cutting& cutting, const From& from, double share, cons
                     const AxisValues& q) {
   const Follower& follower = cutting.follower;
   PieceError error;
-  const double turn = turn_of(follower.machine, from.q, q);
+  const double turn = rotary_way(follower.machine, from.q, q);
   error.tip_mm = sagitta(cutting, share);
   if (turn > kTurned) {
     const kinematics::BlockEnds ends{from.pose, to, from.q, q};
@@ -144,7 +135,7 @@ FollowFault no_way_on(const Follower& follower, const ToolPose& pose, const Axis
   for (int i = 0; i < both.count; ++i) {
     const Branch& one = both.branch[i];
     if (nearest == nullptr ||
-        turn_of(follower.machine, from, one.q) < turn_of(follower.machine, from, nearest->q))
+        rotary_way(follower.machine, from, one.q) < rotary_way(follower.machine, from, nearest->q))
       nearest = &one;
   }
   if (nearest != nullptr && nearest->outcome == InverseOutcome::kOutOfTravel)
@@ -191,7 +182,7 @@ bool cut(Cutting& cutting, From& from, double to) {
 /// The rotary axes turn while the tip stands, in pieces in which it does.
 bool turn_at_rest(Cutting& cutting, From& from, const AxisValues& to) {
   const Follower& follower = cutting.follower;
-  const double turn = turn_of(follower.machine, from.q, to);
+  const double turn = rotary_way(follower.machine, from.q, to);
   if (turn <= kTurned) return true;
   // The tip leaves its place by an arm times turn^2 / 8; the arm is that of the digits' bound.
   const AxisValues start = from.q;
@@ -349,6 +340,15 @@ FollowFault follow(const Follower& follower, const program::Move& move, PoleSide
   places.insert(places.begin() + static_cast<long>(before), made.begin(), made.end());
   q = from.q;
   return {};
+}
+
+double rotary_way(const kinematics::MachineModel& machine, const AxisValues& from, const AxisValues& to) {
+  double way = 0.0;
+  for (size_t i = 0; i < machine.axes.size(); ++i) {
+    const auto row = static_cast<long>(i);
+    if (machine.axes[i].kind == AxisKind::kRotary) way += std::abs(to[row] - from[row]);
+  }
+  return way;
 }
 
 }  // namespace swarf::post

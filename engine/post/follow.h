@@ -85,4 +85,8 @@ double greatest_turn(const kinematics::MachineModel& machine, const kinematics::
 /// The fault of a solution that cannot be driven to; code "" when it can.
 FollowFault fault_of(const Follower& follower, const kinematics::Branch& branch, const ToolPose& pose);
 
+/// Sum of what the rotary axes turn between two sets of axis values, rad.
+double rotary_way(const kinematics::MachineModel& machine, const kinematics::AxisValues& from,
+                  const kinematics::AxisValues& to);
+
 }  // namespace swarf::post

@@ -21,15 +21,6 @@ AxisValues home_of(const kinematics::MachineModel& machine) {
   return home;
 }
 
-double rotary_way(const kinematics::MachineModel& machine, const AxisValues& from, const AxisValues& to) {
-  double way = 0.0;
-  for (size_t i = 0; i < machine.axes.size(); ++i) {
-    const auto row = static_cast<long>(i);
-    if (machine.axes[i].kind == AxisKind::kRotary) way += std::abs(to[row] - from[row]);
-  }
-  return way;
-}
-
 bool in_travel(const kinematics::MachineModel& machine, const AxisValues& q) {
   for (size_t i = 0; i < machine.axes.size(); ++i) {
     const auto row = static_cast<long>(i);

@@ -109,10 +109,10 @@ TEST_F(MachineContacts, HowNearTheHolderCameToAPostIsToldToAMicrometre) {
 /// A tool so short that the spindle's nose goes below the block's upper face: what is left of the block there
 /// is not looked at, and the verdict says so.
 TEST_F(MachineContacts, TheUncutStockInTheWayOfALinkIsNotProven) {
-  const std::string stubby =
+  const std::string short_tool =
       "[setup]\nwork_origin_mm = \"on_table\"\n[[tool]]\nnumber = 1\ndiameter_mm = 6\nflute_length_mm = 1\n"
       "length_mm = 1\nholder_diameter_mm = 6\nholder_length_mm = 1\ngauge_length_mm = 1\n";
-  const ProgramRun met = run(kFrame, stubby + "[accept]\ncollisions = 100\n");
+  const ProgramRun met = run(kFrame, short_tool + "[accept]\ncollisions = 100\n");
   EXPECT_EQ(met.exit_code, 1) << met.output;
   EXPECT_EQ(outcome(), "not_proven");
   EXPECT_GT(metrics()["machine_contacts"]["with_uncut_stock"].get<int>(), 0);
