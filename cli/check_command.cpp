@@ -9,6 +9,7 @@
 #include "cli/check_cl.h"
 #include "cli/check_nc.h"
 #include "cli/commands.h"
+#include "cli/job_flags.h"
 #include "cli/pipeline_files.h"
 #include "cli/stdin_program.h"
 #include "cli/terminal.h"
@@ -66,10 +67,7 @@ void find_motion_faults(const sim::Job& job, sim::MeasuredPath moved, Checked& c
 }
 
 /// Plans the path and moves the axes along it; cuts nothing.
-Checked check_scene(const std::string& file, const std::vector<std::string>& parameters) {
-  std::vector<std::string> overrides;
-  for (const std::string& one : parameters) overrides.push_back("parameters." + one);
-  const sim::Job job = sim::load_job(file, overrides);
+Checked check_job(const std::string& file, const sim::Job& job) {
   Progress silent;
   sim::MeasuredPath moved = sim::move_tool(job, silent);
   const toolpath::ToolPath& path = moved.path;
@@ -95,6 +93,28 @@ Checked check_scene(const std::string& file, const std::vector<std::string>& par
   checked.text += fmt::format("\n  driven    {:.3f} s with the scene's [interpolator]",
                               checked.numbers.at("time_s").get<double>());
   return checked;
+}
+
+/// Every set-up, one after the other.
+Checked check_setups(const std::string& file, const std::vector<std::string>& overrides) {
+  Checked all{"scene", "", {{"setups", nlohmann::ordered_json::array()}}, {}};
+  for (const std::shared_ptr<const sim::Job>& job : load_setups(file, 0, overrides)) {
+    const Checked one = check_job(file, *job);
+    all.text += fmt::format("{}{}: {}", all.text.empty() ? "" : "\n", job->scene.title, one.text);
+    nlohmann::ordered_json numbers{{"name", job->scene.setup.name}, {"right", one.findings.empty()}};
+    numbers.update(one.numbers);
+    all.numbers["setups"].push_back(numbers);
+    all.told.insert(all.told.end(), one.told.begin(), one.told.end());
+    all.findings.insert(all.findings.end(), one.findings.begin(), one.findings.end());
+  }
+  return all;
+}
+
+Checked check_scene(const std::string& file, const std::vector<std::string>& parameters) {
+  std::vector<std::string> overrides;
+  for (const std::string& one : parameters) overrides.push_back("parameters." + one);
+  if (sim::count_setups(file, overrides) > 0) return check_setups(file, overrides);
+  return check_job(file, sim::load_job(file, overrides));
 }
 
 /// A machine file that reads well is still wrong when its inverse does not lead back.

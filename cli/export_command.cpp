@@ -91,7 +91,7 @@ int export_run(const ExportOptions& options) {
   const sim::MeasuredPath path = options.window.any()
                                      ? reports::window_motion(stored.job, options.folder, progress)
                                      : reports::motion_of(stored, options.folder, moves, progress);
-  reports::FinishedRun run{stored.job, *path.cycles, stored.stock, stored.dexels};
+  reports::FinishedRun run{stored.job, *path.cycles, stored.stock, stored.dexels, *path.carried};
   if (options.window.any()) run.window = sim::window_of(options.window, *path.cycles);
   if (!options.gltf.empty() || !options.machine_gltf.empty()) write_gltf(options, run);
   write_meshes(options, run);

@@ -189,6 +189,23 @@ void add_parameter_flag(CLI::App& command, std::vector<std::string>& overrides) 
       ->take_all();
 }
 
+size_t count_setups(const std::string& file, const std::vector<std::string>& overrides) {
+  require_file(file);
+  refuse_special_file(file);
+  return is_program_file(file) ? 0 : sim::count_setups(file, overrides);
+}
+
+std::vector<std::shared_ptr<const sim::Job>> load_setups(const std::string& file, size_t last,
+                                                         const std::vector<std::string>& overrides) {
+  const size_t count = count_setups(file, overrides);
+  if (last > count)
+    throw InputError("no-such-set-up", {file},
+                     count == 0 ? std::string("the scene has one set-up, not a list of them")
+                                : fmt::format("the scene has {} set-ups", count),
+                     count == 0 ? std::string("leave --setup out") : fmt::format("--setup 1 to {}", count));
+  return sim::load_setups(file, std::vector<std::vector<std::string>>(last > 0 ? last : count, overrides));
+}
+
 sim::Job load_job(const std::string& file, const JobWords& words, const std::vector<std::string>& overrides) {
   require_file(file);
   refuse_special_file(file);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,14 @@ bool is_program_file(const std::string& file);
 /// The job of a program file. Throws InputError: "bad-tool-list" for --tools that is neither a file nor
 /// words, "needs-scene" for a program of surface blocks, and as take_stock does.
 sim::JobFlags job_flags(const std::string& program_file, const JobWords& words);
+
+/// How many [[setup]] the file has; 0: it is a program, or a scene of one set-up. Throws InputError
+/// "file-not-found" and as sim::count_setups.
+size_t count_setups(const std::string& file, const std::vector<std::string>& overrides);
+
+/// All set-ups of a scene, or the first `last` of them; 0: all. Throws InputError "no-such-set-up".
+std::vector<std::shared_ptr<const sim::Job>> load_setups(const std::string& file, size_t last,
+                                                         const std::vector<std::string>& overrides);
 
 /// The scene of a job: the file itself, or the text that flags and program mean. Throws InputError
 /// "file-not-found" with what can be run, "flags-and-scene" for flags beside a scene.

@@ -46,12 +46,13 @@ program::ClProgram cl_program(const sim::Job& job, const toolpath::ToolPath& pat
     const motion::ToolSample& sample = reader.at(k).sample;
     const auto index = static_cast<size_t>(sample.element);
     const toolpath::SurfacePass* pass = path.elements.pass(index);
-    if (sample.element != element && pass == nullptr) {
+    const toolpath::DrivenPass* driven = path.elements.driven(index);
+    const double feed = pass != nullptr ? pass->feed_mm_s : driven != nullptr ? driven->feed_mm_s : 0.0;
+    if (sample.element != element && feed == 0.0) {
       const auto move = std::get<toolpath::FreeMove>(path.elements[index].what);
       add_move(program, move.to, move.feed_mm_s);
     }
-    if (pass != nullptr && sample.kind == motion::SampleKind::kCutting)
-      add_move(program, sample.pose, pass->feed_mm_s);
+    if (feed > 0.0 && sample.kind == motion::SampleKind::kCutting) add_move(program, sample.pose, feed);
     element = sample.element;
   }
   return program;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -9,11 +10,15 @@
 #include "base/file.h"
 #include "base/units.h"
 #include "cli/commands.h"
+#include "cli/posted_scene.h"
+#include "cli/shell_text.h"
 #include "cli/terminal.h"
 #include "machine/machine_scene.h"
 #include "machine/shipped.h"
 #include "post/post.h"
 #include "post/shipped.h"
+#include "reports/avoidance_output.h"
+#include "sim/job/scene_text.h"
 #include "sim/job/tool_table.h"
 
 namespace swarf::cli {
@@ -23,12 +28,20 @@ using kinematics::AxisKind;
 
 constexpr FileFault kProgramFault{"program-unwritable", "the program cannot be written"};
 
+namespace fs = std::filesystem;
+
 struct PostCommand {
+  std::vector<std::string> overrides;
+  bool avoid = false;
   std::string file, machine, post, dialect, tools, output, cutcom, circle;
   std::vector<double> work_origin;
   double work_rotation_deg = 0.0, tolerance_um = 10.0, axis_tolerance_deg = 0.1;
   bool tcp = false, no_tcp = false, json = false;
 };
+
+bool is_scene(const PostCommand& given) {
+  return fs::path(given.file).extension() == ".toml";
+}
 
 post::PostFormat format_of(const PostCommand& given) {
   if (!given.post.empty() && !given.dialect.empty())
@@ -44,6 +57,9 @@ post::PostFormat format_of(const PostCommand& given) {
 }
 
 machine::MachineScene machine_of(const PostCommand& given) {
+  if (given.machine.empty())
+    throw InputError("option-missing", {"--machine"}, "nothing says which machine the program is for",
+                     "name one that 'swarf machines' lists, or a machine.toml");
   const std::string file = machine::machine_file(given.machine);
   if (file.empty())
     throw InputError("unknown-machine", {"--machine " + given.machine}, "no machine is called so",
@@ -169,7 +185,89 @@ nlohmann::ordered_json json_of(const PostCommand& given, const post::PostFormat&
   return json;
 }
 
+/// The scene that the flags mean, for --avoid beside CL data.
+sim::SceneText scene_of(const PostCommand& given) {
+  sim::JobFlags flags;
+  flags.program_file = fs::absolute(given.file).string();
+  flags.cl_data = true;
+  const bool is_file = fs::path(given.machine).extension() == ".toml";
+  flags.machine = is_file ? fs::absolute(given.machine).string() : given.machine;
+  if (!given.tools.empty()) flags.tool_table = fs::absolute(given.tools).string();
+  if (!given.work_origin.empty())
+    flags.origin_M = Vec3(given.work_origin[0], given.work_origin[1], given.work_origin[2]);
+  return {sim::scene_text(flags), given.file};
+}
+
+/// Keys of [post] that the flags replace.
+std::vector<std::string> scene_overrides(const PostCommand& given) {
+  std::vector<std::string> keys = given.overrides;
+  const std::string words = given.post.empty() ? given.dialect : fs::absolute(given.post).string();
+  if (!words.empty()) keys.push_back(fmt::format("post.words=\"{}\"", words));
+  if (given.tcp || given.no_tcp) keys.push_back(fmt::format("post.tcp={}", given.tcp));
+  const PostCommand unsaid;
+  if (!is_scene(given) || given.tolerance_um != unsaid.tolerance_um)
+    keys.push_back(fmt::format("post.tolerance_um={}", given.tolerance_um));
+  if (!is_scene(given) || given.axis_tolerance_deg != unsaid.axis_tolerance_deg)
+    keys.push_back(fmt::format("post.axis_tolerance_deg={}", given.axis_tolerance_deg));
+  if (given.work_rotation_deg != 0.0)
+    keys.push_back(fmt::format("setup.work_rotation_deg={}", given.work_rotation_deg));
+  if (!given.cutcom.empty()) keys.push_back(fmt::format("cutcom=\"{}\"", given.cutcom));
+  if (!given.circle.empty()) keys.push_back(fmt::format("cl_circle=\"{}\"", given.circle));
+  return keys;
+}
+
+/// The set-up, and what would be found on it.
+int post_with_avoidance(const PostCommand& given) {
+  if (given.output == "-")
+    throw InputError("two-outputs", {"-o -"}, "a program that avoids collisions goes into a file",
+                     "name it: -o part.nc");
+  if (is_scene(given) && !(given.machine.empty() && given.tools.empty() && given.work_origin.empty()))
+    throw InputError("flags-and-scene", {given.file}, "the scene says machine, tools and work origin itself",
+                     "change its keys: --set setup.work_origin_mm=[0, 0, 100]");
+  const std::vector<std::string> keys = scene_overrides(given);
+  const auto load = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> all = keys;
+    all.insert(all.end(), more.begin(), more.end());
+    return is_scene(given) ? sim::load_job(given.file, all) : sim::load_job(scene_of(given), all);
+  };
+  const sim::Job job = load({});
+  print_diagnostics(job.warnings);
+  if (!job.cl || !job.scene.post)
+    throw InputError("post-needs-cl", {given.file}, "the scene holds no CL data that could be written",
+                     "a scene with cl = \"part.cls\" and no post.written");
+  TerminalProgress progress;
+  Diagnostics told;
+  const std::optional<PostedScene> found =
+      post_scene({&job, load}, fs::absolute(given.output).string(), progress, told);
+  print_diagnostics(told.list());
+  if (!found) return kStopped;
+  const PostedScene& posted = *found;
+  if (given.json) {
+    nlohmann::ordered_json json{{"schema", 1},
+                                {"swarf", SWARF_VERSION},
+                                {"file", given.file},
+                                {"program", given.output},
+                                {"post", posted.post_name}};
+    json["avoidance"] = reports::avoidance_json(posted.outcome, job);
+    json["overrides"] = posted.overrides;
+    fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+    return kPass;
+  }
+  if (manner().quiet) return kPass;
+  fmt::print("{}\n", given.output);
+  print_table(reports::avoidance_lines(posted.outcome, job));
+  if (!is_scene(given)) return kPass;
+  std::vector<std::string> words{"swarf", "run", given.file};
+  for (const std::string& key : posted.overrides) words.insert(words.end(), {"--set", key});
+  fmt::print("  proof: {}\n", shell_text(words));
+  return kPass;
+}
+
 int run_post(const PostCommand& given) {
+  if (is_scene(given) || given.avoid) return post_with_avoidance(given);
+  if (!given.overrides.empty())
+    throw InputError("needs-scene", {"--set"}, "--set changes a key of a scene, and this is CL data",
+                     "give a scene.toml, or --avoid");
   Diagnostics told;
   const post::PostFormat format = format_of(given);
   const machine::MachineScene scene = machine_of(given);
@@ -226,6 +324,12 @@ Where the tool is out of the way (the start, a tool change, a RAPID behind a RAP
 axes, or another turn, is taken if the moves that follow need it; the tool is then retracted along the machine's Z.
 Elsewhere an axis that reaches the end of its travel is an error with its line.
 
+A scene brings the whole set-up: stock, fixtures, clamping, tools. Every way through it is then looked at for
+collisions, the machine against the work as it has been cut so far: the other solution of the rotary axes is taken,
+or the turn at a pole; where no way is free the clamping moves over the grid of [post.clamping], to the free place with
+the least slide movements, and then tools are pulled out as far as [post.tool_reach] lets them. What cannot be
+avoided is told with its line, and no program is written. swarf run of the scene does the same, and proves it.
+
 Drilling cycles (CYCLE/DRILL ..) stay cycles where the control drills along its own Z: G81, CYCLE81, CYCL DEF 200.
 
 X Y Z count from the work's origin: G54 has to hold it, with rotary axes at zero.
@@ -234,6 +338,7 @@ Examples:
   swarf post part.cls --machine spinner_u5_620 --dialect siemens --tools tools.toml -o part.mpf
   swarf post part.cls --machine maho_600c --dialect heidenhain --no-tcp --tolerance-um 5 -o part.h
   swarf post part.cls --machine mill_3axis --post my_shop.toml -o part.nc        your own words
+  swarf post scene.toml --dialect siemens -o part.mpf                            a whole set-up, free of collisions
   swarf post part.cls --machine mikron_ucp710 -o - | less
 
 To check what was written: swarf check part.mpf --machine spinner_u5_620 --tools tools.toml --dialect siemens
@@ -245,10 +350,20 @@ void add_post(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<PostCommand>();
   CLI::App* command =
       app.add_subcommand("post", "Write CL data as an NC program for a machine and its control");
-  command->add_option("file", options->file, "CL data (.cls, .clt, .ncl, .apt, .cldata)")->required();
-  command->add_option("--machine", options->machine, "a machine that 'swarf machines' lists, or machine.toml")
-      ->type_name("NAME|FILE")
+  command
+      ->add_option("file", options->file,
+                   "CL data (.cls, .clt, .ncl, .apt, .cldata), or a scene.toml with cl")
       ->required();
+  command->add_option("--machine", options->machine, "a machine that 'swarf machines' lists, or machine.toml")
+      ->type_name("NAME|FILE");
+  command->add_flag("--avoid", options->avoid,
+                    "look at every way for collisions and take another one; as a scene always does");
+  command
+      ->add_option("--set", options->overrides,
+                   "replace a key of the scene: --set \"post.clamping.count=[9, 9, 3]\"")
+      ->type_name("KEY=VALUE")
+      ->expected(1)
+      ->take_all();
   command->add_option("--dialect", options->dialect,
                       "the control's words: " + post::shipped_list() + " (fanuc when left out)");
   command->add_option("--post", options->post, "words of your own: a file as those in assets/posts")

@@ -55,7 +55,7 @@ int render(const RenderOptions& options) {
   const sim::MeasuredPath path = options.window.any()
                                      ? reports::window_motion(stored.job, options.folder, progress)
                                      : reports::motion_of(stored, options.folder, moves, progress);
-  reports::FinishedRun run{stored.job, *path.cycles, stored.stock, stored.dexels};
+  reports::FinishedRun run{stored.job, *path.cycles, stored.stock, stored.dexels, *path.carried};
   if (options.window.any()) run.window = sim::window_of(options.window, *path.cycles);
   if (!options.still.empty()) {
     const std::string otherwise = kind == reports::StillKind::kMachine ? "machine" : "iso";

@@ -13,12 +13,16 @@
 #include "cli/commands.h"
 #include "cli/job_flags.h"
 #include "cli/pipeline_files.h"
+#include "cli/posted_scene.h"
 #include "cli/shell_text.h"
 #include "cli/terminal.h"
+#include "reports/avoidance_output.h"
 #include "reports/metrics_json.h"
 #include "reports/pending_folder.h"
 #include "reports/run_output.h"
 #include "reports/run_report.h"
+#include "reports/setups_json.h"
+#include "sim/job/set_ups.h"
 #include "sim/simulation.h"
 
 namespace swarf::cli {
@@ -33,6 +37,7 @@ struct RunOptions {
   std::string from, save_after, trajectory;
   int threads = 0;
   size_t record_every = 256;
+  size_t setup = 0;  ///< the last one of several; 0: all
   double max_memory_mb = 0.0, keep_every_s = 60.0;
   bool no_render = false, report = false, json = false, record = false, check = false, open = false;
   PipelineFiles pipeline;
@@ -78,16 +83,17 @@ void print_assumptions(const sim::Assumptions& assumptions, bool aside) {
   std::fflush(out);
 }
 
-void print_outcome(const sim::Job& job, const sim::Result& result, const std::string& folder) {
+/// `folder`: where the results lie now; `named`: where they will.
+void print_outcome(const sim::Job& job, const sim::Result& result, const std::string& folder,
+                   const std::string& named) {
   if (!manner().quiet) {
     fmt::print("\n{}\n", job.scene.title);
     print_table(reports::summary_lines(job, result));
   }
   print_findings(result.findings);
-  const std::filesystem::path page = std::filesystem::path(folder) / "report.html";
-  const bool has_page = std::filesystem::exists(page);
+  const bool has_page = fs::exists(fs::path(folder) / "report.html");
   fmt::print("  {}\n  {}: {}\n", sim::verdict_sentence(result.checks), has_page ? "report" : "results",
-             has_page ? page.string() : folder);
+             has_page ? (fs::path(named) / "report.html").string() : named);
 }
 
 /// The command that was given, with every option that is not at its default.
@@ -111,6 +117,7 @@ std::vector<std::string> command_words(const RunOptions& options) {
   add(options.max_memory_mb > 0.0, "--max-memory", fmt::format("{}", options.max_memory_mb));
   add(options.keep_every_s != RunOptions{}.keep_every_s, "--keep-every",
       fmt::format("{}", options.keep_every_s));
+  add(options.setup > 0, "--setup", fmt::format("{}", options.setup));
   add(options.threads > 0, "--threads", fmt::format("{}", options.threads));
   flag(options.no_render, "--no-render");
   flag(options.report, "--report");
@@ -154,6 +161,11 @@ void tell_of_killed_runs(const std::string& folder) {
     fmt::print(stderr, "note: a run of this folder was killed; --from {} goes on from what it had cut\n",
                shell_text({(entry.path() / sim::kKeptStock).string()}));
   }
+}
+
+/// The file that marks earlier results: of a run, or of several set-ups.
+std::string mark_of(const std::string& folder) {
+  return fs::exists(fs::path(folder) / reports::kSetupsMark) ? reports::kSetupsMark : reports::kRunMark;
 }
 
 /// Room that the results take at the least, bytes: the stock as a compressed grid.
@@ -210,46 +222,201 @@ void open_page(const std::string& folder) {
     fmt::print(stderr, "note: xdg-open could not be started; the page is {}\n", page);
 }
 
-int run(const RunOptions& options, std::vector<reports::FileVerdict>& found) {
-  if (options.open) require_opener(options);
-  set_thread_count(options.threads);
+/// A scene with [post]: what it says is written first, and is the job from here on.
+std::optional<PostedScene> take_post(const RunOptions& options, const std::vector<std::string>& overrides,
+                                     const reports::PendingFolder& folder, Progress& progress,
+                                     sim::Job& job) {
+  if (!wants_post(job)) return {};
+  const auto load = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> all = overrides;
+    all.insert(all.end(), more.begin(), more.end());
+    return load_job(options.scene, options.job, all);
+  };
+  Diagnostics told;
+  std::optional<PostedScene> posted =
+      post_scene({&job, load}, fs::absolute(folder.file("posted.nc")).string(), progress, told);
+  print_diagnostics(told.list());
+  if (!posted) return {};
+  if (!manner().quiet && !options.json) print_table(reports::avoidance_lines(posted->outcome, job));
+  job = load(posted->overrides);
+  return posted;
+}
+
+/// What the options set in the scene.
+std::vector<std::string> overrides_of(const RunOptions& options) {
   std::vector<std::string> overrides = options.overrides;
-  if (options.max_memory_mb > 0.0) {
+  if (options.max_memory_mb > 0.0)
     overrides.push_back(fmt::format("stock.max_memory_mb={}", options.max_memory_mb));
-  }
   if (!options.trajectory.empty())
     overrides.push_back(fmt::format("output.trajectory=\"{}\"", options.trajectory));
-  const sim::Job job = load_job(options.scene, options.job, overrides);
+  return overrides;
+}
+
+reports::OutputOptions output_options(const RunOptions& options, const PostedScene* posted = nullptr) {
+  reports::OutputOptions output{!options.no_render, !options.no_render || options.report, options.overrides,
+                                shell_text(command_words(options)), posted ? &posted->outcome : nullptr};
+  if (posted != nullptr)
+    output.overrides.insert(output.overrides.end(), posted->overrides.begin(), posted->overrides.end());
+  return output;
+}
+
+/// One job from its inputs to its results in the folder. `posted`: what it was written by; or null.
+struct JobRun {
+  sim::Result result;
+  int exit_code = kPass;
+};
+JobRun run_job(const RunOptions& options, const sim::Job& job, reports::PendingFolder& pending,
+               const PostedScene* posted, std::vector<reports::FileVerdict>& found) {
+  const reports::OutputOptions output = output_options(options, posted);
+  reports::begin_run(pending, job, output);
+  TerminalProgress progress;
+  sim::CutOptions cut = cut_options(options, pending);
+  if (job.scene.setup.number > 0) cut.keep_every_s = 0.0;  // there is no going on from it
+  JobRun run{sim::simulate(job, cut, progress)};
+  print_diagnostics(run.result.main.warnings);
+  const std::vector<Diagnostic> failures = reports::write_run(pending, job, run.result, output, progress);
+  print_diagnostics(failures);
+  found.push_back(verdict_of(options, job, run.result, failures));
+  if (run.result.stopped)
+    run.exit_code = kStopped;
+  else if (!failures.empty())
+    run.exit_code = kBadInput;  // not everything that was asked for is there
+  else
+    run.exit_code = sim::passes(run.result) ? kPass : kFindings;
+  return run;
+}
+
+int run_scene(const RunOptions& options, std::vector<reports::FileVerdict>& found) {
+  const std::vector<std::string> overrides = overrides_of(options);
+  sim::Job job = load_job(options.scene, options.job, overrides);
   if (options.record && !job.scene.text.empty())
     throw InputError("needs-scene", {"--record"}, "a record is replayed from a scene, and there is none",
                      "write one: swarf init " + shell_text({options.scene}) + " .., then run it");
   if (!manner().quiet) print_assumptions(job.scene.assumptions, options.json);
   print_diagnostics(job.warnings);
   const std::string folder = options.output.empty() ? "out/" + job.scene.name : options.output;
-  reports::check_output_folder(folder, reports::kRunMark, least_bytes(job.scene));
+  reports::check_output_folder(folder, mark_of(folder), least_bytes(job.scene));
   tell_of_killed_runs(folder);
   reports::PendingFolder pending(folder);
-  const reports::OutputOptions output{!options.no_render, !options.no_render || options.report,
-                                      options.overrides, shell_text(command_words(options))};
-  reports::begin_run(pending, job, output);
   TerminalProgress progress;
-  sim::Result result = sim::simulate(job, cut_options(options, pending), progress);
-  print_diagnostics(result.main.warnings);
-  const std::vector<Diagnostic> failures = reports::write_run(pending, job, result, output, progress);
-  print_diagnostics(failures);
-  found.push_back(verdict_of(options, job, result, failures));
-  if (result.stopped) {
-    print_stopped(options, result, folder);
+  const std::optional<PostedScene> posted = take_post(options, overrides, pending, progress, job);
+  if (wants_post(job)) {
+    fmt::print(stderr, "stopped: before a program was found; nothing was written\n");
     return kStopped;
   }
+  const JobRun run = run_job(options, job, pending, posted ? &*posted : nullptr, found);
+  if (run.result.stopped) {
+    print_stopped(options, run.result, folder);
+    return run.exit_code;
+  }
   if (options.json) {
-    fmt::print("{}", reports::metrics_json(job, result, {}));
+    fmt::print("{}", reports::metrics_json(job, run.result, {}, posted ? &posted->outcome : nullptr));
   } else {
-    print_outcome(job, result, folder);
+    print_outcome(job, run.result, folder, folder);
   }
   if (options.open) open_page(folder);
-  if (!failures.empty()) return kBadInput;  // not everything that was asked for is there
-  return sim::passes(result) ? kPass : kFindings;
+  return run.exit_code;
+}
+
+/// Places in the program, stocks to go on from and records are of one set-up.
+void refuse_for_setups(const RunOptions& options) {
+  const auto refuse = [&](bool given, const char* option) {
+    if (!given) return;
+    throw InputError(
+        "several-set-ups", {option}, "this is for a run of one set-up, the scene has several",
+        "leave it out; or make the second one a scene of its own whose stock.from_run is the folder "
+        "of the first");
+  };
+  refuse(!options.from.empty(), "--from");
+  refuse(!options.save_after.empty(), "--save-stock-after");
+  refuse(options.record, "--record");
+  refuse(options.open, "--open");
+  const std::vector<std::string> flags = given_words(options.job);
+  if (!flags.empty())
+    load_job(options.scene, options.job, {});  // says that flags and a scene do not go together
+}
+
+/// Set-ups that were finished before something went wrong with a later one are not thrown away.
+template <typename Run>
+void keeping_finished(reports::PendingFolder& pending, const std::vector<reports::SetupOutcome>& done,
+                      Run run) {
+  try {
+    run();
+  } catch (const InputError& error) {
+    if (done.empty()) throw;
+    Diagnostics told = error.diagnostics;
+    told.note("results-incomplete", {pending.keep_incomplete()},
+              fmt::format("{} finished set-ups are kept here; nothing was replaced", done.size()));
+    throw InputError(told);
+  }
+}
+
+/// How the stock went through them, and what all comes to.
+void print_setups(const std::vector<reports::SetupOutcome>& done, size_t count, const std::string& folder) {
+  fmt::print("\n");
+  for (const reports::SetupOutcome& one : done) fmt::print("  {}\n", reports::setup_line(one));
+  const auto passed = static_cast<size_t>(
+      std::count_if(done.begin(), done.end(), [](const auto& one) { return one.passes; }));
+  const std::string rest =
+      done.size() < count ? fmt::format("; {} not run: the whole is not judged", count - done.size()) : "";
+  fmt::print("  {}: {} of {} set-ups pass{}\n  results: {}\n", passed == done.size() ? "PASS" : "FINDINGS",
+             passed, count, rest, folder);
+}
+
+/// All in order; one that fails its checks does not stop the others: they begin with what it has left.
+int run_setups(const RunOptions& options, size_t count, std::vector<reports::FileVerdict>& found) {
+  refuse_for_setups(options);
+  const auto jobs = load_setups(options.scene, options.setup, overrides_of(options));
+  for (const auto& job : jobs)
+    if (job->scene.post)
+      throw InputError("several-set-ups", {job->scene.file}, "[post] is for a scene of one set-up",
+                       "write each program with swarf post, and name it as nc of its set-up");
+  const std::string folder = options.output.empty() ? "out/" + jobs.front()->scene.name : options.output;
+  double bytes = 0.0;
+  for (const auto& job : jobs) bytes += least_bytes(job->scene);
+  reports::check_output_folder(folder, mark_of(folder), bytes);
+  reports::PendingFolder pending(folder);
+  std::vector<reports::SetupOutcome> done;
+  int exit_code = kPass;
+  for (const auto& job : jobs) {
+    if (!manner().quiet) {
+      fmt::print(options.json ? stderr : stdout, "{}\n", job->scene.title);
+      print_assumptions(job->scene.assumptions, options.json);
+    }
+    print_diagnostics(job->warnings);
+    const std::string place = sim::setup_folder(job->scene);
+    JobRun run;
+    keeping_finished(pending, done, [&] {
+      reports::PendingFolder own(pending.file(place));
+      run = run_job(options, *job, own, nullptr, found);
+    });
+    exit_code = std::max(exit_code, run.exit_code);
+    if (run.result.stopped) break;
+    done.push_back(reports::setup_outcome(*job, run.result));
+    if (!options.json)
+      print_outcome(*job, run.result, pending.file(place), (fs::path(folder) / place).string());
+  }
+  const std::string text =
+      reports::setups_json(jobs.front()->scene.name, output_options(options).command, count, done);
+  reports::write_text(pending.file(reports::kSetupsMark), text);
+  pending.move_into_place();
+  if (exit_code == kStopped)
+    fmt::print(stderr, "stopped: {} of {} set-ups are finished; what there is is in {}\n", done.size(), count,
+               folder);
+  if (options.json)
+    fmt::print("{}", text);
+  else
+    print_setups(done, count, folder);
+  return exit_code;
+}
+
+int run(const RunOptions& options, std::vector<reports::FileVerdict>& found) {
+  if (options.open) require_opener(options);
+  set_thread_count(options.threads);
+  const size_t setups = count_setups(options.scene, overrides_of(options));
+  if (setups > 0) return run_setups(options, setups, found);
+  if (options.setup > 0) load_setups(options.scene, options.setup, {});  // says that there is no list of them
+  return run_scene(options, found);
 }
 
 constexpr const char* kRunFooter =
@@ -316,6 +483,11 @@ void add_run(CLI::App& app, int& exit_code) {
       ->expected(1)
       ->take_all();
   add_parameter_flag(*command, options->overrides);
+  command
+      ->add_option("--setup", options->setup,
+                   "of a scene with several [[setup]]: run them up to this one (default: all)")
+      ->type_name("NUMBER")
+      ->check(CLI::Range(1, 1000));
   command
       ->add_option("--threads", options->threads,
                    "threads to use (default: all cores); results do not depend on it")

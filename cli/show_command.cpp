@@ -19,6 +19,7 @@ struct ShowOptions {
   std::string file, output;
   JobWords job;
   std::vector<std::string> overrides;
+  size_t setup = 0;  ///< 0: the scene has one
 };
 
 /// A machine lists axes.
@@ -32,7 +33,8 @@ bool is_machine(const std::string& file) {
 render::Image picture(const std::string& file, const ShowOptions& options) {
   if (!is_program_file(file) && is_machine(file))
     return reports::machine_overview(machine::load_machine(file));
-  const sim::Job job = load_job(file, options.job, options.overrides);
+  const sim::Job job = options.setup > 0 ? *load_setups(file, options.setup, options.overrides).back()
+                                         : load_job(file, options.job, options.overrides);
   print_diagnostics(job.warnings);
   Diagnostics diagnostics;
   const toolpath::ToolPath path = sim::job_path(job, diagnostics).path;
@@ -63,6 +65,9 @@ void add_show(CLI::App& app, int& exit_code) {
   command->add_option("-o,--output", options->output, "PNG file to write")->required();
   add_job_flags(*command, options->job);
   add_parameter_flag(*command, options->overrides);
+  command->add_option("--setup", options->setup, "which of several [[setup]] of a scene")
+      ->type_name("NUMBER")
+      ->check(CLI::Range(1, 1000));
   command->footer(
       R"(A machine: its axes at zero, then its rotary axes at +30 degrees, with the work's origin. A program or scene: the
 path in the stock, then the machine in the middle of it.

@@ -17,6 +17,14 @@ pkg_check_modules(HDF5 REQUIRED IMPORTED_TARGET hdf5)
 pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo)
 pkg_check_modules(OSMESA REQUIRED osmesa)
 
+# Libraries by name: OpenCASCADE's own configuration also asks for the development files of its viewer.
+if(NOT TARGET swarf_occt)
+  add_library(swarf_occt INTERFACE IMPORTED)
+  target_include_directories(swarf_occt SYSTEM INTERFACE /usr/include/opencascade)
+  target_link_libraries(swarf_occt INTERFACE TKSTEP TKSTEPBase TKSTEPAttr TKSTEP209 TKIGES TKXSBase TKMesh TKShHealing
+    TKTopAlgo TKGeomAlgo TKBRep TKGeomBase TKG3d TKG2d TKMath TKernel)
+endif()
+
 # Debian ships FindOpenVDB.cmake outside CMake's own path; its Imath warning about Python is harmless.
 list(APPEND CMAKE_MODULE_PATH "/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/OpenVDB")
 set(CMAKE_FIND_PACKAGE_WARN_NO_MODULE OFF)

@@ -12,6 +12,7 @@
 #include "base/config.h"
 #include "base/file.h"
 #include "sim/job/fixture_keys.h"
+#include "sim/job/kept_job.h"
 #include "sim/job/tool_library.h"
 
 namespace swarf::reports {
@@ -122,62 +123,106 @@ void add_what_was_open(const sim::StockSettings& stock, std::vector<std::string>
 
 constexpr const char* kProgramFolder = "program";
 
-}  // namespace
+/// The folder below input/ for what belongs to one of several set-ups before the run's own.
+std::string setup_place(const sim::Job& job) {
+  return fmt::format("setup_{}", job.scene.setup.number);
+}
 
-std::vector<std::string> keep_inputs(const PendingFolder& folder, const sim::Job& job,
-                                     const std::vector<std::string>& overrides) {
-  const fs::path input = folder.file("input");
+/// Another run that the stock comes from: all that its job is made of again, and what says how far it was
+/// cut.
+void keep_run(const fs::path& run, const fs::path& to) {
+  fs::create_directories(to);
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(run / "input"))
+    if (entry.is_regular_file())
+      keep_copy(entry.path(), to / "input" / fs::relative(entry.path(), run / "input"));
+  for (const char* name : {sim::kRunMark, "stock.vdb"}) keep_copy(run / name, to / name);
+}
+
+/// Copies what one job names into input/`inside`; returns the overrides that point there.
+std::vector<std::string> keep_job(const fs::path& input, const fs::path& inside, const sim::Job& job,
+                                  const std::vector<std::string>& overrides) {
   std::vector<std::string> all = overrides;
-  const auto keep = [&](const char* key, const std::string& file, const fs::path& place) {
-    if (file.empty()) return;
-    keep_copy(file, input / place);
-    all.push_back(fmt::format("{}={}", key, quoted(place.string())));
+  const auto say = [&](const std::string& key, const fs::path& place) {
+    all.push_back(fmt::format("{}={}", key, quoted((inside / place).string())));
   };
-  const auto beside = [](const std::string& file, const char* name) {
+  const auto keep = [&](const std::string& key, const std::string& file, const fs::path& place) {
+    if (file.empty()) return;
+    keep_copy(file, input / inside / place);
+    say(key, place);
+  };
+  const auto beside = [](const std::string& file, const std::string& name) {
     return fs::path(name + fs::path(file).extension().string());
   };
   const sim::Scene& scene = job.scene;
-  if (scene.text.empty()) {
-    keep_copy(scene.file, input / "scene.toml");
-  } else {
-    fs::create_directories(input);
-    write_text((input / "scene.toml").string(), scene.text);
-  }
   add_what_was_open(scene.stock, all);
-  const fs::path machine = keep_machine(input, scene.machine_file);
-  all.push_back(fmt::format("machine={}", quoted(machine.string())));
-  keep(scene.program_key.c_str(), scene.program_file,
+  say("machine", keep_machine(input / inside, scene.machine_file));
+  keep(scene.program_key, scene.program_file,
        fs::path(kProgramFolder) / plain_name(scene.program_file, "program"));
   keep("tool_table", scene.tool_table_file, beside(scene.tool_table_file, "tools"));
   for (const auto& [name, file] : scene.tool_table_file.empty()
                                       ? std::vector<std::pair<std::string, std::string>>{}
                                       : sim::tool_library_parts(scene.tool_table_file))
-    keep_copy(file, input / fs::path(name).filename());
+    keep_copy(file, input / inside / fs::path(name).filename());
   const sim::RawSettings& raw = scene.stock.raw;
-  if (!raw.file.empty()) keep(("stock." + raw.key).c_str(), raw.file, beside(raw.file, "stock"));
+  if (raw.kind == sim::RawKind::kRun) {
+    keep_run(raw.file, input / inside / "earlier_run");
+    say("stock.from_run", "earlier_run");
+  } else if (!raw.file.empty()) {
+    keep("stock." + raw.key, raw.file, beside(raw.file, "stock"));
+  }
   if (scene.design.kind == sim::DesignKind::kSurface)
     keep("design.surface", scene.design.surface_file, beside(scene.design.surface_file, "design"));
   if (scene.design.kind == sim::DesignKind::kMesh)
-    keep("design.mesh", scene.design.mesh_file, beside(scene.design.mesh_file, "design"));
+    keep("design." + scene.design.mesh_key, scene.design.mesh_file, beside(scene.design.mesh_file, "design"));
   for (size_t i = 0; i < scene.fixtures.size(); ++i) {
     machine::Fixture fixture = scene.fixtures[i];
     const std::string* const file = sim::mesh_file_of(fixture);
     if (file == nullptr) continue;
     const std::string number = std::to_string(i);
-    keep(("fixture[" + number + "].mesh").c_str(), *file, beside(*file, ("fixture_" + number).c_str()));
+    keep("fixture[" + number + "].mesh", *file, beside(*file, "fixture_" + number));
   }
   return all;
 }
 
-void keep_called_programs(const PendingFolder& folder, const sim::Job& job,
-                          const std::vector<std::string>& called) {
+void keep_programs(const fs::path& kept, const sim::Job& job, const std::vector<std::string>& called) {
   const fs::path home = fs::path(job.scene.program_file).parent_path();
-  const fs::path kept = fs::path(folder.file("input")) / kProgramFolder;
   for (const std::string& file : called) {
     const fs::path seen = fs::path(file).lexically_proximate(home);
     const bool below = !seen.is_absolute() && folders_above(seen) == 0;
     const fs::path place = kept / (below ? seen : seen.filename());
     if (!fs::exists(place)) keep_copy(file, place);
+  }
+}
+
+}  // namespace
+
+KeptInputs keep_inputs(const PendingFolder& folder, const sim::Job& job,
+                       const std::vector<std::string>& overrides) {
+  const fs::path input = folder.file("input");
+  fs::create_directories(input);
+  if (job.scene.text.empty()) {
+    keep_copy(job.scene.file, input / "scene.toml");
+  } else {
+    write_text((input / "scene.toml").string(), job.scene.text);
+  }
+  KeptInputs kept{keep_job(input, "", job, overrides), {}};
+  if (job.scene.setup.number == 0) return kept;
+  kept.earlier.emplace();
+  for (const sim::EarlierSetup& earlier : job.earlier)
+    if (!earlier.other_run)
+      kept.earlier->push_back(keep_job(input, setup_place(*earlier.job), *earlier.job, overrides));
+  return kept;
+}
+
+void keep_called_programs(const PendingFolder& folder, const sim::Job& job,
+                          const std::vector<std::string>& called,
+                          const std::vector<std::vector<std::string>>& called_earlier) {
+  const fs::path input = folder.file("input");
+  keep_programs(input / kProgramFolder, job, called);
+  for (size_t i = 0; i < called_earlier.size(); ++i) {
+    const sim::EarlierSetup& earlier = job.earlier[i];
+    if (!earlier.other_run)
+      keep_programs(input / setup_place(*earlier.job) / kProgramFolder, *earlier.job, called_earlier[i]);
   }
 }
 

@@ -9,6 +9,7 @@
 #include "motion/cycles/cycles.h"
 #include "render/draw_list.h"
 #include "sim/job/scene.h"
+#include "sim/run/carried_cuts.h"
 #include "sim/run/cycle_window.h"
 #include "stock/rays/surface_dexels.h"
 #include "stock/stock.h"
@@ -21,6 +22,7 @@ struct FinishedRun {
   const motion::Cycles& cycles;
   const stock::Stock& stock;
   const std::vector<stock::SurfaceDexels>& dexels;
+  const sim::CarriedCuts& carried;  ///< of earlier set-ups
   /// What of the motion is shown; none: all of it.
   std::optional<sim::CycleWindow> window{};
   /// Of all cycles, finished; null: they are gathered where they are needed.

@@ -1,5 +1,8 @@
 #include "reports/metrics_json.h"
 
+#include "reports/avoidance_output.h"
+#include "reports/driven_output.h"
+
 #include <fmt/format.h>
 #include <sys/resource.h>
 
@@ -96,7 +99,17 @@ Json cut_stock_json(const sim::Job& job, const sim::Result& result) {
           {"volume_removed_mm3", result.volume_removed_mm3},
           {"volume_left_mm3", result.volume_left_mm3},
           {"volume_error_bound_mm3", result.volume_error_bound_mm3},
-          {"hash", fmt::format("{:016x}", result.stock->hash())}};
+          {"hash", fmt::format("{:016x}", result.stock->hash())},
+          {"start_hash", fmt::format("{:016x}", result.start_hash)}};
+}
+
+/// What earlier set-ups have cut before the program's first sweep; null: there were none.
+Json earlier_json(const sim::Job& job, const sim::Result& result) {
+  const sim::CarriedCuts& carried = *result.main.carried;
+  if (job.earlier.empty()) return nullptr;
+  Json names = Json::array();
+  for (const std::string& where : carried.stock.where) names.push_back(where);
+  return {{"cut", names}, {"blocks", carried.stock.sweeps.size()}, {"cuts", carried.text()}};
 }
 
 /// What was there before any cut, where it is no box.
@@ -110,6 +123,7 @@ Json raw_json(const stock::RawShape& raw) {
 
 Json stock_json(const sim::Job& job, const sim::Result& result) {
   Json json = cut_stock_json(job, result);
+  json["earlier"] = earlier_json(job, result);
   if (job.scene.stock.shape) json["raw"] = raw_json(*job.scene.stock.shape);
   return json;
 }
@@ -242,7 +256,7 @@ Json pair_json(const toolpath::ToolPath& path, const sim::MachineContacts& conta
   const collision::NearMiss& near = pair.near_miss;
   Json json{{"a", contacts.bodies[pair.a].name},
             {"b", contacts.bodies[pair.b].name},
-            {"contacts", pair.contact_count}};
+            {"contacts", pair.contact_count()}};
   json["near_miss_mm"] = near.within ? Json(near.upper) : Json(nullptr);
   json["near_miss_bound_mm"] = near.lower;
   json["line"] =
@@ -251,11 +265,36 @@ Json pair_json(const toolpath::ToolPath& path, const sim::MachineContacts& conta
   return json;
 }
 
+/// What came to the raw stock, against what was left of it; null: nothing did.
+Json stock_contacts_json(const toolpath::ToolPath& path, const sim::MachineContacts& contacts) {
+  if (!contacts.as_cut) return nullptr;
+  const sim::StockContacts& stock = *contacts.as_cut;
+  Json json{{"came_to_raw", stock.suspects},
+            {"contacts", stock.count(sim::StockVerdict::kContact)},
+            {"open", stock.count(sim::StockVerdict::kOpen)},
+            {"gaps_seen_mm", stock.seen_mm},
+            {"looks", stock.looks},
+            {"events", Json::array()}};
+  for (const sim::StockEvent& event : stock.events) {
+    const collision::PairFindings& pair = contacts.findings.pairs[event.suspect.pair];
+    const auto line = [&](int element) { return path.elements.line(static_cast<size_t>(element)); };
+    json["events"].push_back(
+        {{"body", contacts.bodies[contacts.beside_stock(pair)].name},
+         {"outcome", event.verdict == sim::StockVerdict::kContact ? "contact" : "open"},
+         {"line", line(event.first.element)},
+         {"last_line", line(event.last_element)},
+         {"t_s", event.first.time_s},
+         {"depth_seen_mm", event.depth_mm},
+         {"place_machine_mm", {event.place_M.x(), event.place_M.y(), event.place_M.z()}}});
+  }
+  return json;
+}
+
 Json machine_contacts_json(const sim::Result& result) {
   if (!result.main.contacts) return nullptr;
   const sim::MachineContacts& contacts = *result.main.contacts;
-  Json json{{"count", contacts.contacts(false)},
-            {"with_uncut_stock", contacts.contacts(true)},
+  Json json{{"count", contacts.contacts() + contacts.stock_contacts()},
+            {"stock", stock_contacts_json(result.main.path, contacts)},
             {"near_miss_above_mm", contacts.near_miss_mm},
             {"pairs", Json::array()},
             {"left_out", Json::array()},
@@ -265,6 +304,7 @@ Json machine_contacts_json(const sim::Result& result) {
   json["near_miss_min_mm"] = nearest == nullptr ? Json(nullptr) : Json(nearest->near_miss.upper);
   for (const collision::PairFindings& pair : contacts.findings.pairs) {
     json["pairs"].push_back(pair_json(result.main.path, contacts, pair));
+    if (contacts.with_stock(pair)) continue;
     for (const collision::ContactEvent& event : pair.contacts)
       json["events"].push_back(
           contact_json(result.main.path, contacts.bodies[pair.a].name, contacts.bodies[pair.b].name, event));
@@ -444,7 +484,8 @@ double peak_memory_mb() {
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
-std::string metrics_json(const sim::Job& job, const sim::Result& result, const RenderStatistics& render) {
+std::string metrics_json(const sim::Job& job, const sim::Result& result, const RenderStatistics& render,
+                         const avoidance::Outcome* avoidance) {
   const motion::MotionStatistics& motion = result.main.motion.statistics;
   const auto measured = [&](Json values) {
     return job.has_design() ? std::move(values) : unmeasured(std::move(values));
@@ -481,6 +522,8 @@ std::string metrics_json(const sim::Job& job, const sim::Result& result, const R
   if (result.main.nc) json["program"] = nc_json(job, *result.main.nc);
   if (result.flank) json["flank"] = flank_json(*result.flank);
   if (result.singularity) json["singularity"] = singularity_json(result.main.path, *result.singularity);
+  if (result.driven) json["driven"] = driven_json(result);
+  if (avoidance != nullptr) json["avoidance"] = avoidance_json(*avoidance, job);
   return json_text(json);
 }
 

@@ -5,6 +5,10 @@
 
 #include "sim/simulation.h"
 
+namespace swarf::avoidance {
+struct Outcome;
+}
+
 namespace swarf::reports {
 
 /// What the pictures cost; part of metrics.json.
@@ -13,8 +17,9 @@ struct RenderStatistics {
   double frame_ms_median = 0.0;
 };
 
-/// The JSON text of metrics.json (schema 1).
-std::string metrics_json(const sim::Job& job, const sim::Result& result, const RenderStatistics& render);
+/// The JSON text of metrics.json (schema 1). `avoidance`: of a scene with [post].
+std::string metrics_json(const sim::Job& job, const sim::Result& result, const RenderStatistics& render,
+                         const avoidance::Outcome* avoidance = nullptr);
 
 /// The JSON text of findings.json: an array, most severe first.
 std::string findings_json(const sim::Result& result);

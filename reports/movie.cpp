@@ -20,7 +20,7 @@ namespace {
 class MovieStock {
  public:
   explicit MovieStock(const FinishedRun& run)
-      : stock_(run.job.scene.stock.body_W(), run.job.scene.movie.voxel_mm),
+      : stock_(sim::starting_stock(run.job, run.carried, run.job.scene.movie.voxel_mm)),
         all_(sim::stock_sweeps(run.job, run.cycles)),
         solids_(sim::tool_solids(run.job.scene)) {}
 

@@ -14,6 +14,7 @@
 #include "render/lettering.h"
 #include "render/ray/still.h"
 #include "reports/machine_view.h"
+#include "sim/run/carried_cuts.h"
 #include "stock/stock.h"
 
 namespace swarf::reports {
@@ -233,12 +234,13 @@ render::Image path_panel(const sim::Job& job, const toolpath::ToolPath& path) {
                                              size.x(), size.y(), size.z())});
 }
 
-/// The raw stock, no finer than a picture shows it.
-TriMesh raw_mesh(const sim::StockSettings& stock) {
+/// The stock that the program begins with, no finer than a picture shows it.
+TriMesh raw_mesh(const sim::Job& job) {
   constexpr double kCells = 150.0;  // along its longest side
-  if (!stock.shape) return box_mesh(stock.box_W);
+  const sim::StockSettings& stock = job.scene.stock;
+  if (!stock.shape && job.earlier.empty()) return box_mesh(stock.box_W);
   const double voxel = std::max(stock.voxel_mm, stock.box_W.size().maxCoeff() / kCells);
-  return stock::Stock(*stock.shape, voxel).mesh();
+  return sim::starting_stock(job, *sim::carried_cuts(job), voxel).mesh();
 }
 
 /// The machine in the middle of the path.
@@ -249,7 +251,7 @@ render::Image work_panel(const sim::Job& job, const toolpath::ToolPath& path) {
   const kinematics::InverseKinematics inverse(sim::machines_by_tool(job)[tool]);
   const AxisValues q = block.axes ? block.axes->to : inverse.solve_nearest(block.to, at_zero(model)).q;
   const MachineView view(job);
-  const TriMesh stock = raw_mesh(job.scene.stock);
+  const TriMesh stock = raw_mesh(job);
   std::vector<render::DrawItem> items = view.items(q, tool, &stock);
   // The work and what is near it: the whole machine would leave the stock a few pixels.
   const Pose X_MW = view.work_pose(q);

@@ -40,10 +40,11 @@ fs::path clean(const std::string& target) {
 
 /// Names in a folder of results that swarf itself has given.
 bool is_ours(const std::string& name) {
-  constexpr std::array<std::string_view, 18> kNames{
-      "run.json",      "input",         "trajectory.csv", "blocks.csv",    "stock.vdb",     "part.glb",
-      "part.stl",      "machine.glb",   "movie.mp4",      "report.html",   "metrics.json",  "run.record",
-      "findings.json", "deviation.ply", "deviation.png",  "deviation.glb", "motion.places", "trajectory.h5"};
+  constexpr std::array<std::string_view, 20> kNames{
+      "run.json",      "input",         "trajectory.csv", "blocks.csv",    "stock.vdb",
+      "part.glb",      "part.stl",      "machine.glb",    "movie.mp4",     "report.html",
+      "metrics.json",  "run.record",    "findings.json",  "deviation.ply", "deviation.png",
+      "deviation.glb", "motion.places", "trajectory.h5",  "setups.json",   "posted.nc"};
   const auto is_between = [&](std::string_view start, std::string_view end) {
     return name.size() > start.size() + end.size() &&
            std::string_view(name).substr(0, start.size()) == start &&
@@ -53,12 +54,20 @@ bool is_ours(const std::string& name) {
          is_between("surface_", ".rays") || is_between("stock_after_", ".vdb");
 }
 
+/// "1_first_side": the results of one of several set-ups.
+bool is_of_setup(const fs::path& entry) {
+  const std::string name = entry.filename().string();
+  const size_t digits = std::min(name.find_first_not_of("0123456789"), name.size());
+  return digits > 0 && digits < name.size() && name[digits] == '_' && fs::exists(entry / "run.json");
+}
+
 /// What others have put beside an earlier result goes on lying beside the new one.
 void keep_foreign_files(const fs::path& old, const fs::path& target) {
   for (const fs::directory_entry& entry : fs::directory_iterator(old)) {
     const fs::path name = entry.path().filename();
     std::error_code ignored;
-    if (!is_ours(name.string()) && !fs::exists(fs::symlink_status(target / name)))
+    if (!is_ours(name.string()) && !is_of_setup(entry.path()) &&
+        !fs::exists(fs::symlink_status(target / name)))
       fs::rename(entry.path(), target / name, ignored);
   }
 }

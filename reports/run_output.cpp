@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "base/file.h"
+#include "reports/avoidance_output.h"
 #include "reports/kept_inputs.h"
 #include "reports/kept_motion.h"
 #include "reports/part_view.h"
@@ -96,7 +97,7 @@ void write_pictures(const PendingFolder& folder, const FinishedRun& run, const T
 
 /// What pictures and measures can be made from again, the most precious first.
 void write_state(const PendingFolder& folder, const sim::Job& job, const sim::Result& result,
-                 Progress& progress) {
+                 const OutputOptions& options, Progress& progress) {
   progress.begin("write results", 2, "files");
   result.stock->save(folder.file("stock.vdb"), result.cut.metadata);
   fs::remove(folder.file(sim::kKeptStock));
@@ -104,10 +105,12 @@ void write_state(const PendingFolder& folder, const sim::Job& job, const sim::Re
   for (size_t i = 0; i < result.main.dexels.size(); ++i) {
     result.main.dexels[i].save(folder.file(fmt::format("surface_{}.rays", i)));
   }
-  if (result.main.nc) keep_called_programs(folder, job, result.main.nc->summary.files);
+  keep_called_programs(folder, job,
+                       result.main.nc ? result.main.nc->summary.files : std::vector<std::string>{},
+                       result.main.carried->called);
   if (!result.main.cycles->stopped()) keep_motion(folder, *result.main.cycles);
   if (!result.stopped) {
-    write_text(folder.file("metrics.json"), metrics_json(job, result, {}));
+    write_text(folder.file("metrics.json"), metrics_json(job, result, {}, options.avoidance));
     write_text(folder.file("findings.json"), findings_json(result));
   }
   progress.end();
@@ -115,9 +118,9 @@ void write_state(const PendingFolder& folder, const sim::Job& job, const sim::Re
 
 /// As write_state; what could be written is not thrown away when the rest cannot.
 void write_state_or_keep(PendingFolder& folder, const sim::Job& job, const sim::Result& result,
-                         Progress& progress) {
+                         const OutputOptions& options, Progress& progress) {
   try {
-    write_state(folder, job, result, progress);
+    write_state(folder, job, result, options, progress);
   } catch (const std::exception& error) {
     if (!fs::exists(folder.file("stock.vdb"))) throw;
     const std::string place = folder.keep_incomplete();
@@ -161,24 +164,26 @@ sim::MeasuredPath whole_motion(const sim::Job& job, const std::string& folder, P
 }  // namespace
 
 void begin_run(const PendingFolder& folder, const sim::Job& job, const OutputOptions& options) {
-  const nlohmann::ordered_json manifest{{"swarf", SWARF_VERSION},
-                                        {"scene", job.scene.name},
-                                        {"program", fs::path(job.scene.program_file).filename().string()},
-                                        {"command", options.command},
-                                        {"overrides", keep_inputs(folder, job, options.overrides)}};
+  const KeptInputs kept = keep_inputs(folder, job, options.overrides);
+  nlohmann::ordered_json manifest{{"swarf", SWARF_VERSION},
+                                  {"scene", job.scene.name},
+                                  {"program", fs::path(job.scene.program_file).filename().string()},
+                                  {"command", options.command},
+                                  {"overrides", kept.own}};
+  if (kept.earlier) manifest["earlier_overrides"] = *kept.earlier;
   write_text(folder.file(kRunMark),
              manifest.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
 
 std::vector<Diagnostic> write_run(PendingFolder& folder, const sim::Job& job, sim::Result& result,
                                   const OutputOptions& options, Progress& progress) {
-  write_state_or_keep(folder, job, result, progress);
+  write_state_or_keep(folder, job, result, options, progress);
   Attempts attempts;
   if (result.stopped) {
     folder.move_into_place();
     return {};
   }
-  FinishedRun run{job, *result.main.cycles, *result.stock, result.main.dexels};
+  FinishedRun run{job, *result.main.cycles, *result.stock, result.main.dexels, *result.main.carried};
   if (result.main.keys) run.keys = &*result.main.keys;
   RunFiles files;
   RenderStatistics statistics;
@@ -193,37 +198,22 @@ std::vector<Diagnostic> write_run(PendingFolder& folder, const sim::Job& job, si
     attempts.run([&] {
       ReportData data = report_data(job, result, files, options.render);
       data.reproduce = {options.command};
+      if (options.avoidance != nullptr)
+        data.topics.insert(data.topics.begin(), avoidance_topic(*options.avoidance, job));
       write_report(folder.file("report.html"), data);
     });
     progress.end();
   }
-  attempts.run([&] { write_text(folder.file("metrics.json"), metrics_json(job, result, statistics)); });
+  attempts.run([&] {
+    write_text(folder.file("metrics.json"), metrics_json(job, result, statistics, options.avoidance));
+  });
   folder.move_into_place();
   attempts.rethrow();
   return attempts.failures;
 }
 
 sim::Job read_job(const std::string& folder, const std::vector<std::string>& overrides) {
-  const fs::path root(folder);
-  refuse_special_file((root / "run.json").string());
-  std::ifstream manifest(root / "run.json");
-  if (!manifest) {
-    throw InputError("not-a-run", {folder}, "there is no run.json: this is not the folder of a finished run",
-                     "name the folder that 'swarf run ... -o DIR' wrote");
-  }
-  const auto json = nlohmann::json::parse(manifest, nullptr, false);
-  const auto is_text = [](const nlohmann::json& value) { return value.is_string(); };
-  if (!json.is_object() || !json.contains("overrides") || !json.at("overrides").is_array() ||
-      !std::all_of(json.at("overrides").begin(), json.at("overrides").end(), is_text) ||
-      (json.contains("scene") && !json.at("scene").is_string())) {
-    throw InputError("not-a-run", {(root / "run.json").string()}, "this file is broken",
-                     "run the scene again");
-  }
-  auto all = json.at("overrides").get<std::vector<std::string>>();
-  all.insert(all.end(), overrides.begin(), overrides.end());
-  sim::Job job = sim::load_job((root / "input" / "scene.toml").string(), all);
-  job.scene.name = json.value("scene", job.scene.name);
-  return job;
+  return sim::load_kept_job(folder, overrides);
 }
 
 StoredRun read_run(const std::string& folder) {

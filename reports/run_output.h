@@ -7,19 +7,24 @@
 #include "base/progress.h"
 #include "reports/metrics_json.h"
 #include "reports/pending_folder.h"
+#include "sim/job/kept_job.h"
 #include "sim/simulation.h"
+
+namespace swarf::avoidance {
+struct Outcome;
+}
 
 namespace swarf::reports {
 
 struct OutputOptions {
-  bool render = true;                  ///< false: no movie, no stills
-  bool report = true;                  ///< false: no page, no glTF
-  std::vector<std::string> overrides;  ///< the --set of this run, kept with it
-  std::string command;                 ///< as it was given, ready for a shell
+  bool render = true;                             ///< false: no movie, no stills
+  bool report = true;                             ///< false: no page, no glTF
+  std::vector<std::string> overrides;             ///< the --set of this run, kept with it
+  std::string command;                            ///< as it was given, ready for a shell
+  const avoidance::Outcome* avoidance = nullptr;  ///< of a scene with [post]; else null
 };
 
-/// The file that marks a folder as a result of `swarf run`.
-inline constexpr const char* kRunMark = "run.json";
+using sim::kRunMark;
 
 /// Before the work: copies the inputs into `folder` (kept_inputs.h) and marks it as a run. Throws InputError.
 void begin_run(const PendingFolder& folder, const sim::Job& job, const OutputOptions& options);

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/units.h"
+#include "reports/driven_output.h"
 #include "reports/fig6_table.h"
 
 namespace swarf::reports {
@@ -111,7 +113,13 @@ std::vector<Plot> run_plots(const sim::Job& job, const sim::Result& result) {
                           axis_plot(job, envelope, AxisKind::kRotary, true)};
   if (!result.main.ridges.empty() || planned) plots.push_back(scallop_plot(result));
   if (!result.main.dexels.empty()) plots.push_back(height_plot(job, result));
-  if (planned) plots.push_back(fig6_plot());
+  if (result.driven) {
+    for (Plot& plot : driven_plots(result)) plots.push_back(std::move(plot));
+  } else if (planned) {
+    plots.push_back(fig6_plot());
+  }
+  // A machine without rotary axes has no plots of them.
+  std::erase_if(plots, [](const Plot& plot) { return plot.series.empty() && plot.bars.empty(); });
   return plots;
 }
 

@@ -14,6 +14,7 @@
 #include "papers/so_table2.h"
 #include "reports/check_rows.h"
 #include "reports/cl_report.h"
+#include "reports/driven_output.h"
 #include "reports/fig6_table.h"
 #include "reports/flank_table.h"
 #include "reports/nc_report.h"
@@ -309,8 +310,9 @@ Lines path_lines(const sim::Job& job, const sim::Result& result) {
       {"path", fmt::format("{} passes, {:.0f} mm in contact, planner {}", result.main.path.passes,
                            result.main.path.pass_length_mm, result.main.path.planner)},
       {"time", fmt::format("{} at F {:.0f} mm/min ({} cycles of {:g} ms)", duration(m.time_s),
-                           mm_min_from_mm_s(job.program.operations.front().feed_mm_s), m.ticks,
-                           job.scene.motion.period_s * 1e3)},
+                           mm_min_from_mm_s(job.scene.driven ? job.scene.driven->plan.feed_mm_s
+                                                             : job.program.operations.front().feed_mm_s),
+                           m.ticks, job.scene.motion.period_s * 1e3)},
       {"feed error",
        fmt::format("{:.1e} relative; slowest {:.2f} mm/s in contact", m.feed_error_max_rel, m.feed_min_mm_s)},
       {"cycle cost", fmt::format("{:.0f} ns median, {:.0f} ns at 99.9 %", m.tick_ns_median, m.tick_ns_p999)}};
@@ -394,6 +396,8 @@ ReportData report_data(const sim::Job& job, const sim::Result& result, const Run
     data.tables = {axis_table(job, result), axis_limit_table(job, result)};
     if (job.scene.tools.size() > 1) data.tables.insert(data.tables.begin(), tools_table(job, result));
     if (result.flank) data.tables.insert(data.tables.begin(), flank_table(*result.flank));
+  } else if (result.driven) {
+    data.tables = {axis_table(job, result), axis_limit_table(job, result)};
   } else {
     data.tables = {planner_table(result), mode_table(result), axis_table(job, result),
                    axis_limit_table(job, result), fig6_table()};
@@ -409,6 +413,7 @@ ReportData report_data(const sim::Job& job, const sim::Result& result, const Run
     data.paper = papers::so_paper_rows(machine, *result.singularity);
     if (!data.paper.empty()) data.paper_title = "So et al. (2008), Table 2 and section 5";
   }
+  if (result.driven) data.topics.insert(data.topics.begin(), driven_topic(result));
   data.checks = checks_of(result, rendered);
   data.facts = facts_of(job, result, files);
   data.facts.insert(data.facts.begin() + 1, time_facts(job, result));
@@ -440,10 +445,12 @@ std::string clearance_line(const sim::ToolClearance& clearance) {
 
 /// Contacts of machine, fixtures and tools, or how near they came.
 std::string machine_line(const sim::MachineContacts& contacts) {
-  const uint64_t all = contacts.contacts(false), with_stock = contacts.contacts(true);
-  std::string line = fmt::format("{} contacts among {} pairs of links, fixtures and tools", all,
-                                 contacts.findings.pairs.size());
-  if (with_stock > 0) line += fmt::format(", {} with the stock as it is before the first cut", with_stock);
+  std::string line = fmt::format("{} contacts among {} pairs of links, fixtures and tools",
+                                 contacts.contacts(), contacts.findings.pairs.size());
+  if (const auto& stock = contacts.as_cut)
+    line += fmt::format("; {} times at the raw stock: {} in what is left of it, {} open, {} clear",
+                        stock->suspects, stock->count(sim::StockVerdict::kContact),
+                        stock->count(sim::StockVerdict::kOpen), stock->count(sim::StockVerdict::kClear));
   const collision::PairFindings* const nearest = contacts.nearest();
   if (nearest == nullptr)
     return line + fmt::format("; none comes nearer than {:g} mm", contacts.near_miss_mm);
@@ -456,6 +463,8 @@ std::vector<std::pair<std::string, std::string>> summary_lines(const sim::Job& j
   Lines lines = result.main.nc ? nc_lines(job, result)
                 : job.cl       ? cl_path_lines(job, result)
                                : path_lines(job, result);
+  if (result.driven)
+    for (auto& line : driven_lines(result)) lines.push_back(std::move(line));
   const Lines surface = surface_lines(job, result);
   lines.insert(lines.end(), surface.begin(), surface.end());
   const stock::CutStatistics& cut = result.stock->statistics();

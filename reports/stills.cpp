@@ -78,7 +78,7 @@ motion::Cycle middle_cycle(const FinishedRun& run) {
 
 /// The stock as it stands at the middle of the program, at the movie's voxel size.
 TriMesh half_cut_stock(const FinishedRun& run, const motion::Cycle& cycle) {
-  stock::Stock stock(run.job.scene.stock.body_W(), run.job.scene.movie.voxel_mm);
+  stock::Stock stock = sim::starting_stock(run.job, run.carried, run.job.scene.movie.voxel_mm);
   const sim::JobSweeps all = sim::stock_sweeps(run.job, run.cycles);
   const auto end = std::find_if(all.sweeps.begin(), all.sweeps.end(), [&](const stock::Sweep& sweep) {
     return !sim::is_done(all.sources[sweep.block], cycle);

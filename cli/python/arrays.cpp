@@ -60,7 +60,7 @@ std::vector<RayPlace> ray_places(const std::vector<stock::SurfaceDexels>& faces)
 }
 
 int line_of(const sim::MeasuredPath& path, uint32_t block) {
-  if (block == stock::kUncut) return 0;
+  if (block >= path.rays.sources.size()) return 0;  // uncut, or by an earlier set-up
   return path.path.elements.line(static_cast<size_t>(path.rays.sources[block].element));
 }
 

@@ -176,6 +176,63 @@ void apply_override(toml::table& root, const std::string& text, Diagnostics& dia
   table->insert_or_assign(path, *parsed.get("value"));
 }
 
+bool holds(const std::vector<std::string>& names, const std::string& key) {
+  return std::any_of(names.begin(), names.end(),
+                     [&](const std::string& name) { return name == key || inch_key(name) == key; });
+}
+
+/// Moved, not copied: a copy of a node does not know its place in the file.
+void move_key(toml::table& from, const std::string& key, toml::table& to) {
+  const toml::table::iterator found = from.find(key);
+  const toml::key placed = found->first;
+  to.erase(other_unit(to, key));
+  to.erase(key);
+  found->second.visit([&](auto& value) { to.insert_or_assign(placed, std::move(value)); });
+  from.erase(found);
+}
+
+std::vector<std::string> keys_of(const toml::table& table) {
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : table) keys.emplace_back(key.str());
+  return keys;
+}
+
+/// What stands in `over` has no other of its group below it.
+void clear_groups(toml::table& root, const toml::table& over, const ConfigOverlay& overlay) {
+  for (const std::vector<std::string>& group : overlay.instead) {
+    const bool said = std::any_of(group.begin(), group.end(),
+                                  [&](const std::string& key) { return over.get(key) != nullptr; });
+    if (!said) continue;
+    for (const std::string& key : group) root.erase(key);
+  }
+}
+
+void lay_over(toml::table& root, const ConfigOverlay& overlay) {
+  toml::array* const list = root.get(overlay.list) != nullptr ? root.get(overlay.list)->as_array() : nullptr;
+  toml::table* const over =
+      list != nullptr && overlay.index < list->size() ? list->get(overlay.index)->as_table() : nullptr;
+  if (over == nullptr) return;
+  clear_groups(root, *over, overlay);
+  toml::table own;
+  for (const std::string& key : keys_of(*over)) {
+    toml::table* const inner = over->get(key)->as_table();
+    toml::table* const below = root.get(key) != nullptr ? root.get(key)->as_table() : nullptr;
+    if (key == overlay.list || holds(overlay.own, key)) {
+      move_key(*over, key, own);
+    } else if (inner != nullptr && below != nullptr && holds(overlay.joined, key)) {
+      for (const std::string& one : keys_of(*inner)) move_key(*inner, one, *below);
+    } else {
+      move_key(*over, key, root);
+    }
+  }
+  root.insert_or_assign(overlay.list, std::move(own));
+}
+
+/// Of the list itself, before one of it is laid over the root.
+bool is_for_list(const std::string& override_text, const ConfigOverlay& overlay) {
+  return override_text.starts_with(overlay.list + "[");
+}
+
 std::optional<std::string> read_file(const std::string& path, Diagnostics& diagnostics) {
   refuse_special_file(path);
   // A folder opens like a file and cannot be read.
@@ -233,9 +290,9 @@ void ConfigTable::Node::judge(const toml::key& key) const {
 ConfigTable::ConfigTable(std::shared_ptr<Node> node) : node_(std::move(node)) {}
 
 ConfigTable ConfigTable::load(const std::string& path, const std::vector<std::string>& overrides,
-                              Diagnostics& diagnostics) {
+                              Diagnostics& diagnostics, const ConfigOverlay* overlay) {
   const std::optional<std::string> text = read_file(path, diagnostics);
-  if (text) return parse(*text, path, overrides, diagnostics);
+  if (text) return parse(*text, path, overrides, diagnostics, overlay);
   auto empty = std::make_shared<Node>();
   empty->file = path;
   empty->place = {path};
@@ -244,7 +301,8 @@ ConfigTable ConfigTable::load(const std::string& path, const std::vector<std::st
 }
 
 ConfigTable ConfigTable::parse(const std::string& text, const std::string& name,
-                               const std::vector<std::string>& overrides, Diagnostics& diagnostics) {
+                               const std::vector<std::string>& overrides, Diagnostics& diagnostics,
+                               const ConfigOverlay* overlay) {
   auto node = std::make_shared<Node>();
   node->file = name;
   node->place = {name};
@@ -256,7 +314,13 @@ ConfigTable ConfigTable::parse(const std::string& text, const std::string& name,
                       "mend the TOML syntax at this place");
     return ConfigTable(std::move(node));
   }
-  for (const std::string& one : overrides) apply_override(*node->root, one, diagnostics);
+  for (const std::string& one : overrides) {
+    if (overlay != nullptr && is_for_list(one, *overlay)) apply_override(*node->root, one, diagnostics);
+  }
+  if (overlay != nullptr) lay_over(*node->root, *overlay);
+  for (const std::string& one : overrides) {
+    if (overlay == nullptr || !is_for_list(one, *overlay)) apply_override(*node->root, one, diagnostics);
+  }
   node->table = node->root.get();
   return ConfigTable(std::move(node));
 }
@@ -268,6 +332,11 @@ bool ConfigTable::has(const std::string& key) const {
 bool ConfigTable::is_text(const std::string& key) const {
   const toml::node* value = node_->find(key).node;
   return value != nullptr && value->is_string();
+}
+
+bool ConfigTable::is_list(const std::string& key) const {
+  const toml::node* value = node_->find(key).node;
+  return value != nullptr && value->is_array();
 }
 
 SourceLocation ConfigTable::where() const {

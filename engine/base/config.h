@@ -26,20 +26,34 @@ struct Range {
 inline constexpr Range kAboveZero{0.0, std::numeric_limits<double>::infinity(), true};
 inline constexpr Range kZeroOrMore{0.0, std::numeric_limits<double>::infinity(), false};
 
+/// One of the tables [[list]] of a file, to be laid over its root: what stands in it takes the place of what
+/// the root says. Overrides that begin with "list[" are applied before, all others after.
+struct ConfigOverlay {
+  std::string list;
+  size_t index = 0;
+  std::vector<std::string> own;  ///< keys that do not go to the root, but to a table [list] there
+  /// Keys of which a file has one: what is laid over removes the others of its group from the root.
+  std::vector<std::vector<std::string>> instead;
+  std::vector<std::string> joined;  ///< tables that are laid over key by key; others are replaced whole
+};
+
 /// One table of a TOML file. The keys that are read are the keys that are known; finish() reports the others.
 class ConfigTable {
  public:
   /// Parses a whole file; each override is "dotted.key=value" with a TOML value (bare words are strings).
   /// Syntax errors, unreadable and empty files go to `diagnostics`, and the table is then empty.
+  /// `overlay`: ignored where its list is not there.
   static ConfigTable load(const std::string& path, const std::vector<std::string>& overrides,
-                          Diagnostics& diagnostics);
+                          Diagnostics& diagnostics, const ConfigOverlay* overlay = nullptr);
 
   /// The same of a text that stands in no file; messages call it `name`.
   static ConfigTable parse(const std::string& text, const std::string& name,
-                           const std::vector<std::string>& overrides, Diagnostics& diagnostics);
+                           const std::vector<std::string>& overrides, Diagnostics& diagnostics,
+                           const ConfigOverlay* overlay = nullptr);
 
   bool has(const std::string& key) const;              ///< whether the key stands in this table
   bool is_text(const std::string& key) const;          ///< there, and in quotes
+  bool is_list(const std::string& key) const;          ///< there, and an array
   SourceLocation where(const std::string& key) const;  ///< of the value, or of this table when it is absent
   SourceLocation where() const;                        ///< of this table
   std::vector<std::string> keys() const;               ///< all that stand in it, known or not

@@ -6,8 +6,6 @@
 namespace swarf::collision {
 namespace {
 
-enum class Way : uint8_t { kFree, kTouches, kInside };
-
 constexpr size_t kFirstWays = 64;
 constexpr uint64_t kLeastBudget = 64;  ///< triples that a search over several ways may split
 constexpr size_t kDepthsMost = 8;      ///< places of a contact at which its depth is looked at
@@ -51,10 +49,8 @@ class PairWalk {
       to = std::min(first + at_once, last);
       at_once = visit(first, to) ? 2 * at_once : std::max<size_t>(1, at_once / 2);
     }
-    look_inside();
   }
-  const NearMiss& near_miss() const { return near_; }
-  const std::vector<Way>& ways() const { return ways_; }
+  StretchWalk found() && { return {near_, std::move(ways_)}; }
 
  private:
   /// Distances from here on do not matter, but for contacts.
@@ -131,16 +127,6 @@ class PairWalk {
     if (last) near_.place = place_on(poses_, ways_.size() - 1, 1.0);
   }
 
-  /// Where the surfaces do not touch over some ways, one look says whether one body is inside the other.
-  void look_inside() {
-    for (size_t k = 0; k < ways_.size(); ++k) {
-      if (ways_[k] != Way::kFree || (k > 0 && ways_[k - 1] != Way::kTouches)) continue;
-      const AxisValues q = chord_of(poses_, k, std::min(k + 1, poses_.size() - 1)).at(0.5);
-      if (!one_holds_other(pair_, q)) continue;
-      for (size_t i = k; i < ways_.size() && ways_[i] == Way::kFree; ++i) ways_[i] = Way::kInside;
-    }
-  }
-
   const Encounter& pair_;
   PathStretch poses_;
   const PathCheckOptions& options_;
@@ -187,13 +173,32 @@ void look_how_deep(const Encounter& pair, const BodyDepth& in_a, const BodyDepth
 
 }  // namespace
 
-StretchFindings walk_stretch(const Encounter& pair, const BodyDepth& in_a, const BodyDepth& in_b,
-                             PathStretch poses, const PathCheckOptions& options, const PairHistory& before) {
+StretchWalk walk_stretch(const Encounter& pair, PathStretch poses, const PathCheckOptions& options,
+                         const PairHistory& before) {
   PairWalk walk(pair, poses, options, before);
   walk.run();
-  const std::vector<Way>& ways = walk.ways();
-  StretchFindings findings;
-  findings.near_miss = walk.near_miss();
+  return std::move(walk).found();
+}
+
+void look_inside(const Encounter& pair, PathStretch poses, std::optional<Way> before,
+                 std::vector<Way>& ways) {
+  for (size_t k = 0; k < ways.size(); ++k) {
+    if (ways[k] != Way::kFree) continue;
+    size_t end = k;
+    while (end < ways.size() && ways[end] == Way::kFree) ++end;
+    const AxisValues q = chord_of(poses, k, std::min(k + 1, poses.size() - 1)).at(0.5);
+    const bool goes_on = k == 0 && before && *before != Way::kTouches;
+    if (goes_on ? *before == Way::kInside : one_holds_other(pair, q))
+      std::fill(ways.begin() + static_cast<ptrdiff_t>(k), ways.begin() + static_cast<ptrdiff_t>(end),
+                Way::kInside);
+    k = end;
+  }
+}
+
+std::vector<ContactEvent> contacts_of(const Encounter& pair, const BodyDepth& in_a, const BodyDepth& in_b,
+                                      PathStretch poses, const PathCheckOptions& options,
+                                      const std::vector<Way>& ways) {
+  std::vector<ContactEvent> contacts;
   for (size_t k = 0; k < ways.size(); ++k) {
     if (ways[k] == Way::kFree) continue;
     TouchingWays touching{k, k};
@@ -203,12 +208,10 @@ StretchFindings walk_stretch(const Encounter& pair, const BodyDepth& in_a, const
     event.last_cycle = poses[std::min(touching.last + 1, poses.size() - 1)].cycle;
     event.last_element = end.element;
     look_how_deep(pair, in_a, in_b, poses, touching, event);
-    findings.contacts.push_back(event);
+    contacts.push_back(event);
     k = touching.last;
   }
-  findings.starts_touching = ways.front() != Way::kFree;
-  findings.ends_touching = ways.back() != Way::kFree;
-  return findings;
+  return contacts;
 }
 
 }  // namespace swarf::collision

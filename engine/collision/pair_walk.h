@@ -1,6 +1,8 @@
 // One pair of bodies over a stretch of poses. Internal to this folder.
 #pragma once
 
+#include <optional>
+
 #include "collision/path_check.h"
 
 namespace swarf::collision {
@@ -16,12 +18,17 @@ struct PathPose {
 /// Poses that follow each other with one tool; a single one where a tool makes no more.
 using PathStretch = std::span<const PathPose>;
 
-/// What a stretch says about a pair.
-struct StretchFindings {
-  NearMiss near_miss;                  ///< bounds of this stretch; `within`: below what was known before
-  std::vector<ContactEvent> contacts;  ///< in their order
-  bool starts_touching = false;  ///< the first contact holds on the first way; the last on the last one:
-  bool ends_touching = false;
+/// What is known of the way from one cycle to the next.
+enum class Way : uint8_t {
+  kFree,     ///< the surfaces do not touch
+  kTouches,  ///< they do, or are not proven not to
+  kInside,   ///< free, and one body is wholly inside the other
+};
+
+/// What a stretch says about the surfaces of a pair.
+struct StretchWalk {
+  NearMiss near_miss;     ///< bounds of this stretch; `within`: below what was known before
+  std::vector<Way> ways;  ///< at least one
 };
 
 /// What is known before.
@@ -30,7 +37,16 @@ struct PairHistory {
   PrimitivePair hint;
 };
 
-StretchFindings walk_stretch(const Encounter& pair, const BodyDepth& in_a, const BodyDepth& in_b,
-                             PathStretch poses, const PathCheckOptions& options, const PairHistory& before);
+StretchWalk walk_stretch(const Encounter& pair, PathStretch poses, const PathCheckOptions& options,
+                         const PairHistory& before);
+
+/// Where the surfaces do not touch over some ways, one look says whether one body is inside the other. The
+/// way before the stretch, if its end is where this one starts, spares the first look.
+void look_inside(const Encounter& pair, PathStretch poses, std::optional<Way> before, std::vector<Way>& ways);
+
+/// The contacts in their order: ways that follow each other and are not free.
+std::vector<ContactEvent> contacts_of(const Encounter& pair, const BodyDepth& in_a, const BodyDepth& in_b,
+                                      PathStretch poses, const PathCheckOptions& options,
+                                      const std::vector<Way>& ways);
 
 }  // namespace swarf::collision

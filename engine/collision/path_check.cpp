@@ -6,12 +6,13 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
-#include "collision/pair_walk.h"
+#include "collision/free_range.h"
 
 namespace swarf::collision {
 namespace {
 
 constexpr size_t kStretch = 1024;         // ways
+constexpr double kStands = 1e-6;          // mm, rad
 constexpr size_t kBatch = 16 * kStretch;  // ways
 
 void check_path_options(const PathCheckOptions& options) {
@@ -68,26 +69,53 @@ struct WatchedPair {
   Encounter encounter;
   PairFindings findings;
   PrimitivePair hint;
-  bool touching = false;   ///< at the end of what has been seen
-  uint64_t end_cycle = 0;  ///< number of the last pose that has been seen
+  FreeRange free;
+  std::optional<Way> last;  ///< the last way that has been seen
+  uint64_t end_cycle = 0;   ///< number of the last pose that has been seen
 };
 
 namespace {
 
-void merge_stretch(WatchedPair& pair, const StretchFindings& found, PathStretch poses) {
-  const bool follows = pair.touching && found.starts_touching && pair.end_cycle == poses.front().cycle;
-  merge_near(pair.findings.near_miss, found.near_miss);
-  if (found.near_miss.within) pair.hint = found.near_miss.pair;
-  std::vector<ContactEvent>& kept = pair.findings.contacts;
-  for (size_t i = 0; i < found.contacts.size(); ++i) {
-    const bool joins = i == 0 && follows;
-    const bool is_kept = pair.findings.contact_count <= PathCheck::kEventsMost;
-    if (joins && is_kept) join_events(kept.back(), found.contacts[i]);
-    if (joins) continue;
-    if (pair.findings.contact_count++ < PathCheck::kEventsMost) kept.push_back(found.contacts[i]);
+/// A pair over a stretch.
+struct StretchVisit {
+  PathStretch poses;
+  bool watched = false;  ///< both bodies are there
+  bool open = false;     ///< not known to be free at once
+  bool joins = false;    ///< its first contact goes on where the stretch before ends
+  StretchWalk walk;      ///< of an open one
+  std::vector<ContactEvent> contacts;
+};
+
+/// Distances from here on do not matter.
+double asked_of(const WatchedPair& pair, const PathCheckOptions& options) {
+  return std::max(pair.findings.near_miss.upper, 2.0 * options.touch_mm);
+}
+
+/// In the order of the stretches, for what is inside stays inside until the surfaces touch.
+void follow_inside(WatchedPair& pair, StretchVisit& visit) {
+  const bool follows = pair.last && pair.end_cycle == visit.poses.front().cycle;
+  if (visit.open)
+    look_inside(pair.encounter, visit.poses, follows ? pair.last : std::nullopt, visit.walk.ways);
+  visit.joins = visit.open && follows && *pair.last != Way::kFree && visit.walk.ways.front() != Way::kFree;
+  pair.last = visit.open ? visit.walk.ways.back() : Way::kFree;
+  pair.end_cycle = visit.poses.back().cycle;
+}
+
+void merge_visit(WatchedPair& pair, const StretchVisit& visit) {
+  merge_near(pair.findings.near_miss, visit.walk.near_miss);
+  if (visit.walk.near_miss.within) pair.hint = visit.walk.near_miss.pair;
+  PairFindings& all = pair.findings;
+  for (size_t i = 0; i < visit.contacts.size(); ++i) {
+    const ContactEvent& one = visit.contacts[i];
+    const bool is_kept = all.spans.size() <= PathCheck::kEventsMost;
+    if (i == 0 && visit.joins) {
+      if (is_kept) join_events(all.contacts.back(), one);
+      all.spans.back().last = one.last_cycle;
+      continue;
+    }
+    if (all.spans.size() < PathCheck::kEventsMost) all.contacts.push_back(one);
+    all.spans.push_back({one.first.cycle, one.last_cycle});
   }
-  pair.touching = found.ends_touching;
-  pair.end_cycle = poses.back().cycle;
 }
 
 }  // namespace
@@ -97,9 +125,47 @@ struct PathCheck::State {
   std::vector<BodyDepth> depths;  ///< by body
   std::vector<LeftOutPair> left_out;
   std::vector<PathPose> poses;  ///< the first one has been looked at, but for the start
+  std::vector<int> unseen_changes;
   uint64_t cycles = 0;
   bool begun = false;
+
+  void look_at_change(const motion::Cycle& next);
+
+  PathStretch stretch(const StretchRange& range) const {
+    return PathStretch(poses).subspan(range.first, range.last - range.first + 1);
+  }
+  void look_at_open(std::vector<StretchVisit>& visits, size_t stretches, const PathCheckOptions& options);
 };
+
+void PathCheck::State::look_at_change(const motion::Cycle& next) {
+  if (poses.empty() || poses.back().tool == next.sample.tool) return;
+  const bool stands = (poses.back().q - next.q).cwiseAbs().maxCoeff() <= kStands;
+  if (!stands && unseen_changes.size() < kEventsMost) unseen_changes.push_back(next.sample.element);
+}
+
+/// What is not known to be free, in parallel by stretches; whether one body is inside the other by pairs.
+void PathCheck::State::look_at_open(std::vector<StretchVisit>& visits, size_t stretches,
+                                    const PathCheckOptions& options) {
+  std::vector<size_t> open;
+  for (size_t i = 0; i < visits.size(); ++i)
+    if (visits[i].open) open.push_back(i);
+  parallel_chunks(open.size(), 1, [&](size_t n, size_t) {
+    StretchVisit& visit = visits[open[n]];
+    const WatchedPair& pair = pairs[open[n] / stretches];
+    visit.walk =
+        walk_stretch(pair.encounter, visit.poses, options, {pair.findings.near_miss.upper, pair.hint});
+  });
+  parallel_chunks(pairs.size(), 1, [&](size_t p, size_t) {
+    for (size_t i = p * stretches; i < (p + 1) * stretches; ++i)
+      if (visits[i].watched) follow_inside(pairs[p], visits[i]);
+  });
+  parallel_chunks(open.size(), 1, [&](size_t n, size_t) {
+    StretchVisit& visit = visits[open[n]];
+    const WatchedPair& pair = pairs[open[n] / stretches];
+    visit.contacts = contacts_of(pair.encounter, depths[pair.findings.a], depths[pair.findings.b],
+                                 visit.poses, options, visit.walk.ways);
+  });
+}
 
 PathCheck::PathCheck(const machine::MachineScene& scene, std::vector<Body> bodies,
                      const PathCheckOptions& options, Diagnostics& diagnostics)
@@ -109,7 +175,7 @@ PathCheck::PathCheck(const machine::MachineScene& scene, std::vector<Body> bodie
   state_->left_out = std::move(choice.left_out);
   for (const Body& body : bodies_) state_->depths.emplace_back(body);
   for (const auto& [a, b] : choice.watched) {
-    WatchedPair pair{encounter(scene_, bodies_[a], bodies_[b]), {}, {}, false, 0};
+    WatchedPair pair{encounter(scene_, bodies_[a], bodies_[b]), {}, {}, {}, {}, 0};
     pair.findings.a = a;
     pair.findings.b = b;
     pair.findings.near_miss.lower = pair.findings.near_miss.upper = options_.near_miss_mm;
@@ -121,6 +187,7 @@ PathCheck::~PathCheck() = default;
 
 void PathCheck::add(std::span<const motion::Cycle> window) {
   for (const motion::Cycle& cycle : window) {
+    state_->look_at_change(cycle);
     state_->poses.push_back(
         {cycle.q, cycle.sample.t_s, cycle.number, cycle.sample.element, cycle.sample.tool});
     ++state_->cycles;
@@ -132,27 +199,24 @@ void PathCheck::add(std::span<const motion::Cycle> window) {
 void PathCheck::check_batch() {
   State& state = *state_;
   const std::vector<StretchRange> ranges = stretches_of(state.poses, state.poses.size() - 1);
-  const size_t pairs = state.pairs.size();
-  std::vector<StretchFindings> found(ranges.size() * pairs);
-  const auto poses_of = [&](const StretchRange& range) {
-    return PathStretch(state.poses).subspan(range.first, range.last - range.first + 1);
-  };
-  const auto watched = [&](const WatchedPair& pair, const StretchRange& range) {
-    const int tool = state.poses[range.first].tool;
-    return is_there(*pair.encounter.a, tool) && is_there(*pair.encounter.b, tool);
-  };
-  parallel_chunks(found.size(), 1, [&](size_t i, size_t) {
-    const WatchedPair& pair = state.pairs[i % pairs];
-    const StretchRange& range = ranges[i / pairs];
-    if (!watched(pair, range)) return;
-    found[i] = walk_stretch(pair.encounter, state.depths[pair.findings.a], state.depths[pair.findings.b],
-                            poses_of(range), options_, {pair.findings.near_miss.upper, pair.hint});
-  });
-  for (size_t i = 0; i < found.size(); ++i) {
-    if (watched(state.pairs[i % pairs], ranges[i / pairs])) {
-      merge_stretch(state.pairs[i % pairs], found[i], poses_of(ranges[i / pairs]));
+  std::vector<AxisBox> boxes;
+  for (const StretchRange& range : ranges) boxes.push_back(box_of(state.stretch(range)));
+  const size_t pairs = state.pairs.size(), stretches = ranges.size();
+  std::vector<StretchVisit> visits(pairs * stretches);  // those of a pair stand together
+  parallel_chunks(pairs, 1, [&](size_t p, size_t) {
+    WatchedPair& pair = state.pairs[p];
+    for (size_t i = 0; i < stretches; ++i) {
+      StretchVisit& visit = visits[p * stretches + i];
+      visit.poses = state.stretch(ranges[i]);
+      const int tool = visit.poses.front().tool;
+      visit.watched = is_there(*pair.encounter.a, tool) && is_there(*pair.encounter.b, tool);
+      visit.open = visit.watched && !pair.free.covers(pair.encounter, boxes[i], asked_of(pair, options_),
+                                                      options_.tolerance_mm);
     }
-  }
+  });
+  state.look_at_open(visits, stretches, options_);
+  for (size_t i = 0; i < visits.size(); ++i)
+    if (visits[i].open) merge_visit(state.pairs[i / stretches], visits[i]);
   state.poses.erase(state.poses.begin(), state.poses.end() - 1);
   state.begun = true;
 }
@@ -163,6 +227,7 @@ PathFindings PathCheck::finish() {
   PathFindings findings;
   for (WatchedPair& pair : state.pairs) findings.pairs.push_back(std::move(pair.findings));
   findings.left_out = std::move(state.left_out);
+  findings.unseen_changes = std::move(state.unseen_changes);
   findings.cycles = state.cycles;
   return findings;
 }

@@ -6,7 +6,8 @@
 // One search over that line (closest_approach.h) clears the stretch when its lower bound is above what is
 // asked: the near-miss limit, or the least distance so far. Otherwise it is halved, down to the way from one
 // cycle to the next, on which the axes go straight. So whatever comes nearer is found, wherever it lies.
-// Memory does not grow with the program, but for the contacts: kEventsMost a pair are kept, all are counted.
+// Memory does not grow with the program, but for the contacts: kEventsMost a pair are kept, of the others
+// only their cycles.
 #pragma once
 
 #include <cstdint>
@@ -57,22 +58,32 @@ struct ContactEvent {
   uint64_t deepest_cycle = 0;
 };
 
+/// Numbers of cycles: a contact on every way from the first to the last one; at the first where both are
+/// equal.
+struct CycleSpan {
+  uint64_t first = 0, last = 0;
+};
+
 struct PairFindings {
   size_t a = 0, b = 0;  ///< indices into the bodies
   NearMiss near_miss;
   std::vector<ContactEvent> contacts;  ///< the first ones
-  uint64_t contact_count = 0;
+  std::vector<CycleSpan> spans;        ///< of all of them
+  uint64_t contact_count() const { return spans.size(); }
 };
 
 struct PathFindings {
   std::vector<PairFindings> pairs;  ///< those that are watched
+  /// Elements before which a tool is changed at another place of the axes than the one where the element
+  /// begins: no way there is part of the program, none is looked at. The first kEventsMost.
+  std::vector<int> unseen_changes;
   std::vector<LeftOutPair> left_out;
   uint64_t cycles = 0;
 };
 
 /// Takes the cycles of a program in their order. Results are the same bits for any number of threads and any
-/// division into windows. Changes of the tool are no motion (cycle_stream.h): how the axes come there is not
-/// looked at, only where they stand before and after.
+/// division into windows. Changes of the tool are no motion (cycle_stream.h): where the axes do not stand
+/// still over one, the way is not looked at (PathFindings::unseen_changes).
 class PathCheck {
  public:
   static constexpr size_t kEventsMost = 1000;

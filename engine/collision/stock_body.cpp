@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/check.h"
+#include "collision/pair_walk.h"
 
 namespace swarf::collision {
 namespace {
@@ -21,6 +22,20 @@ TriMesh mesh_of_block(const Box& box) {
   }
   mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
                     {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+  return mesh;
+}
+
+constexpr double kReach = 0.8661;  // voxels: sqrt(3) / 2, to the nearest grid point
+
+/// Triangles of one place each.
+TriMesh mesh_of_points(const std::vector<Vec3>& points) {
+  TriMesh mesh;
+  for (const Vec3& p : points) {
+    const auto at = static_cast<uint32_t>(mesh.positions.size());
+    mesh.positions.push_back(
+        {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())});
+    mesh.triangles.push_back({at, at, at});
+  }
   return mesh;
 }
 
@@ -46,8 +61,11 @@ StockBody::StockBody(const machine::MachineScene& scene, const TriMesh& raw_W)
 }
 
 void StockBody::refresh(const stock::Stock& stock) {
+  as_cut_ = beside_ = {};  // so that only one of each is held
   as_cut_ = work_body(*scene_, "stock", BodyKind::kStock, stock.mesh());
   voxel_mm_ = stock.voxel_mm();
+  beside_ = work_body(*scene_, "stock", BodyKind::kStock,
+                      mesh_of_points(stock.air_points(kReach * voxel_mm_ + kStockTouch)));
 }
 
 StockAnswer StockBody::over(const Body& body, const AxisSegment& segment) const {
@@ -58,6 +76,28 @@ StockAnswer StockBody::over(const Body& body, const AxisSegment& segment) const 
   answer.lower = found.lower;
   answer.upper = found.upper;
   return answer;
+}
+
+size_t StockBody::free_ways(const Body& body, const Body& material, std::span<const AxisValues> places,
+                            double more_mm) const {
+  std::vector<PathPose> poses(places.size());
+  for (size_t i = 0; i < places.size(); ++i) poses[i].q = places[i];
+  PathCheckOptions options;
+  options.tolerance_mm = std::max(kStockTouch, 0.005 * voxel_mm_);
+  options.touch_mm = kReach * voxel_mm_ + kStockTouch + options.tolerance_mm + more_mm;
+  const Encounter pair = encounter(*scene_, body, material);
+  StretchWalk walk = walk_stretch(pair, poses, options, {options.touch_mm, {}});
+  // Points hold nothing, and what they lie in is met by the mesh.
+  if (&material != &beside_) look_inside(pair, poses, std::nullopt, walk.ways);
+  const auto met =
+      std::find_if(walk.ways.begin(), walk.ways.end(), [](Way way) { return way != Way::kFree; });
+  return static_cast<size_t>(met - walk.ways.begin());
+}
+
+size_t StockBody::clear_ways(const Body& body, std::span<const AxisValues> places, double more_mm) const {
+  const size_t ways = free_ways(body, as_cut(), places, more_mm);
+  if (ways == 0 || beside_.nodes.empty()) return ways;
+  return free_ways(body, beside_, places.first(ways + 1), more_mm);
 }
 
 StockAnswer StockBody::suspect(const Body& body, const AxisSegment& segment) const {

@@ -2,8 +2,9 @@
 //
 // Material only shrinks: what is clear of the raw stock is clear for ever, so that only the ways on which a
 // body comes to the raw stock are suspect. Those are held against the material as it stands at their moment,
-// as a mesh (StockMesher says how near it lies: 0.13 voxel; walls thinner than a voxel may be missing where
-// they contain no grid point, which is what the answer leaves open).
+// as a mesh (StockMesher says how near it lies: 0.13 voxel). A wall thinner than a voxel may be missing from
+// the mesh where it contains no grid point; the grid points beside it tell of it (Stock::air_points): clear
+// is what keeps sqrt(3) / 2 voxel from the mesh and from all of those.
 #pragma once
 
 #include "collision/containment.h"
@@ -13,7 +14,7 @@ namespace swarf::collision {
 
 enum class StockOutcome {
   kClearOfRaw,  ///< proven, whatever has been cut
-  kClear,       ///< farther than a voxel from the material as the level set holds it
+  kClear,       ///< farther than a voxel from the mesh of the material
   kOpen,        ///< within a voxel of it, or in it without a corner that deep: not clear
   kContact,     ///< deeper than a voxel in it
 };
@@ -44,12 +45,20 @@ class StockBody {
   /// A body over a segment on which nothing is cut. Before the first refresh() suspects are held against the
   /// raw stock, without a voxel.
   StockAnswer over(const Body& body, const AxisSegment& segment) const;
+  /// How many of the ways between places that follow each other are clear of that material, from the first
+  /// one on, however thin it is: proven, with `more_mm` to spare. Gaps of kSeenVoxels voxels and `more_mm`
+  /// beside a face are seen.
+  static constexpr double kSeenVoxels = 1.75;
+  size_t clear_ways(const Body& body, std::span<const AxisValues> places, double more_mm) const;
 
  private:
   StockAnswer suspect(const Body& body, const AxisSegment& segment) const;
+  size_t free_ways(const Body& body, const Body& material, std::span<const AxisValues> places,
+                   double more_mm) const;
 
   const machine::MachineScene* scene_;
   Body raw_, as_cut_;
+  Body beside_;  ///< the grid points beside as_cut_, each a triangle of one place
   double voxel_mm_ = 0.0;
 };
 

@@ -16,7 +16,7 @@ constexpr size_t kLengthSamples = 8;
 
 CellCorner corner_on(const surface::Surface& surface, double u, double v) {
   const surface::Derivatives d = surface.derivatives(u, v);
-  return {d.S, surface::outward_normal(surface, d), {u, v}};
+  return {d.S, surface::outward_normal(surface, d, {u, v}), {u, v}};
 }
 
 /// n = N/|N|, N = Su x Sv: |dn| <= |dN| / |N|, |dN/du| <= |Suu||Sv| + |Su||Suv|; |Su|, |Sv| and |N| are

@@ -101,7 +101,7 @@ std::optional<Foot> foot_near(const stock::SurfaceDexels& dexels, uint32_t ray, 
     d = dexels.surface().derivatives(u, v);
   }
   if (u < -kEdgeSlack || u > 1.0 + kEdgeSlack || v < -kEdgeSlack || v > 1.0 + kEdgeSlack) return {};
-  Foot foot{u, v, 0.0, surface::outward_normal(dexels.surface(), d), 0.0};
+  Foot foot{u, v, 0.0, surface::outward_normal(dexels.surface(), d, {u, v}), 0.0};
   foot.height_mm = (point - d.S).dot(foot.normal);
   foot.to_edge_mm = std::min(std::min(u, 1.0 - u) * d.Su.norm(), std::min(v, 1.0 - v) * d.Sv.norm());
   return foot;

@@ -16,7 +16,8 @@ struct ToolSample {
   ToolPose pose;                  ///< work frame
   Vec3 contact_W = Vec3::Zero();  ///< equals the tip while nothing is touched
   double u = 0.0, v = 0.0;        ///< surface parameters of the contact; 0 on free moves. CL blocks: u is the
-                                  ///< share of the block that is done, 0 to 1
+                                  ///< share of the block that is done, 0 to 1; driven passes: the parameter
+                                  ///< of the guide
   double feed_mm_s = 0.0;         ///< commanded speed of the contact point over the cycle that ends here
   int element = 0;                ///< index into ToolPath::elements
   SampleKind kind = SampleKind::kRapid;

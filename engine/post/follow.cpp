@@ -35,7 +35,7 @@ struct Cutting {
   double radius_mm = 0.0;  ///< of an arc; 0: straight
   double angle = 0.0;      ///< of the arc
   double spread_mm = 0.0;  ///< by which its ends differ in radius
-  PoleSide side = PoleSide::kContinuous;
+  PoleSides& poles;
   FollowFault fault;
 };
 
@@ -123,7 +123,8 @@ FollowFault jump_fault(const Follower& follower, const AxisValues& from, const A
               "axis {} would have to jump from {} to {} here: its travel of {} to {} does not let it go on",
               axis.name, shown(axis, from[row]), shown(axis, to[row]), shown(axis, axis.min),
               shown(axis, axis.max)),
-          "lift the tool before it with two RAPID moves (the axes unwind there), or clamp the work turned"};
+          "lift the tool before it with two RAPID moves (the axes unwind there), or clamp the work turned",
+          static_cast<int>(worst)};
 }
 
 /// Why there is no way on from `from`: the solution that goes on may be out of travel, and another one, which
@@ -271,7 +272,8 @@ bool follow_part(Cutting& cutting, From& from, double to) {
   const bool leaves =
       cutting.follower.inverse.pole_distance(from.pose.axis_W) <= kinematics::kPoleTolerance &&
       angle_between(part.from.axis_W, part.to.axis_W) > cutting.follower.rules.snap_rad;
-  if (leaves && cutting.side == PoleSide::kOther) start = other_side(cutting.follower, from.pose, start);
+  if (leaves && cutting.poles.next() == PoleSide::kOther)
+    start = other_side(cutting.follower, from.pose, start);
   return turn_at_rest(cutting, from, start) && cut(cutting, from, to);
 }
 
@@ -303,7 +305,7 @@ double greatest_turn(const kinematics::MachineModel& machine, const AxisValues& 
 FollowFault fault_of(const Follower& follower, const Branch& branch, const ToolPose& pose) {
   if (branch.outcome == InverseOutcome::kUnreachable) {
     const kinematics::UnreachableText told = kinematics::unreachable_text(follower.machine, pose);
-    return {"unreachable", told.text, told.fix};
+    return {"unreachable", told.text, told.fix, -1};
   }
   if (branch.outcome != InverseOutcome::kOutOfTravel) return {};
   const auto at = static_cast<size_t>(branch.out_of_travel_axis);
@@ -312,15 +314,15 @@ FollowFault fault_of(const Follower& follower, const Branch& branch, const ToolP
       "travel",
       fmt::format("axis {} would go to {}; its travel is {} to {}", axis.name,
                   shown(axis, branch.q[static_cast<long>(at)]), shown(axis, axis.min), shown(axis, axis.max)),
-      "clamp the work elsewhere (--work-origin), or tilt the tool less"};
+      "clamp the work elsewhere (--work-origin), or tilt the tool less", branch.out_of_travel_axis};
 }
 
-FollowFault follow(const Follower& follower, const program::Move& move, PoleSide side, AxisValues& q,
+FollowFault follow(const Follower& follower, const program::Move& move, PoleSides& poles, AxisValues& q,
                    std::vector<Waypoint>& places) {
   const motion::BlockMotion motion = motion_of(follower, move);
   const size_t before = places.size();
   std::vector<Waypoint> made;
-  Cutting cutting{follower, motion, made, 0.0, 0.0, 0.0, 0.0, side, {}};
+  Cutting cutting{follower, motion, made, 0.0, 0.0, 0.0, 0.0, poles, {}};
   const Branch end = follower.inverse.solve_nearest(motion.block.to, q);
   if (end.outcome == InverseOutcome::kUnreachable) return fault_of(follower, end, motion.block.to);
   const double digits = rounding_mm(follower, follower.rules.tcp, q, end.q);
@@ -330,7 +332,7 @@ FollowFault follow(const Follower& follower, const program::Move& move, PoleSide
             fmt::format("the digits of the axis words alone may put the tip {:.2f} um aside here, the "
                         "tolerance is {:.2f} um",
                         um_from_mm(digits), um_from_mm(follower.rules.tip_mm)),
-            "write more digits ([numbers.rotary] decimals of the post), or give --tolerance-um more"};
+            "write more digits ([numbers.rotary] decimals of the post), or give --tolerance-um more", -1};
   }
   set_arc(cutting);
   From from{0.0, motion.block.from, q};
@@ -349,6 +351,25 @@ double rotary_way(const kinematics::MachineModel& machine, const AxisValues& fro
     if (machine.axes[i].kind == AxisKind::kRotary) way += std::abs(to[row] - from[row]);
   }
   return way;
+}
+
+namespace {
+
+double speed_of(const kinematics::Axis& axis, bool rapid) {
+  return rapid && axis.rapid_max > 0.0 ? axis.rapid_max : axis.speed_max;
+}
+
+}  // namespace
+
+double axis_time(const kinematics::MachineModel& machine, const AxisValues& from, const AxisValues& to,
+                 bool rapid) {
+  double longest = 0.0;
+  for (size_t i = 0; i < machine.axes.size(); ++i) {
+    const double speed = speed_of(machine.axes[i], rapid);
+    const auto row = static_cast<long>(i);
+    if (speed > 0.0) longest = std::max(longest, std::abs(to[row] - from[row]) / speed);
+  }
+  return longest;
 }
 
 }  // namespace swarf::post

@@ -60,6 +60,7 @@ struct Waypoint {
 struct FollowFault {
   std::string code;  ///< "" : none. "unreachable" | "travel" | "axis-jump" | "tolerance-below-digits"
   std::string text, fix;
+  int axis = -1;  ///< of the machine, of "travel" and "axis-jump"
 };
 
 /// Rotary axes that turn by less have not turned, rad.
@@ -73,9 +74,16 @@ enum class PoleSide {
   kOther,       ///< the outer axis turns by half a turn at rest, and the inner one goes back
 };
 
+/// The side on which each pole is left, in the order in which a path leaves them.
+struct PoleSides {
+  std::vector<PoleSide> sides;  ///< of the first ones; the others are left on kContinuous
+  size_t left = 0;              ///< poles that have been left so far
+  PoleSide next() { return left < sides.size() ? sides[left++] : (++left, PoleSide::kContinuous); }
+};
+
 /// Appends the places after the start of the move, the last at its end. `q`: axis values at its start; in the
 /// end those of the last place. Nothing is appended with a fault.
-FollowFault follow(const Follower& follower, const program::Move& move, PoleSide side,
+FollowFault follow(const Follower& follower, const program::Move& move, PoleSides& poles,
                    kinematics::AxisValues& q, std::vector<Waypoint>& places);
 
 /// Greatest of |change| of a rotary axis, rad.
@@ -88,5 +96,9 @@ FollowFault fault_of(const Follower& follower, const kinematics::Branch& branch,
 /// Sum of what the rotary axes turn between two sets of axis values, rad.
 double rotary_way(const kinematics::MachineModel& machine, const kinematics::AxisValues& from,
                   const kinematics::AxisValues& to);
+
+/// The least time in which the axes go there by their speeds, s; 0 where the machine does not say them.
+double axis_time(const kinematics::MachineModel& machine, const kinematics::AxisValues& from,
+                 const kinematics::AxisValues& to, bool rapid);
 
 }  // namespace swarf::post

@@ -70,6 +70,8 @@ struct PlanSummary {
   double deviation_mm = 0.0;  ///< greatest bound of the tip; digits included
   double digits_mm = 0.0;     ///< of which the written digits alone, greatest
   int deviation_line = 0;
+
+  double time_s() const { return feed_s + rapid_s + dwell_s; }
 };
 
 }  // namespace swarf::post

@@ -8,14 +8,20 @@
 //  2. The first candidate whose whole stretch can be driven is taken (Kruth et al.: switch where it costs
 //     nothing). Where it is the continuous one the rapid is driven as it is; else the tool is retracted along
 //     the machine's tool axis, the rotary axes turn, and it comes down again.
-//  3. The same with the other side of each pole that is passed (PoleSide), on machines that have one.
+//  3. The same with the other side of poles that are passed: the last one before the fault first, then the
+//     ones before it (the paper's backtracking; what stands before the pole is kept).
 //  4. When none can, the fault of the first one is told, with its CL line.
+//
+//  StretchJudge may object to a stretch that the axes can drive (collisions): it is then a fault like the
+//  others. With routes_most above 1 all ways are followed at once, and the quickest program is taken: dynamic
+//  programming over the stretches, whose states are the rotary axes at their ends.
 //
 //  A stretch is held whole, about a kilobyte for each move, but no more than kMovesAhead moves of it: the
 //  rest goes on from where they end, so memory does not grow with the file.
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -54,13 +60,49 @@ struct Start {
 using BranchChoice =
     std::function<void(std::span<const program::Move> stretch, std::vector<Start>& candidates)>;
 
+/// Why a stretch that the axes can drive may not be taken.
+struct Objection {
+  size_t step = 0;  ///< of the stretch: what comes before it is not objected to
+  FollowFault fault;
+};
+/// `from`: where the axes stand before it; null: nobody knows, it is the first one.
+using StretchJudge = std::function<std::optional<Objection>(const PlannedStretch& planned,
+                                                            const kinematics::AxisValues* from)>;
+
+/// The way that was taken through a stretch.
+struct RouteChoice {
+  Start start;
+  bool lifted = false;          ///< it begins with an approach
+  std::vector<PoleSide> sides;  ///< of the poles that it leaves, up to the last one that turns
+};
+
+/// A way through a stretch that was tried.
+struct RouteTry {
+  int first_line = 0, last_line = 0;  ///< of the CL data
+  RouteChoice way;
+  double time_s = 0.0;  ///< of the stretch, as far as it came
+  FollowFault fault;    ///< code "": it can be driven
+  int fault_line = 0;
+};
+
+/// What others have to say on the ways that are taken.
+struct PlannerHooks {
+  BranchChoice choice;  ///< none: as the candidates stand
+  StretchJudge judge;   ///< none: what the axes can drive is taken
+  std::function<void(std::span<const program::Move> stretch)> planned;  ///< a stretch is done with; or none
+  std::function<void(const RouteTry&)> tried;                           ///< or none
+  const std::vector<RouteChoice>* decided = nullptr;  ///< of each stretch: no other way is tried; null: none
+  size_t faults_most = 20;
+  std::function<double(const PlanSummary&)> cost;  ///< what the best of all ways has least of; none: its time
+  size_t routes_most = 1;  ///< 1: the first way that can be driven; else so many are held at most
+};
+
 struct PlannerSetup {
   kinematics::MachineModel machine;
   std::vector<PostTool> tools;  ///< by the program's own order of calls grows; index -1: the spindle is empty
   FollowRules rules;
   PostAbilities abilities;
-  BranchChoice choice;  ///< none: as the candidates stand
-  size_t faults_most = 20;
+  PlannerHooks hooks;
 };
 
 /// The linear axis that runs along the tool with all axes at zero: the way out before a tool is changed.
@@ -87,20 +129,40 @@ class Planner final : public program::ClSink {
   void finish();
   /// What a tool index of the CL data means; called when a move has a new one.
   std::function<int(int cl_tool)> tool_of;
-  const PlanSummary& summary() const { return summary_; }
+  const PlanSummary& summary() const { return routes_.front().state.summary; }
+  /// The way through each stretch, for PlannerHooks::decided.
+  const std::vector<RouteChoice>& choices() const { return routes_.front().choices; }
+  /// Ways that were given up for routes_most; 0: the program is the quickest of all.
+  long routes_dropped() const { return routes_dropped_; }
 
  private:
   struct HoleSpan {
     size_t first = 0;
     program::ClHole hole;
   };
+  /// What the stretches so far have left.
+  struct State {
+    kinematics::AxisValues q = kinematics::AxisValues::Zero();
+    bool started = false, approach_next = true, tool_changed = false;
+    PlanSummary summary;
+  };
   struct Plan {
     PlannedStretch stretch;
-    PoleSide side = PoleSide::kContinuous;
+    PoleSides poles;
+    std::vector<size_t> pole_steps;  ///< steps that there were when each pole had been left
     kinematics::AxisValues q;
+    RouteChoice way;
     std::optional<FollowFault> fault;
     int fault_line = 0;
+    size_t fault_step = 0;
     PlanSummary summary;
+  };
+  using TakePlan = std::function<bool(Plan)>;  ///< true: no other one is wanted
+  /// A program up to here.
+  struct Route {
+    State state;
+    std::vector<std::shared_ptr<const PlannedStretch>> stretches;  ///< that the sink has not had
+    std::vector<RouteChoice> choices;                              ///< of all of them
   };
   /// Where the stretch is entered, and the first move that is still to be driven from there.
   struct Entry {
@@ -111,24 +173,26 @@ class Planner final : public program::ClSink {
   void plan_stretch();
   void plan_moves();
   void tell(const FollowFault& fault, int line);
-  std::vector<Start> candidates(const Entry& entry) const;
-  Entry entry() const;
+  std::vector<Start> candidates(const State& state, const Entry& entry) const;
+  Entry entry(const State& state) const;
   kinematics::AxisValues turned_for_tilt(const ToolPose& pose, const kinematics::AxisValues& q) const;
-  Plan plan_from(const Entry& entry, const Start& start, bool approach, PoleSide side) const;
-  Plan best_plan() const;
+  Plan plan_from(const State& state, const Entry& entry, RouteChoice way) const;
+  Plan judged_plan(const State& state, const Entry& entry, RouteChoice way) const;
+  void tell_tried(const State& state, const Plan& plan) const;
+  std::optional<Plan> each_plan(const State& state, const TakePlan& take) const;
+  Plan no_start(const State& state, const Entry& entry) const;
+  void go_on(Route longer, Plan plan, std::vector<Route>& routes) const;
+  void keep_best(std::vector<Route>& routes);
   bool add_move(const program::Move& move, Plan& plan) const;
   bool add_arc(const program::Move& move, Plan& plan) const;
   bool add_hole(const HoleSpan& span, Plan& plan) const;
   bool keeps_cycle(const HoleSpan& span, const kinematics::AxisValues& q) const;
-  bool has_word_for(const program::ClHole& hole, double spindle_rpm) const;
   void add_approach(const program::Move& move, const ToolPose& pose, const kinematics::AxisValues& q,
-                    Plan& plan) const;
+                    bool started, Plan& plan) const;
   PlanStep step_at(const program::Move& move, const ToolPose& pose, const kinematics::AxisValues& q,
                    StepKind kind, bool tcp) const;
   void add_step(PlanStep step, double way_mm, Plan& plan) const;
   void without_tcp(size_t first, Plan& plan) const;
-  void time_stretch(Plan& plan) const;
-  void deliver(Plan plan);
   void use_tool(int tool);
   Vec3 program_point(const ToolPose& pose, const kinematics::AxisValues& q, bool tcp) const;
 
@@ -136,7 +200,8 @@ class Planner final : public program::ClSink {
   std::string file_;
   StretchSink sink_;
   Diagnostics& diagnostics_;
-  PlanSummary summary_;
+  std::vector<Route> routes_;
+  long routes_dropped_ = 0;
   size_t faults_ = 0;
 
   std::vector<program::Move> moves_;
@@ -149,8 +214,6 @@ class Planner final : public program::ClSink {
   std::optional<Follower> follower_;
   mutable std::optional<program::nc::WorkSpace> space_;
   std::optional<program::ClHole> next_hole_;
-  bool started_ = false, approach_next_ = true, tool_changed_ = false;
-  kinematics::AxisValues q_ = kinematics::AxisValues::Zero();
 };
 
 }  // namespace swarf::post

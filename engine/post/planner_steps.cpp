@@ -25,22 +25,6 @@ constexpr double kExact = 1e-9;
 /// turn them round.
 constexpr double kArcDigits = 20.0;
 
-double speed_of(const kinematics::Axis& axis, bool rapid) {
-  return rapid && axis.rapid_max > 0.0 ? axis.rapid_max : axis.speed_max;
-}
-
-/// The least time in which the axes go there by their speeds, s; 0 where the machine does not say them.
-double axis_time(const kinematics::MachineModel& machine, const AxisValues& from, const AxisValues& to,
-                 bool rapid) {
-  double longest = 0.0;
-  for (size_t i = 0; i < machine.axes.size(); ++i) {
-    const double speed = speed_of(machine.axes[i], rapid);
-    const auto row = static_cast<long>(i);
-    if (speed > 0.0) longest = std::max(longest, std::abs(to[row] - from[row]) / speed);
-  }
-  return longest;
-}
-
 void add_travel(const AxisValues& from, const AxisValues& to, PlanSummary& summary) {
   summary.travel += (to - from).cwiseAbs();
   summary.low = summary.low.cwiseMin(to);
@@ -105,7 +89,7 @@ void Planner::add_step(PlanStep step, double way_mm, Plan& plan) const {
   plan.stretch.steps.push_back(std::move(step));
 }
 
-void Planner::add_approach(const program::Move& move, const ToolPose& pose, const AxisValues& q,
+void Planner::add_approach(const program::Move& move, const ToolPose& pose, const AxisValues& q, bool started,
                            Plan& plan) const {
   const kinematics::MachineModel& machine = follower_->machine;
   const int along = axis_along_tool(machine);
@@ -117,7 +101,7 @@ void Planner::add_approach(const program::Move& move, const ToolPose& pose, cons
   AxisValues up = plan.q, over = q;
   up[along] = over[along] = retracted(machine);
   // Before the first one nobody knows where the axes stand.
-  if (started_) {
+  if (started) {
     for (const auto& [from, to] : {std::pair{plan.q, up}, std::pair{up, over}, std::pair{over, q}}) {
       add_travel(from, to, plan.summary);
       step.duration_s += axis_time(machine, from, to, true);
@@ -138,7 +122,8 @@ bool Planner::add_move(const program::Move& move, Plan& plan) const {
   if (plan.fault) return false;
   std::vector<Waypoint> places;
   AxisValues q = plan.q;
-  const FollowFault fault = follow(*follower_, move, plan.side, q, places);
+  const FollowFault fault = follow(*follower_, move, plan.poles, q, places);
+  plan.pole_steps.resize(plan.poles.left, plan.stretch.steps.size());
   if (!fault.code.empty()) {
     plan.fault = fault;
     plan.fault_line = move.line;
@@ -250,8 +235,9 @@ bool Planner::add_arc(const program::Move& move, Plan& plan) const {
   return true;
 }
 
-bool Planner::has_word_for(const program::ClHole& hole, double spindle_rpm) const {
-  const PostAbilities& can = setup_.abilities;
+namespace {
+
+bool has_word_for(const PostAbilities& can, const program::ClHole& hole, double spindle_rpm) {
   const program::ClCycle& cycle = hole.cycle;
   const bool pecks_alike = cycle.first_step_mm == 0.0 || cycle.first_step_mm == cycle.step_mm;
   switch (cycle.kind) {
@@ -270,10 +256,12 @@ bool Planner::has_word_for(const program::ClHole& hole, double spindle_rpm) cons
   return false;
 }
 
+}  // namespace
+
 bool Planner::keeps_cycle(const HoleSpan& span, const AxisValues& q) const {
   const program::ClHole& hole = span.hole;
   if (hole.cycle.retract_mm < hole.cycle.clear_mm || !(hole.cycle.depth_mm > 0.0)) return false;
-  if (!has_word_for(hole, moves_[span.first].spindle_rpm)) return false;
+  if (!has_word_for(setup_.abilities, hole, moves_[span.first].spindle_rpm)) return false;
   const ToolPose at = snapped(*follower_, hole.at);
   const Branch low = follower_->inverse.solve_nearest(at, q);
   const Branch high = follower_->inverse.solve_nearest({at.tip_W + at.axis_W, at.axis_W}, low.q);
@@ -337,18 +325,21 @@ void Planner::without_tcp(size_t first, Plan& plan) const {
   }
 }
 
-Planner::Plan Planner::plan_from(const Entry& begin, const Start& start, bool approach, PoleSide side) const {
+Planner::Plan Planner::plan_from(const State& state, const Entry& begin, RouteChoice way) const {
   Plan plan;
-  plan.side = side;
-  plan.q = q_;
-  plan.summary = summary_;
+  plan.way = std::move(way);
+  plan.poles.sides = plan.way.sides;
+  const Start& start = plan.way.start;
+  const bool approach = plan.way.lifted;
+  plan.q = state.q;
+  plan.summary = state.summary;
   std::vector<size_t> steps_before;  // by move
   size_t i = 0;
   const auto hole_at = [&](size_t move) {
     return std::find_if(holes_.begin(), holes_.end(), [&](const HoleSpan& one) { return one.first == move; });
   };
   if (approach) {
-    add_approach(moves_.front(), begin.pose, start.q, plan);
+    add_approach(moves_.front(), begin.pose, start.q, state.started, plan);
     for (; i < begin.first; ++i) steps_before.push_back(0);
   }
   while (i < moves_.size() && !plan.fault) {
@@ -377,6 +368,7 @@ Planner::Plan Planner::plan_from(const Entry& begin, const Start& start, bool ap
     for (++i; i < end; ++i) steps_before.push_back(plan.stretch.steps.size());
     i = end;
   }
+  plan.fault_step = plan.stretch.steps.size();
   for (const PlacedNote& note : notes_) {
     // What stands before the first move stands before its approach.
     const size_t before = note.before == 0                    ? 0
@@ -385,15 +377,6 @@ Planner::Plan Planner::plan_from(const Entry& begin, const Start& start, bool ap
     plan.stretch.notes.push_back({before, note.note});
   }
   return plan;
-}
-
-void Planner::time_stretch(Plan& plan) const {
-  if (setup_.rules.tcp) return;
-  const bool turns =
-      std::any_of(plan.stretch.steps.begin(), plan.stretch.steps.end(),
-                  [](const PlanStep& one) { return one.kind == StepKind::kFeed && one.turns; });
-  for (PlanStep& step : plan.stretch.steps)
-    step.timed = turns && (step.kind == StepKind::kFeed || step.kind == StepKind::kArc);
 }
 
 }  // namespace swarf::post

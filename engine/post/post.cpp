@@ -179,7 +179,7 @@ PostResult post(const std::string& cl_file, const kinematics::MachineModel& mach
   const std::vector<int> bound = bind_tools(program, table, setup.tools, diagnostics);
   setup.rules = result.rules = rules_of(format, options, result.tcp);
   setup.abilities = abilities_of(format);
-  setup.choice = options.choice;
+  setup.hooks = options.hooks;
   const ProgramNames names{program_name(cl_file), machine.name, cl_file};
   Writer writer(format, setup, names, out, diagnostics);
   Planner planner(
@@ -196,6 +196,8 @@ PostResult post(const std::string& cl_file, const kinematics::MachineModel& mach
   diagnostics.throw_if_errors();
   result.plan = planner.summary();
   result.written = writer.summary();
+  result.choices = planner.choices();
+  result.routes_dropped = planner.routes_dropped();
   return result;
 }
 

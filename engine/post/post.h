@@ -21,14 +21,16 @@ struct PostOptions {
   double axis_rad = 0.1 * kPi / 180.0;  ///< of the tool axis from its great circle
   program::ClOptions cl;
   std::vector<PostTool> tools;  ///< the table; empty: lengths are not known
-  BranchChoice choice;
+  PlannerHooks hooks;
 };
 
 struct PostResult {
   PlanSummary plan;
   WriterSummary written;
   bool tcp = false;
-  FollowRules rules;  ///< as they were kept to
+  FollowRules rules;                 ///< as they were kept to
+  std::vector<RouteChoice> choices;  ///< of each stretch
+  long routes_dropped = 0;           ///< Planner::routes_dropped()
 };
 
 /// What a format can do, for the planner.

@@ -26,8 +26,8 @@ class Replay {
         path_(move_tool(job, progress)),
         sweeps_(cut_sweeps(job, *path_.cycles)),
         solids_(tool_solids(job.scene)),
-        stock_(job.scene.stock.body_W(), job.scene.stock.voxel_mm) {
-    result_.parts = differences(record.identity, cut_identity(job, sweeps_));
+        stock_(starting_stock(job, *path_.carried, job.scene.stock.voxel_mm)) {
+    result_.parts = differences(record.identity, cut_identity(job, sweeps_, *path_.carried));
   }
 
   ReplayResult run() {

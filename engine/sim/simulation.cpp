@@ -4,16 +4,20 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <limits>
 #include <utility>
 
 #include "base/units.h"
 #include "cutter/profile.h"
 #include "motion/interpolator.h"
+#include "sim/job/driven_part.h"
 #include "sim/judge/findings.h"
 #include "sim/run/design_rays.h"
 #include "sim/run/prove_part.h"
+#include "sim/run/ray_cutters.h"
 #include "sim/run/recorder.h"
+#include "sim/run/starting_clamping.h"
 #include "toolpath/feed_way.h"
 
 namespace swarf::sim {
@@ -32,16 +36,14 @@ double theory_scallop_um(const toolpath::ToolPath& path) {
 }
 
 void measure_dexels(const Job& job, MeasuredPath& measured) {
-  const std::vector<int> passes = pass_of_blocks(measured.rays, measured.path);
+  const RayCutters rays = ray_cutters(job, measured);
   const measure::MeasureLimits limits{job.scene.accept.scallop_band_um() * kMicrometre,
                                       job.scene.accept.gouge_band_um() * kMicrometre};
-  const std::vector<stock::CutterSolid> solids = tool_solids(job.scene);
-  const std::vector<int> tools = tool_of_blocks(measured.rays);
-  const measure::SweepCutters cutters(solids, tools);
+  const measure::SweepCutters cutters(rays.solids, rays.solid_of);
   std::vector<measure::SurfaceMetrics> parts;
   for (const stock::SurfaceDexels& dexels : measured.dexels) {
-    parts.push_back(
-        measure::measure_surface(dexels, measured.rays.sweeps, passes, cutters, limits, &measured.ridges));
+    parts.push_back(measure::measure_surface(dexels, measured.rays.sweeps, rays.passes, cutters, limits,
+                                             &measured.ridges));
   }
   measured.surface = measure::combine(parts, measured.ridges);
   measured.surface.scallop_theory_um = theory_scallop_um(measured.path);
@@ -49,13 +51,14 @@ void measure_dexels(const Job& job, MeasuredPath& measured) {
 
 void cut_dexels(const Job& job, MeasuredPath& measured) {
   const auto start = std::chrono::steady_clock::now();
-  if (job.has_design()) measured.rays = ray_sweeps(job, *measured.cycles);
+  if (job.has_design()) measured.rays = all_ray_sweeps(job, *measured.cycles, *measured.carried);
   measured.dexels = design_dexels(job);
-  const std::vector<stock::CutterSolid> solids = tool_solids(job.scene);
-  const auto tool_of = [&](uint32_t block) { return measured.rays.sources[block].tool; };
+  const RayCutters rays = ray_cutters(job, measured);
+  const auto tool_of = [&](uint32_t block) { return rays.solid_of[block]; };
   for (stock::SurfaceDexels& dexels : measured.dexels) {
-    for_each_tool(measured.rays.sweeps, tool_of,
-                  [&](size_t tool, std::span<const stock::Sweep> part) { dexels.cut(part, solids[tool]); });
+    for_each_tool(measured.rays.sweeps, tool_of, [&](size_t tool, std::span<const stock::Sweep> part) {
+      dexels.cut(part, rays.solids[tool]);
+    });
     dexels.limit_depths();
   }
   measured.dexel_seconds = seconds_since(start);
@@ -112,18 +115,19 @@ void interpolate(const Job& job, const motion::MotionOptions& options, const Cut
   measured.motion_seconds = seconds_since(start);
 }
 
-MeasuredPath plan_and_move(const Job& job, toolpath::Planner planner, const motion::MotionOptions& options,
+MeasuredPath plan_and_move(const Job& job, toolpath::Planner planner, const CarriedCutsPtr& carried,
                            Progress& progress) {
   MeasuredPath measured;
+  measured.carried = carried;
   const auto start = std::chrono::steady_clock::now();
   Diagnostics diagnostics;
   measured.path = path_by(job, planner, diagnostics);
   measured.plan_seconds = seconds_since(start);
-  interpolate(job, options, {}, progress, measured);
+  interpolate(job, job.scene.motion, {}, progress, measured);
   return measured;
 }
 
-/// The path alone.
+/// The path alone, and what was cut before it.
 MeasuredPath planned_path(const Job& job, Progress& progress) {
   MeasuredPath measured;
   progress.begin("plan", 1, "paths");
@@ -131,6 +135,9 @@ MeasuredPath planned_path(const Job& job, Progress& progress) {
   JobPath found = job_path(job, diagnostics);
   measured.path = std::move(found.path);
   measured.nc = std::move(found.nc);
+  measured.carried = carried_cuts(job);
+  check_starting_clamping(job, *measured.carried, diagnostics);
+  diagnostics.throw_if_errors();
   measured.warnings = diagnostics.list();
   progress.end();
   return measured;
@@ -140,8 +147,8 @@ InputError path_misses_stock(const Job& job, const std::string& how) {
   return {"path-misses-stock",
           {job.scene.file},
           fmt::format("the path never meets the stock: {}", how),
-          fmt::format("move stock.{} to where the path is (both are in the work frame, mm)",
-                      job.scene.stock.raw.key)};
+          fmt::format("move {} to where the path is (both are in the work frame, mm)",
+                      job.scene.stock.raw.spoken_key())};
 }
 
 std::string sides(const Box& box) {
@@ -177,10 +184,10 @@ InputError blocks_miss_stock(const Job& job, const toolpath::Elements& elements)
       {job.scene.file},
       "the path never meets the stock: " + how,
       fmt::format("an offset of X {:.3f} Y {:.3f} Z {:.3f} mm brings the path there (setup.offsets of the "
-                  "work offset that is used, or the tool length that was not called); or stock.{} moves "
+                  "work offset that is used, or the tool length that was not called); or {} moves "
                   "by X {:.3f} Y {:.3f} Z {:.3f}",
-                  shift.x(), shift.y(), shift.z(), job.scene.stock.raw.key, 0.0 - shift.x(), 0.0 - shift.y(),
-                  0.0 - shift.z())};
+                  shift.x(), shift.y(), shift.z(), job.scene.stock.raw.spoken_key(), 0.0 - shift.x(),
+                  0.0 - shift.y(), 0.0 - shift.z())};
 }
 
 /// What the program was warned of may explain its fault.
@@ -204,7 +211,7 @@ void require_contact(const Job& job, const motion::Cycles& cycles) {
   }
   if (nearest <= reach) return;
   throw path_misses_stock(
-      job, fmt::format("it stays {:.1f} mm away from stock.{}", nearest, job.scene.stock.raw.key));
+      job, fmt::format("it stays {:.1f} mm away from {}", nearest, job.scene.stock.raw.spoken_key()));
 }
 
 ComparisonRow row_of(const std::string& name, const MeasuredPath& measured, bool used) {
@@ -231,7 +238,7 @@ void compare_planners(const Job& job, Progress& progress, Result& result) {
     if (planner == job.scene.toolpath.planner) {
       result.planners.push_back(row_of(toolpath::planner_name(planner), result.main, true));
     } else if (job.scene.compare_planners && !progress.stop_requested()) {
-      MeasuredPath other = plan_and_move(job, planner, job.scene.motion, silent);
+      MeasuredPath other = plan_and_move(job, planner, result.main.carried, silent);
       cut_dexels(job, other);
       measure_dexels(job, other);
       result.planners.push_back(row_of(toolpath::planner_name(planner), other, false));
@@ -267,6 +274,7 @@ void compare_modes(const Job& job, Progress& progress, Result& result) {
       options.look_ahead = one.look_ahead;
       MeasuredPath other;
       other.path = result.main.path;
+      other.carried = result.main.carried;
       interpolate(job, options, {}, silent, other);
       cut_dexels(job, other);
       measure_dexels(job, other);
@@ -277,10 +285,104 @@ void compare_modes(const Job& job, Progress& progress, Result& result) {
   progress.end();
 }
 
-/// Removed and left add up to the raw stock. The level set rounds its edges too while it is uncut, so what
-/// was removed is the difference of two volumes, and what is left the rest of the exact body.
+/// Distances of a path's cutting cycles, and of the middles of their chords, from the exact passes.
+void measure_positions(const Job& job, const MeasuredPath& exact, const MeasuredPath& measured,
+                       DrivenRow& row) {
+  std::vector<motion::ExactPath> passes;
+  const kinematics::MachineModel machine = machines_by_tool(job).front();
+  const kinematics::InverseKinematics inverse(machine);
+  for (size_t i = 0; i < exact.path.elements.size(); ++i)
+    if (const auto* pass = exact.path.elements.driven(i))
+      passes.emplace_back(*pass, machine, inverse, job.scene.motion);
+  const auto pass_of = [&](const motion::ToolSample& sample) {
+    const auto element = static_cast<size_t>(sample.element);
+    if (const auto* driven = measured.path.elements.driven(element)) return driven->pass;
+    return measured.path.elements.hold_blocks() ? measured.path.elements.block(element).pass : -1;
+  };
+  double squares = 0.0;
+  size_t count = 0;
+  std::optional<motion::ToolSample> last;
+  motion::CycleReader reader(*measured.cycles);
+  for (size_t k = 0; k < measured.cycles->size(); ++k) {
+    const motion::ToolSample sample = reader.at(k).sample;
+    const int pass = sample.kind == motion::SampleKind::kCutting ? pass_of(sample) : -1;
+    if (pass < 0) {
+      last.reset();
+      continue;
+    }
+    const auto see = [&](const Vec3& tip) {
+      const double error = passes[static_cast<size_t>(pass)].distance(tip);
+      row.position_error_max_mm = std::max(row.position_error_max_mm, error);
+      squares += error * error;
+      ++count;
+    };
+    if (last && pass_of(*last) == pass) see(0.5 * (last->pose.tip_W + sample.pose.tip_W));
+    see(sample.pose.tip_W);
+    last = sample;
+  }
+  row.position_error_rms_mm = count > 0 ? std::sqrt(squares / static_cast<double>(count)) : 0.0;
+}
+
+DrivenRow driven_row(const Job& job, const MeasuredPath& exact, const MeasuredPath& measured) {
+  DrivenRow row;
+  row.name = measured.path.planner;
+  const toolpath::Elements& elements = measured.path.elements;
+  row.blocks = elements.hold_blocks() ? elements.size() : 1;
+  for (size_t i = 0; elements.hold_blocks() && i < elements.size(); ++i) {
+    const Vec3 to = elements.block_end(i).tip_W;
+    row.program_bytes +=
+        fmt::formatted_size("N{} G1 X{:.4f} Y{:.4f} Z{:.4f}\n", i + 1, to.x(), to.y(), to.z());
+  }
+  const motion::MotionStatistics& statistics = measured.motion.statistics;
+  row.time_s = statistics.time_s;
+  row.feed_mean_mm_s =
+      statistics.cycle.feed_s > 0.0 ? statistics.path_length_mm / statistics.cycle.feed_s : 0.0;
+  row.feed_lowest_mm_s = statistics.feed_min_mm_s;
+  row.surface = measured.surface;
+  measure_positions(job, exact, measured, row);
+  return row;
+}
+
+/// Kato et al.'s comparison: the surface itself, and what a CAM system makes of it.
+void compare_driven(const Job& job, Progress& progress, Result& result) {
+  const DrivenSettings& driven = *job.scene.driven;
+  std::vector<double> tolerances = driven.compare_mm;
+  tolerances.insert(tolerances.begin(), 0.0);
+  const double used = driven.plan.cam_tolerance_mm;
+  if (std::find(tolerances.begin(), tolerances.end(), used) == tolerances.end()) tolerances.push_back(used);
+  progress.begin("compare with CAM paths", static_cast<double>(tolerances.size()), "paths");
+  Progress silent;
+  MeasuredPath exact;
+  Diagnostics told;
+  exact.path = driven_path(job, 0.0, told);
+  const kinematics::MachineModel machine = machines_by_tool(job).front();
+  const kinematics::InverseKinematics inverse(machine);
+  result.driven = motion::check_driven(exact.path.elements, machine, inverse, job.scene.motion);
+  for (const double tolerance : tolerances) {
+    if (progress.stop_requested()) break;
+    MeasuredPath other;
+    if (tolerance != used) {
+      other.path = driven_path(job, tolerance, told);
+      other.carried = result.main.carried;
+      interpolate(job, job.scene.motion, {}, silent, other);
+      cut_dexels(job, other);
+      measure_dexels(job, other);
+    }
+    DrivenRow row = driven_row(job, exact, tolerance == used ? result.main : other);
+    row.cam_tolerance_mm = tolerance;
+    row.used = tolerance == used;
+    result.driven_rows.push_back(std::move(row));
+    progress.advance(static_cast<double>(result.driven_rows.size()));
+  }
+  progress.end();
+}
+
+/// Removed, by earlier set-ups too, and left add up to the raw stock. The level set rounds its edges too
+/// while it is uncut, so what was removed is the difference of two volumes, and what is left the rest of the
+/// exact body.
 void measure_volume(const Job& job, Result& result) {
-  result.volume_left_mm3 = job.scene.stock.body_W().volume_mm3() - result.volume_removed_mm3;
+  const double removed = result.full_mm3 - result.volume_left_mm3;
+  result.volume_left_mm3 = job.scene.stock.body_W().volume_mm3() - removed;
   const stock::VolumeRange range = result.stock->volume_between(result.sweep_bound_mm);
   result.volume_error_bound_mm3 =
       std::max(range.greatest - result.volume_left_mm3, result.volume_left_mm3 - range.least);
@@ -290,9 +392,8 @@ void measure_part(const Job& job, Progress& progress, Result& result) {
   progress.begin("measure", 2, "steps");
   measure_dexels(job, result.main);
   progress.advance(1);
-  const std::vector<stock::CutterSolid> solids = tool_solids(job.scene);
-  const std::vector<int> tools = tool_of_blocks(result.main.rays);
-  const measure::SweepCutters cutters(solids, tools);
+  const RayCutters rays = ray_cutters(job, result.main);
+  const measure::SweepCutters cutters(rays.solids, rays.solid_of);
   const double sweep_bound = result.sweep_bound_mm + result.main.rays.error_bound_mm;
   std::vector<measure::CrossCheck> checks;
   for (const stock::SurfaceDexels& dexels : result.main.dexels) {
@@ -372,7 +473,9 @@ Result simulate(const Job& job, const CutOptions& options, Progress& progress) {
   prove_part(job, progress, result);
   measure_flank(job, progress, result);
   // A program of blocks is one path: there is nothing to compare it with.
-  if (planned) {
+  if (job.driven) {
+    compare_driven(job, progress, result);
+  } else if (planned) {
     compare_planners(job, progress, result);
     compare_modes(job, progress, result);
   }

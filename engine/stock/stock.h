@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "base/frames.h"
 #include "mesh/tri_mesh.h"
@@ -74,6 +75,10 @@ class Stock {
   /// so a grid point of value v > 0 has no material within v. The caller takes off how far the sweeps that
   /// cut the grid stray from the motion.
   double air_radius_mm(const Vec3& point_W) const;
+  /// Grid points in the air whose value is below this, mm, in W. Whatever the grid misses lies near them: a
+  /// place of the material is no farther than sqrt(3) / 2 voxel from a grid point, whose value is then no
+  /// more than that, so that it is one of these or inside the material.
+  std::vector<Vec3> air_points(double below_mm) const;
   uint64_t hash() const;
   size_t memory_bytes() const;
   const CutStatistics& statistics() const;

@@ -27,10 +27,6 @@ double binomial(int n, int k) {
 
 }  // namespace
 
-Vec3 outward_normal(const Surface& surface, const Derivatives& d) {
-  return surface.outward_sign() * d.Su.cross(d.Sv).normalized();
-}
-
 PolynomialSurface::PolynomialSurface(int degree_u, int degree_v, std::vector<Vec3> coefficients,
                                      int outward_sign)
     : degree_u_(degree_u),

@@ -42,5 +42,9 @@ using SurfacePtr = std::shared_ptr<const Surface>;
 
 /// Unit normal that points out of the material. |Su x Sv| must not vanish.
 Vec3 outward_normal(const Surface& surface, const Derivatives& d);
+/// The same, `d` being those at uv: where Su x Sv vanishes (the pole of a sphere, the tip of a cone, patches
+/// with three sides) the limit on the way from uv to the middle of the square. Zero, never not a number,
+/// where that vanishes too: a place without a normal.
+Vec3 outward_normal(const Surface& surface, const Derivatives& d, const Vec2& uv);
 
 }  // namespace swarf::surface

@@ -11,6 +11,7 @@
 #include "program/block_law.h"
 #include "program/moves.h"
 #include "surface/surface.h"
+#include "toolpath/driven/driven_pass.h"
 
 namespace swarf::toolpath {
 
@@ -86,7 +87,7 @@ double arc_angle(const BlockMove& block);
 double tip_way(const BlockMove& block);
 
 struct Element {
-  std::variant<SurfacePass, FreeMove, BlockMove> what;
+  std::variant<SurfacePass, FreeMove, BlockMove, DrivenPass> what;
   int operation = 0;     ///< index into Program::operations; 0 for CL programs
   SourceLocation where;  ///< the block that caused it
 };

@@ -238,6 +238,10 @@ const SurfacePass* Elements::pass(size_t i) const {
   return hold_blocks() ? nullptr : std::get_if<SurfacePass>(&data_->plain[i].what);
 }
 
+const DrivenPass* Elements::driven(size_t i) const {
+  return hold_blocks() ? nullptr : std::get_if<DrivenPass>(&data_->plain[i].what);
+}
+
 SourceLocation Elements::where(size_t i) const {
   if (!hold_blocks()) return data_->plain[i].where;
   return {data_->files[kind(i).file], count(i, kLine), count(i, kColumn)};

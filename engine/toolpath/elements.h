@@ -44,12 +44,12 @@ class Elements {
 
   /// Made anew: equal to what was added, to the last bit.
   Element operator[](size_t i) const;
-  Element front() const { return (*this)[0]; }
   Element back() const { return (*this)[size() - 1]; }
   auto begin() const { return IndexIterator(*this, 0); }
   auto end() const { return IndexIterator(*this, size()); }
   /// Null: this element is none. Valid until something is added.
   const SurfacePass* pass(size_t i) const;
+  const DrivenPass* driven(size_t i) const;
 
   SourceLocation where(size_t i) const;
   int line(size_t i) const;

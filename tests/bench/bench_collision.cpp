@@ -101,7 +101,7 @@ void BM_PathCheck(benchmark::State& state) {
     pairs = found.pairs.size();
     contacts = near = 0;
     for (const PairFindings& pair : found.pairs) {
-      contacts += pair.contact_count;
+      contacts += pair.contact_count();
       near += pair.near_miss.within ? 1 : 0;
     }
   }

@@ -12,19 +12,22 @@ ALLOWED = {
     "base": set(),
     "mesh": {"base"},
     "surface": {"base"},
+    "brep": {"base", "mesh", "surface"},
     "cutter": {"base"},
+    "position": {"base", "mesh", "surface", "cutter"},
     "kinematics": {"base"},
     "program": {"base", "surface", "kinematics"},
-    "toolpath": {"base", "surface", "cutter", "program", "kinematics"},
-    "motion": {"base", "surface", "cutter", "program", "toolpath", "kinematics"},
+    "toolpath": {"base", "surface", "cutter", "position", "program", "kinematics"},
+    "motion": {"base", "surface", "cutter", "position", "program", "toolpath", "kinematics"},
     "machine": {"base", "mesh", "kinematics"},
     "post": {"base", "program", "toolpath", "motion", "kinematics", "machine"},
     "stock": {"base", "mesh", "surface", "cutter"},
     "collision": {"base", "mesh", "cutter", "kinematics", "machine", "motion", "stock"},
     "measure": {"base", "mesh", "surface", "cutter", "stock", "motion"},
 }
-ENGINE = set(ALLOWED) | {"sim", "papers"}
-ALLOWED["sim"] = ENGINE - {"sim", "papers", "post"}
+ENGINE = set(ALLOWED) | {"sim", "avoidance", "papers"}
+ALLOWED["sim"] = ENGINE - {"sim", "avoidance", "papers", "post"}
+ALLOWED["avoidance"] = ENGINE - {"avoidance", "papers"}
 ALLOWED["papers"] = ENGINE - {"papers"}
 ALLOWED["render"] = {"base", "mesh"}
 ALLOWED["reports"] = ENGINE | {"render"}
@@ -33,6 +36,8 @@ ALLOWED["cli"] = ENGINE | {"render", "reports"}
 # heavy library: (pattern of its includes, the places whose .cpp files may include it)
 HEAVY = {
     "OpenVDB": (r"openvdb/", ("engine/stock/",)),
+    # Its headers have no folder of their own: Package_Class.hxx.
+    "OpenCASCADE": (r"\w+\.hxx", ("engine/brep/",)),
     "OpenMesh": (r"OpenMesh/", ("engine/mesh/",)),
     "meshoptimizer": (r"meshoptimizer", ("engine/mesh/",)),
     "Boost.Math": (r"boost/math", ("engine/base/",)),
@@ -56,7 +61,7 @@ SEEN_BY_REPORTS = {
 }
 
 # Headers that only the .cpp files beside them include: they may show the library.
-PRIVATE_HEADERS = {"stock_grid_internal.h", "gltf_buffer.h", "gl_api.h"}
+PRIVATE_HEADERS = {"stock_grid_internal.h", "occt_shape.h", "gltf_buffer.h", "gl_api.h"}
 
 
 def module_of(path):

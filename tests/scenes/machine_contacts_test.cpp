@@ -106,17 +106,160 @@ TEST_F(MachineContacts, HowNearTheHolderCameToAPostIsToldToAMicrometre) {
   EXPECT_NE(met.output.find("post touches holder"), std::string::npos) << met.output;
 }
 
-/// A tool so short that the spindle's nose goes below the block's upper face: what is left of the block there
-/// is not looked at, and the verdict says so.
-TEST_F(MachineContacts, TheUncutStockInTheWayOfALinkIsNotProven) {
+/// A tool so short that the spindle's nose goes 2 mm below the block's upper face, which is cut away under
+/// the tool alone: the nose is in what is left.
+TEST_F(MachineContacts, ALinkInWhatIsLeftOfTheStockIsAContact) {
   const std::string short_tool =
       "[setup]\nwork_origin_mm = \"on_table\"\n[[tool]]\nnumber = 1\ndiameter_mm = 6\nflute_length_mm = 1\n"
       "length_mm = 1\nholder_diameter_mm = 6\nholder_length_mm = 1\ngauge_length_mm = 1\n";
   const ProgramRun met = run(kFrame, short_tool + "[accept]\ncollisions = 100\n");
   EXPECT_EQ(met.exit_code, 1) << met.output;
+  EXPECT_EQ(outcome(), "fails");
+  EXPECT_NE(met.output.find("touches what is left of the stock"), std::string::npos) << met.output;
+  const json contacts = metrics()["machine_contacts"];
+  EXPECT_GT(contacts["count"], 0);
+  EXPECT_EQ(contacts["stock"]["contacts"], contacts["count"]);
+  // A block that is laid around the path says nothing about a real one.
+  swarf::test::write_text(folder_ / "around.toml",
+                          "nc = \"part.nc\"\ndialect = \"fanuc\"\nmachine = \"spinner_u5_620\"\n"
+                          "[stock]\nvoxel_mm = 1\n[design]\nkind = \"none\"\n" +
+                              short_tool + "[accept]\ncollisions = 100\n");
+  const ProgramRun around =
+      run_swarf("run " + (folder_ / "around.toml").string() + " --no-render -q -o " + out().string());
+  EXPECT_EQ(outcome(), "not_judged") << around.output;
+}
+
+/// X Y Z under the tool. A bar of 2 x 2 hangs 50 mm beside it in +X and 5 mm deeper than the tip of a tool
+/// that reaches 110 mm below the gauge line. The block is 40 x 40 x 20, its upper face Z 0.
+class BarBesideTheTool : public MachineContacts {
+ protected:
+  BarBesideTheTool() {
+    std::string machine = "name = \"bar\"\n";
+    for (const char axis : {'X', 'Y', 'Z'})
+      machine += fmt::format(
+          "[[axis]]\nname = \"{}\"\ntype = \"linear\"\ndirection = [{}, {}, {}]\nmin_mm = -900\n"
+          "max_mm = 900\nspeed_max_mm_min = 60000\nacceleration_max_mm_s2 = 10000\n"
+          "jerk_max_mm_s3 = 1000000\n",
+          axis, axis == 'X' ? 1 : 0, axis == 'Y' ? 1 : 0, axis == 'Z' ? 1 : 0);
+    machine +=
+        "[work]\norigin_mm = [0, 0, 0]\n[tool]\ngauge_mm = [0, 0, 0]\naxis = [0, 0, 1]\n"
+        "[[link]]\nname = \"bed\"\nmount = \"work\"\n[[link]]\nname = \"x\"\nparent = \"bed\"\n"
+        "axis = \"X\"\n[[link]]\nname = \"y\"\nparent = \"x\"\naxis = \"Y\"\n[[link]]\n"
+        "name = \"head\"\nparent = \"y\"\naxis = \"Z\"\nmount = \"tool\"\nmesh = \"bar.obj\"\n";
+    swarf::test::write_text(folder_ / "machine.toml", machine);
+    std::string bar;
+    for (int i = 0; i < 8; ++i)
+      bar += fmt::format("v {} {} {}\n", (i & 1) != 0 ? 52 : 50, (i & 2) != 0 ? 1 : -1,
+                         (i & 4) != 0 ? -20 : -115);
+    for (const char* face : {"1 3 4 2", "5 6 8 7", "1 2 6 5", "3 7 8 4", "1 5 7 3", "2 4 8 6"})
+      bar += fmt::format("f {}\n", face);
+    swarf::test::write_text(folder_ / "bar.obj", bar);
+  }
+
+  ProgramRun run_bar(const std::string& program, const std::string& flags = "") {
+    swarf::test::write_text(folder_ / "part.nc", kStart + program + "M2\n");
+    swarf::test::write_text(
+        folder_ / "scene.toml",
+        "nc = \"part.nc\"\ndialect = \"fanuc\"\nmachine = \"machine.toml\"\n[stock]\n"
+        "box_mm = [[0, 0, -20], [40, 40, 0]]\nvoxel_mm = 0.5\n[design]\nkind = \"none\"\n"
+        "[setup]\nstart = { X_mm = -100, Y_mm = 20, Z_mm = 160 }\n[interpolator]\nperiod_ms = 20\n[[tool]]\n"
+        "number = 1\ndiameter_mm = 10\nflute_length_mm = 30\nlength_mm = 60\nholder_diameter_mm = 10\n");
+    fs::remove_all(out());
+    return run_swarf("run " + (folder_ / "scene.toml").string() + " --no-render -q -o " + out().string() +
+                     " " + flags);
+  }
+  json contacts() const { return metrics()["machine_contacts"]; }
+  json stock() const { return contacts()["stock"]; }
+
+  const std::string kStart = "G21 G90 G17 G54\nT1 M6\nS5000 M3\nG43 H1\nG0 X-100 Y20 Z50\n";
+  // 10 wide and 10 deep along X in the middle; the bar goes through 3 mm above its floor.
+  const std::string kSlot = "G0 X-7 Y20\nG0 Z-10\nG1 X45 F1000\nG0 Z50\n";
+  const std::string kBar = "G0 X-45 Y20\nG0 Z-2\nG0 X-15\nG0 Z50\n";
+  // Slots along Y from X 5 to 15 and from 18 to 28, and the bar from one to the other.
+  const std::string kTwoSlots =
+      "G0 X10 Y-7\nG0 Z-10\nG1 Y47 F1000\nG0 Z50\nG0 X23 Y-7\nG0 Z-10\nG1 Y47\nG0 Z50\n";
+  const std::string kThrough = "G0 X-41 Y20\nG0 Z-2\nG0 X-28\nG0 Z50\n";
+};
+
+TEST_F(BarBesideTheTool, WhereItWasCutAwayBeforeItIsFree) {
+  const ProgramRun after = run_bar(kSlot + kBar);
+  EXPECT_EQ(after.exit_code, 0) << after.output;
+  EXPECT_EQ(outcome(), "holds");
+  EXPECT_EQ(stock()["came_to_raw"], 1);
+  EXPECT_EQ(stock()["contacts"], 0);
+  EXPECT_EQ(stock()["open"], 0);
+  EXPECT_EQ(contacts()["count"], 0);
+
+  const ProgramRun before = run_bar(kBar + kSlot);
+  EXPECT_EQ(before.exit_code, 1) << before.output;
+  EXPECT_EQ(outcome(), "fails");
+  ASSERT_EQ(stock()["contacts"], 1) << before.output;
+  EXPECT_EQ(contacts()["count"], 1);
+  EXPECT_EQ(stock()["events"][0]["line"], 7);
+  EXPECT_EQ(stock()["events"][0]["last_line"], 9);
+  EXPECT_NEAR(stock()["events"][0]["depth_seen_mm"].get<double>(), 7.0, 0.05);
+
+  // The slot first, but a deeper way: 2 mm into its floor.
+  const ProgramRun deeper = run_bar(kSlot + "G0 X-45 Y20\nG0 Z-7\nG0 X-15\nG0 Z50\n");
+  EXPECT_EQ(deeper.exit_code, 1) << deeper.output;
+  ASSERT_EQ(stock()["contacts"], 1) << deeper.output;
+  EXPECT_NEAR(stock()["events"][0]["depth_seen_mm"].get<double>(), 2.0, 0.1);
+  // A tenth above its floor, within a voxel: neither is proven, and that is not green.
+  const ProgramRun near = run_bar(kSlot + "G0 X-45 Y20\nG0 Z-4.9\nG0 X-15\nG0 Z50\n");
+  EXPECT_EQ(near.exit_code, 1) << near.output;
   EXPECT_EQ(outcome(), "not_proven");
-  EXPECT_GT(metrics()["machine_contacts"]["with_uncut_stock"].get<int>(), 0);
-  EXPECT_EQ(metrics()["machine_contacts"]["count"], 0);
+  EXPECT_EQ(stock()["open"], 1);
+  EXPECT_NE(near.output.find("not proven to be clear"), std::string::npos) << near.output;
+}
+
+/// A rapid of 13 mm takes ten cycles of 20 ms at most; what stands in it is met between them.
+TEST_F(BarBesideTheTool, ARibBetweenTwoCyclesIsMet) {
+  const ProgramRun met = run_bar(kTwoSlots + kThrough);
+  EXPECT_EQ(met.exit_code, 1) << met.output;
+  ASSERT_EQ(stock()["contacts"], 1) << met.output;
+  EXPECT_EQ(stock()["events"][0]["line"], 16);
+  const double x = stock()["events"][0]["place_machine_mm"][0].get<double>();
+  EXPECT_GT(x, 14.5);
+  EXPECT_LT(x, 18.5);
+  const ProgramRun free = run_bar(kTwoSlots + "G0 X16 Y-7\nG0 Z-10\nG1 Y47\nG0 Z50\n" + kThrough);
+  EXPECT_EQ(free.exit_code, 0) << free.output;
+  EXPECT_EQ(stock()["came_to_raw"], 1);
+}
+
+/// While the slot is cut, and twice; on any number of threads, from any saved stock.
+TEST_F(BarBesideTheTool, SameForAnyThreadsAndFromASavedStock) {
+  const std::string program = kTwoSlots + kThrough + kSlot + kBar + kThrough;
+  const std::string full = (folder_ / "full").string();
+  const auto run_into = [&](const std::string& more) { return run_bar(program, more); };
+  run_into("--threads 1 --save-stock-after 12,15,19");
+  const json one = contacts();
+  EXPECT_EQ(one["stock"]["came_to_raw"], 3);
+  EXPECT_EQ(one["stock"]["contacts"], 1);
+  fs::copy(out(), full);
+  run_into("--threads 2");
+  EXPECT_EQ(contacts(), one);
+  for (const char* line : {"12", "15", "19"}) {
+    const ProgramRun on = run_into(fmt::format("--from {}/stock_after_line_{}.vdb", full, line));
+    EXPECT_EQ(contacts(), one) << on.output;
+  }
+}
+
+/// What lies behind a saved stock was looked at with the bodies of that run: another one leaves it open.
+TEST_F(BarBesideTheTool, ASavedStockOfAnotherBarLeavesWhatLiesBehindOpen) {
+  const std::string program = kBar + kSlot + kBar;
+  ASSERT_EQ(run_bar(program, "--save-stock-after 13").exit_code, 1);
+  EXPECT_EQ(stock()["contacts"], 1);
+  const std::string kept = (folder_ / "kept.vdb").string();
+  fs::copy(out() / "stock_after_line_13.vdb", kept);
+  std::string bar = swarf::test::read_text(folder_ / "bar.obj");
+  for (size_t at = 0; (at = bar.find("-115", at)) != std::string::npos;) bar.replace(at, 4, "-114");
+  swarf::test::write_text(folder_ / "bar.obj", bar);
+  const ProgramRun on = run_bar(program, "--from " + kept);
+  EXPECT_EQ(on.exit_code, 1) << on.output;
+  EXPECT_EQ(outcome(), "not_proven");
+  EXPECT_EQ(stock()["came_to_raw"], 2);
+  EXPECT_EQ(stock()["contacts"], 0);
+  EXPECT_EQ(stock()["open"], 1);
 }
 
 /// What has no mesh cannot be looked at, and is no pass.

@@ -101,15 +101,15 @@ TEST(RawStockScene, TheSecondClampingBeginsWithWhatTheFirstHasLeft) {
   const auto run = run_in(second);
   ASSERT_EQ(run.exit_code, 0) << run.output;
   const json metrics = metrics_of(second);
-  EXPECT_NEAR(number(metrics, "stock.raw.volume_mm3"), left, 1e-3 * left);
+  EXPECT_EQ(number(metrics, "stock.raw.volume_mm3"), 40.0 * 40.0 * 15.0) << "the first one's, turned";
+  EXPECT_NEAR(number(metrics, "stock.volume_left_mm3") + number(metrics, "stock.volume_removed_mm3"), left,
+              1e-4 * left)
+      << "of what it left, on another grid";
   // The same slot once more, from the other side.
   const double slot = 5.0 * 40.0 * 6.0;
   EXPECT_NEAR(number(metrics, "stock.volume_removed_mm3"), slot, 3e-3 * slot);
-  EXPECT_NE(at_path(metrics, "stock.raw.shape")
-                .get<std::string>()
-                .find(at_path(metrics_of(first), "stock.hash").get<std::string>()),
-            std::string::npos);
-  EXPECT_TRUE(fs::exists(second / "out/input/stock.vdb"));
+  EXPECT_NE(at_path(metrics, "stock.earlier.cuts").get<std::string>().find("sweeps"), std::string::npos);
+  EXPECT_TRUE(fs::exists(second / "out/input/earlier_run/stock.vdb"));
   fs::remove_all(first);
   fs::remove_all(second);
 }
@@ -185,7 +185,9 @@ TEST(RawStockScene, WhatIsNoStockIsRefusedWithItsPlace) {
       {"metres", "mesh = \"metres.stl\"", "mesh-unit-suspicious", "stock.mesh_unit = \"m\""},
       {"inches", "mesh = \"inches.stl\"", "mesh-unit-suspicious", "stock.mesh_unit = \"inch\""},
       {"no_file", "mesh = \"none.stl\"", "mesh-not-found", "none.stl"},
-      {"no_run", "from_run = \"nowhere\"", "stock-file-unreadable", "nowhere/stock.vdb"},
+      {"no_run", "from_run = \"nowhere\"", "not-a-run", "nowhere"},
+      {"no_such_stock", "from_run = \"nowhere/stock_after_line_7.vdb\"", "from-run-unfinished",
+       "in the middle"},
       {"zero", "cylinder = { diameter_mm = 0, length_mm = 10 }", "out-of-range", "scene.toml:9:"},
       {"no_length", "cylinder = { diameter_mm = 10 }", "missing-key", "length_mm"},
       {"no_wall", "tube = { diameter_mm = 10, inner_diameter_mm = 10, length_mm = 5 }", "out-of-range",

@@ -87,6 +87,14 @@ def scene_texts():
     for shape in shapes:
         yield f"nc = 'part.ngc'\n[[tool]]\nshape = '{shape}'\n{no}"
     yield f"nc = 'part.ngc'\n[[tool]]\nshape = 'profile'\n{no}[[tool.profile]]\n{no}[[tool.holder]]\n{no}"
+    yield f"cl = 'part.cls'\n[post]\n{no}[post.clamping]\n{no}[post.tool_reach]\n{no}"
+    yield (f"nc = 'part.ngc'\n[design]\nkind = 'nurbs'\ndegree = [1, 1]\ncount = [2, 2]\nweights = [1, 1, 1, 1]\n"
+           f"poles_mm = [[0, 0, 0], [0, 1, 0], [1, 0, 0], [1, 1, 0]]\n{no}")
+    # A guide has no interval; the part is a surface or a mesh.
+    for mode in ("scan", "contour", "spiral", "guide"):
+        for part in ("surface", "mesh"):
+            yield (f"[driven]\n{part} = 'part.x'\nmode = '{mode}'\narea_mm = [[0, 0], [1, 1]]\nfloor_mm = 0\n"
+                   f"compare_cam_um = [10, 1]\n{no}[interpolator]\n{no}")
     for kind in schema("scene")["properties"]["fixture"]["items"]["properties"]["kind"]["enum"]:
         yield f"nc = 'part.ngc'\n[[fixture]]\nkind = '{kind}'\n{no}"
     for raw in ("cylinder = {{ {0} }}", "tube = {{ {0} }}", "outline = {{ {0} }}", "mesh = 'a.stl'",
@@ -158,6 +166,18 @@ class Shipped(unittest.TestCase):
                 self.assertFalse(validator("post").is_valid({**post, "moton": {}}))
 
 
+    def test_the_keys_of_one_of_several_set_ups(self):
+        whole = schema("scene")
+        one = set(whole["$defs"]["one_setup"]["properties"])
+        root = set(whole["properties"]) - {"setup"}
+        self.assertEqual(one, root | set(whole["properties"]["setup"]["properties"]) | {"name", "part_pose"})
+        scene = {"stock": {"box_mm": [[0, 0, -5], [20, 20, 0]], "voxel_mm": 0.5}}
+        setups = [{"nc": "a.ngc", "tools": "6"}, {"nc": "b.ngc", "tools": "6", "part_pose": {"rotation_deg": [180, 0, 0]}}]
+        self.assertTrue(validator("scene").is_valid({**scene, "setup": setups}))
+        for wrong in ([], [{**setups[0], "part_pos": {}}], [{**setups[0], "part_pose": {"scale": 2}}]):
+            self.assertFalse(validator("scene").is_valid({**scene, "setup": wrong}), wrong)
+
+
 class Written(unittest.TestCase):
     """metrics.json and findings.json of runs that fill each section."""
 
@@ -194,6 +214,18 @@ class Written(unittest.TestCase):
     def test_a_casting(self):
         metrics, _ = self.check("stock_casting", section="stock")
         self.assertEqual(set(metrics["stock"]["raw"]), {"shape", "volume_mm3", "box_mm"})
+
+    def test_a_second_set_up(self):
+        with tempfile.TemporaryDirectory() as folder:
+            code, said = run("run", SOURCE / "scenes/two_setups/scene.toml", "--no-render", "-q", "-o", f"{folder}/out")
+            self.assertEqual(code, 0, said)
+            for name in ("1_first_side", "2_turned_over"):
+                metrics = json.loads(pathlib.Path(folder, "out", name, "metrics.json").read_text())
+                validator("metrics").validate(metrics)
+                self.assertEqual(metrics["stock"]["earlier"] is None, name == "1_first_side")
+            setups = json.loads(pathlib.Path(folder, "out", "setups.json").read_text())
+            validator("setups").validate(setups)
+            self.assertFalse(validator("setups").is_valid({**setups, "finished": [{}]}))
 
     def test_flank(self):
         self.check("exact_flank_f1", section="flank")

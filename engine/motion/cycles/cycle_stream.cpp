@@ -25,8 +25,9 @@ using Clock = std::chrono::steady_clock;
 
 /// Cycles of one off-line pass or free move, which are made at once.
 constexpr double kListedMax = 2e7;
-/// Elements must follow each other without a gap, mm and (per unit axis) rad.
-constexpr double kJoinTolerance = 1e-6;
+/// Elements must follow each other without a gap, mm and (per unit axis) rad. A tool that is set down on
+/// patches rests within position::kPatchProof_mm.
+constexpr double kJoinTolerance = 2.5 * position::kPatchProof_mm;
 
 /// Whole cycles that a time takes; a hair too long does not count as one more.
 double whole_cycles(double seconds, double period_s) {
@@ -104,6 +105,8 @@ bool CycleStream::go_on() {
     run_on();
   } else if (pass_) {
     pass_on();
+  } else if (driven_) {
+    driven_on();
   } else if (samples_done_ < samples_.size()) {
     samples_on();
   } else if (element_ == source_.elements.size()) {
@@ -215,6 +218,8 @@ void CycleStream::begin_element() {
       check_time((move->to.tip_W - move->from.tip_W).norm() / move->feed_mm_s, "moves", kListedMax);
     start_at(standing(move->from, SampleKind::kRapid));
     samples_ = sample_free_move(*move, source_.by_tool.front(), inverse(), *source_.options, q_);
+  } else if (const auto* driven = std::get_if<toolpath::DrivenPass>(&element.what)) {
+    begin_driven(*driven);
   } else {
     begin_pass(std::get<SurfacePass>(element.what));
   }
@@ -260,6 +265,30 @@ void CycleStream::pass_on() {
   if (out.finished) pass_.reset();
 }
 
+void CycleStream::begin_driven(const toolpath::DrivenPass& pass) {
+  samples_.clear();
+  check_time(pass.guide->end() / pass.feed_mm_s, "moves");
+  driven_.emplace(pass, source_.by_tool.front(), inverse(), *source_.options, q_);
+  ToolSample first = standing(driven_->start().pose, SampleKind::kCutting);
+  first.contact_W = driven_->start().rest.contact_W;
+  start_at(first);
+}
+
+void CycleStream::driven_on() {
+  const auto begin = Clock::now();
+  const DrivenOutput out = driven_->step({});
+  const Branch branch = inverse().solve_nearest(out.at.pose, q_);
+  const auto end = Clock::now();
+  ToolSample sample;
+  sample.pose = out.at.pose;
+  sample.contact_W = out.at.rest.contact_W;
+  sample.u = out.x;
+  sample.feed_mm_s = out.feed_mm_s;
+  sample.kind = SampleKind::kCutting;
+  record(sample, branch, static_cast<float>(std::chrono::duration<double, std::nano>(end - begin).count()));
+  if (out.finished) driven_.reset();
+}
+
 void CycleStream::samples_on() {
   record(samples_[samples_done_++]);
 }
@@ -277,7 +306,8 @@ void CycleStream::require_join(const ToolPose& pose) const {
   const ToolPose& before = before_.sample.pose;
   SWARF_CHECK((before.tip_W - pose.tip_W).norm() <= kJoinTolerance &&
                   (before.axis_W - pose.axis_W).norm() <= kJoinTolerance,
-              fmt::format("element {} does not start where the one before ends", element_));
+              fmt::format("element {} starts {:.3g} mm from where the one before ends", element_,
+                          (before.tip_W - pose.tip_W).norm()));
 }
 
 void CycleStream::record(const ToolSample& sample) {

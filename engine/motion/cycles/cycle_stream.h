@@ -3,6 +3,7 @@
 //
 //   ToolPath --> surface pass --> SurfaceInterpolator (taylor1, surface) --+
 //            --> surface pass --> straight segments (offline) -------------+--> ToolSample --> inverse --> q
+//            --> driven pass  --> DrivenInterpolator ---------------------+
 //            --> free move    --> straight tip, slerp axis ----------------+
 //            --> blocks       --> their own law (block_motion.h), by runs --+
 //
@@ -22,6 +23,7 @@
 #include "motion/blocks/block_run.h"
 #include "motion/blocks/pole_turn.h"
 #include "motion/options.h"
+#include "motion/passes/driven_interpolator.h"
 #include "motion/passes/surface_interpolator.h"
 #include "motion/tool_sample.h"
 #include "toolpath/tool_path.h"
@@ -92,6 +94,8 @@ class CycleStream {
   void begin_element();
   void begin_pass(const toolpath::SurfacePass& pass);
   void pass_on();
+  void begin_driven(const toolpath::DrivenPass& pass);
+  void driven_on();
   void samples_on();
   void mark_place();
   void start_at(const ToolSample& first);
@@ -113,6 +117,7 @@ class CycleStream {
   // At most one of these is under way.
   std::optional<RunUnderWay> run_;
   std::optional<SurfaceInterpolator> pass_;
+  std::optional<DrivenInterpolator> driven_;
   std::vector<ToolSample> samples_;
   size_t samples_done_ = 0;
 };

@@ -72,6 +72,8 @@ class MotionMeter::TickMeter {
       measure_block(motion_.at(element), before, sample, middle);
     } else if (const auto* pass = elements_.pass(element)) {
       measure_contact(*pass, before, sample, middle);
+    } else if (const auto* driven = elements_.driven(element)) {
+      measure_driven(*driven, before, sample, middle);
     } else {
       const auto move = std::get<FreeMove>(elements_[element].what);
       const double error = distance_across(middle.tip_W - move.from.tip_W, move.to.tip_W - move.from.tip_W);
@@ -99,6 +101,24 @@ class MotionMeter::TickMeter {
     const Vec3 tip_gap = middle.tip_W - contact_pose(pass, t_middle, radius_).tip_W;
     const double tip_error = distance_across(tip_gap, sample.pose.tip_W - before.pose.tip_W);
     out_.tip_error_max_mm = std::max(out_.tip_error_max_mm, tip_error);
+  }
+
+  /// Against the tool set down half way between the two cycles.
+  void measure_driven(const toolpath::DrivenPass& pass, const ToolSample& before, const ToolSample& sample,
+                      const ToolPose& middle) {
+    const Vec3 chord = sample.pose.tip_W - before.pose.tip_W;
+    out_.path_length_mm += chord.norm();
+    out_.feed_error_max_rel =
+        std::max(out_.feed_error_max_rel,
+                 std::abs(chord.norm() - sample.feed_mm_s * period_) / (pass.feed_mm_s * period_));
+    const double x = before.kind == SampleKind::kCutting ? before.u : 0.0;
+    constexpr double kStep_mm = 1e-6;  // on one line the tool climbs straight
+    if (std::abs(sample.u - x) < kStep_mm) return;
+    const ToolPose exact = toolpath::tip_at(pass, 0.5 * (x + sample.u), near_).pose;
+    const Vec3 gap = 0.5 * (sample.pose.tip_W + before.pose.tip_W) - exact.tip_W;
+    out_.chord_error_max_mm = std::max(out_.chord_error_max_mm, distance_across(gap, chord));
+    out_.tip_error_max_mm =
+        std::max(out_.tip_error_max_mm, distance_across(middle.tip_W - exact.tip_W, chord));
   }
 
   void measure_block(const BlockMotion& motion, const ToolSample& before, const ToolSample& sample,
@@ -146,6 +166,7 @@ class MotionMeter::TickMeter {
   const kinematics::InverseKinematics& inverse_;
   double radius_, period_;
   MotionStatistics& out_;
+  position::Near near_;
 };
 
 /// Differences of one axis.
@@ -212,6 +233,8 @@ double least_feed(std::span<const double> feeds) {
 std::string element_name(const toolpath::Element& element) {
   if (const auto* pass = std::get_if<SurfacePass>(&element.what))
     return fmt::format("pass {}", pass->pass + 1);
+  if (const auto* driven = std::get_if<toolpath::DrivenPass>(&element.what))
+    return fmt::format("pass {}", driven->pass + 1);
   if (std::holds_alternative<BlockMove>(element.what))
     return fmt::format("the block of line {}", element.where.line);
   switch (std::get<FreeMove>(element.what).kind) {

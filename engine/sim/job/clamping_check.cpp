@@ -15,15 +15,14 @@ using collision::Body;
 using collision::BodyKind;
 
 /// What rides on the table: the links that nothing moves against it, fixtures, the stock last.
-std::vector<Body> bodies_on_table(const Job& job) {
+std::vector<Body> bodies_on_table(const Job& job, const TriMesh& stock_W) {
   std::vector<Body> bodies;
   for (Body& body : collision::link_bodies(job.machine)) {
     if (!collision::RelativeMotion(job.machine, job.machine.work_link, body.link).rigid()) continue;
     if (job.machine.links[static_cast<size_t>(body.link)].fixture) body.kind = BodyKind::kFixture;
     bodies.push_back(std::move(body));
   }
-  bodies.push_back(collision::work_body(job.machine, "the stock", BodyKind::kStock,
-                                        job.scene.stock.body_W().mesh_around()));
+  bodies.push_back(collision::work_body(job.machine, "the stock", BodyKind::kStock, stock_W));
   return bodies;
 }
 
@@ -35,8 +34,9 @@ double gap(const Job& job, const Body& a, const Body& b) {
   return collision::one_holds_other(pair, still.q0) ? 0.0 : found.upper;
 }
 
+/// Surfaces that cross may have a distance that is not quite 0 (closest_approach.h: its tolerance).
 double overlap(const Job& job, const Body& a, const Body& b) {
-  if (gap(job, a, b) > 0.0) return 0.0;
+  if (gap(job, a, b) > kInsideMm) return 0.0;
   const collision::Encounter pair = collision::encounter(job.machine, a, b);
   const collision::BodyDepth in_a(a), in_b(b);
   return collision::overlap_depth(pair, in_a, in_b, kinematics::AxisValues::Zero()).depth_mm;
@@ -48,16 +48,22 @@ SourceLocation where_of(const Job& job, const Body& fixture) {
   return {job.scene.file};
 }
 
-void check_inside(const Job& job, const Body& fixture, const Body& stock, Diagnostics& diagnostics) {
+void check_inside(const Job& job, const Body& fixture, const Body& stock, double error_mm,
+                  Diagnostics& diagnostics) {
   const double depth = overlap(job, fixture, stock);
-  if (depth <= kInsideMm) return;
+  if (depth <= kInsideMm + error_mm) return;
+  const std::string after =
+      job.earlier.empty()
+          ? ""
+          : fmt::format(", as the earlier set-ups have left it ({:.3f} mm are allowed for its drawing)",
+                        error_mm);
   diagnostics.error("fixture-in-part", where_of(job, fixture),
-                    fmt::format("'{}' stands {:.3f} mm inside the stock", fixture.name, depth),
+                    fmt::format("'{}' stands {:.3f} mm inside the stock{}", fixture.name, depth, after),
                     "move it, or the work: fixture.position_mm, setup.work_origin_mm");
 }
 
 /// Reached from the table over what touches each other.
-std::vector<bool> standing(const Job& job, const std::vector<Body>& bodies) {
+std::vector<bool> standing(const Job& job, const std::vector<Body>& bodies, double error_mm) {
   std::vector<bool> stands;
   for (const Body& body : bodies) stands.push_back(body.kind == BodyKind::kLink);
   std::vector<bool> known = stands;
@@ -65,7 +71,7 @@ std::vector<bool> standing(const Job& job, const std::vector<Body>& bodies) {
     more = false;
     for (size_t i = 0; i < bodies.size(); ++i) {
       for (size_t k = 0; k < bodies.size() && !stands[i]; ++k)
-        stands[i] = stands[k] && gap(job, bodies[i], bodies[k]) <= kTouchesMm;
+        stands[i] = stands[k] && gap(job, bodies[i], bodies[k]) <= kTouchesMm + error_mm;
       more = more || (stands[i] && !known[i]);
       known[i] = stands[i];
     }
@@ -73,14 +79,15 @@ std::vector<bool> standing(const Job& job, const std::vector<Body>& bodies) {
   return stands;
 }
 
-void tell_holding(Job& job, const std::vector<Body>& bodies, const std::vector<bool>& stands) {
+void tell_holding(const Job& job, const std::vector<Body>& bodies, const std::vector<bool>& stands,
+                  double error_mm, Assumptions& assumptions) {
   const Body& stock = bodies.back();
   const auto tell = [&](std::string value, std::string reason, std::string change) {
-    job.scene.assumptions.push_back({"Holding", std::move(value), std::move(reason), std::move(change)});
+    assumptions.push_back({"Holding", std::move(value), std::move(reason), std::move(change)});
   };
   for (const Body& body : bodies) {
     const double depth = body.kind == BodyKind::kLink ? overlap(job, body, stock) : 0.0;
-    if (depth > kInsideMm)
+    if (depth > kInsideMm + error_mm)
       tell(fmt::format("the stock stands {:.3f} mm inside '{}'", depth, body.name),
            "the work is clamped too low", "setup.work_origin_mm");
   }
@@ -95,14 +102,15 @@ void tell_holding(Job& job, const std::vector<Body>& bodies, const std::vector<b
 
 }  // namespace
 
-void check_clamping(Job& job, Diagnostics& diagnostics) {
-  const std::vector<Body> bodies = bodies_on_table(job);
+void check_clamping(const Job& job, const HeldStock& stock, Diagnostics& diagnostics,
+                    Assumptions& assumptions) {
+  const std::vector<Body> bodies = bodies_on_table(job, stock.mesh_W);
   const bool table =
       std::any_of(bodies.begin(), bodies.end(), [](const Body& b) { return b.kind == BodyKind::kLink; });
   for (const Body& body : bodies)
-    if (body.kind == BodyKind::kFixture) check_inside(job, body, bodies.back(), diagnostics);
+    if (body.kind == BodyKind::kFixture) check_inside(job, body, bodies.back(), stock.error_mm, diagnostics);
   if (!table || diagnostics.has_errors()) return;
-  const std::vector<bool> stands = standing(job, bodies);
+  const std::vector<bool> stands = standing(job, bodies, stock.error_mm);
   for (size_t i = 0; i + 1 < bodies.size(); ++i) {
     if (stands[i]) continue;
     diagnostics.warning(
@@ -110,7 +118,7 @@ void check_clamping(Job& job, Diagnostics& diagnostics) {
         fmt::format("'{}' touches neither the table nor anything that stands on it", bodies[i].name),
         "move it: fixture.position_mm; a vice, clamps and a chuck stand on the table by themselves");
   }
-  tell_holding(job, bodies, stands);
+  tell_holding(job, bodies, stands, stock.error_mm, assumptions);
 }
 
 }  // namespace swarf::sim

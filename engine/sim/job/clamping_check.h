@@ -9,9 +9,14 @@ namespace swarf::sim {
 
 /// Of a job whose fixtures hang on its machine. Diagnostics: "fixture-in-part", an error where a corner of
 /// one lies more than kInsideMm inside the other; "fixture-floats", a warning where a fixture touches neither
-/// the table nor what stands on it. A stock that nothing touches is a row of Scene::assumptions: it stands in
+/// the table nor what stands on it. A stock that nothing touches is a row of `assumptions`: it stands in
 /// the air.
-void check_clamping(Job& job, Diagnostics& diagnostics);
+struct HeldStock {
+  const TriMesh& mesh_W;
+  double error_mm = 0.0;  ///< of the mesh: so much deeper or farther away counts as well
+};
+void check_clamping(const Job& job, const HeldStock& stock, Diagnostics& diagnostics,
+                    Assumptions& assumptions);
 
 inline constexpr double kInsideMm = 0.01;
 inline constexpr double kTouchesMm =

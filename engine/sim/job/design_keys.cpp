@@ -9,6 +9,7 @@
 
 #include "base/units.h"
 #include "surface/analytic.h"
+#include "surface/nurbs.h"
 #include "surface/polynomial.h"
 
 namespace swarf::sim {
@@ -142,6 +143,61 @@ surface::SurfacePtr read_ruled(ConfigTable& table) {
   return nullptr;
 }
 
+/// A normal, or its limit where an edge has collapsed, everywhere on a grid that holds the edges.
+bool has_limits(const surface::Surface& S) {
+  constexpr int kNodes = 32;
+  for (int n = 0; n < (kNodes + 1) * (kNodes + 1); ++n) {
+    const Vec2 uv(static_cast<double>(n % (kNodes + 1)) / kNodes,
+                  static_cast<double>(n / (kNodes + 1)) / kNodes);
+    const surface::Derivatives d = S.derivatives(uv.x(), uv.y());
+    if (surface::outward_normal(S, d, uv).norm() < 0.5) return false;
+  }
+  return true;
+}
+
+/// Two whole numbers from 1 on; {} after a complaint.
+std::optional<std::array<int, 2>> read_pair(ConfigTable& table, const std::string& key, int least, int most) {
+  const std::vector<double> v = table.numbers(key, 2);
+  if (v.size() != 2) return {};
+  for (const double x : v) {
+    if (x == std::floor(x) && x >= least && x <= most) continue;
+    table.error("out-of-range", key, fmt::format("'{}' is [{:g}, {:g}]", key, v[0], v[1]),
+                fmt::format("write two whole numbers from {} to {}: along u, along v", least, most));
+    return {};
+  }
+  return std::array<int, 2>{static_cast<int>(v[0]), static_cast<int>(v[1])};
+}
+
+/// A NURBS surface by degrees, numbers of poles, knots, poles and weights.
+std::vector<surface::SurfacePtr> read_nurbs(ConfigTable& table) {
+  constexpr int kMostPoles = 10000;
+  const auto degree = read_pair(table, "degree", 1, surface::kMostNurbsDegree);
+  const auto count = read_pair(table, "count", 2, kMostPoles);
+  surface::NurbsData data;
+  data.outward_sign = table.choice("outward", {"u_cross_v", "v_cross_u"}) != "v_cross_u" ? 1 : -1;
+  data.poles = table.points("poles_mm");
+  if (!degree || !count) return {};
+  data.degree_u = (*degree)[0];
+  data.degree_v = (*degree)[1];
+  data.knots_u = table.numbers("knots_u", static_cast<size_t>((*count)[0] + data.degree_u + 1));
+  data.knots_v = table.numbers("knots_v", static_cast<size_t>((*count)[1] + data.degree_v + 1));
+  if (table.has("weights")) data.weights = table.numbers("weights", data.poles.size());
+  if (data.poles.empty() || data.knots_u.empty() || data.knots_v.empty()) return {};  // said above
+  const std::vector<std::string> problems = surface::nurbs_problems(data);
+  for (const std::string& problem : problems)
+    table.error("nurbs", "poles_mm", problem, "poles_mm in rows along v, one for each pole along u");
+  if (!problems.empty()) return {};
+  std::vector<surface::SurfacePtr> parts;
+  for (const surface::NurbsPart& part : surface::smooth_parts(data)) {
+    parts.push_back(part.surface);
+    if (has_limits(*part.surface)) continue;
+    table.error("out-of-range", "poles_mm", "the NURBS surface has a place without a normal",
+                "rows and columns of poles must not run along each other");
+    return {};
+  }
+  return parts;
+}
+
 surface::SurfacePtr read_analytic(ConfigTable& table, const std::string& kind) {
   if (kind == "plane") return read_plane(table);
   if (kind == "sphere") return read_sphere(table);
@@ -157,19 +213,26 @@ DesignSettings read_design(ConfigTable table, bool cl) {
   design.pitch_mm = table.number("pitch_mm", kAboveZero, design.pitch_mm);
   if (!cl) return design;
   // A file says what it is for.
-  const char* const open = table.has("mesh") ? "mesh" : table.has("surface") ? "surface" : "none";
-  design.name = table.choice(
-      "kind", {"none", "surface", "plane", "cylinder", "cone", "sphere", "hyperboloid", "ruled", "mesh"},
-      open);
+  const char* const open = table.has("mesh")      ? "mesh"
+                           : table.has("step")    ? "step"
+                           : table.has("surface") ? "surface"
+                                                  : "none";
+  design.name = table.choice("kind",
+                             {"none", "surface", "plane", "cylinder", "cone", "sphere", "hyperboloid",
+                              "ruled", "nurbs", "mesh", "step"},
+                             open);
   if (design.name == "none" || design.name.empty()) {
     design.kind = DesignKind::kNone;
     return design;
   }
   design.sweep_tolerance_mm =
       table.number("sweep_tolerance_um", kAboveZero, um_from_mm(design.sweep_tolerance_mm)) * kMicrometre;
-  if (design.name == "mesh") {
+  if (design.name == "mesh" || design.name == "step") {
     design.kind = DesignKind::kMesh;
-    design.mesh_file = table.text("mesh");
+    design.mesh_key = design.name;
+    design.mesh_file = table.text(design.name);
+    if (design.name == "step")
+      design.chord_mm = table.number("chord_um", kAboveZero, um_from_mm(design.chord_mm)) * kMicrometre;
     return design;
   }
   if (design.name == "surface") {
@@ -178,7 +241,11 @@ DesignSettings read_design(ConfigTable table, bool cl) {
     return design;
   }
   design.kind = DesignKind::kAnalytic;
-  design.surface = read_analytic(table, design.name);
+  if (design.name == "nurbs") {
+    design.surfaces = read_nurbs(table);
+  } else {
+    design.surfaces.push_back(read_analytic(table, design.name));
+  }
   return design;
 }
 

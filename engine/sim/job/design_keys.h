@@ -13,8 +13,8 @@ enum class DesignKind {
   kProgram,   ///< the surfaces of the scene's own program
   kNone,      ///< nothing is measured
   kSurface,   ///< the surfaces of another program of surface blocks
-  kAnalytic,  ///< one analytic surface
-  kMesh,      ///< a closed triangle mesh: STL, PLY or OBJ, mm
+  kAnalytic,  ///< one surface in closed form, or a NURBS surface in its smooth parts
+  kMesh,      ///< a closed triangle mesh: STL, PLY or OBJ, mm; or the bodies of a CAD file in facets
 };
 
 struct DesignSettings {
@@ -23,9 +23,11 @@ struct DesignSettings {
   double pitch_mm = 0.2;         ///< grid of measuring rays on the design; cusps are refined between them
   /// CL scenes: blocks are divided into sweeps that stay this close to their motion for the measuring rays.
   double sweep_tolerance_mm = 2e-5;
-  std::string surface_file;     ///< kSurface
-  std::string mesh_file;        ///< kMesh
-  surface::SurfacePtr surface;  ///< kAnalytic
+  std::string surface_file;                   ///< kSurface
+  std::string mesh_file;                      ///< kMesh
+  std::string mesh_key = "mesh";              ///< that names it: "step" for a CAD file
+  double chord_mm = 5e-4;                     ///< CAD files: facets stray no farther from the faces
+  std::vector<surface::SurfacePtr> surfaces;  ///< kAnalytic
 };
 
 /// Reads [design]; `cl` tells which keys belong there. Without `kind` it is the mesh or the surface whose

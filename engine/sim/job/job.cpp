@@ -2,21 +2,26 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <utility>
 
 #include "base/units.h"
+#include "brep/model.h"
 #include "cutter/profile.h"
 #include "mesh/mesh_check.h"
 #include "mesh/mesh_io.h"
 #include "mesh/mesh_nesting.h"
 #include "mesh/mesh_ops.h"
 #include "sim/job/clamping_check.h"
+#include "sim/job/driven_part.h"
 #include "sim/job/fixture_keys.h"
+#include "sim/job/kept_job.h"
 #include "sim/job/memory_limit.h"
 #include "sim/job/open_job.h"
 #include "sim/job/scene.h"
+#include "sim/job/set_ups.h"
 #include "sim/job/tool_table.h"
 #include "stock/stock.h"
 
@@ -169,13 +174,35 @@ void check_cl_tools(const Job& job, Diagnostics& diagnostics) {
   }
 }
 
+/// The stock that stock.from_run means; a folder is named by its stock.vdb as well. `raw.file` is the folder
+/// then.
+std::string stock_of_run(RawSettings& raw) {
+  namespace fs = std::filesystem;
+  constexpr const char* kFinished = "stock.vdb";
+  const fs::path named(raw.file);
+  if (named.extension() != ".vdb") return (named / kFinished).string();
+  if (named.filename() != kFinished)
+    throw InputError("from-run-unfinished", raw.where,
+                     fmt::format("'{}' is a stock in the middle of its run", named.filename().string()),
+                     "name the folder of the run: its program is cut to the end");
+  raw.file = named.has_parent_path() ? named.parent_path().string() : ".";
+  return raw.file + "/" + kFinished;
+}
+
 /// The body of the raw stock; a box has been read with the scene.
 void load_stock(Job& job, Diagnostics& diagnostics) {
   StockSettings& stock = job.scene.stock;
   if (stock.raw.kind == RawKind::kBox) return;
+  if (stock.raw.kind == RawKind::kRun) {
+    const std::string file = stock_of_run(stock.raw);
+    job.earlier =
+        setups_up_to(std::make_shared<const Job>(load_kept_job(stock.raw.file, {})), stock.raw.X_WF, file);
+  }
   double tool_mm = 0.0;
   for (const cutter::Cutter& tool : job.scene.tools) tool_mm = std::max(tool_mm, tool.diameter_mm);
-  stock.shape = load_raw(stock.raw, tool_mm, diagnostics);
+  stock.shape = job.earlier.empty()
+                    ? load_raw(stock.raw, tool_mm, diagnostics)
+                    : job.earlier.back().job->scene.stock.body_W().moved(job.earlier.back().X_WE);
   if (!stock.shape) return;
   stock.box_W = stock.shape->box();
   job.scene.toolpath.stock_top_mm = stock.box_W.upper.z();
@@ -204,15 +231,50 @@ void check_walls(const Job& job, Diagnostics& diagnostics) {
                   wall.mm));
 }
 
+/// The closed bodies of a CAD file; what they are and how near the facets lie is told.
+TriMesh cad_facets(const DesignSettings& design, Diagnostics& diagnostics) {
+  const SourceLocation where{design.mesh_file};
+  const brep::Model model = brep::read_cad(design.mesh_file);
+  for (const Diagnostic& warning : model.warnings)
+    diagnostics.warning(warning.code, warning.where, warning.text, warning.fix);
+  size_t open = 0;
+  for (const brep::Solid& solid : model.solids) open += solid.closed ? 0 : solid.faces.size();
+  if (open > 0) {
+    const std::string text = fmt::format("{} of {} faces bound no closed body", open, model.faces.size());
+    if (open == model.faces.size()) {
+      diagnostics.error("cad-open", where, text,
+                        "export the part as a solid; single patches: design.kind = \"nurbs\"");
+      return {};
+    }
+    diagnostics.warning("cad-open", where, text + ": they are not measured", "export the part as solids");
+  }
+  brep::Facets facets = brep::tessellate(model, design.chord_mm, true);
+  diagnostics.note(
+      "cad-read", where,
+      fmt::format(
+          "{} bodies, {} faces; unit {} = {:g} mm; measured on {} facets, from which no face strays by "
+          "more than {:.3g} um{}",
+          model.solids.size(), model.face_count, model.unit, model.mm_per_unit, facets.mesh.triangles.size(),
+          um_from_mm(facets.chord_mm),
+          facets.proven ? " (proven)" : " (proven but for faces with a crease inside)"));
+  return std::move(facets.mesh);
+}
+
 /// What the part is measured against.
 void load_design(Job& job, Diagnostics& diagnostics) {
-  const DesignSettings& design = job.scene.design;
+  DesignSettings& design = job.scene.design;
+  // The part that drives is the design.
+  if (job.scene.driven && job.scene.driven->mesh && design.kind == DesignKind::kProgram) {
+    design.kind = DesignKind::kMesh;
+    design.mesh_file = job.scene.driven->file;
+  }
   std::vector<program::SurfaceDefinition> defined = job.program.surfaces;
   if (design.kind == DesignKind::kSurface) defined = program::load_surfaces(design.surface_file);
   for (const program::SurfaceDefinition& definition : defined) job.design.push_back(definition.surface);
-  if (design.kind == DesignKind::kAnalytic) job.design.push_back(design.surface);
+  if (design.kind == DesignKind::kAnalytic) job.design = design.surfaces;
   if (design.kind == DesignKind::kMesh) {
-    auto mesh = std::make_shared<TriMesh>(mesh::load_mesh(design.mesh_file));
+    auto mesh = std::make_shared<TriMesh>(design.mesh_key == "step" ? cad_facets(design, diagnostics)
+                                                                    : mesh::load_mesh(design.mesh_file));
     // An automatic box holds the design; of a raw stock that is itself at fault nothing is known.
     const StockSettings& stock = job.scene.stock;
     const bool open = stock.auto_box || (stock.raw.kind != RawKind::kBox && !stock.shape);
@@ -269,10 +331,11 @@ std::vector<kinematics::MachineModel> machines_by_tool(const Job& job) {
 namespace {
 
 /// Loads what the scene names.
-Job complete(Scene scene, Diagnostics diagnostics) {
+Job complete(Scene scene, Diagnostics diagnostics, std::vector<EarlierSetup> earlier = {}) {
   diagnostics.throw_if_errors();
   Job job;
   job.scene = std::move(scene);
+  job.earlier = std::move(earlier);
   // A user mends all files at once: what is wrong with one does not hide what is wrong with the other.
   Vec3 table_M = Vec3::Zero();
   collect(diagnostics, [&] {
@@ -289,6 +352,8 @@ Job complete(Scene scene, Diagnostics diagnostics) {
       job.cl = program::load_cl(job.scene.program_file, &warnings, job.scene.cl_options);
     } else if (job.scene.kind == ProgramKind::kSurfaceBlocks) {
       job.program = program::load_program(job.scene.program_file, &warnings);
+    } else if (job.scene.driven && !job.scene.driven->mesh) {
+      job.program.surfaces = program::load_surfaces(job.scene.program_file);
     }
   });
   collect(diagnostics, [&] { load_stock(job, diagnostics); });
@@ -304,9 +369,14 @@ Job complete(Scene scene, Diagnostics diagnostics) {
   diagnostics.throw_if_errors();
   fill_open(job, diagnostics);
   diagnostics.throw_if_errors();
+  if (job.scene.driven) load_driven(job, diagnostics);
+  diagnostics.throw_if_errors();
   collect(diagnostics, [&] {
     place_fixtures(job, table_M, diagnostics);
-    check_clamping(job, diagnostics);
+    // What earlier set-ups have left is known when their paths are (sim/run/starting_clamping.h).
+    if (!job.earlier.empty()) return;
+    const TriMesh stock = job.scene.stock.body_W().mesh_around();
+    check_clamping(job, {stock}, diagnostics, job.scene.assumptions);
   });
   diagnostics.throw_if_errors();
   check_memory(job, diagnostics);
@@ -329,6 +399,35 @@ Job load_job(const SceneText& text, const std::vector<std::string>& overrides) {
   Diagnostics diagnostics;
   Scene scene = load_scene(text, overrides, diagnostics);
   return complete(std::move(scene), std::move(diagnostics));
+}
+
+namespace {
+
+void tell_not_turned(Job& job) {
+  const SetupSettings& setup = job.scene.setup;
+  if (setup.number > 1 && !setup.pose_said)
+    job.scene.assumptions.push_back(
+        {"Part", "not turned: it lies as in the first set-up",
+         fmt::format("set-up {} has no part_pose", setup.number),
+         "part_pose = { position_mm = [..], rotation_deg = [..] } of its [[setup]]"});
+}
+
+}  // namespace
+
+std::vector<std::shared_ptr<const Job>> load_setups(const std::string& path,
+                                                    const std::vector<std::vector<std::string>>& overrides) {
+  std::vector<std::shared_ptr<const Job>> jobs;
+  for (const std::vector<std::string>& own : overrides) {
+    Diagnostics diagnostics;
+    Scene scene = load_scene(path, own, diagnostics, static_cast<int>(jobs.size()) + 1);
+    std::vector<EarlierSetup> earlier;
+    if (!jobs.empty())
+      earlier = setups_up_to(jobs.back(), scene.setup.X_WF * jobs.back()->scene.setup.X_WF.inverse());
+    Job job = complete(std::move(scene), std::move(diagnostics), std::move(earlier));
+    tell_not_turned(job);
+    jobs.push_back(std::make_shared<const Job>(std::move(job)));
+  }
+  return jobs;
 }
 
 }  // namespace swarf::sim

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "motion/blocks/dog_leg.h"
+#include "sim/job/driven_part.h"
 #include "sim/job/nc_job.h"
 #include "toolpath/cl_path.h"
 
@@ -32,6 +33,8 @@ JobPath path_of_program(const Job& job, toolpath::Planner planner, Diagnostics& 
     }
     case ProgramKind::kCl:
       return {toolpath::cl_path(*job.cl, job.scene.block_law, diagnostics, cl_tools(job)), {}};
+    case ProgramKind::kDriven:
+      return {driven_path(job, job.scene.driven->plan.cam_tolerance_mm, diagnostics), {}};
     case ProgramKind::kSurfaceBlocks:
       break;
   }

@@ -96,6 +96,11 @@ void require_all(const Job& job, const Asked& asked, Diagnostics& diagnostics) {
                     fmt::format("add {} to it", words_to_write(missing)));
 }
 
+/// Planned paths have one tool and no program that calls it.
+bool asks_for_tools(ProgramKind kind) {
+  return kind == ProgramKind::kCl || kind == ProgramKind::kNc;
+}
+
 // ---- the path
 
 /// What the reading of the program took for granted, in the same table.
@@ -301,7 +306,7 @@ void check_voxel(const StockSettings& stock, const std::vector<cutter::Cutter>& 
 }
 
 void bind_tools(Job& job, Diagnostics& diagnostics) {
-  if (!job.scene.tools_in_words || job.scene.kind == ProgramKind::kSurfaceBlocks) return;
+  if (!job.scene.tools_in_words || !asks_for_tools(job.scene.kind)) return;
   const Asked asked = asked_tools(job);
   const cutter::Cutter& first = job.scene.tools.front();
   if (first.number == 0 && first.name.empty()) {
@@ -316,7 +321,11 @@ void fill_open(Job& job, Diagnostics& diagnostics) {
   if (!job.machine.assumed_dynamics.empty())
     assume(job, "Axis dynamics", job.machine.assumed_dynamics, "machine.toml does not give them",
            "acceleration_max_.., jerk_max_.. of each [[axis]]");
-  if (scene.kind == ProgramKind::kSurfaceBlocks) return;
+  if (!asks_for_tools(scene.kind)) {
+    if (scene.machine_assumed) assume_machine(job);
+    if (scene.setup.on_table) fill_origin(job);
+    return;
+  }
   if (scene.machine_assumed) assume_machine(job);
   assume_tools(job);
   if (scene.stock.auto_box || scene.setup.tip_without_length || scene.machine_assumed) {

@@ -12,7 +12,6 @@
 #include "mesh/mesh_ops.h"
 #include "mesh/signed_distance.h"
 #include "sim/job/stock_keys.h"
-#include "stock/stock.h"
 
 namespace swarf::sim {
 namespace {
@@ -71,23 +70,6 @@ std::optional<stock::RawShape> load_raw_mesh(const RawSettings& raw, double tool
   return stock::RawShape::of_mesh(mesh, fs::path(raw.file).filename().string());
 }
 
-/// The finished stock of another run, by its surface.
-std::optional<stock::RawShape> load_run(const RawSettings& raw, Diagnostics& diagnostics) {
-  const stock::Stock before = stock::Stock::load(raw.file);
-  const TriMesh mesh = moved(before.mesh(), 1.0, raw.X_WF);
-  if (mesh.triangles.empty()) {
-    diagnostics.error("stock-file-empty", {raw.file}, "the stock of that run has no material left",
-                      "name the run that made the part");
-    return {};
-  }
-  if (!is_sound(mesh, raw.file,
-                "run the earlier clamping with another stock.voxel_mm: its surface is drawn anew",
-                diagnostics))
-    return {};
-  return stock::RawShape::of_mesh(
-      mesh, fmt::format("{} {:016x}", fs::path(raw.file).filename().string(), before.hash()));
-}
-
 /// Two sides meet beside a common corner.
 bool sides_cross(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
   const auto turn = [](const Vec2& p, const Vec2& q, const Vec2& r) {
@@ -137,7 +119,8 @@ std::optional<stock::RawShape> load_raw(const RawSettings& raw, double tool_mm, 
     case RawKind::kMesh:
       return load_raw_mesh(raw, tool_mm, diagnostics);
     case RawKind::kRun:
-      return load_run(raw, diagnostics);
+    case RawKind::kSetups:
+      return {};  // set_ups.h
   }
   return {};
 }

@@ -19,6 +19,8 @@
 #include "program/surface_blocks/program.h"
 #include "sim/job/assumption.h"
 #include "sim/job/design_keys.h"
+#include "sim/job/driven_keys.h"
+#include "sim/job/post_keys.h"
 #include "sim/job/setup_keys.h"
 #include "sim/job/stock_keys.h"
 #include "toolpath/tool_path.h"
@@ -98,6 +100,7 @@ enum class ProgramKind {
   kSurfaceBlocks,  ///< `program`: surfaces and areas; the tool path is planned
   kCl,             ///< `cl`: CL data
   kNc,             ///< `nc`: a part program as a control reads it
+  kDriven,         ///< [driven]: the part's own surface
 };
 
 struct Scene {
@@ -120,7 +123,9 @@ struct Scene {
   program::BuilderWords builder_words;          ///< NC
   program::Presets presets;                     ///< NC, `parameters`
   SetupSettings setup;
-  std::string tool_table_file;  ///< `tool_table`; "": none
+  std::optional<DrivenSettings> driven;  ///< of ProgramKind::kDriven
+  std::optional<PostSettings> post;      ///< CL: the program that is written for the machine is what runs
+  std::string tool_table_file;           ///< `tool_table`; "": none
   std::map<int, std::string>
       incomplete_tools;  ///< of the .tbl: number, place and reason; told where one is called
   /// What BlockMove::tool and ToolSample::tool count in. Surface blocks: one.
@@ -138,15 +143,29 @@ struct Scene {
   OutputSettings output;
 };
 
+struct Job;
+
+/// A set-up that the part has been through before this one.
+struct EarlierSetup {
+  std::shared_ptr<const Job> job;
+  Pose X_WE;               ///< from its work frame to this one's
+  std::string stock_file;  ///< that its run has left, where stock.from_run names it; else ""
+  bool other_run = false;  ///< it stands in the scene of that run or of one before it, not in this one
+};
+
 /// Everything that a run needs, loaded and checked; nothing has been written yet.
 struct Job {
   Scene scene;
   machine::MachineScene machine;
-  program::Program program;              ///< of surface blocks; empty for other jobs
-  std::optional<program::ClProgram> cl;  ///< of CL jobs
+  program::Program program;                            ///< of surface blocks; empty for other jobs
+  std::optional<program::ClProgram> cl;                ///< of CL jobs
+  std::shared_ptr<const toolpath::DrivenPart> driven;  ///< of a part driven by its surface: what drives it
   std::vector<surface::SurfacePtr>
       design;  ///< what the part is measured against; may be empty for jobs of blocks
   std::shared_ptr<const TriMesh> design_mesh;  ///< or a closed mesh with normals; null without one
+
+  /// In the order in which they cut; the stock begins with what they have left of the body in Scene::stock.
+  std::vector<EarlierSetup> earlier;
 
   bool has_design() const { return !design.empty() || design_mesh != nullptr; }
   std::vector<Diagnostic> warnings;
@@ -159,8 +178,10 @@ struct SceneText {
 
 /// Reads scene.toml; `overrides` are "key=value" in TOML. Paths in it are relative to its folder.
 /// Problems go to `diagnostics`.
-Scene load_scene(const std::string& path, const std::vector<std::string>& overrides,
-                 Diagnostics& diagnostics);
+/// `setup`: which of several [[setup]], from 1 on; 0: the scene has one ("several-set-ups" where it has
+/// more).
+Scene load_scene(const std::string& path, const std::vector<std::string>& overrides, Diagnostics& diagnostics,
+                 int setup = 0);
 Scene load_scene(const SceneText& text, const std::vector<std::string>& overrides, Diagnostics& diagnostics);
 
 /// Scene::tools by ClProgram::tools; -1: the scene lacks it.
@@ -174,5 +195,13 @@ std::vector<kinematics::MachineModel> machines_by_tool(const Job& job);
 /// everything that is wrong.
 Job load_job(const std::string& path, const std::vector<std::string>& overrides);
 Job load_job(const SceneText& text, const std::vector<std::string>& overrides);
+
+/// How many [[setup]] the scene has; 0: it is of one. Throws InputError with what is wrong with the list:
+/// "no-set-ups", "two-stocks", "whose-frame".
+size_t count_setups(const std::string& path, const std::vector<std::string>& overrides);
+/// The first of them in order, one for each list of overrides. Those that begin with "setup[1]." are of the
+/// second table as the file has it; any other replaces the key in the set-up that it is given for.
+std::vector<std::shared_ptr<const Job>> load_setups(const std::string& path,
+                                                    const std::vector<std::vector<std::string>>& overrides);
 
 }  // namespace swarf::sim

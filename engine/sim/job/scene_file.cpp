@@ -12,6 +12,7 @@
 #include "sim/job/fixture_keys.h"
 #include "sim/job/open_job.h"
 #include "sim/job/scene.h"
+#include "sim/job/set_ups.h"
 #include "sim/job/tool_table.h"
 
 namespace swarf::sim {
@@ -82,13 +83,21 @@ void read_period_and_limits(ConfigTable& table, motion::MotionOptions& options) 
 
 /// An NC program says itself what the tool does between two positions.
 void read_block_interpolator(ConfigTable table, Scene& scene) {
-  if (scene.kind == ProgramKind::kNc) return read_period_and_limits(table, scene.motion);
+  if (scene.kind == ProgramKind::kNc && !scene.post) return read_period_and_limits(table, scene.motion);
   const std::string mode = table.choice("mode", {"tcp", "joint", "ends"}, "tcp");
   scene.block_law = mode == "joint"  ? toolpath::BlockLaw::kJoint
                     : mode == "ends" ? toolpath::BlockLaw::kEnds
                                      : toolpath::BlockLaw::kTcp;
   scene.linearise_tolerance_mm = table.number("linearise_tolerance_um", kAboveZero, 10.0) * kMicrometre;
   read_period_and_limits(table, scene.motion);
+}
+
+/// The tolerance of its chords is a key of [driven]; that of corners counts where CAM blocks are compared.
+void read_driven_interpolator(ConfigTable table, Scene& scene) {
+  motion::MotionOptions& options = scene.motion;
+  options.corner_tolerance_mm =
+      table.number("corner_tolerance_um", kAboveZero, um_from_mm(options.corner_tolerance_mm)) * kMicrometre;
+  read_period_and_limits(table, options);
 }
 
 void read_interpolator(ConfigTable table, Scene& scene) {
@@ -231,8 +240,30 @@ program::Presets read_presets(ConfigTable table) {
   return presets;
 }
 
-/// `program`, `cl` or `nc`, exactly one of them.
-void read_program(ConfigTable& root, Scene& scene) {
+/// What swarf post has written of the CL data stands for them.
+void take_written(std::optional<ConfigTable>& post, Scene& scene) {
+  if (scene.kind != ProgramKind::kCl || !post) return;
+  const std::string written = post->text("written", "");
+  if (written.empty()) return;
+  scene.kind = ProgramKind::kNc;
+  scene.program_key = "post.written";
+  scene.program_file = beside(scene.file, written);
+}
+
+/// [driven]: the part is its own program.
+void read_scene_driven(ConfigTable& root, const char* first, Scene& scene) {
+  if (first != nullptr)
+    root.error("two-programs", first,
+               fmt::format("the scene has a [driven] part and names a '{}' file", first),
+               "keep one of program, cl, nc and [driven]");
+  scene.kind = ProgramKind::kDriven;
+  scene.driven = read_driven(root.table("driven"));
+  scene.program_key = scene.driven->mesh ? "driven.mesh" : "driven.surface";
+  scene.program_file = scene.driven->file = beside(scene.file, scene.driven->file);
+}
+
+/// `program`, `cl`, `nc` or [driven], exactly one of them.
+void read_program(ConfigTable& root, std::optional<ConfigTable>& post, Scene& scene) {
   const std::array<std::pair<const char*, ProgramKind>, 3> kinds{
       {{"cl", ProgramKind::kCl}, {"nc", ProgramKind::kNc}, {"program", ProgramKind::kSurfaceBlocks}}};
   const char* first = nullptr;
@@ -249,7 +280,9 @@ void read_program(ConfigTable& root, Scene& scene) {
     scene.program_key = key;
     scene.program_file = beside(scene.file, file);
   }
+  if (root.has("driven")) return read_scene_driven(root, first, scene);
   if (first == nullptr) root.text("program");  // reports that it is missing
+  take_written(post, scene);
   if (scene.kind != ProgramKind::kNc) return;
   if (root.has("dialect")) {
     scene.dialect = program::dialect_of(root.choice("dialect", program::dialect_names()));
@@ -282,9 +315,10 @@ void read_scene_tools(ConfigTable& root, Scene& scene, Diagnostics& diagnostics)
   scene.tools = read_tools(root, scene.tool_table_file, diagnostics,
                            scene.kind == ProgramKind::kNc ? &scene.incomplete_tools : nullptr);
   scene.tools_in_words = root.has("tools");
-  if (scene.kind != ProgramKind::kSurfaceBlocks || scene.tools.size() == 1) return;
+  const bool planned = scene.kind == ProgramKind::kSurfaceBlocks || scene.kind == ProgramKind::kDriven;
+  if (!planned || scene.tools.size() == 1) return;
   root.error("planner-needs-one-tool", "tool",
-             fmt::format("surface blocks are planned for one cutter, the scene has {}", scene.tools.size()),
+             fmt::format("a path is planned for one cutter, the scene has {}", scene.tools.size()),
              "describe one, or run a program that brings its own tool positions");
 }
 
@@ -307,47 +341,86 @@ void read_machine(ConfigTable& root, Scene& scene) {
                  "a machine.toml, or a name that 'swarf machines' lists");
 }
 
-void read_scene(ConfigTable& root, Scene& scene, Diagnostics& diagnostics) {
+/// Of scenes with CL data.
+void read_scene_post(ConfigTable& root, const ConfigTable& post, Scene& scene) {
+  scene.post = read_post(post, scene.tools.size());
+  if (!root.has("cl"))
+    root.error("post-needs-cl", "post", "only CL data become an NC program, and the scene names none",
+               "write cl = \"part.cls\", or take [post] out");
+  for (size_t i = 0; i < scene.post->extended_mm.size() && i < scene.tools.size(); ++i) {
+    scene.tools[i].length_mm += scene.post->extended_mm[i];
+    if (scene.tools[i].gauge_length_mm) *scene.tools[i].gauge_length_mm += scene.post->extended_mm[i];
+  }
+}
+
+/// What the set-ups before this one have left.
+void begin_with_earlier(StockSettings& stock) {
+  stock.raw = {};
+  stock.raw.kind = RawKind::kSetups;
+  stock.auto_box = false;
+}
+
+/// `setup`: as load_scene's.
+void read_scene(ConfigTable& root, Scene& scene, Diagnostics& diagnostics, int setup = 0) {
   const std::string& path = scene.file;
   scene.title = utf8_only(root.text("title", scene.name));
-  read_program(root, scene);
+  std::optional<ConfigTable> post;
+  if (root.has("post")) post = root.table("post");
+  read_program(root, post, scene);
   read_machine(root, scene);
   read_scene_tools(root, scene, diagnostics);
+  if (post) read_scene_post(root, *post, scene);
   read_cl_keys(root, scene);
-  scene.setup = read_setup(root.table("setup"), scene.kind == ProgramKind::kNc);
-  const bool blocks = scene.kind != ProgramKind::kSurfaceBlocks;  // the program brings its own
+  scene.setup = read_setup(root.table("setup"), scene.kind == ProgramKind::kNc, setup);
+  if (setup > 0)
+    scene.title += fmt::format(", set-up {}{}", setup,
+                               scene.setup.name.empty() ? "" : ": " + utf8_only(scene.setup.name));
+  const bool blocks = scene.kind == ProgramKind::kCl || scene.kind == ProgramKind::kNc;  // it brings its own
   scene.stock = read_stock(root.table("stock"), scene.tools, blocks, diagnostics);
+  // As a CAM system would have written it.
+  if (scene.driven && scene.driven->plan.cam_tolerance_mm > 0.0) scene.stock.cut_by = CutBy::kBlocks;
+  if (setup > 1) begin_with_earlier(scene.stock);
   scene.fixtures = read_fixtures(root);
   for (machine::Fixture& fixture : scene.fixtures)
     if (std::string* const file = mesh_file_of(fixture)) *file = beside(path, *file);
   scene.stock.raw.file = beside(path, scene.stock.raw.file);
-  if (scene.stock.raw.kind == RawKind::kRun && fs::path(scene.stock.raw.file).extension() != ".vdb")
-    scene.stock.raw.file = (fs::path(scene.stock.raw.file) / "stock.vdb").string();
   scene.design = read_design(root.table("design"), blocks);
   scene.design.surface_file = beside(path, scene.design.surface_file);
   scene.design.mesh_file = beside(path, scene.design.mesh_file);
   if (blocks) {
     read_block_interpolator(root.table("interpolator"), scene);
+  } else if (scene.driven) {
+    read_driven_interpolator(root.table("interpolator"), scene);
   } else {
     read_toolpath(root.table("toolpath"), scene);
     read_interpolator(root.table("interpolator"), scene);
   }
-  read_accept(root.table("accept"), blocks, scene.accept);
+  read_accept(root.table("accept"), blocks || scene.driven, scene.accept);
   read_pictures(root, scene);
   scene.output = read_output(root.table("output"));
   root.finish();
   scene.toolpath.stock_top_mm = scene.stock.box_W.upper.z();
 }
 
+void refuse_several(const ConfigTable& root) {
+  if (!root.is_list("setup")) return;
+  ConfigTable(root).error(
+      "several-set-ups", "setup", "the scene has several set-ups, and one is asked for here",
+      "swarf run and swarf check take them all; each leaves a folder of its own, which stands "
+      "for it");
+}
+
 }  // namespace
 
-Scene load_scene(const std::string& path, const std::vector<std::string>& overrides,
-                 Diagnostics& diagnostics) {
+Scene load_scene(const std::string& path, const std::vector<std::string>& overrides, Diagnostics& diagnostics,
+                 int setup) {
   Scene scene;
   scene.file = path;
   scene.name = utf8_only(fs::absolute(path).parent_path().filename().string());
-  ConfigTable root = ConfigTable::load(path, overrides, diagnostics);
-  if (!diagnostics.has_errors()) read_scene(root, scene, diagnostics);
+  const ConfigOverlay overlay = setup_overlay(static_cast<size_t>(std::max(setup, 1)) - 1);
+  ConfigTable root = ConfigTable::load(path, overrides, diagnostics, setup > 0 ? &overlay : nullptr);
+  if (setup == 0) refuse_several(root);
+  if (!diagnostics.has_errors()) read_scene(root, scene, diagnostics, setup);
   return scene;
 }
 
@@ -356,6 +429,7 @@ Scene load_scene(const SceneText& text, const std::vector<std::string>& override
   scene.file = text.name;
   scene.text = text.toml;
   ConfigTable root = ConfigTable::parse(text.toml, text.name, overrides, diagnostics);
+  refuse_several(root);
   if (!diagnostics.has_errors()) read_scene(root, scene, diagnostics);
   scene.name = utf8_only(fs::path(scene.program_file).stem().string());
   return scene;

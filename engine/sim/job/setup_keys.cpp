@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "base/units.h"
+#include "sim/job/stock_keys.h"
 
 namespace swarf::sim {
 namespace {
@@ -41,10 +42,24 @@ void read_control_keys(ConfigTable& table, SetupSettings& setup) {
   setup.tip_without_length = table.choice("without_length", {"gauge_line", "tip"}, "gauge_line") == "tip";
 }
 
+/// Of one of several.
+void read_list_keys(ConfigTable& table, int number, SetupSettings& setup) {
+  setup.number = number;
+  setup.name = table.text("name", "");
+  setup.pose_said = table.has("part_pose");
+  if (!setup.pose_said) return;
+  setup.X_WF = read_pose(table.table("part_pose"));
+  if (number == 1)
+    table.error("part-pose-of-first", "part_pose",
+                "the first set-up has a part_pose: its work frame is the one that the others are told by",
+                "leave it out; place the stock by [stock], and the work by setup.work_origin_mm");
+}
+
 }  // namespace
 
-SetupSettings read_setup(ConfigTable table, bool nc) {
+SetupSettings read_setup(ConfigTable table, bool nc, int number) {
   SetupSettings setup;
+  if (number > 0) read_list_keys(table, number, setup);
   if (table.is_text("work_origin_mm")) {
     setup.on_table = table.choice("work_origin_mm", {"on_table"}) == "on_table";
   } else if (table.has("work_origin_mm")) {

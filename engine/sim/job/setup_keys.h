@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/config.h"
+#include "base/frames.h"
 #include "kinematics/machine_model.h"
 
 namespace swarf::sim {
@@ -22,6 +23,10 @@ struct AxisSetting {
 using AxisSettings = std::vector<AxisSetting>;
 
 struct SetupSettings {
+  int number = 0;                ///< from 1 on, of several [[setup]]; 0: there is one, [setup]
+  std::string name;              ///< of several; "": not said
+  Pose X_WF = Pose::Identity();  ///< from the work frame of the first of them: `part_pose`
+  bool pose_said = false;
   /// Origin of W in M with all axes at zero; none: what the machine says.
   std::optional<Vec3> work_origin_mm;
   bool on_table = false;                ///< "on_table": the origin follows from the stock (open_job.h)
@@ -36,10 +41,10 @@ struct SetupSettings {
   bool tip_without_length = false;  ///< `without_length = "tip"`: of a program that calls no tool length
 };
 
-/// Reads [setup]; offsets, start, units, start_tool and t_changes_tool belong to NC programs only.
-/// "unknown-offset" for what is not G54 to
-/// G59.3.
-SetupSettings read_setup(ConfigTable table, bool nc);
+/// Reads [setup], or the keys of one of several that belong there (`number` from 1 on); offsets, start,
+/// units, start_tool and t_changes_tool belong to NC programs only. "unknown-offset" for what is not G54 to
+/// G59.3, "part-pose-of-first" where the first of several names the frame that it defines itself.
+SetupSettings read_setup(ConfigTable table, bool nc, int number = 0);
 
 /// The settings as values of this machine; what is not named is zero. "unknown-axis" for an axis that it
 /// lacks, "wrong-unit" for mm on a rotary axis and the reverse. `complete`: every axis has to be named

@@ -101,9 +101,7 @@ void read_mesh_keys(ConfigTable& table, RawSettings& raw) {
 
 void read_run_keys(ConfigTable& table, RawSettings& raw) {
   raw.file = table.text("from_run");
-  ConfigTable pose = table.table("from_run_pose");
-  raw.X_WF =
-      pose_of(vector_of(pose, "position_mm", Vec3::Zero()), vector_of(pose, "rotation_deg", Vec3::Zero()));
+  raw.X_WF = read_pose(table.table("from_run_pose"));
 }
 
 std::string line_of(const SourceLocation& where) {
@@ -112,6 +110,11 @@ std::string line_of(const SourceLocation& where) {
 }
 
 }  // namespace
+
+Pose read_pose(ConfigTable table) {
+  return pose_of(vector_of(table, "position_mm", Vec3::Zero()),
+                 vector_of(table, "rotation_deg", Vec3::Zero()));
+}
 
 RawSettings read_raw(ConfigTable& table) {
   RawSettings raw;

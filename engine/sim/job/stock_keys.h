@@ -10,7 +10,14 @@
 
 namespace swarf::sim {
 
-enum class RawKind { kBox, kTube, kOutline, kMesh, kRun };
+enum class RawKind {
+  kBox,
+  kTube,
+  kOutline,
+  kMesh,
+  kRun,     ///< what another run has left (set_ups.h)
+  kSetups,  ///< what the set-ups before this one have left: the first one says it
+};
 
 /// What the scene says of it.
 struct RawSettings {
@@ -19,11 +26,18 @@ struct RawSettings {
   SourceLocation where;
   stock::RawTube tube;
   stock::RawOutline outline;
-  std::string file;      ///< a mesh; of kRun a stock.vdb
+  std::string file;      ///< a mesh; of kRun the folder of the run
   double unit_mm = 1.0;  ///< of the mesh's numbers
   bool unit_said = false;
   Pose X_WF = Pose::Identity();  ///< from the file's frame to the work
+
+  /// The key that moves it: "stock.box_mm".
+  std::string spoken_key() const { return kind == RawKind::kSetups ? "setup.part_pose" : "stock." + key; }
 };
+
+/// { position_mm = [..], rotation_deg = [..] }: about the fixed axes, X first, then Y, then Z. Quarter turns
+/// are exact.
+Pose read_pose(ConfigTable table);
 
 /// Reads the keys of all forms but the box and its key: more than one form is "two-shapes", with both places.
 /// `file` is as the scene writes it.

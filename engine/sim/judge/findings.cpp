@@ -38,6 +38,9 @@ class Collector {
   void at_block(std::string code, std::string text, std::string fix, const std::vector<SweepSource>& sources,
                 uint32_t block) {
     if (block >= sources.size()) {
+      const size_t carried = block - sources.size();
+      if (carried < result_.main.carried->rays.sweeps.size())
+        text += "; it was cut " + carried_place(result_.main.carried->rays, carried);
       add(std::move(code), std::move(text), std::move(fix), {job_.scene.program_file}, 0.0);
       return;
     }
@@ -152,6 +155,20 @@ void surface_faults(const Job& job, const Result& result, Collector& collect) {
   }
 }
 
+void driven_faults(const Job& job, const Result& result, Collector& collect) {
+  if (!result.driven || job.scene.driven->plan.cam_tolerance_mm > 0.0) return;
+  collect.begin("driven_cycles");
+  if (collect.check().outcome != Outcome::kFails) return;
+  const motion::DrivenStatistics& driven = *result.driven;
+  collect.add(
+      "driven-cycles",
+      fmt::format("driven cycles: {} above a clamp speed, {} above the acceleration, {} above the jerk, "
+                  "{} off their chord (by {:.1e} of it at the most)",
+                  driven.above_clamp, driven.above_acceleration, driven.above_jerk, driven.off_chord,
+                  driven.chord_error_max_rel),
+      "lower driven.feed_mm_min; please report the scene", job.scene.driven->where, 0.0);
+}
+
 void motion_faults(const Result& result, Collector& collect) {
   for (const motion::MotionFinding& fault : result.main.motion.findings) {
     if (fault.severity != Severity::kError) {
@@ -254,25 +271,57 @@ std::string contact_text(const Result& result, const ContactBody& a, const Conta
   if (event.inside) text += "; one stands inside the other";
   if (event.depth_mm > 0.0)
     text += fmt::format("; {:.2f} mm deep at most where it was looked at", event.depth_mm);
-  if (b.kind == collision::BodyKind::kStock) text += "; of the stock as it is before the first cut";
   return text;
+}
+
+/// A link or fixture in what is left of the stock, or not proven to be clear of it.
+std::string stock_contact_text(const Result& result, const MachineContacts& contacts,
+                               const StockEvent& event) {
+  const auto line = [&](int element) { return result.main.path.elements.line(static_cast<size_t>(element)); };
+  const int first = line(event.first.element), last = line(event.last_element);
+  const std::string& body =
+      contacts.bodies[contacts.beside_stock(contacts.findings.pairs[event.suspect.pair])].name;
+  const std::string when =
+      fmt::format("{}, {:.3f} s",
+                  first == last ? fmt::format("line {}", first) : fmt::format("lines {} to {}", first, last),
+                  event.first.time_s);
+  const Vec3& p = event.place_M;
+  const std::string deep = fmt::format(
+      "{:.2f} mm deep at ({:.2f}, {:.2f}, {:.2f}) mm of the machine at most where it was looked at",
+      event.depth_mm, p.x(), p.y(), p.z());
+  if (event.verdict == StockVerdict::kContact)
+    return fmt::format("{} touches what is left of the stock, {}; {}", body, when, deep);
+  return fmt::format("{} is not proven to be clear of what is left of the stock, {}; {}", body, when,
+                     event.depth_mm > 0.0
+                         ? deep
+                         : fmt::format("gaps of {:.3f} mm and more are seen", contacts.as_cut->seen_mm));
 }
 
 void machine_faults(const Result& result, Collector& collect) {
   if (!result.main.contacts) return;
   const MachineContacts& contacts = *result.main.contacts;
   collect.begin("machine_parts");
-  const uint64_t all = contacts.contacts(false) + contacts.contacts(true);
+  const uint64_t all = contacts.contacts() + contacts.stock_contacts() + contacts.stock_open();
   size_t listed = 0;
+  const auto add = [&](const std::string& text, const collision::PairFindings& pair, int element,
+                       double t_s) {
+    if (listed == kListed) return;
+    collect.add("machine-contact", text + and_more(++listed, all),
+                remedy_of(contacts.bodies[pair.a], contacts.bodies[pair.b]),
+                result.main.path.elements.where(static_cast<size_t>(element)), t_s);
+  };
   for (const collision::PairFindings& pair : contacts.findings.pairs) {
-    const ContactBody &a = contacts.bodies[pair.a], &b = contacts.bodies[pair.b];
-    for (const collision::ContactEvent& event : pair.contacts) {
-      if (listed == kListed) return;
-      collect.add("machine-contact", contact_text(result, a, b, event) + and_more(++listed, all),
-                  remedy_of(a, b), result.main.path.elements.where(static_cast<size_t>(event.first_element)),
-                  event.first.time_s);
-    }
+    if (contacts.with_stock(pair)) continue;
+    for (const collision::ContactEvent& event : pair.contacts)
+      add(contact_text(result, contacts.bodies[pair.a], contacts.bodies[pair.b], event), pair,
+          event.first_element, event.first.time_s);
   }
+  if (!contacts.as_cut) return;
+  for (const StockVerdict verdict : {StockVerdict::kContact, StockVerdict::kOpen})
+    for (const StockEvent& event : contacts.as_cut->events)
+      if (event.verdict == verdict)
+        add(stock_contact_text(result, contacts, event), contacts.findings.pairs[event.suspect.pair],
+            event.first.element, event.first.time_s);
 }
 
 void built_in_checks(const Job& job, const Result& result, Collector& collect) {
@@ -302,6 +351,7 @@ std::vector<Finding> find_faults(const Job& job, const Result& result) {
   Collector collect(job, result);
   surface_faults(job, result, collect);
   motion_faults(result, collect);
+  driven_faults(job, result, collect);
   clearance_faults(job, result, collect);
   bad_cut_faults(result, collect);
   machine_faults(result, collect);

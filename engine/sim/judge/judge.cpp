@@ -78,7 +78,7 @@ Check reached_check(const Job& job, const Result& result) {
   constexpr const char* subject = "Measuring rays that no cut has reached";
   if (job.design_mesh)
     return not_judged(name, subject, "faces of a mesh may be the stock's own; accept.excess_max_um tells");
-  if (result.main.path.elements.hold_blocks() && !job.scene.accept.scallop_max_um)
+  if ((result.main.path.elements.hold_blocks() || job.driven) && !job.scene.accept.scallop_max_um)
     return not_judged(name, subject, "no scallop limit in [accept]");
   return counted(name, subject, result.main.surface.uncut_samples, 0);
 }
@@ -188,7 +188,8 @@ size_t count_faults(const Result& result, std::string_view check) {
 }
 
 /// What was left out, in words; "": nothing.
-std::string not_looked_at(const MachineContacts& contacts) {
+std::string not_looked_at(const Result& result) {
+  const MachineContacts& contacts = *result.main.contacts;
   std::vector<std::string> names;
   for (const std::string& link : contacts.without_mesh) names.push_back(link + " (no mesh)");
   for (const collision::LeftOutPair& pair : contacts.findings.left_out) {
@@ -196,7 +197,25 @@ std::string not_looked_at(const MachineContacts& contacts) {
       names.push_back(fmt::format("{} with {} (they overlap at home)", contacts.bodies[pair.a].name,
                                   contacts.bodies[pair.b].name));
   }
+  const std::vector<int>& changes = contacts.findings.unseen_changes;
+  if (!changes.empty()) {
+    const int line = result.main.path.elements.line(static_cast<size_t>(changes.front()));
+    names.push_back(
+        fmt::format("the ways to {} tool changes (the first before line {})", changes.size(), line));
+  }
   return names.empty() ? "" : fmt::format("; not looked at: {}", fmt::join(names, ", "));
+}
+
+/// How the stock was looked at; "": nothing comes to the raw one.
+std::string stock_looks_text(const MachineContacts& contacts) {
+  if (contacts.suspects.empty()) return "";
+  if (!contacts.as_cut) return fmt::format("{} times at the raw stock; ", contacts.suspects.size());
+  const StockContacts& stock = *contacts.as_cut;
+  return fmt::format(
+      "{} times at the raw stock, {} of them clear of what is left of it (gaps of {:.3f} mm and more are "
+      "seen){}; ",
+      stock.suspects, stock.count(StockVerdict::kClear), stock.seen_mm,
+      stock.unseen ? ", not all could be looked at" : "");
 }
 
 Check machine_check(const Job& job, const Result& result) {
@@ -205,18 +224,20 @@ Check machine_check(const Job& job, const Result& result) {
   if (!result.main.contacts || result.main.contacts->findings.pairs.empty())
     return not_judged(name, subject, "the machine has no meshes: [[link]] mesh in machine.toml");
   const MachineContacts& contacts = *result.main.contacts;
-  Check check = counted(name, subject, contacts.contacts(false), job.scene.accept.machine_parts);
-  const uint64_t with_stock = contacts.contacts(true);
-  const uint64_t allowed = static_cast<uint64_t>(job.scene.accept.machine_parts);
-  if (contacts.contacts(false) + with_stock > allowed && check.outcome == Outcome::kHolds) {
-    check.outcome = job.scene.stock.auto_box ? Outcome::kNotJudged : Outcome::kNotProven;
-    check.reason = fmt::format(
-        "{} contacts with the {} as it is before the first cut: what is left of it then is not "
-        "looked at; ",
-        with_stock, job.scene.stock.auto_box ? "block that is assumed" : "stock");
+  const bool assumed = job.scene.stock.auto_box;
+  // With a block that is laid around the path a contact says nothing: a real one may not reach there.
+  const uint64_t proven = contacts.contacts() + (assumed ? 0 : contacts.stock_contacts());
+  const uint64_t open = contacts.stock_open() + (assumed ? contacts.stock_contacts() : 0);
+  Check check = counted(name, subject, proven, job.scene.accept.machine_parts);
+  if (proven + open > static_cast<uint64_t>(job.scene.accept.machine_parts) &&
+      check.outcome == Outcome::kHolds) {
+    check.outcome = assumed ? Outcome::kNotJudged : Outcome::kNotProven;
+    check.reason = assumed ? fmt::format("{} contacts with a block that is assumed; ", open)
+                           : fmt::format("{} times something is not proven to be clear of the stock; ", open);
   }
-  check.reason += fmt::format("{} pairs over the whole motion but for tool changes{}",
-                              contacts.findings.pairs.size(), not_looked_at(contacts));
+  check.reason += stock_looks_text(contacts);
+  check.reason +=
+      fmt::format("{} pairs over the whole motion{}", contacts.findings.pairs.size(), not_looked_at(result));
   return check;
 }
 
@@ -251,6 +272,17 @@ Check rays_check(const Job& job, const Result& result) {
   return check;
 }
 
+/// A driven cycle that does not do what it is commanded is a fault of ours, or a part that cannot be
+/// followed.
+Check driven_check(const Result& result) {
+  const motion::DrivenStatistics& driven = *result.driven;
+  Check check =
+      counted("driven_cycles", "Driven cycles above a clamp or a limit, or off their chord",
+              driven.above_clamp + driven.above_acceleration + driven.above_jerk + driven.off_chord, 0);
+  check.reason = fmt::format("{} cycles of {} passes run again", driven.cycles, driven.passes);
+  return check;
+}
+
 }  // namespace
 
 const char* check_of(const motion::MotionFinding& fault) {
@@ -282,6 +314,7 @@ std::vector<Check> judge(const Job& job, const Result& result) {
   checks.push_back(invariants_check(result));
   checks.push_back(rays_check(job, result));
   checks.push_back(machine_check(job, result));
+  if (result.driven && job.scene.driven->plan.cam_tolerance_mm == 0.0) checks.push_back(driven_check(result));
   return checks;
 }
 

@@ -18,6 +18,7 @@ constexpr const char* kBoxPart = "stock.box_mm";
 constexpr const char* kShapePart = "raw stock";
 constexpr const char* kVoxelPart = "stock.voxel_mm";
 constexpr const char* kCutterPart = "cutter";
+constexpr const char* kEarlierPart = "cuts of earlier set-ups";
 constexpr const char* kAbsent = "(absent)";
 
 void add(Hash& hash, const Vec2& v) {
@@ -57,12 +58,6 @@ std::string cutter_text(const cutter::Cutter& c) {
     hash.add(section.length_mm);
   }
   return fmt::format("{} {}, outline and holder {}", cutter::call_name(c), cutter::describe(c), hash.text());
-}
-
-std::string tools_text(const std::vector<cutter::Cutter>& tools) {
-  std::string text;
-  for (const cutter::Cutter& tool : tools) text += (text.empty() ? "" : "; ") + cutter_text(tool);
-  return text;
 }
 
 /// Which tool makes which sweeps; nothing new with one tool.
@@ -122,11 +117,18 @@ std::string value_of(const CutIdentity& identity, const std::string& name) {
 
 }  // namespace
 
-CutIdentity cut_identity(const Job& job, const CutSweeps& sweeps) {
+std::string tools_text(const std::vector<cutter::Cutter>& tools) {
+  std::string text;
+  for (const cutter::Cutter& tool : tools) text += (text.empty() ? "" : "; ") + cutter_text(tool);
+  return text;
+}
+
+CutIdentity cut_identity(const Job& job, const CutSweeps& sweeps, const CarriedCuts& carried) {
   const Scene& scene = job.scene;
   return {{kAlgorithmPart, fmt::format("{}", kCutAlgorithm)},
           scene.stock.shape ? IdentityPart{kShapePart, scene.stock.shape->text()}
                             : IdentityPart{kBoxPart, box_text(scene.stock.box_W)},
+          {kEarlierPart, carried.empty() ? kAbsent : carried.text()},
           {kVoxelPart, fmt::format("{}", scene.stock.voxel_mm)},
           {"stock.sweep_tolerance_um", fmt::format("{:g}", um_from_mm(scene.stock.sweep_tolerance_mm))},
           {kCutterPart, tools_text(scene.tools)},
@@ -149,7 +151,7 @@ std::vector<IdentityDifference> differences(const CutIdentity& before, const Cut
 
 bool needed_to_compare(const std::string& part_name) {
   return part_name == kAlgorithmPart || part_name == kBoxPart || part_name == kShapePart ||
-         part_name == kVoxelPart || part_name == kCutterPart;
+         part_name == kEarlierPart || part_name == kVoxelPart || part_name == kCutterPart;
 }
 
 }  // namespace swarf::sim

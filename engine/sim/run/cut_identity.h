@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim/job/scene.h"
+#include "sim/run/carried_cuts.h"
 #include "sim/run/cut_sweeps.h"
 
 namespace swarf::sim {
@@ -21,8 +22,12 @@ using CutIdentity = std::vector<IdentityPart>;
 
 /// The last part, kMotionPart, is the hash of the sweeps themselves and of their tools: whatever else may
 /// differ shows there.
-CutIdentity cut_identity(const Job& job, const CutSweeps& sweeps);
+/// `carried`: what earlier set-ups have cut.
+CutIdentity cut_identity(const Job& job, const CutSweeps& sweeps, const CarriedCuts& carried);
 inline constexpr const char* kMotionPart = "tool motion";
+
+/// The tools with everything that decides on what they cut and touch.
+std::string tools_text(const std::vector<cutter::Cutter>& tools);
 
 struct IdentityDifference {
   std::string name, before, now;

@@ -12,6 +12,7 @@
 #include "sim/run/bad_cuts.h"
 #include "sim/run/cut_record.h"
 #include "sim/run/result.h"
+#include "sim/run/stock_contacts.h"
 #include "sim/run/tool_clearance.h"
 
 namespace swarf::sim {
@@ -37,13 +38,17 @@ class CutStage {
         outcome_(result.cut),
         sweeps_(cut_sweeps(job, *result.main.cycles)),
         solids_(tool_solids(job.scene)),
-        identity_(cut_identity(job, sweeps_)),
+        carried_(*result.main.carried),
+        identity_(cut_identity(job, sweeps_, carried_)),
         places_(sweeps_, *result.main.cycles),
-        earlier_(sweeps_, solids_, job.scene.stock.body_W(), kDeepestExact * job.scene.stock.voxel_mm),
+        earlier_(sweeps_, solids_, carried_, job.scene.stock.body_W(),
+                 kDeepestExact * job.scene.stock.voxel_mm),
         clearance_(job.scene.tools, sweeps_, places_, earlier_, job.scene.stock.voxel_mm),
-        bad_cuts_(job, *result.main.cycles, sweeps_, places_, earlier_) {
+        bad_cuts_(job, *result.main.cycles, sweeps_, places_, earlier_),
+        contacts_(job, result.main.contacts ? &*result.main.contacts : nullptr, *result.main.cycles,
+                  sweeps_) {
     outcome_.state.clearance = clearance_.result();
-    result_.sweep_bound_mm = sweeps_.error_bound_mm;
+    result_.sweep_bound_mm = std::max(sweeps_.error_bound_mm, carried_.stock.error_bound_mm);
     result_.merged_sweeps = sweeps_.size();
   }
 
@@ -54,6 +59,7 @@ class CutStage {
     progress_.start_at(static_cast<double>(at_));
     save_due();
     while (at_ < sweeps_.size() && !progress_.stop_requested()) cut_on();
+    if (at_ == sweeps_.size()) look_at_contacts();
     progress_.end();
     check(CheckKind::kAtEnd);
     finish();
@@ -76,40 +82,58 @@ class CutStage {
   }
 
   void make_stock() {
-    const StockSettings& settings = job_.scene.stock;
-    result_.stock = std::make_unique<stock::Stock>(settings.body_W(), settings.voxel_mm);
-    full_mm3_ = result_.stock->volume_mm3();
-    if (!options_.resume_file.empty()) {
-      result_.stock.reset();
-      result_.stock = std::make_unique<stock::Stock>(
-          load_in_process(options_.resume_file, identity_, settings.body_W(), outcome_.state));
-      at_ = outcome_.resumed_from = outcome_.state.sweeps;
-      if (at_ > 0) {
-        clearance_.resume(outcome_.state.clearance);
-        bad_cuts_.resume(outcome_.state.bad_cuts);
-      } else {
-        outcome_.state.clearance = clearance_.result();
-      }
-      for (const Save& save : saves_) {
-        if (save.after >= at_) continue;
-        throw InputError("place-before-resume", {save.place->text},
-                         fmt::format("the stock to go on from was cut up to line {}, {:.3f}s already",
-                                     outcome_.state.place.line, outcome_.state.place.t_s),
-                         "save after a later place, or run from the start");
-      }
-    }
+    begin_stock();
+    if (!options_.resume_file.empty()) resume();
     finder_.emplace(*result_.stock);
     if (options_.check_voxels) checked_ = result_.stock->clone();
+  }
+
+  /// The raw body less what earlier set-ups have cut. Stopped on the way nothing of the program is cut, and a
+  /// run that goes on begins here again.
+  void begin_stock() {
+    const StockSettings& settings = job_.scene.stock;
+    result_.stock = std::make_unique<stock::Stock>(settings.body_W(), settings.voxel_mm);
+    result_.full_mm3 = full_mm3_ = result_.stock->volume_mm3();
+    if (!carried_.empty()) {
+      cut_carried(*result_.stock, carried_, &progress_);
+      full_mm3_ = result_.stock->volume_mm3();
+    }
+    result_.start_hash = result_.stock->hash();
+  }
+
+  void resume() {
+    const stock::RawShape raw = job_.scene.stock.body_W();
+    result_.stock.reset();
+    result_.stock =
+        std::make_unique<stock::Stock>(load_in_process(options_.resume_file, identity_, raw, outcome_.state));
+    at_ = outcome_.resumed_from = outcome_.state.sweeps;
+    if (at_ > 0) {
+      clearance_.resume(outcome_.state.clearance);
+      bad_cuts_.resume(outcome_.state.bad_cuts);
+      if (!contacts_.resume(outcome_.state.stock_contacts, at_)) throw not_resumable(options_.resume_file);
+    } else {
+      outcome_.state.clearance = clearance_.result();
+      if (!carried_.empty()) begin_stock();
+    }
+    for (const Save& save : saves_) {
+      if (save.after >= at_) continue;
+      throw InputError("place-before-resume", {save.place->text},
+                       fmt::format("the stock to go on from was cut up to line {}, {:.3f}s already",
+                                   outcome_.state.place.line, outcome_.state.place.t_s),
+                       "save after a later place, or run from the start");
+    }
   }
 
   /// Cuts up to the next place where something is due, and does it. The looks ahead follow the program's own
   /// batches, so that they do not depend on where the run began or what it saves.
   void cut_on() {
     const size_t total = sweeps_.size();
+    look_at_contacts();
     if (at_ >= batch().end) begin_batch();
     const size_t checks_before = at_ * kChecks / total;
     size_t end = std::min({batch().end, at_ + kSweepsPerStep, after_suspects(kSuspectsPerStep),
                            ((checks_before + 1) * total + kChecks - 1) / kChecks, total});
+    end = std::min(end, contacts_.due());
     if (options_.record) end = std::min(end, next_multiple(at_, options_.record_every));
     if (next_save_ < saves_.size() && saves_[next_save_].after > at_) {
       end = std::min(end, saves_[next_save_].after);
@@ -123,6 +147,11 @@ class CutStage {
     }
     save_due();
     keep_due();
+  }
+
+  /// Links and fixtures where they come to the raw stock.
+  void look_at_contacts() {
+    while (contacts_.due() <= at_) contacts_.look(*result_.stock);
   }
 
   BatchState& batch() { return outcome_.state.batch; }
@@ -188,6 +217,7 @@ class CutStage {
     state.clearance = clearance_.result();
     state.clearance.checked_sweeps = at_;
     state.bad_cuts = bad_cuts_.result();
+    state.stock_contacts = contacts_.text();
     if (at_ > 0) state.place = place(at_ - 1);
     return state;
   }
@@ -232,6 +262,7 @@ class CutStage {
     outcome_.state = state();
     outcome_.metadata = cut_metadata(job_.scene.name, identity_, outcome_.state);
     result_.clearance = outcome_.state.clearance;
+    if (result_.main.contacts) result_.main.contacts->as_cut = contacts_.result();
     result_.volume_left_mm3 = result_.stock->volume_mm3();
     result_.volume_removed_mm3 = full_mm3_ - result_.volume_left_mm3;
     if (options_.record) write_states();
@@ -260,6 +291,7 @@ class CutStage {
   CutOutcome& outcome_;
   CutSweeps sweeps_;
   std::vector<stock::CutterSolid> solids_;  ///< by tool
+  const CarriedCuts& carried_;
   CutIdentity identity_;
   SweepPlaces places_;
   mutable motion::CycleReader reader_{*result_.main.cycles};
@@ -267,9 +299,10 @@ class CutStage {
   std::optional<stock::ContactFinder> finder_;
   ToolClearanceCheck clearance_;
   BadCutCheck bad_cuts_;
+  StockContactCheck contacts_;
   std::vector<Save> saves_;
   size_t next_save_ = 0, at_ = 0;
-  double full_mm3_ = 0.0;
+  double full_mm3_ = 0.0;                ///< before the first sweep of the program
   std::optional<stock::Stock> checked_;  ///< the state at the last check
   std::chrono::steady_clock::time_point kept_at_ = std::chrono::steady_clock::now();
   bool is_kept_ = false;
@@ -295,7 +328,7 @@ void leave_uncut(const Job& job, const CutOptions& options, Result& result) {
   if (options.resume_file.empty()) {
     const StockSettings& settings = job.scene.stock;
     result.stock = std::make_unique<stock::Stock>(settings.body_W(), settings.voxel_mm);
-    outcome.metadata = cut_metadata(job.scene.name, cut_identity(job, {}), {});
+    outcome.metadata = cut_metadata(job.scene.name, cut_identity(job, {}, *result.main.carried), {});
     return;
   }
   result.stock =

@@ -5,8 +5,6 @@
 #include <charconv>
 #include <sstream>
 
-#include "base/diagnostics.h"
-
 namespace swarf::sim {
 namespace {
 
@@ -19,6 +17,7 @@ constexpr const char* kSweepsKey = "swarf_sweeps";
 constexpr const char* kClearanceKey = "swarf_clearance";
 constexpr const char* kBadCutsKey = "swarf_bad_cuts";
 constexpr const char* kBatchKey = "swarf_batch";
+constexpr const char* kStockContactsKey = "swarf_stock_contacts";
 constexpr const char* kPartPrefix = "swarf_part_";
 
 /// Shortest decimals that read back to the same bits.
@@ -43,15 +42,6 @@ bool parse_batch(const std::string& text, BatchState& batch) {
   return !in.fail();
 }
 
-CutIdentity identity_in(const stock::StockMetadata& metadata) {
-  CutIdentity identity;
-  const std::string prefix = kPartPrefix;
-  for (const auto& [key, value] : metadata) {
-    if (key.compare(0, prefix.size(), prefix) == 0) identity.push_back({key.substr(prefix.size()), value});
-  }
-  return identity;
-}
-
 bool parse_state(const stock::StockMetadata& metadata, CutState& state) {
   const auto number = [&](const char* key, auto& value) {
     const auto found = metadata.find(key);
@@ -62,6 +52,9 @@ bool parse_state(const stock::StockMetadata& metadata, CutState& state) {
   const auto clearance = metadata.find(kClearanceKey);
   const auto bad_cuts = metadata.find(kBadCutsKey);
   const auto batch = metadata.find(kBatchKey);
+  const auto contacts = metadata.find(kStockContactsKey);
+  if (contacts == metadata.end()) return false;
+  state.stock_contacts = contacts->second;
   return number(kSweepsKey, state.sweeps) && number(kLineKey, state.place.line) &&
          number(kTimeKey, state.place.t_s) && number(kBlockKey, state.place.block) &&
          clearance != metadata.end() && parse_clearance(clearance->second, state.clearance) &&
@@ -70,6 +63,13 @@ bool parse_state(const stock::StockMetadata& metadata, CutState& state) {
 }
 
 }  // namespace
+
+InputError not_resumable(const std::string& path) {
+  return {"stock-not-resumable",
+          {path},
+          "the stock file does not say how far it was cut",
+          "name a stock that this version of swarf run has saved"};
+}
 
 stock::StockMetadata cut_metadata(const std::string& scene_name, const CutIdentity& identity,
                                   const CutState& state) {
@@ -81,17 +81,26 @@ stock::StockMetadata cut_metadata(const std::string& scene_name, const CutIdenti
                                 {kSweepsKey, fmt::format("{}", state.sweeps)},
                                 {kClearanceKey, clearance_text(state.clearance)},
                                 {kBadCutsKey, bad_cuts_text(state.bad_cuts)},
-                                {kBatchKey, batch_text(state.batch)}};
+                                {kBatchKey, batch_text(state.batch)},
+                                {kStockContactsKey, state.stock_contacts}};
   for (const IdentityPart& part : identity) metadata[kPartPrefix + part.name] = part.value;
   return metadata;
+}
+
+CutIdentity identity_in(const stock::StockMetadata& metadata) {
+  CutIdentity identity;
+  const std::string prefix = kPartPrefix;
+  for (const auto& [key, value] : metadata) {
+    if (key.compare(0, prefix.size(), prefix) == 0) identity.push_back({key.substr(prefix.size()), value});
+  }
+  return identity;
 }
 
 stock::Stock load_unchecked(const std::string& path, stock::StockMetadata& metadata, CutState& state,
                             const stock::RawShape* raw) {
   stock::Stock stock = stock::Stock::load(path, &metadata, raw);
   if (!parse_state(metadata, state)) {
-    throw InputError("stock-not-resumable", {path}, "the stock file does not say how far it was cut",
-                     "name a stock that this version of swarf run has saved");
+    throw not_resumable(path);
   }
   return stock;
 }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "base/diagnostics.h"
 #include "sim/run/contact_event.h"
 #include "sim/run/cut_identity.h"
 #include "sim/run/program_place.h"
@@ -26,12 +27,18 @@ struct CutState {
   ToolClearance clearance;  ///< of the sweeps so far
   std::vector<BadCut> bad_cuts;
   BatchState batch;
+  std::string stock_contacts;  ///< of StockContactCheck
 };
 
 /// Texts of a stock file: keys swarf_scene, swarf_program_line, swarf_time_s, swarf_sweeps, swarf_cutter,
 /// ..., and one "swarf_part_<name>" for each part of the identity.
 stock::StockMetadata cut_metadata(const std::string& scene_name, const CutIdentity& identity,
                                   const CutState& state);
+
+/// "stock-not-resumable": the file lacks what a run goes on with.
+InputError not_resumable(const std::string& path);
+/// The identity of the cut that such texts name.
+CutIdentity identity_in(const stock::StockMetadata& metadata);
 
 /// Reads a stock and checks that it was cut by this very job; one that is not cut yet may be cut by any
 /// motion of it, for the run may have been stopped before the whole motion was known. Throws InputError: what

@@ -198,8 +198,8 @@ JobSweeps stock_sweeps(const Job& job, const motion::Cycles& cycles, std::option
   return cut_sweeps(job, cycles, tolerance_mm).all();
 }
 
-JobSweeps ray_sweeps(const Job& job, const motion::Cycles& cycles) {
-  const double tolerance = job.scene.design.sweep_tolerance_mm;
+JobSweeps ray_sweeps(const Job& job, const motion::Cycles& cycles, std::optional<double> tolerance_mm) {
+  const double tolerance = tolerance_mm.value_or(job.scene.design.sweep_tolerance_mm);
   switch (job.scene.stock.cut_by) {
     case CutBy::kBlocks:
       return BlockSweeper(job, cycles, tolerance).each_block().all();
@@ -217,7 +217,9 @@ std::vector<int> pass_of_blocks(const JobSweeps& sweeps, const toolpath::ToolPat
   for (const SweepSource& source : sweeps.sources) {
     const auto element = static_cast<size_t>(source.element);
     const auto* pass = path.elements.pass(element);
+    const auto* driven = path.elements.driven(element);
     passes.push_back(pass != nullptr               ? pass->pass
+                     : driven != nullptr           ? driven->pass
                      : path.elements.hold_blocks() ? path.elements.block(element).pass
                                                    : -1);
   }

@@ -69,8 +69,9 @@ double lever_of(const cutter::Cutter& cutter);
 /// Those of cut_sweeps(), all held at once.
 JobSweeps stock_sweeps(const Job& job, const motion::Cycles& cycles, std::optional<double> tolerance_mm = {});
 
-/// For the measuring rays; each sweep has a block of its own. Blocks: within design.sweep_tolerance.
-JobSweeps ray_sweeps(const Job& job, const motion::Cycles& cycles);
+/// For the measuring rays; each sweep has a block of its own. Blocks: within design.sweep_tolerance or the
+/// given one, mm.
+JobSweeps ray_sweeps(const Job& job, const motion::Cycles& cycles, std::optional<double> tolerance_mm = {});
 
 /// Tool of each block in `sources`.
 std::vector<int> tool_of_blocks(const JobSweeps& sweeps);

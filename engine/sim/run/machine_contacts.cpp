@@ -44,16 +44,6 @@ void add_tool_bodies(const Job& job, std::vector<Body>& bodies) {
   }
 }
 
-std::vector<Body> bodies_of(const Job& job) {
-  std::vector<Body> bodies = collision::link_bodies(job.machine);
-  for (Body& body : bodies)
-    if (job.machine.links[static_cast<size_t>(body.link)].fixture) body.kind = BodyKind::kFixture;
-  add_tool_bodies(job, bodies);
-  bodies.push_back(
-      collision::work_body(job.machine, kStock, BodyKind::kStock, job.scene.stock.body_W().mesh_around()));
-  return bodies;
-}
-
 /// Tools may cut the stock; whether its other parts meet it is judged against what is left of it
 /// (tool_clearance.h).
 collision::PathCheckOptions options_of(const std::vector<Body>& bodies) {
@@ -65,20 +55,41 @@ collision::PathCheckOptions options_of(const std::vector<Body>& bodies) {
 
 }  // namespace
 
+std::vector<Body> contact_bodies(const Job& job) {
+  std::vector<Body> bodies = collision::link_bodies(job.machine);
+  for (Body& body : bodies)
+    if (job.machine.links[static_cast<size_t>(body.link)].fixture) body.kind = BodyKind::kFixture;
+  add_tool_bodies(job, bodies);
+  bodies.push_back(
+      collision::work_body(job.machine, kStock, BodyKind::kStock, job.scene.stock.body_W().mesh_around()));
+  return bodies;
+}
+
 bool MachineContacts::with_stock(const collision::PairFindings& pair) const {
   return bodies[pair.a].kind == BodyKind::kStock || bodies[pair.b].kind == BodyKind::kStock;
 }
 
-uint64_t MachineContacts::contacts(bool with_stock) const {
+size_t MachineContacts::beside_stock(const collision::PairFindings& pair) const {
+  return bodies[pair.a].kind == BodyKind::kStock ? pair.b : pair.a;
+}
+
+uint64_t MachineContacts::contacts() const {
   uint64_t count = 0;
   for (const collision::PairFindings& pair : findings.pairs)
-    if (this->with_stock(pair) == with_stock) count += pair.contact_count;
+    if (!with_stock(pair)) count += pair.contact_count();
   return count;
+}
+
+uint64_t StockContacts::count(StockVerdict verdict) const {
+  if (verdict == StockVerdict::kClear) return suspects - events.size();
+  return static_cast<uint64_t>(std::count_if(
+      events.begin(), events.end(), [&](const StockEvent& event) { return event.verdict == verdict; }));
 }
 
 const collision::PairFindings* MachineContacts::nearest() const {
   const collision::PairFindings* nearest = nullptr;
   for (const collision::PairFindings& pair : findings.pairs) {
+    if (with_stock(pair) && !pair.spans.empty()) continue;
     if (pair.near_miss.within && (nearest == nullptr || pair.near_miss.upper < nearest->near_miss.upper))
       nearest = &pair;
   }
@@ -86,7 +97,7 @@ const collision::PairFindings* MachineContacts::nearest() const {
 }
 
 MachineContactCheck::MachineContactCheck(const Job& job) {
-  std::vector<Body> bodies = bodies_of(job);
+  std::vector<Body> bodies = contact_bodies(job);
   for (const Body& body : bodies) contacts_.bodies.push_back({body.name, body.kind});
   for (const machine::Link& link : job.machine.links)
     if (link.mesh.triangles.empty()) contacts_.without_mesh.push_back(link.name);
@@ -97,8 +108,22 @@ MachineContactCheck::MachineContactCheck(const Job& job) {
   contacts_.warnings = diagnostics.list();
 }
 
+void MachineContactCheck::find_suspects() {
+  const std::vector<collision::PairFindings>& pairs = contacts_.findings.pairs;
+  for (size_t i = 0; i < pairs.size(); ++i) {
+    if (pairs[i].spans.empty() || !contacts_.with_stock(pairs[i])) continue;
+    for (const collision::CycleSpan& span : pairs[i].spans) contacts_.suspects.push_back({i, span});
+    const size_t body = contacts_.beside_stock(pairs[i]);
+    contacts_.shapes.emplace(body, check_->bodies()[body]);
+  }
+  std::stable_sort(
+      contacts_.suspects.begin(), contacts_.suspects.end(),
+      [](const StockSuspect& a, const StockSuspect& b) { return a.cycles.first < b.cycles.first; });
+}
+
 MachineContacts MachineContactCheck::finish() {
   contacts_.findings = check_->finish();
+  find_suspects();
   return std::move(contacts_);
 }
 

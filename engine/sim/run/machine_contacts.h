@@ -1,8 +1,10 @@
 // Everything that moves against everything else: links, fixtures, tools and the raw stock, over the whole
-// motion.
+// motion. What comes to the raw stock is looked at again when that is cut (stock_contacts.h).
 #pragma once
 
+#include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,10 +14,46 @@
 
 namespace swarf::sim {
 
+/// Links, fixtures, the parts of every tool of the scene, which stand in the spinning flutes' outline, and
+/// the raw stock.
+std::vector<collision::Body> contact_bodies(const Job& job);
+
 /// What a body is called and is.
 struct ContactBody {
   std::string name;  ///< of the link or fixture; "holder", with several tools "holder of T3"; "stock"
   collision::BodyKind kind = collision::BodyKind::kLink;
+};
+
+/// A link or fixture comes to the raw stock, which may be cut away there by then.
+struct StockSuspect {
+  size_t pair = 0;  ///< index into PathFindings::pairs
+  collision::CycleSpan cycles;
+};
+
+enum class StockVerdict : uint8_t {
+  kClear,    ///< of all that is left: proven
+  kOpen,     ///< neither is proven
+  kContact,  ///< deeper than a voxel in what is left
+};
+
+/// What came of a suspect that is not clear.
+struct StockEvent {
+  StockSuspect suspect;
+  StockVerdict verdict = StockVerdict::kOpen;
+  collision::PathPlace first;  ///< the way on which it is in the material; of an open one, is not clear of it
+  int last_element = 0;        ///< of the suspect
+  double depth_mm = 0.0;       ///< greatest that was looked at: at nine instants of five ways at most
+  Vec3 place_M = Vec3::Zero();  ///< on the body, there
+};
+
+/// The suspects of a program against what is left of the stock.
+struct StockContacts {
+  uint64_t suspects = 0;           ///< stretches of cycles, of pairs
+  std::vector<StockEvent> events;  ///< those that are not clear, by their first cycle
+  double seen_mm = 0.0;            ///< gaps of this and more beside a face are proven to be clear
+  int looks = 0;                   ///< meshes of the stock that were made
+  bool unseen = false;             ///< some could not be looked at, and are open for that
+  uint64_t count(StockVerdict verdict) const;
 };
 
 /// Of a whole program.
@@ -26,10 +64,19 @@ struct MachineContacts {
   std::vector<Diagnostic> warnings;
   double near_miss_mm = 0.0;  ///< gaps are looked for up to here
 
-  /// The stock is looked at as it is before the first cut: what touches it may be free of it by then.
+  std::vector<StockSuspect> suspects;        ///< by their first cycles, then by pair
+  std::map<size_t, collision::Body> shapes;  ///< of the bodies of suspects, by index into `bodies`
+  std::optional<StockContacts> as_cut;       ///< none: the suspects are held against the raw stock alone
+
   bool with_stock(const collision::PairFindings& pair) const;
-  uint64_t contacts(bool with_stock) const;
-  /// Of all pairs; null: none came as near as near_miss_mm.
+  /// Index into `bodies` of what comes to the stock.
+  size_t beside_stock(const collision::PairFindings& pair) const;
+  /// But for those with the stock.
+  uint64_t contacts() const;
+  /// With the stock: proven ones, and those of which nothing is proven.
+  uint64_t stock_contacts() const { return as_cut ? as_cut->count(StockVerdict::kContact) : 0; }
+  uint64_t stock_open() const { return as_cut ? as_cut->count(StockVerdict::kOpen) : suspects.size(); }
+  /// Of all pairs but those that come to the raw stock; null: none came as near as near_miss_mm.
   const collision::PairFindings* nearest() const;
 };
 
@@ -45,6 +92,8 @@ class MachineContactCheck {
   MachineContacts finish();
 
  private:
+  void find_suspects();
+
   MachineContacts contacts_;
   std::unique_ptr<collision::PathCheck> check_;
 };

@@ -36,6 +36,8 @@ constexpr double kMeasuredRay = 78.0;  // while it is measured: neighbours, ridg
 constexpr double kRay = 83.0;          // point, normal, height, block; its share of a tile
 // Each triangle of the mesh, half a vertex with it, from the mesher's points to the decimated copy.
 constexpr double kTriangle = 105.0;
+// The same where links are held against it: its body with a tree of boxes, too.
+constexpr double kBodyTriangle = 420.0;
 // A tick of a path that is only compared: its sample, axes and sweep, and what vectors that grow hold beside.
 constexpr double kComparedTick = 530.0;
 
@@ -57,7 +59,7 @@ std::vector<stock::Sweep> thinned(const CutSweeps& sweeps) {
 }
 
 /// `meshed`: the triangles are asked for.
-SurfaceCounts preview(const Job& job, const motion::Cycles& cycles, bool meshed) {
+SurfaceCounts preview(const Job& job, const motion::Cycles& cycles, const CarriedCuts& carried, bool meshed) {
   const StockSettings& settings = job.scene.stock;
   // Three voxels to the thinnest cutter's radius still show every groove.
   double thinnest = std::numeric_limits<double>::infinity();
@@ -65,7 +67,7 @@ SurfaceCounts preview(const Job& job, const motion::Cycles& cycles, bool meshed)
   const double voxel = std::max(settings.voxel_mm, std::min(kCoarser * settings.voxel_mm, thinnest / 3.0));
   const CutSweeps sweeps = cut_sweeps(job, cycles, voxel / 8.0);
   const std::vector<stock::Sweep> some = thinned(sweeps);
-  stock::Stock stock(settings.body_W(), voxel);
+  stock::Stock stock = starting_stock(job, carried, voxel);
   const std::vector<stock::CutterSolid> solids = tool_solids(job.scene);
   double most = static_cast<double>(stock.leaves());
   const size_t piece = some.size() / kPieces + 1;
@@ -144,7 +146,9 @@ double voxel_that_fits(const Job& job, const MemoryPrediction& prediction) {
 MemoryPrediction predict_memory(const Job& job, const MeasuredPath& path, const Outputs& outputs,
                                 int stocks) {
   const StockSettings& settings = job.scene.stock;
-  const SurfaceCounts counts = preview(job, *path.cycles, outputs.page || outputs.pictures);
+  const bool suspects = path.contacts && !path.contacts->suspects.empty();
+  const SurfaceCounts counts =
+      preview(job, *path.cycles, *path.carried, outputs.page || outputs.pictures || suspects);
   const double stock =
       static_cast<double>(stock::Stock::memory_for(settings.box_W, settings.voxel_mm, counts.leaves_most));
   const auto ticks = static_cast<double>(path.cycles->size());
@@ -156,12 +160,14 @@ MemoryPrediction predict_memory(const Job& job, const MeasuredPath& path, const 
   const double stretches = thread_count() > 1 ? 2.0 : 1.0;
   const double planned = std::min(kCellsOfBlock * static_cast<double>(path.path.elements.size()),
                                   stretches * static_cast<double>(motion::LookAheadReach{}.planned));
-  const double held = kBase + static_cast<double>(settings.body_W().memory_bytes()) + rays + own_sweeps +
+  const double held = kBase + static_cast<double>(settings.body_W().memory_bytes()) +
+                      static_cast<double>(path.carried->bytes()) + rays + own_sweeps +
                       (planned_passes ? 0.0 : planned * kPlannedCell) +
                       static_cast<double>(path.cycles->kept().size() * sizeof(motion::Cycle)) +
                       static_cast<double>(path.path.elements.bytes() + path.cycles->motions().bytes());
   // The stages that hold most; each ends before the next begins.
-  const double cutting = held - rays + (stocks + kSeen) * stock + (by_block ? 0.0 : sweeps * kCutting);
+  const double cutting = held - rays + (stocks + kSeen) * stock + (by_block ? 0.0 : sweeps * kCutting) +
+                         (suspects ? counts.triangles * kBodyTriangle : 0.0);
   double comparing = 0.0;
   if (job.scene.compare_planners && planned_passes)
     comparing = held + stock + std::max(ticks, longest_comparison(job, path)) * kComparedTick + rays;

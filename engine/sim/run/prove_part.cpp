@@ -4,7 +4,7 @@
 
 #include "base/units.h"
 #include "measure/certificate.h"
-#include "sim/run/job_sweeps.h"
+#include "sim/run/ray_cutters.h"
 #include "sim/run/result.h"
 #include "stock/rays/free_ranges.h"
 
@@ -54,9 +54,8 @@ void prove_part(const Job& job, Progress& progress, Result& result) {
   std::vector<stock::RayFieldPtr> fields;
   for (const stock::SurfaceDexels& dexels : main.dexels) fields.push_back(dexels.field_ptr());
   const stock::FreeRange ranges(fields);
-  const std::vector<stock::CutterSolid> solids = tool_solids(job.scene);
-  const std::vector<int> tools = tool_of_blocks(main.rays);
-  const measure::SweepCutters cutters(solids, tools);
+  const RayCutters rays = ray_cutters(job, main);
+  const measure::SweepCutters cutters(rays.solids, rays.solid_of);
   measure::SurfaceMetrics& surface = main.surface;
   surface.gouges.clear();
   surface.excesses.clear();

@@ -45,7 +45,7 @@ ToolClearanceCheck::ToolClearanceCheck(std::span<const cutter::Cutter> tools, co
   }
   result_.band_mm = kBandVoxels * voxel_mm;
   result_.nearest_mm = result_.band_mm;
-  result_.sees_mm = voxel_mm + bound_at_far_end_mm(tools, sweeps);
+  result_.sees_mm = voxel_mm + bound_at_far_end_mm(tools, sweeps) + earlier.carried_bound_mm();
 }
 
 ToolClearanceCheck::Outlook ToolClearanceCheck::look_ahead(const stock::ContactFinder& finder, size_t begin,

@@ -97,6 +97,10 @@ double Stock::air_radius_mm(const Vec3& point_W) const {
   return air_radius(impl_->level_set, point_W);
 }
 
+std::vector<Vec3> Stock::air_points(double below_mm) const {
+  return stock::air_points(impl_->level_set, below_mm);
+}
+
 size_t Stock::leaves() const {
   return impl_->level_set.grid->tree().leafCount();
 }

@@ -101,6 +101,7 @@ double volume(const LevelSet& level_set);
 VolumeRange volume_between(const LevelSet& level_set, double slack_mm);
 double trilinear(const LevelSet& level_set, const Vec3& point_W);
 double air_radius(const LevelSet& level_set, const Vec3& point_W);
+std::vector<Vec3> air_points(const LevelSet& level_set, double below_mm);
 uint64_t state_hash(const LevelSet& level_set);
 /// Invariants, see Stock::check (stock_check.cpp).
 std::string broken_invariant(const LevelSet& level_set, CheckLevel level);

@@ -124,6 +124,25 @@ double air_radius(const LevelSet& set, const Vec3& point_W) {
   return std::max(0.0, radius - kFloats);
 }
 
+std::vector<Vec3> air_points(const LevelSet& set, double below_mm) {
+  const size_t chunks = (set.map.size() + kPositionsPerTask - 1) / kPositionsPerTask;
+  std::vector<std::vector<Vec3>> parts(chunks);
+  parallel_chunks(set.map.size(), kPositionsPerTask, [&](size_t begin, size_t end) {
+    std::vector<Vec3>& part = parts[begin / kPositionsPerTask];
+    for (size_t n = begin; n < end; ++n) {
+      if (set.map.states[n] != LeafState::kLeaf) continue;
+      const float* values = set.map.leaves[n]->buffer().data();
+      const openvdb::Coord at = set.map.origin(n);
+      for (int v = 0; v < kLeafVoxels; ++v)
+        if (values[v] >= 0.0F && values[v] < below_mm)
+          part.push_back(set.voxel * Vec3(at.x() + v / 64, at.y() + v / 8 % 8, at.z() + v % 8));
+    }
+  });
+  std::vector<Vec3> points;
+  for (const std::vector<Vec3>& part : parts) points.insert(points.end(), part.begin(), part.end());
+  return points;
+}
+
 uint64_t state_hash(const LevelSet& set) {
   const size_t chunks = (set.map.size() + kPositionsPerTask - 1) / kPositionsPerTask;
   std::vector<uint64_t> parts(chunks, 0);

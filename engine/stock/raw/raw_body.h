@@ -23,6 +23,11 @@ class RawBody {
   RawBody& operator=(const RawBody&) = delete;
 
   virtual Box box() const = 0;
+  /// Places of it whose hull holds it; of a body that is moved elsewhere by moved() itself nobody asks.
+  virtual std::vector<Vec3> corners() const { return {}; }
+  /// The same body elsewhere, in its own form where it has one there; null: moved_body() serves.
+  virtual std::shared_ptr<const RawBody> moved(const Pose& /*X_VW*/) const { return nullptr; }
+  virtual bool is_box() const { return false; }
   virtual double volume_mm3() const = 0;
   virtual double area_mm2() const = 0;
   virtual size_t memory_bytes() const { return 0; }
@@ -47,6 +52,8 @@ std::shared_ptr<const RawBody> make_raw_box(const Box& box_W);
 std::shared_ptr<const RawBody> make_raw_tube(const RawTube& tube);
 std::shared_ptr<const RawBody> make_raw_outline(const RawOutline& outline);
 std::shared_ptr<const RawBody> make_raw_mesh(const TriMesh& mesh_W, const std::string& name);
+/// `body` in the frame F, asked in W; itself where the two are one. For bodies that know their corners.
+std::shared_ptr<const RawBody> moved_body(std::shared_ptr<const RawBody> body, const Pose& X_WF);
 
 /// Widens an extent.
 inline void include(RawExtent& extent, double value) {

@@ -13,6 +13,22 @@ class RawBox final : public RawBody {
   explicit RawBox(const Box& box) : box_(box) {}
 
   Box box() const override { return box_; }
+  bool is_box() const override { return true; }
+  std::vector<Vec3> corners() const override {
+    std::vector<Vec3> corners;
+    for (int i = 0; i < 8; ++i) {
+      const auto at = [&](int a) { return (i >> a) % 2 != 0 ? box_.upper[a] : box_.lower[a]; };
+      corners.emplace_back(at(0), at(1), at(2));
+    }
+    return corners;
+  }
+  /// By quarter turns: the numbers of a box again.
+  std::shared_ptr<const RawBody> moved(const Pose& X_VW) const override {
+    const Mat3 turn = X_VW.linear();
+    if (!(turn.array() == 0.0 || turn.array().abs() == 1.0).all()) return nullptr;
+    const Vec3 a = X_VW * box_.lower + Vec3::Zero(), b = X_VW * box_.upper + Vec3::Zero();  // no -0
+    return make_raw_box({a.cwiseMin(b), a.cwiseMax(b)});
+  }
   TriMesh mesh_around() const override {
     TriMesh mesh;
     mesh::add_box(mesh, box_);

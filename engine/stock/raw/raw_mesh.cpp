@@ -45,6 +45,11 @@ class RawMeshBody final : public RawBody {
   }
 
   Box box() const override { return box_; }
+  std::vector<Vec3> corners() const override {
+    std::vector<Vec3> corners;
+    for (const auto& p : surface_.mesh().positions) corners.emplace_back(p[0], p[1], p[2]);
+    return corners;
+  }
   TriMesh mesh_around() const override { return surface_.mesh(); }
   double volume_mm3() const override { return volume_; }
   double area_mm2() const override { return area_; }

@@ -54,6 +54,14 @@ class RawOutlineBody final : public RawBody {
     area_ = 0.5 * std::abs(twice);
   }
 
+  std::vector<Vec3> corners() const override {
+    std::vector<Vec3> corners;
+    for (const Vec2& p : outline_.points_mm) {
+      corners.emplace_back(p.x(), p.y(), outline_.low_mm);
+      corners.emplace_back(p.x(), p.y(), outline_.high_mm);
+    }
+    return corners;
+  }
   Box box() const override {
     Vec2 low = corner(0), high = low;
     for (const Vec2& p : outline_.points_mm) {

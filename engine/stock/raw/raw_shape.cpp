@@ -18,20 +18,24 @@ constexpr double kFar = 1e7;
 
 }  // namespace
 
-RawShape::RawShape(std::shared_ptr<const RawBody> body, bool is_box)
-    : body_(std::move(body)), box_(body_->box()), is_box_(is_box) {}
+RawShape::RawShape(std::shared_ptr<const RawBody> body)
+    : body_(std::move(body)), box_(body_->box()), is_box_(body_->is_box()) {}
 
 RawShape RawShape::of_box(const Box& box_W) {
-  return {make_raw_box(box_W), true};
+  return RawShape(make_raw_box(box_W));
 }
 RawShape RawShape::of_tube(const RawTube& tube) {
-  return {make_raw_tube(tube), false};
+  return RawShape(make_raw_tube(tube));
 }
 RawShape RawShape::of_outline(const RawOutline& outline) {
-  return {make_raw_outline(outline), false};
+  return RawShape(make_raw_outline(outline));
 }
 RawShape RawShape::of_mesh(const TriMesh& mesh_W, const std::string& name) {
-  return {make_raw_mesh(mesh_W, name), false};
+  return RawShape(make_raw_mesh(mesh_W, name));
+}
+RawShape RawShape::moved(const Pose& X_WF) const {
+  std::shared_ptr<const RawBody> own = body_->moved(X_WF);
+  return RawShape(own ? own : moved_body(body_, X_WF));
 }
 
 TriMesh RawShape::mesh_around() const {

@@ -70,6 +70,10 @@ class RawShape {
   /// text() calls it, with the hash of its facets.
   static RawShape of_mesh(const TriMesh& mesh_W, const std::string& name);
 
+  /// The same body where a frame F that it was described in stands in W: nothing is sampled. A box by quarter
+  /// turns stays a box and a tube a tube, to the bit where the numbers allow it.
+  RawShape moved(const Pose& X_WF) const;
+
   bool is_box() const { return is_box_; }
   /// The least box along the axes of W that holds it; of a box the box itself.
   const Box& box() const { return box_; }
@@ -102,7 +106,7 @@ class RawShape {
   static constexpr double kTouch = 1e-6;  ///< mm
 
  private:
-  RawShape(std::shared_ptr<const RawBody> body, bool is_box);
+  explicit RawShape(std::shared_ptr<const RawBody> body);
 
   std::shared_ptr<const RawBody> body_;
   Box box_;

@@ -35,6 +35,12 @@ class RawTubeBody final : public RawBody {
     const Vec3 disc = tube_.radius_mm * (Vec3::Ones() - tube_.axis_W.cwiseAbs2()).cwiseMax(0.0).cwiseSqrt();
     return {tube_.base_W.cwiseMin(end) - disc, tube_.base_W.cwiseMax(end) + disc};
   }
+  std::shared_ptr<const RawBody> moved(const Pose& X_VW) const override {
+    RawTube tube = tube_;
+    tube.base_W = X_VW * tube_.base_W;
+    tube.axis_W = (X_VW.linear() * tube_.axis_W).normalized();
+    return make_raw_tube(tube);
+  }
   TriMesh mesh_around() const override {
     TriMesh mesh;
     mesh::add_tube(mesh, tube_.base_W, tube_.axis_W, tube_.radius_mm, tube_.inner_radius_mm, tube_.length_mm);

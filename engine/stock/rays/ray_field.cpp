@@ -9,7 +9,7 @@ namespace {
 
 Foot foot_on_surface(const surface::Surface& surface, double u, double v) {
   const surface::Derivatives d = surface.derivatives(u, v);
-  return {d.S, surface::outward_normal(surface, d), u, v};
+  return {d.S, surface::outward_normal(surface, d, {u, v}), u, v};
 }
 
 /// (u,v) of a ray displaced by a tangent vector: the normal equations of Su du + Sv dv = tangent.

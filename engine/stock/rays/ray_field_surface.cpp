@@ -85,7 +85,7 @@ void place_rays(RayField& field) {
       const size_t iu = n % nu, iv = n / nu;
       const surface::Derivatives d = field.surface->derivatives(field.u_lines[iu], field.v_lines[iv]);
       field.points[n] = d.S;
-      field.normals[n] = surface::outward_normal(*field.surface, d);
+      field.normals[n] = surface::outward_normal(*field.surface, d, {field.u_lines[iu], field.v_lines[iv]});
       field.areas_mm2[n] =
           d.Su.cross(d.Sv).norm() * share_of_line(field.u_lines, iu) * share_of_line(field.v_lines, iv);
     }

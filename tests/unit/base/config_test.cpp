@@ -91,5 +91,61 @@ TEST(ConfigUnits, AnOverrideReplacesTheLengthInEitherUnit) {
   EXPECT_EQ(wrong.only_error().where.file, "--set stock.voxel_in");
 }
 
+struct Overlaid {
+  Diagnostics diagnostics;
+  ConfigTable root;
+  explicit Overlaid(const std::string& text, size_t index, const std::vector<std::string>& overrides = {})
+      : root(ConfigTable::parse(text, "x.toml", overrides, diagnostics, [&] {
+          static ConfigOverlay overlay;
+          overlay = {"part", index, {"own", "way_mm"}, {{"cl", "nc"}}, {"joined"}};
+          return &overlay;
+        }())) {}
+};
+
+const char* const kOverlaid =
+    "nc = 'all'\nfixed = 1\n[joined]\na = 1\nb_mm = 2\n[whole]\na = 1\nb = 2\n"
+    "[[part]]\nown = 3\n[[part]]\ncl = 'second'\nway_in = 1\njoined = { b_in = 1 }\nwhole = { a = 5 }\n";
+
+TEST(ConfigOverlays, OneOfAListTakesThePlaceOfWhatTheRootSays) {
+  Overlaid first(kOverlaid, 0), second(kOverlaid, 1);
+  EXPECT_EQ(first.root.text("nc"), "all");
+  EXPECT_EQ(first.root.table("part").number("own", {}), 3.0);
+  EXPECT_FALSE(first.root.is_list("part"));
+  EXPECT_FALSE(second.root.has("nc")) << "of its group the root keeps none";
+  EXPECT_EQ(second.root.text("cl"), "second");
+  EXPECT_EQ(second.root.where("cl").line, 12) << "a place in the file still";
+  EXPECT_EQ(second.root.number("fixed", {}), 1.0);
+  EXPECT_EQ(second.root.table("part").number("way_mm", {}), 25.4);
+  ConfigTable joined = second.root.table("joined"), whole = second.root.table("whole");
+  EXPECT_EQ(joined.number("a", {}), 1.0);
+  EXPECT_EQ(joined.number("b_mm", {}), 25.4) << "in the other unit";
+  EXPECT_EQ(whole.number("a", {}), 5.0);
+  EXPECT_FALSE(whole.has("b"));
+  EXPECT_TRUE(second.diagnostics.list().empty());
+}
+
+TEST(ConfigOverlays, OverridesOfTheListComeBeforeAndOthersAfter) {
+  Overlaid second(kOverlaid, 1, {"part[1].cl=before", "joined.a=7"});
+  EXPECT_EQ(second.root.text("cl"), "before");
+  EXPECT_EQ(second.root.table("joined").number("a", {}), 7.0);
+  Overlaid replaced(kOverlaid, 1, {"part[1].cl=before", "cl=after"});
+  EXPECT_EQ(replaced.root.text("cl"), "after");
+}
+
+TEST(ConfigOverlays, WhatIsUnknownIsToldAtItsPlace) {
+  Overlaid one("[[part]]\nown = 1\nfxed = 2\npart = 3\n", 0);
+  one.root.integer("fixed", 0, 9, 1);
+  one.root.table("part").number("own", {});
+  one.root.finish();
+  ASSERT_EQ(one.diagnostics.list().size(), 2U);
+  for (const Diagnostic& told : one.diagnostics.list()) {
+    EXPECT_EQ(told.code, "unknown-key");
+    EXPECT_TRUE(told.where.line == 3 || told.where.line == 4) << told.where.line;
+  }
+  Overlaid none("[[part]]\nown = 1\n", 5), table("[part]\nown = 1\n", 0);
+  EXPECT_TRUE(none.root.is_list("part"));
+  EXPECT_EQ(table.root.table("part").number("own", {}), 1.0) << "no list: as it stands";
+}
+
 }  // namespace
 }  // namespace swarf

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "base/parallel.h"
+#include "collision/free_range.h"
 #include "unit/collision/brute_distance.h"
 #include "unit/collision/toy_machine.h"
 
@@ -188,7 +189,7 @@ std::string text_of(const PathFindings& found) {
   for (const PairFindings& pair : found.pairs) {
     const NearMiss& near = pair.near_miss;
     add_all({near.lower, near.upper, near.place.share, near.place.time_s, double(near.place.cycle),
-             near.point_a.x(), double(pair.contact_count)});
+             near.point_a.x(), double(pair.contact_count())});
     for (const ContactEvent& one : pair.contacts) {
       add_all({one.first.share, one.free.share, double(one.first.cycle), double(one.last_cycle), one.depth_mm,
                one.point_b.y(), double(one.first_element), double(one.last_element)});
@@ -217,7 +218,44 @@ TEST(PathCheck, SameForAnyThreadsAndWindows) {
   EXPECT_EQ(one, text_of(check(scene, bodies, cycles)));
   EXPECT_EQ(one, text_of(check(scene, bodies, cycles, {}, 100000)));
   EXPECT_EQ(one, text_of(check(scene, bodies, cycles, {}, 1)));
-  EXPECT_GT(check(scene, bodies, cycles).pairs.at(0).contact_count, 0U);
+  EXPECT_GT(check(scene, bodies, cycles).pairs.at(0).contact_count(), 0U);
+}
+
+/// Many short stretches of the same places, so that boxes that are known to be free are used: every place in
+/// a box that is covered is as far away as was asked.
+TEST(FreeRange, NothingIsNearAtAnyPlaceThatIsCovered) {
+  const machine::MachineScene scene = toy_machine();
+  size_t covered = 0, not_covered = 0;
+  for (int i = 0; i < 60; ++i) {
+    Rng rng(7000 + i);
+    const double size = rng.uniform(1.0, 10.0), least = rng.uniform(0.1, 10.0);
+    const Body wall = on_table("wall", box_mesh(Vec3(20, -30, 0), Vec3(26, 30, rng.uniform(5, 40))));
+    const Body head = on_head("head", box_mesh({-size, -size, 5}, {size, size, 60}));
+    const Encounter pair = encounter(scene, wall, head);
+    FreeRange range;
+    for (int n = 0; n < 12; ++n) {
+      const AxisValues at = axes(rng.uniform(-60, 15), rng.uniform(-30, 30), rng.uniform(0, 60),
+                                 rng.uniform(-0.2, 0.2), rng.uniform(-0.3, 0.3));
+      const AxisValues wide = axes(rng.uniform(0, 9), rng.uniform(0, 9), 0, rng.uniform(0, 0.1), 0.05);
+      const AxisBox box{at - wide, at + wide};
+      if (!range.covers(pair, box, least, 2e-3)) {
+        ++not_covered;
+        continue;
+      }
+      ++covered;
+      for (int s = 0; s < 20; ++s) {
+        AxisSegment still;
+        for (int k = 0; k < 5; ++k) still.q0[k] = rng.uniform(box.low[k], box.high[k]);
+        still.q1 = still.q0;
+        ApproachQuery query;
+        query.limit = least;
+        EXPECT_FALSE(closest_approach(pair, still, query).within) << "seed " << 7000 + i;
+        EXPECT_FALSE(one_holds_other(pair, still.q0)) << "seed " << 7000 + i;
+      }
+    }
+  }
+  EXPECT_GT(covered, 100U);
+  EXPECT_GT(not_covered, 50U);
 }
 
 TEST(PathCheck, OneContactOverManyStretchesIsOneEvent) {
@@ -228,7 +266,7 @@ TEST(PathCheck, OneContactOverManyStretchesIsOneEvent) {
   const std::vector<Cycle> cycles = polyline({axes(-10), axes(190), axes(-10)}, 20000);
   const PairFindings pair = check(scene, bodies, cycles).pairs.at(0);
   ASSERT_EQ(pair.contacts.size(), 2U);
-  EXPECT_EQ(pair.contact_count, 2U);
+  EXPECT_EQ(pair.contact_count(), 2U);
   EXPECT_EQ(pair.contacts[0].first_element, 0);
   EXPECT_NEAR(pair.contacts[0].first.time_s, 1.0, 2e-3);
   EXPECT_NEAR(static_cast<double>(pair.contacts[0].last_cycle), 11200.0, 2.0);
@@ -274,9 +312,11 @@ TEST(PathCheck, ToolsAreThereOnlyWhileTheyAreInTheSpindle) {
   EXPECT_TRUE(found.pairs[0].contacts.empty());
   EXPECT_FALSE(found.pairs[0].near_miss.within);  // 20 mm above it with the first tool
   EXPECT_TRUE(found.pairs[1].contacts.empty());
-  EXPECT_FALSE(found.pairs[1].near_miss.within);  // 11 mm
+  EXPECT_FALSE(found.pairs[1].near_miss.within);         // 11 mm
+  EXPECT_EQ(found.unseen_changes, std::vector<int>{1});  // the axes do not stand still over it
   for (Cycle& cycle : cycles) cycle.sample.tool = 0;
   found = check(scene, bodies, cycles);
+  EXPECT_TRUE(found.unseen_changes.empty());
   EXPECT_EQ(found.pairs[0].contacts.size(), 1U);
   EXPECT_TRUE(found.pairs[1].contacts.empty());
 }

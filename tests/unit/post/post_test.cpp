@@ -204,7 +204,7 @@ TEST(Branches, ChoiceIsAHook) {
   PostOptions options = without_tcp();
   const Posted plain = run_post(cl, placed_machine("head_table_bc"), shipped_post("fanuc"), options);
   size_t offered = 0;
-  options.choice = [&](std::span<const program::Move> moves, std::vector<Start>& starts) {
+  options.hooks.choice = [&](std::span<const program::Move> moves, std::vector<Start>& starts) {
     EXPECT_EQ(moves.size(), 1u);
     offered = starts.size();
     std::reverse(starts.begin(), starts.end());
@@ -213,7 +213,7 @@ TEST(Branches, ChoiceIsAHook) {
   ASSERT_EQ(other.faults + reading_faults(other) + compare(other), "");
   EXPECT_GT(offered, 1u);
   EXPECT_NE(plain.text, other.text);
-  options.choice = [](std::span<const program::Move>, std::vector<Start>& starts) { starts.clear(); };
+  options.hooks.choice = [](std::span<const program::Move>, std::vector<Start>& starts) { starts.clear(); };
   EXPECT_NE(
       run_post(cl, placed_machine("head_table_bc"), shipped_post("fanuc"), options).faults.find("[no-start]"),
       std::string::npos);
@@ -332,7 +332,7 @@ TEST(Refused, ABulgeOutOfTravelWithTcp) {
   PostOptions options = with_tcp();
   options.axis_rad = 1.0;
   // The other solution would bulge to the other side, where there is room.
-  options.choice = [](std::span<const program::Move>, std::vector<Start>& starts) {
+  options.hooks.choice = [](std::span<const program::Move>, std::vector<Start>& starts) {
     std::erase_if(starts, [](const Start& one) { return one.q[3] < 0.0; });
   };
   const Posted free = run_post(cl, machine, shipped_post("fanuc"), options);

@@ -37,7 +37,7 @@ TEST(RuledDesign, RowsAreCoefficientsOfTheGuideCurves) {
       "guide0_mm = [[1, 2, 3], [60, 0, 0]]\n"
       "guide1_mm = [[0, -10, 30], [60, 20, 0], [0, 4, 1]]\noutward = \"v_cross_u\"\n");
   ASSERT_TRUE(result.diagnostics.empty()) << format(result.diagnostics[0]);
-  const surface::Surface& S = *result.design.surface;
+  const surface::Surface& S = *result.design.surfaces.front();
   EXPECT_TRUE(measure::is_ruled(S));
   EXPECT_EQ(S.outward_sign(), -1);
   const Vec3 c0(31, 2, 3), c1(30, 1, 30.25);  // u = 1/2

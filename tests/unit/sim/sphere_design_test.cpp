@@ -25,7 +25,7 @@ TEST(SphereDesign, ReachesItsPoles) {
     ConfigTable root = ConfigTable::load(file, {}, diagnostics);
     const DesignSettings design = read_design(root.table("design"), true);
     ASSERT_FALSE(diagnostics.has_errors()) << from << " " << to;
-    const stock::RayFieldPtr rays = stock::rays_on_surface(design.surface, 0.5);
+    const stock::RayFieldPtr rays = stock::rays_on_surface(design.surfaces.front(), 0.5);
     for (size_t n = 0; n < rays->size(); ++n) {
       const Vec3 radial = (rays->points[n] - Vec3(1, 2, 3)) / kRadius;
       ASSERT_LT((rays->normals[n] - radial).norm(), 1e-9) << n;

@@ -23,6 +23,13 @@ RawOutline bracket() {
   return {{{0, 0}, {0, 20}, {6, 20}, {6, 8}, {9, 8}, {9, 6}, {30, 6}, {30, 0}}, -4.0, 7.0};
 }
 
+Pose leaning() {
+  Pose pose = Pose::Identity();
+  pose.linear() = Eigen::AngleAxisd(0.7, Vec3(2.0, -1.0, 2.0) / 3.0).toRotationMatrix();
+  pose.translation() = Vec3(5.0, -7.0, 3.0);
+  return pose;
+}
+
 struct Named {
   const char* name;
   RawShape shape;
@@ -33,7 +40,12 @@ std::vector<Named> shapes() {
           {"tube", RawShape::of_tube(askew(4.5))},
           {"outline", RawShape::of_outline(bracket())},
           {"sphere", RawShape::of_mesh(test::sphere(8.0, {1, 2, 3}, 48, 24), "sphere")},
-          {"torus", RawShape::of_mesh(test::torus(9.0, 3.0, {0, 0, 1}, 48, 24), "torus")}};
+          {"torus", RawShape::of_mesh(test::torus(9.0, 3.0, {0, 0, 1}, 48, 24), "torus")},
+          {"leaning box", RawShape::of_box({{-3, -4, -5}, {6, 2, 7}}).moved(leaning())},
+          {"leaning tube", RawShape::of_tube(askew(4.5)).moved(leaning())},
+          {"leaning outline", RawShape::of_outline(bracket()).moved(leaning())},
+          {"leaning torus",
+           RawShape::of_mesh(test::torus(9.0, 3.0, {0, 0, 1}, 48, 24), "torus").moved(leaning())}};
 }
 
 /// In and around the box of the shape.
@@ -70,6 +82,40 @@ TEST(RawShape, TheBoxOfALeaningCylinderTouchesIt) {
   EXPECT_LT((shape.box().lower - low).cwiseAbs().maxCoeff(), 1e-4);
   EXPECT_LT((shape.box().upper - high).cwiseAbs().maxCoeff(), 1e-4);
   EXPECT_LE((shape.box().lower - low).maxCoeff(), 1e-12);
+}
+
+TEST(RawShape, MovedItIsTheSameBodyElsewhere) {
+  const Pose X_WF = leaning();
+  for (const Named& one : shapes()) {
+    const RawShape there = one.shape.moved(X_WF);
+    EXPECT_NEAR(there.volume_mm3(), one.shape.volume_mm3(), 1e-9) << one.name;
+    EXPECT_NEAR(there.area_mm2(), one.shape.area_mm2(), 1e-9) << one.name;
+    const RawShape back = there.moved(X_WF.inverse());
+    EXPECT_LT((back.box().lower - one.shape.box().lower).norm(), 1e-9) << one.name;
+    EXPECT_LT((back.box().upper - one.shape.box().upper).norm(), 1e-9) << one.name;
+    Rng rng(17);
+    for (int n = 0; n < 200; ++n) {
+      const Vec3 p = random_place(rng, one.shape);
+      EXPECT_NEAR(there.distance_mm(X_WF * p), one.shape.distance_mm(p), 1e-9)
+          << one.name << " " << p.transpose();
+      const Vec3 inside = (X_WF * p).cwiseMax(there.box().lower).cwiseMin(there.box().upper);
+      if (there.distance_mm(X_WF * p) < 0.0) {
+        EXPECT_LT((inside - X_WF * p).norm(), 1e-12) << one.name << ": its box holds it";
+      }
+    }
+  }
+}
+
+TEST(RawShape, ABoxByQuarterTurnsIsABoxOfTheSameNumbers) {
+  Pose over = Pose::Identity();
+  over.linear() = Eigen::DiagonalMatrix<double, 3>(1.0, -1.0, -1.0).toDenseMatrix();
+  over.translation() = Vec3(0.0, 0.0, -15.1);
+  const RawShape box = RawShape::of_box({{-20.3, -10.7, -15.1}, {20.3, 10.7, 0.0}}).moved(over);
+  EXPECT_TRUE(box.is_box());
+  EXPECT_EQ(box.box().lower, Vec3(-20.3, -10.7, -15.1));
+  EXPECT_EQ(box.box().upper, Vec3(20.3, 10.7, 0.0));
+  EXPECT_EQ(box.text().find("-0,"), std::string::npos) << box.text();
+  EXPECT_FALSE(RawShape::of_box({{0, 0, 0}, {1, 1, 1}}).moved(leaning()).is_box());
 }
 
 TEST(RawShape, AFootLiesAtTheDistanceOnTheSurfaceAndNoPlaceIsNearer) {

@@ -54,7 +54,7 @@ TEST(Links, EveryElementBeginsWhereTheOneBeforeEnds) {
 
 TEST(Links, BeginsAndEndsAtTheClearanceHeight) {
   const ToolPath path = planned(true);
-  const auto first = std::get<FreeMove>(path.elements.front().what);
+  const auto first = std::get<FreeMove>(path.elements[0].what);
   const auto last = std::get<FreeMove>(path.elements.back().what);
   EXPECT_EQ(first.kind, MoveKind::kRapid);
   EXPECT_DOUBLE_EQ(first.from.tip_W.z(), 65.0);

@@ -1,0 +1,167 @@
+#include <BRepMesh_IncrementalMesh.hxx>
+#include <BRepTools.hxx>
+#include <BRep_Builder.hxx>
+#include <BRep_Tool.hxx>
+#include <Poly_Triangulation.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Compound.hxx>
+
+#include <algorithm>
+#include <array>
+#include <map>
+
+#include "base/check.h"
+#include "brep/occt_shape.h"
+#include "surface/nurbs.h"
+
+namespace swarf::brep {
+namespace {
+
+struct Made {
+  std::vector<Vec3> points;
+  std::vector<std::array<uint32_t, 3>> triangles;
+  double chord_mm = 0.0;
+  bool proven = true;
+};
+
+/// How far the surface lies from a flat facet between places x_k of it: by Taylor's formula at the corners
+///   |S(sum l_k x_k) - sum l_k S(x_k)| <= 1/2 sum over pairs l_j l_k B_jk <= 1/6 max B_jk,
+/// B_jk bounding the second derivative along the side from x_j to x_k over the facet's rectangle (see
+/// measure/design_cell.h; the sum of l_j l_k over pairs is 1/3 at most).
+double flatness(const surface::Surface& surface, const std::array<Vec2, 3>& x) {
+  const Vec2 low = x[0].cwiseMin(x[1]).cwiseMin(x[2]).cwiseMax(Vec2::Zero());
+  const Vec2 high = x[0].cwiseMax(x[1]).cwiseMax(x[2]).cwiseMin(Vec2::Ones());
+  const surface::BendBounds b = surface.bend_bounds(low, high);
+  double most = 0.0;
+  for (size_t k = 0; k < 3; ++k) {
+    const Vec2 d = x[(k + 1) % 3] - x[k];
+    const double du2 = d.x() * d.x(), dv2 = d.y() * d.y();
+    const Vec3 mean = du2 * b.uu.mean + 2.0 * d.x() * d.y() * b.uv.mean + dv2 * b.vv.mean;
+    most = std::max(most, mean.norm() + (b.uu.stray + b.uv.stray) * du2 + (b.uv.stray + b.vv.stray) * dv2);
+  }
+  return most / 6.0;
+}
+
+double to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const Vec3 way = b - a;
+  const double length2 = way.squaredNorm();
+  const double along = length2 > 0.0 ? std::clamp((p - a).dot(way) / length2, 0.0, 1.0) : 0.0;
+  return (p - a - along * way).norm();
+}
+
+double to_triangle(const Vec3& p, const std::array<Vec3, 3>& t) {
+  const Vec3 normal = (t[1] - t[0]).cross(t[2] - t[0]);
+  double nearest = to_segment(p, t[0], t[1]);
+  bool within = normal.norm() > 0.0;
+  for (size_t k = 0; k < 3; ++k) {
+    const Vec3 &a = t[k], &b = t[(k + 1) % 3];
+    nearest = std::min(nearest, to_segment(p, a, b));
+    within = within && normal.dot((b - a).cross(p - a)) >= 0.0;
+  }
+  return within ? std::abs((p - t[0]).dot(normal)) / normal.norm() : nearest;
+}
+
+/// No place of the surface over the triangle x is farther from the facet than this. The distance from a
+/// convex body is a convex function: over the hull of the triangle's corners it is greatest at one of them,
+/// and the surface stays within its flatness of that hull. Divided until `enough` holds or nothing more is
+/// won (at the pole of a sphere the parameters turn about one place).
+double distance_bound(const surface::Surface& surface, const std::array<Vec2, 3>& x,
+                      const std::array<Vec3, 3>& facet, double enough, int depth) {
+  const double flat = flatness(surface, x);
+  double corners = 0.0;
+  for (const Vec2& place : x)
+    corners = std::max(corners, to_triangle(surface.point(place.x(), place.y()), facet));
+  constexpr int kDeepest = 8;
+  constexpr double kLittle = 0.05;  // of what is enough: no division would win more
+  if (corners + flat <= enough || corners > enough || flat < kLittle * enough || depth == kDeepest)
+    return corners + flat;
+  const Vec2 a = 0.5 * (x[0] + x[1]), b = 0.5 * (x[1] + x[2]), c = 0.5 * (x[2] + x[0]);
+  double most = 0.0;
+  for (const std::array<Vec2, 3>& part :
+       {std::array<Vec2, 3>{x[0], a, c}, {a, x[1], b}, {c, b, x[2]}, {a, b, c}})
+    most = std::max(most, distance_bound(surface, part, facet, enough, depth + 1));
+  return most;
+}
+
+/// Facets of one face; vertices with the same place become one by weld().
+void add_facets(const TopoDS_Face& face, double enough_mm, Made& made) {
+  TopLoc_Location at;
+  const Handle(Poly_Triangulation) facets = BRep_Tool::Triangulation(face, at);
+  if (facets.IsNull())
+    throw InputError("cad-surface", {}, "a face could not be divided into facets", "export the part again");
+  const auto first = static_cast<uint32_t>(made.points.size());
+  const MeshedFace meshed = meshed_face(face);
+  made.proven = made.proven && !meshed.creased && facets->HasUVNodes();
+  std::vector<Vec2> places;
+  for (int i = 1; i <= facets->NbNodes(); ++i) {
+    const gp_Pnt p = facets->Node(i).Transformed(at.Transformation());
+    made.points.emplace_back(p.X(), p.Y(), p.Z());
+    if (!facets->HasUVNodes()) continue;
+    const gp_Pnt2d uv = facets->UVNode(i);
+    places.emplace_back((Vec2(uv.X(), uv.Y()) - meshed.low).cwiseQuotient(meshed.high - meshed.low));
+  }
+  for (int i = 1; i <= facets->NbTriangles(); ++i) {
+    int a, b, c;
+    facets->Triangle(i).Get(a, b, c);
+    if (face.Orientation() == TopAbs_REVERSED) std::swap(b, c);
+    const auto at_node = [](int n) { return static_cast<size_t>(n - 1); };
+    if (!places.empty() && !meshed.creased) {
+      const std::array<Vec3, 3> facet{made.points[first + at_node(a)], made.points[first + at_node(b)],
+                                      made.points[first + at_node(c)]};
+      made.chord_mm =
+          std::max(made.chord_mm,
+                   distance_bound(*meshed.whole, {places[at_node(a)], places[at_node(b)], places[at_node(c)]},
+                                  facet, enough_mm, 0));
+    }
+    const auto number = [&](int n) { return first + static_cast<uint32_t>(n - 1); };
+    made.triangles.push_back({number(a), number(b), number(c)});
+  }
+}
+
+Made facets_of(const TopoDS_Shape& shape, double asked_mm, double chord_mm, bool closed_only) {
+  Made made;
+  BRepTools::Clean(shape);
+  constexpr double kMostAngle = 0.35;  // rad between neighbours: nothing but looks hangs on it
+  const BRepMesh_IncrementalMesh mesher(shape, asked_mm, false, kMostAngle, false);
+  TopExp_Explorer body(shape, TopAbs_SOLID);
+  for (; closed_only && body.More(); body.Next()) {
+    for (TopExp_Explorer it(body.Current(), TopAbs_FACE); it.More(); it.Next())
+      add_facets(TopoDS::Face(it.Current()), chord_mm, made);
+  }
+  for (TopExp_Explorer it(shape, TopAbs_FACE); !closed_only && it.More(); it.Next())
+    add_facets(TopoDS::Face(it.Current()), chord_mm, made);
+  return made;
+}
+
+}  // namespace
+
+Facets tessellate(const Model& model, double chord_mm, bool closed_only) {
+  SWARF_CHECK(chord_mm > 0.0 && model.shape != nullptr, "a shape and a chord above 0");
+  const QuietSession session;
+  Made made;
+  guarded(model.file, [&] {
+    // The library keeps the chord at a few places of each facet; the proof sees all of it.
+    constexpr int kMostTries = 4;
+    double asked = 0.5 * chord_mm;
+    for (int i = 0; i < kMostTries; ++i) {
+      made = facets_of(model.shape->nurbs, asked, chord_mm, closed_only);
+      if (made.chord_mm <= chord_mm) break;
+      asked *= std::clamp(0.7 * chord_mm / made.chord_mm, 0.3, 0.9);
+    }
+  });
+  Facets facets;
+  double farthest = 0.0;
+  for (const Vec3& p : made.points) {
+    farthest = std::max(farthest, p.cwiseAbs().maxCoeff());
+    facets.mesh.positions.push_back(
+        {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())});
+  }
+  facets.mesh.triangles = std::move(made.triangles);
+  constexpr double kFloatStep = 0x1.0p-24 * 1.7320508;  // half a step in each of three coordinates
+  facets.chord_mm = made.chord_mm + kFloatStep * farthest;
+  facets.proven = made.proven;
+  return facets;
+}
+
+}  // namespace swarf::brep

@@ -1,0 +1,291 @@
+#include "motion/passes/surface_evaluation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/angles.h"
+#include "base/diagnostics.h"
+#include "motion/speed/look_ahead.h"
+#include "motion/speed/speed_clamps.h"
+
+namespace swarf::motion {
+namespace {
+
+using toolpath::DrivenPass;
+
+/// Two lines are divided while the path turns by more than this between them.
+constexpr double kTurn_rad = 0.02;
+/// The tip goes no farther than this between two lines.
+constexpr double kFarthest_mm = 1.5 * kEvaluationStep_mm;
+/// Lines closer than this are one, mm: a hundredth of a nanometre's share of any speed.
+constexpr double kOne_mm = 1e-7;
+/// A jump of the tip by more than this within one line is a step, mm.
+constexpr double kStepHeight_mm = 1e-4;
+/// Nodes other than corners keep this distance, mm: closer ones tell rounding, not curvature.
+constexpr double kApart_mm = 1e-4;
+/// Share of the acceleration and of the jerk that a crease may take; the rest is for changes of speed.
+constexpr double kCreaseShare = 0.5;
+/// A crease that would be passed slower than a standing machine is after ten cycles is a stop.
+constexpr double kStopCycles = 10.0;
+
+/// Share of the jerk that is planned with: clamps are looked at along chords, and what arcs are longer shows
+/// in the third difference of the last cycles before a stop.
+constexpr double kPlannedJerk = 0.95;
+
+constexpr double kNoClamp = std::numeric_limits<double>::infinity();
+
+struct Line {
+  double x = 0.0;
+  ToolPose pose;
+};
+
+/// The lines of a pass, made denser where the path turns.
+class Lines {
+ public:
+  explicit Lines(const DrivenPass& pass) : pass_(pass) {}
+
+  Line at(double x) {
+    const toolpath::TipPoint tip = toolpath::tip_at(pass_, x, near_);
+    ++positions;
+    if (!std::isfinite(tip.rest.height)) {
+      const Vec3 p = pass_.guide->line(x).point_W;
+      throw InputError("guide-misses-part", {},
+                       fmt::format("pass {}: the tool rests on nothing at ({:.3f}, {:.3f}, {:.3f}) mm",
+                                   pass_.pass + 1, p.x(), p.y(), p.z()),
+                       "keep the guide on the part (area_mm), or say how low the tool may go: floor_mm");
+    }
+    return {x, tip.pose};
+  }
+
+  /// Evenly between the joints of the guide.
+  std::vector<Line> even() {
+    std::vector<double> stops = pass_.guide->joints();
+    stops.push_back(pass_.guide->end());
+    std::vector<Line> lines{at(0.0)};
+    for (const double stop : stops) {
+      const double from = lines.back().x;
+      const int parts = std::max(2, static_cast<int>(std::ceil((stop - from) / kEvaluationStep_mm)));
+      for (int i = 1; i < parts; ++i) lines.push_back(at(from + (stop - from) * i / parts));
+      lines.push_back(at(stop));
+    }
+    return lines;
+  }
+
+  size_t positions = 0;
+
+ private:
+  const DrivenPass& pass_;
+  position::Near near_;
+};
+
+Vec3 way(const Line& a, const Line& b) {
+  return b.pose.tip_W - a.pose.tip_W;
+}
+
+/// Whether the path turns too much at line i for the cells beside it.
+bool bends_at(const std::vector<Line>& lines, size_t i) {
+  if (i == 0 || i + 1 == lines.size()) return false;
+  const Vec3 in = way(lines[i - 1], lines[i]), out = way(lines[i], lines[i + 1]);
+  const double turn = in.norm() > 0.0 && out.norm() > 0.0 ? angle_between(in, out) : 0.0;
+  return turn > kTurn_rad || angle_between(lines[i].pose.axis_W, lines[i + 1].pose.axis_W) > kTurn_rad;
+}
+
+bool is_one(const Line& a, const Line& b) {
+  return b.x - a.x <= kOne_mm;
+}
+
+/// A cell in which the tip goes far although its line moves little: a step whose direction the path already
+/// has, as beside a wall that a ball rolls down.
+bool leaps(const Line& a, const Line& b) {
+  return way(a, b).norm() > kFarthest_mm;
+}
+
+/// Divides the cells beside every turn, and those that leap, until none can be divided.
+void refine(Lines& source, std::vector<Line>& lines) {
+  bool divided = true;
+  while (divided) {
+    divided = false;
+    std::vector<Line> finer{lines.front()};
+    bool before = false;
+    for (size_t i = 0; i + 1 < lines.size(); ++i) {
+      const bool after = bends_at(lines, i + 1);
+      const bool divides = before || after || leaps(lines[i], lines[i + 1]);
+      if (divides && !is_one(lines[i], lines[i + 1])) {
+        finer.push_back(source.at(0.5 * (lines[i].x + lines[i + 1].x)));
+        divided = true;
+      }
+      finer.push_back(lines[i + 1]);
+      before = after;
+    }
+    lines = std::move(finer);
+  }
+}
+
+/// Lines that are one, or a single line.
+struct Spot {
+  Line first, last;
+  bool corner = false, step = false;
+};
+
+/// The places of a pass. Its ends are corners: it comes from rest and goes to rest.
+std::vector<Spot> places_of(const std::vector<Line>& lines) {
+  std::vector<Spot> places;
+  for (size_t i = 0; i < lines.size();) {
+    size_t end = i + 1;
+    while (end < lines.size() && is_one(lines[end - 1], lines[end])) ++end;
+    const Line &first = lines[i], &last = lines[end - 1];
+    const bool step = way(first, last).norm() > kStepHeight_mm;
+    places.push_back({first, last, end - i > 1, step});
+    i = end;
+  }
+  places.front().corner = places.back().corner = true;
+  return places;
+}
+
+/// Without those that lie too near to a corner or to each other to tell curvature by.
+std::vector<Spot> apart(const std::vector<Spot>& places) {
+  std::vector<Spot> kept;
+  for (const Spot& place : places) {
+    const bool near = !kept.empty() && way(kept.back().last, place.first).norm() < kApart_mm;
+    if (near && !place.corner) continue;
+    if (near && !kept.back().corner) kept.pop_back();
+    kept.push_back(place);
+  }
+  return kept;
+}
+
+void add_nodes(const std::vector<Spot>& places, EvaluatedPass& out) {
+  for (const Spot& place : places) {
+    if (!out.nodes.empty()) out.steps.push_back(false);
+    out.nodes.push_back({place.first.x, place.first.pose, place.corner});
+    if (!place.step) continue;
+    out.steps.push_back(true);
+    out.nodes.push_back({place.last.x, place.last.pose, true});
+  }
+}
+
+Vec3 way(const EvaluatedPass& pass, size_t cell) {
+  return pass.nodes[cell + 1].pose.tip_W - pass.nodes[cell].pose.tip_W;
+}
+
+/// What the path turns through at a node, rad.
+double turn_at(const EvaluatedPass& pass, size_t node) {
+  return angle_between(way(pass, node - 1), way(pass, node));
+}
+
+/// Lowers a limit and remembers why.
+void lower(double& limit, ClampReason& kept, double value, ClampReason reason) {
+  if (!(value < limit)) return;
+  limit = value;
+  kept = reason;
+}
+
+/// Theory 3: the greatest speed at which one cycle turns through a crease: 2 F sin(turn/2) within what
+/// acceleration and jerk leave for it, and the chord across it within the tolerance.
+double crease_speed(double turn, const RampLimits& limits, double chord_tolerance_mm, double period_s) {
+  const double half = std::sin(0.5 * turn), T = period_s;
+  const double change = kCreaseShare * std::min(limits.acceleration * T, limits.jerk * T * T);
+  const double speed = std::min(change, 4.0 * chord_tolerance_mm / T) / (2.0 * half);
+  return speed < kStopCycles * limits.jerk * T * T ? 0.0 : speed;
+}
+
+void clamp_nodes(const DrivenPass& pass, const MotionOptions& options, EvaluatedPass& out) {
+  const size_t last = out.nodes.size() - 1;
+  out.clamps.at.assign(out.nodes.size(), kNoClamp);
+  out.node_reasons.assign(out.nodes.size(), ClampReason::kNone);
+  for (size_t i = 1; i < last; ++i) {
+    if (!out.nodes[i].corner) continue;
+    const bool step = out.steps[i - 1] || out.steps[i];
+    lower(out.clamps.at[i], out.node_reasons[i],
+          step ? 0.0 : crease_speed(turn_at(out, i), out.limits, pass.chord_tolerance_mm, options.period_s),
+          step ? ClampReason::kStep : ClampReason::kCrease);
+  }
+  out.clamps.at.front() = out.clamps.at.back() = 0.0;
+}
+
+/// 1/mm, of the path of the tip at a node; 0 at corners.
+double curvature_at(const EvaluatedPass& pass, size_t node) {
+  if (pass.nodes[node].corner) return 0.0;
+  return 2.0 * turn_at(pass, node) / (way(pass, node - 1).norm() + way(pass, node).norm());
+}
+
+/// Theory 3: chord at the sampling time, and jerk cbrt(J rho^2) by a share as creases have it.
+void clamp_curves(const DrivenPass& pass, const MotionOptions& options, EvaluatedPass& out) {
+  for (size_t cell = 0; cell < out.clamps.speed.size(); ++cell) {
+    const double curvature = std::max(curvature_at(out, cell), curvature_at(out, cell + 1));
+    if (!(curvature > 0.0)) continue;
+    const double radius = 1.0 / curvature;
+    const double chord = chord_speed_limit(radius, pass.chord_tolerance_mm, options.period_s);
+    const double jerk = std::cbrt(kCreaseShare * options.path_jerk_max * radius * radius);
+    lower(out.clamps.speed[cell], out.cell_reasons[cell], std::min(chord, jerk), ClampReason::kCurvature);
+  }
+}
+
+/// Axis values at the nodes; out of reach: those of the node before.
+std::vector<PathNode> path_nodes(const EvaluatedPass& pass, const kinematics::InverseKinematics& inverse,
+                                 const kinematics::AxisValues& hint) {
+  std::vector<PathNode> nodes;
+  double s = 0.0;
+  for (size_t i = 0; i < pass.nodes.size(); ++i) {
+    if (i > 0) s += way(pass, i - 1).norm();
+    const kinematics::Branch branch =
+        inverse.solve_nearest(pass.nodes[i].pose, i == 0 ? hint : nodes.back().q);
+    const bool reached = branch.outcome != kinematics::InverseOutcome::kUnreachable;
+    nodes.push_back({pass.nodes[i].x, s, reached ? branch.q : (i == 0 ? hint : nodes.back().q),
+                     pass.nodes[i].corner, reached});
+  }
+  return nodes;
+}
+
+void clamp_cells(const DrivenPass& pass, const kinematics::MachineModel& machine,
+                 const kinematics::InverseKinematics& inverse, const MotionOptions& options,
+                 const kinematics::AxisValues& hint, EvaluatedPass& out) {
+  const std::vector<PathNode> nodes = path_nodes(out, inverse, hint);
+  SpeedLimits limits = uniform_limits(nodes, pass.feed_mm_s, kPlanned * options.path_acceleration_max);
+  clamp_by_axes(nodes, machine, limits);
+  out.limits = {*std::min_element(limits.acceleration.begin(), limits.acceleration.end()),
+                kPlannedJerk * options.path_jerk_max};
+  out.clamps.s = limits.s;
+  out.clamps.speed = limits.speed;
+  out.cell_reasons.assign(limits.speed.size(), ClampReason::kNone);
+  for (size_t i = 0; i < limits.speed.size(); ++i)
+    if (limits.speed[i] < pass.feed_mm_s) out.cell_reasons[i] = ClampReason::kAxes;
+  clamp_curves(pass, options, out);
+}
+
+}  // namespace
+
+const char* clamp_reason_name(ClampReason reason) {
+  switch (reason) {
+    case ClampReason::kNone:
+      return "none";
+    case ClampReason::kCurvature:
+      return "curvature";
+    case ClampReason::kAxes:
+      return "axes";
+    case ClampReason::kCrease:
+      return "crease";
+    case ClampReason::kStep:
+      return "step";
+  }
+  return "none";
+}
+
+EvaluatedPass evaluate_ahead(const DrivenPass& pass, const kinematics::MachineModel& machine,
+                             const kinematics::InverseKinematics& inverse, const MotionOptions& options,
+                             const kinematics::AxisValues& hint) {
+  Lines source(pass);
+  std::vector<Line> lines = source.even();
+  refine(source, lines);
+  EvaluatedPass out;
+  add_nodes(apart(places_of(lines)), out);
+  out.positions = source.positions;
+  clamp_cells(pass, machine, inverse, options, hint, out);
+  clamp_nodes(pass, options, out);
+  return out;
+}
+
+}  // namespace swarf::motion

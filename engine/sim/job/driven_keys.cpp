@@ -1,0 +1,86 @@
+#include "sim/job/driven_keys.h"
+
+#include <fmt/format.h>
+
+#include "base/units.h"
+
+namespace swarf::sim {
+namespace {
+
+toolpath::GuideMode mode_of(const std::string& word) {
+  if (word == "contour") return toolpath::GuideMode::kContour;
+  if (word == "spiral") return toolpath::GuideMode::kSpiral;
+  if (word == "guide") return toolpath::GuideMode::kGuide;
+  return toolpath::GuideMode::kScan;
+}
+
+void read_area(ConfigTable& table, DrivenSettings& driven) {
+  const std::vector<Vec2> corners = table.flat_points("area_mm");
+  driven.area_said = true;
+  if (corners.size() == 2 && (corners[1] - corners[0]).minCoeff() > 0.0) {
+    driven.plan.area = {corners[0], corners[1]};
+    return;
+  }
+  table.error("out-of-range", "area_mm", "'area_mm' is no rectangle",
+              "write its lower and its upper corner: area_mm = [[-20, -10], [20, 10]]");
+}
+
+void read_spiral(ConfigTable& table, toolpath::DrivenPlan& plan) {
+  const std::vector<double> centre = table.numbers("centre_mm", 2);
+  const std::vector<double> radius = table.numbers("radius_mm", 2);
+  if (centre.size() == 2) plan.centre = {centre[0], centre[1]};
+  if (radius.size() != 2) return;
+  plan.radius_from_mm = radius[0];
+  plan.radius_to_mm = radius[1];
+  if (radius[0] < 0.0 || radius[1] < 0.0 || radius[0] + radius[1] <= 0.0)
+    table.error("out-of-range", "radius_mm", fmt::format("'radius_mm' is [{:g}, {:g}]", radius[0], radius[1]),
+                "write the radius that the spiral begins with and the one that it ends with");
+}
+
+void read_file(ConfigTable& table, DrivenSettings& driven) {
+  driven.mesh = table.has("mesh");
+  if (driven.mesh && table.has("surface"))
+    table.error("two-parts", "mesh", "the scene names a mesh and a surface as its part", "keep one of them");
+  driven.file = table.text(driven.mesh ? "mesh" : "surface");
+}
+
+/// Two tolerances, as the paper's comparison has them.
+void read_comparison(ConfigTable& table, DrivenSettings& driven) {
+  for (const double um : table.numbers("compare_cam_um", 2)) {
+    if (um > 0.0)
+      driven.compare_mm.push_back(um * kMicrometre);
+    else
+      table.error("out-of-range", "compare_cam_um", fmt::format("a tolerance of {:g} um", um),
+                  "write two above 0: compare_cam_um = [10, 1]");
+  }
+}
+
+}  // namespace
+
+DrivenSettings read_driven(ConfigTable table) {
+  DrivenSettings driven;
+  toolpath::DrivenPlan& plan = driven.plan;
+  driven.where = table.where("mode");
+  read_file(table, driven);
+  plan.mode = mode_of(table.choice("mode", {"scan", "contour", "spiral", "guide"}, "scan"));
+  const bool one_curve = plan.mode == toolpath::GuideMode::kGuide;
+  if (!one_curve) plan.interval_mm = table.number("interval_mm", kAboveZero);
+  plan.feed_mm_s = mm_s_from_mm_min(table.number("feed_mm_min", kAboveZero));
+  plan.spindle_rpm = table.number("spindle_rpm", kZeroOrMore, 0.0);
+  plan.chord_tolerance_mm = table.number("chord_tolerance_um", kAboveZero, 0.1) * kMicrometre;
+  if (plan.mode == toolpath::GuideMode::kScan) {
+    plan.angle_rad = rad_from_deg(table.number("angle_deg", {-180.0, 180.0}, 0.0));
+    plan.zigzag = table.boolean("zigzag", true);
+  }
+  if (plan.mode == toolpath::GuideMode::kSpiral) read_spiral(table, plan);
+  if (one_curve) plan.guide = table.flat_points("guide_mm");
+  if (table.has("area_mm")) read_area(table, driven);
+  if (table.has("floor_mm")) driven.floor_mm = table.number("floor_mm", {});
+  plan.cam_tolerance_mm = table.number("cam_tolerance_um", kZeroOrMore, 0.0) * kMicrometre;
+  plan.safe_distance_mm = table.number("safe_distance_mm", kAboveZero, plan.safe_distance_mm);
+  plan.rapid_clearance_mm = table.number("rapid_clearance_mm", kAboveZero, plan.rapid_clearance_mm);
+  if (table.has("compare_cam_um")) read_comparison(table, driven);
+  return driven;
+}
+
+}  // namespace swarf::sim

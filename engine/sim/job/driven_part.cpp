@@ -1,0 +1,121 @@
+#include "sim/job/driven_part.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "mesh/mesh_io.h"
+#include "mesh/mesh_ops.h"
+#include "position/mesh_target.h"
+#include "position/patch_target.h"
+
+namespace swarf::sim {
+namespace {
+
+class MeshPart final : public position::Target {
+ public:
+  explicit MeshPart(const TriMesh& mesh) : target_(mesh) {}
+  void raise(const position::ToolProfile& profile, const position::GuideLine& line, position::Rest& best,
+             position::Near& near) const override {
+    target_.raise(profile, line, best, near.triangle);
+  }
+
+ private:
+  position::MeshTarget target_;
+};
+
+class PatchPart final : public position::Target {
+ public:
+  explicit PatchPart(std::vector<position::Patch> patches) : target_(std::move(patches)) {}
+  void raise(const position::ToolProfile& profile, const position::GuideLine& line, position::Rest& best,
+             position::Near& near) const override {
+    position::PatchWork work;
+    target_.raise(profile, line, best, near.patch, work);
+    if (work.gap > position::kPatchProof_mm) refuse(line, work.gap);
+  }
+
+ private:
+  /// A position that is not proven drives nothing.
+  [[noreturn]] static void refuse(const position::GuideLine& line, double gap_mm) {
+    const Vec3& p = line.point_W;
+    throw InputError(
+        "position-not-proven", {},
+        fmt::format("over ({:.6f}, {:.6f}) mm the tool may have to stand {:.3g} mm higher than where "
+                    "it was found to touch: the search gave up after {} cells",
+                    p.x(), p.y(), gap_mm, position::PatchTarget::kMostLeaves),
+        "the cutter fits a hollow of the part exactly there, or runs along a wall at its own radius: "
+        "move the guide by a micrometre, or take a smaller cutter");
+  }
+
+  position::PatchTarget target_;
+};
+
+Box bounds_of(const surface::Surface& surface) {
+  constexpr int kParts = 64;
+  Box box{Vec3::Constant(std::numeric_limits<double>::infinity()),
+          Vec3::Constant(-std::numeric_limits<double>::infinity())};
+  for (int i = 0; i <= kParts; ++i) {
+    for (int k = 0; k <= kParts; ++k) {
+      const Vec3 p = surface.point(double(i) / kParts, double(k) / kParts);
+      box = {box.lower.cwiseMin(p), box.upper.cwiseMax(p)};
+    }
+  }
+  return box;
+}
+
+/// The rectangle around the part as seen from above.
+Box bounds_of(const Job& job) {
+  if (job.scene.driven->mesh) return mesh::bounds(*job.design_mesh);
+  Box box = bounds_of(*job.design.front());
+  for (const surface::SurfacePtr& surface : job.design) {
+    const Box one = bounds_of(*surface);
+    box = {box.lower.cwiseMin(one.lower), box.upper.cwiseMax(one.upper)};
+  }
+  return box;
+}
+
+void fill_area(Job& job) {
+  DrivenSettings& driven = *job.scene.driven;
+  if (driven.area_said || driven.plan.mode == toolpath::GuideMode::kGuide ||
+      driven.plan.mode == toolpath::GuideMode::kSpiral)
+    return;
+  const Box box = bounds_of(job);
+  driven.plan.area = {Vec2(box.lower.head<2>()), Vec2(box.upper.head<2>())};
+  job.scene.assumptions.push_back({"Area",
+                                   fmt::format("X {:.3f} to {:.3f}, Y {:.3f} to {:.3f} mm", box.lower.x(),
+                                               box.upper.x(), box.lower.y(), box.upper.y()),
+                                   "the rectangle around the part", "driven.area_mm"});
+}
+
+}  // namespace
+
+void load_driven(Job& job, Diagnostics& diagnostics) {
+  DrivenSettings& driven = *job.scene.driven;
+  position::Part part;
+  part.floor_mm = driven.floor_mm;
+  if (driven.mesh) {
+    part.targets.push_back(std::make_shared<MeshPart>(*job.design_mesh));
+  } else {
+    std::vector<position::Patch> patches;
+    for (const surface::SurfacePtr& surface : job.design) patches.push_back({surface});
+    part.targets.push_back(std::make_shared<PatchPart>(std::move(patches)));
+  }
+  fill_area(job);
+  driven.plan.stock_top_mm = job.scene.stock.box_W.upper.z();
+  try {
+    job.driven = std::make_shared<toolpath::DrivenPart>(
+        toolpath::DrivenPart{std::move(part), position::ToolProfile(job.scene.tools.front())});
+  } catch (const InputError& error) {
+    diagnostics.append(error.diagnostics);
+  }
+}
+
+toolpath::ToolPath driven_path(const Job& job, double cam_tolerance_mm, Diagnostics& diagnostics) {
+  toolpath::DrivenPlan plan = job.scene.driven->plan;
+  plan.cam_tolerance_mm = cam_tolerance_mm;
+  return toolpath::driven_path(plan, job.driven, job.scene.driven->where, diagnostics);
+}
+
+}  // namespace swarf::sim

@@ -1,0 +1,147 @@
+#include "toolpath/driven/driven_path.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/units.h"
+
+namespace swarf::toolpath {
+namespace {
+
+/// A CAM system looks at the surface this often, mm; its blocks begin and end there.
+constexpr double kCamStep_mm = 0.02;
+
+ToolPose at_height(const ToolPose& pose, double z) {
+  ToolPose high = pose;
+  high.tip_W.z() = std::max(high.tip_W.z(), z);
+  return high;
+}
+
+/// The ends of the longest straight blocks that keep every looked-at position within the tolerance.
+std::vector<ToolPose> cam_points(const DrivenPass& pass, double tolerance_mm) {
+  const int count = std::max(1, static_cast<int>(std::ceil(pass.guide->end() / kCamStep_mm)));
+  std::vector<ToolPose> seen;
+  position::Near near;
+  for (int i = 0; i <= count; ++i) seen.push_back(tip_at(pass, pass.guide->end() * i / count, near).pose);
+  const auto fits = [&](size_t from, size_t to) {
+    const Vec3 a = seen[from].tip_W, along = (seen[to].tip_W - a).normalized();
+    for (size_t i = from + 1; i < to; ++i) {
+      const Vec3 d = seen[i].tip_W - a;
+      if ((d - d.dot(along) * along).norm() > tolerance_mm) return false;
+    }
+    return true;
+  };
+  std::vector<ToolPose> points{seen.front()};
+  for (size_t from = 0; from + 1 < seen.size();) {
+    // As far as it fits; on curves that is without gaps.
+    size_t to = from + 1;
+    while (to + 1 < seen.size() && fits(from, to + 1)) ++to;
+    points.push_back(seen[to]);
+    from = to;
+  }
+  return points;
+}
+
+/// Elements of the path, as passes or as blocks.
+class ElementWriter {
+ public:
+  ElementWriter(const DrivenPlan& plan, const SourceLocation& where, ToolPath& path)
+      : plan_(plan), where_(where), path_(path) {}
+
+  void move(MoveKind kind, const ToolPose& from, const ToolPose& to, double feed_mm_s) {
+    if ((to.tip_W - from.tip_W).norm() == 0.0) return;
+    path_.link_length_mm += (to.tip_W - from.tip_W).norm();
+    if (blocks())
+      block(from, to, feed_mm_s, -1);
+    else
+      path_.elements.push_back({FreeMove{kind, from, to, feed_mm_s}, 0, where_});
+  }
+
+  /// Returns where the pass has ended.
+  ToolPose pass(const DrivenPass& pass) {
+    if (!blocks()) {
+      path_.elements.push_back({pass, 0, where_});
+      position::Near near;
+      path_.pass_length_mm += pass.guide->end();
+      return tip_at(pass, pass.guide->end(), near).pose;
+    }
+    const std::vector<ToolPose> points = cam_points(pass, plan_.cam_tolerance_mm);
+    for (size_t i = 0; i + 1 < points.size(); ++i) {
+      block(points[i], points[i + 1], pass.feed_mm_s, pass.pass);
+      path_.pass_length_mm += (points[i + 1].tip_W - points[i].tip_W).norm();
+    }
+    return points.back();
+  }
+
+ private:
+  bool blocks() const { return plan_.cam_tolerance_mm > 0.0; }
+
+  void block(const ToolPose& from, const ToolPose& to, double feed_mm_s, int pass) {
+    BlockMove move;
+    move.from = from;
+    move.to = to;
+    move.feed_mm_s = feed_mm_s;
+    move.pass = pass;
+    if (plan_.spindle_rpm > 0.0) move.spindle_rpm = plan_.spindle_rpm;
+    SourceLocation where = where_;
+    where.line = ++line_;
+    path_.elements.push_back({move, 0, where});
+  }
+
+  const DrivenPlan& plan_;
+  SourceLocation where_;
+  ToolPath& path_;
+  int line_ = 0;
+};
+
+}  // namespace
+
+ToolPath driven_path(const DrivenPlan& plan, const std::shared_ptr<const DrivenPart>& on,
+                     const SourceLocation& where, Diagnostics& diagnostics) {
+  ToolPath path;
+  path.planner = plan.cam_tolerance_mm > 0.0
+                     ? fmt::format("CAM blocks within {:g} um", um_from_mm(plan.cam_tolerance_mm))
+                     : "surface driven";
+  ElementWriter writer(plan, where, path);
+  const double high = plan.stock_top_mm + plan.rapid_clearance_mm;
+  const double safe = plan.stock_top_mm + plan.safe_distance_mm;
+  std::optional<ToolPose> at;
+  for (const GuidedPass& guided : guided_passes(plan, diagnostics)) {
+    DrivenPass pass;
+    pass.on = on;
+    pass.guide = std::make_shared<PlaneGuide>(guided.curve, position::GuideLine{});
+    pass.feed_mm_s = plan.feed_mm_s;
+    pass.chord_tolerance_mm = plan.chord_tolerance_mm;
+    pass.pass = guided.pass;
+    position::Near near;
+    const TipPoint first = tip_at(pass, 0.0, near);
+    if (!std::isfinite(first.rest.height)) {
+      const Vec3 p = pass.guide->line(0.0).point_W;
+      diagnostics.error("guide-misses-part", where,
+                        fmt::format("pass {} begins at ({:.3f}, {:.3f}) mm, where the tool rests on nothing",
+                                    guided.pass + 1, p.x(), p.y()),
+                        "keep the guide on the part (area_mm), or say how low the tool may go: floor_mm");
+      return path;
+    }
+    if (!guided.joined || !at) {
+      const ToolPose entry = at_height(first.pose, safe);
+      if (at) {
+        const ToolPose up = at_height(*at, safe);
+        writer.move(MoveKind::kRetract, *at, up, 0.0);
+        writer.move(MoveKind::kRapid, up, entry, 0.0);
+      } else {
+        writer.move(MoveKind::kRapid, at_height(first.pose, high), entry, 0.0);
+      }
+      writer.move(MoveKind::kApproach, entry, first.pose, plan.approach_feed_fraction * plan.feed_mm_s);
+    }
+    at = writer.pass(pass);
+    path.passes = guided.pass + 1;
+  }
+  if (at) writer.move(MoveKind::kRetract, *at, at_height(*at, high), 0.0);
+  return path;
+}
+
+}  // namespace swarf::toolpath

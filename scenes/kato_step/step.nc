@@ -1,0 +1,34 @@
+(A part with a smooth surface, a crease, a ridge and a step, mm)
+G17 G21 G54 G90
+(smooth: z = 2 + 6u - 12u2 + 5u3 over X -30 to -8)
+G10 L70 P1 Q3 R1
+G10 L71 P1 I0 J0 X-30 Y-15 Z2
+G10 L71 P1 I1 J0 X22 Y0 Z6
+G10 L71 P1 I2 J0 X0 Y0 Z-12
+G10 L71 P1 I3 J0 X0 Y0 Z5
+G10 L71 P1 I0 J1 X0 Y30 Z0
+G10 L79 P1 D1
+(a slope that meets it in a crease at X -8)
+G10 L70 P2 Q1 R1
+G10 L71 P2 I0 J0 X-8 Y-15 Z1
+G10 L71 P2 I1 J0 X12 Y0 Z5
+G10 L71 P2 I0 J1 X0 Y30 Z0
+G10 L79 P2 D1
+(the other side of the ridge at X 4)
+G10 L70 P3 Q1 R1
+G10 L71 P3 I0 J0 X4 Y-15 Z6
+G10 L71 P3 I1 J0 X8 Y0 Z-1.5
+G10 L71 P3 I0 J1 X0 Y30 Z0
+G10 L79 P3 D1
+(the wall of the step at X 12, 4 mm high)
+G10 L70 P4 Q1 R1
+G10 L71 P4 I0 J0 X12 Y-15 Z0.5
+G10 L71 P4 I1 J0 X0 Y0 Z4
+G10 L71 P4 I0 J1 X0 Y30 Z0
+G10 L79 P4 D-1
+(the ground beyond it)
+G10 L70 P5 Q1 R1
+G10 L71 P5 I0 J0 X12 Y-15 Z0.5
+G10 L71 P5 I1 J0 X18 Y0 Z0
+G10 L71 P5 I0 J1 X0 Y30 Z0
+G10 L79 P5 D1

@@ -1,0 +1,332 @@
+// CAD files of several forms, written here, against volumes and areas in closed form.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <BRepAlgoAPI_Cut.hxx>
+#include <BRepBuilderAPI_MakeEdge.hxx>
+#include <BRepBuilderAPI_MakeFace.hxx>
+#include <BRepPrimAPI_MakeBox.hxx>
+#include <BRepPrimAPI_MakeCone.hxx>
+#include <BRepPrimAPI_MakeCylinder.hxx>
+#include <BRepPrimAPI_MakeSphere.hxx>
+#include <BRepPrimAPI_MakeTorus.hxx>
+#include <BRep_Builder.hxx>
+#include <Geom_BSplineSurface.hxx>
+#include <IGESControl_Controller.hxx>
+#include <IGESControl_Writer.hxx>
+#include <Interface_Static.hxx>
+#include <Message.hxx>
+#include <Message_Messenger.hxx>
+#include <STEPControl_Writer.hxx>
+#include <TColStd_Array1OfInteger.hxx>
+#include <TColStd_Array1OfReal.hxx>
+#include <TColgp_Array2OfPnt.hxx>
+#include <TopoDS_Compound.hxx>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "base/units.h"
+#include "brep/model.h"
+#include "mesh/mesh_check.h"
+#include "surface/nurbs.h"
+
+namespace swarf::brep {
+namespace {
+
+class Cad : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::temp_directory_path() /
+              fmt::format("swarf_brep_{}_{}", ::getpid(),
+                          testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::create_directories(folder_);
+    Message::DefaultMessenger()->ChangePrinters().Clear();
+    STEPControl_Writer();  // the names of its settings exist from here on
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::string step(const TopoDS_Shape& shape, const char* schema = "AP214IS", const char* unit = "MM") {
+    Interface_Static::SetCVal("write.step.schema", schema);
+    Interface_Static::SetCVal("write.step.unit", unit);
+    STEPControl_Writer writer;
+    EXPECT_EQ(writer.Transfer(shape, STEPControl_AsIs), IFSelect_RetDone);
+    const std::string path = (folder_ / fmt::format("part{}.stp", ++count_)).string();
+    EXPECT_EQ(writer.Write(path.c_str()), IFSelect_RetDone);
+    Interface_Static::SetCVal("write.step.unit", "MM");
+    return path;
+  }
+  std::string iges(const TopoDS_Shape& shape, const char* unit, int form) {
+    IGESControl_Controller::Init();
+    IGESControl_Writer writer(unit, form);
+    EXPECT_TRUE(writer.AddShape(shape));
+    writer.ComputeModel();
+    const std::string path = (folder_ / fmt::format("part{}.igs", ++count_)).string();
+    EXPECT_TRUE(writer.Write(path.c_str()));
+    return path;
+  }
+  std::string text_file(const std::string& name, const std::string& text) {
+    const std::string path = (folder_ / name).string();
+    std::ofstream(path) << text;
+    return path;
+  }
+  static std::string text_of(const std::string& path) {
+    std::ostringstream text;
+    text << std::ifstream(path).rdbuf();
+    return text.str();
+  }
+  static std::string code_of(const std::function<void()>& read) {
+    try {
+      read();
+    } catch (const InputError& error) {
+      EXPECT_FALSE(error.diagnostics.list().front().fix.empty());
+      return error.diagnostics.list().front().code;
+    }
+    return "none";
+  }
+
+  std::filesystem::path folder_;
+  int count_ = 0;
+};
+
+TopoDS_Shape block() {
+  return BRepPrimAPI_MakeBox(gp_Pnt(10, 20, 30), gp_Pnt(110, 80, 70)).Shape();
+}
+
+TopoDS_Shape holed() {
+  const gp_Ax2 axis(gp_Pnt(60, 50, 0), gp::DZ());
+  return BRepAlgoAPI_Cut(block(), BRepPrimAPI_MakeCylinder(axis, 12, 200).Shape()).Shape();
+}
+
+/// A B-spline dome over a square, trimmed by a cylinder that stands through it.
+TopoDS_Shape trimmed_spline() {
+  TColgp_Array2OfPnt poles(1, 5, 1, 5);
+  for (int i = 1; i <= 5; ++i) {
+    for (int j = 1; j <= 5; ++j) poles(i, j) = gp_Pnt(10 * i, 10 * j, (i - 3) * (j - 3));
+  }
+  TColStd_Array1OfReal knots(1, 3);
+  TColStd_Array1OfInteger times(1, 3);
+  for (int k = 1; k <= 3; ++k) {
+    knots(k) = k - 1;
+    times(k) = k == 2 ? 1 : 4;
+  }
+  const Handle(Geom_BSplineSurface) S = new Geom_BSplineSurface(poles, knots, knots, times, times, 3, 3);
+  const TopoDS_Shape face = BRepBuilderAPI_MakeFace(S, 1e-7).Shape();
+  return BRepAlgoAPI_Cut(face,
+                         BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(30, 30, -50), gp::DZ()), 8, 100).Shape())
+      .Shape();
+}
+
+void expect_body(const Model& model, size_t faces, double area, double volume) {
+  ASSERT_EQ(model.solids.size(), 1U);
+  EXPECT_TRUE(model.solids[0].closed);
+  EXPECT_EQ(model.face_count, static_cast<int>(faces));
+  // Loops follow circles to 1e-5 mm.
+  EXPECT_NEAR(model.solids[0].area_mm2, area, 1e-6 * area);
+  EXPECT_NEAR(model.solids[0].volume_mm3, volume, 1e-6 * volume);
+  for (const Diagnostic& d : model.warnings) ADD_FAILURE() << format(d);
+}
+
+TEST_F(Cad, ABlockIsTheSameInEverySchemaAndUnit) {
+  for (const char* schema : {"AP203", "AP214IS", "AP242DIS"}) {
+    for (const char* unit : {"MM", "INCH", "M", "CM"}) {
+      const Model model = read_step(step(block(), schema, unit));
+      SCOPED_TRACE(fmt::format("{} in {}", schema, unit));
+      expect_body(model, 6, 2 * (100 * 60 + 60 * 40 + 100 * 40), 100 * 60 * 40);
+      EXPECT_EQ(model.edges.size(), 12U);
+      EXPECT_EQ(model.vertices.size(), 8U);
+      const double expected = std::string(unit) == "INCH" ? 25.4
+                              : unit[0] == 'C'            ? 10
+                              : unit[1] == 'M'            ? 1
+                                                          : 1000;
+      EXPECT_NEAR(model.mm_per_unit, expected, 1e-12) << model.unit;
+      for (const surface::Face& face : model.faces) {
+        const surface::Derivatives d = face.surface->derivatives(0.5, 0.5);
+        const Vec3 from_middle = d.S - Vec3(60, 50, 50);
+        EXPECT_GT(outward_normal(*face.surface, d).dot(from_middle), 0.0) << "outward";
+        EXPECT_TRUE(face.loops.empty()) << "the whole of its patch";
+      }
+    }
+  }
+}
+
+TEST_F(Cad, OneInchIs25Point4Millimetres) {
+  const std::string path = step(BRepPrimAPI_MakeBox(25.4, 25.4, 25.4).Shape(), "AP214IS", "INCH");
+  EXPECT_NE(text_of(path).find("CARTESIAN_POINT('',(1.,"), std::string::npos) << "inches in the file";
+  expect_body(read_step(path), 6, 6 * 25.4 * 25.4, 25.4 * 25.4 * 25.4);
+}
+
+TEST_F(Cad, RoundBodiesAreExact) {
+  const double R = 30, r = 8, h = 40;
+  expect_body(read_step(step(BRepPrimAPI_MakeSphere(R).Shape())), 1, 4 * kPi * R * R,
+              4.0 / 3 * kPi * R * R * R);
+  expect_body(read_step(step(BRepPrimAPI_MakeTorus(R, r).Shape(), "AP203", "INCH")), 1, 4 * kPi * kPi * R * r,
+              2 * kPi * kPi * R * r * r);
+  expect_body(read_step(step(BRepPrimAPI_MakeCylinder(R, h).Shape())), 3, 2 * kPi * R * (R + h),
+              kPi * R * R * h);
+  const double slant = std::hypot(R, h);
+  expect_body(read_step(step(BRepPrimAPI_MakeCone(R, 0, h).Shape())), 2, kPi * R * (R + slant),
+              kPi * R * R * h / 3);
+}
+
+TEST_F(Cad, PlacesOfASphereLieOnIt) {
+  const Model model = read_step(step(BRepPrimAPI_MakeSphere(gp_Pnt(5, 6, 7), 30).Shape()));
+  ASSERT_EQ(model.faces.size(), 1U) << "arcs without creases";
+  for (const double u : {0.0, 0.21, 0.5, 0.83, 1.0}) {
+    for (const double v : {0.0, 0.3, 0.9, 1.0}) {
+      const auto d = model.faces[0].surface->derivatives(u, v);
+      EXPECT_NEAR((d.S - Vec3(5, 6, 7)).norm(), 30, 1e-12);
+      EXPECT_LT((outward_normal(*model.faces[0].surface, d, {u, v}) - (d.S - Vec3(5, 6, 7)) / 30).norm(),
+                1e-7);
+    }
+  }
+}
+
+TEST_F(Cad, AHoleIsNotPartOfItsFace) {
+  const double area = 2 * (100 * 60 + 60 * 40 + 100 * 40) - 2 * kPi * 144 + 2 * kPi * 12 * 40;
+  const Model model = read_step(step(holed()));
+  expect_body(model, 7, area, 40 * (6000 - kPi * 144));
+  int holes = 0;
+  for (const surface::Face& face : model.faces) {
+    if (face.loops.size() != 2) continue;
+    ++holes;
+    const surface::FaceDomain domain(face);
+    EXPECT_FALSE(domain.inside({0.5, 0.5}));
+    EXPECT_TRUE(domain.inside({0.1, 0.1}));
+  }
+  EXPECT_EQ(holes, 2);
+}
+
+TEST_F(Cad, InstancesOfAnAssemblyStandWhereTheyArePlaced) {
+  BRep_Builder builder;
+  TopoDS_Compound all;
+  builder.MakeCompound(all);
+  const TopoDS_Shape one = BRepPrimAPI_MakeBox(10, 20, 30).Shape();
+  gp_Trsf turn, shift;
+  turn.SetRotation(gp_Ax1(gp_Pnt(0, 0, 0), gp::DX()), kPi / 2);
+  shift.SetTranslation(gp_Vec(100, 0, 0));
+  builder.Add(all, one);
+  builder.Add(all, one.Moved(TopLoc_Location(turn)));
+  builder.Add(all, one.Moved(TopLoc_Location(shift * turn)));
+  Interface_Static::SetIVal("write.step.assembly", 1);
+  const Model model = read_step(step(all, "AP242DIS", "INCH"));
+  Interface_Static::SetIVal("write.step.assembly", 0);
+  ASSERT_EQ(model.solids.size(), 3U);
+  EXPECT_EQ(model.face_count, 18);
+  std::vector<Vec3> lowest;
+  for (const Solid& solid : model.solids) {
+    EXPECT_NEAR(solid.volume_mm3, 6000, 1e-6);
+    Vec3 low(1e9, 1e9, 1e9);
+    for (const size_t n : solid.faces) {
+      for (const double u : {0.0, 1.0}) {
+        for (const double v : {0.0, 1.0}) low = low.cwiseMin(model.faces[n].surface->point(u, v));
+      }
+    }
+    lowest.push_back(low);
+  }
+  EXPECT_LT((lowest[0] - Vec3(0, 0, 0)).norm(), 1e-9);
+  EXPECT_LT((lowest[1] - Vec3(0, -30, 0)).norm(), 1e-9);
+  EXPECT_LT((lowest[2] - Vec3(100, -30, 0)).norm(), 1e-9);
+}
+
+TEST_F(Cad, ATrimmedSplineFaceKeepsItsHole) {
+  const Model model = read_step(step(trimmed_spline()));
+  ASSERT_EQ(model.faces.size(), 1U);
+  EXPECT_FALSE(model.solids[0].closed);
+  EXPECT_EQ(model.faces[0].loops.size(), 2U);
+  const surface::FaceDomain domain(model.faces[0]);
+  int in = 0;
+  for (int i = 0; i <= 60; ++i) {
+    for (int j = 0; j <= 60; ++j) {
+      const Vec2 uv(i / 60.0, j / 60.0);
+      const Vec3 P = model.faces[0].surface->point(uv.x(), uv.y());
+      const double distance = std::hypot(P.x() - 30, P.y() - 30);
+      if (std::abs(distance - 8) < 1e-3 || uv.minCoeff() == 0.0 || uv.maxCoeff() == 1.0) continue;
+      EXPECT_EQ(domain.inside(uv), distance > 8) << uv.transpose();
+      in += domain.inside(uv);
+    }
+  }
+  EXPECT_GT(in, 1000);
+}
+
+TEST_F(Cad, IgesOfBothFormsIsTheSame) {
+  for (const char* unit : {"MM", "IN"}) {
+    for (const int form : {0, 1}) {  // loose faces; solids
+      SCOPED_TRACE(fmt::format("{} form {}", unit, form));
+      const Model model = read_iges(iges(holed(), unit, form));
+      const double area = 2 * (100 * 60 + 60 * 40 + 100 * 40) - 2 * kPi * 144 + 2 * kPi * 12 * 40;
+      expect_body(model, 7, area, 40 * (6000 - kPi * 144));
+      EXPECT_NEAR(model.mm_per_unit, unit[0] == 'I' ? 25.4 : 1.0, 1e-12);
+    }
+  }
+}
+
+TEST_F(Cad, AFileOfNxIsRead) {
+  const std::string folder = std::string(SWARF_SOURCE_DIR) + "/assets/programs/stepnode/";
+  const Model part = read_cad(folder + "simple_block_workpiece.stp"),
+              raw = read_cad(folder + "simple_block_rawpiece.stp");
+  ASSERT_EQ(part.solids.size(), 1U);
+  EXPECT_EQ(part.solids[0].name, "WORKPIECE");
+  EXPECT_EQ(part.face_count, 9);
+  EXPECT_NEAR(raw.solids[0].volume_mm3, 100 * 100 * 25, 1e-6);
+  EXPECT_LT(part.solids[0].volume_mm3, raw.solids[0].volume_mm3);
+  EXPECT_EQ(part.mm_per_unit, 1.0);
+}
+
+TEST_F(Cad, FacetsAreWatertightAndTheirChordIsProven) {
+  for (const double chord : {0.1, 0.02}) {
+    const Model ball = read_step(step(BRepPrimAPI_MakeSphere(20).Shape()));
+    const Facets facets = tessellate(ball, chord);
+    EXPECT_EQ(mesh::check_closed(facets.mesh), "");
+    EXPECT_TRUE(facets.proven);
+    EXPECT_LE(facets.chord_mm, chord + 1e-5);
+    const double volume = 4.0 / 3 * kPi * 8000;
+    EXPECT_NEAR(mesh::enclosed_volume(facets.mesh), volume, 4 * kPi * 400 * chord);
+    for (const auto& t : facets.mesh.triangles) {
+      Vec3 middle = Vec3::Zero();
+      for (const uint32_t n : t) {
+        const auto& p = facets.mesh.positions[n];
+        middle += Vec3(p[0], p[1], p[2]) / 3;
+      }
+      ASSERT_LE(20 - middle.norm(), facets.chord_mm);
+    }
+    EXPECT_EQ(mesh::check_closed(tessellate(read_step(step(holed())), chord).mesh), "");
+    EXPECT_EQ(
+        mesh::check_closed(tessellate(read_step(step(BRepPrimAPI_MakeTorus(20, 5).Shape())), chord).mesh),
+        "");
+  }
+}
+
+TEST_F(Cad, WhatIsNoPartIsRefusedWithItsFix) {
+  const std::string good = step(block());
+  const std::string text = text_of(good);
+  EXPECT_EQ(code_of([&] { read_step((folder_ / "missing.stp").string()); }), "cad-unreadable");
+  EXPECT_EQ(code_of([&] { read_step(text_file("empty.stp", "")); }), "cad-unreadable");
+  EXPECT_EQ(code_of([&] { read_step(text_file("prose.stp", "This is no part at all.")); }), "cad-unreadable");
+  EXPECT_EQ(code_of([&] { read_step(text_file("iges.stp", text_of(iges(block(), "MM", 0)))); }),
+            "cad-unreadable");
+  EXPECT_EQ(code_of([&] { read_iges(good); }), "cad-unreadable");
+  std::string unit = text;
+  for (size_t at; (at = unit.find("LENGTH_UNIT()")) != std::string::npos;)
+    unit.replace(at, 13, "PLANE_ANGLE_UNIT()");
+  EXPECT_EQ(code_of([&] { read_step(text_file("unit.stp", unit)); }), "cad-no-unit");
+  EXPECT_EQ(
+      code_of([&] { read_step(step(BRepBuilderAPI_MakeEdge(gp_Pnt(0, 0, 0), gp_Pnt(1, 2, 3)).Shape())); }),
+      "cad-empty");
+}
+
+TEST_F(Cad, AFileThatIsCutOffNeverPassesAsWhole) {
+  const std::string text = text_of(step(holed()));
+  for (int k = 1; k < 40; ++k) {
+    const std::string path = text_file("cut.stp", text.substr(0, text.size() * static_cast<size_t>(k) / 40));
+    try {
+      const Model model = read_step(path);
+      EXPECT_FALSE(model.warnings.empty()) << "cut at " << k << "/40";
+    } catch (const InputError&) {
+    }
+  }
+}
+
+}  // namespace
+}  // namespace swarf::brep
