@@ -22,7 +22,8 @@ namespace {
 constexpr double kMegabyte = 1024.0 * 1024.0;
 
 // What a run holds besides the stock, in bytes; peaks measured with tests/scenes/memory_test.cpp's scenes.
-constexpr double kBase = 66.0 * kMegabyte;     // code, libraries, tables of the program, thread pools
+// Code, libraries (OpenCASCADE alone takes 20 MB), tables of the program, thread pools.
+constexpr double kBase = 86.0 * kMegabyte;
 constexpr double kMovie = 270.0 * kMegabyte;   // Mesa, Embree and the encoder, with pictures of 1280 x 720
 constexpr double kStills = 120.0 * kMegabyte;  // Embree alone
 constexpr double kSeen = 0.95;  // of the stock: its leaves as contacts and invariants look at them
