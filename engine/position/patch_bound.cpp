@@ -108,6 +108,34 @@ Moduli moduli(const ToolProfile& profile, const Footing& at, double low, double 
   return {even, even};
 }
 
+/// Where x + s a + t b, |s| and |t| <= 1, comes nearest to the axis, or close to that.
+Vec2 nearest_of(const Vec2& x, const Vec2& a, const Vec2& b) {
+  constexpr int kTurns = 3;
+  const auto best = [](const Vec2& from, const Vec2& side) {
+    const double length2 = side.squaredNorm();
+    return length2 > 0.0 ? std::clamp(-from.dot(side) / length2, -1.0, 1.0) : 0.0;
+  };
+  double s = 0.0, t = 0.0;
+  for (int i = 0; i < kTurns; ++i) {
+    s = best(x + t * b, a);
+    t = best(x + s * a, b);
+  }
+  return x + s * a + t * b;
+}
+
+/// Whether a line beside the tool parts it from the cell; `x` is the cell's centre. A wall beside the flank
+/// is known by it at once, however long it is.
+bool parted_by_line(const PatchCell& cell, const GuideLine& line, const Vec2& x, double radius) {
+  const auto flat = [&](const Vec3& v) { return Vec2(v.dot(line.x_W), v.dot(line.y_W)); };
+  const Vec2 a = flat(cell.a), b = flat(cell.b), nearest = nearest_of(x, a, b);
+  const double distance = nearest.norm();
+  if (!(distance > 0.0)) return false;
+  const Vec2 e = nearest / distance;
+  const double reach = std::abs(e.dot(a)) + std::abs(e.dot(b)) + std::abs(e.dot(flat(cell.uu))) +
+                       std::abs(e.dot(flat(cell.uv))) + std::abs(e.dot(flat(cell.vv))) + cell.stray;
+  return e.dot(x) - reach > radius + kRim_mm;
+}
+
 /// The cell about a place in it, in halves of its sides.
 struct About {
   Vec2 low, high;
@@ -196,13 +224,12 @@ double cell_bound(const PatchCell& cell, const ToolProfile& profile, const Guide
   if (ball <= enough || cell.patch < 0) return ball;
   const double by_known = known != nullptr ? support_bound(cell, *known, line, enough) : ball;
   if (by_known <= enough || rho == 0.0) return std::min(ball, by_known);
+  if (parted_by_line(cell, line, x, radius)) return -kNoBound;
   const Vec3 out_W = (x.x() * line.x_W + x.y() * line.y_W) / rho;
   const double a = out_W.dot(cell.a), b = out_W.dot(cell.b);
-  // Wholly beyond the rim.
   const double bend =
       std::abs(out_W.dot(cell.uu)) + std::abs(out_W.dot(cell.uv)) + std::abs(out_W.dot(cell.vv));
   const double reach = std::abs(a) + std::abs(b) + bend + cell.stray;
-  if (rho - reach > radius + kRim_mm) return -kNoBound;
   // The tool's own slope over the middle of the cell; beyond the rim that with which the cell rises.
   const double inside = std::min(rho, radius - std::min(0.5 * radius, 0.5 * reach));
   double slope = std::min(profile.piece(inside).slope_at(inside), kSteepestSlope);
@@ -252,6 +279,27 @@ double excess_bound(const PatchCell& cell, const Footing& at, const ToolProfile&
   return (inexact ? at.slope.norm() * kRim_mm : 0.0) +
          highest(gradient.x(), greatest, range.low.x(), range.high.x()) +
          highest(gradient.y(), greatest, range.low.y(), range.high.y());
+}
+
+bool beyond_rim(const PatchCell& cell, const Footing& nearest, const ToolProfile& profile,
+                const GuideLine& line) {
+  const auto flat = [&](const Vec3& v) { return Vec2(v.dot(line.x_W), v.dot(line.y_W)); };
+  const Vec2 x = nearest.d.S.head<2>();
+  const Vec2 u = nearest.d.Su.head<2>() * cell.half.x(), v = nearest.d.Sv.head<2>() * cell.half.y();
+  const Vec2 uu = flat(cell.uu), uv = flat(cell.uv), vv = flat(cell.vv);
+  const About range = about(cell, nearest.uv);
+  // |x + J + r|^2 >= |x|^2 + 2 x.J + 2 x.r + |J|^2 - 2 |J| |r|, J linear; |s t| <= (s^2 + t^2) / 2.
+  const double size = std::sqrt(range.most2) * std::hypot(u.norm(), v.norm());
+  const double stray = 2.0 * (nearest.rho + size), cross = std::abs(u.dot(v) + x.dot(uv)) + size * uv.norm();
+  const auto curve = [&](const Vec2& linear, const Vec2& bent, double strayed) {
+    return linear.squaredNorm() + 2.0 * (x.dot(bent) - size * bent.norm()) - cross -
+           stray * (strayed + 0.5 * cell.stray_uv);
+  };
+  const double nearer =
+      highest(-2.0 * x.dot(u), -curve(u, uu, cell.stray_uu), range.low.x(), range.high.x()) +
+      highest(-2.0 * x.dot(v), -curve(v, vv, cell.stray_vv), range.low.y(), range.high.y());
+  const double rim = profile.radius() + kRim_mm;
+  return nearest.rho * nearest.rho - nearer > rim * rim;
 }
 
 }  // namespace swarf::position

@@ -55,4 +55,9 @@ double cell_bound(const PatchCell& cell, const ToolProfile& profile, const Guide
 double excess_bound(const PatchCell& cell, const Footing& at, const ToolProfile& profile,
                     const GuideLine& line);
 
+/// Whether the whole cell, one of a patch, lies beyond the rim of the tool. `nearest` is a place of the cell:
+/// the nearer to the axis it is among them, the more it shows, by the quadratic form of the squared distance.
+bool beyond_rim(const PatchCell& cell, const Footing& nearest, const ToolProfile& profile,
+                const GuideLine& line);
+
 }  // namespace swarf::position

@@ -386,4 +386,41 @@ Footing settle(const Setting& setting, int patch, const UvBox& box, const Vec2& 
   return Climb(setting, patch, box).run(box.nearest(uv), steps);
 }
 
+Footing nearest_to_axis(const Setting& setting, int patch, const UvBox& box, const Vec2& uv, int& steps) {
+  constexpr int kSteps = 8;
+  constexpr double kEven = 1e-12;  // a direction along the axis changes nothing: it stays
+  Footing at = footing_at(setting, patch, box, box.nearest(uv));
+  const Vec2 side = box.high - box.low;
+  for (int i = 0; i < kSteps; ++i) {
+    const Vec2 x = at.d.S.head<2>(), u = at.d.Su.head<2>() * side.x(), v = at.d.Sv.head<2>() * side.y();
+    const auto bent = [&](const Vec3& d, double scale) { return scale * x.dot(d.head<2>()); };
+    Vec2 slope(x.dot(u), x.dot(v));
+    Mat2 form;
+    form << u.dot(u) + bent(at.d.Suu, side.x() * side.x()), u.dot(v) + bent(at.d.Suv, side.x() * side.y()),
+        0.0, v.dot(v) + bent(at.d.Svv, side.y() * side.y());
+    form(1, 0) = form(0, 1);
+    // Where the distance falls off beyond a border, that border is kept.
+    for (int k = 0; k < 2; ++k) {
+      const bool held = slope[k] > 0.0 ? at.uv[k] <= box.low[k] : at.uv[k] >= box.high[k];
+      if (!held) continue;
+      slope[k] = form(0, 1) = form(1, 0) = 0.0;
+      form(k, k) = 1.0;
+    }
+    form.diagonal().array() += kEven * (u.squaredNorm() + v.squaredNorm());
+    const double det = form.determinant();
+    Vec2 step = -slope.cwiseQuotient(Vec2(u.squaredNorm(), v.squaredNorm()).cwiseMax(kEven));
+    if (det > 0.0 && form(0, 0) > 0.0)
+      step =
+          Vec2(form(0, 1) * slope[1] - form(1, 1) * slope[0], form(1, 0) * slope[0] - form(0, 0) * slope[1]) /
+          det;
+    const Footing next = footing_at(setting, patch, box, box.nearest(at.uv + step.cwiseProduct(side)));
+    ++steps;
+    if (!(next.rho < at.rho)) break;
+    const bool there = (next.d.S - at.d.S).head<2>().norm() < kSettled_mm;
+    at = next;
+    if (there) break;
+  }
+  return at;
+}
+
 }  // namespace swarf::position

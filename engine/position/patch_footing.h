@@ -63,4 +63,7 @@ Footing footing_at(const Setting& setting, int patch, const UvBox& box, const Ve
 /// it returns is a place like any other: that nothing is higher is for others to prove.
 Footing settle(const Setting& setting, int patch, const UvBox& box, const Vec2& uv, int& steps);
 
+/// From uv inside the box to where the patch comes nearest to the tool's axis near by, at most 8 steps.
+Footing nearest_to_axis(const Setting& setting, int patch, const UvBox& box, const Vec2& uv, int& steps);
+
 }  // namespace swarf::position

@@ -162,8 +162,15 @@ class PatchSearch {
         climb(at.patch, at.uv);
       }
       proven = std::min(above, at.height + excess_bound(cell, at, setting_.profile, setting_.line));
+    } else if (beside_tool(cell, box, at.uv)) {
+      return;
     }
     if (proven > enough()) push_halves(index, cell, proven);
+  }
+  /// A wall that bends along the flank.
+  bool beside_tool(const PatchCell& cell, const UvBox& box, const Vec2& uv) {
+    const Footing at = nearest_to_axis(setting_, cell.patch, box, uv, work_.steps);
+    return at.rho > setting_.profile.radius() && beyond_rim(cell, at, setting_.profile, setting_.line);
   }
   void push_halves(int index, const PatchCell& cell, double above) {
     const int side = longer_side(cell);

@@ -146,6 +146,56 @@ TEST(PatchTarget, GapNarrowerThanTheTip) {
   EXPECT_EQ(proven(target, flat_end(5.0), upright(0.0, 0.0)), 0.0);
 }
 
+// A wall beside the tool is left out by one line that parts them, however near the flank comes to it: a step
+// would else cost thousands of cells in a cycle.
+TEST(PatchTarget, AWallAtTheFlankCostsFewCells) {
+  const PatchTarget target({plane_patch({0, -15, 4.5}, {-16, 0, 0}, {0, 30, 0}),
+                            plane_patch({0, -15, 0.5}, {0, 0, 4}, {0, 30, 0}),
+                            plane_patch({0, -15, 0.5}, {18, 0, 0}, {0, 30, 0})});
+  for (const ToolProfile& tool : {ball_end(3.0), nose_end(3.0, 2.0), flat_end(5.0)})
+    for (const double beyond : {1e-1, 1e-4, 1e-7, 1.1e-9, 0.0, -1e-12, -1e-9, -1e-7, -1e-4}) {
+      Rest rest;
+      PatchHint near;
+      PatchWork work;
+      target.raise(tool, upright(tool.radius() + beyond, 1.7), rest, near, work);
+      EXPECT_LE(work.cells, 100) << tool.radius() << " mm, " << beyond << " mm from the flank";
+      EXPECT_EQ(work.gap, kPatchProof_mm);
+      if (beyond > kRim_mm) {
+        EXPECT_NEAR(rest.height, 0.5, 1e-9) << beyond;
+      } else {
+        EXPECT_GT(rest.height, 0.5) << beyond;
+      }
+    }
+}
+
+// The same of walls that bend along the flank, to either side: by the quadratic form of the squared distance.
+TEST(PatchTarget, ABentWallAtTheFlankCostsFewCells) {
+  for (const double side : {1.0, -1.0}) {
+    // x = side y^2 / 40 over |y| <= 15, 4 mm high
+    const double bulge = side * 225.0 / 40.0;
+    const PatchTarget target(
+        {polynomial(
+             2, 1,
+             {{bulge, -15, 0}, {0, 0, 4}, {-4 * bulge, 30, 0}, {0, 0, 0}, {4 * bulge, 0, 0}, {0, 0, 0}}),
+         plane_patch({-30, -30, 0}, {60, 0, 0}, {0, 60, 0})});
+    for (const ToolProfile& tool : {ball_end(3.0), nose_end(3.0, 2.0), flat_end(5.0)})
+      for (const double beyond : {1e-1, 1e-3, 1e-5, 1e-7, 2e-9, 0.0, -1e-9, -1e-5, -1e-3}) {
+        Rest rest;
+        PatchHint near;
+        PatchWork work;
+        target.raise(tool, upright(-side * (tool.radius() + beyond), 0.0), rest, near, work);
+        EXPECT_LE(work.cells, 100) << side << ": " << tool.radius() << " mm, " << beyond
+                                   << " mm from the flank";
+        EXPECT_EQ(work.gap, kPatchProof_mm);
+        if (beyond > kRim_mm) {
+          EXPECT_NEAR(rest.height, 0.0, 1e-9) << beyond;
+        } else {
+          EXPECT_GT(rest.height, 0.9) << beyond;
+        }
+      }
+  }
+}
+
 TEST(PatchTarget, NothingUnderTheTool) {
   const PatchTarget none(std::vector<Patch>{});
   EXPECT_FALSE(rest_on(none, ball_end(5.0), upright(0.0, 0.0)).touches());
