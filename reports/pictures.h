@@ -28,6 +28,9 @@ render::Camera machine_camera(const FinishedRun& run, const std::string& name,
 RenderStatistics make_movie(const FinishedRun& run, const std::string& path, const std::string& camera,
                             Progress& progress);
 
+/// The stock as it stands in a cycle of the run, at the movie's voxel size, for the eye.
+TriMesh stock_at(const FinishedRun& run, const motion::Cycle& cycle);
+
 /// One picture of the part (shown_part) by ray tracing.
 enum class StillKind { kMachine, kPart, kDeviation, kFan };
 const std::string& still_name(StillKind kind);

@@ -1,4 +1,5 @@
 #include "reports/run_output.h"
+#include "reports/contact_pictures.h"
 
 #include <fmt/format.h>
 
@@ -60,7 +61,8 @@ class Attempts {
 };
 
 void write_pictures(const PendingFolder& folder, const FinishedRun& run, const TriMesh& part,
-                    Progress& progress, RunFiles& files, RenderStatistics& statistics) {
+                    const std::vector<ContactPicture>& contacts, Progress& progress, RunFiles& files,
+                    RenderStatistics& statistics) {
   struct Picture {
     StillKind kind;
     const char* file;
@@ -82,11 +84,17 @@ void write_pictures(const PendingFolder& folder, const FinishedRun& run, const T
   std::erase_if(pictures, [&](const Picture& picture) {
     return std::find(kinds.begin(), kinds.end(), still_name(picture.kind)) == kinds.end();
   });
-  progress.begin("stills", static_cast<double>(pictures.size()), "pictures");
+  progress.begin("stills", static_cast<double>(pictures.size() + contacts.size()), "pictures");
   for (const Picture& picture : pictures) {
     if (progress.stop_requested()) break;
     make_still(run, part, picture.kind, picture.camera, folder.file(picture.file));
     files.stills.push_back({folder.file(picture.file), picture.caption});
+    progress.advance(static_cast<double>(files.stills.size()));
+  }
+  for (size_t i = 0; i < contacts.size() && !progress.stop_requested(); ++i) {
+    const std::string file = folder.file(fmt::format("still_contact_{}.png", i + 1));
+    make_contact_picture(run, contacts[i], file);
+    files.stills.push_back({file, contacts[i].caption});
     progress.advance(static_cast<double>(files.stills.size()));
   }
   progress.end();
@@ -190,7 +198,9 @@ std::vector<Diagnostic> write_run(PendingFolder& folder, const sim::Job& job, si
   const TriMesh closed = options.report || options.render ? run.stock.mesh() : TriMesh{};
   if (options.report) attempts.run([&] { write_glb(folder, run, closed, progress, files); });
   attempts.run([&] {
-    if (options.render) write_pictures(folder, run, shown_part(run, closed), progress, files, statistics);
+    if (options.render)
+      write_pictures(folder, run, shown_part(run, closed), contact_pictures(job, result), progress, files,
+                     statistics);
   });
   result.stopped = progress.stop_requested();
   if (options.report) {

@@ -76,22 +76,6 @@ motion::Cycle middle_cycle(const FinishedRun& run) {
   return reader.at(middle);
 }
 
-/// The stock as it stands at the middle of the program, at the movie's voxel size.
-TriMesh half_cut_stock(const FinishedRun& run, const motion::Cycle& cycle) {
-  stock::Stock stock = sim::starting_stock(run.job, run.carried, run.job.scene.movie.voxel_mm);
-  const sim::JobSweeps all = sim::stock_sweeps(run.job, run.cycles);
-  const auto end = std::find_if(all.sweeps.begin(), all.sweeps.end(), [&](const stock::Sweep& sweep) {
-    return !sim::is_done(all.sources[sweep.block], cycle);
-  });
-  const std::vector<stock::CutterSolid> solids = sim::tool_solids(run.job.scene);
-  sim::for_each_tool(
-      std::span(all.sweeps.begin(), end), [&](uint32_t block) { return all.sources[block].tool; },
-      [&](size_t tool, std::span<const stock::Sweep> part) { stock.cut(part, solids[tool]); });
-  TriMesh mesh = stock.mesh();
-  mesh::split_creases(mesh, kCreaseRad);
-  return mesh;
-}
-
 }  // namespace
 
 Vec3 camera_direction(const std::string& name) {
@@ -126,6 +110,21 @@ render::Camera machine_camera(const FinishedRun& run, const std::string& name,
   seen.lower.array() -= margin;
   seen.upper.array() += margin;
   return render::look_at_box(seen, -camera_direction(name), kFieldOfView, aspect(size));
+}
+
+TriMesh stock_at(const FinishedRun& run, const motion::Cycle& cycle) {
+  stock::Stock stock = sim::starting_stock(run.job, run.carried, run.job.scene.movie.voxel_mm);
+  const sim::JobSweeps all = sim::stock_sweeps(run.job, run.cycles);
+  const auto end = std::find_if(all.sweeps.begin(), all.sweeps.end(), [&](const stock::Sweep& sweep) {
+    return !sim::is_done(all.sources[sweep.block], cycle);
+  });
+  const std::vector<stock::CutterSolid> solids = sim::tool_solids(run.job.scene);
+  sim::for_each_tool(
+      std::span(all.sweeps.begin(), end), [&](uint32_t block) { return all.sources[block].tool; },
+      [&](size_t tool, std::span<const stock::Sweep> part) { stock.cut(part, solids[tool]); });
+  TriMesh mesh = stock.mesh();
+  mesh::split_creases(mesh, kCreaseRad);
+  return mesh;
 }
 
 const std::string& still_name(StillKind kind) {
@@ -181,7 +180,7 @@ void make_still(const FinishedRun& run, const TriMesh& part, StillKind kind, con
   render::DrawList list;
   if (kind == StillKind::kMachine) {
     const motion::Cycle cycle = middle_cycle(run);
-    half_cut = half_cut_stock(run, cycle);
+    half_cut = stock_at(run, cycle);
     list.items = view.items(cycle.q, static_cast<size_t>(cycle.sample.tool), &half_cut);
     list.camera = machine_camera(run, camera, run.job.scene.stills.size);
   } else {

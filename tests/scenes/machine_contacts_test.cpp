@@ -57,6 +57,27 @@ const std::string kOnTable =
     "[setup]\nwork_origin_mm = \"on_table\"\n[[tool]]\nnumber = 1\ndiameter_mm = 6\n"
     "flute_length_mm = 30\nlength_mm = 60\nholder_diameter_mm = 8\n";
 
+/// A picture of each pair's first contact, told by its parts, line and instant; none where nothing touches.
+TEST_F(MachineContacts, EachPairIsShownInAPicture) {
+  const std::string pictures =
+      "[movie]\nseconds = 0\n[stills]\nkinds = [\"part\"]\nsize = [64, 64]\nsamples = 1\n";
+  const std::string clamps = "[[fixture]]\nkind = \"clamps\"\nsides = [\"x-\", \"x+\", \"y+\"]\n";
+  run(kFrame, kOnTable + clamps + pictures);
+  EXPECT_FALSE(fs::exists(out() / "still_contact_1.png"));  // --no-render
+  const auto drawn = run_swarf("run " + (folder_ / "scene.toml").string() + " -q -o " + out().string());
+  EXPECT_EQ(drawn.exit_code, 1) << drawn.output;
+  EXPECT_TRUE(fs::exists(out() / "still_contact_1.png")) << drawn.output;
+  EXPECT_FALSE(fs::exists(out() / "still_contact_2.png"));  // three contacts of one pair
+  const std::string page = swarf::test::read_text(out() / "report.html");
+  EXPECT_NE(page.find("First contact of clamps and flutes: line 8, "), std::string::npos);
+
+  run(kFrame, kOnTable + pictures);
+  const auto free = run_swarf("run " + (folder_ / "scene.toml").string() + " -q -o " + out().string());
+  EXPECT_EQ(free.exit_code, 0) << free.output;
+  EXPECT_TRUE(fs::exists(out() / "still_part.png"));
+  EXPECT_FALSE(fs::exists(out() / "still_contact_1.png"));
+}
+
 /// The straps' posts are hidden by their straps, which reach 10 mm over the upper face: the tool goes into
 /// each from the side, and first touches where its flank meets the strap's edge.
 TEST_F(MachineContacts, ClampsInTheWayAreFoundWhereTheyAreFirstTouched) {
