@@ -20,6 +20,8 @@ using toolpath::DrivenPass;
 constexpr double kTurn_rad = 0.02;
 /// The tip goes no farther than this between two lines.
 constexpr double kFarthest_mm = 1.5 * kEvaluationStep_mm;
+/// A cell in which the path turns by so much more than beside it has a crease.
+constexpr double kUneven = 1.5;
 /// Lines closer than this are one, mm: a hundredth of a nanometre's share of any speed.
 constexpr double kOne_mm = 1e-7;
 /// A jump of the tip by more than this within one line is a step, mm.
@@ -85,12 +87,27 @@ Vec3 way(const Line& a, const Line& b) {
   return b.pose.tip_W - a.pose.tip_W;
 }
 
-/// Whether the path turns too much at line i for the cells beside it.
-bool bends_at(const std::vector<Line>& lines, size_t i) {
-  if (i == 0 || i + 1 == lines.size()) return false;
-  const Vec3 in = way(lines[i - 1], lines[i]), out = way(lines[i], lines[i + 1]);
-  const double turn = in.norm() > 0.0 && out.norm() > 0.0 ? angle_between(in, out) : 0.0;
-  return turn > kTurn_rad || angle_between(lines[i].pose.axis_W, lines[i + 1].pose.axis_W) > kTurn_rad;
+/// What the path and the axis turn through at each line; 0 at both ends.
+struct Turns {
+  std::vector<double> path, most;  ///< rad; the greater one of path and axis
+};
+
+Turns turns_of(const std::vector<Line>& lines) {
+  Turns turns{std::vector<double>(lines.size(), 0.0), std::vector<double>(lines.size(), 0.0)};
+  for (size_t i = 1; i + 1 < lines.size(); ++i) {
+    const Vec3 in = way(lines[i - 1], lines[i]), out = way(lines[i], lines[i + 1]);
+    turns.path[i] = in.norm() > 0.0 && out.norm() > 0.0 ? angle_between(in, out) : 0.0;
+    turns.most[i] = std::max(turns.path[i], angle_between(lines[i].pose.axis_W, lines[i + 1].pose.axis_W));
+  }
+  return turns;
+}
+
+/// A small crease, as the edges of a mesh are: in the cell behind line i the path turns by more than `least`,
+/// and much more than beside it. A curve turns evenly.
+bool kinks_in(const std::vector<double>& turns, size_t i, double least) {
+  const double here = turns[i] + turns[i + 1];
+  const double beside = (i > 0 ? turns[i - 1] : 0.0) + (i + 2 < turns.size() ? turns[i + 2] : 0.0);
+  return here > least && here > kUneven * beside;
 }
 
 bool is_one(const Line& a, const Line& b) {
@@ -103,25 +120,31 @@ bool leaps(const Line& a, const Line& b) {
   return way(a, b).norm() > kFarthest_mm;
 }
 
-/// Divides the cells beside every turn, and those that leap, until none can be divided.
-void refine(Lines& source, std::vector<Line>& lines) {
+/// Divides the cells beside every turn, those with a crease of more than `least_crease`, and those that leap,
+/// until none can be divided.
+void refine(Lines& source, double least_crease, std::vector<Line>& lines) {
   bool divided = true;
   while (divided) {
     divided = false;
     std::vector<Line> finer{lines.front()};
-    bool before = false;
+    const Turns turns = turns_of(lines);
     for (size_t i = 0; i + 1 < lines.size(); ++i) {
-      const bool after = bends_at(lines, i + 1);
-      const bool divides = before || after || leaps(lines[i], lines[i + 1]);
+      const bool divides = turns.most[i] > kTurn_rad || turns.most[i + 1] > kTurn_rad ||
+                           kinks_in(turns.path, i, least_crease) || leaps(lines[i], lines[i + 1]);
       if (divides && !is_one(lines[i], lines[i + 1])) {
         finer.push_back(source.at(0.5 * (lines[i].x + lines[i + 1].x)));
         divided = true;
       }
       finer.push_back(lines[i + 1]);
-      before = after;
     }
     lines = std::move(finer);
   }
+}
+
+/// A chord of one cycle at the set feed, with a crease of this turn in its middle, leaves the path by half of
+/// the tolerance: what turns less needs no clamp of its own. rad
+double least_crease(const DrivenPass& pass, const MotionOptions& options) {
+  return std::min(kTurn_rad, 2.0 * pass.chord_tolerance_mm / (pass.feed_mm_s * options.period_s));
 }
 
 /// Lines that are one, or a single line.
@@ -279,7 +302,7 @@ EvaluatedPass evaluate_ahead(const DrivenPass& pass, const kinematics::MachineMo
                              const kinematics::AxisValues& hint) {
   Lines source(pass);
   std::vector<Line> lines = source.even();
-  refine(source, lines);
+  refine(source, least_crease(pass, options), lines);
   EvaluatedPass out;
   add_nodes(apart(places_of(lines)), out);
   out.positions = source.positions;
