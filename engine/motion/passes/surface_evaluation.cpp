@@ -21,7 +21,7 @@ constexpr double kTurn_rad = 0.02;
 /// The tip goes no farther than this between two lines.
 constexpr double kFarthest_mm = 1.5 * kEvaluationStep_mm;
 /// A cell in which the path turns by so much more than beside it has a crease.
-constexpr double kUneven = 1.5;
+constexpr double kKinkShare = 1.5;
 /// Lines closer than this are one, mm: a hundredth of a nanometre's share of any speed.
 constexpr double kOne_mm = 1e-7;
 /// A jump of the tip by more than this within one line is a step, mm.
@@ -107,7 +107,7 @@ Turns turns_of(const std::vector<Line>& lines) {
 bool kinks_in(const std::vector<double>& turns, size_t i, double least) {
   const double here = turns[i] + turns[i + 1];
   const double beside = (i > 0 ? turns[i - 1] : 0.0) + (i + 2 < turns.size() ? turns[i + 2] : 0.0);
-  return here > least && here > kUneven * beside;
+  return here > least && here > kKinkShare * beside;
 }
 
 bool is_one(const Line& a, const Line& b) {
