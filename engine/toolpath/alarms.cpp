@@ -38,16 +38,18 @@ double round_up(double value, double unit) {
   return std::ceil(value / unit) * unit;
 }
 
-std::string lean_advice(const WorstPlace& worst, double r) {
-  const double sine = r * worst.concave;
-  if (sine >= 1.0)
+std::string lean_advice(const WorstPlace& worst, const ContactEnd& end) {
+  const double left = 1.0 - end.corner_mm * worst.concave;
+  const double sine = end.flat_mm * worst.concave / left;
+  if (left <= 0.0 || sine >= 1.0)
     return fmt::format(
         "no lean lets a cutter of radius {:.6g} mm into a hollow of radius {:.6g} mm; use a cutter "
-        "below {:.6g} mm diameter with lead",
-        r, 1.0 / worst.concave, 2.0 / worst.concave);
+        "below {:.6g} mm diameter{}",
+        end.radius(), 1.0 / worst.concave, 2.0 / worst.concave, end.ball() ? "" : " with lead");
   // By the hundredth of a degree upwards, so that the advice itself passes the check.
-  return fmt::format("lean the tool by at least {:.2f} degrees, asin(r / Rc), for example with lead I{:.2f}",
+  return fmt::format("lean the tool by at least {:.2f} degrees, {}, for example with lead I{:.2f}",
                      round_up(deg_from_rad(std::asin(sine)), 0.01),
+                     end.corner_mm > 0.0 ? "asin(flat / (Rc - corner))" : "asin(r / Rc)",
                      round_up(deg_from_rad(std::asin(sine)), 0.01));
 }
 
@@ -57,11 +59,26 @@ double round_down(double h) {
   return std::floor(h / unit) * unit;
 }
 
+const char* end_name(const ContactEnd& end) {
+  if (end.ball()) return "ball end";
+  return end.corner_mm > 0.0 ? "bull nose" : "flat end";
+}
+
+/// How deep a tool on the normal sinks into a hollow of radius Rc, wider than the tool: a flat end with its
+/// rim, measured along the axis; a bull nose with the place of its corner that lies farthest from the middle.
+double depth_on_normal(const ContactEnd& end, double Rc) {
+  const double r = end.flat_mm;
+  if (end.corner_mm == 0.0) return r * r / (Rc + std::sqrt(Rc * Rc - r * r));
+  return std::hypot(r, Rc - end.corner_mm) + end.corner_mm - Rc;
+}
+
 void report_reach(const Area& area, const ReachProblem& problem, const OperationContext& context,
                   Diagnostics& diagnostics) {
   const double D = context.diameter_mm;
   std::string fix = "take a larger cutter";
-  if (area.lean.on_normal()) {
+  if (area.ball()) {
+    fix = "take a smaller scallop E or a larger cutter";
+  } else if (area.lean.on_normal()) {
     // Flattest place of the part: what works there works everywhere.
     double flattest = problem.interval.curvature;
     for (int i = 0; i < kGrid; ++i) {
@@ -96,25 +113,24 @@ bool check_gouging(const Area& area, double w_low, double w_high, const Operatio
                    Diagnostics& diagnostics) {
   const WorstPlace worst = most_concave(area, w_low, w_high);
   const PassSurface surface = area.pass_surface();
-  if (!gouges(surface::shape_at(surface.at(worst.t, worst.w), surface.outward_sign()), area.lean,
-              area.radius_mm))
+  if (!gouges(surface::shape_at(surface.at(worst.t, worst.w), surface.outward_sign()), area.lean, area.end))
     return true;
   const double Rc = 1.0 / worst.concave;
-  const double r = area.radius_mm;
   std::string what = fmt::format(
-      "surface P{} is {} at u={:.4f}, v={:.4f} (concave radius {:.6g} mm); the flat end of {:.6g} mm "
+      "surface P{} is {} at u={:.4f}, v={:.4f} (concave radius {:.6g} mm); the {} of {:.6g} mm "
       "diameter ",
       context.surface_number, worst.convex > 0.0 ? "a saddle" : "concave", surface.u(worst.t, worst.w),
-      surface.v(worst.t, worst.w), Rc, context.diameter_mm);
-  if (!area.lean.on_normal())
+      surface.v(worst.t, worst.w), Rc, end_name(area.end), context.diameter_mm);
+  if (area.ball())
+    what += "does not fit in";
+  else if (!area.lean.on_normal())
     what +=
         fmt::format("leaned by {:.2f} degrees gouges with its heel or flank", deg_from_rad(area.lean.angle));
-  else if (Rc > r)
-    what += fmt::format("standing on the normal gouges {:.6g} mm deep",
-                        r * r / (Rc + std::sqrt(Rc * Rc - r * r)));
+  else if (Rc > area.end.radius())
+    what += fmt::format("standing on the normal gouges {:.6g} mm deep", depth_on_normal(area.end, Rc));
   else
     what += "standing on the normal does not fit in";
-  diagnostics.error("saddle-or-concave", context.operation->where, what, lean_advice(worst, r));
+  diagnostics.error("saddle-or-concave", context.operation->where, what, lean_advice(worst, area.end));
   return false;
 }
 
@@ -122,7 +138,7 @@ bool check_lean(const Area& area, const OperationContext& context, Diagnostics& 
   // Beyond 60 degrees of yaw the swept rim is narrower than the radius and the cusps become saw teeth, which
   // the parabola of theory 1.1 does not describe.
   constexpr double kLeastCosine = 0.5;
-  if (area.lean.on_normal() || std::abs(std::cos(area.lean.yaw)) >= kLeastCosine) return true;
+  if (area.ball() || area.lean.on_normal() || std::abs(std::cos(area.lean.yaw)) >= kLeastCosine) return true;
   // tan(yaw) = sin(tilt) / tan(lead).
   const double least_lead =
       std::atan(std::abs(std::sin(context.operation->tilt_rad)) / std::tan(std::acos(kLeastCosine)));

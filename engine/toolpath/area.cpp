@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/minima.h"
+#include "toolpath/nose_strip.h"
 
 namespace swarf::toolpath {
 namespace {
@@ -32,11 +33,36 @@ double foot_on_pass(const PassSurface& surface, const CubicSpline& w, const Vec3
 }
 
 double scallop_of(const Area& area, const surface::Shape& shape, const Vec2& feed, double chord) {
+  const ContactEnd& end = area.end;
+  if (area.ball()) return ball_scallop(ball_curvature(shape.K, feed, end.corner_mm), chord, end.corner_mm);
+  if (!area.lean.on_normal() && end.corner_mm > 0.0)
+    return nose_scallop(shape.K, feed, chord, area.lean, end, area.rim_sides);
   if (!area.lean.on_normal())
-    return leaned_scallop(leaned_curvature(shape.K, feed, area.lean), chord, area.lean, area.radius_mm,
+    return leaned_scallop(leaned_curvature(shape.K, feed, area.lean), chord, area.lean, end.flat_mm,
                           area.rim_sides);
   const double curvature = strip_curvature(shape.K, feed);
   return curvature > 0.0 ? scallop_for_chord(1.0 / curvature, chord) : 0.0;
+}
+
+/// Chords of leaned tools end at the rim.
+Interval leaned_interval(const Area& area, const surface::Shape& shape, const Vec2& feed) {
+  const double h = area.scallop_mm;
+  const double chord = area.end.corner_mm > 0.0
+                           ? nose_chord(shape.K, feed, h, area.lean, area.end, area.rim_sides)
+                           : leaned_chord(leaned_curvature(shape.K, feed, area.lean), h, area.lean,
+                                          area.end.flat_mm, area.rim_sides);
+  return {chord, chord, 0.0, false};
+}
+
+Interval ball_interval(const Area& area, const surface::Shape& shape, const Vec2& feed, IntervalRule rule) {
+  const double r = area.end.corner_mm;
+  const double k =
+      rule == IntervalRule::kPaper ? cross_curvature(shape.K, feed) : ball_curvature(shape.K, feed, r);
+  const double reach = ball_reach(k, r);
+  // The cusp stands no higher than the equator: (R + h)^2 + r^2 <= (R + r)^2.
+  const double h = area.scallop_mm;
+  const bool reached = h * (2.0 + h * k) <= 2.0 * r;
+  return {reached ? ball_chord(k, h, r) : std::numeric_limits<double>::infinity(), reach, k, false};
 }
 
 /// Samples |S_t x S_w| over a rectangle of pass parameters; also says whether the tool gouges anywhere in it.
@@ -55,7 +81,7 @@ Regularity regularity(const Area& area, const Vec2& t_range, const Vec2& w_range
       const double element = d.Su.cross(d.Sv).norm();
       result.least_area = std::min(result.least_area, element);
       result.gouges = result.gouges || !(element > 0.0) ||
-                      gouges(surface::shape_at(d, surface.outward_sign()), area.lean, area.radius_mm);
+                      gouges(surface::shape_at(d, surface.outward_sign()), area.lean, area.end);
     }
   }
   return result;
@@ -100,23 +126,21 @@ Area strip_behind(Area area, size_t k) {
   return area;
 }
 
-bool gouges(const surface::Shape& shape, const Lean& lean, double radius_mm) {
+bool gouges(const surface::Shape& shape, const Lean& lean, const ContactEnd& end) {
   const double concave = -surface::principal_curvatures(shape).low;
-  // A flat bottom over a hollow of curvature k sinks in by k r^2 / 2.
-  const double rounding = 2.0 * kNegligibleHeight / (radius_mm * radius_mm);
-  return radius_mm * (concave - rounding) > std::sin(lean.angle);
+  // A tool over a hollow of curvature k sinks in by k r^2 / 2 at most.
+  const double rounding = 2.0 * kNegligibleHeight / (end.radius() * end.radius());
+  const double hollow = concave - rounding;
+  return end.corner_mm * hollow > 1.0 ||
+         end.flat_mm * hollow > std::sin(lean.angle) * (1.0 - end.corner_mm * hollow);
 }
 
 Interval interval_at(const Area& area, const surface::Shape& shape, const Vec2& feed, IntervalRule rule) {
-  const double r = area.radius_mm;
+  if (area.ball()) return ball_interval(area, shape, feed, rule);
+  if (!area.lean.on_normal()) return leaned_interval(area, shape, feed);
+  const double r = area.end.flat_mm;  // the corner of a bull nose is not counted on
   const double h = area.scallop_mm;
   Interval interval;
-  if (!area.lean.on_normal()) {
-    interval.chord_mm =
-        leaned_chord(leaned_curvature(shape.K, feed, area.lean), h, area.lean, r, area.rim_sides);
-    interval.reach_mm = interval.chord_mm;  // leaned_chord ends at the rim
-    return interval;
-  }
   const bool paper = rule == IntervalRule::kPaper;
   const double curvature = paper ? cross_curvature(shape.K, feed) : strip_curvature(shape.K, feed);
   interval.curvature = std::max(0.0, curvature);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "surface/curvature.h"
+#include "toolpath/contact_end.h"
 #include "toolpath/scallop_interval.h"
 #include "toolpath/surface_curve.h"
 
@@ -21,13 +22,18 @@ struct Area {
   bool along_u = true;
   double start_w = 0.0, end_w = 1.0;  ///< boundary of the first pass and the opposite one
   double scallop_mm = 0.01;
-  double radius_mm = 5.0;  ///< of the cutter
+  ContactEnd end;  ///< of the cutter
   Lean lean;
   RimSides rim_sides = RimSides::kBalanced;  ///< of the strip at hand
   Grid grid;                                 ///< covers [0,1] and a margin for the overrun at both ends
   bool zigzag = false;                       ///< every other pass is reversed
   bool continues_across = true;              ///< the surface may be used beyond the boundary end_w
   bool continues_along = true;               ///< the surface may be used beyond t = 0 and t = 1
+
+  /// Attitude of the axis does not matter, nor does the flat bottom: there is none.
+  bool ball() const { return end.ball(); }
+  /// How far to its side a pass on a flat surface clears everything: a ball leaves a ridge at any distance.
+  double clean_mm() const { return lean.on_normal() && !ball() ? end.flat_mm : end.radius(); }
 
   PassSurface pass_surface() const { return {*surface, along_u}; }
   double forward() const { return end_w - start_w; }  ///< +1 or -1
@@ -83,7 +89,9 @@ Strip measure_strip(const Area& area, const CubicSpline& previous, const CubicSp
 /// interval.
 void extend_beyond_edges(Area& area, double overrun_mm);
 
-/// The tool cannot stand here: true where the lean does not suffice for the concave curvature (theory 1.2).
-bool gouges(const surface::Shape& shape, const Lean& lean, double radius_mm);
+/// The tool cannot stand here: true where the lean does not suffice for the concave curvature k, which lets
+/// the corner in up to corner k <= 1 and the flat bottom up to flat k <= sin(lean) (1 - corner k): the tool's
+/// curvature across the lean is 1/(corner + flat/sin(lean)) (theory 1.2).
+bool gouges(const surface::Shape& shape, const Lean& lean, const ContactEnd& end);
 
 }  // namespace swarf::toolpath

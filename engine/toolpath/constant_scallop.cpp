@@ -55,6 +55,40 @@ EnvelopeHeight plane_over_ridge(const Area& area, const CubicSpline& ridge, cons
   });
 }
 
+/// Height along the unit `n` over a point at which a ball with its centre `gap` away from the point begins:
+/// the lower crossing of the line with the sphere. NaN where the line passes beside it.
+double below_ball(const Vec3& gap, const Vec3& n, double r) {
+  const double up = gap.dot(n);
+  return up - std::sqrt(r * r - (gap - up * n).squaredNorm());
+}
+
+/// The point of the pass' surface at s, its unit outward normal and their derivatives along the pass.
+struct NormalPoint {
+  Vec3 p, dp, n, dn;
+};
+NormalPoint normal_point(const Area& area, const CubicSpline& pass, double s) {
+  const PassSurface surface = area.pass_surface();
+  const GraphPoint g = graph_point(surface, pass, s);
+  const NormalJet jet = normal_along(surface, g.d, pass.at(s).dw);
+  const double length = jet.m.norm();
+  const Vec3 n = jet.m / length;
+  return {g.p, g.dp, n, (jet.dm - n * n.dot(jet.dm)) / length};
+}
+
+/// Height of the ball with the centre c over the ridge's foot on the surface, where it is lowest.
+EnvelopeHeight ball_over_ridge(const Area& area, const CubicSpline& ridge, const Vec3& c, double s_start) {
+  return least_height(area.grid, s_start, [&](double s) -> Local {
+    const NormalPoint at = normal_point(area, ridge, s);
+    const double x = below_ball(c - at.p, at.n, area.end.corner_mm);
+    // |p + x n - c| = r, differentiated by s: x' from g.(p' + x n' + x' n) = 0.
+    const Vec3 g = at.p + x * at.n - c;
+    const double depth = -g.dot(at.n);
+    const Vec3 level = at.dp + x * at.dn;
+    const double dx = g.dot(level) / depth;
+    return {x, dx, (level + dx * at.n).squaredNorm() / depth + at.dp.dot(at.dn), at.dp.norm()};
+  });
+}
+
 struct Level {
   double w = 0.0;
   EnvelopeHeight at;
@@ -134,6 +168,24 @@ GridPoints level_curve(const Area& area, const CubicSpline& pass, const Height& 
   return points;
 }
 
+NextPass next_of_ball(const Area& area, const CubicSpline& previous) {
+  const PassSurface surface = area.pass_surface();
+  const auto normal = [&](const surface::Derivatives& d) -> Vec3 {
+    return surface.outward_sign() * d.Su.cross(d.Sv).normalized();
+  };
+  const auto left_by_previous = [&](double t, double w, double s) {
+    const surface::Derivatives d = surface.at(t, w);
+    return canal_height(area, previous, d.S, normal(d), s);
+  };
+  NextPass ridge = graph_of(area, previous, level_curve(area, previous, left_by_previous));
+  if (ridge.outcome != NextPass::kOk) return ridge;
+  const auto left_on_ridge = [&](double t, double w, double s) {
+    const surface::Derivatives d = surface.at(t, w);
+    return ball_over_ridge(area, ridge.w, d.S + area.end.corner_mm * normal(d), s);
+  };
+  return graph_of(area, ridge.w, level_curve(area, ridge.w, left_on_ridge));
+}
+
 NextPass next_exact(const Area& area, const CubicSpline& previous) {
   const PassSurface surface = area.pass_surface();
   const auto left_by_previous = [&](double t, double w, double s) {
@@ -206,7 +258,23 @@ EnvelopeHeight envelope_height(const Area& area, const CubicSpline& pass, const 
   });
 }
 
+EnvelopeHeight canal_height(const Area& area, const CubicSpline& pass, const Vec3& point, const Vec3& normal,
+                            double s_start) {
+  const double r = area.end.corner_mm;
+  return least_height(area.grid, s_start, [&](double s) -> Local {
+    const NormalPoint at = normal_point(area, pass, s);
+    const Vec3 c = at.p + r * at.n;
+    const Vec3 dc = at.dp + r * at.dn;
+    const double x = below_ball(c - point, normal, r);
+    const Vec3 g = point + x * normal - c;
+    const double depth = -g.dot(normal);
+    const double dx = -g.dot(dc) / depth;
+    return {x, dx, (dc - dx * normal).squaredNorm() / depth - at.dn.dot(dc), at.dp.norm()};
+  });
+}
+
 NextPass next_constant_scallop(const Area& area, const CubicSpline& previous) {
+  if (area.ball()) return next_of_ball(area, previous);
   if (area.lean.on_normal() && !flat_along(area, previous)) return next_exact(area, previous);
   return next_by_formula(area, previous);
 }

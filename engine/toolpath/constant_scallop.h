@@ -9,7 +9,9 @@
 //
 // The planes through a cusp point touch the surface on a small closed curve around it; p touches all these
 // curves from one side, q from the other. So the method has no error of higher order in P.
-// A leaned tool takes P from leaned_chord at mid strip instead, iterated, as a smooth profile along the pass.
+// A ball, whatever its axis, is solved in the same two steps, exactly as well, with the ball in the place of
+// the tangent plane. Leaned flat ends and bull noses take P from a formula at mid strip instead, iterated, as
+// a smooth profile along the pass; a bull nose on the normal is its flat bottom.
 #pragma once
 
 #include "toolpath/grid_step.h"
@@ -26,6 +28,10 @@ struct EnvelopeHeight {
   double s = 0.0;
   bool outside = false;
 };
+/// The same for the canal surface that a ball sweeps along a pass: the least x with |point + x normal - c(s)|
+/// = r, c the ball's centre, r its radius.
+EnvelopeHeight canal_height(const Area& area, const CubicSpline& pass, const Vec3& point, const Vec3& normal,
+                            double s_start);
 EnvelopeHeight envelope_height(const Area& area, const CubicSpline& pass, const Vec3& point,
                                const Vec3& normal, double s_start);
 

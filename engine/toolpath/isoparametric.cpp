@@ -21,7 +21,7 @@ double longest_step(const Area& area, double x, double guess) {
     const double inside = std::min(step, 1.0 - x);
     const Strip strip = measure_strip(area, pass_at(area, x), pass_at(area, x + inside), 0.0, 1.0);
     step = inside * std::min(std::sqrt(area.scallop_mm / strip.scallop_max_mm),
-                             2.0 * area.radius_mm / strip.chord_max_mm);
+                             2.0 * area.clean_mm() / strip.chord_max_mm);
   }
   return step;
 }
@@ -29,7 +29,7 @@ double longest_step(const Area& area, double x, double guess) {
 /// Where `steps` steps, each shortened by the factor, lead to (0: as many as it takes to reach 1).
 std::vector<double> walk(const Area& area, double factor, size_t steps) {
   std::vector<double> x{0.0};
-  double step = 0.5 * area.scallop_mm / area.radius_mm;  // short of any sensible one; corrected at once
+  double step = 0.5 * area.scallop_mm / area.end.radius();  // short of any sensible one; corrected at once
   while (steps == 0 ? x.back() < 1.0 : x.size() <= steps) {
     if (x.back() < 1.0) step = longest_step(strip_behind(area, x.size() - 1), x.back(), step);
     SWARF_CHECK(step > 0.0, "an iso-parametric step has no length");

@@ -150,12 +150,12 @@ bool move_is_clear(const ToolPose& from, const ToolPose& to, const Obstacle& obs
   return true;
 }
 
-PassEnds ends_of(const SurfacePass& pass, double radius_mm) {
+PassEnds ends_of(const SurfacePass& pass, const ContactEnd& end) {
   const double direction = pass.t_end > pass.t_start ? 1.0 : -1.0;
   const auto pose = [&](double t) {
     const CurvePoint point = curve_at(*pass.surface, pass.curve, t);
     return pose_in_contact(point.C, outward_normal(*pass.surface, point.surface),
-                           direction * point.dC.normalized(), pass.lead_rad, pass.tilt_rad, radius_mm);
+                           direction * point.dC.normalized(), pass.lead_rad, pass.tilt_rad, end);
   };
   return {pose(pass.t_start), pose(pass.t_end)};
 }
@@ -169,7 +169,7 @@ void append_passes(ToolPath& path, const std::vector<SurfacePass>& passes, int o
   Writer writer{path, operation, where};
   PassEnds before;
   for (size_t i = 0; i < passes.size(); ++i) {
-    const PassEnds ends = ends_of(passes[i], cutter.radius());
+    const PassEnds ends = ends_of(passes[i], contact_end(cutter));
     if (i == 0) {
       begin(writer, ends.start, feed, options);
     } else if (!link(writer, before.end, ends.start, feed, obstacle, cutter, options)) {

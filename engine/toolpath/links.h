@@ -34,6 +34,6 @@ void append_passes(ToolPath& path, const std::vector<SurfacePass>& passes, int o
 struct PassEnds {
   ToolPose start, end;
 };
-PassEnds ends_of(const SurfacePass& pass, double radius_mm);
+PassEnds ends_of(const SurfacePass& pass, const ContactEnd& end);
 
 }  // namespace swarf::toolpath

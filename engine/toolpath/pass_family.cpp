@@ -28,6 +28,7 @@ double distance_to_boundary(const Area& area, const CubicSpline& pass, double t)
 double left_on_boundary(const Area& area, const CubicSpline& pass, double t) {
   const PassSurface surface = area.pass_surface();
   const surface::Shape edge = surface::shape_at(surface.at(t, area.end_w), surface.outward_sign());
+  if (area.ball()) return canal_height(area, pass, edge.point, edge.normal, t).height_mm;
   if (area.lean.on_normal()) return envelope_height(area, pass, edge.point, edge.normal, t).height_mm;
   // A pass of the same kind, as far beyond the boundary, would leave a cusp of this height on it.
   const Vec2 feed = edge.in_tangent(graph_point(surface, pass, t).dp).normalized();
@@ -39,8 +40,9 @@ double left_on_boundary(const Area& area, const CubicSpline& pass, double t) {
 /// where there is no scallop, when the boundary is out of the cutter's reach.
 bool open_at(const Area& area, const CubicSpline& pass, double t) {
   if (area.beyond_end(pass.at(t).w)) return false;
-  return left_on_boundary(area, pass, t) > area.scallop_mm * (1.0 + kSpareShare) ||
-         distance_to_boundary(area, pass, t) > area.radius_mm * (1.0 + kSpareShare);
+  // Not a number where a ball passes beside the boundary.
+  return !(left_on_boundary(area, pass, t) <= area.scallop_mm * (1.0 + kSpareShare)) ||
+         distance_to_boundary(area, pass, t) > area.clean_mm() * (1.0 + kSpareShare);
 }
 
 /// The parts of 0..1 where the next pass is needed, each one sample longer than seen.
@@ -87,7 +89,7 @@ CubicSpline held_at_boundary(const Area& area, const CubicSpline& w) {
 FamilyPass measured_pass(const Area& area, const CubicSpline& previous, CubicSpline w,
                          const std::vector<Span>& open, double overrun_mm) {
   FamilyPass pass;
-  pass.interval_mm = 2.0 * area.radius_mm;
+  pass.interval_mm = 2.0 * area.end.radius();
   for (const Span& span : open) {
     const Strip strip = measure_strip(area, previous, w, span.t_low, span.t_high);
     pass.interval_mm = std::min(pass.interval_mm, strip.chord_min_mm);

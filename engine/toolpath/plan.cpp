@@ -11,12 +11,12 @@ namespace swarf::toolpath {
 namespace {
 
 /// The area of an operation; a single iso pass (G06.4) is an area that starts on its line.
-Area area_of(const program::Operation& operation, const surface::SurfacePtr& surface, double radius_mm) {
+Area area_of(const program::Operation& operation, const surface::SurfacePtr& surface, const ContactEnd& end) {
   using program::StartBoundary;
   Area area;
   area.surface = surface;
   area.scallop_mm = operation.scallop_mm;
-  area.radius_mm = radius_mm;
+  area.end = end;
   area.zigzag = operation.zigzag;
   area.lean = lean_of(operation.lead_rad, operation.tilt_rad);
   if (operation.kind == program::OperationKind::kIsoPass) {
@@ -96,7 +96,7 @@ const char* planner_name(Planner planner) {
 
 ToolPath plan(const program::Program& program, const cutter::Cutter& cutter, const PlanOptions& options,
               Diagnostics& diagnostics) {
-  SWARF_CHECK(cutter.shape == cutter::Shape::kFlat, "the planners know the flat end only");
+  SWARF_CHECK(has_contact_end(cutter), "the planners know flat ends, balls and bull noses only");
   ToolPath path;
   path.planner = planner_name(options.planner);
   for (size_t i = 0; i < program.operations.size(); ++i) {
@@ -104,7 +104,7 @@ ToolPath plan(const program::Program& program, const cutter::Cutter& cutter, con
     const program::SurfaceDefinition& definition = program.surfaces.at(operation.surface);
     const OperationContext context{&operation, definition.number, cutter.diameter_mm};
     Diagnostics found;
-    Area area = area_of(operation, definition.surface, cutter.radius());
+    Area area = area_of(operation, definition.surface, contact_end(cutter));
     const Family family = family_of(area, context, options, found);
     if (!found.has_errors()) {
       append_passes(path, travelled(area, family, operation), static_cast<int>(i), operation.where, cutter,

@@ -99,4 +99,25 @@ double leaned_scallop(const LeanedCurvature& curvature, double P, const Lean& le
   return back * std::tan(lean.angle) + 0.5 * curvature.across * x * x - side * curvature.twist * x * back;
 }
 
+double ball_chord(double k, double h, double r) {
+  // Centre of the circle, of the ball and the cusp make a triangle with the sides R + r, r and R + h.
+  const double q = h * (2.0 * r - h) / (2.0 * (1.0 + r * k) * (1.0 + h * k));
+  return 2.0 * std::sqrt(q * (2.0 - q * k * k));
+}
+
+double ball_scallop(double k, double P, double r) {
+  const double half = 0.5 * P;
+  const double cosine = std::sqrt(1.0 - half * half * k * k);
+  const double aside = half * (1.0 + r * k);
+  return r * cosine - half * half * k / (1.0 + cosine) - std::sqrt(r * r - aside * aside);
+}
+
+double ball_reach(double k, double r) {
+  return 2.0 * r / (1.0 + r * k);
+}
+
+double ball_curvature(const Mat2& K, const Vec2& t, double r) {
+  return strip_curvature(K + Mat2::Identity() / r, t) - 1.0 / r;
+}
+
 }  // namespace swarf::toolpath

@@ -75,4 +75,15 @@ double leaned_chord(const LeanedCurvature& curvature, double scallop_mm, const L
 double leaned_scallop(const LeanedCurvature& curvature, double chord_mm, const Lean& lean, double radius_mm,
                       RimSides sides);
 
+/// Ball of radius r on a circle of curvature k (convex > 0), exact: the chord between contacts that leaves h,
+/// P^2 = 4 q (2 - q k^2) with q = h (2r - h)/(2 (1 + rk)(1 + hk)), and the h that a chord leaves (theory 1.1,
+/// free of cancellation where k tends to 0). A chord beyond ball_reach leaves NaN. Need rk > -1.
+double ball_chord(double curvature, double scallop_mm, double radius_mm);
+double ball_scallop(double curvature, double chord_mm, double radius_mm);
+/// Chord at which the cusp stands at the height of the ball's equator: 2r/(1 + rk).
+double ball_reach(double curvature, double radius_mm);
+/// The circle on which two passes of a ball leave what they leave on the surface K along this feed: with M =
+/// 1/r + K it is det M/(t'Mt) - 1/r.
+double ball_curvature(const Mat2& K, const Vec2& unit_feed, double radius_mm);
+
 }  // namespace swarf::toolpath

@@ -8,6 +8,7 @@
 #include "base/frames.h"
 #include "cutter/cutter.h"
 #include "program/surface_blocks/program.h"
+#include "toolpath/contact_end.h"
 #include "toolpath/elements.h"
 
 namespace swarf::toolpath {
@@ -23,12 +24,12 @@ struct ToolPath {
 /// True for the path of a CL program: its elements are blocks and nothing else.
 bool holds_blocks(const ToolPath& path);
 
-/// Tool pose in contact at a curve point: flat end, axis = normal turned by lead (about the cross direction,
-/// towards the feed) and tilt (towards the left of the feed). With zero lean the tip centre is the contact
-/// point; leaned, the contact lies on the rim and the tip centre is one radius behind it in the bottom plane.
-/// `unit_feed` is the direction of travel.
+/// Tool pose in contact at a curve point: axis = normal turned by lead (about the cross direction, towards
+/// the feed) and tilt (towards the left of the feed). With zero lean the tip is the contact point; leaned,
+/// the contact lies on the rim of the flat bottom or on the corner that is rolled about it. `unit_feed` is
+/// the direction of travel.
 ToolPose pose_in_contact(const Vec3& contact, const Vec3& normal, const Vec3& unit_feed, double lead_rad,
-                         double tilt_rad, double radius_mm);
+                         double tilt_rad, const ContactEnd& end);
 
 enum class Planner { kConstantScallop, kLinKoren, kIsoparametric };
 /// "constant_scallop" and so on; nullptr-safe names for reports and TOML.

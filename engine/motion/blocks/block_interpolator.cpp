@@ -71,7 +71,8 @@ double segment_end(const SurfacePass& pass, double ta) {
   return good;
 }
 
-std::vector<Block> blocks_of(const SurfacePass& pass, double radius, OfflineOrientation orientation) {
+std::vector<Block> blocks_of(const SurfacePass& pass, const toolpath::ContactEnd& end,
+                             OfflineOrientation orientation) {
   const std::vector<double> ends = segment_pass(pass);
   std::vector<Block> blocks;
   for (size_t i = 0; i + 1 < ends.size(); ++i) {
@@ -80,8 +81,8 @@ std::vector<Block> blocks_of(const SurfacePass& pass, double radius, OfflineOrie
     block.tb = ends[i + 1];
     block.contact_a = curve_point(*pass.surface, pass.curve, block.ta);
     block.contact_b = curve_point(*pass.surface, pass.curve, block.tb);
-    block.a = contact_pose(pass, block.ta, radius);
-    const ToolPose exact = contact_pose(pass, block.tb, radius);
+    block.a = contact_pose(pass, block.ta, end);
+    const ToolPose exact = contact_pose(pass, block.tb, end);
     block.b = exact;
     block.length = (block.contact_b - block.contact_a).norm();
     if (orientation == OfflineOrientation::kConstant)
@@ -243,7 +244,7 @@ std::vector<double> segment_pass(const SurfacePass& pass) {
 std::vector<ToolSample> sample_offline_pass(const SurfacePass& pass, const cutter::Cutter& cutter,
                                             const MachineModel& machine, const InverseKinematics& inverse,
                                             const MotionOptions& options, const AxisValues& hint) {
-  const std::vector<Block> blocks = blocks_of(pass, cutter.radius(), options.orientation);
+  const std::vector<Block> blocks = blocks_of(pass, toolpath::contact_end(cutter), options.orientation);
   const kinematics::Branch branch = inverse.solve_nearest(blocks.front().a, hint);
   const bool reached = branch.outcome != kinematics::InverseOutcome::kUnreachable;
   const PathNode start{0.0, 0.0, reached ? branch.q : hint, false, reached};

@@ -232,8 +232,8 @@ void CycleStream::begin_pass(const SurfacePass& pass) {
   check_time(pass_length(pass, pass.t_start, pass.t_end) / pass.feed_mm_s, "moves",
              offline ? kListedMax : kHoursMax * 3600.0 / source_.options->period_s);
   const toolpath::CurvePoint start = curve_at(*pass.surface, pass.curve, pass.t_start);
-  ToolSample first =
-      standing(contact_pose(pass, pass.t_start, source_.cutter->radius()), SampleKind::kCutting);
+  ToolSample first = standing(contact_pose(pass, pass.t_start, toolpath::contact_end(*source_.cutter)),
+                              SampleKind::kCutting);
   first.contact_W = start.C;
   first.u = start.u;
   first.v = start.v;

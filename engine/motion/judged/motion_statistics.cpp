@@ -48,7 +48,7 @@ class MotionMeter::TickMeter {
         motion_(cycles.motions()),
         machine_(cycles.machines().front()),
         inverse_(cycles.inverse(0)),
-        radius_(cycles.cutter().radius()),
+        end_(toolpath::contact_end(cycles.cutter())),
         period_(cycles.period_s()),
         out_(statistics) {}
 
@@ -84,21 +84,22 @@ class MotionMeter::TickMeter {
  private:
   void measure_contact(const SurfacePass& pass, const ToolSample& before, const ToolSample& sample,
                        const ToolPose& middle) {
-    const Vec3 chord = sample.contact_W - before.contact_W;
+    const Vec3 from = previous_contact(pass, before);
+    const Vec3 chord = sample.contact_W - from;
     const double period = period_;
     const double length = chord.norm();
     out_.path_length_mm += length;
     out_.feed_error_max_rel = std::max(
         out_.feed_error_max_rel, std::abs(length - sample.feed_mm_s * period) / (pass.feed_mm_s * period));
     const double t = curve_parameter(pass, sample.u, sample.v);
-    const ToolPose exact = contact_pose(pass, t, radius_);
+    const ToolPose exact = contact_pose(pass, t, end_);
     out_.orientation_error_max_rad =
         std::max(out_.orientation_error_max_rad, angle_between(exact.axis_W, sample.pose.axis_W));
     const double t_middle = 0.5 * (t + previous_parameter(pass, before));
     const Vec3 on_curve = curve_point(*pass.surface, pass.curve, t_middle);
-    const double chord_error = distance_across(0.5 * (sample.contact_W + before.contact_W) - on_curve, chord);
+    const double chord_error = distance_across(0.5 * (sample.contact_W + from) - on_curve, chord);
     out_.chord_error_max_mm = std::max(out_.chord_error_max_mm, chord_error);
-    const Vec3 tip_gap = middle.tip_W - contact_pose(pass, t_middle, radius_).tip_W;
+    const Vec3 tip_gap = middle.tip_W - contact_pose(pass, t_middle, end_).tip_W;
     const double tip_error = distance_across(tip_gap, sample.pose.tip_W - before.pose.tip_W);
     out_.tip_error_max_mm = std::max(out_.tip_error_max_mm, tip_error);
   }
@@ -159,12 +160,19 @@ class MotionMeter::TickMeter {
     return before.kind == SampleKind::kCutting ? curve_parameter(pass, before.u, before.v) : pass.t_start;
   }
 
+  /// A free move's last cycle knows the tip only, which is not the contact of a leaned tool.
+  static Vec3 previous_contact(const SurfacePass& pass, const ToolSample& before) {
+    return before.kind == SampleKind::kCutting ? before.contact_W
+                                               : curve_point(*pass.surface, pass.curve, pass.t_start);
+  }
+
   const toolpath::Elements& elements_;
   const BlockMotions& blocks_;
   MotionReader motion_;
   const MachineModel& machine_;
   const kinematics::InverseKinematics& inverse_;
-  double radius_, period_;
+  toolpath::ContactEnd end_;
+  double period_;
   MotionStatistics& out_;
   position::Near near_;
 };

@@ -16,16 +16,16 @@ constexpr double kCellsMin = 64.0;
 }  // namespace
 
 ToolPose contact_pose(const SurfacePass& pass, const toolpath::CurvePoint& at, double direction,
-                      double radius) {
+                      const toolpath::ContactEnd& end) {
   const Vec3 normal = outward_normal(*pass.surface, at.surface);
   if (pass.lead_rad == 0.0 && pass.tilt_rad == 0.0) return {at.C, normal};
   return toolpath::pose_in_contact(at.C, normal, direction * at.dC.normalized(), pass.lead_rad, pass.tilt_rad,
-                                   radius);
+                                   end);
 }
 
-ToolPose contact_pose(const SurfacePass& pass, double t, double radius) {
+ToolPose contact_pose(const SurfacePass& pass, double t, const toolpath::ContactEnd& end) {
   const double direction = pass.t_end >= pass.t_start ? 1.0 : -1.0;
-  return contact_pose(pass, curve_at(*pass.surface, pass.curve, t), direction, radius);
+  return contact_pose(pass, curve_at(*pass.surface, pass.curve, t), direction, end);
 }
 
 double pass_length(const SurfacePass& pass, double from, double to) {
@@ -54,11 +54,11 @@ double curve_parameter(const SurfacePass& pass, double u, double v) {
   return pass.curve.along_u ? u : v;
 }
 
-std::vector<PathNode> pass_nodes(const SurfacePass& pass, double radius,
+std::vector<PathNode> pass_nodes(const SurfacePass& pass, const toolpath::ContactEnd& end,
                                  const kinematics::MachineModel& machine,
                                  const kinematics::InverseKinematics& inverse,
                                  const kinematics::AxisValues& hint) {
-  const PathShape shape{[&](double t) { return contact_pose(pass, t, radius); },
+  const PathShape shape{[&](double t) { return contact_pose(pass, t, end); },
                         [&](double from, double to) { return pass_length(pass, from, to); }};
   const kinematics::Branch start = inverse.solve_nearest(shape.pose(pass.t_start), hint);
   const bool reached = start.outcome != kinematics::InverseOutcome::kUnreachable;

@@ -28,10 +28,10 @@ constexpr int kNodeCorrections = 2;
 SurfaceInterpolator::SurfaceInterpolator(const kinematics::MachineModel& machine,
                                          const kinematics::InverseKinematics& inverse,
                                          const cutter::Cutter& cutter, const MotionOptions& options)
-    : machine_(machine), inverse_(inverse), radius_mm_(cutter.radius()), options_(options) {}
+    : machine_(machine), inverse_(inverse), end_(toolpath::contact_end(cutter)), options_(options) {}
 
 ToolPose SurfaceInterpolator::pose_at(const CurvePoint& at) const {
-  return contact_pose(pass_, at, direction_, radius_mm_);
+  return contact_pose(pass_, at, direction_, end_);
 }
 
 ToolPose SurfaceInterpolator::start_pose() const {
@@ -83,7 +83,7 @@ void SurfaceInterpolator::begin(const toolpath::SurfacePass& pass, const kinemat
 }
 
 void SurfaceInterpolator::find_limits(const kinematics::AxisValues& hint) {
-  const std::vector<PathNode> nodes = pass_nodes(pass_, radius_mm_, machine_, inverse_, hint);
+  const std::vector<PathNode> nodes = pass_nodes(pass_, end_, machine_, inverse_, hint);
   node_t_.clear();
   for (const PathNode& node : nodes) node_t_.push_back(node.x);
   limits_ = uniform_limits(nodes, pass_.feed_mm_s, options_.path_acceleration_max);

@@ -84,7 +84,7 @@ class SurfaceInterpolator {
 
   const kinematics::MachineModel& machine_;
   const kinematics::InverseKinematics& inverse_;
-  double radius_mm_;
+  toolpath::ContactEnd end_;
   MotionOptions options_;
   toolpath::SurfacePass pass_;
   double direction_ = 1.0;  ///< sign of t_end - t_start

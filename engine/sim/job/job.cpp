@@ -287,14 +287,16 @@ void load_design(Job& job, Diagnostics& diagnostics) {
   }
 }
 
-/// G06.3 and G06.4 put the centre of a flat end's face on the surface; no other shape has been derived.
+/// G06.3 and G06.4 bring the end of the tool in contact with the surface; scallops of other ends are not
+/// derived.
 void check_planner_cutter(const Job& job, Diagnostics& diagnostics) {
-  if (job.program.operations.empty() || job.scene.tools.front().shape == cutter::Shape::kFlat) return;
+  if (job.program.operations.empty() || toolpath::has_contact_end(job.scene.tools.front())) return;
   diagnostics.error(
-      "planner-needs-flat-end", job.program.operations.front().where,
-      fmt::format("surface blocks are planned for flat ends only, {} is {}",
+      "planner-cutter", job.program.operations.front().where,
+      fmt::format("surface blocks are planned for flat ends, balls and bull noses only, {} is {}",
                   cutter::call_name(job.scene.tools.front()), cutter::describe(job.scene.tools.front())),
-      "set cutter.shape = \"flat\", or run a program that brings its own tool positions");
+      "set cutter.shape to \"flat\", \"ball\" or \"bull_nose\", or run a program that brings its own tool "
+      "positions");
 }
 
 template <typename Load>

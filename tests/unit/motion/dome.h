@@ -67,7 +67,7 @@ inline ToolPose end_pose(const toolpath::SurfacePass& pass, double t, double rad
   const toolpath::CurvePoint at = curve_at(*pass.surface, pass.curve, t);
   const double direction = pass.t_end > pass.t_start ? 1.0 : -1.0;
   return toolpath::pose_in_contact(at.C, outward_normal(*pass.surface, at.surface),
-                                   direction * at.dC.normalized(), pass.lead_rad, pass.tilt_rad, radius);
+                                   direction * at.dC.normalized(), pass.lead_rad, pass.tilt_rad, {radius});
 }
 
 /// Rapid, approach, pass, retract for each pass, with straight rapids between them.

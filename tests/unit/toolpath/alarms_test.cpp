@@ -161,7 +161,7 @@ TEST(Cylinder, OnlyTheDirectionAcrossTheRulingsIsCurved) {
   const surface::SurfacePtr cylinder = test::quadric(100, 80, 0, 0, 60, -60);
   const Outcome along = plan_with(test::area_program(cylinder, StartBoundary::kV0, 0.01));
   ASSERT_FALSE(along.diagnostics.has_errors()) << format(along.diagnostics.list().front());
-  const test::RidgeSummary found = test::summary(test::ridges(test::passes_of(along.path), 5.0, 10));
+  const test::RidgeSummary found = test::summary(test::ridges(test::passes_of(along.path), {5.0}, 10));
   EXPECT_NEAR(found.highest.height_mm, 0.01, 1e-6);
   EXPECT_NEAR(found.p05_mm, 0.01, 1e-6);
   const Outcome across = plan_with(test::area_program(cylinder, StartBoundary::kU0, 0.01));
@@ -185,7 +185,7 @@ TEST(Edges, PartsOfAPassThatAreDoneDoNotStopTheRest) {
   // The middle of the family is over the boundary long before its ends, and reaches places that turn concave.
   const Outcome outcome = plan_with(test::area_program(flattening(20.0), StartBoundary::kV0, 0.002), 6.0);
   EXPECT_TRUE(outcome.diagnostics.list().empty()) << format(outcome.diagnostics.list().at(0));
-  const test::RidgeSummary found = test::summary(test::ridges(test::passes_of(outcome.path), 3.0, 6));
+  const test::RidgeSummary found = test::summary(test::ridges(test::passes_of(outcome.path), {3.0}, 6));
   EXPECT_LE(found.highest.height_mm, 1.01 * 0.002) << "u " << found.highest.u << " v " << found.highest.v;
 }
 
@@ -204,7 +204,7 @@ TEST(Edges, WhereTheSurfaceDoesNotContinuePassesEndOnTheBoundary) {
       EXPECT_LE(test::high_t(pass), 1.0);
       for (double t = 0.0; t <= 1.0; t += 0.01) EXPECT_LE(pass.curve.w.at(t).w, 1.0 + 1e-3) << t;
     }
-    const test::RidgeSummary found = test::summary(test::ridges(passes, 3.0, 4));
+    const test::RidgeSummary found = test::summary(test::ridges(passes, {3.0}, 4));
     EXPECT_LE(found.highest.height_mm, 1.01 * 0.0001) << "u " << found.highest.u << " v " << found.highest.v;
   }
 }

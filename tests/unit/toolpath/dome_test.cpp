@@ -86,7 +86,7 @@ TEST(Dome, TheFirstPassLiesOnTheBoundaryAndRunsOverTheEdges) {
 TEST(Dome, ConstantScallopLeavesTheSameCuspEverywhere) {
   for (const StartBoundary start : kBoundaries) {
     const Planned p = planned(Planner::kConstantScallop, start);
-    const test::RidgeSummary found = test::summary(test::ridges(p.passes, 5.0, 12));
+    const test::RidgeSummary found = test::summary(test::ridges(p.passes, {5.0}, 12));
     EXPECT_NEAR(found.highest.height_mm, kScallop, 0.005 * kScallop)
         << "boundary " << static_cast<int>(start);
     EXPECT_NEAR(found.p05_mm, kScallop, 0.005 * kScallop);
@@ -97,7 +97,7 @@ TEST(Dome, ConstantScallopLeavesTheSameCuspEverywhere) {
 TEST(Dome, LinKorenStaysBelowTheScallopAndAgreesWithItsOwnTheory) {
   for (const StartBoundary start : kBoundaries) {
     const Planned p = planned(Planner::kLinKoren, start);
-    const test::RidgeSummary found = test::summary(test::ridges(p.passes, 5.0, 12));
+    const test::RidgeSummary found = test::summary(test::ridges(p.passes, {5.0}, 12));
     EXPECT_LE(found.highest.height_mm, kScallop) << "boundary " << static_cast<int>(start);
     EXPECT_NEAR(found.highest.height_mm / greatest_theory(p.passes), 1.0, 0.01);
   }
@@ -124,7 +124,7 @@ TEST(Dome, IsoparametricPassesAreConstantAndEndOnTheOppositeBoundary) {
     for (const SurfacePass& pass : p.passes)
       EXPECT_DOUBLE_EQ(pass.curve.w.at(0.0).w, pass.curve.w.at(0.77).w);
     EXPECT_EQ(p.passes.back().curve.w.at(0.5).w, 1.0 - p.passes.front().curve.w.at(0.5).w);
-    const test::RidgeSummary found = test::summary(test::ridges(p.passes, 5.0, 12));
+    const test::RidgeSummary found = test::summary(test::ridges(p.passes, {5.0}, 12));
     EXPECT_LE(found.highest.height_mm, kScallop);
     EXPECT_NEAR(found.highest.height_mm / greatest_theory(p.passes), 1.0, 0.01);
     // Every strip is as coarse as any other: no step is wasted.
@@ -148,7 +148,7 @@ TEST(Dome, AFineScallopNeedsAboutAHundredPasses) {
   EXPECT_GT(p.path.passes, 100);
   EXPECT_LT(p.path.passes, 140);
   std::vector<test::Ridge> ridges;
-  test::ridges_on_line(p.passes, 5.0, 0.03, ridges);
+  test::ridges_on_line(p.passes, {5.0}, 0.03, ridges);
   const test::RidgeSummary found = test::summary(ridges);
   EXPECT_NEAR(found.highest.height_mm, 1e-3, 5e-6);
   EXPECT_NEAR(found.p05_mm, 1e-3, 5e-6);

@@ -25,7 +25,7 @@ ToolPath planned(bool zigzag, Planner planner = Planner::kConstantScallop, doubl
 }
 
 PassEnds ends(const Element& element) {
-  if (const auto* pass = std::get_if<SurfacePass>(&element.what)) return ends_of(*pass, 5.0);
+  if (const auto* pass = std::get_if<SurfacePass>(&element.what)) return ends_of(*pass, {5.0});
   const auto& move = std::get<FreeMove>(element.what);
   return {move.from, move.to};
 }

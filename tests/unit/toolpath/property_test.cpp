@@ -69,7 +69,7 @@ void check_case(const std::vector<Vec3>& coefficients, Planner planner, program:
     if (d.severity == Severity::kError) ADD_FAILURE() << format(d) << "\n" << text;
   if (path.elements.empty()) return;
   const double h = program.operations[0].scallop_mm;
-  const test::RidgeSummary found = test::summary(test::ridges(test::passes_of(path), 5.0, 6));
+  const test::RidgeSummary found = test::summary(test::ridges(test::passes_of(path), {5.0}, 6));
   EXPECT_LE(found.highest.height_mm, share * h)
       << "at u " << found.highest.u << " v " << found.highest.v << " pass " << found.highest.pass << " edge "
       << found.highest.edge << "\n"

@@ -29,27 +29,47 @@ inline DesignPoint design_point(const SurfacePass& pass, double t, double w) {
   return {d.S, surface::outward_normal(*pass.surface, d)};
 }
 
-/// Where the ray from Q along N meets the bottom disc of the tool in contact at s; infinity beyond the rim.
-inline double height_at(const SurfacePass& pass, double radius, const DesignPoint& point, double s) {
+/// How far below the rounded end a point stands, mm: below 0 inside it. For points below the corner's centre.
+inline double outside_end(const ToolPose& pose, const ContactEnd& end, const Vec3& point) {
+  const Vec3 from_tip = point - pose.tip_W;
+  const double z = from_tip.dot(pose.axis_W);
+  const double aside = (from_tip - z * pose.axis_W).norm();
+  return std::hypot(std::max(0.0, aside - end.flat_mm), end.corner_mm - z) - end.corner_mm;
+}
+
+/// Where the ray from Q along N enters a rounded end within .3 mm; infinity where it passes it.
+inline double height_below_round(const ToolPose& pose, const ContactEnd& end, const DesignPoint& point) {
+  const auto outside = [&](double x) { return outside_end(pose, end, point.Q + x * point.N); };
+  double low = -0.01;
+  double high = 0.3;
+  if (outside(high) > 0.0) return std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 40; ++i) (outside(0.5 * (low + high)) > 0.0 ? low : high) = 0.5 * (low + high);
+  return high;
+}
+
+/// Where the ray from Q along N meets the end of the tool in contact at s; infinity where it passes it.
+inline double height_at(const SurfacePass& pass, const ContactEnd& end, const DesignPoint& point, double s) {
   const CurvePoint c = curve_at(*pass.surface, pass.curve, s);
   const double direction = pass.t_end > pass.t_start ? 1.0 : -1.0;
   const Vec3 normal = surface::outward_normal(*pass.surface, c.surface);
   const ToolPose pose =
-      pose_in_contact(c.C, normal, direction * c.dC.normalized(), pass.lead_rad, pass.tilt_rad, radius);
+      pose_in_contact(c.C, normal, direction * c.dC.normalized(), pass.lead_rad, pass.tilt_rad, end);
+  if (end.corner_mm > 0.0) return height_below_round(pose, end, point);
   const double rise = point.N.dot(pose.axis_W);
   const double height = (pose.tip_W - point.Q).dot(pose.axis_W) / rise;
-  const bool hit = rise > 0.0 && (point.Q + height * point.N - pose.tip_W).norm() <= radius;
+  const bool hit = rise > 0.0 && (point.Q + height * point.N - pose.tip_W).norm() <= end.flat_mm;
   return hit ? height : std::numeric_limits<double>::infinity();
 }
 
 /// Least height that a pass leaves over a point: a scan over the contacts within reach, sharpened by golden
 /// section in smooth places and by bisection where the rim just touches the ray.
-inline double height_left(const SurfacePass& pass, double radius, const DesignPoint& point, double t) {
-  const double reach = 2.0 * radius / curve_at(*pass.surface, pass.curve, t).dC.norm();
+inline double height_left(const SurfacePass& pass, const ContactEnd& end, const DesignPoint& point,
+                          double t) {
+  const double reach = 2.0 * end.radius() / curve_at(*pass.surface, pass.curve, t).dC.norm();
   const double from = std::max(low_t(pass), t - reach);
   const double to = std::min(high_t(pass), t + reach);
   const int n = 80;
-  const auto at = [&](double s) { return height_at(pass, radius, point, s); };
+  const auto at = [&](double s) { return height_at(pass, end, point, s); };
   const auto place = [&](int i) { return from + (to - from) * i / n; };
   int best = 0;
   double least = at(from);
@@ -90,7 +110,7 @@ struct Ridge {
 
 /// Ridges on the line t over the part: where neighbouring passes leave the same height, found by bisection,
 /// and what the last pass leaves on the last boundary.
-inline void ridges_on_line(const std::vector<SurfacePass>& passes, double radius, double t,
+inline void ridges_on_line(const std::vector<SurfacePass>& passes, const ContactEnd& end, double t,
                            std::vector<Ridge>& ridges) {
   std::vector<const SurfacePass*> here;
   for (const SurfacePass& pass : passes)
@@ -98,7 +118,7 @@ inline void ridges_on_line(const std::vector<SurfacePass>& passes, double radius
   const bool along_u = passes.front().curve.along_u;
   const double start = here.front()->curve.w.at(t).w;
   const double forward = start < 0.5 ? 1.0 : -1.0;
-  const double end = start < 0.5 ? 1.0 : 0.0;
+  const double border = start < 0.5 ? 1.0 : 0.0;
   const auto add = [&](double w, double height, int pass, bool edge) {
     ridges.push_back({along_u ? t : w, along_u ? w : t, height, pass, edge});
   };
@@ -106,7 +126,7 @@ inline void ridges_on_line(const std::vector<SurfacePass>& passes, double radius
     const double w0 = here[k]->curve.w.at(t).w;
     const double w1 = here[k + 1]->curve.w.at(t).w;
     const auto left = [&](const SurfacePass& pass, double x) {
-      return height_left(pass, radius, design_point(pass, t, w0 + x * (w1 - w0)), t);
+      return height_left(pass, end, design_point(pass, t, w0 + x * (w1 - w0)), t);
     };
     double low = 0.0;
     double high = 1.0;
@@ -115,7 +135,7 @@ inline void ridges_on_line(const std::vector<SurfacePass>& passes, double radius
       (left(*here[k], x) < left(*here[k + 1], x) ? low : high) = x;
     }
     const double w = w0 + 0.5 * (low + high) * (w1 - w0);
-    if ((w - end) * forward > 0.0) continue;
+    if ((w - border) * forward > 0.0) continue;
     // The lower pass of the two sides of the crossing, so that a jump at the rim does not count as covered.
     add(w,
         std::max(std::min(left(*here[k], low), left(*here[k + 1], low)),
@@ -123,13 +143,13 @@ inline void ridges_on_line(const std::vector<SurfacePass>& passes, double radius
         here[k + 1]->pass, false);
   }
   const SurfacePass& last = *here.back();
-  if ((last.curve.w.at(t).w - end) * forward < 0.0)
-    add(end, height_left(last, radius, design_point(last, t, end), t), last.pass, true);
+  if ((last.curve.w.at(t).w - border) * forward < 0.0)
+    add(border, height_left(last, end, design_point(last, t, border), t), last.pass, true);
 }
 
-inline std::vector<Ridge> ridges(const std::vector<SurfacePass>& passes, double radius, int lines) {
+inline std::vector<Ridge> ridges(const std::vector<SurfacePass>& passes, const ContactEnd& end, int lines) {
   std::vector<Ridge> found;
-  for (int i = 0; i <= lines; ++i) ridges_on_line(passes, radius, static_cast<double>(i) / lines, found);
+  for (int i = 0; i <= lines; ++i) ridges_on_line(passes, end, static_cast<double>(i) / lines, found);
   return found;
 }
 

@@ -9,6 +9,7 @@
 #include "base/rng.h"
 #include "base/units.h"
 #include "exact_cusps.h"
+#include "toolpath/nose_strip.h"
 
 namespace swarf::toolpath {
 namespace {
@@ -163,6 +164,65 @@ TEST(ScallopInterval, TheConjugateDirectionStretchesTheReach) {
   EXPECT_EQ(conjugate_stretch(K, {1.0, 0.0}), 1.0);
   // Feed at 45 degrees: t'Kt = 1/60, t'Kc = -1/120.
   EXPECT_NEAR(conjugate_stretch(K, Vec2(1.0, 1.0).normalized()), std::hypot(1.0, 0.5), 1e-12);
+}
+
+TEST(BallInterval, MeetsTheExactFormsOfCircleAndPlane) {
+  EXPECT_NEAR(ball_scallop(1.0 / 50.0, 1.0, 5.0), .027591995, 5e-10);
+  EXPECT_NEAR(ball_scallop(-1.0 / 50.0, 1.0, 5.0), .022541229, 5e-10);
+  EXPECT_NEAR(ball_scallop(0.0, 1.0, 5.0), .025062814, 5e-10);
+  Rng rng(17);
+  for (int i = 0; i < 1000; ++i) {
+    const double r = rng.uniform(0.5, 8.0);
+    const double k = rng.uniform(-0.8, 2.0) / r;
+    const double h = std::pow(10.0, rng.uniform(-4.0, -1.5)) * r;
+    if (h * (2.0 + h * k) > 2.0 * r) continue;
+    const double P = ball_chord(k, h, r);
+    EXPECT_LT(P, ball_reach(k, r));
+    EXPECT_NEAR(ball_scallop(k, P, r) / h, 1.0, 1e-9) << "k " << k << " r " << r << " h " << h;
+    EXPECT_NEAR(test::ball_on_circle(1.0 / k, r, P) / h, 1.0, 1e-7) << "k " << k << " r " << r;
+  }
+}
+
+TEST(BallInterval, TheEquatorEndsTheReach) {
+  // (R + h)^2 + r^2 = (R + r)^2 at the chord that puts the cusp level with the centre.
+  const double R = 40.0, r = 3.0;
+  const double h = std::sqrt((R + r) * (R + r) - r * r) - R;
+  EXPECT_NEAR(ball_chord(1.0 / R, h, r), ball_reach(1.0 / R, r), 1e-9);
+}
+
+TEST(BallInterval, AcrossAPrincipalFeedTheCurvatureIsThatAcross) {
+  Mat2 K;
+  K << 0.02, 0.0, 0.0, 0.005;
+  EXPECT_NEAR(ball_curvature(K, {1.0, 0.0}, 5.0), 0.005, 1e-15);
+  EXPECT_NEAR(ball_curvature(K, {0.0, 1.0}, 5.0), 0.02, 1e-15);
+}
+
+TEST(NoseInterval, ASmallScallopOnAPlaneFollowsTheEffectiveRadius) {
+  Rng rng(23);
+  for (int i = 0; i < 200; ++i) {
+    const ContactEnd end{rng.uniform(0.5, 6.0), rng.uniform(0.2, 3.0)};
+    const Lean lean{rng.uniform(0.05, 0.5), rng.uniform(-0.9, 0.9)};
+    const double R = test::effective_radius(end.flat_mm, end.corner_mm, lean.angle, lean.yaw);
+    const double h = 1e-7;
+    const double P = nose_chord(Mat2::Zero(), {1.0, 0.0}, h, lean, end, RimSides::kBalanced);
+    EXPECT_NEAR(P / std::sqrt(8.0 * h * R), 1.0, 1e-3) << i;
+    EXPECT_NEAR(nose_scallop(Mat2::Zero(), {1.0, 0.0}, P, lean, end, RimSides::kBalanced) / h, 1.0, 1e-6)
+        << i;
+  }
+}
+
+TEST(NoseInterval, WithASmallCornerItNearsTheLeanedFlatEnd) {
+  const double phi = rad_from_deg(10.0);
+  // The corner takes its own radius off the rim at most.
+  const double h = nose_scallop(Mat2::Zero(), {0.0, 1.0}, 4.0, {phi, 0.0}, {5.0, 1e-4}, RimSides::kBalanced);
+  EXPECT_NEAR(h, .0724850, 1e-4);
+}
+
+TEST(NoseInterval, WithoutFlatBottomItIsTheBall) {
+  const double P = 1.0;
+  const double tilted =
+      nose_scallop(Mat2::Zero(), {1.0, 0.0}, P, {0.3, 0.0}, {1e-9, 5.0}, RimSides::kBalanced);
+  EXPECT_NEAR(tilted, ball_scallop(0.0, P, 5.0), 1e-8);
 }
 
 }  // namespace
