@@ -27,7 +27,8 @@ class Target {
 
 struct Part {
   std::vector<std::shared_ptr<const Target>> targets;
-  /// The tip of an upright tool goes no lower, mm in W; none: where no target stops it, it rests on nothing.
+  /// A level plane that stops tools whose axis points up, mm in W; none: where no target stops it, a tool
+  /// rests on nothing.
   std::optional<double> floor_mm;
 
   /// Where the tool comes to rest along the line; the highest of all.

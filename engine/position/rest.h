@@ -26,6 +26,9 @@ struct GuideLine {
 };
 /// Upright over (x, y): heights are those of W.
 GuideLine upright(double x, double y);
+/// W's own directions turned by the shortest way until Z is the unit axis: x_W and y_W follow the axis
+/// smoothly, and are those of W for an upright one. For an axis straight down they are X and -Y.
+GuideLine turned_line(const Vec3& point_W, const Vec3& unit_axis_W);
 /// Any two directions square to the axis.
 GuideLine guide_line(const Vec3& point_W, const Vec3& axis_W);
 

@@ -94,7 +94,7 @@ def scene_texts():
     for mode in ("scan", "contour", "spiral", "guide"):
         for part in ("surface", "mesh"):
             yield (f"[driven]\n{part} = 'part.x'\nmode = '{mode}'\narea_mm = [[0, 0], [1, 1]]\nfloor_mm = 0\n"
-                   f"compare_cam_um = [10, 1]\n{no}[interpolator]\n{no}")
+                   f"compare_cam_um = [10, 1]\nlead_deg = 5\naxis = [0, 0, 1]\n{no}[interpolator]\n{no}")
     for kind in schema("scene")["properties"]["fixture"]["items"]["properties"]["kind"]["enum"]:
         yield f"nc = 'part.ngc'\n[[fixture]]\nkind = '{kind}'\n{no}"
     for raw in ("cylinder = {{ {0} }}", "tube = {{ {0} }}", "outline = {{ {0} }}", "mesh = 'a.stl'",

@@ -37,6 +37,27 @@ void read_spiral(ConfigTable& table, toolpath::DrivenPlan& plan) {
                 "write the radius that the spiral begins with and the one that it ends with");
 }
 
+/// A fixed axis, or one that follows the part with lead and tilt.
+void read_axis(ConfigTable& table, toolpath::DrivenPlan& plan) {
+  constexpr Range kLean{-89.0, 89.0};
+  plan.follows = table.has("lead_deg") || table.has("tilt_deg");
+  plan.lead_rad = rad_from_deg(plan.follows ? table.number("lead_deg", kLean, 0.0) : 0.0);
+  plan.tilt_rad = rad_from_deg(plan.follows ? table.number("tilt_deg", kLean, 0.0) : 0.0);
+  if (plan.follows) plan.axis_smooth_mm = table.number("axis_smooth_mm", kAboveZero, 4.0);
+  if (!table.has("axis")) return;
+  if (plan.follows)
+    table.error("two-axes", "axis", "the tool cannot keep 'axis' and follow the part with lead and tilt",
+                "keep 'axis', or 'lead_deg' and 'tilt_deg'");
+  const std::vector<double> axis = table.numbers("axis", 3);
+  if (axis.size() != 3) return;
+  const Vec3 given(axis[0], axis[1], axis[2]);
+  if (given.norm() > 0.0)
+    plan.axis_W = given.normalized();
+  else
+    table.error("out-of-range", "axis", "'axis' has no length",
+                "write the way from the tip to the spindle: [0, 0, 1]");
+}
+
 void read_file(ConfigTable& table, DrivenSettings& driven) {
   driven.mesh = table.has("mesh");
   if (driven.mesh && table.has("surface"))
@@ -76,6 +97,7 @@ DrivenSettings read_driven(ConfigTable table) {
   if (one_curve) plan.guide = table.flat_points("guide_mm");
   if (table.has("area_mm")) read_area(table, driven);
   if (table.has("floor_mm")) driven.floor_mm = table.number("floor_mm", {});
+  read_axis(table, plan);
   plan.cam_tolerance_mm = table.number("cam_tolerance_um", kZeroOrMore, 0.0) * kMicrometre;
   plan.safe_distance_mm = table.number("safe_distance_mm", kAboveZero, plan.safe_distance_mm);
   plan.rapid_clearance_mm = table.number("rapid_clearance_mm", kAboveZero, plan.rapid_clearance_mm);

@@ -65,6 +65,19 @@ Box bounds_of(const surface::Surface& surface) {
   return box;
 }
 
+/// The box that holds a box, in other directions.
+Box turned(const Box& box, const position::GuideLine& plane) {
+  Box out{Vec3::Constant(std::numeric_limits<double>::infinity()),
+          Vec3::Constant(-std::numeric_limits<double>::infinity())};
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3 p =
+        plane.local({(corner & 1 ? box.upper : box.lower).x(), (corner & 2 ? box.upper : box.lower).y(),
+                     (corner & 4 ? box.upper : box.lower).z()});
+    out = {out.lower.cwiseMin(p), out.upper.cwiseMax(p)};
+  }
+  return out;
+}
+
 /// The rectangle around the part as seen from above.
 Box bounds_of(const Job& job) {
   if (job.scene.driven->mesh) return mesh::bounds(*job.design_mesh);
@@ -81,7 +94,7 @@ void fill_area(Job& job) {
   if (driven.area_said || driven.plan.mode == toolpath::GuideMode::kGuide ||
       driven.plan.mode == toolpath::GuideMode::kSpiral)
     return;
-  const Box box = bounds_of(job);
+  const Box box = turned(bounds_of(job), position::turned_line(Vec3::Zero(), driven.plan.axis_W));
   driven.plan.area = {Vec2(box.lower.head<2>()), Vec2(box.upper.head<2>())};
   job.scene.assumptions.push_back({"Area",
                                    fmt::format("X {:.3f} to {:.3f}, Y {:.3f} to {:.3f} mm", box.lower.x(),
@@ -103,7 +116,8 @@ void load_driven(Job& job, Diagnostics& diagnostics) {
     part.targets.push_back(std::make_shared<PatchPart>(std::move(patches)));
   }
   fill_area(job);
-  driven.plan.stock_top_mm = job.scene.stock.box_W.upper.z();
+  const position::GuideLine plane = position::turned_line(Vec3::Zero(), driven.plan.axis_W);
+  driven.plan.stock_top_mm = turned(job.scene.stock.box_W, plane).upper.z();
   try {
     job.driven = std::make_shared<toolpath::DrivenPart>(
         toolpath::DrivenPart{std::move(part), position::ToolProfile(job.scene.tools.front())});

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/units.h"
+#include "toolpath/driven/leaned_guide.h"
 
 namespace swarf::toolpath {
 namespace {
@@ -14,10 +15,40 @@ namespace {
 /// A CAM system looks at the surface this often, mm; its blocks begin and end there.
 constexpr double kCamStep_mm = 0.02;
 
-ToolPose at_height(const ToolPose& pose, double z) {
+/// Drawn back along its own axis until the tip is this high along `up`, which the axis does not lie square
+/// to.
+ToolPose at_height(const ToolPose& pose, const Vec3& up, double height) {
   ToolPose high = pose;
-  high.tip_W.z() = std::max(high.tip_W.z(), z);
+  const double missing = height - pose.tip_W.dot(up);
+  if (missing > 0.0) high.tip_W += missing / pose.axis_W.dot(up) * pose.axis_W;
   return high;
+}
+
+/// The guides of the passes; those that are joined lean along one curve, so that each begins as the one
+/// before has ended.
+std::vector<std::shared_ptr<const Guide>> guides_of(const DrivenPlan& plan, const DrivenPart& on,
+                                                    const std::vector<GuidedPass>& passes,
+                                                    const SourceLocation& where) {
+  std::vector<std::shared_ptr<const Guide>> guides;
+  const position::GuideLine plane = position::turned_line(Vec3::Zero(), plan.axis_W);
+  const LeanOptions lean{plan.lead_rad, plan.tilt_rad, plan.axis_smooth_mm};
+  for (size_t i = 0; i < passes.size();) {
+    size_t end = i + 1;
+    while (end < passes.size() && passes[end].joined) ++end;
+    std::vector<GuideCurve> chain;
+    for (size_t k = i; k < end; ++k) chain.push_back(passes[k].curve);
+    const auto curve = plan.follows ? lean_curve(on, chain, lean, where) : nullptr;
+    double offset = 0.0;
+    for (const GuideCurve& one : chain) {
+      if (curve)
+        guides.push_back(std::make_shared<LeanedGuide>(one, curve, offset, pivot_height(on.profile)));
+      else
+        guides.push_back(std::make_shared<PlaneGuide>(one, plane));
+      offset += one.end();
+    }
+    i = end;
+  }
+  return guides;
 }
 
 /// The ends of the longest straight blocks that keep every looked-at position within the tolerance.
@@ -26,11 +57,15 @@ std::vector<ToolPose> cam_points(const DrivenPass& pass, double tolerance_mm) {
   std::vector<ToolPose> seen;
   position::Near near;
   for (int i = 0; i <= count; ++i) seen.push_back(tip_at(pass, pass.guide->end() * i / count, near).pose);
+  const double lever = pass.on->profile.radius();
   const auto fits = [&](size_t from, size_t to) {
     const Vec3 a = seen[from].tip_W, along = (seen[to].tip_W - a).normalized();
     for (size_t i = from + 1; i < to; ++i) {
       const Vec3 d = seen[i].tip_W - a;
       if ((d - d.dot(along) * along).norm() > tolerance_mm) return false;
+      const double share = static_cast<double>(i - from) / static_cast<double>(to - from);
+      const Vec3 axis = (1.0 - share) * seen[from].axis_W + share * seen[to].axis_W;
+      if (lever * (axis - seen[i].axis_W).norm() > tolerance_mm) return false;
     }
     return true;
   };
@@ -109,10 +144,19 @@ ToolPath driven_path(const DrivenPlan& plan, const std::shared_ptr<const DrivenP
   const double high = plan.stock_top_mm + plan.rapid_clearance_mm;
   const double safe = plan.stock_top_mm + plan.safe_distance_mm;
   std::optional<ToolPose> at;
-  for (const GuidedPass& guided : guided_passes(plan, diagnostics)) {
+  const std::vector<GuidedPass> passes = guided_passes(plan, diagnostics);
+  std::vector<std::shared_ptr<const Guide>> guides;
+  try {
+    guides = guides_of(plan, *on, passes, where);
+  } catch (const InputError& error) {
+    diagnostics.append(error.diagnostics);
+    return path;
+  }
+  for (size_t i = 0; i < passes.size(); ++i) {
+    const GuidedPass& guided = passes[i];
     DrivenPass pass;
     pass.on = on;
-    pass.guide = std::make_shared<PlaneGuide>(guided.curve, position::GuideLine{});
+    pass.guide = guides[i];
     pass.feed_mm_s = plan.feed_mm_s;
     pass.chord_tolerance_mm = plan.chord_tolerance_mm;
     pass.pass = guided.pass;
@@ -127,20 +171,20 @@ ToolPath driven_path(const DrivenPlan& plan, const std::shared_ptr<const DrivenP
       return path;
     }
     if (!guided.joined || !at) {
-      const ToolPose entry = at_height(first.pose, safe);
+      const ToolPose entry = at_height(first.pose, plan.axis_W, safe);
       if (at) {
-        const ToolPose up = at_height(*at, safe);
+        const ToolPose up = at_height(*at, plan.axis_W, safe);
         writer.move(MoveKind::kRetract, *at, up, 0.0);
         writer.move(MoveKind::kRapid, up, entry, 0.0);
       } else {
-        writer.move(MoveKind::kRapid, at_height(first.pose, high), entry, 0.0);
+        writer.move(MoveKind::kRapid, at_height(first.pose, plan.axis_W, high), entry, 0.0);
       }
       writer.move(MoveKind::kApproach, entry, first.pose, plan.approach_feed_fraction * plan.feed_mm_s);
     }
     at = writer.pass(pass);
     path.passes = guided.pass + 1;
   }
-  if (at) writer.move(MoveKind::kRetract, *at, at_height(*at, high), 0.0);
+  if (at) writer.move(MoveKind::kRetract, *at, at_height(*at, plan.axis_W, high), 0.0);
   return path;
 }
 

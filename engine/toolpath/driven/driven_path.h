@@ -20,10 +20,14 @@ enum class GuideMode {
   kGuide,    ///< one curve through given points
 };
 
-/// Upright tools.
+/// Guides lie in W's XY plane, turned by the shortest way until its Z is the axis (position::turned_line).
 struct DrivenPlan {
+  Vec3 axis_W = Vec3::UnitZ();  ///< unit: of the tool while it does not follow the part
+  bool follows = false;         ///< the part's normal, leaned by lead and tilt; the guides then lie in XY
+  double lead_rad = 0.0, tilt_rad = 0.0;  ///< towards the feed and to its left
+  double axis_smooth_mm = 0.0;            ///< the normals are averaged over this length of the guide; above 0
   GuideMode mode = GuideMode::kScan;
-  std::array<Vec2, 2> area{Vec2::Zero(), Vec2::Zero()};  ///< lower and upper corner, mm in W
+  std::array<Vec2, 2> area{Vec2::Zero(), Vec2::Zero()};  ///< lower and upper corner, mm in the guides' plane
   double interval_mm = 1.0;                              ///< greatest distance of two passes, in the plane
   double angle_rad = 0.0;                                ///< kScan: of the lines from X
   bool zigzag = true;                                    ///< kScan: else each line in the same direction
@@ -37,7 +41,7 @@ struct DrivenPlan {
   double cam_tolerance_mm = 0.0;
   double safe_distance_mm = 5.0;        ///< above the stock, between passes and before the approach
   double rapid_clearance_mm = 20.0;     ///< above the stock, first and last
-  double stock_top_mm = 0.0;            ///< W
+  double stock_top_mm = 0.0;            ///< along axis_W from the origin of W
   double approach_feed_fraction = 0.5;  ///< of the feed
 };
 
