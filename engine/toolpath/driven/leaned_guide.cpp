@@ -32,7 +32,7 @@ LeanCurve::Place upright_place(const DrivenPart& on, const GuideCurve& curve, do
         "keep the guide on the part (area_mm), or say how low the tool may go: floor_mm");
   const Vec3 normal = Vec3(-rest.gradient.x(), -rest.gradient.y(), 1.0).normalized();
   const Vec3 feed = Vec3(along.x(), along.y(), rest.gradient.dot(along)).normalized();
-  const Vec3 axis = pose_in_contact(Vec3::Zero(), normal, feed, lean.lead_rad, lean.tilt_rad, 0.0).axis_W;
+  const Vec3 axis = pose_in_contact(Vec3::Zero(), normal, feed, lean.lead_rad, lean.tilt_rad, {0.0}).axis_W;
   return {axis, rest.height};
 }
 
