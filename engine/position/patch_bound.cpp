@@ -162,6 +162,35 @@ Vec2 span_of(const Vec2& linear, const About& range) {
   return span;
 }
 
+/// Slopes of w on both sides of rho: infinite beyond the rim.
+double outer_slope(const ToolProfile& profile, double rho) {
+  if (rho >= profile.radius()) return std::numeric_limits<double>::infinity();
+  return profile.piece(rho).slope_at(rho);
+}
+double inner_slope(const ToolProfile& profile, double rho) {
+  const double at = std::min(std::max(rho, 0.0), profile.radius());
+  double slope = 0.0;
+  for (const ProfilePiece& piece : profile.pieces()) {
+    if (piece.from > 0.0 && piece.from >= at) break;
+    slope = at > 0.0 ? piece.slope_at(std::min(at, piece.to)) : 0.0;
+  }
+  return slope;
+}
+
+/// A way through the parameters and what the place does on it.
+struct Way {
+  Vec3 mean = Vec3::Zero();
+  double stray = 0.0;  ///< over the cell, mm
+};
+Way way_along(const PatchCell& cell, const GuideLine& line, const Vec2& direction) {
+  const double s = std::abs(direction.x()), t = std::abs(direction.y());
+  const double uv = cell.uv.norm() + cell.stray_uv;
+  const Vec3 d = direction.x() * cell.a + direction.y() * cell.b;
+  return {
+      {d.dot(line.x_W), d.dot(line.y_W), d.dot(line.axis_W)},
+      s * (2.0 * (cell.uu.norm() + cell.stray_uu) + uv) + t * (2.0 * (cell.vv.norm() + cell.stray_vv) + uv)};
+}
+
 }  // namespace
 
 Support support_plane(const ToolProfile& profile, const GuideLine& line, const Vec2& slope) {
@@ -300,6 +329,28 @@ bool beyond_rim(const PatchCell& cell, const Footing& nearest, const ToolProfile
       highest(-2.0 * x.dot(v), -curve(v, vv, cell.stray_vv), range.low.y(), range.high.y());
   const double rim = profile.radius() + kRim_mm;
   return nearest.rho * nearest.rho - nearer > rim * rim;
+}
+
+bool rises_everywhere(const PatchCell& cell, const ToolProfile& profile, const GuideLine& line) {
+  const Vec3 p = line.local(cell.p);
+  const double beside = p.head<2>().norm();
+  const double nearest = std::max(0.0, beside - cell.radius);
+  const Vec2 out = beside > 0.0 ? Vec2(p.head<2>() / beside) : Vec2(Vec2::UnitX());
+  const double steep = profile.tangent(std::min(beside, profile.radius())).slope;
+  const Vec3 n = line.axis_W - steep * (out.x() * line.x_W + out.y() * line.y_W);
+  const double long_a = cell.a.squaredNorm(), long_b = cell.b.squaredNorm();
+  if (!(long_a > 0.0 && long_b > 0.0)) return false;
+  const Way way = way_along(cell, line, {n.dot(cell.a) / long_a, n.dot(cell.b) / long_b});
+  // e.D: the directions from the axis to the cell lie in a cone about `out`.
+  const double level = way.mean.head<2>().norm();
+  constexpr double kChordOfSine = 1.4143;  // 2 sin(angle / 2) <= sqrt(2) sin(angle) up to a right angle
+  const double turn = cell.radius < beside ? kChordOfSine * cell.radius / beside : 2.0;
+  const double greatest = std::min(level, way.mean.head<2>().dot(out) + level * turn) + way.stray;
+  const double slope = greatest > 0.0 ? outer_slope(profile, beside + cell.radius + kRim_mm)
+                                      : inner_slope(profile, nearest - kRim_mm);
+  const double climb = way.mean.z() - way.stray - slope * greatest;
+  constexpr double kRounding = 1e-9;  // of the sizes that the sum is made of
+  return climb > kRounding * (way.mean.norm() + way.stray + slope * std::abs(greatest));
 }
 
 }  // namespace swarf::position

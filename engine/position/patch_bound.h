@@ -55,6 +55,13 @@ double cell_bound(const PatchCell& cell, const ToolProfile& profile, const Guide
 double excess_bound(const PatchCell& cell, const Footing& at, const ToolProfile& profile,
                     const GuideLine& line);
 
+/// Whether f rises all over the cell, one of a patch, in one direction of the parameters: whatever part of
+/// the cell belongs to the work piece, f is greatest on the edges of that part, not inside. With D the way
+/// that the place goes, and e the direction out from the axis,
+///     df = D.z - w'(rho; e.D)  >=  least D.z - max(w'(greatest rho) m, w'(least rho) m),  m = greatest e.D
+/// with the extent of D by the bends.
+bool rises_everywhere(const PatchCell& cell, const ToolProfile& profile, const GuideLine& line);
+
 /// Whether the whole cell, one of a patch, lies beyond the rim of the tool. `nearest` is a place of the cell:
 /// the nearer to the axis it is among them, the more it shows, by the quadratic form of the squared distance.
 bool beyond_rim(const PatchCell& cell, const Footing& nearest, const ToolProfile& profile,

@@ -55,11 +55,11 @@ double stray_of_part(const PatchCell& whole, const PatchCell& part) {
 /// The cells of one patch, children behind their parent, the patch itself first.
 class CellMaker {
  public:
-  CellMaker(const surface::Surface& surface, int patch, const CellOptions& options, size_t most)
-      : surface_(surface), patch_(patch), options_(options), most_(most) {}
+  CellMaker(const Patch& of, int patch, const CellOptions& options, size_t most)
+      : of_(of), surface_(*of.surface), patch_(patch), options_(options), most_(most) {}
 
   std::vector<PatchCell> make() {
-    cells_.push_back(patch_cell(surface_, patch_, {0.0, 0.0}, {1.0, 1.0}));
+    cells_.push_back(cell_of({0.0, 0.0}, {1.0, 1.0}));
     for (size_t i = 0; i < cells_.size(); ++i) {
       refuse_unbounded(cells_[i]);
       if (!fine(cells_[i])) split(i);
@@ -69,7 +69,13 @@ class CellMaker {
   }
 
  private:
+  PatchCell cell_of(const Vec2& low, const Vec2& high) const {
+    PatchCell cell = patch_cell(surface_, patch_, low, high);
+    cell.region = region_of(of_, low, high);
+    return cell;
+  }
   bool fine(const PatchCell& cell) const {
+    if (cell.region == surface::Region::kOutside) return true;
     const double bend = cell.uu.norm() + cell.uv.norm() + cell.vv.norm();
     return bend <= options_.most_bend && cell.stray <= options_.most_stray;
   }
@@ -80,8 +86,8 @@ class CellMaker {
     Vec2 high = cell.high(), low = cell.low();
     high[side] = low[side] = cell.centre[side];
     cells_[i].child = static_cast<int>(cells_.size());
-    cells_.push_back(patch_cell(surface_, patch_, cell.low(), high));
-    cells_.push_back(patch_cell(surface_, patch_, low, cell.high()));
+    cells_.push_back(cell_of(cell.low(), high));
+    cells_.push_back(cell_of(low, cell.high()));
   }
 
   /// From its halves, which stand behind it.
@@ -95,6 +101,7 @@ class CellMaker {
     cell.stray = stray;
   }
 
+  const Patch& of_;
   const surface::Surface& surface_;
   int patch_;
   const CellOptions& options_;
@@ -183,6 +190,10 @@ PatchCell part_of(const surface::Surface& surface, const PatchCell& leaf, const 
   return cell;
 }
 
+surface::Region region_of(const Patch& patch, const Vec2& low, const Vec2& high) {
+  return patch.domain ? patch.domain->classify(low, high) : surface::Region::kInside;
+}
+
 int longer_side(const PatchCell& cell) {
   // By the whole extent: a side that collapses at the centre may still bend.
   const double u = cell.a.norm() + cell.uu.norm() + cell.stray_uu;
@@ -195,7 +206,7 @@ std::vector<PatchCell> cell_tree(const std::vector<Patch>& patches, const CellOp
   parallel_chunks(patches.size(), 1, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       SWARF_CHECK(patches[i].surface != nullptr, "a patch has a surface");
-      CellMaker maker(*patches[i].surface, static_cast<int>(i), options, share_of(options, patches.size()));
+      CellMaker maker(patches[i], static_cast<int>(i), options, share_of(options, patches.size()));
       of[i] = maker.make();
     }
   });

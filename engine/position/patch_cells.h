@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <vector>
 
+#include "surface/face.h"
 #include "surface/surface.h"
 
 namespace swarf::position {
@@ -12,6 +14,9 @@ namespace swarf::position {
 /// A surface over the unit square of its parameters, with its four boundary curves and corners.
 struct Patch {
   surface::SurfacePtr surface;
+  /// Which of its parameters belong to the part; null: the whole square. Where it is trimmed, its loops stop
+  /// the tool as edges of their own (face_target.h).
+  std::shared_ptr<const surface::FaceDomain> domain = nullptr;
 };
 
 /// A rectangle of parameters of one patch, or (patch -1) what bounds several of them. For (s, t) in
@@ -27,7 +32,8 @@ struct PatchCell {
   double radius = 0.0;                              ///< of the sphere about p that holds it, mm
   Vec2 centre = Vec2::Zero(), half = Vec2::Zero();  ///< parameters
   int patch = -1;
-  int child = -1;  ///< index of the first of two; -1: a leaf
+  int child = -1;                                     ///< index of the first of two; -1: a leaf
+  surface::Region region = surface::Region::kInside;  ///< what of it belongs to the part
 
   Vec2 low() const { return centre - half; }
   Vec2 high() const { return centre + half; }
@@ -45,6 +51,8 @@ PatchCell patch_cell(const surface::Surface& surface, int patch, const Vec2& low
 /// A part of a leaf, with the leaf's bounds.
 PatchCell part_of(const surface::Surface& surface, const PatchCell& leaf, const Vec2& centre,
                   const Vec2& half);
+/// What of a rectangle of parameters belongs to the part.
+surface::Region region_of(const Patch& patch, const Vec2& low, const Vec2& high);
 /// 0: halves of the cell by u are made of it, 1: by v; the direction in which it is longer.
 int longer_side(const PatchCell& cell);
 

@@ -29,8 +29,8 @@ Waiting whole_cell(int cell, double bound) {
 class PatchSearch {
  public:
   PatchSearch(const Setting& setting, const std::vector<PatchCell>& cells, Rest& best, PatchHint& near,
-              PatchWork& work)
-      : setting_(setting), cells_(cells), best_(best), near_(near), work_(work) {}
+              PatchWork& work, const PatchHint& loop)
+      : setting_(setting), cells_(cells), best_(best), near_(near), work_(work), loop_(loop) {}
 
   void run() {
     if (cells_.empty()) return;
@@ -46,7 +46,7 @@ class PatchSearch {
       const PatchCell& cell = cells_[static_cast<size_t>(next.cell)];
       if (next.part) {
         const surface::Surface& surface = *setting_.patches[static_cast<size_t>(cell.patch)].surface;
-        leaf(next.cell, part_of(surface, cell, next.centre, next.half));
+        leaf_part(next.cell, part_of(surface, cell, next.centre, next.half));
       } else if (cell.child < 0) {
         leaf(next.cell, cell);
       } else if (!settled(cell)) {
@@ -67,7 +67,13 @@ class PatchSearch {
   void start() {
     const bool hinted = near_.patch >= 0 && near_.patch < static_cast<int>(setting_.patches.size());
     if (hinted) climb(near_.patch, near_.uv);
+    if (!has_known_ && loop_.patch >= 0) keep_loop();
     if (!has_known_) start_near_axis();
+  }
+  /// The tool has come to rest on a loop: what bounds the patch is the support there, though it is no summit.
+  void keep_loop() {
+    const Footing at = footing_at(setting_, loop_.patch, {}, loop_.uv);
+    if (at.under()) keep(at);
   }
   void start_near_axis() {
     const PatchCell* cell = &cells_.back();
@@ -85,10 +91,17 @@ class PatchSearch {
   }
   void climb(int patch, const Vec2& uv) {
     const Footing at = settle(setting_, patch, {}, uv, work_.steps);
-    if (at.under() && (!has_known_ || at.height >= known_.height)) know(at);
+    if (at.under() && belongs(at) && (!has_known_ || at.height >= known_.height)) know(at);
+  }
+  bool trimmed(int patch) const { return setting_.patches[static_cast<size_t>(patch)].domain != nullptr; }
+  bool belongs(const Footing& at) const {
+    return !trimmed(at.patch) || setting_.patches[static_cast<size_t>(at.patch)].domain->inside(at.uv);
   }
   void know(const Footing& at) {
     take(at);
+    keep(at);
+  }
+  void keep(const Footing& at) {
     known_ = at;
     support_ = support_paraboloid(setting_.profile, setting_.line, at);
     has_known_ = true;
@@ -111,6 +124,7 @@ class PatchSearch {
 
   double bound(const PatchCell& cell) {
     ++work_.cells;
+    if (cell.region == surface::Region::kOutside) return kNothingYet;
     return cell_bound(cell, setting_.profile, setting_.line, has_known_ ? &support_ : nullptr, enough());
   }
   void push(const Waiting& waiting) {
@@ -144,11 +158,20 @@ class PatchSearch {
     if (bends > 0.25 * support_.modulus * (cell.a.squaredNorm() + cell.b.squaredNorm())) return false;
     return known_.height + excess_bound(cell, known_, setting_.profile, setting_.line) <= enough();
   }
+  void leaf_part(int index, PatchCell part) {
+    // A part of what belongs to the part whole, does.
+    if (part.region == surface::Region::kCrossing)
+      part.region = region_of(setting_.patches[static_cast<size_t>(part.patch)], part.low(), part.high());
+    leaf(index, part);
+  }
   /// Newton in the cell, then the proof; else its halves.
   void leaf(int index, const PatchCell& cell) {
     ++work_.leaves;
     const double above = bound(cell);
     if (above <= enough()) return;
+    // Its edges have been asked (face_target.h).
+    if (cell.region == surface::Region::kCrossing && rises_everywhere(cell, setting_.profile, setting_.line))
+      return;
     const UvBox box{cell.low(), cell.high()};
     Footing at = known_;
     if (!holds(cell, known_)) {
@@ -157,7 +180,7 @@ class PatchSearch {
     }
     double proven = above;
     if (at.under()) {
-      if (at.height > best_.height) {
+      if (at.height > best_.height && belongs(at)) {
         know(at);
         climb(at.patch, at.uv);
       }
@@ -192,6 +215,7 @@ class PatchSearch {
   Rest& best_;
   PatchHint& near_;
   PatchWork& work_;
+  const PatchHint& loop_;
   Footing known_;    ///< the highest so far of this part
   Support support_;  ///< of it
   bool has_known_ = false;
@@ -213,10 +237,10 @@ void PatchTarget::raise(const ToolProfile& profile, const GuideLine& line, Rest&
 }
 
 void PatchTarget::raise(const ToolProfile& profile, const GuideLine& line, Rest& best, PatchHint& near,
-                        PatchWork& work) const {
+                        PatchWork& work, const PatchHint& loop) const {
   work = {};
   const Setting setting{patches_, profile, line};
-  PatchSearch(setting, cells_, best, near, work).run();
+  PatchSearch(setting, cells_, best, near, work, loop).run();
 }
 
 }  // namespace swarf::position

@@ -34,7 +34,9 @@ struct PatchWork {
 
 /// Patches of one part, whose surfaces are shared. A patch stops a tool from both of its sides.
 ///
-/// Rest::number: the patch; kEdge: touched on the border of its square of parameters, kVertex: at a corner.
+/// Of a trimmed patch what lies inside its loops stops the tool, but not the loops themselves: who raises
+/// `best` has raised it to them before (FaceTarget). Rest::number: the patch; kEdge: touched on the border of
+/// its square of parameters, kVertex: at a corner.
 class PatchTarget {
  public:
   /// Throws as cell_tree(). Without patches it stops no tool.
@@ -45,9 +47,10 @@ class PatchTarget {
   /// depends on it by less than kPatchProof_mm. Allocates nothing (as the surfaces' evaluation does not); may
   /// be called from several threads.
   void raise(const ToolProfile& profile, const GuideLine& line, Rest& best, PatchHint& near) const;
-  /// The same, telling what it took.
-  void raise(const ToolProfile& profile, const GuideLine& line, Rest& best, PatchHint& near,
-             PatchWork& work) const;
+  /// The same, telling what it took. `loop`: where on a loop the tool rests already, for bounds near by; it
+  /// changes no result.
+  void raise(const ToolProfile& profile, const GuideLine& line, Rest& best, PatchHint& near, PatchWork& work,
+             const PatchHint& loop = {}) const;
 
   const std::vector<Patch>& patches() const { return patches_; }
   const std::vector<PatchCell>& cells() const { return cells_; }

@@ -90,9 +90,9 @@ def scene_texts():
     yield f"cl = 'part.cls'\n[post]\n{no}[post.clamping]\n{no}[post.tool_reach]\n{no}"
     yield (f"nc = 'part.ngc'\n[design]\nkind = 'nurbs'\ndegree = [1, 1]\ncount = [2, 2]\nweights = [1, 1, 1, 1]\n"
            f"poles_mm = [[0, 0, 0], [0, 1, 0], [1, 0, 0], [1, 1, 0]]\n{no}")
-    # A guide has no interval; the part is a surface or a mesh.
+    # A guide has no interval; the part is a surface, a mesh or a CAD file.
     for mode in ("scan", "contour", "spiral", "guide"):
-        for part in ("surface", "mesh"):
+        for part in ("surface", "mesh", "step"):
             yield (f"[driven]\n{part} = 'part.x'\nmode = '{mode}'\narea_mm = [[0, 0], [1, 1]]\nfloor_mm = 0\n"
                    f"compare_cam_um = [10, 1]\nlead_deg = 5\naxis = [0, 0, 1]\n{no}[interpolator]\n{no}")
     for kind in schema("scene")["properties"]["fixture"]["items"]["properties"]["kind"]["enum"]:

@@ -59,10 +59,21 @@ void read_axis(ConfigTable& table, toolpath::DrivenPlan& plan) {
 }
 
 void read_file(ConfigTable& table, DrivenSettings& driven) {
-  driven.mesh = table.has("mesh");
-  if (driven.mesh && table.has("surface"))
-    table.error("two-parts", "mesh", "the scene names a mesh and a surface as its part", "keep one of them");
-  driven.file = table.text(driven.mesh ? "mesh" : "surface");
+  const char* named = nullptr;
+  for (const char* key : {"mesh", "step", "surface"}) {
+    if (!table.has(key)) continue;
+    if (named != nullptr)
+      table.error("two-parts", named, fmt::format("the scene names a {} and a {} as its part", named, key),
+                  "keep one of them");
+    else
+      named = key;
+  }
+  const std::string key = named == nullptr ? "surface" : named;
+  driven.mesh = key == "mesh";
+  driven.step = key == "step";
+  driven.file = table.text(key);
+  if (driven.step)
+    driven.chord_mm = table.number("chord_um", kAboveZero, um_from_mm(driven.chord_mm)) * kMicrometre;
 }
 
 /// Two tolerances, as the paper's comparison has them.

@@ -8,6 +8,7 @@
 
 #include "mesh/mesh_io.h"
 #include "mesh/mesh_ops.h"
+#include "position/face_target.h"
 #include "position/mesh_target.h"
 #include "position/patch_target.h"
 
@@ -26,6 +27,18 @@ class MeshPart final : public position::Target {
   position::MeshTarget target_;
 };
 
+/// A position that is not proven drives nothing.
+[[noreturn]] void refuse_position(const position::GuideLine& line, double gap_mm) {
+  const Vec3& p = line.point_W;
+  throw InputError(
+      "position-not-proven", {},
+      fmt::format("over ({:.6f}, {:.6f}) mm the tool may have to stand {:.3g} mm higher than where "
+                  "it was found to touch: the search gave up after {} cells",
+                  p.x(), p.y(), gap_mm, position::PatchTarget::kMostLeaves),
+      "the cutter fits a hollow of the part exactly there, or runs along a wall at its own radius: "
+      "move the guide by a micrometre, or take a smaller cutter");
+}
+
 class PatchPart final : public position::Target {
  public:
   explicit PatchPart(std::vector<position::Patch> patches) : target_(std::move(patches)) {}
@@ -33,23 +46,25 @@ class PatchPart final : public position::Target {
              position::Near& near) const override {
     position::PatchWork work;
     target_.raise(profile, line, best, near.patch, work);
-    if (work.gap > position::kPatchProof_mm) refuse(line, work.gap);
+    if (work.gap > position::kPatchProof_mm) refuse_position(line, work.gap);
   }
 
  private:
-  /// A position that is not proven drives nothing.
-  [[noreturn]] static void refuse(const position::GuideLine& line, double gap_mm) {
-    const Vec3& p = line.point_W;
-    throw InputError(
-        "position-not-proven", {},
-        fmt::format("over ({:.6f}, {:.6f}) mm the tool may have to stand {:.3g} mm higher than where "
-                    "it was found to touch: the search gave up after {} cells",
-                    p.x(), p.y(), gap_mm, position::PatchTarget::kMostLeaves),
-        "the cutter fits a hollow of the part exactly there, or runs along a wall at its own radius: "
-        "move the guide by a micrometre, or take a smaller cutter");
+  position::PatchTarget target_;
+};
+
+class FacePart final : public position::Target {
+ public:
+  explicit FacePart(const std::vector<surface::Face>& faces) : target_(faces) {}
+  void raise(const position::ToolProfile& profile, const position::GuideLine& line, position::Rest& best,
+             position::Near& near) const override {
+    position::PatchWork work;
+    target_.raise(profile, line, best, near, work);
+    if (work.gap > position::kPatchProof_mm) refuse_position(line, work.gap);
   }
 
-  position::PatchTarget target_;
+ private:
+  position::FaceTarget target_;
 };
 
 Box bounds_of(const surface::Surface& surface) {
@@ -80,7 +95,7 @@ Box turned(const Box& box, const position::GuideLine& plane) {
 
 /// The rectangle around the part as seen from above.
 Box bounds_of(const Job& job) {
-  if (job.scene.driven->mesh) return mesh::bounds(*job.design_mesh);
+  if (job.design_mesh) return mesh::bounds(*job.design_mesh);
   Box box = bounds_of(*job.design.front());
   for (const surface::SurfacePtr& surface : job.design) {
     const Box one = bounds_of(*surface);
@@ -110,6 +125,8 @@ void load_driven(Job& job, Diagnostics& diagnostics) {
   part.floor_mm = driven.floor_mm;
   if (driven.mesh) {
     part.targets.push_back(std::make_shared<MeshPart>(*job.design_mesh));
+  } else if (driven.step) {
+    part.targets.push_back(std::make_shared<FacePart>(job.driven_faces));
   } else {
     std::vector<position::Patch> patches;
     for (const surface::SurfacePtr& surface : job.design) patches.push_back({surface});

@@ -231,8 +231,19 @@ void check_walls(const Job& job, Diagnostics& diagnostics) {
                   wall.mm));
 }
 
-/// The closed bodies of a CAD file; what they are and how near the facets lie is told.
-TriMesh cad_facets(const DesignSettings& design, Diagnostics& diagnostics) {
+std::vector<surface::Face> faces_of_bodies(const brep::Model& model) {
+  std::vector<surface::Face> faces;
+  for (const brep::Solid& solid : model.solids) {
+    if (!solid.closed) continue;
+    for (const size_t i : solid.faces) faces.push_back(model.faces[i]);
+  }
+  return faces;
+}
+
+/// The closed bodies of a CAD file; what they are and how near the facets lie is told. Its faces go to
+/// `faces` as they are, if that is not null.
+TriMesh cad_facets(const DesignSettings& design, std::vector<surface::Face>* faces,
+                   Diagnostics& diagnostics) {
   const SourceLocation where{design.mesh_file};
   const brep::Model model = brep::read_cad(design.mesh_file);
   for (const Diagnostic& warning : model.warnings)
@@ -257,6 +268,7 @@ TriMesh cad_facets(const DesignSettings& design, Diagnostics& diagnostics) {
           model.solids.size(), model.face_count, model.unit, model.mm_per_unit, facets.mesh.triangles.size(),
           um_from_mm(facets.chord_mm),
           facets.proven ? " (proven)" : " (proven but for faces with a crease inside)"));
+  if (faces != nullptr) *faces = faces_of_bodies(model);
   return std::move(facets.mesh);
 }
 
@@ -268,13 +280,21 @@ void load_design(Job& job, Diagnostics& diagnostics) {
     design.kind = DesignKind::kMesh;
     design.mesh_file = job.scene.driven->file;
   }
+  const bool own_faces = job.scene.driven && job.scene.driven->step;
+  if (own_faces && design.kind == DesignKind::kProgram) {
+    design.kind = DesignKind::kMesh;
+    design.mesh_key = "step";
+    design.mesh_file = job.scene.driven->file;
+    design.chord_mm = job.scene.driven->chord_mm;
+  }
   std::vector<program::SurfaceDefinition> defined = job.program.surfaces;
   if (design.kind == DesignKind::kSurface) defined = program::load_surfaces(design.surface_file);
   for (const program::SurfaceDefinition& definition : defined) job.design.push_back(definition.surface);
   if (design.kind == DesignKind::kAnalytic) job.design = design.surfaces;
   if (design.kind == DesignKind::kMesh) {
-    auto mesh = std::make_shared<TriMesh>(design.mesh_key == "step" ? cad_facets(design, diagnostics)
-                                                                    : mesh::load_mesh(design.mesh_file));
+    auto mesh = std::make_shared<TriMesh>(
+        design.mesh_key == "step" ? cad_facets(design, own_faces ? &job.driven_faces : nullptr, diagnostics)
+                                  : mesh::load_mesh(design.mesh_file));
     // An automatic box holds the design; of a raw stock that is itself at fault nothing is known.
     const StockSettings& stock = job.scene.stock;
     const bool open = stock.auto_box || (stock.raw.kind != RawKind::kBox && !stock.shape);
@@ -354,7 +374,7 @@ Job complete(Scene scene, Diagnostics diagnostics, std::vector<EarlierSetup> ear
       job.cl = program::load_cl(job.scene.program_file, &warnings, job.scene.cl_options);
     } else if (job.scene.kind == ProgramKind::kSurfaceBlocks) {
       job.program = program::load_program(job.scene.program_file, &warnings);
-    } else if (job.scene.driven && !job.scene.driven->mesh) {
+    } else if (job.scene.driven && !job.scene.driven->mesh && !job.scene.driven->step) {
       job.program.surfaces = program::load_surfaces(job.scene.program_file);
     }
   });

@@ -23,6 +23,7 @@
 #include "sim/job/post_keys.h"
 #include "sim/job/setup_keys.h"
 #include "sim/job/stock_keys.h"
+#include "surface/face.h"
 #include "toolpath/tool_path.h"
 
 namespace swarf::sim {
@@ -162,6 +163,8 @@ struct Job {
   std::shared_ptr<const toolpath::DrivenPart> driven;  ///< of a part driven by its surface: what drives it
   std::vector<surface::SurfacePtr>
       design;  ///< what the part is measured against; may be empty for jobs of blocks
+  std::vector<surface::Face>
+      driven_faces;  ///< of the CAD file that drives; its design_mesh are facets of them
   std::shared_ptr<const TriMesh> design_mesh;  ///< or a closed mesh with normals; null without one
 
   /// In the order in which they cut; the stock begins with what they have left of the body in Scene::stock.

@@ -258,7 +258,9 @@ void read_scene_driven(ConfigTable& root, const char* first, Scene& scene) {
                "keep one of program, cl, nc and [driven]");
   scene.kind = ProgramKind::kDriven;
   scene.driven = read_driven(root.table("driven"));
-  scene.program_key = scene.driven->mesh ? "driven.mesh" : "driven.surface";
+  scene.program_key = scene.driven->mesh   ? "driven.mesh"
+                      : scene.driven->step ? "driven.step"
+                                           : "driven.surface";
   scene.program_file = scene.driven->file = beside(scene.file, scene.driven->file);
 }
 
