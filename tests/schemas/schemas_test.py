@@ -93,8 +93,9 @@ def scene_texts():
     # A guide has no interval; the part is a surface, a mesh or a CAD file.
     for mode in ("scan", "contour", "spiral", "guide"):
         for part in ("surface", "mesh", "step"):
-            yield (f"[driven]\n{part} = 'part.x'\nmode = '{mode}'\narea_mm = [[0, 0], [1, 1]]\nfloor_mm = 0\n"
-                   f"compare_cam_um = [10, 1]\nlead_deg = 5\naxis = [0, 0, 1]\n{no}[interpolator]\n{no}")
+            for axis in ("lead_deg = 5", "axis = [0, 0, 1]"):
+                yield (f"[driven]\n{part} = 'part.x'\nmode = '{mode}'\narea_mm = [[0, 0], [1, 1]]\nfloor_mm = 0\n"
+                       f"compare_cam_um = [10, 1]\n{axis}\n{no}[interpolator]\n{no}")
     for kind in schema("scene")["properties"]["fixture"]["items"]["properties"]["kind"]["enum"]:
         yield f"nc = 'part.ngc'\n[[fixture]]\nkind = '{kind}'\n{no}"
     for raw in ("cylinder = {{ {0} }}", "tube = {{ {0} }}", "outline = {{ {0} }}", "mesh = 'a.stl'",

@@ -59,7 +59,7 @@ TEST(LeanedGuide, AxisIsTheNormalLeanedByLeadAndTilt) {
   for (int i = 20; i <= 160; ++i) {  // but for the ends, where the curve goes on as its reflection
     const Vec3 at(-9.0 + 0.1 * i, 2.0, std::sqrt(529.0 - std::pow(-9.0 + 0.1 * i, 2) - 4.0));
     const Vec3 normal = at.normalized(), feed = Vec3(1.0, 0.0, -at.x() / at.z()).normalized();
-    const Vec3 exact = pose_in_contact(Vec3::Zero(), normal, feed, lead, tilt, 0.0).axis_W;
+    const Vec3 exact = pose_in_contact(Vec3::Zero(), normal, feed, lead, tilt, {0.0}).axis_W;
     // Averaged over 2 mm: h^2 / 6 of the second derivative, h = .5 mm, 1/(23 mm)^2.
     ASSERT_LT((pass.guide->line(0.1 * i).axis_W - exact).norm(), 2e-4) << i;
   }
