@@ -68,9 +68,13 @@ INSTANTIATE_TEST_SUITE_P(
                   "(200.000, 200.000) mm"},
         BadDriven{"comparison", "driven.compare_cam_um=[10,-1]", "out-of-range", "a tolerance of -1 um"},
         BadDriven{"angle", "driven.angle_deg=500", "out-of-range", "from -180 to 180"},
+        BadDriven{"axis_without_length", "driven.axis=[0,0,0]", "out-of-range", "'axis' has no length"},
+        BadDriven{"lead", "driven.lead_deg=90", "out-of-range", "from -89 to 89"},
+        BadDriven{"axis_too_low", "driven.tilt_deg=88", "axis-too-low", "lead_deg or tilt_deg"},
         BadDriven{"key", "driven.angel_deg=5", "unknown-key", "did you mean 'angle_deg'?"},
         BadDriven{"one_point", "driven.guide_mm=[[0,0]]", "area-too-small", "the points of guide_mm", true},
-        BadDriven{"no_way", "driven.guide_mm=[[0,0],[0,0]]", "area-too-small", "the points of guide_mm", true},
+        BadDriven{"no_way", "driven.guide_mm=[[0,0],[0,0]]", "area-too-small", "the points of guide_mm",
+                  true},
         BadDriven{"off_the_part", "driven.guide_mm=[[0,0],[100,0]]", "guide-misses-part", "pass 1", true}),
     [](const testing::TestParamInfo<BadDriven>& one) { return std::string(one.param.name); });
 

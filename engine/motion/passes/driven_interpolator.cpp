@@ -1,10 +1,14 @@
 #include "motion/passes/driven_interpolator.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "base/check.h"
+#include "base/diagnostics.h"
+#include "position/patch_target.h"
 
 namespace swarf::motion {
 namespace {
@@ -36,6 +40,23 @@ void DrivenInterpolator::stand_on(size_t node) {
   at_.pose = there.pose;
   cell_ = std::min(node, ahead_.steps.size() - 1);
   state_ = {};
+}
+
+void DrivenInterpolator::require_progress() {
+  constexpr double kProgress_mm = 1e-4;
+  constexpr int kMostCycles = 5000;
+  if ((at_.pose.tip_W - anchor_).norm() > kProgress_mm) {
+    anchor_ = at_.pose.tip_W;
+    waits_ = 0;
+  }
+  if (++waits_ < kMostCycles) return;
+  const Vec3& p = at_.pose.tip_W;
+  throw InputError(
+      "pass-stands", {},
+      fmt::format("at ({:.6f}, {:.6f}, {:.6f}) mm the tool gets no farther: what stops it there is "
+                  "known within {:g} mm only, and the chord's tolerance finds creases in that",
+                  p.x(), p.y(), p.z(), position::kPatchProof_mm),
+      "raise driven.chord_tolerance_um, or move the guide by a micrometre");
 }
 
 void DrivenInterpolator::along_step(double length) {
@@ -87,14 +108,18 @@ DrivenOutput DrivenInterpolator::step(const DrivenInput& input) {
   const size_t last = ahead_.nodes.size() - 1;
   // What is left of a stop when the speed is gone: a thousandth of what the limit of jerk lets a cycle do.
   const double rest = 1e-3 * ahead_.limits.jerk * std::pow(period_s_, 3);
-  const bool arrives = tick.after.speed == 0.0 && ahead_.clamps.at[cell_ + 1] == 0.0 &&
-                       place.to_node_mm - tick.way_mm <= rest && input.override_share > 0.0;
+  const bool near = tick.after.speed == 0.0 && place.to_node_mm - tick.way_mm <= rest;
+  const bool stops = ahead_.clamps.at[cell_ + 1] == 0.0 && input.override_share > 0.0;
+  // Two looks at one position may differ by their proof: no way along the guide would end what is left of it.
+  const bool within_proof = tick.after.speed == 0.0 && place.to_node_mm <= position::kPatchProof_mm;
+  const bool arrives = stops && (near || within_proof);
   state_ = tick.after;
   if (arrives) {
     stand_on(cell_ + 1);
   } else if (tick.way_mm > 0.0) {
     advance(tick.way_mm);
   }
+  if (input.override_share > 0.0) require_progress();
   DrivenOutput out;
   out.at = at_;
   out.x = x_;

@@ -45,6 +45,8 @@ class DrivenInterpolator {
   /// One chord further on, or onto the end of the cell's stop.
   void advance(double length);
   void stand_on(size_t node);
+  /// Throws InputError "pass-stands" where thousands of cycles have not moved the tool.
+  void require_progress();
   void along_step(double length);
   void along_surface(double length);
 
@@ -57,6 +59,8 @@ class DrivenInterpolator {
   double x_ = 0.0;
   size_t cell_ = 0;
   SpeedState state_;
+  Vec3 anchor_ = Vec3::Zero();  ///< where the tool was when it last got on
+  int waits_ = 0;               ///< cycles since then
 };
 
 }  // namespace swarf::motion
