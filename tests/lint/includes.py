@@ -18,6 +18,7 @@ ALLOWED = {
     "kinematics": {"base"},
     "program": {"base", "surface", "kinematics"},
     "toolpath": {"base", "surface", "cutter", "position", "program", "kinematics"},
+    "flank": {"base", "surface", "cutter", "toolpath"},
     "motion": {"base", "surface", "cutter", "position", "program", "toolpath", "kinematics"},
     "machine": {"base", "mesh", "kinematics"},
     "post": {"base", "program", "toolpath", "motion", "kinematics", "machine"},

@@ -1,0 +1,171 @@
+#include "flank/flank_path.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/parallel.h"
+#include "flank/feed.h"
+
+namespace swarf::flank {
+namespace {
+
+using toolpath::BlockMove;
+
+constexpr int kFewestBlocks = 16;
+constexpr size_t kMostBlocks = 100000;
+constexpr int kDeepest = 40;
+
+/// How far the linear motion between two stations lies beside the axis surface, in terms of e.
+double stray_of(const FlankTask& task, const Station& a, const Station& b, const Station& middle) {
+  const ToolPose half = between(a.pose, b.pose);
+  const AxisError linear = axis_error(task, half, middle.u), exact = axis_error(task, middle.pose, middle.u);
+  return std::max(std::abs(linear.least_mm - exact.least_mm),
+                  std::abs(linear.greatest_mm - exact.greatest_mm));
+}
+
+void divide(const FlankTask& task, double chord, const Station& a, const Station& b, int depth,
+            std::vector<Station>& out) {
+  Station middle;
+  middle.u = 0.5 * (a.u + b.u);
+  middle.pose = pose_at(task, middle.u);
+  // A turning axis surface may pass through its chord half way: quarters are looked at too.
+  const bool close = stray_of(task, a, b, middle) <= 0.5 * chord &&
+                     (between(a.pose, b.pose).tip_W - middle.pose.tip_W).norm() <= 100.0 * chord;
+  if (close || depth >= kDeepest || out.size() > kMostBlocks) {
+    out.push_back(b);
+    return;
+  }
+  divide(task, chord, a, middle, depth + 1, out);
+  divide(task, chord, middle, b, depth + 1, out);
+}
+
+void set_feeds(const FlankTask& task, const FlankMotion& motion, std::vector<Station>& stations) {
+  const AxisFamily family(task);
+  parallel_chunks(stations.size(), 8, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      Station& at = stations[i];
+      at.bisected_mm_s =
+          bisected_feed(task, family, at.u, motion.period_s, motion.limit_mm, motion.feed_mm_s);
+      at.curvature_mm_s =
+          curvature_feed(task, family, at.u, motion.period_s, motion.limit_mm, motion.feed_mm_s);
+    }
+  });
+}
+
+double slowest(std::span<const std::vector<Station>> stations) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::vector<Station>& pass : stations)
+    for (const Station& at : pass) least = std::min(least, at.bisected_mm_s);
+  return least;
+}
+
+double feed_between(const Station& a, const Station& b, const FlankMotion& motion, FeedRule rule,
+                    double constant) {
+  switch (rule) {
+    case FeedRule::kBisected:
+      return std::min(a.bisected_mm_s, b.bisected_mm_s);
+    case FeedRule::kConstant:
+      return constant;
+    case FeedRule::kCurvature:
+      return std::min(a.curvature_mm_s, b.curvature_mm_s);
+    case FeedRule::kProgrammed:
+      break;
+  }
+  return motion.feed_mm_s;
+}
+
+/// Writes moves one behind the other.
+class PathWriter {
+ public:
+  PathWriter(const FlankMotion& motion, const SourceLocation& where) : motion_(motion), where_(where) {
+    path_.planner = "flank";
+  }
+  void begin(const ToolPose& pose) {
+    if (started_) move(pose, 0.0, -1);
+    at_ = pose;
+    started_ = true;
+  }
+  void move(const ToolPose& to, double feed, int pass) {
+    BlockMove block;
+    block.from = at_;
+    block.to = to;
+    const bool turned_rapid = feed == 0.0 && motion_.law == toolpath::BlockLaw::kEnds;
+    block.law = turned_rapid ? toolpath::BlockLaw::kTcp : motion_.law;
+    block.feed_mm_s = feed;
+    block.corner_tolerance_mm = motion_.chord_mm;
+    if (motion_.spindle_rpm != 0.0) block.spindle_rpm = motion_.spindle_rpm;
+    block.pass = pass;
+    at_ = to;
+    (feed == 0.0 ? path_.link_length_mm : path_.pass_length_mm) += toolpath::tip_way(block);
+    path_.elements.push_back({std::move(block), 0, where_});
+  }
+  const ToolPose& at() const { return at_; }
+  toolpath::ToolPath take(int passes) {
+    path_.passes = passes;
+    return std::move(path_);
+  }
+
+ private:
+  const FlankMotion& motion_;
+  SourceLocation where_;
+  toolpath::ToolPath path_;
+  ToolPose at_;
+  bool started_ = false;
+};
+
+ToolPose moved(const ToolPose& pose, const Vec3& by) {
+  return {pose.tip_W + by, pose.axis_W};
+}
+
+/// Direction in which the middle of the flank goes from a to b.
+Vec3 way_on(const FlankTask& task, const Station& a, const Station& b) {
+  const double middle = 0.5 * (task.profile.low + task.profile.high);
+  return (b.pose.tip_W - a.pose.tip_W + middle * (b.pose.axis_W - a.pose.axis_W)).normalized();
+}
+
+void write_pass(const FlankTask& task, const std::vector<Station>& stations, const FlankMotion& motion,
+                FeedRule rule, double constant, int pass, PathWriter& writer) {
+  const Station &first = stations.front(), &last = stations.back();
+  const ToolPose start = moved(first.pose, -motion.overrun_mm * way_on(task, first, stations[1]));
+  writer.begin(moved(start, motion.retract_mm * start.axis_W));
+  writer.move(start, motion.feed_mm_s, pass);
+  writer.move(first.pose, feed_between(first, first, motion, rule, constant), pass);
+  for (size_t i = 1; i < stations.size(); ++i)
+    writer.move(stations[i].pose, feed_between(stations[i - 1], stations[i], motion, rule, constant), pass);
+  const Vec3 on = motion.overrun_mm * way_on(task, stations[stations.size() - 2], last);
+  writer.move(moved(last.pose, on), feed_between(last, last, motion, rule, constant), pass);
+  writer.move(moved(writer.at(), motion.retract_mm * writer.at().axis_W), motion.feed_mm_s, pass);
+}
+
+}  // namespace
+
+std::vector<Station> stations_of(const FlankTask& task, const FlankMotion& motion,
+                                 const SourceLocation& where) {
+  std::vector<Station> stations;
+  Station before{0.0, pose_at(task, 0.0)};
+  stations.push_back(before);
+  for (int i = 1; i <= kFewestBlocks; ++i) {
+    const double u = static_cast<double>(i) / kFewestBlocks;
+    const Station next{u, pose_at(task, u)};
+    divide(task, motion.chord_mm, before, next, 0, stations);
+    before = next;
+  }
+  if (stations.size() > kMostBlocks)
+    throw InputError("too-many-blocks", where,
+                     "a flank pass needs more than 100 000 blocks within flank.chord_um",
+                     "a larger flank.chord_um needs fewer");
+  if (motion.limit_mm > 0.0) set_feeds(task, motion, stations);
+  return stations;
+}
+
+toolpath::ToolPath flank_path(std::span<const FlankTask> tasks, std::span<const std::vector<Station>> stations,
+                              const FlankMotion& motion, FeedRule rule, const SourceLocation& where) {
+  PathWriter writer(motion, where);
+  const double constant = rule == FeedRule::kConstant ? slowest(stations) : 0.0;
+  for (size_t i = 0; i < tasks.size(); ++i)
+    write_pass(tasks[i], stations[i], motion, rule, constant, static_cast<int>(i), writer);
+  return writer.take(static_cast<int>(tasks.size()));
+}
+
+}  // namespace swarf::flank
