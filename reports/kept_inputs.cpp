@@ -156,8 +156,10 @@ std::vector<std::string> keep_job(const fs::path& input, const fs::path& inside,
   const sim::Scene& scene = job.scene;
   add_what_was_open(scene.stock, all);
   say("machine", keep_machine(input / inside, scene.machine_file));
-  keep(scene.program_key, scene.program_file,
-       fs::path(kProgramFolder) / plain_name(scene.program_file, "program"));
+  // A design that is milled by the flank has no program: the scene says it all.
+  if (!scene.flank)
+    keep(scene.program_key, scene.program_file,
+         fs::path(kProgramFolder) / plain_name(scene.program_file, "program"));
   keep("tool_table", scene.tool_table_file, beside(scene.tool_table_file, "tools"));
   for (const auto& [name, file] : scene.tool_table_file.empty()
                                       ? std::vector<std::pair<std::string, std::string>>{}

@@ -8,6 +8,7 @@
 
 #include "base/units.h"
 #include "reports/driven_output.h"
+#include "reports/flank_output.h"
 #include "reports/fig6_table.h"
 
 namespace swarf::reports {
@@ -113,6 +114,9 @@ std::vector<Plot> run_plots(const sim::Job& job, const sim::Result& result) {
                           axis_plot(job, envelope, AxisKind::kRotary, true)};
   if (!result.main.ridges.empty() || planned) plots.push_back(scallop_plot(result));
   if (!result.main.dexels.empty()) plots.push_back(height_plot(job, result));
+  if (result.flank_milling) {
+    for (Plot& plot : flank_plots(result)) plots.push_back(std::move(plot));
+  }
   if (result.driven) {
     for (Plot& plot : driven_plots(result)) plots.push_back(std::move(plot));
   } else if (planned) {

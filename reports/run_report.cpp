@@ -15,6 +15,7 @@
 #include "reports/check_rows.h"
 #include "reports/cl_report.h"
 #include "reports/driven_output.h"
+#include "reports/flank_output.h"
 #include "reports/fig6_table.h"
 #include "reports/flank_table.h"
 #include "reports/nc_report.h"
@@ -414,6 +415,7 @@ ReportData report_data(const sim::Job& job, const sim::Result& result, const Run
     if (!data.paper.empty()) data.paper_title = "So et al. (2008), Table 2 and section 5";
   }
   if (result.driven) data.topics.insert(data.topics.begin(), driven_topic(result));
+  if (result.flank_milling) data.topics.insert(data.topics.begin(), flank_topic(result));
   data.checks = checks_of(result, rendered);
   data.facts = facts_of(job, result, files);
   data.facts.insert(data.facts.begin() + 1, time_facts(job, result));
@@ -463,6 +465,8 @@ std::vector<std::pair<std::string, std::string>> summary_lines(const sim::Job& j
   Lines lines = result.main.nc ? nc_lines(job, result)
                 : job.cl       ? cl_path_lines(job, result)
                                : path_lines(job, result);
+  if (result.flank_milling)
+    for (auto& line : flank_lines(result)) lines.push_back(std::move(line));
   if (result.driven)
     for (auto& line : driven_lines(result)) lines.push_back(std::move(line));
   const Lines surface = surface_lines(job, result);

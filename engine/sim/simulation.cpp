@@ -472,6 +472,7 @@ Result simulate(const Job& job, const CutOptions& options, Progress& progress) {
   measure_part(job, progress, result);
   prove_part(job, progress, result);
   measure_flank(job, progress, result);
+  if (job.scene.flank) result.flank_milling = flank_figures(job, result.main, progress);
   // A program of blocks is one path: there is nothing to compare it with.
   if (job.driven) {
     compare_driven(job, progress, result);

@@ -17,6 +17,7 @@
 #include "sim/job/clamping_check.h"
 #include "sim/job/driven_part.h"
 #include "sim/job/fixture_keys.h"
+#include "sim/job/flank_job.h"
 #include "sim/job/kept_job.h"
 #include "sim/job/memory_limit.h"
 #include "sim/job/open_job.h"
@@ -388,6 +389,8 @@ Job complete(Scene scene, Diagnostics diagnostics, std::vector<EarlierSetup> ear
     check_tools(job, diagnostics);
     check_planner_cutter(job, diagnostics);
   }
+  diagnostics.throw_if_errors();
+  if (job.scene.flank) load_flank(job, diagnostics);
   diagnostics.throw_if_errors();
   fill_open(job, diagnostics);
   diagnostics.throw_if_errors();

@@ -4,6 +4,7 @@
 
 #include "motion/blocks/dog_leg.h"
 #include "sim/job/driven_part.h"
+#include "sim/job/flank_job.h"
 #include "sim/job/nc_job.h"
 #include "toolpath/cl_path.h"
 
@@ -35,6 +36,8 @@ JobPath path_of_program(const Job& job, toolpath::Planner planner, Diagnostics& 
       return {toolpath::cl_path(*job.cl, job.scene.block_law, diagnostics, cl_tools(job)), {}};
     case ProgramKind::kDriven:
       return {driven_path(job, job.scene.driven->plan.cam_tolerance_mm, diagnostics), {}};
+    case ProgramKind::kFlank:
+      return {flank_path(job, flank_rule(job)), {}};
     case ProgramKind::kSurfaceBlocks:
       break;
   }

@@ -20,6 +20,7 @@
 #include "sim/job/assumption.h"
 #include "sim/job/design_keys.h"
 #include "sim/job/driven_keys.h"
+#include "sim/job/flank_keys.h"
 #include "sim/job/post_keys.h"
 #include "sim/job/setup_keys.h"
 #include "sim/job/stock_keys.h"
@@ -102,6 +103,7 @@ enum class ProgramKind {
   kCl,             ///< `cl`: CL data
   kNc,             ///< `nc`: a part program as a control reads it
   kDriven,         ///< [driven]: the part's own surface
+  kFlank,          ///< [flank]: a ruled design, milled by the flank
 };
 
 struct Scene {
@@ -125,6 +127,7 @@ struct Scene {
   program::Presets presets;                     ///< NC, `parameters`
   SetupSettings setup;
   std::optional<DrivenSettings> driven;  ///< of ProgramKind::kDriven
+  std::optional<FlankSettings> flank;    ///< of ProgramKind::kFlank
   std::optional<PostSettings> post;      ///< CL: the program that is written for the machine is what runs
   std::string tool_table_file;           ///< `tool_table`; "": none
   std::map<int, std::string>
@@ -154,6 +157,12 @@ struct EarlierSetup {
   bool other_run = false;  ///< it stands in the scene of that run or of one before it, not in this one
 };
 
+/// One flank pass and its block ends.
+struct FlankPass {
+  flank::FlankTask task;
+  std::vector<flank::Station> stations;
+};
+
 /// Everything that a run needs, loaded and checked; nothing has been written yet.
 struct Job {
   Scene scene;
@@ -161,6 +170,8 @@ struct Job {
   program::Program program;                            ///< of surface blocks; empty for other jobs
   std::optional<program::ClProgram> cl;                ///< of CL jobs
   std::shared_ptr<const toolpath::DrivenPart> driven;  ///< of a part driven by its surface: what drives it
+  std::vector<FlankPass> flank;  ///< of flank jobs: for each surface of the design its passes in depth
+  double flank_seconds = 0.0;    ///< that planning them took
   std::vector<surface::SurfacePtr>
       design;  ///< what the part is measured against; may be empty for jobs of blocks
   std::vector<surface::Face>

@@ -264,7 +264,18 @@ void read_scene_driven(ConfigTable& root, const char* first, Scene& scene) {
   scene.program_file = scene.driven->file = beside(scene.file, scene.driven->file);
 }
 
-/// `program`, `cl`, `nc` or [driven], exactly one of them.
+/// [flank]: the design is milled along its rulings.
+void read_scene_flank(ConfigTable& root, const char* first, Scene& scene) {
+  if (first != nullptr)
+    root.error("two-programs", first, fmt::format("the scene has [flank] and names a '{}' file", first),
+               "keep one of program, cl, nc, [driven] and [flank]");
+  scene.kind = ProgramKind::kFlank;
+  scene.flank = read_flank(root.table("flank"));
+  scene.program_key = "flank";
+  scene.program_file = scene.file;
+}
+
+/// `program`, `cl`, `nc`, [driven] or [flank], exactly one of them.
 void read_program(ConfigTable& root, std::optional<ConfigTable>& post, Scene& scene) {
   const std::array<std::pair<const char*, ProgramKind>, 3> kinds{
       {{"cl", ProgramKind::kCl}, {"nc", ProgramKind::kNc}, {"program", ProgramKind::kSurfaceBlocks}}};
@@ -282,6 +293,8 @@ void read_program(ConfigTable& root, std::optional<ConfigTable>& post, Scene& sc
     scene.program_key = key;
     scene.program_file = beside(scene.file, file);
   }
+  if (first == nullptr && root.has("driven") && root.has("flank")) first = "driven";
+  if (root.has("flank")) return read_scene_flank(root, first, scene);
   if (root.has("driven")) return read_scene_driven(root, first, scene);
   if (first == nullptr) root.text("program");  // reports that it is missing
   take_written(post, scene);
@@ -317,7 +330,8 @@ void read_scene_tools(ConfigTable& root, Scene& scene, Diagnostics& diagnostics)
   scene.tools = read_tools(root, scene.tool_table_file, diagnostics,
                            scene.kind == ProgramKind::kNc ? &scene.incomplete_tools : nullptr);
   scene.tools_in_words = root.has("tools");
-  const bool planned = scene.kind == ProgramKind::kSurfaceBlocks || scene.kind == ProgramKind::kDriven;
+  const bool planned = scene.kind == ProgramKind::kSurfaceBlocks || scene.kind == ProgramKind::kDriven ||
+                       scene.kind == ProgramKind::kFlank;
   if (!planned || scene.tools.size() == 1) return;
   root.error("planner-needs-one-tool", "tool",
              fmt::format("a path is planned for one cutter, the scene has {}", scene.tools.size()),
@@ -326,7 +340,7 @@ void read_scene_tools(ConfigTable& root, Scene& scene, Diagnostics& diagnostics)
 
 /// A program of blocks without a machine is for the generic mill.
 void read_machine(ConfigTable& root, Scene& scene) {
-  scene.machine_assumed = scene.kind != ProgramKind::kSurfaceBlocks && !root.has("machine");
+  scene.machine_assumed = scene.kind != ProgramKind::kSurfaceBlocks && scene.kind != ProgramKind::kFlank && !root.has("machine");
   const std::string written = root.text(
       "machine", scene.machine_assumed ? std::optional<std::string>(kGenericMachine) : std::nullopt);
   if (written.empty()) return;
@@ -377,7 +391,7 @@ void read_scene(ConfigTable& root, Scene& scene, Diagnostics& diagnostics, int s
   if (setup > 0)
     scene.title += fmt::format(", set-up {}{}", setup,
                                scene.setup.name.empty() ? "" : ": " + utf8_only(scene.setup.name));
-  const bool blocks = scene.kind == ProgramKind::kCl || scene.kind == ProgramKind::kNc;  // it brings its own
+  const bool blocks = scene.kind != ProgramKind::kSurfaceBlocks && !scene.driven;  // they say nothing of stock
   scene.stock = read_stock(root.table("stock"), scene.tools, blocks, diagnostics);
   // As a CAM system would have written it.
   if (scene.driven && scene.driven->plan.cam_tolerance_mm > 0.0) scene.stock.cut_by = CutBy::kBlocks;

@@ -19,6 +19,7 @@
 #include "sim/run/carried_cuts.h"
 #include "sim/run/contact_event.h"
 #include "sim/run/cut_stage.h"
+#include "sim/run/flank_figures.h"
 #include "sim/run/job_sweeps.h"
 #include "sim/run/machine_contacts.h"
 #include "sim/run/memory.h"
@@ -91,6 +92,7 @@ struct Result {
   double volume_error_bound_mm3 = 0.0;  ///< proven: neither is farther from the truth (stock_volume.cpp)
   std::optional<measure::CrossCheck> cross_check;  ///< none: no ray of a parametric design could be compared
   ToolClearance clearance;
+  std::optional<FlankFigures> flank_milling;  ///< of flank jobs
   std::optional<measure::FlankError> flank;  ///< of a ruled design and a cutter with a cylindrical flank
   std::optional<motion::SingularityScan> singularity;  ///< of blocks on a machine with a pole
   CutOutcome cut;

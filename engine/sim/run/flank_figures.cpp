@@ -1,0 +1,263 @@
+#include "sim/run/flank_figures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <optional>
+
+#include "base/parallel.h"
+#include "flank/envelope.h"
+#include "measure/flank_error.h"
+#include "motion/blocks/block_motion.h"
+#include "motion/interpolator.h"
+#include "sim/job/flank_job.h"
+#include "sim/run/result.h"
+
+namespace swarf::sim {
+namespace {
+
+using flank::PoseTrack;
+
+/// Between the poses that a track takes of a block nothing strays farther than this, mm.
+constexpr double kTrackTolerance = 1e-5;
+
+int pass_of(const toolpath::Elements& elements, size_t element) {
+  return elements.block(element).pass;
+}
+
+/// The poses of every pass as its blocks ask for them.
+std::vector<std::vector<ToolPose>> block_poses(const Job& job, const motion::Cycles& cycles) {
+  std::vector<std::vector<ToolPose>> poses(job.flank.size());
+  const double lever = job.flank.front().task.profile.high;
+  for (size_t i = 0; i < cycles.elements().size(); ++i) {
+    const int pass = pass_of(cycles.elements(), i);
+    if (pass < 0) continue;
+    auto& own = poses[static_cast<size_t>(pass)];
+    const std::vector<ToolPose> steps = motion::subdivide(cycles.motions()[i], lever, kTrackTolerance);
+    own.insert(own.end(), steps.begin() + (own.empty() ? 0 : 1), steps.end());
+  }
+  return poses;
+}
+
+std::vector<std::vector<ToolPose>> cycle_poses(const Job& job, const motion::Cycles& cycles) {
+  std::vector<std::vector<ToolPose>> poses(job.flank.size());
+  motion::CycleReader reader(cycles);
+  for (size_t k = 0; k < cycles.size(); ++k) {
+    const motion::ToolSample& sample = reader.at(k).sample;
+    const int pass = pass_of(cycles.elements(), static_cast<size_t>(sample.element));
+    if (pass >= 0) poses[static_cast<size_t>(pass)].push_back(sample.pose);
+  }
+  return poses;
+}
+
+/// The envelope of all passes over one surface.
+class SurfaceEnvelope {
+ public:
+  SurfaceEnvelope(const Job& job, const std::vector<std::vector<ToolPose>>& poses, size_t surface) {
+    const auto depths = static_cast<size_t>(job.scene.flank->depth_passes);
+    for (size_t k = surface * depths; k < (surface + 1) * depths; ++k)
+      tracks_.emplace_back(poses[k], job.flank[k].task.profile);
+  }
+  std::optional<double> height(const Vec3& point, const Vec3& normal) const {
+    std::optional<double> least;
+    for (const PoseTrack& track : tracks_) {
+      const std::optional<double> own = track.height(point, normal);
+      if (own && (!least || *own < *least)) least = own;
+    }
+    return least;
+  }
+
+ private:
+  std::vector<PoseTrack> tracks_;
+};
+
+using Heights = std::vector<std::optional<double>>;
+
+/// Over every ray of a surface.
+Heights heights_of(const SurfaceEnvelope& envelope, const stock::SurfaceDexels& dexels) {
+  Heights heights(dexels.points().size());
+  parallel_chunks(heights.size(), 16, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i)
+      heights[i] = envelope.height(dexels.points()[i], dexels.normals()[i]);
+  });
+  return heights;
+}
+
+void add_heights(const Heights& heights, const stock::SurfaceDexels& dexels, FlankHeights& all) {
+  for (size_t i = 0; i < heights.size(); ++i) {
+    if (!heights[i]) continue;
+    all.greatest_mm = std::max(all.greatest_mm, *heights[i]);
+    if (*heights[i] < all.least_mm) {
+      all.least_mm = *heights[i];
+      all.least_W = dexels.points()[i];
+    }
+  }
+}
+
+void compare(const Heights& predicted, const stock::SurfaceDexels& dexels, FlankFigures& figures) {
+  for (size_t i = 0; i < predicted.size(); ++i) {
+    if (!predicted[i]) {
+      ++figures.rays_elsewhere;
+      continue;
+    }
+    ++figures.rays_compared;
+    const double difference = std::abs(*predicted[i] - dexels.heights_mm()[i]);
+    if (difference <= figures.difference_max_mm) continue;
+    figures.difference_max_mm = difference;
+    figures.difference_W = dexels.points()[i];
+  }
+}
+
+std::vector<FlankProfileRow> profile_of(const Heights& predicted, const stock::SurfaceDexels& dexels) {
+  std::vector<FlankProfileRow> rows;
+  for (int iu = 0; iu < dexels.nu(); ++iu) {
+    FlankProfileRow row;
+    row.u = dexels.u(iu);
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    row.predicted_least_mm = row.measured_least_mm = kInfinity;
+    row.predicted_greatest_mm = row.measured_greatest_mm = -kInfinity;
+    for (int iv = 0; iv < dexels.nv(); ++iv) {
+      const auto i = static_cast<size_t>(iv * dexels.nu() + iu);
+      if (!predicted[i]) continue;
+      row.predicted_least_mm = std::min(row.predicted_least_mm, *predicted[i]);
+      row.predicted_greatest_mm = std::max(row.predicted_greatest_mm, *predicted[i]);
+      row.measured_least_mm = std::min(row.measured_least_mm, dexels.heights_mm()[i]);
+      row.measured_greatest_mm = std::max(row.measured_greatest_mm, dexels.heights_mm()[i]);
+    }
+    if (std::isfinite(row.predicted_least_mm)) rows.push_back(row);
+  }
+  return rows;
+}
+
+void add_envelopes(const Job& job, const MeasuredPath& measured, FlankFigures& figures) {
+  const auto blocks = block_poses(job, *measured.cycles), cycles = cycle_poses(job, *measured.cycles);
+  const bool by_cycles = job.scene.stock.cut_by == CutBy::kCycles;
+  for (size_t s = 0; s < measured.dexels.size(); ++s) {
+    const stock::SurfaceDexels& dexels = measured.dexels[s];
+    const Heights of_blocks = heights_of({job, blocks, s}, dexels);
+    const Heights of_cycles = heights_of({job, cycles, s}, dexels);
+    add_heights(of_blocks, dexels, figures.blocks_left);
+    add_heights(of_cycles, dexels, figures.cycles_left);
+    const Heights& cut = by_cycles ? of_cycles : of_blocks;
+    compare(cut, dexels, figures);
+    if (s == 0) figures.profile = profile_of(cut, dexels);
+  }
+}
+
+/// e of the chords that the cycles of a path make.
+class ChordErrors {
+ public:
+  ChordErrors(const Job& job, const motion::Cycles& cycles) : job_(job), elements_(cycles.elements()) {
+    motion::CycleReader reader(cycles);
+    std::optional<motion::ToolSample> last;
+    int last_pass = -1;
+    for (size_t k = 0; k < cycles.size(); ++k) {
+      const motion::ToolSample sample = reader.at(k).sample;
+      const int pass = pass_of(elements_, static_cast<size_t>(sample.element));
+      if (pass != last_pass) u_ = 0.0;
+      if (pass >= 0 && pass == last_pass) add(flank::between(last->pose, sample.pose), pass);
+      last = sample;
+      last_pass = pass;
+    }
+  }
+  double least_mm = 0.0, greatest_mm = 0.0;
+
+ private:
+  void add(const ToolPose& pose, int pass) {
+    const flank::FlankTask& task = job_.flank[static_cast<size_t>(pass)].task;
+    const double middle = 0.5 * (std::max(task.profile.low, task.tip_below_mm) + task.profile.high);
+    const flank::Foot foot =
+        flank::foot_of(*task.surface, pose.tip_W + middle * pose.axis_W, std::clamp(u_, 0.0, 1.0), 0.5);
+    if (!(foot.u > 0.0 && foot.u < 1.0)) return;
+    u_ = foot.u;
+    const flank::AxisError error = flank::axis_error(task, pose, foot.u);
+    least_mm = std::min(least_mm, error.least_mm);
+    greatest_mm = std::max(greatest_mm, error.greatest_mm);
+  }
+  const Job& job_;
+  const toolpath::Elements& elements_;
+  double u_ = 0.0;
+};
+
+FlankFeedRow feed_row(const Job& job, const MeasuredPath& measured, flank::FeedRule rule,
+                      const std::string& name) {
+  FlankFeedRow row;
+  row.name = name;
+  row.used = rule == flank_rule(job);
+  motion::MotionResult result;
+  std::unique_ptr<motion::Cycles> own;
+  const motion::Cycles* cycles = measured.cycles.get();
+  if (row.used) {
+    result.statistics = measured.motion.statistics;
+  } else {
+    own = std::make_unique<motion::Cycles>(flank_path(job, rule).elements, machines_by_tool(job),
+                                           job.scene.tools.front(), job.scene.motion);
+    Progress silent;
+    result = motion::interpolate(*own, silent);
+    cycles = own.get();
+  }
+  const ChordErrors errors(job, *cycles);
+  row.least_mm = errors.least_mm;
+  row.greatest_mm = errors.greatest_mm;
+  row.time_s = result.statistics.time_s;
+  const double feeding = result.statistics.cycle.feed_s;
+  row.feed_mean_mm_s = feeding > 0.0 ? result.statistics.path_length_mm / feeding : 0.0;
+  return row;
+}
+
+void add_geometry(const Job& job, FlankFigures& figures) {
+  const auto depths = static_cast<size_t>(job.scene.flank->depth_passes);
+  figures.surfaces = job.design.size();
+  figures.passes = job.flank.size();
+  for (const FlankPass& pass : job.flank) figures.blocks += pass.stations.size() - 1;
+  figures.plan_seconds = job.flank_seconds;
+  constexpr int kRulings = 256;
+  for (const FlankPass& pass : job.flank)
+    for (int i = 0; i <= kRulings; ++i)
+      figures.twist_max_rad = std::max(
+          figures.twist_max_rad, measure::ruling_twist(*pass.task.surface, static_cast<double>(i) / kRulings));
+  const flank::FlankTask& first = job.flank.front().task;
+  const double radius = std::max(flank::ball_radius(first.profile, first.profile.low),
+                                 flank::ball_radius(first.profile, first.profile.high));
+  figures.twist_bound_mm = radius * (1.0 - std::cos(0.5 * figures.twist_max_rad));
+  for (const flank::Placement placement :
+       {flank::Placement::kPublished, flank::Placement::kBalanced, flank::Placement::kMinimax}) {
+    FlankPlacementRow row{flank::placement_name(placement), {}, placement == job.scene.flank->placement};
+    for (size_t k = depths - 1; k < job.flank.size(); k += depths) {
+      flank::FlankTask task = job.flank[k].task;
+      task.placement = placement;
+      const flank::WorstError worst = flank::worst_error(task);
+      if (std::abs(worst.mm) > std::abs(row.worst.mm)) row.worst = worst;
+    }
+    figures.placements.push_back(row);
+  }
+  figures.guides = {flank::guide_figures(*first.surface, 0.0), flank::guide_figures(*first.surface, 1.0)};
+  const double corner = figures.guides[0].radius_min_mm, period = job.scene.motion.period_s;
+  if (std::isfinite(corner)) {
+    figures.feed_1um_mm_s = flank::sagitta_feed(corner, period, 1e-3);
+    figures.feed_5um_mm_s = flank::sagitta_feed(corner, period, 5e-3);
+  }
+}
+
+}  // namespace
+
+FlankFigures flank_figures(const Job& job, const MeasuredPath& measured, Progress& progress) {
+  progress.begin("flank: envelope and feeds", 3, "steps");
+  FlankFigures figures;
+  add_geometry(job, figures);
+  progress.advance(1);
+  add_envelopes(job, measured, figures);
+  progress.advance(2);
+  using flank::FeedRule;
+  if (job.scene.flank->motion.limit_mm > 0.0) {
+    figures.feeds.push_back(feed_row(job, measured, FeedRule::kBisected, "bisected"));
+    figures.feeds.push_back(feed_row(job, measured, FeedRule::kConstant, "constant, same limit"));
+    figures.feeds.push_back(feed_row(job, measured, FeedRule::kCurvature, "curvature of the guides alone"));
+  }
+  figures.feeds.push_back(feed_row(job, measured, FeedRule::kProgrammed, "as programmed"));
+  progress.end();
+  return figures;
+}
+
+}  // namespace swarf::sim

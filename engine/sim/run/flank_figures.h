@@ -1,0 +1,63 @@
+// What flank milling has come to: the error of each placement, the envelope that the motion was to leave
+// beside what the rays have met, and the time of each rule of feed.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "base/progress.h"
+#include "flank/feed.h"
+#include "sim/job/scene.h"
+
+namespace swarf::sim {
+
+struct MeasuredPath;
+
+/// Least and greatest height of an envelope over the rays, mm; below 0: too deep.
+struct FlankHeights {
+  double least_mm = 0.0, greatest_mm = 0.0;
+  Vec3 least_W = Vec3::Zero();  ///< where the least is
+};
+
+struct FlankPlacementRow {
+  std::string name;
+  flank::WorstError worst;
+  bool used = false;
+};
+
+/// One rule of feed on the same blocks.
+struct FlankFeedRow {
+  std::string name;
+  double time_s = 0.0, feed_mean_mm_s = 0.0;
+  double least_mm = 0.0, greatest_mm = 0.0;  ///< e of the chords of all its cycles
+  bool used = false;
+};
+
+/// Heights at one u over all v: a line of the plot.
+struct FlankProfileRow {
+  double u = 0.0, predicted_least_mm = 0.0, predicted_greatest_mm = 0.0;
+  double measured_least_mm = 0.0, measured_greatest_mm = 0.0;
+};
+
+struct FlankFigures {
+  size_t surfaces = 0, passes = 0, blocks = 0;
+  double plan_seconds = 0.0;
+  double twist_max_rad = 0.0;  ///< of the rulings, all surfaces
+  double twist_bound_mm = 0.0;  ///< r(1-cos(psi/2)) of the published placement, r of the widest place (E18)
+  std::array<flank::GuideFigures, 2> guides;     ///< of the first surface
+  std::vector<FlankPlacementRow> placements;     ///< the worst of all surfaces, lowest pass
+  double feed_1um_mm_s = 0.0, feed_5um_mm_s = 0.0;  ///< at the tightest corner of guide 0, the curve alone
+  FlankHeights blocks_left, cycles_left;  ///< predicted, of the motion as blocks ask and as cycles make it
+  size_t rays_compared = 0;
+  size_t rays_elsewhere = 0;  ///< that no flank is near, or only an end of one: not compared
+  double difference_max_mm = 0.0;  ///< of prediction (of what cut the rays) and ray
+  Vec3 difference_W = Vec3::Zero();
+  std::vector<FlankFeedRow> feeds;
+  std::vector<FlankProfileRow> profile;  ///< of the first surface
+};
+
+/// Of a [flank] job whose rays have been cut.
+FlankFigures flank_figures(const Job& job, const MeasuredPath& measured, Progress& progress);
+
+}  // namespace swarf::sim
