@@ -31,19 +31,20 @@ double sagitta_feed(double radius_mm, double period_s, double error_mm) {
   return 2.0 / period_s * std::sqrt(2.0 * radius_mm * e - e * e);
 }
 
-AxisFamily::AxisFamily(const FlankTask& task) {
+AxisFamily::AxisFamily(const FlankTask& task) : u_low_(task.u_low), u_high_(task.u_high) {
+  const double step = (u_high_ - u_low_) / (kFamilyNodes - 1);
   std::array<std::vector<double>, 6> values;
   for (std::vector<double>& column : values) column.resize(kFamilyNodes);
   parallel_chunks(kFamilyNodes, 16, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
-      const ToolPose pose = pose_at(task, static_cast<double>(i) / (kFamilyNodes - 1));
+      const ToolPose pose = pose_at(task, u_low_ + static_cast<double>(i) * step);
       for (size_t k = 0; k < 3; ++k) {
         values[k][i] = pose.tip_W[static_cast<Eigen::Index>(k)];
         values[k + 3][i] = pose.axis_W[static_cast<Eigen::Index>(k)];
       }
     }
   });
-  for (size_t k = 0; k < 6; ++k) values_[k] = CubicSpline(0.0, 1.0 / (kFamilyNodes - 1), values[k]);
+  for (size_t k = 0; k < 6; ++k) values_[k] = CubicSpline(u_low_, step, values[k]);
 }
 
 ToolPose AxisFamily::pose(double u) const {
@@ -56,7 +57,7 @@ ToolPose AxisFamily::pose(double u) const {
 }
 
 double AxisFamily::tip_rate(double u) const {
-  const double low = std::max(0.0, u - kRateStep), high = std::min(1.0, u + kRateStep);
+  const double low = std::max(u_low_, u - kRateStep), high = std::min(u_high_, u + kRateStep);
   return (pose(high).tip_W - pose(low).tip_W).norm() / (high - low);
 }
 
@@ -67,8 +68,8 @@ ToolPose between(const ToolPose& a, const ToolPose& b, double share) {
 
 AxisError chord_error(const FlankTask& task, const AxisFamily& family, double u, double chord_mm) {
   const double half = 0.5 * chord_mm / family.tip_rate(u);
-  const double at = std::clamp(u, half, std::max(half, 1.0 - half));
-  const ToolPose from = family.pose(std::max(0.0, at - half)), to = family.pose(std::min(1.0, at + half));
+  const ToolPose from = family.pose(std::max(task.u_low, u - half)),
+                 to = family.pose(std::min(task.u_high, u + half));
   return axis_error(task, between(from, to), u);
 }
 

@@ -15,13 +15,14 @@ double sagitta_feed(double radius_mm, double period_s, double error_mm);
 /// The poses of all rulings, splined once: what is asked often.
 class AxisFamily {
  public:
-  /// 2049 rulings; parallel.
+  /// 2049 rulings from u_low to u_high; parallel.
   explicit AxisFamily(const FlankTask& task);
   ToolPose pose(double u) const;
   /// Way of the tip, mm per unit of u.
   double tip_rate(double u) const;
 
  private:
+  double u_low_, u_high_;
   std::array<CubicSpline, 6> values_;  ///< tip xyz, axis ijk
 };
 

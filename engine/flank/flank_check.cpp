@@ -19,9 +19,10 @@ std::string place_of(const surface::Surface& S, double u, double v) {
 }
 
 /// Both ends of every ruling; Su x Sv is linear in v, so nothing between them escapes.
-bool check_rulings(const surface::Surface& S, const SourceLocation& where, Diagnostics& diagnostics) {
+bool check_rulings(const FlankTask& task, const SourceLocation& where, Diagnostics& diagnostics) {
+  const surface::Surface& S = *task.surface;
   for (int i = 0; i <= kRulings; ++i) {
-    const double u = static_cast<double>(i) / kRulings;
+    const double u = task.u_low + (task.u_high - task.u_low) * i / kRulings;
     const surface::Derivatives a = S.derivatives(u, 0.0), b = S.derivatives(u, 1.0);
     if (a.Sv.norm() < kNoLength || a.Su.norm() < kNoLength || b.Su.norm() < kNoLength) {
       diagnostics.error("no-ruling", where,
@@ -93,7 +94,7 @@ void check_hollows(const FlankTask& task, const SourceLocation& where, Diagnosti
 }  // namespace
 
 void check_task(const FlankTask& task, const SourceLocation& where, Diagnostics& diagnostics) {
-  if (!check_rulings(*task.surface, where, diagnostics)) return;
+  if (!check_rulings(task, where, diagnostics)) return;
   check_hollows(task, where, diagnostics);
   if (!diagnostics.has_errors()) check_reach(task, where, diagnostics);
 }

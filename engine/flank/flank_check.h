@@ -6,7 +6,7 @@
 
 namespace swarf::flank {
 
-/// Errors at `where`, on 257 rulings and 9 places of each:
+/// Errors at `where`, on 257 rulings and 9 places of each; what lies between them is not looked at:
 ///   "no-ruling"         a ruling or a guide curve without length
 ///   "guides-opposed"    guide curves that run in opposite directions, or rulings that cross between them
 ///   "cutter-too-short"  the flank does not reach over the ruling

@@ -29,7 +29,6 @@ void divide(const FlankTask& task, double chord, const Station& a, const Station
   Station middle;
   middle.u = 0.5 * (a.u + b.u);
   middle.pose = pose_at(task, middle.u);
-  // A turning axis surface may pass through its chord half way: quarters are looked at too.
   const bool close = stray_of(task, a, b, middle) <= 0.5 * chord &&
                      (between(a.pose, b.pose).tip_W - middle.pose.tip_W).norm() <= 100.0 * chord;
   if (close || depth >= kDeepest || out.size() > kMostBlocks) {
@@ -82,25 +81,24 @@ class PathWriter {
     path_.planner = "flank";
   }
   void begin(const ToolPose& pose) {
-    if (started_) move(pose, 0.0, -1);
+    if (started_) move(pose, 0.0, -1, true);
     at_ = pose;
     started_ = true;
   }
-  void move(const ToolPose& to, double feed, int pass) {
+  void move(const ToolPose& to, double feed, int pass, bool stop = false) {
     BlockMove block;
     block.from = at_;
     block.to = to;
     const bool turned_rapid = feed == 0.0 && motion_.law == toolpath::BlockLaw::kEnds;
     block.law = turned_rapid ? toolpath::BlockLaw::kTcp : motion_.law;
     block.feed_mm_s = feed;
-    block.corner_tolerance_mm = motion_.chord_mm;
+    block.exact_stop = stop;
     if (motion_.spindle_rpm != 0.0) block.spindle_rpm = motion_.spindle_rpm;
     block.pass = pass;
     at_ = to;
     (feed == 0.0 ? path_.link_length_mm : path_.pass_length_mm) += toolpath::tip_way(block);
     path_.elements.push_back({std::move(block), 0, where_});
   }
-  const ToolPose& at() const { return at_; }
   toolpath::ToolPath take(int passes) {
     path_.passes = passes;
     return std::move(path_);
@@ -118,24 +116,16 @@ ToolPose moved(const ToolPose& pose, const Vec3& by) {
   return {pose.tip_W + by, pose.axis_W};
 }
 
-/// Direction in which the middle of the flank goes from a to b.
-Vec3 way_on(const FlankTask& task, const Station& a, const Station& b) {
-  const double middle = 0.5 * (task.profile.low + task.profile.high);
-  return (b.pose.tip_W - a.pose.tip_W + middle * (b.pose.axis_W - a.pose.axis_W)).normalized();
-}
-
-void write_pass(const FlankTask& task, const std::vector<Station>& stations, const FlankMotion& motion,
-                FeedRule rule, double constant, int pass, PathWriter& writer) {
-  const Station &first = stations.front(), &last = stations.back();
-  const ToolPose start = moved(first.pose, -motion.overrun_mm * way_on(task, first, stations[1]));
-  writer.begin(moved(start, motion.retract_mm * start.axis_W));
-  writer.move(start, motion.feed_mm_s, pass);
-  writer.move(first.pose, feed_between(first, first, motion, rule, constant), pass);
+void write_pass(const std::vector<Station>& stations, const FlankMotion& motion, FeedRule rule, double constant,
+                int pass, PathWriter& writer) {
+  const ToolPose &first = stations.front().pose, &last = stations.back().pose;
+  writer.begin(moved(first, motion.retract_mm * first.axis_W));
+  // Along its own axis a tool stops: a rounded corner would leave the flank's surface.
+  writer.move(first, motion.feed_mm_s, pass, true);
   for (size_t i = 1; i < stations.size(); ++i)
-    writer.move(stations[i].pose, feed_between(stations[i - 1], stations[i], motion, rule, constant), pass);
-  const Vec3 on = motion.overrun_mm * way_on(task, stations[stations.size() - 2], last);
-  writer.move(moved(last.pose, on), feed_between(last, last, motion, rule, constant), pass);
-  writer.move(moved(writer.at(), motion.retract_mm * writer.at().axis_W), motion.feed_mm_s, pass);
+    writer.move(stations[i].pose, feed_between(stations[i - 1], stations[i], motion, rule, constant), pass,
+                i + 1 == stations.size());
+  writer.move(moved(last, motion.retract_mm * last.axis_W), motion.feed_mm_s, pass);
 }
 
 }  // namespace
@@ -143,10 +133,10 @@ void write_pass(const FlankTask& task, const std::vector<Station>& stations, con
 std::vector<Station> stations_of(const FlankTask& task, const FlankMotion& motion,
                                  const SourceLocation& where) {
   std::vector<Station> stations;
-  Station before{0.0, pose_at(task, 0.0)};
+  Station before{task.u_low, pose_at(task, task.u_low)};
   stations.push_back(before);
   for (int i = 1; i <= kFewestBlocks; ++i) {
-    const double u = static_cast<double>(i) / kFewestBlocks;
+    const double u = task.u_low + (task.u_high - task.u_low) * i / kFewestBlocks;
     const Station next{u, pose_at(task, u)};
     divide(task, motion.chord_mm, before, next, 0, stations);
     before = next;
@@ -159,13 +149,13 @@ std::vector<Station> stations_of(const FlankTask& task, const FlankMotion& motio
   return stations;
 }
 
-toolpath::ToolPath flank_path(std::span<const FlankTask> tasks, std::span<const std::vector<Station>> stations,
-                              const FlankMotion& motion, FeedRule rule, const SourceLocation& where) {
+toolpath::ToolPath flank_path(std::span<const std::vector<Station>> stations, const FlankMotion& motion,
+                              FeedRule rule, const SourceLocation& where) {
   PathWriter writer(motion, where);
   const double constant = rule == FeedRule::kConstant ? slowest(stations) : 0.0;
-  for (size_t i = 0; i < tasks.size(); ++i)
-    write_pass(tasks[i], stations[i], motion, rule, constant, static_cast<int>(i), writer);
-  return writer.take(static_cast<int>(tasks.size()));
+  for (size_t i = 0; i < stations.size(); ++i)
+    write_pass(stations[i], motion, rule, constant, static_cast<int>(i), writer);
+  return writer.take(static_cast<int>(stations.size()));
 }
 
 }  // namespace swarf::flank

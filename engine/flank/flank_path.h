@@ -1,6 +1,6 @@
 // A tool path of blocks along the rulings.
 //
-//      rapid to above the start | down the axis | straight on to u = 0 | rulings u = 0 .. 1 | straight on | up
+//      rapid to above the start | down the axis | rulings u_low .. 0 | 0 .. 1 | 1 .. u_high | up the axis
 #pragma once
 
 #include <span>
@@ -24,7 +24,7 @@ struct FlankMotion {
   double limit_mm = 0.0;     ///< of |e|; 0: none, then kProgrammed is the only rule
   double period_s = 1e-3;    ///< of the control
   double chord_mm = 1e-4;    ///< blocks stay this close to the axis surface
-  double overrun_mm = 10.0;  ///< the tool goes straight on at both ends
+  double overrun_mm = 10.0;  ///< the surface is continued at both ends
   double retract_mm = 50.0;  ///< along its axis, before and after
   double spindle_rpm = 0.0;  ///< 0: nobody says
   toolpath::BlockLaw law = toolpath::BlockLaw::kTcp;
@@ -43,7 +43,7 @@ std::vector<Station> stations_of(const FlankTask& task, const FlankMotion& motio
                                  const SourceLocation& where);
 
 /// Passes in order, each one pass of the path.
-toolpath::ToolPath flank_path(std::span<const FlankTask> tasks, std::span<const std::vector<Station>> stations,
-                              const FlankMotion& motion, FeedRule rule, const SourceLocation& where);
+toolpath::ToolPath flank_path(std::span<const std::vector<Station>> stations, const FlankMotion& motion,
+                              FeedRule rule, const SourceLocation& where);
 
 }  // namespace swarf::flank

@@ -39,6 +39,7 @@ struct FlankTask {
   FlankProfile profile;
   Placement placement = Placement::kMinimax;
   double tip_below_mm = 1.0;  ///< c0: the tip reaches this far below guide curve 0; below 0: it ends above it
+  double u_low = 0.0, u_high = 1.0;  ///< rulings of the pass: beyond [0,1] where it overruns
 };
 
 /// The foot of the perpendicular from a point on the surface, from a place nearby.

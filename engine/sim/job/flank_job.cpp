@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "base/units.h"
-#include "flank/feed.h"
+#include "flank/extended_surface.h"
 #include "flank/flank_check.h"
 #include "measure/flank_error.h"
 
@@ -43,8 +43,11 @@ void check_limit(const FlankSettings& settings, const flank::FlankTask& task, Di
 void add_tasks(const FlankSettings& settings, const surface::SurfacePtr& surface,
                const flank::FlankProfile& profile, std::vector<FlankPass>& passes) {
   const double step = longest_ruling(*surface) / settings.depth_passes;
+  const surface::SurfacePtr on = flank::extended(surface);
+  const double before = settings.motion.overrun_mm / on->derivatives(0.0, 0.5).Su.norm();
+  const double behind = settings.motion.overrun_mm / on->derivatives(1.0, 0.5).Su.norm();
   for (int k = settings.depth_passes - 1; k >= 0; --k)
-    passes.push_back({{surface, profile, settings.placement, settings.tip_below_mm - k * step}, {}});
+    passes.push_back({{on, profile, settings.placement, settings.tip_below_mm - k * step, -before, 1.0 + behind}, {}});
 }
 
 }  // namespace
@@ -90,13 +93,9 @@ flank::FeedRule flank_rule(const Job& job) {
 }
 
 toolpath::ToolPath flank_path(const Job& job, flank::FeedRule rule) {
-  std::vector<flank::FlankTask> tasks;
   std::vector<std::vector<flank::Station>> stations;
-  for (const FlankPass& pass : job.flank) {
-    tasks.push_back(pass.task);
-    stations.push_back(pass.stations);
-  }
-  return flank::flank_path(tasks, stations, flank_motion(job), rule, job.scene.flank->where);
+  for (const FlankPass& pass : job.flank) stations.push_back(pass.stations);
+  return flank::flank_path(stations, flank_motion(job), rule, job.scene.flank->where);
 }
 
 }  // namespace swarf::sim

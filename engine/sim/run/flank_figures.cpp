@@ -97,7 +97,8 @@ void add_heights(const Heights& heights, const stock::SurfaceDexels& dexels, Fla
 
 void compare(const Heights& predicted, const stock::SurfaceDexels& dexels, FlankFigures& figures) {
   for (size_t i = 0; i < predicted.size(); ++i) {
-    if (!predicted[i]) {
+    // Where nothing was cut the stock ends below the envelope.
+    if (!predicted[i] || dexels.blocks()[i] == stock::kUncut) {
       ++figures.rays_elsewhere;
       continue;
     }

@@ -50,7 +50,7 @@ struct FlankFigures {
   double feed_1um_mm_s = 0.0, feed_5um_mm_s = 0.0;  ///< at the tightest corner of guide 0, the curve alone
   FlankHeights blocks_left, cycles_left;  ///< predicted, of the motion as blocks ask and as cycles make it
   size_t rays_compared = 0;
-  size_t rays_elsewhere = 0;  ///< that no flank is near, or only an end of one: not compared
+  size_t rays_elsewhere = 0;  ///< that no flank is near, or only an end of one, or no stock: not compared
   double difference_max_mm = 0.0;  ///< of prediction (of what cut the rays) and ray
   Vec3 difference_W = Vec3::Zero();
   std::vector<FlankFeedRow> feeds;
