@@ -10,21 +10,21 @@
 namespace swarf::reports {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using FlankJson = nlohmann::ordered_json;
 using sim::FlankFigures;
 
-Json place_json(const Vec3& p) {
+FlankJson place_json(const Vec3& p) {
   return {p.x(), p.y(), p.z()};
 }
 
-Json heights_json(const sim::FlankHeights& heights) {
+FlankJson heights_json(const sim::FlankHeights& heights) {
   return {{"least_um", um_from_mm(heights.least_mm)},
           {"greatest_um", um_from_mm(heights.greatest_mm)},
           {"least_at_mm", place_json(heights.least_W)}};
 }
 
-Json guide_json(const flank::GuideFigures& guide) {
-  Json json{{"length_mm", guide.length_mm}};
+FlankJson guide_json(const flank::GuideFigures& guide) {
+  FlankJson json{{"length_mm", guide.length_mm}};
   if (std::isfinite(guide.radius_min_mm)) {
     json["radius_min_mm"] = guide.radius_min_mm;
     json["radius_min_u"] = guide.radius_min_u;
@@ -45,8 +45,9 @@ Table placement_table(const FlankFigures& figures) {
     table.rows.push_back({row.name, fmt::format("{:.4f}", um_from_mm(row.worst.mm)),
                           fmt::format("{:.4f}", row.worst.u), fmt::format("{:.3f}", row.worst.v)});
   }
-  table.notes = {"Below 0: too deep. Published: on both guide curves (Chu et al., Eq. 2). Balanced: lifted off "
-                 "at both ends. Minimax: turned about the normal too, the least maximum of every ruling."};
+  table.notes = {
+      "Below 0: too deep. Published: on both guide curves (Chu et al., Eq. 2). Balanced: lifted off "
+      "at both ends. Minimax: turned about the normal too, the least maximum of every ruling."};
   return table;
 }
 
@@ -54,7 +55,8 @@ Table envelope_table(const FlankFigures& figures) {
   Table table;
   table.title = "Envelope: predicted and cut";
   table.intro = fmt::format(
-      "Predicted from the poses in closed form, at the {} measuring rays that a flank meets ({} meet none, or "
+      "Predicted from the poses in closed form, at the {} measuring rays that a flank meets ({} meet none, "
+      "or "
       "only an end of one, and are not compared). The cut rays differ from the prediction by at most {:.4f} "
       "µm.",
       figures.rays_compared, figures.rays_elsewhere, um_from_mm(figures.difference_max_mm));
@@ -72,7 +74,8 @@ Table feed_table(const FlankFigures& figures) {
   Table table;
   table.title = "Feed";
   table.intro =
-      "The same blocks at the speeds of each rule, under the same axis limits; errors are those of the chords of "
+      "The same blocks at the speeds of each rule, under the same axis limits; errors are those of the "
+      "chords of "
       "all cycles, the placement's included.";
   table.columns = {{"Rule"},
                    {"Time", "s", true},
@@ -81,7 +84,8 @@ Table feed_table(const FlankFigures& figures) {
                    {"Highest", "µm", true}};
   for (const sim::FlankFeedRow& row : figures.feeds) {
     if (row.used) table.highlighted_row = static_cast<int>(table.rows.size());
-    table.rows.push_back({row.name, fmt::format("{:.3f}", row.time_s), fmt::format("{:.2f}", row.feed_mean_mm_s),
+    table.rows.push_back({row.name, fmt::format("{:.3f}", row.time_s),
+                          fmt::format("{:.2f}", row.feed_mean_mm_s),
                           fmt::format("{:.4f}", um_from_mm(row.least_mm)),
                           fmt::format("{:.4f}", um_from_mm(row.greatest_mm))});
   }
@@ -90,9 +94,9 @@ Table feed_table(const FlankFigures& figures) {
 
 }  // namespace
 
-Json flank_milling_json(const sim::Result& result) {
+FlankJson flank_milling_json(const sim::Result& result) {
   const FlankFigures& figures = *result.flank_milling;
-  Json placements = Json::object(), feeds = Json::array();
+  FlankJson placements = FlankJson::object(), feeds = FlankJson::array();
   for (const sim::FlankPlacementRow& row : figures.placements)
     placements[row.name] = {{"error_um", um_from_mm(row.worst.mm)}, {"u", row.worst.u}, {"v", row.worst.v}};
   for (const sim::FlankFeedRow& row : figures.feeds)
@@ -109,8 +113,8 @@ Json flank_milling_json(const sim::Result& result) {
           {"twist_max_deg", deg_from_rad(figures.twist_max_rad)},
           {"twist_bound_um", um_from_mm(figures.twist_bound_mm)},
           {"guides", {guide_json(figures.guides[0]), guide_json(figures.guides[1])}},
-          {"curve_feed_1um_mm_s", figures.feed_1um_mm_s},
-          {"curve_feed_5um_mm_s", figures.feed_5um_mm_s},
+          {"curve_feed_1um_1ms_mm_s", figures.feed_1um_mm_s},
+          {"curve_feed_5um_1ms_mm_s", figures.feed_5um_mm_s},
           {"placements", placements},
           {"blocks_left", heights_json(figures.blocks_left)},
           {"cycles_left", heights_json(figures.cycles_left)},
@@ -128,19 +132,21 @@ std::vector<std::pair<std::string, std::string>> flank_lines(const sim::Result& 
     placements += fmt::format("{}{} {:.3f} um{}", placements.empty() ? "" : ", ", row.name,
                               um_from_mm(row.worst.mm), row.used ? " (used)" : "");
   std::vector<std::pair<std::string, std::string>> lines{
-      {"flank milling", fmt::format("{} passes over {} ruled surfaces, {} blocks; twist {:.4f} deg", figures.passes,
-                                    figures.surfaces, figures.blocks, deg_from_rad(figures.twist_max_rad))},
+      {"flank milling",
+       fmt::format("{} passes over {} ruled surfaces, {} blocks; twist {:.4f} deg", figures.passes,
+                   figures.surfaces, figures.blocks, deg_from_rad(figures.twist_max_rad))},
       {"placements", placements},
       {"envelope",
-       fmt::format("predicted {:.3f} to {:.3f} um by blocks, {:.3f} to {:.3f} um by cycles; rays differ from it by "
-                   "{:.4f} um at most ({} compared, {} not)",
-                   um_from_mm(figures.blocks_left.least_mm), um_from_mm(figures.blocks_left.greatest_mm),
-                   um_from_mm(figures.cycles_left.least_mm), um_from_mm(figures.cycles_left.greatest_mm),
-                   um_from_mm(figures.difference_max_mm), figures.rays_compared, figures.rays_elsewhere)}};
+       fmt::format(
+           "predicted {:.3f} to {:.3f} um by blocks, {:.3f} to {:.3f} um by cycles; rays differ from it by "
+           "{:.4f} um at most ({} compared, {} not)",
+           um_from_mm(figures.blocks_left.least_mm), um_from_mm(figures.blocks_left.greatest_mm),
+           um_from_mm(figures.cycles_left.least_mm), um_from_mm(figures.cycles_left.greatest_mm),
+           um_from_mm(figures.difference_max_mm), figures.rays_compared, figures.rays_elsewhere)}};
   for (const sim::FlankFeedRow& row : figures.feeds)
-    lines.emplace_back("feed " + row.name,
-                       fmt::format("{:.3f} s, chords {:.3f} to {:.3f} um{}", row.time_s, um_from_mm(row.least_mm),
-                                   um_from_mm(row.greatest_mm), row.used ? " (used)" : ""));
+    lines.emplace_back("feed " + row.name, fmt::format("{:.3f} s, chords {:.3f} to {:.3f} um{}", row.time_s,
+                                                       um_from_mm(row.least_mm), um_from_mm(row.greatest_mm),
+                                                       row.used ? " (used)" : ""));
   return lines;
 }
 
@@ -158,7 +164,8 @@ std::vector<Plot> flank_plots(const sim::Result& result) {
   Plot plot;
   plot.title = "Envelope error along the surface";
   plot.caption =
-      "Deepest and highest place of each ruling of the first surface: predicted from the poses, and met by the "
+      "Deepest and highest place of each ruling of the first surface: predicted from the poses, and met by "
+      "the "
       "measuring rays in the cut.";
   plot.x_label = "u";
   plot.y_label = "height over the design";

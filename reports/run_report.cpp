@@ -15,8 +15,8 @@
 #include "reports/check_rows.h"
 #include "reports/cl_report.h"
 #include "reports/driven_output.h"
-#include "reports/flank_output.h"
 #include "reports/fig6_table.h"
+#include "reports/flank_output.h"
 #include "reports/flank_table.h"
 #include "reports/nc_report.h"
 #include "reports/part_view.h"
@@ -337,6 +337,15 @@ Lines cl_path_lines(const sim::Job& job, const sim::Result& result) {
   return lines;
 }
 
+Lines flank_path_lines(const sim::Job& job, const sim::Result& result) {
+  const motion::MotionStatistics& m = result.main.motion.statistics;
+  return {{"path", fmt::format("{} blocks, {:.0f} mm of feed moves, {:.0f} mm of rapids, law {}",
+                               result.main.path.elements.size(), result.main.path.pass_length_mm,
+                               result.main.path.link_length_mm, toolpath::law_name(job.scene.block_law))},
+          {"time", fmt::format("{} ({} cycles of {:g} ms)", duration(m.time_s), m.ticks,
+                               job.scene.motion.period_s * 1e3)}};
+}
+
 Lines surface_lines(const sim::Job& job, const sim::Result& result) {
   const measure::SurfaceMetrics& s = result.main.surface;
   if (!job.has_design()) return {{"design", "none: the finished part is not measured"}};
@@ -462,9 +471,10 @@ std::string machine_line(const sim::MachineContacts& contacts) {
 
 std::vector<std::pair<std::string, std::string>> summary_lines(const sim::Job& job,
                                                                const sim::Result& result) {
-  Lines lines = result.main.nc ? nc_lines(job, result)
-                : job.cl       ? cl_path_lines(job, result)
-                               : path_lines(job, result);
+  Lines lines = result.main.nc    ? nc_lines(job, result)
+                : job.cl          ? cl_path_lines(job, result)
+                : job.scene.flank ? flank_path_lines(job, result)
+                                  : path_lines(job, result);
   if (result.flank_milling)
     for (auto& line : flank_lines(result)) lines.push_back(std::move(line));
   if (result.driven)

@@ -111,8 +111,7 @@ GuideFigures guide_figures(const surface::Surface& surface, double v) {
   for (int i = 0; i < kPieces; ++i)
     for (size_t k = 0; k < 5; ++k)
       figures.length_mm += kWeight[k] / kPieces * surface.derivatives((i + kAt[k]) / kPieces, v).Su.norm();
-  const Minimum least =
-      least_sampled([&](double u) { return radius_at(surface, u, v); }, 0.0, 1.0, kPieces);
+  const Minimum least = least_sampled([&](double u) { return radius_at(surface, u, v); }, 0.0, 1.0, kPieces);
   figures.radius_min_mm = least.value;
   figures.radius_min_u = least.at;
   return figures;

@@ -25,11 +25,11 @@ bool check_rulings(const FlankTask& task, const SourceLocation& where, Diagnosti
     const double u = task.u_low + (task.u_high - task.u_low) * i / kRulings;
     const surface::Derivatives a = S.derivatives(u, 0.0), b = S.derivatives(u, 1.0);
     if (a.Sv.norm() < kNoLength || a.Su.norm() < kNoLength || b.Su.norm() < kNoLength) {
-      diagnostics.error("no-ruling", where,
-                        fmt::format("{} has no length at {}",
-                                    a.Sv.norm() < kNoLength ? "the ruling" : "a guide curve",
-                                    place_of(S, u, a.Su.norm() < kNoLength ? 0.0 : 1.0)),
-                        "flank milling needs two curves that never meet and never stand still");
+      diagnostics.error(
+          "no-ruling", where,
+          fmt::format("{} has no length at {}", a.Sv.norm() < kNoLength ? "the ruling" : "a guide curve",
+                      place_of(S, u, a.Su.norm() < kNoLength ? 0.0 : 1.0)),
+          "flank milling needs two curves that never meet and never stand still");
       return false;
     }
     const Vec3 w0 = a.Su.cross(a.Sv), w1 = b.Su.cross(b.Sv);

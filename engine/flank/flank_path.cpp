@@ -13,7 +13,7 @@ namespace {
 using toolpath::BlockMove;
 
 constexpr int kFewestBlocks = 16;
-constexpr size_t kMostBlocks = 100000;
+constexpr size_t kMostBlocks = 20000;
 constexpr int kDeepest = 40;
 
 /// How far the linear motion between two stations lies beside the axis surface, in terms of e.
@@ -116,8 +116,8 @@ ToolPose moved(const ToolPose& pose, const Vec3& by) {
   return {pose.tip_W + by, pose.axis_W};
 }
 
-void write_pass(const std::vector<Station>& stations, const FlankMotion& motion, FeedRule rule, double constant,
-                int pass, PathWriter& writer) {
+void write_pass(const std::vector<Station>& stations, const FlankMotion& motion, FeedRule rule,
+                double constant, int pass, PathWriter& writer) {
   const ToolPose &first = stations.front().pose, &last = stations.back().pose;
   writer.begin(moved(first, motion.retract_mm * first.axis_W));
   // Along its own axis a tool stops: a rounded corner would leave the flank's surface.
@@ -143,7 +143,7 @@ std::vector<Station> stations_of(const FlankTask& task, const FlankMotion& motio
   }
   if (stations.size() > kMostBlocks)
     throw InputError("too-many-blocks", where,
-                     "a flank pass needs more than 100 000 blocks within flank.chord_um",
+                     "a flank pass needs more than 20 000 blocks within flank.chord_um",
                      "a larger flank.chord_um needs fewer");
   if (motion.limit_mm > 0.0) set_feeds(task, motion, stations);
   return stations;

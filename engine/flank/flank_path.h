@@ -38,7 +38,7 @@ struct Station {
 };
 
 /// Block ends so close that no pose half way between two lies more than chord_mm beside the axis surface, in
-/// terms of e; at least 16 blocks. Throws InputError "too-many-blocks" at `where` above 100 000.
+/// terms of e; at least 16 blocks. Throws InputError "too-many-blocks" at `where` above 20 000.
 std::vector<Station> stations_of(const FlankTask& task, const FlankMotion& motion,
                                  const SourceLocation& where);
 

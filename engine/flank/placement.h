@@ -1,7 +1,7 @@
 // Where the axis of a flank mill stands on a ruled surface (theory 5, Chu et al. Eq. 2).
 //
-//      A1 = C1 + rho(c1) N1     the ball at c0 above the tip touches guide curve 0, the one at c1 guide curve 1:
-//      |                        the paper's placement. On a twisted ruling it cuts too deep between (E18).
+//      A1 = C1 + rho(c1) N1     the ball at c0 above the tip touches guide curve 0, the one at c1 guide curve
+//      1: |                        the paper's placement. On a twisted ruling it cuts too deep between (E18).
 //      A0 = C0 + rho(c0) N0
 //      |
 //     tip = A0 - c0 a,  a = (A1 - A0) / |A1 - A0|,  c1 = c0 + |A1 - A0|

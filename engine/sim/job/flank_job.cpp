@@ -22,6 +22,17 @@ double longest_ruling(const surface::Surface& S) {
   return longest;
 }
 
+/// The last pass reaches guide curve 0 with its flank, not with the end of the cutter.
+void check_lower_end(const FlankSettings& settings, const flank::FlankProfile& profile,
+                     Diagnostics& diagnostics) {
+  if (settings.tip_below_mm >= profile.low) return;
+  diagnostics.error("flank-above-guide", settings.where,
+                    fmt::format("the flank begins {:.3f} mm above the tip, and guide curve 0 (v = 0) lies "
+                                "{:g} mm above it: the end of the cutter would stand there",
+                                profile.low, settings.tip_below_mm),
+                    fmt::format("flank.tip_below_mm = {:.3f} or more", std::ceil(1e3 * profile.low) / 1e3));
+}
+
 /// No feed goes below the placement's own error.
 void check_limit(const FlankSettings& settings, const flank::FlankTask& task, Diagnostics& diagnostics) {
   const double limit = settings.motion.limit_mm;
@@ -32,10 +43,10 @@ void check_limit(const FlankSettings& settings, const flank::FlankTask& task, Di
   best.placement = flank::Placement::kMinimax;
   diagnostics.error(
       "limit-unreachable", settings.where,
-      fmt::format("flank.limit_um = {:g} cannot be kept by any feed: the {} placement alone errs by {:.3f} um "
-                  "at u = {:.4f}, v = {:.3f}",
-                  um_from_mm(limit), flank::placement_name(task.placement), um_from_mm(worst.mm), worst.u,
-                  worst.v),
+      fmt::format(
+          "flank.limit_um = {:g} cannot be kept by any feed: the {} placement alone errs by {:.3f} um "
+          "at u = {:.4f}, v = {:.3f}",
+          um_from_mm(limit), flank::placement_name(task.placement), um_from_mm(worst.mm), worst.u, worst.v),
       fmt::format("placement = \"minimax\" errs by {:.3f} um; a smaller cutter errs less",
                   um_from_mm(std::abs(flank::worst_error(best).mm))));
 }
@@ -47,7 +58,8 @@ void add_tasks(const FlankSettings& settings, const surface::SurfacePtr& surface
   const double before = settings.motion.overrun_mm / on->derivatives(0.0, 0.5).Su.norm();
   const double behind = settings.motion.overrun_mm / on->derivatives(1.0, 0.5).Su.norm();
   for (int k = settings.depth_passes - 1; k >= 0; --k)
-    passes.push_back({{on, profile, settings.placement, settings.tip_below_mm - k * step, -before, 1.0 + behind}, {}});
+    passes.push_back(
+        {{on, profile, settings.placement, settings.tip_below_mm - k * step, -before, 1.0 + behind}, {}});
 }
 
 }  // namespace
@@ -71,12 +83,14 @@ void load_flank(Job& job, Diagnostics& diagnostics) {
                       "of such");
   const std::optional<flank::FlankProfile> profile = flank::flank_profile(job.scene.tools.front());
   if (!profile)
-    diagnostics.error("no-flank", settings.where,
-                      fmt::format("{} has no flank that could mill: {}",
-                                  cutter::call_name(job.scene.tools.front()),
-                                  cutter::describe(job.scene.tools.front())),
-                      "a cylinder, a taper or a barrel has one");
+    diagnostics.error(
+        "no-flank", settings.where,
+        fmt::format("{} has no flank that could mill: {}", cutter::call_name(job.scene.tools.front()),
+                    cutter::describe(job.scene.tools.front())),
+        "a cylinder, a taper or a barrel has one");
   if (!ruled || !profile) return;
+  check_lower_end(settings, *profile, diagnostics);
+  if (diagnostics.has_errors()) return;
   for (const surface::SurfacePtr& surface : job.design) add_tasks(settings, surface, *profile, job.flank);
   for (const FlankPass& pass : job.flank) {
     flank::check_task(pass.task, settings.where, diagnostics);

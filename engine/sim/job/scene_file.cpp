@@ -340,7 +340,8 @@ void read_scene_tools(ConfigTable& root, Scene& scene, Diagnostics& diagnostics)
 
 /// A program of blocks without a machine is for the generic mill.
 void read_machine(ConfigTable& root, Scene& scene) {
-  scene.machine_assumed = scene.kind != ProgramKind::kSurfaceBlocks && scene.kind != ProgramKind::kFlank && !root.has("machine");
+  scene.machine_assumed =
+      scene.kind != ProgramKind::kSurfaceBlocks && scene.kind != ProgramKind::kFlank && !root.has("machine");
   const std::string written = root.text(
       "machine", scene.machine_assumed ? std::optional<std::string>(kGenericMachine) : std::nullopt);
   if (written.empty()) return;
@@ -391,7 +392,8 @@ void read_scene(ConfigTable& root, Scene& scene, Diagnostics& diagnostics, int s
   if (setup > 0)
     scene.title += fmt::format(", set-up {}{}", setup,
                                scene.setup.name.empty() ? "" : ": " + utf8_only(scene.setup.name));
-  const bool blocks = scene.kind != ProgramKind::kSurfaceBlocks && !scene.driven;  // they say nothing of stock
+  const bool blocks =
+      scene.kind != ProgramKind::kSurfaceBlocks && !scene.driven;  // they say nothing of stock
   scene.stock = read_stock(root.table("stock"), scene.tools, blocks, diagnostics);
   // As a CAM system would have written it.
   if (scene.driven && scene.driven->plan.cam_tolerance_mm > 0.0) scene.stock.cut_by = CutBy::kBlocks;

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "base/minima.h"
 #include "base/parallel.h"
 #include "flank/envelope.h"
 #include "measure/flank_error.h"
@@ -213,11 +214,12 @@ void add_geometry(const Job& job, FlankFigures& figures) {
   figures.passes = job.flank.size();
   for (const FlankPass& pass : job.flank) figures.blocks += pass.stations.size() - 1;
   figures.plan_seconds = job.flank_seconds;
-  constexpr int kRulings = 256;
-  for (const FlankPass& pass : job.flank)
-    for (int i = 0; i <= kRulings; ++i)
-      figures.twist_max_rad = std::max(
-          figures.twist_max_rad, measure::ruling_twist(*pass.task.surface, static_cast<double>(i) / kRulings));
+  constexpr int kRulings = 512;
+  for (const FlankPass& pass : job.flank) {
+    const auto twist = [&](double u) { return measure::ruling_twist(*pass.task.surface, u); };
+    figures.twist_max_rad =
+        std::max(figures.twist_max_rad, greatest_sampled(twist, 0.0, 1.0, kRulings).value);
+  }
   const flank::FlankTask& first = job.flank.front().task;
   const double radius = std::max(flank::ball_radius(first.profile, first.profile.low),
                                  flank::ball_radius(first.profile, first.profile.high));
@@ -234,10 +236,11 @@ void add_geometry(const Job& job, FlankFigures& figures) {
     figures.placements.push_back(row);
   }
   figures.guides = {flank::guide_figures(*first.surface, 0.0), flank::guide_figures(*first.surface, 1.0)};
-  const double corner = figures.guides[0].radius_min_mm, period = job.scene.motion.period_s;
+  const double corner = figures.guides[0].radius_min_mm;
+  constexpr double kPaperPeriod = 1e-3;
   if (std::isfinite(corner)) {
-    figures.feed_1um_mm_s = flank::sagitta_feed(corner, period, 1e-3);
-    figures.feed_5um_mm_s = flank::sagitta_feed(corner, period, 5e-3);
+    figures.feed_1um_mm_s = flank::sagitta_feed(corner, kPaperPeriod, 1e-3);
+    figures.feed_5um_mm_s = flank::sagitta_feed(corner, kPaperPeriod, 5e-3);
   }
 }
 

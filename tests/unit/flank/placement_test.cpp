@@ -146,8 +146,8 @@ surface::SurfacePtr jcde() {
   data.degree_v = 1;
   data.knots_u = {0, 0, 0, 0, .2, .4, .6, .8, 1, 1, 1, 1};
   data.knots_v = {0, 0, 1, 1};
-  const std::vector<Vec3> p{{5, 0, 0},    {-10, 20, 0}, {10, 20, 0}, {20, 30, 0},
-                            {30, 30, 0},  {40, 30, 0},  {50, 20, 0}, {55, 0, 0}};
+  const std::vector<Vec3> p{{5, 0, 0},   {-10, 20, 0}, {10, 20, 0}, {20, 30, 0},
+                            {30, 30, 0}, {40, 30, 0},  {50, 20, 0}, {55, 0, 0}};
   const std::vector<Vec3> h{{0, 0, 15},   {-15, 20, 15}, {5, 25, 15},  {15, 35, 15},
                             {30, 35, 15}, {45, 35, 15},  {55, 25, 15}, {60, 0, 15}};
   for (size_t i = 0; i < p.size(); ++i) {
@@ -192,12 +192,12 @@ TEST(FlankCheck, TellsWhatCannotBeMilled) {
   EXPECT_EQ(code(opposed), "guides-opposed");
   FlankTask hollow = task_of(Placement::kPublished);  // y = x^2 / 8 from below: radius 4 at x = 0
   hollow.surface = std::make_shared<surface::PolynomialSurface>(
-      2, 1,
-      std::vector<Vec3>{{-10, -12.5, 0}, {0, 0, 30}, {20, 50, 0}, {0, 0, 0}, {0, -50, 0}, {0, 0, 0}}, -1);
+      2, 1, std::vector<Vec3>{{-10, -12.5, 0}, {0, 0, 30}, {20, 50, 0}, {0, 0, 0}, {0, -50, 0}, {0, 0, 0}},
+      -1);
   EXPECT_EQ(code(hollow), "");
   hollow.surface = std::make_shared<surface::PolynomialSurface>(
-      2, 1,
-      std::vector<Vec3>{{-10, -12.5, 0}, {0, 0, 30}, {20, 50, 0}, {0, 0, 0}, {0, -50, 0}, {0, 0, 0}}, 1);
+      2, 1, std::vector<Vec3>{{-10, -12.5, 0}, {0, 0, 30}, {20, 50, 0}, {0, 0, 0}, {0, -50, 0}, {0, 0, 0}},
+      1);
   EXPECT_EQ(code(hollow), "cutter-too-large");
 }
 

@@ -1,0 +1,65 @@
+// What is wrong with a [flank] scene is told before anything moves, by the shipped program.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "support/program_run.h"
+
+namespace flank_input_test {
+namespace {
+
+namespace fs = std::filesystem;
+using swarf::test::run_swarf;
+
+struct BadFlank {
+  const char* name;
+  const char* set;  ///< over the keys of chu_f1
+  const char* code;
+  const char* told;
+};
+
+void PrintTo(const BadFlank& bad, std::ostream* out) {
+  *out << bad.name;
+}
+
+class FlankInput : public testing::TestWithParam<BadFlank> {};
+
+TEST_P(FlankInput, IsRefusedBeforeAnythingMoves) {
+  const BadFlank& bad = GetParam();
+  const fs::path folder = swarf::test::fresh_folder(std::string("flank_") + bad.name);
+  const auto run = run_swarf("run " SWARF_SOURCE_DIR "/scenes/chu_f1/scene.toml --no-render -q -o " +
+                             (folder / "out").string() + " --set '" + bad.set + "'");
+  EXPECT_EQ(run.exit_code, 2) << run.output;
+  EXPECT_NE(run.output.find(std::string("[") + bad.code + "]"), std::string::npos) << run.output;
+  EXPECT_NE(run.output.find(bad.told), std::string::npos) << run.output;
+  EXPECT_NE(run.output.find("fix: "), std::string::npos) << run.output;
+  EXPECT_FALSE(fs::exists(folder / "out"));
+  fs::remove_all(folder);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Scenes, FlankInput,
+    testing::Values(
+        BadFlank{"limit_below_the_placement", "flank.placement=published", "limit-unreachable",
+                 "the published placement alone errs by -103.373 um"},
+        BadFlank{"limit_below_the_best", "flank.limit_um=0.5", "limit-unreachable", "errs by 0.718 um"},
+        BadFlank{"short_flutes", "cutter.flute_length_mm=30", "cutter-too-short", "flutes"},
+        BadFlank{"ball_at_the_guide", "cutter.shape=ball", "flank-above-guide",
+                 "the flank begins 8.000 mm above the tip"},
+        BadFlank{"no_design",
+                 "design={kind=\"sphere\",centre_mm=[0,0,0],radius_mm=10,side=\"convex\",polar_deg=[40,90]}",
+                 "flank-needs-ruled", "the design is none"},
+        BadFlank{"opposed", "design.guide1_mm=[[60,0,30],[-120,10,0]]", "guides-opposed",
+                 "the surface turns over along its ruling"},
+        BadFlank{"standing_guide", "design.guide0_mm=[[0,0,0]]", "out-of-range", "without a normal"},
+        BadFlank{"hollow", "design.guide0_mm=[[0,-60,0],[60,240,0],[0,-240,0]]", "cutter-too-large",
+                 "radius below"},
+        BadFlank{"two_programs", "cl=path.cl", "two-programs", "[flank]"},
+        BadFlank{"placement", "flank.placement=best", "unknown-choice", "published, balanced, minimax"},
+        BadFlank{"feed", "flank.feed_mm_min=0", "out-of-range", "'flank.feed_mm_min' is 0"},
+        BadFlank{"blocks_without_end", "flank.chord_um=0.0000000001", "too-many-blocks", "flank.chord_um"}),
+    [](const testing::TestParamInfo<BadFlank>& one) { return std::string(one.param.name); });
+
+}  // namespace
+}  // namespace flank_input_test
