@@ -8,8 +8,8 @@
 
 #include "base/units.h"
 #include "reports/driven_output.h"
-#include "reports/flank_output.h"
 #include "reports/fig6_table.h"
+#include "reports/flank_output.h"
 
 namespace swarf::reports {
 namespace {

@@ -205,6 +205,16 @@ AxisError axis_error(const FlankTask& task, const ToolPose& pose, double u) {
   return found;
 }
 
+double twist_bound(const FlankTask& task, double u) {
+  Vec3 N0, N1;
+  const Axis axis = published_axis(task, u, &N0, &N1);
+  const double r0 = ball_radius(task.profile, task.tip_below_mm);
+  const double r1 = ball_radius(task.profile, upper_height(task, axis));
+  // (r0 + r1 - |r0 N0 + r1 N1|) / 2 without cancellation.
+  const double turned = 2.0 * r0 * r1 * (1.0 - N0.dot(N1));
+  return 0.5 * turned / (r0 + r1 + (r0 * N0 + r1 * N1).norm());
+}
+
 WorstError worst_error(const FlankTask& task) {
   constexpr size_t kRulings = 257;
   std::vector<AxisError> errors(kRulings);

@@ -66,6 +66,11 @@ ToolPose pose_at(const FlankTask& task, double u);
 AxisError axis_error(const FlankTask& task, const ToolPose& pose, double u);
 inline constexpr int kErrorPlaces = 33;
 
+/// What the published axis cuts too deep at least, half way along the ruling at u, whatever the feed (E18):
+/// with balls r0 and r1 at both guide curves its middle lies |r0 N0 + r1 N1| / 2 above that of the ruling,
+/// and the flank there is (r0 + r1) / 2 thick, or more (barrel). r (1 - cos(psi / 2)) for a cylinder. mm
+double twist_bound(const FlankTask& task, double u);
+
 /// The greatest |e| of all rulings, on 257 of them.
 struct WorstError {
   double mm = 0.0;  ///< with its sign

@@ -7,8 +7,8 @@
 namespace swarf::sim {
 
 /// Fills Job::flank from the design that has been loaded: each ruled surface in its order, from the upper
-/// pass in depth to the lower. Diagnostics: those of flank::check_task, "flank-needs-ruled", "no-flank", "flank-above-guide",
-/// "limit-unreachable" with the error that no feed goes below (E18).
+/// pass in depth to the lower. Diagnostics: those of flank::check_task, "flank-needs-ruled", "no-flank",
+/// "flank-above-guide", "limit-unreachable" with the error that no feed goes below (E18).
 void load_flank(Job& job, Diagnostics& diagnostics);
 
 /// How the blocks move.

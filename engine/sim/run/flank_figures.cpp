@@ -220,10 +220,11 @@ void add_geometry(const Job& job, FlankFigures& figures) {
     figures.twist_max_rad =
         std::max(figures.twist_max_rad, greatest_sampled(twist, 0.0, 1.0, kRulings).value);
   }
-  const flank::FlankTask& first = job.flank.front().task;
-  const double radius = std::max(flank::ball_radius(first.profile, first.profile.low),
-                                 flank::ball_radius(first.profile, first.profile.high));
-  figures.twist_bound_mm = radius * (1.0 - std::cos(0.5 * figures.twist_max_rad));
+  for (size_t k = depths - 1; k < job.flank.size(); k += depths) {
+    const auto bound = [&](double u) { return flank::twist_bound(job.flank[k].task, u); };
+    figures.twist_bound_mm =
+        std::max(figures.twist_bound_mm, greatest_sampled(bound, 0.0, 1.0, kRulings).value);
+  }
   for (const flank::Placement placement :
        {flank::Placement::kPublished, flank::Placement::kBalanced, flank::Placement::kMinimax}) {
     FlankPlacementRow row{flank::placement_name(placement), {}, placement == job.scene.flank->placement};
@@ -235,6 +236,7 @@ void add_geometry(const Job& job, FlankFigures& figures) {
     }
     figures.placements.push_back(row);
   }
+  const flank::FlankTask& first = job.flank.front().task;
   figures.guides = {flank::guide_figures(*first.surface, 0.0), flank::guide_figures(*first.surface, 1.0)};
   const double corner = figures.guides[0].radius_min_mm;
   constexpr double kPaperPeriod = 1e-3;

@@ -44,7 +44,7 @@ struct FlankFigures {
   size_t surfaces = 0, passes = 0, blocks = 0;
   double plan_seconds = 0.0;
   double twist_max_rad = 0.0;   ///< of the rulings, all surfaces
-  double twist_bound_mm = 0.0;  ///< r(1-cos(psi/2)) of the published placement, r of the widest place (E18)
+  double twist_bound_mm = 0.0;  ///< the published placement cuts so deep at least, whatever the feed (E18)
   std::array<flank::GuideFigures, 2> guides;        ///< of the first surface
   std::vector<FlankPlacementRow> placements;        ///< the worst of all surfaces, lowest pass
   double feed_1um_mm_s = 0.0, feed_5um_mm_s = 0.0;  ///< tightest corner of guide 0, curve alone, 1 ms

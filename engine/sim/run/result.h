@@ -93,7 +93,7 @@ struct Result {
   std::optional<measure::CrossCheck> cross_check;  ///< none: no ray of a parametric design could be compared
   ToolClearance clearance;
   std::optional<FlankFigures> flank_milling;  ///< of flank jobs
-  std::optional<measure::FlankError> flank;  ///< of a ruled design and a cutter with a cylindrical flank
+  std::optional<measure::FlankError> flank;   ///< of a ruled design and a cutter with a cylindrical flank
   std::optional<motion::SingularityScan> singularity;  ///< of blocks on a machine with a pole
   CutOutcome cut;
   MemoryPrediction memory;

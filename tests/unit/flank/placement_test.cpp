@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "base/rng.h"
+#include "cutter/profile.h"
 #include "flank/envelope.h"
 #include "flank/feed.h"
 #include "flank/flank_check.h"
@@ -132,6 +134,125 @@ TEST(FlankEnvelope, TheGrazingConditionHoldsWhereAPointIsNearest) {
     // Theory 5: N . (v + z_c adot) = 0, N the outward normal of the flank, z_c the centre of its ball.
     EXPECT_NEAR(near.outward.dot(speed + c * adot) / speed.norm(), 0.0, 1e-6) << v;
   }
+}
+
+/// Nearest place of a finely divided outline that faces the point.
+double outline_distance(const std::vector<Vec2>& corners, const Vec2& point) {
+  double least = 1e9;
+  for (size_t i = 1; i < corners.size(); ++i) {
+    const Vec2 way = corners[i] - corners[i - 1];
+    const double t = std::clamp((point - corners[i - 1]).dot(way) / way.squaredNorm(), 0.0, 1.0);
+    const Vec2 d = point - corners[i - 1] - t * way;
+    const double side = way.x() * d.y() - way.y() * d.x();  // the cutter lies to the left
+    if (d.norm() < std::abs(least)) least = side > 0.0 ? -d.norm() : d.norm();
+  }
+  return least;
+}
+
+TEST(FlankProfile, BallsAlongTheAxisAreTheFlank) {
+  cutter::Cutter cylinder;
+  cylinder.flute_length_mm = 30;
+  cutter::Cutter taper = cylinder;
+  taper.shape = cutter::Shape::kTaper;
+  taper.diameter_mm = 4;
+  taper.taper_rad = 0.12;
+  cutter::Cutter barrel = cylinder;
+  cutter::set_profile(barrel, {{{0, 0}, 0}, {{4, 0}, 0}, {{4, 20}, 60}, {{0, 21}, 0}});
+  for (const cutter::Cutter& cutter : {cylinder, taper, barrel}) {
+    const auto profile = flank_profile(cutter);
+    ASSERT_TRUE(profile) << cutter::describe(cutter);
+    const std::vector<Vec2> corners = cutter::sample_outline(cutter::outline(cutter), 1e-7);
+    for (const double height : {4.0, 9.0, 16.0}) {
+      for (const double out : {-0.3, 0.0, 0.2, 2.0}) {
+        const double c = nearest_ball(*profile, height, 4.0);
+        const Vec2 point(ball_radius(*profile, c) + out, height);
+        EXPECT_NEAR(flank_distance(*profile, point.y(), point.x()), outline_distance(corners, point), 2e-7)
+            << cutter::describe(cutter) << " at " << point.transpose();
+      }
+    }
+  }
+}
+
+TEST(FlankProfile, ADrillPointAloneIsNoFlank) {
+  cutter::Cutter cutter;
+  cutter::set_profile(cutter, {{{0, 0}, 0}, {{5, 3}, 0}, {{0, 4}, 0}});
+  EXPECT_FALSE(flank_profile(cutter));
+}
+
+/// Guides of degree 2 that twist, bend and sweep.
+surface::SurfacePtr random_ruled(Rng& rng) {
+  const auto some = [&](double most) { return rng.uniform(-most, most); };
+  std::vector<Vec3> rows;
+  rows.push_back(Vec3{some(5), some(5), some(2)});
+  rows.push_back(Vec3{some(6), some(4), 25 + some(5)});
+  rows.push_back(Vec3{50 + some(10), some(8), some(3)});
+  rows.push_back(Vec3{some(6), some(8), some(3)});
+  rows.push_back(Vec3{some(4), some(8), some(2)});
+  rows.push_back(Vec3{some(3), some(3), some(2)});
+  return std::make_shared<surface::PolynomialSurface>(2, 1, rows, 1);
+}
+
+TEST(FlankProperty, EveryPlacementIsBetterThanTheOneBefore) {
+  for (uint64_t seed = 1; seed <= 60; ++seed) {
+    Rng rng(seed);
+    FlankProfile profile = cylinder(rng.uniform(2.0, 8.0));
+    profile.taper_rad = rng.uniform(0.0, 0.1);
+    profile.low = profile.radius * std::tan(profile.taper_rad);
+    FlankTask task{random_ruled(rng), profile, Placement::kPublished, 2.0};
+    Diagnostics told;
+    check_task(task, {}, told);
+    if (told.has_errors()) continue;
+    for (const double u : {0.0, 0.37, 1.0}) {
+      double before = 1e9;
+      for (const Placement placement : {Placement::kPublished, Placement::kBalanced, Placement::kMinimax}) {
+        task.placement = placement;
+        const double error = axis_error(task, pose_at(task, u), u).most_mm();
+        EXPECT_LE(error, before + 1e-9)
+            << "seed " << seed << ", u " << u << ", " << placement_name(placement);
+        before = error;
+      }
+    }
+  }
+}
+
+/// The least of many poses: what no search may miss.
+TEST(FlankProperty, NoPoseOfATrackIsNearerThanTheNearest) {
+  for (uint64_t seed = 1; seed <= 30; ++seed) {
+    Rng rng(seed);
+    const FlankProfile profile = cylinder(rng.uniform(2.0, 6.0));
+    std::vector<ToolPose> poses;
+    Vec3 tip(0, 0, 0), axis(0, 0, 1);
+    for (int i = 0; i < 40; ++i) {  // it turns and comes back over its own way
+      tip += Vec3{rng.uniform(-2, 3), rng.uniform(-2, 2), rng.uniform(-1, 1)};
+      axis = (axis + Vec3{rng.uniform(-0.2, 0.2), rng.uniform(-0.2, 0.2), 0}).normalized();
+      poses.push_back({tip, axis});
+    }
+    const PoseTrack track(poses, profile);
+    for (int k = 0; k < 20; ++k) {
+      const Vec3 x{rng.uniform(-20, 40), rng.uniform(-20, 20), rng.uniform(0, 30)};
+      double brute = 1e9;
+      for (size_t i = 1; i < poses.size(); ++i) {
+        for (int s = 0; s <= 200; ++s) {
+          const ToolPose at = between(poses[i - 1], poses[i], s / 200.0);
+          const Vec3 d = x - at.tip_W;
+          const double h = d.dot(at.axis_W);
+          brute = std::min(brute, flank_distance(profile, h, (d - h * at.axis_W).norm()));
+        }
+      }
+      const double found = track.nearest(x).distance_mm;
+      EXPECT_LE(found, brute + 1e-9) << "seed " << seed << ", x " << x.transpose();
+      EXPECT_GE(found, brute - 2e-3) << "seed " << seed << ", x " << x.transpose();
+    }
+  }
+}
+
+TEST(FlankPlacement, NoFeedGoesBelowTheTwist) {
+  FlankTask task = task_of(Placement::kPublished);
+  EXPECT_NEAR(twist_bound(task, 0.0), 0.093622647, 1e-9);  // theory 5, F1: r (1 - cos(psi / 2))
+  EXPECT_NEAR(twist_bound(task, 0.5), 0.103300339, 1e-9);
+  task.profile.taper_rad = 0.05;
+  for (const double u : {0.1, 0.5, 0.9})
+    EXPECT_LE(twist_bound(task, u), -axis_error(task, pose_at(task, u), u).least_mm) << u;
 }
 
 TEST(FlankFeed, SagittaOfTheTightestCorner) {
