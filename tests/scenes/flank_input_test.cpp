@@ -61,5 +61,16 @@ INSTANTIATE_TEST_SUITE_P(
         BadFlank{"blocks_without_end", "flank.chord_um=0.0000000001", "too-many-blocks", "flank.chord_um"}),
     [](const testing::TestParamInfo<BadFlank>& one) { return std::string(one.param.name); });
 
+TEST(FlankLimit, WhatStaysAtTheEndsFailsTheLimit) {
+  const fs::path folder = swarf::test::fresh_folder("flank_limit");
+  const auto run =
+      run_swarf("run " SWARF_SOURCE_DIR "/scenes/chu_f1/scene.toml --no-render -q -o " +
+                (folder / "out").string() + " --set flank.overrun_mm=0.01 --set design.pitch_mm=2");
+  EXPECT_EQ(run.exit_code, 1) << run.output;
+  EXPECT_NE(run.output.find("[flank-limit]"), std::string::npos) << run.output;
+  EXPECT_NE(run.output.find("the flank leaves 23.6"), std::string::npos) << run.output;
+  fs::remove_all(folder);
+}
+
 }  // namespace
 }  // namespace flank_input_test

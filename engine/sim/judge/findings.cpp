@@ -169,6 +169,25 @@ void driven_faults(const Job& job, const Result& result, Collector& collect) {
       "lower driven.feed_mm_min; please report the scene", job.scene.driven->where, 0.0);
 }
 
+void flank_faults(const Job& job, const Result& result, Collector& collect) {
+  if (!result.flank_milling || job.scene.flank->motion.limit_mm <= 0.0) return;
+  collect.begin("flank_limit");
+  if (collect.check().outcome != Outcome::kFails) return;
+  const FlankFigures& figures = *result.flank_milling;
+  const Vec3& p = figures.cut.most_W();
+  collect.add(
+      "flank-limit",
+      fmt::format(
+          "the flank leaves {:.3f} um at ({:.3f}, {:.3f}, {:.3f}) mm, limit {:g} um; {} rays are met by no "
+          "flank",
+          um_from_mm(figures.cut.greatest_mm > -figures.cut.least_mm ? figures.cut.greatest_mm
+                                                                     : figures.cut.least_mm),
+          p.x(), p.y(), p.z(), um_from_mm(job.scene.flank->motion.limit_mm), figures.rays_elsewhere),
+      "a longer flank.overrun_mm at the ends, a smaller flank.chord_um, a lower feed, or stock that "
+      "reaches over the design's edges",
+      job.scene.flank->where, 0.0);
+}
+
 void motion_faults(const Result& result, Collector& collect) {
   for (const motion::MotionFinding& fault : result.main.motion.findings) {
     if (fault.severity != Severity::kError) {
@@ -352,6 +371,7 @@ std::vector<Finding> find_faults(const Job& job, const Result& result) {
   surface_faults(job, result, collect);
   motion_faults(result, collect);
   driven_faults(job, result, collect);
+  flank_faults(job, result, collect);
   clearance_faults(job, result, collect);
   bad_cut_faults(result, collect);
   machine_faults(result, collect);

@@ -283,6 +283,21 @@ Check driven_check(const Result& result) {
   return check;
 }
 
+/// Of the cut itself, above and below; a ray that nothing was predicted for is none that holds.
+Check flank_check(const Job& job, const Result& result) {
+  const FlankFigures& figures = *result.flank_milling;
+  Check check{"flank_limit", "Error of the flank milled surface"};
+  check.unit = kMicrometres;
+  check.limit = um_from_mm(job.scene.flank->motion.limit_mm);
+  check.value = um_from_mm(figures.cut.most_mm());
+  check.outcome =
+      *check.value <= *check.limit && figures.rays_elsewhere == 0 ? Outcome::kHolds : Outcome::kFails;
+  check.what = fmt::format("{}: {:.3f} um, at most {:g} um ({} rays, {} that no flank meets)", check.subject,
+                           *check.value, *check.limit, figures.rays_compared, figures.rays_elsewhere);
+  check.covers = fmt::format("rays {:g} mm apart", job.scene.design.pitch_mm);
+  return check;
+}
+
 }  // namespace
 
 const char* check_of(const motion::MotionFinding& fault) {
@@ -314,6 +329,8 @@ std::vector<Check> judge(const Job& job, const Result& result) {
   checks.push_back(invariants_check(result));
   checks.push_back(rays_check(job, result));
   checks.push_back(machine_check(job, result));
+  if (result.flank_milling && job.scene.flank->motion.limit_mm > 0.0)
+    checks.push_back(flank_check(job, result));
   if (result.driven && job.scene.driven->plan.cam_tolerance_mm == 0.0) checks.push_back(driven_check(result));
   return checks;
 }

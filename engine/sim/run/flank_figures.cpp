@@ -85,15 +85,14 @@ Heights heights_of(const SurfaceEnvelope& envelope, const stock::SurfaceDexels& 
   return heights;
 }
 
+void add_height(double height, const Vec3& place, FlankHeights& all) {
+  if (height > all.greatest_mm) all.greatest_mm = height, all.greatest_W = place;
+  if (height < all.least_mm) all.least_mm = height, all.least_W = place;
+}
+
 void add_heights(const Heights& heights, const stock::SurfaceDexels& dexels, FlankHeights& all) {
-  for (size_t i = 0; i < heights.size(); ++i) {
-    if (!heights[i]) continue;
-    all.greatest_mm = std::max(all.greatest_mm, *heights[i]);
-    if (*heights[i] < all.least_mm) {
-      all.least_mm = *heights[i];
-      all.least_W = dexels.points()[i];
-    }
-  }
+  for (size_t i = 0; i < heights.size(); ++i)
+    if (heights[i]) add_height(*heights[i], dexels.points()[i], all);
 }
 
 void compare(const Heights& predicted, const stock::SurfaceDexels& dexels, FlankFigures& figures) {
@@ -104,6 +103,7 @@ void compare(const Heights& predicted, const stock::SurfaceDexels& dexels, Flank
       continue;
     }
     ++figures.rays_compared;
+    add_height(dexels.heights_mm()[i], dexels.points()[i], figures.cut);
     const double difference = std::abs(*predicted[i] - dexels.heights_mm()[i]);
     if (difference <= figures.difference_max_mm) continue;
     figures.difference_max_mm = difference;

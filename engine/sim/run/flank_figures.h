@@ -17,7 +17,9 @@ struct MeasuredPath;
 /// Least and greatest height of an envelope over the rays, mm; below 0: too deep.
 struct FlankHeights {
   double least_mm = 0.0, greatest_mm = 0.0;
-  Vec3 least_W = Vec3::Zero();  ///< where the least is
+  Vec3 least_W = Vec3::Zero(), greatest_W = Vec3::Zero();  ///< where they are
+  double most_mm() const { return greatest_mm > -least_mm ? greatest_mm : -least_mm; }
+  const Vec3& most_W() const { return greatest_mm > -least_mm ? greatest_W : least_W; }
 };
 
 struct FlankPlacementRow {
@@ -51,6 +53,7 @@ struct FlankFigures {
   FlankHeights blocks_left, cycles_left;  ///< predicted, of the motion as blocks ask and as cycles make it
   size_t rays_compared = 0;
   size_t rays_elsewhere = 0;  ///< that no flank is near, or only an end of one, or no stock: not compared
+  FlankHeights cut;           ///< of the compared rays themselves
   double difference_max_mm = 0.0;  ///< of prediction (of what cut the rays) and ray
   Vec3 difference_W = Vec3::Zero();
   std::vector<FlankFeedRow> feeds;
