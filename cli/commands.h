@@ -15,6 +15,7 @@ inline constexpr int kInternalError = 3;
 inline constexpr int kStopped = 130;
 
 void add_run(CLI::App& app, int& exit_code);
+void add_batch(CLI::App& app, int& exit_code);
 void add_init(CLI::App& app, int& exit_code);
 void add_machines(CLI::App& app, int& exit_code);
 void add_show(CLI::App& app, int& exit_code);

@@ -105,6 +105,7 @@ int main(int argc, char** argv) {
   app.footer(kFooter);
   int exit_code = swarf::cli::kPass;
   swarf::cli::add_run(app, exit_code);
+  swarf::cli::add_batch(app, exit_code);
   swarf::cli::add_init(app, exit_code);
   swarf::cli::add_machines(app, exit_code);
   swarf::cli::add_show(app, exit_code);

@@ -11,6 +11,7 @@
 
 #include "base/config.h"
 #include "base/file.h"
+#include "reports/kept_sources.h"
 #include "sim/job/fixture_keys.h"
 #include "sim/job/kept_job.h"
 #include "sim/job/tool_library.h"
@@ -20,7 +21,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void keep_copy(const fs::path& from, const fs::path& to) {
+/// The files that have been copied, in order.
+using Copied = std::vector<fs::path>;
+
+void keep_copy(const fs::path& from, const fs::path& to, Copied& copied) {
   std::error_code error;
   fs::create_directories(to.parent_path(), error);
   if (!error) fs::copy_file(from, to, fs::copy_options::overwrite_existing, error);
@@ -29,6 +33,7 @@ void keep_copy(const fs::path& from, const fs::path& to) {
                      fmt::format("the file cannot be kept with the results: {}", error.message()),
                      "check that it may be read and that the disk has space");
   }
+  copied.push_back(from);
 }
 
 std::string text_of(const fs::path& path) {
@@ -85,7 +90,7 @@ void replace_all(std::string& text, const std::string& from, const std::string& 
 }
 
 /// Below input/machine, so deep that every relative mesh lies below it too; returns machine.toml's place.
-fs::path keep_machine(const fs::path& input, const std::string& machine_file) {
+fs::path keep_machine(const fs::path& input, const std::string& machine_file, Copied& copied) {
   const std::vector<std::string> meshes = mesh_names(machine_file);
   int above = 0;
   for (const std::string& mesh : meshes) {
@@ -101,14 +106,15 @@ fs::path keep_machine(const fs::path& input, const std::string& machine_file) {
       mesh = fmt::format("kept_{}{}", i, mesh.extension().string());
       replace_all(text, "\"" + meshes[i] + "\"", "\"" + mesh.string() + "\"");
       replace_all(text, "'" + meshes[i] + "'", "\"" + mesh.string() + "\"");
-      keep_copy(meshes[i], input / place / mesh);
+      keep_copy(meshes[i], input / place / mesh, copied);
     } else {
-      keep_copy(folder / mesh, input / place / mesh);
+      keep_copy(folder / mesh, input / place / mesh, copied);
     }
   }
   place /= fs::path(machine_file).filename();
   fs::create_directories((input / place).parent_path());
   write_text((input / place).string(), text);
+  copied.emplace_back(machine_file);
   return place;
 }
 
@@ -130,24 +136,24 @@ std::string setup_place(const sim::Job& job) {
 
 /// Another run that the stock comes from: all that its job is made of again, and what says how far it was
 /// cut.
-void keep_run(const fs::path& run, const fs::path& to) {
+void keep_run(const fs::path& run, const fs::path& to, Copied& copied) {
   fs::create_directories(to);
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(run / "input"))
     if (entry.is_regular_file())
-      keep_copy(entry.path(), to / "input" / fs::relative(entry.path(), run / "input"));
-  for (const char* name : {sim::kRunMark, "stock.vdb"}) keep_copy(run / name, to / name);
+      keep_copy(entry.path(), to / "input" / fs::relative(entry.path(), run / "input"), copied);
+  for (const char* name : {sim::kRunMark, "stock.vdb"}) keep_copy(run / name, to / name, copied);
 }
 
 /// Copies what one job names into input/`inside`; returns the overrides that point there.
 std::vector<std::string> keep_job(const fs::path& input, const fs::path& inside, const sim::Job& job,
-                                  const std::vector<std::string>& overrides) {
+                                  const std::vector<std::string>& overrides, Copied& copied) {
   std::vector<std::string> all = overrides;
   const auto say = [&](const std::string& key, const fs::path& place) {
     all.push_back(fmt::format("{}={}", key, quoted((inside / place).string())));
   };
   const auto keep = [&](const std::string& key, const std::string& file, const fs::path& place) {
     if (file.empty()) return;
-    keep_copy(file, input / inside / place);
+    keep_copy(file, input / inside / place, copied);
     say(key, place);
   };
   const auto beside = [](const std::string& file, const std::string& name) {
@@ -155,7 +161,7 @@ std::vector<std::string> keep_job(const fs::path& input, const fs::path& inside,
   };
   const sim::Scene& scene = job.scene;
   add_what_was_open(scene.stock, all);
-  say("machine", keep_machine(input / inside, scene.machine_file));
+  say("machine", keep_machine(input / inside, scene.machine_file, copied));
   // A design that is milled by the flank has no program: the scene says it all.
   if (!scene.flank)
     keep(scene.program_key, scene.program_file,
@@ -164,10 +170,10 @@ std::vector<std::string> keep_job(const fs::path& input, const fs::path& inside,
   for (const auto& [name, file] : scene.tool_table_file.empty()
                                       ? std::vector<std::pair<std::string, std::string>>{}
                                       : sim::tool_library_parts(scene.tool_table_file))
-    keep_copy(file, input / inside / fs::path(name).filename());
+    keep_copy(file, input / inside / fs::path(name).filename(), copied);
   const sim::RawSettings& raw = scene.stock.raw;
   if (raw.kind == sim::RawKind::kRun) {
-    keep_run(raw.file, input / inside / "earlier_run");
+    keep_run(raw.file, input / inside / "earlier_run", copied);
     say("stock.from_run", "earlier_run");
   } else if (!raw.file.empty()) {
     keep("stock." + raw.key, raw.file, beside(raw.file, "stock"));
@@ -186,13 +192,14 @@ std::vector<std::string> keep_job(const fs::path& input, const fs::path& inside,
   return all;
 }
 
-void keep_programs(const fs::path& kept, const sim::Job& job, const std::vector<std::string>& called) {
+void keep_programs(const fs::path& kept, const sim::Job& job, const std::vector<std::string>& called,
+                   Copied& copied) {
   const fs::path home = fs::path(job.scene.program_file).parent_path();
   for (const std::string& file : called) {
     const fs::path seen = fs::path(file).lexically_proximate(home);
     const bool below = !seen.is_absolute() && folders_above(seen) == 0;
     const fs::path place = kept / (below ? seen : seen.filename());
-    if (!fs::exists(place)) keep_copy(file, place);
+    if (!fs::exists(place)) keep_copy(file, place, copied);
   }
 }
 
@@ -202,17 +209,20 @@ KeptInputs keep_inputs(const PendingFolder& folder, const sim::Job& job,
                        const std::vector<std::string>& overrides) {
   const fs::path input = folder.file("input");
   fs::create_directories(input);
+  Copied copied;
   if (job.scene.text.empty()) {
-    keep_copy(job.scene.file, input / "scene.toml");
+    keep_copy(job.scene.file, input / "scene.toml", copied);
   } else {
     write_text((input / "scene.toml").string(), job.scene.text);
   }
-  KeptInputs kept{keep_job(input, "", job, overrides), {}};
-  if (job.scene.setup.number == 0) return kept;
-  kept.earlier.emplace();
-  for (const sim::EarlierSetup& earlier : job.earlier)
-    if (!earlier.other_run)
-      kept.earlier->push_back(keep_job(input, setup_place(*earlier.job), *earlier.job, overrides));
+  KeptInputs kept{keep_job(input, "", job, overrides, copied), {}};
+  if (job.scene.setup.number > 0) {
+    kept.earlier.emplace();
+    for (const sim::EarlierSetup& earlier : job.earlier)
+      if (!earlier.other_run)
+        kept.earlier->push_back(keep_job(input, setup_place(*earlier.job), *earlier.job, overrides, copied));
+  }
+  add_sources(input, copied);
   return kept;
 }
 
@@ -220,12 +230,15 @@ void keep_called_programs(const PendingFolder& folder, const sim::Job& job,
                           const std::vector<std::string>& called,
                           const std::vector<std::vector<std::string>>& called_earlier) {
   const fs::path input = folder.file("input");
-  keep_programs(input / kProgramFolder, job, called);
+  Copied copied;
+  keep_programs(input / kProgramFolder, job, called, copied);
   for (size_t i = 0; i < called_earlier.size(); ++i) {
     const sim::EarlierSetup& earlier = job.earlier[i];
     if (!earlier.other_run)
-      keep_programs(input / setup_place(*earlier.job) / kProgramFolder, *earlier.job, called_earlier[i]);
+      keep_programs(input / setup_place(*earlier.job) / kProgramFolder, *earlier.job, called_earlier[i],
+                    copied);
   }
+  add_sources(input, copied);
 }
 
 }  // namespace swarf::reports

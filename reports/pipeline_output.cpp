@@ -81,18 +81,6 @@ Object result_of(const sim::Check& check, const std::string& input) {
           {"locations", Object::array({location_of({input})})}};
 }
 
-/// Text between tags and in attributes: as in HTML, without the control characters that XML forbids; lines
-/// stay lines.
-std::string xml(const std::string& text) {
-  std::string clean = valid_utf8(text);
-  for (char& c : clean) {
-    if (static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t') c = '?';
-  }
-  std::string out;
-  for (const char c : escape(clean)) out += c == '\n' ? std::string("&#10;") : std::string(1, c);
-  return out;
-}
-
 struct TestCase {
   std::string name, tag, message;  ///< tag: failure, error, skipped; "": passed
 };
@@ -132,6 +120,16 @@ size_t count_tag(const std::vector<TestCase>& cases, const char* tag) {
 
 }  // namespace
 
+std::string xml_text(const std::string& text) {
+  std::string clean = valid_utf8(text);
+  for (char& c : clean) {
+    if (static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t') c = '?';
+  }
+  std::string out;
+  for (const char c : escape(clean)) out += c == '\n' ? std::string("&#10;") : std::string(1, c);
+  return out;
+}
+
 std::string sarif_text(const std::vector<FileVerdict>& files, int exit_code) {
   Object results = Object::array();
   std::set<std::string> codes;
@@ -164,12 +162,14 @@ std::string junit_text(const std::vector<FileVerdict>& files, int exit_code) {
       cases.push_back({"run", "error", unfinished_text(exit_code)});
     text +=
         fmt::format("  <testsuite name=\"{}\" tests=\"{}\" failures=\"{}\" errors=\"{}\" skipped=\"{}\">\n",
-                    xml(verdict.file), cases.size(), count_tag(cases, "failure"), count_tag(cases, "error"),
-                    count_tag(cases, "skipped"));
+                    xml_text(verdict.file), cases.size(), count_tag(cases, "failure"),
+                    count_tag(cases, "error"), count_tag(cases, "skipped"));
     for (const TestCase& one : cases) {
-      text += fmt::format("    <testcase classname=\"{}\" name=\"{}\"", xml(verdict.file), xml(one.name));
-      text += one.tag.empty() ? "/>\n"
-                              : fmt::format("><{} message=\"{}\"/></testcase>\n", one.tag, xml(one.message));
+      text += fmt::format("    <testcase classname=\"{}\" name=\"{}\"", xml_text(verdict.file),
+                          xml_text(one.name));
+      text += one.tag.empty()
+                  ? "/>\n"
+                  : fmt::format("><{} message=\"{}\"/></testcase>\n", one.tag, xml_text(one.message));
     }
     text += "  </testsuite>\n";
   }

@@ -26,4 +26,7 @@ std::string sarif_text(const std::vector<FileVerdict>& files, int exit_code);
 /// a failure that says why has an error instead. Ends with a new line.
 std::string junit_text(const std::vector<FileVerdict>& files, int exit_code);
 
+/// Text between tags and in attributes of XML, whatever bytes it has.
+std::string xml_text(const std::string& text);
+
 }  // namespace swarf::reports

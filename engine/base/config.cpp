@@ -449,6 +449,23 @@ std::vector<std::string> ConfigTable::choices(const std::string& key, const std:
   return fallback;
 }
 
+std::vector<std::string> ConfigTable::texts(const std::string& key,
+                                            const std::vector<std::string>& fallback) {
+  const toml::node* value = node_->find(key).node;
+  if (value == nullptr) return fallback;
+  std::vector<std::string> found;
+  bool right = value->is_array();
+  for (size_t i = 0; right && i < value->as_array()->size(); ++i) {
+    const toml::node& one = *value->as_array()->get(i);
+    right = one.is_string();
+    if (right) found.push_back(one.as_string()->get());
+  }
+  if (right) return found;
+  error("wrong-type", key, fmt::format("'{}{}' must be an array of texts", node_->name, key),
+        fmt::format("write {} = [\"a\", \"b\"]", key));
+  return fallback;
+}
+
 std::vector<double> ConfigTable::numbers(const std::string& key, size_t count,
                                          const std::optional<std::vector<double>>& fallback) {
   const Written value = node_->find(key);

@@ -70,6 +70,8 @@ class ConfigTable {
   /// An array of such words.
   std::vector<std::string> choices(const std::string& key, const std::vector<std::string>& words,
                                    const std::vector<std::string>& fallback);
+  /// An array of texts, whatever they are.
+  std::vector<std::string> texts(const std::string& key, const std::vector<std::string>& fallback);
   /// A list of exactly `count` finite numbers.
   std::vector<double> numbers(const std::string& key, size_t count,
                               const std::optional<std::vector<double>>& fallback = {});

@@ -229,6 +229,20 @@ class Written(unittest.TestCase):
             validator("setups").validate(setups)
             self.assertFalse(validator("setups").is_valid({**setups, "finished": [{}]}))
 
+    def test_a_batch(self):
+        with tempfile.TemporaryDirectory() as folder:
+            jobs = pathlib.Path(folder, "jobs.toml")
+            jobs.write_text('arguments = ["--no-render"]\n' + "".join(
+                f'[[job]]\nfile = "{SOURCE}/scenes/{name}/scene.toml"\n' for name in ("exact_slot_flat", "exact_slot_ball")))
+            code, said = run("batch", jobs, "-o", f"{folder}/out", "-q", "--only", "1")
+            self.assertEqual(code, 0, said)
+            code, said = run("batch", jobs, "-o", f"{folder}/out", "--summary", "-q")
+            self.assertEqual(code, 130, said)
+            table = json.loads(pathlib.Path(folder, "out", "batch.json").read_text())
+            validator("batch").validate(table)
+            self.assertEqual([job["outcome"] for job in table["jobs"]], ["PASS", "NOT RUN"])
+            self.assertFalse(validator("batch").is_valid({**table, "jobs": [{}]}))
+
     def test_flank(self):
         self.check("exact_flank_f1", section="flank")
 
