@@ -12,7 +12,7 @@ struct BatchRow {
   std::string name, file;
   std::vector<std::string> words;  ///< of swarf run
   std::string version;             ///< commit of the program that ran it
-  std::optional<int> exit_code;
+  std::optional<int> exit_code{};
   double seconds = 0.0;         ///< of the clock on the wall
   std::string verdict{};        ///< the run's own sentence, or why there is none
   double machine_time_s = 0.0;  ///< cycle time of the program; 0: not known
