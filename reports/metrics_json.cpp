@@ -15,6 +15,7 @@
 
 #include "base/units.h"
 #include "reports/tools_table.h"
+#include "sim/run/worn_fixtures.h"
 
 namespace swarf::reports {
 namespace {
@@ -291,7 +292,7 @@ Json stock_contacts_json(const toolpath::ToolPath& path, const sim::MachineConta
   return json;
 }
 
-Json machine_contacts_json(const sim::Result& result) {
+Json machine_contacts_json(const sim::Job& job, const sim::Result& result) {
   if (!result.main.contacts) return nullptr;
   const sim::MachineContacts& contacts = *result.main.contacts;
   Json json{{"count", contacts.contacts() + contacts.stock_contacts()},
@@ -300,7 +301,10 @@ Json machine_contacts_json(const sim::Result& result) {
             {"pairs", Json::array()},
             {"left_out", Json::array()},
             {"without_mesh", contacts.without_mesh},
-            {"events", Json::array()}};
+            {"events", Json::array()},
+            {"fixtures_cut", Json::array()}};
+  for (const sim::WornFixture& worn : sim::worn_fixtures(job, result))
+    json["fixtures_cut"].push_back({{"name", worn.name}, {"removed_mm3", worn.removed_mm3}});
   const collision::PairFindings* const nearest = contacts.nearest();
   json["near_miss_min_mm"] = nearest == nullptr ? Json(nullptr) : Json(nearest->near_miss.upper);
   for (const collision::PairFindings& pair : contacts.findings.pairs) {
@@ -509,7 +513,7 @@ std::string metrics_json(const sim::Job& job, const sim::Result& result, const R
             {"planners", comparison_json(result.planners)},
             {"interpolators", comparison_json(result.modes)},
             {"collisions", collisions_json(result)},
-            {"machine_contacts", machine_contacts_json(result)},
+            {"machine_contacts", machine_contacts_json(job, result)},
             {"bad_cuts", bad_cuts_json(result)},
             {"tools", tools_json(job, result)},
             {"render", {{"frames", render.frames}, {"frame_ms_median", render.frame_ms_median}}},

@@ -20,6 +20,7 @@
 #include "reports/report_writer.h"
 #include "reports/run_report.h"
 #include "sim/run/design_rays.h"
+#include "sim/run/worn_fixtures.h"
 
 namespace swarf::reports {
 namespace {
@@ -191,7 +192,8 @@ std::vector<Diagnostic> write_run(PendingFolder& folder, const sim::Job& job, si
     folder.move_into_place();
     return {};
   }
-  FinishedRun run{job, *result.main.cycles, *result.stock, result.main.dexels, *result.main.carried};
+  const sim::Job shown = sim::with_worn(job, sim::worn_fixtures(job, result));
+  FinishedRun run{shown, *result.main.cycles, *result.stock, result.main.dexels, *result.main.carried};
   if (result.main.keys) run.keys = &*result.main.keys;
   RunFiles files;
   RenderStatistics statistics;

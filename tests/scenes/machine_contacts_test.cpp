@@ -78,6 +78,29 @@ TEST_F(MachineContacts, EachPairIsShownInAPicture) {
   EXPECT_FALSE(fs::exists(out() / "still_contact_1.png"));
 }
 
+/// A bar across the frame's far side: the tool of D 6 leaves a slot of 6 x 20 through its 8 mm. It touches
+/// the block, so that its faces are shared by two bodies; a vice below stays whole.
+TEST_F(MachineContacts, AFixtureThatIsHitIsCutInto) {
+  const std::string bar =
+      "[[fixture]]\nname = \"bar\"\non = \"part\"\nbox_mm = [[20, 30, 0], [40, 55, 8]]\n"
+      "[[fixture]]\nkind = \"vice\"\ngrip_mm = 15\n";
+  const ProgramRun met = run(kFrame, kOnTable + bar, " --set stock.voxel_mm=0.25");
+  EXPECT_EQ(met.exit_code, 1) << met.output;
+  const json cut = metrics()["machine_contacts"]["fixtures_cut"];
+  ASSERT_EQ(cut.size(), 1U) << met.output;
+  EXPECT_EQ(cut[0]["name"], "bar");
+  EXPECT_NEAR(cut[0]["removed_mm3"].get<double>(), 6.0 * 20.0 * 8.0, 2.0);  // 22 at 1 mm, 6.3 at 0.5: edges
+
+  // The same in the glTF: its bar has a slot, so more triangles than a box.
+  const auto drawn =
+      run_swarf("run " + (folder_ / "scene.toml").string() + " -q --no-render --report -o " + out().string());
+  EXPECT_EQ(drawn.exit_code, 1) << drawn.output;
+  const auto whole = fs::file_size(out() / "machine.glb");
+  run(kFrame, kOnTable + bar, " --set \"fixture[0].box_mm=[[20, 30, 40], [40, 55, 48]]\" --report");
+  EXPECT_TRUE(metrics()["machine_contacts"]["fixtures_cut"].empty());
+  EXPECT_GT(whole, fs::file_size(out() / "machine.glb") + 1000);
+}
+
 /// The straps' posts are hidden by their straps, which reach 10 mm over the upper face: the tool goes into
 /// each from the side, and first touches where its flank meets the strap's edge.
 TEST_F(MachineContacts, ClampsInTheWayAreFoundWhereTheyAreFirstTouched) {
