@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
 """Runs each *.ngc of a folder through LinuxCNC's own interpreter and writes the moves beside it, as *.moves.
 
-    record.py RS274 FOLDER        RS274: the program rs274 of LinuxCNC (Debian: package linuxcnc-uspace)
+    record.py RS274 FOLDER [axes]     RS274: the program rs274 of LinuxCNC (Debian: package linuxcnc-uspace)
 
 A line of a .moves file, in machine coordinates of the gauge line, mm; feed in mm/min:
     R x y z rpm                         rapid
     L x y z rpm feed exact              straight feed; exact: 1 in exact path mode, 0 in continuous mode
     A x y z rpm feed exact cx cy cz     arc or helix; what its centre has along the plane's normal means nothing
     E text                              the control refuses the block after these moves
-Moves that go nowhere are left out. rs274 prints four decimals.
+Moves that go nowhere are left out. rs274 prints four decimals. With "axes" R and L are followed by x y z a b c and, of
+a feed, the seconds that it takes: along x y z, by the degrees where they stand still.
 """
 import math
 import pathlib
@@ -22,6 +23,27 @@ TOOLS = {1: (50.8, 6.35), 2: (25.4, 12.7), 3: (12.7, 2.54)}
 CALL = re.compile(r"^\s*\d+\s+N\S*\s+([A-Z0-9_]+)\((.*)\)\s*$")
 NUMBER = re.compile(r"-?\d+\.?\d*(?:e[+-]?\d+)?")
 NOWHERE = 2e-4
+
+
+class Axes:
+    """The same with rotary axes, straight moves alone."""
+
+    def __init__(self, canon):
+        self.canon, self.at, self.turn = canon, [0.0] * 3, [0.0] * 3
+
+    def call(self, name, text):
+        if name not in ("STRAIGHT_TRAVERSE", "STRAIGHT_FEED"):
+            return self.canon.call(name, text)
+        numbers = [float(value) for value in NUMBER.findall(text)]
+        to, turn = self.canon.machine(numbers[:3]), numbers[3:6]
+        way, turned = math.dist(to, self.at), math.dist(turn, self.turn)
+        self.at, self.turn = to, turn
+        if max(way, turned) < NOWHERE:
+            return None
+        feed = name == "STRAIGHT_FEED"
+        seconds = f" {60.0 * (way if way >= NOWHERE else turned) / self.canon.feed:.6f}" if feed else ""
+        self.canon.lines.append(("L" if feed else "R") + "".join(f" {value:.4f}" for value in to + turn) + seconds)
+        return None
 
 
 class Canon:
@@ -81,14 +103,15 @@ class Canon:
         self.lines.append(kind + "".join(f" {value:.4f}" for value in to) + f" {self.rpm * self.sense:.4f}{how}{more}")
 
 
-def record(rs274, program, table):
+def record(rs274, program, table, axes=False):
     done = subprocess.run([rs274, "-g", "-t", table, program], capture_output=True, text=True, errors="replace",
                           timeout=60)
     canon = Canon()
+    reader = Axes(canon) if axes else canon
     for line in done.stdout.splitlines():
         call = CALL.match(line)
         if call and call[1] not in ("COMMENT", "MESSAGE"):
-            canon.call(*call.groups())
+            reader.call(*call.groups())
     refused = [line for line in done.stderr.splitlines() if line and line != "executing"]
     return canon.lines + ([f"E {refused[0]}"] if refused else [])
 
@@ -100,7 +123,7 @@ def main():
             table.write(f"T{number} P{number} Z{length / 25.4:.6f} D{diameter / 25.4:.6f} ;\n")
         table.flush()
         for program in sorted(folder.glob("*.ngc")):
-            program.with_suffix(".moves").write_text("\n".join(record(rs274, program, table.name)) + "\n")
+            program.with_suffix(".moves").write_text("\n".join(record(rs274, program, table.name, "axes" in sys.argv[3:])) + "\n")
 
 
 if __name__ == "__main__":
