@@ -33,7 +33,7 @@ namespace fs = std::filesystem;
 struct PostCommand {
   std::vector<std::string> overrides;
   bool avoid = false;
-  std::string file, machine, post, dialect, tools, output, cutcom, circle;
+  std::string file, machine, post, dialect, tools, output, fixed_cl, cutcom, circle;
   std::vector<double> work_origin;
   double work_rotation_deg = 0.0, tolerance_um = 10.0, axis_tolerance_deg = 0.1;
   bool tcp = false, no_tcp = false, json = false;
@@ -216,6 +216,42 @@ std::vector<std::string> scene_overrides(const PostCommand& given) {
   return keys;
 }
 
+/// What was written; `advice`: null without --fix.
+int tell_posted(const PostCommand& given, const sim::Job& job, const PostedScene& posted,
+                const avoidance::Advice* advice) {
+  if (given.json) {
+    nlohmann::ordered_json json{{"schema", 1},
+                                {"swarf", SWARF_VERSION},
+                                {"file", given.file},
+                                {"program", given.output},
+                                {"post", posted.post_name}};
+    json["avoidance"] = reports::avoidance_json(posted.outcome, job);
+    if (advice != nullptr) json["advice"] = reports::advice_json(*advice, given.fixed_cl);
+    json["overrides"] = posted.overrides;
+    fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+    return kPass;
+  }
+  if (manner().quiet) return kPass;
+  fmt::print("{}\n", given.output);
+  if (advice != nullptr) print_table(reports::advice_lines(*advice, given.fixed_cl));
+  print_table(reports::avoidance_lines(posted.outcome, job));
+  if (!is_scene(given)) return kPass;
+  std::vector<std::string> words{"swarf", "run", given.file};
+  for (const std::string& key : posted.overrides) words.insert(words.end(), {"--set", key});
+  fmt::print("  proof: {}\n", shell_text(words));
+  return kPass;
+}
+
+/// The same with changes of the path, where nothing else helps, and the CL data with them.
+int post_with_advice(const PostCommand& given, const avoidance::Task& task, Progress& progress) {
+  Diagnostics told;
+  const std::optional<FixedScene> found = post_fixed_scene(
+      task, {fs::absolute(given.fixed_cl).string(), fs::absolute(given.output).string()}, progress, told);
+  print_diagnostics(told.list());
+  if (!found) return kStopped;
+  return tell_posted(given, found->job, found->posted, &found->advice);
+}
+
 /// The set-up, and what would be found on it.
 int post_with_avoidance(const PostCommand& given) {
   if (given.output == "-")
@@ -237,34 +273,18 @@ int post_with_avoidance(const PostCommand& given) {
                      "a scene with cl = \"part.cls\" and no post.written");
   TerminalProgress progress;
   Diagnostics told;
-  const std::optional<PostedScene> found =
-      post_scene({&job, load}, fs::absolute(given.output).string(), progress, told);
+  const std::string output = fs::absolute(given.output).string();
+  if (!given.fixed_cl.empty()) return post_with_advice(given, {&job, load}, progress);
+  const std::optional<PostedScene> found = post_scene({&job, load}, output, progress, told);
   print_diagnostics(told.list());
   if (!found) return kStopped;
-  const PostedScene& posted = *found;
-  if (given.json) {
-    nlohmann::ordered_json json{{"schema", 1},
-                                {"swarf", SWARF_VERSION},
-                                {"file", given.file},
-                                {"program", given.output},
-                                {"post", posted.post_name}};
-    json["avoidance"] = reports::avoidance_json(posted.outcome, job);
-    json["overrides"] = posted.overrides;
-    fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
-    return kPass;
-  }
-  if (manner().quiet) return kPass;
-  fmt::print("{}\n", given.output);
-  print_table(reports::avoidance_lines(posted.outcome, job));
-  if (!is_scene(given)) return kPass;
-  std::vector<std::string> words{"swarf", "run", given.file};
-  for (const std::string& key : posted.overrides) words.insert(words.end(), {"--set", key});
-  fmt::print("  proof: {}\n", shell_text(words));
-  return kPass;
+  return tell_posted(given, job, *found, nullptr);
 }
-
 int run_post(const PostCommand& given) {
   if (is_scene(given) || given.avoid) return post_with_avoidance(given);
+  if (!given.fixed_cl.empty())
+    throw InputError("needs-scene", {"--fix"}, "--fix changes what collides, and nothing is looked at here",
+                     "give a scene.toml, or --avoid");
   if (!given.overrides.empty())
     throw InputError("needs-scene", {"--set"}, "--set changes a key of a scene, and this is CL data",
                      "give a scene.toml, or --avoid");
@@ -329,6 +349,9 @@ collisions, the machine against the work as it has been cut so far: the other so
 or the turn at a pole; where no way is free the clamping moves over the grid of [post.clamping], to the free place with
 the least slide movements, and then tools are pulled out as far as [post.tool_reach] lets them. What cannot be
 avoided is told with its line, and no program is written. swarf run of the scene does the same, and proves it.
+With --fix OUT.cl the path is changed then, and where it gouges the design: block by block the smallest lead or tilt
+(to .002 deg) that frees everything up to there, else the smallest lift, each proven over the whole motion; OUT.cl is
+the file with these positions, for the CAM system, and -o its program.
 
 Drilling cycles (CYCLE/DRILL ..) stay cycles where the control drills along its own Z: G81, CYCLE81, CYCL DEF 200.
 
@@ -339,6 +362,7 @@ Examples:
   swarf post part.cls --machine maho_600c --dialect heidenhain --no-tcp --tolerance-um 5 -o part.h
   swarf post part.cls --machine mill_3axis --post my_shop.toml -o part.nc        your own words
   swarf post scene.toml --dialect siemens -o part.mpf                            a whole set-up, free of collisions
+  swarf post scene.toml --fix freed.cl -o part.nc                                the path changed where only that helps
   swarf post part.cls --machine mikron_ucp710 -o - | less
 
 To check what was written: swarf check part.mpf --machine spinner_u5_620 --tools tools.toml --dialect siemens
@@ -356,6 +380,11 @@ void add_post(CLI::App& app, int& exit_code) {
       ->required();
   command->add_option("--machine", options->machine, "a machine that 'swarf machines' lists, or machine.toml")
       ->type_name("NAME|FILE");
+  command
+      ->add_option("--fix", options->fixed_cl,
+                   "where nothing else helps: the smallest lead, tilt or lift of each block that frees it; "
+                   "CL data with them go here")
+      ->type_name("OUT.cl");
   command->add_flag("--avoid", options->avoid,
                     "look at every way for collisions and take another one; as a scene always does");
   command

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "avoidance/advice.h"
 #include "avoidance/control.h"
 #include "post/post.h"
 
@@ -25,5 +26,20 @@ bool wants_post(const sim::Job& job);
 /// InputError where none is free of collisions.
 std::optional<PostedScene> post_scene(const avoidance::Task& task, const std::string& file,
                                       Progress& progress, Diagnostics& told);
+
+/// The same with changes of the path.
+struct FixedScene {
+  avoidance::Advice advice;
+  sim::Job job;  ///< of the changed CL data
+  PostedScene posted;
+};
+struct FixedFiles {
+  std::string cl, program;  ///< whole paths
+};
+
+/// Changes the CL data where no clamping, solution or tool helps and where they gouge the design, writes them
+/// and their program, both or neither. None: the user stopped it. Throws InputError where no change helps.
+std::optional<FixedScene> post_fixed_scene(const avoidance::Task& task, const FixedFiles& files,
+                                           Progress& progress, Diagnostics& told);
 
 }  // namespace swarf::cli

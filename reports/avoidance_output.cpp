@@ -7,12 +7,15 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "base/angles.h"
+#include "base/units.h"
 #include "reports/html.h"
 
 namespace swarf::reports {
 namespace {
 
 using avoidance::Attempt;
+using avoidance::ChangeKind;
 using avoidance::Outcome;
 using avoidance::Position;
 using avoidance::PositionState;
@@ -266,6 +269,53 @@ std::vector<std::pair<std::string, std::string>> avoidance_lines(const Outcome& 
         fmt::format("axis {}", axis.name),
         fmt::format("{:.3f} to {:.3f} {}, {:.3f} in all", taken.plan.low[row] * scale,
                     taken.plan.high[row] * scale, rotary ? "deg" : "mm", taken.plan.travel[row] * scale));
+  }
+  return lines;
+}
+
+namespace {
+
+/// "tilt +10.001 deg, lift 0.490 mm".
+std::string change_text(const avoidance::PathChange& change) {
+  std::string text;
+  for (const ChangeKind kind : {ChangeKind::kLead, ChangeKind::kTilt, ChangeKind::kLift}) {
+    const double amount = change.of(kind);
+    if (amount == 0.0) continue;
+    const bool lift = kind == ChangeKind::kLift;
+    text += fmt::format("{}{} {:+.3f} {}", text.empty() ? "" : ", ", avoidance::change_name(kind),
+                        lift ? amount : deg_from_rad(amount), lift ? "mm" : "deg");
+  }
+  return text;
+}
+
+}  // namespace
+
+nlohmann::ordered_json advice_json(const avoidance::Advice& advice, const std::string& file) {
+  nlohmann::ordered_json json{
+      {"cl", file}, {"looks", advice.looks}, {"blocks", nlohmann::ordered_json::array()}};
+  for (const avoidance::BlockChange& block : advice.blocks) {
+    const Vec3 &tip = block.after.tip_W, &axis = block.after.axis_W;
+    json["blocks"].push_back({{"line", block.line},
+                              {"lead_deg", deg_from_rad(block.change.lead_rad)},
+                              {"tilt_deg", deg_from_rad(block.change.tilt_rad)},
+                              {"lift_mm", block.change.lift_mm},
+                              {"tip_mm", {tip.x(), tip.y(), tip.z()}},
+                              {"axis", {axis.x(), axis.y(), axis.z()}},
+                              {"frees", block.frees}});
+  }
+  return json;
+}
+
+std::vector<std::pair<std::string, std::string>> advice_lines(const avoidance::Advice& advice,
+                                                              const std::string& file) {
+  std::vector<std::pair<std::string, std::string>> lines;
+  lines.emplace_back("CL data", fmt::format("{}, {} positions changed, {} programs looked at", file,
+                                            advice.blocks.size(), advice.looks));
+  constexpr size_t kTold = 30;
+  for (const avoidance::BlockChange& block : advice.blocks) {
+    if (lines.size() > kTold) break;
+    lines.emplace_back("changed", fmt::format("CL line {}: {}; it frees: {}", block.line,
+                                              change_text(block.change), block.frees));
   }
   return lines;
 }

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "avoidance/advice.h"
 #include "avoidance/control.h"
 #include "reports/report_data.h"
 
@@ -17,6 +18,11 @@ nlohmann::ordered_json avoidance_json(const avoidance::Outcome& outcome, const s
 /// Lines for the console.
 std::vector<std::pair<std::string, std::string>> avoidance_lines(const avoidance::Outcome& outcome,
                                                                  const sim::Job& job);
+
+/// "advice" of swarf post --json; `file`: the changed CL data.
+nlohmann::ordered_json advice_json(const avoidance::Advice& advice, const std::string& file);
+std::vector<std::pair<std::string, std::string>> advice_lines(const avoidance::Advice& advice,
+                                                              const std::string& file);
 
 /// Decisions as a tree, and the map of the clamping positions.
 Topic avoidance_topic(const avoidance::Outcome& outcome, const sim::Job& job);

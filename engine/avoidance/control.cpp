@@ -11,169 +11,13 @@
 #include "base/units.h"
 #include "cutter/cutter.h"
 #include "post/shipped.h"
-#include "sim/run/cut_stage.h"
-#include "sim/simulation.h"
 
 namespace swarf::avoidance {
 namespace {
 
 using kinematics::AxisKind;
 
-constexpr size_t kRoutesMost = 64;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-double slides_of(const kinematics::MachineModel& machine, const post::PlanSummary& plan) {
-  double sum = 0.0;
-  for (size_t i = 0; i < machine.axes.size(); ++i)
-    if (machine.axes[i].kind == AxisKind::kLinear) sum += plan.travel[static_cast<long>(i)];
-  return sum;
-}
-
-/// Lines alone: arcs and cycles are looked at as the moves that they stand for.
-post::PostFormat plain(post::PostFormat format) {
-  format.motion.clockwise = format.motion.counter_clockwise = {};
-  format.cycle.drill = format.cycle.drill_dwell = format.cycle.deep = format.cycle.chip_break = {};
-  format.cycle.bore = format.cycle.bore_dwell = format.cycle.tap = {};
-  return format;
-}
-
-post::PostOptions options_of(const sim::Job& job) {
-  const sim::PostSettings& given = *job.scene.post;
-  post::PostOptions options;
-  options.tip_mm = given.tolerance_mm;
-  options.axis_rad = given.axis_tolerance_rad;
-  options.cl = job.scene.cl_options;
-  for (const cutter::Cutter& tool : job.scene.tools)
-    options.tools.push_back({tool.number, tool.name, cutter::gauge_length(tool)});
-  return options;
-}
-
-std::string way_text(const kinematics::MachineModel& machine, const post::RouteChoice& way) {
-  std::string text;
-  for (size_t i = 0; i < machine.axes.size(); ++i)
-    if (machine.axes[i].kind == AxisKind::kRotary)
-      text += fmt::format("{}{} {:.3f}", text.empty() ? "" : " ", machine.axes[i].name,
-                          deg_from_rad(way.start.q[static_cast<long>(i)]));
-  text += way.lifted ? ", lifted before" : ", driven there";
-  for (size_t i = 0; i < way.sides.size(); ++i)
-    if (way.sides[i] == post::PoleSide::kOther) text += fmt::format("; turns at pole {}", i + 1);
-  return text;
-}
-
-/// One program, planned with a judge or without.
-class Trial {
- public:
-  Trial(const sim::Job& job, const post::PostFormat& format, CollisionJudge* judge)
-      : job_(job), format_(plain(format)), judge_(judge), options_(options_of(job)) {
-    options_.tcp = false;
-    options_.hooks.faults_most = 1;
-    if (judge_ != nullptr) {
-      options_.hooks.judge = [this](const post::PlannedStretch& planned, const kinematics::AxisValues* from) {
-        return object(planned, from);
-      };
-    }
-    options_.hooks.tried = [this](const post::RouteTry& way) { add(way); };
-    options_.hooks.planned = [this](std::span<const program::Move> moves) {
-      if (judge_ != nullptr) judge_->cut(moves);
-      failed_ = failed_ || !passed_;
-      if (passed_) failures_.clear();
-      passed_ = false;
-    };
-  }
-
-  /// All ways at once; the quickest, or that of the least slide movements.
-  void follow_all(bool by_slides) {
-    options_.hooks.routes_most = kRoutesMost;
-    if (!by_slides) return;
-    options_.hooks.cost = [this](const post::PlanSummary& plan) {
-      return slides_of(job_.machine.model, plan);
-    };
-  }
-
-  Attempt run(Progress& progress) {
-    Diagnostics diagnostics;
-    try {
-      const post::PostResult result = post::post(
-          job_.scene.program_file, job_.machine.model, format_, options_, [](std::string_view) {}, progress,
-          diagnostics);
-      attempt_.plan = result.plan;
-      attempt_.choices = result.choices;
-      dropped_ = result.routes_dropped;
-      attempt_.slides_mm = slides_of(job_.machine.model, result.plan);
-    } catch (const InputError&) {
-      if (!failed_ || failures_.empty()) throw;
-      attempt_.failure = joined_failure();
-    }
-    attempt_.origin_M = job_.machine.model.X_MW.translation();
-    return std::move(attempt_);
-  }
-  long dropped() const { return dropped_; }
-
- private:
-  std::optional<post::Objection> object(const post::PlannedStretch& planned,
-                                        const kinematics::AxisValues* from) {
-    collision_ = judge_->look_at(planned, from);
-    if (!collision_) return {};
-    return post::Objection{collision_->step, {"collision", collision_->text, "", -1}};
-  }
-
-  void add(const post::RouteTry& way) {
-    ++attempt_.tried;
-    const bool good = way.fault.code.empty();
-    passed_ = passed_ || good;
-    if (!failed_ && attempt_.tries.size() < Attempt::kTriesMost)
-      attempt_.tries.push_back({way.first_line, way.last_line, way_text(job_.machine.model, way.way),
-                                way.fault.text, way.fault_line, way.time_s});
-    if (!good && !failed_) failures_.push_back(failure_of(way));
-  }
-
-  Failure failure_of(const post::RouteTry& way) const {
-    Failure failure{way.fault.code, way.fault.text, way.fault_line, -1, {}};
-    if (way.fault.code == "collision") {
-      failure.remedies = collision_->loading ? std::vector<Remedy>{Remedy::kMoveClamping}
-                                             : remedies_of(collision_->part_a, collision_->part_b);
-      failure.tool = collision_->tool;
-    } else if (way.fault.axis >= 0) {
-      const kinematics::Axis& axis = job_.machine.model.axes[static_cast<size_t>(way.fault.axis)];
-      failure.remedies = remedies_of_limit(axis.kind == AxisKind::kLinear);
-    }
-    return failure;
-  }
-
-  /// The way that came farthest is told; what would free any of them may be tried.
-  Failure joined_failure() const {
-    Failure worst = *std::max_element(failures_.begin(), failures_.end(),
-                                      [](const Failure& a, const Failure& b) { return a.line < b.line; });
-    std::vector<Remedy> all;
-    for (const Remedy remedy : {Remedy::kMoveClamping, Remedy::kExtendTool, Remedy::kShortenTool})
-      for (const Failure& one : failures_)
-        if (std::count(one.remedies.begin(), one.remedies.end(), remedy) > 0 &&
-            std::count(all.begin(), all.end(), remedy) == 0) {
-          all.push_back(remedy);
-          if (worst.tool < 0) worst.tool = one.tool;
-        }
-    worst.remedies = all;
-    return worst;
-  }
-
-  const sim::Job& job_;
-  post::PostFormat format_;
-  CollisionJudge* judge_;
-  post::PostOptions options_;
-  Attempt attempt_;
-  std::optional<Collision> collision_;
-  std::vector<Failure> failures_;  ///< of the stretch that is being planned
-  bool passed_ = false, failed_ = false;
-  long dropped_ = 0;
-};
-
-void extend(sim::Job& job, const std::vector<double>& extended_mm) {
-  for (size_t i = 0; i < extended_mm.size(); ++i) {
-    cutter::Cutter& tool = job.scene.tools[i];
-    tool.length_mm += extended_mm[i];
-    if (tool.gauge_length_mm) *tool.gauge_length_mm += extended_mm[i];
-  }
-}
 
 std::string origin_key(const Vec3& origin) {
   return fmt::format("setup.work_origin_mm=[{:.6f}, {:.6f}, {:.6f}]", origin.x(), origin.y(), origin.z());
@@ -268,29 +112,15 @@ class Control {
   /// 0. Tool parts against the material, whatever machine drives them.
   bool free_of_material() {
     while (true) {
-      sim::Job job = job_at(task_.job->machine.model.X_MW.translation());
-      sim::Result result;
-      Progress silent;
-      result.main = sim::move_tool(job, silent);
-      sim::cut_stock(job, {}, silent, result);
-      const auto& events = result.clearance.events;
-      const auto hit = std::find_if(events.begin(), events.end(),
-                                    [](const sim::ContactEvent& event) { return event.part != "flutes"; });
-      if (hit == events.end()) return true;
+      const sim::Job job = job_at(task_.job->machine.model.X_MW.translation());
+      std::optional<Failure> failure = material_failure(job);
+      if (!failure) return true;
       Attempt attempt;
       attempt.origin_M = job.machine.model.X_MW.translation();
       attempt.extended_mm = outcome_.extended_mm;
-      Failure failure;
-      failure.code = "collision";
-      failure.line = result.main.path.elements.line(static_cast<size_t>(hit->first.element));
-      failure.tool = hit->tool;
-      failure.remedies = remedies_of(Part::kHolder, Part::kWork);
-      failure.text = fmt::format("{} of {} goes {:.3f} mm into the material ({} such places)", hit->part,
-                                 cutter::call_name(job.scene.tools[static_cast<size_t>(hit->tool)]),
-                                 hit->depth_mm, events.size());
-      const bool longer = reach_for(hit->tool, settings_.reach.step_mm);
+      const bool longer = reach_for(failure->tool, settings_.reach.step_mm);
       attempt.action =
-          longer ? told_reach(hit->tool) : "nothing is left: the tool may not be pulled out further";
+          longer ? told_reach(failure->tool) : "nothing is left: the tool may not be pulled out further";
       attempt.failure = std::move(failure);
       outcome_.attempts.push_back(std::move(attempt));
       if (!longer) return false;
@@ -516,11 +346,16 @@ post::PostResult write_program(const Task& task, const Outcome& outcome, const p
   return post::post(job.scene.program_file, job.machine.model, format, options, out, progress, diagnostics);
 }
 
-Diagnostics diagnostics_of(const Outcome& outcome, const sim::Job& job) {
-  Diagnostics told;
+const Attempt* farthest_attempt(const Outcome& outcome) {
   const Attempt* farthest = nullptr;
   for (const Attempt& one : outcome.attempts)
     if (one.failure && (farthest == nullptr || one.failure->line > farthest->failure->line)) farthest = &one;
+  return farthest;
+}
+
+Diagnostics diagnostics_of(const Outcome& outcome, const sim::Job& job) {
+  Diagnostics told;
+  const Attempt* const farthest = farthest_attempt(outcome);
   if (farthest != nullptr) {
     const Failure& failure = *farthest->failure;
     std::string fix;
@@ -532,8 +367,10 @@ Diagnostics diagnostics_of(const Outcome& outcome, const sim::Job& job) {
         fmt::format("neither solution of the rotary axes is free here, with the work at ({:.3f}, {:.3f}, "
                     "{:.3f}) mm, which is as far as any clamping position came: {}",
                     at.x(), at.y(), at.z(), failure.text),
-        fix.empty() ? "only another set-up (C) or another tool path (D) helps"
-                    : fix + ": give [post.clamping] or [post.tool_reach] room for it");
+        fix.empty()
+            ? "only another set-up (C) or another tool path (D) helps: swarf post --fix OUT.cl looks for "
+              "the smallest change of the path"
+            : fix + ": give [post.clamping] or [post.tool_reach] room for it");
   }
   constexpr size_t kTold = 20;
   size_t count = 0;

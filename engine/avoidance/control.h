@@ -17,43 +17,12 @@
 #include <string>
 #include <vector>
 
-#include "avoidance/collision_judge.h"
+#include "avoidance/trial.h"
 #include "base/progress.h"
 #include "post/post.h"
 #include "sim/job/scene.h"
 
 namespace swarf::avoidance {
-
-/// Why a program cannot be driven.
-struct Failure {
-  std::string code, text;  ///< "collision", or as post::FollowFault
-  int line = 0;            ///< of the CL data
-  int tool = -1;           ///< index into Scene::tools
-  std::vector<Remedy> remedies;
-};
-
-/// A way through a stretch that was tried, with what was found.
-struct TriedWay {
-  int first_line = 0, last_line = 0;
-  std::string way;      ///< "B 20.000 C 0.000, lifted; C turns at pole 1"
-  std::string outcome;  ///< "": taken
-  int line = 0;         ///< of the fault
-  double time_s = 0.0;
-};
-
-/// The program at one clamping position with one set of tools.
-struct Attempt {
-  Vec3 origin_M = Vec3::Zero();
-  std::vector<double> extended_mm;  ///< by tool of the scene
-  std::vector<TriedWay> tries;      ///< kTriesMost at most; all of them are counted
-  size_t tried = 0;
-  std::optional<Failure> failure;  ///< none: the program is free
-  post::PlanSummary plan;
-  std::vector<post::RouteChoice> choices;
-  double slides_mm = 0.0;  ///< sum of the movements of the linear axes
-  std::string action;      ///< what CONTROL did about the failure
-  static constexpr size_t kTriesMost = 2000;
-};
 
 enum class PositionState { kUntried, kOffTravel, kNoFullTurn, kCollides, kWorse, kValid };
 const char* state_name(PositionState state);
@@ -99,6 +68,9 @@ std::vector<std::string> overrides_of(const Outcome& outcome, const std::string&
 /// Writes the program of a found outcome as the scene's post has it.
 post::PostResult write_program(const Task& task, const Outcome& outcome, const post::PostFormat& format,
                                const post::Writer::Out& out, Progress& progress, Diagnostics& diagnostics);
+
+/// That came farthest of those that failed; null: none failed.
+const Attempt* farthest_attempt(const Outcome& outcome);
 
 /// Why there is no program, as diagnostics: the least bad position first.
 Diagnostics diagnostics_of(const Outcome& outcome, const sim::Job& job);

@@ -139,6 +139,12 @@ void warn_of_rapids(const kinematics::MachineModel& machine, const std::string& 
       "see where they go with swarf run");
 }
 
+program::ClProgram read(const std::string& file, const PostOptions& options, program::ClSink& sink,
+                        Diagnostics& diagnostics) {
+  if (options.cl_text == nullptr) return program::stream_cl(file, sink, diagnostics, options.cl);
+  return program::stream_cl_text(*options.cl_text, file, sink, diagnostics, options.cl);
+}
+
 }  // namespace
 
 PostAbilities abilities_of(const PostFormat& format) {
@@ -168,7 +174,7 @@ PostResult post(const std::string& cl_file, const kinematics::MachineModel& mach
   check_lengths(machine, cl_file, result.tcp, table, diagnostics);
   progress.begin("reading the CL data", 1.0, "file");
   Count count;
-  const program::ClProgram program = program::stream_cl(cl_file, count, diagnostics, options.cl);
+  const program::ClProgram program = read(cl_file, options, count, diagnostics);
   diagnostics.throw_if_errors();
   progress.end();
   warn_of_rapids(machine, cl_file, count.rapids, diagnostics);
@@ -189,7 +195,7 @@ PostResult post(const std::string& cl_file, const kinematics::MachineModel& mach
   writer.head();
   Counted counted(planner, progress);
   Diagnostics again;  // the same warnings a second time
-  program::stream_cl(cl_file, counted, again, options.cl);
+  read(cl_file, options, counted, again);
   if (!progress.stop_requested()) planner.finish();
   writer.tail();
   progress.end();

@@ -20,7 +20,8 @@ struct PostOptions {
   double tip_mm = 0.01;                 ///< of the tip from the CL data, written digits included; without TCP
   double axis_rad = 0.1 * kPi / 180.0;  ///< of the tool axis from its great circle
   program::ClOptions cl;
-  std::vector<PostTool> tools;  ///< the table; empty: lengths are not known
+  const std::string* cl_text = nullptr;  ///< instead of the file's own text, which it then only names
+  std::vector<PostTool> tools;           ///< the table; empty: lengths are not known
   PlannerHooks hooks;
 };
 

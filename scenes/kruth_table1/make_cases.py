@@ -159,8 +159,38 @@ def arm():
              path([(0, -far, 38), (0, far, 38)], lean), post=grid((10, 10, 10), (1, 5, 1)))
 
 
+def wall_mesh(name, foot, lean_deg, height, thickness, half):
+    """A wall along Y whose face towards -X has its foot at x = foot and leans away by lean_deg: text STL."""
+    far = foot + thickness + height * sin(radians(lean_deg)) / cos(radians(lean_deg))
+    top = foot + height * sin(radians(lean_deg)) / cos(radians(lean_deg))
+    ring = [(foot, 0.0), (far, 0.0), (far, height), (top, height)]
+    near, back = [(x, -half, z) for x, z in ring], [(x, half, z) for x, z in ring]
+    faces = [(near[0], near[1], near[2]), (near[0], near[2], near[3]), (back[0], back[2], back[1]), (back[0], back[3], back[2])]
+    for i in range(4):
+        j = (i + 1) % 4
+        faces += [(near[j], near[i], back[i]), (near[j], back[i], back[j])]
+    text = "solid wall\n"
+    for face in faces:
+        text += "facet normal 0 0 0\nouter loop\n" + "".join("vertex %.9f %.9f %.9f\n" % p for p in face) + "endloop\nendfacet\n"
+    (HERE / name).write_text(text + "endsolid wall\n")
+
+
+def path_advice():
+    """Only the path helps: swarf post --fix. The ball's centre runs at a height of 45, d = 10 square to the wall's face from it;
+    the holder's rim (R 20) is L = 25 above the centre: R cos(psi) - L sin(psi) = d, psi = 20.459 degrees from the face."""
+    lean, height, gap, ball = 10.0, 45.0, 10.0, 5.0
+    foot = gap / cos(radians(lean)) - height * sin(radians(lean)) / cos(radians(lean))
+    wall_mesh("path_1_wall.stl", foot, lean, 130.0, 15.0, 60.0)
+    case("path_1_holder_wall", "method D: tool holder and a leaning wall",
+         ["A ball end cuts beside a wall that leans 10 degrees away; the holder meets it, and no tool may be pulled out further.",
+          "Method D: swarf post --fix leans the tool away from it, by psi - 10 = 10.459 degrees (make_cases.py)."],
+         (0, 0, 0), tool(30, 40, 80).replace("diameter_mm", 'shape = "ball"\ndiameter_mm', 1), ((-40, -25, 0), (0, 25, 42)),
+         path([(0, -20, height - ball), (0, 20, height - ball)], lift=60.0), '[[fixture]]\nname = "wall"\nmesh = "path_1_wall.stl"\n')
+
+
 if __name__ == "__main__":
     head_and_holder()
     cutter()
     structure_and_limits()
     arm()
+    path_advice()

@@ -2,6 +2,7 @@
 // provoked, answered as the paper says, and free in the simulation of the program that was written.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -85,6 +86,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Row{"row_11_linear_limit", 0, 0, 0, true, "axis X would go to"},
                     Row{"row_12_linear_limit_long_tool", 0, -45, -39, true, "axis Z would go to"},
                     Row{"row_13_rotary_limit", 2, 0, 0, false, "axis B would go to 110"},
+                    Row{"path_1_holder_wall", 2, 0, 0, false, "wall (clamping tools) touches holder"},
                     Row{"row_14_tool_load", 0, 0, 0, true, "while the tool is changed"},
                     Row{"table2_1_workpiece_arm", 0, 0, 0, true, ""},
                     Row{"table2_2_head_arm", 0, 0, 0, true, ""},
@@ -151,6 +153,56 @@ TEST(Avoidance, LooksAtCLDataOnAMachineToo) {
   EXPECT_TRUE(json::parse(free.output).at("avoidance").at("found").get<bool>());
   const auto inside = swarf::test::run_swarf(words + " --avoid --work-origin 0 0 -60");
   EXPECT_EQ(inside.exit_code, 2) << inside.output;
+}
+
+/// Only the path helps: the changed CL data, their program, and the run that proves both.
+TEST(Avoidance, FixesThePathWhereNothingElseHelps) {
+  const fs::path folder = swarf::test::fresh_folder("avoidance_fix");
+  const fs::path cl = kScenes / "kruth_table1/row_13_rotary_limit.cl";
+  const std::string scene = (kScenes / "kruth_table1/row_13_rotary_limit.toml").string();
+  const std::string out =
+      " --fix " + (folder / "freed.cl").string() + " -o " + (folder / "part.ngc").string();
+  const auto posted = swarf::test::run_swarf("post " + scene + out);
+  ASSERT_EQ(posted.exit_code, 0) << posted.output;
+  EXPECT_NE(posted.output.find("CL line 9: tilt +10.00"), std::string::npos) << posted.output;
+  const std::string before = swarf::test::read_text(cl), after = swarf::test::read_text(folder / "freed.cl");
+  EXPECT_EQ(std::count(before.begin(), before.end(), '\n'), std::count(after.begin(), after.end(), '\n'));
+  const size_t at = posted.output.find("proof: swarf ");
+  ASSERT_NE(at, std::string::npos) << posted.output;
+  std::string proof = posted.output.substr(at + 13);
+  proof = proof.substr(0, proof.find('\n'));
+  const auto run = swarf::test::run_swarf(proof + " --no-render -o " + (folder / "run").string());
+  EXPECT_EQ(run.exit_code, 0) << proof << "\n" << run.output;
+}
+
+/// Nothing is written, or left, where no change helps.
+TEST(Avoidance, FixLeavesNothingWhereItDoesNotHelp) {
+  const fs::path folder = swarf::test::fresh_folder("avoidance_no_fix");
+  const std::string scene = (kScenes / "kruth_table1/row_13_rotary_limit.toml").string();
+  const auto refused = [&](const std::string& words, const std::string& code) {
+    const auto run = swarf::test::run_swarf("post " + words);
+    EXPECT_EQ(run.exit_code, 2) << run.output;
+    EXPECT_NE(run.output.find(code), std::string::npos) << run.output;
+    EXPECT_FALSE(fs::exists(folder / "freed.cl"));
+    EXPECT_FALSE(fs::exists(folder / "part.ngc"));
+  };
+  const std::string out =
+      " --fix " + (folder / "freed.cl").string() + " -o " + (folder / "part.ngc").string();
+  // Drills stand in cycles: their place is not the post's to change.
+  std::string cl = swarf::test::read_text(kScenes / "kruth_table1/row_13_rotary_limit.cl");
+  cl.replace(cl.find("FEDRAT/400,MMPM\n"), 16, "CYCLE/DRILL,DEPTH,1,CLEAR,2,MMPM,100\n");
+  cl.replace(cl.rfind("RAPID\n"), 6, "CYCLE/OFF\nFEDRAT/400,MMPM\n");
+  swarf::test::write_text(folder / "holes.cl", cl);
+  refused(scene + out + " --set cl=" + (folder / "holes.cl").string(), "no-fix");
+  refused((kScenes / "kruth_table1/row_13_rotary_limit.cl").string() + " --machine maho_600c" + out,
+          "needs-scene");
+  swarf::test::write_text(folder / "own.cl",
+                          swarf::test::read_text(kScenes / "kruth_table1/row_13_rotary_limit.cl"));
+  const auto own =
+      swarf::test::run_swarf("post " + scene + " --set cl=" + (folder / "own.cl").string() + " --fix " +
+                             (folder / "own.cl").string() + " -o " + (folder / "part.ngc").string());
+  EXPECT_EQ(own.exit_code, 2) << own.output;
+  EXPECT_NE(own.output.find("output-is-input"), std::string::npos) << own.output;
 }
 
 TEST(Avoidance, RefusesWhatItCannotMean) {

@@ -76,13 +76,18 @@ const char* writer_name(ClWriter writer) {
   return "unknown";
 }
 
-ClProgram parse_cl(const std::string& text, const std::string& file, Diagnostics& diagnostics,
-                   const ClOptions& options) {
+ClProgram stream_cl_text(const std::string& text, const std::string& file, ClSink& sink,
+                         Diagnostics& diagnostics, const ClOptions& options) {
   Reporter reporter(diagnostics, file);
   if (!check_text(text, reporter, "give CL data, for example GOTO/10,20,30 on a line")) return {};
   ClText lines(text);
+  return cldata::run(file, options, sink, diagnostics, lines);
+}
+
+ClProgram parse_cl(const std::string& text, const std::string& file, Diagnostics& diagnostics,
+                   const ClOptions& options) {
   Collector collector;
-  ClProgram program = cldata::run(file, options, collector, diagnostics, lines);
+  ClProgram program = stream_cl_text(text, file, collector, diagnostics, options);
   collector.give(program);
   return program;
 }

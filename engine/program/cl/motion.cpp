@@ -44,6 +44,12 @@ void drill(ClState& cl, const ClStatement& s, const ToolPose& hole) {
     add_move(cl, s, at(step.height_mm), step.rapid ? 0.0 : cycle.feed_mm_s, step.dwell_s);
 }
 
+/// To the sink, where nothing but this statement decides on it.
+void tell_position(ClState& cl, const ClStatement& s, const ToolPose& pose) {
+  if (cl.arcs.circle || cl.compensation.contour) return;
+  cl.sink.position({pose, cl.systems.X_WC, cl.systems.unit_mm, s.arguments.size() == 6, s.line});
+}
+
 }  // namespace
 
 Vec3 point_at(const ClSystems& systems, const ClStatement& s, size_t first) {
@@ -79,6 +85,7 @@ void go_to(ClState& cl, const ClStatement& s) {
       if (cl.drilling.cycle) {
         drill(cl, s, to);
       } else if (!continues_arc(cl.reporter, cl.path, cl.arcs, s, to.tip_W)) {
+        tell_position(cl, s, to);
         move_to(cl, s, to);
       }
     }

@@ -90,11 +90,22 @@ struct ClHole {
   int line = 0;
 };
 
+/// A GOTO that gives one position and nothing more: neither the end of an arc, a hole, nor compensated.
+struct ClPosition {
+  ToolPose pose;                 ///< W
+  Pose X_WC = Pose::Identity();  ///< from the coordinates of the statement to the work
+  double unit_mm = 1.0;          ///< of the statement's numbers
+  bool with_axis = false;        ///< it says the tool axis
+  int line = 0;
+};
+
 /// Takes moves and notes as they are read.
 class ClSink {
  public:
   virtual ~ClSink() = default;
   virtual void move(const Move& move) = 0;
+  /// Comes before the move to it; the first one has no move.
+  virtual void position(const ClPosition& /*position*/) {}
   /// Comes before the moves of each hole, but not while a contour is compensated.
   virtual void hole(const ClHole& /*hole*/) {}
   virtual void note(ClNote note) = 0;
@@ -131,5 +142,8 @@ ClProgram load_cl(const std::string& path, Diagnostics* warnings = nullptr, cons
 /// moves that came before an error have reached the sink.
 ClProgram stream_cl(const std::string& path, ClSink& sink, Diagnostics& diagnostics,
                     const ClOptions& options = {});
+/// Of a text; messages call it `file`.
+ClProgram stream_cl_text(const std::string& text, const std::string& file, ClSink& sink,
+                         Diagnostics& diagnostics, const ClOptions& options = {});
 
 }  // namespace swarf::program
