@@ -336,6 +336,10 @@ void add_check(CLI::App& app, int& exit_code) {
                       "number of the tool that is in the spindle when an NC program starts");
   command->add_flag("--t-changes-tool", options->nc.t_changes_tool, "T changes the tool at once, without M6");
   command
+      ->add_option("--slot-ends", options->nc.slot_ends,
+                   "840D: RAD and AFSL of slots end at the slot's edge, or at the centre of its round end")
+      ->check(CLI::IsMember({"edge", "centre"}));
+  command
       ->add_option("--cutcom", options->cl.cutcom,
                    "points of CL data under CUTCOM: of the cutter's centre, or of the part's contour")
       ->check(CLI::IsMember({"centre", "contour"}));

@@ -221,6 +221,8 @@ program::ControlSetup setup_of(const std::string& file, const NcCheckOptions& op
         "give the tools as .toml with [[tool]] where the table counts in inches");
   set_start_tool(file, options, setup);
   setup.t_changes_tool = options.t_changes_tool;
+  if (!options.slot_ends.empty())
+    setup.slot_ends = options.slot_ends == "edge" ? program::SlotEnds::kEdge : program::SlotEnds::kCentre;
   return setup;
 }
 

@@ -18,6 +18,7 @@ struct NcCheckOptions {
   std::string units;                    ///< "mm" or "inch" before G20 and G21; "": the machine's, or not said
   int start_tool = 0;                   ///< number of the tool in the spindle; 0: not said
   bool t_changes_tool = false;          ///< T changes the tool without M6
+  std::string slot_ends;                ///< "edge" or "centre" (840D slots); "": not said
   std::vector<std::string> kinematics;  ///< "m430=identity" ...: what LinuxCNC's kinematics switches mean
   std::vector<std::string> parameters;  ///< "500=3.5", "R1=2": values before the program starts
   std::vector<std::string> builder_words;  ///< "M68", "M68=clamp C", "CYCL DEF 392", "LASERCHECK"

@@ -108,6 +108,11 @@ void add_job_flags(CLI::App& command, JobWords& words) {
       ->group(group);
   command.add_flag("--t-changes-tool", words.t_changes_tool, "T changes the tool at once, without M6")
       ->group(group);
+  command
+      .add_option("--slot-ends", words.slot_ends,
+                  "840D: RAD, AFSL of slots end at edge or round end's centre")
+      ->check(CLI::IsMember({"edge", "centre"}))
+      ->group(group);
 }
 
 std::vector<std::string> given_words(const JobWords& words) {
@@ -126,6 +131,7 @@ std::vector<std::string> given_words(const JobWords& words) {
   add("--dialect", words.dialect);
   add("--start-tool", words.start_tool > 0 ? fmt::format("{}", words.start_tool) : "");
   if (words.t_changes_tool) given.emplace_back("--t-changes-tool");
+  add("--slot-ends", words.slot_ends);
   return given;
 }
 
@@ -153,6 +159,7 @@ sim::JobFlags job_flags(const std::string& program_file, const JobWords& words) 
   flags.dialect = words.dialect;
   flags.start_tool = words.start_tool;
   flags.t_changes_tool = words.t_changes_tool;
+  flags.slot_ends = words.slot_ends;
   return flags;
 }
 

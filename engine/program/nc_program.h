@@ -75,6 +75,10 @@ struct KinematicsSwitch {
   std::optional<Kinematics> m430;  ///< none: unknown, M430 is refused
 };
 
+/// Where RAD of the 840D's LONGHOLE and SLOT1 ends, and from where to where AFSL of SLOT2 counts: at the
+/// slot's edge, or at the middle of its round end. The manual shows it by a figure.
+enum class SlotEnds { kEdge, kCentre };
+
 /// Words that the machine's builder gave a meaning and that move nothing, with what they do: "M68"
 /// (LinuxCNC's M100 to M199, Fanuc; the other dialects list every M that they do not act on), "CYCL DEF 392"
 /// (Heidenhain), the name of a program (840D). Each is listed as without effect where it stands.
@@ -109,7 +113,8 @@ struct ControlSetup {
       subprogram_folders;              ///< where called programs are looked for besides the program's own
   KinematicsSwitch kinematics_switch;  ///< LinuxCNC only
   BuilderWords builder_words;
-  Presets presets;  ///< "bad-preset" for one that the dialect does not have
+  std::optional<SlotEnds> slot_ends;  ///< Siemens only; none: "slot-ends" where it matters
+  Presets presets;                    ///< "bad-preset" for one that the dialect does not have
   /// Length of the unit that holds before the program says its own (G20, G21), 1 or 25.4: the machine's
   /// default. None: 1, and the warning "units-assumed" where a program without such a word moves.
   std::optional<double> unit_mm;

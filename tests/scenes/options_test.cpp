@@ -99,6 +99,25 @@ TEST_F(Options, CheckTakesATThatChangesTheToolAtOnce) {
   EXPECT_TRUE(says(with, "T1 (D 6 mm")) << with.output;
 }
 
+/// Where the radius of slots on a circle ends is said by the user, and moves the slots.
+TEST_F(Options, SlotEndsAreSaidToCheckAndRun) {
+  const std::string program = file("slot.mpf",
+                                   "G17 G90 G54 G710\nT1 M6\nS1000 M3 F500\nG0 X0 Y0 Z20\n"
+                                   "LONGHOLE(5,0,1,-4,,1,30,0,0,20,0,0,100,320,2)\nG0 Z20\nM30\n");
+  const std::string tools = file("tools.tbl", "T1 P1 D6 Z50\n");
+  const std::string check = "check " + program + " --tools " + tools;
+  EXPECT_TRUE(says(run_swarf(check), "slot-ends"));
+  const ProgramRun edge = run_swarf(check + " --slot-ends edge"),
+                   centre = run_swarf(check + " --slot-ends centre");
+  EXPECT_EQ(edge.exit_code, 0) << edge.output;
+  EXPECT_EQ(centre.exit_code, 0) << centre.output;
+  EXPECT_NE(edge.output, centre.output);
+  const ProgramRun init =
+      run_swarf("init " + program + " --tool 6 --slot-ends centre -o " + (folder_ / "job").string());
+  EXPECT_EQ(init.exit_code, 0) << init.output;
+  EXPECT_TRUE(read_text(folder_ / "job" / "scene.toml").find("slot_ends = \"centre\"") != std::string::npos);
+}
+
 /// A Z from a parameter that the program reads and does not set: check and run take it, a scene holds it.
 TEST_F(Options, ParametersHoldAValueBeforeTheProgramStarts) {
   const std::string program = file(

@@ -152,7 +152,28 @@ void Contour::add(const Segment& programmed) {
   pending_ = next;
 }
 
+void Contour::lead_in_round(const Segment& programmed) {
+  Piece piece = offset(programmed);
+  const Vec3 end = piece.segment.to, out = flat(end - programmed.centre).normalized();
+  // |from - c| = |end - c| with c = end - t out
+  const Vec3 chord = flat(end - programmed.from);
+  const double along = chord.dot(out), t = along > 0.0 ? 0.5 * chord.squaredNorm() / along : 0.0;
+  if (!(t > 1e-6)) {
+    control_.fail("compensation-entry", programmed.place.column,
+                  fmt::format("no arc leads a cutter of radius {:.4f} mm onto the end of this one", radius_),
+                  "lead in on a straight move, or on an arc that is larger than the cutter");
+  }
+  leading_in_ = false;
+  piece.lead_in = true;
+  piece.segment.from = programmed.from;
+  piece.segment.centre = at_height(end - t * out, programmed.centre);
+  tool_ = programmed.from;
+  tool_known_ = true;
+  pending_ = piece;
+}
+
 void Contour::lead_in(const Segment& programmed) {
+  if (programmed.is_arc() && entry_ == CompensationEntry::kAlongEntry) return lead_in_round(programmed);
   if (programmed.is_arc()) {
     control_.fail("compensation-entry", programmed.place.column, "cutter compensation starts on an arc",
                   "lead in on a straight move in the plane");

@@ -14,6 +14,8 @@
 // would
 //    cut beyond the corner: "compensation-gouge"; so does an arc whose inside is not wider than the cutter.
 // 4. The first move (lead-in) ends a radius beside its programmed end, the first one after G40 starts there.
+//    An arc leads in (kAlongEntry) as the arc from the tool to a radius beside the programmed end that ends
+//    along the programmed one: its centre lies on the line through that end and the programmed centre.
 // 5. Moves along the plane's normal wait for the corner that they stand in.
 // Known limit: only neighbouring pieces are compared; a slot narrower than the cutter is seen by the
 // simulation.
@@ -76,6 +78,9 @@ class Contour {
   Vec3 tangent(const Segment& segment, const Vec3& at) const;
   Piece offset(const Segment& programmed) const;
   void lead_in(const Segment& programmed);
+  /// A lead-in on an arc, with kAlongEntry alone: "compensation-entry" where none ends along the programmed
+  /// one.
+  void lead_in_round(const Segment& programmed);
   void lead_out(const Segment& programmed);
   void join(const Piece& next);
   void outer(const Piece& next);

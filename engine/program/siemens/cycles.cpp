@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "program/siemens/functions.h"
+#include "program/siemens/milling.h"
 #include "program/siemens/steps.h"
 
 namespace swarf::program::nc::siemens {
@@ -244,6 +245,14 @@ void run_call(Executor& executor, const CycleCall& call) {
            "SETMS(1)");
     }
     executor.control.report.without_effect(call.name);
+  } else if (call.name.starts_with("POCKET")) {
+    pocket(executor, call);
+  } else if (call.name.starts_with("SLOT") || call.name == "LONGHOLE") {
+    slots(executor, call);
+  } else if (call.name == "CYCLE76" || call.name == "CYCLE77") {
+    spigot(executor, call);
+  } else if (call.name == "CYCLE61" || call.name == "CYCLE71") {
+    face(executor, call);
   } else if (call.name.starts_with("CYCLE8")) {
     const DrillCycle cycle = drilling(executor.control, executor.place, executor.frames, call);
     drill(executor.control, executor.place, executor.path, cycle, call);

@@ -101,8 +101,10 @@ constexpr const char* kNotedCalls[] = {"MSG",   "POLYPATH", "WORKPIECE", "GROUP_
 constexpr const char* kNotedIndexed[] = {"ACC",      "VELOLIM",  "JERKLIM", "ACCLIMA",
                                          "VELOLIMA", "JERKLIMA", "ATOL"};
 
-constexpr const char* kCycles[] = {"CYCLE81",  "CYCLE82",  "CYCLE83",  "CYCLE84", "CYCLE85", "CYCLE86",
-                                   "CYCLE800", "CYCLE832", "CYCLE801", "HOLES1",  "HOLES2"};
+constexpr const char* kCycles[] = {"CYCLE81",  "CYCLE82",  "CYCLE83",  "CYCLE84",  "CYCLE85",
+                                   "CYCLE86",  "CYCLE800", "CYCLE832", "CYCLE801", "HOLES1",
+                                   "HOLES2",   "POCKET3",  "POCKET4",  "SLOT1",    "SLOT2",
+                                   "LONGHOLE", "CYCLE61",  "CYCLE71",  "CYCLE76",  "CYCLE77"};
 
 constexpr const char* kAddresses[] = {
     "X",  "Y",  "Z",  "A",    "B",    "C",   "I",    "J",    "K",       "X1",  "Y1",   "Z1",   "A1",   "B1",
@@ -155,16 +157,11 @@ const std::vector<Refused>& refused_words() {
        {"CYCLE60",  "CYCLE62", "CYCLE63", "CYCLE64",  "CYCLE70",  "CYCLE73",  "CYCLE74",  "CYCLE75",
         "CYCLE78",  "CYCLE79", "CYCLE87", "CYCLE88",  "CYCLE89",  "CYCLE90",  "CYCLE840", "CYCLE802",
         "CYCLE899", "CYCLE95", "CYCLE97", "CYCLE951", "CYCLE977", "CYCLE978", "CYCLE996"}},
-      {"where along the slot its radius RAD ends is given by a figure alone, not in the manual's words: "
-       "write its "
-       "moves as blocks",
-       {"LONGHOLE"}},
-      {"the order and the overlap of its passes are the control's own and not published: write its moves as "
-       "blocks",
-       {"POCKET1", "POCKET2", "POCKET3", "POCKET4", "SLOT1", "SLOT2", "CYCLE61", "CYCLE71"}},
-      {"how it leads onto its contour and off it is the control's own and not published: write its moves as "
-       "blocks",
-       {"CYCLE72", "CYCLE76", "CYCLE77"}},
+      {"it is the older form of POCKET3 and POCKET4, which are read: its passes are the control's own",
+       {"POCKET1", "POCKET2"}},
+      {"how it leads onto the contour of another program and off it is not published: write G41 or G42, the "
+       "approach and the contour as blocks",
+       {"CYCLE72"}},
       {"the program is run in the dialect of Siemens", {"G291"}},
       {"synchronised actions are not simulated", {"WHEN", "WHENEVER", "EVERY", "DO", "ID", "IDS", "CANCEL"}},
       {"axes U V W are not simulated", {"U", "V", "W", "Q"}},

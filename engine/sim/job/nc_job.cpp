@@ -49,6 +49,7 @@ program::ControlSetup control_setup(const Job& job, Diagnostics& diagnostics) {
   setup.presets = job.scene.presets;
   setup.unit_mm = settings.unit_mm ? settings.unit_mm : job.machine.program_unit_mm;
   setup.t_changes_tool = settings.t_changes_tool;
+  setup.slot_ends = settings.slot_ends;
   setup.tip_without_length = settings.tip_without_length;
   if (setup.unit_mm.value_or(1.0) != 1.0 && job.scene.tool_table_file.ends_with(".tbl"))
     diagnostics.warning(

@@ -39,6 +39,7 @@ std::string setup_text(const JobFlags& flags) {
   if (!flags.units.empty()) text += fmt::format("units = \"{}\"\n", flags.units);
   if (flags.start_tool > 0) text += fmt::format("start_tool = {}\n", flags.start_tool);
   if (flags.t_changes_tool) text += "t_changes_tool = true\n";
+  if (!flags.slot_ends.empty()) text += fmt::format("slot_ends = \"{}\"\n", flags.slot_ends);
   return text;
 }
 

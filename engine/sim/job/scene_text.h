@@ -27,6 +27,7 @@ struct JobFlags {
   std::string units, dialect;    ///< "": not said
   int start_tool = 0;            ///< 0: not said
   bool t_changes_tool = false;
+  std::string slot_ends;  ///< "": not said
 };
 
 /// scene.toml; the paths in it are those of the flags, absolute or from the current folder.

@@ -39,6 +39,9 @@ void read_control_keys(ConfigTable& table, SetupSettings& setup) {
   if (table.has("start_tool")) setup.start_tool = table.integer("start_tool", 1, 1'000'000'000);
   setup.start_tool_name = table.text("start_tool_name", "");
   setup.t_changes_tool = table.boolean("t_changes_tool", false);
+  if (table.has("slot_ends"))
+    setup.slot_ends = table.choice("slot_ends", {"edge", "centre"}) == "edge" ? program::SlotEnds::kEdge
+                                                                              : program::SlotEnds::kCentre;
   setup.tip_without_length = table.choice("without_length", {"gauge_line", "tip"}, "gauge_line") == "tip";
 }
 

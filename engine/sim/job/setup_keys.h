@@ -10,6 +10,7 @@
 #include "base/config.h"
 #include "base/frames.h"
 #include "kinematics/machine_model.h"
+#include "program/nc_program.h"
 
 namespace swarf::sim {
 
@@ -37,7 +38,8 @@ struct SetupSettings {
   int start_tool = 0;             ///< number of the tool in the spindle; 0: not said
   std::string start_tool_name;    ///< or its name; "": not said
   SourceLocation start_tool_where;
-  bool t_changes_tool = false;      ///< T changes the tool without M6
+  bool t_changes_tool = false;                 ///< T changes the tool without M6
+  std::optional<program::SlotEnds> slot_ends;  ///< 840D: what RAD and AFSL of slots count to
   bool tip_without_length = false;  ///< `without_length = "tip"`: of a program that calls no tool length
 };
 

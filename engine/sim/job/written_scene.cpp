@@ -87,6 +87,9 @@ std::string commented_setup(const Job& job) {
   if (setup.unit_mm) text += fmt::format("units = \"{}\"\n", *setup.unit_mm == 1.0 ? "mm" : "inch");
   if (setup.start_tool > 0) text += fmt::format("start_tool = {}\n", setup.start_tool);
   if (setup.t_changes_tool) text += "t_changes_tool = true\n";
+  if (setup.slot_ends)
+    text +=
+        fmt::format("slot_ends = \"{}\"\n", *setup.slot_ends == program::SlotEnds::kEdge ? "edge" : "centre");
   return text;
 }
 

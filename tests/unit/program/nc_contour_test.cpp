@@ -81,7 +81,7 @@ TEST(NcContour, WhatGougesIsRefused) {
   EXPECT_EQ(linuxcnc("T1 M6 G43 F600\nG0 X-20 Y0\nG41 G1 X0\nG3 X0 Y6 I0 J3\nX-9\n").first_error(),
             "compensation-gouge 4:4");
   EXPECT_EQ(linuxcnc("T1 M6 G43 F600\nG0 X-2 Y0\nG41 G1 X0\n").first_error(), "compensation-entry 3:8");
-  EXPECT_EQ(linuxcnc("T1 M6 G43 F600\nG41 G2 X10 Y0 I5\n").first_error(), "compensation-entry 2:8");
+  EXPECT_EQ(linuxcnc("T1 M6 G43 F600\nG41 G3 X0 Y0 I20\n").first_error(), "compensation-entry 2:8");
 }
 
 }  // namespace
