@@ -115,7 +115,8 @@ TEST_F(Options, SlotEndsAreSaidToCheckAndRun) {
   const ProgramRun init =
       run_swarf("init " + program + " --tool 6 --slot-ends centre -o " + (folder_ / "job").string());
   EXPECT_EQ(init.exit_code, 0) << init.output;
-  EXPECT_TRUE(read_text(folder_ / "job" / "scene.toml").find("slot_ends = \"centre\"") != std::string::npos);
+  EXPECT_TRUE(swarf::test::read_text(folder_ / "job" / "scene.toml").find("slot_ends = \"centre\"") !=
+              std::string::npos);
 }
 
 /// A Z from a parameter that the program reads and does not set: check and run take it, a scene holds it.

@@ -121,7 +121,7 @@ class FacePlane {
   double along_ = 0.0, across_ = 0.0, clear_ = 0.0, first_ = 0.0, last_ = 0.0;
 };
 
-void mill(const MillCall& call, const Face& face) {
+void mill_face(const MillCall& call, const Face& face) {
   const FacePlane plane(face, call.tool_radius());
   const int passes = call.steps(plane.width(), face.step, face.step_at);
   const double from = face.heights.safe, to = face.heights.bottom + (face.finish ? 0.0 : face.floor);
@@ -161,7 +161,7 @@ void face(Executor& executor, const CycleCall& words) {
           ? "where the tool turns beside the face the manual shows by a figure: taken with its edge _FDP "
             "clear of the face"
           : "the passes of CYCLE61 are taken as those of CYCLE71, the tool clear of the face at both ends");
-  mill(call, face);
+  mill_face(call, face);
 }
 
 }  // namespace swarf::program::nc::siemens

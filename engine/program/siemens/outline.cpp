@@ -13,12 +13,12 @@ Vec2 polar(double radius, double angle_rad) {
   return {radius * std::cos(angle_rad), radius * std::sin(angle_rad)};
 }
 
-void straight(Outline& outline, const Vec2& to) {
+void add_straight(Outline& outline, const Vec2& to) {
   const Vec2 from = outline.pieces.empty() ? outline.start : outline.pieces.back().to;
   if ((to - from).norm() > kNoPiece) outline.pieces.push_back({to, Vec2::Zero(), 0});
 }
 
-void curved(Outline& outline, const Vec2& to, const Vec2& centre, int turn) {
+void add_curve(Outline& outline, const Vec2& to, const Vec2& centre, int turn) {
   if ((to - centre).norm() > kNoPiece) outline.pieces.push_back({to, centre, turn});
 }
 
@@ -29,15 +29,15 @@ Outline rounded_rectangle(double half_length, double half_width, double radius) 
   const double x = half_length - r, y = half_width - r;
   Outline outline;
   outline.start = Vec2(half_length, 0.0);
-  straight(outline, Vec2(half_length, y));
-  curved(outline, Vec2(x, half_width), Vec2(x, y), 1);
-  straight(outline, Vec2(-x, half_width));
-  curved(outline, Vec2(-half_length, y), Vec2(-x, y), 1);
-  straight(outline, Vec2(-half_length, -y));
-  curved(outline, Vec2(-x, -half_width), Vec2(-x, -y), 1);
-  straight(outline, Vec2(x, -half_width));
-  curved(outline, Vec2(half_length, -y), Vec2(x, -y), 1);
-  straight(outline, outline.start);
+  add_straight(outline, Vec2(half_length, y));
+  add_curve(outline, Vec2(x, half_width), Vec2(x, y), 1);
+  add_straight(outline, Vec2(-x, half_width));
+  add_curve(outline, Vec2(-half_length, y), Vec2(-x, y), 1);
+  add_straight(outline, Vec2(-half_length, -y));
+  add_curve(outline, Vec2(-x, -half_width), Vec2(-x, -y), 1);
+  add_straight(outline, Vec2(x, -half_width));
+  add_curve(outline, Vec2(half_length, -y), Vec2(x, -y), 1);
+  add_straight(outline, outline.start);
   return outline;
 }
 
@@ -47,11 +47,11 @@ Outline round_band(double radius, double half_width, double from_rad, double to_
   Outline outline;
   // The middle of the round end lies before the start of the arc, along its tangent.
   outline.start = first - half_width * Vec2(-std::sin(from_rad), std::cos(from_rad));
-  curved(outline, polar(outer, from_rad), first, 1);
-  curved(outline, polar(outer, to_rad), none, 1);
-  curved(outline, polar(inner, to_rad), last, 1);
-  curved(outline, polar(inner, from_rad), none, -1);
-  curved(outline, outline.start, first, 1);
+  add_curve(outline, polar(outer, from_rad), first, 1);
+  add_curve(outline, polar(outer, to_rad), none, 1);
+  add_curve(outline, polar(inner, to_rad), last, 1);
+  add_curve(outline, polar(inner, from_rad), none, -1);
+  add_curve(outline, outline.start, first, 1);
   return outline;
 }
 

@@ -23,7 +23,7 @@ namespace {
 /// Of the quadrant onto the wall, mm.
 constexpr double kQuadrant = 2.0;
 
-enum class Entry { kRapid, kStraight, kHelix, kSwing };
+enum class WayIn { kRapid, kStraight, kHelix, kSwing };
 
 struct PocketCut {
   MillHeights heights;
@@ -36,7 +36,7 @@ struct PocketCut {
   double feed = 0.0, feed_down = 0.0;
   int sense = 1;
   double step = 0.0;  ///< the widest between passes
-  Entry entry = Entry::kRapid;
+  WayIn entry = WayIn::kRapid;
   double entry_size = 0.0;     ///< radius of the helix, mm, or angle of the swing, rad
   double down_per_turn = 0.0;  ///< of the helix
   bool finish = false, base = true;
@@ -99,18 +99,18 @@ class PocketMill {
   void enter(double from, double to) {
     const double way = from - to;
     switch (cut_.entry) {
-      case Entry::kRapid:
+      case WayIn::kRapid:
         return motion_.rapid_height(to);
-      case Entry::kStraight:
+      case WayIn::kStraight:
         return motion_.feed_height(to, cut_.feed_down);
-      case Entry::kHelix: {
+      case WayIn::kHelix: {
         const Vec2 start(cut_.entry_size, 0.0);
         motion_.feed(start, cut_.feed_down);
         for (const double next : infeeds(from, to, call_.steps(way, cut_.down_per_turn, cut_.mid_at)))
           motion_.arc(start, Vec2::Zero(), cut_.sense, cut_.feed_down, next);
         return motion_.arc(start, Vec2::Zero(), cut_.sense, cut_.feed_down);
       }
-      case Entry::kSwing: {
+      case WayIn::kSwing: {
         const double reach = cut_.half_length - cut_.wall - r_;
         double side = 1.0;
         motion_.feed(Vec2(reach, 0.0), cut_.feed_down);
@@ -162,7 +162,7 @@ class PocketMill {
 };
 
 /// Where the two cycles have the same arguments; `at`: index of _MID, `tail`: of _RAD1.
-void read_cut(const MillCall& call, size_t at, size_t tail, PocketCut& cut) {
+void read_pocket_cut(const MillCall& call, size_t at, size_t tail, PocketCut& cut) {
   cut.mid_at = at;
   cut.most_down = call.size(at, 0.0);
   cut.wall = call.size(at + 1, 0.0);
@@ -180,7 +180,7 @@ void read_cut(const MillCall& call, size_t at, size_t tail, PocketCut& cut) {
   if (entry > 3 || (entry == 3 && call.name() == "POCKET4"))
     call.fail("unsupported-word", at + 6, fmt::format("_VARI {}: this way in is not read", kind),
               "tens: 0 rapid, 1 straight, 2 helix, 3 (POCKET3) to and fro");
-  cut.entry = static_cast<Entry>(entry);
+  cut.entry = static_cast<WayIn>(entry);
   cut.mida_at = at + 7;
   const bool percent = call.whole(tail + 7, 0.0) / 10 % 10 == 1;
   const double tool = 2.0 * call.tool_radius();
@@ -203,7 +203,7 @@ void read_entry(const MillCall& call, size_t blank, size_t tail, PocketCut& cut)
                 "leave them out: the whole pocket is milled");
   }
   const double space = std::min(cut.half_length, cut.half_width) - cut.wall - call.tool_radius();
-  if (!cut.finish && cut.entry == Entry::kHelix) {
+  if (!cut.finish && cut.entry == WayIn::kHelix) {
     cut.entry_size = call.size(tail, 0.0);
     cut.down_per_turn = call.size(tail + 1, 0.0);
     if (!(cut.entry_size > 0.0) || !(cut.down_per_turn > 0.0) || cut.entry_size > space + 1e-9)
@@ -213,7 +213,7 @@ void read_entry(const MillCall& call, size_t blank, size_t tail, PocketCut& cut)
                       "beside the tool (alarm 61108)",
                       cut.entry_size, cut.down_per_turn, space),
           "give _RAD1 and _DP1 above zero, _RAD1 within the pocket");
-  } else if (!cut.finish && cut.entry == Entry::kSwing) {
+  } else if (!cut.finish && cut.entry == WayIn::kSwing) {
     const double angle = call.number(tail, 0.0), reach = cut.half_length - cut.wall - call.tool_radius();
     if (!(angle > 0.0) || !(angle < 90.0) || !(reach > 0.0))
       call.fail("bad-cycle", tail,
@@ -264,7 +264,7 @@ void pocket(Executor& executor, const CycleCall& words) {
   }
   // A corner narrower than the tool gets the tool's radius.
   cut.corner = std::max(cut.corner, call.tool_radius());
-  read_cut(call, mid, tail, cut);
+  read_pocket_cut(call, mid, tail, cut);
   read_entry(call, blank, tail, cut);
   check_room(call, cut, 4);
   call.warn(

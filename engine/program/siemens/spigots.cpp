@@ -27,7 +27,7 @@ struct Spigot {
 };
 
 /// Where both cycles have the same arguments: from _MID on.
-void read_cut(const MillCall& call, size_t at, size_t gmode, Spigot& spigot) {
+void read_spigot_cut(const MillCall& call, size_t at, size_t gmode, Spigot& spigot) {
   spigot.wall = call.size(at + 1, 0.0);
   spigot.floor = call.size(at + 2, 0.0);
   spigot.feed = call.feed(at + 3);
@@ -47,7 +47,7 @@ void read_cut(const MillCall& call, size_t at, size_t gmode, Spigot& spigot) {
   if (spigot.finish && spigot.wall == 0.0) spigot.steps = 1;
 }
 
-void mill(const MillCall& call, const Spigot& spigot) {
+void mill_spigot(const MillCall& call, const Spigot& spigot) {
   const double r = call.tool_radius(), rest = spigot.finish ? 0.0 : spigot.wall;
   const double aside = rest + r;
   Outline way =
@@ -100,12 +100,12 @@ void spigot(Executor& executor, const CycleCall& words) {
               fmt::format("the raw spigot, {:g} mm, is smaller than the finished one, {:g} mm",
                           2.0 * spigot.raw, 2.0 * spigot.half_length),
               "_AP1 is its size along the abscissa before milling");
-  read_cut(call, mid, gmode, spigot);
+  read_spigot_cut(call, mid, gmode, spigot);
   call.warn(
       "spigot-start",
       "how far from the raw spigot the tool starts the manual does not say: taken SDIS beside it on the "
       "positive abscissa, which makes the half circle onto the contour that wide");
-  mill(call, spigot);
+  mill_spigot(call, spigot);
 }
 
 }  // namespace swarf::program::nc::siemens
