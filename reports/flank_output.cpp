@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "base/units.h"
+#include "reports/flank_choices.h"
+#include "reports/heat_map.h"
 
 namespace swarf::reports {
 namespace {
@@ -29,6 +32,19 @@ FlankJson guide_json(const flank::GuideFigures& guide) {
     json["radius_min_mm"] = guide.radius_min_mm;
     json["radius_min_u"] = guide.radius_min_u;
   }
+  return json;
+}
+
+/// Infinite feeds, where the axis stands, are left out.
+FlankJson c_feed_json(const FlankFigures& figures) {
+  FlankJson json{{"u", 0.6}};
+  const auto add = [&](const char* key, double mm_s) {
+    if (std::isfinite(mm_s)) json[key] = mm_s;
+  };
+  add("by_speed_mm_s", figures.c_feed.by_speed);
+  add("by_acceleration_mm_s", figures.c_feed.by_acceleration);
+  add("least_mm_s", figures.c_feed_least.mm_s);
+  json["least_u"] = figures.c_feed_least.u;
   return json;
 }
 
@@ -60,13 +76,65 @@ Table envelope_table(const FlankFigures& figures) {
       "only an end of one, and are not compared). The cut rays differ from the prediction by at most {:.4f} "
       "µm.",
       figures.rays_compared, figures.rays_elsewhere, um_from_mm(figures.difference_max_mm));
-  table.columns = {{"Motion"}, {"Deepest", "µm", true}, {"Highest", "µm", true}};
-  const auto add = [&](const char* name, const sim::FlankHeights& heights) {
+  table.columns = {
+      {"Motion"}, {"Deepest", "µm", true}, {"Highest", "µm", true}, {"Adds at most", "µm", true}};
+  const auto add = [&](const char* name, const sim::FlankHeights& heights, const std::string& added) {
     table.rows.push_back({name, fmt::format("{:.4f}", um_from_mm(heights.least_mm)),
-                          fmt::format("{:.4f}", um_from_mm(heights.greatest_mm))});
+                          fmt::format("{:.4f}", um_from_mm(heights.greatest_mm)), added});
   };
-  add("as the blocks ask", figures.blocks_left);
-  add("as the control's cycles make it", figures.cycles_left);
+  add("on the axis surface itself: the placement", figures.placed, "");
+  add("as the blocks ask", figures.blocks_left, fmt::format("{:.4f}", um_from_mm(figures.blocks_add_mm)));
+  add("as the control's cycles make it", figures.cycles_left,
+      fmt::format("{:.4f}", um_from_mm(figures.cycles_add_mm)));
+  const Vec3& p = figures.cycles_left.most_W();
+  table.notes = {
+      fmt::format("The cycles err most at ({:.3f}, {:.3f}, {:.3f}) mm, in element {} of the path. \"Adds\" "
+                  "is the greatest change of any ray against the row above.",
+                  p.x(), p.y(), p.z(), figures.worst_element)};
+  return table;
+}
+
+/// Greatest height of both fields of a surface, um: one scale for both.
+double scale_of(const sim::FlankMap& map) {
+  double most = 0.0;
+  for (const std::vector<double>* field : {&map.predicted_mm, &map.cut_mm})
+    for (const double h : *field)
+      if (std::isfinite(h)) most = std::max(most, std::abs(um_from_mm(h)));
+  return most > 0.0 ? most : 1.0;
+}
+
+std::vector<Figure> map_figures(const FlankFigures& figures) {
+  std::vector<Figure> out;
+  for (size_t s = 0; s < figures.maps.size(); ++s) {
+    const sim::FlankMap& map = figures.maps[s];
+    HeatMap heat{"", "", "u", "v", "µm", map.u, map.v, {}, scale_of(map)};
+    const auto add = [&](const char* what, const std::vector<double>& field, const char* caption) {
+      heat.title = fmt::format("Surface {}: {}", s + 1, what);
+      heat.caption = caption;
+      heat.values.clear();
+      for (const double h : field) heat.values.push_back(um_from_mm(h));
+      out.push_back(heat_map_figure(heat));
+    };
+    add("envelope as predicted", map.predicted_mm,
+        "Height over the design of the exact envelope of the poses. Grey: no flank comes near.");
+    add("envelope as cut", map.cut_mm,
+        "The measuring rays in the cut stock, in the same colours. Grey: nothing was cut.");
+  }
+  return out;
+}
+
+Table rotary_table(const FlankFigures& figures) {
+  Table table;
+  table.title = "What a C axis leaves of the feed (limits of Ma et al.)";
+  table.intro =
+      "A machine with A and C whose tool lies along the rulings, its tip on guide curve 0: the feed of the "
+      "tip at "
+      "which C turns at .8 rad/s, and at which its acceleration at even feed is .5 rad/s².";
+  table.columns = {{"Place"}, {"by speed", "mm/s", true}, {"by acceleration", "mm/s", true}};
+  table.rows = {{"u = 0.6", fmt::format("{:.4f}", figures.c_feed.by_speed),
+                 fmt::format("{:.4f}", figures.c_feed.by_acceleration)},
+                {fmt::format("least, u = {:.4f}", figures.c_feed_least.u),
+                 fmt::format("{:.4f}", figures.c_feed_least.mm_s), ""}};
   return table;
 }
 
@@ -94,7 +162,7 @@ Table feed_table(const FlankFigures& figures) {
 
 }  // namespace
 
-FlankJson flank_milling_json(const sim::Result& result) {
+FlankJson flank_milling_json(const sim::Job& job, const sim::Result& result) {
   const FlankFigures& figures = *result.flank_milling;
   FlankJson placements = FlankJson::object(), feeds = FlankJson::array();
   for (const sim::FlankPlacementRow& row : figures.placements)
@@ -106,26 +174,33 @@ FlankJson flank_milling_json(const sim::Result& result) {
                      {"least_um", um_from_mm(row.least_mm)},
                      {"greatest_um", um_from_mm(row.greatest_mm)},
                      {"used", row.used}});
-  return {{"surfaces", figures.surfaces},
-          {"passes", figures.passes},
-          {"blocks", figures.blocks},
-          {"plan_s", figures.plan_seconds},
-          {"twist_max_deg", deg_from_rad(figures.twist_max_rad)},
-          {"twist_bound_um", um_from_mm(figures.twist_bound_mm)},
-          {"guides", {guide_json(figures.guides[0]), guide_json(figures.guides[1])}},
-          {"curve_feed_1um_1ms_mm_s", figures.feed_1um_mm_s},
-          {"curve_feed_5um_1ms_mm_s", figures.feed_5um_mm_s},
-          {"placements", placements},
-          {"blocks_left", heights_json(figures.blocks_left)},
-          {"cycles_left", heights_json(figures.cycles_left)},
-          {"rays_compared", figures.rays_compared},
-          {"rays_not_compared", figures.rays_elsewhere},
-          {"prediction_error_max_um", um_from_mm(figures.difference_max_mm)},
-          {"prediction_error_at_mm", place_json(figures.difference_W)},
-          {"feeds", feeds}};
+  FlankJson json = {{"surfaces", figures.surfaces},
+                    {"passes", figures.passes},
+                    {"blocks", figures.blocks},
+                    {"plan_s", figures.plan_seconds},
+                    {"twist_max_deg", deg_from_rad(figures.twist_max_rad)},
+                    {"twist_bound_um", um_from_mm(figures.twist_bound_mm)},
+                    {"guides", {guide_json(figures.guides[0]), guide_json(figures.guides[1])}},
+                    {"curve_feed_1um_1ms_mm_s", figures.feed_1um_mm_s},
+                    {"curve_feed_5um_1ms_mm_s", figures.feed_5um_mm_s},
+                    {"c_limited_feed", c_feed_json(figures)},
+                    {"placements", placements},
+                    {"placed", heights_json(figures.placed)},
+                    {"blocks_add_um", um_from_mm(figures.blocks_add_mm)},
+                    {"cycles_add_um", um_from_mm(figures.cycles_add_mm)},
+                    {"worst_element", figures.worst_element},
+                    {"blocks_left", heights_json(figures.blocks_left)},
+                    {"cycles_left", heights_json(figures.cycles_left)},
+                    {"rays_compared", figures.rays_compared},
+                    {"rays_not_compared", figures.rays_elsewhere},
+                    {"prediction_error_max_um", um_from_mm(figures.difference_max_mm)},
+                    {"prediction_error_at_mm", place_json(figures.difference_W)},
+                    {"feeds", feeds}};
+  add_choices(job, figures, json);
+  return json;
 }
 
-std::vector<std::pair<std::string, std::string>> flank_lines(const sim::Result& result) {
+std::vector<std::pair<std::string, std::string>> flank_lines(const sim::Job& job, const sim::Result& result) {
   const FlankFigures& figures = *result.flank_milling;
   std::string placements;
   for (const sim::FlankPlacementRow& row : figures.placements)
@@ -147,16 +222,20 @@ std::vector<std::pair<std::string, std::string>> flank_lines(const sim::Result& 
     lines.emplace_back("feed " + row.name, fmt::format("{:.3f} s, chords {:.3f} to {:.3f} um{}", row.time_s,
                                                        um_from_mm(row.least_mm), um_from_mm(row.greatest_mm),
                                                        row.used ? " (used)" : ""));
+  for (auto& line : choice_lines(job, figures)) lines.push_back(std::move(line));
   return lines;
 }
 
-Topic flank_topic(const sim::Result& result) {
+Topic flank_topic(const sim::Job& job, const sim::Result& result) {
   Topic topic;
   topic.id = "flank-milling";
   topic.name = "Flank milling";
   topic.title = "Flank milling of ruled surfaces";
   const FlankFigures& figures = *result.flank_milling;
   topic.tables = {placement_table(figures), envelope_table(figures), feed_table(figures)};
+  if (std::isfinite(figures.c_feed_least.mm_s)) topic.tables.push_back(rotary_table(figures));
+  for (Table& table : choice_tables(job, figures)) topic.tables.push_back(std::move(table));
+  topic.figures = map_figures(figures);
   return topic;
 }
 

@@ -162,8 +162,8 @@ std::vector<std::string> keep_job(const fs::path& input, const fs::path& inside,
   const sim::Scene& scene = job.scene;
   add_what_was_open(scene.stock, all);
   say("machine", keep_machine(input / inside, scene.machine_file, copied));
-  // A design that is milled by the flank has no program: the scene says it all.
-  if (!scene.flank)
+  // A design that is milled by the flank without a program: the scene says it all.
+  if (scene.program_file != scene.file)
     keep(scene.program_key, scene.program_file,
          fs::path(kProgramFolder) / plain_name(scene.program_file, "program"));
   keep("tool_table", scene.tool_table_file, beside(scene.tool_table_file, "tools"));
@@ -180,7 +180,7 @@ std::vector<std::string> keep_job(const fs::path& input, const fs::path& inside,
   }
   if (scene.design.kind == sim::DesignKind::kSurface)
     keep("design.surface", scene.design.surface_file, beside(scene.design.surface_file, "design"));
-  if (scene.design.kind == sim::DesignKind::kMesh)
+  if (scene.design.kind == sim::DesignKind::kMesh || scene.design.kind == sim::DesignKind::kRuledFaces)
     keep("design." + scene.design.mesh_key, scene.design.mesh_file, beside(scene.design.mesh_file, "design"));
   for (size_t i = 0; i < scene.fixtures.size(); ++i) {
     machine::Fixture fixture = scene.fixtures[i];

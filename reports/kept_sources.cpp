@@ -13,7 +13,7 @@ namespace swarf::reports {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
+using SourcesJson = nlohmann::json;
 
 constexpr FileFault kUnreadable{"file-unreadable", "this cannot be read"};
 
@@ -28,7 +28,7 @@ std::string checksum_text(const std::string& file) {
 using Sources = std::map<std::string, std::string>;
 
 Sources read_sources(const fs::path& list) {
-  const json text = json::parse(read_all(list.string(), kUnreadable), nullptr, false);
+  const SourcesJson text = SourcesJson::parse(read_all(list.string(), kUnreadable), nullptr, false);
   Sources sources;
   if (!text.is_object()) return sources;
   for (const auto& [file, sum] : text.items())
@@ -56,7 +56,8 @@ void add_sources(const fs::path& input, const std::vector<fs::path>& files) {
     const std::string whole = fs::absolute(file).lexically_normal().string();
     sources[whole] = checksum_text(whole);
   }
-  write_text(list.string(), json(sources).dump(2, ' ', false, json::error_handler_t::replace) + "\n");
+  write_text(list.string(),
+             SourcesJson(sources).dump(2, ' ', false, SourcesJson::error_handler_t::replace) + "\n");
 }
 
 std::string changed_source(const fs::path& run_folder) {

@@ -527,7 +527,7 @@ std::string metrics_json(const sim::Job& job, const sim::Result& result, const R
   if (result.main.nc) json["program"] = nc_json(job, *result.main.nc);
   if (result.flank) json["flank"] = flank_json(*result.flank);
   if (result.singularity) json["singularity"] = singularity_json(result.main.path, *result.singularity);
-  if (result.flank_milling) json["flank_milling"] = flank_milling_json(result);
+  if (result.flank_milling) json["flank_milling"] = flank_milling_json(job, result);
   if (result.driven) json["driven"] = driven_json(result);
   if (avoidance != nullptr) json["avoidance"] = avoidance_json(*avoidance, job);
   return json_text(json);

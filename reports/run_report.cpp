@@ -205,6 +205,8 @@ const char* law_in_words(const sim::Job& job, const sim::Result& result) {
       return "tcp_axes: in each block the tip is straight or on its arc and the rotary axes are linear";
     case toolpath::BlockLaw::kEnds:
       return "ends: in each block the tip and every guide point on the axis are straight";
+    case toolpath::BlockLaw::kCurve:
+      return "curve: tip and axis follow one smooth curve from block to block";
   }
   return "";
 }
@@ -424,7 +426,7 @@ ReportData report_data(const sim::Job& job, const sim::Result& result, const Run
     if (!data.paper.empty()) data.paper_title = "So et al. (2008), Table 2 and section 5";
   }
   if (result.driven) data.topics.insert(data.topics.begin(), driven_topic(result));
-  if (result.flank_milling) data.topics.insert(data.topics.begin(), flank_topic(result));
+  if (result.flank_milling) data.topics.insert(data.topics.begin(), flank_topic(job, result));
   data.checks = checks_of(result, rendered);
   data.facts = facts_of(job, result, files);
   data.facts.insert(data.facts.begin() + 1, time_facts(job, result));
@@ -476,7 +478,7 @@ std::vector<std::pair<std::string, std::string>> summary_lines(const sim::Job& j
                 : job.scene.flank ? flank_path_lines(job, result)
                                   : path_lines(job, result);
   if (result.flank_milling)
-    for (auto& line : flank_lines(result)) lines.push_back(std::move(line));
+    for (auto& line : flank_lines(job, result)) lines.push_back(std::move(line));
   if (result.driven)
     for (auto& line : driven_lines(result)) lines.push_back(std::move(line));
   const Lines surface = surface_lines(job, result);

@@ -66,25 +66,26 @@ ToolPose between(const ToolPose& a, const ToolPose& b, double share) {
           ((1.0 - share) * a.axis_W + share * b.axis_W).normalized()};
 }
 
-AxisError chord_error(const FlankTask& task, const AxisFamily& family, double u, double chord_mm) {
+AxisError chord_error(const FlankTask& task, const AxisFamily& family, double u, double chord_mm,
+                      const ChordMiddle& middle) {
   const double half = 0.5 * chord_mm / family.tip_rate(u);
   const ToolPose from = family.pose(std::max(task.u_low, u - half)),
                  to = family.pose(std::min(task.u_high, u + half));
-  return axis_error(task, between(from, to), u);
+  return axis_error(task, middle ? middle(from, to) : between(from, to), u);
 }
 
 double bisected_feed(const FlankTask& task, const AxisFamily& family, double u, double period_s,
-                     double limit_mm, double most_mm_s) {
+                     double limit_mm, double most_mm_s, const ChordMiddle& middle) {
   const auto within = [&](double feed) {
-    return chord_error(task, family, u, feed * period_s).most_mm() <= limit_mm;
+    return chord_error(task, family, u, feed * period_s, middle).most_mm() <= limit_mm;
   };
   if (within(most_mm_s)) return most_mm_s;
   constexpr double kSlowest = 1e-3;  // of the greatest speed: below it the placement alone exceeds the limit
   if (!within(kSlowest * most_mm_s)) return 0.0;
   double low = kSlowest * most_mm_s, high = most_mm_s;
   while (high - low > 1e-6 * most_mm_s) {
-    const double middle = 0.5 * (low + high);
-    (within(middle) ? low : high) = middle;
+    const double feed = 0.5 * (low + high);
+    (within(feed) ? low : high) = feed;
   }
   return low;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 
 #include "base/cubic_spline.h"
 #include "flank/placement.h"
@@ -29,13 +30,18 @@ class AxisFamily {
 /// Half way between two poses as a control moves them: tips and axes linearly.
 ToolPose between(const ToolPose& a, const ToolPose& b, double share = 0.5);
 
-/// e of the chord that a cycle at this speed makes about u.
-AxisError chord_error(const FlankTask& task, const AxisFamily& family, double u, double chord_mm);
+/// Where the tool is half way between two poses of a control's cycles; null: between(). On a machine the axes
+/// go evenly, which with rotary ones is another place.
+using ChordMiddle = std::function<ToolPose(const ToolPose& from, const ToolPose& to)>;
+
+/// e of the chord of this length about u that a cycle makes.
+AxisError chord_error(const FlankTask& task, const AxisFamily& family, double u, double chord_mm,
+                      const ChordMiddle& middle = nullptr);
 
 /// The greatest speed of the tip, at most `most_mm_s`, at which the chord of a cycle keeps |e| within the
 /// limit; so does every slower one (|placement + k V^2| is convex in V^2). 0: the placement alone exceeds it.
 double bisected_feed(const FlankTask& task, const AxisFamily& family, double u, double period_s,
-                     double limit_mm, double most_mm_s);
+                     double limit_mm, double most_mm_s, const ChordMiddle& middle = nullptr);
 
 /// The same by curvature alone: the lesser sagitta_feed of both guide curves, in terms of the tip's speed.
 double curvature_feed(const FlankTask& task, const AxisFamily& family, double u, double period_s,

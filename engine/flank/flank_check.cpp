@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "base/minima.h"
+#include "flank/flank_proof.h"
 #include "surface/curvature.h"
 
 namespace swarf::flank {
@@ -45,18 +47,39 @@ bool check_rulings(const FlankTask& task, const SourceLocation& where, Diagnosti
   return true;
 }
 
+/// What 257 rulings have not shown.
+void prove_rulings(const FlankTask& task, const SourceLocation& where, Diagnostics& diagnostics) {
+  const std::optional<WeakPlace> weak = turned_ruling(task);
+  if (!weak) return;
+  const std::string place = place_of(*task.surface, weak->u, weak->v);
+  if (weak->shown)
+    diagnostics.error(
+        "guides-opposed", where,
+        fmt::format("the surface turns over along its ruling at {}, between rulings where it does "
+                    "not",
+                    place),
+        "let both guide curves run the same way and pair their points so that rulings do not cross");
+  else
+    diagnostics.error("flank-not-proven", where,
+                      fmt::format("near {} it cannot be shown that the surface does not turn over along its "
+                                  "rulings",
+                                  place),
+                      "guide curves without cusps, whose normals stay well within 90 deg of each other");
+}
+
+/// Up to where a flank must reach at u, mm above the tip.
+double needed_reach(const FlankTask& task, double u) {
+  const ToolPose pose = pose_at(task, u);
+  const surface::Surface& S = *task.surface;
+  const surface::Derivatives d = S.derivatives(u, 1.0);
+  const Vec3 normal = surface::outward_normal(S, d);
+  const Vec3 upper = d.S + ball_radius(task.profile, task.profile.high) * normal;
+  return (upper - pose.tip_W).dot(pose.axis_W);
+}
+
 void check_reach(const FlankTask& task, const SourceLocation& where, Diagnostics& diagnostics) {
-  double needed = 0.0, at = 0.0;
-  for (int i = 0; i <= kRulings; ++i) {
-    const double u = static_cast<double>(i) / kRulings;
-    const ToolPose pose = pose_at(task, u);
-    const surface::Surface& S = *task.surface;
-    const surface::Derivatives d = S.derivatives(u, 1.0);
-    const Vec3 normal = surface::outward_normal(S, d);
-    const Vec3 upper = d.S + ball_radius(task.profile, task.profile.high) * normal;
-    const double height = (upper - pose.tip_W).dot(pose.axis_W);
-    if (height > needed) needed = height, at = u;
-  }
+  const Minimum most = greatest_sampled([&](double u) { return needed_reach(task, u); }, 0.0, 1.0, kRulings);
+  const double needed = most.value, at = most.at;
   if (needed <= task.profile.high) return;
   diagnostics.error(
       "cutter-too-short", where,
@@ -64,6 +87,20 @@ void check_reach(const FlankTask& task, const SourceLocation& where, Diagnostics
                   task.profile.high, place_of(*task.surface, at, 1.0), needed),
       fmt::format("a cutter with flutes {:.3f} mm longer, or flank.tip_below_mm smaller",
                   needed - task.profile.high));
+}
+
+/// What the places looked at have not shown.
+void prove_hollows(const FlankTask& task, const SourceLocation& where, Diagnostics& diagnostics) {
+  const std::optional<WeakPlace> weak = narrow_place(task);
+  if (!weak) return;
+  const std::string place = place_of(*task.surface, weak->u, weak->v);
+  diagnostics.error(
+      "cutter-too-large", where,
+      fmt::format("{} {:.3f} mm at {}, the cutter has {:.3f} mm there",
+                  weak->shown ? "the surface is hollow with radius"
+                              : "it cannot be shown that the surface is less hollow than with radius",
+                  weak->hollow_mm, place, weak->cutter_mm),
+      fmt::format("a radius below {:.3f} mm fits", weak->hollow_mm));
 }
 
 void check_hollows(const FlankTask& task, const SourceLocation& where, Diagnostics& diagnostics) {
@@ -83,7 +120,7 @@ void check_hollows(const FlankTask& task, const SourceLocation& where, Diagnosti
       least_room = room, fits = 1.0 / concave, is = radius, at_u = u, at_v = v;
     }
   }
-  if (least_room >= 0.0) return;
+  if (least_room >= 0.0) return prove_hollows(task, where, diagnostics);
   diagnostics.error("cutter-too-large", where,
                     fmt::format("the surface is hollow with radius {:.3f} mm at {}, the cutter has {:.3f} mm "
                                 "there",
@@ -95,6 +132,8 @@ void check_hollows(const FlankTask& task, const SourceLocation& where, Diagnosti
 
 void check_task(const FlankTask& task, const SourceLocation& where, Diagnostics& diagnostics) {
   if (!check_rulings(task, where, diagnostics)) return;
+  prove_rulings(task, where, diagnostics);
+  if (diagnostics.has_errors()) return;
   check_hollows(task, where, diagnostics);
   if (!diagnostics.has_errors()) check_reach(task, where, diagnostics);
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/check.h"
+#include "base/minima.h"
 #include "base/parallel.h"
 #include "flank/chebyshev_fit.h"
 
@@ -114,15 +115,13 @@ Axis best_axis(const FlankTask& task, double u, int unknowns) {
 }
 
 Axis axis_of(const FlankTask& task, double u) {
-  switch (task.placement) {
-    case Placement::kBalanced:
-      return best_axis(task, u, 2);
-    case Placement::kMinimax:
-      return best_axis(task, u, 3);
-    case Placement::kPublished:
-      break;
-  }
-  return published_axis(task, u);
+  Axis axis = task.placement == Placement::kPublished
+                  ? published_axis(task, u)
+                  : best_axis(task, u, task.placement == Placement::kBalanced ? 2 : 3);
+  const surface::Surface& S = *task.surface;
+  if (task.lift_low_mm != 0.0) axis.low += task.lift_low_mm * outward_normal(S, S.derivatives(u, 0.0));
+  if (task.lift_high_mm != 0.0) axis.high += task.lift_high_mm * outward_normal(S, S.derivatives(u, 1.0));
+  return axis;
 }
 
 /// The extreme of the parabola through three samples, where it lies between them.
@@ -217,21 +216,30 @@ double twist_bound(const FlankTask& task, double u) {
 
 WorstError worst_error(const FlankTask& task) {
   constexpr size_t kRulings = 257;
+  const auto error_at = [&](double u) { return axis_error(task, pose_at(task, u), u); };
   std::vector<AxisError> errors(kRulings);
   parallel_chunks(kRulings, 8, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const double u = static_cast<double>(i) / (kRulings - 1);
-      errors[i] = axis_error(task, pose_at(task, u), u);
+      errors[i] = error_at(u);
     }
   });
   WorstError worst;
-  for (size_t i = 0; i < kRulings; ++i) {
-    const AxisError& e = errors[i];
-    if (e.most_mm() <= std::abs(worst.mm)) continue;
+  const auto take = [&](const AxisError& e, double u) {
+    if (e.most_mm() <= std::abs(worst.mm)) return;
     const bool deep = -e.least_mm >= e.greatest_mm;
-    worst = {deep ? e.least_mm : e.greatest_mm, static_cast<double>(i) / (kRulings - 1),
-             deep ? e.least_v : e.greatest_v};
+    worst = {deep ? e.least_mm : e.greatest_mm, u, deep ? e.least_v : e.greatest_v};
+  };
+  size_t most = 0;
+  for (size_t i = 0; i < kRulings; ++i) {
+    take(errors[i], static_cast<double>(i) / (kRulings - 1));
+    if (errors[i].most_mm() > errors[most].most_mm()) most = i;
   }
+  // The crest between the neighbours of the worst.
+  const double step = 1.0 / (kRulings - 1), u = static_cast<double>(most) * step;
+  const Minimum crest = least_between([&](double x) { return -error_at(x).most_mm(); },
+                                      std::max(0.0, u - step), std::min(1.0, u + step));
+  take(error_at(crest.at), crest.at);
   return worst;
 }
 

@@ -39,6 +39,8 @@ struct FlankTask {
   FlankProfile profile;
   Placement placement = Placement::kMinimax;
   double tip_below_mm = 1.0;  ///< c0: the tip reaches this far below guide curve 0; below 0: it ends above it
+  double lift_low_mm = 0.0,
+         lift_high_mm = 0.0;         ///< off the placement, along the normals at both guide curves
   double u_low = 0.0, u_high = 1.0;  ///< rulings of the pass: beyond [0,1] where it overruns
 };
 
@@ -71,7 +73,7 @@ inline constexpr int kErrorPlaces = 33;
 /// and the flank there is (r0 + r1) / 2 thick, or more (barrel). r (1 - cos(psi / 2)) for a cylinder. mm
 double twist_bound(const FlankTask& task, double u);
 
-/// The greatest |e| of all rulings, on 257 of them.
+/// The greatest |e| of all rulings: of 257, and the crest between the neighbours of the worst.
 struct WorstError {
   double mm = 0.0;  ///< with its sign
   double u = 0.0, v = 0.0;

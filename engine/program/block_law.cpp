@@ -10,6 +10,8 @@ const char* law_name(BlockLaw law) {
       return "joint";
     case BlockLaw::kEnds:
       return "ends";
+    case BlockLaw::kCurve:
+      return "curve";
     case BlockLaw::kTcp:
       break;
   }

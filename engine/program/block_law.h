@@ -9,6 +9,7 @@ enum class BlockLaw {
   kJoint,    ///< "joint": every machine axis linear between its values at both ends
   kEnds,     ///< "ends": the tip and every other point given on the axis straight (theory 5, flank blocks):
              ///< the axis runs through the linear means of its ends, whatever the guide points' distance
+  kCurve,    ///< "curve": tip and axis on one smooth curve that runs on from block to block
 };
 /// "tcp" and so on, for reports and TOML.
 const char* law_name(BlockLaw law);

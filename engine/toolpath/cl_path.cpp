@@ -53,6 +53,7 @@ double arc_angle(const BlockMove& block) {
 }
 
 double tip_way(const BlockMove& block) {
+  if (block.curve) return block.curve->to - block.curve->from;
   if (!block.arc) return (block.to.tip_W - block.from.tip_W).norm();
   const Vec3 arm = block.from.tip_W - block.arc->centre_W;
   return arc_angle(block) * block.arc->normal_W.cross(arm).norm();

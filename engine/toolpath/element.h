@@ -12,6 +12,7 @@
 #include "program/moves.h"
 #include "surface/surface.h"
 #include "toolpath/driven/driven_pass.h"
+#include "toolpath/pose_curve.h"
 
 namespace swarf::toolpath {
 
@@ -65,6 +66,7 @@ struct AxisSpan {
 struct BlockMove {
   ToolPose from, to;
   std::optional<program::Arc> arc;  ///< the tip's; kTcp and kTcpAxes only
+  std::optional<CurveSpan> curve;   ///< that tip and axis follow; kCurve, and no other
   BlockLaw law = BlockLaw::kTcp;
   double feed_mm_s = 0.0;  ///< of the tip; 0 with duration_s 0: rapid, limited by the machine alone
   /// Above 0: how long the block takes at its programmed feed, where that is not simply that of the tip.

@@ -110,6 +110,7 @@ void Elements::add_block(const Element& element, const BlockMove& block) {
             block.exact_stop,
             block.axes.has_value(),
             block.arc.has_value(),
+            block.curve.has_value(),
             true};
   if (i > 0) {
     const Row before = row(i - 1);
@@ -122,6 +123,7 @@ void Elements::add_block(const Element& element, const BlockMove& block) {
   Data& data = own();
   kind.file = number_of(data, element.where.file);
   if (kind.has_arc) data.arcs.push_back({i, *block.arc});
+  if (kind.has_curve) data.curves.push_back({i, *block.curve});
   if (kind.starts) {
     const kinematics::AxisValues none = kinematics::AxisValues::Zero();
     data.starts.push_back({i, block.from, block.axes ? block.axes->from : none});
@@ -157,6 +159,7 @@ void Elements::append(const Elements& other, size_t begin, size_t end) {
     row.count[kKind] = kinds[there];
     const Kind& kind = data.kinds[static_cast<size_t>(kinds[there])];
     if (kind.has_arc) data.arcs.push_back({size(), entry_of(other.data_->arcs, i).arc});
+    if (kind.has_curve) data.curves.push_back({size(), entry_of(other.data_->curves, i).span});
     if (kind.starts) {
       const Start& start = entry_of(other.data_->starts, i);
       data.starts.push_back({size(), start.pose, start.q});
@@ -217,6 +220,7 @@ BlockMove Elements::block(size_t i) const {
     if (block.axes) block.axes->from = before.values();
   }
   if (kind.has_arc) block.arc = entry_of(data_->arcs, i).arc;
+  if (kind.has_curve) block.curve = entry_of(data_->curves, i).span;
   block.law = kind.law;
   block.feed_mm_s = row.number[kFeed];
   block.duration_s = row.number[kDuration];
@@ -281,7 +285,7 @@ bool Elements::all_give_axes() const {
 size_t Elements::bytes() const {
   size_t sum = data_->plain.capacity() * sizeof(Element) + data_->open.capacity() * sizeof(Row) +
                data_->kinds.capacity() * sizeof(Kind) + data_->starts.capacity() * sizeof(Start) +
-               data_->arcs.capacity() * sizeof(Arc);
+               data_->arcs.capacity() * sizeof(Arc) + data_->curves.capacity() * sizeof(Curve);
   for (const auto& chunk : data_->chunks) sum += chunk->bytes();
   return sum;
 }

@@ -4,7 +4,8 @@
 //   kChunk blocks     tip xyz | axis ijk | q1 .. q5 | feed | duration | kind | line | column
 //                     one value for the chunk where all are the same, else one for each block
 //   kinds             what few blocks differ in: law, tool, spindle, pass, ...
-//   aside, by number  arcs; starts that are not, to the last bit, where the block before has ended
+//   aside, by number  arcs, stretches of curves; starts that are not, to the last bit, where the block before
+//   has ended
 //
 // A block of a three-axis finish takes about 70 bytes so; the Element that it is given out as, 368.
 #pragma once
@@ -85,7 +86,7 @@ class Elements {
     int tool = 0, pass = -1, operation = 0;
     uint32_t file = 0;
     bool exact_stop = false;
-    bool has_axes = false, has_arc = false;
+    bool has_axes = false, has_arc = false, has_curve = false;
     bool starts = false;  ///< its start is not the end of the block before
     bool operator==(const Kind&) const = default;
   };
@@ -97,6 +98,10 @@ class Elements {
   struct Arc {
     size_t element = 0;
     program::Arc arc;
+  };
+  struct Curve {
+    size_t element = 0;
+    CurveSpan span;
   };
   /// One value of each block of a chunk.
   template <typename T>
@@ -125,6 +130,7 @@ class Elements {
     std::vector<Kind> kinds;
     std::vector<Start> starts;
     std::vector<Arc> arcs;
+    std::vector<Curve> curves;
     std::vector<std::string> files;
   };
 

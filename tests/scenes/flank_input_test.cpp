@@ -1,6 +1,7 @@
 // What is wrong with a [flank] scene is told before anything moves, by the shipped program.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 
@@ -14,10 +15,22 @@ using swarf::test::run_swarf;
 
 struct BadFlank {
   const char* name;
-  const char* set;  ///< over the keys of chu_f1
+  const char* set;  ///< over the keys of the scene, several parted by ';'
   const char* code;
   const char* told;
+  const char* scene = "chu_f1";
 };
+
+/// "--set 'a=1' --set 'b=2'".
+std::string overrides(const std::string& set) {
+  std::string words;
+  for (size_t from = 0; from <= set.size();) {
+    const size_t end = std::min(set.find(';', from), set.size());
+    words += " --set '" + set.substr(from, end - from) + "'";
+    from = end + 1;
+  }
+  return words;
+}
 
 void PrintTo(const BadFlank& bad, std::ostream* out) {
   *out << bad.name;
@@ -28,8 +41,9 @@ class FlankInput : public testing::TestWithParam<BadFlank> {};
 TEST_P(FlankInput, IsRefusedBeforeAnythingMoves) {
   const BadFlank& bad = GetParam();
   const fs::path folder = swarf::test::fresh_folder(std::string("flank_") + bad.name);
-  const auto run = run_swarf("run " SWARF_SOURCE_DIR "/scenes/chu_f1/scene.toml --no-render -q -o " +
-                             (folder / "out").string() + " --set '" + bad.set + "'");
+  const auto run =
+      run_swarf(std::string("run " SWARF_SOURCE_DIR "/scenes/") + bad.scene +
+                "/scene.toml --no-render -q -o " + (folder / "out").string() + overrides(bad.set));
   EXPECT_EQ(run.exit_code, 2) << run.output;
   EXPECT_NE(run.output.find(std::string("[") + bad.code + "]"), std::string::npos) << run.output;
   EXPECT_NE(run.output.find(bad.told), std::string::npos) << run.output;
@@ -58,7 +72,29 @@ INSTANTIATE_TEST_SUITE_P(
         BadFlank{"two_programs", "cl=path.cl", "two-programs", "[flank]"},
         BadFlank{"placement", "flank.placement=best", "unknown-choice", "published, balanced, minimax"},
         BadFlank{"feed", "flank.feed_mm_min=0", "out-of-range", "'flank.feed_mm_min' is 0"},
-        BadFlank{"blocks_without_end", "flank.chord_um=0.0000000001", "too-many-blocks", "flank.chord_um"}),
+        BadFlank{"blocks_without_end", "flank.chord_um=0.0000000001", "too-many-blocks", "flank.chord_um"},
+        BadFlank{"curve_without_end", "flank.path=curve;flank.chord_um=0.0000000001", "too-many-blocks",
+                 "more than 4096 pieces"},
+        BadFlank{"path", "flank.path=spiral", "unknown-choice", "blocks, curve"},
+        BadFlank{"limit_with_the_blocks", "flank.limit_um=0.73", "limit-unreachable",
+                 "blocks may stray by 0.02 um"},
+        BadFlank{"no_tool_fits", "flank.tool=best;cutter.flute_length_mm=30", "no-tool-fits",
+                 "T1: the flank reaches 30.000 mm"},
+        BadFlank{"several_tools", "flank.tool=only", "planner-needs-one-tool", "has 4", "chu_corner"},
+        BadFlank{"no_obstacle", "flank.clearance_mm=0.5", "no-obstacle", "the scene has none"},
+        BadFlank{"too_near", "flank.clearance_mm=6", "flank-too-near", "flutes", "chu_channel"},
+        BadFlank{"sphere_face", "design={kind=\"ruled_faces\",step=\"faces.stp\",face=[{number=4}]}",
+                 "face-not-ruled", "face 4 is not ruled", "chu_step"},
+        BadFlank{"no_such_face", "design={kind=\"ruled_faces\",step=\"faces.stp\",face=[{number=99}]}",
+                 "cad-no-face", "has no face 99", "chu_step"},
+        BadFlank{"round_plane", "design={kind=\"ruled_faces\",step=\"faces.stp\",face=[{number=2}]}",
+                 "face-trimmed", "face 2 is ruled", "chu_step"},
+        BadFlank{"feed_of_a_program", "flank.feed_mm_min=100", "unknown-key", "feed_mm_min", "chu_g065"},
+        BadFlank{"program_of_the_end", "program=../lin_koren_dome/dome.nc", "flank-needs-g065",
+                 "mills with the end of the tool", "chu_g065"},
+        BadFlank{"program_not_ruled", "program=../../tests/data/programs/bad/flank_pass.nc",
+                 "flank-needs-ruled", "has degree 2 in v", "chu_g065"},
+        BadFlank{"tool_of_a_program", "cutter.number=4", "unknown-tool", "T1", "chu_g065"}),
     [](const testing::TestParamInfo<BadFlank>& one) { return std::string(one.param.name); });
 
 TEST(FlankLimit, WhatStaysAtTheEndsFailsTheLimit) {

@@ -90,6 +90,7 @@ def scene_texts():
     yield f"cl = 'part.cls'\n[post]\n{no}[post.clamping]\n{no}[post.tool_reach]\n{no}"
     yield (f"nc = 'part.ngc'\n[design]\nkind = 'nurbs'\ndegree = [1, 1]\ncount = [2, 2]\nweights = [1, 1, 1, 1]\n"
            f"poles_mm = [[0, 0, 0], [0, 1, 0], [1, 0, 0], [1, 1, 0]]\n{no}")
+    yield f"nc = 'part.ngc'\n[design]\nkind = 'ruled_faces'\nstep = 'a.stp'\n{no}[[design.face]]\n{no}"
     # A guide has no interval; the part is a surface, a mesh or a CAD file.
     for mode in ("scan", "contour", "spiral", "guide"):
         for part in ("surface", "mesh", "step"):

@@ -116,8 +116,8 @@ BlockCurve::BlockCurve(const BlockMotion& motion, const kinematics::InverseKinem
       speed_(speed_mm_s) {
   const BlockMove& block = motion.block;
   tip_way_ = way_of_tip(motion);
-  even_ =
-      block.law == BlockLaw::kJoint || (!block.arc && block.from.axis_W == block.to.axis_W && !turns(motion));
+  even_ = block.law == BlockLaw::kJoint ||
+          (!block.arc && !block.curve && block.from.axis_W == block.to.axis_W && !turns(motion));
   if (even_) {
     length_ = limited_way(motion.q_to - motion.q_from, 1.0);
     return;
@@ -179,7 +179,11 @@ void BlockCurve::follow() {
   if (jump_mm_ > kJoin) followed_ = false;
   if (followed_) jump_mm_ = 0.0;
   if (!followed_) length_ = std::max(length_, toolpath::tip_way(motion_->block));
-  if (followed_ && turns(*motion_) && fastest > kUneven * slowest) stretch(nodes);
+  // From block to block of one curve s stays the way of its tip: no change of it bends q(s).
+  if (followed_ && motion_->block.curve)
+    length_ = tip_way_;
+  else if (followed_ && turns(*motion_) && fastest > kUneven * slowest)
+    stretch(nodes);
   sample();
 }
 

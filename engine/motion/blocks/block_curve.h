@@ -8,6 +8,9 @@
 //     through the solution of dx/ds = 1/|dq/dx|: what limits the speed moves evenly along s, and its bend
 //     does not take from its acceleration. q is always that of the exact pose at x(s), however well the
 //     spline is met.
+//  3. Blocks on one smooth curve (BlockLaw::kCurve): s is the way of the tip, so that q(s) runs on from block
+//  to
+//     block with two continuous derivatives. Near a pole such a block is passed slowly instead of stretched.
 #pragma once
 
 #include <memory>

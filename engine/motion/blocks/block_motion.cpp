@@ -110,6 +110,18 @@ MotionBounds tcp_axes_bounds(const BlockMotion& motion) {
   return bounds;
 }
 
+MotionBounds curve_bounds(const toolpath::CurveSpan& span) {
+  const toolpath::PoseCurve::Bounds of_way = span.curve->bounds(span.from, span.to);
+  const double length = span.to - span.from;
+  MotionBounds bounds;
+  bounds.great_circle = false;
+  bounds.speed = length * of_way.tip_rate;
+  bounds.turn_rate = length * of_way.axis_rate;
+  bounds.turn_acceleration = length * length * of_way.axis_bend;
+  bounds.bend = 2.0 * bounds.turn_rate * bounds.speed + length * length * of_way.tip_bend;
+  return bounds;
+}
+
 MotionBounds joint_bounds(const BlockMotion& motion) {
   const JointPath chain(*motion.machine, motion.q_from, motion.q_to);
   MotionBounds bounds;
@@ -147,6 +159,8 @@ ToolPose pose_at(const BlockMotion& motion, double s) {
     case BlockLaw::kEnds:
       return {block.from.tip_W + s * (block.to.tip_W - block.from.tip_W),
               (block.from.axis_W + s * (block.to.axis_W - block.from.axis_W)).normalized()};
+    case BlockLaw::kCurve:
+      return block.curve->curve->pose(block.curve->from + s * (block.curve->to - block.curve->from));
     case BlockLaw::kTcp:
     case BlockLaw::kTcpAxes:
       break;
@@ -168,6 +182,8 @@ MotionBounds motion_bounds(const BlockMotion& motion) {
       return ends_bounds(motion.block);
     case BlockLaw::kTcpAxes:
       return tcp_axes_bounds(motion);
+    case BlockLaw::kCurve:
+      return curve_bounds(*motion.block.curve);
     case BlockLaw::kTcp:
       break;
   }

@@ -47,8 +47,9 @@ struct MotionBounds {
   double speed = 0.0;              ///< V, of |p'|
   bool great_circle = true;        ///< the axis stays in one plane
 };
-/// Closed form for tcp and ends. Joint: derivatives of the chain at nodes, plus half a node spacing times a
-/// bound of the next derivative, so that nothing between the nodes escapes.
+/// Closed form for tcp and ends, of the splines for curve (PoseCurve::bounds). Joint: derivatives of the
+/// chain at nodes, plus half a node spacing times a bound of the next derivative, so that nothing between the
+/// nodes escapes.
 MotionBounds motion_bounds(const BlockMotion& motion);
 
 /// The bound above for `pieces` equal steps; infinity while a step turns the axis by more than a radian.

@@ -30,7 +30,7 @@ double error_at(const BlockMotion& motion, double s) {
   const BlockMove& block = motion.block;
   const Vec3 tip =
       kinematics::forward(*motion.machine, motion.q_from + s * (motion.q_to - motion.q_from)).tip_W;
-  if (block.arc) return (tip - pose_at(motion, s).tip_W).norm();
+  if (block.arc || block.curve) return (tip - pose_at(motion, s).tip_W).norm();
   return segment_distance(tip, block.from.tip_W, block.to.tip_W);
 }
 

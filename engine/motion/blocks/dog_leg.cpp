@@ -49,6 +49,7 @@ void append_legs(const toolpath::Element& element, const BlockMotion& motion, to
   for (size_t k = 0; k < values.size(); ++k) {
     const bool last = k + 1 == values.size();
     BlockMove leg = motion.block;
+    leg.curve.reset();  // of feeds alone
     leg.axes = toolpath::AxisSpan{from, values[k]};
     leg.from = pose;
     leg.to = last ? motion.block.to : kinematics::forward(*motion.machine, values[k]);

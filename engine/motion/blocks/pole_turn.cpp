@@ -32,7 +32,8 @@ constexpr double kUse = 0.95;
 
 AxisValues leaving_pole(const kinematics::InverseKinematics& inverse, const toolpath::BlockMove& block,
                         const AxisValues& before) {
-  const bool by_pose = block.law == toolpath::BlockLaw::kTcp || block.law == toolpath::BlockLaw::kEnds;
+  const bool by_pose = block.law == toolpath::BlockLaw::kTcp || block.law == toolpath::BlockLaw::kEnds ||
+                       block.law == toolpath::BlockLaw::kCurve;
   if (!by_pose || inverse.pole_distance(block.from.axis_W) >= kinematics::kPoleTolerance) return before;
   const double tilt = angle_between(block.from.axis_W, block.to.axis_W);
   if (!(tilt > kAhead)) return before;

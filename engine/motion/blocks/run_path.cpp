@@ -64,6 +64,11 @@ double greatest_of(std::span<const double> p) {
   return result;
 }
 
+/// Then q(s) runs on with two derivatives, and there is no corner.
+bool on_one_curve(const BlockMove& a, const BlockMove& b) {
+  return a.curve && b.curve && toolpath::continues(*a.curve, *b.curve);
+}
+
 PathCell blend_cell(const Blend& blend) {
   PathCell cell;
   cell.corner = true;
@@ -226,6 +231,10 @@ double RunPathBuilder::add_corner(size_t a, size_t b) {
   if (!in.followed() || !out.followed()) {
     add_block_piece(a, from, in.length());
     path_.cells.back().stop = true;
+    return 0.0;
+  }
+  if (on_one_curve(motions_[a].block, motions_[b].block)) {
+    add_block_piece(a, from, in.length());
     return 0.0;
   }
   if (in.even() && out.even()) {

@@ -47,7 +47,8 @@ BlockPole pole_of(const BlockMotion& motion, int element, const Poles& poles) {
   const BlockEnds ends = ends_of(motion);
   BlockPole pole;
   pole.element = element;
-  const bool on_arc = block.law == BlockLaw::kTcp || block.law == BlockLaw::kEnds;
+  // A curve's axis between two near ends: the great circle stands for it.
+  const bool on_arc = block.law != BlockLaw::kJoint && block.law != BlockLaw::kTcpAxes;
   pole.pole_distance_rad = on_arc ? kinematics::pole_distance_on_arc(poles, ends.from.axis_W, ends.to.axis_W)
                                   : kinematics::pole_distance_of_axes(machine, poles, ends);
   const double turn = angle_between(ends.from.axis_W, ends.to.axis_W);

@@ -52,7 +52,9 @@ Operation make_operation(const Modal& modal, const CheckedBlock& block, const Su
                          const Reporter& reporter) {
   const Values& values = block.values;
   Operation operation;
-  operation.kind = block.action == Action::kArea ? OperationKind::kArea : OperationKind::kIsoPass;
+  operation.kind = block.action == Action::kArea      ? OperationKind::kArea
+                   : block.action == Action::kIsoPass ? OperationKind::kIsoPass
+                                                      : OperationKind::kFlank;
   operation.surface = entry.index;
   operation.start = static_cast<StartBoundary>(values.whole('B'));
   operation.zigzag = values.whole('L') == 1;

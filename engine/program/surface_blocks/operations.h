@@ -1,4 +1,4 @@
-// G06.3 and G06.4: what must hold before the cutter may touch a surface.
+// G06.3, G06.4 and G06.5: what must hold before the cutter may touch a surface.
 #pragma once
 
 #include "program/surface_blocks/program.h"

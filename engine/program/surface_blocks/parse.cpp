@@ -38,8 +38,9 @@ class Interpreter {
   }
 
   Program run(const std::string& text) {
-    if (!check_text(text, reporter_,
-                    "give a program with a surface (G10 L70 ... L79) and an operation (G06.3 or G06.4)"))
+    if (!check_text(
+            text, reporter_,
+            "give a program with a surface (G10 L70 ... L79) and an operation (G06.3, G06.4 or G06.5)"))
       return std::move(program_);
     int line_number = 0;
     for (const std::string_view line : split_lines(text)) {
@@ -96,7 +97,7 @@ class Interpreter {
   /// Step 3 against the state so far; the finished surface of a G10 L79.
   std::shared_ptr<const surface::PolynomialSurface> check_action(const CheckedBlock& block,
                                                                  const Modal& modal) {
-    const bool cuts = block.action == Action::kArea || block.action == Action::kIsoPass;
+    const bool cuts = is_cut(block.action);
     if (cuts) check_ready_to_cut(trusted(modal), block, reporter_);
     if (block.action == Action::kNone || !block.values.has('P') || touches_suspect_surface(block))
       return nullptr;
@@ -108,6 +109,7 @@ class Interpreter {
     if (entry == nullptr) return nullptr;
     if (cuts) {
       check_closed(*entry, block);
+      check_flank(*entry, block);
     } else if (block.action == Action::kCloseSurface) {
       return check_close_surface(*entry, block, reporter_);
     } else {
@@ -150,6 +152,27 @@ class Interpreter {
     suspects_.surfaces.insert(number);
   }
 
+  /// The side of a tool follows a ruled surface, and no other operation of the same program does.
+  void check_flank(const SurfaceEntry& entry, const CheckedBlock& block) {
+    const bool flank = block.action == Action::kFlankPass;
+    if (flank && entry.degree_v != 1)
+      reporter_.error("flank-needs-ruled", block.line, block.column_of('P'),
+                      fmt::format("surface {} has degree {} in v: G06.5 mills ruled surfaces, which are "
+                                  "straight along v",
+                                  block.values.whole('P'), entry.degree_v),
+                      "write R1 in its G10 L70, with its rulings along v; or use G06.3");
+    for (const Operation& before : program_.operations) {
+      if ((before.kind == OperationKind::kFlank) == flank) continue;
+      reporter_.error(
+          "mixed-operations", block.line, block.action_column,
+          fmt::format("{} stands in one program with the operation of line {}: one mills with the "
+                      "side of the tool, the other with its end",
+                      name_of(block.action), before.where.line),
+          "write two programs, and two set-ups that run them");
+      return;
+    }
+  }
+
   bool touches_suspect_surface(const CheckedBlock& block) const {
     return block.action != Action::kNone && suspects_.has_surface(block.values.whole('P'));
   }
@@ -174,6 +197,7 @@ class Interpreter {
         break;
       case Action::kArea:
       case Action::kIsoPass:
+      case Action::kFlankPass:
         program_.operations.push_back(make_operation(modal, block, table_.at(number), reporter_));
         break;
     }
@@ -225,8 +249,9 @@ class Interpreter {
                         "write one between G10 L70 and G10 L79");
       }
     } else if (program_.operations.empty() && !suspects_.operation) {
-      reporter_.error("no-operation", 0, 0, "the program has no operation: it cuts nothing",
-                      "add G06.3 (whole surface) or G06.4 (one pass) after the surface is closed");
+      reporter_.error(
+          "no-operation", 0, 0, "the program has no operation: it cuts nothing",
+          "add G06.3 (whole surface), G06.4 (one pass) or G06.5 (flank) after the surface is closed");
     }
     if (end_line_ == 0 && !words_after_end_ && !suspects_.program_end) {
       reporter_.warning("no-program-end", last_line_, 0, "the program ends without M30 or M2",
@@ -260,6 +285,15 @@ Program load_program(const std::string& path, Diagnostics* warnings) {
   diagnostics.throw_if_errors();
   if (warnings != nullptr) *warnings = std::move(diagnostics);
   return program;
+}
+
+bool mills_by_flank(const std::string& path) {
+  try {
+    const Program program = load_program(path);
+    return program.operations.front().kind == OperationKind::kFlank;
+  } catch (const InputError&) {
+    return false;
+  }
 }
 
 std::vector<SurfaceDefinition> load_surfaces(const std::string& path) {

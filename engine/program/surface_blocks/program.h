@@ -20,6 +20,7 @@ struct SurfaceDefinition {
 enum class OperationKind {
   kArea,     ///< G06.3: machine the whole surface
   kIsoPass,  ///< G06.4: one pass v = const
+  kFlank,    ///< G06.5: along the rulings of a ruled surface, with the side of the tool (flank/)
 };
 
 /// Where the first pass of G06.3 lies (word B).
@@ -59,6 +60,9 @@ Program parse_surface_blocks(const std::string& text, const std::string& file, D
 /// Reads the file (refusing what is empty or not text) and parses it. Throws InputError.
 /// `warnings`, when given, receives what was found without being an error.
 Program load_program(const std::string& path, Diagnostics* warnings = nullptr);
+
+/// A file that has G06.5 and is sound; of any other its reader says what is wrong with it.
+bool mills_by_flank(const std::string& path);
 
 /// The surfaces of a file that need not machine them: a design. Throws InputError.
 std::vector<SurfaceDefinition> load_surfaces(const std::string& path);

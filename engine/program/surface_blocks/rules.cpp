@@ -85,6 +85,7 @@ std::optional<Action> data_action(const Block& block, const Word& g10, Reporter&
 
 std::optional<Action> action_of(const Block& block, const Word& word, Reporter& reporter) {
   if (word.value == 10.0) return data_action(block, word, reporter);
+  if (word.value == 6.5) return Action::kFlankPass;
   return word.value == 6.3 ? Action::kArea : Action::kIsoPass;
 }
 

@@ -18,11 +18,11 @@ constexpr double kMaxDegree =
 constexpr double kMaxLeanDeg = 60.0;  ///< of lead and tilt; beyond it the flank cuts, not the end
 
 constexpr Code kCodes[] = {
-    {'G', 10.0, Group::kAction},     {'G', 6.3, Group::kAction},     {'G', 6.4, Group::kAction},
-    {'G', 17.0, Group::kPlane},      {'G', 21.0, Group::kUnits},     {'G', 54.0, Group::kOffset},
-    {'G', 90.0, Group::kDistance},   {'M', 2.0, Group::kProgramEnd}, {'M', 3.0, Group::kSpindle},
-    {'M', 4.0, Group::kSpindle},     {'M', 5.0, Group::kSpindle},    {'M', 6.0, Group::kToolChange},
-    {'M', 30.0, Group::kProgramEnd},
+    {'G', 10.0, Group::kAction},    {'G', 6.3, Group::kAction},      {'G', 6.4, Group::kAction},
+    {'G', 6.5, Group::kAction},     {'G', 17.0, Group::kPlane},      {'G', 21.0, Group::kUnits},
+    {'G', 54.0, Group::kOffset},    {'G', 90.0, Group::kDistance},   {'M', 2.0, Group::kProgramEnd},
+    {'M', 3.0, Group::kSpindle},    {'M', 4.0, Group::kSpindle},     {'M', 5.0, Group::kSpindle},
+    {'M', 6.0, Group::kToolChange}, {'M', 30.0, Group::kProgramEnd},
 };
 
 /// Words that NC has, but not these programs.
@@ -35,15 +35,13 @@ struct Unsupported {
 
 constexpr const char* kRemove = "remove it: surface programs do not need it";
 constexpr const char* kUseSurfaces =
-    "describe the surface with G10 L70 ... L79 and machine it with G06.3 or G06.4";
+    "describe the surface with G10 L70 ... L79 and machine it with G06.3, G06.4 or G06.5";
 constexpr Unsupported kUnsupported[] = {
     {'G', 0, 0, "rapid move", "remove it: approach, retract and links are planned with the passes"},
     {'G', 1, 3, "line or arc", kUseSurfaces},
     {'G', 4, 4, "dwell", kRemove},
     {'G', 5, 5.1, "path smoothing", kRemove},
     {'G', 6.1, 6.2, "spline or NURBS curve", kUseSurfaces},
-    {'G', 6.5, 6.5, "flank pass of a ruled surface (flank milling)",
-     "use G06.3 or G06.4: this version mills with the end of the cutter"},
     {'G', 9, 9, "exact stop", kRemove},
     {'G', 11, 11, "end of data input", "remove it: each G10 block stands for itself"},
     {'G', 15, 16, "polar coordinates", kRemove},
@@ -56,7 +54,7 @@ constexpr Unsupported kUnsupported[] = {
     {'G', 40, 42, "cutter radius compensation", "remove it: the cutter's shape is known from the scene"},
     {'G', 43, 44, "tool length compensation",
      "remove it: the tool's length is known from the scene, G06.3 implies TCP"},
-    {'G', 43.4, 43.5, "tool centre point control", "remove it: G06.3 and G06.4 imply it"},
+    {'G', 43.4, 43.5, "tool centre point control", "remove it: G06.3 to G06.5 imply it"},
     {'G', 49, 49, "tool length compensation", "remove it: the tool's length is known from the scene"},
     {'G', 50, 52, "scaling or local coordinates", kRemove},
     {'G', 53, 53, "machine coordinates", kRemove},
@@ -143,6 +141,10 @@ constexpr WordRule kIsoRules[] = {
     {'I', false, false, -kMaxLeanDeg, kMaxLeanDeg, false, "lead angle", " deg", "I5"},
     {'J', false, false, -kMaxLeanDeg, kMaxLeanDeg, false, "tilt angle", " deg", "J0"},
 };
+constexpr WordRule kFlankRules[] = {
+    kSurfaceNumber,
+    {'K', true, false, 0, kAnyHigh, true, "chord tolerance", " mm", "K0.0001"},
+};
 
 const Unsupported* find_unsupported(const Word& word) {
   for (const Unsupported& entry : kUnsupported) {
@@ -177,7 +179,8 @@ bool check_code_known(const Word& word, int line, Reporter& reporter) {
     return false;
   }
   const std::string nearest = nearest_code(word);
-  const char* all = word.letter == 'G' ? "G10, G06.3, G06.4, G17, G21, G54, G90" : "M2, M3, M4, M5, M6, M30";
+  const char* all =
+      word.letter == 'G' ? "G10, G06.3, G06.4, G06.5, G17, G21, G54, G90" : "M2, M3, M4, M5, M6, M30";
   reporter.error("unknown-word", line, word.column,
                  fmt::format("{} is not a word of surface programs", word.text),
                  nearest.empty() ? fmt::format("known are {}", all)
@@ -209,7 +212,7 @@ bool check_known(const Word& word, int line, Reporter& reporter) {
 const char* name_of(Action action) {
   switch (action) {
     case Action::kNone:
-      return "a block without G10, G06.3 or G06.4";
+      return "a block without G10, G06.3, G06.4 or G06.5";
     case Action::kOpenSurface:
       return "G10 L70";
     case Action::kPowerCoefficient:
@@ -222,6 +225,8 @@ const char* name_of(Action action) {
       return "G06.3";
     case Action::kIsoPass:
       return "G06.4";
+    case Action::kFlankPass:
+      return "G06.5";
   }
   return "";
 }
@@ -242,6 +247,8 @@ std::span<const WordRule> rules_of(Action action) {
       return kAreaRules;
     case Action::kIsoPass:
       return kIsoRules;
+    case Action::kFlankPass:
+      return kFlankRules;
   }
   return {};
 }

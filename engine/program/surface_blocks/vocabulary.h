@@ -29,7 +29,20 @@ const Code* find_code(const Word& word);
 bool check_known(const Word& word, int line, Reporter& reporter);
 
 /// What a block does beside its modal words.
-enum class Action { kNone, kOpenSurface, kPowerCoefficient, kBezierPoint, kCloseSurface, kArea, kIsoPass };
+enum class Action {
+  kNone,
+  kOpenSurface,
+  kPowerCoefficient,
+  kBezierPoint,
+  kCloseSurface,
+  kArea,
+  kIsoPass,
+  kFlankPass
+};
+/// G06.3, G06.4 and G06.5.
+inline bool is_cut(Action action) {
+  return action == Action::kArea || action == Action::kIsoPass || action == Action::kFlankPass;
+}
 
 /// One word that an action takes, with the range of its number.
 struct WordRule {

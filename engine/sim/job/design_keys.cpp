@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/units.h"
+#include "sim/job/ruled_faces.h"
 #include "surface/analytic.h"
 #include "surface/nurbs.h"
 #include "surface/polynomial.h"
@@ -219,7 +220,7 @@ DesignSettings read_design(ConfigTable table, bool cl) {
                                                   : "none";
   design.name = table.choice("kind",
                              {"none", "surface", "plane", "cylinder", "cone", "sphere", "hyperboloid",
-                              "ruled", "nurbs", "mesh", "step"},
+                              "ruled", "nurbs", "mesh", "step", "ruled_faces"},
                              open);
   if (design.name == "none" || design.name.empty()) {
     design.kind = DesignKind::kNone;
@@ -227,6 +228,10 @@ DesignSettings read_design(ConfigTable table, bool cl) {
   }
   design.sweep_tolerance_mm =
       table.number("sweep_tolerance_um", kAboveZero, um_from_mm(design.sweep_tolerance_mm)) * kMicrometre;
+  if (design.name == "ruled_faces") {
+    read_ruled_faces(table, design);
+    return design;
+  }
   if (design.name == "mesh" || design.name == "step") {
     design.kind = DesignKind::kMesh;
     design.mesh_key = design.name;

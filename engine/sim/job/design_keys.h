@@ -10,11 +10,20 @@
 namespace swarf::sim {
 
 enum class DesignKind {
-  kProgram,   ///< the surfaces of the scene's own program
-  kNone,      ///< nothing is measured
-  kSurface,   ///< the surfaces of another program of surface blocks
-  kAnalytic,  ///< one surface in closed form, or a NURBS surface in its smooth parts
-  kMesh,      ///< a closed triangle mesh: STL, PLY or OBJ, mm; or the bodies of a CAD file in facets
+  kProgram,     ///< the surfaces of the scene's own program
+  kNone,        ///< nothing is measured
+  kSurface,     ///< the surfaces of another program of surface blocks
+  kAnalytic,    ///< one surface in closed form, or a NURBS surface in its smooth parts
+  kRuledFaces,  ///< ruled faces of a CAD file, proven to be so (ruled_faces.h)
+  kMesh,        ///< a closed triangle mesh: STL, PLY or OBJ, mm; or the bodies of a CAD file in facets
+};
+
+/// A face of a CAD file that is to be milled by the flank.
+struct RuledFace {
+  int number = 0;          ///< in the order of the file, from 1 on
+  bool exchanged = false;  ///< guide curve 0, where the tip is, is its other edge
+  bool along_u = false;    ///< of a plane, which is ruled both ways: the rulings run along u
+  SourceLocation where;
 };
 
 struct DesignSettings {
@@ -25,6 +34,7 @@ struct DesignSettings {
   double sweep_tolerance_mm = 2e-5;
   std::string surface_file;                   ///< kSurface
   std::string mesh_file;                      ///< kMesh
+  std::vector<RuledFace> faces;               ///< kRuledFaces, of mesh_file
   std::string mesh_key = "mesh";              ///< that names it: "step" for a CAD file
   double chord_mm = 5e-4;                     ///< CAD files: facets stray no farther from the faces
   std::vector<surface::SurfacePtr> surfaces;  ///< kAnalytic

@@ -6,16 +6,14 @@
 
 namespace swarf::sim {
 
-/// Fills Job::flank from the design that has been loaded: each ruled surface in its order, from the upper
-/// pass in depth to the lower. Diagnostics: those of flank::check_task, "flank-needs-ruled", "no-flank",
-/// "flank-above-guide", "limit-unreachable" with the error that no feed goes below (E18).
+/// Fills Job::flank from the design that has been loaded: each ruled surface in its order, or as the
+/// program's G06.5 name them, from the upper pass in depth to the lower. Diagnostics: those of
+/// flank::check_task, "flank-needs-ruled", "flank-needs-g065", "no-flank", "flank-above-guide",
+/// "limit-unreachable" with the error that no feed goes below (E18), "no-tool-fits". With flank.tool = "best"
+/// one tool is left in Scene::tools: of those that nothing refuses the one whose placement errs least.
 void load_flank(Job& job, Diagnostics& diagnostics);
-
-/// How the blocks move.
-flank::FlankMotion flank_motion(const Job& job);
 
 /// The rule of the scene: bisected where it gives a limit.
 flank::FeedRule flank_rule(const Job& job);
-toolpath::ToolPath flank_path(const Job& job, flank::FeedRule rule);
 
 }  // namespace swarf::sim

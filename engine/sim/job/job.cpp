@@ -17,10 +17,12 @@
 #include "sim/job/clamping_check.h"
 #include "sim/job/driven_part.h"
 #include "sim/job/fixture_keys.h"
+#include "sim/job/flank_clearance.h"
 #include "sim/job/flank_job.h"
 #include "sim/job/kept_job.h"
 #include "sim/job/memory_limit.h"
 #include "sim/job/open_job.h"
+#include "sim/job/ruled_faces.h"
 #include "sim/job/scene.h"
 #include "sim/job/set_ups.h"
 #include "sim/job/tool_table.h"
@@ -292,6 +294,7 @@ void load_design(Job& job, Diagnostics& diagnostics) {
   if (design.kind == DesignKind::kSurface) defined = program::load_surfaces(design.surface_file);
   for (const program::SurfaceDefinition& definition : defined) job.design.push_back(definition.surface);
   if (design.kind == DesignKind::kAnalytic) job.design = design.surfaces;
+  if (design.kind == DesignKind::kRuledFaces) job.design = load_ruled_faces(design, diagnostics);
   if (design.kind == DesignKind::kMesh) {
     auto mesh = std::make_shared<TriMesh>(
         design.mesh_key == "step" ? cad_facets(design, own_faces ? &job.driven_faces : nullptr, diagnostics)
@@ -373,7 +376,7 @@ Job complete(Scene scene, Diagnostics diagnostics, std::vector<EarlierSetup> ear
   collect(diagnostics, [&] {
     if (job.scene.kind == ProgramKind::kCl) {
       job.cl = program::load_cl(job.scene.program_file, &warnings, job.scene.cl_options);
-    } else if (job.scene.kind == ProgramKind::kSurfaceBlocks) {
+    } else if (job.scene.kind == ProgramKind::kSurfaceBlocks || job.scene.program_key == "program") {
       job.program = program::load_program(job.scene.program_file, &warnings);
     } else if (job.scene.driven && !job.scene.driven->mesh && !job.scene.driven->step) {
       job.program.surfaces = program::load_surfaces(job.scene.program_file);
@@ -388,11 +391,13 @@ Job complete(Scene scene, Diagnostics diagnostics, std::vector<EarlierSetup> ear
   } else if (job.scene.kind == ProgramKind::kSurfaceBlocks) {
     check_tools(job, diagnostics);
     check_planner_cutter(job, diagnostics);
+  } else if (job.scene.flank) {
+    check_tools(job, diagnostics);
   }
   diagnostics.throw_if_errors();
-  if (job.scene.flank) load_flank(job, diagnostics);
-  diagnostics.throw_if_errors();
   fill_open(job, diagnostics);
+  diagnostics.throw_if_errors();
+  if (job.scene.flank) load_flank(job, diagnostics);
   diagnostics.throw_if_errors();
   if (job.scene.driven) load_driven(job, diagnostics);
   diagnostics.throw_if_errors();
@@ -403,6 +408,9 @@ Job complete(Scene scene, Diagnostics diagnostics, std::vector<EarlierSetup> ear
     const TriMesh stock = job.scene.stock.body_W().mesh_around();
     check_clamping(job, {stock}, diagnostics, job.scene.assumptions);
   });
+  diagnostics.throw_if_errors();
+  if (job.scene.flank && job.scene.flank->clearance_mm)
+    collect(diagnostics, [&] { keep_clear(job, diagnostics); });
   diagnostics.throw_if_errors();
   check_memory(job, diagnostics);
   diagnostics.throw_if_errors();

@@ -37,7 +37,7 @@ JobPath path_of_program(const Job& job, toolpath::Planner planner, Diagnostics& 
     case ProgramKind::kDriven:
       return {driven_path(job, job.scene.driven->plan.cam_tolerance_mm, diagnostics), {}};
     case ProgramKind::kFlank:
-      return {flank_path(job, flank_rule(job)), {}};
+      return {flank::flank_path(job.flank, flank_rule(job)), {}};
     case ProgramKind::kSurfaceBlocks:
       break;
   }

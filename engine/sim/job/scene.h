@@ -103,7 +103,7 @@ enum class ProgramKind {
   kCl,             ///< `cl`: CL data
   kNc,             ///< `nc`: a part program as a control reads it
   kDriven,         ///< [driven]: the part's own surface
-  kFlank,          ///< [flank]: a ruled design, milled by the flank
+  kFlank,          ///< [flank]: a ruled design, milled by the flank; or a `program` of G06.5
 };
 
 struct Scene {
@@ -157,10 +157,20 @@ struct EarlierSetup {
   bool other_run = false;  ///< it stands in the scene of that run or of one before it, not in this one
 };
 
-/// One flank pass and its block ends.
-struct FlankPass {
-  flank::FlankTask task;
-  std::vector<flank::Station> stations;
+/// One tool that a flank job might have taken.
+struct FlankTool {
+  std::string name;
+  std::string refused;      ///< why not; "": it can mill the design
+  flank::WorstError worst;  ///< of all surfaces, in the deepest passes
+  bool used = false;
+};
+
+/// How the passes of a flank job were moved to keep off the fixtures (flank_clearance.h), mm.
+struct FlankClearance {
+  double asked_mm = 0.0;
+  double before_mm = 0.0;    ///< least gap without a move, proven; at most what was asked
+  std::string before_parts;  ///< between which; "": nothing came nearer
+  double slide_mm = 0.0, lift_low_mm = 0.0, lift_high_mm = 0.0;
 };
 
 /// Everything that a run needs, loaded and checked; nothing has been written yet.
@@ -170,8 +180,11 @@ struct Job {
   program::Program program;                            ///< of surface blocks; empty for other jobs
   std::optional<program::ClProgram> cl;                ///< of CL jobs
   std::shared_ptr<const toolpath::DrivenPart> driven;  ///< of a part driven by its surface: what drives it
-  std::vector<FlankPass> flank;  ///< of flank jobs: for each surface of the design its passes in depth
-  double flank_seconds = 0.0;    ///< that planning them took
+  /// Of flank jobs: for each surface of the design, or each G06.5, its passes in depth.
+  std::vector<flank::FlankPass> flank;
+  double flank_seconds = 0.0;  ///< that planning them took
+  std::optional<FlankClearance> flank_clearance;
+  std::vector<FlankTool> flank_tools;  ///< of flank.tool = "best": the scene's tools in their order
   std::vector<surface::SurfacePtr>
       design;  ///< what the part is measured against; may be empty for jobs of blocks
   std::vector<surface::Face>

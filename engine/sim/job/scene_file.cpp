@@ -264,13 +264,16 @@ void read_scene_driven(ConfigTable& root, const char* first, Scene& scene) {
   scene.program_file = scene.driven->file = beside(scene.file, scene.driven->file);
 }
 
-/// [flank]: the design is milled along its rulings.
+/// [flank]: the design is milled along its rulings; with a `program` its G06.5 say which surfaces, and how
+/// fast.
 void read_scene_flank(ConfigTable& root, const char* first, Scene& scene) {
-  if (first != nullptr)
+  const bool by_program = scene.kind == ProgramKind::kSurfaceBlocks && root.has("program");
+  if (first != nullptr && !by_program)
     root.error("two-programs", first, fmt::format("the scene has [flank] and names a '{}' file", first),
-               "keep one of program, cl, nc, [driven] and [flank]");
+               "keep one of program (of G06.5), cl, nc, [driven] and [flank]");
   scene.kind = ProgramKind::kFlank;
-  scene.flank = read_flank(root.table("flank"));
+  scene.flank = read_flank(root.table("flank"), by_program);
+  if (by_program) return;
   scene.program_key = "flank";
   scene.program_file = scene.file;
 }
@@ -294,7 +297,9 @@ void read_program(ConfigTable& root, std::optional<ConfigTable>& post, Scene& sc
     scene.program_file = beside(scene.file, file);
   }
   if (first == nullptr && root.has("driven") && root.has("flank")) first = "driven";
-  if (root.has("flank")) return read_scene_flank(root, first, scene);
+  const bool surfaces = first != nullptr && scene.kind == ProgramKind::kSurfaceBlocks;
+  if (root.has("flank") || (surfaces && program::mills_by_flank(scene.program_file)))
+    return read_scene_flank(root, first, scene);
   if (root.has("driven")) return read_scene_driven(root, first, scene);
   if (first == nullptr) root.text("program");  // reports that it is missing
   take_written(post, scene);
@@ -332,10 +337,12 @@ void read_scene_tools(ConfigTable& root, Scene& scene, Diagnostics& diagnostics)
   scene.tools_in_words = root.has("tools");
   const bool planned = scene.kind == ProgramKind::kSurfaceBlocks || scene.kind == ProgramKind::kDriven ||
                        scene.kind == ProgramKind::kFlank;
-  if (!planned || scene.tools.size() == 1) return;
-  root.error("planner-needs-one-tool", "tool",
-             fmt::format("a path is planned for one cutter, the scene has {}", scene.tools.size()),
-             "describe one, or run a program that brings its own tool positions");
+  const bool chosen = scene.flank && scene.flank->best_tool;
+  if (!planned || chosen || scene.tools.size() == 1) return;
+  root.error(
+      "planner-needs-one-tool", "tool",
+      fmt::format("a path is planned for one cutter, the scene has {}", scene.tools.size()),
+      "describe one, or run a program that brings its own tool positions; flank.tool = \"best\" chooses");
 }
 
 /// A program of blocks without a machine is for the generic mill.
@@ -402,7 +409,8 @@ void read_scene(ConfigTable& root, Scene& scene, Diagnostics& diagnostics, int s
   for (machine::Fixture& fixture : scene.fixtures)
     if (std::string* const file = mesh_file_of(fixture)) *file = beside(path, *file);
   scene.stock.raw.file = beside(path, scene.stock.raw.file);
-  scene.design = read_design(root.table("design"), blocks);
+  const bool own_surfaces = scene.flank && scene.program_key == "program";
+  scene.design = read_design(root.table("design"), blocks && !own_surfaces);
   scene.design.surface_file = beside(path, scene.design.surface_file);
   scene.design.mesh_file = beside(path, scene.design.mesh_file);
   if (blocks) {

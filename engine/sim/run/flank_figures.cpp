@@ -7,83 +7,15 @@
 #include <optional>
 
 #include "base/minima.h"
-#include "base/parallel.h"
-#include "flank/envelope.h"
 #include "measure/flank_error.h"
 #include "motion/blocks/block_motion.h"
 #include "motion/interpolator.h"
 #include "sim/job/flank_job.h"
+#include "sim/run/flank_rays.h"
 #include "sim/run/result.h"
 
 namespace swarf::sim {
 namespace {
-
-using flank::PoseTrack;
-
-/// Between the poses that a track takes of a block nothing strays farther than this, mm.
-constexpr double kTrackTolerance = 1e-5;
-
-int pass_of(const toolpath::Elements& elements, size_t element) {
-  return elements.block(element).pass;
-}
-
-/// The poses of every pass as its blocks ask for them.
-std::vector<std::vector<ToolPose>> block_poses(const Job& job, const motion::Cycles& cycles) {
-  std::vector<std::vector<ToolPose>> poses(job.flank.size());
-  const double lever = job.flank.front().task.profile.high;
-  for (size_t i = 0; i < cycles.elements().size(); ++i) {
-    const int pass = pass_of(cycles.elements(), i);
-    if (pass < 0) continue;
-    auto& own = poses[static_cast<size_t>(pass)];
-    const std::vector<ToolPose> steps = motion::subdivide(cycles.motions()[i], lever, kTrackTolerance);
-    own.insert(own.end(), steps.begin() + (own.empty() ? 0 : 1), steps.end());
-  }
-  return poses;
-}
-
-std::vector<std::vector<ToolPose>> cycle_poses(const Job& job, const motion::Cycles& cycles) {
-  std::vector<std::vector<ToolPose>> poses(job.flank.size());
-  motion::CycleReader reader(cycles);
-  for (size_t k = 0; k < cycles.size(); ++k) {
-    const motion::ToolSample& sample = reader.at(k).sample;
-    const int pass = pass_of(cycles.elements(), static_cast<size_t>(sample.element));
-    if (pass >= 0) poses[static_cast<size_t>(pass)].push_back(sample.pose);
-  }
-  return poses;
-}
-
-/// The envelope of all passes over one surface.
-class SurfaceEnvelope {
- public:
-  SurfaceEnvelope(const Job& job, const std::vector<std::vector<ToolPose>>& poses, size_t surface) {
-    const auto depths = static_cast<size_t>(job.scene.flank->depth_passes);
-    for (size_t k = surface * depths; k < (surface + 1) * depths; ++k)
-      tracks_.emplace_back(poses[k], job.flank[k].task.profile);
-  }
-  std::optional<double> height(const Vec3& point, const Vec3& normal) const {
-    std::optional<double> least;
-    for (const PoseTrack& track : tracks_) {
-      const std::optional<double> own = track.height(point, normal);
-      if (own && (!least || *own < *least)) least = own;
-    }
-    return least;
-  }
-
- private:
-  std::vector<PoseTrack> tracks_;
-};
-
-using Heights = std::vector<std::optional<double>>;
-
-/// Over every ray of a surface.
-Heights heights_of(const SurfaceEnvelope& envelope, const stock::SurfaceDexels& dexels) {
-  Heights heights(dexels.points().size());
-  parallel_chunks(heights.size(), 16, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i)
-      heights[i] = envelope.height(dexels.points()[i], dexels.normals()[i]);
-  });
-  return heights;
-}
 
 void add_height(double height, const Vec3& place, FlankHeights& all) {
   if (height > all.greatest_mm) all.greatest_mm = height, all.greatest_W = place;
@@ -132,17 +64,48 @@ std::vector<FlankProfileRow> profile_of(const Heights& predicted, const stock::S
   return rows;
 }
 
+double height_or_nan(const std::optional<double>& height) {
+  return height.value_or(std::numeric_limits<double>::quiet_NaN());
+}
+
+FlankMap map_of(const Heights& predicted, const stock::SurfaceDexels& dexels) {
+  FlankMap map;
+  for (int iu = 0; iu < dexels.nu(); ++iu) map.u.push_back(dexels.u(iu));
+  for (int iv = 0; iv < dexels.nv(); ++iv) map.v.push_back(dexels.v(iv));
+  for (size_t i = 0; i < map.u.size() * map.v.size(); ++i) {
+    const bool cut = dexels.blocks()[i] != stock::kUncut;
+    map.predicted_mm.push_back(height_or_nan(predicted[i]));
+    map.cut_mm.push_back(cut ? dexels.heights_mm()[i] : height_or_nan({}));
+  }
+  return map;
+}
+
+/// Greatest of what `next` differs from `base`.
+void widen(const Heights& base, const Heights& next, double& most) {
+  for (size_t i = 0; i < base.size(); ++i)
+    if (base[i] && next[i]) most = std::max(most, std::abs(*next[i] - *base[i]));
+}
+
 void add_envelopes(const Job& job, const MeasuredPath& measured, FlankFigures& figures) {
-  const auto blocks = block_poses(job, *measured.cycles), cycles = cycle_poses(job, *measured.cycles);
+  const std::vector<PosedPass> exact = exact_poses(job), blocks = block_poses(job, *measured.cycles),
+                               cycles = cycle_poses(job, *measured.cycles);
   const bool by_cycles = job.scene.stock.cut_by == CutBy::kCycles;
   for (size_t s = 0; s < measured.dexels.size(); ++s) {
     const stock::SurfaceDexels& dexels = measured.dexels[s];
-    const Heights of_blocks = heights_of({job, blocks, s}, dexels);
-    const Heights of_cycles = heights_of({job, cycles, s}, dexels);
-    add_heights(of_blocks, dexels, figures.blocks_left);
-    add_heights(of_cycles, dexels, figures.cycles_left);
-    const Heights& cut = by_cycles ? of_cycles : of_blocks;
+    const SurfaceEnvelope of_blocks(job, blocks, s), of_cycles(job, cycles, s);
+    const Heights on_axes = heights_of({job, exact, s}, dexels);
+    const Heights at_blocks = heights_of(of_blocks, dexels), at_cycles = heights_of(of_cycles, dexels);
+    add_heights(on_axes, dexels, figures.placed);
+    add_heights(at_blocks, dexels, figures.blocks_left);
+    const double most = figures.cycles_left.most_mm();
+    add_heights(at_cycles, dexels, figures.cycles_left);
+    if (figures.cycles_left.most_mm() > most)
+      figures.worst_element = of_cycles.element_at(figures.cycles_left.most_W());
+    widen(on_axes, at_blocks, figures.blocks_add_mm);
+    widen(at_blocks, at_cycles, figures.cycles_add_mm);
+    const Heights& cut = by_cycles ? at_cycles : at_blocks;
     compare(cut, dexels, figures);
+    figures.maps.push_back(map_of(cut, dexels));
     if (s == 0) figures.profile = profile_of(cut, dexels);
   }
 }
@@ -152,14 +115,16 @@ class ChordErrors {
  public:
   ChordErrors(const Job& job, const motion::Cycles& cycles) : job_(job), elements_(cycles.elements()) {
     motion::CycleReader reader(cycles);
-    std::optional<motion::ToolSample> last;
+    motion::Cycle last;
     int last_pass = -1;
     for (size_t k = 0; k < cycles.size(); ++k) {
-      const motion::ToolSample sample = reader.at(k).sample;
-      const int pass = pass_of(elements_, static_cast<size_t>(sample.element));
+      const motion::Cycle cycle = reader.at(k);
+      const int pass = pass_of(elements_, static_cast<size_t>(cycle.sample.element));
       if (pass != last_pass) u_ = 0.0;
-      if (pass >= 0 && pass == last_pass) add(flank::between(last->pose, sample.pose), pass);
-      last = sample;
+      // Half way each axis has gone half of its way.
+      if (pass >= 0 && pass == last_pass)
+        add(kinematics::forward(cycles.machines().front(), 0.5 * (last.q + cycle.q)), pass);
+      last = cycle;
       last_pass = pass;
     }
   }
@@ -193,7 +158,7 @@ FlankFeedRow feed_row(const Job& job, const MeasuredPath& measured, flank::FeedR
   if (row.used) {
     result.statistics = measured.motion.statistics;
   } else {
-    own = std::make_unique<motion::Cycles>(flank_path(job, rule).elements, machines_by_tool(job),
+    own = std::make_unique<motion::Cycles>(flank::flank_path(job.flank, rule).elements, machines_by_tool(job),
                                            job.scene.tools.front(), job.scene.motion);
     Progress silent;
     result = motion::interpolate(*own, silent);
@@ -212,10 +177,10 @@ void add_geometry(const Job& job, FlankFigures& figures) {
   const auto depths = static_cast<size_t>(job.scene.flank->depth_passes);
   figures.surfaces = job.design.size();
   figures.passes = job.flank.size();
-  for (const FlankPass& pass : job.flank) figures.blocks += pass.stations.size() - 1;
+  for (const flank::FlankPass& pass : job.flank) figures.blocks += pass.stations.size() - 1;
   figures.plan_seconds = job.flank_seconds;
   constexpr int kRulings = 512;
-  for (const FlankPass& pass : job.flank) {
+  for (const flank::FlankPass& pass : job.flank) {
     const auto twist = [&](double u) { return measure::ruling_twist(*pass.task.surface, u); };
     figures.twist_max_rad =
         std::max(figures.twist_max_rad, greatest_sampled(twist, 0.0, 1.0, kRulings).value);
@@ -244,6 +209,11 @@ void add_geometry(const Job& job, FlankFigures& figures) {
     figures.feed_1um_mm_s = flank::sagitta_feed(corner, kPaperPeriod, 1e-3);
     figures.feed_5um_mm_s = flank::sagitta_feed(corner, kPaperPeriod, 5e-3);
   }
+  // Ma et al., limits of their C axis.
+  constexpr flank::RotaryLimit kPaperC{0.8, 0.5};
+  constexpr double kPaperPlace = 0.6;
+  figures.c_feed = flank::c_limited_feed(*first.surface, kPaperPlace, kPaperC);
+  figures.c_feed_least = flank::least_c_feed(*first.surface, kPaperC);
 }
 
 }  // namespace
@@ -262,6 +232,7 @@ FlankFigures flank_figures(const Job& job, const MeasuredPath& measured, Progres
     figures.feeds.push_back(feed_row(job, measured, FeedRule::kCurvature, "curvature of the guides alone"));
   }
   figures.feeds.push_back(feed_row(job, measured, FeedRule::kProgrammed, "as programmed"));
+  if (job.scene.flank->all_machines) figures.machines = flank_machines(job, measured.dexels);
   progress.end();
   return figures;
 }

@@ -62,7 +62,7 @@ class BlockSweeper {
  private:
   static bool is_straight(const motion::BlockMotion& motion) {
     const BlockMove& block = motion.block;
-    return !block.arc && block.from.axis_W == block.to.axis_W &&
+    return !block.arc && !block.curve && block.from.axis_W == block.to.axis_W &&
            (block.law != toolpath::BlockLaw::kJoint || turns_nothing(motion));
   }
   static bool turns_nothing(const motion::BlockMotion& motion) {

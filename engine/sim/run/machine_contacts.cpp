@@ -6,43 +6,15 @@
 #include <map>
 #include <utility>
 
-#include "cutter/profile.h"
-#include "cutter/tool_walls.h"
+#include "sim/job/tool_bodies.h"
 
 namespace swarf::sim {
 namespace {
 
 using collision::Body;
 using collision::BodyKind;
-using collision::ToolFrustum;
 
 constexpr const char* kStock = "stock";
-
-/// By the part's name.
-std::map<std::string, std::vector<ToolFrustum>> parts_of(const cutter::Cutter& tool) {
-  std::map<std::string, std::vector<ToolFrustum>> parts;
-  const std::vector<Vec2> corners =
-      cutter::sample_outline(cutter::outline(tool), MachineContactCheck::kOutlineMm);
-  for (size_t i = 0; i + 1 < corners.size(); ++i) {
-    const Vec2 &low = corners[i], &high = corners[i + 1];
-    if (high.y() > low.y()) parts["flutes"].push_back({low.y(), high.y(), low.x(), high.x()});
-  }
-  for (const cutter::ToolWall& wall : cutter::tool_walls(tool))
-    parts[wall.part].push_back({wall.low, wall.high, wall.low_radius, wall.high_radius});
-  return parts;
-}
-
-void add_tool_bodies(const Job& job, std::vector<Body>& bodies) {
-  const std::vector<kinematics::MachineModel> machines = machines_by_tool(job);
-  for (size_t i = 0; i < machines.size(); ++i) {
-    const cutter::Cutter& tool = job.scene.tools[i];
-    const std::string of = machines.size() > 1 ? " of " + cutter::call_name(tool) : "";
-    for (const auto& [part, frustums] : parts_of(tool)) {
-      bodies.push_back(collision::tool_body(job.machine, machines[i], part + of, frustums));
-      bodies.back().tool = static_cast<int>(i);
-    }
-  }
-}
 
 /// Tools may cut the stock; whether its other parts meet it is judged against what is left of it
 /// (tool_clearance.h).
@@ -59,7 +31,7 @@ std::vector<Body> contact_bodies(const Job& job) {
   std::vector<Body> bodies = collision::link_bodies(job.machine);
   for (Body& body : bodies)
     if (job.machine.links[static_cast<size_t>(body.link)].fixture) body.kind = BodyKind::kFixture;
-  add_tool_bodies(job, bodies);
+  for (Body& body : tool_bodies(job)) bodies.push_back(std::move(body));
   bodies.push_back(
       collision::work_body(job.machine, kStock, BodyKind::kStock, job.scene.stock.body_W().mesh_around()));
   return bodies;

@@ -83,9 +83,6 @@ struct MachineContacts {
 /// Takes the cycles of the job's program in their order.
 class MachineContactCheck {
  public:
-  /// Flutes stand for a polygon of their outline, inside it by no more.
-  static constexpr double kOutlineMm = 1e-3;
-
   /// `job` must outlive it.
   explicit MachineContactCheck(const Job& job);
   void add(std::span<const motion::Cycle> window) { check_->add(window); }

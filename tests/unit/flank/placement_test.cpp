@@ -11,17 +11,16 @@
 #include "flank/feed.h"
 #include "flank/flank_check.h"
 #include "flank/flank_path.h"
+#include "flank_surfaces.h"
 #include "surface/nurbs.h"
 #include "surface/polynomial.h"
 
 namespace swarf::flank {
 namespace {
 
-/// C0 = (60u, 0, 0), C1 = (60u, 20(u-1/2), 30).
-surface::SurfacePtr f1() {
-  return std::make_shared<surface::PolynomialSurface>(
-      1, 1, std::vector<Vec3>{{0, 0, 0}, {0, -10, 30}, {60, 0, 0}, {0, 20, 0}}, 1);
-}
+using test::f1;
+using test::jcde;
+using test::random_ruled;
 
 FlankProfile cylinder(double radius = 8.0) {
   FlankProfile profile;
@@ -179,19 +178,6 @@ TEST(FlankProfile, ADrillPointAloneIsNoFlank) {
   EXPECT_FALSE(flank_profile(cutter));
 }
 
-/// Guides of degree 2 that twist, bend and sweep.
-surface::SurfacePtr random_ruled(Rng& rng) {
-  const auto some = [&](double most) { return rng.uniform(-most, most); };
-  std::vector<Vec3> rows;
-  rows.push_back(Vec3{some(5), some(5), some(2)});
-  rows.push_back(Vec3{some(6), some(4), 25 + some(5)});
-  rows.push_back(Vec3{50 + some(10), some(8), some(3)});
-  rows.push_back(Vec3{some(6), some(8), some(3)});
-  rows.push_back(Vec3{some(4), some(8), some(2)});
-  rows.push_back(Vec3{some(3), some(3), some(2)});
-  return std::make_shared<surface::PolynomialSurface>(2, 1, rows, 1);
-}
-
 TEST(FlankProperty, EveryPlacementIsBetterThanTheOneBefore) {
   for (uint64_t seed = 1; seed <= 60; ++seed) {
     Rng rng(seed);
@@ -258,24 +244,6 @@ TEST(FlankPlacement, NoFeedGoesBelowTheTwist) {
 TEST(FlankFeed, SagittaOfTheTightestCorner) {
   EXPECT_NEAR(sagitta_feed(4.08572, 1e-3, 1e-3), 180.781, 1e-3);
   EXPECT_NEAR(sagitta_feed(4.08572, 1e-3, 5e-3), 404.140, 1e-3);
-}
-
-/// A dual cubic B-spline, Ma et al., JCDE 2022, App. 1.
-surface::SurfacePtr jcde() {
-  surface::NurbsData data;
-  data.degree_u = 3;
-  data.degree_v = 1;
-  data.knots_u = {0, 0, 0, 0, .2, .4, .6, .8, 1, 1, 1, 1};
-  data.knots_v = {0, 0, 1, 1};
-  const std::vector<Vec3> p{{5, 0, 0},   {-10, 20, 0}, {10, 20, 0}, {20, 30, 0},
-                            {30, 30, 0}, {40, 30, 0},  {50, 20, 0}, {55, 0, 0}};
-  const std::vector<Vec3> h{{0, 0, 15},   {-15, 20, 15}, {5, 25, 15},  {15, 35, 15},
-                            {30, 35, 15}, {45, 35, 15},  {55, 25, 15}, {60, 0, 15}};
-  for (size_t i = 0; i < p.size(); ++i) {
-    data.poles.push_back(p[i]);
-    data.poles.push_back(h[i]);
-  }
-  return std::make_shared<surface::NurbsSurface>(data);
 }
 
 TEST(FlankFeed, FiguresOfThePublishedPath) {

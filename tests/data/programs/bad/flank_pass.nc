@@ -1,4 +1,4 @@
-(expect: unsupported-word 12:1)
+(expect: flank-needs-ruled 12:7)
 G17 G21 G54 G90
 T1 M6
 S12000 M3

@@ -1,0 +1,23 @@
+(Both sides of a twisted, swept blade, each by one pass of the flank: G06.5)
+(Camber y = 5u - 5u^2 + 9uv - 4.5v, 3 mm thick at the hub, 2 mm at the tip)
+N10 G17 G21 G54 G90
+N20 G10 L70 P1 Q2 R1
+N30 G10 L71 P1 I0 J0 X-18 Y-1.5 Z0
+N40 G10 L71 P1 I1 J0 X36 Y5 Z0
+N50 G10 L71 P1 I2 J0 X0 Y-5 Z0
+N60 G10 L71 P1 I0 J1 X9 Y-4 Z24
+N70 G10 L71 P1 I1 J1 X0 Y9 Z0
+N80 G10 L79 P1 D1
+N120 G10 L70 P2 Q2 R1
+N130 G10 L71 P2 I0 J0 X-18 Y1.5 Z0
+N140 G10 L71 P2 I1 J0 X36 Y5 Z0
+N150 G10 L71 P2 I2 J0 X0 Y-5 Z0
+N160 G10 L71 P2 I0 J1 X9 Y-5 Z24
+N170 G10 L71 P2 I1 J1 X0 Y9 Z0
+N180 G10 L79 P2 D-1
+N190 T1 M6
+N200 S12000 M3
+(F of the tip in mm/min, K: how far the motion may stray from the axis surface, mm)
+N210 G06.5 P1 F3000 K0.0001
+N220 G06.5 P2 F4000 K0.0002
+N230 M30
