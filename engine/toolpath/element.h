@@ -66,18 +66,18 @@ struct AxisSpan {
 struct BlockMove {
   ToolPose from, to;
   std::optional<program::Arc> arc;  ///< the tip's; kTcp and kTcpAxes only
-  std::optional<CurveSpan> curve;   ///< that tip and axis follow; kCurve, and no other
   BlockLaw law = BlockLaw::kTcp;
   double feed_mm_s = 0.0;  ///< of the tip; 0 with duration_s 0: rapid, limited by the machine alone
   /// Above 0: how long the block takes at its programmed feed, where that is not simply that of the tip.
   double duration_s = 0.0;
-  double dwell_s = 0.0;               ///< the tool stands this long before it moves
-  bool exact_stop = false;            ///< comes to rest at its end
-  double corner_tolerance_mm = 0.0;   ///< the corner at its end may be rounded by this much; 0: the default
-  std::optional<AxisSpan> axes;       ///< as the program commands them; none: they follow from the poses
-  std::optional<double> spindle_rpm;  ///< above 0 clockwise, below 0 counter-clockwise; none: nobody says
-  int tool = 0;                       ///< index into the job's tools
-  int pass = -1;                      ///< 0-based count of the passes; -1 on rapids
+  double dwell_s = 0.0;                 ///< the tool stands this long before it moves
+  bool exact_stop = false;              ///< comes to rest at its end
+  double corner_tolerance_mm = 0.0;     ///< the corner at its end may be rounded by this much; 0: the default
+  std::optional<AxisSpan> axes;         ///< as the program commands them; none: they follow from the poses
+  std::optional<double> spindle_rpm;    ///< above 0 clockwise, below 0 counter-clockwise; none: nobody says
+  int tool = 0;                         ///< index into the job's tools
+  int pass = -1;                        ///< 0-based count of the passes; -1 on rapids
+  std::optional<CurveSpan> curve = {};  ///< that tip and axis follow; kCurve, and no other
 };
 /// Limited by the machine alone.
 inline bool is_rapid(const BlockMove& block) {

@@ -79,7 +79,9 @@ TEST(AxisCurve, BlocksJoinAndKeepTheirCurve) {
     ++on_curve;
     EXPECT_EQ(block.law, toolpath::BlockLaw::kCurve);
     EXPECT_LT((block.to.tip_W - block.curve->curve->pose(block.curve->to).tip_W).norm(), 1e-12);
-    if (before.curve) EXPECT_TRUE(toolpath::continues(*before.curve, *block.curve));
+    if (before.curve) {
+      EXPECT_TRUE(toolpath::continues(*before.curve, *block.curve));
+    }
   }
   EXPECT_EQ(on_curve, static_cast<int>(passes[0].stations.size()) - 1);
   toolpath::Elements copy;

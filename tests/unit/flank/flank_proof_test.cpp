@@ -114,8 +114,12 @@ TEST(FlankProof, WhatItPassesABruteForceGridPassesToo) {
         const double k = -surface::normal_curvature(shape, across);
         if (k > 0.0) room = std::min(room, 1.0 / k - task.profile.radius);
       }
-    if (weak && weak->shown) EXPECT_LT(room, 0.02 * task.profile.radius) << "seed " << seed;
-    if (!weak) EXPECT_GE(room, 0.0) << "seed " << seed;
+    if (weak && weak->shown) {
+      EXPECT_LT(room, 0.02 * task.profile.radius) << "seed " << seed;
+    }
+    if (!weak) {
+      EXPECT_GE(room, 0.0) << "seed " << seed;
+    }
     passed += weak ? 0 : 1;
   }
   EXPECT_GT(passed, 5);
