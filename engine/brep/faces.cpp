@@ -366,9 +366,9 @@ void take_body(const TopoDS_Shape& body, BRepBuilderAPI_NurbsConvert& convert, c
 
 MeshedFace meshed_face(const TopoDS_Face& face) {
   const OpenSurface open = plain_surface(face);
-  const surface::NurbsData data = data_of(open.spline, false);
+  const surface::NurbsData data = data_of(open.spline, face.Orientation() == TopAbs_REVERSED);
   return {std::make_shared<surface::NurbsSurface>(surface::NurbsSurface::with_creases(data)),
-          surface::smooth_parts(data).size() > 1, open.low, open.high};
+          surface::smooth_parts(data), open.low, open.high};
 }
 
 void take_shape(const TopoDS_Shape& shape, const NameOf& name_of, Model& model) {

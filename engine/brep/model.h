@@ -8,6 +8,7 @@
 #include "base/diagnostics.h"
 #include "mesh/tri_mesh.h"
 #include "surface/face.h"
+#include "surface/under_facets.h"
 
 namespace swarf::brep {
 
@@ -63,6 +64,9 @@ struct Facets {
   /// keeps within what was asked for at the places it tries.
   double chord_mm = 0.0;
   bool proven = true;  ///< false: a face has a crease inside, whose facets are held at some places only
+  /// Where each facet lies on its face; facets across a crease inside a face have no surface.
+  surface::UnderFacetsPtr under;
+  size_t across_creases = 0;  ///< how many those are
 };
 /// Facets asked for with a chord of `chord_mm`; divided further until the proof holds, and what is proven is
 /// told. Closed solids only where `closed_only`.

@@ -8,6 +8,7 @@
 #include <functional>
 #include <mutex>
 #include <string>
+#include <vector>
 
 #include "brep/model.h"
 #include "surface/nurbs.h"
@@ -48,8 +49,10 @@ void take_shape(const TopoDS_Shape& shape, const NameOf& name_of, Model& model);
 /// A face's whole surface as it is meshed; `low`, `high` are the library's parameters of the unit square.
 struct MeshedFace {
   std::shared_ptr<const surface::NurbsSurface> whole;
-  bool creased = false;
+  std::vector<surface::NurbsPart> parts;  ///< without creases; their normals point out of the body
   Vec2 low, high;
+
+  bool creased() const { return parts.size() > 1; }
 };
 MeshedFace meshed_face(const TopoDS_Face& face);
 

@@ -2,6 +2,7 @@
 #include <BRepTools.hxx>
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
+#include <IMeshTools_Parameters.hxx>
 #include <Poly_Triangulation.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <utility>
 
 #include "base/check.h"
 #include "brep/occt_shape.h"
@@ -18,12 +20,44 @@
 namespace swarf::brep {
 namespace {
 
+/// Edges are divided no more coarsely, however coarse the facets may be: they say where faces end.
+constexpr double kEdgeChord_mm = 2e-3;
+
 struct Made {
   std::vector<Vec3> points;
   std::vector<std::array<uint32_t, 3>> triangles;
   double chord_mm = 0.0;
   bool proven = true;
+  surface::UnderFacets under;
+  size_t across_creases = 0;
 };
+
+/// Nothing but rounding is left of the bends of a plane; mm.
+constexpr double kPlane = 1e-10;
+
+bool is_plane(const surface::Surface& surface) {
+  const surface::BendBounds b = surface.bend_bounds(Vec2::Zero(), Vec2::Ones());
+  return std::max({b.uu.most(), b.uv.most(), b.vv.most()}) <= kPlane;
+}
+
+/// The smooth part of the face that holds a facet, and where; `uv` of the whole square.
+surface::FacetOnSurface place_under(const MeshedFace& face, int first_part, const std::array<Vec2, 3>& uv) {
+  constexpr double kOnBorder = 1e-9;
+  for (size_t i = 0; i < face.parts.size(); ++i) {
+    const surface::NurbsPart& part = face.parts[i];
+    surface::FacetOnSurface on;
+    bool holds = true;
+    for (size_t k = 0; k < 3; ++k) {
+      const Vec2 own = (uv[k] - part.low).cwiseQuotient(part.high - part.low);
+      holds = holds && own.minCoeff() >= -kOnBorder && own.maxCoeff() <= 1.0 + kOnBorder;
+      on.uv[k] = own.cwiseMax(Vec2::Zero()).cwiseMin(Vec2::Ones());
+    }
+    if (!holds) continue;
+    on.surface = first_part + static_cast<int>(i);
+    return on;
+  }
+  return {};
+}
 
 /// How far the surface lies from a flat facet between places x_k of it: by Taylor's formula at the corners
 ///   |S(sum l_k x_k) - sum l_k S(x_k)| <= 1/2 sum over pairs l_j l_k B_jk <= 1/6 max B_jk,
@@ -92,7 +126,12 @@ void add_facets(const TopoDS_Face& face, double enough_mm, Made& made) {
     throw InputError("cad-surface", {}, "a face could not be divided into facets", "export the part again");
   const auto first = static_cast<uint32_t>(made.points.size());
   const MeshedFace meshed = meshed_face(face);
-  made.proven = made.proven && !meshed.creased && facets->HasUVNodes();
+  made.proven = made.proven && !meshed.creased() && facets->HasUVNodes();
+  const auto first_part = static_cast<int>(made.under.surfaces.size());
+  for (const surface::NurbsPart& part : meshed.parts) {
+    made.under.surfaces.push_back(part.surface);
+    made.under.is_plane.push_back(is_plane(*part.surface) ? 1 : 0);
+  }
   std::vector<Vec2> places;
   for (int i = 1; i <= facets->NbNodes(); ++i) {
     const gp_Pnt p = facets->Node(i).Transformed(at.Transformation());
@@ -106,14 +145,17 @@ void add_facets(const TopoDS_Face& face, double enough_mm, Made& made) {
     facets->Triangle(i).Get(a, b, c);
     if (face.Orientation() == TopAbs_REVERSED) std::swap(b, c);
     const auto at_node = [](int n) { return static_cast<size_t>(n - 1); };
-    if (!places.empty() && !meshed.creased) {
+    surface::FacetOnSurface on;
+    if (!places.empty()) {
+      const std::array<Vec2, 3> uv{places[at_node(a)], places[at_node(b)], places[at_node(c)]};
+      on = place_under(meshed, first_part, uv);
       const std::array<Vec3, 3> facet{made.points[first + at_node(a)], made.points[first + at_node(b)],
                                       made.points[first + at_node(c)]};
-      made.chord_mm =
-          std::max(made.chord_mm,
-                   distance_bound(*meshed.whole, {places[at_node(a)], places[at_node(b)], places[at_node(c)]},
-                                  facet, enough_mm, 0));
+      if (!meshed.creased())
+        made.chord_mm = std::max(made.chord_mm, distance_bound(*meshed.whole, uv, facet, enough_mm, 0));
     }
+    made.across_creases += on.surface == surface::FacetOnSurface::kNone ? 1 : 0;
+    made.under.facets.push_back(on);
     const auto number = [&](int n) { return first + static_cast<uint32_t>(n - 1); };
     made.triangles.push_back({number(a), number(b), number(c)});
   }
@@ -123,7 +165,11 @@ Made facets_of(const TopoDS_Shape& shape, double asked_mm, double chord_mm, bool
   Made made;
   BRepTools::Clean(shape);
   constexpr double kMostAngle = 0.35;  // rad between neighbours: nothing but looks hangs on it
-  const BRepMesh_IncrementalMesh mesher(shape, asked_mm, false, kMostAngle, false);
+  IMeshTools_Parameters asked;
+  asked.Deflection = std::min(asked_mm, kEdgeChord_mm);  // of edges
+  asked.DeflectionInterior = asked_mm;
+  asked.Angle = asked.AngleInterior = kMostAngle;
+  const BRepMesh_IncrementalMesh mesher(shape, asked);
   TopExp_Explorer body(shape, TopAbs_SOLID);
   for (; closed_only && body.More(); body.Next()) {
     for (TopExp_Explorer it(body.Current(), TopAbs_FACE); it.More(); it.Next())
@@ -161,6 +207,9 @@ Facets tessellate(const Model& model, double chord_mm, bool closed_only) {
   constexpr double kFloatStep = 0x1.0p-24 * 1.7320508;  // half a step in each of three coordinates
   facets.chord_mm = made.chord_mm + kFloatStep * farthest;
   facets.proven = made.proven;
+  facets.across_creases = made.across_creases;
+  made.under.chord_mm = facets.chord_mm;
+  facets.under = std::make_shared<surface::UnderFacets>(std::move(made.under));
   return facets;
 }
 

@@ -71,11 +71,11 @@ void add_surface(const surface::SurfacePtr& surface, double size_mm, std::vector
   }
 }
 
-void add_divided(const std::array<CellCorner, 3>& corners, double size_mm, std::vector<RootCell>& cells) {
-  const PatchBounds flat;
-  const DesignCell cell = make_cell(corners, flat);
+void add_divided(const std::array<CellCorner, 3>& corners, double size_mm, std::vector<RootCell>& cells,
+                 const PatchBounds& bounds = {}) {
+  const DesignCell cell = make_cell(corners, bounds);
   if (cell.longest_edge() <= size_mm) {
-    cells.push_back({cell, flat});
+    cells.push_back({cell, bounds});
     return;
   }
   // The longest edge is halved: long thin facets keep their shape no worse.
@@ -89,9 +89,20 @@ void add_divided(const std::array<CellCorner, 3>& corners, double size_mm, std::
     }
   }
   const CellCorner &a = corners[first], &b = corners[(first + 1) % 3], &c = corners[(first + 2) % 3];
-  const CellCorner m = middle(a, b, flat);
-  add_divided({a, m, c}, size_mm, cells);
-  add_divided({m, b, c}, size_mm, cells);
+  const CellCorner m = middle(a, b, bounds);
+  add_divided({a, m, c}, size_mm, cells, bounds);
+  add_divided({m, b, c}, size_mm, cells, bounds);
+}
+
+/// The part of a surface over a facet that stands for it.
+void add_part(const stock::FacetSheets& sheets, uint32_t facet, double size_mm,
+              std::vector<RootCell>& cells) {
+  const surface::SurfacePtr& surface = sheets.surface_of(facet);
+  const std::array<Vec2, 3>& uv = sheets.on_surface(facet).uv;
+  const PatchBounds bounds =
+      bounds_over(surface, uv[0].cwiseMin(uv[1]).cwiseMin(uv[2]), uv[0].cwiseMax(uv[1]).cwiseMax(uv[2]));
+  const auto corner = [&](size_t k) { return corner_on(*surface, uv[k].x(), uv[k].y()); };
+  add_divided({corner(0), corner(1), corner(2)}, size_mm, cells, bounds);
 }
 
 Vec3 turned_by(const Vec3& n, const Vec3& m, double share) {
@@ -310,8 +321,13 @@ std::vector<RootCell> root_cells(const stock::RayField& field, double size_mm) {
     return cells;
   }
   const stock::FacetSheets& sheets = *field.sheets;
-  const auto corner = [&](uint32_t n) { return CellCorner{sheets.points[n], sheets.normals[n]}; };
-  for (const auto& t : sheets.facets) add_divided({corner(t[0]), corner(t[1]), corner(t[2])}, size_mm, cells);
+  for (uint32_t f = 0; f < sheets.facets.size(); ++f) {
+    const auto corner = [&](size_t k) { return CellCorner{sheets.corner(f, k), sheets.normal_at(f, k)}; };
+    if (sheets.is_curved(f))
+      add_part(sheets, f, size_mm, cells);
+    else
+      add_divided({corner(0), corner(1), corner(2)}, size_mm, cells);
+  }
   for (const stock::SharpEdge& e : sheets.sharp_edges) add_fan(sheets, e, size_mm, cells);
   add_vertex_fans(sheets, cells);
   return cells;

@@ -76,9 +76,9 @@ struct RootCell {
 };
 
 /// Cells of about `size_mm` that cover the whole design of the field: parameter rectangles halved along a
-/// diagonal; facets divided. Sharp edges of a mesh get cells without area, whose normals fan out from one
-/// side to the other, and so do the corners where they meet: no place near a closed mesh lies between two
-/// columns.
+/// diagonal; facets divided, or the parts of the surfaces over them. Sharp edges of a mesh get cells without
+/// area, whose normals fan out from one side to the other, and so do the corners where they meet: no place
+/// near a closed mesh lies between two columns.
 std::vector<RootCell> root_cells(const stock::RayField& field, double size_mm);
 
 }  // namespace swarf::measure

@@ -206,9 +206,12 @@ WeldedMesh weld(const TriMesh& mesh) {
     if (numbers[v] < welded.points.size()) continue;
     welded.points.emplace_back(mesh.positions[v][0], mesh.positions[v][1], mesh.positions[v][2]);
   }
-  for (const auto& t : mesh.triangles) {
+  for (uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto& t = mesh.triangles[i];
     const uint32_t a = numbers[t[0]], b = numbers[t[1]], c = numbers[t[2]];
-    if (a != b && b != c && c != a) welded.triangles.push_back({a, b, c});
+    if (a == b || b == c || c == a) continue;
+    welded.triangles.push_back({a, b, c});
+    welded.sources.push_back(i);
   }
   return welded;
 }

@@ -21,6 +21,7 @@ namespace swarf::mesh {
 struct WeldedMesh {
   std::vector<Vec3> points;  ///< mm
   std::vector<std::array<uint32_t, 3>> triangles;
+  std::vector<uint32_t> sources;  ///< of each triangle, in the mesh that was welded
 };
 WeldedMesh weld(const TriMesh& mesh);
 

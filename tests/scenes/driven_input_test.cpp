@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "support/program_run.h"
 
@@ -61,6 +64,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadDriven{"tolerance", "driven.chord_tolerance_um=0", "out-of-range",
                   "'driven.chord_tolerance_um' is 0"},
         BadDriven{"two_parts", "driven.mesh=part.stl", "two-parts", "keep one of them"},
+        BadDriven{"design_and_file", "driven.by_design=true", "two-parts", "keep one of them"},
         BadDriven{"no_part", "driven.surface=none.nc", "file-not-found", "none.nc"},
         BadDriven{"mode", "driven.mode=spin", "unknown-choice", "scan, contour, spiral, guide"},
         BadDriven{"area_turned", "driven.area_mm=[[5,5],[0,0]]", "out-of-range", "'area_mm' is no rectangle"},
@@ -68,6 +72,9 @@ INSTANTIATE_TEST_SUITE_P(
                   "(200.000, 200.000) mm"},
         BadDriven{"comparison", "driven.compare_cam_um=[10,-1]", "out-of-range", "a tolerance of -1 um"},
         BadDriven{"angle", "driven.angle_deg=500", "out-of-range", "from -180 to 180"},
+        BadDriven{"override", "driven.override=[[0,1,50]]", "out-of-range",
+                  "'override' has the row [0, 1, 50]"},
+        BadDriven{"held", "driven.override=[[2,1,0]]", "feed-held", "pass 2 is held and never goes on"},
         BadDriven{"axis_without_length", "driven.axis=[0,0,0]", "out-of-range", "'axis' has no length"},
         BadDriven{"lead", "driven.lead_deg=90", "out-of-range", "from -89 to 89"},
         BadDriven{"axis_too_low", "driven.tilt_deg=88", "axis-too-low", "lead_deg or tilt_deg"},
@@ -77,6 +84,66 @@ INSTANTIATE_TEST_SUITE_P(
                   true},
         BadDriven{"off_the_part", "driven.guide_mm=[[0,0],[100,0]]", "guide-misses-part", "pass 1", true}),
     [](const testing::TestParamInfo<BadDriven>& one) { return std::string(one.param.name); });
+
+// A ball rounder than the narrowest hollow is told before anything moves: where, and what ball fits. A
+// cylinder of radius 4 from inside.
+TEST(DrivenByDesign, AHollowTooNarrowForTheBallIsTold) {
+  const fs::path folder = swarf::test::fresh_folder("driven_hollow");
+  swarf::test::write_text(
+      folder / "scene.toml",
+      "machine = \"mill_3axis\"\n[cutter]\nnumber = 1\nshape = \"ball\"\ndiameter_mm = 10\nflute_length_mm = "
+      "30\n"
+      "shank_diameter_mm = 10\nlength_mm = 60\n[setup]\nwork_origin_mm = \"on_table\"\n"
+      "[stock]\nbox_mm = [[-6, -4, -6], [6, 4, 1]]\nvoxel_mm = 0.4\n"
+      "[driven]\nby_design = true\ninterval_mm = 2\nfeed_mm_min = 1500\narea_mm = [[-2, -3], [2, 3]]\n"
+      "[design]\nkind = \"cylinder\"\nbase_mm = [0, -4, 0]\naxis = [0, 1, 0]\nradius_mm = 4\nheight_mm = 8\n"
+      "side = \"concave\"\nangle_deg = [20, 160]\n");
+  const auto run =
+      run_swarf("run " + (folder / "scene.toml").string() + " --no-render -o " + (folder / "out").string());
+  EXPECT_NE(run.output.find("[cutter-too-round]"), std::string::npos) << run.output;
+  EXPECT_NE(run.output.find("a hollow of radius 4 mm at"), std::string::npos) << run.output;
+  EXPECT_NE(run.output.find("touches everywhere inside the faces (proven)"), std::string::npos) << run.output;
+  fs::remove_all(folder);
+}
+
+// A part that stands in the scene itself: the same patch as surface blocks and as a NURBS surface of [design]
+// gives the same cycles.
+TEST(DrivenByDesign, ANurbsSurfaceDrivesAsItsPolynomialDoes) {
+  const fs::path folder = swarf::test::fresh_folder("driven_by_design");
+  const std::string rest =
+      "machine = \"mill_3axis\"\n[cutter]\nnumber = 1\nshape = \"ball\"\ndiameter_mm = 6\nflute_length_mm = "
+      "30\n"
+      "shank_diameter_mm = 6\nlength_mm = 60\n[setup]\nwork_origin_mm = \"on_table\"\n"
+      "[stock]\nbox_mm = [[0, 0, -10], [10, 8, 6]]\nvoxel_mm = 0.4\n[accept]\ngouge_max_um = 0.2\n"
+      "[driven]\ninterval_mm = 2\nfeed_mm_min = 1500\n";
+  // z = 2 x (10 - x) / 25 over 10 x 8 mm.
+  swarf::test::write_text(
+      folder / "part.nc",
+      "N10 G17 G21 G54 G90\nN20 T1 M6\nN30 S12000 M3\nN40 G10 L70 P1 Q2 R1\n"
+      "N50 G10 L71 P1 I0 J0 X0 Y0 Z0\nN60 G10 L71 P1 I1 J0 X10 Y0 Z8\n"
+      "N70 G10 L71 P1 I2 J0 X0 Y0 Z-8\nN80 G10 L71 P1 I0 J1 X0 Y8 Z0\nN90 G10 L79 P1 D1\nN100 M30\n");
+  swarf::test::write_text(folder / "blocks.toml", rest + "surface = \"part.nc\"\n");
+  swarf::test::write_text(
+      folder / "nurbs.toml",
+      rest +
+          "by_design = true\n[design]\nkind = \"nurbs\"\noutward = \"u_cross_v\"\ndegree = [2, 1]\ncount = "
+          "[3, 2]\n"
+          "knots_u = [0, 0, 0, 1, 1, 1]\nknots_v = [0, 0, 1, 1]\n"
+          "poles_mm = [[0, 0, 0], [0, 8, 0], [5, 0, 4], [5, 8, 4], [10, 0, 0], [10, 8, 0]]\n");
+  std::vector<double> cycles, bounds;
+  for (const char* name : {"blocks", "nurbs"}) {
+    const auto run =
+        run_swarf("run " + (folder / name).string() + ".toml --no-render -q -o " + (folder / name).string());
+    ASSERT_EQ(run.exit_code, 0) << run.output;
+    const auto metrics = nlohmann::json::parse(std::ifstream(folder / name / "metrics.json"));
+    cycles.push_back(metrics.at("driven").at("cycles").get<double>());
+    bounds.push_back(metrics.at("surface").at("gouge_bound_um").get<double>());
+  }
+  EXPECT_EQ(cycles[0], cycles[1]);
+  EXPECT_LT(bounds[0], 0.2);
+  EXPECT_LT(bounds[1], 0.2);
+  fs::remove_all(folder);
+}
 
 }  // namespace
 }  // namespace driven_input_test

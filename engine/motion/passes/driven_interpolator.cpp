@@ -40,6 +40,7 @@ void DrivenInterpolator::stand_on(size_t node) {
   at_.pose = there.pose;
   cell_ = std::min(node, ahead_.steps.size() - 1);
   state_ = {};
+  per_chord_ = per_chord_before_ = 0.0;
 }
 
 void DrivenInterpolator::require_progress() {
@@ -67,7 +68,7 @@ void DrivenInterpolator::along_step(double length) {
 /// The first place of the cell one chord away; the cell's end is farther.
 void DrivenInterpolator::along_surface(double length) {
   const Vec3 from = at_.pose.tip_W;
-  const double end = ahead_.nodes[cell_ + 1].x;
+  const double begin = x_, end = ahead_.nodes[cell_ + 1].x;
   // Chords grow along the cell: nearer than the chord at `low`, farther at `high`.
   double low = x_, low_chord = 0.0, high = end, high_chord = to_node(cell_ + 1);
   const double tolerance = std::max(kChordShare * length, kChordRounding_mm);
@@ -75,14 +76,19 @@ void DrivenInterpolator::along_surface(double length) {
     double share = (length - low_chord) / (high_chord - low_chord);
     // Chords are all but linear; a side that stays is brought nearer.
     if (i > 4 && i % 2 == 1) share = 0.5;
-    const double x = low + share * (high - low);
+    double x = low + share * (high - low);
+    // As the last two cycles went on: where the path is smooth the second position is the last.
+    const double guess = begin + length * (2.0 * per_chord_ - per_chord_before_);
+    if (i == 0 && per_chord_before_ > 0.0 && guess > low && guess < high) x = guess;
     at_ = toolpath::tip_at(pass_, x, near_);
     x_ = x;
     const double chord = (at_.pose.tip_W - from).norm();
-    if (std::abs(chord - length) <= tolerance || !(low < x && x < high)) return;
+    if (std::abs(chord - length) <= tolerance || !(low < x && x < high)) break;
     (chord < length ? low : high) = x;
     (chord < length ? low_chord : high_chord) = chord;
   }
+  per_chord_before_ = per_chord_;
+  per_chord_ = (x_ - begin) / length;
 }
 
 void DrivenInterpolator::advance(double length) {
@@ -103,13 +109,14 @@ void DrivenInterpolator::advance(double length) {
 
 DrivenOutput DrivenInterpolator::step(const DrivenInput& input) {
   const ClampPlace place{cell_, to_node(cell_ + 1)};
-  const SpeedTick tick = control_.next(state_, input.override_share * pass_.feed_mm_s, ahead_.clamps, place);
+  const double share = input.override_share * pass_.override_at(static_cast<double>(cycles_++) * period_s_);
+  const SpeedTick tick = control_.next(state_, share * pass_.feed_mm_s, ahead_.clamps, place);
   const Vec3 before = at_.pose.tip_W;
   const size_t last = ahead_.nodes.size() - 1;
   // What is left of a stop when the speed is gone: a thousandth of what the limit of jerk lets a cycle do.
   const double rest = 1e-3 * ahead_.limits.jerk * std::pow(period_s_, 3);
   const bool near = tick.after.speed == 0.0 && place.to_node_mm - tick.way_mm <= rest;
-  const bool stops = ahead_.clamps.at[cell_ + 1] == 0.0 && input.override_share > 0.0;
+  const bool stops = ahead_.clamps.at[cell_ + 1] == 0.0 && share > 0.0;
   // Two looks at one position may differ by their proof: no way along the guide would end what is left of it.
   const bool within_proof = tick.after.speed == 0.0 && place.to_node_mm <= position::kPatchProof_mm;
   const bool arrives = stops && (near || within_proof);
@@ -119,7 +126,7 @@ DrivenOutput DrivenInterpolator::step(const DrivenInput& input) {
   } else if (tick.way_mm > 0.0) {
     advance(tick.way_mm);
   }
-  if (input.override_share > 0.0) require_progress();
+  if (share > 0.0) require_progress();
   DrivenOutput out;
   out.at = at_;
   out.x = x_;

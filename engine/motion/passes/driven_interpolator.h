@@ -14,7 +14,7 @@
 namespace swarf::motion {
 
 struct DrivenInput {
-  double override_share = 1.0;  ///< of the pass' feed; 0: feed hold
+  double override_share = 1.0;  ///< of the pass' feed and of DrivenPass::overrides; 0: feed hold
 };
 
 struct DrivenOutput {
@@ -59,8 +59,11 @@ class DrivenInterpolator {
   double x_ = 0.0;
   size_t cell_ = 0;
   SpeedState state_;
+  /// Of the guide for each mm of chord in the last two cycles, from which the next is guessed; 0: not known.
+  double per_chord_ = 0.0, per_chord_before_ = 0.0;
   Vec3 anchor_ = Vec3::Zero();  ///< where the tool was when it last got on
   int waits_ = 0;               ///< cycles since then
+  int64_t cycles_ = 0;          ///< of the pass so far
 };
 
 }  // namespace swarf::motion

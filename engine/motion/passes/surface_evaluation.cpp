@@ -120,9 +120,36 @@ bool leaps(const Line& a, const Line& b) {
   return way(a, b).norm() > kFarthest_mm;
 }
 
+/// A crease takes some 60 lines; a part with more than this between two of the first lines has no direction
+/// there, as where heights are known less closely than their lines lie apart.
+constexpr int kMostBetween = 6000;
+
+void require_direction(const DrivenPass& pass, const std::vector<Line>& first,
+                       const std::vector<Line>& lines) {
+  size_t next = 1;
+  int between = 0;
+  for (const Line& line : lines) {
+    if (++between > kMostBetween) {
+      const Vec3& p = line.pose.tip_W;
+      throw InputError(
+          "part-too-rough", {},
+          fmt::format(
+              "pass {}: about ({:.4f}, {:.4f}, {:.4f}) mm the path turns by more than {:.2g} rad between "
+              "all of {} positions within {:g} mm: it has no direction there",
+              pass.pass + 1, p.x(), p.y(), p.z(), kTurn_rad, kMostBetween, kEvaluationStep_mm),
+          "smooth the part or export it again more closely; a noise of a micrometre's hundredth is enough");
+    }
+    while (next < first.size() && line.x >= first[next].x) {
+      ++next;
+      between = 0;
+    }
+  }
+}
+
 /// Divides the cells beside every turn, those with a crease of more than `least_crease`, and those that leap,
 /// until none can be divided.
-void refine(Lines& source, double least_crease, std::vector<Line>& lines) {
+void refine(const DrivenPass& pass, Lines& source, double least_crease, std::vector<Line>& lines) {
+  const std::vector<Line> first = lines;
   bool divided = true;
   while (divided) {
     divided = false;
@@ -138,6 +165,7 @@ void refine(Lines& source, double least_crease, std::vector<Line>& lines) {
       finer.push_back(lines[i + 1]);
     }
     lines = std::move(finer);
+    require_direction(pass, first, lines);
   }
 }
 
@@ -263,6 +291,48 @@ std::vector<PathNode> path_nodes(const EvaluatedPass& pass, const kinematics::In
   return nodes;
 }
 
+/// q' over each cell; q'' at each node and q''' over each cell of one axis, none across corners.
+struct AxisRates {
+  std::vector<double> first, second, third;
+};
+
+AxisRates axis_rates(const std::vector<PathNode>& nodes, Eigen::Index axis) {
+  AxisRates rates{std::vector<double>(nodes.size() - 1, 0.0), std::vector<double>(nodes.size(), 0.0),
+                  std::vector<double>(nodes.size() - 1, 0.0)};
+  const auto size = [&](size_t cell) { return nodes[cell + 1].s - nodes[cell].s; };
+  for (size_t i = 0; i + 1 < nodes.size(); ++i)
+    if (size(i) > 0.0) rates.first[i] = (nodes[i + 1].q[axis] - nodes[i].q[axis]) / size(i);
+  for (size_t i = 1; i + 1 < nodes.size(); ++i)
+    if (!nodes[i].corner && size(i - 1) + size(i) > 0.0)
+      rates.second[i] = 2.0 * (rates.first[i] - rates.first[i - 1]) / (size(i - 1) + size(i));
+  for (size_t i = 0; i + 1 < nodes.size(); ++i)
+    if (!nodes[i].corner && !nodes[i + 1].corner && size(i) > 0.0)
+      rates.third[i] = (rates.second[i + 1] - rates.second[i]) / size(i);
+  return rates;
+}
+
+/// A rotary axis q(s) takes the jerk q''' v^3 + 3 q'' v a + q' j: a third of its limit for each of them. The
+/// jerk of linear axes is that of the path.
+void clamp_by_rotary_jerk(const std::vector<PathNode>& nodes, const kinematics::MachineModel& machine,
+                          EvaluatedPass& out) {
+  constexpr double kThird = 1.0 / 3.0;
+  for (size_t n = 0; n < machine.axes.size(); ++n) {
+    if (machine.axes[n].kind != kinematics::AxisKind::kRotary) continue;
+    const double share = kThird * kPlannedJerk * machine.axes[n].jerk_max;
+    const AxisRates rates = axis_rates(nodes, static_cast<Eigen::Index>(n));
+    // Division by zero gives infinity: an axis at rest limits nothing.
+    for (const double first : rates.first)
+      out.limits.jerk = std::min(out.limits.jerk, share / std::abs(first));
+    for (size_t i = 0; i < out.clamps.speed.size(); ++i) {
+      const double second = std::max(std::abs(rates.second[i]), std::abs(rates.second[i + 1]));
+      lower(out.clamps.speed[i], out.cell_reasons[i],
+            std::min(std::cbrt(share / std::abs(rates.third[i])),
+                     share / (3.0 * second * out.limits.acceleration)),
+            ClampReason::kAxes);
+    }
+  }
+}
+
 void clamp_cells(const DrivenPass& pass, const kinematics::MachineModel& machine,
                  const kinematics::InverseKinematics& inverse, const MotionOptions& options,
                  const kinematics::AxisValues& hint, EvaluatedPass& out) {
@@ -276,6 +346,7 @@ void clamp_cells(const DrivenPass& pass, const kinematics::MachineModel& machine
   out.cell_reasons.assign(limits.speed.size(), ClampReason::kNone);
   for (size_t i = 0; i < limits.speed.size(); ++i)
     if (limits.speed[i] < pass.feed_mm_s) out.cell_reasons[i] = ClampReason::kAxes;
+  clamp_by_rotary_jerk(nodes, machine, out);
   clamp_curves(pass, options, out);
 }
 
@@ -302,7 +373,7 @@ EvaluatedPass evaluate_ahead(const DrivenPass& pass, const kinematics::MachineMo
                              const kinematics::AxisValues& hint) {
   Lines source(pass);
   std::vector<Line> lines = source.even();
-  refine(source, least_crease(pass, options), lines);
+  refine(pass, source, least_crease(pass, options), lines);
   EvaluatedPass out;
   add_nodes(apart(places_of(lines)), out);
   out.positions = source.positions;

@@ -36,7 +36,7 @@ struct DesignSettings {
   std::string mesh_file;                      ///< kMesh
   std::vector<RuledFace> faces;               ///< kRuledFaces, of mesh_file
   std::string mesh_key = "mesh";              ///< that names it: "step" for a CAD file
-  double chord_mm = 5e-4;                     ///< CAD files: facets stray no farther from the faces
+  double chord_mm = 5e-3;                     ///< CAD files: facets stray no farther from the faces
   std::vector<surface::SurfacePtr> surfaces;  ///< kAnalytic
 };
 

@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <map>
+
 #include "base/units.h"
 
 namespace swarf::sim {
@@ -60,7 +64,7 @@ void read_axis(ConfigTable& table, toolpath::DrivenPlan& plan) {
 
 void read_file(ConfigTable& table, DrivenSettings& driven) {
   const char* named = nullptr;
-  for (const char* key : {"mesh", "step", "surface"}) {
+  for (const char* key : {"mesh", "step", "surface", "by_design"}) {
     if (!table.has(key)) continue;
     if (named != nullptr)
       table.error("two-parts", named, fmt::format("the scene names a {} and a {} as its part", named, key),
@@ -71,9 +75,37 @@ void read_file(ConfigTable& table, DrivenSettings& driven) {
   const std::string key = named == nullptr ? "surface" : named;
   driven.mesh = key == "mesh";
   driven.step = key == "step";
-  driven.file = table.text(key);
+  driven.by_design = key == "by_design" && table.boolean(key, true);
+  if (key != "by_design") driven.file = table.text(key);
   if (driven.step)
     driven.chord_mm = table.number("chord_um", kAboveZero, um_from_mm(driven.chord_mm)) * kMicrometre;
+}
+
+/// What an operator does during the run: pass, seconds since it began, per cent of the feed.
+void read_override(ConfigTable& table, toolpath::DrivenPlan& plan) {
+  constexpr double kMostShare = 2.0;
+  for (const Vec3& row : table.points("override")) {
+    const toolpath::OverrideChange change{static_cast<int>(row.x()) - 1, row.y(), 0.01 * row.z()};
+    const bool sound = row.x() == std::floor(row.x()) && row.x() >= 1.0 && row.y() >= 0.0 &&
+                       change.share >= 0.0 && change.share <= kMostShare;
+    if (!sound) {
+      table.error(
+          "out-of-range", "override",
+          fmt::format("'override' has the row [{:g}, {:g}, {:g}]", row.x(), row.y(), row.z()),
+          "write pass (from 1), seconds since it began, per cent of the feed from 0 to 200: [3, 0.2, 50]");
+      return;
+    }
+    plan.overrides.push_back(change);
+  }
+  std::stable_sort(plan.overrides.begin(), plan.overrides.end(),
+                   [](const auto& a, const auto& b) { return a.at_s < b.at_s; });
+  std::map<int, double> last;
+  for (const toolpath::OverrideChange& change : plan.overrides) last[change.pass] = change.share;
+  for (const auto& [pass, share] : last) {
+    if (share > 0.0) continue;
+    table.error("feed-held", "override", fmt::format("pass {} is held and never goes on", pass + 1),
+                "write a later row of the pass with more than 0 %");
+  }
 }
 
 /// Two tolerances, as the paper's comparison has them.
@@ -113,6 +145,7 @@ DrivenSettings read_driven(ConfigTable table) {
   plan.safe_distance_mm = table.number("safe_distance_mm", kAboveZero, plan.safe_distance_mm);
   plan.rapid_clearance_mm = table.number("rapid_clearance_mm", kAboveZero, plan.rapid_clearance_mm);
   if (table.has("compare_cam_um")) read_comparison(table, driven);
+  if (table.has("override")) read_override(table, plan);
   return driven;
 }
 

@@ -16,8 +16,9 @@ struct DrivenSettings {
   std::optional<double> floor_mm;
   std::string file;  ///< of the part: surface blocks, a mesh or a CAD file
   bool mesh = false;
-  bool step = false;       ///< a CAD file: its faces drive as they are, facets of them are measured
-  double chord_mm = 1e-4;  ///< of those facets
+  bool by_design = false;  ///< no file: the surfaces of [design], as kind = "nurbs" has them
+  bool step = false;       ///< a CAD file: its faces drive as they are, and are measured
+  double chord_mm = 5e-3;  ///< of the facets that tell their edges
   SourceLocation where;
   std::vector<double> compare_mm;  ///< tolerances of CAM paths to compare with
 };

@@ -8,6 +8,7 @@
 
 #include "mesh/mesh_io.h"
 #include "mesh/mesh_ops.h"
+#include "position/concave_radius.h"
 #include "position/face_target.h"
 #include "position/mesh_target.h"
 #include "position/patch_target.h"
@@ -117,19 +118,52 @@ void fill_area(Job& job) {
                                    "the rectangle around the part", "driven.area_mm"});
 }
 
+/// A ball that is rounder than the part's narrowest hollow gouges nothing and leaves material there. Hollows
+/// that loops have cut away may be told too; other shapes bridge every hollow with their bottom.
+void check_hollows(const Job& job, const std::vector<position::Patch>& patches, Diagnostics& diagnostics) {
+  constexpr size_t kMostCells = 20'000;
+  const cutter::Cutter& tool = job.scene.tools.front();
+  if (tool.shape != cutter::Shape::kBall) return;
+  const position::ConcaveRadius hollow = position::smallest_concave_radius(patches, kMostCells);
+  const double radius = 0.5 * tool.diameter_mm;
+  const Vec3& p = hollow.place_W;
+  const position::Patch* patch = hollow.patch >= 0 ? &patches[static_cast<size_t>(hollow.patch)] : nullptr;
+  const bool cut_away = patch != nullptr && patch->domain != nullptr && !patch->domain->inside(hollow.uv);
+  if (hollow.radius >= radius || cut_away) return;
+  diagnostics.warning(
+      "cutter-too-round", job.scene.driven->where,
+      fmt::format(
+          "the part has a hollow of radius {:.4g} mm at ({:.3f}, {:.3f}, {:.3f}) mm: the ball of radius {:g} "
+          "mm rides over it and leaves material there",
+          hollow.radius, p.x(), p.y(), p.z(), radius),
+      hollow.at_least > 0.0
+          ? fmt::format("a ball D{:.3g} touches everywhere inside the faces (proven)", 2.0 * hollow.at_least)
+          : "take a smaller ball");
+}
+
 }  // namespace
 
 void load_driven(Job& job, Diagnostics& diagnostics) {
   DrivenSettings& driven = *job.scene.driven;
+  if (driven.by_design && job.design.empty()) {
+    diagnostics.error(
+        "driven-without-surface", driven.where,
+        "[driven] by_design needs surfaces in [design], and there are none",
+        "describe them ([design] kind = \"nurbs\"), or name a file: driven.surface, driven.mesh or "
+        "driven.step");
+    return;
+  }
   position::Part part;
   part.floor_mm = driven.floor_mm;
   if (driven.mesh) {
     part.targets.push_back(std::make_shared<MeshPart>(*job.design_mesh));
   } else if (driven.step) {
     part.targets.push_back(std::make_shared<FacePart>(job.driven_faces));
+    check_hollows(job, position::patches_of(job.driven_faces), diagnostics);
   } else {
     std::vector<position::Patch> patches;
     for (const surface::SurfacePtr& surface : job.design) patches.push_back({surface});
+    check_hollows(job, patches, diagnostics);
     part.targets.push_back(std::make_shared<PatchPart>(std::move(patches)));
   }
   fill_area(job);

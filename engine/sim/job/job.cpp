@@ -243,10 +243,10 @@ std::vector<surface::Face> faces_of_bodies(const brep::Model& model) {
   return faces;
 }
 
-/// The closed bodies of a CAD file; what they are and how near the facets lie is told. Its faces go to
-/// `faces` as they are, if that is not null.
-TriMesh cad_facets(const DesignSettings& design, std::vector<surface::Face>* faces,
-                   Diagnostics& diagnostics) {
+/// The closed bodies of the design's CAD file; what they are and how near the facets lie is told. The faces
+/// under the facets go to the job, and those that drive it.
+TriMesh cad_facets(Job& job, bool drives, Diagnostics& diagnostics) {
+  const DesignSettings& design = job.scene.design;
   const SourceLocation where{design.mesh_file};
   const brep::Model model = brep::read_cad(design.mesh_file);
   for (const Diagnostic& warning : model.warnings)
@@ -263,15 +263,21 @@ TriMesh cad_facets(const DesignSettings& design, std::vector<surface::Face>* fac
     diagnostics.warning("cad-open", where, text + ": they are not measured", "export the part as solids");
   }
   brep::Facets facets = brep::tessellate(model, design.chord_mm, true);
-  diagnostics.note(
-      "cad-read", where,
-      fmt::format(
-          "{} bodies, {} faces; unit {} = {:g} mm; measured on {} facets, from which no face strays by "
-          "more than {:.3g} um{}",
-          model.solids.size(), model.face_count, model.unit, model.mm_per_unit, facets.mesh.triangles.size(),
-          um_from_mm(facets.chord_mm),
-          facets.proven ? " (proven)" : " (proven but for faces with a crease inside)"));
-  if (faces != nullptr) *faces = faces_of_bodies(model);
+  diagnostics.note("cad-read", where,
+                   fmt::format("{} bodies, {} faces; unit {} = {:g} mm; measured on the faces themselves, "
+                               "their edges and what lies "
+                               "beside them on {} facets, from which no face strays by more than {:.3g} um{}",
+                               model.solids.size(), model.face_count, model.unit, model.mm_per_unit,
+                               facets.mesh.triangles.size(), um_from_mm(facets.chord_mm),
+                               facets.proven ? " (proven)" : " (proven but for faces with a crease inside)"));
+  if (facets.across_creases > 0)
+    diagnostics.warning("cad-crease", where,
+                        fmt::format("{} facets lie across a crease inside their face: there the facets are "
+                                    "measured",
+                                    facets.across_creases),
+                        "export the part with faces that end at their creases");
+  if (drives) job.driven_faces = faces_of_bodies(model);
+  job.design_under = facets.under;
   return std::move(facets.mesh);
 }
 
@@ -296,9 +302,8 @@ void load_design(Job& job, Diagnostics& diagnostics) {
   if (design.kind == DesignKind::kAnalytic) job.design = design.surfaces;
   if (design.kind == DesignKind::kRuledFaces) job.design = load_ruled_faces(design, diagnostics);
   if (design.kind == DesignKind::kMesh) {
-    auto mesh = std::make_shared<TriMesh>(
-        design.mesh_key == "step" ? cad_facets(design, own_faces ? &job.driven_faces : nullptr, diagnostics)
-                                  : mesh::load_mesh(design.mesh_file));
+    auto mesh = std::make_shared<TriMesh>(design.mesh_key == "step" ? cad_facets(job, own_faces, diagnostics)
+                                                                    : mesh::load_mesh(design.mesh_file));
     // An automatic box holds the design; of a raw stock that is itself at fault nothing is known.
     const StockSettings& stock = job.scene.stock;
     const bool open = stock.auto_box || (stock.raw.kind != RawKind::kBox && !stock.shape);
@@ -378,7 +383,8 @@ Job complete(Scene scene, Diagnostics diagnostics, std::vector<EarlierSetup> ear
       job.cl = program::load_cl(job.scene.program_file, &warnings, job.scene.cl_options);
     } else if (job.scene.kind == ProgramKind::kSurfaceBlocks || job.scene.program_key == "program") {
       job.program = program::load_program(job.scene.program_file, &warnings);
-    } else if (job.scene.driven && !job.scene.driven->mesh && !job.scene.driven->step) {
+    } else if (job.scene.driven && !job.scene.driven->mesh && !job.scene.driven->step &&
+               !job.scene.driven->by_design) {
       job.program.surfaces = program::load_surfaces(job.scene.program_file);
     }
   });

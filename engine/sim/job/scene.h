@@ -25,6 +25,7 @@
 #include "sim/job/setup_keys.h"
 #include "sim/job/stock_keys.h"
 #include "surface/face.h"
+#include "surface/under_facets.h"
 #include "toolpath/tool_path.h"
 
 namespace swarf::sim {
@@ -190,6 +191,7 @@ struct Job {
   std::vector<surface::Face>
       driven_faces;  ///< of the CAD file that drives; its design_mesh are facets of them
   std::shared_ptr<const TriMesh> design_mesh;  ///< or a closed mesh with normals; null without one
+  surface::UnderFacetsPtr design_under;        ///< of a CAD file: the faces over the facets of that mesh
 
   /// In the order in which they cut; the stock begins with what they have left of the body in Scene::stock.
   std::vector<EarlierSetup> earlier;

@@ -258,10 +258,12 @@ void read_scene_driven(ConfigTable& root, const char* first, Scene& scene) {
                "keep one of program, cl, nc and [driven]");
   scene.kind = ProgramKind::kDriven;
   scene.driven = read_driven(root.table("driven"));
-  scene.program_key = scene.driven->mesh   ? "driven.mesh"
-                      : scene.driven->step ? "driven.step"
-                                           : "driven.surface";
-  scene.program_file = scene.driven->file = beside(scene.file, scene.driven->file);
+  scene.program_key = scene.driven->mesh        ? "driven.mesh"
+                      : scene.driven->step      ? "driven.step"
+                      : scene.driven->by_design ? "driven.by_design"
+                                                : "driven.surface";
+  scene.driven->file = beside(scene.file, scene.driven->file);
+  scene.program_file = scene.driven->by_design ? scene.file : scene.driven->file;
 }
 
 /// [flank]: the design is milled along its rulings; with a `program` its G06.5 say which surfaces, and how
@@ -410,7 +412,8 @@ void read_scene(ConfigTable& root, Scene& scene, Diagnostics& diagnostics, int s
     if (std::string* const file = mesh_file_of(fixture)) *file = beside(path, *file);
   scene.stock.raw.file = beside(path, scene.stock.raw.file);
   const bool own_surfaces = scene.flank && scene.program_key == "program";
-  scene.design = read_design(root.table("design"), blocks && !own_surfaces);
+  const bool by_design = scene.driven && scene.driven->by_design;
+  scene.design = read_design(root.table("design"), (blocks && !own_surfaces) || by_design);
   scene.design.surface_file = beside(path, scene.design.surface_file);
   scene.design.mesh_file = beside(path, scene.design.mesh_file);
   if (blocks) {

@@ -9,7 +9,8 @@ std::vector<stock::RayFieldPtr> design_rays(const Job& job) {
   std::vector<stock::RayFieldPtr> fields;
   for (const surface::SurfacePtr& surface : job.design)
     fields.push_back(stock::rays_on_surface(surface, pitch));
-  if (job.design_mesh) fields.push_back(stock::rays_on_mesh(*job.design_mesh, pitch));
+  if (job.design_mesh)
+    fields.push_back(stock::rays_on_mesh(*job.design_mesh, pitch, stock::kCrease, job.design_under));
   return fields;
 }
 

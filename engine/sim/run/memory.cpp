@@ -92,7 +92,8 @@ double ray_count(const Job& job) {
   constexpr double kWall = 0.75;  // of a ray: point, normal, facet, its share of a tile
   double rays = 0.0;
   if (job.design_mesh) {
-    const stock::RayFieldPtr field = stock::rays_on_mesh(*job.design_mesh, pitch);
+    const stock::RayFieldPtr field =
+        stock::rays_on_mesh(*job.design_mesh, pitch, stock::kCrease, job.design_under);
     rays = static_cast<double>(field->size()) + kWall * static_cast<double>(field->walls->size());
   }
   for (const surface::SurfacePtr& surface : job.design) {

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 #include <tuple>
+#include <utility>
 
 #include "base/angles.h"
 #include "base/check.h"
@@ -45,30 +46,69 @@ uint32_t next_corner(uint32_t corner) {
 struct Facets {
   std::vector<Triangle> triangles;
   std::vector<Vec3> normals;
+  std::vector<std::array<Vec3, 3>> at_corners;  ///< of the surfaces under them; empty: facets alone
+  std::vector<uint32_t> sources;                ///< triangles of the mesh
+  double least_cosine = 0.0;                    ///< between smooth neighbours
+
+  const Vec3& normal_at(uint32_t corner) const {
+    return at_corners.empty() ? normals[corner / 3] : at_corners[corner / 3][corner % 3];
+  }
 };
 
-Facets facets_with_area(const std::vector<Triangle>& triangles, const std::vector<Vec3>& points) {
+Facets facets_with_area(const mesh::WeldedMesh& welded, double crease_rad) {
   Facets facets;
-  for (const Triangle& t : triangles) {
+  facets.least_cosine = std::cos(crease_rad);
+  const std::vector<Vec3>& points = welded.points;
+  for (size_t i = 0; i < welded.triangles.size(); ++i) {
+    const Triangle& t = welded.triangles[i];
     const Vec3 cross = (points[t[1]] - points[t[0]]).cross(points[t[2]] - points[t[0]]);
     const double length = cross.norm();
     if (!(length > 0.0)) continue;
     facets.triangles.push_back(t);
     facets.normals.emplace_back(cross / length);
+    facets.sources.push_back(welded.sources[i]);
   }
   return facets;
 }
 
+/// The outward normal of the surface under a corner; the facet's where there is none.
+Vec3 normal_under(const surface::UnderFacets& under, uint32_t triangle, size_t corner, const Vec3& facet) {
+  const surface::FacetOnSurface& on = under.facets[triangle];
+  if (on.surface == surface::FacetOnSurface::kNone) return facet;
+  const surface::Surface& surface = *under.surfaces[static_cast<size_t>(on.surface)];
+  // All of a plane has one normal, to the last bit.
+  const Vec2& uv = on.uv[under.is_curved(triangle) ? corner : 0];
+  const Vec3 normal = surface::outward_normal(surface, surface.derivatives(uv.x(), uv.y()), uv);
+  return normal.squaredNorm() > 0.5 ? normal : facet;
+}
+
+void take_normals_under(const surface::UnderFacets& under, Facets& facets) {
+  facets.least_cosine = std::cos(kSameTangent);
+  for (size_t f = 0; f < facets.triangles.size(); ++f) {
+    std::array<Vec3, 3> normals;
+    for (size_t k = 0; k < 3; ++k) normals[k] = normal_under(under, facets.sources[f], k, facets.normals[f]);
+    facets.at_corners.push_back(normals);
+  }
+}
+
+/// Whether two facets go on smoothly across the side that begins at these corners of theirs: what they turn
+/// by there, at both of its ends.
+bool is_smooth(const Facets& facets, uint32_t a, uint32_t b) {
+  const bool same = facets.triangles[a / 3][a % 3] == facets.triangles[b / 3][b % 3];
+  const uint32_t at_a = same ? b : next_corner(b), at_end = same ? next_corner(b) : b;
+  return facets.normal_at(a).dot(facets.normal_at(at_a)) >= facets.least_cosine &&
+         facets.normal_at(next_corner(a)).dot(facets.normal_at(at_end)) >= facets.least_cosine;
+}
+
 /// Joins the corners on both sides of every smooth edge. An edge of other than two facets is sharp.
-DisjointSets smooth_corners(const Facets& facets, double crease_rad) {
+DisjointSets smooth_corners(const Facets& facets) {
   DisjointSets sets(3 * facets.triangles.size());
   const std::vector<Side> sides = sides_of(facets.triangles);
-  const double least_cosine = std::cos(crease_rad);
   for (size_t i = 0; i < sides.size();) {
     size_t end = i + 1;
     while (end < sides.size() && sides[end].low == sides[i].low && sides[end].high == sides[i].high) ++end;
     const uint32_t a = sides[i].corner, b = sides[end - 1].corner;
-    if (end - i == 2 && facets.normals[a / 3].dot(facets.normals[b / 3]) >= least_cosine) {
+    if (end - i == 2 && is_smooth(facets, a, b)) {
       const bool same = facets.triangles[a / 3][a % 3] == facets.triangles[b / 3][b % 3];
       sets.join(a, same ? b : next_corner(b));
       sets.join(next_corner(a), same ? next_corner(b) : b);
@@ -85,9 +125,8 @@ double corner_angle(const Triangle& t, size_t place, const std::vector<Vec3>& po
 }
 
 /// One corner per set, its normal the mean of their facets weighted by the angles there.
-void place_corners(const Facets& facets, const std::vector<Vec3>& points, double crease_rad,
-                   FacetSheets& sheets) {
-  DisjointSets sets = smooth_corners(facets, crease_rad);
+void place_corners(const Facets& facets, const std::vector<Vec3>& points, FacetSheets& sheets) {
+  DisjointSets sets = smooth_corners(facets);
   std::vector<uint32_t> number(3 * facets.triangles.size());
   sheets.facets.resize(facets.triangles.size());
   for (uint32_t c = 0; c < number.size(); ++c) {
@@ -98,16 +137,15 @@ void place_corners(const Facets& facets, const std::vector<Vec3>& points, double
       sheets.normals.emplace_back(Vec3::Zero());
     }
     const uint32_t corner = number[c] = number[sets.root(c)];
-    sheets.normals[corner] += corner_angle(t, c % 3, points) * facets.normals[c / 3];
+    sheets.normals[corner] += corner_angle(t, c % 3, points) * facets.normal_at(c);
     sheets.facets[c / 3][c % 3] = corner;
   }
   for (Vec3& normal : sheets.normals) normal.normalize();
 }
 
 /// Two facets that follow each other in the list of sides: an edge that is sharp between them, or smooth.
-void join_sides(const Facets& facets, double crease_rad, FacetSheets& sheets) {
+void join_sides(const Facets& facets, FacetSheets& sheets) {
   const std::vector<Side> sides = sides_of(facets.triangles);
-  const double least_cosine = std::cos(crease_rad);
   const auto corner = [&](uint32_t c) { return sheets.facets[c / 3][c % 3]; };
   const auto same_edge = [&](size_t i, size_t j) {
     return j < sides.size() && sides[i].low == sides[j].low && sides[i].high == sides[j].high;
@@ -118,7 +156,7 @@ void join_sides(const Facets& facets, double crease_rad, FacetSheets& sheets) {
     if (!same_edge(i, i + 1)) continue;
     const uint32_t a = sides[i].corner, b = sides[i + 1].corner;
     const bool two = !same_edge(i, i + 2) && (i == 0 || !same_edge(i, i - 1));
-    if (facets.normals[a / 3].dot(facets.normals[b / 3]) >= least_cosine) {
+    if (is_smooth(facets, a, b)) {
       if (!two) continue;
       sheets.neighbours[a / 3][a % 3] = b / 3;
       sheets.neighbours[b / 3][b % 3] = a / 3;
@@ -156,8 +194,16 @@ Vec3 barycentric_of(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) 
 }  // namespace
 
 FacetPlace FacetSheets::place(uint32_t facet, const Vec3& l) const {
+  if (is_curved(facet)) {
+    const std::array<Vec2, 3>& uv = on_surface(facet).uv;
+    const Vec2 at =
+        (l.x() * uv[0] + l.y() * uv[1] + l.z() * uv[2]).cwiseMax(Vec2::Zero()).cwiseMin(Vec2::Ones());
+    const surface::Surface& surface = *surface_of(facet);
+    const surface::Derivatives d = surface.derivatives(at.x(), at.y());
+    return {d.S, surface::outward_normal(surface, d, at), facet};
+  }
   const auto& t = facets[facet];
-  const Vec3 normal = l.x() * normals[t[0]] + l.y() * normals[t[1]] + l.z() * normals[t[2]];
+  const Vec3 normal = l.x() * normal_at(facet, 0) + l.y() * normal_at(facet, 1) + l.z() * normal_at(facet, 2);
   // In differences: where the facet lies in a plane z = c, so does the place, to the last digit.
   const Vec3 &a = points[t[0]], &b = points[t[1]], &c = points[t[2]];
   const Vec3 low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
@@ -204,13 +250,20 @@ FacetPlace FacetSheets::nearest(uint32_t facet, const Vec3& centre, double radiu
   return place(on, barycentric_of(best, corner(on, 0), corner(on, 1), corner(on, 2)));
 }
 
-FacetSheets facet_sheets(const TriMesh& mesh, double crease_rad) {
+FacetSheets facet_sheets(const TriMesh& mesh, double crease_rad, surface::UnderFacetsPtr under) {
   const mesh::WeldedMesh welded = mesh::weld(mesh);
-  const Facets facets = facets_with_area(welded.triangles, welded.points);
+  Facets facets = facets_with_area(welded, crease_rad);
   SWARF_CHECK(!facets.triangles.empty(), "a design mesh needs facets with area");
   FacetSheets sheets;
-  place_corners(facets, welded.points, crease_rad, sheets);
-  join_sides(facets, crease_rad, sheets);
+  if (under != nullptr) {
+    SWARF_CHECK(under->facets.size() == mesh.triangles.size(), "a place on a surface for every facet");
+    take_normals_under(*under, facets);
+    sheets.under = std::move(under);
+    sheets.sources = facets.sources;
+    sheets.normals_under = facets.at_corners;
+  }
+  place_corners(facets, welded.points, sheets);
+  join_sides(facets, sheets);
   number_sheets(sheets);
   return sheets;
 }

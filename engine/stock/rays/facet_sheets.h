@@ -9,6 +9,7 @@
 
 #include "base/frames.h"
 #include "mesh/tri_mesh.h"
+#include "surface/under_facets.h"
 
 namespace swarf::stock {
 
@@ -18,9 +19,9 @@ struct SharpEdge {
   std::array<uint32_t, 2> left, right;
 };
 
-/// A place on a facet.
+/// A place on a facet, or on the surface under it.
 struct FacetPlace {
-  Vec3 point, normal;  ///< mm; unit, interpolated between the facet's corners
+  Vec3 point, normal;  ///< mm; unit, interpolated between the facet's corners or that of the surface
   uint32_t facet;
 };
 
@@ -34,7 +35,21 @@ struct FacetSheets {
   std::vector<std::array<uint32_t, 3>> neighbours;  ///< across side k, from corner k to k + 1; kNone: sharp
   std::vector<uint32_t> sheet;                      ///< of each facet: the least facet of its sheet
   std::vector<SharpEdge> sharp_edges;
+  /// The exact surfaces, and the triangle of the mesh that each facet is; null: the facets are the design.
+  surface::UnderFacetsPtr under;
+  std::vector<uint32_t> sources;
+  std::vector<std::array<Vec3, 3>> normals_under;  ///< of the surfaces, at the corners of each facet
 
+  /// At corner k of a facet: of the surface under it, or the mean over the sheet.
+  const Vec3& normal_at(uint32_t facet, size_t k) const {
+    return under != nullptr ? normals_under[facet][k] : normals[facets[facet][k]];
+  }
+  /// Whether the design over a facet is a curved surface.
+  bool is_curved(uint32_t facet) const { return under != nullptr && under->is_curved(sources[facet]); }
+  const surface::FacetOnSurface& on_surface(uint32_t facet) const { return under->facets[sources[facet]]; }
+  const surface::SurfacePtr& surface_of(uint32_t facet) const {
+    return under->surfaces[static_cast<size_t>(on_surface(facet).surface)];
+  }
   const Vec3& corner(uint32_t facet, size_t k) const { return points[facets[facet][k]]; }
   FacetPlace place(uint32_t facet, const Vec3& barycentric) const;
 
@@ -56,8 +71,12 @@ struct FacetSheets {
 };
 
 /// Vertices with equal positions count as one, facets without area are left out; an edge of other than two
-/// facets, or one where they turn by more than the crease angle, is sharp.
-FacetSheets facet_sheets(const TriMesh& mesh, double crease_rad);
+/// facets, or one where they turn by more than the crease angle, is sharp. Where the surfaces under the
+/// facets are known, their normals decide: an edge where they turn by more than kSameTangent is sharp.
+FacetSheets facet_sheets(const TriMesh& mesh, double crease_rad, surface::UnderFacetsPtr under = nullptr);
+
+/// Faces that meet in one tangent plane do so within this, rad: what CAD systems call smooth.
+inline constexpr double kSameTangent = 1e-3;
 
 template <typename Visit>
 void FacetSheets::each_near(uint32_t facet, const Vec3& centre, double radius_mm, const Visit& visit) const {

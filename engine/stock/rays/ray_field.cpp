@@ -20,6 +20,19 @@ Vec2 parameters_along(const surface::Derivatives& d, const Vec3& tangent) {
   return {(G * a - F * b) / det, (E * b - F * a) / det};
 }
 
+/// (b, c) for which b B + c C comes nearest to x; none where B and C do not span a plane.
+Vec2 nearest_shares(const Vec3& B, const Vec3& C, const Vec3& x) {
+  const double E = B.squaredNorm(), F = B.dot(C), G = C.squaredNorm(), det = E * G - F * F;
+  if (!(det > 1e-14 * E * G)) return Vec2::Zero();
+  return {(G * B.dot(x) - F * C.dot(x)) / det, (E * C.dot(x) - F * B.dot(x)) / det};
+}
+
+/// Shares of two sides of a triangle, brought into it.
+Vec2 within_triangle(const Vec2& l) {
+  const Vec2 positive = l.cwiseMax(0.0);
+  return positive / std::max(1.0, positive.sum());
+}
+
 }  // namespace
 
 Foot RayField::between(uint32_t a, uint32_t b, double t) const {
@@ -54,6 +67,33 @@ std::optional<Foot> RayField::displaced(uint32_t ray, const Vec3& tangent_mm) co
   return Foot{met->point, met->normal};
 }
 
+double DesignMesh::distance_to(const Vec3& point) const {
+  const mesh::NearestPoint near = distance.nearest(point);
+  if (under == nullptr || !under->is_curved(near.triangle)) return near.distance_mm;
+  const surface::FacetOnSurface& on = under->facets[near.triangle];
+  const surface::Surface& surface = *under->surfaces[static_cast<size_t>(on.surface)];
+  const Vec2 along_b = on.uv[1] - on.uv[0], along_c = on.uv[2] - on.uv[0];
+  const auto& t = mesh.triangles[near.triangle];
+  const auto corner = [&](size_t k) {
+    const auto& p = mesh.positions[t[k]];
+    return Vec3(p[0], p[1], p[2]);
+  };
+  // Within the facet's part of the surface: from the place over the facet's own, Gauss and Newton's steps.
+  constexpr int kSteps = 3;
+  const Vec3 ab = corner(1) - corner(0), ac = corner(2) - corner(0);
+  Vec2 l = nearest_shares(ab, ac, near.point - corner(0));
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < kSteps; ++i) {
+    const Vec2 uv = on.uv[0] + l.x() * along_b + l.y() * along_c;
+    const surface::Derivatives d = surface.derivatives(uv.x(), uv.y());
+    const Vec3 off = point - d.S;
+    least = std::min(least, off.norm());
+    l = within_triangle(l + nearest_shares(d.Su * along_b.x() + d.Sv * along_b.y(),
+                                           d.Su * along_c.x() + d.Sv * along_c.y(), off));
+  }
+  return least;
+}
+
 double RayField::own_depth(const Vec3& point, const Vec3& normal, double depth_mm, double share) const {
   if (design == nullptr || depth_mm <= 0.0) return depth_mm;
   // Interpolated normals lean up to the crease's angle from the facets: the distance then is that much
@@ -70,9 +110,10 @@ double RayField::own_depth(const Vec3& point, const Vec3& normal, double depth_m
   };
   const Vec3 across = (vertex(1) - vertex(0)).cross(vertex(2) - vertex(0));
   const bool flat = std::abs(across.dot(normal)) >= (1.0 - 1e-9) * across.norm();
-  const double least = flat ? kFlat : kLean;
+  // Surfaces have their own normals everywhere.
+  const double least = flat || design->under != nullptr ? kFlat : kLean;
   const auto is_own = [&](double s) {
-    return design->distance.nearest(point - s * normal).distance_mm >= least * s - kFloatMesh;
+    return design->distance_to(point - s * normal) >= least * s - kFloatMesh;
   };
   // Far beyond the part the distance is nearly the depth again: what is not own on the way ends it.
   constexpr double kThinnest = 0.1;  // mm

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "base/frames.h"
@@ -35,12 +36,18 @@ struct Foot {
 
 /// The mesh that rays stand on, with its own distances.
 struct DesignMesh {
-  explicit DesignMesh(const TriMesh& design) : mesh(design), distance(mesh) {}
+  explicit DesignMesh(const TriMesh& design, surface::UnderFacetsPtr faces = nullptr)
+      : mesh(design), distance(mesh), under(std::move(faces)) {}
   DesignMesh(const DesignMesh&) = delete;
   DesignMesh& operator=(const DesignMesh&) = delete;
 
   const TriMesh mesh;
   const mesh::MeshDistance distance;
+  const surface::UnderFacetsPtr under;  ///< null: the facets are the design
+
+  /// From a point to the design near the facet that is nearest to it; mm. Never less than to the whole
+  /// design.
+  double distance_to(const Vec3& point) const;
 };
 
 struct RayField {
@@ -111,7 +118,11 @@ inline constexpr double kFarthestRay = 1.2;
 /// together by smooth edges, interpolated in between. Facets without area carry no rays. Neighbours are the
 /// rays of a sheet with no third one in the ball on their connection (Gabriel graph: it is connected where
 /// the sheet is). The mesh must have facets with area.
-RayFieldPtr rays_on_mesh(const TriMesh& mesh, double pitch_mm, double crease_rad = kCrease);
+/// With the surfaces under the facets, feet and normals are those of the surfaces, and so is all that is
+/// between the rays; the facets tell their borders, what lies beside what, and which face is nearest, within
+/// UnderFacets::chord_mm.
+RayFieldPtr rays_on_mesh(const TriMesh& mesh, double pitch_mm, double crease_rad = kCrease,
+                         const surface::UnderFacetsPtr& under = nullptr);
 
 /// Appends a tile of the rays order[begin ..] to the field; for the two makers.
 void add_tile(RayField& field, uint32_t begin);

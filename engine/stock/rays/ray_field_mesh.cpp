@@ -58,9 +58,16 @@ class RaysByPlace {
 
 /// A place t of the way along a side: in the plane z = c where the side is, to the last digit.
 FacetPlace place_on_side(const FacetSheets& sheets, uint32_t facet, size_t side, double t) {
+  if (sheets.is_curved(facet)) {
+    Vec3 l = Vec3::Zero();
+    l[static_cast<Eigen::Index>(side)] = 1.0 - t;
+    l[static_cast<Eigen::Index>((side + 1) % 3)] = t;
+    return sheets.place(facet, l);
+  }
   const uint32_t from = sheets.facets[facet][side], to = sheets.facets[facet][(side + 1) % 3];
-  if (t == 1.0) return {sheets.points[to], sheets.normals[to], facet};
-  const Vec3 normal = sheets.normals[from] + t * (sheets.normals[to] - sheets.normals[from]);
+  const Vec3 &at_from = sheets.normal_at(facet, side), &at_to = sheets.normal_at(facet, (side + 1) % 3);
+  if (t == 1.0) return {sheets.points[to], at_to, facet};
+  const Vec3 normal = at_from + t * (at_to - at_from);
   return {sheets.points[from] + t * (sheets.points[to] - sheets.points[from]), normal.normalized(), facet};
 }
 
@@ -335,12 +342,13 @@ RayFieldPtr walls_on(const std::shared_ptr<const FacetSheets>& sheets, double pi
 
 }  // namespace
 
-RayFieldPtr rays_on_mesh(const TriMesh& mesh, double pitch_mm, double crease_rad) {
+RayFieldPtr rays_on_mesh(const TriMesh& mesh, double pitch_mm, double crease_rad,
+                         const surface::UnderFacetsPtr& under) {
   SWARF_CHECK(pitch_mm > 0.0, "rays need a pitch");
   auto field = std::make_shared<RayField>();
   field->pitch_mm = pitch_mm;
-  field->design = std::make_shared<DesignMesh>(mesh);
-  field->sheets = std::make_shared<FacetSheets>(facet_sheets(mesh, crease_rad));
+  field->design = std::make_shared<DesignMesh>(mesh, under);
+  field->sheets = std::make_shared<FacetSheets>(facet_sheets(mesh, crease_rad, under));
   Placement placement(*field, crease_rad);
   placement.fill();
   const RaysOfFacets lists = rays_of_facets(*field);

@@ -42,12 +42,28 @@ struct DrivenPart {
   position::ToolProfile profile;
 };
 
+/// What the operator turns the override to.
+struct OverrideChange {
+  int pass = 0;        ///< 0-based count of passes
+  double at_s = 0.0;   ///< since the pass began
+  double share = 1.0;  ///< of the feed from then on; 0: feed hold
+};
+
 struct DrivenPass {
   std::shared_ptr<const DrivenPart> on;
   std::shared_ptr<const Guide> guide;
   double feed_mm_s = 0.0;
   double chord_tolerance_mm = 1e-4;  ///< of the chords between two cycles: limits the speed in curves
   int pass = 0;                      ///< 0-based count of passes
+  std::vector<OverrideChange> overrides = {};  ///< of this pass, in the order of time
+
+  /// The share of the feed at a time since the pass began.
+  double override_at(double time_s) const {
+    double share = 1.0;
+    for (const OverrideChange& change : overrides)
+      if (change.at_s <= time_s) share = change.share;
+    return share;
+  }
 };
 
 /// The tool at rest on one line of a pass.

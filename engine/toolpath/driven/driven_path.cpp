@@ -160,6 +160,8 @@ ToolPath driven_path(const DrivenPlan& plan, const std::shared_ptr<const DrivenP
     pass.feed_mm_s = plan.feed_mm_s;
     pass.chord_tolerance_mm = plan.chord_tolerance_mm;
     pass.pass = guided.pass;
+    for (const OverrideChange& change : plan.overrides)
+      if (change.pass == guided.pass) pass.overrides.push_back(change);
     position::Near near;
     const TipPoint first = tip_at(pass, 0.0, near);
     if (!std::isfinite(first.rest.height)) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/diagnostics.h"
+#include "toolpath/driven/driven_pass.h"
 #include "toolpath/tool_path.h"
 
 namespace swarf::toolpath {
@@ -36,6 +37,7 @@ struct DrivenPlan {
   std::vector<Vec2> guide;                          ///< kGuide, at least two points
   double feed_mm_s = 0.0;
   double chord_tolerance_mm = 1e-4;
+  std::vector<OverrideChange> overrides;  ///< of the passes, in the order of time
   double spindle_rpm = 0.0;
   /// Above 0: not driven by the surface, but by the straight blocks that stay this close to it.
   double cam_tolerance_mm = 0.0;

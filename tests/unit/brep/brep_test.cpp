@@ -298,6 +298,52 @@ TEST_F(Cad, FacetsAreWatertightAndTheirChordIsProven) {
   }
 }
 
+// Facets are the parameters of the faces: at their corners, and at places in between, the faces are where the
+// closed form has them, and their normals point out of the body; however coarse the facets are.
+TEST_F(Cad, FacetsLieOnTheirFaces) {
+  const Model ball = read_step(step(BRepPrimAPI_MakeSphere(20).Shape()));
+  const Model bored = read_step(step(holed()));
+  for (const bool in_hole : {false, true}) {
+    const Facets facets = tessellate(in_hole ? bored : ball, 0.5, true);
+    ASSERT_NE(facets.under, nullptr);
+    ASSERT_EQ(facets.under->facets.size(), facets.mesh.triangles.size());
+    EXPECT_EQ(facets.across_creases, 0U);
+    size_t curved = 0;
+    for (uint32_t f = 0; f < facets.mesh.triangles.size(); ++f) {
+      if (!facets.under->is_curved(f)) continue;
+      ++curved;
+      const surface::FacetOnSurface& on = facets.under->facets[f];
+      const surface::Surface& face = *facets.under->surfaces[static_cast<size_t>(on.surface)];
+      for (size_t k = 0; k < 3; ++k) {
+        const auto& p = facets.mesh.positions[facets.mesh.triangles[f][k]];
+        EXPECT_LT((face.point(on.uv[k].x(), on.uv[k].y()) - Vec3(p[0], p[1], p[2])).norm(), 1e-4);
+      }
+      const Vec2 uv = 0.5 * on.uv[0] + 0.3 * on.uv[1] + 0.2 * on.uv[2];
+      const surface::Derivatives d = face.derivatives(uv.x(), uv.y());
+      const Vec3 from = in_hole ? Vec3(d.S.x() - 60, d.S.y() - 50, 0) : d.S;
+      EXPECT_NEAR(from.norm(), in_hole ? 12.0 : 20.0, 1e-9);
+      EXPECT_NEAR(surface::outward_normal(face, d, uv).dot(from.normalized()), in_hole ? -1.0 : 1.0, 1e-9);
+    }
+    EXPECT_GT(curved, 10U);
+  }
+}
+
+// Edges say where faces end: they stay within two micrometres of the circle, however coarse the facets are.
+TEST_F(Cad, EdgesAreFinerThanFacets) {
+  const Facets facets = tessellate(read_step(step(holed())), 0.5, true);
+  for (const auto& t : facets.mesh.triangles) {
+    for (size_t k = 0; k < 3; ++k) {
+      const auto &a = facets.mesh.positions[t[k]], &b = facets.mesh.positions[t[(k + 1) % 3]];
+      const auto radius = [](double x, double y) { return std::hypot(x - 60, y - 50); };
+      const bool on_edge = a[2] == b[2] && std::abs(radius(a[0], a[1]) - 12) < 1e-3 &&
+                           std::abs(radius(b[0], b[1]) - 12) < 1e-3;
+      if (on_edge) {
+        EXPECT_GT(radius(0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])), 12 - 2.5e-3);
+      }
+    }
+  }
+}
+
 TEST_F(Cad, WhatIsNoPartIsRefusedWithItsFix) {
   const std::string good = step(block());
   const std::string text = text_of(good);

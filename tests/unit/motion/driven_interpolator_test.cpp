@@ -176,6 +176,19 @@ TEST(DrivenInterpolator, FeedHoldStandsAndGoesOn) {
   EXPECT_EQ(out.tips.back(), Vec3(15.0, 3.0, height(15.0, 3.0)));
 }
 
+// The same as rows of a scene have it: held at .2 s, half the feed from .5 s on.
+TEST(DrivenInterpolator, OverridesOfThePassCountFromItsBeginning) {
+  const auto height = [](double x, double y) { return std::sqrt(625.0 - x * x - y * y) - 5.0; };
+  DrivenPass pass = pass_over(height, {toolpath::guide_line({-15.0, 3.0}, {15.0, 3.0})});
+  pass.overrides = {{0, 0.2, 0.0}, {0, 0.5, 0.5}};
+  const Driven out = run(pass);
+  expect_driven_kept(out);
+  EXPECT_NEAR(out.cycles[199].feed_mm_s, 50.0, 1e-9);
+  EXPECT_EQ(out.cycles[480].feed_mm_s, 0.0);
+  EXPECT_NEAR(out.cycles[700].feed_mm_s, 25.0, 1e-9);
+  EXPECT_EQ(out.tips.back(), Vec3(15.0, 3.0, height(15.0, 3.0)));
+}
+
 TEST(DrivenInterpolator, CornersOfTheGuideAreStops) {
   const Driven out =
       run(pass_over([](double, double) { return 1.0; },
@@ -198,6 +211,43 @@ TEST(DrivenInterpolator, SeesAStepInItsOwnDirectionAtTheEnd) {
   const Driven out = run(pass_over(height, {toolpath::guide_line({-5.0, 0.0}, {8.0, 0.0})}));
   expect_driven_kept(out);
   EXPECT_EQ(std::count(out.ahead.steps.begin(), out.ahead.steps.end(), true), 1);
+}
+
+/// The expected code, thrown by a run over these heights.
+void expect_refused(const DrivenPass& pass, const std::string& code) {
+  try {
+    run(pass);
+    ADD_FAILURE() << code << " is not thrown";
+  } catch (const InputError& error) {
+    ASSERT_TRUE(error.diagnostics.has_errors());
+    EXPECT_EQ(error.diagnostics.list().front().code, code) << error.what();
+  }
+}
+
+/// Any number in [-1, 1], the same for the same x.
+double noise_at(double x) {
+  const auto bits = static_cast<uint64_t>(static_cast<int64_t>(std::llround(x * 1e12)));
+  uint64_t z = bits * 0x9e3779b97f4a7c15ULL;
+  z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9ULL;
+  z = (z ^ (z >> 27U)) * 0x94d049bb133111ebULL;
+  return static_cast<double>((z ^ (z >> 31U)) >> 11U) * 0x1.0p-52 - 1.0;
+}
+
+// Heights that are random within any share of a micrometre turn the path at every scale below it: each cell
+// would be divided down to a tenth of a nanometre, a million lines for each 0.1 mm.
+TEST(DrivenInterpolator, RandomHeightsAreRefusedBeforeTheyTakeTheMemory) {
+  for (const double amplitude : {1e-2, 1e-3, 5e-4}) {
+    const auto height = [&](double x, double) { return amplitude * noise_at(x); };
+    expect_refused(pass_over(height, {toolpath::guide_line({-5.0, 0.0}, {5.0, 0.0})}), "part-too-rough");
+  }
+}
+
+// Thousands of cycles that move the tool by less than what a position is known to: the pass would never end.
+TEST(DrivenInterpolator, APassThatGetsNoFartherIsRefusedWithItsPlace) {
+  DrivenPass pass =
+      pass_over([](double, double) { return 1.0; }, {toolpath::guide_line({-5.0, 0.0}, {5.0, 0.0})});
+  pass.overrides = {{0, 0.1, 1e-7}};
+  expect_refused(pass, "pass-stands");
 }
 
 TEST(DrivenInterpolator, RestingOnNothingIsRefused) {

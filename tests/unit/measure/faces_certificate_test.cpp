@@ -1,0 +1,138 @@
+// A design of exact surfaces under coarse facets is measured and proven as the surfaces are, not as the
+// facets.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/units.h"
+#include "cutter/cutter.h"
+#include "measure/certificate.h"
+#include "stock/rays/free_ranges.h"
+#include "stock/rays/surface_dexels.h"
+#include "surface/analytic.h"
+#include "surface/under_facets.h"
+
+namespace swarf::measure {
+namespace {
+
+constexpr double kShaftRadius = 20.0;
+
+/// The top of a shaft along x, highest at z = 0, its flanks and its lower side: half a cylinder as a closed
+/// body.
+struct HalfShaft {
+  TriMesh mesh;
+  surface::UnderFacetsPtr under;
+};
+
+HalfShaft half_shaft(int sides) {
+  surface::Turn turn;
+  turn.base_W = {-5, 0, -kShaftRadius};
+  turn.axis_W = Vec3::UnitX();
+  turn.from_rad = 0.0;
+  turn.to_rad = kPi;
+  auto under = std::make_shared<surface::UnderFacets>();
+  under->surfaces.push_back(
+      surface::cylinder_surface(turn, kShaftRadius, 10.0, surface::MaterialSide::kConvex));
+  under->is_plane.push_back(0);
+  const surface::Surface& shaft = *under->surfaces.front();
+  HalfShaft part;
+  const auto add = [&](const Vec3& p) {
+    part.mesh.positions.push_back(
+        {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())});
+    return static_cast<uint32_t>(part.mesh.positions.size() - 1);
+  };
+  const auto facet = [&](std::array<uint32_t, 3> corners, const surface::FacetOnSurface& on) {
+    part.mesh.triangles.push_back(corners);
+    under->facets.push_back(on);
+  };
+  std::vector<uint32_t> low, high;
+  for (int i = 0; i <= sides; ++i) {
+    const double u = static_cast<double>(i) / sides;
+    low.push_back(add(shaft.point(u, 0.0)));
+    high.push_back(add(shaft.point(u, 1.0)));
+  }
+  const bool turned = surface::outward_normal(shaft, shaft.derivatives(0.5, 0.5)).z() < 0.0;
+  EXPECT_FALSE(turned);
+  // Counter-clockwise from outside, whichever way u turns about the axis.
+  const Vec3 across = (shaft.point(0.6, 0.5) - shaft.point(0.5, 0.5)).cross(Vec3::UnitX());
+  const bool flip = across.z() < 0.0;
+  const auto both = [&](std::array<uint32_t, 3> c, surface::FacetOnSurface on) {
+    if (flip) {
+      std::swap(c[1], c[2]);
+      std::swap(on.uv[1], on.uv[2]);
+    }
+    facet(c, on);
+  };
+  const uint32_t left = add({-5, 0, -kShaftRadius}), right = add({5, 0, -kShaftRadius});
+  for (int i = 0; i < sides; ++i) {
+    const double u0 = static_cast<double>(i) / sides, u1 = static_cast<double>(i + 1) / sides;
+    const auto k = static_cast<size_t>(i);
+    both({low[k], low[k + 1], high[k + 1]}, {0, {Vec2(u0, 0), Vec2(u1, 0), Vec2(u1, 1)}});
+    both({low[k], high[k + 1], high[k]}, {0, {Vec2(u0, 0), Vec2(u1, 1), Vec2(u0, 1)}});
+    both({left, low[k + 1], low[k]}, {});
+    both({right, high[k], high[k + 1]}, {});
+  }
+  const auto last = static_cast<size_t>(sides);
+  both({low[0], high[0], right}, {});
+  both({low[0], right, left}, {});
+  both({low[last], right, high[last]}, {});
+  both({low[last], left, right}, {});
+  part.under = under;
+  return part;
+}
+
+Certificate prove_faces(const stock::RayFieldPtr& field, double depth_mm) {
+  const Box box{{-6, -21, -21}, {6, 21, 1}};
+  const stock::CutterSolid cutter(3.0, 30.0);
+  // A flat end across the top of the shaft, `depth` below it, and one beside it that touches nothing.
+  const std::vector<stock::Sweep> sweeps{
+      {{{-6, 0, -depth_mm}, Vec3::UnitZ()}, {{6, 0, -depth_mm}, Vec3::UnitZ()}, 0}};
+  stock::Stock stock(box, 0.5);
+  stock.cut(sweeps, cutter);
+  const stock::FreeRange ranges({&field, 1});
+  const SweepCutters cutters(cutter);
+  Progress progress;
+  return certify(
+      {*field, ranges, sweeps, cutters, 0.0, stock, 0.0, 2e-4, 1.0, false, false, 1.0, 0.0, 0.0, progress});
+}
+
+TEST(FacesCertificate, RaysStandOnTheSurfaceAndNotOnItsFacets) {
+  const HalfShaft part = half_shaft(24);  // facets stray by 43 um
+  const stock::RayFieldPtr field = stock::rays_on_mesh(part.mesh, 0.4, stock::kCrease, part.under);
+  size_t curved = 0;
+  for (size_t i = 0; i < field->size(); ++i) {
+    const Vec3 out(0, field->points[i].y(), field->points[i].z() + kShaftRadius);
+    const Vec3& n = field->normals[i];
+    if (std::abs(n.x()) > 0.5 || n.z() < -0.5) continue;
+    ++curved;
+    ASSERT_NEAR(out.norm(), kShaftRadius, 1e-9);
+    ASSERT_NEAR(n.dot(out.normalized()), 1.0, 1e-9);
+  }
+  EXPECT_GT(curved, 1000U);
+  const auto foot = field->between(field->edges[5][0], field->edges[5][1], 0.37);
+  EXPECT_GT(field->size(), 0U);
+  EXPECT_TRUE(foot.point.allFinite());
+}
+
+TEST(FacesCertificate, AGougeIsAsDeepAsUnderTheSurfaceHoweverCoarseTheFacets) {
+  for (const int sides : {24, 90}) {
+    const HalfShaft part = half_shaft(sides);
+    for (const double depth_um : {0.0, 0.5, 5.0, 60.0}) {
+      SCOPED_TRACE(testing::Message() << sides << " sides, " << depth_um << " um");
+      const Certificate proof = prove_faces(stock::rays_on_mesh(part.mesh, 0.4, stock::kCrease, part.under),
+                                            depth_um * kMicrometre);
+      EXPECT_NEAR(proof.gouge_found_um, depth_um, 0.025 + 1e-3 * depth_um);
+      EXPECT_GE(proof.gouge.um, depth_um - 1e-6);
+    }
+  }
+}
+
+// The same cuts measured on the facets: what the surfaces spare.
+TEST(FacesCertificate, FacetsAloneWouldErrByTheirChord) {
+  const HalfShaft part = half_shaft(25);  // an odd number: the middle of a facet lies at the top
+  const Certificate proof = prove_faces(stock::rays_on_mesh(part.mesh, 0.4), 60.0 * kMicrometre);
+  EXPECT_LT(proof.gouge_found_um, 60.0 - 35.0);
+}
+
+}  // namespace
+}  // namespace swarf::measure
