@@ -6,6 +6,7 @@
 #include "cli/commands.h"
 #include "cli/terminal.h"
 #include "cli/window_options.h"
+#include "reports/contact_pictures.h"
 #include "reports/part_view.h"
 #include "reports/pending_folder.h"
 #include "reports/pictures.h"
@@ -19,7 +20,8 @@ struct RenderOptions {
   std::string folder, movie, still, kind = "part", camera;
   std::vector<int> size;
   double seconds = -1.0;
-  int samples = 0, threads = 0;
+  int samples = 0, threads = 0, finding = 0;
+  bool transparent = false;
   sim::WindowPlaces window;
 };
 
@@ -32,12 +34,25 @@ void check_window(const RenderOptions& options, reports::StillKind kind) {
                    "add --movie, or --kind machine");
 }
 
+/// The shots keep their shares.
+void set_seconds(sim::MovieSettings& movie, double seconds) {
+  double all = 0.0;
+  for (const sim::MovieShot& shot : movie.shots) all += shot.seconds;
+  for (sim::MovieShot& shot : movie.shots)
+    shot.seconds =
+        all > 0.0 ? shot.seconds * seconds / all : seconds / static_cast<double>(movie.shots.size());
+  movie.seconds = seconds;
+}
+
 int render(const RenderOptions& options) {
   set_thread_count(options.threads);
   if (options.movie.empty() && options.still.empty()) {
     throw InputError("nothing-to-do", {"swarf render"}, "neither --movie nor --still was given",
                      "write for example: swarf render DIR --still part.png");
   }
+  if (options.finding > 0 && options.still.empty())
+    throw InputError("nothing-to-do", {"--finding"}, "--finding is for a still, and none was asked for",
+                     "write for example: swarf render DIR --finding 1 --still finding.png");
   const reports::StillKind kind = reports::still_kind(options.kind);
   check_window(options, kind);
   if (!options.camera.empty()) reports::camera_direction(options.camera);
@@ -49,18 +64,24 @@ int render(const RenderOptions& options) {
     stored.job.scene.movie.size = stored.job.scene.stills.size;
   }
   if (options.samples > 0) stored.job.scene.stills.samples = options.samples;
-  if (options.seconds > 0.0) stored.job.scene.movie.seconds = options.seconds;
-  const bool moves = !options.movie.empty() || sim::normals_need_cycles(stored.job) ||
+  if (options.seconds > 0.0) set_seconds(stored.job.scene.movie, options.seconds);
+  const bool moves = !options.movie.empty() || options.finding > 0 || sim::normals_need_cycles(stored.job) ||
                      kind == reports::StillKind::kMachine || kind == reports::StillKind::kFan;
   const sim::MeasuredPath path = options.window.any()
                                      ? reports::window_motion(stored.job, options.folder, progress)
                                      : reports::motion_of(stored, options.folder, moves, progress);
   reports::FinishedRun run{stored.job, *path.cycles, stored.stock, stored.dexels, *path.carried};
+  const std::vector<sim::Finding> findings = reports::read_findings(options.folder);
+  run.findings = &findings;
   if (options.window.any()) run.window = sim::window_of(options.window, *path.cycles);
-  if (!options.still.empty()) {
+  if (options.finding > 0) {
+    reports::make_finding_picture(run, options.finding, options.still);
+    fmt::print("{}\n", options.still);
+  } else if (!options.still.empty()) {
     const std::string otherwise = kind == reports::StillKind::kMachine ? "machine" : "iso";
     reports::make_still(run, reports::shown_part(run, stored.stock.mesh()), kind,
-                        options.camera.empty() ? otherwise : options.camera, options.still);
+                        options.camera.empty() ? otherwise : options.camera, options.still,
+                        options.transparent);
     fmt::print("{}\n", options.still);
   }
   if (!options.movie.empty()) {
@@ -79,7 +100,7 @@ void add_render(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("render", "Make pictures from a finished run, without simulating again");
   command->add_option("folder", options->folder, "folder of a finished run")->required();
-  command->add_option("--movie", options->movie, "H.264 movie to write (.mp4)");
+  command->add_option("--movie", options->movie, "movie to write: .mp4 (H.264), .webm (VP9) or .apng");
   command->add_option("--still", options->still, "picture to write (.png)");
   command->add_option("--kind", options->kind, "what the still shows: machine, part, deviation, fan")
       ->capture_default_str();
@@ -90,12 +111,18 @@ void add_render(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(64, 7680));
   command->add_option("--seconds", options->seconds, "length of the movie, s")->check(CLI::PositiveNumber);
   add_window_options(*command, options->window, "movie, machine and fan");
-  command->add_option("--samples", options->samples, "rays per pixel of the still")
+  command->add_option("--samples", options->samples, "rays per pixel of the still, at most")
       ->check(CLI::Range(1, 4096));
+  command
+      ->add_option("--finding", options->finding,
+                   "the still shows the machine at this finding, counted from 1 as in findings.json")
+      ->check(CLI::PositiveNumber);
+  command->add_flag("--transparent", options->transparent, "no backdrop and no floor behind the still");
   command->add_option("--threads", options->threads, "threads to use (default: all cores)")
       ->check(CLI::Range(1, 4096));
   command->footer(R"(Examples:
   swarf render out/dome --still part.png --kind part --camera left
+  swarf render out/dome --still at.png --finding 1
   swarf render out/dome --movie cut.mp4 --seconds 20 --from-line 40 --to-line 80)");
   command->callback([options, &exit_code] { exit_code = render(*options); });
 }

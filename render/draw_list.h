@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,10 @@ struct DrawItem {
   Material material;
   bool dynamic =
       false;  ///< true: the mesh changes between frames; false: renderers may keep it by its address
+  /// Not 0: no two meshes that are ever drawn have the same, so that renderers need not look for changes.
+  uint64_t revision = 0;
+  bool sectioned = false;     ///< cut open by DrawList::section; a closed body
+  bool outside_only = false;  ///< part of a closed surface: the backs of its triangles are never seen
 };
 
 struct DrawLine {
@@ -42,8 +47,14 @@ struct Camera {
   double vertical_fov_rad = 0.6;
 };
 
+/// What lies on the side that the normal points to is taken away.
+struct SectionPlane {
+  Vec3 point = Vec3::Zero(), normal = Vec3::UnitZ();  ///< drawing's frame; unit
+};
+
 struct DrawList {
   Camera camera;
+  std::optional<SectionPlane> section;  ///< of the rasteriser's sectioned items
   std::vector<DrawItem> items;
   std::vector<DrawLine> lines;
 };

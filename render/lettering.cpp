@@ -3,6 +3,7 @@
 #include <cairo/cairo.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 
@@ -13,7 +14,10 @@ namespace {
 
 constexpr double kTextShare = 0.024;  // text height as a share of the picture's height
 constexpr double kMinTextPx = 11.0;   // below this DejaVu is hard to read
-constexpr double kPlate[4] = {0.08, 0.10, 0.12, 0.72};
+using Paint = std::array<double, 4>;  // sRGB and opacity
+constexpr Paint kPlate{0.08, 0.10, 0.12, 0.72};
+constexpr Paint kNotice{0.78, 0.08, 0.06, 0.92}, kDimNotice{0.45, 0.06, 0.05, 0.75};
+constexpr double kProgressShare = 0.008;  // height of the bar as a share of the picture's
 
 /// A Cairo drawing over the pixels of an image; they are written back by finish().
 class Canvas {
@@ -45,7 +49,7 @@ class Canvas {
     cairo_move_to(cr(), x, baseline);
     cairo_show_text(cr(), words.c_str());
   }
-  void plate(double x, double y, double width, double height) const {
+  void plate(double x, double y, double width, double height, const Paint& paint = kPlate) const {
     const double r = 0.4 * text_px();
     cairo_new_sub_path(cr());
     cairo_arc(cr(), x + width - r, y + r, r, -M_PI / 2, 0);
@@ -53,7 +57,7 @@ class Canvas {
     cairo_arc(cr(), x + r, y + height - r, r, M_PI / 2, M_PI);
     cairo_arc(cr(), x + r, y + r, r, M_PI, 1.5 * M_PI);
     cairo_close_path(cr());
-    cairo_set_source_rgba(cr(), kPlate[0], kPlate[1], kPlate[2], kPlate[3]);
+    cairo_set_source_rgba(cr(), paint[0], paint[1], paint[2], paint[3]);
     cairo_fill(cr());
   }
   /// Lays the drawing over the picture.
@@ -130,7 +134,9 @@ void draw_apart(const Canvas& canvas, const ColourBar& bar, const BarLayout& at)
 
 }  // namespace
 
-void draw_caption(Image& image, const std::vector<std::string>& lines, Corner corner) {
+namespace {
+
+void draw_lines(Image& image, const std::vector<std::string>& lines, Corner corner, const Paint& paint) {
   if (lines.empty()) return;
   Canvas canvas(image);
   const double text_px = canvas.text_px(), pad = 0.8 * text_px, step = 1.35 * text_px;
@@ -144,11 +150,34 @@ void draw_caption(Image& image, const std::vector<std::string>& lines, Corner co
   const bool bottom = corner == Corner::kBottomLeft || corner == Corner::kBottomRight;
   const double x = right ? image.width - pad - width : pad;
   const double y = bottom ? image.height - pad - height : pad;
-  canvas.plate(x, y, width, height);
+  canvas.plate(x, y, width, height, paint);
   for (size_t i = 0; i < lines.size(); ++i) {
     canvas.bold(i == 0);
     canvas.text(x + pad, y + 0.6 * pad + step * (static_cast<double>(i) + 0.77), lines[i]);
   }
+  canvas.finish();
+}
+
+}  // namespace
+
+void draw_caption(Image& image, const std::vector<std::string>& lines, Corner corner) {
+  draw_lines(image, lines, corner, kPlate);
+}
+
+void draw_notice(Image& image, const std::vector<std::string>& lines, bool bright) {
+  draw_lines(image, lines, Corner::kTopLeft, bright ? kNotice : kDimNotice);
+}
+
+void draw_progress(Image& image, double share) {
+  Canvas canvas(image);
+  const double height = std::max(2.0, std::round(kProgressShare * image.height));
+  const auto bar = [&](double width, double r, double g, double b, double opacity) {
+    cairo_set_source_rgba(canvas.cr(), r, g, b, opacity);
+    cairo_rectangle(canvas.cr(), 0.0, image.height - height, width, height);
+    cairo_fill(canvas.cr());
+  };
+  bar(image.width, 0.08, 0.10, 0.12, 0.45);
+  bar(std::clamp(share, 0.0, 1.0) * image.width, 0.95, 0.55, 0.10, 1.0);
   canvas.finish();
 }
 

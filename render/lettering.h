@@ -15,6 +15,12 @@ enum class Corner { kTopLeft, kTopRight, kBottomLeft, kBottomRight };
 /// picture's height. An empty list draws nothing.
 void draw_caption(Image& image, const std::vector<std::string>& lines, Corner corner = Corner::kBottomLeft);
 
+/// The same at the top left on a red plate, bright or dimmed: what the viewer must not miss.
+void draw_notice(Image& image, const std::vector<std::string>& lines, bool bright);
+
+/// A thin bar along the lower edge, filled from the left by this share.
+void draw_progress(Image& image, double share);
+
 struct ColourTick {
   double value = 0.0;
   std::string label;

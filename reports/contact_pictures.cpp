@@ -9,6 +9,7 @@
 #include "base/units.h"
 #include "render/camera.h"
 #include "render/image_io.h"
+#include "render/lettering.h"
 #include "render/ray/ray_scene.h"
 #include "render/ray/still.h"
 #include "reports/part_view.h"
@@ -156,7 +157,9 @@ std::vector<ContactPicture> contact_pictures(const sim::Job& job, const sim::Res
   return pictures;
 }
 
-void make_contact_picture(const FinishedRun& run, const ContactPicture& picture, const std::string& path) {
+namespace {
+
+render::Image contact_image(const FinishedRun& run, const ContactPicture& picture) {
   motion::CycleReader reader(run.cycles);
   const motion::Cycle cycle = reader.at(std::min(picture.cycle, run.cycles.size() - 1));
   const auto tool = static_cast<size_t>(std::max<int>(0, cycle.sample.tool));
@@ -177,7 +180,34 @@ void make_contact_picture(const FinishedRun& run, const ContactPicture& picture,
   options.samples_per_pixel = std::min(kContactSamples, run.job.scene.stills.samples);
   options.strip_strength = 0.0;
   options.floor = false;
-  render::save_png(render::render_still(list, options), path);
+  return render::render_still(list, options);
+}
+
+}  // namespace
+
+void make_contact_picture(const FinishedRun& run, const ContactPicture& picture, const std::string& path) {
+  render::save_png(contact_image(run, picture), path);
+}
+
+void make_finding_picture(const FinishedRun& run, int number, const std::string& path) {
+  const size_t many = run.findings == nullptr ? 0 : run.findings->size();
+  if (number < 1 || static_cast<size_t>(number) > many) {
+    throw InputError("unknown-finding", {fmt::format("--finding {}", number)},
+                     many == 0 ? "this run has no finding" : fmt::format("this run has {} findings", many),
+                     many == 0 ? "leave out --finding" : fmt::format("write a number from 1 to {}", many));
+  }
+  const sim::Finding& finding = (*run.findings)[static_cast<size_t>(number) - 1];
+  motion::CycleReader reader(run.cycles);
+  const auto k = static_cast<size_t>(std::max(0L, std::lround(finding.t_s / run.cycles.period_s())));
+  const size_t cycle = std::min(k, run.cycles.size() - 1);
+  const motion::Cycle& at = reader.at(cycle);
+  const Vec3 place = MachineView(run.job).work_pose(at.q) * at.sample.pose.tip_W;
+  render::Image image = contact_image(run, {finding.text, cycle, place});
+  std::vector<std::string> lines{fmt::format("finding {}: {}", number, finding.text)};
+  if (finding.where.line > 0)
+    lines.push_back(fmt::format("line {}   {:.3f} s   {}", finding.where.line, finding.t_s, finding.block));
+  render::draw_caption(image, lines);
+  render::save_png(image, path);
 }
 
 }  // namespace swarf::reports

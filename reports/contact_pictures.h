@@ -26,4 +26,8 @@ inline constexpr size_t kContactPicturesMost = 6;
 /// which most of what lies about the place is seen.
 void make_contact_picture(const FinishedRun& run, const ContactPicture& picture, const std::string& path);
 
+/// The machine at a finding's moment about the tool's tip, from the side that hides least of it, with its
+/// text. `number`: its place in findings.json, from 1. Throws InputError "unknown-finding".
+void make_finding_picture(const FinishedRun& run, int number, const std::string& path);
+
 }  // namespace swarf::reports

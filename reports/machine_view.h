@@ -8,6 +8,7 @@
 #include "motion/cycles/axis_keys.h"
 #include "motion/cycles/cycles.h"
 #include "render/draw_list.h"
+#include "sim/check.h"
 #include "sim/job/scene.h"
 #include "sim/run/carried_cuts.h"
 #include "sim/run/cycle_window.h"
@@ -27,6 +28,8 @@ struct FinishedRun {
   std::optional<sim::CycleWindow> window{};
   /// Of all cycles, finished; null: they are gathered where they are needed.
   const motion::AxisKeys* keys = nullptr;
+  /// Null: none are known, and the movie shows none.
+  const std::vector<sim::Finding>* findings = nullptr;
 
   /// Numbers of the first and the last cycle that are shown; there must be one.
   size_t first_shown() const { return window ? window->first : 0; }

@@ -1,78 +1,26 @@
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <chrono>
+#include <deque>
 #include <future>
+#include <map>
+#include <optional>
 
-#include "base/units.h"
-#include "mesh/mesh_ops.h"
-#include "render/lettering.h"
+#include "base/parallel.h"
 #include "render/movie/movie_writer.h"
 #include "render/raster/raster_renderer.h"
-#include "reports/part_view.h"
+#include "reports/movie_camera.h"
+#include "reports/movie_overlay.h"
+#include "reports/movie_stock.h"
 #include "reports/pictures.h"
-#include "stock/mesher/stock_mesher.h"
+#include "reports/storyboard.h"
 
 namespace swarf::reports {
 namespace {
 
-/// The stock as the program cuts it, at the movie's own voxel size.
-class MovieStock {
- public:
-  explicit MovieStock(const FinishedRun& run)
-      : stock_(sim::starting_stock(run.job, run.carried, run.job.scene.movie.voxel_mm)),
-        all_(sim::stock_sweeps(run.job, run.cycles)),
-        solids_(sim::tool_solids(run.job.scene)) {}
-
-  /// Cuts everything up to and including this cycle and meshes what is left. Runs beside the drawing of the
-  /// frame before: the software renderer's vertex work leaves the second processor idle.
-  TriMesh at_cycle(const motion::Cycle& cycle) {
-    size_t end = done_;
-    while (end < all_.sweeps.size() && sim::is_done(all_.sources[all_.sweeps[end].block], cycle)) ++end;
-    sim::for_each_tool(
-        std::span(all_.sweeps).subspan(done_, end - done_),
-        [&](uint32_t block) { return all_.sources[block].tool; },
-        [&](size_t tool, std::span<const stock::Sweep> part) { stock_.cut(part, solids_[tool]); });
-    done_ = end;
-    TriMesh mesh = mesher_.mesh();
-    mesh::split_creases(mesh, kCreaseRad);
-    return mesh;
-  }
-
- private:
-  stock::Stock stock_;
-  stock::StockMesher mesher_{stock_};
-  sim::JobSweeps all_;
-  std::vector<stock::CutterSolid> solids_;  ///< by tool
-  size_t done_ = 0;
-};
-
-std::vector<std::string> caption(const FinishedRun& run, const motion::Cycle& cycle) {
-  const motion::ToolSample& sample = cycle.sample;
-  std::string axes;
-  for (size_t a = 0; a < run.job.machine.model.axes.size(); ++a) {
-    const kinematics::Axis& axis = run.job.machine.model.axes[a];
-    const double q = cycle.q[static_cast<Eigen::Index>(a)];
-    const bool rotary = axis.kind == kinematics::AxisKind::kRotary;
-    axes += fmt::format("{}{} {:8.2f}{}", axes.empty() ? "" : "   ", axis.name, rotary ? deg_from_rad(q) : q,
-                        rotary ? "°" : "");
-  }
-  const std::vector<cutter::Cutter>& tools = run.job.scene.tools;
-  const std::string tool =
-      tools.size() > 1 ? fmt::format("   {}", cutter::call_name(tools[static_cast<size_t>(sample.tool)]))
-                       : "";
-  return {
-      fmt::format("t {:6.2f} s   F {:5.0f} mm/min{}", sample.t_s, mm_min_from_mm_s(sample.feed_mm_s), tool),
-      axes};
-}
-
-/// One cycle for each frame; the last frame alone shows the end.
-std::vector<motion::Cycle> shown_cycles(const FinishedRun& run, int frames) {
-  if (frames == 1) return {motion::CycleReader(run.cycles).at(run.last_shown())};
-  std::vector<motion::Cycle> cycles = run.shown_cycles(static_cast<size_t>(frames));
-  cycles.resize(static_cast<size_t>(frames), cycles.back());
-  return cycles;
-}
+/// Drawn at once, each by a renderer of its own: the software renderer's vertex work keeps one processor.
+constexpr int kLanesMost = 2;
+/// Points of the trail between two frames.
+constexpr size_t kTrailSteps = 16;
 
 double median(std::vector<double> values) {
   if (values.empty()) return 0.0;
@@ -81,38 +29,145 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
+/// Where the tip has been in the last seconds of the program, work frame.
+class Trail {
+ public:
+  explicit Trail(const FinishedRun& run) : reader_(run.cycles) {}
+
+  std::vector<Vec3> up_to(const PlannedFrame& frame, double seconds) {
+    if (seconds <= 0.0) return {};
+    const size_t now = frame.cycle.number;
+    if (frame.shot != shot_ || (last_ && now < *last_)) tips_.clear();
+    const size_t from = tips_.empty() || !last_ ? now : *last_ + 1;
+    const size_t step = std::max<size_t>(1, (now + 1 - std::min(from, now)) / kTrailSteps);
+    for (size_t k = from; k < now; k += step) add(reader_.at(k).sample);
+    add(frame.cycle.sample);
+    while (tips_.front().first < frame.cycle.sample.t_s - seconds) tips_.pop_front();
+    shot_ = frame.shot;
+    last_ = now;
+    std::vector<Vec3> points;
+    for (const auto& [t, tip] : tips_) points.push_back(tip);
+    return points;
+  }
+
+ private:
+  void add(const motion::ToolSample& sample) { tips_.emplace_back(sample.t_s, sample.pose.tip_W); }
+
+  motion::CycleReader reader_;
+  std::deque<std::pair<double, Vec3>> tips_;  ///< time and place
+  size_t shot_ = 0;
+  std::optional<size_t> last_;
+};
+
+/// The stock at each frame; a shot that goes back in time begins with a new one.
+class StockAlong {
+ public:
+  explicit StockAlong(const FinishedRun& run) : run_(run) {}
+  const MovieStock& at(const motion::Cycle& cycle) {
+    if (!stock_ || cycle.number < last_)
+      stock_ = std::make_unique<MovieStock>(run_, run_.job.scene.movie.colours);
+    stock_->advance(cycle);
+    last_ = cycle.number;
+    return *stock_;
+  }
+
+ private:
+  const FinishedRun& run_;
+  std::unique_ptr<MovieStock> stock_;
+  uint64_t last_ = 0;
+};
+
+/// Everything that a frame is drawn from, so that others can be prepared meanwhile.
+struct FrameTask {
+  size_t number = 0;
+  StockState stock;
+  std::vector<uint64_t> revisions;
+  std::vector<Vec3> trail;
+};
+
+/// Draws frames one after the other.
+class Lane {
+ public:
+  Lane(const FinishedRun& run, const ShotView& view, const std::vector<PlannedFrame>& frames,
+       const MovieOverlay& overlay)
+      : run_(run), view_(view), frames_(frames), overlay_(overlay) {}
+
+  render::Image draw(const FrameTask& task) {
+    const sim::MovieSettings& movie = run_.job.scene.movie;
+    const sim::MovieView kind = movie.shots[frames_[task.number].shot].view;
+    render::Image image = kind == sim::MovieView::kSplit ? split(task) : picture(task, kind, movie.size);
+    if (movie.overlay) overlay_.draw(task.number, image);
+    return image;
+  }
+
+ private:
+  render::Image picture(const FrameTask& task, sim::MovieView kind, const std::array<int, 2>& size) {
+    const auto [renderer, made] = renderers_.try_emplace(size);
+    if (made)
+      renderer->second =
+          std::make_unique<render::RasterRenderer>(size[0], size[1], run_.job.scene.movie.samples);
+    return renderer->second->draw(
+        view_.list(frames_[task.number], kind, size, task.stock, task.revisions, task.trail));
+  }
+
+  /// Machine on the left, part on the right.
+  render::Image split(const FrameTask& task) {
+    const std::array<int, 2> size = run_.job.scene.movie.size, half{size[0] / 2, size[1]};
+    const render::Image left = picture(task, sim::MovieView::kMachine, half),
+                        right = picture(task, sim::MovieView::kPart, {size[0] - half[0], size[1]});
+    render::Image both{size[0], size[1], {}};
+    both.rgba.reserve(size_t{4} * size[0] * size[1]);
+    for (int y = 0; y < size[1]; ++y) {
+      for (const render::Image* side : {&left, &right}) {
+        const auto row = side->rgba.begin() + static_cast<std::ptrdiff_t>(4) * side->width * y;
+        both.rgba.insert(both.rgba.end(), row, row + static_cast<std::ptrdiff_t>(4) * side->width);
+      }
+    }
+    return both;
+  }
+
+  const FinishedRun& run_;
+  const ShotView& view_;
+  const std::vector<PlannedFrame>& frames_;
+  const MovieOverlay& overlay_;
+  std::map<std::array<int, 2>, std::unique_ptr<render::RasterRenderer>> renderers_;
+};
+
 }  // namespace
 
 RenderStatistics make_movie(const FinishedRun& run, const std::string& path, const std::string& camera_name,
                             Progress& progress) {
   const sim::MovieSettings& settings = run.job.scene.movie;
-  const MachineView view(run.job);
-  MovieStock stock(run);
-  render::RasterRenderer renderer(settings.size[0], settings.size[1], settings.samples);
-  render::MovieWriter movie(path, settings.size[0], settings.size[1], settings.fps);
-  const int frames = std::max(1, static_cast<int>(settings.seconds * settings.fps));
-  const std::vector<motion::Cycle> shown = shown_cycles(run, frames);
-  render::DrawList list;
-  list.camera = machine_camera(run, camera_name, settings.size);
+  const std::vector<PlannedFrame> frames = plan_frames(run, progress);
+  const MovieOverlay overlay(run, frames);
+  const ShotView view(run, camera_name);
+  render::MovieWriter movie(path, settings.size[0], settings.size[1], settings.fps, overlay.tools());
+  std::vector<std::unique_ptr<Lane>> lanes;
+  for (int i = 0; i < std::clamp(thread_count(), 1, kLanesMost); ++i)
+    lanes.push_back(std::make_unique<Lane>(run, view, frames, overlay));
+  StockAlong stock(run);
+  Trail trail(run);
+  std::deque<std::future<render::Image>> drawing;
   std::vector<double> times;
-  const auto mesh_for = [&](int frame) {
-    return std::async(std::launch::async,
-                      [&stock, &cycle = shown[static_cast<size_t>(frame)]] { return stock.at_cycle(cycle); });
+  auto start = std::chrono::steady_clock::now();
+  const auto take = [&] {
+    movie.add(drawing.front().get());
+    drawing.pop_front();
+    const auto now = std::chrono::steady_clock::now();
+    times.push_back(1e3 * std::chrono::duration<double>(now - start).count());
+    start = now;
+    progress.advance(static_cast<double>(times.size()));
   };
-  progress.begin("movie", frames, "frames");
-  std::future<TriMesh> next = mesh_for(0);
-  for (int frame = 0; frame < frames && !progress.stop_requested(); ++frame) {
-    const auto start = std::chrono::steady_clock::now();
-    const motion::Cycle& cycle = shown[static_cast<size_t>(frame)];
-    const TriMesh mesh = next.get();
-    if (frame + 1 < frames) next = mesh_for(frame + 1);
-    list.items = view.items(cycle.q, static_cast<size_t>(cycle.sample.tool), &mesh);
-    render::Image image = renderer.draw(list);
-    render::draw_caption(image, caption(run, cycle));
-    movie.add(image);
-    times.push_back(1e3 * std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-    progress.advance(frame + 1);
+  progress.begin("movie", static_cast<double>(frames.size()), "frames");
+  for (size_t f = 0; f < frames.size() && !progress.stop_requested(); ++f) {
+    const MovieStock& now = stock.at(frames[f].cycle);
+    FrameTask task{f, now.state(), now.revisions(),
+                   trail.up_to(frames[f], settings.shots[frames[f].shot].trail_s)};
+    if (drawing.size() == lanes.size()) take();
+    drawing.push_back(std::async(std::launch::async, [lane = lanes[f % lanes.size()].get(),
+                                                      task = std::move(task)] { return lane->draw(task); }));
   }
+  while (!drawing.empty()) take();
   progress.end();
   if (times.empty()) return {};
   movie.finish();

@@ -23,8 +23,9 @@ Vec3 camera_direction(const std::string& name);
 render::Camera machine_camera(const FinishedRun& run, const std::string& name,
                               const std::array<int, 2>& size);
 
-/// The machine at work as H.264, replaced whole. Time runs evenly over the program. When the user stops it,
-/// the frames that are done stay a playable movie.
+/// The machine at work, by the storyboard of the scene, replaced whole; `path` ends as MovieWriter says. When
+/// the user stops it, the frames that are done stay a playable movie. `camera`: of shots that name none.
+/// Frames are drawn by two renderers at once; the bytes do not depend on it.
 RenderStatistics make_movie(const FinishedRun& run, const std::string& path, const std::string& camera,
                             Progress& progress);
 
@@ -36,7 +37,7 @@ enum class StillKind { kMachine, kPart, kDeviation, kFan };
 const std::string& still_name(StillKind kind);
 StillKind still_kind(const std::string& name);  ///< "machine", "part", "deviation", "fan"; throws InputError
 void make_still(const FinishedRun& run, const TriMesh& part, StillKind kind, const std::string& camera,
-                const std::string& path);
+                const std::string& path, bool transparent = false);
 
 /// The colour bar of the 3D view; its ends are those of the scale.
 ColourBar deviation_colour_bar(const render::DeviationScale& scale);

@@ -195,6 +195,7 @@ std::vector<Diagnostic> write_run(PendingFolder& folder, const sim::Job& job, si
   const sim::Job shown = sim::with_worn(job, sim::worn_fixtures(job, result));
   FinishedRun run{shown, *result.main.cycles, *result.stock, result.main.dexels, *result.main.carried};
   if (result.main.keys) run.keys = &*result.main.keys;
+  run.findings = &result.findings;
   RunFiles files;
   RenderStatistics statistics;
   const TriMesh closed = options.report || options.render ? run.stock.mesh() : TriMesh{};
@@ -240,6 +241,28 @@ StoredRun read_run(const std::string& folder) {
     run.dexels.push_back(stock::SurfaceDexels::load(rays.string(), fields[i]));
   }
   return run;
+}
+
+std::vector<sim::Finding> read_findings(const std::string& folder) {
+  std::ifstream file(fs::path(folder) / "findings.json");
+  const nlohmann::json list = nlohmann::json::parse(file, nullptr, false);
+  std::vector<sim::Finding> findings;
+  if (!list.is_array()) return findings;
+  for (const nlohmann::json& one : list) {
+    sim::Finding finding;
+    finding.code = one.value("code", "");
+    const std::string severity = one.value("severity", "error");
+    finding.severity = severity == "note"      ? Severity::kNote
+                       : severity == "warning" ? Severity::kWarning
+                                               : Severity::kError;
+    finding.text = one.value("text", "");
+    finding.fix = one.value("fix", "");
+    finding.where = {one.value("file", ""), one.value("line", 0)};
+    finding.t_s = one.value("t_s", 0.0);
+    finding.block = one.value("block", "");
+    findings.push_back(finding);
+  }
+  return findings;
 }
 
 sim::MeasuredPath motion_of(const StoredRun& run, const std::string& folder, bool needed,

@@ -20,19 +20,12 @@ namespace {
 
 constexpr double kFieldOfView = 0.45;  // rad, vertical: a long lens, little distortion
 constexpr int kColourStops = 33;
+constexpr double kStillNoise = 3.0;  // of 255: standard error of a pixel that is done before its last sample
 
 // Bare cut metal: the strip lights break at each ridge, which is what makes cusps of a few micrometres
 // visible.
 constexpr render::Material kPolished{{0.56F, 0.57F, 0.59F}, 1.0F, 0.16F};
 constexpr render::Material kMatt{{0.75F, 0.76F, 0.78F}, 0.0F, 0.6F};  // behind lines: no reflections
-
-const std::vector<std::pair<std::string, Vec3>>& directions() {
-  static const std::vector<std::pair<std::string, Vec3>> table{
-      {"iso", {0.55, -0.87, 0.64}}, {"low", {0.3, -0.95, 0.3}},      {"front", {0.0, -1.0, 0.25}},
-      {"back", {0.0, 1.0, 0.3}},    {"left", {-1.0, -0.1, 0.3}},     {"right", {1.0, -0.1, 0.3}},
-      {"top", {0.0, -0.02, 1.0}},   {"machine", {-0.75, -1.0, 0.55}}};
-  return table;
-}
 
 double aspect(const std::array<int, 2>& size) {
   return static_cast<double>(size[0]) / size[1];
@@ -43,6 +36,7 @@ render::StillOptions still_options(const sim::Job& job) {
   options.width = job.scene.stills.size[0];
   options.height = job.scene.stills.size[1];
   options.samples_per_pixel = job.scene.stills.samples;
+  options.noise = kStillNoise;
   return options;
 }
 
@@ -79,19 +73,10 @@ motion::Cycle middle_cycle(const FinishedRun& run) {
 }  // namespace
 
 Vec3 camera_direction(const std::string& name) {
-  std::vector<std::string> names;
-  for (const auto& [known, direction] : directions()) {
-    if (known == name) return direction;
-    names.push_back(known);
-  }
-  Vec3 direction;
-  if (std::sscanf(name.c_str(), "%lf,%lf,%lf", &direction.x(), &direction.y(), &direction.z()) == 3 &&
-      direction.allFinite() && direction.norm() > 0.0) {
-    return direction;
-  }
+  if (const auto direction = sim::camera_named(name)) return *direction;
   throw InputError(
       "unknown-camera", {"--camera"}, fmt::format("there is no camera '{}'", name),
-      fmt::format("one of {}, or a direction x,y,z from the subject to the eye", fmt::join(names, ", ")));
+      fmt::format("one of {}, or a direction x,y,z from the subject to the eye", sim::camera_names()));
 }
 
 render::Camera machine_camera(const FinishedRun& run, const std::string& name,
@@ -166,8 +151,9 @@ render::Image deviation_picture(const TriMesh& coloured, const render::Deviation
 }
 
 void make_still(const FinishedRun& run, const TriMesh& part, StillKind kind, const std::string& camera,
-                const std::string& path) {
+                const std::string& path, bool transparent) {
   render::StillOptions options = still_options(run.job);
+  options.transparent = transparent;
   if (kind == StillKind::kDeviation) {
     TriMesh coloured = part;
     const render::DeviationScale scale = deviation_scale(run.job);

@@ -22,6 +22,12 @@ void compute_vertex_normals(TriMesh& mesh, double crease_rad);
 /// indices: for display only. Parallel, same result for any number of threads.
 void split_creases(TriMesh& mesh, double crease_rad);
 
+/// Fewer triangles for the eye, fast: meshoptimizer's edge collapse, borders kept, where the mesh joins
+/// others, and seams between normals too. `max_error_mm` bounds the collapse's own estimate (a mean over
+/// planes), not a measured distance: nothing is to be measured on the result. Vertices that no triangle uses
+/// any more are left out.
+void thin_for_display(TriMesh& mesh, double max_error_mm);
+
 /// A coarser mesh whose distance from every vertex of `mesh` is at most `max_error_mm` (> 0).
 ///
 /// meshoptimizer's quadric edge collapse does the bulk; when what is left is small, OpenMesh's decimater

@@ -1,6 +1,7 @@
 #include "render/movie/movie_writer.h"
 
 #include <array>
+#include <cstdint>
 
 #include "base/check.h"
 #include "base/diagnostics.h"
@@ -16,9 +17,44 @@ extern "C" {
 namespace swarf::render {
 namespace {
 
-constexpr const char* kPreset = "veryfast";
-constexpr const char* kQuality = "20";  // constant rate factor: no loss that shows at 1:1
-constexpr int kKeyFrameSeconds = 2;     // how far a player has to decode to jump
+struct Setting {
+  const char *name, *value;
+};
+
+/// A kind of file by its ending.
+struct MovieKind {
+  const char *ending, *container, *encoder;
+  AVPixelFormat pixels;
+  std::vector<Setting> codec, file;
+};
+
+const std::vector<MovieKind>& kinds() {
+  // Constant rate factors: no loss that shows at 1:1.
+  static const std::vector<MovieKind> list{
+      {".mp4",
+       "mp4",
+       "libx264",
+       AV_PIX_FMT_YUV420P,
+       {{"preset", "veryfast"}, {"crf", "20"}},
+       {{"movflags", "+faststart"}}},
+      {".webm",
+       "webm",
+       "libvpx-vp9",
+       AV_PIX_FMT_YUV420P,
+       {{"crf", "30"}, {"deadline", "realtime"}, {"cpu-used", "6"}},
+       {}},
+      {".apng", "apng", "apng", AV_PIX_FMT_RGB24, {{"pred", "mixed"}}, {{"plays", "0"}}}};
+  return list;
+}
+
+const MovieKind& kind_of(const std::string& path) {
+  for (const MovieKind& kind : kinds()) {
+    if (path.ends_with(kind.ending)) return kind;
+  }
+  throw InputError("movie-ending", {path}, "this is no kind of movie",
+                   "end the name in .mp4, .webm or .apng");
+}
+constexpr int kKeyFrameSeconds = 2;  // how far a player has to decode to jump
 
 std::string reason_of(int error) {
   std::array<char, AV_ERROR_MAX_STRING_SIZE> text{};
@@ -47,6 +83,7 @@ struct FreeFormat {
 
 struct MovieWriter::Impl {
   std::string path;
+  const MovieKind& kind;
   NewFile file;
   std::unique_ptr<AVFormatContext, libav::FreeFormat> format;
   std::unique_ptr<AVCodecContext, libav::FreeByAddress<avcodec_free_context>> codec;
@@ -57,7 +94,8 @@ struct MovieWriter::Impl {
   int64_t frames = 0;
   bool finished = false;
 
-  Impl(std::string movie, int width, int height, int fps);
+  Impl(std::string movie, int width, int height, int fps, const MovieChapters& chapters);
+  void add_chapters(const MovieChapters& chapters);
   void open_codec(int width, int height, int fps);
   void open_file();
   void prepare_frame(int width, int height);
@@ -70,45 +108,69 @@ void MovieWriter::Impl::require(int result, const char* what) const {
   if (result < 0) file.refuse(std::string(what) + ": " + reason_of(result));
 }
 
-MovieWriter::Impl::Impl(std::string movie, int width, int height, int fps)
+MovieWriter::Impl::Impl(std::string movie, int width, int height, int fps, const MovieChapters& chapters)
     : path(std::move(movie)),
+      kind(kind_of(path)),
       file(path, {"movie-write", "the movie cannot be written"}),
       packet(av_packet_alloc()) {
   av_log_set_level(AV_LOG_QUIET);  // libav talks on stderr; what goes wrong comes back as codes
   SWARF_CHECK(width > 0 && height > 0 && width % 2 == 0 && height % 2 == 0, "4:2:0 needs even sizes");
   SWARF_CHECK(fps > 0, "a movie needs frames per second");
   AVFormatContext* made = nullptr;
-  require(avformat_alloc_output_context2(&made, nullptr, "mp4", file.temporary().c_str()),
-          "no mp4 container");
+  require(avformat_alloc_output_context2(&made, nullptr, kind.container, file.temporary().c_str()),
+          "no such container");
   format.reset(made);
   open_codec(width, height, fps);
   prepare_frame(width, height);
+  add_chapters(chapters);
   open_file();
 }
 
+/// A container that knows none leaves them out. Each ends where the next begins, the last with the movie.
+void MovieWriter::Impl::add_chapters(const MovieChapters& chapters) {
+  constexpr int64_t kToTheEnd = INT32_MAX;
+  for (size_t i = 0; i < chapters.size(); ++i) {
+    auto** grown = static_cast<AVChapter**>(av_realloc_array(format->chapters, i + 1, sizeof(AVChapter*)));
+    SWARF_CHECK(grown != nullptr, "no memory for a chapter");
+    format->chapters = grown;
+    auto* chapter = static_cast<AVChapter*>(av_mallocz(sizeof(AVChapter)));
+    SWARF_CHECK(chapter != nullptr, "no memory for a chapter");
+    chapter->id = static_cast<int64_t>(i) + 1;
+    chapter->time_base = codec->time_base;
+    chapter->start = static_cast<int64_t>(chapters[i].first);
+    chapter->end = i + 1 < chapters.size() ? static_cast<int64_t>(chapters[i + 1].first) : kToTheEnd;
+    av_dict_set(&chapter->metadata, "title", chapters[i].second.c_str(), 0);
+    format->chapters[i] = chapter;
+    format->nb_chapters = static_cast<unsigned>(i) + 1;
+  }
+}
+
 void MovieWriter::Impl::open_codec(int width, int height, int fps) {
-  const AVCodec* encoder = avcodec_find_encoder_by_name("libx264");
+  const AVCodec* encoder = avcodec_find_encoder_by_name(kind.encoder);
   if (encoder == nullptr) {
     throw InputError(
-        "movie-write", {path}, "libav has no H.264 encoder (libx264)",
-        "install libavcodec with libx264 (Debian: apt-get install libavcodec59), or leave out [movie]");
+        "movie-write", {path}, std::string("libav has no encoder ") + kind.encoder,
+        "install libavcodec with it (Debian: apt-get install libavcodec59), or leave out [movie]");
   }
   codec.reset(avcodec_alloc_context3(encoder));
   codec->width = width;
   codec->height = height;
-  codec->pix_fmt = AV_PIX_FMT_YUV420P;
+  codec->pix_fmt = kind.pixels;
   codec->time_base = {1, fps};
   codec->framerate = {fps, 1};
   codec->gop_size = kKeyFrameSeconds * fps;
   codec->thread_count = 1;  // x264's bytes depend on the number of threads
-  codec->flags |= AV_CODEC_FLAG_GLOBAL_HEADER | AV_CODEC_FLAG_BITEXACT;
-  codec->color_primaries = AVCOL_PRI_BT709;
-  codec->color_trc = AVCOL_TRC_BT709;
-  codec->colorspace = AVCOL_SPC_BT709;
-  codec->color_range = AVCOL_RANGE_MPEG;
-  require(av_opt_set(codec->priv_data, "preset", kPreset, 0), "x264 preset");
-  require(av_opt_set(codec->priv_data, "crf", kQuality, 0), "x264 quality");
-  require(avcodec_open2(codec.get(), encoder, nullptr), "the H.264 encoder does not open");
+  codec->flags |= AV_CODEC_FLAG_BITEXACT;
+  if ((format->oformat->flags & AVFMT_GLOBALHEADER) != 0) codec->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
+  if (kind.pixels == AV_PIX_FMT_YUV420P) {
+    codec->color_primaries = AVCOL_PRI_BT709;
+    codec->color_trc = AVCOL_TRC_BT709;
+    codec->colorspace = AVCOL_SPC_BT709;
+    codec->color_range = AVCOL_RANGE_MPEG;
+  }
+  for (const Setting& setting : kind.codec)
+    require(av_opt_set(codec->priv_data, setting.name, setting.value, 0), setting.name);
+  require(avcodec_open2(codec.get(), encoder, nullptr), "the encoder does not open");
 }
 
 void MovieWriter::Impl::open_file() {
@@ -120,7 +182,7 @@ void MovieWriter::Impl::open_file() {
   format->flags |= AVFMT_FLAG_BITEXACT;
   require(avio_open(&format->pb, file.temporary().c_str(), AVIO_FLAG_WRITE), "the movie cannot be made");
   AVDictionary* options = nullptr;
-  av_dict_set(&options, "movflags", "+faststart", 0);
+  for (const Setting& setting : kind.file) av_dict_set(&options, setting.name, setting.value, 0);
   const int written = avformat_write_header(format.get(), &options);
   av_dict_free(&options);
   require(written, "the movie's header cannot be written");
@@ -128,13 +190,14 @@ void MovieWriter::Impl::open_file() {
 
 void MovieWriter::Impl::prepare_frame(int width, int height) {
   frame.reset(av_frame_alloc());
-  frame->format = AV_PIX_FMT_YUV420P;
+  frame->format = kind.pixels;
   frame->width = width;
   frame->height = height;
   require(av_frame_get_buffer(frame.get(), 0), "no memory for a frame");
-  scaler.reset(sws_getContext(width, height, AV_PIX_FMT_RGBA, width, height, AV_PIX_FMT_YUV420P,
+  scaler.reset(sws_getContext(width, height, AV_PIX_FMT_RGBA, width, height, kind.pixels,
                               SWS_BILINEAR | SWS_ACCURATE_RND | SWS_BITEXACT, nullptr, nullptr, nullptr));
-  SWARF_CHECK(scaler != nullptr, "swscale cannot convert RGBA to 4:2:0");
+  SWARF_CHECK(scaler != nullptr, "swscale cannot convert RGBA");
+  if (kind.pixels != AV_PIX_FMT_YUV420P) return;
   const int* bt709 = sws_getCoefficients(SWS_CS_ITU709);
   constexpr int kOne = 1 << 16;  // swscale's fixed point
   sws_setColorspaceDetails(scaler.get(), bt709, 1, bt709, 0, 0, kOne, kOne);
@@ -153,8 +216,9 @@ void MovieWriter::Impl::encode(const AVFrame* input) {
   }
 }
 
-MovieWriter::MovieWriter(const std::string& path, int width, int height, int fps)
-    : impl_(std::make_unique<Impl>(path, width, height, fps)) {}
+MovieWriter::MovieWriter(const std::string& path, int width, int height, int fps,
+                         const MovieChapters& chapters)
+    : impl_(std::make_unique<Impl>(path, width, height, fps, chapters)) {}
 
 MovieWriter::~MovieWriter() = default;
 

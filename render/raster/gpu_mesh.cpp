@@ -70,13 +70,13 @@ bool is_closed(const TriMesh& mesh) {
 
 }  // namespace
 
-const GpuMesh& GpuMeshCache::get(const TriMesh& mesh, bool dynamic) {
-  const auto [found, inserted] = entries_.try_emplace(&mesh);
+const GpuMesh& GpuMeshCache::get(const DrawItem& item) {
+  const auto [found, inserted] = entries_.try_emplace(item.mesh);
   Entry& entry = found->second;
   entry.used = true;
-  const uint64_t now = fingerprint(mesh);
-  if (inserted || dynamic || entry.mesh.fingerprint != now) {
-    upload(mesh, dynamic, entry.mesh);
+  const uint64_t now = item.revision != 0 ? item.revision : fingerprint(*item.mesh);
+  if (inserted || item.dynamic || entry.mesh.fingerprint != now) {
+    upload(item, entry.mesh);
     entry.mesh.fingerprint = now;
   }
   return entry.mesh;
@@ -95,7 +95,8 @@ void GpuMeshCache::collect() {
   }
 }
 
-void GpuMeshCache::upload(const TriMesh& mesh, bool dynamic, GpuMesh& target) {
+void GpuMeshCache::upload(const DrawItem& item, GpuMesh& target) {
+  const TriMesh& mesh = *item.mesh;
   SWARF_CHECK(mesh.normals.empty() || mesh.normals.size() == mesh.positions.size(), "one normal per vertex");
   SWARF_CHECK(mesh.colours.empty() || mesh.colours.size() == mesh.positions.size(), "one colour per vertex");
   if (target.vertex_array != 0) {
@@ -105,7 +106,7 @@ void GpuMeshCache::upload(const TriMesh& mesh, bool dynamic, GpuMesh& target) {
   gl_.GenVertexArrays(1, &target.vertex_array);
   gl_.GenBuffers(4, target.buffers);
   gl_.BindVertexArray(target.vertex_array);
-  const GLenum usage = dynamic ? GL_STREAM_DRAW : GL_STATIC_DRAW;
+  const GLenum usage = item.dynamic ? GL_STREAM_DRAW : GL_STATIC_DRAW;
   const auto attribute = [&](GLuint index, GLint components, GLenum type, GLboolean normalised,
                              const auto& data) {
     if (data.empty()) return;
@@ -125,7 +126,7 @@ void GpuMeshCache::upload(const TriMesh& mesh, bool dynamic, GpuMesh& target) {
   target.index_count = static_cast<GLsizei>(3 * mesh.triangles.size());
   target.has_normals = !mesh.normals.empty();
   target.has_colours = !mesh.colours.empty();
-  target.closed = !dynamic && is_closed(mesh);
+  target.closed = item.outside_only || (!item.dynamic && item.revision == 0 && is_closed(mesh));
   target.bounds = bounds_of(mesh);
 }
 

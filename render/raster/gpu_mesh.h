@@ -4,7 +4,7 @@
 #include <unordered_map>
 
 #include "base/frames.h"
-#include "mesh/tri_mesh.h"
+#include "render/draw_list.h"
 #include "render/raster/gl_api.h"
 
 namespace swarf::render {
@@ -15,9 +15,9 @@ struct GpuMesh {
   GLuint buffers[4] = {};  ///< positions, normals, colours, indices
   GLsizei index_count = 0;
   bool has_normals = false, has_colours = false;
-  bool closed = false;  ///< no way to see a triangle's back; known of static meshes only
-  Box bounds;           ///< in the mesh's frame
-  uint64_t fingerprint = 0;
+  bool closed = false;       ///< no way to see a triangle's back; known of static meshes only
+  Box bounds;                ///< in the mesh's frame
+  uint64_t fingerprint = 0;  ///< or DrawItem::revision
 };
 
 /// Meshes by their address. All calls need the context to be current.
@@ -25,8 +25,8 @@ class GpuMeshCache {
  public:
   explicit GpuMeshCache(const GlApi& gl) : gl_(gl) {}
 
-  /// The mesh on the GPU, sent when it is new, `dynamic`, or no longer what was sent.
-  const GpuMesh& get(const TriMesh& mesh, bool dynamic);
+  /// The item's mesh on the GPU, sent when it is new, dynamic, or no longer what was sent.
+  const GpuMesh& get(const DrawItem& item);
   /// Frees the meshes that no call has asked for since the last collect().
   void collect();
 
@@ -35,7 +35,7 @@ class GpuMeshCache {
     GpuMesh mesh;
     bool used = false;
   };
-  void upload(const TriMesh& mesh, bool dynamic, GpuMesh& target);
+  void upload(const DrawItem& item, GpuMesh& target);
 
   const GlApi& gl_;
   std::unordered_map<const TriMesh*, Entry> entries_;

@@ -50,6 +50,10 @@ class Uniforms {
     gl_.Uniform3f(at(name), static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()));
   }
   void set(const char* name, const Rgb& c) const { gl_.Uniform3f(at(name), c[0], c[1], c[2]); }
+  void set_plane(const char* name, const Vec3& normal, const Vec3& point) const {
+    gl_.Uniform4f(at(name), static_cast<float>(normal.x()), static_cast<float>(normal.y()),
+                  static_cast<float>(normal.z()), static_cast<float>(normal.dot(point)));
+  }
   void set(const char* name, double value) const { gl_.Uniform1f(at(name), static_cast<float>(value)); }
   void set(const char* name, int value) const { gl_.Uniform1i(at(name), value); }
 
@@ -72,11 +76,11 @@ struct RasterRenderer::Impl {
   GLuint make_target(int samples);
   void make_shadow_map();
   Box upload(const DrawList& list);
-  void draw_shadow(const SceneView& view);
+  void draw_shadow(const SceneView& view, bool section);
   void draw_backdrop(const SceneView& view);
-  void draw_items(const SceneView& view, const Vec3& eye);
+  void draw_items(const SceneView& view, const DrawList& list);
   void draw_lines(const SceneView& view, const std::vector<DrawLine>& lines);
-  void draw_triangles(const GpuMesh& mesh);
+  void draw_triangles(const GpuMesh& mesh, bool both_sides = false);
   Image read();
 
   OsmesaContext context;
@@ -160,7 +164,7 @@ Box RasterRenderer::Impl::upload(const DrawList& list) {
   for (const DrawItem& item : list.items) {
     SWARF_CHECK(item.mesh != nullptr, "an item without a mesh");
     if (item.mesh->triangles.empty()) continue;
-    const GpuMesh& mesh = meshes.get(*item.mesh, item.dynamic);
+    const GpuMesh& mesh = meshes.get(item);
     drawn.push_back({&item, &mesh, item.X_world * mesh.bounds.centre()});
     extend(bounds, mesh.bounds, item.X_world);
   }
@@ -174,8 +178,8 @@ Box RasterRenderer::Impl::upload(const DrawList& list) {
 }
 
 /// Backs are dropped where they cannot be seen: half of the work.
-void RasterRenderer::Impl::draw_triangles(const GpuMesh& mesh) {
-  if (mesh.closed) {
+void RasterRenderer::Impl::draw_triangles(const GpuMesh& mesh, bool both_sides) {
+  if (mesh.closed && !both_sides) {
     gl.Enable(GL_CULL_FACE);
   } else {
     gl.Disable(GL_CULL_FACE);
@@ -184,7 +188,8 @@ void RasterRenderer::Impl::draw_triangles(const GpuMesh& mesh) {
   gl.DrawElements(GL_TRIANGLES, mesh.index_count, GL_UNSIGNED_INT, nullptr);
 }
 
-void RasterRenderer::Impl::draw_shadow(const SceneView& view) {
+/// What is cut open casts none: its missing half would shade its own section.
+void RasterRenderer::Impl::draw_shadow(const SceneView& view, bool section) {
   gl.BindFramebuffer(GL_FRAMEBUFFER, shadow_target);
   gl.Viewport(0, 0, kShadowSize, kShadowSize);
   gl.Clear(GL_DEPTH_BUFFER_BIT);
@@ -193,6 +198,7 @@ void RasterRenderer::Impl::draw_shadow(const SceneView& view) {
   const Uniforms uniforms(gl, shadow_program);
   uniforms.set("clip_from_world", view.light_clip_from_world);
   for (const Drawn& one : drawn) {
+    if (section && one.item->sectioned) continue;
     uniforms.set("world_from_mesh", one.item->X_world.matrix());
     draw_triangles(*one.mesh);
   }
@@ -215,11 +221,11 @@ void RasterRenderer::Impl::draw_backdrop(const SceneView& view) {
   gl.DrawArrays(GL_TRIANGLES, 0, 3);
 }
 
-void RasterRenderer::Impl::draw_items(const SceneView& view, const Vec3& eye) {
+void RasterRenderer::Impl::draw_items(const SceneView& view, const DrawList& list) {
   const Uniforms uniforms(gl, mesh_program);
   uniforms.set("clip_from_world", view.clip_from_world);
   uniforms.set("light_from_world", view.light_clip_from_world);
-  uniforms.set("eye", eye);
+  uniforms.set("eye", list.camera.eye);
   uniforms.set("key", view.key);
   uniforms.set("softbox", (view.key + Vec3(0.0, 0.0, 0.5)).normalized());
   uniforms.set("fill", view.fill);
@@ -234,7 +240,10 @@ void RasterRenderer::Impl::draw_items(const SceneView& view, const Vec3& eye) {
     uniforms.set("roughness", static_cast<double>(material.roughness));
     uniforms.set("has_normals", one.mesh->has_normals ? 1 : 0);
     uniforms.set("has_colours", one.mesh->has_colours ? 1 : 0);
-    draw_triangles(*one.mesh);
+    const bool sectioned = list.section && one.item->sectioned;
+    uniforms.set("sectioned", sectioned ? 1 : 0);
+    if (sectioned) uniforms.set_plane("section", list.section->normal, list.section->point);
+    draw_triangles(*one.mesh, sectioned);
   }
 }
 
@@ -280,12 +289,12 @@ Image RasterRenderer::draw(const DrawList& list) {
   const SceneView view = scene_view(list.camera, bounds, static_cast<double>(impl.width) / impl.height);
   gl.Enable(GL_DEPTH_TEST);
   gl.DepthFunc(GL_LEQUAL);  // the background lies exactly on the far plane
-  impl.draw_shadow(view);
+  impl.draw_shadow(view, list.section.has_value());
   gl.BindFramebuffer(GL_FRAMEBUFFER, impl.target);
   gl.Viewport(0, 0, impl.width, impl.height);
   gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   gl.BindTexture(GL_TEXTURE_2D, impl.shadow_texture);
-  impl.draw_items(view, list.camera.eye);
+  impl.draw_items(view, list);
   impl.draw_lines(view, list.lines);
   impl.draw_backdrop(view);
   return impl.read();

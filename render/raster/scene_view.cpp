@@ -8,8 +8,11 @@
 namespace swarf::render {
 namespace {
 
-constexpr double kGroundReach = 2.2;   // radius of the floor in radii of the scene
-constexpr double kNearShare = 0.002;   // nearest plane as a share of the farthest: 24-bit depth stays fine
+constexpr double kGroundReach = 2.2;  // radius of the floor in radii of the scene
+constexpr double kNearShare = 0.002;  // nearest plane as a share of the farthest: 24-bit depth stays fine
+/// Of the scene's radius: how far below it the floor lies, so that the inside of a bottom that a section
+/// opens is not mixed with it.
+constexpr double kFloorGap = 1e-3;
 constexpr double kLightMargin = 1.05;  // of the scene's radius: nothing touches the border of the shadow map
 
 /// A direction `left` and `elevation` (degrees) as the camera's bearing sees it: 0 is from behind the camera.
@@ -47,7 +50,7 @@ SceneView scene_view(const Camera& camera, const Box& bounds, double aspect) {
   view.key = light_direction(forward, 38.0, 52.0);
   view.fill = light_direction(forward, -55.0, 20.0);
   view.rim = light_direction(forward, -150.0, 35.0);
-  view.ground_centre = {bounds.centre().x(), bounds.centre().y(), bounds.lower.z()};
+  view.ground_centre = {bounds.centre().x(), bounds.centre().y(), bounds.lower.z() - kFloorGap * radius};
   view.ground_radius = kGroundReach * radius;
   const double far = (camera.eye - bounds.centre()).norm() + std::sqrt(2.0) * view.ground_radius + radius;
   const double near = std::max((camera.eye - bounds.centre()).norm() - radius, kNearShare * far);

@@ -47,6 +47,25 @@ Vec3f vector_of(const Rgb& c) {
   return {c[0], c[1], c[2]};
 }
 
+/// Brightness of a sample as it is seen, and how sure their mean is (Welford).
+class Brightness {
+ public:
+  void add(const Vec3f& light, double exposure) {
+    const float linear = 0.2126F * tone(light.x() * static_cast<float>(exposure)) +
+                         0.7152F * tone(light.y() * static_cast<float>(exposure)) +
+                         0.0722F * tone(light.z() * static_cast<float>(exposure));
+    const double value = 255.0 * srgb_from_linear(linear);
+    const double off = value - mean_;
+    mean_ += off / ++count_;
+    squares_ += off * (value - mean_);
+  }
+  /// Of 255.
+  double standard_error() const { return std::sqrt(squares_ / (count_ * (count_ - 1.0))); }
+
+ private:
+  double mean_ = 0.0, squares_ = 0.0, count_ = 0.0;
+};
+
 struct Shot {
   const StillOptions& options;
   const Lens& lens;
@@ -59,8 +78,11 @@ struct Shot {
     // After so many samples without a trace of the drawing or its shadow the pixel is backdrop.
     constexpr int kProbe = 8;
     Vec3f sum = Vec3f::Zero();
+    // Fewer samples say nothing about their spread.
+    constexpr int kLeast = 6;
     bool empty = true;
-    int taken = 0;
+    int taken = 0, behind = 0;
+    Brightness brightness;
     for (int s = 0; s < options.samples_per_pixel; ++s) {
       Sampler sampler(noise, x, y, static_cast<uint32_t>(s), options.seed);
       const Eigen::Vector2f xi = sampler.next();
@@ -71,13 +93,21 @@ struct Shot {
           (1.0F - down) * vector_of(options.backdrop_top) + down * vector_of(options.backdrop_bottom);
       const Vec3f light = tracer.radiance(lens.eye.cast<float>(), lens.ray(2.0 * px - 1.0, 1.0 - 2.0 * py),
                                           backdrop, sampler);
-      sum += light.cwiseMin(kFirefly);
-      empty = empty && light == backdrop;
+      const bool backdrop_seen = light == backdrop;
+      behind += backdrop_seen ? 1 : 0;
+      if (!options.transparent || !backdrop_seen) sum += light.cwiseMin(kFirefly);
+      empty = empty && backdrop_seen;
       ++taken;
       if (empty && taken == kProbe) break;
+      if (options.noise <= 0.0) continue;
+      brightness.add(light.cwiseMin(kFirefly), options.exposure);
+      if (taken >= kLeast && !empty && brightness.standard_error() < options.noise) break;
     }
-    sum *= static_cast<float>(options.exposure) / static_cast<float>(taken);
-    return srgb8_from_linear({tone(sum.x()), tone(sum.y()), tone(sum.z())});
+    const int seen = options.transparent ? taken - behind : taken;
+    sum *= static_cast<float>(options.exposure) / static_cast<float>(std::max(seen, 1));
+    std::array<uint8_t, 4> value = srgb8_from_linear({tone(sum.x()), tone(sum.y()), tone(sum.z())});
+    if (options.transparent) value[3] = static_cast<uint8_t>(std::lround(255.0 * seen / taken));
+    return value;
   }
 
   void tile(int tile_x, int tile_y, Image& image) const {

@@ -10,8 +10,13 @@ namespace swarf::render {
 /// key light under the default sky comes out just below white.
 struct StillOptions {
   int width = 1280, height = 720;
-  int samples_per_pixel = 24;  ///< time is proportional to it, noise to its inverse root
-  uint32_t seed = 1;           ///< same seed, same picture, for any number of threads
+  int samples_per_pixel = 24;  ///< at most
+  /// A pixel is done as soon as the standard error of its mean brightness, as if its samples were
+  /// independent, is below this, of 255; they are a lattice, so that it is less in fact. 0: all samples
+  /// everywhere.
+  double noise = 0.0;
+  bool transparent = false;  ///< nothing behind the drawing, no floor and no shadow on it
+  uint32_t seed = 1;         ///< same seed, same picture, for any number of threads
 
   Vec3 key_light_direction{-0.45, -0.55,
                            0.70};      ///< from the subject to the light; low over a surface: raking light

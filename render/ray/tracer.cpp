@@ -24,7 +24,10 @@ Vec3f facing_normal(const Hit& hit, const Vec3f& out) {
 }  // namespace
 
 Tracer::Tracer(const RayScene& scene, const Studio& studio, const StillOptions& options)
-    : scene_(scene), studio_(studio), floor_(options.floor), floor_z_(scene.lowest_z()) {}
+    : scene_(scene),
+      studio_(studio),
+      floor_(options.floor && !options.transparent),
+      floor_z_(scene.lowest_z()) {}
 
 Vec3f Tracer::radiance(const Vec3f& origin, const Vec3f& direction, const Vec3f& backdrop,
                        Sampler& sampler) const {

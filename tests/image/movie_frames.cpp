@@ -50,16 +50,21 @@ struct Decoder {
 std::vector<render::Image> movie_frames(const std::string& path) {
   Decoder d;
   require_opened(avformat_open_input(&d.format, path.c_str(), nullptr, nullptr) == 0, path);
-  require_opened(avformat_find_stream_info(d.format, nullptr) >= 0 && d.format->nb_streams == 1, path);
+  require_opened(avformat_find_stream_info(d.format, nullptr) >= 0 && d.format->nb_streams >= 1, path);
   const AVCodecParameters* stream = d.format->streams[0]->codecpar;
   d.codec = avcodec_alloc_context3(avcodec_find_decoder(stream->codec_id));
   avcodec_parameters_to_context(d.codec, stream);
   require_opened(avcodec_open2(d.codec, nullptr, nullptr) == 0, path);
-  d.scaler = sws_getContext(stream->width, stream->height, AV_PIX_FMT_YUV420P, stream->width, stream->height,
-                            AV_PIX_FMT_RGBA, SWS_BILINEAR, nullptr, nullptr, nullptr);
+  d.scaler =
+      sws_getContext(stream->width, stream->height, static_cast<AVPixelFormat>(stream->format), stream->width,
+                     stream->height, AV_PIX_FMT_RGBA, SWS_BILINEAR, nullptr, nullptr, nullptr);
   std::vector<render::Image> frames;
   for (bool more = true; more;) {
     more = av_read_frame(d.format, d.packet) == 0;
+    if (more && d.packet->stream_index != 0) {  // the names of the chapters
+      av_packet_unref(d.packet);
+      continue;
+    }
     avcodec_send_packet(d.codec, more ? d.packet : nullptr);
     av_packet_unref(d.packet);
     while (avcodec_receive_frame(d.codec, d.frame) == 0) frames.push_back(picture_of(*d.frame, d.scaler));

@@ -3,13 +3,12 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <string>
 
 #include "image/movie_frames.h"
-#include "image/picture_difference.h"
+#include "image/reference_picture.h"
 #include "render/image_io.h"
 #include "support/program_run.h"
 
@@ -18,32 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using render::Image;
-
-// The pictures are seeded, so on one machine they are equal. Another instruction set of Embree or llvmpipe
-// moves edges by a part of a pixel: a strip of one pixel through a tile, a sixteenth of it, by a third of the
-// range would be 5 of 255.
-constexpr double kTileTolerance = 6.0;
-
-const fs::path kReferences = SWARF_SOURCE_DIR "/tests/image/reference";
-
-void keep(const Image& picture, const std::string& name) {
-  const fs::path folder = fs::current_path() / "image_failures";
-  fs::create_directories(folder);
-  render::save_png(picture, (folder / name).string());
-}
-
-void expect_like_reference(const Image& picture, const std::string& name) {
-  if (std::getenv("SWARF_REFRESH_REFERENCES") != nullptr)
-    render::save_png(picture, (kReferences / name).string());
-  const Image reference = render::load_png((kReferences / name).string());
-  ASSERT_EQ(picture.width, reference.width);
-  ASSERT_EQ(picture.height, reference.height);
-  const TileDifference worst = largest_difference(picture, reference);
-  if (worst.mean <= kTileTolerance) return;
-  keep(picture, name);
-  ADD_FAILURE() << fmt::format("{} differs by {:.1f} of 255 in the tile at ({}, {}); kept in image_failures/",
-                               name, worst.mean, worst.x, worst.y);
-}
 
 /// A finished run of a scene; each is made once.
 struct SceneRun {

@@ -97,6 +97,7 @@ def scene_texts():
             for axis in ("lead_deg = 5", "axis = [0, 0, 1]"):
                 yield (f"[driven]\n{part} = 'part.x'\nmode = '{mode}'\narea_mm = [[0, 0], [1, 1]]\nfloor_mm = 0\n"
                        f"compare_cam_um = [10, 1]\n{axis}\n{no}[interpolator]\n{no}")
+    yield f"nc = 'part.ngc'\n[movie]\n{no}[[movie.shot]]\n{no}"
     yield f"[flank]\n{no}[design]\nkind = 'ruled'\n{no}[interpolator]\n{no}[stock]\n{no}"
     for kind in schema("scene")["properties"]["fixture"]["items"]["properties"]["kind"]["enum"]:
         yield f"nc = 'part.ngc'\n[[fixture]]\nkind = '{kind}'\n{no}"

@@ -21,6 +21,7 @@
 #include "sim/job/design_keys.h"
 #include "sim/job/driven_keys.h"
 #include "sim/job/flank_keys.h"
+#include "sim/job/movie_keys.h"
 #include "sim/job/post_keys.h"
 #include "sim/job/setup_keys.h"
 #include "sim/job/stock_keys.h"
@@ -68,16 +69,6 @@ struct AcceptLimits {
   /// Band of the share within tolerance and of the colour scale where the scene gives no limit, um.
   double scallop_band_um() const { return scallop_max_um.value_or(10.0); }
   double gouge_band_um() const { return gouge_max_um.value_or(1.0); }
-};
-
-struct MovieSettings {
-  double seconds = 10.0;
-  std::array<int, 2> size{1280, 720};
-  int fps = 30;
-  int samples = 1;  ///< per pixel, 1 or 4: 4 smooths edges and takes twice as long
-  /// Of the stock that the movie shows; it is not measured. With an automatic stock.voxel_mm twice that.
-  double voxel_mm = 0.8;
-  bool auto_voxel = true;  ///< the scene does not say it
 };
 
 /// The stills that a run makes, by the names of `swarf render --kind`.

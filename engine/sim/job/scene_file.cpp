@@ -118,32 +118,10 @@ void read_interpolator(ConfigTable table, Scene& scene) {
   read_period_and_limits(table, options);
 }
 
-std::array<int, 2> read_size(ConfigTable& table) {
-  const std::vector<double> size = table.numbers("size", 2, std::vector<double>{1280, 720});
-  for (const double side : size) {
-    if (side < 64 || side > 7680 || static_cast<int>(side) % 2 != 0) {
-      table.error("out-of-range", "size", fmt::format("'size' has a side of {:g} pixels", side),
-                  "both sides must be even numbers from 64 to 7680");
-      return {1280, 720};
-    }
-  }
-  return {static_cast<int>(size[0]), static_cast<int>(size[1])};
-}
-
 void read_pictures(ConfigTable& root, Scene& scene) {
-  ConfigTable movie = root.table("movie");
-  scene.movie.seconds = movie.number("seconds", {0.0, 3600.0}, scene.movie.seconds);
-  scene.movie.size = read_size(movie);
-  scene.movie.fps = movie.integer("fps", 1, 120, scene.movie.fps);
-  scene.movie.auto_voxel = !movie.has("voxel_mm");
-  scene.movie.voxel_mm = movie.number("voxel_mm", kAboveZero, scene.movie.voxel_mm);
-  scene.movie.samples = movie.integer("samples", 1, 4, scene.movie.samples);
-  if (scene.movie.samples != 1 && scene.movie.samples != 4) {
-    movie.error("out-of-range", "samples", fmt::format("'movie.samples' is {}", scene.movie.samples),
-                "write 1 or 4");
-  }
+  scene.movie = read_movie(root.table("movie"));
   ConfigTable stills = root.table("stills");
-  scene.stills.size = read_size(stills);
+  scene.stills.size = read_picture_size(stills);
   scene.stills.kinds = stills.choices("kinds", kStillKinds, kStillKinds);
   scene.stills.samples = stills.integer("samples", 1, 4096, scene.stills.samples);
 }

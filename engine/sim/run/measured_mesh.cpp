@@ -27,7 +27,7 @@ Vec3 as_vec3(const std::array<float, 3>& a) {
 /// flank.
 std::vector<Vec3> axes_of(const MeasuredPart& part) {
   std::vector<Vec3> axes;
-  if (!normals_need_cycles(part.job)) return axes;
+  if (!part.set_normals || !normals_need_cycles(part.job)) return axes;
   axes.reserve(part.cycles.size());
   motion::CycleReader reader(part.cycles);
   for (size_t k = 0; k < part.cycles.size(); ++k) axes.push_back(reader.at(k).sample.pose.axis_W);

@@ -13,9 +13,10 @@ namespace swarf::sim {
 /// What a mesh is measured with. Borrowed.
 struct MeasuredPart {
   const Job& job;
-  const motion::Cycles& cycles;  ///< may be empty unless normals_need_cycles(job)
+  const motion::Cycles& cycles;  ///< may be empty unless normals_need_cycles(job) and set_normals
   const std::vector<stock::SurfaceDexels>& dexels;
   double voxel_mm = 0.0;  ///< of the stock that the mesh comes from
+  bool set_normals = true;
 };
 
 /// Cusps of planned passes get their normals from the tool axis of each cycle.

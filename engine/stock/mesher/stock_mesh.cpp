@@ -89,6 +89,39 @@ std::vector<size_t> marked(const std::vector<uint8_t>& marks) {
   return places;
 }
 
+Eigen::Vector3i patch_dimension(const LeafMap& map) {
+  const auto along = [](int leaves) {
+    return (leaves + StockMesher::kPatchSide - 1) / StockMesher::kPatchSide;
+  };
+  return {along(map.dimension.x()), along(map.dimension.y()), along(map.dimension.z())};
+}
+
+/// Numbers in a patch of the vertices of each leaf that its triangles use: its own and those before them.
+class PatchVertices {
+ public:
+  explicit PatchVertices(TriMesh& mesh) : mesh_(mesh) {}
+
+  /// `slot`: of the leaf's position, one before the patch's first on each axis.
+  uint32_t number(const Place& slot, const LeafMesh& leaf, uint32_t vertex) {
+    std::vector<uint32_t>& numbers =
+        slots_[static_cast<size_t>((slot.i * kSlots + slot.j) * kSlots + slot.k)];
+    if (numbers.empty()) numbers.assign(leaf.vertices.size(), kNone);
+    uint32_t& number = numbers[vertex];
+    if (number == kNone) {
+      number = static_cast<uint32_t>(mesh_.positions.size());
+      mesh_.positions.push_back(leaf.vertices[vertex].position);
+      mesh_.normals.push_back(leaf.vertices[vertex].normal);
+    }
+    return number;
+  }
+
+ private:
+  static constexpr int kSlots = StockMesher::kPatchSide + 1;
+  static constexpr uint32_t kNone = 0xffffffffU;
+  TriMesh& mesh_;
+  std::array<std::vector<uint32_t>, static_cast<size_t>(kSlots* kSlots* kSlots)> slots_;
+};
+
 }  // namespace
 
 struct StockMesher::Impl {
@@ -102,8 +135,10 @@ struct StockMesher::Impl {
   std::vector<uint8_t> changed_places();
   void place(size_t n);
   void join(size_t n);
-  void update();
+  std::vector<size_t> update();
   TriMesh assemble() const;
+  size_t patch_of(size_t n) const;
+  TriMesh patch(size_t number) const;
   std::array<const LeafMesh*, 8> around(size_t n) const;
   Vec3 origin_W(size_t n) const {
     const openvdb::Coord first = set.map.origin(n);
@@ -150,7 +185,8 @@ void StockMesher::Impl::join(size_t n) {
   if (leaves[n]) join_vertices(around(n), origin_W(n), set.voxel, *leaves[n]);
 }
 
-void StockMesher::Impl::update() {
+/// Positions whose triangles are new.
+std::vector<size_t> StockMesher::Impl::update() {
   const std::vector<size_t> changed = marked(changed_places());
   meshed = static_cast<size_t>(std::count_if(
       changed.begin(), changed.end(), [&](size_t n) { return set.map.states[n] == LeafState::kLeaf; }));
@@ -169,6 +205,7 @@ void StockMesher::Impl::update() {
   parallel_chunks(places.size(), kMeshedPerTask, [&](size_t begin, size_t end) {
     for (size_t c = begin; c < end; ++c) join(places[c]);
   });
+  return places;
 }
 
 TriMesh StockMesher::Impl::assemble() const {
@@ -215,6 +252,42 @@ TriMesh StockMesher::Impl::assemble() const {
   return mesh;
 }
 
+size_t StockMesher::Impl::patch_of(size_t n) const {
+  const Place p = place_of(set.map, n);
+  const Eigen::Vector3i many = patch_dimension(set.map);
+  return (static_cast<size_t>(p.i / kPatchSide) * many.y() + p.j / kPatchSide) * many.z() + p.k / kPatchSide;
+}
+
+TriMesh StockMesher::Impl::patch(size_t number) const {
+  const Eigen::Vector3i many = patch_dimension(set.map);
+  const auto plane = static_cast<size_t>(many.y()) * many.z();
+  const Place low{static_cast<int>(number / plane) * kPatchSide,
+                  static_cast<int>(number % plane / many.z()) * kPatchSide,
+                  static_cast<int>(number % many.z()) * kPatchSide};
+  TriMesh mesh;
+  PatchVertices vertices(mesh);
+  for (int v = 0; v < kPatchSide * kPatchSide * kPatchSide; ++v) {
+    const Place at{v / (kPatchSide * kPatchSide), v / kPatchSide % kPatchSide, v % kPatchSide};
+    const Place p{low.i + at.i, low.j + at.j, low.k + at.k};
+    if (!known(set.map, p)) continue;
+    const size_t n = set.map.index(p.i, p.j, p.k);
+    if (!leaves[n]) continue;
+    const std::array<const LeafMesh*, 8> meshes = around(n);
+    for (const auto& triangle : leaves[n]->triangles) {
+      std::array<uint32_t, 3> corners{};
+      for (size_t c = 0; c < 3; ++c) {
+        const uint32_t before = triangle[c] >> 16;
+        const Place slot{at.i + 1 - static_cast<int>(before >> 2),
+                         at.j + 1 - static_cast<int>(before >> 1 & 1),
+                         at.k + 1 - static_cast<int>(before & 1)};
+        corners[c] = vertices.number(slot, *meshes[before], triangle[c] & 0xffffU);
+      }
+      mesh.triangles.push_back(corners);
+    }
+  }
+  return mesh;
+}
+
 StockMesher::StockMesher(const Stock& stock) : impl_(std::make_unique<Impl>(stock.level_set())) {}
 StockMesher::~StockMesher() = default;
 StockMesher::StockMesher(StockMesher&&) noexcept = default;
@@ -222,6 +295,19 @@ StockMesher::StockMesher(StockMesher&&) noexcept = default;
 TriMesh StockMesher::mesh() {
   impl_->update();
   return impl_->assemble();
+}
+std::vector<size_t> StockMesher::update() {
+  std::vector<size_t> changed;
+  for (const size_t n : impl_->update()) changed.push_back(impl_->patch_of(n));
+  std::sort(changed.begin(), changed.end());
+  changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+  return changed;
+}
+size_t StockMesher::patches() const {
+  return static_cast<size_t>(patch_dimension(impl_->set.map).cast<int64_t>().prod());
+}
+TriMesh StockMesher::patch(size_t number) const {
+  return impl_->patch(number);
 }
 size_t StockMesher::leaves_meshed() const {
   return impl_->meshed;

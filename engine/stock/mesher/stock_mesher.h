@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <vector>
 
 #include "mesh/tri_mesh.h"
 #include "stock/stock.h"
@@ -29,6 +30,15 @@ class StockMesher {
   /// were cut since the last call, and those beside them, are meshed again; the result is the same as that of
   /// a new mesher, for any number of threads.
   TriMesh mesh();
+  /// The same surface in patches, one for each cube of kPatchSide leaf positions, for those who draw it while
+  /// it is cut: brings the leaves up to date and returns the numbers of the patches whose triangles are no
+  /// longer those of the last call of mesh() or update(), ascending; of the first call all.
+  std::vector<size_t> update();
+  size_t patches() const;
+  /// Triangles of one patch as of the last update(); it has its own vertices, and on its borders the same
+  /// positions and normals as its neighbours. Empty where no surface passes.
+  TriMesh patch(size_t number) const;
+  static constexpr int kPatchSide = 4;
   /// Leaves whose vertices the last call made again.
   size_t leaves_meshed() const;
   /// What is remembered between calls.

@@ -67,6 +67,10 @@ Decoded decode(const std::string& path) {
   AVFrame* frame = av_frame_alloc();
   for (bool more = true; more;) {
     more = av_read_frame(format, packet) == 0;
+    if (more && packet->stream_index != 0) {  // the names of the chapters
+      av_packet_unref(packet);
+      continue;
+    }
     avcodec_send_packet(codec, more ? packet : nullptr);
     av_packet_unref(packet);
     while (avcodec_receive_frame(codec, frame) == 0) {
@@ -105,6 +109,51 @@ TEST(MovieWriter, EveryFrameComesBackWithItsColour) {
     EXPECT_NEAR(movie.mean.at(25)[k], blue[k], 1.5);
   }
   std::filesystem::remove(path);
+}
+
+/// Chapters of a file: where they begin, s, and their names.
+std::vector<std::pair<double, std::string>> chapters_of(const std::string& path) {
+  std::vector<std::pair<double, std::string>> list;
+  AVFormatContext* format = nullptr;
+  EXPECT_EQ(avformat_open_input(&format, path.c_str(), nullptr, nullptr), 0);
+  for (unsigned i = 0; i < format->nb_chapters; ++i) {
+    const AVChapter& chapter = *format->chapters[i];
+    const AVDictionaryEntry* title = av_dict_get(chapter.metadata, "title", nullptr, 0);
+    list.emplace_back(chapter.start * av_q2d(chapter.time_base), title != nullptr ? title->value : "");
+  }
+  avformat_close_input(&format);
+  return list;
+}
+
+class MovieEndings : public testing::TestWithParam<const char*> {};
+
+TEST_P(MovieEndings, FramesAndChaptersComeBack) {
+  const std::string path = test::scratch_text() + "swarf_ending" + GetParam();
+  {
+    MovieWriter movie(path, kWidth, kHeight, 30, {{0, "T1"}, {15, "T2 ball"}});
+    for (int i = 0; i < kFrames; ++i) movie.add(i < kFrames / 2 ? plain(200, 40, 40) : plain(40, 60, 180));
+    movie.finish();
+  }
+  const Decoded movie = decode(path);
+  EXPECT_EQ(movie.frames, kFrames);
+  EXPECT_EQ(movie.width, kWidth);
+  const std::vector<std::pair<double, std::string>> expected{{0.0, "T1"}, {0.5, "T2 ball"}};
+  if (path.ends_with(".apng"))
+    EXPECT_EQ(movie.format, AV_PIX_FMT_RGBA);
+  else
+    EXPECT_EQ(chapters_of(path), expected);
+  std::filesystem::remove(path);
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, MovieEndings, testing::Values(".mp4", ".webm", ".apng"));
+
+TEST(MovieWriter, ANameThatSaysNoKindIsRefused) {
+  try {
+    MovieWriter movie(test::scratch_text() + "swarf.avi", kWidth, kHeight, 30);
+    FAIL() << "no error";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.diagnostics.list().at(0).code, "movie-ending");
+  }
 }
 
 TEST(MovieWriter, TheSameFramesGiveTheSameBytesWithTheIndexInFront) {

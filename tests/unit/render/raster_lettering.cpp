@@ -45,6 +45,20 @@ TEST(Lettering, MoreLinesMakeATallerPlateAndNoneMakeNone) {
   EXPECT_EQ(changed(three, 0, 320, 0, 360), 0);
 }
 
+TEST(Lettering, ANoticeIsRedAtTheTopAndAProgressBarGrows) {
+  Image image = grey(640, 360), half = grey(640, 360), none = grey(640, 360);
+  draw_notice(image, {"gouge 0.2 mm"}, true);
+  draw_notice(none, {}, true);
+  EXPECT_EQ(none.rgba, grey(640, 360).rgba);
+  const Pixel plate = pixel(image, 13, 20);
+  EXPECT_GT(plate.r, 2 * plate.g);
+  EXPECT_EQ(changed(image, 0, 640, 180, 360), 0);
+  draw_progress(half, 0.5);
+  EXPECT_GT(pixel(half, 310, 359).r, 200);
+  EXPECT_LT(pixel(half, 330, 359).r, 128);
+  EXPECT_EQ(changed(half, 0, 640, 0, 350), 0);
+}
+
 TEST(Lettering, AColourBarRunsFromLowBelowToHighAbove) {
   Image image = grey(640, 360);
   ColourBar bar;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <future>
 
 #include "base/check.h"
 #include "raster_scene.h"
@@ -101,6 +102,58 @@ TEST(RasterRenderer, NoticesChangedAndMovedMeshes) {
   EXPECT_EQ(before.rgba, renderer.draw(list).rgba);
   list.items[0].X_world.translation() = Vec3(20, 0, 0);
   EXPECT_NE(before.rgba, renderer.draw(list).rgba);
+}
+
+TEST(RasterRenderer, ARevisionSaysWhatChanged) {
+  TriMesh box = box_mesh({{-10, -10, -10}, {10, 10, 10}});
+  DrawList list;
+  list.camera = front(150);
+  list.items = {item(box, kRed)};
+  list.items[0].revision = 1;
+  list.items[0].outside_only = true;
+  RasterRenderer renderer(kWidth, kHeight);
+  const Image before = renderer.draw(list);
+  box = box_mesh({{-20, -10, -20}, {20, 10, 20}});
+  EXPECT_EQ(before.rgba, renderer.draw(list).rgba);  // it was not said
+  list.items[0].revision = 2;
+  EXPECT_NE(before.rgba, renderer.draw(list).rgba);
+}
+
+/// A hollow-free box cut open by a plane through its middle: its face is painted, the other half is gone.
+TEST(RasterRenderer, ASectionOpensWhatItCuts) {
+  const TriMesh box = box_mesh({{-20, -10, -10}, {20, 10, 10}});
+  DrawList list;
+  list.camera = front(150);
+  list.items = {item(box, kGreen)};
+  list.items[0].sectioned = true;
+  RasterRenderer renderer(kWidth, kHeight);
+  const Pixel whole = pixel(renderer.draw(list), kWidth / 2, kHeight / 2);
+  EXPECT_GT(whole.g, 2 * whole.r);
+  list.section = SectionPlane{{0, 0, 0}, {0, -1, 0}};  // what lies towards the eye is taken away
+  const Pixel face = pixel(renderer.draw(list), kWidth / 2, kHeight / 2);
+  EXPECT_GT(face.r, 2 * face.b);
+  EXPECT_GT(face.r, face.g);
+  list.section = SectionPlane{{0, -20, 0}, {0, -1, 0}};  // before the box
+  const Pixel uncut = pixel(renderer.draw(list), kWidth / 2, kHeight / 2);
+  EXPECT_GT(uncut.g, 2 * uncut.r);
+  list.items[0].sectioned = false;
+  list.section = SectionPlane{{0, 0, 0}, {0, -1, 0}};
+  EXPECT_GT(pixel(renderer.draw(list), kWidth / 2, kHeight / 2).g, 2 * face.g / 3);
+}
+
+TEST(RasterRenderer, TwoAtOnceGiveTheSameBytesAsOne) {
+  const TriMesh box = box_mesh({{-30, -20, -20}, {30, 20, 20}});
+  DrawList list;
+  list.camera = look_at_box({{-30, -20, -20}, {30, 20, 20}}, {-1, 2, -1}, 0.5, 1.6);
+  list.items = {item(box, kRed)};
+  RasterRenderer one(kWidth, kHeight), two(kWidth, kHeight), alone(kWidth, kHeight);
+  const Image expected = alone.draw(list);
+  for (int i = 0; i < 20; ++i) {
+    auto first = std::async(std::launch::async, [&] { return one.draw(list); });
+    auto second = std::async(std::launch::async, [&] { return two.draw(list); });
+    EXPECT_EQ(first.get().rgba, expected.rgba);
+    EXPECT_EQ(second.get().rgba, expected.rgba);
+  }
 }
 
 TEST(RasterRenderer, VertexColoursWinOverTheMaterial) {

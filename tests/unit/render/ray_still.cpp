@@ -75,6 +75,42 @@ TEST(Still, EmptyDrawingIsTheBackdrop) {
   EXPECT_EQ(rgb_at(image, 3, 40), rgb_at(image, 150, 40));
 }
 
+TEST(Still, ATransparentOneHasNothingBehindTheDrawing) {
+  const TriMesh mesh = plate(0);
+  DrawList list;
+  list.camera = from_above();
+  list.items.push_back({&mesh, Pose::Identity(), {}, false});
+  StillOptions options = small_picture();
+  const Image solid = render_still(list, options);
+  options.transparent = true;
+  const Image image = render_still(list, options);
+  EXPECT_EQ(image.rgba[3], 0);
+  const size_t middle = 4 * (45 * 160 + 80);
+  EXPECT_EQ(image.rgba[middle + 3], 255);
+  EXPECT_EQ(image.rgba[middle], solid.rgba[middle]);
+}
+
+/// Against a picture of very many samples: what stops early is no farther off than it says, nearly
+/// everywhere.
+TEST(Still, SamplingStopsAtTheStatedNoise) {
+  const TriMesh post = cylinder_mesh(10, 30, 1);
+  DrawList list;
+  list.camera = from_above();
+  list.items.push_back({&post, Pose::Identity(), {{0.6F, 0.6F, 0.6F}, 1.0F, 0.3F}, false});
+  StillOptions options = small_picture();
+  options.samples_per_pixel = 1024;
+  const Image truth = render_still(list, options);
+  options.samples_per_pixel = 256;
+  options.noise = 3.0;
+  const Image image = render_still(list, options);
+  double squares = 0.0;
+  for (size_t i = 1; i < image.rgba.size(); i += 4) {
+    const double off = double{1} * image.rgba[i] - truth.rgba[i];
+    squares += off * off;
+  }
+  EXPECT_LT(std::sqrt(squares / (160 * 90)), options.noise);
+}
+
 TEST(Still, SilhouetteFallsWhereTheCameraPutsIt) {
   TriMesh mesh = plate(0);
   DrawList list;

@@ -1,0 +1,116 @@
+#include "reports/movie_camera.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/units.h"
+#include "render/camera.h"
+#include "reports/pictures.h"
+
+namespace swarf::reports {
+namespace {
+
+constexpr double kShotFieldOfView = 0.45;  // rad, vertical: a long lens, little distortion
+constexpr double kToolWidths = 14.0;       // tool diameters across the picture that follows the tool
+/// Where the work travels farther than so many times its own size, the camera goes with it: else it would be
+/// a speck.
+constexpr double kFarTravel = 2.0;
+constexpr double kAroundStock = 0.9;  // of its greatest side, shown on every side
+constexpr render::Rgb kTrailColour{0.85F, 0.10F, 0.05F};
+
+Vec3 turned_about_z(const Vec3& direction, double angle) {
+  return Eigen::AngleAxisd(angle, Vec3::UnitZ()) * direction;
+}
+
+Box around(const Vec3& centre, double half) {
+  return {centre - Vec3::Constant(half), centre + Vec3::Constant(half)};
+}
+
+}  // namespace
+
+ShotView::ShotView(const FinishedRun& run, const std::string& default_camera)
+    : run_(run),
+      view_(run.job),
+      default_camera_(default_camera),
+      seen_{Vec3::Constant(1e9), Vec3::Constant(-1e9)} {
+  constexpr size_t kPlaces = 50;
+  for (const motion::Cycle& cycle : run.shown_cycles(kPlaces)) {
+    const Vec3 centre = view_.work_pose(cycle.q) * run.job.scene.stock.box_W.centre();
+    seen_.lower = seen_.lower.cwiseMin(centre);
+    seen_.upper = seen_.upper.cwiseMax(centre);
+  }
+}
+
+Vec3 ShotView::direction(const PlannedFrame& frame, sim::MovieView view) const {
+  const sim::MovieShot& shot = run_.job.scene.movie.shots[frame.shot];
+  const std::string otherwise = view == sim::MovieView::kPart ? "iso" : default_camera_;
+  const Vec3 from = camera_direction(shot.camera.empty() ? otherwise : shot.camera);
+  return turned_about_z(from, rad_from_deg(shot.orbit_deg) * frame.share);
+}
+
+render::Camera ShotView::camera(const PlannedFrame& frame, sim::MovieView view,
+                                const std::array<int, 2>& size) const {
+  const sim::MovieShot& shot = run_.job.scene.movie.shots[frame.shot];
+  const double aspect = static_cast<double>(size[0]) / size[1];
+  const Box& stock = run_.job.scene.stock.box_W;
+  const auto tool = static_cast<size_t>(frame.cycle.sample.tool);
+  const bool part = view == sim::MovieView::kPart;
+  const double side = stock.size().maxCoeff();
+  const Pose X_work = part ? Pose::Identity() : view_.work_pose(frame.cycle.q);
+  Vec3 centre = X_work * stock.centre();
+  Box box = around(centre, (part ? 0.5 : 0.5 + kAroundStock) * side);
+  if (part) box = stock;
+  sim::MovieFollow follow = shot.follow;
+  if (follow == sim::MovieFollow::kNothing && !part) {
+    if (shot.width_mm == 0.0 && seen_.size().maxCoeff() > kFarTravel * side) {
+      follow = sim::MovieFollow::kWork;
+    } else {
+      centre = seen_.centre();
+      box = {seen_.lower.array() - kAroundStock * side, seen_.upper.array() + kAroundStock * side};
+    }
+  }
+  double width = shot.width_mm;
+  if (follow == sim::MovieFollow::kTool) {
+    centre = X_work * frame.cycle.sample.pose.tip_W;
+    if (width == 0.0) width = kToolWidths * run_.job.scene.tools[tool].diameter_mm;
+  }
+  const Vec3 from = direction(frame, view);
+  if (width == 0.0) return render::look_at_box(box, -from, kShotFieldOfView, aspect);
+  render::Camera camera = render::look_at_box(around(centre, 1.0), -from, kShotFieldOfView, aspect);
+  camera.eye = centre + from.normalized() * (0.5 * width / (std::tan(0.5 * kShotFieldOfView) * aspect));
+  return camera;
+}
+
+render::DrawList ShotView::list(const PlannedFrame& frame, sim::MovieView view,
+                                const std::array<int, 2>& size, const StockState& stock,
+                                const std::vector<uint64_t>& revisions,
+                                const std::vector<Vec3>& tip_trail) const {
+  const sim::MovieShot& shot = run_.job.scene.movie.shots[frame.shot];
+  const auto tool = static_cast<size_t>(frame.cycle.sample.tool);
+  const bool part = view == sim::MovieView::kPart;
+  const Pose X_work = view_.work_pose(frame.cycle.q);
+  const Pose X_drawn = part ? Pose::Identity() : X_work;
+  render::DrawList list;
+  list.camera = camera(frame, view, size);
+  if (part) {
+    const Pose X_WT = X_work.inverse() * view_.tool_pose(frame.cycle.q, tool);
+    list.items.push_back({&view_.cutter(tool), X_WT, kToolMaterial});
+    list.items.push_back({&view_.holder(tool), X_WT * view_.holder_in_tool(tool), kHolderMaterial});
+  } else {
+    list.items = view_.items(frame.cycle.q, tool, nullptr);
+  }
+  const size_t before = list.items.size();
+  add_stock(stock, revisions, X_drawn, list.items);
+  if (shot.section) {
+    list.section = {X_drawn * shot.section->first, X_drawn.linear() * shot.section->second};
+    for (size_t i = before; i < list.items.size(); ++i) list.items[i].sectioned = true;
+  }
+  if (tip_trail.size() > 1) {
+    render::DrawLine line{{}, kTrailColour, std::max(1.5F, static_cast<float>(size[1]) / 400.0F), "trail"};
+    for (const Vec3& tip : tip_trail) line.points.push_back(X_drawn * tip);
+    list.lines.push_back(line);
+  }
+  return list;
+}
+
+}  // namespace swarf::reports

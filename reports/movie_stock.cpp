@@ -1,0 +1,143 @@
+#include "reports/movie_stock.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <limits>
+
+#include "base/hash.h"
+#include "base/parallel.h"
+#include "mesh/mesh_ops.h"
+#include "render/figures/colour.h"
+#include "reports/part_view.h"
+#include "sim/run/measured_mesh.h"
+
+namespace swarf::reports {
+namespace {
+
+/// Of the movie's voxel: far below a pixel, while flat sides become a few triangles.
+constexpr double kThinVoxels = 0.05;
+/// A vertex nearer than this to the finished surface, in voxels of the movie, lies on it.
+constexpr double kFinishedVoxels = 0.15;
+constexpr int8_t kNoTool = -1;
+
+/// Of all patches of all movies, so that renderers can trust it.
+std::atomic<uint64_t> last_revision{0};
+
+/// Of the surfaces that each tool has cut, linear; they repeat.
+constexpr std::array<render::Rgb, 6> kToolColours{{{0.16F, 0.36F, 0.62F},
+                                                   {0.70F, 0.33F, 0.06F},
+                                                   {0.15F, 0.45F, 0.20F},
+                                                   {0.48F, 0.16F, 0.42F},
+                                                   {0.62F, 0.53F, 0.08F},
+                                                   {0.07F, 0.47F, 0.50F}}};
+
+std::array<uint8_t, 4> colour_of(int8_t tool) {
+  if (tool == kNoTool) return render::srgb8_from_linear(kStockMaterial.colour);
+  return render::srgb8_from_linear(kToolColours[static_cast<size_t>(tool) % kToolColours.size()]);
+}
+
+uint64_t place_key(const std::array<float, 3>& p) {
+  Hash hash;
+  for (const float c : p) hash.add(c);
+  return hash.value();
+}
+
+bool one_colour(const TriMesh& mesh) {
+  return std::all_of(mesh.colours.begin(), mesh.colours.end(),
+                     [&](const auto& c) { return c == mesh.colours.front(); });
+}
+
+}  // namespace
+
+void add_stock(const StockState& state, const std::vector<uint64_t>& revisions, const Pose& X_world,
+               std::vector<render::DrawItem>& items) {
+  for (size_t i = 0; i < state.size(); ++i) {
+    if (!state[i] || state[i]->triangles.empty()) continue;
+    render::DrawItem item{state[i].get(), X_world, kStockMaterial};
+    item.revision = revisions[i];
+    item.outside_only = true;
+    items.push_back(item);
+  }
+}
+
+MovieStock::MovieStock(const FinishedRun& run, sim::MovieColours colours)
+    : run_(run),
+      stock_(sim::starting_stock(run.job, run.carried, run.job.scene.movie.voxel_mm)),
+      all_(sim::stock_sweeps(run.job, run.cycles)),
+      solids_(sim::tool_solids(run.job.scene)),
+      colours_(colours),
+      patches_(mesher_.patches()),
+      revisions_(mesher_.patches(), 0),
+      tools_(mesher_.patches()) {}
+
+void MovieStock::advance(const motion::Cycle& cycle) {
+  size_t end = done_;
+  while (end < all_.sweeps.size() && sim::is_done(all_.sources[all_.sweeps[end].block], cycle)) ++end;
+  sim::for_each_tool(
+      std::span(all_.sweeps).subspan(done_, end - done_),
+      [&](uint32_t block) { return all_.sources[block].tool; },
+      [&](size_t tool, std::span<const stock::Sweep> part) {
+        stock_.cut(part, solids_[tool]);
+        cutting_ = static_cast<int8_t>(tool);
+      });
+  done_ = end;
+  const std::vector<size_t> changed = mesher_.update();
+  std::vector<std::shared_ptr<TriMesh>> made(changed.size());
+  parallel_chunks(changed.size(), 1, [&](size_t i, size_t) {
+    made[i] = std::make_shared<TriMesh>(mesher_.patch(changed[i]));
+    if (colours_ == sim::MovieColours::kTool) colour_by_tool(changed[i], *made[i]);
+    mesh::split_creases(*made[i], kCreaseRad);
+  });
+  if (colours_ == sim::MovieColours::kDeviation) colour_by_deviation(made);
+  parallel_chunks(changed.size(), 1, [&](size_t i, size_t) {
+    if (one_colour(*made[i])) mesh::thin_for_display(*made[i], kThinVoxels * run_.job.scene.movie.voxel_mm);
+  });
+  for (size_t i = 0; i < changed.size(); ++i) {
+    patches_[changed[i]] = std::move(made[i]);
+    revisions_[changed[i]] = ++last_revision;
+  }
+  made_ += changed.size();
+}
+
+/// A vertex that stands where one stood keeps its tool; the others are of the tool at work.
+void MovieStock::colour_by_tool(size_t number, TriMesh& mesh) {
+  std::vector<std::pair<uint64_t, int8_t>>& before = tools_[number];
+  const bool first = before.empty() && revisions_[number] == 0;
+  std::vector<std::pair<uint64_t, int8_t>> now;
+  for (const auto& position : mesh.positions) {
+    const uint64_t key = place_key(position);
+    const auto old =
+        std::lower_bound(before.begin(), before.end(), std::pair(key, std::numeric_limits<int8_t>::min()));
+    const bool stood = old != before.end() && old->first == key;
+    now.emplace_back(key, first ? kNoTool : stood ? old->second : cutting_);
+    mesh.colours.push_back(colour_of(now.back().second));
+  }
+  std::sort(now.begin(), now.end());
+  before = std::move(now);
+}
+
+/// What lies on the finished surface by now shows its deviation; what is still to be cut is bare.
+void MovieStock::colour_by_deviation(const std::vector<std::shared_ptr<TriMesh>>& made) const {
+  TriMesh all;
+  for (const auto& mesh : made) {
+    all.positions.insert(all.positions.end(), mesh->positions.begin(), mesh->positions.end());
+    all.normals.insert(all.normals.end(), mesh->normals.begin(), mesh->normals.end());
+  }
+  const double voxel = run_.job.scene.movie.voxel_mm;
+  sim::measure_mesh({run_.job, run_.cycles, run_.dexels, voxel, false}, all);
+  const render::DeviationScale scale = deviation_scale(run_.job);
+  size_t at = 0;
+  for (const auto& mesh : made) {
+    for (const auto& p : mesh->positions) {
+      const float deviation = all.deviation_um[at++];
+      const bool finished = std::abs(run_.stock.distance_mm({p[0], p[1], p[2]})) < kFinishedVoxels * voxel;
+      mesh->colours.push_back(finished && std::isfinite(deviation)
+                                  ? render::srgb8_from_linear(render::deviation_colour(deviation, scale))
+                                  : colour_of(kNoTool));
+    }
+  }
+}
+
+}  // namespace swarf::reports

@@ -1,0 +1,55 @@
+// The stock of a movie as it is cut, in patches of which only the changed ones are made again.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "mesh/tri_mesh.h"
+#include "render/draw_list.h"
+#include "reports/machine_view.h"
+#include "sim/job/scene.h"
+#include "sim/run/job_sweeps.h"
+#include "stock/mesher/stock_mesher.h"
+
+namespace swarf::reports {
+
+/// A state of the stock: its patches, shared with the states before and after it.
+using StockState = std::vector<std::shared_ptr<const TriMesh>>;
+
+/// Items of a state, in the frame that X_world leads to from the work frame. The state must outlive them.
+void add_stock(const StockState& state, const std::vector<uint64_t>& revisions, const Pose& X_world,
+               std::vector<render::DrawItem>& items);
+
+/// The stock as the program cuts it, at the movie's own voxel size.
+class MovieStock {
+ public:
+  MovieStock(const FinishedRun& run, sim::MovieColours colours);
+
+  /// Cuts everything up to and including this cycle, which is no earlier than the last one.
+  void advance(const motion::Cycle& cycle);
+  const StockState& state() const { return patches_; }
+  /// By patch: grows when the patch changes, and is like that of no other.
+  const std::vector<uint64_t>& revisions() const { return revisions_; }
+  /// Patches made again in all calls of advance().
+  size_t patches_made() const { return made_; }
+
+ private:
+  void colour_by_tool(size_t number, TriMesh& mesh);
+  void colour_by_deviation(const std::vector<std::shared_ptr<TriMesh>>& made) const;
+
+  const FinishedRun& run_;
+  stock::Stock stock_;
+  stock::StockMesher mesher_{stock_};
+  sim::JobSweeps all_;
+  std::vector<stock::CutterSolid> solids_;  ///< by tool
+  sim::MovieColours colours_;
+  StockState patches_;
+  std::vector<uint64_t> revisions_;
+  std::vector<std::vector<std::pair<uint64_t, int8_t>>> tools_;  ///< by patch: place of a vertex, who cut it
+  int8_t cutting_ = 0;                                           ///< the last tool that cut
+  size_t done_ = 0, made_ = 0;
+};
+
+}  // namespace swarf::reports

@@ -1,0 +1,115 @@
+// Movies by storyboard, pictures of findings, and what is wrong with either, from the shipped program.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "image/movie_frames.h"
+#include "image/reference_picture.h"
+#include "render/image_io.h"
+#include "support/program_run.h"
+
+namespace swarf::test {
+namespace {
+
+namespace fs = std::filesystem;
+using render::Image;
+
+constexpr const char* kPocket = "run " SWARF_SOURCE_DIR "/scenes/nc_pocket/scene.toml ";
+
+/// A run of the pocket with these shots, and its folder.
+struct PocketRun {
+  fs::path folder;
+  ProgramRun run;
+};
+PocketRun pocket(const std::string& name, const std::string& shots, const std::string& more) {
+  PocketRun job;
+  job.folder = fresh_folder("storyboard_" + name) / "run";
+  job.run =
+      run_swarf(kPocket + fmt::format("-o {} --set 'stills.kinds=[\"part\"]' --set stills.samples=1 --set "
+                                      "'movie.size=[480,270]' --set 'movie.shot={}' {}",
+                                      job.folder.string(), shots, more));
+  return job;
+}
+
+TEST(Storyboard, SplitSectionTrailAndToolColoursLookLikeTheReference) {
+  const PocketRun job = pocket("shots",
+                               "[{view=\"split\", speed=\"cutting\", seconds=0.5},"
+                               "{view=\"part\", orbit_deg=40, section_mm=[[20,15,0],[0,-1,0]], seconds=0.5},"
+                               "{follow=\"tool\", camera=\"left\", trail_s=3, speed=\"block\", seconds=0.5}]",
+                               "--set movie.colours=tool");
+  ASSERT_EQ(job.run.exit_code, 0) << job.run.output;
+  const std::vector<Image> frames = movie_frames((job.folder / "movie.mp4").string());
+  ASSERT_EQ(frames.size(), 45U);
+  expect_like_reference(frames[12], "shot_split.png");
+  expect_like_reference(frames[25], "shot_section.png");
+  expect_like_reference(frames[36], "shot_tool.png");
+}
+
+TEST(Storyboard, ALineThatMovesNothingIsToldAndTheRestIsKept) {
+  const PocketRun job = pocket("line", "[{from_line=100000}]", "");
+  EXPECT_EQ(job.run.exit_code, 2) << job.run.output;
+  EXPECT_NE(job.run.output.find("place-unknown"), std::string::npos) << job.run.output;
+  EXPECT_NE(job.run.output.find("the nearest line with motion"), std::string::npos) << job.run.output;
+  EXPECT_TRUE(fs::exists(job.folder / "report.html"));
+  EXPECT_FALSE(fs::exists(job.folder / "movie.mp4"));
+}
+
+TEST(Storyboard, AnUnknownCameraIsToldBeforeAnythingIsCut) {
+  const PocketRun job = pocket("camera", "[{camera=\"drone\"}]", "");
+  EXPECT_EQ(job.run.exit_code, 2);
+  EXPECT_NE(job.run.output.find("unknown-camera"), std::string::npos) << job.run.output;
+  EXPECT_FALSE(fs::exists(job.folder));
+}
+
+/// A run with findings, made once.
+const PocketRun& gouges() {
+  static const PocketRun job = [] {
+    PocketRun made;
+    made.folder = fresh_folder("storyboard_gouges") / "run";
+    made.run = run_swarf("run " SWARF_SOURCE_DIR "/scenes/exact_gouges/scene.toml --no-render -o " +
+                         made.folder.string());
+    return made;
+  }();
+  return job;
+}
+
+ProgramRun render_gouges(const std::string& options) {
+  return run_swarf(fmt::format("render {} --size 320 180 --samples 2 {}", gouges().folder.string(), options));
+}
+
+TEST(FindingPicture, ShowsWhereItIsOrSaysHowManyThereAre) {
+  ASSERT_EQ(gouges().run.exit_code, 1) << gouges().run.output;
+  const fs::path file = gouges().folder / "finding.png";
+  const ProgramRun made = render_gouges("--finding 1 --still " + file.string());
+  ASSERT_EQ(made.exit_code, 0) << made.output;
+  EXPECT_EQ(render::load_png(file.string()).width, 320);
+  const ProgramRun none = render_gouges("--finding 999 --still " + file.string());
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_NE(none.output.find("unknown-finding"), std::string::npos) << none.output;
+  EXPECT_EQ(render_gouges("--finding 1").exit_code, 2);
+}
+
+TEST(TransparentStill, HasNothingBehindThePart) {
+  const fs::path file = gouges().folder / "clear.png";
+  const ProgramRun made = render_gouges("--transparent --kind part --still " + file.string());
+  ASSERT_EQ(made.exit_code, 0) << made.output;
+  const Image image = render::load_png(file.string());
+  EXPECT_EQ(image.rgba[3], 0);
+  EXPECT_EQ(image.rgba[static_cast<size_t>(4 * (90 * 320 + 160) + 3)], 255);
+}
+
+TEST(MovieEnding, WebmAndApngAreMadeAndOthersRefused) {
+  for (const std::string ending : {".webm", ".apng"}) {
+    const fs::path file = gouges().folder / ("movie" + ending);
+    const ProgramRun made = render_gouges("--seconds 0.2 --movie " + file.string());
+    ASSERT_EQ(made.exit_code, 0) << made.output;
+    EXPECT_EQ(movie_frames(file.string()).size(), 6U) << ending;
+  }
+  const ProgramRun other = render_gouges("--movie " + (gouges().folder / "movie.avi").string());
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_NE(other.output.find("movie-ending"), std::string::npos) << other.output;
+}
+
+}  // namespace
+}  // namespace swarf::test
