@@ -26,6 +26,9 @@ constexpr double kNodesMin = 12.0, kNodesPerRadian = 120.0, kNodesMax = 4096.0;
 constexpr size_t kCellsMax = 96;
 /// Differences at the nodes miss what lies between them by less than this share.
 constexpr double kBetweenNodes = 1.1;
+/// The same on a splined curve, whose third derivatives jump at its knots; and the share that its slopes may
+/// be missed by.
+constexpr double kBetweenKnots = 1.5, kSlopeOfCurve = 1.0 + 1e-4;
 constexpr double kWholeTurn = 2.0 * kPi;
 /// A rotary that turns by more than this from node to node jumps, rad.
 constexpr double kJump = 0.5;
@@ -277,7 +280,8 @@ PathCell BlockCurve::bounds_between(size_t from, size_t to) const {
     cell.third = cell.third.cwiseMax(
         (nodes_[i + 3] - 3.0 * nodes_[i + 2] + 3.0 * nodes_[i + 1] - nodes_[i]).cwiseAbs());
   }
-  cell.third *= kBetweenNodes / (h * h * h);
+  const bool on_curve = motion_->block.curve.has_value();
+  cell.third *= (on_curve ? kBetweenKnots : kBetweenNodes) / (h * h * h);
   for (size_t i = std::max<size_t>(1, from); i <= std::min(last - 1, to); ++i) {
     if (jump(i - 1) || jump(i)) continue;
     cell.first = cell.first.cwiseMax(0.5 * (nodes_[i + 1] - nodes_[i - 1]).cwiseAbs());
@@ -297,6 +301,7 @@ PathCell BlockCurve::bounds_between(size_t from, size_t to) const {
   cell.second = cell.second / (h * h) + (ends ? 1.0 : 0.5) * h * cell.third;
   cell.first = cell.first / h + 0.3 * h * h * cell.third;
   if (ends) cell.first = cell.first.cwiseMax(edge / h + 0.5 * h * cell.second);
+  if (on_curve) cell.first *= kSlopeOfCurve;
   return cell;
 }
 
