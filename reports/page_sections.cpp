@@ -300,7 +300,8 @@ std::string findings_section(const ReportData& data) {
   const bool view = !data.viewer.part_glb.empty() || !data.viewer.machine_glb.empty();
   std::string out = R"(<ol class="findings">)";
   const size_t shown = std::min(findings.size(), kFindingsShown);
-  for (size_t i = 0; i < shown; ++i) out += finding_card(findings[i], i + 1, view, !data.movie_mp4.empty());
+  const bool movie = !data.movie_mp4.empty() && data.movie_even;
+  for (size_t i = 0; i < shown; ++i) out += finding_card(findings[i], i + 1, view, movie);
   out += "</ol>" + findings_island(findings, shown);
   if (shown < findings.size()) {
     out += fmt::format(R"(<p class="note">The first {} of {}; findings.json has them all.</p>)", shown,
@@ -327,10 +328,10 @@ std::string movie_section(const ReportData& data) {
   if (data.movie_mp4.empty()) return "";
   return section(
       "movie", "Movie",
-      fmt::format(R"(<figure class="movie"><video controls playsinline preload="metadata" aria-label="{}")"
+      fmt::format(R"(<figure class="movie"><video controls playsinline preload="metadata"{} aria-label="{}")"
                   R"( src="data:video/mp4;base64,{}"></video>{}</figure>)",
-                  escape(data.movie_caption), base64(read_file(data.movie_mp4)),
-                  element("figcaption", "", data.movie_caption)));
+                  data.movie_even ? " data-even" : "", escape(data.movie_caption),
+                  base64(read_file(data.movie_mp4)), element("figcaption", "", data.movie_caption)));
 }
 
 std::string stills_section(const std::vector<Still>& stills) {

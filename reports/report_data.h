@@ -189,6 +189,8 @@ struct ReportData {
   std::string hero_caption;
   Viewer3d viewer;
   std::string movie_mp4;  ///< path; empty: none
+  /// It runs evenly over what is shown of the program, so that a time of the program has its second in it.
+  bool movie_even = true;
   std::string movie_caption;
   std::vector<Still> stills;
   std::vector<Plot> plots;

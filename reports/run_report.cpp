@@ -400,6 +400,10 @@ ReportData report_data(const sim::Job& job, const sim::Result& result, const Run
   data.viewer.colour_bar.high_value = deviation_scale(job).above_um;
   data.viewer.program = page_program(job, result, files);
   data.movie_mp4 = files.movie;
+  const std::vector<sim::MovieShot>& shots = job.scene.movie.shots;
+  data.movie_even = shots.size() == 1 && shots.front().speed == sim::MovieSpeed::kTime &&
+                    !shots.front().from_s && !shots.front().to_s && !shots.front().from_line &&
+                    !shots.front().to_line;
   data.movie_caption =
       "The whole program, evenly sped up. The tool cuts the stock as it stands at that moment.";
   data.plots = run_plots(job, result);

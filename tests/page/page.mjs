@@ -54,7 +54,7 @@ async function checkFindings(page) {
     await page.locator(`#viewer[data-finding="${i + 1}"]`).waitFor();
     assert.match(await page.locator('.viewer-info').textContent(), new RegExp(`^Finding ${i + 1}: `));
     if (finding.line) assert.match(await page.locator('.viewer-program .at').textContent(), new RegExp(`^${finding.line}`));
-    const video = page.locator('#movie video');
+    const video = page.locator('#movie video[data-even]');
     if (!(await video.count()) || finding.t_s === null) continue;
     await page.waitForFunction(() => document.querySelector('#movie video').readyState >= 1);
     const [at, wanted] = await video.evaluate((element, t_s) => {

@@ -44,9 +44,9 @@ async function showInView(number, scroll) {
   await panel.showFinding(number);
 }
 
-/** The movie at the finding's second: it shows the program from data.from_s to data.to_s. */
+/** The movie at the finding's second: it runs evenly over the program from data.from_s to data.to_s, unless shots cut it together. */
 function showInMovie(number, scroll) {
-  const video = document.querySelector('#movie video'), finding = readFindings()[number - 1];
+  const video = document.querySelector('#movie video[data-even]'), finding = readFindings()[number - 1];
   if (!video || !finding || finding.t_s === null) return;
   const { from_s, to_s } = Program.read().data;
   const seek = () => { video.currentTime = (video.duration * (finding.t_s - from_s)) / Math.max(to_s - from_s, 1e-9); };
