@@ -21,7 +21,7 @@ struct Stretch {
 };
 
 /// Ends of the stretches that run one line.
-std::vector<Stretch> stretches_of(const Way& way) {
+std::vector<Stretch> line_stretches(const Way& way) {
   std::vector<Stretch> stretches;
   for (const WayPoint& point : way.points) {
     if (stretches.empty() || stretches.back().line != point.line)
@@ -44,7 +44,7 @@ PageJson texts_of(const std::string& file, const std::vector<Stretch>& stretches
 }  // namespace
 
 std::string page_program(const sim::Job& job, const sim::Result& result, const RunFiles& files) {
-  const std::vector<Stretch> stretches = stretches_of(files.way);
+  const std::vector<Stretch> stretches = line_stretches(files.way);
   const size_t stride = 1 + stretches.size() / kPagePoints;
   PageJson t_ms = PageJson::array(), line = PageJson::array(), tools = PageJson::array();
   for (size_t i = 0; i < stretches.size(); i += stride) {
