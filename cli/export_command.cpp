@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
+#include <map>
 #include <memory>
 
+#include "base/file.h"
 #include "base/units.h"
 #include "cli/commands.h"
 #include "cli/terminal.h"
@@ -12,6 +14,7 @@
 #include "reports/part_view.h"
 #include "reports/pending_folder.h"
 #include "reports/pictures.h"
+#include "reports/review_models.h"
 #include "reports/run_output.h"
 #include "sim/run/measured_mesh.h"
 #include "sim/run/recorder.h"
@@ -20,10 +23,11 @@ namespace swarf::cli {
 namespace {
 
 struct ExportOptions {
-  std::string folder, gltf, machine_gltf, stl, ply, vdb, trajectory;
+  std::string folder, gltf, machine_gltf, stl, obj, ply, vdb, trajectory;
   sim::WindowPlaces window;
   double error_um = 2.0;
-  bool needs_stock() const { return !(gltf + machine_gltf + stl + ply + vdb).empty(); }
+  render::GltfEncoding encoding = render::GltfEncoding::kFloat;
+  bool needs_stock() const { return !(gltf + machine_gltf + stl + obj + ply + vdb).empty(); }
 };
 
 void check_options(const ExportOptions& options) {
@@ -36,8 +40,8 @@ void check_options(const ExportOptions& options) {
                      "--from and --to are for motions: the finished part has none",
                      "write for example: swarf export DIR --trajectory part.csv --from 60 --to 62");
   }
-  for (const std::string& file :
-       {options.gltf, options.machine_gltf, options.stl, options.ply, options.vdb, options.trajectory})
+  for (const std::string& file : {options.gltf, options.machine_gltf, options.stl, options.obj, options.ply,
+                                  options.vdb, options.trajectory})
     reports::check_output_file(file);
   if (!options.trajectory.empty()) sim::check_cycle_table_name(options.trajectory);
 }
@@ -51,18 +55,23 @@ void write_trajectory(const ExportOptions& options, const sim::Job& job, const m
 }
 
 void write_gltf(const ExportOptions& options, const reports::FinishedRun& run) {
-  const reports::DisplayMesh light =
-      reports::display_mesh(run, run.stock.mesh(), options.error_um * kMicrometre);
-  if (!options.gltf.empty()) reports::write_part_glb(run, light, options.gltf);
-  if (!options.machine_gltf.empty()) reports::write_machine_glb(run, light, options.machine_gltf);
-  fmt::print("glTF: finished part decimated within {:.3f} um\n", um_from_mm(light.error_mm));
+  const reports::ReviewModels models =
+      reports::review_models(run, run.stock.mesh(), options.error_um * kMicrometre, {}, {});
+  const reports::GltfOptions written{options.encoding, true};
+  const auto write = [](const std::string& path, const std::string& bytes) {
+    replace_file(path, bytes, {"cannot-write-file", "the glTF file cannot be written"});
+  };
+  if (!options.gltf.empty()) write(options.gltf, reports::part_glb(run, models, written));
+  if (!options.machine_gltf.empty()) write(options.machine_gltf, reports::machine_glb(run, models, written));
+  fmt::print("glTF: finished part decimated within {:.3f} um\n", um_from_mm(models.part.error_mm));
 }
 
 void write_meshes(const ExportOptions& options, const reports::FinishedRun& run) {
-  if (!options.stl.empty()) {
+  for (const std::string& file : {options.stl, options.obj}) {
+    if (file.empty()) continue;
     const TriMesh part = run.stock.mesh();
-    mesh::save_mesh(options.stl, part);
-    fmt::print("{}: {} triangles, mm\n", options.stl, part.triangles.size());
+    mesh::save_mesh(file, part);
+    fmt::print("{}: {} triangles, mm\n", file, part.triangles.size());
   }
   if (!options.ply.empty()) {
     TriMesh coloured = reports::part_mesh(run);
@@ -114,6 +123,7 @@ void add_export(CLI::App& app, int& exit_code) {
       "farther from than 0.02 mm or 0.0115 deg; more where an axis would have over 32768 keys: "
       "asset.extras says how far, for each axis (key_error_max_X_mm)");
   command->add_option("--stl", options->stl, "finished part (.stl, mm)");
+  command->add_option("--obj", options->obj, "finished part (.obj, mm)");
   command->add_option("--ply", options->ply, "finished part with deviation (.ply, mm)");
   command->add_option("--vdb", options->vdb, "finished stock as a level set (.vdb)");
   command->add_option("--trajectory", options->trajectory,
@@ -122,8 +132,21 @@ void add_export(CLI::App& app, int& exit_code) {
   command->add_option("--error-um", options->error_um, "largest error of the decimation for --gltf")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
+  static const std::map<std::string, render::GltfEncoding> kEncodings{
+      {"float", render::GltfEncoding::kFloat},
+      {"quantized", render::GltfEncoding::kQuantised},
+      {"meshopt", render::GltfEncoding::kMeshopt}};
+  command
+      ->add_option(
+          "--encoding", options->encoding,
+          "of --gltf and --machine-gltf: float, which every reader knows; quantized, positions in 16 "
+          "bits (KHR_mesh_quantization; asset.extras says within how many um); meshopt, the same "
+          "compressed (EXT_meshopt_compression: three.js, not Blender)")
+      ->transform(CLI::CheckedTransformer(kEncodings, CLI::ignore_case))
+      ->option_text("float|quantized|meshopt [float]");
   command->footer(R"(Examples:
   swarf export out/dome --stl part.stl
+  swarf export out/dome --gltf small.glb --encoding meshopt
   swarf export out/dome --trajectory cycles.csv --from 12.5 --to 13)");
   command->callback([options, &exit_code] { exit_code = export_run(*options); });
 }

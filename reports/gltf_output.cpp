@@ -8,19 +8,21 @@
 
 #include "base/units.h"
 #include "mesh/mesh_ops.h"
+#include "render/camera.h"
 #include "render/figures/colour.h"
 #include "render/gltf/gltf_writer.h"
+#include "reports/machine_nodes.h"
 #include "reports/part_view.h"
 #include "reports/pictures.h"
+#include "reports/review_models.h"
 
 namespace swarf::reports {
 namespace {
 
-/// The program is played in at most so long, and about in its own time if that is shorter.
-constexpr double kAnimationSeconds = 30.0;
-/// A key's rotation as four floats, rad: each is off by at most 2^-25, the angle by twice their norm.
-constexpr double kQuaternionError = 4.0 / (1U << 25U);
 constexpr double kMachinePartError = 0.02;  // mm; the part in machine.glb is only looked at
+constexpr size_t kStages = 9;               // of the stock before it is the part: each costs some 50 kB
+constexpr double kPinShare = 0.012;         // of the part's longest side: a pin's radius
+constexpr std::array<int, 2> kCameraAspect{16, 9};
 
 /// Copies of the vertices that the given triangles use.
 TriMesh sub_mesh(const TriMesh& mesh, const std::vector<std::array<uint32_t, 3>>& triangles,
@@ -55,13 +57,6 @@ std::pair<TriMesh, TriMesh> split_by_measure(const TriMesh& mesh) {
   return {sub_mesh(mesh, measured, true), sub_mesh(mesh, rest, false)};
 }
 
-/// Seconds of the animation for each cycle: a power of two, so that the time of every key is a float exactly.
-double cycle_seconds(const FinishedRun& run) {
-  const double own = std::exp2(std::round(std::log2(run.cycles.period_s())));
-  const auto cycles = static_cast<double>(std::max<size_t>(run.last_shown() - run.first_shown(), 1));
-  return std::min(own, std::exp2(std::floor(std::log2(kAnimationSeconds / cycles))));
-}
-
 /// Of every cycle that is shown.
 motion::AxisKeys keys_of(const FinishedRun& run) {
   motion::AxisKeys keys(run.job.machine.model.axes);
@@ -77,103 +72,42 @@ motion::AxisKeys keys_of(const FinishedRun& run) {
   return keys;
 }
 
-/// The machine as a tree of nodes: an axis moves its own node alone, in straight lines between its keys.
-class MachineNodes {
- public:
-  MachineNodes(const FinishedRun& run, const MachineView& view, const motion::AxisKeys& keys)
-      : run_(run), view_(view), keys_(keys), seconds_(cycle_seconds(run)) {
-    for (const machine::Link& link : run.job.machine.links) add_link(link);
-  }
-  void add_tools();
-  void add_part(const TriMesh& part);
-  std::vector<render::GltfNode> take() { return std::move(nodes_); }
-  /// How far each axis strays from the cycles between its keys.
-  void state_errors(std::map<std::string, std::string>& extras) const;
-
- private:
-  void add_link(const machine::Link& link);
-  int add(render::GltfNode node) {
-    nodes_.push_back(std::move(node));
-    return static_cast<int>(nodes_.size()) - 1;
-  }
-  int moving_node(const machine::Link& link, int parent);
-
-  const FinishedRun& run_;
-  const MachineView& view_;
-  const motion::AxisKeys& keys_;
-  double seconds_;
-  std::vector<render::GltfNode> nodes_;
-  std::vector<int> of_link_;  ///< the node that carries the link's mesh and what hangs on it
-};
-
-Pose shifted(const Vec3& by) {
-  Pose pose = Pose::Identity();
-  pose.translation() = by;
-  return pose;
+/// A double pyramid that stands on its lower tip, at the origin.
+TriMesh pin_mesh(double radius) {
+  const auto r = static_cast<float>(radius);
+  TriMesh mesh;
+  mesh.positions = {{0, 0, 0}, {r, 0, 3 * r}, {0, r, 3 * r}, {-r, 0, 3 * r}, {0, -r, 3 * r}, {0, 0, 4 * r}};
+  mesh.triangles = {{0, 2, 1}, {0, 3, 2}, {0, 4, 3}, {0, 1, 4}, {5, 1, 2}, {5, 2, 3}, {5, 3, 4}, {5, 4, 1}};
+  return mesh;
 }
 
-/// Carries what its axis moves; of a rotary axis it stands in the axis itself.
-int MachineNodes::moving_node(const machine::Link& link, int parent) {
-  const kinematics::Axis& axis = run_.job.machine.model.axes[static_cast<size_t>(link.axis)];
-  const bool rotary = axis.kind == kinematics::AxisKind::kRotary;
-  const Pose stand = rotary ? shifted(axis.origin_M) : Pose::Identity();
-  render::GltfNode node{link.name + " " + axis.name, nullptr, {}, parent, {}, {}};
-  for (const motion::AxisKey& key : keys_.axes()[static_cast<size_t>(link.axis)].keys()) {
-    node.times_s.push_back(static_cast<double>(key.cycle) * seconds_);
-    node.poses.push_back(stand.inverse() * kinematics::axis_motion(axis, key.q) * stand);
-    node.poses.back().translation() += stand.translation();
-  }
-  const int moving = add(std::move(node));
-  return rotary ? add({link.name + " frame", nullptr, {}, moving, {}, {stand.inverse()}}) : moving;
+render::GltfNode pin_node(const ReviewPin& pin, const TriMesh& mesh) {
+  constexpr render::Material kRed{{0.55F, 0.01F, 0.02F}, 0.0F, 0.5F};
+  constexpr render::Material kAmber{{0.70F, 0.33F, 0.0F}, 0.0F, 0.5F};
+  Pose place = Pose::Identity();
+  place.translation() = pin.place_W;
+  render::GltfNode node{fmt::format("finding {}: {}", pin.number, pin.code),
+                        &mesh,
+                        pin.severity == Severity::kError ? kRed : kAmber,
+                        -1,
+                        {},
+                        {place}};
+  node.extras = {{"role", "finding"},          {"finding", static_cast<double>(pin.number)},
+                 {"code", pin.code},           {"text", pin.text},
+                 {"line", double(pin.line)},   {"time_s", pin.t_s},
+                 {"amount_mm", pin.amount_mm}, {"x_mm", pin.place_W.x()},
+                 {"y_mm", pin.place_W.y()},    {"z_mm", pin.place_W.z()}};
+  return node;
 }
 
-void MachineNodes::add_link(const machine::Link& link) {
-  int node = link.parent < 0 ? -1 : of_link_[static_cast<size_t>(link.parent)];
-  if (link.axis >= 0) node = moving_node(link, node);
-  of_link_.push_back(
-      link.mesh.triangles.empty()
-          ? node
-          : add({link.name, &link.mesh, {link.colour, link.metalness, link.roughness}, node, {}, {}}));
-}
-
-void MachineNodes::add_tools() {
-  const std::vector<cutter::Cutter>& tools = run_.job.scene.tools;
-  const int parent = of_link_[static_cast<size_t>(run_.job.machine.tool_link)];
-  for (size_t tool = 0; tool < tools.size(); ++tool) {
-    const std::string name = tools.size() > 1 ? fmt::format(" {}", cutter::call_name(tools[tool])) : "";
-    render::GltfNode cutter{"cutter" + name, &view_.cutter(tool), kToolMaterial, parent, {}, {}};
-    for (const motion::AxisKeys::ToolKey& key : keys_.tools()) {
-      cutter.times_s.push_back(static_cast<double>(key.cycle) * seconds_);
-      cutter.poses.push_back(view_.tool_pose(kinematics::AxisValues::Zero(), tool));
-      cutter.shown.push_back(static_cast<size_t>(key.tool) == tool ? 1 : 0);
-    }
-    const int node = add(std::move(cutter));
-    add({"holder" + name, &view_.holder(tool), kHolderMaterial, node, {}, {view_.holder_in_tool(tool)}});
-  }
-}
-
-void MachineNodes::add_part(const TriMesh& part) {
-  add({"part",
-       &part,
-       kStockMaterial,
-       of_link_[static_cast<size_t>(run_.job.machine.work_link)],
-       {},
-       {view_.work_pose(kinematics::AxisValues::Zero())}});
-}
-
-void MachineNodes::state_errors(std::map<std::string, std::string>& extras) const {
-  const std::vector<kinematics::Axis>& axes = run_.job.machine.model.axes;
-  for (size_t i = 0; i < axes.size(); ++i) {
-    const motion::KeyLine& line = keys_.axes()[i];
-    double farthest = 0.0;
-    for (const motion::AxisKey& key : line.keys()) farthest = std::max(farthest, std::abs(key.q));
-    // A slanted axis has three floats for one value.
-    const bool rotary = axes[i].kind == kinematics::AxisKind::kRotary;
-    const double error = line.error() + (rotary ? kQuaternionError : farthest * std::exp2(-23.0));
-    extras[fmt::format("key_error_max_{}_{}", axes[i].name, rotary ? "deg" : "mm")] =
-        fmt::format("{:.6f}", rotary ? deg_from_rad(error) : error);
-    extras[fmt::format("keys_{}", axes[i].name)] = fmt::format("{}", line.keys().size());
-  }
+std::vector<render::GltfCamera> part_cameras(const Box& box) {
+  constexpr double kView = 0.45;  // rad, vertical: as the stills
+  std::vector<render::GltfCamera> cameras;
+  for (const char* name : {"iso", "front", "right", "back", "left", "top"})
+    cameras.push_back(
+        {fmt::format("camera {}", name), render::look_at_box(box, -camera_direction(name), kView,
+                                                             double(kCameraAspect[0]) / kCameraAspect[1])});
+  return cameras;
 }
 
 }  // namespace
@@ -182,47 +116,69 @@ double animation_scale(const FinishedRun& run) {
   return run.cycles.period_s() / cycle_seconds(run);
 }
 
-void write_part_glb(const FinishedRun& run, const DisplayMesh& part, const std::string& path) {
-  auto [measured, rest] = split_by_measure(part.mesh);
-  const render::DeviationScale scale = deviation_scale(run.job);
-  render::colour_by_deviation(measured, scale);
-  render::GltfScene scene;
-  if (!measured.triangles.empty()) {
-    scene.nodes.push_back({"machined surface", &measured, {{1.0F, 1.0F, 1.0F}, 0.0F, 0.6F}, -1, {}, {}, {}});
-  }
-  if (!rest.triangles.empty()) scene.nodes.push_back({"part", &rest, kStockMaterial, -1, {}, {}, {}});
-  scene.lines = fan_lines(run);
-  scene.extras = {{"scene", run.job.scene.name},
-                  {"deviation_scale_below_um", fmt::format("{:g}", scale.below_um)},
-                  {"deviation_scale_above_um", fmt::format("{:g}", scale.above_um)},
-                  {"decimation_error_um", fmt::format("{:.4f}", um_from_mm(part.error_mm))}};
-  render::write_glb(path, scene);
-}
-
-DisplayMesh display_mesh(const FinishedRun& run, const TriMesh& closed, double max_error_mm) {
+DisplayMesh display_mesh(const FinishedRun& run, const TriMesh& closed, double max_error_mm,
+                         std::span<const WorstPlace> worst) {
   DisplayMesh display;
   display.mesh = shown_part(run, mesh::decimate(closed, max_error_mm, &display.error_mm));
+  add_worst_places(run, worst, display.mesh);
   return display;
 }
 
-void write_machine_glb(const FinishedRun& run, const DisplayMesh& part, const std::string& path) {
+ReviewModels review_models(const FinishedRun& run, const TriMesh& closed, double max_error_mm,
+                           std::vector<ReviewPin> pins, std::span<const WorstPlace> worst) {
+  ReviewModels models{display_mesh(run, closed, max_error_mm, worst), stock_stages(run, kStages),
+                      program_way(run), std::move(pins)};
+  models.machine_part = mesh::decimate(models.part.mesh, kMachinePartError, nullptr);
+  models.machine_part.deviation_um.clear();
+  mesh::split_creases(models.machine_part, kCreaseRad);  // decimate() has joined them
+  return models;
+}
+
+std::string part_glb(const FinishedRun& run, const ReviewModels& models, const GltfOptions& options) {
+  auto [measured, rest] = split_by_measure(models.part.mesh);
+  const render::DeviationScale scale = deviation_scale(run.job);
+  if (options.colours) render::colour_by_deviation(measured, scale);
+  const Box box = mesh::bounds(models.part.mesh);
+  const TriMesh pin = pin_mesh(kPinShare * box.size().maxCoeff());
+  render::GltfScene scene;
+  const auto add = [&](const char* name, const TriMesh& mesh, const render::Material& material) {
+    if (mesh.triangles.empty()) return;
+    render::GltfNode node{name, &mesh, material, -1, {}, {}};
+    node.extras = {{"role", "part"}};
+    node.grid = box;  // both sides of the edge between them are rounded alike
+    scene.nodes.push_back(std::move(node));
+  };
+  add("machined surface", measured, {{1.0F, 1.0F, 1.0F}, 0.0F, 0.6F});
+  add("part", rest, kStockMaterial);
+  for (const ReviewPin& one : models.pins) scene.nodes.push_back(pin_node(one, pin));
+  scene.lines = fan_lines(run);
+  scene.paths = {gltf_path(models.way)};
+  scene.cameras = part_cameras(box);
+  scene.extras = {{"scene", run.job.scene.name},
+                  {"deviation_scale_below_um", scale.below_um},
+                  {"deviation_scale_above_um", scale.above_um},
+                  {"path_error_mm", models.way.error_mm},
+                  {"decimation_error_um", um_from_mm(models.part.error_mm)}};
+  return render::glb_bytes(scene, options.encoding);
+}
+
+std::string machine_glb(const FinishedRun& run, const ReviewModels& models, const GltfOptions& options) {
   const MachineView view(run.job);
-  TriMesh shown = mesh::decimate(part.mesh, kMachinePartError, nullptr);
-  shown.deviation_um.clear();
-  mesh::split_creases(shown, kCreaseRad);  // decimate() has joined them
   std::optional<motion::AxisKeys> own;
   if (run.keys == nullptr || run.window) own = keys_of(run);
   MachineNodes nodes(run, view, own ? *own : *run.keys);
   nodes.add_tools();
-  nodes.add_part(shown);
+  nodes.add_stock(models.stages, models.machine_part);
   render::GltfScene scene;
-  scene.extras = {{"scene", run.job.scene.name},
-                  {"program_seconds_per_second", fmt::format("{}", animation_scale(run))},
-                  {"program_seconds_at_start",
-                   fmt::format("{}", static_cast<double>(run.first_shown()) * run.cycles.period_s())}};
+  scene.clip = run.job.scene.name.empty() ? "program" : run.job.scene.name;
+  scene.cameras = {{"camera machine", machine_camera(run, "machine", {kCameraAspect[0], kCameraAspect[1]})}};
+  scene.extras = {
+      {"scene", run.job.scene.name},
+      {"program_seconds_per_second", animation_scale(run)},
+      {"program_seconds_at_start", static_cast<double>(run.first_shown()) * run.cycles.period_s()}};
   nodes.state_errors(scene.extras);
   scene.nodes = nodes.take();
-  render::write_glb(path, scene);
+  return render::glb_bytes(scene, options.encoding);
 }
 
 }  // namespace swarf::reports

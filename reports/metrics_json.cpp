@@ -1,5 +1,7 @@
 #include "reports/metrics_json.h"
 
+#include "reports/review_findings.h"
+
 #include "reports/avoidance_output.h"
 #include "reports/driven_output.h"
 #include "reports/flank_output.h"
@@ -535,9 +537,12 @@ std::string metrics_json(const sim::Job& job, const sim::Result& result, const R
 
 std::string findings_json(const sim::Result& result) {
   Json list = Json::array();
+  const std::vector<size_t> numbers = finding_numbers(result);
   for (const Severity severity : {Severity::kError, Severity::kWarning, Severity::kNote}) {
-    for (const sim::Finding& finding : result.findings) {
+    for (size_t i = 0; i < result.findings.size(); ++i) {
+      const sim::Finding& finding = result.findings[i];
       if (finding.severity != severity) continue;
+      const auto& place = finding.place_W;
       list.push_back({{"code", finding.code},
                       {"severity", severity_name(severity)},
                       {"check", finding.check.empty() ? Json(nullptr) : Json(finding.check)},
@@ -545,8 +550,11 @@ std::string findings_json(const sim::Result& result) {
                       {"fix", finding.fix},
                       {"file", finding.where.file},
                       {"line", finding.where.line},
+                      {"line_last", std::max(finding.where.line, finding.line_last)},
                       {"block", finding.block},
-                      {"t_s", finding.t_s}});
+                      {"t_s", finding.t_s},
+                      {"place_mm", place ? Json{place->x(), place->y(), place->z()} : Json(nullptr)},
+                      {"number", numbers[i]}});
     }
   }
   return json_text(list);

@@ -92,28 +92,79 @@ std::string key_number(const KeyNumber& number) {
                      element("span", "unit", number.unit), element("small", "", number.hint));
 }
 
-std::string place_of(const ReportFinding& finding) {
-  std::string out;
-  if (!finding.where.file.empty()) {
-    out = finding.where.file;
-    if (finding.where.line > 0) out += fmt::format(":{}", finding.where.line);
-    if (finding.where.column > 0) out += fmt::format(":{}", finding.where.column);
-  }
-  return out;
+std::string file_name(const std::string& path) {
+  return path.substr(path.find_last_of('/') + 1);
 }
 
-std::string finding_row(const ReportFinding& finding) {
-  struct Look {
-    const char *symbol, *word;
+/// "dome.nc, line 14" or "dome.nc, lines 14 to 20".
+std::string lines_of(const ReportFinding& finding) {
+  if (finding.where.file.empty()) return "";
+  const std::string file = file_name(finding.where.file);
+  if (finding.first_line == 0) return file;
+  return finding.first_line == finding.last_line
+             ? fmt::format("{}, line {}", file, finding.first_line)
+             : fmt::format("{}, lines {} to {}", file, finding.first_line, finding.last_line);
+}
+
+/// Where and when the worst of it is, and what of it the page can show.
+std::string finding_places(const ReportFinding& finding, size_t number, bool view, bool movie) {
+  std::string out = element("span", "", lines_of(finding));
+  const bool timed = std::isfinite(finding.time_s);
+  if (timed) out += fmt::format("<span>{:.3f} s</span>", finding.time_s);
+  const auto& [x, y, z] = finding.place_mm;
+  if (finding.has_place) out += fmt::format("<span>X {:.3f} Y {:.3f} Z {:.3f} mm</span>", x, y, z);
+  if (finding.count > 1) out += fmt::format("<span>{} places alike, the worst shown</span>", finding.count);
+  std::string buttons;
+  const auto button = [&](const char* what, const char* text) {
+    buttons += fmt::format(R"(<button type="button" data-show="{}" data-finding="{}">{}</button>)", what,
+                           number, text);
   };
-  static constexpr Look kLooks[] = {{"none", "Note"}, {"warning", "Warning"}, {"bad", "Error"}};
+  if (view && (finding.has_place || timed)) button("view", "Show in 3D");
+  if (movie && timed) button("movie", "Show in the movie");
+  buttons +=
+      fmt::format(R"(<a href="#finding-{}" aria-label="Link to finding {}">#{}</a>)", number, number, number);
+  return R"(<p class="places">)" + out + R"(</p><p class="actions">)" + buttons + "</p>";
+}
+
+std::string excerpt(const ReportFinding& finding) {
+  if (finding.excerpt.empty()) return "";
+  std::string out = fmt::format(
+      R"(<pre class="excerpt" tabindex="0" aria-label="{}"><code>)",
+      escape(fmt::format("{}, around line {}", file_name(finding.where.file), finding.where.line)));
+  for (const ProgramLine& one : finding.excerpt) {
+    const bool at = one.line == finding.where.line;
+    out += fmt::format("<span{}><i>{}</i>{}</span>", at ? R"( class="at")" : "", one.line, escape(one.text));
+  }
+  return out + "</code></pre>";
+}
+
+std::string finding_card(const ReportFinding& finding, size_t number, bool view, bool movie) {
+  struct Look {
+    const char *symbol, *word, *css_class;
+  };
+  static constexpr Look kLooks[] = {
+      {"none", "Note", "note"}, {"warning", "Warning", "warning"}, {"bad", "Error", "error"}};
   const Look& look = kLooks[static_cast<int>(finding.severity)];
-  const std::string time = std::isfinite(finding.time_s) ? fmt::format("{:.3f}", finding.time_s) : "–";
-  return fmt::format(R"(<tr><td class="nowrap">{}{}</td><td><code>{}</code></td><td class="prose">{}{}</td>)"
-                     R"(<td><code>{}</code></td><td class="number">{}</td></tr>)",
-                     symbol(look.symbol), look.word, escape(finding.code), escape(finding.text),
-                     element("span", "fix", finding.fix),
-                     escape(place_of(finding)) + element("span", "fix", finding.block), time);
+  std::string out =
+      fmt::format(R"(<li class="finding {}" id="finding-{}"><div><h3>{}{} {}: <code>{}</code></h3>)",
+                  look.css_class, number, symbol(look.symbol), look.word, number, escape(finding.code));
+  out += element("p", "", finding.text) + element("p", "do", finding.fix) +
+         finding_places(finding, number, view, movie) + "</div>";
+  return out + excerpt(finding) + "</li>";
+}
+
+/// For the 3D view and the movie: where each finding is.
+std::string findings_island(const std::vector<ReportFinding>& findings, size_t shown) {
+  std::string out = R"(<script type="application/json" id="findings-data">[)";
+  for (size_t i = 0; i < shown; ++i) {
+    const ReportFinding& one = findings[i];
+    const std::string time = std::isfinite(one.time_s) ? fmt::format("{:.6f}", one.time_s) : "null";
+    const auto& [x, y, z] = one.place_mm;
+    const std::string place = one.has_place ? fmt::format("[{:.6f},{:.6f},{:.6f}]", x, y, z) : "null";
+    out +=
+        fmt::format(R"({}{{"t_s":{},"place":{},"line":{}}})", i > 0 ? "," : "", time, place, one.where.line);
+  }
+  return out + "]</script>";
 }
 
 std::string table_open(const std::vector<Column>& columns, const std::string& caption) {
@@ -177,10 +228,19 @@ std::string colour_bar(const ColourBar& bar) {
   return out + "</figure>";
 }
 
-std::string embedded_glb(const char* id, const std::string& path) {
-  if (path.empty()) return "";
-  return fmt::format(R"(<script type="application/octet-stream" id="{}">{}</script>)", id,
-                     base64(read_file(path)));
+std::string embedded_glb(const char* id, const std::string& bytes) {
+  if (bytes.empty()) return "";
+  return fmt::format(R"(<script type="application/octet-stream" id="{}">{}</script>)", id, base64(bytes));
+}
+
+/// The colours of deviation and the limits that they end at, for a view that colours the part itself.
+std::string colour_data(const ColourBar& bar) {
+  if (bar.stops.empty() || bar.ticks.empty()) return "";
+  std::string stops;
+  for (const auto& [r, g, b] : bar.stops)
+    stops += fmt::format("{}{},{},{}", stops.empty() ? "" : " ", r, g, b);
+  return fmt::format(R"( data-stops="{}" data-low="{}" data-high="{}")", stops, bar.low_value,
+                     bar.high_value);
 }
 
 std::string legend(const Plot& plot) {
@@ -213,7 +273,7 @@ std::string verdict_header(const ReportData& data) {
       R"(<header class="{}"><div class="wrap"><p class="brand">Swarf simulation report</p>)", kind);
   out += element("h1", "", data.title) + element("p", "subtitle", data.subtitle);
   out += fmt::format(R"(<div class="verdict" role="status">{}<p><b>{}</b><span>{}</span></p></div>)",
-                     symbol(kind), data.verdict.pass ? "Pass" : "Findings", escape(data.verdict.headline));
+                     symbol(kind), data.verdict.pass ? "Pass" : "Fail", escape(data.verdict.headline));
   return out + criteria_list(data.verdict.criteria) + "</div></header>";
 }
 
@@ -229,18 +289,20 @@ std::string overview_section(const ReportData& data) {
   return section("overview", "Key numbers", out + "</dl></div>");
 }
 
-std::string findings_section(const std::vector<ReportFinding>& findings) {
+std::string findings_section(const ReportData& data) {
+  const std::vector<ReportFinding>& findings = data.findings;
   if (findings.empty()) {
     return section("findings", "Findings",
                    R"(<p class="nothing">)" + symbol("ok") +
                        R"(<span>None, in what was checked. <a href="#checks">)"
                        R"(What was checked, and what was not</a></span></p>)");
   }
-  std::string out =
-      table_open({{"Severity"}, {"Code"}, {"What was found"}, {"Block"}, {"Time", "s", true}}, "Findings");
+  const bool view = !data.viewer.part_glb.empty() || !data.viewer.machine_glb.empty();
+  std::string out = R"(<ol class="findings">)";
   const size_t shown = std::min(findings.size(), kFindingsShown);
-  for (size_t i = 0; i < shown; ++i) out += finding_row(findings[i]);
-  out += kTableClose;
+  const bool movie = !data.movie_mp4.empty() && data.movie_even;
+  for (size_t i = 0; i < shown; ++i) out += finding_card(findings[i], i + 1, view, movie);
+  out += "</ol>" + findings_island(findings, shown);
   if (shown < findings.size()) {
     out += fmt::format(R"(<p class="note">The first {} of {}; findings.json has them all.</p>)", shown,
                        findings.size());
@@ -251,9 +313,12 @@ std::string findings_section(const std::vector<ReportFinding>& findings) {
 std::string viewer_section(const Viewer3d& viewer) {
   if (viewer.part_glb.empty() && viewer.machine_glb.empty()) return "";
   std::string out =
-      fmt::format(R"(<div id="viewer" data-time-scale="{:.9g}" data-unit="{}"><p class="fallback">)"
+      fmt::format(R"(<div id="viewer" data-time-scale="{:.9g}" data-unit="{}"{}><p class="fallback">)"
                   R"(The 3D view needs JavaScript and WebGL. The stills below show the same part.</p></div>)",
-                  viewer.program_seconds_per_animation_second, escape(viewer.colour_bar.unit));
+                  viewer.program_seconds_per_animation_second, escape(viewer.colour_bar.unit),
+                  colour_data(viewer.colour_bar));
+  if (!viewer.program.empty())
+    out += R"(<script type="application/json" id="program-data">)" + viewer.program + "</script>";
   out += viewer.part_glb.empty() ? "" : colour_bar(viewer.colour_bar);
   out += embedded_glb("part-glb", viewer.part_glb) + embedded_glb("machine-glb", viewer.machine_glb);
   return section("view", "3D view", out);
@@ -263,10 +328,10 @@ std::string movie_section(const ReportData& data) {
   if (data.movie_mp4.empty()) return "";
   return section(
       "movie", "Movie",
-      fmt::format(R"(<figure class="movie"><video controls playsinline preload="metadata" aria-label="{}")"
+      fmt::format(R"(<figure class="movie"><video controls playsinline preload="metadata"{} aria-label="{}")"
                   R"( src="data:video/mp4;base64,{}"></video>{}</figure>)",
-                  escape(data.movie_caption), base64(read_file(data.movie_mp4)),
-                  element("figcaption", "", data.movie_caption)));
+                  data.movie_even ? " data-even" : "", escape(data.movie_caption),
+                  base64(read_file(data.movie_mp4)), element("figcaption", "", data.movie_caption)));
 }
 
 std::string stills_section(const std::vector<Still>& stills) {

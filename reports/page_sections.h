@@ -10,7 +10,7 @@ namespace swarf::reports {
 
 std::string verdict_header(const ReportData& data);
 std::string overview_section(const ReportData& data);
-std::string findings_section(const std::vector<ReportFinding>& findings);
+std::string findings_section(const ReportData& data);
 std::string viewer_section(const Viewer3d& viewer);
 std::string movie_section(const ReportData& data);
 std::string stills_section(const std::vector<Still>& stills);

@@ -46,22 +46,4 @@ ColourBar deviation_colour_bar(const render::DeviationScale& scale);
 render::Image deviation_picture(const TriMesh& coloured, const render::DeviationScale& scale,
                                 const std::string& camera, render::StillOptions options);
 
-/// The part for the eye, made light enough to be sent around.
-struct DisplayMesh {
-  TriMesh mesh;           ///< shown_part of the decimated mesh
-  double error_mm = 0.0;  ///< that the decimation reached, measured
-};
-DisplayMesh display_mesh(const FinishedRun& run, const TriMesh& closed, double max_error_mm);
-
-/// machine.glb: links, tool and finished part with the axes animated over what is shown of the program.
-/// Between its keys an axis moves in a straight line, which no cycle is farther from than asset.extras says
-/// for that axis (key_error_max_X_mm, ...).
-void write_machine_glb(const FinishedRun& run, const DisplayMesh& part, const std::string& path);
-
-/// part.glb: the finished part with deviation as colour and attribute, the tool-axis fan as lines.
-void write_part_glb(const FinishedRun& run, const DisplayMesh& part, const std::string& path);
-
-/// Program seconds that one second of the glTF animation stands for.
-double animation_scale(const FinishedRun& run);
-
 }  // namespace swarf::reports

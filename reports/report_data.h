@@ -45,14 +45,26 @@ struct KeyNumber {
   Tone tone = Tone::kNeutral;
 };
 
+/// A line of the program with its number.
+struct ProgramLine {
+  int line = 0;
+  std::string text{};
+};
+
+/// What has one cause at one place, as the worst of it says.
 struct ReportFinding {
   std::string code;  ///< stable, kebab-case: "gouge"
   Severity severity = Severity::kError;
   std::string text{};      ///< what was found, with units
   std::string fix{};       ///< the smallest change that would help; may be empty
-  SourceLocation where{};  ///< the block; file empty: not tied to one
+  SourceLocation where{};  ///< the worst one's block; file empty: not tied to one
   double time_s = std::numeric_limits<double>::quiet_NaN();  ///< program time; NaN: not tied to one
-  std::string block{};  ///< the program's text there; empty: not tied to a line
+  std::string block{};                 ///< the program's text there; empty: not tied to a line
+  size_t count = 1;                    ///< findings that are one fault with it, itself too
+  int first_line = 0, last_line = 0;   ///< of them all; 0: not tied to lines
+  std::vector<ProgramLine> excerpt{};  ///< the block and its neighbours
+  std::array<double, 3> place_mm{};    ///< on the part, W
+  bool has_place = false;
 };
 
 struct Column {
@@ -128,19 +140,21 @@ struct Still {
 struct ColourBar {
   std::string title{};  ///< "Deviation from the design"
   std::string unit{};
-  double low = 0.0, high = 0.0;
+  double low = 0.0, high = 0.0;                         ///< places at its ends
   std::vector<std::array<uint8_t, 3>> stops;            ///< sRGB; empty: no legend
   std::vector<std::pair<double, std::string>> ticks{};  ///< value and label; empty: round values
   std::string apart{};                                  ///< a colour beside the bar: "not measured"
   std::array<uint8_t, 3> apart_colour{};                ///< sRGB
+  double low_value = 0.0, high_value = 0.0;             ///< what the places at its ends stand for, in `unit`
 };
 
 /// The 3D view: glTF in metres with Y up; line objects can be switched on and off by their node's name.
 struct Viewer3d {
-  std::string part_glb;     ///< path; empty: no such tab
-  std::string machine_glb;  ///< path; empty: no such tab
+  std::string part_glb;     ///< bytes; empty: no such tab
+  std::string machine_glb;  ///< bytes; empty: no such tab
   ColourBar colour_bar;
   double program_seconds_per_animation_second = 1.0;
+  std::string program{};  ///< JSON of page_program.h; empty: none
 };
 
 /// A section of its own on one subject: figures above tables.
@@ -175,6 +189,8 @@ struct ReportData {
   std::string hero_caption;
   Viewer3d viewer;
   std::string movie_mp4;  ///< path; empty: none
+  /// It runs evenly over what is shown of the program, so that a time of the program has its second in it.
+  bool movie_even = true;
   std::string movie_caption;
   std::vector<Still> stills;
   std::vector<Plot> plots;

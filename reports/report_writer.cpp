@@ -12,9 +12,11 @@
 namespace swarf::reports {
 namespace {
 
-// The page may load nothing, from anywhere: what it shows is inside it.
+// The page may load nothing, from anywhere: what it shows is inside it. Its reader of compressed meshes is
+// WebAssembly that it carries.
 constexpr std::string_view kPolicy =
-    "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data: blob:; "
+    "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline' 'wasm-unsafe-eval'; img-src "
+    "data: blob:; "
     "media-src data: blob:; connect-src data: blob:";
 
 std::string head(const ReportData& data) {
@@ -23,7 +25,7 @@ std::string head(const ReportData& data) {
                      R"( content="width=device-width,initial-scale=1"><meta name="color-scheme")"
                      R"( content="light dark"><title>{} – {}</title><link rel="icon" href="data:,"><style>)"
                      R"({}</style></head><body>)",
-                     kPolicy, escape(data.title), data.verdict.pass ? "pass" : "findings", style_sheet());
+                     kPolicy, escape(data.title), data.verdict.pass ? "pass" : "fail", style_sheet());
 }
 
 struct NamedSection {
@@ -45,7 +47,7 @@ std::string render_report(const ReportData& data) {
   std::vector<NamedSection> sections = {
       {"assumed", "Assumed", assumptions_section(data.assumptions)},
       {"overview", "Key numbers", overview_section(data)},
-      {"findings", "Findings", findings_section(data.findings)},
+      {"findings", "Findings", findings_section(data)},
       {"view", "3D view", viewer_section(data.viewer)},
       {"movie", "Movie", movie_section(data)},
       {"stills", "Stills", stills_section(data.stills)},

@@ -18,6 +18,8 @@
 #include "reports/pending_folder.h"
 #include "reports/pictures.h"
 #include "reports/report_writer.h"
+#include "reports/review_findings.h"
+#include "reports/review_models.h"
 #include "reports/run_report.h"
 #include "sim/run/design_rays.h"
 #include "sim/run/worn_fixtures.h"
@@ -76,7 +78,10 @@ void write_pictures(const PendingFolder& folder, const FinishedRun& run, const T
        run.cycles.elements().hold_blocks()
            ? "The finished part."
            : "The finished part: strip lights break at each ridge, so every band is one pass."},
-      {StillKind::kFan, "still_fan.png", "iso", "Paths and tool axes (Lin & Koren, Fig. 13)."}};
+      {StillKind::kFan, "still_fan.png", "iso",
+       run.cycles.elements().hold_blocks() || run.job.scene.driven
+           ? "The tool's paths and its axes."
+           : "Paths and tool axes (Lin & Koren, Fig. 13)."}};
   if (!run.dexels.empty()) {
     pictures.insert(pictures.begin() + 2, {StillKind::kDeviation, "still_deviation.png", "iso",
                                            "Deviation from the design, from the measuring rays."});
@@ -142,17 +147,26 @@ void write_state_or_keep(PendingFolder& folder, const sim::Job& job, const sim::
   }
 }
 
-void write_glb(const PendingFolder& folder, const FinishedRun& run, const TriMesh& closed, Progress& progress,
-               RunFiles& files) {
+void write_glb(const PendingFolder& folder, const FinishedRun& run, const TriMesh& closed,
+               const sim::Result& result, Progress& progress, RunFiles& files) {
+  using render::GltfEncoding;
   progress.begin("glTF", 2, "files");
-  const DisplayMesh light = display_mesh(run, closed, part_error_mm(run.job));
-  files.part_error_mm = light.error_mm;
-  write_part_glb(run, light, folder.file("part.glb"));
-  files.part_glb = folder.file("part.glb");
+  const ReviewModels models =
+      review_models(run, closed, part_error_mm(run.job), review_pins(result), worst_places(result));
   progress.advance(1);
-  write_machine_glb(run, light, folder.file("machine.glb"));
-  files.machine_glb = folder.file("machine.glb");
+  const auto write = [&](const char* name, const std::string& bytes) {
+    replace_file(folder.file(name), bytes, {"cannot-write-file", "the glTF file cannot be written"});
+  };
+  write("part.glb", part_glb(run, models, {}));
+  write("machine.glb", machine_glb(run, models, {}));
+  // The page has its own reader: a quarter of the bytes, and colours by the limits that its reader chooses.
+  const GltfOptions page{GltfEncoding::kMeshopt, false};
+  files.part_glb = part_glb(run, models, page);
+  files.machine_glb = machine_glb(run, models, page);
+  files.part_error_mm = models.part.error_mm;
   files.animation_scale = animation_scale(run);
+  files.shown_from_s = static_cast<double>(run.first_shown()) * run.cycles.period_s();
+  files.way = models.way;
   progress.end();
 }
 
@@ -199,7 +213,7 @@ std::vector<Diagnostic> write_run(PendingFolder& folder, const sim::Job& job, si
   RunFiles files;
   RenderStatistics statistics;
   const TriMesh closed = options.report || options.render ? run.stock.mesh() : TriMesh{};
-  if (options.report) attempts.run([&] { write_glb(folder, run, closed, progress, files); });
+  if (options.report) attempts.run([&] { write_glb(folder, run, closed, result, progress, files); });
   attempts.run([&] {
     if (options.render)
       write_pictures(folder, run, shown_part(run, closed), contact_pictures(job, result), progress, files,

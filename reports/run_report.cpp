@@ -19,8 +19,10 @@
 #include "reports/flank_output.h"
 #include "reports/flank_table.h"
 #include "reports/nc_report.h"
+#include "reports/page_program.h"
 #include "reports/part_view.h"
 #include "reports/pictures.h"
+#include "reports/review_findings.h"
 #include "reports/run_plots.h"
 #include "reports/singularity_section.h"
 #include "reports/time_facts.h"
@@ -89,13 +91,6 @@ std::vector<KeyNumber> key_numbers(const sim::Result& result) {
       {"Removed", fmt::format("{:.1f}", result.volume_removed_mm3 * 1e-3), "cm³",
        fmt::format("{:.1f} cm³ left", result.volume_left_mm3 * 1e-3)},
       rays_number(result)};
-}
-
-std::vector<ReportFinding> findings_of(const sim::Result& result) {
-  std::vector<ReportFinding> list;
-  for (const sim::Finding& f : result.findings)
-    list.push_back({f.code, f.severity, f.text, f.fix, f.where, f.t_s, f.block});
-  return list;
 }
 
 Table planner_table(const sim::Result& result) {
@@ -170,9 +165,10 @@ Table axis_table(const sim::Job& job, const sim::Result& result) {
          shown(motion.axes[i].max), shown(axis.min) + " .. " + shown(axis.max), shown(motion.axes[i].travel),
          shown(motion.axes[i].speed_max), shown(axis.speed_max), shown(motion::speed_limit(axis, true))});
   }
-  table.notes = {
-      "Reversed: the table itself turns positively (the paper's habit), not the tool relative to the work "
-      "(ISO 841)."};
+  const auto& axes = job.machine.model.axes;
+  if (std::any_of(axes.begin(), axes.end(), [](const kinematics::Axis& axis) { return axis.reversed; }))
+    table.notes = {
+        "Reversed: the table itself turns positively, not the tool relative to the work (ISO 841)."};
   return table;
 }
 
@@ -390,7 +386,7 @@ ReportData report_data(const sim::Job& job, const sim::Result& result, const Run
                   job.machine.model.name);
   data.verdict = verdict_of(result.checks);
   data.key_numbers = brings_blocks(result) ? block_key_numbers(result) : key_numbers(result);
-  data.findings = findings_of(result);
+  data.findings = report_findings(result);
   data.assumptions = assumption_tables(job);
   if (!files.stills.empty()) {
     data.hero_png = files.stills.front().png_path;
@@ -400,7 +396,14 @@ ReportData report_data(const sim::Job& job, const sim::Result& result, const Run
   data.viewer = {files.part_glb, files.machine_glb,
                  job.has_design() ? deviation_colour_bar(deviation_scale(job)) : ColourBar(),
                  files.animation_scale};
+  data.viewer.colour_bar.low_value = -deviation_scale(job).below_um;
+  data.viewer.colour_bar.high_value = deviation_scale(job).above_um;
+  data.viewer.program = page_program(job, result, files);
   data.movie_mp4 = files.movie;
+  const std::vector<sim::MovieShot>& shots = job.scene.movie.shots;
+  data.movie_even = shots.size() == 1 && shots.front().speed == sim::MovieSpeed::kTime &&
+                    !shots.front().from_s && !shots.front().to_s && !shots.front().from_line &&
+                    !shots.front().to_line;
   data.movie_caption =
       "The whole program, evenly sped up. The tool cuts the stock as it stands at that moment.";
   data.plots = run_plots(job, result);

@@ -4,17 +4,21 @@
 #include <string>
 #include <vector>
 
+#include "reports/path_view.h"
 #include "reports/report_data.h"
 #include "sim/simulation.h"
 
 namespace swarf::reports {
 
-/// Files that the report takes in; empty paths leave their section out.
+/// What the report takes in; what is empty leaves its section out.
 struct RunFiles {
   std::vector<Still> stills;
-  std::string movie, part_glb, machine_glb;
-  double part_error_mm = 0.0;    ///< of the decimated part.glb
-  double animation_scale = 1.0;  ///< program seconds per second of the glTF animation
+  std::string movie;                  ///< path
+  std::string part_glb, machine_glb;  ///< bytes, for the page's own reader
+  double part_error_mm = 0.0;         ///< of the decimated part
+  double animation_scale = 1.0;       ///< program seconds per second of the glTF animation
+  double shown_from_s = 0.0;          ///< program time at which animation and movie begin
+  Way way;                            ///< of the program
 };
 
 /// `rendered`: false when the user switched the pictures off, which the report then says.

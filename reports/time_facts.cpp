@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "base/units.h"
 
 namespace swarf::reports {
@@ -23,6 +25,11 @@ void add_blocks(const sim::Job& job, const sim::Result& result, FactGroup& group
       {"Corners", corners + (job.scene.stock.cut_by == sim::CutBy::kCycles
                                  ? "; the stock is cut by the control's cycles, so it shows them"
                                  : "; the stock is cut along the programmed blocks")});
+  const auto& axes = job.machine.model.axes;
+  const bool turns = std::any_of(axes.begin(), axes.end(), [](const kinematics::Axis& axis) {
+    return axis.kind == kinematics::AxisKind::kRotary;
+  });
+  if (!turns) return;  // a three-axis machine has one mode, and nothing to swing
   group.facts.push_back(
       {"Tip error of the other mode",
        m.other_mode.element < 0

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <iterator>
+
 #include <algorithm>
 #include <bit>
 #include <cstring>
@@ -148,6 +150,22 @@ TriMesh read_by_ending(const std::string& path) {
   return tidied(mesh);
 }
 
+/// Never empty: it begins with its unit.
+std::string obj_text(const TriMesh& mesh) {
+  std::string text = "# millimetres\n";
+  const auto out = std::back_inserter(text);
+  for (const auto& p : mesh.positions) fmt::format_to(out, "v {} {} {}\n", p[0], p[1], p[2]);
+  for (const auto& n : mesh.normals) fmt::format_to(out, "vn {} {} {}\n", n[0], n[1], n[2]);
+  for (const auto& t : mesh.triangles) {
+    const uint32_t a = t[0] + 1, b = t[1] + 1, c = t[2] + 1;  // counted from 1
+    if (mesh.normals.empty())
+      fmt::format_to(out, "f {} {} {}\n", a, b, c);
+    else
+      fmt::format_to(out, "f {0}//{0} {1}//{1} {2}//{2}\n", a, b, c);
+  }
+  return text;
+}
+
 }  // namespace
 
 TriMesh load_mesh(const std::string& path) {
@@ -168,12 +186,15 @@ TriMesh load_mesh(const std::string& path) {
 
 void save_mesh(const std::string& path, const TriMesh& mesh) {
   const std::string ending = extension(path);
-  if (ending != ".stl" && ending != ".ply") {
+  const std::string bytes = ending == ".stl"   ? stl_bytes(mesh)
+                            : ending == ".ply" ? ply_bytes(mesh)
+                            : ending == ".obj" ? obj_text(mesh)
+                                               : "";
+  if (bytes.empty()) {
     throw InputError("mesh-format", {path}, fmt::format("meshes are not written as '{}'", ending),
-                     "name the file .stl or .ply");
+                     "name the file .stl, .ply or .obj");
   }
-  replace_file(path, ending == ".stl" ? stl_bytes(mesh) : ply_bytes(mesh),
-               {"cannot-write", "the mesh cannot be written"});
+  replace_file(path, bytes, {"cannot-write", "the mesh cannot be written"});
 }
 
 }  // namespace swarf::mesh

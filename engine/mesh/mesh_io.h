@@ -1,4 +1,4 @@
-// Mesh files: the one door through which meshes come in, and writing STL and PLY. What comes through is
+// Mesh files: the one door through which meshes come in, and writing STL, PLY and OBJ. What comes through is
 // finite, within a kilometre of the origin (kFarthest) and soundly indexed, so that the libraries behind need
 // not ask.
 #pragma once
@@ -15,9 +15,10 @@ namespace swarf::mesh {
 /// byte of what is wrong when the file is missing, not a mesh, damaged, or empty.
 TriMesh load_mesh(const std::string& path);
 
-/// Writes .stl (binary) or .ply (binary, with normals, colours and `deviation_um` where the mesh has them) by
-/// the ending of the name; the file is replaced whole. Throws InputError for another ending or when it cannot
-/// be written.
+/// Writes .stl (binary), .ply (binary, with normals, colours and `deviation_um` where the mesh has them) or
+/// .obj (positions in mm as the shortest decimals that read back to the same floats, normals where there are
+/// any) by the ending of the name; the file is replaced whole. Throws InputError for another ending or when
+/// it cannot be written.
 void save_mesh(const std::string& path, const TriMesh& mesh);
 
 }  // namespace swarf::mesh

@@ -41,4 +41,9 @@ void thin_for_display(TriMesh& mesh, double max_error_mm);
 /// its own at the same positions.
 TriMesh decimate(const TriMesh& mesh, double max_error_mm, double* reached_error);
 
+/// Puts triangles beside those that share their vertices, and vertices in the order of their first use
+/// (meshoptimizer): the same triangles in another order, which draws faster and compresses better. Vertices
+/// that no triangle uses are left out.
+void order_for_display(TriMesh& mesh);
+
 }  // namespace swarf::mesh

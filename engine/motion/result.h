@@ -66,6 +66,7 @@ struct MotionFinding {
   double t_s = 0.0;  ///< of the worst sample; of the block's first one for a warning
   SourceLocation where;
   Severity severity = Severity::kError;
+  std::string axis{};  ///< the axis at fault; "" where it is none alone
 };
 
 struct MotionResult {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/diagnostics.h"
+#include "base/frames.h"
 
 namespace swarf::sim {
 
@@ -36,8 +37,13 @@ struct Finding {
   std::string text, fix;
   SourceLocation where;
   double t_s = 0.0;
-  std::string block;    ///< the program's text there; "" where no line is meant
-  std::string check{};  ///< Check::name of what it breaks; "" where it breaks nothing
+  std::string block;              ///< the program's text there; "" where no line is meant
+  std::string check{};            ///< Check::name of what it breaks; "" where it breaks nothing
+  int line_last = 0;              ///< of a row of blocks: the last one's line; 0: one block, where.line
+  std::optional<Vec3> place_W{};  ///< on the part, where it is worst; none: it has no place there
+  double amount_mm = 0.0;         ///< how deep, high or near; 0: not said
+  std::string cause{};            ///< what made it, for those of one code: "holder of T3", "axis X"
+  double reach_mm = 0.0;          ///< places of one cause this near each other are one fault
 };
 
 /// No check fails or is not proven. Of an empty list, a run that was not finished: false.

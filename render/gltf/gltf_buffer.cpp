@@ -26,15 +26,48 @@ int GltfBuffer::add(const void* data, size_t bytes, size_t count, int component,
   return static_cast<int>(model_.accessors.size()) - 1;
 }
 
-void GltfBuffer::set_bounds(int accessor, const float* values, size_t count, size_t components) {
-  tinygltf::Accessor& target = model_.accessors[accessor];
+int GltfBuffer::add_padded(const void* data, size_t bytes, size_t count, int component, int type) {
+  const int accessor = add(data, bytes, count, component, type, TINYGLTF_TARGET_ARRAY_BUFFER);
+  model_.bufferViews.back().byteStride = bytes / count;
+  return accessor;
+}
+
+template <typename Number>
+void GltfBuffer::set_bounds(int accessor, const Number* values, size_t count, size_t components,
+                            size_t stride) {
+  tinygltf::Accessor& target = model_.accessors[static_cast<size_t>(accessor)];
   target.minValues.assign(components, std::numeric_limits<double>::infinity());
   target.maxValues.assign(components, -std::numeric_limits<double>::infinity());
-  for (size_t i = 0; i < count * components; ++i) {
-    const double value = values[i];
-    target.minValues[i % components] = std::min(target.minValues[i % components], value);
-    target.maxValues[i % components] = std::max(target.maxValues[i % components], value);
+  for (size_t i = 0; i < count; ++i) {
+    for (size_t k = 0; k < components; ++k) {
+      const auto value = static_cast<double>(values[i * stride + k]);
+      target.minValues[k] = std::min(target.minValues[k], value);
+      target.maxValues[k] = std::max(target.maxValues[k], value);
+    }
   }
+}
+
+void GltfBuffer::set_bounds(int accessor, const float* values, size_t count, size_t components) {
+  set_bounds(accessor, values, count, components, components);
+}
+
+int GltfBuffer::grid_positions(std::span<const std::array<uint16_t, 4>> values) {
+  const int accessor = add_padded(values.data(), values.size_bytes(), values.size(),
+                                  TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_VEC3);
+  set_bounds(accessor, values.front().data(), values.size(), 3, 4);
+  return accessor;
+}
+
+int GltfBuffer::short_normals(std::span<const std::array<int16_t, 4>> values) {
+  const int accessor = add_padded(values.data(), values.size_bytes(), values.size(),
+                                  TINYGLTF_COMPONENT_TYPE_SHORT, TINYGLTF_TYPE_VEC3);
+  model_.accessors[static_cast<size_t>(accessor)].normalized = true;
+  return accessor;
+}
+
+int GltfBuffer::short_scalars(std::span<const std::array<int16_t, 2>> values) {
+  return add_padded(values.data(), values.size_bytes(), values.size(), TINYGLTF_COMPONENT_TYPE_SHORT,
+                    TINYGLTF_TYPE_SCALAR);
 }
 
 int GltfBuffer::colours(std::span<const std::array<uint8_t, 4>> values) {

@@ -5,13 +5,13 @@
 #include <map>
 #include <numeric>
 #include <sstream>
-#include <tuple>
 
 #include "base/check.h"
 #include "base/file.h"
 #include "base/units.h"
-#include "render/figures/colour.h"
 #include "render/gltf/gltf_buffer.h"
+#include "render/gltf/gltf_mesh.h"
+#include "render/gltf/meshopt_glb.h"
 
 namespace swarf::render {
 namespace {
@@ -43,14 +43,16 @@ std::vector<Eigen::Quaterniond> continuous_rotations(const std::vector<Pose>& po
 
 class Writer {
  public:
-  explicit Writer(const GltfScene& scene) : scene_(scene), buffer_(model_) {}
+  Writer(const GltfScene& scene, GltfEncoding encoding)
+      : scene_(scene), buffer_(model_), meshes_(model_, buffer_, encoding != GltfEncoding::kFloat) {}
   tinygltf::Model build();
 
  private:
-  int mesh_of(const GltfNode& node);
-  int material_of(const Material& material, bool vertex_colours);
-  tinygltf::Primitive triangles(const TriMesh& mesh);
   void add_node(const GltfNode& node);
+  /// The mesh at the node; quantised, at a child that turns steps into mm.
+  void place(int node, const GltfMeshes::Placed& placed);
+  /// A node below the root.
+  int add_plain_node(const std::string& name);
   void animate(const GltfNode& node, int index);
   void add_translation(const GltfNode& node, int index);
   void add_rotation(const GltfNode& node, int index);
@@ -58,87 +60,17 @@ class Writer {
   void add_channel(int node, const std::string& path, int times, int values,
                    const char* interpolation = "LINEAR");
   int key_times(const GltfNode& node, const std::vector<size_t>& keys);
-  struct LineGroup {
-    Floats3 points;
-    std::vector<uint32_t> segments;
-  };
   void add_lines();
-  void add_line_group(const std::string& name, const Rgb& colour, const LineGroup& group);
-  int unlit_material(const Rgb& colour);
+  void add_camera(const GltfCamera& camera);
+  void name_extensions(const GltfExtras& extras);
 
   const GltfScene& scene_;
   tinygltf::Model model_;
   GltfBuffer buffer_;
+  GltfMeshes meshes_;
   tinygltf::Animation animation_;
-  std::map<std::tuple<const TriMesh*, Rgb, float, float>, int> meshes_;
+  std::vector<std::pair<int, GltfMeshes::Placed>> quantised_;  ///< node and mesh; children come last
 };
-
-/// The normals at unit length, as the format demands; interpolation and float rounding leave them near it.
-Floats3 unit_normals(const Floats3& normals) {
-  Floats3 out(normals.size());
-  for (size_t i = 0; i < out.size(); ++i) {
-    const Vec3 n(normals[i][0], normals[i][1], normals[i][2]);
-    const Vec3 unit = n.squaredNorm() > 0.0 ? Vec3(n.normalized()) : Vec3::UnitZ();
-    for (int k = 0; k < 3; ++k) out[i][k] = static_cast<float>(unit[k]);
-  }
-  return out;
-}
-
-/// sRGB bytes to linear bytes.
-std::vector<std::array<uint8_t, 4>> linear_colours(const std::vector<std::array<uint8_t, 4>>& colours) {
-  std::vector<std::array<uint8_t, 4>> out(colours.size());
-  for (size_t i = 0; i < out.size(); ++i) {
-    const Rgb linear = linear_from_srgb8(colours[i]);
-    for (size_t k = 0; k < 3; ++k) out[i][k] = static_cast<uint8_t>(std::lround(255.0F * linear[k]));
-    out[i][3] = colours[i][3];
-  }
-  return out;
-}
-
-tinygltf::Primitive Writer::triangles(const TriMesh& mesh) {
-  constexpr int kVertices = TINYGLTF_TARGET_ARRAY_BUFFER;
-  tinygltf::Primitive primitive;
-  primitive.mode = TINYGLTF_MODE_TRIANGLES;
-  primitive.attributes["POSITION"] = buffer_.floats<3>(mesh.positions, true, kVertices);
-  if (!mesh.normals.empty()) {
-    primitive.attributes["NORMAL"] = buffer_.floats<3>(unit_normals(mesh.normals), false, kVertices);
-  }
-  if (!mesh.colours.empty()) primitive.attributes["COLOR_0"] = buffer_.colours(linear_colours(mesh.colours));
-  if (!mesh.deviation_um.empty()) {
-    const auto* scalars = reinterpret_cast<const std::array<float, 1>*>(mesh.deviation_um.data());
-    primitive.attributes["_DEVIATION_UM"] =
-        buffer_.floats<1>(std::span(scalars, mesh.deviation_um.size()), false, kVertices);
-  }
-  const std::span indices(mesh.triangles.front().data(), 3 * mesh.triangles.size());
-  primitive.indices = buffer_.indices(indices, mesh.positions.size());
-  return primitive;
-}
-
-int Writer::material_of(const Material& material, bool vertex_colours) {
-  tinygltf::Material out;
-  const Rgb base = vertex_colours ? Rgb{1.0F, 1.0F, 1.0F} : material.colour;
-  out.pbrMetallicRoughness.baseColorFactor = {base[0], base[1], base[2], 1.0};
-  out.pbrMetallicRoughness.metallicFactor = material.metalness;
-  out.pbrMetallicRoughness.roughnessFactor = material.roughness;
-  out.doubleSided = true;  // an open surface is seen from behind too
-  model_.materials.push_back(std::move(out));
-  return static_cast<int>(model_.materials.size()) - 1;
-}
-
-int Writer::mesh_of(const GltfNode& node) {
-  if (node.mesh == nullptr || node.mesh->triangles.empty()) return -1;
-  const Material& m = node.material;
-  const auto [place, is_new] = meshes_.try_emplace({node.mesh, m.colour, m.metalness, m.roughness}, 0);
-  if (is_new) {
-    tinygltf::Mesh mesh;
-    mesh.name = node.name;
-    mesh.primitives.push_back(triangles(*node.mesh));
-    mesh.primitives.back().material = material_of(m, !node.mesh->colours.empty());
-    place->second = static_cast<int>(model_.meshes.size());
-    model_.meshes.push_back(std::move(mesh));
-  }
-  return place->second;
-}
 
 void Writer::add_node(const GltfNode& node) {
   SWARF_CHECK(node.times_s.empty() ? node.poses.size() <= 1 : node.poses.size() == node.times_s.size(),
@@ -148,7 +80,7 @@ void Writer::add_node(const GltfNode& node) {
               "parent of node " + node.name + " must come earlier");
   tinygltf::Node out;
   out.name = node.name;
-  out.mesh = mesh_of(node);
+  if (!node.extras.empty()) out.extras = extras_value(node.extras);
   if (!node.poses.empty()) {
     const Vec3 p = node.poses.front().translation();
     const Eigen::Quaterniond q = continuous_rotations(node.poses).front();
@@ -157,6 +89,7 @@ void Writer::add_node(const GltfNode& node) {
   }
   model_.nodes.push_back(std::move(out));
   model_.nodes[node.parent + 1].children.push_back(index);  // the root stands before the scene's nodes
+  place(index, meshes_.of_node(node));
   if (!node.times_s.empty()) animate(node, index);
 }
 
@@ -237,19 +170,28 @@ void Writer::add_channel(int node, const std::string& path, int times, int value
   animation_.channels.push_back(std::move(channel));
 }
 
-int Writer::unlit_material(const Rgb& colour) {
-  tinygltf::Material material;
-  material.pbrMetallicRoughness.baseColorFactor = {colour[0], colour[1], colour[2], 1.0};
-  material.extensions["KHR_materials_unlit"] = tinygltf::Value(tinygltf::Value::Object());
-  model_.materials.push_back(std::move(material));
-  model_.extensionsUsed = {"KHR_materials_unlit"};
-  return static_cast<int>(model_.materials.size()) - 1;
+void Writer::place(int node, const GltfMeshes::Placed& placed) {
+  if (placed.mesh < 0) return;
+  if (placed.grid) {
+    quantised_.emplace_back(node, placed);
+  } else {
+    model_.nodes[static_cast<size_t>(node)].mesh = placed.mesh;
+  }
+}
+
+int Writer::add_plain_node(const std::string& name) {
+  tinygltf::Node node;
+  node.name = name;
+  const auto index = static_cast<int>(model_.nodes.size());
+  model_.nodes.front().children.push_back(index);
+  model_.nodes.push_back(std::move(node));
+  return index;
 }
 
 /// One node for each name and colour: a fan has hundreds of lines, and each primitive costs a viewer a draw
 /// call.
 void Writer::add_lines() {
-  std::map<std::pair<std::string, Rgb>, LineGroup> groups;
+  std::map<std::pair<std::string, Rgb>, GltfMeshes::LineGroup> groups;
   for (const DrawLine& line : scene_.lines) {
     if (line.points.size() < 2) continue;
     auto& [points, segments] = groups[{line.name, line.colour}];
@@ -260,34 +202,50 @@ void Writer::add_lines() {
       points.push_back({p.x(), p.y(), p.z()});
     }
   }
-  for (const auto& [key, group] : groups) add_line_group(key.first, key.second, group);
+  for (const auto& [key, group] : groups)
+    place(add_plain_node(key.first), meshes_.of_lines(key.first, key.second, group));
 }
 
-void Writer::add_line_group(const std::string& name, const Rgb& colour, const LineGroup& group) {
-  tinygltf::Primitive primitive;
-  primitive.mode = TINYGLTF_MODE_LINE;
-  primitive.attributes["POSITION"] = buffer_.floats<3>(group.points, true, TINYGLTF_TARGET_ARRAY_BUFFER);
-  primitive.indices = buffer_.indices(group.segments, group.points.size());
-  primitive.material = unlit_material(colour);
-  tinygltf::Mesh mesh;
-  mesh.name = name;
-  mesh.primitives.push_back(std::move(primitive));
-  tinygltf::Node node;
-  node.name = name;
-  node.mesh = static_cast<int>(model_.meshes.size());
-  model_.meshes.push_back(std::move(mesh));
-  model_.nodes.front().children.push_back(static_cast<int>(model_.nodes.size()));
-  model_.nodes.push_back(std::move(node));
+/// glTF's cameras look along -Z with Y up; `camera` is given in the scene's frame.
+void Writer::add_camera(const GltfCamera& one) {
+  tinygltf::Camera camera;
+  camera.name = one.name;
+  camera.type = "perspective";
+  camera.perspective.yfov = one.camera.vertical_fov_rad;
+  const double distance = (one.camera.eye - one.camera.target).norm() * kMetresPerMm;
+  camera.perspective.znear = 0.01 * distance;
+  camera.perspective.zfar = 100.0 * distance;
+  const Vec3 z = (one.camera.eye - one.camera.target).normalized();
+  const Vec3 x = one.camera.up.cross(z).normalized();
+  Eigen::Matrix3d axes;
+  axes << x, z.cross(x), z;
+  const Eigen::Quaterniond q(axes);
+  tinygltf::Node& node = model_.nodes[static_cast<size_t>(add_plain_node(one.name))];
+  node.translation = {one.camera.eye.x(), one.camera.eye.y(), one.camera.eye.z()};
+  node.rotation = {q.x(), q.y(), q.z(), q.w()};
+  // The root's scale must not reach a camera: its planes are in metres.
+  node.scale = {1.0 / kMetresPerMm, 1.0 / kMetresPerMm, 1.0 / kMetresPerMm};
+  node.camera = static_cast<int>(model_.cameras.size());
+  model_.cameras.push_back(std::move(camera));
+}
+
+void Writer::name_extensions(const GltfExtras& extras) {
+  const bool unlit = std::any_of(model_.materials.begin(), model_.materials.end(), [](const auto& material) {
+    return material.extensions.count("KHR_materials_unlit") > 0;
+  });
+  if (unlit) model_.extensionsUsed.emplace_back("KHR_materials_unlit");
+  GltfExtras all = extras;
+  if (meshes_.position_error_mm() > 0.0) {
+    model_.extensionsUsed.emplace_back("KHR_mesh_quantization");
+    model_.extensionsRequired.emplace_back("KHR_mesh_quantization");
+    all["position_error_um"] = um_from_mm(meshes_.position_error_mm());
+  }
+  if (!all.empty()) model_.asset.extras = extras_value(all);
 }
 
 tinygltf::Model Writer::build() {
   model_.asset.version = "2.0";
   model_.asset.generator = "Swarf";
-  if (!scene_.extras.empty()) {
-    tinygltf::Value::Object extras;
-    for (const auto& [key, value] : scene_.extras) extras[key] = tinygltf::Value(value);
-    model_.asset.extras = tinygltf::Value(extras);
-  }
   tinygltf::Node root;
   root.name = "millimetres, Z up";
   const double half_turn = std::sin(-kPi / 4.0);
@@ -296,6 +254,21 @@ tinygltf::Model Writer::build() {
   model_.nodes.push_back(std::move(root));
   for (const GltfNode& node : scene_.nodes) add_node(node);
   add_lines();
+  for (const GltfPath& path : scene_.paths)
+    if (path.points.size() > 1) place(add_plain_node(path.name), meshes_.of_path(path));
+  for (const GltfCamera& camera : scene_.cameras) add_camera(camera);
+  for (const auto& [node, placed] : quantised_) {
+    tinygltf::Node child;
+    const Vec3& origin = placed.grid->origin();
+    const double step = placed.grid->step_mm();
+    child.translation = {origin.x(), origin.y(), origin.z()};
+    child.scale = {step, step, step};
+    child.mesh = placed.mesh;
+    model_.nodes[static_cast<size_t>(node)].children.push_back(static_cast<int>(model_.nodes.size()));
+    model_.nodes.push_back(std::move(child));
+  }
+  name_extensions(scene_.extras);
+  animation_.name = scene_.clip;
   if (!animation_.channels.empty()) model_.animations.push_back(std::move(animation_));
   if (model_.buffers[0].data.empty()) model_.buffers.clear();  // a buffer of no bytes is not allowed
   tinygltf::Scene scene;
@@ -307,13 +280,18 @@ tinygltf::Model Writer::build() {
 
 }  // namespace
 
-void write_glb(const std::filesystem::path& path, const GltfScene& scene) {
-  tinygltf::Model model = Writer(scene).build();
+std::string glb_bytes(const GltfScene& scene, GltfEncoding encoding) {
+  tinygltf::Model model = Writer(scene, encoding).build();
   // Through memory: writing to a file, tinygltf does not say when a full disk has taken its end.
   std::ostringstream bytes;
   const bool written = tinygltf::TinyGLTF().WriteGltfSceneToStream(&model, bytes, false, true);
   SWARF_CHECK(written, "tinygltf refuses a scene that we made");
-  replace_file(path.string(), bytes.str(), {"cannot-write-file", "the glTF file cannot be written"});
+  return encoding == GltfEncoding::kMeshopt ? meshopt_compressed(bytes.str()) : bytes.str();
+}
+
+void write_glb(const std::filesystem::path& path, const GltfScene& scene, GltfEncoding encoding) {
+  replace_file(path.string(), glb_bytes(scene, encoding),
+               {"cannot-write-file", "the glTF file cannot be written"});
 }
 
 }  // namespace swarf::render

@@ -40,7 +40,7 @@ HEAVY = {
     # Its headers have no folder of their own: Package_Class.hxx.
     "OpenCASCADE": (r"\w+\.hxx", ("engine/brep/",)),
     "OpenMesh": (r"OpenMesh/", ("engine/mesh/",)),
-    "meshoptimizer": (r"meshoptimizer", ("engine/mesh/",)),
+    "meshoptimizer": (r"meshoptimizer", ("engine/mesh/", "render/gltf/")),
     "Boost.Math": (r"boost/math", ("engine/base/",)),
     "toml++": (r"toml\+\+", ("engine/base/config.cpp",)),
     # One file each for what it is good at: nearest triangles of a mesh, and light.
@@ -62,7 +62,7 @@ SEEN_BY_REPORTS = {
 }
 
 # Headers that only the .cpp files beside them include: they may show the library.
-PRIVATE_HEADERS = {"stock_grid_internal.h", "occt_shape.h", "gltf_buffer.h", "gl_api.h"}
+PRIVATE_HEADERS = {"stock_grid_internal.h", "occt_shape.h", "gltf_buffer.h", "gltf_mesh.h", "gl_api.h"}
 
 
 def module_of(path):

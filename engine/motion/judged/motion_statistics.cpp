@@ -367,10 +367,10 @@ void MotionMeter::end_element() {
     AxisFault& found = excess_[i];
     if (found.travel.excess > 0.0)
       faults_.push_back({"travel", travel_text(axis, found.travel, element_name(element)), index,
-                         found.travel.t_s, element.where});
+                         found.travel.t_s, element.where, Severity::kError, axis.name});
     if (found.speed.excess > 0.0)
       faults_.push_back({"axis-speed", speed_text(axis, found.speed, element_name(element)), index,
-                         found.speed.t_s, element.where});
+                         found.speed.t_s, element.where, Severity::kError, axis.name});
     found = {};
   }
   if (feeds_.empty()) return;

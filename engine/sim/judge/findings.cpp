@@ -26,33 +26,46 @@ class Collector {
   }
   const Check& check() const { return *check_; }
 
-  void add(std::string code, std::string text, std::string fix, SourceLocation where, double t_s) {
-    findings_.push_back({std::move(code), breaks() ? Severity::kError : Severity::kWarning, std::move(text),
-                         std::move(fix), std::move(where), t_s, "", check_->name});
+  /// The finding, for what else is known of it.
+  Finding& add(std::string code, std::string text, std::string fix, SourceLocation where, double t_s) {
+    return findings_.emplace_back(Finding{std::move(code), breaks() ? Severity::kError : Severity::kWarning,
+                                          std::move(text), std::move(fix), std::move(where), t_s, "",
+                                          check_->name});
   }
   /// Breaks nothing.
   void warn(const motion::MotionFinding& fault) {
     findings_.push_back({fault.code, fault.severity, fault.text, "", fault.where, fault.t_s, "", ""});
   }
   /// At the block that a sweep comes from; at the program when no sweep is to blame.
-  void at_block(std::string code, std::string text, std::string fix, const std::vector<SweepSource>& sources,
-                uint32_t block) {
+  Finding& at_block(std::string code, std::string text, std::string fix,
+                    const std::vector<SweepSource>& sources, uint32_t block) {
     if (block >= sources.size()) {
       const size_t carried = block - sources.size();
       if (carried < result_.main.carried->rays.sweeps.size())
         text += "; it was cut " + carried_place(result_.main.carried->rays, carried);
-      add(std::move(code), std::move(text), std::move(fix), {job_.scene.program_file}, 0.0);
-      return;
+      return add(std::move(code), std::move(text), std::move(fix), {job_.scene.program_file}, 0.0);
     }
     const SweepSource& source = sources[block];
-    add(std::move(code), std::move(text), std::move(fix),
-        result_.main.path.elements.where(static_cast<size_t>(source.element)),
-        reader_.at(cycle_of(source, reader_)).sample.t_s);
+    const cutter::Cutter& tool = job_.scene.tools[static_cast<size_t>(source.tool)];
+    Finding& added = add(std::move(code), std::move(text), std::move(fix),
+                         result_.main.path.elements.where(static_cast<size_t>(source.element)),
+                         reader_.at(cycle_of(source, reader_)).sample.t_s);
+    added.cause = cutter::call_name(tool);
+    added.reach_mm = tool.diameter_mm;
+    return added;
   }
   /// At the block in which the tool first touches.
-  void at_event(std::string code, std::string text, std::string fix, const ContactEvent& event) {
-    add(std::move(code), std::move(text), std::move(fix),
-        result_.main.path.elements.where(static_cast<size_t>(event.first.element)), event.first.t_s);
+  Finding& at_event(std::string code, std::string text, std::string fix, const ContactEvent& event) {
+    Finding& added =
+        add(std::move(code), std::move(text), std::move(fix),
+            result_.main.path.elements.where(static_cast<size_t>(event.first.element)), event.first.t_s);
+    const cutter::Cutter& tool = job_.scene.tools[static_cast<size_t>(event.tool)];
+    added.line_last = result_.main.path.elements.line(static_cast<size_t>(event.last_element));
+    added.place_W = event.deepest_W;
+    added.amount_mm = event.depth_mm;
+    added.cause = event.part + " of " + cutter::call_name(tool);
+    added.reach_mm = tool.diameter_mm;
+    return added;
   }
   /// The findings with the text of their blocks.
   std::vector<Finding> take() {
@@ -84,6 +97,11 @@ std::string place(const measure::Region& region) {
                      region.area_mm2, region.place.x(), region.place.y(), region.place.z());
 }
 
+void at_region(Finding& finding, const measure::Region& region) {
+  finding.place_W = region.place;
+  finding.amount_mm = region.worst_um * kMicrometre;
+}
+
 /// A limit that the measures meet and no proof does.
 void not_proven(const Job& job, Collector& collect) {
   const Check& check = collect.check();
@@ -106,19 +124,22 @@ void region_faults(const Job& job, const Result& result, Collector& collect) {
                              "convex surface";
   for (const measure::Region& region : surface.gouges) {
     if (!accept.gouge_max_um || region.worst_um <= *accept.gouge_max_um) continue;
-    collect.at_block("gouge",
-                     fmt::format("a gouge, {}; [accept] allows {:g} um", place(region), *accept.gouge_max_um),
-                     remedy, result.main.rays.sources, region.block);
+    at_region(
+        collect.at_block(
+            "gouge", fmt::format("a gouge, {}; [accept] allows {:g} um", place(region), *accept.gouge_max_um),
+            remedy, result.main.rays.sources, region.block),
+        region);
   }
   not_proven(job, collect);
   collect.begin("excess");
   for (const measure::Region& region : surface.excesses) {
     if (!accept.excess_max_um || region.worst_um <= *accept.excess_max_um) continue;
-    collect.at_block("excess",
-                     fmt::format("material stands above the design, {}; [accept] allows {:g} um",
-                                 place(region), *accept.excess_max_um),
-                     "machine this place too, or start from a smaller stock", result.main.rays.sources,
-                     region.block);
+    at_region(collect.at_block("excess",
+                               fmt::format("material stands above the design, {}; [accept] allows {:g} um",
+                                           place(region), *accept.excess_max_um),
+                               "machine this place too, or start from a smaller stock",
+                               result.main.rays.sources, region.block),
+              region);
   }
   not_proven(job, collect);
 }
@@ -128,20 +149,21 @@ void surface_faults(const Job& job, const Result& result, Collector& collect) {
   const AcceptLimits& accept = job.scene.accept;
   collect.begin("scallop");
   if (collect.check().outcome == Outcome::kFails) {
-    uint32_t block = stock::kUncut;
-    double highest = -1.0;
-    for (const measure::Ridge& ridge : result.main.ridges) {
-      if (ridge.height_um > highest) {
-        highest = ridge.height_um;
-        block = ridge.block_a;
-      }
+    const auto highest =
+        std::max_element(result.main.ridges.begin(), result.main.ridges.end(),
+                         [](const auto& a, const auto& b) { return a.height_um < b.height_um; });
+    const bool known = highest != result.main.ridges.end();
+    Finding& added = collect.at_block("scallop",
+                                      fmt::format("the highest scallop is {:.3f} um, [accept] allows {:g} um",
+                                                  surface.scallop_max_um, *accept.scallop_max_um),
+                                      result.main.path.elements.hold_blocks()
+                                          ? "bring the passes closer together"
+                                          : "lower the scallop word E of the G06.3 block",
+                                      result.main.rays.sources, known ? highest->block_a : stock::kUncut);
+    if (known) {
+      added.place_W = highest->point;
+      added.amount_mm = highest->height_um * kMicrometre;
     }
-    collect.at_block("scallop",
-                     fmt::format("the highest scallop is {:.3f} um, [accept] allows {:g} um",
-                                 surface.scallop_max_um, *accept.scallop_max_um),
-                     result.main.path.elements.hold_blocks() ? "bring the passes closer together"
-                                                             : "lower the scallop word E of the G06.3 block",
-                     result.main.rays.sources, block);
   }
   not_proven(job, collect);
   region_faults(job, result, collect);
@@ -195,7 +217,7 @@ void motion_faults(const Result& result, Collector& collect) {
       continue;
     }
     collect.begin(check_of(fault));
-    collect.add(fault.code, fault.text, "", fault.where, fault.t_s);
+    collect.add(fault.code, fault.text, "", fault.where, fault.t_s).cause = fault.axis;
   }
 }
 
@@ -323,24 +345,28 @@ void machine_faults(const Result& result, Collector& collect) {
   const uint64_t all = contacts.contacts() + contacts.stock_contacts() + contacts.stock_open();
   size_t listed = 0;
   const auto add = [&](const std::string& text, const collision::PairFindings& pair, int element,
-                       double t_s) {
+                       int last_element, double t_s, double depth_mm) {
     if (listed == kListed) return;
-    collect.add("machine-contact", text + and_more(++listed, all),
-                remedy_of(contacts.bodies[pair.a], contacts.bodies[pair.b]),
-                result.main.path.elements.where(static_cast<size_t>(element)), t_s);
+    const ContactBody &a = contacts.bodies[pair.a], &b = contacts.bodies[pair.b];
+    const toolpath::Elements& elements = result.main.path.elements;
+    Finding& added = collect.add("machine-contact", text + and_more(++listed, all), remedy_of(a, b),
+                                 elements.where(static_cast<size_t>(element)), t_s);
+    added.line_last = elements.line(static_cast<size_t>(last_element));
+    added.cause = a.name + " and " + b.name;
+    added.amount_mm = depth_mm;
   };
   for (const collision::PairFindings& pair : contacts.findings.pairs) {
     if (contacts.with_stock(pair)) continue;
     for (const collision::ContactEvent& event : pair.contacts)
       add(contact_text(result, contacts.bodies[pair.a], contacts.bodies[pair.b], event), pair,
-          event.first_element, event.first.time_s);
+          event.first_element, event.last_element, event.first.time_s, event.depth_mm);
   }
   if (!contacts.as_cut) return;
   for (const StockVerdict verdict : {StockVerdict::kContact, StockVerdict::kOpen})
     for (const StockEvent& event : contacts.as_cut->events)
       if (event.verdict == verdict)
         add(stock_contact_text(result, contacts, event), contacts.findings.pairs[event.suspect.pair],
-            event.first.element, event.first.time_s);
+            event.first.element, event.last_element, event.first.time_s, event.depth_mm);
 }
 
 void built_in_checks(const Job& job, const Result& result, Collector& collect) {

@@ -168,7 +168,7 @@ TEST_F(MeshIo, EveryTruncationIsRefusedOrHasSoundIndices) {
 }
 
 TEST_F(MeshIo, AFailedWriteLeavesTheOldFile) {
-  EXPECT_THROW(save_mesh(file("ring.obj"), torus(4)), InputError);
+  EXPECT_THROW(save_mesh(file("ring.off"), torus(4)), InputError);
   EXPECT_THROW(save_mesh(file("no/such/folder.stl"), torus(4)), InputError);
   save_mesh(file("ring.stl"), torus(4));
   const std::string before = bytes_of(file("ring.stl"));

@@ -33,8 +33,16 @@ ReportData sample(const TemporaryFolder& folder) {
   data.findings = {{"scallop", Severity::kError, "too high <b>", "step over less", {"dome.nc", 11, 0}, 12.5}};
   data.hero_png = folder.write("hero.png", tiny_png());
   data.hero_caption = "The part";
-  data.viewer.part_glb = folder.write("part.glb", "glTF-part");
-  data.viewer.machine_glb = folder.write("machine.glb", "glTF-machine");
+  ReportFinding& finding = data.findings.front();
+  finding.first_line = 11;
+  finding.last_line = 14;
+  finding.count = 3;
+  finding.block = "G1 X<5>";
+  finding.excerpt = {{10, "G0 Z5"}, {11, "G1 X<5>"}, {12, "M2"}};
+  finding.place_mm = {1.0, -2.5, 3.0};
+  finding.has_place = true;
+  data.viewer.part_glb = "glTF-part";
+  data.viewer.machine_glb = "glTF-machine";
   data.viewer.colour_bar = {"Deviation", "µm", -10, 10, {{{0, 0, 255}}, {{255, 255, 255}}, {{255, 0, 0}}}};
   data.movie_mp4 = folder.write("movie.mp4", "movie bytes");
   data.stills = {{data.hero_png, "From above"}};
@@ -81,7 +89,7 @@ TEST(ReportWriter, LoadsNothingFromAnywhere) {
 TEST(ReportWriter, TextNeverBecomesMarkup) {
   const TemporaryFolder folder("swarf_report_escape");
   const std::string page = render_report(sample(folder));
-  for (const char* text : {"<script>alert", "<max>", "<hint>", "high <b>", "<scallop>", "a=<b>"}) {
+  for (const char* text : {"<script>alert", "<max>", "<hint>", "high <b>", "<scallop>", "a=<b>", "X<5>"}) {
     EXPECT_EQ(page.find(text), std::string::npos) << text;
   }
   EXPECT_NE(page.find("Dome &lt;script&gt;alert(1)&lt;/script&gt;"), std::string::npos);
@@ -102,10 +110,26 @@ TEST(ReportWriter, SaysWhatHoldsAndWhatWasNotChecked) {
   const TemporaryFolder folder("swarf_report_words");
   const std::string page = render_report(sample(folder));
   for (const char* text :
-       {"<b>Findings</b>", "1 check holds; not judged: &lt;holder&gt;", "symbol-warning\"/></svg>Not proven",
-        "symbol-none\"/></svg>Not checked", "the scene has no holder", "dome.nc:11", "12.500", ">E6<"}) {
+       {"<b>Fail</b>", "1 check holds; not judged: &lt;holder&gt;", "symbol-warning\"/></svg>Not proven",
+        "symbol-none\"/></svg>Not checked", "the scene has no holder", "12.500 s", ">E6<"}) {
     EXPECT_NE(page.find(text), std::string::npos) << text;
   }
+}
+
+TEST(ReportWriter, FindingsLeadToTheirPlaceLineAndTime) {
+  const TemporaryFolder folder("swarf_report_findings");
+  const std::string page = render_report(sample(folder));
+  for (const char* text :
+       {"id=\"finding-1\"", "href=\"#finding-1\"", "dome.nc, lines 11 to 14", "3 places alike",
+        "X 1.000 Y -2.500 Z 3.000 mm", "<span class=\"at\"><i>11</i>G1 X&lt;5&gt;</span>", "<i>12</i>M2",
+        "data-show=\"view\" data-finding=\"1\"", "data-show=\"movie\" data-finding=\"1\"",
+        "[{\"t_s\":12.500000,\"place\":[1.000000,-2.500000,3.000000],\"line\":11}]"}) {
+    EXPECT_NE(page.find(text), std::string::npos) << text;
+  }
+  ReportData still = sample(folder);
+  still.movie_mp4.clear();
+  EXPECT_EQ(render_report(still).find("data-show=\"movie\" data"), std::string::npos)
+      << "no way to a movie that is not there";
 }
 
 TEST(ReportWriter, EmptySectionsAreLeftOut) {

@@ -1,0 +1,99 @@
+#include "reports/review_findings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "base/units.h"
+#include "program/source_text.h"
+#include "sim/judge/finding_groups.h"
+
+namespace swarf::reports {
+namespace {
+
+constexpr int kNeighbours = 3;     // lines before and behind a block
+constexpr size_t kExcerpts = 200;  // the page shows no more findings
+
+ReportFinding report_finding(std::span<const sim::Finding> findings, const sim::FindingGroup& group) {
+  const sim::Finding& worst = findings[group.members.front()];
+  ReportFinding out{worst.code, worst.severity, worst.text, worst.fix, worst.where, worst.t_s, worst.block};
+  // A finding that names no block has no time either.
+  if (worst.where.line == 0) out.time_s = std::numeric_limits<double>::quiet_NaN();
+  out.count = group.members.size();
+  out.first_line = group.first_line;
+  out.last_line = group.last_line;
+  if (worst.place_W) {
+    out.has_place = true;
+    for (size_t k = 0; k < 3; ++k) out.place_mm[k] = (*worst.place_W)[static_cast<Eigen::Index>(k)];
+  }
+  return out;
+}
+
+/// The text around the blocks that have one; each file is read once.
+void add_excerpts(std::vector<ReportFinding>& findings) {
+  std::map<std::string, std::set<int>> wanted;
+  for (const ReportFinding& finding : findings)
+    if (!finding.block.empty())
+      for (int line = finding.where.line - kNeighbours; line <= finding.where.line + kNeighbours; ++line)
+        if (line > 0) wanted[finding.where.file].insert(line);
+  std::map<std::string, std::map<int, std::string>> texts;
+  for (const auto& [file, lines] : wanted) texts[file] = program::read_lines(file, lines);
+  for (ReportFinding& finding : findings) {
+    if (finding.block.empty()) continue;
+    const std::map<int, std::string>& lines = texts[finding.where.file];
+    const auto end = lines.upper_bound(finding.where.line + kNeighbours);
+    for (auto at = lines.lower_bound(finding.where.line - kNeighbours); at != end; ++at)
+      finding.excerpt.push_back({at->first, at->second});
+  }
+}
+
+}  // namespace
+
+std::vector<ReportFinding> report_findings(const sim::Result& result) {
+  std::vector<ReportFinding> out;
+  for (const sim::FindingGroup& group : sim::group_findings(result.findings))
+    out.push_back(report_finding(result.findings, group));
+  std::vector<ReportFinding> shown(out.begin(),
+                                   out.begin() + static_cast<ptrdiff_t>(std::min(out.size(), kExcerpts)));
+  add_excerpts(shown);
+  std::move(shown.begin(), shown.end(), out.begin());
+  return out;
+}
+
+std::vector<ReviewPin> review_pins(const sim::Result& result) {
+  std::vector<ReviewPin> pins;
+  const std::vector<sim::FindingGroup> groups = sim::group_findings(result.findings);
+  for (size_t i = 0; i < groups.size(); ++i) {
+    const sim::Finding& worst = result.findings[groups[i].members.front()];
+    if (worst.place_W)
+      pins.push_back({i + 1, worst.code, worst.text, worst.severity, *worst.place_W, worst.where.line,
+                      worst.t_s, worst.amount_mm});
+  }
+  return pins;
+}
+
+std::vector<WorstPlace> worst_places(const sim::Result& result) {
+  const measure::SurfaceMetrics& surface = result.main.surface;
+  std::vector<WorstPlace> places;
+  if (!surface.gouges.empty())
+    places.push_back({surface.gouges.front().place, -surface.gouges.front().worst_um * kMicrometre});
+  if (!surface.excesses.empty())
+    places.push_back({surface.excesses.front().place, surface.excesses.front().worst_um * kMicrometre});
+  const auto& ridges = result.main.ridges;
+  const auto highest = std::max_element(
+      ridges.begin(), ridges.end(), [](const auto& a, const auto& b) { return a.height_um < b.height_um; });
+  if (highest != ridges.end()) places.push_back({highest->point, highest->height_um * kMicrometre});
+  return places;
+}
+
+std::vector<size_t> finding_numbers(const sim::Result& result) {
+  std::vector<size_t> numbers(result.findings.size(), 0);
+  const std::vector<sim::FindingGroup> groups = sim::group_findings(result.findings);
+  for (size_t i = 0; i < groups.size(); ++i)
+    for (const size_t member : groups[i].members) numbers[member] = i + 1;
+  return numbers;
+}
+
+}  // namespace swarf::reports

@@ -1,0 +1,74 @@
+// What a person turns and measures: the part and the machine as glTF, for files and for the page.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/diagnostics.h"
+#include "render/gltf/gltf_writer.h"
+#include "reports/machine_view.h"
+#include "reports/path_view.h"
+#include "reports/stock_stages.h"
+
+namespace swarf::reports {
+
+/// The part for the eye, made light enough to be sent around.
+struct DisplayMesh {
+  TriMesh mesh;           ///< shown_part of the decimated mesh, with the worst places as vertices
+  double error_mm = 0.0;  ///< that the decimation reached, measured
+};
+/// Where metrics.json has a maximum that lies between the measuring rays.
+struct WorstPlace {
+  Vec3 place_W = Vec3::Zero();
+  double deviation_mm = 0.0;  ///< above the design; below it < 0
+};
+DisplayMesh display_mesh(const FinishedRun& run, const TriMesh& closed, double max_error_mm,
+                         std::span<const WorstPlace> worst);
+
+/// A finding at its place.
+struct ReviewPin {
+  size_t number = 0;  ///< in the page and in findings.json, from 1
+  std::string code{}, text{};
+  Severity severity = Severity::kError;
+  Vec3 place_W = Vec3::Zero();
+  int line = 0;
+  double t_s = 0.0, amount_mm = 0.0;
+};
+
+/// Made once, written in several encodings.
+struct ReviewModels {
+  DisplayMesh part;
+  std::vector<StockStage> stages;
+  Way way;
+  std::vector<ReviewPin> pins;
+  TriMesh machine_part{};  ///< the part for the machine's file
+};
+ReviewModels review_models(const FinishedRun& run, const TriMesh& closed, double max_error_mm,
+                           std::vector<ReviewPin> pins, std::span<const WorstPlace> worst);
+
+struct GltfOptions {
+  render::GltfEncoding encoding = render::GltfEncoding::kFloat;
+  bool colours = true;  ///< false: the reader colours deviations itself
+};
+
+/// The finished part with deviation as colour and attribute, findings as pins, the program's way and the
+/// tool-axis fan as lines, cameras. Of the numbers in asset.extras, decimation_error_um is how far the
+/// level set's mesh is from the part's, path_error_mm how far the program's way from its line.
+std::string part_glb(const FinishedRun& run, const ReviewModels& models, const GltfOptions& options);
+
+/// Links, tools and the stock in its stages with the axes animated over what is shown of the program. Between
+/// its keys an axis moves in a straight line, which no cycle is farther from than asset.extras says for that
+/// axis (key_error_max_X_mm, ...). Every node that an axis moves is named after it, and its extras say
+/// about what and how far it turns; the extras "role" of the others are machine, fixture, tool or stock.
+std::string machine_glb(const FinishedRun& run, const ReviewModels& models, const GltfOptions& options);
+
+/// Program seconds that one second of the glTF animation stands for.
+double animation_scale(const FinishedRun& run);
+
+/// Gives the mesh a vertex at each of these places, and at the deepest and the highest measuring ray, with
+/// what is known there: what is read from the picture is what metrics.json says. A place farther from every
+/// measured triangle than two voxels has none in the mesh.
+void add_worst_places(const FinishedRun& run, std::span<const WorstPlace> places, TriMesh& mesh);
+
+}  // namespace swarf::reports

@@ -1,0 +1,117 @@
+// add_worst_places(): the extremes of the measuring rays as vertices of the mesh that is looked at.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "base/units.h"
+#include "reports/review_models.h"
+
+namespace swarf::reports {
+namespace {
+
+/// The lowest (sign -1) or the highest (+1) of the rays that a cut has reached.
+std::optional<WorstPlace> extreme_of(const FinishedRun& run, double sign) {
+  std::optional<WorstPlace> found;
+  for (const stock::SurfaceDexels& dexels : run.dexels) {
+    for (size_t i = 0; i < dexels.points().size(); ++i) {
+      const double height = dexels.heights_mm()[i];
+      if (dexels.blocks()[i] == stock::kUncut || (found && sign * height <= sign * found->deviation_mm))
+        continue;
+      found = WorstPlace{dexels.points()[i] + height * dexels.normals()[i], height};
+    }
+  }
+  return found;
+}
+
+Vec3 point_of(const TriMesh& mesh, uint32_t vertex) {
+  const auto& p = mesh.positions[vertex];
+  return {p[0], p[1], p[2]};
+}
+
+/// Barycentric coordinates of the point of the triangle that is nearest to `p`; inside, or on its border.
+Vec3 nearest_in_triangle(const Vec3& p, const std::array<Vec3, 3>& t) {
+  const Vec3 ab = t[1] - t[0], ac = t[2] - t[0], ap = p - t[0];
+  const double d00 = ab.dot(ab), d01 = ab.dot(ac), d11 = ac.dot(ac), d20 = ap.dot(ab), d21 = ap.dot(ac);
+  const double area = d00 * d11 - d01 * d01;
+  if (area > 0.0) {
+    const double v = (d11 * d20 - d01 * d21) / area, w = (d00 * d21 - d01 * d20) / area;
+    if (v >= 0.0 && w >= 0.0 && v + w <= 1.0) return {1.0 - v - w, v, w};
+  }
+  Vec3 best(1.0, 0.0, 0.0);
+  double least = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 3; ++k) {
+    const int next = (k + 1) % 3;
+    const auto a = static_cast<size_t>(k), b = static_cast<size_t>(next);
+    const Vec3 edge = t[b] - t[a];
+    const double share =
+        edge.squaredNorm() > 0.0 ? std::clamp((p - t[a]).dot(edge) / edge.squaredNorm(), 0.0, 1.0) : 0.0;
+    const double off = (p - t[a] - share * edge).norm();
+    if (off >= least) continue;
+    least = off;
+    best.setZero();
+    best[k] = 1.0 - share;
+    best[next] = share;
+  }
+  return best;
+}
+
+struct Foot {
+  size_t triangle = 0;
+  Vec3 weights = Vec3::Zero();
+  double distance_mm = std::numeric_limits<double>::infinity();
+};
+
+Foot foot_of(const TriMesh& mesh, const Vec3& place) {
+  Foot best;
+  for (size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto& corners = mesh.triangles[t];
+    if (std::any_of(corners.begin(), corners.end(),
+                    [&](uint32_t v) { return std::isnan(mesh.deviation_um[v]); }))
+      continue;
+    const std::array<Vec3, 3> at{point_of(mesh, corners[0]), point_of(mesh, corners[1]),
+                                 point_of(mesh, corners[2])};
+    // No point of the triangle is nearer than its first corner less its longest side.
+    const double reach = std::sqrt(std::max((at[1] - at[0]).squaredNorm(), (at[2] - at[0]).squaredNorm()));
+    if ((place - at[0]).norm() - reach > best.distance_mm) continue;
+    const Vec3 weights = nearest_in_triangle(place, at);
+    const double off = (place - weights[0] * at[0] - weights[1] * at[1] - weights[2] * at[2]).norm();
+    if (off < best.distance_mm) best = {t, weights, off};
+  }
+  return best;
+}
+
+/// The triangle becomes three around a new vertex in it.
+void divide(TriMesh& mesh, const Foot& foot, double height_mm) {
+  const std::array<uint32_t, 3> corners = mesh.triangles[foot.triangle];
+  const auto vertex = static_cast<uint32_t>(mesh.positions.size());
+  Vec3 place = Vec3::Zero(), normal = Vec3::Zero();
+  for (size_t k = 0; k < 3; ++k) {
+    const auto& n = mesh.normals[corners[k]];
+    place += foot.weights[static_cast<int>(k)] * point_of(mesh, corners[k]);
+    normal += foot.weights[static_cast<int>(k)] * Vec3(n[0], n[1], n[2]);
+  }
+  const Eigen::Vector3f p = place.cast<float>(), n = normal.normalized().cast<float>();
+  mesh.positions.push_back({p.x(), p.y(), p.z()});
+  mesh.normals.push_back({n.x(), n.y(), n.z()});
+  mesh.deviation_um.push_back(static_cast<float>(um_from_mm(height_mm)));
+  mesh.triangles[foot.triangle] = {corners[0], corners[1], vertex};
+  mesh.triangles.push_back({corners[1], corners[2], vertex});
+  mesh.triangles.push_back({corners[2], corners[0], vertex});
+}
+
+}  // namespace
+
+void add_worst_places(const FinishedRun& run, std::span<const WorstPlace> places, TriMesh& mesh) {
+  if (mesh.deviation_um.empty() || mesh.normals.empty()) return;
+  std::vector<WorstPlace> all(places.begin(), places.end());
+  for (const double sign : {-1.0, 1.0})
+    if (const auto extreme = extreme_of(run, sign)) all.push_back(*extreme);
+  for (const WorstPlace& one : all) {
+    const Foot foot = foot_of(mesh, one.place_W);
+    if (foot.distance_mm <= 2.0 * run.stock.voxel_mm()) divide(mesh, foot, one.deviation_mm);
+  }
+}
+
+}  // namespace swarf::reports
