@@ -78,7 +78,8 @@ Decoded decode(const std::string& path) {
       result.width = frame->width;
       result.height = frame->height;
       result.format = frame->format;
-      result.mean.push_back({plane_mean(*frame, 0), plane_mean(*frame, 1), plane_mean(*frame, 2)});
+      if (frame->format == AV_PIX_FMT_YUV420P)
+        result.mean.push_back({plane_mean(*frame, 0), plane_mean(*frame, 1), plane_mean(*frame, 2)});
     }
   }
   av_frame_free(&frame);
@@ -139,7 +140,7 @@ TEST_P(MovieEndings, FramesAndChaptersComeBack) {
   EXPECT_EQ(movie.width, kWidth);
   const std::vector<std::pair<double, std::string>> expected{{0.0, "T1"}, {0.5, "T2 ball"}};
   if (path.ends_with(".apng"))
-    EXPECT_EQ(movie.format, AV_PIX_FMT_RGBA);
+    EXPECT_EQ(movie.format, AV_PIX_FMT_RGB24);  // no colour is halved
   else
     EXPECT_EQ(chapters_of(path), expected);
   std::filesystem::remove(path);
