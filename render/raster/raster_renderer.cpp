@@ -17,9 +17,9 @@ namespace {
 
 constexpr int kShadowSize = 2048;  // pixels of the shadow map, both ways
 
-GLuint compile(const GlApi& gl, const ShaderSource& source) {
+GLuint compile(const GlApi& gl, const ShaderSource& source, const char* define = "") {
   const GLuint program = gl.CreateProgram();
-  const std::string fragment = std::string(kFragmentPrelude) + source.fragment;
+  const std::string fragment = std::string(kFragmentPrelude) + define + source.fragment;
   const char* texts[] = {source.vertex, fragment.c_str()};
   const GLenum kinds[] = {GL_VERTEX_SHADER, GL_FRAGMENT_SHADER};
   for (int i = 0; i < 2; ++i) {
@@ -78,7 +78,7 @@ struct RasterRenderer::Impl {
   Box upload(const DrawList& list);
   void draw_shadow(const SceneView& view, bool section);
   void draw_backdrop(const SceneView& view);
-  void draw_items(const SceneView& view, const DrawList& list);
+  void draw_items(const SceneView& view, const DrawList& list, bool sectioned);
   void draw_lines(const SceneView& view, const std::vector<DrawLine>& lines);
   void draw_triangles(const GpuMesh& mesh, bool both_sides = false);
   Image read();
@@ -88,7 +88,7 @@ struct RasterRenderer::Impl {
   GpuMeshCache meshes;
   int width, height;
   GLuint target = 0, resolved = 0, shadow_target = 0, shadow_texture = 0;
-  GLuint mesh_program, shadow_program, ground_program, background_program, line_program;
+  GLuint mesh_program, section_program, shadow_program, ground_program, background_program, line_program;
   GLuint empty_array = 0, line_array = 0, line_buffer = 0;
   std::vector<Drawn> drawn;
 };
@@ -103,6 +103,7 @@ RasterRenderer::Impl::Impl(int width_px, int height_px, int samples)
   resolved = make_target(0);
   make_shadow_map();
   mesh_program = compile(gl, kMeshShader);
+  section_program = compile(gl, kMeshShader, "#define SECTION\n");
   shadow_program = compile(gl, kShadowShader);
   ground_program = compile(gl, kGroundShader);
   background_program = compile(gl, kBackgroundShader);
@@ -221,8 +222,10 @@ void RasterRenderer::Impl::draw_backdrop(const SceneView& view) {
   gl.DrawArrays(GL_TRIANGLES, 0, 3);
 }
 
-void RasterRenderer::Impl::draw_items(const SceneView& view, const DrawList& list) {
-  const Uniforms uniforms(gl, mesh_program);
+/// The items that the section cuts open, or all others.
+void RasterRenderer::Impl::draw_items(const SceneView& view, const DrawList& list, bool sectioned) {
+  const Uniforms uniforms(gl, sectioned ? section_program : mesh_program);
+  if (sectioned) uniforms.set_plane("section", list.section->normal, list.section->point);
   uniforms.set("clip_from_world", view.clip_from_world);
   uniforms.set("light_from_world", view.light_clip_from_world);
   uniforms.set("eye", list.camera.eye);
@@ -233,6 +236,7 @@ void RasterRenderer::Impl::draw_items(const SceneView& view, const DrawList& lis
   uniforms.set("texel", 1.0 / kShadowSize);
   uniforms.set("texel_mm", view.light_extent_mm / kShadowSize);
   for (const Drawn& one : drawn) {
+    if ((list.section && one.item->sectioned) != sectioned) continue;
     const Material& material = one.item->material;
     uniforms.set("world_from_mesh", one.item->X_world.matrix());
     uniforms.set("base_colour", material.colour);
@@ -240,9 +244,6 @@ void RasterRenderer::Impl::draw_items(const SceneView& view, const DrawList& lis
     uniforms.set("roughness", static_cast<double>(material.roughness));
     uniforms.set("has_normals", one.mesh->has_normals ? 1 : 0);
     uniforms.set("has_colours", one.mesh->has_colours ? 1 : 0);
-    const bool sectioned = list.section && one.item->sectioned;
-    uniforms.set("sectioned", sectioned ? 1 : 0);
-    if (sectioned) uniforms.set_plane("section", list.section->normal, list.section->point);
     draw_triangles(*one.mesh, sectioned);
   }
 }
@@ -294,7 +295,8 @@ Image RasterRenderer::draw(const DrawList& list) {
   gl.Viewport(0, 0, impl.width, impl.height);
   gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   gl.BindTexture(GL_TEXTURE_2D, impl.shadow_texture);
-  impl.draw_items(view, list);
+  impl.draw_items(view, list, false);
+  if (list.section) impl.draw_items(view, list, true);
   impl.draw_lines(view, list.lines);
   impl.draw_backdrop(view);
   return impl.read();

@@ -73,20 +73,21 @@ vec3 studio(vec3 d, float blur) {
   return c + vec3(1.0, 0.98, 0.95) * box * (1.0 - 0.6 * blur);
 }
 
-uniform int sectioned;
+#ifdef SECTION  // a program of its own: where a pixel may be dropped, depth is not tested before shading
 uniform vec4 section;  // what lies above the plane xyz . p = w is not drawn
+#endif
 
 void main() {
+#ifdef SECTION
   // The back of a closed body seen through its section stands for the face of the cut: beyond the plane only
   // material hides it.
-  if (sectioned != 0) {
-    if (dot(section.xyz, world) > section.w) discard;
-    if (!gl_FrontFacing) {
-      float facing = 0.5 + 0.5 * dot(section.xyz, key);
-      result = srgb(vec3(0.62, 0.24, 0.10) * (0.6 + 0.4 * facing));
-      return;
-    }
+  if (dot(section.xyz, world) > section.w) discard;
+  if (!gl_FrontFacing) {
+    float facing = 0.5 + 0.5 * dot(section.xyz, key);
+    result = srgb(vec3(0.62, 0.24, 0.10) * (0.6 + 0.4 * facing));
+    return;
   }
+#endif
   vec3 v = normalize(eye - world);
   vec3 n = has_normals != 0 ? normalize(world_normal) : normalize(cross(dFdx(world), dFdy(world)));
   if (dot(n, v) < 0.0) n = -n;
