@@ -15,14 +15,14 @@ namespace {
 
 using PageJson = nlohmann::ordered_json;
 
-struct Stretch {
+struct LineSpan {
   double end_s = 0.0;
   int line = 0;
 };
 
 /// Ends of the stretches that run one line.
-std::vector<Stretch> line_stretches(const Way& way) {
-  std::vector<Stretch> stretches;
+std::vector<LineSpan> line_stretches(const Way& way) {
+  std::vector<LineSpan> stretches;
   for (const WayPoint& point : way.points) {
     if (stretches.empty() || stretches.back().line != point.line)
       stretches.push_back({point.t_s, point.line});
@@ -31,9 +31,9 @@ std::vector<Stretch> line_stretches(const Way& way) {
   return stretches;
 }
 
-PageJson texts_of(const std::string& file, const std::vector<Stretch>& stretches) {
+PageJson texts_of(const std::string& file, const std::vector<LineSpan>& stretches) {
   std::set<int> wanted;
-  for (const Stretch& stretch : stretches)
+  for (const LineSpan& stretch : stretches)
     if (stretch.line > 0) wanted.insert(stretch.line);
   PageJson texts = PageJson::object();
   if (wanted.empty() || wanted.size() > kPageLines || !std::filesystem::is_regular_file(file)) return texts;
@@ -44,7 +44,7 @@ PageJson texts_of(const std::string& file, const std::vector<Stretch>& stretches
 }  // namespace
 
 std::string page_program(const sim::Job& job, const sim::Result& result, const RunFiles& files) {
-  const std::vector<Stretch> stretches = line_stretches(files.way);
+  const std::vector<LineSpan> stretches = line_stretches(files.way);
   const size_t stride = 1 + stretches.size() / kPagePoints;
   PageJson t_ms = PageJson::array(), line = PageJson::array(), tools = PageJson::array();
   for (size_t i = 0; i < stretches.size(); i += stride) {
