@@ -14,7 +14,7 @@ namespace swarf::reports {
 namespace {
 
 constexpr double kMapWidth = 540.0, kMapHeight = 300.0;
-constexpr double kLeft = 46.0, kRight = 78.0, kTop = 12.0, kBottom = 40.0;
+constexpr double kMapLeft = 46.0, kMapRight = 78.0, kMapTop = 12.0, kMapBottom = 40.0;
 constexpr double kBarWidth = 14.0;
 
 struct Binned {
@@ -55,7 +55,7 @@ std::string cells_svg(const HeatMap& map, double width, double height) {
       const std::string colour = std::isnan(value) ? "#9a9a9a" : heat_colour(value / map.most);
       // A little wider than the cell: no seams between neighbours.
       out += fmt::format(R"(<rect x="{:.2f}" y="{:.2f}" width="{:.2f}" height="{:.2f}" fill="{}"/>)",
-                         kLeft + ix * w, kTop + height - (iy + 1) * h, w + 0.3, h + 0.3, colour);
+                         kMapLeft + ix * w, kMapTop + height - (iy + 1) * h, w + 0.3, h + 0.3, colour);
     }
   }
   return out;
@@ -68,14 +68,14 @@ std::string text_svg(double x, double y, const char* anchor, const std::string& 
 
 std::string bar_svg(const HeatMap& map, double height) {
   constexpr int kSteps = 40;
-  const double x = kMapWidth - kRight + 18.0;
+  const double x = kMapWidth - kMapRight + 18.0;
   std::string out;
   for (int i = 0; i < kSteps; ++i)
     out += fmt::format(R"(<rect x="{:.1f}" y="{:.2f}" width="{:.1f}" height="{:.2f}" fill="{}"/>)", x,
-                       kTop + height * (kSteps - 1 - i) / kSteps, kBarWidth, height / kSteps + 0.3,
+                       kMapTop + height * (kSteps - 1 - i) / kSteps, kBarWidth, height / kSteps + 0.3,
                        heat_colour(2.0 * (i + 0.5) / kSteps - 1.0));
   for (const double share : {-1.0, 0.0, 1.0})
-    out += text_svg(x + kBarWidth + 5.0, kTop + height * 0.5 * (1.0 - share) + 4.0, "start",
+    out += text_svg(x + kBarWidth + 5.0, kMapTop + height * 0.5 * (1.0 - share) + 4.0, "start",
                     share == 0.0 ? "0" : fmt::format("{:+.3g}", share * map.most));
   return out;
 }
@@ -94,7 +94,7 @@ std::string heat_colour(double share) {
 }
 
 Figure heat_map_figure(const HeatMap& map) {
-  const double width = kMapWidth - kLeft - kRight, height = kMapHeight - kTop - kBottom;
+  const double width = kMapWidth - kMapLeft - kMapRight, height = kMapHeight - kMapTop - kMapBottom;
   std::string svg = fmt::format(
       R"(<svg class="plot" viewBox="0 0 {:.0f} {:.0f}" role="img" aria-label="{}">)", kMapWidth, kMapHeight,
       escape(fmt::format("{}: {} over {} and {}, colours from {:.3g} to {:.3g}", map.title, map.unit,
@@ -105,12 +105,12 @@ Figure heat_map_figure(const HeatMap& map) {
       const auto at = [&](const std::vector<double>& places) {
         return fmt::format("{:.3g}", places.front() + share * (places.back() - places.front()));
       };
-      svg += text_svg(kLeft + share * width, kTop + height + 16.0, "middle", at(map.x));
-      svg += text_svg(kLeft - 6.0, kTop + (1.0 - share) * height + 4.0, "end", at(map.y));
+      svg += text_svg(kMapLeft + share * width, kMapTop + height + 16.0, "middle", at(map.x));
+      svg += text_svg(kMapLeft - 6.0, kMapTop + (1.0 - share) * height + 4.0, "end", at(map.y));
     }
   }
-  svg += text_svg(kLeft + 0.5 * width, kMapHeight - 6.0, "middle", map.x_label);
-  svg += text_svg(12.0, kTop + 0.5 * height, "middle", map.y_label);
+  svg += text_svg(kMapLeft + 0.5 * width, kMapHeight - 6.0, "middle", map.x_label);
+  svg += text_svg(12.0, kMapTop + 0.5 * height, "middle", map.y_label);
   svg += text_svg(kMapWidth - 4.0, kMapHeight - 6.0, "end", map.unit);
   return {map.title, svg + "</svg>", map.caption};
 }
