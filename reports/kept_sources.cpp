@@ -53,7 +53,7 @@ void add_sources(const fs::path& input, const std::vector<fs::path>& files) {
   const fs::path list = input / kSourcesFile;
   Sources sources = fs::exists(list) ? read_sources(list) : Sources{};
   for (const fs::path& file : files) {
-    const std::string whole = fs::absolute(file).lexically_normal().string();
+    const std::string whole = fs::absolute(file).string();  // ".." after a link is not what stands before it
     sources[whole] = checksum_text(whole);
   }
   write_text(list.string(),

@@ -79,7 +79,7 @@ TEST_F(ResultsKept, SceneBesideItsMachineWithResultsBelow) {
   EXPECT_EQ(run.exit_code, 0) << run.output;
   EXPECT_EQ(files_below(job_ / "results/first/input"),
             (Files{"machine/machine.toml", "machine/tetrahedron.ply", "machine/tetrahedron.stl",
-                   "program/slot.ngc", "scene.toml"}));
+                   "program/slot.ngc", "scene.toml", "sources.json"}));
   // The results stand on their own.
   fs::rename(job_ / "results", folder_ / "moved");
   fs::remove_all(job_);
@@ -100,7 +100,7 @@ TEST_F(ResultsKept, OnlyNamedFilesAreCopiedFromAFullHome) {
   const auto run =
       run_swarf("run " + (job_ / "scene.toml").string() + " --no-render -o " + (folder_ / "out").string());
   EXPECT_EQ(run.exit_code, 0) << run.output;
-  EXPECT_EQ(files_below(folder_ / "out/input").size(), 5U);
+  EXPECT_EQ(files_below(folder_ / "out/input").size(), 6U);  // five inputs and sources.json
 }
 
 TEST_F(ResultsKept, MeshesOfOtherFoldersLinksAndEqualNamesAreKeptApart) {
@@ -122,7 +122,7 @@ TEST_F(ResultsKept, MeshesOfOtherFoldersLinksAndEqualNamesAreKeptApart) {
   EXPECT_EQ(run.exit_code, 0) << run.output;
   EXPECT_EQ(files_below(job_ / "out/input"),
             (Files{"machine/below_1/kept_0.ply", "machine/below_1/machine.toml", "machine/below_1/part.stl",
-                   "machine/part.ply", "program/slot.ngc", "scene.toml"}));
+                   "machine/part.ply", "program/slot.ngc", "scene.toml", "sources.json"}));
   fs::rename(job_ / "out", folder_ / "out");
   for (const fs::path& gone : {job_, other, plant}) fs::remove_all(gone);
   const auto render =
