@@ -397,7 +397,7 @@ std::string paper_section(const ReportData& data) {
     const bool agrees = row.erratum.empty() && row.why.empty();
     const std::string erratum = row.erratum.empty() ? "–" : element("span", "erratum", row.erratum);
     out += fmt::format(
-        R"(<tr><th scope="row">{}</th><td>{}</td><td class="number">{}</td><td class="number">)"
+        R"(<tr><th scope="row">{}</th><td>{}</td><td class="number wraps">{}</td><td class="number wraps">)"
         R"({}</td><td>{}</td><td>{}</td><td class="prose">{}</td></tr>)",
         escape(row.quantity), escape(row.place), escape(row.paper), escape(row.ours), escape(row.unit),
         erratum, agrees ? element("span", "unit", "they agree") : escape(row.why));
