@@ -20,8 +20,11 @@ class Finding:
     fix: str  #: what would help; may be empty
     file: str  #: of the program
     line: int  #: in it; 0: not tied to one
+    line_last: int  #: of a row of blocks the last one's, else `line`
     block: str  #: its text
     t_s: typing.Optional[float]  #: program time, s
+    place_mm: typing.Optional[typing.List[float]]  #: on the part, in the work frame, where it is worst
+    number: int  #: of its fault in the page: report.html#finding-N
 
 
 class Picture:
