@@ -251,6 +251,8 @@ Json contact_json(const toolpath::ToolPath& path, const std::string& a, const st
           {"last_line", line(event.last_element)},
           {"t_s", event.first.time_s},
           {"depth_seen_mm", event.depth_mm},
+          {"depth_bound_mm", event.depth_bound_mm},
+          {"deepest_machine_mm", {event.deepest_M.x(), event.deepest_M.y(), event.deepest_M.z()}},
           {"place_machine_mm", {event.point_a.x(), event.point_a.y(), event.point_a.z()}}};
 }
 
@@ -303,8 +305,11 @@ Json machine_contacts_json(const sim::Job& job, const sim::Result& result) {
             {"pairs", Json::array()},
             {"left_out", Json::array()},
             {"without_mesh", contacts.without_mesh},
+            {"without_mesh_pairs", Json::array()},
             {"events", Json::array()},
             {"fixtures_cut", Json::array()}};
+  for (const auto& [a, b] : contacts.without_mesh_pairs)
+    json["without_mesh_pairs"].push_back({{"a", a}, {"b", b}});
   for (const sim::WornFixture& worn : sim::worn_fixtures(job, result))
     json["fixtures_cut"].push_back({{"name", worn.name}, {"removed_mm3", worn.removed_mm3}});
   const collision::PairFindings* const nearest = contacts.nearest();

@@ -403,6 +403,7 @@ void read_scene(ConfigTable& root, Scene& scene, Diagnostics& diagnostics, int s
     read_interpolator(root.table("interpolator"), scene);
   }
   read_accept(root.table("accept"), blocks || scene.driven, scene.accept);
+  scene.contact_pairs = read_contact_pairs(root);
   read_pictures(root, scene);
   scene.output = read_output(root.table("output"));
   root.finish();
