@@ -86,30 +86,43 @@ std::unique_ptr<mesh::SignedDistance> surface_of(const Body& body) {
 BodyDepth::BodyDepth(const Body& body) : body_(&body), surface_(std::make_shared<Surface>()) {}
 
 double BodyDepth::depth(const Vec3& point) const {
-  if (body_->nodes.empty()) return 0.0;
-  const BodyNode& root = body_->nodes.front();
-  if (((point - root.centre).cwiseAbs() - root.half).maxCoeff() > 0.0) return 0.0;
-  double depth = 0.0;
-  for (const RevolvedSolid& solid : body_->solids) depth = std::max(depth, depth_in_solid(solid, point));
-  // Isolated: while its tree is built in parallel, this thread takes up no other pair that would wait for it.
-  std::call_once(surface_->once, [&] { isolated([&] { surface_->distance = surface_of(*body_); }); });
-  if (surface_->distance != nullptr) depth = std::max(depth, -surface_->distance->at(point).distance_mm);
-  return depth;
+  Looked nothing;
+  return depth_beyond(-1.0, point, nothing);
 }
 
-Depth overlap_depth(const Encounter& pair, const BodyDepth& in_a, const BodyDepth& in_b,
-                    const AxisValues& q) {
-  Depth deepest;
+double BodyDepth::depth_beyond(double least, const Vec3& point, Looked& last) const {
+  if (body_->nodes.empty()) return 0.0;
+  const BodyNode& root = body_->nodes.front();
+  const double in_box = (root.half - (point - root.centre).cwiseAbs()).minCoeff();
+  if (in_box < 0.0 || in_box <= least) return 0.0;
+  double depth = 0.0;
+  for (const RevolvedSolid& solid : body_->solids) depth = std::max(depth, depth_in_solid(solid, point));
+  if (last.to_surface_mm + (point - last.point).norm() <= std::max(least, depth)) return depth;
+  // Isolated: while its tree is built in parallel, this thread takes up no other pair that would wait for it.
+  std::call_once(surface_->once, [&] { isolated([&] { surface_->distance = surface_of(*body_); }); });
+  if (surface_->distance == nullptr) return depth;
+  const double distance = surface_->distance->at(point).distance_mm;
+  last = {point, std::abs(distance)};
+  return std::max(depth, -distance);
+}
+
+Depth overlap_depth(const Encounter& pair, const BodyDepth& in_a, const BodyDepth& in_b, const AxisValues& q,
+                    double least) {
+  Depth deepest{least, Vec3::Zero()};
+  bool found = false;
   const auto look = [&](const Body& corners_of, const BodyDepth& in, const Pose& carried, int link) {
+    BodyDepth::Looked last;
     each_corner(corners_of, [&](const Vec3& corner) {
       const Vec3 point = carried * corner;
-      const double depth = in.depth(point);
-      if (depth > deepest.depth_mm) deepest = {depth, link_pose(*pair.scene, link, q) * point};
+      const double depth = in.depth_beyond(deepest.depth_mm, point, last);
+      if (depth <= deepest.depth_mm) return;
+      deepest = {depth, link_pose(*pair.scene, link, q) * point};
+      found = true;
     });
   };
   look(*pair.b, in_a, pair.b_from_a.pose(q), pair.a->link);
   look(*pair.a, in_b, pair.a_from_b.pose(q), pair.b->link);
-  return deepest;
+  return found ? deepest : Depth{};
 }
 
 }  // namespace swarf::collision

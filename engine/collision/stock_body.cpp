@@ -114,7 +114,7 @@ StockAnswer StockBody::suspect(const Body& body, const AxisSegment& segment) con
   const BodyDepth in_body(body), in_stock(as_cut());
   for (int i = 0; i <= kDepthInstants; ++i) {
     const double t = static_cast<double>(i) / kDepthInstants;
-    const Depth depth = overlap_depth(pair, in_body, in_stock, segment.at(t));
+    const Depth depth = overlap_depth(pair, in_body, in_stock, segment.at(t), answer.depth_mm);
     if (depth.depth_mm <= answer.depth_mm) continue;
     answer.depth_mm = depth.depth_mm;
     answer.t = t;
