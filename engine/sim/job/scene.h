@@ -24,6 +24,7 @@
 #include "sim/job/flank_keys.h"
 #include "sim/job/movie_keys.h"
 #include "sim/job/post_keys.h"
+#include "sim/job/report_keys.h"
 #include "sim/job/setup_keys.h"
 #include "sim/job/stock_keys.h"
 #include "surface/face.h"
@@ -139,6 +140,7 @@ struct Scene {
   MovieSettings movie;
   StillSettings stills;
   OutputSettings output;
+  ReportSettings report;
 };
 
 struct Job;
