@@ -244,7 +244,8 @@ Results: a folder of swarf run for each job, its log and its record beside it; b
 arguments and program are those of a finished run is not run again, so that a batch that was stopped goes on when the same
 command is given.
 
-A cluster runs each job as a task of an array, then one call makes the table:
+A cluster runs each job as a task of an array, then one call makes the table; with Slurm assets/cluster/batch_array.sh
+submits both:
   swarf batch jobs.toml -o night --only $SLURM_ARRAY_TASK_ID
   swarf batch jobs.toml -o night --summary --junit night.xml
 

@@ -10,6 +10,7 @@ install(TARGETS swarf RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT pr
 install(DIRECTORY assets/machines assets/posts assets/programs assets/schemas DESTINATION "${CMAKE_INSTALL_DATADIR}/swarf/assets" COMPONENT program
   PATTERN "*.py" EXCLUDE)
 install(DIRECTORY scenes DESTINATION "${CMAKE_INSTALL_DATADIR}/swarf" COMPONENT program PATTERN "*.py" EXCLUDE)
+install(PROGRAMS assets/cluster/batch_array.sh DESTINATION "${CMAKE_INSTALL_DATADIR}/swarf/assets/cluster" COMPONENT program)
 install(FILES LICENSE README.md THIRD_PARTY.md CHANGELOG.md DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program)
 
 foreach(form man bash)

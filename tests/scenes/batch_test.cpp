@@ -159,5 +159,42 @@ TEST_F(Batch, WrongFilesAreToldBeforeAnythingRuns) {
   refused("[[job]]\nfile = \"posts/slot_1.nc\"\nthreads = 3\n", "unknown-key");
 }
 
+/// Stands in for Slurm's: each task at once, one after the other. The script was tried with Debian's
+/// slurm-wlm too.
+constexpr const char* kSbatch = R"(#!/bin/sh
+tasks=1 out=/dev/null
+while [ $# -gt 0 ]; do
+  case $1 in
+    --array=1-*) tasks=${1#--array=1-} ;;
+    --output=*) out=${1#--output=} ;;
+    --wrap) shift; wrap=$1 ;;
+  esac
+  shift
+done
+for i in $(seq "$tasks"); do SLURM_ARRAY_TASK_ID=$i sh -c "$wrap" >>"$out" 2>&1; done
+echo "exit $? of $tasks" >>"$(dirname "$0")/submitted"
+echo 7
+)";
+
+TEST_F(Batch, AClusterRunsEachJobAsATaskAndMakesTheTable) {
+  fs::create_directories(folder_ / "bin");
+  write_text(at("bin/sbatch"), kSbatch);
+  fs::permissions(at("bin/sbatch"), fs::perms::owner_all);
+  const std::string script = std::string(SWARF_SOURCE_DIR) + "/assets/cluster/batch_array.sh ";
+  const std::string environment = fmt::format("PATH={}:$PATH SWARF={} ", at("bin"), SWARF_PROGRAM);
+  const auto run =
+      swarf::test::run_command(environment + script + at("jobs.toml") + " " + at("night") + " --time=10");
+  ASSERT_EQ(run.exit_code, 0) << run.output;
+  EXPECT_EQ(run.output, "array 7, table 7\n");
+  EXPECT_EQ(read_text(at("bin/submitted")), "exit 0 of 3\nexit 0 of 1\n");
+  const json found = table();
+  ASSERT_EQ(found["jobs"].size(), 3U);
+  for (const json& job : found["jobs"]) EXPECT_EQ(job["exit_code"], 0) << job;
+  EXPECT_TRUE(fs::exists(at("night/batch.xml")));
+  const auto wrong = swarf::test::run_command(environment + script + at("none.toml") + " " + at("other"));
+  EXPECT_EQ(wrong.exit_code, 2) << wrong.output;
+  EXPECT_NE(wrong.output.find("file-not-found"), std::string::npos) << wrong.output;
+}
+
 }  // namespace
 }  // namespace batch_test
