@@ -33,9 +33,10 @@ void turn_free_table(const nc::Control& control, BlockReader& reader, kinematics
   const int index = kinematics::rotary_order(machine).front();
   const kinematics::Axis& axis = machine.axes[static_cast<size_t>(index)];
   if (axis.side != kinematics::Side::kTable)
-    reader.fail("unsupported-word", start,
-                fmt::format("TABLE ROT turns a table, and {}, which turns about the tool, is none", axis.name),
-                "COORD ROT, or turn the axis before it");
+    reader.fail(
+        "unsupported-word", start,
+        fmt::format("TABLE ROT turns a table, and {}, which turns about the tool, is none", axis.name),
+        "COORD ROT, or turn the axis before it");
   const Vec3 plane_x = control.space.frame().linear().col(0);
   const auto missing = [&](double value) {
     kinematics::AxisValues there = q;
