@@ -180,9 +180,9 @@ Checked check_surface_blocks(const std::string& file) {
           {}};
 }
 
-/// --cutcom and --circle as they were given.
+/// --cutcom, --circle and --tracut as they were given.
 struct ClCheckOptions {
-  std::string cutcom, circle;
+  std::string cutcom, circle, tracut;
 };
 
 program::ClOptions cl_options(const ClCheckOptions& given) {
@@ -190,6 +190,8 @@ program::ClOptions cl_options(const ClCheckOptions& given) {
   if (!given.cutcom.empty())
     options.cutcom = given.cutcom == "centre" ? program::ClPoints::kCentre : program::ClPoints::kContour;
   if (!given.circle.empty()) options.circle_clockwise = given.circle == "clockwise";
+  if (!given.tracut.empty())
+    options.tracut = given.tracut == "apply" ? program::ClTracut::kApply : program::ClTracut::kApplied;
   return options;
 }
 
@@ -373,6 +375,10 @@ void add_check(CLI::App& app, int& exit_code) {
       ->add_option("--circle", options->cl.circle,
                    "how CIRCLE of CL data runs about its vector; as its writer does when left out")
       ->check(CLI::IsMember({"clockwise", "counter_clockwise"}));
+  command
+      ->add_option("--tracut", options->cl.tracut,
+                   "positions behind TRACUT of CL data: apply its matrix, or it has been applied")
+      ->check(CLI::IsMember({"apply", "applied"}));
   command->add_option("--poses", options->poses, "random poses that a machine's inverse must give back")
       ->check(CLI::Range(1, 100000000))
       ->capture_default_str();

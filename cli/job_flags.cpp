@@ -120,6 +120,11 @@ void add_job_flags(CLI::App& command, JobWords& words) {
                   "840D: RAD, AFSL of slots end at edge or round end's centre")
       ->check(CLI::IsMember({"edge", "centre"}))
       ->group(group);
+  command
+      .add_option("--tracut", words.tracut,
+                  "positions behind TRACUT of CL data: apply its matrix, or it has been applied")
+      ->check(CLI::IsMember({"apply", "applied"}))
+      ->group(group);
 }
 
 std::vector<std::string> given_words(const JobWords& words) {
@@ -139,6 +144,7 @@ std::vector<std::string> given_words(const JobWords& words) {
   add("--start-tool", words.start_tool > 0 ? fmt::format("{}", words.start_tool) : "");
   if (words.t_changes_tool) given.emplace_back("--t-changes-tool");
   add("--slot-ends", words.slot_ends);
+  add("--tracut", words.tracut);
   return given;
 }
 
@@ -167,6 +173,7 @@ sim::JobFlags job_flags(const std::string& program_file, const JobWords& words) 
   flags.start_tool = words.start_tool;
   flags.t_changes_tool = words.t_changes_tool;
   flags.slot_ends = words.slot_ends;
+  flags.tracut = words.tracut;
   return flags;
 }
 

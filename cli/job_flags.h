@@ -17,7 +17,7 @@ struct JobWords {
   double voxel_mm = 0.0;
   int start_tool = 0;
   bool t_changes_tool = false;
-  std::string slot_ends;
+  std::string slot_ends, tracut;
 };
 
 void add_job_flags(CLI::App& command, JobWords& words);

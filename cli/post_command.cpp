@@ -35,7 +35,7 @@ namespace fs = std::filesystem;
 struct PostCommand {
   std::vector<std::string> overrides;
   bool avoid = false;
-  std::string file, machine, post, dialect, tools, output, fixed_cl, cutcom, circle, planes, prefer;
+  std::string file, machine, post, dialect, tools, output, fixed_cl, cutcom, circle, tracut, planes, prefer;
   std::vector<double> work_origin;
   double work_rotation_deg = 0.0, tolerance_um = 10.0, axis_tolerance_deg = 0.1;
   bool tcp = false, no_tcp = false, json = false;
@@ -88,6 +88,8 @@ post::PostOptions options_of(const PostCommand& given, Diagnostics& told) {
   if (!given.cutcom.empty())
     options.cl.cutcom = given.cutcom == "centre" ? program::ClPoints::kCentre : program::ClPoints::kContour;
   if (!given.circle.empty()) options.cl.circle_clockwise = given.circle == "clockwise";
+  if (!given.tracut.empty())
+    options.cl.tracut = given.tracut == "apply" ? program::ClTracut::kApply : program::ClTracut::kApplied;
   if (given.tools.empty()) return options;
   Diagnostics diagnostics;
   sim::IncompleteTools incomplete;
@@ -218,6 +220,7 @@ std::vector<std::string> scene_overrides(const PostCommand& given) {
     keys.push_back(fmt::format("setup.work_rotation_deg={}", given.work_rotation_deg));
   if (!given.cutcom.empty()) keys.push_back(fmt::format("cutcom=\"{}\"", given.cutcom));
   if (!given.circle.empty()) keys.push_back(fmt::format("cl_circle=\"{}\"", given.circle));
+  if (!given.tracut.empty()) keys.push_back(fmt::format("setup.tracut=\"{}\"", given.tracut));
   return keys;
 }
 
@@ -388,6 +391,22 @@ Examples:
 To check what was written: swarf check part.mpf --machine spinner_u5_620 --tools tools.toml --dialect siemens
 Exit codes: 0 written; 2 the CL data cannot be driven so, or cannot be read: no file is written or changed.)";
 
+/// What CL data leaves open.
+void add_cl_meanings(CLI::App& command, PostCommand& options) {
+  command
+      .add_option("--cutcom", options.cutcom,
+                  "points of CL data under CUTCOM: of the cutter's centre, or of the part's contour")
+      ->check(CLI::IsMember({"centre", "contour"}));
+  command
+      .add_option("--circle", options.circle,
+                  "how CIRCLE of CL data runs about its vector; as its writer does when left out")
+      ->check(CLI::IsMember({"clockwise", "counter_clockwise"}));
+  command
+      .add_option("--tracut", options.tracut,
+                  "positions behind TRACUT of CL data: apply its matrix, or it has been applied")
+      ->check(CLI::IsMember({"apply", "applied"}));
+}
+
 }  // namespace
 
 void add_post(CLI::App& app, int& exit_code) {
@@ -453,14 +472,7 @@ void add_post(CLI::App& app, int& exit_code) {
       ->type_name("X Y Z");
   command->add_option("--work-rotation-deg", options->work_rotation_deg, "the work turned about Z")
       ->capture_default_str();
-  command
-      ->add_option("--cutcom", options->cutcom,
-                   "points of CL data under CUTCOM: of the cutter's centre, or of the part's contour")
-      ->check(CLI::IsMember({"centre", "contour"}));
-  command
-      ->add_option("--circle", options->circle,
-                   "how CIRCLE of CL data runs about its vector; as its writer does when left out")
-      ->check(CLI::IsMember({"clockwise", "counter_clockwise"}));
+  add_cl_meanings(*command, *options);
   command
       ->add_option(
           "-o,--output", options->output,

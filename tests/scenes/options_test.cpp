@@ -119,6 +119,34 @@ TEST_F(Options, SlotEndsAreSaidToCheckAndRun) {
               std::string::npos);
 }
 
+/// Whether the matrix of TRACUT still turns the positions is said by the user, and moves the path.
+TEST_F(Options, TracutIsSaidToCheckRunAndPost) {
+  const std::string program = file("turned.cls",
+                                   "UNITS/MM\nLOADTL/1\nSPINDL/RPM,1000,CLW\nFEDRAT/500,MMPM\n"
+                                   "TRACUT/0,-1,0,100,1,0,0,0,0,0,1,0\nGOTO/0,0,5\nGOTO/40,0,5\n"
+                                   "TRACUT/NOMORE\nFINI\n");
+  const ProgramRun without = run_swarf("check " + program);
+  EXPECT_EQ(without.exit_code, 2);
+  EXPECT_TRUE(says(without, "turned.cls:5:1: error:") && says(without, "--tracut") &&
+              says(without, "tracut = \"applied\""))
+      << without.output;
+  const ProgramRun apply = run_swarf("check --tracut apply " + program),
+                   applied = run_swarf("check --tracut applied " + program);
+  EXPECT_TRUE(says(apply, "tips from (100.000, 0.000, 5.000) to (100.000, 40.000, 5.000) mm"))
+      << apply.output;
+  EXPECT_TRUE(says(applied, "tips from (0.000, 0.000, 5.000) to (40.000, 0.000, 5.000) mm"))
+      << applied.output;
+  const std::string job = (folder_ / "job").string();
+  const ProgramRun init = run_swarf("init " + program + " --tool 6 --tracut apply -o " + job);
+  EXPECT_EQ(init.exit_code, 0) << init.output;
+  EXPECT_NE(swarf::test::read_text(folder_ / "job" / "scene.toml").find("tracut = \"apply\""),
+            std::string::npos);
+  EXPECT_EQ(run_swarf("check " + job + "/scene.toml").exit_code, 0);
+  const ProgramRun post = run_swarf("post " + program + " --machine maho_600c --tracut apply -o -");
+  EXPECT_EQ(post.exit_code, 0) << post.output;
+  EXPECT_TRUE(says(post, "Y40")) << post.output;
+}
+
 /// A Z from a parameter that the program reads and does not set: check and run take it, a scene holds it.
 TEST_F(Options, ParametersHoldAValueBeforeTheProgramStarts) {
   const std::string program = file(

@@ -181,6 +181,9 @@ void go_round(ClState& cl, const ClStatement& s) {
   }
   if (step == 6) to.axis_W = cl.systems.X_WC.linear() * to.axis_W;
   to.tip_W = points.back();
+  if (step == 3 && !axis_stands(cl.reporter, cl.path, s)) return;
+  cl.path.axis_known = true;
+  cl.path.turned = false;
   if (cl.path.positioned && !passes(cl.reporter, cl.path, cl.arcs, s, points)) return;
   move_to(cl, s, to);
 }

@@ -57,6 +57,15 @@ Vec3 point_at(const ClSystems& systems, const ClStatement& s, size_t first) {
           systems.mm(s.arguments[first + 2].value)};
 }
 
+bool axis_stands(Reporter& reporter, const ClPath& path, const ClStatement& s) {
+  if (path.axis_known) return true;
+  fault(reporter, "missing-axis", s,
+        fmt::format("{} gives no tool axis, and none stands before it{}", s.word,
+                    path.turned ? " since TRACUT has tilted it" : ""),
+        "give x,y,z,i,j,k in the first position after MULTAX/ON or TRACUT, or TLAXIS/i,j,k before it");
+  return false;
+}
+
 bool pose_of(Reporter& reporter, ClSystems& systems, ClPath& path, const ClStatement& s, ToolPose& pose) {
   const char* form = "x,y,z or x,y,z,i,j,k (unit vector), for example GOTO/10,20,30,0,0,1";
   if (!numbers(reporter, s, 3, 6, form)) return false;
@@ -64,15 +73,13 @@ bool pose_of(Reporter& reporter, ClSystems& systems, ClPath& path, const ClState
   if (s.arguments.size() == 6) {
     if (!unit_vector(reporter, s, 3, "tool axis", pose.axis_W)) return false;
     pose.axis_W = systems.X_WC.linear() * pose.axis_W;
+    path.axis_known = true;
+    path.turned = false;
     return true;
   }
-  if (!path.axis_known) {
-    fault(reporter, "missing-axis", s,
-          fmt::format("{} gives no tool axis, and none stands before it", s.word),
-          "give x,y,z,i,j,k in the first position after MULTAX/ON, or TLAXIS/i,j,k before it");
-    return false;
-  }
+  if (!axis_stands(reporter, path, s)) return false;
   pose.axis_W = path.axis_W;
+  path.turned = false;
   return true;
 }
 
@@ -99,6 +106,10 @@ void go_delta(ClState& cl, const ClStatement& s) {
   if (!cl.path.positioned) {
     fault(cl.reporter, "no-position", s, "GODLTA moves from a position, and none has been given",
           "give FROM or GOTO first");
+  } else if (cl.path.turned) {
+    fault(cl.reporter, "no-position", s,
+          "GODLTA moves from a position, and TRACUT has changed what positions mean since the last",
+          "give GOTO first");
   } else if (cl.drilling.cycle) {
     fault(cl.reporter, "bad-cycle", s, "GODLTA stands inside of a cycle",
           "give the hole with GOTO, or write CYCLE/OFF");
@@ -148,6 +159,7 @@ void start_at(ClProgram& program, ClPath& path, const ClStatement& s, const Tool
   path.axis_W = pose.axis_W;
   program.start_line = s.line;
   path.positioned = path.axis_known = true;
+  path.turned = false;
 }
 
 void move_to(ClState& cl, const ClStatement& s, const ToolPose& to) {
@@ -211,6 +223,13 @@ void clearance_plane(ClState& cl, const ClStatement& s) {
   const char* form = "CLEARP/XYPLAN,50 or CLEARP/PLANE,0,0,1,50 (normal and distance from zero), CLEARP/OFF";
   if (fits(s, "OFF")) {
     cl.path.clearance.reset();
+    return;
+  }
+  if (cl.systems.tracut) {
+    fault(
+        cl.reporter, "unsupported-word", s,
+        "CLEARP stands behind TRACUT, and whether the matrix turns its plane is the post-processor's choice",
+        "write CLEARP before TRACUT, or the lift as RAPID and GOTO");
     return;
   }
   Vec3 normal = Vec3::UnitZ();

@@ -77,6 +77,10 @@ void follow_nurbs(ClState& cl, const ClStatement& s) {
     return bad(fmt::format("the upper curve begins {:.4f} mm from the lower one, LENGTH says {:g} mm",
                            (n.high_W.front() - n.low_W.front()).norm(), n.length_mm),
                "both must agree");
+  if (!n.five_axis && !axis_stands(cl.reporter, cl.path, s)) {
+    n.listing = true;
+    return;
+  }
   std::vector<ToolPose> poses;
   try {
     poses = nurbs_poses(n, cl.path.axis_W);

@@ -52,6 +52,10 @@ enum class ClPoints {
   kContour,  ///< "contour": of the part; the control moves the cutter its radius aside
 };
 
+/// What the positions behind TRACUT with a matrix are: of the path as it was planned, which the matrix still
+/// has to turn, or of the path as it is cut.
+enum class ClTracut { kApply, kApplied };
+
 /// Radius of a tool that the scene knows.
 struct ClToolRadius {
   int number = 0;
@@ -64,6 +68,7 @@ struct ClOptions {
   std::optional<ClPoints> cutcom;
   /// CIRCLE runs clockwise about its vector (true), or counter-clockwise. None: as its writer does.
   std::optional<bool> circle_clockwise;
+  std::optional<ClTracut> tracut;   ///< none: "tracut-meaning" at a matrix that is not the identity
   std::vector<ClToolRadius> tools;  ///< for "contour", of tools without CUTTER or TLDATA
 };
 
@@ -116,7 +121,8 @@ class ClSink {
 /// go to `diagnostics` with line and column:
 ///   "unknown-word", "unsupported-word", "bad-statement", "bad-number", "wrong-arguments", "axis-not-unit",
 ///   "missing-axis", "no-position", "missing-feed", "missing-spindle", "bad-arc", "circle-sense",
-///   "bad-cycle", "bad-nurbs", "no-nurbs", "bad-system", "cutcom-meaning", "compensation-*",
+///   "bad-cycle", "bad-nurbs", "no-nurbs", "bad-system", "bad-tracut", "tracut-meaning", "cutcom-meaning",
+///   "compensation-*",
 ///   "word-after-end", "from-not-first", "no-motion", "no-home", "out-of-range", "writer-contradiction"
 /// Rules:
 ///   - The tool axis is (0,0,1) until one is given; a GOTO of three numbers keeps it. After MULTAX/ON one has
@@ -131,6 +137,8 @@ class ClSink {
 ///   - MSYS and CSYS give origin, X and Y axis of the system that the positions after it are in; the work
 ///     frame W is the one without any. $$*CATIA0 gives a machining axis system: W is the file's first.
 ///   - ORIGIN/x,y,z is subtracted from positions, TRANS/x,y,z added (ISO 4343).
+///   - TRACUT/a11,a12,a13,a14,a21,..,a34 (ClTracut::kApply) takes positions to A p, until TRACUT/NOMORE; tool
+///     axes, arcs and planes go with them. ORIGIN, TRANS and the systems act on what it gives.
 ///   - After CYCLE/... each GOTO is a hole, until CYCLE/OFF (cycle.h).
 ClProgram parse_cl(const std::string& text, const std::string& file, Diagnostics& diagnostics,
                    const ClOptions& options = {});

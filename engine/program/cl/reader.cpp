@@ -18,11 +18,12 @@ struct Refused {
 };
 constexpr const char* kWrite = "post the file without it, or write its motion as GOTO";
 constexpr std::array kRefused{
-    Refused{
-        "ROTABL",
-        "turns the table, and whether the positions behind it lie in the part or beside the turned table is "
-        "the post-processor's choice",
-        "output tool axes (MULTAX/ON and GOTO/x,y,z,i,j,k) instead of table turns"},
+    Refused{"ROTABL",
+            "turns an axis of a machine that the file does not describe: neither which way nor about which "
+            "point, "
+            "and whether the positions behind it lie in the part or beside the turned table is the "
+            "post-processor's choice",
+            "output tool axes (MULTAX/ON and GOTO/x,y,z,i,j,k) instead of table turns"},
     Refused{"ROTATE", "turns an axis of one post-processor's machine", "output tool axes under MULTAX/ON"},
     Refused{"CALSUB", "calls a subroutine of the machine", "output the path without subroutines"},
     Refused{"DEFSUB", "begins a subroutine of the machine", "output the path without subroutines"},

@@ -32,7 +32,8 @@ struct Plane {
 /// The systems that positions are given in.
 struct ClSystems {
   Pose X_SC = Pose::Identity();  ///< MSYS: from the coordinates of the program to the file's first system
-  Pose X_WC = Pose::Identity();  ///< the same with ORIGIN and TRANS: to the work
+  Pose X_WC = Pose::Identity();  ///< the same with TRACUT, ORIGIN and TRANS: to the work
+  std::optional<Pose> tracut;    ///< X_CP: from what GOTO writes to the coordinates of the program
   Vec3 origin = Vec3::Zero();
   std::optional<Vec3> translation;
   std::optional<Pose> first_catia;  ///< of $$*CATIA0: machining axes to the part
@@ -44,6 +45,9 @@ struct ClSystems {
   double mm(double value) const { return value * unit_mm; }
 };
 
+/// Elements of a rotation that leave an axis where it is.
+constexpr double kAxisStands = 1e-9;
+
 /// Where the tool stands.
 struct ClPath {
   ToolPose pose;
@@ -51,6 +55,7 @@ struct ClPath {
   bool positioned = false;
   bool axis_known = true;  ///< (0,0,1) until MULTAX/ON
   bool multi_axis = false;
+  bool turned = false;  ///< by TRACUT, and no position has come since
   bool rapid = false, ended = false;
   std::optional<ToolPose> home;  ///< FROM
   std::optional<Plane> clearance;

@@ -28,6 +28,8 @@ void remark(ClProgram& program, std::string text);
 
 // --- motion.cpp
 Vec3 point_at(const ClSystems& systems, const ClStatement& s, size_t first);
+/// False with a fault where a statement without a tool axis has none to keep.
+bool axis_stands(Reporter& reporter, const ClPath& path, const ClStatement& s);
 bool pose_of(Reporter& reporter, ClSystems& systems, ClPath& path, const ClStatement& s, ToolPose& pose);
 void go_to(ClState& cl, const ClStatement& s);
 void go_delta(ClState& cl, const ClStatement& s);
@@ -81,6 +83,7 @@ void creo_system(ClState& cl, const ClStatement& s);
 void catia_system(ClState& cl, const ClStatement& s);
 void origin(ClState& cl, const ClStatement& s);
 void translation(ClState& cl, const ClStatement& s);
+/// TRACUT: a matrix that turns the positions behind it, or has turned them already.
 void transformed_cut(ClState& cl, const ClStatement& s);
 
 // --- nurbs.cpp

@@ -59,7 +59,7 @@ bool may_change_system(Reporter& reporter, ClDrilling& drilling, ClCutcom& compe
 
 void set_system(ClSystems& systems, const Pose& X_SC) {
   systems.X_SC = X_SC;
-  systems.X_WC = X_SC;
+  systems.X_WC = X_SC * systems.tracut.value_or(Pose::Identity());
   systems.X_WC.translation() += systems.translation.value_or(Vec3::Zero()) - systems.origin;
 }
 
@@ -92,6 +92,90 @@ void keep_one_system(ClState& cl, const ClStatement& s, const char* word, const 
     remark(cl.program,
            fmt::format("{}: positions are taken as written, in the coordinate system of {}", word, writer));
   cl.systems.creo_system = rows;
+}
+
+// --- TRACUT
+
+constexpr const char* kTracutForm =
+    "write TRACUT/ three rows of a rotation, each with its part of the shift, or TRACUT/NOMORE";
+
+/// X' = a11 X + a12 Y + a13 Z + a14 and so on, as APT writes a matrix.
+using TracutRows = std::array<double, 12>;
+
+bool read_rows(Reporter& reporter, const ClStatement& s, TracutRows& rows) {
+  const auto word =
+      std::find_if(s.arguments.begin(), s.arguments.end(), [](const ClArgument& one) { return !one.number; });
+  if (word != s.arguments.end()) {
+    fault(reporter, "wrong-arguments", *word, fmt::format("TRACUT with '{}' is not followed", word->text),
+          kTracutForm);
+    return false;
+  }
+  const size_t count = s.arguments.size();
+  if (count != rows.size()) {
+    fault(reporter, "wrong-arguments", s, fmt::format("TRACUT has {} numbers, and not 12", count),
+          kTracutForm);
+    return false;
+  }
+  for (size_t i = 0; i < rows.size(); ++i) rows[i] = s.arguments[i].value;
+  return true;
+}
+
+double determinant(const TracutRows& rows) {
+  Mat3 linear;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column)
+      linear(row, column) = rows[static_cast<size_t>(4 * row + column)];
+  }
+  return linear.determinant();
+}
+
+/// A tool cuts the mirrored part with the other sense of cutting, and a scaled path is no path of its cutter.
+void refuse_deformed(Reporter& reporter, const ClStatement& s, const TracutRows& rows) {
+  const double d = determinant(rows);
+  fault(reporter, "bad-tracut", s,
+        fmt::format("the matrix of TRACUT is no rotation (determinant {:.6g}): it {} what it is applied to",
+                    d, d < 0.0 ? "mirrors" : "scales or skews"),
+        d < 0.0
+            ? "write the file with the mirrored positions as they are cut: the cutter's side changes too"
+            : "write the file with the positions as they are cut, or a matrix whose left three columns are "
+              "unit vectors at right angles");
+}
+
+bool may_turn(ClState& cl, const ClStatement& s) {
+  if (!may_change_system(cl.reporter, cl.drilling, cl.compensation, s)) return false;
+  if (!cl.arcs.circle) return true;
+  fault(cl.reporter, "bad-arc", s, "TRACUT stands between CIRCLE and the end of its arc",
+        "write it before CIRCLE, or behind the GOTO that ends the arc");
+  return false;
+}
+
+/// What was given in the coordinates before does not hold behind it.
+void turn(ClState& cl, const std::optional<Pose>& X_CP) {
+  const Mat3 before = cl.systems.X_WC.linear();
+  cl.systems.tracut = X_CP;
+  set_system(cl.systems, cl.systems.X_SC);
+  cl.path.turned = cl.path.positioned;
+  cl.arcs.direction_W.reset();
+  cl.arcs.part_surface.reset();
+  const Vec3 file_axis = before.transpose() * cl.path.axis_W;
+  if ((cl.systems.X_WC.linear() * file_axis - cl.path.axis_W).norm() > kAxisStands)
+    cl.path.axis_known = false;
+}
+
+void apply(ClState& cl, const ClStatement& s, const TracutRows& rows) {
+  if (!may_turn(cl, s)) return;
+  if (cl.systems.tracut) {
+    fault(cl.reporter, "bad-tracut", s,
+          "TRACUT stands within another one: some processors multiply the two, some put it in the other's "
+          "place",
+          "write TRACUT/NOMORE before it, and the product of both where both are meant");
+    return;
+  }
+  const std::optional<Pose> X_CP = pose_from_rows(rows, cl.systems.unit_mm);
+  if (!X_CP) return refuse_deformed(cl.reporter, s, rows);
+  turn(cl, X_CP);
+  remark(cl.program,
+         "TRACUT: the positions behind it are turned and shifted by its matrix, until TRACUT/NOMORE");
 }
 
 }  // namespace
@@ -223,12 +307,38 @@ void translation(ClState& cl, const ClStatement& s) {
 }
 
 void transformed_cut(ClState& cl, const ClStatement& s) {
-  if (fits(s, "NOMORE")) return note(cl, s);
-  fault(
-      cl.reporter, "unsupported-word", s,
-      "TRACUT gives a matrix, and whether the positions behind it have been turned by it already depends on "
-      "the system that wrote the file",
-      "write the file with the positions as they are cut, without TRACUT");
+  if (fits(s, "NOMORE") || fits(s, "LAST NOMORE")) {
+    if (!cl.systems.tracut) return note(cl, s);
+    if (may_turn(cl, s)) turn(cl, std::nullopt);
+    return;
+  }
+  ClStatement matrix = s;
+  const bool last = !s.arguments.empty() && s.arguments[0].text == "LAST";
+  if (last) matrix.arguments.erase(matrix.arguments.begin());
+  TracutRows rows{};
+  if (!read_rows(cl.reporter, matrix, rows)) return;
+  constexpr TracutRows kIdentity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+  if (rows == kIdentity && !cl.systems.tracut) return note(cl, s);
+  if (!cl.options.tracut) {
+    fault(
+        cl.reporter, "tracut-meaning", s,
+        "TRACUT gives a matrix, and whether the positions behind it have been turned by it already depends "
+        "on the system that wrote the file",
+        "write [setup] tracut = \"apply\" (the matrix still has to turn them) or tracut = \"applied\" (they "
+        "are as they are cut) in the scene, or give --tracut");
+    return;
+  }
+  if (*cl.options.tracut == ClTracut::kApplied) {
+    remark(cl.program, "TRACUT: the positions behind it are taken as written, turned by its matrix already");
+    return;
+  }
+  if (last) {
+    fault(cl.reporter, "bad-tracut", s.arguments[0],
+          "TRACUT/LAST orders the matrix among those of COPY, which is not followed",
+          "write TRACUT with the matrix alone");
+    return;
+  }
+  apply(cl, s, rows);
 }
 
 }  // namespace swarf::program::cldata

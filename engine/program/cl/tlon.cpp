@@ -34,6 +34,7 @@ void catia_circle(ClState& cl, const ClStatement& s, const Vec3& end_W, bool sec
           fmt::format("it must be above {:g} mm", kArcTolerance));
     return;
   }
+  if (!axis_stands(cl.reporter, cl.path, s)) return;
   const std::optional<double> sense =
       sense_along(cl.reporter, cl.path, cl.arcs, s, cl.arcs.circle->centre_W, cl.arcs.circle->normal_W);
   if (!sense) return;
@@ -61,6 +62,7 @@ void catia_circle(ClState& cl, const ClStatement& s, const Vec3& end_W, bool sec
       return;
     }
   }
+  cl.path.turned = false;
   move_to(cl, s, {end_W, cl.path.axis_W});
 }
 

@@ -108,8 +108,11 @@ void multi_axis(ClState& cl, const ClStatement& s) {
           "write MULTAX/ON or MULTAX/OFF");
     return;
   }
-  if (!on) cl.path.axis_W = cl.systems.X_WC.linear().col(2);
-  cl.path.axis_known = !on || cl.path.positioned;
+  // Whether a three-axis tool leans with a TRACUT that tilts, nobody says.
+  const Vec3 z_W = cl.systems.X_WC.linear().col(2);
+  if (!on) cl.path.axis_W = z_W;
+  cl.path.axis_known = on ? cl.path.axis_known && cl.path.positioned
+                          : z_W.isApprox(cl.systems.X_SC.linear().col(2), kAxisStands);
   cl.path.multi_axis = on;
 }
 
@@ -165,9 +168,11 @@ void units(ClState& cl, const ClStatement& s) {
   if (unit != "MM" && !inches) {
     fault(cl.reporter, "unsupported-word", s, "UNITS is followed by neither MM nor INCHES",
           "write UNITS/MM or UNITS/INCHES");
-  } else if (cl.path.positioned && inches != (cl.systems.unit_mm != 1.0)) {
-    fault(cl.reporter, "unsupported-word", s, "the units change after a position has been given",
-          "give the units before the first position");
+  } else if ((cl.path.positioned || cl.systems.tracut) && inches != (cl.systems.unit_mm != 1.0)) {
+    fault(
+        cl.reporter, "unsupported-word", s,
+        fmt::format("the units change after {} has been given", cl.path.positioned ? "a position" : "TRACUT"),
+        "give the units before the first position and before TRACUT");
   } else {
     cl.systems.unit_mm = inches ? kInch : 1.0;
   }

@@ -376,6 +376,7 @@ void read_scene(ConfigTable& root, Scene& scene, Diagnostics& diagnostics, int s
   if (post) read_scene_post(root, *post, scene);
   read_cl_keys(root, scene);
   scene.setup = read_setup(root.table("setup"), scene.kind == ProgramKind::kNc, setup);
+  scene.cl_options.tracut = scene.setup.tracut;
   if (setup > 0)
     scene.title += fmt::format(", set-up {}{}", setup,
                                scene.setup.name.empty() ? "" : ": " + utf8_only(scene.setup.name));

@@ -34,6 +34,7 @@ std::string triple(const Vec3& v) {
 std::string setup_text(const JobFlags& flags) {
   std::string text = "\n[setup]\n";
   text += fmt::format("work_origin_mm = {}\n", flags.origin_M ? triple(*flags.origin_M) : "\"on_table\"");
+  if (!flags.tracut.empty()) text += fmt::format("tracut = \"{}\"\n", flags.tracut);
   if (flags.cl_data) return text;
   text += "without_length = \"tip\"\n";
   if (!flags.units.empty()) text += fmt::format("units = \"{}\"\n", flags.units);

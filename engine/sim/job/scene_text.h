@@ -28,6 +28,7 @@ struct JobFlags {
   int start_tool = 0;            ///< 0: not said
   bool t_changes_tool = false;
   std::string slot_ends;  ///< "": not said
+  std::string tracut;     ///< "": not said; of CL data
 };
 
 /// scene.toml; the paths in it are those of the flags, absolute or from the current folder.

@@ -47,7 +47,7 @@ ConfigOverlay setup_overlay(size_t index) {
   return {kSetup,
           index,
           {"name", "part_pose", "work_origin_mm", "work_rotation_deg", "start", "units", "start_tool",
-           "start_tool_name", "t_changes_tool", "slot_ends", "without_length", "offsets"},
+           "start_tool_name", "t_changes_tool", "slot_ends", "tracut", "without_length", "offsets"},
           {{"program", "cl", "nc"}, {"tool", "tools", "tool_table", "cutter"}},
           {"stock", "accept", "interpolator", "toolpath", "movie", "stills", "output", "report"}};
 }

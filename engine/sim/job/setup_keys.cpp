@@ -75,6 +75,9 @@ SetupSettings read_setup(ConfigTable table, bool nc, int number) {
           fmt::format("every number must be from {:g} to {:g} mm", -kFarthestOrigin, kFarthestOrigin));
   }
   setup.work_rotation_rad = rad_from_deg(table.number("work_rotation_deg", {-360.0, 360.0}, 0.0));
+  if (!nc && table.has("tracut"))
+    setup.tracut = table.choice("tracut", {"apply", "applied"}) == "apply" ? program::ClTracut::kApply
+                                                                           : program::ClTracut::kApplied;
   if (!nc) return setup;
   if (table.has("start")) setup.start = read_axes(table.table("start"));
   read_control_keys(table, setup);

@@ -10,6 +10,7 @@
 #include "base/config.h"
 #include "base/frames.h"
 #include "kinematics/machine_model.h"
+#include "program/cl/program.h"
 #include "program/nc_program.h"
 
 namespace swarf::sim {
@@ -40,6 +41,7 @@ struct SetupSettings {
   SourceLocation start_tool_where;
   bool t_changes_tool = false;                 ///< T changes the tool without M6
   std::optional<program::SlotEnds> slot_ends;  ///< 840D: what RAD and AFSL of slots count to
+  std::optional<program::ClTracut> tracut;     ///< CL: what positions behind TRACUT are
   bool tip_without_length = false;  ///< `without_length = "tip"`: of a program that calls no tool length
 };
 

@@ -80,6 +80,9 @@ std::string commented_setup(const Job& job) {
   const Vec3& origin = job.machine.model.X_MW.translation();
   std::string text = "\n[setup]\n" + reason_of(job, "Clamping");
   text += fmt::format("work_origin_mm = {}  # where G54 is zero, in the machine\n", commented_vector(origin));
+  if (setup.tracut)
+    text +=
+        fmt::format("tracut = \"{}\"\n", *setup.tracut == program::ClTracut::kApply ? "apply" : "applied");
   if (job.scene.kind != ProgramKind::kNc) return text;
   if (setup.tip_without_length)
     text +=
