@@ -74,8 +74,8 @@ int render(const RenderOptions& options) {
   const reports::StillKind kind = reports::still_kind(options.kind);
   check_window(options, kind);
   if (!options.camera.empty()) reports::camera_direction(options.camera);
-  if (!options.movie.empty()) render::check_movie_name(options.movie);
   for (const std::string& file : {options.movie, options.still}) reports::check_output_file(file);
+  if (!options.movie.empty()) render::check_movie_name(options.movie);
   print_diagnostics(reports::other_version(options.folder));
   TerminalProgress progress;
   reports::StoredRun stored = reports::read_run(options.folder);

@@ -50,7 +50,8 @@ std::map<std::string, std::set<std::string>> errors_of(const std::set<std::strin
   for (const std::string& file : files) words += " '" + file + "'";
   const swarf::test::ProgramRun done = swarf::test::run_command(words);
   std::map<std::string, std::set<std::string>> errors;
-  for (const json& file : json::parse(done.output).at("files")) {
+  const json checked = json::parse(done.output);
+  for (const json& file : checked.at("files")) {
     std::set<std::string>& codes = errors[file.at("file").get<std::string>()];
     for (const json& one : file.at("diagnostics"))
       if (one.at("severity") == "error") codes.insert(one.at("code").get<std::string>());
