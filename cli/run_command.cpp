@@ -12,6 +12,7 @@
 #include "base/parallel.h"
 #include "cli/commands.h"
 #include "cli/job_flags.h"
+#include "cli/open_ranks.h"
 #include "cli/pipeline_files.h"
 #include "cli/posted_scene.h"
 #include "cli/shell_text.h"
@@ -23,6 +24,7 @@
 #include "reports/run_report.h"
 #include "reports/setups_json.h"
 #include "sim/job/set_ups.h"
+#include "sim/run/tile_ranks.h"
 #include "sim/simulation.h"
 
 namespace swarf::cli {
@@ -40,6 +42,8 @@ struct RunOptions {
   size_t setup = 0;  ///< the last one of several; 0: all
   double max_memory_mb = 0.0, keep_every_s = 60.0;
   bool no_render = false, report = false, json = false, record = false, check = false, open = false;
+  bool tiles = false;
+  Ranks* ranks = nullptr;  ///< of --tiles
   PipelineFiles pipeline;
 };
 
@@ -119,6 +123,7 @@ std::vector<std::string> command_words(const RunOptions& options) {
       fmt::format("{}", options.keep_every_s));
   add(options.setup > 0, "--setup", fmt::format("{}", options.setup));
   add(options.threads > 0, "--threads", fmt::format("{}", options.threads));
+  flag(options.tiles, "--tiles");
   flag(options.no_render, "--no-render");
   flag(options.report, "--report");
   add(!options.trajectory.empty(), "--trajectory", options.trajectory);
@@ -186,6 +191,7 @@ sim::CutOptions cut_options(const RunOptions& options, const reports::PendingFol
   cut.keep_every_s = options.keep_every_s;
   cut.outputs = {!options.no_render, !options.no_render || options.report};
   cut.overrides = options.overrides;
+  cut.ranks = options.ranks;
   return cut;
 }
 
@@ -412,11 +418,57 @@ int run_setups(const RunOptions& options, size_t count, std::vector<reports::Fil
 
 int run(const RunOptions& options, std::vector<reports::FileVerdict>& found) {
   if (options.open) require_opener(options);
-  set_thread_count(options.threads);
   const size_t setups = count_setups(options.scene, overrides_of(options));
   if (setups > 0) return run_setups(options, setups, found);
   if (options.setup > 0) load_setups(options.scene, options.setup, {});  // says that there is no list of them
   return run_scene(options, found);
+}
+
+/// What the ranks would have to agree on first.
+void refuse_for_tiles(const RunOptions& options) {
+  const auto refuse = [](bool given, const std::string& what, const char* remedy) {
+    if (given) throw InputError("not-in-tiles", {what}, "this is for a run of one process", remedy);
+  };
+  refuse(count_setups(options.scene, overrides_of(options)) > 0, "[[setup]]",
+         "make each set-up a scene of its own: stock.from_run is the folder of the one before");
+  refuse(options.scene == "-", "-", "name a file that every rank can read");
+  refuse(wants_post(load_job(options.scene, options.job, overrides_of(options))), "[post]",
+         "write the program with swarf post, and name it as nc of the scene");
+}
+
+/// Another rank than 0: it writes and says nothing; what is wrong with its input is told by rank 0.
+int serve_as_rank(const RunOptions& options, Ranks& ranks) {
+  try {
+    std::optional<sim::Job> job;
+    try {
+      refuse_for_tiles(options);
+      job = load_job(options.scene, options.job, overrides_of(options));
+    } catch (const InputError& error) {
+      sim::refuse_tile_lead(ranks, error.what());
+      return kPass;
+    }
+    Progress silent;
+    sim::serve_tiles(*job, ranks, silent);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "error: rank {}: {}\n", ranks.rank(), error.what());
+    ranks.abort(kInternalError);
+  }
+  return kPass;
+}
+
+/// One of the processes that mpirun has started.
+int run_as_rank(RunOptions options) {
+  const std::unique_ptr<Ranks> ranks = open_ranks();
+  if (ranks->rank() > 0) return serve_as_rank(options, *ranks);
+  options.ranks = ranks.get();
+  struct Dismissal {
+    Ranks& ranks;
+    ~Dismissal() { sim::dismiss_ranks(ranks); }
+  } dismissal{*ranks};
+  return with_pipeline_files(options.pipeline, options.scene, [&](std::vector<reports::FileVerdict>& found) {
+    refuse_for_tiles(options);
+    return run(options, found);
+  });
 }
 
 constexpr const char* kRunFooter =
@@ -428,7 +480,8 @@ Examples:
   swarf run part.nc --tool 6                                 one flat end, block around the path, generic mill
   swarf run part.nc --tools T1=10,T2=drill5 --stock 0,0,-20,80,60,0
   swarf run part.mpf --machine spinner_u5_620 --tools tools.toml --design part.stl
-  swarf run scene.toml --set stock.voxel_mm=0.1 --no-render  a scene, one key changed, numbers only)";
+  swarf run scene.toml --set stock.voxel_mm=0.1 --no-render  a scene, one key changed, numbers only
+  mpirun -n 8 swarf run scene.toml --tiles --no-render       eight processes, on one machine or several)";
 
 /// Options of the stock on its way.
 void add_stock_options(CLI::App& command, RunOptions& options) {
@@ -492,6 +545,10 @@ void add_run(CLI::App& app, int& exit_code) {
       ->add_option("--threads", options->threads,
                    "threads to use (default: all cores); results do not depend on it")
       ->check(CLI::Range(1, 4096));
+  command->add_flag(
+      "--tiles", options->tiles,
+      "one of the processes that mpirun has started: each cuts its own tiles of the stock and of the "
+      "measuring rays; results are those of one process, to the last bit");
   add_stock_options(*command, *options);
   command->add_flag("--no-render", options->no_render,
                     "no movie, no stills, no page and no glTF: numbers, findings, stock and blocks.csv");
@@ -507,9 +564,12 @@ void add_run(CLI::App& app, int& exit_code) {
   command->add_flag("--open", options->open, "show report.html when it is there (xdg-open)");
   add_pipeline_options(*command, options->pipeline);
   command->callback([options, &exit_code] {
-    exit_code =
-        with_pipeline_files(options->pipeline, options->scene,
-                            [&](std::vector<reports::FileVerdict>& found) { return run(*options, found); });
+    set_thread_count(options->threads);
+    exit_code = options->tiles ? run_as_rank(*options)
+                               : with_pipeline_files(options->pipeline, options->scene,
+                                                     [&](std::vector<reports::FileVerdict>& found) {
+                                                       return run(*options, found);
+                                                     });
   });
 }
 

@@ -16,6 +16,8 @@ pkg_check_modules(LIBAV REQUIRED IMPORTED_TARGET libavcodec libavformat libswsca
 pkg_check_modules(HDF5 REQUIRED IMPORTED_TARGET hdf5)
 pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo)
 pkg_check_modules(OSMESA REQUIRED osmesa)
+# For `swarf run --tiles` alone; without it the program is the same but for that.
+pkg_check_modules(MPI QUIET IMPORTED_TARGET ompi-c)
 
 # Libraries by name: OpenCASCADE's own configuration also asks for the development files of its viewer.
 if(NOT TARGET swarf_occt)
