@@ -34,7 +34,7 @@ class StockTiles {
   /// Everything in the tiles of another share: for one that begins.
   Bytes tiles_of(int index) const;
   /// Takes over what changes() or tiles_of() of a stock of the same raw shape and voxel size has told. Counts
-  /// of work in it are added to the stock's own.
+  /// of work in it are added to the stock's own; its seconds become those of the slowest.
   void apply(const Bytes& changes);
 
  private:

@@ -111,9 +111,9 @@ TEST_F(Tiles, RaysAreThoseOfOneProcess) {
 
 TEST_F(Tiles, GoesOnFromAStockThatAnyOtherRunHasLeft) {
   write_wave(4000, 0.4);
-  const auto whole = run_swarf("run " + wave() + " --save-stock-after 2000 -o " + at("alone"));
+  const auto whole = run_swarf("run " + wave() + " --save-stock-after 699 -o " + at("alone"));
   ASSERT_EQ(whole.exit_code, 0) << whole.output;
-  const std::string saved = at("alone/stock_after_2000.vdb");
+  const std::string saved = at("alone/stock_after_line_699.vdb");
   const auto run =
       run_command(mpirun(3) + "run --tiles " + wave() + " --from " + saved + " -o " + at("tiles"));
   ASSERT_EQ(run.exit_code, 0) << run.output;

@@ -14,6 +14,7 @@ namespace {
 
 /// First byte of every message of rank 0.
 enum class TileRequest : uint8_t {
+  kHello,    ///< what the rank is about to cut, or why it cannot begin
   kStock,    ///< tiles of the rank, none: raw                        no answer
   kLook,     ///< begin, end, bad cuts so far: suspects and the least gap
   kNearest,  ///< begin, end, suspects of all ranks: the least gap of the other sweeps
@@ -96,6 +97,9 @@ class TileServer {
       const Bytes message = ranks_.receive(0);
       BytesReader in(message);
       switch (in.get<TileRequest>()) {
+        case TileRequest::kHello:
+          ranks_.send(0, hello("", parts_.identity));
+          break;
         case TileRequest::kStock:
           take_stock(in);
           break;
@@ -166,6 +170,7 @@ class TileServer {
 }  // namespace
 
 TileLead::TileLead(Ranks& ranks, const CutParts& parts) : ranks_(ranks), parts_(parts) {
+  send_to_all(ranks, request(TileRequest::kHello));
   for (int rank = 1; rank < ranks.size(); ++rank) check_hello(rank, ranks.receive(rank), parts.identity);
 }
 
@@ -228,15 +233,15 @@ void TileLead::gather() {
 
 void serve_tile_lead(Ranks& ranks, const Job& job, CutParts& parts,
                      const std::function<std::vector<Bytes>()>& rays) {
-  ranks.send(0, hello("", parts.identity));
   TileServer(ranks, job, parts).serve(rays);
 }
 
 void refuse_tile_lead(Ranks& ranks, const std::string& why) {
-  ranks.send(0, hello(why, {}));
   for (;;) {
     const Bytes message = ranks.receive(0);
-    if (BytesReader(message).get<TileRequest>() == TileRequest::kEnd) return;
+    const auto asked = BytesReader(message).get<TileRequest>();
+    if (asked == TileRequest::kEnd) return;
+    if (asked == TileRequest::kHello) ranks.send(0, hello(why, {}));
   }
 }
 

@@ -79,6 +79,7 @@ Bytes StockTiles::changes() {
   BytesWriter out;
   out.add(set.statistics.voxel_updates - told_.voxel_updates);
   out.add(set.statistics.leaf_visits - told_.leaf_visits);
+  out.add(set.statistics.seconds);
   told_ = set.statistics;
   for (size_t leaf = 0; leaf < set.map.size(); ++leaf) {
     if (set.map.cuts[leaf] == known_[leaf] || !set.owns(leaf)) continue;
@@ -93,6 +94,7 @@ Bytes StockTiles::tiles_of(int index) const {
   BytesWriter out;
   out.add(uint64_t{0});
   out.add(uint64_t{0});
+  out.add(0.0);
   const std::vector<uint8_t> others = columns_of_others(set.map, {index, share_.count});
   for (size_t leaf = 0; leaf < set.map.size(); ++leaf)
     if (others[leaf / static_cast<size_t>(set.map.dimension.z())] == 0) add_position(leaf, out);
@@ -115,6 +117,7 @@ void StockTiles::apply(const Bytes& changes) {
   const auto updates = in.get<uint64_t>(), visits = in.get<uint64_t>();
   statistics.voxel_updates += updates;
   statistics.leaf_visits += visits;
+  statistics.seconds = std::max(statistics.seconds, in.get<double>());
   told_.voxel_updates += updates;
   told_.leaf_visits += visits;
   while (!in.at_end()) take_position(in);
