@@ -20,7 +20,9 @@
 #include "machine/shipped.h"
 #include "program/dialects.h"
 #include "program/nc_program.h"
+#include "sim/job/open_job.h"
 #include "sim/job/tool_table.h"
+#include "sim/job/tool_words.h"
 
 namespace swarf::cli {
 namespace {
@@ -163,7 +165,11 @@ std::vector<program::NcTool> tools_of(const std::string& table, sim::IncompleteT
                                       Diagnostics& told) {
   Diagnostics diagnostics;
   std::vector<program::NcTool> tools;
-  for (const cutter::Cutter& one : sim::read_tool_table(table, diagnostics, &incomplete))
+  const bool words = table.find('=') != std::string::npos && !std::filesystem::exists(table);
+  const std::vector<cutter::Cutter> cutters =
+      words ? sim::read_tool_words(table, {"--tools " + table}, diagnostics)
+            : sim::read_tool_table(table, diagnostics, &incomplete);
+  for (const cutter::Cutter& one : cutters)
     tools.push_back({one.number, one.name, cutter::gauge_length(one), one.diameter_mm, one.corner_radius_mm});
   diagnostics.throw_if_errors();
   told.append(diagnostics);
@@ -224,6 +230,16 @@ program::ControlSetup setup_of(const std::string& file, const NcCheckOptions& op
   if (!options.slot_ends.empty())
     setup.slot_ends = options.slot_ends == "edge" ? program::SlotEnds::kEdge : program::SlotEnds::kCentre;
   return setup;
+}
+
+/// Where the program turns what the plain machine has not: which of the shipped ones do.
+void name_machines(const std::string& file, Diagnostics& diagnostics) {
+  const std::vector<Diagnostic>& told = diagnostics.list();
+  if (std::none_of(told.begin(), told.end(),
+                   [](const Diagnostic& one) { return one.code == "axis-missing"; }))
+    return;
+  diagnostics.note("machine-needed", {file, 0, 0},
+                   "--machine NAME; those that turn and come with swarf: " + sim::five_axis_machines());
 }
 
 nlohmann::ordered_json tools_json(const program::ControlSetup& setup, const program::NcSummary& summary) {
@@ -311,6 +327,7 @@ Checked check_nc(const std::string& file, const NcCheckOptions& options) {
   program::NcSink& sink = drives ? static_cast<program::NcSink&>(motion) : totals;
   const program::NcSummary summary =
       program::run_nc(file, chosen(file, options.dialect), setup, sink, diagnostics);
+  if (options.machine.empty()) name_machines(file, diagnostics);
   diagnostics.throw_if_errors();
   const std::optional<motion::MotionStatistics> driven = drives ? motion.drive(summary) : std::nullopt;
   std::string text = fmt::format(
@@ -343,11 +360,13 @@ Checked check_nc(const std::string& file, const NcCheckOptions& options) {
   Checked checked{"nc", text, numbers_of(setup, summary, totals), diagnostics.list()};
   checked.numbers["driven"] = driven ? motion_json(*driven, setup.machine) : nlohmann::ordered_json();
   if (!totals.out_of_travel.empty())
-    checked.findings.push_back({"travel",
-                                Severity::kError,
-                                {file, totals.out_of_travel_line, 0},
-                                totals.out_of_travel,
-                                "clamp the work elsewhere, or move less far"});
+    checked.findings.push_back(
+        {"travel",
+         Severity::kError,
+         {file, totals.out_of_travel_line, 0},
+         totals.out_of_travel,
+         "a program alone stands with its work offsets at the machine's zero: a scene says where "
+         "the work is; or clamp it elsewhere, or move less far"});
   return checked;
 }
 

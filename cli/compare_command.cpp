@@ -6,9 +6,11 @@
 
 #include "base/units.h"
 #include "cli/commands.h"
+#include "cli/compare_align.h"
 #include "cli/compare_inputs.h"
 #include "cli/compare_runs.h"
 #include "cli/compare_text.h"
+#include "cli/shell_text.h"
 #include "cli/terminal.h"
 #include "mesh/mesh_ops.h"
 #include "reports/compare_output.h"
@@ -23,7 +25,8 @@ struct CompareOptions {
   std::string stock, design, output;
   std::optional<double> excess_um, gouge_um, pitch_mm, edge_mm, reach_mm;
   double allowance_mm = 0.0, rays_um = 0.2;
-  bool json = false;
+  std::vector<std::string> pairs;
+  bool json = false, best_fit = false;
 };
 
 constexpr double kExcessUm = 10.0, kGougeUm = 1.0;  // without a scene that says otherwise
@@ -104,26 +107,48 @@ void require_use_of_edge(const CompareOptions& options, const ComparedStock& sto
       "leave it out, or compare the run's stock.vdb; --gouge-um and --excess-um loosen all places");
 }
 
+std::vector<std::string> compare_words(const CompareOptions& options) {
+  std::vector<std::string> words{"swarf", "compare", options.stock, options.design};
+  const auto add = [&](const char* option, const std::optional<double>& value) {
+    if (value) words.insert(words.end(), {option, fmt::format("{}", *value)});
+  };
+  add("--excess-um", options.excess_um);
+  add("--gouge-um", options.gouge_um);
+  add("--pitch-mm", options.pitch_mm);
+  add("--edge-mm", options.edge_mm);
+  add("--reach-mm", options.reach_mm);
+  if (options.allowance_mm > 0.0) add("--allowance-mm", options.allowance_mm);
+  for (const std::string& pair : options.pairs) words.insert(words.end(), {"--align", pair});
+  if (options.best_fit) words.emplace_back("--best-fit");
+  if (!options.output.empty()) words.insert(words.end(), {"-o", options.output});
+  return words;
+}
+
 int compare_solids(const CompareOptions& options) {
   if (!options.output.empty()) reports::check_output_folder(options.output, reports::kCompareMark);
-  const ComparedStock stock = load_stock(options.stock);
+  ComparedStock stock = load_stock(options.stock);
   const ComparedDesign design = load_design(options.design, kPatchPitch);
+  const std::optional<measure::Alignment> aligned = align(options.pairs, options.best_fit, design, stock);
   check_boxes(stock, design, options.stock, options.design);
   require_use_of_edge(options, stock, design);
   const measure::ComparisonInput input = comparison_of(options, stock, design);
   const measure::PartComparison result = measure::compare_parts(input);
   check_measured(options, result);
   const std::vector<sim::Check> checks = judge_comparison(input, result);
-  const std::string json = comparison_json(stock, input, result, checks);
-  if (!options.output.empty()) {
-    reports::write_compare(options.output, result.stock_map, result.design_map,
+  const std::string json = comparison_json(stock, input, result, checks, aligned);
+  reports::ComparedPair pair{
+      options.stock, options.design, design.grid, "", checks, comparison_rows(stock, input, result)};
+  if (aligned) pair.alignment = alignment_text(*aligned);
+  pair.command = shell_text(compare_words(options));
+  if (!options.output.empty())
+    reports::write_compare(options.output, pair, input, result,
                            um_from_mm(std::max({input.excess, input.gouge, 1e-5})), json);
-  }
   if (options.json) {
     fmt::print("{}", json);
   } else {
     fmt::print("{} against {}\n", options.stock, options.design);
-    print_table(comparison_rows(stock, input, result));
+    if (aligned) print_table({{"alignment", pair.alignment}});
+    print_table(pair.rows);
     for (const sim::Check& check : checks) {
       if (check.outcome != sim::Outcome::kHolds)
         fmt::print("  {}\n", check.reason.empty() ? check.what : check.reason);
@@ -158,7 +183,12 @@ Input
   A .vdb is as good as its grid: the error is added to the bound, and at sharp edges, which a grid rounds,
   one voxel (--edge-mm) is taken off. The run itself measures far below the voxel size.
 
+  Against an earlier .vdb what stands out was added and what is missing removed; the errors of the two
+  grids are stated, not added.
+
 Examples
+  swarf compare new/stock.vdb old/stock.vdb -o changed
+  swarf compare scanned.stl part.stp --best-fit -o out
   swarf compare reports/out/dome/stock.vdb scenes/lin_koren_dome/scene.toml
   swarf compare scanned.stl part.stl --excess-um 20 --gouge-um 20 -o out
   swarf compare roughed.stl part.stl --allowance-mm 0.3 --excess-um 100 --gouge-um 50
@@ -212,11 +242,25 @@ void add_compare(CLI::App& app, int& exit_code) {
   command
       ->add_option(
           "design", options->design,
-          "a scene or program with surface blocks, or a closed mesh in mm; or the folder of another run "
-          "with the same design")
+          "a scene or program with surface blocks, a closed mesh in mm, a STEP or IGES file, or an earlier "
+          "stock.vdb; or the folder of another run with the same design")
       ->required();
-  command->add_option("-o,--output", options->output,
-                      "folder for deviation.ply and .png, design.ply and .png, and metrics.json");
+  command->add_option(
+      "-o,--output", options->output,
+      "folder for report.html, deviation.ply and .png, design.ply and .png, pictures of the worst "
+      "places, and metrics.json");
+  command
+      ->add_option(
+          "--align", options->pairs,
+          "a point of the stock and the point of the design that it is to lie on, mm; three pairs or "
+          "more move the stock (least squares)")
+      ->type_name("X,Y,Z=X,Y,Z")
+      ->expected(1)
+      ->take_all();
+  command->add_flag(
+      "--best-fit", options->best_fit,
+      "move the stock onto the design by least squares over its surface, after --align if it is "
+      "given; the motion is stated");
   add_limits(*command, *options);
   add_sampling(*command, *options);
   command->add_flag("--json", options->json, "print JSON instead of the table");

@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "base/angles.h"
+#include "brep/model.h"
 #include "mesh/mesh_crossing.h"
 #include "mesh/mesh_io.h"
 #include "mesh/mesh_nesting.h"
@@ -28,6 +29,8 @@ constexpr double kSharp = 0.5235987755982988;
 /// Facets of parametric surfaces stay this close to them, mm, unless that takes more than kMostFacets.
 constexpr double kChord = 5e-5;
 constexpr size_t kMostFacets = 3'000'000;
+/// The same of CAD files, mm: as the designs of scenes.
+constexpr double kCadChord = 1e-3;
 /// Half a unit in the last place of a float, relative.
 constexpr double kFloatRounding = 6e-8;
 
@@ -113,12 +116,19 @@ ComparedDesign design_of_patches(const std::vector<surface::SurfacePtr>& surface
   }
 }
 
+/// The closed solids of a CAD file in facets as fine as those of patches.
+ComparedDesign design_of_cad(const std::string& file) {
+  const brep::Facets facets = brep::tessellate(brep::read_cad(file), kCadChord, true);
+  return {checked_mesh(facets.mesh, file, "design"), false, facets.chord_mm, {}};
+}
+
 /// Files of CAD programs, which the reader of programs would otherwise take for blocks.
 void refuse_cad(const std::string& file) {
   const std::string ending = extension(file);
   constexpr std::array kCad{".step", ".stp", ".igs", ".iges", ".3mf", ".sldprt", ".prt", ".x_t", ".brep"};
   if (std::none_of(kCad.begin(), kCad.end(), [&](const char* cad) { return ending == cad; })) return;
-  throw InputError("cad-format", {file}, fmt::format("files of the kind '{}' are not read", ending),
+  throw InputError("cad-format", {file},
+                   fmt::format("files of the kind '{}' are not read as a stock or a mesh", ending),
                    "export it from the CAD program as STL, PLY or OBJ, in mm");
 }
 
@@ -138,7 +148,14 @@ ComparedStock load_stock(const std::string& file) {
 }
 
 ComparedDesign load_design(const std::string& file, double pitch_mm) {
+  if (brep::is_cad_file(file)) return design_of_cad(file);
   refuse_cad(file);
+  if (extension(file) == ".vdb") {
+    ComparedDesign earlier;
+    earlier.mesh = stock_of_grid(file).mesh;
+    earlier.grid = true;
+    return earlier;
+  }
   const std::string kind = extension(file);
   if (kind == ".stl" || kind == ".ply" || kind == ".obj")
     return {checked_mesh(mesh::load_mesh(file), file, "design mesh"), false, 0.0, {}};

@@ -24,14 +24,15 @@ struct ComparedDesign {
   bool open = false;                        ///< patches of parametric surfaces
   double error_mm = 0.0;                    ///< by which the facets stray from the surfaces
   std::optional<sim::AcceptLimits> accept;  ///< of a scene
+  bool grid = false;                        ///< an earlier stock, as its grid shows it
 };
 
 /// A stock of a run (.vdb), or a closed mesh. Throws InputError for anything else, and for meshes that are
 /// open, not manifold, inside out or cross themselves.
 ComparedStock load_stock(const std::string& file);
 
-/// A scene, a program of surface blocks, or a mesh of the same quality. `pitch_mm`: of the facets that stand
-/// for parametric surfaces.
+/// A scene, a program of surface blocks, a CAD file, an earlier stock, or a mesh of the same quality.
+/// `pitch_mm`: of the facets that stand for parametric surfaces.
 ComparedDesign load_design(const std::string& file, double pitch_mm);
 
 /// Throws InputError when the boxes do not meet ("boxes-apart"), or one is the other in another unit

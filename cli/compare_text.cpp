@@ -143,7 +143,32 @@ void add_areas(const measure::ComparisonInput& input, const measure::PartCompari
   }
 }
 
+ordered_json alignment_json(const measure::Alignment& aligned) {
+  ordered_json rows = ordered_json::array();
+  for (int r = 0; r < 4; ++r) {
+    ordered_json row = ordered_json::array();
+    for (int c = 0; c < 4; ++c) row.push_back(aligned.X_design_stock.matrix()(r, c));
+    rows.push_back(row);
+  }
+  return {{"matrix_mm", rows},
+          {"points", aligned.points},
+          {"steps", aligned.steps},
+          {"rms_before_um", um_from_mm(aligned.rms_before_mm)},
+          {"rms_um", um_from_mm(aligned.rms_mm)}};
+}
+
 }  // namespace
+
+std::string alignment_text(const measure::Alignment& aligned) {
+  const Eigen::AngleAxisd turn(aligned.X_design_stock.linear());
+  const Vec3 &shift = aligned.X_design_stock.translation(), &axis = turn.axis();
+  return fmt::format(
+      "turned by {:.5f} deg about ({:.4f}, {:.4f}, {:.4f}) through the origin, then moved by ({:.4f}, "
+      "{:.4f}, "
+      "{:.4f}) mm; {} points, rms {:.4g} um before, {:.4g} um after",
+      deg_from_rad(turn.angle()), axis.x(), axis.y(), axis.z(), shift.x(), shift.y(), shift.z(),
+      aligned.points, um_from_mm(aligned.rms_before_mm), um_from_mm(aligned.rms_mm));
+}
 
 std::vector<sim::Check> judge_comparison(const measure::ComparisonInput& input,
                                          const measure::PartComparison& result) {
@@ -161,7 +186,8 @@ std::vector<sim::Check> judge_comparison(const measure::ComparisonInput& input,
 }
 
 std::string comparison_json(const ComparedStock& stock, const measure::ComparisonInput& input,
-                            const measure::PartComparison& result, const std::vector<sim::Check>& checks) {
+                            const measure::PartComparison& result, const std::vector<sim::Check>& checks,
+                            const std::optional<measure::Alignment>& aligned) {
   ordered_json list = ordered_json::array();
   for (const sim::Check& check : checks) list.push_back(check_json(check));
   return ordered_json{
@@ -173,6 +199,7 @@ std::string comparison_json(const ComparedStock& stock, const measure::Compariso
               {{"excess_mm3", or_null(result.excess_mm3)},
                {"gouge_mm3", or_null(result.gouge_mm3)},
                {"difference_mm3", or_null(result.difference_mm3)}}},
+             {"alignment", aligned ? alignment_json(*aligned) : ordered_json(nullptr)},
              {"stock", side_json(result.stock)},
              {"design", side_json(result.design)},
              {"accuracy",

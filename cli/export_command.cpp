@@ -23,11 +23,11 @@ namespace swarf::cli {
 namespace {
 
 struct ExportOptions {
-  std::string folder, gltf, machine_gltf, stl, obj, ply, vdb, trajectory;
+  std::string folder, gltf, machine_gltf, stl, obj, threemf, ply, vdb, trajectory;
   sim::WindowPlaces window;
   double error_um = 2.0;
   render::GltfEncoding encoding = render::GltfEncoding::kFloat;
-  bool needs_stock() const { return !(gltf + machine_gltf + stl + obj + ply + vdb).empty(); }
+  bool needs_stock() const { return !(gltf + machine_gltf + stl + obj + threemf + ply + vdb).empty(); }
 };
 
 void check_options(const ExportOptions& options) {
@@ -40,8 +40,8 @@ void check_options(const ExportOptions& options) {
                      "--from and --to are for motions: the finished part has none",
                      "write for example: swarf export DIR --trajectory part.csv --from 60 --to 62");
   }
-  for (const std::string& file : {options.gltf, options.machine_gltf, options.stl, options.obj, options.ply,
-                                  options.vdb, options.trajectory})
+  for (const std::string& file : {options.gltf, options.machine_gltf, options.stl, options.obj,
+                                  options.threemf, options.ply, options.vdb, options.trajectory})
     reports::check_output_file(file);
   if (!options.trajectory.empty()) sim::check_cycle_table_name(options.trajectory);
 }
@@ -67,7 +67,7 @@ void write_gltf(const ExportOptions& options, const reports::FinishedRun& run) {
 }
 
 void write_meshes(const ExportOptions& options, const reports::FinishedRun& run) {
-  for (const std::string& file : {options.stl, options.obj}) {
+  for (const std::string& file : {options.stl, options.obj, options.threemf}) {
     if (file.empty()) continue;
     const TriMesh part = run.stock.mesh();
     mesh::save_mesh(file, part);
@@ -87,6 +87,7 @@ void write_meshes(const ExportOptions& options, const reports::FinishedRun& run)
 
 int export_run(const ExportOptions& options) {
   check_options(options);
+  print_diagnostics(reports::other_version(options.folder));
   TerminalProgress progress;
   if (!options.needs_stock()) {  // reading the stock would take longer than the cycles
     const sim::Job job = reports::read_job(options.folder, {});
@@ -124,6 +125,7 @@ void add_export(CLI::App& app, int& exit_code) {
       "asset.extras says how far, for each axis (key_error_max_X_mm)");
   command->add_option("--stl", options->stl, "finished part (.stl, mm)");
   command->add_option("--obj", options->obj, "finished part (.obj, mm)");
+  command->add_option("--3mf", options->threemf, "finished part (.3mf, mm)");
   command->add_option("--ply", options->ply, "finished part with deviation (.ply, mm)");
   command->add_option("--vdb", options->vdb, "finished stock as a level set (.vdb)");
   command->add_option("--trajectory", options->trajectory,

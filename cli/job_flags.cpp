@@ -6,7 +6,10 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <initializer_list>
+#include <string_view>
 #include <system_error>
+#include <utility>
 
 #include "base/file.h"
 #include "cli/check_cl.h"
@@ -26,6 +29,10 @@ constexpr const char* kTakes =
 
 void require_file(const std::string& file) {
   std::error_code problem;
+  if (file == "-")
+    throw InputError("file-not-found", {"-"},
+                     "a program through a pipe has no file that the results can name",
+                     "save it first: cat > part.nc; 'swarf check -' reads a pipe");
   if (file.empty())
     throw InputError("file-not-found", {"swarf"}, "no file is named", fmt::format("name {}", kTakes));
   if (fs::is_directory(file, problem))
@@ -66,7 +73,7 @@ void add_job_flags(CLI::App& command, JobWords& words) {
   command
       .add_option("--tools", words.tools,
                   "its tools: T1=6,T2=ball4,T3=drill5, or a tool table (.toml, .tbl of LinuxCNC, .json of "
-                  "Fusion, .fctl of FreeCAD)")
+                  "Fusion, .fctl of FreeCAD, .p21 of ISO 13399)")
       ->type_name("LIST|FILE")
       ->excludes(tool)
       ->group(group);
@@ -196,6 +203,68 @@ void add_parameter_flag(CLI::App& command, std::vector<std::string>& overrides) 
       ->take_all();
 }
 
+namespace {
+
+constexpr const char* kFlags = "flags";
+
+/// The flag that says a line of the scene which the flags mean: "--stock 0,0,-10,40,30,0".
+std::string flag_of(std::string_view line, bool of_design, const std::vector<std::string>& given) {
+  const std::string_view key = line.substr(0, line.find(' '));
+  const auto is = [&](std::initializer_list<const char*> keys) {
+    return std::find(keys.begin(), keys.end(), key) != keys.end();
+  };
+  const auto value_of = [&](const char* flag) -> std::string {
+    const auto found = std::find(given.begin(), given.end(), flag);
+    return found == given.end() || found + 1 == given.end() ? "" : fmt::format("{} {}", flag, *(found + 1));
+  };
+  if (is({"tools"})) return value_of("--tool") + value_of("--tools");
+  if (is({"tool_table"})) return value_of("--tools");
+  if (is({"machine"})) return value_of("--machine");
+  if (is({"start_tool"})) return value_of("--start-tool");
+  if (is({"work_origin_mm"})) return value_of("--origin");
+  if (is({"voxel_mm"})) return value_of("--voxel");
+  if (is({"mesh"}) && of_design) return value_of("--design");
+  return is({"box_mm", "mesh", "cylinder", "tube"}) ? value_of("--stock") : "";
+}
+
+/// Places in that scene become the flags.
+std::vector<Diagnostic> at_flags(std::vector<Diagnostic> told, const std::string& text,
+                                 const JobWords& words) {
+  const std::vector<std::string> given = given_words(words);
+  for (Diagnostic& one : told) {
+    if (one.where.file != kFlags || one.where.line == 0) continue;
+    size_t begin = 0;
+    for (int line = 1; line < one.where.line && begin != text.npos; ++line)
+      begin = std::min(text.find('\n', begin), text.size() - 1) + 1;
+    const bool of_design = text.substr(0, begin).find("[design]") != text.npos;
+    const std::string flag = flag_of(std::string_view(text).substr(begin), of_design, given);
+    one.where = {flag.empty() ? kFlags : flag};
+  }
+  return told;
+}
+
+sim::Job load_flags(const std::string& text, const JobWords& words,
+                    const std::vector<std::string>& overrides) {
+  try {
+    sim::Job job = sim::load_job(sim::SceneText{text, kFlags}, overrides);
+    job.warnings = at_flags(std::move(job.warnings), text, words);
+    return job;
+  } catch (const InputError& error) {
+    Diagnostics told;
+    for (Diagnostic& one : at_flags(error.diagnostics.list(), text, words)) {
+      if (one.severity == Severity::kError)
+        told.error(one.code, one.where, one.text, one.fix);
+      else if (one.severity == Severity::kWarning)
+        told.warning(one.code, one.where, one.text, one.fix);
+      else
+        told.note(one.code, one.where, one.text);
+    }
+    throw InputError(told);
+  }
+}
+
+}  // namespace
+
 size_t count_setups(const std::string& file, const std::vector<std::string>& overrides) {
   require_file(file);
   refuse_special_file(file);
@@ -216,10 +285,7 @@ std::vector<std::shared_ptr<const sim::Job>> load_setups(const std::string& file
 sim::Job load_job(const std::string& file, const JobWords& words, const std::vector<std::string>& overrides) {
   require_file(file);
   refuse_special_file(file);
-  if (is_program_file(file)) {
-    const std::string text = sim::scene_text(job_flags(file, words));
-    return sim::load_job(sim::SceneText{text, "flags"}, overrides);
-  }
+  if (is_program_file(file)) return load_flags(sim::scene_text(job_flags(file, words)), words, overrides);
   const std::vector<std::string> given = given_words(words);
   if (!given.empty())
     throw InputError("flags-and-scene", {file},

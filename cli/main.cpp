@@ -49,10 +49,44 @@ void check_command_word(const CLI::App& app, int argc, char** argv) {
                               : fmt::format("did you mean 'swarf {}'?", near));
 }
 
+/// "--toool" is no option of the command: the nearest one is named. Throws InputError where a word is none.
+void check_option_words(const CLI::App& app, const CLI::ExtrasError& error, int argc, char** argv) {
+  if (argc < 2) return;
+  const std::vector<const CLI::App*> commands =
+      app.get_subcommands([&](const CLI::App* one) { return one->get_name() == argv[1]; });
+  if (commands.empty()) return;
+  const CLI::App* const command = commands.front();
+  std::vector<std::string> names;
+  for (const CLI::App* one : {command, &app}) {
+    for (const CLI::Option* option : one->get_options({}))
+      for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  for (int i = 2; i < argc; ++i) {
+    const std::string word = argv[i], name = word.substr(0, word.find('='));
+    if (!name.starts_with("--") || name == "--") continue;
+    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+    if (std::string(error.what()).find(name) == std::string::npos) continue;  // what stands behind an option
+    const std::string near = swarf::nearest_name(name, names);
+    const std::string help = fmt::format("'swarf {} --help' lists them", argv[1]);
+    throw swarf::InputError("unknown-option", {fmt::format("swarf {} {}", argv[1], name)},
+                            "there is no such option",
+                            near.empty() ? help : fmt::format("did you mean '{}'? {}", near, help));
+  }
+}
+
+void parse(CLI::App& app, int argc, char** argv) {
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ExtrasError& error) {
+    check_option_words(app, error, argc, argv);
+    throw;
+  }
+}
+
 int guarded(CLI::App& app, int argc, char** argv, const int& exit_code) {
   try {
     check_command_word(app, argc, argv);
-    app.parse(argc, argv);
+    parse(app, argc, argv);
     return exit_code;
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? swarf::cli::kPass : swarf::cli::kBadInput;

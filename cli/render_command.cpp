@@ -1,12 +1,16 @@
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <memory>
 
 #include "base/parallel.h"
 #include "cli/commands.h"
+#include "cli/page_pdf.h"
 #include "cli/terminal.h"
 #include "cli/window_options.h"
+#include "render/movie/movie_writer.h"
 #include "reports/contact_pictures.h"
+#include "reports/kept_findings.h"
 #include "reports/part_view.h"
 #include "reports/pending_folder.h"
 #include "reports/pictures.h"
@@ -17,7 +21,7 @@ namespace swarf::cli {
 namespace {
 
 struct RenderOptions {
-  std::string folder, movie, still, kind = "part", camera;
+  std::string folder, movie, still, pdf, kind = "part", camera;
   std::vector<int> size;
   double seconds = -1.0;
   int samples = 0, threads = 0, finding = 0;
@@ -44,19 +48,35 @@ void set_seconds(sim::MovieSettings& movie, double seconds) {
   movie.seconds = seconds;
 }
 
+/// The page of the run as it is.
+void print_report(const RenderOptions& options) {
+  const std::filesystem::path page = std::filesystem::path(options.folder) / "report.html";
+  if (!std::filesystem::exists(page))
+    throw InputError("no-page", {options.folder}, "this folder holds no report.html",
+                     "name the folder of a run that was not made with --no-render");
+  require_chromium();
+  reports::check_output_file(options.pdf);
+  write_page_pdf(page.string(), options.pdf);
+  fmt::print("{}\n", options.pdf);
+}
+
 int render(const RenderOptions& options) {
   set_thread_count(options.threads);
-  if (options.movie.empty() && options.still.empty()) {
-    throw InputError("nothing-to-do", {"swarf render"}, "neither --movie nor --still was given",
+  if (options.movie.empty() && options.still.empty() && options.pdf.empty()) {
+    throw InputError("nothing-to-do", {"swarf render"}, "neither --movie nor --still nor --pdf was given",
                      "write for example: swarf render DIR --still part.png");
   }
+  if (!options.pdf.empty()) print_report(options);
+  if (options.movie.empty() && options.still.empty()) return kPass;
   if (options.finding > 0 && options.still.empty())
     throw InputError("nothing-to-do", {"--finding"}, "--finding is for a still, and none was asked for",
                      "write for example: swarf render DIR --finding 1 --still finding.png");
   const reports::StillKind kind = reports::still_kind(options.kind);
   check_window(options, kind);
   if (!options.camera.empty()) reports::camera_direction(options.camera);
+  if (!options.movie.empty()) render::check_movie_name(options.movie);
   for (const std::string& file : {options.movie, options.still}) reports::check_output_file(file);
+  print_diagnostics(reports::other_version(options.folder));
   TerminalProgress progress;
   reports::StoredRun stored = reports::read_run(options.folder);
   if (options.size.size() == 2) {
@@ -71,11 +91,11 @@ int render(const RenderOptions& options) {
                                      ? reports::window_motion(stored.job, options.folder, progress)
                                      : reports::motion_of(stored, options.folder, moves, progress);
   reports::FinishedRun run{stored.job, *path.cycles, stored.stock, stored.dexels, *path.carried};
-  const std::vector<sim::Finding> findings = reports::read_findings(options.folder);
-  run.findings = &findings;
+  const reports::KeptFindings findings = reports::read_findings(options.folder);
+  run.findings = &findings.list;
   if (options.window.any()) run.window = sim::window_of(options.window, *path.cycles);
   if (options.finding > 0) {
-    reports::make_finding_picture(run, options.finding, options.still);
+    reports::make_finding_picture(run, findings, options.finding, options.still);
     fmt::print("{}\n", options.still);
   } else if (!options.still.empty()) {
     const std::string otherwise = kind == reports::StillKind::kMachine ? "machine" : "iso";
@@ -102,6 +122,7 @@ void add_render(CLI::App& app, int& exit_code) {
   command->add_option("folder", options->folder, "folder of a finished run")->required();
   command->add_option("--movie", options->movie, "movie to write: .mp4 (H.264), .webm (VP9) or .apng");
   command->add_option("--still", options->still, "picture to write (.png)");
+  command->add_option("--pdf", options->pdf, "report.html as a PDF with page numbers (.pdf; chromium)");
   command->add_option("--kind", options->kind, "what the still shows: machine, part, deviation, fan")
       ->capture_default_str();
   command->add_option("--camera", options->camera,
@@ -114,8 +135,9 @@ void add_render(CLI::App& app, int& exit_code) {
   command->add_option("--samples", options->samples, "rays per pixel of the still, at most")
       ->check(CLI::Range(1, 4096));
   command
-      ->add_option("--finding", options->finding,
-                   "the still shows the machine at this finding, counted from 1 as in findings.json")
+      ->add_option(
+          "--finding", options->finding,
+          "the still shows the machine at this finding, by its number in the page and in findings.json")
       ->check(CLI::PositiveNumber);
   command->add_flag("--transparent", options->transparent, "no backdrop and no floor behind the still");
   command->add_option("--threads", options->threads, "threads to use (default: all cores)")

@@ -13,6 +13,7 @@
 #include "cli/commands.h"
 #include "cli/job_flags.h"
 #include "cli/open_ranks.h"
+#include "cli/page_pdf.h"
 #include "cli/pipeline_files.h"
 #include "cli/posted_scene.h"
 #include "cli/shell_text.h"
@@ -41,7 +42,8 @@ struct RunOptions {
   size_t record_every = 256;
   size_t setup = 0;  ///< the last one of several; 0: all
   double max_memory_mb = 0.0, keep_every_s = 60.0;
-  bool no_render = false, report = false, json = false, record = false, check = false, open = false;
+  bool no_render = false, report = false, json = false, record = false, check = false, open = false,
+       pdf = false;
   bool tiles = false;
   Ranks* ranks = nullptr;  ///< of --tiles
   PipelineFiles pipeline;
@@ -129,6 +131,7 @@ std::vector<std::string> command_words(const RunOptions& options) {
   add(!options.trajectory.empty(), "--trajectory", options.trajectory);
   flag(options.json, "--json");
   flag(options.open, "--open");
+  flag(options.pdf, "--pdf");
   add(!options.pipeline.sarif.empty(), "--sarif", options.pipeline.sarif);
   add(!options.pipeline.junit.empty(), "--junit", options.pipeline.junit);
   add(!options.output.empty(), "-o", options.output);
@@ -219,6 +222,19 @@ void require_opener(const RunOptions& options) {
   if (std::system("command -v xdg-open >/dev/null 2>&1") != 0)
     throw InputError("no-opener", {"--open"}, "there is no xdg-open here: nothing knows how to show a page",
                      "install xdg-utils, or leave --open out and open report.html yourself");
+}
+
+/// Before any work. Throws InputError "no-page" and "no-chromium".
+void require_pdf(const RunOptions& options) {
+  if (options.no_render && !options.report)
+    throw InputError("no-page", {"--pdf"}, "--no-render makes no page that could be printed", "add --report");
+  require_chromium();
+}
+
+/// `folder`: of finished results.
+void print_page(const RunOptions& options, const fs::path& folder) {
+  if (options.pdf && fs::exists(folder / "report.html"))
+    write_page_pdf((folder / "report.html").string(), (folder / "report.pdf").string());
 }
 
 /// Its own process: what shows the page may go on for hours.
@@ -315,6 +331,7 @@ int run_scene(const RunOptions& options, std::vector<reports::FileVerdict>& foun
     print_stopped(options, run.result, folder);
     return run.exit_code;
   }
+  print_page(options, folder);
   if (options.json) {
     fmt::print("{}", reports::metrics_json(job, run.result, {}, posted ? &posted->outcome : nullptr));
   } else {
@@ -398,6 +415,7 @@ int run_setups(const RunOptions& options, size_t count, std::vector<reports::Fil
     });
     exit_code = std::max(exit_code, run.exit_code);
     if (run.result.stopped) break;
+    print_page(options, pending.file(place));
     done.push_back(reports::setup_outcome(*job, run.result));
     if (!options.json)
       print_outcome(*job, run.result, pending.file(place), (fs::path(folder) / place).string());
@@ -418,6 +436,7 @@ int run_setups(const RunOptions& options, size_t count, std::vector<reports::Fil
 
 int run(const RunOptions& options, std::vector<reports::FileVerdict>& found) {
   if (options.open) require_opener(options);
+  if (options.pdf) require_pdf(options);
   const size_t setups = count_setups(options.scene, overrides_of(options));
   if (setups > 0) return run_setups(options, setups, found);
   if (options.setup > 0) load_setups(options.scene, options.setup, {});  // says that there is no list of them
@@ -562,6 +581,8 @@ void add_run(CLI::App& app, int& exit_code) {
       ->check(CLI::IsMember({"csv", "h5", "none"}));
   command->add_flag("--json", options->json, "print metrics.json instead of the table");
   command->add_flag("--open", options->open, "show report.html when it is there (xdg-open)");
+  command->add_flag("--pdf", options->pdf,
+                    "print report.html to report.pdf too, with page numbers (chromium)");
   add_pipeline_options(*command, options->pipeline);
   command->callback([options, &exit_code] {
     set_thread_count(options->threads);

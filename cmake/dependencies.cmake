@@ -13,11 +13,21 @@ find_package(TinyGLTF CONFIG REQUIRED)
 find_package(PNG REQUIRED)
 find_package(embree 3 CONFIG REQUIRED)
 pkg_check_modules(LIBAV REQUIRED IMPORTED_TARGET libavcodec libavformat libswscale libavutil)
+pkg_check_modules(WEBP REQUIRED IMPORTED_TARGET libwebp)
 pkg_check_modules(HDF5 REQUIRED IMPORTED_TARGET hdf5)
 pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo)
 pkg_check_modules(OSMESA REQUIRED osmesa)
 # For `swarf run --tiles` alone; without it the program is the same but for that.
 pkg_check_modules(MPI QUIET IMPORTED_TARGET ompi-c)
+
+# By name: its .pc file asks for the development files of what it is linked with.
+if(NOT TARGET swarf_lib3mf)
+  find_library(LIB3MF 3MF REQUIRED)
+  find_path(LIB3MF_INCLUDE Model/COM/NMR_DLLInterfaces.h PATH_SUFFIXES lib3mf REQUIRED)
+  add_library(swarf_lib3mf INTERFACE IMPORTED)
+  target_include_directories(swarf_lib3mf SYSTEM INTERFACE "${LIB3MF_INCLUDE}")
+  target_link_libraries(swarf_lib3mf INTERFACE "${LIB3MF}")
+endif()
 
 # Libraries by name: OpenCASCADE's own configuration also asks for the development files of its viewer.
 if(NOT TARGET swarf_occt)

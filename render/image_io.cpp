@@ -1,6 +1,7 @@
 #include "render/image_io.h"
 
 #include <png.h>
+#include <webp/encode.h>
 
 #include "base/check.h"
 #include "base/diagnostics.h"
@@ -46,6 +47,29 @@ Image load_png(const std::string& path) {
   png_image_free(&png);
   if (!read) throw InputError("image-read", {path}, "no PNG picture: " + reason, "give a PNG file");
   return image;
+}
+
+std::string webp(const Image& image, float quality) {
+  SWARF_CHECK(image.rgba.size() == size_t{4} * image.width * image.height, "pixels do not fill the picture");
+  WebPConfig config;
+  WebPPicture picture;
+  SWARF_CHECK(WebPConfigPreset(&config, WEBP_PRESET_PICTURE, quality) != 0 && WebPPictureInit(&picture) != 0,
+              "another version of libwebp than it was compiled for");
+  config.use_sharp_yuv = 1;  // coloured bands keep their edges
+  picture.width = image.width;
+  picture.height = image.height;
+  WebPMemoryWriter out;
+  WebPMemoryWriterInit(&out);
+  picture.writer = WebPMemoryWrite;
+  picture.custom_ptr = &out;
+  const bool made = WebPPictureImportRGBA(&picture, image.rgba.data(), 4 * image.width) != 0 &&
+                    WebPEncode(&config, &picture) != 0;
+  const int reason = picture.error_code;
+  std::string bytes(reinterpret_cast<const char*>(out.mem), made ? out.size : 0);
+  WebPPictureFree(&picture);
+  WebPMemoryWriterClear(&out);
+  SWARF_CHECK(made, "libwebp cannot encode the picture: reason " + std::to_string(reason));
+  return bytes;
 }
 
 }  // namespace swarf::render

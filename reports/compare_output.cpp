@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "mesh/mesh_io.h"
@@ -12,8 +13,10 @@
 #include "render/image_io.h"
 #include "render/lettering.h"
 #include "render/ray/still.h"
+#include "reports/contact_pictures.h"
 #include "reports/pending_folder.h"
 #include "reports/pictures.h"
+#include "reports/report_writer.h"
 
 namespace swarf::reports {
 namespace {
@@ -44,13 +47,37 @@ void write_map(PendingFolder& folder, TriMesh map, const std::string& name, cons
   render::save_png(image, folder.file(name + ".png"));
 }
 
+/// Each place on the surface that shows it.
+void add_place_pictures(const PendingFolder& folder, const measure::PartComparison& result, double scale_um,
+                        ReportData& page) {
+  std::array<TriMesh, 2> maps{result.stock_map, result.design_map};
+  for (TriMesh& map : maps) render::colour_by_deviation(map, scale_um);
+  const double size = mesh::bounds(maps[1]).size().maxCoeff();
+  for (size_t i = 0; i < page.findings.size(); ++i) {
+    const measure::DeviationRegion& region = result.regions[i];
+    const double own = std::sqrt(std::max(region.stock_area_mm2, region.design_area_mm2));
+    page.findings[i].picture_png = folder.file(fmt::format("place_{}.png", i + 1));
+    make_place_picture(maps[region.on_design ? 1 : 0], region.place, std::clamp(3.0 * own, 0.05 * size, size),
+                       page.findings[i].picture_png);
+  }
+}
+
 }  // namespace
 
-void write_compare(const std::string& target, TriMesh stock, TriMesh design, double scale_um,
-                   const std::string& metrics) {
+void write_compare(const std::string& target, const ComparedPair& pair, const measure::ComparisonInput& input,
+                   const measure::PartComparison& result, double scale_um, const std::string& metrics) {
   PendingFolder folder(target);
-  write_map(folder, std::move(stock), "deviation", "the stock, against the design", scale_um);
-  write_map(folder, std::move(design), "design", "the design, against the stock", scale_um);
+  const char* words = pair.revisions ? "the earlier stock" : "the design";
+  write_map(folder, result.stock_map, "deviation", fmt::format("the stock, against {}", words), scale_um);
+  write_map(folder, result.design_map, "design", fmt::format("{}, against the stock", words), scale_um);
+  ReportData page = compare_page(pair, input, result, scale_um);
+  page.hero_png = folder.file("deviation.png");
+  page.hero_caption = "The stock, coloured by its deviation.";
+  page.stills = {
+      {folder.file("design.png"), fmt::format("{}, coloured by what the stock leaves of it.",
+                                              pair.revisions ? "The earlier stock" : "The design")}};
+  add_place_pictures(folder, result, scale_um, page);
+  write_report(folder.file("report.html"), page);
   write_text(folder.file("metrics.json"), metrics);
   folder.move_into_place();
 }

@@ -1,18 +1,18 @@
-// What `swarf compare -o DIR` leaves: the deviation map as mesh and picture, and its numbers.
+// What `swarf compare -o DIR` leaves: a page, the deviation map as mesh and picture, and its numbers.
 #pragma once
 
 #include <string>
 
-#include "mesh/tri_mesh.h"
+#include "reports/compare_page.h"
 
 namespace swarf::reports {
 
 /// The file that marks a folder as a result of `swarf compare`.
 inline constexpr const char* kCompareMark = "deviation.ply";
 
-/// deviation.ply and .png (the stock), design.ply and .png, and metrics.json, the folder replaced whole. Both
-/// meshes carry deviation_um; `scale_um` is the colour scale's half width.
-void write_compare(const std::string& folder, TriMesh stock, TriMesh design, double scale_um,
-                   const std::string& metrics_json);
+/// report.html, deviation.ply and .png (the stock), design.ply and .png, a picture of each of the worst
+/// places and metrics.json, the folder replaced whole. `scale_um` is the colour scale's half width.
+void write_compare(const std::string& folder, const ComparedPair& pair, const measure::ComparisonInput& input,
+                   const measure::PartComparison& result, double scale_um, const std::string& metrics_json);
 
 }  // namespace swarf::reports

@@ -189,14 +189,16 @@ void make_contact_picture(const FinishedRun& run, const ContactPicture& picture,
   render::save_png(contact_image(run, picture), path);
 }
 
-void make_finding_picture(const FinishedRun& run, int number, const std::string& path) {
-  const size_t many = run.findings == nullptr ? 0 : run.findings->size();
-  if (number < 1 || static_cast<size_t>(number) > many) {
+void make_finding_picture(const FinishedRun& run, const KeptFindings& kept, int number,
+                          const std::string& path) {
+  const auto named = std::find(kept.numbers.begin(), kept.numbers.end(), number);
+  if (named == kept.numbers.end()) {
+    const int many = kept.faults();
     throw InputError("unknown-finding", {fmt::format("--finding {}", number)},
                      many == 0 ? "this run has no finding" : fmt::format("this run has {} findings", many),
                      many == 0 ? "leave out --finding" : fmt::format("write a number from 1 to {}", many));
   }
-  const sim::Finding& finding = (*run.findings)[static_cast<size_t>(number) - 1];
+  const sim::Finding& finding = kept.list[static_cast<size_t>(named - kept.numbers.begin())];
   motion::CycleReader reader(run.cycles);
   const auto k = static_cast<size_t>(std::max(0L, std::lround(finding.t_s / run.cycles.period_s())));
   const size_t cycle = std::min(k, run.cycles.size() - 1);
@@ -208,6 +210,43 @@ void make_finding_picture(const FinishedRun& run, int number, const std::string&
     lines.push_back(fmt::format("line {}   {:.3f} s   {}", finding.where.line, finding.t_s, finding.block));
   render::draw_caption(image, lines);
   render::save_png(image, path);
+}
+
+namespace {
+
+/// What lies so near to a place that a picture of it may show it.
+TriMesh neighbourhood(const TriMesh& mesh, const Vec3& place, double reach_mm) {
+  TriMesh near = mesh;
+  near.triangles.clear();
+  for (const auto& t : mesh.triangles) {
+    const bool inside = std::any_of(t.begin(), t.end(), [&](uint32_t v) {
+      const auto& p = mesh.positions[v];
+      return (Vec3(p[0], p[1], p[2]) - place).norm() < reach_mm;
+    });
+    if (inside) near.triangles.push_back(t);
+  }
+  return near;
+}
+
+}  // namespace
+
+void make_place_picture(const TriMesh& coloured, const Vec3& place, double width_mm,
+                        const std::string& path) {
+  constexpr double kShown = 3.0;  // widths: beyond, nothing is in the picture
+  const TriMesh near = neighbourhood(coloured, place, kShown * width_mm);
+  render::DrawList list;
+  list.items.push_back({&near, Pose::Identity(), {{1.0F, 1.0F, 1.0F}, 0.0F, 0.7F}});
+  const Vec3 half = Vec3::Constant(0.5 * width_mm);
+  render::StillOptions options;
+  options.width = 640;
+  options.height = 400;
+  options.samples_per_pixel = kContactSamples;
+  options.strip_strength = 0.0;  // reflections would tint the colours
+  options.floor = false;
+  list.camera = render::look_at_box({place - half, place + half}, -best_view(list, place, width_mm),
+                                    kContactView, double(options.width) / options.height);
+  list.lines.push_back(ring_about(place, list.camera, 0.2 * width_mm));
+  render::save_png(render::render_still(list, options), path);
 }
 
 }  // namespace swarf::reports

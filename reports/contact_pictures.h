@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "reports/kept_findings.h"
 #include "reports/machine_view.h"
 #include "sim/run/result.h"
 
@@ -27,7 +28,12 @@ inline constexpr size_t kContactPicturesMost = 6;
 void make_contact_picture(const FinishedRun& run, const ContactPicture& picture, const std::string& path);
 
 /// The machine at a finding's moment about the tool's tip, from the side that hides least of it, with its
-/// text. `number`: its place in findings.json, from 1. Throws InputError "unknown-finding".
-void make_finding_picture(const FinishedRun& run, int number, const std::string& path);
+/// text: of those of this number in the page and in findings.json the worst. Throws InputError
+/// "unknown-finding".
+void make_finding_picture(const FinishedRun& run, const KeptFindings& kept, int number,
+                          const std::string& path);
+
+/// A place on a coloured mesh, `width_mm` across, with a ring about it, from the side that shows most of it.
+void make_place_picture(const TriMesh& coloured, const Vec3& place, double width_mm, const std::string& path);
 
 }  // namespace swarf::reports

@@ -9,6 +9,7 @@
 #include <iterator>
 
 #include "base/diagnostics.h"
+#include "render/image_io.h"
 
 namespace swarf::reports {
 
@@ -89,11 +90,19 @@ PixelSize png_size(std::string_view png, const std::string& path) {
   return {big_endian(16), big_endian(20)};
 }
 
-std::string embedded_png(const std::string& path, const std::string& alt) {
+PagePicture page_picture(const std::string& path) {
   const std::string png = read_file(path);
   const PixelSize size = png_size(png, path);
-  return fmt::format(R"(<img src="data:image/png;base64,{}" width="{}" height="{}" alt="{}">)", base64(png),
-                     size.width, size.height, escape(alt));
+  const std::string small = render::webp(render::load_png(path), render::kPageQuality);
+  const bool smaller = small.size() < png.size();
+  return {size,
+          (smaller ? "data:image/webp;base64," : "data:image/png;base64,") + base64(smaller ? small : png)};
+}
+
+std::string embedded_picture(const std::string& path, const std::string& alt) {
+  const auto [size, url] = page_picture(path);
+  return fmt::format(R"(<img src="{}" width="{}" height="{}" alt="{}">)", url, size.width, size.height,
+                     escape(alt));
 }
 
 }  // namespace swarf::reports

@@ -24,7 +24,15 @@ struct PixelSize {
 /// From the header of a PNG. Throws InputError ("not-png"), which names `path`, when it is none.
 PixelSize png_size(std::string_view png, const std::string& path);
 
-/// <img> with the picture inside and its size stated, so that the page does not jump while it loads.
-std::string embedded_png(const std::string& path, const std::string& alt);
+/// A picture as it stands in a page, its size stated, so that the page does not jump while it loads.
+struct PagePicture {
+  PixelSize size;
+  std::string data_url;  ///< WebP of render::kPageQuality, or the file itself where that is smaller
+};
+/// Throws InputError when the file is missing or no PNG.
+PagePicture page_picture(const std::string& path);
+
+/// <img> with the picture inside.
+std::string embedded_picture(const std::string& path, const std::string& alt);
 
 }  // namespace swarf::reports

@@ -182,6 +182,7 @@ std::vector<std::string> keep_job(const fs::path& input, const fs::path& inside,
     keep("design.surface", scene.design.surface_file, beside(scene.design.surface_file, "design"));
   if (scene.design.kind == sim::DesignKind::kMesh || scene.design.kind == sim::DesignKind::kRuledFaces)
     keep("design." + scene.design.mesh_key, scene.design.mesh_file, beside(scene.design.mesh_file, "design"));
+  keep("report.logo", scene.report.logo_file, beside(scene.report.logo_file, "logo"));
   for (size_t i = 0; i < scene.fixtures.size(); ++i) {
     machine::Fixture fixture = scene.fixtures[i];
     const std::string* const file = sim::mesh_file_of(fixture);

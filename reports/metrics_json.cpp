@@ -1,7 +1,5 @@
 #include "reports/metrics_json.h"
 
-#include "reports/review_findings.h"
-
 #include "reports/avoidance_output.h"
 #include "reports/driven_output.h"
 #include "reports/flank_output.h"
@@ -17,6 +15,7 @@
 
 #include "base/units.h"
 #include "reports/tools_table.h"
+#include "sim/judge/finding_groups.h"
 #include "sim/run/worn_fixtures.h"
 
 namespace swarf::reports {
@@ -43,6 +42,25 @@ Json assumptions_json(const sim::Assumptions& assumptions) {
   return list;
 }
 
+Json number_or_null(const std::optional<double>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+/// From tool change to tool change.
+Json operations_json(const sim::Job& job, const sim::Result& result) {
+  Json list = Json::array();
+  for (const sim::Operation& one : result.main.operations)
+    list.push_back({{"tool", cutter::call_name(job.scene.tools[static_cast<size_t>(one.tool)])},
+                    {"line", one.first_line},
+                    {"feed_s", one.feed_s},
+                    {"rapid_s", one.rapid_s},
+                    {"dwell_s", one.dwell_s},
+                    {"feed_mm", one.feed_mm},
+                    {"deepest_mm", one.deepest_mm},
+                    {"stick_out_mm", one.stick_out_mm}});
+  return list;
+}
+
 Json motion_json(const sim::Job& job, const sim::Result& result) {
   const motion::MotionStatistics& motion = result.main.motion.statistics;
   return {{"ticks", motion.ticks},
@@ -51,6 +69,8 @@ Json motion_json(const sim::Job& job, const sim::Result& result) {
           {"time_rapid_s", motion.cycle.rapid_s},
           {"time_dwell_s", motion.cycle.dwell_s},
           {"time_by_tool_s", motion.cycle.by_tool_s},
+          {"tool_change_s", number_or_null(job.machine.tool_change_s)},
+          {"operations", operations_json(job, result)},
           {"corner_tolerance_mm", job.scene.motion.corner_tolerance_mm},
           {"corner_deviation_max_mm", motion.corner_deviation_max_mm},
           {"corner_deviation_line", line_json(result, motion.corner_element)},
@@ -251,6 +271,8 @@ Json contact_json(const toolpath::ToolPath& path, const std::string& a, const st
           {"last_line", line(event.last_element)},
           {"t_s", event.first.time_s},
           {"depth_seen_mm", event.depth_mm},
+          {"depth_bound_mm", event.depth_bound_mm},
+          {"deepest_machine_mm", {event.deepest_M.x(), event.deepest_M.y(), event.deepest_M.z()}},
           {"place_machine_mm", {event.point_a.x(), event.point_a.y(), event.point_a.z()}}};
 }
 
@@ -303,8 +325,11 @@ Json machine_contacts_json(const sim::Job& job, const sim::Result& result) {
             {"pairs", Json::array()},
             {"left_out", Json::array()},
             {"without_mesh", contacts.without_mesh},
+            {"without_mesh_pairs", Json::array()},
             {"events", Json::array()},
             {"fixtures_cut", Json::array()}};
+  for (const auto& [a, b] : contacts.without_mesh_pairs)
+    json["without_mesh_pairs"].push_back({{"a", a}, {"b", b}});
   for (const sim::WornFixture& worn : sim::worn_fixtures(job, result))
     json["fixtures_cut"].push_back({{"name", worn.name}, {"removed_mm3", worn.removed_mm3}});
   const collision::PairFindings* const nearest = contacts.nearest();
@@ -337,10 +362,6 @@ Json flank_json(const measure::FlankError& flank) {
       {"cutter_radius_mm", flank.cutter_radius_mm},       {"psi_max_deg", deg_from_rad(flank.psi_max_rad)},
       {"twist_bound_mm", flank.twist_bound_mm},           {"static_error_mm", flank.standing_error_mm},
       {"continuous_error_mm", flank.continuous.error_mm}, {"rows", rows}};
-}
-
-Json number_or_null(const std::optional<double>& value) {
-  return value ? Json(*value) : Json(nullptr);
 }
 
 Json checks_json(const std::vector<sim::Check>& checks) {
@@ -537,14 +558,13 @@ std::string metrics_json(const sim::Job& job, const sim::Result& result, const R
 
 std::string findings_json(const sim::Result& result) {
   Json list = Json::array();
-  const std::vector<size_t> numbers = finding_numbers(result);
-  for (const Severity severity : {Severity::kError, Severity::kWarning, Severity::kNote}) {
-    for (size_t i = 0; i < result.findings.size(); ++i) {
-      const sim::Finding& finding = result.findings[i];
-      if (finding.severity != severity) continue;
+  const std::vector<sim::FindingGroup> groups = sim::group_findings(result.findings);
+  for (size_t number = 1; number <= groups.size(); ++number) {
+    for (const size_t member : groups[number - 1].members) {
+      const sim::Finding& finding = result.findings[member];
       const auto& place = finding.place_W;
       list.push_back({{"code", finding.code},
-                      {"severity", severity_name(severity)},
+                      {"severity", severity_name(finding.severity)},
                       {"check", finding.check.empty() ? Json(nullptr) : Json(finding.check)},
                       {"text", finding.text},
                       {"fix", finding.fix},
@@ -554,7 +574,7 @@ std::string findings_json(const sim::Result& result) {
                       {"block", finding.block},
                       {"t_s", finding.t_s},
                       {"place_mm", place ? Json{place->x(), place->y(), place->z()} : Json(nullptr)},
-                      {"number", numbers[i]}});
+                      {"number", number}});
     }
   }
   return json_text(list);

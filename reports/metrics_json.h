@@ -21,7 +21,8 @@ struct RenderStatistics {
 std::string metrics_json(const sim::Job& job, const sim::Result& result, const RenderStatistics& render,
                          const avoidance::Outcome* avoidance = nullptr);
 
-/// The JSON text of findings.json: an array, most severe first.
+/// The JSON text of findings.json: an array in the order of the page. Findings that are one fault have one
+/// `number`, that of the page, and follow each other, the worst first.
 std::string findings_json(const sim::Result& result);
 
 /// Peak resident memory of this process so far, MB.

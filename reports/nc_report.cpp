@@ -73,7 +73,7 @@ std::vector<std::pair<std::string, std::string>> nc_lines(const sim::Job& job, c
           {"tools", tools}};
 }
 
-std::vector<Check> nc_checks(const sim::Result& result) {
+std::vector<Check> nc_checks(const sim::Job& job, const sim::Result& result) {
   const toolpath::NcReading& nc = *result.main.nc;
   std::vector<Check> checks;
   if (!nc.summary.functions.empty()) {
@@ -87,8 +87,9 @@ std::vector<Check> nc_checks(const sim::Result& result) {
          fmt::format("{} rapids with an empty spindle are left out of path and time", nc.moves_without_tool),
          State::kNotChecked});
   }
-  checks.push_back(
-      {"Time of tool changes", "", "the machine does not say how long one takes", State::kNotChecked});
+  if (!job.machine.tool_change_s)
+    checks.push_back({"Time of tool changes", "",
+                      "the machine does not say how long one takes (tool_change_s)", State::kNotChecked});
   return checks;
 }
 

@@ -20,6 +20,6 @@ FactGroup nc_facts(const sim::Job& job, const sim::Result& result);
 std::vector<std::pair<std::string, std::string>> nc_lines(const sim::Job& job, const sim::Result& result);
 
 /// "not simulated": words that were read and have no effect, and what else was left out.
-std::vector<Check> nc_checks(const sim::Result& result);
+std::vector<Check> nc_checks(const sim::Job& job, const sim::Result& result);
 
 }  // namespace swarf::reports

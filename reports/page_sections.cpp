@@ -150,6 +150,9 @@ std::string finding_card(const ReportFinding& finding, size_t number, bool view,
                   look.css_class, number, symbol(look.symbol), look.word, number, escape(finding.code));
   out += element("p", "", finding.text) + element("p", "do", finding.fix) +
          finding_places(finding, number, view, movie) + "</div>";
+  if (!finding.picture_png.empty())
+    out +=
+        R"(<div class="finding-picture">)" + embedded_picture(finding.picture_png, finding.text) + "</div>";
   return out + excerpt(finding) + "</li>";
 }
 
@@ -167,9 +170,11 @@ std::string findings_island(const std::vector<ReportFinding>& findings, size_t s
   return out + "]</script>";
 }
 
-std::string table_open(const std::vector<Column>& columns, const std::string& caption) {
+std::string table_open(const std::vector<Column>& columns, const std::string& caption,
+                       bool pictures = false) {
   std::string out = R"(<div class="scroll" tabindex="0" role="region" aria-label=")" + escape(caption) +
                     R"("><table><caption class="unseen">)" + escape(caption) + "</caption><thead><tr>";
+  if (pictures) out += R"(<td></td>)";
   for (const Column& column : columns) {
     out += fmt::format(R"(<th scope="col"{}>{}{}</th>)", column.numeric ? R"( class="number")" : "",
                        escape(column.title), element("span", "unit", column.unit));
@@ -181,11 +186,12 @@ constexpr const char* kTableClose = "</tbody></table></div>";
 
 std::string table_html(const Table& table) {
   std::string out = "<article class=\"table\"><h3>" + escape(table.title) + "</h3>";
-  out += element("p", "intro", table.intro) + table_open(table.columns, table.title);
+  out += element("p", "intro", table.intro) + table_open(table.columns, table.title, !table.pictures.empty());
   for (size_t r = 0; r < table.rows.size(); ++r) {
     SWARF_CHECK(table.rows[r].size() == table.columns.size(),
                 "a row of \"" + table.title + "\" is not whole");
     out += static_cast<int>(r) == table.highlighted_row ? "<tr class=\"used\">" : "<tr>";
+    if (!table.pictures.empty()) out += R"(<td class="picture">)" + table.pictures.at(r) + "</td>";
     for (size_t c = 0; c < table.columns.size(); ++c) {
       const char* tag = c == 0 ? "th scope=\"row\"" : "td";
       out += fmt::format("<{}{}>{}</{}>", tag, table.columns[c].numeric ? R"( class="number")" : "",
@@ -267,11 +273,27 @@ std::string symbol_sprite() {
          R"(<circle cx="10" cy="10" r="9"/><path d="M6 10h8"/></symbol></svg>)";
 }
 
+namespace {
+
+/// Logo and facts of the job; nothing where the scene says none.
+std::string job_head(const JobHead& head) {
+  std::string out;
+  if (!head.logo_png.empty())
+    out += R"(<div class="logo">)" + embedded_picture(head.logo_png, "Logo") + "</div>";
+  if (!head.facts.empty()) out += R"(<dl class="job">)";
+  for (const Fact& fact : head.facts)
+    out += "<div><dt>" + escape(fact.name) + "</dt><dd>" + escape(fact.value) + "</dd></div>";
+  if (!head.facts.empty()) out += "</dl>";
+  return out.empty() ? "" : R"(<div class="job-head">)" + out + "</div>";
+}
+
+}  // namespace
+
 std::string verdict_header(const ReportData& data) {
   const char* kind = data.verdict.pass ? "ok" : "bad";
   std::string out = fmt::format(
       R"(<header class="{}"><div class="wrap"><p class="brand">Swarf simulation report</p>)", kind);
-  out += element("h1", "", data.title) + element("p", "subtitle", data.subtitle);
+  out += element("h1", "", data.title) + element("p", "subtitle", data.subtitle) + job_head(data.head);
   out += fmt::format(R"(<div class="verdict" role="status">{}<p><b>{}</b><span>{}</span></p></div>)",
                      symbol(kind), data.verdict.pass ? "Pass" : "Fail", escape(data.verdict.headline));
   return out + criteria_list(data.verdict.criteria) + "</div></header>";
@@ -281,7 +303,7 @@ std::string overview_section(const ReportData& data) {
   if (data.hero_png.empty() && data.key_numbers.empty()) return "";
   std::string out = fmt::format(R"(<div class="overview{}">)", data.hero_png.empty() ? " no-hero" : "");
   if (!data.hero_png.empty()) {
-    out += "<figure class=\"hero\">" + embedded_png(data.hero_png, data.hero_caption) +
+    out += "<figure class=\"hero\">" + embedded_picture(data.hero_png, data.hero_caption) +
            element("figcaption", "", data.hero_caption) + "</figure>";
   }
   out += "<dl class=\"keys\">";
@@ -338,7 +360,7 @@ std::string stills_section(const std::vector<Still>& stills) {
   if (stills.empty()) return "";
   std::string out = "<div class=\"stills\">";
   for (const Still& still : stills) {
-    out += "<figure>" + embedded_png(still.png_path, still.caption) +
+    out += "<figure>" + embedded_picture(still.png_path, still.caption) +
            element("figcaption", "", still.caption) + "</figure>";
   }
   return section("stills", "Stills", out + "</div>");

@@ -40,18 +40,19 @@ fs::path clean(const std::string& target) {
 
 /// Names in a folder of results that swarf itself has given.
 bool is_ours(const std::string& name) {
-  constexpr std::array<std::string_view, 20> kNames{
-      "run.json",      "input",         "trajectory.csv", "blocks.csv",    "stock.vdb",
-      "part.glb",      "part.stl",      "machine.glb",    "movie.mp4",     "report.html",
-      "metrics.json",  "run.record",    "findings.json",  "deviation.ply", "deviation.png",
-      "deviation.glb", "motion.places", "trajectory.h5",  "setups.json",   "posted.nc"};
+  constexpr std::array<std::string_view, 21> kNames{
+      "run.json",      "input",         "trajectory.csv", "blocks.csv",    "stock.vdb",     "part.glb",
+      "part.stl",      "machine.glb",   "movie.mp4",      "report.html",   "report.pdf",    "metrics.json",
+      "run.record",    "findings.json", "deviation.ply",  "deviation.png", "deviation.glb", "motion.places",
+      "trajectory.h5", "setups.json",   "posted.nc"};
   const auto is_between = [&](std::string_view start, std::string_view end) {
     return name.size() > start.size() + end.size() &&
            std::string_view(name).substr(0, start.size()) == start &&
            std::string_view(name).substr(name.size() - end.size()) == end;
   };
   return std::find(kNames.begin(), kNames.end(), name) != kNames.end() || is_between("still_", ".png") ||
-         is_between("surface_", ".rays") || is_between("stock_after_", ".vdb");
+         is_between("place_", ".png") || is_between("surface_", ".rays") ||
+         is_between("stock_after_", ".vdb");
 }
 
 /// "1_first_side": the results of one of several set-ups.

@@ -63,6 +63,7 @@ struct ReportFinding {
   size_t count = 1;                    ///< findings that are one fault with it, itself too
   int first_line = 0, last_line = 0;   ///< of them all; 0: not tied to lines
   std::vector<ProgramLine> excerpt{};  ///< the block and its neighbours
+  std::string picture_png{};           ///< path; empty: none
   std::array<double, 3> place_mm{};    ///< on the part, W
   bool has_place = false;
 };
@@ -80,6 +81,7 @@ struct Table {
   std::vector<std::vector<std::string>> rows;  ///< each as long as `columns`
   std::vector<std::string> notes{};            ///< below the table
   int highlighted_row = -1;                    ///< the one that this run used; -1: none
+  std::vector<std::string> pictures{};         ///< SVG before each row; empty: no such column
 };
 
 /// What was checked, and what was not, with the reason.
@@ -179,9 +181,16 @@ struct FactGroup {
   std::vector<Fact> facts{};
 };
 
+/// Whose job it is, beside the title.
+struct JobHead {
+  std::string logo_png{};  ///< path; empty: none
+  std::vector<Fact> facts{};
+};
+
 struct ReportData {
   std::string title{};
   std::string subtitle;
+  JobHead head{};
   Verdict verdict;
   std::vector<KeyNumber> key_numbers;
   std::vector<ReportFinding> findings;

@@ -88,12 +88,4 @@ std::vector<WorstPlace> worst_places(const sim::Result& result) {
   return places;
 }
 
-std::vector<size_t> finding_numbers(const sim::Result& result) {
-  std::vector<size_t> numbers(result.findings.size(), 0);
-  const std::vector<sim::FindingGroup> groups = sim::group_findings(result.findings);
-  for (size_t i = 0; i < groups.size(); ++i)
-    for (const size_t member : groups[i].members) numbers[member] = i + 1;
-  return numbers;
-}
-
 }  // namespace swarf::reports

@@ -18,7 +18,4 @@ std::vector<ReviewPin> review_pins(const sim::Result& result);
 /// The deepest gouge, the highest excess and the highest ridge, as the measures have refined them.
 std::vector<WorstPlace> worst_places(const sim::Result& result);
 
-/// By finding: the number in the page of its group, from 1.
-std::vector<size_t> finding_numbers(const sim::Result& result);
-
 }  // namespace swarf::reports

@@ -12,6 +12,7 @@
 
 #include "base/file.h"
 #include "reports/avoidance_output.h"
+#include "reports/html.h"
 #include "reports/kept_inputs.h"
 #include "reports/kept_motion.h"
 #include "reports/part_view.h"
@@ -62,6 +63,18 @@ class Attempts {
  private:
   std::exception_ptr fault_;
 };
+
+/// Before any work: a logo that cannot be shown is told at its key.
+void require_logo(const sim::ReportSettings& report) {
+  if (report.logo_file.empty()) return;
+  try {
+    page_picture(report.logo_file);
+  } catch (const InputError& error) {
+    const Diagnostic& found = error.diagnostics.list().front();
+    throw InputError("bad-logo", report.logo_where, report.logo_file + ": " + found.text,
+                     "name a PNG file, or leave report.logo out");
+  }
+}
 
 void write_pictures(const PendingFolder& folder, const FinishedRun& run, const TriMesh& part,
                     const std::vector<ContactPicture>& contacts, Progress& progress, RunFiles& files,
@@ -187,6 +200,7 @@ sim::MeasuredPath whole_motion(const sim::Job& job, const std::string& folder, P
 }  // namespace
 
 void begin_run(const PendingFolder& folder, const sim::Job& job, const OutputOptions& options) {
+  require_logo(job.scene.report);
   const KeptInputs kept = keep_inputs(folder, job, options.overrides);
   nlohmann::ordered_json manifest{{"swarf", SWARF_VERSION},
                                   {"scene", job.scene.name},
@@ -257,26 +271,19 @@ StoredRun read_run(const std::string& folder) {
   return run;
 }
 
-std::vector<sim::Finding> read_findings(const std::string& folder) {
-  std::ifstream file(fs::path(folder) / "findings.json");
-  const nlohmann::json list = nlohmann::json::parse(file, nullptr, false);
-  std::vector<sim::Finding> findings;
-  if (!list.is_array()) return findings;
-  for (const nlohmann::json& one : list) {
-    sim::Finding finding;
-    finding.code = one.value("code", "");
-    const std::string severity = one.value("severity", "error");
-    finding.severity = severity == "note"      ? Severity::kNote
-                       : severity == "warning" ? Severity::kWarning
-                                               : Severity::kError;
-    finding.text = one.value("text", "");
-    finding.fix = one.value("fix", "");
-    finding.where = {one.value("file", ""), one.value("line", 0)};
-    finding.t_s = one.value("t_s", 0.0);
-    finding.block = one.value("block", "");
-    findings.push_back(finding);
-  }
-  return findings;
+std::vector<Diagnostic> other_version(const std::string& folder) {
+  const std::string mark = (fs::path(folder) / kRunMark).string();
+  std::ifstream file(mark);
+  const nlohmann::json manifest = nlohmann::json::parse(file, nullptr, false);
+  if (!manifest.is_object() || !manifest.contains("swarf")) return {};  // told by what reads it
+  const nlohmann::json& version = manifest.at("swarf");
+  if (version == SWARF_VERSION) return {};
+  return {{"other-version",
+           Severity::kWarning,
+           {mark},
+           fmt::format("swarf {} has made this run, this is {}: what it writes may differ from the run's own",
+                       version.is_string() ? version.get<std::string>() : version.dump(), SWARF_VERSION),
+           "run the scene again where it matters"}};
 }
 
 sim::MeasuredPath motion_of(const StoredRun& run, const std::string& folder, bool needed,

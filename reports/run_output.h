@@ -48,8 +48,8 @@ struct StoredRun {
 };
 StoredRun read_run(const std::string& folder);
 
-/// What findings.json of a run says; none where it is not there.
-std::vector<sim::Finding> read_findings(const std::string& folder);
+/// A warning where another version of swarf has made the run; else none.
+std::vector<Diagnostic> other_version(const std::string& folder);
 
 /// The run's motion, made again from its kept inputs; without any cycle when it is not `needed`. Throws
 /// InputError "run-differs" when these were changed, or give another motion than the run's to the last bit.

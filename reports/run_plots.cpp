@@ -25,10 +25,15 @@ std::vector<std::array<double, 2>> scaled(const std::vector<Vec2>& points, doubl
   return out;
 }
 
-Plot feed_plot(const motion::TimeEnvelope& envelope) {
+Plot feed_plot(const sim::Job& job, const motion::TimeEnvelope& envelope) {
+  const auto& axes = job.machine.model.axes;
+  const bool turns = std::any_of(axes.begin(), axes.end(),
+                                 [](const kinematics::Axis& axis) { return axis.kind == AxisKind::kRotary; });
   Plot plot;
   plot.title = "Feed of the contact point";
-  plot.caption = "Falls where an axis would exceed its speed, above all near the pole of the rotary table.";
+  plot.caption =
+      turns ? "Falls where an axis would exceed its speed, above all near the pole of the rotary table."
+            : "Falls at corners, and where an axis would exceed its limits.";
   plot.x_label = "time";
   plot.x_unit = "s";
   plot.y_label = "feed";
@@ -108,7 +113,7 @@ Plot height_plot(const sim::Job& job, const sim::Result& result) {
 std::vector<Plot> run_plots(const sim::Job& job, const sim::Result& result) {
   const motion::TimeEnvelope& envelope = result.main.envelope;
   const bool planned = !result.main.path.elements.hold_blocks();
-  std::vector<Plot> plots{feed_plot(envelope), axis_plot(job, envelope, AxisKind::kLinear, false),
+  std::vector<Plot> plots{feed_plot(job, envelope), axis_plot(job, envelope, AxisKind::kLinear, false),
                           axis_plot(job, envelope, AxisKind::kRotary, false),
                           axis_plot(job, envelope, AxisKind::kLinear, true),
                           axis_plot(job, envelope, AxisKind::kRotary, true)};

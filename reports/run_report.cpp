@@ -378,12 +378,30 @@ std::vector<Table> assumption_tables(const sim::Job& job) {
 
 }  // namespace
 
+namespace {
+
+JobHead job_head_of(const sim::ReportSettings& report) {
+  JobHead head{report.logo_file, {}};
+  const auto add = [&](const char* name, const std::string& value) {
+    if (!value.empty()) head.facts.push_back({name, value});
+  };
+  add("Job", report.job);
+  add("Part number", report.part_number);
+  add("Customer", report.customer);
+  add("Date", report.date);
+  add("Approval", report.approval);
+  return head;
+}
+
+}  // namespace
+
 ReportData report_data(const sim::Job& job, const sim::Result& result, const RunFiles& files, bool rendered) {
   ReportData data;
   data.title = job.scene.title;
   data.subtitle =
       fmt::format("{} on {}", job.scene.program_file.substr(job.scene.program_file.find_last_of('/') + 1),
                   job.machine.model.name);
+  data.head = job_head_of(job.scene.report);
   data.verdict = verdict_of(result.checks);
   data.key_numbers = brings_blocks(result) ? block_key_numbers(result) : key_numbers(result);
   data.findings = report_findings(result);
@@ -409,7 +427,6 @@ ReportData report_data(const sim::Job& job, const sim::Result& result, const Run
   data.plots = run_plots(job, result);
   if (brings_blocks(result)) {
     data.tables = {axis_table(job, result), axis_limit_table(job, result)};
-    if (job.scene.tools.size() > 1) data.tables.insert(data.tables.begin(), tools_table(job, result));
     if (result.flank) data.tables.insert(data.tables.begin(), flank_table(*result.flank));
   } else if (result.driven) {
     data.tables = {axis_table(job, result), axis_limit_table(job, result)};
@@ -419,6 +436,8 @@ ReportData report_data(const sim::Job& job, const sim::Result& result, const Run
     data.paper_title = "Lin & Koren: the paper's figures against ours";
     data.paper = papers::lin_koren_rows(job, result);
   }
+  const std::vector<Table> first{cycle_time_table(job, result), tools_table(job, result)};
+  data.tables.insert(data.tables.begin(), first.begin(), first.end());
   if (result.singularity) {
     const std::vector<kinematics::MachineModel> by_tool = sim::machines_by_tool(job);
     const kinematics::MachineModel& machine =
@@ -435,7 +454,7 @@ ReportData report_data(const sim::Job& job, const sim::Result& result, const Run
   data.facts.insert(data.facts.begin() + 1, time_facts(job, result));
   if (result.main.nc) {
     data.facts.insert(data.facts.begin() + 1, nc_facts(job, result));
-    const std::vector<Check> more = nc_checks(result);
+    const std::vector<Check> more = nc_checks(job, result);
     data.checks.insert(data.checks.end(), more.begin(), more.end());
   }
   if (job.cl) {

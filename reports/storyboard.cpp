@@ -1,12 +1,10 @@
 #include "reports/storyboard.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
 
-#include "base/diagnostics.h"
+#include "sim/run/shot_places.h"
 
 namespace swarf::reports {
 namespace {
@@ -16,21 +14,6 @@ using sim::MovieSpeed;
 
 /// How often the scan of a long program tells its progress, cycles.
 constexpr size_t kScanStep = 100000;
-
-bool has_places(const MovieShot& shot) {
-  return shot.from_s || shot.to_s || shot.from_line || shot.to_line;
-}
-
-/// What of the motion a shot shows; places that are not there are told at the shot.
-sim::CycleWindow window_of_shot(const FinishedRun& run, const MovieShot& shot) {
-  if (!has_places(shot)) return {run.first_shown(), run.last_shown() + 1};
-  try {
-    return sim::window_of({shot.from_s, shot.to_s, shot.from_line, shot.to_line}, run.cycles);
-  } catch (const InputError& error) {
-    const Diagnostic& found = error.diagnostics.list().front();
-    throw InputError(found.code, shot.where, found.text, found.fix);
-  }
-}
 
 std::vector<Stretch> stretches_of(const FinishedRun& run, const sim::CycleWindow& window,
                                   Progress& progress) {
@@ -81,9 +64,11 @@ std::vector<motion::Cycle> cycles_at(const FinishedRun& run, const std::vector<s
 
 std::vector<motion::Cycle> cycles_of_shot(const FinishedRun& run, const MovieShot& shot, size_t count,
                                           Progress& progress) {
-  const sim::CycleWindow window = window_of_shot(run, shot);
+  const bool placed = sim::has_places(shot);
+  const sim::CycleWindow window =
+      placed ? sim::shot_window(shot, run.cycles) : sim::CycleWindow{run.first_shown(), run.last_shown() + 1};
   if (count == 1) return cycles_at(run, {window.end - 1});  // one frame alone shows the end
-  if (shot.speed == MovieSpeed::kTime && !has_places(shot)) {
+  if (shot.speed == MovieSpeed::kTime && !placed) {
     std::vector<motion::Cycle> cycles = run.shown_cycles(count);
     cycles.resize(count, cycles.back());
     return cycles;
@@ -93,8 +78,7 @@ std::vector<motion::Cycle> cycles_of_shot(const FinishedRun& run, const MovieSho
                                              : stretches_of(run, window, progress);
   const std::vector<size_t> numbers = spread_frames(stretches, shot.speed, count);
   if (!numbers.empty()) return cycles_at(run, numbers);
-  throw InputError("nothing-cut", shot.where, "no feed move lies in this shot, and its speed is \"cutting\"",
-                   "write speed = \"time\", or other places");
+  throw sim::shot_cuts_nothing(shot);
 }
 
 }  // namespace

@@ -123,7 +123,8 @@ struct CollisionJudge::Way {
 CollisionJudge::CollisionJudge(const sim::Job& job, double clearance_mm)
     : job_(job), limit_mm_(std::max(clearance_mm, 2.0 * kTouch)), bodies_(sim::contact_bodies(job)) {
   Diagnostics told;
-  for (const auto& watched : collision::choose_pairs(job.machine, bodies_, {}, kTouch, told).watched) {
+  const collision::PairRules rules = sim::contact_rules(job, bodies_);
+  for (const auto& watched : collision::choose_pairs(job.machine, bodies_, rules, kTouch, told).watched) {
     const Body &a = bodies_[watched.first], &b = bodies_[watched.second];
     Pair pair{watched.first, watched.second, collision::encounter(job.machine, a, b), false, false};
     const auto either = [&](BodyKind kind) { return a.kind == kind || b.kind == kind; };
@@ -330,8 +331,8 @@ std::string CollisionJudge::inside_table() const {
     if (body.kind != BodyKind::kLink || body.link != job_.machine.work_link) continue;
     const collision::Encounter pair = collision::encounter(job_.machine, *stock, body);
     const double depth =
-        collision::overlap_depth(pair, collision::BodyDepth(*stock), collision::BodyDepth(body),
-                                 collision::home_of(job_.machine))
+        collision::deepest_overlap(pair, collision::BodyDepth(*stock), collision::BodyDepth(body),
+                                   collision::home_of(job_.machine))
             .depth_mm;
     if (depth > sim::kInsideMm)
       return fmt::format("the work would stand {:.3f} mm inside {}", depth, body.name);

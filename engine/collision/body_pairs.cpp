@@ -10,31 +10,33 @@
 namespace swarf::collision {
 namespace {
 
-using NamePairs = std::vector<std::pair<std::string, std::string>>;
+bool is_named(const NamePair& names, const std::string& a, const std::string& b) {
+  return (names.first == a && names.second == b) || (names.first == b && names.second == a);
+}
 
-void check_allowed_names(const std::vector<Body>& bodies, const NamePairs& allowed) {
+void check_rule_names(const std::vector<Body>& bodies, const PairRules& rules) {
   std::vector<std::string> names;
   for (const Body& body : bodies) names.push_back(body.name);
   Diagnostics found;
   const auto check = [&](const std::string& name) {
     if (std::find(names.begin(), names.end(), name) != names.end()) return;
     const std::string nearest = nearest_name(name, names);
-    found.error("unknown-body", {}, fmt::format("there is no body \"{}\" that may touch another", name),
+    found.error("unknown-body", {}, fmt::format("there is no body \"{}\" in a pair of bodies", name),
                 nearest.empty() ? "name a link, a fixture, the part, the stock or a part of the tool"
                                 : fmt::format("perhaps \"{}\" is meant", nearest));
   };
-  for (const auto& [one, other] : allowed) {
-    check(one);
-    check(other);
-  }
+  const auto check_both = [&](const NamePair& pair) {
+    check(pair.first);
+    check(pair.second);
+  };
+  for (const NamePair& pair : rules.allowed) check_both(pair);
+  for (const NearMissRule& rule : rules.watched) check_both(rule.names);
   found.throw_if_errors();
 }
 
-bool is_allowed(const NamePairs& allowed, const Body& a, const Body& b) {
-  return std::any_of(allowed.begin(), allowed.end(), [&](const auto& names) {
-    return (names.first == a.name && names.second == b.name) ||
-           (names.first == b.name && names.second == a.name);
-  });
+bool is_allowed(const PairRules& rules, const Body& a, const Body& b) {
+  return std::any_of(rules.allowed.begin(), rules.allowed.end(),
+                     [&](const NamePair& names) { return is_named(names, a.name, b.name); });
 }
 
 /// The link on which another one is guided: its parent, or the first carrier that has a mesh.
@@ -62,10 +64,11 @@ bool touches_at(const Encounter& pair, const AxisValues& q, double touch_mm) {
   return (found.within && found.upper <= touch_mm) || one_holds_other(pair, q);
 }
 
-std::optional<PairReason> reason_to_leave_out(const Encounter& pair, const NamePairs& allowed,
+std::optional<PairReason> reason_to_leave_out(const Encounter& pair, const PairRules& rules,
                                               double touch_mm) {
   if (pair.b_from_a.rigid()) return PairReason::kRigid;
-  if (is_allowed(allowed, *pair.a, *pair.b)) return PairReason::kAllowed;
+  if (is_allowed(rules, *pair.a, *pair.b)) return PairReason::kAllowed;
+  if (rules.near_miss_of(pair.a->name, pair.b->name) != nullptr) return std::nullopt;
   if (is_guided(pair)) return PairReason::kGuided;
   const bool links = pair.a->kind == BodyKind::kLink && pair.b->kind == BodyKind::kLink;
   if (links && touches_at(pair, home_of(*pair.scene), touch_mm)) return PairReason::kTouchesAtHome;
@@ -73,6 +76,12 @@ std::optional<PairReason> reason_to_leave_out(const Encounter& pair, const NameP
 }
 
 }  // namespace
+
+const NearMissRule* PairRules::near_miss_of(const std::string& a, const std::string& b) const {
+  const auto found = std::find_if(watched.begin(), watched.end(),
+                                  [&](const NearMissRule& rule) { return is_named(rule.names, a, b); });
+  return found == watched.end() ? nullptr : &*found;
+}
 
 std::string text_of(PairReason reason) {
   switch (reason) {
@@ -96,12 +105,12 @@ AxisValues home_of(const machine::MachineScene& scene) {
 }
 
 PairChoice choose_pairs(const machine::MachineScene& scene, const std::vector<Body>& bodies,
-                        const NamePairs& allowed, double touch_mm, Diagnostics& diagnostics) {
-  check_allowed_names(bodies, allowed);
+                        const PairRules& rules, double touch_mm, Diagnostics& diagnostics) {
+  check_rule_names(bodies, rules);
   PairChoice choice;
   for (size_t a = 0; a < bodies.size(); ++a) {
     for (size_t b = a + 1; b < bodies.size(); ++b) {
-      const auto reason = reason_to_leave_out(encounter(scene, bodies[a], bodies[b]), allowed, touch_mm);
+      const auto reason = reason_to_leave_out(encounter(scene, bodies[a], bodies[b]), rules, touch_mm);
       if (!reason) choice.watched.emplace_back(a, b);
       if (reason) choice.left_out.push_back({a, b, *reason});
       if (reason != PairReason::kTouchesAtHome) continue;

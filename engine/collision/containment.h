@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 
 #include "collision/closest_approach.h"
 #include "mesh/signed_distance.h"
@@ -20,8 +21,16 @@ class BodyDepth {
   /// How deep a point of the home drawing lies in the body, mm; 0 outside, and always in an open mesh. In a
   /// mesh whose shells overlap it is the depth in the one whose surface is nearest.
   double depth(const Vec3& point) const;
+  /// The same inside; outside, how far the point lies from the body at least, below 0. -infinity where
+  /// nothing has an inside.
+  double signed_depth(const Vec3& point) const;
+  /// No place of the points' hull lies deeper: by the distance of the points from the facet that is nearest
+  /// to `middle`, of a convex mesh from the plane of any facet, and by the sides of the solids there.
+  double hull_bound(const Vec3& middle, std::span<const Vec3> points) const;
 
  private:
+  const mesh::SignedDistance* surface() const;
+
   const Body* body_;
   /// Made when it is first asked for: most bodies never touch another, and it takes most of their memory.
   struct Surface;
@@ -33,9 +42,9 @@ struct Depth {
   Vec3 place_M = Vec3::Zero();
 };
 
-/// A measure of the overlap at these axis values: how deep the deepest corner of one body lies in the other.
-/// Corners are those of triangles, and eight points on each circle of a solid of revolution. It falls short
-/// of the overlap where edges cross and no corner lies inside, and is 0 then.
-Depth overlap_depth(const Encounter& pair, const BodyDepth& in_a, const BodyDepth& in_b, const AxisValues& q);
+/// The deepest place of one's surface in the other at these axis values; none that is more than 0.01 mm
+/// deeper where bodies have no more than some hundred facets there (overlap_bound.h: kStandingPieces).
+Depth deepest_overlap(const Encounter& pair, const BodyDepth& in_a, const BodyDepth& in_b,
+                      const AxisValues& q);
 
 }  // namespace swarf::collision

@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "collision/overlap_bound.h"
+
 namespace swarf::collision {
 namespace {
 
 constexpr size_t kFirstWays = 64;
 constexpr uint64_t kLeastBudget = 64;  ///< triples that a search over several ways may split
-constexpr size_t kDepthsMost = 8;      ///< places of a contact at which its depth is looked at
 
 /// From one pose of the stretch to another: the straight line, and how far the poses between lie off it at
 /// most, each held against the place of the line that stands for its share of the way.
@@ -160,15 +161,13 @@ ContactEvent begin_contact(const Encounter& pair, PathStretch poses, size_t way,
 }
 
 void look_how_deep(const Encounter& pair, const BodyDepth& in_a, const BodyDepth& in_b, PathStretch poses,
-                   const TouchingWays& ways, ContactEvent& event) {
-  const size_t count = ways.last - ways.first + 2, step = (count + kDepthsMost - 1) / kDepthsMost;
-  for (size_t k = ways.first; k <= ways.last + 1 && k < poses.size(); k += step) {
-    const Depth found = overlap_depth(pair, in_a, in_b, poses[k].q);
-    if (found.depth_mm <= event.depth_mm) continue;
-    event.depth_mm = found.depth_mm;
-    event.deepest_M = found.place_M;
-    event.deepest_cycle = poses[k].cycle;
-  }
+                   const TouchingWays& ways, size_t budget, ContactEvent& event) {
+  const size_t last = std::min(ways.last + 1, poses.size() - 1);
+  const DepthRange found = depth_over(pair, in_a, in_b, poses, ways.first, last, budget);
+  event.depth_mm = found.seen_mm;
+  event.depth_bound_mm = found.bound_mm;
+  event.deepest_M = found.place_M;
+  event.deepest_cycle = poses[static_cast<size_t>(found.at)].cycle;
 }
 
 }  // namespace
@@ -197,7 +196,7 @@ void look_inside(const Encounter& pair, PathStretch poses, std::optional<Way> be
 
 std::vector<ContactEvent> contacts_of(const Encounter& pair, const BodyDepth& in_a, const BodyDepth& in_b,
                                       PathStretch poses, const PathCheckOptions& options,
-                                      const std::vector<Way>& ways) {
+                                      const std::vector<Way>& ways, size_t depth_budget) {
   std::vector<ContactEvent> contacts;
   for (size_t k = 0; k < ways.size(); ++k) {
     if (ways[k] == Way::kFree) continue;
@@ -207,7 +206,7 @@ std::vector<ContactEvent> contacts_of(const Encounter& pair, const BodyDepth& in
     const PathPlace end = place_on(poses, touching.last, 1.0);
     event.last_cycle = poses[std::min(touching.last + 1, poses.size() - 1)].cycle;
     event.last_element = end.element;
-    look_how_deep(pair, in_a, in_b, poses, touching, event);
+    look_how_deep(pair, in_a, in_b, poses, touching, depth_budget, event);
     contacts.push_back(event);
     k = touching.last;
   }

@@ -44,9 +44,10 @@ StretchWalk walk_stretch(const Encounter& pair, PathStretch poses, const PathChe
 /// way before the stretch, if its end is where this one starts, spares the first look.
 void look_inside(const Encounter& pair, PathStretch poses, std::optional<Way> before, std::vector<Way>& ways);
 
-/// The contacts in their order: ways that follow each other and are not free.
+/// The contacts in their order: ways that follow each other and are not free. `depth_budget`: of
+/// depth_over(), for each.
 std::vector<ContactEvent> contacts_of(const Encounter& pair, const BodyDepth& in_a, const BodyDepth& in_b,
                                       PathStretch poses, const PathCheckOptions& options,
-                                      const std::vector<Way>& ways);
+                                      const std::vector<Way>& ways, size_t depth_budget);
 
 }  // namespace swarf::collision

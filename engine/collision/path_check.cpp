@@ -15,6 +15,9 @@ constexpr size_t kStretch = 1024;         // ways
 constexpr double kStands = 1e-6;          // mm, rad
 constexpr size_t kBatch = 16 * kStretch;  // ways
 
+/// Pieces that a contact's depth may take in a stretch: of the first contacts of a pair, and of all others.
+constexpr size_t kDepthPieces = 8192, kDepthPiecesMany = 256, kDeepContacts = 64;
+
 void check_path_options(const PathCheckOptions& options) {
   const auto bad = [](const char* name, double value) {
     if (value > 0.0 && value < 1e6) return;
@@ -24,6 +27,8 @@ void check_path_options(const PathCheckOptions& options) {
   bad("the near-miss limit", options.near_miss_mm);
   bad("the tolerance", options.tolerance_mm);
   bad("the gap that counts as contact", options.touch_mm);
+  for (const NearMissRule& rule : options.rules.watched)
+    bad("the near-miss limit of a pair", rule.near_miss_mm);
 }
 
 /// A stretch as indices of its first and last pose.
@@ -56,6 +61,7 @@ void merge_near(NearMiss& all, const NearMiss& found) {
 void join_events(ContactEvent& event, const ContactEvent& later) {
   event.last_cycle = later.last_cycle;
   event.last_element = later.last_element;
+  event.depth_bound_mm = std::max(event.depth_bound_mm, later.depth_bound_mm);
   if (later.depth_mm <= event.depth_mm) return;
   event.depth_mm = later.depth_mm;
   event.deepest_M = later.deepest_M;
@@ -162,8 +168,9 @@ void PathCheck::State::look_at_open(std::vector<StretchVisit>& visits, size_t st
   parallel_chunks(open.size(), 1, [&](size_t n, size_t) {
     StretchVisit& visit = visits[open[n]];
     const WatchedPair& pair = pairs[open[n] / stretches];
-    visit.contacts = contacts_of(pair.encounter, depths[pair.findings.a], depths[pair.findings.b],
-                                 visit.poses, options, visit.walk.ways);
+    visit.contacts = contacts_of(
+        pair.encounter, depths[pair.findings.a], depths[pair.findings.b], visit.poses, options,
+        visit.walk.ways, pair.findings.spans.size() < kDeepContacts ? kDepthPieces : kDepthPiecesMany);
   });
 }
 
@@ -171,14 +178,16 @@ PathCheck::PathCheck(const machine::MachineScene& scene, std::vector<Body> bodie
                      const PathCheckOptions& options, Diagnostics& diagnostics)
     : scene_(scene), bodies_(std::move(bodies)), options_(options), state_(std::make_unique<State>()) {
   check_path_options(options_);
-  PairChoice choice = choose_pairs(scene_, bodies_, options_.allowed, options_.touch_mm, diagnostics);
+  PairChoice choice = choose_pairs(scene_, bodies_, options_.rules, options_.touch_mm, diagnostics);
   state_->left_out = std::move(choice.left_out);
   for (const Body& body : bodies_) state_->depths.emplace_back(body);
   for (const auto& [a, b] : choice.watched) {
     WatchedPair pair{encounter(scene_, bodies_[a], bodies_[b]), {}, {}, {}, {}, 0};
     pair.findings.a = a;
     pair.findings.b = b;
-    pair.findings.near_miss.lower = pair.findings.near_miss.upper = options_.near_miss_mm;
+    const NearMissRule* const rule = options_.rules.near_miss_of(bodies_[a].name, bodies_[b].name);
+    pair.findings.near_miss.lower = pair.findings.near_miss.upper =
+        rule == nullptr ? options_.near_miss_mm : rule->near_miss_mm;
     state_->pairs.push_back(std::move(pair));
   }
 }

@@ -20,10 +20,10 @@
 namespace swarf::collision {
 
 struct PathCheckOptions {
-  double near_miss_mm = 10.0;  ///< distances below it are told; above 0
+  double near_miss_mm = 10.0;  ///< distances below it are told, but for pairs with a rule; above 0
   double tolerance_mm = 2e-3;  ///< between the bounds of a least distance; above 0
   double touch_mm = 1e-4;      ///< gaps of this or less are contacts; above 0
-  std::vector<std::pair<std::string, std::string>> allowed;  ///< names of bodies that may touch
+  PairRules rules;             ///< of single pairs
 };
 
 /// A place on the way from one cycle to the next.
@@ -52,8 +52,9 @@ struct ContactEvent {
   uint64_t last_cycle = 0;  ///< number of the cycle behind the last way on which it touches
   int first_element = 0, last_element = 0;
   bool inside = false;  ///< one body lies wholly inside the other at the start, or all the while
-  /// Greatest overlap_depth() at up to eight cycles of every 1024, which are spread evenly.
-  double depth_mm = 0.0;
+  /// Deepest point of one body's surface in the other that was found, and what none lies deeper than over all
+  /// these ways (overlap_bound.h). Nothing lies in an open mesh.
+  double depth_mm = 0.0, depth_bound_mm = 0.0;
   Vec3 deepest_M = Vec3::Zero();
   uint64_t deepest_cycle = 0;
 };

@@ -1,15 +1,15 @@
 #include "collision/stock_body.h"
 
 #include <algorithm>
+#include <array>
 
 #include "base/check.h"
-#include "collision/pair_walk.h"
+#include "collision/overlap_bound.h"
 
 namespace swarf::collision {
 namespace {
 
 constexpr double kStockTouch = 1e-4;  // mm, as ContactQuery::touch
-constexpr int kDepthInstants = 8;     // and one
 
 /// Twelve outward triangles.
 TriMesh mesh_of_block(const Box& box) {
@@ -112,12 +112,13 @@ StockAnswer StockBody::suspect(const Body& body, const AxisSegment& segment) con
   answer.outcome = found.within ? StockOutcome::kOpen : StockOutcome::kClear;
   if (is_clear(pair, segment, found)) return answer;
   const BodyDepth in_body(body), in_stock(as_cut());
-  for (int i = 0; i <= kDepthInstants; ++i) {
-    const double t = static_cast<double>(i) / kDepthInstants;
-    const Depth depth = overlap_depth(pair, in_body, in_stock, segment.at(t));
-    if (depth.depth_mm <= answer.depth_mm) continue;
-    answer.depth_mm = depth.depth_mm;
-    answer.t = t;
+  std::array<PathPose, 2> ends;
+  ends[0].q = segment.q0;
+  ends[1].q = segment.q1;
+  const DepthRange depth = depth_over(pair, in_body, in_stock, ends, 0, 1, kStandingPieces);
+  answer.depth_mm = depth.seen_mm;
+  if (depth.seen_mm > 0.0) {
+    answer.t = depth.at;
     answer.point_M = depth.place_M;
   }
   answer.outcome = answer.depth_mm > voxel_mm_ ? StockOutcome::kContact : StockOutcome::kOpen;

@@ -15,7 +15,7 @@ namespace swarf::collision {
 enum class StockOutcome {
   kClearOfRaw,  ///< proven, whatever has been cut
   kClear,       ///< farther than a voxel from the mesh of the material
-  kOpen,        ///< within a voxel of it, or in it without a corner that deep: not clear
+  kOpen,        ///< within a voxel of it, or in it but not that deep: not clear
   kContact,     ///< deeper than a voxel in it
 };
 
@@ -27,7 +27,7 @@ struct StockAnswer {
   double voxel_mm = 0.0;        ///< what the bounds may be off beyond the raw stock
   double t = 0.0;               ///< share of the segment where it comes nearest
   Vec3 point_M = Vec3::Zero();  ///< on the body, there
-  double depth_mm = 0.0;        ///< overlap_depth() at nine instants of the segment, of a suspect
+  double depth_mm = 0.0;        ///< of the deepest place over the segment that depth_over() finds
 };
 
 class StockBody {

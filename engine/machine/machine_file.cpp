@@ -60,6 +60,7 @@ class MachineReader {
     scene_.model.X_MW.translation() = read_vec3(work, "origin_mm");
     read_tool(root_, scene_.model);
     read_rapid(root_, scene_.model);
+    if (root_.has("tool_change_s")) scene_.tool_change_s = root_.number("tool_change_s", {0.0, 3600.0});
     if (root_.has("units"))
       scene_.program_unit_mm = root_.choice("units", {"mm", "inch"}) == "inch" ? 25.4 : 1.0;
     root_.finish();

@@ -30,6 +30,7 @@ struct MachineScene {
   int tool_link = -1;                     ///< the link that carries the tool
   std::string file;                       ///< machine.toml it came from
   std::string assumed_dynamics;           ///< accelerations and jerks that the file leaves out; "": none
+  std::optional<double> tool_change_s;    ///< chip to chip, beyond the way to where tools are changed
   std::optional<double> program_unit_mm;  ///< `units` that programs without G20 and G21 are in: 1 or 25.4
 };
 

@@ -15,6 +15,7 @@
 #include "base/diagnostics.h"
 #include "base/file.h"
 #include "base/hash.h"
+#include "mesh/mesh_3mf.h"
 #include "mesh/mesh_source.h"
 #include "mesh/obj_reader.h"
 #include "mesh/ply_reader.h"
@@ -189,10 +190,11 @@ void save_mesh(const std::string& path, const TriMesh& mesh) {
   const std::string bytes = ending == ".stl"   ? stl_bytes(mesh)
                             : ending == ".ply" ? ply_bytes(mesh)
                             : ending == ".obj" ? obj_text(mesh)
+                            : ending == ".3mf" ? bytes_3mf(mesh, path)
                                                : "";
   if (bytes.empty()) {
     throw InputError("mesh-format", {path}, fmt::format("meshes are not written as '{}'", ending),
-                     "name the file .stl, .ply or .obj");
+                     "name the file .stl, .ply, .obj or .3mf");
   }
   replace_file(path, bytes, {"cannot-write", "the mesh cannot be written"});
 }

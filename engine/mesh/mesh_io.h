@@ -17,8 +17,9 @@ TriMesh load_mesh(const std::string& path);
 
 /// Writes .stl (binary), .ply (binary, with normals, colours and `deviation_um` where the mesh has them) or
 /// .obj (positions in mm as the shortest decimals that read back to the same floats, normals where there are
-/// any) by the ending of the name; the file is replaced whole. Throws InputError for another ending or when
-/// it cannot be written.
+/// any) or .3mf (mm; its bytes differ from call to call, for lib3mf numbers its objects anew) by the ending
+/// of the name; the file is replaced whole. Throws InputError for another ending or when it cannot be
+/// written.
 void save_mesh(const std::string& path, const TriMesh& mesh);
 
 }  // namespace swarf::mesh

@@ -27,6 +27,7 @@ struct Check {
   Outcome outcome = Outcome::kNotJudged;
   std::string covers{};  ///< of a check that sees only what is large enough: "contacts of 0.200 mm and more"
   std::string reason{};  ///< why it is not judged or not proven; what a result rests on
+  std::string unseen{};  ///< what it could not look at though it was asked to: said in the verdict
 };
 
 /// What is wrong with the job (not with the input): where on the part, in which block, when. An error where

@@ -17,6 +17,7 @@
 #include "sim/run/prove_part.h"
 #include "sim/run/ray_cutters.h"
 #include "sim/run/recorder.h"
+#include "sim/run/shot_places.h"
 #include "sim/run/starting_clamping.h"
 #include "sim/run/tile_ranks.h"
 #include "toolpath/feed_way.h"
@@ -112,14 +113,16 @@ void prepare_cycles(const Job& job, const motion::MotionOptions& options, Measur
                                                      job.scene.tools.front(), options);
 }
 
-/// `look_at_contacts`: of at links, fixtures and tools against each other too.
+/// `whole`: contacts of links, fixtures and tools, and what each tool does, too.
 void interpolate(const Job& job, const motion::MotionOptions& options, const CutOptions& output,
-                 Progress& progress, MeasuredPath& measured, bool look_at_contacts = false) {
+                 Progress& progress, MeasuredPath& measured, bool whole = false) {
   const auto start = std::chrono::steady_clock::now();
   prepare_cycles(job, options, measured);
   Tables tables(job, *measured.cycles, output);
   std::optional<MachineContactCheck> contacts;
-  if (look_at_contacts) contacts.emplace(job);
+  if (whole) contacts.emplace(job);
+  std::optional<OperationMeter> operations;
+  if (whole) operations.emplace(job, *measured.cycles);
   if (output.outputs.page && !output.save_folder.empty()) measured.keys.emplace(job.machine.model.axes);
   measured.envelope = {job.machine.model.axes.size(), options.period_s};
   measured.motion =
@@ -127,10 +130,12 @@ void interpolate(const Job& job, const motion::MotionOptions& options, const Cut
         measured.envelope.add(window);
         if (measured.keys) measured.keys->add(window);
         if (contacts) contacts->add(window);
+        if (operations) operations->add(window);
         tables.add(window);
       });
   if (measured.keys) measured.keys->finish();
   if (contacts) measured.contacts = contacts->finish();
+  if (operations) measured.operations = operations->operations();
   tables.finish();
   measured.motion_seconds = seconds_since(start);
 }
@@ -451,10 +456,13 @@ MeasuredPath plan_tool(const Job& job, Progress& progress) {
 
 namespace {
 
-MeasuredPath moved_tool(const Job& job, Progress& progress, const CutOptions& options,
-                        bool look_at_contacts) {
+/// `run`: more than the motion will follow: contacts are looked at, and what the storyboard names is there.
+MeasuredPath moved_tool(const Job& job, Progress& progress, const CutOptions& options, bool run) {
   MeasuredPath measured = planned_path(job, progress);
-  interpolate(job, job.scene.motion, options, progress, measured, look_at_contacts);
+  const bool movie = run && options.outputs.pictures;
+  if (movie) require_shot_lines(job.scene.movie, measured.path.elements);
+  interpolate(job, job.scene.motion, options, progress, measured, run);
+  if (movie && !measured.cycles->stopped()) require_shots(job.scene.movie, *measured.cycles);
   // Of blocks nobody knows the contact points before they cut.
   if (!measured.path.elements.hold_blocks() && !measured.cycles->stopped())
     require_contact(job, *measured.cycles);

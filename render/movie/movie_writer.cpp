@@ -54,6 +54,7 @@ const MovieKind& kind_of(const std::string& path) {
   throw InputError("movie-ending", {path}, "this is no kind of movie",
                    "end the name in .mp4, .webm or .apng");
 }
+
 constexpr int kKeyFrameSeconds = 2;  // how far a player has to decode to jump
 
 std::string reason_of(int error) {
@@ -63,6 +64,10 @@ std::string reason_of(int error) {
 }
 
 }  // namespace
+
+void check_movie_name(const std::string& path) {
+  kind_of(path);
+}
 
 /// What libav has made goes back to it.
 namespace libav {

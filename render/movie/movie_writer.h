@@ -14,6 +14,9 @@ namespace swarf::render {
 /// Where a chapter begins, frames, and its name; the first begins at 0.
 using MovieChapters = std::vector<std::pair<size_t, std::string>>;
 
+/// Before any work: throws InputError "movie-ending" for a name that is no kind of movie.
+void check_movie_name(const std::string& path);
+
 /// Encodes images by the file's ending:
 ///   .mp4   H.264 4:2:0 in BT.709, with its index at the front so that it plays while loading
 ///   .webm  VP9 4:2:0 in BT.709

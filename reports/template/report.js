@@ -62,4 +62,8 @@
   }
 
   document.querySelectorAll('.plot-card').forEach(attach);
+
+  // The movie's poster is the picture at the top, which the page already holds.
+  const hero = document.querySelector('.hero img'), video = document.querySelector('#movie video');
+  if (hero && video) video.poster = hero.src;
 })();

@@ -239,7 +239,9 @@ std::vector<FuzzKind> fuzz_kinds(const fs::path& folder) {
        1,
        {{read_text(kSource / "assets/programs/spinner_u5/tools.toml"), {}, ".toml"},
         {read_text(kSource / "scenes/nc_pocket/tools.toml"), {}, ".toml"},
-        {kTbl, {}, ".tbl"}},
+        {kTbl, {}, ".tbl"},
+        {read_text(kSource / "tests/data/tools/fusion.json"), {}, ".json"},
+        {read_text(kSource / "tests/data/tools/catalogue.p21"), {}, ".p21"}},
        load_tools_case}};
   for (FuzzKind& kind : kinds) {
     for (FuzzKind::Seed& seed : kind.seeds) {

@@ -52,12 +52,14 @@ HEAVY = {
     "Cairo": (r"cairo", ("render/lettering.cpp",)),
     "MPI": (r"mpi\.h", ("cli/cluster/",)),
     "libpng": (r"png\.h", ("render/image_io.cpp",)),
+    "libwebp": (r"webp/", ("render/image_io.cpp",)),
+    "lib3mf": (r"Model/COM/", ("engine/mesh/mesh_3mf.cpp",)),
 }
 
 # Reports show numbers, they do not compute them: of the modules of geometry and motion they see these alone.
 SEEN_BY_REPORTS = {
     "kinematics": ("machine_model.h",),
-    "measure": ("flank_error.h", "measure.h", "metrics.h"),
+    "measure": ("flank_error.h", "measure.h", "metrics.h", "part_comparison.h"),
     "motion": ("cycles/", "judged/singularity_scan.h", "offline_baseline.h", "options.h", "result.h", "speed/look_ahead.h"),
     "toolpath": ("nc_path.h", "tool_path.h"),
 }

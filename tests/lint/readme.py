@@ -32,7 +32,7 @@ def accuracy_rows(text):
 def problems():
     known = set(tests())
     suites = {suite for suite, _ in known}
-    pages = [ROOT / "README.md", *sorted((ROOT / "engine").rglob("*.md")), *sorted((ROOT / "scenes").glob("*.md"))]
+    pages = [ROOT / "README.md", ROOT / "tests/README.md", *sorted((ROOT / "engine").rglob("*.md")), *sorted((ROOT / "scenes").glob("*.md"))]
     for page in pages:
         text, place = page.read_text(), page.relative_to(ROOT).as_posix()
         for found in NAMED.finditer(text):

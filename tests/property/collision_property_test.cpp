@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "base/angles.h"
 #include "collision/closest_approach.h"
+#include "collision/stock_body.h"
 #include "unit/collision/brute_distance.h"
 #include "unit/collision/toy_machine.h"
 
@@ -98,6 +100,93 @@ void check_case(uint64_t seed) {
 
 TEST(CollisionProperty, NoPoseContradictsTheWholeMotion) {
   for (uint64_t seed = 1; seed <= 600 && !HasFatalFailure(); ++seed) check_case(seed);
+}
+
+/// A block of 40 x 20 x 10 on the table with two slots along X, 6 mm deep, and a wall of 1 mm between them.
+constexpr double kVoxel = 0.5;
+
+stock::Stock walled_block() {
+  stock::Stock stock({Vec3(0, 0, 0), Vec3(40, 20, 10)}, kVoxel);
+  const stock::CutterSolid cutter(3.0, 30.0);
+  std::vector<stock::Sweep> sweeps;
+  for (const double y : {6.5, 13.5})
+    sweeps.push_back({{Vec3(-10, y, 4), Vec3::UnitZ()}, {Vec3(50, y, 4), Vec3::UnitZ()}, 0});
+  stock.cut(sweeps, cutter);
+  return stock;
+}
+
+/// A link as a mesh, or a holder as a solid, `wide` across, from `foot` upwards.
+Body planted_body(bool solid, int link, const Vec3& foot, double wide, double high) {
+  if (solid)
+    return solid_body("holder", BodyKind::kToolPart, link,
+                      {frustum(foot, Vec3::UnitZ(), 0.0, high, 0.5 * wide, 0.5 * wide)});
+  const Vec3 half(0.5 * wide, 0.5 * wide, 0.0);
+  return mesh_body("head", BodyKind::kLink, link, box_mesh(foot - half, foot + half + high * Vec3::UnitZ()));
+}
+
+struct PlantedInStock {
+  Body body;
+  AxisSegment segment;
+};
+
+/// One straight way of the axes, fast; but for the way down free at both ends. `off`: mm that the body stays
+/// clear, below 0 that it goes into the material.
+PlantedInStock planted_in_stock(Rng& rng, int kind, double off) {
+  const bool solid = rng.uniform() < 0.5;
+  const double thick = rng.uniform(0.6, 3.0), high = rng.uniform(8.0, 60.0);
+  const double x = rng.uniform(5.0, 35.0), far = rng.uniform(60.0, 300.0);
+  if (kind == 0)  // along the first slot, over its floor at 4
+    return {planted_body(solid, kZSlide, {-far, 6.5, 4.0 + off}, thick, high), way(axes(0), axes(2.0 * far))};
+  if (kind == 1)  // along it, beside its wall at y = 3.5
+    return {planted_body(solid, kZSlide, {-far, 3.5 + off + 0.5 * thick, 6.0}, thick, high),
+            way(axes(0), axes(2.0 * far))};
+  if (kind == 2)  // across the block and the wall of 1 mm
+    return {planted_body(solid, kZSlide, {x, -far, 10.0 + off}, thick, high),
+            way(axes(0), axes(0, 2.0 * far))};
+  if (kind ==
+      3)  // down into the floor of the slot and up again within one way is no straight one: down alone
+    return {planted_body(solid, kZSlide, {x, 6.5, 4.0 + far}, thick, high),
+            way(axes(0), axes(0, 0, off - far))};
+  // A post stands still, the table turns by 360 degrees or more: the block's corner passes at radius 44.72.
+  const double radius = std::hypot(40.0, 20.0) + off + 0.5 * thick, turn = rng.uniform(1.5, 5.5);
+  const Vec3 foot(radius * std::cos(turn), radius * std::sin(turn), 2.0);
+  const double all = rng.uniform() < 0.5 ? kTurn : -2.0 * kTurn;
+  return {planted_body(true, kColumn, foot, thick, high), way(axes(0), axes(0, 0, 0, 0, all))};
+}
+
+TEST(CollisionProperty, ContactsPlantedInTheStockAsCutAndTheirFreeTwins) {
+  const machine::MachineScene scene = toy_machine();
+  StockBody stock(scene, Box{Vec3(0, 0, 0), Vec3(40, 20, 10)});
+  stock.refresh(walled_block());
+  for (int i = 0; i < 100; ++i) {
+    const double deep = Rng(i).uniform(1.3, 2.0) * kVoxel, clear = Rng(i).uniform(1.8, 3.0) * kVoxel;
+    Rng rng(7000 + i), same(7000 + i);
+    const PlantedInStock hit = planted_in_stock(rng, i % 5, -deep);
+    ASSERT_EQ(stock.over(hit.body, hit.segment).outcome, StockOutcome::kContact) << "seed " << i;
+    const std::array<AxisValues, 2> into{hit.segment.q0, hit.segment.q1};
+    ASSERT_EQ(stock.clear_ways(hit.body, into, 0.0), 0U) << "seed " << i;
+    const PlantedInStock free = planted_in_stock(same, i % 5, clear);
+    const StockOutcome outcome = stock.over(free.body, free.segment).outcome;
+    ASSERT_TRUE(outcome == StockOutcome::kClear || outcome == StockOutcome::kClearOfRaw) << "seed " << i;
+    const std::array<AxisValues, 2> past{free.segment.q0, free.segment.q1};
+    ASSERT_EQ(stock.clear_ways(free.body, past, 0.0), 1U) << "seed " << i;
+  }
+}
+
+/// The gap to the stock as cut within a voxel of the closed form.
+TEST(CollisionProperty, GapsToTheStockAsCutWithinAVoxel) {
+  const machine::MachineScene scene = toy_machine();
+  StockBody stock(scene, Box{Vec3(0, 0, 0), Vec3(40, 20, 10)});
+  stock.refresh(walled_block());
+  for (int i = 0; i < 120; ++i) {
+    const double gap = Rng(i).uniform(0.05, 0.95) * kVoxel;
+    Rng rng(8000 + i);
+    const PlantedInStock near = planted_in_stock(rng, i % 5, gap);
+    const StockAnswer found = stock.over(near.body, near.segment);
+    if (found.outcome == StockOutcome::kClearOfRaw) continue;  // outside the block: told exactly
+    ASSERT_NEAR(found.upper, gap, kVoxel) << "seed " << i;
+    ASSERT_LE(found.lower, gap + kVoxel) << "seed " << i;
+  }
 }
 
 }  // namespace

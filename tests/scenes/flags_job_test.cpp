@@ -181,6 +181,23 @@ TEST_F(FlagsJob, RapidsIntoAnAssumedBlockAreNotJudged) {
   EXPECT_EQ(run(words + " --stock=-10,-10,-10,70,10,0").exit_code, 1);
 }
 
+TEST_F(FlagsJob, ASpindleInAnAssumedBlockIsNotJudgedAndTakesNoTime) {
+  // 90 mm deep with a tool whose length nobody has said: the spindle would stand in the block.
+  const std::string words =
+      write("part.nc", "G21 G90 G94\nT1 M6\nS3000 M3\nG0 X0 Y0\nZ100\nG1 Z95 F900\nZ0\nX60\nZ100\nM2\n") +
+      " --tool 6";
+  const ProgramRun done = run(words);
+  EXPECT_EQ(done.exit_code, 0) << done.output;
+  bool open = false;
+  const json found = metrics();
+  for (const json& check : found.at("checks")) {
+    if (check.at("name") != "machine_parts") continue;
+    open = check.at("outcome") == "not_judged" &&
+           check.at("reason").get<std::string>().find("a block that is assumed") != std::string::npos;
+  }
+  EXPECT_TRUE(open) << done.output;
+}
+
 TEST_F(FlagsJob, InitWritesWhatTheFlagsMean) {
   const std::string program = write("part.nc", kGroove);
   ASSERT_EQ(run(program + " --tool 10").exit_code, 0);
@@ -238,6 +255,56 @@ TEST_F(FlagsJob, ToolsMustBeThoseOfTheProgram) {
   expect_refused(run(two), "missing-key", "--tool 6");
   expect_refused(run(two + " --tools nothing"), "bad-tool-list", "neither a file nor a list");
   expect_refused(run(two + " --tools T1=six,T5=4"), "bad-tool-word", "'T1=six'");
+}
+
+TEST_F(FlagsJob, FaultsAreToldAtTheFlagThatHasThem) {
+  const std::string program = write("part.nc", kGroove);
+  expect_refused(run(program + " --tools T1=6,T1=8"), "tool-twice",
+                 "--tools T1=6,T1=8: error: T1 is described twice");
+  expect_refused(run(program + " --tool 0"), "bad-tool-word", "--tool 0: error: '0' has a diameter of 0 mm");
+  expect_refused(run(program + " --tool 6 --voxel 100"), "out-of-range", "--voxel 100: error:");
+  expect_refused(run(program + " --tool 6 --machine mill"), "unknown-machine", "--machine mill: error:");
+  write("empty.json", "{\"data\": []}");
+  expect_refused(run(program + " --tools " + path("empty.json")), "no-tools", "empty.json: error: the table");
+  EXPECT_EQ(run(program + " --tools 1=10").exit_code, 0);
+  const ProgramRun checked = run_swarf("check " + program + " --tools T1=10");
+  EXPECT_EQ(checked.exit_code, 0);
+  EXPECT_NE(checked.output.find("T1 (D 10 mm"), std::string::npos) << checked.output;
+  fs::remove_all(root_ / "out");
+  expect_refused(run(program + " --tool 6 --origin 1e9,0,0"), "out-of-range", "--origin 1e9,0,0: error:");
+}
+
+TEST_F(FlagsJob, ToolsOfIso13399) {
+  const std::string table = SWARF_SOURCE_DIR "/tests/data/tools/catalogue.p21";
+  const ProgramRun done = run(write("part.nc", kGroove) + " --tools " + table);
+  ASSERT_EQ(done.exit_code, 0) << done.output;
+  EXPECT_NE(done.output.find("T4: it has neither RE nor SIG: its end is taken as flat"), std::string::npos)
+      << done.output;
+  fs::remove_all(root_ / "out");
+  std::string program = kGroove;
+  program.replace(program.find("T1"), 2, "T5");
+  expect_refused(run(write("part.nc", program) + " --tools " + table), "unknown-tool",
+                 "TM-8: it cuts threads (TP)");
+}
+
+TEST_F(FlagsJob, ADesignInInchesIsSuspectedAndRead) {
+  // 60 x 20 x 10 mm.
+  const double x = 60.0 / 25.4, y = 10.0 / 25.4, z = 10.0 / 25.4;
+  std::string mesh;
+  for (const double c : {-z, 0.0})
+    for (const double b : {-y, y})
+      for (const double a : {0.0, x})
+        mesh += "v " + std::to_string(a) + " " + std::to_string(b) + " " + std::to_string(c) + "\n";
+  mesh += "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+  write("part.obj", mesh);
+  const std::string words =
+      write("part.nc", kGroove) + " --tool 10 --stock=-5,-15,-15,65,15,0 --design " + path("part.obj");
+  const ProgramRun small = run(words);
+  EXPECT_NE(small.output.find("[mesh-unit-suspicious]"), std::string::npos) << small.output;
+  EXPECT_NE(small.output.find("--set design.mesh_unit=inch"), std::string::npos) << small.output;
+  const ProgramRun right = run(words, "--no-render --set design.mesh_unit=inch");
+  EXPECT_EQ(right.output.find("mesh-unit-suspicious"), std::string::npos) << right.output;
+  EXPECT_NEAR(at_path(metrics(), "surface.gouge_max_um").get<double>(), 4000.0, 1.0);  // the groove
 }
 
 TEST_F(FlagsJob, FiveAxisWordsNeedTheirMachine) {
@@ -309,6 +376,12 @@ TEST_F(FlagsJob, CommandsThatAreNearlyRight) {
   EXPECT_EQ(near.exit_code, 2);
   EXPECT_NE(near.output.find("did you mean 'swarf run'?"), std::string::npos) << near.output;
   EXPECT_NE(run_swarf("xyzzy").output.find("init"), std::string::npos);
+  const ProgramRun option = run_swarf("run part.nc --toool 6");
+  EXPECT_EQ(option.exit_code, 2);
+  EXPECT_NE(option.output.find("swarf run --toool: error: there is no such option"), std::string::npos)
+      << option.output;
+  EXPECT_NE(option.output.find("did you mean '--tool'?"), std::string::npos) << option.output;
+  EXPECT_NE(run_swarf("run - --tool 6").output.find("'swarf check -' reads a pipe"), std::string::npos);
 }
 
 TEST_F(FlagsJob, EveryCommandTeachesWithAnExample) {

@@ -53,6 +53,21 @@ class MachineContacts : public testing::Test {
   fs::path folder_;
 };
 
+/// A cube of STL facets from the origin on.
+std::string box_facets(double side) {
+  const int faces[12][3] = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                            {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+  std::string text;
+  for (const auto& face : faces) {
+    text += "facet normal 0 0 0\nouter loop\n";
+    for (const int corner : face)
+      text += fmt::format("vertex {} {} {}\n", (corner & 1) * side, (corner >> 1 & 1) * side,
+                          (corner >> 2 & 1) * side);
+    text += "endloop\nendfacet\n";
+  }
+  return text;
+}
+
 const std::string kOnTable =
     "[setup]\nwork_origin_mm = \"on_table\"\n[[tool]]\nnumber = 1\ndiameter_mm = 6\n"
     "flute_length_mm = 30\nlength_mm = 60\nholder_diameter_mm = 8\n";
@@ -324,12 +339,164 @@ TEST_F(MachineContacts, AMachineWithoutMeshesIsNotJudged) {
   const ProgramRun bare = run(kFrame, kOnTable, "", (folder_ / "machine.toml").string());
   EXPECT_EQ(bare.exit_code, 0) << bare.output;
   EXPECT_EQ(outcome(), "not_judged");
+  EXPECT_NE(bare.output.find("nothing is known of bed with y, bed with head, bed with flutes"),
+            std::string::npos)
+      << bare.output;
+  EXPECT_EQ(metrics()["machine_contacts"]["without_mesh_pairs"][0]["b"], "y");
 
-  // A fixture alone is looked at, and the links that were not are named.
-  run(kFrame, kOnTable + "[[fixture]]\nkind = \"vice\"\n", "", (folder_ / "machine.toml").string());
+  // A fixture alone is looked at, and the verdict names the pairs that were not.
+  const ProgramRun vice =
+      run(kFrame, kOnTable + "[[fixture]]\nkind = \"vice\"\n", "", (folder_ / "machine.toml").string());
   EXPECT_EQ(outcome(), "holds");
+  EXPECT_NE(vice.output.find("; not looked at: bed with y, bed with head, bed with flutes"),
+            std::string::npos)
+      << vice.output;
   EXPECT_NE(metrics().dump().find("not looked at: bed (no mesh)"), std::string::npos)
       << metrics()["checks"].dump(1);
+}
+
+/// What a scene says of single pairs: allowed ones are left out by name, a near miss of its own is a warning
+/// with its line.
+TEST_F(MachineContacts, PairsHaveTheirOwnRules) {
+  const std::string clamps = "[[fixture]]\nkind = \"clamps\"\nsides = [\"x-\", \"x+\", \"y+\"]\n";
+  const ProgramRun touches = run(kFrame, kOnTable + clamps +
+                                             "[[contact_pair]]\nparts = [\"flutes\", \"clamps\"]\n"
+                                             "may_touch = true\n");
+  EXPECT_EQ(outcome(), "holds") << touches.output;
+  const std::string why = metrics().dump();
+  EXPECT_NE(why.find("clamps with flutes (the scene allows it)"), std::string::npos);
+  EXPECT_NE(why.find("bed with cradle (one guides the other)"), std::string::npos);
+
+  // 4 mm beside the holder, as HowNearTheHolderCameToAPostIsToldToAMicrometre.
+  const std::string post =
+      "[[fixture]]\nname = \"post\"\nbox_mm = [[68, 0, 50], [73, 40, 80]]\non = \"part\"\n";
+  const std::string rule = "[[contact_pair]]\nparts = [\"post\", \"holder\"]\nnear_miss_mm = ";
+  const ProgramRun near = run(kFrame, kOnTable + post + rule + "5.0\n");
+  EXPECT_EQ(near.exit_code, 0) << near.output;
+  EXPECT_NE(near.output.find("post comes as near as 4.000 mm to holder, line 8"), std::string::npos)
+      << near.output;
+  const ProgramRun far = run(kFrame, kOnTable + post + rule + "3.9\n");
+  EXPECT_EQ(far.output.find("comes as near"), std::string::npos) << far.output;
+}
+
+TEST_F(MachineContacts, RulesOfPairsThatCannotBeAreRefused) {
+  const auto refused = [&](const std::string& rule, const std::string& words) {
+    const ProgramRun wrong = run(kFrame, kOnTable + "[[contact_pair]]\n" + rule);
+    EXPECT_EQ(wrong.exit_code, 2) << rule << wrong.output;
+    EXPECT_NE(wrong.output.find(words), std::string::npos) << rule << wrong.output;
+    EXPECT_NE(wrong.output.find("scene.toml:"), std::string::npos) << wrong.output;
+    EXPECT_FALSE(fs::exists(out())) << rule;
+  };
+  refused("parts = [\"ramm\", \"holder\"]\nmay_touch = true\n", "did you mean 'ram'?");
+  refused("parts = [\"ram\"]\nmay_touch = true\n", "two different parts");
+  refused("parts = [\"ram\", \"bed\"]\n", "nothing is said of this pair");
+  refused("parts = [\"ram\", \"bed\"]\nmay_touch = true\nnear_miss_mm = 2\n", "may touch have no near miss");
+  refused("parts = [\"ram\", \"bed\"]\nnear_miss_mm = 0\n", "near_miss_mm");
+  refused("parts = [\"ram\", \"holder\"]\nmay_touch = true\n", "no axis lies between ram and holder");
+  refused("parts = [\"stock\", \"holder\"]\nmay_touch = true\n", "accept.collisions");
+}
+
+/// A sheet of one facet and one with its facets turned round are met like solids; a closed bar whose facets
+/// all look inwards is refused.
+TEST_F(MachineContacts, FacetsInAnyOrderAreMet) {
+  const auto machine_with = [&](const std::string& triangles, const std::string& name) {
+    const fs::path shipped = fs::path(SWARF_SOURCE_DIR) / "assets/machines/spinner_u5_620";
+    for (const auto& file : fs::directory_iterator(shipped))
+      fs::copy(file, folder_ / file.path().filename(), fs::copy_options::overwrite_existing);
+    std::string text = swarf::test::read_text(folder_ / "machine.toml");
+    text += "\n[[link]]\nname = \"sheet\"\nparent = \"rotary_table\"\nmesh = \"" + name + "\"\n";
+    swarf::test::write_text(folder_ / "machine.toml", text);
+    swarf::test::write_text(folder_ / name, "solid s\n" + triangles + "endsolid s\n");
+    return (folder_ / "machine.toml").string();
+  };
+  const auto facet = [](const std::string& a, const std::string& b, const std::string& c) {
+    return "facet normal 0 0 0\nouter loop\nvertex " + a + "\nvertex " + b + "\nvertex " + c +
+           "\nendloop\nendfacet\n";
+  };
+  // W stands at (-30, -20, 120) with the table at zero: a facet across X = 25 of the work, in the flutes' way
+  // along the first side, where they stand from Z -2 to 28.
+  const std::string a = "-5 -40 130", b = "-5 0 130", c = "-5 -20 160";
+  for (const std::string& one : {facet(a, b, c), facet(a, c, b)}) {
+    const ProgramRun met = run(kFrame, kOnTable, "", machine_with(one, "one.stl"));
+    EXPECT_EQ(met.exit_code, 1) << met.output;
+    EXPECT_NE(met.output.find("sheet touches flutes, line 7"), std::string::npos) << met.output;
+  }
+  const std::string beside = facet("-5 60 130", "-5 100 130", "-5 80 160");
+  const ProgramRun free = run(kFrame, kOnTable, "", machine_with(beside, "one.stl"));
+  EXPECT_EQ(outcome(), "holds") << free.output;
+}
+
+/// Slow to see by poses: two whole turns of the table within one block, free where it starts and ends.
+TEST_F(MachineContacts, ATurnThatEndsWhereItBeganIsLookedAtAllTheWay) {
+  const std::string turn =
+      "G21 G90 G17 G54\nT1 M6\nS5000 M3\nG43 H1\nG0 X30 Y20 Z5 B0 C0\nG1 Z-1 F500\nG0 Z30\nG0 C720\nG0 "
+      "Z50\nM2\n";
+  const auto bar = [](double x) {
+    return fmt::format("[[fixture]]\nname = \"bar\"\nbox_mm = [[{}, 18, 0], [{}, 22, 40]]\non = \"part\"\n",
+                       x, x + 4.0);
+  };
+  // The tool stands over the middle of the table, and so of the bars: 3 mm of its radius.
+  const ProgramRun free = run(turn, kOnTable + bar(60.0));
+  EXPECT_EQ(free.exit_code, 0) << free.output;
+  const std::string off =
+      "G21 G90 G17 G54\nT1 M6\nS5000 M3\nG43 H1\nG0 X0 Y20 Z5 B0 C0\nG1 Z-1 F500\nG0 Z30\nG0 C720\nG0 "
+      "Z50\nM2\n";
+  const ProgramRun met = run(off, kOnTable + bar(60.0));  // the bar passes the tool's place on its circle
+  EXPECT_EQ(met.exit_code, 1) << met.output;
+  EXPECT_NE(met.output.find("bar touches flutes, line 8"), std::string::npos) << met.output;
+}
+
+/// The program in inches meets the clamps at the same places.
+TEST_F(MachineContacts, InchesMeetTheSame) {
+  const std::string clamps = "[[fixture]]\nkind = \"clamps\"\nsides = [\"x-\", \"x+\", \"y+\"]\n";
+  const std::string inches =
+      "G20 G90 G17 G54\nT1 M6\nS5000 M3\nG43 H1\nG0 X0 Y0 Z1.9685039\nG1 Z-.0787402 F19.685\n"
+      "X2.3622047\nY1.5748031\nX0\nY0\nG0 Z1.9685039\nM2\n";
+  run(inches, kOnTable + clamps);
+  const json in = metrics()["machine_contacts"]["events"];
+  ASSERT_EQ(in.size(), 3U);  // as ClampsInTheWayAreFoundWhereTheyAreFirstTouched
+  EXPECT_EQ(in[0]["line"], 8);
+  EXPECT_NEAR(in[0]["place_machine_mm"][0].get<double>(), 30.0, 0.02);
+  EXPECT_NEAR(in[0]["place_machine_mm"][1].get<double>(), -10.0, 0.02);
+}
+
+/// The deepest place of a contact is bounded: the tool of D 6 goes through a bar of 8 mm, 8 deep from above.
+TEST_F(MachineContacts, HowDeepAContactIsIsBounded) {
+  const std::string bar = "[[fixture]]\nname = \"bar\"\non = \"part\"\nbox_mm = [[20, 30, 0], [40, 55, 8]]\n";
+  const ProgramRun met = run(kFrame, kOnTable + bar);
+  EXPECT_EQ(met.exit_code, 1) << met.output;
+  const json events = metrics()["machine_contacts"]["events"];
+  ASSERT_GE(events.size(), 1U);
+  // The flank passes half way between the faces of the bar, 4 mm from either.
+  const double seen = events[0]["depth_seen_mm"], bound = events[0]["depth_bound_mm"];
+  EXPECT_NEAR(seen, 4.0, 0.02);
+  EXPECT_GE(bound, seen);
+  EXPECT_LE(bound, seen + 0.5);
+}
+
+/// A tool longer than the travel along it is named; meshes in metres are told.
+TEST_F(MachineContacts, ToolsAndMeshesOfTheWrongSizeAreTold) {
+  std::string longer = kOnTable;
+  longer.replace(longer.find("length_mm = 60"), 14, "length_mm = 900");
+  const ProgramRun too_long = run(kFrame, longer);
+  EXPECT_EQ(too_long.exit_code, 1) << too_long.output;
+  EXPECT_NE(too_long.output.find("take a shorter tool: "), std::string::npos) << too_long.output;
+  EXPECT_NE(too_long.output.find("Z travels 460 mm"), std::string::npos) << too_long.output;
+
+  swarf::test::write_text(folder_ / "small.stl",
+                          "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 0.2 0 0\n"
+                          "vertex 0 0.1 0\nendloop\nendfacet\nendsolid s\n");
+  std::string machine =
+      swarf::test::read_text(fs::path(SWARF_SOURCE_DIR) / "assets/machines/mill_3axis/machine.toml");
+  for (size_t at = machine.find("mesh = \""); at != std::string::npos;
+       at = machine.find("mesh = \"", at + 1)) {
+    const size_t from = at + 8;
+    machine.replace(from, machine.find('"', from) - from, "small.stl");
+  }
+  swarf::test::write_text(folder_ / "machine.toml", machine);
+  const ProgramRun metres = run(kFrame, kOnTable, "", (folder_ / "machine.toml").string());
+  EXPECT_NE(metres.output.find("machine-size"), std::string::npos) << metres.output;
+  EXPECT_NE(metres.output.find("scale a mesh in metres by 1000"), std::string::npos) << metres.output;
 }
 
 TEST_F(MachineContacts, FixturesThatCannotBeAreRefused) {
@@ -350,6 +517,12 @@ TEST_F(MachineContacts, FixturesThatCannotBeAreRefused) {
   refused("mesh = \"open.stl\"\n", "mesh-open");
   refused("box_mm = [[60, 10, -25], [80, 20, -10]]\non = \"part\"\n",
           "'box' stands 10.000 mm inside the stock");
+  // Edges alone cross: no corner of the bar lies in the stock, none of the stock in the bar.
+  refused("box_mm = [[20, -30, -12], [30, 90, -8]]\non = \"part\"\n", "mm inside the stock");
+  // Metres instead of mm: a warning with what it would be.
+  swarf::test::write_text(folder_ / "metres.stl", "solid s\n" + box_facets(0.05) + "endsolid s\n");
+  const ProgramRun metres = run(kFrame, kOnTable + "[[fixture]]\nmesh = \"metres.stl\"\n");
+  EXPECT_NE(metres.output.find("fixture-size"), std::string::npos) << metres.output;
 }
 
 /// Nothing holds the block: said; a vice: not said; a fixture in the air: a warning.

@@ -76,7 +76,7 @@ def schema_keys(node, root, path=""):
 
 def scene_texts():
     """Scenes that together ask for every key: each kind of program, cutter and design, an unknown key in each table."""
-    tables = ["setup", "stock", "toolpath", "interpolator", "accept", "movie", "stills", "output"]
+    tables = ["setup", "stock", "toolpath", "interpolator", "accept", "movie", "stills", "output", "report"]
     shapes = schema("scene")["$defs"]["tool"]["properties"]["shape"]["enum"]
     designs = schema("scene")["properties"]["design"]["properties"]["kind"]["enum"]
     no = f"{NO_KEY} = 0\n"

@@ -219,13 +219,13 @@ class MotionMeter::AxisMeter {
   AxisStatistics out_;
 };
 
-namespace {
-
 bool is_rapid_element(const toolpath::Element& element) {
   if (const auto* move = std::get_if<FreeMove>(&element.what)) return move->feed_mm_s == 0.0;
   const auto* block = std::get_if<BlockMove>(&element.what);
   return block != nullptr && is_rapid(*block);
 }
+
+namespace {
 
 /// Least of the feeds of one element between the first and the last that have its top feed.
 double least_feed(std::span<const double> feeds) {

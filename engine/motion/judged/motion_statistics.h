@@ -20,6 +20,9 @@ struct AxisExcess {
   }
 };
 
+/// Whether it is travelled as fast as the axes can.
+bool is_rapid_element(const toolpath::Element& element);
+
 /// Fills statistics and findings of a result: "unreachable" by element, then travel limits and axis speeds
 /// that are exceeded, the worst cycle for each element and axis. A cycle that passes from one block into the
 /// next counts for the axes, not for the errors along a block.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "collision/containment.h"
+#include "mesh/mesh_ops.h"
 
 namespace swarf::sim {
 namespace {
@@ -39,7 +40,7 @@ double overlap(const Job& job, const Body& a, const Body& b) {
   if (gap(job, a, b) > kInsideMm) return 0.0;
   const collision::Encounter pair = collision::encounter(job.machine, a, b);
   const collision::BodyDepth in_a(a), in_b(b);
-  return collision::overlap_depth(pair, in_a, in_b, kinematics::AxisValues::Zero()).depth_mm;
+  return collision::deepest_overlap(pair, in_a, in_b, kinematics::AxisValues::Zero()).depth_mm;
 }
 
 SourceLocation where_of(const Job& job, const Body& fixture) {
@@ -100,10 +101,26 @@ void tell_holding(const Job& job, const std::vector<Body>& bodies, const std::ve
        "[[fixture]] kind = \"vice\", \"clamps\", \"chuck\" or a mesh");
 }
 
+/// Meshes of machines are read in mm: one in metres is no larger than a nut.
+void check_machine_size(const Job& job, Diagnostics& diagnostics) {
+  constexpr double kSmallestMm = 5.0;
+  double size = 0.0;
+  for (const machine::Link& link : job.machine.links)
+    if (!link.fixture && !link.mesh.triangles.empty())
+      size = std::max(size, mesh::bounds(link.mesh).size().maxCoeff());
+  if (size == 0.0 || size >= kSmallestMm) return;
+  diagnostics.warning("machine-size", {job.machine.file},
+                      fmt::format("the largest mesh of the machine's links is {:g} mm long: contacts with it "
+                                  "mean nothing if it was drawn in another unit",
+                                  size),
+                      "machine meshes are in mm: scale a mesh in metres by 1000");
+}
+
 }  // namespace
 
 void check_clamping(const Job& job, const HeldStock& stock, Diagnostics& diagnostics,
                     Assumptions& assumptions) {
+  check_machine_size(job, diagnostics);
   const std::vector<Body> bodies = bodies_on_table(job, stock.mesh_W);
   const bool table =
       std::any_of(bodies.begin(), bodies.end(), [](const Body& b) { return b.kind == BodyKind::kLink; });

@@ -7,10 +7,10 @@
 
 namespace swarf::sim {
 
-/// Of a job whose fixtures hang on its machine. Diagnostics: "fixture-in-part", an error where a corner of
-/// one lies more than kInsideMm inside the other; "fixture-floats", a warning where a fixture touches neither
-/// the table nor what stands on it. A stock that nothing touches is a row of `assumptions`: it stands in
-/// the air.
+/// Of a job whose fixtures hang on its machine. Diagnostics: "fixture-in-part", an error where
+/// some place of one lies more than kInsideMm inside the other; "fixture-floats", a warning where a fixture
+/// touches neither the table nor what stands on it; "machine-size", a warning where the machine's meshes are
+/// tiny. A stock that nothing touches is a row of `assumptions`: it stands in the air.
 struct HeldStock {
   const TriMesh& mesh_W;
   double error_mm = 0.0;  ///< of the mesh: so much deeper or farther away counts as well

@@ -16,15 +16,30 @@ double angle(ConfigTable& table, const char* key, std::optional<double> fallback
   return rad_from_deg(table.number(key, {-180.0, 180.0}, fallback_deg));
 }
 
-Shape read_shape(ConfigTable& table) {
+/// Lengths that shape and cutter both ask for: what is wrong with one is told once.
+struct SharedLengths {
+  ConfigTable& table;
+  std::optional<double> read_diameter, read_corner;
+
+  double diameter_mm() {
+    if (!read_diameter) read_diameter = table.number("diameter_mm", kAboveZero);
+    return *read_diameter;
+  }
+  double corner_mm() {
+    if (!read_corner) read_corner = table.number("corner_radius_mm", kZeroOrMore, 0.0);
+    return *read_corner;
+  }
+};
+
+Shape read_shape(SharedLengths& lengths) {
   const std::vector<std::string> names = cutter::shape_names();
-  if (table.has("shape")) {
-    const std::string word = table.choice("shape", names, names.front());
+  if (lengths.table.has("shape")) {
+    const std::string word = lengths.table.choice("shape", names, names.front());
     return static_cast<Shape>(std::find(names.begin(), names.end(), word) - names.begin());
   }
-  const double corner = table.number("corner_radius_mm", kZeroOrMore, 0.0);
+  const double corner = lengths.corner_mm();
   if (corner == 0.0) return Shape::kFlat;
-  return corner == 0.5 * table.number("diameter_mm", kAboveZero) ? Shape::kBall : Shape::kBullNose;
+  return corner == 0.5 * lengths.diameter_mm() ? Shape::kBall : Shape::kBullNose;
 }
 
 std::vector<cutter::ProfilePoint> read_profile(ConfigTable& table) {
@@ -37,11 +52,12 @@ std::vector<cutter::ProfilePoint> read_profile(ConfigTable& table) {
 }
 
 /// Diameter, corner radius and flute length, where the shape has them as keys.
-void read_lengths(ConfigTable& table, Cutter& c) {
-  c.diameter_mm = table.number("diameter_mm", kAboveZero);
-  c.flute_length_mm = table.number(c.shape == Shape::kWoodruff ? "width_mm" : "flute_length_mm", kAboveZero);
+void read_lengths(SharedLengths& lengths, Cutter& c) {
+  c.diameter_mm = lengths.diameter_mm();
+  c.flute_length_mm =
+      lengths.table.number(c.shape == Shape::kWoodruff ? "width_mm" : "flute_length_mm", kAboveZero);
   if (c.shape != Shape::kDrill && c.shape != Shape::kChamfer) {
-    c.corner_radius_mm = table.number("corner_radius_mm", kZeroOrMore, 0.0);
+    c.corner_radius_mm = lengths.corner_mm();
   }
 }
 
@@ -112,16 +128,27 @@ void read_hand(ConfigTable& table, Cutter& c) {
   c.left_hand = table.choice("hand", {"right", "left"}, "right") == "left";
 }
 
+/// Whether a key that the shape needs is missing or no such number, which has been told: it reads as 0.
+bool lacks_key(const ConfigTable& table, const Cutter& c) {
+  if (c.length_mm == 0.0) return true;
+  if (c.shape == Shape::kProfile) return false;
+  const bool point = c.shape == Shape::kDrill || c.shape == Shape::kChamfer;
+  return c.diameter_mm == 0.0 || c.flute_length_mm == 0.0 || (point && !table.has("point_angle_deg")) ||
+         (c.shape == Shape::kTaper && !table.has("taper_deg"));
+}
+
 Cutter read_body(ConfigTable& table, Cutter c, const std::string& what) {
-  c.shape = read_shape(table);
+  SharedLengths lengths{table, {}, {}};
+  c.shape = read_shape(lengths);
   if (c.shape == Shape::kProfile) {
     cutter::set_profile(c, read_profile(table));
   } else {
-    read_lengths(table, c);
+    read_lengths(lengths, c);
     read_shape_keys(table, c);
   }
   read_tool_above(table, c);
   read_hand(table, c);
+  if (lacks_key(table, c)) return c;
   for (const cutter::Problem& problem : cutter::validate(c)) {
     table.error(
         "bad-cutter", problem.key, what + ": " + problem.text,

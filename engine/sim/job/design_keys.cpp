@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/units.h"
+#include "sim/job/mesh_unit.h"
 #include "sim/job/ruled_faces.h"
 #include "surface/analytic.h"
 #include "surface/nurbs.h"
@@ -236,6 +237,11 @@ DesignSettings read_design(ConfigTable table, bool cl) {
     design.kind = DesignKind::kMesh;
     design.mesh_key = design.name;
     design.mesh_file = table.text(design.name);
+    design.mesh_where = table.where(design.name);
+    if (design.name == "mesh") {
+      const std::string unit = table.choice("mesh_unit", {"mm", "inch", "m"}, "mm");
+      if (table.has("mesh_unit")) design.mesh_unit_mm = unit_mm_of(unit);
+    }
     if (design.name == "step")
       design.chord_mm = table.number("chord_um", kAboveZero, um_from_mm(design.chord_mm)) * kMicrometre;
     return design;

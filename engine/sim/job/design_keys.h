@@ -1,6 +1,7 @@
 // The [design] table of a CL scene: what the finished part is measured against.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,10 +33,12 @@ struct DesignSettings {
   double pitch_mm = 0.2;         ///< grid of measuring rays on the design; cusps are refined between them
   /// CL scenes: blocks are divided into sweeps that stay this close to their motion for the measuring rays.
   double sweep_tolerance_mm = 2e-5;
-  std::string surface_file;                   ///< kSurface
-  std::string mesh_file;                      ///< kMesh
-  std::vector<RuledFace> faces;               ///< kRuledFaces, of mesh_file
-  std::string mesh_key = "mesh";              ///< that names it: "step" for a CAD file
+  std::string surface_file;            ///< kSurface
+  std::string mesh_file;               ///< kMesh
+  std::vector<RuledFace> faces;        ///< kRuledFaces, of mesh_file
+  std::string mesh_key = "mesh";       ///< that names it: "step" for a CAD file
+  std::optional<double> mesh_unit_mm;  ///< of the numbers of a mesh; not said: mm
+  SourceLocation mesh_where;
   double chord_mm = 5e-3;                     ///< CAD files: facets stray no farther from the faces
   std::vector<surface::SurfacePtr> surfaces;  ///< kAnalytic
 };

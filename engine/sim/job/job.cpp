@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -21,6 +22,7 @@
 #include "sim/job/flank_job.h"
 #include "sim/job/kept_job.h"
 #include "sim/job/memory_limit.h"
+#include "sim/job/mesh_unit.h"
 #include "sim/job/open_job.h"
 #include "sim/job/ruled_faces.h"
 #include "sim/job/scene.h"
@@ -282,6 +284,21 @@ TriMesh cad_facets(Job& job, bool drives, Diagnostics& diagnostics) {
 }
 
 /// What the part is measured against.
+/// In mm. A part smaller than the smallest tool that machines it is in another unit, or none.
+TriMesh load_design_mesh(const Job& job, Diagnostics& diagnostics) {
+  const DesignSettings& design = job.scene.design;
+  TriMesh mesh = mesh::load_mesh(design.mesh_file);
+  const auto unit = static_cast<float>(design.mesh_unit_mm.value_or(1.0));
+  for (auto& p : mesh.positions)
+    for (float& coordinate : p) coordinate *= unit;
+  double tool_mm = std::numeric_limits<double>::infinity();
+  for (const cutter::Cutter& tool : job.scene.tools) tool_mm = std::min(tool_mm, tool.diameter_mm);
+  if (!design.mesh_unit_mm && !mesh.positions.empty())
+    suspect_unit({"design mesh", "design.mesh_unit", design.mesh_where}, mesh::bounds(mesh), tool_mm,
+                 diagnostics);
+  return mesh;
+}
+
 void load_design(Job& job, Diagnostics& diagnostics) {
   DesignSettings& design = job.scene.design;
   // The part that drives is the design.
@@ -303,7 +320,7 @@ void load_design(Job& job, Diagnostics& diagnostics) {
   if (design.kind == DesignKind::kRuledFaces) job.design = load_ruled_faces(design, diagnostics);
   if (design.kind == DesignKind::kMesh) {
     auto mesh = std::make_shared<TriMesh>(design.mesh_key == "step" ? cad_facets(job, own_faces, diagnostics)
-                                                                    : mesh::load_mesh(design.mesh_file));
+                                                                    : load_design_mesh(job, diagnostics));
     // An automatic box holds the design; of a raw stock that is itself at fault nothing is known.
     const StockSettings& stock = job.scene.stock;
     const bool open = stock.auto_box || (stock.raw.kind != RawKind::kBox && !stock.shape);

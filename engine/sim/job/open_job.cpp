@@ -123,19 +123,6 @@ void assume_reading(Job& job, const toolpath::NcReading& reading, const Diagnost
            "call the length in the program (G43 H); setup.without_length = \"gauge_line\"");
 }
 
-/// "fork_head (X Y Z C A)".
-std::string five_axis_machines() {
-  std::string list;
-  for (const machine::ShippedMachine& one : machine::shipped_machines()) {
-    const machine::MachineScene scene = machine::load_machine(one.file);
-    if (scene.model.axes.size() <= 3) continue;
-    list += fmt::format("{}{} (", list.empty() ? "" : ", ", one.name);
-    for (const kinematics::Axis& axis : scene.model.axes) list += axis.name;
-    list += ")";
-  }
-  return list;
-}
-
 void need_machine(const Job& job, const SourceLocation& where, Diagnostics& diagnostics) {
   diagnostics.error(
       "machine-needed", where,
@@ -283,11 +270,23 @@ void assume_tools(Job& job) {
     const cutter::Cutter& tool = job.scene.tools[i];
     assume(job, cutter::call_name(tool), cutter::describe(tool),
            "a word says no more: flutes over the whole length; no shank, no holder, neither can touch",
-           "--tools FILE: [[tool]] in TOML, or the tool table of LinuxCNC, Fusion or FreeCAD");
+           "--tools FILE: [[tool]] in TOML, or the tools of LinuxCNC, Fusion, FreeCAD or ISO 13399");
   }
 }
 
 }  // namespace
+
+std::string five_axis_machines() {
+  std::string list;
+  for (const machine::ShippedMachine& one : machine::shipped_machines()) {
+    const machine::MachineScene scene = machine::load_machine(one.file);
+    if (scene.model.axes.size() <= 3) continue;
+    list += fmt::format("{}{} (", list.empty() ? "" : ", ", one.name);
+    for (const kinematics::Axis& axis : scene.model.axes) list += axis.name;
+    list += ")";
+  }
+  return list;
+}
 
 void check_voxel(const StockSettings& stock, const std::vector<cutter::Cutter>& tools,
                  Diagnostics& diagnostics) {

@@ -14,6 +14,8 @@
 //            vice holds it
 #pragma once
 
+#include <string>
+
 #include "base/diagnostics.h"
 #include "cutter/cutter.h"
 #include "sim/job/scene.h"
@@ -27,6 +29,9 @@ void check_voxel(const StockSettings& stock, const std::vector<cutter::Cutter>& 
 /// Gives the tools of `tools = "6"` the number that the program calls, and says what a list lacks. NC and CL
 /// jobs whose program has not been loaded. "unknown-tool" names every tool that the program asks for.
 void bind_tools(Job& job, Diagnostics& diagnostics);
+
+/// The shipped machines that turn, for messages: "fork_head (XYZCA), head_table_bc (XYZBC)".
+std::string five_axis_machines();
 
 /// Box, voxel and origin, where they are open, of a job whose machine, program and design are loaded.
 /// "machine-needed": a program of five axes and a scene without a machine; "nothing-to-cut": no feed move.

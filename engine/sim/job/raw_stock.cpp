@@ -11,6 +11,7 @@
 #include "mesh/mesh_nesting.h"
 #include "mesh/mesh_ops.h"
 #include "mesh/signed_distance.h"
+#include "sim/job/mesh_unit.h"
 #include "sim/job/stock_keys.h"
 
 namespace swarf::sim {
@@ -46,27 +47,13 @@ bool is_sound(const TriMesh& mesh, const std::string& file, const char* remedy, 
   return !diagnostics.has_errors();
 }
 
-/// A casting thinner than the tool that is to machine it is in another unit, or none.
-void suspect_unit(const RawSettings& raw, const Box& box, double tool_mm, Diagnostics& diagnostics) {
-  constexpr double kInch = 25.4, kMetre = 1000.0;
-  const double longest = box.size().maxCoeff();
-  if (longest >= tool_mm) return;
-  const bool inches = longest * kInch >= tool_mm;
-  diagnostics.warning(
-      "mesh-unit-suspicious", raw.where,
-      fmt::format("the {} is {:g} mm long, less than the tool's diameter of {:g} mm: its numbers may be {}, "
-                  "{:g} times as large",
-                  kMeshName, longest, tool_mm, inches ? "inches" : "metres", inches ? kInch : kMetre),
-      fmt::format("stock.mesh_unit = \"{}\"", inches ? "inch" : "m"));
-}
-
 std::optional<stock::RawShape> load_raw_mesh(const RawSettings& raw, double tool_mm,
                                              Diagnostics& diagnostics) {
   const TriMesh mesh = moved(mesh::load_mesh(raw.file), raw.unit_mm, raw.X_WF);
   if (!is_sound(mesh, raw.file, "unite the bodies in the CAD or repair program and export again",
                 diagnostics))
     return {};
-  suspect_unit(raw, mesh::bounds(mesh), tool_mm, diagnostics);
+  suspect_unit({kMeshName, "stock.mesh_unit", raw.where}, mesh::bounds(mesh), tool_mm, diagnostics);
   return stock::RawShape::of_mesh(mesh, fs::path(raw.file).filename().string());
 }
 

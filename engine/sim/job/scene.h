@@ -18,11 +18,13 @@
 #include "program/nc_program.h"
 #include "program/surface_blocks/program.h"
 #include "sim/job/assumption.h"
+#include "sim/job/contact_keys.h"
 #include "sim/job/design_keys.h"
 #include "sim/job/driven_keys.h"
 #include "sim/job/flank_keys.h"
 #include "sim/job/movie_keys.h"
 #include "sim/job/post_keys.h"
+#include "sim/job/report_keys.h"
 #include "sim/job/setup_keys.h"
 #include "sim/job/stock_keys.h"
 #include "surface/face.h"
@@ -128,6 +130,7 @@ struct Scene {
   std::vector<cutter::Cutter> tools{cutter::Cutter{}};
   StockSettings stock;
   std::vector<machine::Fixture> fixtures;  ///< what holds it; links of Job::machine once it is loaded
+  std::vector<ContactPair> contact_pairs;
   DesignSettings design;
   toolpath::PlanOptions toolpath;
   bool compare_planners = true;              ///< plan, interpolate and measure the other planners too
@@ -137,6 +140,7 @@ struct Scene {
   MovieSettings movie;
   StillSettings stills;
   OutputSettings output;
+  ReportSettings report;
 };
 
 struct Job;

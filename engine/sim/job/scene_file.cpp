@@ -403,8 +403,11 @@ void read_scene(ConfigTable& root, Scene& scene, Diagnostics& diagnostics, int s
     read_interpolator(root.table("interpolator"), scene);
   }
   read_accept(root.table("accept"), blocks || scene.driven, scene.accept);
+  scene.contact_pairs = read_contact_pairs(root);
   read_pictures(root, scene);
   scene.output = read_output(root.table("output"));
+  scene.report = read_report(root.table("report"));
+  scene.report.logo_file = beside(path, scene.report.logo_file);
   root.finish();
   scene.toolpath.stock_top_mm = scene.stock.box_W.upper.z();
 }

@@ -49,7 +49,7 @@ ConfigOverlay setup_overlay(size_t index) {
           {"name", "part_pose", "work_origin_mm", "work_rotation_deg", "start", "units", "start_tool",
            "start_tool_name", "t_changes_tool", "slot_ends", "without_length", "offsets"},
           {{"program", "cl", "nc"}, {"tool", "tools", "tool_table", "cutter"}},
-          {"stock", "accept", "interpolator", "toolpath", "movie", "stills", "output"}};
+          {"stock", "accept", "interpolator", "toolpath", "movie", "stills", "output", "report"}};
 }
 
 size_t count_setups(const std::string& path, const std::vector<std::string>& overrides) {

@@ -12,6 +12,7 @@
 namespace swarf::sim {
 namespace {
 
+constexpr double kFarthestOrigin = 1e6;  // mm: a kilometre
 constexpr std::array<const char*, 9> kOffsets{"G54", "G55",   "G56",   "G57",  "G58",
                                               "G59", "G59.1", "G59.2", "G59.3"};
 
@@ -68,6 +69,10 @@ SetupSettings read_setup(ConfigTable table, bool nc, int number) {
   } else if (table.has("work_origin_mm")) {
     const std::vector<double> origin = table.numbers("work_origin_mm", 3);
     if (origin.size() == 3) setup.work_origin_mm = Vec3(origin[0], origin[1], origin[2]);
+    if (setup.work_origin_mm && setup.work_origin_mm->cwiseAbs().maxCoeff() > kFarthestOrigin)
+      table.error(
+          "out-of-range", "work_origin_mm", "the work's origin is farther away than any machine reaches",
+          fmt::format("every number must be from {:g} to {:g} mm", -kFarthestOrigin, kFarthestOrigin));
   }
   setup.work_rotation_rad = rad_from_deg(table.number("work_rotation_deg", {-360.0, 360.0}, 0.0));
   if (!nc) return setup;

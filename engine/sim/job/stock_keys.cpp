@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/units.h"
+#include "sim/job/mesh_unit.h"
 
 namespace swarf::sim {
 namespace {
@@ -94,7 +95,7 @@ void read_mesh_keys(ConfigTable& table, RawSettings& raw) {
   raw.file = table.text("mesh");
   raw.unit_said = table.has("mesh_unit");
   const std::string unit = table.choice("mesh_unit", {"mm", "inch", "m"}, "mm");
-  raw.unit_mm = unit == "inch" ? 25.4 : unit == "m" ? 1000.0 : 1.0;
+  raw.unit_mm = unit_mm_of(unit);
   raw.X_WF = pose_of(vector_of(table, "mesh_position_mm", Vec3::Zero()),
                      vector_of(table, "mesh_rotation_deg", Vec3::Zero()));
 }

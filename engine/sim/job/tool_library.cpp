@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
@@ -16,6 +17,7 @@
 
 #include "base/units.h"
 #include "program/source_text.h"
+#include "sim/job/p21_items.h"
 
 namespace swarf::sim {
 namespace {
@@ -205,16 +207,89 @@ Cutter freecad_tool(const json& bit) {
   return c;
 }
 
+// ---- ISO 13399
+
+/// A length in mm or an angle in degrees; none where the item has no such property.
+std::optional<double> p21_value(const P21Item& item, const char* symbol, bool angle = false) {
+  const auto found = item.values.find(symbol);
+  if (found == item.values.end()) return std::nullopt;
+  const P21Value& value = found->second;
+  if (value.contradicts) throw Lacking(fmt::format("it has two values of {}", symbol));
+  const std::string unit = lower_case(value.unit);
+  if (angle && (unit == "deg" || unit == "degree" || unit == "\xc2\xb0")) return value.value;
+  if (angle && (unit == "rad" || unit == "radian")) return deg_from_rad(value.value);
+  if (!angle && (unit == "mm" || unit == "millimetre")) return value.value;
+  if (!angle && (unit == "inch" || unit == "in")) return value.value * kLibraryInch;
+  throw Lacking(unit.empty() ? fmt::format("its {} has no unit", symbol)
+                             : fmt::format("the unit '{}' of its {} is not known", value.unit, symbol));
+}
+
+std::optional<double> first_p21_value(const P21Item& item, std::initializer_list<const char*> symbols) {
+  for (const char* symbol : symbols) {
+    if (const auto value = p21_value(item, symbol)) return value;
+  }
+  return std::nullopt;
+}
+
+/// What the properties say of forms that these few do not describe.
+void refuse_p21_forms(const P21Item& item) {
+  for (const char* thread : {"TDZ", "TP", "THFT"}) {
+    if (item.values.count(thread) > 0) throw Lacking(fmt::format("it cuts threads ({})", thread));
+  }
+  const auto lead = p21_value(item, "KAPR", true);
+  const bool drill = item.values.count("SIG") > 0;
+  if (lead && *lead != 90.0 && !drill)
+    throw Lacking(fmt::format("its edges lean (KAPR {:g} deg), and the form of its end is not given", *lead));
+  const auto widest = p21_value(item, "DCX");
+  if (widest && *widest != p21_value(item, "DC"))
+    throw Lacking("DC and DCX differ, and the form between them is not given");
+}
+
+Cutter p21_tool(const P21Item& item, std::string& assumed) {
+  refuse_p21_forms(item);
+  Cutter c;
+  c.diameter_mm = above_zero(p21_value(item, "DC"), "cutting diameter (DC)");
+  const auto point = p21_value(item, "SIG", true), corner = p21_value(item, "RE");
+  if (point) {
+    c.shape = Shape::kDrill;
+    c.point_angle_rad = rad_from_deg(*point);
+  } else {
+    settle_corner(c, corner.value_or(0.0));
+    if (!corner) assumed = "it has neither RE nor SIG: its end is taken as flat";
+  }
+  const auto stands_out = p21_value(item, "LPR");
+  c.length_mm =
+      above_zero(stands_out ? stands_out : first_p21_value(item, {"LF", "OAL"}), "length (LPR, LF or OAL)");
+  if (!stands_out)
+    assumed += fmt::format("{}it has no LPR: all of its {:g} mm stand out of the holder",
+                           assumed.empty() ? "" : "; ", c.length_mm);
+  c.flute_length_mm =
+      std::min(above_zero(first_p21_value(item, {"APMX", "LCF", "LU"}), "cutting length (APMX, LCF or LU)"),
+               c.length_mm);
+  c.shank_diameter_mm = c.diameter_mm;
+  if (const auto shank = first_p21_value(item, {"DCONMS", "DMM"})) c.shank_diameter_mm = *shank;
+  if (const auto body = p21_value(item, "BDX")) c.shank_diameter_mm = std::max(c.shank_diameter_mm, *body);
+  without_holder(c);
+  return c;
+}
+
 // ---- both
 
 struct Library {
   const std::string& path;
   std::map<int, std::string>& incomplete;
   std::vector<Cutter> tools;
+  std::map<int, std::string> known;  ///< by number, what stands there under it
 
   template <typename Read>
   void add(int number, const std::string& what, Read read) {
     if (number <= 0) return;
+    const auto [first, fresh] = known.emplace(number, what);
+    if (!fresh) {
+      std::erase_if(tools, [&](const Cutter& tool) { return tool.number == number; });
+      incomplete[number] = fmt::format("{}: {} and {} have this number both", path, first->second, what);
+      return;
+    }
     try {
       Cutter c = read();
       c.number = number;
@@ -274,6 +349,44 @@ void read_freecad_library(const json& root, Library& library) {
   }
 }
 
+/// "984327-1" as a tool's name; "" where it could not be one.
+std::string p21_name(const std::string& id) {
+  const bool number = std::all_of(id.begin(), id.end(), ::isdigit);
+  const bool good = std::all_of(id.begin(), id.end(),
+                                [](unsigned char c) { return c >= ' ' && c < 0x7f && c != ',' && c != '"'; });
+  return number || !good ? "" : id;
+}
+
+/// A tool is what has a cutting diameter; inserts and holders have none.
+void read_p21(Library& library, std::map<int, std::string>& assumed) {
+  P21Items found = read_p21_items(library.path);
+  const auto has = [](const P21Item& item, const char* symbol) { return item.values.count(symbol) > 0; };
+  const bool inserts = std::any_of(found.items.begin(), found.items.end(),
+                                   [&](const P21Item& item) { return !has(item, "DC") && has(item, "RE"); });
+  std::erase_if(found.items, [&](const P21Item& item) { return !has(item, "DC"); });
+  if (found.items.empty()) {
+    const std::string codes = fmt::format("{}", fmt::join(found.codes, ", "));
+    throw InputError("bad-tool-library", {library.path},
+                     codes.empty()
+                         ? "no item of the file has a cutting diameter (DC)"
+                         : "its properties have codes alone and no symbols (DC, RE, APMX ..): " + codes,
+                     "write the tool as [[tool]] in a .toml: diameter_mm is its DC, corner_radius_mm RE, "
+                     "flute_length_mm APMX, length_mm LPR");
+  }
+  int number = 0;
+  for (const P21Item& item : found.items) {
+    library.add(++number, item.id.empty() ? fmt::format("line {}", item.line) : item.id, [&] {
+      std::string taken;
+      if (inserts && !has(item, "RE"))
+        throw Lacking("its corner is that of an insert, another item of the file");
+      Cutter c = p21_tool(item, taken);
+      c.name = p21_name(item.id);
+      if (!taken.empty()) assumed.emplace(number, taken);
+      return c;
+    });
+  }
+}
+
 }  // namespace
 
 bool is_tool_library(const std::string& path) {
@@ -281,14 +394,15 @@ bool is_tool_library(const std::string& path) {
   return ending == ".json" || ending == ".fctl" || ending == ".fctb" || ending == ".p21";
 }
 
-std::vector<Cutter> read_tool_library(const std::string& path, std::map<int, std::string>& incomplete) {
+std::vector<Cutter> read_tool_library(const std::string& path, std::map<int, std::string>& incomplete,
+                                      std::map<int, std::string>& assumed) {
   const std::string ending = lower_case(fs::path(path).extension().string());
-  if (ending == ".p21")
-    throw InputError("unsupported-tool-library", {path}, "ISO 13399 files (.p21) are not read",
-                     "write the tools as [[tool]] in a .toml: diameter_mm is its DC, corner_radius_mm RE, "
-                     "flute_length_mm APMX, length_mm LPR");
+  Library library{path, incomplete, {}, {}};
+  if (ending == ".p21") {
+    read_p21(library, assumed);
+    return std::move(library.tools);
+  }
   const json root = load_json(path);
-  Library library{path, incomplete, {}};
   if (ending == ".json") read_fusion(root, library);
   if (ending == ".fctl") read_freecad_library(root, library);
   if (ending == ".fctb")

@@ -186,10 +186,13 @@ void check_twice(const std::vector<Described>& tools, Diagnostics& diagnostics) 
       const Cutter &a = tools[i].cutter, &b = tools[k].cutter;
       const bool number = a.number > 0 && a.number == b.number;
       if (!number && (a.name.empty() || a.name != b.name)) continue;
-      diagnostics.error("tool-twice", tools[i].where,
-                        fmt::format("{} is described at {}:{} already", cutter::call_name(a),
-                                    tools[k].where.file, tools[k].where.line),
-                        "give each tool a number or a name of its own");
+      diagnostics.error(
+          "tool-twice", tools[i].where,
+          tools[i].where.line == tools[k].where.line && tools[i].where.file == tools[k].where.file
+              ? fmt::format("{} is described twice", cutter::call_name(a))
+              : fmt::format("{} is described at {}:{} already", cutter::call_name(a), tools[k].where.file,
+                            tools[k].where.line),
+          "give each tool a number or a name of its own");
     }
   }
 }
@@ -249,12 +252,15 @@ void join_tbl(std::vector<Described>& tools, const std::vector<Described>& measu
 /// Without `incomplete` a warning names each tool that cannot be used.
 void add_library(std::vector<Described>& tools, const std::string& file, Diagnostics& diagnostics,
                  IncompleteTools* incomplete) {
-  IncompleteTools lacking;
+  IncompleteTools lacking, assumed;
   try {
-    for (Cutter& tool : read_tool_library(file, lacking)) tools.push_back({std::move(tool), {file}});
+    for (Cutter& tool : read_tool_library(file, lacking, assumed)) tools.push_back({std::move(tool), {file}});
   } catch (const InputError& error) {
     diagnostics.append(error.diagnostics);
   }
+  for (const auto& [number, what] : assumed)
+    diagnostics.warning("tool-shape-assumed", {file}, fmt::format("T{}: {}", number, what),
+                        "describe it as [[tool]] if it is otherwise");
   for (const auto& [number, reason] : lacking) {
     if (incomplete != nullptr) {
       incomplete->emplace(number, reason);
@@ -325,7 +331,8 @@ std::vector<Cutter> read_tools(ConfigTable& scene, const std::string& table_file
   std::vector<Described> tools = read_entries(scene);
   if (!table_file.empty()) add_table(tools, table_file, diagnostics, incomplete);
   if (tools.empty() && !diagnostics.has_errors() && (incomplete == nullptr || incomplete->empty())) {
-    scene.error("no-tools", "tool_table", "the scene has no tool", "describe at least one as [[tool]]");
+    diagnostics.error("no-tools", {table_file}, "the table has no tool with a number",
+                      "give its tools numbers, or describe them: [[tool]] number and shape");
   }
   return cutters_of(tools, diagnostics);
 }

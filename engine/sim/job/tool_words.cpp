@@ -20,7 +20,8 @@ using cutter::Cutter;
 using cutter::Shape;
 
 constexpr double kInch = 25.4;
-constexpr double kTwistDrill = 118.0;  // deg
+constexpr double kTwistDrill = 118.0;    // deg
+constexpr double kLargestTool = 1000.0;  // mm
 
 struct ShapeWord {
   const char* word;
@@ -103,13 +104,13 @@ void add_length(Cutter& c) {
   c.holder = {{c.diameter_mm, c.diameter_mm, 1.0}};
 }
 
-/// "T4" is number 4, anything else a name.
+/// "T4" and "4" are number 4, anything else a name.
 void set_call(Cutter& c, std::string_view called) {
-  std::string_view digits = called.substr(std::min<size_t>(1, called.size()));
+  std::string_view digits = called;
+  if (std::toupper(static_cast<unsigned char>(called.front())) == 'T') digits.remove_prefix(1);
   int number = 0;
   const auto [next, failure] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
-  const bool numbered = std::toupper(static_cast<unsigned char>(called.front())) == 'T' &&
-                        failure == std::errc() && next == digits.data() + digits.size() && number > 0;
+  const bool numbered = failure == std::errc() && next == digits.data() + digits.size() && number > 0;
   if (numbered) {
     c.number = number;
   } else {
@@ -135,6 +136,12 @@ std::optional<Cutter> read_one(std::string_view word, bool only, const SourceLoc
   }
   if (called.empty() && (!only || equals != word.npos)) {
     fail(fmt::format("'{}' does not say which tool it is", word), where, diagnostics);
+    return std::nullopt;
+  }
+  if (!(c->diameter_mm > 0.0) || c->diameter_mm > kLargestTool) {
+    fail(fmt::format("'{}' has a diameter of {:g} mm: it must be above 0 and at most {:g} mm", word,
+                     c->diameter_mm, kLargestTool),
+         where, diagnostics);
     return std::nullopt;
   }
   if (!called.empty()) set_call(*c, called);

@@ -32,6 +32,11 @@ class Collector {
                                           std::move(text), std::move(fix), std::move(where), t_s, "",
                                           check_->name});
   }
+  /// A warning, whatever becomes of the check; the finding, for what else is known of it.
+  Finding& note(std::string code, std::string text, std::string fix, SourceLocation where, double t_s) {
+    return findings_.emplace_back(Finding{std::move(code), Severity::kWarning, std::move(text),
+                                          std::move(fix), std::move(where), t_s, "", check_->name});
+  }
   /// Breaks nothing.
   void warn(const motion::MotionFinding& fault) {
     findings_.push_back({fault.code, fault.severity, fault.text, "", fault.where, fault.t_s, "", ""});
@@ -210,14 +215,33 @@ void flank_faults(const Job& job, const Result& result, Collector& collect) {
       job.scene.flank->where, 0.0);
 }
 
-void motion_faults(const Result& result, Collector& collect) {
+/// Another clamping; or another tool, where the axis along it travels less than it is long.
+std::string travel_remedy(const Job& job, const motion::MotionFinding& fault) {
+  const kinematics::MachineModel& machine = job.machine.model;
+  const auto axis = std::find_if(machine.axes.begin(), machine.axes.end(),
+                                 [&](const kinematics::Axis& one) { return one.name == fault.axis; });
+  if (fault.code != "travel" || axis == machine.axes.end() || axis->kind != kinematics::AxisKind::kLinear)
+    return "";
+  const auto reach = [](const cutter::Cutter& tool) { return cutter::gauge_length(tool); };
+  const cutter::Cutter& longest = *std::max_element(
+      job.scene.tools.begin(), job.scene.tools.end(),
+      [&](const cutter::Cutter& a, const cutter::Cutter& b) { return reach(a) < reach(b); });
+  const double travel = axis->max - axis->min;
+  const bool along = axis->direction_M.cross(machine.tool_axis_M).norm() < 1e-9;
+  if (along && reach(longest) > travel)
+    return fmt::format("take a shorter tool: {} reaches {:g} mm below the gauge line, {} travels {:g} mm",
+                       cutter::call_name(longest), reach(longest), axis->name, travel);
+  return "clamp the work elsewhere (setup.work_origin_mm)";
+}
+
+void motion_faults(const Job& job, const Result& result, Collector& collect) {
   for (const motion::MotionFinding& fault : result.main.motion.findings) {
     if (fault.severity != Severity::kError) {
       collect.warn(fault);
       continue;
     }
     collect.begin(check_of(fault));
-    collect.add(fault.code, fault.text, "", fault.where, fault.t_s).cause = fault.axis;
+    collect.add(fault.code, fault.text, travel_remedy(job, fault), fault.where, fault.t_s).cause = fault.axis;
   }
 }
 
@@ -311,7 +335,7 @@ std::string contact_text(const Result& result, const ContactBody& a, const Conta
                   b.name, lines, p.x(), p.y(), p.z(), event.first.time_s);
   if (event.inside) text += "; one stands inside the other";
   if (event.depth_mm > 0.0)
-    text += fmt::format("; {:.2f} mm deep at most where it was looked at", event.depth_mm);
+    text += fmt::format("; {:.2f} mm deep, nowhere deeper than {:.2f}", event.depth_mm, event.depth_bound_mm);
   return text;
 }
 
@@ -369,6 +393,32 @@ void machine_faults(const Result& result, Collector& collect) {
             event.first.element, event.last_element, event.first.time_s, event.depth_mm);
 }
 
+/// Gaps below what the scene asks of single pairs ([[contact_pair]]).
+void near_misses(const Result& result, Collector& collect) {
+  if (!result.main.contacts) return;
+  const MachineContacts& contacts = *result.main.contacts;
+  const toolpath::Elements& elements = result.main.path.elements;
+  collect.begin("machine_parts");
+  for (const collision::PairFindings& pair : contacts.findings.pairs) {
+    const ContactBody &a = contacts.bodies[pair.a], &b = contacts.bodies[pair.b];
+    const collision::NearMissRule* const rule = contacts.rules.near_miss_of(a.name, b.name);
+    if (rule == nullptr || !pair.near_miss.within || !pair.spans.empty()) continue;
+    const collision::NearMiss& near = pair.near_miss;
+    const auto element = static_cast<size_t>(near.place.element);
+    const Vec3& p = near.point_a;
+    const char* const raw = contacts.with_stock(pair) ? " (the raw one)" : "";
+    Finding& added = collect.note(
+        "near-miss",
+        fmt::format("{} comes as near as {:.3f} mm to {}{}, line {}: at ({:.2f}, {:.2f}, {:.2f}) mm of the "
+                    "machine, {:.3f} s; {:g} mm are asked for",
+                    a.name, near.upper, b.name, raw, elements.line(element), p.x(), p.y(), p.z(),
+                    near.place.time_s, rule->near_miss_mm),
+        remedy_of(a, b), elements.where(element), near.place.time_s);
+    added.cause = a.name + " and " + b.name;
+    added.amount_mm = near.upper;
+  }
+}
+
 void built_in_checks(const Job& job, const Result& result, Collector& collect) {
   collect.begin("stock_invariants");
   if (!result.cut.broken_invariant.empty()) {
@@ -395,12 +445,13 @@ void built_in_checks(const Job& job, const Result& result, Collector& collect) {
 std::vector<Finding> find_faults(const Job& job, const Result& result) {
   Collector collect(job, result);
   surface_faults(job, result, collect);
-  motion_faults(result, collect);
+  motion_faults(job, result, collect);
   driven_faults(job, result, collect);
   flank_faults(job, result, collect);
   clearance_faults(job, result, collect);
   bad_cut_faults(result, collect);
   machine_faults(result, collect);
+  near_misses(result, collect);
   built_in_checks(job, result, collect);
   return collect.take();
 }

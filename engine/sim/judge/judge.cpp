@@ -193,9 +193,14 @@ std::string not_looked_at(const Result& result) {
   std::vector<std::string> names;
   for (const std::string& link : contacts.without_mesh) names.push_back(link + " (no mesh)");
   for (const collision::LeftOutPair& pair : contacts.findings.left_out) {
-    if (pair.reason == collision::PairReason::kTouchesAtHome)
-      names.push_back(fmt::format("{} with {} (they overlap at home)", contacts.bodies[pair.a].name,
-                                  contacts.bodies[pair.b].name));
+    const ContactBody &a = contacts.bodies[pair.a], &b = contacts.bodies[pair.b];
+    const bool cuts = (a.kind == collision::BodyKind::kStock && b.kind == collision::BodyKind::kToolPart) ||
+                      (b.kind == collision::BodyKind::kStock && a.kind == collision::BodyKind::kToolPart);
+    const char* const why = pair.reason == collision::PairReason::kTouchesAtHome      ? "they overlap at home"
+                            : pair.reason == collision::PairReason::kGuided           ? "one guides the other"
+                            : pair.reason == collision::PairReason::kAllowed && !cuts ? "the scene allows it"
+                                                                                      : nullptr;
+    if (why != nullptr) names.push_back(fmt::format("{} with {} ({})", a.name, b.name, why));
   }
   const std::vector<int>& changes = contacts.findings.unseen_changes;
   if (!changes.empty()) {
@@ -204,6 +209,17 @@ std::string not_looked_at(const Result& result) {
         fmt::format("the ways to {} tool changes (the first before line {})", changes.size(), line));
   }
   return names.empty() ? "" : fmt::format("; not looked at: {}", fmt::join(names, ", "));
+}
+
+/// Pairs of links that have no mesh, the first of them; "": all links have one.
+std::string pairs_without_mesh(const MachineContacts& contacts) {
+  constexpr size_t kNamed = 12;
+  const std::vector<collision::NamePair>& pairs = contacts.without_mesh_pairs;
+  std::vector<std::string> names;
+  for (size_t i = 0; i < std::min(kNamed, pairs.size()); ++i)
+    names.push_back(fmt::format("{} with {}", pairs[i].first, pairs[i].second));
+  if (pairs.size() > kNamed) names.push_back(fmt::format("{} pairs more", pairs.size() - kNamed));
+  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 /// How the stock was looked at; "": nothing comes to the raw one.
@@ -221,9 +237,16 @@ std::string stock_looks_text(const MachineContacts& contacts) {
 Check machine_check(const Job& job, const Result& result) {
   constexpr const char* name = "machine_parts";
   constexpr const char* subject = "Contacts of machine, fixtures and tool";
-  if (!result.main.contacts || result.main.contacts->findings.pairs.empty())
+  if (!result.main.contacts)
     return not_judged(name, subject, "the machine has no meshes: [[link]] mesh in machine.toml");
   const MachineContacts& contacts = *result.main.contacts;
+  const std::string without_mesh = pairs_without_mesh(contacts);
+  if (contacts.findings.pairs.empty())
+    return not_judged(
+        name, subject,
+        without_mesh.empty()
+            ? "no two bodies move against each other"
+            : fmt::format("without [[link]] mesh in machine.toml nothing is known of {}", without_mesh));
   const bool assumed = job.scene.stock.auto_box;
   // With a block that is laid around the path a contact says nothing: a real one may not reach there.
   const uint64_t proven = contacts.contacts() + (assumed ? 0 : contacts.stock_contacts());
@@ -238,6 +261,7 @@ Check machine_check(const Job& job, const Result& result) {
   check.reason += stock_looks_text(contacts);
   check.reason +=
       fmt::format("{} pairs over the whole motion{}", contacts.findings.pairs.size(), not_looked_at(result));
+  check.unseen = without_mesh;
   return check;
 }
 

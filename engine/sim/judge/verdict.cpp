@@ -56,6 +56,15 @@ std::string covered(std::span<const Check> checks) {
   return list.empty() ? list : fmt::format(" ({}: {})", list, covers);
 }
 
+/// "bed with flutes, bed with holder"; what a check that is judged could not look at.
+std::string unseen(std::span<const Check> checks) {
+  std::string text;
+  for (const Check& check : checks)
+    if (check.outcome != Outcome::kNotJudged && !check.unseen.empty())
+      text += (text.empty() ? "; not looked at: " : ", ") + check.unseen;
+  return text;
+}
+
 }  // namespace
 
 std::string verdict_sentence(std::span<const Check> checks) {
@@ -71,7 +80,7 @@ std::string verdict_text(std::span<const Check> checks) {
   const size_t held = count(checks, Outcome::kHolds);
   text += fmt::format("{} {}", held, held == 1 ? "check holds" : "checks hold") + covered(checks);
   const std::string silent = what_is_not_judged(checks);
-  return silent.empty() ? text : text + "; not judged: " + silent;
+  return text + unseen(checks) + (silent.empty() ? "" : "; not judged: " + silent);
 }
 
 }  // namespace swarf::sim

@@ -34,8 +34,7 @@ struct LineElements {
   size_t first = 0, last = 0;
 };
 
-LineElements elements_of_line(int line, const char* option, const motion::Cycles& cycles) {
-  const toolpath::Elements& elements = cycles.elements();
+LineElements elements_of_line(int line, const char* option, const toolpath::Elements& elements) {
   std::optional<LineElements> found;
   int nearest = 0;
   for (size_t i = 0; i < elements.size(); ++i) {
@@ -59,6 +58,10 @@ size_t first_cycle(size_t element, const motion::Cycles& cycles) {
 
 }  // namespace
 
+void require_line(int line, const toolpath::Elements& elements) {
+  elements_of_line(line, "line", elements);
+}
+
 CycleWindow window_of(const WindowPlaces& places, const motion::Cycles& cycles) {
   CycleWindow window{0, cycles.size()};
   if (places.from_s) window.first = cycle_from(*places.from_s, "--from", cycles);
@@ -68,9 +71,11 @@ CycleWindow window_of(const WindowPlaces& places, const motion::Cycles& cycles) 
     window.end = std::min(static_cast<size_t>(last) + 1, cycles.size());
   }
   if (places.from_line)
-    window.first = first_cycle(elements_of_line(*places.from_line, "--from-line", cycles).first, cycles);
+    window.first =
+        first_cycle(elements_of_line(*places.from_line, "--from-line", cycles.elements()).first, cycles);
   if (places.to_line)
-    window.end = first_cycle(elements_of_line(*places.to_line, "--to-line", cycles).last + 1, cycles);
+    window.end =
+        first_cycle(elements_of_line(*places.to_line, "--to-line", cycles.elements()).last + 1, cycles);
   if (places.from_s && places.to_s && *places.to_s < *places.from_s)
     refuse_window(fmt::format("--to {:g}", *places.to_s), "this is before --from",
                   fmt::format("write at least {:g}", *places.from_s));

@@ -29,4 +29,7 @@ struct CycleWindow {
 /// nearest with), and an end before the start.
 CycleWindow window_of(const WindowPlaces& places, const motion::Cycles& cycles);
 
+/// Throws InputError "place-unknown", as window_of(), where the line moves nothing.
+void require_line(int line, const toolpath::Elements& elements);
+
 }  // namespace swarf::sim

@@ -18,6 +18,11 @@ namespace swarf::sim {
 /// the raw stock.
 std::vector<collision::Body> contact_bodies(const Job& job);
 
+/// What the scene says of their pairs, by the bodies' own names. Throws InputError "unknown-body" where it
+/// names what none of them is called, "pair-never-moves" where no axis lies between the two, and
+/// "pair-of-tool-and-stock", for those are judged as collisions.
+collision::PairRules contact_rules(const Job& job, const std::vector<collision::Body>& bodies);
+
 /// What a body is called and is.
 struct ContactBody {
   std::string name;  ///< of the link or fixture; "holder", with several tools "holder of T3"; "stock"
@@ -61,8 +66,11 @@ struct MachineContacts {
   std::vector<ContactBody> bodies;   ///< what the pairs count in
   collision::PathFindings findings;  ///< of all pairs but those of the tool with the stock (tool_clearance.h)
   std::vector<std::string> without_mesh;  ///< links that are not looked at: machine.toml gives them no mesh
+  /// Their pairs, but for links that guide them and what no axis parts from them: not looked at either.
+  std::vector<collision::NamePair> without_mesh_pairs;
   std::vector<Diagnostic> warnings;
-  double near_miss_mm = 0.0;  ///< gaps are looked for up to here
+  double near_miss_mm = 0.0;   ///< gaps are looked for up to here at least
+  collision::PairRules rules;  ///< of the scene
 
   std::vector<StockSuspect> suspects;        ///< by their first cycles, then by pair
   std::map<size_t, collision::Body> shapes;  ///< of the bodies of suspects, by index into `bodies`

@@ -23,6 +23,7 @@
 #include "sim/run/job_sweeps.h"
 #include "sim/run/machine_contacts.h"
 #include "sim/run/memory.h"
+#include "sim/run/tool_use.h"
 #include "stock/rays/surface_dexels.h"
 #include "stock/stock.h"
 #include "toolpath/nc_path.h"
@@ -40,6 +41,7 @@ struct MeasuredPath {
   motion::TimeEnvelope envelope{0, 1.0};  ///< of the cycles, for plots
   /// Of all cycles, for animations; none where nobody asks for them.
   std::optional<motion::AxisKeys> keys;
+  std::vector<Operation> operations;        ///< of the run's own motion
   std::optional<MachineContacts> contacts;  ///< of the run's own motion; none: not looked at
   /// What cut the measuring rays; Sweep::block is its index. Those of earlier set-ups stand behind the
   /// program's own and have no source.

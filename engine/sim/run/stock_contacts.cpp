@@ -39,6 +39,7 @@ StockContactCheck::StockContactCheck(const Job& job, const MachineContacts* cont
                                      const motion::Cycles& cycles, const CutSweeps& sweeps)
     : contacts_(contacts), sweeps_(sweeps), cycles_(cycles), reader_(cycles), due_(kNever) {
   if (contacts == nullptr || contacts->suspects.empty()) return;
+  if (job.scene.stock.auto_box) return;  // of an assumed block no contact is judged
   body_.emplace(job.machine, job.scene.stock.body_W().mesh_around());
   seen_mm_ = collision::StockBody::kSeenVoxels * job.scene.stock.voxel_mm + sweeps.error_bound_mm;
   for (const StockSuspect& of : contacts->suspects) {

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <limits>
 
 #include "avoidance/control.h"
@@ -49,10 +51,15 @@ avoidance::Outcome outcome_of(const std::string& row, const std::vector<std::str
   return avoidance::control({&job, load}, silent);
 }
 
-/// Each position of the grid by itself.
+/// Each position of the grid by itself. SWARF_WHOLE_GRID: of 9 x 9 x 3 positions, which takes minutes.
 TEST(ClampingSearch, FindsTheOptimumOfTheExhaustiveOne) {
-  const auto found = outcome_of(
-      "table2_3_holder_arm", {"post.clamping.step_mm=[12.0, 12.0, 10.0]", "post.clamping.count=[3, 5, 1]"});
+  const bool whole = std::getenv("SWARF_WHOLE_GRID") != nullptr;
+  const std::vector<std::string> grid =
+      whole ? std::vector<std::string>{"post.clamping.step_mm=[8.0, 8.0, 10.0]",
+                                       "post.clamping.count=[9, 9, 3]"}
+            : std::vector<std::string>{"post.clamping.step_mm=[12.0, 12.0, 10.0]",
+                                       "post.clamping.count=[3, 5, 1]"};
+  const auto found = outcome_of("table2_3_holder_arm", grid);
   ASSERT_TRUE(found.found);
   double best = std::numeric_limits<double>::infinity();
   size_t dropped = 0;
@@ -72,6 +79,10 @@ TEST(ClampingSearch, FindsTheOptimumOfTheExhaustiveOne) {
   }
   EXPECT_NEAR(found.positions[found.best].slides_mm, best, 1e-6);
   EXPECT_LT(found.simulations, found.positions.size()) << dropped << " without a full turn";
+  if (whole)
+    std::printf("%d simulations of %zu positions, %zu without a full turn; %.6f mm, exhaustive %.6f mm\n",
+                static_cast<int>(found.simulations), found.positions.size(), dropped,
+                found.positions[found.best].slides_mm, best);
 }
 
 TEST(ClampingSearch, NeedsFewSimulations) {

@@ -4,6 +4,7 @@
 
 #include "base/parallel.h"
 #include "collision/free_range.h"
+#include "collision/overlap_bound.h"
 #include "unit/collision/brute_distance.h"
 #include "unit/collision/toy_machine.h"
 
@@ -332,7 +333,7 @@ TEST(PathCheck, PairsThatAreLeftOutAreNamed) {
       on_table("vice", box_mesh({60, 40, 0}, {65, 45, 5}))};
   for (machine::Link& link : scene.links) link.mesh = box_mesh({0, 0, 0}, {1, 1, 1});  // none is skipped
   Diagnostics diagnostics;
-  const PairChoice choice = choose_pairs(scene, bodies, {{"clamp", "z_slide"}}, 1e-4, diagnostics);
+  const PairChoice choice = choose_pairs(scene, bodies, {{{"clamp", "z_slide"}}, {}}, 1e-4, diagnostics);
   EXPECT_EQ(choice.watched.size() + choice.left_out.size(), 15U);
   const auto reason = [&](size_t a, size_t b) {
     for (const LeftOutPair& one : choice.left_out) {
@@ -348,8 +349,28 @@ TEST(PathCheck, PairsThatAreLeftOutAreNamed) {
   ASSERT_EQ(diagnostics.list().size(), 1U);
   EXPECT_EQ(diagnostics.list()[0].code, "links-touch-at-home");
   EXPECT_NE(diagnostics.list()[0].text.find("column"), std::string::npos);
-  EXPECT_THROW(choose_pairs(scene, bodies, {{"clmp", "vice"}}, 1e-4, diagnostics), InputError);
+  EXPECT_THROW(choose_pairs(scene, bodies, {{{"clmp", "vice"}}, {}}, 1e-4, diagnostics), InputError);
   EXPECT_THROW(PathCheck(scene, bodies, {-1.0, 1e-3, 1e-4, {}}, diagnostics), InputError);
+}
+
+/// A pair with a near-miss distance of its own is watched, though one link guides the other, and up to there.
+TEST(PathCheck, APairMayHaveANearMissOfItsOwn) {
+  machine::MachineScene scene = toy_machine();
+  const std::vector<Body> bodies{
+      mesh_body("column", BodyKind::kLink, kColumn, box_mesh({-100, -100, -100}, {-80, 100, 100})),
+      mesh_body("x_slide", BodyKind::kLink, kXSlide, box_mesh({-50, -10, 0}, {0, 10, 10})),
+      on_table("post", box_mesh({25, -10, 0}, {30, 10, 10}))};
+  for (machine::Link& link : scene.links) link.mesh = box_mesh({0, 0, 0}, {1, 1, 1});
+  const std::vector<Cycle> cycles = polyline({axes(0), axes(20)}, 50);
+  EXPECT_EQ(check(scene, bodies, cycles).pairs.size(), 2U);  // both with the post
+  PathCheckOptions options;
+  options.rules.watched = {{{"x_slide", "column"}, 31.0}, {{"post", "x_slide"}, 4.0}};
+  const PathFindings found = check(scene, bodies, cycles, options);
+  ASSERT_EQ(found.pairs.size(), 3U);
+  EXPECT_TRUE(found.pairs[0].near_miss.within);
+  EXPECT_NEAR(found.pairs[0].near_miss.upper, 30.0, 2e-3);
+  EXPECT_FALSE(found.pairs[2].near_miss.within);
+  EXPECT_EQ(found.pairs[2].near_miss.lower, 4.0);
 }
 
 TEST(PathCheck, NothingAndOneCycle) {
@@ -360,7 +381,7 @@ TEST(PathCheck, NothingAndOneCycle) {
   const PathFindings found = check(scene, bodies, {Cycle{}});
   ASSERT_EQ(found.pairs.size(), 2U);
   EXPECT_EQ(found.pairs[0].contacts.size(), 1U);
-  EXPECT_NEAR(found.pairs[0].contacts.at(0).depth_mm, 5.0, 1e-4);
+  EXPECT_NEAR(found.pairs[0].contacts.at(0).depth_mm, 5.0, kDepthTolerance);
   EXPECT_TRUE(found.pairs[1].contacts.empty());
 }
 

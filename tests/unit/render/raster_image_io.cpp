@@ -48,5 +48,30 @@ TEST(ImageIo, SaysWhatIsWrongWithAPath) {
   std::filesystem::remove(path);
 }
 
+/// A gradient with noise, as metal is drawn.
+Image grainy(int width, int height) {
+  Image image{width, height, {}};
+  Rng rng(3);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      for (int c = 0; c < 4; ++c)
+        image.rgba.push_back(c == 3 ? 255
+                                    : static_cast<uint8_t>(60 + 120 * x / width + rng.uniform(0.0, 6.0)));
+  return image;
+}
+
+TEST(ImageIo, WebpIsSmallAndTheSameEachTime) {
+  const Image image = grainy(320, 200);
+  const std::string bytes = webp(image, kPageQuality);
+  EXPECT_TRUE(bytes.starts_with("RIFF"));
+  EXPECT_EQ(bytes.substr(8, 4), "WEBP");
+  EXPECT_EQ(webp(image, kPageQuality), bytes);
+  const std::string path = kFolder + "swarf_grainy.png";
+  save_png(image, path);
+  EXPECT_LT(3 * bytes.size(), std::filesystem::file_size(path));
+  std::filesystem::remove(path);
+  EXPECT_FALSE(webp(Image{1, 1, {1, 2, 3, 255}}, kPageQuality).empty());
+}
+
 }  // namespace
 }  // namespace swarf::render

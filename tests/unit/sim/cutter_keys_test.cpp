@@ -130,5 +130,22 @@ TEST(CutterKeys, WhatIsWrongIsToldAtItsLine) {
   }
 }
 
+/// What is missing or no such number is told once, and nothing that follows from it.
+TEST(CutterKeys, EachFaultOfALengthIsToldOnce) {
+  const auto codes = [](const std::string& keys) {
+    std::string all;
+    for (const Diagnostic& one : read(keys).diagnostics) all += one.code + " ";
+    return all;
+  };
+  EXPECT_EQ(codes(""), "missing-key missing-key ");  // diameter and flutes
+  EXPECT_EQ(codes("diameter_mm = 10"), "missing-key ");
+  EXPECT_EQ(codes("flute_length_mm = 25\ncorner_radius_mm = 2"), "missing-key ");
+  EXPECT_EQ(codes("diameter_mm = -1\nflute_length_mm = 25"), "out-of-range ");
+  EXPECT_EQ(codes("diameter_mm = \"x\"\nflute_length_mm = 25\ncorner_radius_mm = 2"), "wrong-type ");
+  EXPECT_EQ(codes("diameter_mm = 10\nflute_length_mm = 25\ncorner_radius_mm = -2"), "out-of-range ");
+  EXPECT_EQ(codes("shape = \"drill\"\ndiameter_mm = 10\nflute_length_mm = 25"), "missing-key ");
+  EXPECT_EQ(codes("shape = \"taper\"\ndiameter_mm = 10\nflute_length_mm = 25"), "missing-key ");
+}
+
 }  // namespace
 }  // namespace swarf::sim::cutter_keys_test

@@ -54,6 +54,22 @@ TEST(ToolWords, OneMayGoWithoutANumber) {
   EXPECT_TRUE(tools[0].name.empty());
 }
 
+TEST(ToolWords, DigitsAloneAreTheNumber) {
+  const std::vector<Cutter> tools = read("1=6,12=ball4");
+  ASSERT_EQ(tools.size(), 2U);
+  EXPECT_EQ(tools[0].number, 1);
+  EXPECT_EQ(tools[1].number, 12);
+}
+
+TEST(ToolWords, ADiameterThatIsNoneIsToldOnce) {
+  for (const char* list : {"T1=0", "T1=-6", "T1=1e9", "T1=100in"}) {
+    Diagnostics diagnostics;
+    EXPECT_TRUE(read_tool_words(list, {"test"}, diagnostics).empty()) << list;
+    ASSERT_EQ(diagnostics.list().size(), 1U) << list;
+    EXPECT_NE(diagnostics.list()[0].text.find("above 0 and at most 1000 mm"), std::string::npos) << list;
+  }
+}
+
 TEST(ToolWords, AHolderIsNotBare) {
   EXPECT_FALSE(is_bare(Cutter{}));
 }
