@@ -30,7 +30,7 @@ constexpr double kSharp = 0.5235987755982988;
 constexpr double kChord = 5e-5;
 constexpr size_t kMostFacets = 3'000'000;
 /// The same of CAD files, mm: as the designs of scenes.
-constexpr double kCadChord = 1e-3;
+constexpr double kCadChord = 5e-3;
 /// Half a unit in the last place of a float, relative.
 constexpr double kFloatRounding = 6e-8;
 

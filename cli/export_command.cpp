@@ -101,7 +101,8 @@ int export_run(const ExportOptions& options) {
   const sim::MeasuredPath path = options.window.any()
                                      ? reports::window_motion(stored.job, options.folder, progress)
                                      : reports::motion_of(stored, options.folder, moves, progress);
-  reports::FinishedRun run{stored.job, *path.cycles, stored.stock, stored.dexels, *path.carried};
+  const sim::Job shown = sim::with_worn(stored.job, stored.worn);
+  reports::FinishedRun run{shown, *path.cycles, stored.stock, stored.dexels, *path.carried};
   if (options.window.any()) run.window = sim::window_of(options.window, *path.cycles);
   if (!options.gltf.empty() || !options.machine_gltf.empty()) write_gltf(options, run);
   write_meshes(options, run);

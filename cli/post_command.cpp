@@ -11,11 +11,13 @@
 #include "base/units.h"
 #include "cli/commands.h"
 #include "cli/posted_scene.h"
+#include "cli/preferred.h"
 #include "cli/shell_text.h"
 #include "cli/terminal.h"
 #include "machine/machine_scene.h"
 #include "machine/shipped.h"
 #include "post/post.h"
+#include "post/preference.h"
 #include "post/shipped.h"
 #include "reports/avoidance_output.h"
 #include "sim/job/scene_text.h"
@@ -33,7 +35,7 @@ namespace fs = std::filesystem;
 struct PostCommand {
   std::vector<std::string> overrides;
   bool avoid = false;
-  std::string file, machine, post, dialect, tools, output, fixed_cl, cutcom, circle;
+  std::string file, machine, post, dialect, tools, output, fixed_cl, cutcom, circle, planes, prefer;
   std::vector<double> work_origin;
   double work_rotation_deg = 0.0, tolerance_um = 10.0, axis_tolerance_deg = 0.1;
   bool tcp = false, no_tcp = false, json = false;
@@ -80,6 +82,7 @@ post::PostOptions options_of(const PostCommand& given, Diagnostics& told) {
     throw InputError("tcp-twice", {"swarf post"}, "--tcp and --no-tcp contradict each other",
                      "give one of them");
   if (given.tcp || given.no_tcp) options.tcp = given.tcp;
+  if (!given.planes.empty()) options.planes = post::plane_use(given.planes);
   options.tip_mm = given.tolerance_um * kMicrometre;
   options.axis_rad = rad_from_deg(given.axis_tolerance_deg);
   if (!given.cutcom.empty())
@@ -112,8 +115,9 @@ std::vector<std::pair<std::string, std::string>> table_of(const post::PostFormat
       {"written",
        fmt::format("{} for {}, {}", format.name, machine.name, result.tcp ? "with TCP" : "without TCP")},
       {"blocks", fmt::format("{} lines for {} positions of the CL data", result.written.blocks, plan.points)},
-      {"moves", fmt::format("{}, of them {} arcs, {} cycles, {} approaches, {} turns at rest", plan.steps,
-                            plan.arcs, plan.holes, plan.approaches, plan.pole_turns)},
+      {"moves", fmt::format("{}, of them {} arcs, {} cycles, {} approaches, {} turns at rest{}", plan.steps,
+                            plan.arcs, plan.holes, plan.approaches, plan.pole_turns,
+                            plan.tilts > 0 ? fmt::format("; {} in tilted planes", plan.tilts) : "")},
       {"time", fmt::format("{}: feed {}, rapid {}, dwell {}; accelerations and tool changes not counted",
                            spoken_time(plan.feed_s + plan.rapid_s + plan.dwell_s), spoken_time(plan.feed_s),
                            spoken_time(plan.rapid_s), spoken_time(plan.dwell_s))}};
@@ -161,6 +165,7 @@ nlohmann::ordered_json json_of(const PostCommand& given, const post::PostFormat&
                               {"moves", plan.steps},
                               {"arcs", plan.arcs},
                               {"cycles", plan.holes},
+                              {"tilted_planes", plan.tilts},
                               {"approaches", plan.approaches},
                               {"turns_at_rest", plan.pole_turns},
                               {"slowed", plan.slowed},
@@ -257,6 +262,10 @@ int post_with_avoidance(const PostCommand& given) {
   if (given.output == "-")
     throw InputError("two-outputs", {"-o -"}, "a program that avoids collisions goes into a file",
                      "name it: -o part.nc");
+  if (!given.planes.empty() || !given.prefer.empty())
+    throw InputError("flags-and-scene", {given.file},
+                     "--planes and --prefer are for CL data alone: here the ways are chosen by collisions",
+                     "write them in a post of your own: prefer, and [tilted_plane] use");
   if (is_scene(given) && !(given.machine.empty() && given.tools.empty() && given.work_origin.empty()))
     throw InputError("flags-and-scene", {given.file}, "the scene says machine, tools and work origin itself",
                      "change its keys: --set setup.work_origin_mm=[0, 0, 100]");
@@ -291,7 +300,7 @@ int run_post(const PostCommand& given) {
   Diagnostics told;
   const post::PostFormat format = format_of(given);
   const machine::MachineScene scene = machine_of(given);
-  const post::PostOptions options = options_of(given, told);
+  post::PostOptions options = options_of(given, told);
   const bool to_stdout = given.output == "-";
   if (to_stdout && given.json)
     throw InputError("two-outputs", {"swarf post"}, "--json and -o - both want the standard output",
@@ -308,6 +317,9 @@ int run_post(const PostCommand& given) {
     pending.clear();
   };
   TerminalProgress progress;
+  std::optional<Preferred> preferred;
+  if (const auto wished = given.prefer.empty() ? format.prefer : post::preference(given.prefer))
+    preferred.emplace(*wished, scene.model, options);
   const post::PostResult result = post::post(
       given.file, scene.model, format, options,
       [&](std::string_view text) {
@@ -318,15 +330,18 @@ int run_post(const PostCommand& given) {
   if (interrupted()) return kStopped;
   flush();
   if (file) file->move_into_place();
+  if (preferred) preferred->compare(given.file, format, result);
   if (given.json) {
-    fmt::print("{}\n", json_of(given, format, scene.model, result)
-                           .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+    nlohmann::ordered_json json = json_of(given, format, scene.model, result);
+    if (preferred) json["choice"] = preferred->json();
+    fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
     return kPass;
   }
   print_diagnostics(told.list());
   if (to_stdout || manner().quiet) return kPass;
   fmt::print("{}\n", given.output);
   print_table(table_of(format, scene.model, result));
+  if (preferred) print_table(preferred->lines());
   return kPass;
 }
 
@@ -342,7 +357,10 @@ LinuxCNC has TCP only where its INI file switches kinematics by M428 and M429: -
 
 Where the tool is out of the way (the start, a tool change, a RAPID behind a RAPID) another solution of the rotary
 axes, or another turn, is taken if the moves that follow need it; the tool is then retracted along the machine's Z.
-Elsewhere an axis that reaches the end of its travel is an error with its line.
+Elsewhere an axis that reaches the end of its travel is an error with its line. --prefer time, accuracy or travel looks
+at all ways through the whole program (dynamic programming; a solution is held through each connected cut) and takes the
+one with the least time, proven deviation of the tip, or slide movements; it tells why, stretch by stretch. The whole
+plan is then held in memory, about a kilobyte for each block.
 
 A scene brings the whole set-up: stock, fixtures, clamping, tools. Every way through it is then looked at for
 collisions, the machine against the work as it has been cut so far: the other solution of the rotary axes is taken,
@@ -353,7 +371,9 @@ With --fix OUT.cl the path is changed then, and where it gouges the design: bloc
 (to .002 deg) that frees everything up to there, else the smallest lift, each proven over the whole motion; OUT.cl is
 the file with these positions, for the CAM system, and -o its program.
 
-Drilling cycles (CYCLE/DRILL ..) stay cycles where the control drills along its own Z: G81, CYCLE81, CYCL DEF 200.
+Drilling cycles (CYCLE/DRILL ..) stay cycles: G81, CYCLE81, CYCL DEF 200. Where the tool stands across the control's
+own Z they are written in a tilted working plane (G68.2, CYCLE800, PLANE SPATIAL); LinuxCNC has none, there they become
+moves. --planes constant writes everything so that is cut with one direction of the tool (3+2 axes).
 
 X Y Z count from the work's origin: G54 has to hold it, with rotary axes at zero.
 
@@ -400,6 +420,16 @@ void add_post(CLI::App& app, int& exit_code) {
   command->add_flag("--tcp", options->tcp,
                     "the control keeps the tip on its line; as the dialect has it when left out");
   command->add_flag("--no-tcp", options->no_tcp, "axis values: any control of these axes can drive them");
+  command
+      ->add_option("--prefer", options->prefer,
+                   "choose the rotary solutions of the whole program by this, over all ways through it; "
+                   "when left out, as the post says, or the first way that can be driven")
+      ->check(CLI::IsMember({"time", "accuracy", "travel"}));
+  command
+      ->add_option("--planes", options->planes,
+                   "tilted working planes (G68.2 ..): where a cycle needs one, wherever the tool keeps its "
+                   "direction from rapid to rapid, or never; as the post has it when left out")
+      ->check(CLI::IsMember({"never", "cycles", "constant"}));
   command
       ->add_option(
           "--tolerance-um", options->tolerance_um,

@@ -90,7 +90,9 @@ int render(const RenderOptions& options) {
   const sim::MeasuredPath path = options.window.any()
                                      ? reports::window_motion(stored.job, options.folder, progress)
                                      : reports::motion_of(stored, options.folder, moves, progress);
-  reports::FinishedRun run{stored.job, *path.cycles, stored.stock, stored.dexels, *path.carried};
+  // What a finding shows had not been cut yet.
+  const sim::Job shown = options.finding > 0 ? stored.job : sim::with_worn(stored.job, stored.worn);
+  reports::FinishedRun run{shown, *path.cycles, stored.stock, stored.dexels, *path.carried};
   const reports::KeptFindings findings = reports::read_findings(options.folder);
   run.findings = &findings.list;
   if (options.window.any()) run.window = sim::window_of(options.window, *path.cycles);

@@ -311,6 +311,14 @@ std::vector<std::pair<std::string, std::string>> advice_lines(const avoidance::A
   std::vector<std::pair<std::string, std::string>> lines;
   lines.emplace_back("CL data", fmt::format("{}, {} positions changed, {} programs looked at", file,
                                             advice.blocks.size(), advice.looks));
+  using avoidance::Advice;
+  lines.emplace_back(
+      "resolution",
+      fmt::format(
+          "{} angles from {:g} to {:g} deg, the least to {:g} deg; lifts doubled, the least to {:g} mm; what "
+          "is free only between two of them may be passed over",
+          Advice::kLeansDeg.size(), Advice::kLeansDeg.front(), Advice::kLeansDeg.back(),
+          Advice::kResolutionDeg, Advice::kLiftResolutionMm));
   constexpr size_t kTold = 30;
   for (const avoidance::BlockChange& block : advice.blocks) {
     if (lines.size() > kTold) break;

@@ -230,9 +230,9 @@ ReportData compare_page(const ComparedPair& pair, const measure::ComparisonInput
   if (result.difference_mm3)
     data.key_numbers.push_back({pair.revisions ? "Now less earlier" : "Stock less design",
                                 fmt::format("{:.5g}", *result.difference_mm3), "mm³",
-                                fmt::format(pair.revisions ? "{:.4g} mm³ added, {:.4g} mm³ removed"
-                                                           : "{:.4g} mm³ too much, {:.4g} mm³ missing",
-                                            *result.excess_mm3, *result.gouge_mm3)});
+                                fmt::format("{:.4g} mm³ {}, {:.4g} mm³ {}", *result.excess_mm3,
+                                            pair.revisions ? "added" : "too much", *result.gouge_mm3,
+                                            pair.revisions ? "removed" : "missing")});
   for (size_t i = 0; i < std::min(kPicturedRegions, result.regions.size()); ++i)
     data.findings.push_back(region_finding(pair, result.regions[i]));
   data.viewer.part_glb = compare_glb(result.stock_map, scale_um);

@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "base/file.h"
+#include "mesh/mesh_io.h"
 #include "reports/avoidance_output.h"
 #include "reports/html.h"
 #include "reports/kept_inputs.h"
@@ -160,6 +161,11 @@ void write_state_or_keep(PendingFolder& folder, const sim::Job& job, const sim::
   }
 }
 
+/// A fixture that the program has cut into, by the number of its link.
+std::string worn_name(size_t link) {
+  return fmt::format("fixture_{}_cut.ply", link);
+}
+
 void write_glb(const PendingFolder& folder, const FinishedRun& run, const TriMesh& closed,
                const sim::Result& result, Progress& progress, RunFiles& files) {
   using render::GltfEncoding;
@@ -220,7 +226,10 @@ std::vector<Diagnostic> write_run(PendingFolder& folder, const sim::Job& job, si
     folder.move_into_place();
     return {};
   }
-  const sim::Job shown = sim::with_worn(job, sim::worn_fixtures(job, result));
+  const std::vector<sim::WornFixture> worn = sim::worn_fixtures(job, result);
+  for (const sim::WornFixture& fixture : worn)
+    attempts.run([&] { mesh::save_mesh(folder.file(worn_name(fixture.link)), fixture.mesh_M); });
+  const sim::Job shown = sim::with_worn(job, worn);
   FinishedRun run{shown, *result.main.cycles, *result.stock, result.main.dexels, *result.main.carried};
   if (result.main.keys) run.keys = &*result.main.keys;
   run.findings = &result.findings;
@@ -257,11 +266,27 @@ sim::Job read_job(const std::string& folder, const std::vector<std::string>& ove
   return sim::load_kept_job(folder, overrides);
 }
 
+namespace {
+
+std::vector<sim::WornFixture> read_worn(const fs::path& folder, const sim::Job& job) {
+  std::vector<sim::WornFixture> worn;
+  for (size_t i = 0; i < job.machine.links.size(); ++i) {
+    const fs::path file = folder / worn_name(i);
+    if (!job.machine.links[i].fixture || !fs::exists(file)) continue;
+    worn.push_back({i, job.machine.links[i].name, 0.0, mesh::load_mesh(file.string())});
+    worn.back().mesh_M.normals.clear();
+  }
+  return worn;
+}
+
+}  // namespace
+
 StoredRun read_run(const std::string& folder) {
   const fs::path root(folder);
   sim::Job job = read_job(folder, {});
   stock::Stock stock = stock::Stock::load((root / "stock.vdb").string());
-  StoredRun run{std::move(job), std::move(stock), {}};
+  std::vector<sim::WornFixture> worn = read_worn(root, job);
+  StoredRun run{std::move(job), std::move(stock), {}, std::move(worn)};
   const std::vector<stock::RayFieldPtr> fields = sim::design_rays(run.job);
   for (size_t i = 0; i < fields.size(); ++i) {
     const fs::path rays = root / fmt::format("surface_{}.rays", i);

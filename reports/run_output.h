@@ -8,6 +8,7 @@
 #include "reports/metrics_json.h"
 #include "reports/pending_folder.h"
 #include "sim/job/kept_job.h"
+#include "sim/run/worn_fixtures.h"
 #include "sim/simulation.h"
 
 namespace swarf::avoidance {
@@ -45,6 +46,7 @@ struct StoredRun {
   sim::Job job;
   stock::Stock stock;
   std::vector<stock::SurfaceDexels> dexels;
+  std::vector<sim::WornFixture> worn;  ///< without what was removed
 };
 StoredRun read_run(const std::string& folder);
 

@@ -14,8 +14,6 @@ namespace {
 
 using kinematics::AxisKind;
 
-constexpr size_t kRoutesMost = 64;
-
 /// Lines alone: arcs and cycles are looked at as the moves that they stand for.
 post::PostFormat plain(post::PostFormat format) {
   format.motion.clockwise = format.motion.counter_clockwise = {};
@@ -24,26 +22,7 @@ post::PostFormat plain(post::PostFormat format) {
   return format;
 }
 
-std::string way_text(const kinematics::MachineModel& machine, const post::RouteChoice& way) {
-  std::string text;
-  for (size_t i = 0; i < machine.axes.size(); ++i)
-    if (machine.axes[i].kind == AxisKind::kRotary)
-      text += fmt::format("{}{} {:.3f}", text.empty() ? "" : " ", machine.axes[i].name,
-                          deg_from_rad(way.start.q[static_cast<long>(i)]));
-  text += way.lifted ? ", lifted before" : ", driven there";
-  for (size_t i = 0; i < way.sides.size(); ++i)
-    if (way.sides[i] == post::PoleSide::kOther) text += fmt::format("; turns at pole {}", i + 1);
-  return text;
-}
-
 }  // namespace
-
-double slides_of(const kinematics::MachineModel& machine, const post::PlanSummary& plan) {
-  double sum = 0.0;
-  for (size_t i = 0; i < machine.axes.size(); ++i)
-    if (machine.axes[i].kind == AxisKind::kLinear) sum += plan.travel[static_cast<long>(i)];
-  return sum;
-}
 
 post::PostOptions options_of(const sim::Job& job) {
   const sim::PostSettings& given = *job.scene.post;
@@ -87,6 +66,7 @@ std::optional<Failure> material_failure(const sim::Job& job) {
 Trial::Trial(const sim::Job& job, const post::PostFormat& format, CollisionJudge* judge)
     : job_(job), format_(plain(format)), judge_(judge), options_(options_of(job)) {
   options_.tcp = false;
+  options_.planes = post::PlaneUse::kNever;  // the same motion
   options_.hooks.faults_most = 1;
   if (judge_ != nullptr) {
     options_.hooks.judge = [this](const post::PlannedStretch& planned, const kinematics::AxisValues* from) {
@@ -103,9 +83,12 @@ Trial::Trial(const sim::Job& job, const post::PostFormat& format, CollisionJudge
 }
 
 void Trial::follow_all(bool by_slides) {
-  options_.hooks.routes_most = kRoutesMost;
-  if (!by_slides) return;
-  options_.hooks.cost = [this](const post::PlanSummary& plan) { return slides_of(job_.machine.model, plan); };
+  options_.hooks.routes_most = post::kRoutesMost;
+  const post::Preference preferred =
+      by_slides ? post::Preference::kTravel : format_.prefer.value_or(post::Preference::kTime);
+  options_.hooks.cost = [this, preferred](const post::PlanSummary& plan) {
+    return post::preference_cost(preferred, job_.machine.model, plan);
+  };
 }
 
 Attempt Trial::run(Progress& progress) {
@@ -117,7 +100,7 @@ Attempt Trial::run(Progress& progress) {
     attempt_.plan = result.plan;
     attempt_.choices = result.choices;
     dropped_ = result.routes_dropped;
-    attempt_.slides_mm = slides_of(job_.machine.model, result.plan);
+    attempt_.slides_mm = post::slides_of(job_.machine.model, result.plan);
   } catch (const InputError&) {
     if (!failed_ || failures_.empty()) throw;
     attempt_.failure = joined_failure();
@@ -138,7 +121,7 @@ void Trial::add(const post::RouteTry& way) {
   const bool good = way.fault.code.empty();
   passed_ = passed_ || good;
   if (!failed_ && attempt_.tries.size() < Attempt::kTriesMost)
-    attempt_.tries.push_back({way.first_line, way.last_line, way_text(job_.machine.model, way.way),
+    attempt_.tries.push_back({way.first_line, way.last_line, post::way_text(job_.machine.model, way.way),
                               way.fault.text, way.fault_line, way.time_s});
   if (!good && !failed_) failures_.push_back(failure_of(way));
 }

@@ -9,6 +9,7 @@
 #include "avoidance/collision_judge.h"
 #include "base/progress.h"
 #include "post/post.h"
+#include "post/preference.h"
 #include "sim/job/scene.h"
 
 namespace swarf::avoidance {
@@ -44,8 +45,6 @@ struct Attempt {
   static constexpr size_t kTriesMost = 2000;
 };
 
-/// Of the linear axes together, mm.
-double slides_of(const kinematics::MachineModel& machine, const post::PlanSummary& plan);
 /// As the scene's [post] has it.
 post::PostOptions options_of(const sim::Job& job);
 /// Tools stand out so much farther, by tool of the scene.
@@ -61,7 +60,7 @@ class Trial {
   /// All must outlive it.
   Trial(const sim::Job& job, const post::PostFormat& format, CollisionJudge* judge);
 
-  /// All ways at once; the quickest, or that of the least slide movements.
+  /// All ways at once; the one that the post prefers (time), or that of the least slide movements.
   void follow_all(bool by_slides);
   /// Instead of the scene's CL data; must outlive it.
   void of_text(const std::string& text) { options_.cl_text = &text; }

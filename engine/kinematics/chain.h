@@ -13,6 +13,17 @@ struct Sines {
   double sine[kMaxAxes], cosine[kMaxAxes];
 };
 
+/// Of the rotary values in q.
+inline Sines sines_of(const MachineModel& machine, const AxisValues& q) {
+  Sines of;
+  for (size_t i = 0; i < machine.axes.size(); ++i) {
+    if (machine.axes[i].kind == AxisKind::kLinear) continue;
+    of.sine[i] = std::sin(q[static_cast<long>(i)]);
+    of.cosine[i] = std::cos(q[static_cast<long>(i)]);
+  }
+  return of;
+}
+
 /// How far the link of the axis moves per unit of its value, along or about the direction: +1 or -1.
 /// ISO 841: positive values move the tool positively against the work, so table links move the other way.
 inline double link_sense(const Axis& axis) {

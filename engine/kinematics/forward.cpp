@@ -18,12 +18,7 @@ Pose axis_motion(const Axis& axis, double q) {
 }
 
 ToolPose forward(const MachineModel& machine, const AxisValues& q) {
-  Sines of;
-  for (size_t i = 0; i < machine.axes.size(); ++i) {
-    if (machine.axes[i].kind == AxisKind::kLinear) continue;
-    of.sine[i] = std::sin(q[i]);
-    of.cosine[i] = std::cos(q[i]);
-  }
+  const Sines of = sines_of(machine, q);
   Vec3 point = machine.tip_M, tool_axis = machine.tool_axis_M;
   from_tool_to_work(machine, [&](const LinkStep& step) { carry(step, q, of, point, tool_axis); });
   return {machine.X_MW.linear().transpose() * (point - machine.X_MW.translation()),

@@ -11,7 +11,8 @@ constexpr std::array<const char*, kPlaces> kNames{
     "name",    "text",         "seconds", "number",    "machine",
     "source",  "program",      "bottom",  "clear",     "surface",
     "retract", "return",       "depth",   "clearance", "second_clearance",
-    "step",    "step_first",   "dwell",   "feed",      "pitch"};
+    "step",    "step_first",   "dwell",   "feed",      "pitch",
+    "turn_1",  "turn_2",       "turn_3",  "side"};
 
 /// Where the piece that starts at `from` ends: at the next space outside of quotes.
 size_t piece_end(std::string_view line, size_t from) {

@@ -45,6 +45,10 @@ enum class Place {
   kDwell,
   kFeed,
   kPitch,
+  kTurn1,
+  kTurn2,
+  kTurn3,
+  kSide,  // of a tilted plane
   kCount
 };
 inline constexpr size_t kPlaces = static_cast<size_t>(Place::kCount);

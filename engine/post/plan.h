@@ -2,10 +2,12 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "kinematics/machine_model.h"
+#include "post/tilted_plane.h"
 #include "program/cl/program.h"
 
 namespace swarf::post {
@@ -23,7 +25,7 @@ struct PlanStep {
   StepKind kind = StepKind::kRapid;
   kinematics::AxisValues q = kinematics::AxisValues::Zero();
   ToolPose pose;                   ///< W
-  Vec3 p = Vec3::Zero();           ///< program X Y Z, mm: of the tip with TCP, else of the axes
+  Vec3 p = Vec3::Zero();           ///< program X Y Z, mm: of the tip with TCP or in a plane, else of the axes
   Vec3 axes_p = Vec3::Zero();      ///< kApproach: the same without TCP
   std::array<double, 3> rotary{};  ///< A B C, rad; 0 for those that the machine lacks
   Vec3 centre = Vec3::Zero();      ///< kArc: program coordinates
@@ -43,6 +45,7 @@ struct PlanStep {
   bool tcp = false, timed = false;  ///< TCP is on; feeds are inverse times, or counted anew
   bool turns = false;               ///< a rotary axis moves
   bool at_cl_point = false;         ///< it ends at a position of the CL data
+  std::shared_ptr<const TiltedPlane> tilt;  ///< p counts in it, and TCP is off; null: none
 };
 
 /// A note of the CL data, with the number of steps of the stretch that come before it.
@@ -61,6 +64,7 @@ struct PlannedStretch {
 /// What all of it comes to.
 struct PlanSummary {
   long points = 0, steps = 0, arcs = 0, holes = 0, approaches = 0;
+  long tilts = 0;                                     ///< times that a tilted plane is entered
   long pole_turns = 0;                                ///< steps that turn the rotary axes at rest
   long slowed = 0;                                    ///< steps that an axis does not let run at their feed
   double feed_s = 0.0, rapid_s = 0.0, dwell_s = 0.0;  ///< without accelerations and tool changes

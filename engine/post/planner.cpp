@@ -64,7 +64,7 @@ void Planner::move(const program::Move& move) {
   if (changes_tool) use_tool(move.tool);
   if (next_hole_) {
     in_hole_ = next_hole_->moves;
-    holes_.push_back({moves_.size(), *next_hole_});
+    holes_.push_back({moves_.size(), *next_hole_, move.spindle_rpm});
     next_hole_.reset();
   }
   if (in_hole_ > 0) --in_hole_;
@@ -153,7 +153,7 @@ void time_stretch(bool tcp, PlannedStretch& stretch) {
     return one.kind == StepKind::kFeed && one.turns;
   });
   for (PlanStep& step : stretch.steps)
-    step.timed = turns && (step.kind == StepKind::kFeed || step.kind == StepKind::kArc);
+    step.timed = turns && !step.tilt && (step.kind == StepKind::kFeed || step.kind == StepKind::kArc);
 }
 
 double cost(const PlannerHooks& hooks, const PlanSummary& plan) {
@@ -181,7 +181,7 @@ bool is_beaten(const PlannerHooks& hooks, const kinematics::MachineModel& machin
 /// The route with this stretch, unless another one beats it.
 void Planner::go_on(Route longer, Plan plan, std::vector<Route>& routes) const {
   time_stretch(setup_.rules.tcp, plan.stretch);
-  longer.state = {plan.q, true, false, false, plan.summary};
+  longer.state = {plan.q, true, false, false, plan.summary, plan.tilt};
   longer.choices.push_back(std::move(plan.way));
   longer.state.summary.steps += static_cast<long>(plan.stretch.steps.size());
   longer.stretches.push_back(std::make_shared<const PlannedStretch>(std::move(plan.stretch)));
@@ -215,18 +215,23 @@ Planner::Entry Planner::entry(const State& state) const {
           state.approach_next};
 }
 
+namespace {
+
 /// At the pole the outer axis is free: it stands where the first move that tilts the tool wants it.
-AxisValues Planner::turned_for_tilt(const ToolPose& pose, const AxisValues& q) const {
-  for (const program::Move& move : moves_) {
-    const ToolPose to = snapped(*follower_, move.to);
+AxisValues turned_for_tilt(const Follower& follower, std::span<const program::Move> moves,
+                           const ToolPose& pose, const AxisValues& q) {
+  for (const program::Move& move : moves) {
+    const ToolPose to = snapped(follower, move.to);
     if (angle_between(to.axis_W, pose.axis_W) < 1e-6) continue;
     toolpath::BlockMove leaving;
     leaving.from = pose;
     leaving.to = {pose.tip_W, to.axis_W};
-    return motion::leaving_pole(follower_->inverse, leaving, q);
+    return motion::leaving_pole(follower.inverse, leaving, q);
   }
   return q;
 }
+
+}  // namespace
 
 std::vector<Start> Planner::candidates(const State& state, const Entry& entry) const {
   const kinematics::MachineModel& machine = follower_->machine;
@@ -240,7 +245,7 @@ std::vector<Start> Planner::candidates(const State& state, const Entry& entry) c
   const kinematics::InverseSolutions both = follower_->inverse.solve(entry.pose, state.q);
   for (int i = 0; i < both.count; ++i) {
     const AxisValues at = both.branch[i].q;
-    const AxisValues ready = entry.approach ? turned_for_tilt(entry.pose, at) : at;
+    const AxisValues ready = entry.approach ? turned_for_tilt(*follower_, moves_, entry.pose, at) : at;
     const bool pole = both.branch[i].outcome == kinematics::InverseOutcome::kSingular;
     for (size_t k = 0; k <= machine.axes.size(); ++k) {
       for (const double turn : {0.0, kTurn, -kTurn, 0.5 * kTurn, -0.5 * kTurn}) {

@@ -30,6 +30,7 @@
 #include "base/diagnostics.h"
 #include "post/follow.h"
 #include "post/plan.h"
+#include "post/plane_runs.h"
 #include "program/control/work_space.h"
 
 namespace swarf::post {
@@ -39,15 +40,6 @@ struct PostTool {
   int number = 0;
   std::string name;
   double length_mm = 0.0;  ///< gauge line to tip
-};
-
-/// What a dialect can do, from PostFormat.
-struct PostAbilities {
-  std::array<bool, 3> planes{};  ///< arcs in XY, ZX, YZ
-  bool helix = true, tcp_arcs = true;
-  bool drill = false, drill_dwell = false, deep = false, chip_break = false, bore = false, bore_dwell = false,
-       tap = false;
-  double arc_digit_mm = 1e-3;  ///< last digit of a linear word
 };
 
 /// A candidate for the start of a stretch.
@@ -136,15 +128,12 @@ class Planner final : public program::ClSink {
   long routes_dropped() const { return routes_dropped_; }
 
  private:
-  struct HoleSpan {
-    size_t first = 0;
-    program::ClHole hole;
-  };
   /// What the stretches so far have left.
   struct State {
     kinematics::AxisValues q = kinematics::AxisValues::Zero();
     bool started = false, approach_next = true, tool_changed = false;
     PlanSummary summary;
+    std::shared_ptr<const TiltedPlane> tilt;
   };
   struct Plan {
     PlannedStretch stretch;
@@ -156,6 +145,9 @@ class Planner final : public program::ClSink {
     int fault_line = 0;
     size_t fault_step = 0;
     PlanSummary summary;
+    std::vector<PlaneRun> runs;
+    size_t run = 0;  ///< of runs, the next one
+    std::shared_ptr<const TiltedPlane> tilt;
   };
   using TakePlan = std::function<bool(Plan)>;  ///< true: no other one is wanted
   /// A program up to here.
@@ -175,7 +167,6 @@ class Planner final : public program::ClSink {
   void tell(const FollowFault& fault, int line);
   std::vector<Start> candidates(const State& state, const Entry& entry) const;
   Entry entry(const State& state) const;
-  kinematics::AxisValues turned_for_tilt(const ToolPose& pose, const kinematics::AxisValues& q) const;
   Plan plan_from(const State& state, const Entry& entry, RouteChoice way) const;
   Plan judged_plan(const State& state, const Entry& entry, RouteChoice way) const;
   void tell_tried(const State& state, const Plan& plan) const;
@@ -186,15 +177,16 @@ class Planner final : public program::ClSink {
   bool add_move(const program::Move& move, Plan& plan) const;
   bool add_arc(const program::Move& move, Plan& plan) const;
   bool add_hole(const HoleSpan& span, Plan& plan) const;
-  bool keeps_cycle(const HoleSpan& span, const kinematics::AxisValues& q) const;
+  size_t add_span(const HoleSpan& span, size_t at, std::vector<size_t>& steps_before, Plan& plan) const;
+  void change_plane(size_t move, Plan& plan) const;
+  void stand(const program::Move& move, Plan& plan) const;
   void add_approach(const program::Move& move, const ToolPose& pose, const kinematics::AxisValues& q,
                     bool started, Plan& plan) const;
   PlanStep step_at(const program::Move& move, const ToolPose& pose, const kinematics::AxisValues& q,
-                   StepKind kind, bool tcp) const;
+                   StepKind kind, bool tcp, const std::shared_ptr<const TiltedPlane>& tilt) const;
   void add_step(PlanStep step, double way_mm, Plan& plan) const;
   void without_tcp(size_t first, Plan& plan) const;
   void use_tool(int tool);
-  Vec3 program_point(const ToolPose& pose, const kinematics::AxisValues& q, bool tcp) const;
 
   const PlannerSetup& setup_;
   std::string file_;

@@ -31,25 +31,27 @@ void add_travel(const AxisValues& from, const AxisValues& to, PlanSummary& summa
   summary.high = summary.high.cwiseMax(to);
 }
 
-}  // namespace
-
-Vec3 Planner::program_point(const ToolPose& pose, const AxisValues& q, bool tcp) const {
-  return tcp ? pose.tip_W : space_->program_from_linear(space_->linear_of(q), space_->rotary_of(q));
+/// Program coordinates of the axes.
+Vec3 axes_point(program::nc::WorkSpace& space, const AxisValues& q) {
+  return space.program_from_linear(space.linear_of(q), space.rotary_of(q));
 }
 
+}  // namespace
+
 PlanStep Planner::step_at(const program::Move& move, const ToolPose& pose, const AxisValues& q, StepKind kind,
-                          bool tcp) const {
+                          bool tcp, const std::shared_ptr<const TiltedPlane>& tilt) const {
   PlanStep step;
   step.kind = kind;
   step.q = q;
   step.pose = pose;
-  step.p = program_point(pose, q, tcp);
+  step.p = tilt ? Vec3(tilt->R.transpose() * pose.tip_W) : tcp ? pose.tip_W : axes_point(*space_, q);
+  step.tilt = tilt;
   step.rotary = space_->rotary_of(q);
   step.feed_mm_s = move.feed_mm_s;
   step.spindle_rpm = move.spindle_rpm;
   step.tool = tool_;
   step.line = move.line;
-  step.tcp = tcp;
+  step.tcp = tcp && !tilt;
   return step;
 }
 
@@ -75,7 +77,7 @@ void Planner::add_step(PlanStep step, double way_mm, Plan& plan) const {
   }
   step.way_mm =
       step.kind == StepKind::kArc ? way_mm : (space_->linear_of(step.q) - space_->linear_of(plan.q)).norm();
-  const double digits = rounding_mm(*follower_, step.tcp, plan.q, step.q);
+  const double digits = rounding_mm(*follower_, step.tcp || step.tilt, plan.q, step.q);
   step.deviation_mm += digits;
   summary.digits_mm = std::max(summary.digits_mm, digits);
   if (step.deviation_mm > summary.deviation_mm) {
@@ -93,8 +95,8 @@ void Planner::add_approach(const program::Move& move, const ToolPose& pose, cons
                            Plan& plan) const {
   const kinematics::MachineModel& machine = follower_->machine;
   const int along = axis_along_tool(machine);
-  PlanStep step = step_at(move, pose, q, StepKind::kApproach, setup_.rules.tcp);
-  step.axes_p = program_point(pose, q, false);
+  PlanStep step = step_at(move, pose, q, StepKind::kApproach, setup_.rules.tcp, nullptr);
+  step.axes_p = axes_point(*space_, q);
   step.feed_mm_s = 0.0;
   step.turns = true;
   step.at_cl_point = true;
@@ -117,7 +119,9 @@ void Planner::add_approach(const program::Move& move, const ToolPose& pose, cons
   plan.stretch.steps.push_back(std::move(step));
 }
 
-bool Planner::add_move(const program::Move& move, Plan& plan) const {
+bool Planner::add_move(const program::Move& given, Plan& plan) const {
+  program::Move move = given;
+  if (plan.tilt) move.from.axis_W = move.to.axis_W = plan.tilt->R.col(2);
   if (move.arc && add_arc(move, plan)) return true;
   if (plan.fault) return false;
   std::vector<Waypoint> places;
@@ -136,8 +140,9 @@ bool Planner::add_move(const program::Move& move, Plan& plan) const {
   for (const Waypoint& place : places) {
     // Before a cut that starts at the pole the axes turn as fast as they can.
     const bool turn_first = place.turns_at_rest && place.share == 0.0 && lifted;
-    PlanStep step = step_at(move, place.pose, place.q,
-                            move.rapid || turn_first ? StepKind::kRapid : StepKind::kFeed, setup_.rules.tcp);
+    PlanStep step =
+        step_at(move, place.pose, place.q, move.rapid || turn_first ? StepKind::kRapid : StepKind::kFeed,
+                setup_.rules.tcp, plan.tilt);
     if (&place == &places.front()) step.dwell_s = move.dwell_s;
     step.deviation_mm = place.deviation_mm;
     step.at_cl_point = &place == &places.back();
@@ -180,7 +185,7 @@ bool stays_in_travel(const kinematics::MachineModel& machine, const AxisArc& arc
 
 bool Planner::add_arc(const program::Move& move, Plan& plan) const {
   const PostAbilities& can = setup_.abilities;
-  const bool tcp = setup_.rules.tcp;
+  const bool tcp = setup_.rules.tcp && !plan.tilt;
   const ToolPose to = snapped(*follower_, move.to);
   if (angle_between(snapped(*follower_, move.from).axis_W, to.axis_W) > 1e-12 || (tcp && !can.tcp_arcs))
     return false;
@@ -201,15 +206,22 @@ bool Planner::add_arc(const program::Move& move, Plan& plan) const {
   Mat3 M;
   for (int i = 0; i < 3; ++i) M.col(i) = linear_at(centre_W + Vec3::Unit(i)) - zero;
   const Vec3 normal_axes = (M.determinant() < 0.0 ? -1.0 : 1.0) * (M * move.arc->normal_W);
-  const Vec3 normal = tcp ? move.arc->normal_W : normal_axes;
+  const Vec3 normal = plan.tilt ? Vec3(plan.tilt->R.transpose() * move.arc->normal_W)
+                      : tcp     ? move.arc->normal_W
+                                : normal_axes;
   int k = 0;
   normal.cwiseAbs().maxCoeff(&k);
   const int plane = 2 - k;
-  if (std::abs(normal[k]) < 1.0 - 1e-12 && (normal - normal[k] * Vec3::Unit(k)).norm() > kExact) return false;
+  // The turns of a plane are rounded.
+  const double square = plan.tilt ? std::max(kExact, 3.0 * setup_.rules.rotary_half) : kExact,
+               off = (normal - normal[k] * Vec3::Unit(k)).norm();
+  if (std::abs(normal[k]) < 1.0 - 1e-12 && off > square) return false;
   if (!can.planes.at(static_cast<size_t>(plane))) return false;
 
-  const double height = (move.to.tip_W - move.from.tip_W).dot(move.arc->normal_W);
-  const Vec3 chord = (move.to.tip_W - move.from.tip_W) - height * move.arc->normal_W;
+  const Vec3 up_W =
+      plan.tilt ? Vec3(std::copysign(1.0, normal[k]) * plan.tilt->R.col(k)) : move.arc->normal_W;
+  const double height = (move.to.tip_W - move.from.tip_W).dot(up_W);
+  const Vec3 chord = (move.to.tip_W - move.from.tip_W) - height * up_W;
   const double radius = move.arc->normal_W.cross(move.from.tip_W - centre_W).norm();
   const double least = kArcDigits * can.arc_digit_mm;
   const bool closed = chord.norm() == 0.0;
@@ -221,60 +233,30 @@ bool Planner::add_arc(const program::Move& move, Plan& plan) const {
                        sweep, axes))
     return false;  // its chords find out where
 
-  PlanStep step = step_at(move, to, end.q, StepKind::kArc, tcp);
-  step.centre = tcp ? centre_W : Vec3(step.p + (zero - space_->linear_of(end.q)));
+  // An arc's centre counts from its start, which has to stand in the same coordinates (behind a cycle).
+  if (plan.stretch.steps.empty() || plan.stretch.steps.back().tcp != tcp) stand(move, plan);
+  PlanStep step = step_at(move, to, end.q, StepKind::kArc, tcp, plan.tilt);
+  step.centre = plan.tilt ? Vec3(plan.tilt->R.transpose() * centre_W)
+                : tcp     ? centre_W
+                          : Vec3(step.p + (zero - space_->linear_of(end.q)));
   step.plane = plane;
   step.clockwise = normal[k] < 0.0;
   step.dwell_s = move.dwell_s;
   step.at_cl_point = true;
-  if (std::abs(height) <= kExact && !plan.stretch.steps.empty() && plan.stretch.steps.back().tcp == tcp)
+  if (std::abs(height) <= kExact && !plan.stretch.steps.empty() && plan.stretch.steps.back().tcp == tcp &&
+      plan.stretch.steps.back().tilt == plan.tilt)
     step.p[k] = plan.stretch.steps.back().p[k];
   // Start, end and centre are rounded each.
-  step.deviation_mm = 2.0 * rounding_mm(*follower_, tcp, plan.q, end.q);
+  step.deviation_mm = 2.0 * (rounding_mm(*follower_, tcp || plan.tilt, plan.q, end.q) + radius * off);
   add_step(std::move(step), program::way_mm(move), plan);
   return true;
-}
-
-namespace {
-
-bool has_word_for(const PostAbilities& can, const program::ClHole& hole, double spindle_rpm) {
-  const program::ClCycle& cycle = hole.cycle;
-  const bool pecks_alike = cycle.first_step_mm == 0.0 || cycle.first_step_mm == cycle.step_mm;
-  switch (cycle.kind) {
-    case program::ClCycleKind::kDrill:
-    case program::ClCycleKind::kFace:
-      return cycle.dwell_s > 0.0 ? can.drill_dwell : can.drill;
-    case program::ClCycleKind::kDeep:
-      return can.deep && pecks_alike && cycle.dwell_s == 0.0;
-    case program::ClCycleKind::kChipBreak:
-      return can.chip_break && pecks_alike && cycle.dwell_s == 0.0;
-    case program::ClCycleKind::kBore:
-      return cycle.dwell_s > 0.0 ? can.bore_dwell : can.bore;
-    case program::ClCycleKind::kTap:
-      return can.tap && spindle_rpm > 0.0;
-  }
-  return false;
-}
-
-}  // namespace
-
-bool Planner::keeps_cycle(const HoleSpan& span, const AxisValues& q) const {
-  const program::ClHole& hole = span.hole;
-  if (hole.cycle.retract_mm < hole.cycle.clear_mm || !(hole.cycle.depth_mm > 0.0)) return false;
-  if (!has_word_for(setup_.abilities, hole, moves_[span.first].spindle_rpm)) return false;
-  const ToolPose at = snapped(*follower_, hole.at);
-  const Branch low = follower_->inverse.solve_nearest(at, q);
-  const Branch high = follower_->inverse.solve_nearest({at.tip_W + at.axis_W, at.axis_W}, low.q);
-  if (low.outcome == InverseOutcome::kUnreachable || high.outcome == InverseOutcome::kUnreachable)
-    return false;
-  const Vec3 way = program_point(at, high.q, false) - program_point(at, low.q, false);
-  return (way - Vec3::UnitZ()).norm() < kExact;
 }
 
 bool Planner::add_hole(const HoleSpan& span, Plan& plan) const {
   const program::ClHole& hole = span.hole;
   const program::Move& last = moves_[span.first + static_cast<size_t>(hole.moves) - 1];
-  const ToolPose at = snapped(*follower_, hole.at);
+  ToolPose at = snapped(*follower_, hole.at);
+  if (plan.tilt) at.axis_W = plan.tilt->R.col(2);
   const auto reach = [&](double height) {
     const ToolPose pose{at.tip_W + height * at.axis_W, at.axis_W};
     const Branch branch = follower_->inverse.solve_nearest(pose, plan.q);
@@ -284,7 +266,7 @@ bool Planner::add_hole(const HoleSpan& span, Plan& plan) const {
   };
   const AxisValues bottom = reach(-hole.cycle.depth_mm), top = reach(hole.cycle.retract_mm);
   if (plan.fault) return false;
-  PlanStep step = step_at(last, last.to, top, StepKind::kHole, false);
+  PlanStep step = step_at(last, last.to, top, StepKind::kHole, false, plan.tilt);
   step.feed_mm_s = hole.cycle.feed_mm_s;
   step.hole = static_cast<int>(plan.stretch.holes.size());
   step.at_cl_point = true;
@@ -301,7 +283,7 @@ bool Planner::add_hole(const HoleSpan& span, Plan& plan) const {
     plan.summary.dwell_s += move.dwell_s;
     step.duration_s += seconds + move.dwell_s;
   }
-  step.deviation_mm = rounding_mm(*follower_, false, bottom, top);
+  step.deviation_mm = rounding_mm(*follower_, plan.tilt != nullptr, bottom, top);
   plan.summary.deviation_mm = std::max(plan.summary.deviation_mm, step.deviation_mm);
   plan.summary.digits_mm = std::max(plan.summary.digits_mm, step.deviation_mm);
   ++plan.summary.points;
@@ -321,7 +303,7 @@ void Planner::without_tcp(size_t first, Plan& plan) const {
     const bool leads = step.kind == StepKind::kApproach || (step.kind == StepKind::kRapid && !step.turns);
     if (!step.tcp || !leads) continue;
     step.tcp = false;
-    step.p = program_point(step.pose, step.q, false);
+    step.p = axes_point(*space_, step.q);
   }
 }
 
@@ -333,40 +315,25 @@ Planner::Plan Planner::plan_from(const State& state, const Entry& begin, RouteCh
   const bool approach = plan.way.lifted;
   plan.q = state.q;
   plan.summary = state.summary;
+  if (setup_.abilities.plane.use != PlaneUse::kNever)
+    plan.runs = plane_runs(*follower_, moves_, holes_, approach || state.tilt != nullptr);
+  if (!approach) plan.tilt = state.tilt;
   std::vector<size_t> steps_before;  // by move
   size_t i = 0;
-  const auto hole_at = [&](size_t move) {
-    return std::find_if(holes_.begin(), holes_.end(), [&](const HoleSpan& one) { return one.first == move; });
-  };
   if (approach) {
     add_approach(moves_.front(), begin.pose, start.q, state.started, plan);
     for (; i < begin.first; ++i) steps_before.push_back(0);
   }
   while (i < moves_.size() && !plan.fault) {
-    steps_before.push_back(plan.stretch.steps.size());
+    if (i >= steps_before.size()) steps_before.push_back(plan.stretch.steps.size());
+    change_plane(i, plan);
     // The arrival of a hole may have been the approach.
-    const auto hole = i == begin.first && approach && i > 0 ? hole_at(i - 1) : hole_at(i);
-    if (hole == holes_.end()) {
+    const HoleSpan* hole = approach && i > 0 && i == begin.first ? hole_at(holes_, i - 1) : nullptr;
+    if (hole == nullptr) hole = hole_at(holes_, i);
+    if (hole != nullptr)
+      i = add_span(*hole, i, steps_before, plan);
+    else
       add_move(moves_[i++], plan);
-      continue;
-    }
-    const size_t end = hole->first + static_cast<size_t>(hole->hole.moves);
-    const size_t arrivals =
-        static_cast<size_t>(hole->hole.moves) - program::cycle_steps(hole->hole.cycle).size();
-    if (!keeps_cycle(*hole, approach && i <= begin.first ? start.q : plan.q)) {
-      for (; i < end && !plan.fault; ++i) {
-        if (i >= steps_before.size()) steps_before.push_back(plan.stretch.steps.size());
-        add_move(moves_[i], plan);
-      }
-      continue;
-    }
-    const size_t arrival = plan.stretch.steps.size();
-    if (i == hole->first && arrivals > 0) add_move(moves_[i], plan);
-    if (!plan.fault) add_hole(*hole, plan);
-    const bool approached = arrival > 0 && plan.stretch.steps[arrival - 1].kind == StepKind::kApproach;
-    without_tcp(approached ? arrival - 1 : arrival, plan);
-    for (++i; i < end; ++i) steps_before.push_back(plan.stretch.steps.size());
-    i = end;
   }
   plan.fault_step = plan.stretch.steps.size();
   for (const PlacedNote& note : notes_) {

@@ -128,6 +128,14 @@ bool wants_tcp(const kinematics::MachineModel& machine, const PostFormat& format
   return tcp;
 }
 
+PlaneUse planes_of(const PostFormat& format, PlaneUse wished) {
+  if (wished != PlaneUse::kNever && format.tilted_plane.on.empty())
+    throw InputError("no-planes", {format.file},
+                     fmt::format("{} has no words for tilted planes", format.name),
+                     "leave --planes out, or write [tilted_plane] on and off");
+  return wished;
+}
+
 void warn_of_rapids(const kinematics::MachineModel& machine, const std::string& file, long rapids,
                     Diagnostics& diagnostics) {
   if (machine.rapid != kinematics::RapidMotion::kDogLeg || rapids == 0) return;
@@ -161,6 +169,8 @@ PostAbilities abilities_of(const PostFormat& format) {
   can.bore_dwell = !format.cycle.bore_dwell.empty();
   can.tap = !format.cycle.tap.empty();
   can.arc_digit_mm = 2.0 * half_digit(format.numbers.linear);
+  const PlaneWords& plane = format.tilted_plane;
+  can.plane = {plane.on.empty() ? PlaneUse::kNever : plane.use, plane.turns, format.numbers.rotary.decimals};
   return can;
 }
 
@@ -185,6 +195,7 @@ PostResult post(const std::string& cl_file, const kinematics::MachineModel& mach
   const std::vector<int> bound = bind_tools(program, table, setup.tools, diagnostics);
   setup.rules = result.rules = rules_of(format, options, result.tcp);
   setup.abilities = abilities_of(format);
+  if (options.planes) setup.abilities.plane.use = planes_of(format, *options.planes);
   setup.hooks = options.hooks;
   const ProgramNames names{program_name(cl_file), machine.name, cl_file};
   Writer writer(format, setup, names, out, diagnostics);

@@ -9,6 +9,7 @@
 
 #include "base/diagnostics.h"
 #include "base/progress.h"
+#include "base/units.h"
 #include "post/planner.h"
 #include "post/post_format.h"
 #include "post/writer.h"
@@ -21,6 +22,7 @@ struct PostOptions {
   double axis_rad = 0.1 * kPi / 180.0;  ///< of the tool axis from its great circle
   program::ClOptions cl;
   const std::string* cl_text = nullptr;  ///< instead of the file's own text, which it then only names
+  std::optional<PlaneUse> planes;        ///< none: as the format says
   std::vector<PostTool> tools;           ///< the table; empty: lengths are not known
   PlannerHooks hooks;
 };

@@ -6,6 +6,7 @@
 #include "program/dialects.h"
 
 namespace swarf::post {
+
 namespace {
 
 using P = Place;
@@ -14,7 +15,8 @@ const std::vector<Place> kNone{}, kNumbered{P::kNumber}, kCommented{P::kText},
     kHead{P::kMachine, P::kSource, P::kProgram}, kTool{P::kT, P::kName, P::kS},
     kRetractTo{P::kHomeAlong, P::kT}, kApproach{P::kRotaries, P::kAcross, P::kAlong, P::kT},
     kSpindle{P::kS, P::kT}, kDwells{P::kSeconds}, kRapid{P::kAxes}, kLine{P::kAxes, P::kF},
-    kArc{P::kAxes, P::kF, P::kCentre, P::kCentrePoint}, kTcp{P::kT, P::kAxes}, kNext{P::kAxes, P::kAcross},
+    kArc{P::kAxes, P::kF, P::kCentre, P::kCentrePoint}, kTcp{P::kT, P::kAxes},
+    kTilt{P::kTurn1, P::kTurn2, P::kTurn3, P::kSide, P::kT}, kNext{P::kAxes, P::kAcross},
     kCycle{P::kAxes,  P::kF,         P::kBottom,          P::kClear, P::kSurface,   P::kRetract, P::kReturn,
            P::kDepth, P::kClearance, P::kSecondClearance, P::kStep,  P::kStepFirst, P::kDwell,   P::kFeed,
            P::kPitch, P::kS};
@@ -140,7 +142,26 @@ void read_cycles(ConfigTable cycle, CycleWords& to) {
   to.dwell_in_ms = cycle.boolean("dwell_in_ms", false);
 }
 
+void read_planes(ConfigTable plane, PlaneWords& to) {
+  to.on = lines(plane, "on", kTilt);
+  to.off = lines(plane, "off", kTool);
+  to.use = plane_use(plane.choice("use", {"never", "cycles", "constant"}, "cycles"));
+  to.turns = plane.choice("turns", {"zxz", "zyx"}, "zxz") == "zxz" ? PlaneTurns::kZXZ : PlaneTurns::kZYX;
+  to.positive = plane.text("positive", "");
+  to.negative = plane.text("negative", "");
+  for (const Place place : {P::kTurn1, P::kTurn2, P::kTurn3}) {
+    if (to.on.empty() || to.on.uses(place)) continue;
+    const char* name = place_names()[static_cast<size_t>(place)];
+    plane.error("missing-place", "on", fmt::format("on does not say the turn {{{}}}", name),
+                "write all three: on = \"G68.2 X0 Y0 Z0 I{turn_1} J{turn_2} K{turn_3}\"");
+  }
+}
+
 }  // namespace
+
+PlaneUse plane_use(std::string_view name) {
+  return name == "never" ? PlaneUse::kNever : name == "cycles" ? PlaneUse::kCycles : PlaneUse::kConstant;
+}
 
 /// What would leave an axis where it is, or a mode on.
 void check_whole(ConfigTable& table, const PostFormat& post) {
@@ -157,6 +178,8 @@ void check_whole(ConfigTable& table, const PostFormat& post) {
          "inverse_time has a word, and nothing ends it", "write per_minute = \"G94\"");
   demand(post.tcp_on.empty() == post.tcp_off.empty(), "tcp", "on and off belong together",
          "write both, or neither");
+  demand(post.tilted_plane.on.empty() == post.tilted_plane.off.empty(), "tilted_plane",
+         "on and off belong together", "write both, or neither");
   for (const LineTemplate* arc : {&post.motion.clockwise, &post.motion.counter_clockwise}) {
     const bool whole =
         arc->uses(Place::kAxes) && (arc->uses(Place::kCentre) || arc->uses(Place::kCentrePoint));
@@ -172,6 +195,8 @@ PostFormat load_post(const std::string& file) {
   PostFormat post;
   post.file = file;
   post.name = table.text("name");
+  if (table.has("prefer"))
+    post.prefer = preference(table.choice("prefer", {"time", "accuracy", "travel"}, "time"));
   const std::string dialect = table.text("dialect");
   if (const auto found = program::dialect_of(dialect))
     post.dialect = *found;
@@ -189,6 +214,7 @@ PostFormat load_post(const std::string& file) {
   read_motion(table.table("motion"), post.motion);
   read_feed_and_tcp(table, post);
   read_cycles(table.table("cycle"), post.cycle);
+  read_planes(table.table("tilted_plane"), post.tilted_plane);
   check_whole(table, post);
   table.finish();
   diagnostics.throw_if_errors();

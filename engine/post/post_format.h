@@ -10,6 +10,8 @@
 
 #include "post/line_template.h"
 #include "post/number_format.h"
+#include "post/preference.h"
+#include "post/tilted_plane.h"
 #include "program/nc_program.h"
 
 namespace swarf::post {
@@ -42,6 +44,13 @@ struct CycleWords {
   bool dwell_in_ms = false;
 };
 
+struct PlaneWords {
+  LineTemplate on, off;  ///< empty: the control has none
+  PlaneUse use = PlaneUse::kCycles;
+  PlaneTurns turns = PlaneTurns::kZXZ;
+  std::string positive, negative;  ///< {side}: which solution of the rotary axes
+};
+
 struct PostFormat {
   std::string file, name;
   program::Dialect dialect = program::Dialect::kFanuc;  ///< the reader that reads these programs back
@@ -60,12 +69,17 @@ struct PostFormat {
   std::string per_minute, inverse_time;
   FeedCounts feed_counts = FeedCounts::kAllAxes;
   LineTemplate tcp_on, tcp_off;
+  std::optional<Preference> prefer;  ///< none: the first way through each stretch that can be driven
   bool tcp_by_default = false, tcp_arcs = true;
   std::string tcp_warning;  ///< told when TCP is used
   CycleWords cycle;
+  PlaneWords tilted_plane;
 
   bool has_tcp() const { return !tcp_on.empty(); }
 };
+
+/// Of "never", "cycles", "constant".
+PlaneUse plane_use(std::string_view name);
 
 /// Reads the file. Throws InputError with every fault: what ConfigTable finds, "unknown-place" for a { } that
 /// a key does not have, "missing-place", "unknown-dialect", "incomplete-post".

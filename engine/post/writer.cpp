@@ -39,6 +39,16 @@ double feed_value(const PostFormat& format, const PlanStep& step, bool inverse) 
   return rests ? step.turn_deg / minutes : mm_min_from_mm_s(step.feed_mm_s);
 }
 
+/// What a comment can hold of the text.
+std::string fitting(const PostFormat& format, std::string_view text) {
+  std::string kept;
+  for (const char one : text) {
+    const bool fits = one >= ' ' && one <= '~' && format.comment_without.find(one) == std::string::npos;
+    if (fits && kept.size() < format.comment_longest) kept += one;
+  }
+  return kept;
+}
+
 }  // namespace
 
 Writer::Writer(const PostFormat& format, const PlannerSetup& setup, const ProgramNames& names, Out out,
@@ -88,17 +98,8 @@ void Writer::motion(const LineTemplate& lines) {
   if (!lines_.empty()) motion_word_ = lines.first_word();
 }
 
-std::string Writer::fitting(std::string_view text) const {
-  std::string kept;
-  for (const char one : text) {
-    const bool fits = one >= ' ' && one <= '~' && format_.comment_without.find(one) == std::string::npos;
-    if (fits && kept.size() < format_.comment_longest) kept += one;
-  }
-  return kept;
-}
-
 void Writer::comment(std::string_view text) {
-  const std::string kept = fitting(text);
+  const std::string kept = fitting(format_, text);
   if (kept.size() != text.size()) ++summary_.comments_changed;
   if (kept.empty() || format_.comment.empty()) return;
   values_.set(Place::kText, kept);
@@ -158,12 +159,14 @@ void Writer::note(const program::ClNote& note) {
   }
 }
 
-Writer::Words Writer::words_of(const Vec3& p, const std::array<double, 3>& rotary) const {
+/// X Y Z, and the rotary words outside of tilted planes, in which the axes stand where the plane has them.
+Writer::Words Writer::words_of(const PlanStep& step) const {
   Words words;
-  for (size_t i = 0; i < 6; ++i) {
+  for (size_t i = 0; i < (step.tilt ? 3U : 6U); ++i) {
     if (!has_.at(i)) continue;
-    words.at(i) = kLetters[i] + (i < 3 ? written(format_.numbers.linear, p[static_cast<long>(i)])
-                                       : written(format_.numbers.rotary, deg_from_rad(rotary.at(i - 3))));
+    words.at(i) =
+        kLetters[i] + (i < 3 ? written(format_.numbers.linear, step.p[static_cast<long>(i)])
+                             : written(format_.numbers.rotary, deg_from_rad(step.rotary.at(i - 3))));
   }
   return words;
 }
@@ -188,10 +191,27 @@ void Writer::forget_words() {
 
 void Writer::set_tcp(bool on) {
   if (tcp_ == on) return;
+  if (on) set_tilt(nullptr);
   end_cycle();
   put(on ? format_.tcp_on : format_.tcp_off);
   tcp_ = on;
   forget_words();
+}
+
+void Writer::set_tilt(const std::shared_ptr<const TiltedPlane>& tilt) {
+  if (tilt == tilt_) return;
+  end_cycle();
+  set_tcp(false);
+  if (tilt_) put(format_.tilted_plane.off);
+  tilt_ = tilt;
+  forget_words();
+  if (!tilt) return;
+  set_timed(false);
+  constexpr std::array kTurns{Place::kTurn1, Place::kTurn2, Place::kTurn3};
+  for (size_t i = 0; i < kTurns.size(); ++i)
+    values_.set(kTurns.at(i), written(format_.numbers.rotary, tilt->turns_deg.at(i)));
+  values_.set(Place::kSide, tilt->positive ? format_.tilted_plane.positive : format_.tilted_plane.negative);
+  put(format_.tilted_plane.on);
 }
 
 void Writer::set_plane(int plane) {
@@ -253,6 +273,7 @@ void Writer::change_tool(const PlanStep& step) {
 
 void Writer::approach(const PlanStep& step) {
   end_cycle();
+  set_tilt(nullptr);
   set_tcp(false);
   set_plane(0);
   const char letter = kLetters[static_cast<size_t>(along_)];
@@ -262,7 +283,9 @@ void Writer::approach(const PlanStep& step) {
   change_tool(step);
   spindle(step.spindle_rpm);
   forget_words();
-  const Words words = words_of(step.axes_p, step.rotary);
+  PlanStep by_axes = step;
+  by_axes.p = step.axes_p;
+  const Words words = words_of(by_axes);
   std::array<std::string, 3> group;  // rotary axes, across, along
   for (size_t i = 0; i < 6; ++i) {
     std::string& to = group.at(i > 2 ? 0 : static_cast<int>(i) == along_ ? 2 : 1);
@@ -277,7 +300,7 @@ void Writer::approach(const PlanStep& step) {
   set_coolant(coolant_wanted_);
   set_tcp(step.tcp);
   if (!step.tcp) return;
-  values_.set(Place::kAxes, changed(words_of(step.p, step.rotary), true));
+  values_.set(Place::kAxes, changed(words_of(step), true));
   motion(format_.motion.rapid);
 }
 
@@ -315,8 +338,9 @@ void Writer::move(const PlanStep& step) {
   // Where a cycle is called it may stay; where its word is modal a rapid would drill.
   if (format_.cycle.call.empty()) end_cycle();
   set_tcp(step.tcp);
+  set_tilt(step.tilt);
   if (step.kind == StepKind::kRapid) {
-    values_.set(Place::kAxes, changed(words_of(step.p, step.rotary), false));
+    values_.set(Place::kAxes, changed(words_of(step), false));
     return motion(format_.motion.rapid);
   }
   end_cycle();
@@ -326,7 +350,7 @@ void Writer::move(const PlanStep& step) {
     set_plane(step.plane);
     arc_words(step);
   }
-  values_.set(Place::kAxes, changed(words_of(step.p, step.rotary), false));
+  values_.set(Place::kAxes, changed(words_of(step), false));
   if (values_.of(Place::kAxes).empty()) return;
   feed_word(step);
   motion(!arc             ? format_.motion.line
@@ -336,7 +360,7 @@ void Writer::move(const PlanStep& step) {
 
 void Writer::head() {
   values_.set(Place::kProgram, names_.program);
-  values_.set(Place::kMachine, fitting(names_.machine));
+  values_.set(Place::kMachine, fitting(format_, names_.machine));
   values_.set(Place::kSource, names_.source);
   put(format_.head);
 }
@@ -354,10 +378,10 @@ void Writer::stretch(const PlannedStretch& planned) {
     if (leads_to_hole(planned, i)) {
       const PlanStep& cycle = planned.steps[i + 1];
       if (merges_with(step, cycle, planned.holes[static_cast<size_t>(cycle.hole)])) {
-        values_.set(Place::kAxes, changed(words_of(step.p, step.rotary), false));
+        values_.set(Place::kAxes, changed(words_of(step), false));
         put(format_.cycle.next);
         put(format_.cycle.call);
-        changed(words_of(cycle.p, cycle.rotary), false);
+        changed(words_of(cycle), false);
         notes(++i);
         continue;
       }
@@ -375,6 +399,7 @@ void Writer::stretch(const PlannedStretch& planned) {
 
 void Writer::tail() {
   end_cycle();
+  set_tilt(nullptr);
   set_tcp(false);
   set_timed(false);
   set_plane(0);

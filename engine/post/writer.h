@@ -8,6 +8,7 @@
 
 #include <array>
 #include <functional>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -54,14 +55,13 @@ class Writer {
   void note(const program::ClNote& note);
   void coolant(const std::string& text);
   void set_coolant(const std::string& word);
-  /// What a comment can hold of the text.
-  std::string fitting(std::string_view text) const;
   void approach(const PlanStep& step);
   void change_tool(const PlanStep& step);
   void spindle(double rpm);
   void dwell(double seconds);
   void set_tcp(bool on);
   void set_plane(int plane);
+  void set_tilt(const std::shared_ptr<const TiltedPlane>& tilt);
   void set_timed(bool timed);
   void move(const PlanStep& step);
   void arc_words(const PlanStep& step);
@@ -71,7 +71,7 @@ class Writer {
   bool merges_with(const PlanStep& arrival, const PlanStep& step, const program::ClHole& hole);
   std::string definition(const PlanStep& step, const program::ClHole& hole);
   void end_cycle();
-  Words words_of(const Vec3& p, const std::array<double, 3>& rotary) const;
+  Words words_of(const PlanStep& step) const;
   /// Those that differ from what stands, or all; `keep`: they stand from now on.
   std::string changed(const Words& words, bool all);
   void forget_words();
@@ -93,6 +93,7 @@ class Writer {
   std::string feed_, motion_word_, cycle_;
   int plane_ = 0, tool_ = -2, block_ = 0;
   bool tcp_ = false, timed_ = false;
+  std::shared_ptr<const TiltedPlane> tilt_;
   double spindle_ = 0.0;
   std::string coolant_, coolant_wanted_;  ///< as it stands, and as the CL data has it
   bool change_comes_ = false;             ///< the next step changes the tool

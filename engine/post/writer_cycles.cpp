@@ -86,10 +86,11 @@ std::string Writer::definition(const PlanStep& step, const program::ClHole& hole
 }
 
 bool Writer::merges_with(const PlanStep& arrival, const PlanStep& step, const program::ClHole& hole) {
-  if (cycle_.empty() || format_.cycle.next.empty() || arrival.tcp || tcp_ || arrival.dwell_s > 0.0)
+  if (cycle_.empty() || format_.cycle.next.empty() || arrival.tcp || tcp_ || arrival.dwell_s > 0.0 ||
+      arrival.tilt != tilt_ || step.tilt != tilt_)
     return false;
   if (step.spindle_rpm != spindle_ || definition(step, hole) != cycle_) return false;
-  const Words there = words_of(arrival.p, arrival.rotary);
+  const Words there = words_of(arrival);
   for (size_t i = 2; i < 6; ++i) {
     if (there.at(i) != words_.at(i)) return false;
   }
@@ -99,6 +100,7 @@ bool Writer::merges_with(const PlanStep& arrival, const PlanStep& step, const pr
 void Writer::hole(const PlanStep& step, const program::ClHole& hole) {
   spindle(step.spindle_rpm);
   set_tcp(false);
+  set_tilt(step.tilt);
   set_timed(false);
   set_plane(0);
   const std::string text = definition(step, hole);
@@ -120,10 +122,10 @@ void Writer::hole(const PlanStep& step, const program::ClHole& hole) {
   const bool returns = cycle_lines(format_.cycle, hole).uses(Place::kReturn);
   if (returns && !to_clear && !to_start) {
     end_cycle();
-    values_.set(Place::kAxes, changed(words_of(step.p, step.rotary), true));
+    values_.set(Place::kAxes, changed(words_of(step), true));
     motion(format_.motion.rapid);
   } else {
-    changed(words_of(step.p, step.rotary), false);
+    changed(words_of(step), false);
   }
 }
 

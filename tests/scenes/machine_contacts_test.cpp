@@ -111,9 +111,18 @@ TEST_F(MachineContacts, AFixtureThatIsHitIsCutInto) {
       run_swarf("run " + (folder_ / "scene.toml").string() + " -q --no-render --report -o " + out().string());
   EXPECT_EQ(drawn.exit_code, 1) << drawn.output;
   const auto whole = fs::file_size(out() / "machine.glb");
+  // What is made from the folder later shows it so, too.
+  const auto exported = [&] {
+    const std::string file = (folder_ / "later.glb").string();
+    const auto made = run_swarf("export " + out().string() + " --machine-gltf " + file);
+    EXPECT_EQ(made.exit_code, 0) << made.output;
+    return fs::file_size(file);
+  };
+  const auto later = exported();
   run(kFrame, kOnTable + bar, " --set \"fixture[0].box_mm=[[20, 30, 40], [40, 55, 48]]\" --report");
   EXPECT_TRUE(metrics()["machine_contacts"]["fixtures_cut"].empty());
   EXPECT_GT(whole, fs::file_size(out() / "machine.glb") + 1000);
+  EXPECT_GT(later, exported() + 1000);
 }
 
 /// The straps' posts are hidden by their straps, which reach 10 mm over the upper face: the tool goes into

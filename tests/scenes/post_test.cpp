@@ -95,6 +95,68 @@ TEST(PostCommand, AShopsOwnWordsAndTheStandardOutput) {
   EXPECT_FALSE(fs::exists(folder / "part.nc"));
 }
 
+/// Holes across the head: in a plane, or as moves; LinuxCNC has no planes.
+TEST(PostCommand, PlanesAreWrittenWhereAsked) {
+  const fs::path folder = ready("planes");
+  const std::string axis = ",0.5,0,0.866025404\n";
+  write_text(folder / "tilted.cls",
+             "$$ SWARF CL DATA\nLOADTL/1\nSPINDL/RPM,3000,CLW\nMULTAX/ON\nFROM/0,0,60" + axis +
+                 "RAPID\nGOTO/20,0,60" + axis + "CYCLE/DRILL,DEPTH,6,CLEAR,2,MMPM,120\nGOTO/10,0,20" + axis +
+                 "CYCLE/OFF\nRAPID\nGOTO/10,0,60" + axis + "FINI\n");
+  const auto written = [&](const std::string& words, int exit_code) {
+    const auto run = run_in(
+        folder,
+        "post tilted.cls --machine fork_head --tools tools.toml --work-origin 0 0 100 -o part.nc " + words);
+    EXPECT_EQ(run.exit_code, exit_code) << run.output;
+    return exit_code == 0 ? read_text(folder / "part.nc") : run.output;
+  };
+  EXPECT_NE(written("", 0).find("G68.2 X0. Y0. Z0. I90. J30. K-90.\nG53.1"), std::string::npos);
+  EXPECT_EQ(written("--planes never", 0).find("G68.2"), std::string::npos);
+  EXPECT_NE(written("--dialect siemens --planes constant", 0).find(",0,30,0,0,0,0,-1,0,1)"),
+            std::string::npos);
+  EXPECT_NE(written("--dialect linuxcnc --planes cycles", 2).find("[no-planes]"), std::string::npos);
+}
+
+/// Each criterion has less of what it asks for than the others, and says what it was compared with.
+TEST(PostCommand, TheWholeProgramIsChosenByTimeAccuracyOrTravel) {
+  const fs::path folder = ready("prefer");
+  write_text(
+      folder / "two.cls",
+      "$$ SWARF CL DATA\nLOADTL/1\nSPINDL/RPM,3000,CLW\nMULTAX/ON\nFROM/0,0,60,0.3,0,0.953939201\n"
+      "FEDRAT/600,MMPM\nGOTO/20,0,60,-0.3,0,0.953939201\nRAPID\nGOTO/20,0,90,-0.3,0,0.953939201\nRAPID\n"
+      "GOTO/-20,10,90,0,0.4,0.916515139\nGOTO/-20,10,60,0,0.4,0.916515139\n"
+      "GOTO/20,10,60,0,-0.4,0.916515139\nRAPID\nGOTO/20,10,90,0,-0.4,0.916515139\nFINI\n");
+  const auto posted = [&](const std::string& words) {
+    const auto run =
+        run_in(folder,
+               "post two.cls --machine maho_600c --dialect linuxcnc --tools tools.toml --work-origin 0 0 200 "
+               "--json -o part.nc 2>/dev/null " +
+                   words);
+    EXPECT_EQ(run.exit_code, 0) << run.output;
+    return nlohmann::json::parse(run.output, nullptr, false);
+  };
+  const auto time = posted("--prefer time"), accuracy = posted("--prefer accuracy"),
+             travel = posted("--prefer travel");
+  const auto seconds = [](const nlohmann::json& one) {
+    return one.at("feed_s").get<double>() + one.at("rapid_s").get<double>() + one.at("dwell_s").get<double>();
+  };
+  const auto slides = [](const nlohmann::json& one) {
+    double sum = 0.0;
+    for (const auto& axis : one.at("axes")) sum += axis.value("travel_mm", 0.0);
+    return sum;
+  };
+  const auto tip = [](const nlohmann::json& one) { return one.at("tip_deviation_um").get<double>(); };
+  for (const auto& other : {time, accuracy, travel, posted("")}) {
+    EXPECT_LE(seconds(time), seconds(other) + 1e-9);
+    EXPECT_LE(tip(accuracy), tip(other) + 1e-6);
+    EXPECT_LE(slides(travel), slides(other) + 1e-6);
+  }
+  EXPECT_LT(tip(accuracy), 0.6 * tip(time));
+  EXPECT_EQ(time.at("choice").at("criterion"), "the least time");
+  EXPECT_EQ(time.at("choice").at("routes_dropped"), 0);
+  EXPECT_FALSE(time.at("choice").at("stretches").empty());
+}
+
 TEST(PostCommand, WhatItRefusesAndThatNothingIsWritten) {
   const fs::path folder = ready("refused");
   write_text(folder / "part.nc", "old\n");

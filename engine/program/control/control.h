@@ -25,6 +25,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <vector>
 
 #include "kinematics/machine_model.h"
 #include "program/control/contour.h"
@@ -75,6 +76,8 @@ struct CornerState {
   };
   std::optional<CornerWords> asked;  ///< by the block whose move comes
   std::optional<Held> held;
+  /// Pieces, their corners made, go here instead of to the machine: a contour that a cycle reads.
+  std::vector<Segment>* kept = nullptr;
 };
 
 struct Control;

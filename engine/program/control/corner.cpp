@@ -15,7 +15,9 @@ namespace {
 constexpr double kNoPieceMm = 1e-9;
 
 void pass_on(Control& control, const Segment& segment) {
-  if (control.contour.side() == Compensation::kOff && !control.contour.leading_out()) {
+  if (control.corners.kept != nullptr) {
+    control.corners.kept->push_back(segment);
+  } else if (control.contour.side() == Compensation::kOff && !control.contour.leading_out()) {
     emit(control, segment);
   } else {
     control.contour.add(segment);
@@ -127,6 +129,11 @@ void take_piece(Control& control, const Segment& segment) {
     refuse_corner(control, *asked, why_not,
                   "write it between two feed moves in the plane of G17, G18 or G19");
   control.corners.held = {piece, *asked};
+}
+
+void send_kept(Control& control, const Segment& segment) {
+  pass_on(control, segment);
+  control.path.position_valid = false;
 }
 
 void release_corner(Control& control) {

@@ -15,6 +15,10 @@ void ask_corner(Control& control, const CornerWords& words);
 /// moves in the plane, where the pieces are too short, under G93.
 void take_piece(Control& control, const Segment& segment);
 
+/// A piece that was kept (CornerState::kept), with its corners: through cutter compensation to the machine.
+/// The position holds again after flush().
+void send_kept(Control& control, const Segment& segment);
+
 /// No piece of contour follows: a modal corner is none, one that a block asks for is "bad-corner".
 void release_corner(Control& control);
 

@@ -139,7 +139,7 @@ std::optional<FlatCorner> round_corner(const FlatPiece& before, const FlatPiece&
 std::optional<FlatCorner> cut_corner(const FlatPiece& before, const FlatPiece& after, double length,
                                      std::string& why) {
   if (before.is_arc || after.is_arc) {
-    why = "a chamfer needs straight pieces before and after it";
+    why = "a chamfer needs straight pieces before and after it: where it ends on an arc is not published";
     return std::nullopt;
   }
   if (std::abs(cross(tangent(before, before.to), tangent(after, after.from))) < kNoCornerWay) {

@@ -2,16 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "base/diagnostics.h"
+#include "kinematics/chain.h"
 
 namespace swarf::program::nc {
 namespace {
 
 using kinematics::AxisValues;
 using kinematics::MachineModel;
-
-/// A power of two that is large against rounding: the columns are differences of tips this far apart.
-constexpr double kProbe = 1024.0;
 
 std::array<int, kAxisWords> axes_by_word(const MachineModel& machine) {
   std::array<int, kAxisWords> of{-1, -1, -1, -1, -1, -1};
@@ -47,6 +47,7 @@ WorkSpace::WorkSpace(const MachineModel& machine)
       real_machine_(machine_),
       inverse_(machine_),
       axis_(axes_by_word(machine)) {
+  kinematics::from_tool_to_work(machine_, [&](const kinematics::LinkStep& step) { chain_.push_back(step); });
   compute(machine_, {0.0, 0.0, 0.0}, at_zero_);
   gauge_zero_ = axis_values(at_zero_.inverse * -at_zero_.base_W, {0.0, 0.0, 0.0});
   origin_ = gauge_zero_;
@@ -108,14 +109,26 @@ Pose WorkSpace::X_WP() const {
 
 void WorkSpace::compute(const MachineModel& machine, const std::array<double, 3>& rotary,
                         LinearMap& map) const {
-  const ToolPose zero = kinematics::forward(machine, axis_values(Vec3::Zero(), rotary));
-  map.base_W = zero.tip_W;
-  map.axis_W = zero.axis_W;
-  for (int i = 0; i < 3; ++i) {
-    const Vec3 moved = kProbe * Vec3::Unit(i);
-    map.columns_W.col(i) =
-        (kinematics::forward(machine, axis_values(moved, rotary)).tip_W - zero.tip_W) / kProbe;
+  const AxisValues q = axis_values(Vec3::Zero(), rotary);
+  const kinematics::Sines of = kinematics::sines_of(machine, q);
+  // One walk: a linear axis moves the tip along its direction, which the rotary axes behind it turn.
+  Vec3 tip = machine.tip_M, tool_axis = machine.tool_axis_M;
+  Mat3 columns = Mat3::Zero();
+  for (const kinematics::LinkStep& step : chain_) {
+    if (!step.rotary) {
+      const auto word = std::find(axis_.begin(), axis_.begin() + 3, step.axis) - axis_.begin();
+      columns.col(word) = step.sense * step.direction;
+      continue;
+    }
+    carry(step, q, of, tip, tool_axis);
+    const double sine = step.sense * of.sine[step.axis], cosine = of.cosine[step.axis];
+    for (int i = 0; i < 3; ++i)
+      columns.col(i) = rotate(step.along, step.direction, sine, cosine, Vec3(columns.col(i)));
   }
+  const Mat3 to_work = machine.X_MW.linear().transpose();
+  map.base_W = to_work * (tip - machine.X_MW.translation());
+  map.axis_W = to_work * tool_axis;
+  map.columns_W = to_work * columns;
   map.inverse = map.columns_W.inverse();
   map.rotary = rotary;
   map.valid = true;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "kinematics/machine_model.h"
 #include "program/control/target.h"
@@ -67,6 +68,7 @@ class WorkSpace {
   kinematics::MachineModel real_machine_;  ///< with the true length
   kinematics::InverseKinematics inverse_;  ///< of the gauge-line tool: only its rotary values are used
   std::array<int, kAxisWords> axis_{};
+  std::vector<kinematics::LinkStep> chain_;  ///< from the tool to the work; no tool changes it
   double length_mm_ = 0.0;
   kinematics::AxisValues gauge_zero_ = kinematics::AxisValues::Zero();
   kinematics::AxisValues origin_ = kinematics::AxisValues::Zero(), shift_ = kinematics::AxisValues::Zero();

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angles.h"
 #include "base/units.h"
 #include "kinematics/model_check.h"
 #include "program/heidenhain/steps.h"
@@ -22,6 +23,41 @@ bool rotary_is_free(nc::Control& control, const kinematics::AxisValues& q) {
   turned_on[kinematics::rotary_order(machine).front()] += 1.0;
   const Vec3 before = kinematics::forward(machine, q).axis_W;
   return (kinematics::forward(machine, turned_on).axis_W - before).norm() < 1e-9;
+}
+
+/// TABLE ROT: the table that turns about the tool does it until the machine's X, in the work, is that of the
+/// plane. The nearest such value.
+void turn_free_table(const nc::Control& control, BlockReader& reader, kinematics::AxisValues& q,
+                     size_t start) {
+  const kinematics::MachineModel& machine = control.setup.machine;
+  const int index = kinematics::rotary_order(machine).front();
+  const kinematics::Axis& axis = machine.axes[static_cast<size_t>(index)];
+  if (axis.side != kinematics::Side::kTable)
+    reader.fail(
+        "unsupported-word", start,
+        fmt::format("TABLE ROT turns a table, and {}, which turns about the tool, is none", axis.name),
+        "COORD ROT, or turn the axis before it");
+  const Vec3 plane_x = control.space.frame().linear().col(0);
+  const auto missing = [&](double value) {
+    kinematics::AxisValues there = q;
+    there[index] = value;
+    const Vec3 tool = kinematics::forward(machine, there).axis_W;
+    const Vec3 x = linear_columns_W(machine, there).col(0);
+    return std::atan2(tool.dot(x.cross(plane_x)), (x - x.dot(tool) * tool).dot(plane_x));
+  };
+  const double off = missing(q[index]);
+  double value = q[index] + off;
+  if (std::abs(missing(value)) > std::abs(missing(q[index] - off))) value = q[index] - off;
+  const double here = control.path.q[index];
+  value += kTurn * std::round((here - value) / kTurn);
+  if (value > axis.max) value -= kTurn;
+  if (value < axis.min) value += kTurn;
+  if (value < axis.min - kinematics::kAxisTolerance || value > axis.max + kinematics::kAxisTolerance)
+    reader.fail("unreachable-orientation", start,
+                fmt::format("TABLE ROT turns {} to {:.4f} degrees, beyond its travel", axis.name,
+                            deg_from_rad(value)),
+                "COORD ROT leaves the table where it is");
+  q[index] = value;
 }
 
 /// MOVE DIST50: the point that lies this far ahead of the tip stands, on the part, while the tool turns about
@@ -153,10 +189,7 @@ void position_plane(Executor& executor, BlockReader& reader, const Positioning& 
     }
   }
   if (how.turns_table && executor.orientation.tilted && rotary_is_free(executor.control, q))
-    reader.fail("unsupported-word", start,
-                "TABLE ROT is not supported where a rotary axis turns about the tool: it would turn by the "
-                "plane's angle",
-                "COORD ROT, or turn the axis before it");
+    turn_free_table(executor.control, reader, q, start);
   rotary_parameters(executor.control, executor.parameters, q);
   if (!turns) return;
   if (how.kind == "MOVE" && how.distance != 0.0) return turn_about(executor.control, executor.path, q, how);

@@ -152,22 +152,35 @@ std::optional<double> arc_tangent(double y, double x, bool positive, std::string
   return positive && angle < 0.0 ? angle + 360.0 : angle;
 }
 
-size_t read_number(std::string_view text, double& value) {
+size_t read_number(std::string_view text, double& value, bool* whole_number) {
+  // Whole numbers and powers of ten up to these are exact, and so their quotient is the nearest number.
+  constexpr int kExactDigits = 15;
+  static constexpr double kTens[kExactDigits + 1] = {1e0, 1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
+                                                     1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
   size_t at = 0;
   const bool sign = !text.empty() && (text[0] == '+' || text[0] == '-');
   if (sign) at = 1;
-  bool digits = false, point = false;
+  int digits = 0, behind_point = 0;
+  bool point = false;
+  int64_t whole = 0;
   for (; at < text.size(); ++at) {
     const char c = text[at];
     if (c >= '0' && c <= '9') {
-      digits = true;
+      if (++digits <= kExactDigits) whole = 10 * whole + (c - '0');
+      if (point) ++behind_point;
     } else if (c == '.' && !point) {
       point = true;
     } else {
       break;
     }
   }
-  if (!digits) return 0;
+  if (digits == 0) return 0;
+  if (whole_number != nullptr) *whole_number = !point;
+  if (digits <= kExactDigits) {
+    const double size = static_cast<double>(whole) / kTens[behind_point];
+    value = text[0] == '-' ? -size : size;
+    return at;
+  }
   const size_t from = text[0] == '+' ? 1 : 0;
   const auto [end, problem] =
       std::from_chars(text.data() + from, text.data() + at, value, std::chars_format::fixed);

@@ -59,7 +59,7 @@ std::optional<double> apply(Operator op, double a, double b, std::string& why);
 std::optional<double> arc_tangent(double y, double x, bool positive, std::string& why);
 
 /// A number at the start of `text`: [+-] digits [.] digits, no exponent. Returns its length, 0: none is
-/// there, and npos when it does not fit a double.
-size_t read_number(std::string_view text, double& value);
+/// there, and npos when it does not fit a double. `whole_number`: written without a point.
+size_t read_number(std::string_view text, double& value, bool* whole_number = nullptr);
 
 }  // namespace swarf::program::nc

@@ -170,7 +170,7 @@ class BlockReader {
     }
     if (way != Way::kModal) reader_.next();
     const Value value = evaluate(reader_, variables_);
-    if (token.name == "G") {
+    if (same(token.name, "G")) {
       g_word(converted(value, Type::kReal, reader_.line(), offset), token.offset, token.text);
     } else {
       put(token.name, value, way, token);
@@ -179,11 +179,13 @@ class BlockReader {
 
   void put(const std::string& name, const Value& value, Way way, const Token& token) {
     const size_t offset = token.offset;
-    if (name == "T") {
+    if (same(name, "T")) {
       tool(value, offset);
       return;
     }
-    const double number = converted(value, Type::kReal, reader_.line(), offset).number;
+    const double number = value.type == Type::kReal
+                              ? value.number
+                              : converted(value, Type::kReal, reader_.line(), offset).number;
     if (name.size() == 1) {
       if (const size_t axis = kAxisNames.find(name[0]); axis != std::string_view::npos)
         return coordinate(words_.axes[axis], number, way, token, axis >= 3);
@@ -200,8 +202,8 @@ class BlockReader {
       if (machine_axis_ == nullptr) machine_axis_ = &words_.axes[axis];
       return;
     }
-    if (name == "AP" || name == "RP") {
-      coordinate(name == "AP" ? words_.polar_angle : words_.polar_radius, number, way, token, false);
+    if (same(name, "AP") || same(name, "RP")) {
+      coordinate(name[0] == 'A' ? words_.polar_angle : words_.polar_radius, number, way, token, false);
       return;
     }
     if (way != Way::kModal) {
@@ -216,32 +218,32 @@ class BlockReader {
       auto& vector = name[1] == '2' ? words_.angles : words_.vector;
       return once(vector[static_cast<size_t>(name[0] - 'A')], number, token);
     }
-    using Plain = std::pair<std::string_view, Amount BlockWords::*>;
-    static constexpr std::array<Plain, 18> kPlain = {{{"CR", &BlockWords::radius},
-                                                      {"AR", &BlockWords::opening},
-                                                      {"TURN", &BlockWords::turns},
-                                                      {"F", &BlockWords::feed},
-                                                      {"S", &BlockWords::speed},
-                                                      {"D", &BlockWords::cutting_edge},
-                                                      {"ADIS", &BlockWords::rounding},
-                                                      {"RPL", &BlockWords::plane_turn},
-                                                      {"CTOL", &BlockWords::contour},
-                                                      {"PL", &BlockWords::interval},
-                                                      {"OFFN", &BlockWords::allowance},
-                                                      {"RND", &BlockWords::round},
-                                                      {"CHF", &BlockWords::chamfer},
-                                                      {"CHR", &BlockWords::chamfer_leg},
-                                                      {"RNDM", &BlockWords::round_all},
-                                                      {"FRC", &BlockWords::corner_feed},
-                                                      {"FRCM", &BlockWords::corner_feed_all},
-                                                      {"ANG", &BlockWords::angle}}};
+    using Plain = std::pair<std::string_view, Amount BlockNumbers::*>;
+    static constexpr std::array<Plain, 18> kPlain = {{{"CR", &BlockNumbers::radius},
+                                                      {"AR", &BlockNumbers::opening},
+                                                      {"TURN", &BlockNumbers::turns},
+                                                      {"F", &BlockNumbers::feed},
+                                                      {"S", &BlockNumbers::speed},
+                                                      {"D", &BlockNumbers::cutting_edge},
+                                                      {"ADIS", &BlockNumbers::rounding},
+                                                      {"RPL", &BlockNumbers::plane_turn},
+                                                      {"CTOL", &BlockNumbers::contour},
+                                                      {"PL", &BlockNumbers::interval},
+                                                      {"OFFN", &BlockNumbers::allowance},
+                                                      {"RND", &BlockNumbers::round},
+                                                      {"CHF", &BlockNumbers::chamfer},
+                                                      {"CHR", &BlockNumbers::chamfer_leg},
+                                                      {"RNDM", &BlockNumbers::round_all},
+                                                      {"FRC", &BlockNumbers::corner_feed},
+                                                      {"FRCM", &BlockNumbers::corner_feed_all},
+                                                      {"ANG", &BlockNumbers::angle}}};
     for (const auto& [word, member] : kPlain) {
-      if (name == word) {
+      if (same(name, word)) {
         once(words_.*member, number, token);
         return;
       }
     }
-    if (name == "M") {
+    if (same(name, "M")) {
       words_.functions.push_back({whole(number, token), token.offset, true});
     } else if (name == "H" || name == "SPOS" || name == "OTOL" || name == "ADISPOS" || name == "LIMS") {
       words_.noted.push_back(

@@ -61,7 +61,8 @@ struct NamedPlace {
   size_t offset = 0;
 };
 
-struct BlockWords {
+/// What a block has in numbers; as made, it has none.
+struct BlockNumbers {
   std::array<Coordinate, 6> axes;           ///< X Y Z A B C
   std::array<Coordinate, 3> centre;         ///< I J K
   std::array<Coordinate, 3> between;        ///< I1 J1 K1
@@ -79,6 +80,9 @@ struct BlockWords {
   Amount round, chamfer, chamfer_leg, round_all;  ///< RND CHF CHR RNDM
   Amount corner_feed, corner_feed_all, angle;     ///< FRC FRCM ANG
   std::array<Amount, 3> feed_radii;               ///< FGREF of A B C
+};
+
+struct BlockWords : BlockNumbers {
   ToolCall tool;
   std::vector<Amount> functions;  ///< M
   std::vector<std::pair<Group, int>> codes;
@@ -93,7 +97,12 @@ struct BlockWords {
   void clear();
   bool any_axis() const;
   bool moves() const;  ///< something that a motion is made of
-  std::optional<int> code(Group group) const;
+  std::optional<int> code(Group group) const {
+    for (const auto& [of, code] : codes) {
+      if (of == group) return code;
+    }
+    return std::nullopt;
+  }
 };
 
 /// Words that contradict each other throw InputError "words-conflict", "unexpected-word". `machine_axis`: the

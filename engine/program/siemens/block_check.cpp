@@ -70,17 +70,8 @@ void check_block(const BlockWords& words, const Coordinate* machine_axis, const 
 }
 
 void BlockWords::clear() {
-  axes = {};
-  centre = between = {};
-  polar_angle = polar_radius = {};
-  feed_radii = {};
-  angles = vector = {};
-  for (Amount* amount :
-       {&radius, &opening, &turns, &feed, &speed, &cutting_edge, &rounding, &plane_turn, &contour, &interval,
-        &allowance, &round, &chamfer, &chamfer_leg, &round_all, &corner_feed, &corner_feed_all, &angle})
-    *amount = {};
-  polynomials = {};
-  divisor = {};
+  static const BlockNumbers none;
+  static_cast<BlockNumbers&>(*this) = none;
   tool.given = false;
   functions.clear();
   codes.clear();
@@ -100,13 +91,6 @@ bool BlockWords::moves() const {
   const auto given = [](const auto& x) { return x.given; };
   return any_axis() || polar_angle || polar_radius || std::any_of(centre.begin(), centre.end(), given) ||
          std::any_of(angles.begin(), angles.end(), given) || std::any_of(vector.begin(), vector.end(), given);
-}
-
-std::optional<int> BlockWords::code(Group group) const {
-  for (const auto& [of, code] : codes) {
-    if (of == group) return code;
-  }
-  return std::nullopt;
 }
 
 }  // namespace swarf::program::nc::siemens

@@ -283,6 +283,48 @@ void call(Flow& flow, int file, TokenReader* arguments, const std::vector<Value>
   flow.variables.enter(*top(flow).scope);
 }
 
+void enter_contour(Flow& flow) {
+  const ContourName asked = flow.target.contour_asked();
+  const LineRef& from = flow.line.running;
+  std::vector<std::string> names{""};
+  for (const char c : capitals(asked.text)) {
+    if (c == ':')
+      names.emplace_back();
+    else if (c != ' ')
+      names.back() += c;
+  }
+  const auto missing = [&](const char* code, const std::string& what) {
+    refuse(from, asked.offset, code, fmt::format("the contour '{}': there is no {}", asked.text, what),
+           "name a program, or the labels of its first and last block: \"PART\", \"FIRST:LAST\", "
+           "\"PROGRAM:FIRST:LAST\"");
+  };
+  if (names.size() > 3 || std::find(names.begin(), names.end(), "") != names.end())
+    missing("bad-contour", "such form of names");
+  int file = top(flow).file;
+  if (names.size() != 2) file = loaded(flow.programs, flow.counts, names[0]);
+  if (file < 0) missing("unknown-subprogram", fmt::format("program {}.spf", names[0]));
+  if (names.size() != 2) {
+    call(flow, file, nullptr, {}, 1);
+  } else {
+    Level part;
+    part.part = true;
+    part.file = file;
+    part.scope = top(flow).scope;
+    flow.levels.enter(std::move(part));
+  }
+  Level& level = top(flow);
+  level.contour = true;
+  if (names.size() == 1) return;
+  Source& text = *flow.programs.sources[static_cast<size_t>(file)];
+  const std::string &first = names[names.size() - 2], &last = names.back();
+  const std::optional<int> begin = text.find_label(first, 0, 1);
+  const std::optional<int> end = begin ? text.find_label(last, *begin, 1) : std::nullopt;
+  if (!begin) missing("unknown-label", "label " + first);
+  if (!end) missing("unknown-label", fmt::format("label {} at or behind {}", last, first));
+  level.first = level.next = *begin;
+  level.stop = *end + 1;
+}
+
 /// REPEAT LABEL P=3, REPEAT FIRST LAST P=3, REPEATB LABEL P=3; REPEAT alone opens REPEAT ... UNTIL.
 void on_repeat(Flow& flow, TokenReader& reader) {
   const bool block = flow.line.tokens[reader.position() - 1].name == "REPEATB";

@@ -251,6 +251,8 @@ void run_call(Executor& executor, const CycleCall& call) {
     slots(executor, call);
   } else if (call.name == "CYCLE76" || call.name == "CYCLE77") {
     spigot(executor, call);
+  } else if (call.name == "CYCLE72") {
+    begin_contour(executor, call);
   } else if (call.name == "CYCLE61" || call.name == "CYCLE71") {
     face(executor, call);
   } else if (call.name.starts_with("CYCLE8")) {

@@ -146,7 +146,7 @@ bool assign(TokenReader& reader, Variables& variables) {
     variables.system()->write_system(asked, value);
     return true;
   }
-  const bool parameter = is_parameter(name.name) || (name.name == "R" && reader.peek(1).symbol("["));
+  const bool parameter = is_parameter(name.name) || (same(name.name, "R") && reader.peek(1).symbol("["));
   Variable* variable = parameter ? nullptr : variables.find(name.name);
   if (!parameter && variable == nullptr) return false;
   reader.next();

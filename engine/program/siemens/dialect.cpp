@@ -77,6 +77,7 @@ void run(const std::string& path, Control& control) {
   Flow flow(executor, control.setup.subprogram_folders);
   set_presets(control.setup.presets, executor, flow.variables);
   run(flow, path);
+  refuse_open_line(executor);
   if (!flow.counts.ended)
     control.report.warn_once("missing-end", 0,
                              "the program ends with its file, without M30, M17 or RET: it may be cut off",

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "program/siemens/milling.h"
+
 namespace swarf::program::nc::siemens {
 
 using nc::Compensation;
@@ -234,7 +236,10 @@ Outcome Executor::block(TokenReader& reader, Variables& variables) {
   const bool modal_call = reader.position() > 0 && reader.previous().named("MCALL");
   words.clear();
   calls.pattern_done = false;
+  const bool reading = contour != nullptr;
   read_block(reader, variables, words);
+  if (reading) check_contour_block(*this, words, modal_call);
+  if (path.open) close_line(*this, words);
   if (modal_call) {
     calls.modal_cycle.reset();
     if (words.calls.empty()) return Outcome::kNext;
@@ -259,7 +264,16 @@ Outcome Executor::block(TokenReader& reader, Variables& variables) {
     for (const CycleCall& call : words.calls) run_call(*this, call);
     motion_words(*this, words);
   }
+  if (contour && !reading) return Outcome::kContour;
   return end_words(calls, words);
+}
+
+ContourName Executor::contour_asked() const {
+  return {contour->call.arguments[0]->text, contour->call.offsets[0]};
+}
+
+void Executor::contour_read() {
+  mill_contour(*this);
 }
 
 void apply_corner(nc::Control& control, Modes& modes) {

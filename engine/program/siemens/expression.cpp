@@ -82,7 +82,7 @@ class Evaluator {
     const Token& token = reader_.peek();
     if (token.kind != TokenKind::kSymbol && token.kind != TokenKind::kName) return nullptr;
     const auto found = std::find_if(kBinary.begin(), kBinary.end(),
-                                    [&](const Binary& one) { return one.symbol == token.name; });
+                                    [&](const Binary& one) { return same(token.name, one.symbol); });
     return found == kBinary.end() ? nullptr : &*found;
   }
 
@@ -92,7 +92,9 @@ class Evaluator {
     }
     const size_t offset = reader_.offset();
     Value value;
-    if (reader_.skip("-")) {
+    if (reader_.peek().kind == TokenKind::kNumber) {
+      value = primary();
+    } else if (reader_.skip("-")) {
       const Value operand = number(unary(), offset);
       value = {operand.type == Type::kBool ? Type::kInt : operand.type, -operand.number, {}};
     } else if (reader_.skip("+")) {
@@ -261,14 +263,6 @@ class Evaluator {
 };
 
 }  // namespace
-
-bool TokenReader::skip(std::string_view symbol_or_name) {
-  const Token& token = peek();
-  const bool here = !done() && (token.kind == TokenKind::kSymbol || token.kind == TokenKind::kName) &&
-                    token.name == symbol_or_name;
-  if (here) ++at_;
-  return here;
-}
 
 void TokenReader::expect(std::string_view symbol, std::string_view after) {
   if (skip(symbol)) return;

@@ -13,6 +13,9 @@
 
 namespace swarf::program::nc::siemens {
 
+/// Behind the last one.
+inline const Token kNoToken;
+
 /// A place in the tokens of a line; formulas are read from it and move it on.
 class TokenReader {
  public:
@@ -20,14 +23,17 @@ class TokenReader {
 
   bool done() const { return at_ >= tokens_.size(); }
   const Token& peek(size_t ahead = 0) const {
-    static const Token end;
-    return at_ + ahead < tokens_.size() ? tokens_[at_ + ahead] : end;
+    return at_ + ahead < tokens_.size() ? tokens_[at_ + ahead] : kNoToken;
   }
   const Token& next() { return tokens_[at_++]; }
   const Token& previous() const { return tokens_[at_ - 1]; }
   /// Steps back to the token before.
   void back() { --at_; }
-  bool skip(std::string_view symbol_or_name);
+  bool skip(std::string_view symbol_or_name) {
+    if (!here(symbol_or_name)) return false;
+    ++at_;
+    return true;
+  }
   /// Throws InputError "bad-block" unless the symbol stands here.
   void expect(std::string_view symbol, std::string_view after);
   /// Byte offset of the token here, or of the end of the line.
@@ -36,6 +42,12 @@ class TokenReader {
   size_t position() const { return at_; }
 
  private:
+  bool here(std::string_view symbol_or_name) const {
+    if (done()) return false;
+    const Token& token = tokens_[at_];
+    return (token.kind == TokenKind::kSymbol || token.kind == TokenKind::kName) &&
+           same(token.name, symbol_or_name);
+  }
   size_t end_offset() const;
 
   const LineRef& line_;

@@ -18,7 +18,7 @@ bool leave_level(Flow& flow, bool to_caller) {
     top(flow).next = top(flow).first;
     return true;
   }
-  while (to_caller && top(flow).part) flow.levels.leave();
+  while (to_caller && top(flow).part && !top(flow).contour) flow.levels.leave();
   const Level left = flow.levels.leave();
   if (left.again > 0) {  // a subprogram with P that ended by M17
     flow.levels.enter(left);
@@ -34,6 +34,7 @@ bool leave_level(Flow& flow, bool to_caller) {
     Value& to = flow.variables.element(back.variable, {}, line, 0);
     to = converted(value, to.type, line, 0);
   }
+  if (left.contour) flow.target.contour_read();
   return true;
 }
 
@@ -70,10 +71,15 @@ void words(Flow& flow, TokenReader& reader) {
   if (subprogram_here(flow, reader)) return;
   const long before = flow.target.moves();
   const Outcome outcome = flow.target.block(reader, flow.variables);
-  const size_t programs = flow.levels.count([](const Level& level) { return !level.part; });
+  if (outcome == Outcome::kContour) return enter_contour(flow);
   const bool modal = flow.modal.file >= 0 && flow.levels.size() == flow.modal.depth;
-  // In a main program that is called, M2 and M30 mean M17 (manual, subprograms).
-  const bool ends = outcome == Outcome::kEnd && programs == 1;
+  // In a main program that is called, M2 and M30 mean M17 (manual, subprograms), and so at the end of a
+  // contour.
+  const auto called = [&] {
+    const auto programs = flow.levels.count([](const Level& level) { return !level.part; });
+    return programs > 1 || flow.levels.count([](const Level& level) { return level.contour; }) > 0;
+  };
+  const bool ends = outcome == Outcome::kEnd && !called();
   if (ends) {
     flow.levels.clear();
     flow.counts.ended = true;
@@ -116,7 +122,12 @@ bool condition(Variables& variables, TokenReader& reader) {
 
 /// Goes on with a line of the running program; jumps back are counted against endless loops.
 void jump(Flow& flow, int index, const LineRef& from) {
-  while (top(flow).part && (index < top(flow).first || index >= top(flow).stop)) flow.levels.leave();
+  while (top(flow).part && (index < top(flow).first || index >= top(flow).stop)) {
+    if (top(flow).contour)
+      refuse(from, 0, "bad-contour", "a jump leaves the blocks between the labels of a contour",
+             "end the contour at its last label, or write it as a program of its own");
+    flow.levels.leave();
+  }
   top(flow).next = index;
   if (index > flow.line.current) return;
   if (flow.target.moves() != flow.counts.moves_seen) flow.counts.jumps = 0;

@@ -19,8 +19,15 @@ namespace swarf::program::nc::siemens {
 enum class Outcome {
   kNext,
   kPattern,  ///< as kNext; the block was a position pattern, at each place of which MCALL works
+  kContour,  ///< as kNext; the blocks of contour_asked() come next, then contour_read()
   kReturn,
   kEnd,
+};
+
+/// The blocks of a contour: "PROGRAM", "FIRST:LAST" (labels of the running program), "PROGRAM:FIRST:LAST".
+struct ContourName {
+  std::string text;
+  size_t offset = 0;  ///< in the block that asks for it
 };
 
 /// Executes the blocks of words.
@@ -36,6 +43,9 @@ class BlockTarget : public SystemVariables {
   virtual void note(const std::string& word, const std::string& text, const std::string& file, int line) = 0;
   /// True for a program of the machine's builder that moves nothing, and is listed.
   virtual bool takes_builders(const std::string& name, const LineRef& line) = 0;
+  virtual ContourName contour_asked() const = 0;
+  /// All blocks of the contour have run.
+  virtual void contour_read() = 0;
   /// Moves so far: loops that move nothing are endless.
   virtual long moves() const = 0;
 };
@@ -55,6 +65,7 @@ struct Level {
   int next = 0, first = 0, stop = 0;  ///< lines from 0; stop is not run
   int again = 0;                      ///< how often it is still repeated
   bool part = false;                  ///< a repeated part of the level below
+  bool contour = false;               ///< the blocks of a contour
   int entry = -1;                     ///< the line of PROC
   std::shared_ptr<Scope> scope;
   std::vector<Returned> returned;

@@ -21,6 +21,8 @@ void on_extern(Flow& flow, TokenReader& reader);
 void on_call(Flow& flow, TokenReader& reader);
 void on_mcall(Flow& flow, TokenReader& reader);
 bool subprogram_here(Flow& flow, TokenReader& reader);
+/// The blocks of target.contour_asked() come next.
+void enter_contour(Flow& flow);
 void call(Flow& flow, int file, TokenReader* arguments, const std::vector<Value>& values, int times);
 
 // --- declare.cpp

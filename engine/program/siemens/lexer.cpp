@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "program/control/report.h"
+#include "program/letters/arithmetic.h"
 #include "program/source_text.h"
 
 namespace swarf::program::nc::siemens {
@@ -14,6 +15,27 @@ namespace {
 
 char upper(char c) {
   return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+}
+
+bool is_symbol(char c) {
+  switch (c) {
+    case '=':
+    case '<':
+    case '>':
+    case '+':
+    case '-':
+    case '*':
+    case '/':
+    case '(':
+    case ')':
+    case '[':
+    case ']':
+    case ',':
+    case ':':
+      return true;
+    default:
+      return false;
+  }
 }
 
 class LineLexer {
@@ -62,8 +84,13 @@ class LineLexer {
       return;
     }
     while (in_name(peek())) ++at_;
+    name(token, start);
+  }
+
+  /// In capitals, up to where the lexer stands.
+  void name(Token& token, size_t start) {
     token.kind = TokenKind::kName;
-    token.name = capitals(text_.substr(start, at_ - start));
+    for (size_t at = start; at < at_; ++at) token.name.push_back(upper(text_[at]));
   }
 
   /// S1= A3= R5=: letter, digits, and one '=' (not two).
@@ -75,8 +102,7 @@ class LineLexer {
     if (end == at_ || equals >= text_.size() || text_[equals] != '=') return false;
     if (equals + 1 < text_.size() && text_[equals + 1] == '=') return false;
     at_ = end;
-    token.kind = TokenKind::kName;
-    token.name = capitals(text_.substr(start, end - start));
+    name(token, start);
     return true;
   }
 
@@ -95,17 +121,15 @@ class LineLexer {
 
   /// Digits, one point, EX and a whole number.
   void number(Token& token, size_t start) {
-    const size_t first = at_;
-    while (is_digit(peek()) || peek() == '.') ++at_;
-    const std::string_view digits = text_.substr(first, at_ - first);
-    token.whole = digits.find('.') == std::string_view::npos;
-    const auto [end, problem] =
-        std::from_chars(digits.data(), digits.data() + digits.size(), token.number, std::chars_format::fixed);
-    if (problem != std::errc{} || end != digits.data() + digits.size() || digits.size() > 60) {
+    constexpr size_t kDigitsMax = 60;
+    const size_t digits = nc::read_number(text_.substr(at_), token.number, &token.whole);
+    if (digits == 0 || digits > kDigitsMax || (at_ + digits < text_.size() && text_[at_ + digits] == '.')) {
+      while (is_digit(peek()) || peek() == '.') ++at_;
       refuse(line_, start, "bad-number",
              fmt::format("'{}' is not a number", text_.substr(start, std::min<size_t>(at_ - start, 40))),
              "a number has digits and at most one point: -12.5");
     }
+    at_ += digits;
     if (upper(peek()) == 'E') exponent(token, start);
   }
 
@@ -163,14 +187,14 @@ class LineLexer {
   }
 
   void symbol(Token& token) {
-    static constexpr std::string_view kSymbols[] = {"==", "<>", "<=", ">=", "<<", "=", "<", ">", "+",
-                                                    "-",  "*",  "/",  "(",  ")",  "[", "]", ",", ":"};
-    for (const std::string_view symbol : kSymbols) {
-      if (text_.substr(at_).starts_with(symbol)) {
-        token.name = symbol;
-        at_ += symbol.size();
-        return;
-      }
+    const char c = peek(), next = peek(1);
+    if (is_symbol(c)) {
+      const bool two =
+          next == '=' ? c == '=' || c == '<' || c == '>' : c == '<' && (next == '>' || next == '<');
+      token.name.push_back(c);
+      if (two) token.name.push_back(next);
+      at_ += two ? 2 : 1;
+      return;
     }
     const int length = utf8_length(text_, at_);
     const std::string_view shown = text_.substr(at_, length > 0 ? static_cast<size_t>(length) : 1);

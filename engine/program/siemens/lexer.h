@@ -27,6 +27,11 @@ inline bool in_name(char c) {
   return is_letter(c) || is_digit(c) || c == '_';
 }
 
+/// a == b, neither of them empty. Most words differ in their first letters, or are that letter.
+inline bool same(std::string_view a, std::string_view b) {
+  return a.size() == b.size() && a[0] == b[0] && (a.size() == 1 || a == b);
+}
+
 /// A line of the program, for messages.
 struct LineRef {
   const std::string* file = nullptr;
@@ -57,8 +62,8 @@ struct Token {
   std::string_view text;  ///< as written
   size_t offset = 0;      ///< byte in the line
 
-  bool symbol(std::string_view what) const { return kind == TokenKind::kSymbol && name == what; }
-  bool named(std::string_view what) const { return kind == TokenKind::kName && name == what; }
+  bool symbol(std::string_view what) const { return kind == TokenKind::kSymbol && same(name, what); }
+  bool named(std::string_view what) const { return kind == TokenKind::kName && same(name, what); }
 };
 
 /// Reads one line into `tokens` (cleared first). Throws InputError: "bad-number", "unexpected-character",

@@ -123,6 +123,10 @@ void MillCall::only_zero_from(size_t first) const {
   only_zero(executor_.place, call_, first, call_.arguments.size());
 }
 
+void MillCall::only_zero_between(size_t first, size_t behind) const {
+  only_zero(executor_.place, call_, first, behind - 1);
+}
+
 void MillCall::plain_modes(size_t gmode) const {
   const int geometry = whole(gmode, 0.0), plane = whole(gmode + 1, 0.0), depth = whole(gmode + 2, 0.0);
   for (const int digit : {geometry / 100 % 10, geometry / 1000 % 10, geometry / 10000 % 10}) {
@@ -155,33 +159,56 @@ int MillCall::column() const {
   return siemens::column(executor_.place, call_.offset);
 }
 
-MillHeights mill_heights(const MillCall& call, bool has_dpr, size_t amode) {
-  const double reference = call.length(1, std::nullopt);
+MillHeights mill_heights(const MillCall& call, bool has_dpr, size_t amode, size_t first) {
+  const double reference = call.length(first + 1, std::nullopt);
   MillHeights heights;
-  heights.retract = call.length(0, std::nullopt);
-  heights.safe = reference + call.size(2, 0.0);
+  heights.retract = call.length(first, std::nullopt);
+  heights.safe = reference + call.size(first + 2, 0.0);
   const int mode = call.whole(amode, 0.0) % 10;
-  const bool absolute = call.given(3), relative = has_dpr && call.number(4, 0.0) != 0.0;
+  const bool absolute = call.given(first + 3), relative = has_dpr && call.number(first + 4, 0.0) != 0.0;
   if (has_dpr && mode == 0 && absolute == relative) {
-    call.fail("wrong-arguments", 3, fmt::format("{} takes the depth once, as DP or as DPR", call.name()),
+    call.fail("wrong-arguments", first + 3,
+              fmt::format("{} takes the depth once, as DP or as DPR", call.name()),
               "leave the other one out");
   }
   const bool from_reference = mode == 0 ? relative : mode == 1;
-  heights.bottom =
-      from_reference ? reference - call.size(has_dpr ? 4 : 3, std::nullopt) : call.length(3, std::nullopt);
+  heights.bottom = from_reference ? reference - call.size(first + (has_dpr ? 4 : 3), std::nullopt)
+                                  : call.length(first + 3, std::nullopt);
   if (!(heights.bottom < reference)) {
-    call.fail("bad-cycle", 3,
+    call.fail("bad-cycle", first + 3,
               fmt::format("the depth {:g} mm does not lie below the reference plane {:g} mm (alarm 61101)",
                           heights.bottom, reference),
               "DP is an absolute height below RFP");
   }
   if (heights.retract < heights.safe - 1e-9) {
-    call.fail("bad-cycle", 0,
+    call.fail("bad-cycle", first,
               fmt::format("the retraction plane {:g} mm lies below the start of milling {:g} mm",
                           heights.retract, heights.safe),
               "RTP lies above RFP by SDIS or more");
   }
   return heights;
+}
+
+MillShape rectangle_at(const MillCall& call, size_t at, const char* what) {
+  MillShape shape;
+  shape.half_length = 0.5 * call.way(at);
+  shape.half_width = 0.5 * call.way(at + 1);
+  shape.corner = call.size(at + 2, 0.0);
+  if (shape.corner > std::min(shape.half_length, shape.half_width) + 1e-9)
+    call.fail("bad-cycle", at + 2,
+              fmt::format("corners of {:g} mm do not fit a {} of {:g} by {:g} mm (alarm 61113)", shape.corner,
+                          what, 2.0 * shape.half_length, 2.0 * shape.half_width),
+              "give a corner radius of at most half the shorter side");
+  shape.centre = Vec2(call.length(at + 3, std::nullopt), call.length(at + 4, std::nullopt));
+  shape.angle_deg = call.number(at + 5, 0.0);
+  return shape;
+}
+
+MillShape circle_at(const MillCall& call, size_t at, bool diameter) {
+  MillShape shape;
+  shape.half_length = shape.half_width = shape.corner = (diameter ? 0.5 : 1.0) * call.way(at);
+  shape.centre = Vec2(call.length(at + 1, std::nullopt), call.length(at + 2, std::nullopt));
+  return shape;
 }
 
 MillMotion::MillMotion(const MillCall& call, const Vec2& origin, double angle_deg)

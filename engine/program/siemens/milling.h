@@ -40,6 +40,7 @@ class MillCall {
   int steps(double way, double most, size_t index) const;
   /// Arguments that choose variants, from `first` on: left out, or 0.
   void only_zero_from(size_t first) const;
+  void only_zero_between(size_t first, size_t behind) const;
   /// _GMODE (hundreds: machine; thousands: from the centre; ten thousands: all of it), _DMODE (the plane),
   /// _AMODE (units: how the depth is given, tens: widths in mm or percent) that newer cycles append.
   void plain_modes(size_t gmode) const;
@@ -67,9 +68,20 @@ struct MillHeights {
   double safe = 0.0;     ///< RFP + SDIS: infeeds count from here
   double bottom = 0.0;   ///< DP
 };
-/// RTP, RFP, SDIS, DP as the first four arguments, and DPR behind them where there is one. The units digit of
+/// RTP, RFP, SDIS, DP from argument `first` on, and DPR behind them where there is one. The units digit of
 /// argument `amode` says which depth counts: 1 from RFP, 2 absolute.
-MillHeights mill_heights(const MillCall& call, bool has_dpr, size_t amode);
+MillHeights mill_heights(const MillCall& call, bool has_dpr, size_t amode, size_t first = 0);
+
+/// A rectangle with round corners, or a circle, mm and degrees.
+struct MillShape {
+  double half_length = 0.0, half_width = 0.0, corner = 0.0;
+  Vec2 centre = Vec2::Zero();
+  double angle_deg = 0.0;
+};
+/// Length, width, corner radius, centre (two) and angle from argument `at` on; `what`: pocket, spigot.
+MillShape rectangle_at(const MillCall& call, size_t at, const char* what);
+/// Radius (or the diameter) and centre (two) from argument `at` on.
+MillShape circle_at(const MillCall& call, size_t at, bool diameter);
 
 /// Moves in the frame of a cycle: its origin in the plane, turned by an angle. Heights are those of the
 /// program. Borrows F and its mode while it lives.
@@ -101,11 +113,18 @@ class MillMotion {
 };
 
 // --- pockets.cpp
-void pocket(Executor& executor, const CycleCall& call);  ///< POCKET3, POCKET4
+void pocket(Executor& executor, const CycleCall& call);  ///< POCKET1 to POCKET4
 // --- slots.cpp
 void slots(Executor& executor, const CycleCall& call);  ///< SLOT1, SLOT2, LONGHOLE
 // --- spigots.cpp
 void spigot(Executor& executor, const CycleCall& call);  ///< CYCLE76, CYCLE77
+// --- contour_cycle.cpp
+/// CYCLE72: its contour is read next.
+void begin_contour(Executor& executor, const CycleCall& call);
+/// "bad-contour" for words that no contour of a cycle has.
+void check_contour_block(Executor& executor, const BlockWords& words, bool modal_call);
+/// The contour has been read: mills it.
+void mill_contour(Executor& executor);
 // --- facing.cpp
 void face(Executor& executor, const CycleCall& call);  ///< CYCLE61, CYCLE71
 

@@ -460,9 +460,7 @@ void motion_words(Executor& executor, const BlockWords& words) {
       executor.modes.motion != kG0 && executor.modes.motion != kG1 && executor.modes.motion != kPoly;
   check_polynomial(executor.control, executor.place, executor.modes, words);
   if (!words.moves()) {
-    if (words.angle)
-      fail(executor.place, "unexpected-word", words.angle.offset, "ANG= stands without an end of the line",
-           "write one coordinate of the plane: G1 X40 ANG=30");
+    if (words.angle) return open_line(executor, words);
     refuse_arc_words_at_rest(executor.place, words);
     return;
   }

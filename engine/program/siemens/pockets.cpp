@@ -4,6 +4,10 @@
 //           _AP1,_AP2,_AD,_RAD1,_DP1,_UMODE,_FS,_ZFS,_GMODE,_DMODE,_AMODE)
 //   POCKET4(_RTP,_RFP,_SDIS,_DP,_PRAD,_PA,_PO,_MID,_FAL,_FALD,_FFP1,_FFD,_CDIR,_VARI,_MIDA,
 //           _AP1,_AD,_RAD1,_DP1,_UMODE,_FS,_ZFS,_GMODE,_DMODE,_AMODE)
+//   POCKET1(RTP,RFP,SDIS,DP,DPR,LENG,WID,CRAD,CPA,CPO,STA1,FFD,FFP1,MID,CDIR,FAL,VARI,MIDF,FFP2,SSF)
+//   POCKET2(RTP,RFP,SDIS,DP,DPR,PRAD,CPA,CPO,FFD,FFP1,MID,CDIR,FAL,VARI,MIDF,FFP2,SSF), the older ones:
+//   straight in at the centre; VARI 0 roughing, then the walls with MIDF, FFP2 and the speed SSF; 1, 2 one of
+//   both
 //
 // Roughing: equal infeeds of at most _MID from RFP + SDIS to _DP + _FALD; each level is entered at the centre
 // (straight, on a helix, or to and fro along the pocket) and milled from the inside out in equal steps of at
@@ -25,11 +29,8 @@ constexpr double kQuadrant = 2.0;
 
 enum class WayIn { kRapid, kStraight, kHelix, kSwing };
 
-struct PocketCut {
+struct PocketCut : MillShape {
   MillHeights heights;
-  double half_length = 0.0, half_width = 0.0, corner = 0.0;  ///< of the pocket
-  Vec2 centre = Vec2::Zero();
-  double angle_deg = 0.0;
   double most_down = 0.0;  ///< MID
   size_t mid_at = 0, mida_at = 0;
   double wall = 0.0, floor = 0.0;  ///< FAL, FALD
@@ -37,9 +38,9 @@ struct PocketCut {
   int sense = 1;
   double step = 0.0;  ///< the widest between passes
   WayIn entry = WayIn::kRapid;
-  double entry_size = 0.0;     ///< radius of the helix, mm, or angle of the swing, rad
-  double down_per_turn = 0.0;  ///< of the helix
-  bool finish = false, base = true;
+  double entry_size = 0.0;                          ///< radius of the helix, mm, or angle of the swing, rad
+  double down_per_turn = 0.0;                       ///< of the helix
+  bool finish = false, base = true, walls = false;  ///< walls: finished without an allowance too
 };
 
 /// The way of the tool's centre at `inset` within the pocket's walls, in the asked sense.
@@ -68,7 +69,7 @@ class PocketMill {
   }
 
   void finish() {
-    if (cut_.wall > 0.0) finish_walls();
+    if (cut_.wall > 0.0 || cut_.walls) finish_walls();
     if (cut_.base && cut_.floor > 0.0) {
       above_centre();
       motion_.rapid_height(std::min(cut_.heights.safe, cut_.heights.bottom + cut_.floor + safety()));
@@ -239,38 +240,72 @@ void check_room(const MillCall& call, const PocketCut& cut, size_t size_at) {
         fmt::format("use a tool of at most {:g} mm", room - (need - tool)));
 }
 
+void warn_of_passes(const MillCall& call) {
+  call.warn(
+      "pocket-passes",
+      "how a pocket's passes follow each other is the control's own: taken as rings from its middle line "
+      "out, equal steps of at most _MIDA, joined on the positive longitudinal axis");
+}
+
+/// POCKET1 and POCKET2 from FFD on, the argument `at`.
+void mill_old_pocket(const MillCall& call, size_t at, PocketCut& cut) {
+  cut.feed_down = call.feed(at);
+  cut.feed = call.feed(at + 1);
+  cut.mid_at = at + 2;
+  cut.most_down = call.size(at + 2, 0.0);
+  if (const int way = call.whole(at + 3, std::nullopt); way != 2 && way != 3)
+    call.fail("out-of-range", at + 3, fmt::format("{} is no direction of {}", way, call.name()),
+              "2 G2, 3 G3");
+  cut.sense = call.sense(at + 3, false);
+  cut.wall = call.size(at + 4, 0.0);
+  const int kind = call.whole(at + 5, 0.0);
+  if (kind < 0 || kind > 2)
+    call.fail("out-of-range", at + 5, fmt::format("VARI {} is no machining (alarm 61002)", kind),
+              "0 all, 1 roughing, 2 finishing");
+  cut.entry = WayIn::kStraight;
+  cut.step = kStepOfTool * 2.0 * call.tool_radius();
+  cut.mida_at = at + 2;
+  cut.finish = kind == 2;
+  check_room(call, cut, 5);
+  warn_of_passes(call);
+  if (kind != 2) PocketMill(call, cut).rough();
+  if (kind == 1 || (kind == 0 && cut.wall == 0.0)) return;
+  nc::ModalState& modal = call.executor().control.modal;
+  const Borrowed<double> speed(modal.speed_rpm);
+  if (const double finishing = call.size(at + 8, 0.0); finishing > 0.0) modal.speed_rpm = finishing;
+  cut.most_down = call.size(at + 6, 0.0);
+  cut.mid_at = at + 6;
+  if (call.number(at + 7, 0.0) != 0.0) cut.feed = call.feed(at + 7);
+  cut.finish = cut.walls = true;
+  PocketMill(call, cut).finish();
+}
+
+void old_pocket(Executor& executor, const CycleCall& words) {
+  const bool round = words.name == "POCKET2";
+  const MillCall call(executor, words, round ? 17 : 20);
+  PocketCut cut;
+  cut.heights = mill_heights(call, true, words.arguments.size());
+  static_cast<MillShape&>(cut) = round ? circle_at(call, 5, false) : rectangle_at(call, 5, "pocket");
+  cut.corner = std::max(cut.corner, call.tool_radius());
+  mill_old_pocket(call, round ? 8 : 11, cut);
+}
+
 }  // namespace
 
 void pocket(Executor& executor, const CycleCall& words) {
+  if (words.name == "POCKET1" || words.name == "POCKET2") return old_pocket(executor, words);
   const bool round = words.name == "POCKET4";
   const MillCall call(executor, words, round ? 25 : 29);
   PocketCut cut;
   const size_t mid = round ? 7 : 10, blank = mid + 8, tail = round ? 17 : 21;
   cut.heights = mill_heights(call, false, tail + 7);
-  if (round) {
-    cut.half_length = cut.half_width = cut.corner = call.way(4);
-    cut.centre = Vec2(call.length(5, std::nullopt), call.length(6, std::nullopt));
-  } else {
-    cut.half_length = 0.5 * call.way(4);
-    cut.half_width = 0.5 * call.way(5);
-    cut.corner = call.size(6, 0.0);
-    if (cut.corner > std::min(cut.half_length, cut.half_width) + 1e-9)
-      call.fail("bad-cycle", 6,
-                fmt::format("corners of {:g} mm do not fit a pocket of {:g} by {:g} mm (alarm 61113)",
-                            cut.corner, 2.0 * cut.half_length, 2.0 * cut.half_width),
-                "give a corner radius of at most half the shorter side");
-    cut.centre = Vec2(call.length(7, std::nullopt), call.length(8, std::nullopt));
-    cut.angle_deg = call.number(9, 0.0);
-  }
+  static_cast<MillShape&>(cut) = round ? circle_at(call, 4, false) : rectangle_at(call, 4, "pocket");
   // A corner narrower than the tool gets the tool's radius.
   cut.corner = std::max(cut.corner, call.tool_radius());
   read_pocket_cut(call, mid, tail, cut);
   read_entry(call, blank, tail, cut);
   check_room(call, cut, 4);
-  call.warn(
-      "pocket-passes",
-      "how a pocket's passes follow each other is the control's own: taken as rings from its middle line "
-      "out, equal steps of at most _MIDA, joined on the positive longitudinal axis");
+  warn_of_passes(call);
   PocketMill mill(call, cut);
   if (cut.finish)
     mill.finish();

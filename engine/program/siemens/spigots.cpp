@@ -16,11 +16,9 @@
 namespace swarf::program::nc::siemens {
 namespace {
 
-struct Spigot {
+struct Spigot : MillShape {
   MillHeights heights;
-  double half_length = 0.0, half_width = 0.0, corner = 0.0, raw = 0.0;
-  Vec2 centre = Vec2::Zero();
-  double angle_deg = 0.0;
+  double raw = 0.0;
   double wall = 0.0, floor = 0.0, feed = 0.0, feed_down = 0.0;
   int sense = 1, steps = 0;
   bool finish = false;
@@ -79,21 +77,8 @@ void spigot(Executor& executor, const CycleCall& words) {
   const size_t mid = round ? 8 : 11, gmode = round ? 18 : 22;
   Spigot spigot;
   spigot.heights = mill_heights(call, true, gmode + 2);
-  if (round) {
-    spigot.half_length = spigot.half_width = spigot.corner = 0.5 * call.way(5);  // _PRAD is the diameter
-    spigot.centre = Vec2(call.length(6, std::nullopt), call.length(7, std::nullopt));
-  } else {
-    spigot.half_length = 0.5 * call.way(5);
-    spigot.half_width = 0.5 * call.way(6);
-    spigot.corner = call.size(7, 0.0);
-    if (spigot.corner > std::min(spigot.half_length, spigot.half_width) + 1e-9)
-      call.fail("bad-cycle", 7,
-                fmt::format("corners of {:g} mm do not fit a spigot of {:g} by {:g} mm (alarm 61113)",
-                            spigot.corner, 2.0 * spigot.half_length, 2.0 * spigot.half_width),
-                "give a corner radius of at most half the shorter side");
-    spigot.centre = Vec2(call.length(8, std::nullopt), call.length(9, std::nullopt));
-    spigot.angle_deg = call.number(10, 0.0);
-  }
+  // _PRAD of CYCLE77 is the diameter.
+  static_cast<MillShape&>(spigot) = round ? circle_at(call, 5, true) : rectangle_at(call, 5, "spigot");
   spigot.raw = 0.5 * call.size(mid + 7, 0.0);
   if (spigot.raw > 0.0 && spigot.raw < spigot.half_length - 1e-9)
     call.fail("bad-cycle", mid + 7,

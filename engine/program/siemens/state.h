@@ -7,6 +7,7 @@
 
 #include <array>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,6 +28,11 @@ namespace swarf::program::nc::siemens {
 struct Piece {
   Vec3 direction = Vec3::Zero();  ///< tangent at its end, program coordinates
   bool valid = false;
+};
+/// A line given by its angle alone (ANG=): it ends where the line of the next block crosses it.
+struct OpenLine {
+  double angle_deg = 0.0;
+  nc::Place place;
 };
 /// What CYCLE832() goes back to.
 struct Corner {
@@ -77,10 +83,28 @@ struct PathWords {
   std::optional<double> polar_angle;   ///< AP, degrees
   std::optional<double> polar_radius;  ///< RP, mm
   Piece last;
+  std::optional<OpenLine> open;
 };
 
 struct CallState {
   bool pattern_done = false;  ///< the block was a pattern
+  std::optional<CycleCall> modal_cycle;
+};
+
+/// A cycle whose contour is being read, and what holds again when that is done.
+struct ContourReading {
+  CycleCall call;
+  std::string text;  ///< of the cycle's block
+  LineRef line;
+  BlockPlace place;
+  int column = 0;
+  bool started = false;             ///< its first point has come
+  double round_all_mm = 0.0;        ///< RNDM, while the tool goes to that point
+  std::vector<nc::Segment> pieces;  ///< the first one leads to the contour
+  nc::PathState path;
+  nc::ModalState modal;
+  Modes modes;
+  PathWords words;
   std::optional<CycleCall> modal_cycle;
 };
 
@@ -96,6 +120,8 @@ struct Executor final : BlockTarget {
   void note(const std::string& word, const std::string& text, const std::string& file, int line) override;
   bool takes_builders(const std::string& name, const LineRef& line) override;
   long moves() const override;
+  ContourName contour_asked() const override;
+  void contour_read() override;
 
   nc::Control& control;
   BlockPlace place;
@@ -104,6 +130,7 @@ struct Executor final : BlockTarget {
   Frames frames;
   PathWords path;
   CallState calls;
+  std::unique_ptr<ContourReading> contour;  ///< CYCLE72 reads its contour
 };
 
 inline int column(const BlockPlace& place, size_t offset) {

@@ -29,6 +29,12 @@ void corner_modes(nc::Control& control, BlockPlace& place, Modes& modes, const B
 void ask_for_corner(nc::Control& control, const BlockPlace& place, const Modes& modes, const Frames& frames,
                     const BlockWords& words);
 void angle_end(Executor& executor, const BlockWords& words, Target& target);
+/// ANG= without an end: the line waits for the next block.
+void open_line(Executor& executor, const BlockWords& words);
+/// Moves along the line that waits, up to where that of this block crosses it, whose ANG= is then done with.
+void close_line(Executor& executor, BlockWords& words);
+/// "line-without-end" where a line still waits.
+void refuse_open_line(const Executor& executor);
 
 // --- polar.cpp
 void set_pole(Executor& executor, const BlockWords& words, int code);

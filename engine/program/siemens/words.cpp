@@ -6,6 +6,8 @@
 #include <map>
 #include <unordered_map>
 
+#include "program/siemens/lexer.h"
+
 namespace swarf::program::nc::siemens {
 namespace {
 
@@ -101,10 +103,10 @@ constexpr const char* kNotedCalls[] = {"MSG",   "POLYPATH", "WORKPIECE", "GROUP_
 constexpr const char* kNotedIndexed[] = {"ACC",      "VELOLIM",  "JERKLIM", "ACCLIMA",
                                          "VELOLIMA", "JERKLIMA", "ATOL"};
 
-constexpr const char* kCycles[] = {"CYCLE81",  "CYCLE82",  "CYCLE83",  "CYCLE84",  "CYCLE85",
-                                   "CYCLE86",  "CYCLE800", "CYCLE832", "CYCLE801", "HOLES1",
-                                   "HOLES2",   "POCKET3",  "POCKET4",  "SLOT1",    "SLOT2",
-                                   "LONGHOLE", "CYCLE61",  "CYCLE71",  "CYCLE76",  "CYCLE77"};
+constexpr const char* kCycles[] = {"CYCLE81",  "CYCLE82",  "CYCLE83",  "CYCLE84",  "CYCLE85", "CYCLE86",
+                                   "CYCLE800", "CYCLE832", "CYCLE801", "HOLES1",   "HOLES2",  "POCKET3",
+                                   "POCKET4",  "SLOT1",    "SLOT2",    "LONGHOLE", "CYCLE61", "CYCLE71",
+                                   "CYCLE76",  "CYCLE77",  "CYCLE72",  "POCKET1",  "POCKET2"};
 
 constexpr const char* kAddresses[] = {
     "X",  "Y",  "Z",  "A",    "B",    "C",   "I",    "J",    "K",       "X1",  "Y1",   "Z1",   "A1",   "B1",
@@ -157,11 +159,6 @@ const std::vector<Refused>& refused_words() {
        {"CYCLE60",  "CYCLE62", "CYCLE63", "CYCLE64",  "CYCLE70",  "CYCLE73",  "CYCLE74",  "CYCLE75",
         "CYCLE78",  "CYCLE79", "CYCLE87", "CYCLE88",  "CYCLE89",  "CYCLE90",  "CYCLE840", "CYCLE802",
         "CYCLE899", "CYCLE95", "CYCLE97", "CYCLE951", "CYCLE977", "CYCLE978", "CYCLE996"}},
-      {"it is the older form of POCKET3 and POCKET4, which are read: its passes are the control's own",
-       {"POCKET1", "POCKET2"}},
-      {"how it leads onto the contour of another program and off it is not published: write G41 or G42, the "
-       "approach and the contour as blocks",
-       {"CYCLE72"}},
       {"the program is run in the dialect of Siemens", {"G291"}},
       {"synchronised actions are not simulated", {"WHEN", "WHENEVER", "EVERY", "DO", "ID", "IDS", "CANCEL"}},
       {"axes U V W are not simulated", {"U", "V", "W", "Q"}},
@@ -204,7 +201,28 @@ const Table& table() {
 
 }  // namespace
 
+namespace {
+
+/// A letter, or a letter and a digit: the addresses of most blocks. -1: another name.
+int short_name(std::string_view name) {
+  constexpr int kSuffixes = 11;  // none, 0 to 9
+  if (name.empty() || name.size() > 2 || name[0] < 'A' || name[0] > 'Z') return -1;
+  if (name.size() == 1) return kSuffixes * (name[0] - 'A');
+  return is_digit(name[1]) ? kSuffixes * (name[0] - 'A') + 1 + (name[1] - '0') : -1;
+}
+
+}  // namespace
+
 const VocabularyWord* find_word(std::string_view name) {
+  using Short = std::array<const VocabularyWord*, size_t{26} * 11>;
+  static const Short addresses = [] {
+    Short all{};
+    for (const auto& [word, meaning] : table()) {
+      if (const int at = short_name(word); at >= 0) all[static_cast<size_t>(at)] = &meaning;
+    }
+    return all;
+  }();
+  if (const int at = short_name(name); at >= 0) return addresses[static_cast<size_t>(at)];
   static const std::unordered_map<std::string_view, const VocabularyWord*> words = [] {
     std::unordered_map<std::string_view, const VocabularyWord*> all;
     for (const auto& [word, meaning] : table()) all.emplace(word, &meaning);

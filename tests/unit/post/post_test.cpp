@@ -68,6 +68,24 @@ TEST(PostFile, TellsEveryFaultWithItsPlace) {
   }
 }
 
+TEST(PostFile, APlaneSaysAllOfItsTurns) {
+  const std::string file = scratch_file(".toml");
+  std::ofstream(file)
+      << "name = \"x\"\ndialect = \"fanuc\"\n[tool]\napproach = \"G0 {rotaries} {across} {along}\"\n"
+         "[motion]\nrapid = \"G0 {axes}\"\nline = \"G1 {axes}\"\n[tilted_plane]\n"
+         "on = \"G68.2 I{turn_1} J{turn_2}\"\nturns = \"xyz\"\n";
+  try {
+    load_post(file);
+    FAIL();
+  } catch (const InputError& error) {
+    std::string told;
+    for (const Diagnostic& one : error.diagnostics.list()) told += swarf::format(one) + "\n";
+    EXPECT_NE(told.find(":9:6: error: on does not say the turn {turn_3}"), std::string::npos) << told;
+    EXPECT_NE(told.find(":10:"), std::string::npos) << told;
+    EXPECT_NE(told.find("on and off belong together"), std::string::npos) << told;
+  }
+}
+
 TEST(PostFile, HasToBringEveryAxisToTheWork) {
   const auto faults = [](const std::string& more) {
     const std::string file = scratch_file(".toml");
@@ -242,17 +260,32 @@ TEST(Cycles, StayCycles) {
   EXPECT_EQ(text("linuxcnc").count("G81"), 2u);
 }
 
-/// Across the machine's Z no control drills with a fixed cycle: the moves are written.
+/// Across the machine's Z no control drills with a fixed cycle: without a plane the moves are written.
 TEST(Cycles, AreMovesWhereTheHeadIsTilted) {
   std::string cl = kHoles;
   for (size_t at = cl.find(",0,0,1\n"); at != std::string::npos; at = cl.find(",0,0,1\n"))
     cl.replace(at, 6, ",0.3,0,0.953939201");
-  const Posted head = run_post(cl, placed_machine("nutating_head"), shipped_post("fanuc"), without_tcp());
+  PostOptions options = without_tcp();
+  options.planes = PlaneUse::kNever;
+  const Posted head = run_post(cl, placed_machine("nutating_head"), shipped_post("fanuc"), options);
   ASSERT_EQ(head.faults + reading_faults(head) + compare(head), "") << head.text;
   EXPECT_EQ(head.result.plan.holes, 0);
   const Posted table = run_post(cl, placed_machine("mikron_ucp710"), shipped_post("fanuc"), without_tcp());
   ASSERT_EQ(table.faults + reading_faults(table) + compare(table), "") << table.text;
   EXPECT_EQ(table.result.plan.holes, 3);
+}
+
+/// The first rapid of a second tool is its approach; what comes behind it is a hole all the same.
+TEST(Cycles, StayCyclesBehindAToolChange) {
+  const std::string cl = kHead +
+                         "FROM/0,0,80,0,0,1\nRAPID\nGOTO/0,0,60,0,0,1\nLOADTL/2\nSPINDL/RPM,800,CLW\nRAPID\n"
+                         "GOTO/5,0,60,0,0,1\nCYCLE/DRILL,DEPTH,5,CLEAR,2,MMPM,120\nGOTO/10,0,40,0,0,1\n"
+                         "GOTO/20,0,40,0,0,1\nCYCLE/OFF\nRAPID\nGOTO/20,0,80,0,0,1\nFINI\n";
+  PostOptions options = without_tcp();
+  options.tools = {{1, "MILL10", 80.0}, {2, "DRILL5", 80.0}};
+  const Posted run = run_post(cl, placed_machine("mill_3axis"), shipped_post("fanuc"), options);
+  ASSERT_EQ(run.faults + reading_faults(run) + compare(run), "") << run.text;
+  EXPECT_EQ(run.result.plan.holes, 2) << run.text;
 }
 
 TEST(Words, ToolsCoolantDwellsAndNotes) {

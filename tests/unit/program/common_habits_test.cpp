@@ -59,6 +59,14 @@ TEST(CommonHabits, LinuxCncCallsBeforeTheDefinition) {
   expect_tip(run.moves()[4], 8.0, 0.0, 7.0);
 }
 
+TEST(CommonHabits, LinuxCncCommentsBetweenArguments) {
+  const NcRun run = linuxcnc(
+      "G21 G90 G0 Z0\no<a> sub\nG0 X#1 Y#2 Z#3\no<a> endsub\no<a> call [1] (width) [2](height) [3] "
+      "; end\nM2\n");
+  EXPECT_EQ(run.text(), "");
+  EXPECT_LT((run.moves().back().to.tip_W - Vec3(1, 2, 3)).norm(), 1e-12);
+}
+
 TEST(CommonHabits, LinuxCncParametersThatNobodyAssigned) {
   const NcRun run = linuxcnc("G21 G90 G0 X1\n#5599=0\n#101=3 G0 X#101\nG0 X[#5599+5]\nM2\n");
   ASSERT_EQ(run.diagnostics.list().size(), 1u) << run.text();

@@ -49,9 +49,40 @@ TEST(HeidenhainPosts, TableRotWhereNoAxisIsFree) {
   ASSERT_EQ(table.moves().size(), coordinates.moves().size());
   for (size_t i = 0; i < table.moves().size(); ++i)
     EXPECT_EQ(table.moves()[i].q_to, coordinates.moves()[i].q_to);
-  const NcRun free =
-      klartext("PLANE SPATIAL SPA+0 SPB+0 SPC+20 TURN FMAX TABLE ROT\n", free_five_axis_setup());
-  EXPECT_EQ(free.first_error(), "unsupported-word 2:1") << free.text();
+}
+
+// With the table free, COORD ROT turns the coordinates and TABLE ROT the work: X is then the machine's.
+TEST(HeidenhainPosts, TableRotTurnsAFreeTable) {
+  const kinematics::MachineModel machine = free_five_axis_setup().machine;
+  for (const double angle : {20.0, -75.0, 180.0}) {
+    for (const std::string& kind :
+         {fmt::format("SPATIAL SPA+0 SPB+0 SPC{:+g}", angle),
+          fmt::format("EULER EULPR{:+g} EULNU+0 EULROT+0", angle), fmt::format("RELATIV SPC{:+g}", angle),
+          fmt::format("VECTOR BX{:+.9f} BY{:+.9f} BZ+0 NX+0 NY+0 NZ+1", std::cos(rad_from_deg(angle)),
+                      std::sin(rad_from_deg(angle)))}) {
+      const auto moves = [&](const char* how) {
+        return klartext_clean("L X+5 Y+3 Z+50 FMAX\nPLANE " + kind + " TURN FMAX " + how +
+                                  " ROT\nL X+0 Y+0 FMAX\nL X+10 FMAX\n",
+                              free_five_axis_setup())
+            .moves();
+      };
+      const std::vector<NcMove> table = moves("TABLE"), coordinates = moves("COORD");
+      // The same points of the part ..
+      EXPECT_LT((table.back().to.tip_W - coordinates.back().to.tip_W).norm(), 1e-6) << kind;
+      EXPECT_LT((table.back().from.tip_W - coordinates.back().from.tip_W).norm(), 1e-6) << kind;
+      // .. reached by X alone, with the table turned by the angle.
+      const kinematics::AxisValues way = table.back().q_to - table.back().q_from;
+      const kinematics::AxisValues turned = table.back().q_to - coordinates.back().q_to;
+      double most = 0.0;
+      for (size_t i = 0; i < machine.axes.size(); ++i) {
+        const auto at = static_cast<long>(i);
+        EXPECT_NEAR(std::abs(way[at]), machine.axes[i].name == "X" ? 10.0 : 0.0, 1e-6) << kind;
+        if (machine.axes[i].kind == kinematics::AxisKind::kRotary)
+          most = std::max(most, std::abs(turned[at]));
+      }
+      EXPECT_NEAR(most, rad_from_deg(std::abs(angle)), 1e-7) << kind;
+    }
+  }
 }
 
 TEST(HeidenhainPosts, RemediesSpeakKlartext) {

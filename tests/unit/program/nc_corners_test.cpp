@@ -124,6 +124,29 @@ TEST(Corners, RoundALineAndAnArc) {
   }
 }
 
+/// Between two arcs of radius 10, both to the left, which meet at a right angle: the rounding touches both
+/// from within, its centre is 9 from either, and the ways go on in the direction in which they end.
+TEST(Corners, RoundTwoArcs) {
+  for (const char* how : {"G3 X10 Y10 I0 J10 F100 RND=1\nX0 Y0 I0 J-10\n",
+                          "RNDM=1\nG3 X10 Y10 I0 J10 F100\nX0 Y0 I0 J-10\nRNDM=0\n"}) {
+    const std::vector<NcMove> moves = feeds(siemens(how));
+    ASSERT_EQ(moves.size(), 3u);
+    ASSERT_TRUE(moves[0].arc && moves[1].arc && moves[2].arc);
+    const Vec3 c = moves[1].arc->centre_W;
+    EXPECT_NEAR((c - Vec3(0, 10, 0)).norm(), 9.0, 1e-9);
+    EXPECT_NEAR((c - Vec3(0, 10, 0)).norm(), (c - moves[2].arc->centre_W).norm(), 1e-9);
+    EXPECT_NEAR((moves[0].to.tip_W - c).norm(), 1.0, 1e-9);
+    EXPECT_NEAR((moves[1].to.tip_W - c).norm(), 1.0, 1e-9);
+    for (size_t n = 0; n < 2; ++n) {
+      const auto along = [](const NcMove& move, const Vec3& at) {
+        return move.arc->normal_W.cross(at - move.arc->centre_W).normalized();
+      };
+      const Vec3 at = moves[n].to.tip_W;
+      EXPECT_LT((along(moves[n], at) - along(moves[n + 1], at)).norm(), 1e-9);
+    }
+  }
+}
+
 TEST(Corners, WaitAcrossBlocksWithoutAMove) {
   for (const Words& words : kAll) {
     const std::vector<NcMove> moves = feeds(turned(words, words.round, "M8\nY10."));
@@ -285,11 +308,38 @@ TEST(Ang, WithACorner) {
   expect_tip(moves[2], 20, 10, 0);
 }
 
+TEST(Ang, TwoLinesByTheirAnglesMeetWhereTheyCross) {
+  const std::vector<NcMove> moves = feeds(siemens("G1 ANG=45 F100\nX20 Y0 ANG=-45 F300\n"));
+  ASSERT_EQ(moves.size(), 2u);
+  expect_tip(moves[0], 10, 10, 0);
+  expect_tip(moves[1], 20, 0, 0);
+  EXPECT_NEAR(moves[0].feed_mm_s * 60.0, 100.0, 1e-9);  // each with the words of its own block
+  EXPECT_NEAR(moves[1].feed_mm_s * 60.0, 300.0, 1e-9);
+  EXPECT_EQ(moves[0].line + 1, moves[1].line);
+  // A corner between them: root 2 - 1 of the radius from the point where they cross.
+  const std::vector<NcMove> round = feeds(siemens("G1 ANG=45 RND=2 F100\nX20 Y0 ANG=-45\n"));
+  ASSERT_EQ(round.size(), 3u);
+  expect_tip(round[0], 10 - std::sqrt(2.0), 10 - std::sqrt(2.0), 0);
+  expect_tip(round[1], 10 + std::sqrt(2.0), 10 - std::sqrt(2.0), 0);
+  // In G18, and with a mirrored axis.
+  expect_tip(feeds(siemens("G18 G1 ANG=45 F100\nZ20 X0 ANG=-45\n"))[0], 10, 0, 10);
+  expect_tip(feeds(siemens("MIRROR X0\nG1 ANG=45 F100\nX20 Y0 ANG=-45\n"))[0], -10, 10, 0);
+}
+
+TEST(Ang, ALineThatWaitsIsNotLost) {
+  for (const char* next : {"X20 Y0", "X20 ANG=-45", "G91 X20 Y0 ANG=-45", "G0 X20 Y0 ANG=-45", "T1", "G4 F1",
+                           "M30", "G2 X20 Y0 CR=30 ANG=10", "TRANS X5", "G55", ""})
+    EXPECT_EQ(siemens(std::string("G1 ANG=45 F100\n") + next + "\n").first_error(), "line-without-end 3:4")
+        << next;
+  EXPECT_EQ(siemens("G1 ANG=45 F100\nX20 Y0 ANG=45\n").first_error(), "out-of-range 4:8");   // parallel
+  EXPECT_EQ(siemens("G1 ANG=45 F100\nX20 Y0 ANG=135\n").first_error(), "out-of-range 4:8");  // behind it
+  EXPECT_EQ(siemens("G0 ANG=45\nX20 Y0 ANG=-45\n").first_error(), "words-conflict 3:4");
+}
+
 TEST(Ang, WhatHasNoEndIsRefused) {
   EXPECT_EQ(siemens("G1 X10 ANG=90 F100\n").first_error(), "out-of-range 3:8");
   EXPECT_EQ(siemens("G1 X10 ANG=180 F100\n").first_error(), "out-of-range 3:8");
   EXPECT_EQ(siemens("G1 X10 Y10 ANG=45 F100\n").first_error(), "unsupported-word 3:12");
-  EXPECT_EQ(siemens("G1 ANG=45 F100\nX10 Y20 ANG=90\n").first_error(), "unexpected-word 3:4");
   EXPECT_EQ(siemens("G2 X10 ANG=45 I5 J0 F100\n").first_error(), "words-conflict 3:8");
 }
 
