@@ -3,6 +3,9 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <cstdlib>
 #include <filesystem>
 
 #include "base/diagnostics.h"
@@ -19,6 +22,13 @@ std::string module_path() {
                             : (program / SWARF_MODULES / kRanksModule).lexically_normal().string();
 }
 
+/// mpirun names each of its processes; so does what stands for it in Slurm, PMIx or PMI.
+bool is_started_as_rank() {
+  constexpr std::array kNames{"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"};
+  return std::any_of(kNames.begin(), kNames.end(),
+                     [](const char* name) { return std::getenv(name) != nullptr; });
+}
+
 }  // namespace
 
 std::unique_ptr<Ranks> open_ranks() {
@@ -29,6 +39,10 @@ std::unique_ptr<Ranks> open_ranks() {
   if (make == nullptr)
     throw InputError("no-mpi", {"--tiles"}, fmt::format("there is no MPI here: {}", dlerror()),
                      "install libopenmpi-dev and openmpi-bin and build again, or run without --tiles");
+  // MPI would begin alone, and so would each of several that do not know of each other.
+  if (!is_started_as_rank())
+    throw InputError("no-mpirun", {"--tiles"}, "this process is none of several: mpirun has not started it",
+                     "mpirun -n 4 swarf run SCENE --tiles; or run without --tiles");
   return std::unique_ptr<Ranks>(reinterpret_cast<Ranks* (*)()>(make)());
 }
 

@@ -10,8 +10,8 @@ namespace swarf::cli {
 /// File of the module, beside the program or in its library folder.
 inline constexpr const char* kRanksModule = "swarf_mpi.so";
 
-/// This process as one of those that mpirun has started; alone when none has. Once in a process. Throws
-/// InputError "no-mpi" when the module is missing or cannot be loaded.
+/// This process as one of those that mpirun has started. Once in a process. Throws InputError "no-mpi" when
+/// the module is missing or cannot be loaded, "no-mpirun" when nothing has started it as a rank.
 std::unique_ptr<Ranks> open_ranks();
 
 }  // namespace swarf::cli

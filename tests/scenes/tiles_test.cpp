@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "base/rng.h"
@@ -58,6 +59,8 @@ class Tiles : public testing::Test {
   void SetUp() override {
     if (run_command("command -v mpirun").exit_code != 0)
       GTEST_SKIP() << "mpirun is not installed (openmpi-bin of packages.txt)";
+    if (!fs::exists(fs::path(SWARF_PROGRAM).parent_path() / "swarf_mpi.so"))
+      GTEST_SKIP() << "built where Open MPI is missing (libopenmpi-dev of packages.txt)";
     folder_ = swarf::test::fresh_folder("tiles");
   }
   void TearDown() override {
@@ -133,6 +136,41 @@ TEST_F(Tiles, WhatIsWrongIsSaidOnce) {
             std::string::npos)
       << other.output;
   EXPECT_FALSE(fs::exists(at("tiles")));
+}
+
+TEST_F(Tiles, WhatTheRanksCannotAgreeOnIsRefused) {
+  const std::string scenes = std::string(SWARF_SOURCE_DIR) + "/scenes/";
+  for (const auto& [job, what] :
+       std::vector<std::pair<std::string, std::string>>{{scenes + "two_setups/scene.toml", "[[setup]]"},
+                                                        {scenes + "kruth_cylinder/inclined.toml", "[post]"},
+                                                        {"- < /dev/null", "-"}}) {
+    const auto run = run_command(mpirun(2) + "run --tiles -o " + at("tiles") + " " + job);
+    EXPECT_EQ(run.exit_code, 2) << run.output;
+    EXPECT_NE(run.output.find("error: " + what + ": this is for a run of one process"), std::string::npos)
+        << run.output;
+    EXPECT_EQ(run.output.find("not-in-tiles"), run.output.rfind("not-in-tiles")) << run.output;
+    EXPECT_FALSE(fs::exists(at("tiles")));
+  }
+}
+
+TEST_F(Tiles, WithoutMpirunTheProgramSaysHowToStart) {
+  const auto run = run_swarf("run --tiles " + at("scene.toml"));
+  EXPECT_EQ(run.exit_code, 2) << run.output;
+  EXPECT_NE(run.output.find("mpirun -n 4 swarf run SCENE --tiles"), std::string::npos) << run.output;
+  EXPECT_NE(run.output.find("[no-mpirun]"), std::string::npos) << run.output;
+}
+
+/// Built without MPI there is no module beside the program; all else is as it is.
+TEST(TilesWithoutMpi, TheProgramSaysWhatToInstall) {
+  const fs::path folder = swarf::test::fresh_folder("tiles_without_mpi");
+  const std::string program = (folder / "swarf").string();
+  fs::copy_file(SWARF_PROGRAM, program);
+  EXPECT_EQ(run_command(program + " --version").exit_code, 0);
+  const auto run = run_command(program + " run --tiles scene.toml");
+  EXPECT_EQ(run.exit_code, 2) << run.output;
+  EXPECT_NE(run.output.find("install libopenmpi-dev and openmpi-bin"), std::string::npos) << run.output;
+  EXPECT_NE(run.output.find("[no-mpi]"), std::string::npos) << run.output;
+  fs::remove_all(folder);
 }
 
 /// At random moments one of the ranks is killed, rank 0 as often as the others: mpirun says which and ends
