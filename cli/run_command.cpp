@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "base/parallel.h"
+#include "base/ranks.h"
 #include "cli/commands.h"
 #include "cli/page_pdf.h"
 #include "cli/pipeline_files.h"
@@ -96,10 +97,12 @@ void print_stopped(const RunOptions& options, const sim::Result& result, const s
       result.merged_sweeps == 0
           ? fmt::format("before the cut, {} blocks of an earlier run are cut", state.sweeps)
           : fmt::format("{} of {} blocks are cut", state.sweeps, result.merged_sweeps);
+  const std::string start =
+      options.ranks != nullptr ? fmt::format("mpirun -n {} ", options.ranks->size()) : "";
   fmt::print(stderr,
              "stopped: {}, up to program line {}, {:.3f} s; what was finished is in {}\n"
-             "  go on with: {}\n",
-             cut, state.place.line, state.place.t_s, folder, shell_text(command_words(again)));
+             "  go on with: {}{}\n",
+             cut, state.place.line, state.place.t_s, folder, start, shell_text(command_words(again)));
 }
 
 /// Runs of this folder that were killed leave what they have kept beside it.
