@@ -146,7 +146,7 @@ TEST_F(Tiles, WhatTheRanksCannotAgreeOnIsRefused) {
                                                         {"- < /dev/null", "-"}}) {
     const auto run = run_command(mpirun(2) + "run --tiles -o " + at("tiles") + " " + job);
     EXPECT_EQ(run.exit_code, 2) << run.output;
-    EXPECT_NE(run.output.find("error: " + what + ": this is for a run of one process"), std::string::npos)
+    EXPECT_NE(run.output.find(what + ": error: this is for a run of one process"), std::string::npos)
         << run.output;
     EXPECT_EQ(run.output.find("not-in-tiles"), run.output.rfind("not-in-tiles")) << run.output;
     EXPECT_FALSE(fs::exists(at("tiles")));
