@@ -41,9 +41,9 @@ std::string mpirun(int ranks) {
 
 /// Everything but times, memory and the command that was given.
 json facts(const fs::path& folder) {
-  json all = json::parse(read_text(folder / "metrics.json"));
+  const json all = json::parse(read_text(folder / "metrics.json")).flatten();
   json kept;
-  for (const auto& [path, value] : all.flatten().items()) {
+  for (const auto& [path, value] : all.items()) {
     const bool measured = path.ends_with("_s") || path.find("seconds") != std::string::npos ||
                           path.find("memory") != std::string::npos || path.find("_ns") != std::string::npos ||
                           path.find("threads") != std::string::npos ||
