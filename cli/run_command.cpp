@@ -10,11 +10,13 @@
 #include <memory>
 
 #include "base/parallel.h"
+#include "base/ranks.h"
 #include "cli/commands.h"
-#include "cli/job_flags.h"
 #include "cli/page_pdf.h"
 #include "cli/pipeline_files.h"
 #include "cli/posted_scene.h"
+#include "cli/run_options.h"
+#include "cli/run_tiles.h"
 #include "cli/shell_text.h"
 #include "cli/terminal.h"
 #include "reports/avoidance_output.h"
@@ -30,20 +32,6 @@ namespace swarf::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct RunOptions {
-  std::string scene, output;
-  JobWords job;
-  std::vector<std::string> overrides;
-  std::string from, save_after, trajectory;
-  int threads = 0;
-  size_t record_every = 256;
-  size_t setup = 0;  ///< the last one of several; 0: all
-  double max_memory_mb = 0.0, keep_every_s = 60.0;
-  bool no_render = false, report = false, json = false, record = false, check = false, open = false,
-       pdf = false;
-  PipelineFiles pipeline;
-};
 
 void print_finding(const sim::Finding& finding) {
   fmt::print("  finding: {}\n",
@@ -98,41 +86,6 @@ void print_outcome(const sim::Job& job, const sim::Result& result, const std::st
              has_page ? (fs::path(named) / "report.html").string() : named);
 }
 
-/// The command that was given, with every option that is not at its default.
-std::vector<std::string> command_words(const RunOptions& options) {
-  std::vector<std::string> words{"swarf", "run", options.scene};
-  const auto add = [&](bool given, const char* option, const std::string& value) {
-    if (given) words.insert(words.end(), {option, value});
-  };
-  const auto flag = [&](bool given, const char* option) {
-    if (given) words.emplace_back(option);
-  };
-  const std::vector<std::string> job = given_words(options.job);
-  words.insert(words.end(), job.begin(), job.end());
-  for (const std::string& set : options.overrides) add(true, "--set", set);
-  add(!options.from.empty(), "--from", options.from);
-  add(!options.save_after.empty(), "--save-stock-after", options.save_after);
-  flag(options.record, "--record");
-  add(options.record_every != RunOptions{}.record_every, "--record-every",
-      fmt::format("{}", options.record_every));
-  flag(options.check, "--check");
-  add(options.max_memory_mb > 0.0, "--max-memory", fmt::format("{}", options.max_memory_mb));
-  add(options.keep_every_s != RunOptions{}.keep_every_s, "--keep-every",
-      fmt::format("{}", options.keep_every_s));
-  add(options.setup > 0, "--setup", fmt::format("{}", options.setup));
-  add(options.threads > 0, "--threads", fmt::format("{}", options.threads));
-  flag(options.no_render, "--no-render");
-  flag(options.report, "--report");
-  add(!options.trajectory.empty(), "--trajectory", options.trajectory);
-  flag(options.json, "--json");
-  flag(options.open, "--open");
-  flag(options.pdf, "--pdf");
-  add(!options.pipeline.sarif.empty(), "--sarif", options.pipeline.sarif);
-  add(!options.pipeline.junit.empty(), "--junit", options.pipeline.junit);
-  add(!options.output.empty(), "-o", options.output);
-  return words;
-}
-
 /// How to go on after Ctrl-C.
 void print_stopped(const RunOptions& options, const sim::Result& result, const std::string& folder) {
   const sim::CutState& state = result.cut.state;
@@ -144,10 +97,12 @@ void print_stopped(const RunOptions& options, const sim::Result& result, const s
       result.merged_sweeps == 0
           ? fmt::format("before the cut, {} blocks of an earlier run are cut", state.sweeps)
           : fmt::format("{} of {} blocks are cut", state.sweeps, result.merged_sweeps);
+  const std::string start =
+      options.ranks != nullptr ? fmt::format("mpirun -n {} ", options.ranks->size()) : "";
   fmt::print(stderr,
              "stopped: {}, up to program line {}, {:.3f} s; what was finished is in {}\n"
-             "  go on with: {}\n",
-             cut, state.place.line, state.place.t_s, folder, shell_text(command_words(again)));
+             "  go on with: {}{}\n",
+             cut, state.place.line, state.place.t_s, folder, start, shell_text(command_words(again)));
 }
 
 /// Runs of this folder that were killed leave what they have kept beside it.
@@ -189,6 +144,7 @@ sim::CutOptions cut_options(const RunOptions& options, const reports::PendingFol
   cut.keep_every_s = options.keep_every_s;
   cut.outputs = {!options.no_render, !options.no_render || options.report};
   cut.overrides = options.overrides;
+  cut.ranks = options.ranks;
   return cut;
 }
 
@@ -258,16 +214,6 @@ std::optional<PostedScene> take_post(const RunOptions& options, const std::vecto
   return posted;
 }
 
-/// What the options set in the scene.
-std::vector<std::string> overrides_of(const RunOptions& options) {
-  std::vector<std::string> overrides = options.overrides;
-  if (options.max_memory_mb > 0.0)
-    overrides.push_back(fmt::format("stock.max_memory_mb={}", options.max_memory_mb));
-  if (!options.trajectory.empty())
-    overrides.push_back(fmt::format("output.trajectory=\"{}\"", options.trajectory));
-  return overrides;
-}
-
 reports::OutputOptions output_options(const RunOptions& options, const PostedScene* posted = nullptr) {
   reports::OutputOptions output{!options.no_render, !options.no_render || options.report, options.overrides,
                                 shell_text(command_words(options)), posted ? &posted->outcome : nullptr};
@@ -305,6 +251,7 @@ JobRun run_job(const RunOptions& options, const sim::Job& job, reports::PendingF
 int run_scene(const RunOptions& options, std::vector<reports::FileVerdict>& found) {
   const std::vector<std::string> overrides = overrides_of(options);
   sim::Job job = load_job(options.scene, options.job, overrides);
+  if (options.tiles) refuse_for_tiles(job);
   if (options.record && !job.scene.text.empty())
     throw InputError("needs-scene", {"--record"}, "a record is replayed from a scene, and there is none",
                      "write one: swarf init " + shell_text({options.scene}) + " .., then run it");
@@ -431,59 +378,11 @@ int run_setups(const RunOptions& options, size_t count, std::vector<reports::Fil
 int run(const RunOptions& options, std::vector<reports::FileVerdict>& found) {
   if (options.open) require_opener(options);
   if (options.pdf) require_pdf(options);
-  set_thread_count(options.threads);
+  if (options.tiles) refuse_for_tiles(options);
   const size_t setups = count_setups(options.scene, overrides_of(options));
   if (setups > 0) return run_setups(options, setups, found);
   if (options.setup > 0) load_setups(options.scene, options.setup, {});  // says that there is no list of them
   return run_scene(options, found);
-}
-
-constexpr const char* kRunFooter =
-    R"(Without a scene, everything that the flags leave open is taken by a rule: machine, block, voxel, clamping. The table at
-the top of the console, in report.html and in metrics.json (`assumptions`) says each value, its reason and what changes
-it. One picture and no movie: --set movie.seconds=10 adds it.
-
-Examples:
-  swarf run part.nc --tool 6                                 one flat end, block around the path, generic mill
-  swarf run part.nc --tools T1=10,T2=drill5 --stock 0,0,-20,80,60,0
-  swarf run part.mpf --machine spinner_u5_620 --tools tools.toml --design part.stl
-  swarf run scene.toml --set stock.voxel_mm=0.1 --no-render  a scene, one key changed, numbers only)";
-
-/// Options of the stock on its way.
-void add_stock_options(CLI::App& command, RunOptions& options) {
-  CLI::Option* from = command.add_option(
-      "--from", options.from,
-      "go on from a stock.vdb that this scene has saved or left when it was stopped; the finished stock is "
-      "bit-identical to that of an uninterrupted run");
-  command
-      .add_option("--save-stock-after", options.save_after,
-                  "save the stock after these places in the program: lines as findings name them (13), "
-                  "program times (12.5s) and tools (T5, T=NAME), separated by commas; stock_after_*.vdb in "
-                  "the results")
-      ->type_name("PLACE[,PLACE...]");
-  command
-      .add_flag("--record", options.record,
-                "keep every sweep and hashes of the stock in run.record, for swarf replay")
-      ->excludes(from);
-  command.add_option("--record-every", options.record_every, "sweeps between two hashes of --record")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 1000000));
-  command
-      .add_option(
-          "--keep-every", options.keep_every_s,
-          "keep the stock so far every so many seconds in <output>.part<process>/stock_so_far.vdb, to "
-          "go on from when the run is killed; 0: never")
-      ->type_name("SECONDS")
-      ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
-  command.add_flag("--check", options.check,
-                   "check the costly invariants of the stock on the way too, not only at the end");
-  command
-      .add_option("--max-memory", options.max_memory_mb,
-                  "refuse to start when more is expected to be needed (default: stock.max_memory_mb, else "
-                  "80 % of what is free)")
-      ->type_name("MB")
-      ->check(CLI::PositiveNumber);
 }
 
 }  // namespace
@@ -492,45 +391,14 @@ void add_run(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<RunOptions>();
   CLI::App* command =
       app.add_subcommand("run", "Simulate a scene or a program: move, cut, measure, render, report");
-  command->add_option("file", options->scene, "scene.toml, an NC program or CL data");
-  command->add_option("-o,--output", options->output,
-                      "folder for the results (default: out/<scene folder>, out/<program>)");
-  add_job_flags(*command, options->job);
-  command->footer(kRunFooter);
-  command->add_option("--set", options->overrides, "replace a key of the scene: --set stock.voxel_mm=0.1")
-      ->type_name("KEY=VALUE")
-      ->expected(1)
-      ->take_all();
-  add_parameter_flag(*command, options->overrides);
-  command
-      ->add_option("--setup", options->setup,
-                   "of a scene with several [[setup]]: run them up to this one (default: all)")
-      ->type_name("NUMBER")
-      ->check(CLI::Range(1, 1000));
-  command
-      ->add_option("--threads", options->threads,
-                   "threads to use (default: all cores); results do not depend on it")
-      ->check(CLI::Range(1, 4096));
-  add_stock_options(*command, *options);
-  command->add_flag("--no-render", options->no_render,
-                    "no movie, no stills, no page and no glTF: numbers, findings, stock and blocks.csv");
-  command->add_flag("--report", options->report, "with --no-render: page and glTF all the same");
-  command
-      ->add_option(
-          "--trajectory", options->trajectory,
-          "write each control cycle too, instead of what the scene's [output] trajectory says: csv (about "
-          "230 bytes a cycle, 800 MB for an hour; ten decimals, good for jerk by differences to 0.4 "
-          "mm/s^3 at 1 ms) or h5 (HDF5, compressed, numbers as they are)")
-      ->check(CLI::IsMember({"csv", "h5", "none"}));
-  command->add_flag("--json", options->json, "print metrics.json instead of the table");
-  command->add_flag("--open", options->open, "show report.html when it is there (xdg-open)");
-  command->add_flag("--pdf", options->pdf,
-                    "print report.html to report.pdf too, with page numbers (chromium)");
-  add_pipeline_options(*command, options->pipeline);
+  add_run_options(*command, *options);
   command->callback([options, &exit_code] {
-    exit_code =
-        with_pipeline_files(options->pipeline, options->scene,
-                            [&](std::vector<reports::FileVerdict>& found) { return run(*options, found); });
+    set_thread_count(options->threads);
+    const auto whole = [](const RunOptions& given) {
+      return with_pipeline_files(given.pipeline, given.scene,
+                                 [&](std::vector<reports::FileVerdict>& found) { return run(given, found); });
+    };
+    exit_code = options->tiles ? run_as_rank(*options, whole) : whole(*options);
   });
 }
 

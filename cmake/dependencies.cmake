@@ -17,6 +17,11 @@ pkg_check_modules(WEBP REQUIRED IMPORTED_TARGET libwebp)
 pkg_check_modules(HDF5 REQUIRED IMPORTED_TARGET hdf5)
 pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo)
 pkg_check_modules(OSMESA REQUIRED osmesa)
+# For `swarf run --tiles` alone; without it the program is the same but for that.
+pkg_check_modules(MPI QUIET IMPORTED_TARGET ompi-c)
+if(NOT MPI_FOUND)
+  message(STATUS "Open MPI not found (libopenmpi-dev): swarf run --tiles will say so")
+endif()
 
 # By name: its .pc file asks for the development files of what it is linked with.
 if(NOT TARGET swarf_lib3mf)

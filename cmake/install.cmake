@@ -7,6 +7,10 @@ set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/swarf")
 
 # Scenes name their machines by relative paths, so that both stand as they do in the source tree.
 install(TARGETS swarf RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT program)
+# Its library is a dependency that the program itself does not have: a component of its own, in no package.
+if(TARGET swarf_mpi)
+  install(TARGETS swarf_mpi LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}/swarf" COMPONENT cluster)
+endif()
 install(DIRECTORY assets/machines assets/posts assets/programs assets/schemas DESTINATION "${CMAKE_INSTALL_DATADIR}/swarf/assets" COMPONENT program
   PATTERN "*.py" EXCLUDE)
 install(DIRECTORY scenes DESTINATION "${CMAKE_INSTALL_DATADIR}/swarf" COMPONENT program PATTERN "*.py" EXCLUDE)

@@ -19,6 +19,7 @@
 #include "sim/run/recorder.h"
 #include "sim/run/shot_places.h"
 #include "sim/run/starting_clamping.h"
+#include "sim/run/tile_ranks.h"
 #include "toolpath/feed_way.h"
 
 namespace swarf::sim {
@@ -50,18 +51,37 @@ void measure_dexels(const Job& job, MeasuredPath& measured) {
   measured.surface.scallop_theory_um = theory_scallop_um(measured.path);
 }
 
-void cut_dexels(const Job& job, MeasuredPath& measured) {
-  const auto start = std::chrono::steady_clock::now();
+/// Makes the rays and cuts a share of their tiles.
+void cut_ray_share(const Job& job, MeasuredPath& measured, Share share) {
   if (job.has_design()) measured.rays = all_ray_sweeps(job, *measured.cycles, *measured.carried);
   measured.dexels = design_dexels(job);
   const RayCutters rays = ray_cutters(job, measured);
   const auto tool_of = [&](uint32_t block) { return rays.solid_of[block]; };
   for (stock::SurfaceDexels& dexels : measured.dexels) {
     for_each_tool(measured.rays.sweeps, tool_of, [&](size_t tool, std::span<const stock::Sweep> part) {
-      dexels.cut(part, rays.solids[tool]);
+      dexels.cut(part, rays.solids[tool], share);
     });
-    dexels.limit_depths();
   }
+}
+
+void take_rays(Ranks& ranks, int rank, std::vector<stock::SurfaceDexels>& dexels) {
+  const std::vector<Bytes> told = rays_of(ranks, rank);
+  bool same = told.size() == dexels.size();
+  for (size_t i = 0; same && i < dexels.size(); ++i)
+    same = dexels[i].take_tiles(told[i], {rank, ranks.size()});
+  if (!same)
+    throw InputError("rank-differs", {fmt::format("rank {}", rank)}, "this rank measures another design",
+                     "give every machine the same program, version and files");
+}
+
+/// `ranks`: that share the tiles of the rays; null: none do.
+void cut_dexels(const Job& job, MeasuredPath& measured, Ranks* ranks = nullptr) {
+  const auto start = std::chrono::steady_clock::now();
+  if (ranks != nullptr) ask_for_rays(*ranks);
+  cut_ray_share(job, measured, ranks != nullptr ? share_of(*ranks) : Share{});
+  for (int rank = 1; ranks != nullptr && rank < ranks->size(); ++rank)
+    take_rays(*ranks, rank, measured.dexels);
+  for (stock::SurfaceDexels& dexels : measured.dexels) dexels.limit_depths();
   measured.dexel_seconds = seconds_since(start);
 }
 
@@ -455,6 +475,25 @@ MeasuredPath move_tool(const Job& job, Progress& progress, const CutOptions& opt
   return moved_tool(job, progress, options, false);
 }
 
+void serve_tiles(const Job& job, Ranks& ranks, Progress& progress) {
+  MeasuredPath measured;
+  std::optional<CutParts> parts;
+  try {
+    measured = moved_tool(job, progress, {}, false);
+    parts.emplace(job, *measured.cycles, *measured.carried);
+  } catch (const InputError& error) {
+    refuse_tile_lead(ranks, error.what());
+    return;
+  }
+  serve_tile_lead(ranks, job, *parts, [&] {
+    cut_ray_share(job, measured, share_of(ranks));
+    std::vector<Bytes> tiles;
+    for (const stock::SurfaceDexels& dexels : measured.dexels)
+      tiles.push_back(dexels.tiles_of(share_of(ranks)));
+    return tiles;
+  });
+}
+
 Result simulate(const Job& job, const CutOptions& options, Progress& progress) {
   Result result;
   result.main = moved_tool(job, progress, options, true);
@@ -475,7 +514,7 @@ Result simulate(const Job& job, const CutOptions& options, Progress& progress) {
   if (!planned && result.volume_removed_mm3 <= 0.0)
     throw with_warnings(result.main.warnings, blocks_miss_stock(job, result.main.path.elements));
   progress.begin("cut measuring rays", 1, "surfaces");
-  cut_dexels(job, result.main);
+  cut_dexels(job, result.main, options.ranks);
   progress.end();
   measure_part(job, progress, result);
   prove_part(job, progress, result);

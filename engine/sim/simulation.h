@@ -22,6 +22,10 @@ MeasuredPath plan_tool(const Job& job, Progress& progress);
 /// Runs everything. Throws InputError as move_tool and cut_stock do.
 Result simulate(const Job& job, const CutOptions& options, Progress& progress);
 
+/// For every rank but 0 of a run that cuts tile by tile: makes the motion and does what rank 0 asks of it,
+/// until that one says that it is done. What is wrong here is told by rank 0.
+void serve_tiles(const Job& job, Ranks& ranks, Progress& progress);
+
 /// The verdict: of Result::checks.
 inline bool passes(const Result& result) {
   return passes(result.checks);

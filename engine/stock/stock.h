@@ -121,6 +121,7 @@ class Stock {
  private:
   friend class ContactFinder;
   friend class StockMesher;
+  friend class StockTiles;
   struct Impl;
   const LevelSet& level_set() const;
   explicit Stock(std::unique_ptr<Impl> impl);

@@ -50,6 +50,7 @@ HEAVY = {
     "tinygltf": (r"tiny_gltf", ("render/gltf/",)),
     "HDF5": (r"hdf5", ("engine/sim/run/",)),
     "Cairo": (r"cairo", ("render/lettering.cpp",)),
+    "MPI": (r"mpi\.h", ("cli/cluster/",)),
     "libpng": (r"png\.h", ("render/image_io.cpp",)),
     "libwebp": (r"webp/", ("render/image_io.cpp",)),
     "lib3mf": (r"Model/COM/", ("engine/mesh/mesh_3mf.cpp",)),

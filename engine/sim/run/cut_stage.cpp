@@ -9,11 +9,11 @@
 #include <optional>
 #include <utility>
 
-#include "sim/run/bad_cuts.h"
+#include "sim/run/cut_parts.h"
 #include "sim/run/cut_record.h"
 #include "sim/run/result.h"
 #include "sim/run/stock_contacts.h"
-#include "sim/run/tool_clearance.h"
+#include "sim/run/tile_ranks.h"
 
 namespace swarf::sim {
 namespace {
@@ -21,7 +21,6 @@ namespace {
 constexpr size_t kSweepsPerBatch = 2048;  // between two looks ahead at the whole tool
 constexpr size_t kSweepsPerStep = 512;    // between two looks at the progress bar and Ctrl-C
 constexpr size_t kSuspectsPerStep = 32;   // the same, where sweeps are judged one by one
-constexpr double kDeepestExact = 2.0;     // voxels: deeper, the level set itself tells
 constexpr size_t kChecks = 8;             // of the invariants on the way, evenly spread over the sweeps
 
 size_t next_multiple(size_t at, size_t step) {
@@ -36,20 +35,13 @@ class CutStage {
         progress_(progress),
         result_(result),
         outcome_(result.cut),
-        sweeps_(cut_sweeps(job, *result.main.cycles)),
-        solids_(tool_solids(job.scene)),
-        carried_(*result.main.carried),
-        identity_(cut_identity(job, sweeps_, carried_)),
-        places_(sweeps_, *result.main.cycles),
-        earlier_(sweeps_, solids_, carried_, job.scene.stock.body_W(),
-                 kDeepestExact * job.scene.stock.voxel_mm),
-        clearance_(job.scene.tools, sweeps_, places_, earlier_, job.scene.stock.voxel_mm),
-        bad_cuts_(job, *result.main.cycles, sweeps_, places_, earlier_),
+        parts_(job, *result.main.cycles, *result.main.carried),
         contacts_(job, result.main.contacts ? &*result.main.contacts : nullptr, *result.main.cycles,
                   sweeps_) {
     outcome_.state.clearance = clearance_.result();
     result_.sweep_bound_mm = std::max(sweeps_.error_bound_mm, carried_.stock.error_bound_mm);
     result_.merged_sweeps = sweeps_.size();
+    if (options.ranks != nullptr) tiles_.emplace(*options.ranks, parts_);
   }
 
   void run() {
@@ -85,6 +77,7 @@ class CutStage {
     begin_stock();
     if (!options_.resume_file.empty()) resume();
     finder_.emplace(*result_.stock);
+    if (tiles_) tiles_->begin(*result_.stock, at_ == 0 && carried_.empty());
     if (options_.check_voxels) checked_ = result_.stock->clone();
   }
 
@@ -143,7 +136,7 @@ class CutStage {
     progress_.advance(static_cast<double>(at_));
     if (checks_before != at_ * kChecks / total && at_ < total) check(CheckKind::kOnTheWay);
     if (options_.record && (at_ % options_.record_every == 0 || at_ == total)) {
-      record_.states.push_back(result_.stock->hash());
+      record_.states.push_back(whole().hash());
     }
     save_due();
     keep_due();
@@ -151,7 +144,7 @@ class CutStage {
 
   /// Links and fixtures where they come to the raw stock.
   void look_at_contacts() {
-    while (contacts_.due() <= at_) contacts_.look(*result_.stock);
+    while (contacts_.due() <= at_) contacts_.look(whole());
   }
 
   BatchState& batch() { return outcome_.state.batch; }
@@ -159,6 +152,13 @@ class CutStage {
   /// Which sweeps of the batch are clear of the stock as it stands now, and so of all that is left of it.
   void begin_batch() {
     const size_t end = std::min(next_multiple(at_, kSweepsPerBatch), sweeps_.size());
+    if (tiles_) {
+      batch() = tiles_->look_ahead(at_, end);
+      if (batch().suspects.empty() && batch().bad_suspects.empty()) return;
+      whole();
+      finder_->refresh();  // for those that are judged
+      return;
+    }
     finder_->refresh();
     ToolClearanceCheck::Outlook outlook = clearance_.look_ahead(*finder_, at_, end);
     batch() = {end, outlook.nearest_mm, std::move(outlook.suspects),
@@ -193,22 +193,36 @@ class CutStage {
   /// Cuts sweeps up to `end`, where a suspect may stand: then that one is judged and cut too.
   void cut_to(size_t end) {
     if (end > at_) {
-      sweeps_.for_each_tool(at_, end, [&](size_t tool, std::span<const stock::Sweep> part) {
-        result_.stock->cut(part, solids_[tool]);
-      });
+      cut(at_, end);
       at_ = end;
       return;
     }
+    whole();
     const auto is_in = [&](const std::vector<size_t>& suspects) {
       return std::binary_search(suspects.begin(), suspects.end(), at_);
     };
     const bool tool_meets = is_in(batch().suspects);
     if (tool_meets) clearance_.judge_before(*finder_, at_);
     if (is_in(batch().bad_suspects)) bad_cuts_.judge(*finder_, at_);
-    const stock::Sweep sweep = sweeps_[at_];
-    result_.stock->cut(std::span(&sweep, 1), solids_[static_cast<size_t>(sweeps_.tool(at_))]);
-    if (tool_meets) clearance_.judge_after(*finder_, at_);
+    cut(at_, at_ + 1);
+    if (tool_meets) {
+      whole();
+      clearance_.judge_after(*finder_, at_);
+    }
     ++at_;
+  }
+
+  void cut(size_t begin, size_t end) {
+    if (tiles_) {
+      tiles_->cut(begin, end);
+    } else {
+      parts_.cut(*result_.stock, begin, end);
+    }
+  }
+  /// The stock as all ranks have cut it.
+  const stock::Stock& whole() {
+    if (tiles_) tiles_->gather();
+    return *result_.stock;
   }
 
   CutState state() const {
@@ -226,8 +240,7 @@ class CutStage {
   void save_due() {
     for (; next_save_ < saves_.size() && saves_[next_save_].after <= at_; ++next_save_) {
       const std::string name = saved_stock_name(*saves_[next_save_].place);
-      result_.stock->save(options_.save_folder + "/" + name,
-                          cut_metadata(job_.scene.name, identity_, state()));
+      whole().save(options_.save_folder + "/" + name, cut_metadata(job_.scene.name, identity_, state()));
       outcome_.saved.push_back(name);
     }
   }
@@ -238,7 +251,7 @@ class CutStage {
         std::chrono::duration<double>(now - kept_at_).count() < options_.keep_every_s)
       return;
     const std::string path = options_.save_folder + "/" + kKeptStock;
-    result_.stock->save(path, cut_metadata(job_.scene.name, identity_, state()));
+    whole().save(path, cut_metadata(job_.scene.name, identity_, state()));
     if (!is_kept_) progress_.note(fmt::format("the stock so far is kept in {}", path));
     is_kept_ = true;
     kept_at_ = std::chrono::steady_clock::now();
@@ -247,7 +260,7 @@ class CutStage {
   /// The first broken invariant is kept; the run goes on and reports it.
   void check(CheckKind kind) {
     const bool voxels = options_.check_voxels || kind == CheckKind::kAtEnd;
-    std::string broken = result_.stock->check(voxels ? stock::CheckLevel::kVoxels : stock::CheckLevel::kMap);
+    std::string broken = whole().check(voxels ? stock::CheckLevel::kVoxels : stock::CheckLevel::kMap);
     ++(voxels ? outcome_.voxel_checks : outcome_.map_checks);
     if (checked_) {
       if (broken.empty()) broken = result_.stock->check_since(*checked_);
@@ -280,7 +293,7 @@ class CutStage {
       record_.tools.push_back(sweeps_.tool(n));
     }
     // A stopped run ends between two hashes.
-    if (record_.states.size() * record_.every < at_) record_.states.push_back(result_.stock->hash());
+    if (record_.states.size() * record_.every < at_) record_.states.push_back(whole().hash());
     write_record(options_.save_folder + "/" + kRecordFile, record_);
   }
 
@@ -289,16 +302,15 @@ class CutStage {
   Progress& progress_;
   Result& result_;
   CutOutcome& outcome_;
-  CutSweeps sweeps_;
-  std::vector<stock::CutterSolid> solids_;  ///< by tool
-  const CarriedCuts& carried_;
-  CutIdentity identity_;
-  SweepPlaces places_;
+  CutParts parts_;
+  const CutSweeps& sweeps_ = parts_.sweeps;
+  const CarriedCuts& carried_ = parts_.carried;
+  const CutIdentity& identity_ = parts_.identity;
+  ToolClearanceCheck& clearance_ = parts_.clearance;
+  BadCutCheck& bad_cuts_ = parts_.bad_cuts;
   mutable motion::CycleReader reader_{*result_.main.cycles};
-  EarlierCuts earlier_;
   std::optional<stock::ContactFinder> finder_;
-  ToolClearanceCheck clearance_;
-  BadCutCheck bad_cuts_;
+  std::optional<TileLead> tiles_;  ///< none: this process cuts alone
   StockContactCheck contacts_;
   std::vector<Save> saves_;
   size_t next_save_ = 0, at_ = 0;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/progress.h"
+#include "base/ranks.h"
 #include "sim/job/scene.h"
 #include "sim/run/in_process_stock.h"
 #include "sim/run/memory.h"
@@ -29,6 +30,7 @@ struct CutOptions {
   bool check_voxels = false;           ///< costly invariants on the way too; twice the stock's memory
   Outputs outputs;                     ///< what follows: its memory counts
   std::vector<std::string> overrides;  ///< of the scene, for the record
+  Ranks* ranks = nullptr;              ///< cut tile by tile with these (tile_ranks.h); null: alone
 };
 
 inline constexpr const char* kRecordFile = "run.record";

@@ -49,7 +49,8 @@ ToolClearanceCheck::ToolClearanceCheck(std::span<const cutter::Cutter> tools, co
 }
 
 ToolClearanceCheck::Outlook ToolClearanceCheck::look_ahead(const stock::ContactFinder& finder, size_t begin,
-                                                           size_t end) const {
+                                                           size_t end,
+                                                           std::span<const size_t> known_suspects) const {
   std::vector<double> gaps(end - begin);
   std::vector<uint8_t> hinted(end - begin, 0);
   const std::vector<stock::Sweep> ahead = sweeps_.part(begin, end);
@@ -58,6 +59,7 @@ ToolClearanceCheck::Outlook ToolClearanceCheck::look_ahead(const stock::ContactF
     for (size_t i = from; i < to; ++i) {
       const stock::SweepMap map = stock::sweep_map(ahead[i]);
       gaps[i] = least;
+      if (std::binary_search(known_suspects.begin(), known_suspects.end(), begin + i)) continue;
       for (const ToolPart& part : parts_[tool_of(begin + i)]) {
         gaps[i] = std::min(gaps[i], finder.gap(map, part.body, gaps[i]));
         // The gap is only known up to the least seen: the hint looks for itself.

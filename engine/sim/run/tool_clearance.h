@@ -30,12 +30,14 @@ class ToolClearanceCheck {
   ToolClearanceCheck(std::span<const cutter::Cutter> tools, const CutSweeps& sweeps,
                      const SweepPlaces& places, const EarlierCuts& earlier, double voxel_mm);
 
-  /// Gaps of sweeps [begin, end), before any of them is cut.
+  /// Gaps of sweeps [begin, end), before any of them is cut; those of `known_suspects`, in order, are not
+  /// looked at.
   struct Outlook {
     std::vector<size_t> suspects;  ///< indices of sweeps
     double nearest_mm = 0.0;       ///< of the others
   };
-  Outlook look_ahead(const stock::ContactFinder& finder, size_t begin, size_t end) const;
+  Outlook look_ahead(const stock::ContactFinder& finder, size_t begin, size_t end,
+                     std::span<const size_t> known_suspects = {}) const;
   /// Takes a gap into the result.
   void saw(double gap_mm);
 

@@ -30,7 +30,8 @@ uint32_t row_below(const float* values, float first, float first_step, float sec
 
 }  // namespace
 
-ContactFinder::ContactFinder(const Stock& stock) : stock_(stock), voxel_(stock.voxel_mm()) {
+ContactFinder::ContactFinder(const Stock& stock, Tiles tiles)
+    : stock_(stock), tiles_(tiles), voxel_(stock.voxel_mm()) {
   refresh();
 }
 
@@ -39,11 +40,14 @@ double ContactFinder::deep_mm() const {
 }
 
 void ContactFinder::refresh() {
-  const LeafMap& map = stock_.level_set().map;
+  const LevelSet& set = stock_.level_set();
+  const LeafMap& map = set.map;
+  const auto looks_at = [&](size_t n) { return tiles_ == Tiles::kAll || set.owns(n); };
   levels_.clear();
   Level level{{map.dimension.x(), map.dimension.y(), map.dimension.z()}, {}};
   level.material.resize(map.size());
-  for (size_t n = 0; n < map.size(); ++n) level.material[n] = map.states[n] != LeafState::kAir ? 1 : 0;
+  for (size_t n = 0; n < map.size(); ++n)
+    level.material[n] = map.states[n] != LeafState::kAir && looks_at(n) ? 1 : 0;
   levels_.push_back(std::move(level));
   while (levels_.back().material.size() > 1) {
     const Level& low = levels_.back();

@@ -57,8 +57,12 @@ class ContactFinder {
   /// A contact shallower than this is none: the sweeps follow the motion no closer.
   static constexpr double kLeastMm = 0.01;
 
+  /// What is looked at: all of the stock, or the tiles that this process cuts (stock_tiles.h). gap() and
+  /// may_be_shallow() of all are the least and the "or" of those of every process; only they know tiles.
+  enum class Tiles { kAll, kOwn };
+
   /// The stock must outlive it.
-  explicit ContactFinder(const Stock& stock);
+  explicit ContactFinder(const Stock& stock, Tiles tiles = Tiles::kAll);
   /// After cutting: what became air is no longer looked at. Answers do not depend on it.
   void refresh();
   double deep_mm() const;
@@ -116,6 +120,7 @@ class ContactFinder {
                  const std::function<bool(size_t leaf, const Bound& bound)>& visit) const;
 
   const Stock& stock_;
+  Tiles tiles_;
   double voxel_;
   std::vector<Level> levels_;  ///< from the leaf positions up to one cell
 };

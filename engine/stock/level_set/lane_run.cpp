@@ -155,6 +155,7 @@ void visit_leaves(const LevelSet& set, const Neighbourhood& around, Visit visit)
   for (int i = i_first; i <= i_last; ++i) {
     for (int j = j_first; j <= j_last; ++j) {
       const size_t column = set.map.index(i, j, 0);
+      if (!set.owns(column)) continue;
       const Vec3 foot = set.leaf_centre(column);
       const Span span = vertical_span(around, foot.x(), foot.y());
       if (span.low > span.high) continue;

@@ -74,7 +74,9 @@ void fill_block(LevelSet& set, const openvdb::Coord& first, std::vector<std::uni
     for (int j = first.y(); j < std::min(first.y() + kBlockLeaves, map.dimension.y()); ++j)
       for (int k = first.z(); k < std::min(first.z() + kBlockLeaves, map.dimension.z()); ++k) {
         const size_t n = map.index(i, j, k);
-        if (std::abs(centre) > reach) {
+        if (!set.owns(n)) {
+          set.map.states[n] = LeafState::kAir;
+        } else if (std::abs(centre) > reach) {
           set.map.states[n] = centre < 0.0 ? LeafState::kSolid : LeafState::kAir;
         } else {
           set.map.states[n] = raw_leaf(set, n, made[n]);
@@ -84,14 +86,15 @@ void fill_block(LevelSet& set, const openvdb::Coord& first, std::vector<std::uni
 
 }  // namespace
 
-LevelSet make_raw(const RawShape& raw, double voxel) {
-  if (raw.is_box()) return make_box(raw.box(), voxel);
+LevelSet make_raw(const RawShape& raw, double voxel, Share share) {
+  if (raw.is_box()) return make_box(raw.box(), voxel, share);
   LevelSet set;
   set.box = raw.box();
   set.raw = raw;
   set.voxel = voxel;
   set.grid = empty_grid(voxel);
   set.map = empty_map(set.box, voxel);
+  keep_columns(set, share);
   std::vector<std::unique_ptr<LeafNode>> made(set.map.size());
   const LeafBlocks blocks(set.map);
   parallel_chunks(blocks.size(), 1, [&](size_t begin, size_t end) {

@@ -17,10 +17,6 @@ constexpr size_t kMapBytes =
 
 }  // namespace
 
-struct Stock::Impl {
-  LevelSet level_set;
-};
-
 Stock::Stock(const Box& box_W, double voxel_mm) {
   SWARF_CHECK(voxel_mm > 0.0 && box_W.size().minCoeff() > 0.0, "a stock needs a voxel size and a volume");
   impl_ = std::make_unique<Impl>(Impl{make_box(box_W, voxel_mm)});

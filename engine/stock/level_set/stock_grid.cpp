@@ -49,6 +49,7 @@ void fill_leaf(LeafNode& leaf, const Box& box, double voxel, float band) {
 
 /// The state of one leaf position of a fresh box; a leaf is handed over in `made`.
 LeafState box_leaf(const LevelSet& set, size_t index, std::unique_ptr<LeafNode>& made) {
+  if (!set.owns(index)) return LeafState::kAir;
   const double centre = box_distance(set.box, set.leaf_centre(index));
   const double reach = set.leaf_radius() + set.band();
   if (std::abs(centre) > reach) return centre < 0.0 ? LeafState::kSolid : LeafState::kAir;
@@ -145,13 +146,14 @@ void take_leaves(LevelSet& set, std::vector<std::unique_ptr<LeafNode>>& made) {
   openvdb::tools::signedFloodFill(set.grid->tree(), true, 1, kTilesOnly);
 }
 
-LevelSet make_box(const Box& box, double voxel) {
+LevelSet make_box(const Box& box, double voxel, Share share) {
   LevelSet set;
   set.box = box;
   set.raw = RawShape::of_box(box);
   set.voxel = voxel;
   set.grid = empty_grid(voxel);
   set.map = empty_map(box, voxel);
+  keep_columns(set, share);
   std::vector<std::unique_ptr<LeafNode>> made(set.map.size());
   parallel_chunks(set.map.size(), kLeavesPerTask, [&](size_t begin, size_t end) {
     for (size_t n = begin; n < end; ++n) set.map.states[n] = box_leaf(set, n, made[n]);

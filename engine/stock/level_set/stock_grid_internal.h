@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/frames.h"
+#include "base/ranks.h"
 #include "stock/stock.h"
 
 // Grid and tree are compiled once, in stock_grid.cpp: each further file would spend six seconds on them.
@@ -70,6 +71,13 @@ struct LevelSet {
   LeafMap map;
   CutStatistics statistics;
   double rounding_mm = kBoxRounding;  ///< values are the distances they stand for within this
+  /// Of each column of leaf positions, x before y: 1 where another process cuts (stock_tiles.h); empty: none.
+  std::vector<uint8_t> others;
+
+  /// Cutting may change this position.
+  bool owns(size_t index) const {
+    return others.empty() || others[index / static_cast<size_t>(map.dimension.z())] == 0;
+  }
 
   float band() const { return static_cast<float>(kBandVoxels * voxel); }
   /// Centre of a leaf position in W.
@@ -80,12 +88,19 @@ struct LevelSet {
   float value(const openvdb::Coord& ijk) const;
 };
 
+struct Stock::Impl {
+  LevelSet level_set;
+};
+
 /// Positions that a box and its band need.
 LeafMap empty_map(const Box& box, double voxel);
 openvdb::FloatGrid::Ptr empty_grid(double voxel);
-LevelSet make_box(const Box& box, double voxel);
+/// `share`: its tiles alone are filled (stock_tiles.h).
+LevelSet make_box(const Box& box, double voxel, Share share = {});
 /// Any raw stock (raw_grid.cpp).
-LevelSet make_raw(const RawShape& raw, double voxel);
+LevelSet make_raw(const RawShape& raw, double voxel, Share share = {});
+/// Leaves the columns of other shares to others (stock_tiles.cpp).
+void keep_columns(LevelSet& set, Share share);
 /// Takes over the leaves of a fresh stock whose map knows its states, and gives the rest of the tree its
 /// signs.
 void take_leaves(LevelSet& set, std::vector<std::unique_ptr<LeafNode>>& made);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/check.h"
+#include "base/hash.h"
 #include "base/parallel.h"
 #include "stock/rays/dexel_tiles.h"
 #include "stock/rays/free_ranges.h"
@@ -32,6 +33,21 @@ double height_of_box(const Box& box, const Vec3& point, const Vec3& normal) {
       1e-9;  // mm; design edges often lie on the box, and rounding must not move them out
   const bool hit = enter <= leave && enter <= kOnFace;
   return hit ? leave : -(point - point.cwiseMax(box.lower).cwiseMin(box.upper)).norm();
+}
+
+bool is_in(Share share, size_t tile) {
+  return tile % static_cast<size_t>(share.count) == static_cast<size_t>(share.index);
+}
+
+/// Of where the rays are and how they are put into tiles.
+uint64_t rays_hash(const RayField& field) {
+  Hash hash;
+  for (const auto* list : {&field.points, &field.normals})
+    for (const Vec3& v : *list)
+      for (int a = 0; a < 3; ++a) hash.add(v[a]);
+  for (const uint32_t ray : field.order) hash.add(uint64_t{ray});
+  hash.add(uint64_t{field.tiles.size()});
+  return hash.value();
 }
 
 }  // namespace
@@ -90,15 +106,50 @@ void SurfaceDexels::limit_depths() {
   });
 }
 
-void SurfaceDexels::cut(std::span<const Sweep> sweeps, const CutterSolid& cutter) {
+void SurfaceDexels::cut(std::span<const Sweep> sweeps, const CutterSolid& cutter, Share share) {
   const SweepChain chain = make_chain(sweeps, cutter);
   const size_t tiles = field_->tiles.size();
   std::vector<uint64_t> updates((tiles + kTilesPerTask - 1) / kTilesPerTask, 0);
   const Material material{*field_, heights_, blocks_, above_};
   parallel_chunks(tiles, kTilesPerTask, [&](size_t begin, size_t end) {
-    for (size_t n = begin; n < end; ++n) updates[begin / kTilesPerTask] += cut_tile(material, n, chain);
+    for (size_t n = begin; n < end; ++n)
+      if (is_in(share, n)) updates[begin / kTilesPerTask] += cut_tile(material, n, chain);
   });
   for (const uint64_t count : updates) ray_updates_ += count;
+}
+
+Bytes SurfaceDexels::tiles_of(Share share) const {
+  BytesWriter out;
+  out.add(rays_hash(*field_));
+  out.add(ray_updates_);
+  for (size_t tile = 0; tile < field_->tiles.size(); ++tile) {
+    if (!is_in(share, tile)) continue;
+    const RayTile& rays = field_->tiles[tile];
+    for (uint32_t n = 0; n < rays.count; ++n) {
+      const size_t ray = field_->order[rays.begin + n];
+      out.add(heights_[ray]);
+      out.add(blocks_[ray]);
+    }
+    out.add_list(above_[tile]);
+  }
+  return out.take();
+}
+
+bool SurfaceDexels::take_tiles(const Bytes& told, Share share) {
+  BytesReader in(told);
+  if (in.get<uint64_t>() != rays_hash(*field_)) return false;
+  ray_updates_ += in.get<uint64_t>();
+  for (size_t tile = 0; tile < field_->tiles.size(); ++tile) {
+    if (!is_in(share, tile)) continue;
+    const RayTile& rays = field_->tiles[tile];
+    for (uint32_t n = 0; n < rays.count; ++n) {
+      const size_t ray = field_->order[rays.begin + n];
+      heights_[ray] = in.get<double>();
+      blocks_[ray] = in.get<uint32_t>();
+    }
+    above_[tile] = in.get_list<MaterialAbove>();
+  }
+  return true;
 }
 
 void SurfaceDexels::each_above(const std::function<void(uint32_t, const MaterialAbove&)>& visit) const {

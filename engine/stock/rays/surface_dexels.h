@@ -8,7 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "base/bytes.h"
 #include "base/frames.h"
+#include "base/ranks.h"
 #include "stock/raw/raw_shape.h"
 #include "stock/rays/ray_field.h"
 #include "stock/rays/ray_material.h"
@@ -37,7 +39,12 @@ class SurfaceDexels {
   SurfaceDexels(const surface::SurfacePtr& surface, double pitch_mm, const Box& stock_box);
 
   /// Removes the sweeps; parallel, order-independent, ties keep the smaller block id.
-  void cut(std::span<const Sweep> sweeps, const CutterSolid& cutter);
+  /// `share`: of the tiles of rays, in turn; the others stay as they are.
+  void cut(std::span<const Sweep> sweeps, const CutterSolid& cutter, Share share = {});
+  /// The material on the share's tiles, for the same rays of another process.
+  Bytes tiles_of(Share share) const;
+  /// Takes over what tiles_of() has told; false: it told of other rays, and nothing is changed.
+  bool take_tiles(const Bytes& told, Share share);
 
   /// Takes back what each ray lost beyond RayField::own_depth: other faces answer for it. After the last cut.
   void limit_depths();

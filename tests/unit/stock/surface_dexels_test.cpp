@@ -156,6 +156,36 @@ TEST(SurfaceDexels, OrderCallsAndThreadsDoNotMatter) {
   set_thread_count(0);
 }
 
+/// Tiles of rays cut apart and put together, intervals above gaps included; rays of another design are
+/// refused.
+TEST(SurfaceDexels, SharesPutTogetherAreTheWhole) {
+  std::vector<Sweep> sweeps = dome_passes(0.1, 0.9, 8, 40);
+  const ToolPose side{Vec3(-60, 0, 25), Vec3::UnitX()};  // an undercut: gaps above the dome
+  sweeps.push_back({side, {Vec3(-20, 5, 25), Vec3::UnitX()}, static_cast<uint32_t>(sweeps.size())});
+  SurfaceDexels whole(dome(), 0.9, kBox);
+  whole.cut(sweeps, kCutter);
+  size_t above = 0;
+  whole.each_above([&](uint32_t, const MaterialAbove&) { ++above; });
+  EXPECT_GT(above, 0U);
+  for (const int count : {1, 2, 3, 8}) {
+    SurfaceDexels lead(dome(), 0.9, kBox);
+    lead.cut(sweeps, kCutter, {0, count});
+    for (int rank = 1; rank < count; ++rank) {
+      SurfaceDexels own(dome(), 0.9, kBox);
+      own.cut(sweeps, kCutter, {rank, count});
+      EXPECT_TRUE(lead.take_tiles(own.tiles_of({rank, count}), {rank, count}));
+    }
+    EXPECT_EQ(lead.heights_mm(), whole.heights_mm()) << count;
+    EXPECT_EQ(lead.blocks(), whole.blocks()) << count;
+    EXPECT_EQ(lead.ray_updates(), whole.ray_updates()) << count;
+    size_t found = 0;
+    lead.each_above([&](uint32_t, const MaterialAbove&) { ++found; });
+    EXPECT_EQ(found, above) << count;
+  }
+  SurfaceDexels coarse(dome(), 1.8, kBox);
+  EXPECT_FALSE(coarse.take_tiles(whole.tiles_of({0, 2}), {0, 2}));
+}
+
 TEST(SurfaceDexels, ACutBehindTheSkinIsNotMet) {
   // The cutter works on the underside, 5 mm below the dome's foot plane; the dome's rays run through it.
   SurfaceDexels dexels(dome(), 5.0, kBox);

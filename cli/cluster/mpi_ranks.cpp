@@ -1,0 +1,83 @@
+// Ranks over MPI: a module of its own, so that the program itself needs no MPI to run (cli/open_ranks.h).
+#define OMPI_SKIP_MPICXX 1  // C alone
+#include <mpi.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <cstdlib>
+#include <memory>
+#include <thread>
+
+#include "base/ranks.h"
+
+namespace swarf {
+namespace {
+
+constexpr int kSizeTag = 1, kPartTag = 2;
+/// MPI counts in int.
+constexpr size_t kMostAtOnce = size_t{1} << 28;
+/// Where more ranks than cores wait for each other, one that waits must not keep a core busy: so often it
+/// looks at once, then it sleeps between two looks.
+constexpr int kLooksAtOnce = 200;
+constexpr std::chrono::microseconds kSleep{50};
+
+class MpiRanks final : public Ranks {
+ public:
+  MpiRanks() {
+    int given = 0;
+    MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &given);
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
+    MPI_Comm_size(MPI_COMM_WORLD, &size_);
+  }
+  ~MpiRanks() override { MPI_Finalize(); }
+  MpiRanks(const MpiRanks&) = delete;
+  MpiRanks& operator=(const MpiRanks&) = delete;
+
+  int rank() const override { return rank_; }
+  int size() const override { return size_; }
+
+  void send(int to, const Bytes& message) override {
+    const uint64_t size = message.size();
+    MPI_Send(&size, 1, MPI_UINT64_T, to, kSizeTag, MPI_COMM_WORLD);
+    for (size_t at = 0; at < message.size(); at += kMostAtOnce)
+      MPI_Send(message.data() + at, count(message.size() - at), MPI_BYTE, to, kPartTag, MPI_COMM_WORLD);
+  }
+
+  Bytes receive(int from) override {
+    wait_for_message(from);
+    uint64_t size = 0;
+    MPI_Recv(&size, 1, MPI_UINT64_T, from, kSizeTag, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+    Bytes message(size);
+    for (size_t at = 0; at < size; at += kMostAtOnce)
+      MPI_Recv(message.data() + at, count(size - at), MPI_BYTE, from, kPartTag, MPI_COMM_WORLD,
+               MPI_STATUS_IGNORE);
+    return message;
+  }
+
+  [[noreturn]] void abort(int exit_code) override {
+    MPI_Abort(MPI_COMM_WORLD, exit_code);
+    std::_Exit(exit_code);
+  }
+
+ private:
+  static int count(size_t left) { return static_cast<int>(std::min(left, kMostAtOnce)); }
+
+  static void wait_for_message(int from) {
+    int is_there = 0;
+    for (int looks = 0; is_there == 0; ++looks) {
+      if (looks > kLooksAtOnce) std::this_thread::sleep_for(kSleep);
+      MPI_Iprobe(from, kSizeTag, MPI_COMM_WORLD, &is_there, MPI_STATUS_IGNORE);
+    }
+  }
+
+  int rank_ = 0, size_ = 1;
+};
+
+}  // namespace
+}  // namespace swarf
+
+/// Seen by open_ranks() alone.
+extern "C" swarf::Ranks* swarf_make_ranks() {
+  return std::make_unique<swarf::MpiRanks>().release();
+}

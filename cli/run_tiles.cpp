@@ -1,0 +1,67 @@
+#include "cli/run_tiles.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+
+#include "cli/open_ranks.h"
+#include "cli/posted_scene.h"
+#include "cli/terminal.h"
+#include "sim/job/set_ups.h"
+#include "sim/run/tile_ranks.h"
+#include "sim/simulation.h"
+
+namespace swarf::cli {
+namespace {
+
+void refuse_as_rank(bool given, const std::string& what, const char* remedy) {
+  if (given) throw InputError("not-in-tiles", {what}, "this is for a run of one process", remedy);
+}
+
+/// Another rank than 0: it writes and says nothing; what is wrong with its input is told by rank 0.
+int serve_as_rank(const RunOptions& options, Ranks& ranks) {
+  try {
+    std::optional<sim::Job> job;
+    try {
+      refuse_for_tiles(options);
+      job = load_job(options.scene, options.job, overrides_of(options));
+      refuse_for_tiles(*job);
+    } catch (const InputError& error) {
+      sim::refuse_tile_lead(ranks, error.what());
+      return kPass;
+    }
+    Progress silent;
+    sim::serve_tiles(*job, ranks, silent);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "error: rank {}: {}\n", ranks.rank(), error.what());
+    ranks.abort(kInternalError);
+  }
+  return kPass;
+}
+
+}  // namespace
+
+void refuse_for_tiles(const RunOptions& options) {
+  refuse_as_rank(options.scene == "-", "-", "name a file that every rank can read");
+  refuse_as_rank(count_setups(options.scene, overrides_of(options)) > 0, "[[setup]]",
+                 "make each set-up a scene of its own: stock.from_run is the folder of the one before");
+}
+
+void refuse_for_tiles(const sim::Job& job) {
+  refuse_as_rank(wants_post(job), "[post]",
+                 "write the program with swarf post, and name it as nc of the scene");
+}
+
+int run_as_rank(RunOptions options, const std::function<int(const RunOptions&)>& run) {
+  const std::unique_ptr<Ranks> ranks = open_ranks();
+  if (ranks->rank() > 0) return serve_as_rank(options, *ranks);
+  options.ranks = ranks.get();
+  struct Dismissal {
+    Ranks& ranks;
+    ~Dismissal() { sim::dismiss_ranks(ranks); }
+  } dismissal{*ranks};
+  return run(options);
+}
+
+}  // namespace swarf::cli

@@ -1,0 +1,31 @@
+// Processes of one run, on one machine or several, that send each other messages. Rank 0 leads.
+#pragma once
+
+#include "base/bytes.h"
+
+namespace swarf {
+
+class Ranks {
+ public:
+  virtual ~Ranks() = default;    ///< every rank waits here for the others
+  virtual int rank() const = 0;  ///< of this process
+  virtual int size() const = 0;  ///< how many there are
+  /// Messages from one rank to another arrive whole and in order. For one thread of the process.
+  virtual void send(int to, const Bytes& message) = 0;
+  /// Waits for the next one. A rank that is gone sends nothing: who started them all tells and ends the rest.
+  virtual Bytes receive(int from) = 0;
+  /// Ends all of them at once, as they stand.
+  [[noreturn]] virtual void abort(int exit_code) = 0;
+};
+
+/// Part `index` of `count` of something that is shared out.
+struct Share {
+  int index = 0, count = 1;                ///< from 0
+  bool all() const { return count == 1; }  ///< nobody else has a part
+};
+
+inline Share share_of(const Ranks& ranks) {
+  return {ranks.rank(), ranks.size()};
+}
+
+}  // namespace swarf

@@ -1,0 +1,143 @@
+#include "stock/stock_tiles.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <numeric>
+#include <span>
+
+#include "base/check.h"
+#include "stock/level_set/leaf_kernel.h"
+#include "stock/level_set/stock_grid_internal.h"
+
+namespace swarf::stock {
+namespace {
+
+int tile_floor(int leaf) {
+  return (leaf >= 0 ? leaf : leaf - kTileLeaves + 1) / kTileLeaves;
+}
+
+/// Tiles of one rank go on by so many from row to row: coprime to the number of ranks, so that rows and
+/// columns of tiles both hold every rank equally often; near its golden section, so that they do not line up.
+int row_step(int count) {
+  constexpr double kGolden = 1.618033988749895;
+  int step = std::max(1, static_cast<int>(std::lround(count / kGolden)));
+  while (std::gcd(step, count) != 1) ++step;
+  return step;
+}
+
+/// Of all columns of the map, x before y: 1 where another share cuts.
+std::vector<uint8_t> columns_of_others(const LeafMap& map, Share share) {
+  std::vector<uint8_t> others;
+  for (int i = 0; i < map.dimension.x(); ++i)
+    for (int j = 0; j < map.dimension.y(); ++j)
+      others.push_back(owner_of_column(map.lower.x() + i, map.lower.y() + j, share.count) != share.index);
+  return others;
+}
+
+void set_leaf(LevelSet& set, size_t leaf, std::span<const float, kLeafVoxels> values) {
+  LeafNode* node = set.map.leaves[leaf];
+  if (node == nullptr) {
+    auto made = std::make_unique<LeafNode>(set.map.origin(leaf), set.band(), false);
+    node = set.map.leaves[leaf] = made.get();
+    set.grid->tree().addLeaf(made.release());
+  }
+  std::copy(values.begin(), values.end(), node->buffer().data());
+  SWARF_CHECK(settle_leaf(*node, set.band()) == LeafState::kLeaf, "a leaf that was sent is one");
+}
+
+void set_tile(LevelSet& set, size_t leaf, LeafState state) {
+  constexpr openvdb::Index kLeafLevel = 1;  // a tile that replaces one leaf
+  const float value = state == LeafState::kSolid ? -set.band() : set.band();
+  set.grid->tree().addTile(kLeafLevel, set.map.origin(leaf), value, false);
+  set.map.leaves[leaf] = nullptr;
+}
+
+}  // namespace
+
+int owner_of_column(int i, int j, int count) {
+  const int turn = (tile_floor(i) + row_step(count) * (tile_floor(j) % count)) % count;
+  return turn < 0 ? turn + count : turn;
+}
+
+void keep_columns(LevelSet& set, Share share) {
+  set.others = share.all() ? std::vector<uint8_t>{} : columns_of_others(set.map, share);
+}
+
+Stock StockTiles::own_tiles(const RawShape& raw, double voxel_mm, Share share) {
+  return Stock(std::make_unique<Stock::Impl>(Stock::Impl{make_raw(raw, voxel_mm, share)}));
+}
+
+StockTiles::StockTiles(Stock& stock, Share share)
+    : stock_(stock), share_(share), known_(stock.level_set().map.cuts), told_(stock.statistics()) {
+  keep_columns(stock.impl_->level_set, share);
+}
+
+Bytes StockTiles::changes() {
+  const LevelSet& set = stock_.level_set();
+  BytesWriter out;
+  out.add(set.statistics.voxel_updates - told_.voxel_updates);
+  out.add(set.statistics.leaf_visits - told_.leaf_visits);
+  out.add(set.statistics.seconds);
+  told_ = set.statistics;
+  for (size_t leaf = 0; leaf < set.map.size(); ++leaf) {
+    if (set.map.cuts[leaf] == known_[leaf] || !set.owns(leaf)) continue;
+    add_position(leaf, out);
+    known_[leaf] = set.map.cuts[leaf];
+  }
+  return out.take();
+}
+
+Bytes StockTiles::tiles_of(int index) const {
+  const LevelSet& set = stock_.level_set();
+  BytesWriter out;
+  out.add(uint64_t{0});
+  out.add(uint64_t{0});
+  out.add(0.0);
+  const std::vector<uint8_t> others = columns_of_others(set.map, {index, share_.count});
+  for (size_t leaf = 0; leaf < set.map.size(); ++leaf)
+    if (others[leaf / static_cast<size_t>(set.map.dimension.z())] == 0) add_position(leaf, out);
+  return out.take();
+}
+
+void StockTiles::add_position(size_t leaf, BytesWriter& out) const {
+  const LeafMap& map = stock_.level_set().map;
+  out.add(leaf);
+  out.add(map.states[leaf]);
+  out.add(map.floors[leaf]);
+  out.add(map.cuts[leaf]);
+  if (map.states[leaf] == LeafState::kLeaf)
+    out.add_all(std::span<const float>(map.leaves[leaf]->buffer().data(), kLeafVoxels));
+}
+
+void StockTiles::apply(const Bytes& changes) {
+  CutStatistics& statistics = stock_.impl_->level_set.statistics;
+  BytesReader in(changes);
+  const auto updates = in.get<uint64_t>(), visits = in.get<uint64_t>();
+  statistics.voxel_updates += updates;
+  statistics.leaf_visits += visits;
+  statistics.seconds = std::max(statistics.seconds, in.get<double>());
+  told_.voxel_updates += updates;
+  told_.leaf_visits += visits;
+  while (!in.at_end()) take_position(in);
+}
+
+void StockTiles::take_position(BytesReader& in) {
+  LevelSet& set = stock_.impl_->level_set;
+  const auto leaf = in.get<size_t>();
+  SWARF_CHECK(leaf < set.map.size(), "positions of one map");
+  const auto state = in.get<LeafState>();
+  set.map.floors[leaf] = in.get<LeafFloor>();
+  known_[leaf] = set.map.cuts[leaf] = in.get<uint32_t>();
+  if (state == LeafState::kLeaf) {
+    std::array<float, kLeafVoxels> values;
+    in.get_all(std::span<float>(values));
+    set_leaf(set, leaf, values);
+  } else if (state != set.map.states[leaf]) {
+    set_tile(set, leaf, state);
+  }
+  set.map.states[leaf] = state;
+}
+
+}  // namespace swarf::stock

@@ -1,0 +1,50 @@
+// A stock that several processes cut together, each its own tiles.
+//
+// A tile is a block of kTileLeaves x kTileLeaves columns of leaf positions, through the whole height. Tiles
+// are dealt out in turn along x and along y, so that every row of a path, however it lies, is shared by all.
+// What a leaf ends as depends on the sweeps and on the leaf alone, so tiles that were cut apart have the bits
+// of a stock that was cut in one piece.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/bytes.h"
+#include "base/ranks.h"
+#include "stock/stock.h"
+
+namespace swarf::stock {
+
+inline constexpr int kTileLeaves = 8;
+
+/// Whose the column of leaf positions is; `i`, `j`: in leaves from the grid's origin.
+int owner_of_column(int i, int j, int count);
+
+class StockTiles {
+ public:
+  /// The raw stock in the tiles of this share alone; the others are air and take no leaves.
+  static Stock own_tiles(const RawShape& raw, double voxel_mm, Share share);
+
+  /// From now on Stock::cut() cuts the share's tiles alone, and ContactFinder can be asked for them alone;
+  /// the others change by apply(). The stock must outlive it. What it is now counts as known to the others.
+  StockTiles(Stock& stock, Share share);
+
+  /// What has changed in the share's tiles since they were known last; it is known with this.
+  Bytes changes();
+  /// Everything in the tiles of another share: for one that begins.
+  Bytes tiles_of(int index) const;
+  /// Takes over what changes() or tiles_of() of a stock of the same raw shape and voxel size has told. Counts
+  /// of work in it are added to the stock's own; its seconds become those of the slowest.
+  void apply(const Bytes& changes);
+
+ private:
+  void add_position(size_t leaf, BytesWriter& out) const;
+  void take_position(BytesReader& in);
+
+  Stock& stock_;
+  Share share_;
+  std::vector<uint32_t> known_;  ///< LeafMap::cuts when they were told last
+  CutStatistics told_;           ///< the same of the counts
+};
+
+}  // namespace swarf::stock

@@ -1,0 +1,147 @@
+// Tiles that are cut apart and put together are the stock that is cut in one piece, to the last bit.
+#include "stock/stock_tiles.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <memory>
+
+#include "cutter_shapes.h"
+#include "stock/contact/contact_finder.h"
+#include "stock_test_support.h"
+
+namespace swarf::stock::stock_tiles_test {
+namespace {
+
+constexpr double kVoxel = 0.4;
+const Box kBox{{-9.3, -7.1, -4.0}, {8.2, 9.4, 3.3}};
+
+/// Ranks of one process: `lead` is whole, `others` hold their own tiles.
+struct Rank {
+  explicit Rank(Stock&& made, Share share) : stock(std::move(made)), tiles(stock, share) {}
+  Stock stock;
+  StockTiles tiles;
+};
+std::vector<std::unique_ptr<Rank>> ranks_of(const RawShape& raw, int count) {
+  std::vector<std::unique_ptr<Rank>> ranks;
+  ranks.push_back(std::make_unique<Rank>(Stock(raw, kVoxel), Share{0, count}));
+  for (int n = 1; n < count; ++n)
+    ranks.push_back(std::make_unique<Rank>(StockTiles::own_tiles(raw, kVoxel, {n, count}), Share{n, count}));
+  return ranks;
+}
+
+void cut_all(std::vector<std::unique_ptr<Rank>>& ranks, const std::vector<Sweep>& sweeps,
+             const CutterSolid& cutter) {
+  for (auto& rank : ranks) rank->stock.cut(sweeps, cutter);
+}
+void gather(std::vector<std::unique_ptr<Rank>>& ranks) {
+  for (size_t n = 1; n < ranks.size(); ++n) ranks[0]->tiles.apply(ranks[n]->tiles.changes());
+}
+
+std::vector<Sweep> sweeps_of(Rng& rng, int count) {
+  std::vector<Sweep> sweeps;
+  for (int n = 0; n < count; ++n) sweeps.push_back(random_sweep(rng, 12.0, 6.0, n % 2 == 0 ? 0.0 : 0.4));
+  return sweeps;
+}
+
+void expect_equal(const Stock& one, const Stock& other) {
+  EXPECT_EQ(one.hash(), other.hash());
+  EXPECT_EQ(one.check(), "");
+  EXPECT_EQ(one.leaves(), other.leaves());
+  EXPECT_EQ(one.volume_mm3(), other.volume_mm3());
+  EXPECT_EQ(one.rounding_mm(), other.rounding_mm());
+  EXPECT_EQ(one.statistics().voxel_updates, other.statistics().voxel_updates);
+  EXPECT_EQ(one.statistics().leaf_visits, other.statistics().leaf_visits);
+}
+
+TEST(StockTiles, CutApartAndGatheredTheyAreTheStockOfOneProcess) {
+  const RawShape raw = RawShape::of_box(kBox);
+  Rng rng(19);
+  for (const int count : {1, 2, 3, 4, 7, 8}) {
+    SCOPED_TRACE(fmt::format("{} ranks", count));
+    const CutterSolid cutter = count % 2 == 0 ? ball_nose(2.0, 9.0) : CutterSolid(2.5, 10.0);
+    Stock whole(raw, kVoxel);
+    auto ranks = ranks_of(raw, count);
+    for (int step = 0; step < 4; ++step) {
+      const std::vector<Sweep> sweeps = sweeps_of(rng, 12);
+      whole.cut(sweeps, cutter);
+      cut_all(ranks, sweeps, cutter);
+      if (step == 1) continue;  // two cuts between two looks
+      gather(ranks);
+      expect_equal(ranks[0]->stock, whole);
+    }
+  }
+}
+
+TEST(StockTiles, OneThatBeginsLaterTakesOverWhatIsThere) {
+  const RawShape raw = RawShape::of_box(kBox);
+  Rng rng(20);
+  const CutterSolid cutter(2.5, 10.0);
+  Stock whole(raw, kVoxel);
+  whole.cut(sweeps_of(rng, 20), cutter);
+  auto ranks = ranks_of(raw, 1);
+  ranks[0] = std::make_unique<Rank>(whole.clone(), Share{0, 3});
+  for (int n = 1; n < 3; ++n) {
+    ranks.push_back(std::make_unique<Rank>(StockTiles::own_tiles(raw, kVoxel, {n, 3}), Share{n, 3}));
+    ranks.back()->tiles.apply(ranks[0]->tiles.tiles_of(n));
+  }
+  const std::vector<Sweep> more = sweeps_of(rng, 20);
+  whole.cut(more, cutter);
+  cut_all(ranks, more, cutter);
+  gather(ranks);
+  expect_equal(ranks[0]->stock, whole);
+}
+
+/// The least gap over all is that of the rank whose tile is nearest; a hint is seen where it lies.
+TEST(StockTiles, TheLeastGapOfAllRanksIsThatOfTheWhole) {
+  const RawShape raw = RawShape::of_box(kBox);
+  Rng rng(21);
+  const CutterSolid cutter(2.5, 10.0);
+  Stock whole(raw, kVoxel);
+  auto ranks = ranks_of(raw, 3);
+  const std::vector<Sweep> sweeps = sweeps_of(rng, 20);
+  whole.cut(sweeps, cutter);
+  cut_all(ranks, sweeps, cutter);
+  const ContactFinder all(whole);
+  const RevolvedPart shank = RevolvedPart::frustum(10.0, 20.0, 3.0, 4.0);
+  int near = 0;
+  for (int n = 0; n < 200; ++n) {
+    const SweepMap map = sweep_map(random_sweep(rng, 25.0, 6.0, 0.3));
+    const double above = 3.0 * kVoxel;
+    double least = above;
+    bool hint = false;
+    for (const auto& rank : ranks) {
+      const ContactFinder own(rank->stock, ContactFinder::Tiles::kOwn);
+      least = std::min(least, own.gap(map, shank, above));
+      hint = hint || own.may_be_shallow(map, shank, 0.0);
+    }
+    const double gap = all.gap(map, shank, above);
+    EXPECT_EQ(hint, all.may_be_shallow(map, shank, 0.0)) << "case " << n;
+    if (gap < -all.deep_mm())
+      EXPECT_LT(least, -all.deep_mm()) << "case " << n;  // neither looks further
+    else
+      EXPECT_EQ(least, gap) << "case " << n;
+    near += gap < above ? 1 : 0;
+  }
+  EXPECT_GT(near, 20);
+}
+
+TEST(StockTiles, EveryRowAndColumnOfTilesIsSharedByAll) {
+  for (const int count : {1, 2, 3, 4, 5, 6, 7, 8, 12, 64}) {
+    for (int line = -3; line < 3; ++line) {
+      std::map<int, int> along_x, along_y;
+      for (int n = -count; n < count; ++n) {
+        ++along_x[owner_of_column(n * kTileLeaves, line * kTileLeaves, count)];
+        ++along_y[owner_of_column(line * kTileLeaves + 7, n * kTileLeaves + 7, count)];
+      }
+      for (int rank = 0; rank < count; ++rank) {
+        EXPECT_EQ(along_x[rank], 2) << count << " ranks, row " << line;
+        EXPECT_EQ(along_y[rank], 2) << count << " ranks, column " << line;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace swarf::stock::stock_tiles_test
