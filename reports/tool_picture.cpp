@@ -56,7 +56,7 @@ std::string tool_svg(const cutter::Cutter& tool) {
     for (const Vec2& p : part.side) {
       const double y = kToolPictureHeight - scale * p.y();
       right += fmt::format("{}{:.2f} {:.2f}", right.empty() ? "M" : "L", middle + scale * p.x(), y);
-      left = fmt::format("L{:.2f} {:.2f}", middle - scale * p.x(), y) + left;
+      left.insert(0, fmt::format("L{:.2f} {:.2f}", middle - scale * p.x(), y));
     }
     paths += fmt::format(R"(<path class="{}" d="{}{}Z"/>)", part.css_class, right, left);
   }

@@ -97,6 +97,7 @@ def scene_texts():
             for axis in ("lead_deg = 5", "axis = [0, 0, 1]"):
                 yield (f"[driven]\n{part} = 'part.x'\nmode = '{mode}'\narea_mm = [[0, 0], [1, 1]]\nfloor_mm = 0\n"
                        f"compare_cam_um = [10, 1]\n{axis}\n{no}[interpolator]\n{no}")
+    yield f"nc = 'part.ngc'\n[[contact_pair]]\nparts = ['table', 'holder']\n{no}"
     yield f"nc = 'part.ngc'\n[movie]\n{no}[[movie.shot]]\n{no}"
     yield f"[flank]\n{no}[design]\nkind = 'ruled'\n{no}[interpolator]\n{no}[stock]\n{no}"
     for kind in schema("scene")["properties"]["fixture"]["items"]["properties"]["kind"]["enum"]:
@@ -139,7 +140,7 @@ class Keys(unittest.TestCase):
     def test_post(self):
         no = f"{NO_KEY} = 0\n"
         tables = ["numbers", "blocks", "comment", "program", "tool", "spindle", "coolant", "words", "motion", "feed",
-                  "tcp", "cycle"]
+                  "tcp", "tilted_plane", "cycle"]
         numbers = [f"numbers.{name}" for name in ("linear", "rotary", "feed", "inverse_time", "speed", "time")]
         text = f"{no}name = 'x'\ndialect = 'fanuc'\n" + "".join(f"[{table}]\n{no}" for table in tables + numbers)
         self.assertEqual(known_keys(text, "post.toml"), schema_keys(schema("post"), schema("post")))

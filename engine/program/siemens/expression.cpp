@@ -92,16 +92,15 @@ class Evaluator {
     }
     const size_t offset = reader_.offset();
     Value value;
-    if (reader_.peek().kind == TokenKind::kNumber) {
-      value = primary();
-    } else if (reader_.skip("-")) {
+    const bool plain = reader_.peek().kind == TokenKind::kNumber;  // most are; no sign needs to be looked for
+    if (!plain && reader_.skip("-")) {
       const Value operand = number(unary(), offset);
       value = {operand.type == Type::kBool ? Type::kInt : operand.type, -operand.number, {}};
-    } else if (reader_.skip("+")) {
+    } else if (!plain && reader_.skip("+")) {
       value = number(unary(), offset);
-    } else if (reader_.skip("NOT")) {
+    } else if (!plain && reader_.skip("NOT")) {
       value = Value::boolean(number(unary(), offset).number == 0.0);
-    } else if (reader_.skip("B_NOT")) {
+    } else if (!plain && reader_.skip("B_NOT")) {
       value = Value::integer(~bits(unary(), offset));
     } else {
       value = primary();
