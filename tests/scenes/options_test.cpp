@@ -120,7 +120,7 @@ TEST_F(Options, SlotEndsAreSaidToCheckAndRun) {
 }
 
 /// Whether the matrix of TRACUT still turns the positions is said by the user, and moves the path.
-TEST_F(Options, TracutIsSaidToCheckRunAndPost) {
+TEST_F(Options, TracutIsSaidToCheckInitAndPost) {
   const std::string program = file("turned.cls",
                                    "UNITS/MM\nLOADTL/1\nSPINDL/RPM,1000,CLW\nFEDRAT/500,MMPM\n"
                                    "TRACUT/0,-1,0,100,1,0,0,0,0,0,1,0\nGOTO/0,0,5\nGOTO/40,0,5\n"
@@ -142,7 +142,8 @@ TEST_F(Options, TracutIsSaidToCheckRunAndPost) {
   EXPECT_NE(swarf::test::read_text(folder_ / "job" / "scene.toml").find("tracut = \"apply\""),
             std::string::npos);
   EXPECT_EQ(run_swarf("check " + job + "/scene.toml").exit_code, 0);
-  const ProgramRun post = run_swarf("post " + program + " --machine maho_600c --tracut apply -o -");
+  const ProgramRun post =
+      run_swarf("post " + program + " --machine maho_600c --work-origin 0 0 300 --tracut apply -o -");
   EXPECT_EQ(post.exit_code, 0) << post.output;
   EXPECT_TRUE(says(post, "Y40")) << post.output;
 }
