@@ -33,7 +33,7 @@ struct PostSettings {
   bool best_routes = false;  ///< dynamic programming instead of the paper's backtracking
   /// What the best of all ways has least of, and where tilted planes are written; "": as the post has it.
   std::string prefer, planes;
-  std::string unit;  ///< "mm" or "inch" of what is written; "": as the post has it
+  std::string unit;           ///< "mm" or "inch" of what is written; "": as the post has it
   double clearance_mm = 0.0;  ///< gaps of this or less count as collisions
   ClampingGrid grid;
   ToolReach reach;
