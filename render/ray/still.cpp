@@ -110,9 +110,8 @@ struct Shot {
   const BlueNoise& noise;
 
   PixelLight pixel(int x, int y) const {
-    // After so many samples without a trace of the drawing or its shadow the pixel is backdrop.
-    constexpr int kProbe = 8;
-    // Fewer samples say nothing about their spread.
+    // Fewer samples say nothing about their spread. After so many without a trace of the drawing or its
+    // shadow the pixel is backdrop.
     constexpr int kLeast = 6;
     bool empty = true;
     int taken = 0, behind = 0;
@@ -134,7 +133,7 @@ struct Shot {
       if (!options.transparent || !seen.empty) gathered.add(seen, with_ambient);
       empty = empty && seen.empty;
       ++taken;
-      if (empty && taken == kProbe) break;
+      if (empty && taken == kLeast) break;
       if (options.noise <= 0.0) continue;
       // What neighbours share is as good as known.
       brightness.add(seen.light + static_cast<float>(options.sky_strength) * seen.matt, options.exposure);
