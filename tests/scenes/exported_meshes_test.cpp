@@ -23,6 +23,11 @@ TEST(ExportedMeshes, CanBeCompared) {
     ASSERT_EQ(exported.exit_code, 0) << exported.output;
     const auto compare = run_swarf("compare " + stl + " " + stl + " --excess-um .1 --gouge-um .1");
     EXPECT_EQ(compare.exit_code, 0) << compare.output;
+    // The glTF, decimated within 2 um, comes in again at its place and size.
+    const std::string glb = (folder / "part.glb").string();
+    ASSERT_EQ(run_swarf("export " + out + " --gltf " + glb).exit_code, 0);
+    const auto same = run_swarf("compare " + glb + " " + stl + " --excess-um 5 --gouge-um 5 --pitch-mm 0.5");
+    EXPECT_EQ(same.exit_code, 0) << same.output;
     std::filesystem::remove_all(folder);
   }
 }

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "render/image_io.h"
 #include "support/program_run.h"
 
 namespace page_test {
@@ -146,6 +147,29 @@ TEST_F(GougedPage, ObjIsThePart) {
   for (size_t at = text.find("\nf "); at != std::string::npos; at = text.find("\nf ", at + 1)) ++faces;
   EXPECT_EQ(faces, triangles);
   EXPECT_TRUE(text.starts_with("# millimetres\nv "));
+}
+
+/// The labels stand on the picture that there is without them.
+TEST_F(GougedPage, AStillHasAScaleBarAndLeadersWhereTheyAreAskedFor) {
+  const std::string plain = (folder_ / "plain.png").string(), labelled = (folder_ / "labelled.png").string();
+  const std::string render =
+      "render " + run_folder() + " --kind deviation --size 480 270 --samples 1 --still ";
+  ASSERT_EQ(run_swarf(render + plain).exit_code, 0);
+  const auto run = run_swarf(render + labelled + " --labels");
+  ASSERT_EQ(run.exit_code, 0) << run.output;
+  const swarf::render::Image before = swarf::render::load_png(plain),
+                             after = swarf::render::load_png(labelled);
+  size_t changed = 0, corner = 0;
+  for (int y = 0; y < 270; ++y)
+    for (int x = 0; x < 480; ++x) {
+      const size_t at = size_t{4} * (480 * y + x);
+      if (std::equal(&before.rgba[at], &before.rgba[at + 4], &after.rgba[at])) continue;
+      ++changed;
+      if (x > 300 && y > 230) ++corner;
+    }
+  EXPECT_GT(corner, 300U) << "the scale bar";
+  EXPECT_GT(changed - corner, 2000U) << "two plates with their lines";
+  EXPECT_LT(changed, 480U * 270U / 5) << "nothing else";
 }
 
 TEST_F(GougedPage, LeadsFromAFindingToItsPlaceLineAndMovie) {
