@@ -77,6 +77,20 @@ TEST_F(GougedPage, DeviationInTheGltfIsThatOfTheMetrics) {
   EXPECT_NEAR(high, surface.at("excess_max_um").get<double>(), kReadLimitUm);
 }
 
+/// What is exported later says the same, with the pins of the findings.
+TEST_F(GougedPage, AnExportedPartSaysTheSame) {
+  const fs::path part = folder_ / "exported.glb";
+  const auto run = run_swarf("export " + run_folder() + " --gltf " + part.string());
+  ASSERT_EQ(run.exit_code, 0) << run.output;
+  const json surface = json::parse(read_text(folder_ / "run/metrics.json")).at("surface");
+  const Glb glb = read_glb(part);
+  EXPECT_NEAR(range_of(glb, "_DEVIATION_UM").first, -surface.at("gouge_max_um").get<double>(), kReadLimitUm);
+  size_t pins = 0;
+  for (const json& node : glb.model.at("nodes"))
+    if (node.contains("extras") && node.at("extras").value("role", "") == "finding") ++pins;
+  EXPECT_EQ(pins, 3U);
+}
+
 TEST_F(GougedPage, FindingsStandInTheGltfWithTheirNumbers) {
   const json findings = json::parse(read_text(folder_ / "run/findings.json"));
   const Glb glb = read_glb(folder_ / "run/part.glb");
