@@ -8,6 +8,8 @@
 #include <cmath>
 #include <string_view>
 
+#include "mesh/scene_reader.h"
+
 namespace swarf::sim {
 namespace {
 
@@ -110,7 +112,7 @@ void take_stock(const std::string& text, JobFlags& flags) {
   std::string ending = std::filesystem::path(text).extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (ending == ".stl" || ending == ".ply" || ending == ".obj") {
+  if (ending == ".stl" || ending == ".ply" || ending == ".obj" || mesh::is_scene_ending(ending)) {
     flags.stock_keys = "mesh = " + toml_string(text) + "\n";
     return;
   }
