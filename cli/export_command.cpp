@@ -14,6 +14,7 @@
 #include "reports/part_view.h"
 #include "reports/pending_folder.h"
 #include "reports/pictures.h"
+#include "reports/review_findings.h"
 #include "reports/review_models.h"
 #include "reports/run_output.h"
 #include "sim/run/measured_mesh.h"
@@ -56,7 +57,8 @@ void write_trajectory(const ExportOptions& options, const sim::Job& job, const m
 
 void write_gltf(const ExportOptions& options, const reports::FinishedRun& run) {
   const reports::ReviewModels models =
-      reports::review_models(run, run.stock.mesh(), options.error_um * kMicrometre, {}, {});
+      reports::review_models(run, run.stock.mesh(), options.error_um * kMicrometre,
+                             reports::review_pins(reports::read_findings(options.folder)), {});
   const reports::GltfOptions written{options.encoding, true};
   const auto write = [](const std::string& path, const std::string& bytes) {
     replace_file(path, bytes, {"cannot-write-file", "the glTF file cannot be written"});

@@ -9,7 +9,7 @@
 #include "cli/terminal.h"
 #include "cli/window_options.h"
 #include "render/movie/movie_writer.h"
-#include "reports/contact_pictures.h"
+#include "reports/finding_pictures.h"
 #include "reports/kept_findings.h"
 #include "reports/part_view.h"
 #include "reports/pending_folder.h"
@@ -25,7 +25,7 @@ struct RenderOptions {
   std::vector<int> size;
   double seconds = -1.0;
   int samples = 0, threads = 0, finding = 0;
-  bool transparent = false;
+  bool transparent = false, labels = false;
   sim::WindowPlaces window;
 };
 
@@ -103,7 +103,7 @@ int render(const RenderOptions& options) {
     const std::string otherwise = kind == reports::StillKind::kMachine ? "machine" : "iso";
     reports::make_still(run, reports::shown_part(run, stored.stock.mesh()), kind,
                         options.camera.empty() ? otherwise : options.camera, options.still,
-                        options.transparent);
+                        {options.transparent, options.labels});
     fmt::print("{}\n", options.still);
   }
   if (!options.movie.empty()) {
@@ -142,6 +142,10 @@ void add_render(CLI::App& app, int& exit_code) {
           "the still shows the machine at this finding, by its number in the page and in findings.json")
       ->check(CLI::PositiveNumber);
   command->add_flag("--transparent", options->transparent, "no backdrop and no floor behind the still");
+  command->add_flag(
+      "--labels", options->labels,
+      "a scale bar on the still, right at the middle of what is shown; on a deviation its deepest and "
+      "highest place with their values");
   command->add_option("--threads", options->threads, "threads to use (default: all cores)")
       ->check(CLI::Range(1, 4096));
   command->footer(R"(Examples:

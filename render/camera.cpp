@@ -67,4 +67,14 @@ Eigen::Matrix4d perspective_matrix(double vertical_fov_rad, double aspect, doubl
   return m;
 }
 
+Vec2 picture_place(const Camera& camera, const Vec3& place, int width, int height) {
+  const Eigen::Vector4d at = view_matrix(camera) * place.homogeneous();
+  const double px = 0.5 * height / (std::tan(0.5 * camera.vertical_fov_rad) * -at.z());  // per mm there
+  return {0.5 * width + px * at.x(), 0.5 * height - px * at.y()};
+}
+
+double px_per_mm_at_target(const Camera& camera, int height) {
+  return 0.5 * height / (std::tan(0.5 * camera.vertical_fov_rad) * (camera.target - camera.eye).norm());
+}
+
 }  // namespace swarf::render

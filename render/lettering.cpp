@@ -1,6 +1,7 @@
 #include "render/lettering.h"
 
 #include <cairo/cairo.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -201,6 +202,58 @@ void draw_colour_bar(Image& image, const ColourBar& bar) {
   if (!bar.apart.empty())
     draw_apart(canvas, bar,
                {x, std::floor(at.y + at.height + 0.8 * text_px), bar_width, std::floor(text_px)});
+  canvas.finish();
+}
+
+void draw_scale_bar(Image& image, double px_per_mm) {
+  SWARF_CHECK(px_per_mm > 0.0 && std::isfinite(px_per_mm), "a scale bar needs a scale");
+  constexpr double kWidthShare = 0.2;
+  const double most_mm = kWidthShare * image.width / px_per_mm;
+  const double decade = std::pow(10.0, std::floor(std::log10(most_mm)));
+  double length = decade;
+  for (const double step : {2.0, 5.0})
+    if (step * decade <= most_mm) length = step * decade;
+  Canvas canvas(image);
+  const double text_px = canvas.text_px(), pad = 0.8 * text_px, width = length * px_per_mm;
+  const std::string words = fmt::format("{:g} mm", length);
+  const double inner = std::max(width, canvas.text_width(words));
+  const double x = image.width - 2.0 * pad - inner, bottom = image.height - 2.0 * pad;
+  canvas.plate(x - pad, bottom - 2.1 * text_px, inner + 2.0 * pad, 2.1 * text_px + pad);
+  canvas.text(x + 0.5 * (inner - canvas.text_width(words)), bottom - 0.9 * text_px, words);
+  cairo_set_line_width(canvas.cr(), std::max(1.5, 0.12 * text_px));
+  const double from = x + 0.5 * (inner - width);
+  for (const double end : {from, from + width}) {
+    cairo_move_to(canvas.cr(), end, bottom - 0.5 * text_px);
+    cairo_line_to(canvas.cr(), end, bottom + 0.1 * text_px);
+  }
+  cairo_move_to(canvas.cr(), from, bottom - 0.2 * text_px);
+  cairo_line_to(canvas.cr(), from + width, bottom - 0.2 * text_px);
+  cairo_stroke(canvas.cr());
+  canvas.finish();
+}
+
+void draw_leaders(Image& image, const std::vector<Leader>& leaders) {
+  if (leaders.empty()) return;
+  Canvas canvas(image);
+  const double text_px = canvas.text_px(), pad = 0.5 * text_px, height = 1.9 * text_px;
+  std::vector<std::array<double, 3>> taken;  // left, top, width of the plates
+  for (const Leader& leader : leaders) {
+    const double width = canvas.text_width(leader.text) + 2.0 * pad;
+    const double x = std::clamp(leader.x + 3.0 * text_px, pad, std::max(pad, image.width - pad - width));
+    double y = std::clamp(leader.y - 4.0 * text_px, pad, std::max(pad, image.height - pad - height));
+    for (const auto& [left, top, other] : taken)
+      if (x < left + other && left < x + width && std::abs(y - top) < height) y = top + 1.2 * height;
+    taken.push_back({x, y, width});
+    cairo_set_source_rgb(canvas.cr(), 0.96, 0.97, 0.98);
+    cairo_set_line_width(canvas.cr(), std::max(1.0, 0.1 * text_px));
+    cairo_move_to(canvas.cr(), leader.x, leader.y);
+    cairo_line_to(canvas.cr(), std::clamp(leader.x, x, x + width), std::clamp(leader.y, y, y + height));
+    cairo_stroke(canvas.cr());
+    cairo_arc(canvas.cr(), leader.x, leader.y, 0.25 * text_px, 0.0, 2.0 * M_PI);
+    cairo_fill(canvas.cr());
+    canvas.plate(x, y, width, height);
+    canvas.text(x + pad, y + 1.25 * text_px, leader.text);
+  }
   canvas.finish();
 }
 

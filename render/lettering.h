@@ -38,4 +38,17 @@ struct ColourBar {
 
 void draw_colour_bar(Image& image, const ColourBar& bar);
 
+/// A bar at the lower right, of the longest of 1, 2, 5 times a power of ten mm that takes no more than a
+/// fifth of the picture's width, with its length: "20 mm". `px_per_mm` > 0: where it is to be read.
+void draw_scale_bar(Image& image, double px_per_mm);
+
+/// Words that lead to a place of the picture.
+struct Leader {
+  double x = 0.0, y = 0.0;  ///< px from the upper left corner
+  std::string text{};
+};
+/// Each on a plate of its own beside its place, within the picture and below one another where they would
+/// meet, with a line to the place and a dot on it.
+void draw_leaders(Image& image, const std::vector<Leader>& leaders);
+
 }  // namespace swarf::render

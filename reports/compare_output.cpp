@@ -13,13 +13,16 @@
 #include "render/image_io.h"
 #include "render/lettering.h"
 #include "render/ray/still.h"
-#include "reports/contact_pictures.h"
+#include "reports/finding_pictures.h"
 #include "reports/pending_folder.h"
 #include "reports/pictures.h"
 #include "reports/report_writer.h"
 
 namespace swarf::reports {
 namespace {
+
+constexpr int kMapSamples = 16;
+constexpr double kMapNoise = 3.0;  // of 255: StillOptions::noise
 
 /// What the colours do not say by themselves.
 std::vector<std::string> caption_of(const TriMesh& map, const std::string& title, double scale_um) {
@@ -42,7 +45,10 @@ void write_map(PendingFolder& folder, TriMesh map, const std::string& name, cons
                double scale_um) {
   render::colour_by_deviation(map, scale_um);
   mesh::save_mesh(folder.file(name + ".ply"), map);
-  render::Image image = deviation_picture(map, scale_um, "iso", {});
+  render::StillOptions options;  // as the stills of a run
+  options.samples_per_pixel = kMapSamples;
+  options.noise = kMapNoise;
+  render::Image image = deviation_picture(map, scale_um, "iso", options, true);
   render::draw_caption(image, caption_of(map, title, scale_um));
   render::save_png(image, folder.file(name + ".png"));
 }

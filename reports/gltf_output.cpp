@@ -81,22 +81,34 @@ TriMesh pin_mesh(double radius) {
   return mesh;
 }
 
-render::GltfNode pin_node(const ReviewPin& pin, const TriMesh& mesh) {
+render::GltfNode pin_node(const ReviewPin& pin, const Vec3& at, const TriMesh& mesh) {
   constexpr render::Material kRed{{0.55F, 0.01F, 0.02F}, 0.0F, 0.5F};
   constexpr render::Material kAmber{{0.70F, 0.33F, 0.0F}, 0.0F, 0.5F};
   Pose place = Pose::Identity();
-  place.translation() = pin.place_W;
+  place.translation() = at;
   render::GltfNode node{fmt::format("finding {}: {}", pin.number, pin.code),
                         &mesh,
                         pin.severity == Severity::kError ? kRed : kAmber,
                         -1,
                         {},
                         {place}};
-  node.extras = {{"role", "finding"},          {"finding", static_cast<double>(pin.number)},
-                 {"code", pin.code},           {"text", pin.text},
-                 {"line", double(pin.line)},   {"time_s", pin.t_s},
-                 {"amount_mm", pin.amount_mm}, {"x_mm", pin.place_W.x()},
-                 {"y_mm", pin.place_W.y()},    {"z_mm", pin.place_W.z()}};
+  node.extras = {{"role", "finding"},
+                 {"finding", static_cast<double>(pin.number)},
+                 {"code", pin.code},
+                 {"text", pin.text},
+                 {"line", double(pin.line)},
+                 {"time_s", pin.t_s},
+                 {"x_mm", at.x()},
+                 {"y_mm", at.y()},
+                 {"z_mm", at.z()}};
+  if (pin.amount_mm > 0.0) node.extras["amount_mm"] = pin.amount_mm;
+  return node;
+}
+
+render::GltfNode design_node(const TriMesh& mesh) {
+  constexpr render::Material kDesign{{0.10F, 0.30F, 0.62F}, 0.0F, 0.6F};
+  render::GltfNode node{"design", &mesh, kDesign, -1, {}, {}};
+  node.extras = {{"role", "design"}};
   return node;
 }
 
@@ -150,7 +162,10 @@ std::string part_glb(const FinishedRun& run, const ReviewModels& models, const G
   };
   add("machined surface", measured, {{1.0F, 1.0F, 1.0F}, 0.0F, 0.6F});
   add("part", rest, kStockMaterial);
-  for (const ReviewPin& one : models.pins) scene.nodes.push_back(pin_node(one, pin));
+  for (const ReviewPin& one : models.pins)
+    if (one.place_W) scene.nodes.push_back(pin_node(one, *one.place_W, pin));
+  if (options.design && !models.design.mesh.triangles.empty())
+    scene.nodes.push_back(design_node(models.design.mesh));
   scene.lines = fan_lines(run);
   scene.paths = {gltf_path(models.way)};
   scene.cameras = part_cameras(box);
@@ -169,6 +184,8 @@ std::string machine_glb(const FinishedRun& run, const ReviewModels& models, cons
   MachineNodes nodes(run, view, own ? *own : *run.keys);
   nodes.add_tools();
   nodes.add_stock(models.stages, models.machine_part);
+  if (options.design && !models.design.mesh.triangles.empty())
+    nodes.add_to_work(design_node(models.design.mesh));
   render::GltfScene scene;
   scene.clip = run.job.scene.name.empty() ? "program" : run.job.scene.name;
   scene.cameras = {{"camera machine", machine_camera(run, "machine", {kCameraAspect[0], kCameraAspect[1]})}};
@@ -178,6 +195,9 @@ std::string machine_glb(const FinishedRun& run, const ReviewModels& models, cons
       {"program_seconds_at_start", static_cast<double>(run.first_shown()) * run.cycles.period_s()}};
   nodes.state_errors(scene.extras);
   scene.nodes = nodes.take();
+  const TriMesh pin = pin_mesh(kPinShare * mesh::bounds(models.part.mesh).size().maxCoeff());
+  for (const ReviewPin& one : models.pins)
+    if (one.place_M) scene.nodes.push_back(pin_node(one, *one.place_M, pin));
   return render::glb_bytes(scene, options.encoding);
 }
 

@@ -11,6 +11,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
+std::optional<Vec3> place_of(const nlohmann::json& at) {
+  if (at.is_null()) return {};
+  return Vec3(at.at(0), at.at(1), at.at(2));
+}
+
 sim::Finding finding_of(const nlohmann::json& one) {
   sim::Finding finding;
   finding.code = one.at("code");
@@ -23,6 +28,9 @@ sim::Finding finding_of(const nlohmann::json& one) {
   finding.where = {one.at("file"), one.at("line")};
   finding.t_s = one.at("t_s");
   finding.block = one.at("block");
+  finding.check = one.at("check").is_null() ? "" : one.at("check");
+  finding.place_W = place_of(one.at("place_mm"));
+  finding.place_M = place_of(one.at("machine_place_mm"));
   return finding;
 }
 

@@ -99,10 +99,19 @@ void MachineNodes::add_tools() {
 
 render::GltfNode MachineNodes::stock_node(const std::string& name, const TriMesh& mesh,
                                           const render::Material& material) {
-  const int work = of_link_[static_cast<size_t>(run_.job.machine.work_link)];
-  render::GltfNode node{name, &mesh, material, work, {}, {view_.work_pose(kinematics::AxisValues::Zero())}};
+  render::GltfNode node{name, &mesh, material, -1, {}, {}};
   node.extras = {{"role", "stock"}};
+  return on_work(std::move(node));
+}
+
+render::GltfNode MachineNodes::on_work(render::GltfNode node) const {
+  node.parent = of_link_[static_cast<size_t>(run_.job.machine.work_link)];
+  node.poses = {view_.work_pose(kinematics::AxisValues::Zero())};
   return node;
+}
+
+void MachineNodes::add_to_work(render::GltfNode node) {
+  add(on_work(std::move(node)));
 }
 
 void MachineNodes::add_stock(const std::vector<StockStage>& stages, const TriMesh& part) {

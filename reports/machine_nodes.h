@@ -22,6 +22,8 @@ class MachineNodes {
   void add_tools();
   /// The stock at its stages, each hidden but from its cycle to the next one's, then the finished part.
   void add_stock(const std::vector<StockStage>& stages, const TriMesh& part);
+  /// Beside the stock, in the work frame.
+  void add_to_work(render::GltfNode node);
   std::vector<render::GltfNode> take() { return std::move(nodes_); }
   /// How far each axis strays from the cycles between its keys.
   void state_errors(render::GltfExtras& extras) const;
@@ -30,6 +32,7 @@ class MachineNodes {
   void add_link(const machine::Link& link);
   int add(render::GltfNode node);
   render::GltfNode stock_node(const std::string& name, const TriMesh& mesh, const render::Material& material);
+  render::GltfNode on_work(render::GltfNode node) const;
   int moving_node(const machine::Link& link, int parent);
 
   const FinishedRun& run_;

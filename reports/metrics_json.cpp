@@ -562,7 +562,9 @@ std::string findings_json(const sim::Result& result) {
   for (size_t number = 1; number <= groups.size(); ++number) {
     for (const size_t member : groups[number - 1].members) {
       const sim::Finding& finding = result.findings[member];
-      const auto& place = finding.place_W;
+      const auto place = [](const std::optional<Vec3>& at) {
+        return at ? Json{at->x(), at->y(), at->z()} : Json(nullptr);
+      };
       list.push_back({{"code", finding.code},
                       {"severity", severity_name(finding.severity)},
                       {"check", finding.check.empty() ? Json(nullptr) : Json(finding.check)},
@@ -573,7 +575,8 @@ std::string findings_json(const sim::Result& result) {
                       {"line_last", std::max(finding.where.line, finding.line_last)},
                       {"block", finding.block},
                       {"t_s", finding.t_s},
-                      {"place_mm", place ? Json{place->x(), place->y(), place->z()} : Json(nullptr)},
+                      {"place_mm", place(finding.place_W)},
+                      {"machine_place_mm", place(finding.place_M)},
                       {"number", number}});
     }
   }

@@ -163,9 +163,10 @@ std::string findings_island(const std::vector<ReportFinding>& findings, size_t s
     const ReportFinding& one = findings[i];
     const std::string time = std::isfinite(one.time_s) ? fmt::format("{:.6f}", one.time_s) : "null";
     const auto& [x, y, z] = one.place_mm;
-    const std::string place = one.has_place ? fmt::format("[{:.6f},{:.6f},{:.6f}]", x, y, z) : "null";
-    out +=
-        fmt::format(R"({}{{"t_s":{},"place":{},"line":{}}})", i > 0 ? "," : "", time, place, one.where.line);
+    const bool placed = one.has_place || one.in_machine;
+    const std::string place = placed ? fmt::format("[{:.6f},{:.6f},{:.6f}]", x, y, z) : "null";
+    out += fmt::format(R"({}{{"t_s":{},"place":{},"in_machine":{},"line":{}}})", i > 0 ? "," : "", time,
+                       place, one.in_machine, one.where.line);
   }
   return out + "]</script>";
 }
@@ -329,6 +330,7 @@ std::string findings_section(const ReportData& data) {
     out += fmt::format(R"(<p class="note">The first {} of {}; findings.json has them all.</p>)", shown,
                        findings.size());
   }
+  if (!data.findings_note.empty()) out += element("p", "note", data.findings_note);
   return section("findings", fmt::format("Findings ({})", findings.size()), out);
 }
 
@@ -342,6 +344,7 @@ std::string viewer_section(const Viewer3d& viewer) {
   if (!viewer.program.empty())
     out += R"(<script type="application/json" id="program-data">)" + viewer.program + "</script>";
   out += viewer.part_glb.empty() ? "" : colour_bar(viewer.colour_bar);
+  if (!viewer.hanging.empty()) out += element("p", "note hanging", viewer.hanging);
   out += embedded_glb("part-glb", viewer.part_glb) + embedded_glb("machine-glb", viewer.machine_glb);
   return section("view", "3D view", out);
 }

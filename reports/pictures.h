@@ -36,14 +36,19 @@ TriMesh stock_at(const FinishedRun& run, const motion::Cycle& cycle);
 enum class StillKind { kMachine, kPart, kDeviation, kFan };
 const std::string& still_name(StillKind kind);
 StillKind still_kind(const std::string& name);  ///< "machine", "part", "deviation", "fan"; throws InputError
+struct StillLook {
+  bool transparent = false;  ///< no backdrop and no floor
+  bool labels = false;       ///< scale bar; of the deviation, its deepest and highest place with their values
+};
 void make_still(const FinishedRun& run, const TriMesh& part, StillKind kind, const std::string& camera,
-                const std::string& path, bool transparent = false);
+                const std::string& path, const StillLook& look = {});
 
 /// The colour bar of the 3D view; its ends are those of the scale.
 ColourBar deviation_colour_bar(const render::DeviationScale& scale);
 
-/// A mesh whose colours show deviation, with its colour bar.
+/// A mesh whose colours show deviation, with its colour bar; `labels` as in StillLook. The scale bar is right
+/// at the middle of what is shown.
 render::Image deviation_picture(const TriMesh& coloured, const render::DeviationScale& scale,
-                                const std::string& camera, render::StillOptions options);
+                                const std::string& camera, render::StillOptions options, bool labels = false);
 
 }  // namespace swarf::reports

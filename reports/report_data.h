@@ -64,8 +64,9 @@ struct ReportFinding {
   int first_line = 0, last_line = 0;   ///< of them all; 0: not tied to lines
   std::vector<ProgramLine> excerpt{};  ///< the block and its neighbours
   std::string picture_png{};           ///< path; empty: none
-  std::array<double, 3> place_mm{};    ///< on the part, W
-  bool has_place = false;
+  std::array<double, 3> place_mm{};    ///< of the worst one, if one of the next two says so
+  bool has_place = false;              ///< on the part, W
+  bool in_machine = false;             ///< in the machine at time_s, M
 };
 
 struct Column {
@@ -157,6 +158,7 @@ struct Viewer3d {
   ColourBar colour_bar;
   double program_seconds_per_animation_second = 1.0;
   std::string program{};  ///< JSON of page_program.h; empty: none
+  std::string hanging{};  ///< what the colours do not show; empty: nothing
 };
 
 /// A section of its own on one subject: figures above tables.
@@ -194,7 +196,8 @@ struct ReportData {
   Verdict verdict;
   std::vector<KeyNumber> key_numbers;
   std::vector<ReportFinding> findings;
-  std::string hero_png;  ///< path of the still beside the key numbers; empty: none
+  std::string findings_note{};  ///< below them; empty: none
+  std::string hero_png;         ///< path of the still beside the key numbers; empty: none
   std::string hero_caption;
   Viewer3d viewer;
   std::string movie_mp4;  ///< path; empty: none

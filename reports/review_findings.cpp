@@ -28,6 +28,10 @@ ReportFinding report_finding(std::span<const sim::Finding> findings, const sim::
     out.has_place = true;
     for (size_t k = 0; k < 3; ++k) out.place_mm[k] = (*worst.place_W)[static_cast<Eigen::Index>(k)];
   }
+  if (worst.place_M) {
+    out.in_machine = true;
+    for (size_t k = 0; k < 3; ++k) out.place_mm[k] = (*worst.place_M)[static_cast<Eigen::Index>(k)];
+  }
   return out;
 }
 
@@ -62,14 +66,30 @@ std::vector<ReportFinding> report_findings(const sim::Result& result) {
   return out;
 }
 
+namespace {
+
+void add_pin(size_t number, const sim::Finding& worst, std::vector<ReviewPin>& pins) {
+  if ((!worst.place_W && !worst.place_M) || pins.size() >= kPinsMost) return;
+  pins.push_back({number, worst.code, worst.text, worst.severity, worst.place_W, worst.place_M,
+                  worst.where.line, worst.t_s, worst.amount_mm});
+}
+
+}  // namespace
+
 std::vector<ReviewPin> review_pins(const sim::Result& result) {
   std::vector<ReviewPin> pins;
   const std::vector<sim::FindingGroup> groups = sim::group_findings(result.findings);
-  for (size_t i = 0; i < groups.size(); ++i) {
-    const sim::Finding& worst = result.findings[groups[i].members.front()];
-    if (worst.place_W)
-      pins.push_back({i + 1, worst.code, worst.text, worst.severity, *worst.place_W, worst.where.line,
-                      worst.t_s, worst.amount_mm});
+  for (size_t i = 0; i < groups.size(); ++i) add_pin(i + 1, result.findings[groups[i].members.front()], pins);
+  return pins;
+}
+
+std::vector<ReviewPin> review_pins(const KeptFindings& kept) {
+  std::vector<ReviewPin> pins;
+  int last = 0;
+  for (size_t i = 0; i < kept.list.size(); ++i) {
+    // The worst of a fault stands first in the file.
+    if (kept.numbers[i] != last) add_pin(static_cast<size_t>(kept.numbers[i]), kept.list[i], pins);
+    last = kept.numbers[i];
   }
   return pins;
 }

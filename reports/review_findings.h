@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "reports/kept_findings.h"
 #include "reports/report_data.h"
 #include "reports/review_models.h"
 #include "sim/run/result.h"
@@ -12,8 +13,10 @@ namespace swarf::reports {
 /// One for each group of group_findings(), in its order: the number in the page is the index + 1.
 std::vector<ReportFinding> report_findings(const sim::Result& result);
 
-/// Those that have a place on the part.
+/// Those that have a place on the part or in the machine, kPinsMost at most.
 std::vector<ReviewPin> review_pins(const sim::Result& result);
+/// The same of a run that is read back.
+std::vector<ReviewPin> review_pins(const KeptFindings& kept);
 
 /// The deepest gouge, the highest excess and the highest ridge, as the measures have refined them.
 std::vector<WorstPlace> worst_places(const sim::Result& result);

@@ -1,6 +1,7 @@
 // What a person turns and measures: the part and the machine as glTF, for files and for the page.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -31,10 +32,13 @@ struct ReviewPin {
   size_t number = 0;  ///< in the page and in findings.json, from 1
   std::string code{}, text{};
   Severity severity = Severity::kError;
-  Vec3 place_W = Vec3::Zero();
+  std::optional<Vec3> place_W{};  ///< on the part
+  std::optional<Vec3> place_M{};  ///< in the machine at t_s, where parts of it meet
   int line = 0;
-  double t_s = 0.0, amount_mm = 0.0;
+  double t_s = 0.0, amount_mm = 0.0;  ///< amount: 0 where it is not known
 };
+/// No more are set: of a program without end of faults the page shows as many.
+inline constexpr size_t kPinsMost = 200;
 
 /// Made once, written in several encodings.
 struct ReviewModels {
@@ -43,6 +47,7 @@ struct ReviewModels {
   Way way;
   std::vector<ReviewPin> pins;
   TriMesh machine_part{};  ///< the part for the machine's file
+  DisplayMesh design{};    ///< for the page; may be empty
 };
 ReviewModels review_models(const FinishedRun& run, const TriMesh& closed, double max_error_mm,
                            std::vector<ReviewPin> pins, std::span<const WorstPlace> worst);
@@ -50,14 +55,16 @@ ReviewModels review_models(const FinishedRun& run, const TriMesh& closed, double
 struct GltfOptions {
   render::GltfEncoding encoding = render::GltfEncoding::kFloat;
   bool colours = true;  ///< false: the reader colours deviations itself
+  bool design = false;  ///< beside the part, ReviewModels::design: for a reader that hides it at first
 };
 
-/// The finished part with deviation as colour and attribute, findings as pins, the program's way and the
-/// tool-axis fan as lines, cameras. Of the numbers in asset.extras, decimation_error_um is how far the
+/// The finished part with deviation as colour and attribute, findings on it as pins, the program's way and
+/// the tool-axis fan as lines, cameras. Of the numbers in asset.extras, decimation_error_um is how far the
 /// level set's mesh is from the part's, path_error_mm how far the program's way from its line.
 std::string part_glb(const FinishedRun& run, const ReviewModels& models, const GltfOptions& options);
 
-/// Links, tools and the stock in its stages with the axes animated over what is shown of the program. Between
+/// Links, tools and the stock in its stages with the axes animated over what is shown of the program, and a
+/// pin in the machine frame where parts of the machine meet at a pin's time. Between
 /// its keys an axis moves in a straight line, which no cycle is farther from than asset.extras says for that
 /// axis (key_error_max_X_mm, ...). Every node that an axis moves is named after it, and its extras say
 /// about what and how far it turns; the extras "role" of the others are machine, fixture, tool or stock.

@@ -1,5 +1,4 @@
 #include "reports/run_output.h"
-#include "reports/contact_pictures.h"
 
 #include <fmt/format.h>
 
@@ -13,6 +12,8 @@
 #include "base/file.h"
 #include "mesh/mesh_io.h"
 #include "reports/avoidance_output.h"
+#include "reports/design_view.h"
+#include "reports/finding_pictures.h"
 #include "reports/html.h"
 #include "reports/kept_inputs.h"
 #include "reports/kept_motion.h"
@@ -78,7 +79,7 @@ void require_logo(const sim::ReportSettings& report) {
 }
 
 void write_pictures(const PendingFolder& folder, const FinishedRun& run, const TriMesh& part,
-                    const std::vector<ContactPicture>& contacts, Progress& progress, RunFiles& files,
+                    const sim::Result& result, Progress& progress, RunFiles& files,
                     RenderStatistics& statistics) {
   struct Picture {
     StillKind kind;
@@ -104,19 +105,16 @@ void write_pictures(const PendingFolder& folder, const FinishedRun& run, const T
   std::erase_if(pictures, [&](const Picture& picture) {
     return std::find(kinds.begin(), kinds.end(), still_name(picture.kind)) == kinds.end();
   });
-  progress.begin("stills", static_cast<double>(pictures.size() + contacts.size()), "pictures");
+  progress.begin("stills", static_cast<double>(pictures.size()), "pictures");
   for (const Picture& picture : pictures) {
     if (progress.stop_requested()) break;
     make_still(run, part, picture.kind, picture.camera, folder.file(picture.file));
     files.stills.push_back({folder.file(picture.file), picture.caption});
     progress.advance(static_cast<double>(files.stills.size()));
   }
-  for (size_t i = 0; i < contacts.size() && !progress.stop_requested(); ++i) {
-    const std::string file = folder.file(fmt::format("still_contact_{}.png", i + 1));
-    make_contact_picture(run, contacts[i], file);
-    files.stills.push_back({file, contacts[i].caption});
-    progress.advance(static_cast<double>(files.stills.size()));
-  }
+  files.finding_pngs = make_finding_pictures(
+      run, part, result,
+      [&](size_t number) { return folder.file(fmt::format("still_finding_{}.png", number)); }, progress);
   progress.end();
   if (run.job.scene.movie.seconds <= 0.0 || progress.stop_requested()) return;
   statistics = make_movie(run, folder.file("movie.mp4"), "machine", progress);
@@ -170,8 +168,9 @@ void write_glb(const PendingFolder& folder, const FinishedRun& run, const TriMes
                const sim::Result& result, Progress& progress, RunFiles& files) {
   using render::GltfEncoding;
   progress.begin("glTF", 2, "files");
-  const ReviewModels models =
+  ReviewModels models =
       review_models(run, closed, part_error_mm(run.job), review_pins(result), worst_places(result));
+  models.design = shown_design(run.job);
   progress.advance(1);
   const auto write = [&](const char* name, const std::string& bytes) {
     replace_file(folder.file(name), bytes, {"cannot-write-file", "the glTF file cannot be written"});
@@ -179,7 +178,7 @@ void write_glb(const PendingFolder& folder, const FinishedRun& run, const TriMes
   write("part.glb", part_glb(run, models, {}));
   write("machine.glb", machine_glb(run, models, {}));
   // The page has its own reader: a quarter of the bytes, and colours by the limits that its reader chooses.
-  const GltfOptions page{GltfEncoding::kMeshopt, false};
+  const GltfOptions page{GltfEncoding::kMeshopt, false, true};
   files.part_glb = part_glb(run, models, page);
   files.machine_glb = machine_glb(run, models, page);
   files.part_error_mm = models.part.error_mm;
@@ -239,8 +238,7 @@ std::vector<Diagnostic> write_run(PendingFolder& folder, const sim::Job& job, si
   if (options.report) attempts.run([&] { write_glb(folder, run, closed, result, progress, files); });
   attempts.run([&] {
     if (options.render)
-      write_pictures(folder, run, shown_part(run, closed), contact_pictures(job, result), progress, files,
-                     statistics);
+      write_pictures(folder, run, shown_part(run, closed), result, progress, files, statistics);
   });
   result.stopped = progress.stop_requested();
   if (options.report) {

@@ -395,6 +395,20 @@ JobHead job_head_of(const sim::ReportSettings& report) {
 
 }  // namespace
 
+namespace {
+
+/// The view colours what a ray meets first from the design on; what hangs above a gap is another surface.
+std::string hanging_note(const measure::SurfaceMetrics& surface) {
+  if (surface.overhung_samples == 0) return "";
+  return fmt::format(
+      "Above {} of {} measuring rays there is material beyond a gap, as over an undercut. The highest "
+      "material of all stands {:.3f} µm above the design; the colours and Highest are of the surface "
+      "below the gaps.",
+      surface.overhung_samples, surface.samples, surface.excess_max_um);
+}
+
+}  // namespace
+
 ReportData report_data(const sim::Job& job, const sim::Result& result, const RunFiles& files, bool rendered) {
   ReportData data;
   data.title = job.scene.title;
@@ -405,6 +419,12 @@ ReportData report_data(const sim::Job& job, const sim::Result& result, const Run
   data.verdict = verdict_of(result.checks);
   data.key_numbers = brings_blocks(result) ? block_key_numbers(result) : key_numbers(result);
   data.findings = report_findings(result);
+  for (size_t i = 0; i < std::min(files.finding_pngs.size(), data.findings.size()); ++i)
+    data.findings[i].picture_png = files.finding_pngs[i];
+  if (!files.finding_pngs.empty() && data.findings.size() > files.finding_pngs.size())
+    data.findings_note = fmt::format(
+        "Pictures of the first {} alone; swarf render DIR --finding N --still N.png draws any other.",
+        files.finding_pngs.size());
   data.assumptions = assumption_tables(job);
   if (!files.stills.empty()) {
     data.hero_png = files.stills.front().png_path;
@@ -417,6 +437,7 @@ ReportData report_data(const sim::Job& job, const sim::Result& result, const Run
   data.viewer.colour_bar.low_value = -deviation_scale(job).below_um;
   data.viewer.colour_bar.high_value = deviation_scale(job).above_um;
   data.viewer.program = page_program(job, result, files);
+  data.viewer.hanging = hanging_note(result.main.surface);
   data.movie_mp4 = files.movie;
   const std::vector<sim::MovieShot>& shots = job.scene.movie.shots;
   data.movie_even = shots.size() == 1 && shots.front().speed == sim::MovieSpeed::kTime &&

@@ -11,15 +11,18 @@
 #include "render/figures/colour.h"
 #include "render/image_io.h"
 #include "render/lettering.h"
+#include "render/ray/ray_scene.h"
 #include "render/ray/still.h"
 #include "reports/part_view.h"
 #include "reports/pictures.h"
+#include "reports/review_models.h"
 
 namespace swarf::reports {
 namespace {
 
 constexpr double kFieldOfView = 0.45;  // rad, vertical: a long lens, little distortion
 constexpr int kColourStops = 33;
+constexpr double kBeforeSurface = 1e-3;  // of the part's diagonal: a place is seen from so far before it
 constexpr double kStillNoise = 3.0;  // of 255: standard error of a pixel that is done before its last sample
 
 // Bare cut metal: the strip lights break at each ridge, which is what makes cusps of a few micrometres
@@ -138,8 +141,39 @@ ColourBar deviation_colour_bar(const render::DeviationScale& scale) {
   return bar;
 }
 
+namespace {
+
+/// The deepest and the highest place of what is seen, with their values.
+std::vector<render::Leader> extreme_leaders(const TriMesh& coloured, const render::DrawList& list, int width,
+                                            int height) {
+  const render::RayScene scene(list, 0.0);
+  const Vec3 size = mesh::bounds(coloured).size();
+  std::vector<render::Leader> leaders;
+  for (const double sign : {-1.0, 1.0}) {
+    size_t most = coloured.positions.size();
+    for (size_t i = 0; i < coloured.deviation_um.size(); ++i) {
+      const double um = sign * coloured.deviation_um[i];
+      if (!std::isnan(um) && (most == coloured.positions.size() || um > sign * coloured.deviation_um[most]))
+        most = i;
+    }
+    if (most == coloured.positions.size()) return {};
+    const auto& p = coloured.positions[most];
+    const Vec3 place(p[0], p[1], p[2]), to_eye = (list.camera.eye - place).normalized();
+    // From a little before the surface on, which would hide itself.
+    const Vec3 from = place + kBeforeSurface * size.norm() * to_eye;
+    const bool hidden = scene.occluded(from.cast<float>(), to_eye.cast<float>());
+    const Vec2 at = render::picture_place(list.camera, place, width, height);
+    leaders.push_back({at.x(), at.y(),
+                       fmt::format("{} {:+.2f} µm{}", sign < 0.0 ? "deepest" : "highest",
+                                   coloured.deviation_um[most], hidden ? ", behind" : "")});
+  }
+  return leaders;
+}
+
+}  // namespace
+
 render::Image deviation_picture(const TriMesh& coloured, const render::DeviationScale& scale,
-                                const std::string& camera, render::StillOptions options) {
+                                const std::string& camera, render::StillOptions options, bool labels) {
   render::DrawList list;
   const double ratio = static_cast<double>(options.width) / options.height;
   list.camera = render::look_at_box(mesh::bounds(coloured), -camera_direction(camera), kFieldOfView, ratio);
@@ -147,18 +181,23 @@ render::Image deviation_picture(const TriMesh& coloured, const render::Deviation
   options.strip_strength = 0.0;  // reflections would tint the colours
   render::Image image = render::render_still(list, options);
   render::draw_colour_bar(image, lettered_bar(scale));
+  if (labels) {
+    render::draw_leaders(image, extreme_leaders(coloured, list, options.width, options.height));
+    render::draw_scale_bar(image, render::px_per_mm_at_target(list.camera, options.height));
+  }
   return image;
 }
 
 void make_still(const FinishedRun& run, const TriMesh& part, StillKind kind, const std::string& camera,
-                const std::string& path, bool transparent) {
+                const std::string& path, const StillLook& look) {
   render::StillOptions options = still_options(run.job);
-  options.transparent = transparent;
+  options.transparent = look.transparent;
   if (kind == StillKind::kDeviation) {
     TriMesh coloured = part;
+    if (look.labels) add_worst_places(run, {}, coloured);  // the values of the rays themselves
     const render::DeviationScale scale = deviation_scale(run.job);
     render::colour_by_deviation(coloured, scale);
-    render::save_png(deviation_picture(coloured, scale, camera, options), path);
+    render::save_png(deviation_picture(coloured, scale, camera, options, look.labels), path);
     return;
   }
   const MachineView view(run.job);
@@ -178,7 +217,9 @@ void make_still(const FinishedRun& run, const TriMesh& part, StillKind kind, con
     list.lines = fan_lines(run);
     options.strip_strength = 0.0;
   }
-  render::save_png(render::render_still(list, options), path);
+  render::Image image = render::render_still(list, options);
+  if (look.labels) render::draw_scale_bar(image, render::px_per_mm_at_target(list.camera, options.height));
+  render::save_png(image, path);
 }
 
 }  // namespace swarf::reports

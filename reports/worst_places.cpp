@@ -11,6 +11,9 @@
 namespace swarf::reports {
 namespace {
 
+/// The level set's mesh is nearer to the true surface; farther away is another surface.
+constexpr double kNearVoxels = 2.0;
+
 /// The lowest (sign -1) or the highest (+1) of the rays that a cut has reached.
 std::optional<WorstPlace> extreme_of(const FinishedRun& run, double sign) {
   std::optional<WorstPlace> found;
@@ -82,6 +85,14 @@ Foot foot_of(const TriMesh& mesh, const Vec3& place) {
   return best;
 }
 
+/// What the mesh says there already, mm.
+double deviation_at(const TriMesh& mesh, const Foot& foot) {
+  double um = 0.0;
+  for (size_t k = 0; k < 3; ++k)
+    um += foot.weights[static_cast<int>(k)] * mesh.deviation_um[mesh.triangles[foot.triangle][k]];
+  return um * kMicrometre;
+}
+
 /// The triangle becomes three around a new vertex in it.
 void divide(TriMesh& mesh, const Foot& foot, double height_mm) {
   const std::array<uint32_t, 3> corners = mesh.triangles[foot.triangle];
@@ -110,7 +121,10 @@ void add_worst_places(const FinishedRun& run, std::span<const WorstPlace> places
     if (const auto extreme = extreme_of(run, sign)) all.push_back(*extreme);
   for (const WorstPlace& one : all) {
     const Foot foot = foot_of(mesh, one.place_W);
-    if (foot.distance_mm <= 2.0 * run.stock.voxel_mm()) divide(mesh, foot, one.deviation_mm);
+    const double near = kNearVoxels * run.stock.voxel_mm();
+    // Material that hangs above a gap is known to the rays by its foot on the design, below another surface.
+    if (foot.distance_mm <= near && std::abs(one.deviation_mm - deviation_at(mesh, foot)) <= near)
+      divide(mesh, foot, one.deviation_mm);
   }
 }
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -6,7 +7,7 @@
 #include "base/diagnostics.h"
 #include "base/units.h"
 #include "kinematics/chain.h"
-#include "kinematics/lanes.h"
+#include "kinematics/lane_pair.h"
 #include "kinematics/machine_model.h"
 #include "kinematics/model_check.h"
 
@@ -40,6 +41,12 @@ InverseKinematics::InverseKinematics(const MachineModel& machine) : machine_(mac
   }
   diagnostics.throw_if_errors();
   rotary_ = rotary_order(machine);
+  for (size_t slot = 0; slot < rotary_.size(); ++slot) {
+    const Axis& axis = machine.axes[rotary_[slot]];
+    rotary_min_[slot] = axis.min;
+    rotary_max_[slot] = axis.max;
+    rotary_sense_[slot] = sense(axis);
+  }
   for (int i = 0; i < static_cast<int>(machine.axes.size()); ++i) {
     const Axis& axis = machine.axes[i];
     const bool linear = axis.kind == AxisKind::kLinear;
@@ -104,48 +111,89 @@ int InverseKinematics::turns(const Vec3& axis_W, TurnPair out[2]) const {
   return 1;
 }
 
-InverseKinematics::Target InverseKinematics::target(const Vec3& tip_W, const Vec3& axis_W) const {
-  return {machine_.X_MW * tip_W, machine_.X_MW.linear() * axis_W};
+struct InverseKinematics::Candidates {
+  Pair value[2] = {};  ///< of the outer and the inner axis, unwound; 0 for those that the machine lacks
+  Pair travel = {};    ///< sum of the distances to the hint
+  bool outer_free[2] = {false, false};
+
+  /// Takes one of another's rotary solutions.
+  void take(int lane, const Candidates& from, int which) {
+    for (int slot = 0; slot < 2; ++slot) value[slot][lane] = from.value[slot][which];
+    outer_free[lane] = from.outer_free[which];
+  }
+};
+
+struct InverseKinematics::Targets {
+  Vec3 tip_M[2], axis_M[2];
+};
+
+struct InverseKinematics::PairSines {
+  Pair sine[kMaxAxes], cosine[kMaxAxes];
+};
+
+void InverseKinematics::set_target(const Vec3& tip_W, const Vec3& axis_W, int lane, Targets& targets) const {
+  targets.tip_M[lane] = machine_.X_MW * tip_W;
+  targets.axis_M[lane] = machine_.X_MW.linear() * axis_W;
 }
 
-double InverseKinematics::unwound(int slot, double turn, const AxisValues& hint) const {
+namespace {
+
+/// The values by whole turns nearest to the hint, or one turn from there where only that is inside the
+/// travel.
+Pair unwound(const Pair& turn, const Pair& hint, const Pair& least, const Pair& most) {
   // Adding and taking away 1.5 * 2^52 leaves the nearest whole number, without a call and without a branch.
   constexpr double kWhole = 6755399441055744.0;
-  const Axis& limits = machine_.axes[rotary_[slot]];
-  double value = sense(limits) * turn;
-  const double turns_away = (hint[rotary_[slot]] - value) * (1.0 / kTurn);
-  value += kTurn * ((turns_away + kWhole) - kWhole);
-  if (value >= limits.min && value <= limits.max) return value;
-  const double other = value < limits.min ? value + kTurn : value - kTurn;
-  return other >= limits.min && other <= limits.max ? other : value;
+  const Pair turns_away = (hint - turn) * (1.0 / kTurn);
+  const Pair value = turn + kTurn * ((turns_away + kWhole) - kWhole);
+  const Pair other = value < least ? value + kTurn : value - kTurn;
+  const Pair inside = (other >= least) & (other <= most) ? other : value;
+  return (value >= least) & (value <= most) ? value : inside;
 }
 
-int InverseKinematics::candidates(const Vec3& axis_W, const AxisValues& hint, Candidate out[2]) const {
+Pair distance(const Pair& a, const Pair& b) {
+  const Pair change = a - b;
+  return change < 0.0 ? -change : change;
+}
+
+}  // namespace
+
+/// Where there is one solution, both places hold it.
+int InverseKinematics::candidates(const Vec3& axis_W, const AxisValues& hint, Candidates& out) const {
   TurnPair found[2];
   const int count = turns(axis_W, found);
-  const size_t rotaries = rotary_.size();
-  for (int i = 0; i < count; ++i) {
-    Candidate& one = out[i];
-    one = {{0.0, 0.0}, 0.0, found[i].outer_free};
-    for (size_t slot = 0; slot < rotaries; ++slot) {
-      const double before = hint[rotary_[slot]];
-      const double turn = slot == 0 ? found[i].outer : found[i].inner;
-      // The free rotary stays where it is: its value does not matter to the tool axis, but it moves the tip.
-      one.value[slot] = slot == 0 && one.outer_free ? before : unwound(slot, turn, hint);
-      one.travel += std::abs(one.value[slot] - before);
-    }
+  if (count == 0) return 0;
+  if (count == 1) found[1] = found[0];
+  out.outer_free[0] = found[0].outer_free;
+  out.outer_free[1] = found[1].outer_free;
+  for (size_t slot = 0; slot < rotary_.size(); ++slot) {
+    const Pair before = both(hint[rotary_[slot]]);
+    const Pair turn = slot == 0 ? Pair{found[0].outer, found[1].outer} : Pair{found[0].inner, found[1].inner};
+    out.value[slot] =
+        unwound(rotary_sense_[slot] * turn, before, both(rotary_min_[slot]), both(rotary_max_[slot]));
+    // The free rotary stays where it is: its value does not matter to the tool axis, but it moves the tip.
+    if (slot == 0 && found[0].outer_free) out.value[slot] = before;
+    out.travel += distance(out.value[slot], before);
   }
   return count;
 }
 
 namespace {
 
+inline const Vec3& same_for(const Vec3& origin, const Vec3&) {
+  return origin;
+}
+inline Points same_for(const Vec3& origin, const Points&) {
+  return both(origin);
+}
+
 /// Carries the work or tool point to the base; the linear axes are what is looked for.
-inline void walk_to_base(const std::vector<LinkStep>& steps, const Sines& of, Vec3& point) {
+template <class Of, class Point>
+inline void walk_to_base(const std::vector<LinkStep>& steps, const Of& of, Point& point) {
   for (const LinkStep& step : steps) {
     if (!step.rotary) continue;
-    point = step.origin + rotate(step.along, step.direction, step.sense * of.sine[step.axis],
-                                 of.cosine[step.axis], point - step.origin);
+    const Point origin = same_for(step.origin, point);
+    point = origin + rotate(step.along, step.direction, step.sense * of.sine[step.axis], of.cosine[step.axis],
+                            Point(point - origin));
   }
 }
 
@@ -168,14 +216,36 @@ void turn_columns(const std::vector<LinkStep>& steps, const int (&column)[kMaxAx
 
 }  // namespace
 
-bool InverseKinematics::locate(const Vec3& tip_M, const Sines& of, Vec3& linear_values) const {
+void InverseKinematics::locate(const Targets& targets, const PairSines& of, Points& linear_values) const {
+  if (!columns_constant_) {
+    Vec3 values[2];
+    for (int lane = 0; lane < 2; ++lane) {
+      Sines one;
+      for (const int i : rotary_) {
+        one.sine[i] = of.sine[i][lane];
+        one.cosine[i] = of.cosine[i][lane];
+      }
+      if (!locate_one(targets.tip_M[lane], one, values[lane]))
+        values[lane].setConstant(std::numeric_limits<double>::quiet_NaN());
+    }
+    linear_values = side_by_side(values[0], values[1]);
+    return;
+  }
+  Points work = side_by_side(targets.tip_M[0], targets.tip_M[1]), tool = both(machine_.tip_M);
+  walk_to_base(table_steps_, of, work);
+  walk_to_base(head_steps_, of, tool);
+  const Points gap = work - tool;
+  const auto row = [&](int i) {
+    return linear_inverse_(i, 0) * gap.x + linear_inverse_(i, 1) * gap.y + linear_inverse_(i, 2) * gap.z;
+  };
+  linear_values = {row(0), row(1), row(2)};
+}
+
+/// Where linear axes ride on rotary ones.
+bool InverseKinematics::locate_one(const Vec3& tip_M, const Sines& of, Vec3& linear_values) const {
   Vec3 work = tip_M, tool = machine_.tip_M;
   walk_to_base(table_steps_, of, work);
   walk_to_base(head_steps_, of, tool);
-  if (columns_constant_) {
-    linear_values = linear_inverse_ * (work - tool);
-    return true;
-  }
   Mat3 columns;
   turn_columns(table_steps_, column_, of, columns);
   turn_columns(head_steps_, column_, of, columns);
@@ -184,91 +254,146 @@ bool InverseKinematics::locate(const Vec3& tip_M, const Sines& of, Vec3& linear_
   return true;
 }
 
+/// The first axis outside, or -1.
 int InverseKinematics::first_out_of_travel(const AxisValues& q) const {
-  for (int i = 0; i < kMaxAxes; ++i) {
-    if (!(q[i] >= travel_min_[i] && q[i] <= travel_max_[i])) return i;
+  unsigned outside = 0;
+  for (int i = 0; i < kMaxAxes; ++i)
+    outside |= static_cast<unsigned>(!(q[i] >= travel_min_[i] && q[i] <= travel_max_[i])) << i;
+  return outside == 0 ? -1 : std::countr_zero(outside);
+}
+
+/// forward() without its last step, the turn into W, which changes no distance.
+void InverseKinematics::prove(const Targets& targets, const PairSines& of, const Points& linear_values,
+                              bool (&proven)[2]) const {
+  const Pair linear[3] = {linear_values.x, linear_values.y, linear_values.z};
+  Points tip = both(machine_.tip_M), axis = both(machine_.tool_axis_M);
+  for (const LinkStep& step : tool_to_work_) {
+    if (!step.rotary) {
+      tip = tip + (step.sense * linear[column_[step.axis]]) * both(step.direction);
+      continue;
+    }
+    const Pair sine = step.sense * of.sine[step.axis], cosine = of.cosine[step.axis];
+    const Points origin = both(step.origin);
+    tip = origin + rotate(step.along, step.direction, sine, cosine, tip - origin);
+    axis = rotate(step.along, step.direction, sine, cosine, axis);
   }
-  return -1;
+  const Pair tip_error = squared_norm(tip - side_by_side(targets.tip_M[0], targets.tip_M[1]));
+  const Pair axis_error = squared_norm(axis - side_by_side(targets.axis_M[0], targets.axis_M[1]));
+  for (int lane = 0; lane < 2; ++lane)
+    proven[lane] = tip_error[lane] <= kTipTolerance * kTipTolerance &&
+                   axis_error[lane] <= kAxisTolerance * kAxisTolerance;
 }
 
-// Fills its result in place: copying it would wait for the single values to reach the cache.
-void InverseKinematics::complete(const Target& target, const Candidate& candidate, const Sines& of,
-                                 Branch& branch) const {
-  for (size_t slot = 0; slot < rotary_.size(); ++slot) branch.q[rotary_[slot]] = candidate.value[slot];
-  Vec3 linear_values;
-  if (!locate(target.tip_M, of, linear_values)) return;
-  for (int i = 0; i < 3; ++i) branch.q[linear_[i]] = linear_values[i];
-
-  // forward() without its last step, the turn into W, which changes no distance.
-  Vec3 back_tip_M = machine_.tip_M, back_axis_M = machine_.tool_axis_M;
-  for (const LinkStep& step : tool_to_work_) carry(step, branch.q, of, back_tip_M, back_axis_M);
-  const bool proven = (back_tip_M - target.tip_M).squaredNorm() <= kTipTolerance * kTipTolerance &&
-                      (back_axis_M - target.axis_M).squaredNorm() <= kAxisTolerance * kAxisTolerance;
-  if (!proven) return;
-  branch.out_of_travel_axis = first_out_of_travel(branch.q);
-  branch.outcome = branch.out_of_travel_axis >= 0 ? InverseOutcome::kOutOfTravel
-                   : candidate.outer_free         ? InverseOutcome::kSingular
-                                                  : InverseOutcome::kOk;
-}
-
-namespace {
-
-void set(Sines& of, const std::vector<int>& rotary, const double* sine, const double* cosine) {
-  for (size_t slot = 0; slot < rotary.size(); ++slot) {
-    of.sine[rotary[slot]] = sine[slot];
-    of.cosine[rotary[slot]] = cosine[slot];
-  }
-}
-
-}  // namespace
-
-Sines InverseKinematics::sines_of(const Candidate& one) const {
-  double sine[2], cosine[2];
-  lane_sines<2>(one.value, sine, cosine);
-  Sines of;
-  set(of, rotary_, sine, cosine);
-  return of;
-}
-
-void InverseKinematics::sines_of(const Candidate (&both)[2], Sines (&of)[2]) const {
-  const double angle[4] = {both[0].value[0], both[0].value[1], both[1].value[0], both[1].value[1]};
+// Fills its results in place: copying them would wait for the single values to reach the cache.
+void InverseKinematics::complete(const Targets& targets, const Candidates& candidates,
+                                 Branch (&branch)[2]) const {
+  const double angle[4] = {candidates.value[0][0], candidates.value[0][1], candidates.value[1][0],
+                           candidates.value[1][1]};
   double sine[4], cosine[4];
   lane_sines<4>(angle, sine, cosine);
-  set(of[0], rotary_, sine, cosine);
-  set(of[1], rotary_, sine + 2, cosine + 2);
+  PairSines of;
+  for (size_t slot = 0; slot < rotary_.size(); ++slot) {
+    of.sine[rotary_[slot]] = Pair{sine[2 * slot], sine[2 * slot + 1]};
+    of.cosine[rotary_[slot]] = Pair{cosine[2 * slot], cosine[2 * slot + 1]};
+  }
+  Points linear_values;
+  locate(targets, of, linear_values);
+  bool proven[2];
+  prove(targets, of, linear_values, proven);
+  for (int lane = 0; lane < 2; ++lane) {
+    Branch& one = branch[lane];
+    one.q.setZero();
+    for (size_t slot = 0; slot < rotary_.size(); ++slot) one.q[rotary_[slot]] = candidates.value[slot][lane];
+    one.q[linear_[0]] = linear_values.x[lane];
+    one.q[linear_[1]] = linear_values.y[lane];
+    one.q[linear_[2]] = linear_values.z[lane];
+    one.out_of_travel_axis = first_out_of_travel(one.q);
+    one.outcome = one.out_of_travel_axis >= 0   ? InverseOutcome::kOutOfTravel
+                  : candidates.outer_free[lane] ? InverseOutcome::kSingular
+                                                : InverseOutcome::kOk;
+    if (!proven[lane]) one = Branch();
+  }
 }
 
 InverseSolutions InverseKinematics::solve(const ToolPose& pose_W, const AxisValues& hint) const {
   const Vec3 axis_W = unit(pose_W.axis_W);
-  Candidate found[2]{};
-  const int count = candidates(axis_W, hint, found);
-  Sines of[2];
-  sines_of(found, of);
-  const Target pose_M = target(pose_W.tip_W, axis_W);
+  Candidates found;
   InverseSolutions solutions;
-  for (int i = 0; i < count; ++i) {
-    Branch& branch = solutions.branch[solutions.count];
-    branch = Branch();
-    complete(pose_M, found[i], of[i], branch);
-    if (branch.outcome != InverseOutcome::kUnreachable) ++solutions.count;
-  }
+  const int count = candidates(axis_W, hint, found);
+  if (count == 0) return solutions;
+  Targets targets;
+  set_target(pose_W.tip_W, axis_W, 0, targets);
+  set_target(pose_W.tip_W, axis_W, 1, targets);
+  complete(targets, found, solutions.branch);
+  const bool first = solutions.branch[0].outcome != InverseOutcome::kUnreachable;
+  const bool second = count == 2 && solutions.branch[1].outcome != InverseOutcome::kUnreachable;
+  if (!first && second) solutions.branch[0] = solutions.branch[1];
+  if (!(first && second)) solutions.branch[1] = Branch();
+  solutions.count = static_cast<int>(first) + static_cast<int>(second);
   return solutions;
 }
 
 Branch InverseKinematics::solve_nearest(const ToolPose& pose_W, const AxisValues& hint) const {
   const Vec3 axis_W = unit(pose_W.axis_W);
-  Candidate found[2];
+  Candidates found;
+  Branch branch[2];
   const int count = candidates(axis_W, hint, found);
-  Branch best;
-  if (count == 0) return best;
-  const Target pose_M = target(pose_W.tip_W, axis_W);
-  const int near = count == 2 && found[1].travel < found[0].travel ? 1 : 0;
-  complete(pose_M, found[near], sines_of(found[near]), best);
+  if (count == 0) return branch[0];
+  Targets targets;
+  set_target(pose_W.tip_W, axis_W, 0, targets);
+  set_target(pose_W.tip_W, axis_W, 1, targets);
+  complete(targets, found, branch);
+  const int near = count == 2 && found.travel[1] < found.travel[0] ? 1 : 0;
+  const Branch &best = branch[near], &other = branch[1 - near];
   if (count == 1 || best.outcome == InverseOutcome::kOk) return best;
-  Branch other;
-  complete(pose_M, found[1 - near], sines_of(found[1 - near]), other);
-  if (other.outcome == InverseOutcome::kOk || best.outcome == InverseOutcome::kUnreachable) best = other;
-  return best;
+  return other.outcome == InverseOutcome::kOk || best.outcome == InverseOutcome::kUnreachable ? other : best;
+}
+
+/// Turns the rotary values by whole turns to those nearest to the ones before; returns the sum of what is
+/// left of the way.
+double InverseKinematics::turn_to(const AxisValues& before, AxisValues& q) const {
+  double turn = 0.0;
+  for (const int i : rotary_) {
+    q[i] += kTurn * std::nearbyint((before[i] - q[i]) / kTurn);
+    turn += std::abs(q[i] - before[i]);
+  }
+  return turn;
+}
+
+Branch InverseKinematics::continued(const ToolPose& pose_W, const AxisValues& before) const {
+  InverseSolutions solutions = solve(pose_W, before);
+  const double first = turn_to(before, solutions.branch[0].q);
+  if (solutions.count < 2) return solutions.branch[0];
+  return solutions.branch[turn_to(before, solutions.branch[1].q) < first ? 1 : 0];
+}
+
+void InverseKinematics::continued(const ToolPose (&poses_W)[2], const AxisValues (&before)[2],
+                                  Branch (&found)[2]) const {
+  Candidates chosen;
+  Targets targets;
+  int counts[2];
+  for (int lane = 0; lane < 2; ++lane) {
+    const Vec3 axis_W = unit(poses_W[lane].axis_W);
+    Candidates own;
+    const int count = counts[lane] = candidates(axis_W, before[lane], own);
+    AxisValues q[2] = {AxisValues::Zero(), AxisValues::Zero()};
+    for (size_t slot = 0; slot < rotary_.size(); ++slot) {
+      q[0][rotary_[slot]] = own.value[slot][0];
+      q[1][rotary_[slot]] = own.value[slot][1];
+    }
+    const double first = turn_to(before[lane], q[0]), second = turn_to(before[lane], q[1]);
+    chosen.take(lane, own, count == 2 && second < first ? 1 : 0);
+    set_target(poses_W[lane].tip_W, axis_W, lane, targets);
+  }
+  complete(targets, chosen, found);
+  for (int lane = 0; lane < 2; ++lane) {
+    // The other branch may be proven where the nearest is not.
+    if (counts[lane] == 0 || found[lane].outcome == InverseOutcome::kUnreachable) {
+      found[lane] = continued(poses_W[lane], before[lane]);
+    } else {
+      turn_to(before[lane], found[lane].q);
+    }
+  }
 }
 
 double InverseKinematics::pole_distance(const Vec3& axis_W) const {

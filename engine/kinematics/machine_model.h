@@ -20,6 +20,7 @@
 namespace swarf::kinematics {
 
 struct Sines;
+struct Points;
 
 enum class AxisKind { kLinear, kRotary };
 enum class Side { kTable, kHead };
@@ -118,35 +119,35 @@ class InverseKinematics {
   /// choice through the pole (-a, b + 180 deg) falls out of this rule. When none is inside, the nearest one,
   /// marked kOutOfTravel.
   Branch solve_nearest(const ToolPose& pose_W, const AxisValues& hint) const;
+  /// The branch nearest to `before` by the turns of the rotary axes, whatever their travel: each value within
+  /// half a turn of the one before.
+  Branch continued(const ToolPose& pose_W, const AxisValues& before) const;
+  /// The same of two poses at once, bit for bit; takes little longer than one.
+  void continued(const ToolPose (&poses_W)[2], const AxisValues (&before)[2], Branch (&found)[2]) const;
   /// Angle between the tool axis and the nearest direction where the outer rotary is free, rad; infinity for
   /// a machine without such a pole (fewer than two rotary axes among them).
   double pole_distance(const Vec3& axis_W) const;
 
  private:
-  /// A rotary solution before the linear axes are known.
-  struct Candidate {
-    double value[2];  ///< of the outer and the inner axis, unwound; 0 for those that the machine lacks
-    double travel;    ///< sum of the distances to the hint
-    bool outer_free;
-  };
-  /// The pose to reach, in M.
-  struct Target {
-    Vec3 tip_M, axis_M;
-  };
+  struct Candidates;  ///< rotary solutions before the linear axes are known, side by side
+  struct Targets;     ///< the poses to reach, in M, side by side
+  struct PairSines;   ///< of the rotary values
   void prepare_steps();
   void prepare_pair();
-  int candidates(const Vec3& axis_W, const AxisValues& hint, Candidate out[2]) const;
+  int candidates(const Vec3& axis_W, const AxisValues& hint, Candidates& out) const;
   int turns(const Vec3& axis_W, TurnPair out[2]) const;
-  Target target(const Vec3& tip_W, const Vec3& axis_W) const;
-  double unwound(int slot, double turn, const AxisValues& hint) const;
-  bool locate(const Vec3& tip_M, const Sines& of, Vec3& linear_values) const;
-  Sines sines_of(const Candidate& one) const;
-  void sines_of(const Candidate (&both)[2], Sines (&of)[2]) const;
-  void complete(const Target& target, const Candidate& candidate, const Sines& of, Branch& branch) const;
+  void set_target(const Vec3& tip_W, const Vec3& axis_W, int lane, Targets& targets) const;
+  void complete(const Targets& targets, const Candidates& candidates, Branch (&branch)[2]) const;
+  void locate(const Targets& targets, const PairSines& of, Points& linear_values) const;
+  bool locate_one(const Vec3& tip_M, const Sines& of, Vec3& linear_values) const;
+  void prove(const Targets& targets, const PairSines& of, const Points& linear_values,
+             bool (&proven)[2]) const;
+  double turn_to(const AxisValues& before, AxisValues& q) const;
   int first_out_of_travel(const AxisValues& q) const;
 
   MachineModel machine_;
-  std::vector<int> linear_, rotary_;                ///< indices into axes; rotary_: from the work to the tool
+  std::vector<int> linear_, rotary_;  ///< indices into axes; rotary_: from the work to the tool
+  double rotary_min_[2] = {0.0, 0.0}, rotary_max_[2] = {0.0, 0.0}, rotary_sense_[2] = {1.0, 1.0};
   std::vector<LinkStep> table_steps_, head_steps_;  ///< work to base, tool to base
   std::vector<LinkStep> tool_to_work_;              ///< the steps of forward()
   int column_[kMaxAxes] = {};                       ///< of a linear axis in the loop equation, by axis

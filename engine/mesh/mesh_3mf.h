@@ -11,4 +11,8 @@ namespace swarf::mesh {
 /// format cannot hold the mesh.
 std::string bytes_3mf(const TriMesh& mesh, const std::string& path);
 
+/// What a 3MF package has to build: the meshes of all build items, components at their places, in mm by the
+/// package's unit. Throws InputError "mesh-unreadable".
+TriMesh read_3mf(const std::string& path);
+
 }  // namespace swarf::mesh

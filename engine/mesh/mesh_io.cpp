@@ -19,6 +19,7 @@
 #include "mesh/mesh_source.h"
 #include "mesh/obj_reader.h"
 #include "mesh/ply_reader.h"
+#include "mesh/scene_reader.h"
 #include "mesh/stl_reader.h"
 
 namespace swarf::mesh {
@@ -144,6 +145,8 @@ TriMesh read_by_ending(const std::string& path) {
     mesh = read_ply(path);
   } else if (ending == ".obj") {
     mesh = read_obj(path);
+  } else if (is_scene_ending(ending)) {
+    mesh = read_scene_mesh(path, ending);
   } else {
     refuse_mesh({path}, fmt::format("'{}' is no ending of a mesh file that is read", shown(ending)));
   }

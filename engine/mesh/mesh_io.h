@@ -10,9 +10,9 @@
 
 namespace swarf::mesh {
 
-/// Reads .stl, .ply or .obj (mm): all meshes of the file joined, polygons split into triangles, equal
-/// vertices merged, normals and colours kept where every vertex has them. Throws InputError with the line or
-/// byte of what is wrong when the file is missing, not a mesh, damaged, or empty.
+/// Reads .stl, .ply or .obj (mm), or a scene (scene_reader.h), all meshes of the file joined, polygons split
+/// into triangles, equal vertices merged, normals and colours kept where all have them. Throws InputError
+/// with the line or byte of what is wrong when the file is missing, not a mesh, damaged, or empty.
 TriMesh load_mesh(const std::string& path);
 
 /// Writes .stl (binary), .ply (binary, with normals, colours and `deviation_um` where the mesh has them) or

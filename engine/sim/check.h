@@ -42,6 +42,7 @@ struct Finding {
   std::string check{};            ///< Check::name of what it breaks; "" where it breaks nothing
   int line_last = 0;              ///< of a row of blocks: the last one's line; 0: one block, where.line
   std::optional<Vec3> place_W{};  ///< on the part, where it is worst; none: it has no place there
+  std::optional<Vec3> place_M{};  ///< in the machine at t_s, where parts of it meet; none: it is not of them
   double amount_mm = 0.0;         ///< how deep, high or near; 0: not said
   std::string cause{};            ///< what made it, for those of one code: "holder of T3", "axis X"
   double reach_mm = 0.0;          ///< places of one cause this near each other are one fault

@@ -68,6 +68,26 @@ bool is_closed(const TriMesh& mesh) {
   return forward == backward;
 }
 
+/// With its normal at each face's own corners: shaded flat.
+TriMesh with_face_normals(const TriMesh& mesh) {
+  TriMesh flat;
+  for (const auto& triangle : mesh.triangles) {
+    const auto at = [&](size_t k) {
+      const auto& p = mesh.positions[triangle[k]];
+      return Eigen::Vector3f(p[0], p[1], p[2]);
+    };
+    const Eigen::Vector3f normal = (at(1) - at(0)).cross(at(2) - at(0)).normalized();
+    const auto first = static_cast<uint32_t>(flat.positions.size());
+    flat.triangles.push_back({first, first + 1, first + 2});
+    for (const uint32_t vertex : triangle) {
+      flat.positions.push_back(mesh.positions[vertex]);
+      flat.normals.push_back({normal.x(), normal.y(), normal.z()});
+      if (!mesh.colours.empty()) flat.colours.push_back(mesh.colours[vertex]);
+    }
+  }
+  return flat;
+}
+
 }  // namespace
 
 const GpuMesh& GpuMeshCache::get(const DrawItem& item) {
@@ -96,9 +116,14 @@ void GpuMeshCache::collect() {
 }
 
 void GpuMeshCache::upload(const DrawItem& item, GpuMesh& target) {
-  const TriMesh& mesh = *item.mesh;
-  SWARF_CHECK(mesh.normals.empty() || mesh.normals.size() == mesh.positions.size(), "one normal per vertex");
-  SWARF_CHECK(mesh.colours.empty() || mesh.colours.size() == mesh.positions.size(), "one colour per vertex");
+  const TriMesh& given = *item.mesh;
+  SWARF_CHECK(given.normals.empty() || given.normals.size() == given.positions.size(),
+              "one normal per vertex");
+  SWARF_CHECK(given.colours.empty() || given.colours.size() == given.positions.size(),
+              "one colour per vertex");
+  TriMesh flat;
+  if (given.normals.empty()) flat = with_face_normals(given);
+  const TriMesh& mesh = given.normals.empty() ? flat : given;
   if (target.vertex_array != 0) {
     gl_.DeleteVertexArrays(1, &target.vertex_array);
     gl_.DeleteBuffers(4, target.buffers);
@@ -124,9 +149,8 @@ void GpuMeshCache::upload(const DrawItem& item, GpuMesh& target) {
                  static_cast<GLsizeiptr>(mesh.triangles.size() * sizeof(mesh.triangles[0])),
                  mesh.triangles.data(), usage);
   target.index_count = static_cast<GLsizei>(3 * mesh.triangles.size());
-  target.has_normals = !mesh.normals.empty();
   target.has_colours = !mesh.colours.empty();
-  target.closed = item.outside_only || (!item.dynamic && item.revision == 0 && is_closed(mesh));
+  target.closed = item.outside_only || (!item.dynamic && item.revision == 0 && is_closed(given));
   target.bounds = bounds_of(mesh);
 }
 

@@ -14,7 +14,7 @@ struct GpuMesh {
   GLuint vertex_array = 0;
   GLuint buffers[4] = {};  ///< positions, normals, colours, indices
   GLsizei index_count = 0;
-  bool has_normals = false, has_colours = false;
+  bool has_colours = false;
   bool closed = false;       ///< no way to see a triangle's back; known of static meshes only
   Box bounds;                ///< in the mesh's frame
   uint64_t fingerprint = 0;  ///< or DrawItem::revision

@@ -1,11 +1,14 @@
 #include "render/raster/raster_renderer.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstring>
 #include <string>
 
 #include "base/check.h"
+#include "render/figures/colour.h"
 #include "render/raster/gl_api.h"
 #include "render/raster/gpu_mesh.h"
 #include "render/raster/line_quads.h"
@@ -17,9 +20,9 @@ namespace {
 
 constexpr int kShadowSize = 2048;  // pixels of the shadow map, both ways
 
-GLuint compile(const GlApi& gl, const ShaderSource& source, const char* define = "") {
+GLuint compile(const GlApi& gl, const ShaderSource& source, const std::string& define = "") {
   const GLuint program = gl.CreateProgram();
-  const std::string fragment = std::string(kFragmentPrelude) + define + source.fragment;
+  const std::string fragment = kFragmentPrelude + define + source.fragment;
   const char* texts[] = {source.vertex, fragment.c_str()};
   const GLenum kinds[] = {GL_VERTEX_SHADER, GL_FRAGMENT_SHADER};
   for (int i = 0; i < 2; ++i) {
@@ -50,6 +53,9 @@ class Uniforms {
     gl_.Uniform3f(at(name), static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()));
   }
   void set(const char* name, const Rgb& c) const { gl_.Uniform3f(at(name), c[0], c[1], c[2]); }
+  void set(const char* name, const std::vector<std::array<float, 2>>& pairs) const {
+    gl_.Uniform2fv(at(name), static_cast<GLsizei>(pairs.size()), pairs.front().data());
+  }
   void set_plane(const char* name, const Vec3& normal, const Vec3& point) const {
     gl_.Uniform4f(at(name), static_cast<float>(normal.x()), static_cast<float>(normal.y()),
                   static_cast<float>(normal.z()), static_cast<float>(normal.dot(point)));
@@ -70,45 +76,64 @@ struct RasterRenderer::Impl {
     const DrawItem* item;
     const GpuMesh* mesh;
     Vec3 centre;
+    int material;  ///< in `materials`
   };
 
-  Impl(int width_px, int height_px, int samples);
-  GLuint make_target(int samples);
+  Impl(int width_px, int height_px, int samples_per_px);
+  void compile_programs();
+  void make_line_array();
+  /// What is seen, at each sample of a pixel.
+  void make_surfaces();
+  void make_picture();
   void make_shadow_map();
   Box upload(const DrawList& list);
+  int material_of(const Material& material);
   void draw_shadow(const SceneView& view, bool section);
-  void draw_backdrop(const SceneView& view);
+  void draw_surfaces(const SceneView& view, const DrawList& list);
   void draw_items(const SceneView& view, const DrawList& list, bool sectioned);
+  void draw_ground(const SceneView& view);
   void draw_lines(const SceneView& view, const std::vector<DrawLine>& lines);
   void draw_triangles(const GpuMesh& mesh, bool both_sides = false);
+  void shade(const SceneView& view, const Camera& camera);
   Image read();
 
   OsmesaContext context;
   const GlApi& gl;
   GpuMeshCache meshes;
-  int width, height;
-  GLuint target = 0, resolved = 0, shadow_target = 0, shadow_texture = 0;
-  GLuint mesh_program, section_program, shadow_program, ground_program, background_program, line_program;
+  int width, height, samples;
+  GLuint surfaces = 0, surface_texture = 0, depth_texture = 0;
+  GLuint picture = 0, shadow_target = 0, shadow_texture = 0;
+  GLuint surface_program, section_program, shadow_program, ground_program, line_program, shade_program;
   GLuint empty_array = 0, line_array = 0, line_buffer = 0;
+  std::vector<std::array<float, 2>> sample_places;  ///< in a pixel, 0..1
+  std::vector<std::array<float, 2>> materials;      ///< metalness and roughness
   std::vector<Drawn> drawn;
 };
 
-RasterRenderer::Impl::Impl(int width_px, int height_px, int samples)
-    : gl(context.gl()), meshes(gl), width(width_px), height(height_px) {
-  GLint most = 0;
-  gl.GetIntegerv(GL_MAX_SAMPLES, &most);
+RasterRenderer::Impl::Impl(int width_px, int height_px, int samples_per_px)
+    : gl(context.gl()), meshes(gl), width(width_px), height(height_px), samples(samples_per_px) {
   SWARF_CHECK(width > 0 && height > 0, "a picture needs pixels");
-  SWARF_CHECK(samples >= 1 && samples <= most, "samples per pixel outside 1.." + std::to_string(most));
-  target = make_target(samples == 1 ? 0 : samples);
-  resolved = make_target(0);
+  SWARF_CHECK(samples == 1 || samples == 4, "1 or 4 samples per pixel");
+  make_surfaces();
+  make_picture();
   make_shadow_map();
-  mesh_program = compile(gl, kMeshShader);
-  section_program = compile(gl, kMeshShader, "#define SECTION\n");
+  compile_programs();
+  gl.GenVertexArrays(1, &empty_array);
+  make_line_array();
+}
+
+void RasterRenderer::Impl::compile_programs() {
+  surface_program = compile(gl, kSurfaceShader);
+  section_program = compile(gl, kSurfaceShader, "#define SECTION\n");
   shadow_program = compile(gl, kShadowShader);
   ground_program = compile(gl, kGroundShader);
-  background_program = compile(gl, kBackgroundShader);
   line_program = compile(gl, kLineShader);
-  gl.GenVertexArrays(1, &empty_array);
+  shade_program = compile(gl, kShadeShader,
+                          "#define SAMPLES " + std::to_string(samples) + "\n#define MATERIALS " +
+                              std::to_string(kMaterialsMost) + "\n");
+}
+
+void RasterRenderer::Impl::make_line_array() {
   gl.GenVertexArrays(1, &line_array);
   gl.GenBuffers(1, &line_buffer);
   gl.BindVertexArray(line_array);
@@ -122,22 +147,48 @@ RasterRenderer::Impl::Impl(int width_px, int height_px, int samples)
   gl.EnableVertexAttribArray(1);
 }
 
-GLuint RasterRenderer::Impl::make_target(int samples) {
-  GLuint framebuffer = 0;
-  GLuint buffers[2] = {};
-  gl.GenFramebuffers(1, &framebuffer);
-  gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
-  gl.GenRenderbuffers(2, buffers);
-  const GLenum formats[] = {GL_RGBA8, GL_DEPTH_COMPONENT24};
-  const GLenum attachments[] = {GL_COLOR_ATTACHMENT0, GL_DEPTH_ATTACHMENT};
-  for (int i = 0; i < 2; ++i) {
-    gl.BindRenderbuffer(GL_RENDERBUFFER, buffers[i]);
-    gl.RenderbufferStorageMultisample(GL_RENDERBUFFER, samples, formats[i], width, height);
-    gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, attachments[i], GL_RENDERBUFFER, buffers[i]);
+void RasterRenderer::Impl::make_surfaces() {
+  struct Target {
+    GLuint& texture;
+    GLenum format, layout, type, attachment;
+  };
+  gl.GenFramebuffers(1, &surfaces);
+  gl.BindFramebuffer(GL_FRAMEBUFFER, surfaces);
+  const GLenum kind = samples > 1 ? GL_TEXTURE_2D_MULTISAMPLE : GL_TEXTURE_2D;
+  for (const Target& target :
+       {Target{surface_texture, GL_RG32UI, GL_RG_INTEGER, GL_UNSIGNED_INT, GL_COLOR_ATTACHMENT0},
+        Target{depth_texture, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT,
+               GL_DEPTH_ATTACHMENT}}) {
+    gl.GenTextures(1, &target.texture);
+    gl.BindTexture(kind, target.texture);
+    if (samples > 1) {
+      gl.TexImage2DMultisample(kind, samples, target.format, width, height, GL_TRUE);
+    } else {
+      gl.TexImage2D(kind, 0, static_cast<GLint>(target.format), width, height, 0, target.layout, target.type,
+                    nullptr);
+      gl.TexParameteri(kind, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+      gl.TexParameteri(kind, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    }
+    gl.FramebufferTexture2D(GL_FRAMEBUFFER, target.attachment, kind, target.texture, 0);
   }
   SWARF_CHECK(gl.CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE,
+              "OSMesa refuses the framebuffer of what is seen");
+  sample_places.assign(static_cast<size_t>(samples), {0.5F, 0.5F});
+  for (int s = 0; samples > 1 && s < samples; ++s)
+    gl.GetMultisamplefv(GL_SAMPLE_POSITION, static_cast<GLuint>(s),
+                        sample_places[static_cast<size_t>(s)].data());
+}
+
+void RasterRenderer::Impl::make_picture() {
+  GLuint buffer = 0;
+  gl.GenFramebuffers(1, &picture);
+  gl.BindFramebuffer(GL_FRAMEBUFFER, picture);
+  gl.GenRenderbuffers(1, &buffer);
+  gl.BindRenderbuffer(GL_RENDERBUFFER, buffer);
+  gl.RenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, width, height);
+  gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, buffer);
+  SWARF_CHECK(gl.CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE,
               "OSMesa refuses the picture's framebuffer");
-  return framebuffer;
 }
 
 void RasterRenderer::Impl::make_shadow_map() {
@@ -161,21 +212,39 @@ void RasterRenderer::Impl::make_shadow_map() {
 
 Box RasterRenderer::Impl::upload(const DrawList& list) {
   drawn.clear();
+  materials.clear();
   Box bounds{Vec3::Constant(1e30), Vec3::Constant(-1e30)};
   for (const DrawItem& item : list.items) {
     SWARF_CHECK(item.mesh != nullptr, "an item without a mesh");
     if (item.mesh->triangles.empty()) continue;
     const GpuMesh& mesh = meshes.get(item);
-    drawn.push_back({&item, &mesh, item.X_world * mesh.bounds.centre()});
+    drawn.push_back({&item, &mesh, item.X_world * mesh.bounds.centre(), material_of(item.material)});
     extend(bounds, mesh.bounds, item.X_world);
   }
   meshes.collect();
-  // Nearest first: a pixel hidden by something in front is not shaded.
+  // Nearest first: with one sample a pixel, what is hidden by something in front is left out early.
   std::stable_sort(drawn.begin(), drawn.end(), [&](const Drawn& a, const Drawn& b) {
     return (a.centre - list.camera.eye).norm() < (b.centre - list.camera.eye).norm();
   });
   if (drawn.empty()) bounds = {list.camera.target, list.camera.target};
   return bounds;
+}
+
+/// The index of its metalness and roughness; where the table is full, of those that are nearest.
+int RasterRenderer::Impl::material_of(const Material& material) {
+  const std::array<float, 2> wanted{material.metalness, material.roughness};
+  const auto found = std::find(materials.begin(), materials.end(), wanted);
+  if (found != materials.end()) return static_cast<int>(found - materials.begin());
+  if (materials.size() < static_cast<size_t>(kMaterialsMost)) {
+    materials.push_back(wanted);
+    return static_cast<int>(materials.size()) - 1;
+  }
+  const auto off = [&](const std::array<float, 2>& m) {
+    return std::hypot(m[0] - wanted[0], m[1] - wanted[1]);
+  };
+  return static_cast<int>(std::min_element(materials.begin(), materials.end(),
+                                           [&](const auto& a, const auto& b) { return off(a) < off(b); }) -
+                          materials.begin());
 }
 
 /// Backs are dropped where they cannot be seen: half of the work.
@@ -206,43 +275,33 @@ void RasterRenderer::Impl::draw_shadow(const SceneView& view, bool section) {
   gl.Disable(GL_POLYGON_OFFSET_FILL);
 }
 
-void RasterRenderer::Impl::draw_backdrop(const SceneView& view) {
+void RasterRenderer::Impl::draw_ground(const SceneView& view) {
   gl.Disable(GL_CULL_FACE);
-  // Drawn last, where nothing else is: software pays for every pixel it shades.
   gl.BindVertexArray(empty_array);
-  const Uniforms ground(gl, ground_program);
-  ground.set("height_px", static_cast<double>(height));
-  ground.set("clip_from_world", view.clip_from_world);
-  ground.set("light_from_world", view.light_clip_from_world);
-  ground.set("centre", view.ground_centre);
-  ground.set("radius", view.ground_radius);
+  const Uniforms uniforms(gl, ground_program);
+  uniforms.set("clip_from_world", view.clip_from_world);
+  uniforms.set("centre", view.ground_centre);
+  uniforms.set("radius", view.ground_radius);
   gl.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
-  const Uniforms background(gl, background_program);
-  background.set("height_px", static_cast<double>(height));
-  gl.DrawArrays(GL_TRIANGLES, 0, 3);
 }
 
 /// The items that the section cuts open, or all others.
 void RasterRenderer::Impl::draw_items(const SceneView& view, const DrawList& list, bool sectioned) {
-  const Uniforms uniforms(gl, sectioned ? section_program : mesh_program);
-  if (sectioned) uniforms.set_plane("section", list.section->normal, list.section->point);
+  const Uniforms uniforms(gl, sectioned ? section_program : surface_program);
+  if (sectioned) {
+    constexpr Rgb kCutFace{0.62F, 0.24F, 0.10F};
+    const auto facing = static_cast<float>(0.8 + 0.2 * list.section->normal.dot(view.key));
+    uniforms.set_plane("section", list.section->normal, list.section->point);
+    uniforms.set("section_colour", Rgb{facing * kCutFace[0], facing * kCutFace[1], facing * kCutFace[2]});
+  }
   uniforms.set("clip_from_world", view.clip_from_world);
-  uniforms.set("light_from_world", view.light_clip_from_world);
-  uniforms.set("eye", list.camera.eye);
-  uniforms.set("key", view.key);
-  uniforms.set("softbox", (view.key + Vec3(0.0, 0.0, 0.5)).normalized());
-  uniforms.set("fill", view.fill);
-  uniforms.set("rim", view.rim);
-  uniforms.set("texel", 1.0 / kShadowSize);
-  uniforms.set("texel_mm", view.light_extent_mm / kShadowSize);
   for (const Drawn& one : drawn) {
     if ((list.section && one.item->sectioned) != sectioned) continue;
-    const Material& material = one.item->material;
+    const Rgb& colour = one.item->material.colour;
     uniforms.set("world_from_mesh", one.item->X_world.matrix());
-    uniforms.set("base_colour", material.colour);
-    uniforms.set("metalness", static_cast<double>(material.metalness));
-    uniforms.set("roughness", static_cast<double>(material.roughness));
-    uniforms.set("has_normals", one.mesh->has_normals ? 1 : 0);
+    uniforms.set("base_colour",
+                 Rgb{srgb_from_linear(colour[0]), srgb_from_linear(colour[1]), srgb_from_linear(colour[2])});
+    uniforms.set("material", kFirstMaterial + one.material);
     uniforms.set("has_colours", one.mesh->has_colours ? 1 : 0);
     draw_triangles(*one.mesh, sectioned);
   }
@@ -260,11 +319,56 @@ void RasterRenderer::Impl::draw_lines(const SceneView& view, const std::vector<D
   gl.DrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(quads.size()));
 }
 
+void RasterRenderer::Impl::draw_surfaces(const SceneView& view, const DrawList& list) {
+  gl.BindFramebuffer(GL_FRAMEBUFFER, surfaces);
+  gl.Viewport(0, 0, width, height);
+  constexpr GLuint kNothing[4] = {};
+  gl.ClearBufferuiv(GL_COLOR, 0, kNothing);
+  gl.Clear(GL_DEPTH_BUFFER_BIT);
+  draw_items(view, list, false);
+  if (list.section) draw_items(view, list, true);
+  draw_lines(view, list.lines);
+  draw_ground(view);
+}
+
+void RasterRenderer::Impl::shade(const SceneView& view, const Camera& camera) {
+  gl.BindFramebuffer(GL_FRAMEBUFFER, picture);
+  gl.Disable(GL_DEPTH_TEST);
+  gl.Disable(GL_CULL_FACE);
+  const GLenum kind = samples > 1 ? GL_TEXTURE_2D_MULTISAMPLE : GL_TEXTURE_2D;
+  const Uniforms uniforms(gl, shade_program);
+  const auto bind = [&](int unit, const char* name, GLenum target, GLuint texture) {
+    gl.ActiveTexture(static_cast<GLenum>(GL_TEXTURE0 + unit));
+    gl.BindTexture(target, texture);
+    uniforms.set(name, unit);
+  };
+  bind(0, "shadow_map", GL_TEXTURE_2D, shadow_texture);
+  bind(1, "surfaces", kind, surface_texture);
+  bind(2, "depths", kind, depth_texture);
+  uniforms.set("sample_place", sample_places);
+  if (!materials.empty()) uniforms.set("materials", materials);
+  uniforms.set("light_from_world", view.light_clip_from_world);
+  uniforms.set("size_px",
+               std::vector<std::array<float, 2>>{{static_cast<float>(width), static_cast<float>(height)}});
+  uniforms.set("near_far", std::vector<std::array<float, 2>>{
+                               {static_cast<float>(view.near), static_cast<float>(view.far)}});
+  uniforms.set("eye", camera.eye);
+  uniforms.set("right", view.right);
+  uniforms.set("up", view.up);
+  uniforms.set("forward", view.forward);
+  uniforms.set("key", view.key);
+  uniforms.set("softbox", (view.key + Vec3(0.0, 0.0, 0.5)).normalized());
+  uniforms.set("fill", view.fill);
+  uniforms.set("rim", view.rim);
+  uniforms.set("texel", 1.0 / kShadowSize);
+  uniforms.set("texel_mm", view.light_extent_mm / kShadowSize);
+  uniforms.set("centre", view.ground_centre);
+  uniforms.set("radius", view.ground_radius);
+  gl.BindVertexArray(empty_array);
+  gl.DrawArrays(GL_TRIANGLES, 0, 3);
+}
+
 Image RasterRenderer::Impl::read() {
-  gl.BindFramebuffer(GL_READ_FRAMEBUFFER, target);
-  gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, resolved);
-  gl.BlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
-  gl.BindFramebuffer(GL_READ_FRAMEBUFFER, resolved);
   const size_t row = size_t{4} * static_cast<size_t>(width);
   std::vector<uint8_t> bottom_up(row * static_cast<size_t>(height));
   gl.PixelStorei(GL_PACK_ALIGNMENT, 1);
@@ -289,16 +393,10 @@ Image RasterRenderer::draw(const DrawList& list) {
   const Box bounds = impl.upload(list);
   const SceneView view = scene_view(list.camera, bounds, static_cast<double>(impl.width) / impl.height);
   gl.Enable(GL_DEPTH_TEST);
-  gl.DepthFunc(GL_LEQUAL);  // the background lies exactly on the far plane
+  gl.DepthFunc(GL_LEQUAL);
   impl.draw_shadow(view, list.section.has_value());
-  gl.BindFramebuffer(GL_FRAMEBUFFER, impl.target);
-  gl.Viewport(0, 0, impl.width, impl.height);
-  gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-  gl.BindTexture(GL_TEXTURE_2D, impl.shadow_texture);
-  impl.draw_items(view, list, false);
-  if (list.section) impl.draw_items(view, list, true);
-  impl.draw_lines(view, list.lines);
-  impl.draw_backdrop(view);
+  impl.draw_surfaces(view, list);
+  impl.shade(view, list.camera);
   return impl.read();
 }
 

@@ -11,11 +11,12 @@ namespace swarf::render {
 /// photographer's would; one shadow map; a floor under the lowest point of the scene.
 ///
 /// Static meshes stay in GPU memory by their address (a mesh that changed at the same address is noticed by
-/// samples of its positions); `dynamic` ones are sent anew in each call. Meshes without normals are shaded
-/// flat. Not thread-safe, but successive calls may come from different threads.
+/// samples of its positions); `dynamic` ones are sent anew in each call. What is seen is found at all samples
+/// of a pixel and shaded once per surface in it. Meshes without normals are shaded flat. Not thread-safe, but
+/// successive calls may come from different threads.
 class RasterRenderer {
  public:
-  /// `samples` per pixel for smooth edges: 1 to 4. Throws InputError when OSMesa is missing.
+  /// `samples` per pixel for smooth edges: 1 or 4. Throws InputError when OSMesa is missing.
   RasterRenderer(int width, int height, int samples = 4);
   ~RasterRenderer();
   RasterRenderer(const RasterRenderer&) = delete;

@@ -52,9 +52,15 @@ SceneView scene_view(const Camera& camera, const Box& bounds, double aspect) {
   view.rim = light_direction(forward, -150.0, 35.0);
   view.ground_centre = {bounds.centre().x(), bounds.centre().y(), bounds.lower.z() - kFloorGap * radius};
   view.ground_radius = kGroundReach * radius;
-  const double far = (camera.eye - bounds.centre()).norm() + std::sqrt(2.0) * view.ground_radius + radius;
-  const double near = std::max((camera.eye - bounds.centre()).norm() - radius, kNearShare * far);
-  view.clip_from_world = perspective_matrix(camera.vertical_fov_rad, aspect, near, far) * view_matrix(camera);
+  view.far = (camera.eye - bounds.centre()).norm() + std::sqrt(2.0) * view.ground_radius + radius;
+  view.near = std::max((camera.eye - bounds.centre()).norm() - radius, kNearShare * view.far);
+  const Eigen::Matrix4d from_world = view_matrix(camera);
+  view.clip_from_world =
+      perspective_matrix(camera.vertical_fov_rad, aspect, view.near, view.far) * from_world;
+  const double half = std::tan(0.5 * camera.vertical_fov_rad);
+  view.right = half * aspect * from_world.block<1, 3>(0, 0).transpose();
+  view.up = half * from_world.block<1, 3>(1, 0).transpose();
+  view.forward = -from_world.block<1, 3>(2, 0).transpose();
   view.light_extent_mm = 2.0 * kLightMargin * radius;
   view.light_clip_from_world = parallel_projection(view.key, bounds.centre(), kLightMargin * radius);
   return view;

@@ -10,6 +10,9 @@ struct SceneView {
   Eigen::Matrix4d light_clip_from_world;  ///< the key light's parallel projection of the scene
   double light_extent_mm = 1.0;           ///< width of that projection
   Vec3 key, fill, rim;                    ///< unit vectors towards the lights
+  /// Of the picture: at distance 1 along `forward`, right and up reach its edges.
+  Vec3 right, up, forward;
+  double near = 1.0, far = 2.0;  ///< planes of clip_from_world, mm from the eye
   Vec3 ground_centre;
   double ground_radius = 1.0;
 };

@@ -1,10 +1,13 @@
-// The GLSL programs of the rasteriser.
+// The GLSL programs of the rasteriser, which shades late: what is seen is found first, at all samples of a
+// pixel, and then shaded once where the samples of a pixel see one surface.
 //
-//   mesh        key light with a shadow map, fill and rim lights, a studio box reflected by roughness
+//   surface     normal, paint and material of what is seen
+//   line        screen-space quads of paint
+//   ground      a floor under the scene
 //   shadow      depth of the scene seen from the key light
-//   ground      a floor under the scene that fades into the background and takes the shadow
-//   background  vertical gradient
-//   line        screen-space quads
+//   shade       key light with its shadow map, fill and rim lights, a studio box reflected by roughness; the
+//   floor,
+//               which takes the shadow and fades into a vertical gradient
 //
 // Shaders compute in linear light and write sRGB; samples are averaged as stored.
 #pragma once
@@ -16,13 +19,16 @@ struct ShaderSource {
   const char* fragment;
 };
 
-extern const ShaderSource kMeshShader;
+extern const ShaderSource kSurfaceShader;
 extern const ShaderSource kShadowShader;
 extern const ShaderSource kGroundShader;
-extern const ShaderSource kBackgroundShader;
 extern const ShaderSource kLineShader;
+extern const ShaderSource kShadeShader;
 
-/// Prepended to every fragment shader: version, background gradient, shadow map, tone curve.
+/// Prepended to every fragment shader.
 extern const char* const kFragmentPrelude;
+
+/// In the highest byte of a sample's second word; 0 is the background, materials of the list follow these.
+constexpr int kGroundKind = 1, kPaintKind = 2, kFirstMaterial = 3, kMaterialsMost = 128;
 
 }  // namespace swarf::render

@@ -6,6 +6,7 @@
 #include "base/check.h"
 #include "base/parallel.h"
 #include "render/figures/colour.h"
+#include "render/ray/ambient_filter.h"
 #include "render/ray/tracer.h"
 
 namespace swarf::render {
@@ -66,22 +67,56 @@ class Brightness {
   double mean_ = 0.0, squares_ = 0.0, count_ = 0.0;
 };
 
+/// The sums over a pixel's samples.
+class Gathered {
+ public:
+  void add(const Seen& seen, bool with_ambient) {
+    // One hot sample of a mirrored light must not outshine the whole pixel.
+    constexpr float kFirefly = 8.0F;
+    sum_.light += seen.light.cwiseMin(kFirefly);
+    sum_.matt += seen.matt;
+    sum_.normal += seen.normal;
+    sum_.position += seen.position;
+    ++count_;
+    if (!seen.normal.isZero()) ++surfaces_;
+    if (!with_ambient) return;
+    sum_.ambient += seen.matt.cwiseProduct(seen.ambient.cwiseMin(kFirefly));
+    matt_with_ambient_ += seen.matt;
+  }
+  bool knows_ambient() const { return matt_with_ambient_.maxCoeff() > 0.0F; }
+  PixelLight mean(float opacity) const {
+    PixelLight mean = sum_;
+    const auto many = static_cast<float>(std::max(count_, 1));
+    mean.light /= many;
+    mean.matt /= many;
+    for (int k = 0; k < 3; ++k)
+      mean.ambient[k] = matt_with_ambient_[k] > 0.0F ? sum_.ambient[k] / matt_with_ambient_[k] : 0.0F;
+    if (surfaces_ > 0) mean.position /= static_cast<float>(surfaces_);
+    if (!mean.normal.isZero()) mean.normal.normalize();
+    mean.opacity = opacity;
+    return mean;
+  }
+
+ private:
+  PixelLight sum_;
+  Vec3f matt_with_ambient_ = Vec3f::Zero();
+  int count_ = 0, surfaces_ = 0;
+};
+
 struct Shot {
   const StillOptions& options;
   const Lens& lens;
   const Tracer& tracer;
   const BlueNoise& noise;
 
-  std::array<uint8_t, 4> pixel(int x, int y) const {
-    // One hot sample of a mirrored light must not outshine the whole pixel.
-    constexpr float kFirefly = 8.0F;
+  PixelLight pixel(int x, int y) const {
     // After so many samples without a trace of the drawing or its shadow the pixel is backdrop.
     constexpr int kProbe = 8;
-    Vec3f sum = Vec3f::Zero();
     // Fewer samples say nothing about their spread.
     constexpr int kLeast = 6;
     bool empty = true;
     int taken = 0, behind = 0;
+    Gathered gathered;
     Brightness brightness;
     for (int s = 0; s < options.samples_per_pixel; ++s) {
       Sampler sampler(noise, x, y, static_cast<uint32_t>(s), options.seed);
@@ -91,33 +126,38 @@ struct Shot {
       const auto down = std::clamp(static_cast<float>(py), 0.0F, 1.0F);
       const Vec3f backdrop =
           (1.0F - down) * vector_of(options.backdrop_top) + down * vector_of(options.backdrop_bottom);
-      const Vec3f light = tracer.radiance(lens.eye.cast<float>(), lens.ray(2.0 * px - 1.0, 1.0 - 2.0 * py),
-                                          backdrop, sampler);
-      const bool backdrop_seen = light == backdrop;
-      behind += backdrop_seen ? 1 : 0;
-      if (!options.transparent || !backdrop_seen) sum += light.cwiseMin(kFirefly);
-      empty = empty && backdrop_seen;
+      // Neighbours share the ambient light: every other sample is enough.
+      const bool with_ambient = s % 2 == 0 || !gathered.knows_ambient();
+      const Seen seen = tracer.look(lens.eye.cast<float>(), lens.ray(2.0 * px - 1.0, 1.0 - 2.0 * py),
+                                    backdrop, with_ambient, sampler);
+      behind += seen.empty ? 1 : 0;
+      if (!options.transparent || !seen.empty) gathered.add(seen, with_ambient);
+      empty = empty && seen.empty;
       ++taken;
       if (empty && taken == kProbe) break;
       if (options.noise <= 0.0) continue;
-      brightness.add(light.cwiseMin(kFirefly), options.exposure);
+      // What neighbours share is as good as known.
+      brightness.add(seen.light + static_cast<float>(options.sky_strength) * seen.matt, options.exposure);
       if (taken >= kLeast && !empty && brightness.standard_error() < options.noise) break;
     }
-    const int seen = options.transparent ? taken - behind : taken;
-    sum *= static_cast<float>(options.exposure) / static_cast<float>(std::max(seen, 1));
-    std::array<uint8_t, 4> value = srgb8_from_linear({tone(sum.x()), tone(sum.y()), tone(sum.z())});
-    if (options.transparent) value[3] = static_cast<uint8_t>(std::lround(255.0 * seen / taken));
-    return value;
+    return gathered.mean(options.transparent ? static_cast<float>(taken - behind) / static_cast<float>(taken)
+                                             : 1.0F);
   }
 
-  void tile(int tile_x, int tile_y, Image& image) const {
+  void tile(int tile_x, int tile_y, std::vector<PixelLight>& pixels) const {
     for (int y = tile_y * kTile; y < std::min(options.height, (tile_y + 1) * kTile); ++y) {
-      for (int x = tile_x * kTile; x < std::min(options.width, (tile_x + 1) * kTile); ++x) {
-        const auto value = pixel(x, y);
-        std::copy(value.begin(), value.end(),
-                  image.rgba.begin() + 4 * (static_cast<ptrdiff_t>(y) * options.width + x));
-      }
+      for (int x = tile_x * kTile; x < std::min(options.width, (tile_x + 1) * kTile); ++x)
+        pixels[static_cast<size_t>(y) * static_cast<size_t>(options.width) + static_cast<size_t>(x)] =
+            pixel(x, y);
     }
+  }
+
+  std::array<uint8_t, 4> colour(const PixelLight& pixel) const {
+    const Vec3f light =
+        static_cast<float>(options.exposure) * (pixel.light + pixel.matt.cwiseProduct(pixel.ambient));
+    std::array<uint8_t, 4> value = srgb8_from_linear({tone(light.x()), tone(light.y()), tone(light.z())});
+    value[3] = static_cast<uint8_t>(std::lround(255.0F * pixel.opacity));
+    return value;
   }
 };
 
@@ -132,12 +172,18 @@ Image render_still(const DrawList& list, const StillOptions& options) {
   const Tracer tracer(scene, studio, options);
   static const BlueNoise noise;
   const Shot shot{options, lens, tracer, noise};
-  Image image{options.width, options.height,
-              std::vector<uint8_t>(size_t{4} * options.width * options.height)};
+  std::vector<PixelLight> pixels(static_cast<size_t>(options.width) * static_cast<size_t>(options.height));
   const int across = (options.width + kTile - 1) / kTile, down = (options.height + kTile - 1) / kTile;
   parallel_chunks(static_cast<size_t>(across) * down, 1, [&](size_t begin, size_t) {
-    shot.tile(static_cast<int>(begin) % across, static_cast<int>(begin) / across, image);
+    shot.tile(static_cast<int>(begin) % across, static_cast<int>(begin) / across, pixels);
   });
+  share_ambient(pixels, options.width, options.height, lens.eye.cast<float>(),
+                static_cast<float>(2.0 * radius_per_mm));
+  Image image{options.width, options.height, std::vector<uint8_t>(4 * pixels.size())};
+  for (size_t i = 0; i < pixels.size(); ++i) {
+    const auto value = shot.colour(pixels[i]);
+    std::copy(value.begin(), value.end(), image.rgba.begin() + static_cast<std::ptrdiff_t>(4 * i));
+  }
   return image;
 }
 

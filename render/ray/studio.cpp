@@ -32,6 +32,17 @@ float smooth_step(float low, float high, float x) {
   return t * t * (3.0F - 2.0F * t);
 }
 
+/// atan2 within 1e-4 rad (minimax polynomial of odd powers on -1..1), a quarter of its time: for lights whose
+/// edges are many times as wide.
+float quick_atan2(float y, float x) {
+  const float ax = std::abs(x), ay = std::abs(y);
+  const float small = std::min(ax, ay) / std::max(std::max(ax, ay), 1e-30F), s = small * small;
+  float angle = (((-0.0464964749F * s + 0.15931422F) * s - 0.327622764F) * s) * small + small;
+  if (ay > ax) angle = 0.5F * kPiF - angle;
+  if (x < 0.0F) angle = kPiF - angle;
+  return y < 0.0F ? -angle : angle;
+}
+
 float ggx_density(float cosine, float alpha) {
   const float a2 = alpha * alpha, d = cosine * cosine * (a2 - 1.0F) + 1.0F;
   return a2 / (kPiF * d * d);
@@ -76,8 +87,8 @@ Studio::Studio(const StillOptions& options)
 float Studio::strip_light(const Vec3f& d) const {
   if (d.z() <= 0.0F || strip_strength_ <= 0.0F) return 0.0F;
   const Vec3f across(-strip_axis_.y(), strip_axis_.x(), 0.0F);
-  const float angle = std::atan2(d.dot(across), d.z());
-  const float along = std::abs(std::atan2(d.dot(strip_axis_), d.z()));
+  const float angle = quick_atan2(d.dot(across), d.z());
+  const float along = std::abs(quick_atan2(d.dot(strip_axis_), d.z()));
   const float phase = angle / strip_period_;
   const float from_centre = std::abs(phase - std::round(phase));
   const float edge =
@@ -98,7 +109,7 @@ float Studio::panel_light(const Vec3f& d) const {
   if (strip_strength_ <= 0.0F || d.z() > kPanelTop || d.z() < kPanelBottom) return 0.0F;
   constexpr float kSector = 2.0F * kPiF / kPanels;
   const float turn =
-      std::atan2(strip_axis_.x() * d.y() - strip_axis_.y() * d.x(), d.dot(strip_axis_)) / kSector;
+      quick_atan2(strip_axis_.x() * d.y() - strip_axis_.y() * d.x(), d.dot(strip_axis_)) / kSector;
   // Half a sector off the strips' direction, so that no panel stands behind the end of a strip.
   const float from_centre = std::abs(turn - 0.5F - std::round(turn - 0.5F)) * kSector;
   const float width =

@@ -29,25 +29,39 @@ Tracer::Tracer(const RayScene& scene, const Studio& studio, const StillOptions& 
       floor_(options.floor && !options.transparent),
       floor_z_(scene.lowest_z()) {}
 
-Vec3f Tracer::radiance(const Vec3f& origin, const Vec3f& direction, const Vec3f& backdrop,
-                       Sampler& sampler) const {
+Seen Tracer::look(const Vec3f& origin, const Vec3f& direction, const Vec3f& backdrop, bool with_ambient,
+                  Sampler& sampler) const {
+  Seen seen;
   if (const auto hit = scene_.nearest(origin, direction, true)) {
-    return hit->line ? tube(*hit) : solid(*hit, direction, sampler);
+    if (!hit->line) return solid(*hit, direction, with_ambient, sampler);
+    seen.light = tube(*hit);
+    return seen;
   }
   const float height = origin.z() - floor_z_;
-  if (!floor_ || direction.z() >= 0.0F || height <= 0.0F) return backdrop;
-  return floor_light(origin + height / -direction.z() * direction, sampler) * backdrop;
+  if (floor_ && direction.z() < 0.0F && height > 0.0F)
+    return floor(origin + height / -direction.z() * direction, backdrop, with_ambient, sampler);
+  seen.light = backdrop;
+  seen.empty = true;
+  return seen;
 }
 
-/// Light that reaches a floor point over what an empty studio would give it: 1 without shadow.
-float Tracer::floor_light(const Vec3f& point, Sampler& sampler) const {
+/// Light that reaches a floor point over what an empty studio would give it: the backdrop without shadow.
+Seen Tracer::floor(const Vec3f& point, const Vec3f& backdrop, bool with_ambient, Sampler& sampler) const {
   const Vec3f start = point + scene_.offset() * Vec3f::UnitZ();
   const Vec3f to_key = studio_.sample_key(sampler.next());
   const Vec3f to_sky = sample_cosine(sampler.next());
   const float key = studio_.key_strength() * std::max(0.0F, studio_.key_axis().z());
-  const float seen = (scene_.occluded(start, to_key) ? 0.0F : key) +
-                     (scene_.occluded(start, to_sky) ? 0.0F : studio_.mean_sky());
-  return seen / (key + studio_.mean_sky());
+  const float all = key + studio_.mean_sky();
+  const bool key_seen = !scene_.occluded(start, to_key);
+  const bool sky_seen = !with_ambient || !scene_.occluded(start, to_sky);
+  Seen seen;
+  if (key_seen) seen.light = (key / all) * backdrop;
+  if (sky_seen) seen.ambient = Vec3f::Ones();
+  seen.matt = (studio_.mean_sky() / all) * backdrop;
+  seen.normal = Vec3f::UnitZ();
+  seen.position = point;
+  seen.empty = key_seen && sky_seen;
+  return seen;
 }
 
 Vec3f Tracer::tube(const Hit& hit) const {
@@ -60,20 +74,24 @@ bool Tracer::key_visible(const Hit& hit, const Vec3f& direction) const {
          !scene_.occluded(hit.position + scene_.offset() * hit.face_normal, direction);
 }
 
-Vec3f Tracer::solid(const Hit& hit, const Vec3f& direction, Sampler& sampler) const {
+Seen Tracer::solid(const Hit& hit, const Vec3f& direction, bool with_ambient, Sampler& sampler) const {
   const Reflection reflection(hit);
   const Eigen::Matrix3f frame = frame_about(facing_normal(hit, -direction));
   const Vec3f out = frame.transpose() * -direction;
-  Vec3f light = key_light(hit, reflection, frame, out, sampler);
-  light += mirror_light(hit, reflection, frame, out, sampler);
+  Seen seen;
+  seen.normal = hit.normal;
+  seen.position = hit.position;
+  seen.light = key_light(hit, reflection, frame, out, sampler);
+  seen.light += mirror_light(hit, reflection, frame, out, sampler);
   const Eigen::Vector2f xi = sampler.next();
   if (reflection.diffuse.maxCoeff() > 0.0F) {
+    seen.matt = reflection.diffuse;
+    if (!with_ambient) return seen;
     const Vec3f in = frame * sample_cosine(xi);
     const Vec3f start = hit.position + scene_.offset() * hit.face_normal;
-    if (in.dot(hit.face_normal) > 0.0F)
-      light += reflection.diffuse.cwiseProduct(second_hit(start, in, sampler));
+    if (in.dot(hit.face_normal) > 0.0F) seen.ambient = second_hit(start, in, sampler);
   }
-  return light;
+  return seen;
 }
 
 /// Key light by a sample of its disc; the mirror part shares the work with mirror_light (balance heuristic).

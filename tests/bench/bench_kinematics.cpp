@@ -1,5 +1,5 @@
 // Time of the kinematics, one thread: forward and the nearest branch on the paper's machine, all branches on
-// machines of each arrangement (orthogonal table-table, nutating head, fork head, head and table).
+// every shipped five-axis machine.
 #include <benchmark/benchmark.h>
 
 #include <string>
@@ -71,7 +71,8 @@ void all_branches(benchmark::State& state, const std::string& name) {
 }
 
 void BM_AllBranches(benchmark::State& state) {
-  static const char* const names[] = {"mikron_ucp710", "nutating_head", "fork_head", "head_table_bc"};
+  static const char* const names[] = {"mikron_ucp710",   "nutating_head", "fork_head",     "head_table_bc",
+                                      "lin_koren_xyzab", "maho_600c",     "spinner_u5_620"};
   const char* name = names[state.range(0)];
   state.SetLabel(name);
   all_branches(state, name);
@@ -90,7 +91,7 @@ void BM_Forward(benchmark::State& state) {
 
 BENCHMARK(BM_SolveNearestAlongPath);
 BENCHMARK(BM_SolveNearestRandom);
-BENCHMARK(BM_AllBranches)->DenseRange(0, 3);
+BENCHMARK(BM_AllBranches)->DenseRange(0, 6);
 BENCHMARK(BM_Forward);
 
 }  // namespace

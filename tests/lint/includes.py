@@ -53,7 +53,8 @@ HEAVY = {
     "MPI": (r"mpi\.h", ("cli/cluster/",)),
     "libpng": (r"png\.h", ("render/image_io.cpp",)),
     "libwebp": (r"webp/", ("render/image_io.cpp",)),
-    "lib3mf": (r"Model/COM/", ("engine/mesh/mesh_3mf.cpp",)),
+    "lib3mf": (r"Model/COM/", ("engine/mesh/mesh_3mf.cpp", "engine/mesh/read_3mf.cpp")),
+    "assimp": (r"assimp/", ("engine/mesh/scene_reader.cpp",)),
 }
 
 # Reports show numbers, they do not compute them: of the modules of geometry and motion they see these alone.

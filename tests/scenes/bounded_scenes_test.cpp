@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "support/json_path.h"
+#include "support/page_opens.h"
 #include "support/program_run.h"
 
 namespace bounded_scenes_test {
@@ -31,12 +32,20 @@ std::vector<std::string> bounded_scenes() {
   return names;
 }
 
+/// Whose page and glTF files are looked at too, with the folder of the set-up: flank, surface driven, two
+/// set-ups. The others are the pocket (ExportedMeshes), the dome (DomeRun), gouges (GougedPage) and contacts
+/// of the machine (MachineContacts).
+const std::vector<std::string> kPaged{"chu_barrel", "kato_five_axis", "two_setups"};
+const std::vector<std::string> kPagedSetup{"", "", "2_turned_over"};
+
 class BoundedScene : public testing::TestWithParam<std::string> {};
 
 TEST_P(BoundedScene, MeetsExpectedJson) {
   const fs::path folder = swarf::test::fresh_folder(GetParam());
+  const auto paged = std::find(kPaged.begin(), kPaged.end(), GetParam());
   const auto run = swarf::test::run_swarf("run " + (kScenes / GetParam() / "scene.toml").string() + " -o " +
-                                          (folder / "run").string() + " --no-render");
+                                          (folder / "run").string() + " --no-render" +
+                                          (paged == kPaged.end() ? "" : " --report"));
   const json expected = json::parse(std::ifstream(kScenes / GetParam() / "expected.json"));
   ASSERT_EQ(run.exit_code, expected.value("exit_code", 0)) << run.output;
   ASSERT_FALSE(expected.at("bounds").empty());
@@ -49,6 +58,8 @@ TEST_P(BoundedScene, MeetsExpectedJson) {
     EXPECT_GE(value, bound.at("min").get<double>()) << name << ": " << bound.at("why");
     EXPECT_LE(value, bound.at("max").get<double>()) << name << ": " << bound.at("why");
   }
+  if (paged != kPaged.end())
+    swarf::test::expect_review(folder / "run" / kPagedSetup.at(paged - kPaged.begin()));
   fs::remove_all(folder);
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "support/json_path.h"
+#include "support/page_opens.h"
 #include "support/program_run.h"
 
 namespace dome_test {
@@ -83,6 +84,26 @@ TEST_F(DomeRun, GltfValidatorFindsNoError) {
   const std::string command = SWARF_SOURCE_DIR "/tests/gltf/validate.sh " +
                               (folder_ / "machine.glb").string() + " " + (folder_ / "part.glb").string();
   EXPECT_EQ(std::system(command.c_str()), 0);
+}
+
+TEST_F(DomeRun, PageOpens) {
+  swarf::test::expect_pages_open((folder_ / "report.html").string());
+}
+
+/// Where Blender is installed (it is not needed to build or to test): five axes and the removal, played
+/// there.
+TEST_F(DomeRun, PlaysInBlender) {
+  if (swarf::test::run_command("command -v blender").exit_code != 0)
+    GTEST_SKIP() << "NOT CHECKED: there is no blender here";
+  const std::string table = (folder_.parent_path() / "cycles.csv").string();
+  const auto exported = run_swarf("export " + folder_.string() + " --trajectory " + table);
+  ASSERT_EQ(exported.exit_code, 0) << exported.output;
+  const auto played =
+      swarf::test::run_command("blender -b --factory-startup --python-exit-code 1 --python " SWARF_SOURCE_DIR
+                               "/tests/gltf/blender_plays.py -- " +
+                               (folder_ / "machine.glb").string() + " " + table);
+  EXPECT_EQ(played.exit_code, 0) << played.output;
+  EXPECT_NE(played.output.find("BLENDER PLAYS"), std::string::npos) << played.output;
 }
 
 TEST_F(DomeRun, ComparesStockWithDesign) {

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "support/program_run.h"
+#include "support/page_opens.h"
 
 namespace exported_meshes_test {
 namespace {
@@ -42,6 +42,7 @@ TEST(ExportedMeshes, ThePageOfASmallPartIsLight) {
   const double error_um = std::stod(part.substr(at + key.size(), 16));
   EXPECT_GT(error_um, 0.0) << "the part is not as it was meshed";
   EXPECT_LE(error_um, 2.0);
+  swarf::test::expect_review(folder / "run");
   std::filesystem::remove_all(folder);
 }
 

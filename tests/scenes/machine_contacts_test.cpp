@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "support/page_opens.h"
 #include "support/program_run.h"
 
 namespace machine_contacts_test {
@@ -72,25 +73,36 @@ const std::string kOnTable =
     "[setup]\nwork_origin_mm = \"on_table\"\n[[tool]]\nnumber = 1\ndiameter_mm = 6\n"
     "flute_length_mm = 30\nlength_mm = 60\nholder_diameter_mm = 8\n";
 
-/// A picture of each pair's first contact, told by its parts, line and instant; none where nothing touches.
-TEST_F(MachineContacts, EachPairIsShownInAPicture) {
+/// A picture of each finding beside it, a pin in the machine where it is; the page leads there.
+TEST_F(MachineContacts, EachIsShownInAPictureAndInTheMachine) {
   const std::string pictures =
       "[movie]\nseconds = 0\n[stills]\nkinds = [\"part\"]\nsize = [64, 64]\nsamples = 1\n";
   const std::string clamps = "[[fixture]]\nkind = \"clamps\"\nsides = [\"x-\", \"x+\", \"y+\"]\n";
   run(kFrame, kOnTable + clamps + pictures);
-  EXPECT_FALSE(fs::exists(out() / "still_contact_1.png"));  // --no-render
+  EXPECT_FALSE(fs::exists(out() / "still_finding_1.png"));  // --no-render
   const auto drawn = run_swarf("run " + (folder_ / "scene.toml").string() + " -q -o " + out().string());
   EXPECT_EQ(drawn.exit_code, 1) << drawn.output;
-  EXPECT_TRUE(fs::exists(out() / "still_contact_1.png")) << drawn.output;
-  EXPECT_FALSE(fs::exists(out() / "still_contact_2.png"));  // three contacts of one pair
-  const std::string page = swarf::test::read_text(out() / "report.html");
-  EXPECT_NE(page.find("First contact of clamps and flutes: line 8, "), std::string::npos);
+  const json findings = json::parse(swarf::test::read_text(out() / "findings.json"));
+  ASSERT_FALSE(findings.empty());
+  for (const json& one : findings) {
+    const std::string picture = fmt::format("still_finding_{}.png", one.at("number").get<int>());
+    EXPECT_TRUE(fs::exists(out() / picture)) << one.dump();
+    EXPECT_EQ(one.at("code"), "machine-contact");
+    // The place that the text names, in the machine.
+    const json& place = one.at("machine_place_mm");
+    EXPECT_NE(one.at("text").get<std::string>().find(fmt::format(
+                  "first at ({:.2f}, {:.2f}, {:.2f}) mm of the machine", place.at(0).get<double>(),
+                  place.at(1).get<double>(), place.at(2).get<double>())),
+              std::string::npos)
+        << one.dump();
+  }
+  swarf::test::expect_review(out());
 
   run(kFrame, kOnTable + pictures);
   const auto free = run_swarf("run " + (folder_ / "scene.toml").string() + " -q -o " + out().string());
   EXPECT_EQ(free.exit_code, 0) << free.output;
   EXPECT_TRUE(fs::exists(out() / "still_part.png"));
-  EXPECT_FALSE(fs::exists(out() / "still_contact_1.png"));
+  EXPECT_FALSE(fs::exists(out() / "still_finding_1.png"));
 }
 
 /// A bar across the frame's far side: the tool of D 6 leaves a slot of 6 x 20 through its 8 mm. It touches

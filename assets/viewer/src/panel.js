@@ -186,11 +186,11 @@ export class Panel {
   async showFinding(number) {
     const finding = this.findings[number - 1];
     if (!finding) return;
-    const tab = finding.place && this.files.part ? 'part' : 'machine';
+    const tab = finding.place && !finding.in_machine && this.files.part ? 'part' : 'machine';
     if (this.files[tab] && (this.tab !== tab || !this.stage)) await this.open(tab);
     if (!this.stage) return;
     if (finding.t_s !== null && this.stage.duration) this.seek((finding.t_s - this.program.data.from_s) / this.timeScale);
-    if (finding.place) this.stage.visit(vector(finding.place));
+    if (finding.place) this.stage.visit(vector(finding.place), finding.in_machine);
     else if (tab === 'machine') this.stage.zoomToWork();
     this.showLine(finding.line);
     const text = document.querySelector(`#finding-${number} p`)?.textContent ?? '';
@@ -240,7 +240,8 @@ export class Panel {
     speed.setAttribute('aria-label', 'Speed');
     speed.addEventListener('change', () => { this.speed = Number(speed.value); });
     this.time = make('span', { className: 'viewer-time' });
-    this.player = make('div', { className: 'viewer-bar bottom', hidden: true }, this.playButton, this.scrub, this.time, speed);
+    this.tip = make('span', { className: 'viewer-time viewer-tip' });
+    this.player = make('div', { className: 'viewer-bar bottom', hidden: true }, this.playButton, this.scrub, this.time, this.tip, speed);
     return this.player;
   }
 
@@ -333,6 +334,9 @@ export class Panel {
     const line = index < 0 ? 0 : this.program.line(index);
     this.time.textContent = `${text(this.stage.time)} of ${text(this.stage.duration)} s${line ? `, line ${line}` : ''}`;
     if (this.stage.duration) this.showLine(line);
+    const tip = this.stage.toolTip();
+    this.tip.textContent = tip ? ['X', 'Y', 'Z'].map((axis, k) => `${axis} ${tip.getComponent(k).toFixed(3)}`).join(' ').replaceAll('-', '\u2212') : '';
+    this.host.dataset.stock = this.stage.stockShown();
     this.draw();
   }
 

@@ -1,6 +1,6 @@
 // One glTF file with its own camera, lights, animation and readings. glTF: metres, Y up.
 import {
-  AnimationMixer, Box3, Color, DirectionalLight, Float32BufferAttribute, LoopOnce, NeutralToneMapping,
+  AnimationMixer, Box3, Color, DirectionalLight, DoubleSide, Float32BufferAttribute, Group, LoopOnce, NeutralToneMapping,
   PerspectiveCamera, PMREMGenerator, Raycaster, Scene, Spherical, Vector2, Vector3, WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
@@ -50,6 +50,9 @@ function roomEnvironment(renderer) {
 /** A mesh of several primitives, or of quantised numbers, is a child without a name. */
 const nodeName = (object) => object.name || object.parent?.name || '';
 
+/** Hidden stages and tools are scaled to nothing. */
+const isScaled = (object) => object.matrixWorld.determinant() !== 0;
+
 function roleOf(object) {
   for (let at = object; at; at = at.parent) if (at.userData.role) return at.userData.role;
   return '';
@@ -92,7 +95,8 @@ export class Stage {
     this.scene.updateMatrixWorld(true);
     this.sortObjects(gltf.scene);
     this.startAnimation(gltf);
-    this.work = this.workNode(gltf.scene);
+    this.base = gltf.scene.children[0] ?? gltf.scene;
+    this.work = this.workNode();
     this.marks = new Marks(this.work);
     const solid = this.meshes.filter((mesh) => ['part', 'stock', 'design'].includes(roleOf(mesh)));
     this.section = new Section(this.work, solid, deviationReader, scale);
@@ -111,7 +115,9 @@ export class Stage {
     this.byRole = new Map();
     this.coloursOn = true;
     this.path = null;
+    this.tools = [];
     root.traverse((object) => {
+      if (object.userData.role === 'tool' && object.name.startsWith('cutter')) this.tools.push(object);
       if (object.isLine) {
         if (object.geometry.attributes._time_s) this.path = object;
         else this.lines.push(object);
@@ -126,14 +132,41 @@ export class Stage {
       this.coloured.push(object);
     });
     for (const object of this.lines) object.visible = false;  // the part first; a switch shows them
+    for (const mesh of this.byRole.get('design') ?? []) {
+      Object.assign(mesh.material, { transparent: true, opacity: 0.55, depthWrite: false, side: DoubleSide });
+      mesh.layers.set(hiddenLayer);
+    }
     if (this.path) this.path.visible = false;
   }
 
-  /** The frame in which the program counts, mm: that of the stock, or of the whole file. */
-  workNode(root) {
-    const [stock] = this.byRole.get('stock') ?? [];
-    for (let at = stock; at; at = at.parent) if (at.userData.role) return at;
-    return root.children[0] ?? root;
+  /**
+   * The frame in which the program counts, mm: that of the stock, or of the whole file. A node of its own, for the
+   * stock's stages are scaled to nothing while they are hidden.
+   */
+  workNode() {
+    const [mesh] = this.byRole.get('stock') ?? [];
+    let stock = mesh;
+    while (stock && !stock.userData.role) stock = stock.parent;
+    if (!stock) return this.base;
+    const work = new Group();
+    work.position.copy(stock.position);
+    work.quaternion.copy(stock.quaternion);
+    stock.parent.add(work);
+    work.updateWorldMatrix(true, false);
+    return work;
+  }
+
+  /** Where the tool that is in the spindle ends, work frame, mm; null: no tool. */
+  toolTip() {
+    this.scene.updateMatrixWorld(true);
+    const shown = this.tools.find(isScaled);
+    return shown ? this.toWork(shown.getWorldPosition(new Vector3())) : null;
+  }
+
+  /** Name of the stage of the stock that is shown; '': none. */
+  stockShown() {
+    const shown = (this.byRole.get('stock') ?? []).find(isScaled);
+    return shown ? nodeName(shown) : '';
   }
 
   roles() { return Object.keys(roles).filter((role) => this.byRole.has(role)); }
@@ -225,14 +258,16 @@ export class Stage {
   toWorld(point) { return this.work.localToWorld(point.clone()); }
   toWork(point) { return this.work.worldToLocal(point.clone()); }
 
-  /** Looks at a place of the work frame from where the eye is, from near. */
-  visit(point) {
-    const target = this.toWorld(point), from = this.camera.position.clone().sub(this.controls.target).normalize();
+  /** Looks at a place of the work frame, or of the machine's, from where the eye is, from near. */
+  visit(point, inMachine = false) {
+    this.scene.updateMatrixWorld(true);
+    const target = inMachine ? this.base.localToWorld(point.clone()) : this.toWorld(point);
+    const from = this.camera.position.clone().sub(this.controls.target).normalize();
     const distance = 0.6 * this.extent(this.workMeshes());
     this.camera.position.copy(target).addScaledVector(from, distance);
     this.controls.target.copy(target);
     this.controls.update();
-    this.marks.show([{ at: point }]);
+    this.marks.show([{ at: this.toWork(target) }]);
   }
 
   workMeshes() {

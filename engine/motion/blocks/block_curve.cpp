@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/units.h"
+#include "kinematics/forward_chain.h"
 
 namespace swarf::motion {
 namespace {
@@ -29,15 +30,12 @@ constexpr double kBetweenNodes = 1.1;
 /// The same on a splined curve, whose third derivatives jump at its knots; and the share that its slopes may
 /// be missed by.
 constexpr double kBetweenKnots = 1.5, kSlopeOfCurve = 1.0 + 1e-4;
-constexpr double kWholeTurn = 2.0 * kPi;
 /// A rotary that turns by more than this from node to node jumps, rad.
 constexpr double kJump = 0.5;
 /// The end of a block must meet its given axis values, mm.
 constexpr double kJoin = 1e-6;
 /// Share of the step between two nodes over which the slope there is found by differences.
 constexpr double kReach = 0.02;
-/// Order of the norm that stands for the slowest of tip and axes: see limited_way().
-constexpr int kNormOrder = 6;
 /// Chords that the tip's way under the joint law is summed from: within 1e-3 of the way for half a turn.
 constexpr int kWayChords = 32;
 
@@ -61,28 +59,6 @@ double turn_between(const MachineModel& machine, const AxisValues& a, const Axis
   return turn;
 }
 
-/// The solution nearest to the values before by the turns of the rotary axes: within a block the branch is
-/// the program's, and travel limits are reported, not dodged.
-Branch continued(const kinematics::InverseKinematics& inverse, const MachineModel& machine,
-                 const ToolPose& pose, const AxisValues& before) {
-  const kinematics::InverseSolutions solutions = inverse.solve(pose, before);
-  Branch nearest;
-  double least = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < solutions.count; ++i) {
-    Branch branch = solutions.branch[i];
-    for (size_t k = 0; k < machine.axes.size(); ++k) {
-      const auto row = static_cast<Eigen::Index>(k);
-      if (machine.axes[k].kind == AxisKind::kRotary)
-        branch.q[row] += kWholeTurn * std::nearbyint((before[row] - branch.q[row]) / kWholeTurn);
-    }
-    const double turn = turn_between(machine, before, branch.q);
-    if (turn >= least) continue;
-    least = turn;
-    nearest = branch;
-  }
-  return nearest;
-}
-
 }  // namespace
 
 double axis_way(const MachineModel& machine, const AxisValues& from, const AxisValues& to) {
@@ -100,12 +76,18 @@ double way_of_tip(const BlockMotion& motion) {
     if (motion.block.law != BlockLaw::kJoint) return toolpath::tip_way(motion.block);
     return (motion.block.to.tip_W - motion.block.from.tip_W).norm();
   }
+  const kinematics::ForwardChain forward(*motion.machine);
+  const AxisValues change = motion.q_to - motion.q_from;
   double way = 0.0;
   Vec3 before = motion.block.from.tip_W;
-  for (int i = 1; i <= kWayChords; ++i) {
-    const Vec3 tip = pose_at(motion, static_cast<double>(i) / kWayChords).tip_W;
-    way += (tip - before).norm();
-    before = tip;
+  for (int i = 1; i <= kWayChords; i += 2) {
+    ToolPose pose[2];
+    forward.at({motion.q_from + static_cast<double>(i) / kWayChords * change,
+                motion.q_from + static_cast<double>(i + 1) / kWayChords * change},
+               pose);
+    if (i + 1 == kWayChords) pose[1] = motion.block.to;
+    way += (pose[0].tip_W - before).norm() + (pose[1].tip_W - pose[0].tip_W).norm();
+    before = pose[1].tip_W;
   }
   return way;
 }
@@ -125,18 +107,17 @@ BlockCurve::BlockCurve(const BlockMotion& motion, const kinematics::InverseKinem
     length_ = limited_way(motion.q_to - motion.q_from, 1.0);
     return;
   }
-  motion_ = std::make_shared<const BlockMotion>(motion);
+  law_ = std::make_shared<const Law>(motion);
   follow();
 }
 
+/// The values that those at share x follow by continuity: under axes of their own these, else the hint.
+AxisValues BlockCurve::before(double x, const AxisValues& hint) const {
+  return block().law == BlockLaw::kTcpAxes ? AxisValues(q_from_ + x * (q_to_ - q_from_)) : hint;
+}
+
 AxisValues BlockCurve::solve(double x, const AxisValues& hint) const {
-  const ToolPose pose = pose_at(*motion_, x);
-  if (motion_->block.law == BlockLaw::kTcpAxes) {
-    const AxisValues own = q_from_ + x * (q_to_ - q_from_);
-    const Branch branch = continued(*inverse_, *machine_, pose, own);
-    return branch.outcome == InverseOutcome::kUnreachable ? hint : branch.q;
-  }
-  const Branch branch = continued(*inverse_, *machine_, pose, hint);
+  const Branch branch = inverse_->continued(law_->at(x), before(x, hint));
   return branch.outcome == InverseOutcome::kUnreachable ? hint : branch.q;
 }
 
@@ -150,19 +131,20 @@ double BlockCurve::limited_way(const AxisValues& change, double share) const {
   }
   if (most == 0.0) return 0.0;
   double sum = 0.0;
-  for (const double way : ways) sum += std::pow(way / most, kNormOrder);
-  return most * std::pow(sum, 1.0 / kNormOrder);
+  for (const double way : ways) {
+    const double square = way / most * (way / most);
+    sum += square * square * square;
+  }
+  return most * std::cbrt(std::sqrt(sum));
 }
 
 void BlockCurve::follow() {
-  const double way = std::max(toolpath::tip_way(motion_->block), 1.0);
-  const PathShape shape{[&](double x) { return pose_at(*motion_, x); },
-                        [&](double from, double to) { return way * (to - from); },
-                        [&](const ToolPose& pose, const AxisValues& before) {
-                          return continued(*inverse_, *machine_, pose, before);
-                        }};
+  const double way = std::max(toolpath::tip_way(block()), 1.0);
+  const PathShape shape{
+      [&](double x) { return law_->at(x); }, [&](double from, double to) { return way * (to - from); },
+      [&](const ToolPose& pose, const AxisValues& last) { return inverse_->continued(pose, last); }};
   std::vector<PathNode> nodes{{0.0, 0.0, q_from_, false, true}};
-  if (motion_->block.law == BlockLaw::kTcpAxes) {
+  if (block().law == BlockLaw::kTcpAxes) {
     for (int i = 1; i <= 16; ++i)
       nodes.push_back({i / 16.0, way * i / 16.0, solve(i / 16.0, nodes.back().q), false, true});
   } else {
@@ -181,11 +163,11 @@ void BlockCurve::follow() {
   jump_mm_ = axis_way(*machine_, nodes.back().q, q_to_);
   if (jump_mm_ > kJoin) followed_ = false;
   if (followed_) jump_mm_ = 0.0;
-  if (!followed_) length_ = std::max(length_, toolpath::tip_way(motion_->block));
+  if (!followed_) length_ = std::max(length_, toolpath::tip_way(block()));
   // From block to block of one curve s stays the way of its tip: no change of it bends q(s).
-  if (followed_ && motion_->block.curve)
+  if (followed_ && block().curve)
     length_ = tip_way_;
-  else if (followed_ && turns(*motion_) && fastest > kUneven * slowest)
+  else if (followed_ && turns(law_->motion) && fastest > kUneven * slowest)
     stretch(nodes);
   sample();
 }
@@ -223,7 +205,7 @@ void BlockCurve::stretch(const std::vector<PathNode>& nodes) {
 
 void BlockCurve::sample() {
   double turn = turn_between(*machine_, q_from_, q_to_);
-  if (motion_->block.arc) turn += toolpath::arc_angle(motion_->block);
+  if (block().arc) turn += toolpath::arc_angle(block());
   const auto steps = static_cast<size_t>(std::clamp(kNodesPerRadian * turn, kNodesMin, kNodesMax));
   nodes_.reserve(steps + 1);
   nodes_.push_back(q_from_);
@@ -239,14 +221,30 @@ double BlockCurve::share(double s) const {
   return stretched_ ? std::clamp(share_.at(s).w, 0.0, 1.0) : s / length_;
 }
 
+const AxisValues& BlockCurve::nearest_node(double s) const {
+  const double at = s / length_ * static_cast<double>(nodes_.size() - 1);
+  return nodes_[std::min(nodes_.size() - 1, static_cast<size_t>(std::max(0.0, at + 0.5)))];
+}
+
+AxisValues BlockCurve::given(double x) const {
+  if (x == 0.0 || x == 1.0) return x == 0.0 ? q_from_ : q_to_;
+  return q_from_ + x * (q_to_ - q_from_);
+}
+
 AxisValues BlockCurve::q(double s) const {
   const double x = share(s);
-  if (x == 0.0) return q_from_;
-  if (even_) return x == 1.0 ? q_to_ : AxisValues(q_from_ + x * (q_to_ - q_from_));
-  if (x == 1.0 && followed_) return q_to_;
-  const double at = s / length_ * static_cast<double>(nodes_.size() - 1);
-  const auto near = std::min(nodes_.size() - 1, static_cast<size_t>(std::max(0.0, at + 0.5)));
-  return solve(x, nodes_[near]);
+  return is_given(x) ? given(x) : solve(x, nearest_node(s));
+}
+
+BlockCurve::Place BlockCurve::place(double s) const {
+  Place place;
+  place.share = share(s);
+  place.solved = is_given(place.share);
+  place.q = place.solved ? given(place.share) : nearest_node(s);
+  if (place.solved) return place;
+  place.before = before(place.share, place.q);
+  place.pose = law_->at(place.share);
+  return place;
 }
 
 BlockCurve::Jet BlockCurve::jet(double s) const {
@@ -280,7 +278,7 @@ PathCell BlockCurve::bounds_between(size_t from, size_t to) const {
     cell.third = cell.third.cwiseMax(
         (nodes_[i + 3] - 3.0 * nodes_[i + 2] + 3.0 * nodes_[i + 1] - nodes_[i]).cwiseAbs());
   }
-  const bool on_curve = motion_->block.curve.has_value();
+  const bool on_curve = block().curve.has_value();
   cell.third *= (on_curve ? kBetweenKnots : kBetweenNodes) / (h * h * h);
   for (size_t i = std::max<size_t>(1, from); i <= std::min(last - 1, to); ++i) {
     if (jump(i - 1) || jump(i)) continue;

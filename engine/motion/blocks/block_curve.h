@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "base/cubic_spline.h"
-#include "motion/blocks/block_motion.h"
+#include "motion/blocks/pose_law.h"
 #include "motion/speed/look_ahead.h"
 #include "motion/speed/speed_clamps.h"
 
@@ -40,6 +40,7 @@ class BlockCurve {
   BlockCurve(const BlockMotion& motion, const kinematics::InverseKinematics& inverse, double speed_mm_s);
 
   double length() const { return length_; }
+  const kinematics::InverseKinematics& inverse() const { return *inverse_; }
   double tip_way() const { return tip_way_; }  ///< mm
   bool even() const { return even_; }          ///< q(s) is a straight line
   /// False where the machine does not follow: out of reach, or a jump at the pole or to the program's values.
@@ -49,6 +50,15 @@ class BlockCurve {
   /// Share of the block at s.
   double share(double s) const;
   kinematics::AxisValues q(double s) const;
+  /// A place for those who solve the inverse themselves, several places at once.
+  struct Place {
+    double share = 0.0;
+    bool solved = true;        ///< q is known; else it is what follows `before` by continuity at `pose`,
+    kinematics::AxisValues q;  ///< or, out of reach, this
+    kinematics::AxisValues before;
+    ToolPose pose;
+  };
+  Place place(double s) const;
   /// q and its first two derivatives by s.
   struct Jet {
     kinematics::AxisValues value, first, second;
@@ -65,6 +75,11 @@ class BlockCurve {
 
  private:
   kinematics::AxisValues solve(double x, const kinematics::AxisValues& hint) const;
+  kinematics::AxisValues before(double x, const kinematics::AxisValues& hint) const;
+  /// The values at share x need no inverse: those of given().
+  bool is_given(double x) const { return even_ || x == 0.0 || (x == 1.0 && followed_); }
+  kinematics::AxisValues given(double x) const;
+  const kinematics::AxisValues& nearest_node(double s) const;
   /// Length of a change of axis values over a share of the block: the tip counts 1 per mm, an axis as far as
   /// the tip would go at the reference speed while the axis needs its speed limit. Close to the greatest of
   /// all, smoothly.
@@ -78,7 +93,15 @@ class BlockCurve {
 
   kinematics::AxisValues q_from_, q_to_;  ///< of the block
   const kinematics::MachineModel* machine_;
-  std::shared_ptr<const BlockMotion> motion_;  ///< when not even
+  /// The block, when it is not even.
+  struct Law {
+    explicit Law(const BlockMotion& of) : motion(of), law(of) {}
+    ToolPose at(double x) const { return law.at(motion, x); }
+    BlockMotion motion;
+    PoseLaw law;
+  };
+  const toolpath::BlockMove& block() const { return law_->motion.block; }
+  std::shared_ptr<const Law> law_;
   const kinematics::InverseKinematics* inverse_;
   double speed_ = 0.0;
   double length_ = 0.0, tip_way_ = 0.0;

@@ -9,8 +9,8 @@
 
 #include "base/angles.h"
 #include "base/check.h"
-#include "base/tool_axis.h"
 #include "kinematics/joint_path.h"
+#include "motion/blocks/pose_law.h"
 
 namespace swarf::motion {
 namespace {
@@ -21,33 +21,6 @@ using toolpath::BlockLaw;
 using toolpath::BlockMove;
 
 constexpr int kPiecesMax = 10'000'000;
-/// An arc as polar coordinates about its axis; radius and height may differ a little between the ends.
-struct ArcShape {
-  Vec3 centre, along, across, normal;
-  double angle, r_from, r_to, h_from, h_to;
-
-  explicit ArcShape(const BlockMove& block)
-      : centre(block.arc->centre_W), normal(block.arc->normal_W), angle(toolpath::arc_angle(block)) {
-    const Vec3 from = block.from.tip_W - centre, to = block.to.tip_W - centre;
-    h_from = from.dot(normal);
-    h_to = to.dot(normal);
-    along = (from - h_from * normal).normalized();
-    across = normal.cross(along);
-    r_from = (from - h_from * normal).norm();
-    r_to = (to - h_to * normal).norm();
-  }
-  Vec3 point(double s) const {
-    const double r = r_from + s * (r_to - r_from);
-    return centre + (h_from + s * (h_to - h_from)) * normal +
-           r * (std::cos(s * angle) * along + std::sin(s * angle) * across);
-  }
-  double speed() const {
-    return std::max(r_from, r_to) * angle + std::abs(r_to - r_from) + std::abs(h_to - h_from);
-  }
-  double acceleration() const {
-    return std::max(r_from, r_to) * angle * angle + 2.0 * std::abs(r_to - r_from) * angle;
-  }
-};
 
 MotionBounds tcp_bounds(const BlockMove& block) {
   const double theta = angle_between(block.from.axis_W, block.to.axis_W);
@@ -153,25 +126,7 @@ ToolPose pose_at(const BlockMotion& motion, double s) {
   const BlockMove& block = motion.block;
   if (s <= 0.0) return block.from;
   if (s >= 1.0) return block.to;
-  switch (block.law) {
-    case BlockLaw::kJoint:
-      return kinematics::forward(*motion.machine, motion.q_from + s * (motion.q_to - motion.q_from));
-    case BlockLaw::kEnds:
-      return {block.from.tip_W + s * (block.to.tip_W - block.from.tip_W),
-              (block.from.axis_W + s * (block.to.axis_W - block.from.axis_W)).normalized()};
-    case BlockLaw::kCurve:
-      return block.curve->curve->pose(block.curve->from + s * (block.curve->to - block.curve->from));
-    case BlockLaw::kTcp:
-    case BlockLaw::kTcpAxes:
-      break;
-  }
-  ToolPose pose = pose_between(block.from, block.to, s);
-  if (block.law == BlockLaw::kTcpAxes) {
-    pose.axis_W =
-        kinematics::forward(*motion.machine, motion.q_from + s * (motion.q_to - motion.q_from)).axis_W;
-  }
-  if (block.arc) pose.tip_W = ArcShape(block).point(s);
-  return pose;
+  return PoseLaw(motion).at(motion, s);
 }
 
 MotionBounds motion_bounds(const BlockMotion& motion) {

@@ -1,6 +1,7 @@
 #include "motion/blocks/block_run.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "motion/blocks/pole_turn.h"
@@ -106,6 +107,7 @@ void RunSampler::enter(const PlannedRun& stretch) {
   if (!motions_) motions_.emplace(stretch.motions);
   phase_ = 0;
   if (stretch.phases.empty()) return;
+  forward_.emplace(*motions_->at(stretch.place.first).machine);
   if (clock_.tick == 0 && clock_.planned_s == 0.0) {
     clock_.time = period_;
     clock_.before = point_at(stretch.path, 0, 0.0);
@@ -133,27 +135,64 @@ size_t RunSampler::skip(size_t ticks) {
   return skipped;
 }
 
-bool RunSampler::next(BlockTick& tick) {
+/// False when the next tick lies behind the stretch.
+bool RunSampler::next_place(CellOffset& place) {
   if (run_->last && clock_.tick == ticks_) return false;
   enter_phase();
   if (!run_->last && phase_ == run_->phases.size()) return false;
   ++clock_.tick;
   const std::vector<PathCell>& cells = run_->path.cells;
   if (phase_ == run_->phases.size() || (run_->last && clock_.tick == ticks_)) {
-    fill(cells.size() - 1, cells.back().length, tick);
+    place = {cells.size() - 1, cells.back().length};
   } else {
     const PlacedPhase& placed = run_->phases[phase_];
     size_t cell = placed.cell;
     double offset = placed.offset + placed.phase.way(clock_.time);
     while (cell + 1 < cells.size() && offset > cells[cell].length) offset -= cells[cell++].length;
-    fill(cell, std::clamp(offset, 0.0, cells[cell].length), tick);
+    place = {cell, std::clamp(offset, 0.0, cells[cell].length)};
   }
   clock_.time += period_;
   return true;
 }
 
-void RunSampler::fill(size_t cell, double offset, BlockTick& tick) {
-  const PathPoint at = point_at(run_->path, cell, offset);
+size_t RunSampler::next(std::span<BlockTick> ticks) {
+  std::array<CellOffset, kBatch> places;
+  std::array<PathPoint, kBatch> points;
+  size_t count = 0;
+  while (count < std::min(kBatch, ticks.size()) && next_place(places[count])) ++count;
+  points_at(run_->path, std::span(places).first(count), points);
+  set_poses(std::span(points).first(count), ticks);
+  for (size_t i = 0; i < count; ++i) fill(points[i], ticks[i]);
+  return count;
+}
+
+/// Where the axes lead the tip, two ticks at once; else by the block's law.
+void RunSampler::set_poses(std::span<const PathPoint> points, std::span<BlockTick> ticks) {
+  std::array<size_t, 2> led{};
+  size_t count = 0;
+  const auto drive = [&] {
+    ToolPose poses[2];
+    forward_->at({points[led[0]].q, points[led[1]].q}, poses);
+    ticks[led[0]].sample.pose = poses[0];
+    ticks[led[1]].sample.pose = poses[1];
+    count = 0;
+  };
+  for (size_t i = 0; i < points.size(); ++i) {
+    const PathPoint& at = points[i];
+    const BlockMotion& motion = motions_->at(run_->place.first + at.block);
+    if (at.rounded || (motion.block.law == BlockLaw::kJoint && at.share < 1.0)) {
+      led[count++] = i;
+      if (count == 2) drive();
+    } else {
+      ticks[i].sample.pose = at.pose ? *at.pose : pose_at(motion, at.share);
+    }
+  }
+  if (count == 0) return;
+  led[1] = led[0];
+  drive();
+}
+
+void RunSampler::fill(const PathPoint& at, BlockTick& tick) {
   const size_t index = run_->place.first + at.block;
   const BlockMotion& motion = motions_->at(index);
   const BlockCurve& curve = run_->path.curve(at.block);
@@ -161,10 +200,6 @@ void RunSampler::fill(size_t cell, double offset, BlockTick& tick) {
   tick.q = at.q;
   tick.followed = curve.followed();
   ToolSample& sample = tick.sample;
-  sample = {};
-  sample.pose = at.rounded || (motion.block.law == BlockLaw::kJoint && at.share < 1.0)
-                    ? kinematics::forward(*motion.machine, at.q)
-                    : pose_at(motion, at.share);
   sample.contact_W = sample.pose.tip_W;
   sample.u = at.share;
   sample.element = static_cast<int>(index);

@@ -97,15 +97,17 @@ struct RunClock {
   Vec3 tip_before = Vec3::Zero();
 };
 
-/// The ticks of a run one by one: cycles of `period_s` from its start at rest; the last one ends on its end.
-/// Allocates nothing.
+/// The ticks of a run one after the other: cycles of `period_s` from its start at rest; the last one ends on
+/// its end. Allocates nothing.
 class RunSampler {
  public:
   explicit RunSampler(double period_s, const RunClock& clock = {}) : period_(period_s), clock_(clock) {}
   /// Goes on in this stretch; it must outlive the calls of next().
   void enter(const PlannedRun& stretch);
-  /// False when the next tick lies behind the stretch.
-  bool next(BlockTick& tick);
+  /// The next ticks, as many as there is room for, kBatch at most; returns how many. None when the next one
+  /// lies behind the stretch.
+  size_t next(std::span<BlockTick> ticks);
+  static constexpr size_t kBatch = 32;
   /// Passes at most so many ticks without making them; returns how many. The last ones of the stretch are
   /// left, and the first tick that is made next has no feed of its own.
   size_t skip(size_t ticks);
@@ -113,10 +115,13 @@ class RunSampler {
 
  private:
   void enter_phase();
-  void fill(size_t cell, double offset, BlockTick& tick);
+  bool next_place(CellOffset& place);
+  void set_poses(std::span<const PathPoint> points, std::span<BlockTick> ticks);
+  void fill(const PathPoint& at, BlockTick& tick);
 
   const PlannedRun* run_ = nullptr;
   std::optional<MotionReader> motions_;  ///< of the whole path
+  std::optional<kinematics::ForwardChain> forward_;
   double period_;
   RunClock clock_;
   size_t ticks_ = 0;  ///< of the whole run; known in its last stretch

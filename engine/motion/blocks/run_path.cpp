@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "base/check.h"
-#include "base/roots.h"
+#include "kinematics/forward_chain.h"
 
 namespace swarf::motion {
 namespace {
@@ -49,18 +49,60 @@ Blend blend_between(const BlockCurve::Jet& a, const BlockCurve::Jet& b, double b
   return blend;
 }
 
-/// Greatest |p| on [0,1].
-double greatest_of(std::span<const double> p) {
-  const auto value = [&](double x) {
+/// Where a x^2 + b x + c is 0, ascending; both NaN where it never is, one is infinite or NaN where a is 0.
+std::array<double, 2> quadratic_roots(double a, double b, double c) {
+  const double root = std::sqrt(b * b - 4.0 * a * c);
+  const double far = -0.5 * (b + std::copysign(root, b));
+  const double first = far / a, second = c / far;
+  return first < second ? std::array{first, second} : std::array{second, first};
+}
+
+/// The root between two places of different sign: Newton's steps, halves where they would leave the bracket.
+/// A place of greatest_of() where the slope is all but 0: its own rounding shows in the value by its square.
+double root_of_cubic(std::span<const double, 4> c, double low, double high, bool rises) {
+  double x = 0.5 * (low + high);
+  for (int i = 0; i < 60; ++i) {
+    const double value = ((c[3] * x + c[2]) * x + c[1]) * x + c[0];
+    ((value < 0.0) == rises ? low : high) = x;
+    const double next = x - value / ((3.0 * c[3] * x + 2.0 * c[2]) * x + c[1]);
+    const double taken = next > low && next < high ? next : 0.5 * (low + high);
+    if (std::abs(taken - x) < 1e-12) return taken;
+    x = taken;
+  }
+  return x;
+}
+
+/// Greatest |p| on [0,1], p of degree 2 to 4: at an end or where its slope is 0.
+template <size_t N>
+double greatest_of(const std::array<double, N>& p) {
+  double result = 0.0;
+  const auto see = [&](double x) {
+    if (!(x >= 0.0 && x <= 1.0)) return;
     double sum = 0.0;
-    for (size_t k = p.size(); k-- > 0;) sum = sum * x + p[k];
-    return std::abs(sum);
+    for (size_t k = N; k-- > 0;) sum = sum * x + p[k];
+    result = std::max(result, std::abs(sum));
   };
-  std::array<double, 6> slope{};
-  for (size_t k = 1; k < p.size(); ++k) slope[k - 1] = static_cast<double>(k) * p[k];
-  double result = std::max(value(0.0), value(1.0));
-  const UnitRoots roots = unit_roots(std::span(slope).first(p.size() - 1));
-  for (const double x : roots.all()) result = std::max(result, value(x));
+  see(0.0);
+  see(1.0);
+  if constexpr (N == 3) {
+    see(-0.5 * p[1] / p[2]);
+  } else if constexpr (N == 4) {
+    for (const double x : quadratic_roots(3.0 * p[3], 2.0 * p[2], p[1])) see(x);
+  } else {
+    static_assert(N == 5);
+    const std::array<double, 4> slope{p[1], 2.0 * p[2], 3.0 * p[3], 4.0 * p[4]};
+    // The turns of the slope divide [0,1] into pieces with one root of it at most.
+    const auto turns = quadratic_roots(3.0 * slope[3], 2.0 * slope[2], slope[1]);
+    const auto at = [&](double x) { return ((slope[3] * x + slope[2]) * x + slope[1]) * x + slope[0]; };
+    double from = 0.0;
+    for (const double end : {turns[0], turns[1], 1.0}) {
+      if (!(end > from && end <= 1.0)) continue;
+      const double a = at(from), b = at(end);
+      if ((a < 0.0) != (b < 0.0)) see(root_of_cubic(slope, from, end, a < b));
+      see(end);
+      from = end;
+    }
+  }
   return result;
 }
 
@@ -76,6 +118,9 @@ PathCell blend_cell(const Blend& blend) {
   cell.first = cell.second = cell.third = AxisValues::Zero();
   const double l = blend.length;
   for (Eigen::Index i = 0; i < kinematics::kMaxAxes; ++i) {
+    if (blend.turn[i] == 0.0 && blend.coefficient[1][i] == 0.0 && blend.coefficient[3][i] == 0.0 &&
+        blend.coefficient[4][i] == 0.0 && blend.coefficient[5][i] == 0.0 && blend.coefficient[2][i] == 0.0)
+      continue;
     std::array<double, 5> d1{};
     std::array<double, 4> d2{};
     std::array<double, 3> d3{};
@@ -109,6 +154,7 @@ RunPathBuilder::RunPathBuilder(const BlockMotions& motions, const kinematics::In
       inverse_(inverse),
       options_(options),
       machine_(*motions[0].machine),
+      forward_(machine_),
       rapid_(is_rapid(motions.block(0))),
       at_(start) {
   limits_ = axis_limits(machine_, rapid_);
@@ -275,7 +321,8 @@ void RunPathBuilder::limit_tip(size_t a, size_t b, PathCell& cell) const {
 /// The longest corner within the tolerance: its deviation grows with its length, at least about linearly.
 Blend RunPathBuilder::fit(size_t a, size_t b) const {
   const BlockCurve &in = path_.curve(a), &out = path_.curve(b);
-  const Corner corner{in, out, motions_[a], motions_[b]};
+  const BlockMotion before = motions_[a], after = motions_[b];
+  const Corner corner{in, out, before, after, PoseLaw(before), PoseLaw(after)};
   const double tolerance = corner_tolerance(corner.in_motion.block, options_);
   double d = kCornerShare * std::min(in.length(), out.length());
   for (int i = 0; i < kFits; ++i) {
@@ -293,29 +340,37 @@ double RunPathBuilder::deviation(const Corner& corner, const Blend& blend) const
   constexpr int kPlaces = 16;
   const BlockCurve &in = corner.in, &out = corner.out;
   std::array<double, kPlaces + 1> distance{};
-  for (int i = 1; i < kPlaces; ++i) {
-    const double s = blend.length * i / kPlaces;
-    const ToolPose programmed = s < blend.before
-                                    ? pose_at(corner.in_motion, in.share(in.length() - blend.before + s))
-                                    : pose_at(corner.out_motion, out.share(s - blend.before));
-    const ToolPose rounded = kinematics::forward(machine_, blend.q(s));
-    distance[static_cast<size_t>(i)] = (rounded.tip_W - programmed.tip_W).norm();
+  for (int i = 1; i < kPlaces; i += 2) {
+    ToolPose rounded[2];
+    forward_.at({blend.q(blend.length * i / kPlaces), blend.q(blend.length * (i + 1) / kPlaces)}, rounded);
+    for (int lane = 0; lane < 2 && i + lane < kPlaces; ++lane) {
+      const double s = blend.length * (i + lane) / kPlaces;
+      const ToolPose programmed =
+          s < blend.before ? corner.in_law.at(corner.in_motion, in.share(in.length() - blend.before + s))
+                           : corner.out_law.at(corner.out_motion, out.share(s - blend.before));
+      distance[static_cast<size_t>(i + lane)] = (rounded[lane].tip_W - programmed.tip_W).norm();
+    }
   }
   // Between the places: the top of the parabola through the greatest_of and those beside it.
   const auto top = std::max_element(distance.begin() + 1, distance.end() - 1);
   const double before = *(top - 1), after = *(top + 1), bend = 2.0 * *top - before - after;
   return bend > 0.0 ? *top + std::pow(before - after, 2) / (8.0 * bend) : *top;
 }
-PathPoint point_at(const RunPath& path, size_t cell, double offset) {
-  const Piece& piece = path.pieces[path.piece_of_cell[cell]];
-  const double s = path.offset_of_cell[cell] + offset;
-  PathPoint point;
+
+namespace {
+
+/// The point, but for what the inverse has still to find: then true.
+bool is_open(const RunPath& path, const CellOffset& at, PathPoint& point, BlockCurve::Place& place) {
+  const Piece& piece = path.pieces[path.piece_of_cell[at.cell]];
+  const double s = path.offset_of_cell[at.cell] + at.offset;
+  point = {};
   point.block = piece.block;
   if (piece.blend < 0) {
-    const BlockCurve& curve = path.curve(piece.block);
-    point.share = curve.share(piece.from + s);
-    point.q = curve.q(piece.from + s);
-    return point;
+    place = path.curve(piece.block).place(piece.from + s);
+    point.share = place.share;
+    point.q = place.q;
+    if (!place.solved) point.pose = place.pose;
+    return !place.solved;
   }
   const Blend& blend = path.blends[static_cast<size_t>(piece.blend)];
   point.rounded = true;
@@ -327,6 +382,37 @@ PathPoint point_at(const RunPath& path, size_t cell, double offset) {
     while (path.curve(point.block).length() < kRunLengthMin);
     point.share = path.curve(point.block).share(s - blend.before);
   }
+  return false;
+}
+
+}  // namespace
+
+void points_at(const RunPath& path, std::span<const CellOffset> places, std::span<PathPoint> points) {
+  std::array<BlockCurve::Place, 2> open;
+  std::array<PathPoint*, 2> found{};
+  size_t count = 0;
+  const auto solve = [&] {
+    const kinematics::InverseKinematics& inverse = path.curves.front().inverse();
+    kinematics::Branch branch[2];
+    inverse.continued({open[0].pose, open[1].pose}, {open[0].before, open[1].before}, branch);
+    for (size_t i = 0; i < count; ++i)
+      if (branch[i].outcome != kinematics::InverseOutcome::kUnreachable) found[i]->q = branch[i].q;
+    count = 0;
+  };
+  for (size_t i = 0; i < places.size(); ++i) {
+    if (!is_open(path, places[i], points[i], open[count])) continue;
+    found[count++] = &points[i];
+    if (count == 2) solve();
+  }
+  if (count == 0) return;
+  open[1] = open[0];
+  solve();
+}
+
+PathPoint point_at(const RunPath& path, size_t cell, double offset) {
+  const CellOffset place{cell, offset};
+  PathPoint point;
+  points_at(path, std::span(&place, 1), std::span(&point, 1));
   return point;
 }
 

@@ -15,6 +15,7 @@
 #include <span>
 #include <vector>
 
+#include "kinematics/forward_chain.h"
 #include "motion/blocks/block_curve.h"
 #include "motion/blocks/block_motions.h"
 #include "motion/options.h"
@@ -96,7 +97,8 @@ class RunPathBuilder {
   /// Two blocks that meet in a corner.
   struct Corner {
     const BlockCurve &in, &out;
-    BlockMotion in_motion, out_motion;
+    const BlockMotion &in_motion, &out_motion;
+    PoseLaw in_law, out_law;
   };
   double deviation(const Corner& corner, const Blend& blend) const;
 
@@ -104,6 +106,7 @@ class RunPathBuilder {
   const kinematics::InverseKinematics& inverse_;
   const MotionOptions& options_;
   const kinematics::MachineModel& machine_;
+  kinematics::ForwardChain forward_;
   AxisLimits limits_;
   bool rapid_ = false, done_ = false;
   double reference_mm_s_ = 0.0;
@@ -118,7 +121,15 @@ struct PathPoint {
   double share = 0.0;
   bool rounded = false;  ///< the axis values are those of a rounded corner
   kinematics::AxisValues q = kinematics::AxisValues::Zero();
+  std::optional<ToolPose> pose;  ///< of the block, where it had to be found
 };
 PathPoint point_at(const RunPath& path, size_t cell, double offset);
+
+struct CellOffset {
+  size_t cell = 0;
+  double offset = 0.0;  ///< mm from its start
+};
+/// The same of several places: the inverse takes two at once.
+void points_at(const RunPath& path, std::span<const CellOffset> places, std::span<PathPoint> points);
 
 }  // namespace swarf::motion

@@ -78,8 +78,8 @@ CycleStream::CycleStream(const CycleSource& source, const CyclePlace& from)
 bool CycleStream::next(std::vector<Cycle>& window) {
   window.clear();
   window_ = &window;
-  while (window.size() < kWindow && go_on()) {
-  }
+  do room_ = kWindow - window.size();
+  while (room_ > 0 && go_on());
   window_ = nullptr;
   return !window.empty();
 }
@@ -89,6 +89,7 @@ void CycleStream::pass_to(uint64_t cycle) {
   std::vector<Cycle> passed;
   window_ = &passed;
   bool more = true;
+  room_ = 1;
   while (more && cycle_ < cycle) {
     if (may_skip()) cycle_ += run_->sampler->skip(cycle - cycle_ - 1);
     passed.clear();
@@ -110,6 +111,12 @@ bool CycleStream::may_skip() {
 
 /// Records a cycle or several, or begins what comes next; false when nothing does.
 bool CycleStream::go_on() {
+  const bool more = advance();
+  if (!window_->empty()) before_ = window_->back();
+  return more;
+}
+
+bool CycleStream::advance() {
   if (run_) {
     run_on();
   } else if (pass_) {
@@ -182,13 +189,9 @@ void CycleStream::run_on() {
     record(standing(run.from, run.kind), {run.turn->at(t), InverseOutcome::kOk});
   } else if (run.stretch == nullptr) {
     enter_stretch();
-  } else if (BlockTick tick; run.sampler->next(tick)) {
-    sample_element_ = tick.sample.element;
-    if (tick.followed) {
-      record(tick.sample, {tick.q, InverseOutcome::kOk});
-    } else {
-      record(tick.sample);
-    }
+  } else if (const size_t count =
+                 run.sampler->next(std::span(ticks_).first(std::min(room_, ticks_.size())))) {
+    for (const BlockTick& tick : std::span(ticks_).first(count)) record(tick);
   } else if (!run.stretch->last) {
     run.stretch = nullptr;
   } else {
@@ -323,14 +326,27 @@ void CycleStream::record(const ToolSample& sample) {
   record(sample, inverse().solve_nearest(sample.pose, q_));
 }
 
-void CycleStream::record(ToolSample sample, const Branch& branch, float cost_ns) {
-  sample.t_s = static_cast<double>(cycle_) * source_.options->period_s;
-  sample.element = sample_element_;
-  sample.tool = static_cast<int16_t>(tool_);
+void CycleStream::record(const BlockTick& tick) {
+  sample_element_ = tick.sample.element;
+  if (tick.followed) {
+    q_ = tick.q;
+    add(tick.sample, true, -1.0F);
+  } else {
+    record(tick.sample);
+  }
+}
+
+void CycleStream::record(const ToolSample& sample, const Branch& branch, float cost_ns) {
   const bool reached = branch.outcome != InverseOutcome::kUnreachable;
   if (reached) q_ = branch.q;
-  before_ = {cycle_++, sample, q_, reached, cost_ns};
-  window_->push_back(before_);
+  add(sample, reached, cost_ns);
+}
+
+void CycleStream::add(const ToolSample& sample, bool reached, float cost_ns) {
+  Cycle& cycle = window_->emplace_back(Cycle{cycle_, sample, q_, reached, cost_ns});
+  cycle.sample.t_s = static_cast<double>(cycle_++) * source_.options->period_s;
+  cycle.sample.element = sample_element_;
+  cycle.sample.tool = static_cast<int16_t>(tool_);
 }
 
 /// Refuses what nobody means: a program of months, by a feed that is wrong by a power of ten.

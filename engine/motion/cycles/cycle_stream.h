@@ -86,6 +86,7 @@ class CycleStream {
 
  private:
   bool go_on();
+  bool advance();
   bool may_skip();
   void begin_run();
   void run_on();
@@ -101,13 +102,17 @@ class CycleStream {
   void start_at(const ToolSample& first);
   void require_join(const ToolPose& pose) const;
   void record(const ToolSample& sample);
-  void record(ToolSample sample, const kinematics::Branch& branch, float cost_ns = -1.0F);
+  void record(const BlockTick& tick);
+  void record(const ToolSample& sample, const kinematics::Branch& branch, float cost_ns = -1.0F);
+  void add(const ToolSample& sample, bool reached, float cost_ns);
   void check_time(double seconds, const char* what, double cycles_max = 1e300) const;
   const kinematics::InverseKinematics& inverse() const;
 
   CycleSource source_;
   CyclePlace place_;
   std::vector<Cycle>* window_ = nullptr;
+  size_t room_ = 0;  ///< for cycles that are made at once
+  std::vector<BlockTick> ticks_ = std::vector<BlockTick>(RunSampler::kBatch);
   uint64_t cycle_ = 0;
   size_t element_ = 0;  ///< the next one to begin
   int tool_ = 0;

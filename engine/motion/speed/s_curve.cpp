@@ -6,17 +6,28 @@
 namespace swarf::motion {
 namespace {
 
-/// Halvings of an interval of speeds: to the last bit of double.
-constexpr int kHalvings = 60;
+/// Steps that an interval of speeds is narrowed by, to the last bits.
+constexpr int kNarrowings = 120;
 
-/// Greatest x in [low, high] that holds; low must.
-template <typename Holds>
-double greatest(double low, double high, const Holds& holds) {
-  if (holds(high)) return high;
-  for (int i = 0; i < kHalvings; ++i) {
-    const double middle = 0.5 * (low + high);
-    if (!(middle > low && middle < high)) break;
-    (holds(middle) ? low : high) = middle;
+/// Greatest x in [low, high] whose excess, which rises, is not above 0; that of low must not be. Secants,
+/// each third step a half; the end that stays counts half (the Illinois rule).
+template <typename Excess>
+double greatest(double low, double high, const Excess& excess) {
+  double above = excess(high);
+  if (above <= 0.0) return high;
+  double below = excess(low);
+  bool rose_before = false;
+  for (int i = 1; i < kNarrowings; ++i) {
+    if (high - low <= 2e-16 * high) break;
+    double x = low + below / (below - above) * (high - low);
+    if (i % 3 == 0 || !(x > low && x < high)) x = 0.5 * (low + high);
+    if (!(x > low && x < high)) break;
+    const double at = excess(x);
+    const bool rose = at <= 0.0;
+    (rose ? low : high) = x;
+    (rose ? below : above) = at;
+    if (i > 1 && rose == rose_before) (rose ? above : below) *= 0.5;
+    rose_before = rose;
   }
   return low;
 }
@@ -51,7 +62,7 @@ double ramp_length(double from, double to, const RampLimits& limits) {
 
 double reachable_speed(double from, double length, double most, const RampLimits& limits) {
   if (most <= from) return from;
-  return greatest(from, most, [&](double v) { return ramp_length(from, v, limits) <= length; });
+  return greatest(from, most, [&](double v) { return ramp_length(from, v, limits) - length; });
 }
 
 double append_hop(double v0, double v1, double length, double top, const RampLimits& limits,
@@ -60,7 +71,7 @@ double append_hop(double v0, double v1, double length, double top, const RampLim
     return ramp_length(v0, peak, limits) + ramp_length(peak, v1, limits);
   };
   const double least = std::max(v0, v1);
-  const double peak = top > least ? greatest(least, top, [&](double v) { return both(v) <= length; }) : least;
+  const double peak = top > least ? greatest(least, top, [&](double v) { return both(v) - length; }) : least;
   const double cruise = length - both(peak);
   append_ramp(v0, peak, limits, phases);
   if (cruise > 0.0 && peak > 0.0) phases.push_back({cruise / peak, peak, 0.0, 0.0});

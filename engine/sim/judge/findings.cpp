@@ -369,7 +369,7 @@ void machine_faults(const Result& result, Collector& collect) {
   const uint64_t all = contacts.contacts() + contacts.stock_contacts() + contacts.stock_open();
   size_t listed = 0;
   const auto add = [&](const std::string& text, const collision::PairFindings& pair, int element,
-                       int last_element, double t_s, double depth_mm) {
+                       int last_element, double t_s, double depth_mm, const Vec3& place_M) {
     if (listed == kListed) return;
     const ContactBody &a = contacts.bodies[pair.a], &b = contacts.bodies[pair.b];
     const toolpath::Elements& elements = result.main.path.elements;
@@ -378,19 +378,20 @@ void machine_faults(const Result& result, Collector& collect) {
     added.line_last = elements.line(static_cast<size_t>(last_element));
     added.cause = a.name + " and " + b.name;
     added.amount_mm = depth_mm;
+    added.place_M = place_M;
   };
   for (const collision::PairFindings& pair : contacts.findings.pairs) {
     if (contacts.with_stock(pair)) continue;
     for (const collision::ContactEvent& event : pair.contacts)
       add(contact_text(result, contacts.bodies[pair.a], contacts.bodies[pair.b], event), pair,
-          event.first_element, event.last_element, event.first.time_s, event.depth_mm);
+          event.first_element, event.last_element, event.first.time_s, event.depth_mm, event.point_a);
   }
   if (!contacts.as_cut) return;
   for (const StockVerdict verdict : {StockVerdict::kContact, StockVerdict::kOpen})
     for (const StockEvent& event : contacts.as_cut->events)
       if (event.verdict == verdict)
         add(stock_contact_text(result, contacts, event), contacts.findings.pairs[event.suspect.pair],
-            event.first.element, event.last_element, event.first.time_s, event.depth_mm);
+            event.first.element, event.last_element, event.first.time_s, event.depth_mm, event.place_M);
 }
 
 /// Gaps below what the scene asks of single pairs ([[contact_pair]]).
@@ -416,6 +417,7 @@ void near_misses(const Result& result, Collector& collect) {
         remedy_of(a, b), elements.where(element), near.place.time_s);
     added.cause = a.name + " and " + b.name;
     added.amount_mm = near.upper;
+    added.place_M = p;
   }
 }
 

@@ -36,6 +36,27 @@ TEST(Camera, FramesAnyBoxFromAnyDirectionWithANarrowRim) {
   }
 }
 
+TEST(Camera, PlacesInThePictureAreThoseOfTheMatrices) {
+  Rng rng(12);
+  for (int i = 0; i < 100; ++i) {
+    Camera camera;
+    camera.eye = 200.0 * rng.direction();
+    camera.vertical_fov_rad = rng.uniform(0.2, 1.2);
+    const Vec3 place = rng.uniform(0.0, 50.0) * rng.direction();
+    const Eigen::Vector4d p = perspective_matrix(camera.vertical_fov_rad, 1.5, 0.1, 1e5) *
+                              view_matrix(camera) * place.homogeneous();
+    const Vec2 at = picture_place(camera, place, 300, 200);
+    EXPECT_NEAR(at.x(), 150.0 * (1.0 + p.x() / p.w()), 1e-9);
+    EXPECT_NEAR(at.y(), 100.0 * (1.0 - p.y() / p.w()), 1e-9);
+    // A mm across at the target.
+    const Vec3 across = (camera.target - camera.eye).cross(camera.up).normalized();
+    const double px = (picture_place(camera, camera.target + across, 300, 200) -
+                       picture_place(camera, camera.target, 300, 200))
+                          .norm();
+    EXPECT_NEAR(px, px_per_mm_at_target(camera, 200), 1e-9);
+  }
+}
+
 TEST(Camera, SeesXToTheRightAndZUpFromTheFront) {
   Camera camera;
   camera.eye = {0, -100, 0};

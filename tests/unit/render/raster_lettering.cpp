@@ -88,5 +88,35 @@ TEST(Lettering, RefusesABarWithoutARange) {
   EXPECT_THROW(draw_colour_bar(image, bar), InternalError);
 }
 
+/// 3 px a mm in 640 px: at most 42 mm, so 20 mm, 60 px of pure ink in a row.
+TEST(Lettering, TheScaleBarIsAsLongAsItSays) {
+  Image image = grey(640, 360);
+  draw_scale_bar(image, 3.0);
+  int longest = 0;
+  for (int y = 0; y < 360; ++y) {
+    int row = 0;
+    for (int x = 0; x < 640; ++x) {
+      row = pixel(image, x, y).r > 235 ? row + 1 : 0;
+      longest = std::max(longest, row);
+    }
+  }
+  EXPECT_NEAR(longest, 60, 2);
+  EXPECT_THROW(draw_scale_bar(image, 0.0), InternalError);
+}
+
+/// Places in the corners: dots on them, plates within the picture, two of one place below one another.
+TEST(Lettering, LeadersStayInThePictureAndApart) {
+  Image image = grey(640, 360);
+  draw_leaders(image,
+               {{2.0, 2.0, "deepest -1.00"}, {637.0, 357.0, "highest +2.00"}, {637.0, 357.0, "again"}});
+  EXPECT_GT(pixel(image, 2, 2).r, 220);
+  EXPECT_GT(pixel(image, 637, 357).r, 220);
+  EXPECT_EQ(changed(image, 200, 400, 0, 360), 0);
+  Image one = grey(640, 360), two = grey(640, 360);
+  draw_leaders(one, {{300.0, 200.0, "first"}});
+  draw_leaders(two, {{300.0, 200.0, "first"}, {300.0, 200.0, "other"}});
+  EXPECT_GT(changed(two, 0, 640, 0, 360), 1.8 * changed(one, 0, 640, 0, 360));
+}
+
 }  // namespace
 }  // namespace swarf::render

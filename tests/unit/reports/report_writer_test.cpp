@@ -123,7 +123,7 @@ TEST(ReportWriter, FindingsLeadToTheirPlaceLineAndTime) {
        {"id=\"finding-1\"", "href=\"#finding-1\"", "dome.nc, lines 11 to 14", "3 places alike",
         "X 1.000 Y -2.500 Z 3.000 mm", "<span class=\"at\"><i>11</i>G1 X&lt;5&gt;</span>", "<i>12</i>M2",
         "data-show=\"view\" data-finding=\"1\"", "data-show=\"movie\" data-finding=\"1\"",
-        "[{\"t_s\":12.500000,\"place\":[1.000000,-2.500000,3.000000],\"line\":11}]"}) {
+        "[{\"t_s\":12.500000,\"place\":[1.000000,-2.500000,3.000000],\"in_machine\":false,\"line\":11}]"}) {
     EXPECT_NE(page.find(text), std::string::npos) << text;
   }
   ReportData still = sample(folder);
