@@ -36,7 +36,7 @@ struct PostCommand {
   std::vector<std::string> overrides;
   bool avoid = false;
   std::string file, machine, post, dialect, tools, output, fixed_cl, cutcom, circle, tracut, planes, prefer,
-      unit;
+      unit, cl_units;
   std::vector<double> work_origin;
   double work_rotation_deg = 0.0, tolerance_um = 10.0, axis_tolerance_deg = 0.1;
   bool tcp = false, no_tcp = false, json = false;
@@ -92,6 +92,7 @@ post::PostOptions options_of(const PostCommand& given, Diagnostics& told) {
   if (!given.circle.empty()) options.cl.circle_clockwise = given.circle == "clockwise";
   if (!given.tracut.empty())
     options.cl.tracut = given.tracut == "apply" ? program::ClTracut::kApply : program::ClTracut::kApplied;
+  if (!given.cl_units.empty()) options.cl.unit_mm = given.cl_units == "inch" ? 25.4 : 1.0;
   if (given.tools.empty()) return options;
   Diagnostics diagnostics;
   sim::IncompleteTools incomplete;
@@ -225,6 +226,7 @@ std::vector<std::string> scene_overrides(const PostCommand& given) {
     keys.push_back(fmt::format("setup.work_rotation_deg={}", given.work_rotation_deg));
   if (!given.cutcom.empty()) keys.push_back(fmt::format("cutcom=\"{}\"", given.cutcom));
   if (!given.circle.empty()) keys.push_back(fmt::format("cl_circle=\"{}\"", given.circle));
+  if (!given.cl_units.empty()) keys.push_back(fmt::format("setup.units=\"{}\"", given.cl_units));
   if (!given.tracut.empty()) keys.push_back(fmt::format("setup.tracut=\"{}\"", given.tracut));
   return keys;
 }
@@ -451,6 +453,8 @@ void add_post(CLI::App& app, int& exit_code) {
                    "tilted working planes (G68.2 ..): where a cycle needs one, wherever the tool keeps its "
                    "direction from rapid to rapid, or never; as the post has it when left out")
       ->check(CLI::IsMember({"never", "cycles", "constant"}));
+  command->add_option("--cl-units", options->cl_units, "unit of CL data without UNITS; mm when left out")
+      ->check(CLI::IsMember({"mm", "inch"}));
   command
       ->add_option("--unit", options->unit,
                    "unit of the program's lengths and feeds, with a digit more in inches; as the post has it "

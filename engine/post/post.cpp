@@ -187,6 +187,11 @@ PostResult post(const std::string& cl_file, const kinematics::MachineModel& mach
   const program::ClProgram program = read(cl_file, options, count, diagnostics);
   diagnostics.throw_if_errors();
   progress.end();
+  if (program.unit_assumed)
+    diagnostics.warning(
+        "units-assumed", {cl_file},
+        "the CL data have no UNITS, mm are taken: in inches everything were 25.4 times as large",
+        "say it with --cl-units mm|inch, or setup.units of a scene");
   warn_of_rapids(machine, cl_file, count.rapids, diagnostics);
 
   PlannerSetup setup;

@@ -156,6 +156,11 @@ TEST_F(Options, UnitsOfClDataThatSayNone) {
   const ProgramRun mm = run_swarf("check " + none), inch = run_swarf("check --units inch " + none);
   EXPECT_TRUE(says(mm, "to (2.000, 0.000, 1.000) mm") && says(mm, "the file has no UNITS")) << mm.output;
   EXPECT_TRUE(says(inch, "to (50.800, 0.000, 25.400) mm") && !says(inch, "no UNITS")) << inch.output;
+  const std::string at = " --machine maho_600c --work-origin 0 0 200 -o -";
+  const ProgramRun posted = run_swarf("post " + none + at),
+                   posted_inch = run_swarf("post " + none + " --cl-units inch" + at);
+  EXPECT_TRUE(says(posted, "units-assumed") && says(posted, "X2.")) << posted.output;
+  EXPECT_TRUE(!says(posted_inch, "units-assumed") && says(posted_inch, "X50.8")) << posted_inch.output;
   // What the file says is so.
   const ProgramRun both = run_swarf("check --units inch " + said);
   EXPECT_TRUE(says(both, "to (2.000, 0.000, 1.000) mm") && !says(both, "no UNITS")) << both.output;
