@@ -99,12 +99,15 @@ Checked check_cl(const std::string& file, const program::ClOptions& options) {
     tools += fmt::format("{}{}", tools.empty() ? "" : ", ",
                          tool.number != 0 ? fmt::format("T{}", tool.number) : tool.name);
   if (!tools.empty()) text += "\n  tools: " + tools;
+  if (program.unit_assumed)
+    text += "\n  unit: mm is taken, the file has no UNITS; --units inch says otherwise";
   for (const std::string& remark : program.remarks) text += "\n  " + remark;
   nlohmann::ordered_json numbers{{"writer", program::writer_name(program.writer)},
                                  {"writer_reason", program.writer_reason},
                                  {"statements", program.statements},
                                  {"moves", program.motions}};
   totals.add_to(numbers);
+  numbers["unit_assumed"] = program.unit_assumed;
   numbers["start_mm"] = {start.x(), start.y(), start.z()};
   numbers["start_line"] = program.start_line;
   numbers["tools"] = nlohmann::ordered_json::array();

@@ -185,6 +185,12 @@ struct ClCheckOptions {
   std::string cutcom, circle, tracut;
 };
 
+/// "mm", "inch"; "": not said.
+std::optional<double> unit_mm(const std::string& word) {
+  if (word.empty()) return std::nullopt;
+  return word == "inch" ? 25.4 : 1.0;
+}
+
 program::ClOptions cl_options(const ClCheckOptions& given) {
   program::ClOptions options;
   if (!given.cutcom.empty())
@@ -205,7 +211,11 @@ struct CheckOptions {
 };
 
 Checked check_file(const std::string& file, const CheckOptions& options) {
-  if (is_cl_file(file)) return check_cl(file, cl_options(options.cl));
+  if (is_cl_file(file)) {
+    program::ClOptions cl = cl_options(options.cl);
+    cl.unit_mm = unit_mm(options.nc.units);
+    return check_cl(file, cl);
+  }
   if (is_nc_program(file, options.nc)) return check_nc(file, options.nc);
   if (std::filesystem::path(file).extension() != ".toml") return check_surface_blocks(file);
   const TomlKind kind = toml_kind(file);
@@ -264,7 +274,41 @@ FileCheck check_named(const std::string& name, const CheckOptions& options) {
   }
 }
 
+/// A flag that none of the files takes would be believed to have been followed. Throws InputError
+/// "flag-of-other-kind".
+void refuse_unused(const CheckOptions& options) {
+  const auto is_toml = [](const std::string& file) {
+    return std::filesystem::path(file).extension() == ".toml";
+  };
+  const bool any_cl = std::any_of(options.files.begin(), options.files.end(), is_cl_file);
+  const bool any_nc = std::any_of(options.files.begin(), options.files.end(), [&](const std::string& file) {
+    return !is_cl_file(file) && !is_toml(file);
+  });
+  const auto refuse = [](const char* flag, bool given, const char* of) {
+    if (given)
+      throw InputError("flag-of-other-kind", {flag},
+                       fmt::format("{} is of {}, and none is among the files", flag, of), "leave it out");
+  };
+  const char* const cl = "CL data";
+  const char* const nc = "NC programs";
+  refuse("--cutcom", !any_cl && !options.cl.cutcom.empty(), cl);
+  refuse("--circle", !any_cl && !options.cl.circle.empty(), cl);
+  refuse("--tracut", !any_cl && !options.cl.tracut.empty(), cl);
+  refuse("--units", !any_cl && !any_nc && !options.nc.units.empty(), "programs");
+  if (any_nc) return;
+  refuse("--machine", !options.nc.machine.empty(), nc);
+  refuse("--dialect", !options.nc.dialect.empty(), nc);
+  refuse("--tools", !options.nc.tools.empty(), nc);
+  refuse("--home", options.nc.at_home, nc);
+  refuse("--start-tool", options.nc.start_tool != 0, nc);
+  refuse("--t-changes-tool", options.nc.t_changes_tool, nc);
+  refuse("--slot-ends", !options.nc.slot_ends.empty(), nc);
+  refuse("--kinematics", !options.nc.kinematics.empty(), nc);
+  refuse("--builder-word", !options.nc.builder_words.empty(), nc);
+}
+
 int check(const CheckOptions& options, std::vector<reports::FileVerdict>& found) {
+  refuse_unused(options);
   nlohmann::ordered_json objects = nlohmann::ordered_json::array();
   int exit_code = kPass;
   for (const std::string& file : options.files) {
@@ -357,8 +401,10 @@ void add_check(CLI::App& app, int& exit_code) {
       "with --machine: no time and travel by look-ahead, only at the programmed feed");
   command->add_flag("--home", options->nc.at_home, "NC programs start at the machine's home");
   command
-      ->add_option("--units", options->nc.units,
-                   "unit of NC programs that have neither G20 nor G21; the machine's when left out")
+      ->add_option(
+          "--units", options->nc.units,
+          "unit of NC programs that have neither G20 nor G21 (the machine's when left out), and of CL data "
+          "without UNITS (mm)")
       ->check(CLI::IsMember({"mm", "inch"}));
   command->add_option("--start-tool", options->nc.start_tool,
                       "number of the tool that is in the spindle when an NC program starts");

@@ -13,6 +13,7 @@
 #include "mesh/mesh_io.h"
 #include "mesh/mesh_nesting.h"
 #include "mesh/mesh_ops.h"
+#include "mesh/scene_reader.h"
 #include "stock/rays/ray_field.h"
 #include "stock/stock.h"
 
@@ -125,7 +126,7 @@ ComparedDesign design_of_cad(const std::string& file) {
 /// Files of CAD programs, which the reader of programs would otherwise take for blocks.
 void refuse_cad(const std::string& file) {
   const std::string ending = extension(file);
-  constexpr std::array kCad{".step", ".stp", ".igs", ".iges", ".3mf", ".sldprt", ".prt", ".x_t", ".brep"};
+  constexpr std::array kCad{".step", ".stp", ".igs", ".iges", ".sldprt", ".prt", ".x_t", ".brep"};
   if (std::none_of(kCad.begin(), kCad.end(), [&](const char* cad) { return ending == cad; })) return;
   throw InputError("cad-format", {file},
                    fmt::format("files of the kind '{}' are not read as a stock or a mesh", ending),
@@ -157,7 +158,7 @@ ComparedDesign load_design(const std::string& file, double pitch_mm) {
     return earlier;
   }
   const std::string kind = extension(file);
-  if (kind == ".stl" || kind == ".ply" || kind == ".obj")
+  if (kind == ".stl" || kind == ".ply" || kind == ".obj" || mesh::is_scene_ending(kind))
     return {checked_mesh(mesh::load_mesh(file), file, "design mesh"), false, 0.0, {}};
   if (kind == ".toml") {
     const sim::Job job = sim::load_job(file, {});

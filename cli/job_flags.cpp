@@ -102,7 +102,9 @@ void add_job_flags(CLI::App& command, JobWords& words) {
                   "where the work's origin stands in the machine (default: the stock on the table)")
       ->type_name("X,Y,Z")
       ->group(group);
-  command.add_option("--units", words.units, "unit of a program that has neither G20 nor G21")
+  command
+      .add_option("--units", words.units,
+                  "unit of a program that has neither G20 nor G21, of CL data without UNITS")
       ->check(CLI::IsMember({"mm", "inch"}))
       ->group(group);
   command
@@ -148,6 +150,24 @@ std::vector<std::string> given_words(const JobWords& words) {
   return given;
 }
 
+namespace {
+
+/// A flag that says what programs of the other kind leave open would be believed to have been followed.
+void refuse_other_kind(const std::string& file, bool cl_data, const std::vector<std::string>& given) {
+  const auto refuse = [&](const std::string& flag) {
+    if (std::find(given.begin(), given.end(), flag) == given.end()) return;
+    throw InputError(
+        "flag-of-other-kind", {flag},
+        cl_data ? fmt::format("{} says what an NC program leaves open, and {} is CL data", flag, file)
+                : fmt::format("{} says what CL data leave open, and {} is an NC program", flag, file),
+        "leave it out");
+  };
+  if (!cl_data) return refuse("--tracut");
+  for (const char* flag : {"--dialect", "--start-tool", "--t-changes-tool", "--slot-ends"}) refuse(flag);
+}
+
+}  // namespace
+
 bool is_program_file(const std::string& file) {
   return fs::path(file).extension() != ".toml";
 }
@@ -162,6 +182,7 @@ sim::JobFlags job_flags(const std::string& program_file, const JobWords& words) 
         "needs-scene", {program_file}, "surface blocks (G10 L70) need a scene: they are planned for it",
         "write scene.toml with program, machine, [cutter] and [stock]; scenes/lin_koren_dome has one");
   }
+  refuse_other_kind(program_file, flags.cl_data, given_words(words));
   set_tools(words, flags);
   if (!words.stock.empty() && words.stock != "auto") sim::take_stock(words.stock, flags);
   if (words.voxel_mm > 0.0) flags.voxel_mm = words.voxel_mm;

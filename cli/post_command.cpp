@@ -35,7 +35,8 @@ namespace fs = std::filesystem;
 struct PostCommand {
   std::vector<std::string> overrides;
   bool avoid = false;
-  std::string file, machine, post, dialect, tools, output, fixed_cl, cutcom, circle, tracut, planes, prefer;
+  std::string file, machine, post, dialect, tools, output, fixed_cl, cutcom, circle, tracut, planes, prefer,
+      unit;
   std::vector<double> work_origin;
   double work_rotation_deg = 0.0, tolerance_um = 10.0, axis_tolerance_deg = 0.1;
   bool tcp = false, no_tcp = false, json = false;
@@ -55,7 +56,8 @@ post::PostFormat format_of(const PostCommand& given) {
   if (file.empty())
     throw InputError("unknown-post", {"--dialect " + name}, "no post is called so",
                      "choose " + post::shipped_list() + ", or give your own with --post my.toml");
-  return post::load_post(file);
+  post::PostFormat format = post::load_post(file);
+  return given.unit.empty() ? format : post::in_unit(std::move(format), given.unit == "inch");
 }
 
 machine::MachineScene machine_of(const PostCommand& given) {
@@ -211,6 +213,9 @@ std::vector<std::string> scene_overrides(const PostCommand& given) {
   const std::string words = given.post.empty() ? given.dialect : fs::absolute(given.post).string();
   if (!words.empty()) keys.push_back(fmt::format("post.words=\"{}\"", words));
   if (given.tcp || given.no_tcp) keys.push_back(fmt::format("post.tcp={}", given.tcp));
+  if (!given.unit.empty()) keys.push_back(fmt::format("post.unit=\"{}\"", given.unit));
+  if (!given.planes.empty()) keys.push_back(fmt::format("post.planes=\"{}\"", given.planes));
+  if (!given.prefer.empty()) keys.push_back(fmt::format("post.prefer=\"{}\"", given.prefer));
   const PostCommand unsaid;
   if (!is_scene(given) || given.tolerance_um != unsaid.tolerance_um)
     keys.push_back(fmt::format("post.tolerance_um={}", given.tolerance_um));
@@ -265,10 +270,6 @@ int post_with_avoidance(const PostCommand& given) {
   if (given.output == "-")
     throw InputError("two-outputs", {"-o -"}, "a program that avoids collisions goes into a file",
                      "name it: -o part.nc");
-  if (!given.planes.empty() || !given.prefer.empty())
-    throw InputError("flags-and-scene", {given.file},
-                     "--planes and --prefer are for CL data alone: here the ways are chosen by collisions",
-                     "write them in a post of your own: prefer, and [tilted_plane] use");
   if (is_scene(given) && !(given.machine.empty() && given.tools.empty() && given.work_origin.empty()))
     throw InputError("flags-and-scene", {given.file}, "the scene says machine, tools and work origin itself",
                      "change its keys: --set setup.work_origin_mm=[0, 0, 100]");
@@ -386,6 +387,7 @@ Examples:
   swarf post part.cls --machine mill_3axis --post my_shop.toml -o part.nc        your own words
   swarf post scene.toml --dialect siemens -o part.mpf                            a whole set-up, free of collisions
   swarf post scene.toml --fix freed.cl -o part.nc                                the path changed where only that helps
+  swarf post part.cls --machine mill_3axis --unit inch -o part.nc                G20, or INCH, G700
   swarf post part.cls --machine mikron_ucp710 -o - | less
 
 To check what was written: swarf check part.mpf --machine spinner_u5_620 --tools tools.toml --dialect siemens
@@ -449,6 +451,11 @@ void add_post(CLI::App& app, int& exit_code) {
                    "tilted working planes (G68.2 ..): where a cycle needs one, wherever the tool keeps its "
                    "direction from rapid to rapid, or never; as the post has it when left out")
       ->check(CLI::IsMember({"never", "cycles", "constant"}));
+  command
+      ->add_option("--unit", options->unit,
+                   "unit of the program's lengths and feeds, with a digit more in inches; as the post has it "
+                   "when left out (the shipped ones: mm)")
+      ->check(CLI::IsMember({"mm", "inch"}));
   command
       ->add_option(
           "--tolerance-um", options->tolerance_um,

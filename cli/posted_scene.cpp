@@ -23,7 +23,7 @@ std::optional<PostedScene> post_scene(const avoidance::Task& task, const std::st
   if (words.empty())
     throw InputError("unknown-post", {task.job->scene.file}, "no post is called '" + settings.post + "'",
                      "choose " + post::shipped_list() + ", or give your own: post.words = \"my.toml\"");
-  const post::PostFormat format = post::load_post(words);
+  const post::PostFormat format = avoidance::format_of(settings);
   PostedScene posted;
   posted.post_name = format.name;
   posted.outcome = avoidance::control(task, progress);
@@ -48,7 +48,7 @@ Diagnostics unfixed(const avoidance::Advice& advice, const sim::Job& job) {
   told.error(
       "no-fix", {job.scene.program_file, advice.left->line, 0},
       fmt::format("no lead or tilt of up to {:g} deg and no lift of up to {:g} mm frees this block{}: {}",
-                  avoidance::Advice::kLeansDeg.back(), avoidance::Advice::kLiftMostMm,
+                  avoidance::Advice::kLeanMostDeg, avoidance::Advice::kLiftMostMm,
                   advice.blocks.empty() ? "" : fmt::format(" ({} before it are freed)", advice.blocks.size()),
                   advice.left->text),
       "another set-up (C) or another path (D)");

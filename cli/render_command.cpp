@@ -14,6 +14,7 @@
 #include "reports/part_view.h"
 #include "reports/pending_folder.h"
 #include "reports/pictures.h"
+#include "reports/review_findings.h"
 #include "reports/run_output.h"
 #include "sim/run/measured_mesh.h"
 
@@ -103,7 +104,7 @@ int render(const RenderOptions& options) {
     const std::string otherwise = kind == reports::StillKind::kMachine ? "machine" : "iso";
     reports::make_still(run, reports::shown_part(run, stored.stock.mesh()), kind,
                         options.camera.empty() ? otherwise : options.camera, options.still,
-                        {options.transparent, options.labels});
+                        {options.transparent, options.labels, reports::kept_worst_places(options.folder)});
     fmt::print("{}\n", options.still);
   }
   if (!options.movie.empty()) {

@@ -99,57 +99,80 @@ Table tree(const Outcome& outcome) {
   return table;
 }
 
+/// The values that one coordinate of a layer takes, in their order, mm.
+std::vector<double> grid_lines(const std::vector<const Position*>& layer, int axis) {
+  std::vector<double> values;
+  for (const Position* one : layer) values.push_back(one->origin_M[axis]);
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end(), [](double a, double b) { return b - a < 1e-9; }),
+               values.end());
+  return values;
+}
+
+size_t grid_line(const std::vector<double>& values, double value) {
+  return static_cast<size_t>(std::lower_bound(values.begin(), values.end(), value - 1e-9) - values.begin());
+}
+
+std::string map_text(double x, double y, const char* anchor, const std::string& text) {
+  return fmt::format(
+      R"(<text x="{:.1f}" y="{:.1f}" text-anchor="{}" font-size="11" fill="currentColor">{}</text>)", x, y,
+      anchor, text);
+}
+
+/// What stands in a position's square.
+std::string cell_label(const Position& one) {
+  switch (one.state) {
+    case PositionState::kNoFullTurn:
+      return "turn";
+    case PositionState::kOffTravel:
+      return "travel";
+    case PositionState::kCollides:
+      return "hit";
+    case PositionState::kUntried:
+      return "?";
+    case PositionState::kWorse:
+      return fmt::format("\u2265{:.0f}", one.bound_mm);
+    case PositionState::kValid:
+      break;
+  }
+  return fmt::format("{:.0f}", one.slides_mm);
+}
+
 /// A square for each position of one layer of the grid, seen from above.
 std::string map_svg(const std::vector<const Position*>& layer, const Position* best) {
-  double low_x = 1e300, low_y = 1e300, high_x = -1e300, high_y = -1e300, step = 1e300;
-  for (const Position* one : layer) {
-    low_x = std::min(low_x, one->origin_M.x());
-    high_x = std::max(high_x, one->origin_M.x());
-    low_y = std::min(low_y, one->origin_M.y());
-    high_y = std::max(high_y, one->origin_M.y());
-  }
-  for (const Position* a : layer)
-    for (const Position* b : layer) {
-      const double way = (a->origin_M - b->origin_M).cwiseAbs().maxCoeff();
-      if (way > 1e-9) step = std::min(step, way);
-    }
-  if (step > 1e299) step = 1.0;
-  constexpr double kCell = 44.0, kEdge = 46.0;
-  const double width = (high_x - low_x) / step * kCell + kCell + 2 * kEdge;
-  const double height = (high_y - low_y) / step * kCell + kCell + 2 * kEdge;
+  constexpr double kCell = 44.0, kLeft = 64.0, kBelow = 46.0, kAbove = 6.0;
+  const std::vector<double> xs = grid_lines(layer, 0), ys = grid_lines(layer, 1);
+  const double width = kLeft + kCell * static_cast<double>(xs.size()) + 8.0;
+  const double foot = kAbove + kCell * static_cast<double>(ys.size()), height = foot + kBelow;
   std::string svg = fmt::format(
       R"(<svg viewBox="0 0 {:.0f} {:.0f}" role="img" aria-label="Clamping positions: slide movements in mm, or why not">)",
       width, height);
   for (const Position* one : layer) {
-    const double x = kEdge + (one->origin_M.x() - low_x) / step * kCell;
-    const double y = height - kEdge - kCell - (one->origin_M.y() - low_y) / step * kCell;
-    const bool valid = one->state == PositionState::kValid;
-    const bool worse = one->state == PositionState::kWorse;
-    const char* const text = one->state == PositionState::kNoFullTurn  ? "turn"
-                             : one->state == PositionState::kOffTravel ? "travel"
-                             : one->state == PositionState::kCollides  ? "hit"
-                             : one->state == PositionState::kUntried   ? "?"
-                                                                       : nullptr;
-    const std::string label = text != nullptr ? text
-                                              : fmt::format("{}{:.0f}", worse ? "\u2265" : "",
-                                                            worse ? one->bound_mm : one->slides_mm);
+    const double x = kLeft + kCell * static_cast<double>(grid_line(xs, one->origin_M.x()));
+    const double y = foot - kCell * static_cast<double>(grid_line(ys, one->origin_M.y()) + 1);
+    const bool valid = one->state == PositionState::kValid, worse = one->state == PositionState::kWorse;
     svg += fmt::format(
-        R"(<g><title>{}</title><rect x="{:.1f}" y="{:.1f}" width="{:.0f}" height="{:.0f}" fill="{}" fill-opacity="{}" stroke="currentColor" stroke-width="{}"/><text x="{:.1f}" y="{:.1f}" text-anchor="middle" font-size="11" fill="currentColor">{}</text></g>)",
+        R"(<g><title>{}</title><rect x="{:.1f}" y="{:.1f}" width="{:.0f}" height="{:.0f}" fill="{}" fill-opacity="{}" stroke="currentColor" stroke-width="{}"/>{}</g>)",
         escape(position_text(one->origin_M) + ": " + avoidance::state_name(one->state) +
                (one->why.empty() ? "" : ": " + one->why)),
         x + 1, y + 1, kCell - 2, kCell - 2,
         valid   ? "#2e9e5b"
         : worse ? "#7a8894"
                 : "#c0392b",
-        valid ? "0.45" : "0.25", one == best ? "3" : "0.5", x + kCell / 2, y + kCell / 2 + 4, label);
+        valid ? "0.45" : "0.25", one == best ? "3" : "0.5",
+        map_text(x + kCell / 2, y + kCell / 2 + 4, "middle", cell_label(*one)));
   }
-  svg += fmt::format(
-      R"(<text x="{:.0f}" y="{:.0f}" text-anchor="middle" font-size="12" fill="currentColor">X {:.0f} to {:.0f} mm</text>)",
-      width / 2, height - 14, low_x, high_x);
-  svg += fmt::format(
-      R"svg(<text x="14" y="{:.0f}" text-anchor="middle" font-size="12" fill="currentColor" transform="rotate(-90 14 {:.0f})">Y {:.0f} to {:.0f} mm</text></svg>)svg",
-      height / 2, height / 2, low_y, high_y);
-  return svg;
+  for (size_t i = 0; i < xs.size(); ++i)
+    svg += map_text(kLeft + kCell * (static_cast<double>(i) + 0.5), foot + 16, "middle",
+                    fmt::format("{:g}", xs[i]));
+  for (size_t i = 0; i < ys.size(); ++i)
+    svg += map_text(kLeft - 6, foot - kCell * (static_cast<double>(i) + 0.5) + 4, "end",
+                    fmt::format("{:g}", ys[i]));
+  svg += map_text(kLeft + 0.5 * (width - kLeft), height - 8, "middle", "X of the work's zero, mm");
+  return svg +
+         fmt::format(
+             R"svg(<text x="12" y="{0:.0f}" text-anchor="middle" font-size="11" fill="currentColor" transform="rotate(-90 12 {0:.0f})">Y, mm</text></svg>)svg",
+             0.5 * (kAbove + foot));
 }
 
 std::vector<Figure> maps(const Outcome& outcome) {
@@ -167,9 +190,12 @@ std::vector<Figure> maps(const Outcome& outcome) {
     figures.push_back(
         {fmt::format("Clamping positions at Z {:.1f} mm", z),
          map_svg(layer, best),
-         "Sum of slide movements in mm. Green: free; the bold one is taken. Grey: at least so much, which "
-         "is not below the best: no simulation was needed. Red: no full turn of the table, out of travel, "
-         "or a collision.",
+         figures.empty()
+             ? "Sum of slide movements in mm. Green: free; the bold one is taken. Grey: at least so much, "
+               "which "
+               "is not below the best: no simulation was needed. Red: no full turn of the table, out of "
+               "travel, or a collision; the reason stands where the pointer rests."
+             : "",
          {},
          false});
   }
@@ -234,9 +260,12 @@ std::vector<std::pair<std::string, std::string>> avoidance_lines(const Outcome& 
   std::vector<std::pair<std::string, std::string>> lines;
   for (const Attempt& attempt : outcome.attempts) {
     if (!attempt.failure) continue;
-    lines.emplace_back("avoided",
-                       fmt::format("CL line {}: {}{}", attempt.failure->line, attempt.failure->text,
-                                   attempt.action.empty() ? "" : "; " + attempt.action));
+    lines.emplace_back(
+        "avoided",
+        fmt::format(
+            "CL line {}: {}{}{}", attempt.failure->line, attempt.failure->text,
+            outcome.positions.size() > 1 ? ", with the work at " + position_text(attempt.origin_M) : "",
+            attempt.action.empty() ? "" : "; " + attempt.action));
     if (lines.size() >= 8) break;
   }
   if (!outcome.found) return lines;
@@ -257,8 +286,11 @@ std::vector<std::pair<std::string, std::string>> avoidance_lines(const Outcome& 
   lines.emplace_back("tools", reach_text(outcome.extended_mm) + " mm against the scene");
   lines.emplace_back(
       "time",
-      fmt::format("{:.2f} s with backtracking, {:.2f} s the best of all ways{}; accelerations not counted",
+      fmt::format("{:.2f} s with backtracking, {:.2f} s the {}{}; accelerations not counted",
                   outcome.backtrack_time_s, outcome.best_time_s,
+                  outcome.preferred == post::Preference::kTime
+                      ? "best of all ways"
+                      : fmt::format("one of all ways that has {}", post::preference_text(outcome.preferred)),
                   outcome.routes_dropped > 0 ? " that were followed (some were given up)" : ""));
   for (size_t i = 0; i < job.machine.model.axes.size(); ++i) {
     const kinematics::Axis& axis = job.machine.model.axes[i];
@@ -312,13 +344,13 @@ std::vector<std::pair<std::string, std::string>> advice_lines(const avoidance::A
   lines.emplace_back("CL data", fmt::format("{}, {} positions changed, {} programs looked at", file,
                                             advice.blocks.size(), advice.looks));
   using avoidance::Advice;
-  lines.emplace_back(
-      "resolution",
-      fmt::format(
-          "{} angles from {:g} to {:g} deg, the least to {:g} deg; lifts doubled, the least to {:g} mm; what "
-          "is free only between two of them may be passed over",
-          Advice::kLeansDeg.size(), Advice::kLeansDeg.front(), Advice::kLeansDeg.back(),
-          Advice::kResolutionDeg, Advice::kLiftResolutionMm));
+  lines.emplace_back("resolution",
+                     fmt::format("lead and tilt up to {:g} deg in bands of {:g} deg ({:g} for gouges), the "
+                                 "least to {:g} deg; lifts doubled, the least "
+                                 "to {:g} mm; a free range narrower than a band may be passed over, one of "
+                                 "{:g} deg between places where nothing can stand is not",
+                                 Advice::kLeanMostDeg, Advice::kBandDeg, Advice::kGougeBandDeg,
+                                 Advice::kResolutionDeg, Advice::kLiftResolutionMm, 2.0 * Advice::kStandDeg));
   constexpr size_t kTold = 30;
   for (const avoidance::BlockChange& block : advice.blocks) {
     if (lines.size() > kTold) break;

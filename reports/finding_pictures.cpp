@@ -183,8 +183,7 @@ std::vector<std::string> make_finding_pictures(const FinishedRun& run, const Tri
     stock.advance(moment.cycle);
     files[i] = file_of(i + 1);
     render::save_png(
-        machine_image(run, moment, stock,
-                      options_of(kCardWidth, kCardHeight, run.job.scene.stills.samples)),
+        machine_image(run, moment, stock, options_of(kCardWidth, kCardHeight, run.job.scene.stills.samples)),
         files[i]);
   }
   return files;

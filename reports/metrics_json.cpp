@@ -312,6 +312,8 @@ Json stock_contacts_json(const toolpath::ToolPath& path, const sim::MachineConta
          {"t_s", event.first.time_s},
          {"depth_seen_mm", event.depth_mm},
          {"place_machine_mm", {event.place_M.x(), event.place_M.y(), event.place_M.z()}}});
+    if (event.verdict == sim::StockVerdict::kContact)
+      json["events"].back()["first_machine_mm"] = {event.first_M.x(), event.first_M.y(), event.first_M.z()};
   }
   return json;
 }

@@ -12,6 +12,7 @@
 #include "reports/machine_view.h"
 #include "reports/metrics_json.h"
 #include "reports/report_data.h"
+#include "reports/review_models.h"
 
 namespace swarf::reports {
 
@@ -39,6 +40,8 @@ StillKind still_kind(const std::string& name);  ///< "machine", "part", "deviati
 struct StillLook {
   bool transparent = false;  ///< no backdrop and no floor
   bool labels = false;       ///< scale bar; of the deviation, its deepest and highest place with their values
+  /// Of the deviation, beside those of the measuring rays.
+  std::vector<WorstPlace> worst{};
 };
 void make_still(const FinishedRun& run, const TriMesh& part, StillKind kind, const std::string& camera,
                 const std::string& path, const StillLook& look = {});

@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "base/units.h"
@@ -105,6 +108,21 @@ std::vector<WorstPlace> worst_places(const sim::Result& result) {
   const auto highest = std::max_element(
       ridges.begin(), ridges.end(), [](const auto& a, const auto& b) { return a.height_um < b.height_um; });
   if (highest != ridges.end()) places.push_back({highest->point, highest->height_um * kMicrometre});
+  return places;
+}
+
+std::vector<WorstPlace> kept_worst_places(const std::string& folder) {
+  std::ifstream file(std::filesystem::path(folder) / "metrics.json");
+  const nlohmann::json metrics = nlohmann::json::parse(file, nullptr, false);
+  std::vector<WorstPlace> places;
+  if (!metrics.is_object()) return places;
+  for (const auto& [name, sign] : {std::pair{"gouges", -1.0}, {"excesses", 1.0}}) {
+    const auto list = metrics.find(name);
+    if (list == metrics.end() || !list->is_array() || list->empty()) continue;
+    const nlohmann::json& worst = list->front();
+    places.push_back({Vec3(worst.value("x_mm", 0.0), worst.value("y_mm", 0.0), worst.value("z_mm", 0.0)),
+                      sign * worst.value("worst_um", 0.0) * kMicrometre});
+  }
   return places;
 }
 

@@ -15,7 +15,6 @@
 #include "render/ray/still.h"
 #include "reports/part_view.h"
 #include "reports/pictures.h"
-#include "reports/review_models.h"
 
 namespace swarf::reports {
 namespace {
@@ -194,7 +193,7 @@ void make_still(const FinishedRun& run, const TriMesh& part, StillKind kind, con
   options.transparent = look.transparent;
   if (kind == StillKind::kDeviation) {
     TriMesh coloured = part;
-    if (look.labels) add_worst_places(run, {}, coloured);  // the values of the rays themselves
+    if (look.labels) add_worst_places(run, look.worst, coloured);
     const render::DeviationScale scale = deviation_scale(run.job);
     render::colour_by_deviation(coloured, scale);
     render::save_png(deviation_picture(coloured, scale, camera, options, look.labels), path);

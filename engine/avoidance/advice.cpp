@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/angles.h"
 #include "base/units.h"
+#include "collision/body_pairs.h"
+#include "cutter/cutter.h"
 #include "cutter/profile.h"
 #include "post/shipped.h"
 #include "program/cl/rewrite.h"
@@ -18,6 +21,9 @@ namespace {
 
 /// Rays are held against so much less than the limit, for the proof between them has to end below it, um.
 constexpr double kProofMarginUm = 0.2;
+
+/// Nearer to a pole the outer rotary axis may stand anywhere, once digits are rounded, rad.
+constexpr double kBesidePole = 1e-3;
 
 /// What finds a fault.
 enum class Check { kAxes, kMaterial, kGouge };
@@ -95,10 +101,14 @@ class Advisor {
   Advisor(const Task& task, const Outcome& outcome, Progress& progress)
       : job_(job_of(task, outcome)),
         progress_(progress),
-        format_(post::load_post(post::post_file(job_.scene.post->post))),
+        format_(format_of(*job_.scene.post)),
         text_(program::read_file(job_.scene.program_file)),
-        places_(places_of(job_, text_)) {
-    for (const cutter::Cutter& tool : job_.scene.tools) outlines_.push_back(cutter::outline(tool));
+        places_(places_of(job_, text_)),
+        judge_(job_, job_.scene.post->clearance_mm) {
+    for (const cutter::Cutter& tool : job_.scene.tools) {
+      outlines_.push_back(cutter::outline(tool));
+      inverses_.emplace_back(kinematics::with_tool(job_.machine.model, cutter::gauge_length(tool)));
+    }
   }
 
   Advice run() {
@@ -136,21 +146,24 @@ class Advisor {
     return program::rewrite_cl(text_, job_.scene.program_file, poses, job_.scene.cl_options);
   }
 
-  std::optional<Failure> failure(Check check, const sim::Job& job, const std::string& text) {
-    if (check == Check::kMaterial) return material_failure(job);
-    if (check == Check::kGouge) return gouge_failure(job);
-    CollisionJudge judge(job, job.scene.post->clearance_mm);
-    Trial trial(job, format_, &judge);
+  /// The first one, or one of the first behind `line`.
+  std::optional<Failure> failure(Check check, const std::string& text, int line) {
+    if (check == Check::kMaterial) return material_failure(job_with(text));
+    if (check == Check::kGouge) return gouge_failure(text);
+    judge_.begin_again();
+    Trial trial(job_, format_, &judge_);
     trial.of_text(text);
-    if (job.scene.post->best_routes) trial.follow_all(false);
+    trial.stop_behind(line);
+    if (job_.scene.post->best_routes) trial.follow_all(false);
     Progress silent;
     return trial.run(silent).failure;
   }
 
   /// The first gouge beyond [accept], by the line of its deepest place on the measuring rays.
-  std::optional<Failure> gouge_failure(sim::Job job) {
-    const std::optional<double> limit = job.scene.accept.gouge_max_um;
-    if (!job.has_design() || !limit) return {};
+  std::optional<Failure> gouge_failure(const std::string& text) {
+    const std::optional<double> limit = job_.scene.accept.gouge_max_um;
+    if (!job_.has_design() || !limit) return {};
+    sim::Job job = job_with(text);
     job.scene.accept = {};  // without a limit nothing is proven, which takes the most time
     Progress silent;
     const sim::Result result = sim::simulate(job, {}, silent);
@@ -189,10 +202,9 @@ class Advisor {
   std::optional<Fault> first_fault(const Changes& changes) {
     ++advice_.looks;
     const std::string text = text_with(changes);
-    const sim::Job job = job_with(text);
     std::optional<Fault> first;
     for (const Check check : {Check::kAxes, Check::kMaterial, Check::kGouge}) {
-      std::optional<Failure> found = failure(check, job, text);
+      std::optional<Failure> found = failure(check, text, std::numeric_limits<int>::max());
       if (found && (!first || found->line < first->failure.line))
         first = Fault{std::move(*found), check, gouge_mm_};
     }
@@ -203,9 +215,8 @@ class Advisor {
   bool frees(const Changes& changes, const Fault& fault) {
     ++advice_.looks;
     const std::string text = text_with(changes);
-    const sim::Job job = job_with(text);
     const auto is_free = [&](Check check) {
-      const std::optional<Failure> found = failure(check, job, text);
+      const std::optional<Failure> found = failure(check, text, fault.failure.line);
       return !found || found->line > fault.failure.line;
     };
     if (!is_free(fault.check)) return false;
@@ -265,29 +276,78 @@ class Advisor {
                   double resolution, const Fault& fault) {
     while (std::abs(enough - less) > resolution && !progress_.stop_requested()) {
       const double middle = 0.5 * (less + enough);
-      (frees(with(window, kind, middle), fault) ? enough : less) = middle;
+      const bool free = can_stand(window, kind, middle) && frees(with(window, kind, middle), fault);
+      (free ? enough : less) = middle;
     }
     return enough;
   }
 
+  /// Whether the axes can stand at all the window's places with this change. True where that is not known:
+  /// beside a pole, where the outer axis is free.
+  bool can_stand(const std::vector<size_t>& window, ChangeKind kind, double amount) const {
+    const Changes changes = with(window, kind, amount);
+    return std::all_of(window.begin(), window.end(), [&](size_t index) {
+      const Place& place = places_[index];
+      const ToolPose pose = pose_with(index, changes.at(index));
+      const kinematics::InverseKinematics& inverse = inverses_[static_cast<size_t>(place.tool)];
+      if (inverse.pole_distance(pose.axis_W) < kBesidePole) return true;
+      const kinematics::InverseSolutions both = inverse.solve(pose, collision::home_of(job_.machine));
+      return std::any_of(both.branch, both.branch + both.count, [&](const kinematics::Branch& one) {
+        return one.outcome == kinematics::InverseOutcome::kSingular ||
+               (one.outcome == kinematics::InverseOutcome::kOk && judge_.may_stand(one.q, place.tool));
+      });
+    });
+  }
+
+  struct Direction {
+    ChangeKind kind;
+    double sign;
+    double blocked = 0.0;  ///< greatest angle that is known not to do, rad
+  };
+  struct Found {
+    ChangeKind kind;
+    double amount;
+  };
+
+  /// Least angle of one direction between `low` and `high` that frees, rad.
+  std::optional<Found> lean_in_band(const std::vector<size_t>& window, const Fault& fault, Direction& way,
+                                    double low, double high) {
+    const double step = rad_from_deg(Advice::kStandDeg);
+    const int steps = std::max(1, static_cast<int>(std::lround((high - low) / step)));
+    const auto at = [&](int i) { return low + (high - low) * i / steps; };
+    const auto stands = [&](int i) { return can_stand(window, way.kind, way.sign * at(i)); };
+    for (int first = 1; first <= steps; ++first) {
+      if (!stands(first)) {
+        way.blocked = at(first);
+        continue;
+      }
+      int last = first;
+      while (last < steps && stands(last + 1)) ++last;
+      // At its very end a range is nearest to what ends it; one that goes on is tried as far out as the band.
+      const double tried = last == steps ? high : at((first + last) / 2);
+      if (progress_.stop_requested()) return {};
+      if (frees(with(window, way.kind, way.sign * tried), fault))
+        return Found{way.kind, bisected(window, way.kind, way.sign * way.blocked, way.sign * tried,
+                                        rad_from_deg(Advice::kResolutionDeg), fault)};
+      way.blocked = tried;
+      first = last;
+    }
+    return {};
+  }
+
   bool lean(const std::vector<size_t>& window, const Fault& fault) {
-    struct Found {
-      ChangeKind kind;
-      double amount;
-    };
-    double less = 0.0;
-    for (const double degrees : Advice::kLeansDeg) {
-      const double angle = rad_from_deg(degrees);
+    std::vector<Direction> ways;
+    for (const ChangeKind kind : {ChangeKind::kLead, ChangeKind::kTilt})
+      for (const double sign : {1.0, -1.0}) ways.push_back({kind, sign});
+    const double width = fault.check == Check::kGouge ? Advice::kGougeBandDeg : Advice::kBandDeg;
+    for (double low = 0.0; low < Advice::kLeanMostDeg; low += width) {
       std::optional<Found> least;
-      for (const ChangeKind kind : {ChangeKind::kLead, ChangeKind::kTilt})
-        for (const double sign : {1.0, -1.0}) {
-          if (progress_.stop_requested()) return false;
-          if (!frees(with(window, kind, sign * angle), fault)) continue;
-          const double amount =
-              bisected(window, kind, sign * less, sign * angle, rad_from_deg(Advice::kResolutionDeg), fault);
-          if (!least || std::abs(amount) < std::abs(least->amount)) least = Found{kind, amount};
-        }
-      less = angle;
+      for (Direction& way : ways) {
+        const std::optional<Found> found = lean_in_band(
+            window, fault, way, rad_from_deg(low), rad_from_deg(std::min(low + width, Advice::kLeanMostDeg)));
+        if (found && (!least || std::abs(found->amount) < std::abs(least->amount))) least = found;
+      }
+      if (progress_.stop_requested()) return false;
       if (!least) continue;
       changes_ = with(window, least->kind, least->amount);
       return true;
@@ -320,7 +380,9 @@ class Advisor {
   post::PostFormat format_;
   std::string text_;
   std::vector<Place> places_;
+  CollisionJudge judge_;                                       ///< of one program after the other
   std::vector<std::vector<cutter::OutlineElement>> outlines_;  ///< by tool of the scene
+  std::vector<kinematics::InverseKinematics> inverses_;        ///< the same
   Changes changes_;
   std::map<size_t, std::string> reasons_;
   double gouge_mm_ = 0.0;  ///< depth of the first one that was seen last

@@ -362,4 +362,20 @@ std::optional<Collision> CollisionJudge::full_turn(int axis) const {
   return {};
 }
 
+bool CollisionJudge::may_stand(const AxisValues& q, int tool) const {
+  const std::vector<Way> still{{q, q, 0, 0, tool, false, false, false}};
+  return std::none_of(pairs_.begin(), pairs_.end(), [&](const Pair& pair) {
+    return !pair.stock && is_there(bodies_[pair.a], tool) && is_there(bodies_[pair.b], tool) &&
+           first_near(pair, still, 0, 1).has_value();
+  });
+}
+
+void CollisionJudge::begin_again() {
+  stock_.reset();
+  stock_body_.reset();
+  known_.clear();
+  uncut_.clear();
+  tool_ = -2;
+}
+
 }  // namespace swarf::avoidance

@@ -54,6 +54,10 @@ class CollisionJudge {
   /// The first collision of the work and its fixtures with anything while this axis makes a full turn from
   /// home, the tool out of the way. The paper drops such clamping positions.
   std::optional<Collision> full_turn(int axis) const;
+  /// Whether the axes may stand so with this tool in the spindle: nothing is too near, the material left out.
+  bool may_stand(const kinematics::AxisValues& q, int tool) const;
+  /// Another program begins, before the raw stock.
+  void begin_again();
 
  private:
   struct Pair;

@@ -74,11 +74,9 @@ namespace {
 class Control {
  public:
   Control(const Task& task, Progress& progress)
-      : task_(task),
-        progress_(progress),
-        settings_(*task.job->scene.post),
-        format_(post::load_post(post::post_file(settings_.post))) {
+      : task_(task), progress_(progress), settings_(*task.job->scene.post), format_(format_of(settings_)) {
     outcome_.extended_mm.assign(task.job->scene.tools.size(), 0.0);
+    outcome_.preferred = preference_of(settings_, format_);
   }
 
   Outcome run() {

@@ -49,6 +49,7 @@ struct Outcome {
   size_t simulations = 0;           ///< programs that were looked at for collisions
   /// Of the dynamic programming over all ways beside the backtracking at the best position, s.
   double backtrack_time_s = 0.0, best_time_s = 0.0;
+  post::Preference preferred = post::Preference::kTime;  ///< what the best of all ways has least of
   long routes_dropped = 0;
 };
 

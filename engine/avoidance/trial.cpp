@@ -6,6 +6,7 @@
 
 #include "base/units.h"
 #include "cutter/cutter.h"
+#include "post/shipped.h"
 #include "sim/run/cut_stage.h"
 #include "sim/simulation.h"
 
@@ -22,6 +23,17 @@ post::PostFormat plain(post::PostFormat format) {
   return format;
 }
 
+/// Stops where the caller does, and once enough has been seen.
+class UntilEnough : public Progress {
+ public:
+  UntilEnough(const Progress& outer, const std::atomic<bool>& enough) : outer_(outer), enough_(enough) {}
+  bool stop_requested() const override { return enough_ || outer_.stop_requested(); }
+
+ private:
+  const Progress& outer_;
+  const std::atomic<bool>& enough_;
+};
+
 }  // namespace
 
 post::PostOptions options_of(const sim::Job& job) {
@@ -30,6 +42,7 @@ post::PostOptions options_of(const sim::Job& job) {
   options.tip_mm = given.tolerance_mm;
   options.axis_rad = given.axis_tolerance_rad;
   options.cl = job.scene.cl_options;
+  if (!given.planes.empty()) options.planes = post::plane_use(given.planes);
   for (const cutter::Cutter& tool : job.scene.tools)
     options.tools.push_back({tool.number, tool.name, cutter::gauge_length(tool)});
   return options;
@@ -79,13 +92,24 @@ Trial::Trial(const sim::Job& job, const post::PostFormat& format, CollisionJudge
     failed_ = failed_ || !passed_;
     if (passed_) failures_.clear();
     passed_ = false;
+    far_enough_ = !moves.empty() && moves.back().line >= last_line_;
   };
+}
+
+post::PostFormat format_of(const sim::PostSettings& settings) {
+  post::PostFormat format = post::load_post(post::post_file(settings.post));
+  return settings.unit.empty() ? format : post::in_unit(std::move(format), settings.unit == "inch");
+}
+
+post::Preference preference_of(const sim::PostSettings& settings, const post::PostFormat& format) {
+  const std::optional<post::Preference> said = post::preference(settings.prefer);
+  return said ? *said : format.prefer.value_or(post::Preference::kTime);
 }
 
 void Trial::follow_all(bool by_slides) {
   options_.hooks.routes_most = post::kRoutesMost;
   const post::Preference preferred =
-      by_slides ? post::Preference::kTravel : format_.prefer.value_or(post::Preference::kTime);
+      by_slides ? post::Preference::kTravel : preference_of(*job_.scene.post, format_);
   options_.hooks.cost = [this, preferred](const post::PlanSummary& plan) {
     return post::preference_cost(preferred, job_.machine.model, plan);
   };
@@ -93,9 +117,10 @@ void Trial::follow_all(bool by_slides) {
 
 Attempt Trial::run(Progress& progress) {
   Diagnostics diagnostics;
+  UntilEnough until(progress, far_enough_);
   try {
     const post::PostResult result = post::post(
-        job_.scene.program_file, job_.machine.model, format_, options_, [](std::string_view) {}, progress,
+        job_.scene.program_file, job_.machine.model, format_, options_, [](std::string_view) {}, until,
         diagnostics);
     attempt_.plan = result.plan;
     attempt_.choices = result.choices;

@@ -2,6 +2,8 @@
 // driven.
 #pragma once
 
+#include <atomic>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -47,6 +49,10 @@ struct Attempt {
 
 /// As the scene's [post] has it.
 post::PostOptions options_of(const sim::Job& job);
+/// The words of the scene's post, in the scene's unit.
+post::PostFormat format_of(const sim::PostSettings& settings);
+/// What the best of all ways has least of: as the scene's [post] says, else as its post, else time.
+post::Preference preference_of(const sim::PostSettings& settings, const post::PostFormat& format);
 /// Tools stand out so much farther, by tool of the scene.
 void extend(sim::Job& job, const std::vector<double>& extended_mm);
 
@@ -64,6 +70,9 @@ class Trial {
   void follow_all(bool by_slides);
   /// Instead of the scene's CL data; must outlive it.
   void of_text(const std::string& text) { options_.cl_text = &text; }
+  /// Stretches that begin behind this line of the CL data are not asked for: without a failure all before
+  /// them is free.
+  void stop_behind(int line) { last_line_ = line; }
 
   /// Throws InputError for CL data that cannot be read.
   Attempt run(Progress& progress);
@@ -84,6 +93,8 @@ class Trial {
   std::optional<Collision> collision_;
   std::vector<Failure> failures_;  ///< of the stretch that is being planned
   bool passed_ = false, failed_ = false;
+  int last_line_ = std::numeric_limits<int>::max();
+  std::atomic<bool> far_enough_ = false;
   long dropped_ = 0;
 };
 

@@ -1,5 +1,6 @@
 // The library's shape as plain faces.
 #include <BRepAdaptor_Curve.hxx>
+#include <BRepAdaptor_Surface.hxx>
 #include <BRepBuilderAPI_NurbsConvert.hxx>
 #include <BRepTools.hxx>
 #include <BRepTools_WireExplorer.hxx>
@@ -12,7 +13,9 @@
 #include <Geom_BSplineSurface.hxx>
 #include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
+#include <TopTools_IndexedDataMapOfShapeListOfShape.hxx>
 #include <TopTools_IndexedMapOfShape.hxx>
+#include <TopTools_ListOfShape.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Iterator.hxx>
 #include <TopoDS_Wire.hxx>
@@ -297,14 +300,39 @@ Edge edge_of(const TopoDS_Edge& edge) {
   return plain;
 }
 
+/// How far the places of the faces that share an edge lie apart along it, the widest of some places.
+void measure_gap(const TopoDS_Edge& edge, const TopTools_ListOfShape& faces, Edge& plain) {
+  constexpr int kPlaces = 16;
+  for (const TopoDS_Shape& a : faces) {
+    for (const TopoDS_Shape& b : faces) {
+      if (a.IsSame(b)) break;
+      double low, high, unused;
+      const TopoDS_Face &one = TopoDS::Face(a), &other = TopoDS::Face(b);
+      const Handle(Geom2d_Curve) on_one = BRep_Tool::CurveOnSurface(edge, one, low, high);
+      const Handle(Geom2d_Curve) on_other = BRep_Tool::CurveOnSurface(edge, other, unused, unused);
+      if (on_one.IsNull() || on_other.IsNull()) continue;
+      const BRepAdaptor_Surface surface_one(one, false), surface_other(other, false);
+      for (int i = 0; i <= kPlaces; ++i) {
+        const double t = low + (high - low) * i / kPlaces;
+        const gp_Pnt2d p = on_one->Value(t), q = on_other->Value(t);
+        const Vec3 at = vec(surface_one.Value(p.X(), p.Y()));
+        const double gap = (vec(surface_other.Value(q.X(), q.Y())) - at).norm();
+        if (gap > plain.gap_mm) plain.gap_mm = gap, plain.gap_at = at;
+      }
+    }
+  }
+}
+
 void take_edges(const TopoDS_Shape& shape, Model& model) {
-  TopTools_IndexedMapOfShape edges, vertices;
-  TopExp::MapShapes(shape, TopAbs_EDGE, edges);
+  TopTools_IndexedDataMapOfShapeListOfShape edges;
+  TopTools_IndexedMapOfShape vertices;
+  TopExp::MapShapesAndUniqueAncestors(shape, TopAbs_EDGE, TopAbs_FACE, edges);
   TopExp::MapShapes(shape, TopAbs_VERTEX, vertices);
   for (int i = 1; i <= edges.Extent(); ++i) {
-    const TopoDS_Edge edge = TopoDS::Edge(edges(i));
+    const TopoDS_Edge edge = TopoDS::Edge(edges.FindKey(i));
     if (BRep_Tool::Degenerated(edge)) continue;
     model.edges.push_back(edge_of(edge));
+    measure_gap(edge, edges(i), model.edges.back());
     model.edge_tolerance_mm = std::max(model.edge_tolerance_mm, model.edges.back().tolerance_mm);
   }
   for (int i = 1; i <= vertices.Extent(); ++i)

@@ -28,6 +28,8 @@ struct Edge {
   std::vector<Vec3> points;   ///< mm; a polyline along it, closed where the first is the last
   double chord_mm = 0.0;      ///< it strays by no more from the curve at the places tried
   double tolerance_mm = 0.0;  ///< of the file: faces that share it lie this near to it
+  double gap_mm = 0.0;  ///< the faces that share it lie so far apart, the widest of some places along it
+  Vec3 gap_at = Vec3::Zero();
 };
 
 struct Model {
@@ -68,8 +70,11 @@ struct Facets {
   surface::UnderFacetsPtr under;
   size_t across_creases = 0;  ///< how many those are
 };
-/// Facets asked for with a chord of `chord_mm`; divided further until the proof holds, and what is proven is
-/// told. Closed solids only where `closed_only`.
-Facets tessellate(const Model& model, double chord_mm, bool closed_only = false);
+/// Edges are divided no more coarsely, however coarse the facets may be: they say where faces end; mm.
+inline constexpr double kEdgeChord = 2e-3;
+/// Facets asked for with a chord of `chord_mm`, their sides along the edges with one of `edge_mm`; divided
+/// further until the proof of the first holds, and what is proven is told. Closed solids only where
+/// `closed_only`.
+Facets tessellate(const Model& model, double chord_mm, bool closed_only = false, double edge_mm = kEdgeChord);
 
 }  // namespace swarf::brep

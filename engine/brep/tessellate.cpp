@@ -2,7 +2,10 @@
 #include <BRepTools.hxx>
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
+#include <Geom2d_Curve.hxx>
+#include <Geom_Curve.hxx>
 #include <IMeshTools_Parameters.hxx>
+#include <Poly_PolygonOnTriangulation.hxx>
 #include <Poly_Triangulation.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
@@ -20,15 +23,13 @@
 namespace swarf::brep {
 namespace {
 
-/// Edges are divided no more coarsely, however coarse the facets may be: they say where faces end.
-constexpr double kEdgeChord_mm = 2e-3;
-
 struct Made {
   std::vector<Vec3> points;
   std::vector<std::array<uint32_t, 3>> triangles;
   double chord_mm = 0.0;
   bool proven = true;
   surface::UnderFacets under;
+  double edge_mm = 0.0;
   size_t across_creases = 0;
 };
 
@@ -40,6 +41,11 @@ bool is_plane(const surface::Surface& surface) {
   return std::max({b.uu.most(), b.uv.most(), b.vv.most()}) <= kPlane;
 }
 
+/// In the square of a part of the face.
+Vec2 in_part(const surface::NurbsPart& part, const Vec2& uv) {
+  return (uv - part.low).cwiseQuotient(part.high - part.low);
+}
+
 /// The smooth part of the face that holds a facet, and where; `uv` of the whole square.
 surface::FacetOnSurface place_under(const MeshedFace& face, int first_part, const std::array<Vec2, 3>& uv) {
   constexpr double kOnBorder = 1e-9;
@@ -48,7 +54,7 @@ surface::FacetOnSurface place_under(const MeshedFace& face, int first_part, cons
     surface::FacetOnSurface on;
     bool holds = true;
     for (size_t k = 0; k < 3; ++k) {
-      const Vec2 own = (uv[k] - part.low).cwiseQuotient(part.high - part.low);
+      const Vec2 own = in_part(part, uv[k]);
       holds = holds && own.minCoeff() >= -kOnBorder && own.maxCoeff() <= 1.0 + kOnBorder;
       on.uv[k] = own.cwiseMax(Vec2::Zero()).cwiseMin(Vec2::Ones());
     }
@@ -118,6 +124,127 @@ double distance_bound(const surface::Surface& surface, const std::array<Vec2, 3>
   return most;
 }
 
+/// One side of a facet that ends on an edge.
+struct EdgeSide {
+  double chord_mm = 0.0;         ///< how far the edge strays from the side
+  std::array<double, 2> t{};     ///< of the edge's curves
+  Handle(Geom_Curve) curve;      ///< in space
+  Handle(Geom2d_Curve) in_face;  ///< in the face's parameters
+};
+/// By the facets' nodes at its ends, as the edge runs.
+using EdgeSides = std::map<std::array<int, 2>, EdgeSide>;
+
+constexpr int kQuarters = 4;
+
+double chord_of(const Geom_Curve& curve, const std::array<double, 2>& t) {
+  const auto at = [&](int i) {
+    const gp_Pnt p = curve.Value(t[0] + (t[1] - t[0]) * i / kQuarters);
+    return Vec3(p.X(), p.Y(), p.Z());
+  };
+  double most = 0.0;
+  for (int i = 1; i < kQuarters; ++i) most = std::max(most, to_segment(at(i), at(0), at(kQuarters)));
+  return most;
+}
+
+EdgeSides sides_on_edges(const TopoDS_Face& face, const Handle(Poly_Triangulation) & facets,
+                         const TopLoc_Location& at) {
+  EdgeSides found;
+  for (TopExp_Explorer it(face, TopAbs_EDGE); it.More(); it.Next()) {
+    const TopoDS_Edge& edge = TopoDS::Edge(it.Current());
+    const Handle(Poly_PolygonOnTriangulation) nodes = BRep_Tool::PolygonOnTriangulation(edge, facets, at);
+    double first, last;
+    const Handle(Geom_Curve) curve = BRep_Tool::Curve(edge, first, last);
+    const Handle(Geom2d_Curve) in_face = BRep_Tool::CurveOnSurface(edge, face, first, last);
+    if (nodes.IsNull() || curve.IsNull() || in_face.IsNull() || !nodes->HasParameters()) continue;
+    for (int i = 1; i < nodes->NbNodes(); ++i) {
+      EdgeSide side{0.0, {nodes->Parameter(i), nodes->Parameter(i + 1)}, curve, in_face};
+      side.chord_mm = chord_of(*curve, side.t);
+      found[{nodes->Node(i), nodes->Node(i + 1)}] = std::move(side);
+    }
+  }
+  return found;
+}
+
+/// How far the surface over a straight piece of parameters lies from the edge beside it, at its quarters.
+double off_edge(const EdgeSide& side, const std::array<double, 2>& t, const surface::Surface& surface,
+                const std::array<Vec2, 2>& uv) {
+  std::array<Vec3, kQuarters + 1> on;
+  for (size_t i = 0; i <= kQuarters; ++i) {
+    const gp_Pnt p = side.curve->Value(t[0] + (t[1] - t[0]) * static_cast<double>(i) / kQuarters);
+    on[i] = Vec3(p.X(), p.Y(), p.Z());
+  }
+  double most = 0.0;
+  for (size_t i = 0; i <= kQuarters; ++i) {
+    const Vec2 place = uv[0] + static_cast<double>(i) / kQuarters * (uv[1] - uv[0]);
+    const Vec3 over = surface.point(std::clamp(place.x(), 0.0, 1.0), std::clamp(place.y(), 0.0, 1.0));
+    double beside = to_segment(over, on[0], on[1]);
+    for (size_t k = 1; k < kQuarters; ++k) beside = std::min(beside, to_segment(over, on[k], on[k + 1]));
+    most = std::max(most, beside);
+  }
+  return most;
+}
+
+/// Places along the edge so many that what lies straight between two of them is the edge, to the chord of
+/// loops; with fewer than three the side itself is. What is left is told.
+surface::EdgePlaces places_along(const EdgeSide& side, const MeshedFace& face, const surface::NurbsPart& part,
+                                 double& left_mm) {
+  constexpr int kMostParts = 256;
+  const auto place = [&](double t) {
+    const gp_Pnt2d uv = side.in_face->Value(t);
+    return in_part(part, (Vec2(uv.X(), uv.Y()) - face.low).cwiseQuotient(face.high - face.low))
+        .cwiseMax(Vec2::Zero())
+        .cwiseMin(Vec2::Ones())
+        .eval();
+  };
+  surface::EdgePlaces places;
+  for (int parts = 1;; parts *= 2) {
+    const auto t = [&](int i) { return side.t[0] + (side.t[1] - side.t[0]) * i / parts; };
+    places.clear();
+    for (int i = 0; i <= parts; ++i) places.push_back(place(t(i)));
+    left_mm = 0.0;
+    for (int i = 0; i < parts; ++i)
+      left_mm =
+          std::max(left_mm, off_edge(side, {t(i), t(i + 1)}, *part.surface,
+                                     {places[static_cast<size_t>(i)], places[static_cast<size_t>(i) + 1]}));
+    if (left_mm <= surface::kLoopChord || parts >= kMostParts) return places;
+  }
+}
+
+/// What is known of the edges under a facet's sides goes to it; `nodes` of its corners.
+void take_sides(const EdgeSides& sides, const std::array<int, 3>& nodes, const MeshedFace& face,
+                int first_part, surface::FacetOnSurface& on, Made& made) {
+  for (size_t k = 0; k < 3; ++k) {
+    const int from = nodes[k], to = nodes[(k + 1) % 3];
+    auto side = sides.find({from, to});
+    const bool backwards = side == sides.end();
+    if (backwards) side = sides.find({to, from});
+    if (side == sides.end()) continue;
+    on.chords_mm[k] = side->second.chord_mm;
+    const bool is_curved = on.surface != surface::FacetOnSurface::kNone &&
+                           made.under.is_plane[static_cast<size_t>(on.surface)] == 0;
+    if (!is_curved) {
+      made.edge_mm = std::max(made.edge_mm, side->second.chord_mm);
+      continue;
+    }
+    double left_mm = 0.0;
+    surface::EdgePlaces places =
+        places_along(side->second, face, face.parts[static_cast<size_t>(on.surface - first_part)], left_mm);
+    made.edge_mm = std::max(made.edge_mm, left_mm);
+    if (backwards) std::reverse(places.begin(), places.end());
+    if (places.size() < 3) continue;
+    // Across the seam of a closed surface an edge has two curves; those beside it run straight.
+    constexpr double kSame = 1e-6;
+    if ((places.front() - on.uv[k]).norm() > kSame || (places.back() - on.uv[(k + 1) % 3]).norm() > kSame) {
+      made.edge_mm = std::max(made.edge_mm, on.chords_mm[k]);
+      continue;
+    }
+    places.front() = on.uv[k];
+    places.back() = on.uv[(k + 1) % 3];
+    on.edges[k] = static_cast<int>(made.under.edges.size());
+    made.under.edges.push_back(std::move(places));
+  }
+}
+
 /// Facets of one face; vertices with the same place become one by weld().
 void add_facets(const TopoDS_Face& face, double enough_mm, Made& made) {
   TopLoc_Location at;
@@ -140,6 +267,7 @@ void add_facets(const TopoDS_Face& face, double enough_mm, Made& made) {
     const gp_Pnt2d uv = facets->UVNode(i);
     places.emplace_back((Vec2(uv.X(), uv.Y()) - meshed.low).cwiseQuotient(meshed.high - meshed.low));
   }
+  const EdgeSides sides = sides_on_edges(face, facets, at);
   for (int i = 1; i <= facets->NbTriangles(); ++i) {
     int a, b, c;
     facets->Triangle(i).Get(a, b, c);
@@ -149,6 +277,7 @@ void add_facets(const TopoDS_Face& face, double enough_mm, Made& made) {
     if (!places.empty()) {
       const std::array<Vec2, 3> uv{places[at_node(a)], places[at_node(b)], places[at_node(c)]};
       on = place_under(meshed, first_part, uv);
+      take_sides(sides, {a, b, c}, meshed, first_part, on, made);
       const std::array<Vec3, 3> facet{made.points[first + at_node(a)], made.points[first + at_node(b)],
                                       made.points[first + at_node(c)]};
       if (!meshed.creased())
@@ -161,12 +290,13 @@ void add_facets(const TopoDS_Face& face, double enough_mm, Made& made) {
   }
 }
 
-Made facets_of(const TopoDS_Shape& shape, double asked_mm, double chord_mm, bool closed_only) {
+Made facets_of(const TopoDS_Shape& shape, double asked_mm, double edge_mm, double chord_mm,
+               bool closed_only) {
   Made made;
   BRepTools::Clean(shape);
   constexpr double kMostAngle = 0.35;  // rad between neighbours: nothing but looks hangs on it
   IMeshTools_Parameters asked;
-  asked.Deflection = std::min(asked_mm, kEdgeChord_mm);  // of edges
+  asked.Deflection = std::min(asked_mm, edge_mm);  // of edges
   asked.DeflectionInterior = asked_mm;
   asked.Angle = asked.AngleInterior = kMostAngle;
   const BRepMesh_IncrementalMesh mesher(shape, asked);
@@ -182,8 +312,8 @@ Made facets_of(const TopoDS_Shape& shape, double asked_mm, double chord_mm, bool
 
 }  // namespace
 
-Facets tessellate(const Model& model, double chord_mm, bool closed_only) {
-  SWARF_CHECK(chord_mm > 0.0 && model.shape != nullptr, "a shape and a chord above 0");
+Facets tessellate(const Model& model, double chord_mm, bool closed_only, double edge_mm) {
+  SWARF_CHECK(chord_mm > 0.0 && edge_mm > 0.0 && model.shape != nullptr, "a shape and a chord above 0");
   const QuietSession session;
   Made made;
   guarded(model.file, [&] {
@@ -191,7 +321,7 @@ Facets tessellate(const Model& model, double chord_mm, bool closed_only) {
     constexpr int kMostTries = 4;
     double asked = 0.5 * chord_mm;
     for (int i = 0; i < kMostTries; ++i) {
-      made = facets_of(model.shape->nurbs, asked, chord_mm, closed_only);
+      made = facets_of(model.shape->nurbs, asked, edge_mm, chord_mm, closed_only);
       if (made.chord_mm <= chord_mm) break;
       asked *= std::clamp(0.7 * chord_mm / made.chord_mm, 0.3, 0.9);
     }
@@ -209,6 +339,7 @@ Facets tessellate(const Model& model, double chord_mm, bool closed_only) {
   facets.proven = made.proven;
   facets.across_creases = made.across_creases;
   made.under.chord_mm = facets.chord_mm;
+  made.under.edge_mm = made.edge_mm;
   facets.under = std::make_shared<surface::UnderFacets>(std::move(made.under));
   return facets;
 }

@@ -7,7 +7,8 @@
 #include <numeric>
 
 #include "base/disjoint_sets.h"
-#include "base/units.h"
+#include "base/parallel.h"
+#include "collision/winding.h"
 #include "mesh/mesh_check.h"
 
 namespace swarf::collision {
@@ -155,15 +156,6 @@ bool in_solid(const RevolvedSolid& solid, const Vec3& point) {
   return false;
 }
 
-/// The solid angle of the triangle from the point, over 4 pi.
-double winding(const Triangle& triangle, const Vec3& point) {
-  const Vec3 a = triangle[0] - point, b = triangle[1] - point, c = triangle[2] - point;
-  const double la = a.norm(), lb = b.norm(), lc = c.norm();
-  const double volume = a.dot(b.cross(c));
-  const double below = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
-  return volume == 0.0 && below == 0.0 ? 0.0 : std::atan2(volume, below) / (2.0 * kPi);
-}
-
 }  // namespace
 
 Body mesh_body(std::string name, BodyKind kind, int link, const TriMesh& mesh, const Pose& placed) {
@@ -195,13 +187,17 @@ Body solid_body(std::string name, BodyKind kind, int link, std::vector<RevolvedS
   return body;
 }
 
-std::vector<Body> link_bodies(const machine::MachineScene& scene) {
-  std::vector<Body> bodies;
+std::vector<Body> link_bodies(const machine::MachineScene& scene, const std::function<bool(int)>& wanted) {
+  std::vector<int> links;
   for (size_t i = 0; i < scene.links.size(); ++i) {
-    const machine::Link& link = scene.links[i];
-    if (link.mesh.triangles.empty()) continue;
-    bodies.push_back(mesh_body(link.name, BodyKind::kLink, static_cast<int>(i), link.mesh));
+    const auto link = static_cast<int>(i);
+    if (!scene.links[i].mesh.triangles.empty() && (!wanted || wanted(link))) links.push_back(link);
   }
+  std::vector<Body> bodies(links.size());
+  parallel_chunks(links.size(), 1, [&](size_t i, size_t) {
+    const machine::Link& link = scene.links[static_cast<size_t>(links[i])];
+    bodies[i] = mesh_body(link.name, BodyKind::kLink, links[i], link.mesh);
+  });
   return bodies;
 }
 
@@ -226,9 +222,7 @@ bool holds_point(const Body& body, const Vec3& point) {
   if (!body.closed || body.nodes.empty()) return false;
   const BodyNode& root = body.nodes.front();
   if (((point - root.centre).cwiseAbs() - root.half).maxCoeff() > 0.0) return false;
-  double turns = 0.0;
-  for (const Triangle& triangle : body.triangles) turns += winding(triangle, point);
-  return turns > 0.5;
+  return winding_number(body, point) > 0.5;
 }
 
 }  // namespace swarf::collision

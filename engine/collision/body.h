@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -48,8 +49,10 @@ Body mesh_body(std::string name, BodyKind kind, int link, const TriMesh& mesh,
 /// "body-bad-profile".
 Body solid_body(std::string name, BodyKind kind, int link, std::vector<RevolvedSolid> solids_M);
 
-/// The links of the machine that have a mesh.
-std::vector<Body> link_bodies(const machine::MachineScene& scene);
+/// The links of the machine that have a mesh and are wanted, by their indices; all of them where nothing is
+/// said.
+std::vector<Body> link_bodies(const machine::MachineScene& scene,
+                              const std::function<bool(int link)>& wanted = {});
 /// What is clamped on the work link, drawn in W.
 Body work_body(const machine::MachineScene& scene, std::string name, BodyKind kind, const TriMesh& mesh_W);
 
@@ -64,8 +67,7 @@ Body tool_body(const machine::MachineScene& scene, const kinematics::MachineMode
                std::string name, std::span<const ToolFrustum> frustums);
 
 /// Whether a point of the home drawing lies in the material of a closed body, by the winding of its triangles
-/// (van Oosterom & Strackee 1983), which shells that overlap do not disturb, or in one of its solids. Linear
-/// in the triangles.
+/// (winding.h), which shells that overlap do not disturb, or in one of its solids.
 bool holds_point(const Body& body, const Vec3& point);
 
 }  // namespace swarf::collision

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "base/angles.h"
+#include "collision/greatest_depth.h"
 
 namespace swarf::collision {
 namespace {
@@ -150,7 +151,12 @@ std::vector<SurfacePiece> parts_of(const Body& body, const SurfacePiece& piece) 
 class DepthSearch {
  public:
   DepthSearch(const Encounter& pair, const BodyDepth& in_a, const BodyDepth& in_b, PathStretch poses)
-      : pair_(pair), in_a_(in_a), in_b_(in_b), poses_(poses) {}
+      : pair_(pair),
+        in_a_(in_a),
+        in_b_(in_b),
+        most_in_a_(greatest_depth(*pair.a)),
+        most_in_b_(greatest_depth(*pair.b)),
+        poses_(poses) {}
 
   DepthRange run(size_t first, size_t last, size_t budget) {
     std::vector<DepthCell> roots;
@@ -217,7 +223,8 @@ class DepthSearch {
     const double share = cell.to > cell.from ? (middle - cell.from) / (cell.to - cell.from) : 0.5;
     cell.move = bounds.speed * std::max(share, 1.0 - share) + 2.0 * bounds.slack(0.0);
     const double depth = in.signed_depth(place);
-    cell.upper = depth + piece.radius + cell.move;
+    const double most = cell.of_a ? most_in_b_ : most_in_a_;
+    cell.upper = std::min(depth + piece.radius + cell.move, most);
     if (piece.node < 0) {
       tell(depth, q, place, cell.of_a, middle);
       for (size_t i = 0; piece.whole && i < piece.count; ++i) {
@@ -281,6 +288,7 @@ class DepthSearch {
 
   const Encounter& pair_;
   const BodyDepth &in_a_, &in_b_;
+  double most_in_a_, most_in_b_;  ///< mm, whatever stands in them
   PathStretch poses_;
   DepthRange found_;
   size_t looked_ = 0;

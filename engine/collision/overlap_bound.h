@@ -9,7 +9,10 @@
 //   2. the distance of its corners, at both ends of the time, from the facet that is nearest to its middle
 //      (from the plane of any facet, where the body is convex), and the sagitta of the motion: a distance to
 //      a convex set is convex. So faces that are pressed into faces, and slides along them, cost no more than
-//      their corners.
+//      their corners;
+//   3. what any place can lie deep in the body (greatest_depth.h): a tool that goes through a block is at
+//   most its
+//      radius deep in it, whatever the way.
 #pragma once
 
 #include "collision/containment.h"

@@ -100,6 +100,25 @@ size_t StockBody::clear_ways(const Body& body, std::span<const AxisValues> place
   return free_ways(body, beside_, places.first(ways + 1), more_mm);
 }
 
+std::optional<StockTouch> StockBody::first_touch(const Body& body, std::span<const AxisValues> places) const {
+  std::vector<PathPose> poses(places.size());
+  for (size_t i = 0; i < places.size(); ++i) poses[i].q = places[i];
+  PathCheckOptions options;
+  options.touch_mm = options.tolerance_mm = kStockTouch;
+  const Encounter pair = encounter(*scene_, body, as_cut());
+  const StretchWalk walk = walk_stretch(pair, poses, options, {2.0 * kStockTouch, {}});
+  const auto met =
+      std::find_if(walk.ways.begin(), walk.ways.end(), [](Way way) { return way != Way::kFree; });
+  if (met == walk.ways.end()) return {};
+  StockTouch touch;
+  touch.way = static_cast<size_t>(met - walk.ways.begin());
+  AxisSegment segment;
+  segment.q0 = places[touch.way];
+  segment.q1 = places[touch.way + 1];
+  touch.at = first_contact(pair, segment);
+  return touch.at.touches ? std::optional(touch) : std::nullopt;
+}
+
 StockAnswer StockBody::suspect(const Body& body, const AxisSegment& segment) const {
   const Encounter pair = encounter(*scene_, body, as_cut());
   const Approach found = closest_approach(pair, segment, within(voxel_mm_));

@@ -30,6 +30,12 @@ struct StockAnswer {
   double depth_mm = 0.0;        ///< of the deepest place over the segment that depth_over() finds
 };
 
+/// Where a row of ways comes to the material.
+struct StockTouch {
+  size_t way = 0;  ///< from the place of this number to the next one
+  FirstContact at;
+};
+
 class StockBody {
  public:
   /// The raw stock in W: a block or a closed mesh. `scene` must outlive it.
@@ -50,6 +56,9 @@ class StockBody {
   /// beside a face are seen.
   static constexpr double kSeenVoxels = 1.75;
   size_t clear_ways(const Body& body, std::span<const AxisValues> places, double more_mm) const;
+  /// The first place where the body touches the mesh of the material, which lies within a voxel of it; none:
+  /// nowhere.
+  std::optional<StockTouch> first_touch(const Body& body, std::span<const AxisValues> places) const;
 
  private:
   StockAnswer suspect(const Body& body, const AxisSegment& segment) const;

@@ -46,6 +46,7 @@ InverseKinematics::InverseKinematics(const MachineModel& machine) : machine_(mac
     rotary_min_[slot] = axis.min;
     rotary_max_[slot] = axis.max;
     rotary_sense_[slot] = sense(axis);
+    column_[rotary_[slot]] = static_cast<int>(slot);
   }
   for (int i = 0; i < static_cast<int>(machine.axes.size()); ++i) {
     const Axis& axis = machine.axes[i];
@@ -128,7 +129,7 @@ struct InverseKinematics::Targets {
 };
 
 struct InverseKinematics::PairSines {
-  Pair sine[kMaxAxes], cosine[kMaxAxes];
+  Pair sine[2], cosine[2];  ///< of the outer and the inner axis, as Candidates::value
 };
 
 void InverseKinematics::set_target(const Vec3& tip_W, const Vec3& axis_W, int lane, Targets& targets) const {
@@ -187,13 +188,14 @@ inline Points same_for(const Vec3& origin, const Points&) {
 }
 
 /// Carries the work or tool point to the base; the linear axes are what is looked for.
-template <class Of, class Point>
-inline void walk_to_base(const std::vector<LinkStep>& steps, const Of& of, Point& point) {
+/// `place` is where `of` holds an axis.
+template <class Of, class Place, class Point>
+inline void walk_to_base(const std::vector<LinkStep>& steps, const Of& of, const Place& place, Point& point) {
   for (const LinkStep& step : steps) {
     if (!step.rotary) continue;
     const Point origin = same_for(step.origin, point);
-    point = origin + rotate(step.along, step.direction, step.sense * of.sine[step.axis], of.cosine[step.axis],
-                            Point(point - origin));
+    point = origin + rotate(step.along, step.direction, step.sense * of.sine[place(step.axis)],
+                            of.cosine[place(step.axis)], Point(point - origin));
   }
 }
 
@@ -222,8 +224,8 @@ void InverseKinematics::locate(const Targets& targets, const PairSines& of, Poin
     for (int lane = 0; lane < 2; ++lane) {
       Sines one;
       for (const int i : rotary_) {
-        one.sine[i] = of.sine[i][lane];
-        one.cosine[i] = of.cosine[i][lane];
+        one.sine[i] = of.sine[column_[i]][lane];
+        one.cosine[i] = of.cosine[column_[i]][lane];
       }
       if (!locate_one(targets.tip_M[lane], one, values[lane]))
         values[lane].setConstant(std::numeric_limits<double>::quiet_NaN());
@@ -232,8 +234,9 @@ void InverseKinematics::locate(const Targets& targets, const PairSines& of, Poin
     return;
   }
   Points work = side_by_side(targets.tip_M[0], targets.tip_M[1]), tool = both(machine_.tip_M);
-  walk_to_base(table_steps_, of, work);
-  walk_to_base(head_steps_, of, tool);
+  const auto slot = [&](int axis) { return column_[axis]; };
+  walk_to_base(table_steps_, of, slot, work);
+  walk_to_base(head_steps_, of, slot, tool);
   const Points gap = work - tool;
   const auto row = [&](int i) {
     return linear_inverse_(i, 0) * gap.x + linear_inverse_(i, 1) * gap.y + linear_inverse_(i, 2) * gap.z;
@@ -241,11 +244,16 @@ void InverseKinematics::locate(const Targets& targets, const PairSines& of, Poin
   linear_values = {row(0), row(1), row(2)};
 }
 
-/// Where linear axes ride on rotary ones.
+/// Of one solution alone; linear axes may ride on rotary ones.
 bool InverseKinematics::locate_one(const Vec3& tip_M, const Sines& of, Vec3& linear_values) const {
   Vec3 work = tip_M, tool = machine_.tip_M;
-  walk_to_base(table_steps_, of, work);
-  walk_to_base(head_steps_, of, tool);
+  const auto itself = [](int axis) { return axis; };
+  walk_to_base(table_steps_, of, itself, work);
+  walk_to_base(head_steps_, of, itself, tool);
+  if (columns_constant_) {
+    linear_values = linear_inverse_ * (work - tool);
+    return true;
+  }
   Mat3 columns;
   turn_columns(table_steps_, column_, of, columns);
   turn_columns(head_steps_, column_, of, columns);
@@ -272,7 +280,8 @@ void InverseKinematics::prove(const Targets& targets, const PairSines& of, const
       tip = tip + (step.sense * linear[column_[step.axis]]) * both(step.direction);
       continue;
     }
-    const Pair sine = step.sense * of.sine[step.axis], cosine = of.cosine[step.axis];
+    const int slot = column_[step.axis];
+    const Pair sine = step.sense * of.sine[slot], cosine = of.cosine[slot];
     const Points origin = both(step.origin);
     tip = origin + rotate(step.along, step.direction, sine, cosine, tip - origin);
     axis = rotate(step.along, step.direction, sine, cosine, axis);
@@ -292,9 +301,9 @@ void InverseKinematics::complete(const Targets& targets, const Candidates& candi
   double sine[4], cosine[4];
   lane_sines<4>(angle, sine, cosine);
   PairSines of;
-  for (size_t slot = 0; slot < rotary_.size(); ++slot) {
-    of.sine[rotary_[slot]] = Pair{sine[2 * slot], sine[2 * slot + 1]};
-    of.cosine[rotary_[slot]] = Pair{cosine[2 * slot], cosine[2 * slot + 1]};
+  for (size_t slot = 0; slot < 2; ++slot) {
+    of.sine[slot] = Pair{sine[2 * slot], sine[2 * slot + 1]};
+    of.cosine[slot] = Pair{cosine[2 * slot], cosine[2 * slot + 1]};
   }
   Points linear_values;
   locate(targets, of, linear_values);
@@ -333,20 +342,44 @@ InverseSolutions InverseKinematics::solve(const ToolPose& pose_W, const AxisValu
   return solutions;
 }
 
+// Most often the nearest alone is looked at: walking one is cheaper than two side by side.
 Branch InverseKinematics::solve_nearest(const ToolPose& pose_W, const AxisValues& hint) const {
   const Vec3 axis_W = unit(pose_W.axis_W);
   Candidates found;
-  Branch branch[2];
   const int count = candidates(axis_W, hint, found);
-  if (count == 0) return branch[0];
-  Targets targets;
-  set_target(pose_W.tip_W, axis_W, 0, targets);
-  set_target(pose_W.tip_W, axis_W, 1, targets);
-  complete(targets, found, branch);
+  Branch best;
+  if (count == 0) return best;
+  const Vec3 tip_M = machine_.X_MW * pose_W.tip_W, axis_M = machine_.X_MW.linear() * axis_W;
+  const auto complete_one = [&](int which, Branch& branch) {
+    const double value[2] = {found.value[0][which], found.value[1][which]};
+    double sine[2], cosine[2];
+    lane_sines<2>(value, sine, cosine);
+    Sines of;
+    for (size_t slot = 0; slot < rotary_.size(); ++slot) {
+      branch.q[rotary_[slot]] = value[slot];
+      of.sine[rotary_[slot]] = sine[slot];
+      of.cosine[rotary_[slot]] = cosine[slot];
+    }
+    Vec3 linear_values;
+    if (!locate_one(tip_M, of, linear_values)) return;
+    for (int i = 0; i < 3; ++i) branch.q[linear_[i]] = linear_values[i];
+    Vec3 tip = machine_.tip_M, axis = machine_.tool_axis_M;
+    for (const LinkStep& step : tool_to_work_) carry(step, branch.q, of, tip, axis);
+    const bool proven = (tip - tip_M).squaredNorm() <= kTipTolerance * kTipTolerance &&
+                        (axis - axis_M).squaredNorm() <= kAxisTolerance * kAxisTolerance;
+    if (!proven) return;
+    branch.out_of_travel_axis = first_out_of_travel(branch.q);
+    branch.outcome = branch.out_of_travel_axis >= 0 ? InverseOutcome::kOutOfTravel
+                     : found.outer_free[which]      ? InverseOutcome::kSingular
+                                                    : InverseOutcome::kOk;
+  };
   const int near = count == 2 && found.travel[1] < found.travel[0] ? 1 : 0;
-  const Branch &best = branch[near], &other = branch[1 - near];
+  complete_one(near, best);
   if (count == 1 || best.outcome == InverseOutcome::kOk) return best;
-  return other.outcome == InverseOutcome::kOk || best.outcome == InverseOutcome::kUnreachable ? other : best;
+  Branch other;
+  complete_one(1 - near, other);
+  if (other.outcome == InverseOutcome::kOk || best.outcome == InverseOutcome::kUnreachable) best = other;
+  return best;
 }
 
 /// Turns the rotary values by whole turns to those nearest to the ones before; returns the sum of what is

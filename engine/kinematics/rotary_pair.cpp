@@ -54,7 +54,12 @@ int RotaryPair::solve(const Vec3& w, TurnPair out[2]) const {
   const double across = (c1 - d_ * c2_) * per_s_;
   double angle[2];  // of w, the tilt
   lane_atan2<2>({wk, r}, {wn, across}, angle);
-  const double z_angle = p == 0.0 ? 0.5 * kPi : std::atan2(r, p);
+  double z_angle = 0.5 * kPi;
+  if (p != 0.0) {
+    double of_z[2];
+    lane_atan2<2>({r, r}, {p, p}, of_z);
+    z_angle = of_z[0];
+  }
   out[0] = {angle[0] - z_angle, -angle[1] - v_angle_, false};
   out[1] = {angle[0] + z_angle, angle[1] - v_angle_, false};
   return r > 0.0 ? 2 : 1;

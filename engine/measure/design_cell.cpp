@@ -29,12 +29,45 @@ PatchBounds bounds_over(const surface::SurfacePtr& surface, const Vec2& low, con
   const double uu = b.uu.most(), uv = b.uv.most(), vv = b.vv.most();
   const double change_u = uu * half.x() + uv * half.y(), change_v = uv * half.x() + vv * half.y();
   const double Su = d.Su.norm() + change_u, Sv = d.Sv.norm() + change_v;
+  bounds.most_u = Su;
+  bounds.most_v = Sv;
   const double N_u = uu * Sv + Su * uv, N_v = uv * Sv + Su * vv;
   const double N = d.Su.cross(d.Sv).norm() - N_u * half.x() - N_v * half.y();
   const double far = std::numeric_limits<double>::infinity();
   bounds.turn_u = N > 0.0 ? N_u / N : N_u > 0.0 ? far : 0.0;
   bounds.turn_v = N > 0.0 ? N_v / N : N_v > 0.0 ? far : 0.0;
   return bounds;
+}
+
+/// How far the edge beside a side leaves it, as the parameters do: aside of it in the metric that the longest
+/// steps along u and v make, in which all offsets from one side are parallel, so that between two places none
+/// is greater than at both.
+struct Strip {
+  double mm = 0.0, turn = 0.0;
+};
+Strip strip_beside(const Vec2& from, const Vec2& to, const EdgePiece& edge, const PatchBounds& bounds) {
+  Strip widest;
+  const Vec2 scale(bounds.most_u, bounds.most_v), way = (to - from).cwiseProduct(scale);
+  const double length2 = way.squaredNorm();
+  const auto [low, high] = std::minmax(edge.from, edge.to);
+  for (size_t i = low + 1; i < high; ++i) {
+    const Vec2 off = ((*edge.places)[i] - from).cwiseProduct(scale);
+    const double along = length2 > 0.0 ? std::clamp(off.dot(way) / length2, 0.0, 1.0) : 0.0;
+    const Vec2 aside = (off - along * way).cwiseAbs();
+    widest.mm = std::max(widest.mm, aside.sum());
+    const auto turn = [](double by, double mm, double most) { return mm > 0.0 ? by * mm / most : 0.0; };
+    widest.turn = std::max(widest.turn, turn(bounds.turn_u, aside.x(), bounds.most_u) +
+                                            turn(bounds.turn_v, aside.y(), bounds.most_v));
+  }
+  return widest;
+}
+
+/// The strip beside its sides lies as far from the places of the cell.
+void widen(DesignCell& cell, const Strip& strip) {
+  cell.strip_mm = std::max(cell.strip_mm, strip.mm);
+  cell.stray_mm += strip.mm;
+  cell.flatness_mm += strip.mm;
+  cell.turn += strip.turn;
 }
 
 /// Length of the longest of a few lines of one parameter: only the size of cells hangs on it.
@@ -71,38 +104,61 @@ void add_surface(const surface::SurfacePtr& surface, double size_mm, std::vector
   }
 }
 
-void add_divided(const std::array<CellCorner, 3>& corners, double size_mm, std::vector<RootCell>& cells,
-                 const PatchBounds& bounds = {}) {
-  const DesignCell cell = make_cell(corners, bounds);
-  if (cell.longest_edge() <= size_mm) {
-    cells.push_back({cell, bounds});
+void divide_root(const RootCell& root, double size_mm, std::vector<RootCell>& cells) {
+  if (root.cell.longest_edge() <= size_mm) {
+    cells.push_back(root);
     return;
   }
   // The longest edge is halved: long thin facets keep their shape no worse.
-  int first = 0;
+  const std::array<CellCorner, 3>& corners = root.cell.corners;
+  size_t first = 0;
   double longest = -1.0;
-  for (int k = 0; k < 3; ++k) {
+  for (size_t k = 0; k < 3; ++k) {
     const double length = (corners[k].point - corners[(k + 1) % 3].point).norm();
     if (length > longest) {
       longest = length;
       first = k;
     }
   }
-  const CellCorner &a = corners[first], &b = corners[(first + 1) % 3], &c = corners[(first + 2) % 3];
-  const CellCorner m = middle(a, b, bounds);
-  add_divided({a, m, c}, size_mm, cells, bounds);
-  add_divided({m, b, c}, size_mm, cells, bounds);
+  const size_t second = (first + 1) % 3, third = (first + 2) % 3;
+  const CellCorner &a = corners[first], &b = corners[second], &c = corners[third];
+  const EdgePiece& edge = root.edges[first];
+  const CellCorner m = middle(a, b, root.bounds, edge);
+  const auto add = [&](const std::array<CellCorner, 3>& part, const CellEdges& edges) {
+    RootCell half = root;
+    half.cell = make_cell(part, root.bounds, edges);
+    half.edges = edges;
+    divide_root(half, size_mm, cells);
+  };
+  add({a, m, c}, {edge.first_half(), EdgePiece{}, root.edges[third]});
+  add({m, b, c}, {edge.second_half(), root.edges[second], EdgePiece{}});
+}
+
+void add_divided(const std::array<CellCorner, 3>& corners, double size_mm, std::vector<RootCell>& cells,
+                 const PatchBounds& bounds = {}, const CellEdges& edges = {}) {
+  divide_root({make_cell(corners, bounds, edges), bounds, edges}, size_mm, cells);
 }
 
 /// The part of a surface over a facet that stands for it.
 void add_part(const stock::FacetSheets& sheets, uint32_t facet, double size_mm,
               std::vector<RootCell>& cells) {
   const surface::SurfacePtr& surface = sheets.surface_of(facet);
-  const std::array<Vec2, 3>& uv = sheets.on_surface(facet).uv;
-  const PatchBounds bounds =
-      bounds_over(surface, uv[0].cwiseMin(uv[1]).cwiseMin(uv[2]), uv[0].cwiseMax(uv[1]).cwiseMax(uv[2]));
+  const surface::FacetOnSurface& on = sheets.on_surface(facet);
+  const std::array<Vec2, 3>& uv = on.uv;
+  Vec2 low = uv[0].cwiseMin(uv[1]).cwiseMin(uv[2]), high = uv[0].cwiseMax(uv[1]).cwiseMax(uv[2]);
+  CellEdges edges;
+  for (size_t k = 0; k < 3; ++k) {
+    if (on.edges[k] == surface::FacetOnSurface::kNone) continue;
+    const surface::EdgePlaces& places = sheets.under->edges[static_cast<size_t>(on.edges[k])];
+    edges[k] = {&places, 0, places.size() - 1};
+    for (const Vec2& place : places) {
+      low = low.cwiseMin(place);
+      high = high.cwiseMax(place);
+    }
+  }
+  const PatchBounds bounds = bounds_over(surface, low, high);
   const auto corner = [&](size_t k) { return corner_on(*surface, uv[k].x(), uv[k].y()); };
-  add_divided({corner(0), corner(1), corner(2)}, size_mm, cells, bounds);
+  add_divided({corner(0), corner(1), corner(2)}, size_mm, cells, bounds, edges);
 }
 
 Vec3 turned_by(const Vec3& n, const Vec3& m, double share) {
@@ -126,12 +182,14 @@ void add_fan(const stock::FacetSheets& sheets, const stock::SharpEdge& edge, dou
   const double angle = std::max(angle_between(n0, m0), angle_between(n1, m1));
   const int steps = std::max(1, static_cast<int>(std::ceil(angle / kFanStep)));
   std::vector<RootCell> fan;
+  PatchBounds bounds;
+  bounds.edge_chord_mm = edge.chord_mm;
   for (int i = 0; i < steps; ++i) {
     const double low = static_cast<double>(i) / steps, high = static_cast<double>(i + 1) / steps;
     const CellCorner a{from, turned_by(n0, m0, low)}, b{to, turned_by(n1, m1, low)},
         c{to, turned_by(n1, m1, high)}, d{from, turned_by(n0, m0, high)};
-    add_divided({a, b, c}, size_mm, fan);
-    add_divided({a, c, d}, size_mm, fan);
+    add_divided({a, b, c}, size_mm, fan, bounds);
+    add_divided({a, c, d}, size_mm, fan, bounds);
   }
   for (RootCell& cell : fan) {
     (convex ? cell.looks_down : cell.looks_up) = false;
@@ -269,7 +327,8 @@ double most_over_pairs(double q01, double q12, double q20) {
   return a * b * c / (2.0 * (a * b + b * c + c * a) - a * a - b * b - c * c);
 }
 
-DesignCell make_cell(const std::array<CellCorner, 3>& corners, const PatchBounds& bounds) {
+DesignCell make_cell(const std::array<CellCorner, 3>& corners, const PatchBounds& bounds,
+                     const CellEdges& edges) {
   DesignCell cell{corners};
   std::array<double, 3> bend{}, stray{}, lean{};
   for (size_t k = 0; k < 3; ++k) {
@@ -288,15 +347,24 @@ DesignCell make_cell(const std::array<CellCorner, 3>& corners, const PatchBounds
   if (bounds.surface != nullptr) {
     cell.stray_mm = 0.5 * most_over_pairs(stray[0], stray[1], stray[2]);
     cell.flatness_mm = cell.stray_mm + 0.5 * most_over_pairs(bend[0], bend[1], bend[2]);
+    Strip widest;
+    for (size_t k = 0; k < 3; ++k) {
+      if (!edges[k].is_divided()) continue;
+      const Strip strip = strip_beside(corners[k].uv, corners[(k + 1) % 3].uv, edges[k], bounds);
+      widest = {std::max(widest.mm, strip.mm), std::max(widest.turn, strip.turn)};
+    }
+    widen(cell, widest);
   } else {
     // |sum l_k n_k|^2 = 1 - sum over pairs l_j l_k |n_j - n_k|^2.
     cell.turn = 1.0 - std::sqrt(std::max(0.0, 1.0 - most_over_pairs(lean[0], lean[1], lean[2])));
+    widen(cell, {bounds.edge_chord_mm, 0.0});
   }
   return cell;
 }
 
-CellCorner middle(const CellCorner& a, const CellCorner& b, const PatchBounds& bounds) {
-  const Vec2 uv = 0.5 * (a.uv + b.uv);
+CellCorner middle(const CellCorner& a, const CellCorner& b, const PatchBounds& bounds,
+                  const EdgePiece& edge) {
+  const Vec2 uv = edge.is_divided() ? (*edge.places)[(edge.from + edge.to) / 2] : Vec2(0.5 * (a.uv + b.uv));
   if (bounds.surface != nullptr) return corner_on(*bounds.surface, uv.x(), uv.y());
   return {0.5 * (a.point + b.point), (a.normal + b.normal).normalized(), uv};
 }

@@ -23,6 +23,7 @@
 #include "base/frames.h"
 #include "stock/rays/ray_field.h"
 #include "surface/surface.h"
+#include "surface/under_facets.h"
 
 namespace swarf::measure {
 
@@ -31,17 +32,37 @@ struct CellCorner {
   Vec2 uv = Vec2::Zero();
 };
 
+/// A side of a cell that stands for a piece of a curved edge: the places [from, to] along it, or back.
+/// Divided, the cell's corner comes to the middle place; until then the strip between edge and side belongs
+/// to the cell, or lies beyond the design.
+struct EdgePiece {
+  const surface::EdgePlaces* places = nullptr;  ///< null: a side within the face, or straight
+  size_t from = 0, to = 0;
+
+  bool is_divided() const { return places != nullptr && (from > to ? from - to : to - from) > 1; }
+  EdgePiece first_half() const {
+    return is_divided() ? EdgePiece{places, from, (from + to) / 2} : EdgePiece{};
+  }
+  EdgePiece second_half() const {
+    return is_divided() ? EdgePiece{places, (from + to) / 2, to} : EdgePiece{};
+  }
+};
+using CellEdges = std::array<EdgePiece, 3>;  ///< side k, from corner k to the next
+
 /// What bounds the design between the corners of every cell of a patch.
 struct PatchBounds {
   surface::SurfacePtr surface;        ///< null: flat facets with interpolated normals
   surface::BendBounds bends;          ///< mm
   double turn_u = 0.0, turn_v = 0.0;  ///< |dn/du|, |dn/dv| at most
+  double most_u = 0.0, most_v = 0.0;  ///< |Su|, |Sv| at most, mm
+  double edge_chord_mm = 0.0;         ///< of columns that fan out from an edge, which strays from its chord
 };
 
 struct DesignCell {
   std::array<CellCorner, 3> corners;
   double flatness_mm = 0.0, turn = 0.0;
-  double stray_mm = 0.0;                                                ///< <= flatness_mm
+  double stray_mm = 0.0;  ///< <= flatness_mm
+  double strip_mm = 0.0;  ///< of both: how far the edges beside the cell leave its sides
   std::array<Vec3, 3> bends{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};  ///< M of the side from corner k, mm
 
   bool is_curved() const { return flatness_mm > stray_mm; }
@@ -60,10 +81,12 @@ struct DesignCell {
 /// Greatest value over barycentric l of l_0 l_1 q01 + l_1 l_2 q12 + l_2 l_0 q20, all q >= 0.
 double most_over_pairs(double q01, double q12, double q20);
 
-DesignCell make_cell(const std::array<CellCorner, 3>& corners, const PatchBounds& bounds);
+DesignCell make_cell(const std::array<CellCorner, 3>& corners, const PatchBounds& bounds,
+                     const CellEdges& edges = {});
 
-/// Half way between two corners of a cell.
-CellCorner middle(const CellCorner& a, const CellCorner& b, const PatchBounds& bounds);
+/// Half way between two corners of a cell, or along the edge between them.
+CellCorner middle(const CellCorner& a, const CellCorner& b, const PatchBounds& bounds,
+                  const EdgePiece& edge = {});
 
 /// The place of a cell with these barycentric coordinates.
 CellCorner place_in(const DesignCell& cell, const Vec3& barycentric, const PatchBounds& bounds);
@@ -71,6 +94,7 @@ CellCorner place_in(const DesignCell& cell, const Vec3& barycentric, const Patch
 struct RootCell {
   DesignCell cell;
   PatchBounds bounds;
+  CellEdges edges = {};
   bool looks_up = true;    ///< answers for material above the design
   bool looks_down = true;  ///< answers for cuts below it
 };

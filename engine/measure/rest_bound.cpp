@@ -7,16 +7,19 @@
 
 namespace swarf::measure {
 
-double lowest_cut(const CellCorner& at, const NearSweep& near, double highest, bool fans) {
+double lowest_cut(const CellCorner& at, const NearSweep& near, double highest, bool fans,
+                  const stock::RayField& field) {
   if (stays_above(at, near, highest)) return kNever;
   const double low = stock::ray_height(at.point, at.normal, near.map, *near.cutter);
+  // Cuts shallower than this are not looked at closer, mm: distances from facets know no more.
+  constexpr double kShallow = 2e-5;
   // Columns that fan out from an edge or a corner are touched there by all that ends in its faces.
-  if (low >= -stock::kSkin && !fans) return low;
+  if (low >= -kShallow && !fans) return low;
   double least = kNever;
   for (const cutter::ConvexPiece& piece : near.cutter->pieces) {
     const stock::RayInterval cut = stock::ray_interval(at.point, at.normal, near.map, piece);
-    // A cut that leaves the design's skin standing belongs to another face.
-    if (cut.hit() && cut.high > cut.low + (fans ? kTouch : 0.0) && cut.high >= -stock::kSkin)
+    if (cut.hit() && cut.high > cut.low + (fans ? kTouch : 0.0) &&
+        field.answers_for(at.point, at.normal, cut.high))
       least = std::min(least, cut.low);
   }
   return least;
@@ -115,7 +118,7 @@ uint32_t RestBound::owner_at(const Cell& cell, const HighestLeft& left, std::spa
   double height = left.height;
   uint32_t owner = stock::kUncut;
   const auto look_at = [&](uint32_t n) {
-    const double low = lowest_cut(at, near_[n], height, root_.cell.area_mm2() == 0.0);
+    const double low = lowest_cut(at, near_[n], height, root_.cell.area_mm2() == 0.0, input_.field);
     if (low >= height) return;
     height = low;
     owner = n;

@@ -21,7 +21,6 @@ struct Corner {
   std::optional<Vec3> wall;       ///< a place of that face
   std::optional<uint32_t> facet;  ///< of a mesh, that lies there
   double top = 0.0;               ///< there, or where the column leaves the stock's box, mm
-  double depth = 0.0;             ///< down to which a cut would count that leaves the skin standing, mm
   double height = 0.0;            ///< that the sweeps leave standing, mm
   uint32_t near = stock::kUncut;  ///< index into the root's sweeps
 };
@@ -30,6 +29,7 @@ struct Corner {
 struct Cell {
   DesignCell shape;
   std::array<Corner, 3> corners;
+  CellEdges edges;
   size_t begin, end;        ///< of kept_: the sweeps that may matter
   double dropped = kNever;  ///< least height of those that do not
   double air = kNever;      ///< above it the stock is air, as the grid tells for this cell or one around it
@@ -38,8 +38,9 @@ struct Cell {
 };
 
 /// Lowest end of what the sweep cuts of the column, not above `highest`; infinite where it cuts none. `fans`:
-/// columns fan out there from an edge or a corner.
-double lowest_cut(const CellCorner& at, const NearSweep& near, double highest, bool fans);
+/// columns fan out there from an edge or a corner. What is cut of another face of `field` alone is left out.
+double lowest_cut(const CellCorner& at, const NearSweep& near, double highest, bool fans,
+                  const stock::RayField& field);
 
 /// Half way along the path between two sweeps: between their places it is the likeliest to be the lowest.
 uint32_t between(const std::array<uint32_t, 2>& sweeps);

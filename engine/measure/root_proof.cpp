@@ -13,6 +13,7 @@
 #include "measure/rest_bound.h"
 #include "mesh/mesh_distance.h"
 #include "stock/rays/ray_height.h"
+#include "surface/face.h"
 
 namespace swarf::measure {
 namespace {
@@ -64,6 +65,20 @@ double look_at_raw(const stock::RawShape& raw, const std::vector<CornerHeights>&
   return top;
 }
 
+/// Whether a bound of what stands is asked for at all.
+bool asks_above(const CertificateInput& input) {
+  return input.wants_excess || input.wants_scallop;
+}
+
+/// How deep below a place a cut can count: to where another face is nearer, or out of the stock.
+double counted_depth(const CertificateInput& input, const CellCorner& corner, double depth,
+                     double share = 1e-9) {
+  if (depth <= 0.0) return depth;
+  depth = input.field.own_depth(corner.point, corner.normal, depth, share);
+  const double through = leaves_raw(input.stock.raw(), corner.point, -corner.normal);
+  return through > 0.0 ? std::min(depth, through) : depth;
+}
+
 class RootProof {
  public:
   RootProof(const CertificateInput& input, const SweepIndex& index, const RootCell& root,
@@ -84,7 +99,7 @@ class RootProof {
       for (uint32_t n = 0; n < kept_.size(); ++n) kept_[n] = n;
       std::array<Corner, 3> corners;
       for (size_t k = 0; k < 3; ++k) corners[k] = measured({c[k]}, 0, kept_.size(), {});
-      visit({root_.cell, corners, 0, kept_.size(), kNever, kNever});
+      visit({root_.cell, corners, root_.edges, 0, kept_.size(), kNever, kNever});
       if (highest_seen_ < reach) break;
     }
     return std::move(result_);
@@ -146,9 +161,12 @@ class RootProof {
     return leaves_box(input_.stock.box(), corner.point, corner.normal);
   }
 
-  /// How high above a place material is its own: a mesh tells by its distance, patches by their rays.
+  /// How high above a place material is its own: a mesh tells by its distance, patches by their rays. Where
+  /// nothing is asked of what stands there, only the height that is left is brought down to it (keep_own).
   void take_range(Corner& corner) const {
     const CellCorner& at = corner.at;
+    corner.range = kNever;
+    if (!asks_above(input_) && input_.field.design != nullptr) return;
     if (input_.field.design == nullptr) {
       const stock::FreeRange::Range range = input_.ranges(at.point, at.normal);
       corner.range = range.mm;
@@ -156,7 +174,6 @@ class RootProof {
       return;
     }
     const double through = leaves_box(input_.stock.box(), at.point, at.normal);
-    corner.range = kNever;
     if (!(through > 0.0)) return;
     corner.range = input_.field.own_depth(at.point, -at.normal, through, kShareOfRange);
     if (corner.range >= through) return;
@@ -166,23 +183,14 @@ class RootProof {
     corner.facet = near.triangle;
   }
 
-  /// How deep below a place a cut can count: to where another face is nearer, or out of the stock.
-  double own_depth(const CellCorner& corner, double depth, double share = 1e-9) const {
-    if (depth <= 0.0) return depth;
-    depth = input_.field.own_depth(corner.point, corner.normal, depth, share);
-    const double through = leaves_raw(raw_, corner.point, -corner.normal);
-    return through > 0.0 ? std::min(depth, through) : depth;
-  }
-
   /// Height at one corner, by the sweeps kept_[begin, end); `guesses` go first.
   Corner measured(const CellCorner& at, size_t begin, size_t end, std::array<uint32_t, 2> guesses) {
     Corner corner;
     corner.at = at;
     take_range(corner);
-    corner.depth = own_depth(at, stock::kSkin, kShareOfRange);
     take_raw(raw_, corner);
     const auto look_at = [&](uint32_t n) {
-      const double low = lowest_cut(at, near_[n], corner.height, root_.cell.area_mm2() == 0.0);
+      const double low = lowest_cut(at, near_[n], corner.height, root_.cell.area_mm2() == 0.0, input_.field);
       if (low >= corner.height) return;
       corner.height = low;
       corner.near = n;
@@ -198,9 +206,18 @@ class RootProof {
     if (root_.looks_up && corner.height > std::min(excess_target(), scallop_target())) {
       for (uint32_t n = 0; n < near_.size(); ++n) look_at(n);
     }
-    if (corner.near != stock::kUncut) corner.height = -own_depth(at, -corner.height);
+    keep_own(corner);
     note(corner);
     return corner;
+  }
+
+  /// Of a cut, or of what stands, what is nearer to another face is that one's.
+  void keep_own(Corner& corner) const {
+    const CellCorner& at = corner.at;
+    if (corner.height < 0.0 && corner.near != stock::kUncut)
+      corner.height = -counted_depth(input_, at, -corner.height);
+    if (corner.height > 0.0 && corner.range == kNever && input_.field.design != nullptr)
+      corner.height = input_.field.own_depth(at.point, -at.normal, corner.height, kShareOfRange);
   }
 
   void note(const Corner& corner) {
@@ -263,7 +280,8 @@ class RootProof {
     if (!own.empty()) return highest_left(own).height;
     double depth = 0.0;
     constexpr double kThrough = 1e4;  // mm: any part
-    for (const Corner& corner : cell.corners) depth = std::max(depth, own_depth(corner.at, kThrough));
+    for (const Corner& corner : cell.corners)
+      depth = std::max(depth, counted_depth(input_, corner.at, kThrough));
     if (input_.field.design != nullptr) return depth;
     DesignCell below = cell.shape;
     for (CellCorner& corner : below.corners) corner.normal = -corner.normal;
@@ -293,11 +311,18 @@ class RootProof {
     return std::max(0.0, top - cell.shape.flatness_mm - top * std::min(1.0, cell.shape.turn));
   }
 
-  /// Least height over the cell; floors_ gets each sweep's.
+  /// Least height over the cell; floors_ gets each sweep's. A bound holds however much deeper it looks, so
+  /// what is the cell's own, which asks for distances, is asked for only where that does not suffice.
   double lower_bound(const Cell& cell) {
-    ColumnDepths depths{{cell.corners[0].depth, cell.corners[1].depth, cell.corners[2].depth}, {}};
+    std::fill(floors_.begin() + static_cast<std::ptrdiff_t>(cell.begin),
+              floors_.begin() + static_cast<std::ptrdiff_t>(cell.end), -kNever);
+    ColumnDepths depths{{stock::kSkin, stock::kSkin, stock::kSkin}, {}};
     double low = lower_bound(cell, depths);
     if (low >= -gouge_target() || !root_.looks_down) return low;
+    for (size_t k = 0; k < 3; ++k)
+      depths.seen[k] = counted_depth(input_, cell.corners[k].at, stock::kSkin, kShareOfRange);
+    low = lower_bound(cell, depths);
+    if (low >= -gouge_target()) return low;
     depths.own = own_below(cell);
     if (!depths.own.empty()) low = lower_bound(cell, depths);
     return low == -kNever ? -deepest(cell, depths.own) : low;
@@ -306,7 +331,8 @@ class RootProof {
   double lower_bound(const Cell& cell, const ColumnDepths& depths) {
     double low = std::min(cell.dropped, stood_before(cell));
     for (size_t i = cell.begin; i < cell.end; ++i) {
-      floors_[i] = least_height(cell.shape, near_[kept_[i]], depths, -gouge_target());
+      if (floors_[i] < -gouge_target())
+        floors_[i] = std::max(floors_[i], least_height(cell.shape, near_[kept_[i]], depths, -gouge_target()));
       low = std::min(low, floors_[i]);
     }
     return low;
@@ -394,8 +420,8 @@ class RootProof {
   bool on_border(const Bounds& bounds) const {
     const bool gouge = root_.looks_down && -bounds.low > input_.gouge_limit_mm &&
                        !(-bounds.high > input_.gouge_limit_mm) && result_.gouge_found > input_.gouge_limit_mm;
-    const bool excess = root_.looks_up && (input_.wants_excess || input_.wants_scallop) &&
-                        bounds.high > input_.excess_limit_mm && !(bounds.low > input_.excess_limit_mm) &&
+    const bool excess = root_.looks_up && asks_above(input_) && bounds.high > input_.excess_limit_mm &&
+                        !(bounds.low > input_.excess_limit_mm) &&
                         result_.excess_found > input_.excess_limit_mm;
     return gouge || excess;
   }
@@ -417,13 +443,14 @@ class RootProof {
 
   bool breaks_limit() {
     result_.broken = (root_.looks_down && result_.gouge_found > input_.gouge_limit_mm) ||
-                     (root_.looks_up && result_.excess_found > input_.excess_limit_mm);
+                     (root_.looks_up && asks_above(input_) && result_.excess_found > input_.excess_limit_mm);
     return result_.broken;
   }
 
   /// Measures where the sweep that bounds the cell lowest should cut deepest.
   std::optional<Probe> probe(const Cell& cell) {
-    if (cell.begin == cell.end) return std::nullopt;
+    // Places beyond an edge are none of the design.
+    if (cell.begin == cell.end || cell.shape.strip_mm > surface::kLoopChord) return std::nullopt;
     const auto first = floors_.begin() + static_cast<std::ptrdiff_t>(cell.begin);
     const auto lowest = std::min_element(first, floors_.begin() + static_cast<std::ptrdiff_t>(cell.end));
     const uint32_t n = kept_[static_cast<size_t>(lowest - floors_.begin())];
@@ -486,15 +513,22 @@ class RootProof {
     std::array<Corner, 3> middles;
     for (size_t k = 0; k < 3; ++k) {
       const Corner &a = cell.corners[k], &b = cell.corners[(k + 1) % 3];
-      middles[k] = measured(middle(a.at, b.at, root_.bounds), begin, end, {a.near, b.near});
+      middles[k] = measured(middle(a.at, b.at, root_.bounds, cell.edges[k]), begin, end, {a.near, b.near});
     }
     const auto& c = cell.corners;
-    for (const std::array<Corner, 3>& part : {std::array<Corner, 3>{c[0], middles[0], middles[2]},
-                                              std::array<Corner, 3>{middles[0], c[1], middles[1]},
-                                              std::array<Corner, 3>{middles[2], middles[1], c[2]},
-                                              std::array<Corner, 3>{middles[0], middles[1], middles[2]}}) {
-      visit({make_cell({part[0].at, part[1].at, part[2].at}, root_.bounds), part, begin, end, dropped,
-             cell.air});
+    const auto& e = cell.edges;
+    struct Part {
+      std::array<Corner, 3> corners;
+      CellEdges edges;
+    };
+    for (const Part& part :
+         {Part{{c[0], middles[0], middles[2]}, {e[0].first_half(), EdgePiece{}, e[2].second_half()}},
+          Part{{middles[0], c[1], middles[1]}, {e[0].second_half(), e[1].first_half(), EdgePiece{}}},
+          Part{{middles[2], middles[1], c[2]}, {EdgePiece{}, e[1].second_half(), e[2].first_half()}},
+          Part{{middles[0], middles[1], middles[2]}, {}}}) {
+      visit(
+          {make_cell({part.corners[0].at, part.corners[1].at, part.corners[2].at}, root_.bounds, part.edges),
+           part.corners, part.edges, begin, end, dropped, cell.air});
       kept_.resize(end);
       floors_.resize(end);
     }

@@ -67,6 +67,14 @@ void refuse_extensions(const std::string& path, std::string_view bytes) {
   }
   const nlohmann::json model = nlohmann::json::parse(bytes, nullptr, false);
   if (!model.is_object()) refuse_mesh({path}, "the file is no glTF: its JSON cannot be read");
+  if (model.contains("buffers") && model.at("buffers").is_array())
+    for (const nlohmann::json& buffer : model.at("buffers")) {
+      const auto uri = buffer.is_object() ? buffer.find("uri") : buffer.end();
+      if (!buffer.is_object() || uri == buffer.end() || !uri->is_string()) continue;
+      if (!uri->get_ref<const std::string&>().starts_with("data:"))
+        refuse_mesh({path}, "the numbers of the glTF stand in another file, which the run could not keep",
+                    "export it as one file: .glb");
+    }
   const auto needed = model.find("extensionsRequired");
   if (needed == model.end() || !needed->is_array() || needed->empty()) return;
   refuse_mesh({path}, fmt::format("the glTF file needs {}, which is not read", shown(needed->front().dump())),

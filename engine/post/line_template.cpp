@@ -12,7 +12,7 @@ constexpr std::array<const char*, kPlaces> kNames{
     "source",  "program",      "bottom",  "clear",     "surface",
     "retract", "return",       "depth",   "clearance", "second_clearance",
     "step",    "step_first",   "dwell",   "feed",      "pitch",
-    "turn_1",  "turn_2",       "turn_3",  "side"};
+    "turn_1",  "turn_2",       "turn_3",  "side",      "unit"};
 
 /// Where the piece that starts at `from` ends: at the next space outside of quotes.
 size_t piece_end(std::string_view line, size_t from) {

@@ -49,6 +49,7 @@ enum class Place {
   kTurn2,
   kTurn3,
   kSide,  // of a tilted plane
+  kUnit,
   kCount
 };
 inline constexpr size_t kPlaces = static_cast<size_t>(Place::kCount);

@@ -97,7 +97,7 @@ FollowRules rules_of(const PostFormat& format, const PostOptions& options, bool 
   rules.tcp = tcp;
   rules.tip_mm = options.tip_mm;
   rules.axis_rad = options.axis_rad;
-  rules.linear_half = half_digit(format.numbers.linear);
+  rules.linear_half = half_digit_mm(format);
   rules.rotary_half = rad_from_deg(half_digit(format.numbers.rotary));
   rules.snap_rad = rules.rotary_half;
   return rules;
@@ -168,7 +168,7 @@ PostAbilities abilities_of(const PostFormat& format) {
   can.bore = !format.cycle.bore.empty();
   can.bore_dwell = !format.cycle.bore_dwell.empty();
   can.tap = !format.cycle.tap.empty();
-  can.arc_digit_mm = 2.0 * half_digit(format.numbers.linear);
+  can.arc_digit_mm = 2.0 * half_digit_mm(format);
   const PlaneWords& plane = format.tilted_plane;
   can.plane = {plane.on.empty() ? PlaneUse::kNever : plane.use, plane.turns, format.numbers.rotary.decimals};
   return can;

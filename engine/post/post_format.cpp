@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "base/config.h"
 #include "program/dialects.h"
 
@@ -12,7 +14,7 @@ namespace {
 using P = Place;
 
 const std::vector<Place> kNone{}, kNumbered{P::kNumber}, kCommented{P::kText},
-    kHead{P::kMachine, P::kSource, P::kProgram}, kTool{P::kT, P::kName, P::kS},
+    kHead{P::kMachine, P::kSource, P::kProgram, P::kUnit}, kTool{P::kT, P::kName, P::kS},
     kRetractTo{P::kHomeAlong, P::kT}, kApproach{P::kRotaries, P::kAcross, P::kAlong, P::kT},
     kSpindle{P::kS, P::kT}, kDwells{P::kSeconds}, kRapid{P::kAxes}, kLine{P::kAxes, P::kF},
     kArc{P::kAxes, P::kF, P::kCentre, P::kCentrePoint}, kTcp{P::kT, P::kAxes},
@@ -142,6 +144,13 @@ void read_cycles(ConfigTable cycle, CycleWords& to) {
   to.dwell_in_ms = cycle.boolean("dwell_in_ms", false);
 }
 
+void read_unit(ConfigTable output, OutputUnit& to) {
+  to.inches = output.choice("unit", {"mm", "inch"}, "mm") == "inch";
+  to.mm = output.text("mm", "");
+  to.inch = output.text("inch", "");
+  to.feed_per_inch = output.integer("feed_per_inch", 1, 1000, 1);
+}
+
 void read_planes(ConfigTable plane, PlaneWords& to) {
   to.on = lines(plane, "on", kTilt);
   to.off = lines(plane, "off", kTool);
@@ -161,6 +170,22 @@ void read_planes(ConfigTable plane, PlaneWords& to) {
 
 PlaneUse plane_use(std::string_view name) {
   return name == "never" ? PlaneUse::kNever : name == "cycles" ? PlaneUse::kCycles : PlaneUse::kConstant;
+}
+
+PostFormat in_unit(PostFormat format, bool inches) {
+  if (format.unit.inches == inches) return format;
+  if (format.unit.inch.empty() || format.unit.mm.empty() || !format.head.uses(Place::kUnit))
+    throw InputError("no-unit-words", {format.file},
+                     fmt::format("{} does not say how a program names its unit", format.name),
+                     "write [output] mm = \"G21\" and inch = \"G20\", and {unit} in the head of [program]");
+  format.unit.inches = inches;
+  for (NumberFormat* const one : {&format.numbers.linear, &format.numbers.feed})
+    one->decimals = std::clamp(one->decimals + (inches ? 1 : -1), 0, 9);
+  return format;
+}
+
+double half_digit_mm(const PostFormat& format) {
+  return format.unit.length_mm() * half_digit(format.numbers.linear);
 }
 
 /// What would leave an axis where it is, or a mode on.
@@ -204,6 +229,7 @@ PostFormat load_post(const std::string& file) {
     table.error("unknown-dialect", "dialect", fmt::format("'{}' is no dialect", dialect),
                 "choose " + program::dialect_list(" or "));
   read_numbers(table.table("numbers"), post.numbers);
+  read_unit(table.table("output"), post.unit);
   read_blocks(table.table("blocks"), post);
   read_comment(table.table("comment"), post);
   ConfigTable program = table.table("program");

@@ -23,8 +23,8 @@ enum class FeedCounts {
 };
 
 struct NumberFormats {
-  NumberFormat linear, rotary;      ///< mm, degrees
-  NumberFormat feed, inverse_time;  ///< mm/min, 1/min
+  NumberFormat linear, rotary;      ///< unit of the program, degrees
+  NumberFormat feed, inverse_time;  ///< unit/min, 1/min
   NumberFormat speed, time;         ///< 1/min, s
 };
 
@@ -44,6 +44,16 @@ struct CycleWords {
   bool dwell_in_ms = false;
 };
 
+/// The unit of lengths and feeds in the program.
+struct OutputUnit {
+  bool inches = false;
+  std::string mm, inch;   ///< {unit} of head and tail; both empty: they name their unit themselves
+  int feed_per_inch = 1;  ///< what F counts in a program in inches: 10, tenths of an inch
+
+  double length_mm() const { return inches ? 25.4 : 1.0; }
+  double feed_mm() const { return inches ? 25.4 / feed_per_inch : 1.0; }
+};
+
 struct PlaneWords {
   LineTemplate on, off;  ///< empty: the control has none
   PlaneUse use = PlaneUse::kCycles;
@@ -55,6 +65,7 @@ struct PostFormat {
   std::string file, name;
   program::Dialect dialect = program::Dialect::kFanuc;  ///< the reader that reads these programs back
   NumberFormats numbers;
+  OutputUnit unit;
   LineTemplate block_number;  ///< with {number}; empty: blocks are not numbered
   int number_start = 10, number_step = 10;
   LineTemplate comment;
@@ -80,6 +91,12 @@ struct PostFormat {
 
 /// Of "never", "cycles", "constant".
 PlaneUse plane_use(std::string_view name);
+
+/// The format with lengths in inches or mm: a digit more or less where that changes. Throws InputError
+/// "no-unit-words" for a post whose head does not say {unit}.
+PostFormat in_unit(PostFormat format, bool inches);
+/// Half of the last digit of a length, mm.
+double half_digit_mm(const PostFormat& format);
 
 /// Reads the file. Throws InputError with every fault: what ConfigTable finds, "unknown-place" for a { } that
 /// a key does not have, "missing-place", "unknown-dialect", "incomplete-post".

@@ -24,19 +24,25 @@ bool is_comment(const std::string& word) {
   return std::find(kWords.begin(), kWords.end(), word) != kWords.end();
 }
 
-/// What F says: `inverse`: inverse times are on.
-double feed_value(const PostFormat& format, const PlanStep& step, bool inverse) {
+/// What F says: `inverse`: inverse times are on; `linear`: X, Y or Z is written. Degrees alone have no unit.
+double feed_value(const PostFormat& format, const PlanStep& step, bool inverse, bool linear) {
   const double minutes = std::max(step.duration_s, 1e-9) / 60.0;
   if (step.timed && inverse) return 1.0 / minutes;
   if (step.timed) {
-    const double way = format.feed_counts == FeedCounts::kAllAxes || step.way_mm < 1e-9
+    const bool rests = step.way_mm < 1e-9;
+    const double way = format.feed_counts == FeedCounts::kAllAxes || rests
                            ? std::hypot(step.way_mm, step.turn_deg)
                            : step.way_mm;
-    return way / minutes;
+    return way / minutes / (rests || !linear ? 1.0 : format.unit.feed_mm());
   }
   // With TCP the tip's feed means nothing while the tip stands.
   const bool rests = step.tcp && step.turns && step.tip_mm < 1e-9;
-  return rests ? step.turn_deg / minutes : mm_min_from_mm_s(step.feed_mm_s);
+  return rests ? step.turn_deg / minutes : mm_min_from_mm_s(step.feed_mm_s) / format.unit.feed_mm();
+}
+
+/// In the program's unit.
+std::string written_length(const PostFormat& format, double mm) {
+  return written(format.numbers.linear, mm / format.unit.length_mm());
 }
 
 /// What a comment can hold of the text.
@@ -165,7 +171,7 @@ Writer::Words Writer::words_of(const PlanStep& step) const {
   for (size_t i = 0; i < (step.tilt ? 3U : 6U); ++i) {
     if (!has_.at(i)) continue;
     words.at(i) =
-        kLetters[i] + (i < 3 ? written(format_.numbers.linear, step.p[static_cast<long>(i)])
+        kLetters[i] + (i < 3 ? written_length(format_, step.p[static_cast<long>(i)])
                              : written(format_.numbers.rotary, deg_from_rad(step.rotary.at(i - 3))));
   }
   return words;
@@ -277,7 +283,7 @@ void Writer::approach(const PlanStep& step) {
   set_tcp(false);
   set_plane(0);
   const char letter = kLetters[static_cast<size_t>(along_)];
-  values_.set(Place::kHomeAlong, letter + written(format_.numbers.linear, retracted(setup_.machine)));
+  values_.set(Place::kHomeAlong, letter + written_length(format_, retracted(setup_.machine)));
   put(format_.retract);
   if (step.tool != tool_) set_coolant(format_.coolant_off);
   change_tool(step);
@@ -305,8 +311,10 @@ void Writer::approach(const PlanStep& step) {
 }
 
 void Writer::feed_word(const PlanStep& step) {
-  const double value = feed_value(format_, step, timed_);
-  const std::string text = "F" + written(timed_ ? format_.numbers.inverse_time : format_.numbers.feed, value);
+  const bool linear = values_.of(Place::kAxes).find_first_of("XYZ") != std::string::npos;
+  const double value = feed_value(format_, step, timed_, linear);
+  std::string text = "F";
+  text += written(timed_ ? format_.numbers.inverse_time : format_.numbers.feed, value);
   if (std::strtod(text.c_str() + 1, nullptr) == 0.0) {
     diagnostics_.error("feed-below-digits", {names_.source, step.line, 0},
                        fmt::format("the feed {:g} would be written as {}", value, text),
@@ -321,7 +329,7 @@ void Writer::arc_words(const PlanStep& step) {
   const auto [a, b] = kAxes.at(static_cast<size_t>(step.plane));
   std::string centre, point;
   for (const size_t i : {std::min(a, b), std::max(a, b)}) {
-    const double value = step.centre[static_cast<long>(i)];
+    const double value = step.centre[static_cast<long>(i)] / format_.unit.length_mm();
     centre += fmt::format("{}{}{}", centre.empty() ? "" : " ", "IJK"[i],
                           written(format_.numbers.linear, value - p_[static_cast<long>(i)]));
     point +=
@@ -362,6 +370,7 @@ void Writer::head() {
   values_.set(Place::kProgram, names_.program);
   values_.set(Place::kMachine, fitting(format_, names_.machine));
   values_.set(Place::kSource, names_.source);
+  values_.set(Place::kUnit, format_.unit.inches ? format_.unit.inch : format_.unit.mm);
   put(format_.head);
 }
 
@@ -404,7 +413,7 @@ void Writer::tail() {
   set_timed(false);
   set_plane(0);
   const char letter = kLetters[static_cast<size_t>(along_)];
-  values_.set(Place::kHomeAlong, letter + written(format_.numbers.linear, retracted(setup_.machine)));
+  values_.set(Place::kHomeAlong, letter + written_length(format_, retracted(setup_.machine)));
   put(format_.retract);
   spindle(0.0);
   set_coolant(format_.coolant_off);

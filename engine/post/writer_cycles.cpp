@@ -36,7 +36,7 @@ void set_heights(const PostFormat& format, const PlanStep& step, const program::
                  PlaceValues& values) {
   const program::ClCycle& cycle = hole.cycle;
   const auto linear = [&](Place place, double value) {
-    values.set(place, written(format.numbers.linear, value));
+    values.set(place, written(format.numbers.linear, value / format.unit.length_mm()));
   };
   const double surface = step.p.z() - cycle.retract_mm;
   linear(Place::kSurface, surface);
@@ -45,8 +45,8 @@ void set_heights(const PostFormat& format, const PlanStep& step, const program::
   linear(Place::kRetract, step.p.z());
   linear(Place::kDepth, -cycle.depth_mm);
   // Rounded apart, surface and clearance could add up to more than the height of the retract.
-  const double room = std::strtod(values.of(Place::kRetract).c_str(), nullptr) -
-                      std::strtod(values.of(Place::kSurface).c_str(), nullptr);
+  const double room = format.unit.length_mm() * (std::strtod(values.of(Place::kRetract).c_str(), nullptr) -
+                                                 std::strtod(values.of(Place::kSurface).c_str(), nullptr));
   linear(Place::kClearance, std::min(cycle.clear_mm, room));
   linear(Place::kSecondClearance, cycle.retract_mm);
   linear(Place::kStep, cycle.step_mm > 0.0 ? cycle.step_mm : cycle.depth_mm);
@@ -63,10 +63,11 @@ void set_rates(const PostFormat& format, const PlanStep& step, const program::Cl
   NumberFormat time = format.numbers.time;
   if (format.cycle.dwell_in_ms) time.decimals = 0, time.point = false;
   values.set(Place::kDwell, written(time, dwell));
-  values.set(Place::kFeed, written(format.numbers.feed, mm_min_from_mm_s(cycle.feed_mm_s)));
+  const double feed = mm_min_from_mm_s(cycle.feed_mm_s);
+  values.set(Place::kFeed, written(format.numbers.feed, feed / format.unit.feed_mm()));
   if (step.spindle_rpm != 0.0)
-    values.set(Place::kPitch, written(format.numbers.linear,
-                                      mm_min_from_mm_s(cycle.feed_mm_s) / std::abs(step.spindle_rpm)));
+    values.set(Place::kPitch,
+               written(format.numbers.linear, feed / format.unit.length_mm() / std::abs(step.spindle_rpm)));
   values.set(Place::kS, written(format.numbers.speed, std::abs(step.spindle_rpm)));
 }
 

@@ -185,6 +185,47 @@ void cut_wave_3axis(benchmark::State& state) {
 THREE_AXES(cut_plane_3axis);
 THREE_AXES(cut_wave_3axis);
 
+/// The three-axis program of wave.py: blocks of 1 mm, rows 0.5 mm apart; range(0): voxel in um, range(1):
+/// threads.
+void cut_wave_rows(benchmark::State& state) {
+  set_thread_count(static_cast<int>(state.range(1)));
+  constexpr int kRows = 101, kAcross = 100;
+  std::vector<stock::Sweep> blocks;
+  const auto pose = [](int n) -> ToolPose {
+    const int row = n / (kAcross + 1), i = n % (kAcross + 1);
+    const double x = row % 2 == 0 ? i : kAcross - i, y = 51.0 * row / kRows;
+    return {{x, y, -1.0 + 0.5 * std::sin(x / 10.0) * std::cos(y / 15.0)}, Vec3::UnitZ()};
+  };
+  for (int n = 0; n + 1 < kRows * (kAcross + 1); ++n)
+    blocks.push_back({pose(n), pose(n + 1), static_cast<uint32_t>(n)});
+  uint64_t visits = 0, voxels = 0;
+  for (auto _ : state) {
+    state.PauseTiming();
+    stock::Stock stock({{-6, -6, -11}, {106, 56, 1}}, 1e-3 * static_cast<double>(state.range(0)));
+    state.ResumeTiming();
+    stock.cut(blocks, {5.0, 25.0});
+    visits = stock.statistics().leaf_visits;
+    voxels = stock.statistics().voxel_updates;
+    state.PauseTiming();
+    { const stock::Stock done = std::move(stock); }
+    state.ResumeTiming();
+  }
+  const auto count = static_cast<double>(blocks.size());
+  state.counters["blocks_per_s"] = benchmark::Counter(count, benchmark::Counter::kIsIterationInvariantRate);
+  state.counters["leaf_visits_per_block"] = static_cast<double>(visits) / count;
+  state.counters["voxels_per_block"] = static_cast<double>(voxels) / count;
+  set_thread_count(0);
+}
+BENCHMARK(cut_wave_rows)
+    ->ArgNames({"voxel_um", "threads"})
+    ->Args({100, 1})
+    ->Args({100, 2})
+    ->Args({200, 1})
+    ->Args({200, 2})
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
+
 /// Cost of a block, late against early: 100 equal slots of 1000 blocks each, D10, 0.2 mm voxels. Median time
 /// of the first and of the last five slots.
 void cost_per_block(benchmark::State& state) {

@@ -121,7 +121,7 @@ void cylinder_leaf(benchmark::State& state) {
     for (const LeafMotion& motion : motions) {
       float values[kLeafVoxels];
       std::fill(std::begin(values), std::end(values), static_cast<float>(-kBand));
-      kernel(values, motion, kAllSlices);
+      kernel(values, motion, kAllPatches);
       voxels += kLeafVoxels;
       benchmark::DoNotOptimize(values[0]);
     }

@@ -127,6 +127,8 @@ Body planted_body(bool solid, int link, const Vec3& foot, double wide, double hi
 struct PlantedInStock {
   Body body;
   AxisSegment segment;
+  double way_mm = 0.0,
+         free_mm = 0.0;  ///< of the whole segment, and until the body comes to the block; 0: no closed form
 };
 
 /// One straight way of the axes, fast; but for the way down free at both ends. `off`: mm that the body stays
@@ -136,17 +138,22 @@ PlantedInStock planted_in_stock(Rng& rng, int kind, double off) {
   const double thick = rng.uniform(0.6, 3.0), high = rng.uniform(8.0, 60.0);
   const double x = rng.uniform(5.0, 35.0), far = rng.uniform(60.0, 300.0);
   if (kind == 0)  // along the first slot, over its floor at 4
-    return {planted_body(solid, kZSlide, {-far, 6.5, 4.0 + off}, thick, high), way(axes(0), axes(2.0 * far))};
-  if (kind == 1)  // along it, beside its wall at y = 3.5
-    return {planted_body(solid, kZSlide, {-far, 3.5 + off + 0.5 * thick, 6.0}, thick, high),
-            way(axes(0), axes(2.0 * far))};
+    return {planted_body(solid, kZSlide, {-far, 6.5, 4.0 + off}, thick, high), way(axes(0), axes(2.0 * far)),
+            2.0 * far, far - 0.5 * thick};
+  if (kind == 1) {  // along it, beside its wall at y = 3.5
+    // Of a cylinder that part goes ahead which stands behind the wall's face.
+    const double radius = 0.5 * thick, beside = std::max(0.0, radius + off);
+    const double ahead = solid ? std::sqrt(std::max(0.0, radius * radius - beside * beside)) : radius;
+    return {planted_body(solid, kZSlide, {-far, 3.5 + off + radius, 6.0}, thick, high),
+            way(axes(0), axes(2.0 * far)), 2.0 * far, far - ahead};
+  }
   if (kind == 2)  // across the block and the wall of 1 mm
     return {planted_body(solid, kZSlide, {x, -far, 10.0 + off}, thick, high),
-            way(axes(0), axes(0, 2.0 * far))};
+            way(axes(0), axes(0, 2.0 * far)), 2.0 * far, far - 0.5 * thick};
   if (kind ==
       3)  // down into the floor of the slot and up again within one way is no straight one: down alone
     return {planted_body(solid, kZSlide, {x, 6.5, 4.0 + far}, thick, high),
-            way(axes(0), axes(0, 0, off - far))};
+            way(axes(0), axes(0, 0, off - far)), far - off, far};
   // A post stands still, the table turns by 360 degrees or more: the block's corner passes at radius 44.72.
   const double radius = std::hypot(40.0, 20.0) + off + 0.5 * thick, turn = rng.uniform(1.5, 5.5);
   const Vec3 foot(radius * std::cos(turn), radius * std::sin(turn), 2.0);
@@ -165,6 +172,9 @@ TEST(CollisionProperty, ContactsPlantedInTheStockAsCutAndTheirFreeTwins) {
     ASSERT_EQ(stock.over(hit.body, hit.segment).outcome, StockOutcome::kContact) << "seed " << i;
     const std::array<AxisValues, 2> into{hit.segment.q0, hit.segment.q1};
     ASSERT_EQ(stock.clear_ways(hit.body, into, 0.0), 0U) << "seed " << i;
+    const std::optional<StockTouch> touch = stock.first_touch(hit.body, into);
+    ASSERT_TRUE(touch && touch->way == 0) << "seed " << i;
+    if (hit.way_mm > 0.0) ASSERT_NEAR(touch->at.t_touch * hit.way_mm, hit.free_mm, kVoxel) << "seed " << i;
     const PlantedInStock free = planted_in_stock(same, i % 5, clear);
     const StockOutcome outcome = stock.over(free.body, free.segment).outcome;
     ASSERT_TRUE(outcome == StockOutcome::kClear || outcome == StockOutcome::kClearOfRaw) << "seed " << i;

@@ -77,6 +77,8 @@ std::vector<BadInput> bad_inputs() {
       {"number_nan", "scene.toml", "voxel_mm = 0.2", "voxel_mm = nan", "out-of-range", "scene.toml:18:"},
       {"number_1e400", "scene.toml", "voxel_mm = 0.2", "voxel_mm = 1e400", "toml-syntax", "scene.toml:18:"},
       {"voxel_too_small", "scene.toml", "voxel_mm = 0.2", "voxel_mm = 0.0005", "out-of-memory", "scene.toml"},
+      {"tool_thinner_than_voxel", "scene.toml", "voxel_mm = 0.2", "voxel_mm = 15", "out-of-range",
+       "scene.toml:18:"},
       {"box_beyond_everything", "scene.toml", "[50, 40, 37]", "[1e308, 40, 37]", "out-of-range",
        "scene.toml:17:"},
       {"voxel_denormal", "scene.toml", "voxel_mm = 0.2", "voxel_mm = 5e-324", "out-of-memory", "scene.toml"},

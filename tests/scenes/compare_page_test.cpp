@@ -121,5 +121,27 @@ TEST_F(ComparePage, TwoRevisionsOfAStockSayWhatChanged) {
   EXPECT_EQ(run_swarf("compare " + now + " " + now + " --pitch-mm 1").exit_code, 0);
 }
 
+/// A solid of STEP against the STL of the same solid, and against one that is 20 um too high: proven, with a
+/// page. The facets of the STEP file are exact there.
+TEST_F(ComparePage, AStepDesignIsComparedAndProven) {
+  const std::string assets = SWARF_SOURCE_DIR "/assets/programs/stepnode/";
+  TriMesh mesh = swarf::mesh::load_mesh(assets + "step_block.stl");
+  const std::string step = assets + "simple_block_workpiece.stp", out = (folder_ / "out").string();
+  const ProgramRun same =
+      run_swarf("compare " + file("same.stl", mesh) + " " + step + " --pitch-mm 2 --json");
+  ASSERT_EQ(same.exit_code, 0) << same.output;
+  EXPECT_LT(json::parse(same.output).at("surface").at("excess_bound_um").get<double>(), 0.1);
+  float top = mesh.positions.front()[2];
+  for (const auto& p : mesh.positions) top = std::max(top, p[2]);
+  for (auto& p : mesh.positions)
+    if (p[2] == top) p[2] += 0.02F;
+  const ProgramRun high =
+      run_swarf("compare " + file("high.stl", mesh) + " " + step + " --pitch-mm 2 -o " + out);
+  EXPECT_EQ(high.exit_code, 1) << high.output;
+  const json metrics = json::parse(read_text(out + "/metrics.json"));
+  EXPECT_NEAR(metrics.at("surface").at("excess_max_um").get<double>(), 20.0, 0.02);
+  EXPECT_NE(read_text(out + "/report.html").find("id=\"finding-1\""), std::string::npos);
+}
+
 }  // namespace
 }  // namespace compare_page_test

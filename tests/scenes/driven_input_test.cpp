@@ -106,6 +106,65 @@ TEST(DrivenByDesign, AHollowTooNarrowForTheBallIsTold) {
   fs::remove_all(folder);
 }
 
+// Faces of a STEP file that leave a gap: a ball sinks into it, the flat bottom of a bull nose rides over it.
+TEST(DrivenFaces, AGapIsToldWithItsPlaceBeforeAnythingMoves) {
+  const fs::path folder = swarf::test::fresh_folder("driven_gap");
+  std::string part = swarf::test::read_text(SWARF_SOURCE_DIR "/scenes/kato_mould/mould.stp");
+  const std::string pole = "#206 = CARTESIAN_POINT('',(0.,-5.,1.));";
+  ASSERT_NE(part.find(pole), std::string::npos);
+  part.replace(part.find(pole), pole.size(), "#206 = CARTESIAN_POINT('',(0.,-5.,1.15));");
+  swarf::test::write_text(folder / "mould.stp", part);
+  std::string scene = swarf::test::read_text(SWARF_SOURCE_DIR "/scenes/kato_mould/scene.toml");
+  swarf::test::write_text(folder / "bull.toml", scene);
+  const std::string shape = "shape = \"bull_nose\"", corner = "corner_radius_mm = 1.5\n";
+  scene.replace(scene.find(shape), shape.size(), "shape = \"ball\"");
+  scene.erase(scene.find(corner), corner.size());
+  swarf::test::write_text(folder / "ball.toml", scene);
+  const auto bull = run_swarf("check " + (folder / "bull.toml").string());
+  EXPECT_NE(bull.output.find("[part-gap]"), std::string::npos) << bull.output;
+  EXPECT_NE(bull.output.find("the cutter rides over it"), std::string::npos) << bull.output;
+  const auto ball = run_swarf("check " + (folder / "ball.toml").string());
+  EXPECT_EQ(ball.exit_code, 2) << ball.output;
+  EXPECT_NE(ball.output.find("[part-gap-wide]"), std::string::npos) << ball.output;
+  EXPECT_NE(ball.output.find("mm apart at ("), std::string::npos) << ball.output;
+  EXPECT_NE(ball.output.find("fix: "), std::string::npos) << ball.output;
+  fs::remove_all(folder);
+}
+
+// A mesh that drives and is open, or inside out, is refused with the place and what to do.
+TEST(DrivenMesh, OpenOrInsideOutIsRefused) {
+  const fs::path folder = swarf::test::fresh_folder("driven_mesh");
+  const std::vector<std::string> corners = {"0 0 0", "20 0 0", "0 20 0", "0 0 9"};
+  const auto write = [&](const std::vector<std::vector<size_t>>& facets) {
+    std::string text = "solid part\n";
+    for (const auto& facet : facets) {
+      text += "facet normal 0 0 0\nouter loop\n";
+      for (const size_t corner : facet) text += "vertex " + corners[corner] + "\n";
+      text += "endloop\nendfacet\n";
+    }
+    swarf::test::write_text(folder / "part.stl", text + "endsolid\n");
+  };
+  swarf::test::write_text(
+      folder / "scene.toml",
+      "machine = \"mill_3axis\"\n[cutter]\nnumber = 1\nshape = \"ball\"\ndiameter_mm = 6\nflute_length_mm = "
+      "30\n"
+      "shank_diameter_mm = 6\nlength_mm = 60\n[setup]\nwork_origin_mm = \"on_table\"\n[stock]\n"
+      "box_mm = [[0, 0, 0], [20, 20, 10]]\nvoxel_mm = 0.5\n[driven]\nmesh = \"part.stl\"\ninterval_mm = 4\n"
+      "feed_mm_min = 1500\n");
+  const auto check = [&] { return run_swarf("check " + (folder / "scene.toml").string()); };
+  write({{0, 2, 1}, {0, 1, 3}, {0, 3, 2}});
+  const auto open = check();
+  EXPECT_EQ(open.exit_code, 2) << open.output;
+  EXPECT_NE(open.output.find("[mesh-open]"), std::string::npos) << open.output;
+  EXPECT_NE(open.output.find("3 boundary edges, the first from ("), std::string::npos) << open.output;
+  write({{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}});
+  const auto inverted = check();
+  EXPECT_EQ(inverted.exit_code, 2) << inverted.output;
+  EXPECT_NE(inverted.output.find("[mesh-inverted]"), std::string::npos) << inverted.output;
+  EXPECT_NE(inverted.output.find("fix: turn all its facets round"), std::string::npos) << inverted.output;
+  fs::remove_all(folder);
+}
+
 // A part that stands in the scene itself: the same patch as surface blocks and as a NURBS surface of [design]
 // gives the same cycles.
 TEST(DrivenByDesign, ANurbsSurfaceDrivesAsItsPolynomialDoes) {

@@ -4,6 +4,9 @@
 #include <filesystem>
 #include <string>
 
+#include "mesh/mesh_check.h"
+#include "mesh/mesh_io.h"
+#include "mesh/mesh_ops.h"
 #include "support/page_opens.h"
 
 namespace exported_meshes_test {
@@ -23,6 +26,16 @@ TEST(ExportedMeshes, CanBeCompared) {
     ASSERT_EQ(exported.exit_code, 0) << exported.output;
     const auto compare = run_swarf("compare " + stl + " " + stl + " --excess-um .1 --gouge-um .1");
     EXPECT_EQ(compare.exit_code, 0) << compare.output;
+    // The glTF, decimated within 2 um, comes in again at its place and size.
+    const std::string glb = (folder / "part.glb").string();
+    ASSERT_EQ(run_swarf("export " + out + " --gltf " + glb).exit_code, 0);
+    const swarf::TriMesh part = swarf::mesh::load_mesh(stl), again = swarf::mesh::load_mesh(glb);
+    const swarf::Box there = swarf::mesh::bounds(part), here = swarf::mesh::bounds(again);
+    EXPECT_LT((here.lower - there.lower).norm(), 4e-3);
+    EXPECT_LT((here.upper - there.upper).norm(), 4e-3);
+    const double volume = swarf::mesh::enclosed_volume(part);
+    EXPECT_NEAR(swarf::mesh::enclosed_volume(again), volume, 1e-3 * volume);
+    EXPECT_LT(again.triangles.size(), part.triangles.size());
     std::filesystem::remove_all(folder);
   }
 }

@@ -278,6 +278,11 @@ TEST_F(BarBesideTheTool, WhereItWasCutAwayBeforeItIsFree) {
   EXPECT_EQ(stock()["events"][0]["line"], 7);
   EXPECT_EQ(stock()["events"][0]["last_line"], 9);
   EXPECT_NEAR(stock()["events"][0]["depth_seen_mm"].get<double>(), 7.0, 0.05);
+  // Its foot, 2 x 2, comes down on the upper face: within a voxel.
+  const json first = stock()["events"][0]["first_machine_mm"];
+  EXPECT_NEAR(first[0].get<double>(), 6.0, 1.001);
+  EXPECT_NEAR(first[1].get<double>(), 20.0, 1.001);
+  EXPECT_NEAR(first[2].get<double>(), 0.0, 0.5);
 
   // The slot first, but a deeper way: 2 mm into its floor.
   const ProgramRun deeper = run_bar(kSlot + "G0 X-45 Y20\nG0 Z-7\nG0 X-15\nG0 Z50\n");
@@ -301,6 +306,8 @@ TEST_F(BarBesideTheTool, ARibBetweenTwoCyclesIsMet) {
   const double x = stock()["events"][0]["place_machine_mm"][0].get<double>();
   EXPECT_GT(x, 14.5);
   EXPECT_LT(x, 18.5);
+  // The rib's first face, at X 15; the way of that cycle is several millimetres long.
+  EXPECT_NEAR(stock()["events"][0]["first_machine_mm"][0].get<double>(), 15.0, 0.5);
   const ProgramRun free = run_bar(kTwoSlots + "G0 X16 Y-7\nG0 Z-10\nG1 Y47\nG0 Z50\n" + kThrough);
   EXPECT_EQ(free.exit_code, 0) << free.output;
   EXPECT_EQ(stock()["came_to_raw"], 1);
@@ -492,7 +499,7 @@ TEST_F(MachineContacts, HowDeepAContactIsIsBounded) {
   const double seen = events[0]["depth_seen_mm"], bound = events[0]["depth_bound_mm"];
   EXPECT_NEAR(seen, 4.0, 0.02);
   EXPECT_GE(bound, seen);
-  EXPECT_LE(bound, seen + 0.5);
+  EXPECT_LE(bound, seen + 0.02);
 }
 
 /// A tool longer than the travel along it is named; meshes in metres are told.
@@ -563,6 +570,24 @@ TEST_F(MachineContacts, WhatHoldsTheStockIsToldOrThatNothingDoes) {
   EXPECT_EQ(air.exit_code, 0) << air.output;
   EXPECT_NE(air.output.find("fixture-floats"), std::string::npos) << air.output;
   EXPECT_NE(holding(), "");
+}
+
+/// On the table to the last bit, turned and far out too: it stands, and touching is no contact. Below its
+/// face: told.
+TEST_F(MachineContacts, AFixtureThatStandsExactlyOnTheTableTouchesNothing) {
+  const std::string box =
+      "[[fixture]]\nbox_mm = [[0, 0, {}], [30, 30, 25]]\nposition_mm = [130.3, 77.7, 0]\n"
+      "rotation_deg = [0, 0, {}]\n";
+  for (const int turn : {0, 33}) {
+    SCOPED_TRACE(turn);
+    const ProgramRun on = run(kFrame, kOnTable + fmt::format(fmt::runtime(box), 0, turn));
+    EXPECT_EQ(on.exit_code, 0) << on.output;
+    EXPECT_EQ(on.output.find("fixture-"), std::string::npos) << on.output;
+    EXPECT_EQ(metrics()["machine_contacts"]["count"], 0);
+  }
+  const ProgramRun in = run(kFrame, kOnTable + fmt::format(fmt::runtime(box), -7, 0));
+  EXPECT_EQ(in.exit_code, 0) << in.output;
+  EXPECT_NE(in.output.find("stands 7.000 mm inside 'rotary_table'"), std::string::npos) << in.output;
 }
 
 }  // namespace

@@ -148,6 +148,46 @@ TEST_F(Options, TracutIsSaidToCheckInitAndPost) {
   EXPECT_TRUE(says(post, "Y40")) << post.output;
 }
 
+/// Inches in a file that does not say so: 25.4 times as large, and never taken in silence.
+TEST_F(Options, UnitsOfClDataThatSayNone) {
+  const std::string text = "LOADTL/1\nSPINDL/RPM,1000,CLW\nFEDRAT/500,MMPM\nGOTO/0,0,1\nGOTO/2,0,1\n";
+  const std::string none = file("none.cls", text + "FINI\n");
+  const std::string said = file("said.cls", "UNITS/MM\n" + text + "FINI\n");
+  const ProgramRun mm = run_swarf("check " + none), inch = run_swarf("check --units inch " + none);
+  EXPECT_TRUE(says(mm, "to (2.000, 0.000, 1.000) mm") && says(mm, "the file has no UNITS")) << mm.output;
+  EXPECT_TRUE(says(inch, "to (50.800, 0.000, 25.400) mm") && !says(inch, "no UNITS")) << inch.output;
+  // What the file says is so.
+  const ProgramRun both = run_swarf("check --units inch " + said);
+  EXPECT_TRUE(says(both, "to (2.000, 0.000, 1.000) mm") && !says(both, "no UNITS")) << both.output;
+  const std::string out = (folder_ / "units").string();
+  const ProgramRun run = run_swarf("run " + none + " --tool 6 --no-render -o " + out);
+  EXPECT_TRUE(says(run, "the file has no UNITS") && says(run, "--units; setup.units")) << run.output;
+  const ProgramRun run_inch = run_swarf("run " + none + " --tool 6 --units inch --no-render -o " + out);
+  EXPECT_TRUE(!says(run_inch, "no UNITS") && says(run_inch, "X -5.000 to 55.800")) << run_inch.output;
+}
+
+/// A flag that the program's kind does not take would be believed to have been followed.
+TEST_F(Options, FlagsOfTheOtherKindAreRefused) {
+  const std::string cl = file("a.cls", "UNITS/MM\nLOADTL/1\nFEDRAT/500,MMPM\nGOTO/0,0,1\nGOTO/2,0,1\nFINI\n");
+  const std::string nc = file("a.nc", "G21 G90 G17\nT1 M6\nS1000 M3\nG0 X0 Y0 Z1\nG1 X2 F100\nM30\n");
+  for (const std::string& words :
+       {"run " + nc + " --tool 6 --tracut apply", "run " + cl + " --tool 6 --dialect fanuc",
+        "run " + cl + " --tool 6 --start-tool 1", "run " + cl + " --tool 6 --t-changes-tool",
+        "run " + cl + " --tool 6 --slot-ends edge", "check " + nc + " --tracut apply",
+        "check " + nc + " --cutcom centre", "check " + nc + " --circle clockwise", "check " + cl + " --home",
+        "check " + cl + " --dialect fanuc"}) {
+    const ProgramRun refused =
+        run_swarf(words + (words.starts_with("run") ? " --no-render -o " + (folder_ / "no").string() : ""));
+    EXPECT_EQ(refused.exit_code, 2) << words << "\n" << refused.output;
+    EXPECT_TRUE(says(refused, "flag-of-other-kind") || says(refused, "and none is among the files") ||
+                says(refused, "leave open"))
+        << words << "\n"
+        << refused.output;
+  }
+  // One file of the list takes it.
+  EXPECT_EQ(run_swarf("check --tracut apply " + cl + " " + nc).exit_code, 0);
+}
+
 /// A Z from a parameter that the program reads and does not set: check and run take it, a scene holds it.
 TEST_F(Options, ParametersHoldAValueBeforeTheProgramStarts) {
   const std::string program = file(

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "render/image_io.h"
 #include "support/program_run.h"
 
 namespace page_test {
@@ -74,6 +75,20 @@ TEST_F(GougedPage, DeviationInTheGltfIsThatOfTheMetrics) {
   const auto [low, high] = range_of(read_glb(folder_ / "run/part.glb"), "_DEVIATION_UM");
   EXPECT_NEAR(low, -surface.at("gouge_max_um").get<double>(), kReadLimitUm);
   EXPECT_NEAR(high, surface.at("excess_max_um").get<double>(), kReadLimitUm);
+}
+
+/// What is exported later says the same, with the pins of the findings.
+TEST_F(GougedPage, AnExportedPartSaysTheSame) {
+  const fs::path part = folder_ / "exported.glb";
+  const auto run = run_swarf("export " + run_folder() + " --gltf " + part.string());
+  ASSERT_EQ(run.exit_code, 0) << run.output;
+  const json surface = json::parse(read_text(folder_ / "run/metrics.json")).at("surface");
+  const Glb glb = read_glb(part);
+  EXPECT_NEAR(range_of(glb, "_DEVIATION_UM").first, -surface.at("gouge_max_um").get<double>(), kReadLimitUm);
+  size_t pins = 0;
+  for (const json& node : glb.model.at("nodes"))
+    if (node.contains("extras") && node.at("extras").value("role", "") == "finding") ++pins;
+  EXPECT_EQ(pins, 3U);
 }
 
 TEST_F(GougedPage, FindingsStandInTheGltfWithTheirNumbers) {
@@ -146,6 +161,29 @@ TEST_F(GougedPage, ObjIsThePart) {
   for (size_t at = text.find("\nf "); at != std::string::npos; at = text.find("\nf ", at + 1)) ++faces;
   EXPECT_EQ(faces, triangles);
   EXPECT_TRUE(text.starts_with("# millimetres\nv "));
+}
+
+/// The labels stand on the picture that there is without them.
+TEST_F(GougedPage, AStillHasAScaleBarAndLeadersWhereTheyAreAskedFor) {
+  const std::string plain = (folder_ / "plain.png").string(), labelled = (folder_ / "labelled.png").string();
+  const std::string render =
+      "render " + run_folder() + " --kind deviation --size 480 270 --samples 1 --still ";
+  ASSERT_EQ(run_swarf(render + plain).exit_code, 0);
+  const auto run = run_swarf(render + labelled + " --labels");
+  ASSERT_EQ(run.exit_code, 0) << run.output;
+  const swarf::render::Image before = swarf::render::load_png(plain),
+                             after = swarf::render::load_png(labelled);
+  size_t changed = 0, corner = 0;
+  for (int y = 0; y < 270; ++y)
+    for (int x = 0; x < 480; ++x) {
+      const size_t at = size_t{4} * (480 * y + x);
+      if (std::equal(&before.rgba[at], &before.rgba[at + 4], &after.rgba[at])) continue;
+      ++changed;
+      if (x > 300 && y > 230) ++corner;
+    }
+  EXPECT_GT(corner, 300U) << "the scale bar";
+  EXPECT_GT(changed - corner, 2000U) << "two plates with their lines";
+  EXPECT_LT(changed, 480U * 270U / 5) << "nothing else";
 }
 
 TEST_F(GougedPage, LeadsFromAFindingToItsPlaceLineAndMovie) {

@@ -117,6 +117,60 @@ TEST(PostCommand, PlanesAreWrittenWhereAsked) {
   EXPECT_NE(written("--dialect linuxcnc --planes cycles", 2).find("[no-planes]"), std::string::npos);
 }
 
+/// With --avoid, and as keys of [post] in a scene: the same words.
+TEST(PostCommand, PlanesPreferenceAndUnitHoldWithCollisionsToo) {
+  const fs::path folder = ready("avoided");
+  const std::string axis = ",0.5,0,0.866025404\n";
+  write_text(folder / "tilted.cls",
+             "$$ SWARF CL DATA\nLOADTL/1\nSPINDL/RPM,3000,CLW\nMULTAX/ON\nFROM/0,0,60" + axis +
+                 "RAPID\nGOTO/20,0,60" + axis + "CYCLE/DRILL,DEPTH,6,CLEAR,2,MMPM,120\nGOTO/10,0,20" + axis +
+                 "CYCLE/OFF\nRAPID\nGOTO/10,0,60" + axis + "FINI\n");
+  const auto written = [&](const std::string& words) {
+    const auto run = run_in(folder, "post " + words + " -o part.nc");
+    EXPECT_EQ(run.exit_code, 0) << words << run.output;
+    return run.exit_code == 0 ? read_text(folder / "part.nc") + run.output : run.output;
+  };
+  const std::string avoid =
+      "tilted.cls --machine fork_head --tools tools.toml --work-origin 0 0 100 --avoid ";
+  EXPECT_NE(written(avoid).find("G68.2 X0. Y0. Z0. I90. J30. K-90.\nG53.1"), std::string::npos);
+  EXPECT_EQ(written(avoid + "--planes never").find("G68.2"), std::string::npos);
+  EXPECT_NE(written(avoid + "--prefer travel").find("that has the least slide movements"), std::string::npos);
+  EXPECT_NE(written(avoid + "--unit inch").find("\nG20 G90"), std::string::npos);
+  const std::string scene =
+      "cl = \"tilted.cls\"\nmachine = \"fork_head\"\ntool_table = \"tools.toml\"\n[setup]\n"
+      "work_origin_mm = [0, 0, 100]\n[stock]\nbox_mm = [[-30, -30, -20], [50, 30, 14]]\nvoxel_mm = 1\n"
+      "[design]\nkind = \"none\"\n[post]\n";
+  write_text(folder / "scene.toml", scene + "planes = \"never\"\nprefer = \"travel\"\nunit = \"inch\"\n");
+  const std::string text = written("scene.toml");
+  EXPECT_EQ(text.find("G68.2"), std::string::npos) << text;
+  EXPECT_NE(text.find("G20 G90"), std::string::npos) << text;
+  EXPECT_NE(text.find("that has the least slide movements"), std::string::npos) << text;
+  write_text(folder / "scene.toml", scene + "prefer = \"time\"\nroutes = \"backtrack\"\n");
+  const auto both = run_in(folder, "post scene.toml -o part.nc");
+  EXPECT_EQ(both.exit_code, 2);
+  EXPECT_NE(both.output.find("[prefer-of-backtracking]"), std::string::npos) << both.output;
+}
+
+/// Inches of the shipped posts; a shop's own says how it names them, or is refused.
+TEST(PostCommand, InchesAreWrittenWhereAsked) {
+  const fs::path folder = ready("inches");
+  const auto inch =
+      run_in(folder, "post part.cls --machine maho_600c --work-origin 0 0 200 --unit inch -o part.nc");
+  ASSERT_EQ(inch.exit_code, 0) << inch.output;
+  EXPECT_NE(read_text(folder / "part.nc").find("\nG20 G90"), std::string::npos);
+  const auto read =
+      run_in(folder, "check part.nc --machine maho_600c --tools tools.toml --no-drive --dialect fanuc");
+  EXPECT_NE(read.exit_code, 2) << read.output;
+  std::string own = read_text(fs::path(SWARF_SOURCE_DIR) / "assets/posts/fanuc.toml");
+  own.replace(own.find("{unit}"), 6, "G21");
+  write_text(folder / "own.toml", own);
+  const auto refused = run_in(
+      folder,
+      "post part.cls --machine maho_600c --work-origin 0 0 200 --post own.toml --unit inch -o part.nc");
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_NE(refused.output.find("[no-unit-words]"), std::string::npos) << refused.output;
+}
+
 /// Each criterion has less of what it asks for than the others, and says what it was compared with.
 TEST(PostCommand, TheWholeProgramIsChosenByTimeAccuracyOrTravel) {
   const fs::path folder = ready("prefer");

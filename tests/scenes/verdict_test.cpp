@@ -91,6 +91,34 @@ TEST(Verdict, TheSpindleOfClDataIsJudgedWhereItIsSaid) {
   EXPECT_TRUE(silent.check("spindle_wrong").at("value").is_null());
 }
 
+/// The slot is 3 mm deep: the shank behind flutes of 2 mm stands 1 mm in what lies before it, from the slot's
+/// first move on.
+TEST(Verdict, CuttingAboveTheFlutesAndWithTheSpindleStoppedAreTold) {
+  const auto told = [](const Judged& judged, const std::string& code) -> json {
+    for (const json& one : judged.findings)
+      if (one.at("code") == code) return one;
+    return {};
+  };
+  const Judged shorter =
+      run_scene(altered("exact_slot_flat", {"flute_length_mm = 25", "flute_length_mm = 2"}, {}));
+  EXPECT_EQ(shorter.run.exit_code, 1) << shorter.run.output;
+  EXPECT_EQ(shorter.outcome("collisions"), "fails");
+  const json shank = told(shorter, "shank-in-stock");
+  ASSERT_FALSE(shank.is_null()) << shorter.findings.dump(2);
+  EXPECT_EQ(shank.at("line"), 13);
+  EXPECT_NE(shank.at("text").get<std::string>().find("1.00 mm deep"), std::string::npos) << shank.at("text");
+
+  const Judged stopped =
+      run_scene(altered("exact_slot_flat", {}, {"FEDRAT/600,MMPM\n", "SPINDL/OFF\nFEDRAT/600,MMPM\n"}));
+  EXPECT_EQ(stopped.run.exit_code, 1) << stopped.run.output;
+  EXPECT_EQ(stopped.outcome("spindle_wrong"), "fails");
+  const json spindle = told(stopped, "spindle");
+  ASSERT_FALSE(spindle.is_null()) << stopped.findings.dump(2);
+  EXPECT_EQ(spindle.at("line"), 14);
+  EXPECT_NE(spindle.at("text").get<std::string>().find("with the spindle stopped"), std::string::npos)
+      << spindle.at("text");
+}
+
 TEST(Verdict, RapidsInMaterialCountUntilTheSceneAllowsThem) {
   const std::array<std::string, 2> rapid{"FEDRAT/600,MMPM\n", "RAPID\n"};
   const Judged found = run_scene(altered("exact_slot_flat", {}, rapid));

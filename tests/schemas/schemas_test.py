@@ -140,7 +140,7 @@ class Keys(unittest.TestCase):
     def test_post(self):
         no = f"{NO_KEY} = 0\n"
         tables = ["numbers", "blocks", "comment", "program", "tool", "spindle", "coolant", "words", "motion", "feed",
-                  "tcp", "tilted_plane", "cycle"]
+                  "tcp", "tilted_plane", "cycle", "output"]
         numbers = [f"numbers.{name}" for name in ("linear", "rotary", "feed", "inverse_time", "speed", "time")]
         text = f"{no}name = 'x'\ndialect = 'fanuc'\n" + "".join(f"[{table}]\n{no}" for table in tables + numbers)
         self.assertEqual(known_keys(text, "post.toml"), schema_keys(schema("post"), schema("post")))

@@ -1,6 +1,6 @@
 // One glTF file with its own camera, lights, animation and readings. glTF: metres, Y up.
 import {
-  AnimationMixer, Box3, Color, DirectionalLight, DoubleSide, Float32BufferAttribute, Group, LoopOnce, NeutralToneMapping,
+  AnimationMixer, Box3, Color, DirectionalLight, DoubleSide, Float32BufferAttribute, Group, HemisphereLight, LoopOnce, NeutralToneMapping,
   PerspectiveCamera, PMREMGenerator, Raycaster, Scene, Spherical, Vector2, Vector3, WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
@@ -37,14 +37,26 @@ export function createRenderer(canvas) {
   return renderer;
 }
 
+/** Without a graphics card, where the light of a room takes seconds to be made. */
+function drawsBySoftware(renderer) {
+  const gl = renderer.getContext(), info = gl.getExtension('WEBGL_debug_renderer_info');
+  return /swiftshader|llvmpipe|software|basic render/i.test(info ? gl.getParameter(info.UNMASKED_RENDERER_WEBGL) : '');
+}
+
 let environment = null;
-function roomEnvironment(renderer) {
+/** The light of a room, or of a plain sky. */
+function light(scene, renderer) {
+  if (drawsBySoftware(renderer)) {
+    scene.add(new HemisphereLight(0xffffff, 0x9aa0a8, 2.6));
+    return;
+  }
   if (!environment) {
     const generator = new PMREMGenerator(renderer);
     environment = generator.fromScene(new RoomEnvironment(), 0.04).texture;
     generator.dispose();
   }
-  return environment;
+  scene.environment = environment;
+  scene.environmentIntensity = 0.55;
 }
 
 /** A mesh of several primitives, or of quantised numbers, is a child without a name. */
@@ -86,8 +98,7 @@ export class Stage {
   constructor(gltf, renderer, canvas, onChange, scale) {
     this.scene = new Scene();
     this.scene.add(gltf.scene);
-    this.scene.environment = roomEnvironment(renderer);
-    this.scene.environmentIntensity = 0.55;
+    light(this.scene, renderer);
     this.camera = new PerspectiveCamera(32, 1, 0.01, 100);
     const key = new DirectionalLight(0xffffff, 1.9);
     key.position.set(-0.8, 1.2, 0.9);

@@ -154,31 +154,31 @@ ExactPath::ExactPath(const toolpath::DrivenPass& pass, const kinematics::Machine
                      const kinematics::InverseKinematics& inverse, const MotionOptions& options)
     : pass_(pass), ahead_(evaluate_ahead(pass, machine, inverse, options, kinematics::AxisValues::Zero())) {}
 
-/// By halving between the cell's ends: the distance has one minimum on a piece that turns by less than
-/// the evaluation's angle.
+/// By the place that stands across the cell's chord from the tip, by regula falsi (Illinois): on a piece that
+/// turns by less than the evaluation's angle the nearest place is nearer by less than a share of 1e-3.
 double ExactPath::cell_distance(size_t cell, const Vec3& tip) {
   const EvaluatedNode &a = ahead_.nodes[cell], &b = ahead_.nodes[cell + 1];
-  const double straight = straight_distance(a.pose.tip_W, b.pose.tip_W, tip);
-  if (ahead_.steps[cell]) return straight;
+  if (ahead_.steps[cell]) return straight_distance(a.pose.tip_W, b.pose.tip_W, tip);
+  constexpr int kMostSteps = 16;
+  constexpr double kClose = 1e-7;  // mm
+  const Vec3 way = (b.pose.tip_W - a.pose.tip_W).normalized();
   double low = a.x, high = b.x;
-  const auto at = [&](double x) { return (toolpath::tip_at(pass_, x, near_).pose.tip_W - tip).norm(); };
-  constexpr double kGolden = 0.618033988749895;
-  double x1 = high - kGolden * (high - low), x2 = low + kGolden * (high - low);
-  double f1 = at(x1), f2 = at(x2);
-  for (int i = 0; i < 26; ++i) {
-    if (f1 < f2) {
-      high = x2;
-      x2 = x1;
-      f2 = f1;
-      f1 = at(x1 = high - kGolden * (high - low));
-    } else {
-      low = x1;
-      x1 = x2;
-      f1 = f2;
-      f2 = at(x2 = low + kGolden * (high - low));
-    }
+  double before = (a.pose.tip_W - tip).dot(way), behind = (b.pose.tip_W - tip).dot(way);
+  double found = std::min((a.pose.tip_W - tip).norm(), (b.pose.tip_W - tip).norm());
+  int last = 0;
+  for (int i = 0; i < kMostSteps && before < 0.0 && behind > 0.0; ++i) {
+    const double x = low + (high - low) * before / (before - behind);
+    const Vec3 off = toolpath::tip_at(pass_, x, near_).pose.tip_W - tip;
+    const double along = off.dot(way);
+    found = std::min(found, off.norm());
+    if (std::abs(along) < kClose) break;
+    const int side = along < 0.0 ? -1 : 1;
+    (side < 0 ? low : high) = x;
+    (side < 0 ? before : behind) = along;
+    if (side == last) (side < 0 ? behind : before) *= 0.5;
+    last = side;
   }
-  return std::min({f1, f2, (a.pose.tip_W - tip).norm(), (b.pose.tip_W - tip).norm()});
+  return found;
 }
 
 double ExactPath::distance(const Vec3& tip) {

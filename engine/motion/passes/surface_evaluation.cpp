@@ -263,14 +263,34 @@ double curvature_at(const EvaluatedPass& pass, size_t node) {
   return 2.0 * turn_at(pass, node) / (way(pass, node - 1).norm() + way(pass, node).norm());
 }
 
-/// Theory 3: chord at the sampling time, and jerk cbrt(J rho^2) by a share as creases have it.
+/// How unevenly the axis turns at a node, rad/mm2: between two cycles it turns evenly along a great circle,
+/// so of its second derivative the part square to it is left out; 0 at corners.
+double uneven_turn_at(const EvaluatedPass& pass, size_t node) {
+  if (pass.nodes[node].corner) return 0.0;
+  const auto axis = [&](size_t i) -> const Vec3& { return pass.nodes[i].pose.axis_W; };
+  const double in = way(pass, node - 1).norm(), out = way(pass, node).norm();
+  // Closer nodes, as beside creases, tell by what their places are known within (2e-5 mm), not by the axis.
+  constexpr double kFar_mm = 0.2 * kEvaluationStep_mm;
+  if (!(std::min(in, out) > kFar_mm)) return 0.0;
+  const Vec3 bend =
+      2.0 / (in + out) * ((axis(node + 1) - axis(node)) / out - (axis(node) - axis(node - 1)) / in);
+  return (bend - bend.dot(axis(node)) * axis(node)).norm();
+}
+
+/// Theory 3: chord at the sampling time, and jerk cbrt(J rho^2) by a share as creases have it. The underside
+/// of a tool that turns about its contact leaves its exact place by the chord of the tip and by that of the
+/// axis, times how far it reaches from the tip.
 void clamp_curves(const DrivenPass& pass, const MotionOptions& options, EvaluatedPass& out) {
+  const double wide = pass.on->profile.radius(), reach = std::hypot(wide, pass.on->profile.height(wide));
   for (size_t cell = 0; cell < out.clamps.speed.size(); ++cell) {
     const double curvature = std::max(curvature_at(out, cell), curvature_at(out, cell + 1));
-    if (!(curvature > 0.0)) continue;
-    const double radius = 1.0 / curvature;
-    const double chord = chord_speed_limit(radius, pass.chord_tolerance_mm, options.period_s);
-    const double jerk = std::cbrt(kCreaseShare * options.path_jerk_max * radius * radius);
+    const double turn = std::max(uneven_turn_at(out, cell), uneven_turn_at(out, cell + 1));
+    const double bend = curvature + reach * turn;
+    if (!(bend > 0.0)) continue;
+    const double chord = chord_speed_limit(1.0 / bend, pass.chord_tolerance_mm, options.period_s);
+    const double jerk = curvature > 0.0
+                            ? std::cbrt(kCreaseShare * options.path_jerk_max / (curvature * curvature))
+                            : kNoClamp;
     lower(out.clamps.speed[cell], out.cell_reasons[cell], std::min(chord, jerk), ClampReason::kCurvature);
   }
 }

@@ -69,6 +69,7 @@ struct ClOptions {
   /// CIRCLE runs clockwise about its vector (true), or counter-clockwise. None: as its writer does.
   std::optional<bool> circle_clockwise;
   std::optional<ClTracut> tracut;   ///< none: "tracut-meaning" at a matrix that is not the identity
+  std::optional<double> unit_mm;    ///< 1 or 25.4 of a file without UNITS; none: 1, and ClProgram::unit_assumed
   std::vector<ClToolRadius> tools;  ///< for "contour", of tools without CUTTER or TLDATA
 };
 
@@ -79,6 +80,7 @@ struct ClProgram {
   std::vector<std::string> remarks;  ///< what was taken as given, for the report
   ToolPose start;                    ///< the first complete position: nothing is assumed before it
   int start_line = 0;                ///< 0: the program has none
+  bool unit_assumed = false;         ///< mm: neither UNITS nor ClOptions::unit_mm says it
   std::vector<Move> moves;           ///< stays empty in stream_cl()
   std::vector<ClTool> tools;         ///< each once, in the order of their first call
   std::vector<ClCutter> cutters;

@@ -40,7 +40,7 @@ struct ClSystems {
   std::optional<std::array<double, 12>> creo_system;
   int catia_lines = 0;  ///< comments of $$*CATIA0 that are still to come
   std::array<double, 12> catia{};
-  double unit_mm = 1.0;  ///< 25.4 after UNITS/INCHES
+  double unit_mm = 1.0;  ///< 25.4 after UNITS/INCHES; before it ClOptions::unit_mm
   /// A finite number in the units of the program, in mm.
   double mm(double value) const { return value * unit_mm; }
 };
@@ -97,6 +97,8 @@ struct ClState {
   ClState(const std::string& file, const ClOptions& given, ClSink& moves, Diagnostics& diagnostics)
       : options(given), sink(moves), reporter(diagnostics, file) {
     program.file = file;
+    program.unit_assumed = !given.unit_mm;
+    systems.unit_mm = given.unit_mm.value_or(1.0);
   }
 
   const ClOptions& options;

@@ -175,6 +175,7 @@ void units(ClState& cl, const ClStatement& s) {
         "give the units before the first position and before TRACUT");
   } else {
     cl.systems.unit_mm = inches ? kInch : 1.0;
+    cl.program.unit_assumed = false;
   }
 }
 

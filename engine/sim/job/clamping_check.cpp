@@ -18,8 +18,10 @@ using collision::BodyKind;
 /// What rides on the table: the links that nothing moves against it, fixtures, the stock last.
 std::vector<Body> bodies_on_table(const Job& job, const TriMesh& stock_W) {
   std::vector<Body> bodies;
-  for (Body& body : collision::link_bodies(job.machine)) {
-    if (!collision::RelativeMotion(job.machine, job.machine.work_link, body.link).rigid()) continue;
+  const auto rides = [&](int link) {
+    return collision::RelativeMotion(job.machine, job.machine.work_link, link).rigid();
+  };
+  for (Body& body : collision::link_bodies(job.machine, rides)) {
     if (job.machine.links[static_cast<size_t>(body.link)].fixture) body.kind = BodyKind::kFixture;
     bodies.push_back(std::move(body));
   }
@@ -61,6 +63,19 @@ void check_inside(const Job& job, const Body& fixture, const Body& stock, double
   diagnostics.error("fixture-in-part", where_of(job, fixture),
                     fmt::format("'{}' stands {:.3f} mm inside the stock{}", fixture.name, depth, after),
                     "move it, or the work: fixture.position_mm, setup.work_origin_mm");
+}
+
+/// What no axis parts never comes to touch: said here, or nowhere. Keys may stand in the table's slots.
+void tell_in_table(const Job& job, const std::vector<Body>& bodies, Diagnostics& diagnostics) {
+  for (const Body& fixture : bodies)
+    for (const Body& link : bodies) {
+      if (fixture.kind != BodyKind::kFixture || link.kind != BodyKind::kLink) continue;
+      const double depth = overlap(job, fixture, link);
+      if (depth <= kInsideMm) continue;
+      diagnostics.warning("fixture-in-table", where_of(job, fixture),
+                          fmt::format("'{}' stands {:.3f} mm inside '{}'", fixture.name, depth, link.name),
+                          "move it, unless it is a key in a slot: fixture.position_mm");
+    }
 }
 
 /// Reached from the table over what touches each other.
@@ -127,6 +142,7 @@ void check_clamping(const Job& job, const HeldStock& stock, Diagnostics& diagnos
   for (const Body& body : bodies)
     if (body.kind == BodyKind::kFixture) check_inside(job, body, bodies.back(), stock.error_mm, diagnostics);
   if (!table || diagnostics.has_errors()) return;
+  tell_in_table(job, bodies, diagnostics);
   const std::vector<bool> stands = standing(job, bodies, stock.error_mm);
   for (size_t i = 0; i + 1 < bodies.size(); ++i) {
     if (stands[i]) continue;

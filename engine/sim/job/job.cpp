@@ -15,6 +15,7 @@
 #include "mesh/mesh_io.h"
 #include "mesh/mesh_nesting.h"
 #include "mesh/mesh_ops.h"
+#include "position/part_check.h"
 #include "sim/job/clamping_check.h"
 #include "sim/job/driven_part.h"
 #include "sim/job/fixture_keys.h"
@@ -245,6 +246,40 @@ std::vector<surface::Face> faces_of_bodies(const brep::Model& model) {
   return faces;
 }
 
+/// How closely facets follow the edges of a CAD file: a quarter of what a gouge may be deep is left to them.
+double edge_chord(const AcceptLimits& accept) {
+  constexpr double kShare = 0.25, kLeast = 2e-5;  // mm: facets are told by floats
+  if (!accept.gouge_max_um) return brep::kEdgeChord;
+  return std::clamp(kShare * *accept.gouge_max_um * kMicrometre, kLeast, brep::kEdgeChord);
+}
+
+/// Faces of a part that drives which do not meet: where the widest gap is, and how far the tool sinks into
+/// it.
+void tell_gaps(const brep::Model& model, const Scene& scene, Diagnostics& diagnostics) {
+  constexpr double kNoGap = 1e-3;  // mm: closer faces are what CAD systems call joined
+  const auto widest =
+      std::max_element(model.edges.begin(), model.edges.end(),
+                       [](const brep::Edge& a, const brep::Edge& b) { return a.gap_mm < b.gap_mm; });
+  if (widest == model.edges.end() || widest->gap_mm <= kNoGap) return;
+  const position::ToolProfile profile(scene.tools.front());
+  const double sink = position::sinks_into(profile, widest->gap_mm);
+  const Vec3& p = widest->gap_at;
+  const std::string text = fmt::format(
+      "two faces that share an edge lie {:.4g} mm apart at ({:.3f}, {:.3f}, {:.3f}) mm: ", widest->gap_mm,
+      p.x(), p.y(), p.z());
+  const char* fix = "join the faces in the CAD program (\"sew\") and export again, or take a wider cutter";
+  if (!std::isfinite(sink))
+    diagnostics.error("part-gap-wide", {model.file}, text + "the cutter falls through", fix);
+  else if (sink > scene.driven->plan.chord_tolerance_mm)
+    diagnostics.error("part-gap-wide", {model.file},
+                      text + fmt::format("the tip sinks into it by up to {:.3g} um", um_from_mm(sink)), fix);
+  else
+    diagnostics.warning(
+        "part-gap", {model.file},
+        text + fmt::format("the cutter rides over it (it sinks by {:.2g} um at most)", um_from_mm(sink)),
+        fix);
+}
+
 /// The closed bodies of the design's CAD file; what they are and how near the facets lie is told. The faces
 /// under the facets go to the job, and those that drive it.
 TriMesh cad_facets(Job& job, bool drives, Diagnostics& diagnostics) {
@@ -264,21 +299,30 @@ TriMesh cad_facets(Job& job, bool drives, Diagnostics& diagnostics) {
     }
     diagnostics.warning("cad-open", where, text + ": they are not measured", "export the part as solids");
   }
+  // Cells follow the edges of curved faces wherever it matters; planes end on what their facets say.
   brep::Facets facets = brep::tessellate(model, design.chord_mm, true);
-  diagnostics.note("cad-read", where,
-                   fmt::format("{} bodies, {} faces; unit {} = {:g} mm; measured on the faces themselves, "
-                               "their edges and what lies "
-                               "beside them on {} facets, from which no face strays by more than {:.3g} um{}",
-                               model.solids.size(), model.face_count, model.unit, model.mm_per_unit,
-                               facets.mesh.triangles.size(), um_from_mm(facets.chord_mm),
-                               facets.proven ? " (proven)" : " (proven but for faces with a crease inside)"));
+  const double edge_mm = edge_chord(job.scene.accept);
+  if (facets.under->edge_mm > edge_mm) facets = brep::tessellate(model, design.chord_mm, true, edge_mm);
+  diagnostics.note(
+      "cad-read", where,
+      fmt::format("{} bodies, {} faces; unit {} = {:g} mm; measured on the faces themselves, "
+                  "their edges and what lies "
+                  "beside them on {} facets, from which no face strays by more than {:.3g} um{}; edges "
+                  "within {:.2g} um",
+                  model.solids.size(), model.face_count, model.unit, model.mm_per_unit,
+                  facets.mesh.triangles.size(), um_from_mm(facets.chord_mm),
+                  facets.proven ? " (proven)" : " (proven but for faces with a crease inside)",
+                  um_from_mm(facets.under->edge_mm)));
   if (facets.across_creases > 0)
     diagnostics.warning("cad-crease", where,
                         fmt::format("{} facets lie across a crease inside their face: there the facets are "
                                     "measured",
                                     facets.across_creases),
                         "export the part with faces that end at their creases");
-  if (drives) job.driven_faces = faces_of_bodies(model);
+  if (drives) {
+    tell_gaps(model, job.scene, diagnostics);
+    job.driven_faces = faces_of_bodies(model);
+  }
   job.design_under = facets.under;
   return std::move(facets.mesh);
 }

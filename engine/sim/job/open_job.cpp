@@ -326,6 +326,9 @@ void fill_open(Job& job, Diagnostics& diagnostics) {
     return;
   }
   if (scene.machine_assumed) assume_machine(job);
+  if (job.cl && job.cl->unit_assumed)
+    assume(job, "Unit", "mm", "the file has no UNITS; in inches everything were 25.4 times as large",
+           "--units; setup.units");
   assume_tools(job);
   if (scene.stock.auto_box || scene.setup.tip_without_length || scene.machine_assumed) {
     const toolpath::FeedWay way = job.cl ? way_of_cl(job, diagnostics) : way_of_nc(job);

@@ -34,7 +34,15 @@ PostSettings read_post(ConfigTable table, size_t tools) {
   if (table.has("tcp")) post.tcp = table.boolean("tcp");
   post.tolerance_mm = table.number("tolerance_um", kAboveZero, 10.0) * kMicrometre;
   post.axis_tolerance_rad = rad_from_deg(table.number("axis_tolerance_deg", kAboveZero, 0.1));
-  post.best_routes = table.choice("routes", {"backtrack", "best"}, "backtrack") == "best";
+  const std::string routes = table.choice("routes", {"backtrack", "best"}, "");
+  post.prefer = table.choice("prefer", {"time", "accuracy", "travel"}, "");
+  post.best_routes = routes == "best" || !post.prefer.empty();
+  if (routes == "backtrack" && !post.prefer.empty())
+    table.error("prefer-of-backtracking", "prefer",
+                "backtracking takes the first way that is free: it has nothing to choose by",
+                "leave routes out, or write routes = \"best\"");
+  post.unit = table.choice("unit", {"mm", "inch"}, "");
+  post.planes = table.choice("planes", {"never", "cycles", "constant"}, "");
   post.clearance_mm = table.number("clearance_mm", kZeroOrMore, 0.0);
   if (table.has("clamping")) post.grid = read_grid(table.table("clamping"));
   if (table.has("tool_reach")) {

@@ -30,7 +30,10 @@ struct PostSettings {
   std::optional<bool> tcp;     ///< none: as the post has it
   double tolerance_mm = 0.01;
   double axis_tolerance_rad = 0.0;
-  bool best_routes = false;   ///< dynamic programming instead of the paper's backtracking
+  bool best_routes = false;  ///< dynamic programming instead of the paper's backtracking
+  /// What the best of all ways has least of, and where tilted planes are written; "": as the post has it.
+  std::string prefer, planes;
+  std::string unit;           ///< "mm" or "inch" of what is written; "": as the post has it
   double clearance_mm = 0.0;  ///< gaps of this or less count as collisions
   ClampingGrid grid;
   ToolReach reach;

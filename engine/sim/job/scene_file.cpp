@@ -364,6 +364,19 @@ void begin_with_earlier(StockSettings& stock) {
   stock.auto_box = false;
 }
 
+/// Paths that are planned have no text whose unit or TRACUT could be left open.
+void refuse_program_keys(ConfigTable table, const Scene& scene) {
+  if (scene.kind == ProgramKind::kNc || scene.kind == ProgramKind::kCl) return;
+  const auto refuse = [&](bool given, const char* key) {
+    if (given)
+      table.error("unused-key", key,
+                  fmt::format("'setup.{}' says what an NC program or CL data leaves open", key),
+                  "take it out: a planned path is in mm");
+  };
+  refuse(scene.setup.unit_mm.has_value(), "units");
+  refuse(scene.setup.tracut.has_value(), "tracut");
+}
+
 /// `setup`: as load_scene's.
 void read_scene(ConfigTable& root, Scene& scene, Diagnostics& diagnostics, int setup = 0) {
   const std::string& path = scene.file;
@@ -377,6 +390,8 @@ void read_scene(ConfigTable& root, Scene& scene, Diagnostics& diagnostics, int s
   read_cl_keys(root, scene);
   scene.setup = read_setup(root.table("setup"), scene.kind == ProgramKind::kNc, setup);
   scene.cl_options.tracut = scene.setup.tracut;
+  scene.cl_options.unit_mm = scene.setup.unit_mm;
+  refuse_program_keys(root.table("setup"), scene);
   if (setup > 0)
     scene.title += fmt::format(", set-up {}{}", setup,
                                scene.setup.name.empty() ? "" : ": " + utf8_only(scene.setup.name));

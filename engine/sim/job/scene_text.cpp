@@ -8,6 +8,8 @@
 #include <cmath>
 #include <string_view>
 
+#include "mesh/scene_reader.h"
+
 namespace swarf::sim {
 namespace {
 
@@ -35,9 +37,9 @@ std::string setup_text(const JobFlags& flags) {
   std::string text = "\n[setup]\n";
   text += fmt::format("work_origin_mm = {}\n", flags.origin_M ? triple(*flags.origin_M) : "\"on_table\"");
   if (!flags.tracut.empty()) text += fmt::format("tracut = \"{}\"\n", flags.tracut);
+  if (!flags.units.empty()) text += fmt::format("units = \"{}\"\n", flags.units);
   if (flags.cl_data) return text;
   text += "without_length = \"tip\"\n";
-  if (!flags.units.empty()) text += fmt::format("units = \"{}\"\n", flags.units);
   if (flags.start_tool > 0) text += fmt::format("start_tool = {}\n", flags.start_tool);
   if (flags.t_changes_tool) text += "t_changes_tool = true\n";
   if (!flags.slot_ends.empty()) text += fmt::format("slot_ends = \"{}\"\n", flags.slot_ends);
@@ -110,7 +112,7 @@ void take_stock(const std::string& text, JobFlags& flags) {
   std::string ending = std::filesystem::path(text).extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (ending == ".stl" || ending == ".ply" || ending == ".obj") {
+  if (ending == ".stl" || ending == ".ply" || ending == ".obj" || mesh::is_scene_ending(ending)) {
     flags.stock_keys = "mesh = " + toml_string(text) + "\n";
     return;
   }

@@ -33,7 +33,6 @@ AxisSettings read_axes(ConfigTable table) {
 
 /// What stands in the control before the first block, besides positions.
 void read_control_keys(ConfigTable& table, SetupSettings& setup) {
-  if (table.has("units")) setup.unit_mm = table.choice("units", {"mm", "inch"}) == "inch" ? 25.4 : 1.0;
   for (const char* key : {"start_tool", "start_tool_name"}) {
     if (table.has(key)) setup.start_tool_where = table.where(key);
   }
@@ -75,6 +74,7 @@ SetupSettings read_setup(ConfigTable table, bool nc, int number) {
           fmt::format("every number must be from {:g} to {:g} mm", -kFarthestOrigin, kFarthestOrigin));
   }
   setup.work_rotation_rad = rad_from_deg(table.number("work_rotation_deg", {-360.0, 360.0}, 0.0));
+  if (table.has("units")) setup.unit_mm = table.choice("units", {"mm", "inch"}) == "inch" ? 25.4 : 1.0;
   if (!nc && table.has("tracut"))
     setup.tracut = table.choice("tracut", {"apply", "applied"}) == "apply" ? program::ClTracut::kApply
                                                                            : program::ClTracut::kApplied;

@@ -83,11 +83,11 @@ std::string commented_setup(const Job& job) {
   if (setup.tracut)
     text +=
         fmt::format("tracut = \"{}\"\n", *setup.tracut == program::ClTracut::kApply ? "apply" : "applied");
+  if (setup.unit_mm) text += fmt::format("units = \"{}\"\n", *setup.unit_mm == 1.0 ? "mm" : "inch");
   if (job.scene.kind != ProgramKind::kNc) return text;
   if (setup.tip_without_length)
     text +=
         "without_length = \"tip\"  # positions of a program that calls no tool length; or \"gauge_line\"\n";
-  if (setup.unit_mm) text += fmt::format("units = \"{}\"\n", *setup.unit_mm == 1.0 ? "mm" : "inch");
   if (setup.start_tool > 0) text += fmt::format("start_tool = {}\n", setup.start_tool);
   if (setup.t_changes_tool) text += "t_changes_tool = true\n";
   if (setup.slot_ends)

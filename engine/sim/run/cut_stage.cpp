@@ -19,7 +19,7 @@ namespace swarf::sim {
 namespace {
 
 constexpr size_t kSweepsPerBatch = 2048;  // between two looks ahead at the whole tool
-constexpr size_t kSweepsPerStep = 512;    // between two looks at the progress bar and Ctrl-C
+constexpr size_t kSweepsPerStep = 2048;   // between two looks at the progress bar and Ctrl-C
 constexpr size_t kSuspectsPerStep = 32;   // the same, where sweeps are judged one by one
 constexpr size_t kChecks = 8;             // of the invariants on the way, evenly spread over the sweeps
 

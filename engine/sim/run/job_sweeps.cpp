@@ -208,6 +208,9 @@ JobSweeps ray_sweeps(const Job& job, const motion::Cycles& cycles, std::optional
     case CutBy::kPasses:
       break;
   }
+  // Driven positions are held against fractions of a micrometre: nodes between the cycles would double their
+  // chords.
+  if (job.driven != nullptr) return driven_sweeps(job, cycles, tolerance, false);
   return {cycle_sweeps(cycles), sources_of_cycles(cycles), 0.0};
 }
 

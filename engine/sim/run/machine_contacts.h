@@ -45,10 +45,13 @@ enum class StockVerdict : uint8_t {
 struct StockEvent {
   StockSuspect suspect;
   StockVerdict verdict = StockVerdict::kOpen;
-  collision::PathPlace first;  ///< the way on which it is in the material; of an open one, is not clear of it
-  int last_element = 0;        ///< of the suspect
-  double depth_mm = 0.0;       ///< greatest that was looked at: at nine instants of five ways at most
+  /// Of a contact: where it first touches the mesh of the material as it stood when the contact was found,
+  /// which lies within a voxel of it; of an open one: the way that is not clear.
+  collision::PathPlace first;
+  int last_element = 0;         ///< of the suspect
+  double depth_mm = 0.0;        ///< greatest that was looked at: at nine instants of five ways at most
   Vec3 place_M = Vec3::Zero();  ///< on the body, there
+  Vec3 first_M = Vec3::Zero();  ///< on the body, at `first` of a contact
 };
 
 /// The suspects of a program against what is left of the stock.

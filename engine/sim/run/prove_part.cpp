@@ -43,6 +43,13 @@ size_t keep_worst(std::vector<measure::Region>& regions) {
   return count;
 }
 
+/// What the proof does not see: how far the sweeps stray, and the strip beside curved edges of a CAD file's
+/// faces, whose places are no farther from the places that it sees.
+double unseen_mm(const MeasuredPath& path, const stock::RayField& field) {
+  const bool faces = field.design != nullptr && field.design->under != nullptr;
+  return path.rays.error_bound_mm + (faces ? field.design->under->edge_mm : 0.0);
+}
+
 }  // namespace
 
 void prove_part(const Job& job, Progress& progress, Result& result) {
@@ -66,7 +73,7 @@ void prove_part(const Job& job, Progress& progress, Result& result) {
          .ranges = ranges,
          .sweeps = main.rays.sweeps,
          .cutters = cutters,
-         .sweep_bound_mm = main.rays.error_bound_mm,
+         .sweep_bound_mm = unseen_mm(main, *fields[i]),
          .stock = *result.stock,
          .stock_bound_mm = result.sweep_bound_mm,
          .gouge_limit_mm = accept.gouge_band_um() * kMicrometre,

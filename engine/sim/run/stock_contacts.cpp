@@ -106,6 +106,20 @@ void StockContactCheck::pass_clear_ways(Suspect& suspect) const {
   suspect.verdict = StockVerdict::kClear;
 }
 
+/// Of a contact: where the body first touches what is left now, which is no later than it touched anything.
+/// Ways before the first one that is not clear are.
+void StockContactCheck::find_first(Suspect& suspect) const {
+  for (uint64_t from = suspect.not_clear; from <= suspect.next; from += kWaysAtOnce) {
+    const uint64_t to = std::min({from + kWaysAtOnce, suspect.next + 1, suspect.of.cycles.last});
+    const std::optional<collision::StockTouch> touch = body_->first_touch(body_of(suspect), places(from, to));
+    if (!touch) continue;
+    suspect.cycle = from + touch->way;
+    suspect.share = touch->at.t_touch;
+    suspect.first_M = touch->at.point_a;
+    return;
+  }
+}
+
 /// Against the stock behind the sweeps of the way; then on to the next one that is to be looked at.
 void StockContactCheck::judge_way(Suspect& suspect) const {
   const std::vector<AxisValues> way =
@@ -117,6 +131,8 @@ void StockContactCheck::judge_way(Suspect& suspect) const {
   if (answer.outcome == collision::StockOutcome::kContact && suspect.verdict != StockVerdict::kContact) {
     suspect.verdict = StockVerdict::kContact;
     suspect.cycle = suspect.next;
+    suspect.first_M = answer.point_M;
+    find_first(suspect);
   }
   if (answer.depth_mm > suspect.depth_mm) {
     suspect.depth_mm = answer.depth_mm;
@@ -192,9 +208,10 @@ std::string StockContactCheck::text() const {
   if (suspects_.empty()) return "0";
   std::string text = fmt::format("{} {} {} {} {}", suspects_.size(), identity(), looks_, int{unseen_}, due_);
   for (const Suspect& s : suspects_) {
-    text += fmt::format("; {} {} {} {} {} {} {} {} {} {} {} {}", s.next, s.not_clear, s.looked_at,
+    text += fmt::format("; {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {}", s.next, s.not_clear, s.looked_at,
                         int{s.blocked}, int{s.done}, static_cast<int>(s.verdict), s.cycle, s.depth_mm,
-                        s.place_M.x(), s.place_M.y(), s.place_M.z(), s.due);
+                        s.place_M.x(), s.place_M.y(), s.place_M.z(), s.share, s.first_M.x(), s.first_M.y(),
+                        s.first_M.z(), s.due);
   }
   return text;
 }
@@ -204,7 +221,8 @@ bool StockContactCheck::read(std::istream& in) {
     char mark = 0;
     int verdict = 0;
     in >> mark >> s.next >> s.not_clear >> s.looked_at >> s.blocked >> s.done >> verdict >> s.cycle >>
-        s.depth_mm >> s.place_M.x() >> s.place_M.y() >> s.place_M.z() >> s.due;
+        s.depth_mm >> s.place_M.x() >> s.place_M.y() >> s.place_M.z() >> s.share >> s.first_M.x() >>
+        s.first_M.y() >> s.first_M.z() >> s.due;
     if (in.fail() || mark != ';' || verdict < 0 || verdict > 2) return false;
     s.verdict = static_cast<StockVerdict>(verdict);
   }
@@ -248,11 +266,13 @@ std::optional<StockContacts> StockContactCheck::result() const {
   found.unseen = unseen_;
   for (const Suspect& suspect : suspects_) {
     if (suspect.done && suspect.verdict == StockVerdict::kClear) continue;
-    StockEvent event{suspect.of, suspect.verdict, {}, 0, suspect.depth_mm, suspect.place_M};
+    StockEvent event{suspect.of, suspect.verdict, {}, 0, suspect.depth_mm, suspect.place_M, suspect.first_M};
     const uint64_t cycle = suspect.blocked || suspect.done ? suspect.cycle : suspect.next;
     const uint64_t last = suspect.of.cycles.last;
-    event.first = {cycle, 0.0, reader_.at(cycle).sample.t_s, 0};
-    event.first.element = reader_.at(std::min(cycle + 1, last)).sample.element;
+    const motion::Cycle& next = reader_.at(std::min(cycle + 1, last));
+    const int element = next.sample.element;
+    const double end_s = next.sample.t_s, start_s = reader_.at(cycle).sample.t_s;
+    event.first = {cycle, suspect.share, start_s + suspect.share * (end_s - start_s), element};
     event.last_element = reader_.at(last).sample.element;
     found.events.push_back(event);
   }

@@ -59,6 +59,8 @@ class StockContactCheck {
     uint64_t cycle = 0;  ///< StockEvent::first
     double depth_mm = 0.0;
     Vec3 place_M = Vec3::Zero();
+    double share = 0.0;  ///< of the way from `cycle`, StockEvent::first
+    Vec3 first_M = Vec3::Zero();
     size_t due = 0;
   };
 
@@ -70,6 +72,7 @@ class StockContactCheck {
   void set_due(Suspect& suspect) const;
   void look_at(Suspect& suspect, size_t sweeps) const;
   void pass_clear_ways(Suspect& suspect) const;
+  void find_first(Suspect& suspect) const;
   void judge_way(Suspect& suspect) const;
   void close();
   uint64_t identity() const;

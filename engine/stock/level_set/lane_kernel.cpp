@@ -14,18 +14,18 @@ struct FloatVector;
 template <>
 struct FloatVector<4> {
   using type = float __attribute__((vector_size(16)));
+  using bits = int32_t __attribute__((vector_size(16)));
 };
 template <>
 struct FloatVector<8> {
   using type = float __attribute__((vector_size(32)));
+  using bits = int32_t __attribute__((vector_size(32)));
 };
 template <>
 struct FloatVector<16> {
   using type = float __attribute__((vector_size(64)));
+  using bits = int32_t __attribute__((vector_size(64)));
 };
-
-constexpr int32_t kBitOfLane[kLanes] = {1,   2,   4,    8,    16,   32,   64,    128,
-                                        256, 512, 1024, 2048, 4096, 8192, 16384, 32768};
 
 /// The arithmetic for kWidth lanes at a time: as many as one register of the instruction set holds. Wider
 /// vectors than that the compiler takes apart into single floats.
@@ -54,6 +54,16 @@ struct Judge {
     return result;
   }
 
+  /// a where x is positive, else b. By the sign's bit: gcc takes comparisons of vectors that are wider than
+  /// the baseline's apart, but for those that amount to a maximum.
+  static SWARF_KERNEL_INLINE V choose(V x, V a, V b) {
+    using Bits = typename FloatVector<kWidth>::bits;
+    constexpr float kLeast = 1e-30F;
+    constexpr int kSignBit = 31;
+    const Bits other = reinterpret_cast<Bits>(x - kLeast) >> kSignBit;
+    return reinterpret_cast<V>((reinterpret_cast<Bits>(a) & ~other) | (reinterpret_cast<Bits>(b) & other));
+  }
+
   static SWARF_KERNEL_INLINE Point to_tool(const LaneFloats (&R)[3][3], const LaneFloats (&tip)[3], int from,
                                            const float* centre) {
     const V x = centre[0] - load(tip[0], from), y = centre[1] - load(tip[1], from),
@@ -68,11 +78,11 @@ struct Judge {
     const V dr = rho - r.centre_rho, dz = z - r.centre_z;
     const V length = max_of(root(dr * dr + dz * dz), all(1e-20F));
     const V from = dr * r.from_rho + dz * r.from_z, to = dr * r.to_rho + dz * r.to_z;
-    const V end_rho = from > to ? all(r.from_rho) : all(r.to_rho),
-            end_z = from > to ? all(r.from_z) : all(r.to_z);
+    const V end_rho = choose(from - to, all(r.from_rho), all(r.to_rho)),
+            end_z = choose(from - to, all(r.from_z), all(r.to_z));
     // Inside the wedge between its end normals the smaller of these is positive.
     const V inside = min_of(r.from_rho * dz - r.from_z * dr, dr * r.to_z - dz * r.to_rho);
-    const V rho_n = inside > 0.0F ? dr / length : end_rho, z_n = inside > 0.0F ? dz / length : end_z;
+    const V rho_n = choose(inside, dr / length, end_rho), z_n = choose(inside, dz / length, end_z);
     return {dr * rho_n + dz * z_n - r.radius, rho_n, z_n};
   }
 
@@ -95,18 +105,6 @@ struct Judge {
     return q.half * sum;
   }
 
-  /// Bit n: a[n] >= level.
-  static SWARF_KERNEL_INLINE uint32_t at_least(V a, float level) {
-    int32_t flag[kWidth];
-    decltype(a >= level) weights;
-    std::memcpy(&weights, kBitOfLane, sizeof(weights));
-    const auto flags = (a >= level) & weights;
-    std::memcpy(flag, &flags, sizeof(flag));
-    int32_t bits = 0;
-    for (int n = 0; n < kWidth; ++n) bits += flag[n];
-    return static_cast<uint32_t>(bits);
-  }
-
   /// The leaf's centre in the tool frames at both ends, and the radial direction at half time.
   struct Place {
     Point P, Q;
@@ -118,8 +116,8 @@ struct Judge {
     const V x = 0.5F * (P.x + Q.x), y = 0.5F * (P.y + Q.y);
     const V rho = root(x * x + y * y);
     const V inverse = 1.0F / max_of(rho, all(1e-20F));
-    // On the axis every direction is a subgradient.
-    return {P, Q, rho, 0.5F * (P.z + Q.z), rho > 0.0F ? x * inverse : all(1.0F), y * inverse};
+    // On the axis 0 is a subgradient.
+    return {P, Q, rho, 0.5F * (P.z + Q.z), x * inverse, y * inverse};
   }
 
   /// How far a face's or round's bound rises above the floor anywhere in the leaf.
@@ -138,11 +136,16 @@ struct Judge {
            value;
   }
 
+  /// What decides about the lanes.
+  struct Verdicts {
+    alignas(64) float above[kLanes], depth[kLanes];
+  };
+
   static SWARF_KERNEL_INLINE void lanes_from(int from, const Lanes& lanes, const LanePiece& piece,
-                                             const LaneQuery& query, LaneAnswer& out) {
-    constexpr float kSlack = 2e-4F;  // mm; coordinates of up to a metre round to a third of it
+                                             const LaneQuery& query, Verdicts& verdicts, LaneAnswer& out) {
     const Place at = place(lanes, from, query.centre);
-    V above = all(1e30F), value = all(-1e30F);
+    const float up = kDepthAbove * query.half;
+    V above = all(1e30F), value = all(-1e30F), higher = all(-1e30F);
     for (const LanePiece::Face& face : piece.faces) {
       const V distance = face.rho * at.rho + face.z * at.z - face.offset;
       const V excess = face.rho == 0.0F
@@ -150,22 +153,33 @@ struct Judge {
                            : above_floor(lanes, from, at, {distance, all(face.rho), all(face.z)}, query);
       above = min_of(above, excess);
       value = max_of(value, distance);
+      higher = max_of(higher, distance + up * face.z);
     }
     for (const LanePiece::Round& round : piece.rounds) {
       const Bound bound = round_bound(round, at.rho, at.z);
       above = min_of(above, above_floor(lanes, from, at, bound, query));
       value = max_of(value, bound.value);
+      higher = max_of(higher, bound.value + up * bound.z);
     }
-    const V depth = -value;
-    out.open |= at_least(above, query.floor - kSlack) << from;
-    out.swallows |= at_least(depth, query.reach + kSlack) << from;
-    std::memcpy(out.depth.lane + from, &depth, sizeof(depth));
+    const V depth = -value, depth_above = -higher;
+    std::memcpy(verdicts.above + from, &above, sizeof(above));
+    std::memcpy(verdicts.depth + from, &depth, sizeof(depth));
+    std::memcpy(out.depth.lane + from, &depth_above, sizeof(depth_above));
   }
 
   static SWARF_KERNEL_INLINE void all_lanes(const Lanes& lanes, const LanePiece& piece,
                                             const LaneQuery& query, LaneAnswer& out) {
-    out.open = out.swallows = 0;
-    for (int from = 0; from < kLanes; from += kWidth) lanes_from(from, lanes, piece, query, out);
+    constexpr float kSlack = 2e-4F;  // mm; coordinates of up to a metre round to a third of it
+    Verdicts verdicts;
+    for (int from = 0; from < kLanes; from += kWidth) lanes_from(from, lanes, piece, query, verdicts, out);
+    const float open_from = query.floor - kSlack, swallowed_from = query.reach + kSlack;
+    uint32_t open = 0, swallows = 0;
+    for (int n = 0; n < kLanes; ++n) {
+      open |= verdicts.above[n] >= open_from ? 1U << n : 0U;
+      swallows |= verdicts.depth[n] >= swallowed_from ? 1U << n : 0U;
+    }
+    out.open = open;
+    out.swallows = swallows;
   }
 };
 

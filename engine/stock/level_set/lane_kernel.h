@@ -47,10 +47,16 @@ struct LaneQuery {
   float reach;  ///< from the centre to the farthest place where a distance matters, mm
 };
 
+/// Sweeps are sorted by how deep a place above the leaf lies in them, so many half leaves along the tool's
+/// axis: there those that pass over the whole of it come before those that reach it with the rim, and leave
+/// floors everywhere. Found by trying: at 0 leaves of a wavy surface are visited a fifth more often, below 0
+/// far more.
+inline constexpr float kDepthAbove = 1.5F;
+
 struct LaneAnswer {
   uint32_t open;      ///< bit n: lane n may raise a value
   uint32_t swallows;  ///< bit n: every voxel of the leaf lies deeper inside lane n's cutter than the band
-  LaneFloats depth;   ///< of the leaf's centre inside the cutter at half time (-F), mm
+  LaneFloats depth;   ///< inside the cutter at half time (-F), mm, of a place above the leaf's centre
 };
 
 using LaneKernel = void (*)(const Lanes& lanes, const LanePiece& piece, const LaneQuery& query,

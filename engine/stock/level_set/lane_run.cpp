@@ -249,12 +249,16 @@ void gather_leaves(const LevelSet& set, const LaneRun& run, size_t index, std::v
   LaneAnswer answer;
   visit_leaves(set, run.around, [&](size_t leaf, const Vec3& centre) {
     kernel(run.lanes, run.piece, run.query(set, centre, set.map.floors[leaf]), answer);
-    const LeafPair position = static_cast<LeafPair>(leaf) << 32 | index;
-    if ((answer.swallows & run.all()) != 0) {
-      pairs.push_back(position);
-    } else if ((answer.open & run.all()) != 0) {
-      pairs.push_back(position | kReaches);
+    const bool swallows = (answer.swallows & run.all()) != 0;
+    const uint32_t open = answer.open & run.all();
+    if (!swallows && open == 0) return;
+    LeafPair& pair = pairs.emplace_back(leaf, index, swallows);
+    pair.lane = open != 0 ? static_cast<uint32_t>(__builtin_ctz(open)) : 0;
+    for (uint32_t left = open; left != 0; left &= left - 1) {
+      const auto lane = static_cast<uint32_t>(__builtin_ctz(left));
+      if (answer.depth.lane[lane] > answer.depth.lane[pair.lane]) pair.lane = lane;
     }
+    pair.depth = answer.depth.lane[pair.lane];
   });
 }
 

@@ -43,19 +43,26 @@ struct LaneRun {
 /// Cuts a batch's pieces into runs; they follow each other as the path does, one convex piece after another.
 std::vector<LaneRun> make_runs(const LevelSet& set, const std::vector<SweptPiece>& pieces);
 
-/// leaf position << 32 | 1 << 31 unless a lane swallows the leaf | run. Sorted, a swallowed leaf shows it
-/// first.
-using LeafPair = uint64_t;
-inline constexpr LeafPair kReaches = LeafPair{1} << 31;
-inline size_t leaf_of(LeafPair pair) {
-  return pair >> 32;
-}
-inline size_t run_of(LeafPair pair) {
-  return pair & (kReaches - 1);
-}
-inline bool swallows(LeafPair pair) {
-  return (pair & kReaches) == 0;
-}
+/// A leaf position and a run that may change it. Sorted, those of a leaf stand together, and a swallowed leaf
+/// shows it first.
+class LeafPair {
+ public:
+  LeafPair() = default;
+  LeafPair(size_t leaf, size_t run, bool swallows)
+      : key_(static_cast<uint64_t>(leaf) << 32 | (swallows ? 0 : kReaches) | run) {}
+  size_t leaf() const { return key_ >> 32; }
+  size_t run() const { return key_ & (kReaches - 1); }
+  /// One of the lanes leaves nothing of the leaf.
+  bool swallows() const { return (key_ & kReaches) == 0; }
+  bool operator<(const LeafPair& other) const { return key_ < other.key_; }
+
+  float depth = 0.0F;  ///< LaneAnswer's, the greatest of the lanes
+  uint32_t lane = 0;   ///< which has it
+
+ private:
+  static constexpr uint64_t kReaches = uint64_t{1} << 31;
+  uint64_t key_ = 0;
+};
 
 /// Appends the pairs of one run.
 void gather_leaves(const LevelSet& set, const LaneRun& run, size_t index, std::vector<LeafPair>& pairs);

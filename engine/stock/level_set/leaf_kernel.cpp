@@ -1,5 +1,6 @@
 #include "stock/level_set/leaf_kernel.h"
 
+#include <cmath>
 #include <vector>
 
 #include "stock/sweep/sweep_distance.h"
@@ -8,102 +9,217 @@ namespace swarf::stock {
 namespace {
 
 constexpr int kSlice = kLeafSide * kLeafSide;
+/// Two columns of a slice lie one behind the other: a patch is this twice.
+constexpr int kPair = 2 * kLeafSide;
 
-/// The coordinates of one x-slice of the leaf relative to its first voxel, shared by all eight slices.
-struct Slice {
-  alignas(64) float px[kSlice], py[kSlice], pz[kSlice];  ///< at the start pose
-  alignas(64) float qx[kSlice], qy[kSlice], qz[kSlice];  ///< at the end pose
+SWARF_KERNEL_INLINE bool has_patch(uint32_t patches, int x, int pair) {
+  return (patches >> (x / 2 * kPatchSide + pair) & 1U) != 0;
+}
+
+/// Voxels of two neighbouring columns relative to the leaf's first slice, in the tool frame at both ends.
+struct Pair {
+  alignas(64) float px[kPair], py[kPair], pz[kPair], qx[kPair], qy[kPair], qz[kPair];
 };
 
-SWARF_KERNEL_INLINE void fill_slice(Slice& slice, const LeafMotion& m) {
-  for (int j = 0; j < kSlice; ++j) {
-    const float y = static_cast<float>(j / kLeafSide);
+SWARF_KERNEL_INLINE void fill_pair(Pair& pair, const LeafMotion& m, int number) {
+  const float first = static_cast<float>(2 * number);
+  for (int j = 0; j < kPair; ++j) {
+    const float y = first + static_cast<float>(j / kLeafSide);
     const float z = static_cast<float>(j % kLeafSide);
-    slice.px[j] = m.start[0] + (m.start_step[1][0] * y + m.start_step[2][0] * z);
-    slice.py[j] = m.start[1] + (m.start_step[1][1] * y + m.start_step[2][1] * z);
-    slice.pz[j] = m.start[2] + (m.start_step[1][2] * y + m.start_step[2][2] * z);
-    slice.qx[j] = m.end[0] + (m.end_step[1][0] * y + m.end_step[2][0] * z);
-    slice.qy[j] = m.end[1] + (m.end_step[1][1] * y + m.end_step[2][1] * z);
-    slice.qz[j] = m.end[2] + (m.end_step[1][2] * y + m.end_step[2][2] * z);
+    pair.px[j] = m.start[0] + (m.start_step[1][0] * y + m.start_step[2][0] * z);
+    pair.py[j] = m.start[1] + (m.start_step[1][1] * y + m.start_step[2][1] * z);
+    pair.pz[j] = m.start[2] + (m.start_step[1][2] * y + m.start_step[2][2] * z);
+    pair.qx[j] = m.end[0] + (m.end_step[1][0] * y + m.end_step[2][0] * z);
+    pair.qy[j] = m.end[1] + (m.end_step[1][1] * y + m.end_step[2][1] * z);
+    pair.qz[j] = m.end[2] + (m.end_step[1][2] * y + m.end_step[2][2] * z);
   }
+}
+
+/// The same in one slice, on their way.
+struct MovingPair {
+  alignas(64) float px[kPair], py[kPair], pz[kPair], dx[kPair], dy[kPair], dz[kPair];
+};
+
+SWARF_KERNEL_INLINE void move_pair(MovingPair& moving, const Pair& pair, const LeafMotion& m, int slice) {
+  const float fx = static_cast<float>(slice);
+  const float ax = m.start_step[0][0] * fx, ay = m.start_step[0][1] * fx, az = m.start_step[0][2] * fx;
+  const float bx = m.end_step[0][0] * fx, by = m.end_step[0][1] * fx, bz = m.end_step[0][2] * fx;
+  for (int j = 0; j < kPair; ++j) {
+    const float px = pair.px[j] + ax, py = pair.py[j] + ay, pz = pair.pz[j] + az;
+    moving.px[j] = px;
+    moving.py[j] = py;
+    moving.pz[j] = pz;
+    moving.dx[j] = pair.qx[j] + bx - px;
+    moving.dy[j] = pair.qy[j] + by - py;
+    moving.dz[j] = pair.qz[j] + bz - pz;
+  }
+}
+
+/// What the bottom alone tells, without a root: a sweep never writes more than a voxel's height above it
+/// where it stands highest, and that much if the voxel is well inside the flank there. True if nothing is
+/// left to do.
+SWARF_KERNEL_INLINE bool raise_by_bottom(float* values, const MovingPair& m, float radius, float background) {
+  constexpr float kWellInside = 1.0F - 1e-6F;  // of a square: more than the rounding of root and square
+  alignas(64) float most[kPair];
+  int open = 0, flank = 0;
+  for (int j = 0; j < kPair; ++j) {
+    const float t = m.dz[j] > 0.0F ? 1.0F : 0.0F;
+    const float high = m.pz[j] + t * m.dz[j];
+    const float x = m.px[j] + t * m.dx[j], y = m.py[j] + t * m.dy[j], within = radius - high;
+    most[j] = kernel::min_of(high, background);
+    const float outside = kernel::max_of(x * x + y * y - within * within * kWellInside, -within);
+    open += values[j] < most[j] ? 1 : 0;
+    flank += values[j] < most[j] && outside > 0.0F ? 1 : 0;
+  }
+  if (open == 0) return true;
+  if (flank != 0) return false;
+  for (int j = 0; j < kPair; ++j) values[j] = kernel::max_of(values[j], most[j]);
+  return true;
 }
 
 template <bool kCapped>
-SWARF_KERNEL_INLINE void cut_slices(float* values, const LeafMotion& m, uint32_t slices) {
-  Slice slice;
-  fill_slice(slice, m);
+SWARF_KERNEL_INLINE void cut_patches(float* values, const LeafMotion& m, uint32_t patches) {
   // Locals, not members: the float output could alias the struct, which would stop vectorisation.
   const float radius = m.radius, height = m.height, background = m.background;
-  for (int x = 0; x < kLeafSide; ++x) {
-    if ((slices >> x & 1U) == 0) continue;
-    const float fx = static_cast<float>(x);
-    const float ax = m.start_step[0][0] * fx, ay = m.start_step[0][1] * fx, az = m.start_step[0][2] * fx;
-    const float bx = m.end_step[0][0] * fx, by = m.end_step[0][1] * fx, bz = m.end_step[0][2] * fx;
-    float* row = values + x * kSlice;
-    for (int j = 0; j < kSlice; ++j) {
-      const float px = slice.px[j] + ax, py = slice.py[j] + ay, pz = slice.pz[j] + az;
-      const MovingPoint<float> point{
-          px, py, pz, slice.qx[j] + bx - px, slice.qy[j] + by - py, slice.qz[j] + bz - pz};
-      const float distance = swept_distance<float, kCapped>(point, radius, height);
-      row[j] = kernel::max_of(row[j], kernel::min_of(-distance, background));
+  constexpr uint32_t kOfPair = 0x1111U;
+  for (int number = 0; number < kPatchSide; ++number) {
+    if ((patches >> number & kOfPair) == 0) continue;
+    Pair pair;
+    fill_pair(pair, m, number);
+    for (int x = 0; x < kLeafSide; ++x) {
+      if (!has_patch(patches, x, number)) continue;
+      float* row = values + x * kSlice + number * kPair;
+      MovingPair moving;
+      move_pair(moving, pair, m, x);
+      if (!kCapped && raise_by_bottom(row, moving, radius, background)) continue;
+      for (int j = 0; j < kPair; ++j) {
+        const MovingPoint<float> point{moving.px[j], moving.py[j], moving.pz[j],
+                                       moving.dx[j], moving.dy[j], moving.dz[j]};
+        const float distance = swept_distance<float, kCapped>(point, radius, height);
+        row[j] = kernel::max_of(row[j], kernel::min_of(-distance, background));
+      }
     }
   }
 }
 
-SWARF_KERNEL_INLINE void cut_leaf(float* values, const LeafMotion& motion, uint32_t slices) {
+SWARF_KERNEL_INLINE void cut_leaf(float* values, const LeafMotion& motion, uint32_t patches) {
   if (motion.capped) {
-    cut_slices<true>(values, motion, slices);
+    cut_patches<true>(values, motion, patches);
   } else {
-    cut_slices<false>(values, motion, slices);
+    cut_patches<false>(values, motion, patches);
   }
 }
 
-/// c + sy y + sz z over one slice.
-SWARF_KERNEL_INLINE void fill_linear(float* out, float c, const float step[3]) {
-  const float sy = step[1], sz = step[2];
-  for (int j = 0; j < kSlice; ++j) {
-    out[j] = c + (sy * static_cast<float>(j / kLeafSide) + sz * static_cast<float>(j % kLeafSide));
+/// From the leaf's first voxel to the middle of a patch, and half its extent, in voxels.
+struct PatchMiddles {
+  float x[kPatches], y[kPatches];
+};
+constexpr PatchMiddles patch_middles() {
+  PatchMiddles middles{};
+  for (int n = 0; n < kPatches; ++n) {
+    middles.x[n] = 2.0F * static_cast<float>(n / kPatchSide) + 0.5F;
+    middles.y[n] = 2.0F * static_cast<float>(n % kPatchSide) + 0.5F;
   }
+  return middles;
 }
+constexpr PatchMiddles kMiddles = patch_middles();
+constexpr float kHalfPatch[3] = {0.5F, 0.5F, 0.5F * (kLeafSide - 1)};
 
-SWARF_KERNEL_INLINE uint32_t test_bound(const float* values, const LeafBound& bound, float background) {
+/// Greatest value of a linear function in a patch: first + x X + y Y.
+struct PatchMost {
+  float first, x, y;
+};
+SWARF_KERNEL_INLINE PatchMost patch_most(float first, const float step[3], const float slope[3]) {
   constexpr float kSlack = 1e-4F;  // mm; distances of up to a metre round to a third of it
-  alignas(64) float start[2][kSlice], end[2][kSlice];
-  for (int face = 0; face < 2; ++face) {
-    fill_linear(start[face], bound.of_face[face].start + kSlack, bound.of_face[face].start_step);
-    fill_linear(end[face], bound.of_face[face].end + kSlack, bound.of_face[face].end_step);
+  float over[3], spread = kSlack;
+  for (int a = 0; a < 3; ++a) {
+    over[a] = step[a] - slope[a];
+    spread += kHalfPatch[a] * std::abs(over[a]);
   }
-  uint32_t slices = 0;
-  for (int x = 0; x < kLeafSide; ++x) {
-    const float fx = static_cast<float>(x);
-    const float a0 = bound.of_face[0].start_step[0] * fx, b0 = bound.of_face[0].end_step[0] * fx;
-    const float a1 = bound.of_face[1].start_step[0] * fx, b1 = bound.of_face[1].end_step[0] * fx;
-    const float* row = values + x * kSlice;
-    int open = 0;
-    for (int j = 0; j < kSlice; ++j) {
-      const float first = kernel::max_of(start[0][j] + a0, end[0][j] + b0);
-      const float second = kernel::max_of(start[1][j] + a1, end[1][j] + b1);
-      open += row[j] < kernel::min_of(kernel::min_of(first, second), background) ? 1 : 0;
-    }
-    slices |= (open > 0 ? 1U : 0U) << x;
-  }
-  return slices;
+  return {first + kHalfPatch[2] * over[2] + spread, over[0], over[1]};
 }
 
-SWARF_KERNEL_INLINE float fit_floor(const float* values, const float slope[3], float band) {
-  alignas(64) float linear[kSlice];
-  fill_linear(linear, 0.0F, slope);
-  constexpr float kNoVoxel = 1e30F;
-  float least = kNoVoxel;
-  for (int x = 0; x < kLeafSide; ++x) {
-    const float shift = slope[0] * static_cast<float>(x);
-    const float* row = values + x * kSlice;
-    for (int j = 0; j < kSlice; ++j) {
-      const float rest = row[j] < band ? row[j] - (linear[j] + shift) : kNoVoxel;
-      least = kernel::min_of(least, rest);
-    }
+/// Greatest value of a bound in the patches at both ends of the motion, and of what it has over the floors'
+/// slope.
+struct PatchBound {
+  alignas(64) float start[kPatches], end[kPatches], start_over[kPatches], end_over[kPatches];
+};
+SWARF_KERNEL_INLINE void fill_most(float* out, const PatchMost& most) {
+  for (int n = 0; n < kPatches; ++n) out[n] = most.first + most.x * kMiddles.x[n] + most.y * kMiddles.y[n];
+}
+SWARF_KERNEL_INLINE void fill_bound(PatchBound& out, const LeafBound::Linear& linear, const float slope[3]) {
+  constexpr float kLevel[3] = {0.0F, 0.0F, 0.0F};
+  fill_most(out.start, patch_most(linear.start, linear.start_step, kLevel));
+  fill_most(out.end, patch_most(linear.end, linear.end_step, kLevel));
+  fill_most(out.start_over, patch_most(linear.start, linear.start_step, slope));
+  fill_most(out.end_over, patch_most(linear.end, linear.end_step, slope));
+}
+
+/// Lowers over[n] to what one face has over the floors while the other face reaches their levels. Both bounds
+/// change evenly on the way, so the first is greatest where the second comes to a level, or at an end.
+SWARF_KERNEL_INLINE void lower_over(float* over, const PatchFloors& floors, const PatchBound& face,
+                                    const PatchBound& other) {
+  constexpr float kEven = 1e-6F, kNever = -1e30F;  // mm
+  const float l0 = -floors.band, l1 = floors.level(0), l2 = floors.level(1), l3 = floors.level(2);
+  for (int n = 0; n < kPatches; ++n) {
+    const float from = other.start[n], change = other.end[n] - from;
+    const float per_change = 1.0F / kernel::nonzero(change);
+    const float first = face.start_over[n], rise = face.end_over[n] - first;
+    const float at_end = change > -kEven ? face.end_over[n] : kNever,
+                at_start = change < kEven ? first : kNever;
+    const float last = kernel::max_of(at_start, at_end), most = kernel::max_of(from, other.end[n]);
+    const auto over_at = [&](float level, float floor) __attribute__((always_inline)) {
+      const float t = kernel::clamp01((level - from) * per_change);
+      const float over_floor = kernel::max_of(first + t * rise, last) - floor;
+      return most > level ? over_floor : -1.0F;
+    };
+    const float low = kernel::max_of(over_at(l0, floors.of_patch[0][n]), over_at(l1, floors.of_patch[1][n]));
+    const float high = kernel::max_of(over_at(l2, floors.of_patch[2][n]), over_at(l3, floors.of_patch[3][n]));
+    over[n] = kernel::min_of(over[n], kernel::max_of(low, high));
   }
-  return least;
+}
+
+SWARF_KERNEL_INLINE uint32_t test_patches(const PatchFloors& floors, const LeafBound& bound) {
+  PatchBound first, second;
+  fill_bound(first, bound.of_face[0], floors.slope);
+  fill_bound(second, bound.of_face[1], floors.slope);
+  alignas(64) float over[kPatches];
+  for (float& value : over) value = 1.0F;
+  lower_over(over, floors, first, second);
+  lower_over(over, floors, second, first);
+  uint32_t patches = 0;
+  for (int n = 0; n < kPatches; ++n) patches |= over[n] > 0.0F ? 1U << n : 0U;
+  return patches;
+}
+
+SWARF_KERNEL_INLINE void fit_patches(const float* values, uint32_t patches, PatchFloors& floors) {
+  constexpr float kNoVoxel = 1e30F;
+  const float sx = floors.slope[0], sy = floors.slope[1], sz = floors.slope[2];
+  const float l0 = floors.level(0), l1 = floors.level(1), l2 = floors.level(2), l3 = floors.level(3);
+  for (uint32_t left = patches; left != 0; left &= left - 1) {
+    const int n = __builtin_ctz(left);
+    const int x = n / kPatchSide * 2, y = n % kPatchSide * 2;
+    const float* first = values + x * kSlice + y * kLeafSide;
+    const float shift = sx * static_cast<float>(x), next = sx * static_cast<float>(x + 1);
+    float f0 = kNoVoxel, f1 = kNoVoxel, f2 = kNoVoxel, f3 = kNoVoxel;
+    for (int j = 0; j < kPair; ++j) {
+      const float linear =
+          sy * static_cast<float>(y + j / kLeafSide) + sz * static_cast<float>(j % kLeafSide);
+      const float a = first[j], b = first[j + kSlice];
+      const float over_a = a - (linear + shift), over_b = b - (linear + next);
+      const auto least = [&](float level) __attribute__((always_inline)) {
+        return kernel::min_of(a < level ? over_a : kNoVoxel, b < level ? over_b : kNoVoxel);
+      };
+      f0 = kernel::min_of(f0, least(l0));
+      f1 = kernel::min_of(f1, least(l1));
+      f2 = kernel::min_of(f2, least(l2));
+      f3 = kernel::min_of(f3, least(l3));
+    }
+    floors.of_patch[0][n] = f0;
+    floors.of_patch[1][n] = f1;
+    floors.of_patch[2][n] = f2;
+    floors.of_patch[3][n] = f3;
+  }
 }
 
 /// Eight bytes of 0 or 1 as eight bits.
@@ -132,18 +248,18 @@ SWARF_KERNEL_INLINE LeafRange summarise(const float* values, float band, uint64_
 }
 
 // NOLINTBEGIN(bugprone-macro-parentheses): an attribute cannot stand in parentheses
-#define SWARF_LEAF_VARIANT(name, attribute)                                                             \
-  attribute void cut_leaf_##name(float* values, const LeafMotion& motion, uint32_t slices) {            \
-    cut_leaf(values, motion, slices);                                                                   \
-  }                                                                                                     \
-  attribute uint32_t test_bound_##name(const float* values, const LeafBound& bound, float background) { \
-    return test_bound(values, bound, background);                                                       \
-  }                                                                                                     \
-  attribute float fit_floor_##name(const float* values, const float slope[3], float band) {             \
-    return fit_floor(values, slope, band);                                                              \
-  }                                                                                                     \
-  attribute LeafRange summarise_##name(const float* values, float band, uint64_t active[kLeafSide]) {   \
-    return summarise(values, band, active);                                                             \
+#define SWARF_LEAF_VARIANT(name, attribute)                                                           \
+  attribute void cut_leaf_##name(float* values, const LeafMotion& motion, uint32_t patches) {         \
+    cut_leaf(values, motion, patches);                                                                \
+  }                                                                                                   \
+  attribute uint32_t test_patches_##name(const PatchFloors& floors, const LeafBound& bound) {         \
+    return test_patches(floors, bound);                                                               \
+  }                                                                                                   \
+  attribute void fit_patches_##name(const float* values, uint32_t patches, PatchFloors& floors) {     \
+    fit_patches(values, patches, floors);                                                             \
+  }                                                                                                   \
+  attribute LeafRange summarise_##name(const float* values, float band, uint64_t active[kLeafSide]) { \
+    return summarise(values, band, active);                                                           \
   }
 
 SWARF_LEAF_VARIANT(baseline, )
@@ -156,9 +272,9 @@ SWARF_LEAF_VARIANT(v4, SWARF_X86_64_V4_WIDE)
 
 std::span<const LeafKernelVariant> leaf_kernel_variants() {
   static const std::vector<LeafKernelVariant> variants = runnable<LeafKernelVariant>(
-      {"x86-64-v4", cut_leaf_v4, test_bound_v4, fit_floor_v4, summarise_v4},
-      {"x86-64-v3", cut_leaf_v3, test_bound_v3, fit_floor_v3, summarise_v3},
-      {"baseline", cut_leaf_baseline, test_bound_baseline, fit_floor_baseline, summarise_baseline});
+      {"x86-64-v4", cut_leaf_v4, test_patches_v4, fit_patches_v4, summarise_v4},
+      {"x86-64-v3", cut_leaf_v3, test_patches_v3, fit_patches_v3, summarise_v3},
+      {"baseline", cut_leaf_baseline, test_patches_baseline, fit_patches_baseline, summarise_baseline});
   return variants;
 }
 

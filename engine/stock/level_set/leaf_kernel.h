@@ -12,6 +12,10 @@ namespace swarf::stock {
 
 inline constexpr int kLeafSide = 8;
 inline constexpr int kLeafVoxels = kLeafSide * kLeafSide * kLeafSide;
+/// A leaf is looked at in patches: 2 x 2 columns of its voxels. Bit 4 (x / 2) + y / 2.
+inline constexpr int kPatchSide = 4, kPatches = kPatchSide * kPatchSide;  ///< of a leaf
+inline constexpr int kPatchVoxels = kLeafVoxels / kPatches;
+inline constexpr uint32_t kAllPatches = 0xffffU;
 inline constexpr uint32_t kAllSlices = 0xffU;  ///< bit x: the 64 voxels at place x
 
 /// Tool-frame coordinates (mm) of the leaf's first voxel at both ends of the sweep, and their steps per voxel
@@ -34,15 +38,27 @@ struct LeafBound {
   Linear of_face[2];
 };
 
-/// Bit x: the slice of 64 voxels at place x has a value below min(bounds, background), so the sweep may raise
-/// it. With a slack above the rounding of the values, so that leaving the others out never changes a bit.
-using LeafBoundTest = uint32_t (*)(const float* values, const LeafBound& bound, float background);
+/// What is known of the values: in patch n no value below level k lies below of_patch[k][n] + slope . place.
+/// The levels divide the band: -band / 2, 0, band / 2, band. A sweep that reaches the patch with its rim
+/// alone raises low values only, and only those count then.
+inline constexpr int kLevels = 4;
+struct PatchFloors {
+  float slope[3];  ///< per voxel
+  float band;      ///< mm
+  alignas(64) float of_patch[kLevels][kPatches];
 
-/// values = max(values, -distance to the swept cutter), index x * 64 + y * 8 + z, in the given slices.
-using LeafKernel = void (*)(float* values, const LeafMotion& motion, uint32_t slices);
+  float level(int k) const { return band * (0.5F * static_cast<float>(k) - 0.5F); }
+};
 
-/// The greatest c such that no value below `band` lies below c + slope . place (place in voxels).
-using LeafFloorFit = float (*)(const float* values, const float slope[3], float band);
+/// Patches in which the sweep may raise a value. With a slack above the rounding of the values, so that
+/// leaving the others out never changes a bit.
+using PatchTest = uint32_t (*)(const PatchFloors& floors, const LeafBound& bound);
+
+/// values = max(values, -distance to the swept cutter), index x * 64 + y * 8 + z, in the given patches.
+using LeafKernel = void (*)(float* values, const LeafMotion& motion, uint32_t patches);
+
+/// Lifts the floors of the given patches as far as the values allow.
+using PatchFit = void (*)(const float* values, uint32_t patches, PatchFloors& floors);
 
 struct LeafRange {
   float least, greatest;
@@ -53,8 +69,8 @@ using LeafSummary = LeafRange (*)(const float* values, float band, uint64_t acti
 struct LeafKernelVariant {
   const char* instruction_set;
   LeafKernel kernel;
-  LeafBoundTest bound_test;
-  LeafFloorFit floor_fit;
+  PatchTest patch_test;
+  PatchFit patch_fit;
   LeafSummary summary;
 };
 /// The variants this processor can run, fastest first.

@@ -232,6 +232,7 @@ LevelSet deep_copy(const LevelSet& original) {
   set.statistics = original.statistics;
   set.rounding_mm = original.rounding_mm;
   attach_map(set);
+  set.map.floors = original.map.floors;
   return set;
 }
 

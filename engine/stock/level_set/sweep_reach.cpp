@@ -25,15 +25,6 @@ TwoSupports outermost(const cutter::ConvexPiece& piece, const Vec2& p) {
   return two;
 }
 
-bool stands_above(const LeafFloor& floor, const LinearBound& bound, double half) {
-  // More than the rounding of the values, so that leaving a leaf alone never changes a bit of the result.
-  constexpr double kSlack = 1e-4;
-  const Vec3 slope(floor.slope[0], floor.slope[1], floor.slope[2]);
-  const double start = bound.start + half * (bound.start_slope - slope).lpNorm<1>();
-  const double end = bound.end + half * (bound.end_slope - slope).lpNorm<1>();
-  return std::max(start, end) + kSlack < floor.value;
-}
-
 }  // namespace
 
 ReachBound reach_bound(const SweptPiece& swept, const Vec3& start, const Vec3& end) {
@@ -49,10 +40,6 @@ ReachBound reach_bound(const SweptPiece& swept, const Vec3& start, const Vec3& e
             -(swept.map.R1t.transpose() * g)};
   };
   return {{linear(two.first), linear(two.second)}};
-}
-
-bool stands_above(const LeafFloor& floor, const ReachBound& bound, double half) {
-  return stands_above(floor, bound.of_face[0], half) || stands_above(floor, bound.of_face[1], half);
 }
 
 }  // namespace swarf::stock

@@ -32,7 +32,4 @@ struct ReachBound {
 /// `start`, `end`: the point in the tool frame at both ends of the sweep.
 ReachBound reach_bound(const SweptPiece& swept, const Vec3& start, const Vec3& end);
 
-/// Whether the leaf's values are known to lie above one of the bounds at every voxel.
-bool stands_above(const LeafFloor& floor, const ReachBound& bound, double half);
-
 }  // namespace swarf::stock

@@ -158,7 +158,12 @@ class TileCut {
   }
 
   bool remove(const RayInterval& interval, size_t sweep, uint32_t n) {
-    if (interval.low < -kSkin && interval.high < 0.0) return false;  // a cut of another face of the part
+    const RayField& field = material_.field;
+    const uint32_t ray = w_.index[n];
+    // A cut of another face of the part.
+    if (interval.high < 0.0 &&
+        (interval.low < -kSkin || !field.answers_for(field.points[ray], field.normals[ray], interval.high)))
+      return false;
     StandingMaterial& standing = w_.standing[n];
     const RayCut cut{interval.low, interval.high, chain_.sweeps[sweep].block};
     if (above_.empty() && cut.high >= standing.height) return lower(cut, n);

@@ -163,8 +163,11 @@ void join_sides(const Facets& facets, FacetSheets& sheets) {
       continue;
     }
     const bool same = facets.triangles[a / 3][a % 3] == facets.triangles[b / 3][b % 3];
+    const auto chord = [&](uint32_t c) { return sheets.on_surface(c / 3).chords_mm[c % 3]; };
+    const bool curved = sheets.is_curved(a / 3) && sheets.is_curved(b / 3);
     sheets.sharp_edges.push_back({{corner(a), corner(next_corner(a))},
-                                  {corner(same ? b : next_corner(b)), corner(same ? next_corner(b) : b)}});
+                                  {corner(same ? b : next_corner(b)), corner(same ? next_corner(b) : b)},
+                                  curved ? std::max(chord(a), chord(b)) : 0.0});
   }
 }
 
@@ -196,11 +199,7 @@ Vec3 barycentric_of(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) 
 FacetPlace FacetSheets::place(uint32_t facet, const Vec3& l) const {
   if (is_curved(facet)) {
     const std::array<Vec2, 3>& uv = on_surface(facet).uv;
-    const Vec2 at =
-        (l.x() * uv[0] + l.y() * uv[1] + l.z() * uv[2]).cwiseMax(Vec2::Zero()).cwiseMin(Vec2::Ones());
-    const surface::Surface& surface = *surface_of(facet);
-    const surface::Derivatives d = surface.derivatives(at.x(), at.y());
-    return {d.S, surface::outward_normal(surface, d, at), facet};
+    return place_at(facet, l.x() * uv[0] + l.y() * uv[1] + l.z() * uv[2]);
   }
   const auto& t = facets[facet];
   const Vec3 normal = l.x() * normal_at(facet, 0) + l.y() * normal_at(facet, 1) + l.z() * normal_at(facet, 2);
@@ -209,6 +208,19 @@ FacetPlace FacetSheets::place(uint32_t facet, const Vec3& l) const {
   const Vec3 low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
   const Vec3 point = a + l.y() * (b - a) + l.z() * (c - a);
   return {point.cwiseMax(low).cwiseMin(high), normal.normalized(), facet};
+}
+
+FacetPlace FacetSheets::place_at(uint32_t facet, const Vec2& uv) const {
+  const Vec2 at = uv.cwiseMax(Vec2::Zero()).cwiseMin(Vec2::Ones());
+  const surface::Surface& surface = *surface_of(facet);
+  const surface::Derivatives d = surface.derivatives(at.x(), at.y());
+  return {d.S, surface::outward_normal(surface, d, at), facet};
+}
+
+const surface::EdgePlaces* FacetSheets::edge_of(uint32_t facet, size_t side) const {
+  if (under == nullptr) return nullptr;
+  const int edge = on_surface(facet).edges[side];
+  return edge == surface::FacetOnSurface::kNone ? nullptr : &under->edges[static_cast<size_t>(edge)];
 }
 
 bool FacetSheets::side_near(uint32_t facet, size_t side, const Vec3& centre, double radius_mm) const {

@@ -17,6 +17,8 @@ namespace swarf::stock {
 /// side.
 struct SharpEdge {
   std::array<uint32_t, 2> left, right;
+  /// Of two curved faces: the edge strays from it by no more. What planes leave is UnderFacets::edge_mm.
+  double chord_mm = 0.0;
 };
 
 /// A place on a facet, or on the surface under it.
@@ -52,6 +54,10 @@ struct FacetSheets {
   }
   const Vec3& corner(uint32_t facet, size_t k) const { return points[facets[facet][k]]; }
   FacetPlace place(uint32_t facet, const Vec3& barycentric) const;
+  /// On the surface under a curved facet, at its parameters.
+  FacetPlace place_at(uint32_t facet, const Vec2& uv) const;
+  /// The curved edge that a side of a curved facet stands for; null: none, the side is exact.
+  const surface::EdgePlaces* edge_of(uint32_t facet, size_t side) const;
 
   /// Calls visit(facet) for the facets that hang together with `facet` within a ball, which holds a point of
   /// it; those near it first. Ends when visit returns true.

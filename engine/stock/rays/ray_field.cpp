@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "stock/rays/surface_dexels.h"
+
 namespace swarf::stock {
 namespace {
 
@@ -103,15 +105,17 @@ double RayField::own_depth(const Vec3& point, const Vec3& normal, double depth_m
   constexpr int kHalvings = 40;
   // On a flat face the column follows the facet's own normal, and the distance is the depth.
   constexpr double kFlat = 1.0 - 1e-4;
-  const auto& facet = design->mesh.triangles[design->distance.nearest(point).triangle];
-  const auto vertex = [&](size_t k) {
-    const auto& p = design->mesh.positions[facet[k]];
-    return Vec3(p[0], p[1], p[2]);
+  const auto is_flat = [&] {
+    const auto& facet = design->mesh.triangles[design->distance.nearest(point).triangle];
+    const auto vertex = [&](size_t k) {
+      const auto& p = design->mesh.positions[facet[k]];
+      return Vec3(p[0], p[1], p[2]);
+    };
+    const Vec3 across = (vertex(1) - vertex(0)).cross(vertex(2) - vertex(0));
+    return std::abs(across.dot(normal)) >= (1.0 - 1e-9) * across.norm();
   };
-  const Vec3 across = (vertex(1) - vertex(0)).cross(vertex(2) - vertex(0));
-  const bool flat = std::abs(across.dot(normal)) >= (1.0 - 1e-9) * across.norm();
   // Surfaces have their own normals everywhere.
-  const double least = flat || design->under != nullptr ? kFlat : kLean;
+  const double least = design->under != nullptr || is_flat() ? kFlat : kLean;
   const auto is_own = [&](double s) {
     return design->distance_to(point - s * normal) >= least * s - kFloatMesh;
   };
@@ -128,6 +132,10 @@ double RayField::own_depth(const Vec3& point, const Vec3& normal, double depth_m
     (is_own(middle) ? low : high) = middle;
   }
   return low;
+}
+
+bool RayField::answers_for(const Vec3& point, const Vec3& normal, double high) const {
+  return high >= 0.0 || (high >= -kSkin && own_depth(point, normal, -high) >= -high);
 }
 
 void add_tile(RayField& field, uint32_t begin) {

@@ -78,6 +78,9 @@ struct RayField {
   /// gouge is the floor's. On a parametric surface, which bounds no body, all of it.
   /// `share`: how closely, of the result; found is the lower end.
   double own_depth(const Vec3& point, const Vec3& normal, double depth_mm, double share = 1e-9) const;
+  /// Whether a cut whose upper end lies at `high` (mm along the normal) is the foot's: one that leaves what
+  /// is the foot's own standing, or its skin, belongs to another face.
+  bool answers_for(const Vec3& point, const Vec3& normal, double high) const;
 
   /// Meshes: the facets, by the sheets that rays stand on, and the facet that holds each ray's foot.
   std::shared_ptr<const FacetSheets> sheets;

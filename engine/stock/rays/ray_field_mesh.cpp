@@ -56,12 +56,37 @@ class RaysByPlace {
   std::vector<uint32_t> next_;
 };
 
+/// A place t of the way along an edge.
+Vec2 place_along(const surface::EdgePlaces& places, double t) {
+  const double at = t * static_cast<double>(places.size() - 1);
+  const size_t i = std::min(static_cast<size_t>(at), places.size() - 2);
+  return places[i] + (at - static_cast<double>(i)) * (places[i + 1] - places[i]);
+}
+
+/// Whether a place of a curved facet lies beyond the edge that one of its sides stands for.
+bool is_beyond_edge(const FacetSheets& sheets, uint32_t facet, const Vec3& l) {
+  for (size_t k = 0; k < 3; ++k) {
+    const surface::EdgePlaces* edge = sheets.edge_of(facet, k);
+    const auto a = static_cast<Eigen::Index>(k), b = static_cast<Eigen::Index>((k + 1) % 3);
+    if (edge == nullptr || !(l[a] + l[b] > 0.0)) continue;
+    const std::array<Vec2, 3>& uv = sheets.on_surface(facet).uv;
+    const Vec2 at = l.x() * uv[0] + l.y() * uv[1] + l.z() * uv[2];
+    const Vec2 on = place_along(*edge, l[b] / (l[a] + l[b])), way = uv[(k + 1) % 3] - uv[k];
+    const auto left = [&](const Vec2& way_to) { return way.x() * way_to.y() - way.y() * way_to.x(); };
+    const double inward = left(uv[(k + 2) % 3] - uv[k]);
+    if (inward * left(at - on) < 0.0) return true;
+  }
+  return false;
+}
+
 /// A place t of the way along a side: in the plane z = c where the side is, to the last digit.
 FacetPlace place_on_side(const FacetSheets& sheets, uint32_t facet, size_t side, double t) {
   if (sheets.is_curved(facet)) {
     Vec3 l = Vec3::Zero();
     l[static_cast<Eigen::Index>(side)] = 1.0 - t;
     l[static_cast<Eigen::Index>((side + 1) % 3)] = t;
+    if (const surface::EdgePlaces* edge = sheets.edge_of(facet, side))
+      return sheets.place_at(facet, place_along(*edge, t));
     return sheets.place(facet, l);
   }
   const uint32_t from = sheets.facets[facet][side], to = sheets.facets[facet][(side + 1) % 3];
@@ -169,6 +194,7 @@ class Placement {
         const Vec2 p = Vec2(column, row) - A;
         const double wb = (p.x() * C.y() - p.y() * C.x()) / det, wc = (B.x() * p.y() - B.y() * p.x()) / det;
         if (wb < 0.0 || wc < 0.0 || wb + wc > 1.0) continue;
+        if (sheets_.is_curved(facet) && is_beyond_edge(sheets_, facet, {1.0 - wb - wc, wb, wc})) continue;
         offer(sheets_.place(facet, {1.0 - wb - wc, wb, wc}));
       }
     }

@@ -24,8 +24,8 @@ inline constexpr uint32_t kUncut = 0xffffffffu;
 /// Material over the design along its outward normal.
 /// A height is the top of the material that still stands on the design: the lowest point of the ray that any
 /// sweep reached. Material that an undercut left above a gap is kept as further intervals. A cut that leaves
-/// the design's skin standing, more than kSkin below it, belongs to another face of the part and is not seen
-/// by the ray.
+/// the design's skin standing (RayField::answers_for) belongs to another face of the part and is not seen by
+/// the ray.
 class SurfaceDexels {
  public:
   /// Rays start at the stock's surface: the initial height is where the ray leaves `stock_box`, 0 or less if

@@ -2,9 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 
 #include "avoidance/advice.h"
 #include "base/units.h"
+#include "support/program_run.h"
 
 namespace {
 
@@ -55,6 +57,32 @@ TEST(Advice, ATiltJustClearsALeaningWall) {
     EXPECT_LE(tilt, expected + 2.0 * Advice::kResolutionDeg) << block.line;
     EXPECT_NE(block.frees.find("wall"), std::string::npos) << block.frees;
   }
+}
+
+/// The same wall, and a block on the other side, 120 high at x = -W: the holder's side comes to its edge at W
+/// = 75 tan(t) + 20 / cos(t). What is free lies between the two, and small angles and large ones are blocked.
+/// The cut alone, without the rapid behind it, which takes a change of its own.
+TEST(Advice, ATiltIsFoundBetweenAWallAndABlock) {
+  std::string cl = test::read_text(SWARF_SOURCE_DIR "/scenes/kruth_table1/path_1_holder_wall.cl");
+  cl.erase(cl.rfind("RAPID\n"), cl.rfind("SPINDL/OFF") - cl.rfind("RAPID\n"));
+  const std::filesystem::path file = test::fresh_folder("advice_between") / "cut.cl";
+  test::write_text(file, cl);
+  const double psi = std::acos(10.0 / std::hypot(20.0, 25.0)) - std::atan2(25.0, 20.0);
+  const double least = deg_from_rad(psi) - 10.0;
+  const double t = rad_from_deg(least + 0.3), W = 75.0 * std::tan(t) + 20.0 / std::cos(t);
+  const std::string block =
+      "{name = \"block\", box_mm = [[-120, -60, 0], [" + std::to_string(-W) + ", 60, 120]]}";
+  const Advice advice = advice_for(
+      "path_1_holder_wall", {"cl=\"" + file.string() + "\"", "stock.box_mm=[[-30, -25, 0], [0, 25, 42]]",
+                             "fixture=[{name = \"wall\", mesh = \"path_1_wall.stl\"}, " + block + "]"});
+  ASSERT_TRUE(advice.free) << (advice.left ? advice.left->text : "");
+  ASSERT_EQ(advice.blocks.size(), 2U);
+  for (const avoidance::BlockChange& one : advice.blocks) {
+    const double tilt = deg_from_rad(one.change.tilt_rad);
+    EXPECT_GE(tilt, least - 1e-4) << one.line;
+    EXPECT_LE(tilt, least + 2.0 * Advice::kResolutionDeg) << one.line;
+  }
+  std::filesystem::remove_all(file.parent_path());
 }
 
 /// The way from x = -50, z = 38 to x = 10 passes over a stop 45 high from x = 10 on by the edge of R 5: its

@@ -27,9 +27,11 @@
 #include <fstream>
 #include <sstream>
 
+#include "base/angles.h"
 #include "base/units.h"
 #include "brep/model.h"
 #include "mesh/mesh_check.h"
+#include "surface/face.h"
 #include "surface/nurbs.h"
 
 namespace swarf::brep {
@@ -344,6 +346,72 @@ TEST_F(Cad, EdgesAreFinerThanFacets) {
   }
 }
 
+// How far facets end before or beyond a curved edge is told: the chord of 96 mm / n on a circle of radius 12,
+// and nothing where all edges are straight.
+TEST_F(Cad, WhatFacetsLeaveBesideEdgesIsTold) {
+  const Model round = read_step(step(holed()));
+  double before = 1.0;
+  for (const double asked : {2e-3, 5e-4}) {
+    const double told = tessellate(round, 0.5, true, asked).under->edge_mm;
+    EXPECT_LT(told, 1.1 * asked);
+    EXPECT_GT(told, 0.05 * asked);
+    EXPECT_LT(told, before);
+    before = told;
+  }
+  EXPECT_LT(tessellate(read_step(step(block())), 0.5, true).under->edge_mm, 1e-12);
+}
+
+// Curved faces follow the places of their trimmed edges, whatever the facets' chord: the mould's rim and
+// foot, in the wall, in the crown and in both patches of the ground. Between two places nothing is left.
+TEST_F(Cad, CurvedFacesKnowThePlacesOfTheirEdges) {
+  const Model mould = read_step(SWARF_SOURCE_DIR "/scenes/kato_mould/mould.stp");
+  const Facets facets = tessellate(mould, 0.02, true);
+  const surface::UnderFacets& under = *facets.under;
+  EXPECT_LE(under.edge_mm, surface::kLoopChord);
+  size_t sides = 0;
+  double chord = 0.0;
+  for (const surface::FacetOnSurface& on : under.facets) {
+    for (size_t k = 0; k < 3; ++k) {
+      chord = std::max(chord, on.chords_mm[k]);
+      if (on.edges[k] == surface::FacetOnSurface::kNone) continue;
+      ++sides;
+      const surface::EdgePlaces& places = under.edges[static_cast<size_t>(on.edges[k])];
+      EXPECT_EQ(places.front(), on.uv[k]);
+      EXPECT_EQ(places.back(), on.uv[(k + 1) % 3]);
+      // On the wall's cone, 30 deg about (2, 1): its places and the crown's or ground's are the same.
+      const Vec2 uv = places[places.size() / 2];
+      const Vec3 p = under.surfaces[static_cast<size_t>(on.surface)]->point(uv.x(), uv.y());
+      const double radius = std::hypot(p.x() - 2.0, p.y() - 1.0);
+      EXPECT_NEAR(radius, 11.0 - (p.z() + 4.0) * std::tan(rad_from_deg(30.0)), 2e-5);
+    }
+  }
+  EXPECT_GT(sides, 200U);
+  EXPECT_GT(chord, 2e-4);
+  EXPECT_LT(chord, 1.1 * kEdgeChord);
+}
+
+// Faces that share an edge and do not meet there: how far apart, and where. Of a mould the one half of the
+// ground is raised by .05 mm in the file's text.
+TEST_F(Cad, FacesThatDoNotMeetAreMeasured) {
+  const std::string text = text_of(SWARF_SOURCE_DIR "/scenes/kato_mould/mould.stp");
+  const auto widest = [&](const Model& model) {
+    return *std::max_element(model.edges.begin(), model.edges.end(),
+                             [](const Edge& a, const Edge& b) { return a.gap_mm < b.gap_mm; });
+  };
+  EXPECT_LT(widest(read_step(SWARF_SOURCE_DIR "/scenes/kato_mould/mould.stp")).gap_mm, 1e-3);
+  const std::string pole = "#206 = CARTESIAN_POINT('',(0.,-5.,1.));";
+  ASSERT_NE(text.find(pole), std::string::npos);
+  std::string raised = text;
+  raised.replace(raised.find(pole), pole.size(), "#206 = CARTESIAN_POINT('',(0.,-5.,1.05));");
+  const std::string path = (folder_ / "raised.stp").string();
+  std::ofstream(path) << raised;
+  const Edge edge = widest(read_step(path));
+  // The patch rises by .05 mm times at most 4/9 (Bernstein's 3 t (1-t)^2), across a wall of 60 deg by more.
+  EXPECT_LT(edge.gap_mm, 0.05);
+  EXPECT_GT(edge.gap_mm, 0.015);
+  EXPECT_GT(edge.gap_at.x(), -0.1);
+}
+
 TEST_F(Cad, WhatIsNoPartIsRefusedWithItsFix) {
   const std::string good = step(block());
   const std::string text = text_of(good);
@@ -360,6 +428,22 @@ TEST_F(Cad, WhatIsNoPartIsRefusedWithItsFix) {
   EXPECT_EQ(
       code_of([&] { read_step(step(BRepBuilderAPI_MakeEdge(gp_Pnt(0, 0, 0), gp_Pnt(1, 2, 3)).Shape())); }),
       "cad-empty");
+}
+
+// A loop that lacks one of its edges is refused with the place where it stays open.
+TEST_F(Cad, ALoopThatDoesNotCloseIsRefusedWithItsPlace) {
+  std::string text = text_of(SWARF_SOURCE_DIR "/scenes/kato_mould/mould.stp");
+  const size_t loop = text.find("EDGE_LOOP('',("), end = text.find(')', loop + 14);
+  const size_t last = text.rfind(',', end);
+  text.erase(last, end - last);
+  try {
+    read_step(text_file("loop.stp", text));
+    ADD_FAILURE() << "taken as it is";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("a loop does not close: 10 mm are missing at (-21, 15, -10) mm"),
+              std::string::npos)
+        << error.what();
+  }
 }
 
 TEST_F(Cad, AFileThatIsCutOffNeverPassesAsWhole) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "base/angles.h"
+#include "collision/greatest_depth.h"
 #include "unit/collision/toy_machine.h"
 
 namespace swarf::collision {
@@ -126,6 +127,36 @@ TEST(OverlapBound, BarsThatCrossAreAsDeepAsTheThinner) {
   const Depth found =
       deepest_overlap(encounter(cross.scene, cross.still, cross.moving), in_still, in_moving, axes(0));
   EXPECT_NEAR(found.depth_mm, 5.0, 0.02);
+}
+
+/// A cylinder goes through a plate of 8 mm on a long way: half the plate's thickness all the while, and no
+/// deeper.
+TEST(OverlapBound, ALongWayThroughAPlateIsHalfItsThicknessDeep) {
+  const DepthCase plate{toy_machine(), floor_block({-200, -50, -8}, {200, 50, 0}),
+                        solid_body("moving", BodyKind::kToolPart, kZSlide,
+                                   {frustum(Vec3(0, 0, -20), Vec3::UnitZ(), 0.0, 60.0, 3.0, 3.0)})};
+  std::vector<AxisValues> places;
+  for (int k = 0; k <= 1000; ++k) places.push_back(axes(-100.0 + 0.2 * k, 0.01 * k));
+  const DepthRange found = plate.over(places, 8192);
+  EXPECT_NEAR(found.seen_mm, 4.0, 0.02);
+  EXPECT_GE(found.bound_mm, found.seen_mm);
+  EXPECT_LE(found.bound_mm, 4.001);
+}
+
+/// The ball that fits: of a cone, a rod, a disc; of boxes half their least side.
+TEST(GreatestDepth, IsTheRadiusOfTheBallThatFits) {
+  const auto of_frustum = [](double low, double high, double height) {
+    return greatest_depth(solid_body("solid", BodyKind::kToolPart, -1,
+                                     {frustum(Vec3(3, 4, 5), Vec3(2, 1, 2) / 3.0, 0.0, height, low, high)}));
+  };
+  EXPECT_NEAR(of_frustum(5.0, 0.0, 12.0), 60.0 / 18.0, 1e-12);
+  EXPECT_NEAR(of_frustum(0.0, 5.0, 12.0), 60.0 / 18.0, 1e-12);
+  EXPECT_NEAR(of_frustum(3.0, 3.0, 120.0), 3.0, 1e-12);
+  EXPECT_NEAR(of_frustum(10.0, 10.0, 2.0), 1.0, 1e-12);
+  const TriMesh box = box_mesh({-5, -10, -4}, {5, 10, 4});
+  Pose turned = Pose::Identity();
+  turned.linear() = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  EXPECT_NEAR(greatest_depth(mesh_body("box", BodyKind::kFixture, -1, box, turned)), 4.0, 2e-5);
 }
 
 /// A sheet has no inside, but may lie in a solid.

@@ -6,12 +6,14 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "base/angles.h"
 #include "base/parallel.h"
 #include "base/rng.h"
 #include "base/units.h"
 #include "cutter/cutter.h"
 #include "dome_cut.h"
 #include "measure/measure.h"
+#include "measure/root_proof.h"
 #include "surface/analytic.h"
 #include "test_surfaces.h"
 
@@ -183,6 +185,75 @@ TEST(Certificate, DepthAlongASideFaceIsNotOwn) {
   const stock::RayFieldPtr field = stock::rays_on_mesh(block(6, 5, 2), 1.0);
   for (const double depth : {0.5, 2.0, 35.0, 1e4})
     EXPECT_LT(field->own_depth({6, 0.3, -2}, {0, 0, -1}, depth), 1e-4) << depth;
+}
+
+/// A bar along Y: its top at z = 0 from x = 0 on, under it a face that goes down from the edge x = 0 by 30
+/// deg.
+TriMesh acute_bar(double length, double width) {
+  TriMesh mesh;
+  const auto deep = static_cast<float>(-length * std::tan(rad_from_deg(30.0))),
+             l = static_cast<float>(length), w = static_cast<float>(width);
+  mesh.positions = {{0, 0, 0}, {l, 0, 0}, {l, 0, deep}, {0, w, 0}, {l, w, 0}, {l, w, deep}};
+  mesh.triangles = {{0, 2, 1}, {3, 4, 5}, {0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}, {2, 0, 3}, {2, 3, 5}};
+  return mesh;
+}
+
+// A small ball mills the lower face of an acute edge exactly to size. Columns of the top meet it where the
+// bar ends, less than a skin below: that is no gouge of the top, and one 20 um deep of the lower face is no
+// deeper.
+TEST(Certificate, BesideAnAcuteEdgeACutOfTheOtherFaceIsNone) {
+  const double radius = 0.3, slope = rad_from_deg(30.0);
+  const Vec3 out(-std::sin(slope), 0, -std::cos(slope)), along(std::cos(slope), 0, -std::sin(slope));
+  for (const double deep : {0.0, 0.02}) {
+    Job job{stock::rays_on_mesh(acute_bar(6, 8), 0.1), {{-1, -1, -4}, {7, 9, 1}}, ball(radius, 5.0), {}};
+    const Vec3 tip = 0.6 * along + (radius - deep) * out + radius * Vec3::UnitZ();
+    move(job, tip + Vec3(0, 2, 0), tip + Vec3(0, 6, 0), -Vec3::UnitZ());
+    stock::SurfaceDexels dexels(job.field, job.box, {});
+    dexels.cut(job.sweeps, job.cutter);
+    dexels.limit_depths();
+    double deepest = 0.0;
+    for (const double height : dexels.heights_mm()) deepest = std::max(deepest, -height);
+    EXPECT_LE(deepest, deep + 5e-5);
+    EXPECT_GE(deepest, 0.6 * deep);
+  }
+}
+
+// Ridges stand far above the excess limit. Where nothing is asked of them they break nothing, so that the
+// proof of the gouge beside them has its whole budget; what is found of both is the same.
+TEST(Certificate, WhatStandsBreaksNoLimitWhereNothingIsAskedOfIt) {
+  Job job{stock::rays_on_mesh(block(4, 3, 2), 1.0), {{-4, -3, -2}, {4, 3, 1}}, ball(2.0, 25.0), {}};
+  rows(job, 8, -3, 3, 1.5);
+  stock::Stock stock(job.box, 0.5);
+  stock.cut(job.sweeps, job.cutter);
+  const stock::FreeRange ranges({&job.field, 1});
+  const SweepCutters cutters(job.cutter);
+  const SweepIndex index(job.sweeps, cutters);
+  Progress progress;
+  std::array<RootResult, 2> whole;
+  for (const bool asks : {false, true}) {
+    const CertificateInput input{.field = *job.field,
+                                 .ranges = ranges,
+                                 .sweeps = job.sweeps,
+                                 .cutters = cutters,
+                                 .stock = stock,
+                                 .gouge_limit_mm = 2e-4,
+                                 .excess_limit_mm = 0.01,
+                                 .wants_excess = asks,
+                                 .progress = progress};
+    RootResult& all = whole[asks ? 1 : 0];
+    for (const RootCell& root : root_cells(*job.field, 2.0)) {
+      const RootResult one = prove_root(input, index, root, {100'000, 0});
+      all.broken = all.broken || one.broken;
+      all.gouge = std::max(all.gouge, one.gouge);
+      all.excess_found = std::max(all.excess_found, one.excess_found);
+    }
+  }
+  EXPECT_FALSE(whole[0].broken);
+  EXPECT_TRUE(whole[1].broken);
+  EXPECT_LT(whole[0].gouge, 2e-4);
+  EXPECT_LT(whole[1].gouge, 2e-4);
+  EXPECT_NEAR(whole[0].excess_found, whole[1].excess_found, 1e-3);
+  EXPECT_GT(whole[1].excess_found, 0.1);  // ridges of .146 mm
 }
 
 TEST(Certificate, NothingWasCut) {

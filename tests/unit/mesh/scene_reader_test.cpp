@@ -178,6 +178,12 @@ TEST_F(SceneReader, GltfOfQuantisedOrCompressedNumbersIsRefused) {
   EXPECT_NE(text.find("KHR_mesh_quantization"), std::string::npos) << text;
 }
 
+TEST_F(SceneReader, GltfWithItsNumbersElsewhereIsRefused) {
+  const std::string text = refusal(
+      with("box.gltf", R"({"asset":{"version":"2.0"},"buffers":[{"uri":"box.bin","byteLength":8}]})"));
+  EXPECT_NE(text.find("another file"), std::string::npos) << text;
+}
+
 TEST_F(SceneReader, ThreeMfAsWrittenAndInInches) {
   save_mesh(file("box.3mf"), box_mesh());
   expect_box(load_mesh(file("box.3mf")));

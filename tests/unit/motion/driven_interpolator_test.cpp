@@ -60,8 +60,8 @@ struct Driven {
 };
 
 Driven run(
-    const DrivenPass& pass, const std::function<double(size_t)>& share = [](size_t) { return 1.0; }) {
-  const kinematics::MachineModel machine = paper_machine();
+    const DrivenPass& pass, const std::function<double(size_t)>& share = [](size_t) { return 1.0; },
+    const kinematics::MachineModel& machine = paper_machine()) {
   const kinematics::InverseKinematics inverse(machine);
   DrivenInterpolator interpolator(pass, machine, inverse, {}, kinematics::AxisValues::Zero());
   Driven out;
@@ -104,6 +104,60 @@ TEST(DrivenInterpolator, KeepsItsChordOverASphere) {
   for (const Vec3& tip : out.tips) ASSERT_NEAR((tip - Vec3(0, 0, -5)).norm(), 25.0, 1e-11);
   EXPECT_EQ(out.tips.back(), Vec3(15.0, 3.0, height(15.0, 3.0)));
   EXPECT_NEAR(out.cycles[out.cycles.size() / 2].feed_mm_s, 50.0, 1e-9);
+}
+
+/// Holds the tip on the guide itself, however it leans.
+class HeldOnGuide final : public position::Target {
+ public:
+  void raise(const position::ToolProfile&, const GuideLine& line, Rest& best, Near&) const override {
+    if (0.0 <= best.height) return;
+    best.height = 0.0;
+    best.what = position::Touched::kFace;
+    best.contact_W = line.point_W;
+  }
+};
+
+/// Straight along X, leaning towards Y by kSway sin(kWave x), rad.
+class SwayingGuide final : public toolpath::Guide {
+ public:
+  static constexpr double kSway = 0.05, kWave = 1.5;
+
+  static double lean(double x) { return kSway * std::sin(kWave * x); }
+  GuideLine line(double x) const override {
+    const double s = std::sin(lean(x)), c = std::cos(lean(x));
+    return {{x, 0, 0}, Vec3::UnitX(), {0, c, -s}, {0, s, c}};
+  }
+  double end() const override { return 30.0; }
+  std::vector<double> joints() const override { return {}; }
+};
+
+// The tip goes straight, so that nothing but the axis bends the way of the cutter's rim, by reach phi'' (F
+// T)^2 / 8 between two cycles: 2.5 times the tolerance at the set feed.
+TEST(DrivenInterpolator, TheRimKeepsTheChordWhereTheAxisTurnsUnevenly) {
+  DrivenPass pass =
+      pass_over([](double, double) { return 0.0; }, {toolpath::guide_line({0.0, 0.0}, {30.0, 0.0})});
+  pass.on = std::make_shared<toolpath::DrivenPart>(
+      toolpath::DrivenPart{{{std::make_shared<HeldOnGuide>()}, {}}, position::ToolProfile(ball())});
+  pass.guide = std::make_shared<SwayingGuide>();
+  kinematics::MachineModel machine = paper_machine();
+  for (kinematics::Axis& axis : machine.axes) axis.speed_max = axis.acceleration_max = axis.jerk_max = 1e9;
+  const Driven out = run(
+      pass, [](size_t) { return 1.0; }, machine);
+  expect_driven_kept(out);
+  const double reach = std::hypot(5.0, 5.0);
+  double worst = 0.0, slowest = 50.0, fastest = 0.0;
+  for (size_t k = 1; k < out.tips.size(); ++k) {
+    const double a = out.tips[k - 1].x(), b = out.tips[k].x();
+    const double even = 0.5 * (SwayingGuide::lean(a) + SwayingGuide::lean(b));
+    worst = std::max(worst, reach * std::abs(SwayingGuide::lean(0.5 * (a + b)) - even));
+    if (a < 5.0 || b > 25.0) continue;
+    slowest = std::min(slowest, out.cycles[k - 1].feed_mm_s);
+    fastest = std::max(fastest, out.cycles[k - 1].feed_mm_s);
+  }
+  EXPECT_LE(worst, 1.02 * pass.chord_tolerance_mm);
+  EXPECT_GE(worst, 0.9 * pass.chord_tolerance_mm);
+  EXPECT_LT(slowest, 35.0);
+  EXPECT_GT(fastest, slowest);
 }
 
 TEST(DrivenInterpolator, StandsExactlyOnACrease) {

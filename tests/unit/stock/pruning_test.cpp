@@ -120,7 +120,7 @@ TEST(LaneKernel, AllInstructionSetsJudgeAlikeAndNeverCloseALeafThatASweepRaises)
   EXPECT_GT(closed, 1000);
 }
 
-TEST(LeafKernel, BoundTestFloorAndRangeAreAlikeInAllInstructionSets) {
+TEST(LeafKernel, PatchTestFloorsAndRangeAreAlikeInAllInstructionSets) {
   constexpr uint64_t kSeed = 73;
   Rng rng(kSeed);
   for (int n = 0; n < 300; ++n) {
@@ -135,13 +135,19 @@ TEST(LeafKernel, BoundTestFloorAndRangeAreAlikeInAllInstructionSets) {
         face.end_step[a] = static_cast<float>(rng.uniform(-0.1, 0.1));
       }
     }
+    PatchFloors floors{}, others{};
+    floors.band = others.band = 0.3F;
+    for (int a = 0; a < 3; ++a)
+      floors.slope[a] = others.slope[a] = static_cast<float>(rng.uniform(-0.1, 0.1));
     const LeafKernelVariant& base = leaf_kernel_variants().back();
+    base.patch_fit(values, kAllPatches, floors);
+    const uint32_t open = base.patch_test(floors, bound);
     uint64_t active[kLeafSide], other[kLeafSide];
     const LeafRange range = base.summary(values, 0.3F, active);
     for (const LeafKernelVariant& variant : leaf_kernel_variants()) {
-      ASSERT_EQ(variant.bound_test(values, bound, 0.3F), base.bound_test(values, bound, 0.3F));
-      ASSERT_EQ(variant.floor_fit(values, bound.of_face[0].start_step, 0.3F),
-                base.floor_fit(values, bound.of_face[0].start_step, 0.3F));
+      ASSERT_EQ(variant.patch_test(floors, bound), open);
+      variant.patch_fit(values, kAllPatches, others);
+      ASSERT_EQ(std::memcmp(others.of_patch, floors.of_patch, sizeof(floors.of_patch)), 0);
       const LeafRange again = variant.summary(values, 0.3F, other);
       ASSERT_TRUE(again.least == range.least && again.greatest == range.greatest);
       ASSERT_EQ(std::memcmp(active, other, sizeof(active)), 0);
@@ -191,6 +197,53 @@ TEST(Stock, BatchesAndThreadsLeaveTheSameBits) {
       ASSERT_EQ(hash_of_cut(pieces, threads), expected)
           << pieces << " sweeps a call, " << threads << " threads";
     }
+  }
+}
+
+/// Moves of every kind near a small block: level and sloping rows, plunges, moves that stand or all but
+/// stand, turning axes, and rows again a little higher or lower.
+std::vector<Sweep> mixed_sweeps(Rng& rng, double tilt) {
+  std::vector<Sweep> sweeps;
+  const auto place = [&] { return Vec3(rng.uniform(-3, 15), rng.uniform(-3, 15), rng.uniform(2, 7)); };
+  const auto axis = [&] {
+    return Vec3(tilt * rng.uniform(-1, 1), tilt * rng.uniform(-1, 1), 1.0).normalized();
+  };
+  for (int n = 0; n < 60; ++n) {
+    Sweep sweep{{place(), axis()}, {Vec3::Zero(), Vec3::UnitZ()}, 0};
+    const Vec3 along(rng.uniform(-2, 2), rng.uniform(-2, 2), 0.0);
+    const Vec3 changes[] = {along,
+                            along + Vec3(0, 0, rng.uniform(-0.1, 0.1)),
+                            Vec3(0, 0, -1.5),
+                            Vec3::Zero(),
+                            1e-7 * along + Vec3(0, 0, 1e-7),
+                            Vec3(2.5, 0, 1e-9)};
+    sweep.end = {sweep.start.tip_W + changes[n % 6], n % 4 == 0 ? axis() : sweep.start.axis_W};
+    sweeps.push_back(sweep);
+    if (n % 5 == 0) {
+      const Vec3 lift(0.0, 0.0, n % 10 == 0 ? 2e-3 : -2e-3);
+      sweep.start.tip_W += lift;
+      sweep.end.tip_W += lift;
+      sweeps.push_back(sweep);
+    }
+  }
+  return sweeps;
+}
+
+/// Alone, each sweep is evaluated in every patch of the leaves that it reaches; together, what one leaves
+/// rules others out.
+TEST(Stock, WhatPatchesLeaveOutNeverChangesABit) {
+  constexpr uint64_t kSeed = 75;
+  Rng rng(kSeed);
+  for (int n = 0; n < 40; ++n) {
+    const double tilts[] = {0.0, 0.0, 1e-4, 0.5};
+    const std::vector<Sweep> sweeps = mixed_sweeps(rng, tilts[n % 4]);
+    const CutterSolid cutter =
+        n % 5 == 4 ? bull_nose(2.5, 0.5, 6.0) : CutterSolid(2.5, n % 3 == 0 ? 2.0 : 6.0);
+    Stock together({{0, 0, 0}, {12, 12, 6}}, 0.2), alone({{0, 0, 0}, {12, 12, 6}}, 0.2);
+    together.cut(sweeps, cutter);
+    for (const Sweep& sweep : sweeps) alone.cut(std::span(&sweep, 1), cutter);
+    ASSERT_EQ(together.hash(), alone.hash()) << "seed " << kSeed << " case " << n;
+    ASSERT_LT(together.statistics().voxel_updates, alone.statistics().voxel_updates);
   }
 }
 

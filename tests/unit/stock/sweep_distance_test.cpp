@@ -105,11 +105,11 @@ TEST(LeafKernel, EveryInstructionSetGivesTheSameBits) {
     const LeafMotion motion = random_motion(rng, n % 2 == 0);
     float reference[kLeafVoxels];
     std::fill(std::begin(reference), std::end(reference), -3.0F);
-    variants.back().kernel(reference, motion, kAllSlices);
+    variants.back().kernel(reference, motion, kAllPatches);
     for (const LeafKernelVariant& variant : variants) {
       float values[kLeafVoxels];
       std::fill(std::begin(values), std::end(values), -3.0F);
-      variant.kernel(values, motion, kAllSlices);
+      variant.kernel(values, motion, kAllPatches);
       ASSERT_EQ(std::memcmp(values, reference, sizeof(values)), 0)
           << variant.instruction_set << " differs, seed " << kSeed << " case " << n;
     }
@@ -124,7 +124,7 @@ TEST(LeafKernel, FloatsAgreeWithDoubles) {
     const LeafMotion m = random_motion(rng, true);
     float values[kLeafVoxels];
     std::fill(std::begin(values), std::end(values), -3.0F);
-    leaf_kernel_variants().front().kernel(values, m, kAllSlices);
+    leaf_kernel_variants().front().kernel(values, m, kAllPatches);
     for (int voxel = 0; voxel < kLeafVoxels; ++voxel) {
       const Vec3 ijk(voxel / 64, voxel / 8 % 8, voxel % 8);
       Vec3 P, Q;

@@ -1,0 +1,157 @@
+#include "stock/level_set/leaf_cut.h"
+
+#include <algorithm>
+
+#include "stock/level_set/convex_leaf.h"
+#include "stock/level_set/piece_window.h"
+
+namespace swarf::stock {
+namespace {
+
+/// The time in which the piece can change a value of the leaf; all of it when it cannot.
+Window window_of(const LevelSet& set, const SweptPiece& swept, const Vec3& centre) {
+  const Vec3 P = swept.map.start(centre), D = swept.map.end(centre) - P;
+  const double reach = set.leaf_radius() + kReachSlack + set.band();
+  // Neighbouring leaves that see the whole sweep round alike: facets stay as flat as they were. Only a sweep
+  // that goes far beyond the cutter is shortened.
+  const double across = kFarFactor * (swept.piece->radius + reach);
+  const double along = kFarFactor * (swept.piece->high + reach);
+  const auto far = [&](const Vec3& X) { return X.head<2>().norm() > across || std::abs(X.z()) > along; };
+  if (!far(P) && !far(P + D)) return {};
+  const Window window = time_in_reach(*swept.piece, P, D, reach);
+  return window.empty() ? Window{} : window;
+}
+
+LeafMotion leaf_motion(const LevelSet& set, const SweptPiece& swept, size_t leaf) {
+  const SweepMap& map = swept.map;
+  const openvdb::Coord origin = set.map.origin(leaf);
+  const Vec3 first = Vec3(origin.x(), origin.y(), origin.z()) * set.voxel;
+  const Vec3 centre = set.leaf_centre(leaf);
+  const Window window = window_of(set, swept, centre);
+  const Vec3 start = map.start(first), end = map.end(first);
+  // As start + t (end - start), so that what does not change stays equal to the last bit (LevelPlane).
+  const auto at = [](double t, double a, double b) { return static_cast<float>(a + t * (b - a)); };
+  LeafMotion motion{};
+  for (int c = 0; c < 3; ++c) {
+    motion.start[c] = at(window.low, start[c], end[c]);
+    motion.end[c] = at(window.high, start[c], end[c]);
+    for (int a = 0; a < 3; ++a) {
+      const double from = map.R0t(c, a) * set.voxel, to = map.R1t(c, a) * set.voxel;
+      motion.start_step[a][c] = at(window.low, from, to);
+      motion.end_step[a][c] = at(window.high, from, to);
+    }
+  }
+  motion.radius = static_cast<float>(swept.piece->radius);
+  motion.height = static_cast<float>(swept.piece->high);
+  motion.background = set.band();
+  // Below (height - band) the top end could only change values that the clamp makes equal anyway.
+  const double highest = std::max(map.start(centre).z(), map.end(centre).z()) + set.leaf_radius();
+  motion.capped = highest > swept.piece->high - set.band();
+  return motion;
+}
+
+/// The bounds as the kernel wants them: from the leaf's first voxel, per voxel.
+LeafBound leaf_bound(const LevelSet& set, const ReachBound& reach) {
+  LeafBound bound{};
+  for (int face = 0; face < 2; ++face) {
+    const LinearBound& linear = reach.of_face[face];
+    const Vec3 start = linear.start_slope * set.voxel, end = linear.end_slope * set.voxel;
+    LeafBound::Linear& out = bound.of_face[face];
+    for (int a = 0; a < 3; ++a) {
+      out.start_step[a] = static_cast<float>(start[a]);
+      out.end_step[a] = static_cast<float>(end[a]);
+    }
+    constexpr double kHalf = 0.5 * (kLeafSide - 1);
+    out.start = static_cast<float>(linear.start - kHalf * start.sum());
+    out.end = static_cast<float>(linear.end - kHalf * end.sum());
+  }
+  return bound;
+}
+
+/// Slices of 64 voxels that the patches touch.
+uint32_t slices_of(uint32_t patches) {
+  constexpr uint32_t kOfTwoSlices = (1U << kPatchSide) - 1U, kTwoSlices = 3U;
+  uint32_t slices = 0;
+  for (int n = 0; n < kPatchSide; ++n) {
+    if ((patches >> (n * kPatchSide) & kOfTwoSlices) != 0) slices |= kTwoSlices << (2 * n);
+  }
+  return slices;
+}
+
+bool is_level(const LeafMotion& m) {
+  return m.start[2] == m.end[2] && m.start_step[0][2] == m.end_step[0][2] &&
+         m.start_step[1][2] == m.end_step[1][2] && m.start_step[2][2] == m.end_step[2][2];
+}
+
+}  // namespace
+
+bool LevelPlane::repeats(const LeafMotion& motion) const {
+  return known_ && is_level(motion) && motion_.start[2] == motion.start[2] &&
+         motion_.start_step[0][2] == motion.start_step[0][2] &&
+         motion_.start_step[1][2] == motion.start_step[1][2] &&
+         motion_.start_step[2][2] == motion.start_step[2][2];
+}
+
+void LevelPlane::remember(const LeafMotion& motion, const SweptPiece& swept, const Vec3& centre,
+                          double leaf_radius) {
+  if (known_ || !swept.piece->is_cylinder() || !is_level(motion)) return;
+  const Vec2 P = swept.map.start(centre).head<2>(), D = swept.map.end(centre).head<2>() - P;
+  const double t = D.squaredNorm() > 0.0 ? std::clamp(-P.dot(D) / D.squaredNorm(), 0.0, 1.0) : 0.0;
+  known_ = (P + t * D).norm() + leaf_radius < motion.radius - motion.background && !motion.capped;
+  motion_ = motion;
+}
+
+LeafCut::LeafCut(const LevelSet& set, size_t leaf, float* values)
+    : set_(set), leaf_(leaf), values_(values), centre_(set.leaf_centre(leaf)) {
+  floors_.band = set.band();
+  std::copy_n(values, before_.size(), before_.begin());
+}
+
+void LeafCut::apply(const SweptPiece& swept) {
+  const LeafKernelVariant& kernels = leaf_kernel_variants().front();
+  const LeafBound bound =
+      leaf_bound(set_, reach_bound(swept, swept.map.start(centre_), swept.map.end(centre_)));
+  const uint32_t patches = visits_ == 0 ? kAllPatches : kernels.patch_test(floors_, bound);
+  if (patches == 0) return;
+  if (swept.piece->is_cylinder()) {
+    const LeafMotion motion = leaf_motion(set_, swept, leaf_);
+    if (plane_.repeats(motion)) return;
+    kernels.kernel(values_, motion, patches);
+    plane_.remember(motion, swept, centre_, set_.leaf_radius());
+  } else {
+    cut_by_search(swept, patches);
+  }
+  if (visits_ == 0) set_slope(bound);
+  kernels.patch_fit(values_, patches, floors_);
+  ++visits_;
+  patches_ += static_cast<uint64_t>(__builtin_popcount(patches));
+}
+
+/// Floors as steep as the face that cut deepest.
+void LeafCut::set_slope(const LeafBound& deepest) {
+  const LeafBound::Linear& face = deepest.of_face[0];
+  for (int a = 0; a < 3; ++a) floors_.slope[a] = 0.5F * (face.start_step[a] + face.end_step[a]);
+}
+
+/// Every piece but the plain cylinder, which has a closed form.
+void LeafCut::cut_by_search(const SweptPiece& swept, uint32_t patches) {
+  const openvdb::Coord origin = set_.map.origin(leaf_);
+  const LeafPlace place{Vec3(origin.x(), origin.y(), origin.z()) * set_.voxel, set_.voxel, set_.band()};
+  cut_leaf_by_piece(values_, place, swept.map, *swept.piece, slices_of(patches));
+}
+
+bool LeafCut::changed() const {
+  return !std::equal(before_.begin(), before_.end(), values_);
+}
+
+/// The lowest of the patches' floors.
+LeafFloor LeafCut::floor() const {
+  const auto& of_patch = floors_.of_patch[kLevels - 1];
+  const float lowest = *std::min_element(std::begin(of_patch), std::end(of_patch));
+  const float* step = floors_.slope;
+  const auto per_mm = static_cast<float>(1.0 / set_.voxel);
+  return {lowest + 0.5F * (kLeafSide - 1) * (step[0] + step[1] + step[2]),
+          {step[0] * per_mm, step[1] * per_mm, step[2] * per_mm}};
+}
+
+}  // namespace swarf::stock

@@ -1,0 +1,56 @@
+// One leaf position while sweeps are applied to it: what each may raise is bounded before it is evaluated.
+// Internal to this folder.
+#pragma once
+
+#include <array>
+
+#include "stock/level_set/leaf_kernel.h"
+#include "stock/level_set/sweep_reach.h"
+
+namespace swarf::stock {
+
+/// The bottom plane of a flat end whose height over every voxel does not change while it moves. Once one such
+/// sweep has passed over the whole leaf, another one with the same plane to the last bit has nothing to
+/// raise: the floors of pockets and the rows of a plane are cut once, not once for each row that overlaps.
+class LevelPlane {
+ public:
+  bool repeats(const LeafMotion& motion) const;
+  /// Remembers the sweep if its flat end passes over the whole leaf, deeper inside than the band.
+  void remember(const LeafMotion& motion, const SweptPiece& swept, const Vec3& centre, double leaf_radius);
+
+ private:
+  bool known_ = false;
+  LeafMotion motion_{};
+};
+
+class LeafCut {
+ public:
+  /// `values`: the leaf's, changed in place.
+  LeafCut(const LevelSet& set, size_t leaf, float* values);
+
+  /// Raises the values by one sweep, as far as what the ones before it left does not rule it out.
+  void apply(const SweptPiece& swept);
+
+  /// Sweeps that were evaluated, and in how many patches altogether.
+  uint64_t visits() const { return visits_; }
+  uint64_t patches() const { return patches_; }
+  /// Some value is greater than it was.
+  bool changed() const;
+  /// What the visits left, at least one of them.
+  LeafFloor floor() const;
+
+ private:
+  void set_slope(const LeafBound& deepest);
+  void cut_by_search(const SweptPiece& swept, uint32_t patches);
+
+  const LevelSet& set_;
+  size_t leaf_;
+  float* values_;
+  std::array<float, kLeafVoxels> before_;
+  Vec3 centre_;
+  LevelPlane plane_;
+  PatchFloors floors_{};
+  uint64_t visits_ = 0, patches_ = 0;
+};
+
+}  // namespace swarf::stock
