@@ -365,7 +365,7 @@ void begin_with_earlier(StockSettings& stock) {
 }
 
 /// Paths that are planned have no text whose unit or TRACUT could be left open.
-void refuse_program_keys(ConfigTable table, const Scene& scene) {
+void refuse_program_keys(ConfigTable& table, const Scene& scene) {
   if (scene.kind == ProgramKind::kNc || scene.kind == ProgramKind::kCl) return;
   const auto refuse = [&](bool given, const char* key) {
     if (given)
@@ -388,10 +388,11 @@ void read_scene(ConfigTable& root, Scene& scene, Diagnostics& diagnostics, int s
   read_scene_tools(root, scene, diagnostics);
   if (post) read_scene_post(root, *post, scene);
   read_cl_keys(root, scene);
-  scene.setup = read_setup(root.table("setup"), scene.kind == ProgramKind::kNc, setup);
+  ConfigTable setup_keys = root.table("setup");
+  scene.setup = read_setup(setup_keys, scene.kind == ProgramKind::kNc, setup);
   scene.cl_options.tracut = scene.setup.tracut;
   scene.cl_options.unit_mm = scene.setup.unit_mm;
-  refuse_program_keys(root.table("setup"), scene);
+  refuse_program_keys(setup_keys, scene);
   if (setup > 0)
     scene.title += fmt::format(", set-up {}{}", setup,
                                scene.setup.name.empty() ? "" : ": " + utf8_only(scene.setup.name));
