@@ -70,6 +70,16 @@ std::string why_run(const BatchOptions& options, const BatchRow& now) {
   return reports::changed_source(fs::path(options.output) / now.name);
 }
 
+/// The record of a run of today's program and arguments that was refused, failed or was stopped: it is run
+/// again when it is this call's to run, and is no job that nobody has run.
+std::optional<BatchRow> ended_without_result(const BatchOptions& options, const BatchRow& now) {
+  std::optional<BatchRow> before = reports::read_batch_record(options.output, now.name);
+  if (!before || before->exit_code.value_or(kPass) <= kFindings || before->version != now.version ||
+      without_threads(before->words) != without_threads(now.words))
+    return std::nullopt;
+  return before;
+}
+
 /// A job's number in the file, from 1, or its name.
 size_t find_job(const BatchOptions& options, const Batch& batch) {
   std::vector<std::string> names;
@@ -197,6 +207,8 @@ std::vector<BatchRow> plan_rows(const BatchOptions& options, const Batch& batch,
     } else if (wanted) {
       which.push_back(i);
       if (manner().verbose) fmt::print(stderr, "note: {} is run: {}\n", row.name, why);
+    } else if (std::optional<BatchRow> ended = ended_without_result(options, row)) {
+      row = std::move(*ended);
     } else {
       row.verdict = why == "new" ? "" : "its results are not those of today: " + why;
     }

@@ -107,6 +107,8 @@ TEST_F(Batch, AJobThatFailsStopsNoOther) {
   EXPECT_EQ(found[2]["exit_code"], 1);  // rapids in material
   EXPECT_GT(found[2]["findings"].get<int>(), 0);
   EXPECT_NE(read_text(at("night.xml")).find("<failure"), std::string::npos);
+  EXPECT_EQ(batch("--summary").exit_code, 2) << "refused is not the same as not run";
+  EXPECT_EQ(table()["jobs"][1]["outcome"], "WRONG INPUT");
   // What has failed is tried again, what has findings is known.
   EXPECT_NE(batch().output.find("3 jobs, 1 to run"), std::string::npos);
 }

@@ -24,6 +24,7 @@ class Finding:
     block: str  #: its text
     t_s: typing.Optional[float]  #: program time, s
     place_mm: typing.Optional[typing.List[float]]  #: on the part, in the work frame, where it is worst
+    machine_place_mm: typing.Optional[typing.List[float]]  #: of a contact, in the machine at t_s
     number: int  #: of its fault in the page: report.html#finding-N
 
 

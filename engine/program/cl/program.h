@@ -68,8 +68,8 @@ struct ClOptions {
   std::optional<ClPoints> cutcom;
   /// CIRCLE runs clockwise about its vector (true), or counter-clockwise. None: as its writer does.
   std::optional<bool> circle_clockwise;
-  std::optional<ClTracut> tracut;   ///< none: "tracut-meaning" at a matrix that is not the identity
-  std::optional<double> unit_mm;    ///< 1 or 25.4 of a file without UNITS; none: 1, and ClProgram::unit_assumed
+  std::optional<ClTracut> tracut;  ///< none: "tracut-meaning" at a matrix that is not the identity
+  std::optional<double> unit_mm;  ///< 1 or 25.4 of a file without UNITS; none: 1, and ClProgram::unit_assumed
   std::vector<ClToolRadius> tools;  ///< for "contour", of tools without CUTTER or TLDATA
 };
 

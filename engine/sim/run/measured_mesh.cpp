@@ -46,7 +46,8 @@ void measure_by_rays(const MeasuredPart& part, const stock::SurfaceDexels& dexel
       if (!(std::abs(deviation) < std::abs(mesh.deviation_um[i]))) mesh.deviation_um[i] = deviation;
       const measure::Foot& foot = here->foot;
       const uint32_t block = measure::block_at(dexels, foot.u, foot.v);
-      if (!here->on_face || block == stock::kUncut || axes.empty()) continue;
+      // Sweeps of the job come first and are its cycles; those behind them are of earlier set-ups.
+      if (!here->on_face || block >= axes.size()) continue;
       // The bottom of a flat end left this facet, so the tool's axis is its exact normal.
       const Vec3& axis = axes[block];
       if (axis.dot(foot.normal) < kFaceCosine) continue;
@@ -68,7 +69,8 @@ double greatest_height(const MeasuredPart& part) {
 }  // namespace
 
 bool normals_need_cycles(const Job& job) {
-  return job.scene.stock.cut_by == CutBy::kPasses;
+  // Sweeps of driven passes are pieces of cycles: what they leave keeps the mesh's own normals.
+  return job.scene.stock.cut_by == CutBy::kPasses && job.driven == nullptr;
 }
 
 void measure_mesh(const MeasuredPart& part, TriMesh& mesh) {

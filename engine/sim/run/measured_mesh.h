@@ -19,7 +19,7 @@ struct MeasuredPart {
   bool set_normals = true;
 };
 
-/// Cusps of planned passes get their normals from the tool axis of each cycle.
+/// Cusps of planned passes get their normals from the tool axis of each cycle, where sweeps are cycles.
 bool normals_need_cycles(const Job& job);
 
 /// Sets TriMesh::deviation_um (um; NaN where no ray has seen the vertex), and the normals of facets that the

@@ -307,6 +307,7 @@ TEST(Words, ToolsCoolantDwellsAndNotes) {
 
 TEST(Refused, ToolsFeedsAndPlaces) {
   const auto code = [](const std::string& cl, const char* machine, const char* post, PostOptions options) {
+    options.cl.unit_mm = 1.0;
     const std::string faults =
         run_post(kHead + cl + "FINI\n", placed_machine(machine), shipped_post(post), options).faults;
     const size_t from = faults.find(" [");
@@ -314,6 +315,10 @@ TEST(Refused, ToolsFeedsAndPlaces) {
   };
   const std::string way = "FROM/0,0,60,0,0,1\nFEDRAT/600,MMPM\nGOTO/9,0,60,0,0,1\n";
   EXPECT_EQ(code("LOADTL/7\n" + way, "mill_3axis", "fanuc", without_tcp()), "unknown-tool");
+  const std::string silent =
+      run_post(kHead + way + "FINI\n", placed_machine("mill_3axis"), shipped_post("fanuc"), without_tcp())
+          .faults;
+  EXPECT_NE(silent.find("[units-assumed]"), std::string::npos) << silent;
   EXPECT_EQ(code("TOOL PATH/A,TOOL,MILL10\n" + way, "mill_3axis", "fanuc", without_tcp()), "");
   PostOptions by_name = without_tcp();
   by_name.tools = {{0, "MILL10", 80.0}, {1, "", 80.0}};
