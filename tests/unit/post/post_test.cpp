@@ -315,9 +315,9 @@ TEST(Refused, ToolsFeedsAndPlaces) {
   };
   const std::string way = "FROM/0,0,60,0,0,1\nFEDRAT/600,MMPM\nGOTO/9,0,60,0,0,1\n";
   EXPECT_EQ(code("LOADTL/7\n" + way, "mill_3axis", "fanuc", without_tcp()), "unknown-tool");
-  const std::string silent =
-      run_post(kHead + way + "FINI\n", placed_machine("mill_3axis"), shipped_post("fanuc"), without_tcp())
-          .faults;
+  const std::string silent = run_post(kHead + ("LOADTL/7\n" + way) + "FINI\n", placed_machine("mill_3axis"),
+                                      shipped_post("fanuc"), without_tcp())
+                                 .faults;
   EXPECT_NE(silent.find("[units-assumed]"), std::string::npos) << silent;
   EXPECT_EQ(code("TOOL PATH/A,TOOL,MILL10\n" + way, "mill_3axis", "fanuc", without_tcp()), "");
   PostOptions by_name = without_tcp();
