@@ -172,6 +172,11 @@ std::string obj_text(const TriMesh& mesh) {
 
 }  // namespace
 
+bool carries_unit(const std::string& path) {
+  const std::string ending = extension(path);
+  return is_scene_ending(ending) && ending != ".off";
+}
+
 TriMesh load_mesh(const std::string& path) {
   refuse_special_file(path);
   if (!fs::is_regular_file(path)) {

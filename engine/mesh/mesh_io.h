@@ -15,6 +15,9 @@ namespace swarf::mesh {
 /// with the line or byte of what is wrong when the file is missing, not a mesh, damaged, or empty.
 TriMesh load_mesh(const std::string& path);
 
+/// Whether files of that ending carry the unit of their numbers, or their format prescribes one.
+bool carries_unit(const std::string& path);
+
 /// Writes .stl (binary), .ply (binary, with normals, colours and `deviation_um` where the mesh has them) or
 /// .obj (positions in mm as the shortest decimals that read back to the same floats, normals where there are
 /// any) or .3mf (mm; its bytes differ from call to call, for lib3mf numbers its objects anew) by the ending

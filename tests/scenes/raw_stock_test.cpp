@@ -184,6 +184,7 @@ TEST(RawStockScene, WhatIsNoStockIsRefusedWithItsPlace) {
       {"crossing", "mesh = \"crossing.stl\"", "mesh-self-crossing", "the first at ("},
       {"metres", "mesh = \"metres.stl\"", "mesh-unit-suspicious", "stock.mesh_unit = \"m\""},
       {"inches", "mesh = \"inches.stl\"", "mesh-unit-suspicious", "stock.mesh_unit = \"inch\""},
+      {"two_units", "mesh = \"good.3mf\"\nmesh_unit = \"inch\"", "unit-twice", "scene.toml:10:"},
       {"no_file", "mesh = \"none.stl\"", "mesh-not-found", "none.stl"},
       {"no_run", "from_run = \"nowhere\"", "not-a-run", "nowhere"},
       {"no_such_stock", "from_run = \"nowhere/stock_after_line_7.vdb\"", "from-run-unfinished",
@@ -209,6 +210,7 @@ TEST(RawStockScene, WhatIsNoStockIsRefusedWithItsPlace) {
       swarf::mesh::save_mesh((folder / name).string(), mesh);
     };
     save("good.stl", good);
+    save("good.3mf", good);
     TriMesh mesh = good;
     mesh.triangles.pop_back();
     save("open.stl", mesh);

@@ -241,6 +241,7 @@ DesignSettings read_design(ConfigTable table, bool cl) {
     if (design.name == "mesh") {
       const std::string unit = table.choice("mesh_unit", {"mm", "inch", "m"}, "mm");
       if (table.has("mesh_unit")) design.mesh_unit_mm = unit_mm_of(unit);
+      refuse_second_unit(table, design.mesh_file);
     }
     if (design.name == "step")
       design.chord_mm = table.number("chord_um", kAboveZero, um_from_mm(design.chord_mm)) * kMicrometre;

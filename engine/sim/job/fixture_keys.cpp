@@ -11,6 +11,7 @@
 #include "mesh/mesh_io.h"
 #include "mesh/mesh_ops.h"
 #include "mesh/plain_solids.h"
+#include "sim/job/mesh_unit.h"
 #include "sim/job/scene.h"
 
 namespace swarf::sim {
@@ -49,6 +50,7 @@ machine::FixtureSolid read_solid(ConfigTable& table, bool mesh) {
   const std::string unit = table.choice("mesh_unit", names, "mm");
   for (const auto& [name, mm] : kMeshUnits)
     if (unit == name) shape.unit_mm = mm;
+  refuse_second_unit(table, shape.mesh_file);
   return shape;
 }
 

@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+
+#include "mesh/mesh_io.h"
+
 namespace swarf::sim {
 namespace {
 
@@ -11,6 +15,14 @@ constexpr double kInchUnit = 25.4, kMetreUnit = 1000.0;  // mm
 
 double unit_mm_of(const std::string& word) {
   return word == "inch" ? kInchUnit : word == "m" ? kMetreUnit : 1.0;
+}
+
+void refuse_second_unit(ConfigTable& table, const std::string& file) {
+  if (!table.has("mesh_unit") || !mesh::carries_unit(file)) return;
+  table.error("unit-twice", "mesh_unit",
+              fmt::format("'{}' says its own unit and is read in mm",
+                          std::filesystem::path(file).filename().string()),
+              "take mesh_unit out");
 }
 
 void suspect_unit(const MeshNamed& mesh, const Box& box, double tool_mm, Diagnostics& diagnostics) {

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "base/config.h"
 #include "base/diagnostics.h"
 #include "base/frames.h"
 
@@ -10,6 +11,10 @@ namespace swarf::sim {
 
 /// "mm", "inch" and "m" in mm.
 double unit_mm_of(const std::string& word);
+
+/// mesh_unit beside the mesh `file` of a format that carries its unit (glTF, COLLADA, FBX, 3MF, AMF) is an
+/// error ("unit-twice"): its numbers come in mm already.
+void refuse_second_unit(ConfigTable& table, const std::string& file);
 
 /// Where a mesh is named, and the key of its unit.
 struct MeshNamed {

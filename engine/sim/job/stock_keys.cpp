@@ -96,6 +96,7 @@ void read_mesh_keys(ConfigTable& table, RawSettings& raw) {
   raw.unit_said = table.has("mesh_unit");
   const std::string unit = table.choice("mesh_unit", {"mm", "inch", "m"}, "mm");
   raw.unit_mm = unit_mm_of(unit);
+  refuse_second_unit(table, raw.file);
   raw.X_WF = pose_of(vector_of(table, "mesh_position_mm", Vec3::Zero()),
                      vector_of(table, "mesh_rotation_deg", Vec3::Zero()));
 }
