@@ -229,6 +229,11 @@ TEST(SurfaceInterpolator, ChordToleranceClampsTheFeed) {
 }
 
 TEST(SurfaceInterpolator, StepAllocatesNothing) {
+#ifdef __has_feature
+#if __has_feature(thread_sanitizer)
+  GTEST_SKIP() << "NOT CHECKED: the thread sanitizer puts its own operator new in the counter's place";
+#endif
+#endif
   const Fixture with;
   SurfaceInterpolator interpolator = with.make(Mode::kSurface);
   const toolpath::SurfacePass pass = iso_pass(dome(), 0.49, 50.0);
