@@ -17,6 +17,7 @@
 #include <utility>
 
 #include "base/check.h"
+#include "brep/facet_estimate.h"
 #include "brep/occt_shape.h"
 #include "surface/nurbs.h"
 
@@ -314,6 +315,7 @@ Made facets_of(const TopoDS_Shape& shape, double asked_mm, double edge_mm, doubl
 
 Facets tessellate(const Model& model, double chord_mm, bool closed_only, double edge_mm) {
   SWARF_CHECK(chord_mm > 0.0 && edge_mm > 0.0 && model.shape != nullptr, "a shape and a chord above 0");
+  require_facets_fit(model, chord_mm, std::min(chord_mm, edge_mm));
   const QuietSession session;
   Made made;
   guarded(model.file, [&] {

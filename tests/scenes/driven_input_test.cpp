@@ -131,6 +131,24 @@ TEST(DrivenFaces, AGapIsToldWithItsPlaceBeforeAnythingMoves) {
   fs::remove_all(folder);
 }
 
+// A part of 42 m, its unit read as metres: facets of that chord would take more memory than there is.
+TEST(DrivenFaces, APartInMetresIsRefusedBeforeItIsDivided) {
+  const fs::path folder = swarf::test::fresh_folder("driven_metres");
+  std::string part = swarf::test::read_text(SWARF_SOURCE_DIR "/scenes/kato_mould/mould.stp");
+  const std::string unit = "SI_UNIT(.MILLI.,.METRE.)";
+  part.replace(part.find(unit), unit.size(), "SI_UNIT($,.METRE.)");
+  swarf::test::write_text(folder / "mould.stp", part);
+  swarf::test::write_text(folder / "scene.toml",
+                          swarf::test::read_text(SWARF_SOURCE_DIR "/scenes/kato_mould/scene.toml"));
+  const auto run = run_swarf("check " + (folder / "scene.toml").string());
+  EXPECT_EQ(run.exit_code, 2) << run.output;
+  EXPECT_NE(run.output.find("[cad-too-fine]"), std::string::npos) << run.output;
+  EXPECT_NE(run.output.find("42000 x 30000 x"), std::string::npos) << run.output;
+  EXPECT_NE(run.output.find("unit metre = 1000 mm"), std::string::npos) << run.output;
+  EXPECT_NE(run.output.find("fix: "), std::string::npos) << run.output;
+  fs::remove_all(folder);
+}
+
 // A mesh that drives and is open, or inside out, is refused with the place and what to do.
 TEST(DrivenMesh, OpenOrInsideOutIsRefused) {
   const fs::path folder = swarf::test::fresh_folder("driven_mesh");

@@ -29,6 +29,7 @@
 
 #include "base/angles.h"
 #include "base/units.h"
+#include "brep/facet_estimate.h"
 #include "brep/model.h"
 #include "mesh/mesh_check.h"
 #include "surface/face.h"
@@ -298,6 +299,22 @@ TEST_F(Cad, FacetsAreWatertightAndTheirChordIsProven) {
         mesh::check_closed(tessellate(read_step(step(BRepPrimAPI_MakeTorus(20, 5).Shape())), chord).mesh),
         "");
   }
+}
+
+// Never above what the library makes, within a factor of twelve, whatever the unit.
+TEST_F(Cad, FacetsAreEstimatedBeforeTheyAreMade) {
+  const TopoDS_Shape bodies[] = {BRepPrimAPI_MakeSphere(20).Shape(), holed()};
+  for (const TopoDS_Shape& body : bodies) {
+    const Model model = read_step(step(body));
+    for (const double chord : {0.1, 0.02}) {
+      const double expected = estimated_facets(model, chord, kEdgeChord);
+      const auto made = static_cast<double>(tessellate(model, chord).mesh.triangles.size());
+      EXPECT_LE(expected, 2.0 * made) << chord;
+      EXPECT_GE(12.0 * expected, made) << chord;
+    }
+  }
+  const Model ball = read_step(step(BRepPrimAPI_MakeSphere(20).Shape()));
+  EXPECT_THROW(tessellate(ball, 1e-6), InputError);
 }
 
 // Facets are the parameters of the faces: at their corners, and at places in between, the faces are where the
