@@ -12,7 +12,7 @@
 namespace swarf::stock {
 namespace {
 
-constexpr size_t kSweepsPerRun = 32, kSweepsPerGroup = 8;
+constexpr size_t kRunsPerStretch = 32, kSweepsPerRun = 32, kSweepsPerGroup = 8;
 constexpr size_t kMapsPerTask = 1024;
 
 /// A tile's rays and their material by component; places beyond the tile's last ray repeat it and are not
@@ -52,6 +52,16 @@ class TileCut {
            (extent_above_.empty() || run_misses(run, ball_above_, chain_.cutter));
   }
 
+  /// Calls visit(n) for the runs of the stretches that may meet the tile.
+  template <typename Visit>
+  void each_run(const Visit& visit) const {
+    for (size_t k = 0; k < chain_.stretches.size(); ++k) {
+      if (misses(chain_.stretches[k])) continue;
+      const size_t end = std::min((k + 1) * kRunsPerStretch, chain_.runs.size());
+      for (size_t n = k * kRunsPerStretch; n < end; ++n) visit(n);
+    }
+  }
+
   void cut_by(const SweepRun& run) {
     for (size_t g = run.begin / kSweepsPerGroup; g * kSweepsPerGroup < run.end; ++g) {
       const SweepRun& group = chain_.groups[g];
@@ -66,12 +76,12 @@ class TileCut {
     const Vec3 middle = tile_.origin + tile_.frame.transpose() * (0.5 * (tile_.low + tile_.high));
     size_t nearest = chain_.runs.size();
     double least = std::numeric_limits<double>::infinity();
-    for (size_t n = 0; n < chain_.runs.size(); ++n) {
+    each_run([&](size_t n) {
       const double distance2 = (chain_.runs[n].tip - middle).squaredNorm();
-      if (distance2 >= least || misses(chain_.runs[n])) continue;
+      if (distance2 >= least || misses(chain_.runs[n])) return;
       least = distance2;
       nearest = n;
-    }
+    });
     return nearest;
   }
 
@@ -216,7 +226,7 @@ SweepRun make_run(const SweepChain& chain, size_t begin, size_t end) {
 }  // namespace
 
 SweepChain make_chain(std::span<const Sweep> sweeps, const CutterSolid& cutter) {
-  SweepChain chain{sweeps, cutter, std::vector<SweepMap>(sweeps.size()), {}, {}, cutter.is_cylinder()};
+  SweepChain chain{sweeps, cutter, std::vector<SweepMap>(sweeps.size()), {}, {}, {}, cutter.is_cylinder()};
   parallel_chunks(sweeps.size(), kMapsPerTask, [&](size_t begin, size_t end) {
     for (size_t n = begin; n < end; ++n) chain.maps[n] = sweep_map(sweeps[n]);
   });
@@ -224,6 +234,7 @@ SweepChain make_chain(std::span<const Sweep> sweeps, const CutterSolid& cutter) 
     for (size_t n = 0; n < sweeps.size(); n += length)
       runs.push_back(make_run(chain, n, std::min(n + length, sweeps.size())));
   };
+  divide(kRunsPerStretch * kSweepsPerRun, chain.stretches);
   divide(kSweepsPerRun, chain.runs);
   divide(kSweepsPerGroup, chain.groups);
   return chain;
@@ -234,9 +245,9 @@ uint64_t cut_tile(const Material& material, size_t tile, const SweepChain& chain
   const size_t first = cut.nearest_run();
   if (first == chain.runs.size()) return 0;
   cut.cut_by(chain.runs[first]);
-  for (size_t n = 0; n < chain.runs.size(); ++n) {
+  cut.each_run([&](size_t n) {
     if (n != first && !cut.misses(chain.runs[n])) cut.cut_by(chain.runs[n]);
-  }
+  });
   return cut.pairs();
 }
 

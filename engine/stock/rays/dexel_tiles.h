@@ -1,8 +1,8 @@
 // Tiles of rays against a chain of sweeps. Internal to this folder.
 //
 // Most pairs of a ray and a sweep are ruled out without a look at the ray:
-//   1. runs of sweeps, then groups of fewer: the cutter at the middle, moved by no more than the run's
-//   spread, is
+//   1. stretches of sweeps, runs in them and groups in these: the cutter at the middle, moved by no more than
+//   the run's spread, is
 //      farther away than the ball around the tile's material, or its bottom plane lies above the highest of
 //      it
 //   2. single sweeps: the same
@@ -27,8 +27,8 @@ struct SweepChain {
   std::span<const Sweep> sweeps;
   CutterSolid cutter;
   std::vector<SweepMap> maps;
-  std::vector<SweepRun> runs, groups;  ///< of the same sweeps, long and short
-  bool cylinder = false;               ///< the cutter is a plain one: asked once, not for each ray
+  std::vector<SweepRun> stretches, runs, groups;  ///< all sweeps, in ever shorter parts
+  bool cylinder = false;                          ///< the cutter is a plain one: asked once, not for each ray
 };
 SweepChain make_chain(std::span<const Sweep> sweeps, const CutterSolid& cutter);
 
