@@ -11,7 +11,7 @@
 namespace swarf::measure {
 namespace {
 
-constexpr size_t kBoxesPerTask = 4096;
+constexpr size_t kBoxesPerTask = 4096, kGroupsPerTask = 256;
 
 Box nothing() {
   const double far = std::numeric_limits<double>::infinity();
@@ -66,6 +66,42 @@ SweepIndex::SweepIndex(std::span<const stock::Sweep> sweeps, const SweepCutters&
   while (leaves * kLeafSweeps < sweeps.size()) leaves *= 2;
   nodes_.assign(2 * leaves - 1, nothing());
   build(0, 0, leaves * kLeafSweeps);
+  long_groups_ = planes_of_groups(cutters, kLongGroup);
+  short_groups_ = planes_of_groups(cutters, kShortGroup);
+}
+
+std::vector<SweepIndex::Planes> SweepIndex::planes_of_groups(const SweepCutters& cutters,
+                                                             size_t length) const {
+  std::vector<Planes> groups((sweeps_.size() + length - 1) / length);
+  parallel_chunks(groups.size(), kGroupsPerTask, [&](size_t begin, size_t end) {
+    for (size_t n = begin; n < end; ++n)
+      groups[n] = planes_of(cutters, n * length, std::min((n + 1) * length, sweeps_.size()));
+  });
+  return groups;
+}
+
+SweepIndex::Planes SweepIndex::planes_of(const SweepCutters& cutters, size_t begin, size_t end) const {
+  const ToolPose& middle = sweeps_[begin + (end - begin) / 2].start;
+  Planes planes{middle.axis_W, middle.tip_W};
+  double rise = 0.0, low = std::numeric_limits<double>::infinity();
+  for (size_t n = begin; n < end; ++n) {
+    low = std::min(low, lowest_z(cutters[sweeps_[n].block]));
+    for (const ToolPose* pose : {&sweeps_[n].start, &sweeps_[n].end}) {
+      planes.axis_spread = std::max(planes.axis_spread, (pose->axis_W - middle.axis_W).norm());
+      planes.tip_spread = std::max(planes.tip_spread, (pose->tip_W - middle.tip_W).norm());
+      rise = std::max(rise, middle.axis_W.dot(middle.tip_W - pose->tip_W));
+    }
+  }
+  planes.low = low - rise;
+  return planes;
+}
+
+/// axis' . (x - tip') <= axis . (x - tip) + |axis' - axis| |x - tip'| + axis . (tip - tip').
+bool SweepIndex::Planes::keep_above(const Vec3& top, const Vec3& normal) const {
+  constexpr double kRounding = 1e-9;  // mm
+  const Vec3 offset = top - tip;
+  return axis.dot(normal) >= axis_spread &&
+         axis.dot(offset) + axis_spread * (offset.norm() + tip_spread) + kRounding < low;
 }
 
 void SweepIndex::build(size_t node, size_t begin, size_t end) {
@@ -80,17 +116,18 @@ void SweepIndex::build(size_t node, size_t begin, size_t end) {
   nodes_[node] = joined(nodes_[2 * node + 1], nodes_[2 * node + 2]);
 }
 
-void SweepIndex::find(const Box& box, std::vector<uint32_t>& found) const {
+template <typename Skips>
+void SweepIndex::visit(const Box& box, const Skips& skips, std::vector<uint32_t>& found) const {
   struct Open {
     size_t node, begin, end;
   };
   std::array<Open, 128> open;
   size_t count = 0;
-  size_t leaves = (nodes_.size() + 1) / 2;
+  const size_t leaves = (nodes_.size() + 1) / 2;
   open[count++] = {0, 0, leaves * kLeafSweeps};
   while (count > 0) {
     const Open at = open[--count];
-    if (!meet(nodes_[at.node], box)) continue;
+    if (!meet(nodes_[at.node], box) || skips(at.begin, at.end)) continue;
     if (at.end - at.begin <= kLeafSweeps) {
       for (size_t n = at.begin; n < std::min(at.end, boxes_.size()); ++n) {
         if (meet(boxes_[n], box)) found.push_back(static_cast<uint32_t>(n));
@@ -101,6 +138,21 @@ void SweepIndex::find(const Box& box, std::vector<uint32_t>& found) const {
     open[count++] = {2 * at.node + 2, middle, at.end};
     open[count++] = {2 * at.node + 1, at.begin, middle};
   }
+}
+
+void SweepIndex::find(const Box& box, std::vector<uint32_t>& found) const {
+  visit(
+      box, [](size_t, size_t) { return false; }, found);
+}
+
+void SweepIndex::find_below(const Vec3& top, const Vec3& normal, const Box& box,
+                            std::vector<uint32_t>& found) const {
+  const auto skips = [&](size_t begin, size_t end) {
+    if (end - begin == kLongGroup) return long_groups_[begin / kLongGroup].keep_above(top, normal);
+    if (end - begin == kShortGroup) return short_groups_[begin / kShortGroup].keep_above(top, normal);
+    return false;
+  };
+  visit(box, skips, found);
 }
 
 bool passes_aside(const stock::Sweep& sweep, const stock::CutterSolid& cutter, const Vec3& centre,

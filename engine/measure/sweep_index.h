@@ -19,15 +19,31 @@ class SweepIndex {
 
   /// Appends the sweeps whose box meets `box`, in rising order. None that touches it is left out.
   void find(const Box& box, std::vector<uint32_t>& found) const;
+  /// As find(box), for what may cut a column along `normal` below its point `top`: most of those whose lowest
+  /// plane stays above it are left out, where the column leaves on the tool's side.
+  void find_below(const Vec3& top, const Vec3& normal, const Box& box, std::vector<uint32_t>& found) const;
 
  private:
-  static constexpr size_t kLeafSweeps = 4;
+  static constexpr size_t kLeafSweeps = 4, kLongGroup = 64, kShortGroup = 8;
+  /// The lowest planes of a few sweeps: one pose, and how far the others stray from it.
+  struct Planes {
+    Vec3 axis, tip;
+    double axis_spread = 0.0, tip_spread = 0.0;  ///< |axis' - axis|; mm
+    double low = 0.0;                            ///< of a plane over the tip, along the axis, mm
+    /// All of them keep above a point on a column that leaves on the tool's side.
+    bool keep_above(const Vec3& top, const Vec3& normal) const;
+  };
   void build(size_t node, size_t begin, size_t end);
+  Planes planes_of(const SweepCutters& cutters, size_t begin, size_t end) const;
+  std::vector<Planes> planes_of_groups(const SweepCutters& cutters, size_t length) const;
+  template <typename Skips>
+  void visit(const Box& box, const Skips& skips, std::vector<uint32_t>& found) const;
 
   std::span<const stock::Sweep> sweeps_;
   std::vector<Box> boxes_;  ///< of each sweep
   /// Node n covers a half of its parent's sweeps; its children are 2n+1 and 2n+2.
   std::vector<Box> nodes_;
+  std::vector<Planes> long_groups_, short_groups_;
 };
 
 /// Least z of the cutter's flutes in its own frame, mm.

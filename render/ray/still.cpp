@@ -70,7 +70,7 @@ class Brightness {
 /// The sums over a pixel's samples.
 class Gathered {
  public:
-  void add(const Seen& seen, bool with_ambient) {
+  void add(const Seen& seen, bool with_shared) {
     // One hot sample of a mirrored light must not outshine the whole pixel.
     constexpr float kFirefly = 8.0F;
     sum_.light += seen.light.cwiseMin(kFirefly);
@@ -79,11 +79,16 @@ class Gathered {
     sum_.position += seen.position;
     ++count_;
     if (!seen.normal.isZero()) ++surfaces_;
-    if (!with_ambient) return;
+    if (seen.dull) ++dull_;
+    if (!with_shared) return;
+    if (seen.dull) {
+      sum_.sheen += seen.sheen.cwiseMin(kFirefly);
+      ++with_sheen_;
+    }
     sum_.ambient += seen.matt.cwiseProduct(seen.ambient.cwiseMin(kFirefly));
     matt_with_ambient_ += seen.matt;
   }
-  bool knows_ambient() const { return matt_with_ambient_.maxCoeff() > 0.0F; }
+  bool knows_shared() const { return matt_with_ambient_.maxCoeff() > 0.0F || with_sheen_ > 0; }
   PixelLight mean(float opacity) const {
     PixelLight mean = sum_;
     const auto many = static_cast<float>(std::max(count_, 1));
@@ -91,6 +96,9 @@ class Gathered {
     mean.matt /= many;
     for (int k = 0; k < 3; ++k)
       mean.ambient[k] = matt_with_ambient_[k] > 0.0F ? sum_.ambient[k] / matt_with_ambient_[k] : 0.0F;
+    if (with_sheen_ > 0) mean.sheen /= static_cast<float>(with_sheen_);
+    mean.knows_sheen = with_sheen_ > 0;
+    mean.dull = static_cast<float>(dull_) / many;
     if (surfaces_ > 0) mean.position /= static_cast<float>(surfaces_);
     if (!mean.normal.isZero()) mean.normal.normalize();
     mean.opacity = opacity;
@@ -100,7 +108,7 @@ class Gathered {
  private:
   PixelLight sum_;
   Vec3f matt_with_ambient_ = Vec3f::Zero();
-  int count_ = 0, surfaces_ = 0;
+  int count_ = 0, surfaces_ = 0, dull_ = 0, with_sheen_ = 0;
 };
 
 struct Shot {
@@ -125,12 +133,12 @@ struct Shot {
       const auto down = std::clamp(static_cast<float>(py), 0.0F, 1.0F);
       const Vec3f backdrop =
           (1.0F - down) * vector_of(options.backdrop_top) + down * vector_of(options.backdrop_bottom);
-      // Neighbours share the ambient light: every other sample is enough.
-      const bool with_ambient = s % 2 == 0 || !gathered.knows_ambient();
+      // Every other sample is enough of what neighbours share.
+      const bool with_shared = s % 2 == 0 || !gathered.knows_shared();
       const Seen seen = tracer.look(lens.eye.cast<float>(), lens.ray(2.0 * px - 1.0, 1.0 - 2.0 * py),
-                                    backdrop, with_ambient, sampler);
+                                    backdrop, with_shared, sampler);
       behind += seen.empty ? 1 : 0;
-      if (!options.transparent || !seen.empty) gathered.add(seen, with_ambient);
+      if (!options.transparent || !seen.empty) gathered.add(seen, with_shared);
       empty = empty && seen.empty;
       ++taken;
       if (empty && taken == kLeast) break;
@@ -152,8 +160,8 @@ struct Shot {
   }
 
   std::array<uint8_t, 4> colour(const PixelLight& pixel) const {
-    const Vec3f light =
-        static_cast<float>(options.exposure) * (pixel.light + pixel.matt.cwiseProduct(pixel.ambient));
+    const Vec3f light = static_cast<float>(options.exposure) *
+                        (pixel.light + pixel.matt.cwiseProduct(pixel.ambient) + pixel.dull * pixel.sheen);
     std::array<uint8_t, 4> value = srgb8_from_linear({tone(light.x()), tone(light.y()), tone(light.z())});
     value[3] = static_cast<uint8_t>(std::lround(255.0F * pixel.opacity));
     return value;

@@ -13,6 +13,9 @@ constexpr float kLineGlow = 0.7F;
 /// What a metal met by a secondary ray mirrors, relative to the surroundings in that direction.
 constexpr float kSecondMirror = 0.8F;
 
+/// Rougher surfaces mirror so blurred that neighbours share it: their lobes are 15 degrees wide and more.
+constexpr float kDullRoughness = 0.35F;
+
 /// The shading normal, bent towards the viewer when interpolation turned it away.
 Vec3f facing_normal(const Hit& hit, const Vec3f& out) {
   constexpr float kGrazing = 1e-3F;
@@ -29,31 +32,31 @@ Tracer::Tracer(const RayScene& scene, const Studio& studio, const StillOptions& 
       floor_(options.floor && !options.transparent),
       floor_z_(scene.lowest_z()) {}
 
-Seen Tracer::look(const Vec3f& origin, const Vec3f& direction, const Vec3f& backdrop, bool with_ambient,
+Seen Tracer::look(const Vec3f& origin, const Vec3f& direction, const Vec3f& backdrop, bool with_shared,
                   Sampler& sampler) const {
   Seen seen;
   if (const auto hit = scene_.nearest(origin, direction, true)) {
-    if (!hit->line) return solid(*hit, direction, with_ambient, sampler);
+    if (!hit->line) return solid(*hit, direction, with_shared, sampler);
     seen.light = tube(*hit);
     return seen;
   }
   const float height = origin.z() - floor_z_;
   if (floor_ && direction.z() < 0.0F && height > 0.0F)
-    return floor(origin + height / -direction.z() * direction, backdrop, with_ambient, sampler);
+    return floor(origin + height / -direction.z() * direction, backdrop, with_shared, sampler);
   seen.light = backdrop;
   seen.empty = true;
   return seen;
 }
 
 /// Light that reaches a floor point over what an empty studio would give it: the backdrop without shadow.
-Seen Tracer::floor(const Vec3f& point, const Vec3f& backdrop, bool with_ambient, Sampler& sampler) const {
+Seen Tracer::floor(const Vec3f& point, const Vec3f& backdrop, bool with_shared, Sampler& sampler) const {
   const Vec3f start = point + scene_.offset() * Vec3f::UnitZ();
   const Vec3f to_key = studio_.sample_key(sampler.next());
   const Vec3f to_sky = sample_cosine(sampler.next());
   const float key = studio_.key_strength() * std::max(0.0F, studio_.key_axis().z());
   const float all = key + studio_.mean_sky();
   const bool key_seen = !scene_.occluded(start, to_key);
-  const bool sky_seen = !with_ambient || !scene_.occluded(start, to_sky);
+  const bool sky_seen = !with_shared || !scene_.occluded(start, to_sky);
   Seen seen;
   if (key_seen) seen.light = (key / all) * backdrop;
   if (sky_seen) seen.ambient = Vec3f::Ones();
@@ -74,7 +77,7 @@ bool Tracer::key_visible(const Hit& hit, const Vec3f& direction) const {
          !scene_.occluded(hit.position + scene_.offset() * hit.face_normal, direction);
 }
 
-Seen Tracer::solid(const Hit& hit, const Vec3f& direction, bool with_ambient, Sampler& sampler) const {
+Seen Tracer::solid(const Hit& hit, const Vec3f& direction, bool with_shared, Sampler& sampler) const {
   const Reflection reflection(hit);
   const Eigen::Matrix3f frame = frame_about(facing_normal(hit, -direction));
   const Vec3f out = frame.transpose() * -direction;
@@ -82,11 +85,16 @@ Seen Tracer::solid(const Hit& hit, const Vec3f& direction, bool with_ambient, Sa
   seen.normal = hit.normal;
   seen.position = hit.position;
   seen.light = key_light(hit, reflection, frame, out, sampler);
-  seen.light += mirror_light(hit, reflection, frame, out, sampler);
+  seen.dull = hit.roughness >= kDullRoughness;
+  if (!seen.dull) {
+    seen.light += mirror_light(hit, reflection, frame, out, sampler);
+  } else if (with_shared) {
+    seen.sheen = mirror_light(hit, reflection, frame, out, sampler);
+  }
   const Eigen::Vector2f xi = sampler.next();
   if (reflection.diffuse.maxCoeff() > 0.0F) {
     seen.matt = reflection.diffuse;
-    if (!with_ambient) return seen;
+    if (!with_shared) return seen;
     const Vec3f in = frame * sample_cosine(xi);
     const Vec3f start = hit.position + scene_.offset() * hit.face_normal;
     if (in.dot(hit.face_normal) > 0.0F) seen.ambient = second_hit(start, in, sampler);

@@ -7,12 +7,15 @@
 
 namespace swarf::render {
 
-/// What a camera ray meets. The light that reaches a matt surface from all around is kept apart: it hardly
-/// changes from pixel to pixel, so that neighbours can share their samples (ambient_filter.h).
+/// What a camera ray meets. The light that reaches a matt surface from all around, and what a dull one
+/// mirrors, is kept apart: it hardly changes from pixel to pixel, so that neighbours can share their samples
+/// (ambient_filter.h).
 struct Seen {
-  Vec3f light = Vec3f::Zero();    ///< linear radiance, without the share of `ambient`
+  Vec3f light = Vec3f::Zero();    ///< linear radiance, without `sheen` and the share of `ambient`
   Vec3f ambient = Vec3f::Zero();  ///< a sample of the light from all around, where one was asked for
   Vec3f matt = Vec3f::Zero();     ///< the share of it that the surface gives back
+  Vec3f sheen = Vec3f::Zero();    ///< a sample of what a dull surface mirrors, where one was asked for
+  bool dull = false;              ///< a surface with `sheen`
   Vec3f normal = Vec3f::Zero(), position = Vec3f::Zero();  ///< of the surface; zero: the backdrop
   bool empty = false;                                      ///< backdrop, or a floor without a trace of shadow
 };
@@ -21,14 +24,15 @@ class Tracer {
  public:
   Tracer(const RayScene& scene, const Studio& studio, const StillOptions& options);
 
-  /// One sample along a camera ray; `backdrop` is what stands behind the drawing there.
-  Seen look(const Vec3f& origin, const Vec3f& direction, const Vec3f& backdrop, bool with_ambient,
+  /// One sample along a camera ray; `backdrop` is what stands behind the drawing there. `with_shared`: with a
+  /// sample of what neighbours share.
+  Seen look(const Vec3f& origin, const Vec3f& direction, const Vec3f& backdrop, bool with_shared,
             Sampler& sampler) const;
 
  private:
-  Seen solid(const Hit& hit, const Vec3f& direction, bool with_ambient, Sampler& sampler) const;
+  Seen solid(const Hit& hit, const Vec3f& direction, bool with_shared, Sampler& sampler) const;
   Vec3f tube(const Hit& hit) const;
-  Seen floor(const Vec3f& point, const Vec3f& backdrop, bool with_ambient, Sampler& sampler) const;
+  Seen floor(const Vec3f& point, const Vec3f& backdrop, bool with_shared, Sampler& sampler) const;
   Vec3f key_light(const Hit& hit, const Reflection& reflection, const Eigen::Matrix3f& frame,
                   const Vec3f& out, Sampler& sampler) const;
   Vec3f mirror_light(const Hit& hit, const Reflection& reflection, const Eigen::Matrix3f& frame,

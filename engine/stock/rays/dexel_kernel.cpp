@@ -3,6 +3,7 @@
 #include <cmath>
 #include <vector>
 
+#include "stock/rays/tile_bounds.h"
 #include "stock/sweep/sweep_distance.h"
 
 namespace swarf::stock {
@@ -64,6 +65,34 @@ SWARF_KERNEL_INLINE void tile_heights(const TileRays& rays, const SweepMap& map,
   }
 }
 
+/// Without the division: s <= top exactly where -z <= top * steepness, and the slack covers both roundings.
+SWARF_KERNEL_INLINE bool plane_reaches(const TileRays& rays, const SweepMap& map, const double* tops) {
+  const PoseRows start = pose_rows(map.R0t, map.tip0), end = pose_rows(map.R1t, map.tip1);
+  const auto below = [&](const PoseRows& p, int n, double top) {
+    const double z = p.zx * (rays.px[n] - p.tx) + p.zy * (rays.py[n] - p.ty) + p.zz * (rays.pz[n] - p.tz);
+    const double steepness = p.zx * rays.nx[n] + p.zy * rays.ny[n] + p.zz * rays.nz[n];
+    return (steepness <= kFlattest) | (-z <= top * steepness);
+  };
+  int reached = 0;
+  for (int n = 0; n < kTileRays; ++n) {
+    const double top = tops[n] + 2.0 * kBoundSlack;
+    reached |= below(start, n, top) | below(end, n, top);
+  }
+  return reached != 0;
+}
+
+bool plane_reaches_baseline(const TileRays& rays, const SweepMap& map, const double* tops) {
+  return plane_reaches(rays, map, tops);
+}
+
+SWARF_X86_64_V3 bool plane_reaches_v3(const TileRays& rays, const SweepMap& map, const double* tops) {
+  return plane_reaches(rays, map, tops);
+}
+
+SWARF_X86_64_V4 bool plane_reaches_v4(const TileRays& rays, const SweepMap& map, const double* tops) {
+  return plane_reaches(rays, map, tops);
+}
+
 void tile_heights_baseline(const TileRays& rays, const SweepMap& map, double radius, TileHeights& out) {
   tile_heights(rays, map, radius, out);
 }
@@ -82,7 +111,8 @@ SWARF_X86_64_V4 void tile_heights_v4(const TileRays& rays, const SweepMap& map, 
 
 std::span<const DexelKernelVariant> dexel_kernel_variants() {
   static const std::vector<DexelKernelVariant> variants = runnable<DexelKernelVariant>(
-      {"x86-64-v4", tile_heights_v4}, {"x86-64-v3", tile_heights_v3}, {"baseline", tile_heights_baseline});
+      {"x86-64-v4", tile_heights_v4, plane_reaches_v4}, {"x86-64-v3", tile_heights_v3, plane_reaches_v3},
+      {"baseline", tile_heights_baseline, plane_reaches_baseline});
   return variants;
 }
 

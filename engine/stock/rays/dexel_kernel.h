@@ -29,9 +29,14 @@ inline constexpr double kNoHeight = 1e300;
 
 using DexelKernel = void (*)(const TileRays& rays, const SweepMap& map, double radius, TileHeights& out);
 
+/// False when the bottom plane passes above `tops` (mm, greatest height with material) on every ray: at a
+/// third of the kernel's cost, which then finds no bound below them.
+using PlaneTest = bool (*)(const TileRays& rays, const SweepMap& map, const double* tops);
+
 struct DexelKernelVariant {
   const char* instruction_set;
   DexelKernel kernel;
+  PlaneTest plane_reaches;
 };
 /// The variants this processor can run, fastest first; all give the same bits.
 std::span<const DexelKernelVariant> dexel_kernel_variants();

@@ -12,7 +12,7 @@
 namespace swarf::stock {
 namespace {
 
-constexpr size_t kSweepsPerRun = 32;
+constexpr size_t kRunsPerStretch = 32, kSweepsPerRun = 32, kSweepsPerGroup = 8;
 constexpr size_t kMapsPerTask = 1024;
 
 /// A tile's rays and their material by component; places beyond the tile's last ray repeat it and are not
@@ -21,7 +21,7 @@ struct Workspace {
   TileRays rays;
   TileHeights found;
   StandingMaterial standing[kTileRays];
-  double tops[kTileRays];  ///< greatest s with material
+  alignas(64) double tops[kTileRays];  ///< greatest s with material
   size_t index[kTileRays];
 };
 
@@ -48,12 +48,26 @@ class TileCut {
   TileCut& operator=(const TileCut&) = delete;
 
   bool misses(const SweepRun& run) const {
-    return run_misses(run, ball_, chain_.cutter) &&
+    return (run_misses(run, ball_, chain_.cutter) || run_above(tile_, run, highest_)) &&
            (extent_above_.empty() || run_misses(run, ball_above_, chain_.cutter));
   }
 
+  /// Calls visit(n) for the runs of the stretches that may meet the tile.
+  template <typename Visit>
+  void each_run(const Visit& visit) const {
+    for (size_t k = 0; k < chain_.stretches.size(); ++k) {
+      if (misses(chain_.stretches[k])) continue;
+      const size_t end = std::min((k + 1) * kRunsPerStretch, chain_.runs.size());
+      for (size_t n = k * kRunsPerStretch; n < end; ++n) visit(n);
+    }
+  }
+
   void cut_by(const SweepRun& run) {
-    for (size_t n = run.begin; n < run.end; ++n) cut_by(n);
+    for (size_t g = run.begin / kSweepsPerGroup; g * kSweepsPerGroup < run.end; ++g) {
+      const SweepRun& group = chain_.groups[g];
+      if (misses(group)) continue;
+      for (size_t n = group.begin; n < group.end; ++n) cut_by(n);
+    }
   }
 
   /// The run whose tip passes nearest to the tile's middle, among those that may meet it; runs.size() when
@@ -62,12 +76,12 @@ class TileCut {
     const Vec3 middle = tile_.origin + tile_.frame.transpose() * (0.5 * (tile_.low + tile_.high));
     size_t nearest = chain_.runs.size();
     double least = std::numeric_limits<double>::infinity();
-    for (size_t n = 0; n < chain_.runs.size(); ++n) {
+    each_run([&](size_t n) {
       const double distance2 = (chain_.runs[n].tip - middle).squaredNorm();
-      if (distance2 >= least || misses(chain_.runs[n])) continue;
+      if (distance2 >= least || misses(chain_.runs[n])) return;
       least = distance2;
       nearest = n;
-    }
+    });
     return nearest;
   }
 
@@ -119,9 +133,10 @@ class TileCut {
     if (!above && (sweep_misses(map, ball_, cutter) || plane_above(tile_, map, highest_))) return;
     if (!above && !chain_.cylinder && pieces_above(tile_, map, cutter, highest_)) return;
     if (!loaded_) load();
+    static const DexelKernelVariant kernel = dexel_kernel_variants().front();
+    if (!kernel.plane_reaches(w_.rays, map, w_.tops)) return;
     pairs_ += kTileRays;
-    static const DexelKernel kernel = dexel_kernel_variants().front().kernel;
-    kernel(w_.rays, map, cutter.radius, w_.found);
+    kernel.kernel(w_.rays, map, cutter.radius, w_.found);
     bool changed = false;
     for (uint32_t n = 0; n < tile_.count; ++n) {
       const double limit = above ? w_.tops[n] : w_.standing[n].height;
@@ -197,10 +212,11 @@ class TileCut {
 
 SweepRun make_run(const SweepChain& chain, size_t begin, size_t end) {
   const Sweep& middle = chain.sweeps[begin + (end - begin) / 2];
-  SweepRun run{begin, end, chain.maps[begin + (end - begin) / 2].R0t, middle.start.tip_W, 0.0, 0.0};
+  SweepRun run{begin, end, chain.maps[begin + (end - begin) / 2].R0t, middle.start.tip_W};
   for (size_t n = begin; n < end; ++n) {
     for (const ToolPose* pose : {&chain.sweeps[n].start, &chain.sweeps[n].end}) {
       run.tip_spread = std::max(run.tip_spread, (pose->tip_W - middle.start.tip_W).norm());
+      run.rise = std::max(run.rise, middle.start.axis_W.dot(middle.start.tip_W - pose->tip_W));
       run.axis_spread = std::max(run.axis_spread, (pose->axis_W - middle.start.axis_W).norm());
     }
   }
@@ -210,13 +226,17 @@ SweepRun make_run(const SweepChain& chain, size_t begin, size_t end) {
 }  // namespace
 
 SweepChain make_chain(std::span<const Sweep> sweeps, const CutterSolid& cutter) {
-  SweepChain chain{sweeps, cutter, std::vector<SweepMap>(sweeps.size()), {}, cutter.is_cylinder()};
+  SweepChain chain{sweeps, cutter, std::vector<SweepMap>(sweeps.size()), {}, {}, {}, cutter.is_cylinder()};
   parallel_chunks(sweeps.size(), kMapsPerTask, [&](size_t begin, size_t end) {
     for (size_t n = begin; n < end; ++n) chain.maps[n] = sweep_map(sweeps[n]);
   });
-  for (size_t n = 0; n < sweeps.size(); n += kSweepsPerRun) {
-    chain.runs.push_back(make_run(chain, n, std::min(n + kSweepsPerRun, sweeps.size())));
-  }
+  const auto divide = [&](size_t length, std::vector<SweepRun>& runs) {
+    for (size_t n = 0; n < sweeps.size(); n += length)
+      runs.push_back(make_run(chain, n, std::min(n + length, sweeps.size())));
+  };
+  divide(kRunsPerStretch * kSweepsPerRun, chain.stretches);
+  divide(kSweepsPerRun, chain.runs);
+  divide(kSweepsPerGroup, chain.groups);
   return chain;
 }
 
@@ -225,9 +245,9 @@ uint64_t cut_tile(const Material& material, size_t tile, const SweepChain& chain
   const size_t first = cut.nearest_run();
   if (first == chain.runs.size()) return 0;
   cut.cut_by(chain.runs[first]);
-  for (size_t n = 0; n < chain.runs.size(); ++n) {
+  cut.each_run([&](size_t n) {
     if (n != first && !cut.misses(chain.runs[n])) cut.cut_by(chain.runs[n]);
-  }
+  });
   return cut.pairs();
 }
 

@@ -60,6 +60,18 @@ bool pieces_above(const RayTile& tile, const SweepMap& map, const CutterSolid& c
   });
 }
 
+bool run_above(const RayTile& tile, const SweepRun& run, double highest) {
+  const Vec3 axis = run.Rt.row(2).transpose(), a = tile.frame * axis;
+  if (a.z() <= tile.normal_spread + run.axis_spread) return false;
+  // plane_bound of any pose of the run: axis' . (x - tip') <= axis . (x - tip) + |axis' - axis| |x - tip'|
+  // + axis . (tip - tip').
+  const Vec3 half = 0.5 * (tile.high - tile.low);
+  const Vec3 offset = tile.frame * (tile.origin - run.tip) + tile.low + half;
+  const double farthest = offset.norm() + half.norm() + run.tip_spread;
+  const double nearest = a.dot(offset) + a.cwiseAbs().dot(half) + run.axis_spread * farthest + run.rise;
+  return nearest <= 0.0 && -nearest > highest + kBoundSlack;
+}
+
 bool plane_above(const RayTile& tile, const SweepMap& map, double highest) {
   return std::min(plane_bound(tile, map.R0t.row(2).transpose(), map.tip0),
                   plane_bound(tile, map.R1t.row(2).transpose(), map.tip1)) > highest + kBoundSlack;

@@ -19,6 +19,7 @@ struct SweepRun {
   Mat3 Rt = Mat3::Identity();
   Vec3 tip = Vec3::Zero();
   double tip_spread = 0.0, axis_spread = 0.0;  ///< mm; |axis - axis of the middle|
+  double rise = 0.0;                           ///< of a tip below the middle one along the middle axis, mm
 };
 
 /// From which to which s some rays of a tile have material; none when low > high.
@@ -50,6 +51,10 @@ inline bool sweep_misses(const SweepMap& map, const Ball& ball, const CutterSoli
   const double travel = (map.end(ball.centre) - X).norm();
   return cutter_distance(X, cutter) - travel > ball.radius + kBoundSlack;
 }
+
+/// The bottom planes of all the run's sweeps leave more than `highest` on every ray of the tile, which all
+/// leave on the tool's side.
+bool run_above(const RayTile& tile, const SweepRun& run, double highest);
 
 /// The bottom plane leaves more than `highest` on every ray of the tile, which all leave on the tool's side.
 bool plane_above(const RayTile& tile, const SweepMap& map, double highest);

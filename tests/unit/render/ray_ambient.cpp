@@ -109,6 +109,32 @@ TEST(AmbientShare, WhatIsNotMattIsLeftAloneAndGivesNothing) {
   EXPECT_LT(pixels[metal + 1].ambient.x(), 1.0F);
 }
 
+/// What dull surfaces mirror is shared as the ambient light is; a pixel without a sample of it takes the
+/// others'.
+TEST(AmbientShare, SheenIsSharedByDullSurfacesAlone) {
+  std::vector<PixelLight> pixels = noisy_plane();
+  for (PixelLight& one : pixels) {
+    one.dull = 1.0F;
+    one.knows_sheen = true;
+    std::swap(one.sheen, one.ambient);
+  }
+  const size_t unknown = 15 * kWidth + 20, mirror = unknown + 5, lone = unknown - 5;
+  pixels[unknown].sheen.setZero();
+  pixels[unknown].knows_sheen = false;
+  pixels[mirror].dull = 0.0F;
+  pixels[mirror].knows_sheen = false;
+  pixels[mirror].sheen.setConstant(1000.0F);
+  pixels[lone].matt.setZero();  // all metal
+  share(pixels);
+  EXPECT_EQ(pixels[mirror].sheen.x(), 1000.0F);
+  EXPECT_NEAR(pixels[unknown].sheen.x(), kTruth, 0.1 * kTruth);
+  EXPECT_NEAR(pixels[lone].sheen.x(), kTruth, 0.1 * kTruth);
+  EXPECT_EQ(pixels[lone].ambient.x(), 0.0F);
+  for (PixelLight& one : pixels) std::swap(one.sheen, one.ambient);
+  pixels[mirror].ambient.setConstant(kTruth);
+  EXPECT_LT(noise_of(pixels), kNoise / std::sqrt(3.0) / 8.0);
+}
+
 TEST(AmbientShare, TheSameForAnyNumberOfThreads) {
   std::vector<PixelLight> one = noisy_plane(), many = one;
   set_thread_count(1);

@@ -12,6 +12,7 @@
 #include "dome.h"
 #include "stock/rays/dexel_kernel.h"
 #include "stock/rays/ray_height.h"
+#include "stock/rays/tile_bounds.h"
 #include "stock_test_support.h"
 #include "support/scratch.h"
 
@@ -69,6 +70,39 @@ TEST(DexelKernel, EveryInstructionSetGivesTheSameBits) {
   }
   EXPECT_GT(exact, 20000);
   EXPECT_GT(open, 20000);
+}
+
+/// What the cheap test rules out, no ray of the kernel reaches; and it rules out what it can.
+TEST(DexelKernel, ThePlaneTestRulesOutNothingThatTheKernelReaches) {
+  constexpr uint64_t kSeed = 31;
+  Rng rng(kSeed);
+  int out = 0, kept = 0;
+  for (int n = 0; n < 4000; ++n) {
+    TileRays rays = random_rays(rng);
+    for (double& z : rays.pz) z -= 2.0;
+    for (double& z : rays.nz) z = std::max(z, 0.05);
+    const auto pose = [&] {
+      return ToolPose{rng.direction(),
+                      (Vec3::UnitZ() + rng.uniform(0.0, 0.2) * rng.direction()).normalized()};
+    };
+    const SweepMap map = sweep_map({pose(), pose(), 0});
+    TileHeights heights;
+    dexel_kernel_variants().back().kernel(rays, map, kCutter.radius, heights);
+    // Tops just below the bounds, at them, or anywhere.
+    double tops[kTileRays];
+    const int kind = n % 3;
+    for (int k = 0; k < kTileRays; ++k)
+      tops[k] = kind < 2 ? heights.bound[k] - (kind == 0 ? 1e-6 : 0.0) : rng.uniform(-3.0, 1.0);
+    bool reached = false;
+    for (int k = 0; k < kTileRays; ++k) reached |= heights.bound[k] <= tops[k] + kBoundSlack;
+    for (const DexelKernelVariant& variant : dexel_kernel_variants()) {
+      const bool found = variant.plane_reaches(rays, map, tops);
+      ASSERT_TRUE(found || !reached) << variant.instruction_set << ", seed " << kSeed << " case " << n;
+      ++(found ? kept : out);
+    }
+  }
+  EXPECT_GT(out, 200);
+  EXPECT_GT(kept, 200);
 }
 
 TEST(SurfaceDexels, DesignOutsideTheStockIsMissingMaterial) {
