@@ -1,6 +1,8 @@
 #include "stock/level_set/lane_run.h"
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -201,26 +203,88 @@ size_t run_length(const std::vector<SweptPiece>& pieces, size_t first, double sp
   return count;
 }
 
+/// Judges leaves by one run, some at a time: their answers do not wait for each other then.
+class RunJudge {
+ public:
+  RunJudge(LevelSet& set, const LaneRun& run, uint32_t index, std::vector<LeafPair>& pairs)
+      : set_(set), run_(run), index_(index), pairs_(pairs), extent_(set) {}
+
+  void ask(size_t leaf, const Vec3& centre) {
+    if (mark(leaf).load(std::memory_order_relaxed) == LeafMap::kSwallowed) return;
+    leaves_[count_] = static_cast<uint32_t>(leaf);
+    queries_[count_] = run_.query(extent_, centre, set_.map.floors[leaf]);
+    if (++count_ == kAtATime) answer();
+  }
+
+  void answer() {
+    static const LaneKernel kernel = lane_kernel_variants().front().kernel;
+    for (size_t n = 0; n < count_; ++n) kernel(run_.lanes, run_.piece, queries_[n], answers_[n]);
+    for (size_t n = 0; n < count_; ++n) take(leaves_[n], answers_[n]);
+    count_ = 0;
+  }
+
+ private:
+  static constexpr size_t kAtATime = 16;
+
+  std::atomic_ref<uint32_t> mark(size_t leaf) { return std::atomic_ref<uint32_t>(set_.map.marks[leaf]); }
+
+  void take(uint32_t leaf, const LaneAnswer& answer) {
+    const bool swallows = (answer.swallows & run_.all()) != 0;
+    const uint32_t open = answer.open & run_.all();
+    if (!swallows && open == 0) return;
+    if (swallows) mark(leaf).store(LeafMap::kSwallowed, std::memory_order_relaxed);
+    LeafPair& pair = pairs_.emplace_back();
+    pair.leaf = leaf;
+    pair.run = index_;
+    pair.lane = open != 0 ? static_cast<uint32_t>(__builtin_ctz(open)) : 0;
+    for (uint32_t left = open; left != 0; left &= left - 1) {
+      const auto lane = static_cast<uint32_t>(__builtin_ctz(left));
+      if (answer.depth.lane[lane] > answer.depth.lane[pair.lane]) pair.lane = lane;
+    }
+    pair.depth = answer.depth.lane[pair.lane];
+  }
+
+  LevelSet& set_;
+  const LaneRun& run_;
+  uint32_t index_;
+  std::vector<LeafPair>& pairs_;
+  LeafExtent extent_;
+  size_t count_ = 0;
+  std::array<uint32_t, kAtATime> leaves_;
+  std::array<LaneQuery, kAtATime> queries_;
+  std::array<LaneAnswer, kAtATime> answers_;
+};
+
 }  // namespace
 
 void LaneRun::set_lane(size_t lane, const SweepMap& map) {
+  const Mat3 middle = 0.5 * (map.R0t + map.R1t), change = map.R1t - map.R0t;
+  const Vec3 start = map.R0t * (origin - map.tip0), end = map.R1t * (origin - map.tip1);
+  const Vec3 middle_shift = 0.5 * (start + end), change_shift = end - start;
+  const auto set = [&](LaneFloats& floats, double value) { floats.lane[lane] = static_cast<float>(value); };
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) {
-      lanes.R0t[row][column].lane[lane] = static_cast<float>(map.R0t(row, column));
-      lanes.R1t[row][column].lane[lane] = static_cast<float>(map.R1t(row, column));
+      set(lanes.middle[row][column], middle(row, column));
+      set(lanes.change[row][column], change(row, column));
     }
-    lanes.tip0[row].lane[lane] = static_cast<float>(map.tip0[row] - origin[row]);
-    lanes.tip1[row].lane[lane] = static_cast<float>(map.tip1[row] - origin[row]);
+    set(lanes.middle_shift[row], middle_shift[row]);
+    set(lanes.change_shift[row], change_shift[row]);
   }
+  // A direction differs by half the change's norm, which is its Frobenius norm at most; three components
+  // together by sqrt(3) of that.
+  set(lanes.turn, 0.5 * std::sqrt(3.0) * change.norm());
 }
 
-LaneQuery LaneRun::query(const LevelSet& set, const Vec3& centre, const LeafFloor& floor) const {
+LeafExtent::LeafExtent(const LevelSet& set)
+    : half(static_cast<float>(0.5 * (kLeafSide - 1) * set.voxel)), reach(static_cast<float>(reach_of(set))) {}
+
+LaneQuery LaneRun::query(const LeafExtent& extent, const Vec3& centre, const LeafFloor& floor) const {
   const Eigen::Vector3f at = (centre - origin).cast<float>();
   return {{at.x(), at.y(), at.z()},
           floor.value,
           {floor.slope[0], floor.slope[1], floor.slope[2]},
-          static_cast<float>(0.5 * (kLeafSide - 1) * set.voxel),
-          static_cast<float>(reach_of(set))};
+          extent.half,
+          extent.reach};
 }
 
 std::vector<LaneRun> make_runs(const LevelSet& set, const std::vector<SweptPiece>& pieces) {
@@ -244,22 +308,10 @@ std::vector<LaneRun> make_runs(const LevelSet& set, const std::vector<SweptPiece
   return runs;
 }
 
-void gather_leaves(const LevelSet& set, const LaneRun& run, size_t index, std::vector<LeafPair>& pairs) {
-  static const LaneKernel kernel = lane_kernel_variants().front().kernel;
-  LaneAnswer answer;
-  visit_leaves(set, run.around, [&](size_t leaf, const Vec3& centre) {
-    kernel(run.lanes, run.piece, run.query(set, centre, set.map.floors[leaf]), answer);
-    const bool swallows = (answer.swallows & run.all()) != 0;
-    const uint32_t open = answer.open & run.all();
-    if (!swallows && open == 0) return;
-    LeafPair& pair = pairs.emplace_back(leaf, index, swallows);
-    pair.lane = open != 0 ? static_cast<uint32_t>(__builtin_ctz(open)) : 0;
-    for (uint32_t left = open; left != 0; left &= left - 1) {
-      const auto lane = static_cast<uint32_t>(__builtin_ctz(left));
-      if (answer.depth.lane[lane] > answer.depth.lane[pair.lane]) pair.lane = lane;
-    }
-    pair.depth = answer.depth.lane[pair.lane];
-  });
+void gather_leaves(LevelSet& set, const LaneRun& run, size_t index, std::vector<LeafPair>& pairs) {
+  RunJudge judge(set, run, static_cast<uint32_t>(index), pairs);
+  visit_leaves(set, run.around, [&](size_t leaf, const Vec3& centre) { judge.ask(leaf, centre); });
+  judge.answer();
 }
 
 }  // namespace swarf::stock
