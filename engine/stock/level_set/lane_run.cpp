@@ -20,8 +20,23 @@ double reach_of(const LevelSet& set) {
   return set.leaf_radius() + set.band();
 }
 
+/// How far beyond a piece a leaf's centre may lie that it changes, mm.
+struct Reach {
+  double along = 0.0, across = 0.0;     ///< from the axis's ends and from the greatest radius
+  double half_leaf = 0.0, under = 0.0;  ///< below the bottom: half_leaf in every direction of W, and `under`
+};
+
+Reach reach_around(const LevelSet& set, const cutter::ConvexPiece& piece, double bow) {
+  const double reach = reach_of(set) + bow;
+  // A cylinder's F tells distances across and along the axis apart.
+  if (piece.is_cylinder()) return {reach, reach, 0.5 * (kLeafSide - 1) * set.voxel, set.band() + bow};
+  // F is a distance to planes: beyond an edge it reaches farther than a distance, at right angles by sqrt(2).
+  return {0.0, std::sqrt(2.0) * reach, 0.0, reach};
+}
+
+/// Below which no leaf's centre may lie. Poses of one attitude have one plane.
 std::vector<Neighbourhood::Plane> bottom_planes(const std::vector<ToolPose>& poses, double low,
-                                                double reach) {
+                                                const Reach& reach) {
   // Flatter planes cut little off a vertical line, and the quotient grows coarse.
   constexpr double kUpright = 0.1;
   std::vector<Neighbourhood::Plane> planes;
@@ -29,22 +44,27 @@ std::vector<Neighbourhood::Plane> bottom_planes(const std::vector<ToolPose>& pos
     const Vec3& a = pose.axis_W;
     if (a.z() < kUpright) return {};
     const double x = -a.x() / a.z(), y = -a.y() / a.z();
-    const double z = pose.tip_W.dot(a) / a.z() - (reach - low) / a.z();
-    planes.push_back({z, x, y});
+    const double below = reach.half_leaf * a.cwiseAbs().sum() + reach.under - low;
+    const double z = (pose.tip_W.dot(a) - below) / a.z();
+    if (!planes.empty() && planes.back().x == x && planes.back().y == y) {
+      planes.back().z = std::min(planes.back().z, z);
+    } else {
+      planes.push_back({z, x, y});
+    }
   }
   return planes;
 }
 
-/// Fills the rectangle around the piece at all poses, enlarged by `margin`.
-void set_rectangle(Neighbourhood& around, const std::vector<ToolPose>& poses,
-                   const cutter::ConvexPiece& piece, double margin) {
+/// Fills the rectangle around the axis between `bottom` and `top` at all poses, enlarged by `margin`.
+void set_rectangle(Neighbourhood& around, const std::vector<ToolPose>& poses, double bottom, double top,
+                   double margin) {
   const Vec2 way = (poses.back().tip_W - poses.front().tip_W).head<2>();
   if (way.norm() > 0.0) around.along = way.normalized();
   const Vec2 across(-around.along.y(), around.along.x());
   constexpr double kFar = std::numeric_limits<double>::infinity();
   Vec2 low(kFar, kFar), high(-kFar, -kFar);
   for (const ToolPose& pose : poses) {
-    for (const double z : {piece.low, piece.high}) {
+    for (const double z : {bottom, top}) {
       const Vec2 p = (pose.tip_W + z * pose.axis_W).head<2>();
       const Vec2 local(p.dot(around.along), p.dot(across));
       low = low.cwiseMin(local);
@@ -59,27 +79,28 @@ void set_rectangle(Neighbourhood& around, const std::vector<ToolPose>& poses,
 
 /// Around the poses and everything that moves straight between neighbours of them; `bow`: how far the motion
 /// strays from straight, mm.
-Neighbourhood neighbourhood(const std::vector<ToolPose>& poses, const cutter::ConvexPiece& piece,
-                            double reach, double bow) {
+Neighbourhood neighbourhood(const LevelSet& set, const std::vector<ToolPose>& poses,
+                            const cutter::ConvexPiece& piece, double bow) {
   Vec3 tip = Vec3::Zero(), axis = Vec3::Zero();
   for (const ToolPose& pose : poses) {
     tip += pose.tip_W / static_cast<double>(poses.size());
     axis += pose.axis_W / static_cast<double>(poses.size());
   }
+  const Reach reach = reach_around(set, piece, bow);
+  const double low = piece.low - reach.along, high = piece.high + reach.along;
+  const double margin = piece.radius + reach.across;
   double stray = 0.0;
   for (const ToolPose& pose : poses) {
-    const double turn = std::max(std::abs(piece.low), std::abs(piece.high)) * (pose.axis_W - axis).norm();
+    const double turn = std::max(std::abs(low), std::abs(high)) * (pose.axis_W - axis).norm();
     stray = std::max(stray, (pose.tip_W - tip).norm() + turn);
   }
-  // F is a distance to planes: beyond an edge it reaches farther than a distance, at right angles by sqrt(2).
-  const double margin = piece.radius + std::sqrt(2.0) * (reach + bow);
   Neighbourhood around;
-  set_rectangle(around, poses, piece, margin);
-  around.foot = tip + piece.low * axis;
+  set_rectangle(around, poses, low, high, margin);
+  around.foot = tip + low * axis;
   around.axis = axis;
-  around.length = piece.high - piece.low;
+  around.length = high - low;
   around.radius = margin + stray;
-  around.bottoms = bottom_planes(poses, piece.low, reach + bow);
+  around.bottoms = bottom_planes(poses, piece.low, reach);
   return around;
 }
 
@@ -172,7 +193,7 @@ void visit_leaves(const LevelSet& set, const Neighbourhood& around, Visit visit)
   }
 }
 
-Neighbourhood neighbourhood(std::span<const SweptPiece> pieces, double reach) {
+Neighbourhood neighbourhood(const LevelSet& set, std::span<const SweptPiece> pieces) {
   const cutter::ConvexPiece& piece = *pieces.front().piece;
   const double lever = std::hypot(std::max(std::abs(piece.low), std::abs(piece.high)), piece.radius);
   std::vector<ToolPose> poses;
@@ -182,7 +203,7 @@ Neighbourhood neighbourhood(std::span<const SweptPiece> pieces, double reach) {
     poses.push_back({swept.map.tip1, swept.map.R1t.row(2)});
     bow = std::max(bow, motion_bound(swept.map, lever));
   }
-  return neighbourhood(poses, piece, reach, bow);
+  return neighbourhood(set, poses, piece, bow);
 }
 
 /// How many pieces from `first` on make one run: the same convex piece, and all within `spread` of each
@@ -302,7 +323,7 @@ std::vector<LaneRun> make_runs(const LevelSet& set, const std::vector<SweptPiece
       run.origin = own.front().map.tip0;
       run.piece = lane_piece(*own.front().piece);
       for (size_t lane = 0; lane < kLanes; ++lane) run.set_lane(lane, own[std::min(lane, run.count - 1)].map);
-      run.around = neighbourhood(own, reach_of(set));
+      run.around = neighbourhood(set, own);
     }
   });
   return runs;

@@ -25,7 +25,7 @@ namespace {
 
 /// Sweeps that are applied together: of more of them a leaf meets its deepest sweep early, and fewer evaluate
 /// it. As many as leave room for `kMostPairs` pairs of a run and a leaf.
-constexpr size_t kLeastBatch = 512, kMostBatch = 2048;
+constexpr size_t kLeastBatch = 512, kMostBatch = 4096;
 constexpr double kMostPairs = 2.5e5;
 constexpr size_t kRunsPerTask = 1;
 constexpr size_t kGroupsPerTask = 32;
