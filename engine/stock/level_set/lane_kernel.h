@@ -19,11 +19,14 @@ struct alignas(kLanes * sizeof(float)) LaneFloats {
   float lane[kLanes];
 };
 
-/// Maps into the tool frame (sweep_map.h) by component; tips relative to the run's origin. Lanes beyond the
-/// last sweep repeat it.
+/// Maps into the tool frame (sweep_map.h) by component, of a place relative to the run's origin: where it is
+/// at half time, and how that changes from the start to the end. Lanes beyond the last sweep repeat it.
 struct Lanes {
-  LaneFloats R0t[3][3], R1t[3][3];  ///< [row][column]
-  LaneFloats tip0[3], tip1[3];      ///< mm
+  LaneFloats middle[3][3], change[3][3];        ///< [row][column]
+  LaneFloats middle_shift[3], change_shift[3];  ///< mm
+  /// By how much the sum of the components of a direction in W that is fixed in the tool frame, by magnitude,
+  /// may differ at both ends from that at half time.
+  LaneFloats turn;
 };
 
 /// A convex piece by components.

@@ -1,6 +1,8 @@
 #include "stock/level_set/lane_run.h"
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -18,8 +20,23 @@ double reach_of(const LevelSet& set) {
   return set.leaf_radius() + set.band();
 }
 
+/// How far beyond a piece a leaf's centre may lie that it changes, mm.
+struct Reach {
+  double along = 0.0, across = 0.0;     ///< from the axis's ends and from the greatest radius
+  double half_leaf = 0.0, under = 0.0;  ///< below the bottom: half_leaf in every direction of W, and `under`
+};
+
+Reach reach_around(const LevelSet& set, const cutter::ConvexPiece& piece, double bow) {
+  const double reach = reach_of(set) + bow;
+  // A cylinder's F tells distances across and along the axis apart.
+  if (piece.is_cylinder()) return {reach, reach, 0.5 * (kLeafSide - 1) * set.voxel, set.band() + bow};
+  // F is a distance to planes: beyond an edge it reaches farther than a distance, at right angles by sqrt(2).
+  return {0.0, std::sqrt(2.0) * reach, 0.0, reach};
+}
+
+/// Below which no leaf's centre may lie. Poses of one attitude have one plane.
 std::vector<Neighbourhood::Plane> bottom_planes(const std::vector<ToolPose>& poses, double low,
-                                                double reach) {
+                                                const Reach& reach) {
   // Flatter planes cut little off a vertical line, and the quotient grows coarse.
   constexpr double kUpright = 0.1;
   std::vector<Neighbourhood::Plane> planes;
@@ -27,22 +44,27 @@ std::vector<Neighbourhood::Plane> bottom_planes(const std::vector<ToolPose>& pos
     const Vec3& a = pose.axis_W;
     if (a.z() < kUpright) return {};
     const double x = -a.x() / a.z(), y = -a.y() / a.z();
-    const double z = pose.tip_W.dot(a) / a.z() - (reach - low) / a.z();
-    planes.push_back({z, x, y});
+    const double below = reach.half_leaf * a.cwiseAbs().sum() + reach.under - low;
+    const double z = (pose.tip_W.dot(a) - below) / a.z();
+    if (!planes.empty() && planes.back().x == x && planes.back().y == y) {
+      planes.back().z = std::min(planes.back().z, z);
+    } else {
+      planes.push_back({z, x, y});
+    }
   }
   return planes;
 }
 
-/// Fills the rectangle around the piece at all poses, enlarged by `margin`.
-void set_rectangle(Neighbourhood& around, const std::vector<ToolPose>& poses,
-                   const cutter::ConvexPiece& piece, double margin) {
+/// Fills the rectangle around the axis between `bottom` and `top` at all poses, enlarged by `margin`.
+void set_rectangle(Neighbourhood& around, const std::vector<ToolPose>& poses, double bottom, double top,
+                   double margin) {
   const Vec2 way = (poses.back().tip_W - poses.front().tip_W).head<2>();
   if (way.norm() > 0.0) around.along = way.normalized();
   const Vec2 across(-around.along.y(), around.along.x());
   constexpr double kFar = std::numeric_limits<double>::infinity();
   Vec2 low(kFar, kFar), high(-kFar, -kFar);
   for (const ToolPose& pose : poses) {
-    for (const double z : {piece.low, piece.high}) {
+    for (const double z : {bottom, top}) {
       const Vec2 p = (pose.tip_W + z * pose.axis_W).head<2>();
       const Vec2 local(p.dot(around.along), p.dot(across));
       low = low.cwiseMin(local);
@@ -57,27 +79,28 @@ void set_rectangle(Neighbourhood& around, const std::vector<ToolPose>& poses,
 
 /// Around the poses and everything that moves straight between neighbours of them; `bow`: how far the motion
 /// strays from straight, mm.
-Neighbourhood neighbourhood(const std::vector<ToolPose>& poses, const cutter::ConvexPiece& piece,
-                            double reach, double bow) {
+Neighbourhood neighbourhood(const LevelSet& set, const std::vector<ToolPose>& poses,
+                            const cutter::ConvexPiece& piece, double bow) {
   Vec3 tip = Vec3::Zero(), axis = Vec3::Zero();
   for (const ToolPose& pose : poses) {
     tip += pose.tip_W / static_cast<double>(poses.size());
     axis += pose.axis_W / static_cast<double>(poses.size());
   }
+  const Reach reach = reach_around(set, piece, bow);
+  const double low = piece.low - reach.along, high = piece.high + reach.along;
+  const double margin = piece.radius + reach.across;
   double stray = 0.0;
   for (const ToolPose& pose : poses) {
-    const double turn = std::max(std::abs(piece.low), std::abs(piece.high)) * (pose.axis_W - axis).norm();
+    const double turn = std::max(std::abs(low), std::abs(high)) * (pose.axis_W - axis).norm();
     stray = std::max(stray, (pose.tip_W - tip).norm() + turn);
   }
-  // F is a distance to planes: beyond an edge it reaches farther than a distance, at right angles by sqrt(2).
-  const double margin = piece.radius + std::sqrt(2.0) * (reach + bow);
   Neighbourhood around;
-  set_rectangle(around, poses, piece, margin);
-  around.foot = tip + piece.low * axis;
+  set_rectangle(around, poses, low, high, margin);
+  around.foot = tip + low * axis;
   around.axis = axis;
-  around.length = piece.high - piece.low;
+  around.length = high - low;
   around.radius = margin + stray;
-  around.bottoms = bottom_planes(poses, piece.low, reach + bow);
+  around.bottoms = bottom_planes(poses, piece.low, reach);
   return around;
 }
 
@@ -170,7 +193,7 @@ void visit_leaves(const LevelSet& set, const Neighbourhood& around, Visit visit)
   }
 }
 
-Neighbourhood neighbourhood(std::span<const SweptPiece> pieces, double reach) {
+Neighbourhood neighbourhood(const LevelSet& set, std::span<const SweptPiece> pieces) {
   const cutter::ConvexPiece& piece = *pieces.front().piece;
   const double lever = std::hypot(std::max(std::abs(piece.low), std::abs(piece.high)), piece.radius);
   std::vector<ToolPose> poses;
@@ -180,7 +203,7 @@ Neighbourhood neighbourhood(std::span<const SweptPiece> pieces, double reach) {
     poses.push_back({swept.map.tip1, swept.map.R1t.row(2)});
     bow = std::max(bow, motion_bound(swept.map, lever));
   }
-  return neighbourhood(poses, piece, reach, bow);
+  return neighbourhood(set, poses, piece, bow);
 }
 
 /// How many pieces from `first` on make one run: the same convex piece, and all within `spread` of each
@@ -201,26 +224,88 @@ size_t run_length(const std::vector<SweptPiece>& pieces, size_t first, double sp
   return count;
 }
 
+/// Judges leaves by one run, some at a time: their answers do not wait for each other then.
+class RunJudge {
+ public:
+  RunJudge(LevelSet& set, const LaneRun& run, uint32_t index, std::vector<LeafPair>& pairs)
+      : set_(set), run_(run), index_(index), pairs_(pairs), extent_(set) {}
+
+  void ask(size_t leaf, const Vec3& centre) {
+    if (mark(leaf).load(std::memory_order_relaxed) == LeafMap::kSwallowed) return;
+    leaves_[count_] = static_cast<uint32_t>(leaf);
+    queries_[count_] = run_.query(extent_, centre, set_.map.floors[leaf]);
+    if (++count_ == kAtATime) answer();
+  }
+
+  void answer() {
+    static const LaneKernel kernel = lane_kernel_variants().front().kernel;
+    for (size_t n = 0; n < count_; ++n) kernel(run_.lanes, run_.piece, queries_[n], answers_[n]);
+    for (size_t n = 0; n < count_; ++n) take(leaves_[n], answers_[n]);
+    count_ = 0;
+  }
+
+ private:
+  static constexpr size_t kAtATime = 16;
+
+  std::atomic_ref<uint32_t> mark(size_t leaf) { return std::atomic_ref<uint32_t>(set_.map.marks[leaf]); }
+
+  void take(uint32_t leaf, const LaneAnswer& answer) {
+    const bool swallows = (answer.swallows & run_.all()) != 0;
+    const uint32_t open = answer.open & run_.all();
+    if (!swallows && open == 0) return;
+    if (swallows) mark(leaf).store(LeafMap::kSwallowed, std::memory_order_relaxed);
+    LeafPair& pair = pairs_.emplace_back();
+    pair.leaf = leaf;
+    pair.run = index_;
+    pair.lane = open != 0 ? static_cast<uint32_t>(__builtin_ctz(open)) : 0;
+    for (uint32_t left = open; left != 0; left &= left - 1) {
+      const auto lane = static_cast<uint32_t>(__builtin_ctz(left));
+      if (answer.depth.lane[lane] > answer.depth.lane[pair.lane]) pair.lane = lane;
+    }
+    pair.depth = answer.depth.lane[pair.lane];
+  }
+
+  LevelSet& set_;
+  const LaneRun& run_;
+  uint32_t index_;
+  std::vector<LeafPair>& pairs_;
+  LeafExtent extent_;
+  size_t count_ = 0;
+  std::array<uint32_t, kAtATime> leaves_;
+  std::array<LaneQuery, kAtATime> queries_;
+  std::array<LaneAnswer, kAtATime> answers_;
+};
+
 }  // namespace
 
 void LaneRun::set_lane(size_t lane, const SweepMap& map) {
+  const Mat3 middle = 0.5 * (map.R0t + map.R1t), change = map.R1t - map.R0t;
+  const Vec3 start = map.R0t * (origin - map.tip0), end = map.R1t * (origin - map.tip1);
+  const Vec3 middle_shift = 0.5 * (start + end), change_shift = end - start;
+  const auto set = [&](LaneFloats& floats, double value) { floats.lane[lane] = static_cast<float>(value); };
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) {
-      lanes.R0t[row][column].lane[lane] = static_cast<float>(map.R0t(row, column));
-      lanes.R1t[row][column].lane[lane] = static_cast<float>(map.R1t(row, column));
+      set(lanes.middle[row][column], middle(row, column));
+      set(lanes.change[row][column], change(row, column));
     }
-    lanes.tip0[row].lane[lane] = static_cast<float>(map.tip0[row] - origin[row]);
-    lanes.tip1[row].lane[lane] = static_cast<float>(map.tip1[row] - origin[row]);
+    set(lanes.middle_shift[row], middle_shift[row]);
+    set(lanes.change_shift[row], change_shift[row]);
   }
+  // A direction differs by half the change's norm, which is its Frobenius norm at most; three components
+  // together by sqrt(3) of that.
+  set(lanes.turn, 0.5 * std::sqrt(3.0) * change.norm());
 }
 
-LaneQuery LaneRun::query(const LevelSet& set, const Vec3& centre, const LeafFloor& floor) const {
+LeafExtent::LeafExtent(const LevelSet& set)
+    : half(static_cast<float>(0.5 * (kLeafSide - 1) * set.voxel)), reach(static_cast<float>(reach_of(set))) {}
+
+LaneQuery LaneRun::query(const LeafExtent& extent, const Vec3& centre, const LeafFloor& floor) const {
   const Eigen::Vector3f at = (centre - origin).cast<float>();
   return {{at.x(), at.y(), at.z()},
           floor.value,
           {floor.slope[0], floor.slope[1], floor.slope[2]},
-          static_cast<float>(0.5 * (kLeafSide - 1) * set.voxel),
-          static_cast<float>(reach_of(set))};
+          extent.half,
+          extent.reach};
 }
 
 std::vector<LaneRun> make_runs(const LevelSet& set, const std::vector<SweptPiece>& pieces) {
@@ -238,28 +323,16 @@ std::vector<LaneRun> make_runs(const LevelSet& set, const std::vector<SweptPiece
       run.origin = own.front().map.tip0;
       run.piece = lane_piece(*own.front().piece);
       for (size_t lane = 0; lane < kLanes; ++lane) run.set_lane(lane, own[std::min(lane, run.count - 1)].map);
-      run.around = neighbourhood(own, reach_of(set));
+      run.around = neighbourhood(set, own);
     }
   });
   return runs;
 }
 
-void gather_leaves(const LevelSet& set, const LaneRun& run, size_t index, std::vector<LeafPair>& pairs) {
-  static const LaneKernel kernel = lane_kernel_variants().front().kernel;
-  LaneAnswer answer;
-  visit_leaves(set, run.around, [&](size_t leaf, const Vec3& centre) {
-    kernel(run.lanes, run.piece, run.query(set, centre, set.map.floors[leaf]), answer);
-    const bool swallows = (answer.swallows & run.all()) != 0;
-    const uint32_t open = answer.open & run.all();
-    if (!swallows && open == 0) return;
-    LeafPair& pair = pairs.emplace_back(leaf, index, swallows);
-    pair.lane = open != 0 ? static_cast<uint32_t>(__builtin_ctz(open)) : 0;
-    for (uint32_t left = open; left != 0; left &= left - 1) {
-      const auto lane = static_cast<uint32_t>(__builtin_ctz(left));
-      if (answer.depth.lane[lane] > answer.depth.lane[pair.lane]) pair.lane = lane;
-    }
-    pair.depth = answer.depth.lane[pair.lane];
-  });
+void gather_leaves(LevelSet& set, const LaneRun& run, size_t index, std::vector<LeafPair>& pairs) {
+  RunJudge judge(set, run, static_cast<uint32_t>(index), pairs);
+  visit_leaves(set, run.around, [&](size_t leaf, const Vec3& centre) { judge.ask(leaf, centre); });
+  judge.answer();
 }
 
 }  // namespace swarf::stock

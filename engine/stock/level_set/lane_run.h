@@ -27,6 +27,12 @@ struct Neighbourhood {
   std::vector<Plane> bottoms;  ///< empty when a pose lies too flat for them to help
 };
 
+/// What all leaves of a level set have alike, mm.
+struct LeafExtent {
+  float half, reach;  ///< LaneQuery's
+  explicit LeafExtent(const LevelSet& set);
+};
+
 /// Up to kLanes consecutive swept pieces of the same convex piece.
 struct LaneRun {
   size_t first = 0, count = 0;  ///< in the batch's pieces
@@ -36,35 +42,22 @@ struct LaneRun {
   Neighbourhood around;
 
   void set_lane(size_t lane, const SweepMap& map);
-  LaneQuery query(const LevelSet& set, const Vec3& centre, const LeafFloor& floor) const;
+  LaneQuery query(const LeafExtent& extent, const Vec3& centre, const LeafFloor& floor) const;
   uint32_t all() const { return (1U << count) - 1U; }
 };
 
 /// Cuts a batch's pieces into runs; they follow each other as the path does, one convex piece after another.
 std::vector<LaneRun> make_runs(const LevelSet& set, const std::vector<SweptPiece>& pieces);
 
-/// A leaf position and a run that may change it. Sorted, those of a leaf stand together, and a swallowed leaf
-/// shows it first.
-class LeafPair {
- public:
-  LeafPair() = default;
-  LeafPair(size_t leaf, size_t run, bool swallows)
-      : key_(static_cast<uint64_t>(leaf) << 32 | (swallows ? 0 : kReaches) | run) {}
-  size_t leaf() const { return key_ >> 32; }
-  size_t run() const { return key_ & (kReaches - 1); }
-  /// One of the lanes leaves nothing of the leaf.
-  bool swallows() const { return (key_ & kReaches) == 0; }
-  bool operator<(const LeafPair& other) const { return key_ < other.key_; }
-
+/// A leaf position and a run that may change it.
+struct LeafPair {
+  uint32_t leaf = 0, run = 0;
   float depth = 0.0F;  ///< LaneAnswer's, the greatest of the lanes
   uint32_t lane = 0;   ///< which has it
-
- private:
-  static constexpr uint64_t kReaches = uint64_t{1} << 31;
-  uint64_t key_ = 0;
 };
 
-/// Appends the pairs of one run.
-void gather_leaves(const LevelSet& set, const LaneRun& run, size_t index, std::vector<LeafPair>& pairs);
+/// Appends the pairs of one run, and marks the positions of which one of its lanes leaves nothing (LeafMap).
+/// Those that are marked already it passes over. Several runs at a time may be asked.
+void gather_leaves(LevelSet& set, const LaneRun& run, size_t index, std::vector<LeafPair>& pairs);
 
 }  // namespace swarf::stock

@@ -61,18 +61,19 @@ SWARF_KERNEL_INLINE void move_pair(MovingPair& moving, const Pair& pair, const L
 SWARF_KERNEL_INLINE bool raise_by_bottom(float* values, const MovingPair& m, float radius, float background) {
   constexpr float kWellInside = 1.0F - 1e-6F;  // of a square: more than the rounding of root and square
   alignas(64) float most[kPair];
-  int open = 0, flank = 0;
+  constexpr int kOfFlank = 0x100;
+  int open = 0;  // how many voxels may be raised, and kOfFlank for each that the flank decides about
   for (int j = 0; j < kPair; ++j) {
     const float t = m.dz[j] > 0.0F ? 1.0F : 0.0F;
     const float high = m.pz[j] + t * m.dz[j];
     const float x = m.px[j] + t * m.dx[j], y = m.py[j] + t * m.dy[j], within = radius - high;
     most[j] = kernel::min_of(high, background);
     const float outside = kernel::max_of(x * x + y * y - within * within * kWellInside, -within);
-    open += values[j] < most[j] ? 1 : 0;
-    flank += values[j] < most[j] && outside > 0.0F ? 1 : 0;
+    const int by_flank = outside > 0.0F ? kOfFlank + 1 : 1;
+    open += values[j] < most[j] ? by_flank : 0;
   }
   if (open == 0) return true;
-  if (flank != 0) return false;
+  if (open >= kOfFlank) return false;
   for (int j = 0; j < kPair; ++j) values[j] = kernel::max_of(values[j], most[j]);
   return true;
 }

@@ -12,8 +12,9 @@ namespace swarf::stock {
 namespace {
 
 /// Of LeafMap, for each leaf position.
-constexpr size_t kMapBytes =
-    sizeof(LeafState) + sizeof(LeafNode*) + sizeof(LeafFloor) + sizeof(decltype(LeafMap::cuts)::value_type);
+constexpr size_t kMapBytes = sizeof(LeafState) + sizeof(LeafNode*) + sizeof(LeafFloor) +
+                             sizeof(decltype(LeafMap::cuts)::value_type) +
+                             sizeof(decltype(LeafMap::marks)::value_type);
 
 }  // namespace
 

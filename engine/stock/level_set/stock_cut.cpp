@@ -1,6 +1,6 @@
 // Cutting, in batches of sweeps:
 //   1. gather: runs of sweeps list the leaf positions they may change (parallel over runs)
-//   2. sort by position
+//   2. group them by position
 //   3. cut: each position applies its sweeps, deepest first (parallel over positions; one task owns a leaf)
 //   4. settle: new leaves enter the tree, emptied ones leave it (serial, in order of position)
 // Each voxel ends as the maximum over the pieces that reach it, whatever the order, batches, calls and
@@ -8,6 +8,7 @@
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <memory>
 
@@ -24,39 +25,82 @@ namespace {
 
 /// Sweeps that are applied together: of more of them a leaf meets its deepest sweep early, and fewer evaluate
 /// it. As many as leave room for `kMostPairs` pairs of a run and a leaf.
-constexpr size_t kLeastBatch = 512, kMostBatch = 2048;
+constexpr size_t kLeastBatch = 512, kMostBatch = 4096;
 constexpr double kMostPairs = 2.5e5;
 constexpr size_t kRunsPerTask = 1;
 constexpr size_t kGroupsPerTask = 32;
 
+/// A leaf position and the pairs that may change it.
 struct Group {
-  size_t begin, end;  ///< in the sorted pairs
+  uint32_t leaf = 0;
+  bool swallowed = false;     ///< a sweep leaves nothing of it
+  size_t begin = 0, end = 0;  ///< in the batch's pairs
 };
 
 struct Batch {
   std::vector<SweptPiece> pieces;
   std::vector<LaneRun> runs;
-  std::vector<LeafPair> pairs;
-  std::vector<Group> groups;
+  std::vector<LeafPair> pairs;  ///< in the order of their groups, there in the order of the path
+  std::vector<Group> groups;    ///< in order of position
 };
 
-void gather(const LevelSet& set, Batch& batch) {
+using FoundPairs = std::vector<std::vector<LeafPair>>;
+
+/// One group for each position that was found, with as many pairs as it has. Each position's mark is its
+/// group's number then, from kFirstGroup on.
+constexpr uint32_t kFirstGroup = LeafMap::kSwallowed + 1;
+void count_groups(LevelSet& set, Batch& batch, const FoundPairs& found) {
+  batch.groups.clear();
+  std::vector<uint32_t>& marks = set.map.marks;
+  for (const auto& part : found) {
+    for (const LeafPair& pair : part) {
+      uint32_t& mark = marks[pair.leaf];
+      if (mark < kFirstGroup) {
+        batch.groups.push_back({pair.leaf, mark == LeafMap::kSwallowed});
+        mark = kFirstGroup + static_cast<uint32_t>(batch.groups.size() - 1);
+      }
+      Group& group = batch.groups[mark - kFirstGroup];
+      group.end += group.swallowed ? 0 : 1;
+    }
+  }
+}
+
+void sort_groups(LevelSet& set, Batch& batch) {
+  tbb::parallel_sort(batch.groups.begin(), batch.groups.end(),
+                     [](const Group& a, const Group& b) { return a.leaf < b.leaf; });
+  size_t total = 0;
+  for (size_t g = 0; g < batch.groups.size(); ++g) {
+    Group& group = batch.groups[g];
+    set.map.marks[group.leaf] = kFirstGroup + static_cast<uint32_t>(g);
+    group.begin = total;
+    total += group.end;
+    group.end = group.begin;
+  }
+  batch.pairs.resize(total);
+}
+
+void group_pairs(LevelSet& set, Batch& batch, const FoundPairs& found) {
+  count_groups(set, batch, found);
+  sort_groups(set, batch);
+  for (const auto& part : found) {
+    for (const LeafPair& pair : part) {
+      Group& group = batch.groups[set.map.marks[pair.leaf] - kFirstGroup];
+      if (!group.swallowed) batch.pairs[group.end++] = pair;
+    }
+  }
+  for (const Group& group : batch.groups) set.map.marks[group.leaf] = 0;
+}
+
+void gather(LevelSet& set, Batch& batch) {
   batch.runs = make_runs(set, batch.pieces);
   const size_t count = batch.runs.size();
-  std::vector<std::vector<LeafPair>> found((count + kRunsPerTask - 1) / kRunsPerTask);
+  FoundPairs found((count + kRunsPerTask - 1) / kRunsPerTask);
   parallel_chunks(count, kRunsPerTask, [&](size_t begin, size_t end) {
     std::vector<LeafPair> own;  // not in place: neighbours in `found` share a cache line
     for (size_t n = begin; n < end; ++n) gather_leaves(set, batch.runs[n], n, own);
     found[begin / kRunsPerTask] = std::move(own);
   });
-  batch.pairs.clear();
-  for (const auto& part : found) batch.pairs.insert(batch.pairs.end(), part.begin(), part.end());
-  tbb::parallel_sort(batch.pairs.begin(), batch.pairs.end());
-  batch.groups.clear();
-  for (size_t n = 0; n < batch.pairs.size(); ++n) {
-    if (n == 0 || batch.pairs[n].leaf() != batch.pairs[n - 1].leaf()) batch.groups.push_back({n, n});
-    batch.groups.back().end = n + 1;
-  }
+  group_pairs(set, batch, found);
 }
 
 /// A sweep that may raise a value of the leaf.
@@ -73,15 +117,24 @@ struct Candidate {
 void find_candidates(const LevelSet& set, const Batch& batch, const Group& group, const LeafFloor& floor,
                      std::vector<Candidate>& candidates) {
   static const LaneKernel kernel = lane_kernel_variants().front().kernel;
-  const Vec3 centre = set.leaf_centre(batch.pairs[group.begin].leaf());
+  constexpr size_t kAtATime = 16;  // their answers do not wait for each other
+  std::array<LaneAnswer, kAtATime> answers;
+  const LeafExtent extent(set);
+  const Vec3 centre = set.leaf_centre(group.leaf);
   candidates.clear();
-  LaneAnswer answer;
-  for (size_t n = group.begin; n < group.end; ++n) {
-    const LaneRun& run = batch.runs[batch.pairs[n].run()];
-    kernel(run.lanes, run.piece, run.query(set, centre, floor), answer);
-    for (uint32_t open = answer.open & run.all(); open != 0; open &= open - 1) {
-      const auto lane = static_cast<uint32_t>(__builtin_ctz(open));
-      candidates.push_back({answer.depth.lane[lane], static_cast<uint32_t>(run.first) + lane});
+  for (size_t first = group.begin; first < group.end; first += kAtATime) {
+    const size_t end = std::min(first + kAtATime, group.end);
+    for (size_t n = first; n < end; ++n) {
+      const LaneRun& run = batch.runs[batch.pairs[n].run];
+      kernel(run.lanes, run.piece, run.query(extent, centre, floor), answers[n - first]);
+    }
+    for (size_t n = first; n < end; ++n) {
+      const LaneRun& run = batch.runs[batch.pairs[n].run];
+      const LaneAnswer& answer = answers[n - first];
+      for (uint32_t open = answer.open & run.all(); open != 0; open &= open - 1) {
+        const auto lane = static_cast<uint32_t>(__builtin_ctz(open));
+        candidates.push_back({answer.depth.lane[lane], static_cast<uint32_t>(run.first) + lane});
+      }
     }
   }
 }
@@ -103,7 +156,7 @@ struct Outcome {
 Candidate deepest_of(const Batch& batch, const Group& group) {
   const auto candidate = [&](size_t n) -> Candidate {
     const LeafPair& pair = batch.pairs[n];
-    return {pair.depth, static_cast<uint32_t>(batch.runs[pair.run()].first) + pair.lane};
+    return {pair.depth, static_cast<uint32_t>(batch.runs[pair.run].first) + pair.lane};
   };
   Candidate deepest = candidate(group.begin);
   for (size_t n = group.begin + 1; n < group.end; ++n) {
@@ -115,7 +168,7 @@ Candidate deepest_of(const Batch& batch, const Group& group) {
 /// Deepest first: what it leaves rules out most of the others.
 void apply_group(const LevelSet& set, const Batch& batch, const Group& group,
                  std::vector<Candidate>& candidates, float* values, Outcome& outcome) {
-  LeafCut cut(set, batch.pairs[group.begin].leaf(), values);
+  LeafCut cut(set, group.leaf, values);
   const Candidate deepest = deepest_of(batch, group);
   cut.apply(batch.pieces[deepest.piece]);
   outcome.take(cut);
@@ -132,10 +185,10 @@ void apply_group(const LevelSet& set, const Batch& batch, const Group& group,
 /// Applies one group. The leaf is changed in place, or made when the position was solid so far.
 Outcome cut_leaf(const LevelSet& set, const Batch& batch, const Group& group,
                  std::vector<Candidate>& candidates) {
-  const size_t leaf = batch.pairs[group.begin].leaf();
+  const size_t leaf = group.leaf;
   Outcome outcome;
   outcome.floor = set.map.floors[leaf];
-  if (batch.pairs[group.begin].swallows()) {
+  if (group.swallowed) {
     outcome.state = LeafState::kAir;
     return outcome;
   }
@@ -175,7 +228,7 @@ void cut_batch(LevelSet& set, Batch& batch) {
   for (size_t g = 0; g < outcomes.size(); ++g) {
     set.statistics.leaf_visits += outcomes[g].visits;
     set.statistics.voxel_updates += outcomes[g].patches * kPatchVoxels;
-    settle(set, batch.pairs[batch.groups[g].begin].leaf(), outcomes[g]);
+    settle(set, batch.groups[g].leaf, outcomes[g]);
   }
 }
 

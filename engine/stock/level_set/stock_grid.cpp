@@ -110,6 +110,7 @@ LeafMap empty_map(const Box& box, double voxel) {
   map.leaves.assign(count, nullptr);
   map.floors.assign(count, {static_cast<float>(-kBandVoxels * voxel), {}});
   map.cuts.assign(count, 0);
+  map.marks.assign(count, 0);
   return map;
 }
 

@@ -55,6 +55,8 @@ struct LeafMap {
   std::vector<LeafNode*> leaves;  ///< owned by the tree; nullptr unless the state is kLeaf
   std::vector<LeafFloor> floors;  ///< raised by cutting; -band, which always holds, after loading
   std::vector<uint32_t> cuts;     ///< how often cutting has changed the position's values
+  static constexpr uint32_t kSwallowed = 1;
+  std::vector<uint32_t> marks;  ///< while a batch of sweeps is cut, notes about the position; 0 otherwise
 
   size_t size() const { return states.size(); }
   size_t index(int i, int j, int k) const {
