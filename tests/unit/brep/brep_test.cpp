@@ -125,7 +125,7 @@ void expect_body(const Model& model, size_t faces, double area, double volume) {
   ASSERT_EQ(model.solids.size(), 1U);
   EXPECT_TRUE(model.solids[0].closed);
   EXPECT_EQ(model.face_count, static_cast<int>(faces));
-  // Loops follow circles to 1e-5 mm.
+  // Loops follow circles to kLoopChord.
   EXPECT_NEAR(model.solids[0].area_mm2, area, 1e-6 * area);
   EXPECT_NEAR(model.solids[0].volume_mm3, volume, 1e-6 * volume);
   for (const Diagnostic& d : model.warnings) ADD_FAILURE() << format(d);

@@ -52,16 +52,34 @@ inline std::vector<NamedCutter> cutters_under_test() {
 
 /// Height of the underside by APT's seven parameters: bottom line, corner circle, flank.
 struct ClosedForm {
-  explicit ClosedForm(const cutter::Cutter& c) : form(*cutter::apt_form(c)) { radius = form.flank_end().x(); }
-  double height(double rho) const {
-    const Vec2 bottom = form.bottom_end(), flank = form.flank_start(), corner = form.corner_centre();
-    if (rho <= bottom.x()) return rho * std::tan(form.alpha);
-    if (rho <= flank.x() && form.r > 0.0)
-      return corner.y() - std::sqrt(std::max(0.0, form.r * form.r - std::pow(rho - corner.x(), 2)));
-    return form.beta > 0.0 ? flank.y() + (rho - flank.x()) / std::tan(form.beta) : flank.y();
+  explicit ClosedForm(const cutter::Cutter& c) {
+    const cutter::AptForm form = *cutter::apt_form(c);
+    bottom = form.bottom_end();
+    flank = form.flank_start();
+    corner = form.corner_centre();
+    corner_radius = form.r;
+    bottom_slope = std::tan(form.alpha);
+    flank_slope = form.beta > 0.0 ? 1.0 / std::tan(form.beta) : 0.0;
+    radius = form.flank_end().x();
   }
-  cutter::AptForm form;
-  double radius = 0.0;
+  double height(double rho) const {
+    if (rho <= bottom.x()) return rho * bottom_slope;
+    if (rho <= flank.x() && corner_radius > 0.0) {
+      const double out = rho - corner.x();
+      return corner.y() - std::sqrt(std::max(0.0, corner_radius * corner_radius - out * out));
+    }
+    return flank.y() + (rho - flank.x()) * flank_slope;
+  }
+  /// dw/drho, of the part within rho.
+  double slope(double rho) const {
+    if (rho <= bottom.x()) return bottom_slope;
+    if (rho > flank.x() || corner_radius == 0.0) return flank_slope;
+    const double out = rho - corner.x();
+    return out / std::sqrt(std::max(1e-300, corner_radius * corner_radius - out * out));
+  }
+
+  Vec2 bottom, flank, corner;  ///< where its parts meet, and the corner circle's centre; (rho, z), mm
+  double corner_radius = 0.0, bottom_slope = 0.0, flank_slope = 0.0, radius = 0.0;
 };
 
 /// Golden section on a concave function.
