@@ -120,6 +120,37 @@ TEST(LaneKernel, AllInstructionSetsJudgeAlikeAndNeverCloseALeafThatASweepRaises)
   EXPECT_GT(closed, 1000);
 }
 
+/// Below its point a cone's F grows with the sine of the half angle: it reaches farther than a distance.
+TEST(LaneRun, ReachesAllThatAPointedCutterRaises) {
+  constexpr double kVoxel = 0.25, kBand = 3 * kVoxel, kTip = 4.0;
+  for (const double half_angle : {20.0, 30.0, 45.0, 59.0, 75.0}) {
+    const double a = half_angle * M_PI / 180.0;
+    cutter::ConvexPiece cone;
+    cone.faces = {{{std::cos(a), -std::sin(a)}, 0.0}, {{1.0, 0.0}, 3.0}, {{0.0, 1.0}, 12.0}};
+    cone.radius = 3.0;
+    cone.high = 12.0;
+    CutterSolid cutter{3.0, 12.0};
+    cutter.pieces = {cone};
+    const Sweep sweep{{{4.1, 8.0, kTip}, Vec3::UnitZ()}, {{11.9, 8.3, kTip + 0.1}, Vec3::UnitZ()}};
+    Stock stock({{0, 0, 0}, {16, 16, 8}}, kVoxel);
+    stock.cut(std::span(&sweep, 1), cutter);
+    const SweptPiece swept{sweep_map(sweep), &cone};
+    int raised = 0;
+    for (int i = 8; i <= 56; ++i) {
+      for (int j = 28; j <= 36; ++j) {
+        for (int k = 4; k <= 20; ++k) {
+          const Vec3 x = kVoxel * Vec3(i, j, k);
+          const double expected = std::max(-scanned(swept, x), -kBand);
+          raised += expected > -kBand && x.z() < kTip ? 1 : 0;
+          ASSERT_NEAR(std::min(expected, kBand), stock.distance_mm(x), 1e-3)
+              << "half angle " << half_angle << " at " << text(x);
+        }
+      }
+    }
+    EXPECT_GT(raised, 100) << half_angle;
+  }
+}
+
 TEST(LeafKernel, PatchTestFloorsAndRangeAreAlikeInAllInstructionSets) {
   constexpr uint64_t kSeed = 73;
   Rng rng(kSeed);
