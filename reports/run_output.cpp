@@ -87,6 +87,7 @@ void write_pictures(const PendingFolder& folder, const FinishedRun& run, const T
     const char* camera;
     const char* caption;
   };
+  const std::vector<WorstPlace> worst = worst_places(result);
   std::vector<Picture> pictures{
       {StillKind::kMachine, "still_machine.png", "machine", "The machine near the middle of the program."},
       {StillKind::kPart, "still_part.png", "iso",
@@ -108,7 +109,9 @@ void write_pictures(const PendingFolder& folder, const FinishedRun& run, const T
   progress.begin("stills", static_cast<double>(pictures.size()), "pictures");
   for (const Picture& picture : pictures) {
     if (progress.stop_requested()) break;
-    make_still(run, part, picture.kind, picture.camera, folder.file(picture.file));
+    // What is measured has its scale; the deepest and the highest place are where the measures found them.
+    const bool measured = picture.kind == StillKind::kPart || picture.kind == StillKind::kDeviation;
+    make_still(run, part, picture.kind, picture.camera, folder.file(picture.file), {false, measured, worst});
     files.stills.push_back({folder.file(picture.file), picture.caption});
     progress.advance(static_cast<double>(files.stills.size()));
   }

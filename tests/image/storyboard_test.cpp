@@ -98,6 +98,33 @@ TEST(TransparentStill, HasNothingBehindThePart) {
   EXPECT_EQ(image.rgba[static_cast<size_t>(4 * (90 * 320 + 160) + 3)], 255);
 }
 
+/// A number of the PNG format, most significant byte first.
+uint32_t big_endian(const std::string& bytes, size_t at, int many) {
+  uint32_t value = 0;
+  for (int k = 0; k < many; ++k) value = value << 8 | static_cast<uint8_t>(bytes.at(at + k));
+  return value;
+}
+
+TEST(ReadmeMovie, HasItsSizeItsLengthAndPlaysForEver) {
+  const fs::path file = gouges().folder / "readme.apng";
+  const ProgramRun made = render_gouges("--seconds 0.5 --movie " + file.string());
+  ASSERT_EQ(made.exit_code, 0) << made.output;
+  const std::vector<Image> frames = movie_frames(file.string());
+  ASSERT_EQ(frames.size(), 15U);
+  EXPECT_EQ(frames.back().width, 320);
+  EXPECT_EQ(frames.back().height, 180);
+  const std::string bytes = read_text(file);
+  const size_t control = bytes.find("acTL");
+  ASSERT_NE(control, std::string::npos);
+  EXPECT_EQ(big_endian(bytes, control + 4, 4), 15U) << "frames";
+  EXPECT_EQ(big_endian(bytes, control + 8, 4), 0U) << "plays: 0 is for ever";
+  // Each frame says how long it stands, as a fraction.
+  double seconds = 0.0;
+  for (size_t at = bytes.find("fcTL"); at != std::string::npos; at = bytes.find("fcTL", at + 4))
+    seconds += static_cast<double>(big_endian(bytes, at + 24, 2)) / big_endian(bytes, at + 26, 2);
+  EXPECT_NEAR(seconds, 0.5, 1e-9);
+}
+
 TEST(MovieEnding, WebmAndApngAreMadeAndOthersRefused) {
   for (const std::string ending : {".webm", ".apng"}) {
     const fs::path file = gouges().folder / ("movie" + ending);

@@ -16,7 +16,7 @@ const axe = readFileSync(require.resolve('axe-core/axe.min.js'), 'utf8');
 
 const words = process.argv.slice(2);
 const pictures = words[0] === '--pictures' ? words.splice(0, 2)[1] : null;
-const readLimitUm = 0.1, opensWithinMs = 2000, findingsVisited = 5, pinsApartMm = 10;
+const readLimitUm = 0.1, opensWithinMs = 2000, findingsVisited = 5, findingsVisitedNarrow = 2, pinsApartMm = 10;
 const narrowPx = 500;  // a telephone: what follows from the models alone is looked at once
 const drawnPixels = 0.25;  // for each pixel of the page: a processor draws the 3D view, and what is looked at is not its grain
 const tipWithinMm = 0.2;  // keys of up to five axes, each within 0.02 mm or 0.0115 deg, and milliseconds in the slider
@@ -75,10 +75,10 @@ async function checkPin(page, number, findings) {
   assert.ok(apart < pinsApartMm, `finding ${number}: the pin of ${hit} stands there, ${apart} mm away`);
 }
 
-async function checkFindings(page) {
+async function checkFindings(page, visited) {
   const findings = await page.evaluate(() => JSON.parse(document.getElementById('findings-data')?.textContent ?? '[]'));
   const told = { part: 0, machine: 0, movie: 0 };
-  for (const [i, finding] of findings.slice(0, findingsVisited).entries()) {
+  for (const [i, finding] of findings.slice(0, visited).entries()) {
     const show = page.locator(`#finding-${i + 1} button[data-show="view"]`);
     if (!(await show.count())) continue;
     await show.click();
@@ -158,7 +158,7 @@ async function checkAt(file, width) {
     if (pictures) await page.locator('#view').screenshot({ path: join(pictures, `part_${width}.png`) });
     if (width > narrowPx && (await page.locator('#machine-glb').count())) told.push(await checkMachine(page, width, dirname(resolve(file))));
   }
-  if (width > narrowPx) told.push(await checkFindings(page));
+  told.push(await checkFindings(page, width > narrowPx ? findingsVisited : findingsVisitedNarrow));
   if (pictures) await page.screenshot({ path: join(pictures, `page_${width}.png`), fullPage: true });
   await page.evaluate(axe);
   const { violations } = await page.evaluate(() => window.axe.run(document, { resultTypes: ['violations'] }));

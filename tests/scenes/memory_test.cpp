@@ -62,6 +62,10 @@ INSTANTIATE_TEST_SUITE_P(
                             "--set design.pitch_mm=1"},
                     Setting{"comparisons", "--no-render --set stock.voxel_mm=1 --set design.pitch_mm=0.5"},
                     Setting{"stills", "--set stills.samples=1", "cl_simple_block"},
+                    Setting{"large_still",
+                            "--set stills.samples=1 --set 'stills.kinds=[\"part\"]' "
+                            "--set 'stills.size=[3840,2160]'",
+                            "cl_simple_block"},
                     Setting{"movie",
                             "--set toolpath.compare=false --set stock.voxel_mm=0.4 --set design.pitch_mm=0.5 "
                             "--set movie.seconds=0.2"}),

@@ -186,6 +186,26 @@ TEST_F(GougedPage, AStillHasAScaleBarAndLeadersWhereTheyAreAskedFor) {
   EXPECT_LT(changed, 480U * 270U / 5) << "nothing else";
 }
 
+/// They are what `render --labels` draws of the same run, and not what it draws without.
+TEST_F(GougedPage, TheRunsOwnStillsAreLabelled) {
+  const fs::path job = folder_ / "stills";
+  const std::string look = "'stills.size=[480,270]' --set stills.samples=1";
+  const auto run = run_swarf("run " SWARF_SOURCE_DIR
+                             "/scenes/exact_gouges/scene.toml --set movie.seconds=0 --set "
+                             "'stills.kinds=[\"part\",\"deviation\"]' --set " +
+                             look + " -o " + job.string());
+  ASSERT_EQ(run.exit_code, 1) << run.output;
+  for (const std::string kind : {"part", "deviation"}) {
+    const std::string file = (folder_ / "again.png").string();
+    const std::string render = "render " + job.string() + " --kind " + kind + " --still " + file;
+    const std::string own = read_text(job / ("still_" + kind + ".png"));
+    ASSERT_EQ(run_swarf(render + " --labels").exit_code, 0);
+    EXPECT_EQ(own, read_text(file)) << kind;
+    ASSERT_EQ(run_swarf(render).exit_code, 0);
+    EXPECT_NE(own, read_text(file)) << kind;
+  }
+}
+
 TEST_F(GougedPage, LeadsFromAFindingToItsPlaceLineAndMovie) {
   const auto page = run_command(SWARF_SOURCE_DIR "/tests/page/page.sh " + run_folder() + "/report.html");
   if (page.exit_code == kNoChromium) GTEST_SKIP() << page.output;

@@ -25,7 +25,12 @@ constexpr double kMegabyte = 1024.0 * 1024.0;
 // Code, libraries (OpenCASCADE alone takes 20 MB), tables of the program, thread pools.
 constexpr double kBase = 86.0 * kMegabyte;
 constexpr double kMovie = 270.0 * kMegabyte;   // Mesa, Embree and the encoder, with pictures of 1280 x 720
-constexpr double kStills = 120.0 * kMegabyte;  // Embree alone
+constexpr double kStills = 120.0 * kMegabyte;  // Embree alone, with pictures of that size
+constexpr double kUsualPixels = 1280.0 * 720.0;
+// Of a still: what its samples have seen (64), and the ambient light as it is shared with neighbours (12).
+constexpr double kStillPixel = 76.0;
+// Of a movie: two renderers and the encoder's frames, with one sample; each further sample.
+constexpr double kMoviePixel = 85.0, kMovieSample = 22.5;
 constexpr double kSeen = 0.95;  // of the stock: its leaves as contacts and invariants look at them
 constexpr double kSweep = sizeof(stock::Sweep) + sizeof(SweepSource);
 constexpr double kCutting = sizeof(ToolPose) + 8.0;  // the poses of cycles to be merged; boxes of EarlierCuts
@@ -133,6 +138,20 @@ double longest_comparison(const Job& job, const MeasuredPath& path) {
   return seconds / options.period_s;
 }
 
+/// What the pictures take, whose meshes are counted elsewhere. They are made one after the other.
+double pictures_bytes(const Scene& scene) {
+  const auto pixels = [](const std::array<int, 2>& size) { return static_cast<double>(size[0]) * size[1]; };
+  const auto larger = [&](const std::array<int, 2>& size) {
+    return std::max(0.0, pixels(size) - kUsualPixels);
+  };
+  double stills = kStills;
+  if (!scene.stills.kinds.empty()) stills += kStillPixel * larger(scene.stills.size);
+  const MovieSettings& shown = scene.movie;
+  if (shown.seconds <= 0.0) return stills;
+  return std::max(stills, kMovie + kMoviePixel * larger(shown.size) +
+                              kMovieSample * (shown.samples - 1) * pixels(shown.size));
+}
+
 /// A voxel, to two digits, at which what grows with 1/voxel^2 fits beside the rest.
 double voxel_that_fits(const Job& job, const MemoryPrediction& prediction) {
   constexpr double kMargin = 1.1;  // the prediction itself wavers with the voxel
@@ -175,7 +194,7 @@ MemoryPrediction predict_memory(const Job& job, const MeasuredPath& path, const 
     comparing = held + stock + std::max(ticks, longest_comparison(job, path)) * kComparedTick + rays;
   const double measuring =
       job.has_design() ? held + stock + ray_count(job) * kMeasuredRay + sweeps * (kSweep + kCutting) : 0.0;
-  const double pictures = !outputs.pictures ? 0.0 : job.scene.movie.seconds > 0.0 ? kMovie : kStills;
+  const double pictures = outputs.pictures ? pictures_bytes(job.scene) : 0.0;
   const double mesh = outputs.page || outputs.pictures ? counts.triangles * kTriangle : 0.0;
   const double meshing = held + stock + mesh + pictures;
   return {stocks * stock / kMegabyte, std::max({cutting, measuring, comparing, meshing}) / kMegabyte,
