@@ -80,4 +80,14 @@ double travel_excess(const Axis& axis, double value) {
   return value > axis.max ? value - axis.max : 0.0;
 }
 
+std::string travel_text(const Axis& axis, double value, const std::string& where) {
+  const bool rotary = axis.kind == AxisKind::kRotary;
+  const double scale = rotary ? deg_from_rad(1.0) : 1.0;
+  const char* unit = rotary ? "deg" : "mm";
+  return fmt::format(
+      "axis {} would have to go to {:.3f} {} in {}, {:.3f} {} beyond its travel of {:.3f} .. {:.3f} {}",
+      axis.name, scale * value, unit, where, scale * std::abs(travel_excess(axis, value)), unit,
+      scale * axis.min, scale * axis.max, unit);
+}
+
 }  // namespace swarf::kinematics

@@ -38,5 +38,7 @@ UnreachableText unreachable_text(const MachineModel& machine, const ToolPose& po
 
 /// How far the value lies outside the travel: negative below min, positive above max, 0 inside. mm or rad.
 double travel_excess(const Axis& axis, double value);
+/// That a value lies outside the travel, in words; `where` in the program.
+std::string travel_text(const Axis& axis, double value, const std::string& where);
 
 }  // namespace swarf::kinematics

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -59,8 +60,14 @@ INSTANTIATE_TEST_SUITE_P(
     Scenes, DrivenInput,
     testing::Values(
         BadDriven{"feed", "driven.feed_mm_min=0", "out-of-range", "'driven.feed_mm_min' is 0"},
+        BadDriven{"feed_negative", "driven.feed_mm_min=-5", "out-of-range", "'driven.feed_mm_min' is -5"},
+        BadDriven{"feed_nan", "driven.feed_mm_min=nan", "out-of-range", "'driven.feed_mm_min' is nan"},
+        BadDriven{"feed_of_months", "driven.feed_mm_min=1e-9", "too-many-cycles", "more than 1000 h"},
         BadDriven{"interval", "driven.interval_mm=0", "out-of-range", "'driven.interval_mm' is 0"},
         BadDriven{"period", "interpolator.period_ms=0", "out-of-range", "'interpolator.period_ms' is 0"},
+        BadDriven{"period_negative", "interpolator.period_ms=-1", "out-of-range", "from 0.01 to 100"},
+        BadDriven{"period_nan", "interpolator.period_ms=nan", "out-of-range", "from 0.01 to 100"},
+        BadDriven{"period_of_a_second", "interpolator.period_ms=1000", "out-of-range", "from 0.01 to 100"},
         BadDriven{"tolerance", "driven.chord_tolerance_um=0", "out-of-range",
                   "'driven.chord_tolerance_um' is 0"},
         BadDriven{"two_parts", "driven.mesh=part.stl", "two-parts", "keep one of them"},
@@ -75,6 +82,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadDriven{"override", "driven.override=[[0,1,50]]", "out-of-range",
                   "'override' has the row [0, 1, 50]"},
         BadDriven{"held", "driven.override=[[2,1,0]]", "feed-held", "pass 2 is held and never goes on"},
+        BadDriven{"override_without_pass", "driven.override=[[99,0,50]]", "override-no-pass",
+                  "names pass 99, and there are 11"},
         BadDriven{"axis_without_length", "driven.axis=[0,0,0]", "out-of-range", "'axis' has no length"},
         BadDriven{"lead", "driven.lead_deg=90", "out-of-range", "from -89 to 89"},
         BadDriven{"axis_too_low", "driven.tilt_deg=88", "axis-too-low", "lead_deg or tilt_deg"},
@@ -146,6 +155,114 @@ TEST(DrivenFaces, APartInMetresIsRefusedBeforeItIsDivided) {
   EXPECT_NE(run.output.find("42000 x 30000 x"), std::string::npos) << run.output;
   EXPECT_NE(run.output.find("unit metre = 1000 mm"), std::string::npos) << run.output;
   EXPECT_NE(run.output.find("fix: "), std::string::npos) << run.output;
+  fs::remove_all(folder);
+}
+
+/// Two plates of 10 x 8 mm that lie side by side, as surface blocks; the second one farther along X and
+/// higher.
+std::string plates(double gap, double step) {
+  std::ostringstream text;
+  text << "G17 G21 G54 G90\n";
+  for (int n = 1; n <= 2; ++n) {
+    const double x = n == 1 ? 0.0 : 10.0 + gap, z = n == 1 ? 0.0 : step;
+    text << "G10 L70 P" << n << " Q1 R1\nG10 L71 P" << n << " I0 J0 X" << x << " Y0 Z" << z << "\nG10 L71 P"
+         << n << " I1 J0 X10 Y0 Z0\nG10 L71 P" << n << " I0 J1 X0 Y8 Z0\nG10 L79 P" << n << " D1\n";
+  }
+  return text.str();
+}
+
+// Surfaces that do not meet, and guides that leave them: what is refused, what is told, and where.
+TEST(DrivenSurfaces, GapsStepsAndEndsAreToldBeforeAnythingMoves) {
+  const fs::path folder = swarf::test::fresh_folder("driven_plates");
+  const std::string ball = "shape = \"ball\"", flat = "shape = \"flat\"", area = "[[0, 0], [20, 8]]";
+  const auto check = [&](double gap, double step, const std::string& shape, const std::string& driven) {
+    swarf::test::write_text(folder / "part.nc", plates(gap, step));
+    swarf::test::write_text(
+        folder / "scene.toml",
+        "machine = \"mill_3axis\"\n[cutter]\nnumber = 1\n" + shape +
+            "\ndiameter_mm = 6\nflute_length_mm = 30\nshank_diameter_mm = 6\nlength_mm = 60\n"
+            "[setup]\nwork_origin_mm = \"on_table\"\n[stock]\nbox_mm = [[0, 0, -10], [22, 8, 6]]\n"
+            "voxel_mm = 0.5\n[driven]\nsurface = \"part.nc\"\ninterval_mm = 4\nfeed_mm_min = "
+            "1500\n" +
+            driven);
+    return run_swarf("check " + (folder / "scene.toml").string());
+  };
+  const auto expect = [](const swarf::test::ProgramRun& run, int exit_code, const std::string& told) {
+    EXPECT_EQ(run.exit_code, exit_code) << run.output;
+    EXPECT_NE(run.output.find(told), std::string::npos) << told << "\n" << run.output;
+  };
+  const auto met = check(0, 0, ball, "area_mm = " + area);
+  EXPECT_EQ(met.exit_code, 0) << met.output;
+  EXPECT_EQ(met.output.find("warning:"), std::string::npos) << met.output;
+  // A ball of radius 3 sinks by 3 - sqrt(8) mm into 2 mm.
+  expect(check(2, 0, ball, "area_mm = " + area), 2,
+         "surfaces 1 and 2 leave a gap of 2 mm at (10.000, 0.000, 0.000) mm: the tip sinks into it by up to "
+         "172 um");
+  expect(check(2, 0, ball, "floor_mm = -1\narea_mm = " + area), 0, "[part-gap-wide]");
+  expect(check(2, 0, flat, "area_mm = " + area), 0, "the cutter rides over it");
+  expect(check(0, 0.05, ball, "area_mm = " + area), 0, "surface 1 ends 0.05 mm below surface 2 at (10.000, ");
+  // The axis 2 mm beside the plates: over one side of three passes, and over the ends of the two others.
+  expect(check(0, 0, ball, "area_mm = [[0, -2], [20, 6]]"), 0,
+         "along 20.0 mm of the guides, first of pass 1");
+  expect(check(0, 0, ball, "area_mm = [[-2, 0], [20, 8]]"), 0, "[guide-beyond-part]");
+  expect(check(0, 0, ball, "area_mm = [[-4, 0], [20, 8]]"), 2, "[guide-misses-part]");
+  // Beyond a gap that is wider than the cutter nothing stops it: told in the middle of a pass.
+  const auto fallen = check(8, 0, ball, "area_mm = [[0, 0], [28, 8]]");
+  expect(fallen, 2, "pass 1: the tool rests on nothing at (13.");
+  EXPECT_NE(fallen.output.find("scene.toml:"), std::string::npos) << fallen.output;
+  fs::remove_all(folder);
+}
+
+// A driven path that leaves the travel of axes is told with place, axis, value and limit before its first
+// cycle.
+TEST(DrivenTravel, AxesThatWouldLeaveTheirTravelAreTold) {
+  const fs::path folder = swarf::test::fresh_folder("driven_travel");
+  fs::copy(SWARF_SOURCE_DIR "/scenes/kato_five_axis/dome.nc", folder / "dome.nc");
+  std::string scene = swarf::test::read_text(SWARF_SOURCE_DIR "/scenes/kato_five_axis/scene.toml");
+  const std::string assets = "../../assets";
+  scene.replace(scene.find(assets), assets.size(), SWARF_SOURCE_DIR "/assets");
+  const auto check = [&](const char* origin) {
+    swarf::test::write_text(folder / "scene.toml", scene + "\n[setup]\nwork_origin_mm = " + origin + "\n");
+    return run_swarf("check " + (folder / "scene.toml").string());
+  };
+  const auto run = check("[8, 400, 160]");
+  EXPECT_EQ(run.exit_code, 1) << run.output;
+  EXPECT_NE(run.output.find("[driven-travel]"), std::string::npos) << run.output;
+  EXPECT_NE(run.output.find("axis X would have to go to -300.163 mm in pass 2 at ("), std::string::npos)
+      << run.output;
+  EXPECT_NE(run.output.find("0.163 mm beyond its travel of -300.000 .. 300.000 mm"), std::string::npos)
+      << run.output;
+  const auto right = check("[8, 96, 160]");
+  EXPECT_EQ(right.exit_code, 0) << right.output;
+  EXPECT_EQ(right.output.find("[driven-travel]"), std::string::npos) << right.output;
+  fs::remove_all(folder);
+}
+
+// CAD files that cannot drive, through the shipped program.
+TEST(DrivenFaces, FilesThatAreNoPartAreRefused) {
+  const fs::path folder = swarf::test::fresh_folder("driven_no_part");
+  const std::string part = swarf::test::read_text(SWARF_SOURCE_DIR "/scenes/kato_mould/mould.stp");
+  fs::copy(SWARF_SOURCE_DIR "/scenes/kato_mould/scene.toml", folder / "scene.toml");
+  const auto told = [&](const std::string& text) {
+    swarf::test::write_text(folder / "mould.stp", text);
+    const auto run = run_swarf("check " + (folder / "scene.toml").string());
+    EXPECT_EQ(run.exit_code, 2) << run.output;
+    EXPECT_NE(run.output.find("fix: "), std::string::npos) << run.output;
+    return run.output;
+  };
+  std::string no_unit = part;
+  const size_t unit = no_unit.find("LENGTH_UNIT()");
+  ASSERT_NE(unit, std::string::npos);
+  no_unit.replace(unit, 13, "PLANE_ANGLE_UNIT()");
+  EXPECT_NE(told(no_unit).find("[cad-no-unit]"), std::string::npos);
+  EXPECT_NE(told("").find("[cad-unreadable]"), std::string::npos);
+  EXPECT_NE(told("                                        S      1\n").find("this is no STEP file"),
+            std::string::npos);
+  std::string no_solid = part;
+  const size_t solid = no_solid.find("#15 = MANIFOLD_SOLID_BREP('',#16);");
+  ASSERT_NE(solid, std::string::npos);
+  no_solid.replace(solid, 34, "#15 = CARTESIAN_POINT('',(0.,0.,0.));");
+  EXPECT_NE(told(no_solid).find("[cad-empty]"), std::string::npos);
   fs::remove_all(folder);
 }
 

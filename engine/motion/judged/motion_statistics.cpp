@@ -256,16 +256,6 @@ std::string element_name(const toolpath::Element& element) {
   return "a move";
 }
 
-std::string travel_text(const kinematics::Axis& axis, const AxisExcess& worst, const std::string& where) {
-  const bool rotary = axis.kind == AxisKind::kRotary;
-  const double scale = rotary ? deg_from_rad(1.0) : 1.0;
-  const char* unit = rotary ? "deg" : "mm";
-  return fmt::format(
-      "axis {} would have to go to {:.3f} {} in {}, {:.3f} {} beyond its travel of {:.3f} .. {:.3f} {}",
-      axis.name, scale * worst.value, unit, where, scale * worst.excess, unit, scale * axis.min,
-      scale * axis.max, unit);
-}
-
 std::string speed_text(const kinematics::Axis& axis, const AxisExcess& worst, const std::string& where) {
   const bool rotary = axis.kind == AxisKind::kRotary;
   const double scale = rotary ? deg_from_rad(1.0) : 1.0;
@@ -366,8 +356,8 @@ void MotionMeter::end_element() {
     const kinematics::Axis& axis = machine_.axes[i];
     AxisFault& found = excess_[i];
     if (found.travel.excess > 0.0)
-      faults_.push_back({"travel", travel_text(axis, found.travel, element_name(element)), index,
-                         found.travel.t_s, element.where, Severity::kError, axis.name});
+      faults_.push_back({"travel", kinematics::travel_text(axis, found.travel.value, element_name(element)),
+                         index, found.travel.t_s, element.where, Severity::kError, axis.name});
     if (found.speed.excess > 0.0)
       faults_.push_back({"axis-speed", speed_text(axis, found.speed, element_name(element)), index,
                          found.speed.t_s, element.where, Severity::kError, axis.name});

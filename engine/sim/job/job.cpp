@@ -16,6 +16,7 @@
 #include "mesh/mesh_nesting.h"
 #include "mesh/mesh_ops.h"
 #include "position/part_check.h"
+#include "position/patch_joints.h"
 #include "sim/job/clamping_check.h"
 #include "sim/job/driven_part.h"
 #include "sim/job/fixture_keys.h"
@@ -256,11 +257,10 @@ double edge_chord(const AcceptLimits& accept) {
 /// Faces of a part that drives which do not meet: where the widest gap is, and how far the tool sinks into
 /// it.
 void tell_gaps(const brep::Model& model, const Scene& scene, Diagnostics& diagnostics) {
-  constexpr double kNoGap = 1e-3;  // mm: closer faces are what CAD systems call joined
   const auto widest =
       std::max_element(model.edges.begin(), model.edges.end(),
                        [](const brep::Edge& a, const brep::Edge& b) { return a.gap_mm < b.gap_mm; });
-  if (widest == model.edges.end() || widest->gap_mm <= kNoGap) return;
+  if (widest == model.edges.end() || widest->gap_mm <= position::kJoined_mm) return;
   const position::ToolProfile profile(scene.tools.front());
   const double sink = position::sinks_into(profile, widest->gap_mm);
   const Vec3& p = widest->gap_at;

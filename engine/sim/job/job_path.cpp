@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "motion/blocks/dog_leg.h"
+#include "sim/job/driven_guides.h"
 #include "sim/job/driven_part.h"
 #include "sim/job/flank_job.h"
 #include "sim/job/nc_job.h"
@@ -26,6 +27,15 @@ toolpath::ToolPath plan_surfaces(const Job& job, toolpath::Planner planner, Diag
   return path;
 }
 
+/// As its surface drives it, or as CAM blocks; before either its guides are looked along.
+toolpath::ToolPath path_over_part(const Job& job, Diagnostics& diagnostics) {
+  toolpath::ToolPath driven = driven_path(job, 0.0, diagnostics);
+  if (!diagnostics.has_errors()) look_along_guides(job, driven.elements, diagnostics);
+  const double tolerance = job.scene.driven->plan.cam_tolerance_mm;
+  if (tolerance <= 0.0 || diagnostics.has_errors()) return driven;
+  return driven_path(job, tolerance, diagnostics);
+}
+
 JobPath path_of_program(const Job& job, toolpath::Planner planner, Diagnostics& diagnostics) {
   switch (job.scene.kind) {
     case ProgramKind::kNc: {
@@ -35,7 +45,7 @@ JobPath path_of_program(const Job& job, toolpath::Planner planner, Diagnostics& 
     case ProgramKind::kCl:
       return {toolpath::cl_path(*job.cl, job.scene.block_law, diagnostics, cl_tools(job)), {}};
     case ProgramKind::kDriven:
-      return {driven_path(job, job.scene.driven->plan.cam_tolerance_mm, diagnostics), {}};
+      return {path_over_part(job, diagnostics), {}};
     case ProgramKind::kFlank:
       return {flank::flank_path(job.flank, flank_rule(job)), {}};
     case ProgramKind::kSurfaceBlocks:

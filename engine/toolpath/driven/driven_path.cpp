@@ -80,6 +80,18 @@ std::vector<ToolPose> cam_points(const DrivenPass& pass, double tolerance_mm) {
   return points;
 }
 
+/// An override of a pass that does not exist would change nothing.
+void require_passes(const DrivenPlan& plan, int passes, const SourceLocation& where,
+                    Diagnostics& diagnostics) {
+  for (const OverrideChange& change : plan.overrides) {
+    if (change.pass < passes) continue;
+    diagnostics.error("override-no-pass", where,
+                      fmt::format("'override' names pass {}, and there are {}", change.pass + 1, passes),
+                      fmt::format("name a pass from 1 to {}", passes));
+    return;
+  }
+}
+
 /// Elements of the path, as passes or as blocks.
 class ElementWriter {
  public:
@@ -145,6 +157,7 @@ ToolPath driven_path(const DrivenPlan& plan, const std::shared_ptr<const DrivenP
   const double safe = plan.stock_top_mm + plan.safe_distance_mm;
   std::optional<ToolPose> at;
   const std::vector<GuidedPass> passes = guided_passes(plan, diagnostics);
+  if (!passes.empty()) require_passes(plan, passes.back().pass + 1, where, diagnostics);
   std::vector<std::shared_ptr<const Guide>> guides;
   try {
     guides = guides_of(plan, *on, passes, where);
