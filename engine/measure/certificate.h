@@ -9,6 +9,12 @@
 // What is proven: no place of the design lies deeper below it than gouge.um along its normal, down to kSkin
 // or to where another face is nearer; no material stands higher above it than excess.um, up to where another
 // face is nearer. Cells that the budget did not allow to close keep their bound, which then is the proof's.
+//
+// Where another face is nearer is no linear function over a cell, and greater between corners that stand on
+// edges than at any of them (the top of a thin wall). So a cell looks for cuts down to linear functions that
+// are nowhere below it: the ball that touches the place p of the cell and passes through a place q of the
+// design has the radius |q - p|^2 / (2 n.(p - q)), a convex function of p - q, and what lies deeper is nearer
+// to q (column_range.h: own_below).
 #pragma once
 
 #include <optional>

@@ -43,9 +43,10 @@ using CornerHeights = std::array<double, 3>;
 
 /// How deep under the design a cut of the cell's columns counts.
 struct ColumnDepths {
-  /// At each corner: down to there a cut is looked for; mm, >= 0.
+  /// Down to this linear function a cut is looked for, one that begins deeper is none of the cell's: nowhere
+  /// below what is the cell's own, or kSkin; the same at all corners where the columns fan out. mm, >= 0.
   CornerHeights seen{};
-  /// Of a flat cell: bounds of what is its own (RayField::own_depth) over all of it. May be empty.
+  /// Of a flat cell: bounds of what is its own (own_below) over all of it. May be empty.
   std::vector<CornerHeights> own;
 };
 

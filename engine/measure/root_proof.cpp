@@ -255,39 +255,23 @@ class RootProof {
     return decided;
   }
 
-  /// Of flat cells of a mesh.
-  std::vector<CornerHeights> own_below(const Cell& cell) const {
-    std::vector<CornerHeights> bounds;
-    if (input_.field.design == nullptr || !is_flat(cell.shape)) return bounds;
-    CornerHeights depths{};
-    for (size_t k = 0; k < 3; ++k) {
-      const CellCorner& at = cell.corners[k].at;
-      const double through = std::max(0.0, leaves_box(input_.stock.box(), at.point, -at.normal));
-      depths[k] = input_.field.own_depth(at.point, at.normal, through, kShareOfRange);
-    }
-    for (size_t k = 0; k < 3; ++k) {
-      const CellCorner& at = cell.corners[k].at;
-      const uint32_t facet =
-          input_.field.design->distance.nearest(beyond(at.point, -at.normal, depths[k])).triangle;
-      if (const auto own = own_to_facet(cell.shape, input_.field.design->mesh, facet, depths, -1.0))
-        bounds.push_back(*own);
-    }
-    return bounds;
-  }
-
-  /// How deep the cell's columns count at most.
-  double deepest(const Cell& cell, const std::vector<CornerHeights>& own) {
-    if (!own.empty()) return highest_left(own).height;
-    double depth = 0.0;
-    constexpr double kThrough = 1e4;  // mm: any part
-    for (const Corner& corner : cell.corners)
-      depth = std::max(depth, counted_depth(input_, corner.at, kThrough));
-    if (input_.field.design != nullptr) return depth;
+  /// How deep the cell's columns count at most: linear functions, each of which bounds all of them. What is
+  /// nearer to another face is that one's, and below the stock there is nothing.
+  std::vector<CornerHeights> ends_below(const Cell& cell, const std::vector<CornerHeights>& own) const {
     DesignCell below = cell.shape;
     for (CellCorner& corner : below.corners) corner.normal = -corner.normal;
-    sets_.clear();
-    add_box(input_.stock.box(), below, sets_);
-    return std::min(std::max(depth, highest_left(sets_).height), kThrough);
+    std::vector<CornerHeights> ends = own;
+    add_box(input_.stock.box(), below, ends);
+    return ends;
+  }
+
+  CornerHeights through_stock(const Cell& cell) const {
+    CornerHeights through{};
+    for (size_t k = 0; k < 3; ++k) {
+      const CellCorner& at = cell.corners[k].at;
+      through[k] = leaves_box(input_.stock.box(), at.point, -at.normal);
+    }
+    return through;
   }
 
   /// Height over the design up to which there was material to begin with over the whole cell; below 0 where
@@ -312,20 +296,31 @@ class RootProof {
   }
 
   /// Least height over the cell; floors_ gets each sweep's. A bound holds however much deeper it looks, so
-  /// what is the cell's own, which asks for distances, is asked for only where that does not suffice.
+  /// what is the cell's own, which asks for distances, is asked for only where that does not suffice; and
+  /// each sweep's bound may look as deep as it likes best.
   double lower_bound(const Cell& cell) {
     std::fill(floors_.begin() + static_cast<std::ptrdiff_t>(cell.begin),
               floors_.begin() + static_cast<std::ptrdiff_t>(cell.end), -kNever);
     ColumnDepths depths{{stock::kSkin, stock::kSkin, stock::kSkin}, {}};
     double low = lower_bound(cell, depths);
     if (low >= -gouge_target() || !root_.looks_down) return low;
-    for (size_t k = 0; k < 3; ++k)
-      depths.seen[k] = counted_depth(input_, cell.corners[k].at, stock::kSkin, kShareOfRange);
-    low = lower_bound(cell, depths);
-    if (low >= -gouge_target()) return low;
-    depths.own = own_below(cell);
-    if (!depths.own.empty()) low = lower_bound(cell, depths);
-    return low == -kNever ? -deepest(cell, depths.own) : low;
+    const std::vector<CornerHeights> own = own_below(cell.shape, input_.field, through_stock(cell)),
+                                     ends = ends_below(cell, own);
+    const bool flat = is_flat(cell.shape);
+    if (flat) depths.own = own;
+    bool looked = depths.own.empty();
+    for (const CornerHeights& end : ends) {
+      const double most = *std::max_element(end.begin(), end.end());
+      if (*std::min_element(end.begin(), end.end()) >= stock::kSkin || most == kNever) continue;
+      // Where columns fan out the product of depth and direction is no linear function.
+      depths.seen = flat ? end : CornerHeights{most, most, most};
+      low = lower_bound(cell, depths);
+      if (low >= -gouge_target()) return low;
+      looked = true;
+    }
+    if (!looked) low = lower_bound(cell, depths);
+    constexpr double kThrough = 1e4;  // mm: any part
+    return low == -kNever ? -std::min(highest_left(ends).height, kThrough) : low;
   }
 
   double lower_bound(const Cell& cell, const ColumnDepths& depths) {
@@ -545,7 +540,6 @@ class RootProof {
   std::vector<NearSweep> near_;
   std::vector<uint32_t> kept_;  ///< a stack: the sweeps of a cell lie above those of the cell around it
   std::vector<double> floors_;  ///< least heights of kept_ over the cell last looked at
-  std::vector<CornerHeights> sets_;
   RestBound rest_{input_, root_, near_};
   bool stopped_ = false;
   RootResult result_;

@@ -98,13 +98,7 @@ double DesignMesh::distance_to(const Vec3& point) const {
 
 double RayField::own_depth(const Vec3& point, const Vec3& normal, double depth_mm, double share) const {
   if (design == nullptr || depth_mm <= 0.0) return depth_mm;
-  // Interpolated normals lean up to the crease's angle from the facets: the distance then is that much
-  // shorter.
-  constexpr double kLean = 0.85;       // cos(30 deg), and a little for rounding
-  constexpr double kFloatMesh = 2e-5;  // mm: vertices are floats
   constexpr int kHalvings = 40;
-  // On a flat face the column follows the facet's own normal, and the distance is the depth.
-  constexpr double kFlat = 1.0 - 1e-4;
   const auto is_flat = [&] {
     const auto& facet = design->mesh.triangles[design->distance.nearest(point).triangle];
     const auto vertex = [&](size_t k) {
@@ -115,7 +109,7 @@ double RayField::own_depth(const Vec3& point, const Vec3& normal, double depth_m
     return std::abs(across.dot(normal)) >= (1.0 - 1e-9) * across.norm();
   };
   // Surfaces have their own normals everywhere.
-  const double least = design->under != nullptr || is_flat() ? kFlat : kLean;
+  const double least = design->under != nullptr || is_flat() ? kOwnShare : kOwnShareLeaning;
   const auto is_own = [&](double s) {
     return design->distance_to(point - s * normal) >= least * s - kFloatMesh;
   };

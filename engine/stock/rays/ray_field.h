@@ -50,6 +50,13 @@ struct DesignMesh {
   double distance_to(const Vec3& point) const;
 };
 
+/// A depth below a foot is the foot's own while the design is at least this share of it away, less the
+/// rounding of meshes: nearly all where columns follow the design's own normal; where they follow a mesh's
+/// interpolated ones, which lean up to the crease's angle from the facets, cos 30 deg and a little for
+/// rounding.
+inline constexpr double kOwnShare = 1.0 - 1e-4, kOwnShareLeaning = 0.85;
+inline constexpr double kFloatMesh = 2e-5;  ///< mm: vertices are floats
+
 struct RayField {
   std::vector<Vec3> points, normals;           ///< W, mm; unit, out of the material
   std::vector<double> areas_mm2;               ///< the share of the design's area each ray stands for

@@ -33,7 +33,7 @@ void move(Job& job, const Vec3& from, const Vec3& to, const Vec3& axis = Vec3::U
   job.sweeps.push_back({{from, axis}, {to, axis}, static_cast<uint32_t>(job.sweeps.size())});
 }
 
-Certificate prove(const Job& job, double voxel_mm = 0.5) {
+Certificate prove(const Job& job, double voxel_mm = 0.5, bool asks_above = true) {
   stock::Stock stock(job.box, voxel_mm);
   stock.cut(job.sweeps, job.cutter);
   const stock::FreeRange ranges({&job.field, 1});
@@ -44,7 +44,7 @@ Certificate prove(const Job& job, double voxel_mm = 0.5) {
   for (const double height : dexels.heights_mm()) known = std::max(known, height);
   Progress progress;
   return certify({*job.field, ranges, job.sweeps, cutters, 0.0, stock, 0.0, job.gouge_limit_mm,
-                  job.excess_limit_mm, true, true, job.excess_limit_mm, 0.0, known, progress});
+                  job.excess_limit_mm, asks_above, asks_above, job.excess_limit_mm, 0.0, known, progress});
 }
 
 surface::SurfacePtr plane(double length, double width) {
@@ -185,6 +185,19 @@ TEST(Certificate, DepthAlongASideFaceIsNotOwn) {
   const stock::RayFieldPtr field = stock::rays_on_mesh(block(6, 5, 2), 1.0);
   for (const double depth : {0.5, 2.0, 35.0, 1e4})
     EXPECT_LT(field->own_depth({6, 0.3, -2}, {0, 0, -1}, depth), 1e-4) << depth;
+}
+
+// A wall .2 mm thick: the corners of its top all stand on edges, where no depth is the top's own. A short
+// groove between them is, and as deep as it is.
+TEST(Certificate, AGrooveInAThinWallWhoseCornersAllStandOnEdges) {
+  for (const double x : {0.77, 2.1}) {
+    Job job{
+        stock::rays_on_mesh(block(4, 0.125, 3), 1.0), {{-4, -0.125, -3}, {4, 0.125, 0}}, ball(0.05, 5.0), {}};
+    move(job, {x, 0, -0.03}, {x + 0.02, 0, -0.03});
+    const Certificate proof = prove(job, 0.5, false);
+    EXPECT_GE(proof.gouge.um, 30.0 - 1e-6) << x;
+    EXPECT_LE(proof.gouge.um, 30.0 + 0.1) << x;
+  }
 }
 
 /// A bar along Y: its top at z = 0 from x = 0 on, under it a face that goes down from the edge x = 0 by 30

@@ -24,15 +24,15 @@ struct HalfShaft {
   surface::UnderFacetsPtr under;
 };
 
-HalfShaft half_shaft(int sides) {
+HalfShaft half_shaft(int sides, double half_length = 5.0) {
   surface::Turn turn;
-  turn.base_W = {-5, 0, -kShaftRadius};
+  turn.base_W = {-half_length, 0, -kShaftRadius};
   turn.axis_W = Vec3::UnitX();
   turn.from_rad = 0.0;
   turn.to_rad = kPi;
   auto under = std::make_shared<surface::UnderFacets>();
   under->surfaces.push_back(
-      surface::cylinder_surface(turn, kShaftRadius, 10.0, surface::MaterialSide::kConvex));
+      surface::cylinder_surface(turn, kShaftRadius, 2.0 * half_length, surface::MaterialSide::kConvex));
   under->is_plane.push_back(0);
   const surface::Surface& shaft = *under->surfaces.front();
   HalfShaft part;
@@ -63,7 +63,7 @@ HalfShaft half_shaft(int sides) {
     }
     facet(c, on);
   };
-  const uint32_t left = add({-5, 0, -kShaftRadius}), right = add({5, 0, -kShaftRadius});
+  const uint32_t left = add({-half_length, 0, -kShaftRadius}), right = add({half_length, 0, -kShaftRadius});
   for (int i = 0; i < sides; ++i) {
     const double u0 = static_cast<double>(i) / sides, u1 = static_cast<double>(i + 1) / sides;
     const auto k = static_cast<size_t>(i);
@@ -124,6 +124,37 @@ TEST(FacesCertificate, AGougeIsAsDeepAsUnderTheSurfaceHoweverCoarseTheFacets) {
       EXPECT_NEAR(proof.gouge_found_um, depth_um, 0.025 + 1e-3 * depth_um);
       EXPECT_GE(proof.gouge.um, depth_um - 1e-6);
     }
+  }
+}
+
+// A rim .2 mm thick: every corner of its curved facets stands on one of its two edges, where nothing is the
+// rim's own. A groove between them is its own, and as deep as it is.
+TEST(FacesCertificate, AGrooveInARimWhoseCornersAllStandOnEdges) {
+  const HalfShaft part = half_shaft(24, 0.1);
+  const stock::RayFieldPtr field = stock::rays_on_mesh(part.mesh, 1.0, stock::kCrease, part.under);
+  constexpr double kBall = 0.05, kDeep = 0.03;
+  cutter::Cutter ball;
+  ball.shape = cutter::Shape::kBall;
+  ball.diameter_mm = 2.0 * kBall;
+  ball.corner_radius_mm = kBall;
+  ball.flute_length_mm = 5.0;
+  for (const double y : {0.9, 1.4}) {
+    const double top = std::sqrt(kShaftRadius * kShaftRadius - y * y) - kShaftRadius;
+    const Vec3 tip(0, y, top - kDeep);
+    const std::vector<stock::Sweep> sweeps{
+        {{tip, Vec3::UnitZ()}, {tip + Vec3(0, 0.02, 0), Vec3::UnitZ()}, 0}};
+    const Box box{{-1, -21, -21}, {1, 21, 1}};
+    const stock::CutterSolid solid(ball);
+    stock::Stock stock(box, 0.5);
+    stock.cut(sweeps, solid);
+    const stock::FreeRange ranges({&field, 1});
+    const SweepCutters cutters(solid);
+    Progress progress;
+    const Certificate proof = certify(
+        {*field, ranges, sweeps, cutters, 0.0, stock, 0.0, 2e-4, 1.0, false, false, 1.0, 0.0, 0.0, progress});
+    // Along the normal of the rim, which leans by 4 degrees at most.
+    EXPECT_GE(proof.gouge.um, 1e3 * kDeep - 0.1) << y;
+    EXPECT_LE(proof.gouge.um, 1e3 * kDeep + 2.0) << y;
   }
 }
 
