@@ -1,4 +1,5 @@
 // STEP: AP203, AP214, AP242.
+#include <Interface_Check.hxx>
 #include <Interface_InterfaceModel.hxx>
 #include <Interface_Static.hxx>
 #include <STEPConstruct_UnitContext.hxx>
@@ -9,9 +10,11 @@
 #include <StepData_StepModel.hxx>
 #include <StepGeom_GeomRepContextAndGlobUnitAssCtxAndGlobUncertaintyAssCtx.hxx>
 #include <StepGeom_GeometricRepresentationContextAndGlobalUnitAssignedContext.hxx>
+#include <StepGeom_GeometricRepresentationItem.hxx>
 #include <StepRepr_GlobalUnitAssignedContext.hxx>
 #include <StepRepr_RepresentationItem.hxx>
 #include <StepShape_FaceSurface.hxx>
+#include <StepShape_TopologicalRepresentationItem.hxx>
 #include <TColStd_SequenceOfAsciiString.hxx>
 #include <TCollection_HAsciiString.hxx>
 #include <TopExp.hxx>
@@ -157,6 +160,22 @@ void refuse_other_format(const std::string& path, const std::string& start) {
                    "export the part as STEP AP203, AP214 or AP242");
 }
 
+/// The library goes on with what is left of an entity that lacks something, and does not look whether it is
+/// there.
+void refuse_damaged_geometry(const Handle(StepData_StepModel) & file, const std::string& path) {
+  for (int i = 1; i <= file->NbEntities(); ++i) {
+    const Handle(Interface_Check) found = file->Check(i, true);
+    if (found.IsNull() || !found->HasFailed()) continue;
+    const Handle(Standard_Transient) entity = file->Value(i);
+    if (!entity->IsKind(STANDARD_TYPE(StepGeom_GeometricRepresentationItem)) &&
+        !entity->IsKind(STANDARD_TYPE(StepShape_TopologicalRepresentationItem)))
+      continue;
+    throw InputError("cad-unreadable", {path},
+                     fmt::format("{}: {}", entity_text(file, entity), found->CFail(1)),
+                     "export the part again");
+  }
+}
+
 void transfer(STEPControl_Reader& reader, const QuietSession& session, Model& model) {
   if (reader.ReadFile(model.file.c_str()) != IFSelect_RetDone) {
     const std::string said = session.said();
@@ -164,6 +183,7 @@ void transfer(STEPControl_Reader& reader, const QuietSession& session, Model& mo
                      "the STEP file is damaged or cut off" + (said.empty() ? "" : ": " + said),
                      "copy or export it again");
   }
+  refuse_damaged_geometry(reader.StepModel(), model.file);
   const int roots = reader.NbRootsForTransfer();
   if (roots == 0) {
     throw InputError("cad-empty", {model.file}, "the STEP file holds no product with a shape",

@@ -263,6 +263,19 @@ TEST(DrivenFaces, FilesThatAreNoPartAreRefused) {
   ASSERT_NE(solid, std::string::npos);
   no_solid.replace(solid, 34, "#15 = CARTESIAN_POINT('',(0.,0.,0.));");
   EXPECT_NE(told(no_solid).find("[cad-empty]"), std::string::npos);
+  // Sheets bound no body; an entity whose list is no list is the file's damage, with its number.
+  const auto turned = [&](const char* model) {
+    std::string text = no_solid;
+    text.replace(text.find("#15 = CARTESIAN_POINT('',(0.,0.,0.));"), 37, model);
+    text.replace(text.find("CLOSED_SHELL"), 12, "OPEN_SHELL");
+    return text;
+  };
+  const std::string sheets = told(turned("#15 = SHELL_BASED_SURFACE_MODEL('',(#16));"));
+  EXPECT_NE(sheets.find("[cad-open]"), std::string::npos) << sheets;
+  EXPECT_EQ(sheets.find("[mesh-empty]"), std::string::npos) << sheets;
+  const std::string damaged = told(turned("#15 = SHELL_BASED_SURFACE_MODEL('',#16);"));
+  EXPECT_NE(damaged.find("[cad-unreadable]"), std::string::npos) << damaged;
+  EXPECT_NE(damaged.find("#15 = SHELL_BASED_SURFACE_MODEL"), std::string::npos) << damaged;
   fs::remove_all(folder);
 }
 

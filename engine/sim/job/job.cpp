@@ -288,15 +288,13 @@ TriMesh cad_facets(Job& job, bool drives, Diagnostics& diagnostics) {
   const brep::Model model = brep::read_cad(design.mesh_file);
   for (const Diagnostic& warning : model.warnings)
     diagnostics.warning(warning.code, warning.where, warning.text, warning.fix);
-  size_t open = 0;
-  for (const brep::Solid& solid : model.solids) open += solid.closed ? 0 : solid.faces.size();
+  size_t open = model.faces.size();
+  for (const brep::Solid& solid : model.solids) open -= solid.closed ? solid.faces.size() : 0;
   if (open > 0) {
     const std::string text = fmt::format("{} of {} faces bound no closed body", open, model.faces.size());
-    if (open == model.faces.size()) {
-      diagnostics.error("cad-open", where, text,
-                        "export the part as a solid; single patches: design.kind = \"nurbs\"");
-      return {};
-    }
+    if (open == model.faces.size())
+      throw InputError("cad-open", where, text,
+                       "export the part as a solid; single patches: design.kind = \"nurbs\"");
     diagnostics.warning("cad-open", where, text + ": they are not measured", "export the part as solids");
   }
   // Cells follow the edges of curved faces wherever it matters; planes end on what their facets say.
