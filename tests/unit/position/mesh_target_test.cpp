@@ -51,8 +51,8 @@ void expect_as_loop(const TriMesh& mesh, const Vec3& centre, double half, int pl
       ASSERT_EQ(rest.height, expected) << what << " " << named.name << " line = " << paste(line);
       ASSERT_EQ(hinted.height, expected) << what << " " << named.name << " line = " << paste(line);
       if (rest.touches()) {
-        // An independent look at the contact: it lies on the underside, and at that height. Its coordinates are
-        // rounded, and a rim's contact that comes to lie outside of the rim falls down its wall.
+        // An independent look at the contact: it lies on the underside, and at that height. Its coordinates
+        // are rounded, and a rim's contact that comes to lie outside of the rim falls down its wall.
         const ClosedForm tool(named.cutter);
         const double rounded = 2.0 * std::numeric_limits<double>::epsilon() * rest.contact_W.norm();
         ASSERT_NEAR(brute_point(tool, line, rest.contact_W), rest.height, 2e-6 + kWallSlope * rounded)
