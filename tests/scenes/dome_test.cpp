@@ -127,7 +127,8 @@ TEST_F(DomeRun, ExportsWithoutSimulating) {
 
 TEST_F(DomeRun, RendersWithoutSimulating) {
   const std::string png = (folder_ / "again.png").string();
-  const auto run = run_swarf("render " + folder_.string() + " --kind deviation --camera iso --still " + png);
+  const auto run =
+      run_swarf("render " + folder_.string() + " --kind deviation --camera iso --labels --still " + png);
   EXPECT_EQ(run.exit_code, 0) << run.output;
   // The same picture as the run itself made: nothing but the folder went into it.
   EXPECT_EQ(swarf::test::read_text(png), swarf::test::read_text(folder_ / "still_deviation.png"));

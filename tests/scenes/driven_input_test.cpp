@@ -201,9 +201,10 @@ TEST(DrivenSurfaces, GapsStepsAndEndsAreToldBeforeAnythingMoves) {
   expect(check(2, 0, ball, "floor_mm = -1\narea_mm = " + area), 0, "[part-gap-wide]");
   expect(check(2, 0, flat, "area_mm = " + area), 0, "the cutter rides over it");
   expect(check(0, 0.05, ball, "area_mm = " + area), 0, "surface 1 ends 0.05 mm below surface 2 at (10.000, ");
-  // The axis 2 mm beside the plates: over one side of three passes, and over the ends of the two others.
+  // The axis 2 mm beside the plates: over one side of three passes and the way from it, and over the ends of
+  // the two others.
   expect(check(0, 0, ball, "area_mm = [[0, -2], [20, 6]]"), 0,
-         "along 20.0 mm of the guides, first of pass 1");
+         "along 21.8 mm of the guides, first of pass 1");
   expect(check(0, 0, ball, "area_mm = [[-2, 0], [20, 8]]"), 0, "[guide-beyond-part]");
   expect(check(0, 0, ball, "area_mm = [[-4, 0], [20, 8]]"), 2, "[guide-misses-part]");
   // Beyond a gap that is wider than the cutter nothing stops it: told in the middle of a pass.

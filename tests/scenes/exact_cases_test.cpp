@@ -48,7 +48,7 @@ TEST_F(HyperboloidRun, PassesAndSaysWhereItStartedAndWhatTookTheTime) {
 TEST_F(HyperboloidRun, RendersExportsAndComparesFromItsFolder) {
   const std::string png = (folder_ / "again.png").string(), stl = (folder_ / "part.stl").string();
   const auto render =
-      run_swarf("render " + folder_.string() + " --kind deviation --camera iso --still " + png);
+      run_swarf("render " + folder_.string() + " --kind deviation --camera iso --labels --still " + png);
   EXPECT_EQ(render.exit_code, 0) << render.output;
   EXPECT_EQ(swarf::test::read_text(png), swarf::test::read_text(folder_ / "still_deviation.png"));
   const auto exported = run_swarf("export " + folder_.string() + " --stl " + stl);

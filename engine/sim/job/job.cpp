@@ -299,6 +299,9 @@ TriMesh cad_facets(Job& job, bool drives, Diagnostics& diagnostics) {
   }
   // Cells follow the edges of curved faces wherever it matters; planes end on what their facets say.
   brep::Facets facets = brep::tessellate(model, design.chord_mm, true);
+  if (facets.mesh.triangles.empty())
+    throw InputError("cad-open", where, fmt::format("{} faces are sheets of no solid body", model.face_count),
+                     "export the part as a solid");
   const double edge_mm = edge_chord(job.scene.accept);
   if (facets.under->edge_mm > edge_mm) facets = brep::tessellate(model, design.chord_mm, true, edge_mm);
   diagnostics.note(
