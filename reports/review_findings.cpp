@@ -97,13 +97,18 @@ std::vector<ReviewPin> review_pins(const KeptFindings& kept) {
   return pins;
 }
 
-std::vector<WorstPlace> worst_places(const sim::Result& result) {
+std::vector<WorstPlace> worst_regions(const sim::Result& result) {
   const measure::SurfaceMetrics& surface = result.main.surface;
   std::vector<WorstPlace> places;
   if (!surface.gouges.empty())
     places.push_back({surface.gouges.front().place, -surface.gouges.front().worst_um * kMicrometre});
   if (!surface.excesses.empty())
     places.push_back({surface.excesses.front().place, surface.excesses.front().worst_um * kMicrometre});
+  return places;
+}
+
+std::vector<WorstPlace> worst_places(const sim::Result& result) {
+  std::vector<WorstPlace> places = worst_regions(result);
   const auto& ridges = result.main.ridges;
   const auto highest = std::max_element(
       ridges.begin(), ridges.end(), [](const auto& a, const auto& b) { return a.height_um < b.height_um; });

@@ -18,10 +18,12 @@ std::vector<ReviewPin> review_pins(const sim::Result& result);
 /// The same of a run that is read back.
 std::vector<ReviewPin> review_pins(const KeptFindings& kept);
 
-/// The deepest gouge, the highest excess and the highest ridge, as the measures have refined them.
+/// The deepest gouge and the highest excess beyond the limits, as the measures have refined them.
+std::vector<WorstPlace> worst_regions(const sim::Result& result);
+/// These and the highest ridge.
 std::vector<WorstPlace> worst_places(const sim::Result& result);
-/// Of a run that is read back: the deepest gouge and the highest excess beyond the limits, as its
-/// metrics.json says them. None where that is missing or says none.
+/// worst_regions() of a run that is read back, as its metrics.json says them. None where that is missing or
+/// says none.
 std::vector<WorstPlace> kept_worst_places(const std::string& folder);
 
 }  // namespace swarf::reports

@@ -87,7 +87,7 @@ void write_pictures(const PendingFolder& folder, const FinishedRun& run, const T
     const char* camera;
     const char* caption;
   };
-  const std::vector<WorstPlace> worst = worst_places(result);
+  const std::vector<WorstPlace> worst = worst_regions(result);
   std::vector<Picture> pictures{
       {StillKind::kMachine, "still_machine.png", "machine", "The machine near the middle of the program."},
       {StillKind::kPart, "still_part.png", "iso",
