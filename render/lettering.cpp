@@ -182,7 +182,7 @@ void draw_progress(Image& image, double share) {
   canvas.finish();
 }
 
-void draw_colour_bar(Image& image, const ColourBar& bar) {
+double draw_colour_bar(Image& image, const ColourBar& bar) {
   SWARF_CHECK(bar.low < bar.high && bar.colour, "a colour bar needs a range and colours");
   Canvas canvas(image);
   const double text_px = canvas.text_px(), pad = 0.8 * text_px, bar_width = 1.1 * text_px;
@@ -203,6 +203,7 @@ void draw_colour_bar(Image& image, const ColourBar& bar) {
     draw_apart(canvas, bar,
                {x, std::floor(at.y + at.height + 0.8 * text_px), bar_width, std::floor(text_px)});
   canvas.finish();
+  return x - pad;
 }
 
 void draw_scale_bar(Image& image, double px_per_mm) {
@@ -217,7 +218,7 @@ void draw_scale_bar(Image& image, double px_per_mm) {
   const double text_px = canvas.text_px(), pad = 0.8 * text_px, width = length * px_per_mm;
   const std::string words = fmt::format("{:g} mm", length);
   const double inner = std::max(width, canvas.text_width(words));
-  const double x = image.width - 2.0 * pad - inner, bottom = image.height - 2.0 * pad;
+  const double x = 2.0 * pad, bottom = image.height - 2.0 * pad;
   canvas.plate(x - pad, bottom - 2.1 * text_px, inner + 2.0 * pad, 2.1 * text_px + pad);
   canvas.text(x + 0.5 * (inner - canvas.text_width(words)), bottom - 0.9 * text_px, words);
   cairo_set_line_width(canvas.cr(), std::max(1.5, 0.12 * text_px));
@@ -232,14 +233,14 @@ void draw_scale_bar(Image& image, double px_per_mm) {
   canvas.finish();
 }
 
-void draw_leaders(Image& image, const std::vector<Leader>& leaders) {
+void draw_leaders(Image& image, const std::vector<Leader>& leaders, double right_px) {
   if (leaders.empty()) return;
   Canvas canvas(image);
   const double text_px = canvas.text_px(), pad = 0.5 * text_px, height = 1.9 * text_px;
   std::vector<std::array<double, 3>> taken;  // left, top, width of the plates
   for (const Leader& leader : leaders) {
     const double width = canvas.text_width(leader.text) + 2.0 * pad;
-    const double x = std::clamp(leader.x + 3.0 * text_px, pad, std::max(pad, image.width - pad - width));
+    const double x = std::clamp(leader.x + 3.0 * text_px, pad, std::max(pad, right_px - pad - width));
     double y = std::clamp(leader.y - 4.0 * text_px, pad, std::max(pad, image.height - pad - height));
     for (const auto& [left, top, other] : taken)
       if (x < left + other && left < x + width && std::abs(y - top) < height) y = top + 1.2 * height;

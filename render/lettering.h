@@ -36,9 +36,10 @@ struct ColourBar {
   Rgb apart_colour{0.0F, 0.0F, 0.0F};  ///< linear RGB of that patch
 };
 
-void draw_colour_bar(Image& image, const ColourBar& bar);
+/// Along the right border; where its plate begins, px from the left.
+double draw_colour_bar(Image& image, const ColourBar& bar);
 
-/// A bar at the lower right, of the longest of 1, 2, 5 times a power of ten mm that takes no more than a
+/// A bar at the lower left, of the longest of 1, 2, 5 times a power of ten mm that takes no more than a
 /// fifth of the picture's width, with its length: "20 mm". `px_per_mm` > 0: where it is to be read.
 void draw_scale_bar(Image& image, double px_per_mm);
 
@@ -48,7 +49,7 @@ struct Leader {
   std::string text{};
 };
 /// Each on a plate of its own beside its place, within the picture and below one another where they would
-/// meet, with a line to the place and a dot on it.
-void draw_leaders(Image& image, const std::vector<Leader>& leaders);
+/// meet, left of `right_px`, with a line to the place and a dot on it.
+void draw_leaders(Image& image, const std::vector<Leader>& leaders, double right_px);
 
 }  // namespace swarf::render

@@ -179,9 +179,9 @@ render::Image deviation_picture(const TriMesh& coloured, const render::Deviation
   list.items.push_back({&coloured, Pose::Identity(), {{1.0F, 1.0F, 1.0F}, 0.0F, 0.7F}});
   options.strip_strength = 0.0;  // reflections would tint the colours
   render::Image image = render::render_still(list, options);
-  render::draw_colour_bar(image, lettered_bar(scale));
+  const double bar_begins = render::draw_colour_bar(image, lettered_bar(scale));
   if (labels) {
-    render::draw_leaders(image, extreme_leaders(coloured, list, options.width, options.height));
+    render::draw_leaders(image, extreme_leaders(coloured, list, options.width, options.height), bar_begins);
     render::draw_scale_bar(image, render::px_per_mm_at_target(list.camera, options.height));
   }
   return image;

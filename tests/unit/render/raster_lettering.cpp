@@ -107,15 +107,20 @@ TEST(Lettering, TheScaleBarIsAsLongAsItSays) {
 /// Places in the corners: dots on them, plates within the picture, two of one place below one another.
 TEST(Lettering, LeadersStayInThePictureAndApart) {
   Image image = grey(640, 360);
-  draw_leaders(image,
-               {{2.0, 2.0, "deepest -1.00"}, {637.0, 357.0, "highest +2.00"}, {637.0, 357.0, "again"}});
+  draw_leaders(image, {{2.0, 2.0, "deepest -1.00"}, {637.0, 357.0, "highest +2.00"}, {637.0, 357.0, "again"}},
+               640.0);
   EXPECT_GT(pixel(image, 2, 2).r, 220);
   EXPECT_GT(pixel(image, 637, 357).r, 220);
   EXPECT_EQ(changed(image, 200, 400, 0, 360), 0);
   Image one = grey(640, 360), two = grey(640, 360);
-  draw_leaders(one, {{300.0, 200.0, "first"}});
-  draw_leaders(two, {{300.0, 200.0, "first"}, {300.0, 200.0, "other"}});
+  draw_leaders(one, {{300.0, 200.0, "first"}}, 640.0);
+  draw_leaders(two, {{300.0, 200.0, "first"}, {300.0, 200.0, "other"}}, 640.0);
   EXPECT_GT(changed(two, 0, 640, 0, 360), 1.8 * changed(one, 0, 640, 0, 360));
+  // Left of what stands along the right border.
+  Image beside = grey(640, 360);
+  draw_leaders(beside, {{400.0, 200.0, "highest +10.00"}}, 420.0);
+  EXPECT_GT(changed(beside, 0, 420, 0, 360), 0);
+  EXPECT_EQ(changed(beside, 420, 640, 0, 360), 0);
 }
 
 }  // namespace
