@@ -48,7 +48,7 @@ void write_map(PendingFolder& folder, TriMesh map, const std::string& name, cons
   render::StillOptions options;  // as the stills of a run
   options.samples_per_pixel = kMapSamples;
   options.noise = kMapNoise;
-  render::Image image = deviation_picture(map, scale_um, "iso", options, true);
+  render::Image image = deviation_picture(map, scale_um, "iso", options, 0);
   render::draw_caption(image, caption_of(map, title, scale_um));
   render::save_png(image, folder.file(name + ".png"));
 }

@@ -180,7 +180,10 @@ std::vector<std::string> keep_job(const fs::path& input, const fs::path& inside,
   }
   if (scene.design.kind == sim::DesignKind::kSurface)
     keep("design.surface", scene.design.surface_file, beside(scene.design.surface_file, "design"));
-  if (scene.design.kind == sim::DesignKind::kMesh || scene.design.kind == sim::DesignKind::kRuledFaces)
+  // A file that drives is the design too, and is kept as what drives.
+  const bool drives = scene.driven && (scene.driven->mesh || scene.driven->step);
+  if (!drives &&
+      (scene.design.kind == sim::DesignKind::kMesh || scene.design.kind == sim::DesignKind::kRuledFaces))
     keep("design." + scene.design.mesh_key, scene.design.mesh_file, beside(scene.design.mesh_file, "design"));
   keep("report.logo", scene.report.logo_file, beside(scene.report.logo_file, "logo"));
   for (size_t i = 0; i < scene.fixtures.size(); ++i) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -49,9 +50,10 @@ void make_still(const FinishedRun& run, const TriMesh& part, StillKind kind, con
 /// The colour bar of the 3D view; its ends are those of the scale.
 ColourBar deviation_colour_bar(const render::DeviationScale& scale);
 
-/// A mesh whose colours show deviation, with its colour bar; `labels` as in StillLook. The scale bar is right
-/// at the middle of what is shown.
+/// A mesh whose colours show deviation, with its colour bar; labels as in StillLook, of the vertices from
+/// `labelled` on. The scale bar is right at the middle of what is shown.
 render::Image deviation_picture(const TriMesh& coloured, const render::DeviationScale& scale,
-                                const std::string& camera, render::StillOptions options, bool labels = false);
+                                const std::string& camera, render::StillOptions options,
+                                std::optional<size_t> labelled = {});
 
 }  // namespace swarf::reports

@@ -99,8 +99,11 @@ void write_pictures(const PendingFolder& folder, const FinishedRun& run, const T
            ? "The tool's paths and its axes."
            : "Paths and tool axes (Lin & Koren, Fig. 13)."}};
   if (!run.dexels.empty()) {
-    pictures.insert(pictures.begin() + 2, {StillKind::kDeviation, "still_deviation.png", "iso",
-                                           "Deviation from the design, from the measuring rays."});
+    pictures.insert(pictures.begin() + 2,
+                    {StillKind::kDeviation, "still_deviation.png", "iso",
+                     run.job.design_mesh ? "Deviation from the design: colours at the vertices of the "
+                                           "part's mesh, from the facets; values from the measuring rays."
+                                         : "Deviation from the design, from the measuring rays."});
   }
   const std::vector<std::string>& kinds = run.job.scene.stills.kinds;
   std::erase_if(pictures, [&](const Picture& picture) {

@@ -142,20 +142,22 @@ ColourBar deviation_colour_bar(const render::DeviationScale& scale) {
 
 namespace {
 
-/// The deepest and the highest place of what is seen, with their values.
-std::vector<render::Leader> extreme_leaders(const TriMesh& coloured, const render::DrawList& list, int width,
-                                            int height) {
+/// The deepest and the highest of the vertices from `first` on, with their values.
+std::vector<render::Leader> extreme_leaders(const TriMesh& coloured, size_t first,
+                                            const render::DrawList& list, int width, int height) {
   const render::RayScene scene(list, 0.0);
   const Vec3 size = mesh::bounds(coloured).size();
   std::vector<render::Leader> leaders;
   for (const double sign : {-1.0, 1.0}) {
     size_t most = coloured.positions.size();
-    for (size_t i = 0; i < coloured.deviation_um.size(); ++i) {
+    for (size_t i = first; i < coloured.deviation_um.size(); ++i) {
       const double um = sign * coloured.deviation_um[i];
       if (!std::isnan(um) && (most == coloured.positions.size() || um > sign * coloured.deviation_um[most]))
         most = i;
     }
     if (most == coloured.positions.size()) return {};
+    // A few places alone need not hold the deepest, or the highest.
+    if (first > 0 && sign * coloured.deviation_um[most] < 0.0) continue;
     const auto& p = coloured.positions[most];
     const Vec3 place(p[0], p[1], p[2]), to_eye = (list.camera.eye - place).normalized();
     // From a little before the surface on, which would hide itself.
@@ -172,7 +174,8 @@ std::vector<render::Leader> extreme_leaders(const TriMesh& coloured, const rende
 }  // namespace
 
 render::Image deviation_picture(const TriMesh& coloured, const render::DeviationScale& scale,
-                                const std::string& camera, render::StillOptions options, bool labels) {
+                                const std::string& camera, render::StillOptions options,
+                                std::optional<size_t> labelled) {
   render::DrawList list;
   const double ratio = static_cast<double>(options.width) / options.height;
   list.camera = render::look_at_box(mesh::bounds(coloured), -camera_direction(camera), kFieldOfView, ratio);
@@ -180,8 +183,9 @@ render::Image deviation_picture(const TriMesh& coloured, const render::Deviation
   options.strip_strength = 0.0;  // reflections would tint the colours
   render::Image image = render::render_still(list, options);
   const double bar_begins = render::draw_colour_bar(image, lettered_bar(scale));
-  if (labels) {
-    render::draw_leaders(image, extreme_leaders(coloured, list, options.width, options.height), bar_begins);
+  if (labelled) {
+    render::draw_leaders(image, extreme_leaders(coloured, *labelled, list, options.width, options.height),
+                         bar_begins);
     render::draw_scale_bar(image, render::px_per_mm_at_target(list.camera, options.height));
   }
   return image;
@@ -196,7 +200,10 @@ void make_still(const FinishedRun& run, const TriMesh& part, StillKind kind, con
     if (look.labels) add_worst_places(run, look.worst, coloured);
     const render::DeviationScale scale = deviation_scale(run.job);
     render::colour_by_deviation(coloured, scale);
-    render::save_png(deviation_picture(coloured, scale, camera, options, look.labels), path);
+    // Vertices of the part's mesh lie within a part of a voxel of it: only places of rays have values to
+    // tell.
+    const auto labelled = look.labels ? std::optional(part.positions.size()) : std::nullopt;
+    render::save_png(deviation_picture(coloured, scale, camera, options, labelled), path);
     return;
   }
   const MachineView view(run.job);

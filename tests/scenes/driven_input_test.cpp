@@ -311,6 +311,14 @@ TEST(DrivenMesh, OpenOrInsideOutIsRefused) {
   EXPECT_EQ(inverted.exit_code, 2) << inverted.output;
   EXPECT_NE(inverted.output.find("[mesh-inverted]"), std::string::npos) << inverted.output;
   EXPECT_NE(inverted.output.find("fix: turn all its facets round"), std::string::npos) << inverted.output;
+  // As it should be: a run of it is drawn again from its folder.
+  write({{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}});
+  const std::string out = (folder / "out").string();
+  const auto run = run_swarf("run " + (folder / "scene.toml").string() +
+                             " --no-render -q --set driven.floor_mm=0 --set design.pitch_mm=2 -o " + out);
+  EXPECT_LE(run.exit_code, 1) << run.output;
+  const auto again = run_swarf("render " + out + " --kind part --size 64 64 --still " + out + ".png");
+  EXPECT_EQ(again.exit_code, 0) << again.output;
   fs::remove_all(folder);
 }
 
