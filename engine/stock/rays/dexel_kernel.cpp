@@ -81,6 +81,29 @@ SWARF_KERNEL_INLINE bool plane_reaches(const TileRays& rays, const SweepMap& map
   return reached != 0;
 }
 
+SWARF_KERNEL_INLINE Lowering cut_by_disc(const TileRays& rays, const SweepMap& map, double radius,
+                                         double block, TileMaterial& material) {
+  const PoseRows start = pose_rows(map.R0t, map.tip0), end = pose_rows(map.R1t, map.tip1);
+  const double radius2 = radius * radius;
+  int changed = 0, left = 0;
+  for (int n = 0; n < kTileRays; ++n) {
+    const double px = rays.px[n], py = rays.py[n], pz = rays.pz[n];
+    const double nx = rays.nx[n], ny = rays.ny[n], nz = rays.nz[n];
+    const PlaneHit a = plane_hit(start, px, py, pz, nx, ny, nz);
+    const PlaneHit b = plane_hit(end, px, py, pz, nx, ny, nz);
+    const double farthest2 = max_of(a.x * a.x + a.y * a.y, b.x * b.x + b.y * b.y);
+    const double s = min_of(a.s, b.s), height = material.heights[n], owner = material.blocks[n];
+    const bool plane = min_of(a.steepness, b.steepness) > kFlattest;
+    const bool known = plane & (farthest2 <= radius2) & (s > -kNoteworthy);
+    const bool lower = known & ((s < height) | ((s == height) & (block < owner)));
+    left |= !known & (!plane | (s <= height + kBoundSlack));
+    changed |= lower;
+    material.heights[n] = lower ? s : height;
+    material.blocks[n] = lower ? block : owner;
+  }
+  return {changed != 0, left != 0};
+}
+
 bool plane_reaches_baseline(const TileRays& rays, const SweepMap& map, const double* tops) {
   return plane_reaches(rays, map, tops);
 }
@@ -91,6 +114,21 @@ SWARF_X86_64_V3 bool plane_reaches_v3(const TileRays& rays, const SweepMap& map,
 
 SWARF_X86_64_V4 bool plane_reaches_v4(const TileRays& rays, const SweepMap& map, const double* tops) {
   return plane_reaches(rays, map, tops);
+}
+
+Lowering cut_by_disc_baseline(const TileRays& rays, const SweepMap& map, double radius, double block,
+                              TileMaterial& material) {
+  return cut_by_disc(rays, map, radius, block, material);
+}
+
+SWARF_X86_64_V3 Lowering cut_by_disc_v3(const TileRays& rays, const SweepMap& map, double radius,
+                                        double block, TileMaterial& material) {
+  return cut_by_disc(rays, map, radius, block, material);
+}
+
+SWARF_X86_64_V4 Lowering cut_by_disc_v4(const TileRays& rays, const SweepMap& map, double radius,
+                                        double block, TileMaterial& material) {
+  return cut_by_disc(rays, map, radius, block, material);
 }
 
 void tile_heights_baseline(const TileRays& rays, const SweepMap& map, double radius, TileHeights& out) {
@@ -111,8 +149,9 @@ SWARF_X86_64_V4 void tile_heights_v4(const TileRays& rays, const SweepMap& map, 
 
 std::span<const DexelKernelVariant> dexel_kernel_variants() {
   static const std::vector<DexelKernelVariant> variants = runnable<DexelKernelVariant>(
-      {"x86-64-v4", tile_heights_v4, plane_reaches_v4}, {"x86-64-v3", tile_heights_v3, plane_reaches_v3},
-      {"baseline", tile_heights_baseline, plane_reaches_baseline});
+      {"x86-64-v4", tile_heights_v4, plane_reaches_v4, cut_by_disc_v4},
+      {"x86-64-v3", tile_heights_v3, plane_reaches_v3, cut_by_disc_v3},
+      {"baseline", tile_heights_baseline, plane_reaches_baseline, cut_by_disc_baseline});
   return variants;
 }
 

@@ -27,16 +27,37 @@ struct TileHeights {
 /// Finite on purpose: the kernel is compiled without infinities.
 inline constexpr double kNoHeight = 1e300;
 
+/// Material that stands on the design under each ray. A block's id as a number, so that one loop has one
+/// width.
+struct TileMaterial {
+  alignas(64) double heights[kTileRays];  ///< mm
+  alignas(64) double blocks[kTileRays];
+};
+
+/// What one sweep of a disc did to a tile.
+struct Lowering {
+  bool changed = false;
+  bool left =
+      false;  ///< rays remain that the disc's plane does not answer for: near the rim, below the design
+};
+
 using DexelKernel = void (*)(const TileRays& rays, const SweepMap& map, double radius, TileHeights& out);
 
 /// False when the bottom plane passes above `tops` (mm, greatest height with material) on every ray: at a
 /// third of the kernel's cost, which then finds no bound below them.
 using PlaneTest = bool (*)(const TileRays& rays, const SweepMap& map, const double* tops);
 
+/// Lowers each ray that the disc itself meets at both ends to the height where it does, in one loop; of two
+/// sweeps of one height the smaller block stays. For tiles without material above gaps, whose material the
+/// cutter holds (`disc_holds`): the cut then reaches up to the material's top.
+using DiscCut = Lowering (*)(const TileRays& rays, const SweepMap& map, double radius, double block,
+                             TileMaterial& material);
+
 struct DexelKernelVariant {
   const char* instruction_set;
   DexelKernel kernel;
   PlaneTest plane_reaches;
+  DiscCut cut_by_disc;
 };
 /// The variants this processor can run, fastest first; all give the same bits.
 std::span<const DexelKernelVariant> dexel_kernel_variants();

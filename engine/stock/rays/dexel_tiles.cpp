@@ -20,8 +20,8 @@ constexpr size_t kMapsPerTask = 1024;
 struct Workspace {
   TileRays rays;
   TileHeights found;
-  StandingMaterial standing[kTileRays];
-  alignas(64) double tops[kTileRays];  ///< greatest s with material
+  TileMaterial standing;
+  alignas(64) double tops[kTileRays];  ///< greatest s with material, where some lies above gaps
   size_t index[kTileRays];
 };
 
@@ -29,6 +29,11 @@ double top_of_ray(double height, const std::vector<MaterialAbove>& above, uint32
   if (above.empty()) return height;
   const auto intervals = above_ray(above, n);
   return intervals.empty() ? height : intervals.back().high;
+}
+
+const DexelKernelVariant& fastest_kernel() {
+  static const DexelKernelVariant kernel = dexel_kernel_variants().front();
+  return kernel;
 }
 
 /// One tile while sweeps are taken out of it. Material that stands on the design and material above gaps have
@@ -112,7 +117,8 @@ class TileCut {
       w_.rays.nx[n] = normal.x();
       w_.rays.ny[n] = normal.y();
       w_.rays.nz[n] = normal.z();
-      w_.standing[n] = {material_.heights[i], material_.blocks[i]};
+      w_.standing.heights[n] = material_.heights[i];
+      w_.standing.blocks[n] = material_.blocks[i];
       w_.tops[n] = top_of_ray(material_.heights[i], above_, n);
     }
     loaded_ = true;
@@ -120,8 +126,8 @@ class TileCut {
 
   void store() {
     for (uint32_t n = 0; n < tile_.count; ++n) {
-      material_.heights[w_.index[n]] = w_.standing[n].height;
-      material_.blocks[w_.index[n]] = w_.standing[n].block;
+      material_.heights[w_.index[n]] = w_.standing.heights[n];
+      material_.blocks[w_.index[n]] = static_cast<uint32_t>(w_.standing.blocks[n]);
     }
   }
 
@@ -133,19 +139,32 @@ class TileCut {
     if (!above && (sweep_misses(map, ball_, cutter) || plane_above(tile_, map, highest_))) return;
     if (!above && !chain_.cylinder && pieces_above(tile_, map, cutter, highest_)) return;
     if (!loaded_) load();
-    static const DexelKernelVariant kernel = dexel_kernel_variants().front();
-    if (!kernel.plane_reaches(w_.rays, map, w_.tops)) return;
     pairs_ += kTileRays;
-    kernel.kernel(w_.rays, map, cutter.radius, w_.found);
+    if (!kernel_.plane_reaches(w_.rays, map, above_.empty() ? w_.standing.heights : w_.tops)) return;
+    if (!cut_rays(sweep, above)) return;
+    double highest = w_.standing.heights[0];
+    for (uint32_t n = 1; n < tile_.count; ++n) highest = std::max(highest, w_.standing.heights[n]);
+    set_bounds(highest);
+  }
+
+  /// Takes the sweep out of the rays; true when anything changed.
+  bool cut_rays(size_t sweep, bool above) {
+    const SweepMap& map = chain_.maps[sweep];
+    if (!chain_.cylinder || !above_.empty() || !disc_holds(map, ball_, chain_.cutter))
+      return cut_one_by_one(sweep, above);
+    const Lowering lowering =
+        kernel_.cut_by_disc(w_.rays, map, chain_.cutter.radius, chain_.sweeps[sweep].block, w_.standing);
+    return (lowering.left && cut_one_by_one(sweep, above)) || lowering.changed;
+  }
+
+  bool cut_one_by_one(size_t sweep, bool above) {
+    kernel_.kernel(w_.rays, chain_.maps[sweep], chain_.cutter.radius, w_.found);
     bool changed = false;
     for (uint32_t n = 0; n < tile_.count; ++n) {
-      const double limit = above ? w_.tops[n] : w_.standing[n].height;
+      const double limit = above ? w_.tops[n] : w_.standing.heights[n];
       if (w_.found.bound[n] <= limit + kBoundSlack) changed |= cut_ray(n, sweep, limit);
     }
-    if (!changed) return;
-    double highest = w_.standing[0].height;
-    for (uint32_t n = 1; n < tile_.count; ++n) highest = std::max(highest, w_.standing[n].height);
-    set_bounds(highest);
+    return changed;
   }
 
   /// `limit`: no material of this ray above it can be met.
@@ -156,7 +175,7 @@ class TileCut {
     bool changed = false;
     if (w_.found.exact[n] != kNoHeight && chain_.cylinder) {
       const double low = w_.found.exact[n];
-      if (low > limit || (low > w_.standing[n].height && misses_above(n, passage))) return false;
+      if (low > limit || (low > w_.standing.heights[n] && misses_above(n, passage))) return false;
       return remove(cut_from(low, passage, cutter.pieces.front(), limit), sweep, n);
     }
     for (const cutter::ConvexPiece& piece : cutter.pieces) {
@@ -179,21 +198,15 @@ class TileCut {
     if (interval.high < 0.0 &&
         (interval.low < -kSkin || !field.answers_for(field.points[ray], field.normals[ray], interval.high)))
       return false;
-    StandingMaterial& standing = w_.standing[n];
     const RayCut cut{interval.low, interval.high, chain_.sweeps[sweep].block};
-    if (above_.empty() && cut.high >= standing.height) return lower(cut, n);
+    StandingMaterial standing{w_.standing.heights[n], static_cast<uint32_t>(w_.standing.blocks[n])};
+    const bool first_gap = above_.empty();
     if (!remove_material(cut, n, standing, above_)) return false;
+    w_.standing.heights[n] = standing.height;
+    w_.standing.blocks[n] = standing.block;
+    if (above_.empty()) return true;
+    if (first_gap) std::copy_n(w_.standing.heights, kTileRays, w_.tops);
     w_.tops[n] = top_of_ray(standing.height, above_, n);
-    return true;
-  }
-
-  /// The usual case of remove_material: nothing stays above the cut.
-  bool lower(const RayCut& cut, uint32_t n) {
-    StandingMaterial& standing = w_.standing[n];
-    if (!(cut.high > cut.low) || cut.low > standing.height) return false;
-    if (cut.low == standing.height && cut.block >= standing.block) return false;
-    standing = {cut.low, cut.block};
-    w_.tops[n] = cut.low;
     return true;
   }
 
@@ -205,6 +218,7 @@ class TileCut {
   Ball ball_{};           ///< around that, shrinks with the material
   Extent extent_above_;
   Ball ball_above_{};
+  const DexelKernelVariant& kernel_ = fastest_kernel();
   Workspace w_;
   bool loaded_ = false;
   uint64_t pairs_ = 0;

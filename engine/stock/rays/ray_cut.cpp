@@ -54,8 +54,6 @@ bool passes_above(const RayPassage& ray, const cutter::ConvexPiece& piece, doubl
 /// was milled exactly to size, seen by the rays of the other face. Rounding must not make a cut of it.
 bool only_touches(const RayPassage& ray, const cutter::ConvexPiece& piece, const RayInterval& interval,
                   double probe) {
-  constexpr double kNoteworthy =
-      1e-3;                        // mm below the design; above, a touch changes nothing that is measured
   constexpr double kTouch = 1e-7;  // mm; rounding of coordinates of a metre
   if (interval.low > -kNoteworthy) return false;
   const auto outside = [&](double s) {

@@ -13,6 +13,10 @@ namespace swarf::stock {
 /// Bounds are compared with this slack, so that their own rounding never decides; mm.
 inline constexpr double kBoundSlack = 1e-9;
 
+/// From here down a cut may be a mere touch (ray_cut.h), mm below the design; above, a touch changes nothing
+/// that is measured.
+inline constexpr double kNoteworthy = 1e-3;
+
 /// Consecutive sweeps with a bound of how far their poses lie from the middle one.
 struct SweepRun {
   size_t begin = 0, end = 0;
@@ -50,6 +54,16 @@ inline bool sweep_misses(const SweepMap& map, const Ball& ball, const CutterSoli
   const Vec3 X = map.start(ball.centre);
   const double travel = (map.end(ball.centre) - X).norm();
   return cutter_distance(X, cutter) - travel > ball.radius + kBoundSlack;
+}
+
+/// The standing cutter holds the ball, its bottom aside, at both ends of the sweep: what of the tile's rays
+/// lies above the bottom plane is gone.
+inline bool disc_holds(const SweepMap& map, const Ball& ball, const CutterSolid& cutter) {
+  constexpr double kProbe = 1e-5;  // mm; rays are asked a little above where they are cut (cut_from)
+  const Vec3 X = map.start(ball.centre), Y = map.end(ball.centre);
+  const double reach = ball.radius + kProbe, beside = cutter.radius - reach;
+  return beside > 0.0 && std::max(X.head<2>().squaredNorm(), Y.head<2>().squaredNorm()) < beside * beside &&
+         std::max(X.z(), Y.z()) + reach < cutter.height;
 }
 
 /// The bottom planes of all the run's sweeps leave more than `highest` on every ray of the tile, which all

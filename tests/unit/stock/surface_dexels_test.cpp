@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -103,6 +104,58 @@ TEST(DexelKernel, ThePlaneTestRulesOutNothingThatTheKernelReaches) {
   }
   EXPECT_GT(out, 200);
   EXPECT_GT(kept, 200);
+}
+
+/// The loop over a disc's rays against the kernel that tells their heights: what it lowers stands at the
+/// exact height, what it does not answer for it says, and every instruction set gives the same bits.
+TEST(DexelKernel, TheDiscLowersToTheKernelsHeights) {
+  constexpr uint64_t kSeed = 37;
+  constexpr double kBlock = 7.0;
+  Rng rng(kSeed);
+  int lowered = 0, taken_over = 0, left = 0;
+  for (int n = 0; n < 3000; ++n) {
+    TileRays rays = random_rays(rng);
+    const double share = n % 2 == 0 ? 0.5 : 1.0;  // half of the cases lie within the disc
+    for (int k = 0; k < kTileRays; ++k) rays.px[k] *= share, rays.py[k] *= share, rays.pz[k] -= 1.0;
+    const auto pose = [&] { return ToolPose{0.3 * rng.direction(), Vec3::UnitZ()}; };
+    const SweepMap map = sweep_map({pose(), pose(), 0});
+    TileHeights told;
+    dexel_kernel_variants().back().kernel(rays, map, kCutter.radius, told);
+    TileMaterial before;
+    for (int k = 0; k < kTileRays; ++k) {
+      const bool tie = told.exact[k] != kNoHeight && rng.uniform(0.0, 1.0) < 0.2;
+      before.heights[k] = tie ? told.exact[k] : rng.uniform(-0.5, 3.0);
+      before.blocks[k] = std::floor(rng.uniform(0.0, 14.0));
+    }
+    TileMaterial reference = before;
+    const Lowering expected =
+        dexel_kernel_variants().back().cut_by_disc(rays, map, kCutter.radius, kBlock, reference);
+    bool open = false;
+    for (int k = 0; k < kTileRays; ++k) {
+      const double height = before.heights[k], s = told.exact[k];
+      const bool known = s != kNoHeight && s > -kNoteworthy;
+      const bool lower = known && (s < height || (s == height && kBlock < before.blocks[k]));
+      ASSERT_EQ(reference.heights[k], lower ? s : height)
+          << "seed " << kSeed << " case " << n << " ray " << k;
+      ASSERT_EQ(reference.blocks[k], lower ? kBlock : before.blocks[k]) << "case " << n << " ray " << k;
+      open |= !known && told.bound[k] <= height + kBoundSlack;
+      if (lower) ++(s == height ? taken_over : lowered);
+    }
+    ASSERT_TRUE(expected.left || !open) << "seed " << kSeed << " case " << n;
+    left += expected.left ? 1 : 0;
+    for (const DexelKernelVariant& variant : dexel_kernel_variants()) {
+      TileMaterial other = before;
+      const Lowering found = variant.cut_by_disc(rays, map, kCutter.radius, kBlock, other);
+      ASSERT_EQ(std::memcmp(&other, &reference, sizeof(other)), 0)
+          << variant.instruction_set << " case " << n;
+      ASSERT_EQ(found.changed, expected.changed) << variant.instruction_set << " case " << n;
+      ASSERT_EQ(found.left, expected.left) << variant.instruction_set << " case " << n;
+    }
+  }
+  EXPECT_GT(lowered, 1000);
+  EXPECT_GT(taken_over, 1000);
+  EXPECT_GT(left, 100);
+  EXPECT_LT(left, 3000);
 }
 
 TEST(SurfaceDexels, DesignOutsideTheStockIsMissingMaterial) {
