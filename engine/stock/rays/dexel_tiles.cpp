@@ -176,11 +176,11 @@ class TileCut {
     if (w_.found.exact[n] != kNoHeight && chain_.cylinder) {
       const double low = w_.found.exact[n];
       if (low > limit || (low > w_.standing.heights[n] && misses_above(n, passage))) return false;
-      return remove(cut_from(low, passage, cutter.pieces.front(), limit), sweep, n);
+      return remove(cut_from(low, passage, cutter.pieces.front(), limit), sweep, n, limit);
     }
     for (const cutter::ConvexPiece& piece : cutter.pieces) {
       const RayInterval interval = cut_of_piece(passage, piece, limit);
-      if (interval.hit()) changed |= remove(interval, sweep, n);
+      if (interval.hit()) changed |= remove(interval, sweep, n, limit);
     }
     return changed;
   }
@@ -191,14 +191,22 @@ class TileCut {
     return beyond_cutter(passage, chain_.cutter, {intervals.front().low, intervals.back().high});
   }
 
-  bool remove(const RayInterval& interval, size_t sweep, uint32_t n) {
+  /// Where a cut ends that is known to touch nothing above `limit`: an interval that ends above its limit is
+  /// told as endless (cut_of_piece), and must not take what stands above a gap with it.
+  double end_below_gap(double high, uint32_t n, double limit) const {
+    for (const MaterialAbove& m : above_ray(above_, n))
+      if (m.low > limit) return std::min(high, std::nextafter(m.low, limit));
+    return high;
+  }
+
+  bool remove(const RayInterval& interval, size_t sweep, uint32_t n, double limit) {
     const RayField& field = material_.field;
     const uint32_t ray = w_.index[n];
     // A cut of another face of the part.
     if (interval.high < 0.0 &&
         (interval.low < -kSkin || !field.answers_for(field.points[ray], field.normals[ray], interval.high)))
       return false;
-    const RayCut cut{interval.low, interval.high, chain_.sweeps[sweep].block};
+    const RayCut cut{interval.low, end_below_gap(interval.high, n, limit), chain_.sweeps[sweep].block};
     StandingMaterial standing{w_.standing.heights[n], static_cast<uint32_t>(w_.standing.blocks[n])};
     const bool first_gap = above_.empty();
     if (!remove_material(cut, n, standing, above_)) return false;

@@ -6,6 +6,8 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <numeric>
 
 #include "base/diagnostics.h"
 #include "base/parallel.h"
@@ -13,6 +15,7 @@
 #include "dome.h"
 #include "stock/rays/dexel_kernel.h"
 #include "stock/rays/ray_height.h"
+#include "stock/rays/ray_material.h"
 #include "stock/rays/tile_bounds.h"
 #include "stock_test_support.h"
 #include "support/scratch.h"
@@ -191,6 +194,39 @@ TEST(SurfaceDexels, DomePassesEqualBruteForce) {
   const SurfaceDexels fresh = dexels;
   dexels.cut(sweeps, kCutter);
   expect_brute_force(dexels, fresh, sweeps);
+}
+
+/// Tiles that lie wholly under a wide disc, by flutes that are longer than the material is thick, about as
+/// long, and much shorter: then material stays above the cut.
+TEST(SurfaceDexels, ShortFlutesUnderTheDiscEqualBruteForce) {
+  const std::vector<Sweep> sweeps = dome_passes(0.4, 0.6, 4, 24);
+  for (const double flutes : {60.0, 2.0, 0.3}) {
+    const CutterSolid cutter{20.0, flutes};
+    SurfaceDexels dexels(dome(), 0.9, {{-55, -45, -10}, {55, 45, 31}});
+    const SurfaceDexels fresh = dexels;
+    dexels.cut(sweeps, cutter);
+    std::map<uint32_t, std::vector<MaterialAbove>> found;
+    dexels.each_above([&](uint32_t ray, const MaterialAbove& m) { found[ray].push_back(m); });
+    size_t gaps = 0;
+    for (uint32_t n = 0; n < dexels.points().size(); ++n) {
+      StandingMaterial standing{fresh.heights_mm()[n], kUncut};
+      std::vector<MaterialAbove> above;
+      for (const Sweep& sweep : sweeps) {
+        const RayInterval cut =
+            ray_interval(dexels.points()[n], dexels.normals()[n], sweep_map(sweep), cutter.pieces.front());
+        if (cut.hit() && cut.high >= 0.0)
+          remove_material({cut.low, cut.high, sweep.block}, 0, standing, above);
+      }
+      ASSERT_NEAR(dexels.heights_mm()[n], standing.height, 1e-9) << "flutes " << flutes << " ray " << n;
+      const auto total = [](const std::vector<MaterialAbove>& list) {
+        return std::accumulate(list.begin(), list.end(), 0.0,
+                               [](double sum, const MaterialAbove& m) { return sum + m.high - m.low; });
+      };
+      ASSERT_NEAR(total(found[n]), total(above), 1e-6) << "flutes " << flutes << " ray " << n;
+      gaps += above.size();
+    }
+    EXPECT_GT(gaps, 10U) << flutes;
+  }
 }
 
 TEST(SurfaceDexels, WildSweepsEqualBruteForce) {
