@@ -40,6 +40,10 @@ void join(RootResult& part, Certificate& whole, std::vector<RegionPiece>& gouges
     whole.excess_place = part.excess_found_at;
     whole.excess_block = part.excess_block;
   }
+  if (um_from_mm(part.above_found) > whole.above_found_um) {
+    whole.above_found_um = um_from_mm(part.above_found);
+    whole.above_place = part.above_found_at;
+  }
   gouges.insert(gouges.end(), part.gouges.begin(), part.gouges.end());
   excesses.insert(excesses.end(), part.excesses.begin(), part.excesses.end());
   whole.cells += part.cells;
@@ -101,7 +105,10 @@ Certificate certify(const CertificateInput& input) {
     return wanted ? std::max(found_um * kMicrometre * (1.0 + kGapShare) + kGap, limit_mm) : kNever;
   };
   const double gouge_settled = settled(true, whole.gouge_found_um, input.gouge_limit_mm);
-  const double excess_settled = settled(input.wants_excess, whole.excess_found_um, input.excess_limit_mm);
+  double excess_settled = settled(input.wants_excess, whole.excess_found_um, input.excess_limit_mm);
+  if (whole.above_found_um * kMicrometre > input.excess_limit_mm)
+    excess_settled =
+        std::max(excess_settled, whole.above_found_um * kMicrometre + above_gap(input.stock.voxel_mm()));
   const double scallop_settled = settled(input.wants_scallop, whole.excess_found_um, input.scallop_limit_mm);
   for (const RootResult& part : parts) {
     for (const RootResult::Open& open : part.open) {
@@ -116,6 +123,12 @@ Certificate certify(const CertificateInput& input) {
   whole.gouge.um = std::max(whole.gouge.um, whole.gouge_found_um) + untold_um;
   whole.excess.um = std::max(whole.excess.um, whole.excess_found_um) + untold_um;
   whole.scallop.um = std::max(whole.scallop.um, whole.excess_found_um) + untold_um;
+  if (whole.above_found_um > whole.excess_found_um) {
+    whole.excess_found_um = whole.above_found_um;
+    whole.excess_place = whole.above_place;
+    whole.excess_block = stock::kUncut;
+    whole.excess.um = std::max(whole.excess.um, whole.above_found_um + untold_um);
+  }
   whole.gouges = join_pieces(gouges);
   whole.excesses = join_pieces(excesses);
   return whole;

@@ -25,6 +25,28 @@ double lowest_cut(const CellCorner& at, const NearSweep& near, double highest, b
   return least;
 }
 
+double rest_top(const CellCorner& at, double range, const stock::RawShape& raw,
+                std::span<const NearSweep> sweeps) {
+  std::vector<stock::RayInterval> cuts;
+  for (const NearSweep& near : sweeps) {
+    for (const cutter::ConvexPiece& piece : near.cutter->pieces) {
+      const stock::RayInterval cut = stock::ray_interval(at.point, at.normal, near.map, piece);
+      if (cut.hit() && cut.high > 0.0) cuts.push_back(cut);
+    }
+  }
+  std::sort(cuts.begin(), cuts.end(), [](const auto& a, const auto& b) { return a.high > b.high; });
+  std::vector<stock::RawInterval> material = raw.along(at.point, at.normal);
+  for (auto piece = material.rbegin(); piece != material.rend(); ++piece) {
+    double top = std::min(piece->high, range);
+    for (const stock::RayInterval& cut : cuts) {
+      if (cut.high + kTouch < top) break;
+      top = std::min(top, cut.low);
+    }
+    if (top > std::max(piece->low, 0.0)) return top;
+  }
+  return 0.0;
+}
+
 uint32_t between(const std::array<uint32_t, 2>& sweeps) {
   return sweeps[0] == stock::kUncut || sweeps[1] == stock::kUncut ? stock::kUncut
                                                                   : sweeps[0] / 2 + sweeps[1] / 2;

@@ -42,6 +42,11 @@ struct Cell {
 double lowest_cut(const CellCorner& at, const NearSweep& near, double highest, bool fans,
                   const stock::RayField& field);
 
+/// Top of the highest own material over the place when all of `sweeps` have passed, mm; 0 where none is left.
+/// Measured, not bounded: what a sweep leaves within its interval where its axis turns is passed over.
+double rest_top(const CellCorner& at, double range, const stock::RawShape& raw,
+                std::span<const NearSweep> sweeps);
+
 /// Half way along the path between two sweeps: between their places it is the likeliest to be the lowest.
 uint32_t between(const std::array<uint32_t, 2>& sweeps);
 

@@ -91,7 +91,8 @@ class RootProof {
       result_ = {};
       highest_seen_ = 0.0;
       floors_.clear();
-      find_sweeps(reach);
+      reach_ = reach;
+      near_ = sweeps_up_to(reach);
       gouge_goal_ = std::min(input_.gouge_known_mm, input_.gouge_limit_mm);
       excess_goal_ = std::min(input_.excess_known_mm, input_.excess_limit_mm);
       const auto& c = root_.cell.corners;
@@ -116,7 +117,8 @@ class RootProof {
     double low, high, skin;
   };
 
-  void find_sweeps(double reach) {
+  /// Those that may meet the root's columns from the skin up to a height.
+  std::vector<NearSweep> sweeps_up_to(double reach) const {
     Box box{Vec3::Constant(kNever), Vec3::Constant(-kNever)};
     const double margin = root_.cell.flatness_mm + root_.cell.radius() * 1e-3;
     for (const CellCorner& corner : root_.cell.corners) {
@@ -131,14 +133,15 @@ class RootProof {
     index_.find(box, found);
     const Vec3 centre = 0.5 * (box.lower + box.upper);
     const double around = 0.5 * (box.upper - box.lower).norm();
-    near_.clear();
+    std::vector<NearSweep> near;
     for (const uint32_t n : found) {
       if (passes_above(n, reach) || passes_aside(input_.sweeps[n], input_.cutters[n], centre, around))
         continue;
       const stock::Sweep& sweep = input_.sweeps[n];
-      near_.push_back(
+      near.push_back(
           {stock::sweep_map(sweep), &input_.cutters[n], n, sweep.start.axis_W != sweep.end.axis_W});
     }
+    return near;
   }
 
   /// The sweep's lowest plane keeps above the root's columns up to a height: at both ends, and what lies
@@ -235,12 +238,37 @@ class RootProof {
     }
   }
 
+  /// Where the grid has material far above a cell whose sweeps leave none on the design: what stands there
+  /// above a gap is measured. Without it nothing would tell that no division closes the cell.
+  void measure_above(const Cell& cell, const Bounds& bounds) {
+    if (!root_.looks_up || !input_.wants_excess || !(bounds.high > excess_target())) return;
+    if (cell.air == kNever || !(cell.air > input_.excess_limit_mm + 2.0 * input_.stock.voxel_mm())) return;
+    for (const Corner& corner : cell.corners)
+      if (corner.height > input_.excess_limit_mm) return;
+    // Cells that are about to close by division need no look.
+    constexpr double kStubborn = 1.0 / 8.0;  // of a voxel
+    constexpr int kLooks = 4;                // that find nothing, a root
+    if (cell.shape.radius() > kStubborn * input_.stock.voxel_mm()) return;
+    if (result_.above_found == 0.0 && ++looks_above_ > kLooks) return;
+    if (!all_near_) all_near_ = sweeps_up_to(kNever);
+    for (const Corner& corner : cell.corners) {
+      const double top = rest_top(corner.at, corner.range, raw_, *all_near_);
+      if (!(top > result_.above_found)) continue;
+      result_.above_found = top;
+      result_.above_found_at = corner.at.point;
+      highest_seen_ = std::max(highest_seen_, top);
+    }
+  }
+
   double gouge_target() const {
     return target(std::max(result_.gouge_found, gouge_goal_), input_.gouge_limit_mm);
   }
   double excess_target() const {
-    return input_.wants_excess ? target(std::max(result_.excess_found, excess_goal_), input_.excess_limit_mm)
-                               : kNever;
+    if (!input_.wants_excess) return kNever;
+    const double close = target(std::max(result_.excess_found, excess_goal_), input_.excess_limit_mm);
+    return result_.above_found > input_.excess_limit_mm
+               ? std::max(close, result_.above_found + above_gap(input_.stock.voxel_mm()))
+               : close;
   }
   double scallop_target() const {
     return input_.wants_scallop
@@ -429,6 +457,9 @@ class RootProof {
            bounds.high - bounds.low > kVolumeShare * result_.gouge_found;
   }
 
+  /// Material was seen above the height up to which sweeps were looked for: bounds up there need all of them.
+  bool is_short_of_reach() const { return result_.above_found > reach_; }
+
   /// One root may take long where the design has few.
   bool is_stopped() {
     constexpr size_t kCells = 256;  // between two looks
@@ -438,7 +469,8 @@ class RootProof {
 
   bool breaks_limit() {
     result_.broken = (root_.looks_down && result_.gouge_found > input_.gouge_limit_mm) ||
-                     (root_.looks_up && asks_above(input_) && result_.excess_found > input_.excess_limit_mm);
+                     (root_.looks_up && asks_above(input_) &&
+                      std::max(result_.excess_found, result_.above_found) > input_.excess_limit_mm);
     return result_.broken;
   }
 
@@ -463,6 +495,8 @@ class RootProof {
     floors_.resize(kept_.size());
     Bounds bounds{lower_bound(cell), 0.0, 0.0};
     bounds.high = upper_bound(cell);
+    measure_above(cell, bounds);
+    if (is_short_of_reach()) return;
     bounds.skin = skin_bound(cell, bounds.high);
     const double edge = cell.shape.longest_edge();
     std::optional<Probe> probed;
@@ -536,12 +570,14 @@ class RootProof {
   const SweepIndex& index_;
   const RootCell& root_;
   Budget budget_;
-  double gouge_goal_ = 0.0, excess_goal_ = 0.0, highest_seen_ = 0.0;
+  double gouge_goal_ = 0.0, excess_goal_ = 0.0, highest_seen_ = 0.0, reach_ = kNever;
   std::vector<NearSweep> near_;
+  std::optional<std::vector<NearSweep>> all_near_;  ///< up to the stock's top, once they are asked for
   std::vector<uint32_t> kept_;  ///< a stack: the sweeps of a cell lie above those of the cell around it
   std::vector<double> floors_;  ///< least heights of kept_ over the cell last looked at
   RestBound rest_{input_, root_, near_};
   bool stopped_ = false;
+  int looks_above_ = 0;
   RootResult result_;
 };
 

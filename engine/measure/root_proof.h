@@ -14,12 +14,20 @@ namespace swarf::measure {
 /// A cell is closed when its bound is this near to what was measured: mm, and share.
 inline constexpr double kGap = 4e-5, kGapShare = 2e-4;
 
+/// The same above a gap, mm: sweeps bound what they leave lowest, the grid alone bounds a roof from above.
+inline double above_gap(double voxel_mm) {
+  constexpr double kVoxels = 3.0;
+  return kVoxels * voxel_mm;
+}
+
 /// Everything of one root cell, worked on by one task.
 struct RootResult {
   double gouge = 0.0, excess = 0.0, scallop = 0.0;  ///< bounds, mm
   Vec3 gouge_at = Vec3::Zero(), excess_at = Vec3::Zero(), scallop_at = Vec3::Zero();
   double gouge_found = 0.0, excess_found = 0.0;  ///< mm
   Vec3 gouge_found_at = Vec3::Zero(), excess_found_at = Vec3::Zero();
+  double above_found = 0.0;  ///< measured top of material above a gap, mm
+  Vec3 above_found_at = Vec3::Zero();
   uint32_t gouge_block = stock::kUncut, excess_block = stock::kUncut;
   std::vector<RegionPiece> gouges, excesses;
   struct Open {

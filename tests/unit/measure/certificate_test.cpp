@@ -181,6 +181,26 @@ TEST(Certificate, WhatStandsOutsideACornerOfAMeshIsFound) {
 
 // A column from the rim of a plate runs along its side face: none of it is its own, however far the cut goes
 // on beyond the plate.
+/// A disc cutter passes under a roof: nothing stands on the design, and the roof is told as high as it is
+/// left, which a second pass over it lowers. Its cells are not divided for ever.
+TEST(Certificate, ARoofAboveAGapIsMeasured) {
+  for (const bool lowered : {false, true}) {
+    Job job{stock::rays_on_surface(plane(10, 6), 0.5), {{-10, -5, -5}, {10, 5, 12}}, {8.0, 4.0}, {}};
+    job.excess_limit_mm = 0.01;
+    move(job, {-30, 0, 0}, {30, 0, 0});
+    if (lowered) move(job, {-30, 0, 9}, {30, 0, 9});
+    const Certificate proof = prove(job);
+    const double roof_um = lowered ? 9000.0 : 12000.0;
+    EXPECT_NEAR(proof.excess_found_um, roof_um, 1e-3);
+    EXPECT_GE(proof.excess.um, roof_um);
+    EXPECT_LE(proof.excess.um, roof_um + um_from_mm(above_gap(0.5)) + 1.0);
+    EXPECT_LE(proof.scallop.um, 10.0);
+    EXPECT_LE(proof.gouge.um, 0.2);
+    EXPECT_EQ(proof.open_area_mm2, 0.0);
+    EXPECT_LT(proof.cells, 50000U);
+  }
+}
+
 TEST(Certificate, DepthAlongASideFaceIsNotOwn) {
   const stock::RayFieldPtr field = stock::rays_on_mesh(block(6, 5, 2), 1.0);
   for (const double depth : {0.5, 2.0, 35.0, 1e4})
