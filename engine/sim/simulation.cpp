@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/side_by_side.h"
 #include "base/units.h"
 #include "cutter/profile.h"
 #include "motion/interpolator.h"
@@ -254,22 +255,37 @@ ComparisonRow row_of(const std::string& name, const MeasuredPath& measured, bool
   return row;
 }
 
+/// Rows that do not depend on each other, two at a time: planning and interpolating keep one processor each.
+/// `row_of_case(n)`: none where it is left out.
+template <typename RowOfCase>
+std::vector<ComparisonRow> rows_of(size_t count, Progress& progress, const RowOfCase& row_of_case) {
+  std::vector<std::optional<ComparisonRow>> found(count);
+  side_by_side(
+      count, kComparedAtOnce,
+      [&](size_t n) {
+        if (!progress.stop_requested()) found[n] = row_of_case(n);
+      },
+      [&](size_t n) { progress.advance(static_cast<double>(n + 1)); });
+  std::vector<ComparisonRow> rows;
+  for (std::optional<ComparisonRow>& row : found)
+    if (row) rows.push_back(std::move(*row));
+  return rows;
+}
+
 void compare_planners(const Job& job, Progress& progress, Result& result) {
   using toolpath::Planner;
   const std::vector<Planner> planners{Planner::kIsoparametric, Planner::kLinKoren, Planner::kConstantScallop};
   progress.begin("compare planners", static_cast<double>(planners.size()), "planners");
-  Progress silent;
-  for (const Planner planner : planners) {
-    if (planner == job.scene.toolpath.planner) {
-      result.planners.push_back(row_of(toolpath::planner_name(planner), result.main, true));
-    } else if (job.scene.compare_planners && !progress.stop_requested()) {
-      MeasuredPath other = plan_and_move(job, planner, result.main.carried, silent);
-      cut_dexels(job, other);
-      measure_dexels(job, other);
-      result.planners.push_back(row_of(toolpath::planner_name(planner), other, false));
-    }
-    progress.advance(static_cast<double>(result.planners.size()));
-  }
+  result.planners = rows_of(planners.size(), progress, [&](size_t n) -> std::optional<ComparisonRow> {
+    const std::string name = toolpath::planner_name(planners[n]);
+    if (planners[n] == job.scene.toolpath.planner) return row_of(name, result.main, true);
+    if (!job.scene.compare_planners) return {};
+    Progress silent;
+    MeasuredPath other = plan_and_move(job, planners[n], result.main.carried, silent);
+    cut_dexels(job, other);
+    measure_dexels(job, other);
+    return row_of(name, other, false);
+  });
   progress.end();
 }
 
@@ -286,27 +302,24 @@ void compare_modes(const Job& job, Progress& progress, Result& result) {
                                 {"offline, stop at each block", motion::Mode::kOffline, false},
                                 {"offline, look-ahead", motion::Mode::kOffline, true}};
   progress.begin("compare interpolators", static_cast<double>(cases.size()), "modes");
-  Progress silent;
-  for (const Case& one : cases) {
-    if (!job.scene.compare_planners || progress.stop_requested()) break;
+  result.modes = rows_of(cases.size(), progress, [&](size_t n) -> std::optional<ComparisonRow> {
+    const Case& one = cases[n];
+    if (!job.scene.compare_planners) return {};
     const bool used = one.mode == job.scene.motion.mode &&
                       (one.mode != motion::Mode::kOffline || one.look_ahead == job.scene.motion.look_ahead);
-    if (used) {
-      result.modes.push_back(row_of(one.name, result.main, true));
-    } else {
-      motion::MotionOptions options = job.scene.motion;
-      options.mode = one.mode;
-      options.look_ahead = one.look_ahead;
-      MeasuredPath other;
-      other.path = result.main.path;
-      other.carried = result.main.carried;
-      interpolate(job, options, {}, silent, other);
-      cut_dexels(job, other);
-      measure_dexels(job, other);
-      result.modes.push_back(row_of(one.name, other, false));
-    }
-    progress.advance(static_cast<double>(result.modes.size()));
-  }
+    if (used) return row_of(one.name, result.main, true);
+    motion::MotionOptions options = job.scene.motion;
+    options.mode = one.mode;
+    options.look_ahead = one.look_ahead;
+    MeasuredPath other;
+    other.path = result.main.path;
+    other.carried = result.main.carried;
+    Progress silent;
+    interpolate(job, options, {}, silent, other);
+    cut_dexels(job, other);
+    measure_dexels(job, other);
+    return row_of(one.name, other, false);
+  });
   progress.end();
 }
 

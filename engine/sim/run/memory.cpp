@@ -190,8 +190,14 @@ MemoryPrediction predict_memory(const Job& job, const MeasuredPath& path, const 
   const double cutting = held - rays + (stocks + kSeen) * stock + (by_block ? 0.0 : sweeps * kCutting) +
                          (suspects ? counts.triangles * kBodyTriangle : 0.0);
   double comparing = 0.0;
-  if (job.scene.compare_planners && planned_passes)
-    comparing = held + stock + std::max(ticks, longest_comparison(job, path)) * kComparedTick + rays;
+  if (job.scene.compare_planners && planned_passes) {
+    // The longest, and beside it those that have about as many ticks as the path itself.
+    const double beside =
+        std::min(static_cast<double>(kComparedAtOnce), static_cast<double>(thread_count())) - 1.0;
+    comparing = held + stock +
+                (std::max(ticks, longest_comparison(job, path)) + beside * ticks) * kComparedTick +
+                (1.0 + beside) * rays;
+  }
   const double measuring =
       job.has_design() ? held + stock + ray_count(job) * kMeasuredRay + sweeps * (kSweep + kCutting) : 0.0;
   const double pictures = outputs.pictures ? pictures_bytes(job.scene) : 0.0;

@@ -1,6 +1,8 @@
 // The memory that a run will need, told before it is taken.
 #pragma once
 
+#include <cstddef>
+
 #include "sim/job/scene.h"
 
 namespace swarf::sim {
@@ -14,6 +16,9 @@ struct MemoryPrediction {
   double scaling_mb = 0.0;  ///< of what grows with 1/voxel^2: level set and its mesh
   double limit_mb = 0.0;    ///< what may be used: see memory_limit_mb
 };
+
+/// Paths that are only compared: so many are moved, cut and measured at once.
+constexpr size_t kComparedAtOnce = 2;
 
 /// What follows the cut and the measuring.
 struct Outputs {
