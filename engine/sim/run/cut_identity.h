@@ -12,7 +12,7 @@
 namespace swarf::sim {
 
 /// Counts up whenever equal sweeps may leave other bits in the stock: saved stocks then belong to the past.
-inline constexpr int kCutAlgorithm = 2;
+inline constexpr int kCutAlgorithm = 3;
 
 struct IdentityPart {
   std::string name;   ///< "stock.voxel_mm", "program", ...

@@ -1,6 +1,7 @@
 #include "stock/level_set/leaf_cut.h"
 
 #include <algorithm>
+#include <array>
 
 #include "stock/level_set/convex_leaf.h"
 #include "stock/level_set/piece_window.h"
@@ -104,7 +105,6 @@ void LevelPlane::remember(const LeafMotion& motion, const SweptPiece& swept, con
 LeafCut::LeafCut(const LevelSet& set, size_t leaf, float* values)
     : set_(set), leaf_(leaf), values_(values), centre_(set.leaf_centre(leaf)) {
   floors_.band = set.band();
-  std::copy_n(values, before_.size(), before_.begin());
 }
 
 void LeafCut::apply(const SweptPiece& swept) {
@@ -113,16 +113,21 @@ void LeafCut::apply(const SweptPiece& swept) {
       leaf_bound(set_, reach_bound(swept, swept.map.start(centre_), swept.map.end(centre_)));
   const uint32_t patches = visits_ == 0 ? kAllPatches : kernels.patch_test(floors_, bound);
   if (patches == 0) return;
+  uint32_t risen = 0;
   if (swept.piece->is_cylinder()) {
     const LeafMotion motion = leaf_motion(set_, swept, leaf_);
     if (plane_.repeats(motion)) return;
-    kernels.kernel(values_, motion, patches);
+    risen = kernels.kernel(values_, motion, patches);
     plane_.remember(motion, swept, centre_, set_.leaf_radius());
   } else {
-    cut_by_search(swept, patches);
+    risen = cut_by_search(swept, patches);
   }
-  if (visits_ == 0) set_slope(bound);
-  kernels.patch_fit(values_, patches, floors_);
+  changed_ = changed_ || risen != 0;
+  if (visits_ == 0) {
+    set_slope(bound);
+    risen = kAllPatches;
+  }
+  kernels.patch_fit(values_, risen, floors_);
   ++visits_;
   patches_ += static_cast<uint64_t>(__builtin_popcount(patches));
 }
@@ -134,14 +139,13 @@ void LeafCut::set_slope(const LeafBound& deepest) {
 }
 
 /// Every piece but the plain cylinder, which has a closed form.
-void LeafCut::cut_by_search(const SweptPiece& swept, uint32_t patches) {
+uint32_t LeafCut::cut_by_search(const SweptPiece& swept, uint32_t patches) {
+  std::array<float, kLeafVoxels> before;
+  std::copy_n(values_, before.size(), before.begin());
   const openvdb::Coord origin = set_.map.origin(leaf_);
   const LeafPlace place{Vec3(origin.x(), origin.y(), origin.z()) * set_.voxel, set_.voxel, set_.band()};
   cut_leaf_by_piece(values_, place, swept.map, *swept.piece, slices_of(patches));
-}
-
-bool LeafCut::changed() const {
-  return !std::equal(before_.begin(), before_.end(), values_);
+  return std::equal(before.begin(), before.end(), values_) ? 0 : patches;
 }
 
 /// The lowest of the patches' floors.

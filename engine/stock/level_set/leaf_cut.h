@@ -2,8 +2,6 @@
 // Internal to this folder.
 #pragma once
 
-#include <array>
-
 #include "stock/level_set/leaf_kernel.h"
 #include "stock/level_set/sweep_reach.h"
 
@@ -35,22 +33,22 @@ class LeafCut {
   uint64_t visits() const { return visits_; }
   uint64_t patches() const { return patches_; }
   /// Some value is greater than it was.
-  bool changed() const;
+  bool changed() const { return changed_; }
   /// What the visits left, at least one of them.
   LeafFloor floor() const;
 
  private:
   void set_slope(const LeafBound& deepest);
-  void cut_by_search(const SweptPiece& swept, uint32_t patches);
+  uint32_t cut_by_search(const SweptPiece& swept, uint32_t patches);
 
   const LevelSet& set_;
   size_t leaf_;
   float* values_;
-  std::array<float, kLeafVoxels> before_;
   Vec3 centre_;
   LevelPlane plane_;
   PatchFloors floors_{};
   uint64_t visits_ = 0, patches_ = 0;
+  bool changed_ = false;
 };
 
 }  // namespace swarf::stock

@@ -1,5 +1,6 @@
 #include "stock/level_set/leaf_kernel.h"
 
+#include <bit>
 #include <cmath>
 #include <vector>
 
@@ -55,60 +56,207 @@ SWARF_KERNEL_INLINE void move_pair(MovingPair& moving, const Pair& pair, const L
   }
 }
 
-/// What the bottom alone tells, without a root: a sweep never writes more than a voxel's height above it
-/// where it stands highest, and that much if the voxel is well inside the flank there. True if nothing is
-/// left to do.
-SWARF_KERNEL_INLINE bool raise_by_bottom(float* values, const MovingPair& m, float radius, float background) {
+/// What the bottom alone tells of a voxel, without a root: a sweep never writes more than its height above it
+/// where it stands highest, and that much if it is well inside the flank there.
+struct Bottom {
+  float most;
+  float outside;  ///< above 0: the flank has a say
+};
+SWARF_KERNEL_INLINE Bottom bottom_of(const MovingPair& m, int j, float radius, float background) {
   constexpr float kWellInside = 1.0F - 1e-6F;  // of a square: more than the rounding of root and square
+  const float t = m.dz[j] > 0.0F ? 1.0F : 0.0F;
+  const float high = m.pz[j] + t * m.dz[j];
+  const float x = m.px[j] + t * m.dx[j], y = m.py[j] + t * m.dy[j], within = radius - high;
+  const float outside = kernel::max_of(x * x + y * y - within * within * kWellInside, -within);
+  return {kernel::min_of(high, background), outside};
+}
+
+/// Raises `value` to `to`, and `over` to the difference.
+SWARF_KERNEL_INLINE void raise_to(float& value, float& over, float to) {
+  over = kernel::max_of(over, to - value);
+  value = kernel::max_of(value, to);
+}
+
+/// Raises the row by the bottom where that is all that counts. True if nothing is left to do.
+SWARF_KERNEL_INLINE bool raise_by_bottom(float* row, float* over, const MovingPair& m, float radius,
+                                         float background) {
   alignas(64) float most[kPair];
   constexpr int kOfFlank = 0x100;
   int open = 0;  // how many voxels may be raised, and kOfFlank for each that the flank decides about
   for (int j = 0; j < kPair; ++j) {
-    const float t = m.dz[j] > 0.0F ? 1.0F : 0.0F;
-    const float high = m.pz[j] + t * m.dz[j];
-    const float x = m.px[j] + t * m.dx[j], y = m.py[j] + t * m.dy[j], within = radius - high;
-    most[j] = kernel::min_of(high, background);
-    const float outside = kernel::max_of(x * x + y * y - within * within * kWellInside, -within);
-    const int by_flank = outside > 0.0F ? kOfFlank + 1 : 1;
-    open += values[j] < most[j] ? by_flank : 0;
+    const Bottom bottom = bottom_of(m, j, radius, background);
+    most[j] = bottom.most;
+    const int by_flank = bottom.outside > 0.0F ? kOfFlank + 1 : 1;
+    open += row[j] < bottom.most ? by_flank : 0;
   }
   if (open == 0) return true;
   if (open >= kOfFlank) return false;
-  for (int j = 0; j < kPair; ++j) values[j] = kernel::max_of(values[j], most[j]);
+  for (int j = 0; j < kPair; ++j) raise_to(row[j], over[j], most[j]);
   return true;
 }
 
 template <bool kCapped>
-SWARF_KERNEL_INLINE void cut_patches(float* values, const LeafMotion& m, uint32_t patches) {
+SWARF_KERNEL_INLINE void cut_row(float* row, float* over, const MovingPair& moving, const LeafMotion& m) {
   // Locals, not members: the float output could alias the struct, which would stop vectorisation.
   const float radius = m.radius, height = m.height, background = m.background;
+  if (!kCapped && raise_by_bottom(row, over, moving, radius, background)) return;
+  for (int j = 0; j < kPair; ++j) {
+    const MovingPoint<float> point{moving.px[j], moving.py[j], moving.pz[j],
+                                   moving.dx[j], moving.dy[j], moving.dz[j]};
+    float depth = kernel::min_of(-swept_distance<float, kCapped>(point, radius, height), background);
+    if (!kCapped) {  // what a voxel gets does not depend on the others of its row
+      const Bottom bottom = bottom_of(moving, j, radius, background);
+      depth = bottom.outside > 0.0F ? kernel::min_of(depth, bottom.most) : bottom.most;
+    }
+    raise_to(row[j], over[j], depth);
+  }
+}
+
+SWARF_KERNEL_INLINE bool any_above(const float* over) {
+  float most = 0.0F;
+  for (int j = 0; j < kPair; ++j) most = kernel::max_of(most, over[j]);
+  return most > 0.0F;
+}
+
+/// Any motion. Returns the patches that have risen.
+template <bool kCapped>
+SWARF_KERNEL_INLINE uint32_t cut_by_rows(float* values, const LeafMotion& m, uint32_t patches) {
   constexpr uint32_t kOfPair = 0x1111U;
+  uint32_t risen = 0;
   for (int number = 0; number < kPatchSide; ++number) {
     if ((patches >> number & kOfPair) == 0) continue;
     Pair pair;
     fill_pair(pair, m, number);
-    for (int x = 0; x < kLeafSide; ++x) {
+    for (int x = 0; x < kLeafSide; x += 2) {
       if (!has_patch(patches, x, number)) continue;
-      float* row = values + x * kSlice + number * kPair;
-      MovingPair moving;
-      move_pair(moving, pair, m, x);
-      if (!kCapped && raise_by_bottom(row, moving, radius, background)) continue;
-      for (int j = 0; j < kPair; ++j) {
-        const MovingPoint<float> point{moving.px[j], moving.py[j], moving.pz[j],
-                                       moving.dx[j], moving.dy[j], moving.dz[j]};
-        const float distance = swept_distance<float, kCapped>(point, radius, height);
-        row[j] = kernel::max_of(row[j], kernel::min_of(-distance, background));
+      alignas(64) float over[kPair] = {};
+      for (int slice = x; slice < x + 2; ++slice) {
+        MovingPair moving;
+        move_pair(moving, pair, m, slice);
+        cut_row<kCapped>(values + slice * kSlice + number * kPair, over, moving, m);
       }
+      if (any_above(over)) risen |= 1U << (x / 2 * kPatchSide + number);
     }
+  }
+  return risen;
+}
+
+/// A cutter that stands along the columns and does not turn: the terms of swept_distance that its voxels have
+/// alike. Numbered as the columns are.
+struct Columns {
+  alignas(64) float low[kSlice];                ///< `deep` of the first voxel
+  alignas(64) float rho[kSlice], most[kSlice];  ///< radius - rho
+  alignas(64) float along[kSlice], way[kSlice], fixed[kSlice];
+};
+
+/// The same motion for all voxels.
+struct CommonMotion {
+  float dx, dy, dz, a, rise;
+  float step;      ///< along the axis from voxel to voxel
+  float per_fall;  ///< 1 / (a - rise^2)
+  bool flat;       ///< so much wider than high that this loses no digits
+
+  SWARF_KERNEL_INLINE explicit CommonMotion(const LeafMotion& m)
+      : dx(m.end[0] - m.start[0]), dy(m.end[1] - m.start[1]), dz(m.end[2] - m.start[2]) {
+    constexpr float kFlat = 0.25F;
+    a = dx * dx + dy * dy;
+    rise = std::abs(dz);
+    step = m.start_step[2][2];
+    flat = rise * rise <= kFlat * a;
+    per_fall = 1.0F / kernel::max_of(a - rise * rise, 1e-30F);
+  }
+};
+
+SWARF_KERNEL_INLINE void fill_columns(Columns& out, const LeafMotion& m, const CommonMotion& c) {
+  const float first_x = m.start[0], first_y = m.start[1], first_z = m.start[2], radius = m.radius;
+  const float xx = m.start_step[0][0], xy = m.start_step[0][1], xz = m.start_step[0][2];
+  const float yx = m.start_step[1][0], yy = m.start_step[1][1], yz = m.start_step[1][2];
+  const float dx = c.dx, dy = c.dy, dz = c.dz, rise = c.rise;
+  const float per_a = 1.0F / kernel::max_of(c.a, 1e-30F), forward = dz > 0.0F ? 1.0F : -1.0F;
+  const float end = dz > 0.0F ? 1.0F : 0.0F;
+  for (int n = 0; n < kSlice; ++n) {
+    const float i = static_cast<float>(n / kLeafSide), j = static_cast<float>(n % kLeafSide);
+    const float px = first_x + (xx * i + yx * j), py = first_y + (xy * i + yy * j);
+    const float nearest = kernel::clamp01(-(px * dx + py * dy) * per_a);
+    const float x = px + nearest * dx, y = py + nearest * dy;
+    const float rho = std::sqrt(x * x + y * y), along = forward * (x * dx + y * dy), side = rise * rho;
+    out.low[n] = first_z + (xz * i + yz * j) + nearest * dz;
+    out.rho[n] = rho;
+    out.most[n] = radius - rho;
+    out.along[n] = along;
+    out.way[n] = std::abs(end - nearest);
+    out.fixed[n] = along * along + side * side;
   }
 }
 
-SWARF_KERNEL_INLINE void cut_leaf(float* values, const LeafMotion& motion, uint32_t patches) {
-  if (motion.capped) {
-    cut_patches<true>(values, motion, patches);
-  } else {
-    cut_patches<false>(values, motion, patches);
+enum class Slope { kLevel, kFlat, kSteep };
+
+/// What two neighbouring columns have, each. Joined by their bits: of a choice the compiler makes two loops.
+struct TwoFloats {
+  int first, second;
+  SWARF_KERNEL_INLINE TwoFloats(const float (&of)[kSlice], int n)
+      : first(std::bit_cast<int>(of[n])), second(std::bit_cast<int>(of[n + 1])) {}
+  SWARF_KERNEL_INLINE float at(int j) const {
+    const int is_second = -(j / kLeafSide);
+    return std::bit_cast<float>((first & ~is_second) | (second & is_second));
   }
+};
+
+/// Columns n and n + 1.
+template <Slope kSlope>
+SWARF_KERNEL_INLINE void cut_two_columns(float* row, float* over, const Columns& columns, int n,
+                                         const CommonMotion& motion, float radius, float background) {
+  const TwoFloats low(columns.low, n), rho(columns.rho, n), most(columns.most, n), along(columns.along, n),
+      way(columns.way, n), fixed(columns.fixed, n);
+  const float a = motion.a, rise = motion.rise, step = motion.step, per_fall = motion.per_fall;
+  for (int j = 0; j < kPair; ++j) {
+    const float deep = low.at(j) + step * static_cast<float>(j % kLeafSide);
+    float to = deep;
+    if (kSlope != Slope::kLevel) {
+      const float within = radius - deep, level = within * rise, b = along.at(j) + level;
+      const float c = (within - rho.at(j)) * (within + rho.at(j));
+      const float d = fixed.at(j) + along.at(j) * (level + level) + a * c;
+      const float root = std::sqrt(kernel::max_of(d, 0.0F));
+      const float s = kSlope == Slope::kFlat ? (root - b) * per_fall : c / kernel::max_of(b + root, 1e-30F);
+      to = deep + kernel::min_of(kernel::max_of(s, 0.0F), way.at(j)) * rise;
+    }
+    raise_to(row[j], over[j], kernel::min_of(to, kernel::min_of(most.at(j), background)));
+  }
+}
+
+template <Slope kSlope>
+SWARF_KERNEL_INLINE uint32_t cut_columns(float* values, const LeafMotion& m, const CommonMotion& motion,
+                                         uint32_t patches) {
+  Columns columns;
+  fill_columns(columns, m, motion);
+  const float radius = m.radius, background = m.background;
+  uint32_t risen = 0;
+  for (uint32_t left = patches; left != 0; left &= left - 1) {
+    const int patch = __builtin_ctz(left), first = patch / kPatchSide * kPair + patch % kPatchSide * 2;
+    alignas(64) float over[kPair] = {};
+    for (int n = first; n <= first + kLeafSide; n += kLeafSide) {
+      cut_two_columns<kSlope>(values + n * kLeafSide, over, columns, n, motion, radius, background);
+    }
+    if (any_above(over)) risen |= 1U << patch;
+  }
+  return risen;
+}
+
+SWARF_KERNEL_INLINE bool moves_along_columns(const LeafMotion& m) {
+  bool same = m.start_step[2][0] == 0.0F && m.start_step[2][1] == 0.0F;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int c = 0; c < 3; ++c) same = same && m.start_step[axis][c] == m.end_step[axis][c];
+  }
+  return same;
+}
+
+SWARF_KERNEL_INLINE uint32_t cut_leaf(float* values, const LeafMotion& motion, uint32_t patches) {
+  if (motion.capped) return cut_by_rows<true>(values, motion, patches);
+  if (!moves_along_columns(motion)) return cut_by_rows<false>(values, motion, patches);
+  const CommonMotion common(motion);
+  if (common.rise == 0.0F) return cut_columns<Slope::kLevel>(values, motion, common, patches);
+  if (common.flat) return cut_columns<Slope::kFlat>(values, motion, common, patches);
+  return cut_columns<Slope::kSteep>(values, motion, common, patches);
 }
 
 /// From the leaf's first voxel to the middle of a patch, and half its extent, in voxels.
@@ -250,8 +398,8 @@ SWARF_KERNEL_INLINE LeafRange summarise(const float* values, float band, uint64_
 
 // NOLINTBEGIN(bugprone-macro-parentheses): an attribute cannot stand in parentheses
 #define SWARF_LEAF_VARIANT(name, attribute)                                                           \
-  attribute void cut_leaf_##name(float* values, const LeafMotion& motion, uint32_t patches) {         \
-    cut_leaf(values, motion, patches);                                                                \
+  attribute uint32_t cut_leaf_##name(float* values, const LeafMotion& motion, uint32_t patches) {     \
+    return cut_leaf(values, motion, patches);                                                         \
   }                                                                                                   \
   attribute uint32_t test_patches_##name(const PatchFloors& floors, const LeafBound& bound) {         \
     return test_patches(floors, bound);                                                               \

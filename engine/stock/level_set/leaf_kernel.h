@@ -55,7 +55,8 @@ struct PatchFloors {
 using PatchTest = uint32_t (*)(const PatchFloors& floors, const LeafBound& bound);
 
 /// values = max(values, -distance to the swept cutter), index x * 64 + y * 8 + z, in the given patches.
-using LeafKernel = void (*)(float* values, const LeafMotion& motion, uint32_t patches);
+/// Returns those in which a value rose.
+using LeafKernel = uint32_t (*)(float* values, const LeafMotion& motion, uint32_t patches);
 
 /// Lifts the floors of the given patches as far as the values allow.
 using PatchFit = void (*)(const float* values, uint32_t patches, PatchFloors& floors);

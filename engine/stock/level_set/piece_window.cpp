@@ -29,13 +29,10 @@ Window time_in_reach(const cutter::ConvexPiece& piece, const Vec3& P, const Vec3
 }
 
 double cylinder_kernel_error_mm(const cutter::ConvexPiece& piece, double voxel_mm, double band_mm) {
-  constexpr double kHalfSpacing = 6e-8, kPositionRoundings = 16.0, kSquareRoundings = 48.0;
+  constexpr double kHalfSpacing = 6e-8, kRoundings = 16.0 + 32.0;
   const double reach = band_mm + leaf_radius(voxel_mm) + kReachSlack;
-  const double L = kFarFactor * (piece.radius + reach) + leaf_radius(voxel_mm);
-  const double Z = kFarFactor * (piece.high + reach) + leaf_radius(voxel_mm);
-  const double square = kSquareRoundings * kHalfSpacing * L * L;
-  const double rho = std::max(piece.radius - band_mm, 0.5 * std::sqrt(square));
-  return kPositionRoundings * kHalfSpacing * std::max(L, Z) + 0.5 * square / rho;
+  const double across = kFarFactor * (piece.radius + reach), along = kFarFactor * (piece.high + reach);
+  return kRoundings * kHalfSpacing * (std::max(across, along) + leaf_radius(voxel_mm));
 }
 
 }  // namespace swarf::stock

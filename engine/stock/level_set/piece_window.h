@@ -33,12 +33,16 @@ double leaf_radius(double voxel_mm);
 /// A sweep of a plain cylinder is shortened where its ends lie farther away than this many times the reach.
 inline constexpr double kFarFactor = 2.0;
 
-/// Bound on the error of a voxel's distance to a plain cylinder's sweep, mm, for sweeps of any length. With L
-/// the greatest distance from the axis of a voxel that the kernel looks at, Z that along it and u = 6e-8 half
-/// the spacing of floats at 1:
-///   16 u max(L, Z)     positions: start and change are rounded, then joined (11 roundings in each direction)
-///   48 u L^2 of rho^2  a t^2 + 2 b t + c with a <= 4 L^2, |b| <= 2 L^2, c <= L^2: 48 roundings of L^2, which
-///                      is 48 u L^2 / (2 rho) of rho; rho is at least radius - band where the clamp leaves it
+/// Bound on the error of a voxel's distance to a plain cylinder's sweep, mm, for sweeps of any length. With M
+/// the greatest distance of a voxel that the kernel looks at from the axis and along it and u = 6e-8 half the
+/// spacing of floats at 1:
+///   16 u M  positions: start and change are rounded, then joined (11 roundings in each direction)
+///   32 u M  the place nearest to the axis and the way on (sweep_distance.h). No terms of s cancel, so that
+///           s rise, which is no more than the depth it stands for, has 11 roundings. `along` is 4 u L |D_xy|
+///           off, and s rise by 8 u L for it, because b + sqrt(d) >= |D_xy| times that depth. Radius, rho and
+///           sums: 6. From (sqrt(d) - b) / (a - rise^2), where rise <= |D_xy| / 2: 8 u sqrt(d) rise / (a -
+///           rise^2)
+///           <= 20 u M, with the others 30.
 double cylinder_kernel_error_mm(const cutter::ConvexPiece& piece, double voxel_mm, double band_mm);
 
 }  // namespace swarf::stock

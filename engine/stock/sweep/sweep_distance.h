@@ -1,9 +1,16 @@
 // Signed distance of a point to the swept flat-end cylinder, in closed form, for scalars and for SIMD loops.
 //
-// In the tool frame the point moves on P + t D, t in [0,1]. The cutter's implicit function along that line is
-//   F(t) = max(rho(t), -z(t), z(t) - height),   rho = |xy| - radius
-// and the sweep's is min over t. rho is convex and z linear, so the minimum of the largest of the three lies
-// at the minimum of one of them or at the crossing of two: a fixed list of candidates, no iteration.
+// In the tool frame the point moves on P + t D, t in [0,1]. Inside the cutter to a depth of
+//   min(radius - rho(t), deep(t)),   rho = |xy|,   deep = z, or min(z, height - z) with the top end
+// the sweep cuts as deep as the greatest of these. The first is greatest where the point passes the axis, the
+// second at an end of the motion (or half way up). If the flank is the nearer face where the point passes the
+// axis, that is the depth. Otherwise it grows with `deep` on the way to where that is greatest, up to the
+// place where both are equal. With rho, deep and within = radius - deep where the point passes the axis, and
+// on the rest of the way s |D|, with a = |D_xy|^2, along = xy . D_xy >= 0, rise = |D_z|:
+//   rho^2 + 2 along s + a s^2 = (within - rise s)^2
+//   s = c / (b + sqrt(d)),   c = within^2 - rho^2,   b = along + within rise
+//   d = b^2 + (a - rise^2) c = along^2 + 2 along within rise + a c + rise^2 rho^2
+// No term of the last form is negative, so nothing cancels, however short or steep the motion is.
 // Exact zero level; outside an edge the max norm underestimates the Euclidean distance.
 #pragma once
 
@@ -34,40 +41,11 @@ template <class T>
 SWARF_KERNEL_INLINE T clamp01(T t) {
   return min_of(max_of(t, T(0)), T(1));
 }
-/// Divisor that is never zero; the quotient then is a wrong but harmless candidate (candidates only lower F).
+/// Divisor that is never zero.
 template <class T>
 SWARF_KERNEL_INLINE T nonzero(T x) {
   constexpr T kTiny = T(1e-30);
   return (x < kTiny && x > -kTiny) ? kTiny : x;
-}
-
-/// |xy|^2 along the line: a t^2 + 2 b t + c.
-template <class T>
-struct Quadratic {
-  T a, b, c;
-};
-
-template <class T, bool kCapped>
-SWARF_KERNEL_INLINE T distance_at(const MovingPoint<T>& m, const Quadratic<T>& q, T radius, T height, T t) {
-  const T rho2 = max_of(q.c + t * (T(2) * q.b + t * q.a), T(0));
-  const T z = m.pz + t * m.dz;
-  T distance = max_of(std::sqrt(rho2) - radius, -z);
-  if (kCapped) distance = max_of(distance, z - height);
-  return distance;
-}
-
-/// Least F at the two parameters where |xy| = w + t wd.
-template <class T, bool kCapped>
-SWARF_KERNEL_INLINE T distance_at_crossings(const MovingPoint<T>& m, const Quadratic<T>& q, T radius,
-                                            T height, T w, T wd) {
-  const T a = q.a - wd * wd;
-  const T b = q.b - w * wd;
-  const T c = q.c - w * w;
-  const T root = std::sqrt(max_of(b * b - a * c, T(0)));
-  const T k = b > T(0) ? -(b + root) : root - b;
-  const T first = distance_at<T, kCapped>(m, q, radius, height, clamp01(k / nonzero(a)));
-  const T second = distance_at<T, kCapped>(m, q, radius, height, clamp01(c / nonzero(k)));
-  return min_of(first, second);
 }
 
 }  // namespace kernel
@@ -76,19 +54,18 @@ SWARF_KERNEL_INLINE T distance_at_crossings(const MovingPoint<T>& m, const Quadr
 template <class T, bool kCapped>
 SWARF_KERNEL_INLINE T swept_distance(const MovingPoint<T>& m, T radius, T height) {
   using namespace kernel;
-  const Quadratic<T> q{m.dx * m.dx + m.dy * m.dy, m.px * m.dx + m.py * m.dy, m.px * m.px + m.py * m.py};
-  const T nearest = clamp01(-q.b / nonzero(q.a));
-  const T highest = m.dz > T(0) ? T(1) : T(0);
-  T best = min_of(distance_at<T, kCapped>(m, q, radius, height, nearest),
-                  distance_at<T, kCapped>(m, q, radius, height, highest));
-  best = min_of(best, distance_at_crossings<T, kCapped>(m, q, radius, height, radius - m.pz, -m.dz));
-  if (kCapped) {
-    const T middle = clamp01((T(0.5) * height - m.pz) / nonzero(m.dz));
-    best = min_of(best, distance_at<T, true>(m, q, radius, height, T(1) - highest));
-    best = min_of(best, distance_at<T, true>(m, q, radius, height, middle));
-    best = min_of(best, distance_at_crossings<T, true>(m, q, radius, height, radius - height + m.pz, m.dz));
-  }
-  return best;
+  constexpr T kTiny = T(1e-30);
+  const T a = m.dx * m.dx + m.dy * m.dy, rise = std::abs(m.dz);
+  const T nearest = clamp01(-(m.px * m.dx + m.py * m.dy) / max_of(a, kTiny));
+  const T deepest = kCapped ? clamp01((T(0.5) * height - m.pz) / nonzero(m.dz)) : (m.dz > T(0) ? T(1) : T(0));
+  const T x = m.px + nearest * m.dx, y = m.py + nearest * m.dy, z = m.pz + nearest * m.dz;
+  const T rho = std::sqrt(x * x + y * y), deep = kCapped ? min_of(z, height - z) : z, within = radius - deep;
+  const T forward = x * m.dx + y * m.dy, along = deepest < nearest ? -forward : forward;
+  const T level = within * rise, c = (within - rho) * (within + rho), side = rise * rho;
+  const T d = along * (along + level + level) + a * c + side * side;
+  const T s = c / max_of(along + level + std::sqrt(max_of(d, T(0))), kTiny);
+  const T way = min_of(max_of(s, T(0)), std::abs(deepest - nearest));
+  return max_of(rho - radius, -(deep + way * rise));
 }
 
 }  // namespace swarf::stock

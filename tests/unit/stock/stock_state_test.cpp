@@ -147,7 +147,7 @@ std::vector<Sweep> mixed_path() {
 /// The state of a fixed mixed cut, equal in every build type, for any threads and any split into calls.
 /// Change it only together with kCutAlgorithm (sim/run/cut_identity.h) and for a reason that CHANGELOG.md
 /// names: stocks saved before can then no longer be cut on.
-constexpr uint64_t kMixedCutHash = 0x0515bb0a0a0c1d36;
+constexpr uint64_t kMixedCutHash = 0xe0d778b42d536c25;
 
 TEST(StockHash, OfAMixedCutIsAConstant) {
   const std::vector<Sweep> sweeps = mixed_path();
