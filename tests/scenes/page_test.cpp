@@ -227,7 +227,7 @@ class Colours : public ::testing::Test {
   json surface_;
 };
 
-/// Curved faces whose facets are up to 20 um off, cut 12 times as coarsely as the scene is.
+/// Curved faces whose facets are up to 20 um off, cut and measured more coarsely than the scene is.
 TEST_F(Colours, OfTrimmedFacesAreThoseOfTheirRays) {
   const std::string place = SWARF_SOURCE_DIR "/scenes/kato_mould/";
   std::string scene = read_text(place + "scene.toml");
@@ -236,9 +236,9 @@ TEST_F(Colours, OfTrimmedFacesAreThoseOfTheirRays) {
     scene.replace(scene.find(from), from.size(), to);
   };
   change("compare_cam_um", "# compare_cam_um");
-  change("interval_mm = 2", "interval_mm = 6");
+  change("interval_mm = 2", "interval_mm = 3");
   change("gouge_max_um", "# gouge_max_um");
-  change("pitch_mm = 0.3", "pitch_mm = 1");
+  change("pitch_mm = 0.3", "pitch_mm = 0.8");
   change("voxel_mm = 0.2", "voxel_mm = 0.4");
   fs::copy_file(place + "mould.stp", folder_ / "mould.stp");
   swarf::test::write_text(folder_ / "scene.toml", scene);
