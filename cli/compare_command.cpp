@@ -83,6 +83,7 @@ measure::ComparisonInput comparison_of(const CompareOptions& options, const Comp
   set_limits(options, design, input);
   input.pitch = options.pitch_mm.value_or(default_pitch(*stock.mesh, *design.mesh));
   input.design_error = design.error_mm;
+  input.faces = design.faces.get();
   if (!design.grid) input.stock_error = stock.error;  // two grids are compared as they are
   input.stock_edge = stock.edge;
   input.edge = options.edge_mm.value_or(stock.voxel_mm);

@@ -30,7 +30,7 @@ constexpr double kSharp = 0.5235987755982988;
 /// Facets of parametric surfaces stay this close to them, mm, unless that takes more than kMostFacets.
 constexpr double kChord = 5e-5;
 constexpr size_t kMostFacets = 3'000'000;
-/// The same of CAD files, mm: as the designs of scenes.
+/// Of CAD files, mm: samples are taken on the faces, and what is proven between them on the facets.
 constexpr double kCadChord = 5e-3;
 /// Half a unit in the last place of a float, relative.
 constexpr double kFloatRounding = 6e-8;
@@ -112,15 +112,29 @@ ComparedDesign design_of_patches(const std::vector<surface::SurfacePtr>& surface
     }
     if (mesh.triangles.size() > kMostFacets) continue;
     // A facet's middle is off by the chords along u and v together; its corners are rounded to floats.
-    return {
-        std::make_shared<mesh::SignedDistance>(mesh), true, 2.0 * chord + 2.0 * kFloatRounding * largest, {}};
+    ComparedDesign design;
+    design.mesh = std::make_shared<mesh::SignedDistance>(mesh);
+    design.open = true;
+    design.error_mm = 2.0 * chord + 2.0 * kFloatRounding * largest;
+    return design;
   }
 }
 
-/// The closed solids of a CAD file in facets as fine as those of patches.
+/// Closed facets with the surfaces that they stand for, null: they are the design.
+ComparedDesign design_of_facets(const TriMesh& mesh, const surface::UnderFacetsPtr& under,
+                                const std::string& file, const std::string& name) {
+  ComparedDesign design;
+  design.mesh = checked_mesh(mesh, file, name);
+  if (under == nullptr) return design;
+  design.error_mm = under->chord_mm;
+  design.faces = std::make_shared<stock::DesignMesh>(mesh, under);
+  return design;
+}
+
+/// The closed solids of a CAD file.
 ComparedDesign design_of_cad(const std::string& file) {
   const brep::Facets facets = brep::tessellate(brep::read_cad(file), kCadChord, true);
-  return {checked_mesh(facets.mesh, file, "design"), false, facets.chord_mm, {}};
+  return design_of_facets(facets.mesh, facets.under, file, "design");
 }
 
 /// Files of CAD programs, which the reader of programs would otherwise take for blocks.
@@ -159,16 +173,13 @@ ComparedDesign load_design(const std::string& file, double pitch_mm) {
   }
   const std::string kind = extension(file);
   if (kind == ".stl" || kind == ".ply" || kind == ".obj" || mesh::is_scene_ending(kind))
-    return {checked_mesh(mesh::load_mesh(file), file, "design mesh"), false, 0.0, {}};
+    return design_of_facets(mesh::load_mesh(file), nullptr, file, "design mesh");
   if (kind == ".toml") {
     const sim::Job job = sim::load_job(file, {});
     if (!job.has_design()) refuse_empty(file);
     ComparedDesign design =
         job.design_mesh != nullptr
-            ? ComparedDesign{checked_mesh(*job.design_mesh, job.scene.design.mesh_file, "design mesh"),
-                             false,
-                             0.0,
-                             {}}
+            ? design_of_facets(*job.design_mesh, job.design_under, job.scene.design.mesh_file, "design mesh")
             : design_of_patches(job.design, pitch_mm);
     design.accept = job.scene.accept;
     return design;

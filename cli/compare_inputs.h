@@ -9,6 +9,7 @@
 
 #include "mesh/signed_distance.h"
 #include "sim/job/scene.h"
+#include "stock/rays/ray_field.h"
 
 namespace swarf::cli {
 
@@ -21,10 +22,11 @@ struct ComparedStock {
 
 struct ComparedDesign {
   std::shared_ptr<const mesh::SignedDistance> mesh;
-  bool open = false;                        ///< patches of parametric surfaces
-  double error_mm = 0.0;                    ///< by which the facets stray from the surfaces
-  std::optional<sim::AcceptLimits> accept;  ///< of a scene
-  bool grid = false;                        ///< an earlier stock, as its grid shows it
+  bool open = false;                               ///< patches of parametric surfaces
+  double error_mm = 0.0;                           ///< by which the facets stray from the surfaces
+  std::optional<sim::AcceptLimits> accept;         ///< of a scene
+  bool grid = false;                               ///< an earlier stock, as its grid shows it
+  std::shared_ptr<const stock::DesignMesh> faces;  ///< of a CAD file: the surfaces over the facets
 };
 
 /// A stock of a run (.vdb), or a closed mesh. Throws InputError for anything else, and for meshes that are

@@ -111,7 +111,9 @@ std::string accuracy_text(const ComparedStock& stock, const measure::ComparisonI
                           const measure::PartComparison& result) {
   std::string text = fmt::format("a sample within {:.3g} mm of every point", input.pitch);
   if (input.design_error > 0.0)
-    text += fmt::format("; facets within {:.3f} um of the design", um_from_mm(input.design_error));
+    text +=
+        fmt::format("; {}facets within {:.3f} um of the design",
+                    input.faces != nullptr ? "samples on its faces, " : "", um_from_mm(input.design_error));
   if (stock.voxel_mm > 0.0) {
     text += fmt::format("; voxels of {:g} mm, off by up to {:.3f} um, which the proven numbers include",
                         stock.voxel_mm, result.grid_error_um);

@@ -18,6 +18,7 @@
 #include "reports/review_models.h"
 #include "reports/run_output.h"
 #include "sim/run/measured_mesh.h"
+#include "sim/run/ray_cutters.h"
 #include "sim/run/recorder.h"
 
 namespace swarf::cli {
@@ -99,13 +100,18 @@ int export_run(const ExportOptions& options) {
   }
   const reports::StoredRun stored = reports::read_run(options.folder);
   const bool coloured = !options.gltf.empty() || !options.ply.empty();
+  const bool sweeps =
+      coloured && sim::colours_need_sweeps(stored.job, stored.dexels, stored.stock.voxel_mm());
   const bool moves = !options.gltf.empty() || !options.machine_gltf.empty() || !options.trajectory.empty() ||
-                     (coloured && sim::normals_need_cycles(stored.job));
+                     (coloured && sim::normals_need_cycles(stored.job)) || sweeps;
   const sim::MeasuredPath path = options.window.any()
                                      ? reports::window_motion(stored.job, options.folder, progress)
                                      : reports::motion_of(stored, options.folder, moves, progress);
   const sim::Job shown = sim::with_worn(stored.job, stored.worn);
   reports::FinishedRun run{shown, *path.cycles, stored.stock, stored.dexels, *path.carried};
+  sim::JobSweeps rays;
+  if (sweeps) rays = sim::all_ray_sweeps(stored.job, *path.cycles, *path.carried);
+  run.rays = &rays;
   if (options.window.any()) run.window = sim::window_of(options.window, *path.cycles);
   if (!options.gltf.empty() || !options.machine_gltf.empty()) write_gltf(options, run);
   write_meshes(options, run);

@@ -17,6 +17,7 @@
 #include "reports/review_findings.h"
 #include "reports/run_output.h"
 #include "sim/run/measured_mesh.h"
+#include "sim/run/ray_cutters.h"
 
 namespace swarf::cli {
 namespace {
@@ -86,14 +87,21 @@ int render(const RenderOptions& options) {
   }
   if (options.samples > 0) stored.job.scene.stills.samples = options.samples;
   if (options.seconds > 0.0) set_seconds(stored.job.scene.movie, options.seconds);
-  const bool moves = !options.movie.empty() || options.finding > 0 || sim::normals_need_cycles(stored.job) ||
-                     kind == reports::StillKind::kMachine || kind == reports::StillKind::kFan;
+  const bool coloured = !options.movie.empty() || kind == reports::StillKind::kDeviation;
+  const bool sweeps =
+      coloured && sim::colours_need_sweeps(stored.job, stored.dexels, stored.stock.voxel_mm());
+  const bool moves = sweeps || !options.movie.empty() || options.finding > 0 ||
+                     sim::normals_need_cycles(stored.job) || kind == reports::StillKind::kMachine ||
+                     kind == reports::StillKind::kFan;
   const sim::MeasuredPath path = options.window.any()
                                      ? reports::window_motion(stored.job, options.folder, progress)
                                      : reports::motion_of(stored, options.folder, moves, progress);
   // What a finding shows had not been cut yet.
   const sim::Job shown = options.finding > 0 ? stored.job : sim::with_worn(stored.job, stored.worn);
   reports::FinishedRun run{shown, *path.cycles, stored.stock, stored.dexels, *path.carried};
+  sim::JobSweeps rays;
+  if (sweeps) rays = sim::all_ray_sweeps(stored.job, *path.cycles, *path.carried);
+  run.rays = &rays;
   const reports::KeptFindings findings = reports::read_findings(options.folder);
   run.findings = &findings.list;
   if (options.window.any()) run.window = sim::window_of(options.window, *path.cycles);

@@ -12,6 +12,7 @@
 #include "sim/job/scene.h"
 #include "sim/run/carried_cuts.h"
 #include "sim/run/cycle_window.h"
+#include "sim/run/job_sweeps.h"
 #include "stock/rays/surface_dexels.h"
 #include "stock/stock.h"
 
@@ -28,6 +29,9 @@ struct FinishedRun {
   std::optional<sim::CycleWindow> window{};
   /// Of all cycles, finished; null: they are gathered where they are needed.
   const motion::AxisKeys* keys = nullptr;
+  /// What cut the measuring rays, sim::all_ray_sweeps(); null where nobody asks for colours that need them
+  /// (sim::colours_need_sweeps).
+  const sim::JobSweeps* rays = nullptr;
   /// Null: none are known, and the movie shows none.
   const std::vector<sim::Finding>* findings = nullptr;
 

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "base/units.h"
+#include "reports/review_findings.h"
 #include "reports/tools_table.h"
 #include "sim/judge/finding_groups.h"
 #include "sim/run/worn_fixtures.h"
@@ -170,6 +171,15 @@ Json regions_json(const sim::Result& result, const std::vector<measure::Region>&
                     {"line", line}});
   }
   return list;
+}
+
+/// None: null.
+Json ridge_json(const measure::Ridge* ridge) {
+  if (ridge == nullptr) return nullptr;
+  return {{"height_um", ridge->height_um},
+          {"x_mm", ridge->point.x()},
+          {"y_mm", ridge->point.y()},
+          {"z_mm", ridge->point.z()}};
 }
 
 /// Not proven: null.
@@ -534,6 +544,7 @@ std::string metrics_json(const sim::Job& job, const sim::Result& result, const R
             {"surface", measured(surface_json(result.main.surface))},
             {"gouges", regions_json(result, result.main.surface.gouges)},
             {"excesses", regions_json(result, result.main.surface.excesses)},
+            {"highest_ridge", ridge_json(highest_ridge(result))},
             {"cross_check", cross_check_json(result.cross_check)},
             {"planners", comparison_json(result.planners)},
             {"interpolators", comparison_json(result.modes)},

@@ -120,23 +120,27 @@ void MovieStock::colour_by_tool(size_t number, TriMesh& mesh) {
 
 /// What lies on the finished surface by now shows its deviation; what is still to be cut is bare.
 void MovieStock::colour_by_deviation(const std::vector<std::shared_ptr<TriMesh>>& made) const {
-  TriMesh all;
-  for (const auto& mesh : made) {
-    all.positions.insert(all.positions.end(), mesh->positions.begin(), mesh->positions.end());
-    all.normals.insert(all.normals.end(), mesh->normals.begin(), mesh->normals.end());
-  }
   const double voxel = run_.job.scene.movie.voxel_mm;
-  sim::measure_mesh({run_.job, run_.cycles, run_.dexels, voxel, false}, all);
-  const render::DeviationScale scale = deviation_scale(run_.job);
-  size_t at = 0;
-  for (const auto& mesh : made) {
-    for (const auto& p : mesh->positions) {
-      const float deviation = all.deviation_um[at++];
-      const bool finished = std::abs(run_.stock.distance_mm({p[0], p[1], p[2]})) < kFinishedVoxels * voxel;
-      mesh->colours.push_back(finished && std::isfinite(deviation)
-                                  ? render::srgb8_from_linear(render::deviation_colour(deviation, scale))
-                                  : colour_of(kNoTool));
+  TriMesh finished;
+  std::vector<std::pair<size_t, size_t>> places;  // of those: mesh and vertex
+  for (size_t m = 0; m < made.size(); ++m) {
+    TriMesh& mesh = *made[m];
+    mesh.colours.assign(mesh.positions.size(), colour_of(kNoTool));
+    for (size_t i = 0; i < mesh.positions.size(); ++i) {
+      const auto& p = mesh.positions[i];
+      if (!(std::abs(run_.stock.distance_mm({p[0], p[1], p[2]})) < kFinishedVoxels * voxel)) continue;
+      finished.positions.push_back(p);
+      finished.normals.push_back(mesh.normals[i]);
+      places.emplace_back(m, i);
     }
+  }
+  sim::measure_mesh({run_.job, run_.cycles, run_.dexels, run_.carried, run_.rays, voxel, false}, finished);
+  const render::DeviationScale scale = deviation_scale(run_.job);
+  for (size_t n = 0; n < places.size(); ++n) {
+    const float um = finished.deviation_um[n];
+    if (!std::isfinite(um)) continue;
+    const auto [m, i] = places[n];
+    made[m]->colours[i] = render::srgb8_from_linear(render::deviation_colour(um, scale));
   }
 }
 

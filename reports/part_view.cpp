@@ -8,15 +8,23 @@
 
 namespace swarf::reports {
 
+namespace {
+
+void measure(const FinishedRun& run, TriMesh& mesh) {
+  sim::measure_mesh({run.job, run.cycles, run.dexels, run.carried, run.rays, run.stock.voxel_mm()}, mesh);
+}
+
+}  // namespace
+
 TriMesh part_mesh(const FinishedRun& run) {
   TriMesh mesh = run.stock.mesh();
-  sim::measure_mesh({run.job, run.cycles, run.dexels, run.stock.voxel_mm()}, mesh);
+  measure(run, mesh);
   return mesh;
 }
 
 TriMesh shown_part(const FinishedRun& run, TriMesh closed) {
   mesh::split_creases(closed, kCreaseRad);
-  sim::measure_mesh({run.job, run.cycles, run.dexels, run.stock.voxel_mm()}, closed);
+  measure(run, closed);
   return closed;
 }
 

@@ -158,7 +158,7 @@ struct Viewer3d {
   ColourBar colour_bar;
   double program_seconds_per_animation_second = 1.0;
   std::string program{};  ///< JSON of page_program.h; empty: none
-  std::string hanging{};  ///< what the colours do not show; empty: nothing
+  std::string hanging{};  ///< of material above gaps; empty: there is none
 };
 
 /// A section of its own on one subject: figures above tables.

@@ -97,22 +97,22 @@ std::vector<ReviewPin> review_pins(const KeptFindings& kept) {
   return pins;
 }
 
-std::vector<WorstPlace> worst_regions(const sim::Result& result) {
+const measure::Ridge* highest_ridge(const sim::Result& result) {
+  const auto& ridges = result.main.ridges;
+  const auto highest = std::max_element(
+      ridges.begin(), ridges.end(), [](const auto& a, const auto& b) { return a.height_um < b.height_um; });
+  return highest != ridges.end() ? &*highest : nullptr;
+}
+
+std::vector<WorstPlace> worst_places(const sim::Result& result) {
   const measure::SurfaceMetrics& surface = result.main.surface;
   std::vector<WorstPlace> places;
   if (!surface.gouges.empty())
     places.push_back({surface.gouges.front().place, -surface.gouges.front().worst_um * kMicrometre});
   if (!surface.excesses.empty())
     places.push_back({surface.excesses.front().place, surface.excesses.front().worst_um * kMicrometre});
-  return places;
-}
-
-std::vector<WorstPlace> worst_places(const sim::Result& result) {
-  std::vector<WorstPlace> places = worst_regions(result);
-  const auto& ridges = result.main.ridges;
-  const auto highest = std::max_element(
-      ridges.begin(), ridges.end(), [](const auto& a, const auto& b) { return a.height_um < b.height_um; });
-  if (highest != ridges.end()) places.push_back({highest->point, highest->height_um * kMicrometre});
+  if (const measure::Ridge* ridge = highest_ridge(result))
+    places.push_back({ridge->point, ridge->height_um * kMicrometre});
   return places;
 }
 
@@ -121,13 +121,17 @@ std::vector<WorstPlace> kept_worst_places(const std::string& folder) {
   const nlohmann::json metrics = nlohmann::json::parse(file, nullptr, false);
   std::vector<WorstPlace> places;
   if (!metrics.is_object()) return places;
+  const auto add = [&](const nlohmann::json& worst, double um) {
+    places.push_back({Vec3(worst.value("x_mm", 0.0), worst.value("y_mm", 0.0), worst.value("z_mm", 0.0)),
+                      um * kMicrometre});
+  };
   for (const auto& [name, sign] : {std::pair{"gouges", -1.0}, {"excesses", 1.0}}) {
     const auto list = metrics.find(name);
     if (list == metrics.end() || !list->is_array() || list->empty()) continue;
-    const nlohmann::json& worst = list->front();
-    places.push_back({Vec3(worst.value("x_mm", 0.0), worst.value("y_mm", 0.0), worst.value("z_mm", 0.0)),
-                      sign * worst.value("worst_um", 0.0) * kMicrometre});
+    add(list->front(), sign * list->front().value("worst_um", 0.0));
   }
+  const auto ridge = metrics.find("highest_ridge");
+  if (ridge != metrics.end() && ridge->is_object()) add(*ridge, ridge->value("height_um", 0.0));
   return places;
 }
 

@@ -18,12 +18,12 @@ std::vector<ReviewPin> review_pins(const sim::Result& result);
 /// The same of a run that is read back.
 std::vector<ReviewPin> review_pins(const KeptFindings& kept);
 
-/// The deepest gouge and the highest excess beyond the limits, as the measures have refined them.
-std::vector<WorstPlace> worst_regions(const sim::Result& result);
-/// These and the highest ridge.
+/// The highest cusp between two passes; null: there is none. Borrowed.
+const measure::Ridge* highest_ridge(const sim::Result& result);
+/// That, and the deepest gouge and the highest excess beyond the limits, as the measures have refined them.
 std::vector<WorstPlace> worst_places(const sim::Result& result);
-/// worst_regions() of a run that is read back, as its metrics.json says them. None where that is missing or
-/// says none.
+/// The same of a run that is read back, as its metrics.json says them. None where that is missing or says
+/// none.
 std::vector<WorstPlace> kept_worst_places(const std::string& folder);
 
 }  // namespace swarf::reports

@@ -19,7 +19,7 @@ struct DisplayMesh {
   TriMesh mesh;           ///< shown_part of the decimated mesh, with the worst places as vertices
   double error_mm = 0.0;  ///< that the decimation reached, measured
 };
-/// Where metrics.json has a maximum that lies between the measuring rays.
+/// Where metrics.json has a maximum: a place of the design.
 struct WorstPlace {
   Vec3 place_W = Vec3::Zero();
   double deviation_mm = 0.0;  ///< above the design; below it < 0
@@ -73,9 +73,11 @@ std::string machine_glb(const FinishedRun& run, const ReviewModels& models, cons
 /// Program seconds that one second of the glTF animation stands for.
 double animation_scale(const FinishedRun& run);
 
-/// Gives the mesh a vertex at each of these places, and at the deepest and the highest measuring ray, with
-/// what is known there: what is read from the picture is what metrics.json says. A place farther from every
-/// measured triangle than two voxels has none in the mesh.
+/// Gives the mesh a vertex over each of these places, and over the deepest and the highest measuring ray,
+/// with what is known there: what is read from the picture is what metrics.json says. A place farther from
+/// every measured triangle than two voxels has none in the mesh. A vertex between the rays that stands higher
+/// than all of these is lowered to the highest of them, which is what is judged; none that lies deeper is
+/// raised.
 void add_worst_places(const FinishedRun& run, std::span<const WorstPlace> places, TriMesh& mesh);
 
 }  // namespace swarf::reports

@@ -87,7 +87,7 @@ void write_pictures(const PendingFolder& folder, const FinishedRun& run, const T
     const char* camera;
     const char* caption;
   };
-  const std::vector<WorstPlace> worst = worst_regions(result);
+  const std::vector<WorstPlace> worst = worst_places(result);
   std::vector<Picture> pictures{
       {StillKind::kMachine, "still_machine.png", "machine", "The machine near the middle of the program."},
       {StillKind::kPart, "still_part.png", "iso",
@@ -99,11 +99,8 @@ void write_pictures(const PendingFolder& folder, const FinishedRun& run, const T
            ? "The tool's paths and its axes."
            : "Paths and tool axes (Lin & Koren, Fig. 13)."}};
   if (!run.dexels.empty()) {
-    pictures.insert(pictures.begin() + 2,
-                    {StillKind::kDeviation, "still_deviation.png", "iso",
-                     run.job.design_mesh ? "Deviation from the design: colours at the vertices of the "
-                                           "part's mesh, from the facets; values from the measuring rays."
-                                         : "Deviation from the design, from the measuring rays."});
+    pictures.insert(pictures.begin() + 2, {StillKind::kDeviation, "still_deviation.png", "iso",
+                                           "Deviation from the design, from measuring rays."});
   }
   const std::vector<std::string>& kinds = run.job.scene.stills.kinds;
   std::erase_if(pictures, [&](const Picture& picture) {
@@ -237,6 +234,7 @@ std::vector<Diagnostic> write_run(PendingFolder& folder, const sim::Job& job, si
   const sim::Job shown = sim::with_worn(job, worn);
   FinishedRun run{shown, *result.main.cycles, *result.stock, result.main.dexels, *result.main.carried};
   if (result.main.keys) run.keys = &*result.main.keys;
+  run.rays = &result.main.rays;
   run.findings = &result.findings;
   RunFiles files;
   RenderStatistics statistics;

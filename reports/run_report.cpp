@@ -397,13 +397,13 @@ JobHead job_head_of(const sim::ReportSettings& report) {
 
 namespace {
 
-/// The view colours what a ray meets first from the design on; what hangs above a gap is another surface.
+/// Over one place of the design more than one surface may stand.
 std::string hanging_note(const measure::SurfaceMetrics& surface) {
   if (surface.overhung_samples == 0) return "";
   return fmt::format(
-      "Above {} of {} measuring rays there is material beyond a gap, as over an undercut. The highest "
-      "material of all stands {:.3f} µm above the design; the colours and Highest are of the surface "
-      "below the gaps.",
+      "Above {} of {} measuring rays there is material beyond a gap, as over an undercut; its colours, like "
+      "all others, say how far above the design it stands. The highest material of all stands {:.3f} µm "
+      "above the design.",
       surface.overhung_samples, surface.samples, surface.excess_max_um);
 }
 

@@ -14,18 +14,49 @@ namespace {
 /// The level set's mesh is nearer to the true surface; farther away is another surface.
 constexpr double kNearVoxels = 2.0;
 
-/// The lowest (sign -1) or the highest (+1) of the rays that a cut has reached.
-std::optional<WorstPlace> extreme_of(const FinishedRun& run, double sign) {
-  std::optional<WorstPlace> found;
+/// The lowest of the rays that a cut has reached, and the highest material on any ray, above gaps too.
+std::vector<WorstPlace> extremes_of(const FinishedRun& run) {
+  std::optional<WorstPlace> lowest, highest;
   for (const stock::SurfaceDexels& dexels : run.dexels) {
-    for (size_t i = 0; i < dexels.points().size(); ++i) {
-      const double height = dexels.heights_mm()[i];
-      if (dexels.blocks()[i] == stock::kUncut || (found && sign * height <= sign * found->deviation_mm))
-        continue;
-      found = WorstPlace{dexels.points()[i] + height * dexels.normals()[i], height};
+    const std::vector<double>& heights = dexels.heights_mm();
+    const auto raise = [&](uint32_t ray, double height) {
+      if (!highest || height > highest->deviation_mm) highest = WorstPlace{dexels.points()[ray], height};
+    };
+    for (uint32_t i = 0; i < heights.size(); ++i) {
+      raise(i, heights[i]);
+      if (dexels.blocks()[i] != stock::kUncut && (!lowest || heights[i] < lowest->deviation_mm))
+        lowest = WorstPlace{dexels.points()[i], heights[i]};
+    }
+    dexels.each_above([&](uint32_t ray, const stock::MaterialAbove& m) {
+      if (m.high - m.low >= stock::kSliver) raise(ray, m.high);
+    });
+  }
+  std::vector<WorstPlace> found;
+  for (const auto& one : {lowest, highest})
+    if (one) found.push_back(*one);
+  return found;
+}
+
+/// Where the material ends over, or below, a place of the design: along the normal of the ray that stands
+/// nearest to it and has seen about as much.
+Vec3 on_part(const FinishedRun& run, const WorstPlace& worst) {
+  Vec3 normal = Vec3::Zero();
+  double least = std::numeric_limits<double>::infinity();
+  for (const stock::SurfaceDexels& dexels : run.dexels) {
+    std::vector<double> unlike(dexels.points().size());
+    for (size_t i = 0; i < unlike.size(); ++i)
+      unlike[i] = std::abs(dexels.heights_mm()[i] - worst.deviation_mm);
+    dexels.each_above([&](uint32_t ray, const stock::MaterialAbove& m) {
+      unlike[ray] = std::min(unlike[ray], std::abs(m.high - worst.deviation_mm));
+    });
+    for (size_t i = 0; i < unlike.size(); ++i) {
+      const double off = (dexels.points()[i] - worst.place_W).norm() + unlike[i];
+      if (off >= least) continue;
+      least = off;
+      normal = dexels.normals()[i];
     }
   }
-  return found;
+  return worst.place_W + worst.deviation_mm * normal;
 }
 
 Vec3 point_of(const TriMesh& mesh, uint32_t vertex) {
@@ -85,14 +116,6 @@ Foot foot_of(const TriMesh& mesh, const Vec3& place) {
   return best;
 }
 
-/// What the mesh says there already, mm.
-double deviation_at(const TriMesh& mesh, const Foot& foot) {
-  double um = 0.0;
-  for (size_t k = 0; k < 3; ++k)
-    um += foot.weights[static_cast<int>(k)] * mesh.deviation_um[mesh.triangles[foot.triangle][k]];
-  return um * kMicrometre;
-}
-
 /// The triangle becomes three around a new vertex in it.
 void divide(TriMesh& mesh, const Foot& foot, double height_mm) {
   const std::array<uint32_t, 3> corners = mesh.triangles[foot.triangle];
@@ -117,14 +140,17 @@ void divide(TriMesh& mesh, const Foot& foot, double height_mm) {
 void add_worst_places(const FinishedRun& run, std::span<const WorstPlace> places, TriMesh& mesh) {
   if (mesh.deviation_um.empty() || mesh.normals.empty()) return;
   std::vector<WorstPlace> all(places.begin(), places.end());
-  for (const double sign : {-1.0, 1.0})
-    if (const auto extreme = extreme_of(run, sign)) all.push_back(*extreme);
+  for (const WorstPlace& one : extremes_of(run)) all.push_back(one);
+  if (all.empty()) return;
+  const auto highest = std::max_element(
+      all.begin(), all.end(), [](const auto& a, const auto& b) { return a.deviation_mm < b.deviation_mm; });
+  const auto most = static_cast<float>(um_from_mm(highest->deviation_mm));
+  for (float& um : mesh.deviation_um)
+    if (um > most) um = most;
+  const double near = kNearVoxels * run.stock.voxel_mm();
   for (const WorstPlace& one : all) {
-    const Foot foot = foot_of(mesh, one.place_W);
-    const double near = kNearVoxels * run.stock.voxel_mm();
-    // Material that hangs above a gap is known to the rays by its foot on the design, below another surface.
-    if (foot.distance_mm <= near && std::abs(one.deviation_mm - deviation_at(mesh, foot)) <= near)
-      divide(mesh, foot, one.deviation_mm);
+    const Foot foot = foot_of(mesh, on_part(run, one));
+    if (foot.distance_mm <= near) divide(mesh, foot, one.deviation_mm);
   }
 }
 

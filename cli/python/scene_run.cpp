@@ -68,8 +68,9 @@ void save_picture(const SceneRun& run, const PictureRequest& request, const std:
   const reports::StillKind kind = reports::still_kind(request.kind);
   const std::string usual = kind == reports::StillKind::kMachine ? "machine" : "iso";
   const sim::Result& result = run.result;
-  const reports::FinishedRun finished{job, *result.main.cycles, *result.stock, result.main.dexels,
-                                      *result.main.carried};
+  reports::FinishedRun finished{job, *result.main.cycles, *result.stock, result.main.dexels,
+                                *result.main.carried};
+  finished.rays = &result.main.rays;
   reports::make_still(finished, reports::shown_part(finished, result.stock->mesh()), kind,
                       request.camera.empty() ? usual : request.camera, path);
 }

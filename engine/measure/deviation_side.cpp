@@ -23,6 +23,8 @@ constexpr double kInsideOffset = 1e-5;
 constexpr double kGuessSlack = 1e-9;
 /// What a column leaves open at its rim, mm.
 constexpr double kClear = 2e-5;
+/// A facet that is found again is no farther than this from where it was found first, mm.
+constexpr double kSameFacet = 1e-6;
 /// Distances below this are rounding of doubles, mm.
 constexpr double kSideRounding = 1e-11;
 
@@ -38,6 +40,23 @@ void bound_normals(const mesh::SignedDistance& patches, Vec3& axis, double& spre
   if (widest >= 0.5 * kPi) return;
   axis = sum.normalized();
   spread_rad = widest;
+}
+
+struct FacePlace {
+  uint32_t triangle;
+  stock::DesignMesh::Place place;
+};
+/// The facet that is nearest, about `distance_mm` away, and the nearest place of the surface over it.
+FacePlace nearest_on_faces(const stock::DesignMesh& faces, const Vec3& point, double distance_mm) {
+  const uint32_t triangle = faces.distance.nearest(point, distance_mm + kSameFacet).triangle;
+  return {triangle, faces.nearest_on(triangle, point)};
+}
+
+/// The outward normal at a place of a curved facet.
+Vec3 normal_of(const stock::DesignMesh& faces, uint32_t triangle, const Vec2& uv) {
+  const surface::Surface& surface =
+      *faces.under->surfaces[static_cast<size_t>(faces.under->facets[triangle].surface)];
+  return surface::outward_normal(surface, surface.derivatives(uv.x(), uv.y()), uv);
 }
 
 }  // namespace
@@ -87,13 +106,34 @@ void DeviationSide::discount(DeviationSample& sample) const {
   sample.counted = std::copysign(rest, sample.raw);
 }
 
+/// Signed distance of a point from the faces over the design, of which the facets say `facets_mm`.
+double DeviationSide::distance_to_faces(const Vec3& point, double facets_mm) const {
+  if (in_.faces == nullptr || !std::isfinite(facets_mm)) return facets_mm;
+  const auto [triangle, place] = nearest_on_faces(*in_.faces, point, std::abs(facets_mm));
+  if (!in_.faces->under->is_curved(triangle)) return facets_mm;
+  const double side = std::abs(facets_mm) > in_.design_error
+                          ? facets_mm
+                          : (point - place.point).dot(normal_of(*in_.faces, triangle, place.uv));
+  return std::copysign(place.distance_mm, side);
+}
+
+/// Signed distance from the stock of the place, moved by the allowance, over a point of the design's facets,
+/// which itself is `facets_mm` away when moved.
+double DeviationSide::distance_from_faces(const Vec3& point, double facets_mm) const {
+  if (in_.faces == nullptr || !std::isfinite(facets_mm)) return facets_mm;
+  const auto [triangle, place] = nearest_on_faces(*in_.faces, point, 0.0);
+  if (!in_.faces->under->is_curved(triangle)) return facets_mm;
+  const Vec3 target = place.point + in_.allowance * normal_of(*in_.faces, triangle, place.uv);
+  return in_.stock->at(target).distance_mm;
+}
+
 DeviationSample DeviationSide::look_from_stock(uint32_t triangle, const Vec3& point, double within) const {
   const mesh::SignedPoint seen = in_.design->at(point, within);
   DeviationSample sample;
   sample.distance = seen.distance_mm;
   sample.facet = seen.triangle;
   sample.foot = seen.foot;
-  sample.raw = seen.distance_mm - in_.allowance;
+  sample.raw = distance_to_faces(point, seen.distance_mm) - in_.allowance;
   sample.error = stock_error(triangle) + in_.design_error;
   if (in_.open_design &&
       (seen.beyond_mm > kBorderSlack || in_.stock->face_normal(triangle).dot(seen.normal) < kFacing)) {
@@ -110,7 +150,8 @@ DeviationSample DeviationSide::look_from_design(uint32_t triangle, const Vec3& t
   sample.distance = seen.distance_mm;
   sample.facet = seen.triangle;
   sample.foot = seen.foot;
-  sample.raw = -seen.distance_mm;
+  sample.raw =
+      -distance_from_faces(target - in_.allowance * in_.design->face_normal(triangle), seen.distance_mm);
   sample.error = stock_error(seen.triangle) + in_.design_error;
   sample.edge =
       stock_edge(seen.triangle) || near_border(target - in_.allowance * in_.design->face_normal(triangle));

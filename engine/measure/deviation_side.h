@@ -71,6 +71,8 @@ class DeviationSide {
   DeviationSample look_from_stock(uint32_t triangle, const Vec3& point, double within) const;
   DeviationSample look_from_design(uint32_t triangle, const Vec3& target, double within) const;
   void discount(DeviationSample& sample) const;
+  double distance_to_faces(const Vec3& point, double facets_mm) const;
+  double distance_from_faces(const Vec3& point, double facets_mm) const;
   double stock_error(uint32_t triangle) const;
   bool stock_edge(uint32_t triangle) const;
   bool near_border(const Vec3& point) const;

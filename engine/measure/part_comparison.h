@@ -7,6 +7,7 @@
 
 #include "measure/surface_cells.h"
 #include "mesh/signed_distance.h"
+#include "stock/rays/ray_field.h"
 
 namespace swarf::measure {
 
@@ -18,7 +19,10 @@ struct ComparisonInput {
   double allowance = 0.0;  ///< >= 0: the target is the design offset outward by this
   double excess = 0.01, gouge = 0.001;
   double pitch = 0.5;  ///< cells of both surfaces are halved until every point lies so near to a sample
-  double design_error = 0.0;        ///< by which the design's facets stray from what they stand for
+  double design_error = 0.0;  ///< by which the design's facets stray from what they stand for
+  /// The surfaces over the design's facets: samples are measured from them, bounds from the facets and their
+  /// error. Null: from the facets all.
+  const stock::DesignMesh* faces = nullptr;
   std::vector<double> stock_error;  ///< the same per vertex of the stock's mesh; empty: none
   std::vector<uint8_t> stock_edge;  ///< per vertex of the stock's mesh: an edge that its grid has rounded
   double edge = 0.0;                ///< what a rounded edge may be off; also the width along a patch's border

@@ -9,9 +9,6 @@
 namespace swarf::measure {
 namespace {
 
-/// A point belongs to the machined face only if its own normal agrees with the design's: not a side wall near
-/// it.
-constexpr double kFaceCosine = 0.8;
 /// Places along one ray; of a ray that is longer they lie farther apart.
 constexpr double kMostPlaces = 256.0;
 
@@ -34,11 +31,21 @@ SeenSurface::SeenSurface(const stock::SurfaceDexels& dexels, double slack_mm)
     if (i + nu < points.size()) step = std::max(step, (points[i + nu] - points[i]).norm());
   }
   cell_mm_ = step + slack_mm;
-  for (size_t n = 0; n < points.size(); ++n) {
-    const double height = dexels.heights_mm()[n];
-    const double places = std::clamp(std::ceil(std::abs(height) / cell_mm_), 1.0, kMostPlaces);
-    for (double k = 0.0; k <= places; k += 1.0)
-      add(points[n] + k / places * height * dexels.normals()[n], static_cast<uint32_t>(n));
+  tops_mm_ = dexels.heights_mm();
+  for (uint32_t n = 0; n < points.size(); ++n) add(n, 0.0, tops_mm_[n]);
+  dexels.each_above([&](uint32_t ray, const stock::MaterialAbove& m) {
+    if (m.high - m.low < stock::kSliver) return;
+    add(ray, m.low, m.high);
+    tops_mm_[ray] = m.high;
+  });
+}
+
+void SeenSurface::add(uint32_t ray, double low_mm, double high_mm) {
+  const double places = std::clamp(std::ceil(std::abs(high_mm - low_mm) / cell_mm_), 1.0, kMostPlaces);
+  for (double k = 0.0; k <= places; k += 1.0) {
+    const double height = low_mm + k / places * (high_mm - low_mm);
+    const Vec3 point = dexels_.points()[ray] + height * dexels_.normals()[ray];
+    cells_[cell_of(point)].push_back({point, ray});
   }
 }
 
@@ -75,18 +82,22 @@ std::array<double, 2> SeenSurface::heights_around(const Foot& foot) const {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (size_t row = iv - std::min<size_t>(iv, 1); row < std::min(iv + 3, v.size()); ++row) {
     for (size_t column = iu - std::min<size_t>(iu, 1); column < std::min(iu + 3, u.size()); ++column) {
-      const double height = dexels_.heights_mm()[row * u.size() + column];
-      low = std::min(low, height);
-      high = std::max(high, height);
+      const size_t ray = row * u.size() + column;
+      low = std::min(low, dexels_.heights_mm()[ray]);
+      high = std::max(high, tops_mm_[ray]);
     }
   }
   return {low, high};
 }
 
-std::optional<Seen> SeenSurface::at(const Vec3& point, const Vec3& normal) const {
+std::optional<Foot> SeenSurface::foot_of(const Vec3& point) const {
   const auto ray = nearest_ray(point);
   if (!ray) return {};
-  const std::optional<Foot> foot = foot_near(dexels_, *ray, point);
+  return foot_near(dexels_, *ray, point);
+}
+
+std::optional<Seen> SeenSurface::at(const Vec3& point, const Vec3& normal) const {
+  const std::optional<Foot> foot = foot_of(point);
   if (!foot) return {};
   const double own = foot->height_mm;
   const auto [low, high] = heights_around(*foot);

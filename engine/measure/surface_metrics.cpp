@@ -36,9 +36,6 @@ void summarise_ridges(const std::vector<Ridge>& ridges, SurfaceMetrics& metrics)
   metrics.scallop_p95_um = percentile(heights, 0.95);
 }
 
-/// Material above a gap thinner than this is the rounding of two cuts that share an end; mm.
-constexpr double kSliver = 1e-6;
-
 /// The highest material on every ray and the block under or beside it.
 struct Tops {
   std::vector<double> heights_mm;
@@ -50,7 +47,7 @@ Tops tops_of(const stock::SurfaceDexels& dexels) {
   Tops tops{dexels.heights_mm(), dexels.blocks(), 0};
   uint32_t last = 0xffffffffU;
   dexels.each_above([&](uint32_t ray, const stock::MaterialAbove& m) {
-    if (m.high - m.low < kSliver) return;
+    if (m.high - m.low < stock::kSliver) return;
     tops.overhung += ray != last ? 1 : 0;
     last = ray;
     tops.heights_mm[ray] = m.high;

@@ -1,5 +1,6 @@
-// What the page and the glTF files of a run say of the part is what metrics.json says, and a finding leads to
-// its place.
+// What the page and the glTF files of a run say of the part is what metrics.json says, on CAD faces, on a
+// mesh, on a plane and above a gap; and a finding leads to its place.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,49 +11,26 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "mesh/mesh_io.h"
+#include "mesh/plain_solids.h"
 #include "render/image_io.h"
+#include "support/glb.h"
 #include "support/program_run.h"
 
 namespace page_test {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
-using swarf::test::read_text;
 using swarf::test::run_command;
+using nlohmann::json;
+using swarf::test::Glb;
+using swarf::test::range_of;
+using swarf::test::read_glb;
+using swarf::test::read_text;
 using swarf::test::run_swarf;
 
 constexpr double kReadLimitUm = 0.1;
 constexpr int kNoChromium = 77;
-
-struct Glb {
-  json model;
-  std::string binary;
-};
-
-Glb read_glb(const fs::path& path) {
-  const std::string bytes = read_text(path);
-  uint32_t length = 0;
-  std::memcpy(&length, bytes.data() + 12, sizeof length);
-  return {json::parse(bytes.substr(20, length)), bytes.substr(28 + length)};
-}
-
-/// Least and greatest of an attribute of floats over all meshes.
-std::pair<float, float> range_of(const Glb& glb, const char* attribute) {
-  std::pair range{std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()};
-  for (const json& mesh : glb.model.at("meshes")) {
-    const json& attributes = mesh.at("primitives").at(0).at("attributes");
-    if (!attributes.contains(attribute)) continue;
-    const json& accessor = glb.model.at("accessors").at(attributes.at(attribute).get<size_t>());
-    const json& view = glb.model.at("bufferViews").at(accessor.at("bufferView").get<size_t>());
-    for (size_t i = 0; i < accessor.at("count").get<size_t>(); ++i) {
-      float value = 0.0F;
-      std::memcpy(&value, glb.binary.data() + view.value("byteOffset", size_t{0}) + 4 * i, sizeof value);
-      range = {std::min(range.first, value), std::max(range.second, value)};
-    }
-  }
-  return range;
-}
 
 /// Planted gouges of 20, 5 and 1 um below a plane with scallops.
 class GougedPage : public ::testing::Test {
@@ -210,6 +188,130 @@ TEST_F(GougedPage, LeadsFromAFindingToItsPlaceLineAndMovie) {
   const auto page = run_command(SWARF_SOURCE_DIR "/tests/page/page.sh " + run_folder() + "/report.html");
   if (page.exit_code == kNoChromium) GTEST_SKIP() << page.output;
   EXPECT_EQ(page.exit_code, 0) << page.output;
+}
+
+const std::string kQuick = " --set movie.seconds=0 --set \"stills.kinds=[]\" ";
+
+class Colours : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = swarf::test::fresh_folder(std::string("colours_") +
+                                        ::testing::UnitTest::GetInstance()->current_test_info()->name());
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  std::string out() const { return (folder_ / "run").string(); }
+  void run(const std::string& scene, const std::string& more) {
+    const auto run = run_swarf("run " + scene + kQuick + more + " -o " + out());
+    ASSERT_LE(run.exit_code, 1) << run.output;
+    surface_ = json::parse(read_text(out() + "/metrics.json")).at("surface");
+  }
+  double um(const char* name) const { return surface_.at(name).get<double>(); }
+  /// Of the run's own file, and of one that is made from its folder.
+  void expect_range() {
+    const auto exported = run_swarf("export " + out() + " --gltf " + (folder_ / "again.glb").string());
+    ASSERT_EQ(exported.exit_code, 0) << exported.output;
+    for (const fs::path& file : {fs::path(out()) / "part.glb", folder_ / "again.glb"}) {
+      const auto [low, high] = range_of(read_glb(file), "_DEVIATION_UM");
+      EXPECT_NEAR(std::min(low, 0.0F), -um("gouge_max_um"), kReadLimitUm) << file;
+      EXPECT_NEAR(high, um("excess_max_um"), kReadLimitUm) << file;
+    }
+  }
+  void expect_page() {
+    const auto page = run_command(SWARF_SOURCE_DIR "/tests/page/page.sh " + out() + "/report.html");
+    if (page.exit_code == kNoChromium) GTEST_SKIP() << page.output;
+    EXPECT_EQ(page.exit_code, 0) << page.output;
+  }
+
+  fs::path folder_;
+  json surface_;
+};
+
+/// Curved faces whose facets are up to 20 um off, cut and measured more coarsely than the scene is.
+TEST_F(Colours, OfTrimmedFacesAreThoseOfTheirRays) {
+  const std::string place = SWARF_SOURCE_DIR "/scenes/kato_mould/";
+  std::string scene = read_text(place + "scene.toml");
+  const auto change = [&](const std::string& from, const std::string& to) {
+    ASSERT_NE(scene.find(from), std::string::npos) << from;
+    scene.replace(scene.find(from), from.size(), to);
+  };
+  change("compare_cam_um", "# compare_cam_um");
+  change("interval_mm = 2", "interval_mm = 3");
+  change("gouge_max_um", "# gouge_max_um");
+  change("pitch_mm = 0.3", "pitch_mm = 0.8");
+  change("voxel_mm = 0.2", "voxel_mm = 0.4");
+  fs::copy_file(place + "mould.stp", folder_ / "mould.stp");
+  swarf::test::write_text(folder_ / "scene.toml", scene);
+  run((folder_ / "scene.toml").string(), "");
+  EXPECT_LT(um("gouge_max_um"), 0.2);
+  EXPECT_GT(um("excess_max_um"), 1000.0);
+  expect_range();
+}
+
+TEST_F(Colours, OfAMeshAreThoseOfItsRays) {
+  run(SWARF_SOURCE_DIR "/scenes/exact_scallop_mesh/scene.toml", swarf::test::kSoonProven);
+  expect_range();
+}
+
+/// A block 3 mm higher than its design is faced down to it, but for a slab between 1 and 3 mm that the flutes
+/// of a T-slot cutter have passed under from the right, and a neck of 2 mm that holds it.
+std::string overhung_scene(const fs::path& folder, const std::string& design) {
+  std::string cl =
+      "PARTNO/SLAB ABOVE A GAP\nUNITS/MM\nLOADTL/1\nCUTTER/8,0\nMULTAX/ON\nSPINDL/8000,CLW\n"
+      "FROM/-30.0,-12.0,30.0,0.0,0.0,1.0\nFEDRAT/3000,MMPM\n";
+  const auto row = [&](double x, double z) {
+    cl += fmt::format(
+        "RAPID\nGOTO/{0:.1f},-12.0,30.0,0.0,0.0,1.0\nRAPID\nGOTO/{0:.1f},-12.0,{1:.1f},0.0,0.0,1.0\n"
+        "GOTO/{0:.1f},12.0,{1:.1f},0.0,0.0,1.0\nRAPID\nGOTO/{0:.1f},12.0,30.0,0.0,0.0,1.0\n",
+        x, z);
+  };
+  row(12.5, 0.0);
+  for (const double z : {2.0, 1.0, 0.0})
+    for (double x = -8.0; x <= 4.0; x += 4.0) row(x, z);
+  row(4.5, 2.0);
+  swarf::test::write_text(folder / "path.cl", cl + "FINI\n");
+  swarf::test::write_text(folder / "scene.toml", R"(
+machine = ")" SWARF_SOURCE_DIR R"(/assets/machines/lin_koren_xyzab/machine.toml"
+cl = "path.cl"
+[cutter]
+number = 1
+diameter_mm = 8
+corner_radius_mm = 0
+flute_length_mm = 1
+shank_diameter_mm = 4
+length_mm = 60
+[stock]
+box_mm = [[-10, -5, -5], [10, 5, 3]]
+voxel_mm = 0.25
+[interpolator]
+mode = "tcp"
+[design]
+pitch_mm = 0.4
+)" + design);
+  return (folder / "scene.toml").string();
+}
+
+TEST_F(Colours, AboveAGapOfAPlaneAreThoseOfItsRays) {
+  run(overhung_scene(folder_, R"(kind = "plane"
+origin_mm = [-9.9, -4.8, 0]
+along_u_mm = [19.8, 0, 0]
+along_v_mm = [0, 9.6, 0]
+)"),
+      "");
+  EXPECT_GT(um("overhung_samples"), 0.0);
+  EXPECT_NEAR(um("excess_max_um"), 3000.0, kReadLimitUm);
+  expect_range();
+  expect_page();
+}
+
+TEST_F(Colours, AboveAGapOfAMeshAreThoseOfItsRays) {
+  swarf::TriMesh block;
+  swarf::mesh::add_box(block, {{-10, -5, -5}, {10, 5, 0}});
+  swarf::mesh::save_mesh((folder_ / "block.stl").string(), block);
+  run(overhung_scene(folder_, "kind = \"mesh\"\nmesh = \"block.stl\"\n"), "");
+  EXPECT_GT(um("overhung_samples"), 0.0);
+  EXPECT_NEAR(um("excess_max_um"), 3000.0, kReadLimitUm);
+  expect_range();
 }
 
 }  // namespace

@@ -8,8 +8,9 @@
 #include "base/parallel.h"
 #include "base/units.h"
 #include "measure/design_projection.h"
-#include "measure/mesh_deviation.h"
 #include "measure/seen_surface.h"
+#include "measure/vertex_rays.h"
+#include "sim/run/ray_cutters.h"
 
 namespace swarf::sim {
 namespace {
@@ -34,16 +35,35 @@ std::vector<Vec3> axes_of(const MeasuredPart& part) {
   return axes;
 }
 
+/// Calls visit(input) with what vertices near these rays are measured with, unless there is nothing to cut
+/// by.
+template <typename Visit>
+void with_own_rays(const MeasuredPart& part, const stock::SurfaceDexels& dexels, const Visit& visit) {
+  if (part.rays == nullptr) return;
+  const RayCutters cutters = ray_cutters(part.job, *part.rays, part.carried);
+  const auto cut = [&](stock::SurfaceDexels& own) {
+    for_each_tool(
+        part.rays->sweeps, [&](uint32_t block) { return cutters.solid_of[block]; },
+        [&](size_t solid, std::span<const stock::Sweep> sweeps) { own.cut(sweeps, cutters.solids[solid]); });
+  };
+  visit(measure::VertexRayInput{dexels.field(), part.job.scene.stock.body_W(), kReachVoxels * part.voxel_mm,
+                                cut});
+}
+
 void measure_by_rays(const MeasuredPart& part, const stock::SurfaceDexels& dexels, TriMesh& mesh) {
   const std::vector<Vec3> axes = axes_of(part);
   const measure::SeenSurface seen(dexels, kReachVoxels * part.voxel_mm);
+  std::vector<uint8_t> off_face(mesh.positions.size(), 0);
   parallel_chunks(mesh.positions.size(), 4096, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const auto here = seen.at(as_vec3(mesh.positions[i]), as_vec3(mesh.normals[i]));
       if (!here) continue;
       const auto deviation = static_cast<float>(um_from_mm(here->deviation_mm));
       // Where two surfaces of the design see one point, the worse of both.
-      if (!(std::abs(deviation) < std::abs(mesh.deviation_um[i]))) mesh.deviation_um[i] = deviation;
+      if (!(std::abs(deviation) < std::abs(mesh.deviation_um[i]))) {
+        mesh.deviation_um[i] = deviation;
+        off_face[i] = here->on_face ? 0 : 1;
+      }
       const measure::Foot& foot = here->foot;
       const uint32_t block = measure::block_at(dexels, foot.u, foot.v);
       // Sweeps of the job come first and are its cycles; those behind them are of earlier set-ups.
@@ -55,18 +75,31 @@ void measure_by_rays(const MeasuredPart& part, const stock::SurfaceDexels& dexel
                          static_cast<float>(axis.z())};
     }
   });
+  std::vector<uint32_t> vertices;
+  for (uint32_t i = 0; i < off_face.size(); ++i)
+    if (off_face[i] != 0) vertices.push_back(i);
+  if (vertices.empty()) return;
+  with_own_rays(part, dexels, [&](const measure::VertexRayInput& input) {
+    measure::deviation_by_vertex_rays(input, seen, vertices, mesh);
+  });
 }
 
-/// The farthest that any ray's material ends from the design, mm.
-double greatest_height(const MeasuredPart& part) {
-  double greatest = 0.0;
-  for (const stock::SurfaceDexels& dexels : part.dexels) {
-    for (const double height : dexels.heights_mm()) greatest = std::max(greatest, std::abs(height));
-  }
-  return greatest;
+/// Some ray's material ends farther from the design than a vertex may be off, or hangs above a gap.
+bool has_walls(const stock::SurfaceDexels& dexels, double slack_mm) {
+  const auto& heights = dexels.heights_mm();
+  bool found =
+      std::any_of(heights.begin(), heights.end(), [&](double height) { return std::abs(height) > slack_mm; });
+  dexels.each_above([&](uint32_t, const stock::MaterialAbove&) { found = true; });
+  return found;
 }
 
 }  // namespace
+
+bool colours_need_sweeps(const Job& job, const std::vector<stock::SurfaceDexels>& dexels, double voxel_mm) {
+  return job.design_mesh != nullptr || std::any_of(dexels.begin(), dexels.end(), [&](const auto& one) {
+           return has_walls(one, kReachVoxels * voxel_mm);
+         });
+}
 
 bool normals_need_cycles(const Job& job) {
   // Sweeps of driven passes are pieces of cycles: what they leave keeps the mesh's own normals.
@@ -75,12 +108,14 @@ bool normals_need_cycles(const Job& job) {
 
 void measure_mesh(const MeasuredPart& part, TriMesh& mesh) {
   mesh.deviation_um.assign(mesh.positions.size(), std::numeric_limits<float>::quiet_NaN());
-  if (part.job.design_mesh) {
-    const double reach = greatest_height(part) + kReachVoxels * part.voxel_mm;
-    measure::deviation_from_mesh(mesh, *part.job.design_mesh, reach);
-    return;
+  for (const stock::SurfaceDexels& dexels : part.dexels) {
+    if (dexels.field().surface != nullptr)
+      measure_by_rays(part, dexels, mesh);
+    else
+      with_own_rays(part, dexels, [&](const measure::VertexRayInput& input) {
+        measure::deviation_by_vertex_rays(input, mesh);
+      });
   }
-  for (const stock::SurfaceDexels& dexels : part.dexels) measure_by_rays(part, dexels, mesh);
 }
 
 }  // namespace swarf::sim

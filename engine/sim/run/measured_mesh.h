@@ -1,4 +1,4 @@
-// The finished part's mesh with what the measuring rays, or the design's own mesh, say of each vertex.
+// The finished part's mesh with what measuring rays say of each vertex.
 #pragma once
 
 #include <vector>
@@ -6,6 +6,8 @@
 #include "mesh/tri_mesh.h"
 #include "motion/cycles/cycles.h"
 #include "sim/job/scene.h"
+#include "sim/run/carried_cuts.h"
+#include "sim/run/job_sweeps.h"
 #include "stock/rays/surface_dexels.h"
 
 namespace swarf::sim {
@@ -15,9 +17,16 @@ struct MeasuredPart {
   const Job& job;
   const motion::Cycles& cycles;  ///< may be empty unless normals_need_cycles(job) and set_normals
   const std::vector<stock::SurfaceDexels>& dexels;
-  double voxel_mm = 0.0;  ///< of the stock that the mesh comes from
+  const CarriedCuts& carried;
+  const JobSweeps* rays = nullptr;  ///< all_ray_sweeps(); may be null unless colours_need_sweeps()
+  double voxel_mm = 0.0;            ///< of the stock that the mesh comes from
   bool set_normals = true;
 };
+
+/// Vertices over a design of facets or CAD faces get rays of their own, which the sweeps cut: without sweeps
+/// none is measured. Over a parametric design those on walls and above gaps do, which then have the mesh's
+/// error.
+bool colours_need_sweeps(const Job& job, const std::vector<stock::SurfaceDexels>& dexels, double voxel_mm);
 
 /// Cusps of planned passes get their normals from the tool axis of each cycle, where sweeps are cycles.
 bool normals_need_cycles(const Job& job);

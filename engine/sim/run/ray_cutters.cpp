@@ -16,13 +16,17 @@ JobSweeps all_ray_sweeps(const Job& job, const motion::Cycles& cycles, const Car
   return all;
 }
 
-RayCutters ray_cutters(const Job& job, const MeasuredPath& measured) {
-  RayCutters cutters{tool_solids(job.scene), tool_of_blocks(measured.rays),
-                     pass_of_blocks(measured.rays, measured.path)};
+RayCutters ray_cutters(const Job& job, const JobSweeps& rays, const CarriedCuts& carried) {
+  RayCutters cutters{tool_solids(job.scene), tool_of_blocks(rays), {}};
   const auto first = static_cast<int>(cutters.solids.size());
-  const CarriedCuts& carried = *measured.carried;
   cutters.solids.insert(cutters.solids.end(), carried.solids.begin(), carried.solids.end());
   for (const int solid : carried.rays.solids) cutters.solid_of.push_back(first + solid);
+  return cutters;
+}
+
+RayCutters ray_cutters(const Job& job, const MeasuredPath& measured) {
+  RayCutters cutters = ray_cutters(job, measured.rays, *measured.carried);
+  cutters.passes = pass_of_blocks(measured.rays, measured.path);
   cutters.passes.resize(cutters.solid_of.size(), -1);
   return cutters;
 }

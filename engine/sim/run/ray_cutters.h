@@ -21,5 +21,7 @@ struct RayCutters {
   std::vector<int> passes;  ///< -1: between passes, and of earlier set-ups
 };
 RayCutters ray_cutters(const Job& job, const MeasuredPath& measured);
+/// Without passes, for who only cuts.
+RayCutters ray_cutters(const Job& job, const JobSweeps& rays, const CarriedCuts& carried);
 
 }  // namespace swarf::sim

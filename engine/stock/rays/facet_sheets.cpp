@@ -267,11 +267,11 @@ FacetSheets facet_sheets(const TriMesh& mesh, double crease_rad, surface::UnderF
   Facets facets = facets_with_area(welded, crease_rad);
   SWARF_CHECK(!facets.triangles.empty(), "a design mesh needs facets with area");
   FacetSheets sheets;
+  sheets.sources = facets.sources;
   if (under != nullptr) {
     SWARF_CHECK(under->facets.size() == mesh.triangles.size(), "a place on a surface for every facet");
     take_normals_under(*under, facets);
     sheets.under = std::move(under);
-    sheets.sources = facets.sources;
     sheets.normals_under = facets.at_corners;
   }
   place_corners(facets, welded.points, sheets);

@@ -37,9 +37,8 @@ struct FacetSheets {
   std::vector<std::array<uint32_t, 3>> neighbours;  ///< across side k, from corner k to k + 1; kNone: sharp
   std::vector<uint32_t> sheet;                      ///< of each facet: the least facet of its sheet
   std::vector<SharpEdge> sharp_edges;
-  /// The exact surfaces, and the triangle of the mesh that each facet is; null: the facets are the design.
-  surface::UnderFacetsPtr under;
-  std::vector<uint32_t> sources;
+  std::vector<uint32_t> sources;                   ///< the triangle of the mesh that each facet is
+  surface::UnderFacetsPtr under;                   ///< the exact surfaces; null: the facets are the design
   std::vector<std::array<Vec3, 3>> normals_under;  ///< of the surfaces, at the corners of each facet
 
   /// At corner k of a facet: of the surface under it, or the mean over the sheet.

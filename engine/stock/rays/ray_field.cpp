@@ -69,31 +69,37 @@ std::optional<Foot> RayField::displaced(uint32_t ray, const Vec3& tangent_mm) co
   return Foot{met->point, met->normal};
 }
 
-double DesignMesh::distance_to(const Vec3& point) const {
-  const mesh::NearestPoint near = distance.nearest(point);
-  if (under == nullptr || !under->is_curved(near.triangle)) return near.distance_mm;
-  const surface::FacetOnSurface& on = under->facets[near.triangle];
-  const surface::Surface& surface = *under->surfaces[static_cast<size_t>(on.surface)];
-  const Vec2 along_b = on.uv[1] - on.uv[0], along_c = on.uv[2] - on.uv[0];
-  const auto& t = mesh.triangles[near.triangle];
+DesignMesh::Place DesignMesh::nearest_on(uint32_t triangle, const Vec3& point) const {
+  const auto& t = mesh.triangles[triangle];
   const auto corner = [&](size_t k) {
     const auto& p = mesh.positions[t[k]];
     return Vec3(p[0], p[1], p[2]);
   };
+  const Vec3 a = corner(0), b = corner(1), c = corner(2);
+  const Vec3 on_facet = mesh::closest_point_on_triangle(point, a, b, c);
+  if (under == nullptr || !under->is_curved(triangle)) return {on_facet, {}, (point - on_facet).norm()};
+  const surface::FacetOnSurface& on = under->facets[triangle];
+  const surface::Surface& surface = *under->surfaces[static_cast<size_t>(on.surface)];
+  const Vec2 along_b = on.uv[1] - on.uv[0], along_c = on.uv[2] - on.uv[0];
   // Within the facet's part of the surface: from the place over the facet's own, Gauss and Newton's steps.
   constexpr int kSteps = 3;
-  const Vec3 ab = corner(1) - corner(0), ac = corner(2) - corner(0);
-  Vec2 l = nearest_shares(ab, ac, near.point - corner(0));
-  double least = std::numeric_limits<double>::infinity();
+  Vec2 l = nearest_shares(b - a, c - a, on_facet - a);
+  Place best;
   for (int i = 0; i < kSteps; ++i) {
     const Vec2 uv = on.uv[0] + l.x() * along_b + l.y() * along_c;
     const surface::Derivatives d = surface.derivatives(uv.x(), uv.y());
     const Vec3 off = point - d.S;
-    least = std::min(least, off.norm());
+    if (off.norm() < best.distance_mm) best = {d.S, uv, off.norm()};
     l = within_triangle(l + nearest_shares(d.Su * along_b.x() + d.Sv * along_b.y(),
                                            d.Su * along_c.x() + d.Sv * along_c.y(), off));
   }
-  return least;
+  return best;
+}
+
+double DesignMesh::distance_to(const Vec3& point) const {
+  const mesh::NearestPoint near = distance.nearest(point);
+  if (under == nullptr || !under->is_curved(near.triangle)) return near.distance_mm;
+  return nearest_on(near.triangle, point).distance_mm;
 }
 
 double RayField::own_depth(const Vec3& point, const Vec3& normal, double depth_mm, double share) const {

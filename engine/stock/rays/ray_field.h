@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -45,6 +46,13 @@ struct DesignMesh {
   const mesh::MeshDistance distance;
   const surface::UnderFacetsPtr under;  ///< null: the facets are the design
 
+  /// The place of a facet, or of the surface under it, that is nearest to a point.
+  struct Place {
+    Vec3 point = Vec3::Zero();
+    Vec2 uv = Vec2::Zero();  ///< of a curved facet, in the parameters of its surface
+    double distance_mm = std::numeric_limits<double>::infinity();
+  };
+  Place nearest_on(uint32_t triangle, const Vec3& point) const;
   /// From a point to the design near the facet that is nearest to it; mm. Never less than to the whole
   /// design.
   double distance_to(const Vec3& point) const;
@@ -134,7 +142,12 @@ inline constexpr double kFarthestRay = 1.2;
 RayFieldPtr rays_on_mesh(const TriMesh& mesh, double pitch_mm, double crease_rad = kCrease,
                          const surface::UnderFacetsPtr& under = nullptr);
 
-/// Appends a tile of the rays order[begin ..] to the field; for the two makers.
+/// Rays that somebody else has set on a design mesh: they are cut like those of rays_on_mesh and answer for
+/// the same depths, but have neither areas nor neighbours. `pitch_mm`: about how far they are apart.
+RayFieldPtr rays_at(std::vector<Vec3> points, std::vector<Vec3> normals,
+                    std::shared_ptr<const DesignMesh> design, double pitch_mm);
+
+/// Appends a tile of the rays order[begin ..] to the field; for the makers.
 void add_tile(RayField& field, uint32_t begin);
 
 }  // namespace swarf::stock

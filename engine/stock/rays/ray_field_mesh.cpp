@@ -385,4 +385,16 @@ RayFieldPtr rays_on_mesh(const TriMesh& mesh, double pitch_mm, double crease_rad
   return field;
 }
 
+RayFieldPtr rays_at(std::vector<Vec3> points, std::vector<Vec3> normals,
+                    std::shared_ptr<const DesignMesh> design, double pitch_mm) {
+  SWARF_CHECK(points.size() == normals.size(), "one normal per ray");
+  auto field = std::make_shared<RayField>();
+  field->points = std::move(points);
+  field->normals = std::move(normals);
+  field->design = std::move(design);
+  field->pitch_mm = pitch_mm;
+  if (field->size() > 0) group_all(*field);
+  return field;
+}
+
 }  // namespace swarf::stock

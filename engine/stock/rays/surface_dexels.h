@@ -20,6 +20,8 @@
 namespace swarf::stock {
 
 inline constexpr uint32_t kUncut = 0xffffffffu;
+/// Material above a gap thinner than this is the rounding of two cuts that share an end; mm.
+inline constexpr double kSliver = 1e-6;
 
 /// Material over the design along its outward normal.
 /// A height is the top of the material that still stands on the design: the lowest point of the ray that any
