@@ -102,7 +102,7 @@ render::DrawList ShotView::list(const PlannedFrame& frame, sim::MovieView view,
   const size_t before = list.items.size();
   add_stock(stock, revisions, X_drawn, list.items);
   if (shot.section) {
-    list.section = {X_drawn * shot.section->first, X_drawn.linear() * shot.section->second};
+    list.section = {X_drawn * shot.section->point_W, X_drawn.linear() * shot.section->normal_W};
     for (size_t i = before; i < list.items.size(); ++i) list.items[i].sectioned = true;
   }
   if (tip_trail.size() > 1) {
