@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "base/parallel.h"
 #include "cli/commands.h"
@@ -27,7 +28,8 @@ struct RenderOptions {
   std::vector<int> size;
   double seconds = -1.0;
   int samples = 0, threads = 0, finding = 0;
-  bool transparent = false, labels = false;
+  std::string section;
+  std::optional<bool> transparent, labels;  ///< none: as the scene says
   sim::WindowPlaces window;
 };
 
@@ -48,6 +50,26 @@ void set_seconds(sim::MovieSettings& movie, double seconds) {
     shot.seconds =
         all > 0.0 ? shot.seconds * seconds / all : seconds / static_cast<double>(movie.shots.size());
   movie.seconds = seconds;
+}
+
+std::optional<sim::SectionPlane> section_of(const RenderOptions& options) {
+  if (options.section.empty()) return {};
+  if (options.still.empty() || options.finding > 0)
+    throw InputError("nothing-to-do", {"--section"}, "--section is for a still of the part",
+                     "write for example: swarf render DIR --section x=10 --still cut.png");
+  const auto plane = sim::section_named(options.section);
+  if (plane) return plane;
+  throw InputError("bad-section", {"--section"}, fmt::format("'{}' is no plane", options.section),
+                   "write " + sim::section_forms());
+}
+
+reports::StillLook look_of(const RenderOptions& options, const sim::StillSettings& stills,
+                           const std::optional<sim::SectionPlane>& section) {
+  return {options.transparent.value_or(stills.transparent),
+          options.labels.value_or(stills.labels.value_or(section.has_value())),
+          reports::kept_worst_places(options.folder),
+          section,
+          {"--section"}};
 }
 
 /// The page of the run as it is.
@@ -75,6 +97,7 @@ int render(const RenderOptions& options) {
                      "write for example: swarf render DIR --finding 1 --still finding.png");
   const reports::StillKind kind = reports::still_kind(options.kind);
   check_window(options, kind);
+  const std::optional<sim::SectionPlane> section = section_of(options);
   if (!options.camera.empty()) reports::camera_direction(options.camera);
   for (const std::string& file : {options.movie, options.still}) reports::check_output_file(file);
   if (!options.movie.empty()) render::check_movie_name(options.movie);
@@ -109,10 +132,8 @@ int render(const RenderOptions& options) {
     reports::make_finding_picture(run, findings, options.finding, options.still);
     fmt::print("{}\n", options.still);
   } else if (!options.still.empty()) {
-    const std::string otherwise = kind == reports::StillKind::kMachine ? "machine" : "iso";
-    reports::make_still(run, reports::shown_part(run, stored.stock.mesh()), kind,
-                        options.camera.empty() ? otherwise : options.camera, options.still,
-                        {options.transparent, options.labels, reports::kept_worst_places(options.folder)});
+    reports::make_still(run, reports::shown_part(run, stored.stock.mesh()), kind, options.camera,
+                        options.still, look_of(options, stored.job.scene.stills, section));
     fmt::print("{}\n", options.still);
   }
   if (!options.movie.empty()) {
@@ -150,16 +171,22 @@ void add_render(CLI::App& app, int& exit_code) {
           "--finding", options->finding,
           "the still shows the machine at this finding, by its number in the page and in findings.json")
       ->check(CLI::PositiveNumber);
-  command->add_flag("--transparent", options->transparent, "no backdrop and no floor behind the still");
-  command->add_flag(
-      "--labels", options->labels,
+  command->add_option("--section", options->section,
+                      "cut the part of the still open: x=10, y=10, z=10 (mm), or a point and a normal, "
+                      "x,y,z,nx,ny,nz; with the outlines of part and design, straight on without --camera");
+  command->add_flag_function(
+      "--transparent,!--no-transparent", [options](int64_t count) { options->transparent = count > 0; },
+      "no backdrop and no floor behind the still");
+  command->add_flag_function(
+      "--labels,!--no-labels", [options](int64_t count) { options->labels = count > 0; },
       "a scale bar on the still, right at the middle of what is shown; on a deviation its deepest and "
-      "highest place with their values");
+      "highest place with their values; a section has them unless --no-labels");
   command->add_option("--threads", options->threads, "threads to use (default: all cores)")
       ->check(CLI::Range(1, 4096));
   command->footer(R"(Examples:
   swarf render out/dome --still part.png --kind part --camera left
   swarf render out/dome --still at.png --finding 1
+  swarf render out/dome --still cut.png --kind deviation --section x=0
   swarf render out/dome --movie cut.mp4 --seconds 20 --from-line 40 --to-line 80)");
   command->callback([options, &exit_code] { exit_code = render(*options); });
 }

@@ -52,9 +52,12 @@ struct SectionPlane {
   Vec3 point = Vec3::Zero(), normal = Vec3::UnitZ();  ///< drawing's frame; unit
 };
 
+/// Of the material where a section goes through it.
+inline constexpr Rgb kCutFace{0.62F, 0.24F, 0.10F};
+
 struct DrawList {
   Camera camera;
-  std::optional<SectionPlane> section;  ///< of the rasteriser's sectioned items
+  std::optional<SectionPlane> section;  ///< of the sectioned items
   std::vector<DrawItem> items;
   std::vector<DrawLine> lines;
 };

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include "base/check.h"
 
@@ -17,6 +18,7 @@ constexpr double kTextShare = 0.024;  // text height as a share of the picture's
 constexpr double kMinTextPx = 11.0;   // below this DejaVu is hard to read
 using Paint = std::array<double, 4>;  // sRGB and opacity
 constexpr Paint kPlate{0.08, 0.10, 0.12, 0.72};
+constexpr Paint kChip{0.80, 0.80, 0.80, 1.0};  // behind the lines of a legend, which may be dark
 constexpr Paint kNotice{0.78, 0.08, 0.06, 0.92}, kDimNotice{0.45, 0.06, 0.05, 0.75};
 constexpr double kProgressShare = 0.008;  // height of the bar as a share of the picture's
 
@@ -61,6 +63,7 @@ class Canvas {
     cairo_set_source_rgba(cr(), paint[0], paint[1], paint[2], paint[3]);
     cairo_fill(cr());
   }
+  void stroke(const Vec2& from, const Vec2& to, const Rgb& linear) const;
   /// Lays the drawing over the picture.
   void finish();
 
@@ -93,6 +96,13 @@ void Canvas::finish() {
 double srgb(double linear) {
   linear = std::clamp(linear, 0.0, 1.0);
   return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
+}
+
+void Canvas::stroke(const Vec2& from, const Vec2& to, const Rgb& linear) const {
+  cairo_set_source_rgb(cr(), srgb(linear[0]), srgb(linear[1]), srgb(linear[2]));
+  cairo_move_to(cr(), from.x(), from.y());
+  cairo_line_to(cr(), to.x(), to.y());
+  cairo_stroke(cr());
 }
 
 struct BarLayout {
@@ -137,13 +147,25 @@ void draw_apart(const Canvas& canvas, const ColourBar& bar, const BarLayout& at)
 
 namespace {
 
-void draw_lines(Image& image, const std::vector<std::string>& lines, Corner corner, const Paint& paint) {
+/// The words, or as many of their letters with dots behind them as fit.
+std::string fitted(const Canvas& canvas, std::string words, double width) {
+  if (canvas.text_width(words) <= width) return words;
+  while (!words.empty() && canvas.text_width(words + "...") > width) {
+    // Bytes 10xxxxxx go on with a letter.
+    while (words.size() > 1 && (static_cast<unsigned char>(words.back()) & 0xc0U) == 0x80U) words.pop_back();
+    words.pop_back();
+  }
+  return words + "...";
+}
+
+void draw_lines(Image& image, std::vector<std::string> lines, Corner corner, const Paint& paint) {
   if (lines.empty()) return;
   Canvas canvas(image);
   const double text_px = canvas.text_px(), pad = 0.8 * text_px, step = 1.35 * text_px;
   double width = 0.0;
   for (size_t i = 0; i < lines.size(); ++i) {
     canvas.bold(i == 0);
+    lines[i] = fitted(canvas, std::move(lines[i]), image.width - 4.0 * pad);
     width = std::max(width, canvas.text_width(lines[i]) + 2.0 * pad);
   }
   const double height = step * static_cast<double>(lines.size()) + 1.2 * pad;
@@ -206,14 +228,19 @@ double draw_colour_bar(Image& image, const ColourBar& bar) {
   return x - pad;
 }
 
+double round_length(double value) {
+  const double decade = std::pow(10.0, std::floor(std::log10(value)));
+  double length = decade;
+  for (const double step : {2.0, 5.0})
+    if (step * decade <= value) length = step * decade;
+  return length;
+}
+
 void draw_scale_bar(Image& image, double px_per_mm) {
   SWARF_CHECK(px_per_mm > 0.0 && std::isfinite(px_per_mm), "a scale bar needs a scale");
   constexpr double kWidthShare = 0.2;
   const double most_mm = kWidthShare * image.width / px_per_mm;
-  const double decade = std::pow(10.0, std::floor(std::log10(most_mm)));
-  double length = decade;
-  for (const double step : {2.0, 5.0})
-    if (step * decade <= most_mm) length = step * decade;
+  const double length = round_length(most_mm);
   Canvas canvas(image);
   const double text_px = canvas.text_px(), pad = 0.8 * text_px, width = length * px_per_mm;
   const std::string words = fmt::format("{:g} mm", length);
@@ -233,27 +260,102 @@ void draw_scale_bar(Image& image, double px_per_mm) {
   canvas.finish();
 }
 
-void draw_leaders(Image& image, const std::vector<Leader>& leaders, double right_px) {
+void draw_strokes(Image& image, const Strokes& strokes) {
+  Canvas canvas(image);
+  cairo_set_line_cap(canvas.cr(), CAIRO_LINE_CAP_ROUND);
+  cairo_set_line_width(canvas.cr(), std::max(1.2, strokes.width * canvas.text_px()));
+  for (const Strokes::Piece& piece : strokes.pieces) canvas.stroke(piece.from, piece.to, piece.colour);
+  canvas.finish();
+}
+
+Vec2 draw_legend(Image& image, const std::string& title, const std::vector<Strokes>& kinds,
+                 const std::vector<std::string>& notes) {
+  Canvas canvas(image);
+  const double text_px = canvas.text_px(), pad = 0.8 * text_px, step = 1.35 * text_px, sample = 2.2 * text_px;
+  double width = 0.0;
+  for (const Strokes& kind : kinds)
+    width = std::max(width, sample + 0.6 * text_px + canvas.text_width(kind.words));
+  for (const std::string& note : notes) width = std::max(width, canvas.text_width(note));
+  canvas.bold(true);
+  width = std::max(width, canvas.text_width(title));
+  const double rows = 1.0 + static_cast<double>(kinds.size() + notes.size());
+  canvas.plate(pad, pad, width + 2.0 * pad, step * rows + 1.2 * pad);
+  double baseline = 1.6 * pad + 0.77 * step;
+  canvas.text(2.0 * pad, baseline, title);
+  canvas.bold(false);
+  for (const Strokes& kind : kinds) {
+    baseline += step;
+    const double y = baseline - 0.35 * text_px;
+    canvas.plate(2.0 * pad - 0.3 * text_px, y - 0.55 * text_px, sample + 0.6 * text_px, 1.1 * text_px, kChip);
+    cairo_set_line_width(canvas.cr(), std::max(1.2, kind.width * text_px));
+    canvas.stroke({2.0 * pad, y}, {2.0 * pad + sample, y}, kind.sample);
+    canvas.text(2.0 * pad + sample + 0.6 * text_px, baseline, kind.words);
+  }
+  for (const std::string& note : notes) canvas.text(2.0 * pad, baseline += step, note);
+  canvas.finish();
+  return {3.0 * pad + width, pad + step * rows + 1.2 * pad};
+}
+
+namespace {
+
+/// A plate for words of one line.
+struct LeaderPlate {
+  double x, y, width, height;
+  bool meets(const LeaderPlate& other) const {
+    return x < other.x + other.width && other.x < x + width && y < other.y + other.height &&
+           other.y < y + height;
+  }
+  bool covers(const Leader& leader) const {
+    return leader.x > x && leader.x < x + width && leader.y > y && leader.y < y + height;
+  }
+};
+
+/// Up and right of the place, else left, else below it, whichever hides no place and no other plate.
+LeaderPlate plate_for(const Leader& leader, double width, double text_px, const Vec2& most,
+                      const std::vector<Leader>& leaders, const std::vector<LeaderPlate>& taken) {
+  const double height = 1.9 * text_px, pad = 0.5 * text_px;
+  const auto at = [&](double x, double y) {
+    return LeaderPlate{std::clamp(x, pad, std::max(pad, most.x() - pad - width)),
+                       std::clamp(y, pad, std::max(pad, most.y() - pad - height)), width, height};
+  };
+  const double right = leader.x + 3.0 * text_px, left = leader.x - 3.0 * text_px - width;
+  for (const double y : {leader.y - 4.0 * text_px, leader.y + 2.1 * text_px}) {
+    for (const double x : {right, left}) {
+      const LeaderPlate plate = at(x, y);
+      if (std::none_of(taken.begin(), taken.end(),
+                       [&](const LeaderPlate& one) { return plate.meets(one); }) &&
+          std::none_of(leaders.begin(), leaders.end(), [&](const Leader& one) { return plate.covers(one); }))
+        return plate;
+    }
+  }
+  LeaderPlate plate = at(right, leader.y - 4.0 * text_px);
+  for (const LeaderPlate& one : taken)
+    if (plate.meets(one)) plate.y = one.y + 1.2 * height;
+  return plate;
+}
+
+}  // namespace
+
+void draw_leaders(Image& image, const std::vector<Leader>& leaders, double right_px, const Vec2& legend) {
   if (leaders.empty()) return;
   Canvas canvas(image);
-  const double text_px = canvas.text_px(), pad = 0.5 * text_px, height = 1.9 * text_px;
-  std::vector<std::array<double, 3>> taken;  // left, top, width of the plates
+  const double text_px = canvas.text_px(), pad = 0.5 * text_px;
+  std::vector<LeaderPlate> taken;
+  if (!legend.isZero()) taken.push_back({0.0, 0.0, legend.x(), legend.y()});
   for (const Leader& leader : leaders) {
-    const double width = canvas.text_width(leader.text) + 2.0 * pad;
-    const double x = std::clamp(leader.x + 3.0 * text_px, pad, std::max(pad, right_px - pad - width));
-    double y = std::clamp(leader.y - 4.0 * text_px, pad, std::max(pad, image.height - pad - height));
-    for (const auto& [left, top, other] : taken)
-      if (x < left + other && left < x + width && std::abs(y - top) < height) y = top + 1.2 * height;
-    taken.push_back({x, y, width});
+    const LeaderPlate at = plate_for(leader, canvas.text_width(leader.text) + 2.0 * pad, text_px,
+                                     {right_px, image.height}, leaders, taken);
+    taken.push_back(at);
     cairo_set_source_rgb(canvas.cr(), 0.96, 0.97, 0.98);
     cairo_set_line_width(canvas.cr(), std::max(1.0, 0.1 * text_px));
     cairo_move_to(canvas.cr(), leader.x, leader.y);
-    cairo_line_to(canvas.cr(), std::clamp(leader.x, x, x + width), std::clamp(leader.y, y, y + height));
+    cairo_line_to(canvas.cr(), std::clamp(leader.x, at.x, at.x + at.width),
+                  std::clamp(leader.y, at.y, at.y + at.height));
     cairo_stroke(canvas.cr());
     cairo_arc(canvas.cr(), leader.x, leader.y, 0.25 * text_px, 0.0, 2.0 * M_PI);
     cairo_fill(canvas.cr());
-    canvas.plate(x, y, width, height);
-    canvas.text(x + pad, y + 1.25 * text_px, leader.text);
+    canvas.plate(at.x, at.y, at.width, at.height);
+    canvas.text(at.x + pad, at.y + 1.25 * text_px, leader.text);
   }
   canvas.finish();
 }

@@ -12,7 +12,7 @@ namespace swarf::render {
 enum class Corner { kTopLeft, kTopRight, kBottomLeft, kBottomRight };
 
 /// Lines of text on a translucent plate in a corner of the picture; the first line is bold. Sizes follow the
-/// picture's height. An empty list draws nothing.
+/// picture's height; a line that would leave the picture is cut short. An empty list draws nothing.
 void draw_caption(Image& image, const std::vector<std::string>& lines, Corner corner = Corner::kBottomLeft);
 
 /// The same at the top left on a red plate, bright or dimmed: what the viewer must not miss.
@@ -43,13 +43,35 @@ double draw_colour_bar(Image& image, const ColourBar& bar);
 /// fifth of the picture's width, with its length: "20 mm". `px_per_mm` > 0: where it is to be read.
 void draw_scale_bar(Image& image, double px_per_mm);
 
+/// The greatest of 1, 2 and 5 times a power of ten that is at most `value` (> 0).
+double round_length(double value);
+
+/// Straight pieces of one kind, px from the upper left corner.
+struct Strokes {
+  struct Piece {
+    Vec2 from, to;
+    Rgb colour;  ///< linear
+  };
+  std::vector<Piece> pieces{};
+  double width = 0.12;  ///< of the height of text
+  std::string words{};  ///< in the legend
+  Rgb sample{};         ///< colour there, linear
+};
+void draw_strokes(Image& image, const Strokes& strokes);
+
+/// At the upper left: a title in bold, a line of each kind with its words, and notes. Where its plate ends.
+Vec2 draw_legend(Image& image, const std::string& title, const std::vector<Strokes>& kinds,
+                 const std::vector<std::string>& notes);
+
 /// Words that lead to a place of the picture.
 struct Leader {
   double x = 0.0, y = 0.0;  ///< px from the upper left corner
   std::string text{};
 };
-/// Each on a plate of its own beside its place, within the picture and below one another where they would
-/// meet, left of `right_px`, with a line to the place and a dot on it.
-void draw_leaders(Image& image, const std::vector<Leader>& leaders, double right_px);
+/// Each on a plate of its own beside its place, within the picture and where it hides no place and no other
+/// plate, left of `right_px` and outside of the corner up to `legend`, with a line to the place and a dot on
+/// it.
+void draw_leaders(Image& image, const std::vector<Leader>& leaders, double right_px,
+                  const Vec2& legend = Vec2::Zero());
 
 }  // namespace swarf::render

@@ -1,12 +1,16 @@
 // A cut through meshes as a drawing.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
 #include "mesh/tri_mesh.h"
 
 namespace swarf::reports {
+
+/// The lines in which the facets meet a plane.
+std::vector<std::array<Vec3, 2>> section_pieces(const TriMesh& mesh, const Vec3& point, const Vec3& normal);
 
 /// One of the meshes that a section goes through.
 struct SectionMesh {

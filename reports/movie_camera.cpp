@@ -15,7 +15,8 @@ constexpr double kToolWidths = 14.0;       // tool diameters across the picture 
 /// Where the work travels farther than so many times its own size, the camera goes with it: else it would be
 /// a speck.
 constexpr double kFarTravel = 2.0;
-constexpr double kAroundStock = 0.9;  // of its greatest side, shown on every side
+/// Of the ball around the stock, which turns in it: a third of its radius is left for the tool.
+constexpr double kAroundBall = 1.35;
 constexpr render::Rgb kTrailColour{0.85F, 0.10F, 0.05F};
 
 Vec3 turned_about_z(const Vec3& direction, double angle) {
@@ -55,27 +56,25 @@ render::Camera ShotView::camera(const PlannedFrame& frame, sim::MovieView view,
   const Box& stock = run_.job.scene.stock.box_W;
   const auto tool = static_cast<size_t>(frame.cycle.sample.tool);
   const bool part = view == sim::MovieView::kPart;
-  const double side = stock.size().maxCoeff();
   const Pose X_work = part ? Pose::Identity() : view_.work_pose(frame.cycle.q);
   Vec3 centre = X_work * stock.centre();
-  Box box = around(centre, (part ? 0.5 : 0.5 + kAroundStock) * side);
-  if (part) box = stock;
+  double width = shot.width_mm, travel = 0.0;
   sim::MovieFollow follow = shot.follow;
   if (follow == sim::MovieFollow::kNothing && !part) {
-    if (shot.width_mm == 0.0 && seen_.size().maxCoeff() > kFarTravel * side) {
+    if (width == 0.0 && seen_.size().maxCoeff() > kFarTravel * stock.size().maxCoeff()) {
       follow = sim::MovieFollow::kWork;
     } else {
       centre = seen_.centre();
-      box = {seen_.lower.array() - kAroundStock * side, seen_.upper.array() + kAroundStock * side};
+      travel = seen_.size().norm();
     }
   }
-  double width = shot.width_mm;
+  if (!part && width == 0.0) width = (travel + kAroundBall * stock.size().norm()) * std::max(aspect, 1.0);
   if (follow == sim::MovieFollow::kTool) {
     centre = X_work * frame.cycle.sample.pose.tip_W;
-    if (width == 0.0) width = kToolWidths * run_.job.scene.tools[tool].diameter_mm;
+    if (shot.width_mm == 0.0) width = kToolWidths * run_.job.scene.tools[tool].diameter_mm;
   }
   const Vec3 from = direction(frame, view);
-  if (width == 0.0) return render::look_at_box(box, -from, kShotFieldOfView, aspect);
+  if (width == 0.0) return render::look_at_box(stock, -from, kShotFieldOfView, aspect);
   render::Camera camera = render::look_at_box(around(centre, 1.0), -from, kShotFieldOfView, aspect);
   camera.eye = centre + from.normalized() * (0.5 * width / (std::tan(0.5 * kShotFieldOfView) * aspect));
   return camera;
@@ -102,7 +101,7 @@ render::DrawList ShotView::list(const PlannedFrame& frame, sim::MovieView view,
   const size_t before = list.items.size();
   add_stock(stock, revisions, X_drawn, list.items);
   if (shot.section) {
-    list.section = {X_drawn * shot.section->first, X_drawn.linear() * shot.section->second};
+    list.section = {X_drawn * shot.section->point_W, X_drawn.linear() * shot.section->normal_W};
     for (size_t i = before; i < list.items.size(); ++i) list.items[i].sectioned = true;
   }
   if (tip_trail.size() > 1) {

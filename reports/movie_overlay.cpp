@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "base/diagnostics.h"
@@ -15,6 +16,8 @@ namespace {
 
 constexpr double kFlashSeconds = 1.5;  // that a finding stays on the picture
 constexpr size_t kFlashesMost = 3;     // at once
+constexpr double kAwaySizes = 0.5;     // of the stock's greatest side: a tool farther away is told
+constexpr double kAtHome = 1e-3;       // mm, rad
 constexpr size_t kLineLetters = 70;    // of a program's line or a finding's text
 
 /// At most so many letters; never half of one.
@@ -27,6 +30,22 @@ std::string shortened(const std::string& text, size_t most) {
       return line.substr(0, i) + "...";
   }
   return line;
+}
+
+double distance_to(const Box& box, const Vec3& place) {
+  return (place - box.lower.cwiseMax(place.cwiseMin(box.upper))).norm();
+}
+
+/// Of a tool that need not be in the picture: that it stands at home, or how far it is from the stock.
+std::string whereabouts(const sim::Job& job, const motion::Cycle& cycle) {
+  const std::vector<kinematics::Axis>& axes = job.machine.model.axes;
+  const Box& stock = job.scene.stock.box_W;
+  const double away = distance_to(stock, cycle.sample.pose.tip_W);
+  if (away <= kAwaySizes * stock.size().maxCoeff()) return "";
+  bool home = true;
+  for (size_t a = 0; a < axes.size(); ++a)
+    home = home && std::abs(cycle.q[static_cast<Eigen::Index>(a)] - axes[a].home) < kAtHome;
+  return home ? "   at home" : fmt::format("   {:.0f} mm from the stock", away);
 }
 
 }  // namespace
@@ -85,7 +104,8 @@ std::vector<std::string> MovieOverlay::lines_of(const motion::Cycle& cycle) cons
     if (rpm) words += fmt::format("   S {:.0f}", std::abs(*rpm));
   }
   const std::vector<cutter::Cutter>& tools = run_.job.scene.tools;
-  words += fmt::format("   {}", cutter::call_name(tools[static_cast<size_t>(sample.tool)]));
+  words += fmt::format("   {}", cutter::call_name(tools[static_cast<size_t>(sample.tool)])) +
+           whereabouts(run_.job, cycle);
   const Vec3 &tip = sample.pose.tip_W, &axis = sample.pose.axis_W;
   for (size_t a = 0; a < run_.job.machine.model.axes.size(); ++a) {
     const kinematics::Axis& one = run_.job.machine.model.axes[a];

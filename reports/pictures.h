@@ -14,6 +14,7 @@
 #include "reports/metrics_json.h"
 #include "reports/report_data.h"
 #include "reports/review_models.h"
+#include "sim/job/section_keys.h"
 
 namespace swarf::reports {
 
@@ -40,10 +41,13 @@ const std::string& still_name(StillKind kind);
 StillKind still_kind(const std::string& name);  ///< "machine", "part", "deviation", "fan"; throws InputError
 struct StillLook {
   bool transparent = false;  ///< no backdrop and no floor
-  bool labels = false;       ///< scale bar; of the deviation, its deepest and highest place with their values
+  bool labels = false;       ///< scale bar; of deviations and sections, values and a legend
   /// Of the deviation, beside those of the measuring rays.
   std::vector<WorstPlace> worst{};
+  std::optional<sim::SectionPlane> section{};  ///< of part and deviation (section_still.h)
+  SourceLocation section_where{};
 };
+/// `camera` "": the usual one of the kind. Throws InputError as section_view().
 void make_still(const FinishedRun& run, const TriMesh& part, StillKind kind, const std::string& camera,
                 const std::string& path, const StillLook& look = {});
 
@@ -53,7 +57,7 @@ ColourBar deviation_colour_bar(const render::DeviationScale& scale);
 /// A mesh whose colours show deviation, with its colour bar; labels as in StillLook, of the vertices from
 /// `labelled` on. The scale bar is right at the middle of what is shown.
 render::Image deviation_picture(const TriMesh& coloured, const render::DeviationScale& scale,
-                                const std::string& camera, render::StillOptions options,
+                                const std::string& camera, const render::StillOptions& options,
                                 std::optional<size_t> labelled = {});
 
 }  // namespace swarf::reports

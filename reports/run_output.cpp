@@ -78,41 +78,67 @@ void require_logo(const sim::ReportSettings& report) {
   }
 }
 
-void write_pictures(const PendingFolder& folder, const FinishedRun& run, const TriMesh& part,
-                    const sim::Result& result, Progress& progress, RunFiles& files,
-                    RenderStatistics& statistics) {
-  struct Picture {
-    StillKind kind;
-    const char* file;
-    const char* camera;
-    const char* caption;
-  };
-  const std::vector<WorstPlace> worst = worst_places(result);
+std::string shot_caption(const sim::StillShot& shot) {
+  std::string caption = shot.kind == "machine" ? "The machine near the middle of the program"
+                        : shot.kind == "fan"   ? "The tool's paths and its axes"
+                        : shot.kind == "part"  ? "The finished part"
+                                               : "Deviation from the design";
+  if (!shot.camera.empty()) caption += ", camera " + shot.camera;
+  if (shot.section) caption += ", cut open at " + sim::section_words(*shot.section);
+  return caption + ".";
+}
+
+struct Picture {
+  StillKind kind = StillKind::kPart;
+  std::string file{}, caption{}, camera{};
+  std::optional<sim::SectionPlane> section{};
+  SourceLocation where{};
+};
+
+std::vector<Picture> planned_stills(const FinishedRun& run) {
+  const bool blocks = run.cycles.elements().hold_blocks();
   std::vector<Picture> pictures{
-      {StillKind::kMachine, "still_machine.png", "machine", "The machine near the middle of the program."},
-      {StillKind::kPart, "still_part.png", "iso",
-       run.cycles.elements().hold_blocks()
-           ? "The finished part."
-           : "The finished part: strip lights break at each ridge, so every band is one pass."},
-      {StillKind::kFan, "still_fan.png", "iso",
-       run.cycles.elements().hold_blocks() || run.job.scene.driven
-           ? "The tool's paths and its axes."
-           : "Paths and tool axes (Lin & Koren, Fig. 13)."}};
+      {StillKind::kMachine, "still_machine.png", "The machine near the middle of the program."},
+      {StillKind::kPart, "still_part.png",
+       blocks ? "The finished part."
+              : "The finished part: strip lights break at each ridge, so every band is one pass."},
+      {StillKind::kFan, "still_fan.png",
+       blocks || run.job.scene.driven ? "The tool's paths and its axes."
+                                      : "Paths and tool axes (Lin & Koren, Fig. 13)."}};
   if (!run.dexels.empty()) {
-    pictures.insert(pictures.begin() + 2, {StillKind::kDeviation, "still_deviation.png", "iso",
+    pictures.insert(pictures.begin() + 2, {StillKind::kDeviation, "still_deviation.png",
                                            "Deviation from the design, from measuring rays."});
   }
-  const std::vector<std::string>& kinds = run.job.scene.stills.kinds;
+  const sim::StillSettings& stills = run.job.scene.stills;
   std::erase_if(pictures, [&](const Picture& picture) {
-    return std::find(kinds.begin(), kinds.end(), still_name(picture.kind)) == kinds.end();
+    return std::find(stills.kinds.begin(), stills.kinds.end(), still_name(picture.kind)) ==
+           stills.kinds.end();
   });
+  for (size_t i = 0; i < stills.shots.size(); ++i) {
+    const sim::StillShot& shot = stills.shots[i];
+    pictures.push_back({still_kind(shot.kind), fmt::format("still_shot_{}.png", i + 1), shot_caption(shot),
+                        shot.camera, shot.section, shot.where});
+  }
+  return pictures;
+}
+
+void write_pictures(const PendingFolder& folder, const FinishedRun& run, const TriMesh& part,
+                    const sim::Result& result, Progress& progress, RunFiles& files,
+                    RenderStatistics& statistics, Attempts& attempts) {
+  const std::vector<WorstPlace> worst = worst_places(result);
+  const std::vector<Picture> pictures = planned_stills(run);
+  const sim::StillSettings& stills = run.job.scene.stills;
   progress.begin("stills", static_cast<double>(pictures.size()), "pictures");
   for (const Picture& picture : pictures) {
     if (progress.stop_requested()) break;
     // What is measured has its scale; the deepest and the highest place are where the measures found them.
     const bool measured = picture.kind == StillKind::kPart || picture.kind == StillKind::kDeviation;
-    make_still(run, part, picture.kind, picture.camera, folder.file(picture.file), {false, measured, worst});
-    files.stills.push_back({folder.file(picture.file), picture.caption});
+    attempts.run([&] {
+      make_still(
+          run, part, picture.kind, picture.camera, folder.file(picture.file),
+          {stills.transparent, stills.labels.value_or(measured), worst, picture.section, picture.where});
+      files.stills.push_back({folder.file(picture.file), picture.caption});
+    });
     progress.advance(static_cast<double>(files.stills.size()));
   }
   files.finding_pngs = make_finding_pictures(
@@ -242,7 +268,7 @@ std::vector<Diagnostic> write_run(PendingFolder& folder, const sim::Job& job, si
   if (options.report) attempts.run([&] { write_glb(folder, run, closed, result, progress, files); });
   attempts.run([&] {
     if (options.render)
-      write_pictures(folder, run, shown_part(run, closed), result, progress, files, statistics);
+      write_pictures(folder, run, shown_part(run, closed), result, progress, files, statistics, attempts);
   });
   result.stopped = progress.stop_requested();
   if (options.report) {

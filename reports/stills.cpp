@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <tuple>
+#include <utility>
 
 #include "base/config.h"
 #include "base/units.h"
@@ -15,6 +17,7 @@
 #include "render/ray/still.h"
 #include "reports/part_view.h"
 #include "reports/pictures.h"
+#include "reports/section_still.h"
 
 namespace swarf::reports {
 namespace {
@@ -27,7 +30,8 @@ constexpr double kStillNoise = 3.0;  // of 255: standard error of a pixel that i
 // Bare cut metal: the strip lights break at each ridge, which is what makes cusps of a few micrometres
 // visible.
 constexpr render::Material kPolished{{0.56F, 0.57F, 0.59F}, 1.0F, 0.16F};
-constexpr render::Material kMatt{{0.75F, 0.76F, 0.78F}, 0.0F, 0.6F};  // behind lines: no reflections
+constexpr render::Material kColoured{{1.0F, 1.0F, 1.0F}, 0.0F, 0.7F};  // by the vertices
+constexpr render::Material kMatt{{0.75F, 0.76F, 0.78F}, 0.0F, 0.6F};   // behind lines: no reflections
 
 double aspect(const std::array<int, 2>& size) {
   return static_cast<double>(size[0]) / size[1];
@@ -142,6 +146,16 @@ ColourBar deviation_colour_bar(const render::DeviationScale& scale) {
 
 namespace {
 
+/// A drawing whose colours are deviations, and where its bar begins, px from the left.
+std::pair<render::Image, double> with_colour_bar(const render::DrawList& list,
+                                                 const render::DeviationScale& scale,
+                                                 render::StillOptions options) {
+  options.strip_strength = 0.0;  // reflections would tint the colours
+  render::Image image = render::render_still(list, options);
+  const double begins = render::draw_colour_bar(image, lettered_bar(scale));
+  return {std::move(image), begins};
+}
+
 /// The deepest and the highest of the vertices from `first` on, with their values.
 std::vector<render::Leader> extreme_leaders(const TriMesh& coloured, size_t first,
                                             const render::DrawList& list, int width, int height) {
@@ -174,15 +188,13 @@ std::vector<render::Leader> extreme_leaders(const TriMesh& coloured, size_t firs
 }  // namespace
 
 render::Image deviation_picture(const TriMesh& coloured, const render::DeviationScale& scale,
-                                const std::string& camera, render::StillOptions options,
+                                const std::string& camera, const render::StillOptions& options,
                                 std::optional<size_t> labelled) {
   render::DrawList list;
   const double ratio = static_cast<double>(options.width) / options.height;
   list.camera = render::look_at_box(mesh::bounds(coloured), -camera_direction(camera), kFieldOfView, ratio);
-  list.items.push_back({&coloured, Pose::Identity(), {{1.0F, 1.0F, 1.0F}, 0.0F, 0.7F}});
-  options.strip_strength = 0.0;  // reflections would tint the colours
-  render::Image image = render::render_still(list, options);
-  const double bar_begins = render::draw_colour_bar(image, lettered_bar(scale));
+  list.items.push_back({&coloured, Pose::Identity(), kColoured});
+  auto [image, bar_begins] = with_colour_bar(list, scale, options);
   if (labelled) {
     render::draw_leaders(image, extreme_leaders(coloured, *labelled, list, options.width, options.height),
                          bar_begins);
@@ -191,10 +203,52 @@ render::Image deviation_picture(const TriMesh& coloured, const render::Deviation
   return image;
 }
 
-void make_still(const FinishedRun& run, const TriMesh& part, StillKind kind, const std::string& camera,
+namespace {
+
+/// The part or its deviation, cut open.
+render::Image section_picture(const FinishedRun& run, const TriMesh& part, StillKind kind,
+                              const std::string& camera, const StillLook& look,
+                              const render::StillOptions& options) {
+  if (kind != StillKind::kPart && kind != StillKind::kDeviation)
+    throw InputError("section-of-part", look.section_where,
+                     fmt::format("a still of kind '{}' is not cut open", still_name(kind)),
+                     "take kind part or deviation, or a shot of the movie with a section");
+  const SectionView view = section_view(part, *look.section, look.section_where, camera, kFieldOfView,
+                                        aspect(run.job.scene.stills.size));
+  render::DrawList list;
+  list.camera = view.camera;
+  list.section = {view.plane.point_W, view.plane.normal_W};
+  TriMesh coloured;
+  render::Image image;
+  double right_px = options.width;
+  if (kind == StillKind::kDeviation) {
+    coloured = part;
+    const render::DeviationScale scale = deviation_scale(run.job);
+    render::colour_by_deviation(coloured, scale);
+    list.items.push_back({&coloured, Pose::Identity(), kColoured});
+    list.items.back().sectioned = true;
+    std::tie(image, right_px) = with_colour_bar(list, scale, options);
+  } else {
+    list.items.push_back({&part, Pose::Identity(), kPolished});
+    list.items.back().sectioned = true;
+    image = render::render_still(list, options);
+  }
+  draw_section(run, part, view, look.labels, right_px, image);
+  return image;
+}
+
+}  // namespace
+
+void make_still(const FinishedRun& run, const TriMesh& part, StillKind kind, const std::string& camera_name,
                 const std::string& path, const StillLook& look) {
   render::StillOptions options = still_options(run.job);
   options.transparent = look.transparent;
+  if (look.section) {
+    render::save_png(section_picture(run, part, kind, camera_name, look, options), path);
+    return;
+  }
+  const std::string usual = kind == StillKind::kMachine ? "machine" : "iso";
+  const std::string camera = camera_name.empty() ? usual : camera_name;
   if (kind == StillKind::kDeviation) {
     TriMesh coloured = part;
     if (look.labels) add_worst_places(run, look.worst, coloured);

@@ -66,13 +66,12 @@ void save_picture(const SceneRun& run, const PictureRequest& request, const std:
   if (request.width > 0) job.scene.stills.size = {request.width, request.height};
   if (request.samples > 0) job.scene.stills.samples = request.samples;
   const reports::StillKind kind = reports::still_kind(request.kind);
-  const std::string usual = kind == reports::StillKind::kMachine ? "machine" : "iso";
   const sim::Result& result = run.result;
   reports::FinishedRun finished{job, *result.main.cycles, *result.stock, result.main.dexels,
                                 *result.main.carried};
   finished.rays = &result.main.rays;
-  reports::make_still(finished, reports::shown_part(finished, result.stock->mesh()), kind,
-                      request.camera.empty() ? usual : request.camera, path);
+  reports::make_still(finished, reports::shown_part(finished, result.stock->mesh()), kind, request.camera,
+                      path);
 }
 
 }  // namespace swarf::cli

@@ -473,7 +473,11 @@ namespace {
 MeasuredPath moved_tool(const Job& job, Progress& progress, const CutOptions& options, bool run) {
   MeasuredPath measured = planned_path(job, progress);
   const bool movie = run && options.outputs.pictures;
-  if (movie) require_shot_lines(job.scene.movie, measured.path.elements);
+  if (movie) {
+    require_shot_lines(job.scene.movie, measured.path.elements);
+    require_still_shots(job.scene.stills, job.scene.stock.box_W,
+                        job.design_mesh != nullptr || !job.design.empty());
+  }
   interpolate(job, job.scene.motion, options, progress, measured, run);
   if (movie && !measured.cycles->stopped()) require_shots(job.scene.movie, *measured.cycles);
   // Of blocks nobody knows the contact points before they cut.

@@ -289,7 +289,6 @@ void RasterRenderer::Impl::draw_ground(const SceneView& view) {
 void RasterRenderer::Impl::draw_items(const SceneView& view, const DrawList& list, bool sectioned) {
   const Uniforms uniforms(gl, sectioned ? section_program : surface_program);
   if (sectioned) {
-    constexpr Rgb kCutFace{0.62F, 0.24F, 0.10F};
     const auto facing = static_cast<float>(0.8 + 0.2 * list.section->normal.dot(view.key));
     uniforms.set_plane("section", list.section->normal, list.section->point);
     uniforms.set("section_colour", Rgb{facing * kCutFace[0], facing * kCutFace[1], facing * kCutFace[2]});

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 #include "base/check.h"
@@ -74,34 +75,60 @@ struct Bounds {
   static constexpr float kBoundsSlack = 1.00001F;
 };
 
+/// The part of a half line that lies on the kept side of a section.
+struct Kept {
+  float from = 0.0F, to = std::numeric_limits<float>::infinity();  ///< from > to: nothing
+  bool through_plane = false;                                      ///< it begins on the plane
+};
+
+Kept kept_part(const SectionPlane& plane, const Vec3f& origin, const Vec3f& direction) {
+  const double above = plane.normal.dot(origin.cast<double>() - plane.point);
+  const double rise = plane.normal.dot(direction.cast<double>());
+  const auto at_plane = static_cast<float>(-above / rise);
+  if (above > 0.0) return rise < 0.0 ? Kept{at_plane, Kept{}.to, true} : Kept{1.0F, 0.0F};
+  return rise > 0.0 ? Kept{0.0F, at_plane} : Kept{};
+}
+
+/// Meshes in a tree.
+struct Solids {
+  RTCScene scene = nullptr;
+  std::vector<Solid> data;  ///< by geomID
+  Bounds bounds;
+};
+
 }  // namespace
 
 struct RayScene::Embree {
   RTCDevice device = nullptr;
-  RTCScene solids = nullptr, tubes = nullptr;
-  std::vector<Solid> solid_data;
+  RTCScene tubes = nullptr;
+  Solids whole, opened;  ///< opened: cut open by the section
+  std::optional<SectionPlane> section;
   std::vector<Vec3f> tube_colours;
-  Bounds solid_bounds, tube_bounds;
+  Bounds tube_bounds;
 
   Embree();
   ~Embree();
-  void add_solid(const DrawItem& item);
+  void add_solid(const DrawItem& item, Solids& solids);
   void add_tube(const DrawLine& line, const Vec3& eye, double radius_per_mm);
   void attach(RTCScene scene, RTCGeometry geometry);
-  Hit solid_hit(const RTCHit& hit) const;
+  void look_inside(RTCRayHit& ray, std::optional<Hit>& hit) const;
 };
 
 RayScene::Embree::Embree() {
   // Embree builds its trees on the same TBB threads, so the process-wide limit holds for it too.
   device = rtcNewDevice(nullptr);
   SWARF_CHECK(device != nullptr, "Embree cannot open its device");
-  solids = rtcNewScene(device);
   tubes = rtcNewScene(device);
-  rtcSetSceneFlags(solids, RTC_SCENE_FLAG_ROBUST);  // no light through the edges between triangles
+  for (Solids* solids : {&whole, &opened}) {
+    solids->scene = rtcNewScene(device);
+    // No light through the edges between triangles.
+    rtcSetSceneFlags(solids->scene, RTC_SCENE_FLAG_ROBUST);
+  }
 }
 
 RayScene::Embree::~Embree() {
-  rtcReleaseScene(solids);
+  rtcReleaseScene(whole.scene);
+  rtcReleaseScene(opened.scene);
   rtcReleaseScene(tubes);
   rtcReleaseDevice(device);
 }
@@ -112,7 +139,7 @@ void RayScene::Embree::attach(RTCScene scene, RTCGeometry geometry) {
   rtcReleaseGeometry(geometry);
 }
 
-void RayScene::Embree::add_solid(const DrawItem& item) {
+void RayScene::Embree::add_solid(const DrawItem& item, Solids& solids) {
   SWARF_CHECK(item.mesh != nullptr, "a draw item without a mesh");
   const TriMesh& mesh = *item.mesh;
   if (mesh.triangles.empty()) return;
@@ -121,15 +148,15 @@ void RayScene::Embree::add_solid(const DrawItem& item) {
       geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh.positions.size()));
   for (const auto& p : mesh.positions) {
     const Vec3f world = (item.X_world * Vec3(p[0], p[1], p[2])).cast<float>();
-    solid_bounds.add(world, 0.0F);
+    solids.bounds.add(world, 0.0F);
     positions = std::copy_n(world.data(), 3, positions);
   }
   auto* indices = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(
       geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t), mesh.triangles.size()));
   for (const auto& t : mesh.triangles) indices = std::copy_n(t.data(), 3, indices);
-  attach(solids, geometry);
-  solid_data.push_back({&mesh, item.material, item.X_world.linear().cast<float>(), mesh.normals, mesh.colours,
-                        mesh.triangles});
+  attach(solids.scene, geometry);
+  solids.data.push_back({&mesh, item.material, item.X_world.linear().cast<float>(), mesh.normals,
+                         mesh.colours, mesh.triangles});
 }
 
 void RayScene::Embree::add_tube(const DrawLine& line, const Vec3& eye, double radius_per_mm) {
@@ -151,18 +178,25 @@ void RayScene::Embree::add_tube(const DrawLine& line, const Vec3& eye, double ra
   tube_colours.push_back(to_eigen(line.colour, 1.0F));
 }
 
-Hit RayScene::Embree::solid_hit(const RTCHit& hit) const {
-  const Solid& solid = solid_data[hit.geomID];
+namespace {
+
+Vec3f normal_of(const RTCHit& hit) {
+  return Vec3f(hit.Ng_x, hit.Ng_y, hit.Ng_z).normalized();
+}
+
+/// Material, colour and the vertices' normal at a hit.
+Hit shading_of(const RTCHit& hit, const std::vector<Solid>& solids) {
+  const Solid& solid = solids[hit.geomID];
   const auto& t = solid.triangles[hit.primID];
   const std::array<float, 3> weight{1.0F - hit.u - hit.v, hit.u, hit.v};
   Hit out;
   out.metalness = solid.material.metalness;
   out.roughness = solid.material.roughness;
-  out.normal = out.face_normal;
+  out.face_normal = out.normal = normal_of(hit);
   if (!solid.normals.empty()) {
     Vec3f n = Vec3f::Zero();
     for (size_t k = 0; k < 3; ++k) n += weight[k] * to_eigen(solid.normals[t[k]]);
-    out.normal = solid.rotation * n;
+    if (n.squaredNorm() > 0.0F) out.normal = (solid.rotation * n).normalized();
   }
   out.colour = to_eigen(solid.material.colour, 1.0F);
   if (!solid.colours.empty()) {
@@ -172,65 +206,103 @@ Hit RayScene::Embree::solid_hit(const RTCHit& hit) const {
   return out;
 }
 
+bool found(const RTCRayHit& ray) {
+  return ray.hit.geomID != RTC_INVALID_GEOMETRY_ID;
+}
+
+void trace(RTCScene scene, RTCRayHit& ray) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(scene, &context, &ray);
+}
+
+}  // namespace
+
+/// What is nearer than ray.tfar behind the section: the first surface there, or the face of the cut where the
+/// first surface is met from within, so that the ray has entered the body through the plane.
+void RayScene::Embree::look_inside(RTCRayHit& ray, std::optional<Hit>& hit) const {
+  const Vec3f origin(ray.ray.org_x, ray.ray.org_y, ray.ray.org_z);
+  const Vec3f direction(ray.ray.dir_x, ray.ray.dir_y, ray.ray.dir_z);
+  if (opened.bounds.missed_by(origin, direction)) return;
+  const Kept kept = kept_part(*section, origin, direction);
+  if (kept.from >= std::min(kept.to, ray.ray.tfar)) return;
+  RTCRayHit inside = make_ray(origin, direction);
+  inside.ray.tnear = kept.from;
+  // A body that ends behind what hides it is cut by the plane before.
+  inside.ray.tfar = kept.through_plane ? kept.to : std::min(kept.to, ray.ray.tfar);
+  trace(opened.scene, inside);
+  if (!found(inside)) return;
+  if (kept.through_plane && normal_of(inside.hit).dot(direction) > 0.0F) {
+    const Vec3f normal = section->normal.cast<float>();
+    ray.ray.tfar = kept.from;
+    hit = Hit{{}, normal, normal, to_eigen(kCutFace, 1.0F)};
+    hit->drawn = true;
+  } else if (inside.ray.tfar < ray.ray.tfar) {
+    ray.ray.tfar = inside.ray.tfar;
+    hit = shading_of(inside.hit, opened.data);
+  }
+}
+
 RayScene::RayScene(const DrawList& list, double tube_radius_per_mm) : embree_(std::make_unique<Embree>()) {
-  for (const DrawItem& item : list.items) embree_->add_solid(item);
+  embree_->section = list.section;
+  for (const DrawItem& item : list.items)
+    embree_->add_solid(item, list.section && item.sectioned ? embree_->opened : embree_->whole);
   for (const DrawLine& line : list.lines) embree_->add_tube(line, list.camera.eye, tube_radius_per_mm);
-  rtcCommitScene(embree_->solids);
-  rtcCommitScene(embree_->tubes);
+  for (RTCScene scene : {embree_->whole.scene, embree_->opened.scene, embree_->tubes}) rtcCommitScene(scene);
 }
 
 RayScene::~RayScene() = default;
 
 std::optional<Hit> RayScene::nearest(const Vec3f& origin, const Vec3f& direction, bool with_lines) const {
-  RTCIntersectContext context;
   RTCRayHit ray = make_ray(origin, direction);
-  if (!embree_->solid_bounds.missed_by(origin, direction)) {
-    rtcInitIntersectContext(&context);
-    rtcIntersect1(embree_->solids, &context, &ray);
+  std::optional<Hit> out;
+  if (!embree_->whole.bounds.missed_by(origin, direction)) {
+    trace(embree_->whole.scene, ray);
+    if (found(ray)) out = shading_of(ray.hit, embree_->whole.data);
   }
-  const float solid_distance = ray.ray.tfar;
-  const RTCHit solid = ray.hit;
-  bool line = false;
+  if (embree_->section) embree_->look_inside(ray, out);
   if (with_lines && !embree_->tube_bounds.missed_by(origin, direction)) {
-    rtcInitIntersectContext(&context);
-    rtcIntersect1(embree_->tubes, &context, &ray);
-    line = ray.ray.tfar < solid_distance;
+    const float solid_distance = ray.ray.tfar;
+    trace(embree_->tubes, ray);
+    if (ray.ray.tfar < solid_distance) {
+      out = Hit{{}, normal_of(ray.hit), normal_of(ray.hit), embree_->tube_colours[ray.hit.geomID]};
+      out->drawn = true;
+    }
   }
-  const RTCHit& hit = line ? ray.hit : solid;
-  if (hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
-  Hit out;
-  if (line) {
-    out.line = true;
-    out.colour = embree_->tube_colours[hit.geomID];
-  } else {
-    out = embree_->solid_hit(hit);
-  }
-  out.position = origin + ray.ray.tfar * direction;
-  out.face_normal = Vec3f(hit.Ng_x, hit.Ng_y, hit.Ng_z).normalized();
-  if (out.face_normal.dot(direction) > 0.0F) out.face_normal = -out.face_normal;
-  const bool interpolated = !line && !embree_->solid_data[hit.geomID].normals.empty();
-  out.normal = interpolated && out.normal.squaredNorm() > 0.0F ? out.normal.normalized() : out.face_normal;
-  if (out.normal.dot(out.face_normal) < 0.0F) out.normal = -out.normal;
+  if (!out) return out;
+  out->position = origin + ray.ray.tfar * direction;
+  if (out->face_normal.dot(direction) > 0.0F) out->face_normal = -out->face_normal;
+  if (out->normal.dot(out->face_normal) < 0.0F) out->normal = -out->normal;
   return out;
 }
 
 bool RayScene::occluded(const Vec3f& origin, const Vec3f& direction) const {
-  if (embree_->solid_bounds.missed_by(origin, direction)) return false;
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  RTCRay ray = make_ray(origin, direction).ray;
-  rtcOccluded1(embree_->solids, &context, &ray);
-  return ray.tfar < 0.0F;  // Embree's mark for "something is in the way"
+  const auto meets = [&](const Solids& solids, const Kept& part) {
+    if (part.from >= part.to || solids.bounds.missed_by(origin, direction)) return false;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    RTCRay ray = make_ray(origin, direction).ray;
+    ray.tnear = part.from;
+    ray.tfar = part.to;
+    rtcOccluded1(solids.scene, &context, &ray);
+    return ray.tfar < 0.0F;  // Embree's mark for "something is in the way"
+  };
+  if (meets(embree_->whole, {})) return true;
+  return embree_->section && meets(embree_->opened, kept_part(*embree_->section, origin, direction));
 }
 
 float RayScene::offset() const {
-  return embree_->solid_data.empty()
-             ? 0.0F
-             : kOffsetShare * (embree_->solid_bounds.upper - embree_->solid_bounds.lower).norm();
+  Bounds all = embree_->whole.bounds;
+  if (embree_->opened.bounds.lower.x() <= embree_->opened.bounds.upper.x()) {
+    all.add(embree_->opened.bounds.lower, 0.0F);
+    all.add(embree_->opened.bounds.upper, 0.0F);
+  }
+  return all.lower.x() <= all.upper.x() ? kOffsetShare * (all.upper - all.lower).norm() : 0.0F;
 }
 
 float RayScene::lowest_z() const {
-  return embree_->solid_data.empty() ? 0.0F : embree_->solid_bounds.lower.z();
+  const float lowest = std::min(embree_->whole.bounds.lower.z(), embree_->opened.bounds.lower.z());
+  return std::isfinite(lowest) ? lowest : 0.0F;
 }
 
 }  // namespace swarf::render

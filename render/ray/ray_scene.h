@@ -16,7 +16,7 @@ struct Hit {
   Vec3f normal;       ///< unit, interpolated from the vertices, on the same side
   Vec3f colour;       ///< linear
   float metalness = 0.0F, roughness = 1.0F;
-  bool line = false;  ///< a tube of a DrawLine
+  bool drawn = false;  ///< a tube of a DrawLine or the face of a section: its own colour, without shadows
 };
 
 /// Geometry is copied; the list need not outlive the scene.

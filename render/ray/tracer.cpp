@@ -36,8 +36,8 @@ Seen Tracer::look(const Vec3f& origin, const Vec3f& direction, const Vec3f& back
                   Sampler& sampler) const {
   Seen seen;
   if (const auto hit = scene_.nearest(origin, direction, true)) {
-    if (!hit->line) return solid(*hit, direction, with_shared, sampler);
-    seen.light = tube(*hit);
+    if (!hit->drawn) return solid(*hit, direction, with_shared, sampler);
+    seen.light = drawn(*hit);
     return seen;
   }
   const float height = origin.z() - floor_z_;
@@ -67,7 +67,7 @@ Seen Tracer::floor(const Vec3f& point, const Vec3f& backdrop, bool with_shared, 
   return seen;
 }
 
-Vec3f Tracer::tube(const Hit& hit) const {
+Vec3f Tracer::drawn(const Hit& hit) const {
   const float facing = 0.5F + 0.5F * hit.normal.dot(studio_.key_axis());
   return (kLineGlow + (1.0F - kLineGlow) * facing) * hit.colour;
 }

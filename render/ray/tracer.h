@@ -31,7 +31,7 @@ class Tracer {
 
  private:
   Seen solid(const Hit& hit, const Vec3f& direction, bool with_shared, Sampler& sampler) const;
-  Vec3f tube(const Hit& hit) const;
+  Vec3f drawn(const Hit& hit) const;
   Seen floor(const Vec3f& point, const Vec3f& backdrop, bool with_shared, Sampler& sampler) const;
   Vec3f key_light(const Hit& hit, const Reflection& reflection, const Eigen::Matrix3f& frame,
                   const Vec3f& out, Sampler& sampler) const;

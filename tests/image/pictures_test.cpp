@@ -52,6 +52,7 @@ INSTANTIATE_TEST_SUITE_P(Stills, DomePictures, testing::Values("machine", "part"
 
 struct LaterStill {
   const char *scene, *kind, *camera;
+  const char* section = "";
 };
 
 class LaterPictures : public testing::TestWithParam<LaterStill> {};
@@ -60,22 +61,74 @@ TEST_P(LaterPictures, LookLikeTheReference) {
   const LaterStill& still = GetParam();
   const SceneRun& job = scene_run(still.scene, "--no-render");
   ASSERT_EQ(job.run.exit_code, still.scene == std::string("exact_gouges") ? 1 : 0) << job.run.output;
-  const std::string name = fmt::format("{}_{}.png", still.scene, still.kind);
-  const ProgramRun run =
-      run_swarf(fmt::format("render {} --still {} --kind {} --camera {} --size 480 270 --samples 4",
-                            job.folder.string(), (job.folder / name).string(), still.kind, still.camera));
+  const std::string section = still.section;
+  const std::string name =
+      fmt::format("{}_{}{}.png", still.scene, still.kind, section.empty() ? "" : "_section");
+  const ProgramRun run = run_swarf(fmt::format(
+      "render {} --still {} --kind {} --camera {} --size 480 270 --samples 4 {}", job.folder.string(),
+      (job.folder / name).string(), still.kind, still.camera, section.empty() ? "" : "--section " + section));
   ASSERT_EQ(run.exit_code, 0) << run.output;
   expect_like_reference(render::load_png((job.folder / name).string()), name);
 }
 
-INSTANTIATE_TEST_SUITE_P(Stills, LaterPictures,
-                         testing::Values(LaterStill{"nc_pocket", "part", "iso"},
-                                         LaterStill{"nc_pocket", "machine", "machine"},
-                                         LaterStill{"exact_gouges", "deviation", "top"},
-                                         LaterStill{"exact_gouges", "fan", "left"}),
-                         [](const auto& info) {
-                           return fmt::format("{}_{}", info.param.scene, info.param.kind);
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Stills, LaterPictures,
+    testing::Values(LaterStill{"nc_pocket", "part", "iso"}, LaterStill{"nc_pocket", "machine", "machine"},
+                    LaterStill{"exact_gouges", "deviation", "top"}, LaterStill{"exact_gouges", "fan", "left"},
+                    LaterStill{"nc_pocket", "part", "iso", "y=12"},
+                    LaterStill{"exact_gouges", "deviation", "0.4,-1,0.6", "y=0"}),
+    [](const auto& info) {
+      const bool opened = *info.param.section != 0;
+      return fmt::format("{}_{}{}", info.param.scene, info.param.kind, opened ? "_section" : "");
+    });
+
+/// Stills of a finished run that show nothing, and what is said of them.
+TEST(SectionStill, WhatCannotBeSeenIsToldWithWhatCan) {
+  const SceneRun& job = scene_run("exact_gouges", "--no-render");
+  const fs::path file = job.folder / "none.png";
+  const auto refused = [&](const std::string& options, const std::string& code, const std::string& fix) {
+    const ProgramRun run = run_swarf(
+        fmt::format("render {} --size 64 64 --still {} {}", job.folder.string(), file.string(), options));
+    EXPECT_EQ(run.exit_code, 2) << options << run.output;
+    EXPECT_NE(run.output.find("[" + code + "]"), std::string::npos) << options << run.output;
+    EXPECT_NE(run.output.find(fix), std::string::npos) << options << run.output;
+    EXPECT_FALSE(fs::exists(file)) << options;
+  };
+  refused("--section x=10", "section-misses", "the part reaches x from -10 to 10 mm");
+  refused("--section 0,0,500,1,1,1", "section-misses", "along the normal");
+  refused("--section u=1", "bad-section", "x=12.5");
+  refused("--section x=nan", "bad-section", "x=12.5");
+  refused("--section x=0 --camera front", "section-edge-on", "straight on");
+  refused("--section x=0 --kind machine", "section-of-part", "part or deviation");
+  refused("--section x=0 --finding 1", "nothing-to-do", "--section x=10 --still");
+}
+
+/// The scene's own pictures are what `swarf render` makes of the run.
+TEST(StillShots, AreThoseOfTheFlags) {
+  const fs::path folder = fresh_folder("pictures_shots") / "run";
+  const std::string small = "'stills.size=[320,180]' --set stills.samples=1 --set movie.seconds=0";
+  const ProgramRun run = run_swarf("run " SWARF_SOURCE_DIR
+                                   "/scenes/exact_gouges/scene.toml --set 'stills.kinds=[\"part\"]' --set "
+                                   "stills.labels=false --set stills.transparent=true --set "
+                                   "'stills.shot=[{kind=\"deviation\",section=\"y=0\"}]' "
+                                   "--set " +
+                                   small + " -o " + folder.string());
+  ASSERT_EQ(run.exit_code, 1) << run.output;
+  const auto again = [&](const std::string& options) {
+    const fs::path file = folder / "again.png";
+    const ProgramRun made =
+        run_swarf(fmt::format("render {} --still {} {}", folder.string(), file.string(), options));
+    EXPECT_EQ(made.exit_code, 0) << made.output;
+    return read_text(file);
+  };
+  const std::string part = read_text(folder / "still_part.png"), cut = read_text(folder / "still_shot_1.png");
+  EXPECT_EQ(render::load_png((folder / "still_part.png").string()).rgba[3], 0) << "transparent";
+  EXPECT_EQ(again(""), part);
+  EXPECT_NE(again("--labels"), part);
+  EXPECT_NE(again("--no-transparent"), part);
+  EXPECT_EQ(again("--kind deviation --section y=0"), cut);
+  EXPECT_NE(again("--kind deviation --section y=0 --labels"), cut);
+}
 
 TEST(MoviePictures, AThirdAndTheEndLookLikeTheReference) {
   const SceneRun& job = scene_run("nc_pocket", "--no-render");

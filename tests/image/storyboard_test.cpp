@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "image/movie_frames.h"
@@ -96,6 +97,75 @@ TEST(TransparentStill, HasNothingBehindThePart) {
   const Image image = render::load_png(file.string());
   EXPECT_EQ(image.rgba[3], 0);
   EXPECT_EQ(image.rgba[static_cast<size_t>(4 * (90 * 320 + 160) + 3)], 255);
+}
+
+/// Of the strip along the upper edge: pixels of a red plate, and how red they are.
+struct RedPlate {
+  int pixels = 0;
+  double mean = 0.0;
+};
+RedPlate red_plate(const Image& image) {
+  RedPlate plate;
+  for (int y = 0; y < image.height / 5; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const uint8_t* p = &image.rgba[static_cast<size_t>(4 * (y * image.width + x))];
+      if (p[0] < 70 || p[0] < 2 * std::max(p[1], p[2])) continue;
+      ++plate.pixels;
+      plate.mean += p[0];
+    }
+  }
+  plate.mean /= std::max(plate.pixels, 1);
+  return plate;
+}
+
+TEST(MovieFindings, FlashFromTheirMomentOn) {
+  const fs::path file = gouges().folder / "flash.mp4";
+  // The first gouge is at 47.558 s, frame 7 of 30; a plate is bright for half a second and dim for the next.
+  const ProgramRun made = render_gouges("--seconds 1 --from 47 --to 49.4 --movie " + file.string());
+  ASSERT_EQ(made.exit_code, 0) << made.output;
+  const std::vector<Image> frames = movie_frames(file.string());
+  ASSERT_EQ(frames.size(), 30U);
+  const RedPlate before = red_plate(frames[4]), bright = red_plate(frames[11]), dim = red_plate(frames[19]);
+  EXPECT_LT(before.pixels, 50);
+  EXPECT_GT(bright.pixels, 2000);
+  EXPECT_GT(dim.pixels, 2000);
+  EXPECT_GT(bright.mean, dim.mean + 40.0);
+  expect_like_reference(frames[11], "finding_bright.png");
+  expect_like_reference(frames[19], "finding_dim.png");
+}
+
+/// Two hours of roughing in twenty seconds, of feed moves alone: at a frame a second. The tool is at work in
+/// each of them.
+TEST(MovieOfTwoHours, ShowsTheToolAtWork) {
+  const fs::path folder = fresh_folder("storyboard_coremill") / "run";
+  const ProgramRun run =
+      run_swarf("run " SWARF_SOURCE_DIR
+                "/scenes/cl_coremill/scene.toml --set 'stills.kinds=[]' --set stock.voxel_mm=4 "
+                "--set movie.voxel_mm=4 --set movie.seconds=20 --set movie.fps=1 --set movie.overlay=false "
+                "--set 'movie.size=[320,180]' --set "
+                "'movie.speed=\"cutting\"' -o " +
+                folder.string());
+  ASSERT_EQ(run.exit_code, 0) << run.output;
+  const std::vector<Image> frames = movie_frames((folder / "movie.mp4").string());
+  ASSERT_EQ(frames.size(), 20U);
+  expect_like_reference(frames[2], "coremill_2.png");
+  expect_like_reference(frames[11], "coremill_11.png");
+  expect_like_reference(frames[19], "coremill_19.png");
+}
+
+/// Its work travels far on a machine many times its size: the camera goes with it and the tool, which waits
+/// at home above the picture, is spoken of.
+TEST(MovieOfASmallPart, FillsThePictureAndSaysWhereTheToolIs) {
+  const fs::path folder = fresh_folder("storyboard_opener") / "run";
+  const ProgramRun run = run_swarf("run " SWARF_SOURCE_DIR
+                                   "/scenes/spinner_bottle_opener/scene.toml --set 'stills.kinds=[]' --set "
+                                   "movie.seconds=0.4 --set movie.fps=10 --set 'movie.size=[480,270]' -o " +
+                                   folder.string());
+  ASSERT_EQ(run.exit_code, 0) << run.output;
+  const std::vector<Image> frames = movie_frames((folder / "movie.mp4").string());
+  ASSERT_EQ(frames.size(), 4U);
+  expect_like_reference(frames[1], "opener_1.png");
+  expect_like_reference(frames[3], "opener_3.png");
 }
 
 /// A number of the PNG format, most significant byte first.

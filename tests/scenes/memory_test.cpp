@@ -1,4 +1,5 @@
 // Memory on the shipped program: predicted within 15 % of the real peak, and refused when it is too much.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -84,6 +85,29 @@ TEST(MemoryLimit, IsRefusedWithAVoxelThatFits) {
   const std::string fitting = std::to_string(std::stod(refused.output.substr(at + 11)));
   const auto accepted = run_swarf("run " + kScene + " --set stock.voxel_mm=" + fitting + options);
   EXPECT_EQ(accepted.exit_code, 0) << accepted.output;
+  fs::remove_all(out.parent_path());
+}
+
+/// Where a picture takes it all, no voxel is named that would not help, but a size that fits.
+TEST(MemoryLimit, OfALargeStillNamesASizeThatFits) {
+  const fs::path out = swarf::test::fresh_folder("memory_still") / "run";
+  const auto run_with = [&](int width, int height) {
+    return run_swarf(
+        "run " SWARF_SOURCE_DIR
+        "/scenes/exact_gouges/scene.toml --set 'stills.kinds=[\"part\"]' --set stills.samples=1 " +
+        fmt::format("--set 'stills.size=[{},{}]' --max-memory 420 -o {}", width, height, out.string()));
+  };
+  const auto refused = run_with(2560, 1440);
+  EXPECT_EQ(refused.exit_code, 2) << refused.output;
+  EXPECT_NE(refused.output.find("[out-of-memory]"), std::string::npos) << refused.output;
+  EXPECT_FALSE(fs::exists(out));
+  const std::string named = "fix: stills.size = [2560, 1440] is too large: ";
+  const size_t at = refused.output.find(named);
+  ASSERT_NE(at, std::string::npos) << refused.output;
+  int width = 0, height = 0;
+  ASSERT_EQ(std::sscanf(refused.output.c_str() + at + named.size(), "[%d, %d] fits", &width, &height), 2);
+  const auto accepted = run_with(width, height);
+  EXPECT_EQ(accepted.exit_code, 1) << "the gouges: " << accepted.output;
   fs::remove_all(out.parent_path());
 }
 

@@ -25,17 +25,6 @@ Kind read_kind(ConfigTable& table, const char* key, const std::vector<std::strin
   return now;
 }
 
-/// Point and normal, work frame.
-void read_section(ConfigTable& table, MovieShot& shot) {
-  if (!table.has("section_mm")) return;
-  const std::vector<Vec3> rows = table.points("section_mm");
-  if (rows.size() == 2 && rows[1].norm() > 0.0)
-    shot.section = {rows[0], rows[1].normalized()};
-  else if (!rows.empty())
-    table.error("bad-section", "section_mm", "'section_mm' is no plane",
-                "write [[x, y, z], [nx, ny, nz]]: a point of the plane, and where it points to is cut away");
-}
-
 void read_places(ConfigTable& table, MovieShot& shot) {
   const auto line = [&](const char* key, std::optional<int>& value) {
     if (table.has(key)) value = table.integer(key, 1, 2000000000);
@@ -59,18 +48,13 @@ void read_places(ConfigTable& table, MovieShot& shot) {
 MovieShot read_shot(ConfigTable& table, MovieShot shot) {
   shot.where = table.where();
   shot.view = read_kind(table, "view", {"machine", "part", "split"}, shot.view);
-  if (table.has("camera")) {
-    shot.camera = table.text("camera");
-    if (!shot.camera.empty() && !camera_named(shot.camera))
-      table.error("unknown-camera", "camera", fmt::format("there is no camera '{}'", shot.camera),
-                  fmt::format("one of {}, or a direction x,y,z from the subject to the eye", camera_names()));
-  }
+  shot.camera = read_camera(table, shot.camera);
   shot.orbit_deg = table.number("orbit_deg", {-3600.0, 3600.0}, shot.orbit_deg);
   shot.follow = read_kind(table, "follow", {"nothing", "work", "tool"}, shot.follow);
   if (table.has("width_mm")) shot.width_mm = table.number("width_mm", kAboveZero);
   shot.speed = read_kind(table, "speed", {"time", "block", "cutting"}, shot.speed);
   shot.trail_s = table.number("trail_s", kZeroOrMore, shot.trail_s);
-  read_section(table, shot);
+  if (const auto section = read_section(table)) shot.section = section;
   return shot;
 }
 
@@ -94,6 +78,15 @@ std::string camera_names() {
   std::string names;
   for (const auto& [known, direction] : cameras()) names += (names.empty() ? "" : ", ") + known;
   return names;
+}
+
+std::string read_camera(ConfigTable& table, const std::string& now) {
+  if (!table.has("camera")) return now;
+  const std::string camera = table.text("camera");
+  if (!camera.empty() && !camera_named(camera))
+    table.error("unknown-camera", "camera", fmt::format("there is no camera '{}'", camera),
+                fmt::format("one of {}, or a direction x,y,z from the subject to the eye", camera_names()));
+  return camera;
 }
 
 std::array<int, 2> read_picture_size(ConfigTable& table) {

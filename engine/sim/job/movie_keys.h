@@ -4,11 +4,11 @@
 #include <array>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "base/config.h"
 #include "base/frames.h"
+#include "sim/job/section_keys.h"
 
 namespace swarf::sim {
 
@@ -33,8 +33,7 @@ struct MovieShot {
   double orbit_deg = 0.0;  ///< that the camera turns about the vertical from the shot's start to its end
   MovieFollow follow = MovieFollow::kNothing;
   double width_mm = 0.0;  ///< across the picture; 0: as much as must be seen
-  /// The half of the drawing on its side that this points to is taken away; a point of the plane, work frame.
-  std::optional<std::pair<Vec3, Vec3>> section;  ///< point and outward normal
+  std::optional<SectionPlane> section;
   MovieSpeed speed = MovieSpeed::kTime;
   std::optional<double> from_s, to_s;
   std::optional<int> from_line, to_line;
@@ -62,6 +61,9 @@ inline constexpr double kToolShare = 0.4;
 std::optional<Vec3> camera_named(const std::string& name);
 /// Names that camera_named() knows, in one line.
 std::string camera_names();
+
+/// `camera`: a name or a direction; `now` where the key is not there.
+std::string read_camera(ConfigTable& table, const std::string& now);
 
 /// Of a table that is not there the defaults.
 MovieSettings read_movie(ConfigTable table);

@@ -26,6 +26,7 @@
 #include "sim/job/post_keys.h"
 #include "sim/job/report_keys.h"
 #include "sim/job/setup_keys.h"
+#include "sim/job/still_keys.h"
 #include "sim/job/stock_keys.h"
 #include "surface/face.h"
 #include "surface/under_facets.h"
@@ -71,15 +72,6 @@ struct AcceptLimits {
   /// Band of the share within tolerance and of the colour scale where the scene gives no limit, um.
   double scallop_band_um() const { return scallop_max_um.value_or(10.0); }
   double gouge_band_um() const { return gouge_max_um.value_or(1.0); }
-};
-
-/// The stills that a run makes, by the names of `swarf render --kind`.
-inline const std::vector<std::string> kStillKinds{"machine", "part", "deviation", "fan"};
-
-struct StillSettings {
-  std::vector<std::string> kinds = kStillKinds;
-  std::array<int, 2> size{1280, 720};
-  int samples = 16;  ///< rays per pixel: more is smoother and slower
 };
 
 /// Whether each control cycle is written, and how (sim/run/recorder.h).

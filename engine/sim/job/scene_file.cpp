@@ -120,10 +120,7 @@ void read_interpolator(ConfigTable table, Scene& scene) {
 
 void read_pictures(ConfigTable& root, Scene& scene) {
   scene.movie = read_movie(root.table("movie"));
-  ConfigTable stills = root.table("stills");
-  scene.stills.size = read_picture_size(stills);
-  scene.stills.kinds = stills.choices("kinds", kStillKinds, kStillKinds);
-  scene.stills.samples = stills.integer("samples", 1, 4096, scene.stills.samples);
+  scene.stills = read_stills(root.table("stills"));
 }
 
 OutputSettings read_output(ConfigTable table) {

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <variant>
@@ -138,18 +140,24 @@ double longest_comparison(const Job& job, const MeasuredPath& path) {
   return seconds / options.period_s;
 }
 
+double pixels_of(const std::array<int, 2>& size) {
+  return static_cast<double>(size[0]) * size[1];
+}
+
+double still_bytes(const StillSettings& stills) {
+  if (!stills.any()) return kStills;
+  return kStills + kStillPixel * std::max(0.0, pixels_of(stills.size) - kUsualPixels);
+}
+
+double movie_bytes(const MovieSettings& movie) {
+  if (movie.seconds <= 0.0) return 0.0;
+  return kMovie + kMoviePixel * std::max(0.0, pixels_of(movie.size) - kUsualPixels) +
+         kMovieSample * (movie.samples - 1) * pixels_of(movie.size);
+}
+
 /// What the pictures take, whose meshes are counted elsewhere. They are made one after the other.
 double pictures_bytes(const Scene& scene) {
-  const auto pixels = [](const std::array<int, 2>& size) { return static_cast<double>(size[0]) * size[1]; };
-  const auto larger = [&](const std::array<int, 2>& size) {
-    return std::max(0.0, pixels(size) - kUsualPixels);
-  };
-  double stills = kStills;
-  if (!scene.stills.kinds.empty()) stills += kStillPixel * larger(scene.stills.size);
-  const MovieSettings& shown = scene.movie;
-  if (shown.seconds <= 0.0) return stills;
-  return std::max(stills, kMovie + kMoviePixel * larger(shown.size) +
-                              kMovieSample * (shown.samples - 1) * pixels(shown.size));
+  return std::max(still_bytes(scene.stills), movie_bytes(scene.movie));
 }
 
 /// A voxel, to two digits, at which what grows with 1/voxel^2 fits beside the rest.
@@ -204,8 +212,38 @@ MemoryPrediction predict_memory(const Job& job, const MeasuredPath& path, const 
   const double mesh = outputs.page || outputs.pictures ? counts.triangles * kTriangle : 0.0;
   const double meshing = held + stock + mesh + pictures;
   return {stocks * stock / kMegabyte, std::max({cutting, measuring, comparing, meshing}) / kMegabyte,
-          (stock + mesh) / kMegabyte, memory_limit_mb(job.scene)};
+          (stock + mesh) / kMegabyte, (kBase + pictures) / kMegabyte, memory_limit_mb(job.scene)};
 }
+
+namespace {
+
+/// The same picture with so few pixels that it leaves what is too much; even sides. None: too small to see.
+std::optional<std::array<int, 2>> smaller(const std::array<int, 2>& size, double bytes_of_pixel,
+                                          double too_much_mb) {
+  const double pixels = pixels_of(size);
+  const double room = pixels - too_much_mb * kMegabyte / bytes_of_pixel;
+  if (room < kUsualPixels) return {};
+  const double share = std::sqrt(room / pixels);
+  return std::array{static_cast<int>(share * size[0]) / 2 * 2, static_cast<int>(share * size[1]) / 2 * 2};
+}
+
+/// Where libraries and pictures alone exceed the limit, so that no voxel helps.
+std::string pictures_that_fit(const Scene& scene, double too_much_mb) {
+  constexpr double kMargin = 1.1;  // the prediction wavers
+  const auto named = [&](const char* key, const std::array<int, 2>& size, double bytes_of_pixel) {
+    const auto fitting = smaller(size, bytes_of_pixel, kMargin * too_much_mb);
+    return fitting ? fmt::format("{} = [{}, {}] is too large: [{}, {}] fits", key, size[0], size[1],
+                                 (*fitting)[0], (*fitting)[1])
+                   : std::string("no size of its pictures fits: give --no-render");
+  };
+  return (still_bytes(scene.stills) >= movie_bytes(scene.movie)
+              ? named("stills.size", scene.stills.size, kStillPixel)
+              : named("movie.size", scene.movie.size,
+                      kMoviePixel + kMovieSample * (scene.movie.samples - 1))) +
+         "; or raise --max-memory";
+}
+
+}  // namespace
 
 void require_memory(const Job& job, const MemoryPrediction& prediction) {
   if (prediction.peak_mb <= prediction.limit_mb) return;
@@ -213,7 +251,9 @@ void require_memory(const Job& job, const MemoryPrediction& prediction) {
       "out-of-memory", {job.scene.file},
       fmt::format("stock.voxel_mm = {:g} is expected to need {:.0f} MB, {:.0f} MB may be used",
                   job.scene.stock.voxel_mm, prediction.peak_mb, prediction.limit_mb),
-      fmt::format("voxel_mm = {:g} fits; or raise --max-memory", voxel_that_fits(job, prediction)));
+      prediction.fixed_mb < prediction.limit_mb
+          ? fmt::format("voxel_mm = {:g} fits; or raise --max-memory", voxel_that_fits(job, prediction))
+          : pictures_that_fit(job.scene, prediction.peak_mb - prediction.limit_mb));
 }
 
 }  // namespace swarf::sim

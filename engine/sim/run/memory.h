@@ -14,6 +14,7 @@ struct MemoryPrediction {
   double stock_mb = 0.0;    ///< of the level set at its greatest
   double peak_mb = 0.0;     ///< of the whole process: libraries, path, rays, meshes and pictures included
   double scaling_mb = 0.0;  ///< of what grows with 1/voxel^2: level set and its mesh
+  double fixed_mb = 0.0;    ///< of libraries and pictures, at any voxel size
   double limit_mb = 0.0;    ///< what may be used: see memory_limit_mb
 };
 

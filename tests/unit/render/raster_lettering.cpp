@@ -104,6 +104,42 @@ TEST(Lettering, TheScaleBarIsAsLongAsItSays) {
   EXPECT_THROW(draw_scale_bar(image, 0.0), InternalError);
 }
 
+/// A plate hides no place that another leads to.
+TEST(Lettering, LeadersLeaveEachOthersPlacesInSight) {
+  Image image = grey(640, 360);
+  draw_leaders(image, {{300.0, 200.0, "lowest -4.85"}, {350.0, 160.0, "highest +1.67"}}, 640.0);
+  EXPECT_GT(pixel(image, 300, 200).r, 220);
+  EXPECT_GT(pixel(image, 350, 160).r, 220);
+}
+
+TEST(Lettering, ALongLineEndsWithinThePicture) {
+  Image image = grey(320, 180);
+  draw_caption(image, {std::string(200, 'W'), "short"});
+  EXPECT_GT(changed(image, 0, 300, 0, 180), 0);
+  EXPECT_EQ(changed(image, 316, 320, 0, 180), 0);
+}
+
+TEST(Lettering, ALegendShowsEachKindInItsColour) {
+  Image image = grey(640, 360);
+  Strokes red, blue;
+  red.sample = {0.9F, 0.0F, 0.0F};
+  blue.sample = {0.0F, 0.0F, 0.9F};
+  red.words = "red";
+  blue.words = "blue";
+  red.width = blue.width = 0.3;
+  draw_legend(image, "section", {red, blue}, {"a note"});
+  int reds = 0, blues = 0;
+  for (int y = 0; y < 180; ++y)
+    for (int x = 0; x < 320; ++x) {
+      const auto p = pixel(image, x, y);
+      if (p.r > 200 && p.g < 60) ++reds;
+      if (p.b > 200 && p.g < 60) ++blues;
+    }
+  EXPECT_GT(reds, 30);
+  EXPECT_GT(blues, 30);
+  EXPECT_EQ(changed(image, 320, 640, 0, 360), 0);
+}
+
 /// Places in the corners: dots on them, plates within the picture, two of one place below one another.
 TEST(Lettering, LeadersStayInThePictureAndApart) {
   Image image = grey(640, 360);

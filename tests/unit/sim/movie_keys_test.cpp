@@ -51,7 +51,7 @@ TEST(MovieKeys, ShotsTakeWhatTheyDoNotSayFromTheMovie) {
   EXPECT_EQ(movie.shots[1].trail_s, 2.0);
   EXPECT_EQ(movie.shots[1].from_line, 4);
   EXPECT_EQ(movie.shots[1].to_s, 9.5);
-  EXPECT_TRUE(movie.shots[1].section->second.isApprox(Vec3(0, -1, 0)));
+  EXPECT_TRUE(movie.shots[1].section->normal_W.isApprox(Vec3(0, -1, 0)));
   EXPECT_EQ(movie.seconds, 3.0 + 8.0 / 2);  // an even share where a shot does not say
 }
 

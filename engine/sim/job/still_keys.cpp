@@ -1,0 +1,48 @@
+#include "sim/job/still_keys.h"
+
+#include <fmt/format.h>
+
+#include "sim/job/movie_keys.h"
+
+namespace swarf::sim {
+namespace {
+
+StillShot read_still_shot(ConfigTable& table) {
+  StillShot shot;
+  shot.where = table.where();
+  shot.kind = table.choice("kind", kStillKinds, shot.kind);
+  shot.camera = read_camera(table, shot.camera);
+  shot.section = read_section(table);
+  if (shot.section && shot.kind != "part" && shot.kind != "deviation")
+    table.error("section-of-part", "kind", fmt::format("a still of kind '{}' is not cut open", shot.kind),
+                "write kind = \"part\" or \"deviation\", or leave the section out");
+  return shot;
+}
+
+}  // namespace
+
+StillSettings read_stills(ConfigTable table) {
+  StillSettings stills;
+  stills.size = read_picture_size(table);
+  stills.kinds = table.choices("kinds", kStillKinds, kStillKinds);
+  stills.samples = table.integer("samples", 1, 4096, stills.samples);
+  if (table.has("labels")) stills.labels = table.boolean("labels");
+  stills.transparent = table.boolean("transparent", stills.transparent);
+  if (!table.has("shot")) return stills;
+  for (ConfigTable& shot : table.tables("shot")) stills.shots.push_back(read_still_shot(shot));
+  return stills;
+}
+
+void require_still_shots(const StillSettings& stills, const Box& stock_W, bool has_design) {
+  for (const StillShot& shot : stills.shots) {
+    if (shot.kind == "deviation" && !has_design)
+      throw InputError("nothing-measured", shot.where, "there is no design that the part deviates from",
+                       "name one in [design], or write kind = \"part\"");
+    if (!shot.section || divides(*shot.section, stock_W)) continue;
+    throw InputError("section-misses", shot.where,
+                     fmt::format("the section {} misses the stock", section_words(*shot.section)),
+                     fmt::format("the stock reaches {}", extent_along(*shot.section, stock_W)));
+  }
+}
+
+}  // namespace swarf::sim

@@ -1,0 +1,32 @@
+// A still that is cut open: its camera, and what is written on it.
+#pragma once
+
+#include <string>
+
+#include "mesh/tri_mesh.h"
+#include "render/draw_list.h"
+#include "reports/machine_view.h"
+#include "sim/job/section_keys.h"
+
+namespace swarf::reports {
+
+/// How a part is cut open and looked at.
+struct SectionView {
+  sim::SectionPlane plane;  ///< its normal on the side of the eye: what stands there is taken away
+  render::Camera
+      camera;  ///< of all that is kept; its target lies in the plane, so that scales are right there
+};
+
+/// `camera`: a name or a direction (camera_direction); "": straight on, from where the normal points to.
+/// Throws InputError at `where`: "section-misses" for a plane that the part does not reach, "section-edge-on"
+/// where the camera does not see the face of the cut.
+SectionView section_view(const TriMesh& part, const sim::SectionPlane& plane, const SourceLocation& where,
+                         const std::string& camera, double vertical_fov_rad, double aspect);
+
+/// The outlines of part and design in the plane, and with `labels` a legend, a scale bar, and of the
+/// measuring rays beside the plane the lowest and the highest with their values, left of `right_px`; their
+/// deviations stand on the design as lines, made longer by a factor that the legend names.
+void draw_section(const FinishedRun& run, const TriMesh& part, const SectionView& view, bool labels,
+                  double right_px, render::Image& image);
+
+}  // namespace swarf::reports
