@@ -9,7 +9,7 @@
 
 #include <cmath>
 
-#include "stock/sweep/instruction_sets.h"
+#include "base/instruction_sets.h"
 
 namespace swarf::stock {
 
