@@ -8,6 +8,16 @@
 
 namespace swarf::kinematics {
 
+/// A squared length this close to 1 is a unit vector up to rounding.
+inline constexpr double kUnitRounding = 1e-15;
+
+/// The tool axis of most poses is unit already: then nothing waits for a root and three divisions.
+inline Vec3 unit_axis(const Vec3& axis) {
+  const double squared = axis.squaredNorm();
+  if (std::abs(squared - 1.0) <= kUnitRounding) return axis;
+  return axis / std::sqrt(squared);
+}
+
 /// Sine and cosine of every rotary value, by axis index; the entries of linear axes mean nothing.
 struct Sines {
   double sine[kMaxAxes], cosine[kMaxAxes];

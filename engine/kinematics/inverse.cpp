@@ -7,6 +7,7 @@
 #include "base/diagnostics.h"
 #include "base/units.h"
 #include "kinematics/chain.h"
+#include "kinematics/lane_kernel.h"
 #include "kinematics/lane_pair.h"
 #include "kinematics/machine_model.h"
 #include "kinematics/model_check.h"
@@ -17,16 +18,6 @@ namespace {
 /// A direction that a machine with fewer than two rotary axes cannot reach differs by more than this from
 /// those that it can, rad. Wider than rounding: forward() has the last word.
 constexpr double kReachTolerance = 1e-11;
-
-/// A squared length this close to 1 is a unit vector up to rounding.
-constexpr double kUnitRounding = 1e-15;
-
-/// The tool axis of most poses is unit already: then nothing waits for a root and three divisions.
-Vec3 unit(const Vec3& axis) {
-  const double squared = axis.squaredNorm();
-  if (std::abs(squared - 1.0) <= kUnitRounding) return axis;
-  return axis / std::sqrt(squared);
-}
 
 double sense(const Axis& axis) {
   return axis.reversed ? -1.0 : 1.0;
@@ -116,20 +107,10 @@ struct InverseKinematics::Candidates {
   Pair value[2] = {};  ///< of the outer and the inner axis, unwound; 0 for those that the machine lacks
   Pair travel = {};    ///< sum of the distances to the hint
   bool outer_free[2] = {false, false};
-
-  /// Takes one of another's rotary solutions.
-  void take(int lane, const Candidates& from, int which) {
-    for (int slot = 0; slot < 2; ++slot) value[slot][lane] = from.value[slot][which];
-    outer_free[lane] = from.outer_free[which];
-  }
 };
 
 struct InverseKinematics::Targets {
   Vec3 tip_M[2], axis_M[2];
-};
-
-struct InverseKinematics::PairSines {
-  Pair sine[2], cosine[2];  ///< of the outer and the inner axis, as Candidates::value
 };
 
 void InverseKinematics::set_target(const Vec3& tip_W, const Vec3& axis_W, int lane, Targets& targets) const {
@@ -138,18 +119,6 @@ void InverseKinematics::set_target(const Vec3& tip_W, const Vec3& axis_W, int la
 }
 
 namespace {
-
-/// The values by whole turns nearest to the hint, or one turn from there where only that is inside the
-/// travel.
-Pair unwound(const Pair& turn, const Pair& hint, const Pair& least, const Pair& most) {
-  // Adding and taking away 1.5 * 2^52 leaves the nearest whole number, without a call and without a branch.
-  constexpr double kWhole = 6755399441055744.0;
-  const Pair turns_away = (hint - turn) * (1.0 / kTurn);
-  const Pair value = turn + kTurn * ((turns_away + kWhole) - kWhole);
-  const Pair other = value < least ? value + kTurn : value - kTurn;
-  const Pair inside = (other >= least) & (other <= most) ? other : value;
-  return (value >= least) & (value <= most) ? value : inside;
-}
 
 Pair distance(const Pair& a, const Pair& b) {
   const Pair change = a - b;
@@ -170,7 +139,7 @@ int InverseKinematics::candidates(const Vec3& axis_W, const AxisValues& hint, Ca
     const Pair before = both(hint[rotary_[slot]]);
     const Pair turn = slot == 0 ? Pair{found[0].outer, found[1].outer} : Pair{found[0].inner, found[1].inner};
     out.value[slot] =
-        unwound(rotary_sense_[slot] * turn, before, both(rotary_min_[slot]), both(rotary_max_[slot]));
+        LaneKernel::unwound<Pair>(rotary_sense_[slot] * turn, before, rotary_min_[slot], rotary_max_[slot]);
     // The free rotary stays where it is: its value does not matter to the tool axis, but it moves the tip.
     if (slot == 0 && found[0].outer_free) out.value[slot] = before;
     out.travel += distance(out.value[slot], before);
@@ -180,22 +149,12 @@ int InverseKinematics::candidates(const Vec3& axis_W, const AxisValues& hint, Ca
 
 namespace {
 
-inline const Vec3& same_for(const Vec3& origin, const Vec3&) {
-  return origin;
-}
-inline Points same_for(const Vec3& origin, const Points&) {
-  return both(origin);
-}
-
 /// Carries the work or tool point to the base; the linear axes are what is looked for.
-/// `place` is where `of` holds an axis.
-template <class Of, class Place, class Point>
-inline void walk_to_base(const std::vector<LinkStep>& steps, const Of& of, const Place& place, Point& point) {
+void walk_to_base(const std::vector<LinkStep>& steps, const Sines& of, Vec3& point) {
   for (const LinkStep& step : steps) {
     if (!step.rotary) continue;
-    const Point origin = same_for(step.origin, point);
-    point = origin + rotate(step.along, step.direction, step.sense * of.sine[place(step.axis)],
-                            of.cosine[place(step.axis)], Point(point - origin));
+    point = step.origin + rotate(step.along, step.direction, step.sense * of.sine[step.axis],
+                                 of.cosine[step.axis], Vec3(point - step.origin));
   }
 }
 
@@ -218,38 +177,11 @@ void turn_columns(const std::vector<LinkStep>& steps, const int (&column)[kMaxAx
 
 }  // namespace
 
-void InverseKinematics::locate(const Targets& targets, const PairSines& of, Points& linear_values) const {
-  if (!columns_constant_) {
-    Vec3 values[2];
-    for (int lane = 0; lane < 2; ++lane) {
-      Sines one;
-      for (const int i : rotary_) {
-        one.sine[i] = of.sine[column_[i]][lane];
-        one.cosine[i] = of.cosine[column_[i]][lane];
-      }
-      if (!locate_one(targets.tip_M[lane], one, values[lane]))
-        values[lane].setConstant(std::numeric_limits<double>::quiet_NaN());
-    }
-    linear_values = side_by_side(values[0], values[1]);
-    return;
-  }
-  Points work = side_by_side(targets.tip_M[0], targets.tip_M[1]), tool = both(machine_.tip_M);
-  const auto slot = [&](int axis) { return column_[axis]; };
-  walk_to_base(table_steps_, of, slot, work);
-  walk_to_base(head_steps_, of, slot, tool);
-  const Points gap = work - tool;
-  const auto row = [&](int i) {
-    return linear_inverse_(i, 0) * gap.x + linear_inverse_(i, 1) * gap.y + linear_inverse_(i, 2) * gap.z;
-  };
-  linear_values = {row(0), row(1), row(2)};
-}
-
 /// Of one solution alone; linear axes may ride on rotary ones.
 bool InverseKinematics::locate_one(const Vec3& tip_M, const Sines& of, Vec3& linear_values) const {
   Vec3 work = tip_M, tool = machine_.tip_M;
-  const auto itself = [](int axis) { return axis; };
-  walk_to_base(table_steps_, of, itself, work);
-  walk_to_base(head_steps_, of, itself, tool);
+  walk_to_base(table_steps_, of, work);
+  walk_to_base(head_steps_, of, tool);
   if (columns_constant_) {
     linear_values = linear_inverse_ * (work - tool);
     return true;
@@ -270,27 +202,20 @@ int InverseKinematics::first_out_of_travel(const AxisValues& q) const {
   return outside == 0 ? -1 : std::countr_zero(outside);
 }
 
-/// forward() without its last step, the turn into W, which changes no distance.
-void InverseKinematics::prove(const Targets& targets, const PairSines& of, const Points& linear_values,
-                              bool (&proven)[2]) const {
-  const Pair linear[3] = {linear_values.x, linear_values.y, linear_values.z};
-  Points tip = both(machine_.tip_M), axis = both(machine_.tool_axis_M);
-  for (const LinkStep& step : tool_to_work_) {
-    if (!step.rotary) {
-      tip = tip + (step.sense * linear[column_[step.axis]]) * both(step.direction);
-      continue;
+/// Where linear axes ride on rotary ones; not a number where they have become dependent.
+Points InverseKinematics::located_apart(const Targets& targets, const double (&sine)[4],
+                                        const double (&cosine)[4]) const {
+  Vec3 values[2];
+  for (int lane = 0; lane < 2; ++lane) {
+    Sines one;
+    for (const int i : rotary_) {
+      one.sine[i] = sine[2 * column_[i] + lane];
+      one.cosine[i] = cosine[2 * column_[i] + lane];
     }
-    const int slot = column_[step.axis];
-    const Pair sine = step.sense * of.sine[slot], cosine = of.cosine[slot];
-    const Points origin = both(step.origin);
-    tip = origin + rotate(step.along, step.direction, sine, cosine, tip - origin);
-    axis = rotate(step.along, step.direction, sine, cosine, axis);
+    if (!locate_one(targets.tip_M[lane], one, values[lane]))
+      values[lane].setConstant(std::numeric_limits<double>::quiet_NaN());
   }
-  const Pair tip_error = squared_norm(tip - side_by_side(targets.tip_M[0], targets.tip_M[1]));
-  const Pair axis_error = squared_norm(axis - side_by_side(targets.axis_M[0], targets.axis_M[1]));
-  for (int lane = 0; lane < 2; ++lane)
-    proven[lane] = tip_error[lane] <= kTipTolerance * kTipTolerance &&
-                   axis_error[lane] <= kAxisTolerance * kAxisTolerance;
+  return side_by_side(values[0], values[1]);
 }
 
 // Fills its results in place: copying them would wait for the single values to reach the cache.
@@ -300,15 +225,16 @@ void InverseKinematics::complete(const Targets& targets, const Candidates& candi
                            candidates.value[1][1]};
   double sine[4], cosine[4];
   lane_sines<4>(angle, sine, cosine);
-  PairSines of;
+  LaneSines<2> of;
   for (size_t slot = 0; slot < 2; ++slot) {
     of.sine[slot] = Pair{sine[2 * slot], sine[2 * slot + 1]};
     of.cosine[slot] = Pair{cosine[2 * slot], cosine[2 * slot + 1]};
   }
-  Points linear_values;
-  locate(targets, of, linear_values);
-  bool proven[2];
-  prove(targets, of, linear_values, proven);
+  const Points tip_M = side_by_side(targets.tip_M[0], targets.tip_M[1]);
+  const Points axis_M = side_by_side(targets.axis_M[0], targets.axis_M[1]);
+  const Points linear_values =
+      columns_constant_ ? LaneKernel::locate<2>(*this, tip_M, of) : located_apart(targets, sine, cosine);
+  const auto proven = LaneKernel::prove<2>(*this, tip_M, axis_M, of, linear_values);
   for (int lane = 0; lane < 2; ++lane) {
     Branch& one = branch[lane];
     one.q.setZero();
@@ -320,12 +246,12 @@ void InverseKinematics::complete(const Targets& targets, const Candidates& candi
     one.outcome = one.out_of_travel_axis >= 0   ? InverseOutcome::kOutOfTravel
                   : candidates.outer_free[lane] ? InverseOutcome::kSingular
                                                 : InverseOutcome::kOk;
-    if (!proven[lane]) one = Branch();
+    if (proven[lane] == 0) one = Branch();
   }
 }
 
 InverseSolutions InverseKinematics::solve(const ToolPose& pose_W, const AxisValues& hint) const {
-  const Vec3 axis_W = unit(pose_W.axis_W);
+  const Vec3 axis_W = unit_axis(pose_W.axis_W);
   Candidates found;
   InverseSolutions solutions;
   const int count = candidates(axis_W, hint, found);
@@ -344,7 +270,7 @@ InverseSolutions InverseKinematics::solve(const ToolPose& pose_W, const AxisValu
 
 // Most often the nearest alone is looked at: walking one is cheaper than two side by side.
 Branch InverseKinematics::solve_nearest(const ToolPose& pose_W, const AxisValues& hint) const {
-  const Vec3 axis_W = unit(pose_W.axis_W);
+  const Vec3 axis_W = unit_axis(pose_W.axis_W);
   Candidates found;
   const int count = candidates(axis_W, hint, found);
   Branch best;
@@ -398,35 +324,6 @@ Branch InverseKinematics::continued(const ToolPose& pose_W, const AxisValues& be
   const double first = turn_to(before, solutions.branch[0].q);
   if (solutions.count < 2) return solutions.branch[0];
   return solutions.branch[turn_to(before, solutions.branch[1].q) < first ? 1 : 0];
-}
-
-void InverseKinematics::continued(const ToolPose (&poses_W)[2], const AxisValues (&before)[2],
-                                  Branch (&found)[2]) const {
-  Candidates chosen;
-  Targets targets;
-  int counts[2];
-  for (int lane = 0; lane < 2; ++lane) {
-    const Vec3 axis_W = unit(poses_W[lane].axis_W);
-    Candidates own;
-    const int count = counts[lane] = candidates(axis_W, before[lane], own);
-    AxisValues q[2] = {AxisValues::Zero(), AxisValues::Zero()};
-    for (size_t slot = 0; slot < rotary_.size(); ++slot) {
-      q[0][rotary_[slot]] = own.value[slot][0];
-      q[1][rotary_[slot]] = own.value[slot][1];
-    }
-    const double first = turn_to(before[lane], q[0]), second = turn_to(before[lane], q[1]);
-    chosen.take(lane, own, count == 2 && second < first ? 1 : 0);
-    set_target(poses_W[lane].tip_W, axis_W, lane, targets);
-  }
-  complete(targets, chosen, found);
-  for (int lane = 0; lane < 2; ++lane) {
-    // The other branch may be proven where the nearest is not.
-    if (counts[lane] == 0 || found[lane].outcome == InverseOutcome::kUnreachable) {
-      found[lane] = continued(poses_W[lane], before[lane]);
-    } else {
-      turn_to(before[lane], found[lane].q);
-    }
-  }
 }
 
 double InverseKinematics::pole_distance(const Vec3& axis_W) const {

@@ -1,6 +1,6 @@
-// Two points side by side, and turning them: what the inverse walks both branches of a pose with, or the
-// poses of two cycles. The same operations in the same order as rotation.h, so that no bit of a result
-// depends on what stands beside it.
+// N points side by side (N = 2, 4 or 8), and turning them: what the inverse walks both branches of a pose
+// with, or the poses of some cycles. The same operations in the same order as rotation.h, so that no bit of a
+// result depends on what stands beside it.
 #pragma once
 
 #include "kinematics/lanes.h"
@@ -10,11 +10,23 @@ namespace swarf::kinematics {
 
 using Pair = lanes::Vector<2>::Numbers;
 
-/// Two points or directions.
-struct Points {
-  Pair x, y, z;
+/// Points or directions.
+template <int N>
+struct LanePoints {
+  using Numbers = typename lanes::Vector<N>::Numbers;
+  Numbers x, y, z;
 };
+/// Two.
+using Points = LanePoints<2>;
 
+template <int N>
+SWARF_KERNEL_INLINE typename lanes::Vector<N>::Numbers spread(double value) {
+  return typename lanes::Vector<N>::Numbers{} + value;
+}
+template <int N>
+SWARF_KERNEL_INLINE LanePoints<N> spread(const Vec3& point) {
+  return {spread<N>(point.x()), spread<N>(point.y()), spread<N>(point.z())};
+}
 inline Pair both(double value) {
   return Pair{value, value};
 }
@@ -24,37 +36,46 @@ inline Points both(const Vec3& point) {
 inline Points side_by_side(const Vec3& a, const Vec3& b) {
   return {Pair{a.x(), b.x()}, Pair{a.y(), b.y()}, Pair{a.z(), b.z()}};
 }
-inline Points operator-(const Points& a, const Points& b) {
+template <int N>
+SWARF_KERNEL_INLINE LanePoints<N> operator-(const LanePoints<N>& a, const LanePoints<N>& b) {
   return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
-inline Points operator+(const Points& a, const Points& b) {
+template <int N>
+SWARF_KERNEL_INLINE LanePoints<N> operator+(const LanePoints<N>& a, const LanePoints<N>& b) {
   return {a.x + b.x, a.y + b.y, a.z + b.z};
 }
-inline Points operator*(const Pair& factor, const Points& a) {
+template <int N>
+SWARF_KERNEL_INLINE LanePoints<N> operator*(const typename LanePoints<N>::Numbers& factor,
+                                            const LanePoints<N>& a) {
   return {factor * a.x, factor * a.y, factor * a.z};
 }
-inline Pair squared_norm(const Points& a) {
+template <int N>
+SWARF_KERNEL_INLINE typename LanePoints<N>::Numbers squared_norm(const LanePoints<N>& a) {
   return a.x * a.x + (a.y * a.y + a.z * a.z);
 }
 
 /// See rotate() of one vector.
-inline Points rotate(Along way, const Vec3& direction, const Pair& sine, const Pair& cosine,
-                     const Points& p) {
+template <int N>
+SWARF_KERNEL_INLINE LanePoints<N> rotate(Along way, const Vec3& direction,
+                                         const typename LanePoints<N>::Numbers& sine,
+                                         const typename LanePoints<N>::Numbers& cosine,
+                                         const LanePoints<N>& p) {
+  using Numbers = typename LanePoints<N>::Numbers;
   if (way == Along::kX) {
-    const Pair s = sine * direction.x();
+    const Numbers s = sine * direction.x();
     return {p.x, cosine * p.y - s * p.z, s * p.y + cosine * p.z};
   }
   if (way == Along::kZ) {
-    const Pair s = sine * direction.z();
+    const Numbers s = sine * direction.z();
     return {cosine * p.x - s * p.y, s * p.x + cosine * p.y, p.z};
   }
   if (way == Along::kY) {
-    const Pair s = sine * direction.y();
+    const Numbers s = sine * direction.y();
     return {cosine * p.x + s * p.z, p.y, cosine * p.z - s * p.x};
   }
-  const Points d = both(direction);
-  const Points cross{d.y * p.z - d.z * p.y, d.z * p.x - d.x * p.z, d.x * p.y - d.y * p.x};
-  const Pair along = (1.0 - cosine) * (d.x * p.x + (d.y * p.y + d.z * p.z));
+  const LanePoints<N> d = spread<N>(direction);
+  const LanePoints<N> cross{d.y * p.z - d.z * p.y, d.z * p.x - d.x * p.z, d.x * p.y - d.y * p.x};
+  const Numbers along = (1.0 - cosine) * (d.x * p.x + (d.y * p.y + d.z * p.z));
   return (cosine * p + sine * cross) + along * d;
 }
 

@@ -1,4 +1,4 @@
-// Sines, cosines and arc tangents of N numbers at once (N = 2 or 4), where N calls of the library would
+// Sines, cosines and arc tangents of N numbers at once (N = 2, 4 or 8), where N calls of the library would
 // follow each other. One code for every processor: the compiler makes vectors of what the target has.
 //
 //   x = n pi/2 + r, |r| <= pi/4   pi/2 in three parts, of 33 bits, 33 bits and the rest: n times one of
@@ -16,6 +16,8 @@
 #include <cstdint>
 #include <cstring>
 #include <numbers>
+
+#include "base/instruction_sets.h"
 
 namespace swarf::kinematics {
 
@@ -36,9 +38,14 @@ struct Vector<4> {
   using Numbers = double __attribute__((vector_size(32)));
   using Bits = int64_t __attribute__((vector_size(32)));
 };
+template <>
+struct Vector<8> {
+  using Numbers = double __attribute__((vector_size(64)));
+  using Bits = int64_t __attribute__((vector_size(64)));
+};
 
 template <typename To, typename From>
-inline To same_bits(const From& from) {
+SWARF_KERNEL_INLINE To same_bits(const From& from) {
   To to;
   static_assert(sizeof to == sizeof from);
   std::memcpy(&to, &from, sizeof to);
@@ -47,7 +54,7 @@ inline To same_bits(const From& from) {
 
 /// |r| <= pi/4. Polynomials in pairs, so that few of their steps wait for the one before.
 template <typename Numbers>
-inline void small_sines(const Numbers& r, Numbers& sine, Numbers& cosine) {
+SWARF_KERNEL_INLINE void small_sines(const Numbers& r, Numbers& sine, Numbers& cosine) {
   const Numbers s = r * r, s2 = s * s, s4 = s2 * s2;
   const Numbers odd_low = (-1.0 / 6.0 + s * (1.0 / 120.0)) + s2 * (-1.0 / 5040.0 + s * (1.0 / 362880.0));
   const Numbers odd_high = (-1.0 / 39916800.0 + s * (1.0 / 6227020800.0)) +
@@ -63,7 +70,7 @@ inline void small_sines(const Numbers& r, Numbers& sine, Numbers& cosine) {
 
 /// atan(t) for |t| <= tan(pi/8).
 template <typename Numbers>
-inline Numbers small_atan(const Numbers& t) {
+SWARF_KERNEL_INLINE Numbers small_atan(const Numbers& t) {
   const Numbers s = t * t, s2 = s * s, s4 = s2 * s2;
   const Numbers low = (-0x1.5555555555555p-2 + s * 0x1.9999999999953p-3) +
                       s2 * (-0x1.249249248d7dcp-3 + s * 0x1.c71c71c303dbbp-4);
@@ -74,12 +81,54 @@ inline Numbers small_atan(const Numbers& t) {
   return t + t * (s * (low + s4 * (middle + s4 * high)));
 }
 
+/// Adding 1.5 * 2^52 leaves the nearest whole number in the last bits of numbers below 2^51.
+inline constexpr double kWhole = 6755399441055744.0;
+
+/// |x| <= kLaneRange.
+template <int N>
+SWARF_KERNEL_INLINE void sines(const typename Vector<N>::Numbers& x, typename Vector<N>::Numbers& sine,
+                               typename Vector<N>::Numbers& cosine) {
+  using Numbers = typename Vector<N>::Numbers;
+  using Bits = typename Vector<N>::Bits;
+  constexpr double kHalfPiHigh = 0x1.921fb544p+0, kHalfPiMiddle = 0x1.0b4611a6p-34;
+  constexpr double kHalfPiLow = 0x1.3198a2e037073p-69;
+  const Numbers shifted = x * (2.0 * std::numbers::inv_pi) + kWhole;
+  const Numbers n = shifted - kWhole;
+  Numbers s, c;
+  small_sines<Numbers>(((x - n * kHalfPiHigh) - n * kHalfPiMiddle) - n * kHalfPiLow, s, c);
+  const auto quarter = same_bits<Bits>(shifted);
+  auto sine_bits = same_bits<Bits>(s), cosine_bits = same_bits<Bits>(c);
+  const Bits swap = (sine_bits ^ cosine_bits) & -(quarter & 1);
+  sine = same_bits<Numbers>(Bits((sine_bits ^ swap) ^ ((quarter & 2) << 62)));
+  cosine = same_bits<Numbers>(Bits((cosine_bits ^ swap) ^ (((quarter + 1) & 2) << 62)));
+}
+
+/// See lane_atan2().
+template <int N>
+SWARF_KERNEL_INLINE typename Vector<N>::Numbers atan2(const typename Vector<N>::Numbers& y,
+                                                      const typename Vector<N>::Numbers& along) {
+  using Numbers = typename Vector<N>::Numbers;
+  using Bits = typename Vector<N>::Bits;
+  constexpr int64_t kSign = INT64_MIN;
+  const auto y_bits = same_bits<Bits>(y);
+  const auto rise = same_bits<Numbers>(Bits(y_bits & ~kSign));
+  const auto run = same_bits<Numbers>(Bits(same_bits<Bits>(along) & ~kSign));
+  const Bits steep = rise > run;
+  const Numbers a = steep ? rise : run, b = steep ? run : rise;
+  const Bits far = b > a * (std::numbers::sqrt2 - 1.0);
+  const Numbers zero = {}, eighth = zero + 0.25 * std::numbers::pi;
+  const Numbers t = (far ? b - a : b) / (far ? b + a : a);
+  Numbers turn = (far ? eighth : zero) + small_atan<Numbers>(t);
+  turn = steep ? 0.5 * std::numbers::pi - turn : turn;
+  turn = along < zero ? std::numbers::pi - turn : turn;
+  return same_bits<Numbers>(Bits(same_bits<Bits>(turn) | (y_bits & kSign)));
+}
+
 }  // namespace lanes
 
 template <int N>
 void lane_sines(const double (&angle)[N], double (&sine)[N], double (&cosine)[N]) {
   using Numbers = typename lanes::Vector<N>::Numbers;
-  using Bits = typename lanes::Vector<N>::Bits;
   for (const double one : angle) {
     if (std::abs(one) <= kLaneRange) continue;
     for (int i = 0; i < N; ++i) {
@@ -88,44 +137,18 @@ void lane_sines(const double (&angle)[N], double (&sine)[N], double (&cosine)[N]
     }
     return;
   }
-  constexpr double kHalfPiHigh = 0x1.921fb544p+0, kHalfPiMiddle = 0x1.0b4611a6p-34;
-  constexpr double kHalfPiLow = 0x1.3198a2e037073p-69;
-  // Adding 1.5 * 2^52 leaves the nearest whole number in the last bits.
-  constexpr double kWhole = 6755399441055744.0;
-  const auto x = lanes::same_bits<Numbers>(angle);
-  const Numbers shifted = x * (2.0 * std::numbers::inv_pi) + kWhole;
-  const Numbers n = shifted - kWhole;
   Numbers s, c;
-  lanes::small_sines<Numbers>(((x - n * kHalfPiHigh) - n * kHalfPiMiddle) - n * kHalfPiLow, s, c);
-  const auto quarter = lanes::same_bits<Bits>(shifted);
-  auto sine_bits = lanes::same_bits<Bits>(s), cosine_bits = lanes::same_bits<Bits>(c);
-  const Bits swap = (sine_bits ^ cosine_bits) & -(quarter & 1);
-  sine_bits = (sine_bits ^ swap) ^ ((quarter & 2) << 62);
-  cosine_bits = (cosine_bits ^ swap) ^ (((quarter + 1) & 2) << 62);
-  std::memcpy(sine, &sine_bits, sizeof sine);
-  std::memcpy(cosine, &cosine_bits, sizeof cosine);
+  lanes::sines<N>(lanes::same_bits<Numbers>(angle), s, c);
+  std::memcpy(sine, &s, sizeof sine);
+  std::memcpy(cosine, &c, sizeof cosine);
 }
 
 /// std::atan2 of each pair; x and y are finite and not both zero. -0 counts as 0 in x.
 template <int N>
 void lane_atan2(const double (&y)[N], const double (&x)[N], double (&angle)[N]) {
   using Numbers = typename lanes::Vector<N>::Numbers;
-  using Bits = typename lanes::Vector<N>::Bits;
-  constexpr int64_t kSign = INT64_MIN;
-  const auto along = lanes::same_bits<Numbers>(x);
-  const auto y_bits = lanes::same_bits<Bits>(y);
-  const auto rise = lanes::same_bits<Numbers>(Bits(y_bits & ~kSign));
-  const auto run = lanes::same_bits<Numbers>(Bits(lanes::same_bits<Bits>(along) & ~kSign));
-  const Bits steep = rise > run;
-  const Numbers a = steep ? rise : run, b = steep ? run : rise;
-  const Bits far = b > a * (std::numbers::sqrt2 - 1.0);
-  const Numbers zero = {}, eighth = zero + 0.25 * std::numbers::pi;
-  const Numbers t = (far ? b - a : b) / (far ? b + a : a);
-  Numbers turn = (far ? eighth : zero) + lanes::small_atan<Numbers>(t);
-  turn = steep ? 0.5 * std::numbers::pi - turn : turn;
-  turn = along < zero ? std::numbers::pi - turn : turn;
-  const Bits signed_bits = lanes::same_bits<Bits>(turn) | (y_bits & kSign);
-  std::memcpy(angle, &signed_bits, sizeof angle);
+  const Numbers turn = lanes::atan2<N>(lanes::same_bits<Numbers>(y), lanes::same_bits<Numbers>(x));
+  std::memcpy(angle, &turn, sizeof angle);
 }
 
 }  // namespace swarf::kinematics

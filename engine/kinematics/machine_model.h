@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,7 +21,8 @@
 namespace swarf::kinematics {
 
 struct Sines;
-struct Points;
+template <int N>
+struct LanePoints;
 
 enum class AxisKind { kLinear, kRotary };
 enum class Side { kTable, kHead };
@@ -122,8 +124,13 @@ class InverseKinematics {
   /// The branch nearest to `before` by the turns of the rotary axes, whatever their travel: each value within
   /// half a turn of the one before.
   Branch continued(const ToolPose& pose_W, const AxisValues& before) const;
-  /// The same of two poses at once, bit for bit; takes little longer than one.
-  void continued(const ToolPose (&poses_W)[2], const AxisValues (&before)[2], Branch (&found)[2]) const;
+  /// The same of many poses, bit for bit: two, four or eight side by side, as the processor has it
+  /// (inverse_lanes.cpp).
+  void continued(std::span<const ToolPose> poses_W, std::span<const AxisValues> before,
+                 std::span<Branch> found) const;
+  /// The same along a way: what each pose follows are the values found for the one before it, or what that
+  /// one followed where it is out of reach.
+  void continued(std::span<const ToolPose> poses_W, const AxisValues& before, std::span<Branch> found) const;
   /// Angle between the tool axis and the nearest direction where the outer rotary is free, rad; infinity for
   /// a machine without such a pole (fewer than two rotary axes among them).
   double pole_distance(const Vec3& axis_W) const;
@@ -131,17 +138,17 @@ class InverseKinematics {
  private:
   struct Candidates;  ///< rotary solutions before the linear axes are known, side by side
   struct Targets;     ///< the poses to reach, in M, side by side
-  struct PairSines;   ///< of the rotary values
+  friend struct LaneKernel;
+  friend struct LaneInverse;
   void prepare_steps();
   void prepare_pair();
   int candidates(const Vec3& axis_W, const AxisValues& hint, Candidates& out) const;
   int turns(const Vec3& axis_W, TurnPair out[2]) const;
   void set_target(const Vec3& tip_W, const Vec3& axis_W, int lane, Targets& targets) const;
   void complete(const Targets& targets, const Candidates& candidates, Branch (&branch)[2]) const;
-  void locate(const Targets& targets, const PairSines& of, Points& linear_values) const;
+  LanePoints<2> located_apart(const Targets& targets, const double (&sine)[4],
+                              const double (&cosine)[4]) const;
   bool locate_one(const Vec3& tip_M, const Sines& of, Vec3& linear_values) const;
-  void prove(const Targets& targets, const PairSines& of, const Points& linear_values,
-             bool (&proven)[2]) const;
   double turn_to(const AxisValues& before, AxisValues& q) const;
   int first_out_of_travel(const AxisValues& q) const;
 

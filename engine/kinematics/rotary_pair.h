@@ -42,6 +42,7 @@ class RotaryPair {
   double pole_distance(const Vec3& w) const;
 
  private:
+  friend struct LaneInverse;
   Mat3 frame_ = Mat3::Identity();  ///< rows e1, n, k
   double d_ = 0.0, s_ = 1.0, c2_ = 0.0;
   double p_at_pole_[2] = {0.0, 0.0};  ///< (c2 - d)/s and (c2 + d)/s; 0: w = e1 or w = -e1 is a pole

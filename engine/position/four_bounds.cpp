@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/instruction_sets.h"
 #include "position/sphere_tree.h"
 
 namespace swarf::position {
@@ -13,18 +14,9 @@ constexpr double kOnAxis_mm = 1e-9;
 /// Of the coordinates, per slope: above what rounding may do to a linear function of them.
 constexpr double kLinearSlack = 1e-12;
 
-#define SWARF_BOUNDS_INLINE inline __attribute__((always_inline))
-// One kernel for several instruction sets, by attributes and not by flags (stock/sweep/instruction_sets.h
-// says why); clang knows their names from version 16 on.
-#if defined(__x86_64__) && !(defined(__clang_major__) && __clang_major__ < 16)
-#define SWARF_BOUNDS_V3 __attribute__((target("arch=x86-64-v3")))
-const bool kRunsV3 = __builtin_cpu_supports("x86-64-v3") != 0;
-#else
-#define SWARF_BOUNDS_V3
-const bool kRunsV3 = false;
-#endif
+const bool kRunsV3 = runs_x86_64_v3();
 
-SWARF_BOUNDS_INLINE void bound_nodes(const ToolProfile& profile, const GuideLine& line,
+SWARF_KERNEL_INLINE void bound_nodes(const ToolProfile& profile, const GuideLine& line,
                                      const FourNodes& nodes, FourHeights& bounds) {
   const Vec3 p = line.point_W, x = line.x_W, y = line.y_W, axis = line.axis_W;
   const double tool = profile.radius();
@@ -62,7 +54,7 @@ SWARF_BOUNDS_INLINE void bound_nodes(const ToolProfile& profile, const GuideLine
   }
 }
 
-SWARF_BOUNDS_INLINE void bound_corners(const ToolProfile& profile, const GuideLine& line,
+SWARF_KERNEL_INLINE void bound_corners(const ToolProfile& profile, const GuideLine& line,
                                        const TreeTriangle* four, FourHeights& bounds) {
   const Vec3 p = line.point_W, x = line.x_W, y = line.y_W, axis = line.axis_W;
   double u[3][4], v[3][4], up[3][4], cos_turn[4], sin_turn[4], slope[4], lift[4], rho[4], reach[4];
@@ -96,11 +88,11 @@ SWARF_BOUNDS_INLINE void bound_corners(const ToolProfile& profile, const GuideLi
   }
 }
 
-SWARF_BOUNDS_V3 void bound_nodes_v3(const ToolProfile& profile, const GuideLine& line, const FourNodes& nodes,
+SWARF_X86_64_V3 void bound_nodes_v3(const ToolProfile& profile, const GuideLine& line, const FourNodes& nodes,
                                     FourHeights& bounds) {
   bound_nodes(profile, line, nodes, bounds);
 }
-SWARF_BOUNDS_V3 void bound_corners_v3(const ToolProfile& profile, const GuideLine& line,
+SWARF_X86_64_V3 void bound_corners_v3(const ToolProfile& profile, const GuideLine& line,
                                       const TreeTriangle* four, FourHeights& bounds) {
   bound_corners(profile, line, four, bounds);
 }

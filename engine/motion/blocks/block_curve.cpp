@@ -1,8 +1,10 @@
 #include "motion/blocks/block_curve.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "base/units.h"
 #include "kinematics/forward_chain.h"
@@ -36,6 +38,8 @@ constexpr double kJump = 0.5;
 constexpr double kJoin = 1e-6;
 /// Share of the step between two nodes over which the slope there is found by differences.
 constexpr double kReach = 0.02;
+/// Nodes whose inverse is solved at once.
+constexpr size_t kSolvedAtOnce = 32;
 /// Chords that the tip's way under the joint law is summed from: within 1e-3 of the way for half a turn.
 constexpr int kWayChords = 32;
 
@@ -209,9 +213,23 @@ void BlockCurve::sample() {
   const auto steps = static_cast<size_t>(std::clamp(kNodesPerRadian * turn, kNodesMin, kNodesMax));
   nodes_.reserve(steps + 1);
   nodes_.push_back(q_from_);
-  for (size_t i = 1; i <= steps; ++i) {
-    const double s = length_ * static_cast<double>(i) / static_cast<double>(steps);
-    nodes_.push_back(solve(share(s), nodes_.back()));
+  const bool own_axes = block().law == BlockLaw::kTcpAxes;
+  std::array<ToolPose, kSolvedAtOnce> poses;
+  std::array<AxisValues, kSolvedAtOnce> given_before;
+  std::array<Branch, kSolvedAtOnce> found;
+  for (size_t first = 1; first <= steps; first += kSolvedAtOnce) {
+    const size_t count = std::min(kSolvedAtOnce, steps + 1 - first);
+    for (size_t i = 0; i < count; ++i) {
+      const double x = share(length_ * static_cast<double>(first + i) / static_cast<double>(steps));
+      poses[i] = law_->at(x);
+      if (own_axes) given_before[i] = before(x, q_from_);
+    }
+    if (own_axes)
+      inverse_->continued(std::span(poses).first(count), std::span(given_before).first(count), found);
+    else
+      inverse_->continued(std::span(poses).first(count), nodes_.back(), found);
+    for (const Branch& branch : std::span(found).first(count))
+      nodes_.push_back(branch.outcome == InverseOutcome::kUnreachable ? nodes_.back() : branch.q);
   }
 }
 
@@ -247,18 +265,46 @@ BlockCurve::Place BlockCurve::place(double s) const {
   return place;
 }
 
+namespace {
+
+/// BlockCurve::q() of several places.
+template <size_t N>
+std::array<AxisValues, N> values_at(const BlockCurve& curve, const std::array<double, N>& places) {
+  std::array<AxisValues, N> q;
+  std::array<ToolPose, N> poses;
+  std::array<AxisValues, N> before;
+  std::array<size_t, N> open;
+  std::array<Branch, N> found;
+  size_t count = 0;
+  for (size_t i = 0; i < N; ++i) {
+    const BlockCurve::Place place = curve.place(places[i]);
+    q[i] = place.q;
+    if (place.solved) continue;
+    poses[count] = place.pose;
+    before[count] = place.before;
+    open[count++] = i;
+  }
+  curve.inverse().continued(std::span(poses).first(count), std::span(before).first(count), found);
+  for (size_t i = 0; i < count; ++i)
+    if (found[i].outcome != InverseOutcome::kUnreachable) q[open[i]] = found[i].q;
+  return q;
+}
+
+}  // namespace
+
 BlockCurve::Jet BlockCurve::jet(double s) const {
-  const AxisValues value = q(s);
   if (even_) {
     const AxisValues slope = (q_to_ - q_from_) / length_;
-    return {value, slope, AxisValues::Zero()};
+    return {q(s), slope, AxisValues::Zero()};
   }
   // Central differences of the sixth order, as wide as the block's ends and its bends allow.
   const double bend = length_ / static_cast<double>(nodes_.size() - 1);
   const double h = std::min({s / 3.0, (length_ - s) / 3.0, 0.7 * bend});
+  const auto at = values_at<7>(*this, {s, s - 1 * h, s + 1 * h, s - 2 * h, s + 2 * h, s - 3 * h, s + 3 * h});
+  const AxisValues& value = at[0];
   AxisValues even[3], odd[3];
-  for (int i = 0; i < 3; ++i) {
-    const AxisValues low = q(s - (i + 1) * h), high = q(s + (i + 1) * h);
+  for (size_t i = 0; i < 3; ++i) {
+    const AxisValues &low = at[1 + 2 * i], &high = at[2 + 2 * i];
     odd[i] = high - low;
     even[i] = (high - value) + (low - value);
   }

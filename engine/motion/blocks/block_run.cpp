@@ -155,26 +155,25 @@ bool RunSampler::next_place(CellOffset& place) {
   return true;
 }
 
-size_t RunSampler::next(std::span<BlockTick> ticks) {
-  std::array<CellOffset, kBatch> places;
-  std::array<PathPoint, kBatch> points;
+size_t RunSampler::next(std::span<Cycle> cycles) {
   size_t count = 0;
-  while (count < std::min(kBatch, ticks.size()) && next_place(places[count])) ++count;
-  points_at(run_->path, std::span(places).first(count), points);
-  set_poses(std::span(points).first(count), ticks);
-  for (size_t i = 0; i < count; ++i) fill(points[i], ticks[i]);
+  while (count < std::min(kBatch, cycles.size()) && next_place(places_[count])) ++count;
+  const auto points = std::span(points_).first(count);
+  points_at(run_->path, std::span(places_).first(count), points);
+  set_poses(points, cycles);
+  for (size_t i = 0; i < count; ++i) fill(points[i], cycles[i]);
   return count;
 }
 
-/// Where the axes lead the tip, two ticks at once; else by the block's law.
-void RunSampler::set_poses(std::span<const PathPoint> points, std::span<BlockTick> ticks) {
+/// Where the axes lead the tip, two cycles at once; else by the block's law.
+void RunSampler::set_poses(std::span<const PathPoint> points, std::span<Cycle> cycles) {
   std::array<size_t, 2> led{};
   size_t count = 0;
   const auto drive = [&] {
     ToolPose poses[2];
     forward_->at({points[led[0]].q, points[led[1]].q}, poses);
-    ticks[led[0]].sample.pose = poses[0];
-    ticks[led[1]].sample.pose = poses[1];
+    cycles[led[0]].sample.pose = poses[0];
+    cycles[led[1]].sample.pose = poses[1];
     count = 0;
   };
   for (size_t i = 0; i < points.size(); ++i) {
@@ -184,7 +183,7 @@ void RunSampler::set_poses(std::span<const PathPoint> points, std::span<BlockTic
       led[count++] = i;
       if (count == 2) drive();
     } else {
-      ticks[i].sample.pose = at.pose ? *at.pose : pose_at(motion, at.share);
+      cycles[i].sample.pose = at.pose ? *at.pose : pose_at(motion, at.share);
     }
   }
   if (count == 0) return;
@@ -192,14 +191,14 @@ void RunSampler::set_poses(std::span<const PathPoint> points, std::span<BlockTic
   drive();
 }
 
-void RunSampler::fill(const PathPoint& at, BlockTick& tick) {
+void RunSampler::fill(const PathPoint& at, Cycle& cycle) {
   const size_t index = run_->place.first + at.block;
   const BlockMotion& motion = motions_->at(index);
   const BlockCurve& curve = run_->path.curve(at.block);
   const bool rapid = is_rapid(motion.block);
-  tick.q = at.q;
-  tick.followed = curve.followed();
-  ToolSample& sample = tick.sample;
+  cycle.q = at.q;
+  cycle.reached = curve.followed();
+  ToolSample& sample = cycle.sample;
   sample.contact_W = sample.pose.tip_W;
   sample.u = at.share;
   sample.element = static_cast<int>(index);

@@ -7,6 +7,7 @@
 // evenly within a block, so its feed holds on average.
 #pragma once
 
+#include <array>
 #include <future>
 #include <memory>
 #include <optional>
@@ -81,13 +82,6 @@ class RunPlanner {
   std::future<PlannedRun> coming_;  ///< the last member: its thread ends before the others go
 };
 
-/// A sample and where it comes from.
-struct BlockTick {
-  ToolSample sample;  ///< u: share of the block, 0 to 1; element: index into the motions; t_s is left out
-  kinematics::AxisValues q = kinematics::AxisValues::Zero();
-  bool followed = true;  ///< false: the machine does not follow the block, q has to be found by continuity
-};
-
 /// Where the sampler of a run stands between two stretches.
 struct RunClock {
   size_t tick = 0;         ///< cycles since the start of the run
@@ -104,9 +98,11 @@ class RunSampler {
   explicit RunSampler(double period_s, const RunClock& clock = {}) : period_(period_s), clock_(clock) {}
   /// Goes on in this stretch; it must outlive the calls of next().
   void enter(const PlannedRun& stretch);
-  /// The next ticks, as many as there is room for, kBatch at most; returns how many. None when the next one
-  /// lies behind the stretch.
-  size_t next(std::span<BlockTick> ticks);
+  /// The next cycles, as many as there is room for, kBatch at most; returns how many. None when the next one
+  /// lies behind the stretch. Sets axis values and the sample but for t_s and tool: u is the share of the
+  /// block, element an index into the motions. Not `reached` where the machine does not follow the block: the
+  /// axis values have to be found by continuity.
+  size_t next(std::span<Cycle> cycles);
   static constexpr size_t kBatch = 32;
   /// Passes at most so many ticks without making them; returns how many. The last ones of the stretch are
   /// left, and the first tick that is made next has no feed of its own.
@@ -116,8 +112,8 @@ class RunSampler {
  private:
   void enter_phase();
   bool next_place(CellOffset& place);
-  void set_poses(std::span<const PathPoint> points, std::span<BlockTick> ticks);
-  void fill(const PathPoint& at, BlockTick& tick);
+  void set_poses(std::span<const PathPoint> points, std::span<Cycle> cycles);
+  void fill(const PathPoint& at, Cycle& cycle);
 
   const PlannedRun* run_ = nullptr;
   std::optional<MotionReader> motions_;  ///< of the whole path
@@ -126,6 +122,8 @@ class RunSampler {
   RunClock clock_;
   size_t ticks_ = 0;  ///< of the whole run; known in its last stretch
   size_t phase_ = 0;
+  std::array<CellOffset, kBatch> places_;
+  std::array<PathPoint, kBatch> points_;
 };
 
 }  // namespace swarf::motion

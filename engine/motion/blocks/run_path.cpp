@@ -22,6 +22,8 @@ constexpr double kCornerShare = 0.5;
 /// Slopes that differ by less are one straight line.
 constexpr double kStraight = 1e-12;
 constexpr int kFits = 40;
+/// Places of points_at() that the inverse takes at once.
+constexpr size_t kPointsAtOnce = 32;
 /// Speed of a rapid that no axis limits (out of reach), mm/s.
 constexpr double kRapidUnfollowed = 1000.0;
 
@@ -363,8 +365,9 @@ namespace {
 bool is_open(const RunPath& path, const CellOffset& at, PathPoint& point, BlockCurve::Place& place) {
   const Piece& piece = path.pieces[path.piece_of_cell[at.cell]];
   const double s = path.offset_of_cell[at.cell] + at.offset;
-  point = {};
   point.block = piece.block;
+  point.rounded = piece.blend >= 0;
+  point.pose.reset();
   if (piece.blend < 0) {
     place = path.curve(piece.block).place(piece.from + s);
     point.share = place.share;
@@ -373,7 +376,6 @@ bool is_open(const RunPath& path, const CellOffset& at, PathPoint& point, BlockC
     return !place.solved;
   }
   const Blend& blend = path.blends[static_cast<size_t>(piece.blend)];
-  point.rounded = true;
   point.q = blend.q(s);
   if (s <= blend.before) {
     point.share = path.curve(piece.block).share(piece.from + s);
@@ -388,25 +390,27 @@ bool is_open(const RunPath& path, const CellOffset& at, PathPoint& point, BlockC
 }  // namespace
 
 void points_at(const RunPath& path, std::span<const CellOffset> places, std::span<PathPoint> points) {
-  std::array<BlockCurve::Place, 2> open;
-  std::array<PathPoint*, 2> found{};
+  std::array<PathPoint*, kPointsAtOnce> open;
+  std::array<ToolPose, kPointsAtOnce> poses;
+  std::array<kinematics::AxisValues, kPointsAtOnce> before;
+  std::array<kinematics::Branch, kPointsAtOnce> found;
   size_t count = 0;
   const auto solve = [&] {
-    const kinematics::InverseKinematics& inverse = path.curves.front().inverse();
-    kinematics::Branch branch[2];
-    inverse.continued({open[0].pose, open[1].pose}, {open[0].before, open[1].before}, branch);
+    path.curves.front().inverse().continued(std::span(poses).first(count), std::span(before).first(count),
+                                            found);
     for (size_t i = 0; i < count; ++i)
-      if (branch[i].outcome != kinematics::InverseOutcome::kUnreachable) found[i]->q = branch[i].q;
+      if (found[i].outcome != kinematics::InverseOutcome::kUnreachable) open[i]->q = found[i].q;
     count = 0;
   };
+  BlockCurve::Place place;
   for (size_t i = 0; i < places.size(); ++i) {
-    if (!is_open(path, places[i], points[i], open[count])) continue;
-    found[count++] = &points[i];
-    if (count == 2) solve();
+    if (!is_open(path, places[i], points[i], place)) continue;
+    open[count] = &points[i];
+    poses[count] = place.pose;
+    before[count++] = place.before;
+    if (count == kPointsAtOnce) solve();
   }
-  if (count == 0) return;
-  open[1] = open[0];
-  solve();
+  if (count > 0) solve();
 }
 
 PathPoint point_at(const RunPath& path, size_t cell, double offset) {

@@ -129,7 +129,7 @@ struct CellOffset {
   size_t cell = 0;
   double offset = 0.0;  ///< mm from its start
 };
-/// The same of several places: the inverse takes two at once.
+/// The same of several places, whose inverse is solved side by side.
 void points_at(const RunPath& path, std::span<const CellOffset> places, std::span<PathPoint> points);
 
 }  // namespace swarf::motion

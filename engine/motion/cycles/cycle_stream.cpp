@@ -189,15 +189,32 @@ void CycleStream::run_on() {
     record(standing(run.from, run.kind), {run.turn->at(t), InverseOutcome::kOk});
   } else if (run.stretch == nullptr) {
     enter_stretch();
-  } else if (const size_t count =
-                 run.sampler->next(std::span(ticks_).first(std::min(room_, ticks_.size())))) {
-    for (const BlockTick& tick : std::span(ticks_).first(count)) record(tick);
+  } else if (sample_run()) {
+    return;
   } else if (!run.stretch->last) {
     run.stretch = nullptr;
   } else {
     element_ = run.end;
     run_.reset();
   }
+}
+
+/// The next cycles of the stretch into the window; false when there are none.
+bool CycleStream::sample_run() {
+  const size_t before = window_->size();
+  window_->resize(before + std::min(room_, RunSampler::kBatch));
+  window_->resize(before + run_->sampler->next(std::span(*window_).subspan(before)));
+  for (Cycle& cycle : std::span(*window_).subspan(before)) {
+    sample_element_ = cycle.sample.element;
+    if (!cycle.reached) {
+      const Branch branch = inverse().solve_nearest(cycle.sample.pose, q_);
+      cycle.reached = branch.outcome != InverseOutcome::kUnreachable;
+      cycle.q = cycle.reached ? branch.q : q_;
+    }
+    q_ = cycle.q;
+    number(cycle);
+  }
+  return window_->size() > before;
 }
 
 std::unique_ptr<RunPlanner> CycleStream::planner(const RunPlace& start) const {
@@ -326,16 +343,6 @@ void CycleStream::record(const ToolSample& sample) {
   record(sample, inverse().solve_nearest(sample.pose, q_));
 }
 
-void CycleStream::record(const BlockTick& tick) {
-  sample_element_ = tick.sample.element;
-  if (tick.followed) {
-    q_ = tick.q;
-    add(tick.sample, true, -1.0F);
-  } else {
-    record(tick.sample);
-  }
-}
-
 void CycleStream::record(const ToolSample& sample, const Branch& branch, float cost_ns) {
   const bool reached = branch.outcome != InverseOutcome::kUnreachable;
   if (reached) q_ = branch.q;
@@ -344,8 +351,13 @@ void CycleStream::record(const ToolSample& sample, const Branch& branch, float c
 
 void CycleStream::add(const ToolSample& sample, bool reached, float cost_ns) {
   Cycle& cycle = window_->emplace_back(Cycle{cycle_, sample, q_, reached, cost_ns});
-  cycle.sample.t_s = static_cast<double>(cycle_++) * source_.options->period_s;
   cycle.sample.element = sample_element_;
+  number(cycle);
+}
+
+void CycleStream::number(Cycle& cycle) {
+  cycle.number = cycle_;
+  cycle.sample.t_s = static_cast<double>(cycle_++) * source_.options->period_s;
   cycle.sample.tool = static_cast<int16_t>(tool_);
 }
 

@@ -78,7 +78,7 @@ class CycleStream {
   /// Goes on to this cycle, with which the next window then begins; those before it are only made where they
   /// must be for that. Costs next to nothing inside a stretch.
   void pass_to(uint64_t cycle);
-  static constexpr size_t kWindow = 16384;
+  static constexpr size_t kWindow = 4096;
   static constexpr double kHoursMax = 1000.0;
 
   /// The last place that has been passed, before what the last window began with or inside it.
@@ -90,6 +90,7 @@ class CycleStream {
   bool may_skip();
   void begin_run();
   void run_on();
+  bool sample_run();
   std::unique_ptr<RunPlanner> planner(const RunPlace& start) const;
   void enter_stretch();
   void begin_element();
@@ -102,9 +103,9 @@ class CycleStream {
   void start_at(const ToolSample& first);
   void require_join(const ToolPose& pose) const;
   void record(const ToolSample& sample);
-  void record(const BlockTick& tick);
   void record(const ToolSample& sample, const kinematics::Branch& branch, float cost_ns = -1.0F);
   void add(const ToolSample& sample, bool reached, float cost_ns);
+  void number(Cycle& cycle);
   void check_time(double seconds, const char* what, double cycles_max = 1e300) const;
   const kinematics::InverseKinematics& inverse() const;
 
@@ -112,7 +113,6 @@ class CycleStream {
   CyclePlace place_;
   std::vector<Cycle>* window_ = nullptr;
   size_t room_ = 0;  ///< for cycles that are made at once
-  std::vector<BlockTick> ticks_ = std::vector<BlockTick>(RunSampler::kBatch);
   uint64_t cycle_ = 0;
   size_t element_ = 0;  ///< the next one to begin
   int tool_ = 0;

@@ -17,7 +17,7 @@ namespace {
 
 using motion::Cycle;
 
-constexpr hsize_t kChunk = motion::CycleStream::kWindow;
+constexpr hsize_t kChunk = 16384;
 /// Higher levels take twice the time for a few per cent.
 constexpr unsigned kDeflate = 1;
 

@@ -12,10 +12,10 @@
 #include <iterator>
 #include <vector>
 
+#include "base/instruction_sets.h"
 #include "base/parallel.h"
 #include "stock/level_set/leaf_kernel.h"
 #include "stock/level_set/stock_grid_internal.h"
-#include "stock/sweep/instruction_sets.h"
 
 namespace swarf::stock {
 namespace {

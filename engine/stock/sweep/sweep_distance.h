@@ -16,7 +16,7 @@
 
 #include <cmath>
 
-#include "stock/sweep/instruction_sets.h"
+#include "base/instruction_sets.h"
 
 namespace swarf::stock {
 

@@ -1,6 +1,6 @@
 // One kernel, several instruction sets. A kernel is written once, from SWARF_KERNEL_INLINE functions; one
 // short function for each instruction set carries its attribute and takes the kernel in. All round alike (no
-// fused multiply-add), so the processor decides on the speed and not on the result: tests/unit/stock compares
+// fused multiply-add), so the processor decides on the speed and not on the result: the tests compare
 // the bits.
 //
 // By attributes, not by a compiler's flag for each file: with a flag, the inline functions of the standard
@@ -10,7 +10,7 @@
 
 #include <vector>
 
-namespace swarf::stock {
+namespace swarf {
 
 #define SWARF_KERNEL_INLINE inline __attribute__((always_inline))
 
@@ -47,4 +47,4 @@ std::vector<Variant> runnable(const Variant& v4, const Variant& v3, const Varian
   return variants;
 }
 
-}  // namespace swarf::stock
+}  // namespace swarf

@@ -1,0 +1,285 @@
+// The inverse along a way, of several poses side by side. What is seldom (the pole, out of reach, turns far
+// beyond the travel, a proof that fails) is left to continued() of one pose.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "kinematics/chain.h"
+#include "kinematics/lane_kernel.h"
+
+namespace swarf::kinematics {
+namespace {
+
+/// Whole turns from the values before beyond which they are not counted side by side.
+constexpr double kTurnsMost = 1e6;
+
+SWARF_KERNEL_INLINE double nearest_whole(double x) {
+  return std::nearbyint(x);
+}
+/// std::nearbyint of each, the sign of zero included; below 2^51.
+template <class T>
+SWARF_KERNEL_INLINE T nearest_whole(const T& x) {
+  using Bits = typename lanes::Vector<sizeof(T) / sizeof(double)>::Bits;
+  const T whole = (x + lanes::kWhole) - lanes::kWhole;
+  return lanes::same_bits<T>(Bits(lanes::same_bits<Bits>(whole) | (lanes::same_bits<Bits>(x) & INT64_MIN)));
+}
+
+template <class T>
+SWARF_KERNEL_INLINE T magnitude(const T& x) {
+  return x < 0.0 ? -x : x;
+}
+
+template <class T>
+SWARF_KERNEL_INLINE T roots(const T& x) {
+  double of[sizeof(T) / sizeof(double)];
+  std::memcpy(of, &x, sizeof of);
+  for (double& one : of) one = std::sqrt(one);
+  return lanes::same_bits<T>(of);
+}
+
+/// In the order in which Eigen adds: two rows at once, then the third.
+template <int N>
+SWARF_KERNEL_INLINE LanePoints<N> product(const Mat3& m, const LanePoints<N>& p) {
+  return {(m(0, 0) * p.x + m(0, 1) * p.y) + m(0, 2) * p.z, (m(1, 0) * p.x + m(1, 1) * p.y) + m(1, 2) * p.z,
+          m(2, 0) * p.x + (m(2, 1) * p.y + m(2, 2) * p.z)};
+}
+
+/// Of a pose all rows are added alike.
+template <int N>
+SWARF_KERNEL_INLINE LanePoints<N> moved(const Pose& by, const LanePoints<N>& p) {
+  const auto row = [&](int i) { return by(i, 3) + ((by(i, 0) * p.x + by(i, 1) * p.y) + by(i, 2) * p.z); };
+  return {row(0), row(1), row(2)};
+}
+
+/// The rotary values of one branch by axis, outer and inner: as they are found, and turned to those before.
+template <class T>
+struct Turned {
+  T value[2], q[2];
+};
+
+}  // namespace
+
+struct LaneInverse {
+  template <int N>
+  using Numbers = typename lanes::Vector<N>::Numbers;
+  template <int N>
+  using Bits = typename lanes::Vector<N>::Bits;
+
+  /// Turns by axis and branch, with the senses of the machine's axes. `odd`: there are not two branches, or
+  /// this is not the way to them.
+  template <int N>
+  struct Turns {
+    Numbers<N> of[2][2];
+    Bits<N> odd;
+  };
+
+  /// RotaryPair::solve().
+  template <int N>
+  SWARF_KERNEL_INLINE static Turns<N> turns(const InverseKinematics& inverse, const LanePoints<N>& axis_W) {
+    const RotaryPair& pair = inverse.pair_;
+    const LanePoints<N> in_frame = product<N>(pair.frame_, axis_W);
+    const Numbers<N> c1 = in_frame.x, wn = in_frame.y, wk = in_frame.z;
+    const Numbers<N> rho_squared = wn * wn + wk * wk, rho = roots(rho_squared);
+    const Bits<N> upper = c1 >= 0.0;
+    Numbers<N> p = upper ? spread<N>(pair.p_at_pole_[0]) : spread<N>(pair.p_at_pole_[1]);
+    if (pair.d_ != 0.0) {
+      const Numbers<N> from_pole = rho_squared / (1.0 + magnitude(c1));
+      p += pair.d_per_s_ * (upper ? from_pole : -from_pole);
+    }
+    const bool never_aside = pair.d_ == 0.0 && pair.p_at_pole_[0] == 0.0 && pair.p_at_pole_[1] == 0.0;
+    Numbers<N> r = rho, z_angle = spread<N>(0.5 * kPi);
+    if (!never_aside) {
+      const Numbers<N> square = (rho - p) * (rho + p);
+      r = p == 0.0 ? rho : roots<Numbers<N>>(square > 0.0 ? square : Numbers<N>{});
+      z_angle = p == 0.0 ? z_angle : lanes::atan2<N>(r, p);
+    }
+    const Numbers<N> turn = lanes::atan2<N>(wk, wn);
+    const Numbers<N> tilt = lanes::atan2<N>(r, (c1 - pair.d_ * pair.c2_) * pair.per_s_);
+    const double outer = inverse.rotary_sense_[0], inner = inverse.rotary_sense_[1];
+    // Everything but two branches has no root above 0, or is not a number.
+    const Bits<N> even = (rho >= kPoleTolerance) & (r > 0.0) & (magnitude(p) <= rho);
+    return {{{outer * (turn - z_angle), outer * (turn + z_angle)},
+             {inner * (-tilt - pair.v_angle_), inner * (tilt - pair.v_angle_)}},
+            ~even};
+  }
+
+  /// The branch that turns less from the values before. Of one pose or of several.
+  template <class T>
+  SWARF_KERNEL_INLINE static Turned<T> nearer(const InverseKinematics& inverse, const T (&turns)[2][2],
+                                              const T (&before)[2]) {
+    Turned<T> branch[2];
+    T way[2] = {};
+    for (int which = 0; which < 2; ++which) {
+      for (int slot = 0; slot < 2; ++slot) {
+        const T value = LaneKernel::unwound<T>(turns[slot][which], before[slot], inverse.rotary_min_[slot],
+                                               inverse.rotary_max_[slot]);
+        branch[which].value[slot] = value;
+        branch[which].q[slot] = value + kTurn * nearest_whole((before[slot] - value) / kTurn);
+        way[which] += magnitude(T(branch[which].q[slot] - before[slot]));
+      }
+    }
+    Turned<T> result;
+    const auto second = way[1] < way[0];
+    for (int slot = 0; slot < 2; ++slot) {
+      result.value[slot] = second ? branch[1].value[slot] : branch[0].value[slot];
+      result.q[slot] = second ? branch[1].q[slot] : branch[0].q[slot];
+    }
+    return result;
+  }
+
+  /// nearer() of each pose after the one before it.
+  template <int N>
+  SWARF_KERNEL_INLINE static Turned<Numbers<N>> nearer_along(const InverseKinematics& inverse,
+                                                             const Turns<N>& turns, const AxisValues& before,
+                                                             Numbers<N> (&hints)[2]) {
+    Turned<Numbers<N>> result;
+    double hint[2] = {before[inverse.rotary_[0]], before[inverse.rotary_[1]]};
+    for (int lane = 0; lane < N; ++lane) {
+      const double own[2][2] = {{turns.of[0][0][lane], turns.of[0][1][lane]},
+                                {turns.of[1][0][lane], turns.of[1][1][lane]}};
+      const Turned<double> one = nearer<double>(inverse, own, hint);
+      for (int slot = 0; slot < 2; ++slot) {
+        hints[slot][lane] = hint[slot];
+        result.value[slot][lane] = one.value[slot];
+        result.q[slot][lane] = hint[slot] = one.q[slot];
+      }
+    }
+    return result;
+  }
+
+  template <int N>
+  SWARF_KERNEL_INLINE static LanePoints<N> load(const double (&rows)[3][N]) {
+    return {lanes::same_bits<Numbers<N>>(rows[0]), lanes::same_bits<Numbers<N>>(rows[1]),
+            lanes::same_bits<Numbers<N>>(rows[2])};
+  }
+
+  /// The first poses, N at most; returns how many: up to one that is odd and belongs to a way. `before`: of
+  /// each pose, or of the first of a way.
+  template <int N, bool kAlong>
+  SWARF_KERNEL_INLINE static size_t solve(const InverseKinematics& inverse, std::span<const ToolPose> poses,
+                                          const AxisValues* before, Branch* found) {
+    const size_t count = std::min<size_t>(poses.size(), N);
+    double tip[3][N], axis[3][N], follows[2][N];
+    for (size_t lane = 0; lane < N; ++lane) {
+      const size_t from = std::min(lane, count - 1);
+      const Vec3 tip_W = poses[from].tip_W, axis_W = unit_axis(poses[from].axis_W);
+      for (int i = 0; i < 3; ++i) {
+        tip[i][lane] = tip_W[i];
+        axis[i][lane] = axis_W[i];
+      }
+      for (size_t slot = 0; slot < 2 && !kAlong; ++slot)
+        follows[slot][lane] = before[from][inverse.rotary_[slot]];
+    }
+    const LanePoints<N> axis_W = load<N>(axis);
+    const Turns<N> turns = LaneInverse::turns<N>(inverse, axis_W);
+    Numbers<N> hints[2];
+    Turned<Numbers<N>> chosen;
+    if constexpr (kAlong) {
+      chosen = nearer_along<N>(inverse, turns, *before, hints);
+    } else {
+      for (int slot = 0; slot < 2; ++slot) hints[slot] = lanes::same_bits<Numbers<N>>(follows[slot]);
+      chosen = nearer<Numbers<N>>(inverse, turns.of, hints);
+    }
+    Bits<N> even = ~turns.odd;
+    LaneSines<N> of;
+    for (int slot = 0; slot < 2; ++slot) {
+      lanes::sines<N>(chosen.value[slot], of.sine[slot], of.cosine[slot]);
+      even &= (magnitude(chosen.value[slot]) <= kLaneRange) &
+              (magnitude(Numbers<N>(hints[slot] - chosen.value[slot])) <= kTurn * kTurnsMost);
+    }
+    const Mat3 into_M = inverse.machine_.X_MW.linear();
+    const LanePoints<N> tip_M = moved<N>(inverse.machine_.X_MW, load<N>(tip));
+    const LanePoints<N> axis_M = product<N>(into_M, axis_W);
+    const LanePoints<N> linear = LaneKernel::locate<N>(inverse, tip_M, of);
+    even &= LaneKernel::prove<N>(inverse, tip_M, axis_M, of, linear);
+    return hand_out<N, kAlong>(inverse, poses.first(count), before, even, chosen, linear, found);
+  }
+
+  template <int N, bool kAlong>
+  SWARF_KERNEL_INLINE static size_t hand_out(const InverseKinematics& inverse,
+                                             std::span<const ToolPose> poses, const AxisValues* before,
+                                             const Bits<N>& even, const Turned<Numbers<N>>& chosen,
+                                             const LanePoints<N>& linear, Branch* found) {
+    const int outer = inverse.rotary_[0], inner = inverse.rotary_[1];
+    for (size_t lane = 0; lane < poses.size(); ++lane) {
+      Branch& one = found[lane];
+      if (even[lane] == 0) {
+        const AxisValues& hint = !kAlong ? before[lane] : lane == 0 ? *before : found[lane - 1].q;
+        one = inverse.continued(poses[lane], hint);
+        if (kAlong) return lane + 1;
+        continue;
+      }
+      one.q.setZero();
+      one.q[inverse.linear_[0]] = linear.x[lane];
+      one.q[inverse.linear_[1]] = linear.y[lane];
+      one.q[inverse.linear_[2]] = linear.z[lane];
+      one.q[outer] = chosen.value[0][lane];
+      one.q[inner] = chosen.value[1][lane];
+      one.out_of_travel_axis = inverse.first_out_of_travel(one.q);
+      one.outcome = one.out_of_travel_axis >= 0 ? InverseOutcome::kOutOfTravel : InverseOutcome::kOk;
+      one.q[outer] = chosen.q[0][lane];
+      one.q[inner] = chosen.q[1][lane];
+    }
+    return poses.size();
+  }
+};
+
+namespace {
+
+using SolveLanes = size_t (*)(const InverseKinematics& inverse, std::span<const ToolPose> poses,
+                              const AxisValues* before, Branch* found);
+
+template <bool kAlong>
+SWARF_X86_64_V4_WIDE size_t solve_eight(const InverseKinematics& inverse, std::span<const ToolPose> poses,
+                                        const AxisValues* before, Branch* found) {
+  return LaneInverse::solve<8, kAlong>(inverse, poses, before, found);
+}
+template <bool kAlong>
+SWARF_X86_64_V3 size_t solve_four(const InverseKinematics& inverse, std::span<const ToolPose> poses,
+                                  const AxisValues* before, Branch* found) {
+  return LaneInverse::solve<4, kAlong>(inverse, poses, before, found);
+}
+template <bool kAlong>
+size_t solve_two(const InverseKinematics& inverse, std::span<const ToolPose> poses, const AxisValues* before,
+                 Branch* found) {
+  return LaneInverse::solve<2, kAlong>(inverse, poses, before, found);
+}
+
+template <bool kAlong>
+SolveLanes fastest() {
+  return runnable<SolveLanes>(&solve_eight<kAlong>, &solve_four<kAlong>, &solve_two<kAlong>).front();
+}
+
+}  // namespace
+
+void InverseKinematics::continued(std::span<const ToolPose> poses_W, std::span<const AxisValues> before,
+                                  std::span<Branch> found) const {
+  static const SolveLanes solve_some = fastest<false>();
+  const bool apart = rotary_.size() < 2 || !columns_constant_;
+  for (size_t i = 0; i < poses_W.size();) {
+    if (!apart && poses_W.size() - i > 1) {
+      i += solve_some(*this, poses_W.subspan(i), &before[i], &found[i]);
+    } else {
+      found[i] = continued(poses_W[i], before[i]);
+      ++i;
+    }
+  }
+}
+
+void InverseKinematics::continued(std::span<const ToolPose> poses_W, const AxisValues& before,
+                                  std::span<Branch> found) const {
+  static const SolveLanes solve_some = fastest<true>();
+  const bool apart = rotary_.size() < 2 || !columns_constant_;
+  AxisValues last = before;
+  for (size_t i = 0; i < poses_W.size();) {
+    size_t done = 1;
+    if (!apart && poses_W.size() - i > 1)
+      done = solve_some(*this, poses_W.subspan(i), &last, &found[i]);
+    else
+      found[i] = continued(poses_W[i], last);
+    for (; done > 0; --done, ++i)
+      if (found[i].outcome != InverseOutcome::kUnreachable) last = found[i].q;
+  }
+}
+
+}  // namespace swarf::kinematics
