@@ -113,11 +113,14 @@ void tell_of_killed_runs(const std::string& folder) {
   std::error_code problem;
   for (const fs::directory_entry& entry : fs::directory_iterator(home.parent_path(), problem)) {
     const std::string name = entry.path().filename().string();
-    if (!name.starts_with(mark) || !fs::exists(entry.path() / sim::kKeptStock)) continue;
+    if (!name.starts_with(mark)) continue;
+    fs::path kept = entry.path() / "stock.vdb";  // written, and not yet where it belongs
+    if (!fs::exists(kept)) kept = entry.path() / sim::kKeptStock;
+    if (!fs::exists(kept)) continue;
     const int process = std::atoi(name.c_str() + mark.size());
     if (process <= 0 || kill(process, 0) == 0 || errno != ESRCH) continue;
     fmt::print(stderr, "note: a run of this folder was killed; --from {} goes on from what it had cut\n",
-               shell_text({(entry.path() / sim::kKeptStock).string()}));
+               shell_text({kept.string()}));
   }
 }
 
@@ -142,6 +145,8 @@ sim::CutOptions cut_options(const RunOptions& options, const reports::PendingFol
   cut.record_every = options.record_every;
   cut.check_voxels = options.check;
   cut.keep_every_s = options.keep_every_s;
+  cut.spill = options.spill;
+  cut.max_memory_mb = options.max_memory_mb;
   cut.outputs = {!options.no_render, !options.no_render || options.report};
   cut.overrides = options.overrides;
   cut.ranks = options.ranks;

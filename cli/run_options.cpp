@@ -44,14 +44,25 @@ void add_stock_options(CLI::App& command, RunOptions& options) {
       ->type_name("SECONDS")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
-  command.add_flag("--check", options.check,
-                   "check the costly invariants of the stock on the way too, not only at the end");
+  CLI::Option* check =
+      command.add_flag("--check", options.check,
+                       "check the costly invariants of the stock on the way too, not only at the end");
+  CLI::Option* most =
+      command
+          .add_option(
+              "--max-memory", options.max_memory_mb,
+              "refuse to start when more is expected to be needed (default: stock.max_memory_mb, else "
+              "80 % of what is free)")
+          ->type_name("MB")
+          ->check(CLI::PositiveNumber);
   command
-      .add_option("--max-memory", options.max_memory_mb,
-                  "refuse to start when more is expected to be needed (default: stock.max_memory_mb, else "
-                  "80 % of what is free)")
-      ->type_name("MB")
-      ->check(CLI::PositiveNumber);
+      .add_flag(
+          "--spill", options.spill,
+          "when more memory is needed than --max-memory allows, leaves of the stock that are not cut go "
+          "to a file in the results' folder, which is gone when the run ends: slower instead of "
+          "refused, with the same results")
+      ->needs(most)
+      ->excludes(check);
 }
 
 }  // namespace
@@ -74,6 +85,7 @@ std::vector<std::string> command_words(const RunOptions& options) {
       fmt::format("{}", options.record_every));
   flag(options.check, "--check");
   add(options.max_memory_mb > 0.0, "--max-memory", fmt::format("{}", options.max_memory_mb));
+  flag(options.spill, "--spill");
   add(options.keep_every_s != RunOptions{}.keep_every_s, "--keep-every",
       fmt::format("{}", options.keep_every_s));
   add(options.setup > 0, "--setup", fmt::format("{}", options.setup));
@@ -93,8 +105,11 @@ std::vector<std::string> command_words(const RunOptions& options) {
 
 std::vector<std::string> overrides_of(const RunOptions& options) {
   std::vector<std::string> overrides = options.overrides;
+  // With --spill it is judged when it is known what goes to the disk (sim::CutOptions).
+  constexpr double kAnything = 1e12;
   if (options.max_memory_mb > 0.0)
-    overrides.push_back(fmt::format("stock.max_memory_mb={}", options.max_memory_mb));
+    overrides.push_back(
+        fmt::format("stock.max_memory_mb={}", options.spill ? kAnything : options.max_memory_mb));
   if (!options.trajectory.empty())
     overrides.push_back(fmt::format("output.trajectory=\"{}\"", options.trajectory));
   return overrides;

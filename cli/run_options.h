@@ -24,7 +24,7 @@ struct RunOptions {
   double max_memory_mb = 0.0, keep_every_s = 60.0;
   bool no_render = false, report = false, json = false, record = false, check = false, open = false,
        pdf = false;
-  bool tiles = false;
+  bool tiles = false, spill = false;
   Ranks* ranks = nullptr;  ///< of --tiles
   PipelineFiles pipeline;
 };

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdlib>
 #include <memory>
 #include <optional>
 
@@ -40,6 +41,16 @@ int serve_as_rank(const RunOptions& options, Ranks& ranks) {
   return kPass;
 }
 
+/// Open MPI's mpirun answers Ctrl-C by SIGCONT, a second later SIGTERM, and kills after one more: too soon
+/// for a large stock to be written. SIGUSR1 it passes on, and waits.
+void tell_how_to_stop() {
+  if (manner().quiet || std::getenv("OMPI_COMM_WORLD_RANK") == nullptr) return;
+  fmt::print(
+      stderr,
+      "note: SIGUSR1 to mpirun stops in order; after Ctrl-C it leaves the ranks one second to keep what "
+      "is cut (more: mpirun --mca odls_base_sigkill_timeout SECONDS), then what --keep-every has kept\n");
+}
+
 }  // namespace
 
 void refuse_for_tiles(const RunOptions& options) {
@@ -57,6 +68,7 @@ int run_as_rank(RunOptions options, const std::function<int(const RunOptions&)>&
   const std::unique_ptr<Ranks> ranks = open_ranks();
   if (ranks->rank() > 0) return serve_as_rank(options, *ranks);
   options.ranks = ranks.get();
+  tell_how_to_stop();
   struct Dismissal {
     Ranks& ranks;
     ~Dismissal() { sim::dismiss_ranks(ranks); }

@@ -69,6 +69,7 @@ std::string painted(const Diagnostic& diagnostic, std::FILE* where) {
 void catch_interrupt() {
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
+  std::signal(SIGUSR1, on_interrupt);  // which mpirun passes on to its processes
 }
 
 bool interrupted() {

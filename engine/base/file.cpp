@@ -14,7 +14,6 @@
 #include <utility>
 
 #include "base/diagnostics.h"
-#include "base/hash.h"
 
 namespace swarf {
 namespace {
@@ -92,15 +91,18 @@ std::string read_all(const std::string& path, const FileFault& fault) {
   return bytes;
 }
 
-uint64_t checksum(std::string_view bytes) {
-  Hash hash;
-  hash.add(uint64_t{bytes.size()});
-  for (size_t at = 0; at < bytes.size(); at += sizeof(uint64_t)) {
+void Checksum::add(std::string_view piece) {
+  for (size_t at = 0; at < piece.size(); at += sizeof(uint64_t)) {
     uint64_t word = 0;
-    std::memcpy(&word, bytes.data() + at, std::min(sizeof(word), bytes.size() - at));
-    hash.add(word);
+    std::memcpy(&word, piece.data() + at, std::min(sizeof(word), piece.size() - at));
+    hash_.add(word);
   }
-  return hash.value();
+}
+
+uint64_t checksum(std::string_view bytes) {
+  Checksum sum(bytes.size());
+  sum.add(bytes);
+  return sum.value();
 }
 
 NewFile::NewFile(std::string path, const FileFault& fault)

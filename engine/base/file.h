@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "base/hash.h"
+
 namespace swarf {
 
 /// Throws InputError "no-regular-file" for what is there but is no file with an end: a device, a pipe, a
@@ -33,6 +35,16 @@ inline constexpr size_t kFilePiece = size_t{1} << 18U;
 
 /// Of the bytes of a file: their number, then words of eight, the last filled with zeros.
 uint64_t checksum(std::string_view bytes);
+/// The same of a file that is not held whole: pieces of a multiple of eight bytes, but for the last.
+class Checksum {
+ public:
+  explicit Checksum(uint64_t bytes) { hash_.add(bytes); }  ///< in all
+  void add(std::string_view piece);
+  uint64_t value() const { return hash_.value(); }
+
+ private:
+  Hash hash_;
+};
 
 /// A file on its way to a path. It is written beside the target, under a name that no other process has, and
 /// takes the target's place when it is whole and on the disk: whoever reads the target, after a power failure

@@ -520,7 +520,8 @@ Result simulate(const Job& job, const CutOptions& options, Progress& progress) {
     return result;
   }
   result.memory = predict_memory(job, result.main, options.outputs, options.check_voxels ? 2 : 1);
-  require_memory(job, result.memory);
+  if (options.max_memory_mb > 0.0) result.memory.limit_mb = options.max_memory_mb;
+  if (!options.spill) require_memory(job, result.memory);
   progress.note(fmt::format("memory: stock {:.0f} MB, whole run {:.0f} MB expected; limit {:.0f} MB",
                             result.memory.stock_mb, result.memory.peak_mb, result.memory.limit_mb));
   cut_stock(job, options, progress, result);

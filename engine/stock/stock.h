@@ -32,6 +32,21 @@ struct VolumeRange {
   double least = 0.0, greatest = 0.0;
 };
 
+/// Leaves go to the disk while they are not cut.
+struct Spill {
+  std::string folder;      ///< where there is room; nothing is left there, however the process ends
+  size_t leaves_most = 0;  ///< in memory after each Stock::make_room
+};
+
+/// The columns of the stock's leaf positions, kTileLeaves x kTileLeaves at a time, through the whole height.
+struct TileGrid {
+  Vec2 lower_mm = Vec2::Zero();  ///< W
+  double side_mm = 0.0;
+  int count_x = 0, count_y = 0;
+  size_t size() const { return static_cast<size_t>(count_x) * count_y; }
+  size_t index(int i, int j) const { return static_cast<size_t>(i) * count_y + j; }
+};
+
 /// How far Stock::check goes.
 enum class CheckLevel {
   kMap,     ///< invariants 1 to 4: leaf positions only, about a millisecond per 100 000 of them
@@ -44,13 +59,24 @@ class Stock {
   Stock(const Box& box_W, double voxel_mm);
   /// Any raw stock; a box gives the same bits as above. Parallel, the same for any number of threads.
   /// Material thinner than a voxel is lost where it holds no grid point (RawShape::thinnest_wall).
-  Stock(const RawShape& raw, double voxel_mm);
+  /// `spill`: leaves go to the disk from the start; null: they stay in memory.
+  Stock(const RawShape& raw, double voxel_mm, const Spill* spill = nullptr);
   ~Stock();
   Stock(Stock&&) noexcept;
   Stock& operator=(Stock&&) noexcept;
 
   /// Removes the sweeps, in order; parallel, bit-identical for any thread count and any split into calls.
   void cut(std::span<const Sweep> sweeps, const CutterSolid& cutter);
+
+  /// From now on leaves go to the disk. Everything that the stock is asked is answered as if they had not;
+  /// what is cut again comes back. Throws InputError "spill-unwritable".
+  void begin_spill(const Spill& spill);
+  bool spills() const;
+  static TileGrid tiles_of(const Box& box_W, double voxel_mm);
+  /// When more leaves are in memory than may be, half of that stays: those of the tiles that are used first.
+  /// `next_use`: by tile, when it will be cut next, in any unit. Throws InputError "spill-disk-full".
+  void make_room(std::span<const uint32_t> next_use);
+  size_t leaves_on_disk() const;
 
   double voxel_mm() const;
   const Box& box() const;  ///< of the raw stock
@@ -110,7 +136,8 @@ class Stock {
   static Stock load(const std::string& path, StockMetadata* metadata = nullptr,
                     const RawShape* raw = nullptr);
 
-  size_t leaves() const;  ///< blocks of 8x8x8 voxels along the surface
+  size_t leaves() const;                      ///< blocks of 8x8x8 voxels along the surface
+  static constexpr size_t kLeafBytes = 2048;  ///< what a leaf on the disk takes less of memory
 
   /// Bytes of a stock with so many leaves: theirs and those of the map of all leaf positions.
   static size_t memory_for(const Box& box_W, double voxel_mm, double leaves);

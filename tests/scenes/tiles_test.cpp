@@ -1,5 +1,5 @@
 // swarf run --tiles: ranks of mpirun cut one part together, and what comes out is what one process leaves.
-// SWARF_KILLS: at how many random moments a rank is killed (default 3); SWARF_KILL_BLOCKS: blocks of the
+// SWARF_KILLS: at how many random moments a run is killed (default 3); SWARF_KILL_BLOCKS: blocks of the
 // program.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -14,6 +14,7 @@
 
 #include "base/rng.h"
 #include "support/program_run.h"
+#include "support/run_facts.h"
 
 namespace tiles_test {
 namespace {
@@ -21,6 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 using swarf::Rng;
+using swarf::test::facts;
 using swarf::test::read_text;
 using swarf::test::run_command;
 using swarf::test::run_swarf;
@@ -39,21 +41,6 @@ std::string mpirun(int ranks) {
       ranks, SWARF_PROGRAM);
 }
 
-/// Everything but times, memory and the command that was given.
-json facts(const fs::path& folder) {
-  const json all = json::parse(read_text(folder / "metrics.json")).flatten();
-  json kept;
-  for (const auto& [path, value] : all.items()) {
-    const bool measured = path.ends_with("_s") || path.find("seconds") != std::string::npos ||
-                          path.find("memory") != std::string::npos || path.find("_ns") != std::string::npos ||
-                          path.find("threads") != std::string::npos ||
-                          path.find("command") != std::string::npos ||
-                          path.find("per_s") != std::string::npos;
-    if (!measured) kept[path] = value;
-  }
-  return kept;
-}
-
 class Tiles : public testing::Test {
  protected:
   void SetUp() override {
@@ -66,11 +53,7 @@ class Tiles : public testing::Test {
   void TearDown() override {
     if (!HasFailure()) fs::remove_all(folder_);
   }
-  void write_wave(long blocks, double voxel_mm) const {
-    const auto written = run_command(fmt::format("/usr/bin/python3 '{}/tests/bench/wave.py' {} '{}' {}",
-                                                 SWARF_SOURCE_DIR, blocks, folder_.string(), voxel_mm));
-    ASSERT_EQ(written.exit_code, 0) << written.output;
-  }
+  void write_wave(long blocks, double voxel_mm) const { swarf::test::write_wave(folder_, blocks, voxel_mm); }
   std::string wave() const { return at("scene.toml") + " --no-render "; }
   std::string at(const std::string& name) const { return (folder_ / name).string(); }
 
@@ -88,6 +71,20 @@ class Tiles : public testing::Test {
         EXPECT_EQ(read_text(at(std::string("tiles/") + file)), read_text(at(std::string("alone/") + file)))
             << file;
     }
+  }
+
+  /// What a run to "out" has left to go on from; empty: nothing.
+  std::string kept_stock() const {
+    std::string kept = fs::exists(at("out/stock.vdb")) ? at("out/stock.vdb") : "";
+    for (const auto& entry : fs::directory_iterator(folder_))
+      for (const char* name : {"stock.vdb", "stock_so_far.vdb"})
+        if (entry.path().filename().string().starts_with("out.part") && fs::exists(entry.path() / name))
+          kept = (entry.path() / name).string();
+    return kept;
+  }
+  void remove_results() const {
+    for (const auto& entry : fs::directory_iterator(folder_))
+      if (entry.path().filename().string().starts_with("out")) fs::remove_all(entry.path());
   }
 
   fs::path folder_;
@@ -173,9 +170,37 @@ TEST(TilesWithoutMpi, TheProgramSaysWhatToInstall) {
   fs::remove_all(folder);
 }
 
-/// At random moments one of the ranks is killed, rank 0 as often as the others: mpirun says which and ends
-/// the rest, and the run goes on from what the tiles were when they were kept last.
-TEST_F(Tiles, ARunWhoseRankDiesGoesOn) {
+/// SIGUSR1 stops all ranks in order; the run goes on where it was. Ctrl-C makes mpirun kill: what was kept
+/// last is left. Both end with the stock of a run that nobody stopped.
+TEST_F(Tiles, AStoppedRunGoesOn) {
+  write_wave(8000, 0.2);
+  ASSERT_EQ(run_swarf("run " + wave() + "-o " + at("alone")).exit_code, 0);
+  const auto hash = facts(at("alone"))["/stock/hash"];
+  for (const char* signal : {"USR1", "INT"}) {
+    SCOPED_TRACE(signal);
+    // The signal comes when the stock has been kept once: in the middle of the cut.
+    const auto run = run_command(fmt::format(
+        "{}run --tiles {} --keep-every 0.01 -o {} & pid=$!; while kill -0 $pid 2>/dev/null && ! ls "
+        "{}.part*/stock_so_far.vdb >/dev/null 2>&1; do sleep 0.01; done; kill -{} $pid; wait $pid",
+        mpirun(2), wave(), at("out"), at("out"), signal));
+    EXPECT_NE(run.exit_code, 0) << run.output;
+    EXPECT_NE(run.output.find("SIGUSR1 to mpirun stops in order"), std::string::npos) << run.output;
+    ASSERT_FALSE(kept_stock().empty()) << run.output;
+    if (std::string(signal) == "USR1") {
+      EXPECT_NE(run.output.find("go on with: mpirun -n 2"), std::string::npos) << run.output;
+    }
+    const auto again =
+        run_command(mpirun(2) + "run --tiles " + wave() + "--from " + kept_stock() + " -o " + at("again"));
+    ASSERT_EQ(again.exit_code, 0) << again.output;
+    EXPECT_EQ(facts(at("again"))["/stock/hash"], hash);
+    EXPECT_GT(facts(at("again"))["/stock/blocks_resumed"].get<int>(), 0);
+    remove_results();
+  }
+}
+
+/// At random moments a rank is killed, or mpirun, or mpirun gets Ctrl-C: it ends all of them, and the run
+/// goes on from what the tiles were when they were kept last.
+TEST_F(Tiles, AKilledRunGoesOn) {
   constexpr int kRanks = 3;
   write_wave(number_from("SWARF_KILL_BLOCKS", 8000), 0.2);
   const auto start = Clock::now();
@@ -183,43 +208,46 @@ TEST_F(Tiles, ARunWhoseRankDiesGoesOn) {
   const double whole_s = std::chrono::duration<double>(Clock::now() - start).count();
   const auto hash = facts(at("whole"))["/stock/hash"];
   const long count = number_from("SWARF_KILLS", 3);
+  // The rank names itself in its environment; the scene's path tells this run from others of the machine.
+  const std::string ranks = fmt::format("$(pgrep -f '^{} run --tiles {}')", SWARF_PROGRAM, at("scene.toml"));
+  const auto rank = [&](int number) {
+    return fmt::format(
+        "for p in {}; do tr '\\0' '\\n' < /proc/$p/environ 2>/dev/null | grep -qx OMPI_COMM_WORLD_RANK={} && "
+        "kill -9 $p; done",
+        ranks, number);
+  };
+  const std::vector<std::string> kills{rank(0), "kill -INT $pid", rank(1), "kill -9 $pid", rank(2)};
+  const std::vector<std::string> names{"rank 0", "Ctrl-C", "rank 1", "mpirun", "rank 2"};
   Rng rng(300);
-  int kept = 0, told = 0;
+  int kept = 0;
   for (long i = 0; i < count && !HasFailure(); ++i) {
     const double after =
         (static_cast<double>(i) + rng.uniform(0.0, 1.0)) / static_cast<double>(count) * whole_s;
-    const int victim = static_cast<int>(i % kRanks);
-    SCOPED_TRACE(fmt::format("rank {} after {:.3f} of {:.2f} s", victim, after, whole_s));
-    // The rank names itself in its environment; the scene's path tells this run from others of the machine.
-    const auto run =
-        run_command(fmt::format("{}run --tiles {} --keep-every 0.05 -o {} & pid=$!; sleep {:.3f}; for p in "
-                                "$(pgrep -f 'run --tiles {}'); do "
-                                "tr '\\0' '\\n' < /proc/$p/environ 2>/dev/null | grep -qx "
-                                "OMPI_COMM_WORLD_RANK={} && kill -9 $p; done; wait $pid",
-                                mpirun(kRanks), wave(), at("out"), after, at("scene.toml"), victim));
-    std::string from;
-    for (const auto& entry : fs::directory_iterator(folder_))
-      if (entry.path().filename().string().starts_with("out.part") &&
-          fs::exists(entry.path() / "stock_so_far.vdb"))
-        from = (entry.path() / "stock_so_far.vdb").string();
+    const size_t kind = static_cast<size_t>(i) % kills.size();
+    SCOPED_TRACE(fmt::format("{} after {:.3f} of {:.2f} s", names[kind], after, whole_s));
+    const auto run = run_command(fmt::format(
+        "{}run --tiles {} --keep-every 0.05 -o {} & pid=$!; sleep {:.3f}; {}; wait $pid; code=$?; "
+        "for n in $(seq 100); do [ -z \"{}\" ] && break; sleep 0.1; done; [ -z \"{}\" ] || echo "
+        "ranks are left; exit $code",
+        mpirun(kRanks), wave(), at("out"), after, kills[kind], ranks, ranks));
+    EXPECT_EQ(run.output.find("ranks are left"), std::string::npos) << run.output;
+    const std::string from = kept_stock();
     if (run.exit_code != 0) {
-      told += run.output.find(fmt::format("process rank {}", victim)) != std::string::npos ? 1 : 0;
       const auto again = run_command(mpirun(2) + "run --tiles " + wave() +
                                      (from.empty() ? "" : "--from " + from) + " -o " + at("out"));
       ASSERT_EQ(again.exit_code, 0) << run.output << again.output;
       kept += from.empty() ? 0 : 1;
     }
     EXPECT_EQ(facts(at("out"))["/stock/hash"], hash) << run.output;
-    for (const auto& entry : fs::directory_iterator(folder_))
-      if (entry.path().filename().string().starts_with("out")) fs::remove_all(entry.path());
-    fmt::print("{} of {}: rank {} killed after {:.2f} of {:.2f} s, {}\n", i + 1, count, victim, after,
+    remove_results();
+    fmt::print("{} of {}: {} killed after {:.2f} of {:.2f} s, {}\n", i + 1, count, names[kind], after,
                whole_s,
                run.exit_code == 0 ? "over already"
                : from.empty()     ? "from the start"
                                   : "went on from a stock");
     std::fflush(stdout);
   }
-  fmt::print("{} of {} runs went on from a stock; mpirun named the rank in {}\n", kept, count, told);
+  fmt::print("{} of {} runs went on from a stock\n", kept, count);
 }
 
 }  // namespace

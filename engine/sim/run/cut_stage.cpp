@@ -11,6 +11,7 @@
 
 #include "sim/run/cut_parts.h"
 #include "sim/run/cut_record.h"
+#include "sim/run/leaf_budget.h"
 #include "sim/run/result.h"
 #include "sim/run/stock_contacts.h"
 #include "sim/run/tile_ranks.h"
@@ -41,6 +42,10 @@ class CutStage {
     outcome_.state.clearance = clearance_.result();
     result_.sweep_bound_mm = std::max(sweeps_.error_bound_mm, carried_.stock.error_bound_mm);
     result_.merged_sweeps = sweeps_.size();
+    if (options.spill && result.memory.peak_mb > result.memory.limit_mb) {
+      budget_.emplace(job, parts_, result.memory, options.save_folder);
+      result.memory.peak_mb = result.memory.limit_mb;
+    }
     if (options.ranks != nullptr) tiles_.emplace(*options.ranks, parts_);
   }
 
@@ -51,6 +56,8 @@ class CutStage {
     progress_.start_at(static_cast<double>(at_));
     save_due();
     while (at_ < sweeps_.size() && !progress_.stop_requested()) cut_on();
+    // mpirun that is stopped gives its ranks a second: no check and no report comes before what is cut.
+    if (tiles_ && at_ < sweeps_.size() && keeps()) keep();
     if (at_ == sweeps_.size()) look_at_contacts();
     progress_.end();
     check(CheckKind::kAtEnd);
@@ -85,10 +92,12 @@ class CutStage {
   /// run that goes on begins here again.
   void begin_stock() {
     const StockSettings& settings = job_.scene.stock;
-    result_.stock = std::make_unique<stock::Stock>(settings.body_W(), settings.voxel_mm);
+    result_.stock = std::make_unique<stock::Stock>(settings.body_W(), settings.voxel_mm,
+                                                   budget_ ? &budget_->spill() : nullptr);
     result_.full_mm3 = full_mm3_ = result_.stock->volume_mm3();
     if (!carried_.empty()) {
       cut_carried(*result_.stock, carried_, &progress_);
+      make_room();
       full_mm3_ = result_.stock->volume_mm3();
     }
     result_.start_hash = result_.stock->hash();
@@ -99,7 +108,9 @@ class CutStage {
     result_.stock.reset();
     result_.stock =
         std::make_unique<stock::Stock>(load_in_process(options_.resume_file, identity_, raw, outcome_.state));
+    if (budget_) result_.stock->begin_spill(budget_->spill());
     at_ = outcome_.resumed_from = outcome_.state.sweeps;
+    make_room();
     if (at_ > 0) {
       clearance_.resume(outcome_.state.clearance);
       bad_cuts_.resume(outcome_.state.bad_cuts);
@@ -124,14 +135,16 @@ class CutStage {
     look_at_contacts();
     if (at_ >= batch().end) begin_batch();
     const size_t checks_before = at_ * kChecks / total;
-    size_t end = std::min({batch().end, at_ + kSweepsPerStep, after_suspects(kSuspectsPerStep),
-                           ((checks_before + 1) * total + kChecks - 1) / kChecks, total});
+    size_t end = std::min(
+        {batch().end, budget_ ? next_multiple(at_, LeafBudget::kSweepsPerStep) : at_ + kSweepsPerStep,
+         after_suspects(kSuspectsPerStep), ((checks_before + 1) * total + kChecks - 1) / kChecks, total});
     end = std::min(end, contacts_.due());
     if (options_.record) end = std::min(end, next_multiple(at_, options_.record_every));
     if (next_save_ < saves_.size() && saves_[next_save_].after > at_) {
       end = std::min(end, saves_[next_save_].after);
     }
     while (at_ < end) cut_to(std::min(end, next_suspect()));
+    make_room();
     if (at_ == batch().end) end_batch();
     progress_.advance(static_cast<double>(at_));
     if (checks_before != at_ * kChecks / total && at_ < total) check(CheckKind::kOnTheWay);
@@ -140,6 +153,10 @@ class CutStage {
     }
     save_due();
     keep_due();
+  }
+
+  void make_room() {
+    if (budget_) budget_->make_room(*result_.stock, at_);
   }
 
   /// Links and fixtures where they come to the raw stock.
@@ -245,11 +262,12 @@ class CutStage {
     }
   }
 
+  bool keeps() const { return options_.keep_every_s > 0.0 && !options_.save_folder.empty(); }
   void keep_due() {
     const auto now = std::chrono::steady_clock::now();
-    if (options_.keep_every_s <= 0.0 || options_.save_folder.empty() ||
-        std::chrono::duration<double>(now - kept_at_).count() < options_.keep_every_s)
-      return;
+    if (keeps() && std::chrono::duration<double>(now - kept_at_).count() >= options_.keep_every_s) keep();
+  }
+  void keep() {
     const std::string path = options_.save_folder + "/" + kKeptStock;
     whole().save(path, cut_metadata(job_.scene.name, identity_, state()));
     if (!is_kept_) progress_.note(fmt::format("the stock so far is kept in {}", path));
@@ -276,6 +294,9 @@ class CutStage {
     outcome_.metadata = cut_metadata(job_.scene.name, identity_, outcome_.state);
     result_.clearance = outcome_.state.clearance;
     if (result_.main.contacts) result_.main.contacts->as_cut = contacts_.result();
+    if (budget_)
+      progress_.note(fmt::format("{} of {} leaves of the stock ended on the disk",
+                                 result_.stock->leaves_on_disk(), result_.stock->leaves()));
     result_.volume_left_mm3 = result_.stock->volume_mm3();
     result_.volume_removed_mm3 = full_mm3_ - result_.volume_left_mm3;
     if (options_.record) write_states();
@@ -310,7 +331,8 @@ class CutStage {
   BadCutCheck& bad_cuts_ = parts_.bad_cuts;
   mutable motion::CycleReader reader_{*result_.main.cycles};
   std::optional<stock::ContactFinder> finder_;
-  std::optional<TileLead> tiles_;  ///< none: this process cuts alone
+  std::optional<TileLead> tiles_;     ///< none: this process cuts alone
+  std::optional<LeafBudget> budget_;  ///< none: all leaves stay in memory
   StockContactCheck contacts_;
   std::vector<Save> saves_;
   size_t next_save_ = 0, at_ = 0;
@@ -339,7 +361,9 @@ void leave_uncut(const Job& job, const CutOptions& options, Result& result) {
   CutOutcome& outcome = result.cut;
   if (options.resume_file.empty()) {
     const StockSettings& settings = job.scene.stock;
-    result.stock = std::make_unique<stock::Stock>(settings.body_W(), settings.voxel_mm);
+    const stock::Spill spill{options.save_folder};
+    result.stock = std::make_unique<stock::Stock>(settings.body_W(), settings.voxel_mm,
+                                                  options.spill ? &spill : nullptr);
     outcome.metadata = cut_metadata(job.scene.name, cut_identity(job, {}, *result.main.carried), {});
     return;
   }

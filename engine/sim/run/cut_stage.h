@@ -27,6 +27,10 @@ struct CutOptions {
   /// Keep the stock so far in kKeptStock whenever so many seconds have passed, for a run that is killed; 0:
   /// never.
   double keep_every_s = 0.0;
+  /// Leaves of the stock go to the disk, in save_folder, when more memory is expected to be needed than may
+  /// be used: slower, the same results. Not together with check_voxels.
+  bool spill = false;
+  double max_memory_mb = 0.0;          ///< 0: what the scene says
   bool check_voxels = false;           ///< costly invariants on the way too; twice the stock's memory
   Outputs outputs;                     ///< what follows: its memory counts
   std::vector<std::string> overrides;  ///< of the scene, for the record
@@ -52,7 +56,8 @@ std::string saved_stock_name(const ProgramPlace& place);
 
 /// Cuts result.main's path; fills stock, clearance, volumes and cut outcome. Stops between batches of sweeps
 /// when the user asks. The stock does not depend on the options: resumed, saved, recorded and plain runs end
-/// with equal hashes. Throws InputError: "place-unknown", "place-before-resume", what load_in_process throws.
+/// with equal hashes. Throws InputError: "place-unknown", "place-before-resume", what load_in_process throws,
+/// "out-of-memory", "spill-disk-full", "spill-unwritable".
 void cut_stock(const Job& job, const CutOptions& options, Progress& progress, Result& result);
 
 /// For a run that was stopped before its motion was known: the stock as it was when the run began, to go on

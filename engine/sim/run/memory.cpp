@@ -33,7 +33,8 @@ constexpr double kUsualPixels = 1280.0 * 720.0;
 constexpr double kStillPixel = 112.0;
 // Of a movie: two renderers and the encoder's frames, with one sample; each further sample.
 constexpr double kMoviePixel = 85.0, kMovieSample = 22.5;
-constexpr double kSeen = 0.95;  // of the stock: its leaves as contacts and invariants look at them
+// Of the stock: room that leaves which are gone leave between those that stay, and pairs of sweep and leaf.
+constexpr double kHoles = 0.25;
 constexpr double kSweep = sizeof(stock::Sweep) + sizeof(SweepSource);
 constexpr double kCutting = sizeof(ToolPose) + 8.0;  // the poses of cycles to be merged; boxes of EarlierCuts
 // A sweep of blocks, made when it is asked for; its vector grows by halves, and its share of a box.
@@ -51,7 +52,7 @@ constexpr double kComparedTick = 530.0;
 
 /// Counts of a stock while and after it is cut.
 struct SurfaceCounts {
-  double leaves_most = 0.0, triangles = 0.0;
+  double leaves_most = 0.0, triangles = 0.0, bytes = 0.0;  ///< bytes: of the preview itself
 };
 
 constexpr double kCoarser = 4.0;
@@ -78,6 +79,7 @@ SurfaceCounts preview(const Job& job, const motion::Cycles& cycles, const Carrie
   stock::Stock stock = starting_stock(job, carried, voxel);
   const std::vector<stock::CutterSolid> solids = tool_solids(job.scene);
   double most = static_cast<double>(stock.leaves());
+  size_t bytes = stock.memory_bytes();
   const size_t piece = some.size() / kPieces + 1;
   for (size_t i = 0; i < some.size(); i += piece) {
     for_each_tool(
@@ -85,9 +87,11 @@ SurfaceCounts preview(const Job& job, const motion::Cycles& cycles, const Carrie
         [&](uint32_t block) { return sweeps.source_of(block).tool; },
         [&](size_t tool, std::span<const stock::Sweep> part) { stock.cut(part, solids[tool]); });
     most = std::max(most, static_cast<double>(stock.leaves()));
+    bytes = std::max(bytes, stock.memory_bytes());
   }
   const double finer = std::pow(voxel / settings.voxel_mm, 2);
-  return {most * finer, meshed ? static_cast<double>(stock.mesh().triangles.size()) * finer : 0.0};
+  return {most * finer, meshed ? static_cast<double>(stock.mesh().triangles.size()) * finer : 0.0,
+          static_cast<double>(bytes)};
 }
 
 /// Rays of the design. Surfaces: counted eight times as coarse, where the chord may stray 64 times as far.
@@ -178,41 +182,50 @@ MemoryPrediction predict_memory(const Job& job, const MeasuredPath& path, const 
   const bool suspects = path.contacts && !path.contacts->suspects.empty();
   const SurfaceCounts counts =
       preview(job, *path.cycles, *path.carried, outputs.page || outputs.pictures || suspects);
-  const double stock =
-      static_cast<double>(stock::Stock::memory_for(settings.box_W, settings.voxel_mm, counts.leaves_most));
   const auto ticks = static_cast<double>(path.cycles->size());
   const bool by_block = settings.cut_by == CutBy::kBlocks, planned_passes = settings.cut_by == CutBy::kPasses;
   const double sweeps = by_block ? static_cast<double>(path.path.elements.size()) : ticks;
-  const double rays = ray_count(job) * kRay;
+  const double rays = ray_count(job);
+  const bool compared = job.scene.compare_planners && planned_passes;
+  // The longest, and beside it those that have about as many ticks as the path itself.
+  const double beside =
+      std::min(static_cast<double>(kComparedAtOnce), static_cast<double>(thread_count())) - 1.0;
+  const double compared_ticks =
+      compared ? std::max(ticks, longest_comparison(job, path)) + beside * ticks : 0.0;
   const double own_sweeps = sweeps * (by_block ? kSweepOfBlock : kSweep);
   // One stretch is in use while the next is planned (motion::PlanAhead).
   const double stretches = thread_count() > 1 ? 2.0 : 1.0;
   const double planned = std::min(kCellsOfBlock * static_cast<double>(path.path.elements.size()),
                                   stretches * static_cast<double>(motion::LookAheadReach{}.planned));
   const double held = kBase + static_cast<double>(settings.body_W().memory_bytes()) +
-                      static_cast<double>(path.carried->bytes()) + rays + own_sweeps +
+                      static_cast<double>(path.carried->bytes()) + own_sweeps +
                       (planned_passes ? 0.0 : planned * kPlannedCell) +
                       static_cast<double>(path.cycles->kept().size() * sizeof(motion::Cycle)) +
                       static_cast<double>(path.path.elements.bytes() + path.cycles->motions().bytes());
-  // The stages that hold most; each ends before the next begins.
-  const double cutting = held - rays + (stocks + kSeen) * stock + (by_block ? 0.0 : sweeps * kCutting) +
-                         (suspects ? counts.triangles * kBodyTriangle : 0.0);
-  double comparing = 0.0;
-  if (job.scene.compare_planners && planned_passes) {
-    // The longest, and beside it those that have about as many ticks as the path itself.
-    const double beside =
-        std::min(static_cast<double>(kComparedAtOnce), static_cast<double>(thread_count())) - 1.0;
-    comparing = held + stock +
-                (std::max(ticks, longest_comparison(job, path)) + beside * ticks) * kComparedTick +
-                (1.0 + beside) * rays;
-  }
-  const double measuring =
-      job.has_design() ? held + stock + ray_count(job) * kMeasuredRay + sweeps * (kSweep + kCutting) : 0.0;
   const double pictures = outputs.pictures ? pictures_bytes(job.scene) : 0.0;
   const double mesh = outputs.page || outputs.pictures ? counts.triangles * kTriangle : 0.0;
-  const double meshing = held + stock + mesh + pictures;
-  return {stocks * stock / kMegabyte, std::max({cutting, measuring, comparing, meshing}) / kMegabyte,
-          (stock + mesh) / kMegabyte, (kBase + pictures) / kMegabyte, memory_limit_mb(job.scene)};
+  // The stages that hold most; each ends before the next begins.
+  const auto peak = [&](double stock) {
+    const double cutting = held + (stocks + kHoles) * stock + (by_block ? 0.0 : sweeps * kCutting) +
+                           (suspects ? counts.triangles * kBodyTriangle : 0.0);
+    const double after = held + rays * kRay + stock;
+    const double comparing =
+        compared ? after + compared_ticks * kComparedTick + (1.0 + beside) * rays * kRay : 0.0;
+    const double measuring =
+        job.has_design() ? after + kHoles * stock + rays * kMeasuredRay + sweeps * (kSweep + kCutting) : 0.0;
+    return std::max({held + counts.bytes, cutting, measuring, comparing, after + mesh + pictures});
+  };
+  const double stock =
+      static_cast<double>(stock::Stock::memory_for(settings.box_W, settings.voxel_mm, counts.leaves_most));
+  const double on_disk = counts.leaves_most * static_cast<double>(stock::Stock::kLeafBytes);
+  return {.stock_mb = stocks * stock / kMegabyte,
+          .peak_mb = peak(stock) / kMegabyte,
+          .scaling_mb = (stock + mesh) / kMegabyte,
+          .fixed_mb = (kBase + pictures) / kMegabyte,
+          .limit_mb = memory_limit_mb(job.scene),
+          .rest_mb = peak(stock - on_disk) / kMegabyte,
+          .leaf_mb = (1.0 + kHoles) * static_cast<double>(stock::Stock::kLeafBytes) / kMegabyte,
+          .leaves = counts.leaves_most};
 }
 
 namespace {
@@ -247,13 +260,15 @@ std::string pictures_that_fit(const Scene& scene, double too_much_mb) {
 
 void require_memory(const Job& job, const MemoryPrediction& prediction) {
   if (prediction.peak_mb <= prediction.limit_mb) return;
-  throw InputError(
-      "out-of-memory", {job.scene.file},
-      fmt::format("stock.voxel_mm = {:g} is expected to need {:.0f} MB, {:.0f} MB may be used",
-                  job.scene.stock.voxel_mm, prediction.peak_mb, prediction.limit_mb),
-      prediction.fixed_mb < prediction.limit_mb
-          ? fmt::format("voxel_mm = {:g} fits; or raise --max-memory", voxel_that_fits(job, prediction))
-          : pictures_that_fit(job.scene, prediction.peak_mb - prediction.limit_mb));
+  throw InputError("out-of-memory", {job.scene.file},
+                   fmt::format("stock.voxel_mm = {:g} is expected to need {:.0f} MB, {:.0f} MB may be used",
+                               job.scene.stock.voxel_mm, prediction.peak_mb, prediction.limit_mb),
+                   prediction.fixed_mb < prediction.limit_mb
+                       ? fmt::format("voxel_mm = {:g} fits; or raise --max-memory, or add --spill: slower, "
+                                     "leaves of the stock go to "
+                                     "the disk",
+                                     voxel_that_fits(job, prediction))
+                       : pictures_that_fit(job.scene, prediction.peak_mb - prediction.limit_mb));
 }
 
 }  // namespace swarf::sim

@@ -16,6 +16,9 @@ struct MemoryPrediction {
   double scaling_mb = 0.0;  ///< of what grows with 1/voxel^2: level set and its mesh
   double fixed_mb = 0.0;    ///< of libraries and pictures, at any voxel size
   double limit_mb = 0.0;    ///< what may be used: see memory_limit_mb
+  double rest_mb = 0.0;     ///< peak_mb when all leaves of the level set are on the disk
+  double leaf_mb = 0.0;     ///< what each leaf in memory adds to that
+  double leaves = 0.0;      ///< of the level set at its greatest
 };
 
 /// Paths that are only compared: so many are moved, cut and measured at once.

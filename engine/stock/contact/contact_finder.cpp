@@ -83,7 +83,7 @@ ContactFinder::Bound ContactFinder::bound_at(const SweepMap& map, const Revolved
 
 double ContactFinder::value_at(size_t leaf, int place) const {
   const LevelSet& set = stock_.level_set();
-  if (set.map.states[leaf] == LeafState::kLeaf) return set.map.leaves[leaf]->buffer().data()[place];
+  if (set.map.states[leaf] == LeafState::kLeaf) return set.values(leaf)[place];
   return set.map.states[leaf] == LeafState::kSolid ? -set.band() : set.band();
 }
 
@@ -99,7 +99,7 @@ size_t ContactFinder::candidates(size_t leaf, const Bound& bound, double least, 
   std::array<float, kLeafSide> solid;
   solid.fill(-set.band());
   const bool is_leaf = set.map.states[leaf] == LeafState::kLeaf;
-  const float* values = is_leaf ? set.map.leaves[leaf]->buffer().data() : solid.data();
+  const float* values = is_leaf ? set.values(leaf) : solid.data();
   const auto below = static_cast<float>(least + kRounding * voxel_);
   const auto reach = static_cast<float>(reach_voxels * voxel_);
   const Vec3 first_step = bound.slope[0] * voxel_, second_step = bound.slope[1] * voxel_;

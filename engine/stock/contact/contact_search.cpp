@@ -220,7 +220,7 @@ void ContactFinder::look_for_air(size_t leaf, const Vec3& point_W, Witness& best
   const Vec3 far = (to_first + Vec3::Constant((kLeafSide - 1) * voxel_)).cwiseMin(0.0);
   const Vec3 near = to_first.cwiseMax(0.0);
   if ((near - far).norm() - set.band() >= least) return;
-  const float* values = set.map.leaves[leaf]->buffer().data();
+  const float* values = set.values(leaf);
   const double inside = -0.999 * set.band();  // below, the band says nothing
   int found = -1;
   for (int row = 0; row < kLeafVoxels / kLeafSide; ++row) {

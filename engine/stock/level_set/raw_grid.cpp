@@ -13,20 +13,19 @@
 namespace swarf::stock {
 namespace {
 
-constexpr int kBlockLeaves = 4;  // leaf positions along a side of such a cube
+constexpr int kBlockLeaves = kPlanesAtOnce;  // leaf positions along a side of such a cube
 
-/// Cubes of leaf positions that cover the map, z fastest.
+/// Cubes of leaf positions that cover some planes of the map, z fastest.
 struct LeafBlocks {
-  int count[3];
+  int plane, count[2];
 
-  explicit LeafBlocks(const LeafMap& map) {
-    for (int a = 0; a < 3; ++a) count[a] = (map.dimension[a] + kBlockLeaves - 1) / kBlockLeaves;
+  LeafBlocks(const LeafMap& map, int first_plane) : plane(first_plane) {
+    for (int a = 0; a < 2; ++a) count[a] = (map.dimension[a + 1] + kBlockLeaves - 1) / kBlockLeaves;
   }
-  size_t size() const { return static_cast<size_t>(count[0]) * count[1] * count[2]; }
+  size_t size() const { return static_cast<size_t>(count[0]) * count[1]; }
   openvdb::Coord first(size_t block) const {
-    const auto k = static_cast<int>(block % count[2]), j = static_cast<int>(block / count[2] % count[1]);
-    const auto i = static_cast<int>(block / count[2] / count[1]);
-    return {i * kBlockLeaves, j * kBlockLeaves, k * kBlockLeaves};
+    return {plane, static_cast<int>(block / count[1]) * kBlockLeaves,
+            static_cast<int>(block % count[1]) * kBlockLeaves};
   }
 };
 
@@ -63,7 +62,7 @@ LeafState raw_leaf(const LevelSet& set, size_t index, std::unique_ptr<LeafNode>&
   return state;
 }
 
-void fill_block(LevelSet& set, const openvdb::Coord& first, std::vector<std::unique_ptr<LeafNode>>& made) {
+void fill_block(LevelSet& set, const openvdb::Coord& first, MadeLeaves& made) {
   const LeafMap& map = set.map;
   const double side = kBlockLeaves * kLeafSide;
   const Vec3 low =
@@ -79,15 +78,15 @@ void fill_block(LevelSet& set, const openvdb::Coord& first, std::vector<std::uni
         } else if (std::abs(centre) > reach) {
           set.map.states[n] = centre < 0.0 ? LeafState::kSolid : LeafState::kAir;
         } else {
-          set.map.states[n] = raw_leaf(set, n, made[n]);
+          set.map.states[n] = raw_leaf(set, n, made.at(n));
         }
       }
 }
 
 }  // namespace
 
-LevelSet make_raw(const RawShape& raw, double voxel, Share share) {
-  if (raw.is_box()) return make_box(raw.box(), voxel, share);
+LevelSet make_raw(const RawShape& raw, double voxel, Share share, const Spill* spill) {
+  if (raw.is_box()) return make_box(raw.box(), voxel, share, spill);
   LevelSet set;
   set.box = raw.box();
   set.raw = raw;
@@ -95,12 +94,13 @@ LevelSet make_raw(const RawShape& raw, double voxel, Share share) {
   set.grid = empty_grid(voxel);
   set.map = empty_map(set.box, voxel);
   keep_columns(set, share);
-  std::vector<std::unique_ptr<LeafNode>> made(set.map.size());
-  const LeafBlocks blocks(set.map);
-  parallel_chunks(blocks.size(), 1, [&](size_t begin, size_t end) {
-    for (size_t b = begin; b < end; ++b) fill_block(set, blocks.first(b), made);
+  if (spill != nullptr) begin_spill(set, *spill);
+  fill_map(set, [&](int first, int, MadeLeaves& made) {
+    const LeafBlocks blocks(set.map, first);
+    parallel_chunks(blocks.size(), 1, [&](size_t begin, size_t end) {
+      for (size_t b = begin; b < end; ++b) fill_block(set, blocks.first(b), made);
+    });
   });
-  take_leaves(set, made);
   return set;
 }
 

@@ -22,9 +22,9 @@ Stock::Stock(const Box& box_W, double voxel_mm) {
   SWARF_CHECK(voxel_mm > 0.0 && box_W.size().minCoeff() > 0.0, "a stock needs a voxel size and a volume");
   impl_ = std::make_unique<Impl>(Impl{make_box(box_W, voxel_mm)});
 }
-Stock::Stock(const RawShape& raw, double voxel_mm) {
+Stock::Stock(const RawShape& raw, double voxel_mm, const Spill* spill) {
   SWARF_CHECK(voxel_mm > 0.0 && raw.box().size().minCoeff() > 0.0, "a stock needs a voxel size and a volume");
-  impl_ = std::make_unique<Impl>(Impl{make_raw(raw, voxel_mm)});
+  impl_ = std::make_unique<Impl>(Impl{make_raw(raw, voxel_mm, {}, spill)});
 }
 Stock::Stock(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Stock::~Stock() = default;
@@ -33,6 +33,22 @@ Stock& Stock::operator=(Stock&&) noexcept = default;
 
 void Stock::cut(std::span<const Sweep> sweeps, const CutterSolid& cutter) {
   cut_level_set(impl_->level_set, sweeps, cutter);
+}
+
+void Stock::begin_spill(const Spill& spill) {
+  stock::begin_spill(impl_->level_set, spill);
+}
+bool Stock::spills() const {
+  return impl_->level_set.spilled != nullptr;
+}
+TileGrid Stock::tiles_of(const Box& box_W, double voxel_mm) {
+  return stock::tiles_of(map_extent(box_W, voxel_mm), voxel_mm);
+}
+void Stock::make_room(std::span<const uint32_t> next_use) {
+  stock::make_room(impl_->level_set, next_use);
+}
+size_t Stock::leaves_on_disk() const {
+  return spills() ? impl_->level_set.spilled->file.slots() : 0;
 }
 
 double Stock::voxel_mm() const {

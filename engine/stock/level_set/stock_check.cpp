@@ -71,7 +71,7 @@ std::string voxel_name(const LevelSet& set, size_t position, int offset) {
 /// Invariants 5 to 7 of one leaf.
 std::string value_fault(const LevelSet& set, size_t n) {
   const LeafNode& leaf = *set.map.leaves[n];
-  const float* values = leaf.buffer().data();
+  const float* values = set.values(n);
   const float band = set.band();
   bool air = true, solid = true;
   for (int v = 0; v < kLeafVoxels; ++v) {
@@ -89,7 +89,7 @@ std::string value_fault(const LevelSet& set, size_t n) {
 
 /// Invariant 8: steps to the next voxel along +x, +y, +z.
 std::string step_fault(const LevelSet& set, size_t n) {
-  const float* values = set.map.leaves[n]->buffer().data();
+  const float* values = set.values(n);
   const openvdb::Coord origin = set.map.origin(n);
   // A distance changes by at most one voxel per voxel; both ends of the step are rounded by the kernels, and
   // their difference and the voxel once more.
@@ -141,7 +141,7 @@ std::string gained_material(const LevelSet& set, const LevelSet& earlier) {
       return fmt::format("9: leaf position {} gained material", n);
     }
     if (set.map.states[n] != LeafState::kLeaf || earlier.map.states[n] != LeafState::kLeaf) return "";
-    const float *now = set.map.leaves[n]->buffer().data(), *before = earlier.map.leaves[n]->buffer().data();
+    const float *now = set.values(n), *before = earlier.values(n);
     for (int v = 0; v < kLeafVoxels; ++v) {
       if (now[v] < before[v]) return fmt::format("10: {} gained material", voxel_name(set, n, v));
     }

@@ -183,8 +183,7 @@ void apply_group(const LevelSet& set, const Batch& batch, const Group& group,
 }
 
 /// Applies one group. The leaf is changed in place, or made when the position was solid so far.
-Outcome cut_leaf(const LevelSet& set, const Batch& batch, const Group& group,
-                 std::vector<Candidate>& candidates) {
+Outcome cut_leaf(LevelSet& set, const Batch& batch, const Group& group, std::vector<Candidate>& candidates) {
   const size_t leaf = group.leaf;
   Outcome outcome;
   outcome.floor = set.map.floors[leaf];
@@ -197,13 +196,15 @@ Outcome cut_leaf(const LevelSet& set, const Batch& batch, const Group& group,
     outcome.made = std::make_unique<LeafNode>(set.map.origin(leaf), -set.band(), false);
     node = outcome.made.get();
   }
-  apply_group(set, batch, group, candidates, node->buffer().data(), outcome);
+  float* const values = outcome.made ? node->buffer().data() : set.own_values(leaf);
+  apply_group(set, batch, group, candidates, values, outcome);
   outcome.state = settle_leaf(*node, set.band());
   return outcome;
 }
 
 void settle(LevelSet& set, size_t leaf, Outcome& outcome) {
   auto& tree = set.grid->tree();
+  set.forget_spilled(leaf);
   if (outcome.state == LeafState::kLeaf && outcome.made) {
     set.map.leaves[leaf] = outcome.made.get();
     tree.addLeaf(outcome.made.release());

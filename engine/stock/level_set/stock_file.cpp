@@ -3,10 +3,14 @@
 // before any of it is interpreted.
 #include <fmt/format.h>
 #include <openvdb/io/Archive.h>
+#include <openvdb/io/GridDescriptor.h>
 #include <openvdb/io/Stream.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
@@ -149,62 +153,130 @@ void add_metadata(openvdb::FloatGrid& grid, const LevelSet& set, const StockMeta
     grid.insertMeta(kRawKey, openvdb::StringMetadata(set.raw ? set.raw->text() : "of a file"));
 }
 
+/// A level set on its way to a file. Equal stocks are equal files: -0 equals 0, and which of the two stands
+/// depends on the order of the cuts. Leaves that are on the disk come through memory one by one.
+class WrittenGrid final : public openvdb::FloatGrid {
+ public:
+  WrittenGrid(const LevelSet& set, const StockMetadata& metadata)
+      : openvdb::FloatGrid(set.grid->treePtr()), set_(set) {
+    for (auto one = set.grid->beginMeta(); one != set.grid->endMeta(); ++one)
+      insertMeta(one->first, *one->second);
+    setTransform(set.grid->transformPtr());
+    add_metadata(*this, set, metadata);
+    addStatsMetadata();
+  }
+
+  /// As if all leaves were in memory: it is written.
+  openvdb::Index64 memUsage() const override {
+    return openvdb::FloatGrid::memUsage() +
+           (set_.spilled ? set_.spilled->file.slots() * kLeafVoxels * sizeof(float) : 0);
+  }
+  void writeBuffers(std::ostream& out) const override {
+    for (auto leaf = tree().cbeginLeaf(); leaf; ++leaf) {
+      const openvdb::Coord place = (leaf->origin() >> 3) - set_.map.lower;
+      const float* values = set_.values(set_.map.index(place.x(), place.y(), place.z()));
+      LeafNode written(leaf->origin(), 0.0F);
+      written.setValueMask(leaf->getValueMask());
+      for (int n = 0; n < kLeafVoxels; ++n) written.buffer().data()[n] = values[n] + 0.0F;
+      written.writeBuffers(out, saveFloatAsHalf());
+    }
+  }
+
+ private:
+  const LevelSet& set_;
+};
+
+/// A file as openvdb::io::File writes it, into our own: a full disk is seen by our own writer, while
+/// OpenVDB's does not say that it has taken the end of a file. What is left out is the table by which a
+/// reader could put off reading: it compresses every leaf once more, where it would be in memory.
+class StreamArchive : public openvdb::io::Archive {
+ public:
+  void write_whole(std::ostream& out, const openvdb::GridBase& grid) const {
+    auto settings = std::make_shared<openvdb::io::StreamMetadata>();
+    openvdb::io::setStreamMetadataPtr(out, settings, /*transfer=*/false);
+    openvdb::io::setDataCompression(out, compression());
+    writeHeader(out, /*seekable=*/true);
+    openvdb::MetaMap().writeMeta(out);
+    const int32_t grids = 1;
+    out.write(reinterpret_cast<const char*>(&grids), sizeof(grids));
+    write_grid(out, grid);
+    openvdb::io::clearStreamMetadataPtr(out);
+  }
+
+ private:
+  void write_grid(std::ostream& out, const openvdb::GridBase& grid) const {
+    openvdb::io::GridDescriptor places(grid.getName(), grid.type(), grid.saveFloatAsHalf());
+    places.writeHeader(out);
+    const std::streamoff places_at = out.tellp();
+    places.writeStreamPos(out);  // once more when they are known
+    places.setGridPos(out.tellp());
+    setGridCompression(out, grid);
+    grid.writeMeta(out);
+    grid.writeTransform(out);
+    grid.writeTopology(out);
+    places.setBlockPos(out.tellp());
+    grid.writeBuffers(out);
+    places.setEndPos(out.tellp());
+    out.seekp(places_at);
+    places.writeStreamPos(out);
+    places.seekToEnd(out);
+  }
+};
+
+constexpr FileFault kUnwritable{"stock-file-unwritable", "the stock file cannot be written"};
+
+uint64_t file_checksum(const NewFile& file) {
+  Checksum sum(std::filesystem::file_size(file.temporary()));
+  read_in_pieces(file.temporary(), kUnwritable, [&](std::string_view piece) { sum.add(piece); });
+  return sum.value();
+}
+
 /// OpenVDB names each file it writes by a random UUID. Ours is made from the content, so that equal stocks
 /// are equal files; it stands behind magic number, three version numbers and a flag.
-constexpr size_t kUuidAt = 8 + 3 * 4 + 1, kUuidLetters = 36;
+constexpr std::streamoff kUuidAt = 8 + 3 * 4 + 1;
+constexpr size_t kUuidLetters = 36;
 
-void name_by_content(std::string& bytes) {
-  SWARF_CHECK(
-      bytes.size() > kUuidAt + kUuidLetters && bytes[kUuidAt + 8] == '-' && bytes[kUuidAt + 23] == '-',
-      "OpenVDB has changed where the UUID of a file stands");
-  bytes.replace(kUuidAt, kUuidLetters, kUuidLetters, '0');
-  const uint64_t first = checksum(bytes);
+void write_uuid(std::fstream& file, const std::string& uuid) {
+  file.seekp(kUuidAt);
+  file << uuid << std::flush;
+}
+
+void name_by_content(const NewFile& file) {
+  std::fstream content(file.temporary(), std::ios::in | std::ios::out | std::ios::binary);
+  std::string before(kUuidLetters, '\0');
+  content.seekg(kUuidAt);
+  content.read(before.data(), kUuidLetters);
+  SWARF_CHECK(!content || (before[8] == '-' && before[23] == '-'),
+              "OpenVDB has changed where the UUID of a file stands");
+  write_uuid(content, std::string(kUuidLetters, '0'));
+  const uint64_t first = file_checksum(file);
   Hash second;
   second.add(first);
   const std::string digits = fmt::format("{:016x}{:016x}", first, second.value());
   // Version 8 of RFC 9562 is the writer's own.
-  const std::string uuid = fmt::format("{}-{}-8{}-8{}-{}", digits.substr(0, 8), digits.substr(8, 4),
-                                       digits.substr(13, 3), digits.substr(17, 3), digits.substr(20, 12));
-  bytes.replace(kUuidAt, kUuidLetters, uuid);
-}
-
-/// What openvdb::io::File writes, in memory: it has to be named by its content, and a full disk is seen by
-/// our own writer, while OpenVDB's does not say that it has taken the end of a file.
-class MemoryArchive : public openvdb::io::Archive {
- public:
-  std::string write_whole(const openvdb::FloatGrid::Ptr& grid) const {
-    std::ostringstream out(std::ios::binary);
-    write(out, openvdb::GridPtrVec{grid}, /*seekable=*/true);
-    return std::move(out).str();
-  }
-};
-
-/// Named by its content, with mark and checksum at the end.
-std::string file_bytes(const openvdb::FloatGrid::Ptr& grid) {
-  std::string bytes = MemoryArchive().write_whole(grid);
-  name_by_content(bytes);
-  const uint64_t sum = checksum(bytes);
-  bytes.append(kMark, kMarkBytes);
-  bytes.append(reinterpret_cast<const char*>(&sum), sizeof(sum));
-  return bytes;
-}
-
-/// Equal stocks are equal files: -0 equals 0, and which of the two stands depends on the order of the cuts.
-void drop_minus_zero(const LevelSet& set) {
-  for (LeafNode* leaf : set.map.leaves) {
-    if (leaf == nullptr) continue;
-    float* values = leaf->buffer().data();
-    for (int n = 0; n < kLeafVoxels; ++n) values[n] += 0.0F;
-  }
+  write_uuid(content, fmt::format("{}-{}-8{}-8{}-{}", digits.substr(0, 8), digits.substr(8, 4),
+                                  digits.substr(13, 3), digits.substr(17, 3), digits.substr(20, 12)));
+  if (!content) file.refuse(std::strerror(errno));
 }
 
 }  // namespace
 
 void write_level_set(const LevelSet& set, const std::string& path, const StockMetadata& metadata) {
-  drop_minus_zero(set);
-  openvdb::FloatGrid::Ptr grid = set.grid->copy();  // shares the tree, owns its metadata
-  add_metadata(*grid, set, metadata);
-  replace_file(path, file_bytes(grid), {"stock-file-unwritable", "the stock file cannot be written"});
+  NewFile file(path, kUnwritable);
+  const WrittenGrid grid(set, metadata);
+  std::ofstream out(file.temporary(), std::ios::binary);
+  StreamArchive().write_whole(out, grid);
+  out.close();
+  if (!out) file.refuse(std::strerror(errno));
+  name_by_content(file);
+  // Mark and checksum stand at the end.
+  const uint64_t sum = file_checksum(file);
+  std::ofstream end(file.temporary(), std::ios::binary | std::ios::app);
+  end.write(kMark, kMarkBytes);
+  end.write(reinterpret_cast<const char*>(&sum), sizeof(sum));
+  end.close();
+  if (!end) file.refuse(std::strerror(errno));
+  file.move_into_place();
 }
 
 LevelSet read_level_set(const std::string& path, StockMetadata& metadata) {
@@ -233,6 +305,9 @@ LevelSet deep_copy(const LevelSet& original) {
   set.rounding_mm = original.rounding_mm;
   attach_map(set);
   set.map.floors = original.map.floors;
+  for (size_t n = 0; n < set.map.size(); ++n)
+    if (original.is_spilled(n))
+      std::copy_n(original.values(n), kLeafVoxels, set.map.leaves[n]->buffer().data());
   return set;
 }
 

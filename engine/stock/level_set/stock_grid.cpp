@@ -1,5 +1,3 @@
-#include <openvdb/tools/SignedFloodFill.h>
-
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -60,6 +58,38 @@ LeafState box_leaf(const LevelSet& set, size_t index, std::unique_ptr<LeafNode>&
   return state;
 }
 
+void take_leaves(LevelSet& set, MadeLeaves& made) {
+  for (size_t n = 0; n < made.leaves.size(); ++n) {
+    if (!made.leaves[n]) continue;
+    set.map.leaves[made.begin + n] = made.leaves[n].get();
+    set.grid->tree().addLeaf(made.leaves[n].release());
+  }
+}
+
+/// Solid at a voxel that belongs to no leaf.
+bool is_solid(const LevelSet& set, const openvdb::Coord& voxel) {
+  const openvdb::Coord place = (voxel >> 3) - set.map.lower;
+  const bool known = openvdb::CoordBBox({0, 0, 0}, set.map.dimension.offsetBy(-1)).isInside(place);
+  return known && set.map.states[set.map.index(place.x(), place.y(), place.z())] == LeafState::kSolid;
+}
+
+/// The tree between its leaves: a node without leaves below it is all air or all solid.
+void sign_tiles(LevelSet& set) {
+  using Node = openvdb::FloatTree::RootNodeType::ChildNodeType;
+  auto& tree = set.grid->tree();
+  const openvdb::Coord lower = openvdb::Coord(set.map.lower) << 3,
+                       upper = lower + (openvdb::Coord(set.map.dimension) << 3).offsetBy(-1);
+  const openvdb::Coord first = lower & ~(static_cast<int>(Node::DIM) - 1);
+  for (int i = first.x(); i <= upper.x(); i += Node::DIM)
+    for (int j = first.y(); j <= upper.y(); j += Node::DIM)
+      for (int k = first.z(); k <= upper.z(); k += Node::DIM)
+        if (tree.probeConstNode<Node>({i, j, k}) == nullptr && is_solid(set, {i, j, k}))
+          tree.addTile(Node::LEVEL + 1, {i, j, k}, -set.band(), false);
+  auto tile = tree.beginValueAll();
+  tile.setMaxDepth(openvdb::FloatTree::ValueAllIter::LEAF_DEPTH - 1);
+  for (; tile; ++tile) tile.setValue(is_solid(set, tile.getCoord()) ? -set.band() : set.band());
+}
+
 int leaf_floor(double voxels) {
   return static_cast<int>(std::floor(voxels / kLeafSide));
 }
@@ -93,10 +123,10 @@ float LevelSet::value(const openvdb::Coord& ijk) const {
   if (map.states[index] != LeafState::kLeaf) {
     return map.states[index] == LeafState::kSolid ? -band() : band();
   }
-  return map.leaves[index]->getValue(LeafNode::coordToOffset(ijk));
+  return values(index)[LeafNode::coordToOffset(ijk)];
 }
 
-LeafMap empty_map(const Box& box, double voxel) {
+LeafMap map_extent(const Box& box, double voxel) {
   LeafMap map;
   const double margin = kBandVoxels + 1.0;  // beyond the band all is air
   openvdb::Coord upper;
@@ -105,6 +135,11 @@ LeafMap empty_map(const Box& box, double voxel) {
     upper[a] = leaf_floor(box.upper[a] / voxel + margin);
     map.dimension[a] = upper[a] - map.lower[a] + 1;
   }
+  return map;
+}
+
+LeafMap empty_map(const Box& box, double voxel) {
+  LeafMap map = map_extent(box, voxel);
   const size_t count = static_cast<size_t>(map.dimension.x()) * map.dimension.y() * map.dimension.z();
   map.states.assign(count, LeafState::kAir);
   map.leaves.assign(count, nullptr);
@@ -136,18 +171,20 @@ LeafState settle_leaf(LeafNode& leaf, float band) {
                                    : LeafState::kLeaf;
 }
 
-void take_leaves(LevelSet& set, std::vector<std::unique_ptr<LeafNode>>& made) {
-  for (size_t n = 0; n < made.size(); ++n) {
-    if (!made[n]) continue;
-    set.map.leaves[n] = made[n].get();
-    set.grid->tree().addLeaf(made[n].release());
+void fill_map(LevelSet& set, const std::function<void(int, int, MadeLeaves&)>& fill) {
+  const int planes = set.map.dimension.x();
+  for (int first = 0; first < planes; first += kPlanesAtOnce) {
+    const int last = std::min(first + kPlanesAtOnce, planes);
+    MadeLeaves made{set.map.index(first, 0, 0), {}};
+    made.leaves.resize(set.map.index(last, 0, 0) - made.begin);
+    fill(first, last, made);
+    take_leaves(set, made);
+    if (set.spilled) make_room(set, {});
   }
-  // Leaves have their signs already; the tiles between them get theirs here.
-  constexpr openvdb::Index kTilesOnly = 1;
-  openvdb::tools::signedFloodFill(set.grid->tree(), true, 1, kTilesOnly);
+  sign_tiles(set);
 }
 
-LevelSet make_box(const Box& box, double voxel, Share share) {
+LevelSet make_box(const Box& box, double voxel, Share share, const Spill* spill) {
   LevelSet set;
   set.box = box;
   set.raw = RawShape::of_box(box);
@@ -155,11 +192,13 @@ LevelSet make_box(const Box& box, double voxel, Share share) {
   set.grid = empty_grid(voxel);
   set.map = empty_map(box, voxel);
   keep_columns(set, share);
-  std::vector<std::unique_ptr<LeafNode>> made(set.map.size());
-  parallel_chunks(set.map.size(), kLeavesPerTask, [&](size_t begin, size_t end) {
-    for (size_t n = begin; n < end; ++n) set.map.states[n] = box_leaf(set, n, made[n]);
+  if (spill != nullptr) begin_spill(set, *spill);
+  fill_map(set, [&](int, int, MadeLeaves& made) {
+    parallel_chunks(made.leaves.size(), kLeavesPerTask, [&](size_t begin, size_t end) {
+      for (size_t n = made.begin + begin; n < made.begin + end; ++n)
+        set.map.states[n] = box_leaf(set, n, made.at(n));
+    });
   });
-  take_leaves(set, made);
   return set;
 }
 

@@ -9,11 +9,15 @@
 #include <openvdb/openvdb.h>
 
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "base/frames.h"
 #include "base/ranks.h"
+#include "stock/level_set/leaf_file.h"
 #include "stock/stock.h"
 
 // Grid and tree are compiled once, in stock_grid.cpp: each further file would spend six seconds on them.
@@ -65,6 +69,16 @@ struct LeafMap {
   openvdb::Coord origin(size_t index) const;  ///< first voxel
 };
 
+/// Leaves whose values are on the disk keep their node, their mask and their place in the tree.
+struct SpilledLeaves {
+  SpilledLeaves(const Spill& spill, size_t positions)
+      : file(spill.folder), slots(positions, LeafFile::kNone), most(spill.leaves_most) {}
+
+  LeafFile file;
+  std::vector<uint32_t> slots;  ///< by leaf position; LeafFile::kNone: in memory
+  size_t most = 0;              ///< leaves that make_room() leaves in memory
+};
+
 struct LevelSet {
   Box box;  ///< of the raw stock
   double voxel = 0.0;
@@ -75,6 +89,19 @@ struct LevelSet {
   double rounding_mm = kBoxRounding;  ///< values are the distances they stand for within this
   /// Of each column of leaf positions, x before y: 1 where another process cuts (stock_tiles.h); empty: none.
   std::vector<uint8_t> others;
+
+  std::unique_ptr<SpilledLeaves> spilled;  ///< null: all leaves are in memory
+
+  bool is_spilled(size_t leaf) const { return spilled && spilled->slots[leaf] != LeafFile::kNone; }
+  /// Of a leaf, to look at.
+  const float* values(size_t leaf) const {
+    return is_spilled(leaf) ? spilled->file.at(spilled->slots[leaf]) : map.leaves[leaf]->buffer().data();
+  }
+  /// Of a leaf, to change: they are in memory from now on. For one thread at a time and leaf;
+  /// forget_spilled() must follow.
+  float* own_values(size_t leaf);
+  /// What is on the disk of this position no longer counts. For one thread at a time.
+  void forget_spilled(size_t leaf);
 
   /// Cutting may change this position.
   bool owns(size_t index) const {
@@ -94,18 +121,33 @@ struct Stock::Impl {
   LevelSet level_set;
 };
 
-/// Positions that a box and its band need.
+/// Positions that a box and its band need: where they lie, without their states.
+LeafMap map_extent(const Box& box, double voxel);
+/// The same, all of them air.
 LeafMap empty_map(const Box& box, double voxel);
 openvdb::FloatGrid::Ptr empty_grid(double voxel);
-/// `share`: its tiles alone are filled (stock_tiles.h).
-LevelSet make_box(const Box& box, double voxel, Share share = {});
+/// `share`: its tiles alone are filled (stock_tiles.h). `spill`: null: all leaves stay in memory.
+LevelSet make_box(const Box& box, double voxel, Share share = {}, const Spill* spill = nullptr);
 /// Any raw stock (raw_grid.cpp).
-LevelSet make_raw(const RawShape& raw, double voxel, Share share = {});
+LevelSet make_raw(const RawShape& raw, double voxel, Share share = {}, const Spill* spill = nullptr);
+/// Leaves may go to the disk from now on (stock_spill.cpp).
+void begin_spill(LevelSet& set, const Spill& spill);
+/// See Stock::make_room; empty: every tile is as good as another.
+void make_room(LevelSet& set, std::span<const uint32_t> next_use);
+TileGrid tiles_of(const LeafMap& map, double voxel);
 /// Leaves the columns of other shares to others (stock_tiles.cpp).
 void keep_columns(LevelSet& set, Share share);
-/// Takes over the leaves of a fresh stock whose map knows its states, and gives the rest of the tree its
-/// signs.
-void take_leaves(LevelSet& set, std::vector<std::unique_ptr<LeafNode>>& made);
+/// Planes of leaf positions, across x, that a fresh stock is filled with at once.
+inline constexpr int kPlanesAtOnce = 4;
+/// Leaves of the positions from `begin` on.
+struct MadeLeaves {
+  size_t begin = 0;
+  std::vector<std::unique_ptr<LeafNode>> leaves;
+  std::unique_ptr<LeafNode>& at(size_t position) { return leaves[position - begin]; }
+};
+/// Fills a fresh stock: fill(first, last, made) gives the positions of planes [first, last) their states and
+/// makes their leaves. What the tree holds between the leaves gets its signs.
+void fill_map(LevelSet& set, const std::function<void(int first, int last, MadeLeaves& made)>& fill);
 
 /// What a leaf's values amount to; sets the leaf's mask of active voxels (those inside the band) when it
 /// stays.

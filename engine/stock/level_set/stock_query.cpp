@@ -34,9 +34,10 @@ double filled(const float* values, int n) {
 }
 
 /// Volume of one leaf position in voxels.
-double leaf_volume(const LeafMap& map, size_t n) {
-  if (map.states[n] != LeafState::kLeaf) return map.states[n] == LeafState::kSolid ? kLeafVoxels : 0.0;
-  const float* values = map.leaves[n]->buffer().data();
+double leaf_volume(const LevelSet& set, size_t n) {
+  const LeafState state = set.map.states[n];
+  if (state != LeafState::kLeaf) return state == LeafState::kSolid ? kLeafVoxels : 0.0;
+  const float* values = set.values(n);
   double sum = 0.0;
   for (int voxel = 0; voxel < kLeafVoxels; ++voxel) sum += filled(values, voxel);
   return sum;
@@ -51,13 +52,13 @@ std::array<float, kLeafVoxels> without_minus_zero(const float* values) {
 
 /// Four lanes of FNV-1a by words, so that the processor works on four multiplications at a time: a leaf of
 /// 2 kB then costs little more than reading it.
-uint64_t leaf_hash(const LeafMap& map, size_t n) {
+uint64_t leaf_hash(const LevelSet& set, size_t n) {
   Hash hash;
   hash.add(static_cast<uint64_t>(n));
-  hash.add(static_cast<uint64_t>(map.states[n]));
-  if (map.states[n] == LeafState::kLeaf) {
+  hash.add(static_cast<uint64_t>(set.map.states[n]));
+  if (set.map.states[n] == LeafState::kLeaf) {
     constexpr int kLanes = 4, kWords = kLeafVoxels * sizeof(float) / sizeof(uint64_t);
-    const std::array<float, kLeafVoxels> values = without_minus_zero(map.leaves[n]->buffer().data());
+    const std::array<float, kLeafVoxels> values = without_minus_zero(set.values(n));
     std::array<Hash, kLanes> lanes;
     for (int word = 0; word < kWords; word += kLanes) {
       std::array<uint64_t, kLanes> words;
@@ -74,7 +75,7 @@ uint64_t leaf_hash(const LeafMap& map, size_t n) {
 double volume(const LevelSet& set) {
   std::vector<double> parts(set.map.size());
   parallel_chunks(parts.size(), kPositionsPerTask, [&](size_t begin, size_t end) {
-    for (size_t n = begin; n < end; ++n) parts[n] = leaf_volume(set.map, n);
+    for (size_t n = begin; n < end; ++n) parts[n] = leaf_volume(set, n);
   });
   double sum = 0.0;
   for (const double part : parts) sum += part;
@@ -131,7 +132,7 @@ std::vector<Vec3> air_points(const LevelSet& set, double below_mm) {
     std::vector<Vec3>& part = parts[begin / kPositionsPerTask];
     for (size_t n = begin; n < end; ++n) {
       if (set.map.states[n] != LeafState::kLeaf) continue;
-      const float* values = set.map.leaves[n]->buffer().data();
+      const float* values = set.values(n);
       const openvdb::Coord at = set.map.origin(n);
       for (int v = 0; v < kLeafVoxels; ++v)
         if (values[v] >= 0.0F && values[v] < below_mm)
@@ -147,7 +148,7 @@ uint64_t state_hash(const LevelSet& set) {
   const size_t chunks = (set.map.size() + kPositionsPerTask - 1) / kPositionsPerTask;
   std::vector<uint64_t> parts(chunks, 0);
   parallel_chunks(set.map.size(), kPositionsPerTask, [&](size_t begin, size_t end) {
-    for (size_t n = begin; n < end; ++n) parts[begin / kPositionsPerTask] += leaf_hash(set.map, n);
+    for (size_t n = begin; n < end; ++n) parts[begin / kPositionsPerTask] += leaf_hash(set, n);
   });
   // A sum, because it does not care for order: integers wrap, so every split into chunks adds up alike.
   uint64_t sum = 0;

@@ -43,6 +43,7 @@ void set_leaf(LevelSet& set, size_t leaf, std::span<const float, kLeafVoxels> va
     node = set.map.leaves[leaf] = made.get();
     set.grid->tree().addLeaf(made.release());
   }
+  set.forget_spilled(leaf);
   std::copy(values.begin(), values.end(), node->buffer().data());
   SWARF_CHECK(settle_leaf(*node, set.band()) == LeafState::kLeaf, "a leaf that was sent is one");
 }
@@ -50,6 +51,7 @@ void set_leaf(LevelSet& set, size_t leaf, std::span<const float, kLeafVoxels> va
 void set_tile(LevelSet& set, size_t leaf, LeafState state) {
   constexpr openvdb::Index kLeafLevel = 1;  // a tile that replaces one leaf
   const float value = state == LeafState::kSolid ? -set.band() : set.band();
+  set.forget_spilled(leaf);
   set.grid->tree().addTile(kLeafLevel, set.map.origin(leaf), value, false);
   set.map.leaves[leaf] = nullptr;
 }
@@ -108,7 +110,7 @@ void StockTiles::add_position(size_t leaf, BytesWriter& out) const {
   out.add(map.floors[leaf]);
   out.add(map.cuts[leaf]);
   if (map.states[leaf] == LeafState::kLeaf)
-    out.add_all(std::span<const float>(map.leaves[leaf]->buffer().data(), kLeafVoxels));
+    out.add_all(std::span<const float>(stock_.level_set().values(leaf), kLeafVoxels));
 }
 
 void StockTiles::apply(const Bytes& changes) {

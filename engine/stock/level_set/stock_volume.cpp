@@ -51,7 +51,7 @@ struct Surroundings {
     const bool known = openvdb::CoordBBox({0, 0, 0}, set.map.dimension.offsetBy(-1)).isInside(at);
     const size_t index = known ? set.map.index(at.x(), at.y(), at.z()) : 0;
     const LeafState state = known ? set.map.states[index] : LeafState::kAir;
-    const float* held = state == LeafState::kLeaf ? set.map.leaves[index]->buffer().data() : nullptr;
+    const float* held = state == LeafState::kLeaf ? set.values(index) : nullptr;
     const float same = state == LeafState::kSolid ? -set.band() : set.band();
     for (int i = begin_of(step.x()); i < end_of(step.x()); ++i)
       for (int j = begin_of(step.y()); j < end_of(step.y()); ++j)

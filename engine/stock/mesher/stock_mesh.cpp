@@ -40,7 +40,7 @@ struct LeafView {
 LeafView leaf_view(const LevelSet& set, const Place& p) {
   if (!known(set.map, p)) return {nullptr, set.band()};
   const size_t n = set.map.index(p.i, p.j, p.k);
-  if (set.map.states[n] == LeafState::kLeaf) return {set.map.leaves[n]->buffer().data(), 0.0F};
+  if (set.map.states[n] == LeafState::kLeaf) return {set.values(n), 0.0F};
   return {nullptr, set.map.states[n] == LeafState::kSolid ? -set.band() : set.band()};
 }
 
