@@ -1,11 +1,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <optional>
 #include <utility>
 
+#include "base/side_by_side.h"
 #include "base/units.h"
 #include "mesh/mesh_ops.h"
 #include "render/camera.h"
@@ -138,8 +141,14 @@ DisplayMesh display_mesh(const FinishedRun& run, const TriMesh& closed, double m
 
 ReviewModels review_models(const FinishedRun& run, const TriMesh& closed, double max_error_mm,
                            std::vector<ReviewPin> pins, std::span<const WorstPlace> worst) {
-  ReviewModels models{display_mesh(run, closed, max_error_mm, worst), stock_stages(run, kStages),
-                      program_way(run), std::move(pins)};
+  ReviewModels models;
+  models.pins = std::move(pins);
+  // Each decimates meshes for itself, which keeps one processor.
+  const std::array<std::function<void()>, 3> parts{
+      [&] { models.part = display_mesh(run, closed, max_error_mm, worst); },
+      [&] { models.stages = stock_stages(run, kStages); }, [&] { models.way = program_way(run); }};
+  side_by_side(
+      parts.size(), 2, [&](size_t n) { parts[n](); }, [](size_t) {});
   models.machine_part = mesh::decimate(models.part.mesh, kMachinePartError, nullptr);
   models.machine_part.deviation_um.clear();
   mesh::split_creases(models.machine_part, kCreaseRad);  // decimate() has joined them

@@ -3,13 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <exception>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "base/file.h"
+#include "base/side_by_side.h"
 #include "mesh/mesh_io.h"
 #include "reports/avoidance_output.h"
 #include "reports/design_view.h"
@@ -204,12 +207,15 @@ void write_glb(const PendingFolder& folder, const FinishedRun& run, const TriMes
   const auto write = [&](const char* name, const std::string& bytes) {
     replace_file(folder.file(name), bytes, {"cannot-write-file", "the glTF file cannot be written"});
   };
-  write("part.glb", part_glb(run, models, {}));
-  write("machine.glb", machine_glb(run, models, {}));
   // The page has its own reader: a quarter of the bytes, and colours by the limits that its reader chooses.
   const GltfOptions page{GltfEncoding::kMeshopt, false, true};
-  files.part_glb = part_glb(run, models, page);
-  files.machine_glb = machine_glb(run, models, page);
+  const std::array<std::function<void()>, 4> encodings{
+      [&] { write("part.glb", part_glb(run, models, {})); },
+      [&] { write("machine.glb", machine_glb(run, models, {})); },
+      [&] { files.part_glb = part_glb(run, models, page); },
+      [&] { files.machine_glb = machine_glb(run, models, page); }};
+  side_by_side(
+      encodings.size(), 2, [&](size_t n) { encodings[n](); }, [](size_t) {});
   files.part_error_mm = models.part.error_mm;
   files.animation_scale = animation_scale(run);
   files.shown_from_s = static_cast<double>(run.first_shown()) * run.cycles.period_s();

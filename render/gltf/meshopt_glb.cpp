@@ -148,15 +148,23 @@ void encode_view(Json& view, const Json& accessor, Mode mode, const std::string&
   pad(encoded, '\0');
 }
 
+/// What the extension's readers know; of the whole process, so that it is set once.
+void choose_versions() {
+  static const bool chosen = [] {
+    meshopt_encodeVertexVersion(0);
+    meshopt_encodeIndexVersion(1);
+    return true;
+  }();
+  static_cast<void>(chosen);
+}
+
 }  // namespace
 
 std::string meshopt_compressed(const std::string& glb) {
   Container container = read_container(glb);
   Json& json = container.json;
   if (!json.contains("accessors") || json.at("accessors").empty()) return glb;
-  // What the extension's readers know.
-  meshopt_encodeVertexVersion(0);
-  meshopt_encodeIndexVersion(1);
+  choose_versions();
   const std::vector<Mode> modes = modes_of(json);
   std::string encoded;
   const Json& accessors = json.at("accessors");
