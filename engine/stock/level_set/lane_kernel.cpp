@@ -149,11 +149,13 @@ SWARF_KERNEL_INLINE void judge(const Lanes& lanes, const LanePiece& piece, const
   }
   for (const LanePiece::Face& face : piece.faces) add_face(extremes, lanes, at, face, query);
   for (const LanePiece::Round& round : piece.rounds) add_round(extremes, lanes, at, round, query);
-  const float open_from = query.floor - kSlack, swallowed_to = -query.reach - kSlack;
+  const float floor = query.floor, swallowed_to = -query.reach - kSlack;
   uint32_t open = 0, swallows = 0;
   for (int n = 0; n < kLanes; ++n) {
+    const float above = extremes.above.lane[n] + kSlack;
+    out.above.lane[n] = above;
     out.depth.lane[n] = -extremes.higher.lane[n];
-    open |= extremes.above.lane[n] >= open_from ? 1U << n : 0U;
+    open |= above >= floor ? 1U << n : 0U;
     swallows |= extremes.value.lane[n] <= swallowed_to ? 1U << n : 0U;
   }
   out.open = open;

@@ -59,6 +59,7 @@ inline constexpr float kDepthAbove = 1.5F;
 struct LaneAnswer {
   uint32_t open;      ///< bit n: lane n may raise a value
   uint32_t swallows;  ///< bit n: every voxel of the leaf lies deeper inside lane n's cutter than the band
+  LaneFloats above;   ///< open while the floor lies below this, mm
   LaneFloats depth;   ///< inside the cutter at half time (-F), mm, of a place above the leaf's centre
 };
 

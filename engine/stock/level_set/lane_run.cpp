@@ -231,16 +231,25 @@ class RunJudge {
       : set_(set), run_(run), index_(index), pairs_(pairs), extent_(set) {}
 
   void ask(size_t leaf, const Vec3& centre) {
-    if (mark(leaf).load(std::memory_order_relaxed) == LeafMap::kSwallowed) return;
+    // Neither of them lies near those of the leaf before.
+    __builtin_prefetch(&set_.map.marks[leaf]);
+    __builtin_prefetch(&set_.map.floors[leaf]);
     leaves_[count_] = static_cast<uint32_t>(leaf);
-    queries_[count_] = run_.query(extent_, centre, set_.map.floors[leaf]);
+    centres_[count_] = centre;
     if (++count_ == kAtATime) answer();
   }
 
   void answer() {
     static const LaneKernel kernel = lane_kernel_variants().front().kernel;
-    for (size_t n = 0; n < count_; ++n) kernel(run_.lanes, run_.piece, queries_[n], answers_[n]);
-    for (size_t n = 0; n < count_; ++n) take(leaves_[n], answers_[n]);
+    size_t asked = 0;
+    for (size_t n = 0; n < count_; ++n) {
+      const uint32_t leaf = leaves_[n];
+      if (mark(leaf).load(std::memory_order_relaxed) == LeafMap::kSwallowed) continue;
+      leaves_[asked] = leaf;
+      const LaneQuery query = run_.query(extent_, centres_[n], set_.map.floors[leaf]);
+      kernel(run_.lanes, run_.piece, query, answers_[asked++]);
+    }
+    for (size_t n = 0; n < asked; ++n) take(leaves_[n], answers_[n]);
     count_ = 0;
   }
 
@@ -272,7 +281,7 @@ class RunJudge {
   LeafExtent extent_;
   size_t count_ = 0;
   std::array<uint32_t, kAtATime> leaves_;
-  std::array<LaneQuery, kAtATime> queries_;
+  std::array<Vec3, kAtATime> centres_;
   std::array<LaneAnswer, kAtATime> answers_;
 };
 

@@ -128,6 +128,7 @@ void LeafCut::apply(const SweptPiece& swept) {
     risen = kAllPatches;
   }
   kernels.patch_fit(values_, risen, floors_);
+  if (risen != 0) set_lowest();
   ++visits_;
   patches_ += static_cast<uint64_t>(__builtin_popcount(patches));
 }
@@ -149,13 +150,18 @@ uint32_t LeafCut::cut_by_search(const SweptPiece& swept, uint32_t patches) {
 }
 
 /// The lowest of the patches' floors.
-LeafFloor LeafCut::floor() const {
+void LeafCut::set_lowest() {
   const auto& of_patch = floors_.of_patch[kLevels - 1];
-  const float lowest = *std::min_element(std::begin(of_patch), std::end(of_patch));
+  const float* step = floors_.slope;
+  float lowest = of_patch[0];
+  for (const float floor : of_patch) lowest = floor < lowest ? floor : lowest;
+  lowest_ = lowest + 0.5F * (kLeafSide - 1) * (step[0] + step[1] + step[2]);
+}
+
+LeafFloor LeafCut::floor() const {
   const float* step = floors_.slope;
   const auto per_mm = static_cast<float>(1.0 / set_.voxel);
-  return {lowest + 0.5F * (kLeafSide - 1) * (step[0] + step[1] + step[2]),
-          {step[0] * per_mm, step[1] * per_mm, step[2] * per_mm}};
+  return {lowest_, {step[0] * per_mm, step[1] * per_mm, step[2] * per_mm}};
 }
 
 }  // namespace swarf::stock

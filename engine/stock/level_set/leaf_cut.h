@@ -36,9 +36,12 @@ class LeafCut {
   bool changed() const { return changed_; }
   /// What the visits left, at least one of them.
   LeafFloor floor() const;
+  /// The floor's value; it rises from visit to visit.
+  float lowest() const { return lowest_; }
 
  private:
   void set_slope(const LeafBound& deepest);
+  void set_lowest();
   uint32_t cut_by_search(const SweptPiece& swept, uint32_t patches);
 
   const LevelSet& set_;
@@ -49,6 +52,7 @@ class LeafCut {
   PatchFloors floors_{};
   uint64_t visits_ = 0, patches_ = 0;
   bool changed_ = false;
+  float lowest_ = 0.0F;
 };
 
 }  // namespace swarf::stock

@@ -105,8 +105,8 @@ void gather(LevelSet& set, Batch& batch) {
 
 /// A sweep that may raise a value of the leaf.
 struct Candidate {
-  float depth;     ///< LaneAnswer's, mm
-  uint32_t piece;  ///< in the batch
+  float depth, above;  ///< LaneAnswer's, mm
+  uint32_t piece;      ///< in the batch
 
   bool before(const Candidate& other) const {
     return depth > other.depth || (depth == other.depth && piece < other.piece);
@@ -133,7 +133,8 @@ void find_candidates(const LevelSet& set, const Batch& batch, const Group& group
       const LaneAnswer& answer = answers[n - first];
       for (uint32_t open = answer.open & run.all(); open != 0; open &= open - 1) {
         const auto lane = static_cast<uint32_t>(__builtin_ctz(open));
-        candidates.push_back({answer.depth.lane[lane], static_cast<uint32_t>(run.first) + lane});
+        candidates.push_back(
+            {answer.depth.lane[lane], answer.above.lane[lane], static_cast<uint32_t>(run.first) + lane});
       }
     }
   }
@@ -156,7 +157,7 @@ struct Outcome {
 Candidate deepest_of(const Batch& batch, const Group& group) {
   const auto candidate = [&](size_t n) -> Candidate {
     const LeafPair& pair = batch.pairs[n];
-    return {pair.depth, static_cast<uint32_t>(batch.runs[pair.run].first) + pair.lane};
+    return {pair.depth, 0.0F, static_cast<uint32_t>(batch.runs[pair.run].first) + pair.lane};
   };
   Candidate deepest = candidate(group.begin);
   for (size_t n = group.begin + 1; n < group.end; ++n) {
@@ -176,7 +177,9 @@ void apply_group(const LevelSet& set, const Batch& batch, const Group& group,
   std::sort(candidates.begin(), candidates.end(),
             [](const Candidate& a, const Candidate& b) { return a.before(b); });
   for (const Candidate& candidate : candidates) {
-    if (candidate.piece != deepest.piece) cut.apply(batch.pieces[candidate.piece]);
+    if (candidate.piece != deepest.piece && candidate.above >= cut.lowest()) {
+      cut.apply(batch.pieces[candidate.piece]);
+    }
   }
   outcome.take(cut);
   outcome.changed = cut.changed();

@@ -103,8 +103,10 @@ TEST(LaneKernel, AllInstructionSetsJudgeAlikeAndNeverCloseALeafThatASweepRaises)
       ASSERT_EQ(other.open, answer.open) << variant.instruction_set << " case " << n;
       ASSERT_EQ(other.swallows, answer.swallows) << variant.instruction_set << " case " << n;
       ASSERT_EQ(std::memcmp(&other.depth, &answer.depth, sizeof(answer.depth)), 0) << variant.instruction_set;
+      ASSERT_EQ(std::memcmp(&other.above, &answer.above, sizeof(answer.above)), 0) << variant.instruction_set;
     }
     for (int lane = 0; lane < kLanes; ++lane) {
+      ASSERT_EQ((answer.open >> lane & 1U) != 0, answer.above.lane[lane] >= query.floor) << "case " << n;
       if ((answer.open >> lane & 1U) != 0) continue;
       ++closed;
       for (int corner = 0; corner < 8; ++corner) {
