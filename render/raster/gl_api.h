@@ -55,6 +55,7 @@ namespace swarf::render {
   X(PFNGLPOLYGONOFFSETPROC, PolygonOffset)                     \
   X(PFNGLREADPIXELSPROC, ReadPixels)                           \
   X(PFNGLRENDERBUFFERSTORAGEPROC, RenderbufferStorage)         \
+  X(PFNGLSCISSORPROC, Scissor)                                 \
   X(PFNGLSHADERSOURCEPROC, ShaderSource)                       \
   X(PFNGLTEXIMAGE2DPROC, TexImage2D)                           \
   X(PFNGLTEXIMAGE2DMULTISAMPLEPROC, TexImage2DMultisample)     \

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
 
 #include "render/camera.h"
 
@@ -31,6 +34,35 @@ Eigen::Matrix4d parallel_projection(const Vec3& towards_light, const Vec3& centr
   m.block<1, 3>(2, 0) = -towards_light / radius;
   m.block<3, 1>(0, 3) = -m.block<3, 3>(0, 0) * centre;
   return m;
+}
+
+/// Where the edges of the pyramid that the picture shows pass through the heights of the scene: the corners
+/// of all that is seen of items and floor.
+std::vector<Vec3> seen_corners(const Vec3& eye, const SceneView& view, double lowest, double highest) {
+  const auto corner = [&](int i) {
+    const Vec3 direction =
+        view.forward + ((i & 1) != 0 ? view.right : -view.right) + ((i & 2) != 0 ? view.up : -view.up);
+    return Vec3(eye + ((i & 4) != 0 ? view.far : view.near) * direction);
+  };
+  std::vector<Vec3> found;
+  for (int i = 0; i < 8; ++i) {
+    for (const int bit : {1, 2, 4}) {
+      if ((i & bit) != 0) continue;
+      const Vec3 a = corner(i), along = corner(i | bit) - a;
+      double from = 0.0, to = 1.0;
+      for (const auto& [above, rise] :
+           {std::pair(a.z() - lowest, along.z()), std::pair(highest - a.z(), -along.z())}) {
+        // Kept where above + t * rise >= 0.
+        if (rise > 0.0) from = std::max(from, -above / rise);
+        if (rise < 0.0) to = std::min(to, -above / rise);
+        if (rise == 0.0 && above < 0.0) to = -1.0;
+      }
+      if (from > to) continue;
+      found.push_back(a + from * along);
+      found.push_back(a + to * along);
+    }
+  }
+  return found;
 }
 
 }  // namespace
@@ -63,6 +95,13 @@ SceneView scene_view(const Camera& camera, const Box& bounds, double aspect) {
   view.forward = -from_world.block<1, 3>(2, 0).transpose();
   view.light_extent_mm = 2.0 * kLightMargin * radius;
   view.light_clip_from_world = parallel_projection(view.key, bounds.centre(), kLightMargin * radius);
+  view.shadow_lower = Vec2::Constant(std::numeric_limits<double>::infinity());
+  view.shadow_upper = -view.shadow_lower;
+  for (const Vec3& place : seen_corners(camera.eye, view, view.ground_centre.z(), bounds.upper.z())) {
+    const Vec2 at = (view.light_clip_from_world * place.homogeneous()).head<2>();
+    view.shadow_lower = view.shadow_lower.cwiseMin(at);
+    view.shadow_upper = view.shadow_upper.cwiseMax(at);
+  }
   return view;
 }
 

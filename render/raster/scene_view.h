@@ -9,7 +9,10 @@ struct SceneView {
   Eigen::Matrix4d clip_from_world;
   Eigen::Matrix4d light_clip_from_world;  ///< the key light's parallel projection of the scene
   double light_extent_mm = 1.0;           ///< width of that projection
-  Vec3 key, fill, rim;                    ///< unit vectors towards the lights
+  /// What of it, -1..1, can lie under the light of a place in the picture: nothing else of its shadow map is
+  /// looked at. Empty: lower > upper.
+  Vec2 shadow_lower, shadow_upper;
+  Vec3 key, fill, rim;  ///< unit vectors towards the lights
   /// Of the picture: at distance 1 along `forward`, right and up reach its edges.
   Vec3 right, up, forward;
   double near = 1.0, far = 2.0;  ///< planes of clip_from_world, mm from the eye
