@@ -80,12 +80,12 @@ TriMesh mesh_of(const std::vector<Place>& places) {
   return mesh;
 }
 
-void expect_deviations(const std::vector<Place>& places, const TriMesh& mesh) {
+void expect_deviations(const std::vector<Place>& places, const TriMesh& mesh, double within_um = kExactUm) {
   for (size_t i = 0; i < places.size(); ++i) {
     if (std::isnan(places[i].um))
       EXPECT_TRUE(std::isnan(mesh.deviation_um[i])) << places[i].what << ": " << mesh.deviation_um[i];
     else
-      EXPECT_NEAR(mesh.deviation_um[i], places[i].um, kExactUm) << places[i].what;
+      EXPECT_NEAR(mesh.deviation_um[i], places[i].um, within_um) << places[i].what;
   }
 }
 
@@ -124,6 +124,7 @@ TEST(VertexRays, OverASurfaceSayTheSameOffItsFace) {
 /// (R + .05) / cos a - R above. The facets' chords lie up to 15 um below the shaft.
 TEST(VertexRays, OverACadFaceMeasureTheFace) {
   constexpr double kOver = 0.05;
+  constexpr double kFootUm = 0.02;  // the foot is found by steps, on a slope of 12 degrees, half a mm below
   const HalfShaft shaft = half_shaft(40);
   const stock::RayFieldPtr field = stock::rays_on_mesh(shaft.mesh, 1.0, stock::kCrease, shaft.under);
   const auto cut = [=](stock::SurfaceDexels& dexels) {
@@ -132,7 +133,7 @@ TEST(VertexRays, OverACadFaceMeasureTheFace) {
         stock::CutterSolid(9.0, 30.0));
   };
   std::vector<Place> places;
-  for (double y = -8.0; y <= 8.0; y += 0.7) {
+  for (double y = -4.2; y <= 4.2; y += 0.35) {
     for (const double off : {-kOff, 0.0, kOff}) {
       const Vec3 p = Vec3(0.3 * y, y, kOver + off).cast<float>().cast<double>();
       const double a = std::atan2(p.y(), p.z() + kShaftRadius);
@@ -143,7 +144,7 @@ TEST(VertexRays, OverACadFaceMeasureTheFace) {
   TriMesh mesh = mesh_of(places);
   deviation_by_vertex_rays({*field, stock::RawShape::of_box({{-5, -21, -21}, {5, 21, 2}}), kVertexSlack, cut},
                            mesh);
-  expect_deviations(places, mesh);
+  expect_deviations(places, mesh, kFootUm);
 }
 
 }  // namespace
