@@ -68,11 +68,26 @@ Table comparison(const sim::Result& result) {
   return table;
 }
 
+std::string pass_shown(const DrivenStatistics& driven) {
+  return driven.creases + driven.steps > 0 ? "The pass with the most corners."
+                                           : "The first pass; no pass has a crease or a step.";
+}
+
+/// What happens at the corners that the passes have.
+std::string corners_met(const DrivenStatistics& driven) {
+  if (driven.creases + driven.steps == 0) return "";
+  std::string text = driven.creases > 0 ? " Creases are ends of chords" : "";
+  if (driven.steps > 0)
+    text += text.empty() ? " Steps are climbed straight up" : ", steps are climbed straight up";
+  return text + " (Kato et al., Fig. 3b and 5).";
+}
+
 Plot speed_plot(const DrivenStatistics& driven) {
   Plot plot;
   plot.title = "Speed and clamp speeds along a pass";
-  plot.caption =
-      "The pass with the most corners. Each clamp is met before it is reached (Kato et al., Fig. 4).";
+  plot.caption = pass_shown(driven) + (driven.clamped_cells > 0
+                                           ? " Each clamp is met before it is reached (Kato et al., Fig. 4)."
+                                           : " No clamp lies below the set feed.");
   plot.x_label = "way of the tip";
   plot.x_unit = "mm";
   plot.y_label = "speed";
@@ -86,7 +101,7 @@ Plot speed_plot(const DrivenStatistics& driven) {
 Plot height_of_tip(const DrivenStatistics& driven) {
   Plot plot;
   plot.title = "The tip along the same pass";
-  plot.caption = "Corners are ends of chords, steps are climbed straight up (Kato et al., Fig. 3b and 5).";
+  plot.caption = pass_shown(driven) + corners_met(driven);
   plot.x_label = "way of the tip";
   plot.x_unit = "mm";
   plot.y_label = "height";

@@ -25,15 +25,22 @@ std::vector<std::array<double, 2>> scaled(const std::vector<Vec2>& points, doubl
   return out;
 }
 
-Plot feed_plot(const sim::Job& job, const motion::TimeEnvelope& envelope) {
+/// Where the feed falls in a job of this kind.
+const char* feed_caption(const sim::Job& job) {
   const auto& axes = job.machine.model.axes;
   const bool turns = std::any_of(axes.begin(), axes.end(),
                                  [](const kinematics::Axis& axis) { return axis.kind == AxisKind::kRotary; });
+  if (job.scene.driven)
+    return turns ? "Falls where the surface, or an axis that would exceed its limits, asks for less."
+                 : "Falls where the surface asks for less: at corners, and where it bends.";
+  return turns ? "Falls where an axis would exceed its speed, above all near the pole of the rotary table."
+               : "Falls at corners, and where an axis would exceed its limits.";
+}
+
+Plot feed_plot(const sim::Job& job, const motion::TimeEnvelope& envelope) {
   Plot plot;
   plot.title = "Feed of the contact point";
-  plot.caption =
-      turns ? "Falls where an axis would exceed its speed, above all near the pole of the rotary table."
-            : "Falls at corners, and where an axis would exceed its limits.";
+  plot.caption = feed_caption(job);
   plot.x_label = "time";
   plot.x_unit = "s";
   plot.y_label = "feed";

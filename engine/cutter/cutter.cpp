@@ -58,8 +58,10 @@ std::string call_name(const Cutter& cutter) {
 std::string describe(const Cutter& c) {
   const std::string corner =
       c.corner_radius_mm > 0.0 ? fmt::format(", corner radius {:g} mm", c.corner_radius_mm) : "";
-  return fmt::format("{}, D {:g} mm{}{}, flutes {:g} mm, length {:g} mm", shape_name(c.shape), c.diameter_mm,
-                     corner, extra(c), c.flute_length_mm, c.length_mm);
+  std::string shape = shape_name(c.shape);
+  std::replace(shape.begin(), shape.end(), '_', ' ');
+  return fmt::format("{}, D {:g} mm{}{}, flutes {:g} mm, length {:g} mm", shape, c.diameter_mm, corner,
+                     extra(c), c.flute_length_mm, c.length_mm);
 }
 
 }  // namespace swarf::cutter

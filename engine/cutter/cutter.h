@@ -92,7 +92,7 @@ double gauge_length(const Cutter& cutter);
 /// What a program calls it: "T3", "T3 (MILL_10)", "MILL_10".
 std::string call_name(const Cutter& cutter);
 
-/// One line for a report: "bull_nose, D 10 mm, corner radius 1 mm, flutes 25 mm, length 60 mm".
+/// One line for a report: "bull nose, D 10 mm, corner radius 1 mm, flutes 25 mm, length 60 mm".
 std::string describe(const Cutter& cutter);
 
 }  // namespace swarf::cutter

@@ -99,6 +99,7 @@ def scene_texts():
                        f"compare_cam_um = [10, 1]\n{axis}\n{no}[interpolator]\n{no}")
     yield f"nc = 'part.ngc'\n[[contact_pair]]\nparts = ['table', 'holder']\n{no}"
     yield f"nc = 'part.ngc'\n[movie]\n{no}[[movie.shot]]\n{no}"
+    yield f"nc = 'part.ngc'\n[stills]\n{no}[[stills.shot]]\n{no}"
     yield f"[flank]\n{no}[design]\nkind = 'ruled'\n{no}[interpolator]\n{no}[stock]\n{no}"
     for kind in schema("scene")["properties"]["fixture"]["items"]["properties"]["kind"]["enum"]:
         yield f"nc = 'part.ngc'\n[[fixture]]\nkind = '{kind}'\n{no}"

@@ -282,6 +282,10 @@ TEST(Cutter, DescriptionsNameWhatTheShapeIs) {
   EXPECT_EQ(describe({}), "flat, D 10 mm, flutes 25 mm, length 60 mm");
   EXPECT_EQ(describe(taper(6, 1, 10, 20)),
             "taper, D 6 mm, corner radius 1 mm, 10° a side, flutes 20 mm, length 60 mm");
+  Cutter nose;
+  nose.shape = Shape::kBullNose;
+  nose.corner_radius_mm = 1;
+  EXPECT_EQ(describe(nose), "bull nose, D 10 mm, corner radius 1 mm, flutes 25 mm, length 60 mm");
   EXPECT_EQ(describe(drill(8, 118, 40)), "drill, D 8 mm, point 118°, flutes 40 mm, length 60 mm");
 }
 
