@@ -17,10 +17,10 @@ namespace {
 constexpr int kSizeTag = 1, kPartTag = 2;
 /// MPI counts in int.
 constexpr size_t kMostAtOnce = size_t{1} << 28;
-/// Where more ranks than cores wait for each other, one that waits must not keep a core busy: so often it
-/// looks at once, then it sleeps between two looks.
+/// One that waits must not keep a core busy: so often it looks at once, then it sleeps between two looks, an
+/// eighth of the time that it has waited.
 constexpr int kLooksAtOnce = 200;
-constexpr std::chrono::microseconds kSleep{50};
+constexpr std::chrono::microseconds kShortestSleep{50}, kLongestSleep{1000};
 
 class MpiRanks final : public Ranks {
  public:
@@ -64,9 +64,13 @@ class MpiRanks final : public Ranks {
   static int count(size_t left) { return static_cast<int>(std::min(left, kMostAtOnce)); }
 
   static void wait_for_message(int from) {
+    using Clock = std::chrono::steady_clock;
+    const Clock::time_point begun = Clock::now();
     int is_there = 0;
     for (int looks = 0; is_there == 0; ++looks) {
-      if (looks > kLooksAtOnce) std::this_thread::sleep_for(kSleep);
+      if (looks > kLooksAtOnce)
+        std::this_thread::sleep_for(
+            std::clamp<Clock::duration>((Clock::now() - begun) / 8, kShortestSleep, kLongestSleep));
       MPI_Iprobe(from, kSizeTag, MPI_COMM_WORLD, &is_there, MPI_STATUS_IGNORE);
     }
   }
