@@ -122,7 +122,8 @@ class RootProof {
     Box box{Vec3::Constant(kNever), Vec3::Constant(-kNever)};
     const double margin = root_.cell.flatness_mm + root_.cell.radius() * 1e-3;
     for (const CellCorner& corner : root_.cell.corners) {
-      const double top = std::min(reach, std::max(0.0, top_of(corner)));
+      const double top =
+          std::min(reach, std::max(0.0, leaves_box(input_.stock.box(), corner.point, corner.normal)));
       for (const double s : {-stock::kSkin, top}) {
         const double turn = std::min(2.0, root_.cell.turn) * std::abs(s) + margin;
         box.lower = box.lower.cwiseMin(corner.point + s * corner.normal - Vec3::Constant(turn));
@@ -158,10 +159,6 @@ class RootProof {
       }
     }
     return true;
-  }
-
-  double top_of(const CellCorner& corner) const {
-    return leaves_box(input_.stock.box(), corner.point, corner.normal);
   }
 
   /// How high above a place material is its own: a mesh tells by its distance, patches by their rays. Where
@@ -457,9 +454,6 @@ class RootProof {
            bounds.high - bounds.low > kVolumeShare * result_.gouge_found;
   }
 
-  /// Material was seen above the height up to which sweeps were looked for: bounds up there need all of them.
-  bool is_short_of_reach() const { return result_.above_found > reach_; }
-
   /// One root may take long where the design has few.
   bool is_stopped() {
     constexpr size_t kCells = 256;  // between two looks
@@ -496,7 +490,9 @@ class RootProof {
     Bounds bounds{lower_bound(cell), 0.0, 0.0};
     bounds.high = upper_bound(cell);
     measure_above(cell, bounds);
-    if (is_short_of_reach()) return;
+    // Material was seen above the height up to which sweeps were looked for: bounds up there need all of
+    // them.
+    if (result_.above_found > reach_) return;
     bounds.skin = skin_bound(cell, bounds.high);
     const double edge = cell.shape.longest_edge();
     std::optional<Probe> probed;

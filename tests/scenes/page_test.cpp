@@ -21,12 +21,12 @@ namespace page_test {
 namespace {
 
 namespace fs = std::filesystem;
-using swarf::test::run_command;
 using nlohmann::json;
 using swarf::test::Glb;
 using swarf::test::range_of;
 using swarf::test::read_glb;
 using swarf::test::read_text;
+using swarf::test::run_command;
 using swarf::test::run_swarf;
 
 constexpr double kReadLimitUm = 0.1;
