@@ -250,7 +250,9 @@ class RootProof {
     if (!all_near_) all_near_ = sweeps_up_to(kNever);
     for (const Corner& corner : cell.corners) {
       const double top = rest_top(corner.at, corner.range, raw_, *all_near_);
-      if (!(top > result_.above_found)) continue;
+      // Nearer than that it is what stands on the design.
+      const double gap = corner.height + input_.stock.voxel_mm();
+      if (!(top > std::max(result_.above_found, gap))) continue;
       result_.above_found = top;
       result_.above_found_at = corner.at.point;
       highest_seen_ = std::max(highest_seen_, top);

@@ -17,6 +17,7 @@
 #include "sim/run/cut_sweeps.h"
 #include "sim/run/result.h"
 #include "stock/rays/ray_field.h"
+#include "stock/sweep/sweep_map.h"
 
 namespace swarf::sim {
 namespace {
@@ -36,6 +37,8 @@ constexpr double kMoviePixel = 85.0, kMovieSample = 22.5;
 // Of the stock: room that leaves which are gone leave between those that stay, and pairs of sweep and leaf.
 constexpr double kHoles = 0.25;
 constexpr double kSweep = sizeof(stock::Sweep) + sizeof(SweepSource);
+// The same with its map, once more for the rays of what is shown of a CAD file or a mesh.
+constexpr double kShownSweep = sizeof(stock::Sweep) + sizeof(stock::SweepMap);
 constexpr double kCutting = sizeof(ToolPose) + 8.0;  // the poses of cycles to be merged; boxes of EarlierCuts
 // A sweep of blocks, made when it is asked for; its vector grows by halves, and its share of a box.
 constexpr double kSweepOfBlock = 1.5 * sizeof(SweepOfBlocks) + 1.5;
@@ -204,6 +207,7 @@ MemoryPrediction predict_memory(const Job& job, const MeasuredPath& path, const 
                       static_cast<double>(path.path.elements.bytes() + path.cycles->motions().bytes());
   const double pictures = outputs.pictures ? pictures_bytes(job.scene) : 0.0;
   const double mesh = outputs.page || outputs.pictures ? counts.triangles * kTriangle : 0.0;
+  const double shown = job.design_mesh && mesh > 0.0 ? sweeps * kShownSweep : 0.0;
   // The stages that hold most; each ends before the next begins.
   const auto peak = [&](double stock) {
     const double cutting = held + (stocks + kHoles) * stock + (by_block ? 0.0 : sweeps * kCutting) +
@@ -213,7 +217,7 @@ MemoryPrediction predict_memory(const Job& job, const MeasuredPath& path, const 
         compared ? after + compared_ticks * kComparedTick + (1.0 + beside) * rays * kRay : 0.0;
     const double measuring =
         job.has_design() ? after + kHoles * stock + rays * kMeasuredRay + sweeps * (kSweep + kCutting) : 0.0;
-    return std::max({held + counts.bytes, cutting, measuring, comparing, after + mesh + pictures});
+    return std::max({held + counts.bytes, cutting, measuring, comparing, after + mesh + shown + pictures});
   };
   const double stock =
       static_cast<double>(stock::Stock::memory_for(settings.box_W, settings.voxel_mm, counts.leaves_most));
