@@ -27,8 +27,8 @@ int most_at_once(size_t n, size_t most) {
         const int here = ++now;
         for (int seen = highest; here > seen && !highest.compare_exchange_weak(seen, here);) {
         }
-        // The first waits for a second one where two may work at once, however late its thread begins.
-        const bool waits = i == 0 && n > 1 && most > 1 && thread_count() > 1;
+        // The first two wait for each other where two may work at once, however late a thread begins.
+        const bool waits = i < 2 && n > 1 && most > 1 && thread_count() > 1;
         for (int k = 0; waits && highest < 2 && k < 10'000; ++k)
           std::this_thread::sleep_for(std::chrono::milliseconds(1));
         ++worked[i];
