@@ -168,6 +168,22 @@ Vec3 turned_by(const Vec3& n, const Vec3& m, double share) {
 
 constexpr double kFanStep = 0.2;  // rad; the columns' directions between them are bounded, not sampled
 
+/// Columns along an edge, from corner a to b on one side of a step of its fan and from d to c on the other.
+/// Halved along the edge alone: halving the longest side of a cell without area makes three of one, each half
+/// as long.
+void add_fan_step(const std::array<CellCorner, 4>& step, double size_mm, const PatchBounds& bounds,
+                  std::vector<RootCell>& fan) {
+  const auto& [a, b, c, d] = step;
+  if ((b.point - a.point).norm() > size_mm) {
+    const CellCorner ab = middle(a, b, bounds), dc = middle(d, c, bounds);
+    add_fan_step({a, ab, dc, d}, size_mm, bounds, fan);
+    add_fan_step({ab, b, c, dc}, size_mm, bounds, fan);
+    return;
+  }
+  fan.push_back({make_cell({a, b, c}, bounds), bounds});
+  fan.push_back({make_cell({a, c, d}, bounds), bounds});
+}
+
 /// The columns between the two sides of a sharp edge, in steps of at most kFanStep. Outside a convex edge
 /// they answer for what stands there, inside a concave one for what is cut.
 void add_fan(const stock::FacetSheets& sheets, const stock::SharpEdge& edge, double size_mm,
@@ -188,8 +204,7 @@ void add_fan(const stock::FacetSheets& sheets, const stock::SharpEdge& edge, dou
     const double low = static_cast<double>(i) / steps, high = static_cast<double>(i + 1) / steps;
     const CellCorner a{from, turned_by(n0, m0, low)}, b{to, turned_by(n1, m1, low)},
         c{to, turned_by(n1, m1, high)}, d{from, turned_by(n0, m0, high)};
-    add_divided({a, b, c}, size_mm, fan, bounds);
-    add_divided({a, c, d}, size_mm, fan, bounds);
+    add_fan_step({a, b, c, d}, size_mm, bounds, fan);
   }
   for (RootCell& cell : fan) {
     (convex ? cell.looks_down : cell.looks_up) = false;

@@ -28,7 +28,9 @@ constexpr double kMegabyte = 1024.0 * 1024.0;
 // Code, libraries (OpenCASCADE alone takes 20 MB), tables of the program, thread pools.
 constexpr double kBase = 86.0 * kMegabyte;
 constexpr double kMovie = 270.0 * kMegabyte;   // Mesa, Embree and the encoder, with pictures of 1280 x 720
-constexpr double kStills = 212.0 * kMegabyte;  // Embree, cut faces and lettering, with pictures of that size
+constexpr double kStills = 222.0 * kMegabyte;  // Embree, cut faces and lettering, with pictures of that size
+constexpr double kPage =
+    105.0 * kMegabyte;  // glTF and the page alone: decimated meshes and what they are coded in
 constexpr double kUsualPixels = 1280.0 * 720.0;
 // Of a still: what its samples have seen (84), and the light as it is shared with neighbours (28).
 constexpr double kStillPixel = 112.0;
@@ -48,6 +50,9 @@ constexpr double kMeasuredRay = 78.0;  // while it is measured: neighbours, ridg
 constexpr double kRay = 83.0;          // point, normal, height, block; its share of a tile
 // Each triangle of the mesh, half a vertex with it, from the mesher's points to the decimated copy.
 constexpr double kTriangle = 105.0;
+// The same once more in a still of the whole part, Embree's tree included; in colours with a copy of the
+// mesh.
+constexpr double kShownTriangle = 80.0, kColouredTriangle = 110.0;
 // The same where links are held against it: its body with a tree of boxes, too.
 constexpr double kBodyTriangle = 420.0;
 // A tick of a path that is only compared: its sample, axes and sweep, and what vectors that grow hold beside.
@@ -152,8 +157,19 @@ double pixels_of(const std::array<int, 2>& size) {
 }
 
 double still_bytes(const StillSettings& stills) {
-  if (!stills.any()) return kStills;
+  if (!stills.any()) return kPage;
   return kStills + kStillPixel * std::max(0.0, pixels_of(stills.size) - kUsualPixels);
+}
+
+/// What each triangle of the part's mesh takes in the picture that takes most.
+double still_triangle_bytes(const StillSettings& stills) {
+  double most = 0.0;
+  const auto count = [&](const std::string& kind) {
+    if (kind != "machine") most = std::max(most, kind == "deviation" ? kColouredTriangle : kShownTriangle);
+  };
+  for (const std::string& kind : stills.kinds) count(kind);
+  for (const StillShot& shot : stills.shots) count(shot.kind);
+  return most;
 }
 
 double movie_bytes(const MovieSettings& movie) {
@@ -162,9 +178,10 @@ double movie_bytes(const MovieSettings& movie) {
          kMovieSample * (movie.samples - 1) * pixels_of(movie.size);
 }
 
-/// What the pictures take, whose meshes are counted elsewhere. They are made one after the other.
-double pictures_bytes(const Scene& scene) {
-  return std::max(still_bytes(scene.stills), movie_bytes(scene.movie));
+/// What the pictures take beside the part's mesh. They are made one after the other.
+double pictures_bytes(const Scene& scene, double triangles) {
+  return std::max(still_bytes(scene.stills) + triangles * still_triangle_bytes(scene.stills),
+                  movie_bytes(scene.movie));
 }
 
 /// A voxel, to two digits, at which what grows with 1/voxel^2 fits beside the rest.
@@ -205,7 +222,10 @@ MemoryPrediction predict_memory(const Job& job, const MeasuredPath& path, const 
                       (planned_passes ? 0.0 : planned * kPlannedCell) +
                       static_cast<double>(path.cycles->kept().size() * sizeof(motion::Cycle)) +
                       static_cast<double>(path.path.elements.bytes() + path.cycles->motions().bytes());
-  const double pictures = outputs.pictures ? pictures_bytes(job.scene) : 0.0;
+  const auto shown_bytes = [&](double triangles) {
+    return outputs.pictures ? pictures_bytes(job.scene, triangles) : outputs.page ? kPage : 0.0;
+  };
+  const double pictures = shown_bytes(counts.triangles), pictures_alone = shown_bytes(0.0);
   const double mesh = outputs.page || outputs.pictures ? counts.triangles * kTriangle : 0.0;
   const double shown = job.design_mesh && mesh > 0.0 ? sweeps * kShownSweep : 0.0;
   // The stages that hold most; each ends before the next begins.
@@ -224,8 +244,8 @@ MemoryPrediction predict_memory(const Job& job, const MeasuredPath& path, const 
   const double on_disk = counts.leaves_most * static_cast<double>(stock::Stock::kLeafBytes);
   return {.stock_mb = stocks * stock / kMegabyte,
           .peak_mb = peak(stock) / kMegabyte,
-          .scaling_mb = (stock + mesh) / kMegabyte,
-          .fixed_mb = (kBase + pictures) / kMegabyte,
+          .scaling_mb = (stock + mesh + pictures - pictures_alone) / kMegabyte,
+          .fixed_mb = (kBase + pictures_alone) / kMegabyte,
           .limit_mb = memory_limit_mb(job.scene),
           .rest_mb = peak(stock - on_disk) / kMegabyte,
           .leaf_mb = (1.0 + kHoles) * static_cast<double>(stock::Stock::kLeafBytes) / kMegabyte,
