@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <bit>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "base/parallel.h"
+#include "stock/level_set/column_kernel.h"
 #include "stock/level_set/leaf_kernel.h"
+#include "stock/level_set/piece_window.h"
 
 namespace swarf::stock {
 namespace {
@@ -104,38 +106,35 @@ Neighbourhood neighbourhood(const LevelSet& set, const std::vector<ToolPose>& po
   return around;
 }
 
-/// The part [low, high] of a vertical line that the run may reach; empty when low > high.
-struct Span {
-  double low = 0.0, high = -1.0;
-};
-Span vertical_span(const Neighbourhood& around, double x, double y) {
-  const Vec2 local = Vec2(x, y) - around.centre;
-  const double across = around.along.x() * local.y() - around.along.y() * local.x();
-  if (std::abs(local.dot(around.along)) > around.half_along || std::abs(across) > around.half_across)
-    return {};
-  const Vec2 offset = Vec2(x, y) - around.foot.head<2>();
-  const Vec2 lean = around.axis.head<2>();
-  const double lean2 = lean.squaredNorm(), radius2 = around.radius * around.radius;
-  double first = 0.0, last = around.length;  // along the axis, where it passes the line closely enough
-  constexpr double kUpright = 1e-12;
-  if (lean2 > kUpright) {
-    const double middle = offset.dot(lean) / lean2;
-    const double miss2 = (offset - middle * lean).squaredNorm();
-    if (miss2 > radius2) return {};
-    const double half = std::sqrt((radius2 - miss2) / lean2);
-    first = std::max(first, middle - half);
-    last = std::min(last, middle + half);
-    if (first > last) return {};
-  } else if (offset.norm() > around.radius + around.length * std::sqrt(kUpright)) {
-    return {};
+/// Widened by more than the kernel rounds: of the extent e, 4 roundings in the rectangle, 12 (10 + 10) of a
+/// bottom plane's slopes, and 6 in a place along the lean, which is taken `kUpright` times as coarse at most.
+ColumnQuery column_query(const Neighbourhood& around, const Vec3& origin) {
+  constexpr double kUpright = 0.05, kWidening = 1e-5;
+  const double extent = around.half_along + around.half_across + around.length + around.radius;
+  const double slack = kReachSlack + kWidening * extent;
+  const auto f = [](double value) { return static_cast<float>(value); };
+  const Vec3 foot = around.foot - origin;
+  const double lean = around.axis.head<2>().norm();
+  const bool upright = lean < kUpright;
+  const double radius = around.radius + slack + (upright ? lean * around.length : 0.0);
+  ColumnQuery query{{f(around.centre.x() - origin.x()), f(around.centre.y() - origin.y())},
+                    {f(around.along.x()), f(around.along.y())},
+                    f(around.half_along + slack),
+                    f(around.half_across + slack),
+                    {f(foot.x()), f(foot.y()), f(foot.z())},
+                    {f(around.axis.x()), f(around.axis.y())},
+                    f(around.axis.z()),
+                    f(around.length),
+                    f(radius),
+                    upright ? 0.0F : f(1.0 / lean),
+                    static_cast<int>(around.bottoms.size()),
+                    {}};
+  for (size_t n = 0; n < around.bottoms.size(); ++n) {
+    const Neighbourhood::Plane& plane = around.bottoms[n];
+    const double z = plane.z + plane.x * origin.x() + plane.y * origin.y() - origin.z();
+    query.plane[n] = {f(z - slack), f(plane.x), f(plane.y)};
   }
-  const double z0 = around.foot.z() + first * around.axis.z(), z1 = around.foot.z() + last * around.axis.z();
-  Span span{std::min(z0, z1) - around.radius, std::max(z0, z1) + around.radius};
-  double bottom = around.bottoms.empty() ? span.low : span.high;
-  for (const Neighbourhood::Plane& plane : around.bottoms)
-    bottom = std::min(bottom, plane.z + plane.x * x + plane.y * y);
-  span.low = std::max(span.low, bottom);
-  return span;
+  return query;
 }
 
 /// Inclusive range of the leaf positions along axis `a` whose centres lie in [low, high] mm.
@@ -147,49 +146,67 @@ std::pair<int, int> leaf_range(const LevelSet& set, int a, double low, double hi
   return {static_cast<int>(std::clamp(first, 0.0, top + 1.0)), static_cast<int>(std::clamp(last, -1.0, top))};
 }
 
-/// First position in [k, end) that is not air, or `end`; eight states at a time, for most of a box is air.
-size_t skip_air(const LeafState* states, size_t k, size_t end) {
-  while (k < end) {
-    uint64_t eight = 0;
-    static_assert(sizeof(LeafState) == 1 && static_cast<int>(LeafState::kAir) == 0);
-    if (k + sizeof(eight) <= end) {
-      std::memcpy(&eight, states + k, sizeof(eight));
-      if (eight == 0) {
-        k += sizeof(eight);
-        continue;
+/// The part of a line across the rectangle, at `x`, that lies in it: from its centre on, along y.
+struct Part {
+  double low, high;
+};
+Part part_of_rectangle(const Neighbourhood& around, double x) {
+  const double dx = x - around.centre.x();
+  Part part{-1e300, 1e300};
+  const auto clip = [&](double of_x, double of_y, double half) {
+    constexpr double kParallel = 1e-6;
+    if (std::abs(of_y) < kParallel) return;  // the kernel tells
+    const double a = (-half - of_x * dx) / of_y, b = (half - of_x * dx) / of_y;
+    part.low = std::max(part.low, std::min(a, b));
+    part.high = std::min(part.high, std::max(a, b));
+  };
+  const Vec2& along = around.along;
+  clip(along.x(), along.y(), around.half_along + kReachSlack);
+  clip(-along.y(), along.x(), around.half_across + kReachSlack);
+  return part;
+}
+
+/// Looks at the columns (i, j) to (i, j_last) of leaf positions; visit(position, its centre from the run's
+/// origin) at all but air.
+template <typename Visit>
+void visit_row(const LevelSet& set, const LaneRun& run, const ColumnQuery& query, int i, int j, int j_last,
+               Visit visit) {
+  static const ColumnKernel kernel = column_kernel_variants().front().kernel;
+  const double leaf_mm = kLeafSide * set.voxel;
+  const auto f = [](double value) { return static_cast<float>(value); };
+  for (; j <= j_last; j += kLanes) {
+    const size_t column = set.map.index(i, j, 0);
+    const Vec3 foot = set.leaf_centre(column) - run.origin;
+    const uint32_t* tops = set.map.tops.data() + set.map.column(column);
+    const ColumnRow row{f(foot.x()), f(foot.y()), f(leaf_mm), f(foot.z()), f(1.0 / leaf_mm), tops};
+    ColumnSpans spans;
+    kernel(query, row, spans);
+    const int count = std::min(kLanes, j_last - j + 1);
+    for (uint32_t left = spans.some & ((1U << count) - 1U); left != 0; left &= left - 1) {
+      const int n = std::countr_zero(left);
+      const size_t bottom = column + static_cast<size_t>(n) * set.map.dimension.z();
+      if (!set.owns(bottom)) continue;
+      for (int k = spans.first[n]; k <= spans.last[n]; ++k) {
+        const size_t leaf = bottom + static_cast<size_t>(k);
+        if (set.map.states[leaf] == LeafState::kAir) continue;
+        visit(leaf, Eigen::Vector3f(row.x, f(foot.y() + n * leaf_mm), f(foot.z() + k * leaf_mm)));
       }
     }
-    if (states[k] != LeafState::kAir) return k;
-    ++k;
   }
-  return end;
 }
 
 template <typename Visit>
-void visit_leaves(const LevelSet& set, const Neighbourhood& around, Visit visit) {
+void visit_leaves(const LevelSet& set, const LaneRun& run, Visit visit) {
+  const Neighbourhood& around = run.around;
+  const ColumnQuery query = column_query(around, run.origin);
   const Vec2 along = around.along.cwiseAbs();
-  const Vec2 half(along.x() * around.half_along + along.y() * around.half_across,
-                  along.y() * around.half_along + along.x() * around.half_across);
-  const auto [i_first, i_last] =
-      leaf_range(set, 0, around.centre.x() - half.x(), around.centre.x() + half.x());
-  const auto [j_first, j_last] =
-      leaf_range(set, 1, around.centre.y() - half.y(), around.centre.y() + half.y());
-  const double leaf_mm = kLeafSide * set.voxel;
+  const double half = along.x() * around.half_along + along.y() * around.half_across;
+  const auto [i_first, i_last] = leaf_range(set, 0, around.centre.x() - half, around.centre.x() + half);
   for (int i = i_first; i <= i_last; ++i) {
-    for (int j = j_first; j <= j_last; ++j) {
-      const size_t column = set.map.index(i, j, 0);
-      if (!set.owns(column)) continue;
-      const Vec3 foot = set.leaf_centre(column);
-      const Span span = vertical_span(around, foot.x(), foot.y());
-      if (span.low > span.high) continue;
-      const auto [k_first, k_last] = leaf_range(set, 2, span.low, span.high);
-      if (k_first > k_last) continue;
-      const LeafState* states = set.map.states.data() + column;
-      const auto last = static_cast<size_t>(k_last) + 1;
-      for (size_t k = static_cast<size_t>(k_first); (k = skip_air(states, k, last)) < last; ++k) {
-        visit(column + k, Vec3(foot.x(), foot.y(), foot.z() + static_cast<double>(k) * leaf_mm));
-      }
-    }
+    const Part part = part_of_rectangle(around, set.leaf_centre(set.map.index(i, 0, 0)).x());
+    const auto [j_first, j_last] =
+        leaf_range(set, 1, around.centre.y() + part.low, around.centre.y() + part.high);
+    visit_row(set, run, query, i, j_first, j_last, visit);
   }
 }
 
@@ -230,7 +247,8 @@ class RunJudge {
   RunJudge(LevelSet& set, const LaneRun& run, uint32_t index, std::vector<LeafPair>& pairs)
       : set_(set), run_(run), index_(index), pairs_(pairs), extent_(set) {}
 
-  void ask(size_t leaf, const Vec3& centre) {
+  /// `centre`: from the run's origin, mm.
+  void ask(size_t leaf, const Eigen::Vector3f& centre) {
     // Neither of them lies near those of the leaf before.
     __builtin_prefetch(&set_.map.marks[leaf]);
     __builtin_prefetch(&set_.map.floors[leaf]);
@@ -281,7 +299,7 @@ class RunJudge {
   LeafExtent extent_;
   size_t count_ = 0;
   std::array<uint32_t, kAtATime> leaves_;
-  std::array<Vec3, kAtATime> centres_;
+  std::array<Eigen::Vector3f, kAtATime> centres_;
   std::array<LaneAnswer, kAtATime> answers_;
 };
 
@@ -308,8 +326,7 @@ void LaneRun::set_lane(size_t lane, const SweepMap& map) {
 LeafExtent::LeafExtent(const LevelSet& set)
     : half(static_cast<float>(0.5 * (kLeafSide - 1) * set.voxel)), reach(static_cast<float>(reach_of(set))) {}
 
-LaneQuery LaneRun::query(const LeafExtent& extent, const Vec3& centre, const LeafFloor& floor) const {
-  const Eigen::Vector3f at = (centre - origin).cast<float>();
+LaneQuery LaneRun::query(const LeafExtent& extent, const Eigen::Vector3f& at, const LeafFloor& floor) const {
   return {{at.x(), at.y(), at.z()},
           floor.value,
           {floor.slope[0], floor.slope[1], floor.slope[2]},
@@ -340,7 +357,7 @@ std::vector<LaneRun> make_runs(const LevelSet& set, const std::vector<SweptPiece
 
 void gather_leaves(LevelSet& set, const LaneRun& run, size_t index, std::vector<LeafPair>& pairs) {
   RunJudge judge(set, run, static_cast<uint32_t>(index), pairs);
-  visit_leaves(set, run.around, [&](size_t leaf, const Vec3& centre) { judge.ask(leaf, centre); });
+  visit_leaves(set, run, [&](size_t leaf, const Eigen::Vector3f& centre) { judge.ask(leaf, centre); });
   judge.answer();
 }
 

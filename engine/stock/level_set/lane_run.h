@@ -42,7 +42,8 @@ struct LaneRun {
   Neighbourhood around;
 
   void set_lane(size_t lane, const SweepMap& map);
-  LaneQuery query(const LeafExtent& extent, const Vec3& centre, const LeafFloor& floor) const;
+  /// `centre`: a leaf's, from the origin, mm.
+  LaneQuery query(const LeafExtent& extent, const Eigen::Vector3f& centre, const LeafFloor& floor) const;
   uint32_t all() const { return (1U << count) - 1U; }
 };
 

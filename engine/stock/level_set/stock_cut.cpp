@@ -1,15 +1,16 @@
 // Cutting, in batches of sweeps:
 //   1. gather: runs of sweeps list the leaf positions they may change (parallel over runs)
-//   2. group them by position
-//   3. cut: each position applies its sweeps, deepest first (parallel over positions; one task owns a leaf)
+//   2. share out: slabs of neighbouring positions, with as many pairs of a run and a position each
+//   3. cut: a slab groups its pairs by position; each position applies its sweeps, deepest first (parallel
+//      over slabs; one task owns a position)
 //   4. settle: new leaves enter the tree, emptied ones leave it (serial, in order of position)
 // Each voxel ends as the maximum over the pieces that reach it, whatever the order, batches, calls and
 // threads. The order saves work: after the deepest piece most others of the batch have nothing left to raise.
-#include <tbb/parallel_sort.h>
-
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <chrono>
+#include <limits>
 #include <memory>
 
 #include "base/parallel.h"
@@ -28,79 +29,122 @@ namespace {
 constexpr size_t kLeastBatch = 512, kMostBatch = 4096;
 constexpr double kMostPairs = 2.5e5;
 constexpr size_t kRunsPerTask = 1;
-constexpr size_t kGroupsPerTask = 32;
+constexpr size_t kSlabs = 128;
+/// Leaves that are kept to be made again: freed ones would be looked up and joined by the allocator.
+constexpr size_t kMostSpare = 8192;
 
 /// A leaf position and the pairs that may change it.
 struct Group {
   uint32_t leaf = 0;
   bool swallowed = false;     ///< a sweep leaves nothing of it
-  size_t begin = 0, end = 0;  ///< in the batch's pairs
+  size_t begin = 0, end = 0;  ///< in the slab's pairs
 };
+
+/// Pairs of neighbouring leaf positions.
+struct Slab {
+  std::vector<Group> groups;    ///< in order of position
+  std::vector<LeafPair> pairs;  ///< in the order of their groups, there in the order of the path
+};
+
+/// By run, in order of position.
+using FoundPairs = std::vector<std::vector<LeafPair>>;
 
 struct Batch {
   std::vector<SweptPiece> pieces;
   std::vector<LaneRun> runs;
-  std::vector<LeafPair> pairs;  ///< in the order of their groups, there in the order of the path
-  std::vector<Group> groups;    ///< in order of position
+  FoundPairs found;
+  std::vector<uint32_t> slab_ends;  ///< first position beyond each slab
+  std::atomic<size_t> spare_taken{0};
 };
 
-using FoundPairs = std::vector<std::vector<LeafPair>>;
+/// Shares the positions out, by a sample of the pairs.
+void set_slabs(Batch& batch) {
+  constexpr size_t kOfPairs = 32;
+  std::vector<uint32_t> sample;
+  for (const auto& part : batch.found) {
+    for (size_t n = kOfPairs / 2; n < part.size(); n += kOfPairs) sample.push_back(part[n].leaf);
+  }
+  std::sort(sample.begin(), sample.end());
+  batch.slab_ends.clear();
+  for (size_t slab = 1; slab < kSlabs && !sample.empty(); ++slab) {
+    const uint32_t end = sample[slab * sample.size() / kSlabs];
+    if (batch.slab_ends.empty() || batch.slab_ends.back() < end) batch.slab_ends.push_back(end);
+  }
+  batch.slab_ends.push_back(std::numeric_limits<uint32_t>::max());
+}
+
+void gather(LevelSet& set, Batch& batch) {
+  batch.runs = make_runs(set, batch.pieces);
+  batch.found.clear();
+  batch.found.resize(batch.runs.size());
+  parallel_chunks(batch.runs.size(), kRunsPerTask, [&](size_t begin, size_t end) {
+    for (size_t n = begin; n < end; ++n) {
+      std::vector<LeafPair> own;  // not in place: neighbours in `found` share a cache line
+      gather_leaves(set, batch.runs[n], n, own);
+      batch.found[n] = std::move(own);
+    }
+  });
+  set_slabs(batch);
+}
+
+/// The pairs of each run that lie in a slab.
+std::vector<std::span<const LeafPair>> parts_of(const Batch& batch, size_t number) {
+  const auto lies_before = [](const LeafPair& pair, uint32_t leaf) { return pair.leaf < leaf; };
+  const uint32_t first = number == 0 ? 0 : batch.slab_ends[number - 1], end = batch.slab_ends[number];
+  std::vector<std::span<const LeafPair>> parts;
+  for (const auto& part : batch.found) {
+    if (part.empty() || part.back().leaf < first || part.front().leaf >= end) continue;
+    const auto from = std::lower_bound(part.begin(), part.end(), first, lies_before);
+    const auto to = std::lower_bound(from, part.end(), end, lies_before);
+    if (from != to) parts.emplace_back(from, to);
+  }
+  return parts;
+}
 
 /// One group for each position that was found, with as many pairs as it has. Each position's mark is its
 /// group's number then, from kFirstGroup on.
 constexpr uint32_t kFirstGroup = LeafMap::kSwallowed + 1;
-void count_groups(LevelSet& set, Batch& batch, const FoundPairs& found) {
-  batch.groups.clear();
-  std::vector<uint32_t>& marks = set.map.marks;
-  for (const auto& part : found) {
+void count_groups(LevelSet& set, Slab& slab, std::span<const std::span<const LeafPair>> parts) {
+  for (const auto& part : parts) {
     for (const LeafPair& pair : part) {
-      uint32_t& mark = marks[pair.leaf];
+      uint32_t& mark = set.map.marks[pair.leaf];
       if (mark < kFirstGroup) {
-        batch.groups.push_back({pair.leaf, mark == LeafMap::kSwallowed});
-        mark = kFirstGroup + static_cast<uint32_t>(batch.groups.size() - 1);
+        slab.groups.push_back({pair.leaf, mark == LeafMap::kSwallowed});
+        mark = kFirstGroup + static_cast<uint32_t>(slab.groups.size() - 1);
       }
-      Group& group = batch.groups[mark - kFirstGroup];
+      Group& group = slab.groups[mark - kFirstGroup];
       group.end += group.swallowed ? 0 : 1;
     }
   }
 }
 
-void sort_groups(LevelSet& set, Batch& batch) {
-  tbb::parallel_sort(batch.groups.begin(), batch.groups.end(),
-                     [](const Group& a, const Group& b) { return a.leaf < b.leaf; });
+void sort_groups(LevelSet& set, Slab& slab) {
+  std::sort(slab.groups.begin(), slab.groups.end(),
+            [](const Group& a, const Group& b) { return a.leaf < b.leaf; });
   size_t total = 0;
-  for (size_t g = 0; g < batch.groups.size(); ++g) {
-    Group& group = batch.groups[g];
+  for (size_t g = 0; g < slab.groups.size(); ++g) {
+    Group& group = slab.groups[g];
     set.map.marks[group.leaf] = kFirstGroup + static_cast<uint32_t>(g);
     group.begin = total;
     total += group.end;
     group.end = group.begin;
   }
-  batch.pairs.resize(total);
+  slab.pairs.resize(total);
 }
 
-void group_pairs(LevelSet& set, Batch& batch, const FoundPairs& found) {
-  count_groups(set, batch, found);
-  sort_groups(set, batch);
-  for (const auto& part : found) {
+Slab slab_of(LevelSet& set, const Batch& batch, size_t number) {
+  const std::vector<std::span<const LeafPair>> parts = parts_of(batch, number);
+  Slab slab;
+  count_groups(set, slab, parts);
+  sort_groups(set, slab);
+  for (const auto& part : parts) {
     for (const LeafPair& pair : part) {
-      Group& group = batch.groups[set.map.marks[pair.leaf] - kFirstGroup];
-      if (!group.swallowed) batch.pairs[group.end++] = pair;
+      Group& group = slab.groups[set.map.marks[pair.leaf] - kFirstGroup];
+      if (!group.swallowed) slab.pairs[group.end++] = pair;
     }
   }
-  for (const Group& group : batch.groups) set.map.marks[group.leaf] = 0;
-}
-
-void gather(LevelSet& set, Batch& batch) {
-  batch.runs = make_runs(set, batch.pieces);
-  const size_t count = batch.runs.size();
-  FoundPairs found((count + kRunsPerTask - 1) / kRunsPerTask);
-  parallel_chunks(count, kRunsPerTask, [&](size_t begin, size_t end) {
-    std::vector<LeafPair> own;  // not in place: neighbours in `found` share a cache line
-    for (size_t n = begin; n < end; ++n) gather_leaves(set, batch.runs[n], n, own);
-    found[begin / kRunsPerTask] = std::move(own);
-  });
-  group_pairs(set, batch, found);
+  for (const Group& group : slab.groups) set.map.marks[group.leaf] = 0;
+  return slab;
 }
 
 /// A sweep that may raise a value of the leaf.
@@ -114,22 +158,23 @@ struct Candidate {
 };
 
 /// The candidates of a group in the order of the path, as far as the floor does not rule them out.
-void find_candidates(const LevelSet& set, const Batch& batch, const Group& group, const LeafFloor& floor,
-                     std::vector<Candidate>& candidates) {
+void find_candidates(const LevelSet& set, const Batch& batch, std::span<const LeafPair> pairs,
+                     const LeafFloor& floor, std::vector<Candidate>& candidates) {
   static const LaneKernel kernel = lane_kernel_variants().front().kernel;
   constexpr size_t kAtATime = 16;  // their answers do not wait for each other
   std::array<LaneAnswer, kAtATime> answers;
   const LeafExtent extent(set);
-  const Vec3 centre = set.leaf_centre(group.leaf);
+  const Vec3 centre = set.leaf_centre(pairs.front().leaf);
   candidates.clear();
-  for (size_t first = group.begin; first < group.end; first += kAtATime) {
-    const size_t end = std::min(first + kAtATime, group.end);
+  for (size_t first = 0; first < pairs.size(); first += kAtATime) {
+    const size_t end = std::min(first + kAtATime, pairs.size());
     for (size_t n = first; n < end; ++n) {
-      const LaneRun& run = batch.runs[batch.pairs[n].run];
-      kernel(run.lanes, run.piece, run.query(extent, centre, floor), answers[n - first]);
+      const LaneRun& run = batch.runs[pairs[n].run];
+      const Eigen::Vector3f at = (centre - run.origin).cast<float>();
+      kernel(run.lanes, run.piece, run.query(extent, at, floor), answers[n - first]);
     }
     for (size_t n = first; n < end; ++n) {
-      const LaneRun& run = batch.runs[batch.pairs[n].run];
+      const LaneRun& run = batch.runs[pairs[n].run];
       const LaneAnswer& answer = answers[n - first];
       for (uint32_t open = answer.open & run.all(); open != 0; open &= open - 1) {
         const auto lane = static_cast<uint32_t>(__builtin_ctz(open));
@@ -154,26 +199,25 @@ struct Outcome {
   }
 };
 
-Candidate deepest_of(const Batch& batch, const Group& group) {
-  const auto candidate = [&](size_t n) -> Candidate {
-    const LeafPair& pair = batch.pairs[n];
+Candidate deepest_of(const Batch& batch, std::span<const LeafPair> pairs) {
+  const auto candidate = [&](const LeafPair& pair) -> Candidate {
     return {pair.depth, 0.0F, static_cast<uint32_t>(batch.runs[pair.run].first) + pair.lane};
   };
-  Candidate deepest = candidate(group.begin);
-  for (size_t n = group.begin + 1; n < group.end; ++n) {
-    if (candidate(n).before(deepest)) deepest = candidate(n);
+  Candidate deepest = candidate(pairs.front());
+  for (const LeafPair& pair : pairs.subspan(1)) {
+    if (candidate(pair).before(deepest)) deepest = candidate(pair);
   }
   return deepest;
 }
 
 /// Deepest first: what it leaves rules out most of the others.
-void apply_group(const LevelSet& set, const Batch& batch, const Group& group,
+void apply_pairs(const LevelSet& set, const Batch& batch, std::span<const LeafPair> pairs,
                  std::vector<Candidate>& candidates, float* values, Outcome& outcome) {
-  LeafCut cut(set, group.leaf, values);
-  const Candidate deepest = deepest_of(batch, group);
+  LeafCut cut(set, pairs.front().leaf, values);
+  const Candidate deepest = deepest_of(batch, pairs);
   cut.apply(batch.pieces[deepest.piece]);
   outcome.take(cut);
-  find_candidates(set, batch, group, outcome.floor, candidates);
+  find_candidates(set, batch, pairs, outcome.floor, candidates);
   std::sort(candidates.begin(), candidates.end(),
             [](const Candidate& a, const Candidate& b) { return a.before(b); });
   for (const Candidate& candidate : candidates) {
@@ -185,8 +229,21 @@ void apply_group(const LevelSet& set, const Batch& batch, const Group& group,
   outcome.changed = cut.changed();
 }
 
+/// A leaf of solid material; one that was emptied before if there is any.
+std::unique_ptr<LeafNode> solid_leaf(LevelSet& set, Batch& batch, size_t leaf) {
+  const size_t number = batch.spare_taken.fetch_add(1, std::memory_order_relaxed);
+  if (number >= set.spare.size()) {
+    return std::make_unique<LeafNode>(set.map.origin(leaf), -set.band(), false);
+  }
+  std::unique_ptr<LeafNode> node = std::move(set.spare[number]);
+  node->setOrigin(set.map.origin(leaf));
+  std::fill_n(node->buffer().data(), kLeafVoxels, -set.band());  // makes room if its values were on the disk
+  return node;
+}
+
 /// Applies one group. The leaf is changed in place, or made when the position was solid so far.
-Outcome cut_leaf(LevelSet& set, const Batch& batch, const Group& group, std::vector<Candidate>& candidates) {
+Outcome cut_leaf(LevelSet& set, Batch& batch, const Group& group, std::span<const LeafPair> pairs,
+                 std::vector<Candidate>& candidates) {
   const size_t leaf = group.leaf;
   Outcome outcome;
   outcome.floor = set.map.floors[leaf];
@@ -196,43 +253,98 @@ Outcome cut_leaf(LevelSet& set, const Batch& batch, const Group& group, std::vec
   }
   LeafNode* node = set.map.leaves[leaf];
   if (node == nullptr) {
-    outcome.made = std::make_unique<LeafNode>(set.map.origin(leaf), -set.band(), false);
+    outcome.made = solid_leaf(set, batch, leaf);
     node = outcome.made.get();
   }
   float* const values = outcome.made ? node->buffer().data() : set.own_values(leaf);
-  apply_group(set, batch, group, candidates, values, outcome);
+  apply_pairs(set, batch, pairs, candidates, values, outcome);
   outcome.state = settle_leaf(*node, set.band());
   return outcome;
 }
 
-void settle(LevelSet& set, size_t leaf, Outcome& outcome) {
-  auto& tree = set.grid->tree();
-  set.forget_spilled(leaf);
-  if (outcome.state == LeafState::kLeaf && outcome.made) {
-    set.map.leaves[leaf] = outcome.made.get();
-    tree.addLeaf(outcome.made.release());
-  } else if (outcome.state == LeafState::kAir) {
-    constexpr openvdb::Index kLeafLevel = 1;  // a tile that replaces one leaf
-    tree.addTile(kLeafLevel, set.map.origin(leaf), set.band(), false);
-    set.map.leaves[leaf] = nullptr;
-  }
+/// What the tree has to take over of a position.
+struct ForTree {
+  uint32_t leaf = 0;
+  std::unique_ptr<LeafNode> made;  ///< null: nothing is left of it
+};
+
+struct SlabOutcome {
+  std::vector<ForTree> for_tree;    ///< in order of position
+  std::vector<uint32_t> from_disk;  ///< what is there of these no longer counts
+  uint64_t visits = 0, patches = 0;
+};
+
+/// Leaves a position as it is from now on, but for the tree.
+void settle(LevelSet& set, size_t leaf, Outcome& outcome, SlabOutcome& slab) {
   const bool changed = outcome.changed || outcome.state != set.map.states[leaf];
   set.map.states[leaf] = outcome.state;
   set.map.floors[leaf] = outcome.floor;
   set.map.cuts[leaf] += changed ? 1 : 0;
+  if (set.is_spilled(leaf)) slab.from_disk.push_back(static_cast<uint32_t>(leaf));
+  slab.visits += outcome.visits;
+  slab.patches += outcome.patches;
+  const bool is_new = outcome.state == LeafState::kLeaf && outcome.made;
+  if (!is_new && outcome.state != LeafState::kAir) return;
+  slab.for_tree.push_back({static_cast<uint32_t>(leaf), is_new ? std::move(outcome.made) : nullptr});
 }
+
+SlabOutcome cut_slab(LevelSet& set, Batch& batch, size_t number) {
+  const Slab slab = slab_of(set, batch, number);
+  SlabOutcome done;
+  std::vector<Candidate> scratch;
+  for (const Group& group : slab.groups) {
+    const std::span<const LeafPair> pairs(slab.pairs.data() + group.begin, group.end - group.begin);
+    Outcome outcome = cut_leaf(set, batch, group, pairs, scratch);
+    settle(set, group.leaf, outcome, done);
+  }
+  return done;
+}
+
+/// The tree while leaves enter and leave it; remembers the node of the position before.
+class TreeUpdate {
+ public:
+  explicit TreeUpdate(LevelSet& set) : set_(set), near_(set.grid->tree()) {}
+
+  void take(ForTree& change) {
+    LeafNode*& leaf = set_.map.leaves[change.leaf];
+    if (change.made) {
+      leaf = change.made.get();
+      near_.addLeaf(change.made.release());
+      return;
+    }
+    const openvdb::Coord origin = set_.map.origin(change.leaf);
+    if (leaf != nullptr && set_.spare.size() < kMostSpare) {
+      Parent* const parent = near_.probeNode<Parent>(origin);
+      set_.spare.emplace_back(parent->stealNode<LeafNode>(origin, set_.band(), false));
+    } else {
+      constexpr openvdb::Index kLeafLevel = 1;  // a tile that replaces one leaf
+      near_.addTile(kLeafLevel, origin, set_.band(), false);
+    }
+    leaf = nullptr;
+    set_.map.lower_top(change.leaf);
+  }
+
+ private:
+  using Parent = openvdb::FloatTree::RootNodeType::ChildNodeType::ChildNodeType;
+
+  LevelSet& set_;
+  openvdb::tree::ValueAccessor<openvdb::FloatTree> near_;
+};
 
 void cut_batch(LevelSet& set, Batch& batch) {
   gather(set, batch);
-  std::vector<Outcome> outcomes(batch.groups.size());
-  parallel_chunks(batch.groups.size(), kGroupsPerTask, [&](size_t begin, size_t end) {
-    std::vector<Candidate> scratch;
-    for (size_t g = begin; g < end; ++g) outcomes[g] = cut_leaf(set, batch, batch.groups[g], scratch);
+  std::vector<SlabOutcome> outcomes(batch.slab_ends.size());
+  parallel_chunks(outcomes.size(), 1, [&](size_t begin, size_t end) {
+    for (size_t n = begin; n < end; ++n) outcomes[n] = cut_slab(set, batch, n);
   });
-  for (size_t g = 0; g < outcomes.size(); ++g) {
-    set.statistics.leaf_visits += outcomes[g].visits;
-    set.statistics.voxel_updates += outcomes[g].patches * kPatchVoxels;
-    settle(set, batch.groups[g].leaf, outcomes[g]);
+  set.spare.erase(set.spare.begin(),
+                  set.spare.begin() + std::min(batch.spare_taken.exchange(0), set.spare.size()));
+  TreeUpdate tree(set);
+  for (SlabOutcome& outcome : outcomes) {
+    set.statistics.leaf_visits += outcome.visits;
+    set.statistics.voxel_updates += outcome.patches * kPatchVoxels;
+    for (const uint32_t leaf : outcome.from_disk) set.forget_spilled(leaf);
+    for (ForTree& change : outcome.for_tree) tree.take(change);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "base/parallel.h"
+#include "stock/level_set/lane_kernel.h"
 #include "stock/level_set/leaf_kernel.h"
 #include "stock/level_set/stock_grid_internal.h"
 
@@ -103,6 +104,18 @@ openvdb::Coord LeafMap::origin(size_t index) const {
   return {(lower.x() + i) * kLeafSide, (lower.y() + j) * kLeafSide, (lower.z() + k) * kLeafSide};
 }
 
+void LeafMap::lower_top(size_t index) {
+  uint32_t& top = tops[column(index)];
+  const LeafState* const states_of_column =
+      states.data() + column(index) * static_cast<size_t>(dimension.z());
+  while (top > 0 && states_of_column[top - 1] == LeafState::kAir) --top;
+}
+
+void LeafMap::raise_top(size_t index) {
+  uint32_t& top = tops[column(index)];
+  top = std::max(top, static_cast<uint32_t>(index % static_cast<size_t>(dimension.z())) + 1);
+}
+
 Vec3 LevelSet::leaf_centre(size_t index) const {
   const openvdb::Coord origin = map.origin(index);
   const double half = 0.5 * (kLeafSide - 1);
@@ -146,6 +159,8 @@ LeafMap empty_map(const Box& box, double voxel) {
   map.floors.assign(count, {static_cast<float>(-kBandVoxels * voxel), {}});
   map.cuts.assign(count, 0);
   map.marks.assign(count, 0);
+  map.tops.assign(static_cast<size_t>(map.dimension.x()) * map.dimension.y() + kLanes,
+                  static_cast<uint32_t>(map.dimension.z()));
   return map;
 }
 
@@ -181,6 +196,8 @@ void fill_map(LevelSet& set, const std::function<void(int, int, MadeLeaves&)>& f
     take_leaves(set, made);
     if (set.spilled) make_room(set, {});
   }
+  for (size_t column = 0; column < set.map.size(); column += static_cast<size_t>(set.map.dimension.z()))
+    set.map.lower_top(column);
   sign_tiles(set);
 }
 

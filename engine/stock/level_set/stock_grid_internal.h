@@ -60,13 +60,21 @@ struct LeafMap {
   std::vector<LeafFloor> floors;  ///< raised by cutting; -band, which always holds, after loading
   std::vector<uint32_t> cuts;     ///< how often cutting has changed the position's values
   static constexpr uint32_t kSwallowed = 1;
+  /// Of each column, x before y: positions below its highest material, and that one; perhaps too many. A row
+  /// of lanes may be read from any of them on.
+  std::vector<uint32_t> tops;
   std::vector<uint32_t> marks;  ///< while a batch of sweeps is cut, notes about the position; 0 otherwise
 
   size_t size() const { return states.size(); }
   size_t index(int i, int j, int k) const {
     return (static_cast<size_t>(i) * dimension.y() + j) * dimension.z() + k;
   }
+  size_t column(size_t index) const { return index / static_cast<size_t>(dimension.z()); }
   openvdb::Coord origin(size_t index) const;  ///< first voxel
+  /// The position has become air.
+  void lower_top(size_t index);
+  /// The position has become material.
+  void raise_top(size_t index);
 };
 
 /// Leaves whose values are on the disk keep their node, their mask and their place in the tree.
@@ -85,6 +93,7 @@ struct LevelSet {
   std::optional<RawShape> raw;  ///< none: read from a file without its shape
   openvdb::FloatGrid::Ptr grid;
   LeafMap map;
+  std::vector<std::unique_ptr<LeafNode>> spare;  ///< emptied leaves, to be used again
   CutStatistics statistics;
   double rounding_mm = kBoxRounding;  ///< values are the distances they stand for within this
   /// Of each column of leaf positions, x before y: 1 where another process cuts (stock_tiles.h); empty: none.
@@ -104,9 +113,7 @@ struct LevelSet {
   void forget_spilled(size_t leaf);
 
   /// Cutting may change this position.
-  bool owns(size_t index) const {
-    return others.empty() || others[index / static_cast<size_t>(map.dimension.z())] == 0;
-  }
+  bool owns(size_t index) const { return others.empty() || others[map.column(index)] == 0; }
 
   float band() const { return static_cast<float>(kBandVoxels * voxel); }
   /// Centre of a leaf position in W.

@@ -71,6 +71,7 @@ void make_room(LevelSet& set, std::span<const uint32_t> next_use) {
   std::vector<HeldLeaf> held = held_leaves(set, next_use);
   const size_t most = set.spilled->most;
   if (held.size() <= most) return;
+  set.spare.clear();
   const auto goes_before = [](const HeldLeaf& a, const HeldLeaf& b) {
     return a.next_use > b.next_use || (a.next_use == b.next_use && a.leaf < b.leaf);
   };

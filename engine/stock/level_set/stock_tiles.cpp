@@ -140,6 +140,7 @@ void StockTiles::take_position(BytesReader& in) {
     set_tile(set, leaf, state);
   }
   set.map.states[leaf] = state;
+  if (state != LeafState::kAir) set.map.raise_top(leaf);
 }
 
 }  // namespace swarf::stock

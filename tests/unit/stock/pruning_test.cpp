@@ -2,10 +2,14 @@
 // held against plain evaluation.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <bit>
 #include <cstring>
+#include <iterator>
 
 #include "base/parallel.h"
 #include "cutter_shapes.h"
+#include "stock/level_set/column_kernel.h"
 #include "stock/level_set/lane_run.h"
 #include "stock/level_set/leaf_kernel.h"
 #include "stock/stock.h"
@@ -153,6 +157,135 @@ TEST(LaneRun, ReachesAllThatAPointedCutterRaises) {
   }
 }
 
+/// Moves of every kind near a small block: level and sloping rows, plunges, moves that stand or all but
+/// stand, turning axes, and rows again a little higher or lower.
+std::vector<Sweep> mixed_sweeps(Rng& rng, double tilt) {
+  std::vector<Sweep> sweeps;
+  const auto place = [&] { return Vec3(rng.uniform(-3, 15), rng.uniform(-3, 15), rng.uniform(2, 7)); };
+  const auto axis = [&] {
+    return Vec3(tilt * rng.uniform(-1, 1), tilt * rng.uniform(-1, 1), 1.0).normalized();
+  };
+  for (int n = 0; n < 60; ++n) {
+    Sweep sweep{{place(), axis()}, {Vec3::Zero(), Vec3::UnitZ()}, 0};
+    const Vec3 along(rng.uniform(-2, 2), rng.uniform(-2, 2), 0.0);
+    const Vec3 changes[] = {along,
+                            along + Vec3(0, 0, rng.uniform(-0.1, 0.1)),
+                            Vec3(0, 0, -1.5),
+                            Vec3::Zero(),
+                            1e-7 * along + Vec3(0, 0, 1e-7),
+                            Vec3(2.5, 0, 1e-9)};
+    sweep.end = {sweep.start.tip_W + changes[n % 6], n % 4 == 0 ? axis() : sweep.start.axis_W};
+    sweeps.push_back(sweep);
+    if (n % 5 == 0) {
+      const Vec3 lift(0.0, 0.0, n % 10 == 0 ? 2e-3 : -2e-3);
+      sweep.start.tip_W += lift;
+      sweep.end.tip_W += lift;
+      sweeps.push_back(sweep);
+    }
+  }
+  return sweeps;
+}
+
+/// Sixteen moves that follow each other, through the block and beside it.
+std::vector<Sweep> chain(Rng& rng, double tilt) {
+  const auto axis = [&] {
+    return Vec3(tilt * rng.uniform(-1, 1), tilt * rng.uniform(-1, 1), 1.0).normalized();
+  };
+  ToolPose pose{{rng.uniform(-3, 15), rng.uniform(-3, 15), rng.uniform(1, 6)}, axis()};
+  const Vec3 way(rng.uniform(-0.6, 0.6), rng.uniform(-0.6, 0.6), rng.uniform(-0.1, 0.1)), target = axis();
+  std::vector<Sweep> sweeps;
+  for (int n = 1; n <= kLanes; ++n) {
+    const double t = static_cast<double>(n) / kLanes;
+    const ToolPose next{pose.tip_W + way, ((1.0 - t) * pose.axis_W + t * target).normalized()};
+    sweeps.push_back({pose, next, 0});
+    pose = next;
+  }
+  return sweeps;
+}
+
+/// Positions of material that gather_leaves() passed over beside others.
+std::vector<size_t> passed_over(const LevelSet& set, const std::vector<LeafPair>& pairs) {
+  std::vector<uint8_t> found(set.map.size(), 0);
+  for (const LeafPair& pair : pairs) found[pair.leaf] = 1;
+  const size_t to_next[] = {1, set.map.index(0, 1, 0), set.map.index(1, 0, 0)};
+  const auto is_beside = [&](size_t leaf) {
+    return std::any_of(std::begin(to_next), std::end(to_next), [&](size_t step) {
+      return (leaf >= step && found[leaf - step] != 0) ||
+             (leaf + step < found.size() && found[leaf + step] != 0);
+    });
+  };
+  std::vector<size_t> rest;
+  for (size_t leaf = 0; leaf < set.map.size(); ++leaf)
+    if (found[leaf] == 0 && set.map.states[leaf] != LeafState::kAir && is_beside(leaf)) rest.push_back(leaf);
+  return rest;
+}
+
+TEST(LaneRun, PassesOverNoLeafThatItRaises) {
+  constexpr uint64_t kSeed = 76;
+  constexpr double kVoxel = 0.2;
+  Rng rng(kSeed);
+  size_t found = 0;
+  for (int n = 0; n < 48; ++n) {
+    const double tilts[] = {0.0, 0.03, 0.3, 1.0, 30.0};
+    const cutter::ConvexPiece piece =
+        n % 3 == 0 ? random_piece(rng) : cutter::ConvexPiece::cylinder(2.5, n % 2 == 0 ? 5.0 : 40.0);
+    LevelSet set = make_box({{0, 0, 0}, {12, 12, 6}}, kVoxel);
+    cut_level_set(set, mixed_sweeps(rng, 0.2), CutterSolid(1.5, 10.0));
+    std::vector<SweptPiece> pieces;
+    for (const Sweep& sweep : chain(rng, tilts[n % 5])) pieces.push_back({sweep_map(sweep), &piece});
+    std::vector<LeafPair> pairs;
+    for (const LaneRun& run : make_runs(set, pieces)) gather_leaves(set, run, 0, pairs);
+    found += pairs.size();
+    const std::vector<size_t> rest = passed_over(set, pairs);
+    for (int look = 0; look < 150 && !rest.empty(); ++look) {
+      const auto corner = [&] { return static_cast<int>(rng.uniform(0.0, 2.0)) * (kLeafSide - 1); };
+      const size_t leaf = rest[static_cast<size_t>(rng.uniform() * static_cast<double>(rest.size() - 1))];
+      const openvdb::Coord voxel = set.map.origin(leaf).offsetBy(corner(), corner(), corner());
+      const Vec3 x = kVoxel * Vec3(voxel.x(), voxel.y(), voxel.z());
+      const SweptPiece& swept = pieces[static_cast<size_t>(rng.uniform() * (kLanes - 1e-9))];
+      ASSERT_LE(std::min(-scanned(swept, x), double{set.band()}), set.value(voxel) + 1e-4)
+          << "seed " << kSeed << " case " << n << " at " << text(x) << "\n"
+          << text(piece);
+    }
+  }
+  EXPECT_GT(found, 3000U);
+}
+
+TEST(ColumnKernel, AllInstructionSetsFindTheSameSpans) {
+  constexpr uint64_t kSeed = 77;
+  Rng rng(kSeed);
+  const auto f = [&](double low, double high) { return static_cast<float>(rng.uniform(low, high)); };
+  int some = 0;
+  for (int n = 0; n < 500; ++n) {
+    ColumnQuery query{{f(-2, 2), f(-2, 2)},
+                      {1.0F, 0.0F},
+                      f(2, 9),
+                      f(2, 9),
+                      {f(-2, 2), f(-2, 2), f(-2, 2)},
+                      {f(-0.5, 0.5), f(-0.5, 0.5)},
+                      f(0.5, 1.0),
+                      f(5, 40),
+                      f(2, 7),
+                      0.0F,
+                      n % 18,
+                      {}};
+    if (n % 3 != 0) query.per_lean = 1.0F / std::hypot(query.lean[0], query.lean[1]);
+    for (int p = 0; p < query.planes; ++p) query.plane[p] = {f(-3, 3), f(-0.4, 0.4), f(-0.4, 0.4)};
+    uint32_t tops[kLanes];
+    for (uint32_t& top : tops) top = static_cast<uint32_t>(rng.uniform(0, 40));
+    const ColumnRow row{f(-5, 5), f(-9, -2), 0.8F, -10.0F, 1.25F, tops};
+    ColumnSpans spans, other;
+    column_kernel_variants().front().kernel(query, row, spans);
+    for (const ColumnKernelVariant& variant : column_kernel_variants()) {
+      variant.kernel(query, row, other);
+      ASSERT_EQ(std::memcmp(&other, &spans, sizeof(spans)), 0) << variant.instruction_set << " case " << n;
+    }
+    for (int lane = 0; lane < kLanes; ++lane) ASSERT_LT(spans.last[lane], static_cast<int>(tops[lane]));
+    some += std::popcount(spans.some);
+  }
+  EXPECT_GT(some, 1000);
+}
+
 TEST(LeafKernel, PatchTestFloorsAndRangeAreAlikeInAllInstructionSets) {
   constexpr uint64_t kSeed = 73;
   Rng rng(kSeed);
@@ -231,35 +364,6 @@ TEST(Stock, BatchesAndThreadsLeaveTheSameBits) {
           << pieces << " sweeps a call, " << threads << " threads";
     }
   }
-}
-
-/// Moves of every kind near a small block: level and sloping rows, plunges, moves that stand or all but
-/// stand, turning axes, and rows again a little higher or lower.
-std::vector<Sweep> mixed_sweeps(Rng& rng, double tilt) {
-  std::vector<Sweep> sweeps;
-  const auto place = [&] { return Vec3(rng.uniform(-3, 15), rng.uniform(-3, 15), rng.uniform(2, 7)); };
-  const auto axis = [&] {
-    return Vec3(tilt * rng.uniform(-1, 1), tilt * rng.uniform(-1, 1), 1.0).normalized();
-  };
-  for (int n = 0; n < 60; ++n) {
-    Sweep sweep{{place(), axis()}, {Vec3::Zero(), Vec3::UnitZ()}, 0};
-    const Vec3 along(rng.uniform(-2, 2), rng.uniform(-2, 2), 0.0);
-    const Vec3 changes[] = {along,
-                            along + Vec3(0, 0, rng.uniform(-0.1, 0.1)),
-                            Vec3(0, 0, -1.5),
-                            Vec3::Zero(),
-                            1e-7 * along + Vec3(0, 0, 1e-7),
-                            Vec3(2.5, 0, 1e-9)};
-    sweep.end = {sweep.start.tip_W + changes[n % 6], n % 4 == 0 ? axis() : sweep.start.axis_W};
-    sweeps.push_back(sweep);
-    if (n % 5 == 0) {
-      const Vec3 lift(0.0, 0.0, n % 10 == 0 ? 2e-3 : -2e-3);
-      sweep.start.tip_W += lift;
-      sweep.end.tip_W += lift;
-      sweeps.push_back(sweep);
-    }
-  }
-  return sweeps;
 }
 
 /// Alone, each sweep is evaluated in every patch of the leaves that it reaches; together, what one leaves
