@@ -64,8 +64,9 @@ class Canvas {
     cairo_fill(cr());
   }
   void stroke(const Vec2& from, const Vec2& to, const Rgb& linear) const;
-  /// Lays the drawing over the picture.
-  void finish();
+  /// Lays the drawing over the picture. It lies within these rows: others are not looked at.
+  void finish(double top, double bottom);
+  void finish() { finish(0.0, image_.height); }
 
  private:
   Image& image_;
@@ -73,11 +74,12 @@ class Canvas {
   std::unique_ptr<cairo_t, decltype(&cairo_destroy)> cairo_;
 };
 
-void Canvas::finish() {
+void Canvas::finish(double top, double bottom) {
   cairo_surface_flush(surface_.get());
   const uint8_t* rows = cairo_image_surface_get_data(surface_.get());
   const int stride = cairo_image_surface_get_stride(surface_.get());
-  for (int y = 0; y < image_.height; ++y) {
+  const int end = std::min(image_.height, static_cast<int>(std::ceil(bottom)));
+  for (int y = std::max(0, static_cast<int>(std::floor(top))); y < end; ++y) {
     const auto* over = reinterpret_cast<const uint32_t*>(rows + static_cast<ptrdiff_t>(y) * stride);
     uint8_t* pixel = &image_.rgba[size_t{4} * image_.width * y];
     for (int x = 0; x < image_.width; ++x, pixel += 4) {
@@ -178,7 +180,7 @@ void draw_lines(Image& image, std::vector<std::string> lines, Corner corner, con
     canvas.bold(i == 0);
     canvas.text(x + pad, y + 0.6 * pad + step * (static_cast<double>(i) + 0.77), lines[i]);
   }
-  canvas.finish();
+  canvas.finish(y, y + height);
 }
 
 }  // namespace
@@ -201,7 +203,7 @@ void draw_progress(Image& image, double share) {
   };
   bar(image.width, 0.08, 0.10, 0.12, 0.45);
   bar(std::clamp(share, 0.0, 1.0) * image.width, 0.95, 0.55, 0.10, 1.0);
-  canvas.finish();
+  canvas.finish(image.height - height, image.height);
 }
 
 double draw_colour_bar(Image& image, const ColourBar& bar) {

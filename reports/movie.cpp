@@ -150,9 +150,13 @@ RenderStatistics make_movie(const FinishedRun& run, const std::string& path, con
   std::deque<std::future<render::Image>> drawing;
   std::vector<double> times;
   auto start = std::chrono::steady_clock::now();
-  const auto take = [&] {
-    movie.add(drawing.front().get());
+  const auto drawn = [&] {
+    render::Image image = drawing.front().get();
     drawing.pop_front();
+    return image;
+  };
+  const auto add = [&](const render::Image& image) {
+    movie.add(image);
     const auto now = std::chrono::steady_clock::now();
     times.push_back(1e3 * std::chrono::duration<double>(now - start).count());
     start = now;
@@ -163,11 +167,14 @@ RenderStatistics make_movie(const FinishedRun& run, const std::string& path, con
     const MovieStock& now = stock.at(frames[f].cycle);
     FrameTask task{f, now.state(), now.revisions(),
                    trail.up_to(frames[f], settings.shots[frames[f].shot].trail_s)};
-    if (drawing.size() == lanes.size()) take();
+    // The lane goes on before its last picture is encoded.
+    std::optional<render::Image> last;
+    if (drawing.size() == lanes.size()) last = drawn();
     drawing.push_back(std::async(std::launch::async, [lane = lanes[f % lanes.size()].get(),
                                                       task = std::move(task)] { return lane->draw(task); }));
+    if (last) add(*last);
   }
-  while (!drawing.empty()) take();
+  while (!drawing.empty()) add(drawn());
   progress.end();
   if (times.empty()) return {};
   movie.finish();

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstring>
 #include <string>
 
 #include "base/check.h"
@@ -378,15 +377,12 @@ void RasterRenderer::Impl::shade(const SceneView& view, const Camera& camera) {
   gl.DrawArrays(GL_TRIANGLES, 0, 3);
 }
 
+/// The picture is shaded upside down: its first row is the image's.
 Image RasterRenderer::Impl::read() {
-  const size_t row = size_t{4} * static_cast<size_t>(width);
-  std::vector<uint8_t> bottom_up(row * static_cast<size_t>(height));
+  Image image{width, height,
+              std::vector<uint8_t>(size_t{4} * static_cast<size_t>(width) * static_cast<size_t>(height))};
   gl.PixelStorei(GL_PACK_ALIGNMENT, 1);
-  gl.ReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, bottom_up.data());
-  Image image{width, height, std::vector<uint8_t>(bottom_up.size())};
-  for (size_t y = 0; y < static_cast<size_t>(height); ++y) {
-    std::memcpy(&image.rgba[y * row], &bottom_up[(static_cast<size_t>(height) - 1 - y) * row], row);
-  }
+  gl.ReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, image.rgba.data());
   SWARF_CHECK(gl.GetError() == GL_NO_ERROR, "OpenGL reports an error after a frame");
   return image;
 }

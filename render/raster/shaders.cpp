@@ -208,7 +208,7 @@ vec3 shaded(uint kind, vec3 paint, vec3 n, vec3 place) {
   bool outside = any(lessThan(p, vec3(0.0))) || any(greaterThan(p, vec3(1.0)));
   float shade = (outside ? 1.0 : mix(0.58, 1.0, lit)) * mix(0.80, 1.0, smoothstep(0.08, 0.45, r));
   float fade = ground ? 1.0 - smoothstep(0.25, 1.0, r) : 0.0;
-  vec3 behind = mix(background(gl_FragCoord.y / size_px.y), vec3(0.56, 0.58, 0.60) * shade, fade);
+  vec3 behind = mix(background((size_px.y - gl_FragCoord.y) / size_px.y), vec3(0.56, 0.58, 0.60) * shade, fade);
   return kind == kPaint ? paint : srgb(kind >= kFirstMaterial ? seen : behind);
 }
 
@@ -218,7 +218,7 @@ vec3 shaded(uint kind, vec3 paint, vec3 n, vec3 place) {
 void main() {
   const uint kCompared = 0xfff0f0f0u;
   const float kNear = 4000.0;  // of 65535: some 10 degrees
-  ivec2 at = ivec2(gl_FragCoord.xy);
+  ivec2 at = ivec2(gl_FragCoord.x, size_px.y - gl_FragCoord.y);  // an image's rows begin at the top
   vec2 normals[SAMPLES];
   uint paints[SAMPLES];
   float left[SAMPLES];
