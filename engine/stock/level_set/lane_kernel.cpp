@@ -106,20 +106,29 @@ SWARF_KERNEL_INLINE void add_top(Extremes& out, const Place& at, float offset, c
   }
 }
 
+/// How far a place lies outside of a face or round, and the gradient of that.
+struct Support {
+  float distance, g_rho, g_z;
+};
+SWARF_KERNEL_INLINE Support support_of(const LanePiece::Round& r, float rho, float z) {
+  const float dr = rho - r.centre_rho, dz = z - r.centre_z;
+  const float length = kernel::max_of(std::sqrt(dr * dr + dz * dz), 1e-20F);
+  const float from = dr * r.from_rho + dz * r.from_z, to = dr * r.to_rho + dz * r.to_z;
+  const float end_rho = from > to ? r.from_rho : r.to_rho, end_z = from > to ? r.from_z : r.to_z;
+  // Inside the wedge between its end normals the smaller of these is positive.
+  const float inside = kernel::min_of(r.from_rho * dz - r.from_z * dr, dr * r.to_z - dz * r.to_rho);
+  const float g_rho = inside > 0.0F ? dr / length : end_rho, g_z = inside > 0.0F ? dz / length : end_z;
+  return {dr * g_rho + dz * g_z - r.radius, g_rho, g_z};
+}
+
 SWARF_KERNEL_INLINE void add_round(Extremes& out, const Lanes& lanes, const Place& at,
                                    const LanePiece::Round& round, const LaneQuery& query) {
   const LanePiece::Round r = round;
   const float up = kDepthAbove * query.half;
   for (int n = 0; n < kLanes; ++n) {
-    const float dr = at.rho.lane[n] - r.centre_rho, dz = at.z.lane[n] - r.centre_z;
-    const float length = kernel::max_of(std::sqrt(dr * dr + dz * dz), 1e-20F);
-    const float from = dr * r.from_rho + dz * r.from_z, to = dr * r.to_rho + dz * r.to_z;
-    const float end_rho = from > to ? r.from_rho : r.to_rho, end_z = from > to ? r.from_z : r.to_z;
-    // Inside the wedge between its end normals the smaller of these is positive.
-    const float inside = kernel::min_of(r.from_rho * dz - r.from_z * dr, dr * r.to_z - dz * r.to_rho);
-    const float g_rho = inside > 0.0F ? dr / length : end_rho, g_z = inside > 0.0F ? dz / length : end_z;
-    const float distance = dr * g_rho + dz * g_z - r.radius;
-    out.add(n, excess_of(lanes, at, query, n, distance, g_rho, g_z), distance, distance + up * g_z);
+    const Support s = support_of(r, at.rho.lane[n], at.z.lane[n]);
+    out.add(n, excess_of(lanes, at, query, n, s.distance, s.g_rho, s.g_z), s.distance,
+            s.distance + up * s.g_z);
   }
 }
 
@@ -150,31 +159,123 @@ SWARF_KERNEL_INLINE void judge(const Lanes& lanes, const LanePiece& piece, const
   for (const LanePiece::Face& face : piece.faces) add_face(extremes, lanes, at, face, query);
   for (const LanePiece::Round& round : piece.rounds) add_round(extremes, lanes, at, round, query);
   const float floor = query.floor, swallowed_to = -query.reach - kSlack;
-  uint32_t open = 0, swallows = 0;
+  LaneFloats depth;
   for (int n = 0; n < kLanes; ++n) {
-    const float above = extremes.above.lane[n] + kSlack;
-    out.above.lane[n] = above;
+    out.above.lane[n] = extremes.above.lane[n] + kSlack;
     out.depth.lane[n] = -extremes.higher.lane[n];
-    open |= above >= floor ? 1U << n : 0U;
+    depth.lane[n] = extremes.above.lane[n] + kSlack >= floor ? -extremes.higher.lane[n] : -1e30F;
+  }
+  float most = -1e30F;
+  for (int n = 0; n < kLanes; ++n) most = kernel::max_of(most, depth.lane[n]);
+  uint32_t open = 0, swallows = 0, deepest = 0;
+  for (int n = 0; n < kLanes; ++n) {
+    open |= extremes.above.lane[n] + kSlack >= floor ? 1U << n : 0U;
     swallows |= extremes.value.lane[n] <= swallowed_to ? 1U << n : 0U;
+    deepest |= depth.lane[n] >= most ? 1U << n : 0U;
   }
   out.open = open;
   out.swallows = swallows;
+  out.deepest = deepest & open;
 }
 
-void judge_baseline(const Lanes& lanes, const LanePiece& piece, const LaneQuery& query, LaneAnswer& out) {
-  judge(lanes, piece, query, out);
+/// Of each lane the faces or rounds that lie outermost.
+struct Outermost {
+  LaneFloats distance, g_rho, g_z;
+
+  SWARF_KERNEL_INLINE void set(int n, const Support& support) {
+    distance.lane[n] = support.distance;
+    g_rho.lane[n] = support.g_rho;
+    g_z.lane[n] = support.g_z;
+  }
+};
+
+/// The outermost two.
+struct TwoOutermost {
+  Outermost first, second;
+
+  SWARF_KERNEL_INLINE void add(int n, const Support& s) {
+    const float d = first.distance.lane[n], r = first.g_rho.lane[n], z = first.g_z.lane[n];
+    const bool over = s.distance > d, under = s.distance <= second.distance.lane[n];
+    const Support lower{over ? d : s.distance, over ? r : s.g_rho, over ? z : s.g_z};
+    first.set(n, {over ? s.distance : d, over ? s.g_rho : r, over ? s.g_z : z});
+    second.set(n, {under ? second.distance.lane[n] : lower.distance,
+                   under ? second.g_rho.lane[n] : lower.g_rho, under ? second.g_z.lane[n] : lower.g_z});
+  }
+};
+
+SWARF_KERNEL_INLINE void find_outermost(TwoOutermost& out, const LanePiece& piece, const Place& at) {
+  constexpr float kNone = -1e30F;
+  for (int n = 0; n < kLanes; ++n) {
+    out.first.set(n, {kNone, 0.0F, 0.0F});
+    out.second.set(n, {kNone, 0.0F, 0.0F});
+  }
+  for (const LanePiece::Face& face : piece.faces) {
+    const float rho = face.rho, z = face.z, offset = face.offset;
+    for (int n = 0; n < kLanes; ++n) out.add(n, {rho * at.rho.lane[n] + z * at.z.lane[n] - offset, rho, z});
+  }
+  for (const LanePiece::Round& round : piece.rounds) {
+    const LanePiece::Round r = round;
+    for (int n = 0; n < kLanes; ++n) out.add(n, support_of(r, at.rho.lane[n], at.z.lane[n]));
+  }
 }
 
-SWARF_X86_64_V3 void judge_v3(const Lanes& lanes, const LanePiece& piece, const LaneQuery& query,
-                              LaneAnswer& out) {
-  judge(lanes, piece, query, out);
+/// From the leaf's first voxel, per voxel.
+SWARF_KERNEL_INLINE void set_linear(LaneBounds::Linear& out, const Lanes& lanes, const Place& at,
+                                    const Outermost& face, const LaneQuery& query) {
+  // Of the coordinates 16 roundings count at most: of centre and map as they are converted, of the products
+  // and sums of the three components, and of their product with the gradient.
+  constexpr float kRoundings = 16.0F * 6e-8F, kHalfLeaf = 0.5F * (kLeafSide - 1);
+  const float half = query.half, voxel = half / kHalfLeaf;
+  const float centre =
+      2.0F * (std::abs(query.centre[0]) + std::abs(query.centre[1]) + std::abs(query.centre[2]));
+  for (int n = 0; n < kLanes; ++n) {
+    const float g_rho = face.g_rho.lane[n], gz = face.g_z.lane[n];
+    const float gx = g_rho * at.ux.lane[n], gy = g_rho * at.uy.lane[n];
+    const float change = 0.5F * (gx * at.dx.lane[n] + gy * at.dy.lane[n] + gz * at.dz.lane[n]);
+    const float rounding = kRoundings * (centre + at.rho.lane[n] + std::abs(at.z.lane[n]));
+    float start = rounding + change - face.distance.lane[n], end = rounding - change - face.distance.lane[n];
+    for (int a = 0; a < 3; ++a) {
+      const float middle =
+          lanes.middle[0][a].lane[n] * gx + lanes.middle[1][a].lane[n] * gy + lanes.middle[2][a].lane[n] * gz;
+      const float turn = 0.5F * (lanes.change[0][a].lane[n] * gx + lanes.change[1][a].lane[n] * gy +
+                                 lanes.change[2][a].lane[n] * gz);
+      out.start_step[a].lane[n] = voxel * (turn - middle);
+      out.end_step[a].lane[n] = -voxel * (turn + middle);
+      start -= half * (turn - middle);
+      end += half * (turn + middle);
+    }
+    out.start.lane[n] = start;
+    out.end.lane[n] = end;
+  }
 }
 
-SWARF_X86_64_V4_WIDE void judge_v4(const Lanes& lanes, const LanePiece& piece, const LaneQuery& query,
-                                   LaneAnswer& out) {
-  judge(lanes, piece, query, out);
+SWARF_KERNEL_INLINE void bound(const Lanes& lanes, const LanePiece& piece, const LaneQuery& asked,
+                               LaneBounds& out) {
+  const LaneQuery query = asked;
+  Place at;
+  find_place(at, lanes, query.centre);
+  TwoOutermost two;
+  find_outermost(two, piece, at);
+  set_linear(out.of_face[0], lanes, at, two.first, query);
+  set_linear(out.of_face[1], lanes, at, two.second, query);
 }
+
+// NOLINTBEGIN(bugprone-macro-parentheses): an attribute cannot stand in parentheses
+#define SWARF_LANE_VARIANT(name, attribute)                                                       \
+  attribute void judge_##name(const Lanes& lanes, const LanePiece& piece, const LaneQuery& query, \
+                              LaneAnswer& out) {                                                  \
+    judge(lanes, piece, query, out);                                                              \
+  }                                                                                               \
+  attribute void bound_##name(const Lanes& lanes, const LanePiece& piece, const LaneQuery& query, \
+                              LaneBounds& out) {                                                  \
+    bound(lanes, piece, query, out);                                                              \
+  }
+
+SWARF_LANE_VARIANT(baseline, )
+SWARF_LANE_VARIANT(v3, SWARF_X86_64_V3)
+SWARF_LANE_VARIANT(v4, SWARF_X86_64_V4_WIDE)
+#undef SWARF_LANE_VARIANT
+// NOLINTEND(bugprone-macro-parentheses)
 
 }  // namespace
 
@@ -191,9 +292,25 @@ LanePiece lane_piece(const cutter::ConvexPiece& piece) {
   return out;
 }
 
+LeafBound LaneBounds::lane(uint32_t n) const {
+  LeafBound bound;
+  for (int face = 0; face < 2; ++face) {
+    const Linear& from = of_face[face];
+    LeafBound::Linear& to = bound.of_face[face];
+    to.start = from.start.lane[n];
+    to.end = from.end.lane[n];
+    for (int a = 0; a < 3; ++a) {
+      to.start_step[a] = from.start_step[a].lane[n];
+      to.end_step[a] = from.end_step[a].lane[n];
+    }
+  }
+  return bound;
+}
+
 std::span<const LaneKernelVariant> lane_kernel_variants() {
-  static const std::vector<LaneKernelVariant> variants = runnable<LaneKernelVariant>(
-      {"x86-64-v4", judge_v4}, {"x86-64-v3", judge_v3}, {"baseline", judge_baseline});
+  static const std::vector<LaneKernelVariant> variants =
+      runnable<LaneKernelVariant>({"x86-64-v4", judge_v4, bound_v4}, {"x86-64-v3", judge_v3, bound_v3},
+                                  {"baseline", judge_baseline, bound_baseline});
   return variants;
 }
 

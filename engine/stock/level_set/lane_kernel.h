@@ -1,8 +1,14 @@
-// Sixteen swept pieces against one leaf: which of them may still raise a value there.
+// Sixteen swept pieces against one leaf: which of them may still raise a value there, and where.
 //
-// The bounds of sweep_reach.h, in single precision for a run of consecutive sweeps at once. Compiled like
-// leaf_kernel.cpp. All comparisons carry a slack above the rounding, so a verdict never changes a bit of the
-// stock.
+// F, the cutter's implicit function, is convex: with its gradient g at any point Xm,  F(X) >= F(Xm) + g.(X -
+// Xm). In the tool frame a voxel x of the leaf stands at X(t, x), linear in t and in x, so what the sweep
+// writes there,
+//   -min over t of F(X(t, x))  <=  max over t = 0, 1 of  -F(Xm) - g.(X(t, x) - Xm),
+// lies below the greater of two linear functions of x; g may be the gradient of any face or round of the
+// cutter, because each of them lies below F. With Xm = the leaf's centre at half time the bound is tight.
+//
+// In single precision for a run of consecutive sweeps at once. Compiled like leaf_kernel.cpp. All comparisons
+// carry a slack above the rounding, so a verdict never changes a bit of the stock.
 #pragma once
 
 #include <cstdint>
@@ -10,6 +16,7 @@
 #include <vector>
 
 #include "cutter/convex_piece.h"
+#include "stock/level_set/leaf_kernel.h"
 
 namespace swarf::stock {
 
@@ -59,6 +66,7 @@ inline constexpr float kDepthAbove = 1.5F;
 struct LaneAnswer {
   uint32_t open;      ///< bit n: lane n may raise a value
   uint32_t swallows;  ///< bit n: every voxel of the leaf lies deeper inside lane n's cutter than the band
+  uint32_t deepest;   ///< bit n: of the open lanes none has more `depth` than lane n
   LaneFloats above;   ///< open while the floor lies below this, mm
   LaneFloats depth;   ///< inside the cutter at half time (-F), mm, of a place above the leaf's centre
 };
@@ -66,9 +74,21 @@ struct LaneAnswer {
 using LaneKernel = void (*)(const Lanes& lanes, const LanePiece& piece, const LaneQuery& query,
                             LaneAnswer& out);
 
+/// A LeafBound of each lane, enlarged by what it rounds.
+struct LaneBounds {
+  struct Linear {
+    LaneFloats start, end, start_step[3], end_step[3];
+  };
+  Linear of_face[2];  ///< outermost first
+  LeafBound lane(uint32_t n) const;
+};
+using LaneBoundKernel = void (*)(const Lanes& lanes, const LanePiece& piece, const LaneQuery& query,
+                                 LaneBounds& out);
+
 struct LaneKernelVariant {
   const char* instruction_set;
   LaneKernel kernel;
+  LaneBoundKernel bounds;
 };
 /// The variants this processor can run, fastest first.
 std::span<const LaneKernelVariant> lane_kernel_variants();

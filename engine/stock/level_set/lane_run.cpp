@@ -281,15 +281,8 @@ class RunJudge {
     const uint32_t open = answer.open & run_.all();
     if (!swallows && open == 0) return;
     if (swallows) mark(leaf).store(LeafMap::kSwallowed, std::memory_order_relaxed);
-    LeafPair& pair = pairs_.emplace_back();
-    pair.leaf = leaf;
-    pair.run = index_;
-    pair.lane = open != 0 ? static_cast<uint32_t>(__builtin_ctz(open)) : 0;
-    for (uint32_t left = open; left != 0; left &= left - 1) {
-      const auto lane = static_cast<uint32_t>(__builtin_ctz(left));
-      if (answer.depth.lane[lane] > answer.depth.lane[pair.lane]) pair.lane = lane;
-    }
-    pair.depth = answer.depth.lane[pair.lane];
+    const auto deepest = open != 0 ? static_cast<uint32_t>(std::countr_zero(answer.deepest)) : 0;
+    pairs_.push_back({leaf, index_, answer.depth.lane[deepest], deepest});
   }
 
   LevelSet& set_;
@@ -355,10 +348,13 @@ std::vector<LaneRun> make_runs(const LevelSet& set, const std::vector<SweptPiece
   return runs;
 }
 
-void gather_leaves(LevelSet& set, const LaneRun& run, size_t index, std::vector<LeafPair>& pairs) {
+std::vector<LeafPair> gather_leaves(LevelSet& set, const LaneRun& run, size_t index) {
+  thread_local std::vector<LeafPair> pairs;  // grows once
+  pairs.clear();
   RunJudge judge(set, run, static_cast<uint32_t>(index), pairs);
   visit_leaves(set, run, [&](size_t leaf, const Eigen::Vector3f& centre) { judge.ask(leaf, centre); });
   judge.answer();
+  return {pairs.begin(), pairs.end()};
 }
 
 }  // namespace swarf::stock

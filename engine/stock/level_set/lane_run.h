@@ -9,7 +9,8 @@
 #include <vector>
 
 #include "stock/level_set/lane_kernel.h"
-#include "stock/level_set/sweep_reach.h"
+#include "stock/level_set/stock_grid_internal.h"
+#include "stock/level_set/swept_piece.h"
 
 namespace swarf::stock {
 
@@ -57,8 +58,8 @@ struct LeafPair {
   uint32_t lane = 0;   ///< which has it
 };
 
-/// Appends the pairs of one run, and marks the positions of which one of its lanes leaves nothing (LeafMap).
-/// Those that are marked already it passes over. Several runs at a time may be asked.
-void gather_leaves(LevelSet& set, const LaneRun& run, size_t index, std::vector<LeafPair>& pairs);
+/// The pairs of one run in order of position; marks the positions of which one of its lanes leaves nothing
+/// (LeafMap). Those that are marked already it passes over. Several runs at a time may be asked.
+std::vector<LeafPair> gather_leaves(LevelSet& set, const LaneRun& run, size_t index);
 
 }  // namespace swarf::stock

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "stock/level_set/convex_leaf.h"
 #include "stock/level_set/piece_window.h"
@@ -23,16 +24,32 @@ Window window_of(const LevelSet& set, const SweptPiece& swept, const Vec3& centr
   return window.empty() ? Window{} : window;
 }
 
-LeafMotion leaf_motion(const LevelSet& set, const SweptPiece& swept, size_t leaf) {
+/// Below (height - band) the top end could only change values that the clamp makes equal anyway.
+bool is_capped(const LevelSet& set, const SweptPiece& swept, const Vec3& centre) {
+  const double highest = std::max(swept.map.start(centre).z(), swept.map.end(centre).z()) + set.leaf_radius();
+  return highest > swept.piece->high - set.band();
+}
+
+/// `start`, `end`: the first voxel in the tool frame. Without asking for the leaf's centre: the whole sweep
+/// lies near the leaf, and the cutter's top end does not.
+bool surely_whole(const LevelSet& set, const SweptPiece& swept, const Vec3& start, const Vec3& end) {
+  constexpr double kMoreThanRounding = 1e-6;
+  const double side = 2.0 * set.leaf_radius() + kMoreThanRounding;
+  const double across = std::sqrt(std::max(start.head<2>().squaredNorm(), end.head<2>().squaredNorm()));
+  const double low = std::min(start.z(), end.z()), high = std::max(start.z(), end.z());
+  const cutter::ConvexPiece& piece = *swept.piece;
+  return across + side <= kFarFactor * (piece.radius + set.band()) && low - side >= -piece.high &&
+         high + side <= piece.high - set.band();
+}
+
+LeafMotion leaf_motion(const LevelSet& set, const SweptPiece& swept, const Vec3& first, const Vec3& centre) {
   const SweepMap& map = swept.map;
-  const openvdb::Coord origin = set.map.origin(leaf);
-  const Vec3 first = Vec3(origin.x(), origin.y(), origin.z()) * set.voxel;
-  const Vec3 centre = set.leaf_centre(leaf);
-  const Window window = window_of(set, swept, centre);
   const Vec3 start = map.start(first), end = map.end(first);
+  const bool whole = surely_whole(set, swept, start, end);
+  const Window window = whole ? Window{} : window_of(set, swept, centre);
   // As start + t (end - start), so that what does not change stays equal to the last bit (LevelPlane).
   const auto at = [](double t, double a, double b) { return static_cast<float>(a + t * (b - a)); };
-  LeafMotion motion{};
+  LeafMotion motion;
   for (int c = 0; c < 3; ++c) {
     motion.start[c] = at(window.low, start[c], end[c]);
     motion.end[c] = at(window.high, start[c], end[c]);
@@ -45,28 +62,8 @@ LeafMotion leaf_motion(const LevelSet& set, const SweptPiece& swept, size_t leaf
   motion.radius = static_cast<float>(swept.piece->radius);
   motion.height = static_cast<float>(swept.piece->high);
   motion.background = set.band();
-  // Below (height - band) the top end could only change values that the clamp makes equal anyway.
-  const double highest = std::max(map.start(centre).z(), map.end(centre).z()) + set.leaf_radius();
-  motion.capped = highest > swept.piece->high - set.band();
+  motion.capped = !whole && is_capped(set, swept, centre);
   return motion;
-}
-
-/// The bounds as the kernel wants them: from the leaf's first voxel, per voxel.
-LeafBound leaf_bound(const LevelSet& set, const ReachBound& reach) {
-  LeafBound bound{};
-  for (int face = 0; face < 2; ++face) {
-    const LinearBound& linear = reach.of_face[face];
-    const Vec3 start = linear.start_slope * set.voxel, end = linear.end_slope * set.voxel;
-    LeafBound::Linear& out = bound.of_face[face];
-    for (int a = 0; a < 3; ++a) {
-      out.start_step[a] = static_cast<float>(start[a]);
-      out.end_step[a] = static_cast<float>(end[a]);
-    }
-    constexpr double kHalf = 0.5 * (kLeafSide - 1);
-    out.start = static_cast<float>(linear.start - kHalf * start.sum());
-    out.end = static_cast<float>(linear.end - kHalf * end.sum());
-  }
-  return bound;
 }
 
 /// Slices of 64 voxels that the patches touch.
@@ -77,6 +74,11 @@ uint32_t slices_of(uint32_t patches) {
     if ((patches >> (n * kPatchSide) & kOfTwoSlices) != 0) slices |= kTwoSlices << (2 * n);
   }
   return slices;
+}
+
+Vec3 first_voxel(const LevelSet& set, size_t leaf) {
+  const openvdb::Coord origin = set.map.origin(leaf);
+  return Vec3(origin.x(), origin.y(), origin.z()) * set.voxel;
 }
 
 bool is_level(const LeafMotion& m) {
@@ -103,19 +105,17 @@ void LevelPlane::remember(const LeafMotion& motion, const SweptPiece& swept, con
 }
 
 LeafCut::LeafCut(const LevelSet& set, size_t leaf, float* values)
-    : set_(set), leaf_(leaf), values_(values), centre_(set.leaf_centre(leaf)) {
+    : set_(set), values_(values), first_(first_voxel(set, leaf)), centre_(set.leaf_centre(leaf)) {
   floors_.band = set.band();
 }
 
-void LeafCut::apply(const SweptPiece& swept) {
-  const LeafKernelVariant& kernels = leaf_kernel_variants().front();
-  const LeafBound bound =
-      leaf_bound(set_, reach_bound(swept, swept.map.start(centre_), swept.map.end(centre_)));
+void LeafCut::apply(const SweptPiece& swept, const LeafBound& bound) {
+  static const LeafKernelVariant& kernels = leaf_kernel_variants().front();
   const uint32_t patches = visits_ == 0 ? kAllPatches : kernels.patch_test(floors_, bound);
   if (patches == 0) return;
   uint32_t risen = 0;
   if (swept.piece->is_cylinder()) {
-    const LeafMotion motion = leaf_motion(set_, swept, leaf_);
+    const LeafMotion motion = leaf_motion(set_, swept, first_, centre_);
     if (plane_.repeats(motion)) return;
     risen = kernels.kernel(values_, motion, patches);
     plane_.remember(motion, swept, centre_, set_.leaf_radius());
@@ -143,8 +143,7 @@ void LeafCut::set_slope(const LeafBound& deepest) {
 uint32_t LeafCut::cut_by_search(const SweptPiece& swept, uint32_t patches) {
   std::array<float, kLeafVoxels> before;
   std::copy_n(values_, before.size(), before.begin());
-  const openvdb::Coord origin = set_.map.origin(leaf_);
-  const LeafPlace place{Vec3(origin.x(), origin.y(), origin.z()) * set_.voxel, set_.voxel, set_.band()};
+  const LeafPlace place{first_, set_.voxel, set_.band()};
   cut_leaf_by_piece(values_, place, swept.map, *swept.piece, slices_of(patches));
   return std::equal(before.begin(), before.end(), values_) ? 0 : patches;
 }

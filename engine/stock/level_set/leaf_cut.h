@@ -3,7 +3,8 @@
 #pragma once
 
 #include "stock/level_set/leaf_kernel.h"
-#include "stock/level_set/sweep_reach.h"
+#include "stock/level_set/stock_grid_internal.h"
+#include "stock/level_set/swept_piece.h"
 
 namespace swarf::stock {
 
@@ -26,8 +27,9 @@ class LeafCut {
   /// `values`: the leaf's, changed in place.
   LeafCut(const LevelSet& set, size_t leaf, float* values);
 
-  /// Raises the values by one sweep, as far as what the ones before it left does not rule it out.
-  void apply(const SweptPiece& swept);
+  /// Raises the values by one sweep, as far as what the ones before it left does not rule it out. `bound`: of
+  /// what it writes.
+  void apply(const SweptPiece& swept, const LeafBound& bound);
 
   /// Sweeps that were evaluated, and in how many patches altogether.
   uint64_t visits() const { return visits_; }
@@ -36,6 +38,7 @@ class LeafCut {
   bool changed() const { return changed_; }
   /// What the visits left, at least one of them.
   LeafFloor floor() const;
+  const Vec3& centre() const { return centre_; }  ///< W
   /// The floor's value; it rises from visit to visit.
   float lowest() const { return lowest_; }
 
@@ -45,9 +48,8 @@ class LeafCut {
   uint32_t cut_by_search(const SweptPiece& swept, uint32_t patches);
 
   const LevelSet& set_;
-  size_t leaf_;
   float* values_;
-  Vec3 centre_;
+  Vec3 first_, centre_;  ///< the leaf's first voxel and its centre in W
   LevelPlane plane_;
   PatchFloors floors_{};
   uint64_t visits_ = 0, patches_ = 0;

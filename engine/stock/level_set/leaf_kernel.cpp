@@ -56,15 +56,40 @@ SWARF_KERNEL_INLINE void move_pair(MovingPair& moving, const Pair& pair, const L
   }
 }
 
-/// What the bottom alone tells of a voxel, without a root: a sweep never writes more than its height above it
-/// where it stands highest, and that much if it is well inside the flank there.
+/// Whether a voxel stands highest above the bottom at the end of its motion: 1, or 0.
+SWARF_KERNEL_INLINE float highest_at(float dz) {
+  return dz > 0.0F ? 1.0F : 0.0F;
+}
+
+/// A sweep never writes more than a voxel's height above the bottom where it stands highest. True if that
+/// raises a voxel of the patch that begins with `slice`: most of the patches that the tests let through are
+/// told from the others by that alone.
+SWARF_KERNEL_INLINE bool bottom_raises(const float* values, const Pair& pair, const LeafMotion& m, int slice,
+                                       int number) {
+  const float* first = values + slice * kSlice + number * kPair;
+  const float step_from = m.start_step[0][2], step_to = m.end_step[0][2], background = m.background;
+  const float a0 = step_from * static_cast<float>(slice), a1 = step_from * static_cast<float>(slice + 1);
+  const float b0 = step_to * static_cast<float>(slice), b1 = step_to * static_cast<float>(slice + 1);
+  float most = 0.0F;
+  for (int j = 0; j < kPair; ++j) {
+    const float p0 = pair.pz[j] + a0, d0 = pair.qz[j] + b0 - p0, p1 = pair.pz[j] + a1,
+                d1 = pair.qz[j] + b1 - p1;
+    const float high0 = kernel::min_of(p0 + highest_at(d0) * d0, background);
+    const float high1 = kernel::min_of(p1 + highest_at(d1) * d1, background);
+    most = kernel::max_of(most, kernel::max_of(high0 - first[j], high1 - first[j + kSlice]));
+  }
+  return most > 0.0F;
+}
+
+/// What the bottom alone tells of a voxel, without a root: its height above it where it stands highest is
+/// what the sweep writes if it is well inside the flank there.
 struct Bottom {
   float most;
   float outside;  ///< above 0: the flank has a say
 };
 SWARF_KERNEL_INLINE Bottom bottom_of(const MovingPair& m, int j, float radius, float background) {
   constexpr float kWellInside = 1.0F - 1e-6F;  // of a square: more than the rounding of root and square
-  const float t = m.dz[j] > 0.0F ? 1.0F : 0.0F;
+  const float t = highest_at(m.dz[j]);
   const float high = m.pz[j] + t * m.dz[j];
   const float x = m.px[j] + t * m.dx[j], y = m.py[j] + t * m.dy[j], within = radius - high;
   const float outside = kernel::max_of(x * x + y * y - within * within * kWellInside, -within);
@@ -129,6 +154,7 @@ SWARF_KERNEL_INLINE uint32_t cut_by_rows(float* values, const LeafMotion& m, uin
     fill_pair(pair, m, number);
     for (int x = 0; x < kLeafSide; x += 2) {
       if (!has_patch(patches, x, number)) continue;
+      if (!kCapped && !bottom_raises(values, pair, m, x, number)) continue;
       alignas(64) float over[kPair] = {};
       for (int slice = x; slice < x + 2; ++slice) {
         MovingPair moving;

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <bit>
 #include <chrono>
 #include <limits>
 #include <memory>
@@ -55,6 +56,11 @@ struct Batch {
   FoundPairs found;
   std::vector<uint32_t> slab_ends;  ///< first position beyond each slab
   std::atomic<size_t> spare_taken{0};
+
+  /// The deepest of a pair's sweeps, in `pieces`.
+  uint32_t piece(const LeafPair& pair) const {
+    return static_cast<uint32_t>(runs[pair.run].first) + pair.lane;
+  }
 };
 
 /// Shares the positions out, by a sample of the pairs.
@@ -78,11 +84,7 @@ void gather(LevelSet& set, Batch& batch) {
   batch.found.clear();
   batch.found.resize(batch.runs.size());
   parallel_chunks(batch.runs.size(), kRunsPerTask, [&](size_t begin, size_t end) {
-    for (size_t n = begin; n < end; ++n) {
-      std::vector<LeafPair> own;  // not in place: neighbours in `found` share a cache line
-      gather_leaves(set, batch.runs[n], n, own);
-      batch.found[n] = std::move(own);
-    }
+    for (size_t n = begin; n < end; ++n) batch.found[n] = gather_leaves(set, batch.runs[n], n);
   });
   set_slabs(batch);
 }
@@ -151,35 +153,63 @@ Slab slab_of(LevelSet& set, const Batch& batch, size_t number) {
 struct Candidate {
   float depth, above;  ///< LaneAnswer's, mm
   uint32_t piece;      ///< in the batch
+  uint32_t bound;      ///< in `bounds`
 
   bool before(const Candidate& other) const {
     return depth > other.depth || (depth == other.depth && piece < other.piece);
   }
 };
+struct Candidates {
+  std::vector<Candidate> sweeps;
+  std::vector<LeafBound> bounds;
+};
 
-/// The candidates of a group in the order of the path, as far as the floor does not rule them out.
-void find_candidates(const LevelSet& set, const Batch& batch, std::span<const LeafPair> pairs,
-                     const LeafFloor& floor, std::vector<Candidate>& candidates) {
+/// Runs against one leaf.
+struct LeafJudge {
+  const Batch& batch;
+  LeafExtent extent;
+  Vec3 centre;  ///< W
+
+  const LaneRun& run(const LeafPair& pair) const { return batch.runs[pair.run]; }
+  LaneQuery query(const LaneRun& run, const LeafFloor& floor) const {
+    return run.query(extent, (centre - run.origin).cast<float>(), floor);
+  }
+  LaneBounds bounds(const LaneRun& run) const {
+    static const LaneBoundKernel kernel = lane_kernel_variants().front().bounds;
+    LaneBounds bounds;
+    kernel(run.lanes, run.piece, query(run, {}), bounds);
+    return bounds;
+  }
+};
+
+/// The candidates of a group, but for the piece `but`, in the order of the path, as far as the floor does not
+/// rule them out.
+void find_candidates(const LeafJudge& judge, std::span<const LeafPair> pairs, const LeafFloor& floor,
+                     uint32_t but, Candidates& candidates) {
   static const LaneKernel kernel = lane_kernel_variants().front().kernel;
   constexpr size_t kAtATime = 16;  // their answers do not wait for each other
   std::array<LaneAnswer, kAtATime> answers;
-  const LeafExtent extent(set);
-  const Vec3 centre = set.leaf_centre(pairs.front().leaf);
-  candidates.clear();
+  candidates.sweeps.clear();
+  candidates.bounds.clear();
   for (size_t first = 0; first < pairs.size(); first += kAtATime) {
     const size_t end = std::min(first + kAtATime, pairs.size());
     for (size_t n = first; n < end; ++n) {
-      const LaneRun& run = batch.runs[pairs[n].run];
-      const Eigen::Vector3f at = (centre - run.origin).cast<float>();
-      kernel(run.lanes, run.piece, run.query(extent, at, floor), answers[n - first]);
+      const LaneRun& run = judge.run(pairs[n]);
+      kernel(run.lanes, run.piece, judge.query(run, floor), answers[n - first]);
     }
     for (size_t n = first; n < end; ++n) {
-      const LaneRun& run = batch.runs[pairs[n].run];
+      const LaneRun& run = judge.run(pairs[n]);
       const LaneAnswer& answer = answers[n - first];
-      for (uint32_t open = answer.open & run.all(); open != 0; open &= open - 1) {
-        const auto lane = static_cast<uint32_t>(__builtin_ctz(open));
-        candidates.push_back(
-            {answer.depth.lane[lane], answer.above.lane[lane], static_cast<uint32_t>(run.first) + lane});
+      uint32_t open = answer.open & run.all();
+      if (but - run.first < kLanes) open &= ~(1U << (but - run.first));
+      if (open == 0) continue;
+      const LaneBounds bounds = judge.bounds(run);
+      for (; open != 0; open &= open - 1) {
+        const auto lane = static_cast<uint32_t>(std::countr_zero(open));
+        candidates.sweeps.push_back({answer.depth.lane[lane], answer.above.lane[lane],
+                                     static_cast<uint32_t>(run.first) + lane,
+                                     static_cast<uint32_t>(candidates.bounds.size())});
+        candidates.bounds.push_back(bounds.lane(lane));
       }
     }
   }
@@ -199,31 +229,25 @@ struct Outcome {
   }
 };
 
-Candidate deepest_of(const Batch& batch, std::span<const LeafPair> pairs) {
-  const auto candidate = [&](const LeafPair& pair) -> Candidate {
-    return {pair.depth, 0.0F, static_cast<uint32_t>(batch.runs[pair.run].first) + pair.lane};
-  };
-  Candidate deepest = candidate(pairs.front());
-  for (const LeafPair& pair : pairs.subspan(1)) {
-    if (candidate(pair).before(deepest)) deepest = candidate(pair);
-  }
-  return deepest;
+const LeafPair& deepest_of(const Batch& batch, std::span<const LeafPair> pairs) {
+  return *std::min_element(pairs.begin(), pairs.end(), [&](const LeafPair& a, const LeafPair& b) {
+    return a.depth > b.depth || (a.depth == b.depth && batch.piece(a) < batch.piece(b));
+  });
 }
 
 /// Deepest first: what it leaves rules out most of the others.
 void apply_pairs(const LevelSet& set, const Batch& batch, std::span<const LeafPair> pairs,
-                 std::vector<Candidate>& candidates, float* values, Outcome& outcome) {
+                 Candidates& candidates, float* values, Outcome& outcome) {
   LeafCut cut(set, pairs.front().leaf, values);
-  const Candidate deepest = deepest_of(batch, pairs);
-  cut.apply(batch.pieces[deepest.piece]);
+  const LeafJudge judge{batch, LeafExtent(set), cut.centre()};
+  const LeafPair& deepest = deepest_of(batch, pairs);
+  cut.apply(batch.pieces[batch.piece(deepest)], judge.bounds(judge.run(deepest)).lane(deepest.lane));
   outcome.take(cut);
-  find_candidates(set, batch, pairs, outcome.floor, candidates);
-  std::sort(candidates.begin(), candidates.end(),
+  find_candidates(judge, pairs, outcome.floor, batch.piece(deepest), candidates);
+  std::sort(candidates.sweeps.begin(), candidates.sweeps.end(),
             [](const Candidate& a, const Candidate& b) { return a.before(b); });
-  for (const Candidate& candidate : candidates) {
-    if (candidate.piece != deepest.piece && candidate.above >= cut.lowest()) {
-      cut.apply(batch.pieces[candidate.piece]);
-    }
+  for (const Candidate& sweep : candidates.sweeps) {
+    if (sweep.above >= cut.lowest()) cut.apply(batch.pieces[sweep.piece], candidates.bounds[sweep.bound]);
   }
   outcome.take(cut);
   outcome.changed = cut.changed();
@@ -243,7 +267,7 @@ std::unique_ptr<LeafNode> solid_leaf(LevelSet& set, Batch& batch, size_t leaf) {
 
 /// Applies one group. The leaf is changed in place, or made when the position was solid so far.
 Outcome cut_leaf(LevelSet& set, Batch& batch, const Group& group, std::span<const LeafPair> pairs,
-                 std::vector<Candidate>& candidates) {
+                 Candidates& candidates) {
   const size_t leaf = group.leaf;
   Outcome outcome;
   outcome.floor = set.map.floors[leaf];
@@ -288,11 +312,24 @@ void settle(LevelSet& set, size_t leaf, Outcome& outcome, SlabOutcome& slab) {
   slab.for_tree.push_back({static_cast<uint32_t>(leaf), is_new ? std::move(outcome.made) : nullptr});
 }
 
+/// Starts to bring the leaf of the first group into the cache, and the node of the second.
+void fetch_ahead(const LevelSet& set, std::span<const Group> next) {
+  if (next.size() > 1) __builtin_prefetch(set.map.leaves[next[1].leaf]);
+  if (next.empty() || next[0].swallowed || set.is_spilled(next[0].leaf)) return;
+  const LeafNode* const node = set.map.leaves[next[0].leaf];
+  if (node == nullptr) return;
+  constexpr int kOfLine = 16;
+  const float* const values = node->buffer().data();
+  for (int n = 0; n < kLeafVoxels; n += kOfLine) __builtin_prefetch(values + n, 1);
+}
+
 SlabOutcome cut_slab(LevelSet& set, Batch& batch, size_t number) {
   const Slab slab = slab_of(set, batch, number);
   SlabOutcome done;
-  std::vector<Candidate> scratch;
-  for (const Group& group : slab.groups) {
+  Candidates scratch;
+  for (size_t g = 0; g < slab.groups.size(); ++g) {
+    fetch_ahead(set, std::span(slab.groups).subspan(g + 1));
+    const Group& group = slab.groups[g];
     const std::span<const LeafPair> pairs(slab.pairs.data() + group.begin, group.end - group.begin);
     Outcome outcome = cut_leaf(set, batch, group, pairs, scratch);
     settle(set, group.leaf, outcome, done);

@@ -39,30 +39,6 @@ double scanned(const SweptPiece& swept, const Vec3& point) {
   return best;
 }
 
-TEST(ReachBound, NothingThatASweepWritesLiesAboveIt) {
-  constexpr uint64_t kSeed = 71;
-  Rng rng(kSeed);
-  for (int n = 0; n < 400; ++n) {
-    const Sweep sweep = random_sweep(rng, 3.0, 3.0, n % 2 == 0 ? 0.0 : 0.3);
-    const cutter::ConvexPiece piece =
-        n % 4 == 0 ? cutter::ConvexPiece::cylinder(4.0, 12.0) : random_piece(rng);
-    const SweptPiece swept{sweep_map(sweep), &piece};
-    const Vec3 centre = sweep.start.tip_W + 8.0 * rng.direction() * rng.uniform();
-    const ReachBound bound = reach_bound(swept, swept.map.start(centre), swept.map.end(centre));
-    for (int k = 0; k < 20; ++k) {
-      const Vec3 x = rng.direction() * rng.uniform();
-      const double written = -scanned(swept, centre + x);
-      for (const LinearBound& linear : bound.of_face) {
-        const double most =
-            std::max(linear.start + linear.start_slope.dot(x), linear.end + linear.end_slope.dot(x));
-        ASSERT_LE(written, most + 1e-9) << "seed " << kSeed << " case " << n << ": " << text(sweep)
-                                        << " centre " << text(centre) << " offset " << text(x) << "\n"
-                                        << text(piece);
-      }
-    }
-  }
-}
-
 /// A leaf position and sixteen sweeps near it.
 struct LaneCase {
   std::vector<Sweep> sweeps;
@@ -106,11 +82,18 @@ TEST(LaneKernel, AllInstructionSetsJudgeAlikeAndNeverCloseALeafThatASweepRaises)
       variant.kernel(run.lanes, run.piece, query, other);
       ASSERT_EQ(other.open, answer.open) << variant.instruction_set << " case " << n;
       ASSERT_EQ(other.swallows, answer.swallows) << variant.instruction_set << " case " << n;
+      ASSERT_EQ(other.deepest, answer.deepest) << variant.instruction_set << " case " << n;
       ASSERT_EQ(std::memcmp(&other.depth, &answer.depth, sizeof(answer.depth)), 0) << variant.instruction_set;
       ASSERT_EQ(std::memcmp(&other.above, &answer.above, sizeof(answer.above)), 0) << variant.instruction_set;
     }
+    ASSERT_EQ(answer.deepest == 0, answer.open == 0) << "case " << n;
     for (int lane = 0; lane < kLanes; ++lane) {
       ASSERT_EQ((answer.open >> lane & 1U) != 0, answer.above.lane[lane] >= query.floor) << "case " << n;
+      if (answer.open >> lane & 1U) {
+        const float most = answer.depth.lane[std::countr_zero(answer.deepest)];
+        ASSERT_EQ((answer.deepest >> lane & 1U) != 0, answer.depth.lane[lane] == most) << "case " << n;
+        ASSERT_LE(answer.depth.lane[lane], most) << "case " << n;
+      }
       if ((answer.open >> lane & 1U) != 0) continue;
       ++closed;
       for (int corner = 0; corner < 8; ++corner) {
@@ -124,6 +107,46 @@ TEST(LaneKernel, AllInstructionSetsJudgeAlikeAndNeverCloseALeafThatASweepRaises)
     }
   }
   EXPECT_GT(closed, 1000);
+}
+
+TEST(LaneKernel, NothingThatASweepWritesLiesAboveItsBound) {
+  constexpr uint64_t kSeed = 71;
+  constexpr double kVoxel = 0.25, kHalf = 0.5 * (kLeafSide - 1) * kVoxel;
+  Rng rng(kSeed);
+  for (int n = 0; n < 60; ++n) {
+    const cutter::ConvexPiece piece =
+        n % 4 == 0 ? cutter::ConvexPiece::cylinder(4.0, 12.0) : random_piece(rng);
+    const LaneCase lane_case = random_case(rng, piece);
+    LaneRun run;
+    run.piece = lane_piece(piece);
+    for (size_t lane = 0; lane < kLanes; ++lane) run.set_lane(lane, lane_case.pieces[lane].map);
+    const Eigen::Vector3f centre = lane_case.centre.cast<float>();
+    const LaneQuery query{{centre.x(), centre.y(), centre.z()}, 0.0F, {}, static_cast<float>(kHalf), 2.5F};
+    LaneBounds bounds, other;
+    lane_kernel_variants().front().bounds(run.lanes, run.piece, query, bounds);
+    for (const LaneKernelVariant& variant : lane_kernel_variants()) {
+      variant.bounds(run.lanes, run.piece, query, other);
+      ASSERT_EQ(std::memcmp(&other, &bounds, sizeof(bounds)), 0) << variant.instruction_set << " case " << n;
+    }
+    for (int look = 0; look < 120; ++look) {
+      const auto lane = static_cast<uint32_t>(look % kLanes);
+      const auto place = [&] { return static_cast<int>(rng.uniform(0.0, kLeafSide - 1e-9)); };
+      const int v[3] = {place(), place(), place()};
+      const Vec3 x = lane_case.centre - Vec3::Constant(kHalf) + kVoxel * Vec3(v[0], v[1], v[2]);
+      const double written = -scanned(lane_case.pieces[lane], x);
+      for (const LeafBound::Linear& linear : bounds.lane(lane).of_face) {
+        double start = linear.start, end = linear.end;
+        for (int a = 0; a < 3; ++a) {
+          start += double{linear.start_step[a]} * v[a];
+          end += double{linear.end_step[a]} * v[a];
+        }
+        ASSERT_LE(written, std::max(start, end))
+            << "seed " << kSeed << " case " << n << ": " << text(lane_case.sweeps[lane]) << " centre "
+            << text(lane_case.centre) << " at " << text(x) << "\n"
+            << text(piece);
+      }
+    }
+  }
 }
 
 /// Below its point a cone's F grows with the sine of the half angle: it reaches farther than a distance.
@@ -234,7 +257,8 @@ TEST(LaneRun, PassesOverNoLeafThatItRaises) {
     std::vector<SweptPiece> pieces;
     for (const Sweep& sweep : chain(rng, tilts[n % 5])) pieces.push_back({sweep_map(sweep), &piece});
     std::vector<LeafPair> pairs;
-    for (const LaneRun& run : make_runs(set, pieces)) gather_leaves(set, run, 0, pairs);
+    for (const LaneRun& run : make_runs(set, pieces))
+      for (const LeafPair& pair : gather_leaves(set, run, 0)) pairs.push_back(pair);
     found += pairs.size();
     const std::vector<size_t> rest = passed_over(set, pairs);
     for (int look = 0; look < 150 && !rest.empty(); ++look) {
