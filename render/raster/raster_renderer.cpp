@@ -265,19 +265,22 @@ void RasterRenderer::Impl::draw_shadow(const SceneView& view, bool section) {
   // Whole: where only a part is to be cleared llvmpipe draws a rectangle, which takes longer.
   gl.Clear(GL_DEPTH_BUFFER_BIT);
   constexpr double kBesidePx = 4.0;  // a place is looked up off its surface, by two taps of four texels
-  const auto pixel = [](double place, double beside) {
-    return static_cast<int>(std::clamp((0.5 * place + 0.5) * kShadowSize + beside, 0.0, 1.0 * kShadowSize));
+  const Vec2 beside = Vec2::Constant(2.0 * kBesidePx / kShadowSize);
+  const Vec2 lower = view.shadow_lower - beside, upper = view.shadow_upper + beside;
+  const auto pixel = [](double place) {
+    return static_cast<int>(std::clamp((0.5 * place + 0.5) * kShadowSize, 0.0, 1.0 * kShadowSize));
   };
-  const int left = pixel(view.shadow_lower.x(), -kBesidePx), low = pixel(view.shadow_lower.y(), -kBesidePx);
+  const int left = pixel(lower.x()), low = pixel(lower.y());
   gl.Enable(GL_SCISSOR_TEST);
-  gl.Scissor(left, low, std::max(0, pixel(view.shadow_upper.x(), kBesidePx) + 1 - left),
-             std::max(0, pixel(view.shadow_upper.y(), kBesidePx) + 1 - low));
+  gl.Scissor(left, low, std::max(0, pixel(upper.x()) + 1 - left), std::max(0, pixel(upper.y()) + 1 - low));
   gl.Enable(GL_POLYGON_OFFSET_FILL);
   gl.PolygonOffset(1.5F, 4.0F);
   const Uniforms uniforms(gl, shadow_program);
   uniforms.set("clip_from_world", view.light_clip_from_world);
   for (const Drawn& one : drawn) {
     if (section && one.item->sectioned) continue;
+    if (!may_lie_within(view.light_clip_from_world, one.mesh->bounds, one.item->X_world, lower, upper))
+      continue;
     uniforms.set("world_from_mesh", one.item->X_world.matrix());
     draw_triangles(*one.mesh);
   }
@@ -285,14 +288,16 @@ void RasterRenderer::Impl::draw_shadow(const SceneView& view, bool section) {
   gl.Disable(GL_SCISSOR_TEST);
 }
 
+/// Everywhere where nothing has been drawn; farther than the picture's depths, and above the horizon, at the
+/// farthest of them, where it has faded into the background.
 void RasterRenderer::Impl::draw_ground(const SceneView& view) {
   gl.Disable(GL_CULL_FACE);
+  gl.Enable(GL_DEPTH_CLAMP);
   gl.BindVertexArray(empty_array);
   const Uniforms uniforms(gl, ground_program);
-  uniforms.set("clip_from_world", view.clip_from_world);
-  uniforms.set("centre", view.ground_centre);
-  uniforms.set("radius", view.ground_radius);
-  gl.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+  uniforms.set("depths", depths_of_level(view.clip_from_world, view.ground_centre.z()));
+  gl.DrawArrays(GL_TRIANGLES, 0, 3);
+  gl.Disable(GL_DEPTH_CLAMP);
 }
 
 /// The items that the section cuts open, or all others.
@@ -306,6 +311,9 @@ void RasterRenderer::Impl::draw_items(const SceneView& view, const DrawList& lis
   uniforms.set("clip_from_world", view.clip_from_world);
   for (const Drawn& one : drawn) {
     if ((list.section && one.item->sectioned) != sectioned) continue;
+    if (!may_lie_within(view.clip_from_world, one.mesh->bounds, one.item->X_world, Vec2(-1.0, -1.0),
+                        Vec2(1.0, 1.0)))
+      continue;
     const Rgb& colour = one.item->material.colour;
     uniforms.set("world_from_mesh", one.item->X_world.matrix());
     uniforms.set("base_colour",
@@ -331,8 +339,6 @@ void RasterRenderer::Impl::draw_lines(const SceneView& view, const std::vector<D
 void RasterRenderer::Impl::draw_surfaces(const SceneView& view, const DrawList& list) {
   gl.BindFramebuffer(GL_FRAMEBUFFER, surfaces);
   gl.Viewport(0, 0, width, height);
-  constexpr GLuint kNothing[4] = {};
-  gl.ClearBufferuiv(GL_COLOR, 0, kNothing);
   gl.Clear(GL_DEPTH_BUFFER_BIT);
   draw_items(view, list, false);
   if (list.section) draw_items(view, list, true);

@@ -80,12 +80,10 @@ void main() {})"};
 
 const ShaderSource kGroundShader = {
     R"(#version 330 core
-uniform mat4 clip_from_world;
-uniform vec3 centre;
-uniform float radius;
+uniform vec3 depths;
 void main() {
-  vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1) * 2.0 - 1.0;
-  gl_Position = clip_from_world * vec4(centre + vec3(corner * radius, 0.0), 1.0);
+  vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0;
+  gl_Position = vec4(corner, dot(depths, vec3(corner, 1.0)), 1.0);
 })",
     R"(
 out uvec2 result;
@@ -207,7 +205,7 @@ vec3 shaded(uint kind, vec3 paint, vec3 n, vec3 place) {
   float r = length(world.xy - centre.xy) / radius;
   bool outside = any(lessThan(p, vec3(0.0))) || any(greaterThan(p, vec3(1.0)));
   float shade = (outside ? 1.0 : mix(0.58, 1.0, lit)) * mix(0.80, 1.0, smoothstep(0.08, 0.45, r));
-  float fade = ground ? 1.0 - smoothstep(0.25, 1.0, r) : 0.0;
+  float fade = ground && place.z < 1.0 ? 1.0 - smoothstep(0.25, 1.0, r) : 0.0;
   vec3 behind = mix(background((size_px.y - gl_FragCoord.y) / size_px.y), vec3(0.56, 0.58, 0.60) * shade, fade);
   return kind == kPaint ? paint : srgb(kind >= kFirstMaterial ? seen : behind);
 }
