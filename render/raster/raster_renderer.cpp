@@ -61,12 +61,19 @@ class Uniforms {
   }
   void set(const char* name, double value) const { gl_.Uniform1f(at(name), static_cast<float>(value)); }
   void set(const char* name, int value) const { gl_.Uniform1i(at(name), value); }
+  void set(const char* name, GLuint value) const { gl_.Uniform1ui(at(name), value); }
 
  private:
   GLint at(const char* name) const { return gl_.GetUniformLocation(program_, name); }
   const GlApi& gl_;
   GLuint program_;
 };
+
+/// As the shaders pack it.
+GLuint packed_paint(const Rgb& linear, int kind) {
+  const std::array<uint8_t, 4> c = srgb8_from_linear(linear);
+  return c[0] | GLuint{c[1]} << 8 | GLuint{c[2]} << 16 | static_cast<GLuint>(kind) << 24;
+}
 
 }  // namespace
 
@@ -76,6 +83,10 @@ struct RasterRenderer::Impl {
     const GpuMesh* mesh;
     Vec3 centre;
     int material;  ///< in `materials`
+  };
+  /// Of meshes of one colour and of those with colours at their vertices.
+  struct SurfacePrograms {
+    GLuint plain = 0, coloured = 0;
   };
 
   Impl(int width_px, int height_px, int samples_per_px);
@@ -102,7 +113,8 @@ struct RasterRenderer::Impl {
   int width, height, samples;
   GLuint surfaces = 0, surface_texture = 0, depth_texture = 0;
   GLuint picture = 0, shadow_target = 0, shadow_texture = 0;
-  GLuint surface_program, section_program, shadow_program, ground_program, line_program, shade_program;
+  SurfacePrograms surface_programs, section_programs;
+  GLuint shadow_program, ground_program, line_program, shade_program;
   GLuint empty_array = 0, line_array = 0, line_buffer = 0;
   std::vector<std::array<float, 2>> sample_places;  ///< in a pixel, 0..1
   std::vector<std::array<float, 2>> materials;      ///< metalness and roughness
@@ -122,8 +134,9 @@ RasterRenderer::Impl::Impl(int width_px, int height_px, int samples_per_px)
 }
 
 void RasterRenderer::Impl::compile_programs() {
-  surface_program = compile(gl, kSurfaceShader);
-  section_program = compile(gl, kSurfaceShader, "#define SECTION\n");
+  surface_programs = {compile(gl, kSurfaceShader), compile(gl, kSurfaceShader, "#define COLOURS\n")};
+  section_programs = {compile(gl, kSurfaceShader, "#define SECTION\n"),
+                      compile(gl, kSurfaceShader, "#define SECTION\n#define COLOURS\n")};
   shadow_program = compile(gl, kShadowShader);
   ground_program = compile(gl, kGroundShader);
   line_program = compile(gl, kLineShader);
@@ -302,24 +315,27 @@ void RasterRenderer::Impl::draw_ground(const SceneView& view) {
 
 /// The items that the section cuts open, or all others.
 void RasterRenderer::Impl::draw_items(const SceneView& view, const DrawList& list, bool sectioned) {
-  const Uniforms uniforms(gl, sectioned ? section_program : surface_program);
-  if (sectioned) {
+  const SurfacePrograms& programs = sectioned ? section_programs : surface_programs;
+  for (const GLuint program : {programs.plain, programs.coloured}) {
+    const Uniforms uniforms(gl, program);
+    uniforms.set("clip_from_world", view.clip_from_world);
+    if (!sectioned) continue;
     const auto facing = static_cast<float>(0.8 + 0.2 * list.section->normal.dot(view.key));
     uniforms.set_plane("section", list.section->normal, list.section->point);
     uniforms.set("section_colour", Rgb{facing * kCutFace[0], facing * kCutFace[1], facing * kCutFace[2]});
   }
-  uniforms.set("clip_from_world", view.clip_from_world);
   for (const Drawn& one : drawn) {
     if ((list.section && one.item->sectioned) != sectioned) continue;
     if (!may_lie_within(view.clip_from_world, one.mesh->bounds, one.item->X_world, Vec2(-1.0, -1.0),
                         Vec2(1.0, 1.0)))
       continue;
-    const Rgb& colour = one.item->material.colour;
+    const Uniforms uniforms(gl, one.mesh->has_colours ? programs.coloured : programs.plain);
     uniforms.set("world_from_mesh", one.item->X_world.matrix());
-    uniforms.set("base_colour",
-                 Rgb{srgb_from_linear(colour[0]), srgb_from_linear(colour[1]), srgb_from_linear(colour[2])});
-    uniforms.set("material", kFirstMaterial + one.material);
-    uniforms.set("has_colours", one.mesh->has_colours ? 1 : 0);
+    if (one.mesh->has_colours) {
+      uniforms.set("material", kFirstMaterial + one.material);
+    } else {
+      uniforms.set("paint_word", packed_paint(one.item->material.colour, kFirstMaterial + one.material));
+    }
     draw_triangles(*one.mesh, sectioned);
   }
 }
