@@ -23,7 +23,6 @@ namespace swarf::render {
   X(PFNGLBUFFERDATAPROC, BufferData)                           \
   X(PFNGLCHECKFRAMEBUFFERSTATUSPROC, CheckFramebufferStatus)   \
   X(PFNGLCLEARPROC, Clear)                                     \
-  X(PFNGLCLEARBUFFERUIVPROC, ClearBufferuiv)                   \
   X(PFNGLCOMPILESHADERPROC, CompileShader)                     \
   X(PFNGLCREATEPROGRAMPROC, CreateProgram)                     \
   X(PFNGLCREATESHADERPROC, CreateShader)                       \
@@ -62,6 +61,7 @@ namespace swarf::render {
   X(PFNGLTEXPARAMETERIPROC, TexParameteri)                     \
   X(PFNGLUNIFORM1FPROC, Uniform1f)                             \
   X(PFNGLUNIFORM1IPROC, Uniform1i)                             \
+  X(PFNGLUNIFORM1UIPROC, Uniform1ui)                           \
   X(PFNGLUNIFORM2FVPROC, Uniform2fv)                           \
   X(PFNGLUNIFORM3FPROC, Uniform3f)                             \
   X(PFNGLUNIFORM4FPROC, Uniform4f)                             \

@@ -61,12 +61,19 @@ class Uniforms {
   }
   void set(const char* name, double value) const { gl_.Uniform1f(at(name), static_cast<float>(value)); }
   void set(const char* name, int value) const { gl_.Uniform1i(at(name), value); }
+  void set(const char* name, GLuint value) const { gl_.Uniform1ui(at(name), value); }
 
  private:
   GLint at(const char* name) const { return gl_.GetUniformLocation(program_, name); }
   const GlApi& gl_;
   GLuint program_;
 };
+
+/// As the shaders pack it.
+GLuint packed_paint(const Rgb& linear, int kind) {
+  const std::array<uint8_t, 4> c = srgb8_from_linear(linear);
+  return c[0] | GLuint{c[1]} << 8 | GLuint{c[2]} << 16 | static_cast<GLuint>(kind) << 24;
+}
 
 }  // namespace
 
@@ -76,6 +83,10 @@ struct RasterRenderer::Impl {
     const GpuMesh* mesh;
     Vec3 centre;
     int material;  ///< in `materials`
+  };
+  /// Of meshes of one colour and of those with colours at their vertices.
+  struct SurfacePrograms {
+    GLuint plain = 0, coloured = 0;
   };
 
   Impl(int width_px, int height_px, int samples_per_px);
@@ -102,7 +113,8 @@ struct RasterRenderer::Impl {
   int width, height, samples;
   GLuint surfaces = 0, surface_texture = 0, depth_texture = 0;
   GLuint picture = 0, shadow_target = 0, shadow_texture = 0;
-  GLuint surface_program, section_program, shadow_program, ground_program, line_program, shade_program;
+  SurfacePrograms surface_programs, section_programs;
+  GLuint shadow_program, ground_program, line_program, shade_program;
   GLuint empty_array = 0, line_array = 0, line_buffer = 0;
   std::vector<std::array<float, 2>> sample_places;  ///< in a pixel, 0..1
   std::vector<std::array<float, 2>> materials;      ///< metalness and roughness
@@ -122,8 +134,9 @@ RasterRenderer::Impl::Impl(int width_px, int height_px, int samples_per_px)
 }
 
 void RasterRenderer::Impl::compile_programs() {
-  surface_program = compile(gl, kSurfaceShader);
-  section_program = compile(gl, kSurfaceShader, "#define SECTION\n");
+  surface_programs = {compile(gl, kSurfaceShader), compile(gl, kSurfaceShader, "#define COLOURS\n")};
+  section_programs = {compile(gl, kSurfaceShader, "#define SECTION\n"),
+                      compile(gl, kSurfaceShader, "#define SECTION\n#define COLOURS\n")};
   shadow_program = compile(gl, kShadowShader);
   ground_program = compile(gl, kGroundShader);
   line_program = compile(gl, kLineShader);
@@ -265,19 +278,22 @@ void RasterRenderer::Impl::draw_shadow(const SceneView& view, bool section) {
   // Whole: where only a part is to be cleared llvmpipe draws a rectangle, which takes longer.
   gl.Clear(GL_DEPTH_BUFFER_BIT);
   constexpr double kBesidePx = 4.0;  // a place is looked up off its surface, by two taps of four texels
-  const auto pixel = [](double place, double beside) {
-    return static_cast<int>(std::clamp((0.5 * place + 0.5) * kShadowSize + beside, 0.0, 1.0 * kShadowSize));
+  const Vec2 beside = Vec2::Constant(2.0 * kBesidePx / kShadowSize);
+  const Vec2 lower = view.shadow_lower - beside, upper = view.shadow_upper + beside;
+  const auto pixel = [](double place) {
+    return static_cast<int>(std::clamp((0.5 * place + 0.5) * kShadowSize, 0.0, 1.0 * kShadowSize));
   };
-  const int left = pixel(view.shadow_lower.x(), -kBesidePx), low = pixel(view.shadow_lower.y(), -kBesidePx);
+  const int left = pixel(lower.x()), low = pixel(lower.y());
   gl.Enable(GL_SCISSOR_TEST);
-  gl.Scissor(left, low, std::max(0, pixel(view.shadow_upper.x(), kBesidePx) + 1 - left),
-             std::max(0, pixel(view.shadow_upper.y(), kBesidePx) + 1 - low));
+  gl.Scissor(left, low, std::max(0, pixel(upper.x()) + 1 - left), std::max(0, pixel(upper.y()) + 1 - low));
   gl.Enable(GL_POLYGON_OFFSET_FILL);
   gl.PolygonOffset(1.5F, 4.0F);
   const Uniforms uniforms(gl, shadow_program);
   uniforms.set("clip_from_world", view.light_clip_from_world);
   for (const Drawn& one : drawn) {
     if (section && one.item->sectioned) continue;
+    if (!may_lie_within(view.light_clip_from_world, one.mesh->bounds, one.item->X_world, lower, upper))
+      continue;
     uniforms.set("world_from_mesh", one.item->X_world.matrix());
     draw_triangles(*one.mesh);
   }
@@ -285,33 +301,41 @@ void RasterRenderer::Impl::draw_shadow(const SceneView& view, bool section) {
   gl.Disable(GL_SCISSOR_TEST);
 }
 
+/// Everywhere where nothing has been drawn; farther than the picture's depths, and above the horizon, at the
+/// farthest of them, where it has faded into the background.
 void RasterRenderer::Impl::draw_ground(const SceneView& view) {
   gl.Disable(GL_CULL_FACE);
+  gl.Enable(GL_DEPTH_CLAMP);
   gl.BindVertexArray(empty_array);
   const Uniforms uniforms(gl, ground_program);
-  uniforms.set("clip_from_world", view.clip_from_world);
-  uniforms.set("centre", view.ground_centre);
-  uniforms.set("radius", view.ground_radius);
-  gl.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+  uniforms.set("depths", depths_of_level(view.clip_from_world, view.ground_centre.z()));
+  gl.DrawArrays(GL_TRIANGLES, 0, 3);
+  gl.Disable(GL_DEPTH_CLAMP);
 }
 
 /// The items that the section cuts open, or all others.
 void RasterRenderer::Impl::draw_items(const SceneView& view, const DrawList& list, bool sectioned) {
-  const Uniforms uniforms(gl, sectioned ? section_program : surface_program);
-  if (sectioned) {
+  const SurfacePrograms& programs = sectioned ? section_programs : surface_programs;
+  for (const GLuint program : {programs.plain, programs.coloured}) {
+    const Uniforms uniforms(gl, program);
+    uniforms.set("clip_from_world", view.clip_from_world);
+    if (!sectioned) continue;
     const auto facing = static_cast<float>(0.8 + 0.2 * list.section->normal.dot(view.key));
     uniforms.set_plane("section", list.section->normal, list.section->point);
     uniforms.set("section_colour", Rgb{facing * kCutFace[0], facing * kCutFace[1], facing * kCutFace[2]});
   }
-  uniforms.set("clip_from_world", view.clip_from_world);
   for (const Drawn& one : drawn) {
     if ((list.section && one.item->sectioned) != sectioned) continue;
-    const Rgb& colour = one.item->material.colour;
+    if (!may_lie_within(view.clip_from_world, one.mesh->bounds, one.item->X_world, Vec2(-1.0, -1.0),
+                        Vec2(1.0, 1.0)))
+      continue;
+    const Uniforms uniforms(gl, one.mesh->has_colours ? programs.coloured : programs.plain);
     uniforms.set("world_from_mesh", one.item->X_world.matrix());
-    uniforms.set("base_colour",
-                 Rgb{srgb_from_linear(colour[0]), srgb_from_linear(colour[1]), srgb_from_linear(colour[2])});
-    uniforms.set("material", kFirstMaterial + one.material);
-    uniforms.set("has_colours", one.mesh->has_colours ? 1 : 0);
+    if (one.mesh->has_colours) {
+      uniforms.set("material", kFirstMaterial + one.material);
+    } else {
+      uniforms.set("paint_word", packed_paint(one.item->material.colour, kFirstMaterial + one.material));
+    }
     draw_triangles(*one.mesh, sectioned);
   }
 }
@@ -331,8 +355,6 @@ void RasterRenderer::Impl::draw_lines(const SceneView& view, const std::vector<D
 void RasterRenderer::Impl::draw_surfaces(const SceneView& view, const DrawList& list) {
   gl.BindFramebuffer(GL_FRAMEBUFFER, surfaces);
   gl.Viewport(0, 0, width, height);
-  constexpr GLuint kNothing[4] = {};
-  gl.ClearBufferuiv(GL_COLOR, 0, kNothing);
   gl.Clear(GL_DEPTH_BUFFER_BIT);
   draw_items(view, list, false);
   if (list.section) draw_items(view, list, true);

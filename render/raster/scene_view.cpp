@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -73,6 +74,28 @@ void extend(Box& bounds, const Box& box, const Pose& X_world) {
     bounds.lower = bounds.lower.cwiseMin(p);
     bounds.upper = bounds.upper.cwiseMax(p);
   }
+}
+
+bool may_lie_within(const Eigen::Matrix4d& clip_from_world, const Box& box, const Pose& X_world,
+                    const Vec2& lower, const Vec2& upper) {
+  int beyond[4] = {};
+  for (const Vec3& corner : corners(box)) {
+    const Eigen::Vector4d p = clip_from_world * (X_world * corner).homogeneous();
+    for (int k = 0; k < 2; ++k) {
+      beyond[k] += p[k] < lower[k] * p.w() ? 1 : 0;
+      beyond[k + 2] += p[k] > upper[k] * p.w() ? 1 : 0;
+    }
+  }
+  return std::none_of(std::begin(beyond), std::end(beyond), [](int count) { return count == 8; });
+}
+
+Vec3 depths_of_level(const Eigen::Matrix4d& clip_from_world, double height) {
+  constexpr double kEdgeOn = 1e-9;  // sine of the angle to the plane, roughly
+  // A plane's coefficients go by the inverse transposed.
+  const Eigen::Vector4d plane =
+      clip_from_world.inverse().transpose() * Eigen::Vector4d(0.0, 0.0, 1.0, -height);
+  if (std::abs(plane.z()) <= kEdgeOn * plane.norm()) return {0.0, 0.0, 2.0};
+  return Vec3(plane.x(), plane.y(), plane.w()) / -plane.z();
 }
 
 SceneView scene_view(const Camera& camera, const Box& bounds, double aspect) {

@@ -23,6 +23,16 @@ struct SceneView {
 /// `bounds` holds every item of the scene in the drawing's frame.
 SceneView scene_view(const Camera& camera, const Box& bounds, double aspect);
 
+/// False only where nothing of a box at a pose lies within `lower` and `upper` of clip space (-1..1 is all of
+/// it): where all of its corners are beyond one side.
+bool may_lie_within(const Eigen::Matrix4d& clip_from_world, const Box& box, const Pose& X_world,
+                    const Vec2& lower, const Vec2& upper);
+
+/// Depths (-1..1) of the horizontal plane at this height, as the picture sees it: x and y of the picture
+/// (-1..1) times the first two plus the third. Above 1 where it does not see the plane, everywhere where it
+/// sees it edge on.
+Vec3 depths_of_level(const Eigen::Matrix4d& clip_from_world, double height);
+
 /// Grows `bounds` by a box at a pose.
 void extend(Box& bounds, const Box& box, const Pose& X_world);
 

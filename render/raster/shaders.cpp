@@ -32,8 +32,6 @@ layout(location = 1) in vec3 normal;
 layout(location = 2) in vec4 colour;
 uniform mat4 world_from_mesh;
 uniform mat4 clip_from_world;
-uniform vec3 base_colour;  // sRGB
-uniform int has_colours;
 out vec3 world;
 out vec3 world_normal;
 out vec3 paint;
@@ -41,15 +39,23 @@ void main() {
   vec4 p = world_from_mesh * vec4(position, 1.0);
   world = p.xyz;
   world_normal = mat3(world_from_mesh) * normal;
-  paint = has_colours != 0 ? colour.rgb : base_colour;
+  paint = colour.rgb;
   gl_Position = clip_from_world * p;
 })",
     R"(
 in vec3 world;
 in vec3 world_normal;
+out uvec2 result;
+
+// Few items have colours of their own at each vertex: all others are spared them.
+#ifdef COLOURS
 in vec3 paint;
 uniform int material;
-out uvec2 result;
+uint painted() { return packed_paint(paint, uint(material)); }
+#else
+uniform uint paint_word;
+uint painted() { return paint_word; }
+#endif
 
 #ifdef SECTION  // a program of its own: where a pixel may be dropped, depth is not tested before it is made
 uniform vec4 section;  // what lies above the plane xyz . p = w is not drawn
@@ -66,7 +72,7 @@ void main() {
     return;
   }
 #endif
-  result = uvec2(packed_normal(world_normal), packed_paint(paint, uint(material)));
+  result = uvec2(packed_normal(world_normal), painted());
 })"};
 
 const ShaderSource kShadowShader = {
@@ -80,12 +86,10 @@ void main() {})"};
 
 const ShaderSource kGroundShader = {
     R"(#version 330 core
-uniform mat4 clip_from_world;
-uniform vec3 centre;
-uniform float radius;
+uniform vec3 depths;
 void main() {
-  vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1) * 2.0 - 1.0;
-  gl_Position = clip_from_world * vec4(centre + vec3(corner * radius, 0.0), 1.0);
+  vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0;
+  gl_Position = vec4(corner, dot(depths, vec3(corner, 1.0)), 1.0);
 })",
     R"(
 out uvec2 result;
@@ -207,7 +211,7 @@ vec3 shaded(uint kind, vec3 paint, vec3 n, vec3 place) {
   float r = length(world.xy - centre.xy) / radius;
   bool outside = any(lessThan(p, vec3(0.0))) || any(greaterThan(p, vec3(1.0)));
   float shade = (outside ? 1.0 : mix(0.58, 1.0, lit)) * mix(0.80, 1.0, smoothstep(0.08, 0.45, r));
-  float fade = ground ? 1.0 - smoothstep(0.25, 1.0, r) : 0.0;
+  float fade = ground && place.z < 1.0 ? 1.0 - smoothstep(0.25, 1.0, r) : 0.0;
   vec3 behind = mix(background((size_px.y - gl_FragCoord.y) / size_px.y), vec3(0.56, 0.58, 0.60) * shade, fade);
   return kind == kPaint ? paint : srgb(kind >= kFirstMaterial ? seen : behind);
 }

@@ -3,7 +3,9 @@
 //
 //   surface     normal, paint and material of what is seen
 //   line        screen-space quads of paint
-//   ground      a floor under the scene
+//   ground      the floor under the scene, or what is behind everything: one triangle over the whole picture,
+//   so
+//               that nothing need be cleared
 //   shadow      depth of the scene seen from the key light
 //   shade       key light with its shadow map, fill and rim lights, a studio box reflected by roughness; the
 //   floor,
@@ -28,7 +30,7 @@ extern const ShaderSource kShadeShader;
 /// Prepended to every fragment shader.
 extern const char* const kFragmentPrelude;
 
-/// In the highest byte of a sample's second word; 0 is the background, materials of the list follow these.
+/// In the highest byte of a sample's second word; materials of the list follow these.
 constexpr int kGroundKind = 1, kPaintKind = 2, kFirstMaterial = 3, kMaterialsMost = 128;
 
 }  // namespace swarf::render
