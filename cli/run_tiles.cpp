@@ -55,6 +55,9 @@ void tell_how_to_stop() {
 
 void refuse_for_tiles(const RunOptions& options) {
   refuse_as_rank(options.scene == "-", "-", "name a file that every rank can read");
+  refuse_as_rank(
+      options.spill, "--spill",
+      "leave it out: of what the ranks hold together rank 0 holds the whole, and raise --max-memory");
   refuse_as_rank(count_setups(options.scene, overrides_of(options)) > 0, "[[setup]]",
                  "make each set-up a scene of its own: stock.from_run is the folder of the one before");
 }

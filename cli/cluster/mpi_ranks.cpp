@@ -6,8 +6,11 @@
 #include <chrono>
 #include <cstdint>
 #include <cstdlib>
+#include <list>
 #include <memory>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "base/ranks.h"
 
@@ -30,18 +33,36 @@ class MpiRanks final : public Ranks {
     MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
     MPI_Comm_size(MPI_COMM_WORLD, &size_);
   }
-  ~MpiRanks() override { MPI_Finalize(); }
+  ~MpiRanks() override {
+    for (Outgoing& one : outgoing_)
+      MPI_Waitall(static_cast<int>(one.requests.size()), one.requests.data(), MPI_STATUSES_IGNORE);
+    MPI_Finalize();
+  }
   MpiRanks(const MpiRanks&) = delete;
   MpiRanks& operator=(const MpiRanks&) = delete;
 
   int rank() const override { return rank_; }
   int size() const override { return size_; }
 
-  void send(int to, const Bytes& message) override {
-    const uint64_t size = message.size();
-    MPI_Send(&size, 1, MPI_UINT64_T, to, kSizeTag, MPI_COMM_WORLD);
-    for (size_t at = 0; at < message.size(); at += kMostAtOnce)
-      MPI_Send(message.data() + at, count(message.size() - at), MPI_BYTE, to, kPartTag, MPI_COMM_WORLD);
+  void send(int to, Bytes message) override {
+    forget_gone();
+    Outgoing& one = outgoing_.emplace_back();
+    one.size = message.size();
+    one.message = std::move(message);
+    one.requests.emplace_back();
+    MPI_Isend(&one.size, 1, MPI_UINT64_T, to, kSizeTag, MPI_COMM_WORLD, &one.requests.back());
+    for (size_t at = 0; at < one.message.size(); at += kMostAtOnce) {
+      one.requests.emplace_back();
+      MPI_Isend(one.message.data() + at, count(one.message.size() - at), MPI_BYTE, to, kPartTag,
+                MPI_COMM_WORLD, &one.requests.back());
+    }
+  }
+
+  bool has_message(int from) override {
+    forget_gone();
+    int is_there = 0;
+    MPI_Iprobe(from, kSizeTag, MPI_COMM_WORLD, &is_there, MPI_STATUS_IGNORE);
+    return is_there != 0;
   }
 
   Bytes receive(int from) override {
@@ -63,19 +84,31 @@ class MpiRanks final : public Ranks {
  private:
   static int count(size_t left) { return static_cast<int>(std::min(left, kMostAtOnce)); }
 
-  static void wait_for_message(int from) {
+  void wait_for_message(int from) {
     using Clock = std::chrono::steady_clock;
     const Clock::time_point begun = Clock::now();
-    int is_there = 0;
-    for (int looks = 0; is_there == 0; ++looks) {
+    for (int looks = 0; !has_message(from); ++looks)
       if (looks > kLooksAtOnce)
         std::this_thread::sleep_for(
             std::clamp<Clock::duration>((Clock::now() - begun) / 8, kShortestSleep, kLongestSleep));
-      MPI_Iprobe(from, kSizeTag, MPI_COMM_WORLD, &is_there, MPI_STATUS_IGNORE);
-    }
+  }
+
+  /// On its way to another rank.
+  struct Outgoing {
+    uint64_t size = 0;
+    Bytes message;
+    std::vector<MPI_Request> requests;
+  };
+  void forget_gone() {
+    outgoing_.remove_if([](Outgoing& one) {
+      int all = 0;
+      MPI_Testall(static_cast<int>(one.requests.size()), one.requests.data(), &all, MPI_STATUSES_IGNORE);
+      return all != 0;
+    });
   }
 
   int rank_ = 0, size_ = 1;
+  std::list<Outgoing> outgoing_;  ///< MPI reads them where they are
 };
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include "base/parallel.h"
 #include "base/units.h"
 #include "measure/height_bounds.h"
-#include "measure/root_proof.h"
+#include "measure/root_message.h"
 
 namespace swarf::measure {
 namespace {
@@ -20,6 +20,7 @@ constexpr size_t kShares = 64;
 constexpr size_t kBrokenBudget = 10'000'000, kBrokenRoot = 1'500;
 constexpr size_t kRoots = 10'000;
 constexpr size_t kRootsPerBatch = 256;  // share one budget
+constexpr size_t kRootsPerPortion = 4;  // that another process is asked for at once
 constexpr double kLeastRoot = 1.0;      // mm
 /// Between two steps of the progress bar, about; s.
 constexpr double kStep = 0.2;
@@ -74,13 +75,42 @@ class Slices {
   size_t slice_ = 32;
 };
 
+/// Roots [first, end) in portions, by whoever helps.
+void deal_roots(const CertificateInput& input, const std::vector<RootCell>& roots, const SweepIndex& index,
+                const RootRequest& batch, std::vector<RootResult>& parts) {
+  const auto portion = [&](size_t n) {
+    const size_t first = batch.first + n * kRootsPerPortion;
+    return RootRequest{first, std::min(first + kRootsPerPortion, batch.end), batch.budget};
+  };
+  input.deal({(batch.end - batch.first + kRootsPerPortion - 1) / kRootsPerPortion,
+              [&](size_t n) {
+                BytesWriter out;
+                out.add(portion(n));
+                return out.take();
+              },
+              [&](size_t n, const Bytes& answer) {
+                BytesReader in(answer);
+                const RootRequest of = portion(n);
+                for (size_t root = of.first; root < of.end; ++root) parts[root] = get_result(in);
+              },
+              [&](size_t n) {
+                const RootRequest of = portion(n);
+                parallel_chunks(of.end - of.first, 1, [&](size_t k, size_t) {
+                  parts[of.first + k] = prove_root(input, index, roots[of.first + k], of.budget);
+                });
+              }});
+}
+
 }  // namespace
 
-Certificate certify(const CertificateInput& input) {
+double root_size(const stock::RayField& field) {
   double area = 0.0;
-  for (const double part : input.field.areas_mm2) area += part;
-  const double size = std::max(kLeastRoot, std::sqrt(2.0 * area / kRoots));
-  const std::vector<RootCell> roots = root_cells(input.field, size);
+  for (const double part : field.areas_mm2) area += part;
+  return std::max(kLeastRoot, std::sqrt(2.0 * area / kRoots));
+}
+
+Certificate certify(const CertificateInput& input) {
+  const std::vector<RootCell> roots = root_cells(input.field, root_size(input.field));
   const SweepIndex index(input.sweeps, input.cutters);
   std::vector<RootResult> parts(roots.size());
   size_t spent = 0, broken = 0;
@@ -91,8 +121,14 @@ Certificate certify(const CertificateInput& input) {
     const size_t share = std::max(kLeastBudget, kShares * left / (roots.size() - first));
     const Budget budget{share, broken > kBrokenBudget ? std::min(share, kBrokenRoot) : share};
     const size_t end = std::min(first + kRootsPerBatch, roots.size());
-    slices.run(first, end, roots.size(),
-               [&](size_t n) { parts[n] = prove_root(input, index, roots[n], budget); });
+    if (input.deal) {
+      deal_roots(input, roots, index, {first, end, budget}, parts);
+      input.progress.advance(input.progress_from +
+                             static_cast<double>(end) / static_cast<double>(roots.size()));
+    } else {
+      slices.run(first, end, roots.size(),
+                 [&](size_t n) { parts[n] = prove_root(input, index, roots[n], budget); });
+    }
     for (size_t n = first; n < end; ++n) {
       spent += parts[n].work;
       if (parts[n].broken) broken += parts[n].work;

@@ -17,10 +17,12 @@
 // to q (column_range.h: own_below).
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "base/dealt_work.h"
 #include "base/progress.h"
 #include "measure/metrics.h"
 #include "measure/sweep_cutters.h"
@@ -49,6 +51,8 @@ struct CertificateInput {
   /// then proves nothing.
   Progress& progress;
   double progress_from = 0.0;
+  /// Has the portions done by others too (dealt_roots.h), all of them when it returns; empty: nobody helps.
+  std::function<void(const DealtWork& work)> deal = {};
 };
 
 struct Certificate {

@@ -421,9 +421,9 @@ void compare_driven(const Job& job, Progress& progress, Result& result) {
 void measure_volume(const Job& job, Result& result) {
   const double removed = result.full_mm3 - result.volume_left_mm3;
   result.volume_left_mm3 = job.scene.stock.body_W().volume_mm3() - removed;
-  const stock::VolumeRange range = result.stock->volume_between(result.sweep_bound_mm);
-  result.volume_error_bound_mm3 =
-      std::max(range.greatest - result.volume_left_mm3, result.volume_left_mm3 - range.least);
+  if (!result.volume_range) result.volume_range = result.stock->volume_between(result.sweep_bound_mm);
+  result.volume_error_bound_mm3 = std::max(result.volume_range->greatest - result.volume_left_mm3,
+                                           result.volume_left_mm3 - result.volume_range->least);
 }
 
 void measure_part(const Job& job, Progress& progress, Result& result) {
@@ -496,23 +496,20 @@ void serve_tiles(const Job& job, Ranks& ranks, Progress& progress) {
   MeasuredPath measured;
   std::optional<CutParts> parts;
   try {
-    measured = moved_tool(job, progress, {}, false);
+    // Blocks are swept as they are: who only cuts them needs no cycles.
+    measured = job.scene.stock.cut_by == CutBy::kBlocks ? plan_tool(job, progress)
+                                                        : moved_tool(job, progress, {}, false);
     parts.emplace(job, *measured.cycles, *measured.carried);
   } catch (const InputError& error) {
     refuse_tile_lead(ranks, error.what());
     return;
   }
-  serve_tile_lead(ranks, job, *parts, [&] {
-    cut_ray_share(job, measured, share_of(ranks));
-    std::vector<Bytes> tiles;
-    for (const stock::SurfaceDexels& dexels : measured.dexels)
-      tiles.push_back(dexels.tiles_of(share_of(ranks)));
-    return tiles;
-  });
+  serve_tile_lead(ranks, job, *parts, measured, [&] { cut_ray_share(job, measured, share_of(ranks)); });
 }
 
 Result simulate(const Job& job, const CutOptions& options, Progress& progress) {
   Result result;
+  if (options.ranks != nullptr && may_go_ahead(options)) let_ranks_go_ahead(*options.ranks);
   result.main = moved_tool(job, progress, options, true);
   if (result.main.cycles->stopped()) {
     leave_uncut(job, options, result);
@@ -535,7 +532,7 @@ Result simulate(const Job& job, const CutOptions& options, Progress& progress) {
   cut_dexels(job, result.main, options.ranks);
   progress.end();
   measure_part(job, progress, result);
-  prove_part(job, progress, result);
+  prove_part(job, options.ranks, progress, result);
   measure_flank(job, progress, result);
   if (job.scene.flank) result.flank_milling = flank_figures(job, result.main, progress);
   // A program of blocks is one path: there is nothing to compare it with.

@@ -49,7 +49,9 @@ struct TileGrid {
 
 /// How far Stock::check goes.
 enum class CheckLevel {
+  kOwnMap,  ///< the next within the tiles of one process (stock_tiles.h), which others may have passed
   kMap,     ///< invariants 1 to 4: leaf positions only, about a millisecond per 100 000 of them
+  kLeaves,  ///< 1 to 7: each leaf by itself
   kVoxels,  ///< all: reads every voxel and its neighbours
 };
 
@@ -147,6 +149,7 @@ class Stock {
 
  private:
   friend class ContactFinder;
+  friend class SlabProofs;
   friend class StockMesher;
   friend class StockTiles;
   struct Impl;

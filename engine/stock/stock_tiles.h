@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "base/bytes.h"
@@ -29,22 +30,26 @@ class StockTiles {
   /// the others change by apply(). The stock must outlive it. What it is now counts as known to the others.
   StockTiles(Stock& stock, Share share);
 
-  /// What has changed in the share's tiles since they were known last; it is known with this.
-  Bytes changes();
-  /// Everything in the tiles of another share: for one that begins.
-  Bytes tiles_of(int index) const;
-  /// Takes over what changes() or tiles_of() of a stock of the same raw shape and voxel size has told. Counts
-  /// of work in it are added to the stock's own; its seconds become those of the slowest.
+  /// What has changed in the share's tiles since they were known last, in pieces of few megabytes, each known
+  /// with this. None: nothing is left.
+  std::optional<Bytes> next_changes();
+  /// Everything in the tiles of another share, for one that begins; or in all others, for one that holds
+  /// these. Piece by piece: the next one begins at position `from`, which is brought to where it ends. None:
+  /// that was all.
+  enum class Which { kOfShare, kOfOthers };
+  static std::optional<Bytes> next_tiles(const Stock& stock, Share share, Which which, size_t& from);
+  /// Takes over what next_changes() or next_tiles() of a stock of the same raw shape and voxel size has told.
+  /// Counts of work in it are added to the stock's own; its seconds become those of the slowest.
   void apply(const Bytes& changes);
 
  private:
-  void add_position(size_t leaf, BytesWriter& out) const;
   void take_position(BytesReader& in);
 
   Stock& stock_;
   Share share_;
   std::vector<uint32_t> known_;  ///< LeafMap::cuts when they were told last
   CutStatistics told_;           ///< the same of the counts
+  size_t next_ = 0;              ///< position that next_changes() goes on from
 };
 
 }  // namespace swarf::stock

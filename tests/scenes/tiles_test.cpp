@@ -1,11 +1,13 @@
 // swarf run --tiles: ranks of mpirun cut one part together, and what comes out is what one process leaves.
-// SWARF_KILLS: at how many random moments a run is killed (default 3); SWARF_KILL_BLOCKS: blocks of the
-// program.
+// SWARF_KILLS: at how many random moments a run that is under way is killed (default 3); SWARF_KILL_BLOCKS:
+// blocks of the program.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <chrono>
 #include <cstdlib>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
@@ -109,6 +111,11 @@ TEST_F(Tiles, RaysAreThoseOfOneProcess) {
       {2});
 }
 
+/// What lies between the rays is proven by all ranks: bounds, findings and the areas that stay open.
+TEST_F(Tiles, TheProofIsThatOfOneProcess) {
+  expect_same(std::string(SWARF_SOURCE_DIR) + "/scenes/exact_between_rays/scene.toml --no-render", {2});
+}
+
 TEST_F(Tiles, GoesOnFromAStockThatAnyOtherRunHasLeft) {
   write_wave(4000, 0.4);
   const auto whole = run_swarf("run " + wave() + " --save-stock-after 699 -o " + at("alone"));
@@ -137,10 +144,11 @@ TEST_F(Tiles, WhatIsWrongIsSaidOnce) {
 
 TEST_F(Tiles, WhatTheRanksCannotAgreeOnIsRefused) {
   const std::string scenes = std::string(SWARF_SOURCE_DIR) + "/scenes/";
-  for (const auto& [job, what] :
-       std::vector<std::pair<std::string, std::string>>{{scenes + "two_setups/scene.toml", "[[setup]]"},
-                                                        {scenes + "kruth_cylinder/inclined.toml", "[post]"},
-                                                        {"- < /dev/null", "-"}}) {
+  for (const auto& [job, what] : std::vector<std::pair<std::string, std::string>>{
+           {scenes + "nc_pocket/scene.toml --spill --max-memory 500", "--spill"},
+           {scenes + "two_setups/scene.toml", "[[setup]]"},
+           {scenes + "kruth_cylinder/inclined.toml", "[post]"},
+           {"- < /dev/null", "-"}}) {
     const auto run = run_command(mpirun(2) + "run --tiles -o " + at("tiles") + " " + job);
     EXPECT_EQ(run.exit_code, 2) << run.output;
     EXPECT_NE(run.output.find(what + ": error: this is for a run of one process"), std::string::npos)
@@ -199,55 +207,77 @@ TEST_F(Tiles, AStoppedRunGoesOn) {
 }
 
 /// At random moments a rank is killed, or mpirun, or mpirun gets Ctrl-C: it ends all of them, and the run
-/// goes on from what the tiles were when they were kept last.
-TEST_F(Tiles, AKilledRunGoesOn) {
-  constexpr int kRanks = 3;
+/// goes on from what the tiles were when they were kept last. Runs that were over already do not count.
+class TilesKilled : public Tiles {
+ protected:
+  static constexpr int kRanks = 3;
+  static constexpr std::array kKills{"rank 0", "Ctrl-C", "rank 1", "mpirun", "rank 2"};
+
+  /// The rank names itself in its environment; the scene's path tells this run from others of the machine.
+  std::string ranks() const {
+    return fmt::format("$(pgrep -f '^{} run --tiles {}')", SWARF_PROGRAM, at("scene.toml"));
+  }
+  std::string kill_command(size_t kind) const {
+    const std::string what = kKills.at(kind);
+    if (what == "Ctrl-C") return "kill -INT $pid";
+    if (what == "mpirun") return "kill -9 $pid";
+    return fmt::format(
+        "for p in {}; do tr '\\0' '\\n' < /proc/$p/environ 2>/dev/null | grep -qx OMPI_COMM_WORLD_RANK={} && "
+        "kill -9 $p; done",
+        ranks(), what.back());
+  }
+  /// Exit code of the run; none of its ranks is left.
+  int run_and_kill(size_t kind, double after_s) const {
+    const auto run = run_command(fmt::format(
+        "{}run --tiles {} --keep-every 0.05 -o {} & pid=$!; sleep {:.3f}; {}; wait $pid; code=$?; "
+        "for n in $(seq 100); do [ -z \"{}\" ] && break; sleep 0.1; done; [ -z \"{}\" ] || echo "
+        "ranks are left; exit $code",
+        mpirun(kRanks), wave(), at("out"), after_s, kill_command(kind), ranks(), ranks()));
+    EXPECT_EQ(run.output.find("ranks are left"), std::string::npos) << run.output;
+    return run.exit_code;
+  }
+  /// From what is kept, or from the start. True: something was kept.
+  bool go_on() const {
+    const std::string from = kept_stock();
+    const auto again = run_command(mpirun(2) + "run --tiles " + wave() +
+                                   (from.empty() ? "" : "--from " + from) + " -o " + at("out"));
+    EXPECT_EQ(again.exit_code, 0) << again.output;
+    return !from.empty();
+  }
+};
+
+TEST_F(TilesKilled, ARunGoesOn) {
   write_wave(number_from("SWARF_KILL_BLOCKS", 8000), 0.2);
   const auto start = Clock::now();
   ASSERT_EQ(run_command(mpirun(kRanks) + "run --tiles " + wave() + "-o " + at("whole")).exit_code, 0);
   const double whole_s = std::chrono::duration<double>(Clock::now() - start).count();
   const auto hash = facts(at("whole"))["/stock/hash"];
-  const long count = number_from("SWARF_KILLS", 3);
-  // The rank names itself in its environment; the scene's path tells this run from others of the machine.
-  const std::string ranks = fmt::format("$(pgrep -f '^{} run --tiles {}')", SWARF_PROGRAM, at("scene.toml"));
-  const auto rank = [&](int number) {
-    return fmt::format(
-        "for p in {}; do tr '\\0' '\\n' < /proc/$p/environ 2>/dev/null | grep -qx OMPI_COMM_WORLD_RANK={} && "
-        "kill -9 $p; done",
-        ranks, number);
-  };
-  const std::vector<std::string> kills{rank(0), "kill -INT $pid", rank(1), "kill -9 $pid", rank(2)};
-  const std::vector<std::string> names{"rank 0", "Ctrl-C", "rank 1", "mpirun", "rank 2"};
+  const long wanted = number_from("SWARF_KILLS", 3);
+  std::map<std::string, std::pair<int, int>> hits;  // killed, of these from a stock
   Rng rng(300);
-  int kept = 0;
-  for (long i = 0; i < count && !HasFailure(); ++i) {
-    const double after =
-        (static_cast<double>(i) + rng.uniform(0.0, 1.0)) / static_cast<double>(count) * whole_s;
-    const size_t kind = static_cast<size_t>(i) % kills.size();
-    SCOPED_TRACE(fmt::format("{} after {:.3f} of {:.2f} s", names[kind], after, whole_s));
-    const auto run = run_command(fmt::format(
-        "{}run --tiles {} --keep-every 0.05 -o {} & pid=$!; sleep {:.3f}; {}; wait $pid; code=$?; "
-        "for n in $(seq 100); do [ -z \"{}\" ] && break; sleep 0.1; done; [ -z \"{}\" ] || echo "
-        "ranks are left; exit $code",
-        mpirun(kRanks), wave(), at("out"), after, kills[kind], ranks, ranks));
-    EXPECT_EQ(run.output.find("ranks are left"), std::string::npos) << run.output;
-    const std::string from = kept_stock();
-    if (run.exit_code != 0) {
-      const auto again = run_command(mpirun(2) + "run --tiles " + wave() +
-                                     (from.empty() ? "" : "--from " + from) + " -o " + at("out"));
-      ASSERT_EQ(again.exit_code, 0) << run.output << again.output;
-      kept += from.empty() ? 0 : 1;
-    }
-    EXPECT_EQ(facts(at("out"))["/stock/hash"], hash) << run.output;
+  long hit = 0, kept = 0;
+  for (long tries = 0; hit < wanted && tries < 5 * wanted && !HasFailure(); ++tries) {
+    const size_t kind = static_cast<size_t>(tries) % kKills.size();
+    const double after_s = rng.uniform(0.0, whole_s);
+    SCOPED_TRACE(fmt::format("{} after {:.3f} of {:.2f} s", kKills.at(kind), after_s, whole_s));
+    const bool over = run_and_kill(kind, after_s) == 0;
+    const bool from_stock = !over && go_on();
+    EXPECT_EQ(facts(at("out"))["/stock/hash"], hash);
     remove_results();
-    fmt::print("{} of {}: {} killed after {:.2f} of {:.2f} s, {}\n", i + 1, count, names[kind], after,
+    auto& [killed, resumed] = hits[kKills.at(kind)];
+    hit += over ? 0 : 1, killed += over ? 0 : 1;
+    kept += from_stock ? 1 : 0, resumed += from_stock ? 1 : 0;
+    fmt::print("{} of {}: {} killed after {:.2f} of {:.2f} s, {}\n", hit, wanted, kKills.at(kind), after_s,
                whole_s,
-               run.exit_code == 0 ? "over already"
-               : from.empty()     ? "from the start"
-                                  : "went on from a stock");
+               over         ? "over already"
+               : from_stock ? "went on from a stock"
+                            : "from the start");
     std::fflush(stdout);
   }
-  fmt::print("{} of {} runs went on from a stock\n", kept, count);
+  EXPECT_EQ(hit, wanted) << "too many runs were over before they were killed";
+  for (const auto& [what, count] : hits)
+    fmt::print("{}: {} killed, {} of them went on from a stock\n", what, count.first, count.second);
+  fmt::print("{} killed, {} went on from a stock\n", hit, kept);
 }
 
 }  // namespace

@@ -33,6 +33,13 @@ struct CutParts {
 
   /// Takes sweeps [begin, end) out of the stock, or out of its own tiles (stock_tiles.h).
   void cut(stock::Stock& stock, size_t begin, size_t end) const;
+
+  /// Where the batch that sweep `at` belongs to ends: the whole tool is looked at once for each.
+  size_t batch_end(size_t at) const;
+  /// Where the next part of the program ends after which the invariants are looked at.
+  size_t check_end(size_t at) const;
+  /// One has ended between `before` and `at` sweeps, and the program has not.
+  bool is_check_due(size_t before, size_t at) const;
 };
 
 }  // namespace swarf::sim

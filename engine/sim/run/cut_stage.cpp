@@ -19,10 +19,7 @@
 namespace swarf::sim {
 namespace {
 
-constexpr size_t kSweepsPerBatch = 2048;  // between two looks ahead at the whole tool
-constexpr size_t kSweepsPerStep = 2048;   // between two looks at the progress bar and Ctrl-C
-constexpr size_t kSuspectsPerStep = 32;   // the same, where sweeps are judged one by one
-constexpr size_t kChecks = 8;             // of the invariants on the way, evenly spread over the sweeps
+constexpr size_t kSuspectsPerStep = 32;  // between two looks at the progress bar, where each is judged
 
 size_t next_multiple(size_t at, size_t step) {
   return (at / step + 1) * step;
@@ -55,17 +52,16 @@ class CutStage {
     progress_.begin("cut", static_cast<double>(sweeps_.size()), "blocks");
     progress_.start_at(static_cast<double>(at_));
     save_due();
-    while (at_ < sweeps_.size() && !progress_.stop_requested()) cut_on();
+    while (at_ < sweeps_.size() && !may_stop()) cut_on();
     // mpirun that is stopped gives its ranks a second: no check and no report comes before what is cut.
     if (tiles_ && at_ < sweeps_.size() && keeps()) keep();
     if (at_ == sweeps_.size()) look_at_contacts();
     progress_.end();
-    check(CheckKind::kAtEnd);
+    check_at_end();
     finish();
   }
 
  private:
-  enum class CheckKind { kOnTheWay, kAtEnd };
   struct Save {
     size_t after;  ///< sweeps
     const ProgramPlace* place;
@@ -84,7 +80,7 @@ class CutStage {
     begin_stock();
     if (!options_.resume_file.empty()) resume();
     finder_.emplace(*result_.stock);
-    if (tiles_) tiles_->begin(*result_.stock, at_ == 0 && carried_.empty());
+    if (tiles_) tiles_->begin(*result_.stock, at_, at_ == 0 && carried_.empty());
     if (options_.check_voxels) checked_ = result_.stock->clone();
   }
 
@@ -134,10 +130,9 @@ class CutStage {
     const size_t total = sweeps_.size();
     look_at_contacts();
     if (at_ >= batch().end) begin_batch();
-    const size_t checks_before = at_ * kChecks / total;
-    size_t end = std::min(
-        {batch().end, budget_ ? next_multiple(at_, LeafBudget::kSweepsPerStep) : at_ + kSweepsPerStep,
-         after_suspects(kSuspectsPerStep), ((checks_before + 1) * total + kChecks - 1) / kChecks, total});
+    const size_t before = at_;
+    size_t end = std::min({batch().end, after_suspects(kSuspectsPerStep), parts_.check_end(at_), total});
+    if (budget_) end = std::min(end, next_multiple(at_, LeafBudget::kSweepsPerStep));
     end = std::min(end, contacts_.due());
     if (options_.record) end = std::min(end, next_multiple(at_, options_.record_every));
     if (next_save_ < saves_.size() && saves_[next_save_].after > at_) {
@@ -147,7 +142,7 @@ class CutStage {
     make_room();
     if (at_ == batch().end) end_batch();
     progress_.advance(static_cast<double>(at_));
-    if (checks_before != at_ * kChecks / total && at_ < total) check(CheckKind::kOnTheWay);
+    if (parts_.is_check_due(before, at_)) check_on_the_way();
     if (options_.record && (at_ % options_.record_every == 0 || at_ == total)) {
       record_.states.push_back(whole().hash());
     }
@@ -168,7 +163,7 @@ class CutStage {
 
   /// Which sweeps of the batch are clear of the stock as it stands now, and so of all that is left of it.
   void begin_batch() {
-    const size_t end = std::min(next_multiple(at_, kSweepsPerBatch), sweeps_.size());
+    const size_t end = parts_.batch_end(at_);
     if (tiles_) {
       batch() = tiles_->look_ahead(at_, end);
       if (batch().suspects.empty() && batch().bad_suspects.empty()) return;
@@ -242,6 +237,15 @@ class CutStage {
     return *result_.stock;
   }
 
+  /// The other ranks may have cut more than this one: the whole stock is there when this one comes to where
+  /// they stop.
+  bool is_even() {
+    if (!tiles_) return true;
+    if (!even_at_) even_at_ = tiles_->hold();
+    return at_ >= *even_at_;
+  }
+  bool may_stop() { return progress_.stop_requested() && is_even(); }
+
   CutState state() const {
     CutState state = outcome_.state;
     state.sweeps = at_;
@@ -265,7 +269,11 @@ class CutStage {
   bool keeps() const { return options_.keep_every_s > 0.0 && !options_.save_folder.empty(); }
   void keep_due() {
     const auto now = std::chrono::steady_clock::now();
-    if (keeps() && std::chrono::duration<double>(now - kept_at_).count() >= options_.keep_every_s) keep();
+    if (!keeps() || std::chrono::duration<double>(now - kept_at_).count() < options_.keep_every_s) return;
+    if (!is_even()) return;
+    keep();
+    if (tiles_ && may_go_ahead(options_)) tiles_->go_ahead();
+    even_at_.reset();
   }
   void keep() {
     const std::string path = options_.save_folder + "/" + kKeptStock;
@@ -275,15 +283,39 @@ class CutStage {
     kept_at_ = std::chrono::steady_clock::now();
   }
 
-  /// The first broken invariant is kept; the run goes on and reports it.
-  void check(CheckKind kind) {
-    const bool voxels = options_.check_voxels || kind == CheckKind::kAtEnd;
-    std::string broken = whole().check(voxels ? stock::CheckLevel::kVoxels : stock::CheckLevel::kMap);
-    ++(voxels ? outcome_.voxel_checks : outcome_.map_checks);
-    if (checked_) {
+  void check_on_the_way() {
+    if (options_.check_voxels) {
+      ++outcome_.voxel_checks;
+      std::string broken = whole().check();
       if (broken.empty()) broken = result_.stock->check_since(*checked_);
       checked_ = result_.stock->clone();
+      tell(broken);
+      return;
     }
+    // Other ranks look at their own tiles.
+    ++outcome_.map_checks;
+    tell(result_.stock->check(tiles_ ? stock::CheckLevel::kOwnMap : stock::CheckLevel::kMap));
+  }
+
+  /// Together with the proof of the volume where other ranks share both: they are sent the same leaves.
+  void check_at_end() {
+    ++outcome_.voxel_checks;
+    const stock::Stock& stock = whole();
+    if (tiles_) {
+      tell(tiles_->broken());
+      tell(stock.check(stock::CheckLevel::kLeaves));
+      const stock::StockProof proof = tiles_->prove(result_.sweep_bound_mm);
+      result_.volume_range = proof.volume;
+      tell(proof.broken_step);
+    } else {
+      tell(stock.check());
+    }
+    if (checked_) tell(stock.check_since(*checked_));
+    checked_.reset();
+  }
+
+  /// The first broken invariant is kept; the run goes on and reports it. "": all hold.
+  void tell(const std::string& broken) {
     if (broken.empty() || !outcome_.broken_invariant.empty()) return;
     outcome_.broken_invariant = fmt::format("{} (after {} of {} sweeps, line {}, {:.3f}s)", broken, at_,
                                             sweeps_.size(), state().place.line, state().place.t_s);
@@ -338,6 +370,7 @@ class CutStage {
   size_t next_save_ = 0, at_ = 0;
   double full_mm3_ = 0.0;                ///< before the first sweep of the program
   std::optional<stock::Stock> checked_;  ///< the state at the last check
+  std::optional<size_t> even_at_;        ///< sweeps at which no rank is ahead; none: they may be
   std::chrono::steady_clock::time_point kept_at_ = std::chrono::steady_clock::now();
   bool is_kept_ = false;
   CutRecord record_;

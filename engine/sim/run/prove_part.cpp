@@ -3,10 +3,8 @@
 #include <algorithm>
 
 #include "base/units.h"
-#include "measure/certificate.h"
-#include "sim/run/ray_cutters.h"
 #include "sim/run/result.h"
-#include "stock/rays/free_ranges.h"
+#include "sim/run/tile_ranks.h"
 
 namespace swarf::sim {
 namespace {
@@ -50,41 +48,69 @@ double unseen_mm(const MeasuredPath& path, const stock::RayField& field) {
   return path.rays.error_bound_mm + (faces ? field.design->under->edge_mm : 0.0);
 }
 
+std::vector<stock::RayFieldPtr> fields_of(const MeasuredPath& path) {
+  std::vector<stock::RayFieldPtr> fields;
+  for (const stock::SurfaceDexels& dexels : path.dexels) fields.push_back(dexels.field_ptr());
+  return fields;
+}
+
 }  // namespace
 
-void prove_part(const Job& job, Progress& progress, Result& result) {
-  MeasuredPath& main = result.main;
+ProofInputs::ProofInputs(const Job& job, const MeasuredPath& path, const stock::Stock& stock)
+    : job_(job),
+      path_(path),
+      stock_(stock),
+      fields_(fields_of(path)),
+      ranges_(fields_),
+      rays_(ray_cutters(job, path)),
+      cutters_(rays_.solids, rays_.solid_of) {}
+
+measure::CertificateInput ProofInputs::of_surface(const KnownOfPart& known, Progress& progress) const {
+  const AcceptLimits& accept = job_.scene.accept;
+  const stock::RayField& field = *fields_[known.surface];
+  return {.field = field,
+          .ranges = ranges_,
+          .sweeps = path_.rays.sweeps,
+          .cutters = cutters_,
+          .sweep_bound_mm = unseen_mm(path_, field),
+          .stock = stock_,
+          .stock_bound_mm = known.stock_bound_mm,
+          .gouge_limit_mm = accept.gouge_band_um() * kMicrometre,
+          .excess_limit_mm = accept.excess_max_um.value_or(accept.scallop_band_um()) * kMicrometre,
+          .wants_excess = accept.excess_max_um.has_value(),
+          .wants_scallop = accept.scallop_max_um.has_value(),
+          .scallop_limit_mm = accept.scallop_band_um() * kMicrometre,
+          .gouge_known_mm = known.gouge_mm,
+          .excess_known_mm = known.excess_mm,
+          .progress = progress,
+          .progress_from = static_cast<double>(known.surface)};
+}
+
+bool wants_proof(const Job& job) {
   const AcceptLimits& accept = job.scene.accept;
   // Without a limit there is nothing to decide.
-  if (main.dexels.empty() || !(accept.gouge_max_um || accept.excess_max_um || accept.scallop_max_um)) return;
+  return job.has_design() && (accept.gouge_max_um || accept.excess_max_um || accept.scallop_max_um);
+}
+
+void prove_part(const Job& job, Ranks* ranks, Progress& progress, Result& result) {
+  MeasuredPath& main = result.main;
+  if (main.dexels.empty() || !wants_proof(job)) return;
   progress.begin("prove", static_cast<double>(main.dexels.size()), "surfaces");
-  std::vector<stock::RayFieldPtr> fields;
-  for (const stock::SurfaceDexels& dexels : main.dexels) fields.push_back(dexels.field_ptr());
-  const stock::FreeRange ranges(fields);
-  const RayCutters rays = ray_cutters(job, main);
-  const measure::SweepCutters cutters(rays.solids, rays.solid_of);
+  const ProofInputs inputs(job, main, *result.stock);
+  if (ranks != nullptr) send_whole_stock(*ranks, *result.stock);
   measure::SurfaceMetrics& surface = main.surface;
   surface.gouges.clear();
   surface.excesses.clear();
   measure::Certificate worst;
-  for (size_t i = 0; i < fields.size() && !progress.stop_requested(); ++i) {
-    const measure::Certificate proof = measure::certify(
-        {.field = *fields[i],
-         .ranges = ranges,
-         .sweeps = main.rays.sweeps,
-         .cutters = cutters,
-         .sweep_bound_mm = unseen_mm(main, *fields[i]),
-         .stock = *result.stock,
-         .stock_bound_mm = result.sweep_bound_mm,
-         .gouge_limit_mm = accept.gouge_band_um() * kMicrometre,
-         .excess_limit_mm = accept.excess_max_um.value_or(accept.scallop_band_um()) * kMicrometre,
-         .wants_excess = accept.excess_max_um.has_value(),
-         .wants_scallop = accept.scallop_max_um.has_value(),
-         .scallop_limit_mm = accept.scallop_band_um() * kMicrometre,
-         .gouge_known_mm = surface.gouge_max_um * kMicrometre,
-         .excess_known_mm = surface.excess_max_um * kMicrometre,
-         .progress = progress,
-         .progress_from = static_cast<double>(i)});
+  for (size_t i = 0; i < main.dexels.size() && !progress.stop_requested(); ++i) {
+    const KnownOfPart known{i, result.sweep_bound_mm, surface.gouge_max_um * kMicrometre,
+                            surface.excess_max_um * kMicrometre};
+    measure::CertificateInput input = inputs.of_surface(known, progress);
+    if (ranks != nullptr) {
+      ask_for_proof(*ranks, known);
+      input.deal = [&](const DealtWork& work) { deal_roots(*ranks, work); };
+    }
+    const measure::Certificate proof = measure::certify(input);
     take_over(proof, surface);
     if (proof.gouge_found_um > worst.gouge_found_um) {
       worst.gouge_found_um = proof.gouge_found_um;

@@ -65,7 +65,8 @@ double Stock::volume_mm3() const {
   return volume(impl_->level_set);
 }
 VolumeRange Stock::volume_between(double slack_mm) const {
-  return stock::volume_between(impl_->level_set, slack_mm);
+  const LevelSet& set = impl_->level_set;
+  return sum_of(set, volume_ranges(set, slack_mm, 0, set.map.size()));
 }
 double Stock::rounding_mm() const {
   return impl_->level_set.rounding_mm;

@@ -48,14 +48,14 @@ std::string tree_fault(const LevelSet& set, size_t n) {
   return fmt::format("3: the tree at leaf position {} differs from the map's state", n);
 }
 
-/// Invariant 4; each pair is looked at from its lower position.
-std::string neighbour_fault(const LevelSet& set, size_t n) {
+/// Invariant 4; each pair is looked at from its lower position. `own`: where this process cuts both.
+std::string neighbour_fault(const LevelSet& set, size_t n, bool own) {
   const LeafMap& map = set.map;
   const auto size_y = static_cast<size_t>(map.dimension.y()), size_z = static_cast<size_t>(map.dimension.z());
   const size_t k = n % size_z, j = n / size_z % size_y, i = n / size_z / size_y;
   const auto opposite = [&](size_t other) {
     return map.states[n] != LeafState::kLeaf && map.states[other] != LeafState::kLeaf &&
-           map.states[n] != map.states[other];
+           map.states[n] != map.states[other] && (!own || (set.owns(n) && set.owns(other)));
   };
   const bool broken = (k + 1 < size_z && opposite(n + 1)) || (j + 1 < size_y && opposite(n + size_z)) ||
                       (i + 1 < static_cast<size_t>(map.dimension.x()) && opposite(n + size_z * size_y));
@@ -123,13 +123,19 @@ std::string broken_invariant(const LevelSet& set, CheckLevel level) {
   if (std::string fault = count_fault(set); !fault.empty()) return fault;
   std::string fault = first_fault(set.map.size(), [&](size_t n) {
     std::string found = tree_fault(set, n);
-    return found.empty() ? neighbour_fault(set, n) : found;
+    return found.empty() ? neighbour_fault(set, n, level == CheckLevel::kOwnMap) : found;
   });
-  if (!fault.empty() || level == CheckLevel::kMap) return fault;
-  return first_fault(set.map.size(), [&](size_t n) -> std::string {
-    if (set.map.states[n] != LeafState::kLeaf) return "";
-    std::string found = value_fault(set, n);
-    return found.empty() ? step_fault(set, n) : found;
+  if (!fault.empty() || level <= CheckLevel::kMap) return fault;
+  fault = first_fault(set.map.size(), [&](size_t n) -> std::string {
+    return set.map.states[n] == LeafState::kLeaf ? value_fault(set, n) : "";
+  });
+  if (!fault.empty() || level == CheckLevel::kLeaves) return fault;
+  return broken_step(set, 0, set.map.size());
+}
+
+std::string broken_step(const LevelSet& set, size_t begin, size_t end) {
+  return first_fault(end - begin, [&](size_t n) -> std::string {
+    return set.map.states[begin + n] == LeafState::kLeaf ? step_fault(set, begin + n) : "";
   });
 }
 

@@ -163,14 +163,18 @@ LeafState settle_leaf(LeafNode& leaf, float band);
 /// Removes the sweeps from the level set (stock_cut.cpp).
 void cut_level_set(LevelSet& level_set, std::span<const Sweep> sweeps, const CutterSolid& cutter);
 double volume(const LevelSet& level_set);
-/// See Stock::volume_between (stock_volume.cpp).
-VolumeRange volume_between(const LevelSet& level_set, double slack_mm);
+/// See Stock::volume_between (stock_volume.cpp): of leaf positions [begin, end), each in voxels; all of them
+/// together.
+std::vector<VolumeRange> volume_ranges(const LevelSet& level_set, double slack_mm, size_t begin, size_t end);
+VolumeRange sum_of(const LevelSet& level_set, std::span<const VolumeRange> ranges);
 double trilinear(const LevelSet& level_set, const Vec3& point_W);
 double air_radius(const LevelSet& level_set, const Vec3& point_W);
 std::vector<Vec3> air_points(const LevelSet& level_set, double below_mm);
 uint64_t state_hash(const LevelSet& level_set);
 /// Invariants, see Stock::check (stock_check.cpp).
 std::string broken_invariant(const LevelSet& level_set, CheckLevel level);
+/// Invariant 8 of leaf positions [begin, end).
+std::string broken_step(const LevelSet& level_set, size_t begin, size_t end);
 std::string gained_material(const LevelSet& level_set, const LevelSet& earlier);
 void write_level_set(const LevelSet& level_set, const std::string& path, const StockMetadata& metadata);
 /// `metadata` receives what write_level_set was given.

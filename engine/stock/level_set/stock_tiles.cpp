@@ -56,6 +56,24 @@ void set_tile(LevelSet& set, size_t leaf, LeafState state) {
   set.map.leaves[leaf] = nullptr;
 }
 
+void add_position(const LevelSet& set, size_t leaf, BytesWriter& out) {
+  const LeafMap& map = set.map;
+  out.add(leaf);
+  out.add(map.states[leaf]);
+  out.add(map.floors[leaf]);
+  out.add(map.cuts[leaf]);
+  if (map.states[leaf] == LeafState::kLeaf)
+    out.add_all(std::span<const float>(set.values(leaf), kLeafVoxels));
+}
+
+constexpr size_t kPieceBytes = size_t{8} << 20U;
+
+void add_counts(const CutStatistics& counts, BytesWriter& out) {
+  out.add(counts.voxel_updates);
+  out.add(counts.leaf_visits);
+  out.add(counts.seconds);
+}
+
 }  // namespace
 
 int owner_of_column(int i, int j, int count) {
@@ -76,41 +94,36 @@ StockTiles::StockTiles(Stock& stock, Share share)
   keep_columns(stock.impl_->level_set, share);
 }
 
-Bytes StockTiles::changes() {
+std::optional<Bytes> StockTiles::next_changes() {
   const LevelSet& set = stock_.level_set();
   BytesWriter out;
-  out.add(set.statistics.voxel_updates - told_.voxel_updates);
-  out.add(set.statistics.leaf_visits - told_.leaf_visits);
-  out.add(set.statistics.seconds);
+  add_counts({.voxel_updates = set.statistics.voxel_updates - told_.voxel_updates,
+              .leaf_visits = set.statistics.leaf_visits - told_.leaf_visits,
+              .seconds = set.statistics.seconds},
+             out);
+  const bool counted = set.statistics.voxel_updates != told_.voxel_updates;
+  const size_t counts = out.size();
   told_ = set.statistics;
-  for (size_t leaf = 0; leaf < set.map.size(); ++leaf) {
-    if (set.map.cuts[leaf] == known_[leaf] || !set.owns(leaf)) continue;
-    add_position(leaf, out);
-    known_[leaf] = set.map.cuts[leaf];
+  for (; next_ < set.map.size() && out.size() < kPieceBytes; ++next_) {
+    if (set.map.cuts[next_] == known_[next_] || !set.owns(next_)) continue;
+    add_position(set, next_, out);
+    known_[next_] = set.map.cuts[next_];
   }
-  return out.take();
+  if (counted || out.size() > counts) return out.take();
+  next_ = 0;
+  return std::nullopt;
 }
 
-Bytes StockTiles::tiles_of(int index) const {
-  const LevelSet& set = stock_.level_set();
+std::optional<Bytes> StockTiles::next_tiles(const Stock& stock, Share share, Which which, size_t& from) {
+  const LevelSet& set = stock.level_set();
+  const std::vector<uint8_t> others = columns_of_others(set.map, share);
+  const uint8_t wanted = which == Which::kOfOthers ? 1 : 0;
   BytesWriter out;
-  out.add(uint64_t{0});
-  out.add(uint64_t{0});
-  out.add(0.0);
-  const std::vector<uint8_t> others = columns_of_others(set.map, {index, share_.count});
-  for (size_t leaf = 0; leaf < set.map.size(); ++leaf)
-    if (others[leaf / static_cast<size_t>(set.map.dimension.z())] == 0) add_position(leaf, out);
-  return out.take();
-}
-
-void StockTiles::add_position(size_t leaf, BytesWriter& out) const {
-  const LeafMap& map = stock_.level_set().map;
-  out.add(leaf);
-  out.add(map.states[leaf]);
-  out.add(map.floors[leaf]);
-  out.add(map.cuts[leaf]);
-  if (map.states[leaf] == LeafState::kLeaf)
-    out.add_all(std::span<const float>(stock_.level_set().values(leaf), kLeafVoxels));
+  add_counts({}, out);
+  const size_t counts = out.size();
+  for (; from < set.map.size() && out.size() < kPieceBytes; ++from)
+    if (others[from / static_cast<size_t>(set.map.dimension.z())] == wanted) add_position(set, from, out);
+  return out.size() > counts ? std::optional(out.take()) : std::nullopt;
 }
 
 void StockTiles::apply(const Bytes& changes) {

@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <span>
 #include <vector>
 
 #include "base/instruction_sets.h"
@@ -192,26 +193,31 @@ SWARF_X86_64_V3 VolumeRange leaf_volume_range_v3(const Surroundings& around, flo
 
 }  // namespace
 
-VolumeRange volume_between(const LevelSet& set, double slack_mm) {
+std::vector<VolumeRange> volume_ranges(const LevelSet& set, double slack_mm, size_t begin, size_t end) {
   // The conversion to voxels rounds once more.
   constexpr double kRounding = 1e-6;
   const auto slack = static_cast<float>((slack_mm + set.rounding_mm) / set.voxel + kRounding);
   // Every instruction set rounds alike: no sum is contracted.
   const auto range_of = runs_x86_64_v3() ? leaf_volume_range_v3 : leaf_volume_range_any;
-  std::vector<VolumeRange> parts(set.map.size());
-  parallel_chunks(parts.size(), kCountedPerTask, [&](size_t begin, size_t end) {
-    for (size_t n = begin; n < end; ++n) {
-      if (set.map.states[n] == LeafState::kLeaf) {
-        parts[n] = range_of(Surroundings(set, n), slack);
-      } else if (set.map.states[n] == LeafState::kSolid) {
-        parts[n] = {kLeafVoxels, kLeafVoxels};
+  std::vector<VolumeRange> ranges(end - begin);
+  parallel_chunks(ranges.size(), kCountedPerTask, [&](size_t from, size_t to) {
+    for (size_t n = from; n < to; ++n) {
+      const LeafState state = set.map.states[begin + n];
+      if (state == LeafState::kLeaf) {
+        ranges[n] = range_of(Surroundings(set, begin + n), slack);
+      } else if (state == LeafState::kSolid) {
+        ranges[n] = {kLeafVoxels, kLeafVoxels};
       }
     }
   });
+  return ranges;
+}
+
+VolumeRange sum_of(const LevelSet& set, std::span<const VolumeRange> ranges) {
   VolumeRange whole;
-  for (const VolumeRange& part : parts) {
-    whole.least += part.least;
-    whole.greatest += part.greatest;
+  for (const VolumeRange& range : ranges) {
+    whole.least += range.least;
+    whole.greatest += range.greatest;
   }
   const double voxel3 = std::pow(set.voxel, 3);
   return {whole.least * voxel3, whole.greatest * voxel3};

@@ -4,11 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstring>
 #include <map>
 #include <memory>
 
 #include "cutter_shapes.h"
 #include "stock/contact/contact_finder.h"
+#include "stock/stock_slabs.h"
 #include "stock_test_support.h"
 
 namespace swarf::stock::stock_tiles_test {
@@ -36,7 +38,8 @@ void cut_all(std::vector<std::unique_ptr<Rank>>& ranks, const std::vector<Sweep>
   for (auto& rank : ranks) rank->stock.cut(sweeps, cutter);
 }
 void gather(std::vector<std::unique_ptr<Rank>>& ranks) {
-  for (size_t n = 1; n < ranks.size(); ++n) ranks[0]->tiles.apply(ranks[n]->tiles.changes());
+  for (size_t n = 1; n < ranks.size(); ++n)
+    while (const auto piece = ranks[n]->tiles.next_changes()) ranks[0]->tiles.apply(*piece);
 }
 
 std::vector<Sweep> sweeps_of(Rng& rng, int count) {
@@ -84,7 +87,10 @@ TEST(StockTiles, OneThatBeginsLaterTakesOverWhatIsThere) {
   ranks[0] = std::make_unique<Rank>(whole.clone(), Share{0, 3});
   for (int n = 1; n < 3; ++n) {
     ranks.push_back(std::make_unique<Rank>(StockTiles::own_tiles(raw, kVoxel, {n, 3}), Share{n, 3}));
-    ranks.back()->tiles.apply(ranks[0]->tiles.tiles_of(n));
+    size_t from = 0;
+    while (const auto piece =
+               StockTiles::next_tiles(ranks[0]->stock, {n, 3}, StockTiles::Which::kOfShare, from))
+      ranks.back()->tiles.apply(*piece);
   }
   const std::vector<Sweep> more = sweeps_of(rng, 20);
   whole.cut(more, cutter);
@@ -125,6 +131,53 @@ TEST(StockTiles, TheLeastGapOfAllRanksIsThatOfTheWhole) {
     near += gap < above ? 1 : 0;
   }
   EXPECT_GT(near, 20);
+}
+
+/// Slab by slab, by whoever: the volume's bounds to the last bit, and a breach between two leaves wherever it
+/// is.
+TEST(StockTiles, WhatIsProvenSlabBySlabIsProvenOfTheWhole) {
+  Rng rng(22);
+  Stock stock(RawShape::of_box(kBox), kVoxel);
+  stock.cut(sweeps_of(rng, 20), CutterSolid(2.5, 10.0));
+  const VolumeRange whole = stock.volume_between(0.01);
+  for (const size_t slabs : {1, 2, 5, 100}) {
+    SlabProofs proofs(stock, 0.01, slabs);
+    EXPECT_LE(proofs.count(), slabs + 1);
+    for (size_t n = 0; n < proofs.count(); ++n) {
+      if (n % 2 == 1) {
+        proofs.prove(n);
+        continue;
+      }
+      BytesWriter out;
+      proofs.add_request(n, out);
+      const Bytes request = out.take();
+      BytesReader in(request);
+      proofs.take(n, prove_slab(in));
+    }
+    const StockProof proof = proofs.result();
+    EXPECT_EQ(proof.volume.least, whole.least) << slabs;
+    EXPECT_EQ(proof.volume.greatest, whole.greatest) << slabs;
+    EXPECT_EQ(proof.broken_step, "") << slabs;
+  }
+}
+
+TEST(StockTiles, ABrokenStepIsSeenWhereTheSlabIsProven) {
+  Rng rng(23);
+  Stock stock(RawShape::of_box(kBox), kVoxel);
+  stock.cut(sweeps_of(rng, 20), CutterSolid(2.5, 10.0));
+  SlabProofs proofs(stock, 0.0, 1);
+  BytesWriter out;
+  proofs.add_request(0, out);
+  Bytes request = out.take();
+  // The last voxel of the last leaf, from one end of the band to the other.
+  float value = 0.0F;
+  std::byte* const last = request.data() + request.size() - sizeof(value);
+  std::memcpy(&value, last, sizeof(value));
+  value = static_cast<float>(value > 0.0F ? -3.0 * kVoxel : 3.0 * kVoxel);
+  std::memcpy(last, &value, sizeof(value));
+  BytesReader in(request);
+  proofs.take(0, prove_slab(in));
+  EXPECT_EQ(proofs.result().broken_step.substr(0, 2), "8:");
 }
 
 TEST(StockTiles, EveryRowAndColumnOfTilesIsSharedByAll) {
