@@ -25,6 +25,12 @@ constexpr double kLeastRoot = 1.0;      // mm
 /// Between two steps of the progress bar, about; s.
 constexpr double kStep = 0.2;
 
+/// A part that breaks a limit all over has as many as memory notices: none is held twice.
+void take_pieces(std::vector<RegionPiece>& from, std::vector<RegionPiece>& to) {
+  to.insert(to.end(), from.begin(), from.end());
+  from = {};
+}
+
 void join(RootResult& part, Certificate& whole, std::vector<RegionPiece>& gouges,
           std::vector<RegionPiece>& excesses) {
   if (um_from_mm(part.gouge) > whole.gouge.um) whole.gouge = {um_from_mm(part.gouge), part.gouge_at};
@@ -45,8 +51,8 @@ void join(RootResult& part, Certificate& whole, std::vector<RegionPiece>& gouges
     whole.above_found_um = um_from_mm(part.above_found);
     whole.above_place = part.above_found_at;
   }
-  gouges.insert(gouges.end(), part.gouges.begin(), part.gouges.end());
-  excesses.insert(excesses.end(), part.excesses.begin(), part.excesses.end());
+  take_pieces(part.gouges, gouges);
+  take_pieces(part.excesses, excesses);
   whole.cells += part.cells;
 }
 
@@ -109,6 +115,11 @@ double root_size(const stock::RayField& field) {
   return std::max(kLeastRoot, std::sqrt(2.0 * area / kRoots));
 }
 
+double certify_bytes(const stock::RayField& field) {
+  constexpr double kGrown = 1.5;  // of a vector that doubles
+  return expected_roots(field, root_size(field)) * (kGrown * sizeof(RootCell) + sizeof(RootResult));
+}
+
 Certificate certify(const CertificateInput& input) {
   const std::vector<RootCell> roots = root_cells(input.field, root_size(input.field));
   const SweepIndex index(input.sweeps, input.cutters);
@@ -136,6 +147,13 @@ Certificate certify(const CertificateInput& input) {
   }
   Certificate whole;
   std::vector<RegionPiece> gouges, excesses;
+  size_t gouge_pieces = 0, excess_pieces = 0;
+  for (const RootResult& part : parts) {
+    gouge_pieces += part.gouges.size();
+    excess_pieces += part.excesses.size();
+  }
+  gouges.reserve(gouge_pieces);
+  excesses.reserve(excess_pieces);
   for (RootResult& part : parts) join(part, whole, gouges, excesses);
   const auto settled = [](bool wanted, double found_um, double limit_mm) {
     return wanted ? std::max(found_um * kMicrometre * (1.0 + kGapShare) + kGap, limit_mm) : kNever;

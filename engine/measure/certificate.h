@@ -73,4 +73,7 @@ struct Certificate {
 
 Certificate certify(const CertificateInput& input);
 
+/// What certify() is expected to hold while it proves a surface that keeps its limits, bytes.
+double certify_bytes(const stock::RayField& field);
+
 }  // namespace swarf::measure

@@ -416,4 +416,29 @@ std::vector<RootCell> root_cells(const stock::RayField& field, double size_mm) {
   return cells;
 }
 
+namespace {
+
+/// Of the columns beside a sharp edge.
+double expected_fan(const stock::FacetSheets& sheets, const stock::SharpEdge& edge, double size_mm) {
+  const double length = (sheets.points[edge.left[1]] - sheets.points[edge.left[0]]).norm();
+  const double angle = angle_between(sheets.normals[edge.left[0]], sheets.normals[edge.right[0]]);
+  const double halvings = std::max(0.0, std::ceil(std::log2(length / size_mm)));
+  return 2.0 * std::max(1.0, std::ceil(angle / kFanStep)) * std::exp2(halvings);
+}
+
+}  // namespace
+
+double expected_roots(const stock::RayField& field, double size_mm) {
+  // Of a right-angled triangle that halving leaves the longest side is 0.7 to 1 of the size.
+  constexpr double kHalved = 2.8;  // cells of a square of that size
+  double area = 0.0;
+  for (const double part : field.areas_mm2) area += part;
+  double roots = kHalved * area / (size_mm * size_mm);
+  if (field.surface != nullptr) return roots;
+  const stock::FacetSheets& sheets = *field.sheets;
+  roots += static_cast<double>(sheets.facets.size());
+  for (const stock::SharpEdge& edge : sheets.sharp_edges) roots += expected_fan(sheets, edge, size_mm);
+  return roots;
+}
+
 }  // namespace swarf::measure

@@ -105,4 +105,7 @@ struct RootCell {
 /// near a closed mesh lies between two columns.
 std::vector<RootCell> root_cells(const stock::RayField& field, double size_mm);
 
+/// About how many those of a field will be, without making them.
+double expected_roots(const stock::RayField& field, double size_mm);
+
 }  // namespace swarf::measure

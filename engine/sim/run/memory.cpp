@@ -12,9 +12,11 @@
 #include <variant>
 
 #include "base/parallel.h"
+#include "measure/certificate.h"
 #include "motion/speed/jerk_profile.h"
 #include "sim/job/memory_limit.h"
 #include "sim/run/cut_sweeps.h"
+#include "sim/run/prove_part.h"
 #include "sim/run/result.h"
 #include "stock/rays/ray_field.h"
 #include "stock/sweep/sweep_map.h"
@@ -39,7 +41,7 @@ constexpr double kMoviePixel = 85.0, kMovieSample = 22.5;
 // Of the stock: room that leaves which are gone leave between those that stay, and pairs of sweep and leaf.
 constexpr double kHoles = 0.25;
 constexpr double kSweep = sizeof(stock::Sweep) + sizeof(SweepSource);
-// The same with its map, once more for the rays of what is shown of a CAD file or a mesh.
+// The same with its map: in the proof, and for the rays of what is shown of a CAD file or a mesh.
 constexpr double kShownSweep = sizeof(stock::Sweep) + sizeof(stock::SweepMap);
 constexpr double kCutting = sizeof(ToolPose) + 8.0;  // the poses of cycles to be merged; boxes of EarlierCuts
 // A sweep of blocks, made when it is asked for; its vector grows by halves, and its share of a box.
@@ -102,25 +104,32 @@ SurfaceCounts preview(const Job& job, const motion::Cycles& cycles, const Carrie
           static_cast<double>(bytes)};
 }
 
-/// Rays of the design. Surfaces: counted eight times as coarse, where the chord may stray 64 times as far.
+/// What is measured along rays, and proven between them.
+struct RayCounts {
+  double rays = 0.0, proof_bytes = 0.0;
+};
+
+/// Of the design. Surfaces: counted eight times as coarse, where the chord may stray 64 times as far.
 /// Meshes: counted as they will be made, because the turns and borders of the facets ask for rays too; the
 /// denser walls beside them hold no material.
-double ray_count(const Job& job) {
+RayCounts ray_counts(const Job& job) {
   constexpr double kCoarse = 8.0, kChord = 0.005;
   const double pitch = job.scene.design.pitch_mm;
   constexpr double kWall = 0.75;  // of a ray: point, normal, facet, its share of a tile
-  double rays = 0.0;
+  RayCounts counts;
   if (job.design_mesh) {
     const stock::RayFieldPtr field =
         stock::rays_on_mesh(*job.design_mesh, pitch, stock::kCrease, job.design_under);
-    rays = static_cast<double>(field->size()) + kWall * static_cast<double>(field->walls->size());
+    counts.rays = static_cast<double>(field->size()) + kWall * static_cast<double>(field->walls->size());
+    counts.proof_bytes = measure::certify_bytes(*field);
   }
   for (const surface::SurfacePtr& surface : job.design) {
     const auto grid = stock::rays_on_surface(surface, kCoarse * pitch, kCoarse * kCoarse * kChord);
-    rays += kCoarse * static_cast<double>(grid->u_lines.size() - 1) * kCoarse *
-            static_cast<double>(grid->v_lines.size() - 1);
+    counts.rays += kCoarse * static_cast<double>(grid->u_lines.size() - 1) * kCoarse *
+                   static_cast<double>(grid->v_lines.size() - 1);
+    counts.proof_bytes = std::max(counts.proof_bytes, measure::certify_bytes(*grid));
   }
-  return rays;
+  return counts;
 }
 
 /// Ticks of the longest path of the comparisons: the off-line one that stops at the end of each segment. The
@@ -205,7 +214,8 @@ MemoryPrediction predict_memory(const Job& job, const MeasuredPath& path, const 
   const auto ticks = static_cast<double>(path.cycles->size());
   const bool by_block = settings.cut_by == CutBy::kBlocks, planned_passes = settings.cut_by == CutBy::kPasses;
   const double sweeps = by_block ? static_cast<double>(path.path.elements.size()) : ticks;
-  const double rays = ray_count(job);
+  const RayCounts measured = ray_counts(job);
+  const double rays = measured.rays;
   const bool compared = job.scene.compare_planners && planned_passes;
   // The longest, and beside it those that have about as many ticks as the path itself.
   const double beside =
@@ -237,7 +247,10 @@ MemoryPrediction predict_memory(const Job& job, const MeasuredPath& path, const 
         compared ? after + compared_ticks * kComparedTick + (1.0 + beside) * rays * kRay : 0.0;
     const double measuring =
         job.has_design() ? after + kHoles * stock + rays * kMeasuredRay + sweeps * (kSweep + kCutting) : 0.0;
-    return std::max({held + counts.bytes, cutting, measuring, comparing, after + mesh + shown + pictures});
+    const double proving =
+        wants_proof(job) ? after + kHoles * stock + sweeps * kShownSweep + measured.proof_bytes : 0.0;
+    return std::max(
+        {held + counts.bytes, cutting, measuring, proving, comparing, after + mesh + shown + pictures});
   };
   const double stock =
       static_cast<double>(stock::Stock::memory_for(settings.box_W, settings.voxel_mm, counts.leaves_most));

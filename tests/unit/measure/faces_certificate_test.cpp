@@ -3,11 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 
 #include "base/units.h"
 #include "cutter/cutter.h"
 #include "half_shaft.h"
 #include "measure/certificate.h"
+#include "measure/design_cell.h"
 #include "stock/rays/free_ranges.h"
 #include "stock/rays/surface_dexels.h"
 #include "surface/analytic.h"
@@ -98,6 +100,21 @@ TEST(FacesCertificate, FacetsAloneWouldErrByTheirChord) {
   const HalfShaft part = half_shaft(25);  // an odd number: the middle of a facet lies at the top
   const Certificate proof = prove_faces(stock::rays_on_mesh(part.mesh, 0.4), 60.0 * kMicrometre);
   EXPECT_LT(proof.gouge_found_um, 60.0 - 35.0);
+}
+
+/// What memory is asked for before the cells are made.
+TEST(RootCells, AreAboutAsManyAsExpected) {
+  const HalfShaft part = half_shaft(24, 30.0);
+  for (const stock::RayFieldPtr& field :
+       {stock::rays_on_mesh(part.mesh, 1.0, stock::kCrease, part.under), stock::rays_on_mesh(part.mesh, 1.0),
+        stock::RayFieldPtr(stock::rays_on_surface(part.under->surfaces.front(), 1.0))}) {
+    for (const double size_mm : {0.5, 1.0, 3.0}) {
+      const double made = static_cast<double>(root_cells(*field, size_mm).size());
+      const double expected = expected_roots(*field, size_mm);
+      std::printf("cells of %.1f mm: expected %.0f, made %.0f\n", size_mm, expected, made);
+      EXPECT_NEAR(expected / made, 1.0, 0.3) << "of " << size_mm << " mm";
+    }
+  }
 }
 
 }  // namespace
