@@ -42,16 +42,6 @@ void bound_normals(const mesh::SignedDistance& patches, Vec3& axis, double& spre
   spread_rad = widest;
 }
 
-struct FacePlace {
-  uint32_t triangle;
-  stock::DesignMesh::Place place;
-};
-/// The facet that is nearest, about `distance_mm` away, and the nearest place of the surface over it.
-FacePlace nearest_on_faces(const stock::DesignMesh& faces, const Vec3& point, double distance_mm) {
-  const uint32_t triangle = faces.distance.nearest(point, distance_mm + kSameFacet).triangle;
-  return {triangle, faces.nearest_on(triangle, point)};
-}
-
 /// The outward normal at a place of a curved facet.
 Vec3 normal_of(const stock::DesignMesh& faces, uint32_t triangle, const Vec2& uv) {
   const surface::Surface& surface =
@@ -109,11 +99,11 @@ void DeviationSide::discount(DeviationSample& sample) const {
 /// Signed distance of a point from the faces over the design, of which the facets say `facets_mm`.
 double DeviationSide::distance_to_faces(const Vec3& point, double facets_mm) const {
   if (in_.faces == nullptr || !std::isfinite(facets_mm)) return facets_mm;
-  const auto [triangle, place] = nearest_on_faces(*in_.faces, point, std::abs(facets_mm));
-  if (!in_.faces->under->is_curved(triangle)) return facets_mm;
-  const double side = std::abs(facets_mm) > in_.design_error
-                          ? facets_mm
-                          : (point - place.point).dot(normal_of(*in_.faces, triangle, place.uv));
+  const stock::DesignMesh::Place place = in_.faces->nearest(point, std::abs(facets_mm) + kSameFacet);
+  const bool clear = std::abs(facets_mm) > in_.design_error;
+  if (!in_.faces->under->is_curved(place.triangle) && !clear) return facets_mm;
+  const double side =
+      clear ? facets_mm : (point - place.point).dot(normal_of(*in_.faces, place.triangle, place.uv));
   return std::copysign(place.distance_mm, side);
 }
 
@@ -121,9 +111,9 @@ double DeviationSide::distance_to_faces(const Vec3& point, double facets_mm) con
 /// which itself is `facets_mm` away when moved.
 double DeviationSide::distance_from_faces(const Vec3& point, double facets_mm) const {
   if (in_.faces == nullptr || !std::isfinite(facets_mm)) return facets_mm;
-  const auto [triangle, place] = nearest_on_faces(*in_.faces, point, 0.0);
-  if (!in_.faces->under->is_curved(triangle)) return facets_mm;
-  const Vec3 target = place.point + in_.allowance * normal_of(*in_.faces, triangle, place.uv);
+  const stock::DesignMesh::Place place = in_.faces->nearest(point, kSameFacet);
+  if (!in_.faces->under->is_curved(place.triangle)) return facets_mm;
+  const Vec3 target = place.point + in_.allowance * normal_of(*in_.faces, place.triangle, place.uv);
   return in_.stock->at(target).distance_mm;
 }
 

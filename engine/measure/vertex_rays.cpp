@@ -42,12 +42,12 @@ class DesignPlaces {
 
   /// The nearest place, or one that is farther by `margin_mm` at most if its normal agrees with `normal`.
   DesignPlace at(const Vec3& p, const Vec3& normal, double margin_mm) const {
-    const mesh::NearestPoint near = design_.distance.nearest(p);
-    DesignPlace best = place_on(near.triangle, p);
+    const stock::DesignMesh::Place near = design_.nearest(p);
+    DesignPlace best = seen_at(near, p);
     if (best.normal.dot(normal) >= kFaceCosine) return best;
     bool agrees = false;
     design_.distance.each_near(p, near.distance_mm + margin_mm, [&](uint32_t triangle) {
-      const DesignPlace place = place_on(triangle, p);
+      const DesignPlace place = seen_at(design_.nearest_on(triangle, p), p);
       if (place.distance_mm > near.distance_mm + margin_mm) return;
       const bool also = place.normal.dot(normal) >= kFaceCosine;
       if (also < agrees || (also == agrees && !(place.distance_mm < best.distance_mm))) return;
@@ -61,10 +61,9 @@ class DesignPlaces {
   static constexpr uint32_t kNone = 0xffffffffU;
 
   /// Of a facet without area none: infinitely far away.
-  DesignPlace place_on(uint32_t triangle, const Vec3& p) const {
-    const uint32_t facet = facet_of_[triangle];
+  DesignPlace seen_at(const stock::DesignMesh::Place& place, const Vec3& p) const {
+    const uint32_t facet = facet_of_[place.triangle];
     if (facet == kNone) return {};
-    const stock::DesignMesh::Place place = design_.nearest_on(triangle, p);
     const stock::FacetPlace on =
         sheets_.is_curved(facet) ? sheets_.place_at(facet, place.uv) : sheets_.nearest(facet, p, 0.0, p);
     return {on.point, on.normal, place.distance_mm};

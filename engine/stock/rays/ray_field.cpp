@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "stock/rays/surface_dexels.h"
+#include "stock/rays/surface_foot.h"
 
 namespace swarf::stock {
 namespace {
@@ -33,6 +35,14 @@ Vec2 nearest_shares(const Vec3& B, const Vec3& C, const Vec3& x) {
 Vec2 within_triangle(const Vec2& l) {
   const Vec2 positive = l.cwiseMax(0.0);
   return positive / std::max(1.0, positive.sum());
+}
+
+std::array<Vec3, 3> mesh_corners(const TriMesh& mesh, uint32_t triangle) {
+  const auto corner = [&](size_t k) {
+    const auto& p = mesh.positions[mesh.triangles[triangle][k]];
+    return Vec3(p[0], p[1], p[2]);
+  };
+  return {corner(0), corner(1), corner(2)};
 }
 
 }  // namespace
@@ -70,36 +80,30 @@ std::optional<Foot> RayField::displaced(uint32_t ray, const Vec3& tangent_mm) co
 }
 
 DesignMesh::Place DesignMesh::nearest_on(uint32_t triangle, const Vec3& point) const {
-  const auto& t = mesh.triangles[triangle];
-  const auto corner = [&](size_t k) {
-    const auto& p = mesh.positions[t[k]];
-    return Vec3(p[0], p[1], p[2]);
-  };
-  const Vec3 a = corner(0), b = corner(1), c = corner(2);
+  const auto [a, b, c] = mesh_corners(mesh, triangle);
   const Vec3 on_facet = mesh::closest_point_on_triangle(point, a, b, c);
-  if (under == nullptr || !under->is_curved(triangle)) return {on_facet, {}, (point - on_facet).norm()};
+  if (under == nullptr || !under->is_curved(triangle))
+    return {on_facet, {}, (point - on_facet).norm(), triangle};
   const surface::FacetOnSurface& on = under->facets[triangle];
-  const surface::Surface& surface = *under->surfaces[static_cast<size_t>(on.surface)];
-  const Vec2 along_b = on.uv[1] - on.uv[0], along_c = on.uv[2] - on.uv[0];
-  // Within the facet's part of the surface: from the place over the facet's own, Gauss and Newton's steps.
-  constexpr int kSteps = 3;
-  Vec2 l = nearest_shares(b - a, c - a, on_facet - a);
-  Place best;
-  for (int i = 0; i < kSteps; ++i) {
-    const Vec2 uv = on.uv[0] + l.x() * along_b + l.y() * along_c;
-    const surface::Derivatives d = surface.derivatives(uv.x(), uv.y());
-    const Vec3 off = point - d.S;
-    if (off.norm() < best.distance_mm) best = {d.S, uv, off.norm()};
-    l = within_triangle(l + nearest_shares(d.Su * along_b.x() + d.Sv * along_b.y(),
-                                           d.Su * along_c.x() + d.Sv * along_c.y(), off));
-  }
-  return best;
+  const SurfaceFoot foot = surface_foot(*under->surfaces[static_cast<size_t>(on.surface)], on.uv,
+                                        within_triangle(nearest_shares(b - a, c - a, on_facet - a)), point);
+  return {foot.point, foot.uv, foot.distance_mm, triangle};
 }
 
-double DesignMesh::distance_to(const Vec3& point) const {
-  const mesh::NearestPoint near = distance.nearest(point);
-  if (under == nullptr || !under->is_curved(near.triangle)) return near.distance_mm;
-  return nearest_on(near.triangle, point).distance_mm;
+DesignMesh::Place DesignMesh::nearest(const Vec3& point, double within_mm) const {
+  const mesh::NearestPoint near = distance.nearest(point, within_mm);
+  if (under == nullptr || !std::isfinite(near.distance_mm))
+    return {near.point, {}, near.distance_mm, near.triangle};
+  Place best = nearest_on(near.triangle, point);
+  distance.each_near(point, near.distance_mm + 2.0 * under->chord_mm, [&](uint32_t triangle) {
+    if (triangle == near.triangle) return;
+    const auto [a, b, c] = mesh_corners(mesh, triangle);
+    const double facet_mm = (mesh::closest_point_on_triangle(point, a, b, c) - point).norm();
+    if (facet_mm - under->chord_mm > best.distance_mm) return;
+    const Place place = nearest_on(triangle, point);
+    if (std::pair(place.distance_mm, triangle) < std::pair(best.distance_mm, best.triangle)) best = place;
+  });
+  return best;
 }
 
 double RayField::own_depth(const Vec3& point, const Vec3& normal, double depth_mm, double share) const {
@@ -117,7 +121,7 @@ double RayField::own_depth(const Vec3& point, const Vec3& normal, double depth_m
   // Surfaces have their own normals everywhere.
   const double least = design->under != nullptr || is_flat() ? kOwnShare : kOwnShareLeaning;
   const auto is_own = [&](double s) {
-    return design->distance_to(point - s * normal) >= least * s - kFloatMesh;
+    return design->nearest(point - s * normal).distance_mm >= least * s - kFloatMesh;
   };
   // Far beyond the part the distance is nearly the depth again: what is not own on the way ends it.
   constexpr double kThinnest = 0.1;  // mm

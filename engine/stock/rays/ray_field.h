@@ -46,16 +46,20 @@ struct DesignMesh {
   const mesh::MeshDistance distance;
   const surface::UnderFacetsPtr under;  ///< null: the facets are the design
 
-  /// The place of a facet, or of the surface under it, that is nearest to a point.
+  /// A place of a facet, or of the surface under it.
   struct Place {
     Vec3 point = Vec3::Zero();
     Vec2 uv = Vec2::Zero();  ///< of a curved facet, in the parameters of its surface
     double distance_mm = std::numeric_limits<double>::infinity();
+    uint32_t triangle = 0;
   };
+  /// The place over one facet that is nearest to a point: of a curved one by Newton's steps from the place
+  /// over the facet's own nearest one (surface_foot.h).
   Place nearest_on(uint32_t triangle, const Vec3& point) const;
-  /// From a point to the design near the facet that is nearest to it; mm. Never less than to the whole
-  /// design.
-  double distance_to(const Vec3& point) const;
+  /// The place of the whole design that is nearest to a point. Surfaces stray from their facets by up to
+  /// UnderFacets::chord_mm, so every facet is looked at that is no more than twice that farther than the
+  /// nearest. `within_mm`: as of MeshDistance::nearest().
+  Place nearest(const Vec3& point, double within_mm = std::numeric_limits<double>::infinity()) const;
 };
 
 /// A depth below a foot is the foot's own while the design is at least this share of it away, less the
