@@ -159,23 +159,27 @@ SWARF_KERNEL_INLINE void judge(const Lanes& lanes, const LanePiece& piece, const
   for (const LanePiece::Face& face : piece.faces) add_face(extremes, lanes, at, face, query);
   for (const LanePiece::Round& round : piece.rounds) add_round(extremes, lanes, at, round, query);
   const float floor = query.floor, swallowed_to = -query.reach - kSlack;
-  LaneFloats depth;
+  uint32_t verdicts = 0;  // joined: the bits of lanes are brought together one number at a time
   for (int n = 0; n < kLanes; ++n) {
-    out.above.lane[n] = extremes.above.lane[n] + kSlack;
+    const float above = extremes.above.lane[n] + kSlack;
+    out.above.lane[n] = above;
     out.depth.lane[n] = -extremes.higher.lane[n];
-    depth.lane[n] = extremes.above.lane[n] + kSlack >= floor ? -extremes.higher.lane[n] : -1e30F;
+    const uint32_t open = above >= floor ? 1U << n : 0U;
+    const uint32_t swallows = extremes.value.lane[n] <= swallowed_to ? 1U << (n + kLanes) : 0U;
+    verdicts |= open | swallows;
   }
+  out.open = verdicts & kAllLanes;
+  out.swallows = verdicts >> kLanes;
+}
+
+SWARF_KERNEL_INLINE uint32_t find_deepest(const LaneAnswer& answer, uint32_t open) {
+  LaneFloats depth;
+  for (int n = 0; n < kLanes; ++n) depth.lane[n] = (open >> n & 1U) != 0 ? answer.depth.lane[n] : -1e30F;
   float most = -1e30F;
   for (int n = 0; n < kLanes; ++n) most = kernel::max_of(most, depth.lane[n]);
-  uint32_t open = 0, swallows = 0, deepest = 0;
-  for (int n = 0; n < kLanes; ++n) {
-    open |= extremes.above.lane[n] + kSlack >= floor ? 1U << n : 0U;
-    swallows |= extremes.value.lane[n] <= swallowed_to ? 1U << n : 0U;
-    deepest |= depth.lane[n] >= most ? 1U << n : 0U;
-  }
-  out.open = open;
-  out.swallows = swallows;
-  out.deepest = deepest & open;
+  uint32_t deepest = 0;
+  for (int n = 0; n < kLanes; ++n) deepest |= depth.lane[n] >= most ? 1U << n : 0U;
+  return deepest & open;
 }
 
 /// Of each lane the faces or rounds that lie outermost.
@@ -266,6 +270,9 @@ SWARF_KERNEL_INLINE void bound(const Lanes& lanes, const LanePiece& piece, const
                               LaneAnswer& out) {                                                  \
     judge(lanes, piece, query, out);                                                              \
   }                                                                                               \
+  attribute uint32_t deepest_##name(const LaneAnswer& answer, uint32_t open) {                    \
+    return find_deepest(answer, open);                                                            \
+  }                                                                                               \
   attribute void bound_##name(const Lanes& lanes, const LanePiece& piece, const LaneQuery& query, \
                               LaneBounds& out) {                                                  \
     bound(lanes, piece, query, out);                                                              \
@@ -308,9 +315,9 @@ LeafBound LaneBounds::lane(uint32_t n) const {
 }
 
 std::span<const LaneKernelVariant> lane_kernel_variants() {
-  static const std::vector<LaneKernelVariant> variants =
-      runnable<LaneKernelVariant>({"x86-64-v4", judge_v4, bound_v4}, {"x86-64-v3", judge_v3, bound_v3},
-                                  {"baseline", judge_baseline, bound_baseline});
+  static const std::vector<LaneKernelVariant> variants = runnable<LaneKernelVariant>(
+      {"x86-64-v4", judge_v4, deepest_v4, bound_v4}, {"x86-64-v3", judge_v3, deepest_v3, bound_v3},
+      {"baseline", judge_baseline, deepest_baseline, bound_baseline});
   return variants;
 }
 

@@ -21,6 +21,7 @@
 namespace swarf::stock {
 
 inline constexpr int kLanes = 16;
+inline constexpr uint32_t kAllLanes = (1U << kLanes) - 1U;
 /// One number of each lane.
 struct alignas(kLanes * sizeof(float)) LaneFloats {
   float lane[kLanes];
@@ -66,13 +67,15 @@ inline constexpr float kDepthAbove = 1.5F;
 struct LaneAnswer {
   uint32_t open;      ///< bit n: lane n may raise a value
   uint32_t swallows;  ///< bit n: every voxel of the leaf lies deeper inside lane n's cutter than the band
-  uint32_t deepest;   ///< bit n: of the open lanes none has more `depth` than lane n
   LaneFloats above;   ///< open while the floor lies below this, mm
   LaneFloats depth;   ///< inside the cutter at half time (-F), mm, of a place above the leaf's centre
 };
 
 using LaneKernel = void (*)(const Lanes& lanes, const LanePiece& piece, const LaneQuery& query,
                             LaneAnswer& out);
+
+/// Which of the lanes in `open` have the greatest depth; bit n: lane n.
+using DeepestLanes = uint32_t (*)(const LaneAnswer& answer, uint32_t open);
 
 /// A LeafBound of each lane, enlarged by what it rounds.
 struct LaneBounds {
@@ -88,6 +91,7 @@ using LaneBoundKernel = void (*)(const Lanes& lanes, const LanePiece& piece, con
 struct LaneKernelVariant {
   const char* instruction_set;
   LaneKernel kernel;
+  DeepestLanes deepest;
   LaneBoundKernel bounds;
 };
 /// The variants this processor can run, fastest first.

@@ -281,7 +281,8 @@ class RunJudge {
     const uint32_t open = answer.open & run_.all();
     if (!swallows && open == 0) return;
     if (swallows) mark(leaf).store(LeafMap::kSwallowed, std::memory_order_relaxed);
-    const auto deepest = open != 0 ? static_cast<uint32_t>(std::countr_zero(answer.deepest)) : 0;
+    static const DeepestLanes deepest_lanes = lane_kernel_variants().front().deepest;
+    const auto deepest = open != 0 ? static_cast<uint32_t>(std::countr_zero(deepest_lanes(answer, open))) : 0;
     pairs_.push_back({leaf, index_, answer.depth.lane[deepest], deepest});
   }
 

@@ -312,15 +312,26 @@ void settle(LevelSet& set, size_t leaf, Outcome& outcome, SlabOutcome& slab) {
   slab.for_tree.push_back({static_cast<uint32_t>(leaf), is_new ? std::move(outcome.made) : nullptr});
 }
 
-/// Starts to bring the leaf of the first group into the cache, and the node of the second.
-void fetch_ahead(const LevelSet& set, std::span<const Group> next) {
-  if (next.size() > 1) __builtin_prefetch(set.map.leaves[next[1].leaf]);
+/// Starts to bring what the map knows of groups to come into the cache, and the nodes of their leaves.
+void fetch_places(const LevelSet& set, std::span<const Group> next) {
+  constexpr size_t kForMap = 7, kForNode = 2;
+  if (next.size() > kForMap) {
+    const size_t leaf = next[kForMap].leaf;
+    __builtin_prefetch(&set.map.leaves[leaf]);
+    __builtin_prefetch(&set.map.floors[leaf], 1);
+    __builtin_prefetch(&set.map.cuts[leaf], 1);
+  }
+  if (next.size() > kForNode) __builtin_prefetch(set.map.leaves[next[kForNode].leaf]);
+}
+
+/// The same for one half of the next leaf's values: a processor waits for no more than some lines at a time.
+void fetch_values(const LevelSet& set, std::span<const Group> next, int half) {
   if (next.empty() || next[0].swallowed || set.is_spilled(next[0].leaf)) return;
   const LeafNode* const node = set.map.leaves[next[0].leaf];
   if (node == nullptr) return;
-  constexpr int kOfLine = 16;
-  const float* const values = node->buffer().data();
-  for (int n = 0; n < kLeafVoxels; n += kOfLine) __builtin_prefetch(values + n, 1);
+  constexpr int kOfLine = 16, kOfHalf = kLeafVoxels / 2;
+  const float* const values = node->buffer().data() + half * kOfHalf;
+  for (int n = 0; n < kOfHalf; n += kOfLine) __builtin_prefetch(values + n, 1);
 }
 
 SlabOutcome cut_slab(LevelSet& set, Batch& batch, size_t number) {
@@ -328,10 +339,13 @@ SlabOutcome cut_slab(LevelSet& set, Batch& batch, size_t number) {
   SlabOutcome done;
   Candidates scratch;
   for (size_t g = 0; g < slab.groups.size(); ++g) {
-    fetch_ahead(set, std::span(slab.groups).subspan(g + 1));
     const Group& group = slab.groups[g];
+    const auto next = std::span(slab.groups).subspan(g + 1);
+    fetch_places(set, next);
+    fetch_values(set, next, 0);
     const std::span<const LeafPair> pairs(slab.pairs.data() + group.begin, group.end - group.begin);
     Outcome outcome = cut_leaf(set, batch, group, pairs, scratch);
+    fetch_values(set, next, 1);
     settle(set, group.leaf, outcome, done);
   }
   return done;
