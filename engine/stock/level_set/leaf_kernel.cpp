@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <vector>
 
 #include "stock/sweep/sweep_distance.h"
@@ -17,22 +18,24 @@ SWARF_KERNEL_INLINE bool has_patch(uint32_t patches, int x, int pair) {
   return (patches >> (x / 2 * kPatchSide + pair) & 1U) != 0;
 }
 
-/// Voxels of two neighbouring columns relative to the leaf's first slice, in the tool frame at both ends.
-struct Pair {
-  alignas(64) float px[kPair], py[kPair], pz[kPair], qx[kPair], qy[kPair], qz[kPair];
+/// Voxels of two neighbouring columns relative to the leaf's first slice, in the tool frame at both ends:
+/// heights, and the other two coordinates, which most of them do not need.
+struct PairHeights {
+  alignas(64) float pz[kPair], qz[kPair];
+};
+struct PairSides {
+  alignas(64) float px[kPair], py[kPair], qx[kPair], qy[kPair];
 };
 
-SWARF_KERNEL_INLINE void fill_pair(Pair& pair, const LeafMotion& m, int number) {
-  const float first = static_cast<float>(2 * number);
+SWARF_KERNEL_INLINE void fill_coordinate(float* start, float* end, const LeafMotion& m, int number, int c) {
+  const float first = static_cast<float>(2 * number), from = m.start[c], to = m.end[c];
+  const float y_from = m.start_step[1][c], y_to = m.end_step[1][c], z_from = m.start_step[2][c],
+              z_to = m.end_step[2][c];
   for (int j = 0; j < kPair; ++j) {
     const float y = first + static_cast<float>(j / kLeafSide);
     const float z = static_cast<float>(j % kLeafSide);
-    pair.px[j] = m.start[0] + (m.start_step[1][0] * y + m.start_step[2][0] * z);
-    pair.py[j] = m.start[1] + (m.start_step[1][1] * y + m.start_step[2][1] * z);
-    pair.pz[j] = m.start[2] + (m.start_step[1][2] * y + m.start_step[2][2] * z);
-    pair.qx[j] = m.end[0] + (m.end_step[1][0] * y + m.end_step[2][0] * z);
-    pair.qy[j] = m.end[1] + (m.end_step[1][1] * y + m.end_step[2][1] * z);
-    pair.qz[j] = m.end[2] + (m.end_step[1][2] * y + m.end_step[2][2] * z);
+    start[j] = from + (y_from * y + z_from * z);
+    end[j] = to + (y_to * y + z_to * z);
   }
 }
 
@@ -41,18 +44,19 @@ struct MovingPair {
   alignas(64) float px[kPair], py[kPair], pz[kPair], dx[kPair], dy[kPair], dz[kPair];
 };
 
-SWARF_KERNEL_INLINE void move_pair(MovingPair& moving, const Pair& pair, const LeafMotion& m, int slice) {
+SWARF_KERNEL_INLINE void move_pair(MovingPair& moving, const PairHeights& heights, const PairSides& sides,
+                                   const LeafMotion& m, int slice) {
   const float fx = static_cast<float>(slice);
   const float ax = m.start_step[0][0] * fx, ay = m.start_step[0][1] * fx, az = m.start_step[0][2] * fx;
   const float bx = m.end_step[0][0] * fx, by = m.end_step[0][1] * fx, bz = m.end_step[0][2] * fx;
   for (int j = 0; j < kPair; ++j) {
-    const float px = pair.px[j] + ax, py = pair.py[j] + ay, pz = pair.pz[j] + az;
+    const float px = sides.px[j] + ax, py = sides.py[j] + ay, pz = heights.pz[j] + az;
     moving.px[j] = px;
     moving.py[j] = py;
     moving.pz[j] = pz;
-    moving.dx[j] = pair.qx[j] + bx - px;
-    moving.dy[j] = pair.qy[j] + by - py;
-    moving.dz[j] = pair.qz[j] + bz - pz;
+    moving.dx[j] = sides.qx[j] + bx - px;
+    moving.dy[j] = sides.qy[j] + by - py;
+    moving.dz[j] = heights.qz[j] + bz - pz;
   }
 }
 
@@ -64,8 +68,8 @@ SWARF_KERNEL_INLINE float highest_at(float dz) {
 /// A sweep never writes more than a voxel's height above the bottom where it stands highest. True if that
 /// raises a voxel of the patch that begins with `slice`: most of the patches that the tests let through are
 /// told from the others by that alone.
-SWARF_KERNEL_INLINE bool bottom_raises(const float* values, const Pair& pair, const LeafMotion& m, int slice,
-                                       int number) {
+SWARF_KERNEL_INLINE bool bottom_raises(const float* values, const PairHeights& pair, const LeafMotion& m,
+                                       int slice, int number) {
   const float* first = values + slice * kSlice + number * kPair;
   const float step_from = m.start_step[0][2], step_to = m.end_step[0][2], background = m.background;
   const float a0 = step_from * static_cast<float>(slice), a1 = step_from * static_cast<float>(slice + 1);
@@ -143,26 +147,41 @@ SWARF_KERNEL_INLINE bool any_above(const float* over) {
   return most > 0.0F;
 }
 
+/// The patches that lie behind each other along x from columns 2 number and 2 number + 1 on.
+template <bool kCapped>
+SWARF_KERNEL_INLINE uint32_t cut_pair(float* values, const LeafMotion& m, uint32_t patches, int number) {
+  PairHeights heights;
+  fill_coordinate(heights.pz, heights.qz, m, number, 2);
+  uint32_t open = 0;
+  for (int x = 0; x < kLeafSide; x += 2) {
+    if (has_patch(patches, x, number) && (kCapped || bottom_raises(values, heights, m, x, number)))
+      open |= 1U << x;
+  }
+  if (open == 0) return 0;
+  PairSides sides;
+  fill_coordinate(sides.px, sides.qx, m, number, 0);
+  fill_coordinate(sides.py, sides.qy, m, number, 1);
+  uint32_t risen = 0;
+  for (int x = 0; x < kLeafSide; x += 2) {
+    if ((open >> x & 1U) == 0) continue;
+    alignas(64) float over[kPair] = {};
+    for (int slice = x; slice < x + 2; ++slice) {
+      MovingPair moving;
+      move_pair(moving, heights, sides, m, slice);
+      cut_row<kCapped>(values + slice * kSlice + number * kPair, over, moving, m);
+    }
+    if (any_above(over)) risen |= 1U << (x / 2 * kPatchSide + number);
+  }
+  return risen;
+}
+
 /// Any motion. Returns the patches that have risen.
 template <bool kCapped>
 SWARF_KERNEL_INLINE uint32_t cut_by_rows(float* values, const LeafMotion& m, uint32_t patches) {
   constexpr uint32_t kOfPair = 0x1111U;
   uint32_t risen = 0;
   for (int number = 0; number < kPatchSide; ++number) {
-    if ((patches >> number & kOfPair) == 0) continue;
-    Pair pair;
-    fill_pair(pair, m, number);
-    for (int x = 0; x < kLeafSide; x += 2) {
-      if (!has_patch(patches, x, number)) continue;
-      if (!kCapped && !bottom_raises(values, pair, m, x, number)) continue;
-      alignas(64) float over[kPair] = {};
-      for (int slice = x; slice < x + 2; ++slice) {
-        MovingPair moving;
-        move_pair(moving, pair, m, slice);
-        cut_row<kCapped>(values + slice * kSlice + number * kPair, over, moving, m);
-      }
-      if (any_above(over)) risen |= 1U << (x / 2 * kPatchSide + number);
-    }
+    if ((patches >> number & kOfPair) != 0) risen |= cut_pair<kCapped>(values, m, patches, number);
   }
   return risen;
 }
@@ -397,13 +416,6 @@ SWARF_KERNEL_INLINE void fit_patches(const float* values, uint32_t patches, Patc
   }
 }
 
-/// Eight bytes of 0 or 1 as eight bits.
-SWARF_KERNEL_INLINE uint64_t packed(const uint8_t* flags) {
-  uint64_t bytes = 0;
-  for (int n = 0; n < 8; ++n) bytes |= static_cast<uint64_t>(flags[n]) << (8 * n);
-  return bytes * 0x0102040810204080U >> 56;
-}
-
 SWARF_KERNEL_INLINE LeafRange summarise(const float* values, float band, uint64_t active[kLeafSide]) {
   float least = values[0], greatest = values[0];
   for (int n = 0; n < kLeafVoxels; ++n) {
@@ -414,11 +426,14 @@ SWARF_KERNEL_INLINE LeafRange summarise(const float* values, float band, uint64_
   for (int n = 0; n < kLeafVoxels; ++n) {
     flags[n] = static_cast<uint8_t>(values[n] > -band) & static_cast<uint8_t>(values[n] < band);
   }
-  for (int x = 0; x < kLeafSide; ++x) {
-    uint64_t word = 0;
-    for (int y = 0; y < kLeafSide; ++y) word |= packed(flags + x * kSlice + y * kLeafSide) << (8 * y);
-    active[x] = word;
-  }
+  // Eight bytes of 0 or 1 as eight bits, the first one lowest.
+  constexpr uint64_t kGather = 0x0102040810204080U;
+  static_assert(std::endian::native == std::endian::little);
+  uint64_t columns[kSlice];
+  uint8_t bits[kSlice];
+  std::memcpy(columns, flags, sizeof(columns));
+  for (int n = 0; n < kSlice; ++n) bits[n] = static_cast<uint8_t>(columns[n] * kGather >> 56);
+  std::memcpy(active, bits, sizeof(bits));
   return {least, greatest};
 }
 

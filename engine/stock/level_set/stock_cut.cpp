@@ -289,6 +289,7 @@ Outcome cut_leaf(LevelSet& set, Batch& batch, const Group& group, std::span<cons
 /// What the tree has to take over of a position.
 struct ForTree {
   uint32_t leaf = 0;
+  bool had_leaf = false;
   std::unique_ptr<LeafNode> made;  ///< null: nothing is left of it
 };
 
@@ -309,7 +310,10 @@ void settle(LevelSet& set, size_t leaf, Outcome& outcome, SlabOutcome& slab) {
   slab.patches += outcome.patches;
   const bool is_new = outcome.state == LeafState::kLeaf && outcome.made;
   if (!is_new && outcome.state != LeafState::kAir) return;
-  slab.for_tree.push_back({static_cast<uint32_t>(leaf), is_new ? std::move(outcome.made) : nullptr});
+  LeafNode*& node = set.map.leaves[leaf];
+  slab.for_tree.push_back(
+      {static_cast<uint32_t>(leaf), node != nullptr, is_new ? std::move(outcome.made) : nullptr});
+  node = slab.for_tree.back().made.get();
 }
 
 /// Starts to bring what the map knows of groups to come into the cache, and the nodes of their leaves.
@@ -357,21 +361,18 @@ class TreeUpdate {
   explicit TreeUpdate(LevelSet& set) : set_(set), near_(set.grid->tree()) {}
 
   void take(ForTree& change) {
-    LeafNode*& leaf = set_.map.leaves[change.leaf];
     if (change.made) {
-      leaf = change.made.get();
       near_.addLeaf(change.made.release());
       return;
     }
     const openvdb::Coord origin = set_.map.origin(change.leaf);
-    if (leaf != nullptr && set_.spare.size() < kMostSpare) {
+    if (change.had_leaf && set_.spare.size() < kMostSpare) {
       Parent* const parent = near_.probeNode<Parent>(origin);
       set_.spare.emplace_back(parent->stealNode<LeafNode>(origin, set_.band(), false));
     } else {
       constexpr openvdb::Index kLeafLevel = 1;  // a tile that replaces one leaf
       near_.addTile(kLeafLevel, origin, set_.band(), false);
     }
-    leaf = nullptr;
     set_.map.lower_top(change.leaf);
   }
 
@@ -395,6 +396,7 @@ void cut_batch(LevelSet& set, Batch& batch) {
     set.statistics.leaf_visits += outcome.visits;
     set.statistics.voxel_updates += outcome.patches * kPatchVoxels;
     for (const uint32_t leaf : outcome.from_disk) set.forget_spilled(leaf);
+    for (const ForTree& change : outcome.for_tree) __builtin_prefetch(change.made.get());
     for (ForTree& change : outcome.for_tree) tree.take(change);
   }
 }
