@@ -231,5 +231,32 @@ TEST(RasterRenderer, AnEmptyListIsABackdrop) {
   EXPECT_GT(pixel(image, 0, 0).r, pixel(image, 0, kHeight - 1).r);  // lighter above
 }
 
+/// The floor's triangle covers the picture; where no floor is seen it must not show.
+TEST(RasterRenderer, AboveTheFloorIsTheBackdrop) {
+  RasterRenderer renderer(kWidth, kHeight);
+  const Image backdrop = renderer.draw(DrawList{});
+  const TriMesh box = box_mesh({{-10, -10, -10}, {10, 10, 10}});
+  DrawList list;
+  list.items = {item(box, kRed)};
+  list.camera = front(200);
+  const Image level = renderer.draw(list);
+  const size_t row = size_t{4} * kWidth;
+  for (size_t i = 0; i < row * (kHeight / 4); ++i) ASSERT_EQ(level.rgba[i], backdrop.rgba[i]) << i;
+  list.camera.eye = {1, 0, 60};  // above the middle of the floor, looking up
+  list.camera.target = {1, 0, 200};
+  list.camera.up = Vec3::UnitY();
+  EXPECT_EQ(renderer.draw(list).rgba, backdrop.rgba);
+}
+
+/// Not even its corners lie in the picture.
+TEST(RasterRenderer, WhatIsGreaterThanThePictureIsDrawn) {
+  const TriMesh wall = box_mesh({{-500, 0, -500}, {500, 10, 500}});
+  DrawList list;
+  list.camera = front(100);
+  list.items = {item(wall, kRed)};
+  const Image image = RasterRenderer(kWidth, kHeight).draw(list);
+  for (const int x : {0, kWidth / 2, kWidth - 1}) EXPECT_GT(pixel(image, x, kHeight / 2).r, 90);
+}
+
 }  // namespace
 }  // namespace swarf::render::raster_renderer
