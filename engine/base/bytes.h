@@ -42,7 +42,7 @@ class BytesWriter {
     add_all(std::span(text));
   }
   size_t size() const { return bytes_.size(); }  ///< so far
-  Bytes take() { return std::move(bytes_); }  ///< all of it; the writer is empty then
+  Bytes take() { return std::move(bytes_); }     ///< all of it; the writer is empty then
 
  private:
   Bytes bytes_;  ///< so far

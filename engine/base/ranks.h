@@ -10,8 +10,8 @@ class Ranks {
   virtual ~Ranks() = default;    ///< every rank waits here for the others
   virtual int rank() const = 0;  ///< of this process
   virtual int size() const = 0;  ///< how many there are
-  /// Messages from one rank to another arrive whole and in order. Does not wait for the other one: the message
-  /// is kept until it has gone. For one thread of the process, as all that follows.
+  /// Messages from one rank to another arrive whole and in order. Does not wait for the other one: the
+  /// message is kept until it has gone. For one thread of the process, as all that follows.
   virtual void send(int to, Bytes message) = 0;
   /// One is there, so that receive() would not wait.
   virtual bool has_message(int from) = 0;

@@ -14,7 +14,8 @@
 namespace swarf::stock {
 
 struct StockProof {
-  VolumeRange volume;       ///< Stock::volume_between()
+  double volume_mm3 = 0.0;  ///< Stock::volume_mm3()
+  VolumeRange range;        ///< Stock::volume_between()
   std::string broken_step;  ///< the first breach of invariant 8 of Stock::check(), or ""
 };
 
@@ -42,7 +43,8 @@ class SlabProofs {
   const Stock& stock_;
   double slack_mm_;
   std::vector<Slab> slabs_;
-  std::vector<VolumeRange> volumes_;  ///< by leaf position, in voxels
+  std::vector<double> volumes_;      ///< by leaf position, in voxels
+  std::vector<VolumeRange> ranges_;  ///< the same
 };
 
 /// The answer to what SlabProofs::add_request() has added.

@@ -21,16 +21,30 @@ inline constexpr int kTileLeaves = 8;
 /// Whose the column of leaf positions is; `i`, `j`: in leaves from the grid's origin.
 int owner_of_column(int i, int j, int count);
 
+/// The tiles of a share are divided into so many parts, each spread evenly over the stock.
+inline constexpr int kTileParts = 8;
+int part_of_column(int i, int j, int count);
+
+/// Tiles of a share: some of its parts.
+struct TileSet {
+  static constexpr uint32_t kAllParts = (1U << kTileParts) - 1U;
+  TileSet(Share of = {}, uint32_t of_parts = kAllParts) : share(of), parts(of_parts) {}
+  bool all() const { return share.all() && parts == kAllParts; }
+
+  Share share;
+  uint32_t parts;  ///< bit by bit
+};
+
 class StockTiles {
  public:
-  /// The raw stock in the tiles of this share alone; the others are air and take no leaves.
-  static Stock own_tiles(const RawShape& raw, double voxel_mm, Share share);
+  /// The raw stock in these tiles alone; the others are air and take no leaves.
+  static Stock own_tiles(const RawShape& raw, double voxel_mm, const TileSet& own);
 
-  /// From now on Stock::cut() cuts the share's tiles alone, and ContactFinder can be asked for them alone;
+  /// From now on Stock::cut() cuts these tiles alone, and ContactFinder can be asked for them alone;
   /// the others change by apply(). The stock must outlive it. What it is now counts as known to the others.
-  StockTiles(Stock& stock, Share share);
+  StockTiles(Stock& stock, const TileSet& own);
 
-  /// What has changed in the share's tiles since they were known last, in pieces of few megabytes, each known
+  /// What has changed in these tiles since they were known last, in pieces of few megabytes, each known
   /// with this. None: nothing is left.
   std::optional<Bytes> next_changes();
   /// Everything in the tiles of another share, for one that begins; or in all others, for one that holds
@@ -46,7 +60,6 @@ class StockTiles {
   void take_position(BytesReader& in);
 
   Stock& stock_;
-  Share share_;
   std::vector<uint32_t> known_;  ///< LeafMap::cuts when they were told last
   CutStatistics told_;           ///< the same of the counts
   size_t next_ = 0;              ///< position that next_changes() goes on from

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """How well `swarf run --tiles` shares a run: the wave by one process of one thread and by P ranks of one thread.
 
-tiles.py SWARF [--blocks N] [--voxel MM] [--ranks 2 4] [--repeats R] [--weak]
-  strong (default): the same wave for all; --weak: N blocks and a stock of the same area for each rank.
+tiles.py SWARF [--blocks N] [--voxel MM] [--ranks 2 4] [--repeats R] [--weak | --scene FILE] [--set KEY=VALUE ...]
+  strong (default): the same wave for all; --weak: N blocks and a stock of the same area for each rank; --scene: another job.
 In turn, R times each; medians. Of each run: seconds by the clock, processor time of all processes and of the busiest one.
   efficiency by the clock    t(1) / (P t(P))   (weak: t(1) / t(P)); says something where nobody else uses the cores
   efficiency by processors   the same of the busiest rank's processor time: what the clock would say on P cores of its own,
@@ -36,9 +36,9 @@ def seconds_of(text):
     return total
 
 
-def run(swarf, folder, ranks):
+def run(swarf, folder, ranks, scene, keys):
     out = os.path.join(folder, "out")
-    command = f'"{swarf}" run "{folder}/scene.toml" --no-render --threads 1 --keep-every 0 -q -o "{out}"'
+    command = f'"{swarf}" run "{scene or folder + "/scene.toml"}" {keys} --no-render --threads 1 --keep-every 0 -q -o "{out}"'
     start = time.monotonic()
     if ranks == 1:
         own = f'{command}; code=$?; times > "{folder}/times.0"; exit $code'
@@ -64,6 +64,8 @@ def main():
     parser.add_argument("--ranks", type=int, nargs="+", default=[2])
     parser.add_argument("--repeats", type=int, default=3)
     parser.add_argument("--weak", action="store_true")
+    parser.add_argument("--scene")
+    parser.add_argument("--set", nargs="+", default=[])
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as home:
         counts = [1] + options.ranks
@@ -71,10 +73,13 @@ def main():
         for count in counts:
             folders[count] = os.path.join(home, str(count))
             grown = count if options.weak else 1
-            write_wave(folders[count], options.blocks * grown, options.voxel, 12 + 100 * grown)
+            os.makedirs(folders[count])
+            if options.scene is None:
+                write_wave(folders[count], options.blocks * grown, options.voxel, 12 + 100 * grown)
+        keys = " ".join(f"--set '{key}'" for key in options.set)
         for _ in range(options.repeats):
             for count in counts:
-                found[count].append(run(options.swarf, folders[count], count))
+                found[count].append(run(options.swarf, folders[count], count, options.scene, keys))
         median = {count: {key: statistics.median(one[key] for one in found[count]) for key in ("wall", "all", "busiest")}
                   for count in counts}
         print("ranks  clock s  processors s  busiest s  efficiency: clock  processors  overhead")

@@ -305,10 +305,12 @@ class CutStage {
       tell(tiles_->broken());
       tell(stock.check(stock::CheckLevel::kLeaves));
       const stock::StockProof proof = tiles_->prove(result_.sweep_bound_mm);
-      result_.volume_range = proof.volume;
+      result_.volume_left_mm3 = proof.volume_mm3;
+      result_.volume_range = proof.range;
       tell(proof.broken_step);
     } else {
       tell(stock.check());
+      result_.volume_left_mm3 = stock.volume_mm3();
     }
     if (checked_) tell(stock.check_since(*checked_));
     checked_.reset();
@@ -329,7 +331,6 @@ class CutStage {
     if (budget_)
       progress_.note(fmt::format("{} of {} leaves of the stock ended on the disk",
                                  result_.stock->leaves_on_disk(), result_.stock->leaves()));
-    result_.volume_left_mm3 = result_.stock->volume_mm3();
     result_.volume_removed_mm3 = full_mm3_ - result_.volume_left_mm3;
     if (options_.record) write_states();
   }

@@ -89,8 +89,8 @@ struct Result {
   uint64_t merged_sweeps = 0;   ///< how many they are
   /// By this set-up, and at its end.
   double volume_removed_mm3 = 0.0, volume_left_mm3 = 0.0;
-  double full_mm3 = 0.0;                ///< of the raw stock as the level set holds it, before any cut
-  uint64_t start_hash = 0;              ///< of the stock before the program's first sweep
+  double full_mm3 = 0.0;    ///< of the raw stock as the level set holds it, before any cut
+  uint64_t start_hash = 0;  ///< of the stock before the program's first sweep
   /// Proven of the level set; none: not yet.
   std::optional<stock::VolumeRange> volume_range;
   double volume_error_bound_mm3 = 0.0;  ///< proven: neither is farther from the truth (stock_volume.cpp)

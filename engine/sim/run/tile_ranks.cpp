@@ -21,6 +21,7 @@ enum class TileRequest : uint8_t {
   kHold,     ///< no longer: how many sweeps are cut
   kHello,    ///< what the rank is about to cut, or why it cannot begin
   kStock,    ///< begin with the raw stock, cut by so many sweeps     no answer
+  kMore,     ///< parts of the tiles of rank 0 that are its own now   no answer
   kTiles,    ///< positions to take over: an empty message
   kLook,     ///< begin, end, bad cuts so far: suspects and the least gap
   kNearest,  ///< begin, end, suspects of all ranks: the least gap of the other sweeps
@@ -57,9 +58,11 @@ void send_tiles(Ranks& ranks, const stock::Stock& stock, stock::StockTiles::Whic
   }
 }
 
-Bytes hello(const std::string& failure, const CutIdentity& identity) {
+/// `at`: so many sweeps are cut already.
+Bytes hello(const std::string& failure, const CutIdentity& identity, size_t at) {
   BytesWriter message;
   message.add_text(failure);
+  message.add(at);
   message.add(identity.size());
   for (const IdentityPart& part : identity) {
     message.add_text(part.name);
@@ -68,14 +71,15 @@ Bytes hello(const std::string& failure, const CutIdentity& identity) {
   return message.take();
 }
 
-/// Throws InputError "rank-failed", "rank-differs".
-void check_hello(int rank, const Bytes& message, const CutIdentity& own) {
+/// How many sweeps the rank has cut already. Throws InputError "rank-failed", "rank-differs".
+size_t check_hello(int rank, const Bytes& message, const CutIdentity& own) {
   BytesReader in(message);
   const std::string failure = in.get_text();
   const std::string name = fmt::format("rank {}", rank);
   if (!failure.empty())
     throw InputError("rank-failed", {name}, fmt::format("this rank cannot begin: {}", failure),
                      "give every machine the same files at the same paths");
+  const auto at = in.get<size_t>();
   CutIdentity identity(in.get<size_t>());
   for (IdentityPart& part : identity) {
     part.name = in.get_text();
@@ -88,6 +92,23 @@ void check_hello(int rank, const Bytes& message, const CutIdentity& own) {
         fmt::format("this rank has another {}: {}; rank 0 has {}", part.name, part.before, part.now),
         "give every machine the same program, version and files");
   diagnostics.throw_if_errors();
+  return at;
+}
+
+/// Of the parts of its tiles, those that rank 0 leaves to the others, by rank. All ranks that cut alike would
+/// then end together: `at`, of `total` sweeps, is how far the others are while rank 0 has not begun.
+std::vector<uint32_t> parts_to_give(const std::vector<size_t>& at, size_t total) {
+  std::vector<uint32_t> given(at.size() + 1, 0);
+  if (at.empty() || total == 0) return given;
+  double left = 1.0;  // shares
+  for (const size_t one : at) left += 1.0 - static_cast<double>(one) / static_cast<double>(total);
+  const double kept = left / static_cast<double>(at.size() + 1);
+  const int kept_parts =
+      std::clamp(static_cast<int>(std::lround(kept * stock::kTileParts)), 0, stock::kTileParts);
+  for (int part = kept_parts; part < stock::kTileParts; ++part)
+    given[1 + static_cast<size_t>(part - kept_parts) % at.size()] |= 1U << static_cast<unsigned>(part);
+  for (const uint32_t parts : given) given[0] |= parts;
+  return given;
 }
 
 void unite(std::vector<size_t>& all, const std::vector<size_t>& more) {
@@ -109,11 +130,11 @@ double nearest_of_others(const CutParts& parts, const stock::ContactFinder& find
   return parts.clearance.look_ahead(finder, begin, end, suspects).nearest_mm;
 }
 
-/// This rank's tiles, and how far they are cut.
+/// Tiles of this rank, and how far they are cut.
 class OwnTiles {
  public:
-  OwnTiles(const Job& job, const CutParts& parts, Share share)
-      : job_(job), parts_(parts), share_(share), stock_(raw()), tiles_(stock_, share) {
+  OwnTiles(const Job& job, const CutParts& parts, const stock::TileSet& own)
+      : job_(job), parts_(parts), own_(own), stock_(raw()), tiles_(stock_, own) {
     finder_.emplace(stock_, stock::ContactFinder::Tiles::kOwn);
   }
   OwnTiles(const OwnTiles&) = delete;
@@ -160,17 +181,17 @@ class OwnTiles {
     if (broken_.empty() && parts_.is_check_due(before, at_))
       broken_ = stock_.check(stock::CheckLevel::kOwnMap);
   }
-  /// The next piece of what has changed up to so many sweeps, or nothing.
-  void tell_changes(size_t at, BytesWriter& out) {
+  /// The next piece of what has changed up to so many sweeps.
+  std::optional<Bytes> next_changes(size_t at) {
     come_to(at);
-    out.add_text(broken_);
-    out.add_list(tiles_.next_changes().value_or(Bytes{}));
+    return tiles_.next_changes();
   }
+  const std::string& broken() const { return broken_; }
 
  private:
   stock::Stock raw() const {
     const StockSettings& settings = job_.scene.stock;
-    return stock::StockTiles::own_tiles(settings.body_W(), settings.voxel_mm, share_);
+    return stock::StockTiles::own_tiles(settings.body_W(), settings.voxel_mm, own_);
   }
   /// From the raw stock again where it is cut farther; what was told and seen before stays true.
   void come_to(size_t at) {
@@ -184,7 +205,7 @@ class OwnTiles {
 
   const Job& job_;
   const CutParts& parts_;
-  Share share_;
+  stock::TileSet own_;
   stock::Stock stock_;
   stock::StockTiles tiles_;
   std::optional<stock::ContactFinder> finder_;
@@ -205,7 +226,7 @@ class TileServer {
 
   void serve() {
     for (;;) {
-      while (ahead_ && !ranks_.has_message(0)) ahead_ = own().go_on() && !own().is_done();
+      while (ahead_ && !ranks_.has_message(0)) ahead_ = go_on();
       const Bytes message = ranks_.receive(0);
       BytesReader in(message);
       const auto what = in.get<TileRequest>();
@@ -219,17 +240,23 @@ class TileServer {
     BytesWriter out;
     switch (what) {
       case TileRequest::kAhead:
-        ahead_ = parts_.carried.empty() && !own().is_done();
+        ahead_ = parts_.carried.empty();
         return true;
       case TileRequest::kHold:
         ahead_ = false;
-        out.add(own().at());
+        out.add(farthest());
         break;
       case TileRequest::kHello:
-        ranks_.send(0, hello("", parts_.identity));
+        ranks_.send(0, hello("", parts_.identity, own_.empty() ? 0 : own().at()));
         return true;
       case TileRequest::kStock:
         if (const auto at = in.get<size_t>(); at > 0) own().start_at(at);
+        return true;
+      case TileRequest::kMore:
+        own();
+        own_.push_back(
+            std::make_unique<OwnTiles>(job_, parts_, stock::TileSet({0, ranks_.size()}, in.get<uint32_t>())));
+        ahead_ = true;
         return true;
       case TileRequest::kTiles:
         own().take(in.get_list<std::byte>());
@@ -237,18 +264,18 @@ class TileServer {
       case TileRequest::kLook:
         look(in, out);
         break;
-      case TileRequest::kNearest: {
+      case TileRequest::kNearest:
         ahead_ = false;
-        const auto begin = in.get<size_t>(), end = in.get<size_t>();
-        out.add(own().nearest(begin, end, in.get_list<size_t>()));
+        tell_nearest(in, out);
         break;
-      }
-      case TileRequest::kCut:
-        own().cut_to(in.get<size_t>());
+      case TileRequest::kCut: {
+        const auto end = in.get<size_t>();
+        for (const auto& tiles : own_) tiles->cut_to(end);
         return true;
+      }
       case TileRequest::kChanges:
         ahead_ = false;
-        own().tell_changes(in.get<size_t>(), out);
+        tell_changes(in.get<size_t>(), out);
         break;
       default:
         break;
@@ -259,6 +286,7 @@ class TileServer {
 
   /// What follows it. False: there is nothing more.
   bool follow(TileRequest what, BytesReader& in) {
+    if (own_.size() > 1) own_.resize(1);  // they are told
     switch (what) {
       case TileRequest::kSlab:
         ranks_.send(0, stock::prove_slab(in));
@@ -283,19 +311,56 @@ class TileServer {
     return true;
   }
 
+  /// Those of its share.
   OwnTiles& own() {
-    if (!own_) own_.emplace(job_, parts_, share_of(ranks_));
-    return *own_;
+    if (own_.empty()) own_.push_back(std::make_unique<OwnTiles>(job_, parts_, share_of(ranks_)));
+    return *own_.front();
+  }
+  /// The tiles that are least far. False: they must wait, or all are done.
+  bool go_on() {
+    own();
+    const auto last = std::min_element(own_.begin(), own_.end(),
+                                       [](const auto& a, const auto& b) { return a->at() < b->at(); });
+    return !(*last)->is_done() && (*last)->go_on();
+  }
+  size_t farthest() const {
+    size_t at = 0;
+    for (const auto& tiles : own_) at = std::max(at, tiles->at());
+    return at;
   }
   void look(BytesReader& in, BytesWriter& out) {
     const auto begin = in.get<size_t>(), end = in.get<size_t>();
     std::vector<BadCut> found;
     SWARF_CHECK(parse_bad_cuts(in.get_text(), found), "rank 0 tells its bad cuts");
     parts_.bad_cuts.resume(found);
-    const BatchState seen = own().look(begin, end);
-    out.add(seen.nearest_mm);
-    out.add_list(seen.suspects);
-    out.add_list(seen.bad_suspects);
+    BatchState all = own().look(begin, end);
+    for (size_t n = 1; n < own_.size(); ++n) {
+      const BatchState more = own_[n]->look(begin, end);
+      all.nearest_mm = std::min(all.nearest_mm, more.nearest_mm);
+      unite(all.suspects, more.suspects);
+      unite(all.bad_suspects, more.bad_suspects);
+    }
+    out.add(all.nearest_mm);
+    out.add_list(all.suspects);
+    out.add_list(all.bad_suspects);
+  }
+  void tell_nearest(BytesReader& in, BytesWriter& out) {
+    const auto begin = in.get<size_t>(), end = in.get<size_t>();
+    const auto suspects = in.get_list<size_t>();
+    double nearest_mm = own().nearest(begin, end, suspects);
+    for (size_t n = 1; n < own_.size(); ++n)
+      nearest_mm = std::min(nearest_mm, own_[n]->nearest(begin, end, suspects));
+    out.add(nearest_mm);
+  }
+  void tell_changes(size_t at, BytesWriter& out) {
+    std::string broken;
+    std::optional<Bytes> piece;
+    for (const auto& tiles : own_) {
+      if (!piece) piece = tiles->next_changes(at);
+      if (broken.empty()) broken = tiles->broken();
+    }
+    out.add_text(broken);
+    out.add_list(piece.value_or(Bytes{}));
   }
 
   Ranks& ranks_;
@@ -304,7 +369,7 @@ class TileServer {
   const MeasuredPath& measured_;
   const std::function<void()>& cut_rays_;
   Progress silent_;
-  std::optional<OwnTiles> own_;
+  std::vector<std::unique_ptr<OwnTiles>> own_;  ///< those of its share, then what rank 0 has left to it
   std::optional<ProofInputs> proof_;
   std::unique_ptr<measure::RootProver> prover_;  ///< of the surface that is being proven
   bool ahead_ = false;                           ///< of rank 0
@@ -314,17 +379,25 @@ class TileServer {
 
 TileLead::TileLead(Ranks& ranks, const CutParts& parts) : ranks_(ranks), parts_(parts) {
   send_to_all(ranks, request(TileRequest::kHello));
-  for (int rank = 1; rank < ranks.size(); ++rank) check_hello(rank, ranks.receive(rank), parts.identity);
+  for (int rank = 1; rank < ranks.size(); ++rank)
+    ahead_.push_back(check_hello(rank, ranks.receive(rank), parts.identity));
 }
 
 void TileLead::begin(stock::Stock& stock, size_t at, bool is_raw) {
   stock_ = &stock;
   at_ = at;
-  tiles_.emplace(stock, share_of(ranks_));
+  const std::vector<uint32_t> given = parts_to_give(ahead_, parts_.sweeps.size());
+  const stock::TileSet own(share_of(ranks_), stock::TileSet::kAllParts ^ (is_raw ? given.front() : 0));
+  tiles_.emplace(stock, own);
   finder_.emplace(stock, stock::ContactFinder::Tiles::kOwn);
   for (int rank = 1; rank < ranks_.size(); ++rank) {
     BytesWriter message = request(TileRequest::kStock);
     message.add(at);
+    ranks_.send(rank, message.take());
+    const uint32_t parts = given[static_cast<size_t>(rank)];
+    if (!is_raw || parts == 0) continue;
+    message = request(TileRequest::kMore);
+    message.add(parts);
     ranks_.send(rank, message.take());
   }
   if (!is_raw) send_tiles(ranks_, stock, stock::StockTiles::Which::kOfShare);
@@ -436,7 +509,7 @@ void refuse_tile_lead(Ranks& ranks, const std::string& why) {
   for (;;) {
     const Bytes message = ranks.receive(0);
     const auto asked = BytesReader(message).get<TileRequest>();
-    if (asked == TileRequest::kHello) ranks.send(0, hello(why, {}));
+    if (asked == TileRequest::kHello) ranks.send(0, hello(why, {}, 0));
     if (asked != TileRequest::kEnd) continue;
     ranks.send(0, request(TileRequest::kEnd).take());
     return;

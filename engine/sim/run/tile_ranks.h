@@ -10,8 +10,9 @@
 //   others    cut their tiles ahead of rank 0 as long as no sweep comes near them with the tool's body; tell
 //             what they saw when they are asked; answer, cut, tell the changes in the order of the questions
 //
-// Where one rank finds a sweep that is to be judged, the others may have gone past it: they begin their tiles
-// again and cut them up to there. Before the stock is kept on the way they wait for rank 0.
+// Rank 0 comes late, so it leaves some of its tiles to those that were ahead. Where one rank finds a sweep
+// that is to be judged, the others may have gone past it: they begin their tiles again and cut them up to
+// there. Before the stock is kept on the way they wait for rank 0.
 //
 // What follows the cut is dealt out (base/dealt_work.h): rank 0 sends what is needed with each question.
 #pragma once
@@ -65,6 +66,7 @@ class TileLead {
   stock::Stock* stock_ = nullptr;
   std::optional<stock::StockTiles> tiles_;
   std::optional<stock::ContactFinder> finder_;  ///< of its own tiles
+  std::vector<size_t> ahead_;                   ///< sweeps that the others had cut when they were asked first
   std::string broken_;
   size_t at_ = 0;  ///< sweeps that have cut its own tiles
   bool is_whole_ = true;

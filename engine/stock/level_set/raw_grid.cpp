@@ -85,15 +85,15 @@ void fill_block(LevelSet& set, const openvdb::Coord& first, MadeLeaves& made) {
 
 }  // namespace
 
-LevelSet make_raw(const RawShape& raw, double voxel, Share share, const Spill* spill) {
-  if (raw.is_box()) return make_box(raw.box(), voxel, share, spill);
+LevelSet make_raw(const RawShape& raw, double voxel, const TileSet& own, const Spill* spill) {
+  if (raw.is_box()) return make_box(raw.box(), voxel, own, spill);
   LevelSet set;
   set.box = raw.box();
   set.raw = raw;
   set.voxel = voxel;
   set.grid = empty_grid(voxel);
   set.map = empty_map(set.box, voxel);
-  keep_columns(set, share);
+  keep_columns(set, own);
   if (spill != nullptr) begin_spill(set, *spill);
   fill_map(set, [&](int first, int, MadeLeaves& made) {
     const LeafBlocks blocks(set.map, first);

@@ -62,7 +62,8 @@ const RawShape& Stock::raw() const {
   return *impl_->level_set.raw;
 }
 double Stock::volume_mm3() const {
-  return volume(impl_->level_set);
+  const LevelSet& set = impl_->level_set;
+  return sum_of(set, volumes(set, 0, set.map.size()));
 }
 VolumeRange Stock::volume_between(double slack_mm) const {
   const LevelSet& set = impl_->level_set;

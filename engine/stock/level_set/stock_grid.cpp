@@ -201,14 +201,14 @@ void fill_map(LevelSet& set, const std::function<void(int, int, MadeLeaves&)>& f
   sign_tiles(set);
 }
 
-LevelSet make_box(const Box& box, double voxel, Share share, const Spill* spill) {
+LevelSet make_box(const Box& box, double voxel, const TileSet& own, const Spill* spill) {
   LevelSet set;
   set.box = box;
   set.raw = RawShape::of_box(box);
   set.voxel = voxel;
   set.grid = empty_grid(voxel);
   set.map = empty_map(box, voxel);
-  keep_columns(set, share);
+  keep_columns(set, own);
   if (spill != nullptr) begin_spill(set, *spill);
   fill_map(set, [&](int, int, MadeLeaves& made) {
     parallel_chunks(made.leaves.size(), kLeavesPerTask, [&](size_t begin, size_t end) {

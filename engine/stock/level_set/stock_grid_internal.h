@@ -16,9 +16,9 @@
 #include <vector>
 
 #include "base/frames.h"
-#include "base/ranks.h"
 #include "stock/level_set/leaf_file.h"
 #include "stock/stock.h"
+#include "stock/stock_tiles.h"
 
 // Grid and tree are compiled once, in stock_grid.cpp: each further file would spend six seconds on them.
 namespace openvdb {
@@ -133,17 +133,17 @@ LeafMap map_extent(const Box& box, double voxel);
 /// The same, all of them air.
 LeafMap empty_map(const Box& box, double voxel);
 openvdb::FloatGrid::Ptr empty_grid(double voxel);
-/// `share`: its tiles alone are filled (stock_tiles.h). `spill`: null: all leaves stay in memory.
-LevelSet make_box(const Box& box, double voxel, Share share = {}, const Spill* spill = nullptr);
+/// `own`: these tiles alone are filled. `spill`: null: all leaves stay in memory.
+LevelSet make_box(const Box& box, double voxel, const TileSet& own = {}, const Spill* spill = nullptr);
 /// Any raw stock (raw_grid.cpp).
-LevelSet make_raw(const RawShape& raw, double voxel, Share share = {}, const Spill* spill = nullptr);
+LevelSet make_raw(const RawShape& raw, double voxel, const TileSet& own = {}, const Spill* spill = nullptr);
 /// Leaves may go to the disk from now on (stock_spill.cpp).
 void begin_spill(LevelSet& set, const Spill& spill);
 /// See Stock::make_room; empty: every tile is as good as another.
 void make_room(LevelSet& set, std::span<const uint32_t> next_use);
 TileGrid tiles_of(const LeafMap& map, double voxel);
-/// Leaves the columns of other shares to others (stock_tiles.cpp).
-void keep_columns(LevelSet& set, Share share);
+/// Leaves all other columns to others (stock_tiles.cpp).
+void keep_columns(LevelSet& set, const TileSet& own);
 /// Planes of leaf positions, across x, that a fresh stock is filled with at once.
 inline constexpr int kPlanesAtOnce = 4;
 /// Leaves of the positions from `begin` on.
@@ -162,7 +162,9 @@ LeafState settle_leaf(LeafNode& leaf, float band);
 
 /// Removes the sweeps from the level set (stock_cut.cpp).
 void cut_level_set(LevelSet& level_set, std::span<const Sweep> sweeps, const CutterSolid& cutter);
-double volume(const LevelSet& level_set);
+/// Of leaf positions [begin, end), each in voxels; the sum of such.
+std::vector<double> volumes(const LevelSet& level_set, size_t begin, size_t end);
+double sum_of(const LevelSet& level_set, std::span<const double> volumes);
 /// See Stock::volume_between (stock_volume.cpp): of leaf positions [begin, end), each in voxels; all of them
 /// together.
 std::vector<VolumeRange> volume_ranges(const LevelSet& level_set, double slack_mm, size_t begin, size_t end);

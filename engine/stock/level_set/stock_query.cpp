@@ -72,13 +72,17 @@ uint64_t leaf_hash(const LevelSet& set, size_t n) {
 
 }  // namespace
 
-double volume(const LevelSet& set) {
-  std::vector<double> parts(set.map.size());
-  parallel_chunks(parts.size(), kPositionsPerTask, [&](size_t begin, size_t end) {
-    for (size_t n = begin; n < end; ++n) parts[n] = leaf_volume(set, n);
+std::vector<double> volumes(const LevelSet& set, size_t begin, size_t end) {
+  std::vector<double> parts(end - begin);
+  parallel_chunks(parts.size(), kPositionsPerTask, [&](size_t from, size_t to) {
+    for (size_t n = from; n < to; ++n) parts[n] = leaf_volume(set, begin + n);
   });
+  return parts;
+}
+
+double sum_of(const LevelSet& set, std::span<const double> volumes) {
   double sum = 0.0;
-  for (const double part : parts) sum += part;
+  for (const double part : volumes) sum += part;
   return sum * std::pow(set.voxel, 3);
 }
 

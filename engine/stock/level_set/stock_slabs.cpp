@@ -10,10 +10,6 @@
 namespace swarf::stock {
 namespace {
 
-size_t positions_of_plane(const LeafMap& map) {
-  return static_cast<size_t>(map.dimension.y()) * static_cast<size_t>(map.dimension.z());
-}
-
 /// Some planes of a stock, without a tree: to look at.
 struct Planes {
   LevelSet set;
@@ -55,7 +51,7 @@ Planes take_planes(BytesReader& in) {
 }  // namespace
 
 SlabProofs::SlabProofs(const Stock& stock, double slack_mm, size_t slabs)
-    : stock_(stock), slack_mm_(slack_mm), volumes_(stock.level_set().map.size()) {
+    : stock_(stock), slack_mm_(slack_mm), volumes_(stock.level_set().map.size()), ranges_(volumes_.size()) {
   const LeafMap& map = stock.level_set().map;
   const auto leaves_of = [&](int plane) {
     const auto begin = map.states.begin() + static_cast<ptrdiff_t>(begin_of(plane));
@@ -93,6 +89,7 @@ Bytes prove_slab(BytesReader& in) {
   const LevelSet& set = planes.set;
   const size_t begin = set.map.index(first, 0, 0), end = set.map.index(last, 0, 0);
   BytesWriter out;
+  out.add_list(volumes(set, begin, end));
   out.add_list(volume_ranges(set, slack_mm, begin, end));
   out.add_text(broken_step(set, begin, end));
   return out.take();
@@ -100,22 +97,24 @@ Bytes prove_slab(BytesReader& in) {
 
 void SlabProofs::take(size_t slab, const Bytes& answer) {
   BytesReader in(answer);
-  const auto volumes = in.get_list<VolumeRange>();
-  std::copy(volumes.begin(), volumes.end(),
-            volumes_.begin() + static_cast<ptrdiff_t>(begin_of(slabs_[slab].first)));
+  const auto begin = static_cast<ptrdiff_t>(begin_of(slabs_[slab].first));
+  std::ranges::copy(in.get_list<double>(), volumes_.begin() + begin);
+  std::ranges::copy(in.get_list<VolumeRange>(), ranges_.begin() + begin);
   slabs_[slab].broken_step = in.get_text();
 }
 
 void SlabProofs::prove(size_t slab) {
   const LevelSet& set = stock_.level_set();
   const size_t begin = begin_of(slabs_[slab].first), end = begin_of(slabs_[slab].last);
-  const std::vector<VolumeRange> volumes = volume_ranges(set, slack_mm_, begin, end);
-  std::copy(volumes.begin(), volumes.end(), volumes_.begin() + static_cast<ptrdiff_t>(begin));
+  const auto to = static_cast<ptrdiff_t>(begin);
+  std::ranges::copy(volumes(set, begin, end), volumes_.begin() + to);
+  std::ranges::copy(volume_ranges(set, slack_mm_, begin, end), ranges_.begin() + to);
   slabs_[slab].broken_step = broken_step(set, begin, end);
 }
 
 StockProof SlabProofs::result() const {
-  StockProof proof{sum_of(stock_.level_set(), volumes_), ""};
+  const LevelSet& set = stock_.level_set();
+  StockProof proof{sum_of(set, volumes_), sum_of(set, ranges_), ""};
   for (const Slab& slab : slabs_)
     if (proof.broken_step.empty()) proof.broken_step = slab.broken_step;
   return proof;

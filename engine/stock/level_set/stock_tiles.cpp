@@ -27,12 +27,15 @@ int row_step(int count) {
   return step;
 }
 
-/// Of all columns of the map, x before y: 1 where another share cuts.
-std::vector<uint8_t> columns_of_others(const LeafMap& map, Share share) {
+/// Of all columns of the map, x before y: 1 where the tiles are not of the set.
+std::vector<uint8_t> columns_of_others(const LevelSet& set, const TileSet& own) {
+  const LeafMap& map = set.map;
+  const int count = own.share.count;
   std::vector<uint8_t> others;
-  for (int i = 0; i < map.dimension.x(); ++i)
-    for (int j = 0; j < map.dimension.y(); ++j)
-      others.push_back(owner_of_column(map.lower.x() + i, map.lower.y() + j, share.count) != share.index);
+  for (int i = map.lower.x(); i < map.lower.x() + map.dimension.x(); ++i)
+    for (int j = map.lower.y(); j < map.lower.y() + map.dimension.y(); ++j)
+      others.push_back(owner_of_column(i, j, count) != own.share.index ||
+                       (own.parts >> part_of_column(i, j, count) & 1U) == 0);
   return others;
 }
 
@@ -66,7 +69,7 @@ void add_position(const LevelSet& set, size_t leaf, BytesWriter& out) {
     out.add_all(std::span<const float>(set.values(leaf), kLeafVoxels));
 }
 
-constexpr size_t kPieceBytes = size_t{8} << 20U;
+constexpr size_t kToldBytes = size_t{8} << 20U;
 
 void add_counts(const CutStatistics& counts, BytesWriter& out) {
   out.add(counts.voxel_updates);
@@ -81,17 +84,26 @@ int owner_of_column(int i, int j, int count) {
   return turn < 0 ? turn + count : turn;
 }
 
-void keep_columns(LevelSet& set, Share share) {
-  set.others = share.all() ? std::vector<uint8_t>{} : columns_of_others(set.map, share);
+/// Of the tiles of one owner in a row along x every count-th is one: they are numbered through, and shifted
+/// from row to row.
+int part_of_column(int i, int j, int count) {
+  constexpr int kShift = 3;
+  const int tile = tile_floor(i);
+  const int number = (tile >= 0 ? tile : tile - count + 1) / count;
+  return ((number + kShift * tile_floor(j)) % kTileParts + kTileParts) % kTileParts;
 }
 
-Stock StockTiles::own_tiles(const RawShape& raw, double voxel_mm, Share share) {
-  return Stock(std::make_unique<Stock::Impl>(Stock::Impl{make_raw(raw, voxel_mm, share)}));
+void keep_columns(LevelSet& set, const TileSet& own) {
+  set.others = own.all() ? std::vector<uint8_t>{} : columns_of_others(set, own);
 }
 
-StockTiles::StockTiles(Stock& stock, Share share)
-    : stock_(stock), share_(share), known_(stock.level_set().map.cuts), told_(stock.statistics()) {
-  keep_columns(stock.impl_->level_set, share);
+Stock StockTiles::own_tiles(const RawShape& raw, double voxel_mm, const TileSet& own) {
+  return Stock(std::make_unique<Stock::Impl>(Stock::Impl{make_raw(raw, voxel_mm, own)}));
+}
+
+StockTiles::StockTiles(Stock& stock, const TileSet& own)
+    : stock_(stock), known_(stock.level_set().map.cuts), told_(stock.statistics()) {
+  keep_columns(stock.impl_->level_set, own);
 }
 
 std::optional<Bytes> StockTiles::next_changes() {
@@ -104,7 +116,7 @@ std::optional<Bytes> StockTiles::next_changes() {
   const bool counted = set.statistics.voxel_updates != told_.voxel_updates;
   const size_t counts = out.size();
   told_ = set.statistics;
-  for (; next_ < set.map.size() && out.size() < kPieceBytes; ++next_) {
+  for (; next_ < set.map.size() && out.size() < kToldBytes; ++next_) {
     if (set.map.cuts[next_] == known_[next_] || !set.owns(next_)) continue;
     add_position(set, next_, out);
     known_[next_] = set.map.cuts[next_];
@@ -116,12 +128,12 @@ std::optional<Bytes> StockTiles::next_changes() {
 
 std::optional<Bytes> StockTiles::next_tiles(const Stock& stock, Share share, Which which, size_t& from) {
   const LevelSet& set = stock.level_set();
-  const std::vector<uint8_t> others = columns_of_others(set.map, share);
+  const std::vector<uint8_t> others = columns_of_others(set, share);
   const uint8_t wanted = which == Which::kOfOthers ? 1 : 0;
   BytesWriter out;
   add_counts({}, out);
   const size_t counts = out.size();
-  for (; from < set.map.size() && out.size() < kPieceBytes; ++from)
+  for (; from < set.map.size() && out.size() < kToldBytes; ++from)
     if (others[from / static_cast<size_t>(set.map.dimension.z())] == wanted) add_position(set, from, out);
   return out.size() > counts ? std::optional(out.take()) : std::nullopt;
 }

@@ -21,7 +21,7 @@ const Box kBox{{-9.3, -7.1, -4.0}, {8.2, 9.4, 3.3}};
 
 /// Ranks of one process: `lead` is whole, `others` hold their own tiles.
 struct Rank {
-  explicit Rank(Stock&& made, Share share) : stock(std::move(made)), tiles(stock, share) {}
+  Rank(Stock&& made, const TileSet& own) : stock(std::move(made)), tiles(stock, own) {}
   Stock stock;
   StockTiles tiles;
 };
@@ -29,7 +29,8 @@ std::vector<std::unique_ptr<Rank>> ranks_of(const RawShape& raw, int count) {
   std::vector<std::unique_ptr<Rank>> ranks;
   ranks.push_back(std::make_unique<Rank>(Stock(raw, kVoxel), Share{0, count}));
   for (int n = 1; n < count; ++n)
-    ranks.push_back(std::make_unique<Rank>(StockTiles::own_tiles(raw, kVoxel, {n, count}), Share{n, count}));
+    ranks.push_back(
+        std::make_unique<Rank>(StockTiles::own_tiles(raw, kVoxel, Share{n, count}), Share{n, count}));
   return ranks;
 }
 
@@ -86,7 +87,7 @@ TEST(StockTiles, OneThatBeginsLaterTakesOverWhatIsThere) {
   auto ranks = ranks_of(raw, 1);
   ranks[0] = std::make_unique<Rank>(whole.clone(), Share{0, 3});
   for (int n = 1; n < 3; ++n) {
-    ranks.push_back(std::make_unique<Rank>(StockTiles::own_tiles(raw, kVoxel, {n, 3}), Share{n, 3}));
+    ranks.push_back(std::make_unique<Rank>(StockTiles::own_tiles(raw, kVoxel, Share{n, 3}), Share{n, 3}));
     size_t from = 0;
     while (const auto piece =
                StockTiles::next_tiles(ranks[0]->stock, {n, 3}, StockTiles::Which::kOfShare, from))
@@ -133,6 +134,25 @@ TEST(StockTiles, TheLeastGapOfAllRanksIsThatOfTheWhole) {
   EXPECT_GT(near, 20);
 }
 
+/// Rank 0 leaves some parts of its tiles to another one.
+TEST(StockTiles, PartsOfAShareAreCutElsewhere) {
+  const RawShape raw = RawShape::of_box(kBox);
+  Rng rng(24);
+  const CutterSolid cutter(2.5, 10.0);
+  const std::vector<Sweep> sweeps = sweeps_of(rng, 20);
+  Stock whole(raw, kVoxel);
+  whole.cut(sweeps, cutter);
+  constexpr uint32_t kGiven = 0b10010110;
+  std::vector<std::unique_ptr<Rank>> ranks;
+  ranks.push_back(
+      std::make_unique<Rank>(Stock(raw, kVoxel), TileSet(Share{0, 2}, TileSet::kAllParts ^ kGiven)));
+  for (const TileSet& own : {TileSet(Share{1, 2}), TileSet(Share{0, 2}, kGiven)})
+    ranks.push_back(std::make_unique<Rank>(StockTiles::own_tiles(raw, kVoxel, own), own));
+  cut_all(ranks, sweeps, cutter);
+  gather(ranks);
+  expect_equal(ranks[0]->stock, whole);
+}
+
 /// Slab by slab, by whoever: the volume's bounds to the last bit, and a breach between two leaves wherever it
 /// is.
 TEST(StockTiles, WhatIsProvenSlabBySlabIsProvenOfTheWhole) {
@@ -155,8 +175,9 @@ TEST(StockTiles, WhatIsProvenSlabBySlabIsProvenOfTheWhole) {
       proofs.take(n, prove_slab(in));
     }
     const StockProof proof = proofs.result();
-    EXPECT_EQ(proof.volume.least, whole.least) << slabs;
-    EXPECT_EQ(proof.volume.greatest, whole.greatest) << slabs;
+    EXPECT_EQ(proof.volume_mm3, stock.volume_mm3()) << slabs;
+    EXPECT_EQ(proof.range.least, whole.least) << slabs;
+    EXPECT_EQ(proof.range.greatest, whole.greatest) << slabs;
     EXPECT_EQ(proof.broken_step, "") << slabs;
   }
 }
