@@ -66,4 +66,15 @@ void from_tool_to_work(const MachineModel& machine, const Visit& visit) {
   for (const int i : machine.table_chain) visit(link_step(machine, i, -1.0));
 }
 
+/// The tool axis of forward() alone, bit for bit.
+inline Vec3 forward_axis(const MachineModel& machine, const AxisValues& q) {
+  const Sines of = sines_of(machine, q);
+  Vec3 axis = machine.tool_axis_M;
+  from_tool_to_work(machine, [&](const LinkStep& step) {
+    if (step.rotary)
+      axis = rotate(step.along, step.direction, step.sense * of.sine[step.axis], of.cosine[step.axis], axis);
+  });
+  return machine.X_MW.linear().transpose() * axis;
+}
+
 }  // namespace swarf::kinematics

@@ -234,7 +234,7 @@ void InverseKinematics::complete(const Targets& targets, const Candidates& candi
   const Points axis_M = side_by_side(targets.axis_M[0], targets.axis_M[1]);
   const Points linear_values =
       columns_constant_ ? LaneKernel::locate<2>(*this, tip_M, of) : located_apart(targets, sine, cosine);
-  const auto proven = LaneKernel::prove<2>(*this, tip_M, axis_M, of, linear_values);
+  const Pair disproven = LaneKernel::disprove<2>(*this, tip_M, axis_M, of, linear_values);
   for (int lane = 0; lane < 2; ++lane) {
     Branch& one = branch[lane];
     one.q.setZero();
@@ -246,7 +246,7 @@ void InverseKinematics::complete(const Targets& targets, const Candidates& candi
     one.outcome = one.out_of_travel_axis >= 0   ? InverseOutcome::kOutOfTravel
                   : candidates.outer_free[lane] ? InverseOutcome::kSingular
                                                 : InverseOutcome::kOk;
-    if (proven[lane] == 0) one = Branch();
+    if (disproven[lane] != 0.0) one = Branch();
   }
 }
 

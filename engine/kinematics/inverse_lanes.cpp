@@ -1,5 +1,7 @@
 // The inverse along a way, of several poses side by side. What is seldom (the pole, out of reach, turns far
 // beyond the travel, a proof that fails) is left to continued() of one pose.
+#include "kinematics/inverse_lanes.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -60,17 +62,17 @@ struct Turned {
 }  // namespace
 
 struct LaneInverse {
-  template <int N>
-  using Numbers = typename lanes::Vector<N>::Numbers;
-  template <int N>
-  using Bits = typename lanes::Vector<N>::Bits;
+  /// Two rotary axes, and no linear axis rides on one.
+  static bool takes(const InverseKinematics& inverse) {
+    return inverse.rotary_.size() == 2 && inverse.columns_constant_;
+  }
 
-  /// Turns by axis and branch, with the senses of the machine's axes. `odd`: there are not two branches, or
-  /// this is not the way to them.
+  /// Turns by axis and branch, with the senses of the machine's axes. `odd`: above 0 where there are not
+  /// two branches, or this is not the way to them.
   template <int N>
   struct Turns {
     Numbers<N> of[2][2];
-    Bits<N> odd;
+    Numbers<N> odd;
   };
 
   /// RotaryPair::solve().
@@ -80,11 +82,10 @@ struct LaneInverse {
     const LanePoints<N> in_frame = product<N>(pair.frame_, axis_W);
     const Numbers<N> c1 = in_frame.x, wn = in_frame.y, wk = in_frame.z;
     const Numbers<N> rho_squared = wn * wn + wk * wk, rho = roots(rho_squared);
-    const Bits<N> upper = c1 >= 0.0;
-    Numbers<N> p = upper ? spread<N>(pair.p_at_pole_[0]) : spread<N>(pair.p_at_pole_[1]);
+    Numbers<N> p = c1 >= 0.0 ? spread<N>(pair.p_at_pole_[0]) : spread<N>(pair.p_at_pole_[1]);
     if (pair.d_ != 0.0) {
       const Numbers<N> from_pole = rho_squared / (1.0 + magnitude(c1));
-      p += pair.d_per_s_ * (upper ? from_pole : -from_pole);
+      p += pair.d_per_s_ * (c1 >= 0.0 ? from_pole : -from_pole);
     }
     const bool never_aside = pair.d_ == 0.0 && pair.p_at_pole_[0] == 0.0 && pair.p_at_pole_[1] == 0.0;
     Numbers<N> r = rho, z_angle = spread<N>(0.5 * kPi);
@@ -97,10 +98,12 @@ struct LaneInverse {
     const Numbers<N> tilt = lanes::atan2<N>(r, (c1 - pair.d_ * pair.c2_) * pair.per_s_);
     const double outer = inverse.rotary_sense_[0], inner = inverse.rotary_sense_[1];
     // Everything but two branches has no root above 0, or is not a number.
-    const Bits<N> even = (rho >= kPoleTolerance) & (r > 0.0) & (magnitude(p) <= rho);
+    const Numbers<N> zero{}, one = zero + 1.0;
+    const Numbers<N> odd =
+        (rho >= kPoleTolerance ? zero : one) + (r > 0.0 ? zero : one) + (magnitude(p) <= rho ? zero : one);
     return {{{outer * (turn - z_angle), outer * (turn + z_angle)},
              {inner * (-tilt - pair.v_angle_), inner * (tilt - pair.v_angle_)}},
-            ~even};
+            odd};
   }
 
   /// The branch that turns less from the values before. Of one pose or of several.
@@ -119,10 +122,9 @@ struct LaneInverse {
       }
     }
     Turned<T> result;
-    const auto second = way[1] < way[0];
     for (int slot = 0; slot < 2; ++slot) {
-      result.value[slot] = second ? branch[1].value[slot] : branch[0].value[slot];
-      result.q[slot] = second ? branch[1].q[slot] : branch[0].q[slot];
+      result.value[slot] = way[1] < way[0] ? branch[1].value[slot] : branch[0].value[slot];
+      result.q[slot] = way[1] < way[0] ? branch[1].q[slot] : branch[0].q[slot];
     }
     return result;
   }
@@ -153,133 +155,164 @@ struct LaneInverse {
             lanes::same_bits<Numbers<N>>(rows[2])};
   }
 
-  /// The first poses, N at most; returns how many: up to one that is odd and belongs to a way. `before`: of
-  /// each pose, or of the first of a way.
+  /// unit_axis() of each, its squares added as Eigen does.
+  template <int N>
+  SWARF_KERNEL_INLINE static LanePoints<N> unit_axes(const LanePoints<N>& axis) {
+    const Numbers<N> squared = (axis.x * axis.x + axis.y * axis.y) + axis.z * axis.z;
+    const Numbers<N> off = magnitude(Numbers<N>(squared - 1.0)) <= kUnitRounding ? Numbers<N>{} : squared;
+    const auto bits = lanes::same_bits<Bits<N>>(off);
+    int64_t any = 0;
+    for (int lane = 0; lane < N; ++lane) any |= bits[lane];
+    if (any == 0) return axis;
+    const Numbers<N> norm = roots(squared);
+    return {off == 0.0 ? axis.x : axis.x / norm, off == 0.0 ? axis.y : axis.y / norm,
+            off == 0.0 ? axis.z : axis.z / norm};
+  }
+
+  /// The values by axis, of each pose.
+  template <int N>
+  struct Values {
+    Numbers<N> of[kMaxAxes];
+    Numbers<N> out_of_travel;  ///< the first axis outside, or -1
+  };
+
+  /// InverseKinematics::first_out_of_travel() of each.
+  template <int N>
+  SWARF_KERNEL_INLINE static Values<N> by_axis(const InverseKinematics& inverse, const LanePoints<N>& linear,
+                                               const Turned<Numbers<N>>& chosen) {
+    Values<N> values{};
+    values.of[inverse.linear_[0]] = linear.x;
+    values.of[inverse.linear_[1]] = linear.y;
+    values.of[inverse.linear_[2]] = linear.z;
+    for (size_t slot = 0; slot < 2; ++slot) values.of[inverse.rotary_[slot]] = chosen.value[slot];
+    values.out_of_travel = spread<N>(-1.0);
+    for (int i = kMaxAxes - 1; i >= 0; --i) {
+      values.out_of_travel = LaneKernel::if_within<Numbers<N>>(
+          values.of[i], inverse.travel_min_[i], inverse.travel_max_[i], values.out_of_travel, spread<N>(i));
+    }
+    for (size_t slot = 0; slot < 2; ++slot) values.of[inverse.rotary_[slot]] = chosen.q[slot];
+    return values;
+  }
+
+  /// The first poses, N at most; returns how many: up to one that is odd and belongs to a way.
   template <int N, bool kAlong>
-  SWARF_KERNEL_INLINE static size_t solve(const InverseKinematics& inverse, std::span<const ToolPose> poses,
-                                          const AxisValues* before, Branch* found) {
-    const size_t count = std::min<size_t>(poses.size(), N);
+  SWARF_KERNEL_INLINE static size_t solve(const PoseRow& row) {
+    const InverseKinematics& inverse = row.inverse;
+    const size_t count = std::min<size_t>(row.poses_W.size(), N);
     double tip[3][N], axis[3][N], follows[2][N];
     for (size_t lane = 0; lane < N; ++lane) {
       const size_t from = std::min(lane, count - 1);
-      const Vec3 tip_W = poses[from].tip_W, axis_W = unit_axis(poses[from].axis_W);
       for (int i = 0; i < 3; ++i) {
-        tip[i][lane] = tip_W[i];
-        axis[i][lane] = axis_W[i];
+        tip[i][lane] = row.poses_W[from].tip_W[i];
+        axis[i][lane] = row.poses_W[from].axis_W[i];
       }
       for (size_t slot = 0; slot < 2 && !kAlong; ++slot)
-        follows[slot][lane] = before[from][inverse.rotary_[slot]];
+        follows[slot][lane] = row.before[from][inverse.rotary_[slot]];
     }
-    const LanePoints<N> axis_W = load<N>(axis);
+    const LanePoints<N> axis_W = unit_axes<N>(load<N>(axis));
     const Turns<N> turns = LaneInverse::turns<N>(inverse, axis_W);
     Numbers<N> hints[2];
     Turned<Numbers<N>> chosen;
     if constexpr (kAlong) {
-      chosen = nearer_along<N>(inverse, turns, *before, hints);
+      chosen = nearer_along<N>(inverse, turns, *row.before, hints);
     } else {
       for (int slot = 0; slot < 2; ++slot) hints[slot] = lanes::same_bits<Numbers<N>>(follows[slot]);
       chosen = nearer<Numbers<N>>(inverse, turns.of, hints);
     }
-    Bits<N> even = ~turns.odd;
+    Numbers<N> odd = turns.odd;
     LaneSines<N> of;
     for (int slot = 0; slot < 2; ++slot) {
       lanes::sines<N>(chosen.value[slot], of.sine[slot], of.cosine[slot]);
-      even &= (magnitude(chosen.value[slot]) <= kLaneRange) &
-              (magnitude(Numbers<N>(hints[slot] - chosen.value[slot])) <= kTurn * kTurnsMost);
+      const Numbers<N> away = hints[slot] - chosen.value[slot], zero{}, one = zero + 1.0;
+      odd += (magnitude(chosen.value[slot]) <= kLaneRange ? zero : one) +
+             (magnitude(away) <= kTurn * kTurnsMost ? zero : one);
     }
     const Mat3 into_M = inverse.machine_.X_MW.linear();
     const LanePoints<N> tip_M = moved<N>(inverse.machine_.X_MW, load<N>(tip));
     const LanePoints<N> axis_M = product<N>(into_M, axis_W);
     const LanePoints<N> linear = LaneKernel::locate<N>(inverse, tip_M, of);
-    even &= LaneKernel::prove<N>(inverse, tip_M, axis_M, of, linear);
-    return hand_out<N, kAlong>(inverse, poses.first(count), before, even, chosen, linear, found);
+    odd += LaneKernel::disprove<N>(inverse, tip_M, axis_M, of, linear);
+    return hand_out<N, kAlong>(row, count, odd, by_axis<N>(inverse, linear, chosen));
   }
 
   template <int N, bool kAlong>
-  SWARF_KERNEL_INLINE static size_t hand_out(const InverseKinematics& inverse,
-                                             std::span<const ToolPose> poses, const AxisValues* before,
-                                             const Bits<N>& even, const Turned<Numbers<N>>& chosen,
-                                             const LanePoints<N>& linear, Branch* found) {
-    const int outer = inverse.rotary_[0], inner = inverse.rotary_[1];
-    for (size_t lane = 0; lane < poses.size(); ++lane) {
-      Branch& one = found[lane];
-      if (even[lane] == 0) {
-        const AxisValues& hint = !kAlong ? before[lane] : lane == 0 ? *before : found[lane - 1].q;
-        one = inverse.continued(poses[lane], hint);
+  SWARF_KERNEL_INLINE static size_t hand_out(const PoseRow& row, size_t count, const Numbers<N>& odd,
+                                             const Values<N>& values) {
+    for (size_t lane = 0; lane < count; ++lane) {
+      Branch& one = row.found[lane];
+      if (odd[lane] != 0.0) {
+        const AxisValues& hint = !kAlong ? row.before[lane] : lane == 0 ? *row.before : row.found[lane - 1].q;
+        one = row.inverse.continued(row.poses_W[lane], hint);
         if (kAlong) return lane + 1;
         continue;
       }
-      one.q.setZero();
-      one.q[inverse.linear_[0]] = linear.x[lane];
-      one.q[inverse.linear_[1]] = linear.y[lane];
-      one.q[inverse.linear_[2]] = linear.z[lane];
-      one.q[outer] = chosen.value[0][lane];
-      one.q[inner] = chosen.value[1][lane];
-      one.out_of_travel_axis = inverse.first_out_of_travel(one.q);
+      for (int i = 0; i < kMaxAxes; ++i) one.q[i] = values.of[i][lane];
+      one.out_of_travel_axis = static_cast<int>(values.out_of_travel[lane]);
       one.outcome = one.out_of_travel_axis >= 0 ? InverseOutcome::kOutOfTravel : InverseOutcome::kOk;
-      one.q[outer] = chosen.q[0][lane];
-      one.q[inner] = chosen.q[1][lane];
     }
-    return poses.size();
+    return count;
   }
 };
 
 namespace {
 
-using SolveLanes = size_t (*)(const InverseKinematics& inverse, std::span<const ToolPose> poses,
-                              const AxisValues* before, Branch* found);
-
 template <bool kAlong>
-SWARF_X86_64_V4_WIDE size_t solve_eight(const InverseKinematics& inverse, std::span<const ToolPose> poses,
-                                        const AxisValues* before, Branch* found) {
-  return LaneInverse::solve<8, kAlong>(inverse, poses, before, found);
+SWARF_X86_64_V4_WIDE size_t solve_eight(const PoseRow& row) {
+  return LaneInverse::solve<8, kAlong>(row);
 }
 template <bool kAlong>
-SWARF_X86_64_V3 size_t solve_four(const InverseKinematics& inverse, std::span<const ToolPose> poses,
-                                  const AxisValues* before, Branch* found) {
-  return LaneInverse::solve<4, kAlong>(inverse, poses, before, found);
+SWARF_X86_64_V3 size_t solve_four(const PoseRow& row) {
+  return LaneInverse::solve<4, kAlong>(row);
 }
 template <bool kAlong>
-size_t solve_two(const InverseKinematics& inverse, std::span<const ToolPose> poses, const AxisValues* before,
-                 Branch* found) {
-  return LaneInverse::solve<2, kAlong>(inverse, poses, before, found);
-}
-
-template <bool kAlong>
-SolveLanes fastest() {
-  return runnable<SolveLanes>(&solve_eight<kAlong>, &solve_four<kAlong>, &solve_two<kAlong>).front();
+size_t solve_two(const PoseRow& row) {
+  return LaneInverse::solve<2, kAlong>(row);
 }
 
 }  // namespace
 
-void InverseKinematics::continued(std::span<const ToolPose> poses_W, std::span<const AxisValues> before,
-                                  std::span<Branch> found) const {
-  static const SolveLanes solve_some = fastest<false>();
-  const bool apart = rotary_.size() < 2 || !columns_constant_;
+std::span<const InverseLanes> inverse_lane_variants() {
+  static const std::vector<InverseLanes> variants = runnable<InverseLanes>(
+      {8, &solve_eight<false>, &solve_eight<true>}, {4, &solve_four<false>, &solve_four<true>},
+      {2, &solve_two<false>, &solve_two<true>});
+  return variants;
+}
+
+void continue_apart(const InverseLanes& lanes, const InverseKinematics& inverse,
+                    std::span<const ToolPose> poses_W, std::span<const AxisValues> before,
+                    std::span<Branch> found) {
   for (size_t i = 0; i < poses_W.size();) {
-    if (!apart && poses_W.size() - i > 1) {
-      i += solve_some(*this, poses_W.subspan(i), &before[i], &found[i]);
+    if (LaneInverse::takes(inverse) && poses_W.size() - i > 1) {
+      i += lanes.apart({inverse, poses_W.subspan(i), &before[i], &found[i]});
     } else {
-      found[i] = continued(poses_W[i], before[i]);
+      found[i] = inverse.continued(poses_W[i], before[i]);
       ++i;
     }
   }
 }
 
-void InverseKinematics::continued(std::span<const ToolPose> poses_W, const AxisValues& before,
-                                  std::span<Branch> found) const {
-  static const SolveLanes solve_some = fastest<true>();
-  const bool apart = rotary_.size() < 2 || !columns_constant_;
+void continue_along(const InverseLanes& lanes, const InverseKinematics& inverse,
+                    std::span<const ToolPose> poses_W, const AxisValues& before, std::span<Branch> found) {
   AxisValues last = before;
   for (size_t i = 0; i < poses_W.size();) {
     size_t done = 1;
-    if (!apart && poses_W.size() - i > 1)
-      done = solve_some(*this, poses_W.subspan(i), &last, &found[i]);
+    if (LaneInverse::takes(inverse) && poses_W.size() - i > 1)
+      done = lanes.along({inverse, poses_W.subspan(i), &last, &found[i]});
     else
-      found[i] = continued(poses_W[i], last);
+      found[i] = inverse.continued(poses_W[i], last);
     for (; done > 0; --done, ++i)
       if (found[i].outcome != InverseOutcome::kUnreachable) last = found[i].q;
   }
+}
+
+void InverseKinematics::continued(std::span<const ToolPose> poses_W, std::span<const AxisValues> before,
+                                  std::span<Branch> found) const {
+  continue_apart(inverse_lane_variants().front(), *this, poses_W, before, found);
+}
+
+void InverseKinematics::continued(std::span<const ToolPose> poses_W, const AxisValues& before,
+                                  std::span<Branch> found) const {
+  continue_along(inverse_lane_variants().front(), *this, poses_W, before, found);
 }
 
 }  // namespace swarf::kinematics

@@ -15,15 +15,10 @@ namespace swarf::kinematics {
 /// Of the outer and the inner axis.
 template <int N>
 struct LaneSines {
-  typename lanes::Vector<N>::Numbers sine[2], cosine[2];
+  Numbers<N> sine[2], cosine[2];
 };
 
 struct LaneKernel {
-  template <int N>
-  using Numbers = typename lanes::Vector<N>::Numbers;
-  template <int N>
-  using Bits = typename lanes::Vector<N>::Bits;
-
   /// The values by whole turns nearest to the hint, or one turn from there where only that is inside the
   /// travel. Of one number or of several.
   template <class T>
@@ -32,8 +27,18 @@ struct LaneKernel {
     // Without a call and without a branch.
     const T value = turn + kTurn * ((turns_away + lanes::kWhole) - lanes::kWhole);
     const T other = value < least ? value + kTurn : value - kTurn;
-    const T inside = (other >= least) & (other <= most) ? other : value;
-    return (value >= least) & (value <= most) ? value : inside;
+    return if_within<T>(value, least, most, value, if_within<T>(other, least, most, other, value));
+  }
+
+  /// What is chosen where x lies in the bounds, else the other. GCC 12 takes eight comparisons apart into
+  /// single numbers where two of them are joined before they choose, or where one is kept in a variable.
+  template <class T>
+  SWARF_KERNEL_INLINE static T if_within(const T& x, double least, double most, const T& chosen,
+                                         const T& other) {
+    if constexpr (sizeof(T) == sizeof(double)) return (x >= least) & (x <= most) ? chosen : other;
+    const T low = x > least ? x : T{} + least;
+    const T held = low < most ? low : T{} + most;
+    return held == x ? chosen : other;
   }
 
   /// Carries the work or tool point to the base; the linear axes are what is looked for.
@@ -65,11 +70,12 @@ struct LaneKernel {
             rows(2, 0) * gap.x + rows(2, 1) * gap.y + rows(2, 2) * gap.z};
   }
 
-  /// forward() without its last step, the turn into W, which changes no distance.
+  /// forward() without its last step, the turn into W, which changes no distance. 0 where it gives the pose
+  /// back, else more.
   template <int N>
-  SWARF_KERNEL_INLINE static Bits<N> prove(const InverseKinematics& inverse, const LanePoints<N>& tip_M,
-                                           const LanePoints<N>& axis_M, const LaneSines<N>& of,
-                                           const LanePoints<N>& linear_values) {
+  SWARF_KERNEL_INLINE static Numbers<N> disprove(const InverseKinematics& inverse, const LanePoints<N>& tip_M,
+                                                 const LanePoints<N>& axis_M, const LaneSines<N>& of,
+                                                 const LanePoints<N>& linear_values) {
     const Numbers<N> linear[3] = {linear_values.x, linear_values.y, linear_values.z};
     LanePoints<N> tip = spread<N>(inverse.machine_.tip_M), axis = spread<N>(inverse.machine_.tool_axis_M);
     for (const LinkStep& step : inverse.tool_to_work_) {
@@ -83,8 +89,9 @@ struct LaneKernel {
       tip = origin + rotate<N>(step.along, step.direction, sine, cosine, tip - origin);
       axis = rotate<N>(step.along, step.direction, sine, cosine, axis);
     }
-    return (squared_norm<N>(tip - tip_M) <= kTipTolerance * kTipTolerance) &
-           (squared_norm<N>(axis - axis_M) <= kAxisTolerance * kAxisTolerance);
+    const Numbers<N> zero{};
+    return (squared_norm<N>(tip - tip_M) <= kTipTolerance * kTipTolerance ? zero : zero + 1.0) +
+           (squared_norm<N>(axis - axis_M) <= kAxisTolerance * kAxisTolerance ? zero : zero + 1.0);
   }
 };
 

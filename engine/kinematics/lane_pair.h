@@ -8,20 +8,21 @@
 
 namespace swarf::kinematics {
 
-using Pair = lanes::Vector<2>::Numbers;
+using lanes::Bits;
+using lanes::Numbers;
+using Pair = Numbers<2>;
 
 /// Points or directions.
 template <int N>
 struct LanePoints {
-  using Numbers = typename lanes::Vector<N>::Numbers;
-  Numbers x, y, z;
+  Numbers<N> x, y, z;
 };
 /// Two.
 using Points = LanePoints<2>;
 
 template <int N>
-SWARF_KERNEL_INLINE typename lanes::Vector<N>::Numbers spread(double value) {
-  return typename lanes::Vector<N>::Numbers{} + value;
+SWARF_KERNEL_INLINE Numbers<N> spread(double value) {
+  return Numbers<N>{} + value;
 }
 template <int N>
 SWARF_KERNEL_INLINE LanePoints<N> spread(const Vec3& point) {
@@ -45,37 +46,33 @@ SWARF_KERNEL_INLINE LanePoints<N> operator+(const LanePoints<N>& a, const LanePo
   return {a.x + b.x, a.y + b.y, a.z + b.z};
 }
 template <int N>
-SWARF_KERNEL_INLINE LanePoints<N> operator*(const typename LanePoints<N>::Numbers& factor,
-                                            const LanePoints<N>& a) {
+SWARF_KERNEL_INLINE LanePoints<N> operator*(const Numbers<N>& factor, const LanePoints<N>& a) {
   return {factor * a.x, factor * a.y, factor * a.z};
 }
 template <int N>
-SWARF_KERNEL_INLINE typename LanePoints<N>::Numbers squared_norm(const LanePoints<N>& a) {
+SWARF_KERNEL_INLINE Numbers<N> squared_norm(const LanePoints<N>& a) {
   return a.x * a.x + (a.y * a.y + a.z * a.z);
 }
 
 /// See rotate() of one vector.
 template <int N>
-SWARF_KERNEL_INLINE LanePoints<N> rotate(Along way, const Vec3& direction,
-                                         const typename LanePoints<N>::Numbers& sine,
-                                         const typename LanePoints<N>::Numbers& cosine,
-                                         const LanePoints<N>& p) {
-  using Numbers = typename LanePoints<N>::Numbers;
+SWARF_KERNEL_INLINE LanePoints<N> rotate(Along way, const Vec3& direction, const Numbers<N>& sine,
+                                         const Numbers<N>& cosine, const LanePoints<N>& p) {
   if (way == Along::kX) {
-    const Numbers s = sine * direction.x();
+    const Numbers<N> s = sine * direction.x();
     return {p.x, cosine * p.y - s * p.z, s * p.y + cosine * p.z};
   }
   if (way == Along::kZ) {
-    const Numbers s = sine * direction.z();
+    const Numbers<N> s = sine * direction.z();
     return {cosine * p.x - s * p.y, s * p.x + cosine * p.y, p.z};
   }
   if (way == Along::kY) {
-    const Numbers s = sine * direction.y();
+    const Numbers<N> s = sine * direction.y();
     return {cosine * p.x + s * p.z, p.y, cosine * p.z - s * p.x};
   }
   const LanePoints<N> d = spread<N>(direction);
   const LanePoints<N> cross{d.y * p.z - d.z * p.y, d.z * p.x - d.x * p.z, d.x * p.y - d.y * p.x};
-  const Numbers along = (1.0 - cosine) * (d.x * p.x + (d.y * p.y + d.z * p.z));
+  const Numbers<N> along = (1.0 - cosine) * (d.x * p.x + (d.y * p.y + d.z * p.z));
   return (cosine * p + sine * cross) + along * d;
 }
 

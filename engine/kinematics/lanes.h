@@ -43,6 +43,11 @@ struct Vector<8> {
   using Numbers = double __attribute__((vector_size(64)));
   using Bits = int64_t __attribute__((vector_size(64)));
 };
+template <int N>
+using Numbers = typename Vector<N>::Numbers;
+/// Of as many whole numbers; of a comparison all bits are set where it holds.
+template <int N>
+using Bits = typename Vector<N>::Bits;
 
 template <typename To, typename From>
 SWARF_KERNEL_INLINE To same_bits(const From& from) {
@@ -86,49 +91,42 @@ inline constexpr double kWhole = 6755399441055744.0;
 
 /// |x| <= kLaneRange.
 template <int N>
-SWARF_KERNEL_INLINE void sines(const typename Vector<N>::Numbers& x, typename Vector<N>::Numbers& sine,
-                               typename Vector<N>::Numbers& cosine) {
-  using Numbers = typename Vector<N>::Numbers;
-  using Bits = typename Vector<N>::Bits;
+SWARF_KERNEL_INLINE void sines(const Numbers<N>& x, Numbers<N>& sine, Numbers<N>& cosine) {
   constexpr double kHalfPiHigh = 0x1.921fb544p+0, kHalfPiMiddle = 0x1.0b4611a6p-34;
   constexpr double kHalfPiLow = 0x1.3198a2e037073p-69;
-  const Numbers shifted = x * (2.0 * std::numbers::inv_pi) + kWhole;
-  const Numbers n = shifted - kWhole;
-  Numbers s, c;
-  small_sines<Numbers>(((x - n * kHalfPiHigh) - n * kHalfPiMiddle) - n * kHalfPiLow, s, c);
-  const auto quarter = same_bits<Bits>(shifted);
-  auto sine_bits = same_bits<Bits>(s), cosine_bits = same_bits<Bits>(c);
-  const Bits swap = (sine_bits ^ cosine_bits) & -(quarter & 1);
-  sine = same_bits<Numbers>(Bits((sine_bits ^ swap) ^ ((quarter & 2) << 62)));
-  cosine = same_bits<Numbers>(Bits((cosine_bits ^ swap) ^ (((quarter + 1) & 2) << 62)));
+  const Numbers<N> shifted = x * (2.0 * std::numbers::inv_pi) + kWhole;
+  const Numbers<N> n = shifted - kWhole;
+  Numbers<N> s, c;
+  small_sines<Numbers<N>>(((x - n * kHalfPiHigh) - n * kHalfPiMiddle) - n * kHalfPiLow, s, c);
+  const auto quarter = same_bits<Bits<N>>(shifted);
+  auto sine_bits = same_bits<Bits<N>>(s), cosine_bits = same_bits<Bits<N>>(c);
+  const Bits<N> swap = (sine_bits ^ cosine_bits) & -(quarter & 1);
+  sine = same_bits<Numbers<N>>(Bits<N>((sine_bits ^ swap) ^ ((quarter & 2) << 62)));
+  cosine = same_bits<Numbers<N>>(Bits<N>((cosine_bits ^ swap) ^ (((quarter + 1) & 2) << 62)));
 }
 
 /// See lane_atan2().
 template <int N>
-SWARF_KERNEL_INLINE typename Vector<N>::Numbers atan2(const typename Vector<N>::Numbers& y,
-                                                      const typename Vector<N>::Numbers& along) {
-  using Numbers = typename Vector<N>::Numbers;
-  using Bits = typename Vector<N>::Bits;
+SWARF_KERNEL_INLINE Numbers<N> atan2(const Numbers<N>& y, const Numbers<N>& along) {
   constexpr int64_t kSign = INT64_MIN;
-  const auto y_bits = same_bits<Bits>(y);
-  const auto rise = same_bits<Numbers>(Bits(y_bits & ~kSign));
-  const auto run = same_bits<Numbers>(Bits(same_bits<Bits>(along) & ~kSign));
-  const Bits steep = rise > run;
-  const Numbers a = steep ? rise : run, b = steep ? run : rise;
-  const Bits far = b > a * (std::numbers::sqrt2 - 1.0);
-  const Numbers zero = {}, eighth = zero + 0.25 * std::numbers::pi;
-  const Numbers t = (far ? b - a : b) / (far ? b + a : a);
-  Numbers turn = (far ? eighth : zero) + small_atan<Numbers>(t);
-  turn = steep ? 0.5 * std::numbers::pi - turn : turn;
+  const auto y_bits = same_bits<Bits<N>>(y);
+  const auto rise = same_bits<Numbers<N>>(Bits<N>(y_bits & ~kSign));
+  const auto run = same_bits<Numbers<N>>(Bits<N>(same_bits<Bits<N>>(along) & ~kSign));
+  // Comparisons in place, for GCC's sake: see LaneKernel::if_within().
+  const Numbers<N> a = rise > run ? rise : run, b = rise > run ? run : rise;
+  const Numbers<N> near = a * (std::numbers::sqrt2 - 1.0);
+  const Numbers<N> zero = {}, eighth = zero + 0.25 * std::numbers::pi;
+  const Numbers<N> t = (b > near ? b - a : b) / (b > near ? b + a : a);
+  Numbers<N> turn = (b > near ? eighth : zero) + small_atan<Numbers<N>>(t);
+  turn = rise > run ? 0.5 * std::numbers::pi - turn : turn;
   turn = along < zero ? std::numbers::pi - turn : turn;
-  return same_bits<Numbers>(Bits(same_bits<Bits>(turn) | (y_bits & kSign)));
+  return same_bits<Numbers<N>>(Bits<N>(same_bits<Bits<N>>(turn) | (y_bits & kSign)));
 }
 
 }  // namespace lanes
 
 template <int N>
 void lane_sines(const double (&angle)[N], double (&sine)[N], double (&cosine)[N]) {
-  using Numbers = typename lanes::Vector<N>::Numbers;
   for (const double one : angle) {
     if (std::abs(one) <= kLaneRange) continue;
     for (int i = 0; i < N; ++i) {
@@ -137,8 +135,8 @@ void lane_sines(const double (&angle)[N], double (&sine)[N], double (&cosine)[N]
     }
     return;
   }
-  Numbers s, c;
-  lanes::sines<N>(lanes::same_bits<Numbers>(angle), s, c);
+  lanes::Numbers<N> s, c;
+  lanes::sines<N>(lanes::same_bits<lanes::Numbers<N>>(angle), s, c);
   std::memcpy(sine, &s, sizeof sine);
   std::memcpy(cosine, &c, sizeof cosine);
 }
@@ -146,8 +144,8 @@ void lane_sines(const double (&angle)[N], double (&sine)[N], double (&cosine)[N]
 /// std::atan2 of each pair; x and y are finite and not both zero. -0 counts as 0 in x.
 template <int N>
 void lane_atan2(const double (&y)[N], const double (&x)[N], double (&angle)[N]) {
-  using Numbers = typename lanes::Vector<N>::Numbers;
-  const Numbers turn = lanes::atan2<N>(lanes::same_bits<Numbers>(y), lanes::same_bits<Numbers>(x));
+  const lanes::Numbers<N> turn =
+      lanes::atan2<N>(lanes::same_bits<lanes::Numbers<N>>(y), lanes::same_bits<lanes::Numbers<N>>(x));
   std::memcpy(angle, &turn, sizeof angle);
 }
 

@@ -41,7 +41,7 @@ constexpr double kReach = 0.02;
 /// Nodes whose inverse is solved at once.
 constexpr size_t kSolvedAtOnce = 32;
 /// Chords that the tip's way under the joint law is summed from: within 1e-3 of the way for half a turn.
-constexpr int kWayChords = 32;
+constexpr size_t kWayChords = 32;
 
 bool turns(const BlockMotion& motion) {
   for (size_t i = 0; i < motion.machine->axes.size(); ++i) {
@@ -80,18 +80,18 @@ double way_of_tip(const BlockMotion& motion) {
     if (motion.block.law != BlockLaw::kJoint) return toolpath::tip_way(motion.block);
     return (motion.block.to.tip_W - motion.block.from.tip_W).norm();
   }
-  const kinematics::ForwardChain forward(*motion.machine);
   const AxisValues change = motion.q_to - motion.q_from;
+  std::array<AxisValues, kWayChords - 1> q;
+  std::array<ToolPose, kWayChords> pose;
+  for (size_t i = 1; i < kWayChords; ++i)
+    q[i - 1] = motion.q_from + static_cast<double>(i) / kWayChords * change;
+  kinematics::ForwardChain(*motion.machine).at(q, pose);
+  pose.back() = motion.block.to;
   double way = 0.0;
   Vec3 before = motion.block.from.tip_W;
-  for (int i = 1; i <= kWayChords; i += 2) {
-    ToolPose pose[2];
-    forward.at({motion.q_from + static_cast<double>(i) / kWayChords * change,
-                motion.q_from + static_cast<double>(i + 1) / kWayChords * change},
-               pose);
-    if (i + 1 == kWayChords) pose[1] = motion.block.to;
-    way += (pose[0].tip_W - before).norm() + (pose[1].tip_W - pose[0].tip_W).norm();
-    before = pose[1].tip_W;
+  for (size_t i = 0; i < kWayChords; i += 2) {
+    way += (pose[i].tip_W - before).norm() + (pose[i + 1].tip_W - pose[i].tip_W).norm();
+    before = pose[i + 1].tip_W;
   }
   return way;
 }
@@ -231,6 +231,11 @@ void BlockCurve::sample() {
     for (const Branch& branch : std::span(found).first(count))
       nodes_.push_back(branch.outcome == InverseOutcome::kUnreachable ? nodes_.back() : branch.q);
   }
+  for (size_t i = 0; i < steps; ++i) jumps_ = jumps_ || jumps_after(i);
+}
+
+bool BlockCurve::jumps_after(size_t node) const {
+  return turn_between(*machine_, nodes_[node], nodes_[node + 1]) > kJump;
 }
 
 double BlockCurve::share(double s) const {
@@ -254,15 +259,16 @@ AxisValues BlockCurve::q(double s) const {
   return is_given(x) ? given(x) : solve(x, nearest_node(s));
 }
 
-BlockCurve::Place BlockCurve::place(double s) const {
-  Place place;
-  place.share = share(s);
-  place.solved = is_given(place.share);
-  place.q = place.solved ? given(place.share) : nearest_node(s);
-  if (place.solved) return place;
-  place.before = before(place.share, place.q);
-  place.pose = law_->at(place.share);
-  return place;
+bool BlockCurve::is_solved(double s, double share, AxisValues& q, ToolPose& pose,
+                           AxisValues& before_it) const {
+  if (is_given(share)) {
+    q = given(share);
+    return true;
+  }
+  q = nearest_node(s);
+  before_it = before(share, q);
+  pose = law_->at(share);
+  return false;
 }
 
 namespace {
@@ -276,14 +282,9 @@ std::array<AxisValues, N> values_at(const BlockCurve& curve, const std::array<do
   std::array<size_t, N> open;
   std::array<Branch, N> found;
   size_t count = 0;
-  for (size_t i = 0; i < N; ++i) {
-    const BlockCurve::Place place = curve.place(places[i]);
-    q[i] = place.q;
-    if (place.solved) continue;
-    poses[count] = place.pose;
-    before[count] = place.before;
-    open[count++] = i;
-  }
+  for (size_t i = 0; i < N; ++i)
+    if (!curve.is_solved(places[i], curve.share(places[i]), q[i], poses[count], before[count]))
+      open[count++] = i;
   curve.inverse().continued(std::span(poses).first(count), std::span(before).first(count), found);
   for (size_t i = 0; i < count; ++i)
     if (found[i].outcome != InverseOutcome::kUnreachable) q[open[i]] = found[i].q;
@@ -317,7 +318,7 @@ PathCell BlockCurve::bounds_between(size_t from, size_t to) const {
   const double h = length_ / static_cast<double>(last);
   PathCell cell;
   cell.first = cell.second = cell.third = AxisValues::Zero();
-  const auto jump = [&](size_t i) { return turn_between(*machine_, nodes_[i], nodes_[i + 1]) > kJump; };
+  const auto jump = [&](size_t i) { return jumps_ && jumps_after(i); };
   // Third differences of all steps that touch the cell and of one step beside it.
   for (size_t i = from > 3 ? from - 3 : 0; i + 3 <= last && i <= to; ++i) {
     if (jump(i) || jump(i + 1) || jump(i + 2)) continue;
@@ -364,39 +365,69 @@ double BlockCurve::bends_of_share(size_t from, size_t to) const {
   return greatest;
 }
 
-void BlockCurve::append_cells(double from, double to, const TipLimits& tip,
-                              std::vector<PathCell>& cells) const {
-  constexpr double kNone = std::numeric_limits<double>::infinity();
-  if (!(to > from)) return;
-  const auto limit_tip = [&](PathCell& cell, double share_of_block) {
+namespace {
+
+/// Feed and path limits of the tip along a stretch of a block.
+struct AlongTip {
+  double speed;
+  RampLimits tip;
+  /// `way_mm`: of the tip over the whole block; share of the block that the stretch goes through.
+  AlongTip(const BlockCurve::TipLimits& limits, double way_mm, double share, double length) {
     // Millimetres of the tip per mm of s.
-    const double ratio = tip_way_ * share_of_block / cell.length;
-    cell.speed = tip.feed_mm_s > 0.0 ? tip.feed_mm_s / ratio : kNone;
-    if (tip.duration_s > 0.0) cell.speed = cell.length / (share_of_block * tip.duration_s);
-    cell.tip = {tip.path.acceleration / ratio, tip.path.jerk / ratio};
-  };
-  if (even_) {
-    PathCell cell;
-    cell.first = (q_to_ - q_from_).cwiseAbs() / length_;
-    cell.second = cell.third = AxisValues::Zero();
-    cell.length = to - from;
-    limit_tip(cell, cell.length / length_);
-    cells.push_back(cell);
-    return;
+    const double ratio = way_mm * share / length;
+    speed = limits.feed_mm_s > 0.0 ? limits.feed_mm_s / ratio : std::numeric_limits<double>::infinity();
+    if (limits.duration_s > 0.0) speed = length / (share * limits.duration_s);
+    tip = {limits.path.acceleration / ratio, limits.path.jerk / ratio};
   }
+};
+
+}  // namespace
+
+/// Calls visit(from, to) for each cell of a stretch.
+template <typename Visit>
+void BlockCurve::divide(double from, double to, const Visit& visit) const {
   const double last = static_cast<double>(nodes_.size() - 1);
   const double group = std::max(1.0, std::ceil(last / static_cast<double>(kCellsMax)));
   const double step = length_ / last * std::max(group, last <= kNodesMin ? last / 2.0 : 1.0);
   const auto count = static_cast<size_t>(std::max(1.0, std::ceil((to - from) / step * (1.0 - 1e-9))));
-  for (size_t i = 0; i < count; ++i) {
-    const double a = from + (to - from) * static_cast<double>(i) / static_cast<double>(count);
-    const double b = from + (to - from) * static_cast<double>(i + 1) / static_cast<double>(count);
-    PathCell cell = bounds_between(static_cast<size_t>(a / length_ * last),
-                                   static_cast<size_t>(std::ceil(b / length_ * last)));
-    cell.length = b - a;
-    limit_tip(cell, share(b) - share(a));
-    cells.push_back(cell);
+  for (size_t i = 0; i < count; ++i)
+    visit(from + (to - from) * static_cast<double>(i) / static_cast<double>(count),
+          from + (to - from) * static_cast<double>(i + 1) / static_cast<double>(count));
+}
+
+void BlockCurve::append_cells(double from, double to, const TipLimits& tip,
+                              std::vector<PathCell>& cells) const {
+  if (!(to > from)) return;
+  if (even_) {
+    PathCell& cell = cells.emplace_back();
+    cell.first = (q_to_ - q_from_).cwiseAbs() / length_;
+    cell.second = cell.third = AxisValues::Zero();
+    cell.length = to - from;
+    const AlongTip along(tip, tip_way_, cell.length / length_, cell.length);
+    cell.speed = along.speed;
+    cell.tip = along.tip;
+    return;
   }
+  const double last = static_cast<double>(nodes_.size() - 1);
+  divide(from, to, [&](double a, double b) {
+    PathCell& cell = cells.emplace_back(bounds_between(static_cast<size_t>(a / length_ * last),
+                                                       static_cast<size_t>(std::ceil(b / length_ * last))));
+    cell.length = b - a;
+    const AlongTip along(tip, tip_way_, share(b) - share(a), cell.length);
+    cell.speed = along.speed;
+    cell.tip = along.tip;
+  });
+}
+
+void BlockCurve::limit_tip(double from, double to, const TipLimits& tip, PathCell& cell) const {
+  if (!(to > from)) return;
+  const auto lower = [&](const AlongTip& along) {
+    cell.speed = std::min(cell.speed, along.speed);
+    cell.tip.acceleration = std::min(cell.tip.acceleration, along.tip.acceleration);
+    cell.tip.jerk = std::min(cell.tip.jerk, along.tip.jerk);
+  };
+  if (even_) return lower({tip, tip_way_, (to - from) / length_, to - from});
+  divide(from, to, [&](double a, double b) { lower({tip, tip_way_, share(b) - share(a), b - a}); });
 }
 
 }  // namespace swarf::motion

@@ -50,15 +50,10 @@ class BlockCurve {
   /// Share of the block at s.
   double share(double s) const;
   kinematics::AxisValues q(double s) const;
-  /// A place for those who solve the inverse themselves, several places at once.
-  struct Place {
-    double share = 0.0;
-    bool solved = true;        ///< q is known; else it is what follows `before` by continuity at `pose`,
-    kinematics::AxisValues q;  ///< or, out of reach, this
-    kinematics::AxisValues before;
-    ToolPose pose;
-  };
-  Place place(double s) const;
+  /// q at s, whose share is known, for those who solve the inverse themselves, several places at once. False
+  /// where there is something to solve: what follows `before` by continuity at `pose`, or, out of reach, q.
+  bool is_solved(double s, double share, kinematics::AxisValues& q, ToolPose& pose,
+                 kinematics::AxisValues& before) const;
   /// q and its first two derivatives by s.
   struct Jet {
     kinematics::AxisValues value, first, second;
@@ -72,6 +67,8 @@ class BlockCurve {
     RampLimits path;          ///< of the tip
   };
   void append_cells(double from, double to, const TipLimits& tip, std::vector<PathCell>& cells) const;
+  /// Lowers speed and tip limits of a cell to those of all that append_cells() would append.
+  void limit_tip(double from, double to, const TipLimits& tip, PathCell& cell) const;
 
  private:
   kinematics::AxisValues solve(double x, const kinematics::AxisValues& hint) const;
@@ -87,7 +84,11 @@ class BlockCurve {
   void follow();
   void stretch(const std::vector<PathNode>& nodes);
   void sample();
+  template <typename Visit>
+  void divide(double from, double to, const Visit& visit) const;
   PathCell bounds_between(size_t from, size_t to) const;
+  /// A rotary axis turns too far from this node to the next.
+  bool jumps_after(size_t node) const;
   /// Greatest jump of x''' at the spline's knots near these nodes, over x'.
   double bends_of_share(size_t from, size_t to) const;
 
@@ -106,6 +107,7 @@ class BlockCurve {
   double speed_ = 0.0;
   double length_ = 0.0, tip_way_ = 0.0;
   bool even_ = false, followed_ = true, stretched_ = false;
+  bool jumps_ = false;  ///< after some node
   double jump_mm_ = 0.0;
   CubicSpline share_;                          ///< x(s), when stretched
   double share_step_ = 0.0;                    ///< between its knots

@@ -165,30 +165,24 @@ size_t RunSampler::next(std::span<Cycle> cycles) {
   return count;
 }
 
-/// Where the axes lead the tip, two cycles at once; else by the block's law.
+/// Where the axes lead the tip, side by side; else by the block's law.
 void RunSampler::set_poses(std::span<const PathPoint> points, std::span<Cycle> cycles) {
-  std::array<size_t, 2> led{};
+  std::array<size_t, kBatch> led;
+  std::array<kinematics::AxisValues, kBatch> q;
+  std::array<ToolPose, kBatch> poses;
   size_t count = 0;
-  const auto drive = [&] {
-    ToolPose poses[2];
-    forward_->at({points[led[0]].q, points[led[1]].q}, poses);
-    cycles[led[0]].sample.pose = poses[0];
-    cycles[led[1]].sample.pose = poses[1];
-    count = 0;
-  };
   for (size_t i = 0; i < points.size(); ++i) {
     const PathPoint& at = points[i];
     const BlockMotion& motion = motions_->at(run_->place.first + at.block);
     if (at.rounded || (motion.block.law == BlockLaw::kJoint && at.share < 1.0)) {
+      q[count] = at.q;
       led[count++] = i;
-      if (count == 2) drive();
     } else {
       cycles[i].sample.pose = at.pose ? *at.pose : pose_at(motion, at.share);
     }
   }
-  if (count == 0) return;
-  led[1] = led[0];
-  drive();
+  forward_->at(std::span(q).first(count), poses);
+  for (size_t i = 0; i < count; ++i) cycles[led[i]].sample.pose = poses[i];
 }
 
 void RunSampler::fill(const PathPoint& at, Cycle& cycle) {

@@ -1,5 +1,6 @@
 #include "motion/blocks/pose_law.h"
 
+#include "kinematics/chain.h"
 #include "toolpath/tool_path.h"
 
 namespace swarf::motion {
@@ -22,11 +23,12 @@ ToolPose PoseLaw::at(const BlockMotion& motion, double s) const {
   if (block.law == BlockLaw::kEnds)
     return {block.from.tip_W + s * (block.to.tip_W - block.from.tip_W),
             (block.from.axis_W + s * (block.to.axis_W - block.from.axis_W)).normalized()};
+  if (block.law == BlockLaw::kJoint)
+    return kinematics::forward(*motion.machine, motion.q_from + s * (motion.q_to - motion.q_from));
   ToolPose pose;
-  if (block.law != BlockLaw::kTcp)
-    pose = kinematics::forward(*motion.machine, motion.q_from + s * (motion.q_to - motion.q_from));
-  if (block.law == BlockLaw::kJoint) return pose;
-  if (circle_) pose.axis_W = circle_->at(s);
+  pose.axis_W =
+      circle_ ? circle_->at(s)
+              : kinematics::forward_axis(*motion.machine, motion.q_from + s * (motion.q_to - motion.q_from));
   pose.tip_W = arc_ ? arc_->point(s) : Vec3(block.from.tip_W + s * (block.to.tip_W - block.from.tip_W));
   return pose;
 }

@@ -307,17 +307,11 @@ double RunPathBuilder::add_corner(size_t a, size_t b) {
 
 /// Feed and path limits of both blocks beside the corner.
 void RunPathBuilder::limit_tip(size_t a, size_t b, PathCell& cell) const {
-  std::vector<PathCell> sides;
   const double d = 0.5 * cell.length;
   const BlockCurve& in = path_.curve(a);
-  in.append_cells(in.length() - d, in.length(), tip_limits(a), sides);
-  path_.curve(b).append_cells(0.0, d, tip_limits(b), sides);
   cell.speed = cell.tip.acceleration = cell.tip.jerk = std::numeric_limits<double>::infinity();
-  for (const PathCell& side : sides) {
-    cell.speed = std::min(cell.speed, side.speed);
-    cell.tip.acceleration = std::min(cell.tip.acceleration, side.tip.acceleration);
-    cell.tip.jerk = std::min(cell.tip.jerk, side.tip.jerk);
-  }
+  in.limit_tip(in.length() - d, in.length(), tip_limits(a), cell);
+  path_.curve(b).limit_tip(0.0, d, tip_limits(b), cell);
 }
 
 /// The longest corner within the tolerance: its deviation grows with its length, at least about linearly.
@@ -339,19 +333,20 @@ Blend RunPathBuilder::fit(size_t a, size_t b) const {
 
 /// Greatest distance of the tip from the programmed one at the same s.
 double RunPathBuilder::deviation(const Corner& corner, const Blend& blend) const {
-  constexpr int kPlaces = 16;
+  constexpr size_t kPlaces = 16;
   const BlockCurve &in = corner.in, &out = corner.out;
+  std::array<AxisValues, kPlaces - 1> q;
+  std::array<ToolPose, kPlaces - 1> rounded;
   std::array<double, kPlaces + 1> distance{};
-  for (int i = 1; i < kPlaces; i += 2) {
-    ToolPose rounded[2];
-    forward_.at({blend.q(blend.length * i / kPlaces), blend.q(blend.length * (i + 1) / kPlaces)}, rounded);
-    for (int lane = 0; lane < 2 && i + lane < kPlaces; ++lane) {
-      const double s = blend.length * (i + lane) / kPlaces;
-      const ToolPose programmed =
-          s < blend.before ? corner.in_law.at(corner.in_motion, in.share(in.length() - blend.before + s))
-                           : corner.out_law.at(corner.out_motion, out.share(s - blend.before));
-      distance[static_cast<size_t>(i + lane)] = (rounded[lane].tip_W - programmed.tip_W).norm();
-    }
+  const auto place = [&](size_t i) { return blend.length * static_cast<double>(i) / kPlaces; };
+  for (size_t i = 1; i < kPlaces; ++i) q[i - 1] = blend.q(place(i));
+  forward_.at(q, rounded);
+  for (size_t i = 1; i < kPlaces; ++i) {
+    const double s = place(i);
+    const ToolPose programmed =
+        s < blend.before ? corner.in_law.at(corner.in_motion, in.share(in.length() - blend.before + s))
+                         : corner.out_law.at(corner.out_motion, out.share(s - blend.before));
+    distance[i] = (rounded[i - 1].tip_W - programmed.tip_W).norm();
   }
   // Between the places: the top of the parabola through the greatest_of and those beside it.
   const auto top = std::max_element(distance.begin() + 1, distance.end() - 1);
@@ -361,19 +356,36 @@ double RunPathBuilder::deviation(const Corner& corner, const Blend& blend) const
 
 namespace {
 
-/// The point, but for what the inverse has still to find: then true.
-bool is_open(const RunPath& path, const CellOffset& at, PathPoint& point, BlockCurve::Place& place) {
+/// What the inverse has still to find.
+struct OpenPoints {
+  std::array<PathPoint*, kPointsAtOnce> point;
+  std::array<ToolPose, kPointsAtOnce> pose;
+  std::array<kinematics::AxisValues, kPointsAtOnce> before;
+  size_t count = 0;
+  void solve(const kinematics::InverseKinematics& inverse) {
+    std::array<kinematics::Branch, kPointsAtOnce> found;
+    inverse.continued(std::span(pose).first(count), std::span(before).first(count), found);
+    for (size_t i = 0; i < count; ++i)
+      if (found[i].outcome != kinematics::InverseOutcome::kUnreachable) point[i]->q = found[i].q;
+    count = 0;
+  }
+};
+
+/// The point, or all but what goes to the open ones.
+void set_point(const RunPath& path, const CellOffset& at, PathPoint& point, OpenPoints& open) {
   const Piece& piece = path.pieces[path.piece_of_cell[at.cell]];
   const double s = path.offset_of_cell[at.cell] + at.offset;
   point.block = piece.block;
   point.rounded = piece.blend >= 0;
   point.pose.reset();
   if (piece.blend < 0) {
-    place = path.curve(piece.block).place(piece.from + s);
-    point.share = place.share;
-    point.q = place.q;
-    if (!place.solved) point.pose = place.pose;
-    return !place.solved;
+    const BlockCurve& curve = path.curve(piece.block);
+    point.share = curve.share(piece.from + s);
+    ToolPose& pose = open.pose[open.count];
+    if (curve.is_solved(piece.from + s, point.share, point.q, pose, open.before[open.count])) return;
+    point.pose = pose;
+    open.point[open.count++] = &point;
+    return;
   }
   const Blend& blend = path.blends[static_cast<size_t>(piece.blend)];
   point.q = blend.q(s);
@@ -384,33 +396,18 @@ bool is_open(const RunPath& path, const CellOffset& at, PathPoint& point, BlockC
     while (path.curve(point.block).length() < kRunLengthMin);
     point.share = path.curve(point.block).share(s - blend.before);
   }
-  return false;
 }
 
 }  // namespace
 
 void points_at(const RunPath& path, std::span<const CellOffset> places, std::span<PathPoint> points) {
-  std::array<PathPoint*, kPointsAtOnce> open;
-  std::array<ToolPose, kPointsAtOnce> poses;
-  std::array<kinematics::AxisValues, kPointsAtOnce> before;
-  std::array<kinematics::Branch, kPointsAtOnce> found;
-  size_t count = 0;
-  const auto solve = [&] {
-    path.curves.front().inverse().continued(std::span(poses).first(count), std::span(before).first(count),
-                                            found);
-    for (size_t i = 0; i < count; ++i)
-      if (found[i].outcome != kinematics::InverseOutcome::kUnreachable) open[i]->q = found[i].q;
-    count = 0;
-  };
-  BlockCurve::Place place;
+  OpenPoints open;
+  const kinematics::InverseKinematics& inverse = path.curves.front().inverse();
   for (size_t i = 0; i < places.size(); ++i) {
-    if (!is_open(path, places[i], points[i], place)) continue;
-    open[count] = &points[i];
-    poses[count] = place.pose;
-    before[count++] = place.before;
-    if (count == kPointsAtOnce) solve();
+    set_point(path, places[i], points[i], open);
+    if (open.count == kPointsAtOnce) open.solve(inverse);
   }
-  if (count > 0) solve();
+  if (open.count > 0) open.solve(inverse);
 }
 
 PathPoint point_at(const RunPath& path, size_t cell, double offset) {

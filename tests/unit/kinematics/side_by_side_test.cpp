@@ -6,7 +6,9 @@
 #include <limits>
 #include <vector>
 
+#include "base/instruction_sets.h"
 #include "kinematics/forward_chain.h"
+#include "kinematics/inverse_lanes.h"
 #include "test_machines.h"
 
 namespace swarf::kinematics {
@@ -59,6 +61,7 @@ int differences(const Branch& got, const Branch& expected) {
   return same_kind && (same_bits || expected.outcome == InverseOutcome::kUnreachable) ? 0 : 1;
 }
 
+/// Of every variant of the kernel that this processor runs.
 TEST(SideBySide, ContinuedPosesAreThoseOfOneAtATime) {
   for (const MachineModel& machine : machines_side_by_side()) {
     const InverseKinematics inverse(machine);
@@ -67,16 +70,17 @@ TEST(SideBySide, ContinuedPosesAreThoseOfOneAtATime) {
     for (int i = 0; i < 1000; ++i) {
       const std::vector<ToolPose> poses = mixed_poses(machine, rng, 1 + i % 17);
       std::vector<AxisValues> before;
-      for (size_t k = 0; k < poses.size(); ++k)
+      std::vector<Branch> one, found(poses.size());
+      for (const ToolPose& pose : poses) {
         before.push_back((rng.uniform() < 0.01 ? 1e10 : 3.0) * random_values(machine, rng));
-      std::vector<Branch> found(poses.size());
-      inverse.continued(poses, before, found);
-      for (size_t k = 0; k < poses.size(); ++k) {
-        const Branch one = inverse.continued(poses[k], before[k]);
-        differ += differences(found[k], one);
-        if (before[k].norm() > 1e9) continue;
-        const Branch nearest = nearest_by_turns(machine, inverse.solve(poses[k], before[k]), before[k]);
-        differ += differences(one, nearest);
+        one.push_back(inverse.continued(pose, before.back()));
+        if (before.back().norm() > 1e9) continue;
+        const Branch nearest = nearest_by_turns(machine, inverse.solve(pose, before.back()), before.back());
+        differ += differences(one.back(), nearest);
+      }
+      for (const InverseLanes& lanes : inverse_lane_variants()) {
+        continue_apart(lanes, inverse, poses, before, found);
+        for (size_t k = 0; k < poses.size(); ++k) differ += differences(found[k], one[k]);
       }
     }
     EXPECT_EQ(differ, 0) << machine.name;
@@ -90,17 +94,31 @@ TEST(SideBySide, PosesAlongAWayAreThoseOfOneAfterTheOther) {
     int differ = 0;
     for (int i = 0; i < 1000; ++i) {
       const std::vector<ToolPose> poses = mixed_poses(machine, rng, 1 + i % 17);
-      AxisValues before = 3.0 * random_values(machine, rng);
-      std::vector<Branch> found(poses.size());
-      inverse.continued(poses, before, found);
-      for (size_t k = 0; k < poses.size(); ++k) {
-        const Branch one = inverse.continued(poses[k], before);
-        differ += differences(found[k], one);
-        if (one.outcome != InverseOutcome::kUnreachable) before = one.q;
+      const AxisValues before = 3.0 * random_values(machine, rng);
+      AxisValues last = before;
+      std::vector<Branch> one, found(poses.size());
+      for (const ToolPose& pose : poses) {
+        one.push_back(inverse.continued(pose, last));
+        if (one.back().outcome != InverseOutcome::kUnreachable) last = one.back().q;
+      }
+      for (const InverseLanes& lanes : inverse_lane_variants()) {
+        continue_along(lanes, inverse, poses, before, found);
+        for (size_t k = 0; k < poses.size(); ++k) differ += differences(found[k], one[k]);
       }
     }
     EXPECT_EQ(differ, 0) << machine.name;
   }
+}
+
+/// So that the two above have seen what they are to see.
+TEST(SideBySide, EightFourAndTwoPosesWhereTheProcessorHasThem) {
+  std::vector<int> poses;
+  for (const InverseLanes& lanes : inverse_lane_variants()) poses.push_back(lanes.poses);
+  std::vector<int> expected{2};
+  if (runs_x86_64_v3()) expected.insert(expected.begin(), 4);
+  if (runs_x86_64_v4()) expected.insert(expected.begin(), 8);
+  EXPECT_EQ(poses, expected);
+  EXPECT_EQ(forward_kernel_variants().size(), expected.size());
 }
 
 TEST(SideBySide, ForwardChainIsForwardToTheLastBits) {
@@ -108,12 +126,23 @@ TEST(SideBySide, ForwardChainIsForwardToTheLastBits) {
     const ForwardChain chain(machine);
     Rng rng(32);
     Errors errors;
-    for (int i = 0; i < 4000; ++i) {
-      const AxisValues q[2] = {random_values(machine, rng), random_values(machine, rng)};
-      ToolPose poses[2];
+    int differ = 0;
+    for (int i = 0; i < 800; ++i) {
+      std::vector<AxisValues> q(static_cast<size_t>(1 + i % 17));
+      for (AxisValues& one : q) one = (rng.uniform() < 0.01 ? 1e6 : 1.0) * random_values(machine, rng);
+      std::vector<ToolPose> poses(q.size());
       chain.at(q, poses);
-      for (int lane = 0; lane < 2; ++lane) errors.add(poses[lane], forward(machine, q[lane]));
+      for (size_t k = 0; k < q.size(); ++k)
+        if (q[k].norm() < 1e4) errors.add(poses[k], forward(machine, q[k]));
+      for (const ForwardKernel kernel : forward_kernel_variants()) {
+        std::vector<ToolPose> others(q.size()), alone(1);
+        kernel(chain, q, others);
+        kernel(chain, std::span(q).last(1), alone);
+        differ += std::memcmp(others.data(), poses.data(), poses.size() * sizeof(ToolPose)) != 0;
+        differ += std::memcmp(alone.data(), &poses.back(), sizeof(ToolPose)) != 0;
+      }
     }
+    EXPECT_EQ(differ, 0) << machine.name;
     EXPECT_LT(errors.tip, 1e-12) << machine.name;
     EXPECT_LT(errors.axis, 1e-15) << machine.name;
   }
