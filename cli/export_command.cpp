@@ -57,10 +57,10 @@ void write_trajectory(const ExportOptions& options, const sim::Job& job, const m
 }
 
 void write_gltf(const ExportOptions& options, const reports::FinishedRun& run) {
-  const reports::ReviewModels models =
+  reports::ReviewModels models =
       reports::review_models(run, run.stock.mesh(), options.error_um * kMicrometre,
-                             reports::review_pins(reports::read_findings(options.folder)),
-                             reports::kept_worst_places(options.folder));
+                             reports::review_pins(reports::read_findings(options.folder)));
+  reports::show_worst(run, reports::kept_worst_places(options.folder), models);
   const reports::GltfOptions written{options.encoding, true};
   const auto write = [](const std::string& path, const std::string& bytes) {
     replace_file(path, bytes, {"cannot-write-file", "the glTF file cannot be written"});

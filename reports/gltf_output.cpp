@@ -131,28 +131,34 @@ double animation_scale(const FinishedRun& run) {
   return run.cycles.period_s() / cycle_seconds(run);
 }
 
-DisplayMesh display_mesh(const FinishedRun& run, const TriMesh& closed, double max_error_mm,
-                         std::span<const WorstPlace> worst) {
+namespace {
+
+DisplayMesh display_mesh(const FinishedRun& run, const TriMesh& closed, double max_error_mm) {
   DisplayMesh display;
-  display.mesh = shown_part(run, mesh::decimate(closed, max_error_mm, &display.error_mm));
-  add_worst_places(run, worst, display.mesh);
+  display.mesh = shown_part(run, mesh::decimate(closed, max_error_mm, &display.error_mm), &display.highest);
   return display;
 }
 
+}  // namespace
+
 ReviewModels review_models(const FinishedRun& run, const TriMesh& closed, double max_error_mm,
-                           std::vector<ReviewPin> pins, std::span<const WorstPlace> worst) {
+                           std::vector<ReviewPin> pins) {
   ReviewModels models;
   models.pins = std::move(pins);
   // Each decimates meshes for itself, which keeps one processor.
   const std::array<std::function<void()>, 3> parts{
-      [&] { models.part = display_mesh(run, closed, max_error_mm, worst); },
+      [&] { models.part = display_mesh(run, closed, max_error_mm); },
       [&] { models.stages = stock_stages(run, kStages); }, [&] { models.way = program_way(run); }};
   side_by_side(
       parts.size(), 2, [&](size_t n) { parts[n](); }, [](size_t) {});
+  return models;
+}
+
+void show_worst(const FinishedRun& run, std::span<const WorstPlace> worst, ReviewModels& models) {
+  add_worst_places(run, worst, models.part.mesh);
   models.machine_part = mesh::decimate(models.part.mesh, kMachinePartError, nullptr);
   models.machine_part.deviation_um.clear();
   mesh::split_creases(models.machine_part, kCreaseRad);  // decimate() has joined them
-  return models;
 }
 
 std::string part_glb(const FinishedRun& run, const ReviewModels& models, const GltfOptions& options) {

@@ -182,6 +182,12 @@ Json ridge_json(const measure::Ridge* ridge) {
           {"z_mm", ridge->point.z()}};
 }
 
+/// The deepest or the highest place of all and where the material ends there; no such place: null.
+Json extreme_json(const char* name, double um, const Vec3& end) {
+  if (!(um > 0.0)) return nullptr;
+  return {{name, um}, {"x_mm", end.x()}, {"y_mm", end.y()}, {"z_mm", end.z()}};
+}
+
 /// Not proven: null.
 Json bound_json(const std::optional<measure::Bound>& bound) {
   return bound ? Json(bound->um) : Json(nullptr);
@@ -544,6 +550,10 @@ std::string metrics_json(const sim::Job& job, const sim::Result& result, const R
             {"surface", measured(surface_json(result.main.surface))},
             {"gouges", regions_json(result, result.main.surface.gouges)},
             {"excesses", regions_json(result, result.main.surface.excesses)},
+            {"deepest_gouge",
+             extreme_json("depth_um", result.main.surface.gouge_max_um, result.main.surface.gouge_bottom)},
+            {"highest_material",
+             extreme_json("height_um", result.main.surface.excess_max_um, result.main.surface.excess_top)},
             {"highest_ridge", ridge_json(highest_ridge(result))},
             {"cross_check", cross_check_json(result.cross_check)},
             {"planners", comparison_json(result.planners)},

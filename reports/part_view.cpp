@@ -10,21 +10,23 @@ namespace swarf::reports {
 
 namespace {
 
-void measure(const FinishedRun& run, TriMesh& mesh) {
-  sim::measure_mesh({run.job, run.cycles, run.dexels, run.carried, run.rays, run.stock.voxel_mm()}, mesh);
+measure::HighestVertex measure_part(const FinishedRun& run, TriMesh& mesh) {
+  return sim::measure_mesh({run.job, run.cycles, run.dexels, run.carried, run.rays, run.stock.voxel_mm()},
+                           mesh);
 }
 
 }  // namespace
 
 TriMesh part_mesh(const FinishedRun& run) {
   TriMesh mesh = run.stock.mesh();
-  measure(run, mesh);
+  measure_part(run, mesh);
   return mesh;
 }
 
-TriMesh shown_part(const FinishedRun& run, TriMesh closed) {
+TriMesh shown_part(const FinishedRun& run, TriMesh closed, measure::HighestVertex* highest) {
   mesh::split_creases(closed, kCreaseRad);
-  measure(run, closed);
+  const measure::HighestVertex one = measure_part(run, closed);
+  if (highest != nullptr) highest->see(one.um, one.top);
   return closed;
 }
 

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "measure/metrics.h"
 #include "render/draw_list.h"
 #include "render/figures/colour.h"
 #include "reports/machine_view.h"
@@ -20,7 +21,8 @@ TriMesh part_mesh(const FinishedRun& run);
 
 /// The same for the eye, made from the stock's closed mesh or a decimated one: split at its creases before it
 /// is measured, so that either side of an edge has its own normal and deviation. Not closed by indices.
-TriMesh shown_part(const FinishedRun& run, TriMesh closed);
+/// `highest`: raised to the highest vertex that a ray of its own has measured, unless null.
+TriMesh shown_part(const FinishedRun& run, TriMesh closed, measure::HighestVertex* highest = nullptr);
 
 /// The colours of deviation end at the scene's limits: what breaks one has the strongest colour of its side.
 render::DeviationScale deviation_scale(const sim::Job& job);

@@ -107,10 +107,10 @@ const measure::Ridge* highest_ridge(const sim::Result& result) {
 std::vector<WorstPlace> worst_places(const sim::Result& result) {
   const measure::SurfaceMetrics& surface = result.main.surface;
   std::vector<WorstPlace> places;
-  if (!surface.gouges.empty())
-    places.push_back({surface.gouges.front().place, -surface.gouges.front().worst_um * kMicrometre});
-  if (!surface.excesses.empty())
-    places.push_back({surface.excesses.front().place, surface.excesses.front().worst_um * kMicrometre});
+  if (surface.gouge_max_um > 0.0)
+    places.push_back({surface.gouge_bottom, -surface.gouge_max_um * kMicrometre, surface.gouge_bottom});
+  if (surface.excess_max_um > 0.0)
+    places.push_back({surface.excess_top, surface.excess_max_um * kMicrometre, surface.excess_top});
   if (const measure::Ridge* ridge = highest_ridge(result))
     places.push_back({ridge->point, ridge->height_um * kMicrometre});
   return places;
@@ -121,17 +121,18 @@ std::vector<WorstPlace> kept_worst_places(const std::string& folder) {
   const nlohmann::json metrics = nlohmann::json::parse(file, nullptr, false);
   std::vector<WorstPlace> places;
   if (!metrics.is_object()) return places;
-  const auto add = [&](const nlohmann::json& worst, double um) {
-    places.push_back({Vec3(worst.value("x_mm", 0.0), worst.value("y_mm", 0.0), worst.value("z_mm", 0.0)),
-                      um * kMicrometre});
+  const auto place_of = [](const nlohmann::json& one) {
+    return Vec3(one.value("x_mm", 0.0), one.value("y_mm", 0.0), one.value("z_mm", 0.0));
   };
-  for (const auto& [name, sign] : {std::pair{"gouges", -1.0}, {"excesses", 1.0}}) {
-    const auto list = metrics.find(name);
-    if (list == metrics.end() || !list->is_array() || list->empty()) continue;
-    add(list->front(), sign * list->front().value("worst_um", 0.0));
-  }
-  const auto ridge = metrics.find("highest_ridge");
-  if (ridge != metrics.end() && ridge->is_object()) add(*ridge, ridge->value("height_um", 0.0));
+  const auto add = [&](const char* name, const char* value, double sign, bool end) {
+    const auto one = metrics.find(name);
+    if (one == metrics.end() || !one->is_object()) return;
+    places.push_back({place_of(*one), sign * one->value(value, 0.0) * kMicrometre});
+    if (end) places.back().end_W = places.back().place_W;
+  };
+  add("deepest_gouge", "depth_um", -1.0, true);
+  add("highest_material", "height_um", 1.0, true);
+  add("highest_ridge", "height_um", 1.0, false);
   return places;
 }
 

@@ -20,7 +20,7 @@ std::vector<ReviewPin> review_pins(const KeptFindings& kept);
 
 /// The highest cusp between two passes; null: there is none. Borrowed.
 const measure::Ridge* highest_ridge(const sim::Result& result);
-/// That, and the deepest gouge and the highest excess beyond the limits, as the measures have refined them.
+/// That, the deepest gouge and the highest material, as the measures have refined them.
 std::vector<WorstPlace> worst_places(const sim::Result& result);
 /// The same of a run that is read back, as its metrics.json says them. None where that is missing or says
 /// none.

@@ -16,16 +16,17 @@ namespace swarf::reports {
 
 /// The part for the eye, made light enough to be sent around.
 struct DisplayMesh {
-  TriMesh mesh;           ///< shown_part of the decimated mesh, with the worst places as vertices
-  double error_mm = 0.0;  ///< that the decimation reached, measured
+  TriMesh mesh;                      ///< shown_part of the decimated mesh
+  double error_mm = 0.0;             ///< that the decimation reached, measured
+  measure::HighestVertex highest{};  ///< of its vertices
 };
-/// Where metrics.json has a maximum: a place of the design.
+/// Where metrics.json has a maximum.
 struct WorstPlace {
-  Vec3 place_W = Vec3::Zero();
-  double deviation_mm = 0.0;  ///< above the design; below it < 0
+  Vec3 place_W = Vec3::Zero();  ///< of the design
+  double deviation_mm = 0.0;    ///< above the design; below it < 0
+  std::optional<Vec3>
+      end_W{};  ///< where the material ends there: of the deepest and the highest place of all
 };
-DisplayMesh display_mesh(const FinishedRun& run, const TriMesh& closed, double max_error_mm,
-                         std::span<const WorstPlace> worst);
 
 /// A finding at its place.
 struct ReviewPin {
@@ -50,7 +51,10 @@ struct ReviewModels {
   DisplayMesh design{};    ///< for the page; may be empty
 };
 ReviewModels review_models(const FinishedRun& run, const TriMesh& closed, double max_error_mm,
-                           std::vector<ReviewPin> pins, std::span<const WorstPlace> worst);
+                           std::vector<ReviewPin> pins);
+/// Gives the part the worst places as vertices (add_worst_places), and the machine its part: before the
+/// files.
+void show_worst(const FinishedRun& run, std::span<const WorstPlace> worst, ReviewModels& models);
 
 struct GltfOptions {
   render::GltfEncoding encoding = render::GltfEncoding::kFloat;
@@ -73,11 +77,11 @@ std::string machine_glb(const FinishedRun& run, const ReviewModels& models, cons
 /// Program seconds that one second of the glTF animation stands for.
 double animation_scale(const FinishedRun& run);
 
-/// Gives the mesh a vertex over each of these places, and over the deepest and the highest measuring ray,
-/// with what is known there: what is read from the picture is what metrics.json says. A place farther from
-/// every measured triangle than two voxels has none in the mesh. A vertex between the rays that stands higher
-/// than all of these is lowered to the highest of them, which is what is judged; none that lies deeper is
-/// raised.
+/// Gives the mesh a vertex over each of these places with what is known there: what is read from the picture
+/// is what metrics.json says. Where no place is the deepest, or the highest, of all, the lowest or the
+/// highest ray is. A place farther from every measured triangle than two voxels has none in the mesh. No
+/// vertex that had a ray of its own stands higher (sim::raise_highest); one that is known to the mesh's error
+/// only is lowered to the highest place. None that lies deeper is raised.
 void add_worst_places(const FinishedRun& run, std::span<const WorstPlace> places, TriMesh& mesh);
 
 }  // namespace swarf::reports

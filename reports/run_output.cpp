@@ -9,6 +9,7 @@
 #include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
 
 #include "base/file.h"
@@ -196,14 +197,11 @@ std::string worn_name(size_t link) {
   return fmt::format("fixture_{}_cut.ply", link);
 }
 
-void write_glb(const PendingFolder& folder, const FinishedRun& run, const TriMesh& closed,
-               const sim::Result& result, Progress& progress, RunFiles& files) {
+void write_glb(const PendingFolder& folder, const FinishedRun& run, ReviewModels models,
+               const sim::Result& result, RunFiles& files) {
   using render::GltfEncoding;
-  progress.begin("glTF", 2, "files");
-  ReviewModels models =
-      review_models(run, closed, part_error_mm(run.job), review_pins(result), worst_places(result));
+  show_worst(run, worst_places(result), models);
   models.design = shown_design(run.job);
-  progress.advance(1);
   const auto write = [&](const char* name, const std::string& bytes) {
     replace_file(folder.file(name), bytes, {"cannot-write-file", "the glTF file cannot be written"});
   };
@@ -220,7 +218,6 @@ void write_glb(const PendingFolder& folder, const FinishedRun& run, const TriMes
   files.animation_scale = animation_scale(run);
   files.shown_from_s = static_cast<double>(run.first_shown()) * run.cycles.period_s();
   files.way = models.way;
-  progress.end();
 }
 
 /// All cycles again, which must be those of the run.
@@ -270,12 +267,25 @@ std::vector<Diagnostic> write_run(PendingFolder& folder, const sim::Job& job, si
   run.findings = &result.findings;
   RunFiles files;
   RenderStatistics statistics;
-  const TriMesh closed = options.report || options.render ? run.stock.mesh() : TriMesh{};
-  if (options.report) attempts.run([&] { write_glb(folder, run, closed, result, progress, files); });
-  attempts.run([&] {
-    if (options.render)
-      write_pictures(folder, run, shown_part(run, closed), result, progress, files, statistics, attempts);
-  });
+  TriMesh closed = options.report || options.render ? run.stock.mesh() : TriMesh{};
+  std::optional<ReviewModels> models;
+  std::optional<TriMesh> part;
+  measure::HighestVertex highest;
+  if (options.report) {
+    progress.begin("glTF", 2, "files");
+    attempts.run([&] {
+      models = review_models(run, closed, part_error_mm(run.job), review_pins(result));
+      highest = models->part.highest;
+    });
+    progress.advance(1);
+  }
+  if (options.render) attempts.run([&] { part = shown_part(run, std::move(closed), &highest); });
+  // All that is measured of the part has been, and nothing has been told yet.
+  sim::raise_highest(job, highest, result);
+  if (models) attempts.run([&] { write_glb(folder, run, std::move(*models), result, files); });
+  if (options.report) progress.end();
+  if (part)
+    attempts.run([&] { write_pictures(folder, run, *part, result, progress, files, statistics, attempts); });
   result.stopped = progress.stop_requested();
   if (options.report) {
     progress.begin("report", 1, "files");

@@ -54,6 +54,13 @@ KeyNumber judged_number(const sim::Result& result, const char* check_name, const
   return {label, um(*check.value), "µm", hint, tone_of(check)};
 }
 
+/// What a measure of the surface rests on.
+std::string rays_hint(const measure::SurfaceMetrics& surface, const std::optional<measure::Bound>& bound) {
+  const std::string known =
+      bound ? fmt::format("proven below {:.3f} µm", bound->um) : "between them measured, not proven";
+  return fmt::format("{} measuring rays; {}", surface.samples, known);
+}
+
 KeyNumber rays_number(const sim::Result& result) {
   const sim::Check& check = *sim::find_check(result.checks, "stock_and_rays");
   return judged_number(result, "stock_and_rays", "Level set against rays",
@@ -68,9 +75,9 @@ std::vector<KeyNumber> block_key_numbers(const sim::Result& result) {
                                  {"Removed", fmt::format("{:.1f}", result.volume_removed_mm3 * 1e-3), "cm³",
                                   fmt::format("{:.1f} cm³ left", result.volume_left_mm3 * 1e-3)}};
   if (surface.samples == 0) return numbers;
-  const std::string rays = fmt::format("{} measuring rays", surface.samples);
-  numbers.push_back(judged_number(result, "excess", "Highest material", rays));
-  numbers.push_back(judged_number(result, "gouge", "Deepest gouge", rays));
+  numbers.push_back(
+      judged_number(result, "excess", "Highest material", rays_hint(surface, surface.excess_bound)));
+  numbers.push_back(judged_number(result, "gouge", "Deepest gouge", rays_hint(surface, surface.gouge_bound)));
   numbers.push_back(rays_number(result));
   return numbers;
 }
@@ -83,7 +90,7 @@ std::vector<KeyNumber> key_numbers(const sim::Result& result) {
                     fmt::format("theory {:.3f} µm", surface.scallop_theory_um)),
       {"5 % of the ridges lie below", um(surface.scallop_p05_um), "µm",
        fmt::format("{} ridge points", surface.ridges)},
-      judged_number(result, "gouge", "Deepest gouge", fmt::format("{} measuring rays", surface.samples)),
+      judged_number(result, "gouge", "Deepest gouge", rays_hint(surface, surface.gouge_bound)),
       {"Within tolerance", fmt::format("{:.2f}", surface.within_tolerance_pct), "%",
        "of the machined surface"},
       {"Machining time", duration(motion.time_s), "", fmt::format("{} passes", result.main.path.passes)},
@@ -350,7 +357,8 @@ Lines surface_lines(const sim::Job& job, const sim::Result& result) {
   Lines lines;
   if (brings_blocks(result)) {
     lines.emplace_back("design", job.scene.design.name);
-    lines.emplace_back("excess", fmt::format("{:.3f} um highest material", s.excess_max_um));
+    lines.emplace_back("excess", fmt::format("{:.3f} um highest material{}", s.excess_max_um,
+                                             s.excess_bound ? "" : ", measured, not proven"));
     if (s.ridges > 0) lines.emplace_back("scallop", fmt::format("{:.3f} um highest", s.scallop_max_um));
   } else {
     lines.emplace_back("scallop", fmt::format("{:.3f} um highest, {:.3f} um at 5 %, theory {:.3f} um",

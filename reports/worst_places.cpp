@@ -14,32 +14,35 @@ namespace {
 /// The level set's mesh is nearer to the true surface; farther away is another surface.
 constexpr double kNearVoxels = 2.0;
 
-/// The lowest of the rays that a cut has reached, and the highest material on any ray, above gaps too.
-std::vector<WorstPlace> extremes_of(const FinishedRun& run) {
+/// Of the rays: the lowest that a cut has reached, and the highest material, above gaps too.
+struct RayExtremes {
   std::optional<WorstPlace> lowest, highest;
+};
+
+RayExtremes extremes_of(const FinishedRun& run) {
+  RayExtremes found;
   for (const stock::SurfaceDexels& dexels : run.dexels) {
     const std::vector<double>& heights = dexels.heights_mm();
     const auto raise = [&](uint32_t ray, double height) {
-      if (!highest || height > highest->deviation_mm) highest = WorstPlace{dexels.points()[ray], height};
+      if (!found.highest || height > found.highest->deviation_mm)
+        found.highest = WorstPlace{dexels.points()[ray], height};
     };
     for (uint32_t i = 0; i < heights.size(); ++i) {
       raise(i, heights[i]);
-      if (dexels.blocks()[i] != stock::kUncut && (!lowest || heights[i] < lowest->deviation_mm))
-        lowest = WorstPlace{dexels.points()[i], heights[i]};
+      if (dexels.blocks()[i] != stock::kUncut && (!found.lowest || heights[i] < found.lowest->deviation_mm))
+        found.lowest = WorstPlace{dexels.points()[i], heights[i]};
     }
     dexels.each_above([&](uint32_t ray, const stock::MaterialAbove& m) {
       if (m.high - m.low >= stock::kSliver) raise(ray, m.high);
     });
   }
-  std::vector<WorstPlace> found;
-  for (const auto& one : {lowest, highest})
-    if (one) found.push_back(*one);
   return found;
 }
 
 /// Where the material ends over, or below, a place of the design: along the normal of the ray that stands
 /// nearest to it and has seen about as much.
 Vec3 on_part(const FinishedRun& run, const WorstPlace& worst) {
+  if (worst.end_W) return *worst.end_W;
   Vec3 normal = Vec3::Zero();
   double least = std::numeric_limits<double>::infinity();
   for (const stock::SurfaceDexels& dexels : run.dexels) {
@@ -140,7 +143,13 @@ void divide(TriMesh& mesh, const Foot& foot, double height_mm) {
 void add_worst_places(const FinishedRun& run, std::span<const WorstPlace> places, TriMesh& mesh) {
   if (mesh.deviation_um.empty() || mesh.normals.empty()) return;
   std::vector<WorstPlace> all(places.begin(), places.end());
-  for (const WorstPlace& one : extremes_of(run)) all.push_back(one);
+  const auto known = [&](double sign) {
+    return std::any_of(places.begin(), places.end(),
+                       [&](const WorstPlace& one) { return one.end_W && sign * one.deviation_mm > 0.0; });
+  };
+  const RayExtremes rays = extremes_of(run);
+  if (rays.lowest && !known(-1.0)) all.push_back(*rays.lowest);
+  if (rays.highest && !known(1.0)) all.push_back(*rays.highest);
   if (all.empty()) return;
   const auto highest = std::max_element(
       all.begin(), all.end(), [](const auto& a, const auto& b) { return a.deviation_mm < b.deviation_mm; });

@@ -39,17 +39,17 @@ void join(RootResult& part, Certificate& whole, std::vector<RegionPiece>& gouges
     whole.scallop = {um_from_mm(part.scallop), part.scallop_at};
   if (um_from_mm(part.gouge_found) > whole.gouge_found_um) {
     whole.gouge_found_um = um_from_mm(part.gouge_found);
-    whole.gouge_place = part.gouge_found_at;
+    whole.gouge_bottom = part.gouge_bottom;
     whole.gouge_block = part.gouge_block;
   }
   if (um_from_mm(part.excess_found) > whole.excess_found_um) {
     whole.excess_found_um = um_from_mm(part.excess_found);
-    whole.excess_place = part.excess_found_at;
+    whole.excess_top = part.excess_top;
     whole.excess_block = part.excess_block;
   }
   if (um_from_mm(part.above_found) > whole.above_found_um) {
     whole.above_found_um = um_from_mm(part.above_found);
-    whole.above_place = part.above_found_at;
+    whole.above_top = part.above_top;
   }
   take_pieces(part.gouges, gouges);
   take_pieces(part.excesses, excesses);
@@ -179,7 +179,7 @@ Certificate certify(const CertificateInput& input) {
   whole.scallop.um = std::max(whole.scallop.um, whole.excess_found_um) + untold_um;
   if (whole.above_found_um > whole.excess_found_um) {
     whole.excess_found_um = whole.above_found_um;
-    whole.excess_place = whole.above_place;
+    whole.excess_top = whole.above_top;
     whole.excess_block = stock::kUncut;
     whole.excess.um = std::max(whole.excess.um, whole.above_found_um + untold_um);
   }

@@ -60,10 +60,11 @@ struct Certificate {
   Bound scallop;  ///< of what stands on the design itself, below the first air over it: never above excess
   /// Deepest cut and highest material that were measured, at a corner of some cell; um, >= 0.
   double gouge_found_um = 0.0, excess_found_um = 0.0;
-  Vec3 gouge_place = Vec3::Zero(), excess_place = Vec3::Zero();
+  Vec3 gouge_bottom = Vec3::Zero();  ///< on the design, W, mm
+  Vec3 excess_top = Vec3::Zero();    ///< where that material ends, W, mm
   /// Of excess_found_um, what stands above a gap.
   double above_found_um = 0.0;
-  Vec3 above_place = Vec3::Zero();
+  Vec3 above_top = Vec3::Zero();
   uint32_t gouge_block = 0xffffffffu, excess_block = 0xffffffffu;
   std::vector<Region> gouges, excesses;  ///< every place beyond the limits, worst first
   /// Cells whose bound is looser than what was found and than the limit; mm2 and how many.

@@ -45,6 +45,7 @@ class Surroundings {
     return -height_(foot->point, foot->normal);
   }
   const Vec3& place() const { return place_; }  ///< of the last depth
+  const Vec3& normal() const { return normal_; }
   /// As much of the last depth as its foot answers for.
   double own(double depth) const { return field_.own_depth(place_, normal_, depth); }
   uint32_t owner() const { return height_.owner(); }
@@ -85,6 +86,7 @@ Region refined(const GougeContext& context, uint32_t ray) {
   best.block = context.dexels.blocks()[ray];
   best.place = field.points[ray];
   double depth = -context.dexels.heights_mm()[ray];
+  best.end = best.place - depth * field.normals[ray];
   Vec2 at = Vec2::Zero();
   for (double step = kFirstStep * field.pitch_mm; step > kLastStep * field.pitch_mm;) {
     Vec2 next = at;
@@ -98,6 +100,7 @@ Region refined(const GougeContext& context, uint32_t ray) {
       depth = own;
       next = candidate;
       best.place = around.place();
+      best.end = best.place - depth * around.normal();
       best.block = around.owner();
     }
     if (next == at) step *= 0.5;
@@ -139,23 +142,6 @@ std::vector<uint32_t> promising_rays(const GougeContext& context) {
   return rays;
 }
 
-/// Joins a refined gouge to the region of its ray, or to one that passes between the rays close by; else it
-/// is a region of its own that no ray met.
-void add_gouge(const Region& found, uint32_t region_of_ray, double pitch_mm, std::vector<Region>& regions) {
-  Region* home = region_of_ray == kNoRegion ? nullptr : &regions[region_of_ray];
-  for (Region& region : regions) {
-    if (home != nullptr) break;
-    if ((region.place - found.place).norm() <= 2.0 * pitch_mm) home = &region;
-  }
-  if (home == nullptr) {
-    regions.push_back(found);
-  } else if (found.worst_um > home->worst_um) {
-    home->worst_um = found.worst_um;
-    home->place = found.place;
-    home->block = found.block;
-  }
-}
-
 }  // namespace
 
 std::vector<Region> find_gouges(const stock::SurfaceDexels& dexels, std::span<const stock::Sweep> sweeps,
@@ -169,7 +155,9 @@ std::vector<Region> find_gouges(const stock::SurfaceDexels& dexels, std::span<co
   const auto low = std::max_element(depths.begin(), depths.end());
   if (low != depths.end() && *low > 0.0) {
     const auto ray = static_cast<uint32_t>(low - depths.begin());
-    *deepest = {um_from_mm(*low), 0.0, 0.0, dexels.points()[ray], dexels.blocks()[ray], 0, ray};
+    const Vec3& place = dexels.points()[ray];
+    *deepest = {um_from_mm(*low),     0.0, 0.0, place,
+                dexels.blocks()[ray], 0,   ray, place - *low * dexels.normals()[ray]};
   }
   std::vector<uint32_t> rays = promising_rays(context);
   for (size_t i = 0; i < std::min(kRefined, regions.size()); ++i) {
@@ -181,7 +169,7 @@ std::vector<Region> find_gouges(const stock::SurfaceDexels& dexels, std::span<co
   for (const Region& found : refinements) {
     if (found.worst_um > deepest->worst_um) *deepest = found;
     if (found.worst_um <= um_from_mm(limit_mm)) continue;
-    add_gouge(found, region_of[found.ray], dexels.field().pitch_mm, regions);
+    join_region(found, region_of[found.ray], dexels.field().pitch_mm, regions);
   }
   std::sort(regions.begin(), regions.end(), larger);
   return regions;

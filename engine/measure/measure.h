@@ -7,6 +7,8 @@
 
 #include "measure/metrics.h"
 #include "measure/sweep_cutters.h"
+#include "stock/raw/raw_shape.h"
+#include "stock/rays/free_ranges.h"
 #include "stock/rays/surface_dexels.h"
 #include "stock/stock.h"
 #include "stock/sweep/sweep.h"
@@ -18,6 +20,12 @@ struct MeasureLimits {
   double gouge_mm = 0.001;   ///< and down to this below it; also the limit of the gouged area
 };
 
+/// What rays of a design begin with. Borrowed.
+struct RayMaterial {
+  const stock::RawShape& raw;
+  const stock::FreeRange& ranges;  ///< of the whole design
+};
+
 /// Scallops, gouges and excess on the rays of one surface or mesh.
 ///   sweeps         what cut the dexels, indexed by Sweep::block
 ///   pass_of_sweep  pass of each sweep, -1 for moves between passes; as long as `sweeps`. Empty for a path
@@ -25,12 +33,16 @@ struct MeasureLimits {
 ///                  passes nobody knows: two sweeps then belong to different passes when the way between them
 ///                  along the path is more than twice the straight line (pass_rule.h)
 ///   cutters        of each sweep
+///   material       what the dexels began with: between the rays the highest material is looked for by exact
+///                  rays from the highest of them on (highest.h), a search, no proof. Null: excess is that of
+///                  the rays and of the refined ridges
 ///   ridges         every refined cusp is appended to it
 /// Areas weigh: gouged area and the share within tolerance do not depend on how the rays are spread.
 /// scallop_theory_um is left to the caller: it belongs to the path.
 SurfaceMetrics measure_surface(const stock::SurfaceDexels& dexels, std::span<const stock::Sweep> sweeps,
                                std::span<const int> pass_of_sweep, const SweepCutters& cutters,
-                               const MeasureLimits& limits, std::vector<Ridge>* ridges);
+                               const MeasureLimits& limits, std::vector<Ridge>* ridges,
+                               const RayMaterial* material = nullptr);
 
 /// Several surfaces as one; `ridges` are those of all of them. No parts: all zero.
 SurfaceMetrics combine(const std::vector<SurfaceMetrics>& parts, const std::vector<Ridge>& ridges);

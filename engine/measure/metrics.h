@@ -16,6 +16,8 @@ struct Ridge {
   double height_um = 0.0;
   uint32_t block_a = 0, block_b = 0;  ///< sweeps on its two sides
   Vec3 point = Vec3::Zero();          ///< its foot on the design, W, mm; u and v are 0 on a mesh
+  Vec3 top = Vec3::Zero();            ///< its crest over the foot, W, mm
+  uint32_t ray = 0;                   ///< one of the two beside it
 };
 
 /// A connected part of the design that lies deeper (a gouge) or stands higher (excess) than the limit.
@@ -26,7 +28,8 @@ struct Region {
   Vec3 place = Vec3::Zero();     ///< where the worst is: a point of the design, W, mm
   uint32_t block = 0xffffffffu;  ///< Sweep::block of the worst; kUncut where no sweep came
   size_t rays = 0;
-  uint32_t ray = 0;  ///< the worst ray
+  uint32_t ray = 0;         ///< the worst ray
+  Vec3 end = Vec3::Zero();  ///< where the material ends over or below `place`, W, mm
 };
 /// SurfaceMetrics lists no more regions of a kind than this, the worst.
 inline constexpr size_t kListedRegions = 20;
@@ -47,10 +50,14 @@ struct SurfaceMetrics {
   double scallop_p95_um = 0.0;
   double scallop_theory_um = 0.0;  ///< from the planner's intervals
   size_t ridges = 0;
-  double gouge_max_um = 0.0;    ///< deepest cut below the design, >= 0; refined between the rays
-  double gouge_area_mm2 = 0.0;  ///< area deeper than the gouge limit
+  double gouge_max_um = 0.0;         ///< deepest cut below the design, >= 0; refined between the rays
+  Vec3 gouge_bottom = Vec3::Zero();  ///< its bottom, W, mm
+  double gouge_area_mm2 = 0.0;       ///< area deeper than the gouge limit
   uint32_t gouge_block = 0xffffffffu;
-  double excess_max_um = 0.0;  ///< highest material anywhere: uncut, or left above an undercut, included
+  /// Highest material anywhere: uncut, or left above an undercut, included; refined between the rays. Where
+  /// it ends, W, mm: on the part's surface, or within the part where another face is as near.
+  double excess_max_um = 0.0;
+  Vec3 excess_top = Vec3::Zero();
   uint32_t excess_block = 0xffffffffu;
   double within_tolerance_pct = 0.0;  ///< share of the area between -gouge limit and +scallop limit
   /// None: not proven (no design, or the proof was not asked for). Never below gouge_max_um, excess_max_um,
@@ -61,6 +68,15 @@ struct SurfaceMetrics {
   size_t overhung_samples = 0;                   ///< rays with material above a gap
   size_t gouge_regions = 0, excess_regions = 0;  ///< all of them
   std::vector<Region> gouges, excesses;          ///< the worst kListedRegions, worst first
+};
+
+/// The highest of the vertices that rays of their own have measured, and where its material ends, W, mm.
+struct HighestVertex {
+  double um = 0.0;
+  Vec3 top = Vec3::Zero();
+  void see(double height_um, const Vec3& at) {
+    if (height_um > um) *this = {height_um, at};
+  }
 };
 
 struct HistogramBin {

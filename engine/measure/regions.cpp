@@ -14,6 +14,22 @@ bool larger(const Region& a, const Region& b) {
   return a.worst_um != b.worst_um ? a.worst_um > b.worst_um : a.ray < b.ray;
 }
 
+void join_region(const Region& found, uint32_t region_of_ray, double pitch_mm, std::vector<Region>& regions) {
+  Region* home = region_of_ray == kNoRegion ? nullptr : &regions[region_of_ray];
+  for (Region& region : regions) {
+    if (home != nullptr) break;
+    if ((region.place - found.place).norm() <= 2.0 * pitch_mm) home = &region;
+  }
+  if (home == nullptr) {
+    regions.push_back(found);
+  } else if (found.worst_um > home->worst_um) {
+    home->worst_um = found.worst_um;
+    home->place = found.place;
+    home->block = found.block;
+    home->end = found.end;
+  }
+}
+
 std::vector<Region> find_regions(const stock::RayField& field, std::span<const double> values_mm,
                                  std::span<const uint32_t> blocks, double limit_mm,
                                  std::vector<uint32_t>* region_of) {

@@ -23,6 +23,10 @@ std::vector<Region> find_regions(const stock::RayField& field, std::span<const d
                                  std::span<const uint32_t> blocks, double limit_mm,
                                  std::vector<uint32_t>* region_of);
 
+/// Joins a place that was refined between the rays to the region of its ray, or to one that passes between
+/// the rays close by; else it is a region of its own that no ray met.
+void join_region(const Region& found, uint32_t region_of_ray, double pitch_mm, std::vector<Region>& regions);
+
 /// All gouges, deepest first: regions of rays deeper than `limit_mm`, and gouges so narrow that they pass
 /// between the rays, provided that they are at least as long as the pitch along the path. The search:
 ///   1. The path is divided into pieces one pitch long; of the rays that a piece owns the lowest stands for

@@ -5,7 +5,6 @@
 
 #include "base/parallel.h"
 #include "base/units.h"
-#include "measure/sweep_index.h"
 #include "stock/rays/ray_height.h"
 
 namespace swarf::measure {
@@ -148,14 +147,14 @@ void add_ridges(const Context& context, const Stretch& way, int depth, std::vect
   // Between two faces both passes may end short of the edge: nothing stands there that a pass has left.
   if (height > 0.5 * kHigh) return;
   if (!crosses_squarely(passes, foot, field.points[way.second] - field.points[way.first])) return;
-  ridges.push_back({foot.u, foot.v, um_from_mm(height), passes.block_a(), passes.block_b(), foot.point});
+  ridges.push_back({foot.u, foot.v, um_from_mm(height), passes.block_a(), passes.block_b(), foot.point,
+                    foot.point + height * foot.normal, way.first});
 }
 
 }  // namespace
 
 std::vector<Ridge> find_ridges(const stock::SurfaceDexels& dexels, std::span<const stock::Sweep> sweeps,
-                               const PassRule& rule, const SweepCutters& cutters) {
-  const SweepIndex index(sweeps, cutters);
+                               const PassRule& rule, const SweepCutters& cutters, const SweepIndex& index) {
   double highest = 0.0;
   for (const double height : dexels.heights_mm()) highest = std::max(highest, height);
   const Context context{dexels, sweeps, rule, cutters, index, 2.0 * highest + dexels.field().pitch_mm};

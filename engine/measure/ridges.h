@@ -14,6 +14,7 @@
 
 #include "measure/metrics.h"
 #include "measure/pass_rule.h"
+#include "measure/sweep_index.h"
 #include "stock/rays/surface_dexels.h"
 #include "stock/sweep/sweep.h"
 
@@ -23,6 +24,6 @@ namespace swarf::measure {
 /// by 45 degrees or more: on a grid once per grid line. The pitch must be well below the interval of the
 /// passes.
 std::vector<Ridge> find_ridges(const stock::SurfaceDexels& dexels, std::span<const stock::Sweep> sweeps,
-                               const PassRule& rule, const SweepCutters& cutters);
+                               const PassRule& rule, const SweepCutters& cutters, const SweepIndex& index);
 
 }  // namespace swarf::measure

@@ -202,8 +202,10 @@ class RootProof {
       if (floors_.size() == kept_.size() && floors_[i] >= corner.height) continue;
       look_at(kept_[i]);
     }
-    // The kept sweeps prove bounds; what counts as found is measured against all of them.
-    if (root_.looks_up && corner.height > std::min(excess_target(), scallop_target())) {
+    // The kept sweeps prove bounds; what counts as found is measured against all of them: what is more than
+    // is asked for, or where nothing is, than was found before.
+    const double asked = std::min(excess_target(), scallop_target());
+    if (root_.looks_up && corner.height > (asked == kNever ? result_.excess_found : asked)) {
       for (uint32_t n = 0; n < near_.size(); ++n) look_at(n);
     }
     keep_own(corner);
@@ -225,12 +227,12 @@ class RootProof {
     const uint32_t block = corner.near == stock::kUncut ? stock::kUncut : near_[corner.near].sweep;
     if (root_.looks_down && -corner.height > result_.gouge_found) {
       result_.gouge_found = -corner.height;
-      result_.gouge_found_at = corner.at.point;
+      result_.gouge_bottom = corner.at.point + corner.height * corner.at.normal;
       result_.gouge_block = block;
     }
     if (root_.looks_up && corner.height > result_.excess_found) {
       result_.excess_found = corner.height;
-      result_.excess_found_at = corner.at.point;
+      result_.excess_top = corner.at.point + corner.height * corner.at.normal;
       result_.excess_block = block;
     }
   }
@@ -254,7 +256,7 @@ class RootProof {
       const double gap = corner.height + input_.stock.voxel_mm();
       if (!(top > std::max(result_.above_found, gap))) continue;
       result_.above_found = top;
-      result_.above_found_at = corner.at.point;
+      result_.above_top = corner.at.point + top * corner.at.normal;
       highest_seen_ = std::max(highest_seen_, top);
     }
   }

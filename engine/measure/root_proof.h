@@ -24,10 +24,10 @@ inline double above_gap(double voxel_mm) {
 struct RootResult {
   double gouge = 0.0, excess = 0.0, scallop = 0.0;  ///< bounds, mm
   Vec3 gouge_at = Vec3::Zero(), excess_at = Vec3::Zero(), scallop_at = Vec3::Zero();
-  double gouge_found = 0.0, excess_found = 0.0;  ///< mm
-  Vec3 gouge_found_at = Vec3::Zero(), excess_found_at = Vec3::Zero();
-  double above_found = 0.0;  ///< measured top of material above a gap, mm
-  Vec3 above_found_at = Vec3::Zero();
+  double gouge_found = 0.0, excess_found = 0.0;                 ///< mm
+  Vec3 gouge_bottom = Vec3::Zero(), excess_top = Vec3::Zero();  ///< where the material ends there
+  double above_found = 0.0;                                     ///< measured top of material above a gap, mm
+  Vec3 above_top = Vec3::Zero();
   uint32_t gouge_block = stock::kUncut, excess_block = stock::kUncut;
   std::vector<RegionPiece> gouges, excesses;
   struct Open {

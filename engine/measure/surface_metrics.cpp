@@ -3,6 +3,7 @@
 
 #include "base/check.h"
 #include "base/units.h"
+#include "measure/highest.h"
 #include "measure/measure.h"
 #include "measure/pass_rule.h"
 #include "measure/regions.h"
@@ -77,6 +78,7 @@ void summarise_rays(const stock::SurfaceDexels& dexels, const Tops& tops, const 
     if (height < -limits.gouge_mm) metrics.gouge_area_mm2 += area;
     if (um_from_mm(top) > metrics.excess_max_um) {
       metrics.excess_max_um = um_from_mm(top);
+      metrics.excess_top = field.points[n] + top * field.normals[n];
       metrics.excess_block = tops.blocks[n];
     }
   }
@@ -88,7 +90,43 @@ void raise_excess(const std::vector<Ridge>& ridges, SurfaceMetrics& metrics) {
   for (const Ridge& ridge : ridges) {
     if (ridge.height_um <= metrics.excess_max_um) continue;
     metrics.excess_max_um = ridge.height_um;
+    metrics.excess_top = ridge.top;
     metrics.excess_block = ridge.block_a;
+  }
+}
+
+/// The rays around which the highest material is looked for: the highest ones, the worst of the worst
+/// regions, and those beside the highest ridges.
+std::vector<uint32_t> starts_of(const stock::RayField& field, const Tops& tops,
+                                const std::vector<Region>& regions, const std::vector<Ridge>& ridges) {
+  constexpr size_t kHighestRays = 16, kWorstRegions = 20, kHighestRidges = 8;
+  std::vector<uint32_t> rays = highest_rays(field, tops.heights_mm, kHighestRays);
+  for (size_t n = 0; n < std::min(kWorstRegions, regions.size()); ++n) rays.push_back(regions[n].ray);
+  std::vector<Ridge> highest(std::min(kHighestRidges, ridges.size()));
+  std::partial_sort_copy(ridges.begin(), ridges.end(), highest.begin(), highest.end(),
+                         [](const Ridge& a, const Ridge& b) { return a.height_um > b.height_um; });
+  for (const Ridge& ridge : highest) rays.push_back(ridge.ray);
+  std::sort(rays.begin(), rays.end());
+  rays.erase(std::unique(rays.begin(), rays.end()), rays.end());
+  return rays;
+}
+
+/// `region_of`: of each ray, in metrics.excesses.
+void refine_excess(const stock::RayField& field, std::span<const uint32_t> rays,
+                   std::span<const uint32_t> region_of, double limit_mm, const PeakInput& input,
+                   SurfaceMetrics& metrics) {
+  const std::vector<Peak> peaks = find_peaks(field, rays, input);
+  for (size_t n = 0; n < rays.size(); ++n) {
+    const Peak& peak = peaks[n];
+    const double um = um_from_mm(peak.height_mm);
+    if (um > metrics.excess_max_um) {
+      metrics.excess_max_um = um;
+      metrics.excess_top = peak.top;
+      metrics.excess_block = peak.block;
+    }
+    if (peak.height_mm > limit_mm)
+      join_region({um, 0.0, 0.0, peak.place, peak.block, 0, rays[n], peak.top}, region_of[rays[n]],
+                  field.pitch_mm, metrics.excesses);
   }
 }
 
@@ -105,10 +143,12 @@ void merge(const SurfaceMetrics& part, SurfaceMetrics& whole, double& within) {
   within += part.within_tolerance_pct * part.area_mm2;
   if (part.gouge_max_um > whole.gouge_max_um) {
     whole.gouge_max_um = part.gouge_max_um;
+    whole.gouge_bottom = part.gouge_bottom;
     whole.gouge_block = part.gouge_block;
   }
   if (part.excess_max_um > whole.excess_max_um) {
     whole.excess_max_um = part.excess_max_um;
+    whole.excess_top = part.excess_top;
     whole.excess_block = part.excess_block;
   }
   whole.scallop_theory_um = std::max(whole.scallop_theory_um, part.scallop_theory_um);
@@ -118,7 +158,8 @@ void merge(const SurfaceMetrics& part, SurfaceMetrics& whole, double& within) {
 
 SurfaceMetrics measure_surface(const stock::SurfaceDexels& dexels, std::span<const stock::Sweep> sweeps,
                                std::span<const int> pass_of_sweep, const SweepCutters& cutters,
-                               const MeasureLimits& limits, std::vector<Ridge>* ridges) {
+                               const MeasureLimits& limits, std::vector<Ridge>* ridges,
+                               const RayMaterial* material) {
   SWARF_CHECK(pass_of_sweep.empty() || sweeps.size() == pass_of_sweep.size(),
               "one pass number per sweep, or none");
   for (const uint32_t block : dexels.blocks()) {
@@ -128,19 +169,26 @@ SurfaceMetrics measure_surface(const stock::SurfaceDexels& dexels, std::span<con
   SurfaceMetrics metrics;
   const Tops tops = tops_of(dexels);
   summarise_rays(dexels, tops, limits, metrics);
-  metrics.excesses = find_regions(dexels.field(), tops.heights_mm, tops.blocks, limits.scallop_mm, nullptr);
-  metrics.excess_regions = metrics.excesses.size();
   const PassRule rule(sweeps, pass_of_sweep, dexels.field().pitch_mm);
   Region deepest;
   metrics.gouges = find_gouges(dexels, sweeps, rule, cutters, limits.gouge_mm, &deepest);
-  metrics.gouge_regions = metrics.gouges.size();
   metrics.gouge_max_um = deepest.worst_um;
+  metrics.gouge_bottom = deepest.end;
   metrics.gouge_block = deepest.block;
-  keep_worst(metrics.gouges);
-  keep_worst(metrics.excesses);
-  const std::vector<Ridge> found = find_ridges(dexels, sweeps, rule, cutters);
+  const SweepIndex index(sweeps, cutters);
+  const std::vector<Ridge> found = find_ridges(dexels, sweeps, rule, cutters, index);
   summarise_ridges(found, metrics);
   raise_excess(found, metrics);
+  std::vector<uint32_t> region_of;
+  metrics.excesses =
+      find_regions(dexels.field(), tops.heights_mm, tops.blocks, limits.scallop_mm, &region_of);
+  if (material != nullptr)
+    refine_excess(dexels.field(), starts_of(dexels.field(), tops, metrics.excesses, found), region_of,
+                  limits.scallop_mm, {*material, sweeps, cutters, index}, metrics);
+  metrics.gouge_regions = metrics.gouges.size();
+  metrics.excess_regions = metrics.excesses.size();
+  keep_worst(metrics.gouges);
+  keep_worst(metrics.excesses);
   if (ridges != nullptr) ridges->insert(ridges->end(), found.begin(), found.end());
   return metrics;
 }

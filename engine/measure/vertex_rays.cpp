@@ -107,9 +107,22 @@ std::vector<double> ends_of(const VertexRayInput& input, const std::vector<Verte
   return ends;
 }
 
-void set(TriMesh& part, uint32_t vertex, double mm) {
-  part.deviation_um[vertex] = static_cast<float>(um_from_mm(mm));
-}
+/// What rays have found, as it is set.
+class VertexValues {
+ public:
+  explicit VertexValues(TriMesh& part) : part_(part) {}
+  /// `end`: of the ray; NaN: nothing was found.
+  void set(const VertexRay& ray, double end, double mm) {
+    if (std::isnan(end)) return;
+    part_.deviation_um[ray.vertex] = static_cast<float>(um_from_mm(mm));
+    highest.see(um_from_mm(mm), ray.point + end * ray.normal);
+  }
+
+  HighestVertex highest;
+
+ private:
+  TriMesh& part_;
+};
 
 VertexRay along_own_normal(const TriMesh& part, uint32_t vertex, double slack_mm) {
   const Vec3 normal = as_vec3(part.normals[vertex]).normalized();
@@ -121,7 +134,7 @@ class VertexRays {
   VertexRays(const VertexRayInput& input, TriMesh& part)
       : input_(input), places_(input.design), part_(part), starts_(part.positions.size()) {}
 
-  void measure() {
+  HighestVertex measure() {
     const double beside = kBeside * input_.slack_mm;
     std::vector<uint8_t> on_face(starts_.size(), 0);
     parallel_chunks(starts_.size(), kVerticesPerTask, [&](size_t begin, size_t end) {
@@ -138,8 +151,9 @@ class VertexRays {
     for (size_t i = 0; i < starts_.size(); ++i)
       if (on_face[i] != 0) rays.push_back(starts_[i]);
     const std::vector<double> ends = ends_of(input_, rays, input_.design.design);
-    for (size_t n = 0; n < rays.size(); ++n) set(part_, rays[n].vertex, ends[n]);
+    for (size_t n = 0; n < rays.size(); ++n) values_.set(rays[n], ends[n], ends[n]);
     measure_rest();
+    return values_.highest;
   }
 
  private:
@@ -151,34 +165,38 @@ class VertexRays {
       rays.push_back(along_own_normal(part_, i, input_.slack_mm));
     }
     const std::vector<double> ends = ends_of(input_, rays, nullptr);
+    std::vector<double> distances(rays.size(), kNotFound);
     parallel_chunks(rays.size(), kVerticesPerTask, [&](size_t begin, size_t end) {
       for (size_t n = begin; n < end; ++n) {
         if (std::isnan(ends[n])) continue;
         const Vec3 p = rays[n].point + ends[n] * rays[n].normal;
         const DesignPlace place = places_.at(p, rays[n].normal, 0.0);
-        set(part_, rays[n].vertex, std::copysign(place.distance_mm, place.height_of(p)));
+        distances[n] = std::copysign(place.distance_mm, place.height_of(p));
       }
     });
+    for (size_t n = 0; n < rays.size(); ++n) values_.set(rays[n], ends[n], distances[n]);
   }
 
   const VertexRayInput& input_;
   DesignPlaces places_;
   TriMesh& part_;
+  VertexValues values_{part_};
   std::vector<VertexRay> starts_;
 };
 
 }  // namespace
 
-void deviation_by_vertex_rays(const VertexRayInput& input, TriMesh& part) {
+HighestVertex deviation_by_vertex_rays(const VertexRayInput& input, TriMesh& part) {
   SWARF_CHECK(input.design.design != nullptr, "a parametric design has a grid of rays (seen_surface.h)");
   SWARF_CHECK(part.normals.size() == part.positions.size(), "rays follow normals");
   part.deviation_um.assign(part.positions.size(), std::numeric_limits<float>::quiet_NaN());
-  VertexRays(input, part).measure();
+  return VertexRays(input, part).measure();
 }
 
-void deviation_by_vertex_rays(const VertexRayInput& input, const SeenSurface& seen,
-                              std::span<const uint32_t> vertices, TriMesh& part) {
+HighestVertex deviation_by_vertex_rays(const VertexRayInput& input, const SeenSurface& seen,
+                                       std::span<const uint32_t> vertices, TriMesh& part) {
   std::vector<VertexRay> over, own;
+  VertexValues values(part);
   for (const uint32_t i : vertices) {
     const auto foot = seen.foot_of(as_vec3(part.positions[i]));
     if (foot && foot->normal.dot(as_vec3(part.normals[i])) >= kFaceCosine)
@@ -188,17 +206,16 @@ void deviation_by_vertex_rays(const VertexRayInput& input, const SeenSurface& se
   }
   const std::vector<double> tops = ends_of(input, over, nullptr);
   for (size_t n = 0; n < over.size(); ++n) {
-    if (std::isnan(tops[n]))
-      own.push_back(along_own_normal(part, over[n].vertex, input.slack_mm));
-    else
-      set(part, over[n].vertex, tops[n]);
+    if (std::isnan(tops[n])) own.push_back(along_own_normal(part, over[n].vertex, input.slack_mm));
+    values.set(over[n], tops[n], tops[n]);
   }
   const std::vector<double> ends = ends_of(input, own, nullptr);
   for (size_t n = 0; n < own.size(); ++n) {
     if (std::isnan(ends[n])) continue;
     const auto foot = seen.foot_of(own[n].point + ends[n] * own[n].normal);
-    if (foot) set(part, own[n].vertex, foot->height_mm);
+    if (foot) values.set(own[n], ends[n], foot->height_mm);
   }
+  return values.highest;
 }
 
 }  // namespace swarf::measure

@@ -38,17 +38,27 @@ double theory_scallop_um(const toolpath::ToolPath& path) {
   return um_from_mm(highest);
 }
 
-void measure_dexels(const Job& job, MeasuredPath& measured) {
+/// Each surface of the design.
+std::vector<measure::SurfaceMetrics> measured_parts(const Job& job, MeasuredPath& measured) {
+  std::vector<measure::SurfaceMetrics> parts;
+  if (measured.dexels.empty()) return parts;
   const RayCutters rays = ray_cutters(job, measured);
   const measure::MeasureLimits limits{job.scene.accept.scallop_band_um() * kMicrometre,
                                       job.scene.accept.gouge_band_um() * kMicrometre};
   const measure::SweepCutters cutters(rays.solids, rays.solid_of);
-  std::vector<measure::SurfaceMetrics> parts;
-  for (const stock::SurfaceDexels& dexels : measured.dexels) {
+  std::vector<stock::RayFieldPtr> fields;
+  for (const stock::SurfaceDexels& dexels : measured.dexels) fields.push_back(dexels.field_ptr());
+  const stock::FreeRange ranges(fields);
+  const stock::RawShape raw = job.scene.stock.body_W();
+  const measure::RayMaterial material{raw, ranges};
+  for (const stock::SurfaceDexels& dexels : measured.dexels)
     parts.push_back(measure::measure_surface(dexels, measured.rays.sweeps, rays.passes, cutters, limits,
-                                             &measured.ridges));
-  }
-  measured.surface = measure::combine(parts, measured.ridges);
+                                             &measured.ridges, &material));
+  return parts;
+}
+
+void measure_dexels(const Job& job, MeasuredPath& measured) {
+  measured.surface = measure::combine(measured_parts(job, measured), measured.ridges);
   measured.surface.scallop_theory_um = theory_scallop_um(measured.path);
 }
 
@@ -550,6 +560,16 @@ Result simulate(const Job& job, const CutOptions& options, Progress& progress) {
   result.findings = find_faults(job, result);
   result.stopped = progress.stop_requested();
   return result;
+}
+
+void raise_highest(const Job& job, const measure::HighestVertex& vertex, Result& result) {
+  measure::SurfaceMetrics& surface = result.main.surface;
+  if (vertex.um <= surface.excess_max_um) return;
+  if (surface.excess_bound && vertex.um > surface.excess_bound->um) return;
+  surface.excess_max_um = vertex.um;
+  surface.excess_top = vertex.top;
+  surface.excess_block = stock::kUncut;
+  result.checks = judge(job, result);
 }
 
 }  // namespace swarf::sim

@@ -9,7 +9,6 @@
 #include "base/units.h"
 #include "measure/design_projection.h"
 #include "measure/seen_surface.h"
-#include "measure/vertex_rays.h"
 #include "sim/run/ray_cutters.h"
 
 namespace swarf::sim {
@@ -50,7 +49,8 @@ void with_own_rays(const MeasuredPart& part, const stock::SurfaceDexels& dexels,
                                 cut});
 }
 
-void measure_by_rays(const MeasuredPart& part, const stock::SurfaceDexels& dexels, TriMesh& mesh) {
+measure::HighestVertex measure_by_rays(const MeasuredPart& part, const stock::SurfaceDexels& dexels,
+                                       TriMesh& mesh) {
   const std::vector<Vec3> axes = axes_of(part);
   const measure::SeenSurface seen(dexels, kReachVoxels * part.voxel_mm);
   std::vector<uint8_t> off_face(mesh.positions.size(), 0);
@@ -78,10 +78,12 @@ void measure_by_rays(const MeasuredPart& part, const stock::SurfaceDexels& dexel
   std::vector<uint32_t> vertices;
   for (uint32_t i = 0; i < off_face.size(); ++i)
     if (off_face[i] != 0) vertices.push_back(i);
-  if (vertices.empty()) return;
+  measure::HighestVertex highest;
+  if (vertices.empty()) return highest;
   with_own_rays(part, dexels, [&](const measure::VertexRayInput& input) {
-    measure::deviation_by_vertex_rays(input, seen, vertices, mesh);
+    highest = measure::deviation_by_vertex_rays(input, seen, vertices, mesh);
   });
+  return highest;
 }
 
 /// Some ray's material ends farther from the design than a vertex may be off, or hangs above a gap.
@@ -106,16 +108,20 @@ bool normals_need_cycles(const Job& job) {
   return job.scene.stock.cut_by == CutBy::kPasses && job.driven == nullptr;
 }
 
-void measure_mesh(const MeasuredPart& part, TriMesh& mesh) {
+measure::HighestVertex measure_mesh(const MeasuredPart& part, TriMesh& mesh) {
   mesh.deviation_um.assign(mesh.positions.size(), std::numeric_limits<float>::quiet_NaN());
+  measure::HighestVertex highest;
   for (const stock::SurfaceDexels& dexels : part.dexels) {
+    measure::HighestVertex one;
     if (dexels.field().surface != nullptr)
-      measure_by_rays(part, dexels, mesh);
+      one = measure_by_rays(part, dexels, mesh);
     else
       with_own_rays(part, dexels, [&](const measure::VertexRayInput& input) {
-        measure::deviation_by_vertex_rays(input, mesh);
+        one = measure::deviation_by_vertex_rays(input, mesh);
       });
+    highest.see(one.um, one.top);
   }
+  return highest;
 }
 
 }  // namespace swarf::sim

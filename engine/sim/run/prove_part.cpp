@@ -14,12 +14,14 @@ void raise(std::optional<measure::Bound>& bound, const measure::Bound& by) {
 }
 
 /// What rays found beyond a proven bound was no cut of that depth: a leaning ray of a mesh that ran along it.
-void settle(double& value_um, uint32_t& block, double found_um, uint32_t found_block,
+/// True where what the proof found takes its place.
+bool settle(double& value_um, uint32_t& block, double found_um, uint32_t found_block,
             const measure::Bound& bound) {
   if (value_um > bound.um) value_um = 0.0;
-  if (found_um <= value_um) return;
+  if (found_um <= value_um) return false;
   value_um = found_um;
   block = found_block;
+  return true;
 }
 
 void take_over(const measure::Certificate& proof, measure::SurfaceMetrics& surface) {
@@ -114,10 +116,12 @@ void prove_part(const Job& job, Ranks* ranks, Progress& progress, Result& result
     take_over(proof, surface);
     if (proof.gouge_found_um > worst.gouge_found_um) {
       worst.gouge_found_um = proof.gouge_found_um;
+      worst.gouge_bottom = proof.gouge_bottom;
       worst.gouge_block = proof.gouge_block;
     }
     if (proof.excess_found_um > worst.excess_found_um) {
       worst.excess_found_um = proof.excess_found_um;
+      worst.excess_top = proof.excess_top;
       worst.excess_block = proof.excess_block;
     }
   }
@@ -127,10 +131,12 @@ void prove_part(const Job& job, Ranks* ranks, Progress& progress, Result& result
     surface.excess_bound.reset();
     surface.scallop_bound.reset();
   } else {
-    settle(surface.gouge_max_um, surface.gouge_block, worst.gouge_found_um, worst.gouge_block,
-           *surface.gouge_bound);
-    settle(surface.excess_max_um, surface.excess_block, worst.excess_found_um, worst.excess_block,
-           *surface.excess_bound);
+    if (settle(surface.gouge_max_um, surface.gouge_block, worst.gouge_found_um, worst.gouge_block,
+               *surface.gouge_bound))
+      surface.gouge_bottom = worst.gouge_bottom;
+    if (settle(surface.excess_max_um, surface.excess_block, worst.excess_found_um, worst.excess_block,
+               *surface.excess_bound))
+      surface.excess_top = worst.excess_top;
   }
   surface.gouge_regions = keep_worst(surface.gouges);
   surface.excess_regions = keep_worst(surface.excesses);

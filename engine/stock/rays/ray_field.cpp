@@ -45,6 +45,16 @@ std::array<Vec3, 3> mesh_corners(const TriMesh& mesh, uint32_t triangle) {
   return {corner(0), corner(1), corner(2)};
 }
 
+/// Whether the design, near the facet that is nearest, keeps this far away from a point: never false where
+/// the whole design does. The facets decide, where they can.
+bool keeps_away(const DesignMesh& design, const Vec3& point, double least_mm) {
+  const mesh::NearestPoint near = design.distance.nearest(point);
+  const double stray = design.under != nullptr ? design.under->chord_mm : 0.0;
+  if (near.distance_mm - stray >= least_mm) return true;
+  if (near.distance_mm + stray < least_mm) return false;
+  return design.nearest_on(near.triangle, point).distance_mm >= least_mm;
+}
+
 }  // namespace
 
 Foot RayField::between(uint32_t a, uint32_t b, double t) const {
@@ -121,7 +131,7 @@ double RayField::own_depth(const Vec3& point, const Vec3& normal, double depth_m
   // Surfaces have their own normals everywhere.
   const double least = design->under != nullptr || is_flat() ? kOwnShare : kOwnShareLeaning;
   const auto is_own = [&](double s) {
-    return design->nearest(point - s * normal).distance_mm >= least * s - kFloatMesh;
+    return keeps_away(*design, point - s * normal, least * s - kFloatMesh);
   };
   // Far beyond the part the distance is nearly the depth again: what is not own on the way ends it.
   constexpr double kThinnest = 0.1;  // mm
@@ -131,7 +141,9 @@ double RayField::own_depth(const Vec3& point, const Vec3& normal, double depth_m
     if (s <= kThinnest) break;
   }
   if (high > depth_mm) return depth_mm;
-  for (int i = 0; i < kHalvings && high - low > std::max(1e-9, share * high); ++i) {
+  // mm; over faces each look takes several feet.
+  const double rounding = design->under != nullptr ? 1e-7 : 1e-9;
+  for (int i = 0; i < kHalvings && high - low > std::max(rounding, share * high); ++i) {
     const double middle = 0.5 * (low + high);
     (is_own(middle) ? low : high) = middle;
   }

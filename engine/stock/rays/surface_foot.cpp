@@ -7,7 +7,7 @@ namespace swarf::stock {
 namespace {
 
 constexpr int kMostFootSteps = 50;
-constexpr double kLastFootStep = 1e-9;  // mm
+constexpr double kLastFootStep = 1e-6;  // mm; the distance then is known to the square of it
 constexpr double kOnFootSide = 1e-12;   // share of the triangle
 /// Of the product of the second derivatives: below it they tell no direction.
 constexpr double kDefiniteShare = 1e-12;

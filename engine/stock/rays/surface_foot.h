@@ -21,7 +21,7 @@ struct SurfaceFoot {
 };
 
 /// `start`: the two shares l to begin with, within the triangle. A local minimum: where the point is farther
-/// away than the surface's radius of curvature there may be others. The last step is shorter than 1e-9 mm.
+/// away than the surface's radius of curvature there may be others. The last step is shorter than 1e-6 mm.
 SurfaceFoot surface_foot(const surface::Surface& surface, const std::array<Vec2, 3>& uv, const Vec2& start,
                          const Vec3& point);
 
