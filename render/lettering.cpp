@@ -22,6 +22,16 @@ constexpr Paint kChip{0.80, 0.80, 0.80, 1.0};  // behind the lines of a legend, 
 constexpr Paint kNotice{0.78, 0.08, 0.06, 0.92}, kDimNotice{0.45, 0.06, 0.05, 0.75};
 constexpr double kProgressShare = 0.008;  // height of the bar as a share of the picture's
 
+double text_px_of(int height) {
+  return std::max(kTextShare * height, kMinTextPx);
+}
+
+/// Of lines, in heights of text: the plate's edge, from one line to the next, and the whole plate.
+constexpr double kPad = 0.8, kStep = 1.35;
+double plate_height(size_t lines) {
+  return kStep * static_cast<double>(lines) + 1.2 * kPad;
+}
+
 /// A Cairo drawing over the pixels of an image; they are written back by finish().
 class Canvas {
  public:
@@ -37,7 +47,7 @@ class Canvas {
   }
 
   cairo_t* cr() const { return cairo_.get(); }
-  double text_px() const { return std::max(kTextShare * image_.height, kMinTextPx); }
+  double text_px() const { return text_px_of(image_.height); }
   void bold(bool on) const {
     cairo_select_font_face(cr(), "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL,
                            on ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
@@ -163,14 +173,14 @@ std::string fitted(const Canvas& canvas, std::string words, double width) {
 void draw_lines(Image& image, std::vector<std::string> lines, Corner corner, const Paint& paint) {
   if (lines.empty()) return;
   Canvas canvas(image);
-  const double text_px = canvas.text_px(), pad = 0.8 * text_px, step = 1.35 * text_px;
+  const double text_px = canvas.text_px(), pad = kPad * text_px, step = kStep * text_px;
   double width = 0.0;
   for (size_t i = 0; i < lines.size(); ++i) {
     canvas.bold(i == 0);
     lines[i] = fitted(canvas, std::move(lines[i]), image.width - 4.0 * pad);
     width = std::max(width, canvas.text_width(lines[i]) + 2.0 * pad);
   }
-  const double height = step * static_cast<double>(lines.size()) + 1.2 * pad;
+  const double height = plate_height(lines.size()) * text_px;
   const bool right = corner == Corner::kTopRight || corner == Corner::kBottomRight;
   const bool bottom = corner == Corner::kBottomLeft || corner == Corner::kBottomRight;
   const double x = right ? image.width - pad - width : pad;
@@ -187,6 +197,12 @@ void draw_lines(Image& image, std::vector<std::string> lines, Corner corner, con
 
 void draw_caption(Image& image, const std::vector<std::string>& lines, Corner corner) {
   draw_lines(image, lines, corner, kPlate);
+}
+
+size_t caption_lines(int height_px, double share) {
+  size_t lines = 1;
+  while (plate_height(lines + 1) * text_px_of(height_px) <= share * height_px) ++lines;
+  return lines;
 }
 
 void draw_notice(Image& image, const std::vector<std::string>& lines, bool bright) {

@@ -18,6 +18,10 @@ void draw_caption(Image& image, const std::vector<std::string>& lines, Corner co
 /// The same at the top left on a red plate, bright or dimmed: what the viewer must not miss.
 void draw_notice(Image& image, const std::vector<std::string>& lines, bool bright);
 
+/// As many lines as a caption may have that covers no more than this share (below 1) of a picture's height;
+/// at least one.
+size_t caption_lines(int height_px, double share);
+
 /// A thin bar along the lower edge, filled from the left by this share.
 void draw_progress(Image& image, double share);
 

@@ -18,7 +18,10 @@ constexpr double kFlashSeconds = 1.5;  // that a finding stays on the picture
 constexpr size_t kFlashesMost = 3;     // at once
 constexpr double kAwaySizes = 0.5;     // of the stock's greatest side: a tool farther away is told
 constexpr double kAtHome = 1e-3;       // mm, rad
-constexpr size_t kLineLetters = 70;    // of a program's line or a finding's text
+/// Of the picture's height that the lines may cover. Letters cannot become smaller with it for ever: a small
+/// movie leaves out axis values, then the place.
+constexpr double kCaptionShare = 1.0 / 6.0;
+constexpr size_t kLineLetters = 70;  // of a program's line or a finding's text
 
 /// At most so many letters; never half of one.
 std::string shortened(const std::string& text, size_t most) {
@@ -132,7 +135,9 @@ std::vector<std::pair<size_t, std::string>> MovieOverlay::tools() const {
 
 void MovieOverlay::draw(size_t frame, render::Image& image) const {
   const motion::Cycle& cycle = frames_[frame].cycle;
-  render::draw_caption(image, lines_of(cycle));
+  std::vector<std::string> lines = lines_of(cycle);
+  lines.resize(std::min(lines.size(), render::caption_lines(image.height, kCaptionShare)));
+  render::draw_caption(image, lines);
   const double whole = std::max(run_.cycles.time_s(), run_.cycles.period_s());
   render::draw_progress(image, std::clamp(cycle.sample.t_s / whole, 0.0, 1.0));
   // Twice a second, so that it is seen.

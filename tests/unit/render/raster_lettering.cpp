@@ -112,6 +112,19 @@ TEST(Lettering, LeadersLeaveEachOthersPlacesInSight) {
   EXPECT_GT(pixel(image, 350, 160).r, 220);
 }
 
+/// Letters below 11 px cannot be read, so that small pictures have room for fewer.
+TEST(Lettering, ACaptionKeepsToItsShareOfThePicture) {
+  EXPECT_EQ(caption_lines(100, 1.0 / 6.0), 1U);
+  EXPECT_EQ(caption_lines(270, 1.0 / 6.0), 2U);
+  EXPECT_EQ(caption_lines(360, 1.0 / 6.0), 3U);
+  EXPECT_EQ(caption_lines(720, 1.0 / 6.0), 4U);
+  Image image = grey(480, 270);
+  draw_caption(image, std::vector<std::string>(caption_lines(270, 1.0 / 6.0), "work x y z"));
+  const int plate = 270 / 6, edge = 9;  // px
+  EXPECT_EQ(changed(image, 0, 480, 0, 270 - edge - plate), 0);
+  EXPECT_GT(changed(image, 0, 480, 270 - edge - plate, 270), 0);
+}
+
 TEST(Lettering, ALongLineEndsWithinThePicture) {
   Image image = grey(320, 180);
   draw_caption(image, {std::string(200, 'W'), "short"});
