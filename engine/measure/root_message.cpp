@@ -38,10 +38,10 @@ void each_field_of_result(Result& result, const Number& number, const Place& pla
   place(result.scallop_at);
   number(result.gouge_found);
   number(result.excess_found);
-  place(result.gouge_found_at);
-  place(result.excess_found_at);
+  place(result.gouge_bottom);
+  place(result.excess_top);
   number(result.above_found);
-  place(result.above_found_at);
+  place(result.above_top);
   number(result.gouge_block);
   number(result.excess_block);
   number(result.cells);
