@@ -413,6 +413,7 @@ void BlockCurve::append_cells(double from, double to, const TipLimits& tip,
     PathCell& cell = cells.emplace_back(bounds_between(static_cast<size_t>(a / length_ * last),
                                                        static_cast<size_t>(std::ceil(b / length_ * last))));
     cell.length = b - a;
+    cell.uneven = stretched_;
     const AlongTip along(tip, tip_way_, share(b) - share(a), cell.length);
     cell.speed = along.speed;
     cell.tip = along.tip;

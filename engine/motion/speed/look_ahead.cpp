@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "base/check.h"
+#include "motion/speed/hop_split.h"
 
 namespace swarf::motion {
 namespace {
@@ -15,33 +16,13 @@ constexpr double kNone = std::numeric_limits<double>::infinity();
 constexpr double kCurvatureShare = 0.7, kThirdShare = 0.5;
 /// A corner stays passable while accelerating when it leaves these shares of acceleration and jerk.
 constexpr double kLeftShare = 0.5;
-/// A cell's speed may be exceeded by this relative amount: rounding.
-constexpr double kRounding = 1e-9;
 constexpr int kRoundsMax = 200;
+/// Share of a hop's time that parts must promise to save.
+constexpr double kTight = 0.08;
+/// Hops that are parted together.
+constexpr size_t kHopsAtOnce = 8;
 /// Rounds that slow one cell of each hop.
 constexpr int kOneByOne = 24;
-
-/// What an axis with these derivatives leaves for a and j at speed v.
-RampLimits left_at(const PathCell& cell, double v, const AxisLimits& limits) {
-  RampLimits left = cell.tip;
-  for (Eigen::Index i = 0; i < kinematics::kMaxAxes; ++i) {
-    if (cell.first[i] == 0.0) continue;
-    left.acceleration =
-        std::min(left.acceleration, (limits.acceleration[i] - cell.second[i] * v * v) / cell.first[i]);
-    const double cross = 3.0 * cell.second[i] * v;
-    if (cross > 0.0)
-      left.acceleration =
-          std::min(left.acceleration, 0.5 * (limits.jerk[i] - cell.third[i] * v * v * v) / cross);
-  }
-  left.acceleration = std::max(0.0, left.acceleration);
-  for (Eigen::Index i = 0; i < kinematics::kMaxAxes; ++i) {
-    if (cell.first[i] == 0.0) continue;
-    const double used = (cell.third[i] * v * v + 3.0 * cell.second[i] * left.acceleration) * v;
-    left.jerk = std::min(left.jerk, (limits.jerk[i] - used) / cell.first[i]);
-  }
-  left.jerk = std::max(0.0, left.jerk);
-  return left;
-}
 
 /// What lies between two keys.
 struct Gap {
@@ -86,7 +67,9 @@ class Planner {
     for (round_ = 0; round_ < kRoundsMax; ++round_) {
       choose_keys();
       if (too_fast_) return std::nullopt;
-      if (place_phases()) return std::move(plan_);
+      if (!place_phases()) continue;
+      part_tight_hops();
+      return std::move(plan_);
     }
     SWARF_CHECK(too_fast_, "no plan keeps the speeds of the cells");
     return std::nullopt;
@@ -260,10 +243,10 @@ class Planner {
     for (size_t i = a.end; i < b.begin; ++i) {
       const double from = s;
       s += cells_[i].length;
-      if (used_[i] * (1.0 + kRounding) >= peak) continue;
+      if (used_[i] * (1.0 + kSpeedRounding) >= peak) continue;
       const bool slowest = !worst || used_[i] < used_[*worst];
       if (!slowest && round_ < kOneByOne) continue;
-      if (!(greatest_speed(from, s) > used_[i] * (1.0 + kRounding))) continue;
+      if (!(greatest_speed(hop_, from, s) > used_[i] * (1.0 + kSpeedRounding))) continue;
       if (round_ >= kOneByOne) force_ends(i, a, b);
       if (slowest) worst = i;
     }
@@ -283,30 +266,72 @@ class Planner {
     forced_[node] = std::min(forced_[node], speed);
   }
 
-  /// Greatest speed of the hop between two places: it rises to its peak and falls.
-  double greatest_speed(double from, double to) const {
-    double s = 0.0, result = 0.0;
-    for (const Phase& phase : hop_) {
-      const double end = s + phase.way(phase.duration);
-      if (end >= from && s <= to) {
-        result = std::max({result, speed_at(phase, from - s), speed_at(phase, to - s)});
-        if (phase.acceleration == 0.0 && phase.jerk == 0.0) result = std::max(result, phase.speed);
-      }
-      s = end;
-    }
-    return result;
+  /// The hop before a key goes past a pole and takes much more time than its cells ask for.
+  bool is_tight(size_t key) const {
+    const Key &a = keys_[key - 1], &b = keys_[key];
+    const auto cells = std::span(cells_).subspan(a.end, b.begin - a.end);
+    if (std::none_of(cells.begin(), cells.end(), [](const PathCell& cell) { return cell.uneven; }))
+      return false;
+    return least_time_between({cells_, used_, limits_}, node(a), node(b)) <
+           (1.0 - kTight) * time_of(first_phase(key), last_phase(key));
+  }
+  double time_of(size_t first, size_t end) const {
+    double time = 0.0;
+    for (size_t i = first; i < end; ++i) time += plan_.phases[i].phase.duration;
+    return time;
+  }
+  static EvenNode node(const Key& key) { return {key.begin, key.end, key.speed, 0.0}; }
+  size_t first_phase(size_t key) const { return key > 1 ? plan_.places[key - 2].phases : 0; }
+  /// Of the hop before the key, without the key's own.
+  size_t last_phase(size_t key) const {
+    return plan_.places[key - 1].phases - (keys_[key].begin != keys_[key].end ? 1 : 0);
   }
 
-  /// Speed of the phase `way` after its start, held at its ends.
-  static double speed_at(const Phase& phase, double way) {
-    double low = 0.0, high = phase.duration;
-    if (way >= phase.way(high)) low = high;
-    if (way <= 0.0) high = 0.0;
-    for (int i = 0; i < 50 && high > low; ++i) {
-      const double middle = 0.5 * (low + high);
-      (phase.way(middle) <= way ? low : high) = middle;
+  /// Tight hops together with those beside them, whose common corners they share.
+  void part_tight_hops() {
+    std::vector<char> tight(keys_.size(), 0);
+    for (size_t k = 1; k < keys_.size(); ++k) tight[k] = is_tight(k) ? 1 : 0;
+    if (std::find(tight.begin(), tight.end(), 1) == tight.end()) return;
+    CellPlan parted;
+    for (size_t k = 1; k < keys_.size();) {
+      const bool near = tight[k] != 0 || (k + 1 < keys_.size() && tight[k + 1] != 0);
+      size_t end = k + 1;
+      while (near && end < keys_.size() && end - k < kHopsAtOnce && (tight[end] != 0 || tight[end - 1] != 0))
+        ++end;
+      append_parted(k, end, near, parted);
+      k = end;
     }
-    return phase.speed + (phase.acceleration + 0.5 * phase.jerk * low) * low;
+    plan_ = std::move(parted);
+  }
+
+  /// The hops before keys [from, to), parted where that saves time.
+  void append_parted(size_t from, size_t to, bool tight, CellPlan& parted) {
+    std::vector<EvenNode> nodes;
+    for (size_t k = from - 1; tight && k < to; ++k) nodes.push_back(node(keys_[k]));
+    const SpeedOfCells of{cells_, used_, limits_};
+    if (!tight || !part_hops(of, time_of(first_phase(from), last_phase(to - 1)), nodes)) {
+      for (size_t k = from; k < to; ++k) append_as_it_is(k, parted);
+      return;
+    }
+    for (size_t k = 1; k < nodes.size(); ++k) {
+      const EvenNode& at = nodes[k];
+      double offset = 0.0;
+      hop_between(of, nodes[k - 1], at, hop_);
+      for (const Phase& phase : hop_) {
+        parted.phases.push_back({phase, nodes[k - 1].end, offset});
+        offset += phase.way(phase.duration);
+      }
+      if (at.begin != at.end)
+        parted.phases.push_back({{cells_[at.begin].length / at.speed, at.speed, 0.0, 0.0}, at.begin, 0.0});
+      parted.places.push_back({at.end, at.speed, parted.phases.size()});
+    }
+  }
+  void append_as_it_is(size_t key, CellPlan& plan) const {
+    const auto begin = plan_.phases.begin();
+    plan.phases.insert(plan.phases.end(), begin + static_cast<std::ptrdiff_t>(first_phase(key)),
+                       begin + static_cast<std::ptrdiff_t>(plan_.places[key - 1].phases));
+    plan.places.push_back(plan_.places[key - 1]);
+    plan.places.back().phases = plan.phases.size();
   }
 
   const std::vector<PathCell>& cells_;
@@ -346,6 +371,27 @@ AxisLimits axis_limits(const kinematics::MachineModel& machine, bool rapid) {
     limits.jerk[row] = kPlanned * axis.jerk_max;
   }
   return limits;
+}
+
+RampLimits left_at(const PathCell& cell, double v, const AxisLimits& limits) {
+  RampLimits left = cell.tip;
+  for (Eigen::Index i = 0; i < kinematics::kMaxAxes; ++i) {
+    if (cell.first[i] == 0.0) continue;
+    left.acceleration =
+        std::min(left.acceleration, (limits.acceleration[i] - cell.second[i] * v * v) / cell.first[i]);
+    const double cross = 3.0 * cell.second[i] * v;
+    if (cross > 0.0)
+      left.acceleration =
+          std::min(left.acceleration, 0.5 * (limits.jerk[i] - cell.third[i] * v * v * v) / cross);
+  }
+  left.acceleration = std::max(0.0, left.acceleration);
+  for (Eigen::Index i = 0; i < kinematics::kMaxAxes; ++i) {
+    if (cell.first[i] == 0.0) continue;
+    const double used = (cell.third[i] * v * v + 3.0 * cell.second[i] * left.acceleration) * v;
+    left.jerk = std::min(left.jerk, (limits.jerk[i] - used) / cell.first[i]);
+  }
+  left.jerk = std::max(0.0, left.jerk);
+  return left;
 }
 
 void limit_speed(const AxisLimits& limits, PathCell& cell) {

@@ -11,6 +11,8 @@
 //    +--k---k------------------k--k---k  3. A key that its neighbours cannot reach is dropped and its cell
 //  joins the hop; a corner that would leave too little of A and J is passed slower instead.
 //  4. Where a hop is too fast for a cell within, that cell's ends become keys, and again from 3.
+//  5. Beside a pole, hops over cells that leave much and cells that leave little are parted, each part with
+//  its own A and J (hop_split.h).
 //
 // All axis limits hold for every instant, and so for the differences of any samples: a difference of order n
 // is the mean of the n-th derivative under a B-spline.
@@ -35,6 +37,8 @@ double speed_limit(const kinematics::Axis& axis, bool rapid);
 AxisLimits axis_limits(const kinematics::MachineModel& machine, bool rapid);
 /// Share of the machine's limits that is planned with.
 inline constexpr double kPlanned = 1.0 - 1e-6;
+/// A cell's speed may be exceeded by this relative amount: rounding.
+inline constexpr double kSpeedRounding = 1e-9;
 
 /// A stretch of path with bounds that hold everywhere on it.
 struct PathCell {
@@ -42,6 +46,7 @@ struct PathCell {
   double speed = 0.0;                           ///< what feed and axes allow; see limit_speed()
   bool corner = false;                          ///< passed evenly
   bool stop = false;                            ///< comes to rest at its end
+  bool uneven = false;                          ///< of a block whose axes turn unevenly, as beside a pole
   RampLimits tip;                               ///< of the path, from MotionOptions; infinite where none
   kinematics::AxisValues first, second, third;  ///< bounds of |q'|, |q''|, |q'''|
 };
@@ -49,6 +54,9 @@ struct PathCell {
 /// Lowers the cell's speed to what the axes can follow: corners use all of acceleration and jerk, other cells
 /// keep a share for changes of speed.
 void limit_speed(const AxisLimits& limits, PathCell& cell);
+
+/// What a cell's axes leave for acceleration and jerk along s at speed v; not below 0.
+RampLimits left_at(const PathCell& cell, double v, const AxisLimits& limits);
 
 /// A phase and where it starts.
 struct PlacedPhase {

@@ -46,6 +46,18 @@ void append_ramp(double from, double to, const RampLimits& limits, std::vector<P
   phases.push_back({rise, to - knee, a, -j});
 }
 
+/// Speed of the phase `way` after its start, held at its ends.
+double speed_at(const Phase& phase, double way) {
+  double low = 0.0, high = phase.duration;
+  if (way >= phase.way(high)) low = high;
+  if (way <= 0.0) high = 0.0;
+  for (int i = 0; i < 50 && high > low; ++i) {
+    const double middle = 0.5 * (low + high);
+    (phase.way(middle) <= way ? low : high) = middle;
+  }
+  return phase.speed + (phase.acceleration + 0.5 * phase.jerk * low) * low;
+}
+
 }  // namespace
 
 double ramp_time(double from, double to, const RampLimits& limits) {
@@ -77,6 +89,19 @@ double append_hop(double v0, double v1, double length, double top, const RampLim
   if (cruise > 0.0 && peak > 0.0) phases.push_back({cruise / peak, peak, 0.0, 0.0});
   append_ramp(peak, v1, limits, phases);
   return peak;
+}
+
+double greatest_speed(const std::vector<Phase>& hop, double from, double to) {
+  double s = 0.0, result = 0.0;
+  for (const Phase& phase : hop) {
+    const double end = s + phase.way(phase.duration);
+    if (end >= from && s <= to) {
+      result = std::max({result, speed_at(phase, from - s), speed_at(phase, to - s)});
+      if (phase.acceleration == 0.0 && phase.jerk == 0.0) result = std::max(result, phase.speed);
+    }
+    s = end;
+  }
+  return result;
 }
 
 }  // namespace swarf::motion

@@ -36,4 +36,8 @@ struct Phase {
 double append_hop(double v0, double v1, double length, double top, const RampLimits& limits,
                   std::vector<Phase>& phases);
 
+/// Greatest speed between two places of what append_hop has made, mm from its start: it rises to its peak and
+/// falls.
+double greatest_speed(const std::vector<Phase>& hop, double from, double to);
+
 }  // namespace swarf::motion

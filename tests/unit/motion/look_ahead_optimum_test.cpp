@@ -2,6 +2,7 @@
 // same rounded path, under the same limits of axes, tip and feed, none of them split into shares.
 #include <gtest/gtest.h>
 
+#include "motion/judged/motion_check.h"
 #include "motion/speed/jerk_profile.h"
 #include "unit/motion/random_program.h"
 #include "unit/motion/time_optimum.h"
@@ -26,13 +27,50 @@ AxisValues values(double x, double y, double z, double a, double b) {
   return q;
 }
 
-TEST(LookAhead, TimeIsWithinThreePercentOfTheOptimum) {
-  const kinematics::MachineModel machine = paper_machine();
-  const kinematics::InverseKinematics inverse(machine);
+/// Feed blocks through the stations.
+toolpath::ToolPath path_of(const Case& one, const kinematics::MachineModel& machine) {
+  toolpath::ToolPath path;
+  for (size_t i = 0; i + 1 < one.stations.size(); ++i) {
+    BlockMove block;
+    block.law = one.law;
+    block.axes = toolpath::AxisSpan{one.stations[i], one.stations[i + 1]};
+    block.from = kinematics::forward(machine, one.stations[i]);
+    block.to = kinematics::forward(machine, one.stations[i + 1]);
+    block.feed_mm_s = one.feeds[i];
+    path.elements.push_back({block, 0, {}});
+  }
+  return path;
+}
+
+MotionOptions options_of_the_cases() {
   MotionOptions options;
   options.path_acceleration_max = 1000.0;
   options.path_jerk_max = 20000.0;
   options.corner_tolerance_mm = 0.05;
+  return options;
+}
+
+struct Times {
+  double planned = 0.0, optimum = 0.0;  ///< s
+};
+Times times_of(const Case& one) {
+  const kinematics::MachineModel machine = paper_machine();
+  const kinematics::InverseKinematics inverse(machine);
+  const MotionOptions options = options_of_the_cases();
+  const toolpath::ToolPath path = path_of(one, machine);
+  const BlockMotions motions = block_motions(path, machine);
+  RunPlace start;
+  start.end = motions.size();
+  RunPlanner planner(motions, start, inverse, options);
+  const PlannedRun& run = planner.next();
+  const Times times{duration(run.phases), TimeOptimum(run, machine, options).time()};
+  fmt::print("{}: {:.4f} s, optimum {:.4f} s, {:+.2f} %\n", one.name, times.planned, times.optimum,
+             100.0 * (times.planned / times.optimum - 1.0));
+  EXPECT_GE(times.planned, 0.99 * times.optimum) << one.name << ": the optimum is not one";
+  return times;
+}
+
+TEST(LookAhead, TimeIsWithinThreePercentOfTheOptimum) {
   const std::vector<Case> cases{
       {"straight", {values(0, 0, 0, 0.3, 0), values(20, 0, 0, 0.3, 0)}, {30}},
       {"short straight", {values(0, 0, 0, 0.3, 0), values(2, 0, 0, 0.3, 0)}, {30}},
@@ -59,32 +97,91 @@ TEST(LookAhead, TimeIsWithinThreePercentOfTheOptimum) {
       {"near the pole", {values(8, 96, 120, 0.02, 0), values(9, 96, 120, 0.025, 1.0)}, {60}, BlockLaw::kTcp},
   };
   for (const Case& one : cases) {
-    toolpath::ToolPath path;
-    for (size_t i = 0; i + 1 < one.stations.size(); ++i) {
-      BlockMove block;
-      block.law = one.law;
-      block.axes = toolpath::AxisSpan{one.stations[i], one.stations[i + 1]};
-      block.from = kinematics::forward(machine, one.stations[i]);
-      block.to = kinematics::forward(machine, one.stations[i + 1]);
-      block.feed_mm_s = one.feeds[i];
-      path.elements.push_back({block, 0, {}});
-    }
-    const BlockMotions motions = block_motions(path, machine);
-    RunPlace start;
-    start.end = motions.size();
-    RunPlanner planner(motions, start, inverse, options);
-    const PlannedRun& run = planner.next();
-    const double seconds = duration(run.phases);
-    const double optimum = TimeOptimum(run, machine, options).time();
-    fmt::print("{}: {:.4f} s, optimum {:.4f} s, {:+.2f} %\n", one.name, seconds, optimum,
-               100.0 * (seconds / optimum - 1.0));
-    EXPECT_LE(seconds, 1.03 * optimum) << one.name;
-    EXPECT_GE(seconds, 0.99 * optimum) << one.name << ": the optimum is not one";
+    const Times times = times_of(one);
+    EXPECT_LE(times.planned, 1.03 * times.optimum) << one.name;
     if (one.stations.size() > 2 || one.stations[0].tail<2>() != one.stations[1].tail<2>()) continue;
     const double way = (one.stations[1] - one.stations[0]).norm();
+    const MotionOptions options = options_of_the_cases();
     const double closed =
         RestToRest(way, 30.0, options.path_acceleration_max, options.path_jerk_max).duration();
-    EXPECT_NEAR(optimum, closed, 0.003 * closed) << one.name << ": the optimum misses its closed form";
+    EXPECT_NEAR(times.optimum, closed, 0.003 * closed) << one.name << ": the optimum misses its closed form";
+  }
+}
+
+/// Short blocks whose rotary axes turn far beside the pole, so that a few cells leave a hundredth of the
+/// acceleration that those beside them leave.
+TEST(LookAhead, PastAPoleTimeIsWithinTenPercentOfTheOptimum) {
+  for (const Case& one : {
+           Case{"two blocks past the pole",
+                {values(0, 0, 0, 0.02, 0), values(2, 1, 0, 0.03, 1.9), values(4, 1, 0, 0.05, 2.2)},
+                {200, 200},
+                BlockLaw::kTcp},
+           Case{"towards and past the pole",
+                {values(0, 0, 0, 0.06, 0), values(2, 0.5, 0, 0.02, 0.1), values(3, 1, 0, 0.03, 1.9)},
+                {200, 200},
+                BlockLaw::kTcp},
+           Case{"a corner at the pole",
+                {values(0, 0, 0, 0.05, 0), values(1, 0, 0, 0.01, 0.8), values(1, 1.5, 0, 0.04, 1.6)},
+                {60, 60},
+                BlockLaw::kTcp},
+           Case{"a way that turns back",
+                {values(8, 96, 120, 0.02, 0), values(9, 96, 120, 0.025, 1.0), values(9, 97, 120, 0.03, 0.4)},
+                {60, 60},
+                BlockLaw::kTcp},
+           Case{"a straight way after the pole",
+                {values(0, 0, 0, 0.02, 0), values(2, 1, 0, 0.03, 1.9), values(6, 3, 0, 0.03, 1.9)},
+                {200, 200},
+                BlockLaw::kTcp},
+       }) {
+    const Times times = times_of(one);
+    EXPECT_LE(times.planned, 1.1 * times.optimum) << one.name;
+    const kinematics::MachineModel machine = paper_machine();
+    Progress silent;
+    const Interpolated result =
+        interpolate(path_of(one, machine), machine, cutter::Cutter{}, options_of_the_cases(), silent);
+    const Excess excess = axis_excess(result.trajectory, machine);
+    EXPECT_LE(excess.relative, 1e-9) << one.name << ": " << excess.text;
+  }
+}
+
+/// Two blocks of .5 to 4 mm whose second rotary axis turns by up to two radians .3 to 3.4 deg from the pole.
+Case pair_beside_the_pole(uint64_t seed) {
+  Rng rng(seed);
+  AxisValues q = AxisValues::Zero();
+  for (const int i : {0, 1}) q[i] = rng.uniform(-5, 5);
+  q[3] = rng.uniform(0.005, 0.06);
+  Case pair{"random pair", {q}, {}, BlockLaw::kTcp};
+  for (int block = 0; block < 2; ++block) {
+    const Vec3 direction = rng.direction();
+    const double length = rng.uniform(0.5, 4);
+    q[0] += length * direction[0];
+    q[1] += length * direction[1];
+    q[3] = rng.uniform(0.005, 0.06);
+    q[4] += 2.0 * rng.uniform(-1, 1);
+    pair.stations.push_back(q);
+  }
+  pair.feeds.assign(2, rng.uniform(30, 200));
+  return pair;
+}
+
+/// A part has one acceleration and one jerk from its lowest speed to its highest, and blocks that turn evenly
+/// are not parted: 3 of the first 40 pairs are above 10 %, the worst by 21 %; before, 7 were, by up to 50 %.
+TEST(LookAhead, RandomPairsPastAPoleAreMostlyWithinTenPercentOfTheOptimum) {
+  const kinematics::MachineModel machine = paper_machine();
+  int above = 0;
+  for (uint64_t seed = 0; seed < 8; ++seed) {
+    const Case pair = pair_beside_the_pole(seed);
+    const Times times = times_of(pair);
+    above += times.planned > 1.1 * times.optimum ? 1 : 0;
+    EXPECT_LE(times.planned, 1.25 * times.optimum) << "seed " << seed;
+  }
+  EXPECT_LE(above, 1);
+  for (uint64_t seed = 0; seed < 40; ++seed) {
+    Progress silent;
+    const Interpolated result = interpolate(path_of(pair_beside_the_pole(seed), machine), machine,
+                                            cutter::Cutter{}, options_of_the_cases(), silent);
+    const Excess excess = axis_excess(result.trajectory, machine);
+    EXPECT_LE(excess.relative, 1e-9) << "seed " << seed << ": " << excess.text;
   }
 }
 

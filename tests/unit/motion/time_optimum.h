@@ -36,9 +36,20 @@ class TimeOptimum {
     rows_.push_back({s_.size() - 2, {0, 1, 0}, from_rest(last, cell_of_.back()), 0.0});
   }
 
-  /// Least time, s.
+  /// Least time, s: the problem is not convex, so that one start may end beside it. From the plan itself,
+  /// and from a law so slow that it holds everything.
   double time() {
-    start();
+    start([&](double s) { return std::pow(planned_speed(s), 2); });
+    const double near = descend();
+    const double length = s_.back(), scale = std::pow(run_.path.cells.front().speed, 2);
+    start([&](double s) {
+      return scale * std::pow(std::max(0.0, s * (length - s)) / (length * length), 4.0 / 3.0);
+    });
+    return std::min(near, descend());
+  }
+
+ private:
+  double descend() {
     double weight = 0.1 * objective();  // per row, of the barrier
     for (weight /= static_cast<double>(rows_.size());
          weight * static_cast<double>(rows_.size()) > 1e-5 * objective(); weight *= 0.6) {
@@ -50,7 +61,6 @@ class TimeOptimum {
     return objective();
   }
 
- private:
   /// g b(k-1..k+1) <= bound, or <= jerk / sqrt(b_k) where jerk is set.
   struct Row {
     size_t k = 0;
@@ -153,14 +163,31 @@ class TimeOptimum {
     return std::all_of(rows_.begin(), rows_.end(), [&](const Row& row) { return slack(row) > 0.0; });
   }
 
-  /// A law so slow that it holds everything.
-  void start() {
-    const double length = s_.back();
-    for (double scale = run_.path.cells.front().speed;; scale *= 0.5) {
+  double planned_speed(double s) const {
+    double from = 0.0;
+    for (const PlacedPhase& placed : run_.phases) {
+      const Phase& phase = placed.phase;
+      const double way = phase.way(phase.duration);
+      if (s < from + way) {
+        double low = 0.0, high = phase.duration;
+        for (int i = 0; i < 50; ++i) {
+          const double middle = 0.5 * (low + high);
+          (phase.way(middle) <= s - from ? low : high) = middle;
+        }
+        return phase.speed + (phase.acceleration + 0.5 * phase.jerk * low) * low;
+      }
+      from += way;
+    }
+    return 0.0;
+  }
+
+  /// Starts from b(s), slowed evenly until it holds everything with room to spare.
+  template <typename Squared>
+  void start(const Squared& squared) {
+    for (double scale = 0.9;; scale *= 0.7) {
       b_.clear();
-      for (const double s : s_)
-        b_.push_back(scale * scale *
-                     std::pow(std::max(0.0, s * (length - s)) / (length * length), 4.0 / 3.0));
+      for (const double s : s_) b_.push_back(scale * squared(s));
+      b_.front() = b_.back() = 0.0;
       move_tangents();
       if (inside()) return;
     }
