@@ -21,7 +21,7 @@ constexpr int kSpeedsTried = 5, kCloser = 3;
 /// Halvings of the interval in which a hop's top speed lies.
 constexpr int kTopHalvings = 7;
 
-double duration_of(const std::vector<Phase>& phases) {
+double seconds_of(const std::vector<Phase>& phases) {
   return std::accumulate(phases.begin(), phases.end(), 0.0,
                          [](double sum, const Phase& phase) { return sum + phase.duration; });
 }
@@ -203,7 +203,7 @@ double hop_between(const SpeedOfCells& of, const EvenNode& a, const EvenNode& b,
     if (left.acceleration > 0.0 && left.jerk > 0.0 &&
         (a.speed == b.speed || ramp_length(a.speed, b.speed, left) <= length))
       peak = append_hop(a.speed, b.speed, length, top, left, tried);
-    const double time = duration_of(tried);
+    const double time = seconds_of(tried);
     if (peak && *peak > 0.0 && time < least && keeps_speeds(of, a, b, *peak, tried)) {
       least = time;
       phases = tried;
@@ -228,7 +228,7 @@ double least_time_between(const SpeedOfCells& of, const EvenNode& a, const EvenN
   }
   std::vector<Phase> phases;
   append_hop(a.speed, b.speed, length, top, most, phases);
-  return std::max(time, duration_of(phases));
+  return std::max(time, seconds_of(phases));
 }
 
 bool part_hops(const SpeedOfCells& of, double before_s, std::vector<EvenNode>& nodes) {
