@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/diagnostics.h"
+#include "measure/metrics.h"
 #include "render/gltf/gltf_writer.h"
 #include "reports/machine_view.h"
 #include "reports/path_view.h"
