@@ -1,8 +1,9 @@
-// node page.mjs [--pictures FOLDER] REPORT.html...: what a person does with each page, at 1400 and at 390 px: it opens,
+// node page.mjs [--pictures FOLDER] [--leading] REPORT.html...: what a person does with each page, at 1400 and at 390 px: it opens,
 // nothing is said on the console, axe finds no violation, nothing is wider than the window; both tabs of the 3D view are
 // drawn, the design can be shown; the deepest and the highest place of the part are those of metrics.json beside the page,
 // within 0.1 um. At 1400 px also: the tool stands over the work as blocks.csv says and the stock is cut in stages; each
 // finding leads to its place, where its pin stands, to its line and the movie's second.
+// --leading: each page has a finding that leads to a place, to a line and to the movie.
 // FOLDER: for what was seen. Prints one line for each width; exits 1 on the first thing that is not so.
 import assert from 'node:assert/strict';
 import { existsSync, readFileSync } from 'node:fs';
@@ -16,9 +17,11 @@ const axe = readFileSync(require.resolve('axe-core/axe.min.js'), 'utf8');
 
 const words = process.argv.slice(2);
 const pictures = words[0] === '--pictures' ? words.splice(0, 2)[1] : null;
+const leading = words[0] === '--leading' && Boolean(words.shift());
 const readLimitUm = 0.1, opensWithinMs = 2000, findingsVisited = 5, findingsVisitedNarrow = 2, pinsApartMm = 10;
 const narrowPx = 500;  // a telephone: what follows from the models alone is looked at once
 const drawnPixels = 0.25;  // for each pixel of the page: a processor draws the 3D view, and what is looked at is not its grain
+const cycleS = 1e-3;
 const tipWithinMm = 0.2;  // keys of up to five axes, each within 0.02 mm or 0.0115 deg, and milliseconds in the slider
 
 const browser = await chromium.launch({
@@ -71,7 +74,7 @@ async function checkPin(page, number, findings) {
 
 async function checkFindings(page, visited) {
   const findings = await page.evaluate(() => JSON.parse(document.getElementById('findings-data')?.textContent ?? '[]'));
-  const told = { part: 0, machine: 0, movie: 0 };
+  const told = { part: 0, machine: 0, line: 0, movie: 0 };
   for (const [i, finding] of findings.slice(0, visited).entries()) {
     const show = page.locator(`#finding-${i + 1} button[data-show="view"]`);
     if (!(await show.count())) continue;
@@ -82,7 +85,10 @@ async function checkFindings(page, visited) {
     if (finding.place) await checkPin(page, i + 1, findings);
     told[tab] += 1;
     assert.match(await page.locator('.viewer-info').textContent(), /^Finding \d+: /);
-    if (finding.line) assert.match(await page.locator('.viewer-program .at').textContent(), new RegExp(`^${finding.line}`));
+    if (finding.line) {
+      assert.match(await page.locator('.viewer-program .at').textContent(), new RegExp(`^${finding.line}`));
+      told.line += 1;
+    }
     const video = page.locator('#movie video[data-even]');
     if (!(await video.count()) || finding.t_s === null) continue;
     await page.waitForFunction(() => document.querySelector('#movie video').readyState >= 1);
@@ -93,6 +99,7 @@ async function checkFindings(page, visited) {
     assert.ok(Math.abs(at - wanted) < 0.1, `finding ${i + 1}: the movie is at ${at} s, not at ${wanted}`);
     told.movie += 1;
   }
+  if (leading) assert.ok(told.part + told.machine > 0 && told.line > 0 && told.movie > 0, `a finding leads to ${JSON.stringify(told)}`);
   return `${findings.length} findings, shown on the part ${told.part}, in the machine ${told.machine}, in the movie ${told.movie}`;
 }
 
@@ -115,13 +122,16 @@ async function checkMachine(page, width, folder) {
   let worst = 0;
   const stages = [];
   for (const share of [0.1, 0.6, 1]) {
-    const block = blocks[Math.round(share * (blocks.length - 1))];
-    if (!block) break;
+    let nth = Math.round(share * (blocks.length - 1));
+    if (!blocks.length) break;
+    if (blocks[nth + 1] && blocks[nth + 1].tool !== blocks[nth].tool) nth += 1;  // at a tool change both stand there
+    const block = blocks[nth];
     const scale = Number(await host.getAttribute('data-time-scale'));
     await scrub.evaluate((element, time) => { element.value = time; element.dispatchEvent(new Event('input')); }, share === 1 ? Number(await scrub.getAttribute('max')) : (block.t_s - from_s) / scale);
     const tip = (await page.locator('.viewer-tip').textContent()).replaceAll('\u2212', '-').match(/[XYZ] ([-0-9.]+)/g).map((word) => Number(word.slice(2)));
     const off = Math.hypot(...['x', 'y', 'z'].map((axis, k) => block[`tip_${axis}_mm`] - tip[k]));
-    assert.ok(off < tipWithinMm, `line ${block.line}, ${block.t_s} s: the tip stands at ${tip}, ${off} mm away`);
+    const cycle = (block.feed_mm_min / 60) * cycleS;  // a block that does not end in a stop ends within a cycle
+    assert.ok(off < tipWithinMm + cycle, `line ${block.line}, ${block.t_s} s: the tip stands at ${tip}, ${off} mm away`);
     worst = Math.max(worst, off);
     stages.push((await host.getAttribute('data-stock')).replace(/^part.*/, 'stock_part'));
   }

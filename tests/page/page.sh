@@ -1,5 +1,5 @@
 #!/bin/sh
-# page.sh [--pictures FOLDER] REPORT.html...: opens the pages in headless Chromium (page.mjs). Playwright and axe come by npm into
+# page.sh [--pictures FOLDER] [--leading] REPORT.html...: opens the pages in headless Chromium (page.mjs). Playwright and axe come by npm into
 # build/ on first use; Chromium is Debian's. Exits 77 and says so where there is no Chromium.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)

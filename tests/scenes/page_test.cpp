@@ -184,10 +184,24 @@ TEST_F(GougedPage, TheRunsOwnStillsAreLabelled) {
   }
 }
 
-TEST_F(GougedPage, LeadsFromAFindingToItsPlaceLineAndMovie) {
-  const auto page = run_command(SWARF_SOURCE_DIR "/tests/page/page.sh " + run_folder() + "/report.html");
-  if (page.exit_code == kNoChromium) GTEST_SKIP() << page.output;
-  EXPECT_EQ(page.exit_code, 0) << page.output;
+/// Of the vertices of a PLY file as Swarf writes it, whose last property is the deviation: each as its own
+/// ray has measured it, with nothing added or lowered.
+float highest_vertex(const fs::path& ply) {
+  const std::string bytes = read_text(ply), end = "end_header\n";
+  const size_t count = std::stoul(bytes.substr(bytes.find("element vertex ") + 15, 12));
+  const size_t begin = bytes.find(end) + end.size();
+  const std::string header = bytes.substr(0, bytes.find("element face"));
+  EXPECT_TRUE(header.ends_with("property float deviation_um\n")) << header;
+  size_t stride = 0;
+  for (size_t at = header.find("property "); at != std::string::npos; at = header.find("property ", at + 1))
+    stride += header.compare(at + 9, 5, "float") == 0 ? 4 : 1;
+  float highest = -std::numeric_limits<float>::infinity();
+  for (size_t i = 1; i <= count; ++i) {
+    float value = 0.0F;
+    std::memcpy(&value, bytes.data() + begin + i * stride - sizeof value, sizeof value);
+    highest = std::max(highest, value);  // NaN, not measured, stays out
+  }
+  return highest;
 }
 
 const std::string kQuick = " --set movie.seconds=0 --set \"stills.kinds=[]\" ";
@@ -209,20 +223,17 @@ class Colours : public ::testing::Test {
   double um(const char* name) const { return surface_.at(name).get<double>(); }
   /// Of the run's own file, and of one that is made from its folder.
   void expect_range() {
-    const auto exported = run_swarf("export " + out() + " --gltf " + (folder_ / "again.glb").string());
+    const auto exported = run_swarf("export " + out() + " --gltf " + (folder_ / "again.glb").string() +
+                                    " --ply " + (folder_ / "again.ply").string());
     ASSERT_EQ(exported.exit_code, 0) << exported.output;
+    EXPECT_LE(highest_vertex(folder_ / "again.ply"), um("excess_max_um") + kReadLimitUm)
+        << "nothing is measured higher than what is told";
     for (const fs::path& file : {fs::path(out()) / "part.glb", folder_ / "again.glb"}) {
       const auto [low, high] = range_of(read_glb(file), "_DEVIATION_UM");
       EXPECT_NEAR(std::min(low, 0.0F), -um("gouge_max_um"), kReadLimitUm) << file;
       EXPECT_NEAR(high, um("excess_max_um"), kReadLimitUm) << file;
     }
   }
-  void expect_page() {
-    const auto page = run_command(SWARF_SOURCE_DIR "/tests/page/page.sh " + out() + "/report.html");
-    if (page.exit_code == kNoChromium) GTEST_SKIP() << page.output;
-    EXPECT_EQ(page.exit_code, 0) << page.output;
-  }
-
   fs::path folder_;
   json surface_;
 };
@@ -291,17 +302,17 @@ pitch_mm = 0.4
   return (folder / "scene.toml").string();
 }
 
-TEST_F(Colours, AboveAGapOfAPlaneAreThoseOfItsRays) {
-  run(overhung_scene(folder_, R"(kind = "plane"
+constexpr const char* kPlaneUnderTheSlab = R"(kind = "plane"
 origin_mm = [-9.9, -4.8, 0]
 along_u_mm = [19.8, 0, 0]
 along_v_mm = [0, 9.6, 0]
-)"),
-      "");
+)";
+
+TEST_F(Colours, AboveAGapOfAPlaneAreThoseOfItsRays) {
+  run(overhung_scene(folder_, kPlaneUnderTheSlab), "");
   EXPECT_GT(um("overhung_samples"), 0.0);
   EXPECT_NEAR(um("excess_max_um"), 3000.0, kReadLimitUm);
   expect_range();
-  expect_page();
 }
 
 TEST_F(Colours, AboveAGapOfAMeshAreThoseOfItsRays) {
@@ -312,6 +323,167 @@ TEST_F(Colours, AboveAGapOfAMeshAreThoseOfItsRays) {
   EXPECT_GT(um("overhung_samples"), 0.0);
   EXPECT_NEAR(um("excess_max_um"), 3000.0, kReadLimitUm);
   expect_range();
+}
+
+/// Pages whose findings are of different kinds.
+class PagesWithFindings {
+ public:
+  explicit PagesWithFindings(fs::path folder) : folder_(std::move(folder)) {}
+
+  /// The spindle stands while the tool cuts.
+  std::string spindle() const {
+    return page_of("spindle", written("spindle", R"(G21 G90
+T1 M6 G43 H1
+S5000 M3
+G0 X-15 Y0 Z20
+Z-2
+G1 X0 F1000
+M5
+X15
+G0 Z20
+M2
+)",
+                                      R"(tools = "T1=6"
+setup.work_origin_mm = "on_table"
+stock.box_mm = [[-10, -8, -10], [10, 8, 0]]
+stock.voxel_mm = 0.5
+)"));
+  }
+  /// A second tool goes down in rapid.
+  std::string rapid() const {
+    return page_of("rapid", written("rapid", R"(G21 G90
+T1 M6 G43 H1
+S9000 M3
+G0 X5 Y5 Z2
+G1 Z-3 F600
+X15
+G0 Z20
+T2 M6 G43 H2
+S3000 M3
+G0 X25 Y10
+Z2
+G0 Z-2
+Z20
+M2
+)",
+                                    R"(tools = "T1=6,T2=4"
+setup.work_origin_mm = "on_table"
+stock.box_mm = [[0, 0, -12], [40, 30, 0]]
+stock.voxel_mm = 0.8
+)"));
+  }
+  /// A clamp stands in the tool's way: found in the machine.
+  std::string clamps() const {
+    return page_of("clamps", written("clamps", R"(G21 G90 G17 G54
+T1 M6 G43 H1
+S5000 M3
+G0 X0 Y0 Z50
+G1 Z-2 F3000
+X60
+Y40
+G0 Z50
+M2
+)",
+                                     R"(dialect = "fanuc"
+machine = "spinner_u5_620"
+setup.work_origin_mm = "on_table"
+stock.box_mm = [[-10, -10, -20], [70, 50, 0]]
+stock.voxel_mm = 2
+[[tool]]
+number = 1
+diameter_mm = 6
+flute_length_mm = 30
+length_mm = 60
+holder_diameter_mm = 8
+[[fixture]]
+kind = "clamps"
+sides = ["x-", "x+"]
+)"));
+  }
+  /// The shank cuts, for the flutes are short.
+  std::string shank() const {
+    return page_of("shank", written("shank", R"(G21 G90
+T1 M6 G43 H1
+S5000 M3
+G0 X-15 Y0 Z20
+Z-6
+G1 X15 F1000
+G0 Z20
+M2
+)",
+                                    R"(setup.work_origin_mm = "on_table"
+stock.box_mm = [[-10, -8, -10], [10, 8, 0]]
+stock.voxel_mm = 0.5
+[[tool]]
+number = 1
+diameter_mm = 6
+flute_length_mm = 4
+shank_diameter_mm = 6
+length_mm = 50
+)"));
+  }
+  /// A mesh in a block that stands over it all round, highest over its corners, where no measuring ray looks;
+  /// and cut too deep.
+  std::string corners() const {
+    swarf::TriMesh block;
+    swarf::mesh::add_box(block, {{-8, -5, -3}, {8, 5, 0}});
+    swarf::mesh::save_mesh((folder_ / "block.stl").string(), block);
+    return page_of("corners", written("corners", R"(G21 G90
+T1 M6 G43 H1
+S5000 M3
+G0 X-20 Y0 Z5
+Z-0.02
+G1 X20 F1000
+G0 Z5
+M2
+)",
+                                      R"(tools = "T1=4"
+setup.work_origin_mm = "on_table"
+stock.box_mm = [[-8.3, -5.3, -3.3], [8.3, 5.3, 0.3]]
+stock.voxel_mm = 0.4
+accept.gouge_max_um = 5
+[design]
+kind = "mesh"
+mesh = "../block.stl"
+pitch_mm = 1
+)"));
+  }
+
+ private:
+  /// The page of a run with a small movie, which ends with findings.
+  std::string page_of(const std::string& name, const std::string& scene) const {
+    const fs::path out = folder_ / name;
+    const auto run = run_swarf("run " + scene +
+                               " --set movie.seconds=1 --set 'movie.size=[128,72]' --set movie.fps=10 --set "
+                               "movie.voxel_mm=1 --set 'stills.kinds=[]' -q -o " +
+                               out.string());
+    EXPECT_EQ(run.exit_code, 1) << name << "\n" << run.output;
+    return (out / "report.html").string();
+  }
+  /// A scene in a folder of its own.
+  std::string written(const std::string& name, const std::string& program, const std::string& scene) const {
+    const fs::path folder = folder_ / (name + "_scene");
+    fs::create_directories(folder);
+    swarf::test::write_text(folder / "part.nc", program);
+    swarf::test::write_text(folder / "scene.toml", "nc = \"part.nc\"\n" + scene);
+    return (folder / "scene.toml").string();
+  }
+
+  const fs::path folder_;
+};
+
+/// In one Chromium, at both widths.
+TEST_F(GougedPage, AndOthersLeadFromAFindingToItsPlaceLineAndMovie) {
+  const PagesWithFindings more(folder_);
+  std::string pages = run_folder() + "/report.html";
+  for (const std::string& page : {more.spindle(), more.rapid(), more.clamps(), more.shank(), more.corners()})
+    pages += " " + page;
+  const auto page = run_command(SWARF_SOURCE_DIR "/tests/page/page.sh --leading " + pages);
+  if (page.exit_code == kNoChromium) GTEST_SKIP() << page.output;
+  EXPECT_EQ(page.exit_code, 0) << page.output;
+  const json surface = json::parse(read_text(folder_ / "corners/metrics.json")).at("surface");
+  EXPECT_NEAR(surface.at("excess_max_um").get<double>(), 300.0 * std::sqrt(3.0), 30.0)
+      << "the corner of the block, as near as the vertices of its mesh are";
 }
 
 }  // namespace
