@@ -100,12 +100,15 @@ struct Foot {
   double distance_mm = std::numeric_limits<double>::infinity();
 };
 
-Foot foot_of(const TriMesh& mesh, const Vec3& place) {
+enum class Triangles { kMeasured, kAll };
+
+Foot foot_of(const TriMesh& mesh, const Vec3& place, Triangles among) {
   Foot best;
   for (size_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto& corners = mesh.triangles[t];
-    if (std::any_of(corners.begin(), corners.end(),
-                    [&](uint32_t v) { return std::isnan(mesh.deviation_um[v]); }))
+    if (among == Triangles::kMeasured && std::any_of(corners.begin(), corners.end(), [&](uint32_t v) {
+          return std::isnan(mesh.deviation_um[v]);
+        }))
       continue;
     const std::array<Vec3, 3> at{point_of(mesh, corners[0]), point_of(mesh, corners[1]),
                                  point_of(mesh, corners[2])};
@@ -138,6 +141,22 @@ void divide(TriMesh& mesh, const Foot& foot, double height_mm) {
   mesh.triangles.push_back({corners[2], corners[0], vertex});
 }
 
+/// Where no vertex around the place was measured: a measured triangle on it, too small to be seen.
+void mark(TriMesh& mesh, const Foot& foot, double height_mm) {
+  constexpr double kShare = 1e-4;  // of the triangle below it
+  const std::array<uint32_t, 3> corners = mesh.triangles[foot.triangle];
+  Vec3 place = Vec3::Zero();
+  for (size_t k = 0; k < 3; ++k) place += foot.weights[static_cast<int>(k)] * point_of(mesh, corners[k]);
+  const auto first = static_cast<uint32_t>(mesh.positions.size());
+  for (const uint32_t corner : corners) {
+    const Eigen::Vector3f p = (place + kShare * (point_of(mesh, corner) - place)).cast<float>();
+    mesh.positions.push_back({p.x(), p.y(), p.z()});
+    mesh.normals.push_back(mesh.normals[corner]);
+    mesh.deviation_um.push_back(static_cast<float>(um_from_mm(height_mm)));
+  }
+  mesh.triangles.push_back({first, first + 1, first + 2});
+}
+
 }  // namespace
 
 void add_worst_places(const FinishedRun& run, std::span<const WorstPlace> places, TriMesh& mesh) {
@@ -158,7 +177,10 @@ void add_worst_places(const FinishedRun& run, std::span<const WorstPlace> places
     if (um > most) um = most;
   const double near = kNearVoxels * run.stock.voxel_mm();
   for (const WorstPlace& one : all) {
-    const Foot foot = foot_of(mesh, on_part(run, one));
+    const Vec3 place = on_part(run, one);
+    const Foot foot = foot_of(mesh, place, Triangles::kMeasured);
+    const Foot any = foot.distance_mm <= near ? Foot{} : foot_of(mesh, place, Triangles::kAll);
+    if (any.distance_mm <= near) mark(mesh, any, one.deviation_mm);
     if (foot.distance_mm <= near) divide(mesh, foot, one.deviation_mm);
   }
 }
