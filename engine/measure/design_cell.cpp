@@ -418,6 +418,16 @@ std::vector<RootCell> root_cells(const stock::RayField& field, double size_mm) {
 
 namespace {
 
+/// Into how many a flat triangle of these squared sides is divided until none is longer: its longest side is
+/// halved again and again. The median to a side a has the square (2 b^2 + 2 c^2 - a^2) / 4.
+double halved_until(std::array<double, 3> sides2, double most2) {
+  std::sort(sides2.begin(), sides2.end());
+  const auto [c2, b2, a2] = sides2;
+  if (a2 <= most2) return 1.0;
+  const double median2 = 0.25 * (2.0 * b2 + 2.0 * c2 - a2);
+  return halved_until({0.25 * a2, b2, median2}, most2) + halved_until({0.25 * a2, c2, median2}, most2);
+}
+
 /// Of the columns beside a sharp edge.
 double expected_fan(const stock::FacetSheets& sheets, const stock::SharpEdge& edge, double size_mm) {
   const double length = (sheets.points[edge.left[1]] - sheets.points[edge.left[0]]).norm();
@@ -429,14 +439,19 @@ double expected_fan(const stock::FacetSheets& sheets, const stock::SharpEdge& ed
 }  // namespace
 
 double expected_roots(const stock::RayField& field, double size_mm) {
-  // Of a right-angled triangle that halving leaves the longest side is 0.7 to 1 of the size.
-  constexpr double kHalved = 2.8;  // cells of a square of that size
-  double area = 0.0;
-  for (const double part : field.areas_mm2) area += part;
-  double roots = kHalved * area / (size_mm * size_mm);
-  if (field.surface != nullptr) return roots;
+  if (field.surface != nullptr) {
+    double area = 0.0;
+    for (const double part : field.areas_mm2) area += part;
+    return 2.0 * area / (size_mm * size_mm);
+  }
   const stock::FacetSheets& sheets = *field.sheets;
-  roots += static_cast<double>(sheets.facets.size());
+  double roots = 0.0;
+  for (uint32_t f = 0; f < sheets.facets.size(); ++f) {
+    const auto side = [&](size_t k) {
+      return (sheets.corner(f, k) - sheets.corner(f, (k + 1) % 3)).squaredNorm();
+    };
+    roots += halved_until({side(0), side(1), side(2)}, size_mm * size_mm);
+  }
   for (const stock::SharpEdge& edge : sheets.sharp_edges) roots += expected_fan(sheets, edge, size_mm);
   return roots;
 }

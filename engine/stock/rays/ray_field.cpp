@@ -142,7 +142,7 @@ double RayField::own_depth(const Vec3& point, const Vec3& normal, double depth_m
   }
   if (high > depth_mm) return depth_mm;
   // mm; over faces each look takes several feet.
-  const double rounding = design->under != nullptr ? 1e-7 : 1e-9;
+  const double rounding = 1e-9;
   for (int i = 0; i < kHalvings && high - low > std::max(rounding, share * high); ++i) {
     const double middle = 0.5 * (low + high);
     (is_own(middle) ? low : high) = middle;
