@@ -4,6 +4,7 @@
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+#include <tbb/task_group.h>
 
 #include <algorithm>
 #include <atomic>
@@ -69,11 +70,18 @@ void parallel_chunks(size_t n, size_t chunk, const std::function<void(size_t, si
   const size_t count = (n + chunk - 1) / chunk;
   LoopOrder order;
   order.started();
-  tbb::parallel_for(size_t{0}, count, [&](size_t i) {
-    order.chunk_begins();
-    body(i * chunk, std::min(n, (i + 1) * chunk));
-    order.chunk_ends();
-  });
+  // Else the other threads round, and treat numbers near zero, as whoever started them did: Embree's do not
+  // know denormal ones.
+  tbb::task_group_context as_here(tbb::task_group_context::bound, tbb::task_group_context::default_traits |
+                                                                      tbb::task_group_context::fp_settings);
+  tbb::parallel_for(
+      size_t{0}, count,
+      [&](size_t i) {
+        order.chunk_begins();
+        body(i * chunk, std::min(n, (i + 1) * chunk));
+        order.chunk_ends();
+      },
+      as_here);
   order.returned();
 }
 

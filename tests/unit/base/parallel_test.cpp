@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cfenv>
 #include <mutex>
 #include <set>
 #include <stdexcept>
@@ -24,6 +25,20 @@ Chunks chunks_of(size_t n, size_t chunk) {
     EXPECT_TRUE(chunks.emplace(begin, end).second) << "chunk " << begin << " ran twice";
   });
   return chunks;
+}
+
+/// Chunks compute as their caller does, whatever whoever started the other threads had set.
+TEST(ParallelChunks, RoundAsTheirCaller) {
+  const int before = std::fegetround();
+  for (const int mode : {FE_UPWARD, FE_TOWARDZERO, FE_TONEAREST}) {
+    std::fesetround(mode);
+    std::atomic<int> others{0};
+    parallel_chunks(2000, 1, [&](size_t, size_t) {
+      if (std::fegetround() != mode) ++others;
+    });
+    EXPECT_EQ(others, 0) << "mode " << mode;
+  }
+  std::fesetround(before);
 }
 
 TEST(ParallelChunks, CoversEveryItemOnce) {
