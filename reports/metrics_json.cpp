@@ -16,16 +16,10 @@
 #include "base/units.h"
 #include "reports/review_findings.h"
 #include "reports/tools_table.h"
-#include "sim/judge/finding_groups.h"
 #include "sim/run/worn_fixtures.h"
 
 namespace swarf::reports {
 namespace {
-
-/// Names of folders and texts of programs need not be UTF-8: what is not shows as U+FFFD.
-std::string json_text(const nlohmann::ordered_json& json) {
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
-}
 
 using Json = nlohmann::ordered_json;
 
@@ -519,9 +513,8 @@ Json bad_cuts_json(const sim::Result& result) {
 
 }  // namespace
 
-std::string severity_name(Severity severity) {
-  if (severity == Severity::kError) return "error";
-  return severity == Severity::kWarning ? "warning" : "note";
+std::string json_text(const nlohmann::ordered_json& json) {
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
 double peak_memory_mb() {
@@ -577,33 +570,6 @@ std::string metrics_json(const sim::Job& job, const sim::Result& result, const R
   if (result.driven) json["driven"] = driven_json(result);
   if (avoidance != nullptr) json["avoidance"] = avoidance_json(*avoidance, job);
   return json_text(json);
-}
-
-std::string findings_json(const sim::Result& result) {
-  Json list = Json::array();
-  const std::vector<sim::FindingGroup> groups = sim::group_findings(result.findings);
-  for (size_t number = 1; number <= groups.size(); ++number) {
-    for (const size_t member : groups[number - 1].members) {
-      const sim::Finding& finding = result.findings[member];
-      const auto place = [](const std::optional<Vec3>& at) {
-        return at ? Json{at->x(), at->y(), at->z()} : Json(nullptr);
-      };
-      list.push_back({{"code", finding.code},
-                      {"severity", severity_name(finding.severity)},
-                      {"check", finding.check.empty() ? Json(nullptr) : Json(finding.check)},
-                      {"text", finding.text},
-                      {"fix", finding.fix},
-                      {"file", finding.where.file},
-                      {"line", finding.where.line},
-                      {"line_last", std::max(finding.where.line, finding.line_last)},
-                      {"block", finding.block},
-                      {"t_s", finding.t_s},
-                      {"place_mm", place(finding.place_W)},
-                      {"machine_place_mm", place(finding.place_M)},
-                      {"number", number}});
-    }
-  }
-  return json_text(list);
 }
 
 }  // namespace swarf::reports

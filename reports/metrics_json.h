@@ -1,6 +1,7 @@
 // metrics.json and findings.json: the numbers of a run for scripts. Names are stable; units are in the names.
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "sim/simulation.h"
@@ -24,6 +25,9 @@ std::string metrics_json(const sim::Job& job, const sim::Result& result, const R
 /// The JSON text of findings.json: an array in the order of the page. Findings that are one fault have one
 /// `number`, that of the page, and follow each other, the worst first.
 std::string findings_json(const sim::Result& result);
+
+/// As a file has it. Names of folders and texts of programs need not be UTF-8: what is not shows as U+FFFD.
+std::string json_text(const nlohmann::ordered_json& json);
 
 /// Peak resident memory of this process so far, MB.
 double peak_memory_mb();

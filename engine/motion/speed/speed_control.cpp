@@ -9,7 +9,7 @@ namespace {
 /// Ways are compared with this much slack, mm: below what any axis resolves, above what adding up rounds.
 constexpr double kSlack_mm = 1e-9;
 /// Speeds are compared with this.
-constexpr double kSpeedRounding = 1.0 + 1e-12;
+constexpr double kTickRounding = 1.0 + 1e-12;
 /// Halvings of the range of jerk: what they leave, a millionth of it, is taken up in the next cycle.
 constexpr int kJerkHalvings = 22;
 
@@ -58,12 +58,12 @@ bool SpeedControl::is_safe(const SpeedTick& tick, const ClampSpeeds& clamps, con
   double begin = 0.0, end = place.to_node_mm - tick.way_mm;
   for (size_t cell = place.cell; cell < clamps.speed.size() && (safe || lowest != nullptr); ++cell) {
     const double top = clamps.speed[cell], node = clamps.at[cell + 1];
-    if (begin <= 0.0) require(tick.fastest <= top * kSpeedRounding, top);
-    if (end > 0.0) require(fastest(end) <= top * kSpeedRounding || lands(top, begin), top);
+    if (begin <= 0.0) require(tick.fastest <= top * kTickRounding, top);
+    if (end > 0.0) require(fastest(end) <= top * kTickRounding || lands(top, begin), top);
     if (end < -kSlack_mm) {
-      require(tick.fastest <= node * kSpeedRounding, node);
+      require(tick.fastest <= node * kTickRounding, node);
     } else {
-      require(fastest(end) <= node * kSpeedRounding || lands(node, end), node);
+      require(fastest(end) <= node * kTickRounding || lands(node, end), node);
     }
     if (end > reach) break;
     begin = end;
