@@ -37,6 +37,20 @@ SWARF_KERNEL_INLINE void find_place(Place& at, const Lanes& lanes, const float* 
   }
 }
 
+/// What a lane's distances round to at most, mm. Sixteen roundings count: of centre and map as they are
+/// converted, of the products and sums of the three components, and of their product with a gradient.
+struct Rounding {
+  float of_centre;
+
+  SWARF_KERNEL_INLINE explicit Rounding(const LaneQuery& query)
+      : of_centre(2.0F *
+                  (std::abs(query.centre[0]) + std::abs(query.centre[1]) + std::abs(query.centre[2]))) {}
+  SWARF_KERNEL_INLINE float operator()(const Place& at, int n) const {
+    constexpr float kRoundings = 16.0F * 6e-8F;
+    return kRoundings * (of_centre + at.rho.lane[n] + std::abs(at.z.lane[n]));
+  }
+};
+
 /// Over all faces and rounds: the least of how far their bounds rise above the floor anywhere in the leaf,
 /// the greatest of their values at half time, and of those above the leaf.
 struct Extremes {
@@ -147,7 +161,7 @@ SWARF_KERNEL_INLINE void add_face(Extremes& out, const Lanes& lanes, const Place
 
 SWARF_KERNEL_INLINE void judge(const Lanes& lanes, const LanePiece& piece, const LaneQuery& asked,
                                LaneAnswer& out) {
-  constexpr float kSlack = 2e-4F;  // mm; coordinates of up to a metre round to a third of it
+  constexpr float kSlack = 2e-5F;  // mm; what the leaf's own extent, floor and slope round to
   const LaneQuery query = asked;   // a local: the answer could alias it, which would stop vectorisation
   Place at;
   find_place(at, lanes, query.centre);
@@ -158,14 +172,16 @@ SWARF_KERNEL_INLINE void judge(const Lanes& lanes, const LanePiece& piece, const
   }
   for (const LanePiece::Face& face : piece.faces) add_face(extremes, lanes, at, face, query);
   for (const LanePiece::Round& round : piece.rounds) add_round(extremes, lanes, at, round, query);
-  const float floor = query.floor, swallowed_to = -query.reach - kSlack;
+  const Rounding rounding(query);
+  const float floor = query.floor, swallowed_to = -query.reach;
   uint32_t verdicts = 0;  // joined: the bits of lanes are brought together one number at a time
   for (int n = 0; n < kLanes; ++n) {
-    const float above = extremes.above.lane[n] + kSlack;
+    const float slack = kSlack + rounding(at, n);
+    const float above = extremes.above.lane[n] + slack;
     out.above.lane[n] = above;
     out.depth.lane[n] = -extremes.higher.lane[n];
     const uint32_t open = above >= floor ? 1U << n : 0U;
-    const uint32_t swallows = extremes.value.lane[n] <= swallowed_to ? 1U << (n + kLanes) : 0U;
+    const uint32_t swallows = extremes.value.lane[n] + slack <= swallowed_to ? 1U << (n + kLanes) : 0U;
     verdicts |= open | swallows;
   }
   out.open = verdicts & kAllLanes;
@@ -226,17 +242,14 @@ SWARF_KERNEL_INLINE void find_outermost(TwoOutermost& out, const LanePiece& piec
 /// From the leaf's first voxel, per voxel.
 SWARF_KERNEL_INLINE void set_linear(LaneBounds::Linear& out, const Lanes& lanes, const Place& at,
                                     const Outermost& face, const LaneQuery& query) {
-  // Of the coordinates 16 roundings count at most: of centre and map as they are converted, of the products
-  // and sums of the three components, and of their product with the gradient.
-  constexpr float kRoundings = 16.0F * 6e-8F, kHalfLeaf = 0.5F * (kLeafSide - 1);
+  constexpr float kHalfLeaf = 0.5F * (kLeafSide - 1);
   const float half = query.half, voxel = half / kHalfLeaf;
-  const float centre =
-      2.0F * (std::abs(query.centre[0]) + std::abs(query.centre[1]) + std::abs(query.centre[2]));
+  const Rounding rounding_of(query);
   for (int n = 0; n < kLanes; ++n) {
     const float g_rho = face.g_rho.lane[n], gz = face.g_z.lane[n];
     const float gx = g_rho * at.ux.lane[n], gy = g_rho * at.uy.lane[n];
     const float change = 0.5F * (gx * at.dx.lane[n] + gy * at.dy.lane[n] + gz * at.dz.lane[n]);
-    const float rounding = kRoundings * (centre + at.rho.lane[n] + std::abs(at.z.lane[n]));
+    const float rounding = rounding_of(at, n);
     float start = rounding + change - face.distance.lane[n], end = rounding - change - face.distance.lane[n];
     for (int a = 0; a < 3; ++a) {
       const float middle =

@@ -323,9 +323,9 @@ constexpr float kHalfPatch[3] = {0.5F, 0.5F, 0.5F * (kLeafSide - 1)};
 struct PatchMost {
   float first, x, y;
 };
-SWARF_KERNEL_INLINE PatchMost patch_most(float first, const float step[3], const float slope[3]) {
-  constexpr float kSlack = 1e-4F;  // mm; distances of up to a metre round to a third of it
-  float over[3], spread = kSlack;
+SWARF_KERNEL_INLINE PatchMost patch_most(float first, const float step[3], const float slope[3],
+                                         float slack) {
+  float over[3], spread = slack;
   for (int a = 0; a < 3; ++a) {
     over[a] = step[a] - slope[a];
     spread += kHalfPatch[a] * std::abs(over[a]);
@@ -343,10 +343,13 @@ SWARF_KERNEL_INLINE void fill_most(float* out, const PatchMost& most) {
 }
 SWARF_KERNEL_INLINE void fill_bound(PatchBound& out, const LeafBound::Linear& linear, const float slope[3]) {
   constexpr float kLevel[3] = {0.0F, 0.0F, 0.0F};
-  fill_most(out.start, patch_most(linear.start, linear.start_step, kLevel));
-  fill_most(out.end, patch_most(linear.end, linear.end_step, kLevel));
-  fill_most(out.start_over, patch_most(linear.start, linear.start_step, slope));
-  fill_most(out.end_over, patch_most(linear.end, linear.end_step, slope));
+  // mm; of a distance on the way six roundings count at most, of the time, its product and the sum.
+  constexpr float kOfLeaf = 2e-5F, kRoundings = 6.0F * 6e-8F;
+  const float slack = kOfLeaf + kRoundings * (std::abs(linear.start) + std::abs(linear.end));
+  fill_most(out.start, patch_most(linear.start, linear.start_step, kLevel, slack));
+  fill_most(out.end, patch_most(linear.end, linear.end_step, kLevel, slack));
+  fill_most(out.start_over, patch_most(linear.start, linear.start_step, slope, slack));
+  fill_most(out.end_over, patch_most(linear.end, linear.end_step, slope, slack));
 }
 
 /// Lowers over[n] to what one face has over the floors while the other face reaches their levels. Both bounds

@@ -39,6 +39,21 @@ double scanned(const SweptPiece& swept, const Vec3& point) {
   return best;
 }
 
+/// The same for sweeps of metres, by thirds: F is convex along the motion.
+double found_by_thirds(const SweptPiece& swept, const Vec3& point) {
+  const Vec3 from = swept.map.start(point), way = swept.map.end(point) - from;
+  const auto value = [&](double t) {
+    const Vec3 X = from + t * way;
+    return cutter::signed_distance(*swept.piece, X.head<2>().norm(), X.z());
+  };
+  double low = 0.0, high = 1.0;
+  for (int n = 0; n < 100; ++n) {
+    const double a = (2.0 * low + high) / 3.0, b = (low + 2.0 * high) / 3.0;
+    (value(a) < value(b) ? high : low) = value(a) < value(b) ? b : a;
+  }
+  return value(low);
+}
+
 /// A leaf position and sixteen sweeps near it.
 struct LaneCase {
   std::vector<Sweep> sweeps;
@@ -108,6 +123,56 @@ TEST(LaneKernel, AllInstructionSetsJudgeAlikeAndNeverCloseALeafThatASweepRaises)
     }
   }
   EXPECT_GT(closed, 1000);
+}
+
+/// One block across a part of metres that passes a leaf anywhere: what rounds grows with its length.
+LaneCase long_case(Rng& rng, const cutter::ConvexPiece& piece) {
+  LaneCase made;
+  made.centre = Vec3(rng.uniform(10, 5000), rng.uniform(-3000, 3000), rng.uniform(-200, 200));
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const Vec3 axis = Vec3(rng.uniform(-0.3, 0.3), rng.uniform(-0.3, 0.3), 1.0).normalized();
+    const Vec3 through = made.centre + 4.0 * rng.direction();
+    Vec3 after = rng.uniform(10, 5000) * Vec3(1.0, rng.uniform(-0.5, 0.5), rng.uniform(-0.01, 0.01));
+    if (lane % 2 == 0) after -= after.dot(axis) * axis;  // the bound of a flat end is tight then
+    const ToolPose start{Vec3(0, rng.uniform(-1, 1), rng.uniform(-1, 1)), axis};
+    made.sweeps.push_back({start, {through + after, axis}, 0});
+    made.sweeps.back().start.tip_W = through - made.centre.norm() / after.norm() * after;
+    made.pieces.push_back({sweep_map(made.sweeps.back()), &piece});
+  }
+  return made;
+}
+
+TEST(LaneKernel, NoLongSweepThatRaisesALeafIsClosed) {
+  constexpr uint64_t kSeed = 79;
+  constexpr double kHalf = 0.35, kReach = 0.9;
+  Rng rng(kSeed);
+  double worst = -1.0;
+  for (int n = 0; n < 400; ++n) {
+    const cutter::ConvexPiece piece =
+        n % 4 == 0 ? cutter::ConvexPiece::cylinder(4.0, 12.0) : random_piece(rng);
+    const LaneCase lane_case = long_case(rng, piece);
+    LaneRun run;
+    run.origin = lane_case.sweeps.front().start.tip_W;
+    run.piece = lane_piece(piece);
+    for (size_t lane = 0; lane < kLanes; ++lane) run.set_lane(lane, lane_case.pieces[lane].map);
+    const Eigen::Vector3f centre = (lane_case.centre - run.origin).cast<float>();
+    const LaneQuery query{{centre.x(), centre.y(), centre.z()},
+                          0.0F,
+                          {},
+                          static_cast<float>(kHalf),
+                          static_cast<float>(kReach)};
+    LaneAnswer answer;
+    lane_kernel_variants().front().kernel(run.lanes, run.piece, query, answer);
+    for (size_t lane = 0; lane < kLanes; ++lane) {
+      double written = -1e300;
+      for (int corner = 0; corner < 8; ++corner) {
+        const Vec3 x = kHalf * Vec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
+        written = std::max(written, -found_by_thirds(lane_case.pieces[lane], lane_case.centre + x));
+      }
+      worst = std::max(worst, written - answer.above.lane[lane]);
+    }
+  }
+  EXPECT_LT(worst, 0.0) << "mm above the bound; seed " << kSeed;
 }
 
 TEST(LaneKernel, NothingThatASweepWritesLiesAboveItsBound) {
@@ -350,6 +415,76 @@ TEST(LeafKernel, PatchTestFloorsAndRangeAreAlikeInAllInstructionSets) {
   }
 }
 
+/// Of a patch, what its bound has over the floors, without rounding and slack.
+double exact_over(const LeafBound& bound, const PatchFloors& floors, int patch) {
+  const double middle[3] = {2.0 * (patch / kPatchSide) + 0.5, 2.0 * (patch % kPatchSide) + 0.5,
+                            0.5 * (kLeafSide - 1)};
+  const double half[3] = {0.5, 0.5, 0.5 * (kLeafSide - 1)};
+  const auto most = [&](float first, const float(&step)[3], double slopes) {
+    double value = first;
+    for (int a = 0; a < 3; ++a) {
+      const double over = double{step[a]} - slopes * floors.slope[a];
+      value += over * middle[a] + half[a] * std::abs(over);
+    }
+    return value;
+  };
+  double least = 1e300;
+  for (int n = 0; n < 2; ++n) {
+    const LeafBound::Linear &face = bound.of_face[n], &other = bound.of_face[1 - n];
+    const double from = most(other.start, other.start_step, 0.0), to = most(other.end, other.end_step, 0.0);
+    const double first = most(face.start, face.start_step, 1.0), last = most(face.end, face.end_step, 1.0);
+    double over = -1e300;
+    for (int level = 0; level < kLevels; ++level) {
+      const double reached = level == 0 ? -floors.band : floors.level(level - 1);
+      if (std::max(from, to) <= reached) continue;
+      const double t = std::clamp((reached - from) / (to - from), 0.0, 1.0);
+      const double at_end = to > reached ? last : -1e300, at_start = from > reached ? first : -1e300;
+      over = std::max(over, std::max({first + t * (last - first), at_start, at_end}) -
+                                double{floors.of_patch[level][patch]});
+    }
+    least = std::min(least, over);
+  }
+  return least;
+}
+
+TEST(LeafKernel, PatchTestOfALongSweepPassesOverNothing) {
+  constexpr uint64_t kSeed = 80;
+  Rng rng(kSeed);
+  int close = 0;
+  for (int n = 0; n < 4000; ++n) {
+    // Both faces come from afar, or go there, and pass the floors on the way.
+    LeafBound bound{};
+    const double length = rng.uniform(1.0, 6000.0), at = rng.uniform();
+    for (LeafBound::Linear& face : bound.of_face) {
+      const double middle = rng.uniform(-0.01, 0.01), sign = rng.uniform() < 0.5 ? -1.0 : 1.0;
+      face.start = static_cast<float>(middle - sign * at * length);
+      face.end = static_cast<float>(middle + sign * (1.0 - at) * length);
+      for (int a = 0; a < 3; ++a)
+        face.start_step[a] = face.end_step[a] = static_cast<float>(rng.uniform(-0.1, 0.1));
+    }
+    PatchFloors floors{};
+    floors.band = 0.3F;
+    for (auto& level : floors.of_patch)
+      for (float& floor : level) floor = 1e30F;
+    for (float& floor : floors.of_patch[kLevels - 1]) floor = static_cast<float>(rng.uniform(-0.3, 0.3));
+    // A floor as high as the bound but for a twentieth of a micrometre.
+    for (int patch = 0; patch < kPatches; ++patch) {
+      PatchFloors low = floors;
+      low.of_patch[kLevels - 1][patch] = 0.0F;
+      const double over = exact_over(bound, low, patch);
+      if (std::abs(over) > 1.0) continue;
+      floors.of_patch[kLevels - 1][patch] = static_cast<float>(over - 5e-5);
+      ++close;
+    }
+    const uint32_t open = leaf_kernel_variants().front().patch_test(floors, bound);
+    for (int patch = 0; patch < kPatches; ++patch)
+      if (exact_over(bound, floors, patch) > 0.0)
+        ASSERT_TRUE((open >> patch & 1U) != 0) << "seed " << kSeed << " case " << n << " patch " << patch
+                                               << " " << exact_over(bound, floors, patch);
+  }
+  EXPECT_GT(close, 1000);
+}
+
 /// The block that repeated rows, tilted passes, plunges and a long move across cut, in pieces of `pieces`
 /// sweeps.
 uint64_t hash_of_cut(size_t pieces, int threads) {
@@ -406,6 +541,28 @@ TEST(Stock, WhatPatchesLeaveOutNeverChangesABit) {
     for (const Sweep& sweep : sweeps) alone.cut(std::span(&sweep, 1), cutter);
     ASSERT_EQ(together.hash(), alone.hash()) << "seed " << kSeed << " case " << n;
     ASSERT_LT(together.statistics().voxel_updates, alone.statistics().voxel_updates);
+  }
+}
+
+/// One block across a part of metres: coordinates and distances are rounded to as many parts of its length.
+TEST(Stock, WhatLongSweepsLeaveOutNeverChangesABit) {
+  constexpr uint64_t kSeed = 78;
+  Rng rng(kSeed);
+  for (int n = 0; n < 6; ++n) {
+    const double tilt = n % 2 == 0 ? 0.0 : 0.2;
+    const Vec3 axis = Vec3(tilt * rng.uniform(-1, 1), tilt * rng.uniform(-1, 1), 1.0).normalized();
+    std::vector<Sweep> sweeps;
+    for (int row = 0; row < 64; ++row) {
+      const Vec3 through(6.0, rng.uniform(0, 12), 4.0 + rng.uniform(-1e-3, 1e-3));
+      const Vec3 way(1.0, rng.uniform(-1e-3, 1e-3), n % 3 == 0 ? 0.0 : rng.uniform(-1e-3, 1e-3));
+      const double before = rng.uniform(10, 6000), after = rng.uniform(10, 6000);
+      sweeps.push_back({{through - before * way, axis}, {through + after * way, axis}, 0});
+    }
+    const CutterSolid cutter(2.5, 6.0);
+    Stock together({{0, 0, 0}, {12, 12, 6}}, 0.2), alone({{0, 0, 0}, {12, 12, 6}}, 0.2);
+    together.cut(sweeps, cutter);
+    for (const Sweep& sweep : sweeps) alone.cut(std::span(&sweep, 1), cutter);
+    ASSERT_EQ(together.hash(), alone.hash()) << "seed " << kSeed << " case " << n;
   }
 }
 
