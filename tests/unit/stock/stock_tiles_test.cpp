@@ -78,6 +78,18 @@ TEST(StockTiles, CutApartAndGatheredTheyAreTheStockOfOneProcess) {
   }
 }
 
+/// Inside a large block a rank's tiles have no surface: the tree's nodes there hold material of its own and
+/// the air that stands for the tiles of others.
+TEST(StockTiles, TheTreeOfEveryRankIsAsItsMapSays) {
+  const RawShape raw = RawShape::of_box({{-36, -28, -40}, {20, 28, 15}});
+  for (const int count : {2, 3, 5}) {
+    for (int n = 0; n < count; ++n) {
+      const Stock tiles = StockTiles::own_tiles(raw, 0.25, Share{n, count});
+      EXPECT_EQ(tiles.check(CheckLevel::kOwnMap), "") << "rank " << n << " of " << count;
+    }
+  }
+}
+
 TEST(StockTiles, OneThatBeginsLaterTakesOverWhatIsThere) {
   const RawShape raw = RawShape::of_box(kBox);
   Rng rng(20);
