@@ -55,7 +55,7 @@ void set_seconds(sim::MovieSettings& movie, double seconds) {
 std::optional<sim::SectionPlane> section_of(const RenderOptions& options) {
   if (options.section.empty()) return {};
   if (options.still.empty() || options.finding > 0)
-    throw InputError("nothing-to-do", {"--section"}, "--section is for a still of the part",
+    throw InputError("nothing-to-do", {"--section"}, "--section is for a still",
                      "write for example: swarf render DIR --section x=10 --still cut.png");
   const auto plane = sim::section_named(options.section);
   if (plane) return plane;
@@ -171,9 +171,11 @@ void add_render(CLI::App& app, int& exit_code) {
           "--finding", options->finding,
           "the still shows the machine at this finding, by its number in the page and in findings.json")
       ->check(CLI::PositiveNumber);
-  command->add_option("--section", options->section,
-                      "cut the part of the still open: x=10, y=10, z=10 (mm), or a point and a normal, "
-                      "x,y,z,nx,ny,nz; with the outlines of part and design, straight on without --camera");
+  command->add_option(
+      "--section", options->section,
+      "cut the still open, of the machine its stock and fixtures: x=10, y=10, z=10 (mm), or a point "
+      "and a normal, x,y,z,nx,ny,nz; with the outlines of part and design, straight on without "
+      "--camera (not the machine)");
   command->add_flag_function(
       "--transparent,!--no-transparent", [options](int64_t count) { options->transparent = count > 0; },
       "no backdrop and no floor behind the still");

@@ -103,11 +103,14 @@ std::vector<render::DrawItem> MachineView::items(const kinematics::AxisValues& q
     const machine::Link& link = job_.machine.links[i];
     if (link.mesh.triangles.empty()) continue;
     list.push_back({&link.mesh, poses[i], {link.colour, link.metalness, link.roughness}});
+    list.back().sectioned = link.fixture;
   }
   const Pose X_MT = tool_pose(q, tool);
   list.push_back({&cutter(tool), X_MT, kToolMaterial});
   list.push_back({&holder(tool), X_MT * holder_in_tool(tool), kHolderMaterial});
-  if (stock_mesh != nullptr) list.push_back({stock_mesh, work_pose(q), kStockMaterial, true});
+  if (stock_mesh == nullptr) return list;
+  list.push_back({stock_mesh, work_pose(q), kStockMaterial, true});
+  list.back().sectioned = true;
   return list;
 }
 

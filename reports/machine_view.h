@@ -49,7 +49,7 @@ class MachineView {
   explicit MachineView(const sim::Job& job);
 
   /// Links, cutter and holder in the spindle, and the given stock mesh (work frame; may be null), in the
-  /// machine frame at q.
+  /// machine frame at q. A section of the drawing opens the stock and what holds it.
   std::vector<render::DrawItem> items(const kinematics::AxisValues& q, size_t tool,
                                       const TriMesh* stock_mesh) const;
   /// Work frame to machine frame at q.

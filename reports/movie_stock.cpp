@@ -4,7 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
-#include <limits>
+#include <initializer_list>
 
 #include "base/hash.h"
 #include "base/parallel.h"
@@ -38,10 +38,24 @@ std::array<uint8_t, 4> colour_of(int8_t tool) {
   return render::srgb8_from_linear(kToolColours[static_cast<size_t>(tool) % kToolColours.size()]);
 }
 
-uint64_t place_key(const std::array<float, 3>& p) {
+uint64_t key_of(std::initializer_list<std::array<float, 3>> vectors) {
   Hash hash;
-  for (const float c : p) hash.add(c);
+  for (const auto& v : vectors)
+    for (const float c : v) hash.add(c);
   return hash.value();
+}
+
+/// What was kept under a key, of a list in the order of its keys; null: nothing.
+template <typename Value>
+const Value* kept_under(const std::vector<std::pair<uint64_t, Value>>& kept, uint64_t key) {
+  const auto found = std::lower_bound(kept.begin(), kept.end(), key,
+                                      [](const auto& one, uint64_t k) { return one.first < k; });
+  return found != kept.end() && found->first == key ? &found->second : nullptr;
+}
+
+template <typename Value>
+void sort_by_key(std::vector<std::pair<uint64_t, Value>>& kept) {
+  std::sort(kept.begin(), kept.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
 }
 
 bool one_colour(const TriMesh& mesh) {
@@ -70,7 +84,8 @@ MovieStock::MovieStock(const FinishedRun& run, sim::MovieColours colours)
       colours_(colours),
       patches_(mesher_.patches()),
       revisions_(mesher_.patches(), 0),
-      tools_(mesher_.patches()) {}
+      tools_(mesher_.patches()),
+      deviations_(mesher_.patches()) {}
 
 void MovieStock::advance(const motion::Cycle& cycle) {
   size_t end = done_;
@@ -90,7 +105,7 @@ void MovieStock::advance(const motion::Cycle& cycle) {
     if (colours_ == sim::MovieColours::kTool) colour_by_tool(changed[i], *made[i]);
     mesh::split_creases(*made[i], kCreaseRad);
   });
-  if (colours_ == sim::MovieColours::kDeviation) colour_by_deviation(made);
+  if (colours_ == sim::MovieColours::kDeviation) colour_by_deviation(changed, made);
   parallel_chunks(changed.size(), 1, [&](size_t i, size_t) {
     if (one_colour(*made[i])) mesh::thin_for_display(*made[i], kThinVoxels * run_.job.scene.movie.voxel_mm);
   });
@@ -107,40 +122,57 @@ void MovieStock::colour_by_tool(size_t number, TriMesh& mesh) {
   const bool first = before.empty() && revisions_[number] == 0;
   std::vector<std::pair<uint64_t, int8_t>> now;
   for (const auto& position : mesh.positions) {
-    const uint64_t key = place_key(position);
-    const auto old =
-        std::lower_bound(before.begin(), before.end(), std::pair(key, std::numeric_limits<int8_t>::min()));
-    const bool stood = old != before.end() && old->first == key;
-    now.emplace_back(key, first ? kNoTool : stood ? old->second : cutting_);
+    const uint64_t key = key_of({position});
+    const int8_t* const stood = kept_under(before, key);
+    now.emplace_back(key, first ? kNoTool : stood != nullptr ? *stood : cutting_);
     mesh.colours.push_back(colour_of(now.back().second));
   }
-  std::sort(now.begin(), now.end());
+  sort_by_key(now);
   before = std::move(now);
 }
 
-/// What lies on the finished surface by now shows its deviation; what is still to be cut is bare.
-void MovieStock::colour_by_deviation(const std::vector<std::shared_ptr<TriMesh>>& made) const {
+/// What lies on the finished surface by now shows its deviation; what is still to be cut is bare. A vertex
+/// that stood there before is not measured again.
+void MovieStock::colour_by_deviation(const std::vector<size_t>& changed,
+                                     const std::vector<std::shared_ptr<TriMesh>>& made) {
   const double voxel = run_.job.scene.movie.voxel_mm;
-  TriMesh finished;
-  std::vector<std::pair<size_t, size_t>> places;  // of those: mesh and vertex
+  struct Place {
+    size_t mesh, vertex, kept;  ///< kept: index into the patch's list
+  };
+  TriMesh fresh;
+  std::vector<Place> places;
+  std::vector<std::vector<std::pair<uint64_t, float>>> now(made.size());
+  std::vector<std::vector<size_t>> vertices(made.size());  // of those lists
   for (size_t m = 0; m < made.size(); ++m) {
     TriMesh& mesh = *made[m];
     mesh.colours.assign(mesh.positions.size(), colour_of(kNoTool));
     for (size_t i = 0; i < mesh.positions.size(); ++i) {
       const auto& p = mesh.positions[i];
       if (!(std::abs(run_.stock.distance_mm({p[0], p[1], p[2]})) < kFinishedVoxels * voxel)) continue;
-      finished.positions.push_back(p);
-      finished.normals.push_back(mesh.normals[i]);
-      places.emplace_back(m, i);
+      const uint64_t key = key_of({p, mesh.normals[i]});
+      const float* const known = kept_under(deviations_[changed[m]], key);
+      if (known == nullptr) {
+        places.push_back({m, i, now[m].size()});
+        fresh.positions.push_back(p);
+        fresh.normals.push_back(mesh.normals[i]);
+      }
+      now[m].emplace_back(key, known == nullptr ? 0.0F : *known);
+      vertices[m].push_back(i);
     }
   }
-  sim::measure_mesh({run_.job, run_.cycles, run_.dexels, run_.carried, run_.rays, voxel, false}, finished);
+  sim::measure_mesh({run_.job, run_.cycles, run_.dexels, run_.carried, run_.rays, voxel, false}, fresh);
+  vertices_measured_ += places.size();
+  for (size_t n = 0; n < places.size(); ++n)
+    now[places[n].mesh][places[n].kept].second = fresh.deviation_um[n];
   const render::DeviationScale scale = deviation_scale(run_.job);
-  for (size_t n = 0; n < places.size(); ++n) {
-    const float um = finished.deviation_um[n];
-    if (!std::isfinite(um)) continue;
-    const auto [m, i] = places[n];
-    made[m]->colours[i] = render::srgb8_from_linear(render::deviation_colour(um, scale));
+  for (size_t m = 0; m < made.size(); ++m) {
+    for (size_t k = 0; k < now[m].size(); ++k) {
+      const float um = now[m][k].second;
+      if (std::isfinite(um))
+        made[m]->colours[vertices[m][k]] = render::srgb8_from_linear(render::deviation_colour(um, scale));
+    }
+    sort_by_key(now[m]);
+    deviations_[changed[m]] = std::move(now[m]);
   }
 }
 

@@ -34,10 +34,13 @@ class MovieStock {
   const std::vector<uint64_t>& revisions() const { return revisions_; }
   /// Patches made again in all calls of advance().
   size_t patches_made() const { return made_; }
+  /// Vertices that were measured in all calls of advance(), for their deviation.
+  size_t vertices_measured() const { return vertices_measured_; }
 
  private:
   void colour_by_tool(size_t number, TriMesh& mesh);
-  void colour_by_deviation(const std::vector<std::shared_ptr<TriMesh>>& made) const;
+  void colour_by_deviation(const std::vector<size_t>& changed,
+                           const std::vector<std::shared_ptr<TriMesh>>& made);
 
   const FinishedRun& run_;
   stock::Stock stock_;
@@ -48,8 +51,10 @@ class MovieStock {
   StockState patches_;
   std::vector<uint64_t> revisions_;
   std::vector<std::vector<std::pair<uint64_t, int8_t>>> tools_;  ///< by patch: place of a vertex, who cut it
-  int8_t cutting_ = 0;                                           ///< the last tool that cut
-  size_t done_ = 0, made_ = 0;
+  /// By patch: place and normal of a finished vertex, its deviation, um (NaN: no ray sees it).
+  std::vector<std::vector<std::pair<uint64_t, float>>> deviations_;
+  int8_t cutting_ = 0;  ///< the last tool that cut
+  size_t done_ = 0, made_ = 0, vertices_measured_ = 0;
 };
 
 }  // namespace swarf::reports

@@ -44,7 +44,7 @@ struct StillLook {
   bool labels = false;       ///< scale bar; of deviations and sections, values and a legend
   /// Of the deviation, beside those of the measuring rays.
   std::vector<WorstPlace> worst{};
-  std::optional<sim::SectionPlane> section{};  ///< of part and deviation (section_still.h)
+  std::optional<sim::SectionPlane> section{};  ///< section_still.h; the machine's tool stays whole
   SourceLocation section_where{};
 };
 /// `camera` "": the usual one of the kind. Throws InputError as section_view().

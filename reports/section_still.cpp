@@ -29,6 +29,7 @@ constexpr double kWhiskerShare = 0.06;  // of the picture's width: the longest l
 constexpr double kAlongNormal = 0.1;    // of a ray's normal, in the plane at least: else no line shows it
 constexpr render::Rgb kPartLine{0.012F, 0.013F, 0.016F};
 constexpr render::Rgb kDesignLine{0.02F, 0.62F, 0.95F};
+constexpr float kDesignTube = 1.5F;  // px: of the design on a machine that is cut open
 constexpr double kPartWidth = 0.2, kDesignWidth = 0.07, kWhiskerWidth = 0.08;  // of the height of text
 
 /// A measuring ray, or what two of them say in between.
@@ -152,27 +153,79 @@ render::Leader leader_to(const SectionRay& ray, const char* name, const Paper& p
 
 }  // namespace
 
-SectionView section_view(const TriMesh& part, const sim::SectionPlane& plane, const SourceLocation& where,
-                         const std::string& camera, double vertical_fov_rad, double aspect) {
-  const Box whole = mesh::bounds(part);
+namespace {
+
+/// The plane with its normal on the side of the eye.
+sim::SectionPlane facing(const Vec3& to_eye, const sim::SectionPlane& plane, const Box& whole,
+                         const SourceLocation& where) {
   if (!sim::divides(plane, whole))
     throw InputError("section-misses", where,
                      fmt::format("the section {} misses the part", sim::section_words(plane)),
                      fmt::format("the part reaches {}", sim::extent_along(plane, whole)));
+  return {plane.point_W, plane.normal_W.dot(to_eye) < 0.0 ? Vec3(-plane.normal_W) : plane.normal_W};
+}
+
+/// How far the eye stands above the plane, mm; enough to see it.
+double seen_from(const Vec3& eye, const Vec3& to_eye, const sim::SectionPlane& plane,
+                 const SourceLocation& where, const std::string& camera, const char* fix) {
+  const double above = plane.normal_W.dot(eye - plane.point_W);
+  if (plane.normal_W.dot(to_eye) >= kEdgeOn && above > 0.0) return above;
+  throw InputError(
+      "section-edge-on", where,
+      fmt::format("from camera '{}' the section {} is seen edge-on", camera, sim::section_words(plane)), fix);
+}
+
+}  // namespace
+
+SectionView section_view(const TriMesh& part, const sim::SectionPlane& plane, const SourceLocation& where,
+                         const std::string& camera, double vertical_fov_rad, double aspect) {
   const Vec3 to_eye = (camera.empty() ? plane.normal_W : camera_direction(camera)).normalized();
-  const double side = plane.normal_W.dot(to_eye);
   SectionView view;
-  view.plane = {plane.point_W, side < 0.0 ? Vec3(-plane.normal_W) : plane.normal_W};
+  view.plane = facing(to_eye, plane, mesh::bounds(part), where);
   view.camera = render::look_at_box(kept_box(part, view.plane), -to_eye, vertical_fov_rad, aspect);
   view.camera.eye = view.camera.target + kRoom * (view.camera.eye - view.camera.target);
-  const double above = view.plane.normal_W.dot(view.camera.eye - view.plane.point_W);
-  if (std::abs(side) < kEdgeOn || above <= 0.0)
-    throw InputError(
-        "section-edge-on", where,
-        fmt::format("from camera '{}' the section {} is seen edge-on", camera, sim::section_words(plane)),
-        "name another camera, or none: then it is looked at straight on");
-  view.camera.target = view.camera.eye - above / std::abs(side) * to_eye;
+  const double above = seen_from(view.camera.eye, to_eye, view.plane, where, camera,
+                                 "name another camera, or none: then it is looked at straight on");
+  view.camera.target = view.camera.eye - above / view.plane.normal_W.dot(to_eye) * to_eye;
   return view;
+}
+
+std::vector<render::Strokes> open_machine(const FinishedRun& run, const Pose& X_MW,
+                                          const sim::SectionPlane& section, const SourceLocation& where,
+                                          const std::string& camera, render::DrawList& list) {
+  const Pose X_WM = X_MW.inverse();
+  const Vec3 eye = X_WM * list.camera.eye, to_eye = (eye - X_WM * list.camera.target).normalized();
+  const sim::SectionPlane plane = facing(to_eye, section, run.job.scene.stock.box_W, where);
+  seen_from(eye, to_eye, plane, where, camera, "name another camera");
+  list.section = {X_MW * plane.point_W, X_MW.linear() * plane.normal_W};
+  for (const auto& ends : section_pieces(shown_design(run.job).mesh, plane.point_W, plane.normal_W))
+    list.lines.push_back({{X_MW * ends[0], X_MW * ends[1]}, kDesignLine, kDesignTube, "design"});
+  if (list.lines.empty()) return {};
+  return {{{}, kDesignWidth, "design", kDesignLine}};
+}
+
+std::vector<render::DrawLine> kept_lines(const std::vector<render::DrawLine>& lines,
+                                         const sim::SectionPlane& plane) {
+  std::vector<render::DrawLine> kept;
+  const auto above = [&](const Vec3& p) { return plane.normal_W.dot(p - plane.point_W); };
+  for (const render::DrawLine& line : lines) {
+    bool inside = false;
+    for (size_t k = 0; k < line.points.size(); ++k) {
+      const Vec3& p = line.points[k];
+      const double height = above(p);
+      if (k > 0 && inside != (height <= 0.0)) {
+        const double before = above(line.points[k - 1]);
+        const Vec3 crossing = line.points[k - 1] + before / (before - height) * (p - line.points[k - 1]);
+        if (!inside) kept.push_back({{}, line.colour, line.width_px, line.name});
+        kept.back().points.push_back(crossing);
+      } else if (k == 0 && height <= 0.0) {
+        kept.push_back({{}, line.colour, line.width_px, line.name});
+      }
+      inside = height <= 0.0;
+      if (inside) kept.back().points.push_back(p);
+    }
+  }
+  return kept;
 }
 
 void draw_section(const FinishedRun& run, const TriMesh& part, const SectionView& view, bool labels,

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "mesh/tri_mesh.h"
 #include "render/draw_list.h"
+#include "render/lettering.h"
 #include "reports/machine_view.h"
 #include "sim/job/section_keys.h"
 
@@ -22,6 +24,17 @@ struct SectionView {
 /// where the camera does not see the face of the cut.
 SectionView section_view(const TriMesh& part, const sim::SectionPlane& plane, const SourceLocation& where,
                          const std::string& camera, double vertical_fov_rad, double aspect);
+
+/// Cuts open what the list of a machine says is sectioned, towards its camera, with the outline of the design
+/// in the plane. X_MW: pose of the stock; `camera`: the name of the list's. What a legend
+/// tells of the lines. Throws InputError at `where` as section_view().
+std::vector<render::Strokes> open_machine(const FinishedRun& run, const Pose& X_MW,
+                                          const sim::SectionPlane& section, const SourceLocation& where,
+                                          const std::string& camera, render::DrawList& list);
+
+/// What of the lines lies on the side that the section keeps.
+std::vector<render::DrawLine> kept_lines(const std::vector<render::DrawLine>& lines,
+                                         const sim::SectionPlane& plane);
 
 /// The outlines of part and design in the plane, and with `labels` a legend, a scale bar, and of the
 /// measuring rays beside the plane the lowest and the highest with their values, left of `right_px`; their

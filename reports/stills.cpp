@@ -205,14 +205,10 @@ render::Image deviation_picture(const TriMesh& coloured, const render::Deviation
 
 namespace {
 
-/// The part or its deviation, cut open.
+/// The part, its deviation or the paths on it, cut open; of the paths what lies on the side that is kept.
 render::Image section_picture(const FinishedRun& run, const TriMesh& part, StillKind kind,
                               const std::string& camera, const StillLook& look,
-                              const render::StillOptions& options) {
-  if (kind != StillKind::kPart && kind != StillKind::kDeviation)
-    throw InputError("section-of-part", look.section_where,
-                     fmt::format("a still of kind '{}' is not cut open", still_name(kind)),
-                     "take kind part or deviation, or a shot of the movie with a section");
+                              render::StillOptions options) {
   const SectionView view = section_view(part, *look.section, look.section_where, camera, kFieldOfView,
                                         aspect(run.job.scene.stills.size));
   render::DrawList list;
@@ -229,57 +225,80 @@ render::Image section_picture(const FinishedRun& run, const TriMesh& part, Still
     list.items.back().sectioned = true;
     std::tie(image, right_px) = with_colour_bar(list, scale, options);
   } else {
-    list.items.push_back({&part, Pose::Identity(), kPolished});
+    list.items.push_back({&part, Pose::Identity(), kind == StillKind::kFan ? kMatt : kPolished});
     list.items.back().sectioned = true;
+    if (kind == StillKind::kFan) {
+      list.lines = kept_lines(fan_lines(run), view.plane);
+      options.strip_strength = 0.0;
+    }
     image = render::render_still(list, options);
   }
   draw_section(run, part, view, look.labels, right_px, image);
   return image;
 }
 
-}  // namespace
-
-void make_still(const FinishedRun& run, const TriMesh& part, StillKind kind, const std::string& camera_name,
-                const std::string& path, const StillLook& look) {
-  render::StillOptions options = still_options(run.job);
-  options.transparent = look.transparent;
-  if (look.section) {
-    render::save_png(section_picture(run, part, kind, camera_name, look, options), path);
-    return;
-  }
-  const std::string usual = kind == StillKind::kMachine ? "machine" : "iso";
-  const std::string camera = camera_name.empty() ? usual : camera_name;
-  if (kind == StillKind::kDeviation) {
-    TriMesh coloured = part;
-    if (look.labels) add_worst_places(run, look.worst, coloured);
-    const render::DeviationScale scale = deviation_scale(run.job);
-    render::colour_by_deviation(coloured, scale);
-    // Vertices of the part's mesh lie within a part of a voxel of it: only places of rays have values to
-    // tell.
-    const auto labelled = look.labels ? std::optional(part.positions.size()) : std::nullopt;
-    render::save_png(deviation_picture(coloured, scale, camera, options, labelled), path);
-    return;
-  }
+render::Image machine_picture(const FinishedRun& run, const std::string& camera, const StillLook& look,
+                              const render::StillOptions& options) {
   const MachineView view(run.job);
-  TriMesh half_cut;
+  const motion::Cycle cycle = middle_cycle(run);
   render::DrawList list;
-  if (kind == StillKind::kMachine) {
-    const motion::Cycle cycle = middle_cycle(run);
-    half_cut = stock_at(run, cycle);
-    list.items = view.items(cycle.q, static_cast<size_t>(cycle.sample.tool), &half_cut);
-    list.camera = machine_camera(run, camera, run.job.scene.stills.size);
-  } else {
-    list.camera = render::look_at_box(mesh::bounds(part), -camera_direction(camera), kFieldOfView,
-                                      aspect(run.job.scene.stills.size));
-    list.items.push_back({&part, Pose::Identity(), kind == StillKind::kFan ? kMatt : kPolished});
-  }
+  list.camera = machine_camera(run, camera, run.job.scene.stills.size);
+  std::vector<render::Strokes> lines;
+  if (look.section)
+    lines = open_machine(run, view.work_pose(cycle.q), *look.section, look.section_where, camera, list);
+  const TriMesh half_cut = stock_at(run, cycle);
+  list.items = view.items(cycle.q, static_cast<size_t>(cycle.sample.tool), &half_cut);
+  render::Image image = render::render_still(list, options);
+  if (!look.labels) return image;
+  render::draw_scale_bar(image, render::px_per_mm_at_target(list.camera, options.height));
+  if (look.section) render::draw_legend(image, "section " + sim::section_words(*look.section), lines, {});
+  return image;
+}
+
+render::Image deviation_still(const FinishedRun& run, const TriMesh& part, const std::string& camera,
+                              const StillLook& look, const render::StillOptions& options) {
+  TriMesh coloured = part;
+  if (look.labels) add_worst_places(run, look.worst, coloured);
+  const render::DeviationScale scale = deviation_scale(run.job);
+  render::colour_by_deviation(coloured, scale);
+  // Vertices of the part's mesh lie within a part of a voxel of it: only places of rays have values to tell.
+  const auto labelled = look.labels ? std::optional(part.positions.size()) : std::nullopt;
+  return deviation_picture(coloured, scale, camera, options, labelled);
+}
+
+/// The part, or the fan over it.
+render::Image part_picture(const FinishedRun& run, const TriMesh& part, StillKind kind,
+                           const std::string& camera, bool labels, render::StillOptions options) {
+  render::DrawList list;
+  list.camera = render::look_at_box(mesh::bounds(part), -camera_direction(camera), kFieldOfView,
+                                    aspect(run.job.scene.stills.size));
+  list.items.push_back({&part, Pose::Identity(), kind == StillKind::kFan ? kMatt : kPolished});
   if (kind == StillKind::kFan) {
     list.lines = fan_lines(run);
     options.strip_strength = 0.0;
   }
   render::Image image = render::render_still(list, options);
-  if (look.labels) render::draw_scale_bar(image, render::px_per_mm_at_target(list.camera, options.height));
-  render::save_png(image, path);
+  if (labels) render::draw_scale_bar(image, render::px_per_mm_at_target(list.camera, options.height));
+  return image;
+}
+
+render::Image still_picture(const FinishedRun& run, const TriMesh& part, StillKind kind,
+                            const std::string& camera_name, const StillLook& look) {
+  render::StillOptions options = still_options(run.job);
+  options.transparent = look.transparent;
+  const bool machine = kind == StillKind::kMachine;
+  if (look.section && !machine) return section_picture(run, part, kind, camera_name, look, options);
+  const std::string camera = camera_name.empty() ? machine ? "machine" : "iso" : camera_name;
+  if (machine) return machine_picture(run, camera, look, options);
+  if (kind == StillKind::kDeviation) return deviation_still(run, part, camera, look, options);
+  return part_picture(run, part, kind, camera, look.labels, options);
+}
+
+}  // namespace
+
+void make_still(const FinishedRun& run, const TriMesh& part, StillKind kind, const std::string& camera,
+                const std::string& path, const StillLook& look) {
+  render::save_png(still_picture(run, part, kind, camera, look), path);
 }
 
 }  // namespace swarf::reports

@@ -76,6 +76,8 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(LaterStill{"nc_pocket", "part", "iso"}, LaterStill{"nc_pocket", "machine", "machine"},
                     LaterStill{"exact_gouges", "deviation", "top"}, LaterStill{"exact_gouges", "fan", "left"},
                     LaterStill{"nc_pocket", "part", "iso", "y=12"},
+                    LaterStill{"nc_pocket", "machine", "machine", "y=12"},
+                    LaterStill{"exact_gouges", "fan", "0.4,-1,0.6", "y=0"},
                     LaterStill{"exact_gouges", "deviation", "0.4,-1,0.6", "y=0"}),
     [](const auto& info) {
       const bool opened = *info.param.section != 0;
@@ -99,7 +101,9 @@ TEST(SectionStill, WhatCannotBeSeenIsToldWithWhatCan) {
   refused("--section u=1", "bad-section", "x=12.5");
   refused("--section x=nan", "bad-section", "x=12.5");
   refused("--section x=0 --camera front", "section-edge-on", "straight on");
-  refused("--section x=0 --kind machine", "section-of-part", "part or deviation");
+  refused("--section x=10 --kind fan", "section-misses", "the part reaches x from -10 to 10 mm");
+  refused("--section x=200 --kind machine", "section-misses", "the part reaches x from -10 to 10 mm");
+  refused("--section x=0 --kind machine --camera front", "section-edge-on", "name another camera");
   refused("--section x=0 --finding 1", "nothing-to-do", "--section x=10 --still");
 }
 

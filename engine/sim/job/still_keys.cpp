@@ -13,9 +13,6 @@ StillShot read_still_shot(ConfigTable& table) {
   shot.kind = table.choice("kind", kStillKinds, shot.kind);
   shot.camera = read_camera(table, shot.camera);
   shot.section = read_section(table);
-  if (shot.section && shot.kind != "part" && shot.kind != "deviation")
-    table.error("section-of-part", "kind", fmt::format("a still of kind '{}' is not cut open", shot.kind),
-                "write kind = \"part\" or \"deviation\", or leave the section out");
   return shot;
 }
 

@@ -19,7 +19,7 @@ struct StillShot {
   SourceLocation where;
   std::string kind = "part";            ///< one of kStillKinds
   std::string camera;                   ///< as MovieShot::camera; "": the usual one of its kind
-  std::optional<SectionPlane> section;  ///< of part and deviation: cut open, seen from the side taken away
+  std::optional<SectionPlane> section;  ///< cut open, seen from the side taken away
 };
 
 struct StillSettings {

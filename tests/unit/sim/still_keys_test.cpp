@@ -61,7 +61,7 @@ TEST(StillKeys, FaultsAreToldAtTheirLine) {
     EXPECT_EQ(still_fault(shot + "section = \"" + plane + "\"\n"), "bad-section 2") << plane;
   EXPECT_EQ(still_fault(shot + "section_mm = [[0,0,0],[0,0,0]]\n"), "bad-section 2");
   EXPECT_EQ(still_fault(shot + "section = \"x=1\"\nsection_mm = [[0,0,0],[0,0,1]]\n"), "two-sections 3");
-  EXPECT_EQ(still_fault(shot + "kind = \"fan\"\nsection = \"x=1\"\n"), "section-of-part 2");
+  EXPECT_EQ(still_fault(shot + "kind = \"fan\"\nsection = \"x\"\n"), "bad-section 3");
   EXPECT_EQ(still_fault(shot + "camera = \"drone\"\n"), "unknown-camera 2");
 }
 
