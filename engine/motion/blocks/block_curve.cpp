@@ -40,6 +40,10 @@ constexpr double kJoin = 1e-6;
 constexpr double kReach = 0.02;
 /// Nodes whose inverse is solved at once.
 constexpr size_t kSolvedAtOnce = 32;
+/// A pole that is passed within this share of the block is narrow: even steps of the share would miss it.
+constexpr double kNarrowPole = 5e-3;
+/// Share of the way that the approach to a narrow pole gets for itself, so that each of its scales is met.
+constexpr double kSpread = 0.2;
 /// Chords that the tip's way under the joint law is summed from: within 1e-3 of the way for half a turn.
 constexpr size_t kWayChords = 32;
 
@@ -174,25 +178,38 @@ void BlockCurve::follow() {
   else if (followed_ && turns(law_->motion) && fastest > kUneven * slowest)
     stretch(nodes);
   sample();
+  // Even steps have missed a turn that the path makes: nothing between them is known.
+  if (followed_ && axis_way(*machine_, nodes_.back(), q_to_) > kJoin) {
+    followed_ = false;
+    jump_mm_ = axis_way(*machine_, nodes_.back(), q_to_);
+  }
+}
+
+/// Mm of s per share at x, from the axis values a little to both sides; x lies between node `near` and the
+/// next.
+double BlockCurve::way_rate(const std::vector<PathNode>& nodes, size_t near, double x) const {
+  // The slope at x of the parabola through three places, of which x is the middle except at the ends.
+  const double reach = kReach * (nodes[near + 1].x - nodes[near].x);
+  const double middle = std::clamp(x, reach, 1.0 - reach);
+  const AxisValues low = solve(middle - reach, nodes[near].q), high = solve(middle + reach, nodes[near].q);
+  AxisValues change = 0.5 * (high - low);
+  if (x != middle) change += (x - middle) / reach * (high + low - 2.0 * solve(middle, nodes[near].q));
+  return limited_way(change, reach) / reach;
 }
 
 void BlockCurve::stretch(const std::vector<PathNode>& nodes) {
   const double turn = turn_between(*machine_, nodes.front().q, nodes.back().q);
   const auto steps = static_cast<size_t>(std::clamp(4.0 * kNodesPerRadian * turn, 48.0, kNodesMax));
+  stretched_ = true;
+  pole_ = narrow_pole(nodes);
+  if (pole_.width > 0.0) return spread(nodes, steps);
   const double h = length_ / static_cast<double>(steps);
   size_t near = 0;
-  // dx/ds at x, from the axis values a little to both sides.
   const auto slope = [&](double x) {
     x = std::clamp(x, 0.0, 1.0);
     while (near + 2 < nodes.size() && nodes[near + 1].x <= x) ++near;
     while (near > 0 && nodes[near].x > x) --near;
-    // The slope at x of the parabola through three places, of which x is the middle except at the ends.
-    const double reach = kReach * (nodes[near + 1].x - nodes[near].x);
-    const double middle = std::clamp(x, reach, 1.0 - reach);
-    const AxisValues low = solve(middle - reach, nodes[near].q), high = solve(middle + reach, nodes[near].q);
-    AxisValues change = 0.5 * (high - low);
-    if (x != middle) change += (x - middle) / reach * (high + low - 2.0 * solve(middle, nodes[near].q));
-    return reach / limited_way(change, reach);
+    return 1.0 / way_rate(nodes, near, x);
   };
   std::vector<double> x(steps + 1, 0.0);
   for (size_t i = 0; i < steps; ++i) {
@@ -204,13 +221,55 @@ void BlockCurve::stretch(const std::vector<PathNode>& nodes) {
   for (double& value : x) value /= whole;
   share_ = CubicSpline(0.0, h, std::move(x));
   share_step_ = h;
-  stretched_ = true;
+}
+
+BlockCurve::Pole BlockCurve::narrow_pole(const std::vector<PathNode>& nodes) const {
+  if (block().law == BlockLaw::kTcpAxes) return {};  // turns evenly, however far
+  Pole pole{0.0, kNarrowPole};
+  for (size_t i = 0; i + 1 < nodes.size(); ++i) {
+    const double step = nodes[i + 1].x - nodes[i].x;
+    const double width = step / turn_between(*machine_, nodes[i].q, nodes[i + 1].q);
+    if (width < pole.width) pole = {nodes[i].x + 0.5 * step, width};
+  }
+  return pole.width < kNarrowPole ? pole : Pole{};
+}
+
+/// Past a narrow pole: s(x) summed from node to node by Simpson's rule, and a spline through the inverse.
+void BlockCurve::spread(const std::vector<PathNode>& nodes, size_t steps) {
+  const double from = pole_.place(0.0), to = pole_.place(1.0);
+  const double evenly = kSpread * length_ / (to - from);
+  std::vector<double> u, s{0.0}, slope;
+  for (size_t i = 0; i < nodes.size(); ++i) {
+    u.push_back(pole_.place(nodes[i].x));
+    const auto rate = [&](size_t near, double at) {
+      const double x = std::clamp(pole_.share(at), 0.0, 1.0);
+      return way_rate(nodes, near, x) * pole_.width * std::cosh(at) + evenly;
+    };
+    slope.push_back(rate(std::min(i, nodes.size() - 2), u[i]));
+    if (i == 0) continue;
+    const double middle = rate(i - 1, 0.5 * (u[i - 1] + u[i]));
+    s.push_back(s.back() + (u[i] - u[i - 1]) / 6.0 * (slope[i - 1] + 4.0 * middle + slope[i]));
+  }
+  length_ = s.back();
+  share_step_ = length_ / static_cast<double>(steps);
+  std::vector<double> knots;
+  for (size_t k = 0, i = 0; k <= steps; ++k) {
+    const double at = share_step_ * static_cast<double>(k);
+    while (i + 2 < s.size() && s[i + 1] < at) ++i;
+    // The cubic through both nodes with the slopes there.
+    const double h = s[i + 1] - s[i], t = std::clamp((at - s[i]) / h, 0.0, 1.0);
+    const double a = h / slope[i] - (u[i + 1] - u[i]), b = (u[i + 1] - u[i]) - h / slope[i + 1];
+    knots.push_back(u[i] + t * (u[i + 1] - u[i]) + t * (1.0 - t) * ((1.0 - t) * a + t * b));
+  }
+  share_ = CubicSpline(0.0, share_step_, std::move(knots));
 }
 
 void BlockCurve::sample() {
   double turn = turn_between(*machine_, q_from_, q_to_);
   if (block().arc) turn += toolpath::arc_angle(block());
-  const auto steps = static_cast<size_t>(std::clamp(kNodesPerRadian * turn, kNodesMin, kNodesMax));
+  // Past a narrow pole as many as the spline has.
+  const double density = pole_.width > 0.0 ? 4.0 * kNodesPerRadian : kNodesPerRadian;
+  const auto steps = static_cast<size_t>(std::clamp(density * turn, kNodesMin, kNodesMax));
   nodes_.reserve(steps + 1);
   nodes_.push_back(q_from_);
   const bool own_axes = block().law == BlockLaw::kTcpAxes;
@@ -241,7 +300,9 @@ bool BlockCurve::jumps_after(size_t node) const {
 double BlockCurve::share(double s) const {
   if (s <= 0.0) return 0.0;
   if (s >= length_) return 1.0;
-  return stretched_ ? std::clamp(share_.at(s).w, 0.0, 1.0) : s / length_;
+  if (!stretched_) return s / length_;
+  const double at = share_.at(s).w;
+  return std::clamp(pole_.width > 0.0 ? pole_.share(at) : at, 0.0, 1.0);
 }
 
 const AxisValues& BlockCurve::nearest_node(double s) const {

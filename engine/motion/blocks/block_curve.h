@@ -7,12 +7,15 @@
 //  2. Other blocks: the inverse gives q at shares x of the block by continuity. Near a pole x(s) is a spline
 //     through the solution of dx/ds = 1/|dq/dx|: what limits the speed moves evenly along s, and its bend
 //     does not take from its acceleration. q is always that of the exact pose at x(s), however well the
-//     spline is met.
+//     spline is met. Where the axes turn within a small share of the block the spline is that of u(s), with
+//     x = centre + width sinh u: near the pole they turn evenly by u, farther off x grows by a factor per u,
+//     so that steps of u meet every scale of the approach. Sums of even steps of x or s would jump over it.
 //  3. Blocks on one smooth curve (BlockLaw::kCurve): s is the way of the tip, so that q(s) runs on from block
 //  to
 //     block with two continuous derivatives. Near a pole such a block is passed slowly instead of stretched.
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <vector>
 
@@ -82,7 +85,16 @@ class BlockCurve {
   /// all, smoothly.
   double limited_way(const kinematics::AxisValues& change, double share) const;
   void follow();
+  double way_rate(const std::vector<PathNode>& nodes, size_t near, double x) const;
   void stretch(const std::vector<PathNode>& nodes);
+  /// Where the axes turn within a small share of the block: x = centre + width sinh u.
+  struct Pole {
+    double centre = 0.0, width = 0.0;  ///< width 0: none
+    double share(double u) const { return centre + width * std::sinh(u); }
+    double place(double share) const { return std::asinh((share - centre) / width); }
+  };
+  Pole narrow_pole(const std::vector<PathNode>& nodes) const;
+  void spread(const std::vector<PathNode>& nodes, size_t steps);
   void sample();
   template <typename Visit>
   void divide(double from, double to, const Visit& visit) const;
@@ -109,7 +121,8 @@ class BlockCurve {
   bool even_ = false, followed_ = true, stretched_ = false;
   bool jumps_ = false;  ///< after some node
   double jump_mm_ = 0.0;
-  CubicSpline share_;                          ///< x(s), when stretched
+  Pole pole_;
+  CubicSpline share_;                          ///< x(s), when stretched; past a narrow pole u(s)
   double share_step_ = 0.0;                    ///< between its knots
   std::vector<kinematics::AxisValues> nodes_;  ///< q at even steps of s, when not even
 };

@@ -17,6 +17,8 @@ using toolpath::BlockMove;
 
 /// Blocks shorter than this go nowhere, mm.
 constexpr double kRunLengthMin = 1e-9;
+/// A corner of a lower tolerance is passed at rest, mm: the axis values' rounding is no longer far below it.
+constexpr double kSharp = 1e-9;
 /// Share of a block that each of its corners may take.
 constexpr double kCornerShare = 0.5;
 /// Slopes that differ by less are one straight line.
@@ -276,11 +278,12 @@ void RunPathBuilder::add_block_piece(size_t block, double from, double to) {
 double RunPathBuilder::add_corner(size_t a, size_t b) {
   const BlockCurve &out = curve(b), &in = curve(a);  // b first: it may move the others
   const double from = at_.from;
-  if (!in.followed() || !out.followed()) {
+  const auto stop = [&] {
     add_block_piece(a, from, in.length());
     path_.cells.back().stop = true;
     return 0.0;
-  }
+  };
+  if (!in.followed() || !out.followed()) return stop();
   if (on_one_curve(motions_[a].block, motions_[b].block)) {
     add_block_piece(a, from, in.length());
     return 0.0;
@@ -292,7 +295,9 @@ double RunPathBuilder::add_corner(size_t a, size_t b) {
       return 0.0;
     }
   }
-  const Blend blend = fit(a, b);
+  const std::optional<Blend> fitted = fit(a, b);
+  if (!fitted) return stop();
+  const Blend& blend = *fitted;
   const double d = blend.before;
   add_block_piece(a, from, in.length() - d);
   const size_t first = path_.cells.size();
@@ -315,11 +320,13 @@ void RunPathBuilder::limit_tip(size_t a, size_t b, PathCell& cell) const {
 }
 
 /// The longest corner within the tolerance: its deviation grows with its length, at least about linearly.
-Blend RunPathBuilder::fit(size_t a, size_t b) const {
+/// None where the tolerance is below kSharp.
+std::optional<Blend> RunPathBuilder::fit(size_t a, size_t b) const {
   const BlockCurve &in = path_.curve(a), &out = path_.curve(b);
   const BlockMotion before = motions_[a], after = motions_[b];
   const Corner corner{in, out, before, after, PoseLaw(before), PoseLaw(after)};
   const double tolerance = corner_tolerance(corner.in_motion.block, options_);
+  if (tolerance < kSharp) return std::nullopt;
   double d = kCornerShare * std::min(in.length(), out.length());
   for (int i = 0; i < kFits; ++i) {
     Blend blend = blend_between(in.jet(in.length() - d), out.jet(d), d, d);
@@ -328,7 +335,7 @@ Blend RunPathBuilder::fit(size_t a, size_t b) const {
     d *= std::min(0.98, 0.999 * tolerance / blend.deviation);
   }
   SWARF_CHECK(false, "a corner becomes as sharp as it must");
-  return {};
+  return std::nullopt;
 }
 
 /// Greatest distance of the tip from the programmed one at the same s.

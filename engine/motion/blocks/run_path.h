@@ -93,7 +93,7 @@ class RunPathBuilder {
   void add_block_piece(size_t block, double from, double to);
   double add_corner(size_t a, size_t b);
   void limit_tip(size_t a, size_t b, PathCell& cell) const;
-  Blend fit(size_t a, size_t b) const;
+  std::optional<Blend> fit(size_t a, size_t b) const;
   /// Two blocks that meet in a corner.
   struct Corner {
     const BlockCurve &in, &out;
