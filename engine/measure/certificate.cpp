@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
+#include <numeric>
+#include <span>
 
 #include "base/parallel.h"
 #include "base/units.h"
@@ -14,25 +17,18 @@ namespace {
 
 /// Looks at a sweep over a cell, in all (a minute or two) and at least for each root.
 constexpr size_t kBudget = 150'000'000, kLeastBudget = 10'000;
-/// What is left of the budget is shared by the roots that are left, and one may take so many shares.
-constexpr size_t kShares = 64;
+/// At first a root may take so many times its share of the budget that is left, and a batch one part of it:
+/// what then is left is for the roots for which that did not suffice.
+constexpr size_t kShares = 4, kBatchPart = 4;
 /// So much is spent on roots that break a limit before each of them gets only the lesser one.
 constexpr size_t kBrokenBudget = 10'000'000, kBrokenRoot = 1'500;
 constexpr size_t kRoots = 10'000;
 constexpr size_t kRootsPerBatch = 256;  // share one budget
-constexpr size_t kRootsPerPortion = 4;  // that another process is asked for at once
 constexpr double kLeastRoot = 1.0;      // mm
 /// Between two steps of the progress bar, about; s.
 constexpr double kStep = 0.2;
 
-/// A part that breaks a limit all over has as many as memory notices: none is held twice.
-void take_pieces(std::vector<RegionPiece>& from, std::vector<RegionPiece>& to) {
-  to.insert(to.end(), from.begin(), from.end());
-  from = {};
-}
-
-void join(RootResult& part, Certificate& whole, std::vector<RegionPiece>& gouges,
-          std::vector<RegionPiece>& excesses) {
+void join(const RootResult& part, Certificate& whole) {
   if (um_from_mm(part.gouge) > whole.gouge.um) whole.gouge = {um_from_mm(part.gouge), part.gouge_at};
   if (um_from_mm(part.excess) > whole.excess.um) whole.excess = {um_from_mm(part.excess), part.excess_at};
   if (um_from_mm(part.scallop) > whole.scallop.um)
@@ -51,60 +47,135 @@ void join(RootResult& part, Certificate& whole, std::vector<RegionPiece>& gouges
     whole.above_found_um = um_from_mm(part.above_found);
     whole.above_top = part.above_top;
   }
-  take_pieces(part.gouges, gouges);
-  take_pieces(part.excesses, excesses);
   whole.cells += part.cells;
 }
 
-/// Works on a batch in slices of about kStep; how many roots that is hangs on the machine, no result does.
-class Slices {
+/// The roots of one surface, and what is proven of them.
+class RootProofs {
  public:
-  explicit Slices(const CertificateInput& input) : input_(input) {}
+  explicit RootProofs(const CertificateInput& input)
+      : input_(input),
+        roots_(root_cells(input.field, root_size(input.field))),
+        index_(input.sweeps, input.cutters),
+        results_(roots_.size()) {}
 
-  /// Calls prove(n) for first <= n < end.
-  template <typename Prove>
-  void run(size_t first, size_t end, size_t all, const Prove& prove) {
-    while (first < end && !input_.progress.stop_requested()) {
+  /// Those for which the budget did not suffice are begun anew with what the others have left of it. The
+  /// budget of a root depends on what was spent before its batch: on no number of threads.
+  std::vector<RootResult> prove() {
+    std::vector<size_t> todo(roots_.size());
+    std::iota(todo.begin(), todo.end(), size_t{0});
+    for (; !todo.empty() && !input_.progress.stop_requested(); todo = unfinished(todo)) {
+      for (size_t first = 0; first < todo.size() && !input_.progress.stop_requested();
+           first += kRootsPerBatch) {
+        const size_t rest = todo.size() - first;
+        const auto batch = std::span(todo).subspan(first, std::min(kRootsPerBatch, rest));
+        prove_batch(batch, budget_of(batch.size(), rest));
+        for (const size_t n : batch) {
+          spent_ += results_[n].work;
+          if (results_[n].broken) broken_ += results_[n].work;
+        }
+      }
+    }
+    return std::move(results_);
+  }
+
+ private:
+  static size_t rest_of(size_t budget, size_t spent) { return budget > spent ? budget - spent : 0; }
+
+  /// For each root of a batch, when `rest` are left with them.
+  Budget budget_of(size_t batch, size_t rest) {
+    const size_t left = rest_of(kBudget, spent_), fair = left / rest;
+    const size_t share =
+        std::max(kLeastBudget, is_first_ ? std::min(kShares * fair, left / (kBatchPart * batch)) : fair);
+    const size_t of_broken = is_first_ ? (broken_ > kBrokenBudget ? kBrokenRoot : share)
+                                       : std::max(kBrokenRoot, rest_of(kBrokenBudget, broken_) / rest);
+    most_ = {std::max(most_.all, share), std::max(most_.broken, std::min(share, of_broken))};
+    return {share, std::min(share, of_broken)};
+  }
+
+  /// Those that would get at least twice as much as they had.
+  std::vector<size_t> unfinished(const std::vector<size_t>& roots) {
+    is_first_ = false;
+    std::vector<size_t> left;
+    for (const size_t n : roots)
+      if (results_[n].cut_short) left.push_back(n);
+    const auto worthwhile = [&](size_t n) {
+      return results_[n].broken ? rest_of(kBrokenBudget, broken_) >= 2 * most_.broken * left.size()
+                                : rest_of(kBudget, spent_) >= 2 * most_.all * left.size();
+    };
+    std::vector<size_t> again;
+    std::copy_if(left.begin(), left.end(), std::back_inserter(again), worthwhile);
+    done_ = roots_.size() - again.size();
+    return again;
+  }
+
+  void prove_batch(std::span<const size_t> batch, const Budget& budget) {
+    if (input_.deal) {
+      deal(batch, budget);
+      tell(batch);
+      return;
+    }
+    // In slices of about kStep; how many roots that is hangs on the machine, no result does.
+    for (size_t first = 0; first < batch.size() && !input_.progress.stop_requested();) {
       const auto begun = std::chrono::steady_clock::now();
-      const size_t count = std::min(slice_, end - first);
-      parallel_chunks(count, 1, [&](size_t begin, size_t) { prove(first + begin); });
-      first += count;
-      input_.progress.advance(input_.progress_from + static_cast<double>(first) / static_cast<double>(all));
+      const auto slice = batch.subspan(first, std::min(slice_, batch.size() - first));
+      prove_here(slice, budget);
+      tell(slice);
+      first += slice.size();
       const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
       if (took < 0.5 * kStep) slice_ = std::min(2 * slice_, kRootsPerBatch);
       if (took > kStep) slice_ = std::max(slice_ / 2, size_t{1});
     }
   }
 
- private:
+  void prove_here(std::span<const size_t> roots, const Budget& budget) {
+    parallel_chunks(roots.size(), 1, [&](size_t k, size_t) {
+      results_[roots[k]] = prove_root(input_, index_, roots_[roots[k]], budget);
+    });
+  }
+
+  /// In portions, by whoever helps.
+  void deal(std::span<const size_t> batch, const Budget& budget) {
+    const auto portion = [&](size_t n) {
+      const size_t first = n * kRootsPerRequest;
+      return batch.subspan(first, std::min(kRootsPerRequest, batch.size() - first));
+    };
+    input_.deal({(batch.size() + kRootsPerRequest - 1) / kRootsPerRequest,
+                 [&](size_t n) {
+                   RootRequest request{{}, portion(n).size(), budget};
+                   std::copy(portion(n).begin(), portion(n).end(), request.roots.begin());
+                   BytesWriter out;
+                   out.add(request);
+                   return out.take();
+                 },
+                 [&](size_t n, const Bytes& answer) {
+                   BytesReader in(answer);
+                   for (const size_t root : portion(n)) results_[root] = get_result(in);
+                 },
+                 [&](size_t n) { prove_here(portion(n), budget); }});
+  }
+
+  /// Those that may be begun anew are not done yet.
+  void tell(std::span<const size_t> roots) {
+    for (const size_t n : roots) done_ += results_[n].cut_short ? 0 : 1;
+    input_.progress.advance(input_.progress_from +
+                            static_cast<double>(done_) / static_cast<double>(roots_.size()));
+  }
+
   const CertificateInput& input_;
-  size_t slice_ = 32;
+  std::vector<RootCell> roots_;
+  SweepIndex index_;
+  std::vector<RootResult> results_;
+  size_t spent_ = 0, broken_ = 0, done_ = 0, slice_ = 32;
+  Budget most_{0, 0};     ///< that a root had
+  bool is_first_ = true;  ///< of the rounds
 };
 
-/// Roots [first, end) in portions, by whoever helps.
-void deal_roots(const CertificateInput& input, const std::vector<RootCell>& roots, const SweepIndex& index,
-                const RootRequest& batch, std::vector<RootResult>& parts) {
-  const auto portion = [&](size_t n) {
-    const size_t first = batch.first + n * kRootsPerPortion;
-    return RootRequest{first, std::min(first + kRootsPerPortion, batch.end), batch.budget};
-  };
-  input.deal({(batch.end - batch.first + kRootsPerPortion - 1) / kRootsPerPortion,
-              [&](size_t n) {
-                BytesWriter out;
-                out.add(portion(n));
-                return out.take();
-              },
-              [&](size_t n, const Bytes& answer) {
-                BytesReader in(answer);
-                const RootRequest of = portion(n);
-                for (size_t root = of.first; root < of.end; ++root) parts[root] = get_result(in);
-              },
-              [&](size_t n) {
-                const RootRequest of = portion(n);
-                parallel_chunks(of.end - of.first, 1, [&](size_t k, size_t) {
-                  parts[of.first + k] = prove_root(input, index, roots[of.first + k], of.budget);
-                });
-              }});
+/// Places that break a limit, of all roots.
+std::vector<Region> regions_of(const std::vector<RootResult>& parts, RootRegions RootResult::*kind) {
+  std::vector<const RootRegions*> roots;
+  for (const RootResult& part : parts) roots.push_back(&(part.*kind));
+  return join_roots(roots);
 }
 
 }  // namespace
@@ -121,40 +192,9 @@ double certify_bytes(const stock::RayField& field) {
 }
 
 Certificate certify(const CertificateInput& input) {
-  const std::vector<RootCell> roots = root_cells(input.field, root_size(input.field));
-  const SweepIndex index(input.sweeps, input.cutters);
-  std::vector<RootResult> parts(roots.size());
-  size_t spent = 0, broken = 0;
-  Slices slices(input);
-  for (size_t first = 0; first < roots.size() && !input.progress.stop_requested(); first += kRootsPerBatch) {
-    // Known between batches only: the budget of a root does not depend on the number of threads.
-    const size_t left = kBudget > spent ? kBudget - spent : 0;
-    const size_t share = std::max(kLeastBudget, kShares * left / (roots.size() - first));
-    const Budget budget{share, broken > kBrokenBudget ? std::min(share, kBrokenRoot) : share};
-    const size_t end = std::min(first + kRootsPerBatch, roots.size());
-    if (input.deal) {
-      deal_roots(input, roots, index, {first, end, budget}, parts);
-      input.progress.advance(input.progress_from +
-                             static_cast<double>(end) / static_cast<double>(roots.size()));
-    } else {
-      slices.run(first, end, roots.size(),
-                 [&](size_t n) { parts[n] = prove_root(input, index, roots[n], budget); });
-    }
-    for (size_t n = first; n < end; ++n) {
-      spent += parts[n].work;
-      if (parts[n].broken) broken += parts[n].work;
-    }
-  }
+  const std::vector<RootResult> parts = RootProofs(input).prove();
   Certificate whole;
-  std::vector<RegionPiece> gouges, excesses;
-  size_t gouge_pieces = 0, excess_pieces = 0;
-  for (const RootResult& part : parts) {
-    gouge_pieces += part.gouges.size();
-    excess_pieces += part.excesses.size();
-  }
-  gouges.reserve(gouge_pieces);
-  excesses.reserve(excess_pieces);
-  for (RootResult& part : parts) join(part, whole, gouges, excesses);
+  for (const RootResult& part : parts) join(part, whole);
   const auto settled = [](bool wanted, double found_um, double limit_mm) {
     return wanted ? std::max(found_um * kMicrometre * (1.0 + kGapShare) + kGap, limit_mm) : kNever;
   };
@@ -183,8 +223,8 @@ Certificate certify(const CertificateInput& input) {
     whole.excess_block = stock::kUncut;
     whole.excess.um = std::max(whole.excess.um, whole.above_found_um + untold_um);
   }
-  whole.gouges = join_pieces(gouges);
-  whole.excesses = join_pieces(excesses);
+  whole.gouges = regions_of(parts, &RootResult::gouges);
+  whole.excesses = regions_of(parts, &RootResult::excesses);
   return whole;
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <unordered_map>
 
 #include "base/disjoint_sets.h"
@@ -45,69 +44,118 @@ uint64_t cube_key(const Vec3& p, double side, int dx, int dy, int dz) {
   return part(p.x(), dx) << 42U | part(p.y(), dy) << 21U | part(p.z(), dz);
 }
 
-void join_near(const std::vector<RegionPiece>& pieces, uint32_t n, const SizeClass& others,
-               DisjointSets& sets) {
-  constexpr double kTouch = 1e-6;  // mm
+int level_of(const CellDisc& disc) {
+  int exponent = 0;
+  std::frexp(std::max(disc.radius, 1e-6), &exponent);
+  return exponent;
+}
+
+/// Calls join(n, m) for each that touches disc n.
+template <typename Join>
+void join_near(const std::vector<CellDisc>& discs, uint32_t n, const SizeClass& others, const Join& join) {
+  constexpr double kTouching = 1e-6;  // mm
   for (int code = 0; code < 27; ++code) {
-    const uint64_t key =
-        cube_key(pieces[n].centre, others.side, code / 9 - 1, code / 3 % 3 - 1, code % 3 - 1);
+    const uint64_t key = cube_key(discs[n].centre, others.side, code / 9 - 1, code / 3 % 3 - 1, code % 3 - 1);
     const auto [first, last] = others.cubes.equal_range(key);
     for (auto it = first; it != last; ++it) {
-      const RegionPiece &a = pieces[n], &b = pieces[it->second];
-      if ((a.centre - b.centre).norm() <= a.radius + b.radius + kTouch) sets.join(n, it->second);
+      const CellDisc &a = discs[n], &b = discs[it->second];
+      if ((a.centre - b.centre).norm() <= a.radius + b.radius + kTouching) join(n, it->second);
     }
   }
 }
 
+template <typename Join>
+void join_touching(const std::vector<CellDisc>& discs, const Join& join) {
+  std::map<int, SizeClass> classes;
+  for (uint32_t n = 0; n < discs.size(); ++n) {
+    SizeClass& home = classes[level_of(discs[n])];
+    home.side = 2.0 * std::ldexp(1.0, level_of(discs[n]));
+    home.cubes.emplace(cube_key(discs[n].centre, home.side, 0, 0, 0), n);
+  }
+  // Each looks for those of its own size and larger: two that touch are met from the smaller one.
+  for (uint32_t n = 0; n < discs.size(); ++n) {
+    for (auto it = classes.find(level_of(discs[n])); it != classes.end(); ++it)
+      join_near(discs, n, it->second, join);
+  }
+}
+
+/// What became of parts: one for each set, in the order of their first members.
+struct Joined {
+  std::vector<RegionPart> wholes;
+  std::vector<size_t> whole_of;  ///< of each part
+};
+
+Joined joined(const std::vector<RegionPart>& parts, DisjointSets& sets) {
+  Joined result;
+  for (uint32_t n = 0; n < parts.size(); ++n) {
+    const uint32_t first = sets.root(n);
+    result.whole_of.push_back(first == n ? result.wholes.size() : result.whole_of[first]);
+    if (first == n) result.wholes.emplace_back();
+    result.wholes[result.whole_of[n]].add(parts[n]);
+  }
+  return result;
+}
+
 }  // namespace
 
+void RegionPart::add(const RegionPart& other) {
+  area_mm2 += other.area_mm2;
+  volume_mm3 += other.volume_mm3;
+  if (other.worst_mm <= worst_mm) return;
+  worst_mm = other.worst_mm;
+  place = other.place;
+  block = other.block;
+}
+
 void add_piece(const DesignCell& cell, const std::array<double, 3>& values_mm,
-               const std::array<uint32_t, 3>& blocks, double limit_mm, std::vector<RegionPiece>& pieces) {
+               const std::array<uint32_t, 3>& blocks, double limit_mm, bool near_rim,
+               std::vector<RegionPiece>& pieces) {
   const size_t worst =
       static_cast<size_t>(std::max_element(values_mm.begin(), values_mm.end()) - values_mm.begin());
   if (!(values_mm[worst] > limit_mm)) return;
   const Above above = above_limit(values_mm, limit_mm);
   const double area = above.share * cell.area_mm2();
-  pieces.push_back({cell.centroid(), cell.radius(), area, area * above.mean, values_mm[worst],
-                    cell.corners[worst].point, blocks[worst]});
+  pieces.push_back({{area, area * above.mean, values_mm[worst], cell.corners[worst].point, blocks[worst]},
+                    {cell.centroid(), cell.radius()},
+                    near_rim});
 }
 
-std::vector<Region> join_pieces(const std::vector<RegionPiece>& pieces) {
+RootRegions join_pieces(const std::vector<RegionPiece>& pieces) {
+  std::vector<CellDisc> discs;
+  std::vector<RegionPart> parts;
+  for (const RegionPiece& piece : pieces) {
+    discs.push_back(piece.disc);
+    parts.push_back(piece.part);
+  }
   DisjointSets sets(pieces.size());
-  std::map<int, SizeClass> classes;
-  const auto level = [&](const RegionPiece& piece) {
-    int exponent = 0;
-    std::frexp(std::max(piece.radius, 1e-6), &exponent);
-    return exponent;
-  };
-  for (uint32_t n = 0; n < pieces.size(); ++n) {
-    SizeClass& home = classes[level(pieces[n])];
-    home.side = 2.0 * std::ldexp(1.0, level(pieces[n]));
-    home.cubes.emplace(cube_key(pieces[n].centre, home.side, 0, 0, 0), n);
-  }
-  // Each piece looks for those of its own size and larger: two that touch are met from the smaller one.
-  for (uint32_t n = 0; n < pieces.size(); ++n) {
-    for (auto it = classes.find(level(pieces[n])); it != classes.end(); ++it)
-      join_near(pieces, n, it->second, sets);
-  }
-  std::vector<Region> regions;
-  std::vector<uint32_t> region_of(pieces.size());
-  for (uint32_t n = 0; n < pieces.size(); ++n) {
-    const uint32_t root = sets.root(n);
-    if (root == n) {
-      region_of[n] = static_cast<uint32_t>(regions.size());
-      regions.emplace_back();
+  join_touching(discs, [&](uint32_t a, uint32_t b) { sets.join(a, b); });
+  Joined root = joined(parts, sets);
+  std::vector<RootRegions::Rim> rim;
+  for (size_t n = 0; n < pieces.size(); ++n)
+    if (pieces[n].near_rim) rim.push_back({pieces[n].disc, root.whole_of[n]});
+  rim.shrink_to_fit();
+  root.wholes.shrink_to_fit();
+  return {std::move(root.wholes), std::move(rim)};
+}
+
+std::vector<Region> join_roots(const std::vector<const RootRegions*>& roots) {
+  std::vector<RegionPart> parts;
+  std::vector<CellDisc> discs;
+  std::vector<uint32_t> part_of;
+  for (const RootRegions* root : roots) {
+    for (const RootRegions::Rim& rim : root->rim) {
+      discs.push_back(rim.disc);
+      part_of.push_back(static_cast<uint32_t>(parts.size() + rim.part));
     }
-    Region& region = regions[region_of[root]];
-    const RegionPiece& piece = pieces[n];
-    region.area_mm2 += piece.area_mm2;
-    region.volume_mm3 += piece.volume_mm3;
-    if (um_from_mm(piece.worst_mm) <= region.worst_um) continue;
-    region.worst_um = um_from_mm(piece.worst_mm);
-    region.place = piece.place;
-    region.block = piece.block;
+    parts.insert(parts.end(), root->parts.begin(), root->parts.end());
   }
-  std::sort(regions.begin(), regions.end(), larger);
+  DisjointSets sets(parts.size());
+  join_touching(discs, [&](uint32_t a, uint32_t b) { sets.join(part_of[a], part_of[b]); });
+  std::vector<Region> regions;
+  for (const RegionPart& whole : joined(parts, sets).wholes)
+    regions.push_back(
+        {um_from_mm(whole.worst_mm), whole.area_mm2, whole.volume_mm3, whole.place, whole.block});
+  std::stable_sort(regions.begin(), regions.end(), larger);
   return regions;
 }
 

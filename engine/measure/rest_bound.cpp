@@ -3,9 +3,53 @@
 #include <algorithm>
 
 #include "measure/column_range.h"
+#include "measure/raw_cell.h"
 #include "stock/rays/ray_height.h"
+#include "stock/sweep/convex_motion.h"
 
 namespace swarf::measure {
+namespace {
+
+/// Where a line leaves the raw stock for good; as leaves_box.
+double leaves_raw(const stock::RawShape& raw, const Vec3& point, const Vec3& way) {
+  if (raw.is_box()) return leaves_box(raw.box(), point, way);
+  const std::vector<stock::RawInterval> material = raw.along(point, way);
+  return material.empty() ? -kNever : material.back().high;
+}
+
+}  // namespace
+
+double distance_to(const Box& box, const Vec3& p) {
+  return (p - p.cwiseMax(box.lower).cwiseMin(box.upper)).norm();
+}
+
+void take_raw(const stock::RawShape& raw, Corner& corner) {
+  const CellCorner& at = corner.at;
+  if (raw.is_box()) {
+    corner.top = std::min(leaves_box(raw.box(), at.point, at.normal), corner.range);
+    // Without stock at the place the design lacks material: as much as to the box.
+    corner.height = corner.top > -kNever ? corner.top : -distance_to(raw.box(), at.point);
+  } else {
+    corner.height = std::min(stock::raw_column(raw, at.point, at.normal).height_mm, corner.range);
+    corner.top = corner.height;
+  }
+}
+
+double look_at_raw(const stock::RawShape& raw, const std::vector<CornerHeights>& own, double top,
+                   Cell& cell) {
+  for (const CornerHeights& heights : own)
+    top = std::min(top, *std::max_element(heights.begin(), heights.end()));
+  top = raw_air_above(cell.shape, raw, std::max(top, 0.0));
+  cell.raw_outside = raw_outside(cell.shape, raw, top);
+  return top;
+}
+
+double counted_depth(const CertificateInput& input, const CellCorner& corner, double depth, double share) {
+  if (depth <= 0.0) return depth;
+  depth = input.field.own_depth(corner.point, corner.normal, depth, share);
+  const double through = leaves_raw(input.stock.raw(), corner.point, -corner.normal);
+  return through > 0.0 ? std::min(depth, through) : depth;
+}
 
 double lowest_cut(const CellCorner& at, const NearSweep& near, double highest, bool fans,
                   const stock::RayField& field) {
@@ -50,6 +94,101 @@ double rest_top(const CellCorner& at, double range, const stock::RawShape& raw,
 uint32_t between(const std::array<uint32_t, 2>& sweeps) {
   return sweeps[0] == stock::kUncut || sweeps[1] == stock::kUncut ? stock::kUncut
                                                                   : sweeps[0] / 2 + sweeps[1] / 2;
+}
+
+namespace {
+
+/// What a piece of a sweep covers of the middle column of a cell.
+struct Layer {
+  double low, high;  ///< mm
+  const NearSweep* near;
+  const cutter::ConvexPiece* piece;
+};
+
+/// From the lowest up.
+std::vector<Layer> layers_of(const DesignCell& cell, std::span<const NearSweep> sweeps) {
+  const Vec3 foot = cell.centroid(), way = cell.mean_normal();
+  std::vector<Layer> layers;
+  for (const NearSweep& near : sweeps) {
+    for (const cutter::ConvexPiece& piece : near.cutter->pieces) {
+      const stock::RayInterval cut = stock::ray_interval(foot, way, near.map, piece);
+      if (cut.hit()) layers.push_back({cut.low, cut.high, &near, &piece});
+    }
+  }
+  std::stable_sort(layers.begin(), layers.end(),
+                   [](const Layer& a, const Layer& b) { return a.low < b.low; });
+  return layers;
+}
+
+/// Whether the piece holds the place at `top` in the instant in which it is nearest to the one at `low`: in
+/// another it may.
+bool reaches_up(const CellCorner& at, const NearSweep& near, const cutter::ConvexPiece& piece, double low,
+                double top) {
+  const Vec3 from = at.point + low * at.normal, to = at.point + top * at.normal;
+  const Vec3 P = near.map.start(from);
+  const double t = stock::nearest_instant(piece, P, near.map.end(from) - P).t;
+  const Vec3 X = (1.0 - t) * near.map.start(to) + t * near.map.end(to);
+  return cutter::support(piece, X.head<2>().norm(), X.z()).value <= kTouch;
+}
+
+double mean(const CornerHeights& heights) {
+  return (heights[0] + heights[1] + heights[2]) / 3.0;
+}
+
+/// At no corner above, and not all but the same.
+bool is_lower(const CornerHeights& a, const CornerHeights& b) {
+  for (size_t k = 0; k < 3; ++k)
+    if (!(a[k] <= b[k])) return false;
+  return mean(a) < mean(b) - kTouch;
+}
+
+}  // namespace
+
+bool RestBound::ends_below(const Cell& cell, const CornerHeights& tops) const {
+  for (size_t k = 0; k < 3; ++k) {
+    const Corner& corner = cell.corners[k];
+    if (corner.near == stock::kUncut) continue;
+    const NearSweep& near = near_[corner.near];
+    const bool reaches = std::any_of(
+        near.cutter->pieces.begin(), near.cutter->pieces.end(), [&](const cutter::ConvexPiece& piece) {
+          return reaches_up(corner.at, near, piece, corner.height, std::min(tops[k], corner.top));
+        });
+    if (!reaches) return true;
+  }
+  return false;
+}
+
+std::optional<CornerHeights> RestBound::lowered(const Cell& cell, const CornerHeights& tops, double enough,
+                                                std::span<const NearSweep> sweeps) const {
+  CornerHeights lowest = tops;
+  for (const CornerHeights& set : sets_)
+    if (is_lower(set, lowest)) lowest = set;
+  const std::vector<Layer> layers = layers_of(cell.shape, sweeps);
+  const CornerHeights bottom{cell.corners[0].height, cell.corners[1].height, cell.corners[2].height};
+  // In one instant a sweep may cover only a part of what it does in all: the part from `share` of its own
+  // depth on.
+  const auto lowers = [&](const Layer& layer, double share) {
+    CornerHeights from = bottom;
+    for (size_t k = 0; k < 3 && share < 1.0; ++k) from[k] = lowest[k] - share * (mean(lowest) - layer.low);
+    const Covered covered = covered_from(cell.shape, *layer.near, *layer.piece, from, lowest);
+    if (!is_lower(covered.heights, lowest)) return false;
+    lowest = covered.heights;
+    return true;
+  };
+  const auto next = [&](double share) {
+    const double top = mean(lowest), slack = 2.0 * kTouch + cell.shape.flatness_mm;
+    return std::any_of(layers.begin(), layers.end(), [&](const Layer& layer) {
+      return layer.low < top && layer.high + slack >= top && lowers(layer, share);
+    });
+  };
+  constexpr double kLeastShare = 1.0 / 16.0;
+  constexpr int kMostSteps = 64;
+  for (int step = 0; step<kMostSteps&& * std::max_element(lowest.begin(), lowest.end())> enough; ++step) {
+    double share = 1.0;
+    while (share >= kLeastShare && !next(share)) share *= 0.5;
+    if (share < kLeastShare) break;
+  }
+  return is_lower(lowest, tops) ? std::optional(lowest) : std::nullopt;
 }
 
 std::vector<CornerHeights> RestBound::own_above(const Cell& cell) const {

@@ -2,6 +2,7 @@
 // material. Internal to the proof of a root cell (root_proof.h).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <span>
@@ -22,7 +23,11 @@ struct Corner {
   std::optional<uint32_t> facet;  ///< of a mesh, that lies there
   double top = 0.0;               ///< there, or where the column leaves the stock's box, mm
   double height = 0.0;            ///< that the sweeps leave standing, mm
+  bool at_rim = false;            ///< on a side of the root cell
+  std::optional<double> above{};  ///< top of the highest that they leave, above a gap too, where looked for
   uint32_t near = stock::kUncut;  ///< index into the root's sweeps
+
+  double highest() const { return std::max(height, above.value_or(height)); }
 };
 
 /// A cell of the branch and bound, with the sweeps that may matter to it.
@@ -32,10 +37,26 @@ struct Cell {
   CellEdges edges;
   size_t begin, end;        ///< of kept_: the sweeps that may matter
   double dropped = kNever;  ///< least height of those that do not
-  double air = kNever;      ///< above it the stock is air, as the grid tells for this cell or one around it
+  double air = kNever;    ///< above it the stock is air, as grid or sweeps tell of this cell or one around it
+  bool near_rim = false;  ///< the cell that it is a part of has a corner on a side of the root cell
+  std::array<bool, 3> outer{};  ///< side k, from corner k to the next, is a part of the root cell's
   /// Heights from which on there is no raw stock over the cell, where that is no box (raw_cell.h).
   std::optional<CornerHeights> raw_outside = {};
 };
+
+/// mm; 0 inside.
+double distance_to(const Box& box, const Vec3& p);
+
+/// What stands at a place, its range known, before any cut.
+void take_raw(const stock::RawShape& raw, Corner& corner);
+
+/// Height above which no raw stock is the cell's own, from `top` down; notes how far down the columns are
+/// free of it.
+double look_at_raw(const stock::RawShape& raw, const std::vector<CornerHeights>& own, double top, Cell& cell);
+
+/// How deep below a place a cut can count: to where another face is nearer, or out of the stock.
+double counted_depth(const CertificateInput& input, const CellCorner& corner, double depth,
+                     double share = 1e-9);
 
 /// Lowest end of what the sweep cuts of the column, not above `highest`; infinite where it cuts none. `fans`:
 /// columns fan out there from an edge or a corner. What is cut of another face of `field` alone is left out.
@@ -66,6 +87,16 @@ class RestBound {
   /// covered; `kept`, `floors`: the root's sweeps that may matter, and each one's least height over the cell.
   double left(const Cell& cell, const std::vector<CornerHeights>& own, const CornerHeights& tops,
               double enough, std::span<const uint32_t> kept, std::span<const double> floors);
+
+  /// Whether the sweeps that cut the corners lowest end below `tops`: then left() knows none that covers the
+  /// columns, whatever the size of the cell.
+  bool ends_below(const Cell& cell, const CornerHeights& tops) const;
+
+  /// `tops` of the cell that left() was asked of last, lowered to where the columns are free from: layer by
+  /// layer, each of `sweeps` from the last one down, as flutes shorter than a pocket is deep leave it. No
+  /// closer than `enough`; nothing where the uppermost layer holds material.
+  std::optional<CornerHeights> lowered(const Cell& cell, const CornerHeights& tops, double enough,
+                                       std::span<const NearSweep> sweeps) const;
 
  private:
   HighestLeft left_by_sets() const;

@@ -15,16 +15,22 @@ Vec3 get_vec(BytesReader& in) {
   return v;
 }
 
-/// Calls number(x) and place(x) for all that a piece holds, in one order for both ways.
-template <typename Piece, typename Number, typename Place>
-void each_field_of_piece(Piece& piece, const Number& number, const Place& place) {
-  place(piece.centre);
-  number(piece.radius);
-  number(piece.area_mm2);
-  number(piece.volume_mm3);
-  number(piece.worst_mm);
-  place(piece.place);
-  number(piece.block);
+/// Calls number(x) and place(x) for all that a part of a region holds, in one order for both ways.
+template <typename Part, typename Number, typename Place>
+void each_field_of_part(Part& part, const Number& number, const Place& place) {
+  number(part.area_mm2);
+  number(part.volume_mm3);
+  number(part.worst_mm);
+  place(part.place);
+  number(part.block);
+}
+
+/// The same of a piece at the rim.
+template <typename Rim, typename Number, typename Place>
+void each_field_of_rim(Rim& rim, const Number& number, const Place& place) {
+  place(rim.disc.centre);
+  number(rim.disc.radius);
+  number(rim.part);
 }
 
 /// The same of a result, but for its lists.
@@ -47,6 +53,7 @@ void each_field_of_result(Result& result, const Number& number, const Place& pla
   number(result.cells);
   number(result.work);
   number(result.broken);
+  number(result.cut_short);
 }
 
 }  // namespace
@@ -55,9 +62,11 @@ void add_result(const RootResult& result, BytesWriter& out) {
   const auto number = [&](const auto& x) { out.add(x); };
   const auto place = [&](const Vec3& x) { add_vec(x, out); };
   each_field_of_result(result, number, place);
-  for (const auto* pieces : {&result.gouges, &result.excesses}) {
-    out.add(pieces->size());
-    for (const RegionPiece& piece : *pieces) each_field_of_piece(piece, number, place);
+  for (const RootRegions* regions : {&result.gouges, &result.excesses}) {
+    out.add(regions->parts.size());
+    for (const RegionPart& part : regions->parts) each_field_of_part(part, number, place);
+    out.add(regions->rim.size());
+    for (const RootRegions::Rim& rim : regions->rim) each_field_of_rim(rim, number, place);
   }
   out.add_list(result.open);
 }
@@ -67,9 +76,11 @@ RootResult get_result(BytesReader& in) {
   const auto number = [&](auto& x) { x = in.get<std::remove_reference_t<decltype(x)>>(); };
   const auto place = [&](Vec3& x) { x = get_vec(in); };
   each_field_of_result(result, number, place);
-  for (auto* pieces : {&result.gouges, &result.excesses}) {
-    pieces->resize(in.get<size_t>());
-    for (RegionPiece& piece : *pieces) each_field_of_piece(piece, number, place);
+  for (RootRegions* regions : {&result.gouges, &result.excesses}) {
+    regions->parts.resize(in.get<size_t>());
+    for (RegionPart& part : regions->parts) each_field_of_part(part, number, place);
+    regions->rim.resize(in.get<size_t>());
+    for (RootRegions::Rim& rim : regions->rim) each_field_of_rim(rim, number, place);
   }
   result.open = in.get_list<RootResult::Open>();
   return result;
@@ -88,9 +99,9 @@ RootProver::~RootProver() = default;
 
 Bytes RootProver::prove(BytesReader& in) const {
   const auto request = in.get<RootRequest>();
-  std::vector<RootResult> results(request.end - request.first);
+  std::vector<RootResult> results(request.count);
   parallel_chunks(results.size(), 1, [&](size_t n, size_t) {
-    results[n] = prove_root(input_, roots_->index, roots_->cells[request.first + n], request.budget);
+    results[n] = prove_root(input_, roots_->index, roots_->cells[request.roots[n]], request.budget);
   });
   BytesWriter out;
   for (const RootResult& result : results) add_result(result, out);

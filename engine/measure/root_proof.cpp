@@ -11,6 +11,7 @@
 #include "measure/height_bounds.h"
 #include "measure/raw_cell.h"
 #include "measure/rest_bound.h"
+#include "measure/root_sweeps.h"
 #include "mesh/mesh_distance.h"
 #include "stock/rays/ray_height.h"
 #include "surface/face.h"
@@ -24,59 +25,17 @@ constexpr double kBorder = 0.01;
 constexpr double kProbed = 0.1;
 /// Where another face is as near need not be known closer than this, of itself.
 constexpr double kShareOfRange = 1e-3;
+/// Of the deepest, or highest: heights need not be known closer for the volume beyond a limit.
+constexpr double kVolumeShare = 0.1;
 /// No cell is divided below this; mm.
 constexpr double kSmallest = 1e-3;
 /// Sweeps are first looked for up to this height over the design, mm; where more is left, up to the box's
 /// top.
 constexpr double kNearHeight = 0.05;
 
-double distance_to(const Box& box, const Vec3& p) {
-  return (p - p.cwiseMax(box.lower).cwiseMin(box.upper)).norm();
-}
-
-/// Where a line leaves the raw stock for good; as leaves_box.
-double leaves_raw(const stock::RawShape& raw, const Vec3& point, const Vec3& way) {
-  if (raw.is_box()) return leaves_box(raw.box(), point, way);
-  const std::vector<stock::RawInterval> material = raw.along(point, way);
-  return material.empty() ? -kNever : material.back().high;
-}
-
-/// What stands at a place before any cut.
-void take_raw(const stock::RawShape& raw, Corner& corner) {
-  const CellCorner& at = corner.at;
-  if (raw.is_box()) {
-    corner.top = std::min(leaves_box(raw.box(), at.point, at.normal), corner.range);
-    // Without stock at the place the design lacks material: as much as to the box.
-    corner.height = corner.top > -kNever ? corner.top : -distance_to(raw.box(), at.point);
-  } else {
-    corner.height = std::min(stock::raw_column(raw, at.point, at.normal).height_mm, corner.range);
-    corner.top = corner.height;
-  }
-}
-
-/// Height above which no raw stock is the cell's own, from `top` down; notes how far down the columns are
-/// free of it.
-double look_at_raw(const stock::RawShape& raw, const std::vector<CornerHeights>& own, double top,
-                   Cell& cell) {
-  for (const CornerHeights& heights : own)
-    top = std::min(top, *std::max_element(heights.begin(), heights.end()));
-  top = raw_air_above(cell.shape, raw, std::max(top, 0.0));
-  cell.raw_outside = raw_outside(cell.shape, raw, top);
-  return top;
-}
-
 /// Whether a bound of what stands is asked for at all.
 bool asks_above(const CertificateInput& input) {
   return input.wants_excess || input.wants_scallop;
-}
-
-/// How deep below a place a cut can count: to where another face is nearer, or out of the stock.
-double counted_depth(const CertificateInput& input, const CellCorner& corner, double depth,
-                     double share = 1e-9) {
-  if (depth <= 0.0) return depth;
-  depth = input.field.own_depth(corner.point, corner.normal, depth, share);
-  const double through = leaves_raw(input.stock.raw(), corner.point, -corner.normal);
-  return through > 0.0 ? std::min(depth, through) : depth;
 }
 
 class RootProof {
@@ -89,20 +48,27 @@ class RootProof {
     const double near = 2.0 * std::min(input_.excess_known_mm, input_.excess_limit_mm) + kNearHeight;
     for (const double reach : {near, kNever}) {
       result_ = {};
+      gouges_.clear();
+      excesses_.clear();
       highest_seen_ = 0.0;
       floors_.clear();
       reach_ = reach;
-      near_ = sweeps_up_to(reach);
+      near_ = sweeps_up_to(reach, root_, input_, index_);
       gouge_goal_ = std::min(input_.gouge_known_mm, input_.gouge_limit_mm);
       excess_goal_ = std::min(input_.excess_known_mm, input_.excess_limit_mm);
       const auto& c = root_.cell.corners;
       kept_.resize(near_.size());
       for (uint32_t n = 0; n < kept_.size(); ++n) kept_[n] = n;
       std::array<Corner, 3> corners;
-      for (size_t k = 0; k < 3; ++k) corners[k] = measured({c[k]}, 0, kept_.size(), {});
-      visit({root_.cell, corners, root_.edges, 0, kept_.size(), kNever, kNever});
+      for (size_t k = 0; k < 3; ++k) {
+        corners[k] = measured({c[k]}, 0, kept_.size(), {});
+        corners[k].at_rim = true;
+      }
+      visit({root_.cell, corners, root_.edges, 0, kept_.size(), kNever, kNever, true, {true, true, true}});
       if (highest_seen_ < reach) break;
     }
+    result_.gouges = join_pieces(gouges_);
+    result_.excesses = join_pieces(excesses_);
     return std::move(result_);
   }
 
@@ -116,50 +82,6 @@ class RootProof {
   struct Bounds {
     double low, high, skin;
   };
-
-  /// Those that may meet the root's columns from the skin up to a height.
-  std::vector<NearSweep> sweeps_up_to(double reach) const {
-    Box box{Vec3::Constant(kNever), Vec3::Constant(-kNever)};
-    const double margin = root_.cell.flatness_mm + root_.cell.radius() * 1e-3;
-    for (const CellCorner& corner : root_.cell.corners) {
-      const double top =
-          std::min(reach, std::max(0.0, leaves_box(input_.stock.box(), corner.point, corner.normal)));
-      for (const double s : {-stock::kSkin, top}) {
-        const double turn = std::min(2.0, root_.cell.turn) * std::abs(s) + margin;
-        box.lower = box.lower.cwiseMin(corner.point + s * corner.normal - Vec3::Constant(turn));
-        box.upper = box.upper.cwiseMax(corner.point + s * corner.normal + Vec3::Constant(turn));
-      }
-    }
-    std::vector<uint32_t> found;
-    index_.find(box, found);
-    const Vec3 centre = 0.5 * (box.lower + box.upper);
-    const double around = 0.5 * (box.upper - box.lower).norm();
-    std::vector<NearSweep> near;
-    for (const uint32_t n : found) {
-      if (passes_above(n, reach) || passes_aside(input_.sweeps[n], input_.cutters[n], centre, around))
-        continue;
-      const stock::Sweep& sweep = input_.sweeps[n];
-      near.push_back(
-          {stock::sweep_map(sweep), &input_.cutters[n], n, sweep.start.axis_W != sweep.end.axis_W});
-    }
-    return near;
-  }
-
-  /// The sweep's lowest plane keeps above the root's columns up to a height: at both ends, and what lies
-  /// between is linear in time.
-  bool passes_above(uint32_t n, double height) const {
-    if (height == kNever) return false;
-    const stock::Sweep& sweep = input_.sweeps[n];
-    const double low = lowest_z(input_.cutters[n]);
-    for (const ToolPose* pose : {&sweep.start, &sweep.end}) {
-      for (const CellCorner& corner : root_.cell.corners) {
-        const double z = pose->axis_W.dot(corner.point - pose->tip_W) + root_.cell.flatness_mm;
-        const double rise = pose->axis_W.dot(corner.normal) + std::min(2.0, root_.cell.turn);
-        if (z + std::max(-stock::kSkin * rise, height * rise) + 1e-6 >= low) return false;
-      }
-    }
-    return true;
-  }
 
   /// How high above a place material is its own: a mesh tells by its distance, patches by their rays. Where
   /// nothing is asked of what stands there, only the height that is left is brought down to it (keep_own).
@@ -237,24 +159,35 @@ class RootProof {
     }
   }
 
-  /// Where the grid has material far above a cell whose sweeps leave none on the design: what stands there
-  /// above a gap is measured. Without it nothing would tell that no division closes the cell.
-  void measure_above(const Cell& cell, const Bounds& bounds) {
-    if (!root_.looks_up || !input_.wants_excess || !(bounds.high > excess_target())) return;
-    if (cell.air == kNever || !(cell.air > input_.excess_limit_mm + 2.0 * input_.stock.voxel_mm())) return;
-    for (const Corner& corner : cell.corners)
-      if (corner.height > input_.excess_limit_mm) return;
-    // Cells that are about to close by division need no look.
+  /// Cells that are about to close by division need no look.
+  bool is_stubborn(const Cell& cell) const {
     constexpr double kStubborn = 1.0 / 8.0;  // of a voxel
-    constexpr int kLooks = 4;                // that find nothing, a root
-    if (cell.shape.radius() > kStubborn * input_.stock.voxel_mm()) return;
-    if (result_.above_found == 0.0 && ++looks_above_ > kLooks) return;
-    if (!all_near_) all_near_ = sweeps_up_to(kNever);
-    for (const Corner& corner : cell.corners) {
-      const double top = rest_top(corner.at, corner.range, raw_, *all_near_);
-      // Nearer than that it is what stands on the design.
-      const double gap = corner.height + input_.stock.voxel_mm();
-      if (!(top > std::max(result_.above_found, gap))) continue;
+    return cell.shape.radius() <= kStubborn * input_.stock.voxel_mm();
+  }
+
+  /// Whether nothing that stands on the cell breaks the limit in a root where something does, and a roof may.
+  bool may_hide_roof(const Cell& cell, const Bounds& bounds) const {
+    const double limit = input_.excess_limit_mm;
+    return root_.looks_up && bounds.high > limit &&
+           std::max(result_.excess_found, result_.above_found) > limit &&
+           std::all_of(cell.corners.begin(), cell.corners.end(),
+                       [&](const Corner& corner) { return corner.height <= limit; }) &&
+           rest_.ends_below(cell, {bounds.high, bounds.high, bounds.high});
+  }
+
+  /// Where no division closes a cell whose sweeps leave none on the design, because of what stands above a
+  /// gap: that is measured at the corners.
+  void measure_above(Cell& cell, const Bounds& bounds) {
+    if (!root_.looks_up || !input_.wants_excess || !(bounds.high > input_.excess_limit_mm)) return;
+    const bool open = bounds.high > excess_target() && is_stubborn(cell);
+    if (!open && !may_hide_roof(cell, bounds)) return;
+    for (Corner& corner : cell.corners) {
+      if (!corner.above) {
+        corner.above = rest_top(corner.at, corner.range, raw_, all_near());
+        result_.work += all_near().size();
+      }
+      const double top = *corner.above;
+      if (!(top > std::max(result_.above_found, corner.height + stock::kSliver))) continue;
       result_.above_found = top;
       result_.above_top = corner.at.point + top * corner.at.normal;
       highest_seen_ = std::max(highest_seen_, top);
@@ -385,9 +318,29 @@ class RootProof {
     if (high > target && asks_grid(cell)) {
       cell.air = std::min(cell.air,
                           air_above(cell.shape, input_.stock, input_.stock_bound_mm, std::max(leave, 0.0)));
-      high = std::min(cell.air, left(cell, own, tops_of(own, std::min(top, cell.air)), target));
+      top = std::min(top, cell.air);
+      high = left(cell, own, tops_of(own, top), target);
     }
+    if (high > target) high = std::min(high, left_below_layers(cell, own, tops_of(own, top), target));
     return std::min(high, top);
+  }
+
+  /// The same where it takes several sweeps, one above the other, to clear a column.
+  double left_below_layers(Cell& cell, const std::vector<CornerHeights>& own, const CornerHeights& tops,
+                           double target) {
+    if (!rest_.ends_below(cell, tops)) return kNever;
+    result_.work += all_near().size();
+    const std::optional<CornerHeights> lowered = rest_.lowered(cell, tops, target, all_near());
+    if (!lowered) return kNever;
+    const double most = *std::max_element(lowered->begin(), lowered->end());
+    cell.air = std::min(cell.air, most);
+    return most > target ? std::min(most, left(cell, own, *lowered, target)) : most;
+  }
+
+  /// Up to the stock's top, whatever was looked for.
+  const std::vector<NearSweep>& all_near() {
+    if (!all_near_) all_near_ = sweeps_up_to(kNever, root_, input_, index_);
+    return *all_near_;
   }
 
   double left(const Cell& cell, const std::vector<CornerHeights>& own, const CornerHeights& tops,
@@ -417,42 +370,77 @@ class RootProof {
       result_.scallop_at = cell.shape.centroid();
     }
     if (!probed) {
-      add_pieces(cell.shape, cell.corners, bounds);
+      add_pieces(cell, bounds);
       return;
     }
     for (size_t k = 0; k < 3; ++k) {
-      std::array<Corner, 3> corners = cell.corners;
-      corners[k] = probed->corner;
-      add_pieces(make_cell({corners[0].at, corners[1].at, corners[2].at}, root_.bounds), corners, bounds);
+      Cell part = cell;
+      part.corners[k] = probed->corner;
+      part.shape = make_cell({part.corners[0].at, part.corners[1].at, part.corners[2].at}, root_.bounds);
+      add_pieces(part, bounds);
     }
   }
 
   /// A corner beyond the cell's bounds is touched from the next cell, and no part of this one.
-  void add_pieces(const DesignCell& shape, const std::array<Corner, 3>& corners, const Bounds& bounds) {
+  void add_pieces(const Cell& cell, const Bounds& bounds) {
     std::array<double, 3> heights{}, depths{};
     std::array<uint32_t, 3> blocks{};
     for (size_t k = 0; k < 3; ++k) {
-      heights[k] = std::min(corners[k].height, bounds.high);
-      depths[k] = std::min(-corners[k].height, -bounds.low);
-      blocks[k] = corners[k].near == stock::kUncut ? stock::kUncut : near_[corners[k].near].sweep;
+      heights[k] = std::min(cell.corners[k].highest(), bounds.high + kTouch);
+      depths[k] = std::min(-cell.corners[k].height, -bounds.low);
+      blocks[k] = cell.corners[k].near == stock::kUncut ? stock::kUncut : near_[cell.corners[k].near].sweep;
     }
-    if (root_.looks_down) add_piece(shape, depths, blocks, input_.gouge_limit_mm, result_.gouges);
-    if (root_.looks_up) add_piece(shape, heights, blocks, input_.excess_limit_mm, result_.excesses);
+    if (root_.looks_down)
+      add_piece(cell.shape, depths, blocks, input_.gouge_limit_mm, cell.near_rim, gouges_);
+    if (root_.looks_up)
+      add_piece(cell.shape, heights, blocks, input_.excess_limit_mm, cell.near_rim, excesses_);
   }
 
-  /// Whether part of the cell may break a limit and part of it keep it.
-  bool on_border(const Bounds& bounds) const {
+  /// Whether part of the cell may break a limit and part of it keep it, or its volume is told too coarsely.
+  bool on_border(const Cell& cell, const Bounds& bounds) {
     const bool gouge = root_.looks_down && -bounds.low > input_.gouge_limit_mm &&
                        !(-bounds.high > input_.gouge_limit_mm) && result_.gouge_found > input_.gouge_limit_mm;
     const bool excess = root_.looks_up && asks_above(input_) && bounds.high > input_.excess_limit_mm &&
                         !(bounds.low > input_.excess_limit_mm) &&
                         result_.excess_found > input_.excess_limit_mm;
-    return gouge || excess;
+    if (gouge || !excess) return gouge;
+    // Of a roof above a gap no division tells more.
+    const double skin = left(cell, rest_.own_above(cell), kNoTop, input_.excess_limit_mm);
+    double least = kNever;
+    for (const Corner& corner : cell.corners) least = std::min(least, corner.height);
+    return skin > input_.excess_limit_mm &&
+           !(std::min(skin, bounds.high) - least <= kVolumeShare * result_.excess_found &&
+             least > input_.excess_limit_mm && stands_above(cell));
+  }
+
+  /// Whether all of the cell stands above the limit.
+  bool stands_above(const Cell& cell) {
+    const double limit = input_.excess_limit_mm;
+    const ColumnDepths depths{{stock::kSkin, stock::kSkin, stock::kSkin}, {}};
+    const auto stays_above = [&](uint32_t n) {
+      return least_height(cell.shape, near_[n], depths, limit) > limit;
+    };
+    if (!(stood_before(cell) > limit)) return false;
+    for (size_t i = cell.begin; i < cell.end; ++i)
+      if (!(floors_[i] > limit) && !stays_above(kept_[i])) return false;
+    if (cell.dropped > limit) return true;
+    result_.work += near_.size();
+    for (uint32_t n = 0; n < near_.size(); ++n)
+      if (!stays_above(n)) return false;
+    return true;
+  }
+
+  /// Whether a roof over the cell breaks the limit at some corners alone, or between them.
+  bool on_border_of_roof(const Cell& cell, const Bounds& bounds, double edge) const {
+    if (!input_.wants_excess || !may_hide_roof(cell, bounds)) return false;
+    const auto breaking = std::count_if(cell.corners.begin(), cell.corners.end(), [&](const Corner& corner) {
+      return corner.highest() > input_.excess_limit_mm;
+    });
+    return breaking == 0 ? !is_stubborn(cell) : breaking < 3 && edge > kBorder;
   }
 
   /// Whether the cell lies in a gouge of whose volume it tells too little.
   bool is_coarse(const Bounds& bounds) const {
-    constexpr double kVolumeShare = 0.1;
     return root_.looks_down && -bounds.low > input_.gouge_limit_mm &&
            result_.gouge_found > input_.gouge_limit_mm &&
            bounds.high - bounds.low > kVolumeShare * result_.gouge_found;
@@ -486,6 +474,8 @@ class RootProof {
   }
 
   void visit(Cell cell) {
+    // Bounds above the height up to which sweeps were looked for need all of them: the root is begun anew.
+    if (highest_seen_ > reach_) return;
     ++result_.cells;
     // A cell of a mesh asks for distances, which cost as much as many sweeps.
     constexpr size_t kCellOfMesh = 64, kCell = 4;
@@ -494,9 +484,7 @@ class RootProof {
     Bounds bounds{lower_bound(cell), 0.0, 0.0};
     bounds.high = upper_bound(cell);
     measure_above(cell, bounds);
-    // Material was seen above the height up to which sweeps were looked for: bounds up there need all of
-    // them.
-    if (result_.above_found > reach_) return;
+    if (highest_seen_ > reach_) return;
     bounds.skin = skin_bound(cell, bounds.high);
     const double edge = cell.shape.longest_edge();
     std::optional<Probe> probed;
@@ -509,9 +497,11 @@ class RootProof {
       return -corner.height > input_.gouge_limit_mm || corner.height > input_.excess_limit_mm;
     });
     const bool divide = ((gouge_open || excess_open) && edge > kSmallest) ||
-                        (on_border(bounds) && edge > (seen ? kBorder : kSmallest)) ||
-                        (is_coarse(bounds) && edge > 2.0 * kBorder);
-    if (!divide || result_.work > (breaks_limit() ? budget_.broken : budget_.all) || is_stopped()) {
+                        (on_border(cell, bounds) && edge > (seen ? kBorder : kSmallest)) ||
+                        on_border_of_roof(cell, bounds, edge) || (is_coarse(bounds) && edge > 2.0 * kBorder);
+    const bool too_much = result_.work > (breaks_limit() ? budget_.broken : budget_.all);
+    result_.cut_short = result_.cut_short || (divide && too_much);
+    if (!divide || too_much || is_stopped()) {
       if (gouge_open || excess_open)
         result_.open.push_back({-bounds.low, bounds.high, bounds.skin, cell.shape.area_mm2()});
       close(cell, bounds, probed);
@@ -543,21 +533,30 @@ class RootProof {
     for (size_t k = 0; k < 3; ++k) {
       const Corner &a = cell.corners[k], &b = cell.corners[(k + 1) % 3];
       middles[k] = measured(middle(a.at, b.at, root_.bounds, cell.edges[k]), begin, end, {a.near, b.near});
+      middles[k].at_rim = cell.outer[k];
     }
     const auto& c = cell.corners;
     const auto& e = cell.edges;
+    const auto& o = cell.outer;
+    const bool near_rim = std::any_of(c.begin(), c.end(), [](const Corner& corner) { return corner.at_rim; });
     struct Part {
       std::array<Corner, 3> corners;
       CellEdges edges;
+      std::array<bool, 3> outer;
     };
-    for (const Part& part :
-         {Part{{c[0], middles[0], middles[2]}, {e[0].first_half(), EdgePiece{}, e[2].second_half()}},
-          Part{{middles[0], c[1], middles[1]}, {e[0].second_half(), e[1].first_half(), EdgePiece{}}},
-          Part{{middles[2], middles[1], c[2]}, {EdgePiece{}, e[1].second_half(), e[2].first_half()}},
-          Part{{middles[0], middles[1], middles[2]}, {}}}) {
+    for (const Part& part : {Part{{c[0], middles[0], middles[2]},
+                                  {e[0].first_half(), EdgePiece{}, e[2].second_half()},
+                                  {o[0], false, o[2]}},
+                             Part{{middles[0], c[1], middles[1]},
+                                  {e[0].second_half(), e[1].first_half(), EdgePiece{}},
+                                  {o[0], o[1], false}},
+                             Part{{middles[2], middles[1], c[2]},
+                                  {EdgePiece{}, e[1].second_half(), e[2].first_half()},
+                                  {false, o[1], o[2]}},
+                             Part{{middles[0], middles[1], middles[2]}, {}, {}}}) {
       visit(
           {make_cell({part.corners[0].at, part.corners[1].at, part.corners[2].at}, root_.bounds, part.edges),
-           part.corners, part.edges, begin, end, dropped, cell.air});
+           part.corners, part.edges, begin, end, dropped, cell.air, near_rim, part.outer});
       kept_.resize(end);
       floors_.resize(end);
     }
@@ -577,8 +576,8 @@ class RootProof {
   std::vector<double> floors_;  ///< least heights of kept_ over the cell last looked at
   RestBound rest_{input_, root_, near_};
   bool stopped_ = false;
-  int looks_above_ = 0;
   RootResult result_;
+  std::vector<RegionPiece> gouges_, excesses_;
 };
 
 }  // namespace

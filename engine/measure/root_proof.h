@@ -29,13 +29,14 @@ struct RootResult {
   double above_found = 0.0;                                     ///< measured top of material above a gap, mm
   Vec3 above_top = Vec3::Zero();
   uint32_t gouge_block = stock::kUncut, excess_block = stock::kUncut;
-  std::vector<RegionPiece> gouges, excesses;
+  RootRegions gouges, excesses;  ///< beyond the limits
   struct Open {
     double depth, height, skin, area;
   };
   std::vector<Open> open;
   size_t cells = 0, work = 0;
-  bool broken = false;  ///< a place beyond a limit was found
+  bool broken = false;     ///< a place beyond a limit was found
+  bool cut_short = false;  ///< the budget did not suffice
 };
 
 /// Looks at a sweep over a cell: in all, and once a limit is broken, when nothing is left to prove but how
