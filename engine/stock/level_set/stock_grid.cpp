@@ -91,6 +91,18 @@ void sign_tiles(LevelSet& set) {
   for (; tile; ++tile) tile.setValue(is_solid(set, tile.getCoord()) ? -set.band() : set.band());
 }
 
+/// Where the tiles of others are left out, a node without leaves may be solid in part: position by position.
+void sign_positions(LevelSet& set) {
+  constexpr openvdb::Index kLeafLevel = 1;  // a tile that replaces one leaf
+  openvdb::tree::ValueAccessor<openvdb::FloatTree> near(set.grid->tree());
+  for (size_t n = 0; n < set.map.size(); ++n) {
+    if (set.map.states[n] == LeafState::kLeaf) continue;
+    const float value = set.map.states[n] == LeafState::kSolid ? -set.band() : set.band();
+    const openvdb::Coord origin = set.map.origin(n);
+    if (near.getValue(origin) != value) near.addTile(kLeafLevel, origin, value, false);
+  }
+}
+
 int leaf_floor(double voxels) {
   return static_cast<int>(std::floor(voxels / kLeafSide));
 }
@@ -199,6 +211,7 @@ void fill_map(LevelSet& set, const std::function<void(int, int, MadeLeaves&)>& f
   for (size_t column = 0; column < set.map.size(); column += static_cast<size_t>(set.map.dimension.z()))
     set.map.lower_top(column);
   sign_tiles(set);
+  if (!set.others.empty()) sign_positions(set);
 }
 
 LevelSet make_box(const Box& box, double voxel, const TileSet& own, const Spill* spill) {
