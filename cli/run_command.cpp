@@ -90,7 +90,7 @@ void print_outcome(const sim::Job& job, const sim::Result& result, const std::st
 void print_stopped(const RunOptions& options, const sim::Result& result, const std::string& folder) {
   const sim::CutState& state = result.cut.state;
   RunOptions again = options;
-  again.from = (std::filesystem::path(folder) / "stock.vdb").string();
+  again.from = (std::filesystem::path(folder) / sim::kFinishedStock).string();
   again.output = folder;
   again.record = false;  // a record starts with the program
   const std::string cut =
@@ -114,7 +114,7 @@ void tell_of_killed_runs(const std::string& folder) {
   for (const fs::directory_entry& entry : fs::directory_iterator(home.parent_path(), problem)) {
     const std::string name = entry.path().filename().string();
     if (!name.starts_with(mark)) continue;
-    fs::path kept = entry.path() / "stock.vdb";  // written, and not yet where it belongs
+    fs::path kept = entry.path() / sim::kFinishedStock;  // written, and not yet where it belongs
     if (!fs::exists(kept)) kept = entry.path() / sim::kKeptStock;
     if (!fs::exists(kept)) continue;
     const int process = std::atoi(name.c_str() + mark.size());
@@ -134,23 +134,6 @@ double least_bytes(const sim::Scene& scene) {
   constexpr double kShareOnDisk = 0.05;  // of the memory of an uncut block; a cut one takes more
   return kShareOnDisk *
          static_cast<double>(stock::Stock::memory_estimate(scene.stock.body_W(), scene.stock.voxel_mm));
-}
-
-sim::CutOptions cut_options(const RunOptions& options, const reports::PendingFolder& folder) {
-  sim::CutOptions cut;
-  cut.resume_file = options.from;
-  if (!options.save_after.empty()) cut.save_after = sim::parse_places(options.save_after);
-  cut.save_folder = folder.path();
-  cut.record = options.record;
-  cut.record_every = options.record_every;
-  cut.check_voxels = options.check;
-  cut.keep_every_s = options.keep_every_s;
-  cut.spill = options.spill;
-  cut.max_memory_mb = options.max_memory_mb;
-  cut.outputs = {!options.no_render, !options.no_render || options.report};
-  cut.overrides = options.overrides;
-  cut.ranks = options.ranks;
-  return cut;
 }
 
 /// Warnings of the input, then what the run has found. What stands in a scene that was made from flags is
@@ -237,7 +220,7 @@ JobRun run_job(const RunOptions& options, const sim::Job& job, reports::PendingF
   const reports::OutputOptions output = output_options(options, posted);
   reports::begin_run(pending, job, output);
   TerminalProgress progress;
-  sim::CutOptions cut = cut_options(options, pending);
+  sim::CutOptions cut = cut_options(options, pending.path());
   if (job.scene.setup.number > 0) cut.keep_every_s = 0.0;  // there is no going on from it
   JobRun run{sim::simulate(job, cut, progress)};
   print_diagnostics(run.result.main.warnings);

@@ -115,6 +115,23 @@ std::vector<std::string> overrides_of(const RunOptions& options) {
   return overrides;
 }
 
+sim::CutOptions cut_options(const RunOptions& options, const std::string& save_folder) {
+  sim::CutOptions cut;
+  cut.resume_file = options.from;
+  if (!options.save_after.empty()) cut.save_after = sim::parse_places(options.save_after);
+  cut.save_folder = save_folder;
+  cut.record = options.record;
+  cut.record_every = options.record_every;
+  cut.check_voxels = options.check;
+  cut.keep_every_s = options.keep_every_s;
+  cut.spill = options.spill;
+  cut.max_memory_mb = options.max_memory_mb;
+  cut.outputs = {!options.no_render, !options.no_render || options.report};
+  cut.overrides = options.overrides;
+  cut.ranks = options.ranks;
+  return cut;
+}
+
 void add_run_options(CLI::App& command, RunOptions& options) {
   command.add_option("file", options.scene, "scene.toml, an NC program or CL data");
   command.add_option("-o,--output", options.output,

@@ -6,6 +6,7 @@
 
 #include "cli/job_flags.h"
 #include "cli/pipeline_files.h"
+#include "sim/run/cut_stage.h"
 
 namespace swarf {
 class Ranks;
@@ -34,6 +35,9 @@ std::vector<std::string> command_words(const RunOptions& options);
 
 /// What the options set in the scene.
 std::vector<std::string> overrides_of(const RunOptions& options);
+
+/// What they ask of the cut; its files go to `save_folder`. Throws InputError for places that are none.
+sim::CutOptions cut_options(const RunOptions& options, const std::string& save_folder);
 
 /// All of them, and examples below the help. `options` must outlive the command.
 void add_run_options(CLI::App& command, RunOptions& options);

@@ -24,8 +24,10 @@ void refuse_as_rank(bool given, const std::string& what, const char* remedy) {
 int serve_as_rank(const RunOptions& options, Ranks& ranks) {
   try {
     std::optional<sim::Job> job;
+    sim::CutOptions cut;
     try {
       refuse_for_tiles(options);
+      cut = cut_options(options, "");
       job = load_job(options.scene, options.job, overrides_of(options));
       refuse_for_tiles(*job);
     } catch (const InputError& error) {
@@ -33,7 +35,7 @@ int serve_as_rank(const RunOptions& options, Ranks& ranks) {
       return kPass;
     }
     Progress silent;
-    sim::serve_tiles(*job, ranks, silent);
+    sim::serve_tiles(*job, cut, ranks, silent);
   } catch (const std::exception& error) {
     fmt::print(stderr, "error: rank {}: {}\n", ranks.rank(), error.what());
     ranks.abort(kInternalError);

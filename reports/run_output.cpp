@@ -158,7 +158,7 @@ void write_pictures(const PendingFolder& folder, const FinishedRun& run, const T
 void write_state(const PendingFolder& folder, const sim::Job& job, const sim::Result& result,
                  const OutputOptions& options, Progress& progress) {
   progress.begin("write results", 2, "files");
-  result.stock->save(folder.file("stock.vdb"), result.cut.metadata);
+  if (!result.cut.is_written) result.stock->save(folder.file(sim::kFinishedStock), result.cut.metadata);
   fs::remove(folder.file(sim::kKeptStock));
   progress.advance(1);
   for (size_t i = 0; i < result.main.dexels.size(); ++i) {
@@ -181,7 +181,7 @@ void write_state_or_keep(PendingFolder& folder, const sim::Job& job, const sim::
   try {
     write_state(folder, job, result, options, progress);
   } catch (const std::exception& error) {
-    if (!fs::exists(folder.file("stock.vdb"))) throw;
+    if (!fs::exists(folder.file(sim::kFinishedStock))) throw;
     const std::string place = folder.keep_incomplete();
     const auto* input = dynamic_cast<const InputError*>(&error);
     if (input == nullptr)
@@ -328,7 +328,7 @@ std::vector<sim::WornFixture> read_worn(const fs::path& folder, const sim::Job& 
 StoredRun read_run(const std::string& folder) {
   const fs::path root(folder);
   sim::Job job = read_job(folder, {});
-  stock::Stock stock = stock::Stock::load((root / "stock.vdb").string());
+  stock::Stock stock = stock::Stock::load((root / sim::kFinishedStock).string());
   std::vector<sim::WornFixture> worn = read_worn(root, job);
   StoredRun run{std::move(job), std::move(stock), {}, std::move(worn)};
   const std::vector<stock::RayFieldPtr> fields = sim::design_rays(run.job);

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
+#include <future>
 #include <list>
 #include <memory>
 #include <thread>
@@ -25,18 +27,31 @@ constexpr size_t kMostAtOnce = size_t{1} << 28;
 constexpr int kLooksAtOnce = 200;
 constexpr std::chrono::microseconds kShortestSleep{50}, kLongestSleep{1000};
 
+int number_in_environment(const char* name) {
+  const char* const text = std::getenv(name);
+  return text != nullptr ? std::atoi(text) : -1;
+}
+
+/// MPI takes a quarter of a second to begin, most of it waiting: a thread of its own does that, and ends it
+/// again, while the process reads its job. mpirun tells it which rank it is before.
 class MpiRanks final : public Ranks {
  public:
-  MpiRanks() {
-    int given = 0;
-    MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &given);
+  MpiRanks()
+      : rank_(number_in_environment("OMPI_COMM_WORLD_RANK")),
+        size_(number_in_environment("OMPI_COMM_WORLD_SIZE")),
+        begun_(is_begun_.get_future()),
+        mpi_([this] { hold_mpi(); }) {
+    if (rank_ >= 0 && size_ > rank_) return;
+    begun_.wait();
     MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
     MPI_Comm_size(MPI_COMM_WORLD, &size_);
   }
   ~MpiRanks() override {
+    begun_.wait();
     for (Outgoing& one : outgoing_)
       MPI_Waitall(static_cast<int>(one.requests.size()), one.requests.data(), MPI_STATUSES_IGNORE);
-    MPI_Finalize();
+    is_over_.set_value();
+    mpi_.join();
   }
   MpiRanks(const MpiRanks&) = delete;
   MpiRanks& operator=(const MpiRanks&) = delete;
@@ -45,6 +60,7 @@ class MpiRanks final : public Ranks {
   int size() const override { return size_; }
 
   void send(int to, Bytes message) override {
+    begun_.wait();
     forget_gone();
     Outgoing& one = outgoing_.emplace_back();
     one.size = message.size();
@@ -59,6 +75,7 @@ class MpiRanks final : public Ranks {
   }
 
   bool has_message(int from) override {
+    if (begun_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
     forget_gone();
     int is_there = 0;
     MPI_Iprobe(from, kSizeTag, MPI_COMM_WORLD, &is_there, MPI_STATUS_IGNORE);
@@ -66,6 +83,7 @@ class MpiRanks final : public Ranks {
   }
 
   Bytes receive(int from) override {
+    begun_.wait();
     wait_for_message(from);
     uint64_t size = 0;
     MPI_Recv(&size, 1, MPI_UINT64_T, from, kSizeTag, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
@@ -77,11 +95,25 @@ class MpiRanks final : public Ranks {
   }
 
   [[noreturn]] void abort(int exit_code) override {
+    begun_.wait();
     MPI_Abort(MPI_COMM_WORLD, exit_code);
     std::_Exit(exit_code);
   }
 
  private:
+  /// MPI wants one thread to begin and to end it; between the two the calls come from the owner's.
+  void hold_mpi() {
+    int given = 0;
+    MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &given);
+    if (given < MPI_THREAD_SERIALIZED) {
+      std::fprintf(stderr, "error: this MPI can be called by one thread of a process alone\n");
+      MPI_Abort(MPI_COMM_WORLD, EXIT_FAILURE);
+    }
+    is_begun_.set_value();
+    is_over_.get_future().wait();
+    MPI_Finalize();
+  }
+
   static int count(size_t left) { return static_cast<int>(std::min(left, kMostAtOnce)); }
 
   void wait_for_message(int from) {
@@ -107,8 +139,11 @@ class MpiRanks final : public Ranks {
     });
   }
 
-  int rank_ = 0, size_ = 1;
+  int rank_, size_;
   std::list<Outgoing> outgoing_;  ///< MPI reads them where they are
+  std::promise<void> is_begun_, is_over_;
+  std::future<void> begun_;
+  std::thread mpi_;  ///< the last of all: it uses the others
 };
 
 }  // namespace

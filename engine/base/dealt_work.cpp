@@ -1,6 +1,8 @@
 #include "base/dealt_work.h"
 
+#include <chrono>
 #include <deque>
+#include <thread>
 #include <vector>
 
 namespace swarf {
@@ -8,6 +10,8 @@ namespace {
 
 /// One is worked on, the next is there when it is done.
 constexpr size_t kAtARank = 2;
+/// Of rank 0 that only deals; short beside a portion.
+constexpr std::chrono::microseconds kNap{300};
 
 class Dealer {
  public:
@@ -17,7 +21,11 @@ class Dealer {
   void run() {
     while (next_ < work_.count) {
       for (int rank = 1; rank < ranks_.size(); ++rank) serve(rank);
-      if (next_ < work_.count) work_.own(next_++);
+      if (next_ == work_.count) break;
+      if (work_.is_busy())
+        std::this_thread::sleep_for(kNap);
+      else
+        work_.own(next_++);
     }
     for (int rank = 1; rank < ranks_.size(); ++rank)
       while (!at_[static_cast<size_t>(rank)].empty()) take(rank);

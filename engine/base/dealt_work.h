@@ -13,6 +13,7 @@ struct DealtWork {
   std::function<Bytes(size_t portion)> request;                   ///< what another rank is asked
   std::function<void(size_t portion, const Bytes& answer)> take;  ///< what it has answered
   std::function<void(size_t portion)> own;                        ///< done on rank 0
+  std::function<bool()> is_busy = [] { return false; };  ///< rank 0, with something else: it only deals
 };
 
 /// On rank 0: returns when all portions are done. Which rank does one hangs on the machine: no result must.

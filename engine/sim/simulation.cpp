@@ -502,7 +502,7 @@ MeasuredPath move_tool(const Job& job, Progress& progress, const CutOptions& opt
   return moved_tool(job, progress, options, false);
 }
 
-void serve_tiles(const Job& job, Ranks& ranks, Progress& progress) {
+void serve_tiles(const Job& job, const CutOptions& options, Ranks& ranks, Progress& progress) {
   MeasuredPath measured;
   std::optional<CutParts> parts;
   try {
@@ -514,12 +514,12 @@ void serve_tiles(const Job& job, Ranks& ranks, Progress& progress) {
     refuse_tile_lead(ranks, error.what());
     return;
   }
-  serve_tile_lead(ranks, job, *parts, measured, [&] { cut_ray_share(job, measured, share_of(ranks)); });
+  serve_tile_lead(ranks, {job, *parts, measured, [&] { cut_ray_share(job, measured, share_of(ranks)); },
+                          may_go_ahead(options)});
 }
 
 Result simulate(const Job& job, const CutOptions& options, Progress& progress) {
   Result result;
-  if (options.ranks != nullptr && may_go_ahead(options)) let_ranks_go_ahead(*options.ranks);
   result.main = moved_tool(job, progress, options, true);
   if (result.main.cycles->stopped()) {
     leave_uncut(job, options, result);

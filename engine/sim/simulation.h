@@ -27,8 +27,8 @@ Result simulate(const Job& job, const CutOptions& options, Progress& progress);
 void raise_highest(const Job& job, const measure::HighestVertex& vertex, Result& result);
 
 /// For every rank but 0 of a run that cuts tile by tile: makes the motion and does what rank 0 asks of it,
-/// until that one says that it is done. What is wrong here is told by rank 0.
-void serve_tiles(const Job& job, Ranks& ranks, Progress& progress);
+/// until that one says that it is done. `options`: of the run. What is wrong here is told by rank 0.
+void serve_tiles(const Job& job, const CutOptions& options, Ranks& ranks, Progress& progress);
 
 /// The verdict: of Result::checks.
 inline bool passes(const Result& result) {

@@ -25,14 +25,17 @@ int owner_of_column(int i, int j, int count);
 inline constexpr int kTileParts = 8;
 int part_of_column(int i, int j, int count);
 
-/// Tiles of a share: some of its parts.
+/// Some of the tiles: of each share some parts.
 struct TileSet {
   static constexpr uint32_t kAllParts = (1U << kTileParts) - 1U;
-  TileSet(Share of = {}, uint32_t of_parts = kAllParts) : share(of), parts(of_parts) {}
-  bool all() const { return share.all() && parts == kAllParts; }
+  TileSet(Share of = {}, uint32_t of_parts = kAllParts) : parts(static_cast<size_t>(of.count), 0) {
+    parts[static_cast<size_t>(of.index)] = of_parts;
+  }
+  bool all() const;
+  bool holds_column(int i, int j) const;  ///< in leaves from the grid's origin
+  TileSet others() const;                 ///< all that are not in it
 
-  Share share;
-  uint32_t parts;  ///< bit by bit
+  std::vector<uint32_t> parts;  ///< by share, bit by bit
 };
 
 class StockTiles {
@@ -47,16 +50,20 @@ class StockTiles {
   /// What has changed in these tiles since they were known last, in pieces of few megabytes, each known
   /// with this. None: nothing is left.
   std::optional<Bytes> next_changes();
-  /// Everything in the tiles of another share, for one that begins; or in all others, for one that holds
-  /// these. Piece by piece: the next one begins at position `from`, which is brought to where it ends. None:
-  /// that was all.
-  enum class Which { kOfShare, kOfOthers };
-  static std::optional<Bytes> next_tiles(const Stock& stock, Share share, Which which, size_t& from);
-  /// Takes over what next_changes() or next_tiles() of a stock of the same raw shape and voxel size has told.
-  /// Counts of work in it are added to the stock's own; its seconds become those of the slowest.
+  /// The same of all own tiles but `kept`, which are left to another. None: nothing is left to tell, and from
+  /// now on only `kept` are its own; leaves of the others are gone.
+  std::optional<Bytes> next_left(const TileSet& kept);
+  /// Everything in these tiles, for one that holds others. Piece by piece: the next one begins at position
+  /// `from`, which is brought to where it ends. None: that was all.
+  static std::optional<Bytes> next_tiles(const Stock& stock, const TileSet& tiles, size_t& from);
+  /// Takes over what the others have told of a stock of the same raw shape and voxel size. Counts of work in
+  /// it are added to the stock's own; its seconds become those of the slowest.
   void apply(const Bytes& changes);
+  /// From the raw stock again: what was counted before, of more tiles, is not to be counted anew.
+  void count_as(const CutStatistics& counts);
 
  private:
+  std::optional<Bytes> next_of(const std::vector<uint8_t>* wanted);
   void take_position(BytesReader& in);
 
   Stock& stock_;

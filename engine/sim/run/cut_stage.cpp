@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cctype>
 #include <chrono>
+#include <future>
 #include <limits>
 #include <optional>
 #include <utility>
 
+#include "base/parallel.h"
 #include "sim/run/cut_parts.h"
 #include "sim/run/cut_record.h"
 #include "sim/run/leaf_budget.h"
@@ -80,7 +82,9 @@ class CutStage {
     begin_stock();
     if (!options_.resume_file.empty()) resume();
     finder_.emplace(*result_.stock);
-    if (tiles_) tiles_->begin(*result_.stock, at_, at_ == 0 && carried_.empty());
+    if (tiles_)
+      tiles_->begin(*result_.stock,
+                    {at_, at_ == 0 && carried_.empty(), may_go_ahead(options_), contacts_.due()});
     if (options_.check_voxels) checked_ = result_.stock->clone();
   }
 
@@ -292,8 +296,9 @@ class CutStage {
       tell(broken);
       return;
     }
-    // Other ranks look at their own tiles.
+    // Other ranks look at their own tiles, and have looked at those that this one has taken since.
     ++outcome_.map_checks;
+    if (tiles_ && at_ <= tiles_->own_from()) return;
     tell(result_.stock->check(tiles_ ? stock::CheckLevel::kOwnMap : stock::CheckLevel::kMap));
   }
 
@@ -301,19 +306,45 @@ class CutStage {
   void check_at_end() {
     ++outcome_.voxel_checks;
     const stock::Stock& stock = whole();
+    outcome_.state = state();
+    outcome_.metadata = cut_metadata(job_.scene.name, identity_, outcome_.state);
     if (tiles_) {
-      tell(tiles_->broken());
-      tell(stock.check(stock::CheckLevel::kLeaves));
-      const stock::StockProof proof = tiles_->prove(result_.sweep_bound_mm);
-      result_.volume_left_mm3 = proof.volume_mm3;
-      result_.volume_range = proof.range;
-      tell(proof.broken_step);
+      prove_by_ranks(stock);
     } else {
       tell(stock.check());
       result_.volume_left_mm3 = stock.volume_mm3();
     }
     if (checked_) tell(stock.check_since(*checked_));
     checked_.reset();
+  }
+
+  /// Meanwhile this one checks and writes what it alone has: a rank of one thread only deals as long as that
+  /// takes.
+  void prove_by_ranks(const stock::Stock& stock) {
+    std::string broken;
+    std::future<void> own = std::async(std::launch::async, [&] {
+      broken = stock.check(stock::CheckLevel::kLeaves);
+      write_stock(stock);
+    });
+    const stock::StockProof proof = tiles_->prove(result_.sweep_bound_mm, [&] {
+      return thread_count() == 1 && own.wait_for(std::chrono::seconds(0)) != std::future_status::ready;
+    });
+    own.get();
+    result_.volume_left_mm3 = proof.volume_mm3;
+    result_.volume_range = proof.range;
+    tell(tiles_->broken());
+    tell(broken);
+    tell(proof.broken_step);
+  }
+
+  /// What goes wrong is told when the results are written, which tries it again.
+  void write_stock(const stock::Stock& stock) {
+    if (options_.save_folder.empty()) return;
+    try {
+      stock.save(options_.save_folder + "/" + kFinishedStock, outcome_.metadata);
+      outcome_.is_written = true;
+    } catch (const InputError&) {
+    }
   }
 
   /// The first broken invariant is kept; the run goes on and reports it. "": all hold.
@@ -324,8 +355,6 @@ class CutStage {
   }
 
   void finish() {
-    outcome_.state = state();
-    outcome_.metadata = cut_metadata(job_.scene.name, identity_, outcome_.state);
     result_.clearance = outcome_.state.clearance;
     if (result_.main.contacts) result_.main.contacts->as_cut = contacts_.result();
     if (budget_)

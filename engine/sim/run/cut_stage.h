@@ -38,6 +38,7 @@ struct CutOptions {
 };
 
 inline constexpr const char* kRecordFile = "run.record";
+inline constexpr const char* kFinishedStock = "stock.vdb";
 inline constexpr const char* kKeptStock = "stock_so_far.vdb";
 
 /// What came of them.
@@ -46,6 +47,7 @@ struct CutOutcome {
   size_t resumed_from = 0;         ///< sweeps that the resumed stock had seen; 0: none
   std::vector<std::string> saved;  ///< names of the files in save_folder
   stock::StockMetadata metadata;   ///< for the finished stock's file
+  bool is_written = false;         ///< that file, kFinishedStock in save_folder
   int map_checks = 0;              ///< times that invariants 1 to 4 were checked
   int voxel_checks = 0;            ///< times that all of them were
   std::string broken_invariant;    ///< in words with its place; "": all hold

@@ -6,18 +6,22 @@
 // with the tool's body, a hash, a file, the end. So what it finds and writes is what one process finds and
 // writes.
 //
-//   rank 0    motion, tables; look ahead -> all; cut -> all; cut; ...  changes? -> all, take them over, save
-//   others    cut their tiles ahead of rank 0 as long as no sweep comes near them with the tool's body; tell
-//             what they saw when they are asked; answer, cut, tell the changes in the order of the questions
+//   others    share out all tiles and cut them ahead of rank 0, as long as no sweep comes near them with the
+//             tool's body; tell what they saw when they are asked; answer, cut, tell the changes in the order
+//             of the questions
+//   rank 0    motion, tables, raw stock; all meet -> take its own tiles from the others as they stand there;
+//             look ahead -> all; cut -> all; cut; ...  changes? -> all, take them over, save
 //
-// Rank 0 comes late, so it leaves some of its tiles to those that were ahead. Where one rank finds a sweep
-// that is to be judged, the others may have gone past it: they begin their tiles again and cut them up to
-// there. Before the stock is kept on the way they wait for rank 0.
+// Before the sweep at which they meet no rank has seen one that must be judged, and nobody looks at the whole
+// stock: rank 0 never has to go back. The others may have to: where one rank finds a sweep that is to be
+// judged and the others have gone past it, they begin their tiles again and cut them up to there. Before the
+// stock is kept on the way they wait for rank 0.
 //
 // What follows the cut is dealt out (base/dealt_work.h): rank 0 sends what is needed with each question.
 #pragma once
 
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,13 +40,18 @@ namespace swarf::sim {
 /// Rank 0.
 class TileLead {
  public:
-  /// Waits until all others have their motion. Throws InputError "rank-differs" when one has other sweeps,
-  /// tools or stock, "rank-failed" when one could not begin.
   TileLead(Ranks& ranks, const CutParts& parts);
 
-  /// Deals the stock out, as `at` sweeps have cut it. `is_raw`: nothing is cut from it yet. It must outlive
-  /// this object.
-  void begin(stock::Stock& stock, size_t at, bool is_raw);
+  struct Start {
+    size_t at = 0;              ///< sweeps that have cut the stock already
+    bool is_raw = true;         ///< nothing is cut from it yet: the others may have begun
+    bool may_go_ahead = false;  ///< see may_go_ahead()
+    size_t look_at = 0;         ///< sweeps after which somebody looks at the whole stock
+  };
+  /// Takes this rank's tiles from the others, or deals them out. The stock must outlive this object. Throws
+  /// InputError "rank-differs" when one has other sweeps, tools or stock, "rank-failed" when one could not
+  /// begin.
+  void begin(stock::Stock& stock, const Start& start);
   /// Looks at the stock from sweep `begin` on, each rank at its own tiles.
   BatchState look_ahead(size_t begin, size_t end);
   /// Every rank cuts its own tiles.
@@ -57,30 +66,44 @@ class TileLead {
 
   /// What the others have told of broken invariants on the way; "": nothing.
   const std::string& broken() const { return broken_; }
-  /// Of the whole stock, which is up to date.
-  stock::StockProof prove(double slack_mm) const;
+  /// Sweeps that had cut the tiles of this rank when it took them.
+  size_t own_from() const { return own_from_; }
+  /// Of the whole stock, which is up to date. `is_busy`: this rank only deals as long as that is true.
+  stock::StockProof prove(double slack_mm, const std::function<bool()>& is_busy) const;
 
  private:
+  Bytes answer_of(int rank);
+  bool keep_seen(int rank, const Bytes& message);
+  size_t meet(size_t most);
+  std::vector<int> ask_to_look(size_t begin, size_t end);
+  void take_tiles(stock::Stock& stock, const std::vector<uint32_t>& parts);
+  void take_pieces(int rank, const Bytes& asked, const std::function<void(BytesReader&)>& before);
+
   Ranks& ranks_;
   const CutParts& parts_;
   stock::Stock* stock_ = nullptr;
   std::optional<stock::StockTiles> tiles_;
-  std::optional<stock::ContactFinder> finder_;  ///< of its own tiles
-  std::vector<size_t> ahead_;                   ///< sweeps that the others had cut when they were asked first
+  std::optional<stock::ContactFinder> finder_;      ///< of its own tiles
+  std::vector<std::map<size_t, BatchState>> seen_;  ///< by rank and first sweep: told before it was asked for
   std::string broken_;
-  size_t at_ = 0;  ///< sweeps that have cut its own tiles
+  size_t at_ = 0;        ///< sweeps that the run has come to
+  size_t own_from_ = 0;  ///< before that its own tiles are no longer cut
   bool is_whole_ = true;
 };
 
 /// Nothing but contacts and the keeping of the stock needs all of it on the way.
 bool may_go_ahead(const CutOptions& options);
-/// On rank 0, before its motion: the others begin to cut the raw stock.
-void let_ranks_go_ahead(Ranks& ranks);
 
-/// On another rank: does what rank 0 asks until it says that this is all. `cut_rays`: cuts this rank's tiles
-/// of the measuring rays, in `measured`. `parts` learn what rank 0 has found.
-void serve_tile_lead(Ranks& ranks, const Job& job, CutParts& parts, const MeasuredPath& measured,
-                     const std::function<void()>& cut_rays);
+/// What another rank has at hand.
+struct TileService {
+  const Job& job;
+  CutParts& parts;  ///< they learn what rank 0 has found
+  const MeasuredPath& measured;
+  std::function<void()> cut_rays;  ///< cuts this rank's tiles of the measuring rays, in `measured`
+  bool ahead;                      ///< may_go_ahead(): it cuts before it is asked
+};
+/// On another rank: does what rank 0 asks until it says that this is all.
+void serve_tile_lead(Ranks& ranks, const TileService& service);
 /// On another rank that cannot begin: tells why, and waits for the end.
 void refuse_tile_lead(Ranks& ranks, const std::string& why);
 

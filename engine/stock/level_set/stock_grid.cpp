@@ -91,14 +91,14 @@ void sign_tiles(LevelSet& set) {
   for (; tile; ++tile) tile.setValue(is_solid(set, tile.getCoord()) ? -set.band() : set.band());
 }
 
-/// The positions of a share whose node stands for them and for those of others, without a leaf between them.
+/// Where the tiles of others are left out, a node without leaves may be solid in part: position by position.
 void sign_positions(LevelSet& set) {
   constexpr openvdb::Index kLeafLevel = 1;  // a tile that replaces one leaf
   openvdb::tree::ValueAccessor<openvdb::FloatTree> near(set.grid->tree());
   for (size_t n = 0; n < set.map.size(); ++n) {
     if (set.map.states[n] == LeafState::kLeaf) continue;
-    const openvdb::Coord origin = set.map.origin(n);
     const float value = set.map.states[n] == LeafState::kSolid ? -set.band() : set.band();
+    const openvdb::Coord origin = set.map.origin(n);
     if (near.getValue(origin) != value) near.addTile(kLeafLevel, origin, value, false);
   }
 }

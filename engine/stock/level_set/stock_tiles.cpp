@@ -30,12 +30,10 @@ int row_step(int count) {
 /// Of all columns of the map, x before y: 1 where the tiles are not of the set.
 std::vector<uint8_t> columns_of_others(const LevelSet& set, const TileSet& own) {
   const LeafMap& map = set.map;
-  const int count = own.share.count;
   std::vector<uint8_t> others;
   for (int i = map.lower.x(); i < map.lower.x() + map.dimension.x(); ++i)
     for (int j = map.lower.y(); j < map.lower.y() + map.dimension.y(); ++j)
-      others.push_back(owner_of_column(i, j, count) != own.share.index ||
-                       (own.parts >> part_of_column(i, j, count) & 1U) == 0);
+      others.push_back(own.holds_column(i, j) ? 0 : 1);
   return others;
 }
 
@@ -71,10 +69,18 @@ void add_position(const LevelSet& set, size_t leaf, BytesWriter& out) {
 
 constexpr size_t kToldBytes = size_t{8} << 20U;
 
-void add_counts(const CutStatistics& counts, BytesWriter& out) {
-  out.add(counts.voxel_updates);
-  out.add(counts.leaf_visits);
-  out.add(counts.seconds);
+void add_counts(const CutStatistics& counts, double rounding_mm, BytesWriter& out) {
+  out.add(counts);
+  out.add(rounding_mm);
+}
+
+/// Leaves of columns that are another's from now on.
+void drop_leaves(LevelSet& set, const std::vector<uint8_t>& others) {
+  for (size_t n = 0; n < set.map.size(); ++n) {
+    if (set.map.states[n] != LeafState::kLeaf || others[set.map.column(n)] == 0) continue;
+    set_tile(set, n, LeafState::kAir);
+    set.map.states[n] = LeafState::kAir;
+  }
 }
 
 }  // namespace
@@ -93,6 +99,22 @@ int part_of_column(int i, int j, int count) {
   return ((number + kShift * tile_floor(j)) % kTileParts + kTileParts) % kTileParts;
 }
 
+bool TileSet::all() const {
+  return std::ranges::all_of(parts, [](uint32_t of_share) { return of_share == kAllParts; });
+}
+
+bool TileSet::holds_column(int i, int j) const {
+  const auto count = static_cast<int>(parts.size());
+  const uint32_t of_share = parts[static_cast<size_t>(owner_of_column(i, j, count))];
+  return (of_share >> static_cast<unsigned>(part_of_column(i, j, count)) & 1U) != 0;
+}
+
+TileSet TileSet::others() const {
+  TileSet rest = *this;
+  for (uint32_t& of_share : rest.parts) of_share ^= kAllParts;
+  return rest;
+}
+
 void keep_columns(LevelSet& set, const TileSet& own) {
   set.others = own.all() ? std::vector<uint8_t>{} : columns_of_others(set, own);
 }
@@ -107,17 +129,35 @@ StockTiles::StockTiles(Stock& stock, const TileSet& own)
 }
 
 std::optional<Bytes> StockTiles::next_changes() {
+  return next_of(nullptr);
+}
+
+std::optional<Bytes> StockTiles::next_left(const TileSet& kept) {
+  LevelSet& set = stock_.impl_->level_set;
+  std::vector<uint8_t> others = columns_of_others(set, kept);
+  if (auto piece = next_of(&others)) return piece;
+  drop_leaves(set, others);
+  set.others = std::move(others);
+  return std::nullopt;
+}
+
+/// `wanted`: of columns, if given, those that are told; 1 by column.
+std::optional<Bytes> StockTiles::next_of(const std::vector<uint8_t>* wanted) {
   const LevelSet& set = stock_.level_set();
   BytesWriter out;
-  add_counts({.voxel_updates = set.statistics.voxel_updates - told_.voxel_updates,
-              .leaf_visits = set.statistics.leaf_visits - told_.leaf_visits,
-              .seconds = set.statistics.seconds},
-             out);
-  const bool counted = set.statistics.voxel_updates != told_.voxel_updates;
+  CutStatistics more = set.statistics;
+  more.voxel_updates -= told_.voxel_updates;
+  more.leaf_visits -= told_.leaf_visits;
+  add_counts(more, set.rounding_mm, out);
+  const bool counted = more.voxel_updates != 0;
   const size_t counts = out.size();
   told_ = set.statistics;
   for (; next_ < set.map.size() && out.size() < kToldBytes; ++next_) {
-    if (set.map.cuts[next_] == known_[next_] || !set.owns(next_)) continue;
+    if (!set.owns(next_)) continue;
+    if (wanted != nullptr && (*wanted)[set.map.column(next_)] == 0) continue;
+    // Who cuts on must know as much: a cut that changed no value may have raised the floor.
+    const bool seen = wanted != nullptr && set.map.floors[next_].value > -set.band();
+    if (set.map.cuts[next_] == known_[next_] && !seen) continue;
     add_position(set, next_, out);
     known_[next_] = set.map.cuts[next_];
   }
@@ -126,28 +166,34 @@ std::optional<Bytes> StockTiles::next_changes() {
   return std::nullopt;
 }
 
-std::optional<Bytes> StockTiles::next_tiles(const Stock& stock, Share share, Which which, size_t& from) {
+std::optional<Bytes> StockTiles::next_tiles(const Stock& stock, const TileSet& tiles, size_t& from) {
   const LevelSet& set = stock.level_set();
-  const std::vector<uint8_t> others = columns_of_others(set, share);
-  const uint8_t wanted = which == Which::kOfOthers ? 1 : 0;
+  const std::vector<uint8_t> others = columns_of_others(set, tiles);
   BytesWriter out;
-  add_counts({}, out);
+  add_counts({}, set.rounding_mm, out);
   const size_t counts = out.size();
   for (; from < set.map.size() && out.size() < kToldBytes; ++from)
-    if (others[from / static_cast<size_t>(set.map.dimension.z())] == wanted) add_position(set, from, out);
+    if (others[set.map.column(from)] == 0) add_position(set, from, out);
   return out.size() > counts ? std::optional(out.take()) : std::nullopt;
 }
 
 void StockTiles::apply(const Bytes& changes) {
-  CutStatistics& statistics = stock_.impl_->level_set.statistics;
+  LevelSet& set = stock_.impl_->level_set;
+  CutStatistics& statistics = set.statistics;
   BytesReader in(changes);
-  const auto updates = in.get<uint64_t>(), visits = in.get<uint64_t>();
-  statistics.voxel_updates += updates;
-  statistics.leaf_visits += visits;
-  statistics.seconds = std::max(statistics.seconds, in.get<double>());
-  told_.voxel_updates += updates;
-  told_.leaf_visits += visits;
+  const auto more = in.get<CutStatistics>();
+  statistics.sweeps = std::max(statistics.sweeps, more.sweeps);
+  statistics.voxel_updates += more.voxel_updates;
+  statistics.leaf_visits += more.leaf_visits;
+  statistics.seconds = std::max(statistics.seconds, more.seconds);
+  told_.voxel_updates += more.voxel_updates;
+  told_.leaf_visits += more.leaf_visits;
+  set.rounding_mm = std::max(set.rounding_mm, in.get<double>());
   while (!in.at_end()) take_position(in);
+}
+
+void StockTiles::count_as(const CutStatistics& counts) {
+  stock_.impl_->level_set.statistics = counts;
 }
 
 void StockTiles::take_position(BytesReader& in) {

@@ -78,18 +78,6 @@ TEST(StockTiles, CutApartAndGatheredTheyAreTheStockOfOneProcess) {
   }
 }
 
-/// Inside a large block a rank's tiles have no surface: the tree's nodes there hold material of its own and
-/// the air that stands for the tiles of others.
-TEST(StockTiles, TheTreeOfEveryRankIsAsItsMapSays) {
-  const RawShape raw = RawShape::of_box({{-36, -28, -40}, {20, 28, 15}});
-  for (const int count : {2, 3, 5}) {
-    for (int n = 0; n < count; ++n) {
-      const Stock tiles = StockTiles::own_tiles(raw, 0.25, Share{n, count});
-      EXPECT_EQ(tiles.check(CheckLevel::kOwnMap), "") << "rank " << n << " of " << count;
-    }
-  }
-}
-
 TEST(StockTiles, OneThatBeginsLaterTakesOverWhatIsThere) {
   const RawShape raw = RawShape::of_box(kBox);
   Rng rng(20);
@@ -101,8 +89,7 @@ TEST(StockTiles, OneThatBeginsLaterTakesOverWhatIsThere) {
   for (int n = 1; n < 3; ++n) {
     ranks.push_back(std::make_unique<Rank>(StockTiles::own_tiles(raw, kVoxel, Share{n, 3}), Share{n, 3}));
     size_t from = 0;
-    while (const auto piece =
-               StockTiles::next_tiles(ranks[0]->stock, {n, 3}, StockTiles::Which::kOfShare, from))
+    while (const auto piece = StockTiles::next_tiles(ranks[0]->stock, Share{n, 3}, from))
       ranks.back()->tiles.apply(*piece);
   }
   const std::vector<Sweep> more = sweeps_of(rng, 20);
@@ -163,6 +150,41 @@ TEST(StockTiles, PartsOfAShareAreCutElsewhere) {
   cut_all(ranks, sweeps, cutter);
   gather(ranks);
   expect_equal(ranks[0]->stock, whole);
+}
+
+/// One rank is ahead with all tiles; the lead takes some of them as they stand, and both cut on.
+TEST(StockTiles, TilesThatAreLeftToAnotherGoOnThere) {
+  const RawShape raw = RawShape::of_box(kBox);
+  Rng rng(25);
+  const CutterSolid cutter(2.5, 10.0);
+  constexpr uint32_t kTaken = 0b01101001;
+  const TileSet taken(Share{0, 1}, kTaken), kept = taken.others();
+  const std::vector<Sweep> first = sweeps_of(rng, 20), then = sweeps_of(rng, 20);
+  Stock whole(raw, kVoxel);
+  whole.cut(first, cutter);
+  whole.cut(then, cutter);
+  std::vector<std::unique_ptr<Rank>> ranks;
+  ranks.push_back(std::make_unique<Rank>(Stock(raw, kVoxel), taken));
+  ranks.push_back(std::make_unique<Rank>(Stock(raw, kVoxel), TileSet()));
+  ranks[1]->stock.cut(first, cutter);
+  const size_t leaves = ranks[1]->stock.leaves();
+  while (const auto piece = ranks[1]->tiles.next_left(kept)) ranks[0]->tiles.apply(*piece);
+  EXPECT_LT(ranks[1]->stock.leaves(), leaves);
+  EXPECT_EQ(ranks[1]->stock.check(CheckLevel::kOwnMap), "");
+  cut_all(ranks, then, cutter);
+  gather(ranks);
+  expect_equal(ranks[0]->stock, whole);
+}
+
+/// Deep inside, a node of the tree lies in tiles of this rank and of others, and has no leaf.
+TEST(StockTiles, OwnTilesHoldTheInvariantsDeepInside) {
+  constexpr double kFine = 0.1, kSide = 27.0;  // 34 leaf positions along each side, a node has 16
+  const RawShape raw =
+      RawShape::of_box({{-0.5 * kSide, -0.5 * kSide, -kSide}, {0.5 * kSide, 0.5 * kSide, 0.0}});
+  for (const int rank : {0, 1}) {
+    Stock stock = StockTiles::own_tiles(raw, kFine, Share{rank, 2});
+    EXPECT_EQ(stock.check(CheckLevel::kOwnMap), "") << "rank " << rank;
+  }
 }
 
 /// Slab by slab, by whoever: the volume's bounds to the last bit, and a breach between two leaves wherever it
