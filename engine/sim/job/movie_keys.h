@@ -45,7 +45,9 @@ struct MovieSettings {
   double seconds = 10.0;
   std::vector<MovieShot> shots{MovieShot{}};
   MovieColours colours = MovieColours::kMaterial;
-  bool overlay = true;  ///< line, place, feed, spindle and progress on the picture
+  /// Line, place, axis values, feed, spindle and progress on the picture; below 420 lines without the axis
+  /// values, below 331 without the place too.
+  bool overlay = true;
   std::array<int, 2> size{1280, 720};
   int fps = 30;
   int samples = 1;  ///< per pixel, 1 or 4: 4 smooths edges and takes twice as long
