@@ -515,8 +515,35 @@ void serve_tiles(const Job& job, const CutOptions& options, Ranks& ranks, Progre
     return;
   }
   serve_tile_lead(ranks, {job, *parts, measured, [&] { cut_ray_share(job, measured, share_of(ranks)); },
-                          may_go_ahead(options)});
+                          may_go_ahead(options), rank_limit_mb(job, options, ranks)});
 }
+
+namespace {
+
+/// The memory of the run, told and refused where it is too much.
+void predict(const Job& job, const CutOptions& options, Progress& progress, Result& result) {
+  MemoryPrediction& memory = result.memory;
+  memory = predict_memory(job, result.main, options.outputs, options.check_voxels ? 2 : 1);
+  if (options.max_memory_mb > 0.0) memory.limit_mb = options.max_memory_mb;
+  const int ranks = options.ranks != nullptr ? options.ranks->size() : 1;
+  if (ranks == 1) {
+    if (!options.spill) require_memory(job, memory);
+    progress.note(fmt::format("memory: stock {:.0f} MB, whole run {:.0f} MB expected; limit {:.0f} MB",
+                              memory.stock_mb, memory.peak_mb, memory.limit_mb));
+    return;
+  }
+  memory.limit_mb = rank_limit_mb(job, options, *options.ranks);
+  const double other_mb = other_rank_mb(job, memory, ranks);
+  progress.note(fmt::format(
+      "memory: stock {:.0f} MB, rank 0 {:.0f} MB, each of {} other ranks {:.0f} MB expected; limit "
+      "{:.0f} MB for each",
+      memory.stock_mb, memory.peak_mb, ranks - 1, other_mb, memory.limit_mb));
+  MemoryPrediction most = memory;
+  most.peak_mb = std::max(memory.peak_mb, other_mb);
+  require_memory(job, most);
+}
+
+}  // namespace
 
 Result simulate(const Job& job, const CutOptions& options, Progress& progress) {
   Result result;
@@ -526,11 +553,7 @@ Result simulate(const Job& job, const CutOptions& options, Progress& progress) {
     result.stopped = true;
     return result;
   }
-  result.memory = predict_memory(job, result.main, options.outputs, options.check_voxels ? 2 : 1);
-  if (options.max_memory_mb > 0.0) result.memory.limit_mb = options.max_memory_mb;
-  if (!options.spill) require_memory(job, result.memory);
-  progress.note(fmt::format("memory: stock {:.0f} MB, whole run {:.0f} MB expected; limit {:.0f} MB",
-                            result.memory.stock_mb, result.memory.peak_mb, result.memory.limit_mb));
+  predict(job, options, progress, result);
   cut_stock(job, options, progress, result);
   measure_volume(job, result);
   result.stopped = progress.stop_requested();

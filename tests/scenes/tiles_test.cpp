@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
+#include <cstdio>
 #include <cstdlib>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -140,6 +142,30 @@ TEST_F(Tiles, WhatIsWrongIsSaidOnce) {
             std::string::npos)
       << other.output;
   EXPECT_FALSE(fs::exists(at("tiles")));
+}
+
+/// What each rank is expected to take is told, and too much refused before it is taken; rank 0 holds the
+/// most.
+TEST_F(Tiles, TheMemoryOfEveryRankIsPredicted) {
+  write_wave(2000, 0.2);
+  const auto refused =
+      run_command(mpirun(3) + "run --tiles " + wave() + "--max-memory 100 -o " + at("tiles"));
+  EXPECT_EQ(refused.exit_code, 2) << refused.output;
+  EXPECT_NE(refused.output.find("out-of-memory"), std::string::npos) << refused.output;
+  EXPECT_FALSE(fs::exists(at("tiles")));
+  const size_t told = refused.output.find(", rank 0 ");
+  ASSERT_NE(told, std::string::npos) << refused.output;
+  int lead = 0, other = 0, limit = 0;
+  ASSERT_EQ(
+      std::sscanf(refused.output.c_str() + told,
+                  ", rank 0 %d MB, each of 2 other ranks %d MB expected; limit %d MB", &lead, &other, &limit),
+      3)
+      << refused.output;
+  EXPECT_EQ(limit, 100);
+  const std::string enough = fmt::format("--max-memory {} -o ", std::max(lead, other) + 2);
+  EXPECT_EQ(run_command(mpirun(3) + "run --tiles " + wave() + enough + at("tiles")).exit_code, 0);
+  const std::string less = fmt::format("--max-memory {} -o ", std::max(lead, other) - 2);
+  EXPECT_EQ(run_command(mpirun(3) + "run --tiles " + wave() + less + at("less")).exit_code, 2);
 }
 
 TEST_F(Tiles, WhatTheRanksCannotAgreeOnIsRefused) {

@@ -27,6 +27,19 @@ size_t next_multiple(size_t at, size_t step) {
   return (at / step + 1) * step;
 }
 
+/// False: there is no folder for it, or something went wrong: that is told when the results are written,
+/// which tries it again.
+bool write_finished(const stock::Stock& stock, const CutOptions& options,
+                    const stock::StockMetadata& metadata) {
+  if (options.save_folder.empty()) return false;
+  try {
+    stock.save(options.save_folder + "/" + kFinishedStock, metadata);
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
 class CutStage {
  public:
   CutStage(const Job& job, const CutOptions& options, Progress& progress, Result& result)
@@ -324,7 +337,7 @@ class CutStage {
     std::string broken;
     std::future<void> own = std::async(std::launch::async, [&] {
       broken = stock.check(stock::CheckLevel::kLeaves);
-      write_stock(stock);
+      outcome_.is_written = write_finished(stock, options_, outcome_.metadata);
     });
     const stock::StockProof proof = tiles_->prove(result_.sweep_bound_mm, [&] {
       return thread_count() == 1 && own.wait_for(std::chrono::seconds(0)) != std::future_status::ready;
@@ -335,16 +348,6 @@ class CutStage {
     tell(tiles_->broken());
     tell(broken);
     tell(proof.broken_step);
-  }
-
-  /// What goes wrong is told when the results are written, which tries it again.
-  void write_stock(const stock::Stock& stock) {
-    if (options_.save_folder.empty()) return;
-    try {
-      stock.save(options_.save_folder + "/" + kFinishedStock, outcome_.metadata);
-      outcome_.is_written = true;
-    } catch (const InputError&) {
-    }
   }
 
   /// The first broken invariant is kept; the run goes on and reports it. "": all hold.

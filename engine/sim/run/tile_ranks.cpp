@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <iterator>
 #include <limits>
 #include <map>
@@ -11,10 +12,13 @@
 
 #include "base/check.h"
 #include "measure/dealt_roots.h"
+#include "sim/job/memory_limit.h"
 #include "sim/run/result.h"
 
 namespace swarf::sim {
 namespace {
+
+constexpr double kMbOfRank = 1024.0 * 1024.0;
 
 /// First byte of every message of rank 0.
 enum class TileRequest : uint8_t {
@@ -178,7 +182,11 @@ class OwnTiles {
 
   Standing standing() const { return {at_, waits_, own_.parts[static_cast<size_t>(share_.index)]}; }
   void take(const Bytes& tiles) { tiles_.apply(tiles); }
-  void start_at(size_t at) { at_ = left_.at = at; }
+  /// take() brings what so many sweeps have left.
+  void start_at(size_t at) {
+    come_to(0);
+    at_ = left_.at = at;
+  }
   const stock::Stock& stock() const { return stock_; }
 
   /// One more part of the program, not beyond sweep `most`, as one process would cut it. False: nothing is
@@ -297,7 +305,7 @@ class TileServer {
   void serve() {
     for (;;) {
       while (ahead_ && !ranks_.has_message(0)) {
-        ahead_ = own().go_on(service_.parts.sweeps.size());
+        ahead_ = has_room() && own().go_on(service_.parts.sweeps.size());
         if (is_known_) tell_seen();
       }
       const Bytes message = ranks_.receive(0);
@@ -387,6 +395,10 @@ class TileServer {
   OwnTiles& own() {
     if (!own_) own_.emplace(service_.job, service_.parts, share_of_other(ranks_, ranks_.rank()));
     return *own_;
+  }
+  /// Rank 0 has not predicted yet what this takes.
+  bool has_room() {
+    return static_cast<double>(own().stock().memory_bytes()) / kMbOfRank <= service_.most_mb;
   }
   void look(BytesReader& in, BytesWriter& out) {
     const auto begin = in.get<size_t>(), end = in.get<size_t>();
@@ -508,11 +520,13 @@ void TileLead::begin(stock::Stock& stock, const Start& start) {
   own_from_ = start.is_raw && ranks_.size() > 1 ? meet(start.look_at) : start.at;
   std::vector<uint32_t> parts = parts_of_lead(ranks_.size() - 1);
   if (own_from_ == parts_.sweeps.size()) std::ranges::fill(parts, 0U);  // nothing is left to cut
-  take_tiles(stock, parts);
-  for (int rank = 1; rank < ranks_.size() && !start.is_raw; ++rank) {
+  if (!start.is_raw) {
     BytesWriter message = request(TileRequest::kStock);
     message.add(start.at);
-    ranks_.send(rank, message.take());
+    send_to_all(ranks_, std::move(message));
+  }
+  take_tiles(stock, parts);
+  for (int rank = 1; rank < ranks_.size() && !start.is_raw; ++rank) {
     const uint32_t kept = stock::TileSet::kAllParts ^ parts[static_cast<size_t>(rank - 1)];
     send_tiles(ranks_, rank, stock, {share_of_other(ranks_, rank), kept});
   }
@@ -618,6 +632,27 @@ stock::StockProof TileLead::prove(double slack_mm, const std::function<bool()>& 
                 [&](size_t slab, const Bytes& answer) { proofs.take(slab, answer); },
                 [&](size_t slab) { proofs.prove(slab); }, is_busy});
   return proofs.result();
+}
+
+double rank_limit_mb(const Job& job, const CutOptions& options, const Ranks& ranks) {
+  if (options.max_memory_mb > 0.0) return options.max_memory_mb;
+  if (job.scene.stock.max_memory_mb > 0.0) return job.scene.stock.max_memory_mb;
+  const char* const told = std::getenv("OMPI_COMM_WORLD_LOCAL_SIZE");  // by mpirun
+  const int here = told != nullptr ? std::atoi(told) : 0;
+  return memory_limit_mb(job.scene) / (here > 0 ? here : ranks.size());
+}
+
+double other_rank_mb(const Job& job, const MemoryPrediction& lead, int ranks) {
+  constexpr double kMessages = 32.0;  // MB: pieces of changes and slabs on their way
+  if (wants_proof(job)) return lead.peak_mb + kMessages;
+  const StockSettings& settings = job.scene.stock;
+  const auto stock_mb = [&](double leaves) {
+    return static_cast<double>(stock::Stock::memory_for(settings.box_W, settings.voxel_mm, leaves)) /
+           kMbOfRank;
+  };
+  // Rank 0 takes tiles over, and what changes in others, which leaves holes; the others do not.
+  const double holes = lead.leaf_mb * kMbOfRank / static_cast<double>(stock::Stock::kLeafBytes);
+  return lead.peak_mb - holes * stock_mb(lead.leaves) + stock_mb(lead.leaves / (ranks - 1)) + kMessages;
 }
 
 bool may_go_ahead(const CutOptions& options) {

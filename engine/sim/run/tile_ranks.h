@@ -94,6 +94,11 @@ class TileLead {
 /// Nothing but contacts and the keeping of the stock needs all of it on the way.
 bool may_go_ahead(const CutOptions& options);
 
+/// Memory that each rank may take, MB of 2^20 bytes: as told, else its share of what is free on its machine.
+double rank_limit_mb(const Job& job, const CutOptions& options, const Ranks& ranks);
+/// What each rank but 0, of more than one, is expected to take at its greatest, MB. `lead`: what rank 0 is.
+double other_rank_mb(const Job& job, const MemoryPrediction& lead, int ranks);
+
 /// What another rank has at hand.
 struct TileService {
   const Job& job;
@@ -101,6 +106,7 @@ struct TileService {
   const MeasuredPath& measured;
   std::function<void()> cut_rays;  ///< cuts this rank's tiles of the measuring rays, in `measured`
   bool ahead;                      ///< may_go_ahead(): it cuts before it is asked
+  double most_mb;                  ///< a larger stock it does not cut before it is asked
 };
 /// On another rank: does what rank 0 asks until it says that this is all.
 void serve_tile_lead(Ranks& ranks, const TileService& service);
