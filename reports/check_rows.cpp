@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <map>
 #include <utility>
 
 namespace swarf::reports {
@@ -22,8 +23,10 @@ State state_of(sim::Outcome outcome) {
 }
 
 std::string with_unit(std::string number, const sim::Check& check) {
+  static const std::map<std::string, std::string> written{{"um", "µm"}, {"mm2", "mm²"}, {"mm3", "mm³"}};
   if (check.unit.empty()) return number;
-  return number + " " + (check.unit == "um" ? "µm" : check.unit);
+  const auto found = written.find(check.unit);
+  return number + " " + (found == written.end() ? check.unit : found->second);
 }
 
 std::string measured(const sim::Check& check) {

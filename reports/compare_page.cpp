@@ -203,6 +203,12 @@ std::vector<sim::Check> named_checks(const ComparedPair& pair) {
   return checks;
 }
 
+/// mm3; what meshes of both err by is no difference.
+std::string volume_text(double mm3) {
+  constexpr double kLeast = 1e-6;
+  return std::abs(mm3) < kLeast ? "0" : fmt::format("{:.4g}", mm3);
+}
+
 KeyNumber extreme_number(const char* label, const measure::DeviationExtreme& extreme,
                          const sim::Check* check) {
   return {label, fmt::format("{:.3f}", extreme.um), "µm",
@@ -228,15 +234,18 @@ ReportData compare_page(const ComparedPair& pair, const measure::ComparisonInput
       {"Mean, absolute", fmt::format("{:.3f}", result.mean_abs_um), "µm",
        fmt::format("rms {:.3f} µm", result.rms_um)}};
   if (result.difference_mm3)
-    data.key_numbers.push_back({pair.revisions ? "Now less earlier" : "Stock less design",
-                                fmt::format("{:.5g}", *result.difference_mm3), "mm³",
-                                fmt::format("{:.4g} mm³ {}, {:.4g} mm³ {}", *result.excess_mm3,
-                                            pair.revisions ? "added" : "too much", *result.gouge_mm3,
-                                            pair.revisions ? "removed" : "missing")});
+    data.key_numbers.push_back(
+        {pair.revisions ? "Now less earlier" : "Stock less design", volume_text(*result.difference_mm3),
+         "mm³",
+         fmt::format("{} mm³ {}, {} mm³ {}", volume_text(*result.excess_mm3),
+                     pair.revisions ? "added" : "too much", volume_text(*result.gouge_mm3),
+                     pair.revisions ? "removed" : "missing")});
   for (size_t i = 0; i < std::min(kPicturedRegions, result.regions.size()); ++i)
     data.findings.push_back(region_finding(pair, result.regions[i]));
   data.viewer.part_glb = compare_glb(result.stock_map, scale_um);
   data.viewer.colour_bar = deviation_colour_bar(render::DeviationScale(scale_um));
+  data.viewer.colour_bar.title =
+      pair.revisions ? "Change from the earlier to the present stock" : "Deviation from the design";
   data.viewer.colour_bar.low_value = -scale_um;
   data.viewer.colour_bar.high_value = scale_um;
   data.plots = {histogram(result, scale_um)};

@@ -171,10 +171,21 @@ std::string findings_island(const std::vector<ReportFinding>& findings, size_t s
   return out + "]</script>";
 }
 
+/// On a narrow page the cells of a row stand below each other: words of several columns would have a finger's
+/// width each.
+bool stacks(const Table& table) {
+  constexpr std::ptrdiff_t kTextColumns = 2;
+  return !table.pictures.empty() || std::count_if(table.columns.begin(), table.columns.end(),
+                                                  [](const auto& c) { return !c.numeric; }) > kTextColumns;
+}
+
 std::string table_open(const std::vector<Column>& columns, const std::string& caption,
-                       bool pictures = false) {
-  std::string out = R"(<div class="scroll" tabindex="0" role="region" aria-label=")" + escape(caption) +
-                    R"("><table><caption class="unseen">)" + escape(caption) + "</caption><thead><tr>";
+                       const Table* table = nullptr) {
+  const bool pictures = table != nullptr && !table->pictures.empty();
+  std::string out =
+      fmt::format(R"(<div class="scroll{}{}" tabindex="0" role="region" aria-label=")",
+                  table != nullptr && stacks(*table) ? " stacks" : "", pictures ? " pictured" : "") +
+      escape(caption) + R"("><table><caption class="unseen">)" + escape(caption) + "</caption><thead><tr>";
   if (pictures) out += R"(<td></td>)";
   for (const Column& column : columns) {
     out += fmt::format(R"(<th scope="col"{}>{}{}</th>)", column.numeric ? R"( class="number")" : "",
@@ -183,11 +194,21 @@ std::string table_open(const std::vector<Column>& columns, const std::string& ca
   return out + "</tr></thead><tbody>";
 }
 
+/// `stacked`: with what stands in the table's head, and its unit.
+std::string cell_attributes(const Column& column, bool stacked) {
+  std::string out = column.numeric ? R"( class="number")" : "";
+  if (stacked)
+    out += R"( data-label=")" + escape(column.title) +
+           (column.unit.empty() ? "" : ", " + escape(column.unit)) + "\"";
+  return out;
+}
+
 constexpr const char* kTableClose = "</tbody></table></div>";
 
 std::string table_html(const Table& table) {
   std::string out = "<article class=\"table\"><h3>" + escape(table.title) + "</h3>";
-  out += element("p", "intro", table.intro) + table_open(table.columns, table.title, !table.pictures.empty());
+  out += element("p", "intro", table.intro) + table_open(table.columns, table.title, &table);
+  const bool stacked = stacks(table);
   for (size_t r = 0; r < table.rows.size(); ++r) {
     SWARF_CHECK(table.rows[r].size() == table.columns.size(),
                 "a row of \"" + table.title + "\" is not whole");
@@ -195,7 +216,7 @@ std::string table_html(const Table& table) {
     if (!table.pictures.empty()) out += R"(<td class="picture">)" + table.pictures.at(r) + "</td>";
     for (size_t c = 0; c < table.columns.size(); ++c) {
       const char* tag = c == 0 ? "th scope=\"row\"" : "td";
-      out += fmt::format("<{}{}>{}</{}>", tag, table.columns[c].numeric ? R"( class="number")" : "",
+      out += fmt::format("<{}{}>{}</{}>", tag, cell_attributes(table.columns[c], c > 0 && stacked),
                          escape(table.rows[r][c]), c == 0 ? "th" : "td");
     }
     out += "</tr>";

@@ -67,13 +67,25 @@ KeyNumber rays_number(const sim::Result& result) {
                        check.limit ? fmt::format("bound {:.2f} µm", *check.limit) : "");
 }
 
+/// Text and unit; of small parts nothing would be left in cm³.
+std::pair<std::string, std::string> volume_words(double mm3) {
+  constexpr double kSmall = 1e3;
+  if (mm3 < kSmall) return {fmt::format("{:.3g}", mm3), "mm³"};
+  return {fmt::format("{:.1f}", 1e-3 * mm3), "cm³"};
+}
+
+KeyNumber removed_number(const sim::Result& result) {
+  const auto [removed, unit] = volume_words(result.volume_removed_mm3);
+  const auto [left, left_unit] = volume_words(result.volume_left_mm3);
+  return {"Removed", removed, unit, fmt::format("{} {} left", left, left_unit)};
+}
+
 /// The numbers of a program of blocks: its surface, when it has one, is measured for excess and gouge.
 std::vector<KeyNumber> block_key_numbers(const sim::Result& result) {
   const measure::SurfaceMetrics& surface = result.main.surface;
   std::vector<KeyNumber> numbers{{"Machining time", duration(result.main.motion.statistics.time_s), "",
                                   fmt::format("{} blocks", result.main.path.elements.size())},
-                                 {"Removed", fmt::format("{:.1f}", result.volume_removed_mm3 * 1e-3), "cm³",
-                                  fmt::format("{:.1f} cm³ left", result.volume_left_mm3 * 1e-3)}};
+                                 removed_number(result)};
   if (surface.samples == 0) return numbers;
   numbers.push_back(
       judged_number(result, "excess", "Highest material", rays_hint(surface, surface.excess_bound)));
@@ -95,8 +107,7 @@ std::vector<KeyNumber> key_numbers(const sim::Result& result) {
        "of the machined surface"},
       {"Machining time", duration(motion.time_s), "", fmt::format("{} passes", result.main.path.passes)},
       {"Feed error", fmt::format("{:.1e}", motion.feed_error_max_rel), "", "relative, largest of all cycles"},
-      {"Removed", fmt::format("{:.1f}", result.volume_removed_mm3 * 1e-3), "cm³",
-       fmt::format("{:.1f} cm³ left", result.volume_left_mm3 * 1e-3)},
+      removed_number(result),
       rays_number(result)};
 }
 

@@ -2,6 +2,7 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -124,19 +125,26 @@ void BM_DeviationsOfAFrame(benchmark::State& state) {
   run.rays = &result.main.rays;
   Progress progress;
   const std::vector<PlannedFrame> frames = plan_frames(run, progress);
-  size_t vertices = 0;
+  size_t vertices = 0, patches = 0, all = 0;
   for (auto _ : state) {
     state.PauseTiming();
     const size_t middle = frames.size() / 2;
     MovieStock stock(run, state.range(1) == 0 ? sim::MovieColours::kMaterial : sim::MovieColours::kDeviation);
     stock.advance(frames[middle].cycle);
     vertices = stock.vertices_measured();
+    patches = stock.patches_made();
     state.ResumeTiming();
     for (size_t f = 1; f <= kTimed; ++f) stock.advance(frames[middle + f].cycle);
     vertices = stock.vertices_measured() - vertices;
+    patches = stock.patches_made() - patches;
+    all =
+        static_cast<size_t>(std::count_if(stock.state().begin(), stock.state().end(), [](const auto& patch) {
+          return patch != nullptr && !patch->triangles.empty();
+        }));
   }
   state.SetItemsProcessed(static_cast<int64_t>(state.iterations() * kTimed));
   state.counters["vertices"] = static_cast<double>(vertices) / kTimed;
+  state.counters["patches_pct"] = 100.0 * static_cast<double>(patches) / static_cast<double>(kTimed * all);
 }
 
 BENCHMARK(BM_DeviationsOfAFrame)

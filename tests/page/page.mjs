@@ -20,6 +20,7 @@ const pictures = words[0] === '--pictures' ? words.splice(0, 2)[1] : null;
 const leading = words[0] === '--leading' && Boolean(words.shift());
 const readLimitUm = 0.1, opensWithinMs = 2000, findingsVisited = 5, findingsVisitedNarrow = 2, pinsApartMm = 10;
 const narrowPx = 500;  // a telephone: what follows from the models alone is looked at once
+const wordsWithinPx = 100;  // at least
 const drawnPixels = 0.25;  // for each pixel of the page: a processor draws the 3D view, and what is looked at is not its grain
 const cycleS = 1e-3;
 const tipWithinMm = 0.2;  // keys of up to five axes, each within 0.02 mm or 0.0115 deg, and milliseconds in the slider
@@ -141,6 +142,16 @@ async function checkMachine(page, width, folder) {
   return `tip within ${worst.toFixed(3)} mm, ${new Set(stages).size} stages`;
 }
 
+/// On a narrow page words have room, and tables of words need no scrolling.
+async function checkNarrow(page) {
+  const squeezed = await page.evaluate((least) => [...document.querySelectorAll('.finding p, .stacks tbody td, .stacks tbody th')]
+    .filter((cell) => cell.textContent.length > 20 && cell.getBoundingClientRect().width < least)
+    .map((cell) => `${cell.getBoundingClientRect().width} px: ${cell.textContent.slice(0, 40)}`), wordsWithinPx);
+  assert.deepEqual(squeezed, [], 'words without room');
+  const scrolled = await page.evaluate(() => [...document.querySelectorAll('.stacks')].filter((table) => table.scrollWidth > table.clientWidth).map((table) => table.ariaLabel));
+  assert.deepEqual(scrolled, [], 'tables that scroll');
+}
+
 async function checkAt(file, width) {
   const beside = join(dirname(resolve(file)), 'metrics.json');
   const metrics = existsSync(beside) ? JSON.parse(readFileSync(beside)) : null;
@@ -153,6 +164,7 @@ async function checkAt(file, width) {
   const opened = Date.now() - started;
   if (pictures) await page.screenshot({ path: join(pictures, `top_${width}.png`) });
   assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= window.innerWidth), `wider than ${width} px`);
+  if (width <= narrowPx) await checkNarrow(page);
   const told = [];
   if (await page.locator('#viewer').count()) {
     await page.locator('#viewer').scrollIntoViewIfNeeded();
