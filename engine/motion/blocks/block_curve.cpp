@@ -27,6 +27,9 @@ constexpr double kUneven = 1.05;
 /// Nodes of a curved block: at least, per radian that its axes and its arc turn, at most.
 constexpr double kNodesMin = 12.0, kNodesPerRadian = 120.0, kNodesMax = 4096.0;
 constexpr size_t kCellsMax = 96;
+/// Nodes per step of the closest that follow() needs: beside a pole a step is a fiftieth of the distance to
+/// it.
+constexpr double kNodesPerStep = 0.16;
 /// Differences at the nodes miss what lies between them by less than this share.
 constexpr double kBetweenNodes = 1.1;
 /// The same on a splined curve, whose third derivatives jump at its knots; and the share that its slopes may
@@ -159,11 +162,13 @@ void BlockCurve::follow() {
     append_nodes(shape, *inverse_, *machine_, 1.0, way / 8.0 * (1.0 + 1e-9), nodes);
   }
   length_ = 0.0;
-  double fastest = 0.0, slowest = std::numeric_limits<double>::infinity();
+  double fastest = 0.0, closest = 1.0, slowest = std::numeric_limits<double>::infinity();
   for (size_t i = 0; i + 1 < nodes.size(); ++i) {
     followed_ = followed_ && nodes[i + 1].reached;
     const double own = limited_way(nodes[i + 1].q - nodes[i].q, nodes[i + 1].x - nodes[i].x);
-    const double rate = own / (nodes[i + 1].x - nodes[i].x);
+    const double step = nodes[i + 1].x - nodes[i].x;
+    const double rate = own / step;
+    closest = std::min(closest, step);
     length_ += own;
     fastest = std::max(fastest, rate);
     slowest = std::min(slowest, rate);
@@ -177,7 +182,7 @@ void BlockCurve::follow() {
     length_ = tip_way_;
   else if (followed_ && turns(law_->motion) && fastest > kUneven * slowest)
     stretch(nodes);
-  sample();
+  sample(kNodesPerStep / closest);
   // Even steps have missed a turn that the path makes: nothing between them is known.
   if (followed_ && axis_way(*machine_, nodes_.back(), q_to_) > kJoin) {
     followed_ = false;
@@ -264,12 +269,13 @@ void BlockCurve::spread(const std::vector<PathNode>& nodes, size_t steps) {
   share_ = CubicSpline(0.0, share_step_, std::move(knots));
 }
 
-void BlockCurve::sample() {
+/// `least`: nodes, at least.
+void BlockCurve::sample(double least) {
   double turn = turn_between(*machine_, q_from_, q_to_);
   if (block().arc) turn += toolpath::arc_angle(block());
   // Past a narrow pole as many as the spline has.
   const double density = pole_.width > 0.0 ? 4.0 * kNodesPerRadian : kNodesPerRadian;
-  const auto steps = static_cast<size_t>(std::clamp(density * turn, kNodesMin, kNodesMax));
+  const auto steps = static_cast<size_t>(std::clamp(std::max(least, density * turn), kNodesMin, kNodesMax));
   nodes_.reserve(steps + 1);
   nodes_.push_back(q_from_);
   const bool own_axes = block().law == BlockLaw::kTcpAxes;

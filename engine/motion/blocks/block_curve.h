@@ -95,7 +95,7 @@ class BlockCurve {
   };
   Pole narrow_pole(const std::vector<PathNode>& nodes) const;
   void spread(const std::vector<PathNode>& nodes, size_t steps);
-  void sample();
+  void sample(double least);
   template <typename Visit>
   void divide(double from, double to, const Visit& visit) const;
   PathCell bounds_between(size_t from, size_t to) const;

@@ -1,9 +1,12 @@
 // How near look-ahead comes to the fastest there is: against a direct transcription (time_optimum.h) on the
-// same rounded path, under the same limits of axes, tip and feed, none of them split into shares.
+// same rounded path, under the same limits of axes, tip and feed, none of them split into shares. That
+// searches from a first law; what it finds is held between a time that is proven not to be beaten and the
+// best of all laws by dynamic programming (least_time.h).
 #include <gtest/gtest.h>
 
 #include "motion/judged/motion_check.h"
 #include "motion/speed/jerk_profile.h"
+#include "unit/motion/least_time.h"
 #include "unit/motion/random_program.h"
 #include "unit/motion/time_optimum.h"
 
@@ -51,9 +54,11 @@ MotionOptions options_of_the_cases() {
 }
 
 struct Times {
-  double planned = 0.0, optimum = 0.0;  ///< s
+  double planned = 0.0, optimum = 0.0;      ///< s
+  double not_beaten = 0.0, best_law = 0.0;  ///< of LeastTime, where they are asked for
 };
-Times times_of(const Case& one) {
+enum class Oracles { kOne, kAll };
+Times times_of(const Case& one, Oracles oracles = Oracles::kOne) {
   const kinematics::MachineModel machine = paper_machine();
   const kinematics::InverseKinematics inverse(machine);
   const MotionOptions options = options_of_the_cases();
@@ -63,11 +68,56 @@ Times times_of(const Case& one) {
   start.end = motions.size();
   RunPlanner planner(motions, start, inverse, options);
   const PlannedRun& run = planner.next();
-  const Times times{duration(run.phases), TimeOptimum(run, machine, options).time()};
-  fmt::print("{}: {:.4f} s, optimum {:.4f} s, {:+.2f} %\n", one.name, times.planned, times.optimum,
-             100.0 * (times.planned / times.optimum - 1.0));
+  Times times{duration(run.phases), TimeOptimum(run, machine, options).time()};
+  if (oracles == Oracles::kAll) {
+    LeastTime least(run, machine, options);
+    times.not_beaten = least.without_jerk();
+    times.best_law = least.with_jerk();
+  }
+  fmt::print("{}: {:.4f} s, optimum {:.4f} s, {:+.2f} %, not beaten {:.4f} s, best law {:.4f} s\n", one.name,
+             times.planned, times.optimum, 100.0 * (times.planned / times.optimum - 1.0), times.not_beaten,
+             times.best_law);
   EXPECT_GE(times.planned, 0.99 * times.optimum) << one.name << ": the optimum is not one";
+  EXPECT_GE(times.planned, times.not_beaten) << one.name;
   return times;
+}
+
+/// The optimum lies above what nothing beats, and no law is better. The grid of dynamic programming costs up
+/// to 6 %, and it may gain a little where it interpolates.
+void expect_confirmed(const Times& times, const char* name) {
+  EXPECT_GE(times.optimum, 0.995 * times.not_beaten) << name;
+  EXPECT_GE(times.best_law, 0.99 * times.optimum) << name << ": a better law";
+  EXPECT_LE(times.best_law, 1.06 * times.optimum) << name;
+}
+
+/// No axis exceeds its limits, by differences of the sampled values.
+void expect_axis_limits(const Case& one) {
+  const kinematics::MachineModel machine = paper_machine();
+  Progress silent;
+  const Interpolated result =
+      interpolate(path_of(one, machine), machine, cutter::Cutter{}, options_of_the_cases(), silent);
+  const Excess excess = axis_excess(result.trajectory, machine);
+  EXPECT_LE(excess.relative, 1e-9) << one.name << ": " << excess.text;
+}
+
+TEST(LeastTime, IsThatOfClosedFormsOnAStraightWay) {
+  const kinematics::MachineModel machine = paper_machine();
+  const kinematics::InverseKinematics inverse(machine);
+  const MotionOptions options = options_of_the_cases();
+  const double way = 20.0, feed = 30.0, a = options.path_acceleration_max;
+  const Case one{"straight", {values(0, 0, 0, 0.3, 0), values(way, 0, 0, 0.3, 0)}, {feed}};
+  const toolpath::ToolPath path = path_of(one, machine);
+  const BlockMotions motions = block_motions(path, machine);
+  RunPlace start;
+  start.end = motions.size();
+  RunPlanner planner(motions, start, inverse, options);
+  LeastTime least(planner.next(), machine, options);
+  const double closed = RestToRest(way, feed, a, options.path_jerk_max).duration();
+  const double trapezoid = way / feed + feed / a;
+  EXPECT_GE(least.without_jerk(), 0.998 * trapezoid);
+  EXPECT_LE(least.without_jerk(), closed);
+  EXPECT_GE(least.with_jerk(), 0.99 * closed);
+  EXPECT_LE(least.with_jerk(), 1.02 * closed);
 }
 
 TEST(LookAhead, TimeIsWithinThreePercentOfTheOptimum) {
@@ -133,14 +183,10 @@ TEST(LookAhead, PastAPoleTimeIsWithinTenPercentOfTheOptimum) {
                 {200, 200},
                 BlockLaw::kTcp},
        }) {
-    const Times times = times_of(one);
+    const Times times = times_of(one, Oracles::kAll);
+    expect_confirmed(times, one.name);
     EXPECT_LE(times.planned, 1.1 * times.optimum) << one.name;
-    const kinematics::MachineModel machine = paper_machine();
-    Progress silent;
-    const Interpolated result =
-        interpolate(path_of(one, machine), machine, cutter::Cutter{}, options_of_the_cases(), silent);
-    const Excess excess = axis_excess(result.trajectory, machine);
-    EXPECT_LE(excess.relative, 1e-9) << one.name << ": " << excess.text;
+    expect_axis_limits(one);
   }
 }
 
@@ -164,25 +210,19 @@ Case pair_beside_the_pole(uint64_t seed) {
   return pair;
 }
 
-/// A part has one acceleration and one jerk from its lowest speed to its highest, and blocks that turn evenly
-/// are not parted: 3 of the first 40 pairs are above 10 %, the worst by 21 %; before, 7 were, by up to 50 %.
+/// A part has one acceleration and one jerk, and blocks that turn evenly are not parted: 3 of the first 40
+/// pairs are above 10 %, the worst by 21 %; of the first 140 15 are, the worst by 39 %, where a corner longer
+/// than half of its blocks is passed evenly.
 TEST(LookAhead, RandomPairsPastAPoleAreMostlyWithinTenPercentOfTheOptimum) {
-  const kinematics::MachineModel machine = paper_machine();
   int above = 0;
   for (uint64_t seed = 0; seed < 8; ++seed) {
-    const Case pair = pair_beside_the_pole(seed);
-    const Times times = times_of(pair);
+    const Times times = times_of(pair_beside_the_pole(seed), Oracles::kAll);
+    expect_confirmed(times, "random pair");
     above += times.planned > 1.1 * times.optimum ? 1 : 0;
     EXPECT_LE(times.planned, 1.25 * times.optimum) << "seed " << seed;
   }
   EXPECT_LE(above, 1);
-  for (uint64_t seed = 0; seed < 40; ++seed) {
-    Progress silent;
-    const Interpolated result = interpolate(path_of(pair_beside_the_pole(seed), machine), machine,
-                                            cutter::Cutter{}, options_of_the_cases(), silent);
-    const Excess excess = axis_excess(result.trajectory, machine);
-    EXPECT_LE(excess.relative, 1e-9) << "seed " << seed << ": " << excess.text;
-  }
+  for (uint64_t seed = 0; seed < 40; ++seed) expect_axis_limits(pair_beside_the_pole(seed));
 }
 
 }  // namespace

@@ -13,11 +13,10 @@
 
 #include <algorithm>
 #include <array>
-
 #include <cmath>
 #include <vector>
 
-#include "motion/blocks/block_run.h"
+#include "unit/motion/path_place.h"
 
 namespace swarf::motion {
 
@@ -90,26 +89,14 @@ class TimeOptimum {
     }
   }
 
-  struct Place {
-    kinematics::AxisValues first, second, third;
-    double tip = 1.0;  ///< mm of the tip per mm
-  };
-  /// By differences within the cell.
-  Place place_at(size_t cell, double offset) const {
-    const double own = run_.path.cells[cell].length, h = std::min(0.01, own / 8.0);
-    offset = std::clamp(offset, 2.0 * h, own - 2.0 * h);
-    const auto q = [&](int i) { return point_at(run_.path, cell, offset + i * h).q; };
-    Place place;
-    place.first = (8.0 * (q(1) - q(-1)) - (q(2) - q(-2))) / (12.0 * h);
-    place.second = (q(1) - 2.0 * q(0) + q(-1)) / (h * h);
-    place.third = (q(2) - 2.0 * q(1) + 2.0 * q(-1) - q(-2)) / (2.0 * h * h * h);
-    place.tip = options_.path_acceleration_max / run_.path.cells[cell].tip.acceleration;
-    return place;
+  double tip_at(size_t cell) const {  // mm of the tip per mm
+    return options_.path_acceleration_max / run_.path.cells[cell].tip.acceleration;
   }
 
   void add_rows(size_t k, size_t cell) {
     const double offset = cell == cell_of_[k] ? offset_[k] : run_.path.cells[cell].length;
-    const Place place = place_at(cell, offset);
+    const PathRates place = path_rates(run_.path, cell, offset);
+    const double tip = tip_at(cell);
     const double l = s_[k] - s_[k - 1], r = s_[k + 1] - s_[k];
     const double d1[3] = {-r / (l * (l + r)), (r - l) / (l * r), l / (r * (l + r))};
     const double d2[3] = {2.0 / (l * (l + r)), -2.0 / (l * r), 2.0 / (r * (l + r))};
@@ -121,9 +108,9 @@ class TimeOptimum {
       }
     };
     const size_t block = run_.place.first + point_at(run_.path, cell, offset).block;
-    double most = std::pow(run_.motions.feed_mm_s(block) / place.tip, 2);
-    add(0.0, 0.5, 0.0, options_.path_acceleration_max / place.tip, 0.0);
-    add(0.0, 0.0, 0.5, 0.0, options_.path_jerk_max / place.tip);
+    double most = std::pow(run_.motions.feed_mm_s(block) / tip, 2);
+    add(0.0, 0.5, 0.0, options_.path_acceleration_max / tip, 0.0);
+    add(0.0, 0.0, 0.5, 0.0, options_.path_jerk_max / tip);
     for (Eigen::Index i = 0; i < kinematics::kMaxAxes; ++i) {
       const double q1 = place.first[i], q2 = place.second[i], q3 = place.third[i];
       if (std::abs(q1) < 1e-9 && std::abs(q2) < 1e-6) continue;
@@ -135,8 +122,8 @@ class TimeOptimum {
   }
 
   double from_rest(double way, size_t cell) const {
-    const Place place = place_at(cell, cell == 0 ? 0.0 : run_.path.cells[cell].length);
-    double jerk = options_.path_jerk_max / place.tip;
+    const PathRates place = path_rates(run_.path, cell, cell == 0 ? 0.0 : run_.path.cells[cell].length);
+    double jerk = options_.path_jerk_max / tip_at(cell);
     for (Eigen::Index i = 0; i < kinematics::kMaxAxes; ++i)
       jerk = std::min(jerk, limits_.jerk[i] / std::abs(place.first[i]));
     return 0.25 * jerk * jerk * std::pow(6.0 * way / jerk, 4.0 / 3.0);
