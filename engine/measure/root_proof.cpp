@@ -48,6 +48,7 @@ class RootProof {
     const double near = 2.0 * std::min(input_.excess_known_mm, input_.excess_limit_mm) + kNearHeight;
     for (const double reach : {near, kNever}) {
       result_ = {};
+      layers_ = roofs_ = {};
       gouges_.clear();
       excesses_.clear();
       highest_seen_ = 0.0;
@@ -181,17 +182,23 @@ class RootProof {
     if (!root_.looks_up || !input_.wants_excess || !(bounds.high > input_.excess_limit_mm)) return;
     const bool open = bounds.high > excess_target() && is_stubborn(cell);
     if (!open && !may_hide_roof(cell, bounds)) return;
-    for (Corner& corner : cell.corners) {
-      if (!corner.above) {
-        corner.above = rest_top(corner.at, corner.range, raw_, all_near());
-        result_.work += all_near().size();
-      }
-      const double top = *corner.above;
-      if (!(top > std::max(result_.above_found, corner.height + stock::kSliver))) continue;
-      result_.above_found = top;
-      result_.above_top = corner.at.point + top * corner.at.normal;
-      highest_seen_ = std::max(highest_seen_, top);
+    if (!roofs_.is_worth_it(result_.work)) return;
+    for (Corner& corner : cell.corners) look_above(corner);
+    if (std::any_of(cell.corners.begin(), cell.corners.end(),
+                    [](const Corner& corner) { return corner.highest() > corner.height + stock::kSliver; }))
+      roofs_.count_success();
+  }
+
+  void look_above(Corner& corner) {
+    if (!corner.above) {
+      corner.above = rest_top(corner.at, corner.range, raw_, all_near());
+      roofs_.count(all_near().size(), result_.work);
     }
+    const double top = *corner.above;
+    if (!(top > std::max(result_.above_found, corner.height + stock::kSliver))) return;
+    result_.above_found = top;
+    result_.above_top = corner.at.point + top * corner.at.normal;
+    highest_seen_ = std::max(highest_seen_, top);
   }
 
   double gouge_target() const {
@@ -328,13 +335,15 @@ class RootProof {
   /// The same where it takes several sweeps, one above the other, to clear a column.
   double left_below_layers(Cell& cell, const std::vector<CornerHeights>& own, const CornerHeights& tops,
                            double target) {
-    if (!rest_.ends_below(cell, tops)) return kNever;
-    result_.work += all_near().size();
+    if (!layers_.is_worth_it(result_.work) || !rest_.ends_below(cell, tops)) return kNever;
+    layers_.count(all_near().size(), result_.work);
     const std::optional<CornerHeights> lowered = rest_.lowered(cell, tops, target, all_near());
     if (!lowered) return kNever;
     const double most = *std::max_element(lowered->begin(), lowered->end());
     cell.air = std::min(cell.air, most);
-    return most > target ? std::min(most, left(cell, own, *lowered, target)) : most;
+    const double high = most > target ? std::min(most, left(cell, own, *lowered, target)) : most;
+    if (!(high > target)) layers_.count_success();
+    return high;
   }
 
   /// Up to the stock's top, whatever was looked for.
@@ -576,6 +585,7 @@ class RootProof {
   std::vector<double> floors_;  ///< least heights of kept_ over the cell last looked at
   RestBound rest_{input_, root_, near_};
   bool stopped_ = false;
+  LooksAtAll layers_, roofs_;  ///< of left_below_layers() and measure_above()
   RootResult result_;
   std::vector<RegionPiece> gouges_, excesses_;
 };
