@@ -148,7 +148,8 @@ render::Strokes whiskers(const RaysBeside& rays, const SectionView& view, const 
 
 render::Leader leader_to(const SectionRay& ray, const char* name, const Paper& paper) {
   const Vec2 at = paper.at(ray.foot_W + ray.height_mm * ray.normal_W);
-  return {at.x(), at.y(), fmt::format("{} {:+.2f} µm", name, um_from_mm(ray.height_mm))};
+  const double shown_um = std::round(100.0 * um_from_mm(ray.height_mm)) / 100.0 + 0.0;  // never -0
+  return {at.x(), at.y(), fmt::format("{} {:+.2f} µm", name, shown_um)};
 }
 
 }  // namespace

@@ -85,7 +85,7 @@ struct Joined {
   std::vector<size_t> whole_of;  ///< of each part
 };
 
-Joined joined(const std::vector<RegionPart>& parts, DisjointSets& sets) {
+Joined joined_parts(const std::vector<RegionPart>& parts, DisjointSets& sets) {
   Joined result;
   for (uint32_t n = 0; n < parts.size(); ++n) {
     const uint32_t first = sets.root(n);
@@ -129,7 +129,7 @@ RootRegions join_pieces(const std::vector<RegionPiece>& pieces) {
   }
   DisjointSets sets(pieces.size());
   join_touching(discs, [&](uint32_t a, uint32_t b) { sets.join(a, b); });
-  Joined root = joined(parts, sets);
+  Joined root = joined_parts(parts, sets);
   std::vector<RootRegions::Rim> rim;
   for (size_t n = 0; n < pieces.size(); ++n)
     if (pieces[n].near_rim) rim.push_back({pieces[n].disc, root.whole_of[n]});
@@ -152,7 +152,7 @@ std::vector<Region> join_roots(const std::vector<const RootRegions*>& roots) {
   DisjointSets sets(parts.size());
   join_touching(discs, [&](uint32_t a, uint32_t b) { sets.join(part_of[a], part_of[b]); });
   std::vector<Region> regions;
-  for (const RegionPart& whole : joined(parts, sets).wholes)
+  for (const RegionPart& whole : joined_parts(parts, sets).wholes)
     regions.push_back(
         {um_from_mm(whole.worst_mm), whole.area_mm2, whole.volume_mm3, whole.place, whole.block});
   std::stable_sort(regions.begin(), regions.end(), larger);

@@ -4,11 +4,15 @@
 
 #include "measure/column_range.h"
 #include "measure/raw_cell.h"
+#include "mesh/mesh_distance.h"
 #include "stock/rays/ray_height.h"
 #include "stock/sweep/convex_motion.h"
 
 namespace swarf::measure {
 namespace {
+
+/// Where another face is as near need not be known closer than this, of itself.
+constexpr double kShareOfRange = 1e-3;
 
 /// Where a line leaves the raw stock for good; as leaves_box.
 double leaves_raw(const stock::RawShape& raw, const Vec3& point, const Vec3& way) {
@@ -49,6 +53,38 @@ double counted_depth(const CertificateInput& input, const CellCorner& corner, do
   depth = input.field.own_depth(corner.point, corner.normal, depth, share);
   const double through = leaves_raw(input.stock.raw(), corner.point, -corner.normal);
   return through > 0.0 ? std::min(depth, through) : depth;
+}
+
+bool asks_above(const CertificateInput& input) {
+  return input.wants_excess || input.wants_scallop;
+}
+
+void take_range(const CertificateInput& input, Corner& corner) {
+  const CellCorner& at = corner.at;
+  corner.range = kNever;
+  if (!asks_above(input) && input.field.design != nullptr) return;
+  if (input.field.design == nullptr) {
+    const stock::FreeRange::Range range = input.ranges(at.point, at.normal);
+    corner.range = range.mm;
+    if (range.mm < kNever) corner.wall = range.wall;
+    return;
+  }
+  const double through = leaves_box(input.stock.box(), at.point, at.normal);
+  if (!(through > 0.0)) return;
+  corner.range = input.field.own_depth(at.point, -at.normal, through, kShareOfRange);
+  if (corner.range >= through) return;
+  const mesh::NearestPoint near =
+      input.field.design->distance.nearest(beyond(at.point, at.normal, corner.range));
+  corner.wall = near.point;
+  corner.facet = near.triangle;
+}
+
+void keep_own(const CertificateInput& input, Corner& corner) {
+  const CellCorner& at = corner.at;
+  if (corner.height < 0.0 && corner.near != stock::kUncut)
+    corner.height = -counted_depth(input, at, -corner.height);
+  if (corner.height > 0.0 && corner.range == kNever && input.field.design != nullptr)
+    corner.height = input.field.own_depth(at.point, -at.normal, corner.height, kShareOfRange);
 }
 
 double lowest_cut(const CellCorner& at, const NearSweep& near, double highest, bool fans,

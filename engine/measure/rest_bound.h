@@ -47,6 +47,13 @@ struct Cell {
 /// mm; 0 inside.
 double distance_to(const Box& box, const Vec3& p);
 
+/// Whether a bound of what stands is asked for at all.
+bool asks_above(const CertificateInput& input);
+
+/// How high above a place material is its own: a mesh tells by its distance, patches by their rays. Where
+/// nothing is asked of what stands there, only the height that is left is brought down to it (keep_own).
+void take_range(const CertificateInput& input, Corner& corner);
+
 /// What stands at a place, its range known, before any cut.
 void take_raw(const stock::RawShape& raw, Corner& corner);
 
@@ -57,6 +64,9 @@ double look_at_raw(const stock::RawShape& raw, const std::vector<CornerHeights>&
 /// How deep below a place a cut can count: to where another face is nearer, or out of the stock.
 double counted_depth(const CertificateInput& input, const CellCorner& corner, double depth,
                      double share = 1e-9);
+
+/// Of a cut, or of what stands, what is nearer to another face is that one's.
+void keep_own(const CertificateInput& input, Corner& corner);
 
 /// Lowest end of what the sweep cuts of the column, not above `highest`; infinite where it cuts none. `fans`:
 /// columns fan out there from an edge or a corner. What is cut of another face of `field` alone is left out.

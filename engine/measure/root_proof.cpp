@@ -12,7 +12,6 @@
 #include "measure/raw_cell.h"
 #include "measure/rest_bound.h"
 #include "measure/root_sweeps.h"
-#include "mesh/mesh_distance.h"
 #include "stock/rays/ray_height.h"
 #include "surface/face.h"
 
@@ -23,8 +22,6 @@ namespace {
 constexpr double kBorder = 0.01;
 /// In cells smaller than this the deepest place of the lowest sweep is measured too; mm.
 constexpr double kProbed = 0.1;
-/// Where another face is as near need not be known closer than this, of itself.
-constexpr double kShareOfRange = 1e-3;
 /// Of the deepest, or highest: heights need not be known closer for the volume beyond a limit.
 constexpr double kVolumeShare = 0.1;
 /// No cell is divided below this; mm.
@@ -33,9 +30,49 @@ constexpr double kSmallest = 1e-3;
 /// top.
 constexpr double kNearHeight = 0.05;
 
-/// Whether a bound of what stands is asked for at all.
-bool asks_above(const CertificateInput& input) {
-  return input.wants_excess || input.wants_scallop;
+/// Cells that are about to close by division need no look.
+bool is_stubborn(const Cell& cell, double voxel_mm) {
+  constexpr double kStubborn = 1.0 / 8.0;  // of a voxel
+  return cell.shape.radius() <= kStubborn * voxel_mm;
+}
+
+CornerHeights through_stock(const Cell& cell, const Box& stock) {
+  CornerHeights through{};
+  for (size_t k = 0; k < 3; ++k) {
+    const CellCorner& at = cell.corners[k].at;
+    through[k] = leaves_box(stock, at.point, -at.normal);
+  }
+  return through;
+}
+
+/// Height over the design up to which there was material to begin with over the whole cell; below 0 where
+/// the design reaches out of the stock.
+double stood_before(const Cell& cell, const stock::RawShape& raw) {
+  if (!raw.is_box()) return raw_stood(cell.shape, raw);
+  const Box& box = raw.box();
+  double inside = kNever, least = kNever, top = kNever;
+  const auto look_at = [&](const Vec3& p) {
+    inside = std::min({inside, (p - box.lower).minCoeff(), (box.upper - p).minCoeff()});
+  };
+  for (size_t k = 0; k < 3 && cell.shape.is_curved(); ++k) look_at(cell.shape.side(k).point);
+  for (const Corner& corner : cell.corners) {
+    const Vec3& p = corner.at.point;
+    look_at(p);
+    const double leave = leaves_box(box, p, corner.at.normal);
+    least = std::min(least, leave > -kNever ? leave : -distance_to(box, p) - cell.shape.radius());
+    top = std::min(top, corner.top);
+  }
+  if (inside < cell.shape.stray_mm) return std::min(0.0, least) - cell.shape.flatness_mm;
+  return std::max(0.0, top - cell.shape.flatness_mm - top * std::min(1.0, cell.shape.turn));
+}
+
+/// The grid tells nothing of a cell wider than its band, and no more of one much smaller than of the cell
+/// around it.
+bool asks_grid(const Cell& cell, double voxel) {
+  double highest = 0.0;
+  for (const Corner& corner : cell.corners) highest = std::max(highest, corner.height);
+  return cell.shape.radius() < 2.0 * voxel && (cell.air == kNever || cell.shape.radius() > voxel / 32.0) &&
+         cell.air > highest + 2.0 * voxel;
 }
 
 class RootProof {
@@ -48,6 +85,7 @@ class RootProof {
     const double near = 2.0 * std::min(input_.excess_known_mm, input_.excess_limit_mm) + kNearHeight;
     for (const double reach : {near, kNever}) {
       result_ = {};
+      layers_ = roofs_ = {};
       gouges_.clear();
       excesses_.clear();
       highest_seen_ = 0.0;
@@ -83,33 +121,11 @@ class RootProof {
     double low, high, skin;
   };
 
-  /// How high above a place material is its own: a mesh tells by its distance, patches by their rays. Where
-  /// nothing is asked of what stands there, only the height that is left is brought down to it (keep_own).
-  void take_range(Corner& corner) const {
-    const CellCorner& at = corner.at;
-    corner.range = kNever;
-    if (!asks_above(input_) && input_.field.design != nullptr) return;
-    if (input_.field.design == nullptr) {
-      const stock::FreeRange::Range range = input_.ranges(at.point, at.normal);
-      corner.range = range.mm;
-      if (range.mm < kNever) corner.wall = range.wall;
-      return;
-    }
-    const double through = leaves_box(input_.stock.box(), at.point, at.normal);
-    if (!(through > 0.0)) return;
-    corner.range = input_.field.own_depth(at.point, -at.normal, through, kShareOfRange);
-    if (corner.range >= through) return;
-    const mesh::NearestPoint near =
-        input_.field.design->distance.nearest(beyond(at.point, at.normal, corner.range));
-    corner.wall = near.point;
-    corner.facet = near.triangle;
-  }
-
   /// Height at one corner, by the sweeps kept_[begin, end); `guesses` go first.
   Corner measured(const CellCorner& at, size_t begin, size_t end, std::array<uint32_t, 2> guesses) {
     Corner corner;
     corner.at = at;
-    take_range(corner);
+    take_range(input_, corner);
     take_raw(raw_, corner);
     const auto look_at = [&](uint32_t n) {
       const double low = lowest_cut(at, near_[n], corner.height, root_.cell.area_mm2() == 0.0, input_.field);
@@ -130,18 +146,9 @@ class RootProof {
     if (root_.looks_up && corner.height > (asked == kNever ? result_.excess_found : asked)) {
       for (uint32_t n = 0; n < near_.size(); ++n) look_at(n);
     }
-    keep_own(corner);
+    keep_own(input_, corner);
     note(corner);
     return corner;
-  }
-
-  /// Of a cut, or of what stands, what is nearer to another face is that one's.
-  void keep_own(Corner& corner) const {
-    const CellCorner& at = corner.at;
-    if (corner.height < 0.0 && corner.near != stock::kUncut)
-      corner.height = -counted_depth(input_, at, -corner.height);
-    if (corner.height > 0.0 && corner.range == kNever && input_.field.design != nullptr)
-      corner.height = input_.field.own_depth(at.point, -at.normal, corner.height, kShareOfRange);
   }
 
   void note(const Corner& corner) {
@@ -159,12 +166,6 @@ class RootProof {
     }
   }
 
-  /// Cells that are about to close by division need no look.
-  bool is_stubborn(const Cell& cell) const {
-    constexpr double kStubborn = 1.0 / 8.0;  // of a voxel
-    return cell.shape.radius() <= kStubborn * input_.stock.voxel_mm();
-  }
-
   /// Whether nothing that stands on the cell breaks the limit in a root where something does, and a roof may.
   bool may_hide_roof(const Cell& cell, const Bounds& bounds) const {
     const double limit = input_.excess_limit_mm;
@@ -179,19 +180,25 @@ class RootProof {
   /// gap: that is measured at the corners.
   void measure_above(Cell& cell, const Bounds& bounds) {
     if (!root_.looks_up || !input_.wants_excess || !(bounds.high > input_.excess_limit_mm)) return;
-    const bool open = bounds.high > excess_target() && is_stubborn(cell);
+    const bool open = bounds.high > excess_target() && is_stubborn(cell, input_.stock.voxel_mm());
     if (!open && !may_hide_roof(cell, bounds)) return;
-    for (Corner& corner : cell.corners) {
-      if (!corner.above) {
-        corner.above = rest_top(corner.at, corner.range, raw_, all_near());
-        result_.work += all_near().size();
-      }
-      const double top = *corner.above;
-      if (!(top > std::max(result_.above_found, corner.height + stock::kSliver))) continue;
-      result_.above_found = top;
-      result_.above_top = corner.at.point + top * corner.at.normal;
-      highest_seen_ = std::max(highest_seen_, top);
+    if (!roofs_.is_worth_it(result_.work)) return;
+    for (Corner& corner : cell.corners) look_above(corner);
+    if (std::any_of(cell.corners.begin(), cell.corners.end(),
+                    [](const Corner& corner) { return corner.highest() > corner.height + stock::kSliver; }))
+      roofs_.count_success();
+  }
+
+  void look_above(Corner& corner) {
+    if (!corner.above) {
+      corner.above = rest_top(corner.at, corner.range, raw_, all_near());
+      roofs_.count(all_near().size(), result_.work);
     }
+    const double top = *corner.above;
+    if (!(top > std::max(result_.above_found, corner.height + stock::kSliver))) return;
+    result_.above_found = top;
+    result_.above_top = corner.at.point + top * corner.at.normal;
+    highest_seen_ = std::max(highest_seen_, top);
   }
 
   double gouge_target() const {
@@ -227,36 +234,6 @@ class RootProof {
     return ends;
   }
 
-  CornerHeights through_stock(const Cell& cell) const {
-    CornerHeights through{};
-    for (size_t k = 0; k < 3; ++k) {
-      const CellCorner& at = cell.corners[k].at;
-      through[k] = leaves_box(input_.stock.box(), at.point, -at.normal);
-    }
-    return through;
-  }
-
-  /// Height over the design up to which there was material to begin with over the whole cell; below 0 where
-  /// the design reaches out of the stock.
-  double stood_before(const Cell& cell) const {
-    if (!raw_.is_box()) return raw_stood(cell.shape, raw_);
-    const Box& box = raw_.box();
-    double inside = kNever, least = kNever, top = kNever;
-    const auto look_at = [&](const Vec3& p) {
-      inside = std::min({inside, (p - box.lower).minCoeff(), (box.upper - p).minCoeff()});
-    };
-    for (size_t k = 0; k < 3 && cell.shape.is_curved(); ++k) look_at(cell.shape.side(k).point);
-    for (const Corner& corner : cell.corners) {
-      const Vec3& p = corner.at.point;
-      look_at(p);
-      const double leave = leaves_box(box, p, corner.at.normal);
-      least = std::min(least, leave > -kNever ? leave : -distance_to(box, p) - cell.shape.radius());
-      top = std::min(top, corner.top);
-    }
-    if (inside < cell.shape.stray_mm) return std::min(0.0, least) - cell.shape.flatness_mm;
-    return std::max(0.0, top - cell.shape.flatness_mm - top * std::min(1.0, cell.shape.turn));
-  }
-
   /// Least height over the cell; floors_ gets each sweep's. A bound holds however much deeper it looks, so
   /// what is the cell's own, which asks for distances, is asked for only where that does not suffice; and
   /// each sweep's bound may look as deep as it likes best.
@@ -266,7 +243,8 @@ class RootProof {
     ColumnDepths depths{{stock::kSkin, stock::kSkin, stock::kSkin}, {}};
     double low = lower_bound(cell, depths);
     if (low >= -gouge_target() || !root_.looks_down) return low;
-    const std::vector<CornerHeights> own = own_below(cell.shape, input_.field, through_stock(cell)),
+    const std::vector<CornerHeights> own = own_below(cell.shape, input_.field,
+                                                     through_stock(cell, input_.stock.box())),
                                      ends = ends_below(cell, own);
     const bool flat = is_flat(cell.shape);
     if (flat) depths.own = own;
@@ -286,23 +264,13 @@ class RootProof {
   }
 
   double lower_bound(const Cell& cell, const ColumnDepths& depths) {
-    double low = std::min(cell.dropped, stood_before(cell));
+    double low = std::min(cell.dropped, stood_before(cell, raw_));
     for (size_t i = cell.begin; i < cell.end; ++i) {
       if (floors_[i] < -gouge_target())
         floors_[i] = std::max(floors_[i], least_height(cell.shape, near_[kept_[i]], depths, -gouge_target()));
       low = std::min(low, floors_[i]);
     }
     return low;
-  }
-
-  /// The grid tells nothing of a cell wider than its band, and no more of one much smaller than of the cell
-  /// around it.
-  bool asks_grid(const Cell& cell) const {
-    const double voxel = input_.stock.voxel_mm();
-    double highest = 0.0;
-    for (const Corner& corner : cell.corners) highest = std::max(highest, corner.height);
-    return cell.shape.radius() < 2.0 * voxel && (cell.air == kNever || cell.shape.radius() > voxel / 32.0) &&
-           cell.air > highest + 2.0 * voxel;
   }
 
   double upper_bound(Cell& cell) {
@@ -315,7 +283,7 @@ class RootProof {
     const std::vector<CornerHeights> own = rest_.own_above(cell);
     if (!raw_.is_box()) top = look_at_raw(raw_, own, top, cell);
     double high = left(cell, own, tops_of(own, top), target);
-    if (high > target && asks_grid(cell)) {
+    if (high > target && asks_grid(cell, input_.stock.voxel_mm())) {
       cell.air = std::min(cell.air,
                           air_above(cell.shape, input_.stock, input_.stock_bound_mm, std::max(leave, 0.0)));
       top = std::min(top, cell.air);
@@ -328,13 +296,15 @@ class RootProof {
   /// The same where it takes several sweeps, one above the other, to clear a column.
   double left_below_layers(Cell& cell, const std::vector<CornerHeights>& own, const CornerHeights& tops,
                            double target) {
-    if (!rest_.ends_below(cell, tops)) return kNever;
-    result_.work += all_near().size();
+    if (!layers_.is_worth_it(result_.work) || !rest_.ends_below(cell, tops)) return kNever;
+    layers_.count(all_near().size(), result_.work);
     const std::optional<CornerHeights> lowered = rest_.lowered(cell, tops, target, all_near());
     if (!lowered) return kNever;
     const double most = *std::max_element(lowered->begin(), lowered->end());
     cell.air = std::min(cell.air, most);
-    return most > target ? std::min(most, left(cell, own, *lowered, target)) : most;
+    const double high = most > target ? std::min(most, left(cell, own, *lowered, target)) : most;
+    if (!(high > target)) layers_.count_success();
+    return high;
   }
 
   /// Up to the stock's top, whatever was looked for.
@@ -420,7 +390,7 @@ class RootProof {
     const auto stays_above = [&](uint32_t n) {
       return least_height(cell.shape, near_[n], depths, limit) > limit;
     };
-    if (!(stood_before(cell) > limit)) return false;
+    if (!(stood_before(cell, raw_) > limit)) return false;
     for (size_t i = cell.begin; i < cell.end; ++i)
       if (!(floors_[i] > limit) && !stays_above(kept_[i])) return false;
     if (cell.dropped > limit) return true;
@@ -436,7 +406,7 @@ class RootProof {
     const auto breaking = std::count_if(cell.corners.begin(), cell.corners.end(), [&](const Corner& corner) {
       return corner.highest() > input_.excess_limit_mm;
     });
-    return breaking == 0 ? !is_stubborn(cell) : breaking < 3 && edge > kBorder;
+    return breaking == 0 ? !is_stubborn(cell, input_.stock.voxel_mm()) : breaking < 3 && edge > kBorder;
   }
 
   /// Whether the cell lies in a gouge of whose volume it tells too little.
@@ -576,6 +546,7 @@ class RootProof {
   std::vector<double> floors_;  ///< least heights of kept_ over the cell last looked at
   RestBound rest_{input_, root_, near_};
   bool stopped_ = false;
+  LooksAtAll layers_, roofs_;  ///< of left_below_layers() and measure_above()
   RootResult result_;
   std::vector<RegionPiece> gouges_, excesses_;
 };

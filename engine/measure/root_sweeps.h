@@ -1,6 +1,7 @@
 // The sweeps that matter to a root cell of the proof. Internal to this folder.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "measure/certificate.h"
@@ -14,5 +15,25 @@ namespace swarf::measure {
 /// the top of the stock.
 std::vector<NearSweep> sweeps_up_to(double reach, const RootCell& root, const CertificateInput& input,
                                     const SweepIndex& index);
+
+/// Looks at all sweeps above the root, which may be a thousand times those of a cell: where few of them are
+/// of use, they take no more work than twice all other.
+class LooksAtAll {
+ public:
+  bool is_worth_it(size_t work) const {
+    constexpr size_t kFirst = 64, kPerSuccess = 16, kShare = 2;
+    return looks_ < kFirst + kPerSuccess * successes_ || work_ <= kShare * (work - work_);
+  }
+  /// One of `sweeps`, whose work is added to `work`.
+  void count(size_t sweeps, size_t& work) {
+    ++looks_;
+    work_ += sweeps;
+    work += sweeps;
+  }
+  void count_success() { ++successes_; }
+
+ private:
+  size_t looks_ = 0, successes_ = 0, work_ = 0;
+};
 
 }  // namespace swarf::measure

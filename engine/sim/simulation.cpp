@@ -484,7 +484,7 @@ MeasuredPath moved_tool(const Job& job, Progress& progress, const CutOptions& op
   MeasuredPath measured = planned_path(job, progress);
   const bool movie = run && options.outputs.pictures;
   if (movie) {
-    require_shot_lines(job.scene.movie, measured.path.elements);
+    require_shot_lines(job.scene.movie, measured.path.elements, job.scene.stock.box_W);
     require_still_shots(job.scene.stills, job.scene.stock.box_W,
                         job.design_mesh != nullptr || !job.design.empty());
   }

@@ -162,6 +162,7 @@ TEST_F(Review, WhatAStoryboardNamesAndIsNotThereIsToldBeforeTheCut) {
   expect_refused(run_with("[[movie.shot]]\nfrom_line = 16\nto_line = 7\n"), "place-unknown");
   expect_refused(run_with("[[movie.shot]]\nfrom_line = 14\nspeed = \"cutting\"\n"), "nothing-cut",
                  "scene.toml:");
+  expect_refused(run_with("[[movie.shot]]\nsection = \"x=500\"\n"), "section-misses", "x from 0 to 40 mm");
   expect_refused(run_with("[[movie.shot]]\ncamera = \"drone\"\n"), "unknown-camera", "scene.toml:");
   expect_refused(run_with("[[movie.shot]]\nspeed = \"warp\"\n"), "unknown-choice");
   expect_refused(run_with("[[movie.shot]]\nzoom = 3\n"), "unknown-key");

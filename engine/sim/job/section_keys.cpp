@@ -106,4 +106,11 @@ std::string extent_along(const SectionPlane& plane, const Box& box) {
   return fmt::format("from {:g} to {:g} mm along the normal, counted from the plane", least, most);
 }
 
+void require_section(const SectionPlane& plane, const SourceLocation& where, const Box& stock_W) {
+  if (divides(plane, stock_W)) return;
+  throw InputError("section-misses", where,
+                   fmt::format("the section {} misses the stock", section_words(plane)),
+                   fmt::format("the stock reaches {}", extent_along(plane, stock_W)));
+}
+
 }  // namespace swarf::sim

@@ -28,6 +28,9 @@ std::optional<SectionPlane> read_section(ConfigTable& table);
 /// "x = 12.5 mm", or point and normal.
 std::string section_words(const SectionPlane& plane);
 
+/// Throws InputError "section-misses" at `where` unless some of the stock lies on either side.
+void require_section(const SectionPlane& plane, const SourceLocation& where, const Box& stock_W);
+
 /// Some of the box lies on either side.
 bool divides(const SectionPlane& plane, const Box& box);
 /// Where along the plane's normal the box begins and ends, for messages: "x from 0 to 40 mm".

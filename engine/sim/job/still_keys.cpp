@@ -1,7 +1,5 @@
 #include "sim/job/still_keys.h"
 
-#include <fmt/format.h>
-
 #include "sim/job/movie_keys.h"
 
 namespace swarf::sim {
@@ -35,10 +33,7 @@ void require_still_shots(const StillSettings& stills, const Box& stock_W, bool h
     if (shot.kind == "deviation" && !has_design)
       throw InputError("nothing-measured", shot.where, "there is no design that the part deviates from",
                        "name one in [design], or write kind = \"part\"");
-    if (!shot.section || divides(*shot.section, stock_W)) continue;
-    throw InputError("section-misses", shot.where,
-                     fmt::format("the section {} misses the stock", section_words(*shot.section)),
-                     fmt::format("the stock reaches {}", extent_along(*shot.section, stock_W)));
+    if (shot.section) require_section(*shot.section, shot.where, stock_W);
   }
 }
 

@@ -39,9 +39,10 @@ InputError shot_cuts_nothing(const MovieShot& shot) {
           "write speed = \"time\", or other places"};
 }
 
-void require_shot_lines(const MovieSettings& movie, const toolpath::Elements& elements) {
+void require_shot_lines(const MovieSettings& movie, const toolpath::Elements& elements, const Box& stock_W) {
   if (movie.seconds <= 0.0) return;
   for (const MovieShot& shot : movie.shots) {
+    if (shot.section) require_section(*shot.section, shot.where, stock_W);
     try {
       if (shot.from_line) require_line(*shot.from_line, elements);
       if (shot.to_line) require_line(*shot.to_line, elements);

@@ -17,8 +17,9 @@ CycleWindow shot_window(const MovieShot& shot, const motion::Cycles& cycles);
 /// "nothing-cut": a shot of cutting alone in which no feed move lies.
 InputError shot_cuts_nothing(const MovieShot& shot);
 
-/// All lines that the shots of a movie name move something. Before the motion is known.
-void require_shot_lines(const MovieSettings& movie, const toolpath::Elements& elements);
+/// All lines that the shots of a movie name move something, and their sections go through the stock. Before
+/// the motion is known.
+void require_shot_lines(const MovieSettings& movie, const toolpath::Elements& elements, const Box& stock_W);
 
 /// All shots of the movie are there, and cut where they are to.
 void require_shots(const MovieSettings& movie, const motion::Cycles& cycles);

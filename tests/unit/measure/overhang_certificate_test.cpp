@@ -67,7 +67,7 @@ double highest_of(const stock::SurfaceDexels& dexels) {
   return highest;
 }
 
-Certificate prove(const Undercut& job, double limit_mm) {
+Certificate proven(const Undercut& job, double limit_mm) {
   stock::Stock stock(job.box, job.voxel_mm);
   stock.cut(job.sweeps, job.cutter);
   const stock::FreeRange ranges({&job.field, 1});
@@ -109,19 +109,19 @@ void expect_kept(const Certificate& proof, double top_um, double limit_mm) {
 
 // Did not end within minutes: below the flutes of the lowest pass no single sweep covers a column up to air.
 TEST(Overhang, ASlabBreaksALimitBelowItsTop) {
-  expect_broken(prove(slab(), 0.1), 3000.0, 1.9 * 9.6);
+  expect_broken(proven(slab(), 0.1), 3000.0, 1.9 * 9.6);
 }
 
 TEST(Overhang, ASlabKeepsALimitAboveItsTop) {
-  expect_kept(prove(slab(), 3.01), 3000.0, 3.01);
+  expect_kept(proven(slab(), 3.01), 3000.0, 3.01);
 }
 
 // Its top is milled down to 2.6 mm, less than a voxel below the limit.
 TEST(Overhang, AMilledRoofKeepsALimitCloseAboveIt) {
   Undercut job = slab();
   row(job, 8.0, 2.6);
-  expect_kept(prove(job, 2.61), 2600.0, 2.61);
-  expect_broken(prove(job, 2.4), 2600.0, 1.4 * 9.6);
+  expect_kept(proven(job, 2.61), 2600.0, 2.61);
+  expect_broken(proven(job, 2.4), 2600.0, 1.4 * 9.6);
 }
 
 // Layers that end in each other's planes leave nothing: a limit is proven without a roof, too.
@@ -132,7 +132,7 @@ TEST(Overhang, LayersOfShortFlutesLeaveNothing) {
     job.field = plane_rays(0.4);
     for (const double z : {2.0, 1.0, 0.0})
       for (double x = -9.0; x <= 9.0; x += 3.0) row(job, x, z);
-    expect_kept(prove(job, 0.01), 0.0, 0.01);
+    expect_kept(proven(job, 0.01), 0.0, 0.01);
   }
 }
 
@@ -145,11 +145,11 @@ TEST(Overhang, ATiltedRoof) {
   // Passes under what stands beyond x = 4, leaning: the disc's left rim comes down to z = 0.
   row(job, 8.0 + 4.0 * (std::cos(tilt) - 1.0), 4.0 * std::sin(tilt),
       Vec3(-std::sin(tilt), 0, std::cos(tilt)));
-  const Certificate proof = prove(job, 0.1);
+  const Certificate proof = proven(job, 0.1);
   EXPECT_NEAR(proof.excess_found_um, 3000.0, 0.01);
   EXPECT_GE(proof.excess.um, 3000.0 - 0.01);
   EXPECT_LT(proof.cells, kFewCells);
-  expect_kept(prove(job, 3.01), 3000.0, 3.01);
+  expect_kept(proven(job, 3.01), 3000.0, 3.01);
 }
 
 // Two roofs .2 and .15 mm thick, one above the other, with gaps of .05 mm: all less than a voxel.
@@ -161,8 +161,8 @@ TEST(Overhang, TwoThinRoofs) {
     for (double x = -8.0; x <= 4.0; x += 4.0) row(job, x, 0.05 * layer);
   for (const double z : {0.0, 0.25}) row(job, 12.5, z);
   for (int layer = 9; layer < 60; ++layer) row(job, 9.0, 0.05 * layer);
-  expect_broken(prove(job, 0.1), 450.0, 1.9 * 9.6, 0.06);
-  expect_kept(prove(job, 0.5), 450.0, 0.5);
+  expect_broken(proven(job, 0.1), 450.0, 1.9 * 9.6, 0.06);
+  expect_kept(proven(job, 0.5), 450.0, 0.5);
 }
 
 /// Everything of a case follows from its seed: flutes of .2 to 2 mm, rows at heights that are multiples of
@@ -201,7 +201,7 @@ TEST(Overhang, DenseRaysOfRandomJobsStayWithinTheBounds) {
     const double highest = highest_of(rays_of(job, stock::rays_on_surface(job.field->surface, 0.03)));
     Rng rng(seed);
     for (const double limit : {0.05, highest + 0.01, rng.uniform(0.1, 2.0)}) {
-      const Certificate proof = prove(job, limit);
+      const Certificate proof = proven(job, limit);
       const std::string where =
           fmt::format("SWARF_FIRST_OVERHANG={} SWARF_RANDOM_OVERHANGS=1, limit {} mm, {} cells, {} open",
                       seed, limit, proof.cells, proof.open_cells);
