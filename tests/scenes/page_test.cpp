@@ -325,6 +325,21 @@ TEST_F(Colours, AboveAGapOfAMeshAreThoseOfItsRays) {
   expect_range();
 }
 
+/// The proof draws no region of what breaks a limit by less than it resolves.
+TEST(Overhung, ALimitJustBelowTheHighestHasItsFinding) {
+  const fs::path folder = swarf::test::fresh_folder("just_below");
+  const auto run = run_swarf("run " + overhung_scene(folder, kPlaneUnderTheSlab) + " --no-render -o " +
+                             (folder / "run").string() + " --set accept.excess_max_um=2999.9");
+  EXPECT_EQ(run.exit_code, 1) << run.output;
+  const json findings = json::parse(read_text(folder / "run/findings.json"));
+  const auto excess = std::count_if(findings.begin(), findings.end(),
+                                    [](const json& finding) { return finding.at("code") == "excess"; });
+  EXPECT_EQ(excess, 1) << run.output;
+  EXPECT_NE(run.output.find("material stands above the design, 3000.000 um about"), std::string::npos)
+      << run.output;
+  fs::remove_all(folder);
+}
+
 /// Pages whose findings are of different kinds.
 class PagesWithFindings {
  public:

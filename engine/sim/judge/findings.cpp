@@ -98,8 +98,9 @@ class Collector {
 };
 
 std::string place(const measure::Region& region) {
-  return fmt::format("{:.3f} um over {:.2f} mm2 about ({:.3f}, {:.3f}, {:.3f}) mm", region.worst_um,
-                     region.area_mm2, region.place.x(), region.place.y(), region.place.z());
+  const std::string area = region.area_mm2 > 0.0 ? fmt::format(" over {:.2f} mm2", region.area_mm2) : "";
+  return fmt::format("{:.3f} um{} about ({:.3f}, {:.3f}, {:.3f}) mm", region.worst_um, area, region.place.x(),
+                     region.place.y(), region.place.z());
 }
 
 void at_region(Finding& finding, const measure::Region& region) {
@@ -118,35 +119,55 @@ void not_proven(const Job& job, Collector& collect) {
               {job.scene.program_file}, 0.0);
 }
 
-/// One finding for each listed region beyond its limit.
+/// Gouges, or what stands too high.
+struct RegionKind {
+  const char *check, *what, *remedy;
+  const std::vector<measure::Region>& regions;
+  const std::optional<double>& limit_um;
+  measure::Region worst;  ///< of all, where no region tells it
+};
+
+/// One finding for each listed region beyond its limit; where the worst is so little beyond it that the proof
+/// draws no region, one for its place.
+void region_faults(const Job& job, const RegionKind& kind, const Result& result, Collector& collect) {
+  collect.begin(kind.check);
+  std::vector<measure::Region> beyond;
+  for (const measure::Region& region : kind.regions)
+    if (kind.limit_um && region.worst_um > *kind.limit_um) beyond.push_back(region);
+  if (beyond.empty() && collect.check().outcome == Outcome::kFails) beyond.push_back(kind.worst);
+  for (const measure::Region& region : beyond)
+    at_region(collect.at_block(
+                  kind.check,
+                  fmt::format("{}, {}; [accept] allows {:g} um", kind.what, place(region), *kind.limit_um),
+                  kind.remedy, result.main.rays.sources, region.block),
+              region);
+  not_proven(job, collect);
+}
+
 void region_faults(const Job& job, const Result& result, Collector& collect) {
   const measure::SurfaceMetrics& surface = result.main.surface;
   const AcceptLimits& accept = job.scene.accept;
-  collect.begin("gouge");
+  const auto worst = [](double um, const Vec3& at, uint32_t block) {
+    measure::Region region;
+    region.worst_um = um;
+    region.place = at;
+    region.block = block;
+    return region;
+  };
   const char* remedy = result.main.path.elements.hold_blocks()
                            ? "move the tool of this block away from the design"
                            : "lower the feed F or the control period: the chord of one cycle cuts into a "
                              "convex surface";
-  for (const measure::Region& region : surface.gouges) {
-    if (!accept.gouge_max_um || region.worst_um <= *accept.gouge_max_um) continue;
-    at_region(
-        collect.at_block(
-            "gouge", fmt::format("a gouge, {}; [accept] allows {:g} um", place(region), *accept.gouge_max_um),
-            remedy, result.main.rays.sources, region.block),
-        region);
-  }
-  not_proven(job, collect);
-  collect.begin("excess");
-  for (const measure::Region& region : surface.excesses) {
-    if (!accept.excess_max_um || region.worst_um <= *accept.excess_max_um) continue;
-    at_region(collect.at_block("excess",
-                               fmt::format("material stands above the design, {}; [accept] allows {:g} um",
-                                           place(region), *accept.excess_max_um),
-                               "machine this place too, or start from a smaller stock",
-                               result.main.rays.sources, region.block),
-              region);
-  }
-  not_proven(job, collect);
+  region_faults(job,
+                {"gouge", "a gouge", remedy, surface.gouges, accept.gouge_max_um,
+                 worst(surface.gouge_max_um, surface.gouge_bottom, surface.gouge_block)},
+                result, collect);
+  region_faults(
+      job,
+      {"excess", "material stands above the design", "machine this place too, or start from a smaller stock",
+       surface.excesses, accept.excess_max_um,
+       worst(surface.excess_max_um, surface.excess_top, surface.excess_block)},
+      result, collect);
 }
 
 void surface_faults(const Job& job, const Result& result, Collector& collect) {
