@@ -540,7 +540,7 @@ void predict(const Job& job, const CutOptions& options, Progress& progress, Resu
       memory.stock_mb, memory.peak_mb, ranks - 1, other_mb, memory.limit_mb));
   MemoryPrediction most = memory;
   most.peak_mb = std::max(memory.peak_mb, other_mb);
-  require_memory(job, most);
+  require_memory(job, most, ranks);
 }
 
 }  // namespace

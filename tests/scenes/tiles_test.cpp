@@ -152,6 +152,7 @@ TEST_F(Tiles, TheMemoryOfEveryRankIsPredicted) {
       run_command(mpirun(3) + "run --tiles " + wave() + "--max-memory 100 -o " + at("tiles"));
   EXPECT_EQ(refused.exit_code, 2) << refused.output;
   EXPECT_NE(refused.output.find("out-of-memory"), std::string::npos) << refused.output;
+  EXPECT_EQ(refused.output.find("--spill"), std::string::npos) << "which ranks refuse\n" << refused.output;
   EXPECT_FALSE(fs::exists(at("tiles")));
   const size_t told = refused.output.find(", rank 0 ");
   ASSERT_NE(told, std::string::npos) << refused.output;

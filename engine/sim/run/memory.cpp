@@ -296,16 +296,16 @@ std::string pictures_that_fit(const Scene& scene, double too_much_mb) {
 
 }  // namespace
 
-void require_memory(const Job& job, const MemoryPrediction& prediction) {
+void require_memory(const Job& job, const MemoryPrediction& prediction, int ranks) {
   if (prediction.peak_mb <= prediction.limit_mb) return;
   throw InputError("out-of-memory", {job.scene.file},
                    fmt::format("stock.voxel_mm = {:g} is expected to need {:.0f} MB, {:.0f} MB may be used",
                                job.scene.stock.voxel_mm, prediction.peak_mb, prediction.limit_mb),
                    prediction.fixed_mb < prediction.limit_mb
-                       ? fmt::format("voxel_mm = {:g} fits; or raise --max-memory, or add --spill: slower, "
-                                     "leaves of the stock go to "
-                                     "the disk",
-                                     voxel_that_fits(job, prediction))
+                       ? fmt::format("voxel_mm = {:g} fits; or raise --max-memory, or {}",
+                                     voxel_that_fits(job, prediction),
+                                     ranks > 1 ? "start fewer ranks on a machine"
+                                               : "add --spill: slower, leaves of the stock go to the disk")
                        : pictures_that_fit(job.scene, prediction.peak_mb - prediction.limit_mb));
 }
 

@@ -38,6 +38,7 @@ struct Outputs {
 MemoryPrediction predict_memory(const Job& job, const MeasuredPath& path, const Outputs& outputs, int stocks);
 
 /// Throws InputError "out-of-memory" with a voxel size that fits when the prediction exceeds its limit.
-void require_memory(const Job& job, const MemoryPrediction& prediction);
+/// `ranks` that share the run cannot take leaves to the disk.
+void require_memory(const Job& job, const MemoryPrediction& prediction, int ranks = 1);
 
 }  // namespace swarf::sim
