@@ -31,9 +31,9 @@ constexpr double kSmallest = 1e-3;
 constexpr double kNearHeight = 0.05;
 
 /// Cells that are about to close by division need no look.
-bool is_stubborn(const Cell& cell, double voxel_mm) {
-  constexpr double kStubborn = 1.0 / 8.0;  // of a voxel
-  return cell.shape.radius() <= kStubborn * voxel_mm;
+bool resists_division(const Cell& cell, double voxel_mm) {
+  constexpr double kResisting = 1.0 / 8.0;  // of a voxel
+  return cell.shape.radius() <= kResisting * voxel_mm;
 }
 
 CornerHeights through_stock(const Cell& cell, const Box& stock) {
@@ -180,7 +180,7 @@ class RootProof {
   /// gap: that is measured at the corners.
   void measure_above(Cell& cell, const Bounds& bounds) {
     if (!root_.looks_up || !input_.wants_excess || !(bounds.high > input_.excess_limit_mm)) return;
-    const bool open = bounds.high > excess_target() && is_stubborn(cell, input_.stock.voxel_mm());
+    const bool open = bounds.high > excess_target() && resists_division(cell, input_.stock.voxel_mm());
     if (!open && !may_hide_roof(cell, bounds)) return;
     if (!roofs_.is_worth_it(result_.work)) return;
     for (Corner& corner : cell.corners) look_above(corner);
@@ -406,7 +406,7 @@ class RootProof {
     const auto breaking = std::count_if(cell.corners.begin(), cell.corners.end(), [&](const Corner& corner) {
       return corner.highest() > input_.excess_limit_mm;
     });
-    return breaking == 0 ? !is_stubborn(cell, input_.stock.voxel_mm()) : breaking < 3 && edge > kBorder;
+    return breaking == 0 ? !resists_division(cell, input_.stock.voxel_mm()) : breaking < 3 && edge > kBorder;
   }
 
   /// Whether the cell lies in a gouge of whose volume it tells too little.
