@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -321,10 +322,14 @@ Facets tessellate(const Model& model, double chord_mm, bool closed_only, double 
   guarded(model.file, [&] {
     // The library keeps the chord at a few places of each facet; the proof sees all of it.
     constexpr int kMostTries = 4;
-    double asked = 0.5 * chord_mm;
+    double asked = 0.5 * chord_mm, last_mm = std::numeric_limits<double>::infinity();
     for (int i = 0; i < kMostTries; ++i) {
       made = facets_of(model.shape->nurbs, asked, edge_mm, chord_mm, closed_only);
-      if (made.chord_mm <= chord_mm) break;
+      // What does not come nearer by finer facets is a fault of the file, such as an edge beside its face.
+      constexpr double kNoNearer = 0.95;
+      const bool is_stuck = made.chord_mm > kNoNearer * last_mm;
+      if (made.chord_mm <= chord_mm || is_stuck) break;
+      last_mm = made.chord_mm;
       asked *= std::clamp(0.7 * chord_mm / made.chord_mm, 0.3, 0.9);
     }
   });

@@ -29,7 +29,7 @@ class HyperboloidRun : public testing::Test {
     folder_ = swarf::test::fresh_folder("hyperboloid") / "run";
     run_ = run_swarf("run " + kFolder + "scene.toml -o " + folder_.string() +
                      " --set movie.seconds=0.2 --set 'movie.size=[320,180]' --set 'stills.size=[320,180]' "
-                     "--set stills.samples=2 --set stock.voxel_mm=0.5");
+                     "--set stills.samples=2 --set stock.voxel_mm=0.5 --set 'design.z_mm=[-6,2]'");
   }
   static void TearDownTestSuite() { fs::remove_all(folder_.parent_path()); }
 
@@ -65,7 +65,7 @@ TEST(ExactCases, AGougeNamesTheBlockOfTheClFile) {
   const fs::path folder = swarf::test::fresh_folder("hyperboloid_gouge") / "run";
   const auto run = run_swarf("run " + kFolder + "scene.toml --no-render -o " + folder.string() +
                              " --set design.distance_mm=30.01 --set stock.voxel_mm=1 --set design.pitch_mm=2"
-                             " --set accept.gouge_max_um=9 --set 'design.z_mm=[-1,1]'");
+                             " --set accept.gouge_max_um=9 --set 'design.z_mm=[-0.25,0.25]'");
   EXPECT_EQ(run.exit_code, 1) << run.output;
   bool named = false;
   for (const json& finding : read_json(folder / "findings.json")) {

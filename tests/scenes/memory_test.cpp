@@ -54,7 +54,7 @@ INSTANTIATE_TEST_SUITE_P(
                             "--no-render --set toolpath.compare=false --set stock.voxel_mm=2 "
                             "--set design.pitch_mm=2 --set interpolator.period_ms=0.5"},
                     Setting{"rays",
-                            "--no-render --set toolpath.compare=false --set stock.voxel_mm=1 "
+                            "--no-render --set toolpath.compare=false --set stock.voxel_mm=0.5 "
                             "--set design.pitch_mm=0.1",
                             "lin_koren_dome", " "},
                     Setting{"stock",
