@@ -135,7 +135,7 @@ namespace {
 
 DisplayMesh display_mesh(const FinishedRun& run, const TriMesh& closed, double max_error_mm) {
   DisplayMesh display;
-  display.mesh = shown_part(run, mesh::decimate(closed, max_error_mm, &display.error_mm), &display.highest);
+  display.mesh = shown_part(run, mesh::decimate(closed, max_error_mm, &display.error_mm));
   return display;
 }
 

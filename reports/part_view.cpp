@@ -10,9 +10,8 @@ namespace swarf::reports {
 
 namespace {
 
-measure::HighestVertex measure_part(const FinishedRun& run, TriMesh& mesh) {
-  return sim::measure_mesh({run.job, run.cycles, run.dexels, run.carried, run.rays, run.stock.voxel_mm()},
-                           mesh);
+void measure_part(const FinishedRun& run, TriMesh& mesh) {
+  sim::measure_mesh({run.job, run.cycles, run.dexels, run.carried, run.rays, run.stock.voxel_mm()}, mesh);
 }
 
 }  // namespace
@@ -23,10 +22,9 @@ TriMesh part_mesh(const FinishedRun& run) {
   return mesh;
 }
 
-TriMesh shown_part(const FinishedRun& run, TriMesh closed, measure::HighestVertex* highest) {
+TriMesh shown_part(const FinishedRun& run, TriMesh closed) {
   mesh::split_creases(closed, kCreaseRad);
-  const measure::HighestVertex one = measure_part(run, closed);
-  if (highest != nullptr) highest->see(one.um, one.top);
+  measure_part(run, closed);
   return closed;
 }
 

@@ -21,8 +21,7 @@ TriMesh part_mesh(const FinishedRun& run);
 
 /// The same for the eye, made from the stock's closed mesh or a decimated one: split at its creases before it
 /// is measured, so that either side of an edge has its own normal and deviation. Not closed by indices.
-/// `highest`: raised to the highest vertex that a ray of its own has measured, unless null.
-TriMesh shown_part(const FinishedRun& run, TriMesh closed, measure::HighestVertex* highest = nullptr);
+TriMesh shown_part(const FinishedRun& run, TriMesh closed);
 
 /// The colours of deviation end at the scene's limits: what breaks one has the strongest colour of its side.
 render::DeviationScale deviation_scale(const sim::Job& job);

@@ -17,9 +17,8 @@ namespace swarf::reports {
 
 /// The part for the eye, made light enough to be sent around.
 struct DisplayMesh {
-  TriMesh mesh;                      ///< shown_part of the decimated mesh
-  double error_mm = 0.0;             ///< that the decimation reached, measured
-  measure::HighestVertex highest{};  ///< of its vertices
+  TriMesh mesh;           ///< shown_part of the decimated mesh
+  double error_mm = 0.0;  ///< that the decimation reached, measured
 };
 /// Where metrics.json has a maximum.
 struct WorstPlace {
@@ -80,9 +79,9 @@ double animation_scale(const FinishedRun& run);
 
 /// Gives the mesh a vertex over each of these places with what is known there: what is read from the picture
 /// is what metrics.json says. Where no place is the deepest, or the highest, of all, the lowest or the
-/// highest ray is. A place farther from every measured triangle than two voxels has none in the mesh. No
-/// vertex that had a ray of its own stands higher (sim::raise_highest); one that is known to the mesh's error
-/// only is lowered to the highest place. None that lies deeper is raised.
+/// highest ray is. A place farther from every measured triangle than two voxels has none in the mesh. What
+/// is higher than the highest place, which is known to the mesh's error only or was searched for and missed,
+/// is lowered to it: results do not depend on what pictures are made. None that lies deeper is raised.
 void add_worst_places(const FinishedRun& run, std::span<const WorstPlace> places, TriMesh& mesh);
 
 }  // namespace swarf::reports

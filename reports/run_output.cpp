@@ -270,18 +270,12 @@ std::vector<Diagnostic> write_run(PendingFolder& folder, const sim::Job& job, si
   TriMesh closed = options.report || options.render ? run.stock.mesh() : TriMesh{};
   std::optional<ReviewModels> models;
   std::optional<TriMesh> part;
-  measure::HighestVertex highest;
   if (options.report) {
     progress.begin("glTF", 2, "files");
-    attempts.run([&] {
-      models = review_models(run, closed, part_error_mm(run.job), review_pins(result));
-      highest = models->part.highest;
-    });
+    attempts.run([&] { models = review_models(run, closed, part_error_mm(run.job), review_pins(result)); });
     progress.advance(1);
   }
-  if (options.render) attempts.run([&] { part = shown_part(run, std::move(closed), &highest); });
-  // All that is measured of the part has been, and nothing has been told yet.
-  sim::raise_highest(job, highest, result);
+  if (options.render) attempts.run([&] { part = shown_part(run, std::move(closed)); });
   if (models) attempts.run([&] { write_glb(folder, run, std::move(*models), result, files); });
   if (options.report) progress.end();
   if (part)

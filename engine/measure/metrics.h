@@ -55,7 +55,7 @@ struct SurfaceMetrics {
   double gouge_area_mm2 = 0.0;       ///< area deeper than the gouge limit
   uint32_t gouge_block = 0xffffffffu;
   /// Highest material anywhere: uncut, or left above an undercut, included; refined between the rays. Where
-  /// it ends, W, mm: on the part's surface, or within the part where another face is as near.
+  /// it ends, W, mm: within the part where another face is as near (sim/run/highest_place.h).
   double excess_max_um = 0.0;
   Vec3 excess_top = Vec3::Zero();
   uint32_t excess_block = 0xffffffffu;
@@ -68,15 +68,6 @@ struct SurfaceMetrics {
   size_t overhung_samples = 0;                   ///< rays with material above a gap
   size_t gouge_regions = 0, excess_regions = 0;  ///< all of them
   std::vector<Region> gouges, excesses;          ///< the worst kListedRegions, worst first
-};
-
-/// The highest of the vertices that rays of their own have measured, and where its material ends, W, mm.
-struct HighestVertex {
-  double um = 0.0;
-  Vec3 top = Vec3::Zero();
-  void see(double height_um, const Vec3& at) {
-    if (height_um > um) *this = {height_um, at};
-  }
 };
 
 struct HistogramBin {

@@ -115,10 +115,7 @@ class VertexValues {
   void set(const VertexRay& ray, double end, double mm) {
     if (std::isnan(end)) return;
     part_.deviation_um[ray.vertex] = static_cast<float>(um_from_mm(mm));
-    highest.see(um_from_mm(mm), ray.point + end * ray.normal);
   }
-
-  HighestVertex highest;
 
  private:
   TriMesh& part_;
@@ -134,7 +131,7 @@ class VertexRays {
   VertexRays(const VertexRayInput& input, TriMesh& part)
       : input_(input), places_(input.design), part_(part), starts_(part.positions.size()) {}
 
-  HighestVertex measure() {
+  void measure() {
     const double beside = kBeside * input_.slack_mm;
     std::vector<uint8_t> on_face(starts_.size(), 0);
     parallel_chunks(starts_.size(), kVerticesPerTask, [&](size_t begin, size_t end) {
@@ -153,7 +150,6 @@ class VertexRays {
     const std::vector<double> ends = ends_of(input_, rays, input_.design.design);
     for (size_t n = 0; n < rays.size(); ++n) values_.set(rays[n], ends[n], ends[n]);
     measure_rest();
-    return values_.highest;
   }
 
  private:
@@ -186,15 +182,15 @@ class VertexRays {
 
 }  // namespace
 
-HighestVertex deviation_by_vertex_rays(const VertexRayInput& input, TriMesh& part) {
+void deviation_by_vertex_rays(const VertexRayInput& input, TriMesh& part) {
   SWARF_CHECK(input.design.design != nullptr, "a parametric design has a grid of rays (seen_surface.h)");
   SWARF_CHECK(part.normals.size() == part.positions.size(), "rays follow normals");
   part.deviation_um.assign(part.positions.size(), std::numeric_limits<float>::quiet_NaN());
-  return VertexRays(input, part).measure();
+  VertexRays(input, part).measure();
 }
 
-HighestVertex deviation_by_vertex_rays(const VertexRayInput& input, const SeenSurface& seen,
-                                       std::span<const uint32_t> vertices, TriMesh& part) {
+void deviation_by_vertex_rays(const VertexRayInput& input, const SeenSurface& seen,
+                              std::span<const uint32_t> vertices, TriMesh& part) {
   std::vector<VertexRay> over, own;
   VertexValues values(part);
   for (const uint32_t i : vertices) {
@@ -215,7 +211,6 @@ HighestVertex deviation_by_vertex_rays(const VertexRayInput& input, const SeenSu
     const auto foot = seen.foot_of(own[n].point + ends[n] * own[n].normal);
     if (foot) values.set(own[n], ends[n], foot->height_mm);
   }
-  return values.highest;
 }
 
 }  // namespace swarf::measure

@@ -6,7 +6,6 @@
 #include <functional>
 #include <span>
 
-#include "measure/metrics.h"
 #include "measure/seen_surface.h"
 #include "mesh/tri_mesh.h"
 #include "stock/raw/raw_shape.h"
@@ -33,11 +32,11 @@ struct VertexRayInput {
 ///                 edge: a ray along the vertex's own normal finds the surface that the sweeps left, within
 ///                 the slack, and the deviation is the distance of that place from the design.
 ///   else          Nothing is found, and nothing is said.
-HighestVertex deviation_by_vertex_rays(const VertexRayInput& input, TriMesh& part);
+void deviation_by_vertex_rays(const VertexRayInput& input, TriMesh& part);
 
 /// Of a parametric design: the same for the vertices that its rays have seen, but not on the machined face
 /// (Seen::on_face). What no ray finds stays as it is.
-HighestVertex deviation_by_vertex_rays(const VertexRayInput& input, const SeenSurface& seen,
-                                       std::span<const uint32_t> vertices, TriMesh& part);
+void deviation_by_vertex_rays(const VertexRayInput& input, const SeenSurface& seen,
+                              std::span<const uint32_t> vertices, TriMesh& part);
 
 }  // namespace swarf::measure

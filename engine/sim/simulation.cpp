@@ -15,6 +15,7 @@
 #include "sim/job/driven_part.h"
 #include "sim/judge/findings.h"
 #include "sim/run/design_rays.h"
+#include "sim/run/highest_place.h"
 #include "sim/run/prove_part.h"
 #include "sim/run/ray_cutters.h"
 #include "sim/run/recorder.h"
@@ -566,6 +567,7 @@ Result simulate(const Job& job, const CutOptions& options, Progress& progress) {
   progress.end();
   measure_part(job, progress, result);
   prove_part(job, options.ranks, progress, result);
+  end_on_part(job, result.main);
   measure_flank(job, progress, result);
   if (job.scene.flank) result.flank_milling = flank_figures(job, result.main, progress);
   // A program of blocks is one path: there is nothing to compare it with.
@@ -583,16 +585,6 @@ Result simulate(const Job& job, const CutOptions& options, Progress& progress) {
   result.findings = find_faults(job, result);
   result.stopped = progress.stop_requested();
   return result;
-}
-
-void raise_highest(const Job& job, const measure::HighestVertex& vertex, Result& result) {
-  measure::SurfaceMetrics& surface = result.main.surface;
-  if (vertex.um <= surface.excess_max_um) return;
-  if (surface.excess_bound && vertex.um > surface.excess_bound->um) return;
-  surface.excess_max_um = vertex.um;
-  surface.excess_top = vertex.top;
-  surface.excess_block = stock::kUncut;
-  result.checks = judge(job, result);
 }
 
 }  // namespace swarf::sim

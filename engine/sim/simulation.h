@@ -22,10 +22,6 @@ MeasuredPath plan_tool(const Job& job, Progress& progress);
 /// Runs everything. Throws InputError as move_tool and cut_stock do.
 Result simulate(const Job& job, const CutOptions& options, Progress& progress);
 
-/// What a ray at a vertex of the part's mesh has measured is told as its highest material where it is higher
-/// than all that was found before, and judged. Beyond what is proven nothing is: such a ray leans.
-void raise_highest(const Job& job, const measure::HighestVertex& vertex, Result& result);
-
 /// For every rank but 0 of a run that cuts tile by tile: makes the motion and does what rank 0 asks of it,
 /// until that one says that it is done. `options`: of the run. What is wrong here is told by rank 0.
 void serve_tiles(const Job& job, const CutOptions& options, Ranks& ranks, Progress& progress);

@@ -264,22 +264,21 @@ TEST_F(Colours, OfAMeshAreThoseOfItsRays) {
   expect_range();
 }
 
-/// A block 3 mm higher than its design is faced down to it, but for a slab between 1 and 3 mm that the flutes
-/// of a T-slot cutter have passed under from the right, and a neck of 2 mm that holds it.
-std::string overhung_scene(const fs::path& folder, const std::string& design) {
+/// Rows along Y at x and z of a flat end of 8 mm, flutes as long as is said.
+struct Row {
+  double x, z;
+};
+std::string milled_scene(const fs::path& folder, const std::vector<Row>& rows, double flute_mm,
+                         const std::string& box, const std::string& design) {
   std::string cl =
-      "PARTNO/SLAB ABOVE A GAP\nUNITS/MM\nLOADTL/1\nCUTTER/8,0\nMULTAX/ON\nSPINDL/8000,CLW\n"
+      "PARTNO/ROWS\nUNITS/MM\nLOADTL/1\nCUTTER/8,0\nMULTAX/ON\nSPINDL/8000,CLW\n"
       "FROM/-30.0,-12.0,30.0,0.0,0.0,1.0\nFEDRAT/3000,MMPM\n";
-  const auto row = [&](double x, double z) {
+  for (const Row& row : rows) {
     cl += fmt::format(
         "RAPID\nGOTO/{0:.1f},-12.0,30.0,0.0,0.0,1.0\nRAPID\nGOTO/{0:.1f},-12.0,{1:.1f},0.0,0.0,1.0\n"
         "GOTO/{0:.1f},12.0,{1:.1f},0.0,0.0,1.0\nRAPID\nGOTO/{0:.1f},12.0,30.0,0.0,0.0,1.0\n",
-        x, z);
-  };
-  row(12.5, 0.0);
-  for (const double z : {2.0, 1.0, 0.0})
-    for (double x = -8.0; x <= 4.0; x += 4.0) row(x, z);
-  row(4.5, 2.0);
+        row.x, row.z);
+  }
   swarf::test::write_text(folder / "path.cl", cl + "FINI\n");
   swarf::test::write_text(folder / "scene.toml", R"(
 machine = ")" SWARF_SOURCE_DIR R"(/assets/machines/lin_koren_xyzab/machine.toml"
@@ -288,11 +287,10 @@ cl = "path.cl"
 number = 1
 diameter_mm = 8
 corner_radius_mm = 0
-flute_length_mm = 1
 shank_diameter_mm = 4
 length_mm = 60
-[stock]
-box_mm = [[-10, -5, -5], [10, 5, 3]]
+flute_length_mm = )" + fmt::format("{}\n[stock]\nbox_mm = {}", flute_mm, box) +
+                                                     R"(
 voxel_mm = 0.25
 [interpolator]
 mode = "tcp"
@@ -300,6 +298,16 @@ mode = "tcp"
 pitch_mm = 0.4
 )" + design);
   return (folder / "scene.toml").string();
+}
+
+/// A block 3 mm higher than its design is faced down to it, but for a slab between 1 and 3 mm that the flutes
+/// of a T-slot cutter have passed under from the right, and a neck of 2 mm that holds it.
+std::string overhung_scene(const fs::path& folder, const std::string& design) {
+  std::vector<Row> rows{{12.5, 0.0}};
+  for (const double z : {2.0, 1.0, 0.0})
+    for (double x = -8.0; x <= 4.0; x += 4.0) rows.push_back({x, z});
+  rows.push_back({4.5, 2.0});
+  return milled_scene(folder, rows, 1.0, "[[-10, -5, -5], [10, 5, 3]]", design);
 }
 
 constexpr const char* kPlaneUnderTheSlab = R"(kind = "plane"
@@ -312,6 +320,56 @@ TEST_F(Colours, AboveAGapOfAPlaneAreThoseOfItsRays) {
   run(overhung_scene(folder_, kPlaneUnderTheSlab), "");
   EXPECT_GT(um("overhung_samples"), 0.0);
   EXPECT_NEAR(um("excess_max_um"), 3000.0, kReadLimitUm);
+  expect_range();
+}
+
+// Pictures look at the part, they do not measure it: what is told is the same without them.
+TEST_F(Colours, ChangeNothingThatIsTold) {
+  const std::string scene = overhung_scene(folder_, kPlaneUnderTheSlab);
+  run(scene, "");
+  const json with_page = json::parse(read_text(out() + "/metrics.json"));
+  run(scene, " --no-render");
+  const json alone = json::parse(read_text(out() + "/metrics.json"));
+  for (const char* const part : {"surface", "highest_material", "checks", "gouges", "excesses"})
+    EXPECT_EQ(with_page.at(part), alone.at(part)) << part;
+}
+
+/// A closed outline in x and z, 10 mm long.
+void save_bar(const fs::path& file, const std::vector<swarf::Vec2>& outline) {
+  swarf::TriMesh bar;
+  ASSERT_TRUE(swarf::mesh::add_prism(bar, outline, -5, 5));
+  for (auto& p : bar.positions) p = {p[0], -p[2], p[1]};
+  swarf::mesh::save_mesh(file.string(), bar);
+}
+
+// What is left in an inner corner, 3 mm wide and 4 high, belongs to the wall as much as to the floor: what
+// counts over the floor ends 3 mm above it. The place that is told lies on the part's surface.
+TEST_F(Colours, WhereAnotherFaceEndsTheMaterialAreThoseOfThePart) {
+  save_bar(folder_ / "step.stl", {{-5, -5}, {10, -5}, {10, 0}, {0, 0}, {0, 5}, {-5, 5}});
+  run(milled_scene(folder_, {{4.0, 4.0}, {7.0, 0.0}}, 20.0, "[[-5, -5, -5], [10, 5, 5]]",
+                   "kind = \"mesh\"\nmesh = \"step.stl\"\n"),
+      "");
+  const json highest = json::parse(read_text(out() + "/metrics.json")).at("highest_material");
+  const double x = highest.at("x_mm"), z = highest.at("z_mm");
+  EXPECT_NEAR(um("excess_max_um"), 3000.0, 1.0);
+  EXPECT_NEAR(x, 3.0, 1e-3) << z;
+  EXPECT_GE(z, 3.0 - 1e-3);
+  EXPECT_LE(z, 4.0 + 1e-3);
+  expect_range();
+}
+
+// A slot of 4 mm that nobody has milled: half way between its walls nothing is higher, and that ray ends in a
+// wall. The material around it ends at the slot's mouth, or at an end.
+TEST_F(Colours, InASlotThatIsFullAreThoseOfItsMouth) {
+  save_bar(folder_ / "slot.stl", {{-8, -9}, {8, -9}, {8, 0}, {2, 0}, {2, -6}, {-2, -6}, {-2, 0}, {-8, 0}});
+  run(milled_scene(folder_, {{-4.0, 0.0}, {4.0, 0.0}}, 20.0, "[[-8, -5, -9], [8, 5, 1]]",
+                   "kind = \"mesh\"\nmesh = \"slot.stl\"\n"),
+      "");
+  const json highest = json::parse(read_text(out() + "/metrics.json")).at("highest_material");
+  EXPECT_NEAR(um("excess_max_um"), 2000.0, 30.0);
+  const double x = highest.at("x_mm"), y = highest.at("y_mm"), z = highest.at("z_mm");
+  EXPECT_LT(std::min(std::abs(z), 5.0 - std::abs(y)), 1e-5) << x << ' ' << y << ' ' << z;
+  EXPECT_LT(std::abs(x), 2.0);
   expect_range();
 }
 

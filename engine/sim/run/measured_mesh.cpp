@@ -49,8 +49,7 @@ void with_own_rays(const MeasuredPart& part, const stock::SurfaceDexels& dexels,
                                 cut});
 }
 
-measure::HighestVertex measure_by_rays(const MeasuredPart& part, const stock::SurfaceDexels& dexels,
-                                       TriMesh& mesh) {
+void measure_by_rays(const MeasuredPart& part, const stock::SurfaceDexels& dexels, TriMesh& mesh) {
   const std::vector<Vec3> axes = axes_of(part);
   const measure::SeenSurface seen(dexels, kReachVoxels * part.voxel_mm);
   std::vector<uint8_t> off_face(mesh.positions.size(), 0);
@@ -78,12 +77,10 @@ measure::HighestVertex measure_by_rays(const MeasuredPart& part, const stock::Su
   std::vector<uint32_t> vertices;
   for (uint32_t i = 0; i < off_face.size(); ++i)
     if (off_face[i] != 0) vertices.push_back(i);
-  measure::HighestVertex highest;
-  if (vertices.empty()) return highest;
+  if (vertices.empty()) return;
   with_own_rays(part, dexels, [&](const measure::VertexRayInput& input) {
-    highest = measure::deviation_by_vertex_rays(input, seen, vertices, mesh);
+    measure::deviation_by_vertex_rays(input, seen, vertices, mesh);
   });
-  return highest;
 }
 
 /// Some ray's material ends farther from the design than a vertex may be off, or hangs above a gap.
@@ -108,20 +105,16 @@ bool normals_need_cycles(const Job& job) {
   return job.scene.stock.cut_by == CutBy::kPasses && job.driven == nullptr;
 }
 
-measure::HighestVertex measure_mesh(const MeasuredPart& part, TriMesh& mesh) {
+void measure_mesh(const MeasuredPart& part, TriMesh& mesh) {
   mesh.deviation_um.assign(mesh.positions.size(), std::numeric_limits<float>::quiet_NaN());
-  measure::HighestVertex highest;
   for (const stock::SurfaceDexels& dexels : part.dexels) {
-    measure::HighestVertex one;
     if (dexels.field().surface != nullptr)
-      one = measure_by_rays(part, dexels, mesh);
+      measure_by_rays(part, dexels, mesh);
     else
       with_own_rays(part, dexels, [&](const measure::VertexRayInput& input) {
-        one = measure::deviation_by_vertex_rays(input, mesh);
+        measure::deviation_by_vertex_rays(input, mesh);
       });
-    highest.see(one.um, one.top);
   }
-  return highest;
 }
 
 }  // namespace swarf::sim

@@ -33,9 +33,7 @@ bool colours_need_sweeps(const Job& job, const std::vector<stock::SurfaceDexels>
 bool normals_need_cycles(const Job& job);
 
 /// Sets TriMesh::deviation_um (um; NaN where no ray has seen the vertex), and the normals of facets that the
-/// bottom of a flat end left on planned passes to the tool's axis. The mesh has normals. Returns the highest
-/// of the vertices that had rays of their own, which may stand higher than the measuring rays between which
-/// they are.
-measure::HighestVertex measure_mesh(const MeasuredPart& part, TriMesh& mesh);
+/// bottom of a flat end left on planned passes to the tool's axis. The mesh has normals.
+void measure_mesh(const MeasuredPart& part, TriMesh& mesh);
 
 }  // namespace swarf::sim
