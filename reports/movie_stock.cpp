@@ -78,26 +78,25 @@ void add_stock(const StockState& state, const std::vector<uint64_t>& revisions, 
 
 MovieStock::MovieStock(const FinishedRun& run, sim::MovieColours colours)
     : run_(run),
-      stock_(sim::starting_stock(run.job, run.carried, run.job.scene.movie.voxel_mm)),
-      all_(sim::stock_sweeps(run.job, run.cycles)),
-      solids_(sim::tool_solids(run.job.scene)),
+      along_(run.job, run.carried, run.cycles, run.job.scene.movie.voxel_mm),
       colours_(colours),
       patches_(mesher_.patches()),
       revisions_(mesher_.patches(), 0),
       tools_(mesher_.patches()),
-      deviations_(mesher_.patches()) {}
+      deviations_(mesher_.patches()),
+      cutting_(kNoTool) {}
 
 void MovieStock::advance(const motion::Cycle& cycle) {
-  size_t end = done_;
-  while (end < all_.sweeps.size() && sim::is_done(all_.sources[all_.sweeps[end].block], cycle)) ++end;
-  sim::for_each_tool(
-      std::span(all_.sweeps).subspan(done_, end - done_),
-      [&](uint32_t block) { return all_.sources[block].tool; },
-      [&](size_t tool, std::span<const stock::Sweep> part) {
-        stock_.cut(part, solids_[tool]);
-        cutting_ = static_cast<int8_t>(tool);
-      });
-  done_ = end;
+  along_.advance(cycle, [&](size_t tool) {
+    const auto next = static_cast<int8_t>(tool);
+    // What the tool before has cut is to have its colour.
+    if (colours_ == sim::MovieColours::kTool && next != cutting_) mesh_changes();
+    cutting_ = next;
+  });
+  mesh_changes();
+}
+
+void MovieStock::mesh_changes() {
   const std::vector<size_t> changed = mesher_.update();
   std::vector<std::shared_ptr<TriMesh>> made(changed.size());
   parallel_chunks(changed.size(), 1, [&](size_t i, size_t) {

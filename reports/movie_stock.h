@@ -10,7 +10,7 @@
 #include "render/draw_list.h"
 #include "reports/machine_view.h"
 #include "sim/job/scene.h"
-#include "sim/run/job_sweeps.h"
+#include "sim/run/cut_along.h"
 #include "stock/mesher/stock_mesher.h"
 
 namespace swarf::reports {
@@ -27,7 +27,7 @@ class MovieStock {
  public:
   MovieStock(const FinishedRun& run, sim::MovieColours colours);
 
-  /// Cuts everything up to and including this cycle, which is no earlier than the last one.
+  /// Cuts up to the tool's place in this cycle, which is no earlier than the last one.
   void advance(const motion::Cycle& cycle);
   const StockState& state() const { return patches_; }
   /// By patch: grows when the patch changes, and is like that of no other.
@@ -38,23 +38,22 @@ class MovieStock {
   size_t vertices_measured() const { return vertices_measured_; }
 
  private:
+  void mesh_changes();
   void colour_by_tool(size_t number, TriMesh& mesh);
   void colour_by_deviation(const std::vector<size_t>& changed,
                            const std::vector<std::shared_ptr<TriMesh>>& made);
 
   const FinishedRun& run_;
-  stock::Stock stock_;
-  stock::StockMesher mesher_{stock_};
-  sim::JobSweeps all_;
-  std::vector<stock::CutterSolid> solids_;  ///< by tool
+  sim::CutAlong along_;
+  stock::StockMesher mesher_{along_.stock()};
   sim::MovieColours colours_;
   StockState patches_;
   std::vector<uint64_t> revisions_;
   std::vector<std::vector<std::pair<uint64_t, int8_t>>> tools_;  ///< by patch: place of a vertex, who cut it
   /// By patch: place and normal of a finished vertex, its deviation, um (NaN: no ray sees it).
   std::vector<std::vector<std::pair<uint64_t, float>>> deviations_;
-  int8_t cutting_ = 0;  ///< the last tool that cut
-  size_t done_ = 0, made_ = 0, vertices_measured_ = 0;
+  int8_t cutting_;  ///< the last tool that cut
+  size_t made_ = 0, vertices_measured_ = 0;
 };
 
 }  // namespace swarf::reports

@@ -18,6 +18,7 @@
 #include "reports/part_view.h"
 #include "reports/pictures.h"
 #include "reports/section_still.h"
+#include "sim/run/cut_along.h"
 
 namespace swarf::reports {
 namespace {
@@ -104,16 +105,9 @@ render::Camera machine_camera(const FinishedRun& run, const std::string& name,
 }
 
 TriMesh stock_at(const FinishedRun& run, const motion::Cycle& cycle) {
-  stock::Stock stock = sim::starting_stock(run.job, run.carried, run.job.scene.movie.voxel_mm);
-  const sim::JobSweeps all = sim::stock_sweeps(run.job, run.cycles);
-  const auto end = std::find_if(all.sweeps.begin(), all.sweeps.end(), [&](const stock::Sweep& sweep) {
-    return !sim::is_done(all.sources[sweep.block], cycle);
-  });
-  const std::vector<stock::CutterSolid> solids = sim::tool_solids(run.job.scene);
-  sim::for_each_tool(
-      std::span(all.sweeps.begin(), end), [&](uint32_t block) { return all.sources[block].tool; },
-      [&](size_t tool, std::span<const stock::Sweep> part) { stock.cut(part, solids[tool]); });
-  TriMesh mesh = stock.mesh();
+  sim::CutAlong along(run.job, run.carried, run.cycles, run.job.scene.movie.voxel_mm);
+  along.advance(cycle);
+  TriMesh mesh = along.stock().mesh();
   mesh::split_creases(mesh, kCreaseRad);
   return mesh;
 }

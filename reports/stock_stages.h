@@ -14,9 +14,9 @@ struct StockStage {
   double error_mm = 0.0;  ///< of its decimation, beside the voxels of kStageVoxels
 };
 
-/// Before the first cut, then after equal shares of the program's sweeps; the finished part is not among
-/// them. They are cut in voxels of at least a kStageVoxels-th of the stock's longest side: for the eye alone.
-/// Empty where nothing cuts, or a window of the motion is shown.
+/// Before the first cut, then after equal shares of the program's way at feed, in the middle of blocks too;
+/// the finished part is not among them. They are cut in voxels of at least a kStageVoxels-th of the stock's
+/// longest side: for the eye alone. Empty where nothing cuts, or a window of the motion is shown.
 std::vector<StockStage> stock_stages(const FinishedRun& run, size_t count);
 
 inline constexpr double kStageVoxels = 120.0;

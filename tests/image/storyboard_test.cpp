@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
+#include <fstream>
 
 #include "image/movie_frames.h"
 #include "image/reference_picture.h"
@@ -151,6 +153,71 @@ TEST(MovieOfTwoHours, ShowsTheToolAtWork) {
   expect_like_reference(frames[2], "coremill_2.png");
   expect_like_reference(frames[11], "coremill_11.png");
   expect_like_reference(frames[19], "coremill_19.png");
+}
+
+/// One block of 124 mm through a bar of 100 mm, seen from the front and above; what is cut has the tool's
+/// blue.
+constexpr const char* kSlotScene = R"(machine = "mill_3axis"
+nc = "slot.ngc"
+dialect = "linuxcnc"
+[cutter]
+number = 1
+diameter_mm = 10
+flute_length_mm = 25
+length_mm = 60
+[setup]
+work_origin_mm = "on_table"
+[stock]
+box_mm = [[0, -15, -12], [100, 15, 0]]
+voxel_mm = 0.5
+[design]
+kind = "none"
+[stills]
+kinds = []
+[movie]
+seconds = 0.5
+fps = 10
+size = [320, 180]
+overlay = false
+colours = "tool"
+[[movie.shot]]
+view = "part"
+camera = "0,-1,0.9"
+from_line = 9
+to_line = 9
+seconds = 0.5
+)";
+
+/// Pixels of the tool's blue, left and right of the middle of the picture.
+std::array<int, 2> cut_pixels(const Image& image) {
+  std::array<int, 2> pixels{};
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const uint8_t* p = &image.rgba[static_cast<size_t>(4 * (y * image.width + x))];
+      if (p[2] > p[0] + 40) ++pixels[x < image.width / 2 ? 0 : 1];
+    }
+  }
+  return pixels;
+}
+
+TEST(MovieOfALongBlock, ShowsTheSlotUpToTheTool) {
+  const fs::path folder = fresh_folder("storyboard_slot");
+  std::ofstream(folder / "slot.ngc") << "G21 G90 G17 G94\nG54\nT1 M6\nG43 H1\nS8000 M3\nG0 X-12 Y0\nG0 Z10\n"
+                                        "G1 Z-4 F500\nG1 X112 F500\nG0 Z20\nM30\n";
+  std::ofstream(folder / "scene.toml") << kSlotScene;
+  const ProgramRun run = run_swarf(fmt::format("run {0}/scene.toml -o {0}/run", folder.string()));
+  ASSERT_EQ(run.exit_code, 0) << run.output;
+  const std::vector<Image> frames = movie_frames((folder / "run/movie.mp4").string());
+  ASSERT_EQ(frames.size(), 5U);
+  // The tool is at x = 12.8, 37.6, 62.4, 87.2 and 112 mm.
+  const std::array<int, 2> early = cut_pixels(frames[1]), late = cut_pixels(frames[3]),
+                           end = cut_pixels(frames[4]);
+  EXPECT_GT(early[0], 300);
+  EXPECT_EQ(early[1], 0);
+  EXPECT_GT(late[0], early[0]);
+  EXPECT_GT(late[1], 100);
+  EXPECT_GT(end[1], late[1] + 100);
+  expect_like_reference(frames[2], "slot_middle.png");
 }
 
 /// Its work travels far on a machine many times its size: the camera goes with it and the tool, which waits
