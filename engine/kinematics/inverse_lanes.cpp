@@ -82,10 +82,11 @@ struct LaneInverse {
     const LanePoints<N> in_frame = product<N>(pair.frame_, axis_W);
     const Numbers<N> c1 = in_frame.x, wn = in_frame.y, wk = in_frame.z;
     const Numbers<N> rho_squared = wn * wn + wk * wk, rho = roots(rho_squared);
-    Numbers<N> p = c1 >= 0.0 ? spread<N>(pair.p_at_pole_[0]) : spread<N>(pair.p_at_pole_[1]);
+    Numbers<N> p =
+        lanes::by_sign<Numbers<N>>(c1, spread<N>(pair.p_at_pole_[1]), spread<N>(pair.p_at_pole_[0]));
     if (pair.d_ != 0.0) {
       const Numbers<N> from_pole = rho_squared / (1.0 + magnitude(c1));
-      p += pair.d_per_s_ * (c1 >= 0.0 ? from_pole : -from_pole);
+      p += pair.d_per_s_ * lanes::by_sign<Numbers<N>>(c1, -from_pole, from_pole);
     }
     const bool never_aside = pair.d_ == 0.0 && pair.p_at_pole_[0] == 0.0 && pair.p_at_pole_[1] == 0.0;
     Numbers<N> r = rho, z_angle = spread<N>(0.5 * kPi);
@@ -180,7 +181,7 @@ struct LaneInverse {
   template <int N>
   SWARF_KERNEL_INLINE static Values<N> by_axis(const InverseKinematics& inverse, const LanePoints<N>& linear,
                                                const Turned<Numbers<N>>& chosen) {
-    Values<N> values{};
+    Values<N> values;
     values.of[inverse.linear_[0]] = linear.x;
     values.of[inverse.linear_[1]] = linear.y;
     values.of[inverse.linear_[2]] = linear.z;

@@ -30,15 +30,14 @@ struct LaneKernel {
     return if_within<T>(value, least, most, value, if_within<T>(other, least, most, other, value));
   }
 
-  /// What is chosen where x lies in the bounds, else the other. GCC 12 takes eight comparisons apart into
-  /// single numbers where two of them are joined before they choose, or where one is kept in a variable.
+  /// What is chosen where x lies in the bounds, else the other.
   template <class T>
   SWARF_KERNEL_INLINE static T if_within(const T& x, double least, double most, const T& chosen,
                                          const T& other) {
-    if constexpr (sizeof(T) == sizeof(double)) return (x >= least) & (x <= most) ? chosen : other;
-    const T low = x > least ? x : T{} + least;
-    const T held = low < most ? low : T{} + most;
-    return held == x ? chosen : other;
+    if constexpr (sizeof(T) == sizeof(double))
+      return (x >= least) & (x <= most) ? chosen : other;
+    else
+      return lanes::by_sign<T>(x - least, other, lanes::by_sign<T>(most - x, other, chosen));
   }
 
   /// Carries the work or tool point to the base; the linear axes are what is looked for.

@@ -57,6 +57,16 @@ SWARF_KERNEL_INLINE To same_bits(const From& from) {
   return to;
 }
 
+/// `below` where x is below 0, else `other`; -0 counts as 0, and what is not a number as either. By its sign:
+/// GCC 12 takes eight comparisons apart into single numbers where two of them are joined before they choose,
+/// or where one is kept in a variable.
+template <class T>
+SWARF_KERNEL_INLINE T by_sign(const T& x, const T& below, const T& other) {
+  using Signs = typename Vector<sizeof(T) / sizeof(double)>::Bits;
+  const Signs sign = same_bits<Signs>(T(x + 0.0)) >> 63;
+  return same_bits<T>(Signs((same_bits<Signs>(below) & sign) | (same_bits<Signs>(other) & ~sign)));
+}
+
 /// |r| <= pi/4. Polynomials in pairs, so that few of their steps wait for the one before.
 template <typename Numbers>
 SWARF_KERNEL_INLINE void small_sines(const Numbers& r, Numbers& sine, Numbers& cosine) {
@@ -112,14 +122,14 @@ SWARF_KERNEL_INLINE Numbers<N> atan2(const Numbers<N>& y, const Numbers<N>& alon
   const auto y_bits = same_bits<Bits<N>>(y);
   const auto rise = same_bits<Numbers<N>>(Bits<N>(y_bits & ~kSign));
   const auto run = same_bits<Numbers<N>>(Bits<N>(same_bits<Bits<N>>(along) & ~kSign));
-  // Comparisons in place, for GCC's sake: see LaneKernel::if_within().
+  // Comparisons in place, for GCC's sake: see by_sign().
   const Numbers<N> a = rise > run ? rise : run, b = rise > run ? run : rise;
   const Numbers<N> near = a * (std::numbers::sqrt2 - 1.0);
   const Numbers<N> zero = {}, eighth = zero + 0.25 * std::numbers::pi;
   const Numbers<N> t = (b > near ? b - a : b) / (b > near ? b + a : a);
   Numbers<N> turn = (b > near ? eighth : zero) + small_atan<Numbers<N>>(t);
   turn = rise > run ? 0.5 * std::numbers::pi - turn : turn;
-  turn = along < zero ? std::numbers::pi - turn : turn;
+  turn = by_sign<Numbers<N>>(along, std::numbers::pi - turn, turn);
   return same_bits<Numbers<N>>(Bits<N>(same_bits<Bits<N>>(turn) | (y_bits & kSign)));
 }
 

@@ -149,17 +149,43 @@ double BlockCurve::limited_way(const AxisValues& change, double share) const {
   return most * std::cbrt(std::sqrt(sum));
 }
 
-void BlockCurve::follow() {
-  const double way = std::max(toolpath::tip_way(block()), 1.0);
+/// Nodes of a block with axes of its own, as far apart as they turn evenly.
+void BlockCurve::append_own_nodes(double way, std::vector<PathNode>& nodes) const {
+  constexpr size_t kNodes = 16;
+  std::array<ToolPose, kNodes> poses;
+  std::array<AxisValues, kNodes> own;
+  std::array<Branch, kNodes> found;
+  const auto share = [&](size_t i) { return static_cast<double>(i + 1) / kNodes; };
+  for (size_t i = 0; i < kNodes; ++i) {
+    law_->set(share(i), poses[i]);
+    own[i] = before(share(i), q_from_);
+  }
+  inverse_->continued(poses, own, found);
+  for (size_t i = 0; i < kNodes; ++i) {
+    const bool reached = found[i].outcome != InverseOutcome::kUnreachable;
+    nodes.push_back({share(i), way * share(i), reached ? found[i].q : nodes.back().q, false, true});
+  }
+}
+
+/// Nodes so close that no turn beside a pole is missed.
+void BlockCurve::append_close_nodes(double way, std::vector<PathNode>& nodes) const {
+  constexpr size_t kSteps = 8;
+  std::array<ToolPose, kSteps + 1> poses;
+  for (size_t i = 0; i <= kSteps; ++i) law_->set(static_cast<double>(i) / kSteps, poses[i]);
+  if (append_even_nodes(poses, *inverse_, *machine_, way / kSteps, nodes)) return;
   const PathShape shape{
       [&](double x) { return law_->at(x); }, [&](double from, double to) { return way * (to - from); },
       [&](const ToolPose& pose, const AxisValues& last) { return inverse_->continued(pose, last); }};
+  append_nodes(shape, *inverse_, *machine_, 1.0, way / kSteps * (1.0 + 1e-9), nodes);
+}
+
+void BlockCurve::follow() {
+  const double way = std::max(toolpath::tip_way(block()), 1.0);
   std::vector<PathNode> nodes{{0.0, 0.0, q_from_, false, true}};
   if (block().law == BlockLaw::kTcpAxes) {
-    for (int i = 1; i <= 16; ++i)
-      nodes.push_back({i / 16.0, way * i / 16.0, solve(i / 16.0, nodes.back().q), false, true});
+    append_own_nodes(way, nodes);
   } else {
-    append_nodes(shape, *inverse_, *machine_, 1.0, way / 8.0 * (1.0 + 1e-9), nodes);
+    append_close_nodes(way, nodes);
   }
   length_ = 0.0;
   double fastest = 0.0, closest = 1.0, slowest = std::numeric_limits<double>::infinity();
@@ -333,8 +359,11 @@ bool BlockCurve::is_solved(double s, double share, AxisValues& q, ToolPose& pose
     return true;
   }
   q = nearest_node(s);
-  before_it = before(share, q);
-  pose = law_->at(share);
+  if (block().law == BlockLaw::kTcpAxes)
+    before_it = before(share, q);
+  else
+    before_it = q;
+  law_->set(share, pose);
   return false;
 }
 

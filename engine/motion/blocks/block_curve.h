@@ -42,6 +42,17 @@ class BlockCurve {
   /// of a run, about the speed of its tip.
   BlockCurve(const BlockMotion& motion, const kinematics::InverseKinematics& inverse, double speed_mm_s);
 
+  /// A block and where it is at a share of it.
+  struct Law {
+    explicit Law(const BlockMotion& of) : motion(of), law(of) {}
+    ToolPose at(double x) const { return law.at(motion, x); }
+    void set(double x, ToolPose& pose) const { law.set(motion, x, pose); }
+    BlockMotion motion;
+    PoseLaw law;
+  };
+  /// None of a block that is even.
+  const Law* law() const { return law_.get(); }
+
   double length() const { return length_; }
   const kinematics::InverseKinematics& inverse() const { return *inverse_; }
   double tip_way() const { return tip_way_; }  ///< mm
@@ -84,6 +95,8 @@ class BlockCurve {
   /// the tip would go at the reference speed while the axis needs its speed limit. Close to the greatest of
   /// all, smoothly.
   double limited_way(const kinematics::AxisValues& change, double share) const;
+  void append_own_nodes(double way, std::vector<PathNode>& nodes) const;
+  void append_close_nodes(double way, std::vector<PathNode>& nodes) const;
   void follow();
   double way_rate(const std::vector<PathNode>& nodes, size_t near, double x) const;
   void stretch(const std::vector<PathNode>& nodes);
@@ -106,15 +119,8 @@ class BlockCurve {
 
   kinematics::AxisValues q_from_, q_to_;  ///< of the block
   const kinematics::MachineModel* machine_;
-  /// The block, when it is not even.
-  struct Law {
-    explicit Law(const BlockMotion& of) : motion(of), law(of) {}
-    ToolPose at(double x) const { return law.at(motion, x); }
-    BlockMotion motion;
-    PoseLaw law;
-  };
   const toolpath::BlockMove& block() const { return law_->motion.block; }
-  std::shared_ptr<const Law> law_;
+  std::shared_ptr<const Law> law_;  ///< when it is not even
   const kinematics::InverseKinematics* inverse_;
   double speed_ = 0.0;
   double length_ = 0.0, tip_way_ = 0.0;

@@ -146,10 +146,10 @@ bool RunSampler::next_place(CellOffset& place) {
     place = {cells.size() - 1, cells.back().length};
   } else {
     const PlacedPhase& placed = run_->phases[phase_];
-    size_t cell = placed.cell;
+    const PathCell *cell = &cells[placed.cell], *last = &cells.back();
     double offset = placed.offset + placed.phase.way(clock_.time);
-    while (cell + 1 < cells.size() && offset > cells[cell].length) offset -= cells[cell++].length;
-    place = {cell, std::clamp(offset, 0.0, cells[cell].length)};
+    while (cell != last && offset > cell->length) offset -= (cell++)->length;
+    place = {static_cast<size_t>(cell - cells.data()), std::clamp(offset, 0.0, cell->length)};
   }
   clock_.time += period_;
   return true;
@@ -159,7 +159,7 @@ size_t RunSampler::next(std::span<Cycle> cycles) {
   size_t count = 0;
   while (count < std::min(kBatch, cycles.size()) && next_place(places_[count])) ++count;
   const auto points = std::span(points_).first(count);
-  points_at(run_->path, std::span(places_).first(count), points);
+  points_at(run_->path, std::span(places_).first(count), points, open_);
   set_poses(points, cycles);
   for (size_t i = 0; i < count; ++i) fill(points[i], cycles[i]);
   return count;
@@ -168,21 +168,21 @@ size_t RunSampler::next(std::span<Cycle> cycles) {
 /// Where the axes lead the tip, side by side; else by the block's law.
 void RunSampler::set_poses(std::span<const PathPoint> points, std::span<Cycle> cycles) {
   std::array<size_t, kBatch> led;
-  std::array<kinematics::AxisValues, kBatch> q;
-  std::array<ToolPose, kBatch> poses;
   size_t count = 0;
   for (size_t i = 0; i < points.size(); ++i) {
     const PathPoint& at = points[i];
     const BlockMotion& motion = motions_->at(run_->place.first + at.block);
     if (at.rounded || (motion.block.law == BlockLaw::kJoint && at.share < 1.0)) {
-      q[count] = at.q;
+      led_q_[count] = at.q;
       led[count++] = i;
+    } else if (at.pose) {
+      cycles[i].sample.pose = *at.pose;
     } else {
-      cycles[i].sample.pose = at.pose ? *at.pose : pose_at(motion, at.share);
+      cycles[i].sample.pose = pose_at(motion, at.share);
     }
   }
-  forward_->at(std::span(q).first(count), poses);
-  for (size_t i = 0; i < count; ++i) cycles[led[i]].sample.pose = poses[i];
+  forward_->at(std::span(led_q_).first(count), led_pose_);
+  for (size_t i = 0; i < count; ++i) cycles[led[i]].sample.pose = led_pose_[i];
 }
 
 void RunSampler::fill(const PathPoint& at, Cycle& cycle) {
@@ -192,9 +192,11 @@ void RunSampler::fill(const PathPoint& at, Cycle& cycle) {
   const bool rapid = is_rapid(motion.block);
   cycle.q = at.q;
   cycle.reached = curve.followed();
+  cycle.cost_ns = -1.0F;
   ToolSample& sample = cycle.sample;
   sample.contact_W = sample.pose.tip_W;
   sample.u = at.share;
+  sample.v = 0.0;
   sample.element = static_cast<int>(index);
   sample.kind = rapid ? SampleKind::kRapid : SampleKind::kCutting;
   sample.rounded = at.rounded;

@@ -99,9 +99,9 @@ class RunSampler {
   /// Goes on in this stretch; it must outlive the calls of next().
   void enter(const PlannedRun& stretch);
   /// The next cycles, as many as there is room for, kBatch at most; returns how many. None when the next one
-  /// lies behind the stretch. Sets axis values and the sample but for t_s and tool: u is the share of the
-  /// block, element an index into the motions. Not `reached` where the machine does not follow the block: the
-  /// axis values have to be found by continuity.
+  /// lies behind the stretch. Sets all but number, t_s and tool: u is the share of the block, element an
+  /// index into the motions. Not `reached` where the machine does not follow the block: the axis values have
+  /// to be found by continuity.
   size_t next(std::span<Cycle> cycles);
   static constexpr size_t kBatch = 32;
   /// Passes at most so many ticks without making them; returns how many. The last ones of the stretch are
@@ -124,6 +124,10 @@ class RunSampler {
   size_t phase_ = 0;
   std::array<CellOffset, kBatch> places_;
   std::array<PathPoint, kBatch> points_;
+  OpenPoints open_;
+  // Where the axes lead the tip:
+  std::array<kinematics::AxisValues, kBatch> led_q_;
+  std::array<ToolPose, kBatch> led_pose_;
 };
 
 }  // namespace swarf::motion

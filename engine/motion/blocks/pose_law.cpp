@@ -14,23 +14,27 @@ PoseLaw::PoseLaw(const BlockMotion& motion) {
   if (block.arc && (block.law == BlockLaw::kTcp || block.law == BlockLaw::kTcpAxes)) arc_.emplace(block);
 }
 
-ToolPose PoseLaw::at(const BlockMotion& motion, double s) const {
+void PoseLaw::set(const BlockMotion& motion, double s, ToolPose& pose) const {
   const BlockMove& block = motion.block;
-  if (s <= 0.0) return block.from;
-  if (s >= 1.0) return block.to;
-  if (block.law == BlockLaw::kCurve)
-    return block.curve->curve->pose(block.curve->from + s * (block.curve->to - block.curve->from));
-  if (block.law == BlockLaw::kEnds)
-    return {block.from.tip_W + s * (block.to.tip_W - block.from.tip_W),
-            (block.from.axis_W + s * (block.to.axis_W - block.from.axis_W)).normalized()};
-  if (block.law == BlockLaw::kJoint)
-    return kinematics::forward(*motion.machine, motion.q_from + s * (motion.q_to - motion.q_from));
-  ToolPose pose;
-  pose.axis_W =
-      circle_ ? circle_->at(s)
-              : kinematics::forward_axis(*motion.machine, motion.q_from + s * (motion.q_to - motion.q_from));
-  pose.tip_W = arc_ ? arc_->point(s) : Vec3(block.from.tip_W + s * (block.to.tip_W - block.from.tip_W));
-  return pose;
+  if (s <= 0.0 || s >= 1.0) {
+    pose = s <= 0.0 ? block.from : block.to;
+  } else if (block.law == BlockLaw::kCurve) {
+    pose = block.curve->curve->pose(block.curve->from + s * (block.curve->to - block.curve->from));
+  } else if (block.law == BlockLaw::kJoint) {
+    pose = kinematics::forward(*motion.machine, motion.q_from + s * (motion.q_to - motion.q_from));
+  } else {
+    if (arc_)
+      pose.tip_W = arc_->point(s);
+    else
+      pose.tip_W = block.from.tip_W + s * (block.to.tip_W - block.from.tip_W);
+    if (circle_)
+      pose.axis_W = circle_->at(s);
+    else if (block.law == BlockLaw::kEnds)
+      pose.axis_W = (block.from.axis_W + s * (block.to.axis_W - block.from.axis_W)).normalized();
+    else
+      pose.axis_W =
+          kinematics::forward_axis(*motion.machine, motion.q_from + s * (motion.q_to - motion.q_from));
+  }
 }
 
 }  // namespace swarf::motion

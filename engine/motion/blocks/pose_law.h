@@ -43,7 +43,13 @@ class PoseLaw {
  public:
   explicit PoseLaw(const BlockMotion& motion);
   /// Of the same motion.
-  ToolPose at(const BlockMotion& motion, double s) const;
+  ToolPose at(const BlockMotion& motion, double s) const {
+    ToolPose pose;
+    set(motion, s, pose);
+    return pose;
+  }
+  /// The same, written where it stays.
+  void set(const BlockMotion& motion, double s, ToolPose& pose) const;
 
  private:
   std::optional<GreatCircle> circle_;  ///< of the axis, where it is on one

@@ -24,8 +24,6 @@ constexpr double kCornerShare = 0.5;
 /// Slopes that differ by less are one straight line.
 constexpr double kStraight = 1e-12;
 constexpr int kFits = 40;
-/// Places of points_at() that the inverse takes at once.
-constexpr size_t kPointsAtOnce = 32;
 /// Speed of a rapid that no axis limits (out of reach), mm/s.
 constexpr double kRapidUnfollowed = 1000.0;
 
@@ -111,8 +109,10 @@ double greatest_of(const std::array<double, N>& p) {
 }
 
 /// Then q(s) runs on with two derivatives, and there is no corner.
-bool on_one_curve(const BlockMove& a, const BlockMove& b) {
-  return a.curve && b.curve && toolpath::continues(*a.curve, *b.curve);
+bool on_one_curve(const BlockCurve& a, const BlockCurve& b) {
+  if (a.law() == nullptr || b.law() == nullptr) return false;
+  const BlockMove &from = a.law()->motion.block, &to = b.law()->motion.block;
+  return from.curve && to.curve && toolpath::continues(*from.curve, *to.curve);
 }
 
 PathCell blend_cell(const Blend& blend) {
@@ -284,7 +284,7 @@ double RunPathBuilder::add_corner(size_t a, size_t b) {
     return 0.0;
   };
   if (!in.followed() || !out.followed()) return stop();
-  if (on_one_curve(motions_[a].block, motions_[b].block)) {
+  if (on_one_curve(in, out)) {
     add_block_piece(a, from, in.length());
     return 0.0;
   }
@@ -323,9 +323,10 @@ void RunPathBuilder::limit_tip(size_t a, size_t b, PathCell& cell) const {
 /// None where the tolerance is below kSharp.
 std::optional<Blend> RunPathBuilder::fit(size_t a, size_t b) const {
   const BlockCurve &in = path_.curve(a), &out = path_.curve(b);
-  const BlockMotion before = motions_[a], after = motions_[b];
-  const Corner corner{in, out, before, after, PoseLaw(before), PoseLaw(after)};
-  const double tolerance = corner_tolerance(corner.in_motion.block, options_);
+  std::optional<BlockCurve::Law> even_in, even_out;
+  const Corner corner{in, out, in.law() != nullptr ? *in.law() : even_in.emplace(motions_[a]),
+                      out.law() != nullptr ? *out.law() : even_out.emplace(motions_[b])};
+  const double tolerance = corner_tolerance(corner.in_law.motion.block, options_);
   if (tolerance < kSharp) return std::nullopt;
   double d = kCornerShare * std::min(in.length(), out.length());
   for (int i = 0; i < kFits; ++i) {
@@ -350,9 +351,8 @@ double RunPathBuilder::deviation(const Corner& corner, const Blend& blend) const
   forward_.at(q, rounded);
   for (size_t i = 1; i < kPlaces; ++i) {
     const double s = place(i);
-    const ToolPose programmed =
-        s < blend.before ? corner.in_law.at(corner.in_motion, in.share(in.length() - blend.before + s))
-                         : corner.out_law.at(corner.out_motion, out.share(s - blend.before));
+    const ToolPose programmed = s < blend.before ? corner.in_law.at(in.share(in.length() - blend.before + s))
+                                                 : corner.out_law.at(out.share(s - blend.before));
     distance[i] = (rounded[i - 1].tip_W - programmed.tip_W).norm();
   }
   // Between the places: the top of the parabola through the greatest_of and those beside it.
@@ -362,21 +362,6 @@ double RunPathBuilder::deviation(const Corner& corner, const Blend& blend) const
 }
 
 namespace {
-
-/// What the inverse has still to find.
-struct OpenPoints {
-  std::array<PathPoint*, kPointsAtOnce> point;
-  std::array<ToolPose, kPointsAtOnce> pose;
-  std::array<kinematics::AxisValues, kPointsAtOnce> before;
-  size_t count = 0;
-  void solve(const kinematics::InverseKinematics& inverse) {
-    std::array<kinematics::Branch, kPointsAtOnce> found;
-    inverse.continued(std::span(pose).first(count), std::span(before).first(count), found);
-    for (size_t i = 0; i < count; ++i)
-      if (found[i].outcome != kinematics::InverseOutcome::kUnreachable) point[i]->q = found[i].q;
-    count = 0;
-  }
-};
 
 /// The point, or all but what goes to the open ones.
 void set_point(const RunPath& path, const CellOffset& at, PathPoint& point, OpenPoints& open) {
@@ -388,9 +373,8 @@ void set_point(const RunPath& path, const CellOffset& at, PathPoint& point, Open
   if (piece.blend < 0) {
     const BlockCurve& curve = path.curve(piece.block);
     point.share = curve.share(piece.from + s);
-    ToolPose& pose = open.pose[open.count];
-    if (curve.is_solved(piece.from + s, point.share, point.q, pose, open.before[open.count])) return;
-    point.pose = pose;
+    if (curve.is_solved(piece.from + s, point.share, point.q, open.pose[open.count], open.before[open.count]))
+      return;
     open.point[open.count++] = &point;
     return;
   }
@@ -407,20 +391,31 @@ void set_point(const RunPath& path, const CellOffset& at, PathPoint& point, Open
 
 }  // namespace
 
-void points_at(const RunPath& path, std::span<const CellOffset> places, std::span<PathPoint> points) {
-  OpenPoints open;
+void OpenPoints::solve(const kinematics::InverseKinematics& inverse) {
+  if (count == 0) return;
+  inverse.continued(std::span(pose).first(count), std::span(before).first(count), found);
+  for (size_t i = 0; i < count; ++i) {
+    point[i]->pose = pose[i];
+    if (found[i].outcome != kinematics::InverseOutcome::kUnreachable) point[i]->q = found[i].q;
+  }
+  count = 0;
+}
+
+void points_at(const RunPath& path, std::span<const CellOffset> places, std::span<PathPoint> points,
+               OpenPoints& open) {
   const kinematics::InverseKinematics& inverse = path.curves.front().inverse();
   for (size_t i = 0; i < places.size(); ++i) {
     set_point(path, places[i], points[i], open);
-    if (open.count == kPointsAtOnce) open.solve(inverse);
+    if (open.count == OpenPoints::kMost) open.solve(inverse);
   }
-  if (open.count > 0) open.solve(inverse);
+  open.solve(inverse);
 }
 
 PathPoint point_at(const RunPath& path, size_t cell, double offset) {
   const CellOffset place{cell, offset};
   PathPoint point;
-  points_at(path, std::span(&place, 1), std::span(&point, 1));
+  OpenPoints open;
+  points_at(path, std::span(&place, 1), std::span(&point, 1), open);
   return point;
 }
 

@@ -97,8 +97,7 @@ class RunPathBuilder {
   /// Two blocks that meet in a corner.
   struct Corner {
     const BlockCurve &in, &out;
-    const BlockMotion &in_motion, &out_motion;
-    PoseLaw in_law, out_law;
+    const BlockCurve::Law &in_law, &out_law;
   };
   double deviation(const Corner& corner, const Blend& blend) const;
 
@@ -129,7 +128,18 @@ struct CellOffset {
   size_t cell = 0;
   double offset = 0.0;  ///< mm from its start
 };
-/// The same of several places, whose inverse is solved side by side.
-void points_at(const RunPath& path, std::span<const CellOffset> places, std::span<PathPoint> points);
+/// Points whose inverse is to be solved side by side.
+struct OpenPoints {
+  static constexpr size_t kMost = 32;
+  std::array<PathPoint*, kMost> point;
+  std::array<ToolPose, kMost> pose;
+  std::array<kinematics::AxisValues, kMost> before;
+  std::array<kinematics::Branch, kMost> found;
+  size_t count = 0;
+  void solve(const kinematics::InverseKinematics& inverse);
+};
+/// The same of several places. `open`: room that needs not be made for each call.
+void points_at(const RunPath& path, std::span<const CellOffset> places, std::span<PathPoint> points,
+               OpenPoints& open);
 
 }  // namespace swarf::motion

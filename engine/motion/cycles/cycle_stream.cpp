@@ -76,26 +76,27 @@ CycleStream::CycleStream(const CycleSource& source, const CyclePlace& from)
 }
 
 bool CycleStream::next(std::vector<Cycle>& window) {
-  window.clear();
-  window_ = &window;
-  do room_ = kWindow - window.size();
-  while (room_ > 0 && go_on());
-  window_ = nullptr;
-  return !window.empty();
+  window.resize(kWindow);  // stays as long as it is: cycles are written over those of the last window
+  window_ = window;
+  made_ = 0;
+  while (made_ < kWindow && go_on()) {
+  }
+  window.resize(made_);
+  window_ = {};
+  return made_ > 0;
 }
 
 /// The last cycle before the sought one is always made: the feed of a cycle is its way from there.
 void CycleStream::pass_to(uint64_t cycle) {
-  std::vector<Cycle> passed;
-  window_ = &passed;
+  Cycle passed;
+  window_ = std::span(&passed, 1);
   bool more = true;
-  room_ = 1;
   while (more && cycle_ < cycle) {
     if (may_skip()) cycle_ += run_->sampler->skip(cycle - cycle_ - 1);
-    passed.clear();
+    made_ = 0;
     more = go_on();
   }
-  window_ = nullptr;
+  window_ = {};
 }
 
 /// Where the machine cannot follow, the axes depend on all cycles before.
@@ -112,7 +113,7 @@ bool CycleStream::may_skip() {
 /// Records a cycle or several, or begins what comes next; false when nothing does.
 bool CycleStream::go_on() {
   const bool more = advance();
-  if (!window_->empty()) before_ = window_->back();
+  if (made_ > 0) before_ = window_[made_ - 1];
   return more;
 }
 
@@ -160,9 +161,9 @@ void CycleStream::begin_run() {
   sample_element_ = static_cast<int>(element_);
   if (starts) {
     record(standing(block.from, run.kind));
-    if (block.axes) window_->back().q = q_ = block.axes->from;
+    if (block.axes) window_[made_ - 1].q = q_ = block.axes->from;
     if (!block.axes && inverse().pole_distance(block.from.axis_W) < kinematics::kPoleTolerance)
-      window_->back().q = q_ = motion.q_from;
+      window_[made_ - 1].q = q_ = motion.q_from;
   } else {
     require_join(block.from);
   }
@@ -201,10 +202,8 @@ void CycleStream::run_on() {
 
 /// The next cycles of the stretch into the window; false when there are none.
 bool CycleStream::sample_run() {
-  const size_t before = window_->size();
-  window_->resize(before + std::min(room_, RunSampler::kBatch));
-  window_->resize(before + run_->sampler->next(std::span(*window_).subspan(before)));
-  for (Cycle& cycle : std::span(*window_).subspan(before)) {
+  const size_t count = run_->sampler->next(window_.subspan(made_));
+  for (Cycle& cycle : window_.subspan(made_, count)) {
     sample_element_ = cycle.sample.element;
     if (!cycle.reached) {
       const Branch branch = inverse().solve_nearest(cycle.sample.pose, q_);
@@ -214,7 +213,8 @@ bool CycleStream::sample_run() {
     q_ = cycle.q;
     number(cycle);
   }
-  return window_->size() > before;
+  made_ += count;
+  return count > 0;
 }
 
 std::unique_ptr<RunPlanner> CycleStream::planner(const RunPlace& start) const {
@@ -350,7 +350,8 @@ void CycleStream::record(const ToolSample& sample, const Branch& branch, float c
 }
 
 void CycleStream::add(const ToolSample& sample, bool reached, float cost_ns) {
-  Cycle& cycle = window_->emplace_back(Cycle{cycle_, sample, q_, reached, cost_ns});
+  Cycle& cycle = window_[made_++];
+  cycle = {cycle_, sample, q_, reached, cost_ns};
   cycle.sample.element = sample_element_;
   number(cycle);
 }

@@ -111,8 +111,8 @@ class CycleStream {
 
   CycleSource source_;
   CyclePlace place_;
-  std::vector<Cycle>* window_ = nullptr;
-  size_t room_ = 0;  ///< for cycles that are made at once
+  std::span<Cycle> window_;  ///< being filled; what stands there means nothing yet
+  size_t made_ = 0;          ///< of it
   uint64_t cycle_ = 0;
   size_t element_ = 0;  ///< the next one to begin
   int tool_ = 0;

@@ -399,8 +399,9 @@ void limit_speed(const AxisLimits& limits, PathCell& cell) {
   for (Eigen::Index i = 0; i < kinematics::kMaxAxes; ++i) {
     // Division by zero gives infinity: an axis at rest limits nothing.
     cell.speed = std::min({cell.speed, limits.speed[i] / cell.first[i],
-                           std::sqrt(curvature * limits.acceleration[i] / cell.second[i]),
-                           std::cbrt(third * limits.jerk[i] / cell.third[i])});
+                           std::sqrt(curvature * limits.acceleration[i] / cell.second[i])});
+    if (cell.third[i] > 0.0)
+      cell.speed = std::min(cell.speed, std::cbrt(third * limits.jerk[i] / cell.third[i]));
   }
 }
 

@@ -37,7 +37,8 @@ bool is_coarse(const ToolPose& a, const ToolPose& b, const AxisValues& qa, const
     if (machine.axes[i].kind == AxisKind::kRotary && std::abs(qb[row] - qa[row]) > kTurnMax) return true;
   }
   const double turn = (b.axis_W - a.axis_W).norm();
-  return turn > kPoleShare * std::max(inverse.pole_distance(a.axis_W), inverse.pole_distance(b.axis_W));
+  return turn > kPoleShare * inverse.pole_distance(b.axis_W) &&
+         turn > kPoleShare * inverse.pole_distance(a.axis_W);
 }
 
 bool jumps(const AxisValues& qa, const AxisValues& qb, const MachineModel& machine) {
@@ -103,6 +104,24 @@ void append_nodes(const PathShape& shape, const kinematics::InverseKinematics& i
     if (step > 0.0) nodes.push_back({x, last.s + step, q, false, reached && !jump});
     from = pose;
   }
+}
+
+bool append_even_nodes(std::span<const ToolPose> poses, const kinematics::InverseKinematics& inverse,
+                       const MachineModel& machine, double step_mm, std::vector<PathNode>& nodes) {
+  std::vector<Branch> found(poses.size() - 1);
+  inverse.continued(poses.subspan(1), nodes.back().q, found);
+  const AxisValues* before = &nodes.back().q;
+  for (size_t i = 0; i < found.size(); ++i) {
+    if (found[i].outcome == InverseOutcome::kUnreachable ||
+        is_coarse(poses[i], poses[i + 1], *before, found[i].q, inverse, machine))
+      return false;
+    before = &found[i].q;
+  }
+  const double x = nodes.back().x, steps = static_cast<double>(found.size());
+  for (size_t i = 0; i < found.size(); ++i)
+    nodes.push_back(
+        {x + (1.0 - x) * static_cast<double>(i + 1) / steps, nodes.back().s + step_mm, found[i].q});
+  return true;
 }
 
 SpeedLimits uniform_limits(const std::vector<PathNode>& nodes, double speed, double acceleration) {

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "kinematics/machine_model.h"
@@ -52,6 +53,11 @@ double chord_speed_limit(double radius_mm, double tolerance_mm, double period_s)
 void append_nodes(const PathShape& shape, const kinematics::InverseKinematics& inverse,
                   const kinematics::MachineModel& machine, double x_end, double spacing_mm,
                   std::vector<PathNode>& nodes);
+
+/// append_nodes() where even steps up to x = 1 are close enough, their inverse side by side; false, and no
+/// node, where one is not or is out of reach. `poses`: that of the last node, and one for each step.
+bool append_even_nodes(std::span<const ToolPose> poses, const kinematics::InverseKinematics& inverse,
+                       const kinematics::MachineModel& machine, double step_mm, std::vector<PathNode>& nodes);
 
 /// One cell per pair of nodes with the given speed and acceleration everywhere.
 SpeedLimits uniform_limits(const std::vector<PathNode>& nodes, double speed, double acceleration);

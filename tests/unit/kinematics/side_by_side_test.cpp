@@ -87,6 +87,33 @@ TEST(SideBySide, ContinuedPosesAreThoseOfOneAtATime) {
   }
 }
 
+/// Travel that ends at a value of the pose itself, or at 0 where the value is 0 or -0.
+TEST(SideBySide, ValuesOnABoundOfTheTravelAreInside) {
+  for (const MachineModel& machine : machines_side_by_side()) {
+    Rng rng(34);
+    for (int i = 0; i < 100; ++i) {
+      AxisValues q = random_values(machine, rng);
+      for (Eigen::Index row = 0; row < kMaxAxes; ++row)
+        if (rng.uniform() < 0.3) q[row] = rng.uniform() < 0.5 ? 0.0 : -0.0;
+      const std::vector<ToolPose> poses(3, forward(machine, q));
+      const Branch found = InverseKinematics(machine).continued(poses[0], q);
+      MachineModel bounded = machine;
+      for (size_t row = 0; row < machine.axes.size(); ++row) {
+        const double value = found.q[static_cast<Eigen::Index>(row)];
+        (rng.uniform() < 0.5 ? bounded.axes[row].min : bounded.axes[row].max) = value == 0.0 ? 0.0 : value;
+      }
+      const InverseKinematics inverse(bounded);
+      const Branch expected = inverse.continued(poses[0], q);
+      std::vector<Branch> side_by_side(poses.size());
+      for (const InverseLanes& lanes : inverse_lane_variants()) {
+        continue_apart(lanes, inverse, poses, std::vector<AxisValues>(poses.size(), q), side_by_side);
+        for (const Branch& one : side_by_side)
+          EXPECT_EQ(differences(one, expected), 0) << machine.name << " " << i;
+      }
+    }
+  }
+}
+
 TEST(SideBySide, PosesAlongAWayAreThoseOfOneAfterTheOther) {
   for (const MachineModel& machine : machines_side_by_side()) {
     const InverseKinematics inverse(machine);
