@@ -227,6 +227,46 @@ std::optional<CornerHeights> RestBound::lowered(const Cell& cell, const CornerHe
   return is_lower(lowest, tops) ? std::optional(lowest) : std::nullopt;
 }
 
+Seams RestBound::seams_of(const Cell& cell) const {
+  constexpr double kLeastArea = 1e-6;  // mm2: halves may keep the longest side
+  Seams seams;
+  const bool exact = is_flat(cell.shape) || root_.bounds.surface != nullptr;
+  if (!exact || !root_.looks_up || !(cell.shape.area_mm2() > kLeastArea)) return seams;
+  for (size_t k = 0; k < 3; ++k)
+    if (cell.edges[k].places == nullptr) seams[k] = seam_of(cell, k);
+  return seams;
+}
+
+std::optional<CellCorner> RestBound::seam_of(const Cell& cell, size_t side) const {
+  const size_t next = (side + 1) % 3;
+  const Corner &a = cell.corners[side], &b = cell.corners[next];
+  if (a.near == b.near || a.near == stock::kUncut || b.near == stock::kUncut) return std::nullopt;
+  const NearSweep& near = near_[a.near];
+  const auto place = [&](double share) {
+    Vec3 weights = Vec3::Zero();
+    weights[static_cast<Eigen::Index>(side)] = 1.0 - share;
+    weights[static_cast<Eigen::Index>(next)] = share;
+    return place_in(cell.shape, weights, root_.bounds);
+  };
+  const auto is_covered = [&](double share) {
+    const CellCorner at = place(share);
+    const double from = std::min(a.height, b.height), top = (1.0 - share) * a.top + share * b.top;
+    return std::any_of(near.cutter->pieces.begin(), near.cutter->pieces.end(), [&](const auto& piece) {
+      return covered_from({{at, at, at}}, near, piece, {from, from, from}, {top, top, top}).heights[0] <
+             kNever;
+    });
+  };
+  constexpr double kEnd = 1.0 / 16.0;  // of the side: no slivers
+  if (!is_covered(kEnd) || is_covered(1.0 - kEnd)) return std::nullopt;
+  double low = kEnd, high = 1.0 - kEnd;
+  constexpr int kHalvings = 40;
+  for (int n = 0; n < kHalvings; ++n) {
+    const double share = 0.5 * (low + high);
+    (is_covered(share) ? low : high) = share;
+  }
+  return place(low);
+}
+
 std::vector<CornerHeights> RestBound::own_above(const Cell& cell) const {
   std::vector<CornerHeights> bounds;
   const CornerHeights ranges{cell.corners[0].range, cell.corners[1].range, cell.corners[2].range};

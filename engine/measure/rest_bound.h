@@ -84,6 +84,10 @@ uint32_t between(const std::array<uint32_t, 2>& sweeps);
 /// Heights over which columns that leave the box through its planes stand in no stock.
 void add_box(const Box& box, const DesignCell& cell, std::vector<CornerHeights>& sets);
 
+/// On each side, from corner k to the next: the last place that the corner's sweep covers up to where the
+/// column ends; nothing where it does so over all of the side, or over next to nothing of it.
+using Seams = std::array<std::optional<CellCorner>, 3>;
+
 class RestBound {
  public:
   /// All must outlive it; `near` may change between two calls.
@@ -98,6 +102,10 @@ class RestBound {
   double left(const Cell& cell, const std::vector<CornerHeights>& own, const CornerHeights& tops,
               double enough, std::span<const uint32_t> kept, std::span<const double> floors);
 
+  /// Where sweeps clear the columns of a cell side by side no one of them covers a part across their seam,
+  /// however small. Nothing where the columns of the cell are others when it is divided there.
+  Seams seams_of(const Cell& cell) const;
+
   /// Whether the sweeps that cut the corners lowest end below `tops`: then left() knows none that covers the
   /// columns, whatever the size of the cell.
   bool ends_below(const Cell& cell, const CornerHeights& tops) const;
@@ -109,6 +117,7 @@ class RestBound {
                                        std::span<const NearSweep> sweeps) const;
 
  private:
+  std::optional<CellCorner> seam_of(const Cell& cell, size_t side) const;
   HighestLeft left_by_sets() const;
   bool add_owner(const Cell& cell, uint32_t n, const CornerHeights& tops);
   uint32_t owner_at(const Cell& cell, const HighestLeft& left, std::span<const uint32_t> kept,

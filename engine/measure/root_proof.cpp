@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "measure/cell_parts.h"
 #include "measure/column_range.h"
 #include "measure/height_bounds.h"
 #include "measure/raw_cell.h"
@@ -24,8 +25,8 @@ constexpr double kBorder = 0.01;
 constexpr double kProbed = 0.1;
 /// Of the deepest, or highest: heights need not be known closer for the volume beyond a limit.
 constexpr double kVolumeShare = 0.1;
-/// No cell is divided below this; mm.
-constexpr double kSmallest = 1e-3;
+/// No cell is divided below this; mm, and of columns that fan out from one place, rad.
+constexpr double kSmallest = 1e-3, kSmallestTurn = 1e-2;
 /// Sweeps are first looked for up to this height over the design, mm; where more is left, up to the box's
 /// top.
 constexpr double kNearHeight = 0.05;
@@ -34,6 +35,14 @@ constexpr double kNearHeight = 0.05;
 bool resists_division(const Cell& cell, double voxel_mm) {
   constexpr double kResisting = 1.0 / 8.0;  // of a voxel
   return cell.shape.radius() <= kResisting * voxel_mm;
+}
+
+bool is_divisible(const DesignCell& cell) {
+  double turn = 0.0;
+  for (size_t k = 0; k < 3; ++k)
+    turn = std::max(turn, (cell.corners[k].normal - cell.corners[(k + 1) % 3].normal).norm());
+  const double edge = cell.longest_edge();
+  return edge > 0.0 ? edge > kSmallest : turn > kSmallestTurn;
 }
 
 CornerHeights through_stock(const Cell& cell, const Box& stock) {
@@ -141,9 +150,10 @@ class RootProof {
       look_at(kept_[i]);
     }
     // The kept sweeps prove bounds; what counts as found is measured against all of them: what is more than
-    // is asked for, or where nothing is, than was found before.
+    // is asked for, or than was found before.
     const double asked = std::min(excess_target(), scallop_target());
-    if (root_.looks_up && corner.height > (asked == kNever ? result_.excess_found : asked)) {
+    const double known = std::max(result_.excess_found, input_.excess_known_mm);
+    if (root_.looks_up && corner.height > std::min(asked, known)) {
       for (uint32_t n = 0; n < near_.size(); ++n) look_at(n);
     }
     keep_own(input_, corner);
@@ -466,7 +476,7 @@ class RootProof {
     const bool seen = std::any_of(cell.corners.begin(), cell.corners.end(), [&](const Corner& corner) {
       return -corner.height > input_.gouge_limit_mm || corner.height > input_.excess_limit_mm;
     });
-    const bool divide = ((gouge_open || excess_open) && edge > kSmallest) ||
+    const bool divide = ((gouge_open || excess_open) && is_divisible(cell.shape)) ||
                         (on_border(cell, bounds) && edge > (seen ? kBorder : kSmallest)) ||
                         on_border_of_roof(cell, bounds, edge) || (is_coarse(bounds) && edge > 2.0 * kBorder);
     const bool too_much = result_.work > (breaks_limit() ? budget_.broken : budget_.all);
@@ -499,31 +509,22 @@ class RootProof {
       }
     }
     const size_t end = kept_.size();
+    const bool resists = bounds.high > excess_target() && resists_division(cell, input_.stock.voxel_mm());
+    const Seams seams = resists ? rest_.seams_of(cell) : Seams{};
+    const auto is_seam = [](const auto& place) { return place.has_value(); };
+    const bool halved = std::count_if(seams.begin(), seams.end(), is_seam) == 1;
+    const auto side = static_cast<size_t>(std::find_if(seams.begin(), seams.end(), is_seam) - seams.begin());
     std::array<Corner, 3> middles;
     for (size_t k = 0; k < 3; ++k) {
+      if (halved && k != side) continue;
       const Corner &a = cell.corners[k], &b = cell.corners[(k + 1) % 3];
-      middles[k] = measured(middle(a.at, b.at, root_.bounds, cell.edges[k]), begin, end, {a.near, b.near});
+      const CellCorner at = seams[k] ? *seams[k] : middle(a.at, b.at, root_.bounds, cell.edges[k]);
+      middles[k] = measured(at, begin, end, {a.near, b.near});
       middles[k].at_rim = cell.outer[k];
     }
     const auto& c = cell.corners;
-    const auto& e = cell.edges;
-    const auto& o = cell.outer;
     const bool near_rim = std::any_of(c.begin(), c.end(), [](const Corner& corner) { return corner.at_rim; });
-    struct Part {
-      std::array<Corner, 3> corners;
-      CellEdges edges;
-      std::array<bool, 3> outer;
-    };
-    for (const Part& part : {Part{{c[0], middles[0], middles[2]},
-                                  {e[0].first_half(), EdgePiece{}, e[2].second_half()},
-                                  {o[0], false, o[2]}},
-                             Part{{middles[0], c[1], middles[1]},
-                                  {e[0].second_half(), e[1].first_half(), EdgePiece{}},
-                                  {o[0], o[1], false}},
-                             Part{{middles[2], middles[1], c[2]},
-                                  {EdgePiece{}, e[1].second_half(), e[2].first_half()},
-                                  {false, o[1], o[2]}},
-                             Part{{middles[0], middles[1], middles[2]}, {}, {}}}) {
+    for (const CellPart& part : halved ? halves_of(cell, side, middles[side]) : quarters_of(cell, middles)) {
       visit(
           {make_cell({part.corners[0].at, part.corners[1].at, part.corners[2].at}, root_.bounds, part.edges),
            part.corners, part.edges, begin, end, dropped, cell.air, near_rim, part.outer});

@@ -11,6 +11,8 @@
 #include "base/rng.h"
 #include "base/units.h"
 #include "measure/certificate.h"
+#include "mesh/mesh_ops.h"
+#include "mesh/plain_solids.h"
 #include "stock/rays/surface_dexels.h"
 #include "surface/analytic.h"
 
@@ -58,13 +60,32 @@ stock::SurfaceDexels rays_of(const Undercut& job, const stock::RayFieldPtr& fiel
   return dexels;
 }
 
-double highest_of(const stock::SurfaceDexels& dexels) {
-  double highest = 0.0;
-  for (const double height : dexels.heights_mm()) highest = std::max(highest, height);
-  dexels.each_above([&](uint32_t, const stock::MaterialAbove& m) {
-    if (m.high - m.low >= stock::kSliver) highest = std::max(highest, m.high);
+/// The highest material on each ray, above gaps too.
+std::vector<double> tops_of(const stock::SurfaceDexels& dexels) {
+  std::vector<double> tops = dexels.heights_mm();
+  dexels.each_above([&](uint32_t n, const stock::MaterialAbove& m) {
+    if (m.high - m.low >= stock::kSliver) tops[n] = std::max(tops[n], m.high);
   });
-  return highest;
+  return tops;
+}
+
+double highest_of(const stock::SurfaceDexels& dexels) {
+  const std::vector<double> tops = tops_of(dexels);
+  return std::max(0.0, *std::max_element(tops.begin(), tops.end()));
+}
+
+double area_above(const stock::SurfaceDexels& dexels, double limit_mm) {
+  const std::vector<double> tops = tops_of(dexels);
+  double area = 0.0;
+  for (size_t n = 0; n < tops.size(); ++n)
+    if (tops[n] > limit_mm) area += dexels.field().areas_mm2[n];
+  return area;
+}
+
+double told_area(const Certificate& proof) {
+  double area = 0.0;
+  for (const Region& region : proof.excesses) area += region.area_mm2;
+  return area;
 }
 
 Certificate proven(const Undercut& job, double limit_mm) {
@@ -93,9 +114,7 @@ void expect_broken(const Certificate& proof, double top_um, double area_mm2, dou
   EXPECT_LT(proof.cells, kFewCells);
   ASSERT_FALSE(proof.excesses.empty());
   EXPECT_NEAR(proof.excesses[0].worst_um, top_um, 0.01);
-  double area = 0.0;
-  for (const Region& region : proof.excesses) area += region.area_mm2;
-  EXPECT_NEAR(area, area_mm2, share * area_mm2);
+  EXPECT_NEAR(told_area(proof), area_mm2, share * area_mm2);
 }
 
 void expect_kept(const Certificate& proof, double top_um, double limit_mm) {
@@ -114,6 +133,13 @@ TEST(Overhang, ASlabBreaksALimitBelowItsTop) {
 
 TEST(Overhang, ASlabKeepsALimitAboveItsTop) {
   expect_kept(proven(slab(), 3.01), 3000.0, 3.01);
+}
+
+// A limit above the gap's 1 mm and below the neck's 2 mm: flutes that pass beside the neck end below the
+// limit.
+TEST(Overhang, TheAreaOfASlabHoldsTheNeckUnderIt) {
+  for (const double limit : {1.0, 1.5, 1.99}) expect_broken(proven(slab(), limit), 3000.0, 1.9 * 9.6, 0.005);
+  for (const double limit : {2.01, 2.9}) expect_broken(proven(slab(), limit), 3000.0, 1.4 * 9.6, 0.005);
 }
 
 // Its top is milled down to 2.6 mm, less than a voxel below the limit.
@@ -198,7 +224,8 @@ TEST(Overhang, DenseRaysOfRandomJobsStayWithinTheBounds) {
   const uint64_t begin = first != nullptr ? std::strtoull(first, nullptr, 10) : 1;
   for (uint64_t seed = begin; seed < begin + static_cast<uint64_t>(cases); ++seed) {
     const Undercut job = random_job(seed);
-    const double highest = highest_of(rays_of(job, stock::rays_on_surface(job.field->surface, 0.03)));
+    const stock::SurfaceDexels dense = rays_of(job, stock::rays_on_surface(job.field->surface, 0.03));
+    const double highest = highest_of(dense);
     Rng rng(seed);
     for (const double limit : {0.05, highest + 0.01, rng.uniform(0.1, 2.0)}) {
       const Certificate proof = proven(job, limit);
@@ -208,6 +235,8 @@ TEST(Overhang, DenseRaysOfRandomJobsStayWithinTheBounds) {
       EXPECT_GE(proof.excess.um, um_from_mm(highest) - 0.01) << where;
       EXPECT_LE(proof.excess_found_um, proof.excess.um) << where;
       EXPECT_LT(proof.cells, 2'000'000U) << where;
+      // Rays know an outline of some 20 mm to half their pitch.
+      EXPECT_NEAR(told_area(proof), area_above(dense, limit), 0.3) << where;
       const bool proven = proof.open_cells == 0 && proof.excess.um <= um_from_mm(limit);
       const bool broken = proof.excess_found_um > um_from_mm(limit);
       EXPECT_FALSE(proven && (broken || highest > limit)) << where;
@@ -215,6 +244,61 @@ TEST(Overhang, DenseRaysOfRandomJobsStayWithinTheBounds) {
         fmt::print("undecided: {}, bound {} um, rays {} um\n", where, proof.excess.um, um_from_mm(highest));
     }
   }
+}
+
+/// A slot along Y with an undercut: 4 mm wide down to z = -2, 8 mm wide from there to -3.
+TriMesh undercut_slot() {
+  TriMesh mesh;
+  EXPECT_TRUE(mesh::add_prism(mesh,
+                              {{-6, -5},
+                               {6, -5},
+                               {6, 0},
+                               {2, 0},
+                               {2, -2},
+                               {4, -2},
+                               {4, -3},
+                               {-4, -3},
+                               {-4, -2},
+                               {-2, -2},
+                               {-2, 0},
+                               {-6, 0}},
+                              -2, 2));
+  for (auto& p : mesh.positions) p = {p[0], -p[2], p[1]};
+  return mesh;
+}
+
+/// Flutes of 1 mm as wide as the slot's mouth; `left` stands at one side of the undercut.
+Undercut milled_slot(double left) {
+  Undercut job;
+  job.box = {{-6, -2, -5}, {6, 2, 0}};
+  job.cutter = stock::CutterSolid(2.0, 1.0);
+  job.field = stock::rays_on_mesh(undercut_slot(), 0.5);
+  row(job, 0.0, -1.0);
+  row(job, 0.0, -2.0);
+  for (double x = -2.0; x <= 2.0; x += 1.0) row(job, std::min(x, 2.0 - left), -3.0);
+  return job;
+}
+
+// Columns from its corners and edges run along faces of the stock, its sides across the seam of two flutes,
+// where no one sweep clears a cell. Heights of a mesh count while the place is about the nearest
+// (kOwnShareLeaning).
+TEST(Overhang, AnUndercutSlotOfAMesh) {
+  for (const double left : {0.0, 0.4}) {
+    Undercut job = milled_slot(left);
+    if (left > 0.0) row(job, 0.0, -0.9);
+    const Certificate kept = proven(job, 0.5);
+    EXPECT_LE(kept.excess_found_um, um_from_mm(left) / stock::kOwnShareLeaning + 0.01);
+    EXPECT_GE(kept.excess.um, um_from_mm(left));
+    EXPECT_LE(kept.excess.um, 500.0);
+    EXPECT_EQ(kept.open_cells, 0U);
+    EXPECT_TRUE(kept.excesses.empty());
+    EXPECT_LT(kept.cells, kFewCells / 4);
+  }
+  const Certificate broken = proven(milled_slot(0.4), 0.1);
+  EXPECT_GE(broken.excess_found_um, 400.0);
+  EXPECT_LE(broken.excess_found_um, 400.0 / stock::kOwnShareLeaning + 0.01);
+  EXPECT_GE(broken.excess.um, broken.excess_found_um);
+  EXPECT_FALSE(broken.excesses.empty());
 }
 
 }  // namespace
