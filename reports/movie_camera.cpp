@@ -6,6 +6,7 @@
 #include "base/units.h"
 #include "render/camera.h"
 #include "reports/pictures.h"
+#include "reports/section_still.h"
 
 namespace swarf::reports {
 namespace {
@@ -101,7 +102,8 @@ render::DrawList ShotView::list(const PlannedFrame& frame, sim::MovieView view,
   const size_t before = list.items.size();
   add_stock(stock, revisions, X_drawn, list.items);
   if (shot.section) {
-    list.section = {X_drawn * shot.section->point_W, X_drawn.linear() * shot.section->normal_W};
+    const sim::SectionPlane plane = off_walls(*shot.section, run_.job.scene.movie.voxel_mm);
+    list.section = {X_drawn * plane.point_W, X_drawn.linear() * plane.normal_W};
     for (size_t i = before; i < list.items.size(); ++i) list.items[i].sectioned = true;
   }
   if (tip_trail.size() > 1) {

@@ -24,6 +24,7 @@ namespace {
 
 constexpr double kRoom =
     1.5;  // times the distance that the part needs: legend, scale and bar stand beside it
+constexpr double kOffWallsVoxels = 0.05;
 constexpr double kEdgeOn = 0.02;        // sine of the least angle between the line of sight and the plane
 constexpr double kWhiskerShare = 0.06;  // of the picture's width: the longest line of a deviation at most
 constexpr double kAlongNormal = 0.1;    // of a ray's normal, in the plane at least: else no line shows it
@@ -156,14 +157,17 @@ render::Leader leader_to(const SectionRay& ray, const char* name, const Paper& p
 
 namespace {
 
-/// The plane with its normal on the side of the eye.
+/// The plane with its normal on the side of the eye. It goes through the box, and so does the one that is
+/// drawn.
 sim::SectionPlane facing(const Vec3& to_eye, const sim::SectionPlane& plane, const Box& whole,
-                         const SourceLocation& where) {
-  if (!sim::divides(plane, whole))
+                         double voxel_mm, const SourceLocation& where) {
+  const sim::SectionPlane turned{plane.point_W,
+                                 plane.normal_W.dot(to_eye) < 0.0 ? Vec3(-plane.normal_W) : plane.normal_W};
+  if (!sim::divides(plane, whole) || !sim::divides(off_walls(turned, voxel_mm), whole))
     throw InputError("section-misses", where,
                      fmt::format("the section {} misses the part", sim::section_words(plane)),
                      fmt::format("the part reaches {}", sim::extent_along(plane, whole)));
-  return {plane.point_W, plane.normal_W.dot(to_eye) < 0.0 ? Vec3(-plane.normal_W) : plane.normal_W};
+  return turned;
 }
 
 /// How far the eye stands above the plane, mm; enough to see it.
@@ -178,11 +182,18 @@ double seen_from(const Vec3& eye, const Vec3& to_eye, const sim::SectionPlane& p
 
 }  // namespace
 
-SectionView section_view(const TriMesh& part, const sim::SectionPlane& plane, const SourceLocation& where,
-                         const std::string& camera, double vertical_fov_rad, double aspect) {
+sim::SectionPlane off_walls(const sim::SectionPlane& plane, double voxel_mm) {
+  return {plane.point_W - kOffWallsVoxels * voxel_mm * plane.normal_W, plane.normal_W};
+}
+
+SectionView section_view(const FinishedRun& run, const TriMesh& part, const sim::SectionPlane& plane,
+                         const SourceLocation& where, const std::string& camera, double vertical_fov_rad,
+                         double aspect) {
+  const double voxel = run.job.scene.stock.voxel_mm;
   const Vec3 to_eye = (camera.empty() ? plane.normal_W : camera_direction(camera)).normalized();
   SectionView view;
-  view.plane = facing(to_eye, plane, mesh::bounds(part), where);
+  view.asked = facing(to_eye, plane, mesh::bounds(part), voxel, where);
+  view.plane = off_walls(view.asked, voxel);
   view.camera = render::look_at_box(kept_box(part, view.plane), -to_eye, vertical_fov_rad, aspect);
   view.camera.eye = view.camera.target + kRoom * (view.camera.eye - view.camera.target);
   const double above = seen_from(view.camera.eye, to_eye, view.plane, where, camera,
@@ -196,7 +207,9 @@ std::vector<render::Strokes> open_machine(const FinishedRun& run, const Pose& X_
                                           const std::string& camera, render::DrawList& list) {
   const Pose X_WM = X_MW.inverse();
   const Vec3 eye = X_WM * list.camera.eye, to_eye = (eye - X_WM * list.camera.target).normalized();
-  const sim::SectionPlane plane = facing(to_eye, section, run.job.scene.stock.box_W, where);
+  const double voxel = run.job.scene.movie.voxel_mm;  // of stock_at()
+  const sim::SectionPlane plane =
+      off_walls(facing(to_eye, section, run.job.scene.stock.box_W, voxel, where), voxel);
   seen_from(eye, to_eye, plane, where, camera, "name another camera");
   list.section = {X_MW * plane.point_W, X_MW.linear() * plane.normal_W};
   for (const auto& ends : section_pieces(shown_design(run.job).mesh, plane.point_W, plane.normal_W))
@@ -236,7 +249,7 @@ void draw_section(const FinishedRun& run, const TriMesh& part, const SectionView
   colour(kinds.back(), kPartLine, kPartWidth, "part as cut");
   kinds.push_back(outline(shown_design(run.job).mesh, view, paper));
   colour(kinds.back(), kDesignLine, kDesignWidth, "design");
-  const RaysBeside rays = rays_beside(run, view.plane);
+  const RaysBeside rays = rays_beside(run, view.asked);
   if (labels) kinds.push_back(whiskers(rays, view, paper, image.width, deviation_scale(run.job)));
   std::erase_if(kinds, [](const render::Strokes& kind) { return kind.pieces.empty(); });
   for (const render::Strokes& kind : kinds) render::draw_strokes(image, kind);
@@ -246,7 +259,7 @@ void draw_section(const FinishedRun& run, const TriMesh& part, const SectionView
     notes.push_back(
         fmt::format("values: measuring rays, at most {:.2g} mm from the plane", rays.farthest_mm));
   render::draw_scale_bar(image, paper.px_per_mm());
-  const Vec2 legend = render::draw_legend(image, "section " + sim::section_words(view.plane), kinds, notes);
+  const Vec2 legend = render::draw_legend(image, "section " + sim::section_words(view.asked), kinds, notes);
   if (rays.lowest)
     render::draw_leaders(
         image, {leader_to(*rays.lowest, "lowest", paper), leader_to(*rays.highest, "highest", paper)},

@@ -203,7 +203,7 @@ namespace {
 render::Image section_picture(const FinishedRun& run, const TriMesh& part, StillKind kind,
                               const std::string& camera, const StillLook& look,
                               render::StillOptions options) {
-  const SectionView view = section_view(part, *look.section, look.section_where, camera, kFieldOfView,
+  const SectionView view = section_view(run, part, *look.section, look.section_where, camera, kFieldOfView,
                                         aspect(run.job.scene.stills.size));
   render::DrawList list;
   list.camera = view.camera;

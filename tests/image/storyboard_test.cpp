@@ -155,8 +155,8 @@ TEST(MovieOfTwoHours, ShowsTheToolAtWork) {
   expect_like_reference(frames[19], "coremill_19.png");
 }
 
-/// One block of 124 mm through a bar of 100 mm, seen from the front and above; what is cut has the tool's
-/// blue.
+/// One block of 124 mm through a bar of 100 mm, seen from the front and above, what is cut in the tool's
+/// blue; and cut open where either wall of the slot is.
 constexpr const char* kSlotScene = R"(machine = "mill_3axis"
 nc = "slot.ngc"
 dialect = "linuxcnc"
@@ -175,7 +175,7 @@ kind = "none"
 [stills]
 kinds = []
 [movie]
-seconds = 0.5
+seconds = 0.9
 fps = 10
 size = [320, 180]
 overlay = false
@@ -186,7 +186,35 @@ camera = "0,-1,0.9"
 from_line = 9
 to_line = 9
 seconds = 0.5
+[[movie.shot]]
+view = "part"
+camera = "front"
+section = "y=5"
+from_line = 9
+to_line = 9
+seconds = 0.2
+[[movie.shot]]
+view = "part"
+camera = "front"
+section = "y=-5"
+from_line = 9
+to_line = 9
+seconds = 0.2
 )";
+
+/// The slot's run, made once.
+const fs::path& slot() {
+  static const fs::path folder = [] {
+    const fs::path made = fresh_folder("storyboard_slot");
+    std::ofstream(made / "slot.ngc") << "G21 G90 G17 G94\nG54\nT1 M6\nG43 H1\nS8000 M3\nG0 X-12 Y0\nG0 "
+                                        "Z10\nG1 Z-4 F500\nG1 X112 F500\nG0 Z20\nM30\n";
+    std::ofstream(made / "scene.toml") << kSlotScene;
+    const ProgramRun run = run_swarf(fmt::format("run {0}/scene.toml -o {0}/run", made.string()));
+    EXPECT_EQ(run.exit_code, 0) << run.output;
+    return made / "run";
+  }();
+  return folder;
+}
 
 /// Pixels of the tool's blue, left and right of the middle of the picture.
 std::array<int, 2> cut_pixels(const Image& image) {
@@ -201,14 +229,8 @@ std::array<int, 2> cut_pixels(const Image& image) {
 }
 
 TEST(MovieOfALongBlock, ShowsTheSlotUpToTheTool) {
-  const fs::path folder = fresh_folder("storyboard_slot");
-  std::ofstream(folder / "slot.ngc") << "G21 G90 G17 G94\nG54\nT1 M6\nG43 H1\nS8000 M3\nG0 X-12 Y0\nG0 Z10\n"
-                                        "G1 Z-4 F500\nG1 X112 F500\nG0 Z20\nM30\n";
-  std::ofstream(folder / "scene.toml") << kSlotScene;
-  const ProgramRun run = run_swarf(fmt::format("run {0}/scene.toml -o {0}/run", folder.string()));
-  ASSERT_EQ(run.exit_code, 0) << run.output;
-  const std::vector<Image> frames = movie_frames((folder / "run/movie.mp4").string());
-  ASSERT_EQ(frames.size(), 5U);
+  const std::vector<Image> frames = movie_frames((slot() / "movie.mp4").string());
+  ASSERT_EQ(frames.size(), 9U);
   // The tool is at x = 12.8, 37.6, 62.4, 87.2 and 112 mm.
   const std::array<int, 2> early = cut_pixels(frames[1]), late = cut_pixels(frames[3]),
                            end = cut_pixels(frames[4]);
@@ -218,6 +240,39 @@ TEST(MovieOfALongBlock, ShowsTheSlotUpToTheTool) {
   EXPECT_GT(late[1], 100);
   EXPECT_GT(end[1], late[1] + 100);
   expect_like_reference(frames[2], "slot_middle.png");
+}
+
+/// Height of the orange face of the cut for its width, taken as a rectangle.
+double cut_face(const Image& image) {
+  int pixels = 0, left = image.width, right = 0;
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const uint8_t* p = &image.rgba[static_cast<size_t>(4 * (y * image.width + x))];
+      if (p[0] < p[1] + 45) continue;
+      ++pixels;
+      left = std::min(left, x);
+      right = std::max(right, x + 1);
+    }
+  }
+  return static_cast<double>(pixels) / ((right - left) * (right - left));
+}
+
+/// The bar is 100 mm long and 12 high, the slot 4 deep. At y = 5 the material behind the wall is kept and
+/// cut, at y = -5 that before it is taken away.
+TEST(SectionOnAWall, CutsAllOfItOrTakesAllOfItAway) {
+  constexpr double kWhole = 0.12, kBelow = 0.08, kEdges = 0.01;  // edges: outlines and the eye's distance
+  const std::vector<Image> frames = movie_frames((slot() / "movie.mp4").string());
+  ASSERT_EQ(frames.size(), 9U);
+  EXPECT_NEAR(cut_face(frames[6]), kWhole, kEdges);
+  EXPECT_NEAR(cut_face(frames[8]), kBelow, kEdges);
+  const fs::path file = slot() / "section.png";
+  for (const auto& [section, height] : {std::pair{"y=5", kWhole}, {"y=-5", kBelow}}) {
+    const ProgramRun made =
+        run_swarf(fmt::format("render {} --still {} --kind part --section {} --size 640 360 --samples 2",
+                              slot().string(), file.string(), section));
+    ASSERT_EQ(made.exit_code, 0) << made.output;
+    EXPECT_NEAR(cut_face(render::load_png(file.string())), height, kEdges) << section;
+  }
 }
 
 /// Its work travels far on a machine many times its size: the camera goes with it and the tool, which waits

@@ -1,8 +1,8 @@
 // node page.mjs [--pictures FOLDER] [--leading] REPORT.html...: what a person does with each page, at 1400 and at 390 px: it opens,
 // nothing is said on the console, axe finds no violation, nothing is wider than the window; both tabs of the 3D view are
 // drawn, the design can be shown; the deepest and the highest place of the part are those of metrics.json beside the page,
-// within 0.1 um. At 1400 px also: the tool stands over the work as blocks.csv says and the stock is cut in stages; each
-// finding leads to its place, where its pin stands, to its line and the movie's second.
+// within 0.1 um. At 1400 px also: a section in the plane of a wall shows no part of it; the tool stands over the work as
+// blocks.csv says and the stock is cut in stages; each finding leads to its place, where its pin stands, to its line and the movie's second.
 // --leading: each page has a finding that leads to a place, to a line and to the movie.
 // FOLDER: for what was seen. Prints one line for each width; exits 1 on the first thing that is not so.
 import assert from 'node:assert/strict';
@@ -22,6 +22,7 @@ const readLimitUm = 0.1, opensWithinMs = 2000, findingsVisited = 5, findingsVisi
 const narrowPx = 500;  // a telephone: what follows from the models alone is looked at once
 const wordsWithinPx = 100;  // at least
 const drawnPixels = 0.25;  // for each pixel of the page: a processor draws the 3D view, and what is looked at is not its grain
+const sectionsDiffer = 0.005;  // share of the picture: the rim moves by a part of a pixel
 const cycleS = 1e-3;
 const tipWithinMm = 0.2;  // keys of up to five axes, each within 0.02 mm or 0.0115 deg, and milliseconds in the slider
 
@@ -60,6 +61,28 @@ async function checkDesign(page, metrics) {
   assert.equal(await design.isChecked(), false);
   await design.check();
   await design.uncheck();
+}
+
+/** A section in the very plane of the part's top takes it away, all of it: as one a thousandth below. */
+async function checkSection(page) {
+  const at = page.getByLabel('Place of the section'), across = page.locator('select').filter({ hasText: 'across Z' });
+  await across.selectOption('2');
+  const shots = [];
+  for (const share of [1, 0.999]) {
+    await at.evaluate((element, value) => { element.value = value; element.dispatchEvent(new Event('input')); }, share);
+    shots.push((await page.locator('#viewer canvas').screenshot()).toString('base64'));
+  }
+  await across.selectOption('');
+  const differ = await page.evaluate(async (pngs) => {
+    const [one, other] = await Promise.all(pngs.map(async (png) => {
+      const bitmap = await createImageBitmap(new Blob([Uint8Array.from(atob(png), (c) => c.charCodeAt(0))], { type: 'image/png' }));
+      const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext('2d');
+      context.drawImage(bitmap, 0, 0);
+      return context.getImageData(0, 0, bitmap.width, bitmap.height).data;
+    }));
+    return one.filter((value, k) => Math.abs(value - other[k]) > 24).length / one.length;
+  }, shots);
+  assert.ok(differ < sectionsDiffer, `a section in the plane of a wall: ${(100 * differ).toFixed(2)} % of the picture differ from one beside it`);
 }
 
 /** A click a little above the middle of the picture, where the visited place is: its pin is hit. */
@@ -171,6 +194,7 @@ async function checkAt(file, width) {
     await tabShown(page, 'part');
     told.push(await checkExtremes(page, metrics));
     await checkDesign(page, metrics);
+    if (width > narrowPx) await checkSection(page);
     if (pictures) await page.locator('#view').screenshot({ path: join(pictures, `part_${width}.png`) });
     if (width > narrowPx && (await page.locator('#machine-glb').count())) told.push(await checkMachine(page, width, dirname(resolve(file))));
   }

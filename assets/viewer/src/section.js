@@ -4,6 +4,10 @@ import { BufferGeometry, Float32BufferAttribute, Group, LineBasicMaterial, LineS
 /** Whiskers as long as this share of the part stand for a deviation at the scene's limit. */
 const whiskerShare = 0.03;
 
+/** By this share of the part the plane that is drawn lies below the one that is asked for: a wall in the very plane is cut or
+ * taken away, all of it, whatever its vertices are rounded by. */
+const offWallsShare = 1e-4;
+
 const inks = { profile: 0x10151b, whisker: 0xc4501b, exaggerated: 0x0a5fb4 };
 
 /** Corners of all triangles in the work frame, mm, with the deviation at each, um; NaN: not measured. */
@@ -53,20 +57,21 @@ export class Section {
     this.drawn.clear();
   }
 
-  /** Cuts at `value` mm of axis 0, 1 or 2; what has more than that is cut away. Returns what whiskers are drawn by. */
-  cut(axis, value) {
-    const normal = new Vector3().setComponent(axis, -1);
+  /** Cuts at `asked` mm of axis 0, 1 or 2; what has more than that is cut away. Returns what whiskers are drawn by. */
+  cut(axis, asked) {
+    this.triangles ??= trianglesOf(this.meshes, this.work, this.deviationAt);
+    this.size ??= this.longestSide();
+    const normal = new Vector3().setComponent(axis, -1), value = asked - offWallsShare * this.size;
     this.plane.set(normal, value).applyMatrix4(this.work.matrixWorld);
     this.plane.normalize();
     for (const mesh of this.meshes) { mesh.material.clippingPlanes = [this.plane]; mesh.material.needsUpdate = true; }
     this.empty();
-    this.triangles ??= trianglesOf(this.meshes, this.work, this.deviationAt);
     return this.drawProfile(axis, value);
   }
 
   drawProfile(axis, value) {
     const { corners, values } = this.triangles, profile = [], whiskers = [], shifted = [];
-    const size = this.size ??= this.longestSide();
+    const { size } = this;
     const limit = this.limits ? Math.max(-this.limits.low, this.limits.high) : 0;
     const times = limit > 0 ? (whiskerShare * size) / (limit / 1000) : 0;
     for (let t = 0; t < corners.length; t += 9) {

@@ -11,8 +11,6 @@ namespace {
 /// By which a part is held back at least, voxels: kernels round by less than a quarter of it unless a voxel
 /// is less than a ten-thousandth of the tool (Stock::rounding_mm), and more is added there.
 constexpr double kHeldBackVoxels = 0.01;
-/// By which it is held back at most; a sweep that turns more is seen when it is whole.
-constexpr double kHeldBackMost = 0.2;
 /// The tool is on a sweep that it is nearer to than this, voxels: rounded corners leave the path.
 constexpr double kOnSweepVoxels = 1.0;
 
@@ -82,8 +80,9 @@ void CutAlong::cut_part(const motion::Cycle& cycle, const std::function<void(siz
   const std::optional<double> share = share_on(sweep, cycle.sample.pose, lever, kOnSweepVoxels * voxel);
   if (!share || *share <= share_) return;
   const double beside = 2.0 * (stock_.rounding_mm() + stock::motion_bound(sweep, lever));
-  if (beside > kHeldBackMost * voxel) return;
-  const auto smaller = held_back(solids_[tool], kHeldBackVoxels * voxel + beside);
+  const double back = kHeldBackVoxels * voxel + beside;
+  if (back > kProudVoxels * voxel) return;
+  const auto smaller = held_back(solids_[tool], back);
   if (!smaller) return;
   const stock::Sweep part{pose_between(sweep.start, sweep.end, share_),
                           pose_between(sweep.start, sweep.end, *share), sweep.block};

@@ -33,6 +33,10 @@ std::optional<stock::CutterSolid> held_back(const stock::CutterSolid& cutter, do
 
 class CutAlong {
  public:
+  /// What a part leaves stands out no farther, voxels; a sweep that turns too much for that is seen when it
+  /// is whole.
+  static constexpr double kProudVoxels = 0.04;
+
   /// The material as the job's own program meets it. `cycles`: walked or recalled.
   CutAlong(const Job& job, const CarriedCuts& carried, const motion::Cycles& cycles, double voxel_mm);
 
