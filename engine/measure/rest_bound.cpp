@@ -171,6 +171,10 @@ double mean(const CornerHeights& heights) {
   return (heights[0] + heights[1] + heights[2]) / 3.0;
 }
 
+double most_of_corners(const CornerHeights& heights) {
+  return *std::max_element(heights.begin(), heights.end());
+}
+
 /// At no corner above, and not all but the same.
 bool is_lower(const CornerHeights& a, const CornerHeights& b) {
   for (size_t k = 0; k < 3; ++k)
@@ -219,12 +223,22 @@ std::optional<CornerHeights> RestBound::lowered(const Cell& cell, const CornerHe
   };
   constexpr double kLeastShare = 1.0 / 16.0;
   constexpr int kMostSteps = 64;
-  for (int step = 0; step<kMostSteps&& * std::max_element(lowest.begin(), lowest.end())> enough; ++step) {
-    double share = 1.0;
-    while (share >= kLeastShare && !next(share)) share *= 0.5;
-    if (share < kLeastShare) break;
-  }
-  return is_lower(lowest, tops) ? std::optional(lowest) : std::nullopt;
+  const auto descend = [&] {
+    for (int step = 0; step < kMostSteps && most_of_corners(lowest) > enough; ++step) {
+      double share = 1.0;
+      while (share >= kLeastShare && !next(share)) share *= 0.5;
+      if (share < kLeastShare) break;
+    }
+  };
+  descend();
+  if (most_of_corners(lowest) <= enough) return lowest;
+  // Where the columns end below a layer at one corner and within it at another they may as well end higher.
+  const CornerHeights leaning = lowest;
+  const double level = most_of_corners(leaning);
+  lowest = {level, level, level};
+  descend();
+  if (most_of_corners(lowest) < level - kTouch) return lowest;
+  return is_lower(leaning, tops) ? std::optional(leaning) : std::nullopt;
 }
 
 Seams RestBound::seams_of(const Cell& cell) const {

@@ -358,18 +358,31 @@ TEST_F(Colours, WhereAnotherFaceEndsTheMaterialAreThoseOfThePart) {
   expect_range();
 }
 
-// A slot of 4 mm that nobody has milled: half way between its walls nothing is higher, and that ray ends in a
-// wall. The material around it ends at the slot's mouth, or at an end.
-TEST_F(Colours, InASlotThatIsFullAreThoseOfItsMouth) {
-  save_bar(folder_ / "slot.stl", {{-8, -9}, {8, -9}, {8, 0}, {2, 0}, {2, -6}, {-2, -6}, {-2, 0}, {-8, 0}});
-  run(milled_scene(folder_, {{-4.0, 0.0}, {4.0, 0.0}}, 20.0, "[[-8, -5, -9], [8, 5, 1]]",
+// An undercut that nobody has milled, beside a slot of 8 mm: half way between its floor and its roof nothing
+// is higher, and that ray goes on into the roof. The material around it ends at the slot, or at the bar's
+// ends.
+TEST_F(Colours, InAnUndercutThatIsFullAreThoseOfItsMouth) {
+  save_bar(folder_ / "slot.stl", {{-9, -6},
+                                  {9, -6},
+                                  {9, 0},
+                                  {4, 0},
+                                  {4, -2},
+                                  {7, -2},
+                                  {7, -3},
+                                  {-7, -3},
+                                  {-7, -2},
+                                  {-4, -2},
+                                  {-4, 0},
+                                  {-9, 0}});
+  run(milled_scene(folder_, {{0.0, -3.0}}, 20.0, "[[-9, -5, -6], [9, 5, 0]]",
                    "kind = \"mesh\"\nmesh = \"slot.stl\"\n"),
       "");
   const json highest = json::parse(read_text(out() + "/metrics.json")).at("highest_material");
-  EXPECT_NEAR(um("excess_max_um"), 2000.0, 30.0);
   const double x = highest.at("x_mm"), y = highest.at("y_mm"), z = highest.at("z_mm");
-  EXPECT_LT(std::min(std::abs(z), 5.0 - std::abs(y)), 1e-5) << x << ' ' << y << ' ' << z;
-  EXPECT_LT(std::abs(x), 2.0);
+  EXPECT_NEAR(um("excess_max_um"), 500.0, 30.0);
+  EXPECT_LT(std::min(std::abs(x) - 4.0, 5.0 - std::abs(y)), 1e-5) << x << ' ' << y << ' ' << z;
+  EXPECT_GT(std::abs(x), 4.0 - 1e-5);
+  EXPECT_NEAR(z, -2.5, 0.5);
   expect_range();
 }
 

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <span>
 #include <utility>
 #include <vector>
 
 #include "measure/sweep_index.h"
 #include "mesh/mesh_lines.h"
 #include "sim/run/ray_cutters.h"
+#include "stock/rays/ray_height.h"
 
 namespace swarf::sim {
 namespace {
@@ -84,33 +84,49 @@ struct End {
   Vec3 way = Vec3::Zero();
 };
 
+/// Where the raw material around a place ends on a line from it, mm.
+double raw_end(const stock::RawShape& raw, const Vec3& place, const Vec3& way) {
+  for (const stock::RawInterval& material : raw.along(place, way))
+    if (material.low <= kOnPart && material.high > 0.0) return material.high;
+  return 0.0;
+}
+
+/// The first place of a line from within the material that the sweep reaches, mm; infinite: none.
+double first_cut(const Vec3& place, const Vec3& way, const stock::SweepMap& map,
+                 const stock::CutterSolid& cutter) {
+  double end = std::numeric_limits<double>::infinity();
+  for (const cutter::ConvexPiece& piece : cutter.pieces) {
+    const stock::RayInterval cut = stock::ray_interval(place, way, map, piece);
+    if (cut.hit() && cut.high > kOnPart) end = std::min(end, std::max(0.0, cut.low));
+  }
+  return end;
+}
+
+bool comes_near(const stock::Sweep& sweep, const stock::CutterSolid& cutter, const Vec3& place,
+                double reach_mm) {
+  const Box box = measure::sweep_box(sweep, cutter);
+  return ((box.lower - place).array() <= reach_mm).all() && ((place - box.upper).array() <= reach_mm).all();
+}
+
 /// Where the material that is around a place ends, on the line on which that is nearest; infinitely far where
 /// it goes on over all of `lengths`, mm.
 End nearest_end(const Job& job, const MeasuredPath& measured, const Vec3& place,
                 const std::vector<Vec3>& ways, const std::vector<double>& lengths) {
-  stock::SurfaceDexels rays(stock::rays_at(std::vector<Vec3>(ways.size(), place), ways, nullptr,
-                                           measured.dexels.front().field().pitch_mm),
-                            job.scene.stock.body_W(), lengths);
-  const Vec3 reach = Vec3::Constant(*std::max_element(lengths.begin(), lengths.end()));
+  const stock::RawShape& raw = job.scene.stock.body_W();
+  std::vector<double> ends;
+  for (const Vec3& way : ways) ends.push_back(raw_end(raw, place, way));
+  const double reach = *std::max_element(lengths.begin(), lengths.end());
   const RayCutters cutters = ray_cutters(job, measured);
-  std::vector<stock::Sweep> near;
-  for_each_tool(
-      measured.rays.sweeps, [&](uint32_t block) { return cutters.solid_of[block]; },
-      [&](size_t solid, std::span<const stock::Sweep> sweeps) {
-        near.clear();
-        for (const stock::Sweep& sweep : sweeps) {
-          const Box box = measure::sweep_box(sweep, cutters.solids[solid]);
-          if ((box.lower.array() <= (place + reach).array()).all() &&
-              (box.upper.array() >= (place - reach).array()).all())
-            near.push_back(sweep);
-        }
-        if (!near.empty()) rays.cut(near, cutters.solids[solid]);
-      });
-  End nearest;
-  for (size_t n = 0; n < ways.size(); ++n) {
-    const double end = std::max(0.0, rays.heights_mm()[n]);
-    if (end < lengths[n] && end < nearest.mm) nearest = {end, ways[n]};
+  for (const stock::Sweep& sweep : measured.rays.sweeps) {
+    const stock::CutterSolid& cutter = cutters.solids[static_cast<size_t>(cutters.solid_of[sweep.block])];
+    if (!comes_near(sweep, cutter, place, reach)) continue;
+    const stock::SweepMap map = stock::sweep_map(sweep);
+    for (size_t n = 0; n < ways.size(); ++n)
+      ends[n] = std::min(ends[n], first_cut(place, ways[n], map, cutter));
   }
+  End nearest;
+  for (size_t n = 0; n < ways.size(); ++n)
+    if (ends[n] < lengths[n] && ends[n] < nearest.mm) nearest = {ends[n], ways[n]};
   return nearest;
 }
 

@@ -11,8 +11,8 @@
 #include "base/rng.h"
 #include "base/units.h"
 #include "measure/certificate.h"
-#include "mesh/mesh_ops.h"
 #include "mesh/plain_solids.h"
+#include "mesh/signed_distance.h"
 #include "stock/rays/surface_dexels.h"
 #include "surface/analytic.h"
 
@@ -246,21 +246,25 @@ TEST(Overhang, DenseRaysOfRandomJobsStayWithinTheBounds) {
   }
 }
 
-/// A slot along Y with an undercut: 4 mm wide down to z = -2, 8 mm wide from there to -3.
-TriMesh undercut_slot() {
+/// A slot along Y, from its mouth down: half widths and how deep each of them goes.
+struct Slot {
+  double mouth = 2.0, undercut = 4.0, roof = -2.0, floor = -3.0;
+};
+
+TriMesh slot_mesh(const Slot& slot) {
   TriMesh mesh;
   EXPECT_TRUE(mesh::add_prism(mesh,
                               {{-6, -5},
                                {6, -5},
                                {6, 0},
-                               {2, 0},
-                               {2, -2},
-                               {4, -2},
-                               {4, -3},
-                               {-4, -3},
-                               {-4, -2},
-                               {-2, -2},
-                               {-2, 0},
+                               {slot.mouth, 0},
+                               {slot.mouth, slot.roof},
+                               {slot.undercut, slot.roof},
+                               {slot.undercut, slot.floor},
+                               {-slot.undercut, slot.floor},
+                               {-slot.undercut, slot.roof},
+                               {-slot.mouth, slot.roof},
+                               {-slot.mouth, 0},
                                {-6, 0}},
                               -2, 2));
   for (auto& p : mesh.positions) p = {p[0], -p[2], p[1]};
@@ -272,7 +276,7 @@ Undercut milled_slot(double left) {
   Undercut job;
   job.box = {{-6, -2, -5}, {6, 2, 0}};
   job.cutter = stock::CutterSolid(2.0, 1.0);
-  job.field = stock::rays_on_mesh(undercut_slot(), 0.5);
+  job.field = stock::rays_on_mesh(slot_mesh({}), 0.5);
   row(job, 0.0, -1.0);
   row(job, 0.0, -2.0);
   for (double x = -2.0; x <= 2.0; x += 1.0) row(job, std::min(x, 2.0 - left), -3.0);
@@ -299,6 +303,80 @@ TEST(Overhang, AnUndercutSlotOfAMesh) {
   EXPECT_LE(broken.excess_found_um, 400.0 / stock::kOwnShareLeaning + 0.01);
   EXPECT_GE(broken.excess.um, broken.excess_found_um);
   EXPECT_FALSE(broken.excesses.empty());
+}
+
+/// Everything follows from the seed: a slot, flutes that fit into its mouth, and passes of which some may
+/// lack.
+struct RandomSlot {
+  TriMesh mesh;
+  Undercut job;
+};
+RandomSlot random_slot(uint64_t seed) {
+  Rng rng(seed);
+  Slot slot;
+  slot.mouth = rng.uniform(1.0, 2.5);
+  slot.undercut = slot.mouth + rng.uniform(0.3, 2.0);
+  slot.roof = -rng.uniform(0.5, 2.0);
+  slot.floor = slot.roof - rng.uniform(0.4, 1.5);
+  RandomSlot random{slot_mesh(slot), {}};
+  Undercut& job = random.job;
+  job.box = {{-6, -2, -5}, {6, 2, rng.next() % 2 == 0 ? 0.0 : 0.3}};
+  if (rng.next() % 3 == 0) job.box.upper.y() = 2.5;
+  job.voxel_mm = rng.uniform(0.2, 0.6);
+  job.field = stock::rays_on_mesh(random.mesh, rng.uniform(0.3, 0.8));
+  const double radius = slot.mouth * (rng.next() % 2 == 0 ? 1.0 : rng.uniform(0.5, 1.0));
+  job.cutter = stock::CutterSolid(radius, slot.roof - slot.floor);
+  const auto passes = [&](double half_width, double z) {
+    const double reach = half_width - radius;
+    const int count = 1 + static_cast<int>(2.0 * reach / radius);
+    for (int n = 0; n <= count; ++n)
+      if (rng.next() % 12 != 0) row(job, reach * (2.0 * n / count - 1.0), z);
+  };
+  for (double z = slot.floor; z < 0.0; z += job.cutter.height) passes(slot.mouth, z);
+  passes(slot.undercut, slot.floor);
+  for (double x = -6.0; x <= 6.0; x += radius) row(job, x, 0.0);
+  return random;
+}
+
+/// Farther from the design than this there is material, by places that no pass reaches: rows along Y of an
+/// upright cylinder are boxes.
+double farthest_material(const RandomSlot& slot, uint64_t seed) {
+  const mesh::SignedDistance design(slot.mesh);
+  const Undercut& job = slot.job;
+  Rng rng(seed);
+  double farthest = 0.0;
+  for (int n = 0; n < 20'000; ++n) {
+    const Vec3 p(rng.uniform(job.box.lower.x(), job.box.upper.x()),
+                 rng.uniform(job.box.lower.y(), job.box.upper.y()), rng.uniform(-4.0, job.box.upper.z()));
+    const bool cut = std::any_of(job.sweeps.begin(), job.sweeps.end(), [&](const stock::Sweep& sweep) {
+      const Vec3 at = p - sweep.start.tip_W;
+      return std::abs(at.x()) <= job.cutter.radius && at.z() >= 0.0 && at.z() <= job.cutter.height;
+    });
+    if (!cut) farthest = std::max(farthest, design.at(p).distance_mm);
+  }
+  return farthest;
+}
+
+TEST(Overhang, NoPlaceOfMaterialIsFartherFromARandomSlotThanIsProven) {
+  const char* const count = std::getenv("SWARF_RANDOM_OVERHANGS");
+  const int cases = count != nullptr ? std::atoi(count) : 2;
+  const char* const first = std::getenv("SWARF_FIRST_OVERHANG");
+  const uint64_t begin = first != nullptr ? std::strtoull(first, nullptr, 10) : 3;
+  int kept = 0;
+  for (uint64_t seed = begin; seed < begin + static_cast<uint64_t>(cases); ++seed) {
+    const RandomSlot slot = random_slot(seed);
+    const double farthest = farthest_material(slot, seed);
+    for (const double limit : {0.1, 1.2 * farthest + 0.05}) {
+      const Certificate proof = proven(slot.job, limit);
+      const std::string where =
+          fmt::format("SWARF_FIRST_OVERHANG={} SWARF_RANDOM_OVERHANGS=1, limit {} mm, {} cells, {} open",
+                      seed, limit, proof.cells, proof.open_cells);
+      EXPECT_GE(proof.excess.um, um_from_mm(farthest)) << where;
+      EXPECT_LE(proof.excess_found_um, proof.excess.um) << where;
+      if (proof.open_cells == 0 && proof.excess.um <= um_from_mm(limit)) ++kept;
+    }
+  }
+  EXPECT_GE(kept, count != nullptr ? 0 : 2) << "a bound that is never close proves nothing";
 }
 
 }  // namespace
