@@ -21,6 +21,8 @@ constexpr double kThinVoxels = 0.05;
 /// A vertex nearer than this to the finished surface, in voxels of the movie, lies on it.
 constexpr double kFinishedVoxels = 0.15;
 constexpr int8_t kNoTool = -1;
+/// Along the stock's longest side: more of them are drawn slower than they are made.
+constexpr int kPatchesAlong = 16;
 
 /// Of all patches of all movies, so that renderers can trust it.
 std::atomic<uint64_t> last_revision{0};
@@ -58,6 +60,11 @@ void sort_by_key(std::vector<std::pair<uint64_t, Value>>& kept) {
   std::sort(kept.begin(), kept.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
 }
 
+/// Of patches, leaf positions.
+int patch_side(const stock::Stock& stock) {
+  return (stock::StockMesher::leaves_along(stock) + kPatchesAlong - 1) / kPatchesAlong;
+}
+
 bool one_colour(const TriMesh& mesh) {
   return std::all_of(mesh.colours.begin(), mesh.colours.end(),
                      [&](const auto& c) { return c == mesh.colours.front(); });
@@ -79,6 +86,7 @@ void add_stock(const StockState& state, const std::vector<uint64_t>& revisions, 
 MovieStock::MovieStock(const FinishedRun& run, sim::MovieColours colours)
     : run_(run),
       along_(run.job, run.carried, run.cycles, run.job.scene.movie.voxel_mm),
+      mesher_(along_.stock(), patch_side(along_.stock())),
       colours_(colours),
       patches_(mesher_.patches()),
       revisions_(mesher_.patches(), 0),

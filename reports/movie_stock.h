@@ -45,7 +45,7 @@ class MovieStock {
 
   const FinishedRun& run_;
   sim::CutAlong along_;
-  stock::StockMesher mesher_{along_.stock()};
+  stock::StockMesher mesher_;
   sim::MovieColours colours_;
   StockState patches_;
   std::vector<uint64_t> revisions_;

@@ -1,4 +1,5 @@
-// What a frame of a movie pays for its stock where finished surfaces show their deviation from a mesh.
+// What a frame of a movie pays for its stock: where finished surfaces show their deviation from a mesh, and
+// by the size of the part where the same is cut in each frame.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
@@ -150,6 +151,108 @@ void BM_DeviationsOfAFrame(benchmark::State& state) {
 BENCHMARK(BM_DeviationsOfAFrame)
     ->ArgNames({"triangles", "deviation"})
     ->ArgsProduct({{10000, 100000, 300000}, {0, 1}})
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime()
+    ->Iterations(3);
+
+/// A plate that a flat end mill faces in rows over its whole length, a millimetre deep.
+sim::Job plate(int side) {
+  const std::filesystem::path folder = test::scratch_folder() / fmt::format("plate_{}", side);
+  std::filesystem::create_directories(folder);
+  std::string program = "G21 G90 G17 G94\nG54\nT1 M6\nG43 H1\nS8000 M3\nG0 X0 Y0\nG0 Z10\nG1 Z-1 F2000\n";
+  for (int row = 0; 6 * row <= side; ++row)
+    program += fmt::format("G1 Y{} F2000\nG1 X{}\n", 6 * row, row % 2 == 0 ? side : 0);
+  std::ofstream(folder / "plate.ngc") << program << "G0 Z20\nM30\n";
+  std::ofstream(folder / "scene.toml") << fmt::format(R"(machine = "mill_3axis"
+nc = "plate.ngc"
+dialect = "linuxcnc"
+[cutter]
+number = 1
+diameter_mm = 10
+flute_length_mm = 25
+length_mm = 60
+[setup]
+work_origin_mm = "on_table"
+[stock]
+box_mm = [[0, 0, -20], [{0}, {0}, 0]]
+voxel_mm = 1
+[design]
+kind = "none"
+[movie]
+voxel_mm = 0.8
+)",
+                                                      side);
+  return sim::load_job((folder / "scene.toml").string(), {});
+}
+
+/// Frames from the middle of a motion on, `step` cycles apart: what of the stock is made again, and for how
+/// long.
+void remesh(benchmark::State& state, const sim::Job& job, size_t step) {
+  constexpr size_t kTimed = 20;
+  Progress progress;
+  const sim::MeasuredPath path = sim::move_tool(job, progress);
+  const stock::Stock finished = sim::starting_stock(job, *path.carried, job.scene.movie.voxel_mm);
+  const FinishedRun run{job, *path.cycles, finished, {}, *path.carried};
+  const size_t middle = path.cycles->size() / 2;
+  motion::CycleReader reader(*path.cycles);
+  // Counted beside what is timed.
+  sim::CutAlong along(job, *path.carried, *path.cycles, job.scene.movie.voxel_mm);
+  stock::StockMesher mesher(along.stock());
+  along.advance(reader.at(middle));
+  mesher.update();
+  size_t leaves = 0;
+  for (size_t f = 1; f <= kTimed; ++f) {
+    along.advance(reader.at(middle + f * step));
+    mesher.update();
+    leaves += mesher.leaves_meshed();
+  }
+  size_t patches = 0, all = 0;
+  for (auto _ : state) {
+    state.PauseTiming();
+    MovieStock stock(run, sim::MovieColours::kMaterial);
+    stock.advance(reader.at(middle));
+    patches = stock.patches_made();
+    state.ResumeTiming();
+    for (size_t f = 1; f <= kTimed; ++f) stock.advance(reader.at(middle + f * step));
+    patches = stock.patches_made() - patches;
+    all =
+        static_cast<size_t>(std::count_if(stock.state().begin(), stock.state().end(), [](const auto& patch) {
+          return patch != nullptr && !patch->triangles.empty();
+        }));
+  }
+  state.SetItemsProcessed(static_cast<int64_t>(state.iterations() * kTimed));
+  state.counters["leaves"] = static_cast<double>(leaves) / kTimed;
+  state.counters["leaves_pct"] =
+      100.0 * static_cast<double>(leaves) / static_cast<double>(kTimed * along.stock().leaves());
+  state.counters["patches"] = static_cast<double>(patches) / kTimed;
+  state.counters["patches_pct"] = 100.0 * static_cast<double>(patches) / static_cast<double>(kTimed * all);
+}
+
+/// range(0): side of the plate, mm. Each frame cuts 4 mm on.
+void BM_RemeshByThePartsSize(benchmark::State& state) {
+  constexpr size_t kCycles = 120;  // at 2000 mm/min and 1 ms
+  remesh(state, plate(static_cast<int>(state.range(0))), kCycles);
+}
+BENCHMARK(BM_RemeshByThePartsSize)
+    ->ArgName("side")
+    ->Arg(50)
+    ->Arg(100)
+    ->Arg(200)
+    ->Arg(400)
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime()
+    ->Iterations(3);
+
+/// The dome in 300 frames.
+void BM_RemeshOfTheDome(benchmark::State& state) {
+  const sim::Job job = sim::load_job(SWARF_SOURCE_DIR "/scenes/lin_koren_dome/scene.toml", {});
+  constexpr size_t kFrames = 300;
+  Progress progress;
+  remesh(state, job, sim::move_tool(job, progress).cycles->size() / kFrames);
+}
+BENCHMARK(BM_RemeshOfTheDome)
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime()
     ->UseRealTime()

@@ -16,6 +16,7 @@ struct LeafVertex {
   std::array<float, 3> normal;
   uint16_t edges;  ///< of its cell, those that its patch crosses
   bool sharp;
+  bool operator==(const LeafVertex&) const = default;
 };
 
 /// A grid edge whose ends differ in sign; `cell` has the edge at its corner 0.
@@ -24,6 +25,7 @@ struct LeafEdge {
   uint8_t axis;
   bool upward;     ///< the inside is at the lower end
   float crossing;  ///< from the lower end, voxels
+  bool operator==(const LeafEdge&) const = default;
 };
 
 /// A vertex as seen from a leaf: bits 16 to 18 say on which axes (x = 4, y = 2, z = 1) its leaf is the one

@@ -89,22 +89,16 @@ std::vector<size_t> marked(const std::vector<uint8_t>& marks) {
   return places;
 }
 
-Eigen::Vector3i patch_dimension(const LeafMap& map) {
-  const auto along = [](int leaves) {
-    return (leaves + StockMesher::kPatchSide - 1) / StockMesher::kPatchSide;
-  };
-  return {along(map.dimension.x()), along(map.dimension.y()), along(map.dimension.z())};
-}
-
 /// Numbers in a patch of the vertices of each leaf that its triangles use: its own and those before them.
 class PatchVertices {
  public:
-  explicit PatchVertices(TriMesh& mesh) : mesh_(mesh) {}
+  PatchVertices(TriMesh& mesh, int side)
+      : mesh_(mesh), along_(side + 1), slots_(static_cast<size_t>(along_) * along_ * along_) {}
 
   /// `slot`: of the leaf's position, one before the patch's first on each axis.
   uint32_t number(const Place& slot, const LeafMesh& leaf, uint32_t vertex) {
     std::vector<uint32_t>& numbers =
-        slots_[static_cast<size_t>((slot.i * kSlots + slot.j) * kSlots + slot.k)];
+        slots_[static_cast<size_t>((slot.i * along_ + slot.j) * along_ + slot.k)];
     if (numbers.empty()) numbers.assign(leaf.vertices.size(), kNone);
     uint32_t& number = numbers[vertex];
     if (number == kNone) {
@@ -116,27 +110,30 @@ class PatchVertices {
   }
 
  private:
-  static constexpr int kSlots = StockMesher::kPatchSide + 1;
   static constexpr uint32_t kNone = 0xffffffffU;
   TriMesh& mesh_;
-  std::array<std::vector<uint32_t>, static_cast<size_t>(kSlots* kSlots* kSlots)> slots_;
+  int along_;
+  std::vector<std::vector<uint32_t>> slots_;
 };
 
 }  // namespace
 
 struct StockMesher::Impl {
   const LevelSet& set;
+  int side;  ///< of a patch, leaf positions
   std::vector<std::unique_ptr<LeafMesh>> leaves;
   std::vector<uint32_t> seen;  ///< LeafMap::cuts at the last call; empty before the first
   size_t meshed = 0;
 
-  explicit Impl(const LevelSet& level_set) : set(level_set), leaves(level_set.map.size()) {}
+  Impl(const LevelSet& level_set, int patch_side)
+      : set(level_set), side(patch_side), leaves(level_set.map.size()) {}
 
   std::vector<uint8_t> changed_places();
-  void place(size_t n);
+  bool place(size_t n);
   void join(size_t n);
   std::vector<size_t> update();
   TriMesh assemble() const;
+  Eigen::Vector3i patch_dimension() const;
   size_t patch_of(size_t n) const;
   TriMesh patch(size_t number) const;
   std::array<const LeafMesh*, 8> around(size_t n) const;
@@ -160,15 +157,21 @@ std::vector<uint8_t> StockMesher::Impl::changed_places() {
   return changed;
 }
 
-void StockMesher::Impl::place(size_t n) {
-  bool passed = false;
+/// Vertices and edges of a position from its values; false: they are what they were, and so are its triangles
+/// if those of the leaves before it are.
+bool StockMesher::Impl::place(size_t n) {
+  std::unique_ptr<LeafMesh> made;
   if (set.map.states[n] == LeafState::kLeaf) {
     ValueBlock block;
     gather_values(set, n, block);
-    if (!leaves[n]) leaves[n] = std::make_unique<LeafMesh>();
-    passed = place_vertices(block, origin_W(n), set.voxel, *leaves[n]);
+    made = std::make_unique<LeafMesh>();
+    if (!place_vertices(block, origin_W(n), set.voxel, *made)) made.reset();
   }
-  if (!passed) leaves[n].reset();
+  const bool same = made && leaves[n]
+                        ? made->vertices == leaves[n]->vertices && made->edges == leaves[n]->edges
+                        : !made && !leaves[n];
+  if (!same) leaves[n] = std::move(made);
+  return !same;
 }
 
 std::array<const LeafMesh*, 8> StockMesher::Impl::around(size_t n) const {
@@ -185,23 +188,23 @@ void StockMesher::Impl::join(size_t n) {
   if (leaves[n]) join_vertices(around(n), origin_W(n), set.voxel, *leaves[n]);
 }
 
-/// Positions whose triangles are new.
+/// Positions whose triangles may be new.
 std::vector<size_t> StockMesher::Impl::update() {
-  const std::vector<size_t> changed = marked(changed_places());
-  meshed = static_cast<size_t>(std::count_if(
-      changed.begin(), changed.end(), [&](size_t n) { return set.map.states[n] == LeafState::kLeaf; }));
-  parallel_chunks(changed.size(), kMeshedPerTask, [&](size_t begin, size_t end) {
-    for (size_t c = begin; c < end; ++c) place(changed[c]);
+  const bool first = seen.empty();
+  const std::vector<size_t> around_cuts = marked(changed_places());
+  meshed = static_cast<size_t>(std::count_if(around_cuts.begin(), around_cuts.end(), [&](size_t n) {
+    return set.map.states[n] == LeafState::kLeaf;
+  }));
+  std::vector<uint8_t> differs(around_cuts.size(), 1);
+  parallel_chunks(around_cuts.size(), kMeshedPerTask, [&](size_t begin, size_t end) {
+    for (size_t c = begin; c < end; ++c) differs[c] = place(around_cuts[c]) ? 1 : 0;
   });
   // A leaf's triangles use vertices of the leaves before it.
-  std::vector<uint8_t> joined(set.map.size(), 0);
-  for (const size_t n : changed) {
-    if (changed.size() == joined.size())
-      joined[n] = 1;
-    else
-      mark_around(set.map, n, 0, 1, joined);
+  std::vector<uint8_t> joined(set.map.size(), first ? 1 : 0);
+  for (size_t c = 0; c < around_cuts.size() && !first; ++c) {
+    if (differs[c] != 0) mark_around(set.map, around_cuts[c], 0, 1, joined);
   }
-  const std::vector<size_t> places = marked(joined);
+  std::vector<size_t> places = marked(joined);
   parallel_chunks(places.size(), kMeshedPerTask, [&](size_t begin, size_t end) {
     for (size_t c = begin; c < end; ++c) join(places[c]);
   });
@@ -252,22 +255,26 @@ TriMesh StockMesher::Impl::assemble() const {
   return mesh;
 }
 
+Eigen::Vector3i StockMesher::Impl::patch_dimension() const {
+  const auto along = [&](int positions) { return (positions + side - 1) / side; };
+  return {along(set.map.dimension.x()), along(set.map.dimension.y()), along(set.map.dimension.z())};
+}
+
 size_t StockMesher::Impl::patch_of(size_t n) const {
   const Place p = place_of(set.map, n);
-  const Eigen::Vector3i many = patch_dimension(set.map);
-  return (static_cast<size_t>(p.i / kPatchSide) * many.y() + p.j / kPatchSide) * many.z() + p.k / kPatchSide;
+  const Eigen::Vector3i many = patch_dimension();
+  return (static_cast<size_t>(p.i / side) * many.y() + p.j / side) * many.z() + p.k / side;
 }
 
 TriMesh StockMesher::Impl::patch(size_t number) const {
-  const Eigen::Vector3i many = patch_dimension(set.map);
+  const Eigen::Vector3i many = patch_dimension();
   const auto plane = static_cast<size_t>(many.y()) * many.z();
-  const Place low{static_cast<int>(number / plane) * kPatchSide,
-                  static_cast<int>(number % plane / many.z()) * kPatchSide,
-                  static_cast<int>(number % many.z()) * kPatchSide};
+  const Place low{static_cast<int>(number / plane) * side, static_cast<int>(number % plane / many.z()) * side,
+                  static_cast<int>(number % many.z()) * side};
   TriMesh mesh;
-  PatchVertices vertices(mesh);
-  for (int v = 0; v < kPatchSide * kPatchSide * kPatchSide; ++v) {
-    const Place at{v / (kPatchSide * kPatchSide), v / kPatchSide % kPatchSide, v % kPatchSide};
+  PatchVertices vertices(mesh, side);
+  for (int v = 0; v < side * side * side; ++v) {
+    const Place at{v / (side * side), v / side % side, v % side};
     const Place p{low.i + at.i, low.j + at.j, low.k + at.k};
     if (!known(set.map, p)) continue;
     const size_t n = set.map.index(p.i, p.j, p.k);
@@ -288,7 +295,8 @@ TriMesh StockMesher::Impl::patch(size_t number) const {
   return mesh;
 }
 
-StockMesher::StockMesher(const Stock& stock) : impl_(std::make_unique<Impl>(stock.level_set())) {}
+StockMesher::StockMesher(const Stock& stock, int patch_side)
+    : impl_(std::make_unique<Impl>(stock.level_set(), patch_side)) {}
 StockMesher::~StockMesher() = default;
 StockMesher::StockMesher(StockMesher&&) noexcept = default;
 
@@ -303,8 +311,12 @@ std::vector<size_t> StockMesher::update() {
   changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
   return changed;
 }
+int StockMesher::leaves_along(const Stock& stock) {
+  const auto& along = stock.level_set().map.dimension;
+  return std::max({along.x(), along.y(), along.z()});
+}
 size_t StockMesher::patches() const {
-  return static_cast<size_t>(patch_dimension(impl_->set.map).cast<int64_t>().prod());
+  return static_cast<size_t>(impl_->patch_dimension().cast<int64_t>().prod());
 }
 TriMesh StockMesher::patch(size_t number) const {
   return impl_->patch(number);

@@ -21,8 +21,8 @@ namespace swarf::stock {
 class StockMesher {
  public:
   /// Borrows the stock, which must not be destroyed or assigned to meanwhile (moving it elsewhere is
-  /// allowed).
-  explicit StockMesher(const Stock& stock);
+  /// allowed). `patch_side`: of a patch, leaf positions.
+  explicit StockMesher(const Stock& stock, int patch_side = 4);
   ~StockMesher();
   StockMesher(StockMesher&&) noexcept;
 
@@ -30,7 +30,7 @@ class StockMesher {
   /// were cut since the last call, and those beside them, are meshed again; the result is the same as that of
   /// a new mesher, for any number of threads.
   TriMesh mesh();
-  /// The same surface in patches, one for each cube of kPatchSide leaf positions, for those who draw it while
+  /// The same surface in patches, one for each cube of patch_side leaf positions, for those who draw it while
   /// it is cut: brings the leaves up to date and returns the numbers of the patches whose triangles are no
   /// longer those of the last call of mesh() or update(), ascending; of the first call all.
   std::vector<size_t> update();
@@ -38,7 +38,8 @@ class StockMesher {
   /// Triangles of one patch as of the last update(); it has its own vertices, and on its borders the same
   /// positions and normals as its neighbours. Empty where no surface passes.
   TriMesh patch(size_t number) const;
-  static constexpr int kPatchSide = 4;
+  /// Leaf positions along the stock's longest side.
+  static int leaves_along(const Stock& stock);
   /// Leaves whose vertices the last call made again.
   size_t leaves_meshed() const;
   /// What is remembered between calls.

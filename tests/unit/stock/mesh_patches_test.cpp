@@ -5,6 +5,7 @@
 #include <set>
 
 #include "base/rng.h"
+#include "mesh/mesh_ops.h"
 #include "stock/mesher/stock_mesher.h"
 #include "stock/stock.h"
 #include "stock_test_support.h"
@@ -36,13 +37,16 @@ Sweep cut_at(Rng& rng, uint32_t block) {
   return sweep;
 }
 
-TEST(StockPatches, TogetherAreTheMeshAfterEveryCut) {
+/// Leaf positions of a patch's side.
+class StockPatches : public testing::TestWithParam<int> {};
+
+TEST_P(StockPatches, TogetherAreTheMeshAfterEveryCut) {
   Stock stock({{-6, -6, -6}, {6, 6, 6}}, 0.15);
-  StockMesher mesher(stock);
+  StockMesher mesher(stock, GetParam());
   std::vector<TriMesh> kept(mesher.patches());
   Rng rng(91);
   size_t made = 0;
-  constexpr uint32_t kCuts = 20;
+  constexpr uint32_t kCuts = 10;
   for (uint32_t n = 0; n <= kCuts; ++n) {
     const std::vector<size_t> changed = mesher.update();
     EXPECT_TRUE(std::is_sorted(changed.begin(), changed.end()));
@@ -57,7 +61,30 @@ TEST(StockPatches, TogetherAreTheMeshAfterEveryCut) {
   EXPECT_LT(made, kCuts * mesher.patches() / 2);
 }
 
-TEST(StockPatches, NothingIsMadeAgainWhereNothingWasCut) {
+INSTANTIATE_TEST_SUITE_P(Sides, StockPatches, testing::Values(1, 3, 4));
+
+TEST(StockPatch, OnlyWhatACutReachesIsMadeAgain) {
+  constexpr double kVoxel = 0.15, kRadius = 0.5;
+  constexpr double kNear = 8.0 * kVoxel;  // the leaf behind joins its vertices
+  Stock stock({{-6, -6, -6}, {6, 6, 6}}, kVoxel);
+  StockMesher mesher(stock, 1);
+  mesher.update();
+  const Vec3 from(-3, -3, 4), to(1, -3, 4);
+  stock.cut(std::vector<Sweep>{{{from, Vec3::UnitZ()}, {to, Vec3::UnitZ()}, 0}}, {kRadius, 20.0});
+  const Box slot{from - Vec3(kRadius, kRadius, 0.0), Vec3(to.x() + kRadius, to.y() + kRadius, 6.0)};
+  const std::vector<size_t> changed = mesher.update();
+  EXPECT_GT(changed.size(), 5U);
+  for (const size_t p : changed) {
+    const TriMesh patch = mesher.patch(p);
+    if (patch.triangles.empty()) continue;
+    const Box box = mesh::bounds(patch);
+    EXPECT_TRUE((box.lower.array() - kNear <= slot.upper.array()).all() &&
+                (box.upper.array() + kNear >= slot.lower.array()).all())
+        << "patch " << p << " lies beside the slot";
+  }
+}
+
+TEST(StockPatch, NothingIsMadeAgainWhereNothingWasCut) {
   Stock stock({{-6, -6, -6}, {6, 6, 6}}, 0.15);
   StockMesher mesher(stock);
   EXPECT_EQ(mesher.update().size(), mesher.patches());
@@ -69,7 +96,7 @@ TEST(StockPatches, NothingIsMadeAgainWhereNothingWasCut) {
   EXPECT_EQ(std::count(changed.begin(), changed.end(), mesher.patches() - 1), 0);
 }
 
-TEST(StockPatches, AStockThatIsAllCutAwayHasEmptyOnes) {
+TEST(StockPatch, AStockThatIsAllCutAwayHasEmptyOnes) {
   Stock stock({{-1, -1, -1}, {1, 1, 1}}, 0.1);
   StockMesher mesher(stock);
   mesher.update();
