@@ -292,9 +292,10 @@ std::vector<Diagnostic> write_run(PendingFolder& folder, const sim::Job& job, si
     });
     progress.end();
   }
-  attempts.run([&] {
-    write_text(folder.file("metrics.json"), metrics_json(job, result, statistics, options.avoidance));
-  });
+  if (options.render || options.report)  // else nothing has been added to them
+    attempts.run([&] {
+      write_text(folder.file("metrics.json"), metrics_json(job, result, statistics, options.avoidance));
+    });
   folder.move_into_place();
   attempts.rethrow();
   return attempts.failures;

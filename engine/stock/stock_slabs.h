@@ -21,7 +21,8 @@ struct StockProof {
 
 class SlabProofs {
  public:
-  /// Divides the stock into about so many slabs of equally many leaves. It must outlive it and stay as it is.
+  /// Divides the stock into about so many slabs of equally many leaves, the last of them smaller. It must
+  /// outlive it and stay as it is.
   SlabProofs(const Stock& stock, double slack_mm, size_t slabs);
 
   size_t count() const { return slabs_.size(); }

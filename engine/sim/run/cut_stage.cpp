@@ -337,6 +337,7 @@ class CutStage {
     std::string broken;
     std::future<void> own = std::async(std::launch::async, [&] {
       broken = stock.check(stock::CheckLevel::kLeaves);
+      stock.hash();  // is kept for the metrics
       outcome_.is_written = write_finished(stock, options_, outcome_.metadata);
     });
     const stock::StockProof proof = tiles_->prove(result_.sweep_bound_mm, [&] {

@@ -35,6 +35,7 @@ enum class TileRequest : uint8_t {
   kRays,     ///< SurfaceDexels::tiles_of(), for each surface
   kProof,    ///< what is known of a surface of the part              no answer
   kRoots,    ///< of that surface: RootProver::prove()
+  kRest,     ///< nothing but the end will be asked                  no answer
   kEnd,      ///< the same, as the last message of all
 };
 

@@ -1,6 +1,7 @@
 #include "sim/run/tile_ranks.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <limits>
 #include <utility>
@@ -29,12 +30,14 @@ void send_tiles(Ranks& ranks, int rank, const stock::Stock& stock, const stock::
   }
 }
 
-/// Of the shares of so many others, the parts that rank 0 takes: as much as each of them keeps.
+/// Of the shares of so many others, the parts that rank 0 takes: as much as each of them keeps. Half of a
+/// share is every other part of it, so that a row of a path is shared by both.
 std::vector<uint32_t> parts_of_lead(int others) {
+  constexpr std::array<unsigned, stock::kTileParts> kSpread{0, 4, 2, 6, 1, 5, 3, 7};
   std::vector<uint32_t> taken(static_cast<size_t>(others), 0);
   const int count = others > 0 ? (stock::kTileParts * others + (others + 1) / 2) / (others + 1) : 0;
   for (int n = 0; n < count; ++n)
-    taken[static_cast<size_t>(n % others)] |= 1U << static_cast<unsigned>(n / others);
+    taken[static_cast<size_t>(n % others)] |= 1U << kSpread[static_cast<size_t>(n / others)];
   return taken;
 }
 
@@ -169,8 +172,9 @@ BatchState TileLead::look_ahead(size_t begin, size_t end) {
     unite(all.suspects, seen.suspects);
     unite(all.bad_suspects, seen.bad_suspects);
   }
-  if (all.suspects.empty()) return all;
-  // A suspect of one rank may be clear of the tiles of another, which has counted its gap.
+  if (all.suspects.empty() && all.bad_suspects.empty()) return all;
+  // A suspect of one rank may be clear of the tiles of another, which has counted its gap; and who has cut
+  // the batch in one piece must cut it again, in the pieces between those that are judged.
   BytesWriter message = tile_request(TileRequest::kNearest);
   message.add(begin);
   message.add(end);
@@ -296,6 +300,10 @@ void deal_roots(Ranks& ranks, const DealtWork& work) {
     return message.take();
   };
   deal(ranks, sent);
+}
+
+void relieve_ranks(Ranks& ranks) {
+  send_to_all(ranks, tile_request(TileRequest::kRest));
 }
 
 void dismiss_ranks(Ranks& ranks) {

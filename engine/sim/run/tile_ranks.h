@@ -122,6 +122,8 @@ std::vector<Bytes> rays_of(Ranks& ranks, int rank);
 void send_whole_stock(Ranks& ranks, const stock::Stock& stock);
 void ask_for_proof(Ranks& ranks, const KnownOfPart& known);
 void deal_roots(Ranks& ranks, const DealtWork& work);
+/// On rank 0: nothing but dismiss_ranks() follows: the others give back what they hold of the stock.
+void relieve_ranks(Ranks& ranks);
 /// On rank 0: nothing more will be asked.
 void dismiss_ranks(Ranks& ranks);
 

@@ -33,9 +33,9 @@ class OwnTiles {
   }
   const stock::Stock& stock() const { return stock_; }
 
-  /// One more part of the program, not beyond sweep `most`, as one process would cut it. False: nothing is
-  /// left, or a sweep is not clear of these tiles, so that rank 0 must come to it first.
-  bool go_on(size_t most) {
+  /// Looks at the next batch where it has come to one. False: nothing is left up to sweep `most`, or a sweep
+  /// is not clear of these tiles, so that rank 0 must come to it first.
+  bool may_go_on(size_t most) {
     if (at_ >= most) return false;
     waits_ = came_back_;  // it might have to again
     if (!waits_ && at_ >= next_look_) {
@@ -47,14 +47,14 @@ class OwnTiles {
         untold_.push_back(at_);
       }
     }
-    if (waits_) return false;
-    cut_to(std::min({next_look_, parts_.check_end(at_), most}));
-    return true;
+    return !waits_;
   }
+  /// Then one more part of the program, not beyond sweep `most`, as one process would cut it.
+  void go_on(size_t most) { cut_to(std::min({next_look_, parts_.check_end(at_), most})); }
   /// Up to this sweep, or to where it must wait; back to it where more is cut.
   void meet(size_t at) {
     come_to(at);
-    while (go_on(at)) continue;
+    while (may_go_on(at)) go_on(at);
   }
 
   BatchState look(size_t begin, size_t end) {
@@ -149,8 +149,10 @@ class TileServer {
   void serve() {
     for (;;) {
       while (ahead_ && !ranks_.has_message(0)) {
-        ahead_ = has_room() && own().go_on(service_.parts.sweeps.size());
-        if (is_known_) tell_seen();
+        const size_t end = service_.parts.sweeps.size();
+        ahead_ = has_room() && own().may_go_on(end);
+        if (is_known_) tell_seen();  // rank 0 cuts the batch meanwhile
+        if (ahead_) own().go_on(end);
       }
       const Bytes message = ranks_.receive(0);
       BytesReader in(message);
@@ -229,6 +231,11 @@ class TileServer {
       case TileRequest::kRoots:
         ranks_.send(0, prover_->prove(in));
         break;
+      case TileRequest::kRest:
+        prover_.reset();
+        proof_.reset();
+        own_.reset();
+        break;
       default:
         ranks_.send(0, tile_request(TileRequest::kEnd).take());
         return false;
@@ -240,9 +247,14 @@ class TileServer {
     if (!own_) own_.emplace(service_.job, service_.parts, share_of_other(ranks_, ranks_.rank()));
     return *own_;
   }
-  /// Rank 0 has not predicted yet what this takes.
+  /// Rank 0 has not predicted yet what this takes. By the number of leaves: to ask each of them takes a tenth
+  /// of the time of a cut.
   bool has_room() {
-    return static_cast<double>(own().stock().memory_bytes()) / kMbOfRank <= service_.most_mb;
+    const StockSettings& settings = service_.job.scene.stock;
+    const auto leaves = static_cast<double>(own().stock().leaves());
+    return static_cast<double>(stock::Stock::memory_for(settings.box_W, settings.voxel_mm, leaves)) /
+               kMbOfRank <=
+           service_.most_mb;
   }
   void look(BytesReader& in, BytesWriter& out) {
     const auto begin = in.get<size_t>(), end = in.get<size_t>();

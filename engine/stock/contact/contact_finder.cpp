@@ -42,12 +42,15 @@ double ContactFinder::deep_mm() const {
 void ContactFinder::refresh() {
   const LevelSet& set = stock_.level_set();
   const LeafMap& map = set.map;
-  const auto looks_at = [&](size_t n) { return tiles_ == Tiles::kAll || set.owns(n); };
   levels_.clear();
   Level level{{map.dimension.x(), map.dimension.y(), map.dimension.z()}, {}};
   level.material.resize(map.size());
-  for (size_t n = 0; n < map.size(); ++n)
-    level.material[n] = map.states[n] != LeafState::kAir && looks_at(n) ? 1 : 0;
+  const auto height = static_cast<size_t>(map.dimension.z());
+  for (size_t column = 0; column < map.size(); column += height) {
+    if (tiles_ == Tiles::kOwn && !set.owns(column)) continue;
+    for (size_t n = column; n < column + height; ++n)
+      level.material[n] = map.states[n] != LeafState::kAir ? 1 : 0;
+  }
   levels_.push_back(std::move(level));
   while (levels_.back().material.size() > 1) {
     const Level& low = levels_.back();

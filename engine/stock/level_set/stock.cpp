@@ -32,6 +32,7 @@ Stock::Stock(Stock&&) noexcept = default;
 Stock& Stock::operator=(Stock&&) noexcept = default;
 
 void Stock::cut(std::span<const Sweep> sweeps, const CutterSolid& cutter) {
+  impl_->hash.reset();
   cut_level_set(impl_->level_set, sweeps, cutter);
 }
 
@@ -79,7 +80,8 @@ const LevelSet& Stock::level_set() const {
   return impl_->level_set;
 }
 uint64_t Stock::hash() const {
-  return state_hash(impl_->level_set);
+  if (!impl_->hash) impl_->hash = state_hash(impl_->level_set);
+  return *impl_->hash;
 }
 size_t Stock::memory_bytes() const {
   return impl_->level_set.grid->memUsage() + impl_->level_set.map.size() * kMapBytes;

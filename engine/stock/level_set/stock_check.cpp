@@ -121,9 +121,11 @@ int rank(LeafState state) {
 
 std::string broken_invariant(const LevelSet& set, CheckLevel level) {
   if (std::string fault = count_fault(set); !fault.empty()) return fault;
-  std::string fault = first_fault(set.map.size(), [&](size_t n) {
+  const bool own = level == CheckLevel::kOwnMap;
+  std::string fault = first_fault(set.map.size(), [&](size_t n) -> std::string {
+    if (own && !set.owns(n)) return "";
     std::string found = tree_fault(set, n);
-    return found.empty() ? neighbour_fault(set, n, level == CheckLevel::kOwnMap) : found;
+    return found.empty() ? neighbour_fault(set, n, own) : found;
   });
   if (!fault.empty() || level <= CheckLevel::kMap) return fault;
   fault = first_fault(set.map.size(), [&](size_t n) -> std::string {

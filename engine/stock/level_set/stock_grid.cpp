@@ -28,6 +28,17 @@ double box_distance(const Box& box, const Vec3& point) {
   return q.cwiseMax(0.0).norm() + std::min(q.maxCoeff(), 0.0);
 }
 
+/// Beside one face the distance is the greatest of those beyond the faces: the root of a square that was
+/// rounded is the number itself, so these are the bits of the formula for all leaves.
+void fill_beside_face(float* values, const double (&q)[3][kLeafSide], float band) {
+  for (int i = 0; i < kLeafSide; ++i)
+    for (int j = 0; j < kLeafSide; ++j) {
+      const double across = std::max(q[0][i], q[1][j]);
+      for (int k = 0; k < kLeafSide; ++k)
+        *values++ = std::clamp(static_cast<float>(std::max(across, q[2][k])), -band, band);
+    }
+}
+
 void fill_leaf(LeafNode& leaf, const Box& box, double voxel, float band) {
   float* values = leaf.buffer().data();
   const Vec3 centre = box.centre(), half = 0.5 * box.size();
@@ -36,6 +47,13 @@ void fill_leaf(LeafNode& leaf, const Box& box, double voxel, float band) {
     for (int i = 0; i < kLeafSide; ++i) {
       q[a][i] = std::abs((leaf.origin()[a] + i) * voxel - centre[a]) - half[a];
     }
+  }
+  const auto is_beyond = [&](const double(&beyond)[kLeafSide]) {
+    return std::max(beyond[0], beyond[kLeafSide - 1]) > 0.0;  // greatest at one of its ends
+  };
+  if (is_beyond(q[0]) + is_beyond(q[1]) + is_beyond(q[2]) <= 1) {
+    fill_beside_face(values, q, band);
+    return;
   }
   for (int n = 0; n < kLeafVoxels; ++n) {
     const double x = q[0][n / 64], y = q[1][n / 8 % 8], z = q[2][n % 8];

@@ -100,10 +100,13 @@ struct LevelSet {
   std::vector<uint8_t> others;
 
   std::unique_ptr<SpilledLeaves> spilled;  ///< null: all leaves are in memory
+  /// By leaf position: values that stand elsewhere than in a tree, to look at; empty: a tree holds them.
+  std::vector<const float*> lent;
 
   bool is_spilled(size_t leaf) const { return spilled && spilled->slots[leaf] != LeafFile::kNone; }
   /// Of a leaf, to look at.
   const float* values(size_t leaf) const {
+    if (!lent.empty()) return lent[leaf];
     return is_spilled(leaf) ? spilled->file.at(spilled->slots[leaf]) : map.leaves[leaf]->buffer().data();
   }
   /// Of a leaf, to change: they are in memory from now on. For one thread at a time and leaf;
@@ -126,6 +129,9 @@ struct LevelSet {
 
 struct Stock::Impl {
   LevelSet level_set;
+  /// Of the values as they stand, once it was asked for; who changes them forgets it. Not for several threads
+  /// at a time.
+  mutable std::optional<uint64_t> hash{};
 };
 
 /// Positions that a box and its band need: where they lie, without their states.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <memory>
 #include <span>
+#include <utility>
 
 #include "stock/level_set/leaf_kernel.h"
 #include "stock/level_set/stock_grid_internal.h"
@@ -13,8 +14,11 @@ namespace {
 /// Some planes of a stock, without a tree: to look at.
 struct Planes {
   LevelSet set;
-  std::vector<std::unique_ptr<LeafNode>> leaves;
+  std::unique_ptr<float[]>
+      values;  ///< of all leaves, in one piece: making leaves takes longer than reading them
 };
+
+constexpr size_t kShrinking = 4;  // how much smaller the last slabs are
 
 void add_planes(const LevelSet& set, int first, int last, BytesWriter& out) {
   const LeafMap& map = set.map;
@@ -38,12 +42,16 @@ Planes take_planes(BytesReader& in) {
   const size_t count = set.map.index(set.map.dimension.x(), 0, 0);
   set.map.states.resize(count);
   in.get_all(std::span(set.map.states));
-  set.map.leaves.assign(count, nullptr);
+  set.lent.assign(count, nullptr);
+  const auto leaves = static_cast<size_t>(std::ranges::count(set.map.states, LeafState::kLeaf));
+  planes.values = std::make_unique_for_overwrite<float[]>(leaves * kLeafVoxels);
+  const std::span values(planes.values.get(), leaves * kLeafVoxels);
+  in.get_all(values);
+  const float* next = values.data();
   for (size_t n = 0; n < count; ++n) {
     if (set.map.states[n] != LeafState::kLeaf) continue;
-    planes.leaves.push_back(std::make_unique<LeafNode>(set.map.origin(n)));
-    set.map.leaves[n] = planes.leaves.back().get();
-    in.get_all(std::span<float>(set.map.leaves[n]->buffer().data(), kLeafVoxels));
+    set.lent[n] = next;
+    next += kLeafVoxels;
   }
   return planes;
 }
@@ -58,11 +66,17 @@ SlabProofs::SlabProofs(const Stock& stock, double slack_mm, size_t slabs)
     const auto end = map.states.begin() + static_cast<ptrdiff_t>(begin_of(plane + 1));
     return static_cast<size_t>(std::count(begin, end, LeafState::kLeaf));
   };
-  const size_t each = std::max<size_t>(1, stock.leaves() / std::max<size_t>(1, slabs));
-  size_t leaves = 0;
+  const size_t all = stock.leaves(), usual = all / std::max<size_t>(1, slabs);
+  size_t before = 0, leaves = 0;  // in the slabs before this one, in this one
   slabs_.push_back({0, 0, ""});
   for (int plane = 0; plane < map.dimension.x(); ++plane) {
-    if (leaves >= each) slabs_.push_back({plane, plane, ""}), leaves = 0;
+    // Who takes the last ones is waited for: the last quarter is dealt out in ever smaller ones.
+    const size_t each =
+        std::clamp(kShrinking * (all - before) / std::max<size_t>(1, slabs), usual / kShrinking, usual);
+    if (leaves >= std::max<size_t>(1, each)) {
+      slabs_.push_back({plane, plane, ""});
+      before += std::exchange(leaves, 0);
+    }
     leaves += leaves_of(plane);
     slabs_.back().last = plane + 1;
   }

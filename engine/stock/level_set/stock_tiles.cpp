@@ -1,7 +1,6 @@
 #include "stock/stock_tiles.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <memory>
 #include <numeric>
@@ -37,7 +36,8 @@ std::vector<uint8_t> columns_of_others(const LevelSet& set, const TileSet& own) 
   return others;
 }
 
-void set_leaf(LevelSet& set, size_t leaf, std::span<const float, kLeafVoxels> values) {
+/// `in`: where its values stand.
+void set_leaf(LevelSet& set, size_t leaf, BytesReader& in) {
   LeafNode* node = set.map.leaves[leaf];
   if (node == nullptr) {
     auto made = std::make_unique<LeafNode>(set.map.origin(leaf), set.band(), false);
@@ -45,7 +45,7 @@ void set_leaf(LevelSet& set, size_t leaf, std::span<const float, kLeafVoxels> va
     set.grid->tree().addLeaf(made.release());
   }
   set.forget_spilled(leaf);
-  std::copy(values.begin(), values.end(), node->buffer().data());
+  in.get_all(std::span<float>(node->buffer().data(), kLeafVoxels));
   SWARF_CHECK(settle_leaf(*node, set.band()) == LeafState::kLeaf, "a leaf that was sent is one");
 }
 
@@ -57,17 +57,29 @@ void set_tile(LevelSet& set, size_t leaf, LeafState state) {
   set.map.leaves[leaf] = nullptr;
 }
 
+/// What is told of a position before its values; without gaps between its members.
+struct ToldPosition {
+  uint64_t leaf;
+  LeafFloor floor;
+  uint32_t cuts;
+  uint32_t state;  ///< LeafState
+};
+static_assert(sizeof(ToldPosition) == sizeof(uint64_t) + sizeof(LeafFloor) + 2 * sizeof(uint32_t));
+
 void add_position(const LevelSet& set, size_t leaf, BytesWriter& out) {
   const LeafMap& map = set.map;
-  out.add(leaf);
-  out.add(map.states[leaf]);
-  out.add(map.floors[leaf]);
-  out.add(map.cuts[leaf]);
+  out.add(ToldPosition{leaf, map.floors[leaf], map.cuts[leaf], static_cast<uint32_t>(map.states[leaf])});
   if (map.states[leaf] == LeafState::kLeaf)
     out.add_all(std::span<const float>(set.values(leaf), kLeafVoxels));
 }
 
-constexpr size_t kToldBytes = size_t{8} << 20U;
+/// The floor that holds of every leaf. One that lies lower at the centre and rises to a side says more.
+bool is_as_loaded(const LeafFloor& floor, float band) {
+  return floor.value == -band && std::ranges::all_of(floor.slope, [](float rise) { return rise == 0.0F; });
+}
+
+/// One piece is told while the one before is taken over: the first is waited for.
+constexpr size_t kToldBytes = size_t{2} << 20U;
 
 void add_counts(const CutStatistics& counts, double rounding_mm, BytesWriter& out) {
   out.add(counts);
@@ -136,6 +148,7 @@ std::optional<Bytes> StockTiles::next_left(const TileSet& kept) {
   LevelSet& set = stock_.impl_->level_set;
   std::vector<uint8_t> others = columns_of_others(set, kept);
   if (auto piece = next_of(&others)) return piece;
+  stock_.impl_->hash.reset();
   drop_leaves(set, others);
   set.others = std::move(others);
   return std::nullopt;
@@ -152,14 +165,17 @@ std::optional<Bytes> StockTiles::next_of(const std::vector<uint8_t>* wanted) {
   const bool counted = more.voxel_updates != 0;
   const size_t counts = out.size();
   told_ = set.statistics;
-  for (; next_ < set.map.size() && out.size() < kToldBytes; ++next_) {
-    if (!set.owns(next_)) continue;
-    if (wanted != nullptr && (*wanted)[set.map.column(next_)] == 0) continue;
-    // Who cuts on must know as much: a cut that changed no value may have raised the floor.
-    const bool seen = wanted != nullptr && set.map.floors[next_].value > -set.band();
-    if (set.map.cuts[next_] == known_[next_] && !seen) continue;
-    add_position(set, next_, out);
-    known_[next_] = set.map.cuts[next_];
+  while (next_ < set.map.size() && out.size() < kToldBytes) {
+    const size_t column = set.map.column(next_),
+                 end = (column + 1) * static_cast<size_t>(set.map.dimension.z());
+    if (!set.owns(next_) || (wanted != nullptr && (*wanted)[column] == 0)) next_ = end;
+    for (; next_ < end; ++next_) {
+      // Who cuts on must know as much: a cut that changed no value may have raised the floor.
+      const bool seen = wanted != nullptr && !is_as_loaded(set.map.floors[next_], set.band());
+      if (set.map.cuts[next_] == known_[next_] && !seen) continue;
+      add_position(set, next_, out);
+      known_[next_] = set.map.cuts[next_];
+    }
   }
   if (counted || out.size() > counts) return out.take();
   next_ = 0;
@@ -178,6 +194,7 @@ std::optional<Bytes> StockTiles::next_tiles(const Stock& stock, const TileSet& t
 }
 
 void StockTiles::apply(const Bytes& changes) {
+  stock_.impl_->hash.reset();
   LevelSet& set = stock_.impl_->level_set;
   CutStatistics& statistics = set.statistics;
   BytesReader in(changes);
@@ -198,15 +215,14 @@ void StockTiles::count_as(const CutStatistics& counts) {
 
 void StockTiles::take_position(BytesReader& in) {
   LevelSet& set = stock_.impl_->level_set;
-  const auto leaf = in.get<size_t>();
+  const auto told = in.get<ToldPosition>();
+  const size_t leaf = told.leaf;
   SWARF_CHECK(leaf < set.map.size(), "positions of one map");
-  const auto state = in.get<LeafState>();
-  set.map.floors[leaf] = in.get<LeafFloor>();
-  known_[leaf] = set.map.cuts[leaf] = in.get<uint32_t>();
+  const auto state = static_cast<LeafState>(told.state);
+  set.map.floors[leaf] = told.floor;
+  known_[leaf] = set.map.cuts[leaf] = told.cuts;
   if (state == LeafState::kLeaf) {
-    std::array<float, kLeafVoxels> values;
-    in.get_all(std::span<float>(values));
-    set_leaf(set, leaf, values);
+    set_leaf(set, leaf, in);
   } else if (state != set.map.states[leaf]) {
     set_tile(set, leaf, state);
   }

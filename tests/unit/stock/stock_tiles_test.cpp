@@ -152,28 +152,32 @@ TEST(StockTiles, PartsOfAShareAreCutElsewhere) {
   expect_equal(ranks[0]->stock, whole);
 }
 
-/// One rank is ahead with all tiles; the lead takes some of them as they stand, and both cut on.
+/// One rank is ahead with all tiles; the lead takes some of them as they stand, and both cut on. The work of
+/// both together is that of one process, so each knows as much of its leaves as one process would.
 TEST(StockTiles, TilesThatAreLeftToAnotherGoOnThere) {
   const RawShape raw = RawShape::of_box(kBox);
-  Rng rng(25);
-  const CutterSolid cutter(2.5, 10.0);
   constexpr uint32_t kTaken = 0b01101001;
   const TileSet taken(Share{0, 1}, kTaken), kept = taken.others();
-  const std::vector<Sweep> first = sweeps_of(rng, 20), then = sweeps_of(rng, 20);
-  Stock whole(raw, kVoxel);
-  whole.cut(first, cutter);
-  whole.cut(then, cutter);
-  std::vector<std::unique_ptr<Rank>> ranks;
-  ranks.push_back(std::make_unique<Rank>(Stock(raw, kVoxel), taken));
-  ranks.push_back(std::make_unique<Rank>(Stock(raw, kVoxel), TileSet()));
-  ranks[1]->stock.cut(first, cutter);
-  const size_t leaves = ranks[1]->stock.leaves();
-  while (const auto piece = ranks[1]->tiles.next_left(kept)) ranks[0]->tiles.apply(*piece);
-  EXPECT_LT(ranks[1]->stock.leaves(), leaves);
-  EXPECT_EQ(ranks[1]->stock.check(CheckLevel::kOwnMap), "");
-  cut_all(ranks, then, cutter);
-  gather(ranks);
-  expect_equal(ranks[0]->stock, whole);
+  for (const uint64_t seed : {25, 26, 27, 28, 29, 30, 31, 32}) {
+    SCOPED_TRACE(fmt::format("seed {}", seed));
+    Rng rng(seed);
+    const CutterSolid cutter = seed % 2 == 0 ? ball_nose(2.0, 9.0) : CutterSolid(2.5, 10.0);
+    const std::vector<Sweep> first = sweeps_of(rng, 20), then = sweeps_of(rng, 20);
+    Stock whole(raw, kVoxel);
+    whole.cut(first, cutter);
+    whole.cut(then, cutter);
+    std::vector<std::unique_ptr<Rank>> ranks;
+    ranks.push_back(std::make_unique<Rank>(Stock(raw, kVoxel), taken));
+    ranks.push_back(std::make_unique<Rank>(Stock(raw, kVoxel), TileSet()));
+    ranks[1]->stock.cut(first, cutter);
+    const size_t leaves = ranks[1]->stock.leaves();
+    while (const auto piece = ranks[1]->tiles.next_left(kept)) ranks[0]->tiles.apply(*piece);
+    EXPECT_LT(ranks[1]->stock.leaves(), leaves);
+    EXPECT_EQ(ranks[1]->stock.check(CheckLevel::kOwnMap), "");
+    cut_all(ranks, then, cutter);
+    gather(ranks);
+    expect_equal(ranks[0]->stock, whole);
+  }
 }
 
 /// Deep inside, a node of the tree lies in tiles of this rank and of others, and has no leaf.
@@ -196,7 +200,7 @@ TEST(StockTiles, WhatIsProvenSlabBySlabIsProvenOfTheWhole) {
   const VolumeRange whole = stock.volume_between(0.01);
   for (const size_t slabs : {1, 2, 5, 100}) {
     SlabProofs proofs(stock, 0.01, slabs);
-    EXPECT_LE(proofs.count(), slabs + 1);
+    EXPECT_LE(proofs.count(), 2 * static_cast<size_t>(slabs));
     for (size_t n = 0; n < proofs.count(); ++n) {
       if (n % 2 == 1) {
         proofs.prove(n);
