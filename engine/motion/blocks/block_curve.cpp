@@ -436,7 +436,8 @@ PathCell BlockCurve::bounds_between(size_t from, size_t to) const {
     ends = true;
     edge = edge.cwiseMax((nodes_[i + 1] - nodes_[i]).cwiseAbs());
   }
-  if (stretched_) cell.third += bends_of_share(from, to) * cell.first;
+  // The spline's third derivative is even between two knots: up to its jump above or below what it follows.
+  if (stretched_) cell.third += kBetweenNodes * bends_of_share(from, to) / h * cell.first;
   // At a node a central difference misses the slope by h^2/6 of the third derivative, between nodes the slope
   // rises above them by h^2/8 of it; at an end the mean of the last step misses it by half its bend.
   cell.second = cell.second / (h * h) + (ends ? 1.0 : 0.5) * h * cell.third;

@@ -108,24 +108,24 @@ TEST(OddLimits, PolesArePassedCloselyWithinTheLimitsInTheSameTime) {
   EXPECT_LE(longest, 1.2 * shortest);
 }
 
-/// The axes turn little, all of it where the block begins, closer to the pole than its even steps are wide.
-/// Differences at the nodes miss a jerk by up to this share there; with steps as wide as elsewhere by .3.
-constexpr double kMissedBesideAPole = 3e-3;
-TEST(OddLimits, BlocksThatBeginBesideAPoleNearlyKeepTheLimits) {
+/// The axes turn little, all of it where the block begins or ends: .06 to 3 deg from the pole.
+TEST(OddLimits, BlocksThatBeginOrEndBesideAPoleKeepTheLimits) {
   const MachineModel machine = paper_machine();
-  for (uint64_t seed = 0; seed < 40; ++seed) {
+  const kinematics::InverseKinematics inverse(machine);
+  for (uint64_t seed = 0; seed < 96; ++seed) {
     Rng rng(seed);
     AxisValues from = AxisValues::Zero(), to = AxisValues::Zero();
-    from[3] = std::pow(10.0, rng.uniform(-3.0, -2.0));
+    from[3] = std::pow(10.0, rng.uniform(-3.0, -1.3));
     to[3] = std::pow(10.0, rng.uniform(-1.5, -0.3));
     to[4] = rng.uniform(-0.4, 0.4);
     ToolPose end = kinematics::forward(machine, to);
     end.tip_W = kinematics::forward(machine, from).tip_W + rng.uniform(0.1, 5.0) * rng.direction();
+    to = inverse.continued(end, to).q;
+    if (seed % 3 == 2) std::swap(from, to);
     toolpath::ToolPath path;
-    append(path, machine, BlockLaw::kTcp, from, kinematics::InverseKinematics(machine).continued(end, to).q,
-           50.0);
+    append(path, machine, BlockLaw::kTcp, from, to, 50.0);
     const Excess excess = axis_excess(run(path, machine, 1e-3).trajectory, machine);
-    EXPECT_LE(excess.relative, kMissedBesideAPole) << "Rng rng(" << seed << "); " << excess.text;
+    EXPECT_LE(excess.relative, 0.0) << "Rng rng(" << seed << "); " << excess.text;
   }
 }
 
