@@ -43,7 +43,8 @@ constexpr double kJoin = 1e-6;
 constexpr double kReach = 0.02;
 /// Nodes whose inverse is solved at once.
 constexpr size_t kSolvedAtOnce = 32;
-/// A pole that is passed within this share of the block is narrow: even steps of the share would miss it.
+/// A pole whose distance is this share of what the axis goes in the block is narrow: even steps would miss
+/// it.
 constexpr double kNarrowPole = 5e-3;
 /// Share of the way that the approach to a narrow pole gets for itself, so that each of its scales is met.
 constexpr double kSpread = 0.2;
@@ -149,18 +150,21 @@ double BlockCurve::limited_way(const AxisValues& change, double share) const {
   return most * std::cbrt(std::sqrt(sum));
 }
 
+namespace {
+
 /// Nodes of a block with axes of its own, as far apart as they turn evenly.
-void BlockCurve::append_own_nodes(double way, std::vector<PathNode>& nodes) const {
+void append_own_nodes(const BlockCurve::Law& law, const kinematics::InverseKinematics& inverse, double way,
+                      std::vector<PathNode>& nodes) {
   constexpr size_t kNodes = 16;
   std::array<ToolPose, kNodes> poses;
   std::array<AxisValues, kNodes> own;
   std::array<Branch, kNodes> found;
   const auto share = [&](size_t i) { return static_cast<double>(i + 1) / kNodes; };
   for (size_t i = 0; i < kNodes; ++i) {
-    law_->set(share(i), poses[i]);
-    own[i] = before(share(i), q_from_);
+    law.set(share(i), poses[i]);
+    own[i] = law.motion.q_from + share(i) * (law.motion.q_to - law.motion.q_from);
   }
-  inverse_->continued(poses, own, found);
+  inverse.continued(poses, own, found);
   for (size_t i = 0; i < kNodes; ++i) {
     const bool reached = found[i].outcome != InverseOutcome::kUnreachable;
     nodes.push_back({share(i), way * share(i), reached ? found[i].q : nodes.back().q, false, true});
@@ -168,24 +172,28 @@ void BlockCurve::append_own_nodes(double way, std::vector<PathNode>& nodes) cons
 }
 
 /// Nodes so close that no turn beside a pole is missed.
-void BlockCurve::append_close_nodes(double way, std::vector<PathNode>& nodes) const {
+void append_close_nodes(const BlockCurve::Law& law, const kinematics::InverseKinematics& inverse, double way,
+                        std::vector<PathNode>& nodes) {
   constexpr size_t kSteps = 8;
+  const MachineModel& machine = *law.motion.machine;
   std::array<ToolPose, kSteps + 1> poses;
-  for (size_t i = 0; i <= kSteps; ++i) law_->set(static_cast<double>(i) / kSteps, poses[i]);
-  if (append_even_nodes(poses, *inverse_, *machine_, way / kSteps, nodes)) return;
+  for (size_t i = 0; i <= kSteps; ++i) law.set(static_cast<double>(i) / kSteps, poses[i]);
+  if (append_even_nodes(poses, inverse, machine, way / kSteps, nodes)) return;
   const PathShape shape{
-      [&](double x) { return law_->at(x); }, [&](double from, double to) { return way * (to - from); },
-      [&](const ToolPose& pose, const AxisValues& last) { return inverse_->continued(pose, last); }};
-  append_nodes(shape, *inverse_, *machine_, 1.0, way / kSteps * (1.0 + 1e-9), nodes);
+      [&](double x) { return law.at(x); }, [&](double from, double to) { return way * (to - from); },
+      [&](const ToolPose& pose, const AxisValues& last) { return inverse.continued(pose, last); }};
+  append_nodes(shape, inverse, machine, 1.0, way / kSteps * (1.0 + 1e-9), nodes);
 }
+
+}  // namespace
 
 void BlockCurve::follow() {
   const double way = std::max(toolpath::tip_way(block()), 1.0);
   std::vector<PathNode> nodes{{0.0, 0.0, q_from_, false, true}};
   if (block().law == BlockLaw::kTcpAxes) {
-    append_own_nodes(way, nodes);
+    append_own_nodes(*law_, *inverse_, way, nodes);
   } else {
-    append_close_nodes(way, nodes);
+    append_close_nodes(*law_, *inverse_, way, nodes);
   }
   length_ = 0.0;
   double fastest = 0.0, closest = 1.0, slowest = std::numeric_limits<double>::infinity();
@@ -259,8 +267,11 @@ BlockCurve::Pole BlockCurve::narrow_pole(const std::vector<PathNode>& nodes) con
   Pole pole{0.0, kNarrowPole};
   for (size_t i = 0; i + 1 < nodes.size(); ++i) {
     const double step = nodes[i + 1].x - nodes[i].x;
-    const double width = step / turn_between(*machine_, nodes[i].q, nodes[i + 1].q);
-    if (width < pole.width) pole = {nodes[i].x + 0.5 * step, width};
+    const double middle = nodes[i].x + 0.5 * step;
+    // How far the axis is from the pole there, by how far it goes over the whole block at that rate.
+    const double turn = (law_->at(nodes[i + 1].x).axis_W - law_->at(nodes[i].x).axis_W).norm();
+    const double width = step * inverse_->pole_distance(law_->at(middle).axis_W) / turn;
+    if (width < pole.width) pole = {middle, width};
   }
   return pole.width < kNarrowPole ? pole : Pole{};
 }

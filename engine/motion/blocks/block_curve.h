@@ -7,12 +7,13 @@
 //  2. Other blocks: the inverse gives q at shares x of the block by continuity. Near a pole x(s) is a spline
 //     through the solution of dx/ds = 1/|dq/dx|: what limits the speed moves evenly along s, and its bend
 //     does not take from its acceleration. q is always that of the exact pose at x(s), however well the
-//     spline is met. Where the axes turn within a small share of the block the spline is that of u(s), with
-//     x = centre + width sinh u: near the pole they turn evenly by u, farther off x grows by a factor per u,
-//     so that steps of u meet every scale of the approach. Sums of even steps of x or s would jump over it.
-//  3. Blocks on one smooth curve (BlockLaw::kCurve): s is the way of the tip, so that q(s) runs on from block
-//  to
-//     block with two continuous derivatives. Near a pole such a block is passed slowly instead of stretched.
+//     spline is met. Where the axis comes to within a small share of its way of a pole, or begins or ends
+//     there, the spline is that of u(s), with x = centre + width sinh u: near the pole the axes turn evenly
+//     by u, farther off x grows by a factor per u, so that steps of u meet every scale of the approach. Sums
+//     of even steps of x or s would jump over it.
+//  3. Blocks on one smooth curve (BlockLaw::kCurve): s is the way of the tip, so that q(s) runs on from
+//     block to block with two continuous derivatives. Near a pole such a block is passed slowly instead of
+//     stretched.
 #pragma once
 
 #include <cmath>
@@ -95,12 +96,10 @@ class BlockCurve {
   /// the tip would go at the reference speed while the axis needs its speed limit. Close to the greatest of
   /// all, smoothly.
   double limited_way(const kinematics::AxisValues& change, double share) const;
-  void append_own_nodes(double way, std::vector<PathNode>& nodes) const;
-  void append_close_nodes(double way, std::vector<PathNode>& nodes) const;
   void follow();
   double way_rate(const std::vector<PathNode>& nodes, size_t near, double x) const;
   void stretch(const std::vector<PathNode>& nodes);
-  /// Where the axes turn within a small share of the block: x = centre + width sinh u.
+  /// Where the axis comes as near to a pole as a small share of the block's way: x = centre + width sinh u.
   struct Pole {
     double centre = 0.0, width = 0.0;  ///< width 0: none
     double share(double u) const { return centre + width * std::sinh(u); }
