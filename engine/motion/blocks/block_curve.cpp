@@ -236,12 +236,45 @@ double BlockCurve::way_rate(const std::vector<PathNode>& nodes, size_t near, dou
   return limited_way(change, reach) / reach;
 }
 
+namespace {
+
+/// Whether w grows all the way; its slope is a parabola between knots.
+bool rises(const CubicSpline& spline, double step) {
+  for (size_t i = 0; i + 1 < spline.values().size(); ++i) {
+    const double t = step * static_cast<double>(i);
+    const CubicSpline::Value from = spline.at(t), to = spline.at(t + step);
+    const double share = from.ddw / (from.ddw - to.ddw);  // where the slope turns
+    if (from.dw <= 0.0 || to.dw <= 0.0) return false;
+    if (share > 0.0 && share < 1.0 && spline.at(t + share * step).dw <= 0.0) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+/// Steps are halved until the share goes nowhere back: one that changes its rate a hundredfold from step to
+/// step under axis limits far apart would. Where even the closest do not help it is not stretched.
 void BlockCurve::stretch(const std::vector<PathNode>& nodes) {
-  const double turn = turn_between(*machine_, nodes.front().q, nodes.back().q);
-  const auto steps = static_cast<size_t>(std::clamp(4.0 * kNodesPerRadian * turn, 48.0, kNodesMax));
-  stretched_ = true;
-  pole_ = narrow_pole(nodes);
-  if (pole_.width > 0.0) return spread(nodes, steps);
+  const double turn = turn_between(*machine_, nodes.front().q, nodes.back().q), length = length_;
+  const Pole pole = narrow_pole(nodes);
+  constexpr double kClosest = 4.0 * kNodesMax;
+  for (double steps = std::clamp(4.0 * kNodesPerRadian * turn, 48.0, kNodesMax); steps <= kClosest;
+       steps *= 2.0) {
+    pole_ = pole;
+    length_ = length;
+    if (pole_.width > 0.0)
+      spread(nodes, static_cast<size_t>(steps));
+    else
+      follow_rate(nodes, static_cast<size_t>(steps));
+    stretched_ = rises(share_, share_step_);
+    if (stretched_) return;
+  }
+  pole_ = {};
+  length_ = length;
+}
+
+/// The solution of dx/ds = 1/|dq/dx| by Runge and Kutta, scaled to end at 1, and a spline through it.
+void BlockCurve::follow_rate(const std::vector<PathNode>& nodes, size_t steps) {
   const double h = length_ / static_cast<double>(steps);
   size_t near = 0;
   const auto slope = [&](double x) {
@@ -300,8 +333,9 @@ void BlockCurve::spread(const std::vector<PathNode>& nodes, size_t steps) {
     while (i + 2 < s.size() && s[i + 1] < at) ++i;
     // The cubic through both nodes with the slopes there.
     const double h = s[i + 1] - s[i], t = std::clamp((at - s[i]) / h, 0.0, 1.0);
-    const double a = h / slope[i] - (u[i + 1] - u[i]), b = (u[i + 1] - u[i]) - h / slope[i + 1];
-    knots.push_back(u[i] + t * (u[i + 1] - u[i]) + t * (1.0 - t) * ((1.0 - t) * a + t * b));
+    const double du = u[i + 1] - u[i];  // slopes above three times the mean would lead back
+    const double a = std::min(h / slope[i], 3.0 * du) - du, b = du - std::min(h / slope[i + 1], 3.0 * du);
+    knots.push_back(u[i] + t * du + t * (1.0 - t) * ((1.0 - t) * a + t * b));
   }
   share_ = CubicSpline(0.0, share_step_, std::move(knots));
 }

@@ -99,6 +99,7 @@ class BlockCurve {
   void follow();
   double way_rate(const std::vector<PathNode>& nodes, size_t near, double x) const;
   void stretch(const std::vector<PathNode>& nodes);
+  void follow_rate(const std::vector<PathNode>& nodes, size_t steps);
   /// Where the axis comes as near to a pole as a small share of the block's way: x = centre + width sinh u.
   struct Pole {
     double centre = 0.0, width = 0.0;  ///< width 0: none

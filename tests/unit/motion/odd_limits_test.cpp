@@ -211,6 +211,18 @@ TEST(OddLimits, NoAxisLimitIsExceededOnAnyMachine) {
   fmt::print("{:.2f} h of motion\n", hours);
 }
 
+/// Limits so far apart that the share of a block past the pole changes its rate a hundredfold from step to
+/// step: a spline through too few led back, and planning stopped.
+TEST(OddLimits, AShareWhoseRateJumpsGoesOn) {
+  Rng rng(171);
+  Named odd{paper_machine(), 3, 4, 0.0};
+  make_limits_odd(odd.machine, rng);
+  const toolpath::ToolPath path = odd_program(odd, rng);
+  ASSERT_EQ(blocks_not_followed(path, odd.machine), 0U);
+  const Excess excess = axis_excess(run(path, odd.machine).trajectory, odd.machine);
+  EXPECT_LE(excess.relative, 1e-9) << excess.text;
+}
+
 /// Nothing tells such corners from sharp ones: they are passed at rest.
 TEST(OddLimits, CornersOfNoToleranceArePassedAtRest) {
   const MachineModel machine = paper_machine();
