@@ -250,13 +250,29 @@ bool rises(const CubicSpline& spline, double step) {
   return true;
 }
 
+/// The narrowest; of width 0 where none is narrow.
+BlockCurve::Pole narrow_pole(const BlockCurve::Law& law, const kinematics::InverseKinematics& inverse,
+                             const std::vector<PathNode>& nodes) {
+  if (law.motion.block.law == BlockLaw::kTcpAxes) return {};  // turns evenly, however far
+  BlockCurve::Pole pole{0.0, kNarrowPole};
+  for (size_t i = 0; i + 1 < nodes.size(); ++i) {
+    const double step = nodes[i + 1].x - nodes[i].x;
+    const double middle = nodes[i].x + 0.5 * step;
+    // How far the axis is from the pole there, by how far it goes over the whole block at that rate.
+    const double turn = (law.at(nodes[i + 1].x).axis_W - law.at(nodes[i].x).axis_W).norm();
+    const double width = step * inverse.pole_distance(law.at(middle).axis_W) / turn;
+    if (width < pole.width) pole = {middle, width};
+  }
+  return pole.width < kNarrowPole ? pole : BlockCurve::Pole{};
+}
+
 }  // namespace
 
 /// Steps are halved until the share goes nowhere back: one that changes its rate a hundredfold from step to
 /// step under axis limits far apart would. Where even the closest do not help it is not stretched.
 void BlockCurve::stretch(const std::vector<PathNode>& nodes) {
   const double turn = turn_between(*machine_, nodes.front().q, nodes.back().q), length = length_;
-  const Pole pole = narrow_pole(nodes);
+  const Pole pole = narrow_pole(*law_, *inverse_, nodes);
   constexpr double kClosest = 4.0 * kNodesMax;
   for (double steps = std::clamp(4.0 * kNodesPerRadian * turn, 48.0, kNodesMax); steps <= kClosest;
        steps *= 2.0) {
@@ -293,20 +309,6 @@ void BlockCurve::follow_rate(const std::vector<PathNode>& nodes, size_t steps) {
   for (double& value : x) value /= whole;
   share_ = CubicSpline(0.0, h, std::move(x));
   share_step_ = h;
-}
-
-BlockCurve::Pole BlockCurve::narrow_pole(const std::vector<PathNode>& nodes) const {
-  if (block().law == BlockLaw::kTcpAxes) return {};  // turns evenly, however far
-  Pole pole{0.0, kNarrowPole};
-  for (size_t i = 0; i + 1 < nodes.size(); ++i) {
-    const double step = nodes[i + 1].x - nodes[i].x;
-    const double middle = nodes[i].x + 0.5 * step;
-    // How far the axis is from the pole there, by how far it goes over the whole block at that rate.
-    const double turn = (law_->at(nodes[i + 1].x).axis_W - law_->at(nodes[i].x).axis_W).norm();
-    const double width = step * inverse_->pole_distance(law_->at(middle).axis_W) / turn;
-    if (width < pole.width) pole = {middle, width};
-  }
-  return pole.width < kNarrowPole ? pole : Pole{};
 }
 
 /// Past a narrow pole: s(x) summed from node to node by Simpson's rule, and a spline through the inverse.

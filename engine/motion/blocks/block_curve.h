@@ -51,6 +51,12 @@ class BlockCurve {
     BlockMotion motion;
     PoseLaw law;
   };
+  /// Where the axis comes as near to a pole as a small share of the block's way: x = centre + width sinh u.
+  struct Pole {
+    double centre = 0.0, width = 0.0;  ///< width 0: none
+    double share(double u) const { return centre + width * std::sinh(u); }
+    double place(double share) const { return std::asinh((share - centre) / width); }
+  };
   /// None of a block that is even.
   const Law* law() const { return law_.get(); }
 
@@ -100,13 +106,6 @@ class BlockCurve {
   double way_rate(const std::vector<PathNode>& nodes, size_t near, double x) const;
   void stretch(const std::vector<PathNode>& nodes);
   void follow_rate(const std::vector<PathNode>& nodes, size_t steps);
-  /// Where the axis comes as near to a pole as a small share of the block's way: x = centre + width sinh u.
-  struct Pole {
-    double centre = 0.0, width = 0.0;  ///< width 0: none
-    double share(double u) const { return centre + width * std::sinh(u); }
-    double place(double share) const { return std::asinh((share - centre) / width); }
-  };
-  Pole narrow_pole(const std::vector<PathNode>& nodes) const;
   void spread(const std::vector<PathNode>& nodes, size_t steps);
   void sample(double least);
   template <typename Visit>
