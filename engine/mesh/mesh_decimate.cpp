@@ -237,6 +237,15 @@ double mean_area(const OmMesh& om) {
   return sum / static_cast<double>(om.n_faces());
 }
 
+/// OpenMesh writes about complex edges to its error stream; the result tells us what we need. The stream is
+/// made and connected by who asks for it first, which two threads must not do at once.
+void silence_openmesh() {
+  [[maybe_unused]] static const bool is_silent = [] {
+    omerr().disable();
+    return true;
+  }();
+}
+
 /// OpenMesh's decimater within the error, but not where tries have failed; a mesh it cannot represent stays
 /// as it is.
 void refine_with_openmesh(const TriMesh& mesh, double error_mm, const Failures& failures, Surface& surface) {
@@ -247,11 +256,8 @@ void refine_with_openmesh(const TriMesh& mesh, double error_mm, const Failures& 
   om.request_vertex_status();
   om.request_edge_status();
   om.request_face_status();
-  // OpenMesh writes about complex edges to its error stream; the result tells us what we need.
-  omerr().disable();
-  const bool manifold = to_openmesh(mesh, surface, om, number);
-  omerr().enable();
-  if (!manifold) return;
+  silence_openmesh();
+  if (!to_openmesh(mesh, surface, om, number)) return;
   // Quadrics of faces do not resist motion along an open border.
   for (const auto v : om.vertices())
     om.status(v).set_locked(om.is_boundary(v) || failures[surface.originals[om.property(number, v)]] > 0);
