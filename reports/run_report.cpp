@@ -362,20 +362,26 @@ Lines flank_path_lines(const sim::Job& job, const sim::Result& result) {
                                job.scene.motion.period_s * 1e3)}};
 }
 
+/// What was found may be far less than what is proven, where no ray looks.
+std::string proven_words(const std::optional<measure::Bound>& bound) {
+  return bound ? fmt::format(", proven below {:.3f} um", bound->um) : ", measured, not proven";
+}
+
 Lines surface_lines(const sim::Job& job, const sim::Result& result) {
   const measure::SurfaceMetrics& s = result.main.surface;
   if (!job.has_design()) return {{"design", "none: the finished part is not measured"}};
   Lines lines;
   if (brings_blocks(result)) {
     lines.emplace_back("design", job.scene.design.name);
-    lines.emplace_back("excess", fmt::format("{:.3f} um highest material{}", s.excess_max_um,
-                                             s.excess_bound ? "" : ", measured, not proven"));
+    lines.emplace_back(
+        "excess", fmt::format("{:.3f} um highest material{}", s.excess_max_um, proven_words(s.excess_bound)));
     if (s.ridges > 0) lines.emplace_back("scallop", fmt::format("{:.3f} um highest", s.scallop_max_um));
   } else {
     lines.emplace_back("scallop", fmt::format("{:.3f} um highest, {:.3f} um at 5 %, theory {:.3f} um",
                                               s.scallop_max_um, s.scallop_p05_um, s.scallop_theory_um));
   }
-  lines.emplace_back("gouge", fmt::format("{:.3f} um deepest", s.gouge_max_um));
+  lines.emplace_back("gouge",
+                     fmt::format("{:.3f} um deepest{}", s.gouge_max_um, proven_words(s.gouge_bound)));
   lines.emplace_back(
       "tolerance",
       fmt::format("{:.2f} % of {} rays within -{:g} .. +{:g} um", s.within_tolerance_pct, s.samples,
