@@ -77,6 +77,12 @@ std::string wave_program() {
   return text + "G0 Z20\nM30\n";
 }
 
+size_t patches_drawn(const StockState& state) {
+  return static_cast<size_t>(std::count_if(state.begin(), state.end(), [](const auto& patch) {
+    return patch != nullptr && !patch->triangles.empty();
+  }));
+}
+
 constexpr const char* kScene = R"(machine = "mill_3axis"
 nc = "wave.ngc"
 dialect = "linuxcnc"
@@ -138,10 +144,7 @@ void BM_DeviationsOfAFrame(benchmark::State& state) {
     for (size_t f = 1; f <= kTimed; ++f) stock.advance(frames[middle + f].cycle);
     vertices = stock.vertices_measured() - vertices;
     patches = stock.patches_made() - patches;
-    all =
-        static_cast<size_t>(std::count_if(stock.state().begin(), stock.state().end(), [](const auto& patch) {
-          return patch != nullptr && !patch->triangles.empty();
-        }));
+    all = patches_drawn(stock.state());
   }
   state.SetItemsProcessed(static_cast<int64_t>(state.iterations() * kTimed));
   state.counters["vertices"] = static_cast<double>(vertices) / kTimed;
@@ -216,10 +219,7 @@ void remesh(benchmark::State& state, const sim::Job& job, size_t step) {
     state.ResumeTiming();
     for (size_t f = 1; f <= kTimed; ++f) stock.advance(reader.at(middle + f * step));
     patches = stock.patches_made() - patches;
-    all =
-        static_cast<size_t>(std::count_if(stock.state().begin(), stock.state().end(), [](const auto& patch) {
-          return patch != nullptr && !patch->triangles.empty();
-        }));
+    all = patches_drawn(stock.state());
   }
   state.SetItemsProcessed(static_cast<int64_t>(state.iterations() * kTimed));
   state.counters["leaves"] = static_cast<double>(leaves) / kTimed;

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <numeric>
+#include <vector>
 
 #include "base/angles.h"
 #include "base/rng.h"
@@ -217,12 +219,19 @@ Undercut random_job(uint64_t seed) {
   return job;
 }
 
+/// So many from the first on, unless SWARF_FIRST_OVERHANG and SWARF_RANDOM_OVERHANGS say otherwise.
+std::vector<uint64_t> seeds(uint64_t first, size_t count) {
+  if (const char* const asked = std::getenv("SWARF_FIRST_OVERHANG"))
+    first = std::strtoull(asked, nullptr, 10);
+  if (const char* const asked = std::getenv("SWARF_RANDOM_OVERHANGS"))
+    count = std::strtoull(asked, nullptr, 10);
+  std::vector<uint64_t> all(count);
+  std::iota(all.begin(), all.end(), first);
+  return all;
+}
+
 TEST(Overhang, DenseRaysOfRandomJobsStayWithinTheBounds) {
-  const char* const count = std::getenv("SWARF_RANDOM_OVERHANGS");
-  const int cases = count != nullptr ? std::atoi(count) : 4;
-  const char* const first = std::getenv("SWARF_FIRST_OVERHANG");
-  const uint64_t begin = first != nullptr ? std::strtoull(first, nullptr, 10) : 1;
-  for (uint64_t seed = begin; seed < begin + static_cast<uint64_t>(cases); ++seed) {
+  for (const uint64_t seed : seeds(1, 4)) {
     const Undercut job = random_job(seed);
     const stock::SurfaceDexels dense = rays_of(job, stock::rays_on_surface(job.field->surface, 0.03));
     const double highest = highest_of(dense);
@@ -358,12 +367,8 @@ double farthest_material(const RandomSlot& slot, uint64_t seed) {
 }
 
 TEST(Overhang, NoPlaceOfMaterialIsFartherFromARandomSlotThanIsProven) {
-  const char* const count = std::getenv("SWARF_RANDOM_OVERHANGS");
-  const int cases = count != nullptr ? std::atoi(count) : 2;
-  const char* const first = std::getenv("SWARF_FIRST_OVERHANG");
-  const uint64_t begin = first != nullptr ? std::strtoull(first, nullptr, 10) : 3;
   int kept = 0;
-  for (uint64_t seed = begin; seed < begin + static_cast<uint64_t>(cases); ++seed) {
+  for (const uint64_t seed : seeds(3, 2)) {
     const RandomSlot slot = random_slot(seed);
     const double farthest = farthest_material(slot, seed);
     for (const double limit : {0.1, 1.2 * farthest + 0.05}) {
@@ -376,7 +381,8 @@ TEST(Overhang, NoPlaceOfMaterialIsFartherFromARandomSlotThanIsProven) {
       if (proof.open_cells == 0 && proof.excess.um <= um_from_mm(limit)) ++kept;
     }
   }
-  EXPECT_GE(kept, count != nullptr ? 0 : 2) << "a bound that is never close proves nothing";
+  EXPECT_GE(kept, std::getenv("SWARF_RANDOM_OVERHANGS") != nullptr ? 0 : 2)
+      << "a bound that is never close proves nothing";
 }
 
 }  // namespace
