@@ -13,12 +13,10 @@ namespace swarf::render {
 
 // One line per function: its type (from glcorearb.h) and its name without "gl".
 #define SWARF_GL_FUNCTIONS(X)                                  \
-  X(PFNGLACTIVETEXTUREPROC, ActiveTexture)                     \
   X(PFNGLATTACHSHADERPROC, AttachShader)                       \
   X(PFNGLBINDBUFFERPROC, BindBuffer)                           \
   X(PFNGLBINDFRAMEBUFFERPROC, BindFramebuffer)                 \
   X(PFNGLBINDRENDERBUFFERPROC, BindRenderbuffer)               \
-  X(PFNGLBINDTEXTUREPROC, BindTexture)                         \
   X(PFNGLBINDVERTEXARRAYPROC, BindVertexArray)                 \
   X(PFNGLBUFFERDATAPROC, BufferData)                           \
   X(PFNGLCHECKFRAMEBUFFERSTATUSPROC, CheckFramebufferStatus)   \
@@ -37,15 +35,11 @@ namespace swarf::render {
   X(PFNGLENABLEPROC, Enable)                                   \
   X(PFNGLENABLEVERTEXATTRIBARRAYPROC, EnableVertexAttribArray) \
   X(PFNGLFRAMEBUFFERRENDERBUFFERPROC, FramebufferRenderbuffer) \
-  X(PFNGLFRAMEBUFFERTEXTURE2DPROC, FramebufferTexture2D)       \
   X(PFNGLGENBUFFERSPROC, GenBuffers)                           \
   X(PFNGLGENFRAMEBUFFERSPROC, GenFramebuffers)                 \
   X(PFNGLGENRENDERBUFFERSPROC, GenRenderbuffers)               \
-  X(PFNGLGENTEXTURESPROC, GenTextures)                         \
   X(PFNGLGENVERTEXARRAYSPROC, GenVertexArrays)                 \
   X(PFNGLGETERRORPROC, GetError)                               \
-  X(PFNGLGETINTEGERVPROC, GetIntegerv)                         \
-  X(PFNGLGETMULTISAMPLEFVPROC, GetMultisamplefv)               \
   X(PFNGLGETPROGRAMINFOLOGPROC, GetProgramInfoLog)             \
   X(PFNGLGETPROGRAMIVPROC, GetProgramiv)                       \
   X(PFNGLGETUNIFORMLOCATIONPROC, GetUniformLocation)           \
@@ -56,13 +50,8 @@ namespace swarf::render {
   X(PFNGLRENDERBUFFERSTORAGEPROC, RenderbufferStorage)         \
   X(PFNGLSCISSORPROC, Scissor)                                 \
   X(PFNGLSHADERSOURCEPROC, ShaderSource)                       \
-  X(PFNGLTEXIMAGE2DPROC, TexImage2D)                           \
-  X(PFNGLTEXIMAGE2DMULTISAMPLEPROC, TexImage2DMultisample)     \
-  X(PFNGLTEXPARAMETERIPROC, TexParameteri)                     \
-  X(PFNGLUNIFORM1FPROC, Uniform1f)                             \
   X(PFNGLUNIFORM1IPROC, Uniform1i)                             \
   X(PFNGLUNIFORM1UIPROC, Uniform1ui)                           \
-  X(PFNGLUNIFORM2FVPROC, Uniform2fv)                           \
   X(PFNGLUNIFORM3FPROC, Uniform3f)                             \
   X(PFNGLUNIFORM4FPROC, Uniform4f)                             \
   X(PFNGLUNIFORMMATRIX4FVPROC, UniformMatrix4fv)               \

@@ -11,13 +11,16 @@
 #include "render/raster/gl_api.h"
 #include "render/raster/gpu_mesh.h"
 #include "render/raster/line_quads.h"
+#include "render/raster/sample_resolver.h"
 #include "render/raster/scene_view.h"
 #include "render/raster/shaders.h"
 
 namespace swarf::render {
 namespace {
 
-constexpr int kShadowSize = 2048;  // pixels of the shadow map, both ways
+constexpr int kShadowSize = 2048;  // texels of the shadow map, both ways
+constexpr int kBandRows =
+    48;  // px that are read and shaded before the next are read: what is read stays near
 
 GLuint compile(const GlApi& gl, const ShaderSource& source, const std::string& define = "") {
   const GLuint program = gl.CreateProgram();
@@ -52,14 +55,10 @@ class Uniforms {
     gl_.Uniform3f(at(name), static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()));
   }
   void set(const char* name, const Rgb& c) const { gl_.Uniform3f(at(name), c[0], c[1], c[2]); }
-  void set(const char* name, const std::vector<std::array<float, 2>>& pairs) const {
-    gl_.Uniform2fv(at(name), static_cast<GLsizei>(pairs.size()), pairs.front().data());
-  }
   void set_plane(const char* name, const Vec3& normal, const Vec3& point) const {
     gl_.Uniform4f(at(name), static_cast<float>(normal.x()), static_cast<float>(normal.y()),
                   static_cast<float>(normal.z()), static_cast<float>(normal.dot(point)));
   }
-  void set(const char* name, double value) const { gl_.Uniform1f(at(name), static_cast<float>(value)); }
   void set(const char* name, int value) const { gl_.Uniform1i(at(name), value); }
   void set(const char* name, GLuint value) const { gl_.Uniform1ui(at(name), value); }
 
@@ -73,6 +72,26 @@ class Uniforms {
 GLuint packed_paint(const Rgb& linear, int kind) {
   const std::array<uint8_t, 4> c = srgb8_from_linear(linear);
   return c[0] | GLuint{c[1]} << 8 | GLuint{c[2]} << 16 | static_cast<GLuint>(kind) << 24;
+}
+
+/// Of the shadow map: what the picture can look at.
+struct ShadowPart {
+  Vec2 lower, upper;           ///< -1..1
+  int left, low, width, rows;  ///< texels
+};
+ShadowPart shadow_part(const SceneView& view) {
+  constexpr double kBesidePx = 4.0;  // a place is looked up off its surface, by two taps of four texels
+  const Vec2 beside = Vec2::Constant(2.0 * kBesidePx / kShadowSize);
+  ShadowPart part{view.shadow_lower - beside, view.shadow_upper + beside, 0, 0, 0, 0};
+  const auto texel = [](double place) {
+    return static_cast<int>(std::clamp((0.5 * place + 0.5) * kShadowSize, 0.0, kShadowSize - 2.0));
+  };
+  part.left = texel(part.lower.x());
+  part.low = texel(part.lower.y());
+  // Two texels at least: each tap takes in its neighbours.
+  part.width = std::max(2, texel(part.upper.x()) + 2 - part.left);
+  part.rows = std::max(2, texel(part.upper.y()) + 2 - part.low);
+  return part;
 }
 
 }  // namespace
@@ -92,44 +111,42 @@ struct RasterRenderer::Impl {
   Impl(int width_px, int height_px, int samples_per_px);
   void compile_programs();
   void make_line_array();
-  /// What is seen, at each sample of a pixel.
-  void make_surfaces();
-  void make_picture();
-  void make_shadow_map();
+  /// A framebuffer of depths, and of the words of what is seen.
+  GLuint make_target(int columns, int rows, bool with_words);
   Box upload(const DrawList& list);
   int material_of(const Material& material);
   void draw_shadow(const SceneView& view, bool section);
   void draw_surfaces(const SceneView& view, const DrawList& list);
   void draw_items(const SceneView& view, const DrawList& list, bool sectioned);
-  void draw_ground(const SceneView& view);
   void draw_lines(const SceneView& view, const std::vector<DrawLine>& lines);
   void draw_triangles(const GpuMesh& mesh, bool both_sides = false);
-  void shade(const SceneView& view, const Camera& camera);
-  Image read();
+  void read_shadow(const SceneView& view);
+  Image shade(const SceneView& view, const Camera& camera);
 
   OsmesaContext context;
   const GlApi& gl;
   GpuMeshCache meshes;
-  int width, height, samples;
-  GLuint surfaces = 0, surface_texture = 0, depth_texture = 0;
-  GLuint picture = 0, shadow_target = 0, shadow_texture = 0;
+  int width, height, side;  ///< px; samples of a pixel each way
+  GLuint surfaces = 0, shadow_target = 0;
   SurfacePrograms surface_programs, section_programs;
-  GLuint shadow_program, ground_program, line_program, shade_program;
-  GLuint empty_array = 0, line_array = 0, line_buffer = 0;
-  std::vector<std::array<float, 2>> sample_places;  ///< in a pixel, 0..1
-  std::vector<std::array<float, 2>> materials;      ///< metalness and roughness
+  GLuint shadow_program, line_program;
+  GLuint line_array = 0, line_buffer = 0;
+  SampleBand band;
+  ShadowMap shadow;
+  std::vector<std::array<float, 2>> materials;  ///< metalness and roughness
   std::vector<Drawn> drawn;
 };
 
 RasterRenderer::Impl::Impl(int width_px, int height_px, int samples_per_px)
-    : gl(context.gl()), meshes(gl), width(width_px), height(height_px), samples(samples_per_px) {
+    : gl(context.gl()), meshes(gl), width(width_px), height(height_px), side(samples_per_px == 4 ? 2 : 1) {
   SWARF_CHECK(width > 0 && height > 0, "a picture needs pixels");
-  SWARF_CHECK(samples == 1 || samples == 4, "1 or 4 samples per pixel");
-  make_surfaces();
-  make_picture();
-  make_shadow_map();
+  SWARF_CHECK(side * side == samples_per_px, "1 or 4 samples per pixel");
+  band.width = width;
+  band.side = side;
+  surfaces = make_target(side * width, side * height, true);
+  shadow_target = make_target(kShadowSize, kShadowSize, false);
+  gl.PixelStorei(GL_PACK_ALIGNMENT, 1);
   compile_programs();
-  gl.GenVertexArrays(1, &empty_array);
   make_line_array();
 }
 
@@ -138,11 +155,7 @@ void RasterRenderer::Impl::compile_programs() {
   section_programs = {compile(gl, kSurfaceShader, "#define SECTION\n"),
                       compile(gl, kSurfaceShader, "#define SECTION\n#define COLOURS\n")};
   shadow_program = compile(gl, kShadowShader);
-  ground_program = compile(gl, kGroundShader);
   line_program = compile(gl, kLineShader);
-  shade_program = compile(gl, kShadeShader,
-                          "#define SAMPLES " + std::to_string(samples) + "\n#define MATERIALS " +
-                              std::to_string(kMaterialsMost) + "\n");
 }
 
 void RasterRenderer::Impl::make_line_array() {
@@ -159,67 +172,30 @@ void RasterRenderer::Impl::make_line_array() {
   gl.EnableVertexAttribArray(1);
 }
 
-void RasterRenderer::Impl::make_surfaces() {
-  struct Target {
-    GLuint& texture;
-    GLenum format, layout, type, attachment;
+GLuint RasterRenderer::Impl::make_target(int columns, int rows, bool with_words) {
+  struct Part {
+    GLenum format, attachment;
   };
-  gl.GenFramebuffers(1, &surfaces);
-  gl.BindFramebuffer(GL_FRAMEBUFFER, surfaces);
-  const GLenum kind = samples > 1 ? GL_TEXTURE_2D_MULTISAMPLE : GL_TEXTURE_2D;
-  for (const Target& target :
-       {Target{surface_texture, GL_RG32UI, GL_RG_INTEGER, GL_UNSIGNED_INT, GL_COLOR_ATTACHMENT0},
-        Target{depth_texture, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT,
-               GL_DEPTH_ATTACHMENT}}) {
-    gl.GenTextures(1, &target.texture);
-    gl.BindTexture(kind, target.texture);
-    if (samples > 1) {
-      gl.TexImage2DMultisample(kind, samples, target.format, width, height, GL_TRUE);
-    } else {
-      gl.TexImage2D(kind, 0, static_cast<GLint>(target.format), width, height, 0, target.layout, target.type,
-                    nullptr);
-      gl.TexParameteri(kind, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-      gl.TexParameteri(kind, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    }
-    gl.FramebufferTexture2D(GL_FRAMEBUFFER, target.attachment, kind, target.texture, 0);
+  GLuint target = 0;
+  gl.GenFramebuffers(1, &target);
+  gl.BindFramebuffer(GL_FRAMEBUFFER, target);
+  // In the formats in which they are read: nothing is converted.
+  std::vector<Part> parts{{GL_DEPTH_COMPONENT32F, GL_DEPTH_ATTACHMENT}};
+  if (with_words) {
+    parts.push_back({GL_RG32UI, GL_COLOR_ATTACHMENT0});
+  } else {
+    gl.DrawBuffer(GL_NONE);
+  }
+  for (const Part& part : parts) {
+    GLuint buffer = 0;
+    gl.GenRenderbuffers(1, &buffer);
+    gl.BindRenderbuffer(GL_RENDERBUFFER, buffer);
+    gl.RenderbufferStorage(GL_RENDERBUFFER, part.format, columns, rows);
+    gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, part.attachment, GL_RENDERBUFFER, buffer);
   }
   SWARF_CHECK(gl.CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE,
-              "OSMesa refuses the framebuffer of what is seen");
-  sample_places.assign(static_cast<size_t>(samples), {0.5F, 0.5F});
-  for (int s = 0; samples > 1 && s < samples; ++s)
-    gl.GetMultisamplefv(GL_SAMPLE_POSITION, static_cast<GLuint>(s),
-                        sample_places[static_cast<size_t>(s)].data());
-}
-
-void RasterRenderer::Impl::make_picture() {
-  GLuint buffer = 0;
-  gl.GenFramebuffers(1, &picture);
-  gl.BindFramebuffer(GL_FRAMEBUFFER, picture);
-  gl.GenRenderbuffers(1, &buffer);
-  gl.BindRenderbuffer(GL_RENDERBUFFER, buffer);
-  gl.RenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, width, height);
-  gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, buffer);
-  SWARF_CHECK(gl.CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE,
-              "OSMesa refuses the picture's framebuffer");
-}
-
-void RasterRenderer::Impl::make_shadow_map() {
-  gl.GenTextures(1, &shadow_texture);
-  gl.BindTexture(GL_TEXTURE_2D, shadow_texture);
-  gl.TexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT24, kShadowSize, kShadowSize, 0, GL_DEPTH_COMPONENT,
-                GL_UNSIGNED_INT, nullptr);
-  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
-  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
-  gl.GenFramebuffers(1, &shadow_target);
-  gl.BindFramebuffer(GL_FRAMEBUFFER, shadow_target);
-  gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, shadow_texture, 0);
-  gl.DrawBuffer(GL_NONE);
-  SWARF_CHECK(gl.CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE,
-              "OSMesa refuses the shadow map");
+              "OSMesa refuses a framebuffer");
+  return target;
 }
 
 Box RasterRenderer::Impl::upload(const DrawList& list) {
@@ -277,40 +253,23 @@ void RasterRenderer::Impl::draw_shadow(const SceneView& view, bool section) {
   gl.Viewport(0, 0, kShadowSize, kShadowSize);
   // Whole: where only a part is to be cleared llvmpipe draws a rectangle, which takes longer.
   gl.Clear(GL_DEPTH_BUFFER_BIT);
-  constexpr double kBesidePx = 4.0;  // a place is looked up off its surface, by two taps of four texels
-  const Vec2 beside = Vec2::Constant(2.0 * kBesidePx / kShadowSize);
-  const Vec2 lower = view.shadow_lower - beside, upper = view.shadow_upper + beside;
-  const auto pixel = [](double place) {
-    return static_cast<int>(std::clamp((0.5 * place + 0.5) * kShadowSize, 0.0, 1.0 * kShadowSize));
-  };
-  const int left = pixel(lower.x()), low = pixel(lower.y());
+  const ShadowPart part = shadow_part(view);
   gl.Enable(GL_SCISSOR_TEST);
-  gl.Scissor(left, low, std::max(0, pixel(upper.x()) + 1 - left), std::max(0, pixel(upper.y()) + 1 - low));
+  gl.Scissor(part.left, part.low, part.width, part.rows);
   gl.Enable(GL_POLYGON_OFFSET_FILL);
   gl.PolygonOffset(1.5F, 4.0F);
   const Uniforms uniforms(gl, shadow_program);
   uniforms.set("clip_from_world", view.light_clip_from_world);
   for (const Drawn& one : drawn) {
     if (section && one.item->sectioned) continue;
-    if (!may_lie_within(view.light_clip_from_world, one.mesh->bounds, one.item->X_world, lower, upper))
+    if (!may_lie_within(view.light_clip_from_world, one.mesh->bounds, one.item->X_world, part.lower,
+                        part.upper))
       continue;
     uniforms.set("world_from_mesh", one.item->X_world.matrix());
     draw_triangles(*one.mesh);
   }
   gl.Disable(GL_POLYGON_OFFSET_FILL);
   gl.Disable(GL_SCISSOR_TEST);
-}
-
-/// Everywhere where nothing has been drawn; farther than the picture's depths, and above the horizon, at the
-/// farthest of them, where it has faded into the background.
-void RasterRenderer::Impl::draw_ground(const SceneView& view) {
-  gl.Disable(GL_CULL_FACE);
-  gl.Enable(GL_DEPTH_CLAMP);
-  gl.BindVertexArray(empty_array);
-  const Uniforms uniforms(gl, ground_program);
-  uniforms.set("depths", depths_of_level(view.clip_from_world, view.ground_centre.z()));
-  gl.DrawArrays(GL_TRIANGLES, 0, 3);
-  gl.Disable(GL_DEPTH_CLAMP);
 }
 
 /// The items that the section cuts open, or all others.
@@ -354,57 +313,39 @@ void RasterRenderer::Impl::draw_lines(const SceneView& view, const std::vector<D
 
 void RasterRenderer::Impl::draw_surfaces(const SceneView& view, const DrawList& list) {
   gl.BindFramebuffer(GL_FRAMEBUFFER, surfaces);
-  gl.Viewport(0, 0, width, height);
+  gl.Viewport(0, 0, side * width, side * height);
   gl.Clear(GL_DEPTH_BUFFER_BIT);
   draw_items(view, list, false);
   if (list.section) draw_items(view, list, true);
   draw_lines(view, list.lines);
-  draw_ground(view);
 }
 
-void RasterRenderer::Impl::shade(const SceneView& view, const Camera& camera) {
-  gl.BindFramebuffer(GL_FRAMEBUFFER, picture);
-  gl.Disable(GL_DEPTH_TEST);
-  gl.Disable(GL_CULL_FACE);
-  const GLenum kind = samples > 1 ? GL_TEXTURE_2D_MULTISAMPLE : GL_TEXTURE_2D;
-  const Uniforms uniforms(gl, shade_program);
-  const auto bind = [&](int unit, const char* name, GLenum target, GLuint texture) {
-    gl.ActiveTexture(static_cast<GLenum>(GL_TEXTURE0 + unit));
-    gl.BindTexture(target, texture);
-    uniforms.set(name, unit);
-  };
-  bind(0, "shadow_map", GL_TEXTURE_2D, shadow_texture);
-  bind(1, "surfaces", kind, surface_texture);
-  bind(2, "depths", kind, depth_texture);
-  uniforms.set("sample_place", sample_places);
-  if (!materials.empty()) uniforms.set("materials", materials);
-  uniforms.set("light_from_world", view.light_clip_from_world);
-  uniforms.set("size_px",
-               std::vector<std::array<float, 2>>{{static_cast<float>(width), static_cast<float>(height)}});
-  uniforms.set("near_far", std::vector<std::array<float, 2>>{
-                               {static_cast<float>(view.near), static_cast<float>(view.far)}});
-  uniforms.set("eye", camera.eye);
-  uniforms.set("right", view.right);
-  uniforms.set("up", view.up);
-  uniforms.set("forward", view.forward);
-  uniforms.set("key", view.key);
-  uniforms.set("softbox", (view.key + Vec3(0.0, 0.0, 0.5)).normalized());
-  uniforms.set("fill", view.fill);
-  uniforms.set("rim", view.rim);
-  uniforms.set("texel", 1.0 / kShadowSize);
-  uniforms.set("texel_mm", view.light_extent_mm / kShadowSize);
-  uniforms.set("centre", view.ground_centre);
-  uniforms.set("radius", view.ground_radius);
-  gl.BindVertexArray(empty_array);
-  gl.DrawArrays(GL_TRIANGLES, 0, 3);
+void RasterRenderer::Impl::read_shadow(const SceneView& view) {
+  const ShadowPart part = shadow_part(view);
+  shadow.size = kShadowSize;
+  shadow.left = part.left;
+  shadow.low = part.low;
+  shadow.width = part.width;
+  shadow.rows = part.rows;
+  shadow.depths.resize(static_cast<size_t>(part.width) * static_cast<size_t>(part.rows));
+  gl.BindFramebuffer(GL_FRAMEBUFFER, shadow_target);
+  gl.ReadPixels(part.left, part.low, part.width, part.rows, GL_DEPTH_COMPONENT, GL_FLOAT,
+                shadow.depths.data());
 }
 
-/// The picture is shaded upside down: its first row is the image's.
-Image RasterRenderer::Impl::read() {
+Image RasterRenderer::Impl::shade(const SceneView& view, const Camera& camera) {
   Image image{width, height,
               std::vector<uint8_t>(size_t{4} * static_cast<size_t>(width) * static_cast<size_t>(height))};
-  gl.PixelStorei(GL_PACK_ALIGNMENT, 1);
-  gl.ReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, image.rgba.data());
+  read_shadow(view);
+  const Lighting light = lighting(view, camera.eye, width, height, materials, shadow);
+  gl.BindFramebuffer(GL_FRAMEBUFFER, surfaces);
+  for (int top = 0; top < height; top += kBandRows) {
+    band.resize(std::min(kBandRows, height - top));
+    const int low = side * (height - top - band.rows);  // OpenGL counts rows from below
+    gl.ReadPixels(0, low, side * width, side * band.rows, GL_RG_INTEGER, GL_UNSIGNED_INT, band.words.data());
+    gl.ReadPixels(0, low, side * width, side * band.rows, GL_DEPTH_COMPONENT, GL_FLOAT, band.depths.data());
+    resolve(band, light, top, image);
+  }
   SWARF_CHECK(gl.GetError() == GL_NO_ERROR, "OpenGL reports an error after a frame");
   return image;
 }
@@ -424,8 +365,7 @@ Image RasterRenderer::draw(const DrawList& list) {
   gl.DepthFunc(GL_LEQUAL);
   impl.draw_shadow(view, list.section.has_value());
   impl.draw_surfaces(view, list);
-  impl.shade(view, list.camera);
-  return impl.read();
+  return impl.shade(view, list.camera);
 }
 
 }  // namespace swarf::render

@@ -1,4 +1,5 @@
-// Fast pictures: OpenGL in software (OSMesa's llvmpipe), for the frames of the movie and quick stills.
+// Fast pictures, for the frames of the movie and quick stills: OpenGL in software (OSMesa's llvmpipe) finds
+// what is seen, kernels of our own shade it.
 #pragma once
 
 #include <memory>
@@ -12,8 +13,8 @@ namespace swarf::render {
 ///
 /// Static meshes stay in GPU memory by their address (a mesh that changed at the same address is noticed by
 /// samples of its positions); `dynamic` ones are sent anew in each call. What is seen is found at all samples
-/// of a pixel and shaded once per surface in it. Meshes without normals are shaded flat. Not thread-safe, but
-/// successive calls may come from different threads.
+/// of a pixel, on a grid of one or two each way, and shaded once per surface in it. Meshes without normals
+/// are shaded flat. Not thread-safe, but successive calls may come from different threads.
 class RasterRenderer {
  public:
   /// `samples` per pixel for smooth edges: 1 or 4. Throws InputError when OSMesa is missing.

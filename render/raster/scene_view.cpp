@@ -89,13 +89,11 @@ bool may_lie_within(const Eigen::Matrix4d& clip_from_world, const Box& box, cons
   return std::none_of(std::begin(beyond), std::end(beyond), [](int count) { return count == 8; });
 }
 
-Vec3 depths_of_level(const Eigen::Matrix4d& clip_from_world, double height) {
-  constexpr double kEdgeOn = 1e-9;  // sine of the angle to the plane, roughly
-  // A plane's coefficients go by the inverse transposed.
-  const Eigen::Vector4d plane =
-      clip_from_world.inverse().transpose() * Eigen::Vector4d(0.0, 0.0, 1.0, -height);
-  if (std::abs(plane.z()) <= kEdgeOn * plane.norm()) return {0.0, 0.0, 2.0};
-  return Vec3(plane.x(), plane.y(), plane.w()) / -plane.z();
+Vec3 nearness_of_level(const SceneView& view, const Vec3& eye, double height) {
+  constexpr double kInItsPlane_mm = 1e-9;
+  const double rise = height - eye.z();
+  if (std::abs(rise) < kInItsPlane_mm) return Vec3::Zero();
+  return Vec3(view.right.z(), view.up.z(), view.forward.z()) / rise;
 }
 
 SceneView scene_view(const Camera& camera, const Box& bounds, double aspect) {

@@ -28,10 +28,10 @@ SceneView scene_view(const Camera& camera, const Box& bounds, double aspect);
 bool may_lie_within(const Eigen::Matrix4d& clip_from_world, const Box& box, const Pose& X_world,
                     const Vec2& lower, const Vec2& upper);
 
-/// Depths (-1..1) of the horizontal plane at this height, as the picture sees it: x and y of the picture
-/// (-1..1) times the first two plus the third. Above 1 where it does not see the plane, everywhere where it
-/// sees it edge on.
-Vec3 depths_of_level(const Eigen::Matrix4d& clip_from_world, double height);
+/// Of the horizontal plane at this height, 1 / distance along `forward`, 1/mm: x and y of the picture (-1..1)
+/// times the first two plus the third. Not above 0 where the picture does not see the plane, everywhere where
+/// it sees it edge on.
+Vec3 nearness_of_level(const SceneView& view, const Vec3& eye, double height);
 
 /// Grows `bounds` by a box at a pose.
 void extend(Box& bounds, const Box& box, const Pose& X_world);

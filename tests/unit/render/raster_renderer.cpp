@@ -248,6 +248,33 @@ TEST(RasterRenderer, AboveTheFloorIsTheBackdrop) {
   EXPECT_EQ(renderer.draw(list).rgba, backdrop.rgba);
 }
 
+/// The eye stands between its walls: what is behind it is cut away, and no triangle is turned inside out.
+TEST(RasterRenderer, WhatReachesBehindTheEyeIsCutOff) {
+  const TriMesh tunnel = box_mesh({{-20, -300, -20}, {20, 300, -15}});
+  DrawList list;
+  list.camera = front(100);
+  list.items = {item(tunnel, kRed)};
+  const Image image = RasterRenderer(kWidth, kHeight).draw(list);
+  EXPECT_GT(pixel(image, kWidth / 2, kHeight - 1).r, 90);
+  EXPECT_LT(std::abs(pixel(image, kWidth / 2, 0).r - pixel(image, kWidth / 2, 0).b), 30);
+}
+
+/// Sizes that are no multiple of a tile: the same place has the same colour.
+TEST(RasterRenderer, OddSizesAreWholePictures) {
+  const TriMesh wall = box_mesh({{-500, 0, -500}, {500, 10, 500}});
+  DrawList list;
+  list.camera = front(100);
+  list.items = {item(wall, kRed)};
+  for (const auto& [width, height] : {std::pair(1, 1), std::pair(67, 35), std::pair(131, 97)}) {
+    const Image image = RasterRenderer(width, height).draw(list);
+    ASSERT_EQ(image.rgba.size(), size_t{4} * width * height);
+    for (size_t i = 0; i < image.rgba.size(); i += 4) {
+      ASSERT_GT(image.rgba[i], 90) << i / 4 << " of " << width << " x " << height;
+      ASSERT_EQ(image.rgba[i + 3], 255);
+    }
+  }
+}
+
 /// Not even its corners lie in the picture.
 TEST(RasterRenderer, WhatIsGreaterThanThePictureIsDrawn) {
   const TriMesh wall = box_mesh({{-500, 0, -500}, {500, 10, 500}});
