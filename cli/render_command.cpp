@@ -67,7 +67,6 @@ reports::StillLook look_of(const RenderOptions& options, const sim::StillSetting
                            const std::optional<sim::SectionPlane>& section) {
   return {options.transparent.value_or(stills.transparent),
           options.labels.value_or(stills.labels.value_or(section.has_value())),
-          reports::kept_worst_places(options.folder),
           section,
           {"--section"}};
 }
@@ -132,8 +131,10 @@ int render(const RenderOptions& options) {
     reports::make_finding_picture(run, findings, options.finding, options.still);
     fmt::print("{}\n", options.still);
   } else if (!options.still.empty()) {
-    reports::make_still(run, reports::shown_part(run, stored.stock.mesh()), kind, options.camera,
-                        options.still, look_of(options, stored.job.scene.stills, section));
+    const reports::StillPart part =
+        reports::still_part(run, stored.stock.mesh(), reports::kept_worst_places(options.folder));
+    reports::make_still(run, part, kind, options.camera, options.still,
+                        look_of(options, stored.job.scene.stills, section));
     fmt::print("{}\n", options.still);
   }
   if (!options.movie.empty()) {

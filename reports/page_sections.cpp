@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/check.h"
+#include "base/parallel.h"
 #include "reports/html.h"
 #include "reports/svg_plot.h"
 
@@ -382,11 +383,13 @@ std::string movie_section(const ReportData& data) {
 
 std::string stills_section(const std::vector<Still>& stills) {
   if (stills.empty()) return "";
+  std::vector<std::string> pictures(stills.size());
+  parallel_chunks(stills.size(), 1, [&](size_t i, size_t) {
+    pictures[i] = embedded_picture(stills[i].png_path, stills[i].caption);
+  });
   std::string out = "<div class=\"stills\">";
-  for (const Still& still : stills) {
-    out += "<figure>" + embedded_picture(still.png_path, still.caption) +
-           element("figcaption", "", still.caption) + "</figure>";
-  }
+  for (size_t i = 0; i < stills.size(); ++i)
+    out += "<figure>" + pictures[i] + element("figcaption", "", stills[i].caption) + "</figure>";
   return section("stills", "Stills", out + "</div>");
 }
 

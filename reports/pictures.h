@@ -9,6 +9,7 @@
 #include "base/progress.h"
 #include "render/draw_list.h"
 #include "render/figures/colour.h"
+#include "render/ray/ray_scene.h"
 #include "render/ray/still.h"
 #include "reports/machine_view.h"
 #include "reports/metrics_json.h"
@@ -35,20 +36,27 @@ RenderStatistics make_movie(const FinishedRun& run, const std::string& path, con
 /// The stock as it stands in a cycle of the run, at the movie's voxel size, for the eye.
 TriMesh stock_at(const FinishedRun& run, const motion::Cycle& cycle);
 
-/// One picture of the part (shown_part) by ray tracing.
+/// The part as stills show it.
+struct StillPart {
+  TriMesh mesh;         ///< shown_part, with the worst places (add_worst_places)
+  size_t measured = 0;  ///< vertices from here on are those places: the others lie within a part of a voxel
+};
+/// `worst`: beside the extremes of the measuring rays.
+StillPart still_part(const FinishedRun& run, TriMesh closed, const std::vector<WorstPlace>& worst);
+
+/// One picture of the part by ray tracing.
 enum class StillKind { kMachine, kPart, kDeviation, kFan };
 const std::string& still_name(StillKind kind);
 StillKind still_kind(const std::string& name);  ///< "machine", "part", "deviation", "fan"; throws InputError
 struct StillLook {
-  bool transparent = false;  ///< no backdrop and no floor
-  bool labels = false;       ///< scale bar; of deviations and sections, values and a legend
-  /// Of the deviation, beside those of the measuring rays.
-  std::vector<WorstPlace> worst{};
+  bool transparent = false;                    ///< no backdrop and no floor
+  bool labels = false;                         ///< scale bar; of deviations and sections, values and a legend
   std::optional<sim::SectionPlane> section{};  ///< section_still.h; the machine's tool stays whole
   SourceLocation section_where{};
+  render::RayTreePtr* kept_tree = nullptr;  ///< for pictures of one part (StillOptions)
 };
 /// `camera` "": the usual one of the kind. Throws InputError as section_view().
-void make_still(const FinishedRun& run, const TriMesh& part, StillKind kind, const std::string& camera,
+void make_still(const FinishedRun& run, const StillPart& part, StillKind kind, const std::string& camera,
                 const std::string& path, const StillLook& look = {});
 
 /// The colour bar of the 3D view; its ends are those of the scale.
@@ -57,7 +65,7 @@ ColourBar deviation_colour_bar(const render::DeviationScale& scale);
 /// A mesh whose colours show deviation, with its colour bar; labels as in StillLook, of the vertices from
 /// `labelled` on. The scale bar is right at the middle of what is shown.
 render::Image deviation_picture(const TriMesh& coloured, const render::DeviationScale& scale,
-                                const std::string& camera, const render::StillOptions& options,
+                                const std::string& camera, render::StillOptions options,
                                 std::optional<size_t> labelled = {});
 
 }  // namespace swarf::reports

@@ -126,12 +126,11 @@ std::vector<Picture> planned_stills(const FinishedRun& run) {
   return pictures;
 }
 
-void write_pictures(const PendingFolder& folder, const FinishedRun& run, const TriMesh& part,
-                    const sim::Result& result, Progress& progress, RunFiles& files,
-                    RenderStatistics& statistics, Attempts& attempts) {
-  const std::vector<WorstPlace> worst = worst_places(result);
+void write_stills(const PendingFolder& folder, const FinishedRun& run, const StillPart& part,
+                  Progress& progress, RunFiles& files, Attempts& attempts) {
   const std::vector<Picture> pictures = planned_stills(run);
   const sim::StillSettings& stills = run.job.scene.stills;
+  render::RayTreePtr tree;
   progress.begin("stills", static_cast<double>(pictures.size()), "pictures");
   for (const Picture& picture : pictures) {
     if (progress.stop_requested()) break;
@@ -140,13 +139,19 @@ void write_pictures(const PendingFolder& folder, const FinishedRun& run, const T
     attempts.run([&] {
       make_still(
           run, part, picture.kind, picture.camera, folder.file(picture.file),
-          {stills.transparent, stills.labels.value_or(measured), worst, picture.section, picture.where});
+          {stills.transparent, stills.labels.value_or(measured), picture.section, picture.where, &tree});
       files.stills.push_back({folder.file(picture.file), picture.caption});
     });
     progress.advance(static_cast<double>(files.stills.size()));
   }
+}
+
+void write_pictures(const PendingFolder& folder, const FinishedRun& run, const StillPart& part,
+                    const sim::Result& result, Progress& progress, RunFiles& files,
+                    RenderStatistics& statistics, Attempts& attempts) {
+  write_stills(folder, run, part, progress, files, attempts);
   files.finding_pngs = make_finding_pictures(
-      run, part, result,
+      run, part.mesh, result,
       [&](size_t number) { return folder.file(fmt::format("still_finding_{}.png", number)); }, progress);
   progress.end();
   if (run.job.scene.movie.seconds <= 0.0 || progress.stop_requested()) return;
@@ -269,13 +274,13 @@ std::vector<Diagnostic> write_run(PendingFolder& folder, const sim::Job& job, si
   RenderStatistics statistics;
   TriMesh closed = options.report || options.render ? run.stock.mesh() : TriMesh{};
   std::optional<ReviewModels> models;
-  std::optional<TriMesh> part;
+  std::optional<StillPart> part;
   if (options.report) {
     progress.begin("glTF", 2, "files");
     attempts.run([&] { models = review_models(run, closed, part_error_mm(run.job), review_pins(result)); });
     progress.advance(1);
   }
-  if (options.render) attempts.run([&] { part = shown_part(run, std::move(closed)); });
+  if (options.render) attempts.run([&] { part = still_part(run, std::move(closed), worst_places(result)); });
   if (models) attempts.run([&] { write_glb(folder, run, std::move(*models), result, files); });
   if (options.report) progress.end();
   if (part)

@@ -152,8 +152,9 @@ std::pair<render::Image, double> with_colour_bar(const render::DrawList& list,
 
 /// The deepest and the highest of the vertices from `first` on, with their values.
 std::vector<render::Leader> extreme_leaders(const TriMesh& coloured, size_t first,
-                                            const render::DrawList& list, int width, int height) {
-  const render::RayScene scene(list, 0.0);
+                                            const render::DrawList& list,
+                                            const render::StillOptions& options) {
+  const render::RayScene scene(list, 0.0, options.kept_tree);
   const Vec3 size = mesh::bounds(coloured).size();
   std::vector<render::Leader> leaders;
   for (const double sign : {-1.0, 1.0}) {
@@ -171,7 +172,7 @@ std::vector<render::Leader> extreme_leaders(const TriMesh& coloured, size_t firs
     // From a little before the surface on, which would hide itself.
     const Vec3 from = place + kBeforeSurface * size.norm() * to_eye;
     const bool hidden = scene.occluded(from.cast<float>(), to_eye.cast<float>());
-    const Vec2 at = render::picture_place(list.camera, place, width, height);
+    const Vec2 at = render::picture_place(list.camera, place, options.width, options.height);
     leaders.push_back({at.x(), at.y(),
                        fmt::format("{} {:+.2f} µm{}", sign < 0.0 ? "deepest" : "highest",
                                    coloured.deviation_um[most], hidden ? ", behind" : "")});
@@ -182,16 +183,17 @@ std::vector<render::Leader> extreme_leaders(const TriMesh& coloured, size_t firs
 }  // namespace
 
 render::Image deviation_picture(const TriMesh& coloured, const render::DeviationScale& scale,
-                                const std::string& camera, const render::StillOptions& options,
+                                const std::string& camera, render::StillOptions options,
                                 std::optional<size_t> labelled) {
+  render::RayTreePtr own;
+  if (options.kept_tree == nullptr) options.kept_tree = &own;
   render::DrawList list;
   const double ratio = static_cast<double>(options.width) / options.height;
   list.camera = render::look_at_box(mesh::bounds(coloured), -camera_direction(camera), kFieldOfView, ratio);
   list.items.push_back({&coloured, Pose::Identity(), kColoured});
   auto [image, bar_begins] = with_colour_bar(list, scale, options);
   if (labelled) {
-    render::draw_leaders(image, extreme_leaders(coloured, *labelled, list, options.width, options.height),
-                         bar_begins);
+    render::draw_leaders(image, extreme_leaders(coloured, *labelled, list, options), bar_begins);
     render::draw_scale_bar(image, render::px_per_mm_at_target(list.camera, options.height));
   }
   return image;
@@ -249,14 +251,13 @@ render::Image machine_picture(const FinishedRun& run, const std::string& camera,
   return image;
 }
 
-render::Image deviation_still(const FinishedRun& run, const TriMesh& part, const std::string& camera,
+render::Image deviation_still(const FinishedRun& run, const StillPart& part, const std::string& camera,
                               const StillLook& look, const render::StillOptions& options) {
-  TriMesh coloured = part;
-  if (look.labels) add_worst_places(run, look.worst, coloured);
+  TriMesh coloured = part.mesh;
   const render::DeviationScale scale = deviation_scale(run.job);
   render::colour_by_deviation(coloured, scale);
-  // Vertices of the part's mesh lie within a part of a voxel of it: only places of rays have values to tell.
-  const auto labelled = look.labels ? std::optional(part.positions.size()) : std::nullopt;
+  // Only places of rays have values to tell.
+  const auto labelled = look.labels ? std::optional(part.measured) : std::nullopt;
   return deviation_picture(coloured, scale, camera, options, labelled);
 }
 
@@ -276,21 +277,29 @@ render::Image part_picture(const FinishedRun& run, const TriMesh& part, StillKin
   return image;
 }
 
-render::Image still_picture(const FinishedRun& run, const TriMesh& part, StillKind kind,
+render::Image still_picture(const FinishedRun& run, const StillPart& part, StillKind kind,
                             const std::string& camera_name, const StillLook& look) {
   render::StillOptions options = still_options(run.job);
   options.transparent = look.transparent;
+  options.kept_tree = look.kept_tree;
   const bool machine = kind == StillKind::kMachine;
-  if (look.section && !machine) return section_picture(run, part, kind, camera_name, look, options);
+  if (look.section && !machine) return section_picture(run, part.mesh, kind, camera_name, look, options);
   const std::string camera = camera_name.empty() ? machine ? "machine" : "iso" : camera_name;
   if (machine) return machine_picture(run, camera, look, options);
   if (kind == StillKind::kDeviation) return deviation_still(run, part, camera, look, options);
-  return part_picture(run, part, kind, camera, look.labels, options);
+  return part_picture(run, part.mesh, kind, camera, look.labels, options);
 }
 
 }  // namespace
 
-void make_still(const FinishedRun& run, const TriMesh& part, StillKind kind, const std::string& camera,
+StillPart still_part(const FinishedRun& run, TriMesh closed, const std::vector<WorstPlace>& worst) {
+  StillPart part{shown_part(run, std::move(closed))};
+  part.measured = part.mesh.positions.size();
+  add_worst_places(run, worst, part.mesh);
+  return part;
+}
+
+void make_still(const FinishedRun& run, const StillPart& part, StillKind kind, const std::string& camera,
                 const std::string& path, const StillLook& look) {
   render::save_png(still_picture(run, part, kind, camera, look), path);
 }

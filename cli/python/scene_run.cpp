@@ -70,7 +70,7 @@ void save_picture(const SceneRun& run, const PictureRequest& request, const std:
   reports::FinishedRun finished{job, *result.main.cycles, *result.stock, result.main.dexels,
                                 *result.main.carried};
   finished.rays = &result.main.rays;
-  reports::make_still(finished, reports::shown_part(finished, result.stock->mesh()), kind, request.camera,
+  reports::make_still(finished, reports::still_part(finished, result.stock->mesh(), {}), kind, request.camera,
                       path);
 }
 

@@ -114,9 +114,13 @@ Root root_of(const DesignCell& cell, const Tangents& tangents, size_t end, const
   return least;
 }
 
-/// Height below which `tangents` stays above the cell's margin, as far down as the depths.
-Root root_of(const DesignCell& cell, const Tangents& tangents, const ColumnDepths& depths) {
-  const Root start = root_of(cell, tangents, 0, depths), end = root_of(cell, tangents, 1, depths);
+/// Height below which `tangents` stays above the cell's margin, as far down as the depths. One that is no
+/// greater than `known` is not made any closer.
+Root root_of(const DesignCell& cell, const Tangents& tangents, const ColumnDepths& depths,
+             double known = -kNever) {
+  const Root start = root_of(cell, tangents, 0, depths);
+  if (start.height <= known) return start;
+  const Root end = root_of(cell, tangents, 1, depths);
   return end.height < start.height ? end : start;
 }
 
@@ -221,13 +225,13 @@ double height_by_motion(const DesignCell& cell, const NearSweep& near, const cut
   if (from_centre.height > enough || cell.stray_mm > -enough) return from_centre.height;
   const Vec3 way = cell.corners[from_centre.corner].point - centre;
   const Tangents second = motion_tangents(piece, near, centre + way);
-  double best = std::max(from_centre.height, root_of(cell, second, depths).height);
+  double best = std::max(from_centre.height, root_of(cell, second, depths, from_centre.height).height);
   const std::array<Vec3, 2> bend = bend_toward(cell, from_centre.corner);
   const double falls = first.slope[0].dot(way + bend[0]), rises = second.slope[0].dot(way + bend[1]);
   if (best > enough || !(falls < 0.0 && rises > 0.0)) return best;
   const double share = falls / (falls - rises);
   const Tangents between = motion_tangents(piece, near, centre + share * way);
-  return std::max(best, root_of(cell, between, depths).height);
+  return std::max(best, root_of(cell, between, depths, best).height);
 }
 
 double least_height(const DesignCell& cell, const NearSweep& near, const cutter::ConvexPiece& piece,
@@ -236,24 +240,24 @@ double least_height(const DesignCell& cell, const NearSweep& near, const cutter:
   double best = -kNever;
   for (const cutter::Face& face : piece.faces) {
     if (face.normal.x() == 0.0)
-      best = std::max(best, root_of(cell, face_tangents(face, near, centre), depths).height);
+      best = std::max(best, root_of(cell, face_tangents(face, near, centre), depths, best).height);
   }
   if (best > enough && best < kNever) return best;
   best = std::max(best, height_by_motion(cell, near, piece, depths, enough));
   if (best > enough) return best;
   // A rim has no tangent of its own: there its lowest point counts, and the point that is nearest.
   const Vec3 down = -(near.map.R0t * normal);
-  best = std::max(best, root_of(cell, touching_plane(piece, near, centre, down), depths).height);
+  best = std::max(best, root_of(cell, touching_plane(piece, near, centre, down), depths, best).height);
   if (best > enough) return best;
   if (const auto rim = toward_rim(near, centre, down))
-    best = std::max(best, root_of(cell, touching_plane(piece, near, centre, *rim), depths).height);
+    best = std::max(best, root_of(cell, touching_plane(piece, near, centre, *rim), depths, best).height);
   if (best > enough) return best;
   const Vec3 below = centre - cell.radius() * normal;
-  best = std::max(best, root_of(cell, motion_tangents(piece, near, below), depths).height);
+  best = std::max(best, root_of(cell, motion_tangents(piece, near, below), depths, best).height);
   if (best > enough || !(enough > 0.0)) return best;
   // Higher up the columns may pass beside what stands over them from below.
   const Vec3 above = centre + enough * normal;
-  return std::max(best, root_of(cell, motion_tangents(piece, near, above), depths).height);
+  return std::max(best, root_of(cell, motion_tangents(piece, near, above), depths, best).height);
 }
 
 /// The part of the motion between two instants, as a sweep of its own.

@@ -15,13 +15,27 @@ CornerHeights as_squares(CornerHeights sags) {
   return sags;
 }
 
+bool is_nowhere_higher(const CornerHeights& a, const CornerHeights& b) {
+  return a[0] <= b[0] && a[1] <= b[1] && a[2] <= b[2];
+}
+
+/// Those that cover every corner, without those that count nowhere beside another.
+std::vector<const CornerHeights*> lowest_of(const std::vector<CornerHeights>& sets) {
+  std::vector<const CornerHeights*> lowest;
+  for (const CornerHeights& set : sets) {
+    if (!(set[0] < kNever && set[1] < kNever && set[2] < kNever)) continue;
+    const auto counts_nowhere = [&](const CornerHeights* other) { return is_nowhere_higher(*other, set); };
+    if (std::any_of(lowest.begin(), lowest.end(), counts_nowhere)) continue;
+    std::erase_if(lowest, [&](const CornerHeights* other) { return is_nowhere_higher(set, *other); });
+    lowest.push_back(&set);
+  }
+  return lowest;
+}
+
 }  // namespace
 
 HighestLeft highest_left(const std::vector<CornerHeights>& sets, CornerHeights sags) {
-  std::vector<const CornerHeights*> whole;
-  for (const CornerHeights& set : sets) {
-    if (set[0] < kNever && set[1] < kNever && set[2] < kNever) whole.push_back(&set);
-  }
+  const std::vector<const CornerHeights*> whole = lowest_of(sets);
   if (whole.empty()) return {};
   HighestLeft highest{-kNever};
   sags = as_squares(sags);

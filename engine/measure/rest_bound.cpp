@@ -368,8 +368,9 @@ uint32_t RestBound::owner_at(const Cell& cell, const HighestLeft& left, std::spa
   const CellCorner at = place_in(cell.shape, left.place, root_.bounds);
   double height = left.height;
   uint32_t owner = stock::kUncut;
+  const bool fans = root_.cell.area_mm2() == 0.0;
   const auto look_at = [&](uint32_t n) {
-    const double low = lowest_cut(at, near_[n], height, root_.cell.area_mm2() == 0.0, input_.field);
+    const double low = lowest_cut(at, near_[n], height, fans, input_.field);
     if (low >= height) return;
     height = low;
     owner = n;

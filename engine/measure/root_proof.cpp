@@ -137,7 +137,7 @@ class RootProof {
     take_range(input_, corner);
     take_raw(raw_, corner);
     const auto look_at = [&](uint32_t n) {
-      const double low = lowest_cut(at, near_[n], corner.height, root_.cell.area_mm2() == 0.0, input_.field);
+      const double low = lowest_cut(at, near_[n], corner.height, fans_, input_.field);
       if (low >= corner.height) return;
       corner.height = low;
       corner.near = n;
@@ -539,6 +539,7 @@ class RootProof {
   const stock::RawShape& raw_{input_.stock.raw()};
   const SweepIndex& index_;
   const RootCell& root_;
+  const bool fans_{root_.cell.area_mm2() == 0.0};  ///< its columns begin at an edge, or a corner
   Budget budget_;
   double gouge_goal_ = 0.0, excess_goal_ = 0.0, highest_seen_ = 0.0, reach_ = kNever;
   std::vector<NearSweep> near_;

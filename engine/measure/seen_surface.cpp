@@ -11,6 +11,21 @@ namespace {
 
 /// Places along one ray; of a ray that is longer they lie farther apart.
 constexpr double kMostPlaces = 256.0;
+/// Of distances to cells: their borders are known to some roundings of a part of some metres.
+constexpr double kRounding = 1.0 - 1e-6;
+
+/// A cell and those beside it, those that are likely to hold the nearest place first.
+constexpr std::array<std::array<int32_t, 3>, 27> cells_around() {
+  std::array<std::array<int32_t, 3>, 27> cells{};
+  size_t count = 0;
+  for (int32_t apart = 0; apart <= 3; ++apart)
+    for (int32_t i = 0; i < 27; ++i) {
+      const std::array<int32_t, 3> step{i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1};
+      if (step[0] * step[0] + step[1] * step[1] + step[2] * step[2] == apart) cells[count++] = step;
+    }
+  return cells;
+}
+constexpr auto kAround = cells_around();
 
 }  // namespace
 
@@ -31,6 +46,8 @@ SeenSurface::SeenSurface(const stock::SurfaceDexels& dexels, double slack_mm)
     if (i + nu < points.size()) step = std::max(step, (points[i + nu] - points[i]).norm());
   }
   cell_mm_ = step + slack_mm;
+  first_cell_.fill(std::numeric_limits<int32_t>::max());
+  last_cell_.fill(std::numeric_limits<int32_t>::min());
   tops_mm_ = dexels.heights_mm();
   for (uint32_t n = 0; n < points.size(); ++n) add(n, 0.0, tops_mm_[n]);
   dexels.each_above([&](uint32_t ray, const stock::MaterialAbove& m) {
@@ -45,7 +62,12 @@ void SeenSurface::add(uint32_t ray, double low_mm, double high_mm) {
   for (double k = 0.0; k <= places; k += 1.0) {
     const double height = low_mm + k / places * (high_mm - low_mm);
     const Vec3 point = dexels_.points()[ray] + height * dexels_.normals()[ray];
-    cells_[cell_of(point)].push_back({point, ray});
+    const Cell cell = cell_of(point);
+    cells_[cell].push_back({point, ray});
+    for (size_t i = 0; i < 3; ++i) {
+      first_cell_[i] = std::min(first_cell_[i], cell[i]);
+      last_cell_[i] = std::max(last_cell_[i], cell[i]);
+    }
   }
 }
 
@@ -56,14 +78,25 @@ SeenSurface::Cell SeenSurface::cell_of(const Vec3& point) const {
 
 std::optional<uint32_t> SeenSurface::nearest_ray(const Vec3& point) const {
   const Cell centre = cell_of(point);
+  for (size_t k = 0; k < 3; ++k)
+    if (centre[k] < first_cell_[k] - 1 || centre[k] > last_cell_[k] + 1) return {};
+  const Vec3 in_cell = point - cell_mm_ * Vec3(centre[0], centre[1], centre[2]);
   std::optional<uint32_t> nearest;
   double best = std::numeric_limits<double>::infinity();
-  for (int32_t i = 0; i < 27; ++i) {
-    const auto found = cells_.find({centre[0] + i % 3 - 1, centre[1] + i / 3 % 3 - 1, centre[2] + i / 9 - 1});
+  for (const Cell& step : kAround) {
+    double nearer = 0.0;  // than this, squared, nothing of the cell beside lies
+    for (int k = 0; k < 3; ++k) {
+      const double off = step[static_cast<size_t>(k)] < 0   ? in_cell[k]
+                         : step[static_cast<size_t>(k)] > 0 ? cell_mm_ - in_cell[k]
+                                                            : 0.0;
+      nearer += off * off;
+    }
+    if (nearer * kRounding > best) continue;
+    const auto found = cells_.find({centre[0] + step[0], centre[1] + step[1], centre[2] + step[2]});
     if (found == cells_.end()) continue;
     for (const Place& place : found->second) {
       const double distance = (place.point - point).squaredNorm();
-      if (distance >= best) continue;
+      if (distance > best || (distance == best && place.ray >= *nearest)) continue;
       best = distance;
       nearest = place.ray;
     }

@@ -47,6 +47,7 @@ class SeenSurface {
   };
   Cell cell_of(const Vec3& point) const;
   void add(uint32_t ray, double low_mm, double high_mm);
+  /// Of those in the point's cell and beside it; of several the first.
   std::optional<uint32_t> nearest_ray(const Vec3& point) const;
   /// Least height and highest material of the rays around a foot, mm: of its cell and of those beside it,
   /// because a wall may stand anywhere between two rays and is known to the slack only.
@@ -56,6 +57,7 @@ class SeenSurface {
   double slack_mm_, cell_mm_ = 0.0;
   std::vector<double> tops_mm_;                                   ///< of each ray: above gaps too
   std::unordered_map<Cell, std::vector<Place>, CellHash> cells_;  ///< along the rays, from design to material
+  Cell first_cell_, last_cell_;                                   ///< of a box around all of them
 };
 
 }  // namespace swarf::measure

@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "base/check.h"
 #include "render/figures/colour.h"
@@ -17,7 +19,6 @@ namespace {
 constexpr float kOffsetShare = 2e-6F;
 
 struct Solid {
-  const TriMesh* mesh;
   Material material;
   Eigen::Matrix3f rotation;
   std::vector<std::array<float, 3>> normals;
@@ -47,6 +48,8 @@ RTCRayHit make_ray(const Vec3f& origin, const Vec3f& direction) {
   return ray;
 }
 
+}  // namespace
+
 /// Bounds of what a scene holds; most rays past a lone part end here, at a tenth of the cost of asking
 /// Embree.
 struct Bounds {
@@ -75,6 +78,8 @@ struct Bounds {
   static constexpr float kBoundsSlack = 1.00001F;
 };
 
+namespace {
+
 /// The part of a half line that lies on the kept side of a section.
 struct Kept {
   float from = 0.0F, to = std::numeric_limits<float>::infinity();  ///< from > to: nothing
@@ -89,12 +94,111 @@ Kept kept_part(const SectionPlane& plane, const Vec3f& origin, const Vec3f& dire
   return rise > 0.0 ? Kept{0.0F, at_plane} : Kept{};
 }
 
+/// Attached to the scene, which alone holds it from here on.
+void attach(RTCScene scene, RTCGeometry geometry) {
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(scene, geometry);
+  rtcReleaseGeometry(geometry);
+}
+
+Vec3f placed(const DrawItem& item, const std::array<float, 3>& p) {
+  return (item.X_world * Vec3(p[0], p[1], p[2])).cast<float>();
+}
+
+/// What is looked up at a hit, in the order of geomID.
+using Items = std::vector<const DrawItem*>;
+
+}  // namespace
+
+struct RayTree {
+  RTCDevice device = nullptr;
+  RTCScene scene = nullptr;
+  std::vector<std::array<size_t, 2>> sizes;  ///< vertices and triangles, by geomID
+  Bounds bounds;
+
+  RayTree(RTCDevice on, const Items& items);
+  ~RayTree();
+  RayTree(const RayTree&) = delete;
+  RayTree& operator=(const RayTree&) = delete;
+  void add(const DrawItem& item);
+  bool holds(const Items& items) const;
+};
+
+RayTree::RayTree(RTCDevice on, const Items& items) : device(on), scene(rtcNewScene(on)) {
+  rtcRetainDevice(device);
+  // No light through the edges between triangles.
+  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+  for (const DrawItem* item : items) add(*item);
+  rtcCommitScene(scene);
+}
+
+RayTree::~RayTree() {
+  rtcReleaseScene(scene);
+  rtcReleaseDevice(device);
+}
+
+void RayTree::add(const DrawItem& item) {
+  const TriMesh& mesh = *item.mesh;
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* positions = static_cast<float*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh.positions.size()));
+  for (const auto& p : mesh.positions) {
+    const Vec3f world = placed(item, p);
+    bounds.add(world, 0.0F);
+    positions = std::copy_n(world.data(), 3, positions);
+  }
+  auto* indices = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t), mesh.triangles.size()));
+  for (const auto& t : mesh.triangles) indices = std::copy_n(t.data(), 3, indices);
+  attach(scene, geometry);
+  sizes.push_back({mesh.positions.size(), mesh.triangles.size()});
+}
+
+/// Compared number by number, which takes a hundredth of the time that a tree does.
+bool RayTree::holds(const Items& items) const {
+  if (items.size() != sizes.size()) return false;
+  for (size_t i = 0; i < items.size(); ++i) {
+    const TriMesh& mesh = *items[i]->mesh;
+    if (sizes[i] != std::array{mesh.positions.size(), mesh.triangles.size()}) return false;
+    RTCGeometry geometry = rtcGetGeometry(scene, static_cast<unsigned>(i));
+    const auto* indices =
+        static_cast<const uint32_t*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_INDEX, 0));
+    for (const auto& t : mesh.triangles)
+      if (!std::equal(t.begin(), t.end(), std::exchange(indices, indices + 3))) return false;
+    const auto* positions =
+        static_cast<const float*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_VERTEX, 0));
+    for (const auto& p : mesh.positions) {
+      const Vec3f world = placed(*items[i], p);
+      if (!std::equal(world.data(), world.data() + 3, std::exchange(positions, positions + 3))) return false;
+    }
+  }
+  return true;
+}
+
+namespace {
+
 /// Meshes in a tree.
 struct Solids {
-  RTCScene scene = nullptr;
+  RayTreePtr tree;
   std::vector<Solid> data;  ///< by geomID
-  Bounds bounds;
 };
+
+/// `kept` as in RayScene's constructor.
+Solids solids_of(RTCDevice device, const Items& items, RayTreePtr* kept) {
+  Solids solids;
+  for (const DrawItem* item : items)
+    solids.data.push_back({item->material, item->X_world.linear().cast<float>(), item->mesh->normals,
+                           item->mesh->colours, item->mesh->triangles});
+  if (items.empty()) kept = nullptr;
+  if (kept != nullptr && *kept && (*kept)->holds(items)) {
+    solids.tree = *kept;
+    return solids;
+  }
+  if (kept != nullptr) kept->reset();  // before the next one, so that there is room for one only
+  solids.tree = std::make_shared<RayTree>(device, items);
+  if (kept != nullptr) *kept = solids.tree;
+  return solids;
+}
 
 }  // namespace
 
@@ -106,57 +210,29 @@ struct RayScene::Embree {
   std::vector<Vec3f> tube_colours;
   Bounds tube_bounds;
 
-  Embree();
+  Embree(const DrawList& list, RayTreePtr* kept);
   ~Embree();
-  void add_solid(const DrawItem& item, Solids& solids);
   void add_tube(const DrawLine& line, const Vec3& eye, double radius_per_mm);
-  void attach(RTCScene scene, RTCGeometry geometry);
   void look_inside(RTCRayHit& ray, std::optional<Hit>& hit) const;
 };
 
-RayScene::Embree::Embree() {
+RayScene::Embree::Embree(const DrawList& list, RayTreePtr* kept) : section(list.section) {
+  Items closed, cut;
+  for (const DrawItem& item : list.items) {
+    SWARF_CHECK(item.mesh != nullptr, "a draw item without a mesh");
+    if (!item.mesh->triangles.empty()) (section && item.sectioned ? cut : closed).push_back(&item);
+  }
   // Embree builds its trees on the same TBB threads, so the process-wide limit holds for it too.
   device = rtcNewDevice(nullptr);
   SWARF_CHECK(device != nullptr, "Embree cannot open its device");
   tubes = rtcNewScene(device);
-  for (Solids* solids : {&whole, &opened}) {
-    solids->scene = rtcNewScene(device);
-    // No light through the edges between triangles.
-    rtcSetSceneFlags(solids->scene, RTC_SCENE_FLAG_ROBUST);
-  }
+  whole = solids_of(device, closed, kept);
+  opened = solids_of(device, cut, closed.empty() ? kept : nullptr);
 }
 
 RayScene::Embree::~Embree() {
-  rtcReleaseScene(whole.scene);
-  rtcReleaseScene(opened.scene);
   rtcReleaseScene(tubes);
   rtcReleaseDevice(device);
-}
-
-void RayScene::Embree::attach(RTCScene scene, RTCGeometry geometry) {
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometry(scene, geometry);
-  rtcReleaseGeometry(geometry);
-}
-
-void RayScene::Embree::add_solid(const DrawItem& item, Solids& solids) {
-  SWARF_CHECK(item.mesh != nullptr, "a draw item without a mesh");
-  const TriMesh& mesh = *item.mesh;
-  if (mesh.triangles.empty()) return;
-  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* positions = static_cast<float*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh.positions.size()));
-  for (const auto& p : mesh.positions) {
-    const Vec3f world = (item.X_world * Vec3(p[0], p[1], p[2])).cast<float>();
-    solids.bounds.add(world, 0.0F);
-    positions = std::copy_n(world.data(), 3, positions);
-  }
-  auto* indices = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t), mesh.triangles.size()));
-  for (const auto& t : mesh.triangles) indices = std::copy_n(t.data(), 3, indices);
-  attach(solids.scene, geometry);
-  solids.data.push_back({&mesh, item.material, item.X_world.linear().cast<float>(), mesh.normals,
-                         mesh.colours, mesh.triangles});
 }
 
 void RayScene::Embree::add_tube(const DrawLine& line, const Vec3& eye, double radius_per_mm) {
@@ -223,14 +299,14 @@ void trace(RTCScene scene, RTCRayHit& ray) {
 void RayScene::Embree::look_inside(RTCRayHit& ray, std::optional<Hit>& hit) const {
   const Vec3f origin(ray.ray.org_x, ray.ray.org_y, ray.ray.org_z);
   const Vec3f direction(ray.ray.dir_x, ray.ray.dir_y, ray.ray.dir_z);
-  if (opened.bounds.missed_by(origin, direction)) return;
+  if (opened.tree->bounds.missed_by(origin, direction)) return;
   const Kept kept = kept_part(*section, origin, direction);
   if (kept.from >= std::min(kept.to, ray.ray.tfar)) return;
   RTCRayHit inside = make_ray(origin, direction);
   inside.ray.tnear = kept.from;
   // A body that ends behind what hides it is cut by the plane before.
   inside.ray.tfar = kept.through_plane ? kept.to : std::min(kept.to, ray.ray.tfar);
-  trace(opened.scene, inside);
+  trace(opened.tree->scene, inside);
   if (!found(inside)) return;
   if (kept.through_plane && normal_of(inside.hit).dot(direction) > 0.0F) {
     const Vec3f normal = section->normal.cast<float>();
@@ -243,12 +319,10 @@ void RayScene::Embree::look_inside(RTCRayHit& ray, std::optional<Hit>& hit) cons
   }
 }
 
-RayScene::RayScene(const DrawList& list, double tube_radius_per_mm) : embree_(std::make_unique<Embree>()) {
-  embree_->section = list.section;
-  for (const DrawItem& item : list.items)
-    embree_->add_solid(item, list.section && item.sectioned ? embree_->opened : embree_->whole);
+RayScene::RayScene(const DrawList& list, double tube_radius_per_mm, RayTreePtr* kept)
+    : embree_(std::make_unique<Embree>(list, kept)) {
   for (const DrawLine& line : list.lines) embree_->add_tube(line, list.camera.eye, tube_radius_per_mm);
-  for (RTCScene scene : {embree_->whole.scene, embree_->opened.scene, embree_->tubes}) rtcCommitScene(scene);
+  rtcCommitScene(embree_->tubes);
 }
 
 RayScene::~RayScene() = default;
@@ -256,8 +330,8 @@ RayScene::~RayScene() = default;
 std::optional<Hit> RayScene::nearest(const Vec3f& origin, const Vec3f& direction, bool with_lines) const {
   RTCRayHit ray = make_ray(origin, direction);
   std::optional<Hit> out;
-  if (!embree_->whole.bounds.missed_by(origin, direction)) {
-    trace(embree_->whole.scene, ray);
+  if (!embree_->whole.tree->bounds.missed_by(origin, direction)) {
+    trace(embree_->whole.tree->scene, ray);
     if (found(ray)) out = shading_of(ray.hit, embree_->whole.data);
   }
   if (embree_->section) embree_->look_inside(ray, out);
@@ -278,13 +352,13 @@ std::optional<Hit> RayScene::nearest(const Vec3f& origin, const Vec3f& direction
 
 bool RayScene::occluded(const Vec3f& origin, const Vec3f& direction) const {
   const auto meets = [&](const Solids& solids, const Kept& part) {
-    if (part.from >= part.to || solids.bounds.missed_by(origin, direction)) return false;
+    if (part.from >= part.to || solids.tree->bounds.missed_by(origin, direction)) return false;
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     RTCRay ray = make_ray(origin, direction).ray;
     ray.tnear = part.from;
     ray.tfar = part.to;
-    rtcOccluded1(solids.scene, &context, &ray);
+    rtcOccluded1(solids.tree->scene, &context, &ray);
     return ray.tfar < 0.0F;  // Embree's mark for "something is in the way"
   };
   if (meets(embree_->whole, {})) return true;
@@ -292,16 +366,17 @@ bool RayScene::occluded(const Vec3f& origin, const Vec3f& direction) const {
 }
 
 float RayScene::offset() const {
-  Bounds all = embree_->whole.bounds;
-  if (embree_->opened.bounds.lower.x() <= embree_->opened.bounds.upper.x()) {
-    all.add(embree_->opened.bounds.lower, 0.0F);
-    all.add(embree_->opened.bounds.upper, 0.0F);
+  Bounds all = embree_->whole.tree->bounds;
+  if (embree_->opened.tree->bounds.lower.x() <= embree_->opened.tree->bounds.upper.x()) {
+    all.add(embree_->opened.tree->bounds.lower, 0.0F);
+    all.add(embree_->opened.tree->bounds.upper, 0.0F);
   }
   return all.lower.x() <= all.upper.x() ? kOffsetShare * (all.upper - all.lower).norm() : 0.0F;
 }
 
 float RayScene::lowest_z() const {
-  const float lowest = std::min(embree_->whole.bounds.lower.z(), embree_->opened.bounds.lower.z());
+  const float lowest =
+      std::min(embree_->whole.tree->bounds.lower.z(), embree_->opened.tree->bounds.lower.z());
   return std::isfinite(lowest) ? lowest : 0.0F;
 }
 

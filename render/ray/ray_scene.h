@@ -19,11 +19,17 @@ struct Hit {
   bool drawn = false;  ///< a tube of a DrawLine or the face of a section: its own colour, without shadows
 };
 
+/// Triangles of a drawing, without their looks, in a tree that further drawings of the same can share.
+struct RayTree;
+using RayTreePtr = std::shared_ptr<const RayTree>;
+
 /// Geometry is copied; the list need not outlive the scene.
 class RayScene {
  public:
-  /// `tube_radius_per_mm`: radius of a line of width 1 px at 1 mm from the camera, mm.
-  RayScene(const DrawList& list, double tube_radius_per_mm);
+  /// `tube_radius_per_mm`: radius of a line of width 1 px at 1 mm from the camera, mm. `kept`: a tree from an
+  /// earlier drawing, or none yet: used where it holds just these triangles at these places, else given back
+  /// and replaced.
+  RayScene(const DrawList& list, double tube_radius_per_mm, RayTreePtr* kept = nullptr);
   ~RayScene();
   RayScene(const RayScene&) = delete;
   RayScene& operator=(const RayScene&) = delete;

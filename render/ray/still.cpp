@@ -174,7 +174,7 @@ Image render_still(const DrawList& list, const StillOptions& options) {
   SWARF_CHECK(options.width > 0 && options.height > 0 && options.samples_per_pixel > 0, "size of the still");
   const Lens lens(list.camera, options.width, options.height);
   const double radius_per_mm = std::tan(0.5 * list.camera.vertical_fov_rad) / options.height;
-  const RayScene scene(list, radius_per_mm);
+  const RayScene scene(list, radius_per_mm, options.kept_tree);
   const Studio studio(options);
   const Tracer tracer(scene, studio, options);
   static const BlueNoise noise;
@@ -187,10 +187,12 @@ Image render_still(const DrawList& list, const StillOptions& options) {
   share_ambient(pixels, options.width, options.height, lens.eye.cast<float>(),
                 static_cast<float>(2.0 * radius_per_mm));
   Image image{options.width, options.height, std::vector<uint8_t>(4 * pixels.size())};
-  for (size_t i = 0; i < pixels.size(); ++i) {
-    const auto value = shot.colour(pixels[i]);
-    std::copy(value.begin(), value.end(), image.rgba.begin() + static_cast<std::ptrdiff_t>(4 * i));
-  }
+  parallel_chunks(pixels.size(), kTile * static_cast<size_t>(options.width), [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const auto value = shot.colour(pixels[i]);
+      std::copy(value.begin(), value.end(), image.rgba.begin() + static_cast<std::ptrdiff_t>(4 * i));
+    }
+  });
   return image;
 }
 

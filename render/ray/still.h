@@ -1,10 +1,14 @@
 // Still pictures by ray tracing: a studio with a soft key light, strip lights and a floor that takes shadows.
 #pragma once
 
+#include <memory>
+
 #include "base/frames.h"
 #include "render/draw_list.h"
 
 namespace swarf::render {
+
+struct RayTree;
 
 /// Directions are in the drawing's frame, Z up. Radiances are linear; a white diffuse surface that faces the
 /// key light under the default sky comes out just below white.
@@ -35,6 +39,10 @@ struct StillOptions {
   Rgb backdrop_top{0.30F, 0.32F, 0.35F};
   Rgb backdrop_bottom{0.72F, 0.73F, 0.74F};
   double exposure = 1.0;
+
+  /// Of drawings that differ by light, camera, colours and lines only, all but the first take the tree of
+  /// their triangles from here (RayScene). Null: each makes its own.
+  std::shared_ptr<const RayTree>* kept_tree = nullptr;
 };
 
 /// Renders the list. Meshes without normals are shaded flat; lines become round tubes of their width in

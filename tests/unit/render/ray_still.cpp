@@ -11,6 +11,7 @@
 #include "mesh/mesh_ops.h"
 #include "render/figures/colour.h"
 #include "render/figures/figure_mesh.h"
+#include "render/ray/ray_scene.h"
 #include "render/ray/sampler.h"
 #include "render/ray/still.h"
 #include "render/ray/studio.h"
@@ -64,6 +65,50 @@ TEST(Still, SamePictureForAnyNumberOfThreadsAndADifferentOneForAnotherSeed) {
   EXPECT_EQ(one.rgba, render_still(list, options).rgba);
   options.seed = 2;
   EXPECT_NE(one.rgba, render_still(list, options).rgba);
+}
+
+TEST(Still, DrawingsOfTheSameTrianglesShareATreeAndOthersDoNot) {
+  TriMesh body = cylinder_mesh(30, 20, 2), floor = plate(-25);
+  DrawList list;
+  list.items.push_back({&body, Pose::Identity(), {}, false});
+  list.items.push_back({&floor, Pose::Identity(), {}, false});
+  StillOptions alone = small_picture(), sharing = alone;
+  RayTreePtr tree;
+  sharing.kept_tree = &tree;
+  const auto same_picture = [&] {
+    const Image image = render_still(list, alone);
+    EXPECT_EQ(render_still(list, sharing).rgba, image.rgba);
+    return image;
+  };
+  same_picture();
+  const RayTree* const first = tree.get();
+  ASSERT_NE(first, nullptr);
+  list.items[0].material.colour = {0.9F, 0.1F, 0.1F};  // other looks alone
+  list.camera.eye.x() += 50.0;
+  const Image red = same_picture();
+  EXPECT_EQ(tree.get(), first);
+  const auto other_tree = [&](const char* what) {
+    const RayTreePtr before = tree;  // so that no other can lie at its place
+    EXPECT_NE(same_picture().rgba, red.rgba) << what;
+    EXPECT_NE(tree, before) << what;
+  };
+  list.items[0].X_world.translation().z() += 4.0;
+  other_tree("moved");
+  list.items[0].X_world = Pose::Identity();
+  const std::array<float, 3> last = body.positions.back();
+  body.positions.back()[2] += 9.0F;
+  other_tree("another vertex");
+  body.positions.back() = last;
+  const std::array<uint32_t, 3> corners = body.triangles.back();
+  body.triangles.back() = body.triangles.front();
+  other_tree("another triangle");
+  body.triangles.back() = corners;
+  list.items.pop_back();
+  other_tree("one item less");
+  list.items.clear();
+  const RayTreePtr before = tree;
+  same_picture();
+  EXPECT_EQ(tree, before) << "an empty drawing needs none";
 }
 
 TEST(Still, EmptyDrawingIsTheBackdrop) {
