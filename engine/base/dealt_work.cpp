@@ -36,7 +36,7 @@ class Dealer {
     std::deque<size_t>& portions = at_[static_cast<size_t>(rank)];
     while (!portions.empty() && ranks_.has_message(rank)) take(rank);
     while (portions.size() < kAtARank && next_ < work_.count) {
-      ranks_.send(rank, work_.request(next_));
+      ranks_.send(rank, work_.request(next_, rank));
       portions.push_back(next_++);
     }
   }

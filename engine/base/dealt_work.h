@@ -10,7 +10,7 @@ namespace swarf {
 
 struct DealtWork {
   size_t count = 0;                                               ///< portions
-  std::function<Bytes(size_t portion)> request;                   ///< what another rank is asked
+  std::function<Bytes(size_t portion, int rank)> request;         ///< what this other rank is asked
   std::function<void(size_t portion, const Bytes& answer)> take;  ///< what it has answered
   std::function<void(size_t portion)> own;                        ///< done on rank 0
   std::function<bool()> is_busy = [] { return false; };  ///< rank 0, with something else: it only deals

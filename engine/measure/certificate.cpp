@@ -141,7 +141,7 @@ class RootProofs {
       return batch.subspan(first, std::min(kRootsPerRequest, batch.size() - first));
     };
     input_.deal({(batch.size() + kRootsPerRequest - 1) / kRootsPerRequest,
-                 [&](size_t n) {
+                 [&](size_t n, int) {
                    RootRequest request{{}, portion(n).size(), budget};
                    std::copy(portion(n).begin(), portion(n).end(), request.roots.begin());
                    BytesWriter out;

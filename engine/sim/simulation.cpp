@@ -567,7 +567,7 @@ Result simulate(const Job& job, const CutOptions& options, Progress& progress) {
   progress.end();
   measure_part(job, progress, result);
   prove_part(job, options.ranks, progress, result);
-  if (options.ranks != nullptr) relieve_ranks(*options.ranks);
+  if (options.ranks != nullptr) dismiss_ranks(*options.ranks);  // they end while this one writes
   end_on_part(job, result.main);
   measure_flank(job, progress, result);
   if (job.scene.flank) result.flank_milling = flank_figures(job, result.main, progress);

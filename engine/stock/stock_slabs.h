@@ -1,8 +1,8 @@
 // What is proven of a stock slab by slab, so that several processes can share the proof.
 //
 // A slab is a row of planes of leaf positions across x. Its proof looks at its own leaves and at those beside
-// them: that much of the stock is sent to who has none of it. What comes back is added up in the order of
-// the positions, so the sums have the bits of one process.
+// them: so much of that is sent as the other does not hold already. What comes back is added up in the order
+// of the positions, so the sums have the bits of one process.
 #pragma once
 
 #include <string>
@@ -10,6 +10,7 @@
 
 #include "base/bytes.h"
 #include "stock/stock.h"
+#include "stock/stock_tiles.h"
 
 namespace swarf::stock {
 
@@ -26,8 +27,10 @@ class SlabProofs {
   SlabProofs(const Stock& stock, double slack_mm, size_t slabs);
 
   size_t count() const { return slabs_.size(); }
-  /// Adds what prove_slab() needs to know of it, elsewhere.
-  void add_request(size_t slab, BytesWriter& out) const;
+  /// Adds what answer() needs to know of it, where these tiles are held as they stand here.
+  void add_request(size_t slab, const TileSet& held, BytesWriter& out) const;
+  /// To what add_request() has added. `own` holds the tiles that are held.
+  static Bytes answer(BytesReader& request, const Stock& own);
   void take(size_t slab, const Bytes& answer);
   /// The same, here.
   void prove(size_t slab);
@@ -47,8 +50,5 @@ class SlabProofs {
   std::vector<double> volumes_;      ///< by leaf position, in voxels
   std::vector<VolumeRange> ranges_;  ///< the same
 };
-
-/// The answer to what SlabProofs::add_request() has added.
-Bytes prove_slab(BytesReader& request);
 
 }  // namespace swarf::stock

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "base/bytes.h"
@@ -58,7 +59,7 @@ class StockTiles {
   static std::optional<Bytes> next_tiles(const Stock& stock, const TileSet& tiles, size_t& from);
   /// Takes over what the others have told of a stock of the same raw shape and voxel size. Counts of work in
   /// it are added to the stock's own; its seconds become those of the slowest.
-  void apply(const Bytes& changes);
+  void apply(std::span<const std::byte> changes);
   /// From the raw stock again: what was counted before, of more tiles, is not to be counted anew.
   void count_as(const CutStatistics& counts);
 

@@ -24,20 +24,24 @@ enum class TileRequest : uint8_t {
   kHold,     ///< no longer: where it stands
   kMeet,     ///< sweeps, to cut up to or to come back to: the same
   kHello,    ///< what the rank is about to cut, or why it cannot begin
-  kLeft,     ///< parts that rank 0 takes: a piece of StockTiles::next_left(), or none
+  kLeft,     ///< parts that rank 0 takes: the first pieces of StockTiles::next_left()
   kStock,    ///< the stock comes, cut by so many sweeps              no answer
   kTiles,    ///< positions to take over: an empty message
-  kLook,     ///< begin, end, bad cuts so far: suspects and the least gap
+  kLook,     ///< begin, end, bad cuts so far: what it looks like     no answer where it has told of it
   kNearest,  ///< begin, end, suspects of all ranks: the least gap of the other sweeps
   kCut,      ///< begin, end                                          no answer
-  kChanges,  ///< sweeps: the broken invariant, a piece of StockTiles::next_changes(), or none
-  kSlab,     ///< of stock_slabs.h
+  kChanges,  ///< sweeps: the first pieces of StockTiles::next_changes()
+  kMore,     ///< the next piece of either                            no answer behind the last one
+  kSlab,     ///< sweeps, then what stock_slabs.h asks
   kRays,     ///< SurfaceDexels::tiles_of(), for each surface
   kProof,    ///< what is known of a surface of the part              no answer
   kRoots,    ///< of that surface: RootProver::prove()
-  kRest,     ///< nothing but the end will be asked                  no answer
-  kEnd,      ///< the same, as the last message of all
+  kEnd,      ///< nothing more is asked: the same, as the last message of all
 };
+
+/// Pieces of one rank on their way: one is told while another is taken over. Each stands behind the broken
+/// invariant; an empty one is the last.
+inline constexpr int kPiecesOnTheirWay = 2;
 
 /// First byte of every message of another rank that belongs to the cut.
 enum class TileAnswer : uint8_t {

@@ -65,6 +65,17 @@ bool TileLead::keep_seen(int rank, const Bytes& message) {
   return true;
 }
 
+/// The rank answers, or it has told of this batch before it was asked.
+void TileLead::await_seen(int rank, size_t begin) {
+  std::map<size_t, BatchState>& seen = seen_[static_cast<size_t>(rank)];
+  while (!seen.contains(begin)) {
+    const Bytes message = ranks_.receive(rank);
+    if (keep_seen(rank, message)) continue;
+    BytesReader in = behind_first(message);
+    seen[begin] = get_seen(in);
+  }
+}
+
 /// Where all of them meet that have cut ahead, not beyond sweep `most`: at the farthest, unless one must
 /// wait.
 size_t TileLead::meet(size_t most) {
@@ -86,33 +97,35 @@ size_t TileLead::meet(size_t most) {
   }
 }
 
-/// Takes parts of the tiles of all others as they stand, and what has changed in them.
-void TileLead::take_tiles(stock::Stock& stock, const std::vector<uint32_t>& parts) {
+/// What stands there as it does here.
+stock::TileSet TileLead::held_by(int rank) const {
+  return {share_of_other(ranks_, rank), stock::TileSet::kAllParts ^ taken_[static_cast<size_t>(rank - 1)]};
+}
+
+/// Takes its parts of the tiles of all others as they stand, and what has changed in them.
+void TileLead::take_tiles(stock::Stock& stock) {
   stock::TileSet own;
-  if (!parts.empty()) own.parts = parts;
+  if (!taken_.empty()) own.parts = taken_;
   tiles_.emplace(stock, own);
-  std::vector<Bytes> asked;
   for (int rank = 1; rank < ranks_.size(); ++rank) {
     BytesWriter message = tile_request(TileRequest::kLeft);
-    message.add(parts[static_cast<size_t>(rank - 1)]);
-    asked.push_back(message.take());
-    ranks_.send(rank, asked.back());
+    message.add(taken_[static_cast<size_t>(rank - 1)]);
+    ranks_.send(rank, message.take());
   }
-  for (int rank = 1; rank < ranks_.size(); ++rank)
-    take_pieces(rank, asked[static_cast<size_t>(rank - 1)], [](BytesReader&) {});
+  for (int rank = 1; rank < ranks_.size(); ++rank) take_pieces(rank);
   finder_.emplace(stock, stock::ContactFinder::Tiles::kOwn);
 }
 
-/// The rank was asked, and is asked again until it answers without a piece. `before`: reads what comes first
-/// in an answer.
-void TileLead::take_pieces(int rank, const Bytes& asked, const std::function<void(BytesReader&)>& before) {
+/// The rank was asked, and tells until a piece is empty.
+void TileLead::take_pieces(int rank) {
   for (;;) {
     const Bytes answer = answer_of(rank);
     BytesReader in = behind_first(answer);
-    before(in);
-    const auto piece = in.get_list<std::byte>();
+    const std::string broken = in.get_text();
+    if (broken_.empty()) broken_ = broken;
+    const std::span<const std::byte> piece = in.get_bytes();
     if (piece.empty()) return;
-    ranks_.send(rank, asked);  // it reads the next piece while this one is taken over
+    ranks_.send(rank, tile_request(TileRequest::kMore).take());
     tiles_->apply(piece);
   }
 }
@@ -122,18 +135,16 @@ void TileLead::begin(stock::Stock& stock, const Start& start) {
   stock_ = &stock;
   at_ = start.at;
   own_from_ = start.is_raw && ranks_.size() > 1 ? meet(start.look_at) : start.at;
-  std::vector<uint32_t> parts = parts_of_lead(ranks_.size() - 1);
-  if (own_from_ == parts_.sweeps.size()) std::ranges::fill(parts, 0U);  // nothing is left to cut
+  taken_ = parts_of_lead(ranks_.size() - 1);
+  if (own_from_ == parts_.sweeps.size()) std::ranges::fill(taken_, 0U);  // nothing is left to cut
   if (!start.is_raw) {
     BytesWriter message = tile_request(TileRequest::kStock);
     message.add(start.at);
     send_to_all(ranks_, std::move(message));
   }
-  take_tiles(stock, parts);
-  for (int rank = 1; rank < ranks_.size() && !start.is_raw; ++rank) {
-    const uint32_t kept = stock::TileSet::kAllParts ^ parts[static_cast<size_t>(rank - 1)];
-    send_tiles(ranks_, rank, stock, {share_of_other(ranks_, rank), kept});
-  }
+  take_tiles(stock);
+  for (int rank = 1; rank < ranks_.size() && !start.is_raw; ++rank)
+    send_tiles(ranks_, rank, stock, held_by(rank));
   if (start.may_go_ahead) go_ahead();
 }
 
@@ -161,11 +172,7 @@ BatchState TileLead::look_ahead(size_t begin, size_t end) {
     finder_->refresh();
     all = look_at_tiles(parts_, *finder_, begin, end);
   }
-  for (const int rank : open) {
-    const Bytes answer = answer_of(rank);
-    BytesReader in = behind_first(answer);
-    seen_[static_cast<size_t>(rank)][begin] = get_seen(in);
-  }
+  for (const int rank : open) await_seen(rank, begin);
   for (int rank = 1; rank < ranks_.size(); ++rank) {
     const BatchState seen = std::move(seen_[static_cast<size_t>(rank)].extract(begin).mapped());
     all.nearest_mm = std::min(all.nearest_mm, seen.nearest_mm);
@@ -201,13 +208,8 @@ void TileLead::gather() {
   if (is_whole_) return;
   BytesWriter message = tile_request(TileRequest::kChanges);
   message.add(at_);
-  const Bytes asked = message.take();
-  for (int rank = 1; rank < ranks_.size(); ++rank) ranks_.send(rank, asked);
-  for (int rank = 1; rank < ranks_.size(); ++rank)
-    take_pieces(rank, asked, [&](BytesReader& in) {
-      const std::string broken = in.get_text();
-      if (broken_.empty()) broken_ = broken;
-    });
+  send_to_all(ranks_, std::move(message));
+  for (int rank = 1; rank < ranks_.size(); ++rank) take_pieces(rank);
   is_whole_ = true;
 }
 
@@ -229,9 +231,10 @@ stock::StockProof TileLead::prove(double slack_mm, const std::function<bool()>& 
   constexpr size_t kSlabsOfRank = 16;
   stock::SlabProofs proofs(*stock_, slack_mm, kSlabsOfRank * static_cast<size_t>(ranks_.size()));
   deal(ranks_, {proofs.count(),
-                [&](size_t slab) {
+                [&](size_t slab, int rank) {
                   BytesWriter message = tile_request(TileRequest::kSlab);
-                  proofs.add_request(slab, message);
+                  message.add(at_);
+                  proofs.add_request(slab, held_by(rank), message);
                   return message.take();
                 },
                 [&](size_t slab, const Bytes& answer) { proofs.take(slab, answer); },
@@ -293,25 +296,23 @@ void ask_for_proof(Ranks& ranks, const KnownOfPart& known) {
 
 void deal_roots(Ranks& ranks, const DealtWork& work) {
   DealtWork sent = work;
-  sent.request = [&](size_t portion) {
+  sent.request = [&](size_t portion, int rank) {
     BytesWriter message = tile_request(TileRequest::kRoots);
-    const Bytes asked = work.request(portion);
+    const Bytes asked = work.request(portion, rank);
     message.add_all(std::span(asked));
     return message.take();
   };
   deal(ranks, sent);
 }
 
-void relieve_ranks(Ranks& ranks) {
-  send_to_all(ranks, tile_request(TileRequest::kRest));
-}
-
 void dismiss_ranks(Ranks& ranks) {
+  if (ranks.has_left()) return;
   send_to_all(ranks, tile_request(TileRequest::kEnd));
   // What was asked before and is no longer of use comes first.
   const Bytes last = tile_request(TileRequest::kEnd).take();
   for (int rank = 1; rank < ranks.size(); ++rank)
     while (ranks.receive(rank) != last) continue;
+  ranks.leave();
 }
 
 }  // namespace swarf::sim

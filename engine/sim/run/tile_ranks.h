@@ -74,10 +74,12 @@ class TileLead {
  private:
   Bytes answer_of(int rank);
   bool keep_seen(int rank, const Bytes& message);
+  void await_seen(int rank, size_t begin);
   size_t meet(size_t most);
   std::vector<int> ask_to_look(size_t begin, size_t end);
-  void take_tiles(stock::Stock& stock, const std::vector<uint32_t>& parts);
-  void take_pieces(int rank, const Bytes& asked, const std::function<void(BytesReader&)>& before);
+  void take_tiles(stock::Stock& stock);
+  stock::TileSet held_by(int rank) const;
+  void take_pieces(int rank);
 
   Ranks& ranks_;
   const CutParts& parts_;
@@ -86,8 +88,9 @@ class TileLead {
   std::optional<stock::ContactFinder> finder_;      ///< of its own tiles
   std::vector<std::map<size_t, BatchState>> seen_;  ///< by rank and first sweep: told before it was asked for
   std::string broken_;
-  size_t at_ = 0;        ///< sweeps that the run has come to
-  size_t own_from_ = 0;  ///< before that its own tiles are no longer cut
+  size_t at_ = 0;                ///< sweeps that the run has come to
+  size_t own_from_ = 0;          ///< before that its own tiles are no longer cut
+  std::vector<uint32_t> taken_;  ///< of the share of each other rank: its own tiles
   bool is_whole_ = true;
 };
 
@@ -122,9 +125,7 @@ std::vector<Bytes> rays_of(Ranks& ranks, int rank);
 void send_whole_stock(Ranks& ranks, const stock::Stock& stock);
 void ask_for_proof(Ranks& ranks, const KnownOfPart& known);
 void deal_roots(Ranks& ranks, const DealtWork& work);
-/// On rank 0: nothing but dismiss_ranks() follows: the others give back what they hold of the stock.
-void relieve_ranks(Ranks& ranks);
-/// On rank 0: nothing more will be asked.
+/// On rank 0: nothing more will be asked; the others end, and all leave. Again: nothing.
 void dismiss_ranks(Ranks& ranks);
 
 }  // namespace swarf::sim

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -25,7 +26,7 @@ class OwnTiles {
   OwnTiles& operator=(const OwnTiles&) = delete;
 
   Standing standing() const { return {at_, waits_, own_.parts[static_cast<size_t>(share_.index)]}; }
-  void take(const Bytes& tiles) { tiles_.apply(tiles); }
+  void take(std::span<const std::byte> tiles) { tiles_.apply(tiles); }
   /// take() brings what so many sweeps have left.
   void start_at(size_t at) {
     come_to(0);
@@ -94,6 +95,10 @@ class OwnTiles {
     return {};
   }
   const std::string& broken() const { return broken_; }
+  /// The batch was begun ahead, and next_seen() has given it.
+  bool has_told(size_t begin) const {
+    return seen_.contains(begin) && std::ranges::find(untold_, begin) == untold_.end();
+  }
   /// Batches that were begun ahead since this was asked last, by first sweep.
   std::vector<std::pair<size_t, BatchState>> next_seen() {
     std::vector<std::pair<size_t, BatchState>> seen;
@@ -183,16 +188,17 @@ class TileServer {
         if (own_) tell_seen();
         return true;
       case TileRequest::kLeft:
-        out.add_list(own().next_left(in.get<uint32_t>()).value_or(Bytes{}));
-        break;
+        next_piece_ = [this, taken = in.get<uint32_t>()] { return own().next_left(taken); };
+        tell_pieces(kPiecesOnTheirWay);
+        return true;
       case TileRequest::kStock:
         own().start_at(in.get<size_t>());
         return true;
       case TileRequest::kTiles:
-        own().take(in.get_list<std::byte>());
+        own().take(in.get_bytes());
         break;
       case TileRequest::kLook:
-        look(in, out);
+        if (!look(in, out)) return true;
         break;
       case TileRequest::kNearest:
         ahead_ = false;
@@ -203,8 +209,12 @@ class TileServer {
         return true;
       case TileRequest::kChanges:
         ahead_ = false;
-        tell_changes(in.get<size_t>(), out);
-        break;
+        next_piece_ = [this, at = in.get<size_t>()] { return own().next_changes(at); };
+        tell_pieces(kPiecesOnTheirWay);
+        return true;
+      case TileRequest::kMore:
+        tell_pieces(1);
+        return true;
       default:
         break;
     }
@@ -216,7 +226,7 @@ class TileServer {
   bool follow(TileRequest what, BytesReader& in) {
     switch (what) {
       case TileRequest::kSlab:
-        ranks_.send(0, stock::prove_slab(in));
+        ranks_.send(0, prove_slab(in));
         break;
       case TileRequest::kRays:
         service_.cut_rays();
@@ -230,11 +240,6 @@ class TileServer {
         break;
       case TileRequest::kRoots:
         ranks_.send(0, prover_->prove(in));
-        break;
-      case TileRequest::kRest:
-        prover_.reset();
-        proof_.reset();
-        own_.reset();
         break;
       default:
         ranks_.send(0, tile_request(TileRequest::kEnd).take());
@@ -256,12 +261,15 @@ class TileServer {
                kMbOfRank <=
            service_.most_mb;
   }
-  void look(BytesReader& in, BytesWriter& out) {
+  /// False: rank 0 has been told, and goes on by that.
+  bool look(BytesReader& in, BytesWriter& out) {
     const auto begin = in.get<size_t>(), end = in.get<size_t>();
     std::vector<BadCut> found;
     SWARF_CHECK(parse_bad_cuts(in.get_text(), found), "rank 0 tells its bad cuts");
     service_.parts.bad_cuts.resume(found);
+    if (own().has_told(begin)) return false;
     add_seen(own().look(begin, end), out);
+    return true;
   }
   /// Rank 0 need not ask, and wait until this one has cut its next part.
   void tell_seen() {
@@ -272,15 +280,25 @@ class TileServer {
       ranks_.send(0, out.take());
     }
   }
+  Bytes prove_slab(BytesReader& in) {
+    SWARF_CHECK(own().standing().at == in.get<size_t>(),
+                "the stock that is proven is cut as far as that of rank 0");
+    return stock::SlabProofs::answer(in, own().stock());
+  }
   void tell_nearest(BytesReader& in, BytesWriter& out) {
     const auto begin = in.get<size_t>(), end = in.get<size_t>();
     const auto suspects = in.get_list<size_t>();
     out.add(own().nearest(begin, end, suspects));
   }
-  void tell_changes(size_t at, BytesWriter& out) {
-    const std::optional<Bytes> piece = own().next_changes(at);
-    out.add_text(own().broken());
-    out.add_list(piece.value_or(Bytes{}));
+  void tell_pieces(int count) {
+    for (; count > 0 && next_piece_; --count) {
+      const std::optional<Bytes> piece = next_piece_();
+      if (!piece) next_piece_ = nullptr;
+      BytesWriter out = answer_to(TileAnswer::kAsked);
+      out.add_text(own().broken());
+      out.add_list(piece.value_or(Bytes{}));
+      ranks_.send(0, out.take());
+    }
   }
 
   Ranks& ranks_;
@@ -289,14 +307,18 @@ class TileServer {
   std::optional<OwnTiles> own_;
   std::optional<ProofInputs> proof_;
   std::unique_ptr<measure::RootProver> prover_;  ///< of the surface that is being proven
-  bool ahead_;                                   ///< of rank 0
-  bool is_known_ = false;                        ///< to rank 0, which takes what is told
+  std::function<std::optional<Bytes>()>
+      next_piece_;         ///< of what rank 0 has asked for; empty: nothing is left
+  bool ahead_;             ///< of rank 0
+  bool is_known_ = false;  ///< to rank 0, which takes what is told
 };
 
 }  // namespace
 
 void serve_tile_lead(Ranks& ranks, const TileService& service) {
-  TileServer(ranks, service).serve();
+  TileServer server(ranks, service);
+  server.serve();
+  ranks.leave();  // while the stock is given back
 }
 
 void refuse_tile_lead(Ranks& ranks, const std::string& why) {
@@ -306,6 +328,7 @@ void refuse_tile_lead(Ranks& ranks, const std::string& why) {
     if (asked == TileRequest::kHello) ranks.send(0, rank_hello(why, {}));
     if (asked != TileRequest::kEnd) continue;
     ranks.send(0, tile_request(TileRequest::kEnd).take());
+    ranks.leave();
     return;
   }
 }

@@ -5,55 +5,71 @@
 #include <span>
 #include <utility>
 
+#include "base/check.h"
 #include "stock/level_set/leaf_kernel.h"
 #include "stock/level_set/stock_grid_internal.h"
 
 namespace swarf::stock {
 namespace {
 
-/// Some planes of a stock, without a tree: to look at.
-struct Planes {
-  LevelSet set;
-  std::unique_ptr<float[]>
-      values;  ///< of all leaves, in one piece: making leaves takes longer than reading them
-};
-
 constexpr size_t kShrinking = 4;  // how much smaller the last slabs are
 
-void add_planes(const LevelSet& set, int first, int last, BytesWriter& out) {
+/// Of planes of a map, by column, x before y: 1 where the tiles are held.
+std::vector<uint8_t> held_columns(const LeafMap& map, int first, int last, const TileSet& held) {
+  std::vector<uint8_t> columns;
+  for (int i = map.lower.x() + first; i < map.lower.x() + last; ++i)
+    for (int j = map.lower.y(); j < map.lower.y() + map.dimension.y(); ++j)
+      columns.push_back(held.holds_column(i, j) ? 1 : 0);
+  return columns;
+}
+
+/// Planes [first, last); leaves of columns that are held without their values.
+void add_planes(const LevelSet& set, int first, int last, const TileSet& held, BytesWriter& out) {
   const LeafMap& map = set.map;
   const size_t begin = map.index(first, 0, 0), end = map.index(last, 0, 0);
+  const std::vector<uint8_t> columns = held_columns(map, first, last, held);
+  const auto is_sent = [&](size_t n) {
+    return map.states[n] == LeafState::kLeaf && columns[map.column(n - begin)] == 0;
+  };
+  size_t sent = 0;
+  for (size_t n = begin; n < end; ++n) sent += is_sent(n) ? 1 : 0;
+  constexpr size_t kHead =
+      256;  // bytes: what is neither by position nor by column, and the gap before values
+  out.reserve(kHead + columns.size() + (end - begin) + sent * kLeafVoxels * sizeof(float));
   out.add(set.voxel);
   out.add(set.rounding_mm);
   for (const int n : {map.lower.x() + first, map.lower.y(), map.lower.z()}) out.add(n);
   for (const int n : {last - first, map.dimension.y(), map.dimension.z()}) out.add(n);
+  out.add_all(std::span(columns));
   out.add_all(std::span(map.states).subspan(begin, end - begin));
+  out.align<float>();
   for (size_t n = begin; n < end; ++n)
-    if (map.states[n] == LeafState::kLeaf) out.add_all(std::span<const float>(set.values(n), kLeafVoxels));
+    if (is_sent(n)) out.add_all(std::span<const float>(set.values(n), kLeafVoxels));
 }
 
-Planes take_planes(BytesReader& in) {
-  Planes planes;
-  LevelSet& set = planes.set;
+/// To look at, without a tree: values stand in the message and in `own`, which must outlive it.
+LevelSet take_planes(BytesReader& in, const LevelSet& own) {
+  LevelSet set;
   set.voxel = in.get<double>();
   set.rounding_mm = in.get<double>();
   for (int a = 0; a < 3; ++a) set.map.lower[a] = in.get<int>();
   for (int a = 0; a < 3; ++a) set.map.dimension[a] = in.get<int>();
   const size_t count = set.map.index(set.map.dimension.x(), 0, 0);
+  const auto held = in.look_at<uint8_t>(count / static_cast<size_t>(set.map.dimension.z()));
   set.map.states.resize(count);
   in.get_all(std::span(set.map.states));
   set.lent.assign(count, nullptr);
-  const auto leaves = static_cast<size_t>(std::ranges::count(set.map.states, LeafState::kLeaf));
-  planes.values = std::make_unique_for_overwrite<float[]>(leaves * kLeafVoxels);
-  const std::span values(planes.values.get(), leaves * kLeafVoxels);
-  in.get_all(values);
-  const float* next = values.data();
+  const size_t own_begin = own.map.index(set.map.lower.x() - own.map.lower.x(), 0, 0);
   for (size_t n = 0; n < count; ++n) {
     if (set.map.states[n] != LeafState::kLeaf) continue;
-    set.lent[n] = next;
-    next += kLeafVoxels;
+    if (held[set.map.column(n)] == 0) {
+      set.lent[n] = in.look_at<float>(kLeafVoxels).data();
+      continue;
+    }
+    SWARF_CHECK(own.map.states.at(own_begin + n) == LeafState::kLeaf, "what is held is what it is held for");
+    set.lent[n] = own.values(own_begin + n);
   }
-  return planes;
+  return set;
 }
 
 }  // namespace
@@ -86,21 +102,20 @@ size_t SlabProofs::begin_of(int plane) const {
   return stock_.level_set().map.index(plane, 0, 0);
 }
 
-void SlabProofs::add_request(size_t slab, BytesWriter& out) const {
+void SlabProofs::add_request(size_t slab, const TileSet& held, BytesWriter& out) const {
   const LevelSet& set = stock_.level_set();
   const Slab& own = slabs_[slab];
   const int first = std::max(own.first - 1, 0), last = std::min(own.last + 1, set.map.dimension.x());
   out.add(slack_mm_);
   out.add(own.first - first);
   out.add(own.last - first);
-  add_planes(set, first, last, out);
+  add_planes(set, first, last, held, out);
 }
 
-Bytes prove_slab(BytesReader& in) {
+Bytes SlabProofs::answer(BytesReader& in, const Stock& own) {
   const auto slack_mm = in.get<double>();
   const int first = in.get<int>(), last = in.get<int>();
-  const Planes planes = take_planes(in);
-  const LevelSet& set = planes.set;
+  const LevelSet set = take_planes(in, own.level_set());
   const size_t begin = set.map.index(first, 0, 0), end = set.map.index(last, 0, 0);
   BytesWriter out;
   out.add_list(volumes(set, begin, end));

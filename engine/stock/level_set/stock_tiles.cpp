@@ -80,6 +80,9 @@ bool is_as_loaded(const LeafFloor& floor, float band) {
 
 /// One piece is told while the one before is taken over: the first is waited for.
 constexpr size_t kToldBytes = size_t{2} << 20U;
+/// With the position that goes beyond.
+constexpr size_t kMostTold =
+    kToldBytes + sizeof(ToldPosition) + static_cast<size_t>(kLeafVoxels) * sizeof(float);
 
 void add_counts(const CutStatistics& counts, double rounding_mm, BytesWriter& out) {
   out.add(counts);
@@ -158,6 +161,7 @@ std::optional<Bytes> StockTiles::next_left(const TileSet& kept) {
 std::optional<Bytes> StockTiles::next_of(const std::vector<uint8_t>* wanted) {
   const LevelSet& set = stock_.level_set();
   BytesWriter out;
+  out.reserve(kMostTold);
   CutStatistics more = set.statistics;
   more.voxel_updates -= told_.voxel_updates;
   more.leaf_visits -= told_.leaf_visits;
@@ -186,6 +190,7 @@ std::optional<Bytes> StockTiles::next_tiles(const Stock& stock, const TileSet& t
   const LevelSet& set = stock.level_set();
   const std::vector<uint8_t> others = columns_of_others(set, tiles);
   BytesWriter out;
+  out.reserve(kMostTold);
   add_counts({}, set.rounding_mm, out);
   const size_t counts = out.size();
   for (; from < set.map.size() && out.size() < kToldBytes; ++from)
@@ -193,7 +198,7 @@ std::optional<Bytes> StockTiles::next_tiles(const Stock& stock, const TileSet& t
   return out.size() > counts ? std::optional(out.take()) : std::nullopt;
 }
 
-void StockTiles::apply(const Bytes& changes) {
+void StockTiles::apply(std::span<const std::byte> changes) {
   stock_.impl_->hash.reset();
   LevelSet& set = stock_.impl_->level_set;
   CutStatistics& statistics = set.statistics;

@@ -191,12 +191,16 @@ TEST(StockTiles, OwnTilesHoldTheInvariantsDeepInside) {
   }
 }
 
-/// Slab by slab, by whoever: the volume's bounds to the last bit, and a breach between two leaves wherever it
-/// is.
+const TileSet kNoTiles(Share{}, 0);
+
+/// Slab by slab, by whoever: the volume's bounds to the last bit. Who holds tiles is sent the others.
 TEST(StockTiles, WhatIsProvenSlabBySlabIsProvenOfTheWhole) {
   Rng rng(22);
-  Stock stock(RawShape::of_box(kBox), kVoxel);
-  stock.cut(sweeps_of(rng, 20), CutterSolid(2.5, 10.0));
+  auto ranks = ranks_of(RawShape::of_box(kBox), 2);
+  cut_all(ranks, sweeps_of(rng, 20), CutterSolid(2.5, 10.0));
+  gather(ranks);
+  const Stock& stock = ranks[0]->stock;
+  const TileSet kept(Share{1, 2});
   const VolumeRange whole = stock.volume_between(0.01);
   for (const size_t slabs : {1, 2, 5, 100}) {
     SlabProofs proofs(stock, 0.01, slabs);
@@ -206,11 +210,13 @@ TEST(StockTiles, WhatIsProvenSlabBySlabIsProvenOfTheWhole) {
         proofs.prove(n);
         continue;
       }
-      BytesWriter out;
-      proofs.add_request(n, out);
-      const Bytes request = out.take();
+      BytesWriter all, out;
+      proofs.add_request(n, kNoTiles, all);
+      proofs.add_request(n, kept, out);
+      EXPECT_LT(out.size(), all.size()) << slabs;
+      const Bytes request = (n % 4 == 0 ? out : all).take();
       BytesReader in(request);
-      proofs.take(n, prove_slab(in));
+      proofs.take(n, SlabProofs::answer(in, ranks[1]->stock));
     }
     const StockProof proof = proofs.result();
     EXPECT_EQ(proof.volume_mm3, stock.volume_mm3()) << slabs;
@@ -220,13 +226,14 @@ TEST(StockTiles, WhatIsProvenSlabBySlabIsProvenOfTheWhole) {
   }
 }
 
+/// A breach between two leaves, wherever it is.
 TEST(StockTiles, ABrokenStepIsSeenWhereTheSlabIsProven) {
   Rng rng(23);
   Stock stock(RawShape::of_box(kBox), kVoxel);
   stock.cut(sweeps_of(rng, 20), CutterSolid(2.5, 10.0));
   SlabProofs proofs(stock, 0.0, 1);
   BytesWriter out;
-  proofs.add_request(0, out);
+  proofs.add_request(0, kNoTiles, out);
   Bytes request = out.take();
   // The last voxel of the last leaf, from one end of the band to the other.
   float value = 0.0F;
@@ -235,7 +242,7 @@ TEST(StockTiles, ABrokenStepIsSeenWhereTheSlabIsProven) {
   value = static_cast<float>(value > 0.0F ? -3.0 * kVoxel : 3.0 * kVoxel);
   std::memcpy(last, &value, sizeof(value));
   BytesReader in(request);
-  proofs.take(0, prove_slab(in));
+  proofs.take(0, SlabProofs::answer(in, stock));
   EXPECT_EQ(proofs.result().broken_step.substr(0, 2), "8:");
 }
 
