@@ -512,11 +512,16 @@ ReportData report_data(const sim::Job& job, const sim::Result& result, const Run
 }
 
 /// Contacts of neck, shank and holder, or how near they came.
-std::string clearance_line(const sim::ToolClearance& clearance) {
+std::string clearance_line(const sim::Result& result) {
+  const sim::ToolClearance& clearance = result.clearance;
   if (clearance.events.empty()) {
+    const sim::Check* const check = sim::find_check(result.checks, "collisions");
+    if (check != nullptr && check->outcome == sim::Outcome::kNotJudged)
+      return "not looked at: " + check->reason;
     return fmt::format(
-        "shank and holder free over the whole way of {} sweeps (contacts of {:.3f} mm and more)",
-        clearance.checked_sweeps, clearance.sees_mm);
+        "shank and holder free over the whole way of {} sweeps (contacts of {:.3f} mm and more){}",
+        clearance.checked_sweeps, clearance.sees_mm,
+        check == nullptr || check->unseen.empty() ? "" : "; not looked at: " + check->unseen);
   }
   const auto deepest = std::max_element(clearance.events.begin(), clearance.events.end(),
                                         [](const auto& a, const auto& b) { return a.depth_mm < b.depth_mm; });
@@ -560,7 +565,7 @@ std::vector<std::pair<std::string, std::string>> summary_lines(const sim::Job& j
       fmt::format("{} blocks in {:.2f} s = {:.0f} blocks/s, {:g} mm voxels", cut.sweeps, cut.seconds,
                   cut.seconds > 0 ? static_cast<double>(cut.sweeps) / cut.seconds : 0.0,
                   job.scene.stock.voxel_mm));
-  lines.emplace_back("clearance", clearance_line(result.clearance));
+  lines.emplace_back("clearance", clearance_line(result));
   if (result.main.contacts) lines.emplace_back("machine", machine_line(*result.main.contacts));
   return lines;
 }

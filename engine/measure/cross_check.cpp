@@ -80,11 +80,18 @@ std::optional<Local> look_around(const Grid& grid, int iu, int iv) {
   return local;
 }
 
-bool near_face(const stock::RawShape& raw, const Vec3& point, double distance) {
-  if (!raw.is_box()) return std::abs(raw.distance_mm(point)) < distance;
+/// Positive outside, mm; of a box that to the plane of the face that is left farthest, or nearest from
+/// within.
+double beyond_faces(const stock::RawShape& raw, const Vec3& point) {
+  if (!raw.is_box()) return raw.distance_mm(point);
   const Box& box = raw.box();
-  return std::min((point - box.lower).cwiseAbs().minCoeff(), (box.upper - point).cwiseAbs().minCoeff()) <
-         distance;
+  return -std::min((point - box.lower).minCoeff(), (box.upper - point).minCoeff());
+}
+
+/// The level set is neither at the raw stock's faces nor beyond them what the sweeps make of it: a ray that
+/// was cut right through ends outside.
+bool well_inside(const stock::RawShape& raw, const Vec3& point, double distance) {
+  return beyond_faces(raw, point) <= -distance;
 }
 
 /// What the slopes between the rays promise: no more than an estimate, because a cusp between two rays, or a
@@ -95,7 +102,7 @@ Sample compare(const Grid& grid, const stock::Stock& stock, int iu, int iv, doub
   const Vec3 point = grid.surface_point(n);
   const auto local = look_around(grid, iu, iv);
   Sample sample;
-  if (!local || near_face(stock.raw(), point, kFaceVoxels * voxel)) return sample;
+  if (!local || !well_inside(stock.raw(), point, kFaceVoxels * voxel)) return sample;
   const double slope = std::hypot(local->slope_u, local->slope_v);
   if (slope > kWall) return sample;
   sample.used = true;
@@ -139,10 +146,7 @@ class ExactLevel {
     const stock::CutterSolid* solid;
   };
   double value(const std::vector<Swept>& sweeps, const Vec3& point) const {
-    const stock::RawShape& raw = stock_.raw();
-    const Box& box = raw.box();
-    double highest = raw.is_box() ? -std::min((point - box.lower).minCoeff(), (box.upper - point).minCoeff())
-                                  : raw.distance_mm(point);
+    double highest = beyond_faces(stock_.raw(), point);
     for (const Swept& one : sweeps)
       highest = std::max(highest, -stock::swept_contact(point, one.map, *one.solid).distance_mm);
     return highest;

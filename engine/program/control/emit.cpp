@@ -132,7 +132,7 @@ void send(Control& control, const Segment& segment, NcMove& move) {
     control.report.fail(
         "too-many-moves", segment.place.column,
         fmt::format("more than {} moves: the program seems to loop for ever here", control.setup.moves_max),
-        "correct the loop, or raise the limit");
+        "correct the loop");
   }
   control.path.jumps = 0;
   control.path.q = move.q_to;

@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "base/units.h"
+#include "cutter/cutter.h"
 #include "sim/job/tool_words.h"
 #include "sim/run/result.h"
 
@@ -146,9 +147,40 @@ Check spindle_check(const Job& job, const Result& result) {
   return check;
 }
 
+/// Whether each of the scene's tools moves in the path; all of them where nobody says.
+std::vector<bool> tools_at_work(const Job& job, const toolpath::ToolPath& path) {
+  const bool known = path.elements.hold_blocks();
+  std::vector<bool> works(job.scene.tools.size(), !known);
+  for (size_t i = 0; known && i < path.elements.size(); ++i) {
+    const auto tool = static_cast<size_t>(path.elements.tool(i));
+    if (tool < works.size()) works[tool] = true;
+  }
+  return works;
+}
+
+/// Of the tools at work, those that have nothing but flutes.
+struct BareTools {
+  size_t working = 0, bare = 0;
+  std::string names{};  ///< "T2, T5"
+};
+
+BareTools bare_tools(const Job& job, const Result& result) {
+  const std::vector<bool> works = tools_at_work(job, result.main.path);
+  BareTools tools;
+  for (size_t i = 0; i < works.size(); ++i) {
+    if (!works[i]) continue;
+    ++tools.working;
+    if (!is_bare(job.scene.tools[i])) continue;
+    ++tools.bare;
+    tools.names += (tools.names.empty() ? "" : ", ") + cutter::call_name(job.scene.tools[i]);
+  }
+  return tools;
+}
+
 void add_tool_checks(const Job& job, const Result& result, std::vector<Check>& checks) {
   const AcceptLimits& accept = job.scene.accept;
-  const std::string covers = fmt::format("contacts of {:.3f} mm and more", result.clearance.sees_mm);
+  const std::string covers = fmt::format("contacts of {:.3f} mm and more{}", result.clearance.sees_mm,
+                                         job.scene.stock.auto_box ? " with the block that is assumed" : "");
   const auto add = [&](Check check) {
     check.covers = covers;
     check.what += " (" + covers + ")";
@@ -165,12 +197,19 @@ void add_tool_checks(const Job& job, const Result& result, std::vector<Check>& c
   };
   constexpr const char* collisions = "Neck, shank or holder in the stock";
   constexpr const char* rapid = "Rapid moves that remove material";
-  if (std::all_of(job.scene.tools.begin(), job.scene.tools.end(), is_bare)) {
-    checks.push_back(not_judged("collisions", collisions, "the tools have neither shank nor holder"));
-  } else if (job.scene.stock.auto_box && !result.clearance.events.empty()) {
+  const BareTools tools = bare_tools(job, result);
+  const bool touches = !result.clearance.events.empty();
+  if (job.scene.stock.auto_box && touches) {
     checks.push_back(not_judged("collisions", collisions, assumed(result.clearance.events.size())));
+  } else if (tools.bare == tools.working && !touches) {
+    checks.push_back(not_judged("collisions", collisions, "the tools have neither shank nor holder"));
   } else {
-    add(counted("collisions", collisions, result.clearance.events.size(), accept.collisions));
+    Check check = counted("collisions", collisions, result.clearance.events.size(), accept.collisions);
+    if (tools.bare > 0) {
+      check.unseen = fmt::format("shank and holder of {} (none are known)", tools.names);
+      check.reason += fmt::format("{}not looked at: {}", check.reason.empty() ? "" : "; ", check.unseen);
+    }
+    add(std::move(check));
   }
   if (job.scene.stock.auto_box && rapids > 0) {
     checks.push_back(not_judged("rapids_in_material", rapid, assumed(rapids)));

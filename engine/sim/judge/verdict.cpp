@@ -27,33 +27,47 @@ std::string names(std::span<const Check> checks, Outcome outcome) {
   return text;
 }
 
+/// Names, each once with those of the same words, in order of the first: ("collisions, rapids in material",
+/// "contacts of 0.200 mm and more").
+class ByWords {
+ public:
+  void add(const std::string& name, const std::string& words) {
+    const auto same =
+        std::find_if(groups_.begin(), groups_.end(), [&](const auto& group) { return group.words == words; });
+    if (same == groups_.end())
+      groups_.push_back({spoken(name), words});
+    else
+      same->names += ", " + spoken(name);
+  }
+  struct Group {
+    std::string names, words;
+  };
+  const std::vector<Group>& groups() const { return groups_; }
+
+ private:
+  std::vector<Group> groups_;
+};
+
 /// "gouge, excess (no design), spindle (the program does not say when it turns)".
 std::string what_is_not_judged(std::span<const Check> checks) {
-  std::vector<std::pair<std::string, std::string>> by_reason;  // reason, names
-  for (const Check& check : checks) {
-    if (check.outcome != Outcome::kNotJudged) continue;
-    const auto same = std::find_if(by_reason.begin(), by_reason.end(),
-                                   [&](const auto& one) { return one.first == check.reason; });
-    if (same == by_reason.end())
-      by_reason.emplace_back(check.reason, spoken(check.name));
-    else
-      same->second += ", " + spoken(check.name);
-  }
+  ByWords by_reason;
+  for (const Check& check : checks)
+    if (check.outcome == Outcome::kNotJudged) by_reason.add(check.name, check.reason);
   std::string text;
-  for (const auto& [reason, list] : by_reason)
-    text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", list, reason);
+  for (const auto& [names, reason] : by_reason.groups())
+    text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", names, reason);
   return text;
 }
 
-/// "collisions, rapids in material: contacts of 0.200 mm and more"; of those that hold.
+/// " (collisions, rapids in material: contacts of 0.200 mm and more)"; of those that hold.
 std::string covered(std::span<const Check> checks) {
-  std::string list, covers;
-  for (const Check& check : checks) {
-    if (check.outcome != Outcome::kHolds || check.covers.empty()) continue;
-    list += (list.empty() ? "" : ", ") + spoken(check.name);
-    covers = check.covers;
-  }
-  return list.empty() ? list : fmt::format(" ({}: {})", list, covers);
+  ByWords by_cover;
+  for (const Check& check : checks)
+    if (check.outcome == Outcome::kHolds && !check.covers.empty()) by_cover.add(check.name, check.covers);
+  std::string text;
+  for (const auto& [names, covers] : by_cover.groups())
+    text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", names, covers);
+  return text.empty() ? text : fmt::format(" ({})", text);
 }
 
 /// "bed with flutes, bed with holder"; what a check that is judged could not look at.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/parallel.h"
@@ -313,6 +314,29 @@ TEST(CrossCheck, DomeLevelSetAgreesWithItsDexelsAndWithTheVolume) {
   deeper.end.tip_W -= 0.02 * deeper.end.axis_W;
   stock.cut(std::vector<stock::Sweep>{deeper}, cutter);
   EXPECT_FALSE(cross_check(stock, dexels, passes.sweeps, cutter, 0.0).holds);
+}
+
+// A hole of D 10 through a block under a finished plane: rays over it end 3 mm below the block, where the
+// level set says nothing.
+TEST(CrossCheck, ARayThatIsCutThroughTheBlockIsNotCompared) {
+  const auto plane = std::make_shared<Paraboloid>(0.0, 0.0, 9.0);
+  const auto down = [](double x, double y, double z) { return ToolPose{{x, y, z}, Vec3::UnitZ()}; };
+  std::vector<stock::Sweep> sweeps;
+  for (double y = -12.0; y <= 12.0; y += 6.0)
+    sweeps.push_back({down(-20, y, 0), down(20, y, 0), static_cast<uint32_t>(sweeps.size())});
+  sweeps.push_back({down(0, 0, 5), down(0, 0, -7), static_cast<uint32_t>(sweeps.size())});
+  stock::Stock stock({{-10, -10, -4}, {10, 10, 1}}, 0.3);
+  const stock::CutterSolid cutter{5.0, 60.0};
+  stock.cut(sweeps, cutter);
+  stock::SurfaceDexels dexels(plane, 0.5, stock.box());
+  dexels.cut(sweeps, cutter);
+  EXPECT_NEAR(*std::min_element(dexels.heights_mm().begin(), dexels.heights_mm().end()), -7.0, 1e-9);
+  const CrossCheck check = cross_check(stock, dexels, sweeps, cutter, 0.0);
+  EXPECT_TRUE(check.holds) << check.max_um << " of " << check.bound_um << " um";
+  EXPECT_GT(check.samples, 0U);
+  // Those around it are: a level set that was cut 20 um deeper is noticed.
+  stock.cut(std::vector<stock::Sweep>{{down(-20, 0, -0.02), down(20, 0, -0.02), 0}}, cutter);
+  EXPECT_FALSE(cross_check(stock, dexels, sweeps, cutter, 0.0).holds);
 }
 
 }  // namespace

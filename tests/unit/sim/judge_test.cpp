@@ -194,5 +194,72 @@ TEST_F(Judge, AFailedCrossCheckIsNotHiddenByAnotherSurface) {
   EXPECT_FALSE(measure::combine({measure::CrossCheck{}}).has_value()) << "nothing was compared";
 }
 
+/// Flutes all the way up.
+cutter::Cutter bare(int number) {
+  cutter::Cutter tool;
+  tool.number = number;
+  tool.flute_length_mm = tool.length_mm;
+  tool.holder = {{tool.diameter_mm, tool.diameter_mm, 1.0}};
+  return tool;
+}
+
+TEST_F(Judge, OfToolsAtWorkThatHaveNeitherShankNorHolderTheVerdictSaysWhich) {
+  toolpath::BlockMove second = result_.main.path.elements.block(0);
+  second.tool = 1;
+  const auto two_tools = [&] {
+    toolpath::Elements elements = result_.main.path.elements;
+    elements.push_back({second, 0, {"path.cl", 0, 0}});
+    return elements;
+  };
+  job_.scene.tools = {cutter::Cutter{}, bare(2)};
+  EXPECT_EQ(outcome("collisions"), Outcome::kHolds);
+  EXPECT_EQ(judged("collisions").unseen, "") << "T2 does not move";
+  const toolpath::Elements first_alone = result_.main.path.elements;
+  result_.main.path.elements = two_tools();
+  EXPECT_EQ(outcome("collisions"), Outcome::kHolds);
+  EXPECT_NE(verdict_sentence(result_.checks).find("; not looked at: shank and holder of T2 (none are known)"),
+            std::string::npos)
+      << verdict_sentence(result_.checks);
+  EXPECT_NE(judged("collisions").reason.find("not looked at: shank and holder of T2"), std::string::npos);
+  // A tool with a holder that only lies in the magazine makes nothing looked at.
+  job_.scene.tools = {bare(1), cutter::Cutter{}};
+  result_.main.path.elements = first_alone;
+  EXPECT_EQ(outcome("collisions"), Outcome::kNotJudged);
+}
+
+TEST_F(Judge, WhereAToolOfFlutesAloneIsBuriedItsUpperEndIsAContact) {
+  job_.scene.tools = {bare(1)};
+  EXPECT_EQ(outcome("collisions"), Outcome::kNotJudged);
+  result_.clearance.events.resize(1);
+  result_.clearance.events.front().part = "holder";
+  EXPECT_EQ(outcome("collisions"), Outcome::kFails);
+}
+
+TEST_F(Judge, WhatAnAssumedBlockIsFreeOfSaysThatItIsAssumed) {
+  job_.scene.stock.auto_box = true;
+  EXPECT_EQ(outcome("rapids_in_material"), Outcome::kHolds);
+  EXPECT_NE(verdict_sentence(result_.checks)
+                .find("rapids in material: contacts of 0.000 mm and more with the "
+                      "block that is assumed"),
+            std::string::npos)
+      << verdict_sentence(result_.checks);
+}
+
+TEST(Verdict, ChecksThatSeeByDifferentMeansAreNotToldAsOne) {
+  const auto held = [](const char* name, const char* covers) {
+    Check check{name, name};
+    check.outcome = Outcome::kHolds;
+    check.covers = covers;
+    return check;
+  };
+  const std::vector<Check> checks = {held("collisions", "contacts of 0.200 mm and more"),
+                                     held("rapids_in_material", "contacts of 0.200 mm and more"),
+                                     held("flank_limit", "rays 0.5 mm apart")};
+  EXPECT_EQ(
+      verdict_sentence(checks),
+      "PASS: 3 checks hold (collisions, rapids in material: contacts of 0.200 mm and more; flank limit: "
+      "rays 0.5 mm apart)");
+}
+
 }  // namespace
 }  // namespace swarf::sim
