@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <chrono>
+#include <ctime>
 #include <future>
 #include <limits>
 #include <optional>
@@ -39,6 +40,26 @@ bool write_finished(const stock::Stock& stock, const CutOptions& options,
     return false;
   }
 }
+
+/// Of a thread that may use the processor of another one while that waits, for the disk say.
+class OtherThread {
+ public:
+  /// It has kept a processor for most of the time since this was asked last.
+  bool is_working() {
+    constexpr double kMost = 0.5;
+    const auto now = std::chrono::steady_clock::now();
+    const std::clock_t used = std::clock();
+    const double passed_s = std::chrono::duration<double>(now - asked_).count();
+    const double used_s = static_cast<double>(used - used_) / CLOCKS_PER_SEC;
+    asked_ = now;
+    used_ = used;
+    return used_s > kMost * passed_s;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point asked_ = std::chrono::steady_clock::now();
+  std::clock_t used_ = std::clock();  ///< of the whole process: who asks has slept meanwhile
+};
 
 class CutStage {
  public:
@@ -113,6 +134,7 @@ class CutStage {
       make_room();
       full_mm3_ = result_.stock->volume_mm3();
     }
+    if (tiles_ && options_.resume_file.empty() && carried_.empty()) tiles_->call_together();
     result_.start_hash = result_.stock->hash();
   }
 
@@ -332,7 +354,7 @@ class CutStage {
   }
 
   /// Meanwhile this one checks and writes what it alone has: a rank of one thread only deals as long as that
-  /// takes.
+  /// needs its processor.
   void prove_by_ranks(const stock::Stock& stock) {
     std::string broken;
     std::future<void> own = std::async(std::launch::async, [&] {
@@ -340,8 +362,10 @@ class CutStage {
       stock.hash();  // is kept for the metrics
       outcome_.is_written = write_finished(stock, options_, outcome_.metadata);
     });
+    OtherThread other;
     const stock::StockProof proof = tiles_->prove(result_.sweep_bound_mm, [&] {
-      return thread_count() == 1 && own.wait_for(std::chrono::seconds(0)) != std::future_status::ready;
+      return thread_count() == 1 && own.wait_for(std::chrono::seconds(0)) != std::future_status::ready &&
+             other.is_working();
     });
     own.get();
     result_.volume_left_mm3 = proof.volume_mm3;

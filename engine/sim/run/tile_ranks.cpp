@@ -76,10 +76,16 @@ void TileLead::await_seen(int rank, size_t begin) {
   }
 }
 
+void TileLead::call_together() {
+  send_to_all(ranks_, tile_request(TileRequest::kHold));
+  are_called_ = true;
+}
+
 /// Where all of them meet that have cut ahead, not beyond sweep `most`: at the farthest, unless one must
 /// wait.
 size_t TileLead::meet(size_t most) {
-  send_to_all(ranks_, tile_request(TileRequest::kHold));
+  if (!are_called_) call_together();
+  are_called_ = false;
   for (;;) {
     size_t farthest = 0, nearest = parts_.sweeps.size(), end = most;
     for (int rank = 1; rank < ranks_.size(); ++rank) {

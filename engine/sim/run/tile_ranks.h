@@ -42,6 +42,10 @@ class TileLead {
  public:
   TileLead(Ranks& ranks, const CutParts& parts);
 
+  /// Soon this rank will begin with the raw stock: the others finish what they cut, and wait. Earlier than
+  /// begin(), because that takes them a while.
+  void call_together();
+
   struct Start {
     size_t at = 0;              ///< sweeps that have cut the stock already
     bool is_raw = true;         ///< nothing is cut from it yet: the others may have begun
@@ -88,6 +92,7 @@ class TileLead {
   std::optional<stock::ContactFinder> finder_;      ///< of its own tiles
   std::vector<std::map<size_t, BatchState>> seen_;  ///< by rank and first sweep: told before it was asked for
   std::string broken_;
+  bool are_called_ = false;      ///< the others, and have not answered yet
   size_t at_ = 0;                ///< sweeps that the run has come to
   size_t own_from_ = 0;          ///< before that its own tiles are no longer cut
   std::vector<uint32_t> taken_;  ///< of the share of each other rank: its own tiles

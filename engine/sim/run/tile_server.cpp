@@ -307,8 +307,8 @@ class TileServer {
   std::optional<OwnTiles> own_;
   std::optional<ProofInputs> proof_;
   std::unique_ptr<measure::RootProver> prover_;  ///< of the surface that is being proven
-  std::function<std::optional<Bytes>()>
-      next_piece_;         ///< of what rank 0 has asked for; empty: nothing is left
+  /// Of what rank 0 has asked for; empty: nothing is left to tell.
+  std::function<std::optional<Bytes>()> next_piece_;
   bool ahead_;             ///< of rank 0
   bool is_known_ = false;  ///< to rank 0, which takes what is told
 };

@@ -33,8 +33,7 @@ void add_planes(const LevelSet& set, int first, int last, const TileSet& held, B
   };
   size_t sent = 0;
   for (size_t n = begin; n < end; ++n) sent += is_sent(n) ? 1 : 0;
-  constexpr size_t kHead =
-      256;  // bytes: what is neither by position nor by column, and the gap before values
+  constexpr size_t kHead = 256;  // bytes, for what is neither by position nor by column
   out.reserve(kHead + columns.size() + (end - begin) + sent * kLeafVoxels * sizeof(float));
   out.add(set.voxel);
   out.add(set.rounding_mm);
