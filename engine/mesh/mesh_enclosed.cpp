@@ -14,6 +14,9 @@ namespace {
 
 /// Windings are whole numbers.
 constexpr double kInside = 0.75;
+/// Larger shells are let be: each of a thousand screws in a casting of a million facets would ask all of
+/// them.
+constexpr size_t kFacetsMost = 16000;
 
 /// The welded mesh, its shells, and which facets touch which shells.
 struct Shells {
@@ -27,6 +30,7 @@ struct Shells {
   bool touches(uint32_t facet, uint32_t shell) const {
     return std::binary_search(touching.begin(), touching.end(), std::array{facet, shell});
   }
+  bool is_asked(uint32_t shell) const { return shells[shell].facets.size() <= kFacetsMost; }
   bool is_body(const Shell& shell) const;
 };
 
@@ -44,8 +48,10 @@ Shells::Shells(const TriMesh& given)
   TriMesh numbered{given.positions, {}, {}, {}, {}};  // by the welded mesh's facets
   for (const uint32_t source : mesh.sources) numbered.triangles.push_back(given.triangles[source]);
   const MeshDistance tree(numbered);
-  for (const auto& [a, b] : touching_pairs(
-           numbered, tree, [&](uint32_t one, uint32_t other) { return shell_of[one] != shell_of[other]; })) {
+  const auto asked = [&](uint32_t one, uint32_t other) {
+    return shell_of[one] != shell_of[other] && is_asked(shell_of[one]) && is_asked(shell_of[other]);
+  };
+  for (const auto& [a, b] : touching_pairs(numbered, tree, asked)) {
     touching.push_back({a, shell_of[b]});
     touching.push_back({b, shell_of[a]});
   }
@@ -120,9 +126,10 @@ Enclosed find_enclosed(const TriMesh& mesh) {
   const Shells all(mesh);
   const size_t count = all.shells.size();
   std::vector<uint8_t> is_body(count);
-  for (size_t n = 0; n < count; ++n) is_body[n] = all.is_body(all.shells[n]) ? 1 : 0;
+  for (uint32_t n = 0; n < count; ++n) is_body[n] = all.is_asked(n) && all.is_body(all.shells[n]) ? 1 : 0;
   std::vector<std::vector<uint32_t>> enclosing(count);  // by what they enclose
   parallel_chunks(count, 1, [&](size_t own, size_t) {
+    if (!all.is_asked(static_cast<uint32_t>(own))) return;
     for (uint32_t other = 0; other < count; ++other) {
       if (other == own || is_body[other] == 0 || !meet(all.shells[own].box, all.shells[other].box)) continue;
       if (mark_within(all, static_cast<uint32_t>(own), other, found.facets)) enclosing[own].push_back(other);

@@ -18,6 +18,8 @@ struct Enclosed {
 /// as they are sunk, the foot of a rib in the casting. A facet lies within a shell when it touches none of
 /// its facets (exact, see mesh_crossing.h) and the shell winds around it.
 ///
+/// Shells of more than 16 000 facets neither enclose anything here nor are looked for in others.
+///
 /// From a place around which no such shell winds, as any outside the boxes `around`, they are never seen: on
 /// the way to one the shell's outside is met first. If that place of the shell lies within another, that
 /// one's outside is nearer still; at the nearest a facet is met that lies within none. So the mesh without

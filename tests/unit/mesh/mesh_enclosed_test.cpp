@@ -103,6 +103,15 @@ TEST(Enclosed, WhatLiesWithinABodyIsFound) {
   }
 }
 
+TEST(Enclosed, ShellsOfManyFacetsAreLetBe) {
+  EXPECT_EQ(
+      count_enclosed(together({test::torus(30, 10, {0, 0, 0}, 128, 62), block({29, -1, -1}, {31, 1, 1})})),
+      12u);
+  EXPECT_EQ(
+      count_enclosed(together({test::torus(30, 10, {0, 0, 0}, 128, 64), block({29, -1, -1}, {31, 1, 1})})),
+      0u);
+}
+
 TEST(Enclosed, TheBoxesAroundHoldIt) {
   const Enclosed found = find_enclosed(together({kScrew, kCasting, block({100, 0, 0}, {110, 10, 10})}));
   ASSERT_EQ(found.around.size(), 1u);
