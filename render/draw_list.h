@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/frames.h"
+#include "mesh/mesh_enclosed.h"
 #include "mesh/tri_mesh.h"
 
 namespace swarf::render {
@@ -28,7 +29,9 @@ struct DrawItem {
       false;  ///< true: the mesh changes between frames; false: renderers may keep it by its address
   /// Not 0: no two meshes that are ever drawn have the same, so that renderers need not look for changes.
   uint64_t revision = 0;
-  bool sectioned = false;     ///< cut open by DrawList::section; a closed body
+  bool sectioned = false;  ///< cut open by DrawList::section; a closed body
+  /// Of the mesh, borrowed like it; may be null. Renderers may leave out what it says cannot be seen.
+  const mesh::Enclosed* enclosed = nullptr;
   bool outside_only = false;  ///< part of a closed surface: the backs of its triangles are never seen
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/parallel.h"
 #include "base/units.h"
 #include "render/camera.h"
 #include "reports/pictures.h"
@@ -40,6 +41,22 @@ ShotView::ShotView(const FinishedRun& run, const std::string& default_camera)
     const Vec3 centre = view_.work_pose(cycle.q) * run.job.scene.stock.box_W.centre();
     seen_.lower = seen_.lower.cwiseMin(centre);
     seen_.upper = seen_.upper.cwiseMax(centre);
+  }
+  find_enclosed();
+}
+
+/// A fifth of a machine's facets is sunk in other bodies of its link; where no shot shows it they are not
+/// looked for.
+void ShotView::find_enclosed() {
+  const auto& shots = run_.job.scene.movie.shots;
+  if (std::all_of(shots.begin(), shots.end(),
+                  [](const sim::MovieShot& shot) { return shot.view == sim::MovieView::kPart; }))
+    return;
+  const std::vector<machine::Link>& links = run_.job.machine.links;
+  std::vector<mesh::Enclosed> found(links.size());
+  parallel_chunks(links.size(), 1, [&](size_t i, size_t) { found[i] = mesh::find_enclosed(links[i].mesh); });
+  for (size_t i = 0; i < links.size(); ++i) {
+    if (!found[i].around.empty()) enclosed_.emplace(&links[i].mesh, std::move(found[i]));
   }
 }
 
@@ -98,6 +115,10 @@ render::DrawList ShotView::list(const PlannedFrame& frame, sim::MovieView view,
     list.items.push_back({&view_.holder(tool), X_WT * view_.holder_in_tool(tool), kHolderMaterial});
   } else {
     list.items = view_.items(frame.cycle.q, tool, nullptr);
+    for (render::DrawItem& item : list.items) {
+      const auto known = enclosed_.find(item.mesh);
+      if (known != enclosed_.end()) item.enclosed = &known->second;
+    }
   }
   const size_t before = list.items.size();
   add_stock(stock, revisions, X_drawn, list.items);

@@ -1,7 +1,7 @@
 // Cameras and things to draw of a shot.
 #pragma once
 
-#include <memory>
+#include <map>
 
 #include "render/draw_list.h"
 #include "reports/machine_view.h"
@@ -23,9 +23,11 @@ class ShotView {
  private:
   render::Camera camera(const PlannedFrame& frame, sim::MovieView view, const std::array<int, 2>& size) const;
   Vec3 direction(const PlannedFrame& frame, sim::MovieView view) const;
+  void find_enclosed();
 
   const FinishedRun& run_;
   MachineView view_;
+  std::map<const TriMesh*, mesh::Enclosed> enclosed_;  ///< of the machine's meshes; those that enclose any
   std::string default_camera_;
   Box seen_;  ///< machine frame: where the middle of the stock goes
 };

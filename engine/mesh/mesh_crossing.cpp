@@ -109,14 +109,38 @@ bool facets_cross(const FacetCorners& s, const FacetCorners& t) {
   return edges_cross(s, of_s, t) || edges_cross(t, sides_of(t, s), s);
 }
 
-/// Multiples of this are so few bits that determinants of them fit into 113: three differences of 36 bits and
-/// their sum. It is about 1e-10 of the largest coordinate, far below the spacing of floats there.
-double grid_of(const TriMesh& mesh) {
+/// As edges_cross(), but an end in the plane counts, and all of an edge in it wherever that edge leads.
+bool edges_touch(const FacetCorners& s, const std::array<int, 3>& sides, const FacetCorners& t) {
+  for (size_t i = 0; i < 3; ++i) {
+    const size_t j = (i + 1) % 3;
+    if (sides[i] * sides[j] <= 0 && runs_through(s[i], s[j], t)) return true;
+  }
+  return false;
+}
+
+/// False only where they have no place in common.
+bool facets_may_touch(const FacetCorners& s, const FacetCorners& t) {
+  const std::array<int, 3> of_s = sides_of(s, t), of_t = sides_of(t, s);
+  const auto beside = [](const std::array<int, 3>& sides) {
+    return sides == std::array{1, 1, 1} || sides == std::array{-1, -1, -1};
+  };
+  return !beside(of_s) && !beside(of_t) && (edges_touch(s, of_s, t) || edges_touch(t, of_t, s));
+}
+
+/// Rounded to multiples of so few bits that determinants of them fit into 113: three differences of 36 bits
+/// and their sum. It is about 1e-10 of the largest coordinate, far below the spacing of floats there.
+std::vector<Vec3> rounded_points(const TriMesh& mesh) {
   float largest = 0.0F;
   for (const auto& p : mesh.positions)
     largest = std::max({largest, std::abs(p[0]), std::abs(p[1]), std::abs(p[2])});
   constexpr int kBits = 34;
-  return std::ldexp(1.0, std::ilogb(std::max(largest, std::numeric_limits<float>::min())) + 1 - kBits);
+  const double grid =
+      std::ldexp(1.0, std::ilogb(std::max(largest, std::numeric_limits<float>::min())) + 1 - kBits);
+  std::vector<Vec3> points;
+  points.reserve(mesh.positions.size());
+  for (const auto& p : mesh.positions)
+    points.push_back(grid * (Vec3(p[0], p[1], p[2]) / grid).array().round().matrix());
+  return points;
 }
 
 struct Span {
@@ -128,6 +152,40 @@ struct Span {
   }
 };
 
+constexpr size_t kFacetsPerTask = 512;
+
+/// Calls found(task, t, others) for each facet t and those of a higher number of which pair(own corners,
+/// their corners) is true, ascending within each task of kFacetsPerTask; `others` in no particular order.
+/// Parallel.
+template <typename Asked, typename Pair, typename Found>
+void each_paired(const TriMesh& mesh, const MeshDistance& tree, const Asked& asked, const Pair& pair,
+                 const Found& found) {
+  const std::vector<Vec3> points = rounded_points(mesh);
+  const auto corners = [&](uint32_t t) {
+    const auto& v = mesh.triangles[t];
+    return FacetCorners{points[v[0]], points[v[1]], points[v[2]]};
+  };
+  parallel_chunks(mesh.triangles.size(), kFacetsPerTask, [&](size_t begin, size_t end) {
+    std::vector<uint32_t> met;
+    for (auto t = static_cast<uint32_t>(begin); t < end; ++t) {
+      const FacetCorners own = corners(t);
+      const Span span(own);
+      const Vec3 centre = 0.5 * (span.low + span.high);
+      met.clear();
+      tree.each_near(centre, 0.5 * (span.high - span.low).norm(), [&](uint32_t other) {
+        if (other <= t || !asked(t, other)) return;
+        const FacetCorners theirs = corners(other);
+        if (span.meets(Span(theirs)) && pair(own, theirs)) met.push_back(other);
+      });
+      if (!met.empty()) found(begin / kFacetsPerTask, t, met);
+    }
+  });
+}
+
+size_t tasks_of(const TriMesh& mesh) {
+  return (mesh.triangles.size() + kFacetsPerTask - 1) / kFacetsPerTask;
+}
+
 }  // namespace
 
 bool edge_crosses(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -135,37 +193,18 @@ bool edge_crosses(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, co
 }
 
 Crossings find_crossings(const SignedDistance& mesh) {
-  constexpr size_t kChunk = 512;
-  const size_t count = mesh.mesh().triangles.size();
-  std::vector<Crossings> parts((count + kChunk - 1) / kChunk);
-  const double grid = grid_of(mesh.mesh());
-  const auto corners = [&](uint32_t t) {
-    FacetCorners rounded{mesh.corner(t, 0), mesh.corner(t, 1), mesh.corner(t, 2)};
-    for (Vec3& p : rounded) p = grid * (p / grid).array().round().matrix();
-    return rounded;
-  };
-  parallel_chunks(count, kChunk, [&](size_t begin, size_t end) {
-    Crossings& mine = parts[begin / kChunk];
-    std::vector<uint32_t> met;
-    for (auto t = static_cast<uint32_t>(begin); t < end; ++t) {
-      const FacetCorners own = corners(t);
-      const Span span(own);
-      const Vec3 centre = 0.5 * (span.low + span.high);
-      met.clear();
-      mesh.tree().each_near(centre, 0.5 * (span.high - span.low).norm(), [&](uint32_t other) {
-        if (other <= t) return;
-        const FacetCorners theirs = corners(other);
-        if (span.meets(Span(theirs)) && facets_cross(own, theirs)) met.push_back(other);
-      });
-      if (met.empty()) continue;
-      if (mine.pairs == 0) {
-        mine.first = t;
-        mine.second = *std::min_element(met.begin(), met.end());
-        mine.place = own[0];
-      }
-      mine.pairs += met.size();
-    }
-  });
+  std::vector<Crossings> parts(tasks_of(mesh.mesh()));
+  const auto all_pairs = [](uint32_t, uint32_t) { return true; };
+  each_paired(mesh.mesh(), mesh.tree(), all_pairs, facets_cross,
+              [&](size_t task, uint32_t t, const std::vector<uint32_t>& met) {
+                Crossings& mine = parts[task];
+                if (mine.pairs == 0) {
+                  mine.first = t;
+                  mine.second = *std::min_element(met.begin(), met.end());
+                  mine.place = mesh.corner(t, 0);
+                }
+                mine.pairs += met.size();
+              });
   Crossings all;
   for (const Crossings& part : parts) {
     const size_t pairs = all.pairs + part.pairs;
@@ -173,6 +212,19 @@ Crossings find_crossings(const SignedDistance& mesh) {
     all.pairs = pairs;
   }
   return all;
+}
+
+std::vector<std::array<uint32_t, 2>> touching_pairs(const TriMesh& mesh, const MeshDistance& tree,
+                                                    const std::function<bool(uint32_t, uint32_t)>& asked) {
+  std::vector<std::vector<std::array<uint32_t, 2>>> parts(tasks_of(mesh));
+  each_paired(mesh, tree, asked, facets_may_touch,
+              [&](size_t task, uint32_t t, const std::vector<uint32_t>& met) {
+                for (const uint32_t other : met) parts[task].push_back({t, other});
+              });
+  std::vector<std::array<uint32_t, 2>> pairs;
+  for (const auto& part : parts) pairs.insert(pairs.end(), part.begin(), part.end());
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
 }
 
 }  // namespace swarf::mesh

@@ -1,8 +1,10 @@
 // Whether a mesh runs through itself.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "base/frames.h"
@@ -22,6 +24,12 @@ struct Crossings {
 /// (double with its error bound, then 113 bits).
 /// Parallel; the same result for any number of threads.
 Crossings find_crossings(const SignedDistance& mesh);
+
+/// All pairs of facets that have a place in common, if only a corner (the lesser number first, ascending),
+/// and some that nearly have, among those of which `asked` says true. `tree`: of the mesh, whose vertices are
+/// welded or not. Positions are rounded as above.
+std::vector<std::array<uint32_t, 2>> touching_pairs(const TriMesh& mesh, const MeshDistance& tree,
+                                                    const std::function<bool(uint32_t, uint32_t)>& asked);
 
 /// Whether the edge p-q passes from one side of (a, b, c) to the other, through its inside or border.
 bool edge_crosses(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c);

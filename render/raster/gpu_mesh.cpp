@@ -88,6 +88,18 @@ TriMesh with_face_normals(const TriMesh& mesh) {
   return flat;
 }
 
+/// The triangles, those that are enclosed last, and how many are not.
+std::vector<std::array<uint32_t, 3>> outside_first(const TriMesh& mesh, const mesh::Enclosed& enclosed,
+                                                   size_t& outside) {
+  SWARF_CHECK(enclosed.facets.size() == mesh.triangles.size(), "one mark per triangle");
+  std::vector<std::array<uint32_t, 3>> sorted, last;
+  for (size_t i = 0; i < mesh.triangles.size(); ++i)
+    (enclosed.facets[i] == 0 ? sorted : last).push_back(mesh.triangles[i]);
+  outside = sorted.size();
+  sorted.insert(sorted.end(), last.begin(), last.end());
+  return sorted;
+}
+
 }  // namespace
 
 const GpuMesh& GpuMeshCache::get(const DrawItem& item) {
@@ -95,9 +107,10 @@ const GpuMesh& GpuMeshCache::get(const DrawItem& item) {
   Entry& entry = found->second;
   entry.used = true;
   const uint64_t now = item.revision != 0 ? item.revision : fingerprint(*item.mesh);
-  if (inserted || item.dynamic || entry.mesh.fingerprint != now) {
+  if (inserted || item.dynamic || entry.mesh.fingerprint != now || entry.mesh.enclosed != item.enclosed) {
     upload(item, entry.mesh);
     entry.mesh.fingerprint = now;
+    entry.mesh.enclosed = item.enclosed;
   }
   return entry.mesh;
 }
@@ -144,11 +157,14 @@ void GpuMeshCache::upload(const DrawItem& item, GpuMesh& target) {
   attribute(0, 3, GL_FLOAT, GL_FALSE, mesh.positions);
   attribute(1, 3, GL_FLOAT, GL_FALSE, mesh.normals);
   attribute(2, 4, GL_UNSIGNED_BYTE, GL_TRUE, mesh.colours);
+  size_t outside = mesh.triangles.size();
   gl_.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, target.buffers[3]);
-  gl_.BufferData(GL_ELEMENT_ARRAY_BUFFER,
-                 static_cast<GLsizeiptr>(mesh.triangles.size() * sizeof(mesh.triangles[0])),
-                 mesh.triangles.data(), usage);
+  gl_.BufferData(
+      GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.triangles.size() * sizeof(mesh.triangles[0])),
+      item.enclosed != nullptr ? outside_first(mesh, *item.enclosed, outside).data() : mesh.triangles.data(),
+      usage);
   target.index_count = static_cast<GLsizei>(3 * mesh.triangles.size());
+  target.outside_count = static_cast<GLsizei>(3 * outside);
   target.has_colours = !mesh.colours.empty();
   target.closed = item.outside_only || (!item.dynamic && item.revision == 0 && is_closed(given));
   target.bounds = bounds_of(mesh);

@@ -14,10 +14,12 @@ struct GpuMesh {
   GLuint vertex_array = 0;
   GLuint buffers[4] = {};  ///< positions, normals, colours, indices
   GLsizei index_count = 0;
+  GLsizei outside_count = 0;  ///< of them, the first: all but those of enclosed triangles
   bool has_colours = false;
-  bool closed = false;       ///< no way to see a triangle's back; known of static meshes only
-  Box bounds;                ///< in the mesh's frame
-  uint64_t fingerprint = 0;  ///< or DrawItem::revision
+  bool closed = false;                       ///< no way to see a triangle's back; known of static meshes only
+  Box bounds;                                ///< in the mesh's frame
+  uint64_t fingerprint = 0;                  ///< or DrawItem::revision
+  const mesh::Enclosed* enclosed = nullptr;  ///< as it was sent
 };
 
 /// Meshes by their address. All calls need the context to be current.

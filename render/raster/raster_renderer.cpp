@@ -119,7 +119,7 @@ struct RasterRenderer::Impl {
   void draw_surfaces(const SceneView& view, const DrawList& list);
   void draw_items(const SceneView& view, const DrawList& list, bool sectioned);
   void draw_lines(const SceneView& view, const std::vector<DrawLine>& lines);
-  void draw_triangles(const GpuMesh& mesh, bool both_sides = false);
+  void draw_triangles(const GpuMesh& mesh, bool enclosed_too, bool both_sides);
   void read_shadow(const SceneView& view);
   Image shade(const SceneView& view, const Camera& camera);
 
@@ -236,14 +236,15 @@ int RasterRenderer::Impl::material_of(const Material& material) {
 }
 
 /// Backs are dropped where they cannot be seen: half of the work.
-void RasterRenderer::Impl::draw_triangles(const GpuMesh& mesh, bool both_sides) {
+void RasterRenderer::Impl::draw_triangles(const GpuMesh& mesh, bool enclosed_too, bool both_sides) {
   if (mesh.closed && !both_sides) {
     gl.Enable(GL_CULL_FACE);
   } else {
     gl.Disable(GL_CULL_FACE);
   }
   gl.BindVertexArray(mesh.vertex_array);
-  gl.DrawElements(GL_TRIANGLES, mesh.index_count, GL_UNSIGNED_INT, nullptr);
+  gl.DrawElements(GL_TRIANGLES, enclosed_too ? mesh.index_count : mesh.outside_count, GL_UNSIGNED_INT,
+                  nullptr);
 }
 
 /// Only what the picture can look at is drawn: the map holds the whole scene. What is cut open casts no
@@ -266,7 +267,7 @@ void RasterRenderer::Impl::draw_shadow(const SceneView& view, bool section) {
                         part.upper))
       continue;
     uniforms.set("world_from_mesh", one.item->X_world.matrix());
-    draw_triangles(*one.mesh);
+    draw_triangles(*one.mesh, false, false);  // the light stands outside of everything
   }
   gl.Disable(GL_POLYGON_OFFSET_FILL);
   gl.Disable(GL_SCISSOR_TEST);
@@ -295,7 +296,7 @@ void RasterRenderer::Impl::draw_items(const SceneView& view, const DrawList& lis
     } else {
       uniforms.set("paint_word", packed_paint(one.item->material.colour, kFirstMaterial + one.material));
     }
-    draw_triangles(*one.mesh, sectioned);
+    draw_triangles(*one.mesh, sectioned || is_looked_into(view, list.camera.eye, *one.item), sectioned);
   }
 }
 

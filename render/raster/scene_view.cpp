@@ -89,6 +89,15 @@ bool may_lie_within(const Eigen::Matrix4d& clip_from_world, const Box& box, cons
   return std::none_of(std::begin(beyond), std::end(beyond), [](int count) { return count == 8; });
 }
 
+bool is_looked_into(const SceneView& view, const Vec3& eye, const DrawItem& item) {
+  if (item.enclosed == nullptr) return false;
+  const Vec3 at = item.X_world.inverse() * eye;
+  const double reach = view.near * (view.forward + view.right + view.up).norm();  // to a corner of that plane
+  return std::any_of(item.enclosed->around.begin(), item.enclosed->around.end(), [&](const Box& box) {
+    return (at - at.cwiseMax(box.lower).cwiseMin(box.upper)).norm() <= reach;
+  });
+}
+
 Vec3 nearness_of_level(const SceneView& view, const Vec3& eye, double height) {
   constexpr double kInItsPlane_mm = 1e-9;
   const double rise = height - eye.z();

@@ -28,6 +28,10 @@ SceneView scene_view(const Camera& camera, const Box& bounds, double aspect);
 bool may_lie_within(const Eigen::Matrix4d& clip_from_world, const Box& box, const Pose& X_world,
                     const Vec2& lower, const Vec2& upper);
 
+/// Whether the eye, or a place of the picture's near plane, may lie in a body of the item that encloses
+/// triangles: what is within shows then.
+bool is_looked_into(const SceneView& view, const Vec3& eye, const DrawItem& item);
+
 /// Of the horizontal plane at this height, 1 / distance along `forward`, 1/mm: x and y of the picture (-1..1)
 /// times the first two plus the third. Not above 0 where the picture does not see the plane, everywhere where
 /// it sees it edge on.

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 
+#include "mesh/mesh_enclosed.h"
 #include "mesh/mesh_io.h"
 #include "raster_scene.h"
 #include "render/raster/raster_renderer.h"
@@ -87,6 +89,42 @@ TEST(MachineMeshes, FillAPictureWithContrast) {
   EXPECT_GT(dark, 1000);    // motors, panels, plinth
   EXPECT_GT(bright, 5000);  // paint and background
   EXPECT_GT(blue, 200);     // the cradle
+}
+
+/// From outside and from within: in the column, and with the near plane through it.
+TEST(MachineMeshes, LookTheSameWithoutWhatIsEnclosed) {
+  std::vector<TriMesh> parts;
+  std::vector<mesh::Enclosed> enclosed;
+  size_t left_out = 0, triangles = 0;
+  for (const char* name : kParts) {
+    parts.push_back(load_part(name));
+    enclosed.push_back(mesh::find_enclosed(parts.back()));
+    left_out += static_cast<size_t>(
+        std::count(enclosed.back().facets.begin(), enclosed.back().facets.end(), uint8_t{1}));
+    triangles += parts.back().triangles.size();
+  }
+  EXPECT_GT(left_out, triangles / 6);
+  DrawList list;
+  for (const TriMesh& part : parts) list.items.push_back(item(part, {0.7F, 0.7F, 0.7F}));
+  RasterRenderer smooth(240, 150, 4), fast(240, 150, 1);
+  const auto look = [&](const Camera& camera) {
+    list.camera = camera;
+    Image seen[2];
+    for (RasterRenderer* renderer : {&smooth, &fast}) {
+      for (size_t known = 0; known < 2; ++known) {
+        for (size_t i = 0; i < parts.size(); ++i)
+          list.items[i].enclosed = known != 0 ? &enclosed[i] : nullptr;
+        seen[known] = renderer->draw(list);
+      }
+      // The eye's place tells which: a picture's bytes fill a screen.
+      EXPECT_TRUE(seen[0].rgba == seen[1].rgba) << camera.eye.transpose();
+    }
+  };
+  for (const Vec3& from :
+       {Vec3(0.55, 0.8, -0.4), Vec3(-0.8, 0.3, -0.3), Vec3(0.1, -0.9, -0.2), Vec3(0, 0.1, 1)})
+    look(look_at_box({{-560, -230, -540}, {560, 920, 1046}}, from, 0.5, 1.6));
+  for (const Vec3& eye : {Vec3(300, -500, 300), Vec3(0, 600, 0), Vec3(0, 412, 100), Vec3(100, -200, -150)})
+    look({eye, Vec3(0, 96, 120)});
 }
 
 }  // namespace

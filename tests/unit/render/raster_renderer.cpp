@@ -6,6 +6,7 @@
 #include <future>
 
 #include "base/check.h"
+#include "mesh/mesh_enclosed.h"
 #include "raster_scene.h"
 
 namespace swarf::render::raster_renderer {
@@ -283,6 +284,34 @@ TEST(RasterRenderer, WhatIsGreaterThanThePictureIsDrawn) {
   list.items = {item(wall, kRed)};
   const Image image = RasterRenderer(kWidth, kHeight).draw(list);
   for (const int x : {0, kWidth / 2, kWidth - 1}) EXPECT_GT(pixel(image, x, kHeight / 2).r, 90);
+}
+
+TEST(RasterRenderer, LeavesOutWhatIsEnclosedWhereItIsNotSeen) {
+  TriMesh both = box_mesh({Vec3::Constant(-50.0), Vec3::Constant(50.0)});
+  const TriMesh sunk = box_mesh({Vec3::Constant(-10.0), Vec3::Constant(10.0)});
+  const TriMesh casting = both;
+  const auto first = static_cast<uint32_t>(both.positions.size());
+  both.positions.insert(both.positions.end(), sunk.positions.begin(), sunk.positions.end());
+  for (const auto& t : sunk.triangles) both.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  const mesh::Enclosed known = mesh::find_enclosed(both);
+  RasterRenderer renderer(kWidth, kHeight);
+  const auto picture = [&](const Vec3& eye, const TriMesh& mesh, const mesh::Enclosed* enclosed, bool cut) {
+    DrawList list;
+    list.camera.eye = eye;
+    list.items = {item(mesh, {0.9F, 0.1F, 0.1F})};
+    list.items.front().enclosed = enclosed;
+    list.items.front().sectioned = cut;
+    if (cut) list.section = {Vec3::Zero(), Vec3(1.0, 0.0, 0.0)};
+    return renderer.draw(list).rgba;
+  };
+  const Vec3 outside(200, -150, 120), within(45, 5, 5), before(60, 5, 5);
+  EXPECT_TRUE(picture(outside, both, &known, false) == picture(outside, casting, nullptr, false));
+  const mesh::Enclosed all{std::vector<uint8_t>(both.triangles.size(), 1), known.around};
+  EXPECT_FALSE(picture(outside, both, &all, false) == picture(outside, both, nullptr, false));
+  EXPECT_TRUE(picture(within, both, &known, false) == picture(within, both, nullptr, false));
+  EXPECT_FALSE(picture(within, both, nullptr, false) == picture(within, casting, nullptr, false));
+  EXPECT_TRUE(picture(before, both, &known, false) == picture(before, casting, nullptr, false));
+  EXPECT_TRUE(picture(outside, both, &known, true) == picture(outside, both, nullptr, true));
 }
 
 }  // namespace
