@@ -12,7 +12,7 @@ namespace {
 /// Places along one ray; of a ray that is longer they lie farther apart.
 constexpr double kMostPlaces = 256.0;
 /// Of distances to cells: their borders are known to some roundings of a part of some metres.
-constexpr double kRounding = 1.0 - 1e-6;
+constexpr double kBorderShare = 1.0 - 1e-6;
 
 /// A cell and those beside it, those that are likely to hold the nearest place first.
 constexpr std::array<std::array<int32_t, 3>, 27> cells_around() {
@@ -91,7 +91,7 @@ std::optional<uint32_t> SeenSurface::nearest_ray(const Vec3& point) const {
                                                             : 0.0;
       nearer += off * off;
     }
-    if (nearer * kRounding > best) continue;
+    if (nearer * kBorderShare > best) continue;
     const auto found = cells_.find({centre[0] + step[0], centre[1] + step[1], centre[2] + step[2]});
     if (found == cells_.end()) continue;
     for (const Place& place : found->second) {

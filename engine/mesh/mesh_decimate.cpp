@@ -12,6 +12,9 @@
 #include <limits>
 #include <numeric>
 #include <span>
+#include <unordered_map>
+#include <utility>
+#include <vector>
 
 #include "base/check.h"
 #include "base/parallel.h"
@@ -49,34 +52,57 @@ Indices welded_indices(const TriMesh& mesh) {
 /// By vertex: how many tries were too coarse there.
 using Failures = std::vector<uint8_t>;
 
-/// One round of meshoptimizer on the triangles whose numbers are listed; edges shared with others stay as
-/// they are.
-Indices simplify_cell(const TriMesh& mesh, const Indices& indices, std::span<const uint32_t> triangles,
-                      double error_mm, const Failures& failures) {
-  Indices vertices;
-  for (const uint32_t t : triangles)
-    vertices.insert(vertices.end(), &indices[size_t{3} * t], &indices[size_t{3} * t] + 3);
-  uint8_t most = 0;
-  for (const uint32_t v : vertices) most = std::max(most, failures[v]);
-  if (kShares[most] == 0.0) return vertices;
-  Indices local = vertices;
+/// Of one cell of triangles, kept for the next try: most places come to it unchanged.
+struct SimplifiedCell {
+  Indices in;                    ///< corners
+  uint8_t failures = UINT8_MAX;  ///< the most of them
+  Indices out;
+};
+/// By the keys of the cells.
+using SimplifiedCells = std::unordered_map<uint64_t, SimplifiedCell>;
+
+/// Numbers the vertices of a list anew, in their order; `vertices` gets which they were.
+void number_anew(Indices& list, Indices& vertices, size_t all) {
+  vertices = list;
   std::sort(vertices.begin(), vertices.end());
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  thread_local Indices place;  // of what is not in the list: left over
+  if (place.size() < all) place.resize(all);
+  for (uint32_t i = 0; i < vertices.size(); ++i) place[vertices[i]] = i;
+  for (uint32_t& v : list) v = place[v];
+}
+
+/// One round of meshoptimizer on a cell's triangles; edges shared with others stay as they are.
+Indices simplify_cell(const TriMesh& mesh, const SimplifiedCell& cell, double error_mm) {
+  if (kShares[cell.failures] == 0.0) return cell.in;
+  Indices local = cell.in, vertices;
+  number_anew(local, vertices, mesh.positions.size());
   std::vector<std::array<float, 3>> positions;
   for (const uint32_t v : vertices) positions.push_back(mesh.positions[v]);
-  for (uint32_t& v : local) {
-    v = static_cast<uint32_t>(std::lower_bound(vertices.begin(), vertices.end(), v) - vertices.begin());
-  }
   const float extent =
       meshopt_simplifyScale(positions.front().data(), positions.size(), sizeof(positions.front()));
   if (!(extent > 0.0F)) return {};  // only degenerate triangles at one point
   Indices out(local.size());
   out.resize(meshopt_simplify(out.data(), local.data(), local.size(), positions.front().data(),
                               positions.size(), sizeof(positions.front()), 0,
-                              static_cast<float>(kShares[most] * error_mm / extent),
+                              static_cast<float>(kShares[cell.failures] * error_mm / extent),
                               meshopt_SimplifyLockBorder, nullptr));
   for (uint32_t& v : out) v = vertices[v];
   return out;
+}
+
+/// The same of the triangles whose numbers are listed, unless that is done already.
+void simplify_cell(const TriMesh& mesh, const Indices& indices, std::span<const uint32_t> triangles,
+                   double error_mm, const Failures& failures, SimplifiedCell& cell) {
+  Indices in;
+  for (const uint32_t t : triangles)
+    in.insert(in.end(), &indices[size_t{3} * t], &indices[size_t{3} * t] + 3);
+  uint8_t most = 0;
+  for (const uint32_t v : in) most = std::max(most, failures[v]);
+  if (most == cell.failures && in == cell.in) return;
+  cell.in = std::move(in);
+  cell.failures = most;
+  cell.out = simplify_cell(mesh, cell, error_mm);
 }
 
 /// Triangle numbers sorted by the cell of a grid of pitch `cell_mm` that holds their centroid, and where each
@@ -84,6 +110,7 @@ Indices simplify_cell(const TriMesh& mesh, const Indices& indices, std::span<con
 struct Cells {
   Indices triangles;
   std::vector<size_t> starts;
+  std::vector<uint64_t> keys;
 };
 
 Cells sort_into_cells(const TriMesh& mesh, const Indices& indices, double cell_mm, double shift_mm) {
@@ -102,7 +129,10 @@ Cells sort_into_cells(const TriMesh& mesh, const Indices& indices, double cell_m
   std::sort(keyed.begin(), keyed.end());
   Cells cells;
   for (size_t i = 0; i < keyed.size(); ++i) {
-    if (i == 0 || keyed[i].first != keyed[i - 1].first) cells.starts.push_back(i);
+    if (i == 0 || keyed[i].first != keyed[i - 1].first) {
+      cells.starts.push_back(i);
+      cells.keys.push_back(keyed[i].first);
+    }
     cells.triangles.push_back(keyed[i].second);
   }
   cells.starts.push_back(keyed.size());
@@ -112,20 +142,23 @@ Cells sort_into_cells(const TriMesh& mesh, const Indices& indices, double cell_m
 /// meshoptimizer sums its quadrics in float, relative to the extent of what it is given: below kFloatFloor of
 /// the extent its errors are noise. So it gets cells small enough for the error asked for, in two rounds with
 /// the second grid shifted by half a cell, so that the first round's locked borders are open in the second.
-Indices simplify(const TriMesh& mesh, Indices indices, double error_mm, const Failures& failures) {
+/// `kept`: of both rounds, of the tries before.
+Indices simplify(const TriMesh& mesh, Indices indices, double error_mm, const Failures& failures,
+                 std::array<SimplifiedCells, 2>& kept) {
   constexpr double kFloatFloor = 2.5e-4;
   const double cell_mm = error_mm / kFloatFloor;
-  for (const double shift_mm : {0.0, 0.5 * cell_mm}) {
-    const Cells cells = sort_into_cells(mesh, indices, cell_mm, shift_mm);
-    std::vector<Indices> parts(cells.starts.size() - 1);
+  for (size_t round = 0; round < kept.size(); ++round) {
+    const Cells cells = sort_into_cells(mesh, indices, cell_mm, round == 0 ? 0.0 : 0.5 * cell_mm);
+    std::vector<SimplifiedCell*> parts;
+    for (const uint64_t key : cells.keys) parts.push_back(&kept[round][key]);
     parallel_chunks(parts.size(), 1, [&](size_t i, size_t) {
       const std::span all(cells.triangles);
-      parts[i] =
-          simplify_cell(mesh, indices, all.subspan(cells.starts[i], cells.starts[i + 1] - cells.starts[i]),
-                        error_mm, failures);
+      simplify_cell(mesh, indices, all.subspan(cells.starts[i], cells.starts[i + 1] - cells.starts[i]),
+                    error_mm, failures, *parts[i]);
     });
     indices.clear();
-    for (const Indices& part : parts) indices.insert(indices.end(), part.begin(), part.end());
+    for (const SimplifiedCell* part : parts)
+      indices.insert(indices.end(), part->out.begin(), part->out.end());
   }
   return indices;
 }
@@ -324,8 +357,9 @@ TriMesh decimate(const TriMesh& mesh, double max_error_mm, double* reached_error
   const Indices welded = welded_indices(mesh);
   const double budget = kFirstBudget * max_error_mm;
   Failures failures(mesh.positions.size(), 0);
+  std::array<SimplifiedCells, 2> kept;
   for (int attempt = 0; attempt < kTries; ++attempt) {
-    Surface surface{simplify(mesh, welded, budget, failures), Indices(mesh.positions.size())};
+    Surface surface{simplify(mesh, welded, budget, failures, kept), Indices(mesh.positions.size())};
     std::iota(surface.originals.begin(), surface.originals.end(), 0U);
     split_fans(surface);
     if (surface.indices.size() / 3 <= kOpenMeshTriangles)
