@@ -34,6 +34,8 @@ constexpr double kExcessUm = 10.0, kGougeUm = 1.0;  // without a scene that says
 /// surfaces.
 constexpr double kSamplesAcross = 400.0;
 constexpr double kSamples = 250'000.0;
+/// Over both surfaces, with a pitch that is given: some three gigabytes and a minute of processor time.
+constexpr double kMostSamples = 2e7;
 /// Facets of parametric surfaces, mm: curvature makes them smaller where it must.
 constexpr double kPatchPitch = 0.5;
 
@@ -73,6 +75,18 @@ double default_pitch(const mesh::SignedDistance& stock, const mesh::SignedDistan
   return pitch;
 }
 
+/// The pitch that is asked for, unless its samples would fill the memory.
+double given_pitch(double pitch_mm, const mesh::SignedDistance& stock, const mesh::SignedDistance& design) {
+  const double cells = cells_at(stock, pitch_mm) + cells_at(design, pitch_mm);
+  if (cells <= kMostSamples) return pitch_mm;
+  throw InputError("pitch-too-fine", {"flags"},
+                   fmt::format("--pitch-mm {:g} asks for {:.2g} samples, {:.2g} are the most", pitch_mm,
+                               cells, kMostSamples),
+                   fmt::format("leave it out, for cells are divided further where the limits ask for it, or "
+                               "give one from about {:.2g} on",
+                               pitch_mm * std::sqrt(cells / kMostSamples)));
+}
+
 measure::ComparisonInput comparison_of(const CompareOptions& options, const ComparedStock& stock,
                                        const ComparedDesign& design) {
   measure::ComparisonInput input;
@@ -81,7 +95,8 @@ measure::ComparisonInput comparison_of(const CompareOptions& options, const Comp
   input.open_design = design.open;
   input.allowance = options.allowance_mm;
   set_limits(options, design, input);
-  input.pitch = options.pitch_mm.value_or(default_pitch(*stock.mesh, *design.mesh));
+  input.pitch = options.pitch_mm ? given_pitch(*options.pitch_mm, *stock.mesh, *design.mesh)
+                                 : default_pitch(*stock.mesh, *design.mesh);
   input.design_error = design.error_mm;
   input.faces = design.faces.get();
   if (!design.grid) input.stock_error = stock.error;  // two grids are compared as they are
@@ -160,6 +175,7 @@ int compare_solids(const CompareOptions& options) {
 }
 
 int compare(const CompareOptions& options) {
+  let_interrupts_end();
   if (fs::is_directory(options.stock) && fs::is_directory(options.design))
     return compare_runs(options.stock, options.design, options.rays_um, options.json);
   return compare_solids(options);

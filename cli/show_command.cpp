@@ -43,6 +43,7 @@ render::Image picture(const std::string& file, const ShowOptions& options) {
 }
 
 int show(const ShowOptions& options) {
+  let_interrupts_end();
   reports::check_output_file(options.output);
   // "mill_3axis" as run --machine takes it.
   const std::string shipped = machine::machine_file(options.file);

@@ -72,6 +72,11 @@ void catch_interrupt() {
   std::signal(SIGUSR1, on_interrupt);  // which mpirun passes on to its processes
 }
 
+void let_interrupts_end() {
+  std::signal(SIGINT, SIG_DFL);
+  std::signal(SIGTERM, SIG_DFL);
+}
+
 bool interrupted() {
   return stop_flag;
 }

@@ -14,6 +14,9 @@ namespace swarf::cli {
 
 /// Ctrl-C asks the running command to stop and keep what is finished; a second one ends the program at once.
 void catch_interrupt();
+/// For a command that never asks whether it is: Ctrl-C and SIGTERM end the program at once, as they do by
+/// themselves.
+void let_interrupts_end();
 bool interrupted();
 
 /// How much is said, for all commands.

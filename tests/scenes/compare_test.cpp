@@ -196,6 +196,22 @@ TEST_F(Compare, RefusesWhatCannotBeCompared) {
   }
 }
 
+TEST_F(Compare, RefusesAPitchWhoseSamplesWouldFillTheMemory) {
+  const std::string files = file("a.stl", plate(10.0)) + " " + file("b.stl", plate(10.0));
+  const auto refused = swarf::test::run_swarf("compare " + files + " --pitch-mm 1e-9");
+  EXPECT_EQ(refused.exit_code, 2) << refused.output;
+  EXPECT_NE(refused.output.find("[pitch-too-fine]"), std::string::npos) << refused.output;
+}
+
+/// It has nothing to keep, so it ends where it stands: it went on to its end.
+TEST_F(Compare, OneInterruptEndsIt) {
+  const std::string files = file("a.stl", plate(10.0)) + " " + file("b.stl", plate(10.0));
+  const auto stopped = swarf::test::run_command("timeout -s INT 0.3 " + std::string(SWARF_PROGRAM) +
+                                                " compare " + files + " --pitch-mm 0.04");
+  EXPECT_EQ(stopped.exit_code, 124) << stopped.output;
+  EXPECT_EQ(stopped.output.find("PASS"), std::string::npos) << stopped.output;
+}
+
 TEST_F(Compare, RefusesFilesOfCadPrograms) {
   const std::string solid = file("solid.stl", block({-20, -20, 0}, {20, 20, 10}));
   for (const char* name : {"part.step", "part.STP", "part.igs"}) {

@@ -362,11 +362,31 @@ void CycleStream::number(Cycle& cycle) {
   cycle.sample.tool = static_cast<int16_t>(tool_);
 }
 
+/// Of the run under way the block that takes longest as programmed; the first, where none says a feed.
+size_t CycleStream::slowest_of_run() const {
+  size_t slowest = run_->first;
+  double longest_s = 0.0;
+  for (size_t i = run_->first; i < run_->end; ++i) {
+    const BlockMove block = source_.elements.block(i);
+    double seconds = block.duration_s;
+    if (seconds == 0.0 && block.feed_mm_s > 0.0)
+      seconds = (block.to.tip_W - block.from.tip_W).norm() / block.feed_mm_s;
+    if (seconds > longest_s) {
+      slowest = i;
+      longest_s = seconds;
+    }
+  }
+  return slowest;
+}
+
 /// Refuses what nobody means: a program of months, by a feed that is wrong by a power of ten.
 void CycleStream::check_time(double seconds, const char* what, double cycles_max) const {
   const double period = source_.options->period_s;
   const double hours = (static_cast<double>(cycle_) * period + seconds) / 3600.0;
-  const auto where = [&] { return source_.elements.where(static_cast<size_t>(sample_element_)); };
+  const auto where = [&] {
+    return source_.elements.where(run_ && run_->stretch != nullptr ? slowest_of_run()
+                                                                   : static_cast<size_t>(sample_element_));
+  };
   if (hours > kHoursMax) {
     throw InputError(
         "too-many-cycles", where(),

@@ -106,6 +106,7 @@ class CycleStream {
   void record(const ToolSample& sample, const kinematics::Branch& branch, float cost_ns = -1.0F);
   void add(const ToolSample& sample, bool reached, float cost_ns);
   void number(Cycle& cycle);
+  size_t slowest_of_run() const;
   void check_time(double seconds, const char* what, double cycles_max = 1e300) const;
   const kinematics::InverseKinematics& inverse() const;
 

@@ -51,6 +51,8 @@ constexpr double kSweepOfBlock = 1.5 * sizeof(SweepOfBlocks) + 1.5;
 constexpr double kPlannedCell = 600.0, kCellsOfBlock = 2.0;
 constexpr double kMeasuredRay = 78.0;  // while it is measured: neighbours, ridges, feet
 constexpr double kRay = 83.0;          // point, normal, height, block; its share of a tile
+// Of a mesh as the design: corners, sheets and their normals, Embree's tree and that of the free ranges.
+constexpr double kDesignTriangle = 260.0;
 // Each triangle of the mesh, half a vertex with it, from the mesher's points to the decimated copy.
 constexpr double kTriangle = 105.0;
 // The same once more in a still of the whole part, Embree's tree included; in colours with a copy of the
@@ -224,12 +226,14 @@ MemoryPrediction predict_memory(const Job& job, const MeasuredPath& path, const 
   const double compared_ticks =
       compared ? std::max(ticks, longest_comparison(job, path)) + beside * ticks : 0.0;
   const double own_sweeps = sweeps * (by_block ? kSweepOfBlock : kSweep);
+  const double design_mesh =
+      job.design_mesh ? kDesignTriangle * static_cast<double>(job.design_mesh->triangles.size()) : 0.0;
   // One stretch is in use while the next is planned (motion::PlanAhead).
   const double stretches = thread_count() > 1 ? 2.0 : 1.0;
   const double planned = std::min(kCellsOfBlock * static_cast<double>(path.path.elements.size()),
                                   stretches * static_cast<double>(motion::LookAheadReach{}.planned));
   const double held = kBase + static_cast<double>(settings.body_W().memory_bytes()) +
-                      static_cast<double>(path.carried->bytes()) + own_sweeps +
+                      static_cast<double>(path.carried->bytes()) + own_sweeps + design_mesh +
                       (planned_passes ? 0.0 : planned * kPlannedCell) +
                       static_cast<double>(path.cycles->kept().size() * sizeof(motion::Cycle)) +
                       static_cast<double>(path.path.elements.bytes() + path.cycles->motions().bytes());

@@ -15,6 +15,8 @@ constexpr size_t kRangesPerTask = 8;
 /// Normals of a foot and of the wall that limits it differ by twice that angle; |n - m| then is at least
 /// this.
 const double kConesApart = 2.0 * kLeastWallSine;
+/// Square of the sine below which a whole box is left out: rounding of its bounds leaves no wall out with it.
+constexpr double kSurelyFlat = (1.0 - 1e-9) * kLeastWallSine * kLeastWallSine;
 constexpr double kNoEnd = std::numeric_limits<double>::infinity();
 
 /// Feet of one tile, or of a branch of tiles, with a box and a cone around them.
@@ -42,12 +44,14 @@ Node leaf_of(const RayField& field, uint32_t which, uint32_t tile) {
   return node;
 }
 
-/// The ball through p with its centre on the ray cannot be smaller than this for any point of the box.
+/// The ball through p with its centre on the ray cannot be smaller than this for any point of the box that p
+/// sees under kLeastWallSine at least; kNoEnd where it sees none so.
 double least_radius(const Vec3& p, const Vec3& n, const Node& box) {
   const Vec3 least = box.low - p, greatest = box.high - p;
   const double along = n.cwiseProduct(least).cwiseMax(n.cwiseProduct(greatest)).sum();
   if (along <= 0.0) return kNoEnd;
   const double near2 = least.cwiseMax(-greatest).cwiseMax(0.0).squaredNorm();
+  if (along * along < kSurelyFlat * near2) return kNoEnd;
   return near2 / (2.0 * along);
 }
 

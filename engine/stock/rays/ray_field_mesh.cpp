@@ -31,15 +31,25 @@ class RaysByPlace {
     next_.push_back(is_new ? kNone : head->second);
     head->second = ray;
   }
-  /// Rays in the cubes around a point.
-  template <typename Visit>
-  void each_near(const Vec3& point, const Visit& visit) const {
+  /// Whether one of the rays in the cubes around a point is such a one.
+  template <typename Test>
+  bool any_near(const Vec3& point, const Test& test) const {
     const Vec3 low = (point / side_ - Vec3::Constant(0.5)).array().floor();
     for (int code = 0; code < 8; ++code) {
       const auto head = first_.find(key(low + Vec3(code >> 2, code >> 1 & 1, code & 1)));
       if (head == first_.end()) continue;
-      for (uint32_t ray = head->second; ray != kNone; ray = next_[ray]) visit(ray);
+      for (uint32_t ray = head->second; ray != kNone; ray = next_[ray])
+        if (test(ray)) return true;
     }
+    return false;
+  }
+  /// Rays in the cubes around a point.
+  template <typename Visit>
+  void each_near(const Vec3& point, const Visit& visit) const {
+    any_near(point, [&](uint32_t ray) {
+      visit(ray);
+      return false;
+    });
   }
 
  private:
@@ -125,12 +135,11 @@ class Placement {
   void offer(const FacetPlace& place, bool on_border = false) {
     const double apart2 = std::pow(kRaysApart * field_.pitch_mm, 2),
                  inside2 = std::pow(kInside * field_.pitch_mm, 2);
-    bool covered = false;
-    near_.each_near(place.point, [&](uint32_t ray) {
-      covered = covered || ((field_.points[ray] - place.point).squaredNorm() <
-                                (on_border || ray >= borders_ ? apart2 : inside2) &&
-                            sheets_.sheet[field_.facet_of[ray]] == sheets_.sheet[place.facet] &&
-                            field_.normals[ray].dot(place.normal) >= least_cosine_);
+    const bool covered = near_.any_near(place.point, [&](uint32_t ray) {
+      return (field_.points[ray] - place.point).squaredNorm() <
+                 (on_border || ray >= borders_ ? apart2 : inside2) &&
+             sheets_.sheet[field_.facet_of[ray]] == sheets_.sheet[place.facet] &&
+             field_.normals[ray].dot(place.normal) >= least_cosine_;
     });
     if (covered) return;
     field_.points.push_back(place.point);

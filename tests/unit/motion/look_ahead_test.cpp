@@ -221,6 +221,16 @@ TEST(LookAhead, TooLongAProgramIsRefusedBeforeItTakesTime) {
     EXPECT_EQ(error.diagnostics.list().front().code, "too-many-cycles");
     EXPECT_EQ(error.diagnostics.list().front().where.line, 2);
   }
+  // A corner of 1e-9 mm/s in the middle of a run.
+  path = path_through(machine, kCorner, BlockLaw::kJoint, 50.0);
+  edit(path, 1, [](BlockMove& block) { block.feed_mm_s = 1e-9; });
+  try {
+    run(path, machine);
+    FAIL() << "no error";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.diagnostics.list().front().code, "too-many-cycles");
+    EXPECT_EQ(error.diagnostics.list().front().where.line, 2);
+  }
   // 1200 mm at .2 um/s: 1667 hours.
   const toolpath::ToolPath slow =
       path_through(machine, {values(0, 0, 0, 0.3, 0), values(400, 0, 0, 0.3, 0), values(-400, 0, 0, 0.3, 0)},

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <limits>
 #include <numeric>
 #include <set>
 
@@ -182,6 +184,55 @@ TEST(FreeRanges, EachWallOfASlotAnswersForItsHalf) {
   const RayFieldPtr outside = rays_on_mesh(box_mesh(4, 3, 2), 0.5);
   for (const double range : free_ranges({&outside, 1}, 0))
     ASSERT_EQ(range, std::numeric_limits<double>::infinity());
+}
+
+/// z = 2 sin(x / 3) cos(y / 2) over 24 x 16, in facets of half a millimetre.
+TriMesh wave_mesh() {
+  constexpr uint32_t kAlong = 48, kAcross = 32;
+  TriMesh mesh;
+  for (uint32_t i = 0; i <= kAlong; ++i) {
+    for (uint32_t j = 0; j <= kAcross; ++j) {
+      const double x = 0.5 * i, y = 0.5 * j;
+      mesh.positions.push_back({static_cast<float>(x), static_cast<float>(y),
+                                static_cast<float>(2.0 * std::sin(x / 3.0) * std::cos(y / 2.0))});
+    }
+  }
+  for (uint32_t i = 0; i < kAlong; ++i) {
+    for (uint32_t j = 0; j < kAcross; ++j) {
+      const uint32_t a = i * (kAcross + 1) + j, b = a + kAcross + 1;
+      mesh.triangles.push_back({a, b, b + 1});
+      mesh.triangles.push_back({a, b + 1, a + 1});
+    }
+  }
+  return mesh;
+}
+
+/// free_ranges.h, wall by wall: of all walls, or of those alone whose normal differs from the ray's by twice
+/// the sine at which a wall begins, which no box may leave out.
+double range_by_brute_force(const RayField& field, size_t ray, bool all) {
+  const RayField& walls = field.walls ? *field.walls : field;
+  double least = std::numeric_limits<double>::infinity();
+  for (size_t i = 0; i < walls.size(); ++i) {
+    if (!all && (walls.normals[i] - field.normals[ray]).norm() <= 2.0 * kLeastWallSine) continue;
+    const Vec3 offset = walls.points[i] - field.points[ray];
+    const double along = field.normals[ray].dot(offset), distance2 = offset.squaredNorm();
+    if (along <= 0.0 || along * along <= kLeastWallSine * kLeastWallSine * distance2) continue;
+    least = std::min(least, distance2 / (2.0 * along));
+  }
+  return least < 0.5 * field.pitch_mm ? 0.0 : least;
+}
+
+TEST(FreeRanges, OfAWaveLieBetweenThoseOfBruteForce) {
+  const RayFieldPtr field = rays_on_mesh(wave_mesh(), 0.6);
+  const std::vector<double> ranges = free_ranges({&field, 1}, 0);
+  size_t limited = 0;
+  for (size_t n = 0; n < field->size(); ++n) {
+    ASSERT_GE(ranges[n], range_by_brute_force(*field, n, true)) << field->points[n].transpose();
+    ASSERT_LE(ranges[n], range_by_brute_force(*field, n, false)) << field->points[n].transpose();
+    limited += std::isfinite(ranges[n]) ? 1 : 0;
+  }
+  EXPECT_GT(limited, field->size() / 5);
+  EXPECT_LT(limited, field->size());
 }
 
 struct RayState {
