@@ -4,9 +4,11 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <future>
 #include <string>
 
 #include "base/check.h"
+#include "base/parallel.h"
 #include "render/figures/colour.h"
 #include "render/raster/gl_api.h"
 #include "render/raster/gpu_mesh.h"
@@ -131,7 +133,7 @@ struct RasterRenderer::Impl {
   SurfacePrograms surface_programs, section_programs;
   GLuint shadow_program, line_program;
   GLuint line_array = 0, line_buffer = 0;
-  SampleBand band;
+  std::array<SampleBand, 2> bands;  ///< one is read while the other is shaded
   ShadowMap shadow;
   std::vector<std::array<float, 2>> materials;  ///< metalness and roughness
   std::vector<Drawn> drawn;
@@ -141,8 +143,10 @@ RasterRenderer::Impl::Impl(int width_px, int height_px, int samples_per_px)
     : gl(context.gl()), meshes(gl), width(width_px), height(height_px), side(samples_per_px == 4 ? 2 : 1) {
   SWARF_CHECK(width > 0 && height > 0, "a picture needs pixels");
   SWARF_CHECK(side * side == samples_per_px, "1 or 4 samples per pixel");
-  band.width = width;
-  band.side = side;
+  for (SampleBand& band : bands) {
+    band.width = width;
+    band.side = side;
+  }
   surfaces = make_target(side * width, side * height, true);
   shadow_target = make_target(kShadowSize, kShadowSize, false);
   gl.PixelStorei(GL_PACK_ALIGNMENT, 1);
@@ -340,13 +344,20 @@ Image RasterRenderer::Impl::shade(const SceneView& view, const Camera& camera) {
   read_shadow(view);
   const Lighting light = lighting(view, camera.eye, width, height, materials, shadow);
   gl.BindFramebuffer(GL_FRAMEBUFFER, surfaces);
-  for (int top = 0; top < height; top += kBandRows) {
+  const auto beside = thread_count() > 1 ? std::launch::async : std::launch::deferred;
+  std::array<std::future<void>, 2> shading;
+  for (int top = 0, turn = 0; top < height; top += kBandRows, turn = 1 - turn) {
+    SampleBand& band = bands.at(static_cast<size_t>(turn));
+    std::future<void>& busy = shading.at(static_cast<size_t>(turn));
+    if (busy.valid()) busy.get();
     band.resize(std::min(kBandRows, height - top));
     const int low = side * (height - top - band.rows);  // OpenGL counts rows from below
     gl.ReadPixels(0, low, side * width, side * band.rows, GL_RG_INTEGER, GL_UNSIGNED_INT, band.words.data());
     gl.ReadPixels(0, low, side * width, side * band.rows, GL_DEPTH_COMPONENT, GL_FLOAT, band.depths.data());
-    resolve(band, light, top, image);
+    busy = std::async(beside, [&, top] { resolve(band, light, top, image); });
   }
+  for (std::future<void>& last : shading)
+    if (last.valid()) last.get();
   SWARF_CHECK(gl.GetError() == GL_NO_ERROR, "OpenGL reports an error after a frame");
   return image;
 }
