@@ -64,6 +64,7 @@ struct PathState {
   bool started = false;
   ToolPose pose;  ///< of the true tool at q
   long jumps = 0;
+  double seconds = 0.0;  ///< of all feeds and dwells so far, as programmed
   long unwound[3] = {0, 0, 0};
   Place first_motion;
 };

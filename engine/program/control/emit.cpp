@@ -17,6 +17,11 @@ namespace {
 /// Shorter ways are rounding of coordinates (mm); a segment without way and without dwell is none.
 constexpr double kAxesNoWay = 1e-10;
 
+/// A program that is longer than this at its programmed feeds would be refused where it is driven
+/// (motion/cycles), and is a loop without an end where it has so many moves.
+constexpr double kHoursMax = 1000.0;
+constexpr long kMovesOfALoop = 100'000;
+
 /// Way of the rotary axes as F counts it: degrees, unless radii are set.
 double turn_way(const std::array<double, 3>& from, const std::array<double, 3>& to,
                 const std::array<double, 3>& radii_mm) {
@@ -108,6 +113,20 @@ void tell_of_length(Control& control, int column) {
                   control.report.words.length_on));
 }
 
+/// A loop without an end is told long before its moves fill the memory.
+void refuse_endless(Control& control, const NcMove& move, int column) {
+  const auto refuse = [&](const std::string& what) {
+    control.report.fail("too-many-moves", column, what + ": the program seems to loop for ever here",
+                        "correct the loop, or the feed or dwell of its blocks");
+  };
+  if (++control.report.summary.moves > control.setup.moves_max)
+    refuse(fmt::format("more than {} moves", control.setup.moves_max));
+  control.path.seconds += move.duration_s + move.dwell_s;
+  if (control.path.seconds > 3600.0 * kHoursMax && control.report.summary.moves > kMovesOfALoop)
+    refuse(fmt::format("more than {:g} h of feeds and dwells in {} moves", kHoursMax,
+                       control.report.summary.moves));
+}
+
 void send(Control& control, const Segment& segment, NcMove& move) {
   if (!control.modal.unit_known && !segment.machine) warn_of_unit(control, segment.place.column);
   move.q_from = control.path.q;
@@ -128,12 +147,7 @@ void send(Control& control, const Segment& segment, NcMove& move) {
     if (!control.tools.length_on && control.setup.machine.gauge_M && active_tool(control)->length_mm > 0.0)
       tell_of_length(control, segment.place.column);
   }
-  if (++control.report.summary.moves > control.setup.moves_max) {
-    control.report.fail(
-        "too-many-moves", segment.place.column,
-        fmt::format("more than {} moves: the program seems to loop for ever here", control.setup.moves_max),
-        "correct the loop");
-  }
+  refuse_endless(control, move, segment.place.column);
   control.path.jumps = 0;
   control.path.q = move.q_to;
   control.path.pose = move.to;

@@ -123,5 +123,16 @@ TEST(CommonHabits, AtMostEightToolsAreNamed) {
   EXPECT_NE(text.find("T1, T2, T3, T4, T5, T6, T7, T8 and 12 more"), std::string::npos) << text;
 }
 
+/// 10 mm at 1 mm/min and back: a thousand hours after 6000 moves, where the next fifty million would fill the
+/// memory before they are counted.
+TEST(CommonHabits, ALoopWithoutAnEndIsToldBeforeItsMovesFillTheMemory) {
+  const NcRun run = linuxcnc("G21 G90 G94\nG0 X0 Y0 Z5\nF1\no1 while [1]\nG1 X10\nX0\no1 endwhile\nM2\n",
+                             three_axis_setup());
+  EXPECT_EQ(run.first_error().substr(0, 15), "too-many-moves ") << run.text();
+  EXPECT_NE(run.text().find("more than 1000 h of feeds and dwells in 100001 moves"), std::string::npos)
+      << run.text();
+  EXPECT_LT(run.moves().size(), 200'000U);
+}
+
 }  // namespace
 }  // namespace swarf::program
