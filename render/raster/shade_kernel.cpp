@@ -319,7 +319,11 @@ SWARF_KERNEL_INLINE void shade(const Lighting& lighting, size_t count, ShadeBatc
 
 SWARF_KERNEL_INLINE void write_bytes(const ShadeBatch& batch, size_t count, uint8_t* rgba) {
   const float *red = batch.red.data(), *green = batch.green.data(), *blue = batch.blue.data();
-  const auto byte = [](float share) { return static_cast<uint8_t>(static_cast<int>(share * 255.0F + 0.5F)); };
+  // Of 0 to 1, and in vectors, as std::lround() is not.
+  const auto byte = [](float share) {
+    return static_cast<uint8_t>(
+        static_cast<int>(share * 255.0F + 0.5F));  // NOLINT(bugprone-incorrect-roundings)
+  };
   for (int i = 0; i < static_cast<int>(count); ++i) {
     rgba[4 * i] = byte(red[i]);
     rgba[4 * i + 1] = byte(green[i]);
