@@ -8,9 +8,9 @@
 namespace swarf::render {
 namespace {
 
-constexpr size_t kStrip = 512;           ///< px of a row that are shaded together
+constexpr size_t kStrip = 512;            ///< px of a row that are shaded together
 constexpr size_t kRowsShadedAtOnce = 10;  ///< px, of one task
-constexpr size_t kSamplesMost = 4;       ///< of a pixel
+constexpr size_t kSamplesMost = 4;        ///< of a pixel
 
 /// One surface among a pixel's samples.
 struct PixelSurface {

@@ -30,7 +30,7 @@ SWARF_KERNEL_INLINE float within_one(float a) {
   return most(least(a, 1.0F), 0.0F);
 }
 /// 0 at `from` and 1 at `to`, flat at both.
-SWARF_KERNEL_INLINE float smooth_step(float from, float to, float value) {
+SWARF_KERNEL_INLINE float smooth_between(float from, float to, float value) {
   const float t = within_one((value - from) * (1.0F / (to - from)));
   return t * t * (3.0F - 2.0F * t);
 }
@@ -64,28 +64,28 @@ SWARF_KERNEL_INLINE Vector mix(const Vector& a, const Vector& b, float share) {
 }
 
 /// Linear to sRGB through square roots, fitted to the standard's curve (error below 0.003 above 0.002).
-SWARF_KERNEL_INLINE float srgb(float c) {
+SWARF_KERNEL_INLINE float srgb_of(float c) {
   const float s = std::sqrt(most(c, 0.0F));
   const float ss = std::sqrt(s);
   return within_one(0.585122381F * s + 0.783140355F * ss - 0.368262736F * std::sqrt(ss));
 }
 
 /// Linear up to 0.7, then a shoulder that never reaches 1.
-SWARF_KERNEL_INLINE float tone(float c) {
+SWARF_KERNEL_INLINE float shouldered(float c) {
   const float over = most(c - 0.7F, 0.0F);
   return least(c, 0.7F) + 0.3F * over / (0.3F + over);
 }
 
 /// t runs from the bottom (0) to the top (1) of the picture.
 SWARF_KERNEL_INLINE Vector background(float t) {
-  return mix(Vector{0.50F, 0.53F, 0.56F}, Vector{0.86F, 0.89F, 0.92F}, smooth_step(0.0F, 1.0F, t));
+  return mix(Vector{0.50F, 0.53F, 0.56F}, Vector{0.86F, 0.89F, 0.92F}, smooth_between(0.0F, 1.0F, t));
 }
 
 /// A studio as seen in a mirror: floor, walls, a wide soft box above.
 SWARF_KERNEL_INLINE Vector studio(const Vector& d, const Vector& softbox, float blur) {
   const Vector c = mix(Vector{0.20F, 0.21F, 0.22F}, Vector{0.62F, 0.66F, 0.70F},
-                       smooth_step(-0.35F - blur, 0.35F + blur, d.z));
-  const float box = smooth_step(0.55F - 0.5F * blur, 0.80F + 0.3F * blur, dot(d, softbox));
+                       smooth_between(-0.35F - blur, 0.35F + blur, d.z));
+  const float box = smooth_between(0.55F - 0.5F * blur, 0.80F + 0.3F * blur, dot(d, softbox));
   return c + (box * (1.0F - 0.6F * blur)) * Vector{1.0F, 0.98F, 0.95F};
 }
 
@@ -127,7 +127,7 @@ SWARF_KERNEL_INLINE Vector surface(const Lights& l, const Vector& v, const Vecto
                           (1.0F - 0.45F * roughness) * (mirror * studio(reflected, l.softbox, roughness)) +
                           (0.25F * edge * most(dot(n, l.rim), 0.0F)) * Vector{0.9F, 0.95F, 1.0F};
   const Vector seen = diffuse * light + specular;
-  return {tone(seen.x), tone(seen.y), tone(seen.z)};
+  return {shouldered(seen.x), shouldered(seen.y), shouldered(seen.z)};
 }
 
 /// What the shadow map is asked by, its own so that writing colours cannot change it.
@@ -173,8 +173,8 @@ SWARF_KERNEL_INLINE float byte_of(uint32_t word, int byte) {
   return static_cast<float>(static_cast<int>(word >> (8 * byte) & 0xffU)) * (1.0F / 255.0F);
 }
 /// Error below 0.004.
-SWARF_KERNEL_INLINE float linear(float srgb) {
-  return srgb * (srgb * (srgb * 0.305306011F + 0.682171111F) + 0.012522878F);
+SWARF_KERNEL_INLINE float linear_of(float encoded) {
+  return encoded * (encoded * (encoded * 0.305306011F + 0.682171111F) + 0.012522878F);
 }
 
 /// What one sample sees.
@@ -293,7 +293,8 @@ SWARF_KERNEL_INLINE void shade(const Lighting& lighting, size_t count, ShadeBatc
       const int material = kind > kFirstMaterial ? kind - kFirstMaterial : 0;
       const Vector seen = surface(
           lights, v, n,
-          {{linear(own.x), linear(own.y), linear(own.z)}, metal_of[material], rough_of[material]}, lit);
+          {{linear_of(own.x), linear_of(own.y), linear_of(own.z)}, metal_of[material], rough_of[material]},
+          lit);
 
       // Darker close to the scene, where its bulk hides part of the sky.
       const float dx = world.x - centre.x, dy = world.y - centre.y;
@@ -301,14 +302,14 @@ SWARF_KERNEL_INLINE void shade(const Lighting& lighting, size_t count, ShadeBatc
       const float beyond = most(most(most(p.x, p.y), p.z) - 1.0F, -least(least(p.x, p.y), p.z));
       const bool outside = beyond > 0.0F;
       const float floor_lit = outside ? 1.0F : mix(0.58F, 1.0F, lit);
-      const float floor = floor_lit * mix(0.80F, 1.0F, smooth_step(0.08F, 0.45F, r));
-      const float fade = near > kLeastNearness ? 1.0F - smooth_step(0.25F, 1.0F, r) : 0.0F;
+      const float floor = floor_lit * mix(0.80F, 1.0F, smooth_between(0.08F, 0.45F, r));
+      const float fade = near > kLeastNearness ? 1.0F - smooth_between(0.25F, 1.0F, r) : 0.0F;
       const Vector behind = mix(background(0.5F - y * per_height), floor * Vector{0.56F, 0.58F, 0.60F}, fade);
 
       const Vector lighted = mix(seen, behind, ground);
-      red_of[i] = mix(srgb(lighted.x), own.x, painted);
-      green_of[i] = mix(srgb(lighted.y), own.y, painted);
-      blue_of[i] = mix(srgb(lighted.z), own.z, painted);
+      red_of[i] = mix(srgb_of(lighted.x), own.x, painted);
+      green_of[i] = mix(srgb_of(lighted.y), own.y, painted);
+      blue_of[i] = mix(srgb_of(lighted.z), own.z, painted);
     }
     std::copy_n(red_of, kAtOnce, &batch.red[at]);
     std::copy_n(green_of, kAtOnce, &batch.green[at]);
@@ -318,7 +319,11 @@ SWARF_KERNEL_INLINE void shade(const Lighting& lighting, size_t count, ShadeBatc
 
 SWARF_KERNEL_INLINE void write_bytes(const ShadeBatch& batch, size_t count, uint8_t* rgba) {
   const float *red = batch.red.data(), *green = batch.green.data(), *blue = batch.blue.data();
-  const auto byte = [](float share) { return static_cast<uint8_t>(static_cast<int>(share * 255.0F + 0.5F)); };
+  // Of 0 to 1, and in vectors, as std::lround() is not.
+  const auto byte = [](float share) {
+    return static_cast<uint8_t>(
+        static_cast<int>(share * 255.0F + 0.5F));  // NOLINT(bugprone-incorrect-roundings)
+  };
   for (int i = 0; i < static_cast<int>(count); ++i) {
     rgba[4 * i] = byte(red[i]);
     rgba[4 * i + 1] = byte(green[i]);
