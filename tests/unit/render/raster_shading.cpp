@@ -92,8 +92,8 @@ TEST(SampleResolver, APixelIsTheMeanOfItsSurfaces) {
   const SceneView view = view_of(camera);
   int several = 0;
   for (const int side : {1, 2}) {
-    for (const auto& [width, rows] : {std::pair(1, 1), std::pair(37, 5), std::pair(530, 3)}) {
-      const int height = rows + 4, top = 2;
+    for (const std::array<int, 2>& size : {std::array{1, 1}, std::array{37, 5}, std::array{530, 3}}) {
+      const int width = size[0], rows = size[1], height = rows + 4, top = 2;
       const SampleBand band = random_band(width, rows, side, random);
       const Lighting light = lighting(view, camera.eye, width, height, kMaterials, map);
       Image image{width, height, std::vector<uint8_t>(size_t{4} * width * height)};
