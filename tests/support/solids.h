@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <initializer_list>
+#include <utility>
 #include <vector>
 
 #include "mesh/tri_mesh.h"
@@ -106,6 +108,19 @@ inline void scale(TriMesh& mesh, double factor) {
 inline void mirror(TriMesh& mesh) {
   for (auto& p : mesh.positions) p[0] = -p[0];
   for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
+}
+
+/// The mesh inside out.
+inline TriMesh turned(TriMesh mesh) {
+  for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
+  return mesh;
+}
+
+/// One mesh of several bodies.
+inline TriMesh together(std::initializer_list<TriMesh> bodies) {
+  TriMesh all;
+  for (const TriMesh& body : bodies) append(all, body);
+  return all;
 }
 
 }  // namespace swarf::test

@@ -13,17 +13,8 @@ namespace swarf::mesh::enclosed {
 namespace {
 
 using test::block;
-
-TriMesh turned(TriMesh mesh) {
-  for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
-  return mesh;
-}
-
-TriMesh together(std::initializer_list<TriMesh> bodies) {
-  TriMesh all;
-  for (const TriMesh& body : bodies) test::append(all, body);
-  return all;
-}
+using test::together;
+using test::turned;
 
 size_t count_enclosed(const TriMesh& mesh) {
   const Enclosed found = find_enclosed(mesh);

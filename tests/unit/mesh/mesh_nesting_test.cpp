@@ -9,17 +9,8 @@ namespace swarf::mesh {
 namespace {
 
 using test::block;
-
-TriMesh turned(TriMesh mesh) {
-  for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
-  return mesh;
-}
-
-TriMesh together(std::initializer_list<TriMesh> bodies) {
-  TriMesh all;
-  for (const TriMesh& body : bodies) test::append(all, body);
-  return all;
-}
+using test::together;
+using test::turned;
 
 const TriMesh kOuter = block({0, 0, 0}, {40, 40, 40});
 const TriMesh kMiddle = block({5, 5, 5}, {30, 30, 30});

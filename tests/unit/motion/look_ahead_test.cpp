@@ -210,27 +210,26 @@ TEST(DogLeg, EachAxisArrivesByItself) {
   EXPECT_EQ(with_dog_legs(path, std::span(&machine, 1)).elements.size(), 1U);
 }
 
+/// The run is refused for its time, and names the block of this line.
+void expect_too_long(const toolpath::ToolPath& path, const MachineModel& machine, int line) {
+  try {
+    run(path, machine);
+    FAIL() << "no error";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.diagnostics.list().front().code, "too-many-cycles");
+    EXPECT_EQ(error.diagnostics.list().front().where.line, line);
+  }
+}
+
 TEST(LookAhead, TooLongAProgramIsRefusedBeforeItTakesTime) {
   const MachineModel machine = paper_machine();
   toolpath::ToolPath path = path_through(machine, kCorner, BlockLaw::kJoint, 50.0);
   edit(path, 1, [](BlockMove& block) { block.dwell_s = 1e9; });
-  try {
-    run(path, machine);
-    FAIL() << "no error";
-  } catch (const InputError& error) {
-    EXPECT_EQ(error.diagnostics.list().front().code, "too-many-cycles");
-    EXPECT_EQ(error.diagnostics.list().front().where.line, 2);
-  }
+  expect_too_long(path, machine, 2);
   // A corner of 1e-9 mm/s in the middle of a run.
   path = path_through(machine, kCorner, BlockLaw::kJoint, 50.0);
   edit(path, 1, [](BlockMove& block) { block.feed_mm_s = 1e-9; });
-  try {
-    run(path, machine);
-    FAIL() << "no error";
-  } catch (const InputError& error) {
-    EXPECT_EQ(error.diagnostics.list().front().code, "too-many-cycles");
-    EXPECT_EQ(error.diagnostics.list().front().where.line, 2);
-  }
+  expect_too_long(path, machine, 2);
   // 1200 mm at .2 um/s: 1667 hours.
   const toolpath::ToolPath slow =
       path_through(machine, {values(0, 0, 0, 0.3, 0), values(400, 0, 0, 0.3, 0), values(-400, 0, 0, 0.3, 0)},
