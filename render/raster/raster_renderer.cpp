@@ -20,7 +20,6 @@
 namespace swarf::render {
 namespace {
 
-constexpr int kShadowSize = 2048;  // texels of the shadow map, both ways
 constexpr int kBandRows =
     48;  // px that are read and shaded before the next are read: what is read stays near
 
@@ -76,26 +75,6 @@ GLuint packed_paint(const Rgb& linear, int kind) {
   return c[0] | GLuint{c[1]} << 8 | GLuint{c[2]} << 16 | static_cast<GLuint>(kind) << 24;
 }
 
-/// Of the shadow map: what the picture can look at.
-struct ShadowPart {
-  Vec2 lower, upper;           ///< -1..1
-  int left, low, width, rows;  ///< texels
-};
-ShadowPart shadow_part(const SceneView& view) {
-  constexpr double kBesidePx = 4.0;  // a place is looked up off its surface, by two taps of four texels
-  const Vec2 beside = Vec2::Constant(2.0 * kBesidePx / kShadowSize);
-  ShadowPart part{view.shadow_lower - beside, view.shadow_upper + beside, 0, 0, 0, 0};
-  const auto texel = [](double place) {
-    return static_cast<int>(std::clamp((0.5 * place + 0.5) * kShadowSize, 0.0, kShadowSize - 2.0));
-  };
-  part.left = texel(part.lower.x());
-  part.low = texel(part.lower.y());
-  // Two texels at least: each tap takes in its neighbours.
-  part.width = std::max(2, texel(part.upper.x()) + 2 - part.left);
-  part.rows = std::max(2, texel(part.upper.y()) + 2 - part.low);
-  return part;
-}
-
 }  // namespace
 
 struct RasterRenderer::Impl {
@@ -117,8 +96,8 @@ struct RasterRenderer::Impl {
   void make_shadow_target();
   GLuint attach_buffer(GLenum attachment);
   void require_complete() const;
-  /// Large enough for what of the map is drawn.
-  void fit_shadow_target(const ShadowPart& part);
+  /// Large enough for the map.
+  void fit_shadow_target(const SceneView& view);
   Box upload(const DrawList& list);
   int material_of(const Material& material);
   void draw_shadow(const SceneView& view, bool section);
@@ -214,10 +193,10 @@ void RasterRenderer::Impl::require_complete() const {
 
 /// It is cleared whole for each frame, so it is no larger than what is drawn of the map by more than steps
 /// that spare a moving camera a new one each frame.
-void RasterRenderer::Impl::fit_shadow_target(const ShadowPart& part) {
+void RasterRenderer::Impl::fit_shadow_target(const SceneView& view) {
   constexpr int kStep = 256;  // texels
   const auto stepped = [](int texels) { return (texels + kStep - 1) / kStep * kStep; };
-  const std::array<int, 2> wanted{stepped(part.width), stepped(part.rows)};
+  const std::array<int, 2> wanted{stepped(view.shadow_columns), stepped(view.shadow_rows)};
   if (wanted == shadow_size) return;
   shadow_size = wanted;
   gl.BindRenderbuffer(GL_RENDERBUFFER, shadow_buffer);
@@ -274,31 +253,24 @@ void RasterRenderer::Impl::draw_triangles(const GpuMesh& mesh, bool enclosed_too
                   nullptr);
 }
 
-/// Only what the picture can look at is drawn: the map holds the whole scene. What is cut open casts no
-/// shadow: its missing half would shade its own section.
+/// What is cut open casts no shadow: its missing half would shade its own section.
 void RasterRenderer::Impl::draw_shadow(const SceneView& view, bool section) {
-  const ShadowPart part = shadow_part(view);
   gl.BindFramebuffer(GL_FRAMEBUFFER, shadow_target);
-  fit_shadow_target(part);
-  gl.Viewport(-part.left, -part.low, kShadowSize, kShadowSize);
+  fit_shadow_target(view);
+  gl.Viewport(0, 0, view.shadow_columns, view.shadow_rows);
   // Whole: where only a part is to be cleared llvmpipe draws a rectangle, which takes longer.
   gl.Clear(GL_DEPTH_BUFFER_BIT);
-  gl.Enable(GL_SCISSOR_TEST);
-  gl.Scissor(0, 0, part.width, part.rows);
   gl.Enable(GL_POLYGON_OFFSET_FILL);
   gl.PolygonOffset(1.5F, 4.0F);
   const Uniforms uniforms(gl, shadow_program);
   uniforms.set("clip_from_world", view.light_clip_from_world);
   for (const Drawn& one : drawn) {
     if (section && one.item->sectioned) continue;
-    if (!may_lie_within(view.light_clip_from_world, one.mesh->bounds, one.item->X_world, part.lower,
-                        part.upper))
-      continue;
+    if (!may_lie_within(view.light_clip_from_world, one.mesh->bounds, one.item->X_world)) continue;
     uniforms.set("world_from_mesh", one.item->X_world.matrix());
     draw_triangles(*one.mesh, false, false);  // the light stands outside of everything
   }
   gl.Disable(GL_POLYGON_OFFSET_FILL);
-  gl.Disable(GL_SCISSOR_TEST);
 }
 
 /// The items that the section cuts open, or all others.
@@ -314,9 +286,7 @@ void RasterRenderer::Impl::draw_items(const SceneView& view, const DrawList& lis
   }
   for (const Drawn& one : drawn) {
     if ((list.section && one.item->sectioned) != sectioned) continue;
-    if (!may_lie_within(view.clip_from_world, one.mesh->bounds, one.item->X_world, Vec2(-1.0, -1.0),
-                        Vec2(1.0, 1.0)))
-      continue;
+    if (!may_lie_within(view.clip_from_world, one.mesh->bounds, one.item->X_world)) continue;
     const Uniforms uniforms(gl, one.mesh->has_colours ? programs.coloured : programs.plain);
     uniforms.set("world_from_mesh", one.item->X_world.matrix());
     if (one.mesh->has_colours) {
@@ -350,15 +320,11 @@ void RasterRenderer::Impl::draw_surfaces(const SceneView& view, const DrawList& 
 }
 
 void RasterRenderer::Impl::read_shadow(const SceneView& view) {
-  const ShadowPart part = shadow_part(view);
-  shadow.size = kShadowSize;
-  shadow.left = part.left;
-  shadow.low = part.low;
-  shadow.width = part.width;
-  shadow.rows = part.rows;
-  shadow.depths.resize(static_cast<size_t>(part.width) * static_cast<size_t>(part.rows));
+  shadow.width = view.shadow_columns;
+  shadow.rows = view.shadow_rows;
+  shadow.depths.resize(static_cast<size_t>(shadow.width) * static_cast<size_t>(shadow.rows));
   gl.BindFramebuffer(GL_FRAMEBUFFER, shadow_target);
-  gl.ReadPixels(0, 0, part.width, part.rows, GL_DEPTH_COMPONENT, GL_FLOAT, shadow.depths.data());
+  gl.ReadPixels(0, 0, shadow.width, shadow.rows, GL_DEPTH_COMPONENT, GL_FLOAT, shadow.depths.data());
 }
 
 Image RasterRenderer::Impl::shade(const SceneView& view, const Camera& camera) {

@@ -160,23 +160,22 @@ SWARF_KERNEL_INLINE Vector surface(const Lights& l, const Vector& v, const Vecto
 struct ShadowTexels {
   const float* depths;
   int width;
-  float left, low, right_most, up_most;  ///< texels
+  float columns, rows, right_most, up_most;  ///< texels
 };
 
 SWARF_KERNEL_INLINE ShadowTexels texels_of(const ShadowMap& map) {
   // Texels' middles stand half a texel in; the last row and column have no neighbours.
   return {map.depths.data(),
           map.width,
-          static_cast<float>(map.left) + 0.5F,
-          static_cast<float>(map.low) + 0.5F,
+          static_cast<float>(map.width),
+          static_cast<float>(map.rows),
           static_cast<float>(map.width) - 1.001F,
           static_cast<float>(map.rows) - 1.001F};
 }
 
 /// The share of four texels around the place that does not shade it, weighed by their distances.
 SWARF_KERNEL_INLINE float lit_texels(const ShadowTexels& map, float x, float y, float depth) {
-  const float px = most(least(x - map.left, map.right_most), 0.0F),
-              py = most(least(y - map.low, map.up_most), 0.0F);
+  const float px = most(least(x - 0.5F, map.right_most), 0.0F), py = most(least(y - 0.5F, map.up_most), 0.0F);
   const int column = static_cast<int>(px), row = static_cast<int>(py);
   const float right = px - static_cast<float>(column), up = py - static_cast<float>(row);
   const int at = row * map.width + column;
@@ -282,7 +281,7 @@ struct ShadeFrame {
   Vector eye, forward, right, down, centre;
   Vector shadow_x, shadow_y, shadow_z, shadow_origin;
   Lights lights;
-  float per_radius, per_height, shadow_size, lift, near_start, near_rise;
+  float per_radius, per_height, lift, near_start, near_rise;
   Vector floor_near;
   ShadowTexels map;
   const float *metalness, *roughness;
@@ -301,7 +300,6 @@ SWARF_KERNEL_INLINE ShadeFrame frame_of(const Lighting& l) {
           {vector(l.key), vector(l.softbox), vector(l.fill), vector(l.rim)},
           1.0F / l.radius,
           1.0F / l.height,
-          static_cast<float>(l.shadow->size),
           l.shadow_lift_mm,
           l.nearness[0],
           l.nearness[1],
@@ -316,10 +314,10 @@ struct Lit {
   float share;
 };
 
-/// Two filtered taps across the texel grid: eight texels weigh in. The map holds the whole scene.
+/// Two filtered taps across the texel grid: eight texels weigh in.
 SWARF_KERNEL_INLINE Lit lit_at(const ShadeFrame& f, const Vector& world) {
   const Vector p = f.shadow_origin + world.x * f.shadow_x + world.y * f.shadow_y + world.z * f.shadow_z;
-  const float x = p.x * f.shadow_size, y = p.y * f.shadow_size, depth = least(p.z, 1.0F);
+  const float x = p.x * f.map.columns, y = p.y * f.map.rows, depth = least(p.z, 1.0F);
   return {p, 0.5F * (lit_texels(f.map, x - 0.6F, y - 0.3F, depth) +
                      lit_texels(f.map, x + 0.6F, y + 0.3F, depth))};
 }
@@ -494,7 +492,7 @@ Lighting lighting(const SceneView& view, const Vec3& eye, int width, int height,
   const Eigen::Matrix<double, 3, 4> half = 0.5 * view.light_clip_from_world.topRows<3>();
   for (int k = 0; k < 3; ++k) l.shadow_from_world[static_cast<size_t>(k)] = single(half.col(k));
   l.shadow_origin = single(half.col(3) + Vec3::Constant(0.5));
-  l.shadow_lift_mm = static_cast<float>(1.5 * view.light_extent_mm / shadow.size);
+  l.shadow_lift_mm = static_cast<float>(1.5 * view.shadow_texel_mm);
   l.centre = single(view.ground_centre);
   l.radius = static_cast<float>(view.ground_radius);
   l.height = static_cast<float>(height);
