@@ -35,9 +35,10 @@ const std::vector<MovieKind>& kinds() {
        "mp4",
        "libx264",
        AV_PIX_FMT_YUV420P,
-       // Frames of a machine hardly profit from those after them: without such references the file is a fifth
-       // larger, and its encoder takes half the time.
-       {{"preset", "veryfast"}, {"crf", "20"}, {"x264-params", "bframes=0:subme=1"}},
+       // Less than half of the encoder's time with "veryfast", which mostly looks for motion; as near to the
+       // frames or nearer (45.0 against 43.8 dB), for 1.4 times the bytes. Transforms of 8 x 8 and blocks
+       // that are filtered cost a twentieth and keep gradients smooth.
+       {{"preset", "ultrafast"}, {"crf", "24"}, {"x264-params", "deblock=0,0:8x8dct=1:partitions=i4x4,i8x8"}},
        {{"movflags", "+faststart"}}},
       {".webm",
        "webm",

@@ -20,7 +20,6 @@
 namespace swarf::render {
 namespace {
 
-constexpr int kShadowSize = 2048;  // texels of the shadow map, both ways
 constexpr int kBandRows =
     48;  // px that are read and shaded before the next are read: what is read stays near
 
@@ -76,26 +75,6 @@ GLuint packed_paint(const Rgb& linear, int kind) {
   return c[0] | GLuint{c[1]} << 8 | GLuint{c[2]} << 16 | static_cast<GLuint>(kind) << 24;
 }
 
-/// Of the shadow map: what the picture can look at.
-struct ShadowPart {
-  Vec2 lower, upper;           ///< -1..1
-  int left, low, width, rows;  ///< texels
-};
-ShadowPart shadow_part(const SceneView& view) {
-  constexpr double kBesidePx = 4.0;  // a place is looked up off its surface, by two taps of four texels
-  const Vec2 beside = Vec2::Constant(2.0 * kBesidePx / kShadowSize);
-  ShadowPart part{view.shadow_lower - beside, view.shadow_upper + beside, 0, 0, 0, 0};
-  const auto texel = [](double place) {
-    return static_cast<int>(std::clamp((0.5 * place + 0.5) * kShadowSize, 0.0, kShadowSize - 2.0));
-  };
-  part.left = texel(part.lower.x());
-  part.low = texel(part.lower.y());
-  // Two texels at least: each tap takes in its neighbours.
-  part.width = std::max(2, texel(part.upper.x()) + 2 - part.left);
-  part.rows = std::max(2, texel(part.upper.y()) + 2 - part.low);
-  return part;
-}
-
 }  // namespace
 
 struct RasterRenderer::Impl {
@@ -113,8 +92,12 @@ struct RasterRenderer::Impl {
   Impl(int width_px, int height_px, int samples_per_px);
   void compile_programs();
   void make_line_array();
-  /// A framebuffer of depths, and of the words of what is seen.
-  GLuint make_target(int columns, int rows, bool with_words);
+  void make_surfaces();
+  void make_shadow_target();
+  GLuint attach_buffer(GLenum attachment);
+  void require_complete() const;
+  /// Large enough for the map.
+  void fit_shadow_target(const SceneView& view);
   Box upload(const DrawList& list);
   int material_of(const Material& material);
   void draw_shadow(const SceneView& view, bool section);
@@ -129,7 +112,8 @@ struct RasterRenderer::Impl {
   const GlApi& gl;
   GpuMeshCache meshes;
   int width, height, side;  ///< px; samples of a pixel each way
-  GLuint surfaces = 0, shadow_target = 0;
+  GLuint surfaces = 0, shadow_target = 0, shadow_buffer = 0;
+  std::array<int, 2> shadow_size{};  ///< texels of `shadow_buffer`
   SurfacePrograms surface_programs, section_programs;
   GLuint shadow_program, line_program;
   GLuint line_array = 0, line_buffer = 0;
@@ -147,8 +131,8 @@ RasterRenderer::Impl::Impl(int width_px, int height_px, int samples_per_px)
     band.width = width;
     band.side = side;
   }
-  surfaces = make_target(side * width, side * height, true);
-  shadow_target = make_target(kShadowSize, kShadowSize, false);
+  make_surfaces();
+  make_shadow_target();
   gl.PixelStorei(GL_PACK_ALIGNMENT, 1);
   compile_programs();
   make_line_array();
@@ -176,30 +160,48 @@ void RasterRenderer::Impl::make_line_array() {
   gl.EnableVertexAttribArray(1);
 }
 
-GLuint RasterRenderer::Impl::make_target(int columns, int rows, bool with_words) {
-  struct Part {
-    GLenum format, attachment;
-  };
-  GLuint target = 0;
-  gl.GenFramebuffers(1, &target);
-  gl.BindFramebuffer(GL_FRAMEBUFFER, target);
-  // In the formats in which they are read: nothing is converted.
-  std::vector<Part> parts{{GL_DEPTH_COMPONENT32F, GL_DEPTH_ATTACHMENT}};
-  if (with_words) {
-    parts.push_back({GL_RG32UI, GL_COLOR_ATTACHMENT0});
-  } else {
-    gl.DrawBuffer(GL_NONE);
-  }
-  for (const Part& part : parts) {
-    GLuint buffer = 0;
-    gl.GenRenderbuffers(1, &buffer);
-    gl.BindRenderbuffer(GL_RENDERBUFFER, buffer);
-    gl.RenderbufferStorage(GL_RENDERBUFFER, part.format, columns, rows);
-    gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, part.attachment, GL_RENDERBUFFER, buffer);
-  }
+GLuint RasterRenderer::Impl::attach_buffer(GLenum attachment) {
+  GLuint buffer = 0;
+  gl.GenRenderbuffers(1, &buffer);
+  gl.BindRenderbuffer(GL_RENDERBUFFER, buffer);
+  gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, attachment, GL_RENDERBUFFER, buffer);
+  return buffer;
+}
+
+/// Depths, and the words of what is seen, in the formats in which they are read: nothing is converted.
+void RasterRenderer::Impl::make_surfaces() {
+  gl.GenFramebuffers(1, &surfaces);
+  gl.BindFramebuffer(GL_FRAMEBUFFER, surfaces);
+  attach_buffer(GL_DEPTH_ATTACHMENT);
+  gl.RenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT32F, side * width, side * height);
+  attach_buffer(GL_COLOR_ATTACHMENT0);
+  gl.RenderbufferStorage(GL_RENDERBUFFER, GL_RG32UI, side * width, side * height);
+  require_complete();
+}
+
+void RasterRenderer::Impl::make_shadow_target() {
+  gl.GenFramebuffers(1, &shadow_target);
+  gl.BindFramebuffer(GL_FRAMEBUFFER, shadow_target);
+  gl.DrawBuffer(GL_NONE);
+  shadow_buffer = attach_buffer(GL_DEPTH_ATTACHMENT);
+}
+
+void RasterRenderer::Impl::require_complete() const {
   SWARF_CHECK(gl.CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE,
               "OSMesa refuses a framebuffer");
-  return target;
+}
+
+/// It is cleared whole for each frame, so it is no larger than what is drawn of the map by more than steps
+/// that spare a moving camera a new one each frame.
+void RasterRenderer::Impl::fit_shadow_target(const SceneView& view) {
+  constexpr int kStep = 256;  // texels
+  const auto stepped = [](int texels) { return (texels + kStep - 1) / kStep * kStep; };
+  const std::array<int, 2> wanted{stepped(view.shadow_columns), stepped(view.shadow_rows)};
+  if (wanted == shadow_size) return;
+  shadow_size = wanted;
+  gl.BindRenderbuffer(GL_RENDERBUFFER, shadow_buffer);
+  gl.RenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT32F, wanted[0], wanted[1]);
+  require_complete();
 }
 
 Box RasterRenderer::Impl::upload(const DrawList& list) {
@@ -251,30 +253,24 @@ void RasterRenderer::Impl::draw_triangles(const GpuMesh& mesh, bool enclosed_too
                   nullptr);
 }
 
-/// Only what the picture can look at is drawn: the map holds the whole scene. What is cut open casts no
-/// shadow: its missing half would shade its own section.
+/// What is cut open casts no shadow: its missing half would shade its own section.
 void RasterRenderer::Impl::draw_shadow(const SceneView& view, bool section) {
   gl.BindFramebuffer(GL_FRAMEBUFFER, shadow_target);
-  gl.Viewport(0, 0, kShadowSize, kShadowSize);
+  fit_shadow_target(view);
+  gl.Viewport(0, 0, view.shadow_columns, view.shadow_rows);
   // Whole: where only a part is to be cleared llvmpipe draws a rectangle, which takes longer.
   gl.Clear(GL_DEPTH_BUFFER_BIT);
-  const ShadowPart part = shadow_part(view);
-  gl.Enable(GL_SCISSOR_TEST);
-  gl.Scissor(part.left, part.low, part.width, part.rows);
   gl.Enable(GL_POLYGON_OFFSET_FILL);
   gl.PolygonOffset(1.5F, 4.0F);
   const Uniforms uniforms(gl, shadow_program);
   uniforms.set("clip_from_world", view.light_clip_from_world);
   for (const Drawn& one : drawn) {
     if (section && one.item->sectioned) continue;
-    if (!may_lie_within(view.light_clip_from_world, one.mesh->bounds, one.item->X_world, part.lower,
-                        part.upper))
-      continue;
+    if (!may_lie_within(view.light_clip_from_world, one.mesh->bounds, one.item->X_world)) continue;
     uniforms.set("world_from_mesh", one.item->X_world.matrix());
     draw_triangles(*one.mesh, false, false);  // the light stands outside of everything
   }
   gl.Disable(GL_POLYGON_OFFSET_FILL);
-  gl.Disable(GL_SCISSOR_TEST);
 }
 
 /// The items that the section cuts open, or all others.
@@ -290,9 +286,7 @@ void RasterRenderer::Impl::draw_items(const SceneView& view, const DrawList& lis
   }
   for (const Drawn& one : drawn) {
     if ((list.section && one.item->sectioned) != sectioned) continue;
-    if (!may_lie_within(view.clip_from_world, one.mesh->bounds, one.item->X_world, Vec2(-1.0, -1.0),
-                        Vec2(1.0, 1.0)))
-      continue;
+    if (!may_lie_within(view.clip_from_world, one.mesh->bounds, one.item->X_world)) continue;
     const Uniforms uniforms(gl, one.mesh->has_colours ? programs.coloured : programs.plain);
     uniforms.set("world_from_mesh", one.item->X_world.matrix());
     if (one.mesh->has_colours) {
@@ -326,16 +320,11 @@ void RasterRenderer::Impl::draw_surfaces(const SceneView& view, const DrawList& 
 }
 
 void RasterRenderer::Impl::read_shadow(const SceneView& view) {
-  const ShadowPart part = shadow_part(view);
-  shadow.size = kShadowSize;
-  shadow.left = part.left;
-  shadow.low = part.low;
-  shadow.width = part.width;
-  shadow.rows = part.rows;
-  shadow.depths.resize(static_cast<size_t>(part.width) * static_cast<size_t>(part.rows));
+  shadow.width = view.shadow_columns;
+  shadow.rows = view.shadow_rows;
+  shadow.depths.resize(static_cast<size_t>(shadow.width) * static_cast<size_t>(shadow.rows));
   gl.BindFramebuffer(GL_FRAMEBUFFER, shadow_target);
-  gl.ReadPixels(part.left, part.low, part.width, part.rows, GL_DEPTH_COMPONENT, GL_FLOAT,
-                shadow.depths.data());
+  gl.ReadPixels(0, 0, shadow.width, shadow.rows, GL_DEPTH_COMPONENT, GL_FLOAT, shadow.depths.data());
 }
 
 Image RasterRenderer::Impl::shade(const SceneView& view, const Camera& camera) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -18,6 +17,13 @@ constexpr double kNearShare = 0.002;  // nearest plane as a share of the farthes
 /// opens is not mixed with it.
 constexpr double kFloorGap = 1e-3;
 constexpr double kLightMargin = 1.05;  // of the scene's radius: nothing touches the border of the shadow map
+
+/// Texels along the longer side of the shadow map: of the whole scene, and the least where the picture can
+/// look at less of it. A close-up has its own shadows so, and no map costs much more than any other.
+constexpr double kShadowMost = 2040.0, kShadowLeast = 1528.0;
+/// Texels beyond what can be looked at: a place is looked up off its surface, by two taps of four texels.
+constexpr int kShadowBeside = 4;
+constexpr double kLeastShadowed = 1e-4;  // of the scene's radius: where nothing of it is looked at
 
 /// A direction `left` and `elevation` (degrees) as the camera's bearing sees it: 0 is from behind the camera.
 Vec3 light_direction(const Vec3& forward, double left_deg, double elevation_deg) {
@@ -66,6 +72,29 @@ std::vector<Vec3> seen_corners(const Vec3& eye, const SceneView& view, double lo
   return found;
 }
 
+/// Of a sphere that holds the scene, what lies under the light of the places.
+void fit_shadow_map(SceneView& view, const Vec3& centre, double radius, const std::vector<Vec3>& places) {
+  const Eigen::Matrix4d whole = parallel_projection(view.key, centre, radius);
+  Vec2 lower = Vec2::Ones(), upper = -lower;
+  for (const Vec3& place : places) {
+    const Vec2 at = (whole * place.homogeneous()).head<2>();
+    lower = lower.cwiseMin(at.cwiseMax(-1.0));
+    upper = upper.cwiseMax(at.cwiseMin(1.0));
+  }
+  const Vec2 middle = 0.5 * (lower + upper), size = (upper - lower).cwiseMax(kLeastShadowed);
+  const double texel =
+      size.maxCoeff() / std::clamp(0.5 * size.maxCoeff() * kShadowMost, kShadowLeast, kShadowMost);
+  view.shadow_columns = static_cast<int>(std::ceil(size.x() / texel)) + 2 * kShadowBeside;
+  view.shadow_rows = static_cast<int>(std::ceil(size.y() / texel)) + 2 * kShadowBeside;
+  view.shadow_texel_mm = radius * texel;
+  view.light_clip_from_world = whole;
+  const Vec2 half = 0.5 * texel * Vec2(view.shadow_columns, view.shadow_rows);
+  for (int k = 0; k < 2; ++k) {
+    view.light_clip_from_world(k, 3) -= middle[k];
+    view.light_clip_from_world.row(k) /= half[k];
+  }
+}
+
 }  // namespace
 
 void extend(Box& bounds, const Box& box, const Pose& X_world) {
@@ -76,14 +105,13 @@ void extend(Box& bounds, const Box& box, const Pose& X_world) {
   }
 }
 
-bool may_lie_within(const Eigen::Matrix4d& clip_from_world, const Box& box, const Pose& X_world,
-                    const Vec2& lower, const Vec2& upper) {
+bool may_lie_within(const Eigen::Matrix4d& clip_from_world, const Box& box, const Pose& X_world) {
   int beyond[4] = {};
   for (const Vec3& corner : corners(box)) {
     const Eigen::Vector4d p = clip_from_world * (X_world * corner).homogeneous();
     for (int k = 0; k < 2; ++k) {
-      beyond[k] += p[k] < lower[k] * p.w() ? 1 : 0;
-      beyond[k + 2] += p[k] > upper[k] * p.w() ? 1 : 0;
+      beyond[k] += p[k] < -p.w() ? 1 : 0;
+      beyond[k + 2] += p[k] > p.w() ? 1 : 0;
     }
   }
   return std::none_of(std::begin(beyond), std::end(beyond), [](int count) { return count == 8; });
@@ -123,15 +151,8 @@ SceneView scene_view(const Camera& camera, const Box& bounds, double aspect) {
   view.right = half * aspect * from_world.block<1, 3>(0, 0).transpose();
   view.up = half * from_world.block<1, 3>(1, 0).transpose();
   view.forward = -from_world.block<1, 3>(2, 0).transpose();
-  view.light_extent_mm = 2.0 * kLightMargin * radius;
-  view.light_clip_from_world = parallel_projection(view.key, bounds.centre(), kLightMargin * radius);
-  view.shadow_lower = Vec2::Constant(std::numeric_limits<double>::infinity());
-  view.shadow_upper = -view.shadow_lower;
-  for (const Vec3& place : seen_corners(camera.eye, view, view.ground_centre.z(), bounds.upper.z())) {
-    const Vec2 at = (view.light_clip_from_world * place.homogeneous()).head<2>();
-    view.shadow_lower = view.shadow_lower.cwiseMin(at);
-    view.shadow_upper = view.shadow_upper.cwiseMax(at);
-  }
+  fit_shadow_map(view, bounds.centre(), kLightMargin * radius,
+                 seen_corners(camera.eye, view, view.ground_centre.z(), bounds.upper.z()));
   return view;
 }
 

@@ -7,11 +7,10 @@ namespace swarf::render {
 
 struct SceneView {
   Eigen::Matrix4d clip_from_world;
-  Eigen::Matrix4d light_clip_from_world;  ///< the key light's parallel projection of the scene
-  double light_extent_mm = 1.0;           ///< width of that projection
-  /// What of it, -1..1, can lie under the light of a place in the picture: nothing else of its shadow map is
-  /// looked at. Empty: lower > upper.
-  Vec2 shadow_lower, shadow_upper;
+  /// The key light's parallel projection of what lies between it and the places that the picture can show.
+  Eigen::Matrix4d light_clip_from_world;
+  int shadow_columns = 2, shadow_rows = 2;  ///< texels of its map, square ones
+  double shadow_texel_mm = 1.0;
   Vec3 key, fill, rim;  ///< unit vectors towards the lights
   /// Of the picture: at distance 1 along `forward`, right and up reach its edges.
   Vec3 right, up, forward;
@@ -23,10 +22,9 @@ struct SceneView {
 /// `bounds` holds every item of the scene in the drawing's frame.
 SceneView scene_view(const Camera& camera, const Box& bounds, double aspect);
 
-/// False only where nothing of a box at a pose lies within `lower` and `upper` of clip space (-1..1 is all of
-/// it): where all of its corners are beyond one side.
-bool may_lie_within(const Eigen::Matrix4d& clip_from_world, const Box& box, const Pose& X_world,
-                    const Vec2& lower, const Vec2& upper);
+/// False only where nothing of a box at a pose lies within the sides of clip space: where all of its corners
+/// are beyond one of them.
+bool may_lie_within(const Eigen::Matrix4d& clip_from_world, const Box& box, const Pose& X_world);
 
 /// Whether the eye, or a place of the picture's near plane, may lie in a body of the item that encloses
 /// triangles: what is within shows then.

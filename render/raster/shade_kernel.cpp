@@ -1,6 +1,7 @@
 #include "render/raster/shade_kernel.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "base/instruction_sets.h"
@@ -63,17 +64,41 @@ SWARF_KERNEL_INLINE Vector mix(const Vector& a, const Vector& b, float share) {
   return a + share * (b - a);
 }
 
-/// Linear to sRGB through square roots, fitted to the standard's curve (error below 0.003 above 0.002).
-SWARF_KERNEL_INLINE float srgb_of(float c) {
-  const float s = std::sqrt(most(c, 0.0F));
-  const float ss = std::sqrt(s);
-  return within_one(0.585122381F * s + 0.783140355F * ss - 0.368262736F * std::sqrt(ss));
+/// The second where `second` is 1, the first where it is 0: exactly.
+SWARF_KERNEL_INLINE float one_of(float a, float b, float second) {
+  return (1.0F - second) * a + second * b;
 }
 
-/// Linear up to 0.7, then a shoulder that never reaches 1.
-SWARF_KERNEL_INLINE float shouldered(float c) {
-  const float over = most(c - 0.7F, 0.0F);
-  return least(c, 0.7F) + 0.3F * over / (0.3F + over);
+/// Base-2 logarithm of what is above 0, by its exponent and a cubic of its mantissa: error below 9e-4.
+SWARF_KERNEL_INLINE float log2_of(float x) {
+  const int bits = std::bit_cast<int>(x);
+  const float m = std::bit_cast<float>((bits & 0x7fffff) | 0x3f800000) - 1.0F;
+  return static_cast<float>((bits >> 23) - 127) + m + m * (1.0F - m) * (0.422865005F - 0.159219632F * m);
+}
+
+/// 2 to what is above -64, likewise: relative error below 1.5e-4.
+SWARF_KERNEL_INLINE float exp2_of(float x) {
+  const float above = x + 64.0F;
+  const int whole = static_cast<int>(above);
+  const float part = above - static_cast<float>(whole);
+  const float mantissa = 1.0F + part - part * (1.0F - part) * (0.304109874F + 0.079244907F * part);
+  return std::bit_cast<float>(std::bit_cast<int>(mantissa) + (whole - 64) * (1 << 23));
+}
+
+/// Linear to sRGB, 0 to 1, within 0.0005. Without roots: they are what a vector unit is slowest at.
+SWARF_KERNEL_INLINE float srgb_of(float c) {
+  constexpr float kLinearTo = 0.0031308F;  // below it the standard's curve is a line
+  const float curve = 1.055F * exp2_of((1.0F / 2.4F) * log2_of(most(c, kLinearTo))) - 0.055F;
+  return within_one(curve + 12.92F * (least(c, kLinearTo) - kLinearTo));
+}
+
+/// Linear up to 0.7, then a shoulder that never reaches 1. One division for three.
+SWARF_KERNEL_INLINE Vector shouldered(const Vector& c) {
+  const Vector over{most(c.x - 0.7F, 0.0F), most(c.y - 0.7F, 0.0F), most(c.z - 0.7F, 0.0F)};
+  const Vector under{0.3F + over.x, 0.3F + over.y, 0.3F + over.z};
+  const float xy = under.x * under.y, inverse = 0.3F / (xy * under.z);
+  return {least(c.x, 0.7F) + over.x * under.y * under.z * inverse,
+          least(c.y, 0.7F) + over.y * under.x * under.z * inverse, least(c.z, 0.7F) + over.z * xy * inverse};
 }
 
 /// t runs from the bottom (0) to the top (1) of the picture.
@@ -112,11 +137,12 @@ SWARF_KERNEL_INLINE Vector surface(const Lights& l, const Vector& v, const Vecto
 
   // GGX lobe of the key light with the visibility term of a half vector (Karis's mobile approximation).
   const float a = most(roughness * roughness, 0.02F);
-  const Vector h = normalized(v + key);
-  const float nh = most(dot(n, h), 0.0F);
-  const float lh = most(dot(key, h), 0.1F);
-  const float d = nh * nh * (a * a - 1.0F) + 1.0F;
-  const float lobe = a * a / (12.566F * d * d * lh * lh * (roughness + 0.5F)) * nl;
+  const Vector h = v + key;
+  const float per_square = 1.0F / most(dot(h, h), 1e-30F);
+  const float above = most(dot(n, h), 0.0F), along = dot(key, h);
+  const float nh_nh = above * above * per_square, lh_lh = most(along * along * per_square, 0.01F);
+  const float d = nh_nh * (a * a - 1.0F) + 1.0F;
+  const float lobe = a * a / (12.566F * d * d * lh_lh * (roughness + 0.5F)) * nl;
   float edge = (1.0F - nv) * (1.0F - nv);
   edge = edge * edge * (1.0F - nv);
   const float smooth = 1.0F - roughness;
@@ -127,30 +153,29 @@ SWARF_KERNEL_INLINE Vector surface(const Lights& l, const Vector& v, const Vecto
                           (1.0F - 0.45F * roughness) * (mirror * studio(reflected, l.softbox, roughness)) +
                           (0.25F * edge * most(dot(n, l.rim), 0.0F)) * Vector{0.9F, 0.95F, 1.0F};
   const Vector seen = diffuse * light + specular;
-  return {shouldered(seen.x), shouldered(seen.y), shouldered(seen.z)};
+  return shouldered(seen);
 }
 
 /// What the shadow map is asked by, its own so that writing colours cannot change it.
 struct ShadowTexels {
   const float* depths;
   int width;
-  float left, low, right_most, up_most;  ///< texels
+  float columns, rows, right_most, up_most;  ///< texels
 };
 
 SWARF_KERNEL_INLINE ShadowTexels texels_of(const ShadowMap& map) {
   // Texels' middles stand half a texel in; the last row and column have no neighbours.
   return {map.depths.data(),
           map.width,
-          static_cast<float>(map.left) + 0.5F,
-          static_cast<float>(map.low) + 0.5F,
+          static_cast<float>(map.width),
+          static_cast<float>(map.rows),
           static_cast<float>(map.width) - 1.001F,
           static_cast<float>(map.rows) - 1.001F};
 }
 
 /// The share of four texels around the place that does not shade it, weighed by their distances.
 SWARF_KERNEL_INLINE float lit_texels(const ShadowTexels& map, float x, float y, float depth) {
-  const float px = most(least(x - map.left, map.right_most), 0.0F),
-              py = most(least(y - map.low, map.up_most), 0.0F);
+  const float px = most(least(x - 0.5F, map.right_most), 0.0F), py = most(least(y - 0.5F, map.up_most), 0.0F);
   const int column = static_cast<int>(px), row = static_cast<int>(py);
   const float right = px - static_cast<float>(column), up = py - static_cast<float>(row);
   const int at = row * map.width + column;
@@ -251,69 +276,135 @@ SWARF_KERNEL_INLINE void first_surfaces(const SampleRow& row, int side, ShadeBat
   }
 }
 
+/// `Lighting` as the loops take it.
+struct ShadeFrame {
+  Vector eye, forward, right, down, centre;
+  Vector shadow_x, shadow_y, shadow_z, shadow_origin;
+  Lights lights;
+  float per_radius, per_height, lift, near_start, near_rise;
+  Vector floor_near;
+  ShadowTexels map;
+  const float *metalness, *roughness;
+};
+
+SWARF_KERNEL_INLINE ShadeFrame frame_of(const Lighting& l) {
+  return {vector(l.eye),
+          vector(l.forward),
+          vector(l.right),
+          vector(l.down),
+          vector(l.centre),
+          vector(l.shadow_from_world[0]),
+          vector(l.shadow_from_world[1]),
+          vector(l.shadow_from_world[2]),
+          vector(l.shadow_origin),
+          {vector(l.key), vector(l.softbox), vector(l.fill), vector(l.rim)},
+          1.0F / l.radius,
+          1.0F / l.height,
+          l.shadow_lift_mm,
+          l.nearness[0],
+          l.nearness[1],
+          vector(l.floor),
+          texels_of(*l.shadow),
+          l.metalness.data(),
+          l.roughness.data()};
+}
+
+struct Lit {
+  Vector place;  ///< in the shadow map, 0..1
+  float share;
+};
+
+/// Two filtered taps across the texel grid: eight texels weigh in.
+SWARF_KERNEL_INLINE Lit lit_at(const ShadeFrame& f, const Vector& world) {
+  const Vector p = f.shadow_origin + world.x * f.shadow_x + world.y * f.shadow_y + world.z * f.shadow_z;
+  const float x = p.x * f.map.columns, y = p.y * f.map.rows, depth = least(p.z, 1.0F);
+  return {p, 0.5F * (lit_texels(f.map, x - 0.6F, y - 0.3F, depth) +
+                     lit_texels(f.map, x + 0.6F, y + 0.3F, depth))};
+}
+
+/// Floor and background.
+SWARF_KERNEL_INLINE Vector ground_seen(const ShadeFrame& f, float x, float y) {
+  const float near = most(x * f.floor_near.x + y * f.floor_near.y + f.floor_near.z, kLeastNearness);
+  const Vector world = f.eye + (1.0F / near) * (f.forward + x * f.right + y * f.down);
+  const Lit lit = lit_at(f, world);
+  // Darker close to the scene, where its bulk hides part of the sky.
+  const float dx = world.x - f.centre.x, dy = world.y - f.centre.y;
+  const float r = std::sqrt(dx * dx + dy * dy) * f.per_radius;
+  const Vector& p = lit.place;
+  const float beyond = most(most(most(p.x, p.y), p.z) - 1.0F, -least(least(p.x, p.y), p.z));
+  const float unshaded = beyond > 0.0F ? 1.0F : 0.0F;
+  const float floor_lit = mix(0.58F, 1.0F, most(lit.share, unshaded));
+  const float floor = floor_lit * mix(0.80F, 1.0F, smooth_between(0.08F, 0.45F, r));
+  const float fade = 1.0F - smooth_between(0.25F, 1.0F, r);  // beyond the horizon too: r is huge there
+  return mix(background(0.5F - y * f.per_height), floor * Vector{0.56F, 0.58F, 0.60F}, fade);
+}
+
+/// What is drawn there.
+SWARF_KERNEL_INLINE Vector body_seen(const ShadeFrame& f, float x, float y, float seen_depth,
+                                     const Vector& towards, int material, const Vector& own) {
+  const float near = most(f.near_start + f.near_rise * seen_depth, kLeastNearness);
+  const Vector line = f.forward + x * f.right + y * f.down;
+  const Vector v = normalized(Vector{} - line);
+  const Vector n = (dot(towards, v) < 0.0F ? -1.0F : 1.0F) * towards;
+  const Lit lit = lit_at(f, f.eye + (1.0F / near) * line + f.lift * n);
+  return surface(
+      f.lights, v, n,
+      {{linear_of(own.x), linear_of(own.y), linear_of(own.z)}, f.metalness[material], f.roughness[material]},
+      lit.share);
+}
+
+/// sRGB of some pixels, apart from the batch, as above.
+struct Colours {
+  float red[kAtOnce], green[kAtOnce], blue[kAtOnce];
+};
+
+SWARF_KERNEL_INLINE void shade_ground(const ShadeFrame& f, const float* xs, const float* ys, Colours& out) {
+  for (int i = 0; i < kAtOnce; ++i) {
+    const Vector seen = ground_seen(f, xs[i], ys[i]);
+    out.red[i] = srgb_of(seen.x);
+    out.green[i] = srgb_of(seen.y);
+    out.blue[i] = srgb_of(seen.z);
+  }
+}
+
+/// Of those that see the ground it makes nothing that is used.
+SWARF_KERNEL_INLINE void shade_bodies(const ShadeFrame& f, size_t at, const ShadeBatch& batch, Colours& out) {
+  const float *xs = &batch.x[at], *ys = &batch.y[at], *depths = &batch.depth[at];
+  const float *us = &batch.normal_u[at], *vs = &batch.normal_v[at];
+  const uint32_t* paints = &batch.paint[at];
+  for (int i = 0; i < kAtOnce; ++i) {
+    const uint32_t paint = paints[i];
+    const int kind = static_cast<int>(paint >> 24);
+    const Vector own{byte_of(paint, 0), byte_of(paint, 1), byte_of(paint, 2)};
+    const Vector seen = body_seen(f, xs[i], ys[i], depths[i], normal_at(us[i], vs[i]),
+                                  std::max(kind - kFirstMaterial, 0), own);
+    // Shares instead of branches, which would keep the loop from vectors.
+    const float painted = kind == kPaintKind ? 1.0F : 0.0F;
+    out.red[i] = one_of(srgb_of(seen.x), own.x, painted);
+    out.green[i] = one_of(srgb_of(seen.y), own.y, painted);
+    out.blue[i] = one_of(srgb_of(seen.z), own.z, painted);
+  }
+}
+
 SWARF_KERNEL_INLINE void shade(const Lighting& lighting, size_t count, ShadeBatch& batch) {
-  const Lighting& l = lighting;
-  const Vector eye = vector(l.eye), forward = vector(l.forward), right = vector(l.right),
-               down = vector(l.down), centre = vector(l.centre);
-  const Vector shadow_x = vector(l.shadow_from_world[0]), shadow_y = vector(l.shadow_from_world[1]),
-               shadow_z = vector(l.shadow_from_world[2]), shadow_origin = vector(l.shadow_origin);
-  const Lights lights{vector(l.key), vector(l.softbox), vector(l.fill), vector(l.rim)};
-  const float per_radius = 1.0F / l.radius, per_height = 1.0F / l.height;
-  const float shadow_size = static_cast<float>(l.shadow->size), lift = l.shadow_lift_mm;
-  const float near_start = l.nearness[0], near_rise = l.nearness[1];
-  const std::array<float, 3> floor_near = l.floor;
-  const ShadowTexels map = texels_of(*l.shadow);
-  const float *metal_of = l.metalness.data(), *rough_of = l.roughness.data();
+  const ShadeFrame frame = frame_of(lighting);
   for (size_t at = 0; at < count; at += kShadedAtOnce) {
-    float red_of[kAtOnce], green_of[kAtOnce], blue_of[kAtOnce];  // apart from the batch, as above
-    const float *xs = &batch.x[at], *ys = &batch.y[at], *depths = &batch.depth[at];
-    const float *us = &batch.normal_u[at], *vs = &batch.normal_v[at];
-    const uint32_t* paints = &batch.paint[at];
-    for (int i = 0; i < kAtOnce; ++i) {
-      const float x = xs[i], y = ys[i], seen_depth = depths[i];
-      const uint32_t paint = paints[i];
-      const int kind = static_cast<int>(paint >> 24);
-      // Shares instead of branches, which would keep the loop from vectors.
-      const float ground = kind == kGroundKind ? 1.0F : 0.0F, painted = kind == kPaintKind ? 1.0F : 0.0F;
-      const float near_floor = x * floor_near[0] + y * floor_near[1] + floor_near[2];
-      const float near = most(mix(near_start + near_rise * seen_depth, near_floor, ground), kLeastNearness);
-      const Vector line = forward + x * right + y * down;
-      const Vector world = eye + (1.0F / near) * line;
-      const Vector v = normalized(Vector{} - line);
-      Vector n = normal_at(us[i], vs[i]);
-      n = (dot(n, v) < 0.0F ? -1.0F : 1.0F) * n;
-
-      // Two filtered taps across the texel grid: eight texels weigh in. The map holds the whole scene.
-      const Vector lifted = world + (lift - ground * lift) * n;
-      const Vector p = shadow_origin + lifted.x * shadow_x + lifted.y * shadow_y + lifted.z * shadow_z;
-      const float px = p.x * shadow_size, py = p.y * shadow_size, depth = least(p.z, 1.0F);
-      const float lit = 0.5F * (lit_texels(map, px - 0.6F, py - 0.3F, depth) +
-                                lit_texels(map, px + 0.6F, py + 0.3F, depth));
-      const Vector own{byte_of(paint, 0), byte_of(paint, 1), byte_of(paint, 2)};
-      const int material = kind > kFirstMaterial ? kind - kFirstMaterial : 0;
-      const Vector seen = surface(
-          lights, v, n,
-          {{linear_of(own.x), linear_of(own.y), linear_of(own.z)}, metal_of[material], rough_of[material]},
-          lit);
-
-      // Darker close to the scene, where its bulk hides part of the sky.
-      const float dx = world.x - centre.x, dy = world.y - centre.y;
-      const float r = std::sqrt(dx * dx + dy * dy) * per_radius;
-      const float beyond = most(most(most(p.x, p.y), p.z) - 1.0F, -least(least(p.x, p.y), p.z));
-      const bool outside = beyond > 0.0F;
-      const float floor_lit = outside ? 1.0F : mix(0.58F, 1.0F, lit);
-      const float floor = floor_lit * mix(0.80F, 1.0F, smooth_between(0.08F, 0.45F, r));
-      const float fade = near > kLeastNearness ? 1.0F - smooth_between(0.25F, 1.0F, r) : 0.0F;
-      const Vector behind = mix(background(0.5F - y * per_height), floor * Vector{0.56F, 0.58F, 0.60F}, fade);
-
-      const Vector lighted = mix(seen, behind, ground);
-      red_of[i] = mix(srgb_of(lighted.x), own.x, painted);
-      green_of[i] = mix(srgb_of(lighted.y), own.y, painted);
-      blue_of[i] = mix(srgb_of(lighted.z), own.z, painted);
+    float is_ground[kAtOnce], grounds = 0.0F;
+    for (int i = 0; i < kAtOnce; ++i) is_ground[i] = batch.paint[at + i] >> 24 == kGroundKind ? 1.0F : 0.0F;
+    for (int i = 0; i < kAtOnce; ++i) grounds += is_ground[i];
+    Colours seen, ground;
+    if (grounds < kAtOnce) shade_bodies(frame, at, batch, seen);
+    if (grounds > 0.0F) shade_ground(frame, &batch.x[at], &batch.y[at], grounds < kAtOnce ? ground : seen);
+    if (grounds > 0.0F && grounds < kAtOnce) {
+      for (int i = 0; i < kAtOnce; ++i) {
+        seen.red[i] = one_of(seen.red[i], ground.red[i], is_ground[i]);
+        seen.green[i] = one_of(seen.green[i], ground.green[i], is_ground[i]);
+        seen.blue[i] = one_of(seen.blue[i], ground.blue[i], is_ground[i]);
+      }
     }
-    std::copy_n(red_of, kAtOnce, &batch.red[at]);
-    std::copy_n(green_of, kAtOnce, &batch.green[at]);
-    std::copy_n(blue_of, kAtOnce, &batch.blue[at]);
+    std::copy_n(seen.red, kAtOnce, &batch.red[at]);
+    std::copy_n(seen.green, kAtOnce, &batch.green[at]);
+    std::copy_n(seen.blue, kAtOnce, &batch.blue[at]);
   }
 }
 
@@ -401,7 +492,7 @@ Lighting lighting(const SceneView& view, const Vec3& eye, int width, int height,
   const Eigen::Matrix<double, 3, 4> half = 0.5 * view.light_clip_from_world.topRows<3>();
   for (int k = 0; k < 3; ++k) l.shadow_from_world[static_cast<size_t>(k)] = single(half.col(k));
   l.shadow_origin = single(half.col(3) + Vec3::Constant(0.5));
-  l.shadow_lift_mm = static_cast<float>(1.5 * view.light_extent_mm / shadow.size);
+  l.shadow_lift_mm = static_cast<float>(1.5 * view.shadow_texel_mm);
   l.centre = single(view.ground_centre);
   l.radius = static_cast<float>(view.ground_radius);
   l.height = static_cast<float>(height);

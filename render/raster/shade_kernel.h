@@ -15,12 +15,10 @@
 
 namespace swarf::render {
 
-/// The depth, 0..1, of what the key light reaches first: a part of the whole map, whose lowest row is first.
+/// The depth, 0..1, of what the key light reaches first, the lowest row first.
 struct ShadowMap {
   std::vector<float> depths;
-  int size = 0;             ///< texels of the whole map, both ways
-  int left = 0, low = 0;    ///< texel of the part's corner
-  int width = 0, rows = 0;  ///< of the part, at least 2
+  int width = 0, rows = 0;  ///< texels, at least 2
 };
 
 /// Everything but the places themselves that decides on their colours.
@@ -31,7 +29,7 @@ struct Lighting {
   std::array<float, 2> nearness;   ///< 1/mm: of depth 0, and what depth 1 adds to it
   std::array<float, 3> floor;      ///< its nearness: x and y times the first two plus the third
   Vector key, softbox, fill, rim;  ///< unit vectors towards the lights; of the box between key and zenith
-  std::array<Vector, 3> shadow_from_world;  ///< columns of the whole shadow map's place, 0..1
+  std::array<Vector, 3> shadow_from_world;  ///< columns of the shadow map's place, 0..1
   Vector shadow_origin;
   float shadow_lift_mm;  ///< off a surface, before its shadow is looked up
   Vector centre;         ///< of the floor

@@ -27,6 +27,7 @@ def units():
         parts = re.findall(r'#include "([^"]+\.cpp)"', file.read_text()) if file.suffix == ".cxx" else [entry["file"]]
         if not any(part.startswith(f"{ROOT}/tests/") for part in parts):
             command, target = re.fullmatch(r"(.*) -o (\S+?\.dir)/.*", entry["command"], re.S).groups()
+            command = re.sub(r" -mtune-ctrl=\S+", "", command)  # known to gcc alone
             alone = "" if file.suffix == ".cxx" else file.stem
             groups.setdefault((target, alone, command, entry["directory"]), []).extend(parts)
     UNITS.mkdir(parents=True, exist_ok=True)

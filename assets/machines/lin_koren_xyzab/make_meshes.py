@@ -279,7 +279,9 @@ def fixture():
 
 def _edge_clamp(part, put):
     """Jaw and wedge with its screw, seen along +x from the stock's edge at x = 0; 13 mm deep."""
-    part.add(OXIDE, put(prism(outline([(0, 99), (13, 99), (13, 104, 1), (7, 106.5, 1), (0, 106.5)]), "y", -11, 11, 0.7)))
+    # the jaw's brass stands proud: where faces of two colours lie in one plane neither is drawn whole
+    steel = outline([(0.3, 99), (13, 99), (13, 104, 1), (7, 106.5, 1), (0.3, 106.5)])
+    part.add(OXIDE, put(prism(steel, "y", -11, 11, 0.7)))
     part.add(BRASS, put(prism(rectangle(0, 1.6, 100, 105.5), "y", -8, 8, 0.2)))
     part.add(STEEL, put(move(cap_screw(2.6, 2.4), 7.5, 0, 105.2)))
 

@@ -21,7 +21,7 @@ SceneView view_of(const Camera& camera) {
 /// A map whose texels are drawn by lot.
 ShadowMap random_shadows(std::mt19937& random) {
   std::uniform_real_distribution<float> share(0.0F, 1.0F);
-  ShadowMap map{{}, kMap, 8, 4, kMap - 16, kMap - 9};
+  ShadowMap map{{}, kMap - 16, kMap - 9};
   map.depths.resize(static_cast<size_t>(map.width) * static_cast<size_t>(map.rows));
   for (float& depth : map.depths) depth = share(random);
   return map;
