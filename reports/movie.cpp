@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "render/movie/movie_writer.h"
 #include "render/raster/raster_renderer.h"
+#include "reports/chips.h"
 #include "reports/movie_camera.h"
 #include "reports/movie_overlay.h"
 #include "reports/movie_stock.h"
@@ -83,6 +84,7 @@ struct FrameTask {
   StockState stock;
   std::vector<uint64_t> revisions;
   std::vector<Vec3> trail;
+  std::vector<Chip> chips;
 };
 
 /// Draws frames one after the other.
@@ -107,7 +109,7 @@ class Lane {
       renderer->second =
           std::make_unique<render::RasterRenderer>(size[0], size[1], run_.job.scene.movie.samples);
     return renderer->second->draw(
-        view_.list(frames_[task.number], kind, size, task.stock, task.revisions, task.trail));
+        view_.list(frames_[task.number], kind, size, task.stock, task.revisions, task.trail, task.chips));
   }
 
   /// Machine on the left, part on the right.
@@ -147,6 +149,7 @@ RenderStatistics make_movie(const FinishedRun& run, const std::string& path, con
     lanes.push_back(std::make_unique<Lane>(run, view, frames, overlay));
   StockAlong stock(run);
   Trail trail(run);
+  Chips chips(run, frames);
   std::deque<std::future<render::Image>> drawing;
   std::vector<double> times;
   auto start = std::chrono::steady_clock::now();
@@ -166,7 +169,7 @@ RenderStatistics make_movie(const FinishedRun& run, const std::string& path, con
   for (size_t f = 0; f < frames.size() && !progress.stop_requested(); ++f) {
     const MovieStock& now = stock.at(frames[f].cycle);
     FrameTask task{f, now.state(), now.revisions(),
-                   trail.up_to(frames[f], settings.shots[frames[f].shot].trail_s)};
+                   trail.up_to(frames[f], settings.shots[frames[f].shot].trail_s), chips.at(frames[f])};
     // The lane goes on before its last picture is encoded.
     std::optional<render::Image> last;
     if (drawing.size() == lanes.size()) last = drawn();

@@ -6,6 +6,7 @@
 #include "base/parallel.h"
 #include "base/units.h"
 #include "render/camera.h"
+#include "render/figures/chip_mesh.h"
 #include "reports/pictures.h"
 #include "reports/section_still.h"
 
@@ -20,6 +21,11 @@ constexpr double kFarTravel = 2.0;
 /// Of the ball around the stock, which turns in it: a third of its radius is left for the tool.
 constexpr double kAroundBall = 1.35;
 constexpr render::Rgb kTrailColour{0.85F, 0.10F, 0.05F};
+constexpr double kChipSize = 0.2;  // tool diameters
+constexpr render::Material kChipMaterial{{0.80F, 0.78F, 0.74F}, 0.7F, 0.3F};
+/// Chips that have flown so many of the stock's longest sides away from it have left the picture. Beside the
+/// part alone fewer: its light and floor are laid out by all that is drawn.
+constexpr double kBeyondWork = 1.5, kBeyondPart = 0.5;
 
 Vec3 turned_about_z(const Vec3& direction, double angle) {
   return Eigen::AngleAxisd(angle, Vec3::UnitZ()) * direction;
@@ -43,6 +49,8 @@ ShotView::ShotView(const FinishedRun& run, const std::string& default_camera)
     seen_.upper = seen_.upper.cwiseMax(centre);
   }
   find_enclosed();
+  for (const cutter::Cutter& tool : run.job.scene.tools)
+    chips_.push_back(render::chip_mesh(kChipSize * tool.diameter_mm));
 }
 
 /// A fifth of a machine's facets is sunk in other bodies of its link; where no shot shows it they are not
@@ -98,10 +106,30 @@ render::Camera ShotView::camera(const PlannedFrame& frame, sim::MovieView view,
   return camera;
 }
 
+/// Thrown and falling in the frame that the picture stands still in, down to where the stock stands.
+void ShotView::add_chips(std::span<const Chip> chips, const Pose& X_drawn, bool part,
+                         std::vector<render::DrawItem>& items) const {
+  Box near{Vec3::Constant(1e30), Vec3::Constant(-1e30)};
+  for (const Vec3& corner : render::corners(run_.job.scene.stock.box_W)) {
+    near.lower = near.lower.cwiseMin(X_drawn * corner);
+    near.upper = near.upper.cwiseMax(X_drawn * corner);
+  }
+  const double lowest = near.lower.z();
+  const Vec3 beyond = Vec3::Constant((part ? kBeyondPart : kBeyondWork) * near.size().maxCoeff());
+  for (const Chip& chip : chips) {
+    const TriMesh& mesh = chips_[chip.tool];
+    const Pose pose = flown(chip, part ? Pose::Identity() : view_.work_pose(chip.q), lowest);
+    const Vec3 place = pose.translation();
+    if ((place - near.lower + beyond).minCoeff() < 0.0 || (near.upper + beyond - place).minCoeff() < 0.0)
+      continue;
+    items.push_back({&mesh, pose, kChipMaterial});
+  }
+}
+
 render::DrawList ShotView::list(const PlannedFrame& frame, sim::MovieView view,
                                 const std::array<int, 2>& size, const StockState& stock,
-                                const std::vector<uint64_t>& revisions,
-                                const std::vector<Vec3>& tip_trail) const {
+                                const std::vector<uint64_t>& revisions, const std::vector<Vec3>& tip_trail,
+                                std::span<const Chip> chips) const {
   const sim::MovieShot& shot = run_.job.scene.movie.shots[frame.shot];
   const auto tool = static_cast<size_t>(frame.cycle.sample.tool);
   const bool part = view == sim::MovieView::kPart;
@@ -127,6 +155,7 @@ render::DrawList ShotView::list(const PlannedFrame& frame, sim::MovieView view,
     list.section = {X_drawn * plane.point_W, X_drawn.linear() * plane.normal_W};
     for (size_t i = before; i < list.items.size(); ++i) list.items[i].sectioned = true;
   }
+  add_chips(chips, X_drawn, part, list.items);
   if (tip_trail.size() > 1) {
     render::DrawLine line{{}, kTrailColour, std::max(1.5F, static_cast<float>(size[1]) / 400.0F), "trail"};
     for (const Vec3& tip : tip_trail) line.points.push_back(X_drawn * tip);

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <numeric>
+
 #include "reports/tools_table.h"
 
 namespace swarf::reports {
@@ -64,7 +66,7 @@ std::vector<std::pair<std::string, std::string>> nc_lines(const sim::Job& job, c
   return {{"dialect",
            fmt::format("{}: {}", program::dialect_name(nc.summary.dialect), nc.summary.dialect_reason)},
           {"path", fmt::format("{} feed moves of {:.0f} mm, {} rapids of {:.0f} mm",
-                               result.main.path.elements.size() - static_cast<size_t>(nc.rapids),
+                               std::accumulate(nc.feed_moves_by_law.begin(), nc.feed_moves_by_law.end(), 0L),
                                result.main.path.pass_length_mm, nc.rapids, result.main.path.link_length_mm)},
           {"execution", execution_modes(nc)},
           {"start", nc.summary.start},

@@ -209,7 +209,11 @@ Vec3 shift_to_stock(const Box& path, const Box& stock, double radius) {
 InputError blocks_miss_stock(const Job& job, const toolpath::Elements& elements) {
   const toolpath::FeedWay way = toolpath::feed_way(elements);
   const Box& stock = job.scene.stock.box_W;
-  if (way.feeds == 0) return path_misses_stock(job, "the program has no feed move");
+  if (way.feeds == 0)
+    return {"path-misses-stock",
+            {job.scene.file},
+            "the path never meets the stock: the program has no feed move, and its rapids stay clear of it",
+            "name the program that cuts"};
   double radius = 0.0;
   for (const cutter::Cutter& tool : job.scene.tools) radius = std::max(radius, tool.radius());
   const Vec3 shift = shift_to_stock(way.box_W, stock, radius);

@@ -11,6 +11,7 @@
 #include "render/movie/movie_writer.h"
 #include "render/raster/raster_renderer.h"
 #include "render/ray/still.h"
+#include "reports/chips.h"
 #include "reports/movie_camera.h"
 #include "reports/movie_stock.h"
 #include "reports/pictures.h"
@@ -46,19 +47,55 @@ MovieStock& half_cut() {
   return stock;
 }
 
-render::DrawList frame_list() {
-  const MovieStock& stock = half_cut();
-  const PlannedFrame& frame = dome().frames[dome().frames.size() / 2];
-  return dome().view.list(frame, sim::MovieView::kMachine, kSize, stock.state(), stock.revisions(), {});
+/// The dome's finished stock, and chips that know from it how much is removed.
+struct DomesChips {
+  sim::Job job = sim::load_job(kDome, {"movie.chips=true"});
+  sim::CutAlong along{job, *dome().path.carried, *dome().path.cycles, job.scene.movie.voxel_mm};
+  FinishedRun run{job, *dome().path.cycles, along.stock(), dome().path.dexels, *dome().path.carried};
+
+  DomesChips() {
+    motion::CycleReader reader(run.cycles);
+    along.advance_whole(reader.at(run.cycles.size() - 1));
+  }
+};
+
+const FinishedRun& run_with_chips() {
+  static const DomesChips made;
+  return made.run;
 }
 
-/// range(0): samples a pixel.
+render::DrawList frame_list(bool with_chips) {
+  const MovieStock& stock = half_cut();
+  const PlannedFrame& frame = dome().frames[dome().frames.size() / 2];
+  std::vector<Chip> chips;
+  if (with_chips) chips = Chips(run_with_chips(), dome().frames).at(frame);
+  return dome().view.list(frame, sim::MovieView::kMachine, kSize, stock.state(), stock.revisions(), {},
+                          chips);
+}
+
+/// range(0): samples a pixel; range(1): with chips.
 void BM_Frame(benchmark::State& state) {
-  const render::DrawList list = frame_list();
+  const render::DrawList list = frame_list(state.range(1) != 0);
   render::RasterRenderer renderer(kSize[0], kSize[1], static_cast<int>(state.range(0)));
   renderer.draw(list);  // meshes are sent, shaders compiled
   render::Image image;
   for (auto _ : state) image = renderer.draw(list);
+  state.counters["items"] = static_cast<double>(list.items.size());
+}
+
+/// Ten frames' chips: their stock and the ticks; per frame.
+void BM_ChipsOfAFrame(benchmark::State& state) {
+  constexpr size_t kFrames = 10;
+  const std::vector<PlannedFrame>& frames = dome().frames;
+  for (auto _ : state) {
+    state.PauseTiming();
+    Chips chips(run_with_chips(), frames);
+    const size_t middle = frames.size() / 2;
+    chips.at(frames[middle]);
+    state.ResumeTiming();
+    for (size_t f = 1; f <= kFrames; ++f) benchmark::DoNotOptimize(chips.at(frames[middle + f]));
+  }
+  state.SetItemsProcessed(static_cast<int64_t>(state.iterations() * kFrames));
 }
 
 /// Ten frames' cut: what is cut, meshed again and thinned; per frame.
@@ -96,13 +133,17 @@ void BM_Still(benchmark::State& state) {
 }
 
 BENCHMARK(BM_Frame)
-    ->ArgName("samples")
-    ->Arg(1)
-    ->Arg(4)
+    ->ArgNames({"samples", "chips"})
+    ->ArgsProduct({{1, 4}, {0, 1}})
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime()
     ->UseRealTime();
 BENCHMARK(BM_StockOfAFrame)
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime()
+    ->Iterations(3);
+BENCHMARK(BM_ChipsOfAFrame)
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime()
     ->UseRealTime()

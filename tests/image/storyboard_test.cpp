@@ -175,7 +175,7 @@ kind = "none"
 [stills]
 kinds = []
 [movie]
-seconds = 0.9
+seconds = 1.4
 fps = 10
 size = [320, 180]
 overlay = false
@@ -200,7 +200,15 @@ section = "y=-5"
 from_line = 9
 to_line = 9
 seconds = 0.2
+[[movie.shot]]
+view = "part"
+camera = "0,-1,0.9"
+chips = true
+from_line = 9
+to_line = 9
+seconds = 0.5
 )";
+constexpr size_t kSlotFrames = 14;
 
 /// The slot's run, made once.
 const fs::path& slot() {
@@ -230,7 +238,7 @@ std::array<int, 2> cut_pixels(const Image& image) {
 
 TEST(MovieOfALongBlock, ShowsTheSlotUpToTheTool) {
   const std::vector<Image> frames = movie_frames((slot() / "movie.mp4").string());
-  ASSERT_EQ(frames.size(), 9U);
+  ASSERT_EQ(frames.size(), kSlotFrames);
   // The tool is at x = 12.8, 37.6, 62.4, 87.2 and 112 mm.
   const std::array<int, 2> early = cut_pixels(frames[1]), late = cut_pixels(frames[3]),
                            end = cut_pixels(frames[4]);
@@ -240,6 +248,31 @@ TEST(MovieOfALongBlock, ShowsTheSlotUpToTheTool) {
   EXPECT_GT(late[1], 100);
   EXPECT_GT(end[1], late[1] + 100);
   expect_like_reference(frames[2], "slot_middle.png");
+}
+
+int pixels_apart(const Image& a, const Image& b) {
+  int pixels = 0;
+  for (size_t i = 0; i < a.rgba.size(); i += 4) {
+    if (std::abs(a.rgba[i] - b.rgba[i]) > 24) ++pixels;
+  }
+  return pixels;
+}
+
+/// The last five frames are the first five with chips: from the wall at x = 0 on, and none after the bar.
+TEST(MovieChips, FlyWhereTheSlotIsCutTheSameForAnyThreadsAndAfterTheRun) {
+  const std::vector<Image> frames = movie_frames((slot() / "movie.mp4").string());
+  ASSERT_EQ(frames.size(), kSlotFrames);
+  for (const size_t f : {1U, 2U, 3U}) EXPECT_GT(pixels_apart(frames[f], frames[9 + f]), 100) << f;
+  expect_like_reference(frames[11], "slot_chips.png");
+  const std::string movie = (slot() / "again.mp4").string();
+  for (const int threads : {1, 2}) {
+    const ProgramRun made =
+        run_swarf(fmt::format("render {} --movie {} --threads {}", slot().string(), movie, threads));
+    ASSERT_EQ(made.exit_code, 0) << made.output;
+    const std::vector<Image> again = movie_frames(movie);
+    ASSERT_EQ(again.size(), kSlotFrames);
+    for (size_t f = 9; f < kSlotFrames; ++f) EXPECT_EQ(again[f].rgba, frames[f].rgba) << f;
+  }
 }
 
 /// Height of the orange face of the cut for its width, taken as a rectangle.
@@ -262,7 +295,7 @@ double cut_face(const Image& image) {
 TEST(SectionOnAWall, CutsAllOfItOrTakesAllOfItAway) {
   constexpr double kWhole = 0.12, kBelow = 0.08, kEdges = 0.01;  // edges: outlines and the eye's distance
   const std::vector<Image> frames = movie_frames((slot() / "movie.mp4").string());
-  ASSERT_EQ(frames.size(), 9U);
+  ASSERT_EQ(frames.size(), kSlotFrames);
   EXPECT_NEAR(cut_face(frames[6]), kWhole, kEdges);
   EXPECT_NEAR(cut_face(frames[8]), kBelow, kEdges);
   const fs::path file = slot() / "section.png";

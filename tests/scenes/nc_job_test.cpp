@@ -64,6 +64,8 @@ TEST_F(NcJob, SaysHowItWasReadAndWhatItDidNotSimulate) {
   write(kSlot, kStart);
   const auto done = run();
   ASSERT_EQ(done.exit_code, 0) << done.output;
+  // The legs of a rapid's dog-leg are no feed moves.
+  EXPECT_NE(done.output.find("1 feed moves of 80 mm, 3 rapids"), std::string::npos) << done.output;
   const json found = metrics();
   EXPECT_NEAR(at_path(found, "stock.volume_removed_mm3").get<double>(), kSlotVolume, 1e-3 * kSlotVolume);
   EXPECT_EQ(at_path(found, "program.dialect"), "linuxcnc");
@@ -74,6 +76,11 @@ TEST_F(NcJob, SaysHowItWasReadAndWhatItDidNotSimulate) {
   const std::string report = read_text(root_ / "out" / "report.html");
   EXPECT_NE(report.find("read, not simulated: M8"), std::string::npos);
   EXPECT_NE(report.find("given by the scene"), std::string::npos);
+}
+
+TEST_F(NcJob, OfRapidsAloneInTheAirItSaysThatNothingCuts) {
+  write("%\nG21 G17 G90 G94\nT2 M6\nG43 H2\nG0 X-10 Y0 Z20\nG0 X70\nM2\n", kStart);
+  expect_refused("path-misses-stock", "fix: name the program that cuts");
 }
 
 TEST_F(NcJob, TheFirstCompletePositionStartsItWhereTheSceneDoesNot) {

@@ -54,6 +54,7 @@ MovieShot read_shot(ConfigTable& table, MovieShot shot) {
   if (table.has("width_mm")) shot.width_mm = table.number("width_mm", kAboveZero);
   shot.speed = read_kind(table, "speed", {"time", "block", "cutting"}, shot.speed);
   shot.trail_s = table.number("trail_s", kZeroOrMore, shot.trail_s);
+  shot.chips = table.boolean("chips", shot.chips);
   if (const auto section = read_section(table)) shot.section = section;
   return shot;
 }

@@ -38,6 +38,7 @@ struct MovieShot {
   std::optional<double> from_s, to_s;
   std::optional<int> from_line, to_line;
   double trail_s = 0.0;  ///< of program time that the tip's trail goes back; 0: none
+  bool chips = false;    ///< drawn where material is removed
   double seconds = 0.0;
 };
 

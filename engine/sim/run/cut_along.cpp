@@ -57,6 +57,11 @@ CutAlong::CutAlong(const Job& job, const CarriedCuts& carried, const motion::Cyc
 }
 
 void CutAlong::advance(const motion::Cycle& cycle, const std::function<void(size_t tool)>& before) {
+  advance_whole(cycle, before);
+  if (done_ < all_.sweeps.size()) cut_part(cycle, before);
+}
+
+void CutAlong::advance_whole(const motion::Cycle& cycle, const std::function<void(size_t tool)>& before) {
   size_t end = done_;
   while (end < all_.sweeps.size() && is_done(all_.sources[all_.sweeps[end].block], cycle)) ++end;
   for_each_tool(
@@ -68,7 +73,6 @@ void CutAlong::advance(const motion::Cycle& cycle, const std::function<void(size
       });
   if (end > done_) share_ = 0.0;
   done_ = end;
-  if (done_ < all_.sweeps.size()) cut_part(cycle, before);
 }
 
 /// From where the last call has come on the sweep that is under way up to where the tool is.

@@ -43,6 +43,9 @@ class CutAlong {
   /// Cuts up to the tool's place in this cycle, which is no earlier than the last one. `before`: called with
   /// each tool (index into Scene::tools) before it cuts.
   void advance(const motion::Cycle& cycle, const std::function<void(size_t tool)>& before = {});
+  /// Cuts the sweeps alone that are over by then: what is left follows from the cycle, whatever the calls
+  /// before.
+  void advance_whole(const motion::Cycle& cycle, const std::function<void(size_t tool)>& before = {});
   const stock::Stock& stock() const { return stock_; }
   const JobSweeps& sweeps() const { return all_; }
 

@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "base/check.h"
+#include "base/hash.h"
 #include "base/parallel.h"
 #include "stock/level_set/stock_grid_internal.h"
 #include "stock/mesher/mesher_leaf.h"
@@ -122,15 +124,17 @@ struct StockMesher::Impl {
   const LevelSet& set;
   int side;  ///< of a patch, leaf positions
   std::vector<std::unique_ptr<LeafMesh>> leaves;
-  std::vector<uint32_t> seen;  ///< LeafMap::cuts at the last call; empty before the first
+  std::vector<uint32_t> seen;   ///< LeafMap::cuts at the last call; empty before the first
+  std::vector<uint64_t> drawn;  ///< hash of each leaf's triangles; 0: none
   size_t meshed = 0;
 
   Impl(const LevelSet& level_set, int patch_side)
-      : set(level_set), side(patch_side), leaves(level_set.map.size()) {}
+      : set(level_set), side(patch_side), leaves(level_set.map.size()), drawn(level_set.map.size(), 0) {}
 
   std::vector<uint8_t> changed_places();
   bool place(size_t n);
-  void join(size_t n);
+  bool join(size_t n);
+  uint64_t hash_of(size_t n, const std::array<const LeafMesh*, 8>& meshes) const;
   std::vector<size_t> update();
   TriMesh assemble() const;
   Eigen::Vector3i patch_dimension() const;
@@ -184,11 +188,31 @@ std::array<const LeafMesh*, 8> StockMesher::Impl::around(size_t n) const {
   return meshes;
 }
 
-void StockMesher::Impl::join(size_t n) {
-  if (leaves[n]) join_vertices(around(n), origin_W(n), set.voxel, *leaves[n]);
+/// Of the leaf's triangles as they are drawn: places and normals of their corners.
+uint64_t StockMesher::Impl::hash_of(size_t n, const std::array<const LeafMesh*, 8>& meshes) const {
+  Hash hash;
+  for (const auto& triangle : leaves[n]->triangles) {
+    for (const VertexRef ref : triangle) {
+      const LeafVertex& vertex = meshes[ref >> 16]->vertices[ref & 0xffffU];
+      for (const float c : vertex.position) hash.add(c);
+      for (const float c : vertex.normal) hash.add(c);
+    }
+  }
+  return hash.value();
 }
 
-/// Positions whose triangles may be new.
+/// False: its triangles are drawn as they were.
+bool StockMesher::Impl::join(size_t n) {
+  uint64_t now = 0;
+  if (leaves[n]) {
+    const std::array<const LeafMesh*, 8> meshes = around(n);
+    join_vertices(meshes, origin_W(n), set.voxel, *leaves[n]);
+    if (!leaves[n]->triangles.empty()) now = hash_of(n, meshes);
+  }
+  return std::exchange(drawn[n], now) != now;
+}
+
+/// Positions whose triangles are new.
 std::vector<size_t> StockMesher::Impl::update() {
   const bool first = seen.empty();
   const std::vector<size_t> around_cuts = marked(changed_places());
@@ -205,10 +229,15 @@ std::vector<size_t> StockMesher::Impl::update() {
     if (differs[c] != 0) mark_around(set.map, around_cuts[c], 0, 1, joined);
   }
   std::vector<size_t> places = marked(joined);
+  std::vector<uint8_t> other(places.size(), 1);
   parallel_chunks(places.size(), kMeshedPerTask, [&](size_t begin, size_t end) {
-    for (size_t c = begin; c < end; ++c) join(places[c]);
+    for (size_t c = begin; c < end; ++c) other[c] = join(places[c]) || first ? 1 : 0;
   });
-  return places;
+  std::vector<size_t> redrawn;
+  for (size_t c = 0; c < places.size(); ++c) {
+    if (other[c] != 0) redrawn.push_back(places[c]);
+  }
+  return redrawn;
 }
 
 TriMesh StockMesher::Impl::assemble() const {
@@ -325,7 +354,8 @@ size_t StockMesher::leaves_meshed() const {
   return impl_->meshed;
 }
 size_t StockMesher::memory_bytes() const {
-  size_t bytes = impl_->leaves.size() * (sizeof(impl_->leaves[0]) + sizeof(impl_->seen[0]));
+  size_t bytes =
+      impl_->leaves.size() * (sizeof(impl_->leaves[0]) + sizeof(impl_->seen[0]) + sizeof(impl_->drawn[0]));
   for (const auto& leaf : impl_->leaves) {
     if (!leaf) continue;
     bytes += sizeof(LeafMesh) + leaf->vertices.capacity() * sizeof(leaf->vertices[0]) +

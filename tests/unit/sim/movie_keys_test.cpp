@@ -38,10 +38,10 @@ TEST(MovieKeys, WithoutShotsThereIsOneWithWhatTheMovieSays) {
 TEST(MovieKeys, ShotsTakeWhatTheyDoNotSayFromTheMovie) {
   Diagnostics diagnostics;
   const MovieSettings movie = read(
-      "[movie]\nseconds = 8\ncamera = \"left\"\ntrail_s = 2\n"
+      "[movie]\nseconds = 8\ncamera = \"left\"\ntrail_s = 2\nchips = true\n"
       "[[movie.shot]]\nseconds = 3\nfollow = \"tool\"\nwidth_in = 2\n"
       "[[movie.shot]]\ncamera = \"1,0,0.5\"\norbit_deg = -90\nfrom_line = 4\nto_s = 9.5\n"
-      "section_mm = [[0, 5, 0], [0, -2, 0]]\n",
+      "section_mm = [[0, 5, 0], [0, -2, 0]]\nchips = false\n",
       diagnostics);
   EXPECT_TRUE(diagnostics.list().empty());
   ASSERT_EQ(movie.shots.size(), 2U);
@@ -49,6 +49,8 @@ TEST(MovieKeys, ShotsTakeWhatTheyDoNotSayFromTheMovie) {
   EXPECT_EQ(movie.shots[0].follow, MovieFollow::kTool);
   EXPECT_DOUBLE_EQ(movie.shots[0].width_mm, 50.8);
   EXPECT_EQ(movie.shots[1].trail_s, 2.0);
+  EXPECT_TRUE(movie.shots[0].chips);
+  EXPECT_FALSE(movie.shots[1].chips);
   EXPECT_EQ(movie.shots[1].from_line, 4);
   EXPECT_EQ(movie.shots[1].to_s, 9.5);
   EXPECT_TRUE(movie.shots[1].section->normal_W.isApprox(Vec3(0, -1, 0)));

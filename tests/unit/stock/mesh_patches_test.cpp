@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "base/rng.h"
 #include "mesh/mesh_ops.h"
@@ -50,7 +51,11 @@ TEST_P(StockPatches, TogetherAreTheMeshAfterEveryCut) {
   for (uint32_t n = 0; n <= kCuts; ++n) {
     const std::vector<size_t> changed = mesher.update();
     EXPECT_TRUE(std::is_sorted(changed.begin(), changed.end()));
-    for (const size_t p : changed) kept.at(p) = mesher.patch(p);
+    for (const size_t p : changed) {
+      const TriMesh before = std::exchange(kept.at(p), mesher.patch(p));
+      if (n > 0)
+        EXPECT_NE(triangles_of(before), triangles_of(kept.at(p))) << "patch " << p << " is as it was";
+    }
     if (n > 0) made += changed.size();
     std::multiset<Triangle> all;
     for (const TriMesh& patch : kept) all.merge(triangles_of(patch));
