@@ -32,12 +32,6 @@ constexpr double kThrough = 1e4;  // mm: any part
 /// top.
 constexpr double kNearHeight = 0.05;
 
-/// Cells that are about to close by division need no look.
-bool resists_division(const Cell& cell, double voxel_mm) {
-  constexpr double kResisting = 1.0 / 8.0;  // of a voxel
-  return cell.shape.radius() <= kResisting * voxel_mm;
-}
-
 bool is_divisible(const DesignCell& cell) {
   double turn = 0.0;
   for (size_t k = 0; k < 3; ++k)
@@ -55,19 +49,33 @@ CornerHeights through_stock(const Cell& cell, const Box& stock) {
   return through;
 }
 
-/// Whether no column that begins beyond a face of the box leads down to it: there the box is missed, and what
-/// is lacking is the distance to it, a convex function.
-bool leads_down_to_none(const Cell& cell, const Box& box, std::span<const Vec3> places) {
+/// Places whose hull holds the cell but for its stray; three where it is flat.
+struct HullOfCell {
+  std::array<Vec3, 6> places;
+  size_t count = 0;
+
+  explicit HullOfCell(const Cell& cell) {
+    for (const Corner& corner : cell.corners) places[count++] = corner.at.point;
+    for (size_t k = 0; k < 3 && cell.shape.is_curved(); ++k) places[count++] = cell.shape.side(k).point;
+  }
+  std::span<const Vec3> list() const { return std::span(places).first(count); }
+};
+
+/// Where no column that begins beyond a face of the box leads down to it the box is missed, and what is
+/// lacking is the distance to it, a convex function: the most over the cell, mm. Nothing elsewhere.
+std::optional<double> lacking_beside(const Cell& cell, const Box& box, std::span<const Vec3> hull) {
   const auto is_missed = [&](const Vec3& out, double face) {
     const bool beyond =
-        std::any_of(places.begin(), places.end(), [&](const Vec3& p) { return out.dot(p) > face; });
+        std::any_of(hull.begin(), hull.end(), [&](const Vec3& p) { return out.dot(p) > face; });
     return !beyond || std::all_of(cell.corners.begin(), cell.corners.end(), [&](const Corner& corner) {
       return out.dot(corner.at.normal) + cell.shape.turn <= 0.0;
     });
   };
   for (int a = 0; a < 3; ++a)
-    if (!is_missed(Vec3::Unit(a), box.upper[a]) || !is_missed(-Vec3::Unit(a), -box.lower[a])) return false;
-  return true;
+    if (!is_missed(Vec3::Unit(a), box.upper[a]) || !is_missed(-Vec3::Unit(a), -box.lower[a])) return {};
+  double most = 0.0;
+  for (const Vec3& p : hull) most = std::max(most, distance_to(box, p));
+  return most;
 }
 
 /// Height over the design up to which there was material to begin with over the whole cell; below 0 where
@@ -75,25 +83,20 @@ bool leads_down_to_none(const Cell& cell, const Box& box, std::span<const Vec3> 
 double stood_before(const Cell& cell, const stock::RawShape& raw) {
   if (!raw.is_box()) return raw_stood(cell.shape, raw);
   const Box& box = raw.box();
-  double inside = kNever, least = kNever, top = kNever, lacking = 0.0;
-  std::array<Vec3, 6> looked;  // three where the cell is flat
-  size_t count = 0;
-  const auto look_at = [&](const Vec3& p) {
-    looked[count++] = p;
-    lacking = std::max(lacking, distance_to(box, p));
+  double inside = kNever, least = kNever, top = kNever;
+  const HullOfCell hull(cell);
+  for (const Vec3& p : hull.list())
     inside = std::min({inside, (p - box.lower).minCoeff(), (box.upper - p).minCoeff()});
-  };
-  for (size_t k = 0; k < 3 && cell.shape.is_curved(); ++k) look_at(cell.shape.side(k).point);
   for (const Corner& corner : cell.corners) {
     const Vec3& p = corner.at.point;
-    look_at(p);
     const double leave = leaves_box(box, p, corner.at.normal);
     least = std::min(least, leave > -kNever ? leave : -distance_to(box, p) - cell.shape.radius());
     top = std::min(top, corner.top);
   }
-  if (inside < cell.shape.stray_mm && leads_down_to_none(cell, box, std::span(looked).first(count)))
-    return -lacking - cell.shape.stray_mm;
-  if (inside < cell.shape.stray_mm) return std::min(0.0, least) - cell.shape.flatness_mm;
+  if (inside < cell.shape.stray_mm) {
+    if (const auto lacking = lacking_beside(cell, box, hull.list())) return -*lacking - cell.shape.stray_mm;
+    return std::min(0.0, least) - cell.shape.flatness_mm;
+  }
   return std::max(0.0, top - cell.shape.flatness_mm - top * std::min(1.0, cell.shape.turn));
 }
 
@@ -291,8 +294,14 @@ class RootProof {
       looked = true;
     }
     if (!looked) low = lower_bound(cell, depths);
-    if (low == -kNever) low = lower_bound(cell, {deepest_seen(ends), depths.own});
+    if (low == -kNever && is_deep(cell)) low = lower_bound(cell, {deepest_seen(ends), depths.own});
     return low == -kNever ? -std::min(highest_left(ends).height, kThrough) : low;
+  }
+
+  /// Whether the depth down to which a cut is looked for may not suffice for what was measured.
+  static bool is_deep(const Cell& cell) {
+    return std::any_of(cell.corners.begin(), cell.corners.end(),
+                       [](const Corner& corner) { return corner.height < -0.5 * stock::kSkin; });
   }
 
   /// A cut that goes deeper than kSkin is followed to where the columns end.

@@ -233,6 +233,24 @@ TEST(Verdict, ASlotThroughAPlaneIsProvenAsDeepAsItIs) {
   EXPECT_EQ(judged.outcome("excess"), "holds") << judged.check("excess").dump(2);
 }
 
+/// Faced by rows that overlap, and drilled through where one row ends: the drill cuts the hole, the row
+/// beside it alone covers the rim.
+TEST(Verdict, AroundAHoleThroughAFacedPlaneNothingIsLeftOpen) {
+  const fs::path folder = swarf::test::fresh_folder("verdict_hole");
+  swarf::test::write_text(
+      folder / "hole.nc",
+      "G21 G17 G90 G94\nT1 M6\nS5000 M3\nG0 X-20 Y-15 Z5\nG1 Z0 F2000\nX20\nY-7\nX-20\nY1\n"
+      "X20\nY9\nX-20\nY15\nX20\nG0 Z20\nT2 M6\nS5000 M3\nG0 X3 Y2 Z5\nG1 Z-12\nG0 Z20\nM2\n");
+  swarf::test::write_text(folder / "scene.toml",
+                          "nc = \"hole.nc\"\ntools = \"T1=12,T2=6\"\n"
+                          "setup = { work_origin_mm = \"on_table\", without_length = \"tip\" }\n"
+                          "stock = { box_mm = [[-15, -12, -8], [15, 12, 1]], voxel_mm = 0.3 }\n"
+                          "[design]\nkind = \"plane\"\norigin_mm = [-14, -11, 0]\nalong_u_mm = [28, 0, 0]\n"
+                          "along_v_mm = [0, 22, 0]\npitch_mm = 1\n[accept]\nexcess_max_um = 1\n");
+  const Judged judged = run_scene((folder / "scene.toml").string());
+  EXPECT_EQ(judged.outcome("excess"), "holds") << judged.run.output;
+}
+
 TEST(Verdict, AGridCoarserThanTheBlockOrTheToolIsRefused) {
   for (const char* voxel : {"1e9", "10.5", "9"}) {
     const auto run =
