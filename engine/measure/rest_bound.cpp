@@ -23,6 +23,11 @@ double leaves_raw(const stock::RawShape& raw, const Vec3& point, const Vec3& way
 
 }  // namespace
 
+bool resists_division(const Cell& cell, double voxel_mm) {
+  constexpr double kResisting = 1.0 / 8.0;  // of a voxel
+  return cell.shape.radius() <= kResisting * voxel_mm;
+}
+
 double distance_to(const Box& box, const Vec3& p) {
   return (p - p.cwiseMax(box.lower).cwiseMin(box.upper)).norm();
 }
@@ -322,6 +327,7 @@ double RestBound::left(const Cell& cell, const std::vector<CornerHeights>& own, 
   add_box(input_.stock.box(), cell.shape, sets_);
   if (cell.raw_outside) sets_.push_back(*cell.raw_outside);
   sets_.insert(sets_.end(), own.begin(), own.end());
+  const auto first = static_cast<std::ptrdiff_t>(sets_.size());
   for (const Corner& corner : cell.corners) add_owner(cell, corner.near, tops);
   HighestLeft left = left_by_sets();
   // Where the bound is highest, the sweep that is lowest there may lower it.
@@ -336,7 +342,30 @@ double RestBound::left(const Cell& cell, const std::vector<CornerHeights>& own, 
     constexpr double kWorthwhile = 0.2;
     if (!(before - left.height > kWorthwhile * (before - enough))) break;
   }
+  const bool covered = std::any_of(sets_.begin() + first, sets_.end(),
+                                   [](const CornerHeights& set) { return set[0] < kNever; });
+  if (left.height > enough && !covered && resists_division(cell, input_.stock.voxel_mm()))
+    left = left_with_others(cell, left, tops, enough, kept, floors);
   return left.height;
+}
+
+/// Beside a hole none of the sweeps that cut the corners lowest may cover all of the cell, and one that left
+/// the floor around it may: no place tells which, so those that cut its middle are tried.
+HighestLeft RestBound::left_with_others(const Cell& cell, HighestLeft left, const CornerHeights& tops,
+                                        double enough, std::span<const uint32_t> kept,
+                                        std::span<const double> floors) {
+  constexpr size_t kMostTried = 16;
+  const CellCorner at = place_in(cell.shape, Vec3::Constant(1.0 / 3.0), root_.bounds);
+  const bool fans = root_.cell.area_mm2() == 0.0;
+  size_t tried = 0;
+  for (size_t i = 0; i < kept.size() && tried < kMostTried && left.height > enough; ++i) {
+    if (floors[i] > enough || lowest_cut(at, near_[kept[i]], enough, fans, input_.field) > enough) continue;
+    if (!add_owner(cell, kept[i], tops)) continue;
+    ++tried;
+    const HighestLeft next = left_by_sets();
+    if (next.height < left.height) left = next;
+  }
+  return left;
 }
 
 /// Of all sets, or of the sweeps alone, which all sag where the design bulges.

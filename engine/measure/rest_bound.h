@@ -44,6 +44,9 @@ struct Cell {
   std::optional<CornerHeights> raw_outside = {};
 };
 
+/// Cells that are about to close by division need no look.
+bool resists_division(const Cell& cell, double voxel_mm);
+
 /// mm; 0 inside.
 double distance_to(const Box& box, const Vec3& p);
 
@@ -119,6 +122,8 @@ class RestBound {
  private:
   std::optional<CellCorner> seam_of(const Cell& cell, size_t side) const;
   HighestLeft left_by_sets() const;
+  HighestLeft left_with_others(const Cell& cell, HighestLeft left, const CornerHeights& tops, double enough,
+                               std::span<const uint32_t> kept, std::span<const double> floors);
   bool add_owner(const Cell& cell, uint32_t n, const CornerHeights& tops);
   uint32_t owner_at(const Cell& cell, const HighestLeft& left, std::span<const uint32_t> kept,
                     std::span<const double> floors) const;

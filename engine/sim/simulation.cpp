@@ -12,6 +12,7 @@
 #include "base/units.h"
 #include "cutter/profile.h"
 #include "motion/interpolator.h"
+#include "sim/job/design_place.h"
 #include "sim/job/driven_part.h"
 #include "sim/judge/findings.h"
 #include "sim/run/design_rays.h"
@@ -188,11 +189,6 @@ InputError path_misses_stock(const Job& job, const std::string& how) {
                       job.scene.stock.raw.spoken_key())};
 }
 
-std::string sides(const Box& box) {
-  return fmt::format("X {:.3f} to {:.3f}, Y {:.3f} to {:.3f}, Z {:.3f} to {:.3f} mm", box.lower.x(),
-                     box.upper.x(), box.lower.y(), box.upper.y(), box.lower.z(), box.upper.z());
-}
-
 /// What would bring the path to the stock where they lie apart: middle to middle, in Z the path's highest
 /// place to the stock's upper face.
 Vec3 shift_to_stock(const Box& path, const Box& stock, double radius) {
@@ -218,7 +214,7 @@ InputError blocks_miss_stock(const Job& job, const toolpath::Elements& elements)
   for (const cutter::Cutter& tool : job.scene.tools) radius = std::max(radius, tool.radius());
   const Vec3 shift = shift_to_stock(way.box_W, stock, radius);
   const std::string how = fmt::format("nothing was cut; its feed moves take the tip over {}, the stock is {}",
-                                      sides(way.box_W), sides(stock));
+                                      box_text(way.box_W), box_text(stock));
   if (shift.isZero()) return path_misses_stock(job, how);
   return {
       "path-misses-stock",

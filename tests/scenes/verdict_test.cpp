@@ -187,6 +187,70 @@ TEST(Verdict, CheckFindsWhatTheMachineCannotDo) {
   EXPECT_TRUE(json::parse(right.output).at("right"));
 }
 
+/// The stock reaches from X -10 to 40, Y -10 to 10, Z -8 to 0 mm. What a raw stock lacks is no gouge.
+TEST(Verdict, ADesignOutsideTheStockIsRefusedAndOneThatReachesOutIsTold) {
+  const std::string out = swarf::test::fresh_folder("verdict_outside").string();
+  const auto run = [&](const std::string& keys) {
+    return run_swarf("run " + shipped("exact_slot_flat") + " --no-render -o " + out + keys);
+  };
+  for (const char* origin : {"[0, 90, -3]", "[0, -3, 0.001]"}) {
+    const auto refused = run(std::string(" --set 'design.origin_mm=") + origin + "'");
+    EXPECT_EQ(refused.exit_code, 2) << refused.output;
+    EXPECT_NE(refused.output.find("[design-outside-stock]"), std::string::npos) << refused.output;
+  }
+  const auto moved = run(" --set 'design.origin_mm=[0, 90, -3]'");
+  EXPECT_NE(moved.output.find("move the design by X 0.000 Y -86.000 Z 0.000"), std::string::npos)
+      << moved.output;
+  const auto inches =
+      run(" --set 'design.origin_mm=[0, -0.1, -0.1]' --set 'design.along_u_mm=[1.2, 0, 0]'"
+          " --set 'design.along_v_mm=[0, 0.2, 0]' --set 'stock.box_mm=[[-10, -10, -8], [40, 10, -1]]'");
+  EXPECT_NE(inches.output.find("its numbers may be inches"), std::string::npos) << inches.output;
+
+  const Judged partly =
+      run_scene(shipped("exact_slot_flat"), "--set 'stock.box_mm=[[-10, -10, -8], [25, 10, 0]]'");
+  EXPECT_EQ(partly.run.exit_code, 1) << partly.run.output;
+  EXPECT_EQ(partly.outcome("gouge"), "fails");
+  EXPECT_NE(partly.run.output.find("by 5.000 mm at (30.000, "), std::string::npos) << partly.run.output;
+  EXPECT_NE(partly.check("gouge").at("reason").get<std::string>().find("nobody has cut it"),
+            std::string::npos);
+  const auto codes = [&](const char* code) {
+    return std::count_if(partly.findings.begin(), partly.findings.end(),
+                         [&](const json& one) { return one.at("code") == code; });
+  };
+  EXPECT_EQ(codes("stock-missing"), 1) << partly.findings.dump(2);
+  EXPECT_EQ(codes("gouge"), 0) << partly.findings.dump(2);
+}
+
+/// A slot of 3 mm below a plane that is to be whole, as deep as three times the skin of a measuring ray: it
+/// was proven to be no deeper than the stock, by all that the proof may spend.
+TEST(Verdict, ASlotThroughAPlaneIsProvenAsDeepAsItIs) {
+  const Judged judged = run_scene(shipped("exact_slot_flat"),
+                                  "--set 'design.origin_mm=[0, -6, 0]' --set 'design.along_v_mm=[0, 12, 0]' "
+                                  "--set accept.gouge_max_um=1 --set accept.excess_max_um=1");
+  EXPECT_EQ(judged.run.exit_code, 1) << judged.run.output;
+  EXPECT_NEAR(judged.check("gouge").at("value").get<double>(), 3000.0, 0.01);
+  EXPECT_NEAR(judged.check("gouge").at("bound").get<double>(), 3000.0, 0.7);
+  EXPECT_EQ(judged.outcome("excess"), "holds") << judged.check("excess").dump(2);
+}
+
+/// Faced by rows that overlap, and drilled through where one row ends: the drill cuts the hole, the row
+/// beside it alone covers the rim.
+TEST(Verdict, AroundAHoleThroughAFacedPlaneNothingIsLeftOpen) {
+  const fs::path folder = swarf::test::fresh_folder("verdict_hole");
+  swarf::test::write_text(
+      folder / "hole.nc",
+      "G21 G17 G90 G94\nT1 M6\nS5000 M3\nG0 X-20 Y-15 Z5\nG1 Z0 F2000\nX20\nY-7\nX-20\nY1\n"
+      "X20\nY9\nX-20\nY15\nX20\nG0 Z20\nT2 M6\nS5000 M3\nG0 X3 Y2 Z5\nG1 Z-12\nG0 Z20\nM2\n");
+  swarf::test::write_text(folder / "scene.toml",
+                          "nc = \"hole.nc\"\ntools = \"T1=12,T2=6\"\n"
+                          "setup = { work_origin_mm = \"on_table\", without_length = \"tip\" }\n"
+                          "stock = { box_mm = [[-15, -12, -8], [15, 12, 1]], voxel_mm = 0.3 }\n"
+                          "[design]\nkind = \"plane\"\norigin_mm = [-14, -11, 0]\nalong_u_mm = [28, 0, 0]\n"
+                          "along_v_mm = [0, 22, 0]\npitch_mm = 1\n[accept]\nexcess_max_um = 1\n");
+  const Judged judged = run_scene((folder / "scene.toml").string());
+  EXPECT_EQ(judged.outcome("excess"), "holds") << judged.run.output;
+}
+
 TEST(Verdict, AGridCoarserThanTheBlockOrTheToolIsRefused) {
   for (const char* voxel : {"1e9", "10.5", "9"}) {
     const auto run =

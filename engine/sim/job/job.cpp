@@ -18,6 +18,7 @@
 #include "position/part_check.h"
 #include "position/patch_joints.h"
 #include "sim/job/clamping_check.h"
+#include "sim/job/design_place.h"
 #include "sim/job/driven_part.h"
 #include "sim/job/fixture_keys.h"
 #include "sim/job/flank_clearance.h"
@@ -481,6 +482,7 @@ Job complete(Scene scene, Diagnostics diagnostics, std::vector<EarlierSetup> ear
     collect(diagnostics, [&] { keep_clear(job, diagnostics); });
   diagnostics.throw_if_errors();
   check_memory(job, diagnostics);
+  check_design_place(job, diagnostics);
   diagnostics.throw_if_errors();
   check_walls(job, diagnostics);
   diagnostics.throw_if_errors();

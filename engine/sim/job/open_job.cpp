@@ -11,6 +11,7 @@
 #include "base/units.h"
 #include "machine/shipped.h"
 #include "mesh/mesh_ops.h"
+#include "sim/job/design_place.h"
 #include "sim/job/memory_limit.h"
 #include "sim/job/nc_job.h"
 #include "sim/job/tool_table.h"
@@ -172,11 +173,6 @@ double largest_radius(const std::vector<cutter::Cutter>& tools) {
   return radius;
 }
 
-std::string corners(const Box& box) {
-  return fmt::format("X {:.3f} to {:.3f}, Y {:.3f} to {:.3f}, Z {:.3f} to {:.3f} mm", box.lower.x(),
-                     box.upper.x(), box.lower.y(), box.upper.y(), box.lower.z(), box.upper.z());
-}
-
 void fill_box(Job& job, const toolpath::FeedWay& way) {
   const double beyond = largest_radius(job.scene.tools) + kMargin;
   const double sideways = way.upright ? kMargin : beyond;
@@ -204,7 +200,7 @@ void fill_box(Job& job, const toolpath::FeedWay& way) {
   box.lower = ((box.lower / kStep).array() + kRounding).floor() * kStep + 0.0;
   box.upper = ((box.upper / kStep).array() - kRounding).ceil() * kStep + 0.0;
   job.scene.stock.box_W = box;
-  assume(job, "Stock", corners(box), reason, "--stock x0,y0,z0,x1,y1,z1; stock.box_mm");
+  assume(job, "Stock", box_text(box), reason, "--stock x0,y0,z0,x1,y1,z1; stock.box_mm");
 }
 
 double rounded_down(double value) {

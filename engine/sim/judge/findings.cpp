@@ -122,6 +122,7 @@ void not_proven(const Job& job, Collector& collect) {
 /// Gouges, or what stands too high.
 struct RegionKind {
   const char *check, *what, *remedy;
+  const char* missing;  ///< what no cut has taken; null: there is no such thing
   const std::vector<measure::Region>& regions;
   const std::optional<double>& limit_um;
   measure::Region worst;  ///< of all, where no region tells it
@@ -135,12 +136,18 @@ void region_faults(const Job& job, const RegionKind& kind, const Result& result,
   for (const measure::Region& region : kind.regions)
     if (kind.limit_um && region.worst_um > *kind.limit_um) beyond.push_back(region);
   if (beyond.empty() && collect.check().outcome == Outcome::kFails) beyond.push_back(kind.worst);
-  for (const measure::Region& region : beyond)
-    at_region(collect.at_block(
-                  kind.check,
-                  fmt::format("{}, {}; [accept] allows {:g} um", kind.what, place(region), *kind.limit_um),
-                  kind.remedy, result.main.rays.sources, region.block),
-              region);
+  for (const measure::Region& region : beyond) {
+    const bool missing = kind.missing != nullptr && region.block == stock::kUncut;
+    at_region(
+        collect.at_block(missing ? "stock-missing" : kind.check,
+                         fmt::format("{}, {}; [accept] allows {:g} um", missing ? kind.missing : kind.what,
+                                     place(region), *kind.limit_um),
+                         missing ? "bring design and stock together, or make the stock larger (the warning "
+                                   "design-beyond-stock says by how much)"
+                                 : kind.remedy,
+                         result.main.rays.sources, region.block),
+        region);
+  }
   not_proven(job, collect);
 }
 
@@ -159,13 +166,14 @@ void region_faults(const Job& job, const Result& result, Collector& collect) {
                            : "lower the feed F or the control period: the chord of one cycle cuts into a "
                              "convex surface";
   region_faults(job,
-                {"gouge", "a gouge", remedy, surface.gouges, accept.gouge_max_um,
+                {"gouge", "a gouge", remedy, "the stock ends here, nobody has cut it: material is missing",
+                 surface.gouges, accept.gouge_max_um,
                  worst(surface.gouge_max_um, surface.gouge_bottom, surface.gouge_block)},
                 result, collect);
   region_faults(
       job,
       {"excess", "material stands above the design", "machine this place too, or start from a smaller stock",
-       surface.excesses, accept.excess_max_um,
+       nullptr, surface.excesses, accept.excess_max_um,
        worst(surface.excess_max_um, surface.excess_top, surface.excess_block)},
       result, collect);
 }

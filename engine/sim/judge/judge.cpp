@@ -97,7 +97,10 @@ void add_surface_checks(const Job& job, const Result& result, std::vector<Check>
   }
   const SurfaceMetrics& surface = result.main.surface;
   const AcceptLimits& accept = job.scene.accept;
-  checks.push_back(measured("gouge", gouge, accept.gouge_max_um, surface.gouge_max_um, surface.gouge_bound));
+  Check deepest = measured("gouge", gouge, accept.gouge_max_um, surface.gouge_max_um, surface.gouge_bound);
+  if (deepest.outcome == Outcome::kFails && surface.gouge_block == stock::kUncut)
+    deepest.reason = "the stock has no material there: nobody has cut it";
+  checks.push_back(std::move(deepest));
   checks.push_back(
       measured("excess", excess, accept.excess_max_um, surface.excess_max_um, surface.excess_bound));
   checks.push_back(

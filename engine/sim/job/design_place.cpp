@@ -1,0 +1,130 @@
+#include "sim/job/design_place.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <string>
+
+namespace swarf::sim {
+namespace {
+
+constexpr int kParts = 16;              ///< cells along u and v
+constexpr double kInchOfDesign = 25.4;  ///< mm
+/// A design this much smaller than the stock in the other unit, or larger, is none of another unit.
+constexpr double kLikelyShare = 0.25;
+constexpr double kBeyond = 1e-4;  ///< mm: past the rounding of designs that end at the stock's faces
+
+bool apart(const Box& a, const Box& b) {
+  return (a.lower.array() > b.upper.array()).any() || (b.lower.array() > a.upper.array()).any();
+}
+
+Box joined(const Box& a, const Box& b) {
+  return {a.lower.cwiseMin(b.lower), a.upper.cwiseMax(b.upper)};
+}
+
+/// What is known of where it lies.
+struct DesignPlace {
+  Box box;              ///< holds it
+  bool outside = true;  ///< all of it, proven
+  double beyond_mm = 0.0;
+  Vec3 farthest = Vec3::Zero();  ///< of the places looked at, from the stock
+};
+
+/// Over a cell a surface is no farther from the bilinear patch of its corners than (h_u^2 |Suu| + h_v^2
+/// |Svv|) / 8.
+void add_cell(const surface::Surface& S, double stray, const Vec2& low, const stock::RawShape& raw,
+              DesignPlace& place, bool first) {
+  constexpr double h = 1.0 / kParts;
+  const Vec3 centre = S.point(low.x() + 0.5 * h, low.y() + 0.5 * h);
+  Box box{centre, centre};
+  double radius = 0.0;
+  for (const Vec2& corner : {Vec2(0, 0), Vec2(h, 0), Vec2(0, h), Vec2(h, h)}) {
+    const Vec3 p = S.point(low.x() + corner.x(), low.y() + corner.y());
+    box = joined(box, {p, p});
+    radius = std::max(radius, (p - centre).norm());
+    const double beyond = raw.distance_mm(p);
+    if (beyond > place.beyond_mm) {
+      place.beyond_mm = beyond;
+      place.farthest = p;
+    }
+  }
+  box.lower.array() -= stray;
+  box.upper.array() += stray;
+  place.box = first ? box : joined(place.box, box);
+  place.outside = place.outside && (apart(box, raw.box()) || raw.distance_mm(centre) > radius + 2.0 * stray);
+}
+
+DesignPlace place_of(const std::vector<surface::SurfacePtr>& design, const stock::RawShape& raw) {
+  DesignPlace place;
+  for (const surface::SurfacePtr& surface : design) {
+    const surface::BendBounds bends = surface->bend_bounds(Vec2::Zero(), Vec2::Ones());
+    const double stray = (bends.uu.most() + bends.vv.most()) / (8.0 * kParts * kParts);
+    for (int n = 0; n < kParts * kParts; ++n)
+      add_cell(*surface, stray, Vec2(n % kParts, n / kParts) / kParts, raw, place,
+               n == 0 && surface == design.front());
+  }
+  return place;
+}
+
+/// The least way along each axis that brings the design between the stock's faces; from middle to middle
+/// where it is longer than the stock.
+Vec3 shift_into(const Box& stock, const Box& design) {
+  Vec3 shift = Vec3::Zero();
+  for (int a = 0; a < 3; ++a) {
+    const double up = stock.lower[a] - design.lower[a], down = stock.upper[a] - design.upper[a];
+    if (up > down)
+      shift[a] = stock.centre()[a] - design.centre()[a];
+    else
+      shift[a] = up > 0.0 ? up : std::min(down, 0.0);
+  }
+  return shift;
+}
+
+std::string remedy(const Job& job, const Box& design) {
+  const Box stock = job.scene.stock.body_W().box();
+  const std::string key = job.scene.stock.raw.spoken_key();
+  for (const auto& [factor, word] :
+       {std::pair(kInchOfDesign, "inches"), std::pair(1.0 / kInchOfDesign, "mm times 25.4")}) {
+    const Box scaled{factor * design.lower, factor * design.upper};
+    const bool fits = (scaled.lower.array() >= stock.lower.array()).all() &&
+                      (scaled.upper.array() <= stock.upper.array()).all() &&
+                      scaled.size().norm() >= kLikelyShare * stock.size().norm();
+    if (fits)
+      return fmt::format("its numbers may be {}: {:g} times as large it lies in the stock; write it in mm",
+                         word, factor);
+  }
+  const Vec3 shift = shift_into(stock, design);
+  if (shift.norm() < kBeyond) return fmt::format("make the stock larger ({}), or the design smaller", key);
+  return fmt::format(
+      "both are in the work frame, in mm: move the design by X {:.3f} Y {:.3f} Z {:.3f}, or {} by X {:.3f} Y "
+      "{:.3f} Z {:.3f}; or make the stock larger",
+      shift.x(), shift.y(), shift.z(), key, 0.0 - shift.x(), 0.0 - shift.y(), 0.0 - shift.z());
+}
+
+}  // namespace
+
+std::string box_text(const Box& box) {
+  return fmt::format("X {:.3f} to {:.3f}, Y {:.3f} to {:.3f}, Z {:.3f} to {:.3f} mm", box.lower.x(),
+                     box.upper.x(), box.lower.y(), box.upper.y(), box.lower.z(), box.upper.z());
+}
+
+void check_design_place(const Job& job, Diagnostics& diagnostics) {
+  if (job.design.empty()) return;
+  const stock::RawShape raw = job.scene.stock.body_W();
+  const DesignPlace place = place_of(job.design, raw);
+  if (place.outside)
+    diagnostics.error("design-outside-stock", job.scene.design.mesh_where,
+                      fmt::format("the design lies outside the stock, all of it: {}; the stock is {}",
+                                  box_text(place.box), box_text(raw.box())),
+                      remedy(job, place.box));
+  else if (place.beyond_mm > kBeyond)
+    diagnostics.warning(
+        "design-beyond-stock", job.scene.design.mesh_where,
+        fmt::format("the design reaches out of the stock, by {:.3f} mm at ({:.3f}, {:.3f}, {:.3f}) mm: there "
+                    "material is missing that nobody cuts, and counts as missing",
+                    place.beyond_mm, place.farthest.x(), place.farthest.y(), place.farthest.z()),
+        remedy(job, place.box));
+}
+
+}  // namespace swarf::sim
