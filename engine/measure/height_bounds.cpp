@@ -8,8 +8,6 @@
 namespace swarf::measure {
 namespace {
 
-/// mm: doubles of coordinates of some metres, a few operations each.
-constexpr double kRounding = 1e-10;
 /// Any tangent bounds: the last digits of the nearest instant are not worth their steps; mm.
 constexpr double kCloseEnough = 1e-7;
 
@@ -34,7 +32,8 @@ std::optional<Root> root_of_flat(const DesignCell& cell, const Tangents& tangent
   CornerHeights cut{};
   for (size_t k = 0; k < 3; ++k) {
     const CellCorner& corner = cell.corners[k];
-    const double base = tangents.value[end] + tangents.slope[end].dot(corner.point - tangents.at) - kRounding;
+    const double base =
+        tangents.value[end] + tangents.slope[end].dot(corner.point - tangents.at) - kRoundingOfHeights;
     const double rise = tangents.slope[end].dot(corner.normal);
     if (!(rise < 0.0)) return std::nullopt;
     cut[k] = base / rise;
@@ -79,7 +78,7 @@ std::optional<double> root_of_curved(const DesignCell& cell, const Tangents& tan
     flattest = std::min(flattest, falls - cell.turn);
   }
   if (!(flattest > 0.0)) return std::nullopt;
-  const double least = least_of_quadratic(base, bend) - cell.stray_mm - kRounding;
+  const double least = least_of_quadratic(base, bend) - cell.stray_mm - kRoundingOfHeights;
   const double height = least / (least < 0.0 ? flattest : steepest);
   if (-height > *std::min_element(depths.seen.begin(), depths.seen.end())) return std::nullopt;
   return height;
@@ -93,7 +92,7 @@ Root root_of_thick(const DesignCell& cell, const Tangents& tangents, size_t end,
     // s = 0 tells.
     const CellCorner& corner = cell.corners[k];
     const double base = tangents.value[end] + tangents.slope[end].dot(corner.point - tangents.at) -
-                        cell.flatness_mm - kRounding;
+                        cell.flatness_mm - kRoundingOfHeights;
     const double rise = tangents.slope[end].dot(corner.normal);
     if (base + kTouch - depths.seen[k] * (rise + cell.turn) < 0.0) return {-kNever, k};
     const double falls = base < 0.0 ? rise + cell.turn : rise - cell.turn;
@@ -289,174 +288,6 @@ double least_height_in_slices(const DesignCell& cell, const NearSweep& near, con
   return std::max(best, std::min(first, second));
 }
 
-struct Line {
-  Vec3 P, N;  ///< X(s) = P + s N in the tool's frame
-};
-
-Line line_at(const CellCorner& corner, const NearSweep& near, double t) {
-  const Vec3 P0 = near.map.start(corner.point), P1 = near.map.end(corner.point);
-  const Vec3 N0 = near.map.R0t * corner.normal, N1 = near.map.R1t * corner.normal;
-  return {(1.0 - t) * P0 + t * P1, (1.0 - t) * N0 + t * N1};
-}
-
-struct Slope {
-  double value, along;
-};
-
-Slope slope_on(const cutter::ConvexPiece& piece, const Line& line, double s) {
-  const Vec3 X = line.P + s * line.N;
-  const double rho = X.head<2>().norm();
-  const cutter::Support support = cutter::support(piece, rho, X.z());
-  const double sideways = rho > 0.0 ? support.normal.x() * X.head<2>().dot(line.N.head<2>()) / rho
-                                    : support.normal.x() * line.N.head<2>().norm();
-  return {support.value, sideways + support.normal.y() * line.N.z()};
-}
-
-/// Least s >= from with F <= kTouch - margin(s), margin = aside + stray + |s| turn: Newton's method on a
-/// convex function from the left, which cannot overshoot; kNever when F turns up first.
-double entry(const cutter::ConvexPiece& piece, const Line& line, double from, const DesignCell& cell,
-             double aside) {
-  constexpr int kMostSteps = 40;
-  constexpr double kClose = 1e-9;  // mm
-  double s = from;
-  for (int step = 0; step < kMostSteps; ++step) {
-    const Slope at = slope_on(piece, line, s);
-    const double excess = at.value + aside + cell.stray_mm + std::abs(s) * cell.turn - kTouch;
-    if (excess <= 0.0) return s;
-    const double slope = at.along + (s < 0.0 ? -cell.turn : cell.turn);
-    if (!(slope < 0.0)) return kNever;
-    s += excess / -slope + (step > 3 ? kClose : 0.0);
-  }
-  return kNever;
-}
-
-/// The greatest |n_k - mean of the corners' normals|.
-double lean_of(const DesignCell& cell) {
-  const Vec3 mean = (cell.corners[0].normal + cell.corners[1].normal + cell.corners[2].normal) / 3.0;
-  double lean = 0.0;
-  for (const CellCorner& corner : cell.corners) lean = std::max(lean, (corner.normal - mean).norm());
-  return lean;
-}
-
-double spread_of(const CornerHeights& heights) {
-  return *std::max_element(heights.begin(), heights.end()) -
-         *std::min_element(heights.begin(), heights.end());
-}
-
-/// Where the piece covers a line up to `top`, looked for from `from` up, `aside` mm within its surface.
-double covered_line(const DesignCell& cell, const cutter::ConvexPiece& piece, const Line& line, double from,
-                    double top, double aside) {
-  const double high = std::max(top, from);
-  const double margin = aside + cell.stray_mm + std::abs(high) * cell.turn;
-  if (high > from && slope_on(piece, line, high).value > kTouch - margin) return kNever;
-  return entry(piece, line, from, cell, aside);
-}
-
-/// How far the heights of the control columns lie apart at most, and those of the sides off the mean of their
-/// corners'.
-struct Cover : Covered {
-  double spread = 0.0, sides = 0.0;
-  bool is_whole() const { return heights[0] < kNever; }
-};
-
-/// The control columns of the sides, each in the mean of its corners' instants: where one is covered later
-/// than the mean of its corners by c, the cell is by 2 l_j l_k c. Where the design bulges, earlier: by no
-/// more than it does.
-bool cover_sides(const DesignCell& cell, const cutter::ConvexPiece& piece, const std::array<Line, 3>& sides,
-                 const CornerHeights& tops, double aside, Cover& cover) {
-  std::array<double, 3> later{};
-  for (size_t k = 0; k < 3; ++k) {
-    const size_t j = (k + 1) % 3;
-    const double mean = 0.5 * (cover.heights[k] + cover.heights[j]);
-    const double bulge = std::max(0.0, -0.25 * cell.bends[k].dot(cell.mean_normal()));
-    const double height = covered_line(cell, piece, sides[k], mean - bulge, 0.5 * (tops[k] + tops[j]), aside);
-    if (height == kNever) return false;
-    later[k] = std::max(0.0, height - mean);
-    cover.sags[k] = std::max(0.0, mean - height);
-    cover.sides = std::max(cover.sides, std::abs(height - mean));
-  }
-  const double raised = 2.0 * most_over_pairs(later[0], later[1], later[2]);
-  for (double& height : cover.heights) height += raised;
-  return true;
-}
-
-/// The lines of the corners, and of the sides of a curved cell.
-struct Lines {
-  std::array<Line, 3> corners, sides;
-};
-
-Cover covered_lines(const DesignCell& cell, const cutter::ConvexPiece& piece, const Lines& lines,
-                    const CornerHeights& from, const CornerHeights& tops, double aside) {
-  Cover cover;
-  CornerHeights heights{};
-  for (size_t k = 0; k < 3; ++k) {
-    heights[k] = covered_line(cell, piece, lines.corners[k], from[k], tops[k], aside);
-    if (heights[k] == kNever) return {};
-  }
-  cover.heights = heights;
-  if (cell.is_curved() && !cover_sides(cell, piece, lines.sides, tops, aside, cover)) return {};
-  cover.spread = spread_of(heights) + cover.sides;
-  return cover;
-}
-
-using CornerInstants = std::array<double, 3>;
-
-/// When the piece is nearest to each corner's column at a height.
-CornerInstants instants_at(const DesignCell& cell, const NearSweep& near, const cutter::ConvexPiece& piece,
-                           const CornerHeights& heights) {
-  CornerInstants instants{};
-  for (size_t k = 0; k < 3; ++k) {
-    const Vec3 at = cell.corners[k].point + heights[k] * cell.corners[k].normal;
-    const Vec3 P = near.map.start(at);
-    instants[k] = stock::nearest_instant(piece, P, near.map.end(at) - P).t;
-  }
-  return instants;
-}
-
-Lines lines_at(const DesignCell& cell, const NearSweep& near, const CornerInstants& instants) {
-  Lines lines;
-  for (size_t k = 0; k < 3; ++k) lines.corners[k] = line_at(cell.corners[k], near, instants[k]);
-  if (!cell.is_curved()) return lines;
-  for (size_t k = 0; k < 3; ++k)
-    lines.sides[k] = line_at(cell.side(k), near, 0.5 * (instants[k] + instants[(k + 1) % 3]));
-  return lines;
-}
-
-/// A cutter that turns while it moves covers no convex set. The place at l is looked at in the instant
-/// t(l) = sum l_k t_k: there it stands aside of the mean of the corners, each in its own instant, by
-///   sum l_j (t(l) - t_j) D_j = sum over pairs l_j l_k (t_k - t_j)(D_j - D_k),    D the corner's motion.
-/// The control columns of the sides, were they the means of their corners', would stand half as far aside;
-/// by what they bend and by what they are covered later (`sides`) another motion of theirs comes on top.
-double twist_of(const DesignCell& cell, const NearSweep& near, const CornerInstants& instants,
-                const CornerHeights& from, const CornerHeights& tops, double spread, double sides) {
-  if (!near.turns) return 0.0;
-  const Mat3 turn = near.map.R1t - near.map.R0t;
-  double farthest = 0.0;
-  for (size_t k = 0; k < 3; ++k) farthest = std::max({farthest, std::abs(from[k]), tops[k]});
-  std::array<double, 3> strays{};
-  for (size_t k = 0; k < 3; ++k) {
-    const size_t j = (k + 1) % 3;
-    const CellCorner &a = cell.corners[k], &b = cell.corners[j];
-    const double apart = (turn * (a.point - b.point)).norm() + spread * turn.norm() +
-                         farthest * (turn * (a.normal - b.normal)).norm();
-    strays[k] = std::abs(instants[k] - instants[j]) * apart;
-  }
-  double bend = 0.0;
-  for (const Vec3& side : cell.bends) bend = std::max(bend, 0.25 * side.norm());
-  return most_over_pairs(strays[0], strays[1], strays[2]) +
-         spread_of(instants) * turn.norm() * (bend + sides);
-}
-
-/// Columns that begin outside and do not lead back stay there, those along the face too. Without flatness the
-/// columns between the corners' are means of these (place_in).
-bool stays_outside(const DesignCell& cell, const Vec3& normal, double offset) {
-  constexpr double kAlong = 1e-9;  // kTouch in a metre
-  return cell.flatness_mm == 0.0 &&
-         std::all_of(cell.corners.begin(), cell.corners.end(), [&](const CellCorner& corner) {
-           return normal.dot(corner.point) >= offset - kTouch && normal.dot(corner.normal) >= -kAlong;
-         });
-}
-
 }  // namespace
 
 double least_height(const DesignCell& cell, const NearSweep& near, const ColumnDepths& depths,
@@ -509,49 +340,6 @@ bool stays_above(const CellCorner& corner, const NearSweep& near, double height_
     if (nearest.floor <= 0.0 || rises) return false;
   }
   return true;
-}
-
-Covered covered_from(const DesignCell& cell, const NearSweep& near, const cutter::ConvexPiece& piece,
-                     const CornerHeights& from, const CornerHeights& tops) {
-  constexpr double kSafety = 1.5, kNothing = 1e-10, kSlack = 1e-7;  // mm
-  CornerInstants instants = instants_at(cell, near, piece, from);
-  Cover cover = covered_lines(cell, piece, lines_at(cell, near, instants), from, tops, 0.0);
-  if (!cover.is_whole()) return {};
-  if (near.turns) {
-    // Higher up another instant is the nearest.
-    instants = instants_at(cell, near, piece, cover.heights);
-    cover = covered_lines(cell, piece, lines_at(cell, near, instants), from, tops, 0.0);
-    if (!cover.is_whole()) return {};
-  }
-  // The place at l and s >= sum l_k h_k is reached from the corners' own heights s + h_k - sum l_j h_j, which
-  // lie aside of it by |sum l_k (h_k - sum l_j h_j)(n_k - mean n)| <= spread lean: that much margin more.
-  const double lean = lean_of(cell);
-  const auto strays = [&](double spread, double sides) {
-    return spread * lean + twist_of(cell, near, instants, from, tops, spread, sides);
-  };
-  const double aside = strays(kSafety * cover.spread, kSafety * cover.sides + kSlack);
-  if (aside <= kNothing) return cover;
-  const Cover within = covered_lines(cell, piece, lines_at(cell, near, instants), cover.heights, tops, aside);
-  if (!within.is_whole() || strays(within.spread, within.sides) > aside) return {};
-  return within;
-}
-
-CornerHeights outside_from(const DesignCell& cell, const Vec3& normal, double offset) {
-  if (stays_outside(cell, normal, offset)) return {0.0, 0.0, 0.0};
-  CornerHeights heights{kNever, kNever, kNever};
-  double least_rise = kNever;
-  for (size_t k = 0; k < 3; ++k) {
-    const CellCorner& corner = cell.corners[k];
-    const double rise = normal.dot(corner.normal) - cell.turn;
-    const double lacking = offset + cell.flatness_mm - kTouch - normal.dot(corner.point);
-    if (!(rise > 0.0)) return {kNever, kNever, kNever};
-    // Below the design the margin grows the other way: the bound is taken at the design then.
-    heights[k] = std::max(0.0, lacking / rise);
-    least_rise = std::min(least_rise, rise);
-  }
-  const double aside = spread_of(heights) * lean_of(cell);  // as in covered_from
-  for (double& height : heights) height += aside / least_rise;
-  return heights;
 }
 
 }  // namespace swarf::measure

@@ -38,6 +38,9 @@ struct NearSweep {
 /// face of the design, a bottom that runs along its edge; mm.
 inline constexpr double kTouch = 1e-6;
 
+/// Of a bound's own arithmetic: doubles of coordinates of some metres, a few operations each; mm.
+inline constexpr double kRoundingOfHeights = 1e-10;
+
 /// Heights, or depths, at the corners of a cell that stand for a linear function over it; mm.
 using CornerHeights = std::array<double, 3>;
 

@@ -319,7 +319,7 @@ void add_box(const Box& box, const DesignCell& cell, std::vector<CornerHeights>&
 }
 
 double RestBound::left(const Cell& cell, const std::vector<CornerHeights>& own, const CornerHeights& tops,
-                       double enough, std::span<const uint32_t> kept, std::span<const double> floors) {
+                       double enough, const KeptSweeps& kept) {
   sets_.clear();
   owners_.clear();
   covered_.clear();
@@ -333,7 +333,7 @@ double RestBound::left(const Cell& cell, const std::vector<CornerHeights>& own, 
   // Where the bound is highest, the sweep that is lowest there may lower it.
   constexpr size_t kMostOwners = 10;
   while (left.height > enough && left.height < kNever && owners_.size() < kMostOwners) {
-    if (!add_owner(cell, owner_at(cell, left, kept, floors), tops)) break;
+    if (!add_owner(cell, owner_at(cell, left, kept), tops)) break;
     const double before = left.height;
     const HighestLeft next = left_by_sets();
     if (!(next.height < before)) break;
@@ -392,8 +392,7 @@ bool RestBound::add_owner(const Cell& cell, uint32_t n, const CornerHeights& top
 }
 
 /// The sweep that leaves least where the bound is highest; none when all leave more.
-uint32_t RestBound::owner_at(const Cell& cell, const HighestLeft& left, std::span<const uint32_t> kept,
-                             std::span<const double> floors) const {
+uint32_t RestBound::owner_at(const Cell& cell, const HighestLeft& left, const KeptSweeps& kept) {
   const CellCorner at = place_in(cell.shape, left.place, root_.bounds);
   double height = left.height;
   uint32_t owner = stock::kUncut;
@@ -409,8 +408,9 @@ uint32_t RestBound::owner_at(const Cell& cell, const HighestLeft& left, std::spa
     const uint32_t guess = between({cell.corners[k].near, cell.corners[(k + 1) % 3].near});
     if (guess < near_.size()) look_at(guess);
   }
-  for (size_t i = 0; i < kept.size(); ++i) {
-    if (floors[i] < height) look_at(kept[i]);
+  column_heights(at, kept.planes, kept.numbers.size(), planes_);
+  for (size_t i = 0; i < kept.numbers.size(); ++i) {
+    if (kept.floors[i] < height && planes_[i] < height + kPlaneSlack) look_at(kept.numbers[i]);
   }
   return owner;
 }

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "measure/bottom_planes.h"
 #include "measure/certificate.h"
 #include "measure/design_cell.h"
 #include "measure/height_bounds.h"
@@ -91,6 +92,13 @@ void add_box(const Box& box, const DesignCell& cell, std::vector<CornerHeights>&
 /// column ends; nothing where it does so over all of the side, or over next to nothing of it.
 using Seams = std::array<std::optional<CellCorner>, 3>;
 
+/// The root's sweeps that may matter to a cell, each one's least height over it and its planes.
+struct KeptSweeps {
+  std::span<const uint32_t> numbers;
+  std::span<const double> floors;
+  BottomPlanes::Rows planes;
+};
+
 class RestBound {
  public:
   /// All must outlive it; `near` may change between two calls.
@@ -101,9 +109,9 @@ class RestBound {
   std::vector<CornerHeights> own_above(const Cell& cell) const;
 
   /// Greatest height left over the cell, no closer than `enough`. `tops`: up to where the columns must be
-  /// covered; `kept`, `floors`: the root's sweeps that may matter, and each one's least height over the cell.
+  /// covered.
   double left(const Cell& cell, const std::vector<CornerHeights>& own, const CornerHeights& tops,
-              double enough, std::span<const uint32_t> kept, std::span<const double> floors);
+              double enough, const KeptSweeps& kept);
 
   /// Where sweeps clear the columns of a cell side by side no one of them covers a part across their seam,
   /// however small. Nothing where the columns of the cell are others when it is divided there.
@@ -125,8 +133,7 @@ class RestBound {
   HighestLeft left_with_others(const Cell& cell, HighestLeft left, const CornerHeights& tops, double enough,
                                std::span<const uint32_t> kept, std::span<const double> floors);
   bool add_owner(const Cell& cell, uint32_t n, const CornerHeights& tops);
-  uint32_t owner_at(const Cell& cell, const HighestLeft& left, std::span<const uint32_t> kept,
-                    std::span<const double> floors) const;
+  uint32_t owner_at(const Cell& cell, const HighestLeft& left, const KeptSweeps& kept);
 
   const CertificateInput& input_;
   const RootCell& root_;
@@ -135,6 +142,7 @@ class RestBound {
   std::vector<CornerHeights> covered_;  ///< of sets_, by sweeps over a curved cell
   CornerHeights sags_{};                ///< of all of covered_
   std::vector<uint32_t> owners_;        ///< of sets_, index into near_
+  std::vector<double> planes_;          ///< heights of owner_at()
 };
 
 /// Up to where the columns must be covered: a linear function above the lesser of both.

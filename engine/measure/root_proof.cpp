@@ -130,7 +130,11 @@ class RootProof {
       excess_goal_ = std::min(input_.excess_known_mm, input_.excess_limit_mm);
       const auto& c = root_.cell.corners;
       kept_.resize(near_.size());
-      for (uint32_t n = 0; n < kept_.size(); ++n) kept_[n] = n;
+      planes_.clear();
+      for (uint32_t n = 0; n < kept_.size(); ++n) {
+        kept_[n] = n;
+        planes_.add(near_[n]);
+      }
       std::array<Corner, 3> corners;
       for (size_t k = 0; k < 3; ++k) {
         corners[k] = measured({c[k]}, 0, kept_.size(), {});
@@ -170,9 +174,10 @@ class RootProof {
     for (const uint32_t guess : {guesses[0], guesses[1], between(guesses)}) {
       if (guess < near_.size()) look_at(guess);
     }
+    column_heights(at, planes_.from(begin), end - begin, heights_);
     for (size_t i = begin; i < end; ++i) {
       if (floors_.size() == kept_.size() && floors_[i] >= corner.height) continue;
-      look_at(kept_[i]);
+      if (heights_[i - begin] < corner.height + kPlaneSlack) look_at(kept_[i]);
     }
     // The kept sweeps prove bounds; what counts as found is measured against all of them: what is more than
     // is asked for, or than was found before.
@@ -314,9 +319,15 @@ class RootProof {
 
   double lower_bound(const Cell& cell, const ColumnDepths& depths) {
     double low = std::min(cell.dropped, stood_before(cell, raw_));
+    const double enough = -gouge_target();
+    cell_heights(cell.shape, depths, planes_.from(cell.begin), cell.end - cell.begin, heights_);
     for (size_t i = cell.begin; i < cell.end; ++i) {
-      if (floors_[i] < -gouge_target())
-        floors_[i] = std::max(floors_[i], least_height(cell.shape, near_[kept_[i]], depths, -gouge_target()));
+      if (floors_[i] < enough) {
+        const double by_plane = heights_[i - cell.begin];
+        floors_[i] = std::max(floors_[i], by_plane > enough
+                                              ? by_plane
+                                              : least_height(cell.shape, near_[kept_[i]], depths, enough));
+      }
       low = std::min(low, floors_[i]);
     }
     return low;
@@ -365,8 +376,9 @@ class RootProof {
   double left(const Cell& cell, const std::vector<CornerHeights>& own, const CornerHeights& tops,
               double enough) {
     const size_t count = cell.end - cell.begin;
-    return rest_.left(cell, own, tops, enough, std::span(kept_).subspan(cell.begin, count),
-                      std::span(floors_).subspan(cell.begin, count));
+    return rest_.left(cell, own, tops, enough,
+                      {std::span(kept_).subspan(cell.begin, count),
+                       std::span(floors_).subspan(cell.begin, count), planes_.from(cell.begin)});
   }
 
   /// Of what stands on the design: whatever lies above its first air.
@@ -546,16 +558,19 @@ class RootProof {
     double highest = -kNever;
     for (const Corner& corner : cell.corners) highest = std::max(highest, corner.height);
     const double slack = 0.05 * cell.shape.radius();
+    places_.clear();
     for (size_t i = cell.begin; i < cell.end; ++i) {
       const bool deep = root_.looks_down && -floors_[i] > gouge_target();
       const bool low = floors_[i] <= highest + slack && floors_[i] < bounds.high;
       if (deep || low) {
+        places_.push_back(static_cast<uint32_t>(i));
         kept_.push_back(kept_[i]);
         floors_.push_back(floors_[i]);
       } else {
         dropped = std::min(dropped, floors_[i]);
       }
     }
+    planes_.repeat(places_);
     const size_t end = kept_.size();
     const bool resists = bounds.high > excess_target() && resists_division(cell, input_.stock.voxel_mm());
     const Seams seams = resists ? rest_.seams_of(cell) : Seams{};
@@ -578,9 +593,11 @@ class RootProof {
            part.corners, part.edges, begin, end, dropped, cell.air, near_rim, part.outer});
       kept_.resize(end);
       floors_.resize(end);
+      planes_.resize(end);
     }
     kept_.resize(begin);
     floors_.resize(begin);
+    planes_.resize(begin);
   }
 
   const CertificateInput& input_;
@@ -594,6 +611,10 @@ class RootProof {
   std::optional<std::vector<NearSweep>> all_near_;  ///< up to the stock's top, once they are asked for
   std::vector<uint32_t> kept_;  ///< a stack: the sweeps of a cell lie above those of the cell around it
   std::vector<double> floors_;  ///< least heights of kept_ over the cell last looked at
+  BottomPlanes planes_;         ///< of kept_
+  std::vector<double>
+      heights_;  ///< of the sweeps of the cell, or the corner, last looked at, by their planes
+  std::vector<uint32_t> places_;  ///< in kept_, of those that stay
   RestBound rest_{input_, root_, near_};
   bool stopped_ = false;
   LooksAtAll layers_, roofs_;  ///< of left_below_layers() and measure_above()
