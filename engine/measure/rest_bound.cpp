@@ -345,22 +345,22 @@ double RestBound::left(const Cell& cell, const std::vector<CornerHeights>& own, 
   const bool covered = std::any_of(sets_.begin() + first, sets_.end(),
                                    [](const CornerHeights& set) { return set[0] < kNever; });
   if (left.height > enough && !covered && resists_division(cell, input_.stock.voxel_mm()))
-    left = left_with_others(cell, left, tops, enough, kept, floors);
+    left = left_with_others(cell, left, tops, enough, kept);
   return left.height;
 }
 
 /// Beside a hole none of the sweeps that cut the corners lowest may cover all of the cell, and one that left
 /// the floor around it may: no place tells which, so those that cut its middle are tried.
 HighestLeft RestBound::left_with_others(const Cell& cell, HighestLeft left, const CornerHeights& tops,
-                                        double enough, std::span<const uint32_t> kept,
-                                        std::span<const double> floors) {
+                                        double enough, const KeptSweeps& kept) {
   constexpr size_t kMostTried = 16;
   const CellCorner at = place_in(cell.shape, Vec3::Constant(1.0 / 3.0), root_.bounds);
   const bool fans = root_.cell.area_mm2() == 0.0;
   size_t tried = 0;
-  for (size_t i = 0; i < kept.size() && tried < kMostTried && left.height > enough; ++i) {
-    if (floors[i] > enough || lowest_cut(at, near_[kept[i]], enough, fans, input_.field) > enough) continue;
-    if (!add_owner(cell, kept[i], tops)) continue;
+  for (size_t i = 0; i < kept.numbers.size() && tried < kMostTried && left.height > enough; ++i) {
+    const uint32_t n = kept.numbers[i];
+    if (kept.floors[i] > enough || lowest_cut(at, near_[n], enough, fans, input_.field) > enough) continue;
+    if (!add_owner(cell, n, tops)) continue;
     ++tried;
     const HighestLeft next = left_by_sets();
     if (next.height < left.height) left = next;

@@ -131,7 +131,7 @@ class RestBound {
   std::optional<CellCorner> seam_of(const Cell& cell, size_t side) const;
   HighestLeft left_by_sets() const;
   HighestLeft left_with_others(const Cell& cell, HighestLeft left, const CornerHeights& tops, double enough,
-                               std::span<const uint32_t> kept, std::span<const double> floors);
+                               const KeptSweeps& kept);
   bool add_owner(const Cell& cell, uint32_t n, const CornerHeights& tops);
   uint32_t owner_at(const Cell& cell, const HighestLeft& left, const KeptSweeps& kept);
 
