@@ -110,6 +110,16 @@ TEST(BottomPlanes, TellWhatOneSweepAfterTheOtherTells) {
   EXPECT_GT(above, 1000u);
 }
 
+TEST(BottomPlanes, TellNothingOfACellWhoseColumnsTurnWithoutBound) {
+  Rng rng(20264);
+  DesignCell cell = cell_of(rng, 1.0, false);
+  const About about(rng, cell, 9, 0.1);
+  cell.turn = kNever;  // beside a pole of its surface
+  std::vector<double> heights;
+  cell_heights(cell, {{1.0, 1.0, 1.0}, {}}, about.planes.from(0), 9, heights);
+  for (size_t k = 0; k < 9; ++k) EXPECT_EQ(heights[k], kUntold);
+}
+
 TEST(BottomPlanes, RepeatedOnTheStackTellTheSame) {
   Rng rng(20261);
   const DesignCell cell = cell_of(rng, 1.0, false);
