@@ -49,7 +49,7 @@ SWARF_KERNEL_INLINE T lower_on_side(const T& least, const T& from, const T& to, 
   return min_of<T>(bend > twice ? lowest : least, least);
 }
 template <class T>
-SWARF_KERNEL_INLINE T least_of_quadratic(const T (&at)[3], const T (&bend)[3]) {
+SWARF_KERNEL_INLINE T lowest_of_quadratic(const T (&at)[3], const T (&bend)[3]) {
   T least = min_of<T>(min_of<T>(at[0], at[1]), at[2]);
   for (int k = 0; k < 3; ++k) least = lower_on_side<T>(least, at[k], at[(k + 1) % 3], bend[k]);
   const T p = at[1] - at[0] - 0.5 * bend[0], q = at[2] - at[0] - 0.5 * bend[2];
@@ -71,7 +71,7 @@ struct Slopes {
 
 /// height_bounds.cpp: root_of_thick.
 template <class T>
-SWARF_KERNEL_INLINE T root_of_thick(const PlainCell& cell, const Slopes<T>& plane) {
+SWARF_KERNEL_INLINE T thick_root(const PlainCell& cell, const Slopes<T>& plane) {
   const T untold = all_of<T>(kUntold);
   T least = -untold, told = -untold;
   for (int k = 0; k < 3; ++k) {
@@ -87,14 +87,14 @@ SWARF_KERNEL_INLINE T root_of_thick(const PlainCell& cell, const Slopes<T>& plan
 
 /// height_bounds.cpp: root_of_curved.
 template <class T>
-SWARF_KERNEL_INLINE T root_of_curved(const PlainCell& cell, const Slopes<T>& plane, const T (&bend)[3]) {
+SWARF_KERNEL_INLINE T curved_root(const PlainCell& cell, const Slopes<T>& plane, const T (&bend)[3]) {
   const T untold = all_of<T>(kUntold);
   T steepest{}, flattest = -untold;
   for (int k = 0; k < 3; ++k) {
     steepest = max_of<T>(-plane.rise[k] + cell.turn, steepest);
     flattest = min_of<T>(-plane.rise[k] - cell.turn, flattest);
   }
-  const T least = least_of_quadratic<T>(plane.base, bend) - cell.stray - kRoundingOfHeights;
+  const T least = lowest_of_quadratic<T>(plane.base, bend) - cell.stray - kRoundingOfHeights;
   const T divisor = least < 0.0 ? flattest : steepest;
   const T height = least / max_of<T>(divisor, all_of<T>(kTiny));
   const T falling = flattest > 0.0 ? height : untold;
@@ -113,9 +113,9 @@ SWARF_KERNEL_INLINE T root_of_bottom(const PlainCell& cell, const Poses<T>& pose
     plane.rise[k] = -along<T>(poses, cell.normal[k]);
     bend[k] = -along<T>(poses, cell.bend[k]);
   }
-  const T thick = root_of_thick<T>(cell, plane);
+  const T thick = thick_root<T>(cell, plane);
   if constexpr (kIsFlat) return thick;
-  return max_of<T>(root_of_curved<T>(cell, plane, bend), thick);
+  return max_of<T>(curved_root<T>(cell, plane, bend), thick);
 }
 
 /// The same of the plane of the upper end, at the start: kUntold where a column reaches below it.
@@ -212,7 +212,7 @@ SWARF_X86_64_V4 void over_column_v4(const BottomPlanes::Rows& rows, size_t count
 struct Ends {
   double bottom, top;
 };
-Ends ends_of(const stock::CutterSolid& cutter) {
+Ends planes_of_ends(const stock::CutterSolid& cutter) {
   Ends ends{lowest_z(cutter), kUntold};
   if (cutter.pieces.size() != 1) return ends;
   const cutter::ConvexPiece& piece = cutter.pieces.front();
@@ -249,19 +249,28 @@ PlainCell plain_cell(const DesignCell& cell, const ColumnDepths& depths) {
   return plain;
 }
 
-void BottomPlanes::add(const NearSweep& near) {
-  const size_t n = count_;
-  resize(n + 1);
-  const Ends ends = ends_of(*near.cutter);
-  for (size_t c = 0; c < 3; ++c) {
-    const auto axis = static_cast<Eigen::Index>(c);
-    rows_[kStartAxis + c][n] = near.map.R0t(2, axis);
-    rows_[kStartTip + c][n] = near.map.tip0[axis];
-    rows_[kEndAxis + c][n] = near.map.R1t(2, axis);
-    rows_[kEndTip + c][n] = near.map.tip1[axis];
+void BottomPlanes::add(std::span<const uint32_t> numbers, std::span<const stock::Sweep> sweeps,
+                       const SweepCutters& cutters) {
+  const stock::CutterSolid* last = nullptr;
+  Ends ends{};
+  size_t n = count_;
+  resize(count_ + numbers.size());
+  for (const uint32_t number : numbers) {
+    const ToolPose &start = sweeps[number].start, &end = sweeps[number].end;
+    const stock::CutterSolid* cutter = &cutters[number];
+    if (cutter != last) ends = planes_of_ends(*cutter);
+    last = cutter;
+    for (size_t c = 0; c < 3; ++c) {
+      const auto axis = static_cast<Eigen::Index>(c);
+      rows_[kStartAxis + c][n] = start.axis_W[axis];
+      rows_[kStartTip + c][n] = start.tip_W[axis];
+      rows_[kEndAxis + c][n] = end.axis_W[axis];
+      rows_[kEndTip + c][n] = end.tip_W[axis];
+    }
+    rows_[kBottom][n] = ends.bottom;
+    rows_[kTop][n] = ends.top;
+    ++n;
   }
-  rows_[kBottom][n] = ends.bottom;
-  rows_[kTop][n] = ends.top;
 }
 
 void BottomPlanes::repeat(std::span<const uint32_t> places) {

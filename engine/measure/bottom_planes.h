@@ -14,6 +14,8 @@
 #include <vector>
 
 #include "measure/height_bounds.h"
+#include "measure/sweep_cutters.h"
+#include "stock/sweep/sweep.h"
 
 namespace swarf::measure {
 
@@ -28,7 +30,9 @@ class BottomPlanes {
   static constexpr size_t kMostLanes = 8;
 
   void clear() { resize(0); }
-  void add(const NearSweep& near);
+  /// Those of the sweeps with these numbers.
+  void add(std::span<const uint32_t> numbers, std::span<const stock::Sweep> sweeps,
+           const SweepCutters& cutters);
   /// Puts those with these places on top, in that order.
   void repeat(std::span<const uint32_t> places);
   void resize(size_t count) {

@@ -16,7 +16,7 @@ struct Points {
   T x, y, z;
 };
 
-SWARF_KERNEL_INLINE T root_of(const T& x) {
+SWARF_KERNEL_INLINE T square_roots(const T& x) {
   T root;
   for (int i = 0; i < 4; ++i) root[i] = std::sqrt(x[i]);
   return root;
@@ -53,6 +53,11 @@ SWARF_KERNEL_INLINE void columns_of(const stock::SweepMap& map, const std::array
   turn(map.R1t.data(), ways, lanes.way_at_end);
 }
 
+SWARF_KERNEL_INLINE bool any_below(const T& a, const T& b) {
+  const auto below = a < b;
+  return (below[0] | below[1] | below[2]) != 0;
+}
+
 /// cutter::Support.
 struct LaneSupport {
   T value, rho, z;
@@ -67,7 +72,7 @@ struct LaneSupport {
 SWARF_KERNEL_INLINE void raise(LaneSupport& support, const cutter::Round& round, const T& rho, const T& z) {
   const double *from = round.from.data(), *to = round.to.data();
   const T dr = rho - round.centre.data()[0], dz = z - round.centre.data()[1];
-  const T length = root_of(dr * dr + dz * dz);
+  const T length = square_roots(dr * dr + dz * dz);
   const T along_from = dr * from[0] + dz * from[1], along_to = dr * to[0] + dz * to[1];
   const T end_rho = along_from > along_to ? all_of<T>(from[0]) : all_of<T>(to[0]);
   const T end_z = along_from > along_to ? all_of<T>(from[1]) : all_of<T>(to[1]);
@@ -99,16 +104,15 @@ struct Slope {
 };
 SWARF_KERNEL_INLINE Slope slope_on(const cutter::ConvexPiece& piece, const Lines& lines, const T& s) {
   const T x = lines.P.x + s * lines.N.x, y = lines.P.y + s * lines.N.y, z = lines.P.z + s * lines.N.z;
-  const T rho = root_of(x * x + y * y);
+  const T rho = square_roots(x * x + y * y);
   const LaneSupport support = support_of(piece, rho, z);
-  const T out = x * lines.N.x + y * lines.N.y;
-  const T sideways = rho > 0.0 ? support.rho * out / rho : support.rho * lines.sideways;
+  T sideways{};
+  // Where the planes across the axis decide, none of the columns waits for a quotient.
+  if (any_below(T{}, size_of<T>(support.rho))) {
+    const T out = x * lines.N.x + y * lines.N.y;
+    sideways = rho > 0.0 ? support.rho * out / rho : support.rho * lines.sideways;
+  }
   return {support.value, sideways + support.z * lines.N.z};
-}
-
-SWARF_KERNEL_INLINE bool any_below(const T& a, const T& b) {
-  const auto below = a < b;
-  return (below[0] | below[1] | below[2]) != 0;
 }
 
 /// Least s >= from with F <= kTouch - margin(s); infinite when F turns up first.
@@ -139,17 +143,15 @@ SWARF_KERNEL_INLINE void covered(const cutter::ConvexPiece& piece, const ColumnL
   const T t = load<T>(instants.lane), from = load<T>(from_s.lane);
   Lines lines{between(points_of(lanes.foot_at_start), points_of(lanes.foot_at_end), t),
               between(points_of(lanes.way_at_start), points_of(lanes.way_at_end), t), T{}};
-  lines.sideways = root_of(lines.N.x * lines.N.x + lines.N.y * lines.N.y);
+  lines.sideways = square_roots(lines.N.x * lines.N.x + lines.N.y * lines.N.y);
   const T never = all_of<T>(std::numeric_limits<double>::infinity());
   const T high = max_of<T>(load<T>(tops.lane), from);
-  T begin = from;
-  if (any_below(from, high)) {
-    const T within = margin.aside + margin.stray + size_of<T>(high) * margin.turn;
-    const T value = slope_on(piece, lines, high).value;
-    const T begins = value > kTouch - within ? never : from;
-    begin = high > from ? begins : from;
-  }
-  store<T>(entry(piece, lines, begin, margin), heights.lane);
+  // Looked at beside the entry, not before it: neither waits for the other.
+  const T within = margin.aside + margin.stray + size_of<T>(high) * margin.turn;
+  const T at_top = slope_on(piece, lines, high).value;
+  const T entered = entry(piece, lines, from, margin);
+  const T up_to_top = at_top > kTouch - within ? never : entered;
+  store<T>(high > from ? up_to_top : entered, heights.lane);
 }
 
 // One short function for each instruction set (instruction_sets.h).

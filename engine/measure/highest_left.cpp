@@ -22,6 +22,7 @@ bool is_nowhere_higher(const CornerHeights& a, const CornerHeights& b) {
 /// Those that cover every corner, without those that count nowhere beside another.
 std::vector<const CornerHeights*> lowest_of(const std::vector<CornerHeights>& sets) {
   std::vector<const CornerHeights*> lowest;
+  lowest.reserve(sets.size());
   for (const CornerHeights& set : sets) {
     if (!(set[0] < kNever && set[1] < kNever && set[2] < kNever)) continue;
     const auto counts_nowhere = [&](const CornerHeights* other) { return is_nowhere_higher(*other, set); };

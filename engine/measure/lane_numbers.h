@@ -2,17 +2,31 @@
 // folder.
 //
 // A comparison chooses where it stands: GCC 12 takes eight apart into single numbers where two of them are
-// joined before they choose, or where one is kept in a variable (kinematics/lanes.h).
+// joined before they choose, or where one is kept in a variable.
 #pragma once
 
 #include <cstring>
 
 #include "base/instruction_sets.h"
-#include "kinematics/lanes.h"
 
 namespace swarf::measure {
 
-using kinematics::lanes::Numbers;
+template <int N>
+struct LaneVector;
+template <>
+struct LaneVector<2> {
+  using Numbers = double __attribute__((vector_size(16)));
+};
+template <>
+struct LaneVector<4> {
+  using Numbers = double __attribute__((vector_size(32)));
+};
+template <>
+struct LaneVector<8> {
+  using Numbers = double __attribute__((vector_size(64)));
+};
+template <int N>
+using Numbers = typename LaneVector<N>::Numbers;
 
 /// As std::max(b, a).
 template <class T>

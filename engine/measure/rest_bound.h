@@ -12,6 +12,7 @@
 #include "measure/certificate.h"
 #include "measure/design_cell.h"
 #include "measure/height_bounds.h"
+#include "measure/root_sweeps.h"
 #include "measure/sweep_index.h"
 #include "stock/rays/surface_dexels.h"
 
@@ -102,7 +103,7 @@ struct KeptSweeps {
 class RestBound {
  public:
   /// All must outlive it; `near` may change between two calls.
-  RestBound(const CertificateInput& input, const RootCell& root, const std::vector<NearSweep>& near)
+  RestBound(const CertificateInput& input, const RootCell& root, const RootSweeps& near)
       : input_(input), root_(root), near_(near) {}
 
   /// Heights below which the cell's material is its own, by what ends it at each corner.
@@ -137,7 +138,7 @@ class RestBound {
 
   const CertificateInput& input_;
   const RootCell& root_;
-  const std::vector<NearSweep>& near_;
+  const RootSweeps& near_;
   std::vector<CornerHeights> sets_;
   std::vector<CornerHeights> covered_;  ///< of sets_, by sweeps over a curved cell
   CornerHeights sags_{};                ///< of all of covered_

@@ -125,16 +125,14 @@ class RootProof {
       highest_seen_ = 0.0;
       floors_.clear();
       reach_ = reach;
-      near_ = sweeps_up_to(reach, root_, input_, index_);
+      near_ = RootSweeps(input_, numbers_up_to(reach, root_, input_, index_));
       gouge_goal_ = std::min(input_.gouge_known_mm, input_.gouge_limit_mm);
       excess_goal_ = std::min(input_.excess_known_mm, input_.excess_limit_mm);
       const auto& c = root_.cell.corners;
       kept_.resize(near_.size());
+      for (uint32_t n = 0; n < kept_.size(); ++n) kept_[n] = n;
       planes_.clear();
-      for (uint32_t n = 0; n < kept_.size(); ++n) {
-        kept_[n] = n;
-        planes_.add(near_[n]);
-      }
+      planes_.add(near_.numbers(), input_.sweeps, input_.cutters);
       std::array<Corner, 3> corners;
       for (size_t k = 0; k < 3; ++k) {
         corners[k] = measured({c[k]}, 0, kept_.size(), {});
@@ -184,7 +182,10 @@ class RootProof {
     const double asked = std::min(excess_target(), scallop_target());
     const double known = std::max(result_.excess_found, input_.excess_known_mm);
     if (root_.looks_up && corner.height > std::min(asked, known)) {
-      for (uint32_t n = 0; n < near_.size(); ++n) look_at(n);
+      // At the bottom of the stack.
+      column_heights(at, planes_.from(0), near_.size(), heights_);
+      for (uint32_t n = 0; n < near_.size(); ++n)
+        if (heights_[n] < corner.height + kPlaneSlack) look_at(n);
     }
     keep_own(input_, corner);
     note(corner);
@@ -193,7 +194,7 @@ class RootProof {
 
   void note(const Corner& corner) {
     highest_seen_ = std::max(highest_seen_, corner.height);
-    const uint32_t block = corner.near == stock::kUncut ? stock::kUncut : near_[corner.near].sweep;
+    const uint32_t block = corner.near == stock::kUncut ? stock::kUncut : near_.number(corner.near);
     if (root_.looks_down && -corner.height > result_.gouge_found) {
       result_.gouge_found = -corner.height;
       result_.gouge_bottom = corner.at.point + corner.height * corner.at.normal;
@@ -419,7 +420,7 @@ class RootProof {
     for (size_t k = 0; k < 3; ++k) {
       heights[k] = std::min(cell.corners[k].highest(), bounds.high + kTouch);
       depths[k] = std::min(-cell.corners[k].height, -bounds.low);
-      blocks[k] = cell.corners[k].near == stock::kUncut ? stock::kUncut : near_[cell.corners[k].near].sweep;
+      blocks[k] = cell.corners[k].near == stock::kUncut ? stock::kUncut : near_.number(cell.corners[k].near);
     }
     if (root_.looks_down)
       add_piece(cell.shape, depths, blocks, input_.gouge_limit_mm, cell.near_rim, gouges_);
@@ -607,7 +608,7 @@ class RootProof {
   const bool fans_{root_.cell.area_mm2() == 0.0};  ///< its columns begin at an edge, or a corner
   Budget budget_;
   double gouge_goal_ = 0.0, excess_goal_ = 0.0, highest_seen_ = 0.0, reach_ = kNever;
-  std::vector<NearSweep> near_;
+  RootSweeps near_;
   std::optional<std::vector<NearSweep>> all_near_;  ///< up to the stock's top, once they are asked for
   std::vector<uint32_t> kept_;  ///< a stack: the sweeps of a cell lie above those of the cell around it
   std::vector<double> floors_;  ///< least heights of kept_ over the cell last looked at

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "measure/column_range.h"
 
@@ -24,9 +25,14 @@ bool passes_above(const stock::Sweep& sweep, const stock::CutterSolid& cutter, c
   return true;
 }
 
+NearSweep near_sweep(const CertificateInput& input, uint32_t number) {
+  const stock::Sweep& sweep = input.sweeps[number];
+  return {stock::sweep_map(sweep), &input.cutters[number], number, sweep.start.axis_W != sweep.end.axis_W};
+}
+
 }  // namespace
 
-std::vector<NearSweep> sweeps_up_to(double reach, const RootCell& root, const CertificateInput& input,
+std::vector<uint32_t> numbers_up_to(double reach, const RootCell& root, const CertificateInput& input,
                                     const SweepIndex& index) {
   Box box{Vec3::Constant(kNever), Vec3::Constant(-kNever)};
   const double margin = root.cell.flatness_mm + root.cell.radius() * 1e-3;
@@ -43,14 +49,29 @@ std::vector<NearSweep> sweeps_up_to(double reach, const RootCell& root, const Ce
   index.find(box, found);
   const Vec3 centre = 0.5 * (box.lower + box.upper);
   const double around = 0.5 * (box.upper - box.lower).norm();
-  std::vector<NearSweep> near;
-  for (const uint32_t n : found) {
+  std::erase_if(found, [&](uint32_t n) {
     const stock::Sweep& sweep = input.sweeps[n];
     const stock::CutterSolid& cutter = input.cutters[n];
-    if (passes_above(sweep, cutter, root, reach) || passes_aside(sweep, cutter, centre, around)) continue;
-    near.push_back({stock::sweep_map(sweep), &cutter, n, sweep.start.axis_W != sweep.end.axis_W});
-  }
+    return passes_above(sweep, cutter, root, reach) || passes_aside(sweep, cutter, centre, around);
+  });
+  return found;
+}
+
+std::vector<NearSweep> sweeps_up_to(double reach, const RootCell& root, const CertificateInput& input,
+                                    const SweepIndex& index) {
+  std::vector<NearSweep> near;
+  for (const uint32_t n : numbers_up_to(reach, root, input, index)) near.push_back(near_sweep(input, n));
   return near;
+}
+
+RootSweeps::RootSweeps(const CertificateInput& input, std::vector<uint32_t> numbers)
+    : input_(&input), numbers_(std::move(numbers)), places_(numbers_.size(), kNotMade) {
+  made_.reserve(numbers_.size());
+}
+
+void RootSweeps::make(size_t n) const {
+  places_[n] = static_cast<uint32_t>(made_.size());
+  made_.push_back(near_sweep(*input_, numbers_[n]));
 }
 
 }  // namespace swarf::measure

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "measure/certificate.h"
@@ -15,6 +17,36 @@ namespace swarf::measure {
 /// the top of the stock.
 std::vector<NearSweep> sweeps_up_to(double reach, const RootCell& root, const CertificateInput& input,
                                     const SweepIndex& index);
+
+/// Their numbers, rising.
+std::vector<uint32_t> numbers_up_to(double reach, const RootCell& root, const CertificateInput& input,
+                                    const SweepIndex& index);
+
+/// The sweeps of one root. Of most the lowest plane answers for all that is asked: a map is made for the
+/// others, when it is asked for. For one thread.
+class RootSweeps {
+ public:
+  RootSweeps() = default;
+  RootSweeps(const CertificateInput& input, std::vector<uint32_t> numbers);
+
+  size_t size() const { return numbers_.size(); }
+  uint32_t number(size_t n) const { return numbers_[n]; }
+  std::span<const uint32_t> numbers() const { return numbers_; }
+  /// Stays where it is.
+  const NearSweep& operator[](size_t n) const {
+    if (places_[n] == kNotMade) make(n);
+    return made_[places_[n]];
+  }
+
+ private:
+  static constexpr uint32_t kNotMade = 0xffffffffu;
+  void make(size_t n) const;
+
+  const CertificateInput* input_ = nullptr;
+  std::vector<uint32_t> numbers_;
+  mutable std::vector<uint32_t> places_;  ///< in made_
+  mutable std::vector<NearSweep> made_;   ///< room for all: none moves
+};
 
 /// Looks at all sweeps above the root, which may be a thousand times those of a cell: where few of them are
 /// of use, they take no more work than twice all other.

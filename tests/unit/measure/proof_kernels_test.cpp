@@ -19,8 +19,8 @@
 namespace swarf::measure {
 namespace {
 
-using cutter::test::of_shape;
 using cutter::Shape;
+using cutter::test::of_shape;
 
 std::vector<stock::CutterSolid> cutters() {
   return {stock::CutterSolid(5.0, 25.0), stock::CutterSolid(of_shape(Shape::kBullNose, 10.0, 1.0, 25.0)),
@@ -50,44 +50,59 @@ DesignCell cell_of(Rng& rng, double size_mm, bool is_flat) {
 }
 
 /// A sweep that passes near the cell, its axis within some degrees of the cell's normal.
-NearSweep sweep_at(Rng& rng, const DesignCell& cell, const stock::CutterSolid& cutter, double lean) {
+stock::Sweep sweep_at(Rng& rng, const DesignCell& cell, double lean) {
   const auto pose = [&](const Vec3& aside, const Vec3& turn) {
     return ToolPose{cell.centroid() + aside, (cell.mean_normal() + turn).normalized()};
   };
   const Vec3 aside = rng.uniform(0.0, 4.0) * rng.direction(), turn = lean * rng.direction();
   const bool turns = rng.uniform() < 0.7;
-  const stock::Sweep sweep{
-      pose(aside, turn),
-      pose(aside + 0.2 * rng.direction(), turns ? Vec3(turn + 0.01 * rng.direction()) : turn), 0};
-  return {stock::sweep_map(sweep), &cutter, 0, turns};
+  return {pose(aside, turn),
+          pose(aside + 0.2 * rng.direction(), turns ? Vec3(turn + 0.01 * rng.direction()) : turn), 0};
 }
+
+NearSweep near_of(const stock::Sweep& sweep, const stock::CutterSolid& cutter) {
+  return {stock::sweep_map(sweep), &cutter, 0, sweep.start.axis_W != sweep.end.axis_W};
+}
+
+/// Some sweeps about a cell, with each of the cutters in turn, and their planes.
+struct About {
+  std::vector<stock::CutterSolid> tools = cutters();
+  std::vector<stock::Sweep> sweeps;
+  std::vector<int> tool_of;
+  BottomPlanes planes;
+
+  About(Rng& rng, const DesignCell& cell, size_t count, double lean) {
+    std::vector<uint32_t> numbers;
+    for (size_t k = 0; k < count; ++k) {
+      numbers.push_back(static_cast<uint32_t>(k));
+      sweeps.push_back(sweep_at(rng, cell, lean));
+      tool_of.push_back(static_cast<int>(k % tools.size()));
+    }
+    planes.add(numbers, sweeps, SweepCutters(tools, tool_of));
+  }
+  NearSweep near(size_t k) const { return near_of(sweeps[k], tools[k % tools.size()]); }
+};
 
 TEST(BottomPlanes, TellWhatOneSweepAfterTheOtherTells) {
   Rng rng(20260);
-  const std::vector<stock::CutterSolid> tools = cutters();
   constexpr size_t kSweeps = 61;  // no multiple of what a processor takes at once
   size_t told = 0, above = 0;
   for (int n = 0; n < 200; ++n) {
     const DesignCell cell = cell_of(rng, n % 2 == 0 ? 1.0 : 0.05, n % 3 == 0);
     const double depth = rng.uniform(0.05, 4.0), enough = rng.uniform(-0.1, 0.1);
     const ColumnDepths depths{{depth, depth, depth}, {}};
-    BottomPlanes planes;
-    std::vector<NearSweep> sweeps;
-    for (size_t k = 0; k < kSweeps; ++k) {
-      sweeps.push_back(sweep_at(rng, cell, tools[k % tools.size()], n % 5 == 0 ? 1.5 : 0.1));
-      planes.add(sweeps.back());
-    }
+    const About about(rng, cell, kSweeps, n % 5 == 0 ? 1.5 : 0.1);
     std::vector<double> heights, columns;
-    cell_heights(cell, depths, planes.from(0), kSweeps, heights);
-    column_heights(cell.corners[0], planes.from(0), kSweeps, columns);
+    cell_heights(cell, depths, about.planes.from(0), kSweeps, heights);
+    column_heights(cell.corners[0], about.planes.from(0), kSweeps, columns);
     for (size_t k = 0; k < kSweeps; ++k) {
       if (heights[k] > enough) {
         ++told;
-        ASSERT_EQ(heights[k], least_height(cell, sweeps[k], depths, enough)) << n << ", " << k;
+        ASSERT_EQ(heights[k], least_height(cell, about.near(k), depths, enough)) << n << ", " << k;
       }
       if (columns[k] >= depth + kPlaneSlack) {
         ++above;
-        ASSERT_TRUE(stays_above(cell.corners[0], sweeps[k], depth)) << n << ", " << k;
+        ASSERT_TRUE(stays_above(cell.corners[0], about.near(k), depth)) << n << ", " << k;
       }
     }
   }
@@ -95,12 +110,20 @@ TEST(BottomPlanes, TellWhatOneSweepAfterTheOtherTells) {
   EXPECT_GT(above, 1000u);
 }
 
+TEST(BottomPlanes, TellNothingOfACellWhoseColumnsTurnWithoutBound) {
+  Rng rng(20264);
+  DesignCell cell = cell_of(rng, 1.0, false);
+  const About about(rng, cell, 9, 0.1);
+  cell.turn = kNever;  // beside a pole of its surface
+  std::vector<double> heights;
+  cell_heights(cell, {{1.0, 1.0, 1.0}, {}}, about.planes.from(0), 9, heights);
+  for (size_t k = 0; k < 9; ++k) EXPECT_EQ(heights[k], kUntold);
+}
+
 TEST(BottomPlanes, RepeatedOnTheStackTellTheSame) {
   Rng rng(20261);
-  const stock::CutterSolid cutter(5.0, 25.0);
   const DesignCell cell = cell_of(rng, 1.0, false);
-  BottomPlanes planes;
-  for (int k = 0; k < 20; ++k) planes.add(sweep_at(rng, cell, cutter, 0.1));
+  BottomPlanes planes = About(rng, cell, 20, 0.1).planes;
   std::vector<double> all, some;
   column_heights(cell.corners[1], planes.from(0), 20, all);
   const std::vector<uint32_t> places{1, 2, 7, 18, 19};
@@ -111,13 +134,10 @@ TEST(BottomPlanes, RepeatedOnTheStackTellTheSame) {
 
 TEST(BottomPlanes, EveryInstructionSetGivesTheSameBits) {
   Rng rng(20262);
-  const std::vector<stock::CutterSolid> tools = cutters();
   for (int n = 0; n < 100; ++n) {
-    BottomPlanes planes;
     const DesignCell cell = cell_of(rng, 0.5, n % 2 == 0);
     constexpr size_t kSweeps = 19;
-    for (size_t k = 0; k < kSweeps; ++k)
-      planes.add(sweep_at(rng, cell, tools[k % tools.size()], n % 5 == 0 ? 1.5 : 0.1));
+    const BottomPlanes planes = About(rng, cell, kSweeps, n % 5 == 0 ? 1.5 : 0.1).planes;
     const PlainCell plain = plain_cell(cell, {{2.0, 1.0, 2.0}, {}});
     const Vec3 &p = cell.corners[2].point, &q = cell.corners[2].normal;
     const double point[3] = {p.x(), p.y(), p.z()}, normal[3] = {q.x(), q.y(), q.z()};
@@ -152,7 +172,7 @@ TEST(ColumnLanes, EnterThePieceWhereEachColumnDoes) {
   for (const stock::CutterSolid& cutter : cutters()) {
     for (int n = 0; n < 300; ++n) {
       const DesignCell cell = cell_of(rng, 1.0, false);
-      const NearSweep near = sweep_at(rng, cell, cutter, 0.3);
+      const NearSweep near = near_of(sweep_at(rng, cell, 0.3), cutter);
       const cutter::ConvexPiece& piece = cutter.pieces.front();
       const ColumnNumbers instants{{rng.uniform(), 0.0, 1.0, 0.0}}, from{{-3.0, -2.0, -1.0, -3.0}},
           tops{{5.0, 0.0, -std::numeric_limits<double>::infinity(), 5.0}};
