@@ -10,6 +10,7 @@
 #include <map>
 
 #include "base/units.h"
+#include "cli/nc_totals.h"
 #include "cli/terminal.h"
 #include "program/move_way.h"
 
@@ -24,9 +25,12 @@ class Totals final : public program::ClSink {
     arcs_ += move.arc ? 1 : 0;
     (feeds ? feed_mm_ : rapid_mm_) += program::way_mm(move);
     (feeds ? feeds_ : rapids_) += 1;
+    const double feed_s = feeds && move.feed_mm_s > 0.0 ? program::way_mm(move) / move.feed_mm_s : 0.0;
+    hours_.add(feed_s + move.dwell_s, move);
     extent_W_.extend(program::extent_W(move));
     turned_ |= move.to.axis_W.z() < 1.0 - 1e-9;
   }
+  const ProgramHours& hours() const { return hours_; }
   void note(program::ClNote note) override { ++notes_[note.word]; }
 
   std::string text() const {
@@ -61,6 +65,7 @@ class Totals final : public program::ClSink {
   double feed_mm_ = 0.0, rapid_mm_ = 0.0;
   Eigen::AlignedBox3d extent_W_;  ///< of the tip, arcs with their bulge
   bool turned_ = false;
+  ProgramHours hours_;
   std::map<std::string, long> notes_;
 };
 
@@ -84,6 +89,7 @@ Checked check_cl(const std::string& file, const program::ClOptions& options) {
   Totals totals;
   const program::ClProgram program = program::stream_cl(file, totals, diagnostics, options);
   diagnostics.throw_if_errors();
+  totals.hours().refuse_too_long({file});
   std::string text =
       fmt::format("CL data is right: {} statements, {} moves", program.statements, program.motions);
   text += fmt::format("\n  written by: {}", program.writer_reason.empty()

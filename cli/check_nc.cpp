@@ -329,6 +329,7 @@ Checked check_nc(const std::string& file, const NcCheckOptions& options) {
       program::run_nc(file, chosen(file, options.dialect), setup, sink, diagnostics);
   if (options.machine.empty()) name_machines(file, diagnostics);
   diagnostics.throw_if_errors();
+  totals.hours.refuse_too_long(summary.files);
   const std::optional<motion::MotionStatistics> driven = drives ? motion.drive(summary) : std::nullopt;
   std::string text = fmt::format(
       "NC program {}\n"

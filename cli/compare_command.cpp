@@ -15,6 +15,7 @@
 #include "mesh/mesh_ops.h"
 #include "reports/compare_output.h"
 #include "reports/pending_folder.h"
+#include "reports/run_output.h"
 
 namespace swarf::cli {
 namespace {
@@ -142,6 +143,10 @@ std::vector<std::string> compare_words(const CompareOptions& options) {
 
 int compare_solids(const CompareOptions& options) {
   if (!options.output.empty()) reports::check_output_folder(options.output, reports::kCompareMark);
+  // What a run has left: whether it came to its end.
+  for (const std::string& file : {options.stock, options.design})
+    if (file.ends_with(".vdb"))
+      print_diagnostics(reports::remarks_on_run(fs::absolute(file).parent_path().string()));
   ComparedStock stock = load_stock(options.stock);
   const ComparedDesign design = load_design(options.design, kPatchPitch);
   const std::optional<measure::Alignment> aligned = align(options.pairs, options.best_fit, design, stock);

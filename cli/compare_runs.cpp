@@ -65,7 +65,7 @@ Difference compare_rays(const reports::StoredRun& a, const reports::StoredRun& b
 }  // namespace
 
 int compare_runs(const std::string& a, const std::string& b, double limit_um, bool json) {
-  for (const std::string& folder : {a, b}) print_diagnostics(reports::other_version(folder));
+  for (const std::string& folder : {a, b}) print_diagnostics(reports::remarks_on_run(folder));
   const reports::StoredRun run_a = reports::read_run(a), run_b = reports::read_run(b);
   const Difference difference = compare_rays(run_a, run_b, limit_um);
   const bool holds = difference.beyond == 0;

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/units.h"
+#include "sim/judge/limit_text.h"
 
 namespace swarf::cli {
 namespace {
@@ -40,14 +41,15 @@ sim::Check judge_extreme(const char* name, const char* subject, double limit_um,
   check.limit = limit_um;
   check.value = extreme.um;
   check.bound = extreme.bound_um;
-  check.what = fmt::format("{} {:.3f} um, proven {:.3f} um, at most {:g} um", name, extreme.um,
-                           extreme.bound_um, limit_um);
+  check.what =
+      fmt::format("{} {} um, proven {} um, at most {} um", name, sim::text_beside(extreme.um, limit_um),
+                  sim::text_beside(extreme.bound_um, limit_um), sim::limit_text(limit_um));
   check.outcome = extreme.um > limit_um         ? sim::Outcome::kFails
                   : extreme.bound_um > limit_um ? sim::Outcome::kNotProven
                                                 : sim::Outcome::kHolds;
   if (check.outcome == sim::Outcome::kNotProven) {
-    check.reason = fmt::format("not proven below {:g} um: proven {:.3f} um at {}", limit_um, extreme.bound_um,
-                               place_text(extreme.bound_place));
+    check.reason = fmt::format("not proven below {} um: proven {} um at {}", sim::limit_text(limit_um),
+                               sim::text_beside(extreme.bound_um, limit_um), place_text(extreme.bound_place));
   }
   return check;
 }

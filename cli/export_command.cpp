@@ -91,7 +91,7 @@ void write_meshes(const ExportOptions& options, const reports::FinishedRun& run)
 
 int export_run(const ExportOptions& options) {
   check_options(options);
-  print_diagnostics(reports::other_version(options.folder));
+  print_diagnostics(reports::remarks_on_run(options.folder));
   TerminalProgress progress;
   if (!options.needs_stock()) {  // reading the stock would take longer than the cycles
     const sim::Job job = reports::read_job(options.folder, {});

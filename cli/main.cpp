@@ -124,6 +124,7 @@ int checked_output(int exit_code) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  swarf::cli::catch_interrupt();  // first of all: before it the loader alone has worked
   CLI::App app{
       "Swarf: headless, visual 5-axis NC simulator. A program goes in; a measured, rendered report comes "
       "out."};
@@ -151,6 +152,5 @@ int main(int argc, char** argv) {
   swarf::cli::add_render(app, exit_code);
   swarf::cli::add_export(app, exit_code);
   swarf::cli::add_manual(app);
-  swarf::cli::catch_interrupt();
   return checked_output(guarded(app, argc, argv, exit_code));
 }

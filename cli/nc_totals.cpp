@@ -11,6 +11,27 @@
 
 namespace swarf::cli {
 
+void ProgramHours::add(double seconds, const program::Move& move, int file) {
+  seconds_ += seconds;
+  if (!(seconds > longest_s_)) return;
+  longest_s_ = seconds;
+  file_ = file;
+  line_ = move.line;
+  column_ = move.column;
+}
+
+void ProgramHours::refuse_too_long(const std::vector<std::string>& files) const {
+  constexpr double kMost = program::kHoursMax;
+  const double hours = seconds_ / 3600.0;
+  if (!(hours > kMost)) return;
+  throw InputError(
+      "too-many-cycles", {files.at(static_cast<size_t>(file_)), line_, column_},
+      fmt::format("the program takes {:.3g} h at its programmed feeds, more than {:g} h; this is "
+                  "its slowest block",
+                  hours, kMost),
+      "mend the feed or the dwell of this block");
+}
+
 void NcTotals::add_rapid(const program::NcMove& move) {
   double longest = 0.0;
   for (size_t i = 0; i < machine_.axes.size(); ++i) {
@@ -46,6 +67,7 @@ bool NcTotals::move(const program::NcMove& move) {
   (move.rapid ? rapids : feeds) += 1;
   feed_s += move.duration_s;
   dwell_s += move.dwell_s;
+  hours.add(move.duration_s + move.dwell_s, move, move.file);
   low = low.cwiseMin(move.q_to);
   high = high.cwiseMax(move.q_to);
   arcs += move.arc ? 1 : 0;

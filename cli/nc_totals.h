@@ -3,10 +3,23 @@
 
 #include <Eigen/Geometry>
 #include <string>
+#include <vector>
 
 #include "program/nc_program.h"
 
 namespace swarf::cli {
+
+/// How long a program takes as programmed, accelerations left out: what a run takes at the least.
+class ProgramHours {
+ public:
+  void add(double seconds, const program::Move& move, int file = 0);
+  /// Throws InputError "too-many-cycles" at the slowest block where a run refuses the program for its time.
+  void refuse_too_long(const std::vector<std::string>& files) const;
+
+ private:
+  double seconds_ = 0.0, longest_s_ = 0.0;
+  int file_ = 0, line_ = 0, column_ = 0;
+};
 
 class NcTotals final : public program::NcSink {
  public:
@@ -18,6 +31,7 @@ class NcTotals final : public program::NcSink {
   double feed_mm = 0.0,
          rapid_mm = 0.0;               ///< way of the tip: arcs along the arc, the others between their ends
   double feed_s = 0.0, dwell_s = 0.0;  ///< at the programmed feed
+  ProgramHours hours;                  ///< of both
   /// Every axis at its rapid speed, without acceleration; counts only while rapids_timed.
   double rapid_s = 0.0;
   bool rapids_timed = true;  ///< the machine says how fast its axes are

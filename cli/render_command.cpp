@@ -100,7 +100,7 @@ int render(const RenderOptions& options) {
   if (!options.camera.empty()) reports::camera_direction(options.camera);
   for (const std::string& file : {options.movie, options.still}) reports::check_output_file(file);
   if (!options.movie.empty()) render::check_movie_name(options.movie);
-  print_diagnostics(reports::other_version(options.folder));
+  print_diagnostics(reports::remarks_on_run(options.folder));
   TerminalProgress progress;
   reports::StoredRun stored = reports::read_run(options.folder);
   if (options.size.size() == 2) {

@@ -6,7 +6,10 @@
 #include <algorithm>
 #include <atomic>
 #include <csignal>
+#include <cstdint>
 #include <cstdlib>
+#include <ctime>
+#include <string_view>
 
 namespace swarf::cli {
 namespace {
@@ -18,9 +21,31 @@ constexpr int kBarWidth = 28;
 constexpr std::chrono::milliseconds kRedraw{100};
 constexpr std::chrono::seconds kPlainLine{5};  // without a terminal: a line in so many seconds
 
+/// When the first interrupt came, ns; 0: none has.
+std::atomic<int64_t> first_interrupt{0};
+static_assert(std::atomic<int64_t>::is_always_lock_free, "the signal handler needs a lock-free number");
+
+int64_t steady_ns() {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return int64_t{1'000'000'000} * now.tv_sec + now.tv_nsec;
+}
+
+/// The first one asks to stop. One Ctrl-C may come twice: a terminal, timeout and mpirun send it to the
+/// process and to its group. A later one ends the process, and says so: nothing else would.
 void on_interrupt(int signal_number) {
-  stop_flag = true;
+  constexpr int64_t kSameInterrupt = 500'000'000;  // ns
+  const int64_t now = steady_ns();
+  int64_t first = 0;
+  if (first_interrupt.compare_exchange_strong(first, now)) {
+    stop_flag = true;
+    return;
+  }
+  if (now - first < kSameInterrupt) return;
+  constexpr std::string_view kText = "\nstopped by a second interrupt: what was under way is not kept\n";
+  [[maybe_unused]] const auto written = write(STDERR_FILENO, kText.data(), kText.size());
   std::signal(signal_number, SIG_DFL);
+  std::raise(signal_number);
 }
 
 bool is_terminal() {

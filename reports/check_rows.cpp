@@ -5,6 +5,8 @@
 #include <map>
 #include <utility>
 
+#include "sim/judge/limit_text.h"
+
 namespace swarf::reports {
 namespace {
 
@@ -31,8 +33,8 @@ std::string with_unit(std::string number, const sim::Check& check) {
 
 std::string measured(const sim::Check& check) {
   std::string text =
-      check.unit == "um" ? fmt::format("{:.3f}", *check.value) : fmt::format("{:.3g}", *check.value);
-  if (check.bound) text += fmt::format(", proven below {:.3f}", *check.bound);
+      check.unit == "um" ? sim::text_beside(*check.value, *check.limit) : fmt::format("{:.3g}", *check.value);
+  if (check.bound) text += ", proven below " + sim::text_beside(*check.bound, *check.limit);
   return with_unit(std::move(text), check);
 }
 
@@ -45,7 +47,7 @@ Verdict verdict_of(const std::vector<sim::Check>& checks) {
   for (const sim::Check& check : checks) {
     if (check.outcome == sim::Outcome::kNotJudged || !check.limit || !check.value) continue;
     verdict.criteria.push_back({check.subject, measured(check),
-                                "at most " + with_unit(fmt::format("{:.6g}", *check.limit), check),
+                                "at most " + with_unit(sim::limit_text(*check.limit), check),
                                 state_of(check.outcome)});
   }
   return verdict;

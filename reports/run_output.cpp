@@ -340,19 +340,30 @@ StoredRun read_run(const std::string& folder) {
   return run;
 }
 
-std::vector<Diagnostic> other_version(const std::string& folder) {
+std::vector<Diagnostic> remarks_on_run(const std::string& folder) {
   const std::string mark = (fs::path(folder) / kRunMark).string();
   std::ifstream file(mark);
   const nlohmann::json manifest = nlohmann::json::parse(file, nullptr, false);
   if (!manifest.is_object() || !manifest.contains("swarf")) return {};  // told by what reads it
+  std::vector<Diagnostic> told;
   const nlohmann::json& version = manifest.at("swarf");
-  if (version == SWARF_VERSION) return {};
-  return {{"other-version",
-           Severity::kWarning,
-           {mark},
-           fmt::format("swarf {} has made this run, this is {}: what it writes may differ from the run's own",
-                       version.is_string() ? version.get<std::string>() : version.dump(), SWARF_VERSION),
-           "run the scene again where it matters"}};
+  if (version != SWARF_VERSION)
+    told.push_back(
+        {"other-version",
+         Severity::kWarning,
+         {mark},
+         fmt::format("swarf {} has made this run, this is {}: what it writes may differ from the run's own",
+                     version.is_string() ? version.get<std::string>() : version.dump(), SWARF_VERSION),
+         "run the scene again where it matters"});
+  const fs::path stock = fs::path(folder) / sim::kFinishedStock;
+  // Judged runs alone have numbers.
+  if (fs::exists(stock) && !fs::exists(fs::path(folder) / "metrics.json"))
+    told.push_back({"run-stopped",
+                    Severity::kWarning,
+                    {folder},
+                    "this run was stopped before it was judged: its stock is as it was cut up to then",
+                    fmt::format("go on from it: swarf run SCENE --from {}", stock.string())});
+  return told;
 }
 
 sim::MeasuredPath motion_of(const StoredRun& run, const std::string& folder, bool needed,

@@ -50,8 +50,9 @@ struct StoredRun {
 };
 StoredRun read_run(const std::string& folder);
 
-/// A warning where another version of swarf has made the run; else none.
-std::vector<Diagnostic> other_version(const std::string& folder);
+/// Warnings where another version of swarf has made the run ("other-version") and where it was stopped before
+/// it was judged ("run-stopped").
+std::vector<Diagnostic> remarks_on_run(const std::string& folder);
 
 /// The run's motion, made again from its kept inputs; without any cycle when it is not `needed`. Throws
 /// InputError "run-differs" when these were changed, or give another motion than the run's to the last bit.

@@ -139,6 +139,59 @@ uint32_t between(const std::array<uint32_t, 2>& sweeps) {
 
 namespace {
 
+/// Places whose hull holds the cell but for its stray; three where it is flat.
+struct HullOfCell {
+  std::array<Vec3, 6> places;
+  size_t count = 0;
+
+  explicit HullOfCell(const Cell& cell) {
+    for (const Corner& corner : cell.corners) places[count++] = corner.at.point;
+    for (size_t k = 0; k < 3 && cell.shape.is_curved(); ++k) places[count++] = cell.shape.side(k).point;
+  }
+  std::span<const Vec3> list() const { return std::span(places).first(count); }
+};
+
+/// Where no column that begins beyond a face of the box leads down to it the box is missed, and what is
+/// lacking is the distance to it, a convex function: the most over the cell, mm. Nothing elsewhere.
+std::optional<double> lacking_beside(const Cell& cell, const Box& box, std::span<const Vec3> hull) {
+  const auto is_missed = [&](const Vec3& out, double face) {
+    const bool beyond =
+        std::any_of(hull.begin(), hull.end(), [&](const Vec3& p) { return out.dot(p) > face; });
+    return !beyond || std::all_of(cell.corners.begin(), cell.corners.end(), [&](const Corner& corner) {
+      return out.dot(corner.at.normal) + cell.shape.turn <= 0.0;
+    });
+  };
+  for (int a = 0; a < 3; ++a)
+    if (!is_missed(Vec3::Unit(a), box.upper[a]) || !is_missed(-Vec3::Unit(a), -box.lower[a])) return {};
+  double most = 0.0;
+  for (const Vec3& p : hull) most = std::max(most, distance_to(box, p));
+  return most;
+}
+
+}  // namespace
+
+double stood_before(const Cell& cell, const stock::RawShape& raw) {
+  if (!raw.is_box()) return raw_stood(cell.shape, raw);
+  const Box& box = raw.box();
+  double inside = kNever, least = kNever, top = kNever;
+  const HullOfCell hull(cell);
+  for (const Vec3& p : hull.list())
+    inside = std::min({inside, (p - box.lower).minCoeff(), (box.upper - p).minCoeff()});
+  for (const Corner& corner : cell.corners) {
+    const Vec3& p = corner.at.point;
+    const double leave = leaves_box(box, p, corner.at.normal);
+    least = std::min(least, leave > -kNever ? leave : -distance_to(box, p) - cell.shape.radius());
+    top = std::min(top, corner.top);
+  }
+  if (inside < cell.shape.stray_mm) {
+    if (const auto lacking = lacking_beside(cell, box, hull.list())) return -*lacking - cell.shape.stray_mm;
+    return std::min(0.0, least) - cell.shape.flatness_mm;
+  }
+  return std::max(0.0, top - cell.shape.flatness_mm - top * std::min(1.0, cell.shape.turn));
+}
+
+namespace {
+
 /// What a piece of a sweep covers of the middle column of a cell.
 struct Layer {
   double low, high;  ///< mm

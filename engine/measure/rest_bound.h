@@ -62,6 +62,10 @@ void take_range(const CertificateInput& input, Corner& corner);
 /// What stands at a place, its range known, before any cut.
 void take_raw(const stock::RawShape& raw, Corner& corner);
 
+/// Height over the design up to which there was material to begin with over the whole cell; below 0 where
+/// the design reaches out of the stock.
+double stood_before(const Cell& cell, const stock::RawShape& raw);
+
 /// Height above which no raw stock is the cell's own, from `top` down; notes how far down the columns are
 /// free of it.
 double look_at_raw(const stock::RawShape& raw, const std::vector<CornerHeights>& own, double top, Cell& cell);

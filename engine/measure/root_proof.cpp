@@ -10,7 +10,6 @@
 #include "measure/cell_parts.h"
 #include "measure/column_range.h"
 #include "measure/height_bounds.h"
-#include "measure/raw_cell.h"
 #include "measure/rest_bound.h"
 #include "measure/root_sweeps.h"
 #include "stock/rays/ray_height.h"
@@ -49,57 +48,6 @@ CornerHeights through_stock(const Cell& cell, const Box& stock) {
   return through;
 }
 
-/// Places whose hull holds the cell but for its stray; three where it is flat.
-struct HullOfCell {
-  std::array<Vec3, 6> places;
-  size_t count = 0;
-
-  explicit HullOfCell(const Cell& cell) {
-    for (const Corner& corner : cell.corners) places[count++] = corner.at.point;
-    for (size_t k = 0; k < 3 && cell.shape.is_curved(); ++k) places[count++] = cell.shape.side(k).point;
-  }
-  std::span<const Vec3> list() const { return std::span(places).first(count); }
-};
-
-/// Where no column that begins beyond a face of the box leads down to it the box is missed, and what is
-/// lacking is the distance to it, a convex function: the most over the cell, mm. Nothing elsewhere.
-std::optional<double> lacking_beside(const Cell& cell, const Box& box, std::span<const Vec3> hull) {
-  const auto is_missed = [&](const Vec3& out, double face) {
-    const bool beyond =
-        std::any_of(hull.begin(), hull.end(), [&](const Vec3& p) { return out.dot(p) > face; });
-    return !beyond || std::all_of(cell.corners.begin(), cell.corners.end(), [&](const Corner& corner) {
-      return out.dot(corner.at.normal) + cell.shape.turn <= 0.0;
-    });
-  };
-  for (int a = 0; a < 3; ++a)
-    if (!is_missed(Vec3::Unit(a), box.upper[a]) || !is_missed(-Vec3::Unit(a), -box.lower[a])) return {};
-  double most = 0.0;
-  for (const Vec3& p : hull) most = std::max(most, distance_to(box, p));
-  return most;
-}
-
-/// Height over the design up to which there was material to begin with over the whole cell; below 0 where
-/// the design reaches out of the stock.
-double stood_before(const Cell& cell, const stock::RawShape& raw) {
-  if (!raw.is_box()) return raw_stood(cell.shape, raw);
-  const Box& box = raw.box();
-  double inside = kNever, least = kNever, top = kNever;
-  const HullOfCell hull(cell);
-  for (const Vec3& p : hull.list())
-    inside = std::min({inside, (p - box.lower).minCoeff(), (box.upper - p).minCoeff()});
-  for (const Corner& corner : cell.corners) {
-    const Vec3& p = corner.at.point;
-    const double leave = leaves_box(box, p, corner.at.normal);
-    least = std::min(least, leave > -kNever ? leave : -distance_to(box, p) - cell.shape.radius());
-    top = std::min(top, corner.top);
-  }
-  if (inside < cell.shape.stray_mm) {
-    if (const auto lacking = lacking_beside(cell, box, hull.list())) return -*lacking - cell.shape.stray_mm;
-    return std::min(0.0, least) - cell.shape.flatness_mm;
-  }
-  return std::max(0.0, top - cell.shape.flatness_mm - top * std::min(1.0, cell.shape.turn));
-}
-
 /// The grid tells nothing of a cell wider than its band, and no more of one much smaller than of the cell
 /// around it.
 bool asks_grid(const Cell& cell, double voxel) {
@@ -107,6 +55,27 @@ bool asks_grid(const Cell& cell, double voxel) {
   for (const Corner& corner : cell.corners) highest = std::max(highest, corner.height);
   return cell.shape.radius() < 2.0 * voxel && (cell.air == kNever || cell.shape.radius() > voxel / 32.0) &&
          cell.air > highest + 2.0 * voxel;
+}
+
+/// Whether the depth down to which a cut is looked for may not suffice for what was measured.
+bool is_deep(const Cell& cell) {
+  return std::any_of(cell.corners.begin(), cell.corners.end(),
+                     [](const Corner& corner) { return corner.height < -0.5 * stock::kSkin; });
+}
+
+/// A cut that goes deeper than kSkin is followed to where the columns end.
+CornerHeights deepest_seen(const std::vector<CornerHeights>& ends) {
+  double most = kNever;
+  for (const CornerHeights& end : ends) most = std::min(most, *std::max_element(end.begin(), end.end()));
+  most = std::min(most, kThrough);
+  return {most, most, most};
+}
+
+/// Whether the raw stock lacks what is asked for all over the cell: no cut has a border or a volume there.
+bool is_missing(const Cell& cell, double limit_mm) {
+  return std::all_of(cell.corners.begin(), cell.corners.end(), [&](const Corner& corner) {
+    return corner.near == stock::kUncut && -corner.height > limit_mm;
+  });
 }
 
 class RootProof {
@@ -304,20 +273,6 @@ class RootProof {
     return low == -kNever ? -std::min(highest_left(ends).height, kThrough) : low;
   }
 
-  /// Whether the depth down to which a cut is looked for may not suffice for what was measured.
-  static bool is_deep(const Cell& cell) {
-    return std::any_of(cell.corners.begin(), cell.corners.end(),
-                       [](const Corner& corner) { return corner.height < -0.5 * stock::kSkin; });
-  }
-
-  /// A cut that goes deeper than kSkin is followed to where the columns end.
-  static CornerHeights deepest_seen(const std::vector<CornerHeights>& ends) {
-    double most = kNever;
-    for (const CornerHeights& end : ends) most = std::min(most, *std::max_element(end.begin(), end.end()));
-    most = std::min(most, kThrough);
-    return {most, most, most};
-  }
-
   double lower_bound(const Cell& cell, const ColumnDepths& depths) {
     double low = std::min(cell.dropped, stood_before(cell, raw_));
     const double enough = -gouge_target();
@@ -428,18 +383,11 @@ class RootProof {
       add_piece(cell.shape, heights, blocks, input_.excess_limit_mm, cell.near_rim, excesses_);
   }
 
-  /// Whether the raw stock lacks what is asked for all over the cell: no cut has a border or a volume there.
-  bool is_missing(const Cell& cell) const {
-    return std::all_of(cell.corners.begin(), cell.corners.end(), [&](const Corner& corner) {
-      return corner.near == stock::kUncut && -corner.height > input_.gouge_limit_mm;
-    });
-  }
-
   /// Whether part of the cell may break a limit and part of it keep it, or its volume is told too coarsely.
   bool on_border(const Cell& cell, const Bounds& bounds) {
-    const bool gouge = root_.looks_down && -bounds.low > input_.gouge_limit_mm &&
-                       !(-bounds.high > input_.gouge_limit_mm) &&
-                       result_.gouge_found > input_.gouge_limit_mm && !is_missing(cell);
+    const bool gouge =
+        root_.looks_down && -bounds.low > input_.gouge_limit_mm && !(-bounds.high > input_.gouge_limit_mm) &&
+        result_.gouge_found > input_.gouge_limit_mm && !is_missing(cell, input_.gouge_limit_mm);
     const bool excess = root_.looks_up && asks_above(input_) && bounds.high > input_.excess_limit_mm &&
                         !(bounds.low > input_.excess_limit_mm) &&
                         result_.excess_found > input_.excess_limit_mm;
@@ -481,8 +429,8 @@ class RootProof {
 
   /// Whether the cell lies in a gouge of whose volume it tells too little.
   bool is_coarse(const Cell& cell, const Bounds& bounds) const {
-    return root_.looks_down && !is_missing(cell) && -bounds.low > input_.gouge_limit_mm &&
-           result_.gouge_found > input_.gouge_limit_mm &&
+    return root_.looks_down && !is_missing(cell, input_.gouge_limit_mm) &&
+           -bounds.low > input_.gouge_limit_mm && result_.gouge_found > input_.gouge_limit_mm &&
            bounds.high - bounds.low > kVolumeShare * result_.gouge_found;
   }
 

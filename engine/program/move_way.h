@@ -1,4 +1,4 @@
-// How far the tip goes in a move, and where.
+// How far the tip goes in a move, and where, and how long a program may take.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -12,5 +12,8 @@ double way_mm(const Move& move);
 
 /// Box of the tip's way in W, mm: arcs with their bulge, other moves by their ends.
 Eigen::AlignedBox3d extent_W(const Move& move);
+
+/// Longer programs are not driven (motion/cycles/cycle_stream.h); as programmed, accelerations left out.
+inline constexpr double kHoursMax = 1000.0;
 
 }  // namespace swarf::program

@@ -64,10 +64,14 @@ void measure_dexels(const Job& job, MeasuredPath& measured) {
   measured.surface.scallop_theory_um = theory_scallop_um(measured.path);
 }
 
-/// Makes the rays and cuts a share of their tiles.
-void cut_ray_share(const Job& job, MeasuredPath& measured, Share share) {
+/// Of making and cutting the measuring rays, which for a mesh of a million facets take half a minute.
+constexpr int kRaySteps = 5;
+
+/// Makes the rays and cuts a share of their tiles. `step`: called after each of kRaySteps but the last.
+void cut_ray_share(const Job& job, MeasuredPath& measured, Share share, const std::function<void()>& step) {
   if (job.has_design()) measured.rays = all_ray_sweeps(job, *measured.cycles, *measured.carried);
-  measured.dexels = design_dexels(job);
+  step();
+  measured.dexels = design_dexels(job, step);
   const RayCutters rays = ray_cutters(job, measured);
   const auto tool_of = [&](uint32_t block) { return rays.solid_of[block]; };
   for (stock::SurfaceDexels& dexels : measured.dexels) {
@@ -75,6 +79,7 @@ void cut_ray_share(const Job& job, MeasuredPath& measured, Share share) {
       dexels.cut(part, rays.solids[tool], share);
     });
   }
+  step();
 }
 
 void take_rays(Ranks& ranks, int rank, std::vector<stock::SurfaceDexels>& dexels) {
@@ -88,13 +93,16 @@ void take_rays(Ranks& ranks, int rank, std::vector<stock::SurfaceDexels>& dexels
 }
 
 /// `ranks`: that share the tiles of the rays; null: none do.
-void cut_dexels(const Job& job, MeasuredPath& measured, Ranks* ranks = nullptr) {
+void cut_dexels(const Job& job, MeasuredPath& measured, Progress& progress, Ranks* ranks = nullptr) {
   const auto start = std::chrono::steady_clock::now();
   if (ranks != nullptr) ask_for_rays(*ranks);
-  cut_ray_share(job, measured, ranks != nullptr ? share_of(*ranks) : Share{});
+  progress.begin("cut measuring rays", kRaySteps, "steps");
+  cut_ray_share(job, measured, ranks != nullptr ? share_of(*ranks) : Share{},
+                [&, done = 0]() mutable { progress.advance(++done); });
   for (int rank = 1; ranks != nullptr && rank < ranks->size(); ++rank)
     take_rays(*ranks, rank, measured.dexels);
   for (stock::SurfaceDexels& dexels : measured.dexels) dexels.limit_depths();
+  progress.end();
   measured.dexel_seconds = seconds_since(start);
 }
 
@@ -293,7 +301,7 @@ void compare_planners(const Job& job, Progress& progress, Result& result) {
     if (!job.scene.compare_planners) return {};
     Progress silent;
     MeasuredPath other = plan_and_move(job, planners[n], result.main.carried, silent);
-    cut_dexels(job, other);
+    cut_dexels(job, other, silent);
     measure_dexels(job, other);
     return row_of(name, other, false);
   });
@@ -327,7 +335,7 @@ void compare_modes(const Job& job, Progress& progress, Result& result) {
     other.carried = result.main.carried;
     Progress silent;
     interpolate(job, options, {}, silent, other);
-    cut_dexels(job, other);
+    cut_dexels(job, other, silent);
     measure_dexels(job, other);
     return row_of(one.name, other, false);
   });
@@ -414,7 +422,7 @@ void compare_driven(const Job& job, Progress& progress, Result& result) {
       other.path = driven_path(job, tolerance, told);
       other.carried = result.main.carried;
       interpolate(job, job.scene.motion, {}, silent, other);
-      cut_dexels(job, other);
+      cut_dexels(job, other, silent);
       measure_dexels(job, other);
     }
     DrivenRow row = driven_row(job, exact, tolerance == used ? result.main : other);
@@ -515,8 +523,9 @@ void serve_tiles(const Job& job, const CutOptions& options, Ranks& ranks, Progre
     refuse_tile_lead(ranks, error.what());
     return;
   }
-  serve_tile_lead(ranks, {job, *parts, measured, [&] { cut_ray_share(job, measured, share_of(ranks)); },
-                          may_go_ahead(options), rank_limit_mb(job, options, ranks)});
+  serve_tile_lead(ranks,
+                  {job, *parts, measured, [&] { cut_ray_share(job, measured, share_of(ranks), [] {}); },
+                   may_go_ahead(options), rank_limit_mb(job, options, ranks)});
 }
 
 namespace {
@@ -562,9 +571,7 @@ Result simulate(const Job& job, const CutOptions& options, Progress& progress) {
   const bool planned = !result.main.path.elements.hold_blocks();
   if (!planned && result.volume_removed_mm3 <= 0.0)
     throw with_warnings(result.main.warnings, blocks_miss_stock(job, result.main.path.elements));
-  progress.begin("cut measuring rays", 1, "surfaces");
-  cut_dexels(job, result.main, options.ranks);
-  progress.end();
+  cut_dexels(job, result.main, progress, options.ranks);
   measure_part(job, progress, result);
   prove_part(job, options.ranks, progress, result);
   if (options.ranks != nullptr) dismiss_ranks(*options.ranks);  // they end while this one writes
@@ -582,9 +589,9 @@ Result simulate(const Job& job, const CutOptions& options, Progress& progress) {
   result.singularity =
       motion::scan_singularity(result.main.path, machines_by_tool(job), job.scene.linearise_tolerance_mm);
   progress.end();
+  result.stopped = progress.stop_requested();
   result.checks = judge(job, result);
   result.findings = find_faults(job, result);
-  result.stopped = progress.stop_requested();
   return result;
 }
 

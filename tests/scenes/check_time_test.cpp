@@ -106,4 +106,26 @@ TEST_P(CheckTime, IsThatOfTheRun) {
 INSTANTIATE_TEST_SUITE_P(Dialects, CheckTime, testing::ValuesIn(kPrograms),
                          [](const auto& one) { return std::string(one.param.dialect); });
 
+TEST(CheckHours, AProgramThatARunRefusesForItsTimeIsNotRight) {
+  const fs::path folder = swarf::test::fresh_folder("check_hours");
+  const auto expect_refused = [&](const char* name, const std::string& text, const std::string& place) {
+    write_text(folder / name, text);
+    const std::string file = (folder / name).string();
+    for (const std::string& words :
+         {"check " + file, "run " + file + " --tool 6 -o " + (folder / "o").string()}) {
+      const auto run = swarf::test::run_swarf(words);
+      EXPECT_EQ(run.exit_code, 2) << run.output;
+      EXPECT_NE(run.output.find(name + (":" + place)), std::string::npos) << run.output;
+      EXPECT_NE(run.output.find("[too-many-cycles]"), std::string::npos) << run.output;
+    }
+  };
+  // The dwell's own line, not that of the move behind it.
+  expect_refused("dwell.ngc", "G21 G90 G94\nG0 X0 Y0 Z5\nF100\nG1 X10\nG4 P1000000000\nG1 X20\nM2\n", "5:");
+  expect_refused("feed.ngc", "G21 G90 G94\nG0 X0 Y0 Z5\nF100\nG1 X10\nG1 X20 F0.00001\nX30 F100\nM2\n",
+                 "5:4");
+  expect_refused("delay.cl",
+                 "UNITS/MM\nLOADTL/1\nFEDRAT/100,MMPM\nGOTO/0,0,5\nDELAY/1000000000\nGOTO/10,0,5\nFINI\n",
+                 "5:");
+}
+
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "base/units.h"
 #include "program/cl/steps.h"
+#include "program/move_way.h"
 
 namespace swarf::program::cldata {
 namespace {
@@ -159,6 +160,11 @@ void delay(ClState& cl, const ClStatement& s) {
           "write SPINDL/RPM,8000,CLW before it");
   } else {
     cl.feed.dwell_s += turns ? 60.0 * given.value / std::abs(cl.feed.spindle_rpm) : given.value;
+    if (cl.feed.dwell_s > 3600.0 * kHoursMax)
+      fault(cl.reporter, "too-many-cycles", given,
+            fmt::format("the program dwells for {:.3g} h here, more than {:g} h", cl.feed.dwell_s / 3600.0,
+                        kHoursMax),
+            "mend the delay of this statement");
   }
 }
 

@@ -10,6 +10,7 @@
 #include "base/units.h"
 #include "program/control/curve.h"
 #include "program/control/tools.h"
+#include "program/move_way.h"
 
 namespace swarf::program::nc {
 namespace {
@@ -19,7 +20,6 @@ constexpr double kAxesNoWay = 1e-10;
 
 /// A program that is longer than this at its programmed feeds would be refused where it is driven
 /// (motion/cycles), and is a loop without an end where it has so many moves.
-constexpr double kHoursMax = 1000.0;
 constexpr long kMovesOfALoop = 100'000;
 
 /// Way of the rotary axes as F counts it: degrees, unless radii are set.

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "program/move_way.h"
+
 namespace swarf::program::nc {
 
 void set_feed_mode(ModalState& modal, FeedMode mode) {
@@ -33,6 +35,11 @@ void dwell(const Report& report, ModalState& modal, double seconds) {
     report.fail("out-of-range", 0, fmt::format("a dwell of {:g} s", seconds), "write a time of zero or more");
   }
   modal.pending_dwell_s += seconds;
+  if (modal.pending_dwell_s > 3600.0 * kHoursMax)
+    report.fail("too-many-cycles", 0,
+                fmt::format("the program dwells for {:.3g} h here, more than {:g} h",
+                            modal.pending_dwell_s / 3600.0, kHoursMax),
+                "mend the dwell of this block");
 }
 
 }  // namespace swarf::program::nc

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -10,6 +11,7 @@
 #include "base/units.h"
 #include "program/source_text.h"
 #include "sim/judge/judge.h"
+#include "sim/judge/limit_text.h"
 
 namespace swarf::sim {
 namespace {
@@ -97,10 +99,11 @@ class Collector {
   motion::CycleReader reader_;
 };
 
-std::string place(const measure::Region& region) {
+std::string place(const measure::Region& region, double limit_um) {
   const std::string area = region.area_mm2 > 0.0 ? fmt::format(" over {:.2f} mm2", region.area_mm2) : "";
-  return fmt::format("{:.3f} um{} about ({:.3f}, {:.3f}, {:.3f}) mm", region.worst_um, area, region.place.x(),
-                     region.place.y(), region.place.z());
+  return fmt::format("{} um{} about ({:.3f}, {:.3f}, {:.3f}) mm; [accept] allows {} um",
+                     text_beside(region.worst_um, limit_um), area, region.place.x(), region.place.y(),
+                     region.place.z(), limit_text(limit_um));
 }
 
 void at_region(Finding& finding, const measure::Region& region) {
@@ -109,12 +112,20 @@ void at_region(Finding& finding, const measure::Region& region) {
 }
 
 /// A limit that the measures meet and no proof does.
-void not_proven(const Job& job, Collector& collect) {
+void not_proven(const Job& job, const Result& result, Collector& collect) {
   const Check& check = collect.check();
   if (check.outcome != Outcome::kNotProven) return;
-  const std::string wider = check.bound ? fmt::format("allow {:.3f} um in [accept]", *check.bound)
-                                        : "take the limit out of [accept]";
-  collect.add(check.name + "-not-proven", fmt::format("{}: {}", check.subject, check.reason),
+  const std::string what = fmt::format("{}: {}", check.subject, check.reason);
+  if (!check.bound && result.stopped) {
+    collect.add(check.name + "-not-proven", what, "let the run come to its end", {job.scene.program_file},
+                0.0);
+    return;
+  }
+  // To the next thousandth upwards: what is said is allowed.
+  const std::string wider =
+      check.bound ? fmt::format("allow {:.3f} um in [accept]", std::ceil(*check.bound * 1e3) * 1e-3)
+                  : "take the limit out of [accept]";
+  collect.add(check.name + "-not-proven", what,
               "a smaller design.pitch_mm gives the proof smaller cells to settle this; or " + wider,
               {job.scene.program_file}, 0.0);
 }
@@ -138,17 +149,16 @@ void region_faults(const Job& job, const RegionKind& kind, const Result& result,
   if (beyond.empty() && collect.check().outcome == Outcome::kFails) beyond.push_back(kind.worst);
   for (const measure::Region& region : beyond) {
     const bool missing = kind.missing != nullptr && region.block == stock::kUncut;
-    at_region(
-        collect.at_block(missing ? "stock-missing" : kind.check,
-                         fmt::format("{}, {}; [accept] allows {:g} um", missing ? kind.missing : kind.what,
-                                     place(region), *kind.limit_um),
-                         missing ? "bring design and stock together, or make the stock larger (the warning "
-                                   "design-beyond-stock says by how much)"
-                                 : kind.remedy,
-                         result.main.rays.sources, region.block),
-        region);
+    at_region(collect.at_block(
+                  missing ? "stock-missing" : kind.check,
+                  fmt::format("{}, {}", missing ? kind.missing : kind.what, place(region, *kind.limit_um)),
+                  missing ? "bring design and stock together, or make the stock larger (the warning "
+                            "design-beyond-stock says by how much)"
+                          : kind.remedy,
+                  result.main.rays.sources, region.block),
+              region);
   }
-  not_proven(job, collect);
+  not_proven(job, result, collect);
 }
 
 void region_faults(const Job& job, const Result& result, Collector& collect) {
@@ -188,8 +198,9 @@ void surface_faults(const Job& job, const Result& result, Collector& collect) {
                          [](const auto& a, const auto& b) { return a.height_um < b.height_um; });
     const bool known = highest != result.main.ridges.end();
     Finding& added = collect.at_block("scallop",
-                                      fmt::format("the highest scallop is {:.3f} um, [accept] allows {:g} um",
-                                                  surface.scallop_max_um, *accept.scallop_max_um),
+                                      fmt::format("the highest scallop is {} um, [accept] allows {} um",
+                                                  text_beside(surface.scallop_max_um, *accept.scallop_max_um),
+                                                  limit_text(*accept.scallop_max_um)),
                                       result.main.path.elements.hold_blocks()
                                           ? "bring the passes closer together"
                                           : "lower the scallop word E of the G06.3 block",
@@ -199,7 +210,7 @@ void surface_faults(const Job& job, const Result& result, Collector& collect) {
       added.amount_mm = highest->height_um * kMicrometre;
     }
   }
-  not_proven(job, collect);
+  not_proven(job, result, collect);
   region_faults(job, result, collect);
   collect.begin("uncut");
   if (collect.check().outcome == Outcome::kFails) {

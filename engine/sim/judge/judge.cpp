@@ -10,6 +10,7 @@
 #include "base/units.h"
 #include "cutter/cutter.h"
 #include "sim/job/tool_words.h"
+#include "sim/judge/limit_text.h"
 #include "sim/run/result.h"
 
 namespace swarf::sim {
@@ -41,20 +42,22 @@ Check counted(std::string name, std::string subject, size_t count, int allowed) 
 }
 
 /// A measure of the finished part against its limit of [accept].
+/// `stopped`: before a proof was finished.
 Check measured(std::string name, std::string subject, std::optional<double> limit, double value,
-               const std::optional<measure::Bound>& bound) {
+               const std::optional<measure::Bound>& bound, bool stopped) {
   Check check{std::move(name), std::move(subject)};
   check.unit = kMicrometres;
   check.value = value;
   if (bound) check.bound = bound->um;
-  check.what = fmt::format("{} {:.3f} um", check.subject, value);
-  if (check.bound) check.what += fmt::format(", proven below {:.3f} um", *check.bound);
+  const auto text = [&](double um) { return limit ? text_beside(um, *limit) : fmt::format("{:.3f}", um); };
+  check.what = fmt::format("{} {} um", check.subject, text(value));
+  if (check.bound) check.what += fmt::format(", proven below {} um", text(*check.bound));
   if (!limit) {
     check.reason = "no limit in [accept]";
     return check;
   }
   check.limit = limit;
-  check.what += fmt::format(", at most {:g} um", *limit);
+  check.what += fmt::format(", at most {} um", limit_text(*limit));
   if (value > *limit) {
     check.outcome = Outcome::kFails;
   } else if (check.bound && *check.bound <= *limit) {
@@ -63,11 +66,13 @@ Check measured(std::string name, std::string subject, std::optional<double> limi
     check.outcome = Outcome::kNotProven;
     check.reason =
         !check.bound
-            ? fmt::format("not proven below {:g} um: the proof between the rays was not finished", *limit)
+            ? fmt::format("not proven below {} um: {}", limit_text(*limit),
+                          stopped ? "the run was stopped before the proof between the rays was finished"
+                                  : "the proof between the rays was not finished")
             : fmt::format(
-                  "not proven below {:g} um: proven {:.3f} um at "
+                  "not proven below {} um: proven {} um at "
                   "({:.3f}, {:.3f}, {:.3f}) mm",
-                  *limit, bound->um, bound->place.x(), bound->place.y(), bound->place.z());
+                  limit_text(*limit), text(bound->um), bound->place.x(), bound->place.y(), bound->place.z());
   }
   return check;
 }
@@ -97,14 +102,15 @@ void add_surface_checks(const Job& job, const Result& result, std::vector<Check>
   }
   const SurfaceMetrics& surface = result.main.surface;
   const AcceptLimits& accept = job.scene.accept;
-  Check deepest = measured("gouge", gouge, accept.gouge_max_um, surface.gouge_max_um, surface.gouge_bound);
+  Check deepest = measured("gouge", gouge, accept.gouge_max_um, surface.gouge_max_um, surface.gouge_bound,
+                           result.stopped);
   if (deepest.outcome == Outcome::kFails && surface.gouge_block == stock::kUncut)
     deepest.reason = "the stock has no material there: nobody has cut it";
   checks.push_back(std::move(deepest));
-  checks.push_back(
-      measured("excess", excess, accept.excess_max_um, surface.excess_max_um, surface.excess_bound));
-  checks.push_back(
-      measured("scallop", scallop, accept.scallop_max_um, surface.scallop_max_um, surface.scallop_bound));
+  checks.push_back(measured("excess", excess, accept.excess_max_um, surface.excess_max_um,
+                            surface.excess_bound, result.stopped));
+  checks.push_back(measured("scallop", scallop, accept.scallop_max_um, surface.scallop_max_um,
+                            surface.scallop_bound, result.stopped));
   checks.push_back(reached_check(job, result));
 }
 

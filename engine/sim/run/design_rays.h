@@ -1,6 +1,7 @@
 // The measuring rays of a job's design.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "sim/job/scene.h"
@@ -13,6 +14,7 @@ namespace swarf::sim {
 std::vector<stock::RayFieldPtr> design_rays(const Job& job);
 
 /// The fields in the uncut stock; each ray answers for the material up to where another face is nearer.
-std::vector<stock::SurfaceDexels> design_dexels(const Job& job);
+/// `step`: called when the rays stand, and when it is known how far each of them answers.
+std::vector<stock::SurfaceDexels> design_dexels(const Job& job, const std::function<void()>& step);
 
 }  // namespace swarf::sim

@@ -131,6 +131,35 @@ TEST_F(Judge, AGougeWithinItsLimitButABoundBeyondItIsNotProven) {
   EXPECT_EQ(judged("gouge").bound, 0.999);
 }
 
+TEST_F(Judge, NumbersReadOnTheSideOfTheirLimitOnWhichTheyAre) {
+  job_.scene.accept.gouge_max_um = 1.001;
+  result_.main.surface.gouge_bound = measure::Bound{1.0014, {}};
+  const Check open = judged("gouge");
+  EXPECT_EQ(open.outcome, Outcome::kNotProven);
+  EXPECT_NE(open.reason.find("not proven below 1.001 um: proven 1.0014 um"), std::string::npos)
+      << open.reason;
+  EXPECT_NE(result_.findings.front().fix.find("allow 1.002 um"), std::string::npos)
+      << result_.findings.front().fix;
+  job_.scene.accept.gouge_max_um = 1.0015;
+  result_.main.surface.gouge_max_um = 1.00151;
+  const Check broken = judged("gouge");
+  EXPECT_EQ(broken.outcome, Outcome::kFails);
+  EXPECT_NE(broken.what.find("1.002 um"), std::string::npos) << broken.what;
+  job_.scene.accept.gouge_max_um = 1.002;
+  result_.main.surface.gouge_max_um = 1.00201;
+  EXPECT_NE(judged("gouge").what.find("1.00201 um"), std::string::npos) << judged("gouge").what;
+}
+
+TEST_F(Judge, AProofThatWasStoppedIsToldAsStopped) {
+  result_.main.surface.gouge_bound.reset();
+  result_.stopped = true;
+  const Check check = judged("gouge");
+  EXPECT_EQ(check.outcome, Outcome::kNotProven);
+  EXPECT_NE(check.reason.find("the run was stopped"), std::string::npos) << check.reason;
+  ASSERT_FALSE(result_.findings.empty());
+  EXPECT_EQ(result_.findings.front().fix.find("pitch"), std::string::npos) << result_.findings.front().fix;
+}
+
 TEST_F(Judge, RaysAloneProveNothing) {
   result_.main.surface.gouge_bound.reset();
   EXPECT_EQ(outcome("gouge"), Outcome::kNotProven);

@@ -5,6 +5,9 @@
 
 #include <atomic>
 #include <filesystem>
+#include <string>
+#include <string_view>
+#include <utility>
 
 #include "sim/simulation.h"
 #include "support/program_run.h"
@@ -80,6 +83,36 @@ TEST_P(StoppedRun, GoesOnFromEveryMoment) {
   EXPECT_GT(uncut, 0);
   EXPECT_GT(partly, 0);
   std::filesystem::remove_all(folder);
+}
+
+/// Counts the steps that are told of one stage.
+class StepsOf : public Progress {
+ public:
+  explicit StepsOf(std::string stage) : stage_(std::move(stage)) {}
+  void begin(std::string_view stage, double total, std::string_view /*unit*/) override {
+    counts_ = stage == stage_;
+    total_ = total;
+  }
+  void advance(double done) override {
+    if (!counts_) return;
+    EXPECT_GT(done, last);
+    EXPECT_LT(done, total_);
+    last = done;
+  }
+  double last = 0.0;
+
+ private:
+  std::string stage_;
+  bool counts_ = false;
+  double total_ = 0.0;
+};
+
+TEST(RunProgress, OfTheMeasuringRaysIsToldWhileTheyAreMade) {
+  const Job job = load_job(SWARF_SOURCE_DIR "/scenes/exact_rounded_corner/scene.toml",
+                           {"stock.voxel_mm=0.5", "accept.gouge_max_um=100", "accept.excess_max_um=1000"});
+  StepsOf rays("cut measuring rays");
+  simulate(job, {}, rays);
+  EXPECT_EQ(rays.last, 4.0);
 }
 
 // Wide limits: that they hold is soon proven, and the stocks are what is compared.

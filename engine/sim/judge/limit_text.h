@@ -1,0 +1,26 @@
+// Numbers beside their limits, in as many digits as it takes to read on the same side of them.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <string>
+
+namespace swarf::sim {
+
+/// A limit as it was written: the shortest text that is read back as the same number.
+inline std::string limit_text(double limit) {
+  const std::string text = fmt::format("{:g}", limit);
+  return std::stod(text) == limit ? text : fmt::format("{}", limit);
+}
+
+/// Three digits behind the point, or more: "1.0010004" is above 1.001, which "1.001" would not say.
+inline std::string text_beside(double value, double limit) {
+  constexpr int kLeastDigits = 3, kMostDigits = 12;
+  for (int digits = kLeastDigits; digits <= kMostDigits; ++digits) {
+    std::string text = fmt::format("{:.{}f}", value, digits);
+    if ((std::stod(text) > limit) == (value > limit)) return text;
+  }
+  return fmt::format("{}", value);
+}
+
+}  // namespace swarf::sim
