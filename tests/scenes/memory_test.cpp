@@ -115,6 +115,20 @@ TEST(MemoryLimit, OfALargeStillNamesASizeThatFits) {
   fs::remove_all(out.parent_path());
 }
 
+/// Where the movie's own stock takes it all, its voxel is named and not that of the stock.
+TEST(MemoryLimit, OfAFineMovieNamesItsVoxel) {
+  const fs::path out = swarf::test::fresh_folder("memory_movie") / "run";
+  const auto refused = run_swarf("run " SWARF_SOURCE_DIR
+                                 "/scenes/nc_pocket/scene.toml --set 'stills.kinds=[]' --set "
+                                 "movie.voxel_mm=0.05 --max-memory 700 -o " +
+                                 out.string());
+  EXPECT_EQ(refused.exit_code, 2) << refused.output;
+  EXPECT_NE(refused.output.find("[out-of-memory]"), std::string::npos) << refused.output;
+  EXPECT_NE(refused.output.find("fix: movie.voxel_mm = 0.05 is too fine: 0."), std::string::npos)
+      << refused.output;
+  EXPECT_FALSE(fs::exists(out));
+}
+
 }  // namespace
 
 }  // namespace memory_test

@@ -39,6 +39,9 @@ constexpr double kUsualPixels = 1280.0 * 720.0;
 constexpr double kStillPixel = 112.0;
 // Of a movie: two renderers and the encoder's frames, with one sample; each further sample.
 constexpr double kMoviePixel = 85.0, kMovieSample = 22.5;
+// Of the movie's own stock, in that stock's bytes: its leaves, what the mesher keeps of each, and patches as
+// they are made, thinned and sent to two renderers; and of the one that chips fly from.
+constexpr double kMovieStock = 4.0, kChipsStock = 1.0;
 // Of the stock: room that leaves which are gone leave between those that stay, and pairs of sweep and leaf.
 constexpr double kHoles = 0.25;
 constexpr double kSweep = sizeof(stock::Sweep) + sizeof(SweepSource);
@@ -190,10 +193,28 @@ double movie_bytes(const MovieSettings& movie) {
          kMovieSample * (movie.samples - 1) * pixels_of(movie.size);
 }
 
+/// Of the stocks that only a movie has. `leaves`: of the scene's stock.
+double movie_stock_bytes(const Scene& scene, double leaves) {
+  const MovieSettings& movie = scene.movie;
+  if (movie.seconds <= 0.0) return 0.0;
+  const double finer = scene.stock.voxel_mm / movie.voxel_mm;
+  const bool chips =
+      std::any_of(movie.shots.begin(), movie.shots.end(), [](const MovieShot& shot) { return shot.chips; });
+  return (kMovieStock + (chips ? kChipsStock : 0.0)) *
+         static_cast<double>(
+             stock::Stock::memory_for(scene.stock.box_W, movie.voxel_mm, leaves * finer * finer));
+}
+
 /// What the pictures take beside the part's mesh. They are made one after the other.
-double pictures_bytes(const Scene& scene, double triangles) {
+double pictures_bytes(const Scene& scene, double triangles, double leaves) {
   return std::max(still_bytes(scene.stills) + triangles * still_triangle_bytes(scene.stills),
-                  movie_bytes(scene.movie));
+                  movie_bytes(scene.movie) + movie_stock_bytes(scene, leaves));
+}
+
+/// A number to two digits, not below it.
+double rounded_up(double value) {
+  const double digit = std::pow(10.0, std::floor(std::log10(value)) - 1.0);
+  return std::ceil(value / digit) * digit;
 }
 
 /// A voxel, to two digits, at which what grows with 1/voxel^2 fits beside the rest.
@@ -202,8 +223,7 @@ double voxel_that_fits(const Job& job, const MemoryPrediction& prediction) {
   const double rest = prediction.peak_mb - prediction.scaling_mb;
   const double room = std::max(prediction.limit_mb - rest, 0.05 * prediction.scaling_mb);
   const double fitting = kMargin * job.scene.stock.voxel_mm * std::sqrt(prediction.scaling_mb / room);
-  const double digit = std::pow(10.0, std::floor(std::log10(fitting)) - 1.0);
-  return std::ceil(fitting / digit) * digit;
+  return rounded_up(fitting);
 }
 
 }  // namespace
@@ -238,7 +258,9 @@ MemoryPrediction predict_memory(const Job& job, const MeasuredPath& path, const 
                       static_cast<double>(path.cycles->kept().size() * sizeof(motion::Cycle)) +
                       static_cast<double>(path.path.elements.bytes() + path.cycles->motions().bytes());
   const auto shown_bytes = [&](double triangles) {
-    return outputs.pictures ? pictures_bytes(job.scene, triangles) : outputs.page ? kPage : 0.0;
+    return outputs.pictures ? pictures_bytes(job.scene, triangles, counts.leaves_most)
+           : outputs.page   ? kPage
+                            : 0.0;
   };
   const double pictures = shown_bytes(counts.triangles), pictures_alone = shown_bytes(0.0);
   const double mesh = outputs.page || outputs.pictures ? counts.triangles * kTriangle : 0.0;
@@ -282,9 +304,15 @@ std::optional<std::array<int, 2>> smaller(const std::array<int, 2>& size, double
   return std::array{static_cast<int>(share * size[0]) / 2 * 2, static_cast<int>(share * size[1]) / 2 * 2};
 }
 
-/// Where libraries and pictures alone exceed the limit, so that no voxel helps.
-std::string pictures_that_fit(const Scene& scene, double too_much_mb) {
+/// Where libraries and pictures alone exceed the limit, so that no voxel of the stock helps.
+std::string pictures_that_fit(const Scene& scene, double too_much_mb, double leaves) {
   constexpr double kMargin = 1.1;  // the prediction wavers
+  const double movie = movie_bytes(scene.movie), movie_stock = movie_stock_bytes(scene, leaves);
+  const double left = movie_stock - too_much_mb * kMegabyte;
+  if (movie + movie_stock > still_bytes(scene.stills) && left > 0.0)
+    return fmt::format("movie.voxel_mm = {:g} is too fine: {:g} fits; or raise --max-memory",
+                       scene.movie.voxel_mm,
+                       rounded_up(scene.movie.voxel_mm * std::sqrt(kMargin * movie_stock / left)));
   const auto named = [&](const char* key, const std::array<int, 2>& size, double bytes_of_pixel) {
     const auto fitting = smaller(size, bytes_of_pixel, kMargin * too_much_mb);
     return fitting ? fmt::format("{} = [{}, {}] is too large: [{}, {}] fits", key, size[0], size[1],
@@ -302,15 +330,16 @@ std::string pictures_that_fit(const Scene& scene, double too_much_mb) {
 
 void require_memory(const Job& job, const MemoryPrediction& prediction, int ranks) {
   if (prediction.peak_mb <= prediction.limit_mb) return;
-  throw InputError("out-of-memory", {job.scene.file},
-                   fmt::format("stock.voxel_mm = {:g} is expected to need {:.0f} MB, {:.0f} MB may be used",
-                               job.scene.stock.voxel_mm, prediction.peak_mb, prediction.limit_mb),
-                   prediction.fixed_mb < prediction.limit_mb
-                       ? fmt::format("voxel_mm = {:g} fits; or raise --max-memory, or {}",
-                                     voxel_that_fits(job, prediction),
-                                     ranks > 1 ? "start fewer ranks on a machine"
-                                               : "add --spill: slower, leaves of the stock go to the disk")
-                       : pictures_that_fit(job.scene, prediction.peak_mb - prediction.limit_mb));
+  throw InputError(
+      "out-of-memory", {job.scene.file},
+      fmt::format("stock.voxel_mm = {:g} is expected to need {:.0f} MB, {:.0f} MB may be used",
+                  job.scene.stock.voxel_mm, prediction.peak_mb, prediction.limit_mb),
+      prediction.fixed_mb < prediction.limit_mb
+          ? fmt::format("voxel_mm = {:g} fits; or raise --max-memory, or {}",
+                        voxel_that_fits(job, prediction),
+                        ranks > 1 ? "start fewer ranks on a machine"
+                                  : "add --spill: slower, leaves of the stock go to the disk")
+          : pictures_that_fit(job.scene, prediction.peak_mb - prediction.limit_mb, prediction.leaves));
 }
 
 }  // namespace swarf::sim
