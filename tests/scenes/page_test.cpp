@@ -39,7 +39,6 @@ class GougedPage : public ::testing::Test {
     folder_ = swarf::test::fresh_folder("gouged_page");
     const auto run = run_swarf("run " SWARF_SOURCE_DIR
                                "/scenes/exact_gouges/scene.toml --set movie.seconds=1 "
-                               "--set 'stills.size=[320,180]' --set stills.samples=1 "
                                "--set \"stills.kinds=[]\" -o " +
                                run_folder());
     ASSERT_EQ(run.exit_code, 1) << run.output;
@@ -542,8 +541,7 @@ pitch_mm = 1
     const fs::path out = folder_ / name;
     const auto run = run_swarf("run " + scene +
                                " --set movie.seconds=1 --set 'movie.size=[128,72]' --set movie.fps=10 --set "
-                               "movie.voxel_mm=1 --set 'stills.kinds=[]' --set 'stills.size=[320,180]' --set "
-                               "stills.samples=1 -q -o " +
+                               "movie.voxel_mm=1 --set 'stills.kinds=[]' -q -o " +
                                out.string());
     EXPECT_EQ(run.exit_code, 1) << name << "\n" << run.output;
     return (out / "report.html").string();
