@@ -116,7 +116,8 @@ TEST_F(ComparePage, TwoRevisionsOfAStockSayWhatChanged) {
   };
   const std::string earlier = run("earlier", "2"), now = run("now", "2.5");
   const ProgramRun changed =
-      run_swarf("compare " + now + " " + earlier + " --pitch-mm 1 -o " + (folder_ / "out").string());
+      run_swarf("compare " + now + " " + earlier + " --pitch-mm 1 --gouge-um 400 --scallop-um 400 -o " +
+                (folder_ / "out").string());
   EXPECT_EQ(changed.exit_code, 1) << changed.output;
   const std::string page = read_text(folder_ / "out/report.html");
   EXPECT_NE(page.find("What changed"), std::string::npos);

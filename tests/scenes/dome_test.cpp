@@ -1,12 +1,15 @@
 // The main job on the shipped program: run, then compare, render and export from its folder.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
+#include "mesh/mesh_io.h"
 #include "support/json_path.h"
 #include "support/page_opens.h"
 #include "support/program_run.h"
@@ -115,14 +118,24 @@ TEST_F(DomeRun, ComparesStockWithDesign) {
   EXPECT_LT(at_path(result, "surface.mean_abs_um"), 10.0);
 }
 
+/// Corners of the facets in the order of the file, whether or not they share vertices there.
+std::vector<std::array<float, 3>> corners_of(const fs::path& file) {
+  const swarf::TriMesh mesh = swarf::mesh::load_mesh(file.string());
+  std::vector<std::array<float, 3>> corners;
+  for (const auto& triangle : mesh.triangles)
+    for (const uint32_t vertex : triangle) corners.push_back(mesh.positions.at(vertex));
+  return corners;
+}
+
+/// Two formats, the same facets to the last bit.
 TEST_F(DomeRun, ExportsWithoutSimulating) {
-  const std::string stl = (folder_ / "part.stl").string();
+  const fs::path stl = folder_ / "part.stl", ply = folder_ / "part.ply";
   const auto run =
-      run_swarf("export " + folder_.string() + " --stl " + stl + " --ply " + (folder_ / "part.ply").string());
+      run_swarf("export " + folder_.string() + " --stl " + stl.string() + " --ply " + ply.string());
   EXPECT_EQ(run.exit_code, 0) << run.output;
-  const auto compare = run_swarf("compare " + (folder_ / "part.ply").string() + " " + stl +
-                                 " --scallop-um 0.1 --gouge-um 0.1");
-  EXPECT_EQ(compare.exit_code, 0) << compare.output;
+  const auto corners = corners_of(ply);
+  EXPECT_GT(corners.size(), 30000U);
+  EXPECT_TRUE(corners == corners_of(stl));
 }
 
 TEST_F(DomeRun, RendersWithoutSimulating) {
@@ -138,9 +151,10 @@ TEST(DomeThreads, HashIsTheSameForAnyNumber) {
   std::string hash;
   for (const char* threads : {"1", "2", "4"}) {
     const fs::path folder = swarf::test::fresh_folder("dome_threads") / "run";
-    const auto run =
-        run_swarf("run " + kScene + " --no-render --set toolpath.compare=false --set stock.voxel_mm=0.5 " +
-                  swarf::test::kSoonProven + "--threads " + threads + " -o " + folder.string());
+    const auto run = run_swarf("run " + kScene +
+                               " --no-render --set toolpath.compare=false --set stock.voxel_mm=0.5 "
+                               "--set interpolator.period_ms=4 " +
+                               swarf::test::kSoonProven + "--threads " + threads + " -o " + folder.string());
     EXPECT_EQ(run.exit_code, 0) << run.output;
     const std::string found = at_path(read_json(folder / "metrics.json"), "stock.hash");
     if (!hash.empty()) {

@@ -39,7 +39,7 @@ class Killed : public testing::Test {
   void SetUp() override {
     folder_ = swarf::test::fresh_folder("killed");
     const auto written = swarf::test::run_command(
-        fmt::format("/usr/bin/python3 '{}/tests/bench/wave.py' {} '{}' 0.15", SWARF_SOURCE_DIR,
+        fmt::format("/usr/bin/python3 '{}/tests/bench/wave.py' {} '{}' 0.25", SWARF_SOURCE_DIR,
                     number_from("SWARF_KILL_BLOCKS", 8000), folder_.string()));
     ASSERT_EQ(written.exit_code, 0) << written.output;
     const auto start = Clock::now();

@@ -23,7 +23,7 @@ using swarf::test::write_text;
 const fs::path kFolder = SWARF_SOURCE_DIR "/scenes/lin_koren_dome";
 const std::string kCoarse = std::string(swarf::test::kSoonProven) +
                             " --set stock.voxel_mm=1 --set toolpath.compare=false --set design.pitch_mm=1 "
-                            "--set 'interpolator.period_ms=2' ";
+                            "--set 'interpolator.period_ms=4' ";
 
 /// The surface machined twice, so that one word of the second line can be changed: its scallop height E.
 void copy_scene(const fs::path& to, const std::string& second_scallop) {

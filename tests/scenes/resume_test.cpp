@@ -27,7 +27,7 @@ using swarf::test::write_text;
 const std::string kScene = SWARF_SOURCE_DIR "/scenes/lin_koren_dome/scene.toml";
 const std::string kQuick = std::string(" --no-render --set toolpath.compare=false --set design.pitch_mm=1 ") +
                            swarf::test::kSoonProven;
-const std::string kCoarse = kQuick + "--set stock.voxel_mm=0.5 ";
+const std::string kCoarse = kQuick + "--set stock.voxel_mm=0.5 --set interpolator.period_ms=4 ";
 
 json metrics_of(const fs::path& folder) {
   return json::parse(std::ifstream(folder / "metrics.json"));

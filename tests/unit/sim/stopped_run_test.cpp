@@ -118,13 +118,14 @@ TEST(RunProgress, OfTheMeasuringRaysIsToldWhileTheyAreMade) {
 // Wide limits: that they hold is soon proven, and the stocks are what is compared.
 INSTANTIATE_TEST_SUITE_P(
     Jobs, StoppedRun,
-    testing::Values(
-        StoppedJob{"exact_rounded_corner",
-                   {"stock.voxel_mm=0.5", "accept.gouge_max_um=100", "accept.excess_max_um=1000"}},
-        StoppedJob{"nc_pocket", {"stock.voxel_mm=0.8"}},
-        StoppedJob{"lin_koren_dome",
-                   {"stock.voxel_mm=2", "design.pitch_mm=3", "toolpath.compare=false",
-                    "accept.gouge_max_um=100", "accept.excess_max_um=100", "accept.scallop_max_um=100"}}),
+    testing::Values(StoppedJob{"exact_rounded_corner",
+                               {"stock.voxel_mm=0.5", "accept.gouge_max_um=100",
+                                "accept.excess_max_um=1000"}},
+                    StoppedJob{"nc_pocket", {"stock.voxel_mm=0.8"}},
+                    StoppedJob{"lin_koren_dome",
+                               {"stock.voxel_mm=2", "design.pitch_mm=3", "toolpath.compare=false",
+                                "interpolator.period_ms=4", "accept.gouge_max_um=100",
+                                "accept.excess_max_um=100", "accept.scallop_max_um=100"}}),
     [](const testing::TestParamInfo<StoppedJob>& one) { return std::string(one.param.scene); });
 
 }  // namespace
