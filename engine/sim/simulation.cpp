@@ -222,7 +222,7 @@ InputError blocks_miss_stock(const Job& job, const toolpath::Elements& elements)
   for (const cutter::Cutter& tool : job.scene.tools) radius = std::max(radius, tool.radius());
   const Vec3 shift = shift_to_stock(way.box_W, stock, radius);
   const std::string how = fmt::format("nothing was cut; its feed moves take the tip over {}, the stock is {}",
-                                      box_text(way.box_W), box_text(stock));
+                                      spoken_box(way.box_W), spoken_box(stock));
   if (shift.isZero()) return path_misses_stock(job, how);
   return {
       "path-misses-stock",

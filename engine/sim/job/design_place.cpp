@@ -104,7 +104,7 @@ std::string remedy(const Job& job, const Box& design) {
 
 }  // namespace
 
-std::string box_text(const Box& box) {
+std::string spoken_box(const Box& box) {
   return fmt::format("X {:.3f} to {:.3f}, Y {:.3f} to {:.3f}, Z {:.3f} to {:.3f} mm", box.lower.x(),
                      box.upper.x(), box.lower.y(), box.upper.y(), box.lower.z(), box.upper.z());
 }
@@ -116,7 +116,7 @@ void check_design_place(const Job& job, Diagnostics& diagnostics) {
   if (place.outside)
     diagnostics.error("design-outside-stock", job.scene.design.mesh_where,
                       fmt::format("the design lies outside the stock, all of it: {}; the stock is {}",
-                                  box_text(place.box), box_text(raw.box())),
+                                  spoken_box(place.box), spoken_box(raw.box())),
                       remedy(job, place.box));
   else if (place.beyond_mm > kBeyond)
     diagnostics.warning(

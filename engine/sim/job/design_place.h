@@ -15,6 +15,6 @@ namespace swarf::sim {
 void check_design_place(const Job& job, Diagnostics& diagnostics);
 
 /// "X 0.000 to 40.000, Y .. mm".
-std::string box_text(const Box& box);
+std::string spoken_box(const Box& box);
 
 }  // namespace swarf::sim

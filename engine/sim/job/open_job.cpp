@@ -200,7 +200,7 @@ void fill_box(Job& job, const toolpath::FeedWay& way) {
   box.lower = ((box.lower / kStep).array() + kRounding).floor() * kStep + 0.0;
   box.upper = ((box.upper / kStep).array() - kRounding).ceil() * kStep + 0.0;
   job.scene.stock.box_W = box;
-  assume(job, "Stock", box_text(box), reason, "--stock x0,y0,z0,x1,y1,z1; stock.box_mm");
+  assume(job, "Stock", spoken_box(box), reason, "--stock x0,y0,z0,x1,y1,z1; stock.box_mm");
 }
 
 double rounded_down(double value) {
