@@ -30,8 +30,8 @@ std::optional<measure::Alignment> align(const std::vector<std::string>& pairs, b
   measure::Alignment aligned;
   if (!points.empty()) aligned = measure::align_points(points);
   if (best_fit) aligned = measure::best_fit(*stock.mesh, *design.mesh, aligned.X_design_stock);
-  const auto moved =
-      std::make_shared<mesh::SignedDistance>(measure::moved(stock.mesh->mesh(), aligned.X_design_stock));
+  const auto moved = std::make_shared<mesh::SignedDistance>(
+      measure::moved(stock.mesh->mesh(), aligned.X_design_stock), stock.mesh->error_mm());
   if (!stock.error.empty() && moved->mesh().positions.size() != stock.error.size())
     throw InputError("align-rounding", {"--align"},
                      "moved, points of the grid fall on each other by rounding: its errors would be lost",

@@ -84,7 +84,8 @@ ComparedStock stock_of_grid(const std::string& file) {
   const TriMesh mesh = stock.mesh();
   ComparedStock compared;
   compared.voxel_mm = stock.voxel_mm();
-  compared.mesh = std::make_shared<mesh::SignedDistance>(mesh);
+  // At sharp rims the mesh folds over itself, by what is also granted to edges that the grid rounds.
+  compared.mesh = std::make_shared<mesh::SignedDistance>(mesh, compared.voxel_mm);
   const size_t count = compared.mesh->mesh().positions.size();
   for (const double turn : turns_of(mesh, mesh::position_numbers(mesh.positions), count)) {
     const bool sharp = turn > kSharp;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "mesh/winding.h"
+
 namespace swarf::mesh {
 namespace {
 
@@ -70,19 +72,8 @@ uint32_t MeshLines::build(uint32_t begin, uint32_t end) {
   return node;
 }
 
-void MeshLines::add_hits(const Vec3& point, const Vec3& way, std::vector<double>& hits) const {
-  const auto pass = [&](const Facet& f) {
-    // Moeller & Trumbore 1997.
-    const Vec3 across = way.cross(f.ac), from = point - f.a;
-    const double det = f.ab.dot(across);
-    if (det == 0.0) return;
-    const double u = from.dot(across) / det;
-    if (u < -kLarger || u > 1.0 + kLarger) return;
-    const Vec3 turned = from.cross(f.ab);
-    const double v = way.dot(turned) / det;
-    if (v < -kLarger || u + v > 1.0 + kLarger) return;
-    hits.push_back(f.ac.dot(turned) / det);
-  };
+template <typename Visit>
+void MeshLines::each_along(const Vec3& point, const Vec3& way, const Visit& visit) const {
   std::array<uint32_t, 64> open;  // a balanced tree of 2^32 facets is half as deep
   size_t count = 0;
   if (!nodes_.empty()) open[count++] = 0;
@@ -91,12 +82,47 @@ void MeshLines::add_hits(const Vec3& point, const Vec3& way, std::vector<double>
     const Node& node = nodes_[n];
     if (!passes_box(node.box, point, way)) continue;
     if (node.second == 0) {
-      for (uint32_t i = node.begin; i < node.end; ++i) pass(facets_[i]);
+      for (uint32_t i = node.begin; i < node.end; ++i) {
+        if (!visit(facets_[i])) return;
+      }
       continue;
     }
     open[count++] = node.second;
     open[count++] = n + 1;
   }
+}
+
+void MeshLines::add_hits(const Vec3& point, const Vec3& way, std::vector<double>& hits) const {
+  each_along(point, way, [&](const Facet& f) {
+    // Moeller & Trumbore 1997.
+    const Vec3 across = way.cross(f.ac), from = point - f.a;
+    const double det = f.ab.dot(across);
+    if (det == 0.0) return true;
+    const double u = from.dot(across) / det;
+    if (u < -kLarger || u > 1.0 + kLarger) return true;
+    const Vec3 turned = from.cross(f.ab);
+    const double v = way.dot(turned) / det;
+    if (v >= -kLarger && u + v <= 1.0 + kLarger) hits.push_back(f.ac.dot(turned) / det);
+    return true;
+  });
+}
+
+double MeshLines::winding(const Vec3& point) const {
+  const auto corners = [](const Facet& f) { return std::array{f.a, Vec3(f.a + f.ab), Vec3(f.a + f.ac)}; };
+  for (const Vec3& ray : winding_rays()) {
+    int turns = 0;
+    bool sure = true;
+    each_along(point, ray, [&](const Facet& f) {
+      const std::optional<int> crossing = ray_crossing(corners(f), point, ray);
+      sure = crossing.has_value();
+      turns += crossing.value_or(0);
+      return sure;
+    });
+    if (sure) return turns;
+  }
+  double turns = 0.0;
+  for (const Facet& f : facets_) turns += solid_angle(corners(f), point);
+  return turns;
 }
 
 }  // namespace swarf::mesh

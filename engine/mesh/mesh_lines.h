@@ -20,6 +20,11 @@ class MeshLines {
   /// the line are left out: those beside them tell.
   void add_hits(const Vec3& point, const Vec3& way, std::vector<double>& hits) const;
 
+  /// How often the mesh, which must be closed, winds around the point: a whole number but for rounding unless
+  /// the point lies on it. A ray counts what it leaves less what it enters; where it passes an edge within
+  /// rounding another is sent, and after three the solid angles of all facets are summed.
+  double winding(const Vec3& point) const;
+
  private:
   struct Node {
     Box box;
@@ -30,6 +35,9 @@ class MeshLines {
     Vec3 a, ab, ac;
   };
   uint32_t build(uint32_t begin, uint32_t end);
+  /// Calls visit(facet) for all that the line may pass, until it returns false.
+  template <typename Visit>
+  void each_along(const Vec3& point, const Vec3& way, const Visit& visit) const;
 
   std::vector<Facet> facets_;
   std::vector<Node> nodes_;

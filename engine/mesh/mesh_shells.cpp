@@ -1,10 +1,9 @@
 #include "mesh/mesh_shells.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
-#include "base/units.h"
+#include "mesh/winding.h"
 
 namespace swarf::mesh {
 namespace {
@@ -58,15 +57,9 @@ bool holds(const Box& box, const Vec3& p) {
 }
 
 double winding(const WeldedMesh& mesh, const Shell& shell, const Vec3& p) {
-  double angle = 0.0;
-  for (const uint32_t facet : shell.facets) {
-    const std::array<Vec3, 3> c = corners_of(mesh, facet);
-    const Vec3 a = c[0] - p, b = c[1] - p, d = c[2] - p;
-    const double la = a.norm(), lb = b.norm(), ld = d.norm();
-    angle +=
-        2.0 * std::atan2(a.dot(b.cross(d)), la * lb * ld + a.dot(b) * ld + b.dot(d) * la + d.dot(a) * lb);
-  }
-  return angle / (4.0 * kPi);
+  double turns = 0.0;
+  for (const uint32_t facet : shell.facets) turns += solid_angle(corners_of(mesh, facet), p);
+  return turns;
 }
 
 }  // namespace swarf::mesh

@@ -81,6 +81,10 @@ SignedDistance::SignedDistance(const TriMesh& mesh) {
   add_seam_normals();
 }
 
+SignedDistance::SignedDistance(const TriMesh& mesh, double error_mm) : SignedDistance(mesh) {
+  error_mm_ = error_mm;
+}
+
 void SignedDistance::join_sides(const TriMesh& welded, const std::vector<uint32_t>& number) {
   if (mesh_.triangles.size() == welded.triangles.size()) {
     across_ = facets_across(mesh_.triangles);
@@ -213,6 +217,11 @@ Vec3 SignedDistance::pseudo_normal(const NearestPoint& nearest, bool& border) co
   return face_normals_[t];
 }
 
+bool SignedDistance::winds_around(const Vec3& p) const {
+  std::call_once(lines_once_, [&] { lines_ = std::make_unique<MeshLines>(mesh_); });
+  return lines_->winding(p) > 0.5;
+}
+
 SignedPoint SignedDistance::at(const Vec3& p, double within_mm) const {
   const NearestPoint nearest = tree_->nearest(p, within_mm);
   SignedPoint result;
@@ -225,7 +234,8 @@ SignedPoint SignedDistance::at(const Vec3& p, double within_mm) const {
   result.normal = length > 0.0 ? Vec3(normal / length) : face_normals_[nearest.triangle];
   const Vec3 away = p - nearest.point;
   const double height = away.dot(result.normal);
-  result.distance_mm = height >= 0.0 ? nearest.distance_mm : -nearest.distance_mm;
+  const bool inside = nearest.distance_mm > error_mm_ ? winds_around(p) : height < 0.0;
+  result.distance_mm = inside ? -nearest.distance_mm : nearest.distance_mm;
   if (border) result.beyond_mm = (away - height * result.normal).norm();
   return result;
 }

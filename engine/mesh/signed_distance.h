@@ -5,11 +5,13 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <mutex>
 #include <unordered_map>
 #include <vector>
 
 #include "base/frames.h"
 #include "mesh/mesh_distance.h"
+#include "mesh/mesh_lines.h"
 #include "mesh/tri_mesh.h"
 
 namespace swarf::mesh {
@@ -31,17 +33,25 @@ struct SignedPoint {
 /// mesh the sign is that of the sheet's side.
 /// Facets without area have no normal. Where one lies in an edge, the faces on its two sides meet there all
 /// the same: a long side on one, several short ones on the other.
+/// Where a mesh runs through itself, or folds flat upon itself, its nearest face may be seen from the wrong
+/// side, from however far away. Of a mesh that may, points farther from it than its error are inside where it
+/// winds around them at least once.
 class SignedDistance {
  public:
   /// Vertices with equal positions count as one; triangles without area are left out. The mesh must have one
   /// with area.
   explicit SignedDistance(const TriMesh& mesh);
+  /// Of a closed mesh that may run through itself, all of which lies within `error_mm` of the solid that it
+  /// stands for.
+  SignedDistance(const TriMesh& mesh, double error_mm);
   SignedDistance(const SignedDistance&) = delete;
   SignedDistance& operator=(const SignedDistance&) = delete;
 
   /// `within_mm`: nothing farther is looked for; its distance is +infinity then.
   SignedPoint at(const Vec3& p, double within_mm = std::numeric_limits<double>::infinity()) const;
 
+  /// Infinite of meshes that do not run through themselves, mm.
+  double error_mm() const { return error_mm_; }
   const TriMesh& mesh() const { return mesh_; }  ///< welded, positions only
   const MeshDistance& tree() const { return *tree_; }
   Vec3 corner(uint32_t triangle, size_t place) const;
@@ -54,6 +64,7 @@ class SignedDistance {
 
  private:
   Vec3 pseudo_normal(const NearestPoint& nearest, bool& border) const;
+  bool winds_around(const Vec3& p) const;
   void join_sides(const TriMesh& welded, const std::vector<uint32_t>& number);
   void add_vertex_normals();
   void add_seam_normals();
@@ -61,6 +72,9 @@ class SignedDistance {
 
   TriMesh mesh_;
   std::unique_ptr<MeshDistance> tree_;
+  double error_mm_ = std::numeric_limits<double>::infinity();
+  mutable std::once_flag lines_once_;
+  mutable std::unique_ptr<MeshLines> lines_;  ///< made when first asked for: most meshes never are
   std::vector<Vec3> face_normals_, vertex_normals_;
   std::vector<uint32_t> across_;
   std::vector<uint8_t> on_border_;  ///< per vertex

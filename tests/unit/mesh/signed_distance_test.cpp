@@ -5,7 +5,10 @@
 #include "base/units.h"
 #include "mesh/mesh_check.h"
 #include "mesh/mesh_crossing.h"
+#include "mesh/mesh_lines.h"
+#include "mesh/mesh_shells.h"
 #include "mesh/signed_distance.h"
+#include "mesh/winding.h"
 #include "support/solids.h"
 
 namespace swarf::mesh {
@@ -71,6 +74,58 @@ TEST(SignedDistance, HoldsItsSignAtAcuteCornersInAndOut) {
   EXPECT_NEAR(distance.at({1.01, 0.5, 1.0}).distance_mm, 0.01, 1e-6);   // in the slit: air
   EXPECT_NEAR(distance.at({1.03, 0.5, 1.0}).distance_mm, -0.01, 1e-6);  // beside it: material
   EXPECT_NEAR(distance.at({1.01, 0.5, 0.4}).distance_mm, -0.1, 1e-6);   // below it
+}
+
+/// How often the mesh winds around the point, by all of its facets.
+double turns_around(const TriMesh& mesh, const Vec3& p) {
+  const WeldedMesh welded = weld(mesh);
+  double turns = 0.0;
+  for (uint32_t t = 0; t < welded.triangles.size(); ++t) turns += solid_angle(corners_of(welded, t), p);
+  return turns;
+}
+
+/// A block in whose inside lie a flap of two sheets in one plane, z = 1, as a grid's mesh has
+/// at sharp rims, and a small block that covers its place a second time.
+TriMesh folded_block() {
+  TriMesh mesh = test::block({0, 0, 0}, {8, 6, 4});
+  const Vec3 a(3, 3, 1), b(3.6, 3.05, 1), c(3.1, 3.2, 1);
+  test::add_triangle(mesh, a, b, c);
+  test::add_triangle(mesh, a, c, b);
+  test::append(mesh, test::block({5, 2, 2}, {5.2, 2.2, 2.2}));  // covered twice
+  return mesh;
+}
+
+TEST(SignedDistance, OfAMeshThatRunsThroughItselfHasTheSignOfItsWindingNumber) {
+  const TriMesh mesh = folded_block();
+  ASSERT_EQ(check_closed(mesh), "");
+  constexpr double kError = 0.25;
+  const SignedDistance folded(mesh, kError), plain(mesh);
+  Rng rng(5);
+  int turned = 0;
+  for (int i = 0; i < 4000; ++i) {
+    Vec3 p(rng.uniform(-1, 9), rng.uniform(-1, 7), rng.uniform(-1, 5));
+    if (i % 2 == 0) p.z() = 1.0;                                                // in the plane of the flap
+    if (i % 8 == 1) p = Vec3(5.1, 2.1, 2.1) + 0.3 * (p - Vec3(4, 3, 2)) / 3.0;  // all round the inner block
+    const double distance = folded.at(p).distance_mm;
+    ASSERT_DOUBLE_EQ(std::abs(distance), std::abs(plain.at(p).distance_mm));
+    if (std::abs(distance) <= kError) continue;
+    ASSERT_EQ(distance<0.0, turns_around(mesh, p)> 0.5) << "seed 5, point " << p.transpose();
+    if (distance * plain.at(p).distance_mm < 0.0) ++turned;
+  }
+  EXPECT_GT(turned, 100);
+}
+
+TEST(MeshLines, WindAroundAPointAsOftenAsAllFacetsTell) {
+  TriMesh mesh = test::torus(3, 1, {0, 0, 0}, 24, 12);
+  test::append(mesh, test::block({2, -1, -2}, {4, 1, 2}));
+  const MeshLines lines(mesh);
+  Rng rng(6);
+  for (int i = 0; i < 1000; ++i) {
+    Vec3 p(rng.uniform(-5, 5), rng.uniform(-5, 5), rng.uniform(-2.5, 2.5));
+    // From where the rays pass corners of the block.
+    if (i % 4 == 0) p = Vec3(4, 1, 2) - rng.uniform(0.1, 3) * winding_rays()[i / 4 % 3];
+    ASSERT_NEAR(lines.winding(p), turns_around(mesh, p), 1e-9) << "seed 6, point " << p.transpose();
+  }
 }
 
 TEST(SignedDistance, PointsBesideAnOpenSheetLieBeyondIt) {
