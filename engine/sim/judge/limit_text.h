@@ -7,10 +7,12 @@
 
 namespace swarf::sim {
 
-/// A limit as it was written: the shortest text that is read back as the same number.
+/// A limit as it was written: the shortest text that is read back as the same number. One of more digits than
+/// anybody writes is computed, and told in six.
 inline std::string limit_text(double limit) {
-  const std::string text = fmt::format("{:g}", limit);
-  return std::stod(text) == limit ? text : fmt::format("{}", limit);
+  constexpr size_t kLongest = 12;  // characters
+  const std::string rounded = fmt::format("{:g}", limit), whole = fmt::format("{}", limit);
+  return std::stod(rounded) == limit || whole.size() > kLongest ? rounded : whole;
 }
 
 /// Three digits behind the point, or more: "1.0010004" is above 1.001, which "1.001" would not say.

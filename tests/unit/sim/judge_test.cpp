@@ -1,5 +1,6 @@
 // The one judge: what counts, what is loosened only in writing, and what is never green.
 #include "sim/judge/judge.h"
+#include "sim/judge/limit_text.h"
 
 #include <gtest/gtest.h>
 
@@ -148,6 +149,13 @@ TEST_F(Judge, NumbersReadOnTheSideOfTheirLimitOnWhichTheyAre) {
   job_.scene.accept.gouge_max_um = 1.002;
   result_.main.surface.gouge_max_um = 1.00201;
   EXPECT_NE(judged("gouge").what.find("1.00201 um"), std::string::npos) << judged("gouge").what;
+}
+
+TEST(LimitText, IsThatOfItsWriterAndOfACalculationSixDigits) {
+  EXPECT_EQ(limit_text(10.05), "10.05");
+  EXPECT_EQ(limit_text(0.0), "0");
+  EXPECT_EQ(limit_text(1.0000001), "1.0000001");
+  EXPECT_EQ(limit_text(9.388836393590777), "9.38884");
 }
 
 TEST_F(Judge, AProofThatWasStoppedIsToldAsStopped) {
