@@ -156,7 +156,8 @@ void MachineNodes::state_errors(render::GltfExtras& extras) const {
     for (const motion::AxisKey& key : line.keys()) farthest = std::max(farthest, std::abs(key.q));
     // A slanted axis has three floats for one value.
     const bool rotary = axes[i].kind == kinematics::AxisKind::kRotary;
-    const double error = line.error() + (rotary ? kQuaternionError : farthest * std::exp2(-23.0));
+    const double error = line.error() + (rotary ? kQuaternionError + motion::mixing_error(line.longest_step())
+                                                : farthest * std::exp2(-23.0));
     extras[fmt::format("key_error_max_{}_{}", axes[i].name, rotary ? "deg" : "mm")] =
         rotary ? deg_from_rad(error) : error;
     extras[fmt::format("keys_{}", axes[i].name)] = static_cast<double>(line.keys().size());

@@ -70,8 +70,9 @@ std::string part_glb(const FinishedRun& run, const ReviewModels& models, const G
 /// Links, tools and the stock in its stages with the axes animated over what is shown of the program, and a
 /// pin in the machine frame where parts of the machine meet at a pin's time. Between
 /// its keys an axis moves in a straight line, which no cycle is farther from than asset.extras says for that
-/// axis (key_error_max_X_mm, ...). Every node that an axis moves is named after it, and its extras say
-/// about what and how far it turns; the extras "role" of the others are machine, fixture, tool or stock.
+/// axis (key_error_max_X_mm, ...), whether a viewer turns evenly from key to key or mixes quaternions. Every
+/// node that an axis moves is named after it, and its extras say about what and how far it turns; the extras
+/// "role" of the others are machine, fixture, tool or stock.
 std::string machine_glb(const FinishedRun& run, const ReviewModels& models, const GltfOptions& options);
 
 /// Program seconds that one second of the glTF animation stands for.

@@ -28,6 +28,7 @@ namespace swarf::render {
   X(PFNGLDELETESHADERPROC, DeleteShader)                       \
   X(PFNGLDELETEVERTEXARRAYSPROC, DeleteVertexArrays)           \
   X(PFNGLDEPTHFUNCPROC, DepthFunc)                             \
+  X(PFNGLDEPTHRANGEPROC, DepthRange)                           \
   X(PFNGLDISABLEPROC, Disable)                                 \
   X(PFNGLDRAWARRAYSPROC, DrawArrays)                           \
   X(PFNGLDRAWBUFFERPROC, DrawBuffer)                           \

@@ -10,6 +10,7 @@
 #include "base/check.h"
 #include "base/parallel.h"
 #include "render/figures/colour.h"
+#include "render/raster/depth_range.h"
 #include "render/raster/gl_api.h"
 #include "render/raster/gpu_mesh.h"
 #include "render/raster/line_quads.h"
@@ -98,6 +99,7 @@ struct RasterRenderer::Impl {
   void require_complete() const;
   /// Large enough for the map.
   void fit_shadow_target(const SceneView& view);
+  void begin_frame();
   Box upload(const DrawList& list);
   int material_of(const Material& material);
   void draw_shadow(const SceneView& view, bool section);
@@ -117,6 +119,9 @@ struct RasterRenderer::Impl {
   SurfacePrograms surface_programs, section_programs;
   GLuint shadow_program, line_program;
   GLuint line_array = 0, line_buffer = 0;
+  int frame = kDepthRanges - 1;     ///< the last
+  DepthRange depths;                ///< of this frame, in both targets
+  bool shadow_made = false;         ///< anew, for this frame
   std::array<SampleBand, 2> bands;  ///< one is read while the other is shaded
   ShadowMap shadow;
   std::vector<std::array<float, 2>> materials;  ///< metalness and roughness
@@ -191,7 +196,7 @@ void RasterRenderer::Impl::require_complete() const {
               "OSMesa refuses a framebuffer");
 }
 
-/// It is cleared whole for each frame, so it is no larger than what is drawn of the map by more than steps
+/// It is cleared whole, so it is no larger than what is drawn of the map by more than steps
 /// that spare a moving camera a new one each frame.
 void RasterRenderer::Impl::fit_shadow_target(const SceneView& view) {
   constexpr int kStep = 256;  // texels
@@ -202,6 +207,15 @@ void RasterRenderer::Impl::fit_shadow_target(const SceneView& view) {
   gl.BindRenderbuffer(GL_RENDERBUFFER, shadow_buffer);
   gl.RenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT32F, wanted[0], wanted[1]);
   require_complete();
+  shadow_made = true;
+}
+
+void RasterRenderer::Impl::begin_frame() {
+  frame = (frame + 1) % kDepthRanges;
+  depths = depth_range(frame);
+  gl.Enable(GL_DEPTH_TEST);
+  gl.DepthFunc(GL_LEQUAL);
+  gl.DepthRange(depths.nearest, depths.farthest);
 }
 
 Box RasterRenderer::Impl::upload(const DrawList& list) {
@@ -259,7 +273,8 @@ void RasterRenderer::Impl::draw_shadow(const SceneView& view, bool section) {
   fit_shadow_target(view);
   gl.Viewport(0, 0, view.shadow_columns, view.shadow_rows);
   // Whole: where only a part is to be cleared llvmpipe draws a rectangle, which takes longer.
-  gl.Clear(GL_DEPTH_BUFFER_BIT);
+  if (frame == 0 || shadow_made) gl.Clear(GL_DEPTH_BUFFER_BIT);
+  shadow_made = false;
   gl.Enable(GL_POLYGON_OFFSET_FILL);
   gl.PolygonOffset(1.5F, 4.0F);
   const Uniforms uniforms(gl, shadow_program);
@@ -313,7 +328,7 @@ void RasterRenderer::Impl::draw_lines(const SceneView& view, const std::vector<D
 void RasterRenderer::Impl::draw_surfaces(const SceneView& view, const DrawList& list) {
   gl.BindFramebuffer(GL_FRAMEBUFFER, surfaces);
   gl.Viewport(0, 0, side * width, side * height);
-  gl.Clear(GL_DEPTH_BUFFER_BIT);
+  if (frame == 0) gl.Clear(GL_DEPTH_BUFFER_BIT);
   draw_items(view, list, false);
   if (list.section) draw_items(view, list, true);
   draw_lines(view, list.lines);
@@ -322,6 +337,7 @@ void RasterRenderer::Impl::draw_surfaces(const SceneView& view, const DrawList& 
 void RasterRenderer::Impl::read_shadow(const SceneView& view) {
   shadow.width = view.shadow_columns;
   shadow.rows = view.shadow_rows;
+  shadow.range = depths;
   shadow.depths.resize(static_cast<size_t>(shadow.width) * static_cast<size_t>(shadow.rows));
   gl.BindFramebuffer(GL_FRAMEBUFFER, shadow_target);
   gl.ReadPixels(0, 0, shadow.width, shadow.rows, GL_DEPTH_COMPONENT, GL_FLOAT, shadow.depths.data());
@@ -331,7 +347,7 @@ Image RasterRenderer::Impl::shade(const SceneView& view, const Camera& camera) {
   Image image{width, height,
               std::vector<uint8_t>(size_t{4} * static_cast<size_t>(width) * static_cast<size_t>(height))};
   read_shadow(view);
-  const Lighting light = lighting(view, camera.eye, width, height, materials, shadow);
+  const Lighting light = lighting(view, camera.eye, width, height, materials, shadow, depths);
   gl.BindFramebuffer(GL_FRAMEBUFFER, surfaces);
   const auto beside = thread_count() > 1 ? std::launch::async : std::launch::deferred;
   std::array<std::future<void>, 2> shading;
@@ -340,6 +356,7 @@ Image RasterRenderer::Impl::shade(const SceneView& view, const Camera& camera) {
     std::future<void>& busy = shading.at(static_cast<size_t>(turn));
     if (busy.valid()) busy.get();
     band.resize(std::min(kBandRows, height - top));
+    band.farthest = depths.farthest;
     const int low = side * (height - top - band.rows);  // OpenGL counts rows from below
     gl.ReadPixels(0, low, side * width, side * band.rows, GL_RG_INTEGER, GL_UNSIGNED_INT, band.words.data());
     gl.ReadPixels(0, low, side * width, side * band.rows, GL_DEPTH_COMPONENT, GL_FLOAT, band.depths.data());
@@ -358,12 +375,10 @@ RasterRenderer::~RasterRenderer() = default;
 
 Image RasterRenderer::draw(const DrawList& list) {
   Impl& impl = *impl_;
-  const GlApi& gl = impl.gl;
   impl.context.make_current();
   const Box bounds = impl.upload(list);
   const SceneView view = scene_view(list.camera, bounds, static_cast<double>(impl.width) / impl.height);
-  gl.Enable(GL_DEPTH_TEST);
-  gl.DepthFunc(GL_LEQUAL);
+  impl.begin_frame();
   impl.draw_shadow(view, list.section.has_value());
   impl.draw_surfaces(view, list);
   return impl.shade(view, list.camera);

@@ -41,7 +41,7 @@ class StripShader {
     const std::ptrdiff_t start =
         (side * (band_.rows - row) - 1) * stride + side * static_cast<std::ptrdiff_t>(left);
     const SampleRow samples{&band_.words[2 * static_cast<size_t>(start)],
-                            &band_.depths[static_cast<size_t>(start)], -stride, count};
+                            &band_.depths[static_cast<size_t>(start)], -stride, count, band_.farthest};
     const float step = 1.0F / static_cast<float>(side);
     const float x = static_cast<float>(left) - 0.5F * static_cast<float>(image_.width) + 0.5F * step,
                 y = static_cast<float>(top_ + row) - 0.5F * static_cast<float>(image_.height) + 0.5F * step;
@@ -71,7 +71,7 @@ class StripShader {
     for (size_t s = 0; s < side * side; ++s) {
       const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(side * pixel + s % side) +
                                 static_cast<std::ptrdiff_t>(s / side) * samples.below;
-      const SeenWords words = samples.depths[at] < 1.0F
+      const SeenWords words = samples.depths[at] < samples.farthest
                                   ? SeenWords{samples.words[2 * at], samples.words[2 * at + 1]}
                                   : kGroundWords;
       auto* const end = found.begin() + surfaces;

@@ -13,7 +13,8 @@ namespace swarf::render {
 struct SampleBand {
   int width = 0, rows = 0, side = 1;  ///< px; samples of a pixel each way, 1 or 2
   std::vector<uint32_t> words;        ///< two a sample
-  std::vector<float> depths;          ///< 0..1; 1 where nothing was drawn
+  std::vector<float> depths;
+  float farthest = 1.0F;  ///< depth from which on nothing was drawn
 
   /// Room for `band_rows` rows, and for what kernels read beyond the end of one.
   void resize(int band_rows);

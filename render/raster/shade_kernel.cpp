@@ -161,6 +161,7 @@ struct ShadowTexels {
   const float* depths;
   int width;
   float columns, rows, right_most, up_most;  ///< texels
+  float nearest, size;                       ///< of the depths of what lies between the light's planes
 };
 
 SWARF_KERNEL_INLINE ShadowTexels texels_of(const ShadowMap& map) {
@@ -170,7 +171,9 @@ SWARF_KERNEL_INLINE ShadowTexels texels_of(const ShadowMap& map) {
           static_cast<float>(map.width),
           static_cast<float>(map.rows),
           static_cast<float>(map.width) - 1.001F,
-          static_cast<float>(map.rows) - 1.001F};
+          static_cast<float>(map.rows) - 1.001F,
+          map.range.nearest,
+          map.range.size()};
 }
 
 /// The share of four texels around the place that does not shade it, weighed by their distances.
@@ -209,8 +212,8 @@ struct SampleNormal {
 };
 constexpr uint32_t kGroundNormal = kGroundWords[0], kGroundPaint = kGroundWords[1];
 
-SWARF_KERNEL_INLINE SampleNormal sample_of(uint32_t normal, uint32_t paint, float depth) {
-  const uint32_t drawn = depth < 1.0F ? ~0U : 0U;
+SWARF_KERNEL_INLINE SampleNormal sample_of(uint32_t normal, uint32_t paint, float depth, float farthest) {
+  const uint32_t drawn = depth < farthest ? ~0U : 0U;
   const uint32_t n = (normal & drawn) | (kGroundNormal & ~drawn);
   return {static_cast<int>(n & 0xffffU), static_cast<int>(n >> 16),
           (paint & drawn) | (kGroundPaint & ~drawn)};
@@ -230,9 +233,10 @@ struct FirstSurfaces {
   uint32_t paint[kAtOnce], differs[kAtOnce];
 };
 
-SWARF_KERNEL_INLINE void first_of_one(const uint32_t* words, const float* seen, FirstSurfaces& firsts) {
+SWARF_KERNEL_INLINE void first_of_one(const uint32_t* words, const float* seen, float farthest,
+                                      FirstSurfaces& firsts) {
   for (int i = 0; i < kAtOnce; ++i) {
-    const SampleNormal only = sample_of(words[2 * i], words[2 * i + 1], seen[i]);
+    const SampleNormal only = sample_of(words[2 * i], words[2 * i + 1], seen[i], farthest);
     firsts.u[i] = static_cast<float>(only.u);
     firsts.v[i] = static_cast<float>(only.v);
     firsts.depth[i] = seen[i];
@@ -242,14 +246,14 @@ SWARF_KERNEL_INLINE void first_of_one(const uint32_t* words, const float* seen, 
 }
 
 SWARF_KERNEL_INLINE void first_of_four(const uint32_t* above, const float* seen_above, std::ptrdiff_t stride,
-                                       FirstSurfaces& firsts) {
+                                       float farthest, FirstSurfaces& firsts) {
   const uint32_t* below = above + 2 * stride;
   const float* seen_below = seen_above + stride;
   for (int i = 0; i < kAtOnce; ++i) {
-    const SampleNormal first = sample_of(above[4 * i], above[4 * i + 1], seen_above[2 * i]),
-                       right = sample_of(above[4 * i + 2], above[4 * i + 3], seen_above[2 * i + 1]),
-                       lower = sample_of(below[4 * i], below[4 * i + 1], seen_below[2 * i]),
-                       last = sample_of(below[4 * i + 2], below[4 * i + 3], seen_below[2 * i + 1]);
+    const SampleNormal first = sample_of(above[4 * i], above[4 * i + 1], seen_above[2 * i], farthest),
+                       right = sample_of(above[4 * i + 2], above[4 * i + 3], seen_above[2 * i + 1], farthest),
+                       lower = sample_of(below[4 * i], below[4 * i + 1], seen_below[2 * i], farthest),
+                       last = sample_of(below[4 * i + 2], below[4 * i + 3], seen_below[2 * i + 1], farthest);
     firsts.u[i] = 0.25F * static_cast<float>(first.u + right.u + lower.u + last.u);
     firsts.v[i] = 0.25F * static_cast<float>(first.v + right.v + lower.v + last.v);
     firsts.depth[i] = seen_above[2 * i];
@@ -264,9 +268,9 @@ SWARF_KERNEL_INLINE void first_surfaces(const SampleRow& row, int side, ShadeBat
     FirstSurfaces firsts;
     const size_t sample = static_cast<size_t>(side) * at;
     if (side == 1) {
-      first_of_one(row.words + 2 * sample, row.depths + sample, firsts);
+      first_of_one(row.words + 2 * sample, row.depths + sample, row.farthest, firsts);
     } else {
-      first_of_four(row.words + 2 * sample, row.depths + sample, row.below, firsts);
+      first_of_four(row.words + 2 * sample, row.depths + sample, row.below, row.farthest, firsts);
     }
     std::copy_n(firsts.u, kAtOnce, &batch.normal_u[at]);
     std::copy_n(firsts.v, kAtOnce, &batch.normal_v[at]);
@@ -317,7 +321,8 @@ struct Lit {
 /// Two filtered taps across the texel grid: eight texels weigh in.
 SWARF_KERNEL_INLINE Lit lit_at(const ShadeFrame& f, const Vector& world) {
   const Vector p = f.shadow_origin + world.x * f.shadow_x + world.y * f.shadow_y + world.z * f.shadow_z;
-  const float x = p.x * f.map.columns, y = p.y * f.map.rows, depth = least(p.z, 1.0F);
+  const float x = p.x * f.map.columns, y = p.y * f.map.rows,
+              depth = f.map.nearest + f.map.size * least(p.z, 1.0F);
   return {p, 0.5F * (lit_texels(f.map, x - 0.6F, y - 0.3F, depth) +
                      lit_texels(f.map, x + 0.6F, y + 0.3F, depth))};
 }
@@ -475,13 +480,15 @@ bool one_surface(const SeenWords& a, const SeenWords& b) {
 }
 
 Lighting lighting(const SceneView& view, const Vec3& eye, int width, int height,
-                  std::span<const std::array<float, 2>> materials, const ShadowMap& shadow) {
+                  std::span<const std::array<float, 2>> materials, const ShadowMap& shadow,
+                  const DepthRange& depths) {
   Lighting l{};
   l.eye = single(eye);
   l.forward = single(view.forward);
   l.right = single(2.0 / width * view.right);
   l.down = single(-2.0 / height * view.up);
-  l.nearness = {static_cast<float>(1.0 / view.near), static_cast<float>(1.0 / view.far - 1.0 / view.near)};
+  const double rise = (1.0 / view.far - 1.0 / view.near) / depths.size();
+  l.nearness = {static_cast<float>(1.0 / view.near - rise * depths.nearest), static_cast<float>(rise)};
   const Vec3 floor = nearness_of_level(view, eye, view.ground_centre.z());
   l.floor = single({2.0 / width * floor.x(), -2.0 / height * floor.y(), floor.z()});
   l.key = single(view.key);

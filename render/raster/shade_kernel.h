@@ -10,15 +10,18 @@
 #include <vector>
 
 #include "base/frames.h"
+#include "render/raster/depth_range.h"
 #include "render/raster/scene_view.h"
 #include "render/raster/shaders.h"
 
 namespace swarf::render {
 
-/// The depth, 0..1, of what the key light reaches first, the lowest row first.
+/// The depth of what the key light reaches first, the lowest row first; beyond the range where it reaches
+/// nothing.
 struct ShadowMap {
   std::vector<float> depths;
   int width = 0, rows = 0;  ///< texels, at least 2
+  DepthRange range{};
 };
 
 /// Everything but the places themselves that decides on their colours.
@@ -26,7 +29,7 @@ struct Lighting {
   using Vector = std::array<float, 3>;
   /// A place: eye + (forward + x right + y down) / nearness, x and y in px from the middle of the picture.
   Vector eye, forward, right, down;
-  std::array<float, 2> nearness;   ///< 1/mm: of depth 0, and what depth 1 adds to it
+  std::array<float, 2> nearness;   ///< 1/mm: of depth 0 in the buffer, and what depth 1 adds to it
   std::array<float, 3> floor;      ///< its nearness: x and y times the first two plus the third
   Vector key, softbox, fill, rim;  ///< unit vectors towards the lights; of the box between key and zenith
   std::array<Vector, 3> shadow_from_world;  ///< columns of the shadow map's place, 0..1
@@ -39,9 +42,10 @@ struct Lighting {
   const ShadowMap* shadow;
 };
 
-/// `materials`: metalness and roughness, at most kMaterialsMost.
+/// `materials`: metalness and roughness, at most kMaterialsMost. `depths`: where the frame was drawn.
 Lighting lighting(const SceneView& view, const Vec3& eye, int width, int height,
-                  std::span<const std::array<float, 2>> materials, const ShadowMap& shadow);
+                  std::span<const std::array<float, 2>> materials, const ShadowMap& shadow,
+                  const DepthRange& depths = {});
 
 /// Two words as the surface shaders write them: normal and paint.
 using SeenWords = std::array<uint32_t, 2>;
@@ -50,7 +54,7 @@ using SeenWords = std::array<uint32_t, 2>;
 struct ShadeBatch {
   explicit ShadeBatch(size_t most);
   std::vector<float> x, y;                ///< px from the middle of the picture, y down
-  std::vector<float> depth;               ///< 0..1; of the floor and the backdrop not looked at
+  std::vector<float> depth;               ///< in the buffer; of the floor and the backdrop not looked at
   std::vector<float> normal_u, normal_v;  ///< on the octahedron, 0..65535
   std::vector<uint32_t> paint;            ///< a sample's second word
   std::vector<float> red, green, blue;    ///< the result, sRGB 0..1
@@ -61,9 +65,10 @@ constexpr size_t kShadedAtOnce = 16;
 /// multiple of kShadedAtOnce pixels.
 struct SampleRow {
   const uint32_t* words;  ///< two a sample, of the first pixel's upper left one on
-  const float* depths;    ///< likewise; 1 where nothing was drawn, whatever its words say
+  const float* depths;    ///< likewise
   std::ptrdiff_t below;   ///< from a sample to that below it
   size_t count;           ///< px
+  float farthest = 1.0F;  ///< depth from which on nothing was drawn, whatever the words say
 };
 
 /// One set of functions for each instruction set; all give the same bits.

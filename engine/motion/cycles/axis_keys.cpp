@@ -9,8 +9,11 @@
 namespace swarf::motion {
 namespace {
 
-/// Rotary keys lie less than a quarter turn apart, so that every viewer turns the short way.
-constexpr double kTurnMost = 0.5 * kPi;
+/// Rotary keys lie less than 12 degrees apart: viewers that mix quaternions are off by a fifth of the
+/// tolerance at most (mixing_error()), and every viewer turns the short way.
+constexpr double kTurnMost = kPi / 15.0;
+/// Of the keys that turns need at least, so many are not too many.
+constexpr double kKeysOfTurns = 4.0;
 
 bool is_exact(uint64_t cycle) {
   return static_cast<double>(static_cast<float>(cycle)) == static_cast<double>(cycle);
@@ -75,7 +78,19 @@ void KeyLine::see(const AxisKey& at) {
   begin(end);
 }
 
+double KeyLine::longest_step() const {
+  double longest = 0.0;
+  for (size_t i = 1; i < keys_.size(); ++i)
+    longest = std::max(longest, std::abs(keys_[i].q - keys_[i - 1].q));
+  return longest;
+}
+
 void KeyLine::thin() {
+  double way = 0.0;
+  for (size_t i = 1; i < keys_.size(); ++i) way += std::abs(keys_[i].q - keys_[i - 1].q);
+  // No tolerance spares these.
+  most_ = std::max(most_, static_cast<size_t>(kKeysOfTurns * way / step_most_));
+  if (keys_.size() <= most_) return;
   const double before = tolerance_;
   while (keys_.size() > most_ / 2) {
     KeyLine fewer(tolerance_, step_most_, std::numeric_limits<size_t>::max());
@@ -101,6 +116,16 @@ void KeyLine::finish() {
   // Cycles behind the last place for a key: the line stands still there.
   for (const AxisKey& one : behind_) forced_ = std::max(forced_, std::abs(one.q - keys_.back().q));
   error_ = std::max({tolerance_, forced_, rounding_}) + thinned_;
+}
+
+double mixing_error(double turn_rad) {
+  const double half = 0.5 * turn_rad;  // a quaternion has half of the angle
+  if (half < 1e-4) return 0.0;         // below 1e-13
+  // Mixed at t its angle is atan2(t sin, 1 - t + t cos), which is farthest from t * half where both change
+  // alike: where the square of the mixture's length, 1 - 2 t (1 - t) (1 - cos), is sin / half.
+  const double product = 0.5 * (1.0 - std::sin(half) / half) / (1.0 - std::cos(half));
+  const double t = 0.5 * (1.0 - std::sqrt(1.0 - 4.0 * product));
+  return 2.0 * (t * half - std::atan2(t * std::sin(half), 1.0 - t + t * std::cos(half)));
 }
 
 AxisKeys::AxisKeys(std::span<const kinematics::Axis> axes, double linear_mm, double rotary_rad, size_t most) {

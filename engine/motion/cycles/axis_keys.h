@@ -8,8 +8,8 @@
 //
 // The error is proven: no cycle's value is farther from the line between the two keys about it. Keys stand at
 // cycles whose number a float holds exactly, and have values that are floats: files lose nothing more. When
-// an axis has more than `most` keys, its tolerance is doubled and its keys are thinned by the same rule; what
-// they are then off by adds to the error.
+// an axis has more than `most` keys (and more than its turns need), its tolerance is doubled and its keys are
+// thinned by the same rule; what they are then off by adds to the error.
 #pragma once
 
 #include <cstdint>
@@ -39,6 +39,8 @@ class KeyLine {
   const std::vector<AxisKey>& keys() const { return keys_; }
   /// Proven; NaN before finish().
   double error() const { return error_; }
+  /// The farthest that two neighbours are apart.
+  double longest_step() const;
 
  private:
   struct Cone {
@@ -62,6 +64,10 @@ class KeyLine {
   double thinned_ = 0.0;         ///< that thinning has added
   double error_ = std::numeric_limits<double>::quiet_NaN();
 };
+
+/// How far a turn is from an even one at most, rad, where a viewer mixes the quaternions of its two ends and
+/// normalises them, as Blender does, instead of turning at one speed, as glTF has it. `turn_rad` < pi.
+double mixing_error(double turn_rad);
 
 /// The axes of a machine, and which tool is in the spindle.
 class AxisKeys {

@@ -122,6 +122,45 @@ TEST(AxisKeys, TurnLessThanAQuarterBetweenTwo) {
   EXPECT_LE(greatest_distance(line.keys(), values, cycles), line.error() + 1e-9);
 }
 
+/// As Blender plays a turn: quaternions mixed and normalised.
+double mixed(double from, double to, double share) {
+  const double x = (1.0 - share) * std::cos(0.5 * from) + share * std::cos(0.5 * to),
+               y = (1.0 - share) * std::sin(0.5 * from) + share * std::sin(0.5 * to);
+  return 2.0 * std::atan2(y, x);
+}
+
+TEST(AxisKeys, MixedQuaternionsAreOffByNoMoreThanTheirErrorSays) {
+  for (const double turn : {1e-3, 0.1, 0.21, 0.7, 1.5, 2.5, 3.1}) {
+    double most = 0.0;
+    for (int i = 0; i <= 20'000; ++i) {
+      const double share = i / 20'000.0;
+      most = std::max(most, std::abs(mixed(0.0, turn, share) - share * turn));
+    }
+    EXPECT_LE(most, mixing_error(turn) * (1.0 + 1e-9) + 1e-15) << turn;
+    EXPECT_GE(most, mixing_error(turn) * (1.0 - 1e-6) - 1e-12) << turn;
+  }
+}
+
+/// A table that turns evenly, for more turns than keys are wanted: no tolerance makes fewer lines of them.
+TEST(AxisKeys, OfManyTurnsStayExactForEveryViewer) {
+  kinematics::Axis table;
+  table.kind = kinematics::AxisKind::kRotary;
+  constexpr double kTolerance = 2e-4, kTurns = 300.0;
+  AxisKeys keys(std::span(&table, 1), 0.02, kTolerance, 1000);
+  constexpr uint64_t kCycles = 100'000;
+  std::vector<Cycle> window(1);
+  for (uint64_t k = 0; k <= kCycles; ++k) {
+    window[0].number = k;
+    window[0].q[0] = kTurns * 2.0 * kPi * static_cast<double>(k) / kCycles;
+    keys.add(window);
+  }
+  keys.finish();
+  const KeyLine& line = keys.axes().front();
+  EXPECT_LE(line.error(), 1.01 * kTolerance);
+  EXPECT_LT(static_cast<double>(line.keys().size()), 62.0 * kTurns);
+  EXPECT_LT(mixing_error(line.longest_step()), 0.2 * kTolerance);
+}
+
 TEST(AxisKeys, OfOneCycleAndOfStandingAxes) {
   KeyLine one(0.02, kNoStep, 100);
   one.add(0, 7.25);

@@ -8,6 +8,7 @@
 #include "base/check.h"
 #include "mesh/mesh_enclosed.h"
 #include "raster_scene.h"
+#include "render/raster/depth_range.h"
 
 namespace swarf::render::raster_renderer {
 namespace {
@@ -68,6 +69,47 @@ TEST(RasterRenderer, GivesTheSameBytesEveryTime) {
   const Image first = one.draw(list);
   EXPECT_EQ(first.rgba, one.draw(list).rgba);
   EXPECT_EQ(first.rgba, two.draw(list).rgba);
+}
+
+/// A scene that looks otherwise from each side, with lines, near enough that its front is cut off by the near
+/// plane where `distance` is small.
+DrawList two_boxes(const TriMesh& near, const TriMesh& far, double distance) {
+  DrawList list;
+  list.camera = front(distance);
+  list.camera.eye += Vec3(0.4 * distance, 0, 0.3 * distance);
+  list.items = {item(near, kRed), item(far, kGreen)};
+  list.items[1].X_world.translate(Vec3(0, 35, 4));
+  list.lines.push_back({{{-40, -25, 0}, {40, -25, 5}, {40, 25, 9}}, {1, 1, 0}, 2.0F});
+  return list;
+}
+
+TEST(RasterRenderer, WhatEarlierFramesLeftBehindIsNotSeen) {
+  const TriMesh small = box_mesh({{-9, -7, -5}, {9, 7, 5}}),
+                large = box_mesh({{-30, -20, -20}, {30, 20, 20}});
+  std::vector<DrawList> lists{two_boxes(small, large, 60), two_boxes(large, small, 300),
+                              two_boxes(small, small, 25), two_boxes(large, small, 90)};
+  lists[1].section = SectionPlane{{0, 0, 3}, Vec3::UnitZ()};
+  lists[1].items[0].sectioned = true;
+  for (const int samples : {1, 4}) {
+    std::vector<Image> alone;
+    for (const DrawList& list : lists) alone.push_back(RasterRenderer(kWidth, kHeight, samples).draw(list));
+    RasterRenderer renderer(kWidth, kHeight, samples);
+    // Every list in every range, after every other one.
+    for (int frame = 0; frame < 5 * kDepthRanges; ++frame) {
+      const size_t one = static_cast<size_t>(frame + frame / 4 + frame / 16) % lists.size();
+      ASSERT_EQ(renderer.draw(lists[one]).rgba, alone[one].rgba) << samples << " samples, frame " << frame;
+    }
+  }
+}
+
+TEST(DepthRange, EachLiesBeforeTheOneBefore) {
+  EXPECT_EQ(depth_range(0).farthest, 1.0F);
+  for (int frame = 1; frame < kDepthRanges; ++frame) {
+    const DepthRange range = depth_range(frame), before = depth_range(frame - 1);
+    EXPECT_LE(2.0F * range.farthest, before.nearest) << frame;
+    EXPECT_EQ(range.nearest * 16.0F, before.nearest) << "by powers of two only";
+    EXPECT_EQ(range.farthest * 16.0F, before.farthest);
+  }
 }
 
 TEST(RasterRenderer, SmoothsEdgesByItsSamples) {
