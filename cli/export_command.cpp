@@ -2,9 +2,11 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 
 #include "base/file.h"
 #include "base/units.h"
+#include "brep/write_step.h"
 #include "cli/commands.h"
 #include "cli/terminal.h"
 #include "cli/window_options.h"
@@ -24,12 +26,15 @@
 namespace swarf::cli {
 namespace {
 
+/// CAD systems take minutes for what a viewer shows at once.
+constexpr double kGltfErrorUm = 2.0, kStepErrorUm = 10.0;
+
 struct ExportOptions {
-  std::string folder, gltf, machine_gltf, stl, obj, threemf, ply, vdb, trajectory;
+  std::string folder, gltf, machine_gltf, stl, obj, threemf, step, ply, vdb, trajectory;
   sim::WindowPlaces window;
-  double error_um = 2.0;
+  std::optional<double> error_um;  ///< of decimation
   render::GltfEncoding encoding = render::GltfEncoding::kFloat;
-  bool needs_stock() const { return !(gltf + machine_gltf + stl + obj + threemf + ply + vdb).empty(); }
+  bool needs_stock() const { return !(gltf + machine_gltf + stl + obj + threemf + step + ply + vdb).empty(); }
 };
 
 void check_options(const ExportOptions& options) {
@@ -42,8 +47,9 @@ void check_options(const ExportOptions& options) {
                      "--from and --to are for motions: the finished part has none",
                      "write for example: swarf export DIR --trajectory part.csv --from 60 --to 62");
   }
-  for (const std::string& file : {options.gltf, options.machine_gltf, options.stl, options.obj,
-                                  options.threemf, options.ply, options.vdb, options.trajectory})
+  for (const std::string& file :
+       {options.gltf, options.machine_gltf, options.stl, options.obj, options.threemf, options.step,
+        options.ply, options.vdb, options.trajectory})
     reports::check_output_file(file);
   if (!options.trajectory.empty()) sim::check_cycle_table_name(options.trajectory);
 }
@@ -58,7 +64,7 @@ void write_trajectory(const ExportOptions& options, const sim::Job& job, const m
 
 void write_gltf(const ExportOptions& options, const reports::FinishedRun& run) {
   reports::ReviewModels models =
-      reports::review_models(run, run.stock.mesh(), options.error_um * kMicrometre,
+      reports::review_models(run, run.stock.mesh(), options.error_um.value_or(kGltfErrorUm) * kMicrometre,
                              reports::review_pins(reports::read_findings(options.folder)));
   reports::show_worst(run, reports::kept_worst_places(options.folder), models);
   const reports::GltfOptions written{options.encoding, true};
@@ -70,6 +76,15 @@ void write_gltf(const ExportOptions& options, const reports::FinishedRun& run) {
   fmt::print("glTF: finished part decimated within {:.3f} um\n", um_from_mm(models.part.error_mm));
 }
 
+void write_step(const ExportOptions& options, const reports::FinishedRun& run) {
+  double error_mm = 0.0;
+  const TriMesh part =
+      mesh::decimate(run.stock.mesh(), options.error_um.value_or(kStepErrorUm) * kMicrometre, &error_mm);
+  brep::write_step(options.step, part, run.job.scene.name);
+  fmt::print("{}: {} plane triangles, decimated within {:.3f} um, mm\n", options.step, part.triangles.size(),
+             um_from_mm(error_mm));
+}
+
 void write_meshes(const ExportOptions& options, const reports::FinishedRun& run) {
   for (const std::string& file : {options.stl, options.obj, options.threemf}) {
     if (file.empty()) continue;
@@ -77,6 +92,7 @@ void write_meshes(const ExportOptions& options, const reports::FinishedRun& run)
     mesh::save_mesh(file, part);
     fmt::print("{}: {} triangles, mm\n", file, part.triangles.size());
   }
+  if (!options.step.empty()) write_step(options, run);
   if (!options.ply.empty()) {
     TriMesh coloured = reports::part_mesh(run);
     render::colour_by_deviation(coloured, reports::deviation_scale(run.job));
@@ -131,18 +147,21 @@ void add_export(CLI::App& app, int& exit_code) {
   command->add_option(
       "--machine-gltf", options->machine_gltf,
       "animated machine (.glb): between two keys an axis moves in a straight line, which no cycle is "
-      "farther from than 0.02 mm or 0.0115 deg; more where an axis would have over 32768 keys: "
+      "farther from than 0.02 mm or 0.0136 deg; more where an axis would have over 32768 keys: "
       "asset.extras says how far, for each axis (key_error_max_X_mm)");
   command->add_option("--stl", options->stl, "finished part (.stl, mm)");
   command->add_option("--obj", options->obj, "finished part (.obj, mm)");
   command->add_option("--3mf", options->threemf, "finished part (.3mf, mm)");
+  command->add_option("--step", options->step,
+                      "finished part as a solid of plane triangles, decimated (.step, AP214, mm)");
   command->add_option("--ply", options->ply, "finished part with deviation (.ply, mm)");
   command->add_option("--vdb", options->vdb, "finished stock as a level set (.vdb)");
   command->add_option("--trajectory", options->trajectory,
                       "each control cycle as a row of a table (.csv or .h5); exactly those of the run");
   add_window_options(*command, options->window, "--trajectory, --machine-gltf and the fan of --gltf");
-  command->add_option("--error-um", options->error_um, "largest error of the decimation for --gltf")
-      ->capture_default_str()
+  command
+      ->add_option("--error-um", options->error_um,
+                   "largest error of the decimation (default: 2 for --gltf, 10 for --step)")
       ->check(CLI::PositiveNumber);
   static const std::map<std::string, render::GltfEncoding> kEncodings{
       {"float", render::GltfEncoding::kFloat},

@@ -281,6 +281,20 @@ TEST_F(Review, TheCutStockAs3mfAndObj) {
   EXPECT_EQ(read.output, "millimeter " + std::to_string(stl.triangles.size()) + " 1\n");
 }
 
+TEST_F(Review, TheCutStockAsStep) {
+  const std::string part = (folder_ / "part.step").string();
+  const ProgramRun run = run_swarf("export " + out() + " --step " + part + " --error-um 20");
+  ASSERT_EQ(run.exit_code, 0) << run.output;
+  EXPECT_TRUE(says(run, "plane triangles, decimated within")) << run.output;
+  const std::string text = read_text(part);
+  EXPECT_TRUE(text.starts_with("ISO-10303-21;"));
+  EXPECT_NE(text.find("FACETED_BREP('',"), std::string::npos);
+  EXPECT_NE(text.find("SI_UNIT(.MILLI.,.METRE.)"), std::string::npos);
+  EXPECT_NE(text.find("END-ISO-10303-21;"), std::string::npos);
+  const ProgramRun nowhere = run_swarf("export " + out() + " --step " + (folder_ / "no/part.step").string());
+  EXPECT_EQ(nowhere.exit_code, 2) << nowhere.output;
+}
+
 TEST_F(Review, ThePageAsPdf) {
   if (run_command("command -v chromium").exit_code != 0) GTEST_SKIP() << "there is no chromium here";
   const std::string pdf = (folder_ / "page.pdf").string();
