@@ -6,6 +6,7 @@
 #include "base/file.h"
 #include "base/units.h"
 #include "cli/commands.h"
+#include "cli/number_flags.h"
 #include "cli/terminal.h"
 #include "cli/window_options.h"
 #include "mesh/mesh_io.h"
@@ -143,7 +144,7 @@ void add_export(CLI::App& app, int& exit_code) {
   add_window_options(*command, options->window, "--trajectory, --machine-gltf and the fan of --gltf");
   command->add_option("--error-um", options->error_um, "largest error of the decimation for --gltf")
       ->capture_default_str()
-      ->check(CLI::PositiveNumber);
+      ->check(positive());
   static const std::map<std::string, render::GltfEncoding> kEncodings{
       {"float", render::GltfEncoding::kFloat},
       {"quantized", render::GltfEncoding::kQuantised},
