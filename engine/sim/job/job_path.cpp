@@ -57,14 +57,14 @@ JobPath path_of_program(const Job& job, toolpath::Planner planner, Diagnostics& 
 }
 
 /// mm, a thousand kilometres: beyond it no machine goes, and squares of what is far beyond overflow.
-constexpr double kFarthest = 1e9;
+constexpr double kFarthestTip = 1e9;
 
 /// No place of the tip may lie where nothing can be computed with it.
 void check_places(const toolpath::ToolPath& path) {
   if (!path.elements.hold_blocks()) return;
   for (size_t i = 0; i < path.elements.size(); ++i) {
     const Vec3 tip = path.elements.block(i).to.tip_W;
-    if (tip.cwiseAbs().maxCoeff() <= kFarthest) continue;
+    if (tip.cwiseAbs().maxCoeff() <= kFarthestTip) continue;
     throw InputError("out-of-range", path.elements.where(i),
                      fmt::format("this block goes to ({:.4g}, {:.4g}, {:.4g}) mm, {:g} km away", tip.x(),
                                  tip.y(), tip.z(), tip.cwiseAbs().maxCoeff() * 1e-6),
