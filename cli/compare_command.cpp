@@ -10,6 +10,7 @@
 #include "cli/compare_inputs.h"
 #include "cli/compare_runs.h"
 #include "cli/compare_text.h"
+#include "cli/number_flags.h"
 #include "cli/shell_text.h"
 #include "cli/terminal.h"
 #include "mesh/mesh_ops.h"
@@ -156,9 +157,9 @@ int compare_solids(const CompareOptions& options) {
   const measure::PartComparison result = measure::compare_parts(input);
   check_measured(options, result);
   const std::vector<sim::Check> checks = judge_comparison(input, result);
-  const std::string json = comparison_json(stock, input, result, checks, aligned);
+  const std::string json = comparison_json(stock, design, input, result, checks, aligned);
   reports::ComparedPair pair{
-      options.stock, options.design, design.grid, "", checks, comparison_rows(stock, input, result)};
+      options.stock, options.design, design.grid, "", checks, comparison_rows(stock, design, input, result)};
   if (aligned) pair.alignment = alignment_text(*aligned);
   pair.command = shell_text(compare_words(options));
   if (!options.output.empty())
@@ -222,17 +223,17 @@ void add_limits(CLI::App& command, CompareOptions& options) {
   command
       .add_option("--excess-um,--scallop-um", options.excess_um,
                   "allowed excess (default: the scene's [accept], else 10)")
-      ->check(CLI::NonNegativeNumber);
+      ->check(nonnegative());
   command.add_option("--gouge-um", options.gouge_um, "allowed gouge (default: the scene's [accept], else 1)")
-      ->check(CLI::NonNegativeNumber);
+      ->check(nonnegative());
   command
       .add_option("--allowance-mm", options.allowance_mm,
                   "stock left on purpose: the target is the design offset outward by so much")
       ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
+      ->check(nonnegative());
   command.add_option("--rays-um", options.rays_um, "allowed difference between the rays of two runs")
       ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
+      ->check(nonnegative());
 }
 
 void add_sampling(CLI::App& command, CompareOptions& options) {
@@ -240,16 +241,16 @@ void add_sampling(CLI::App& command, CompareOptions& options) {
       .add_option("--pitch-mm", options.pitch_mm,
                   "every point lies so near to a sample, before the proof divides further (default: 1/400 of "
                   "the smaller diagonal, or some 250 000 samples a surface)")
-      ->check(CLI::PositiveNumber);
+      ->check(positive());
   command
       .add_option("--edge-mm", options.edge_mm,
                   "what a rounded edge may be off, and the width along the border of a parametric design "
                   "(default: one voxel of a .vdb, 0 for meshes)")
-      ->check(CLI::NonNegativeNumber);
+      ->check(nonnegative());
   command
       .add_option("--reach-mm", options.reach_mm,
                   "measure only what lies so near; what does not is a finding with its area (default: all)")
-      ->check(CLI::PositiveNumber);
+      ->check(positive());
 }
 
 }  // namespace

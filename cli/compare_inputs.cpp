@@ -168,8 +168,11 @@ ComparedDesign load_design(const std::string& file, double pitch_mm) {
   refuse_cad(file);
   if (extension(file) == ".vdb") {
     ComparedDesign earlier;
-    earlier.mesh = stock_of_grid(file).mesh;
+    const ComparedStock stock = stock_of_grid(file);
+    earlier.mesh = stock.mesh;
     earlier.grid = true;
+    earlier.voxel_mm = stock.voxel_mm;
+    earlier.grid_error_mm = stock.greatest_error_mm();
     return earlier;
   }
   const std::string kind = extension(file);

@@ -2,6 +2,7 @@
 // errors.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
@@ -18,6 +19,10 @@ struct ComparedStock {
   double voxel_mm = 0.0;      ///< 0: a mesh file
   std::vector<double> error;  ///< per vertex of the mesh, mm; empty for mesh files
   std::vector<uint8_t> edge;  ///< per vertex: rounded by the grid; empty for mesh files
+
+  double greatest_error_mm() const {
+    return error.empty() ? 0.0 : *std::max_element(error.begin(), error.end());
+  }
 };
 
 struct ComparedDesign {
@@ -26,6 +31,7 @@ struct ComparedDesign {
   double error_mm = 0.0;                           ///< by which the facets stray from the surfaces
   std::optional<sim::AcceptLimits> accept;         ///< of a scene
   bool grid = false;                               ///< an earlier stock, as its grid shows it
+  double voxel_mm = 0.0, grid_error_mm = 0.0;      ///< of that grid; the error away from sharp edges
   std::shared_ptr<const stock::DesignMesh> faces;  ///< of a CAD file: the surfaces over the facets
 };
 

@@ -109,14 +109,26 @@ std::string region_text(const measure::DeviationRegion& region) {
                      region.volume_mm3 ? fmt::format(", {:.4g} mm3", *region.volume_mm3) : "");
 }
 
-std::string accuracy_text(const ComparedStock& stock, const measure::ComparisonInput& input,
-                          const measure::PartComparison& result) {
+/// Of an earlier stock, whose grid is compared as it is: what no number here includes.
+std::string grids_text(const ComparedStock& stock, const ComparedDesign& design) {
+  const std::string own = stock.voxel_mm > 0.0
+                              ? fmt::format("voxels of {:g} mm, off by up to {:.3f} um, against ",
+                                            stock.voxel_mm, um_from_mm(stock.greatest_error_mm()))
+                              : "";
+  return fmt::format("; {}voxels of {:g} mm, off by up to {:.3f} um, and more at sharp edges: not included",
+                     own, design.voxel_mm, um_from_mm(design.grid_error_mm));
+}
+
+std::string accuracy_text(const ComparedStock& stock, const ComparedDesign& design,
+                          const measure::ComparisonInput& input, const measure::PartComparison& result) {
   std::string text = fmt::format("a sample within {:.3g} mm of every point", input.pitch);
   if (input.design_error > 0.0)
     text +=
         fmt::format("; {}facets within {:.3f} um of the design",
                     input.faces != nullptr ? "samples on its faces, " : "", um_from_mm(input.design_error));
-  if (stock.voxel_mm > 0.0) {
+  if (design.grid) {
+    text += grids_text(stock, design);
+  } else if (stock.voxel_mm > 0.0) {
     text += fmt::format("; voxels of {:g} mm, off by up to {:.3f} um, which the proven numbers include",
                         stock.voxel_mm, result.grid_error_um);
   }
@@ -189,8 +201,21 @@ std::vector<sim::Check> judge_comparison(const measure::ComparisonInput& input,
   return checks;
 }
 
-std::string comparison_json(const ComparedStock& stock, const measure::ComparisonInput& input,
-                            const measure::PartComparison& result, const std::vector<sim::Check>& checks,
+namespace {
+
+/// Errors that no number of the comparison includes; null: the design is no grid.
+ordered_json grids_json(const ComparedStock& stock, const ComparedDesign& design) {
+  if (!design.grid) return nullptr;
+  return {{"stock_error_um", um_from_mm(stock.greatest_error_mm())},
+          {"design_voxel_mm", design.voxel_mm},
+          {"design_error_um", um_from_mm(design.grid_error_mm)}};
+}
+
+}  // namespace
+
+std::string comparison_json(const ComparedStock& stock, const ComparedDesign& design,
+                            const measure::ComparisonInput& input, const measure::PartComparison& result,
+                            const std::vector<sim::Check>& checks,
                             const std::optional<measure::Alignment>& aligned) {
   ordered_json list = ordered_json::array();
   for (const sim::Check& check : checks) list.push_back(check_json(check));
@@ -212,19 +237,20 @@ std::string comparison_json(const ComparedStock& stock, const measure::Compariso
                {"facet_error_um", um_from_mm(input.design_error)},
                {"voxel_mm", stock.voxel_mm > 0.0 ? ordered_json(stock.voxel_mm) : ordered_json(nullptr)},
                {"grid_error_um", result.grid_error_um},
+               {"grids_not_included", grids_json(stock, design)},
                {"edge_mm", input.edge},
                {"edge_max_um", result.edge_greatest_um}}}}
              .dump(2) +
          "\n";
 }
 
-Rows comparison_rows(const ComparedStock& stock, const measure::ComparisonInput& input,
-                     const measure::PartComparison& r) {
+Rows comparison_rows(const ComparedStock& stock, const ComparedDesign& design,
+                     const measure::ComparisonInput& input, const measure::PartComparison& r) {
   Rows rows{{"stock", fmt::format("{:.2f} mm2 against the design, {} samples", r.stock.area_mm2,
                                   r.stock.samples + r.stock.proof_samples)},
             {"design", fmt::format("{:.2f} mm2 against the stock, {} samples", r.design.area_mm2,
                                    r.design.samples + r.design.proof_samples)},
-            {"accuracy", accuracy_text(stock, input, r)}};
+            {"accuracy", accuracy_text(stock, design, input, r)}};
   if (input.allowance > 0.0)
     rows.emplace_back("allowance", fmt::format("{:g} mm left on purpose, all round", input.allowance));
   add_areas(input, r, rows);

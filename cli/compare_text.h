@@ -16,14 +16,16 @@ namespace swarf::cli {
 std::vector<sim::Check> judge_comparison(const measure::ComparisonInput& input,
                                          const measure::PartComparison& result);
 
-std::string comparison_json(const ComparedStock& stock, const measure::ComparisonInput& input,
-                            const measure::PartComparison& result, const std::vector<sim::Check>& checks,
+std::string comparison_json(const ComparedStock& stock, const ComparedDesign& design,
+                            const measure::ComparisonInput& input, const measure::PartComparison& result,
+                            const std::vector<sim::Check>& checks,
                             const std::optional<measure::Alignment>& aligned);
 
 /// "moved by ..., turned by ... about ...: rms .. before, .. after".
 std::string alignment_text(const measure::Alignment& aligned);
 
 std::vector<std::pair<std::string, std::string>> comparison_rows(const ComparedStock& stock,
+                                                                 const ComparedDesign& design,
                                                                  const measure::ComparisonInput& input,
                                                                  const measure::PartComparison& result);
 

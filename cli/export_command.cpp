@@ -8,6 +8,7 @@
 #include "base/units.h"
 #include "brep/write_step.h"
 #include "cli/commands.h"
+#include "cli/number_flags.h"
 #include "cli/terminal.h"
 #include "cli/window_options.h"
 #include "mesh/mesh_io.h"
@@ -162,7 +163,7 @@ void add_export(CLI::App& app, int& exit_code) {
   command
       ->add_option("--error-um", options->error_um,
                    "largest error of the decimation (default: 2 for --gltf, 10 for --step)")
-      ->check(CLI::PositiveNumber);
+      ->check(positive());
   static const std::map<std::string, render::GltfEncoding> kEncodings{
       {"float", render::GltfEncoding::kFloat},
       {"quantized", render::GltfEncoding::kQuantised},

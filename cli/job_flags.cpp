@@ -14,6 +14,7 @@
 #include "base/file.h"
 #include "cli/check_cl.h"
 #include "cli/check_nc.h"
+#include "cli/number_flags.h"
 #include "program/dialects.h"
 #include "sim/job/open_job.h"
 
@@ -95,7 +96,7 @@ void add_job_flags(CLI::App& command, JobWords& words) {
       ->group(group);
   command.add_option("--voxel", words.voxel_mm, "cells of the stock (default: by tool, block and memory)")
       ->type_name("MM")
-      ->check(CLI::PositiveNumber)
+      ->check(positive())
       ->group(group);
   command
       .add_option("--origin", words.origin,
@@ -113,7 +114,7 @@ void add_job_flags(CLI::App& command, JobWords& words) {
       ->group(group);
   command
       .add_option("--start-tool", words.start_tool, "number of the tool that is in the spindle at the start")
-      ->check(CLI::PositiveNumber)
+      ->check(positive())
       ->group(group);
   command.add_flag("--t-changes-tool", words.t_changes_tool, "T changes the tool at once, without M6")
       ->group(group);

@@ -10,6 +10,7 @@
 #include "base/file.h"
 #include "base/units.h"
 #include "cli/commands.h"
+#include "cli/number_flags.h"
 #include "cli/posted_scene.h"
 #include "cli/preferred.h"
 #include "cli/shell_text.h"
@@ -465,12 +466,12 @@ void add_post(CLI::App& app, int& exit_code) {
           "--tolerance-um", options->tolerance_um,
           "how far the tip may leave the CL data without TCP, written digits included; and the chords of "
           "arcs that the control cannot go")
-      ->check(CLI::PositiveNumber)
+      ->check(positive())
       ->capture_default_str();
   command
       ->add_option("--axis-tolerance-deg", options->axis_tolerance_deg,
                    "how far the tool axis may leave the great circle between two positions")
-      ->check(CLI::PositiveNumber)
+      ->check(positive())
       ->capture_default_str();
   command->add_option(
       "--tools", options->tools,

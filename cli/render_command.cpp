@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "cli/commands.h"
+#include "cli/number_flags.h"
 #include "cli/page_pdf.h"
 #include "cli/terminal.h"
 #include "cli/window_options.h"
@@ -163,7 +164,7 @@ void add_render(CLI::App& app, int& exit_code) {
   command->add_option("--size", options->size, "width and height, px")
       ->expected(2)
       ->check(CLI::Range(64, 7680));
-  command->add_option("--seconds", options->seconds, "length of the movie, s")->check(CLI::PositiveNumber);
+  command->add_option("--seconds", options->seconds, "length of the movie, s")->check(positive());
   add_window_options(*command, options->window, "movie, machine and fan");
   command->add_option("--samples", options->samples, "rays per pixel of the still, at most")
       ->check(CLI::Range(1, 4096));
@@ -171,7 +172,7 @@ void add_render(CLI::App& app, int& exit_code) {
       ->add_option(
           "--finding", options->finding,
           "the still shows the machine at this finding, by its number in the page and in findings.json")
-      ->check(CLI::PositiveNumber);
+      ->check(positive());
   command->add_option(
       "--section", options->section,
       "cut the still open, of the machine its stock and fixtures: x=10, y=10, z=10 (mm), or a point "

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "cli/number_flags.h"
+
 namespace swarf::cli {
 namespace {
 
@@ -43,7 +45,7 @@ void add_stock_options(CLI::App& command, RunOptions& options) {
           "go on from when the run is killed; 0: never")
       ->type_name("SECONDS")
       ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
+      ->check(nonnegative());
   CLI::Option* check =
       command.add_flag("--check", options.check,
                        "check the costly invariants of the stock on the way too, not only at the end");
@@ -54,7 +56,7 @@ void add_stock_options(CLI::App& command, RunOptions& options) {
               "refuse to start when more is expected to be needed (default: stock.max_memory_mb, else "
               "80 % of what is free)")
           ->type_name("MB")
-          ->check(CLI::PositiveNumber);
+          ->check(positive());
   command
       .add_flag(
           "--spill", options.spill,

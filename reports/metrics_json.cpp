@@ -199,6 +199,7 @@ Json surface_json(const measure::SurfaceMetrics& surface) {
           {"gouge_max_um", surface.gouge_max_um},
           {"gouge_bound_um", bound_json(surface.gouge_bound)},
           {"gouge_area_mm2", surface.gouge_area_mm2},
+          {"stock_missing_um", surface.missing_max_um},
           {"excess_max_um", surface.excess_max_um},
           {"excess_bound_um", bound_json(surface.excess_bound)},
           {"unmeasured_area_mm2", surface.unmeasured_area_mm2},

@@ -54,6 +54,10 @@ struct SurfaceMetrics {
   Vec3 gouge_bottom = Vec3::Zero();  ///< its bottom, W, mm
   double gouge_area_mm2 = 0.0;       ///< area deeper than the gouge limit
   uint32_t gouge_block = 0xffffffffu;
+  /// What the stock lacks below the design where no sweep has come: deepest of the rays, and farther where
+  /// the design's own places are (sim/run/missing_material.h); a point of the design, W, mm.
+  double missing_max_um = 0.0;
+  Vec3 missing_place = Vec3::Zero();
   /// Highest material anywhere: uncut, or left above an undercut, included; refined between the rays. Where
   /// it ends, W, mm: within the part where another face is as near (sim/run/highest_place.h).
   double excess_max_um = 0.0;

@@ -76,6 +76,10 @@ void summarise_rays(const stock::SurfaceDexels& dexels, const Tops& tops, const 
     if (dexels.blocks()[n] == stock::kUncut && height > 0.0) ++metrics.uncut_samples;
     if (height >= -limits.gouge_mm && top <= limits.scallop_mm) within += area;
     if (height < -limits.gouge_mm) metrics.gouge_area_mm2 += area;
+    if (dexels.blocks()[n] == stock::kUncut && um_from_mm(-height) > metrics.missing_max_um) {
+      metrics.missing_max_um = um_from_mm(-height);
+      metrics.missing_place = field.points[n];
+    }
     if (um_from_mm(top) > metrics.excess_max_um) {
       metrics.excess_max_um = um_from_mm(top);
       metrics.excess_top = field.points[n] + top * field.normals[n];
@@ -145,6 +149,10 @@ void merge(const SurfaceMetrics& part, SurfaceMetrics& whole, double& within) {
     whole.gouge_max_um = part.gouge_max_um;
     whole.gouge_bottom = part.gouge_bottom;
     whole.gouge_block = part.gouge_block;
+  }
+  if (part.missing_max_um > whole.missing_max_um) {
+    whole.missing_max_um = part.missing_max_um;
+    whole.missing_place = part.missing_place;
   }
   if (part.excess_max_um > whole.excess_max_um) {
     whole.excess_max_um = part.excess_max_um;

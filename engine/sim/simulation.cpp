@@ -17,6 +17,7 @@
 #include "sim/judge/findings.h"
 #include "sim/run/design_rays.h"
 #include "sim/run/highest_place.h"
+#include "sim/run/missing_material.h"
 #include "sim/run/prove_part.h"
 #include "sim/run/ray_cutters.h"
 #include "sim/run/recorder.h"
@@ -448,6 +449,7 @@ void measure_volume(const Job& job, Result& result) {
 void measure_part(const Job& job, Progress& progress, Result& result) {
   progress.begin("measure", 2, "steps");
   measure_dexels(job, result.main);
+  raise_missing(job, result.main.surface);
   progress.advance(1);
   const RayCutters rays = ray_cutters(job, result.main);
   const measure::SweepCutters cutters(rays.solids, rays.solid_of);

@@ -123,6 +123,14 @@ TEST_F(ComparePage, TwoRevisionsOfAStockSayWhatChanged) {
   EXPECT_NE(page.find("What changed"), std::string::npos);
   EXPECT_NE(page.find("<code>removed</code>"), std::string::npos);
   EXPECT_EQ(run_swarf("compare " + now + " " + now + " --pitch-mm 1").exit_code, 0);
+  // The errors of both grids are in no number: what they are was told as 0, and as included.
+  EXPECT_NE(changed.output.find("against voxels of 0.5 mm"), std::string::npos) << changed.output;
+  EXPECT_EQ(changed.output.find("numbers include"), std::string::npos) << changed.output;
+  const json told = json::parse(run_swarf("compare " + now + " " + earlier + " --pitch-mm 1 --json").output);
+  const json& grids = told.at("accuracy").at("grids_not_included");
+  EXPECT_EQ(grids.at("design_voxel_mm"), 0.5);
+  EXPECT_GT(grids.at("stock_error_um").get<double>(), 1.0);
+  EXPECT_GT(grids.at("design_error_um").get<double>(), 1.0);
 }
 
 /// A solid of STEP against the STL of the same solid, and against one that is 20 um too high: proven, with a

@@ -127,6 +127,15 @@ TEST(MemoryLimit, OfAFineMovieNamesItsVoxel) {
   EXPECT_NE(refused.output.find("fix: movie.voxel_mm = 0.05 is too fine: 0."), std::string::npos)
       << refused.output;
   EXPECT_FALSE(fs::exists(out));
+  // The stock goes to the disk, the movie's own does not: what was said to be enough was twenty times as
+  // much.
+  const auto spilled = run_swarf("run " SWARF_SOURCE_DIR
+                                 "/scenes/nc_pocket/scene.toml --set 'stills.kinds=[]' --set "
+                                 "movie.voxel_mm=0.05 --max-memory 700 --spill -o " +
+                                 out.string());
+  EXPECT_EQ(spilled.exit_code, 2) << spilled.output;
+  EXPECT_NE(spilled.output.find("a movie.voxel_mm above 0.05 takes less"), std::string::npos)
+      << spilled.output;
 }
 
 }  // namespace

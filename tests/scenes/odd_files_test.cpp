@@ -64,6 +64,21 @@ TEST_F(OddFiles, WhatIsNoProgramIsSaidToBeNone) {
   }
 }
 
+/// Squares of such numbers are no numbers: it ended as a fault of the program.
+TEST_F(OddFiles, BlocksThatGoFartherThanAnyMachineAreNamed) {
+  const std::string head = "G21 G90\nT1 M6\nS500 M3\nG0 X0 Y0 Z5\nG1 Z-1 F1000\n";
+  const std::string cl =
+      "UNITS/MM\nCUTTER/6\nFEDRAT/100,MMPM\nSPINDL/RPM,1000,CLW\nGOTO/0,0,5\nGOTO/1E200,0,-1\nFINI\n";
+  for (const auto& [name, text] :
+       {std::pair("x.nc", head + "X[10**200]\nX20\nM2\n"),
+        std::pair("g92.nc", head + "G92 X[10**200]\nX20\nM2\n"),
+        std::pair("g81.nc", head + "G99 G81 X[10**200] Z-1 R2\nG80\nM2\n"), std::pair("goto.cls", cl)}) {
+    write_text(root_ / name, text);
+    expect_refused("run " + std::string(name) + " --tool 6 --stock=-10,-10,-20,30,20,0 --no-render -o far",
+                   "out-of-range");
+  }
+}
+
 TEST_F(OddFiles, PlacesThatAreTakenStayAsTheyAre) {
   write_text(root_ / "part.nc", kShort);
   write_text(root_ / "notes.txt", "mine");

@@ -447,6 +447,20 @@ std::string solid(const std::string& facets) {
   return "solid s\n" + facets + "endsolid s\n";
 }
 
+/// They were answered with the 309 digits of the largest number.
+TEST_F(Options, NumbersOutOfTheirRangeAreToldInAFewWords) {
+  for (const auto& [words, answer] :
+       {std::pair("render x --seconds 0", "--seconds: 0 is not a number above 0\n"),
+        std::pair("render x --seconds inf", "inf is not a number above 0\n"),
+        std::pair("render x --finding 0", "0 is not a number above 0\n"),
+        std::pair("render x --from nan", "nan is not a number of 0 or more\n"),
+        std::pair("compare a b --gouge-um=-1", "-1 is not a number of 0 or more\n")}) {
+    const ProgramRun run = run_swarf(words);
+    EXPECT_EQ(run.exit_code, 2) << run.output;
+    EXPECT_NE(run.output.find(answer), std::string::npos) << run.output;
+  }
+}
+
 TEST_F(Options, CompareMeasuresOnlyWhatLiesSoNear) {
   const std::string design = file("design.stl", solid(box(0, 10, 5)));
   const std::string stock = file("stock.stl", solid(box(0, 10, 5.05) + box(100, 10, 5)));

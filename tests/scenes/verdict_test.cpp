@@ -221,6 +221,45 @@ TEST(Verdict, ADesignOutsideTheStockIsRefusedAndOneThatReachesOutIsTold) {
   EXPECT_EQ(codes("gouge"), 0) << partly.findings.dump(2);
 }
 
+/// A part that the stock cannot hold passed where nobody had set a limit of gouges. A box of 38 mm in a bar
+/// of D 40 mm lacks sqrt(2) 19 - 20 mm = 6.870 mm at its edges, where no measuring ray stands.
+TEST(Verdict, WithoutALimitOfGougesADesignThatTheStockCannotHoldFails) {
+  const fs::path folder = swarf::test::fresh_folder("verdict_missing");
+  swarf::test::write_text(folder / "air.nc",
+                          "G21 G17 G90 G94\nT1 M6\nS5000 M3\nG0 X-40 Y0 Z5\nG1 X-19 Y0 Z-3 F2000\nX19\n"
+                          "G0 Z20\nM2\n");
+  swarf::test::write_text(
+      folder / "part.obj",
+      "v -19 -19 -20\nv 19 -19 -20\nv 19 19 -20\nv -19 19 -20\nv -19 -19 -3\nv 19 -19 -3\n"
+      "v 19 19 -3\nv -19 19 -3\nf 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\n"
+      "f 4 1 5 8\n");
+  const auto scene = [&](const char* name, const std::string& stock, const std::string& design) {
+    swarf::test::write_text(folder / name,
+                            "nc = \"air.nc\"\ntools = \"T1=6\"\n"
+                            "setup = { work_origin_mm = \"on_table\", without_length = \"tip\" }\n"
+                            "[stock]\nvoxel_mm = 0.5\n" +
+                                stock + "[design]\npitch_mm = 2\n" + design);
+    return run_scene((folder / name).string());
+  };
+  const std::string bar = "cylinder = { base_mm = [0, 0, -20], diameter_mm = 40, length_mm = 20 }\n";
+  const std::string plane =
+      "kind = \"plane\"\norigin_mm = [5, -1, -3]\nalong_u_mm = [30, 0, 0]\nalong_v_mm = [0, 2, 0]\n";
+  for (const auto& [judged, mm] :
+       {std::pair(scene("mesh.toml", bar, "mesh = \"part.obj\"\n"), 6.870058),
+        std::pair(scene("plane.toml", bar, plane), std::hypot(35.0, 1.0) - 20.0)}) {
+    EXPECT_EQ(judged.run.exit_code, 1) << judged.run.output;
+    EXPECT_EQ(judged.outcome("gouge"), "fails");
+    EXPECT_NEAR(judged.metrics.at("surface").at("stock_missing_um").get<double>(), 1e3 * mm, 0.01);
+    const auto missing = [](const json& one) { return one.at("code") == "stock-missing"; };
+    EXPECT_EQ(std::count_if(judged.findings.begin(), judged.findings.end(), missing), 1)
+        << judged.findings.dump(2);
+  }
+  const Judged whole =
+      scene("whole.toml", "box_mm = [[-19, -19, -20], [19, 19, 0]]\n", "mesh = \"part.obj\"\n");
+  EXPECT_EQ(whole.outcome("gouge"), "not_judged") << whole.run.output;
+  EXPECT_EQ(whole.run.exit_code, 0) << whole.run.output;
+}
+
 /// A slot of 3 mm below a plane that is to be whole, as deep as three times the skin of a measuring ray: it
 /// was proven to be no deeper than the stock, by all that the proof may spend.
 TEST(Verdict, ASlotThroughAPlaneIsProvenAsDeepAsItIs) {

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <limits>
 #include <string>
+#include <vector>
+
+#include "base/parallel.h"
 
 namespace swarf::sim {
 namespace {
@@ -13,7 +16,9 @@ constexpr int kParts = 16;              ///< cells along u and v
 constexpr double kInchOfDesign = 25.4;  ///< mm
 /// A design this much smaller than the stock in the other unit, or larger, is none of another unit.
 constexpr double kLikelyShare = 0.25;
-constexpr double kBeyond = 1e-4;  ///< mm: past the rounding of designs that end at the stock's faces
+constexpr double kBeyond = 1e-4;      ///< mm: past the rounding of designs that end at the stock's faces
+constexpr double kMeshBeyond = 1e-5;  ///< of the mesh's size: single precision, as written and as turned
+constexpr size_t kVerticesPerTask = 4096;
 
 bool apart(const Box& a, const Box& b) {
   return (a.lower.array() > b.upper.array()).any() || (b.lower.array() > a.upper.array()).any();
@@ -27,9 +32,12 @@ Box joined(const Box& a, const Box& b) {
 struct DesignPlace {
   Box box;              ///< holds it
   bool outside = true;  ///< all of it, proven
-  double beyond_mm = 0.0;
-  Vec3 farthest = Vec3::Zero();  ///< of the places looked at, from the stock
+  DesignBeyond beyond{};
 };
+
+void keep_farther(const DesignBeyond& other, DesignBeyond& kept) {
+  if (other.mm > kept.mm) kept = other;
+}
 
 /// Over a cell a surface is no farther from the bilinear patch of its corners than (h_u^2 |Suu| + h_v^2
 /// |Svv|) / 8.
@@ -43,11 +51,7 @@ void add_cell(const surface::Surface& S, double stray, const Vec2& low, const st
     const Vec3 p = S.point(low.x() + corner.x(), low.y() + corner.y());
     box = joined(box, {p, p});
     radius = std::max(radius, (p - centre).norm());
-    const double beyond = raw.distance_mm(p);
-    if (beyond > place.beyond_mm) {
-      place.beyond_mm = beyond;
-      place.farthest = p;
-    }
+    keep_farther({raw.distance_mm(p), p}, place.beyond);
   }
   box.lower.array() -= stray;
   box.upper.array() += stray;
@@ -65,6 +69,36 @@ DesignPlace place_of(const std::vector<surface::SurfacePtr>& design, const stock
                n == 0 && surface == design.front());
   }
   return place;
+}
+
+Vec3 vertex(const TriMesh& mesh, size_t n) {
+  return Eigen::Vector3f(mesh.positions[n].data()).cast<double>();
+}
+
+DesignPlace place_of(const TriMesh& mesh, const stock::RawShape& raw) {
+  const size_t count = mesh.positions.size();
+  std::vector<DesignPlace> parts((count + kVerticesPerTask - 1) / kVerticesPerTask);
+  parallel_chunks(count, kVerticesPerTask, [&](size_t begin, size_t end) {
+    DesignPlace& part = parts[begin / kVerticesPerTask];
+    part.box = {vertex(mesh, begin), vertex(mesh, begin)};
+    for (size_t n = begin; n < end; ++n) {
+      const Vec3 p = vertex(mesh, n);
+      part.box = joined(part.box, {p, p});
+      keep_farther({raw.distance_mm(p), p}, part.beyond);
+    }
+  });
+  DesignPlace place = parts.front();
+  for (const DesignPlace& part : parts) {
+    place.box = joined(place.box, part.box);
+    keep_farther(part.beyond, place.beyond);
+  }
+  place.outside = false;
+  return place;
+}
+
+DesignPlace place_of(const Job& job) {
+  const stock::RawShape raw = job.scene.stock.body_W();
+  return job.design_mesh ? place_of(*job.design_mesh, raw) : place_of(job.design, raw);
 }
 
 /// The least way along each axis that brings the design between the stock's faces; from middle to middle
@@ -109,21 +143,26 @@ std::string spoken_box(const Box& box) {
                      box.upper.x(), box.lower.y(), box.upper.y(), box.lower.z(), box.upper.z());
 }
 
+DesignBeyond design_beyond(const Job& job) {
+  return job.has_design() ? place_of(job).beyond : DesignBeyond{};
+}
+
 void check_design_place(const Job& job, Diagnostics& diagnostics) {
-  if (job.design.empty()) return;
-  const stock::RawShape raw = job.scene.stock.body_W();
-  const DesignPlace place = place_of(job.design, raw);
+  if (!job.has_design()) return;
+  const DesignPlace place = place_of(job);
+  const double slack = job.design_mesh ? std::max(kBeyond, kMeshBeyond * place.box.size().norm()) : kBeyond;
+  const Vec3& farthest = place.beyond.place;
   if (place.outside)
     diagnostics.error("design-outside-stock", job.scene.design.mesh_where,
                       fmt::format("the design lies outside the stock, all of it: {}; the stock is {}",
-                                  spoken_box(place.box), spoken_box(raw.box())),
+                                  spoken_box(place.box), spoken_box(job.scene.stock.body_W().box())),
                       remedy(job, place.box));
-  else if (place.beyond_mm > kBeyond)
+  else if (place.beyond.mm > slack)
     diagnostics.warning(
         "design-beyond-stock", job.scene.design.mesh_where,
         fmt::format("the design reaches out of the stock, by {:.3f} mm at ({:.3f}, {:.3f}, {:.3f}) mm: there "
                     "material is missing that nobody cuts, and counts as missing",
-                    place.beyond_mm, place.farthest.x(), place.farthest.y(), place.farthest.z()),
+                    place.beyond.mm, farthest.x(), farthest.y(), farthest.z()),
         remedy(job, place.box));
 }
 

@@ -1,4 +1,4 @@
-// Whether a parametric design lies where the stock is. Of meshes mesh/mesh_check.h says it.
+// Whether a design lies where the stock is. That a mesh lies in the box of the stock mesh/mesh_check.h says.
 #pragma once
 
 #include <string>
@@ -8,10 +8,18 @@
 
 namespace swarf::sim {
 
+/// The place of a design that is farthest from the raw stock, of those that were looked at: the corners of 16
+/// by 16 cells of each surface, the vertices of a mesh.
+struct DesignBeyond {
+  double mm = 0.0;  ///< 0: all of them lie in the stock
+  Vec3 place = Vec3::Zero();
+};
+DesignBeyond design_beyond(const Job& job);
+
 /// A place of the design outside the raw stock lacks material that no cut has taken. Error
-/// "design-outside-stock": all of it lies there, proven by its bends, and nothing could be measured. Warning
-/// "design-beyond-stock": some of it does, looked at on a grid; with the farthest place. Both say in which
-/// units and by which offset the two would meet.
+/// "design-outside-stock": all of a parametric design lies there, proven by its bends, and nothing could be
+/// measured. Warning "design-beyond-stock": some of it does (design_beyond). Both say in which units and by
+/// which offset the two would meet.
 void check_design_place(const Job& job, Diagnostics& diagnostics);
 
 /// "X 0.000 to 40.000, Y .. mm".

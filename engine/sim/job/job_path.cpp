@@ -1,5 +1,7 @@
 #include "sim/job/job_path.h"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "motion/blocks/dog_leg.h"
@@ -54,9 +56,26 @@ JobPath path_of_program(const Job& job, toolpath::Planner planner, Diagnostics& 
   return {plan_surfaces(job, planner, diagnostics), {}};
 }
 
+/// mm, a thousand kilometres: beyond it no machine goes, and squares of what is far beyond overflow.
+constexpr double kFarthestTip = 1e9;
+
+/// No place of the tip may lie where nothing can be computed with it.
+void check_places(const toolpath::ToolPath& path) {
+  if (!path.elements.hold_blocks()) return;
+  for (size_t i = 0; i < path.elements.size(); ++i) {
+    const Vec3 tip = path.elements.block(i).to.tip_W;
+    if (tip.cwiseAbs().maxCoeff() <= kFarthestTip) continue;
+    throw InputError("out-of-range", path.elements.where(i),
+                     fmt::format("this block goes to ({:.4g}, {:.4g}, {:.4g}) mm, {:g} km away", tip.x(),
+                                 tip.y(), tip.z(), tip.cwiseAbs().maxCoeff() * 1e-6),
+                     "write positions and offsets that a machine can reach");
+  }
+}
+
 JobPath with_rapids(const Job& job, toolpath::Planner planner, Diagnostics& diagnostics) {
   JobPath found = path_of_program(job, planner, diagnostics);
   diagnostics.throw_if_errors();
+  check_places(found.path);
   found.path = motion::with_dog_legs(std::move(found.path), machines_by_tool(job));
   return found;
 }

@@ -135,9 +135,14 @@ struct RegionKind {
   const char *check, *what, *remedy;
   const char* missing;  ///< what no cut has taken; null: there is no such thing
   const std::vector<measure::Region>& regions;
-  const std::optional<double>& limit_um;
+  std::optional<double> limit_um;
   measure::Region worst;  ///< of all, where no region tells it
 };
+
+constexpr const char* kNobodyCut = "the stock ends here, nobody has cut it: material is missing";
+constexpr const char* kNobodyCutRemedy =
+    "bring design and stock together, or make the stock larger (the warning design-beyond-stock says by how "
+    "much)";
 
 /// One finding for each listed region beyond its limit; where the worst is so little beyond it that the proof
 /// draws no region, one for its place.
@@ -152,13 +157,28 @@ void region_faults(const Job& job, const RegionKind& kind, const Result& result,
     at_region(collect.at_block(
                   missing ? "stock-missing" : kind.check,
                   fmt::format("{}, {}", missing ? kind.missing : kind.what, place(region, *kind.limit_um)),
-                  missing ? "bring design and stock together, or make the stock larger (the warning "
-                            "design-beyond-stock says by how much)"
-                          : kind.remedy,
-                  result.main.rays.sources, region.block),
+                  missing ? kNobodyCutRemedy : kind.remedy, result.main.rays.sources, region.block),
               region);
   }
   not_proven(job, result, collect);
+}
+
+/// Without a limit of gouges the one place that lacks most.
+void missing_fault(const Result& result, Collector& collect) {
+  collect.begin("gouge");
+  if (collect.check().outcome != Outcome::kFails) return;
+  const measure::SurfaceMetrics& surface = result.main.surface;
+  measure::Region region;
+  region.worst_um = surface.missing_max_um;
+  region.place = surface.missing_place;
+  at_region(
+      collect.at_block("stock-missing",
+                       fmt::format("{}, {:.3f} um about ({:.3f}, {:.3f}, {:.3f}) mm; more than the {:g} "
+                                   "um that are allowed where [accept] has no limit",
+                                   kNobodyCut, region.worst_um, region.place.x(), region.place.y(),
+                                   region.place.z(), *collect.check().limit),
+                       kNobodyCutRemedy, result.main.rays.sources, stock::kUncut),
+      region);
 }
 
 void region_faults(const Job& job, const Result& result, Collector& collect) {
@@ -175,11 +195,13 @@ void region_faults(const Job& job, const Result& result, Collector& collect) {
                            ? "move the tool of this block away from the design"
                            : "lower the feed F or the control period: the chord of one cycle cuts into a "
                              "convex surface";
-  region_faults(job,
-                {"gouge", "a gouge", remedy, "the stock ends here, nobody has cut it: material is missing",
-                 surface.gouges, accept.gouge_max_um,
-                 worst(surface.gouge_max_um, surface.gouge_bottom, surface.gouge_block)},
-                result, collect);
+  if (accept.gouge_max_um)
+    region_faults(job,
+                  {"gouge", "a gouge", remedy, kNobodyCut, surface.gouges, accept.gouge_max_um,
+                   worst(surface.gouge_max_um, surface.gouge_bottom, surface.gouge_block)},
+                  result, collect);
+  else
+    missing_fault(result, collect);
   region_faults(
       job,
       {"excess", "material stands above the design", "machine this place too, or start from a smaller stock",

@@ -22,6 +22,9 @@ constexpr const char* kMicrometres = "um";
 constexpr const char* kNoDesign = "no design";
 /// Forward kinematics of the inverse's solution must lead back to within this, mm.
 constexpr double kRoundTrip = 1e-9;
+/// Of what the stock lacks where [accept] has no limit of gouges, um: facets of stock and design that stand
+/// for one round face lie so near to each other (brep::kEdgeChord on both sides).
+constexpr double kMissingAllowed = 10.0;
 
 Check not_judged(std::string name, std::string subject, std::string reason) {
   Check check{std::move(name), std::move(subject)};
@@ -77,6 +80,19 @@ Check measured(std::string name, std::string subject, std::optional<double> limi
   return check;
 }
 
+/// A part that its stock cannot hold is never the finished one, whether or not anybody has set a limit.
+void judge_missing(const SurfaceMetrics& surface, Check& gouge) {
+  if (gouge.outcome != Outcome::kNotJudged || surface.missing_max_um <= kMissingAllowed) return;
+  gouge.outcome = Outcome::kFails;
+  gouge.limit = kMissingAllowed;
+  gouge.value = std::max(*gouge.value, surface.missing_max_um);
+  gouge.what = fmt::format("{} {:.3f} um", gouge.subject, *gouge.value);
+  gouge.reason = fmt::format(
+      "the stock lacks {:.3f} um of material that nobody has cut; without a limit in "
+      "[accept] {:g} um are allowed",
+      surface.missing_max_um, kMissingAllowed);
+}
+
 /// A mesh has faces that the stock brings along: there only excess tells what is missing. A program of blocks
 /// may leave a part of the design to others, unless a scallop limit says that it machines it.
 Check reached_check(const Job& job, const Result& result) {
@@ -106,6 +122,7 @@ void add_surface_checks(const Job& job, const Result& result, std::vector<Check>
                            result.stopped);
   if (deepest.outcome == Outcome::kFails && surface.gouge_block == stock::kUncut)
     deepest.reason = "the stock has no material there: nobody has cut it";
+  judge_missing(surface, deepest);
   checks.push_back(std::move(deepest));
   checks.push_back(measured("excess", excess, accept.excess_max_um, surface.excess_max_um,
                             surface.excess_bound, result.stopped));

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/diagnostics.h"
+#include "sim/run/picture_memory.h"
 
 namespace swarf::sim {
 namespace {
@@ -36,6 +37,17 @@ int tile_at(double place, double lower, double side, int count) {
   return static_cast<int>(std::clamp(std::floor((place - lower) / side), 0.0, count - 1.0));
 }
 
+/// "; the movie's own stock ..." where that is most of what is needed: it does not go to the disk.
+std::string movie_text(const Scene& scene, const MemoryPrediction& memory, double needed_mb) {
+  constexpr double kMost = 0.5;
+  const double movie_mb = movie_stock_mb(scene, memory.leaves);
+  return memory.fixed_mb > movie_mb && movie_mb > kMost * needed_mb
+             ? fmt::format(
+                   "; {:.0f} MB of it are the movie's own stock: a movie.voxel_mm above {:g} takes less",
+                   movie_mb, scene.movie.voxel_mm)
+             : "";
+}
+
 }  // namespace
 
 LeafBudget::LeafBudget(const Job& job, const CutParts& parts, const MemoryPrediction& memory,
@@ -48,10 +60,11 @@ LeafBudget::LeafBudget(const Job& job, const CutParts& parts, const MemoryPredic
   const double room = (memory.limit_mb - memory.rest_mb) / memory.leaf_mb;
   if (room < of_step) {
     const double needed = std::ceil(memory.rest_mb + of_step * memory.leaf_mb);
-    throw InputError("out-of-memory", {job.scene.file},
-                     fmt::format("with --spill {:.0f} MB are expected to be needed, {:.0f} MB may be used",
-                                 needed, memory.limit_mb),
-                     fmt::format("--max-memory {:.0f} is enough", needed));
+    throw InputError(
+        "out-of-memory", {job.scene.file},
+        fmt::format("with --spill {:.0f} MB are expected to be needed, {:.0f} MB may be used", needed,
+                    memory.limit_mb),
+        fmt::format("--max-memory {:.0f} is enough{}", needed, movie_text(job.scene, memory, needed)));
   }
   // Those of the tiles that the next step cuts come to the ones that stay.
   spill_.leaves_most = static_cast<size_t>(room - of_step);

@@ -16,6 +16,7 @@
 #include "motion/speed/jerk_profile.h"
 #include "sim/job/memory_limit.h"
 #include "sim/run/cut_sweeps.h"
+#include "sim/run/picture_memory.h"
 #include "sim/run/prove_part.h"
 #include "sim/run/result.h"
 #include "stock/rays/ray_field.h"
@@ -227,6 +228,10 @@ double voxel_that_fits(const Job& job, const MemoryPrediction& prediction) {
 }
 
 }  // namespace
+
+double movie_stock_mb(const Scene& scene, double leaves) {
+  return movie_stock_bytes(scene, leaves) / kMegabyte;
+}
 
 MemoryPrediction predict_memory(const Job& job, const MeasuredPath& path, const Outputs& outputs,
                                 int stocks) {
